@@ -1,0 +1,14 @@
+# Writes version.c with version and commit; touches it only when it changes. In: SOURCE_DIR, VERSION, OUTPUT.
+execute_process(COMMAND git -C ${SOURCE_DIR} describe --always --dirty --abbrev=10 --exclude=*
+                OUTPUT_VARIABLE commit OUTPUT_STRIP_TRAILING_WHITESPACE ERROR_QUIET RESULT_VARIABLE result)
+if(NOT result EQUAL 0 OR commit STREQUAL "")
+  set(commit "unknown")
+endif()
+set(text "const char *bp_version(void);\nconst char *bp_version(void) { return \"${VERSION} (commit ${commit})\"; }\n")
+set(old "")
+if(EXISTS ${OUTPUT})
+  file(READ ${OUTPUT} old)
+endif()
+if(NOT text STREQUAL old)
+  file(WRITE ${OUTPUT} "${text}")
+endif()

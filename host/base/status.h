@@ -1,0 +1,47 @@
+/* status.h: how every fallible function of the host reports failure.
+ *
+ * In:    nothing.   Out: a status code and, in a BpError, the whole story for a person.
+ * Knows: the public error list (ballpark.h).   Does not know: who prints it (only main does).
+ *
+ * Convention: a fallible function returns BpStatus and takes `BpError *err` last. `err` may be NULL.
+ * On success `err` is not touched; on failure it holds code, message and, where there is one, the place.
+ * A function that forwards a failure returns the code it got and leaves `err` as it is. */
+#ifndef BP_BASE_STATUS_H
+#define BP_BASE_STATUS_H
+
+#include "../ballpark.h"
+
+#include <stddef.h>
+
+#if defined(__GNUC__)
+#define BP_PRINTF_LIKE(format_index, first_argument)                                                         \
+    __attribute__((format(printf, format_index, first_argument)))
+#else
+#define BP_PRINTF_LIKE(format_index, first_argument)
+#endif
+
+/* Fills `err` (if not NULL) with `code` and the formatted message, and returns `code`, so that a failing
+ * function can end with `return bp_fail(err, BP_ERR_..., "...")`. An earlier content of `err` is released. */
+BpStatus bp_fail(BpError *err, BpStatus code, const char *format, ...) BP_PRINTF_LIKE(3, 4);
+
+/* Adds the place of the fault to `err`: `file` (copied), `line` and `column` from 1, 0 when unknown. */
+void bp_error_at(BpError *err, const char *file, int line, int column);
+
+/* Attaches a long text (a build log, say), copied whole, that is printed below the message. */
+void bp_error_attach(BpError *err, const char *text);
+
+/* Forwards a failure: evaluates `call` once and returns its status from the enclosing function. */
+#define BP_TRY(call)                                                                                         \
+    do {                                                                                                     \
+        const BpStatus bp_try_status_ = (call);                                                              \
+        if (bp_try_status_ != BP_OK) return bp_try_status_;                                                  \
+    } while (0)
+
+/* The same for functions with a cleanup label: sets `status` and jumps. */
+#define BP_TRY_GOTO(status, call, label)                                                                     \
+    do {                                                                                                     \
+        (status) = (call);                                                                                   \
+        if ((status) != BP_OK) goto label;                                                                   \
+    } while (0)
+
+#endif

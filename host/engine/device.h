@@ -1,0 +1,33 @@
+/* device.h: OpenCL platforms, devices, contexts, and building a program for one device.
+ *
+ * In:    which device; source text.   Out: context, queue, program; a full build log on failure.
+ * Knows: OpenCL.   Does not know: scenes, pictures. */
+#ifndef BP_ENGINE_DEVICE_H
+#define BP_ENGINE_DEVICE_H
+
+#include "../base/status.h"
+
+#define CL_TARGET_OPENCL_VERSION 120
+#include <CL/cl.h>
+
+typedef struct BpDevice {
+    BpDeviceInfo info;
+    cl_device_id id;
+    cl_context context;
+    cl_command_queue queue; /* in order, with profiling */
+} BpDevice;
+
+BpStatus bp_device_open(const BpDeviceInfo *info, BpDevice **device, BpError *err);
+void bp_device_close(BpDevice **device);
+
+/* "CL_OUT_OF_RESOURCES" for -5, and so on; never NULL. */
+const char *bp_cl_error_name(cl_int code);
+/* bp_fail with the name of the call, the error's name and, for the common ones, what to do about it. */
+BpStatus bp_cl_fail(BpError *err, cl_int code, const char *call, const BpDevice *device);
+
+/* Builds `source` with `options` (always -cl-std=CL1.2 first). The log, also of a successful build, is written
+ * to *log when `log` is not NULL; the caller frees it. */
+BpStatus bp_device_build(BpDevice *device, const char *source, const char *options, cl_program *program,
+                         char **log, BpError *err);
+
+#endif

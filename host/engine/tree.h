@@ -1,0 +1,44 @@
+/* tree.h: bounding volume hierarchy over spheres, wide nodes, leaves as structure of arrays.
+ *
+ * In:    centres and radii, in double, relative to the camera.
+ * Out:   BpTree: node boxes (rounded outward when narrowed), child words, leaves and slots, in the layout of
+ *        kernels/scene_types.h.
+ * Knows: the packed layout, threads.   Does not know: materials, OpenCL.
+ *
+ * Sizes are stored narrowed: `single_precision` decides whether the real arrays hold float or double. */
+#ifndef BP_ENGINE_TREE_H
+#define BP_ENGINE_TREE_H
+
+#include "../scene/scene.h"
+
+typedef struct BpTreeOptions {
+    uint32_t width;        /* lanes of a node and of a leaf: 2, 4 or 8 */
+    bool single_precision; /* store float, else double */
+    bool list;             /* leaves only, in order of index; no nodes */
+    unsigned threads;      /* 0: all cores */
+} BpTreeOptions;
+
+typedef struct BpTree {
+    uint32_t width;
+    bool single_precision;
+    /* Leaf 0 .. first_leaves-1 hold spheres that are tested before the tree is entered: the few huge ones
+     * (all of them, for a list). Child words never point at them. */
+    uint32_t first_leaves;
+    uint32_t node_count; /* node 0 is the root; 0: a list */
+    uint32_t leaf_count;
+    uint32_t depth;      /* levels of nodes, <= TREE_DEPTH_MAX */
+    void *node_boxes;    /* node_count * NODE_REALS(width) reals */
+    uint32_t *children;  /* node_count * width */
+    void *leaves;        /* leaf_count * LEAF_REALS(width) reals */
+    uint32_t *slot_sphere; /* leaf_count * width */
+    double build_seconds;
+} BpTree;
+
+/* Builds a tree over the scene's spheres with `origin` (the camera's position) subtracted. Every sphere
+ * stands in exactly one slot. The result does not depend on the number of threads.
+ * On failure `tree` is empty. BP_ERR_MEMORY or BP_ERR_LIMIT. Free with bp_tree_clear(). */
+BpStatus bp_tree_build(const BpScene *scene, const double origin[3], const BpTreeOptions *options, BpTree *tree,
+                       BpError *err);
+void bp_tree_clear(BpTree *tree);
+
+#endif

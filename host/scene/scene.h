@@ -1,0 +1,94 @@
+/* scene.h: the scene as its author wrote it, in doubles, validated.
+ *
+ * In:    a scene document, or a generator.   Out: BpScene, read by effects, pack and the reference tracer.
+ * Knows: the grammar's terms.                Does not know: JSON, OpenCL, float, buffers.
+ *
+ * Invariants of every BpScene that reaches another module (bp_scene_validate proves them): all numbers are
+ * finite; radius != 0 (negative: turned inside out); material indices in range; albedo in [0,1]; emit >= 0;
+ * 0 <= fuzz <= 1; refraction_index > 0; 0 < vfov < 180; lookfrom != lookat; vup not along the view;
+ * 1 <= width, height <= BP_PICTURE_SIDE_MAX; no two coincident dielectrics. */
+#ifndef BP_SCENE_SCENE_H
+#define BP_SCENE_SCENE_H
+
+#include "../ballpark.h"
+
+#define BP_PICTURE_SIDE_MAX 65535u
+#define BP_DEPTH_MAX 1000000u
+#define BP_SPHERES_MAX 134217728u       /* 2^27 */
+#define BP_COORDINATE_MAX 1.0e12        /* |centre|, |radius|, |lookfrom|: squares stay finite in float */
+#define BP_NO_ALBEDO UINT32_MAX
+
+typedef enum BpMaterialKind {
+    BP_MATERIAL_LAMBERTIAN,
+    BP_MATERIAL_METAL,
+    BP_MATERIAL_DIELECTRIC,
+    BP_MATERIAL_DIFFUSE_LIGHT, /* emits, scatters nothing */
+    BP_MATERIAL_NORMALS        /* shows (n+1)/2 of the normal that faces the ray, scatters nothing */
+} BpMaterialKind;
+
+typedef enum BpScatter { BP_SCATTER_LAMBERTIAN, BP_SCATTER_COSINE_CUBED, BP_SCATTER_HEMISPHERE } BpScatter;
+typedef enum BpFuzzShape { BP_FUZZ_SPHERE, BP_FUZZ_BALL } BpFuzzShape;
+typedef enum BpFresnel { BP_FRESNEL_SCHLICK, BP_FRESNEL_EXACT, BP_FRESNEL_NONE } BpFresnel;
+typedef enum BpTotalReflection { BP_TOTAL_REFLECT, BP_TOTAL_ABSORB, BP_TOTAL_REFRACT } BpTotalReflection;
+typedef enum BpPixelSampling { BP_PIXEL_SQUARE, BP_PIXEL_CENTER } BpPixelSampling;
+
+typedef struct BpMaterial {
+    char *name;
+    BpMaterialKind kind;
+    double albedo[3]; /* lambertian, metal */
+    double emit[3];   /* any kind; (0,0,0): does not emit */
+    BpScatter scatter;
+    double fuzz;
+    BpFuzzShape fuzz_shape;
+    double refraction_index; /* of the inside over the outside */
+    BpFresnel fresnel;
+    BpTotalReflection total_reflection;
+} BpMaterial;
+
+typedef struct BpSphere {
+    double center[3];
+    double radius;     /* < 0: inside out */
+    uint32_t material; /* into materials[] */
+    uint32_t albedo;   /* into albedos[], replacing the material's; or BP_NO_ALBEDO */
+} BpSphere;
+
+typedef struct BpCamera {
+    uint32_t width, height;
+    double aspect_ratio; /* as asked for; height follows from width by it */
+    uint32_t samples_per_pixel, max_depth;
+    double vfov_degrees; /* of the full picture height */
+    double lookfrom[3], lookat[3], vup[3];
+    double lens_radius; /* aperture / 2, or focus_dist * tan(defocus_angle / 2); 0: pinhole */
+    double focus_dist;  /* along the view, from lookfrom to the plane in focus; > 0 */
+    BpPixelSampling pixel_sampling;
+} BpCamera;
+
+struct BpScene {
+    char *path; /* where it came from, for messages */
+    char *title, *source;
+    BpCamera camera;
+    double background_bottom[3], background_top[3]; /* by the unit direction's y: -1 bottom, +1 top */
+    BpTransfer transfer;
+    BpMaterial *materials;
+    size_t material_count;
+    BpSphere *spheres;
+    size_t sphere_count;
+    float (*albedos)[3]; /* linear, in [0,1]; of cloud points that bring their own colour */
+    size_t albedo_count;
+};
+
+/* height = max(1, floor(width / aspect + 1e-6)) */
+uint32_t bp_camera_height(uint32_t width, double aspect_ratio);
+
+/* Checks the invariants above; the message names the sphere, material or member by its index or name. */
+BpStatus bp_scene_validate(const BpScene *scene, BpError *err);
+
+/* Writes the scene as a document of the grammar that reads back to the same scene (numbers with 17 digits). */
+BpStatus bp_scene_write(const BpScene *scene, const char *path, BpError *err);
+
+/* The book's cover. edition: "1", "3", "3rust" or "4"; grid: half side, 11 in the book (cells -grid ..
+ * grid-1; 3rust: -grid .. grid). The draw order is fixed: see scene_generate.c. */
+BpStatus bp_scene_generate_cover(const char *edition, unsigned grid, uint64_t seed, BpScene **scene,
+                                 BpError *err);
+
+#endif

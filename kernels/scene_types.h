@@ -1,0 +1,90 @@
+/* scene_types.h: the layout of everything that host and device share.
+ *
+ * Read by both compilers: the host's C compiler (which defines BP_HOST) and the OpenCL compiler. It is the
+ * only such file. Change a struct here and both sides change; change it on one side alone and the probe
+ * kernel `probe_layout` makes every render refuse to start.
+ *
+ * `real` is double on the host, which packs in double; on the device it is float, or double under
+ * --precision double. Packed structs hold reals only or uints only, so that narrowing a whole buffer is one
+ * loop (pack.c) and no padding can appear. All sizes are multiples of 16 bytes.
+ *
+ * All points are relative to the camera's position (lookfrom), subtracted in double before narrowing. */
+#ifndef BP_SCENE_TYPES_H
+#define BP_SCENE_TYPES_H
+
+#ifdef BP_HOST
+#include <stdint.h>
+typedef double real;
+typedef uint32_t packed_uint;
+#elif defined(__OPENCL_C_VERSION__)
+typedef uint packed_uint;
+#else
+#error "scene_types.h: define BP_HOST, or compile as OpenCL C"
+#endif
+
+/* The pinhole or thin-lens camera. A ray leaves `lens_right * x + lens_up * y`, (x, y) in the unit disk,
+ * towards `corner + right * column + down * row`, a point of the plane in focus. Rows run downwards. */
+typedef struct PackedCamera {
+    real corner[4]; /* upper left corner of pixel (0, 0) */
+    real right[4];  /* one pixel to the right */
+    real down[4];   /* one pixel down */
+    real lens_right[4], lens_up[4]; /* scaled by the lens radius */
+} PackedCamera;
+
+/* Radiance of a ray that meets nothing: bottom at y = -1, top at y = +1, linear in the unit direction's y. */
+typedef struct PackedSky {
+    real bottom[4], top[4];
+} PackedSky;
+
+/* The numbers of a material. */
+typedef struct PackedMaterial {
+    real albedo[4];
+    real emit[4];
+    real fuzz;             /* in [0, 1] */
+    real refraction_index; /* inside over outside; for a negative radius already its reciprocal */
+    real reserved[2];      /* room for a texture */
+} PackedMaterial;
+
+/* The kinds of a material, values of the enums below. */
+typedef struct PackedMaterialKind {
+    packed_uint kind;
+    packed_uint lobe;    /* LOBE_...: lambertian's scatter */
+    packed_uint variant; /* FUZZ_... for metal, FRESNEL_... for dielectric */
+    packed_uint total_reflection;
+} PackedMaterialKind;
+
+/* What a sphere looks like: one entry a sphere, in the scene's order. */
+typedef struct PackedSphereLook {
+    packed_uint material;
+    packed_uint albedo; /* into the albedo table (4 reals an entry), or NO_ALBEDO */
+} PackedSphereLook;
+
+/* A leaf is `width` spheres as structure of arrays: width reals each of center x, y, z and radius (> 0).
+ * An empty lane has radius -1. Lane l of leaf f is slot f * width + l; `slot_sphere[slot]` is the sphere's
+ * index in the scene (NO_SPHERE when empty). Sizes in reals: */
+#define LEAF_REALS(width) (4 * (width))
+/* A node is `width` child boxes as structure of arrays: low x, y, z, high x, y, z, width reals each. Empty
+ * lanes have low > high. Its `width` child words stand in a buffer of their own. */
+#define NODE_REALS(width) (6 * (width))
+#define CHILD_LEAF 0x80000000u  /* set: the rest is a leaf number; clear: a node number */
+#define NO_SPHERE 0xffffffffu
+#define NO_ALBEDO 0xffffffffu
+/* A tree is at most this deep, so a stack of TREE_DEPTH_MAX * (width - 1) + 1 entries suffices. */
+#define TREE_DEPTH_MAX 24
+
+enum { KIND_LAMBERTIAN, KIND_METAL, KIND_DIELECTRIC, KIND_LIGHT, KIND_NORMALS };
+enum { LOBE_LAMBERTIAN, LOBE_COSINE_CUBED, LOBE_HEMISPHERE };
+enum { FUZZ_SPHERE, FUZZ_BALL };
+enum { FRESNEL_SCHLICK, FRESNEL_EXACT, FRESNEL_NONE };
+enum { TOTAL_REFLECT, TOTAL_ABSORB, TOTAL_REFRACT };
+
+#ifdef BP_HOST
+_Static_assert(sizeof(real) == 8, "the host packs in double");
+_Static_assert(sizeof(PackedCamera) == 20 * sizeof(real), "PackedCamera has padding");
+_Static_assert(sizeof(PackedSky) == 8 * sizeof(real), "PackedSky has padding");
+_Static_assert(sizeof(PackedMaterial) == 12 * sizeof(real), "PackedMaterial has padding");
+_Static_assert(sizeof(PackedMaterialKind) == 16, "PackedMaterialKind has padding");
+_Static_assert(sizeof(PackedSphereLook) == 8, "PackedSphereLook has padding");
+#endif
+
+#endif
