@@ -1,0 +1,56 @@
+/* render.h: the render loop behind ballpark.h, with what the program, `check` and the tests need beside it.
+ *
+ * In:    Scene, options, devices.   Out: an accumulator; a report of times and counts.
+ * Knows: OpenCL, packed buffers, chunks.   Does not know: files, stop rules, the terminal. */
+#ifndef BP_ENGINE_RENDER_H
+#define BP_ENGINE_RENDER_H
+
+#include "accumulator.h"
+#include "effects.h"
+
+typedef struct BpRenderReport {
+    BpDeviceInfo device;
+    BpEffects effects;
+    BpKernelForm kernel; /* the form that was built */
+    BpSampler sampler;
+    BpPrecision precision;
+    BpMath math;
+    BpNumerics numerics;
+    uint64_t program_key;  /* equal keys: the same program, nothing was built anew */
+    const char *build_log; /* valid while the render lives */
+    double tree_seconds, pack_seconds, kernel_build_seconds;
+    double first_launch_seconds; /* of the first, tiny chunk: drivers may compile once more there */
+    double trace_seconds;        /* wall clock spent in steps, without the first launch */
+    double device_seconds;       /* kernel time by the device's own clock: trace and fold */
+    double fold_seconds;         /* the fold's share of device_seconds */
+    uint64_t device_bytes;       /* allocated on the device: scene and picture */
+    uint64_t scene_bytes;        /* of these, the scene */
+    uint64_t samples, segments, cut_paths, invalid_samples;
+} BpRenderReport;
+
+void bp_render_report(const BpRender *render, BpRenderReport *report);
+
+/* The accumulator as it stands, read from the device; owned by the render, valid until the next step. */
+BpStatus bp_render_accumulator(BpRender *render, const BpAccumulator **accumulator, BpError *err);
+
+/* More samples for a render that has finished its own: raises samples_per_pixel to `samples_per_pixel`. */
+BpStatus bp_render_extend(BpRender *render, uint64_t samples_per_pixel, BpError *err);
+
+/* Samples done so far by every pixel (a pass in progress not counted). */
+uint64_t bp_render_samples_done(const BpRender *render);
+
+/* One chunk of raw samples. */
+typedef struct BpSampleBlock {
+    uint32_t first_pixel, pixel_count;
+    uint64_t first_sample; /* absolute */
+    uint32_t samples;      /* a pixel */
+    /* (pixel * samples + sample) * 4: r, g, b, and the number of ray segments, negative for a path that the
+     * depth cap cut. Single precision whatever the kernel's. */
+    const float *values;
+} BpSampleBlock;
+
+/* Runs one chunk and hands out its raw samples (they are folded into the accumulator as well): for tests and
+ * `check`. *finished as in BpProgress; block->pixel_count is 0 when there was nothing left to do. */
+BpStatus bp_render_step_samples(BpRender *render, BpSampleBlock *block, bool *finished, BpError *err);
+
+#endif
