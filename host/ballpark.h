@@ -103,14 +103,17 @@ typedef struct BpDeviceInfo {
     unsigned compute_units;
     uint64_t memory_bytes, largest_allocation_bytes;
     bool has_double, has_compiler, available;
+    char refusal[128]; /* what the device lacks, so that it cannot render; "": nothing */
 } BpDeviceInfo;
 
 /* Every device of every platform. Free *list with free(). No platform or no device at all is not an error:
  * *count is 0. */
 BpStatus bp_devices_list(BpDeviceInfo **list, size_t *count, BpError *err);
 
-/* The device that `text` means: its number, a part of its name or platform (any case), or for NULL or "" the
- * default: a GPU if there is one, else a CPU. The error lists what there is. */
+/* The device that `text` means: its number; "gpu" or "cpu" (the first); a part of its name, vendor, version or
+ * platform (any case); or for NULL or "" the default: a GPU if there is one, else a CPU. A device that cannot
+ * render is passed over; asked for by number, it is refused with what it lacks. A text that fits different
+ * devices is an error. Every error lists what there is, or what to install. */
 BpStatus bp_device_find(const char *text, BpDeviceInfo *device, BpError *err);
 
 /* ---- rendering --------------------------------------------------------------------------------------- */
