@@ -1,0 +1,128 @@
+/* cl_error.c: OpenCL's error numbers as names and remedies; see device.h.
+ *
+ * In:    an error number and the call that gave it.   Out: a message for a person.
+ * Knows: the error codes of OpenCL 1.2 and of the ICD loader.   Does not know: what was being done. */
+#include "device.h"
+
+#define ERROR_LIST(X)                                                                                        \
+    X(CL_SUCCESS, 0)                                                                                         \
+    X(CL_DEVICE_NOT_FOUND, -1)                                                                               \
+    X(CL_DEVICE_NOT_AVAILABLE, -2)                                                                           \
+    X(CL_COMPILER_NOT_AVAILABLE, -3)                                                                         \
+    X(CL_MEM_OBJECT_ALLOCATION_FAILURE, -4)                                                                  \
+    X(CL_OUT_OF_RESOURCES, -5)                                                                               \
+    X(CL_OUT_OF_HOST_MEMORY, -6)                                                                             \
+    X(CL_PROFILING_INFO_NOT_AVAILABLE, -7)                                                                   \
+    X(CL_MEM_COPY_OVERLAP, -8)                                                                               \
+    X(CL_IMAGE_FORMAT_MISMATCH, -9)                                                                          \
+    X(CL_IMAGE_FORMAT_NOT_SUPPORTED, -10)                                                                    \
+    X(CL_BUILD_PROGRAM_FAILURE, -11)                                                                         \
+    X(CL_MAP_FAILURE, -12)                                                                                   \
+    X(CL_MISALIGNED_SUB_BUFFER_OFFSET, -13)                                                                  \
+    X(CL_EXEC_STATUS_ERROR_FOR_EVENTS_IN_WAIT_LIST, -14)                                                     \
+    X(CL_COMPILE_PROGRAM_FAILURE, -15)                                                                       \
+    X(CL_LINKER_NOT_AVAILABLE, -16)                                                                          \
+    X(CL_LINK_PROGRAM_FAILURE, -17)                                                                          \
+    X(CL_DEVICE_PARTITION_FAILED, -18)                                                                       \
+    X(CL_KERNEL_ARG_INFO_NOT_AVAILABLE, -19)                                                                 \
+    X(CL_INVALID_VALUE, -30)                                                                                 \
+    X(CL_INVALID_DEVICE_TYPE, -31)                                                                           \
+    X(CL_INVALID_PLATFORM, -32)                                                                              \
+    X(CL_INVALID_DEVICE, -33)                                                                                \
+    X(CL_INVALID_CONTEXT, -34)                                                                               \
+    X(CL_INVALID_QUEUE_PROPERTIES, -35)                                                                      \
+    X(CL_INVALID_COMMAND_QUEUE, -36)                                                                         \
+    X(CL_INVALID_HOST_PTR, -37)                                                                              \
+    X(CL_INVALID_MEM_OBJECT, -38)                                                                            \
+    X(CL_INVALID_IMAGE_FORMAT_DESCRIPTOR, -39)                                                               \
+    X(CL_INVALID_IMAGE_SIZE, -40)                                                                            \
+    X(CL_INVALID_SAMPLER, -41)                                                                               \
+    X(CL_INVALID_BINARY, -42)                                                                                \
+    X(CL_INVALID_BUILD_OPTIONS, -43)                                                                         \
+    X(CL_INVALID_PROGRAM, -44)                                                                               \
+    X(CL_INVALID_PROGRAM_EXECUTABLE, -45)                                                                    \
+    X(CL_INVALID_KERNEL_NAME, -46)                                                                           \
+    X(CL_INVALID_KERNEL_DEFINITION, -47)                                                                     \
+    X(CL_INVALID_KERNEL, -48)                                                                                \
+    X(CL_INVALID_ARG_INDEX, -49)                                                                             \
+    X(CL_INVALID_ARG_VALUE, -50)                                                                             \
+    X(CL_INVALID_ARG_SIZE, -51)                                                                              \
+    X(CL_INVALID_KERNEL_ARGS, -52)                                                                           \
+    X(CL_INVALID_WORK_DIMENSION, -53)                                                                        \
+    X(CL_INVALID_WORK_GROUP_SIZE, -54)                                                                       \
+    X(CL_INVALID_WORK_ITEM_SIZE, -55)                                                                        \
+    X(CL_INVALID_GLOBAL_OFFSET, -56)                                                                         \
+    X(CL_INVALID_EVENT_WAIT_LIST, -57)                                                                       \
+    X(CL_INVALID_EVENT, -58)                                                                                 \
+    X(CL_INVALID_OPERATION, -59)                                                                             \
+    X(CL_INVALID_GL_OBJECT, -60)                                                                             \
+    X(CL_INVALID_BUFFER_SIZE, -61)                                                                           \
+    X(CL_INVALID_MIP_LEVEL, -62)                                                                             \
+    X(CL_INVALID_GLOBAL_WORK_SIZE, -63)                                                                      \
+    X(CL_INVALID_PROPERTY, -64)                                                                              \
+    X(CL_INVALID_IMAGE_DESCRIPTOR, -65)                                                                      \
+    X(CL_INVALID_COMPILER_OPTIONS, -66)                                                                      \
+    X(CL_INVALID_LINKER_OPTIONS, -67)                                                                        \
+    X(CL_INVALID_DEVICE_PARTITION_COUNT, -68)                                                                \
+    X(CL_PLATFORM_NOT_FOUND_KHR, -1001)
+
+const char *bp_cl_error_name(cl_int code) {
+    switch (code) {
+#define ERROR_NAME(name, number)                                                                             \
+    case number:                                                                                             \
+        return #name;
+        ERROR_LIST(ERROR_NAME)
+#undef ERROR_NAME
+    default:
+        return "an error that OpenCL 1.2 does not know";
+    }
+}
+
+/* The status that `code` amounts to, and in *remedy what a person can do ("" where nothing is known). */
+static BpStatus classify(cl_int code, const char **remedy) {
+    switch (code) {
+    case CL_MEM_OBJECT_ALLOCATION_FAILURE:
+        *remedy = "the device's memory is full: try a smaller --width, or another --device";
+        return BP_ERR_MEMORY;
+    case CL_OUT_OF_HOST_MEMORY:
+        *remedy = "this computer's memory is full: try a smaller --width, or close other programs";
+        return BP_ERR_MEMORY;
+    case CL_OUT_OF_RESOURCES:
+        *remedy = "the device ran out of memory or of time for one kernel: try a smaller --width, or another "
+                  "--device";
+        return BP_ERR_MEMORY;
+    case CL_INVALID_BUFFER_SIZE:
+        *remedy =
+            "a buffer is larger than the device can hold in one piece: try a smaller --width, or another "
+            "--device";
+        return BP_ERR_LIMIT;
+    case CL_DEVICE_NOT_AVAILABLE:
+        *remedy =
+            "the device is in use or switched off: try another --device (`ballpark devices` lists them)";
+        return BP_ERR_DEVICE;
+    case CL_COMPILER_NOT_AVAILABLE:
+        *remedy =
+            "the driver comes without a compiler: install the vendor's full OpenCL driver, or try another "
+            "--device";
+        return BP_ERR_DEVICE;
+    case CL_BUILD_PROGRAM_FAILURE:
+        *remedy = "";
+        return BP_ERR_BUILD;
+    case CL_INVALID_COMMAND_QUEUE:
+    case CL_EXEC_STATUS_ERROR_FOR_EVENTS_IN_WAIT_LIST:
+        *remedy =
+            "an earlier command failed, or the driver stopped the device (a watchdog): try another --device";
+        return BP_ERR_DEVICE;
+    default:
+        *remedy = "";
+        return BP_ERR_DEVICE;
+    }
+}
+
+BpStatus bp_cl_fail(BpError *err, cl_int code, const char *call, const BpDevice *device) {
+    const char *remedy;
+    const BpStatus status = classify(code, &remedy);
+    return bp_fail(err, status, "%s failed with %s (%d)%s%s%s%s", call, bp_cl_error_name(code), (int)code,
+                   device != NULL ? " on " : "", device != NULL ? device->info.name : "",
+                   remedy[0] != '\0' ? "; " : "", remedy);
+}

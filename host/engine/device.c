@@ -1,0 +1,179 @@
+/* device.c: opening a device and building programs for it; see device.h. */
+#include "device.h"
+
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+BpStatus bp_device_open(const BpDeviceInfo *info, BpDevice **device, BpError *err) {
+    BpStatus status;
+    BpDeviceInfo *list = NULL;
+    cl_device_id *ids = NULL;
+    size_t count = 0;
+    BpDevice *opened = NULL;
+    *device = NULL;
+
+    BP_TRY_GOTO(status, bp_device_ids(&list, &ids, &count, err), cleanup);
+    /* The number alone could mean another device by now: a driver installed, a card unplugged. */
+    if (info->number >= count || strcmp(list[info->number].name, info->name) != 0 ||
+        strcmp(list[info->number].platform, info->platform) != 0) {
+        status =
+            bp_fail(err, BP_ERR_DEVICE, "device %u (%s) is no longer there; `ballpark devices` lists what is",
+                    info->number, info->name);
+        goto cleanup;
+    }
+    if (list[info->number].refusal[0] != '\0') {
+        status = bp_fail(err, BP_ERR_DEVICE, "device %u (%s) cannot render: %s", info->number, info->name,
+                         list[info->number].refusal);
+        goto cleanup;
+    }
+    opened = calloc(1, sizeof *opened);
+    if (opened == NULL) {
+        status = bp_fail(err, BP_ERR_MEMORY, "no memory to open device %u", info->number);
+        goto cleanup;
+    }
+    opened->info = list[info->number];
+    opened->id = ids[info->number];
+
+    cl_platform_id platform = NULL;
+    cl_int code = clGetDeviceInfo(opened->id, CL_DEVICE_PLATFORM, sizeof platform, &platform, NULL);
+    if (code != CL_SUCCESS) {
+        status = bp_cl_fail(err, code, "clGetDeviceInfo(CL_DEVICE_PLATFORM)", opened);
+        goto cleanup;
+    }
+    const cl_context_properties properties[] = {CL_CONTEXT_PLATFORM, (cl_context_properties)platform, 0};
+    opened->context = clCreateContext(properties, 1, &opened->id, NULL, NULL, &code);
+    if (code != CL_SUCCESS) {
+        status = bp_cl_fail(err, code, "clCreateContext", opened);
+        goto cleanup;
+    }
+    opened->queue = clCreateCommandQueue(opened->context, opened->id, CL_QUEUE_PROFILING_ENABLE, &code);
+    if (code != CL_SUCCESS) {
+        status = bp_cl_fail(err, code, "clCreateCommandQueue", opened);
+        goto cleanup;
+    }
+    *device = opened;
+    opened = NULL;
+    status = BP_OK;
+
+cleanup:
+    bp_device_close(&opened);
+    free(list);
+    free(ids);
+    return status;
+}
+
+void bp_device_close(BpDevice **device) {
+    if (*device == NULL) return;
+    if ((*device)->queue != NULL) {
+        clFinish((*device)->queue);
+        clReleaseCommandQueue((*device)->queue);
+    }
+    if ((*device)->context != NULL) clReleaseContext((*device)->context);
+    free(*device);
+    *device = NULL;
+}
+
+/* The program's build log, "" where the driver gives none; NULL without memory. */
+static char *fetch_log(const BpDevice *device, cl_program program) {
+    size_t size = 0;
+    if (clGetProgramBuildInfo(program, device->id, CL_PROGRAM_BUILD_LOG, 0, NULL, &size) != CL_SUCCESS)
+        size = 0;
+    char *text = calloc(1, size + 1);
+    if (text == NULL || size == 0) return text;
+    if (clGetProgramBuildInfo(program, device->id, CL_PROGRAM_BUILD_LOG, size, text, NULL) != CL_SUCCESS)
+        text[0] = '\0';
+    return text;
+}
+
+/* Looks for the log's first complaint. Compilers built on Clang write "file:line:column: error: text", PoCL
+ * "error: file:line:column: text". True when found; `file` and `text` end at the next colon or line. */
+static bool first_complaint(const char *log, char file[128], int *line, int *column, char text[256]) {
+    for (const char *at = log; at != NULL && *at != '\0';) {
+        const char *end = strchr(at, '\n');
+        const size_t length = end != NULL ? (size_t)(end - at) : strlen(at);
+        char row[512];
+        snprintf(row, sizeof row, "%.*s", (int)(length < sizeof row ? length : sizeof row - 1), at);
+        const char *place = NULL, *complaint = NULL;
+        const char *mark = strstr(row, "error: ");
+        if (mark != NULL) {
+            const char *after = mark + strlen("error: ");
+            if (sscanf(after, "%127[^: ]:%d:%d", file, line, column) == 3) {
+                place = after;
+                complaint = strstr(after, ": ");
+            } else if (sscanf(row, "%127[^: ]:%d:%d", file, line, column) == 3) {
+                place = row;
+                complaint = after - 2;
+            }
+        }
+        if (place != NULL && complaint != NULL) {
+            snprintf(text, 256, "%s", complaint + 2);
+            return true;
+        }
+        at = end != NULL ? end + 1 : NULL;
+    }
+    return false;
+}
+
+static BpStatus build_failure(const BpDevice *device, cl_int code, const char *log, BpError *err) {
+    char file[128], text[256];
+    int line = 0, column = 0;
+    if (code != CL_BUILD_PROGRAM_FAILURE && (log == NULL || log[0] == '\0'))
+        return bp_cl_fail(err, code, "clBuildProgram", device);
+    if (log != NULL && first_complaint(log, file, &line, &column, text)) {
+        bp_fail(err, BP_ERR_BUILD, "the kernel does not compile for %s (driver %s): %s", device->info.name,
+                device->info.driver, text);
+        bp_error_at(err, file, line, column);
+    } else {
+        bp_fail(err, BP_ERR_BUILD, "the kernel does not compile for %s (driver %s): %s", device->info.name,
+                device->info.driver, bp_cl_error_name(code));
+    }
+    if (log != NULL && log[0] != '\0') bp_error_attach(err, log);
+    return BP_ERR_BUILD;
+}
+
+BpStatus bp_device_build(BpDevice *device, const char *source, const char *options, cl_program *program,
+                         char **log, BpError *err) {
+    BpStatus status = BP_OK;
+    cl_program built = NULL;
+    char *all_options = NULL, *text = NULL;
+    *program = NULL;
+    if (log != NULL) *log = NULL;
+    if (options == NULL) options = "";
+
+    /* -cl-nv-verbose makes NVIDIA's compiler put register and stack sizes into the log. */
+    const char *verbose =
+        bp_device_has_extension(device->id, "cl_nv_compiler_options") ? " -cl-nv-verbose" : "";
+    const size_t size = strlen("-cl-std=CL1.2 ") + strlen(options) + strlen(verbose) + 1;
+    all_options = malloc(size);
+    if (all_options == NULL) {
+        status = bp_fail(err, BP_ERR_MEMORY, "no memory to build a kernel");
+        goto cleanup;
+    }
+    snprintf(all_options, size, "-cl-std=CL1.2%s%s%s", verbose, options[0] != '\0' ? " " : "", options);
+
+    cl_int code;
+    built = clCreateProgramWithSource(device->context, 1, &source, NULL, &code);
+    if (code != CL_SUCCESS) {
+        status = bp_cl_fail(err, code, "clCreateProgramWithSource", device);
+        goto cleanup;
+    }
+    code = clBuildProgram(built, 1, &device->id, all_options, NULL, NULL);
+    text = fetch_log(device, built);
+    if (code != CL_SUCCESS) {
+        status = build_failure(device, code, text, err);
+        goto cleanup;
+    }
+    *program = built;
+    built = NULL;
+    if (log != NULL) {
+        *log = text;
+        text = NULL;
+    }
+
+cleanup:
+    if (built != NULL) clReleaseProgram(built);
+    free(all_options);
+    free(text);
+    return status;
+}

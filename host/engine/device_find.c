@@ -1,0 +1,336 @@
+/* device_find.c: which devices there are, what each lacks, and which one a text means; see device.h.
+ *
+ * In:    what the OpenCL loader finds.   Out: BpDeviceInfo, or a message that says what to install.
+ * Knows: OpenCL's platforms and devices.   Does not know: contexts, programs. */
+#include "device.h"
+
+#include <ctype.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#define NO_DEVICE_REMEDY                                                                                     \
+    "install an OpenCL driver: your GPU vendor's, or `apt install pocl-opencl-icd` to use the processor; "   \
+    "`clinfo` shows what is there"
+
+/* ---- asking OpenCL ---------------------------------------------------------------------------------------
+ */
+
+/* Copies `from` without white space at its ends: drivers pad names. */
+static void copy_trimmed(char *to, size_t size, const char *from) {
+    while (isspace((unsigned char)*from)) ++from;
+    size_t length = strlen(from);
+    while (length > 0 && isspace((unsigned char)from[length - 1])) --length;
+    if (length >= size) length = size - 1;
+    memcpy(to, from, length);
+    to[length] = '\0';
+}
+
+/* A text that the device knows about itself, heap; "" where it does not answer, NULL without memory. */
+static char *device_text(cl_device_id id, cl_device_info what) {
+    size_t size = 0;
+    if (clGetDeviceInfo(id, what, 0, NULL, &size) != CL_SUCCESS) size = 0;
+    char *text = calloc(1, size + 1);
+    if (text == NULL || size == 0) return text;
+    if (clGetDeviceInfo(id, what, size, text, NULL) != CL_SUCCESS) text[0] = '\0';
+    return text;
+}
+
+static void device_text_into(cl_device_id id, cl_device_info what, char *to, size_t size) {
+    char *text = device_text(id, what);
+    copy_trimmed(to, size, text != NULL ? text : "");
+    free(text);
+}
+
+static void platform_name(cl_platform_id platform, char *to, size_t size) {
+    char text[256] = "";
+    if (clGetPlatformInfo(platform, CL_PLATFORM_NAME, sizeof text, text, NULL) != CL_SUCCESS) text[0] = '\0';
+    text[sizeof text - 1] = '\0';
+    copy_trimmed(to, size, text[0] != '\0' ? text : "a platform without a name");
+}
+
+static bool device_flag(cl_device_id id, cl_device_info what) {
+    cl_bool flag = CL_FALSE;
+    return clGetDeviceInfo(id, what, sizeof flag, &flag, NULL) == CL_SUCCESS && flag != CL_FALSE;
+}
+
+static uint64_t device_ulong(cl_device_id id, cl_device_info what) {
+    cl_ulong number = 0;
+    return clGetDeviceInfo(id, what, sizeof number, &number, NULL) == CL_SUCCESS ? number : 0;
+}
+
+bool bp_device_has_extension(cl_device_id id, const char *name) {
+    char *text = device_text(id, CL_DEVICE_EXTENSIONS);
+    bool found = false;
+    const size_t length = strlen(name);
+    for (const char *at = text; at != NULL && !found; at = strchr(at, ' ')) {
+        while (*at == ' ') ++at;
+        found = strncmp(at, name, length) == 0 && (at[length] == ' ' || at[length] == '\0');
+        if (*at == '\0') break;
+    }
+    free(text);
+    return found;
+}
+
+/* What the device lacks of what every kernel needs, as a whole phrase; "" when nothing. */
+static void find_lack(cl_device_id id, const BpDeviceInfo *info, char refusal[128]) {
+    unsigned major = 0, minor = 0;
+    char profile[64];
+    device_text_into(id, CL_DEVICE_PROFILE, profile, sizeof profile);
+    const uint64_t single = device_ulong(id, CL_DEVICE_SINGLE_FP_CONFIG);
+    refusal[0] = '\0';
+    if (sscanf(info->version, "OpenCL %u.%u", &major, &minor) != 2)
+        snprintf(refusal, 128, "it does not tell its OpenCL version (1.2 is needed)");
+    else if (major < 1 || (major == 1 && minor < 2))
+        snprintf(refusal, 128, "it has OpenCL %u.%u (1.2 is needed)", major, minor);
+    else if (!info->has_compiler)
+        snprintf(refusal, 128, "its driver has no compiler");
+    else if (!device_flag(id, CL_DEVICE_ENDIAN_LITTLE))
+        snprintf(refusal, 128, "it is not little-endian");
+    else if (strcmp(profile, "EMBEDDED_PROFILE") == 0 && !bp_device_has_extension(id, "cles_khr_int64"))
+        snprintf(refusal, 128, "it has the embedded profile without `long` (cles_khr_int64)");
+    else if ((single & CL_FP_INF_NAN) == 0)
+        snprintf(refusal, 128, "its float has no infinities and NaN");
+    else if ((single & CL_FP_ROUND_TO_NEAREST) == 0)
+        snprintf(refusal, 128, "its float does not round to nearest");
+    else if (!info->available)
+        snprintf(refusal, 128, "it is not available now");
+}
+
+static void describe(cl_device_id id, cl_platform_id platform, unsigned number, BpDeviceInfo *info) {
+    memset(info, 0, sizeof *info);
+    info->number = number;
+    platform_name(platform, info->platform, sizeof info->platform);
+    device_text_into(id, CL_DEVICE_NAME, info->name, sizeof info->name);
+    device_text_into(id, CL_DEVICE_VENDOR, info->vendor, sizeof info->vendor);
+    device_text_into(id, CL_DEVICE_VERSION, info->version, sizeof info->version);
+    device_text_into(id, CL_DRIVER_VERSION, info->driver, sizeof info->driver);
+    const uint64_t type = device_ulong(id, CL_DEVICE_TYPE);
+    info->type = (type & CL_DEVICE_TYPE_GPU) != 0   ? BP_DEVICE_GPU
+                 : (type & CL_DEVICE_TYPE_CPU) != 0 ? BP_DEVICE_CPU
+                                                    : BP_DEVICE_OTHER;
+    cl_uint units = 0;
+    if (clGetDeviceInfo(id, CL_DEVICE_MAX_COMPUTE_UNITS, sizeof units, &units, NULL) == CL_SUCCESS)
+        info->compute_units = units;
+    info->memory_bytes = device_ulong(id, CL_DEVICE_GLOBAL_MEM_SIZE);
+    info->largest_allocation_bytes = device_ulong(id, CL_DEVICE_MAX_MEM_ALLOC_SIZE);
+    info->has_double = device_ulong(id, CL_DEVICE_DOUBLE_FP_CONFIG) != 0;
+    info->has_compiler = device_flag(id, CL_DEVICE_COMPILER_AVAILABLE);
+    info->available = device_flag(id, CL_DEVICE_AVAILABLE);
+    find_lack(id, info, info->refusal);
+}
+
+/* All platforms, heap; *count 0 and NULL where there is none, which is no error. */
+static BpStatus list_platforms(cl_platform_id **platforms, cl_uint *count, BpError *err) {
+    *platforms = NULL;
+    *count = 0;
+    /* Without any driver the loader says CL_PLATFORM_NOT_FOUND_KHR; other loaders say 0 platforms. */
+    if (clGetPlatformIDs(0, NULL, count) != CL_SUCCESS || *count == 0) {
+        *count = 0;
+        return BP_OK;
+    }
+    *platforms = calloc(*count, sizeof **platforms);
+    if (*platforms == NULL) return bp_fail(err, BP_ERR_MEMORY, "no memory for a list of OpenCL platforms");
+    const cl_int code = clGetPlatformIDs(*count, *platforms, NULL);
+    if (code == CL_SUCCESS) return BP_OK;
+    free(*platforms);
+    *platforms = NULL;
+    *count = 0;
+    return bp_cl_fail(err, code, "clGetPlatformIDs", NULL);
+}
+
+BpStatus bp_device_ids(BpDeviceInfo **list, cl_device_id **ids, size_t *count, BpError *err) {
+    BpStatus status;
+    cl_platform_id *platforms = NULL;
+    cl_uint platform_count = 0;
+    BpDeviceInfo *infos = NULL;
+    cl_device_id *handles = NULL;
+    size_t found = 0;
+    *list = NULL;
+    if (ids != NULL) *ids = NULL;
+    *count = 0;
+
+    BP_TRY_GOTO(status, list_platforms(&platforms, &platform_count, err), cleanup);
+    for (cl_uint p = 0; p < platform_count; ++p) {
+        cl_uint here = 0;
+        /* A platform without devices (CL_DEVICE_NOT_FOUND), or one that fails, hides no other platform. */
+        if (clGetDeviceIDs(platforms[p], CL_DEVICE_TYPE_ALL, 0, NULL, &here) != CL_SUCCESS || here == 0)
+            continue;
+        BpDeviceInfo *more_infos = realloc(infos, (found + here) * sizeof *infos);
+        if (more_infos != NULL) infos = more_infos;
+        cl_device_id *more_handles = realloc(handles, (found + here) * sizeof(cl_device_id));
+        if (more_handles != NULL) handles = more_handles;
+        if (more_infos == NULL || more_handles == NULL) {
+            status = bp_fail(err, BP_ERR_MEMORY, "no memory for a list of OpenCL devices");
+            goto cleanup;
+        }
+        if (clGetDeviceIDs(platforms[p], CL_DEVICE_TYPE_ALL, here, handles + found, NULL) != CL_SUCCESS)
+            continue;
+        for (cl_uint d = 0; d < here; ++d, ++found)
+            describe(handles[found], platforms[p], (unsigned)found, &infos[found]);
+    }
+    *list = infos;
+    infos = NULL;
+    *count = found;
+    if (ids != NULL) {
+        *ids = handles;
+        handles = NULL;
+    }
+
+cleanup:
+    free(platforms);
+    free(infos);
+    free(handles);
+    return status;
+}
+
+BpStatus bp_devices_list(BpDeviceInfo **list, size_t *count, BpError *err) {
+    return bp_device_ids(list, NULL, count, err);
+}
+
+/* ---- choosing one ----------------------------------------------------------------------------------------
+ */
+
+static bool contains(const char *text, const char *part) {
+    const size_t length = strlen(part);
+    for (; *text != '\0'; ++text) {
+        size_t i = 0;
+        while (i < length && tolower((unsigned char)text[i]) == tolower((unsigned char)part[i])) ++i;
+        if (i == length) return true;
+    }
+    return false;
+}
+
+static bool same(const char *a, const char *b) {
+    return strlen(a) == strlen(b) && contains(a, b);
+}
+
+static bool fits(const BpDeviceInfo *device, const char *text) {
+    return contains(device->name, text) || contains(device->platform, text) ||
+           contains(device->vendor, text) || contains(device->version, text);
+}
+
+/* Appends "; 0: name (platform)" for each device that `text` fits (all for NULL), as far as there is room. */
+static void append_devices(char *to, size_t size, const BpDeviceInfo *list, size_t count, const char *text) {
+    const char *separator = "";
+    for (size_t i = 0; i < count; ++i) {
+        if (text != NULL && !fits(&list[i], text)) continue;
+        const size_t used = strlen(to);
+        snprintf(to + used, size - used, "%s%u: %s (%s)%s%s", separator, list[i].number, list[i].name,
+                 list[i].platform, list[i].refusal[0] != '\0' ? ", cannot render: " : "", list[i].refusal);
+        separator = "; ";
+    }
+}
+
+/* No device at all: says which platforms there are, and what to install. */
+static BpStatus fail_without_devices(BpError *err) {
+    cl_platform_id *platforms = NULL;
+    cl_uint count = 0;
+    char names[384] = "";
+    BP_TRY(list_platforms(&platforms, &count, err));
+    for (cl_uint p = 0; p < count; ++p) {
+        char name[128];
+        platform_name(platforms[p], name, sizeof name);
+        const size_t used = strlen(names);
+        snprintf(names + used, sizeof names - used, "%s%s", p == 0 ? "" : ", ", name);
+    }
+    free(platforms);
+    if (count == 0) return bp_fail(err, BP_ERR_DEVICE, "no OpenCL platform: " NO_DEVICE_REMEDY);
+    return bp_fail(err, BP_ERR_DEVICE, "no OpenCL device (platforms without devices: %s): " NO_DEVICE_REMEDY,
+                   names);
+}
+
+/* The first device of `type` that can render, or NULL. */
+static const BpDeviceInfo *first_of_type(const BpDeviceInfo *list, size_t count, BpDeviceType type) {
+    for (size_t i = 0; i < count; ++i)
+        if (list[i].type == type && list[i].refusal[0] == '\0') return &list[i];
+    return NULL;
+}
+
+static const BpDeviceInfo *default_device(const BpDeviceInfo *list, size_t count) {
+    const BpDeviceInfo *device = first_of_type(list, count, BP_DEVICE_GPU);
+    if (device == NULL) device = first_of_type(list, count, BP_DEVICE_CPU);
+    if (device == NULL) device = first_of_type(list, count, BP_DEVICE_OTHER);
+    return device;
+}
+
+/* A text of one or two digits is a device's number and nothing else; "4090" may also be a part of a name. */
+static bool is_number(const char *text) {
+    const size_t digits = strspn(text, "0123456789");
+    return digits > 0 && digits <= 2 && text[digits] == '\0';
+}
+
+/* The device with the number that `text` is, or NULL where it is none of the list. */
+static const BpDeviceInfo *by_number(const BpDeviceInfo *list, size_t count, const char *text) {
+    char *end;
+    if (!isdigit((unsigned char)text[0])) return NULL;
+    const unsigned long long number = strtoull(text, &end, 10);
+    return *end == '\0' && number < count ? &list[number] : NULL;
+}
+
+/* The one kind of device among those that can render (or, where none can, among all) that `text` fits.
+ * NULL where none fits, or (*ambiguous) where different ones do; equal ones are one kind: the first counts.
+ */
+static const BpDeviceInfo *by_text(const BpDeviceInfo *list, size_t count, const char *text,
+                                   bool *ambiguous) {
+    const BpDeviceInfo *chosen = NULL;
+    *ambiguous = false;
+    for (size_t i = 0; i < count; ++i) {
+        if (!fits(&list[i], text)) continue;
+        if (chosen == NULL || (chosen->refusal[0] != '\0' && list[i].refusal[0] == '\0')) {
+            chosen = &list[i];
+            *ambiguous = false;
+        } else if (list[i].refusal[0] == '\0' || chosen->refusal[0] != '\0') {
+            /* A name given in full means that device, even where it is a part of another's. */
+            const bool chosen_whole = same(chosen->name, text), other_whole = same(list[i].name, text);
+            if (other_whole && !chosen_whole) {
+                chosen = &list[i];
+                *ambiguous = false;
+            } else if (!chosen_whole || other_whole) {
+                if (!same(list[i].name, chosen->name) || !same(list[i].platform, chosen->platform))
+                    *ambiguous = true;
+            }
+        }
+    }
+    return chosen;
+}
+
+BpStatus bp_device_find(const char *text, BpDeviceInfo *device, BpError *err) {
+    BpStatus status;
+    BpDeviceInfo *list = NULL;
+    size_t count = 0;
+    const BpDeviceInfo *chosen = NULL;
+    bool ambiguous = false;
+    char there[800] = "";
+
+    BP_TRY_GOTO(status, bp_devices_list(&list, &count, err), cleanup);
+    if (count == 0) {
+        status = fail_without_devices(err);
+        goto cleanup;
+    }
+    if (text == NULL) text = "";
+    if (text[0] == '\0')
+        chosen = default_device(list, count);
+    else if ((chosen = by_number(list, count, text)) == NULL && !is_number(text)) {
+        if (same(text, "gpu")) chosen = first_of_type(list, count, BP_DEVICE_GPU);
+        if (same(text, "cpu")) chosen = first_of_type(list, count, BP_DEVICE_CPU);
+        if (chosen == NULL) chosen = by_text(list, count, text, &ambiguous);
+    }
+    append_devices(there, sizeof there, list, count, ambiguous ? text : NULL);
+    if (chosen == NULL && text[0] == '\0')
+        status = bp_fail(err, BP_ERR_DEVICE,
+                         "no OpenCL device that can render (there is %s): " NO_DEVICE_REMEDY, there);
+    else if (chosen == NULL)
+        status = bp_fail(err, BP_ERR_DEVICE, "no device fits '%s'; there is %s", text, there);
+    else if (ambiguous)
+        status = bp_fail(err, BP_ERR_DEVICE, "'%s' fits several devices, give a number: %s", text, there);
+    else if (chosen->refusal[0] != '\0')
+        status = bp_fail(err, BP_ERR_DEVICE, "device %u (%s) cannot render: %s", chosen->number, chosen->name,
+                         chosen->refusal);
+    else
+        *device = *chosen;
+
+cleanup:
+    free(list);
+    return status;
+}
