@@ -1,0 +1,215 @@
+/* pack.c: see pack.h. Everything is packed in double; narrow() is the last step. */
+#define BP_HOST
+#include "pack.h"
+
+#include "../base/status.h"
+#include "reals.h"
+#include "scene_types.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+_Static_assert((int)BP_MATERIAL_LAMBERTIAN == KIND_LAMBERTIAN && (int)BP_MATERIAL_METAL == KIND_METAL &&
+                   (int)BP_MATERIAL_DIELECTRIC == KIND_DIELECTRIC &&
+                   (int)BP_MATERIAL_DIFFUSE_LIGHT == KIND_LIGHT && (int)BP_MATERIAL_NORMALS == KIND_NORMALS,
+               "kinds of material differ between host and kernel");
+_Static_assert((int)BP_SCATTER_LAMBERTIAN == LOBE_LAMBERTIAN &&
+                   (int)BP_SCATTER_COSINE_CUBED == LOBE_COSINE_CUBED &&
+                   (int)BP_SCATTER_HEMISPHERE == LOBE_HEMISPHERE,
+               "lobes differ between host and kernel");
+_Static_assert((int)BP_FUZZ_SPHERE == FUZZ_SPHERE && (int)BP_FUZZ_BALL == FUZZ_BALL,
+               "shapes of fuzz differ between host and kernel");
+_Static_assert((int)BP_FRESNEL_SCHLICK == FRESNEL_SCHLICK && (int)BP_FRESNEL_EXACT == FRESNEL_EXACT &&
+                   (int)BP_FRESNEL_NONE == FRESNEL_NONE,
+               "Fresnel forms differ between host and kernel");
+_Static_assert((int)BP_TOTAL_REFLECT == TOTAL_REFLECT && (int)BP_TOTAL_ABSORB == TOTAL_ABSORB &&
+                   (int)BP_TOTAL_REFRACT == TOTAL_REFRACT,
+               "forms of total reflection differ between host and kernel");
+
+static BpStatus out_of_memory(const BpScene *scene, BpError *err) {
+    return bp_fail(err, BP_ERR_MEMORY, "out of memory while packing a scene of %zu spheres",
+                   scene->sphere_count);
+}
+
+/* Copies `count` doubles to a new array of reals, with room for `least` at least. NULL: out of memory. */
+static void *narrow(const double *values, size_t count, size_t least, bool single) {
+    void *array = calloc(count > least ? count : least, single ? sizeof(float) : sizeof(double));
+    if (array == NULL) return NULL;
+    for (size_t i = 0; i < count; ++i) bp_reals_store(array, single, i, values[i]);
+    return array;
+}
+
+/* ---- camera and sky ------------------------------------------------------------------------------------ */
+
+/* Scaled by the largest component first, so that no square leaves the range of double. */
+static void normalize(double v[3]) {
+    const double largest = fmax(fabs(v[0]), fmax(fabs(v[1]), fabs(v[2])));
+    for (int a = 0; a < 3; ++a) v[a] /= largest;
+    const double length = sqrt(v[0] * v[0] + v[1] * v[1] + v[2] * v[2]);
+    for (int a = 0; a < 3; ++a) v[a] /= length;
+}
+
+static void cross(const double a[3], const double b[3], double out[3]) {
+    out[0] = a[1] * b[2] - a[2] * b[1];
+    out[1] = a[2] * b[0] - a[0] * b[2];
+    out[2] = a[0] * b[1] - a[1] * b[0];
+}
+
+static void pack_camera(const BpCamera *camera, PackedCamera *packed) {
+    double back[3], right[3], up[3], vup[3];
+    for (int a = 0; a < 3; ++a) {
+        back[a] = camera->lookfrom[a] - camera->lookat[a];
+        vup[a] = camera->vup[a];
+    }
+    normalize(back);
+    normalize(vup);
+    cross(vup, back, right);
+    normalize(right);
+    cross(back, right, up);
+    const double pi = 3.14159265358979323846;
+    const double height = 2.0 * camera->focus_dist * tan(camera->vfov_degrees * (pi / 360.0));
+    const double pixel = height / camera->height; /* pixels are square */
+    const double width = pixel * camera->width;
+    *packed = (PackedCamera){0};
+    for (int a = 0; a < 3; ++a) {
+        packed->corner[a] = 0.5 * (height * up[a] - width * right[a]) - camera->focus_dist * back[a];
+        packed->right[a] = pixel * right[a];
+        packed->down[a] = -pixel * up[a];
+        packed->lens_right[a] = camera->lens_radius * right[a];
+        packed->lens_up[a] = camera->lens_radius * up[a];
+    }
+}
+
+static BpStatus pack_view(const BpScene *scene, BpPacked *packed, BpError *err) {
+    PackedCamera camera;
+    PackedSky sky = {0};
+    pack_camera(&scene->camera, &camera);
+    for (int a = 0; a < 3; ++a) {
+        sky.bottom[a] = scene->background_bottom[a];
+        sky.top[a] = scene->background_top[a];
+    }
+    const size_t camera_reals = sizeof camera / sizeof(double), sky_reals = sizeof sky / sizeof(double);
+    packed->camera = narrow((const double *)&camera, camera_reals, 1, packed->single_precision);
+    packed->sky = narrow((const double *)&sky, sky_reals, 1, packed->single_precision);
+    return packed->camera != NULL && packed->sky != NULL ? BP_OK : out_of_memory(scene, err);
+}
+
+/* ---- materials -------------------------------------------------------------------------------------------
+ */
+
+static void pack_material(const BpMaterial *material, bool inside_out, PackedMaterial *numbers,
+                          PackedMaterialKind *kind) {
+    *numbers = (PackedMaterial){.refraction_index = 1};
+    *kind = (PackedMaterialKind){.kind = (packed_uint)material->kind};
+    for (int a = 0; a < 3; ++a) numbers->emit[a] = material->emit[a];
+    switch (material->kind) {
+    case BP_MATERIAL_LAMBERTIAN:
+        memcpy(numbers->albedo, material->albedo, sizeof material->albedo);
+        kind->lobe = (packed_uint)material->scatter;
+        break;
+    case BP_MATERIAL_METAL:
+        memcpy(numbers->albedo, material->albedo, sizeof material->albedo);
+        numbers->fuzz = material->fuzz;
+        kind->variant = (packed_uint)material->fuzz_shape;
+        break;
+    case BP_MATERIAL_DIELECTRIC:
+        for (int a = 0; a < 3; ++a) numbers->albedo[a] = 1;
+        numbers->refraction_index = inside_out ? 1 / material->refraction_index : material->refraction_index;
+        kind->variant = (packed_uint)material->fresnel;
+        kind->total_reflection = (packed_uint)material->total_reflection;
+        break;
+    case BP_MATERIAL_DIFFUSE_LIGHT:
+    case BP_MATERIAL_NORMALS:
+        break; /* scatter nothing */
+    }
+}
+
+/* Looks, and the materials they name. A dielectric that a sphere of negative radius uses gets a second entry,
+ * with the reciprocal index: seen from inside out is the same as inside and outside exchanged. Normals face
+ * the ray, so no other kind can tell a negative radius. */
+static BpStatus pack_materials(const BpScene *scene, BpPacked *packed, BpError *err) {
+    const size_t count = scene->material_count;
+    BpStatus status = BP_OK;
+    PackedMaterialKind *kinds = calloc(2 * count + 1, sizeof *kinds);
+    PackedMaterial *numbers = calloc(2 * count + 1, sizeof *numbers);
+    uint32_t *inside_out = calloc(count + 1, sizeof *inside_out); /* number of the second entry; 0: none */
+    PackedSphereLook *looks = malloc((scene->sphere_count + 1) * sizeof *looks);
+    if (kinds == NULL || numbers == NULL || inside_out == NULL || looks == NULL) {
+        status = out_of_memory(scene, err);
+        goto cleanup;
+    }
+    if (count > UINT32_MAX / 4) {
+        status = bp_fail(err, BP_ERR_LIMIT, "%zu materials; at most %u can be packed", count, UINT32_MAX / 4);
+        goto cleanup;
+    }
+    uint32_t used = (uint32_t)count;
+    for (size_t m = 0; m < count; ++m) pack_material(&scene->materials[m], false, &numbers[m], &kinds[m]);
+    for (size_t i = 0; i < scene->sphere_count; ++i) {
+        const BpSphere *sphere = &scene->spheres[i];
+        const uint32_t m = sphere->material;
+        looks[i] = (PackedSphereLook){.material = m, .albedo = sphere->albedo};
+        if (sphere->radius > 0 || scene->materials[m].kind != BP_MATERIAL_DIELECTRIC) continue;
+        if (inside_out[m] == 0) {
+            pack_material(&scene->materials[m], true, &numbers[used], &kinds[used]);
+            inside_out[m] = used++;
+        }
+        looks[i].material = inside_out[m];
+    }
+    packed->material_count = used > 0 ? used : 1; /* at least one, unused */
+    packed->sphere_count = (uint32_t)scene->sphere_count;
+    packed->materials =
+        narrow((const double *)numbers, packed->material_count * (sizeof *numbers / sizeof(double)), 1,
+               packed->single_precision);
+    packed->material_kinds = (uint32_t *)kinds;
+    packed->looks = (uint32_t *)looks;
+    kinds = NULL;
+    looks = NULL;
+    if (packed->materials == NULL) status = out_of_memory(scene, err);
+cleanup:
+    free(kinds);
+    free(numbers);
+    free(inside_out);
+    free(looks);
+    return status;
+}
+
+static BpStatus pack_albedos(const BpScene *scene, BpPacked *packed, BpError *err) {
+    const size_t count = scene->albedo_count;
+    if (count >= BP_NO_ALBEDO)
+        return bp_fail(err, BP_ERR_LIMIT, "%zu colours of spheres; at most %u can be packed", count,
+                       BP_NO_ALBEDO - 1);
+    packed->albedo_count = (uint32_t)count;
+    packed->albedos = calloc(count > 0 ? 4 * count : 4, bp_packed_real_size(packed));
+    if (packed->albedos == NULL) return out_of_memory(scene, err);
+    for (size_t i = 0; i < count; ++i)
+        for (size_t a = 0; a < 3; ++a)
+            bp_reals_store(packed->albedos, packed->single_precision, 4 * i + a,
+                           (double)scene->albedos[i][a]);
+    return BP_OK;
+}
+
+/* ---- the whole -------------------------------------------------------------------------------------------
+ */
+
+BpStatus bp_scene_pack(const BpScene *scene, const BpTreeOptions *options, BpPacked *packed, BpError *err) {
+    *packed = (BpPacked){.single_precision = options->single_precision};
+    BpStatus status = BP_OK;
+    BP_TRY_GOTO(status, bp_tree_build(scene, scene->camera.lookfrom, options, &packed->tree, err), cleanup);
+    BP_TRY_GOTO(status, pack_view(scene, packed, err), cleanup);
+    BP_TRY_GOTO(status, pack_materials(scene, packed, err), cleanup);
+    BP_TRY_GOTO(status, pack_albedos(scene, packed, err), cleanup);
+cleanup:
+    if (status != BP_OK) bp_packed_clear(packed);
+    return status;
+}
+
+void bp_packed_clear(BpPacked *packed) {
+    bp_tree_clear(&packed->tree);
+    free(packed->camera);
+    free(packed->sky);
+    free(packed->materials);
+    free(packed->albedos);
+    free(packed->material_kinds);
+    free(packed->looks);
+    *packed = (BpPacked){0};
+}
