@@ -100,10 +100,12 @@ static const char *left_out(BpEffect effect) {
 static void explain_material(BpEffect effect, const Use *use, const Use *all, bool one_kind, size_t size,
                              char *reason) {
     const char *name = bp_effect_name(effect);
+    char kinds[64] = "";
+    if (all->materials > 1) snprintf(kinds, sizeof kinds, " (%zu of it)", all->materials);
     if (use->materials > 0 && one_kind)
         snprintf(reason, size,
-                 "the one kind of the %zu material%s in use, on all %zu sphere%s: no switch between kinds",
-                 all->materials, plural(all->materials), all->spheres, plural(all->spheres));
+                 "the one kind of material in use%s, on all %zu sphere%s: no switch between kinds", kinds,
+                 all->spheres, plural(all->spheres));
     else if (use->materials > 0)
         snprintf(reason, size, "%zu of the %zu material%s in use, on %zu of %zu sphere%s", use->materials,
                  all->materials, plural(all->materials), use->spheres, all->spheres, plural(all->spheres));
