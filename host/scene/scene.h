@@ -14,8 +14,10 @@
 
 #define BP_PICTURE_SIDE_MAX 65535u
 #define BP_DEPTH_MAX 1000000u
-#define BP_SPHERES_MAX 134217728u       /* 2^27 */
-#define BP_COORDINATE_MAX 1.0e12        /* |centre|, |radius|, |lookfrom|: squares stay finite in float */
+#define BP_SPHERES_MAX 134217728u     /* 2^27 */
+#define BP_COORDINATE_MAX 1.0e12      /* |centre|, |radius|, |lookfrom|: squares stay finite in float */
+#define BP_RADIANCE_MAX 1.0e12        /* emit, background */
+#define BP_REFRACTION_INDEX_MAX 1.0e6 /* and at least its reciprocal */
 #define BP_NO_ALBEDO UINT32_MAX
 
 typedef enum BpMaterialKind {
@@ -80,10 +82,14 @@ struct BpScene {
 /* height = max(1, floor(width / aspect + 1e-6)) */
 uint32_t bp_camera_height(uint32_t width, double aspect_ratio);
 
+/* Whether the kind has an albedo, which a sphere's own then replaces. */
+bool bp_material_has_albedo(BpMaterialKind kind);
+
 /* Checks the invariants above; the message names the sphere, material or member by its index or name. */
 BpStatus bp_scene_validate(const BpScene *scene, BpError *err);
 
-/* Writes the scene as a document of the grammar that reads back to the same scene (numbers with 17 digits). */
+/* Writes the scene as a document of the grammar that reads back to the same scene (numbers with 17 digits).
+ */
 BpStatus bp_scene_write(const BpScene *scene, const char *path, BpError *err);
 
 /* The book's cover. edition: "1", "3", "3rust" or "4"; grid: half side, 11 in the book (cells -grid ..

@@ -1,0 +1,16 @@
+/* scene_file.h: files that are read. */
+#ifndef BP_SCENE_FILE_H
+#define BP_SCENE_FILE_H
+
+#include "base/status.h"
+
+#include <stdio.h>
+
+/* Opens a regular file, or a pipe where accepted; never a directory, device or socket. `expected` says in the
+ * error what should have been there. *size is in bytes, 0 for a pipe. The caller closes the stream. */
+BpStatus bp_file_open(const char *path, bool accept_pipe, const char *expected, FILE **stream, uint64_t *size,
+                      BpError *err);
+/* Reads a file or pipe whole. Free *bytes with free(). */
+BpStatus bp_file_read(const char *path, const char *expected, char **bytes, size_t *length, BpError *err);
+
+#endif

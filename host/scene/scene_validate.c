@@ -1,0 +1,193 @@
+/* scene_validate.c: see scene_fault.h, and bp_scene_validate in scene.h. */
+#include "scene_document.h"
+#include "scene_fault.h"
+
+#include <float.h>
+#include <math.h>
+#include <stdarg.h>
+#include <stdio.h>
+
+#define LENGTH_MIN 1.0e-30 /* below, squares of lengths vanish even in double */
+#define ALONG_VIEW_MAX                                                                                       \
+    1.0e-9 /* sine of the angle between vup and the view that still gives a picture plane */
+
+static bool set_fault(BpFault *fault, BpFaultSubject subject, const char *member, const char *format, ...)
+    BP_PRINTF_LIKE(4, 5);
+
+static bool set_fault(BpFault *fault, BpFaultSubject subject, const char *member, const char *format, ...) {
+    fault->subject = subject;
+    fault->member = member;
+    va_list arguments;
+    va_start(arguments, format);
+    vsnprintf(fault->text, sizeof fault->text, format, arguments);
+    va_end(arguments);
+    return true;
+}
+
+/* True, with the fault set, unless low <= value <= high; never true for a NaN. */
+static bool outside(BpFault *fault, BpFaultSubject subject, const char *member, double value, double low,
+                    double high, const char *expected) {
+    if (value >= low && value <= high) return false;
+    char text[BP_NUMBER_TEXT_SIZE];
+    return set_fault(fault, subject, member, "found %s, expected %s", bp_number_text(value, text), expected);
+}
+
+static bool any_outside(BpFault *fault, BpFaultSubject subject, const char *member, const double value[3],
+                        double low, double high, const char *expected) {
+    return outside(fault, subject, member, value[0], low, high, expected) ||
+           outside(fault, subject, member, value[1], low, high, expected) ||
+           outside(fault, subject, member, value[2], low, high, expected);
+}
+
+static bool coordinates_outside(BpFault *fault, BpFaultSubject subject, const char *member,
+                                const double value[3]) {
+    return any_outside(fault, subject, member, value, -BP_COORDINATE_MAX, BP_COORDINATE_MAX,
+                       "coordinates from -1e12 to 1e12; choose a larger unit of length");
+}
+
+static double length(const double v[3]) {
+    return hypot(hypot(v[0], v[1]), v[2]);
+}
+
+static bool camera_basis_fault(const BpCamera *camera, BpFault *fault) {
+    const double view[3] = {camera->lookat[0] - camera->lookfrom[0], camera->lookat[1] - camera->lookfrom[1],
+                            camera->lookat[2] - camera->lookfrom[2]};
+    const double distance = length(view), up_length = length(camera->vup);
+    if (!(distance >= LENGTH_MIN))
+        return set_fault(fault, BP_FAULT_CAMERA, "lookat",
+                         "found the same point for lookfrom and lookat, expected two: the camera looks from "
+                         "one to the other");
+    if (!(up_length >= LENGTH_MIN))
+        return set_fault(fault, BP_FAULT_CAMERA, "vup",
+                         "found no direction, expected one that is up, such as [0, 1, 0]");
+    double v[3], u[3];
+    for (int i = 0; i < 3; i++) {
+        v[i] = view[i] / distance;
+        u[i] = camera->vup[i] / up_length;
+    }
+    const double cross[3] = {v[1] * u[2] - v[2] * u[1], v[2] * u[0] - v[0] * u[2], v[0] * u[1] - v[1] * u[0]};
+    if (!(length(cross) >= ALONG_VIEW_MAX))
+        return set_fault(
+            fault, BP_FAULT_CAMERA, "vup",
+            "found the direction of the view, expected one across it: looking straight down, take "
+            "[0, 0, -1]");
+    return false;
+}
+
+static bool camera_fault(const BpCamera *camera, BpFault *fault) {
+    const char *const side = "1 to 65535 pixels";
+    char text[BP_NUMBER_TEXT_SIZE];
+    if (!(camera->vfov_degrees > 0 && camera->vfov_degrees < 180))
+        return set_fault(fault, BP_FAULT_CAMERA, "vfov", "found %s, expected degrees above 0 and below 180",
+                         bp_number_text(camera->vfov_degrees, text));
+    return outside(fault, BP_FAULT_CAMERA, "image_width", camera->width, 1, BP_PICTURE_SIDE_MAX, side) ||
+           outside(fault, BP_FAULT_CAMERA, "image_height", camera->height, 1, BP_PICTURE_SIDE_MAX, side) ||
+           outside(fault, BP_FAULT_CAMERA, "aspect_ratio", camera->aspect_ratio, DBL_MIN, DBL_MAX,
+                   "a number above 0, or [width, height]") ||
+           outside(fault, BP_FAULT_CAMERA, "samples_per_pixel", camera->samples_per_pixel, 1, UINT32_MAX,
+                   "at least 1") ||
+           outside(fault, BP_FAULT_CAMERA, "max_depth", camera->max_depth, 0, BP_DEPTH_MAX, "0 to 1000000") ||
+           outside(fault, BP_FAULT_CAMERA, "focus_dist", camera->focus_dist, LENGTH_MIN, BP_COORDINATE_MAX,
+                   "a distance above 0, up to 1e12") ||
+           outside(fault, BP_FAULT_CAMERA, "aperture", camera->lens_radius, 0, BP_COORDINATE_MAX,
+                   "a lens of radius 0 to 1e12") ||
+           coordinates_outside(fault, BP_FAULT_CAMERA, "lookfrom", camera->lookfrom) ||
+           coordinates_outside(fault, BP_FAULT_CAMERA, "lookat", camera->lookat) ||
+           coordinates_outside(fault, BP_FAULT_CAMERA, "vup", camera->vup) ||
+           camera_basis_fault(camera, fault);
+}
+
+bool bp_material_has_albedo(BpMaterialKind kind) {
+    return kind == BP_MATERIAL_LAMBERTIAN || kind == BP_MATERIAL_METAL;
+}
+
+static bool material_fault(const BpMaterial *material, BpFault *fault) {
+    const bool has_albedo = bp_material_has_albedo(material->kind);
+    return (has_albedo && any_outside(fault, BP_FAULT_MATERIAL, "albedo", material->albedo, 0, 1,
+                                      "shares of light from 0 to 1")) ||
+           any_outside(fault, BP_FAULT_MATERIAL, "emit", material->emit, 0, BP_RADIANCE_MAX,
+                       "radiances from 0 to 1e12") ||
+           (material->kind == BP_MATERIAL_METAL &&
+            outside(fault, BP_FAULT_MATERIAL, "fuzz", material->fuzz, 0, 1,
+                    "a number of at least 0 (over 1 is as 1)")) ||
+           (material->kind == BP_MATERIAL_DIELECTRIC &&
+            outside(fault, BP_FAULT_MATERIAL, "refraction_index", material->refraction_index,
+                    1 / BP_REFRACTION_INDEX_MAX, BP_REFRACTION_INDEX_MAX,
+                    "the index of the inside over that of the outside, from 1e-6 to 1e6 (glass in air: 1.5, "
+                    "an air "
+                    "bubble in water: 1/1.33)"));
+}
+
+bool bp_sphere_find_fault(const BpSphere *sphere, BpFault *fault) {
+    if (coordinates_outside(fault, BP_FAULT_SPHERE, "center", sphere->center)) return true;
+    if (sphere->radius == 0)
+        return set_fault(fault, BP_FAULT_SPHERE, "radius",
+                         "found 0, expected another number; a negative radius turns the sphere inside out");
+    return outside(fault, BP_FAULT_SPHERE, "radius", fabs(sphere->radius), (double)FLT_MIN, BP_COORDINATE_MAX,
+                   "a radius from 1.2e-38 to 1e12 (or its negative); choose another unit of length");
+}
+
+BpStatus bp_scene_find_fault(const BpScene *scene, BpFault *fault, BpError *err) {
+    *fault = (BpFault){.subject = BP_FAULT_NONE, .member = ""};
+    if (camera_fault(&scene->camera, fault)) return BP_OK;
+    if (any_outside(fault, BP_FAULT_BACKGROUND, "bottom", scene->background_bottom, 0, BP_RADIANCE_MAX,
+                    "radiances from 0 to 1e12") ||
+        any_outside(fault, BP_FAULT_BACKGROUND, "top", scene->background_top, 0, BP_RADIANCE_MAX,
+                    "radiances from 0 to 1e12"))
+        return BP_OK;
+    for (size_t i = 0; i < scene->material_count; i++) {
+        fault->index = i;
+        if (material_fault(&scene->materials[i], fault)) return BP_OK;
+    }
+    for (size_t i = 0; i < scene->sphere_count; i++) {
+        const BpSphere *sphere = &scene->spheres[i];
+        fault->index = i;
+        if (bp_sphere_find_fault(sphere, fault)) return BP_OK;
+        if (sphere->material >= scene->material_count) {
+            set_fault(fault, BP_FAULT_SPHERE, "material", "found number %u, expected one of %zu materials",
+                      (unsigned)sphere->material, scene->material_count);
+            return BP_OK;
+        }
+        if (sphere->albedo != BP_NO_ALBEDO && sphere->albedo >= scene->albedo_count) {
+            set_fault(fault, BP_FAULT_SPHERE, "albedo", "found number %u, expected one of %zu albedos",
+                      (unsigned)sphere->albedo, scene->albedo_count);
+            return BP_OK;
+        }
+    }
+    for (size_t i = 0; i < scene->albedo_count; i++) {
+        const double albedo[3] = {(double)scene->albedos[i][0], (double)scene->albedos[i][1],
+                                  (double)scene->albedos[i][2]};
+        fault->index = i;
+        if (any_outside(fault, BP_FAULT_ALBEDO, "", albedo, 0, 1, "shares of light from 0 to 1"))
+            return BP_OK;
+    }
+    return bp_scene_find_coincident(scene, fault, err);
+}
+
+BpStatus bp_scene_validate(const BpScene *scene, BpError *err) {
+    BpFault fault;
+    char name[64];
+    if (scene->sphere_count > BP_SPHERES_MAX)
+        return bp_fail(err, BP_ERR_LIMIT, "found %zu spheres, expected at most %u", scene->sphere_count,
+                       BP_SPHERES_MAX);
+    BP_TRY(bp_scene_find_fault(scene, &fault, err));
+    switch (fault.subject) {
+    case BP_FAULT_NONE:
+        return BP_OK;
+    case BP_FAULT_CAMERA:
+        return bp_fail(err, BP_ERR_SCENE, "camera.%s: %s", fault.member, fault.text);
+    case BP_FAULT_BACKGROUND:
+        return bp_fail(err, BP_ERR_SCENE, "background.%s: %s", fault.member, fault.text);
+    case BP_FAULT_MATERIAL:
+        bp_printable(scene->materials[fault.index].name, name, sizeof name);
+        return bp_fail(err, BP_ERR_SCENE, "materials.%s.%s: %s", name, fault.member, fault.text);
+    case BP_FAULT_SPHERE:
+        return bp_fail(err, BP_ERR_SCENE, "spheres[%zu].%s: %s", fault.index, fault.member, fault.text);
+    case BP_FAULT_ALBEDO:
+        return bp_fail(err, BP_ERR_SCENE, "albedo %zu: %s", fault.index, fault.text);
+    case BP_FAULT_COINCIDENT:
+        return bp_fail(err, BP_ERR_SCENE, "spheres[%zu] and spheres[%zu]: %s", fault.other, fault.index,
+                       fault.text);
+    }
+    return BP_OK;
+}
