@@ -27,35 +27,69 @@ typedef struct BpAccumulator {
     uint32_t sampler, precision, math, numerics; /* BpSampler, BpPrecision, BpMath, BpNumerics */
     uint32_t transfer; /* BpTransfer of the scene, for the picture made from a merged file */
     /* Sample ranges [first, first + count) that every pixel was meant to get, sorted, disjoint. */
-    struct BpSampleRange { uint64_t first, count; } *ranges;
+    struct BpSampleRange {
+        uint64_t first, count;
+    } * ranges;
     size_t range_count;
-    bool partial; /* interrupted: some pixels have fewer samples than the ranges say */
+    bool partial;     /* interrupted: some pixels have fewer samples than the ranges say */
+    char *title;      /* Optional. The scene's title, for people; owned, not compared by a merge. */
     int64_t *sums;    /* width * height * K * 3, index ((pixel * K) + k) * 3 + channel */
     uint32_t *counts; /* width * height * K: valid samples */
     uint64_t segments, cut_paths, invalid_samples; /* totals over the picture */
 } BpAccumulator;
 
-/* The scale for a scene: 2^(38 - ceil(log2(bound))), bound >= the largest radiance a path can bring
- * (bp_scene_radiance_bound). */
+/* ---- what of a scene the sums depend on (accumulator_scene.c) ---- */
+
+/* The scale for a scene: 38 - ceil(log2(bound)) with bp_scene_radiance_bound(), within +-126 so that 2^scale
+ * is a float. A sample is then at most 2^38, and 2^24 of them stay below 2^62. */
 int32_t bp_accumulator_scale(const BpScene *scene);
-/* Largest radiance that one path can carry: the brightest of sky and lamps, times the sum of the geometric
- * series of the largest albedo where a material both emits and scatters. */
+/* An upper bound of the radiance that one path can carry, at any depth up to BP_DEPTH_MAX: the brightest of
+ * sky and lamps, times the sum of the geometric series of the largest albedo of a material that both emits
+ * and scatters. 0 for a black scene. */
 double bp_scene_radiance_bound(const BpScene *scene);
-/* FNV-1a over the meaning of the scene: camera, sky, materials in use, spheres, colours. */
+/* A hash of the meaning of the scene: camera, sky, spheres in their order, each with what its material says.
+ * Names, unused materials, members without effect (the fuzz of glass) and the sign of zero change nothing;
+ * nor do sample counts and depth, which the accumulator keeps apart. */
 uint64_t bp_scene_hash(const BpScene *scene);
 
-BpStatus bp_accumulator_create(uint32_t width, uint32_t height, uint32_t replicates, BpAccumulator **accumulator,
-                               BpError *err);
+/* ---- the sums (accumulator.c) ---- */
+
+/* Zeroed but for the three sizes. 1 <= replicates <= BP_REPLICATES_MAX; sides up to BP_PICTURE_SIDE_MAX.
+ * BP_ERR_LIMIT or BP_ERR_MEMORY. */
+BpStatus bp_accumulator_create(uint32_t width, uint32_t height, uint32_t replicates,
+                               BpAccumulator **accumulator, BpError *err);
 void bp_accumulator_destroy(BpAccumulator **accumulator);
 
-/* Adds `from` into `into`: exact. Refused (BP_ERR_USAGE, saying which field differs) unless both come from the
- * same scene and settings and their sample ranges are disjoint. */
+/* Notes that every pixel gets the samples [first, first + count), count > 0; adjoining ranges become one.
+ * BP_ERR_USAGE for an overlap or samples past 2^32; BP_ERR_LIMIT when a replicate would get more than
+ * BP_REPLICATE_SAMPLES_MAX samples, past which 64 bits could overflow. Unchanged on failure. */
+BpStatus bp_accumulator_add_range(BpAccumulator *accumulator, uint64_t first, uint64_t count, BpError *err);
+
+/* Samples of every pixel that the ranges name for `replicate`, and in all. */
+uint64_t bp_accumulator_expected(const BpAccumulator *accumulator, uint32_t replicate);
+uint64_t bp_accumulator_range_total(const BpAccumulator *accumulator);
+
+/* Adds `from` into `into`: exact. Refused (BP_ERR_USAGE, saying which field differs) unless both come from
+ * the same scene and settings and their sample ranges are disjoint; BP_ERR_LIMIT as for a range. `into` is
+ * unchanged on failure. */
 BpStatus bp_accumulator_merge(BpAccumulator *into, const BpAccumulator *from, BpError *err);
 
-/* Means, standard errors (from the spread of replicate means, K-1 degrees of freedom) and counts. */
+/* ---- estimates (accumulator_estimate.c) ----
+ *
+ * Replicates may hold unequal counts n_k (a range that K does not divide, an interrupted run). With replicate
+ * means m_k of variance s^2 / n_k and N = sum n_k, the mean is m = sum n_k m_k / N, and
+ *     s^2 = sum n_k (m_k - m)^2 / (K' - 1),    standard error of m = sqrt(s^2 / N),
+ * over the K' replicates that have samples: the mean square between groups of a one-way layout (Scheffe, The
+ * Analysis of Variance, 1959, ch. 3), unbiased since E sum n_k (m_k - m)^2 = K' s^2 - s^2. For equal counts
+ * it is the variance of the replicate means over K. With low-discrepancy samples the variance of m_k falls
+ * faster than 1 / n_k, and s^2 is exact for equal counts only. */
+
+/* Means, standard errors and counts. A pixel without samples is 0; its error, as that of a pixel with fewer
+ * than two replicates, is NaN. The caller clears `picture`. */
 BpStatus bp_accumulator_picture(const BpAccumulator *accumulator, BpPicture *picture, BpError *err);
 
 /* NRMSE = sqrt(mean over pixels of squared standard error of luminance) / mean luminance, Rec. 709 weights.
+ * The luminance's error comes from the luminances of the replicates, so that correlated channels count right.
  * NaN when the mean is 0 or a pixel has fewer than two replicates. */
 double bp_accumulator_nrmse(const BpAccumulator *accumulator);
 /* Mean of linear pixel values over the picture (pixels without samples count as 0). */

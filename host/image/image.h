@@ -13,20 +13,28 @@
  * [0, 0.999], times 256, floor. NaN becomes 0; +Inf 255. */
 uint8_t bp_transfer_byte(double linear, BpTransfer transfer);
 
-/* The format that `path`'s ending names (.png .ppm .pfm .exr .bpa); false when it names none. */
+/* The format that `path`'s ending names (.png .ppm .pfm .exr .bpa, in any case); false when it names none. */
 bool bp_format_from_path(const char *path, BpFormat *format);
 /* The format by its name on the command line: png ppm ppm-ascii pfm exr bpa. */
 bool bp_format_from_name(const char *name, BpFormat *format);
 
-/* Writers to an open stream; each fails with BP_ERR_FILE. */
+/* Writers to an open stream, which need not be able to seek; each ends with a flush and fails with
+ * BP_ERR_FILE (or BP_ERR_MEMORY), leaving half a file on the stream. */
 BpStatus bp_png_write(const BpPicture *picture, FILE *out, BpTransfer transfer, BpError *err);
 BpStatus bp_ppm_write(const BpPicture *picture, FILE *out, BpTransfer transfer, bool ascii, BpError *err);
-BpStatus bp_pfm_write(const BpPicture *picture, FILE *out, BpError *err); /* little endian, bottom row first */
-/* EXR needs a path (the library opens it); layers: R G B, error.R/G/B, samples. */
-BpStatus bp_exr_write(const BpPicture *picture, const char *path, BpError *err);
+BpStatus bp_pfm_write(const BpPicture *picture, FILE *out,
+                      BpError *err); /* little endian, bottom row first */
+/* Layers: R G B, error.R/G/B and samples, as far as the picture carries them; 32-bit, ZIP compressed. */
+BpStatus bp_exr_write(const BpPicture *picture, FILE *out, BpError *err);
 
-/* Writes to an already opened stream ("-o -"); EXR and BPA are refused there. */
+/* 8-bit RGB, 3 bytes a pixel, top row first, as an sRGB PNG: for pictures that are drawn, not rendered. */
+BpStatus bp_png_write_bytes(const uint8_t *rgb, uint32_t width, uint32_t height, FILE *out, BpError *err);
+
+/* Writes to an already opened stream ("-o -"); BPA is refused there. */
 BpStatus bp_picture_write_stream(const BpPicture *picture, FILE *out, BpFormat format, BpTransfer transfer,
                                  BpError *err);
+
+/* Flushes `out`; BP_ERR_FILE with the system's reason when this or an earlier write failed. */
+BpStatus bp_image_finish(FILE *out, const char *what, BpError *err);
 
 #endif

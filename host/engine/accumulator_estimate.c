@@ -1,0 +1,104 @@
+/* accumulator_estimate.c: means and standard errors from replicate sums; formulas in accumulator.h. */
+#include "accumulator.h"
+
+#include "../base/status.h"
+
+#include <math.h>
+#include <stdlib.h>
+
+/* Rec. ITU-R BT.709-6, item 3.2 */
+static const double luminance_weights[3] = {0.2126, 0.7152, 0.0722};
+
+/* One pixel: index 0 to 2 the channels, 3 the luminance. */
+typedef struct PixelEstimate {
+    double mean[4];
+    double squared_error[4]; /* of the mean; NaN where unknown */
+    uint64_t samples;
+} PixelEstimate;
+
+static void replicate_mean(const BpAccumulator *accumulator, size_t cell, double mean[4]) {
+    mean[3] = 0;
+    for (size_t c = 0; c < 3; c++) {
+        mean[c] = ldexp((double)accumulator->sums[3 * cell + c], -accumulator->scale_log2) /
+                  accumulator->counts[cell];
+        mean[3] += luminance_weights[c] * mean[c];
+    }
+}
+
+/* Two passes over the replicates, mean first: no difference of large squares. */
+static PixelEstimate estimate_pixel(const BpAccumulator *accumulator, size_t pixel) {
+    PixelEstimate estimate = {.samples = 0};
+    const size_t first = pixel * accumulator->replicates;
+    const size_t end = first + accumulator->replicates;
+    unsigned filled = 0;
+    double mean[4];
+    for (size_t cell = first; cell < end; cell++) {
+        if (accumulator->counts[cell] == 0) continue;
+        replicate_mean(accumulator, cell, mean);
+        for (size_t c = 0; c < 4; c++) estimate.mean[c] += accumulator->counts[cell] * mean[c];
+        estimate.samples += accumulator->counts[cell];
+        filled++;
+    }
+    const double total = (double)estimate.samples;
+    for (size_t c = 0; c < 4 && filled > 0; c++) estimate.mean[c] /= total;
+    if (filled < 2) {
+        for (size_t c = 0; c < 4; c++) estimate.squared_error[c] = NAN;
+        return estimate;
+    }
+    for (size_t cell = first; cell < end; cell++) {
+        if (accumulator->counts[cell] == 0) continue;
+        replicate_mean(accumulator, cell, mean);
+        for (size_t c = 0; c < 4; c++) {
+            const double difference = mean[c] - estimate.mean[c];
+            estimate.squared_error[c] += accumulator->counts[cell] * difference * difference;
+        }
+    }
+    for (size_t c = 0; c < 4; c++) estimate.squared_error[c] /= (filled - 1) * total;
+    return estimate;
+}
+
+BpStatus bp_accumulator_picture(const BpAccumulator *accumulator, BpPicture *picture, BpError *err) {
+    const size_t pixels = (size_t)accumulator->width * accumulator->height;
+    *picture = (BpPicture){
+        .width = accumulator->width,
+        .height = accumulator->height,
+        .rgb = malloc(pixels * 3 * sizeof *picture->rgb),
+        .error = malloc(pixels * 3 * sizeof *picture->error),
+        .samples = malloc(pixels * sizeof *picture->samples),
+    };
+    if (picture->rgb == NULL || picture->error == NULL || picture->samples == NULL) {
+        bp_picture_clear(picture);
+        return bp_fail(err, BP_ERR_MEMORY, "out of memory for a picture of %zu pixels", pixels);
+    }
+    for (size_t pixel = 0; pixel < pixels; pixel++) {
+        const PixelEstimate estimate = estimate_pixel(accumulator, pixel);
+        for (size_t c = 0; c < 3; c++) {
+            picture->rgb[3 * pixel + c] = (float)estimate.mean[c];
+            picture->error[3 * pixel + c] = (float)sqrt(estimate.squared_error[c]);
+        }
+        picture->samples[pixel] = estimate.samples;
+    }
+    return BP_OK;
+}
+
+double bp_accumulator_nrmse(const BpAccumulator *accumulator) {
+    const size_t pixels = (size_t)accumulator->width * accumulator->height;
+    double luminance = 0, squared_error = 0;
+    for (size_t pixel = 0; pixel < pixels; pixel++) {
+        const PixelEstimate estimate = estimate_pixel(accumulator, pixel);
+        luminance += estimate.mean[3];
+        squared_error += estimate.squared_error[3];
+    }
+    if (!(luminance > 0)) return NAN;
+    return sqrt(squared_error / (double)pixels) / (luminance / (double)pixels);
+}
+
+void bp_accumulator_mean(const BpAccumulator *accumulator, double mean[3]) {
+    const size_t pixels = (size_t)accumulator->width * accumulator->height;
+    double sum[3] = {0};
+    for (size_t pixel = 0; pixel < pixels; pixel++) {
+        const PixelEstimate estimate = estimate_pixel(accumulator, pixel);
+        for (size_t c = 0; c < 3; c++) sum[c] += estimate.mean[c];
+    }
+    for (size_t c = 0; c < 3; c++) mean[c] = sum[c] / (double)pixels;
+}

@@ -1,0 +1,165 @@
+/* exr.c: OpenEXR by its C API (OpenEXRCore); see image.h.
+ *
+ * 32-bit channels: half floats would round the radiance to 11 bits and end at 65504, and the standard errors
+ * with it. The library wants a file that it can seek in, so the whole file is made in memory (it is smaller
+ * than the picture) and then goes out in one piece: to a file, a pipe or a test alike. */
+#include "image.h"
+
+#include "../base/status.h"
+
+#include <openexr.h>
+#include <stdlib.h>
+#include <string.h>
+
+/* The name is for the library's messages, and for it to unlink after a failure: no file can have it. */
+#define NO_FILE "/dev/null/picture.exr"
+#define LAYERS_MAX 16
+
+/* One channel of the file: where its first value lies and how far it is to the next pixel's. */
+typedef struct Layer {
+    const char *name;
+    const void *values;
+    size_t pixel_stride; /* bytes */
+    exr_pixel_type_t type;
+} Layer;
+
+/* The file while it is made; also collects what the library complains of. */
+typedef struct Memory {
+    uint8_t *bytes;
+    size_t size, capacity;
+    char complaint[256];
+} Memory;
+
+static int64_t write_memory(exr_const_context_t context, void *user_data, const void *buffer, uint64_t size,
+                            uint64_t offset, exr_stream_error_func_ptr_t error_callback) {
+    Memory *memory = user_data;
+    const size_t end = (size_t)(offset + size);
+    if (end > memory->capacity) {
+        const size_t capacity = end + end / 2 + 4096;
+        uint8_t *bytes = realloc(memory->bytes, capacity);
+        if (bytes == NULL) {
+            error_callback(context, EXR_ERR_OUT_OF_MEMORY, "out of memory for the file");
+            return -1;
+        }
+        memset(bytes + memory->capacity, 0, capacity - memory->capacity);
+        memory->bytes = bytes;
+        memory->capacity = capacity;
+    }
+    memcpy(memory->bytes + offset, buffer, (size_t)size);
+    if (end > memory->size) memory->size = end;
+    return (int64_t)size;
+}
+
+static void keep_complaint(exr_const_context_t context, exr_result_t code, const char *message) {
+    void *user_data = NULL;
+    (void)code;
+    if (exr_get_user_data(context, &user_data) != EXR_ERR_SUCCESS || user_data == NULL) return;
+    Memory *memory = user_data;
+    snprintf(memory->complaint, sizeof memory->complaint, "%s", message);
+}
+
+/* The layers of `picture`. A new one is one line here. `samples` holds the counts as 32-bit numbers. */
+static size_t list_layers(const BpPicture *picture, const uint32_t *samples, Layer layers[LAYERS_MAX]) {
+    const size_t rgb_stride = 3 * sizeof(float);
+    size_t count = 0;
+    static const char *const rgb_names[3] = {"R", "G", "B"};
+    for (size_t c = 0; c < 3; c++)
+        layers[count++] = (Layer){rgb_names[c], picture->rgb + c, rgb_stride, EXR_PIXEL_FLOAT};
+    static const char *const error_names[3] = {"error.R", "error.G", "error.B"};
+    for (size_t c = 0; c < 3 && picture->error != NULL; c++)
+        layers[count++] = (Layer){error_names[c], picture->error + c, rgb_stride, EXR_PIXEL_FLOAT};
+    if (samples != NULL) layers[count++] = (Layer){"samples", samples, sizeof *samples, EXR_PIXEL_UINT};
+    return count;
+}
+
+static exr_result_t write_head(exr_context_t exr, const BpPicture *picture, const Layer *layers,
+                               size_t count) {
+    int part = 0;
+    exr_result_t result = exr_add_part(exr, NULL, EXR_STORAGE_SCANLINE, &part);
+    if (result != EXR_ERR_SUCCESS) return result;
+    result = exr_initialize_required_attr_simple(exr, part, (int32_t)picture->width, (int32_t)picture->height,
+                                                 EXR_COMPRESSION_ZIP);
+    for (size_t i = 0; i < count && result == EXR_ERR_SUCCESS; i++)
+        result = exr_add_channel(exr, part, layers[i].name, layers[i].type, EXR_PERCEPTUALLY_LINEAR, 1, 1);
+    if (result != EXR_ERR_SUCCESS) return result;
+    /* Primaries and white of Rec. 709 and sRGB. */
+    const exr_attr_chromaticities_t rec709 = {0.64f, 0.33f, 0.30f, 0.60f, 0.15f, 0.06f, 0.3127f, 0.3290f};
+    result = exr_attr_set_chromaticities(exr, part, "chromaticities", &rec709);
+    if (result != EXR_ERR_SUCCESS) return result;
+    result = exr_attr_set_string(exr, part, "software", "Ballpark");
+    return result != EXR_ERR_SUCCESS ? result : exr_write_header(exr);
+}
+
+/* Points the encoder's channels, which are in the library's order, at the rows from `y` on. */
+static void aim_channels(exr_encode_pipeline_t *encoder, uint32_t width, uint32_t y, const Layer *layers,
+                         size_t count) {
+    for (int16_t c = 0; c < encoder->channel_count; c++) {
+        exr_coding_channel_info_t *channel = &encoder->channels[c];
+        for (size_t i = 0; i < count; i++) {
+            if (strcmp(channel->channel_name, layers[i].name) != 0) continue;
+            const size_t line_stride = layers[i].pixel_stride * width;
+            channel->user_pixel_stride = (int32_t)layers[i].pixel_stride;
+            channel->user_line_stride = (int32_t)line_stride;
+            channel->encode_from_ptr = (const uint8_t *)layers[i].values + line_stride * y;
+        }
+    }
+}
+
+static exr_result_t write_rows(exr_context_t exr, const BpPicture *picture, const Layer *layers,
+                               size_t count) {
+    exr_encode_pipeline_t encoder = EXR_ENCODE_PIPELINE_INITIALIZER;
+    int32_t chunk_rows = 0;
+    exr_result_t result = exr_get_scanlines_per_chunk(exr, 0, &chunk_rows);
+    if (result == EXR_ERR_SUCCESS && chunk_rows < 1) result = EXR_ERR_UNKNOWN;
+    for (uint32_t y = 0; y < picture->height && result == EXR_ERR_SUCCESS; y += (uint32_t)chunk_rows) {
+        exr_chunk_info_t chunk;
+        result = exr_write_scanline_chunk_info(exr, 0, (int)y, &chunk);
+        if (result != EXR_ERR_SUCCESS) break;
+        result = y == 0 ? exr_encoding_initialize(exr, 0, &chunk, &encoder)
+                        : exr_encoding_update(exr, 0, &chunk, &encoder);
+        if (result != EXR_ERR_SUCCESS) break;
+        aim_channels(&encoder, picture->width, y, layers, count);
+        if (y == 0) result = exr_encoding_choose_default_routines(exr, 0, &encoder);
+        if (result == EXR_ERR_SUCCESS) result = exr_encoding_run(exr, 0, &encoder);
+    }
+    exr_encoding_destroy(exr, &encoder);
+    return result;
+}
+
+BpStatus bp_exr_write(const BpPicture *picture, FILE *out, BpError *err) {
+    BpStatus status = BP_OK;
+    Memory memory = {.bytes = NULL};
+    exr_context_t exr = NULL;
+    uint32_t *samples = NULL;
+    if (picture->samples != NULL) {
+        const size_t pixels = (size_t)picture->width * picture->height;
+        samples = malloc(pixels * sizeof *samples);
+        if (samples == NULL) return bp_fail(err, BP_ERR_MEMORY, "out of memory for the EXR's sample counts");
+        for (size_t i = 0; i < pixels; i++)
+            samples[i] = picture->samples[i] < UINT32_MAX ? (uint32_t)picture->samples[i] : UINT32_MAX;
+    }
+    Layer layers[LAYERS_MAX];
+    const size_t count = list_layers(picture, samples, layers);
+
+    exr_context_initializer_t setup = EXR_DEFAULT_CONTEXT_INITIALIZER;
+    setup.user_data = &memory;
+    setup.write_fn = write_memory;
+    setup.error_handler_fn = keep_complaint;
+    exr_result_t result = exr_start_write(&exr, NO_FILE, EXR_WRITE_FILE_DIRECTLY, &setup);
+    if (result == EXR_ERR_SUCCESS) result = write_head(exr, picture, layers, count);
+    if (result == EXR_ERR_SUCCESS) result = write_rows(exr, picture, layers, count);
+    /* Also writes the table of chunks. */
+    const exr_result_t finished = exr != NULL ? exr_finish(&exr) : EXR_ERR_SUCCESS;
+    if (result == EXR_ERR_SUCCESS) result = finished;
+    if (result != EXR_ERR_SUCCESS) {
+        status = bp_fail(err, result == EXR_ERR_OUT_OF_MEMORY ? BP_ERR_MEMORY : BP_ERR_FILE,
+                         "encoding the EXR failed: %s%s%s", exr_get_default_error_message(result),
+                         memory.complaint[0] != '\0' ? ": " : "", memory.complaint);
+    } else {
+        fwrite(memory.bytes, 1, memory.size, out);
+        status = bp_image_finish(out, "EXR", err);
+    }
+    free(memory.bytes);
+    free(samples);
+    return status;
+}

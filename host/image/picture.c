@@ -1,0 +1,85 @@
+/* picture.c: pictures to files by their format's name; see image.h and ballpark.h. */
+#include "image.h"
+
+#include "../base/output_file.h"
+
+#include <errno.h>
+#include <stdlib.h>
+#include <string.h>
+#include <strings.h>
+
+bool bp_format_from_name(const char *name, BpFormat *format) {
+    static const struct {
+        const char *name;
+        BpFormat format;
+    } formats[] = {{"png", BP_FORMAT_PNG}, {"ppm", BP_FORMAT_PPM}, {"ppm-ascii", BP_FORMAT_PPM_ASCII},
+                   {"pfm", BP_FORMAT_PFM}, {"exr", BP_FORMAT_EXR}, {"bpa", BP_FORMAT_BPA}};
+    for (size_t i = 0; i < sizeof formats / sizeof formats[0]; i++) {
+        if (strcasecmp(name, formats[i].name) != 0) continue;
+        *format = formats[i].format;
+        return true;
+    }
+    return false;
+}
+
+bool bp_format_from_path(const char *path, BpFormat *format) {
+    const char *base = strrchr(path, '/');
+    base = base == NULL ? path : base + 1;
+    const char *dot = strrchr(base, '.');
+    /* "ppm-ascii" is a name on the command line, not an ending. */
+    return dot != NULL && strchr(dot, '-') == NULL && bp_format_from_name(dot + 1, format);
+}
+
+BpStatus bp_image_finish(FILE *out, const char *what, BpError *err) {
+    /* A full buffer fails to go out in the middle of the picture, an empty one would then flush well. */
+    const bool failed_before = ferror(out) != 0;
+    const int error_before = errno;
+    if (fflush(out) == 0 && !failed_before) return BP_OK;
+    const int error_number = failed_before ? error_before : errno;
+    return bp_fail(err, BP_ERR_FILE, "writing the %s failed: %s", what, strerror(error_number));
+}
+
+BpStatus bp_picture_write_stream(const BpPicture *picture, FILE *out, BpFormat format, BpTransfer transfer,
+                                 BpError *err) {
+    if (picture->width == 0 || picture->height == 0 || picture->rgb == NULL)
+        return bp_fail(err, BP_ERR_USAGE, "an empty picture cannot be written");
+    switch (format) {
+    case BP_FORMAT_PNG:
+        return bp_png_write(picture, out, transfer, err);
+    case BP_FORMAT_PPM:
+        return bp_ppm_write(picture, out, transfer, false, err);
+    case BP_FORMAT_PPM_ASCII:
+        return bp_ppm_write(picture, out, transfer, true, err);
+    case BP_FORMAT_PFM:
+        return bp_pfm_write(picture, out, err);
+    case BP_FORMAT_EXR:
+        return bp_exr_write(picture, out, err);
+    case BP_FORMAT_BPA:
+        break;
+    }
+    return bp_fail(
+        err, BP_ERR_USAGE,
+        "a .bpa file holds the sums of a render, not a picture; it is written by a render or a merge");
+}
+
+BpStatus bp_picture_write(const BpPicture *picture, const char *path, BpFormat format, BpTransfer transfer,
+                          BpError *err) {
+    BpOutputFile file;
+    BP_TRY(bp_output_open(path, &file, err));
+    const BpStatus status = bp_picture_write_stream(picture, file.stream, format, transfer, err);
+    if (status == BP_OK) return bp_output_commit(&file, err);
+    bp_output_discard(&file);
+    if (status == BP_ERR_FILE) {
+        if (err != NULL) bp_fail(err, status, "cannot write %s: %s", path, err->message);
+        bp_error_at(err, path, 0, 0);
+    }
+    return status;
+}
+
+void bp_picture_clear(BpPicture *picture) {
+    if (picture == NULL) return;
+    free(picture->rgb);
+    free(picture->error);
+    free(picture->samples);
+    memset(picture, 0, sizeof *picture);
+}

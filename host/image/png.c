@@ -1,0 +1,101 @@
+/* png.c: 8-bit RGB PNG by libpng, tagged with the transfer curve; see image.h.
+ *
+ * Tags. sRGB pictures carry an sRGB chunk (libpng adds the gAMA and cHRM that the standard recommends beside
+ * it), which every viewer shows alike. Gamma 2 and linear pictures carry gAMA (0.5 or 1) and the primaries of
+ * sRGB as cHRM. A viewer that reads gAMA (web browsers, most picture viewers) then shows the radiance it was
+ * computed from, the same as the sRGB file of that picture. One that ignores gAMA takes the bytes for sRGB: a
+ * gamma 2 picture then looks slightly darker in the middle (byte 128 shows as 128 where 137 was meant), which
+ * is how the book's own untagged pictures are seen everywhere; a linear one looks far too dark, which is how
+ * the book's pictures before its gamma section are meant to look. */
+#include "image.h"
+
+#include "../base/status.h"
+
+#include <errno.h>
+#include <png.h>
+#include <setjmp.h>
+#include <stdlib.h>
+#include <string.h>
+
+/* What libpng's callbacks need. */
+typedef struct PngFailure {
+    char text[200];
+    int error_number;
+} PngFailure;
+
+static void on_error(png_structp png, png_const_charp message) {
+    PngFailure *failure = png_get_error_ptr(png);
+    failure->error_number = errno;
+    snprintf(failure->text, sizeof failure->text, "%s", message);
+    png_longjmp(png, 1);
+}
+
+static void on_warning(png_structp png, png_const_charp message) {
+    (void)png;
+    (void)message;
+}
+
+static void put_tags(png_structp png, png_infop info, BpTransfer transfer) {
+    if (transfer == BP_TRANSFER_SRGB) {
+        png_set_sRGB_gAMA_and_cHRM(png, info, PNG_sRGB_INTENT_RELATIVE);
+    } else {
+        png_set_gAMA(png, info, transfer == BP_TRANSFER_LINEAR ? 1.0 : 0.5);
+        png_set_cHRM(png, info, 0.3127, 0.3290, 0.64, 0.33, 0.30, 0.60, 0.15, 0.06);
+    }
+    /* No version and no date: the same picture is the same file. */
+    char key[] = "Software", text[] = "Ballpark";
+    png_text software = {.compression = PNG_TEXT_COMPRESSION_NONE, .key = key, .text = text};
+    png_set_text(png, info, &software, 1);
+}
+
+/* Everything that can jump. `linear`, or else `bytes`, is the picture; `row` a buffer for one row. */
+static bool write_all(png_structp png, png_infop info, FILE *out, uint32_t width, uint32_t height,
+                      const float *linear, const uint8_t *bytes, BpTransfer transfer, uint8_t *row) {
+    if (setjmp(png_jmpbuf(png))) return false;
+    const size_t row_size = (size_t)width * 3;
+    png_set_user_limits(png, 0x7fffffff, 0x7fffffff);
+    png_init_io(png, out);
+    png_set_IHDR(png, info, width, height, 8, PNG_COLOR_TYPE_RGB, PNG_INTERLACE_NONE,
+                 PNG_COMPRESSION_TYPE_DEFAULT, PNG_FILTER_TYPE_DEFAULT);
+    put_tags(png, info, transfer);
+    png_write_info(png, info);
+    for (uint32_t y = 0; y < height; y++) {
+        if (linear != NULL)
+            for (size_t i = 0; i < row_size; i++)
+                row[i] = bp_transfer_byte((double)linear[y * row_size + i], transfer);
+        else
+            memcpy(row, bytes + y * row_size, row_size);
+        png_write_row(png, row);
+    }
+    png_write_end(png, info);
+    return true;
+}
+
+static BpStatus write_png(FILE *out, uint32_t width, uint32_t height, const float *linear,
+                          const uint8_t *bytes, BpTransfer transfer, BpError *err) {
+    BpStatus status = BP_OK;
+    PngFailure failure = {.text = ""};
+    png_infop info = NULL;
+    uint8_t *row = malloc((size_t)width * 3);
+    png_structp png = png_create_write_struct(PNG_LIBPNG_VER_STRING, &failure, on_error, on_warning);
+    if (png != NULL) info = png_create_info_struct(png);
+    if (row == NULL || info == NULL) {
+        status = bp_fail(err, BP_ERR_MEMORY, "out of memory for the PNG encoder");
+    } else if (write_all(png, info, out, width, height, linear, bytes, transfer, row)) {
+        status = bp_image_finish(out, "PNG", err);
+    } else {
+        const char *reason = ferror(out) ? strerror(failure.error_number) : failure.text;
+        status = bp_fail(err, BP_ERR_FILE, "writing the PNG failed: %s", reason);
+    }
+    png_destroy_write_struct(&png, &info);
+    free(row);
+    return status;
+}
+
+BpStatus bp_png_write(const BpPicture *picture, FILE *out, BpTransfer transfer, BpError *err) {
+    return write_png(out, picture->width, picture->height, picture->rgb, NULL, transfer, err);
+}
+
+BpStatus bp_png_write_bytes(const uint8_t *rgb, uint32_t width, uint32_t height, FILE *out, BpError *err) {
+    return write_png(out, width, height, NULL, rgb, BP_TRANSFER_SRGB, err);
+}

@@ -1,0 +1,20 @@
+/* transfer.c: from linear radiance to bytes; see image.h. */
+#include "image.h"
+
+#include <math.h>
+
+uint8_t bp_transfer_byte(double linear, BpTransfer transfer) {
+    double encoded = linear;
+    switch (transfer) {
+    case BP_TRANSFER_GAMMA2:
+        encoded = linear > 0 ? sqrt(linear) : 0;
+        break;
+    case BP_TRANSFER_SRGB: /* IEC 61966-2-1:1999 */
+        encoded = linear <= 0.0031308 ? 12.92 * linear : 1.055 * pow(linear, 1 / 2.4) - 0.055;
+        break;
+    case BP_TRANSFER_LINEAR:
+        break;
+    }
+    if (!(encoded > 0)) return 0; /* NaN too */
+    return (uint8_t)(256 * fmin(encoded, 0.999));
+}
