@@ -1,0 +1,51 @@
+"""Every kind of kernel program is OpenCL C 1.2 to clang, without a warning; without double where none is needed.
+
+Usage: test_kernels_syntax.py DUMP_KERNELS
+"""
+
+import concurrent.futures
+import os
+import pathlib
+import shutil
+import subprocess
+import sys
+import tempfile
+
+NAMES = ["clang"] + [f"clang-{version}" for version in range(22, 13, -1)]
+clang = next(filter(None, map(shutil.which, NAMES)), None)
+if clang is None:
+    print("skipped: no clang here")
+    sys.exit(77)
+
+COMMAND = [clang, "-x", "cl", "-cl-std=CL1.2", "-fsyntax-only", "-Xclang", "-finclude-default-header"]
+# A specialised program does not call every function.
+COMMAND += ["-Wall", "-Wextra", "-Werror", "-Wno-unused-function"]
+
+
+def complaints(path):
+    # Without the extension a double literal is an error, as on a device that has none.
+    fp64 = "+" if path.stem.endswith("_fp64") else "-"
+    command = COMMAND + ["-Xclang", f"-cl-ext={fp64}cl_khr_fp64", str(path)]
+    done = subprocess.run(command, capture_output=True, text=True)
+    return "" if done.returncode == 0 and not done.stderr else f"{path.name}:\n{done.stderr}"
+
+
+with tempfile.TemporaryDirectory() as folder:
+    subprocess.run([sys.argv[1], folder], check=True)
+    # The check itself must be able to fail: an undeclared name, and a double where there is none.
+    for name, text in ("undeclared", "kernel void f(global float *x) { *x = y; }"), (
+        "double",
+        "kernel void f(global float *x) { *x = *x * 0.1; }",
+    ):
+        bad = pathlib.Path(folder, f"{name}.bad")
+        bad.write_text(text + "\n")
+        assert complaints(bad), f"{name}: clang found nothing wrong with: {text}"
+
+    paths = sorted(pathlib.Path(folder).glob("*.cl"))
+    with concurrent.futures.ThreadPoolExecutor(os.cpu_count()) as pool:
+        found = [text for text in pool.map(complaints, paths) if text]
+
+for text in found[:3]:
+    print(text)
+print(f"{len(paths)} programs, {len(found)} with complaints ({clang})")
+sys.exit(1 if found or len(paths) < 256 else 0)
