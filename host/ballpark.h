@@ -92,6 +92,17 @@ typedef struct BpSceneInfo {
 } BpSceneInfo;
 void bp_scene_info(const BpScene *scene, BpSceneInfo *info);
 
+/* An effect that the kernel can simulate, and whether a scene calls for it. */
+#define BP_EFFECTS_MAX 8
+typedef struct BpEffectInfo {
+    const char *name, *description; /* static: "lens", "a lens with an aperture: defocus blur" */
+    bool simulated;
+    char reason[160]; /* why it is in or out, for a person */
+} BpEffectInfo;
+
+/* Fills `list` and returns the number of effects; the same ones in the same order for every scene. */
+size_t bp_scene_effects(const BpScene *scene, BpEffectInfo list[BP_EFFECTS_MAX]);
+
 /* ---- devices ----------------------------------------------------------------------------------------- */
 
 typedef enum BpDeviceType { BP_DEVICE_CPU, BP_DEVICE_GPU, BP_DEVICE_OTHER } BpDeviceType;

@@ -198,3 +198,15 @@ void bp_effects_analyse(const BpScene *scene, BpEffects *effects) {
                  plural(scene->sphere_count));
     }
 }
+
+size_t bp_scene_effects(const BpScene *scene, BpEffectInfo list[BP_EFFECTS_MAX]) {
+    BpEffects effects;
+    bp_effects_analyse(scene, &effects);
+    for (int e = 0; e < BP_EFFECT_COUNT; ++e) {
+        list[e].name = bp_effect_name((BpEffect)e);
+        list[e].description = bp_effect_description((BpEffect)e);
+        list[e].simulated = bp_effects_has(effects.bits, (BpEffect)e);
+        snprintf(list[e].reason, sizeof list[e].reason, "%s", effects.reason[e]);
+    }
+    return BP_EFFECT_COUNT;
+}

@@ -28,7 +28,7 @@ typedef enum BpEffect {
     BP_EFFECT_COUNT
 } BpEffect;
 
-_Static_assert(BP_EFFECT_COUNT <= 8, "every combination that can occur is tested: at most eight bits");
+_Static_assert(BP_EFFECT_COUNT <= BP_EFFECTS_MAX, "every combination that can occur is tested: at most eight bits");
 
 typedef struct BpEffects {
     uint32_t bits; /* bit e set: effect e is simulated */
