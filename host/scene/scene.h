@@ -12,6 +12,8 @@
 
 #include "../ballpark.h"
 
+#include <stdio.h>
+
 #define BP_PICTURE_SIDE_MAX 65535u
 #define BP_DEPTH_MAX 1000000u
 #define BP_SPHERES_MAX 134217728u     /* 2^27 */
@@ -88,9 +90,11 @@ bool bp_material_has_albedo(BpMaterialKind kind);
 /* Checks the invariants above; the message names the sphere, material or member by its index or name. */
 BpStatus bp_scene_validate(const BpScene *scene, BpError *err);
 
-/* Writes the scene as a document of the grammar that reads back to the same scene (numbers with 17 digits).
- */
+/* Writes the scene as a document of the grammar that reads back to the same scene, bit for bit, one sphere a
+ * line; refuses a scene with coloured cloud points, which has no such document. */
 BpStatus bp_scene_write(const BpScene *scene, const char *path, BpError *err);
+/* The same to an open stream, which the caller closes. */
+BpStatus bp_scene_print(const BpScene *scene, FILE *stream, BpError *err);
 
 /* The book's cover. edition: "1", "3", "3rust" or "4"; grid: half side, 11 in the book (cells -grid ..
  * grid-1; 3rust: -grid .. grid). The draw order is fixed: see scene_generate.c. */

@@ -58,6 +58,10 @@ static BpStatus read_size(const BpNode *node, BpCamera *camera, BpError *err) {
     return BP_OK;
 }
 
+double bp_lens_radius(double defocus_degrees, double focus_dist) {
+    return focus_dist * tan(defocus_degrees * (PI / 180) / 2);
+}
+
 static BpStatus read_lens(const BpNode *node, BpCamera *camera, BpError *err) {
     const BpNode focus = bp_node_member(node, "focus_dist");
     const BpNode aperture = bp_node_member(node, "aperture");
@@ -74,7 +78,7 @@ static BpStatus read_lens(const BpNode *node, BpCamera *camera, BpError *err) {
     if (degrees < 0 || degrees >= 180)
         return bp_node_wrong(&angle, "degrees from 0 (all in focus) to below 180", err);
     if (angle.value != NULL)
-        camera->lens_radius = camera->focus_dist * tan(degrees * (PI / 180) / 2);
+        camera->lens_radius = bp_lens_radius(degrees, camera->focus_dist);
     else
         camera->lens_radius = diameter / 2;
     return BP_OK;

@@ -39,6 +39,10 @@ static const struct {
     {"total_reflection", 1u << BP_MATERIAL_DIELECTRIC, "\"dielectric\""},
 };
 
+const char *bp_material_type_name(BpMaterialKind kind) {
+    return type_names[kind];
+}
+
 static BpStatus refuse_foreign_members(const BpNode *node, int type, BpError *err) {
     for (size_t i = 0; i < BP_COUNT(owned_members); i++) {
         const BpNode member = bp_node_member(node, owned_members[i].name);

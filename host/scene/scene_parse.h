@@ -16,7 +16,11 @@ BpStatus bp_scene_parse_with(const char *text, size_t length, const char *name, 
 
 /* The fourth edition's camera, all by default. */
 void bp_camera_defaults(BpCamera *camera);
+/* Of a lens whose cone of rays has the angle at its point in focus. */
+double bp_lens_radius(double defocus_degrees, double focus_dist);
 BpStatus bp_parse_camera(const BpNode *node, BpCamera *camera, BpError *err);
+/* As the grammar has it: "lambertian". */
+const char *bp_material_type_name(BpMaterialKind kind);
 /* `material` is zeroed; its name is the caller's to set. */
 BpStatus bp_parse_material(const BpNode *node, BpMaterial *material, BpError *err);
 

@@ -4,6 +4,7 @@
  * Knows: nothing of JSON or scenes. */
 #include "scene_document.h"
 
+#include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -65,6 +66,8 @@ void bp_printable(const char *text, char *out, size_t size) {
 }
 
 const char *bp_number_text(double value, char text[BP_NUMBER_TEXT_SIZE]) {
+    if (value == 0 && signbit(value))
+        return strcpy(text, "-0.0"); /* as "-0" it would read back as a whole number */
     for (int digits = 15; digits <= 17; digits++) {
         snprintf(text, BP_NUMBER_TEXT_SIZE, "%.*g", digits, value);
         if (strtod(text, NULL) == value) break;
