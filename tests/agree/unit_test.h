@@ -1,0 +1,12 @@
+/* unit_test.h: cmocka with the headers it needs to stand before it. */
+#ifndef TESTS_AGREE_UNIT_TEST_H
+#define TESTS_AGREE_UNIT_TEST_H
+
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+
+#include <cmocka.h>
+
+#endif
