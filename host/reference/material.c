@@ -1,0 +1,102 @@
+/* material.c: how surfaces scatter; see trace.h. */
+#include "trace.h"
+
+static Vec albedo_of(const BpScene *scene, const Hit *hit) {
+    if (hit->sphere->albedo == BP_NO_ALBEDO) return vec(hit->material->albedo);
+    const float *albedo = scene->albedos[hit->sphere->albedo];
+    return (Vec){albedo[0], albedo[1], albedo[2]};
+}
+
+/* The first edition adds a point of the ball (a density of cosine cubed), the third and fourth a point of the
+ * sphere (the cosine: Lambert's law); the third also shows a uniform hemisphere. */
+static Vec scatter_lambertian(BpScatter lobe, Vec normal, Random *random) {
+    if (lobe == BP_SCATTER_HEMISPHERE) {
+        const Vec p = random_on_sphere(random);
+        return dot(p, normal) > 0 ? p : scale(-1, p);
+    }
+    for (;;) {
+        const Vec p = lobe == BP_SCATTER_COSINE_CUBED ? random_in_ball(random) : random_on_sphere(random);
+        const Vec direction = add(normal, p);
+        /* Opposite to the normal there is no direction. The book then takes the normal; a new point has the
+         * exact distribution, and either happens once in 1e16. */
+        if (length2(direction) > 1e-16) return direction;
+    }
+}
+
+static Vec reflect(Vec direction, Vec normal) {
+    return sub(direction, scale(2 * dot(direction, normal), normal));
+}
+
+static bool scatter_metal(const BpMaterial *metal, Vec direction, Vec normal, Random *random,
+                          Vec *scattered) {
+    *scattered = unit(reflect(direction, normal));
+    if (metal->fuzz > 0) {
+        const Vec p = metal->fuzz_shape == BP_FUZZ_BALL ? random_in_ball(random) : random_on_sphere(random);
+        *scattered = add(*scattered, scale(metal->fuzz, p));
+    }
+    return dot(*scattered, normal) > 0;
+}
+
+double bp_ref_schlick(double cosine, double ratio) {
+    const double root = (1 - ratio) / (1 + ratio), r0 = root * root;
+    return r0 + (1 - r0) * pow(1 - cosine, 5);
+}
+
+double bp_ref_fresnel(double cosine, double ratio) {
+    if (ratio == 1) return 0;
+    const double sine2_beyond = ratio * ratio * (1 - cosine) * (1 + cosine);
+    if (sine2_beyond >= 1) return 1;
+    const double cosine_beyond = sqrt(1 - sine2_beyond);
+    const double perpendicular = (ratio * cosine - cosine_beyond) / (ratio * cosine + cosine_beyond);
+    const double parallel = (cosine - ratio * cosine_beyond) / (cosine + ratio * cosine_beyond);
+    return 0.5 * (perpendicular * perpendicular + parallel * parallel);
+}
+
+/* Reflection is chosen with the probability of the reflectance, else the ray goes through, so neither carries
+ * a weight. Where nothing can go through, the material's total_reflection decides alone; "refract" then keeps
+ * the book's fabs under the root. */
+static bool scatter_dielectric(const BpMaterial *glass, Vec direction, const Hit *hit, Random *random,
+                               Vec *scattered) {
+    const double ratio = hit->front_face ? 1 / glass->refraction_index : glass->refraction_index;
+    const double cosine = fmin(-dot(direction, hit->normal), 1);
+    const double sine2_beyond = ratio * ratio * (1 - cosine) * (1 + cosine);
+    bool reflects;
+    if (sine2_beyond > 1) {
+        if (glass->total_reflection == BP_TOTAL_ABSORB) return false;
+        reflects = glass->total_reflection == BP_TOTAL_REFLECT;
+    } else {
+        double reflectance = 0;
+        if (glass->fresnel == BP_FRESNEL_SCHLICK) reflectance = bp_ref_schlick(cosine, ratio);
+        if (glass->fresnel == BP_FRESNEL_EXACT) reflectance = bp_ref_fresnel(cosine, ratio);
+        reflects = random_real(random) < reflectance;
+    }
+    if (reflects) {
+        *scattered = reflect(direction, hit->normal);
+        return true;
+    }
+    const Vec across = scale(ratio, add(direction, scale(cosine, hit->normal)));
+    const Vec inward = scale(-sqrt(fabs(1 - sine2_beyond)), hit->normal);
+    *scattered = add(across, inward);
+    return true;
+}
+
+bool bp_ref_scatter(const BpScene *scene, const Ray *ray, const Hit *hit, Random *random, Vec *direction,
+                    Vec *attenuation) {
+    const Vec incoming = unit(ray->direction);
+    switch (hit->material->kind) {
+    case BP_MATERIAL_LAMBERTIAN:
+        *attenuation = albedo_of(scene, hit);
+        *direction = scatter_lambertian(hit->material->scatter, hit->normal, random);
+        return true;
+    case BP_MATERIAL_METAL:
+        *attenuation = albedo_of(scene, hit);
+        return scatter_metal(hit->material, incoming, hit->normal, random, direction);
+    case BP_MATERIAL_DIELECTRIC:
+        *attenuation = (Vec){1, 1, 1};
+        return scatter_dielectric(hit->material, incoming, hit, random, direction);
+    case BP_MATERIAL_DIFFUSE_LIGHT:
+    case BP_MATERIAL_NORMALS:
+        break;
+    }
+    return false;
+}

@@ -1,0 +1,79 @@
+/* trace.c: intersection and the recursion; see trace.h. */
+#include "trace.h"
+
+/* A ray that starts on a sphere starts also on every other one of the same place and size. */
+static bool starts_on(const Ray *ray, const BpSphere *sphere) {
+    const BpSphere *from = ray->leaves;
+    if (from == NULL || from == sphere) return from != NULL;
+    return fabs(from->radius) == fabs(sphere->radius) && from->center[0] == sphere->center[0] &&
+           from->center[1] == sphere->center[1] && from->center[2] == sphere->center[2];
+}
+
+/* The book's quadratic a t^2 - 2 h t + c = 0, two ways of it:
+ * - Where the ray starts on the sphere, c = 0, so t (a t - 2 h) = 0: one root is the start itself, which does
+ *   not count, the other is 2 h / a, and lies ahead only when the ray goes into the sphere. No epsilon.
+ * - Else the discriminant comes from the perpendicular distance to the centre (Haines et al., "Precision
+ *   improvements for ray/sphere intersection", Ray Tracing Gems, 2019): h^2 - a c would cancel for a small
+ *   sphere far away. */
+static bool hit_sphere(const BpSphere *sphere, const Ray *ray, double t_max, double *t) {
+    const Vec oc = sub(vec(sphere->center), ray->origin);
+    const double a = length2(ray->direction), h = dot(ray->direction, oc);
+    double root;
+    if (starts_on(ray, sphere)) {
+        root = 2 * h / a;
+    } else {
+        const double r = sphere->radius;
+        const double room = r * r - length2(sub(oc, scale(h / a, ray->direction)));
+        if (room < 0) return false;
+        const double half_chord = sqrt(room / a);
+        root = h / a - half_chord;
+        if (root <= 0) root = h / a + half_chord;
+    }
+    if (!(root > 0 && root < t_max)) return false;
+    *t = root;
+    return true;
+}
+
+bool bp_ref_hit(const BpScene *scene, const Ray *ray, Hit *hit) {
+    double closest = INFINITY;
+    const BpSphere *sphere = NULL;
+    for (size_t i = 0; i < scene->sphere_count; ++i)
+        if (hit_sphere(&scene->spheres[i], ray, closest, &closest)) sphere = &scene->spheres[i];
+    if (sphere == NULL) return false;
+
+    hit->t = closest;
+    hit->sphere = sphere;
+    hit->material = &scene->materials[sphere->material];
+    const Vec point = add(ray->origin, scale(closest, ray->direction)), center = vec(sphere->center);
+    /* unit() takes off what rounding left of the radius, so that the point lies on the sphere. */
+    const Vec radial = unit(sub(point, center));
+    hit->point = add(center, scale(fabs(sphere->radius), radial));
+    const Vec outward = sphere->radius < 0 ? scale(-1, radial) : radial;
+    hit->front_face = dot(ray->direction, outward) < 0;
+    hit->normal = hit->front_face ? outward : scale(-1, outward);
+    return true;
+}
+
+static Vec background(const BpScene *scene, Vec direction) {
+    const double a = 0.5 * (unit(direction).y + 1);
+    return add(scale(1 - a, vec(scene->background_bottom)), scale(a, vec(scene->background_top)));
+}
+
+Vec bp_ref_color(const BpScene *scene, const Ray *ray, uint32_t depth, Random *random, Path *path) {
+    const Vec black = {0, 0, 0};
+    if (depth == 0) {
+        path->cut = true;
+        return black;
+    }
+    ++path->segments;
+    Hit hit;
+    if (!bp_ref_hit(scene, ray, &hit)) return background(scene, ray->direction);
+
+    Vec emitted = vec(hit.material->emit);
+    if (hit.material->kind == BP_MATERIAL_NORMALS)
+        emitted = add(emitted, scale(0.5, add(hit.normal, (Vec){1, 1, 1})));
+    Vec direction, attenuation;
+    if (!bp_ref_scatter(scene, ray, &hit, random, &direction, &attenuation)) return emitted;
+    const Ray scattered = {hit.point, direction, hit.sphere};
+    return add(emitted, mul(attenuation, bp_ref_color(scene, &scattered, depth - 1, random, path)));
+}

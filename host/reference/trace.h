@@ -1,0 +1,53 @@
+/* trace.h: one path through a scene, in double, as the book writes it.
+ *
+ * In:    Scene, a ray, random numbers.   Out: radiance.
+ * Knows: Scene.                          Does not know: packed data, kernels, pictures, threads. */
+#ifndef BP_REFERENCE_TRACE_H
+#define BP_REFERENCE_TRACE_H
+
+#include "../scene/scene.h"
+#include "vec.h"
+
+typedef struct Ray {
+    Vec origin, direction;  /* the direction need not be of unit length */
+    const BpSphere *leaves; /* the sphere whose surface the origin lies on, or NULL */
+} Ray;
+
+typedef struct Hit {
+    double t; /* in lengths of the ray's direction */
+    Vec point;
+    Vec normal;      /* unit length, faces the ray */
+    bool front_face; /* the ray comes from the side that the outward normal points to */
+    const BpSphere *sphere;
+    const BpMaterial *material;
+} Hit;
+
+typedef struct Path {
+    uint64_t segments; /* ray segments traced */
+    bool cut;          /* the depth limit ended it */
+} Path;
+
+/* The camera of the fourth edition, prepared for a scene. */
+typedef struct Camera {
+    Vec origin, first_pixel, pixel_right, pixel_down, lens_right, lens_up;
+    bool lens, center;
+} Camera;
+Camera bp_ref_camera(const BpCamera *camera);
+Ray bp_ref_camera_ray(const Camera *camera, uint32_t column, uint32_t row, Random *random);
+
+/* The nearest hit with t > 0; of equal ones the sphere that stands first. */
+bool bp_ref_hit(const BpScene *scene, const Ray *ray, Hit *hit);
+
+/* The direction a material sends the ray on to, and what it leaves of the light; false: absorbed. */
+bool bp_ref_scatter(const BpScene *scene, const Ray *ray, const Hit *hit, Random *random, Vec *direction,
+                    Vec *attenuation);
+
+/* Radiance along the ray. `depth`: segments still allowed; 0 is black. */
+Vec bp_ref_color(const BpScene *scene, const Ray *ray, uint32_t depth, Random *random, Path *path);
+
+/* Reflectance, `ratio` = index on the ray's side over index beyond, `cosine` of the incident angle. Schlick's
+ * form (1994, eq. 15) as the third and fourth editions use it; exact, unpolarised (Fresnel's equations). */
+double bp_ref_schlick(double cosine, double ratio);
+double bp_ref_fresnel(double cosine, double ratio);
+
+#endif
