@@ -17,6 +17,10 @@
 static const struct {
     const char *scene, *effects;
 } expected[] = {
+    {"cover", "lambertian metal dielectric lens gradient tree"},
+    {"cover-v1", "lambertian metal dielectric lens gradient tree"},
+    {"cover-v3", "lambertian metal dielectric lens gradient tree"},
+    {"cover-v3-rust", "lambertian metal dielectric lens gradient tree"},
     {"v1-defocus", "lambertian metal dielectric lens gradient"},
     {"v1-diffuse-gamma", "lambertian gradient"},
     {"v1-diffuse-linear", "lambertian gradient"},
