@@ -31,7 +31,7 @@ static BpEffects analyse(const BpMaterial *materials, size_t count, size_t used,
     BpEffects effects;
     assert_non_null(list);
     assert_true(count <= 8);
-    memcpy(copy, materials, count * sizeof *copy);
+    if (count > 0) memcpy(copy, materials, count * sizeof *copy);
     for (size_t i = 0; i < spheres; ++i)
         list[i] = (BpSphere){.radius = 1, .material = (uint32_t)(i % used), .albedo = BP_NO_ALBEDO};
     const BpScene scene = {.camera = {.lens_radius = lens, .focus_dist = 10},
