@@ -1,0 +1,23 @@
+/* camera.cl: from a pixel and random numbers to a ray. The camera's position is the origin of space. */
+
+/* The point of the lens that the ray leaves, and its unit direction. `column` and `row` are whole numbers;
+ * `center` is 1 for rays through pixel centres only. */
+static void camera_ray(__global const PackedCamera *camera, uint center, SampleKey key, reals column, reals row,
+                       Vec3 *origin, Vec3 *direction) {
+    reals x = splat(R(0.5)), y = splat(R(0.5));
+    if (center == 0) sample_2d(key, splat_uint(DIMENSION_PIXEL), &x, &y);
+    /* The pixel's corner first, the offset in it last: the offset keeps its bits in wide pictures. */
+    const Vec3 right = splat3(camera->right), down = splat3(camera->down);
+    const Vec3 corner = madd3(row, down, madd3(column, right, splat3(camera->corner)));
+    const Vec3 target = madd3(y, down, madd3(x, right, corner));
+#if EFFECT_LENS
+    reals u, v, lens_x, lens_y;
+    sample_2d(key, splat_uint(DIMENSION_LENS), &u, &v);
+    sample_disk(u, v, &lens_x, &lens_y);
+    *origin = madd3(lens_y, splat3(camera->lens_up), scale3(lens_x, splat3(camera->lens_right)));
+    *direction = normalise3(subtract3(target, *origin));
+#else
+    *origin = zero3();
+    *direction = normalise3(target);
+#endif
+}

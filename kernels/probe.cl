@@ -1,0 +1,18 @@
+/* probe.cl: how this device's compiler lays out the packed structs; the host compares it with its own
+ * (host/engine/layout.c) before the first launch. */
+#define SIZE_AND_OFFSET(type, member)                                                                        \
+    {                                                                                                        \
+        type object;                                                                                         \
+        *out++ = (uint)sizeof(type);                                                                         \
+        *out++ = (uint)((__private const char *)&object.member - (__private const char *)&object);           \
+    }
+
+__kernel void probe_layout(__global uint *out) {
+    SIZE_AND_OFFSET(PackedCamera, lens_up)
+    SIZE_AND_OFFSET(PackedSky, top)
+    SIZE_AND_OFFSET(PackedMaterial, refraction_index)
+    SIZE_AND_OFFSET(PackedMaterialKind, total_reflection)
+    SIZE_AND_OFFSET(PackedSphereLook, albedo)
+    *out++ = (uint)sizeof(real);
+    *out = (uint)sizeof(refined);
+}

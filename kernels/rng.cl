@@ -1,0 +1,73 @@
+/* rng.cl: random numbers as a pure function of (seed, pixel, sample, dimension).
+ *
+ * Nothing is carried along, so neither chunks, nor devices, nor effects that are absent shift a number.
+ *
+ * Dimensions, by purpose. An effect that is absent leaves its places unused:
+ *   0, 1  position in the pixel        2, 3  position on the lens        4  time (kept)       5..15  kept
+ *   16 + 16 b + k, for bounce b:
+ *     k = 0, 1     direction of scattering
+ *     k = 2, 3, 4  radius in a ball (fuzz and the cosine-cubed lobe)
+ *     k = 5        choice between reflection and refraction
+ *     k = 6        roulette (kept)    7, 8, 9  a light (kept)    10..15  kept */
+#define DIMENSION_PIXEL 0u
+#define DIMENSION_LENS 2u
+#define DIMENSION_BOUNCE 16u
+#define DIMENSIONS_PER_BOUNCE 16u
+#define BOUNCE_DIRECTION 0u
+#define BOUNCE_BALL_RADIUS 2u
+#define BOUNCE_CHOICE 5u
+
+/* What identifies a pixel sample to the generator. */
+typedef struct SampleKey {
+    uints a, b;
+} SampleKey;
+
+/* pcg4d (M. Jarzynski and M. Olano, "Hash Functions for GPU Rendering", JCGT 9(3), 2020): four words in, four
+ * well mixed words out; two of them are the key. */
+static SampleKey sample_key(uint seed_low, uint seed_high, uints pixel, uints sample) {
+    uints x = pixel * 1664525u + 1013904223u;
+    uints y = sample * 1664525u + 1013904223u;
+    uints z = splat_uint(seed_low * 1664525u + 1013904223u);
+    uints w = splat_uint(seed_high * 1664525u + 1013904223u);
+    x += y * w;
+    y += z * x;
+    z += x * y;
+    w += y * z;
+    x ^= x >> 16;
+    y ^= y >> 16;
+    z ^= z >> 16;
+    w ^= w >> 16;
+    x += y * w;
+    y += z * x;
+    z += x * y;
+    w += y * z;
+    SampleKey key;
+    key.a = x;
+    key.b = w;
+    return key;
+}
+
+/* 32 random bits for one dimension: a Weyl sequence of odd step (2^32 / golden ratio) through a two-round
+ * multiply-xorshift finaliser (constants found by C. Wellons, "hash-prospector", 2018), with the key's second
+ * word added between the rounds, so that equal first words do not make equal sequences. */
+static uints random_bits(SampleKey key, uints dimension) {
+    uints x = key.a + dimension * 0x9e3779b9u;
+    x ^= x >> 16;
+    x *= 0x21f0aaadu;
+    x += key.b;
+    x ^= x >> 15;
+    x *= 0xd35a2d97u;
+    x ^= x >> 15;
+    return x;
+}
+
+/* [0, 1): the 24 upper bits, so 1 cannot appear by rounding. */
+static reals bits_to_unit(uints bits) { return uint_to_reals(bits >> 8) * R(0x1p-24); }
+
+static reals uniform(SampleKey key, uints dimension) { return bits_to_unit(random_bits(key, dimension)); }
+
+/* Two numbers for a pair of dimensions that begins at `dimension`. */
+static void sample_2d(SampleKey key, uints dimension, reals *u, reals *v) {
+    *u = uniform(key, dimension);
+    *v = uniform(key, dimension + 1u);
+}

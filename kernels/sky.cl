@@ -1,0 +1,11 @@
+/* sky.cl: the radiance of a ray that meets nothing. */
+static Vec3 sky_radiance(__global const PackedSky *sky, Vec3 direction) {
+    const Vec3 bottom = splat3(sky->bottom);
+#if EFFECT_GRADIENT
+    /* fma(a, top - bottom, bottom), so that equal ends give exactly the constant sky. */
+    const Vec3 top = splat3(sky->top);
+    return madd3(fma(splat(R(0.5)), direction.y, splat(R(0.5))), subtract3(top, bottom), bottom);
+#else
+    return bottom;
+#endif
+}

@@ -1,0 +1,274 @@
+/* trace.cl: the bounce loop, in lane code, and the kernel around it.
+ *
+ * In:    the packed scene; a chunk: a range of pixels times a range of samples.
+ * Out:   for each pixel sample its radiance, and in a fourth number the ray segments traced, plus 1/2 for a path
+ *        that the depth cap cut.
+ *
+ * One lane: a work-item traces one pixel sample. Eight lanes: a work-item takes `samples_per_item` pixel samples of
+ * the chunk, eight at a time; a lane whose path has ended takes the next. What is computed for a pixel sample
+ * depends on neither. */
+
+typedef struct Scene {
+    Geometry geometry;
+    __global const PackedSky *sky;
+    __global const PackedMaterial *materials;
+    __global const PackedMaterialKind *kinds;
+    __global const PackedSphereLook *looks;
+    __global const real *albedos;
+} Scene;
+
+/* The paths that a work-item follows, one a lane. */
+typedef struct Paths {
+    Point origin;
+    Vec3 direction;
+    Vec3 throughput, radiance;
+    SampleKey key;
+    uints depth;   /* ray segments traced */
+    uints own_slot;
+    masks inward;
+    masks alive;
+} Paths;
+
+/* What the paths meet, gathered lane by lane. */
+typedef struct Meeting {
+    refineds t;
+    masks met, enters;
+    uints slot;
+} Meeting;
+
+static Meeting meet(const Geometry *geometry, const Paths *paths) {
+    real high_x[LANE_COUNT], high_y[LANE_COUNT], high_z[LANE_COUNT];
+    real low_x[LANE_COUNT], low_y[LANE_COUNT], low_z[LANE_COUNT];
+    real direction_x[LANE_COUNT], direction_y[LANE_COUNT], direction_z[LANE_COUNT], slack[LANE_COUNT];
+    uint own_slot[LANE_COUNT], slot[LANE_COUNT];
+    real inward[LANE_COUNT], alive[LANE_COUNT], enters[LANE_COUNT];
+    refined t[LANE_COUNT];
+    store_lanes(paths->origin.high.x, high_x);
+    store_lanes(paths->origin.high.y, high_y);
+    store_lanes(paths->origin.high.z, high_z);
+    store_lanes(paths->origin.low.x, low_x);
+    store_lanes(paths->origin.low.y, low_y);
+    store_lanes(paths->origin.low.z, low_z);
+    store_lanes(paths->direction.x, direction_x);
+    store_lanes(paths->direction.y, direction_y);
+    store_lanes(paths->direction.z, direction_z);
+    store_lanes(paths->origin.slack, slack);
+    store_lanes(paths->own_slot, own_slot);
+    store_lanes(choose(paths->inward, splat(1), splat(0)), inward);
+    store_lanes(choose(paths->alive, splat(1), splat(0)), alive);
+    for (uint lane = 0; lane < LANE_COUNT; ++lane) {
+        t[lane] = 0;
+        slot[lane] = NO_SLOT;
+        enters[lane] = 0;
+        if (alive[lane] == 0) continue;
+        Ray ray;
+        ray.high[0] = high_x[lane];
+        ray.high[1] = high_y[lane];
+        ray.high[2] = high_z[lane];
+        ray.low[0] = low_x[lane];
+        ray.low[1] = low_y[lane];
+        ray.low[2] = low_z[lane];
+        ray.direction[0] = direction_x[lane];
+        ray.direction[1] = direction_y[lane];
+        ray.direction[2] = direction_z[lane];
+        ray.slack = slack[lane];
+        ray.own_slot = own_slot[lane];
+        ray.inward = inward[lane] != 0;
+        const Hit hit = intersect_closest(geometry, &ray);
+        t[lane] = hit.t;
+        slot[lane] = hit.slot;
+        enters[lane] = hit.enters ? 1 : 0;
+    }
+    Meeting meeting;
+    meeting.t = load_lanes(t);
+    meeting.slot = load_lanes(slot);
+    meeting.met = mask_of_uint(meeting.slot != splat_uint(NO_SLOT));
+    meeting.enters = load_lanes(enters) != splat(0);
+    return meeting;
+}
+
+/* The sphere and the material at each lane's slot; lanes that met nothing get a unit sphere and material 0. */
+static void look_up(const Scene *scene, const Meeting *meeting, Vec3 *centre, reals *radius, Surface *surface,
+                    Vec3 *emitted) {
+    real cx[LANE_COUNT], cy[LANE_COUNT], cz[LANE_COUNT], r[LANE_COUNT];
+    real red[LANE_COUNT], green[LANE_COUNT], blue[LANE_COUNT], fuzz[LANE_COUNT], index[LANE_COUNT];
+    real emit_red[LANE_COUNT], emit_green[LANE_COUNT], emit_blue[LANE_COUNT];
+    uint slots[LANE_COUNT], kind[LANE_COUNT], lobe[LANE_COUNT], variant[LANE_COUNT], total[LANE_COUNT];
+    store_lanes(meeting->slot, slots);
+    for (uint lane = 0; lane < LANE_COUNT; ++lane) {
+        const uint slot = slots[lane];
+        const int met = slot != NO_SLOT;
+        const uint leaf_lane = slot % TREE_WIDTH;
+        __global const real *leaf = scene->geometry.leaves + (met ? slot - leaf_lane : 0) * 4;
+        cx[lane] = met ? leaf[leaf_lane] : 0;
+        cy[lane] = met ? leaf[TREE_WIDTH + leaf_lane] : 0;
+        cz[lane] = met ? leaf[2 * TREE_WIDTH + leaf_lane] : 0;
+        r[lane] = met ? leaf[3 * TREE_WIDTH + leaf_lane] : 1;
+        const uint sphere = met ? scene->geometry.slot_sphere[slot] : 0;
+        const uint material_number = met ? scene->looks[sphere].material : 0;
+        const uint albedo_number = met ? scene->looks[sphere].albedo : NO_ALBEDO;
+        __global const PackedMaterial *material = scene->materials + material_number;
+        __global const PackedMaterialKind *kinds = scene->kinds + material_number;
+        __global const real *albedo =
+            albedo_number == NO_ALBEDO ? material->albedo : scene->albedos + (size_t)albedo_number * 4;
+        red[lane] = albedo[0];
+        green[lane] = albedo[1];
+        blue[lane] = albedo[2];
+        fuzz[lane] = material->fuzz;
+        index[lane] = material->refraction_index;
+        emit_red[lane] = material->emit[0];
+        emit_green[lane] = material->emit[1];
+        emit_blue[lane] = material->emit[2];
+        kind[lane] = kinds->kind;
+        lobe[lane] = kinds->lobe;
+        variant[lane] = kinds->variant;
+        total[lane] = kinds->total_reflection;
+    }
+    *centre = vec3(load_lanes(cx), load_lanes(cy), load_lanes(cz));
+    *radius = load_lanes(r);
+    surface->albedo = vec3(load_lanes(red), load_lanes(green), load_lanes(blue));
+    surface->fuzz = load_lanes(fuzz);
+    surface->refraction_index = load_lanes(index);
+    surface->kind = load_lanes(kind);
+    surface->lobe = load_lanes(lobe);
+    surface->variant = load_lanes(variant);
+    surface->total_reflection = load_lanes(total);
+    *emitted = vec3(load_lanes(emit_red), load_lanes(emit_green), load_lanes(emit_blue));
+}
+
+/* One segment of every living path: intersect, collect radiance, scatter. */
+static void advance(const Scene *scene, Paths *paths) {
+    const Meeting meeting = meet(&scene->geometry, paths);
+    paths->depth = choose_uint(paths->alive, paths->depth + 1u, paths->depth);
+
+    const masks escaped = paths->alive & not_mask(meeting.met);
+    if (any_lane(escaped)) {
+        const Vec3 light = multiply3(paths->throughput, sky_radiance(scene->sky, paths->direction));
+        paths->radiance = choose3(escaped, add3(paths->radiance, light), paths->radiance);
+    }
+    paths->alive = paths->alive & meeting.met;
+    if (!any_lane(paths->alive)) return;
+
+    Surface surface;
+    Vec3 centre, outward, emitted;
+    reals radius;
+    Point point;
+    look_up(scene, &meeting, &centre, &radius, &surface, &emitted);
+    surface_point(&paths->origin, paths->direction, meeting.t, centre, radius, &point, &outward);
+    surface.incoming = paths->direction;
+    surface.enters = meeting.enters;
+    surface.normal = choose3(meeting.enters, outward, scale3(splat(-1), outward));
+#if EFFECT_NORMALS
+    const masks shows_normal = has_kind(&surface, KIND_NORMALS);
+    const Vec3 colour = vec3(fma(surface.normal.x, splat(R(0.5)), splat(R(0.5))),
+                             fma(surface.normal.y, splat(R(0.5)), splat(R(0.5))),
+                             fma(surface.normal.z, splat(R(0.5)), splat(R(0.5))));
+    emitted = choose3(shows_normal, add3(emitted, colour), emitted);
+#endif
+#if EFFECT_EMISSION || EFFECT_NORMALS
+    paths->radiance = choose3(paths->alive, add3(paths->radiance, multiply3(paths->throughput, emitted)),
+                              paths->radiance);
+#endif
+    const Scattering scattering = scatter(&surface, paths->key, paths->depth - 1u);
+    paths->throughput = multiply3(paths->throughput, scattering.weight);
+    paths->direction = scattering.direction;
+    paths->origin = point;
+    paths->own_slot = meeting.slot;
+    /* Coming from outside and staying there, or from inside and going through: outside. */
+    paths->inward = (meeting.enters & scattering.refracted) | (not_mask(meeting.enters) & not_mask(scattering.refracted));
+    paths->alive = paths->alive & scattering.goes_on;
+}
+
+__kernel void trace(__global const PackedCamera *camera, __global const PackedSky *sky,
+                    __global const PackedMaterial *materials, __global const PackedMaterialKind *kinds,
+                    __global const PackedSphereLook *looks, __global const real *albedos, __global const real *boxes,
+                    __global const uint *children, __global const real *leaves, __global const uint *slot_sphere,
+                    uint first_leaves, uint leaf_count, uint pixel_center, uint max_depth, uint seed_low,
+                    uint seed_high, uint width, uint first_pixel, uint first_sample, uint samples_per_pixel,
+                    uint sample_count, uint samples_per_item, __global real *samples) {
+    Scene scene;
+    scene.geometry.boxes = boxes;
+    scene.geometry.children = children;
+    scene.geometry.leaves = leaves;
+    scene.geometry.slot_sphere = slot_sphere;
+    scene.geometry.first_leaves = first_leaves;
+    scene.geometry.leaf_count = leaf_count;
+    scene.sky = sky;
+    scene.materials = materials;
+    scene.kinds = kinds;
+    scene.looks = looks;
+    scene.albedos = albedos;
+
+    const uint item = get_global_id(0);
+    uint next = item * samples_per_item;
+    const uint end = min(next + samples_per_item, sample_count);
+
+    Paths paths;
+    paths.alive = splat(0) != splat(0);
+    masks taken = paths.alive; /* lanes whose result is still to be written */
+    uint number[LANE_COUNT];   /* of the pixel sample within the chunk */
+    for (;;) {
+        /* Paths that reached the cap end here, black for what is missing. */
+        const masks cut = paths.alive & mask_of_uint(paths.depth >= splat_uint(max_depth));
+        const masks ended = taken & (not_mask(paths.alive) | cut);
+        if (any_lane(ended)) {
+            real red[LANE_COUNT], green[LANE_COUNT], blue[LANE_COUNT], count[LANE_COUNT], done[LANE_COUNT];
+            store_lanes(paths.radiance.x, red);
+            store_lanes(paths.radiance.y, green);
+            store_lanes(paths.radiance.z, blue);
+            store_lanes(uint_to_reals(paths.depth) + choose(cut, splat(R(0.5)), splat(0)), count);
+            store_lanes(choose(ended, splat(1), splat(0)), done);
+            for (uint lane = 0; lane < LANE_COUNT; ++lane) {
+                if (done[lane] == 0) continue;
+                __global real *sample = samples + (size_t)number[lane] * 4;
+                sample[0] = red[lane];
+                sample[1] = green[lane];
+                sample[2] = blue[lane];
+                sample[3] = count[lane];
+            }
+            taken = taken & not_mask(ended);
+            paths.alive = paths.alive & not_mask(cut);
+        }
+
+        /* Lanes that are free take the next pixel samples, once half of them are. */
+        if (next < end) {
+            real busy[LANE_COUNT];
+            store_lanes(choose(taken, splat(1), splat(0)), busy);
+            uint busy_count = 0;
+            for (uint lane = 0; lane < LANE_COUNT; ++lane) busy_count += busy[lane] != 0;
+            if (busy_count <= LANE_COUNT / 2) {
+                uint pixel[LANE_COUNT], sample[LANE_COUNT];
+                real column[LANE_COUNT], row[LANE_COUNT], fresh_lane[LANE_COUNT];
+                for (uint lane = 0; lane < LANE_COUNT; ++lane) {
+                    const int takes = busy[lane] == 0 && next < end;
+                    fresh_lane[lane] = takes ? 1 : 0;
+                    pixel[lane] = first_pixel + next / samples_per_pixel;
+                    sample[lane] = first_sample + next % samples_per_pixel;
+                    column[lane] = (real)(pixel[lane] % width);
+                    row[lane] = (real)(pixel[lane] / width);
+                    if (takes) number[lane] = next++;
+                }
+                const masks fresh = load_lanes(fresh_lane) != splat(0);
+                const SampleKey key = sample_key(seed_low, seed_high, load_lanes(pixel), load_lanes(sample));
+                Vec3 origin, direction;
+                camera_ray(camera, pixel_center, key, load_lanes(column), load_lanes(row), &origin, &direction);
+                paths.origin.high = choose3(fresh, origin, paths.origin.high);
+                paths.origin.low = choose3(fresh, zero3(), paths.origin.low);
+                paths.origin.slack = choose(fresh, splat(0), paths.origin.slack);
+                paths.direction = choose3(fresh, direction, paths.direction);
+                paths.throughput = choose3(fresh, vec3(splat(1), splat(1), splat(1)), paths.throughput);
+                paths.radiance = choose3(fresh, zero3(), paths.radiance);
+                paths.key.a = choose_uint(fresh, key.a, paths.key.a);
+                paths.key.b = choose_uint(fresh, key.b, paths.key.b);
+                paths.depth = choose_uint(fresh, splat_uint(0), paths.depth);
+                paths.own_slot = choose_uint(fresh, splat_uint(NO_SLOT), paths.own_slot);
+                paths.inward = paths.inward & not_mask(fresh);
+                paths.alive = paths.alive | fresh;
+                taken = taken | fresh;
+                continue; /* a cap of 0 cuts at once */
+            }
+        }
+        if (!any_lane(taken)) return;
+        advance(&scene, &paths);
+    }
+}

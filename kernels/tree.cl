@@ -1,0 +1,235 @@
+/* tree.cl: the one interface to the spheres: intersect_closest and intersect_any, for one ray.
+ *
+ * In:    a ray; packed leaves, and nodes when EFFECT_TREE.
+ * Out:   the hit of least (distance, sphere index), so list and tree, and any order of visits, agree to the bit.
+ * Knows: nodes, leaves, slots.   Does not know: materials, what made the ray.
+ *
+ * Boxes and spheres are tested TREE_WIDTH at a time, conservatively in `real`; what cannot be ruled out is decided
+ * by refine.cl, one sphere at a time. */
+
+typedef struct Geometry {
+    __global const real *boxes;
+    __global const uint *children;
+    __global const real *leaves;
+    __global const uint *slot_sphere;
+    uint first_leaves, leaf_count;
+} Geometry;
+
+#define NO_SLOT 0xffffffffu
+
+typedef struct Ray {
+    real high[3], low[3]; /* origin, an unevaluated sum */
+    real direction[3];    /* |d| = 1 within 4 ROUNDOFF */
+    real slack;           /* bound on the distance of the origin from its true place */
+    uint own_slot;        /* the sphere being left, or NO_SLOT */
+    int inward;           /* it is left into its inside */
+} Ray;
+
+typedef struct Hit {
+    refined t;
+    uint slot;  /* NO_SLOT: nothing was met */
+    int enters; /* from outside to inside */
+    real bound; /* not below t: what prunes */
+} Hit;
+
+/* t rounded up to a real. */
+static real upper_bound(refined t) { return (real)t * (R(1.0) + R(4.0) * ROUNDOFF); }
+
+static void keep_closer(const Geometry *geometry, refined t, uint slot, int enters, Hit *best) {
+    if (t < best->t || (t == best->t && geometry->slot_sphere[slot] < geometry->slot_sphere[best->slot])) {
+        best->t = t;
+        best->slot = slot;
+        best->enters = enters;
+        best->bound = upper_bound(t);
+    }
+}
+
+/* A sphere that the conservative test could not rule out. */
+static void refine_slot(const Geometry *geometry, const Ray *ray, uint slot, Hit *best) {
+    const uint lane = slot % TREE_WIDTH;
+    __global const real *leaf = geometry->leaves + (slot - lane) * 4;
+    const real radius = leaf[3 * TREE_WIDTH + lane];
+    if (slot == ray->own_slot || radius <= 0) return;
+    const Roots_1 roots =
+        sphere_roots_1(ray->high[0], ray->high[1], ray->high[2], ray->low[0], ray->low[1], ray->low[2],
+                       ray->direction[0], ray->direction[1], ray->direction[2], leaf[lane], leaf[TREE_WIDTH + lane],
+                       leaf[2 * TREE_WIDTH + lane], radius);
+    refined t;
+    int enters;
+    if (choose_root_1(roots, radius, ray->slack, &t, &enters)) keep_closer(geometry, t, slot, enters, best);
+}
+
+/* Rules out, TREE_WIDTH at a time, the spheres that the ray surely misses or meets surely later than best->bound;
+ * refines the rest.
+ *
+ * The margin. With u = ROUNDOFF and |d|^2 = 1 + 8u at most: oc errs by u |oc| and by the origin's low part
+ * (ray_margin >= |low|); p by 3u |oc| from its sum and 8u |oc| from d's length; l = oc - p d by these and u |l|. In
+ * all below 14 u |oc| + |low|, and |oc| <= |p| + |l|, |l| <= r where it matters: margin = 32 u (|p| + r) +
+ * ray_margin covers it twice. The sphere is met before `bound` only if sqrt(r^2 - l^2) >= max(-p, p - bound). */
+static void test_leaf(const Geometry *geometry, const Ray *ray, real ray_margin, uint leaf_number, Hit *best) {
+    __global const real *leaf = geometry->leaves + leaf_number * (4 * TREE_WIDTH);
+    const wide ocx = load_wide(0, leaf) - ray->high[0];
+    const wide ocy = load_wide(1, leaf) - ray->high[1];
+    const wide ocz = load_wide(2, leaf) - ray->high[2];
+    const wide radius = load_wide(3, leaf);
+    const wide dx = (wide)ray->direction[0], dy = (wide)ray->direction[1], dz = (wide)ray->direction[2];
+    const wide p = fma(ocx, dx, fma(ocy, dy, ocz * dz));
+    const wide lx = fma(-p, dx, ocx), ly = fma(-p, dy, ocy), lz = fma(-p, dz, ocz);
+    const wide margin = fma((wide)(R(32.0) * ROUNDOFF), fabs(p) + radius, (wide)ray_margin);
+    const wide reach = radius + margin;
+    const wide room = fma(reach, reach, -fma(lx, lx, fma(ly, ly, lz * lz)));
+    const wide behind = -p, beyond = p - best->bound;
+    wide outside = (behind > beyond ? behind : beyond) - margin;
+    outside = outside > (wide)0 ? outside : (wide)0;
+    lane_bytes candidates = to_lane_bytes(room >= outside * outside);
+    while (candidates != 0) {
+        const uint lane = lowest_lane(candidates);
+        candidates = without_lane(candidates, lane);
+        refine_slot(geometry, ray, leaf_number * TREE_WIDTH + lane, best);
+    }
+}
+
+#if EFFECT_TREE
+/* What a box test needs of a ray, once a ray. A box plane at x is met at fma(x, inverse, offset). Each origin is
+ * moved outward by more than the rounding of the product, of the low part left out, and of 1/d (the boxes are
+ * padded for the rounding of their own planes), so that no box that the ray meets is missed. A direction
+ * component of 0 counts as 1e-24: no NaN, and a deviation far below every margin. */
+typedef struct BoxRay {
+    real inverse[3], near_offset[3], far_offset[3];
+    uint near_plane[3], far_plane[3]; /* which of the six rows of a node holds the plane that is met first */
+} BoxRay;
+
+static BoxRay box_ray(const Ray *ray) {
+    BoxRay box;
+    for (uint axis = 0; axis < 3; ++axis) {
+        const real d = ray->direction[axis];
+        const real safe = fabs(d) < R(1e-24) ? copysign(R(1e-24), d) : d;
+        const real inverse = R(1.0) / safe;
+        const real shift = fabs(ray->high[axis]) * (R(4.0) * ROUNDOFF);
+        const real first = inverse < 0 ? ray->high[axis] - shift : ray->high[axis] + shift;
+        const real second = inverse < 0 ? ray->high[axis] + shift : ray->high[axis] - shift;
+        box.inverse[axis] = inverse;
+        box.near_offset[axis] = -first * inverse;
+        box.far_offset[axis] = -second * inverse;
+        box.near_plane[axis] = inverse < 0 ? axis + 3 : axis;
+        box.far_plane[axis] = inverse < 0 ? axis : axis + 3;
+    }
+    return box;
+}
+
+/* The children of `node` that the ray meets before `bound`: their lanes, and where it enters them. */
+static lane_bytes test_node(const Geometry *geometry, const BoxRay *box, uint node, real bound, wide *entry) {
+    __global const real *planes = geometry->boxes + node * (6 * TREE_WIDTH);
+    wide near = (wide)0, far = (wide)bound;
+    for (uint axis = 0; axis < 3; ++axis) {
+        const wide inverse = (wide)box->inverse[axis];
+        const wide enter = fma(load_wide(box->near_plane[axis], planes), inverse, (wide)box->near_offset[axis]);
+        const wide leave = fma(load_wide(box->far_plane[axis], planes), inverse, (wide)box->far_offset[axis]);
+        near = enter > near ? enter : near;
+        far = leave < far ? leave : far;
+    }
+    *entry = near;
+    /* 4u for the rounding of 1/d, which scales both sides alike */
+    return to_lane_bytes(near <= far * (R(1.0) + R(8.0) * ROUNDOFF));
+}
+
+#define STACK_SIZE (TREE_DEPTH_MAX * (TREE_WIDTH - 1) + 1)
+
+static void search_tree(const Geometry *geometry, const Ray *ray, real ray_margin, int any, Hit *best) {
+    const BoxRay box = box_ray(ray);
+    uint stack_child[STACK_SIZE];
+    real stack_entry[STACK_SIZE];
+    real entries[TREE_WIDTH];
+    uint top = 0;
+    uint node = 0;
+    for (;;) {
+        wide entry;
+        lane_bytes met = test_node(geometry, &box, node, best->bound, &entry);
+        JOIN(vstore, TREE_WIDTH)(entry, 0, entries);
+        const uint base = top;
+        while (met != 0) {
+            const uint lane = lowest_lane(met);
+            met = without_lane(met, lane);
+            const real lane_entry = entries[lane];
+            uint place = top;
+            while (place > base && stack_entry[place - 1] < lane_entry) {
+                stack_entry[place] = stack_entry[place - 1];
+                stack_child[place] = stack_child[place - 1];
+                --place;
+            }
+            stack_entry[place] = lane_entry;
+            stack_child[place] = geometry->children[node * TREE_WIDTH + lane];
+            ++top;
+        }
+        /* The nearest child is on top. Leaves are tested at once; the next node goes round. */
+        for (;;) {
+            if (top == 0) return;
+            --top;
+            if (stack_entry[top] > best->bound) continue;
+            const uint child = stack_child[top];
+            if ((child & CHILD_LEAF) == 0) {
+                node = child;
+                break;
+            }
+            test_leaf(geometry, ray, ray_margin, child & ~CHILD_LEAF, best);
+            if (any && best->slot != NO_SLOT) return;
+        }
+    }
+}
+#endif
+
+/* `best` brings a bound (and perhaps a hit) along; leaves before `from_leaf` have been tested already. */
+static void search_spheres(const Geometry *geometry, const Ray *ray, uint from_leaf, int any, Hit *best) {
+    const real ray_margin =
+        R(4.0) * ROUNDOFF * (fabs(ray->high[0]) + fabs(ray->high[1]) + fabs(ray->high[2])) + ray->slack;
+#if EFFECT_TREE
+    for (uint leaf = from_leaf; leaf < geometry->first_leaves; ++leaf)
+        test_leaf(geometry, ray, ray_margin, leaf, best);
+    search_tree(geometry, ray, ray_margin, any, best);
+#else
+    for (uint leaf = from_leaf; leaf < geometry->leaf_count; ++leaf) test_leaf(geometry, ray, ray_margin, leaf, best);
+#endif
+}
+
+/* Nothing met yet, within `limit`. */
+static Hit no_hit(refined limit) {
+    Hit hit;
+    hit.t = limit;
+    hit.slot = NO_SLOT;
+    hit.enters = 0;
+    hit.bound = upper_bound(limit);
+    return hit;
+}
+
+/* The sphere being left, met again from inside. */
+static void meet_own_sphere(const Geometry *geometry, const Ray *ray, Hit *best) {
+    if (ray->own_slot == NO_SLOT || !ray->inward) return;
+    const uint lane = ray->own_slot % TREE_WIDTH;
+    __global const real *leaf = geometry->leaves + (ray->own_slot - lane) * 4;
+    const Roots_1 roots =
+        sphere_roots_1(ray->high[0], ray->high[1], ray->high[2], ray->low[0], ray->low[1], ray->low[2],
+                       ray->direction[0], ray->direction[1], ray->direction[2], leaf[lane], leaf[TREE_WIDTH + lane],
+                       leaf[2 * TREE_WIDTH + lane], leaf[3 * TREE_WIDTH + lane]);
+    best->t = chord_1(roots);
+    best->slot = ray->own_slot;
+    best->enters = 0;
+    best->bound = upper_bound(best->t);
+}
+
+/* The closest hit: least (t, sphere index). */
+static Hit intersect_closest(const Geometry *geometry, const Ray *ray) {
+    Hit best = no_hit(REAL_LARGE);
+    meet_own_sphere(geometry, ray, &best);
+    search_spheres(geometry, ray, 0, 0, &best);
+    return best;
+}
+
+/* Whether anything lies within distance `limit`; which one is left open. */
+static int intersect_any(const Geometry *geometry, const Ray *ray, refined limit) {
+    Hit best = no_hit(limit);
+    Hit own = best;
+    meet_own_sphere(geometry, ray, &own);
+    if (own.slot != NO_SLOT && own.t < limit) return 1;
+    search_spheres(geometry, ray, 0, 1, &best);
+    return best.slot != NO_SLOT;
+}

@@ -1,0 +1,29 @@
+/* vector.cl: points, directions and colours in lane code, structure of arrays. */
+typedef struct Vec3 {
+    reals x, y, z;
+} Vec3;
+
+static Vec3 vec3(reals x, reals y, reals z) {
+    Vec3 v;
+    v.x = x;
+    v.y = y;
+    v.z = z;
+    return v;
+}
+static Vec3 splat3(__global const real *v) { return vec3(splat(v[0]), splat(v[1]), splat(v[2])); }
+static Vec3 zero3(void) { return vec3(splat(0), splat(0), splat(0)); }
+static Vec3 add3(Vec3 a, Vec3 b) { return vec3(a.x + b.x, a.y + b.y, a.z + b.z); }
+static Vec3 subtract3(Vec3 a, Vec3 b) { return vec3(a.x - b.x, a.y - b.y, a.z - b.z); }
+static Vec3 multiply3(Vec3 a, Vec3 b) { return vec3(a.x * b.x, a.y * b.y, a.z * b.z); }
+static Vec3 scale3(reals s, Vec3 a) { return vec3(s * a.x, s * a.y, s * a.z); }
+/* s * a + b */
+static Vec3 madd3(reals s, Vec3 a, Vec3 b) { return vec3(fma(s, a.x, b.x), fma(s, a.y, b.y), fma(s, a.z, b.z)); }
+static reals dot3(Vec3 a, Vec3 b) { return fma(a.x, b.x, fma(a.y, b.y, a.z * b.z)); }
+static Vec3 choose3(masks mask, Vec3 a, Vec3 b) {
+    return vec3(choose(mask, a.x, b.x), choose(mask, a.y, b.y), choose(mask, a.z, b.z));
+}
+/* Of unit length to within 4 ROUNDOFF. `a` must not be zero. */
+static Vec3 normalise3(Vec3 a) { return scale3(splat(1) / sqrt(dot3(a, a)), a); }
+/* Ternaries rather than fmax: a NaN in `a` passes through and is found, and it is faster. */
+static reals at_least(reals a, reals floor_value) { return choose(a < floor_value, floor_value, a); }
+static reals at_most(reals a, reals ceiling) { return choose(a > ceiling, ceiling, a); }
