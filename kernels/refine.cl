@@ -13,6 +13,8 @@
 typedef struct LANED(Roots) {
     refineds near, far;
     refineds middle; /* p: negative when the sphere's centre lies behind */
+    refineds half;   /* s */
+    refineds across_x, across_y, across_z; /* l */
     masks meets;     /* the line meets the sphere; else the rest means nothing */
 } LANED(Roots);
 
@@ -37,6 +39,10 @@ static LANED(Roots) LANED(sphere_roots)(reals high_x, reals high_y, reals high_z
     roots.near = p - s;
     roots.far = p + s;
     roots.middle = p;
+    roots.half = s;
+    roots.across_x = lx;
+    roots.across_y = ly;
+    roots.across_z = lz;
     return roots;
 }
 #else
@@ -85,6 +91,10 @@ static LANED(Roots) LANED(sphere_roots)(reals high_x, reals high_y, reals high_z
     roots.near = choose(ahead, inner, outer);
     roots.far = choose(ahead, outer, inner);
     roots.middle = p;
+    roots.half = s;
+    roots.across_x = lx;
+    roots.across_y = ly;
+    roots.across_z = lz;
     return roots;
 }
 #endif

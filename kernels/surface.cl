@@ -10,8 +10,8 @@ typedef struct Point {
 } Point;
 
 #if REFINE_IS_DOUBLE
-static void surface_point(const Point *origin, Vec3 direction, refineds t, Vec3 centre, reals radius, Point *point,
-                          Vec3 *normal) {
+static void surface_point(const Point *origin, Vec3 direction, refineds t, masks enters, Vec3 centre, reals radius,
+                          Point *point, Vec3 *normal) {
     const refineds x = fma(t, to_refined(direction.x), to_refined(origin->high.x) + to_refined(origin->low.x));
     const refineds y = fma(t, to_refined(direction.y), to_refined(origin->high.y) + to_refined(origin->low.y));
     const refineds z = fma(t, to_refined(direction.z), to_refined(origin->high.z) + to_refined(origin->low.z));
@@ -34,18 +34,18 @@ static void multiply_add_exactly(reals a, reals b, reals c, reals *high, reals *
     *low = fma(a, b, -product) + LANED(sum_error)(product, c, *high);
 }
 
-/* Close by, the point is origin + t d: t errs by 2u t. Far away against its radius, it is centre + r n: n errs by
- * 2u. The smaller error is taken. */
-static void surface_point(const Point *origin, Vec3 direction, refineds t, Vec3 centre, reals radius, Point *point,
-                          Vec3 *normal) {
-    /* From the origin to the centre, its part across the ray and the rest along it: refine.cl. */
-    const reals ocx = centre.x - origin->high.x, ocy = centre.y - origin->high.y, ocz = centre.z - origin->high.z;
-    const reals ex = LANED(sum_error)(centre.x, -origin->high.x, ocx) - origin->low.x;
-    const reals ey = LANED(sum_error)(centre.y, -origin->high.y, ocy) - origin->low.y;
-    const reals ez = LANED(sum_error)(centre.z, -origin->high.z, ocz) - origin->low.z;
-    /* point - centre = t d - oc, the large parts first: they cancel exactly or nearly so. */
-    Vec3 local = vec3(fma(t, direction.x, -ocx) - ex, fma(t, direction.y, -ocy) - ey, fma(t, direction.z, -ocz) - ez);
-    *normal = normalise3(local);
+/* Relative to the centre the point is l across the ray and s along it, whichever way t was rounded. In space: close
+ * by it is origin + t d, where t errs by 2u t; far away against its radius, centre + r n, where n errs by 2u. The
+ * smaller error is taken. */
+static void surface_point(const Point *origin, Vec3 direction, refineds t, masks enters, Vec3 centre, reals radius,
+                          Point *point, Vec3 *normal) {
+    const LANED(Roots) roots = LANED(sphere_roots)(origin->high.x, origin->high.y, origin->high.z, origin->low.x,
+                                                   origin->low.y, origin->low.z, direction.x, direction.y,
+                                                   direction.z, centre.x, centre.y, centre.z, radius);
+    const Vec3 across = vec3(roots.across_x, roots.across_y, roots.across_z);
+    const Vec3 local = subtract3(scale3(choose(enters, -roots.half, roots.half), direction), across);
+    const masks degenerate = not_mask(dot3(local, local) > splat(0));
+    *normal = normalise3(choose3(degenerate, direction, local));
     Vec3 near_high, near_low, far_high, far_low;
     multiply_add_exactly(t, direction.x, origin->high.x, &near_high.x, &near_low.x);
     multiply_add_exactly(t, direction.y, origin->high.y, &near_high.y, &near_low.y);

@@ -154,7 +154,7 @@ static void advance(const Scene *scene, Paths *paths) {
     reals radius;
     Point point;
     look_up(scene, &meeting, &centre, &radius, &surface, &emitted);
-    surface_point(&paths->origin, paths->direction, meeting.t, centre, radius, &point, &outward);
+    surface_point(&paths->origin, paths->direction, meeting.t, meeting.enters, centre, radius, &point, &outward);
     surface.incoming = paths->direction;
     surface.enters = meeting.enters;
     surface.normal = choose3(meeting.enters, outward, scale3(splat(-1), outward));

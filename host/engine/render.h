@@ -44,13 +44,15 @@ typedef struct BpSampleBlock {
     uint32_t first_pixel, pixel_count;
     uint64_t first_sample; /* absolute */
     uint32_t samples;      /* a pixel */
-    /* (pixel * samples + sample) * 4: r, g, b, and the number of ray segments, negative for a path that the
+    /* (pixel * samples + sample) * 4: r, g, b, and the number of ray segments, plus 1/2 for a path that the
      * depth cap cut. Single precision whatever the kernel's. */
-    const float *values;
+    float *values;
 } BpSampleBlock;
 
 /* Runs one chunk and hands out its raw samples (they are folded into the accumulator as well): for tests and
- * `check`. *finished as in BpProgress; block->pixel_count is 0 when there was nothing left to do. */
+ * `check`. One device only. *finished: there was nothing left to do, and the block is empty. The caller clears the
+ * block with bp_sample_block_clear(). */
 BpStatus bp_render_step_samples(BpRender *render, BpSampleBlock *block, bool *finished, BpError *err);
+void bp_sample_block_clear(BpSampleBlock *block);
 
 #endif

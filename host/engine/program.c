@@ -1,0 +1,149 @@
+/* program.c: see program.h. */
+#include "program.h"
+
+#include "../base/clock.h"
+#include "effects.h"
+
+#include <stdarg.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+/* Generated from kernels/ (cmake/embed_kernels.cmake); NULL for an unknown name. */
+const char *bp_kernel_file(const char *name);
+
+/* The order in which the files stand in a program. A lane file says for how many lanes what follows is meant;
+ * refine.cl serves single rays in tree.cl and, below lanes_wide.cl, all lanes together. */
+static const char *const sample_files[] = {"scene_types.h", "real.cl",     "lanes_scalar.cl", "refine.cl",
+                                           "tree.cl",       "vector.cl",   "rng.cl",          "sampling.cl",
+                                           "surface.cl",    "sky.cl",      "camera.cl",       "material.cl",
+                                           "trace.cl",      "fold.cl",     "probe.cl",        NULL};
+static const char *const packet_files[] = {"scene_types.h",  "real.cl",   "lanes_scalar.cl", "refine.cl",   "tree.cl",
+                                           "lanes_wide.cl",  "refine.cl", "vector.cl",       "rng.cl",      "sampling.cl",
+                                           "surface.cl",     "sky.cl",    "camera.cl",       "material.cl", "trace.cl",
+                                           "fold.cl",        "probe.cl",  NULL};
+
+/* A text that grows. `failed` remembers an allocation that did not succeed. */
+typedef struct Text {
+    char *bytes;
+    size_t length, capacity;
+    bool failed;
+} Text;
+
+static void text_append(Text *text, const char *bytes, size_t length) {
+    if (text->failed) return;
+    if (text->length + length + 1 > text->capacity) {
+        const size_t capacity = 2 * (text->length + length + 1);
+        char *grown = realloc(text->bytes, capacity);
+        if (grown == NULL) {
+            text->failed = true;
+            return;
+        }
+        text->bytes = grown;
+        text->capacity = capacity;
+    }
+    memcpy(text->bytes + text->length, bytes, length);
+    text->length += length;
+    text->bytes[text->length] = '\0';
+}
+
+static void text_print(Text *text, const char *format, ...) BP_PRINTF_LIKE(2, 3);
+static void text_print(Text *text, const char *format, ...) {
+    char line[256];
+    va_list arguments;
+    va_start(arguments, format);
+    const int length = vsnprintf(line, sizeof line, format, arguments);
+    va_end(arguments);
+    text_append(text, line, (size_t)length);
+}
+
+/* Appends a whole file of the folder `directory`. */
+static BpStatus append_from_folder(Text *text, const char *directory, const char *name, BpError *err) {
+    char path[1024];
+    snprintf(path, sizeof path, "%s/%s", directory, name);
+    FILE *file = fopen(path, "rb");
+    if (file == NULL)
+        return bp_fail(err, BP_ERR_FILE, "%s: cannot be read; BALLPARK_KERNELS must name a folder with all kernel files",
+                       path);
+    char block[4096];
+    size_t count;
+    while ((count = fread(block, 1, sizeof block, file)) > 0) text_append(text, block, count);
+    fclose(file);
+    return BP_OK;
+}
+
+BpStatus bp_program_source(const BpProgramOptions *options, const char *extra_name, const char *extra_text,
+                           char **source, BpError *err) {
+    Text text = {0};
+    const bool all_double = options->precision == BP_PRECISION_DOUBLE;
+    text_print(&text, "#define REAL_IS_DOUBLE %d\n", all_double);
+    text_print(&text, "#define REFINE_IS_DOUBLE %d\n", all_double || options->double_refine);
+    text_print(&text, "#define TREE_WIDTH %u\n", options->tree_width);
+    text_print(&text, "#define NUMERICS_ROBUST %d\n", options->numerics == BP_NUMERICS_ROBUST);
+    text_print(&text, "#define SAMPLER_SOBOL %d\n", options->sampler == BP_SAMPLER_SOBOL);
+    for (int e = 0; e < BP_EFFECT_COUNT; ++e)
+        text_print(&text, "#define EFFECT_%s %d\n", bp_effect_identifier((BpEffect)e),
+                   bp_effects_has(options->effects, (BpEffect)e));
+    const char *directory = getenv("BALLPARK_KERNELS");
+    const char *const *files = options->form == BP_KERNEL_PACKET ? packet_files : sample_files;
+    for (size_t i = 0; files[i] != NULL; ++i) {
+        text_print(&text, "#line 1 \"%s\"\n", files[i]);
+        if (directory != NULL && directory[0] != '\0') {
+            const BpStatus status = append_from_folder(&text, directory, files[i], err);
+            if (status != BP_OK) {
+                free(text.bytes);
+                return status;
+            }
+        } else {
+            const char *embedded = bp_kernel_file(files[i]);
+            text_append(&text, embedded, strlen(embedded));
+        }
+    }
+    if (extra_text != NULL) {
+        text_print(&text, "#line 1 \"%s\"\n", extra_name != NULL ? extra_name : "extra.cl");
+        text_append(&text, extra_text, strlen(extra_text));
+    }
+    if (text.failed) {
+        free(text.bytes);
+        return bp_fail(err, BP_ERR_MEMORY, "no memory for the kernel's source");
+    }
+    *source = text.bytes;
+    return BP_OK;
+}
+
+/* FNV-1a, 64 bit. */
+static uint64_t hash_text(uint64_t hash, const char *text) {
+    for (; *text != '\0'; ++text) hash = (hash ^ (unsigned char)*text) * 1099511628211u;
+    return hash;
+}
+
+BpStatus bp_program_build(BpDevice *device, const BpProgramOptions *options, const char *extra_name,
+                          const char *extra_text, BpProgram **program, BpError *err) {
+    char *source = NULL;
+    BpProgram *built = calloc(1, sizeof *built);
+    if (built == NULL) return bp_fail(err, BP_ERR_MEMORY, "no memory for a program");
+    const char *flags = options->math == BP_MATH_FAST ? "-cl-fast-relaxed-math" : "";
+    BpStatus status = bp_program_source(options, extra_name, extra_text, &source, err);
+    if (status != BP_OK) goto failed;
+    built->key = hash_text(hash_text(14695981039346656037u, source), flags);
+    const double start = bp_clock_seconds();
+    status = bp_device_build(device, source, flags, &built->program, &built->log, err);
+    built->build_seconds = bp_clock_seconds() - start;
+    if (status != BP_OK) goto failed;
+    free(source);
+    *program = built;
+    return BP_OK;
+
+failed:
+    free(source);
+    bp_program_destroy(&built);
+    return status;
+}
+
+void bp_program_destroy(BpProgram **program) {
+    if (program == NULL || *program == NULL) return;
+    if ((*program)->program != NULL) clReleaseProgram((*program)->program);
+    free((*program)->log);
+    free(*program);
+    *program = NULL;
+}

@@ -1,0 +1,327 @@
+/* render.c: see render.h and the rendering part of ballpark.h. */
+#include "render.h"
+
+#include "../base/clock.h"
+#include "../base/status.h"
+#include "worker.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+#define CHUNK_SECONDS 0.1 /* of one dispatch: short of every watchdog, long against its overhead */
+#define STEP_SECONDS 0.15 /* a step starts no chunk after this */
+
+struct BpRender {
+    const BpScene *scene;
+    BpRenderOptions options;
+    BpEffects effects;
+    BpWorker **workers;
+    size_t worker_count;
+    BpSchedule schedule;
+    BpAccumulator *accumulator; /* as last read; NULL before that */
+    BpChunk last_chunk;
+    double tree_seconds, pack_seconds, trace_seconds;
+    uint64_t samples_total, samples_before; /* before: those of ranges already extended past */
+};
+
+void bp_render_defaults(const BpScene *scene, BpRenderOptions *options) {
+    memset(options, 0, sizeof *options);
+    options->samples_per_pixel = scene->camera.samples_per_pixel;
+    options->max_depth = scene->camera.max_depth;
+}
+
+static BpStatus check_options(const BpScene *scene, const BpRenderOptions *options, BpError *err) {
+    if (options->samples_per_pixel < 1 || options->first_sample > UINT32_MAX ||
+        options->samples_per_pixel > (uint64_t)UINT32_MAX + 1 - options->first_sample)
+        return bp_fail(err, BP_ERR_USAGE, "samples %llu to %llu of a pixel: sample numbers go from 0 to 4294967295",
+                       (unsigned long long)options->first_sample,
+                       (unsigned long long)(options->first_sample + options->samples_per_pixel - 1));
+    if (options->max_depth > BP_DEPTH_MAX)
+        return bp_fail(err, BP_ERR_USAGE, "depth %u: at most %u", options->max_depth, BP_DEPTH_MAX);
+    if (options->replicates == 1 || options->replicates > BP_REPLICATES_MAX)
+        return bp_fail(err, BP_ERR_USAGE, "%u replicates: an error bar needs 2 to %u", options->replicates,
+                       BP_REPLICATES_MAX);
+    const uint64_t pixels = (uint64_t)scene->camera.width * scene->camera.height;
+    if (pixels > UINT32_MAX / 4)
+        return bp_fail(err, BP_ERR_LIMIT, "a picture of %u x %u has %llu pixels; at most %u", scene->camera.width,
+                       scene->camera.height, (unsigned long long)pixels, UINT32_MAX / 4);
+    if (options->tree_width != 0 && options->tree_width != 2 && options->tree_width != 4 && options->tree_width != 8)
+        return bp_fail(err, BP_ERR_USAGE, "tree width %u: 2, 4 or 8", options->tree_width);
+    if (options->sampler != BP_SAMPLER_INDEPENDENT)
+        return bp_fail(err, BP_ERR_USAGE, "the kernel knows the independent sampler only");
+    return BP_OK;
+}
+
+/* How the kernel is arranged for a device. CPUs spread explicit vectors over their lanes, so they get eight lanes and
+ * eight-wide nodes, and double costs them little. GPUs spread work-items, and many have next to no double: one lane,
+ * narrower nodes, error-free float transforms. */
+static void choose_arrangement(const BpDeviceInfo *device, const BpRenderOptions *options, BpProgramOptions *program) {
+    const bool cpu = device->type == BP_DEVICE_CPU;
+    program->form = options->kernel != BP_KERNEL_AUTO ? options->kernel : cpu ? BP_KERNEL_PACKET : BP_KERNEL_SAMPLE;
+    program->tree_width = options->tree_width != 0 ? options->tree_width : cpu ? 8 : 4;
+    program->double_refine = cpu && device->has_double && !options->force_float_refine;
+}
+
+static BpStatus open_worker(BpRender *render, const BpDeviceInfo *device, size_t index, BpError *err) {
+    const BpScene *scene = render->scene;
+    const BpRenderOptions *options = &render->options;
+    if (options->precision == BP_PRECISION_DOUBLE && !device->has_double)
+        return bp_fail(err, BP_ERR_DEVICE, "%s has no double precision; leave --precision double out, or use another --device",
+                       device->name);
+    BpWorkerSetup setup = {
+        .program = {.effects = options->all_effects ? BP_EFFECTS_ALL : render->effects.bits,
+                    .precision = options->precision,
+                    .math = options->math,
+                    .numerics = options->numerics,
+                    .sampler = options->sampler},
+        .width = scene->camera.width,
+        .height = scene->camera.height,
+        .replicates = options->replicates,
+        .scale_log2 = bp_accumulator_scale(scene),
+        .max_depth = options->max_depth,
+        .seed = options->seed,
+        .pixel_center = scene->camera.pixel_sampling == BP_PIXEL_CENTER,
+        .local_size = options->local_size,
+    };
+    choose_arrangement(device, options, &setup.program);
+    if (options->force_tree) setup.program.effects |= 1u << BP_EFFECT_TREE;
+    if (options->force_list) setup.program.effects &= ~(1u << BP_EFFECT_TREE);
+    const BpTreeOptions tree_options = {
+        .width = setup.program.tree_width,
+        .single_precision = options->precision == BP_PRECISION_SINGLE,
+        .list = !bp_effects_has(setup.program.effects, BP_EFFECT_TREE),
+    };
+    BpPacked packed;
+    const double start = bp_clock_seconds();
+    BP_TRY(bp_scene_pack(scene, &tree_options, &packed, err));
+    render->tree_seconds += packed.tree.build_seconds;
+    render->pack_seconds += bp_clock_seconds() - start - packed.tree.build_seconds;
+    const BpStatus status = bp_worker_create(device, &packed, &setup, &render->workers[index], err);
+    bp_packed_clear(&packed);
+    return status;
+}
+
+BpStatus bp_render_create(const BpScene *scene, const BpRenderOptions *options, const BpDeviceInfo *devices,
+                          size_t device_count, BpRender **render, BpError *err) {
+    BpRenderOptions defaults;
+    bp_render_defaults(scene, &defaults);
+    if (options == NULL) options = &defaults;
+    BP_TRY(check_options(scene, options, err));
+    BpDeviceInfo chosen;
+    if (device_count == 0) {
+        BP_TRY(bp_device_find(NULL, &chosen, err));
+        devices = &chosen;
+        device_count = 1;
+    }
+    BpStatus status = BP_OK;
+    BpRender *made = calloc(1, sizeof *made);
+    if (made != NULL) made->workers = calloc(device_count, sizeof(BpWorker *));
+    if (made == NULL || made->workers == NULL) {
+        status = bp_fail(err, BP_ERR_MEMORY, "no memory for a render");
+        goto failed;
+    }
+    made->scene = scene;
+    made->options = *options;
+    if (made->options.replicates == 0) made->options.replicates = BP_REPLICATES_DEFAULT;
+    made->worker_count = device_count;
+    bp_effects_analyse(scene, &made->effects);
+    for (size_t i = 0; i < device_count; ++i) BP_TRY_GOTO(status, open_worker(made, &devices[i], i, err), failed);
+    const uint32_t pixels = scene->camera.width * scene->camera.height;
+    bp_schedule_init(&made->schedule, pixels, options->first_sample, options->samples_per_pixel);
+    made->samples_total = (uint64_t)pixels * options->samples_per_pixel;
+    *render = made;
+    return BP_OK;
+
+failed:
+    bp_render_destroy(&made);
+    return status;
+}
+
+void bp_render_destroy(BpRender **render) {
+    if (render == NULL || *render == NULL) return;
+    for (size_t i = 0; (*render)->workers != NULL && i < (*render)->worker_count; ++i)
+        bp_worker_destroy(&(*render)->workers[i]);
+    free((*render)->workers);
+    bp_accumulator_destroy(&(*render)->accumulator);
+    free(*render);
+    *render = NULL;
+}
+
+/* The worker that will be free first: none of its chunks under way, or the fewest. */
+static BpWorker *least_busy(const BpRender *render) {
+    BpWorker *best = render->workers[0];
+    for (size_t i = 1; i < render->worker_count; ++i)
+        if (render->workers[i]->flight_count < best->flight_count) best = render->workers[i];
+    return best;
+}
+
+static uint64_t samples_done(const BpRender *render) {
+    uint64_t done = 0;
+    for (size_t i = 0; i < render->worker_count; ++i) done += render->workers[i]->samples_done;
+    return done;
+}
+
+static bool in_flight(const BpRender *render) {
+    for (size_t i = 0; i < render->worker_count; ++i)
+        if (render->workers[i]->flight_count > 0) return true;
+    return false;
+}
+
+/* Starts one chunk; *started is false when all has been handed out. */
+static BpStatus start_chunk(BpRender *render, bool *started, BpError *err) {
+    BpWorker *worker = least_busy(render);
+    if (worker->flight_count == BP_WORKER_FLIGHT) BP_TRY(bp_worker_wait(worker, err));
+    const uint32_t wanted = render->options.chunk_samples != 0 ? render->options.chunk_samples
+                                                               : bp_worker_chunk_samples(worker, CHUNK_SECONDS);
+    *started = bp_schedule_take(&render->schedule, wanted, &render->last_chunk);
+    return *started ? bp_worker_start(worker, &render->last_chunk, err) : BP_OK;
+}
+
+static void report_progress(const BpRender *render, bool finished, BpProgress *progress) {
+    if (progress == NULL) return;
+    progress->samples_done = samples_done(render);
+    progress->samples_total = render->samples_total;
+    progress->segments = render->accumulator != NULL ? render->accumulator->segments : 0;
+    progress->trace_seconds = render->trace_seconds;
+    progress->finished = finished;
+}
+
+BpStatus bp_render_step(BpRender *render, BpProgress *progress, BpError *err) {
+    const double start = bp_clock_seconds();
+    bp_accumulator_destroy(&render->accumulator);
+    bool more = true;
+    do {
+        BP_TRY(start_chunk(render, &more, err));
+    } while (more && bp_clock_seconds() - start < STEP_SECONDS);
+    if (!more)
+        for (size_t i = 0; i < render->worker_count; ++i)
+            while (render->workers[i]->flight_count > 0) BP_TRY(bp_worker_wait(render->workers[i], err));
+    render->trace_seconds += bp_clock_seconds() - start;
+    report_progress(render, !more && !in_flight(render), progress);
+    return BP_OK;
+}
+
+BpStatus bp_render_step_samples(BpRender *render, BpSampleBlock *block, bool *finished, BpError *err) {
+    bp_accumulator_destroy(&render->accumulator);
+    memset(block, 0, sizeof *block);
+    bool started = false;
+    BP_TRY(start_chunk(render, &started, err));
+    *finished = !started;
+    if (!started) return BP_OK;
+    const BpChunk *chunk = &render->last_chunk;
+    const uint32_t count = chunk->pixel_count * chunk->samples;
+    float *values = malloc((size_t)count * 4 * sizeof *values);
+    if (values == NULL) return bp_fail(err, BP_ERR_MEMORY, "no memory for %u samples", count);
+    const BpStatus status = bp_worker_samples(render->workers[0], count, values, err);
+    if (status != BP_OK) {
+        free(values);
+        return status;
+    }
+    *block = (BpSampleBlock){.first_pixel = chunk->first_pixel,
+                             .pixel_count = chunk->pixel_count,
+                             .first_sample = chunk->first_sample,
+                             .samples = chunk->samples,
+                             .values = values};
+    return BP_OK;
+}
+
+void bp_sample_block_clear(BpSampleBlock *block) {
+    free(block->values);
+    memset(block, 0, sizeof *block);
+}
+
+BpStatus bp_render_extend(BpRender *render, uint64_t samples_per_pixel, BpError *err) {
+    BpRenderOptions wanted = render->options;
+    wanted.samples_per_pixel = samples_per_pixel;
+    BP_TRY(check_options(render->scene, &wanted, err));
+    if (samples_per_pixel < render->options.samples_per_pixel)
+        return bp_fail(err, BP_ERR_USAGE, "a render of %llu samples cannot be extended to %llu",
+                       (unsigned long long)render->options.samples_per_pixel, (unsigned long long)samples_per_pixel);
+    render->options = wanted;
+    render->schedule.samples = samples_per_pixel;
+    render->samples_total = (uint64_t)render->schedule.pixels * samples_per_pixel;
+    return BP_OK;
+}
+
+uint64_t bp_render_samples_done(const BpRender *render) { return render->schedule.done; }
+
+static BpStatus describe(const BpRender *render, BpAccumulator *accumulator, BpError *err) {
+    const BpRenderOptions *options = &render->options;
+    accumulator->scale_log2 = bp_accumulator_scale(render->scene);
+    accumulator->scene_hash = bp_scene_hash(render->scene);
+    accumulator->seed = options->seed;
+    accumulator->max_depth = options->max_depth;
+    accumulator->sampler = options->sampler;
+    accumulator->precision = options->precision;
+    accumulator->math = options->math;
+    accumulator->numerics = options->numerics;
+    accumulator->transfer = render->scene->transfer;
+    if (render->scene->title != NULL) accumulator->title = strdup(render->scene->title);
+    accumulator->ranges = malloc(sizeof *accumulator->ranges);
+    if (accumulator->ranges == NULL) return bp_fail(err, BP_ERR_MEMORY, "no memory for an accumulator");
+    /* A pass in progress counts as begun: its samples are taken, though not yet by every pixel. */
+    const uint64_t begun = render->schedule.done + render->schedule.pass_samples;
+    accumulator->ranges[0].first = options->first_sample;
+    accumulator->ranges[0].count = begun;
+    accumulator->range_count = 1;
+    accumulator->partial = render->schedule.pass_samples > 0;
+    return BP_OK;
+}
+
+BpStatus bp_render_accumulator(BpRender *render, const BpAccumulator **accumulator, BpError *err) {
+    if (render->accumulator == NULL) {
+        BpAccumulator *read = NULL;
+        BpStatus status = bp_accumulator_create(render->scene->camera.width, render->scene->camera.height,
+                                                render->options.replicates, &read, err);
+        if (status == BP_OK) status = describe(render, read, err);
+        for (size_t i = 0; status == BP_OK && i < render->worker_count; ++i)
+            status = bp_worker_collect(render->workers[i], read, err);
+        if (status != BP_OK) {
+            bp_accumulator_destroy(&read);
+            return status;
+        }
+        render->accumulator = read;
+    }
+    *accumulator = render->accumulator;
+    return BP_OK;
+}
+
+BpStatus bp_render_read(BpRender *render, BpPicture *picture, BpError *err) {
+    const BpAccumulator *accumulator = NULL;
+    BP_TRY(bp_render_accumulator(render, &accumulator, err));
+    return bp_accumulator_picture(accumulator, picture, err);
+}
+
+void bp_render_report(const BpRender *render, BpRenderReport *report) {
+    memset(report, 0, sizeof *report);
+    const BpWorker *first = render->workers[0];
+    report->device = first->device->info;
+    report->effects = render->effects;
+    if (render->options.all_effects) report->effects.bits = BP_EFFECTS_ALL;
+    report->kernel = first->samples_per_item > 1 ? BP_KERNEL_PACKET : BP_KERNEL_SAMPLE;
+    report->sampler = render->options.sampler;
+    report->precision = render->options.precision;
+    report->math = render->options.math;
+    report->numerics = render->options.numerics;
+    report->program_key = first->program->key;
+    report->build_log = first->program->log;
+    report->tree_seconds = render->tree_seconds;
+    report->pack_seconds = render->pack_seconds;
+    report->trace_seconds = render->trace_seconds - first->first_launch_seconds;
+    report->first_launch_seconds = first->first_launch_seconds;
+    for (size_t i = 0; i < render->worker_count; ++i) {
+        const BpWorker *worker = render->workers[i];
+        report->kernel_build_seconds += worker->program->build_seconds;
+        report->device_seconds += worker->device_seconds;
+        report->fold_seconds += worker->fold_seconds;
+        report->scene_bytes += worker->scene_bytes;
+        report->device_bytes += worker->scene_bytes + worker->picture_bytes +
+                                (uint64_t)worker->samples_capacity * 4 * worker->real_size;
+    }
+    report->samples = samples_done(render);
+    if (render->accumulator != NULL) {
+        report->segments = render->accumulator->segments;
+        report->cut_paths = render->accumulator->cut_paths;
+        report->invalid_samples = render->accumulator->invalid_samples;
+    }
+}

@@ -1,0 +1,365 @@
+/* worker.c: see worker.h. */
+#define BP_HOST
+#include "worker.h"
+
+#include "../base/clock.h"
+#include "layout.h"
+#include "scene_types.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+/* One work-item of the lane form follows this many pixel samples, eight at a time: enough that the last, partly
+ * filled round weighs little, few enough that a small chunk still keeps all cores busy. */
+#define PACKET_SAMPLES_PER_ITEM 64u
+#define LOCAL_SIZE_SAMPLE 64u
+#define LOCAL_SIZE_PACKET 4u
+/* The first chunk only measures speed (and lets the driver finish compiling). */
+#define FIRST_CHUNK_SAMPLES 16384u
+/* Raw samples take at most this part of the device's memory. */
+#define SAMPLES_MEMORY_SHARE 8u
+
+#define CL_TRY(worker, code, call)                                                                           \
+    do {                                                                                                     \
+        const cl_int cl_try_code_ = (code);                                                                  \
+        if (cl_try_code_ != CL_SUCCESS) return bp_cl_fail(err, cl_try_code_, call, (worker)->device);        \
+    } while (0)
+
+/* ---- buffers ------------------------------------------------------------------------------------------- */
+
+/* A buffer of `bytes` (at least one, since OpenCL knows no empty buffer), with `data` in it when there is any. */
+static BpStatus create_buffer(BpWorker *worker, cl_mem *buffer, uint64_t bytes, const void *data, const char *what,
+                              BpError *err) {
+    const BpDeviceInfo *info = &worker->device->info;
+    if (bytes > info->largest_allocation_bytes)
+        return bp_fail(err, BP_ERR_LIMIT,
+                       "%s takes %.1f MiB, but %s allows %.1f MiB in one allocation; "
+                       "use a smaller picture or scene, or another --device",
+                       what, (double)bytes / 1048576, info->name, (double)info->largest_allocation_bytes / 1048576);
+    cl_int code = CL_SUCCESS;
+    const cl_mem_flags flags = CL_MEM_READ_WRITE | (data != NULL && bytes > 0 ? CL_MEM_COPY_HOST_PTR : 0);
+    *buffer = clCreateBuffer(worker->device->context, flags, bytes > 0 ? (size_t)bytes : 16,
+                             bytes > 0 ? (void *)(uintptr_t)data : NULL, &code);
+    CL_TRY(worker, code, "clCreateBuffer");
+    return BP_OK;
+}
+
+static BpStatus upload_scene(BpWorker *worker, const BpPacked *packed, BpError *err) {
+    const size_t real_size = worker->real_size;
+    const BpTree *tree = &packed->tree;
+    const uint64_t width = tree->width;
+    const uint64_t materials = packed->material_count > 0 ? packed->material_count : 1;
+    const uint64_t spheres = packed->sphere_count > 0 ? packed->sphere_count : 1;
+    const uint64_t albedos = packed->albedo_count > 0 ? packed->albedo_count : 1;
+    const struct {
+        cl_mem *buffer;
+        uint64_t bytes;
+        const void *data;
+        const char *what;
+    } uploads[] = {
+        {&worker->camera, sizeof(PackedCamera) / sizeof(real) * real_size, packed->camera, "the camera"},
+        {&worker->sky, sizeof(PackedSky) / sizeof(real) * real_size, packed->sky, "the background"},
+        {&worker->materials, materials * (sizeof(PackedMaterial) / sizeof(real)) * real_size, packed->materials,
+         "the table of materials"},
+        {&worker->kinds, materials * sizeof(PackedMaterialKind), packed->material_kinds, "the table of materials"},
+        {&worker->looks, spheres * sizeof(PackedSphereLook), packed->looks, "the table of sphere materials"},
+        {&worker->albedos, albedos * 4 * real_size, packed->albedos, "the table of sphere colours"},
+        {&worker->boxes, tree->node_count * NODE_REALS(width) * real_size, tree->node_boxes, "the tree's boxes"},
+        {&worker->children, tree->node_count * width * 4, tree->children, "the tree's nodes"},
+        {&worker->leaves, tree->leaf_count * LEAF_REALS(width) * real_size, tree->leaves, "the spheres"},
+        {&worker->slot_sphere, tree->leaf_count * width * 4, tree->slot_sphere, "the spheres' numbers"},
+    };
+    for (size_t i = 0; i < sizeof uploads / sizeof uploads[0]; ++i) {
+        BP_TRY(create_buffer(worker, uploads[i].buffer, uploads[i].bytes, uploads[i].data, uploads[i].what, err));
+        worker->scene_bytes += uploads[i].bytes;
+    }
+    return BP_OK;
+}
+
+static BpStatus create_picture(BpWorker *worker, BpError *err) {
+    const uint64_t pixels = worker->pixels;
+    const uint64_t sums = pixels * worker->replicates * 3 * sizeof(cl_long);
+    const uint64_t counts = pixels * worker->replicates * sizeof(cl_uint);
+    const uint64_t tallies = pixels * 3 * sizeof(cl_ulong);
+    worker->picture_bytes = sums + counts + tallies;
+    const BpDeviceInfo *info = &worker->device->info;
+    if (worker->picture_bytes + worker->scene_bytes > info->memory_bytes)
+        return bp_fail(err, BP_ERR_LIMIT,
+                       "scene and picture take %.1f MiB, but %s has %.1f MiB; use a smaller --width or another --device",
+                       (double)(worker->picture_bytes + worker->scene_bytes) / 1048576, info->name,
+                       (double)info->memory_bytes / 1048576);
+    BP_TRY(create_buffer(worker, &worker->sums, sums, NULL, "the picture's sums", err));
+    BP_TRY(create_buffer(worker, &worker->counts, counts, NULL, "the picture's counts", err));
+    BP_TRY(create_buffer(worker, &worker->tallies, tallies, NULL, "the picture's tallies", err));
+    const cl_uint zero = 0; /* new buffers are not zeroed */
+    const struct {
+        cl_mem buffer;
+        uint64_t bytes;
+    } fills[] = {{worker->sums, sums}, {worker->counts, counts}, {worker->tallies, tallies}};
+    for (size_t i = 0; i < sizeof fills / sizeof fills[0]; ++i)
+        CL_TRY(worker,
+               clEnqueueFillBuffer(worker->device->queue, fills[i].buffer, &zero, sizeof zero, 0,
+                                   (size_t)fills[i].bytes, 0, NULL, NULL),
+               "clEnqueueFillBuffer");
+    return BP_OK;
+}
+
+/* Room for the raw samples of `count` pixel samples. Only called with nothing under way that uses the old room. */
+static BpStatus reserve_samples(BpWorker *worker, uint32_t count, BpError *err) {
+    if (count <= worker->samples_capacity) return BP_OK;
+    if (worker->samples != NULL) clReleaseMemObject(worker->samples);
+    worker->samples = NULL;
+    worker->samples_capacity = 0;
+    BP_TRY(create_buffer(worker, &worker->samples, (uint64_t)count * 4 * worker->real_size, NULL,
+                         "the chunk's samples", err));
+    worker->samples_capacity = count;
+    return BP_OK;
+}
+
+/* ---- kernels ------------------------------------------------------------------------------------------- */
+
+static BpStatus set_argument(BpWorker *worker, cl_kernel kernel, cl_uint index, size_t size, const void *value,
+                             BpError *err) {
+    CL_TRY(worker, clSetKernelArg(kernel, index, size, value), "clSetKernelArg");
+    return BP_OK;
+}
+
+/* Places of the arguments that change with the chunk; trace.cl and fold.cl declare them in this order. */
+enum { TRACE_FIRST_PIXEL = 17, TRACE_FIRST_SAMPLE, TRACE_SAMPLES, TRACE_COUNT, TRACE_PER_ITEM, TRACE_OUT };
+enum { FOLD_IN, FOLD_PIXELS, FOLD_SAMPLES, FOLD_FIRST_PIXEL, FOLD_FIRST_SAMPLE, FOLD_CONSTANTS };
+
+static BpStatus create_kernels(BpWorker *worker, const BpPacked *packed, const BpWorkerSetup *setup, BpError *err) {
+    cl_int code = CL_SUCCESS;
+    worker->trace = clCreateKernel(worker->program->program, "trace", &code);
+    CL_TRY(worker, code, "clCreateKernel(trace)");
+    worker->fold = clCreateKernel(worker->program->program, "fold", &code);
+    CL_TRY(worker, code, "clCreateKernel(fold)");
+    const cl_mem buffers[] = {worker->camera,  worker->sky,   worker->materials, worker->kinds,  worker->looks,
+                              worker->albedos, worker->boxes, worker->children,  worker->leaves, worker->slot_sphere};
+    cl_uint index = 0;
+    for (size_t i = 0; i < sizeof buffers / sizeof buffers[0]; ++i)
+        BP_TRY(set_argument(worker, worker->trace, index++, sizeof(cl_mem), &buffers[i], err));
+    const cl_uint numbers[] = {packed->tree.first_leaves, packed->tree.leaf_count,
+                               setup->pixel_center,       setup->max_depth,
+                               (cl_uint)setup->seed,      (cl_uint)(setup->seed >> 32),
+                               setup->width};
+    for (size_t i = 0; i < sizeof numbers / sizeof numbers[0]; ++i)
+        BP_TRY(set_argument(worker, worker->trace, index++, sizeof(cl_uint), &numbers[i], err));
+    index = FOLD_CONSTANTS;
+    BP_TRY(set_argument(worker, worker->fold, index++, sizeof(cl_uint), &worker->replicates, err));
+    BP_TRY(set_argument(worker, worker->fold, index++, sizeof(cl_int), &setup->scale_log2, err));
+    const cl_mem sums[] = {worker->sums, worker->counts, worker->tallies};
+    for (size_t i = 0; i < sizeof sums / sizeof sums[0]; ++i)
+        BP_TRY(set_argument(worker, worker->fold, index++, sizeof(cl_mem), &sums[i], err));
+
+    const bool packet = setup->program.form == BP_KERNEL_PACKET;
+    worker->samples_per_item = packet ? PACKET_SAMPLES_PER_ITEM : 1;
+    worker->local_size = setup->local_size != 0 ? setup->local_size : packet ? LOCAL_SIZE_PACKET : LOCAL_SIZE_SAMPLE;
+    size_t most = 0;
+    CL_TRY(worker,
+           clGetKernelWorkGroupInfo(worker->trace, worker->device->id, CL_KERNEL_WORK_GROUP_SIZE, sizeof most, &most,
+                                    NULL),
+           "clGetKernelWorkGroupInfo");
+    if (worker->local_size > most) worker->local_size = most;
+    return BP_OK;
+}
+
+BpStatus bp_worker_create(const BpDeviceInfo *info, const BpPacked *packed, const BpWorkerSetup *setup,
+                          BpWorker **worker, BpError *err) {
+    BpWorker *made = calloc(1, sizeof *made);
+    if (made == NULL) return bp_fail(err, BP_ERR_MEMORY, "no memory for a device's bookkeeping");
+    made->real_size = bp_packed_real_size(packed);
+    made->width = setup->width;
+    made->pixels = setup->width * setup->height;
+    made->replicates = setup->replicates;
+    BpStatus status = bp_device_open(info, &made->device, err);
+    if (status != BP_OK) goto failed;
+    BP_TRY_GOTO(status, bp_program_build(made->device, &setup->program, NULL, NULL, &made->program, err), failed);
+    BP_TRY_GOTO(status, bp_layout_check(made->device, made->program->program, packed->single_precision, err), failed);
+    BP_TRY_GOTO(status, upload_scene(made, packed, err), failed);
+    BP_TRY_GOTO(status, create_picture(made, err), failed);
+    BP_TRY_GOTO(status, create_kernels(made, packed, setup, err), failed);
+
+    const uint64_t sample_bytes = 4 * made->real_size;
+    uint64_t room = info->memory_bytes / SAMPLES_MEMORY_SHARE;
+    if (room > info->largest_allocation_bytes) room = info->largest_allocation_bytes;
+    uint64_t limit = room / sample_bytes;
+    const uint64_t most = info->type == BP_DEVICE_CPU ? 1u << 22 : 1u << 26;
+    if (limit > most) limit = most;
+    made->samples_limit = limit > 0 ? (uint32_t)limit : 1;
+    *worker = made;
+    return BP_OK;
+
+failed:
+    bp_worker_destroy(&made);
+    return status;
+}
+
+static void release_flight(struct BpFlight *flight) {
+    if (flight->trace_start != NULL) clReleaseEvent(flight->trace_start);
+    if (flight->fold_end != NULL) clReleaseEvent(flight->fold_end);
+    *flight = (struct BpFlight){0};
+}
+
+void bp_worker_destroy(BpWorker **worker) {
+    if (worker == NULL || *worker == NULL) return;
+    BpWorker *w = *worker;
+    if (w->device != NULL) clFinish(w->device->queue);
+    for (int i = 0; i < w->flight_count; ++i) release_flight(&w->flights[i]);
+    const cl_mem buffers[] = {w->camera, w->sky,    w->materials,   w->kinds, w->looks,  w->albedos, w->boxes,
+                              w->children, w->leaves, w->slot_sphere, w->sums,  w->counts, w->tallies, w->samples};
+    for (size_t i = 0; i < sizeof buffers / sizeof buffers[0]; ++i)
+        if (buffers[i] != NULL) clReleaseMemObject(buffers[i]);
+    if (w->trace != NULL) clReleaseKernel(w->trace);
+    if (w->fold != NULL) clReleaseKernel(w->fold);
+    bp_program_destroy(&w->program);
+    bp_device_close(&w->device);
+    free(w);
+    *worker = NULL;
+}
+
+/* ---- chunks -------------------------------------------------------------------------------------------- */
+
+static size_t round_up(size_t count, size_t multiple) { return (count + multiple - 1) / multiple * multiple; }
+
+static double event_seconds(cl_event from, cl_profiling_info from_what, cl_event to) {
+    cl_ulong start_ns = 0, end_ns = 0;
+    clGetEventProfilingInfo(from, from_what, sizeof start_ns, &start_ns, NULL);
+    clGetEventProfilingInfo(to, CL_PROFILING_COMMAND_END, sizeof end_ns, &end_ns, NULL);
+    return end_ns > start_ns ? 1e-9 * (double)(end_ns - start_ns) : 0;
+}
+
+BpStatus bp_worker_wait(BpWorker *worker, BpError *err) {
+    if (worker->flight_count == 0) return BP_OK;
+    struct BpFlight *flight = &worker->flights[0];
+    CL_TRY(worker, clWaitForEvents(1, &flight->fold_end), "clWaitForEvents");
+    const double seconds = event_seconds(flight->trace_start, CL_PROFILING_COMMAND_START, flight->fold_end);
+    worker->device_seconds += seconds;
+    worker->fold_seconds += event_seconds(flight->fold_end, CL_PROFILING_COMMAND_START, flight->fold_end);
+    worker->seconds_per_sample = seconds / (double)flight->samples;
+    worker->samples_done += flight->samples;
+    release_flight(flight);
+    memmove(worker->flights, worker->flights + 1, sizeof worker->flights[0] * (BP_WORKER_FLIGHT - 1));
+    worker->flights[BP_WORKER_FLIGHT - 1] = (struct BpFlight){0};
+    --worker->flight_count;
+    return BP_OK;
+}
+
+static BpStatus wait_for_all(BpWorker *worker, BpError *err) {
+    while (worker->flight_count > 0) BP_TRY(bp_worker_wait(worker, err));
+    return BP_OK;
+}
+
+static BpStatus enqueue(BpWorker *worker, cl_kernel kernel, size_t items, size_t local, cl_event *event, const char *name,
+                        BpError *err) {
+    const size_t global = round_up(items, local);
+    const cl_int code =
+        clEnqueueNDRangeKernel(worker->device->queue, kernel, 1, NULL, &global, &local, 0, NULL, event);
+    if (code != CL_SUCCESS) return bp_cl_fail(err, code, name, worker->device);
+    return BP_OK;
+}
+
+BpStatus bp_worker_start(BpWorker *worker, const BpChunk *chunk, BpError *err) {
+    const uint32_t count = chunk->pixel_count * chunk->samples;
+    const bool first = worker->samples_done == 0 && worker->flight_count == 0;
+    if (worker->flight_count == BP_WORKER_FLIGHT) BP_TRY(bp_worker_wait(worker, err));
+    if (count > worker->samples_capacity) {
+        BP_TRY(wait_for_all(worker, err));
+        BP_TRY(reserve_samples(worker, count, err));
+    }
+    const cl_uint first_sample = (cl_uint)chunk->first_sample;
+    const struct {
+        cl_kernel kernel;
+        cl_uint index;
+        size_t size;
+        const void *value;
+    } arguments[] = {
+        {worker->trace, TRACE_FIRST_PIXEL, sizeof(cl_uint), &chunk->first_pixel},
+        {worker->trace, TRACE_FIRST_SAMPLE, sizeof(cl_uint), &first_sample},
+        {worker->trace, TRACE_SAMPLES, sizeof(cl_uint), &chunk->samples},
+        {worker->trace, TRACE_COUNT, sizeof(cl_uint), &count},
+        {worker->trace, TRACE_PER_ITEM, sizeof(cl_uint), &worker->samples_per_item},
+        {worker->trace, TRACE_OUT, sizeof(cl_mem), &worker->samples},
+        {worker->fold, FOLD_IN, sizeof(cl_mem), &worker->samples},
+        {worker->fold, FOLD_PIXELS, sizeof(cl_uint), &chunk->pixel_count},
+        {worker->fold, FOLD_SAMPLES, sizeof(cl_uint), &chunk->samples},
+        {worker->fold, FOLD_FIRST_PIXEL, sizeof(cl_uint), &chunk->first_pixel},
+        {worker->fold, FOLD_FIRST_SAMPLE, sizeof(cl_uint), &first_sample},
+    };
+    for (size_t i = 0; i < sizeof arguments / sizeof arguments[0]; ++i)
+        BP_TRY(set_argument(worker, arguments[i].kernel, arguments[i].index, arguments[i].size, arguments[i].value, err));
+
+    struct BpFlight *flight = &worker->flights[worker->flight_count++];
+    *flight = (struct BpFlight){.samples = count};
+    const double start = bp_clock_seconds();
+    const size_t items = (count + worker->samples_per_item - 1) / worker->samples_per_item;
+    BP_TRY(enqueue(worker, worker->trace, items, worker->local_size, &flight->trace_start,
+                   "clEnqueueNDRangeKernel(trace)", err));
+    BP_TRY(enqueue(worker, worker->fold, chunk->pixel_count, LOCAL_SIZE_SAMPLE, &flight->fold_end,
+                   "clEnqueueNDRangeKernel(fold)", err));
+    CL_TRY(worker, clFlush(worker->device->queue), "clFlush");
+    if (first) {
+        BP_TRY(bp_worker_wait(worker, err));
+        const double overhead = bp_clock_seconds() - start - worker->device_seconds;
+        worker->first_launch_seconds = overhead > 0 ? overhead : 0;
+    }
+    return BP_OK;
+}
+
+uint32_t bp_worker_chunk_samples(const BpWorker *worker, double seconds) {
+    if (worker->seconds_per_sample <= 0)
+        return worker->samples_limit < FIRST_CHUNK_SAMPLES ? worker->samples_limit : FIRST_CHUNK_SAMPLES;
+    const double samples = seconds / worker->seconds_per_sample;
+    if (samples < 1) return 1;
+    return samples > worker->samples_limit ? worker->samples_limit : (uint32_t)samples;
+}
+
+/* ---- results ------------------------------------------------------------------------------------------- */
+
+static BpStatus read_buffer(BpWorker *worker, cl_mem buffer, size_t bytes, void *out, BpError *err) {
+    CL_TRY(worker, clEnqueueReadBuffer(worker->device->queue, buffer, CL_TRUE, 0, bytes, out, 0, NULL, NULL),
+           "clEnqueueReadBuffer");
+    return BP_OK;
+}
+
+BpStatus bp_worker_collect(BpWorker *worker, BpAccumulator *accumulator, BpError *err) {
+    BP_TRY(wait_for_all(worker, err));
+    const size_t cells = (size_t)worker->pixels * worker->replicates;
+    cl_long *sums = malloc(cells * 3 * sizeof *sums);
+    cl_uint *counts = malloc(cells * sizeof *counts);
+    cl_ulong *tallies = malloc((size_t)worker->pixels * 3 * sizeof *tallies);
+    BpStatus status = BP_OK;
+    if (sums == NULL || counts == NULL || tallies == NULL) {
+        status = bp_fail(err, BP_ERR_MEMORY, "no memory to read a picture of %u pixels back", worker->pixels);
+        goto cleanup;
+    }
+    BP_TRY_GOTO(status, read_buffer(worker, worker->sums, cells * 3 * sizeof *sums, sums, err), cleanup);
+    BP_TRY_GOTO(status, read_buffer(worker, worker->counts, cells * sizeof *counts, counts, err), cleanup);
+    BP_TRY_GOTO(status, read_buffer(worker, worker->tallies, (size_t)worker->pixels * 3 * sizeof *tallies, tallies, err),
+                cleanup);
+    for (size_t i = 0; i < cells * 3; ++i) accumulator->sums[i] += sums[i];
+    for (size_t i = 0; i < cells; ++i) accumulator->counts[i] += counts[i];
+    for (size_t i = 0; i < worker->pixels; ++i) {
+        accumulator->segments += tallies[i * 3];
+        accumulator->cut_paths += tallies[i * 3 + 1];
+        accumulator->invalid_samples += tallies[i * 3 + 2];
+    }
+
+cleanup:
+    free(sums);
+    free(counts);
+    free(tallies);
+    return status;
+}
+
+BpStatus bp_worker_samples(BpWorker *worker, uint32_t count, float *values, BpError *err) {
+    BP_TRY(wait_for_all(worker, err));
+    const size_t numbers = (size_t)count * 4;
+    if (worker->real_size == sizeof(float)) return read_buffer(worker, worker->samples, numbers * sizeof(float), values, err);
+    double *wide = malloc(numbers * sizeof *wide);
+    if (wide == NULL) return bp_fail(err, BP_ERR_MEMORY, "no memory to read %u samples back", count);
+    const BpStatus status = read_buffer(worker, worker->samples, numbers * sizeof *wide, wide, err);
+    for (size_t i = 0; status == BP_OK && i < numbers; ++i) values[i] = (float)wide[i];
+    free(wide);
+    return status;
+}

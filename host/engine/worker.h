@@ -1,0 +1,73 @@
+/* worker.h: one device at work on one render: its program, its buffers, its chunks.
+ *
+ * In:    packed scene, chunks.   Out: replicate sums on the device, times.
+ * Knows: OpenCL, the kernels' arguments.   Does not know: passes, the picture as a whole, other devices. */
+#ifndef BP_ENGINE_WORKER_H
+#define BP_ENGINE_WORKER_H
+
+#include "accumulator.h"
+#include "effects.h"
+#include "pack.h"
+#include "program.h"
+#include "schedule.h"
+
+/* Everything a worker needs to know beyond the packed scene. */
+typedef struct BpWorkerSetup {
+    BpProgramOptions program;
+    uint32_t width, height;
+    uint32_t replicates;
+    int32_t scale_log2;
+    uint32_t max_depth;
+    uint64_t seed;
+    bool pixel_center;
+    uint32_t local_size; /* 0: choose */
+} BpWorkerSetup;
+
+#define BP_WORKER_FLIGHT 2 /* chunks queued at a time */
+
+typedef struct BpWorker {
+    BpDevice *device;
+    BpProgram *program;
+    cl_kernel trace, fold;
+    cl_mem camera, sky, materials, kinds, looks, albedos, boxes, children, leaves, slot_sphere;
+    cl_mem sums, counts, tallies, samples;
+    size_t real_size;
+    uint32_t width, replicates, pixels;
+    uint32_t samples_per_item; /* pixel samples of a work-item */
+    size_t local_size;
+    uint32_t samples_capacity, samples_limit; /* of the buffer of raw samples; limit: the most it may grow to */
+    uint64_t scene_bytes, picture_bytes;
+    /* Chunks under way, oldest first. */
+    struct BpFlight {
+        cl_event trace_start, fold_end;
+        uint64_t samples;
+    } flights[BP_WORKER_FLIGHT];
+    int flight_count;
+    /* Measured on chunks that are done. */
+    double device_seconds, fold_seconds;
+    double seconds_per_sample; /* of the latest chunk; 0: none yet */
+    double first_launch_seconds;
+    uint64_t samples_done;
+} BpWorker;
+
+/* Opens `info`, builds the program, uploads `packed` (not needed afterwards). Refuses what does not fit the
+ * device's memory, naming the limit. Free with bp_worker_destroy(). */
+BpStatus bp_worker_create(const BpDeviceInfo *info, const BpPacked *packed, const BpWorkerSetup *setup,
+                          BpWorker **worker, BpError *err);
+void bp_worker_destroy(BpWorker **worker);
+
+/* Queues a chunk and returns; waits for the oldest first when BP_WORKER_FLIGHT are under way. */
+BpStatus bp_worker_start(BpWorker *worker, const BpChunk *chunk, BpError *err);
+/* Waits for the oldest chunk; does nothing when there is none. */
+BpStatus bp_worker_wait(BpWorker *worker, BpError *err);
+
+/* Pixel samples that a chunk should have to take `seconds`, by the latest measurement, 1 .. samples_limit. */
+uint32_t bp_worker_chunk_samples(const BpWorker *worker, double seconds);
+
+/* Waits for everything and adds this device's sums, counts and tallies into `accumulator`. */
+BpStatus bp_worker_collect(BpWorker *worker, BpAccumulator *accumulator, BpError *err);
+
+/* Waits for everything and copies the raw samples of the last chunk: count * 4 floats. */
+BpStatus bp_worker_samples(BpWorker *worker, uint32_t count, float *values, BpError *err);
+
+#endif
