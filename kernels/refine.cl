@@ -13,7 +13,7 @@
 typedef struct LANED(Roots) {
     refineds near, far;
     refineds middle; /* p: negative when the sphere's centre lies behind */
-    refineds half;   /* s */
+    refineds half_chord; /* s */
     refineds across_x, across_y, across_z; /* l */
     masks meets;     /* the line meets the sphere; else the rest means nothing */
 } LANED(Roots);
@@ -39,7 +39,7 @@ static LANED(Roots) LANED(sphere_roots)(reals high_x, reals high_y, reals high_z
     roots.near = p - s;
     roots.far = p + s;
     roots.middle = p;
-    roots.half = s;
+    roots.half_chord = s;
     roots.across_x = lx;
     roots.across_y = ly;
     roots.across_z = lz;
@@ -91,7 +91,7 @@ static LANED(Roots) LANED(sphere_roots)(reals high_x, reals high_y, reals high_z
     roots.near = choose(ahead, inner, outer);
     roots.far = choose(ahead, outer, inner);
     roots.middle = p;
-    roots.half = s;
+    roots.half_chord = s;
     roots.across_x = lx;
     roots.across_y = ly;
     roots.across_z = lz;

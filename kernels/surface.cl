@@ -43,9 +43,9 @@ static void surface_point(const Point *origin, Vec3 direction, refineds t, masks
                                                    origin->low.y, origin->low.z, direction.x, direction.y,
                                                    direction.z, centre.x, centre.y, centre.z, radius);
     const Vec3 across = vec3(roots.across_x, roots.across_y, roots.across_z);
-    const Vec3 local = subtract3(scale3(choose(enters, -roots.half, roots.half), direction), across);
-    const masks degenerate = not_mask(dot3(local, local) > splat(0));
-    *normal = normalise3(choose3(degenerate, direction, local));
+    const Vec3 relative = subtract3(scale3(choose(enters, -roots.half_chord, roots.half_chord), direction), across);
+    const masks degenerate = not_mask(dot3(relative, relative) > splat(0));
+    *normal = normalise3(choose3(degenerate, direction, relative));
     Vec3 near_high, near_low, far_high, far_low;
     multiply_add_exactly(t, direction.x, origin->high.x, &near_high.x, &near_low.x);
     multiply_add_exactly(t, direction.y, origin->high.y, &near_high.y, &near_low.y);

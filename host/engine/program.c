@@ -14,14 +14,14 @@ const char *bp_kernel_file(const char *name);
 
 /* The order in which the files stand in a program. A lane file says for how many lanes what follows is meant;
  * refine.cl serves single rays in tree.cl and, below lanes_wide.cl, all lanes together. */
-static const char *const sample_files[] = {"scene_types.h", "real.cl",     "lanes_scalar.cl", "refine.cl",
-                                           "tree.cl",       "vector.cl",   "rng.cl",          "sampling.cl",
-                                           "surface.cl",    "sky.cl",      "camera.cl",       "material.cl",
-                                           "trace.cl",      "fold.cl",     "probe.cl",        NULL};
-static const char *const packet_files[] = {"scene_types.h",  "real.cl",   "lanes_scalar.cl", "refine.cl",   "tree.cl",
-                                           "lanes_wide.cl",  "refine.cl", "vector.cl",       "rng.cl",      "sampling.cl",
-                                           "surface.cl",     "sky.cl",    "camera.cl",       "material.cl", "trace.cl",
-                                           "fold.cl",        "probe.cl",  NULL};
+static const char *const sample_files[] = {"real.cl",    "scene_types.h", "lanes_scalar.cl", "refine.cl",
+                                           "tree.cl",    "vector.cl",     "rng.cl",          "sampling.cl",
+                                           "surface.cl", "sky.cl",        "camera.cl",       "material.cl",
+                                           "trace.cl",   "fold.cl",       "probe.cl",        NULL};
+static const char *const packet_files[] = {
+    "real.cl",   "scene_types.h", "lanes_scalar.cl", "refine.cl",   "tree.cl",    "lanes_wide.cl",
+    "refine.cl", "vector.cl",     "rng.cl",          "sampling.cl", "surface.cl", "sky.cl",
+    "camera.cl", "material.cl",   "trace.cl",        "fold.cl",     "probe.cl",   NULL};
 
 /* A text that grows. `failed` remembers an allocation that did not succeed. */
 typedef struct Text {
@@ -63,8 +63,8 @@ static BpStatus append_from_folder(Text *text, const char *directory, const char
     snprintf(path, sizeof path, "%s/%s", directory, name);
     FILE *file = fopen(path, "rb");
     if (file == NULL)
-        return bp_fail(err, BP_ERR_FILE, "%s: cannot be read; BALLPARK_KERNELS must name a folder with all kernel files",
-                       path);
+        return bp_fail(err, BP_ERR_FILE,
+                       "%s: cannot be read; BALLPARK_KERNELS must name a folder with all kernel files", path);
     char block[4096];
     size_t count;
     while ((count = fread(block, 1, sizeof block, file)) > 0) text_append(text, block, count);

@@ -23,8 +23,8 @@ typedef struct BpProgramOptions {
     bool double_refine;  /* refine intersections in double; else error-free float transforms */
 } BpProgramOptions;
 
-/* The whole source. `extra_name`, `extra_text`: Optional, a file appended at the end (probe kernels of tests).
- * The caller frees *source. BP_ERR_FILE when BALLPARK_KERNELS lacks a file. */
+/* The whole source. `extra_name`, `extra_text`: Optional, a file appended at the end (probe kernels of
+ * tests). The caller frees *source. BP_ERR_FILE when BALLPARK_KERNELS lacks a file. */
 BpStatus bp_program_source(const BpProgramOptions *options, const char *extra_name, const char *extra_text,
                            char **source, BpError *err);
 

@@ -33,7 +33,8 @@ void bp_render_defaults(const BpScene *scene, BpRenderOptions *options) {
 static BpStatus check_options(const BpScene *scene, const BpRenderOptions *options, BpError *err) {
     if (options->samples_per_pixel < 1 || options->first_sample > UINT32_MAX ||
         options->samples_per_pixel > (uint64_t)UINT32_MAX + 1 - options->first_sample)
-        return bp_fail(err, BP_ERR_USAGE, "samples %llu to %llu of a pixel: sample numbers go from 0 to 4294967295",
+        return bp_fail(err, BP_ERR_USAGE,
+                       "samples %llu to %llu of a pixel: sample numbers go from 0 to 4294967295",
                        (unsigned long long)options->first_sample,
                        (unsigned long long)(options->first_sample + options->samples_per_pixel - 1));
     if (options->max_depth > BP_DEPTH_MAX)
@@ -43,21 +44,27 @@ static BpStatus check_options(const BpScene *scene, const BpRenderOptions *optio
                        BP_REPLICATES_MAX);
     const uint64_t pixels = (uint64_t)scene->camera.width * scene->camera.height;
     if (pixels > UINT32_MAX / 4)
-        return bp_fail(err, BP_ERR_LIMIT, "a picture of %u x %u has %llu pixels; at most %u", scene->camera.width,
-                       scene->camera.height, (unsigned long long)pixels, UINT32_MAX / 4);
-    if (options->tree_width != 0 && options->tree_width != 2 && options->tree_width != 4 && options->tree_width != 8)
+        return bp_fail(err, BP_ERR_LIMIT, "a picture of %u x %u has %llu pixels; at most %u",
+                       scene->camera.width, scene->camera.height, (unsigned long long)pixels, UINT32_MAX / 4);
+    if (options->tree_width != 0 && options->tree_width != 2 && options->tree_width != 4 &&
+        options->tree_width != 8)
         return bp_fail(err, BP_ERR_USAGE, "tree width %u: 2, 4 or 8", options->tree_width);
     if (options->sampler != BP_SAMPLER_INDEPENDENT)
         return bp_fail(err, BP_ERR_USAGE, "the kernel knows the independent sampler only");
+    if (options->numerics != BP_NUMERICS_ROBUST)
+        return bp_fail(err, BP_ERR_USAGE, "the kernel knows the robust numerics only");
     return BP_OK;
 }
 
-/* How the kernel is arranged for a device. CPUs spread explicit vectors over their lanes, so they get eight lanes and
- * eight-wide nodes, and double costs them little. GPUs spread work-items, and many have next to no double: one lane,
- * narrower nodes, error-free float transforms. */
-static void choose_arrangement(const BpDeviceInfo *device, const BpRenderOptions *options, BpProgramOptions *program) {
+/* How the kernel is arranged for a device. CPUs spread explicit vectors over their lanes, so they get eight
+ * lanes and eight-wide nodes, and double costs them little. GPUs spread work-items, and many have next to no
+ * double: one lane, narrower nodes, error-free float transforms. */
+static void choose_arrangement(const BpDeviceInfo *device, const BpRenderOptions *options,
+                               BpProgramOptions *program) {
     const bool cpu = device->type == BP_DEVICE_CPU;
-    program->form = options->kernel != BP_KERNEL_AUTO ? options->kernel : cpu ? BP_KERNEL_PACKET : BP_KERNEL_SAMPLE;
+    program->form = options->kernel != BP_KERNEL_AUTO ? options->kernel
+                    : cpu                             ? BP_KERNEL_PACKET
+                                                      : BP_KERNEL_SAMPLE;
     program->tree_width = options->tree_width != 0 ? options->tree_width : cpu ? 8 : 4;
     program->double_refine = cpu && device->has_double && !options->force_float_refine;
 }
@@ -66,7 +73,8 @@ static BpStatus open_worker(BpRender *render, const BpDeviceInfo *device, size_t
     const BpScene *scene = render->scene;
     const BpRenderOptions *options = &render->options;
     if (options->precision == BP_PRECISION_DOUBLE && !device->has_double)
-        return bp_fail(err, BP_ERR_DEVICE, "%s has no double precision; leave --precision double out, or use another --device",
+        return bp_fail(err, BP_ERR_DEVICE,
+                       "%s has no double precision; leave --precision double out, or use another --device",
                        device->name);
     BpWorkerSetup setup = {
         .program = {.effects = options->all_effects ? BP_EFFECTS_ALL : render->effects.bits,
@@ -125,7 +133,8 @@ BpStatus bp_render_create(const BpScene *scene, const BpRenderOptions *options, 
     if (made->options.replicates == 0) made->options.replicates = BP_REPLICATES_DEFAULT;
     made->worker_count = device_count;
     bp_effects_analyse(scene, &made->effects);
-    for (size_t i = 0; i < device_count; ++i) BP_TRY_GOTO(status, open_worker(made, &devices[i], i, err), failed);
+    for (size_t i = 0; i < device_count; ++i)
+        BP_TRY_GOTO(status, open_worker(made, &devices[i], i, err), failed);
     const uint32_t pixels = scene->camera.width * scene->camera.height;
     bp_schedule_init(&made->schedule, pixels, options->first_sample, options->samples_per_pixel);
     made->samples_total = (uint64_t)pixels * options->samples_per_pixel;
@@ -171,8 +180,9 @@ static bool in_flight(const BpRender *render) {
 static BpStatus start_chunk(BpRender *render, bool *started, BpError *err) {
     BpWorker *worker = least_busy(render);
     if (worker->flight_count == BP_WORKER_FLIGHT) BP_TRY(bp_worker_wait(worker, err));
-    const uint32_t wanted = render->options.chunk_samples != 0 ? render->options.chunk_samples
-                                                               : bp_worker_chunk_samples(worker, CHUNK_SECONDS);
+    const uint32_t wanted = render->options.chunk_samples != 0
+                                ? render->options.chunk_samples
+                                : bp_worker_chunk_samples(worker, CHUNK_SECONDS);
     *started = bp_schedule_take(&render->schedule, wanted, &render->last_chunk);
     return *started ? bp_worker_start(worker, &render->last_chunk, err) : BP_OK;
 }
@@ -236,14 +246,17 @@ BpStatus bp_render_extend(BpRender *render, uint64_t samples_per_pixel, BpError 
     BP_TRY(check_options(render->scene, &wanted, err));
     if (samples_per_pixel < render->options.samples_per_pixel)
         return bp_fail(err, BP_ERR_USAGE, "a render of %llu samples cannot be extended to %llu",
-                       (unsigned long long)render->options.samples_per_pixel, (unsigned long long)samples_per_pixel);
+                       (unsigned long long)render->options.samples_per_pixel,
+                       (unsigned long long)samples_per_pixel);
     render->options = wanted;
     render->schedule.samples = samples_per_pixel;
     render->samples_total = (uint64_t)render->schedule.pixels * samples_per_pixel;
     return BP_OK;
 }
 
-uint64_t bp_render_samples_done(const BpRender *render) { return render->schedule.done; }
+uint64_t bp_render_samples_done(const BpRender *render) {
+    return render->schedule.done;
+}
 
 static BpStatus describe(const BpRender *render, BpAccumulator *accumulator, BpError *err) {
     const BpRenderOptions *options = &render->options;

@@ -50,8 +50,8 @@ typedef struct BpSampleBlock {
 } BpSampleBlock;
 
 /* Runs one chunk and hands out its raw samples (they are folded into the accumulator as well): for tests and
- * `check`. One device only. *finished: there was nothing left to do, and the block is empty. The caller clears the
- * block with bp_sample_block_clear(). */
+ * `check`. One device only. *finished: there was nothing left to do, and the block is empty. The caller
+ * clears the block with bp_sample_block_clear(). */
 BpStatus bp_render_step_samples(BpRender *render, BpSampleBlock *block, bool *finished, BpError *err);
 void bp_sample_block_clear(BpSampleBlock *block);
 

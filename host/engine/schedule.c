@@ -1,15 +1,20 @@
 /* schedule.c: see schedule.h. */
 #include "schedule.h"
 
-/* A pass has at most this many samples a pixel, unless the picture is so small that a chunk would not be filled. */
+/* A pass has at most this many samples a pixel, unless the picture is so small that a chunk would not be
+ * filled. */
 #define PASS_SAMPLES_MAX 64u
 
 void bp_schedule_init(BpSchedule *schedule, uint32_t pixels, uint64_t first_sample, uint64_t samples) {
     *schedule = (BpSchedule){.pixels = pixels, .first_sample = first_sample, .samples = samples};
 }
 
-static uint64_t at_most(uint64_t a, uint64_t b) { return a < b ? a : b; }
-static uint64_t at_least(uint64_t a, uint64_t b) { return a > b ? a : b; }
+static uint64_t at_most(uint64_t a, uint64_t b) {
+    return a < b ? a : b;
+}
+static uint64_t at_least(uint64_t a, uint64_t b) {
+    return a > b ? a : b;
+}
 
 bool bp_schedule_take(BpSchedule *schedule, uint32_t wanted, BpChunk *chunk) {
     if (schedule->pass_samples == 0) {

@@ -3,8 +3,8 @@
  * In:    pixels, samples, how many samples a chunk should have.   Out: chunks, one after the other.
  * Knows: counting.   Does not know: OpenCL, time, who traces a chunk.
  *
- * A render goes over the picture in passes; a pass gives every pixel the same number of samples, few at first so
- * that an early picture is whole, then more. A chunk is a range of pixels of one pass. What a pixel sample
+ * A render goes over the picture in passes; a pass gives every pixel the same number of samples, few at first
+ * so that an early picture is whole, then more. A chunk is a range of pixels of one pass. What a pixel sample
  * computes does not depend on any of this. */
 #ifndef BP_ENGINE_SCHEDULE_H
 #define BP_ENGINE_SCHEDULE_H
@@ -28,8 +28,8 @@ typedef struct BpSchedule {
 
 void bp_schedule_init(BpSchedule *schedule, uint32_t pixels, uint64_t first_sample, uint64_t samples);
 
-/* The next chunk, of about `wanted` (at least 1) pixel samples and never more than that unless a pass has begun with
- * more samples a pixel; false when all was handed out. */
+/* The next chunk, of about `wanted` (at least 1) pixel samples and never more than that unless a pass has
+ * begun with more samples a pixel; false when all was handed out. */
 bool bp_schedule_take(BpSchedule *schedule, uint32_t wanted, BpChunk *chunk);
 
 #endif

@@ -9,8 +9,8 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* One work-item of the lane form follows this many pixel samples, eight at a time: enough that the last, partly
- * filled round weighs little, few enough that a small chunk still keeps all cores busy. */
+/* One work-item of the lane form follows this many pixel samples, eight at a time: enough that the last,
+ * partly filled round weighs little, few enough that a small chunk still keeps all cores busy. */
 #define PACKET_SAMPLES_PER_ITEM 64u
 #define LOCAL_SIZE_SAMPLE 64u
 #define LOCAL_SIZE_PACKET 4u
@@ -27,15 +27,17 @@
 
 /* ---- buffers ------------------------------------------------------------------------------------------- */
 
-/* A buffer of `bytes` (at least one, since OpenCL knows no empty buffer), with `data` in it when there is any. */
-static BpStatus create_buffer(BpWorker *worker, cl_mem *buffer, uint64_t bytes, const void *data, const char *what,
-                              BpError *err) {
+/* A buffer of `bytes` (at least one, since OpenCL knows no empty buffer), with `data` in it when there is
+ * any. */
+static BpStatus create_buffer(BpWorker *worker, cl_mem *buffer, uint64_t bytes, const void *data,
+                              const char *what, BpError *err) {
     const BpDeviceInfo *info = &worker->device->info;
     if (bytes > info->largest_allocation_bytes)
         return bp_fail(err, BP_ERR_LIMIT,
                        "%s takes %.1f MiB, but %s allows %.1f MiB in one allocation; "
                        "use a smaller picture or scene, or another --device",
-                       what, (double)bytes / 1048576, info->name, (double)info->largest_allocation_bytes / 1048576);
+                       what, (double)bytes / 1048576, info->name,
+                       (double)info->largest_allocation_bytes / 1048576);
     cl_int code = CL_SUCCESS;
     const cl_mem_flags flags = CL_MEM_READ_WRITE | (data != NULL && bytes > 0 ? CL_MEM_COPY_HOST_PTR : 0);
     *buffer = clCreateBuffer(worker->device->context, flags, bytes > 0 ? (size_t)bytes : 16,
@@ -59,18 +61,21 @@ static BpStatus upload_scene(BpWorker *worker, const BpPacked *packed, BpError *
     } uploads[] = {
         {&worker->camera, sizeof(PackedCamera) / sizeof(real) * real_size, packed->camera, "the camera"},
         {&worker->sky, sizeof(PackedSky) / sizeof(real) * real_size, packed->sky, "the background"},
-        {&worker->materials, materials * (sizeof(PackedMaterial) / sizeof(real)) * real_size, packed->materials,
+        {&worker->materials, materials * (sizeof(PackedMaterial) / sizeof(real)) * real_size,
+         packed->materials, "the table of materials"},
+        {&worker->kinds, materials * sizeof(PackedMaterialKind), packed->material_kinds,
          "the table of materials"},
-        {&worker->kinds, materials * sizeof(PackedMaterialKind), packed->material_kinds, "the table of materials"},
         {&worker->looks, spheres * sizeof(PackedSphereLook), packed->looks, "the table of sphere materials"},
         {&worker->albedos, albedos * 4 * real_size, packed->albedos, "the table of sphere colours"},
-        {&worker->boxes, tree->node_count * NODE_REALS(width) * real_size, tree->node_boxes, "the tree's boxes"},
+        {&worker->boxes, tree->node_count * NODE_REALS(width) * real_size, tree->node_boxes,
+         "the tree's boxes"},
         {&worker->children, tree->node_count * width * 4, tree->children, "the tree's nodes"},
         {&worker->leaves, tree->leaf_count * LEAF_REALS(width) * real_size, tree->leaves, "the spheres"},
         {&worker->slot_sphere, tree->leaf_count * width * 4, tree->slot_sphere, "the spheres' numbers"},
     };
     for (size_t i = 0; i < sizeof uploads / sizeof uploads[0]; ++i) {
-        BP_TRY(create_buffer(worker, uploads[i].buffer, uploads[i].bytes, uploads[i].data, uploads[i].what, err));
+        BP_TRY(create_buffer(worker, uploads[i].buffer, uploads[i].bytes, uploads[i].data, uploads[i].what,
+                             err));
         worker->scene_bytes += uploads[i].bytes;
     }
     return BP_OK;
@@ -84,10 +89,11 @@ static BpStatus create_picture(BpWorker *worker, BpError *err) {
     worker->picture_bytes = sums + counts + tallies;
     const BpDeviceInfo *info = &worker->device->info;
     if (worker->picture_bytes + worker->scene_bytes > info->memory_bytes)
-        return bp_fail(err, BP_ERR_LIMIT,
-                       "scene and picture take %.1f MiB, but %s has %.1f MiB; use a smaller --width or another --device",
-                       (double)(worker->picture_bytes + worker->scene_bytes) / 1048576, info->name,
-                       (double)info->memory_bytes / 1048576);
+        return bp_fail(
+            err, BP_ERR_LIMIT,
+            "scene and picture take %.1f MiB, but %s has %.1f MiB; use a smaller --width or another --device",
+            (double)(worker->picture_bytes + worker->scene_bytes) / 1048576, info->name,
+            (double)info->memory_bytes / 1048576);
     BP_TRY(create_buffer(worker, &worker->sums, sums, NULL, "the picture's sums", err));
     BP_TRY(create_buffer(worker, &worker->counts, counts, NULL, "the picture's counts", err));
     BP_TRY(create_buffer(worker, &worker->tallies, tallies, NULL, "the picture's tallies", err));
@@ -104,7 +110,8 @@ static BpStatus create_picture(BpWorker *worker, BpError *err) {
     return BP_OK;
 }
 
-/* Room for the raw samples of `count` pixel samples. Only called with nothing under way that uses the old room. */
+/* Room for the raw samples of `count` pixel samples. Only called with nothing under way that uses the old
+ * room. */
 static BpStatus reserve_samples(BpWorker *worker, uint32_t count, BpError *err) {
     if (count <= worker->samples_capacity) return BP_OK;
     if (worker->samples != NULL) clReleaseMemObject(worker->samples);
@@ -118,8 +125,8 @@ static BpStatus reserve_samples(BpWorker *worker, uint32_t count, BpError *err) 
 
 /* ---- kernels ------------------------------------------------------------------------------------------- */
 
-static BpStatus set_argument(BpWorker *worker, cl_kernel kernel, cl_uint index, size_t size, const void *value,
-                             BpError *err) {
+static BpStatus set_argument(BpWorker *worker, cl_kernel kernel, cl_uint index, size_t size,
+                             const void *value, BpError *err) {
     CL_TRY(worker, clSetKernelArg(kernel, index, size, value), "clSetKernelArg");
     return BP_OK;
 }
@@ -128,21 +135,22 @@ static BpStatus set_argument(BpWorker *worker, cl_kernel kernel, cl_uint index, 
 enum { TRACE_FIRST_PIXEL = 17, TRACE_FIRST_SAMPLE, TRACE_SAMPLES, TRACE_COUNT, TRACE_PER_ITEM, TRACE_OUT };
 enum { FOLD_IN, FOLD_PIXELS, FOLD_SAMPLES, FOLD_FIRST_PIXEL, FOLD_FIRST_SAMPLE, FOLD_CONSTANTS };
 
-static BpStatus create_kernels(BpWorker *worker, const BpPacked *packed, const BpWorkerSetup *setup, BpError *err) {
+static BpStatus create_kernels(BpWorker *worker, const BpPacked *packed, const BpWorkerSetup *setup,
+                               BpError *err) {
     cl_int code = CL_SUCCESS;
     worker->trace = clCreateKernel(worker->program->program, "trace", &code);
     CL_TRY(worker, code, "clCreateKernel(trace)");
     worker->fold = clCreateKernel(worker->program->program, "fold", &code);
     CL_TRY(worker, code, "clCreateKernel(fold)");
-    const cl_mem buffers[] = {worker->camera,  worker->sky,   worker->materials, worker->kinds,  worker->looks,
-                              worker->albedos, worker->boxes, worker->children,  worker->leaves, worker->slot_sphere};
+    const cl_mem buffers[] = {worker->camera, worker->sky,        worker->materials, worker->kinds,
+                              worker->looks,  worker->albedos,    worker->boxes,     worker->children,
+                              worker->leaves, worker->slot_sphere};
     cl_uint index = 0;
     for (size_t i = 0; i < sizeof buffers / sizeof buffers[0]; ++i)
         BP_TRY(set_argument(worker, worker->trace, index++, sizeof(cl_mem), &buffers[i], err));
-    const cl_uint numbers[] = {packed->tree.first_leaves, packed->tree.leaf_count,
-                               setup->pixel_center,       setup->max_depth,
-                               (cl_uint)setup->seed,      (cl_uint)(setup->seed >> 32),
-                               setup->width};
+    const cl_uint numbers[] = {
+        packed->tree.first_leaves, packed->tree.leaf_count,      setup->pixel_center, setup->max_depth,
+        (cl_uint)setup->seed,      (cl_uint)(setup->seed >> 32), setup->width};
     for (size_t i = 0; i < sizeof numbers / sizeof numbers[0]; ++i)
         BP_TRY(set_argument(worker, worker->trace, index++, sizeof(cl_uint), &numbers[i], err));
     index = FOLD_CONSTANTS;
@@ -154,11 +162,13 @@ static BpStatus create_kernels(BpWorker *worker, const BpPacked *packed, const B
 
     const bool packet = setup->program.form == BP_KERNEL_PACKET;
     worker->samples_per_item = packet ? PACKET_SAMPLES_PER_ITEM : 1;
-    worker->local_size = setup->local_size != 0 ? setup->local_size : packet ? LOCAL_SIZE_PACKET : LOCAL_SIZE_SAMPLE;
+    worker->local_size = setup->local_size != 0 ? setup->local_size
+                         : packet               ? LOCAL_SIZE_PACKET
+                                                : LOCAL_SIZE_SAMPLE;
     size_t most = 0;
     CL_TRY(worker,
-           clGetKernelWorkGroupInfo(worker->trace, worker->device->id, CL_KERNEL_WORK_GROUP_SIZE, sizeof most, &most,
-                                    NULL),
+           clGetKernelWorkGroupInfo(worker->trace, worker->device->id, CL_KERNEL_WORK_GROUP_SIZE, sizeof most,
+                                    &most, NULL),
            "clGetKernelWorkGroupInfo");
     if (worker->local_size > most) worker->local_size = most;
     return BP_OK;
@@ -174,8 +184,10 @@ BpStatus bp_worker_create(const BpDeviceInfo *info, const BpPacked *packed, cons
     made->replicates = setup->replicates;
     BpStatus status = bp_device_open(info, &made->device, err);
     if (status != BP_OK) goto failed;
-    BP_TRY_GOTO(status, bp_program_build(made->device, &setup->program, NULL, NULL, &made->program, err), failed);
-    BP_TRY_GOTO(status, bp_layout_check(made->device, made->program->program, packed->single_precision, err), failed);
+    BP_TRY_GOTO(status, bp_program_build(made->device, &setup->program, NULL, NULL, &made->program, err),
+                failed);
+    BP_TRY_GOTO(status, bp_layout_check(made->device, made->program->program, packed->single_precision, err),
+                failed);
     BP_TRY_GOTO(status, upload_scene(made, packed, err), failed);
     BP_TRY_GOTO(status, create_picture(made, err), failed);
     BP_TRY_GOTO(status, create_kernels(made, packed, setup, err), failed);
@@ -206,8 +218,9 @@ void bp_worker_destroy(BpWorker **worker) {
     BpWorker *w = *worker;
     if (w->device != NULL) clFinish(w->device->queue);
     for (int i = 0; i < w->flight_count; ++i) release_flight(&w->flights[i]);
-    const cl_mem buffers[] = {w->camera, w->sky,    w->materials,   w->kinds, w->looks,  w->albedos, w->boxes,
-                              w->children, w->leaves, w->slot_sphere, w->sums,  w->counts, w->tallies, w->samples};
+    const cl_mem buffers[] = {w->camera,  w->sky,    w->materials, w->kinds,  w->looks,
+                              w->albedos, w->boxes,  w->children,  w->leaves, w->slot_sphere,
+                              w->sums,    w->counts, w->tallies,   w->samples};
     for (size_t i = 0; i < sizeof buffers / sizeof buffers[0]; ++i)
         if (buffers[i] != NULL) clReleaseMemObject(buffers[i]);
     if (w->trace != NULL) clReleaseKernel(w->trace);
@@ -220,7 +233,9 @@ void bp_worker_destroy(BpWorker **worker) {
 
 /* ---- chunks -------------------------------------------------------------------------------------------- */
 
-static size_t round_up(size_t count, size_t multiple) { return (count + multiple - 1) / multiple * multiple; }
+static size_t round_up(size_t count, size_t multiple) {
+    return (count + multiple - 1) / multiple * multiple;
+}
 
 static double event_seconds(cl_event from, cl_profiling_info from_what, cl_event to) {
     cl_ulong start_ns = 0, end_ns = 0;
@@ -250,8 +265,8 @@ static BpStatus wait_for_all(BpWorker *worker, BpError *err) {
     return BP_OK;
 }
 
-static BpStatus enqueue(BpWorker *worker, cl_kernel kernel, size_t items, size_t local, cl_event *event, const char *name,
-                        BpError *err) {
+static BpStatus enqueue(BpWorker *worker, cl_kernel kernel, size_t items, size_t local, cl_event *event,
+                        const char *name, BpError *err) {
     const size_t global = round_up(items, local);
     const cl_int code =
         clEnqueueNDRangeKernel(worker->device->queue, kernel, 1, NULL, &global, &local, 0, NULL, event);
@@ -287,7 +302,8 @@ BpStatus bp_worker_start(BpWorker *worker, const BpChunk *chunk, BpError *err) {
         {worker->fold, FOLD_FIRST_SAMPLE, sizeof(cl_uint), &first_sample},
     };
     for (size_t i = 0; i < sizeof arguments / sizeof arguments[0]; ++i)
-        BP_TRY(set_argument(worker, arguments[i].kernel, arguments[i].index, arguments[i].size, arguments[i].value, err));
+        BP_TRY(set_argument(worker, arguments[i].kernel, arguments[i].index, arguments[i].size,
+                            arguments[i].value, err));
 
     struct BpFlight *flight = &worker->flights[worker->flight_count++];
     *flight = (struct BpFlight){.samples = count};
@@ -335,8 +351,10 @@ BpStatus bp_worker_collect(BpWorker *worker, BpAccumulator *accumulator, BpError
     }
     BP_TRY_GOTO(status, read_buffer(worker, worker->sums, cells * 3 * sizeof *sums, sums, err), cleanup);
     BP_TRY_GOTO(status, read_buffer(worker, worker->counts, cells * sizeof *counts, counts, err), cleanup);
-    BP_TRY_GOTO(status, read_buffer(worker, worker->tallies, (size_t)worker->pixels * 3 * sizeof *tallies, tallies, err),
-                cleanup);
+    BP_TRY_GOTO(
+        status,
+        read_buffer(worker, worker->tallies, (size_t)worker->pixels * 3 * sizeof *tallies, tallies, err),
+        cleanup);
     for (size_t i = 0; i < cells * 3; ++i) accumulator->sums[i] += sums[i];
     for (size_t i = 0; i < cells; ++i) accumulator->counts[i] += counts[i];
     for (size_t i = 0; i < worker->pixels; ++i) {
@@ -355,7 +373,8 @@ cleanup:
 BpStatus bp_worker_samples(BpWorker *worker, uint32_t count, float *values, BpError *err) {
     BP_TRY(wait_for_all(worker, err));
     const size_t numbers = (size_t)count * 4;
-    if (worker->real_size == sizeof(float)) return read_buffer(worker, worker->samples, numbers * sizeof(float), values, err);
+    if (worker->real_size == sizeof(float))
+        return read_buffer(worker, worker->samples, numbers * sizeof(float), values, err);
     double *wide = malloc(numbers * sizeof *wide);
     if (wide == NULL) return bp_fail(err, BP_ERR_MEMORY, "no memory to read %u samples back", count);
     const BpStatus status = read_buffer(worker, worker->samples, numbers * sizeof *wide, wide, err);

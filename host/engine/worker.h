@@ -35,7 +35,8 @@ typedef struct BpWorker {
     uint32_t width, replicates, pixels;
     uint32_t samples_per_item; /* pixel samples of a work-item */
     size_t local_size;
-    uint32_t samples_capacity, samples_limit; /* of the buffer of raw samples; limit: the most it may grow to */
+    uint32_t samples_capacity,
+        samples_limit; /* of the buffer of raw samples; limit: the most it may grow to */
     uint64_t scene_bytes, picture_bytes;
     /* Chunks under way, oldest first. */
     struct BpFlight {
