@@ -1,0 +1,108 @@
+/* cmd_devices.c: `ballpark devices`.
+ *
+ * In:    nothing.   Out: a table, or JSON, of every OpenCL device.
+ * Knows: BpDeviceInfo, tables on a terminal.   Does not know: OpenCL. */
+#include "commands.h"
+
+#include "json_file.h"
+
+#include <errno.h>
+#include <inttypes.h>
+#include <jansson.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+enum { COLUMNS = 8, CELL_SIZE = 260 };
+
+typedef char Cells[COLUMNS][CELL_SIZE];
+
+static const char *type_text(BpDeviceType type) {
+    return type == BP_DEVICE_CPU ? "CPU" : type == BP_DEVICE_GPU ? "GPU" : "other";
+}
+
+static void format_bytes(uint64_t bytes, char *text) {
+    const double gib = (double)bytes / (1024.0 * 1024.0 * 1024.0);
+    if (gib >= 0.95)
+        snprintf(text, CELL_SIZE, "%.1f GiB", gib);
+    else
+        snprintf(text, CELL_SIZE, "%.0f MiB", gib * 1024.0);
+}
+
+static void fill_row(const BpDeviceInfo *info, bool is_default, Cells cells) {
+    snprintf(cells[0], CELL_SIZE, "%u%s", info->number, is_default ? "*" : " ");
+    snprintf(cells[1], CELL_SIZE, "%s", type_text(info->type));
+    snprintf(cells[2], CELL_SIZE, "%s", info->name);
+    snprintf(cells[3], CELL_SIZE, "%u", info->compute_units);
+    format_bytes(info->memory_bytes, cells[4]);
+    format_bytes(info->largest_allocation_bytes, cells[5]);
+    snprintf(cells[6], CELL_SIZE, "%s", info->has_double ? "yes" : "no");
+    snprintf(cells[7], CELL_SIZE, "%s, driver %s", info->platform, info->driver);
+}
+
+static BpStatus print_table(const BpDeviceInfo *list, size_t count, unsigned default_number, BpError *err) {
+    static const Cells head = {"",       "type",          "name",   "units",
+                               "memory", "largest piece", "double", "platform and driver"};
+    static const bool right[COLUMNS] = {true, false, false, true, true, true, false, false};
+    Cells *rows = malloc((count + 1) * sizeof *rows);
+    if (rows == NULL) return bp_fail(err, BP_ERR_MEMORY, "out of memory for a table of %zu devices", count);
+    memcpy(rows[0], head, sizeof head);
+    for (size_t d = 0; d < count; ++d) fill_row(&list[d], list[d].number == default_number, rows[d + 1]);
+    int widths[COLUMNS] = {0};
+    for (size_t r = 0; r <= count; ++r)
+        for (int c = 0; c < COLUMNS; ++c)
+            if ((int)strlen(rows[r][c]) > widths[c]) widths[c] = (int)strlen(rows[r][c]);
+    for (size_t r = 0; r <= count; ++r) {
+        for (int c = 0; c < COLUMNS - 1; ++c) printf(right[c] ? "%*s  " : "%-*s  ", widths[c], rows[r][c]);
+        printf("%s\n", rows[r][COLUMNS - 1]);
+        if (r > 0 && list[r - 1].refusal[0] != '\0')
+            printf("%*s  cannot render: %s\n", widths[0], "", list[r - 1].refusal);
+    }
+    free(rows);
+    if (default_number != UINT32_MAX) printf("* used unless --device says otherwise\n");
+    return BP_OK;
+}
+
+static BpStatus write_json(const char *path, const BpDeviceInfo *list, size_t count, unsigned default_number,
+                           BpError *err) {
+    json_t *devices = json_array();
+    for (size_t d = 0; d < count && devices != NULL; ++d) {
+        const BpDeviceInfo *info = &list[d];
+        json_t *entry = json_pack(
+            "{s:i, s:b, s:s, s:s, s:s, s:s, s:s, s:s, s:i, s:I, s:I, s:b, s:s}", "number", (int)info->number,
+            "default", info->number == default_number, "type",
+            info->type == BP_DEVICE_CPU   ? "cpu"
+            : info->type == BP_DEVICE_GPU ? "gpu"
+                                          : "other",
+            "platform", info->platform, "name", info->name, "vendor", info->vendor, "version", info->version,
+            "driver", info->driver, "compute_units", (int)info->compute_units, "memory_bytes",
+            (json_int_t)info->memory_bytes, "largest_allocation_bytes",
+            (json_int_t)info->largest_allocation_bytes, "double", info->has_double, "refusal", info->refusal);
+        if (json_array_append_new(devices, entry) != 0) {
+            json_decref(devices);
+            devices = NULL;
+        }
+    }
+    json_t *root = devices != NULL ? json_pack("{s:o}", "devices", devices) : NULL;
+    return bp_json_write(root, path, err);
+}
+
+BpStatus bp_command_devices(const BpCommandLine *line, BpError *err) {
+    BpDeviceInfo *list = NULL;
+    size_t count = 0;
+    if (line->json != NULL) BP_TRY(bp_json_check(line->json, err));
+    BP_TRY(bp_devices_list(&list, &count, err));
+    /* The default also tells whether anything here can render; if not, its error says what to do. */
+    BpDeviceInfo chosen;
+    BpStatus status = bp_device_find(NULL, &chosen, err);
+    const unsigned default_number = status == BP_OK ? chosen.number : UINT32_MAX;
+    BpStatus shown = BP_OK;
+    if (line->json != NULL)
+        shown = write_json(line->json, list, count, default_number, err);
+    else if (count > 0)
+        shown = print_table(list, count, default_number, err);
+    if (shown == BP_OK && (fflush(stdout) != 0 || ferror(stdout)))
+        shown = bp_fail(err, BP_ERR_FILE, "cannot write to standard output: %s", strerror(errno));
+    free(list);
+    return shown != BP_OK ? shown : status;
+}

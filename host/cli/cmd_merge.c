@@ -1,0 +1,89 @@
+/* cmd_merge.c: `ballpark merge`.
+ *
+ * In:    accumulators of disjoint samples.   Out: the picture, or the accumulator, of them all.
+ * Knows: files, in which order they are added.   Does not know: how sums are added. */
+#include "commands.h"
+
+#include "../engine/accumulator_file.h"
+#include "report.h"
+#include "result_file.h"
+
+#include <inttypes.h>
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+
+/* A name for a sample range: "0 to 499", or the first of several. */
+static void describe_ranges(const BpAccumulator *accumulator, char *text, size_t size) {
+    size_t used = 0;
+    text[0] = '\0';
+    for (size_t r = 0; r < accumulator->range_count && used < size; ++r)
+        used += (size_t)snprintf(text + used, size - used, "%s%" PRIu64 " to %" PRIu64, r > 0 ? ", " : "",
+                                 accumulator->ranges[r].first,
+                                 accumulator->ranges[r].first + accumulator->ranges[r].count - 1);
+    if (used == 0) snprintf(text, size, "none");
+}
+
+static bool ranges_overlap(const BpAccumulator *a, const BpAccumulator *b) {
+    for (size_t i = 0; i < a->range_count; ++i)
+        for (size_t j = 0; j < b->range_count; ++j)
+            if (a->ranges[i].first < b->ranges[j].first + b->ranges[j].count &&
+                b->ranges[j].first < a->ranges[i].first + a->ranges[i].count)
+                return true;
+    return false;
+}
+
+/* Which of the files before `at` has samples of `from` already: the merged sums no longer know. */
+static const char *find_overlap(const BpCommandLine *line, size_t at, const BpAccumulator *from) {
+    for (size_t f = 0; f < at; ++f) {
+        BpAccumulator *other = NULL;
+        if (bp_accumulator_load(line->operands[f], &other, NULL) != BP_OK) continue;
+        const bool found = ranges_overlap(other, from);
+        bp_accumulator_destroy(&other);
+        if (found) return line->operands[f];
+    }
+    return NULL;
+}
+
+static BpStatus add_file(const BpCommandLine *line, size_t at, BpAccumulator *sum, BpError *err) {
+    BpAccumulator *from = NULL;
+    BP_TRY(bp_accumulator_load(line->operands[at], &from, err));
+    BpStatus status = bp_accumulator_merge(sum, from, err);
+    if (status != BP_OK) {
+        const char *other = find_overlap(line, at, from);
+        char ranges[120], reason[sizeof err->message];
+        describe_ranges(from, ranges, sizeof ranges);
+        snprintf(reason, sizeof reason, "%s", err != NULL ? err->message : "");
+        if (other != NULL)
+            bp_fail(err, status, "%s (samples %s) and %s have samples in common: %.300s", line->operands[at],
+                    ranges, other, reason);
+        else
+            bp_fail(err, status, "%s does not go with %s: %.600s", line->operands[at], line->operands[0],
+                    reason);
+    }
+    bp_accumulator_destroy(&from);
+    return status;
+}
+
+BpStatus bp_command_merge(const BpCommandLine *line, BpError *err) {
+    BpStatus status = BP_OK;
+    BpAccumulator *sum = NULL;
+    BpResultFile result;
+    if (line->output == NULL)
+        return bp_fail(err, BP_ERR_USAGE, "ballpark merge needs --output FILE: a picture, or another .bpa");
+    BP_TRY(bp_result_choose(line, line->operands[0], &result, err));
+    BP_TRY_GOTO(status, bp_accumulator_load(line->operands[0], &sum, err), done);
+    for (size_t f = 1; f < line->operand_count; ++f) BP_TRY_GOTO(status, add_file(line, f, sum, err), done);
+    BP_TRY_GOTO(status, bp_result_write(line, &result, sum, (BpTransfer)sum->transfer, err), done);
+    if (!line->quiet) {
+        char nrmse[32], ranges[120];
+        bp_format_error(bp_accumulator_nrmse(sum), nrmse, sizeof nrmse);
+        describe_ranges(sum, ranges, sizeof ranges);
+        fprintf(stderr, "%s: %" PRIu32 "x%" PRIu32 ", %" PRIu64 " samples a pixel (%s%s), error %s\n",
+                bp_result_name(&result), sum->width, sum->height, bp_accumulator_range_total(sum), ranges,
+                sum->partial ? ", not all of them in every pixel" : "", nrmse);
+    }
+done:
+    bp_accumulator_destroy(&sum);
+    return status;
+}

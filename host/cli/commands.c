@@ -1,0 +1,89 @@
+/* commands.c: the table of commands; see commands.h. */
+#include "commands.h"
+
+#include "../scene/scene_document.h"
+
+#include <stdint.h>
+#include <string.h>
+
+#define TAKES(name) ((uint64_t)1 << BP_OPTION_##name)
+
+/* What decides which radiance a pixel gets. */
+#define TAKES_DRAWING                                                                                        \
+    (TAKES(WIDTH) | TAKES(DEPTH) | TAKES(SEED) | TAKES(DEVICE) | TAKES(PRECISION) | TAKES(MATH) |            \
+     TAKES(NUMERICS) | TAKES(KERNEL) | TAKES(EFFECTS))
+
+const BpCommand bp_commands[] = {
+    {
+        .name = "merge",
+        .operands = "FILE.bpa...",
+        .operands_min = 1,
+        .operands_max = SIZE_MAX,
+        .summary = "make one picture of renders of different samples",
+        .description =
+            "Adds up accumulators (.bpa) of the same scene, seed and settings whose sample numbers do "
+            "not overlap, and writes the picture, or another .bpa. The result is that of one run over "
+            "all samples, bit for bit: a long render can be shared among machines of one kind, or "
+            "carried on later.",
+        .examples = "  ballpark render cover.json --spp 500 -o a.bpa\n"
+                    "  ballpark render cover.json --spp 500 --first-sample 500 -o b.bpa\n"
+                    "  ballpark merge a.bpa b.bpa -o cover.png\n",
+        .options = TAKES(OUTPUT) | TAKES(FORMAT) | TAKES(TRANSFER) | TAKES(QUIET),
+        .run = bp_command_merge,
+    },
+    {
+        .name = "devices",
+        .operands = "",
+        .summary = "list the OpenCL devices",
+        .description =
+            "Lists every device of every OpenCL platform, and which one is used when --device says "
+            "nothing: a GPU if there is one, else a CPU.",
+        .examples = "  ballpark devices\n"
+                    "  ballpark devices --json -       the same for programs\n",
+        .options = TAKES(JSON),
+        .run = bp_command_devices,
+    },
+    {
+        .name = "generate",
+        .operands = "cover|field",
+        .operands_min = 1,
+        .operands_max = 1,
+        .summary = "make a scene: the book's cover, or a field of spheres",
+        .description =
+            "cover: the cover of the book as a scene file; the same seed gives the same spheres "
+            "everywhere. field: spheres of random place, size and colour as a PLY file, to be named "
+            "in the \"clouds\" of a scene.",
+        .examples = "  ballpark generate cover -o cover.json\n"
+                    "  ballpark generate cover --grid 50 --seed 7 -o wide.json     10,000 spheres\n"
+                    "  ballpark generate field --count 10000000 -o field.ply\n",
+        .options = TAKES(OUTPUT) | TAKES(GRID) | TAKES(COUNT) | TAKES(SEED) | TAKES(EDITION) | TAKES(QUIET),
+        .run = bp_command_generate,
+    },
+    {
+        .name = "help",
+        .operands = "[COMMAND]",
+        .operands_max = 1,
+        .summary = "explain a command",
+        .description = "Explains the program, or one command with its options and examples.",
+        .examples = "  ballpark help render\n",
+        .run = bp_command_help,
+    },
+};
+const size_t bp_command_count = sizeof bp_commands / sizeof bp_commands[0];
+
+BpStatus bp_command_find(const char *name, const BpCommand **command, BpError *err) {
+    const char *names[sizeof bp_commands / sizeof bp_commands[0]];
+    for (size_t c = 0; c < bp_command_count; ++c) {
+        if (strcmp(name, bp_commands[c].name) == 0) {
+            *command = &bp_commands[c];
+            return BP_OK;
+        }
+        names[c] = bp_commands[c].name;
+    }
+    const char *nearest = bp_nearest_name(name, names, bp_command_count);
+    char shown[80];
+    bp_printable(name, shown, sizeof shown);
+    if (nearest != NULL)
+        return bp_fail(err, BP_ERR_USAGE, "unknown command \"%s\"; did you mean %s?", shown, nearest);
+    return bp_fail(err, BP_ERR_USAGE, "unknown command \"%s\"; ballpark --help shows those there are", shown);
+}

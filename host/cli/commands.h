@@ -1,0 +1,43 @@
+/* commands.h: the commands of the program.
+ *
+ * In:    a checked command line.   Out: files, text on standard output, messages on standard error.
+ * Knows: which commands there are.   Does not know: how the command line was written.
+ *
+ * A command returns its failure in `err` and prints no error itself: main does, and exits with the code that
+ * belongs to the status. What a command answers (a table, a document) goes to standard output; what it says
+ * on the way (progress, notes) goes to standard error, and is silenced by --quiet. */
+#ifndef BP_CLI_COMMANDS_H
+#define BP_CLI_COMMANDS_H
+
+#include "options.h"
+
+typedef BpStatus BpCommandRun(const BpCommandLine *line, BpError *err);
+
+typedef struct BpCommand {
+    const char *name;
+    const char *operands; /* "SCENE", as usage writes it */
+    size_t operands_min, operands_max;
+    const char *summary;     /* one line */
+    const char *description; /* paragraphs, for `ballpark help NAME` */
+    const char *examples;    /* whole command lines with a word each */
+    uint64_t options;        /* bit o: takes option o */
+    BpCommandRun *run;
+} BpCommand;
+
+/* Every command, in the order of the help, and how many they are. */
+extern const BpCommand bp_commands[];
+extern const size_t bp_command_count;
+
+/* The command of that name. BP_ERR_USAGE names the nearest. */
+BpStatus bp_command_find(const char *name, const BpCommand **command, BpError *err);
+
+BpCommandRun bp_command_render;   /* cmd_render.c */
+BpCommandRun bp_command_explain;  /* cmd_explain.c */
+BpCommandRun bp_command_check;    /* cmd_check.c */
+BpCommandRun bp_command_merge;    /* cmd_merge.c */
+BpCommandRun bp_command_bench;    /* cmd_bench.c */
+BpCommandRun bp_command_devices;  /* cmd_devices.c */
+BpCommandRun bp_command_generate; /* cmd_generate.c */
+BpCommandRun bp_command_help;     /* help.c */
+
+#endif

@@ -1,0 +1,39 @@
+/* json_file.c: see json_file.h. */
+#include "json_file.h"
+
+#include "../base/output_file.h"
+
+#include <errno.h>
+#include <string.h>
+
+static bool dump(const json_t *root, FILE *stream) {
+    return json_dumpf(root, stream, JSON_INDENT(2) | JSON_REAL_PRECISION(17)) == 0 &&
+           fputc('\n', stream) != EOF && fflush(stream) == 0;
+}
+
+BpStatus bp_json_write(json_t *root, const char *path, BpError *err) {
+    BpStatus status = BP_OK;
+    BpOutputFile file = {0};
+    if (root == NULL)
+        return bp_fail(err, BP_ERR_MEMORY, "out of memory, or a name that is not UTF-8, for the document %s",
+                       path);
+    if (strcmp(path, "-") == 0) {
+        if (!dump(root, stdout))
+            status = bp_fail(err, BP_ERR_FILE, "cannot write to standard output: %s", strerror(errno));
+        goto done;
+    }
+    BP_TRY_GOTO(status, bp_output_open(path, &file, err), done);
+    if (!dump(root, file.stream)) {
+        status = bp_output_fail(err, "write", path, errno);
+        bp_output_discard(&file);
+        goto done;
+    }
+    status = bp_output_commit(&file, err);
+done:
+    json_decref(root);
+    return status;
+}
+
+BpStatus bp_json_check(const char *path, BpError *err) {
+    return strcmp(path, "-") == 0 ? BP_OK : bp_output_check(path, err);
+}

@@ -1,0 +1,18 @@
+/* json_file.h: a JSON document to a file, whole or not at all, or to standard output.
+ *
+ * Knows: jansson, output files.   Does not know: what the document says. */
+#ifndef BP_CLI_JSON_FILE_H
+#define BP_CLI_JSON_FILE_H
+
+#include "../base/status.h"
+
+#include <jansson.h>
+
+/* Writes `root`, indented, and releases it. "-": standard output. A NULL root is memory that ran out
+ * (BP_ERR_MEMORY), so that the result of json_pack() can be handed over unseen. */
+BpStatus bp_json_write(json_t *root, const char *path, BpError *err);
+
+/* Whether `path` can be written; before work begins. */
+BpStatus bp_json_check(const char *path, BpError *err);
+
+#endif

@@ -1,0 +1,94 @@
+/* option_table.c: see option_table.h. */
+#include "option_table.h"
+
+#include "../scene/scene_document.h"
+
+#include <stdio.h>
+#include <string.h>
+
+typedef struct OptionRow {
+    const char *name, *metavar, *help;
+    char letter;
+} OptionRow;
+
+static const OptionRow rows[BP_OPTION_NUMBER] = {
+    [BP_OPTION_OUTPUT] = {"output", "FILE", "where the result goes; \"-\" is standard output", 'o'},
+    [BP_OPTION_SPP] = {"spp", "N", "samples a pixel (the scene's own number if not given)", 0},
+    [BP_OPTION_ERROR] = {"error", "PERCENT",
+                         "stop when the error bar of the picture (NRMSE) is below PERCENT", 0},
+    [BP_OPTION_TIME] = {"time", "SECONDS", "stop after SECONDS of rendering", 0},
+    [BP_OPTION_WIDTH] = {"width", "N", "pixels across; the height follows from the scene", 0},
+    [BP_OPTION_DEPTH] = {"depth", "N", "ray segments a path may have; 0 is black, 1 sees sky and lamps", 0},
+    [BP_OPTION_SEED] = {"seed", "N", "what all randomness follows from; 64 bits, decimal or 0x...", 0},
+    [BP_OPTION_FIRST_SAMPLE] = {"first-sample", "N", "number of the first sample, for runs to be merged", 0},
+    [BP_OPTION_DEVICE] = {"device", "N|NAME|all",
+                          "number or part of a name, see ballpark devices; gpu, cpu, all", 0},
+    [BP_OPTION_PRECISION] = {"precision", "single|double", "numbers the kernel computes in (single)", 0},
+    [BP_OPTION_MATH] = {"math", "strict|fast", "fast allows the compiler to round differently (strict)", 0},
+    [BP_OPTION_NUMERICS] = {"numerics", "robust|plain",
+                            "plain is the cheap intersection, with its failures (robust)", 0},
+    [BP_OPTION_SAMPLER] = {"sampler", "independent", "how random numbers are drawn", 0},
+    [BP_OPTION_EFFECTS] = {"effects", "all", "build every effect into the kernel, also those the scene lacks",
+                           0},
+    [BP_OPTION_KERNEL] = {"kernel", "sample|packet", "form of the kernel; the picture is the same", 0},
+    [BP_OPTION_TRANSFER] = {"transfer", "gamma2|srgb|linear", "curve of the picture's bytes (the scene's)",
+                            0},
+    [BP_OPTION_FORMAT] = {"format", "FORMAT", "png, ppm, ppm-ascii, pfm, exr or bpa, whatever FILE's ending",
+                          0},
+    [BP_OPTION_STATS] = {"stats", "FILE",
+                         "write times, counts and the error as JSON; \"-\" is standard output", 0},
+    [BP_OPTION_MEASURE] = {"measure", "", "measure what each effect costs", 0},
+    [BP_OPTION_PIXEL] = {"pixel", "X,Y", "follow one path of this pixel, step by step; 0,0 is top left", 0},
+    [BP_OPTION_JSON] = {"json", "FILE", "write the result as JSON; \"-\" is standard output", 0},
+    [BP_OPTION_MAP] = {"map", "FILE", "write a picture of where the two differ", 0},
+    [BP_OPTION_GRID] = {"grid", "G", "half the side of the square of small spheres (11)", 0},
+    [BP_OPTION_COUNT] = {"count", "N", "number of spheres of a field (1000000)", 0},
+    [BP_OPTION_EDITION] = {"edition", "1|3|3rust|4", "edition of the book whose cover it is (4)", 0},
+    [BP_OPTION_QUIET] = {"quiet", "", "say nothing but errors", 'q'},
+    [BP_OPTION_HELP] = {"help", "", "this text", 'h'},
+    [BP_OPTION_VERSION] = {"version", "", "version and commit", 'V'},
+};
+
+const char *bp_option_name(BpOption option) {
+    return rows[option].name;
+}
+const char *bp_option_metavar(BpOption option) {
+    return rows[option].metavar;
+}
+const char *bp_option_help(BpOption option) {
+    return rows[option].help;
+}
+char bp_option_letter(BpOption option) {
+    return rows[option].letter;
+}
+
+void bp_option_getopt_tables(struct option *long_options, char *letters) {
+    size_t used = strlen(letters);
+    for (int o = 0; o < BP_OPTION_NUMBER; ++o) {
+        const bool has_value = rows[o].metavar[0] != '\0';
+        long_options[o] = (struct option){rows[o].name, has_value ? required_argument : no_argument, NULL,
+                                          BP_OPTION_LONG + o};
+        if (rows[o].letter != 0) {
+            letters[used++] = rows[o].letter;
+            if (has_value) letters[used++] = ':';
+        }
+    }
+    long_options[BP_OPTION_NUMBER] = (struct option){NULL, 0, NULL, 0};
+    letters[used] = '\0';
+}
+
+BpOption bp_option_of_result(int getopt_result) {
+    if (getopt_result >= BP_OPTION_LONG) return (BpOption)(getopt_result - BP_OPTION_LONG);
+    int option = 0;
+    while (option < BP_OPTION_NUMBER - 1 && rows[option].letter != (char)getopt_result) ++option;
+    return (BpOption)option;
+}
+
+const char *bp_option_nearest(const char *written, const BpCommand *command) {
+    const char *names[BP_OPTION_NUMBER];
+    size_t count = 0;
+    for (int o = 0; o < BP_OPTION_NUMBER; ++o)
+        if (o == BP_OPTION_HELP || command == NULL || (command->options >> o & 1u) != 0)
+            names[count++] = rows[o].name;
+    return bp_nearest_name(written + strspn(written, "-"), names, count);
+}

@@ -1,0 +1,59 @@
+/* report.c: see report.h. */
+#include "report.h"
+
+#include <inttypes.h>
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+
+const char *bp_format_error(double nrmse, char *text, size_t size) {
+    const double percent = 100.0 * nrmse;
+    if (!isfinite(percent))
+        snprintf(text, size, "unknown");
+    else
+        snprintf(text, size, percent >= 9.95 ? "%.0f %%" : percent >= 0.995 ? "%.1f %%" : "%.2g %%", percent);
+    return text;
+}
+
+const char *bp_format_seconds(double seconds, char *text, size_t size) {
+    if (!(seconds < 1.0e9)) {
+        snprintf(text, size, "ages");
+    } else if (seconds < 9.95) {
+        snprintf(text, size, seconds < 0.995 ? "%.2f s" : "%.1f s", seconds);
+    } else if (seconds < 99.5) {
+        snprintf(text, size, "%.0f s", seconds);
+    } else {
+        const long whole = lround(seconds);
+        if (whole < 6000)
+            snprintf(text, size, "%ld min %02ld s", whole / 60, whole % 60);
+        else if (whole < 100L * 3600)
+            snprintf(text, size, "%ld h %02ld min", whole / 3600, whole / 60 % 60);
+        else
+            snprintf(text, size, "%ld days", (whole + 43200) / 86400);
+    }
+    return text;
+}
+
+const char *bp_format_count(double count, char *text, size_t size) {
+    static const char *const words[] = {"", " thousand", " million", " billion", " trillion"};
+    size_t word = 0;
+    while (count >= 999.5 && word + 1 < sizeof words / sizeof words[0]) {
+        count /= 1000.0;
+        ++word;
+    }
+    const int decimals = word == 0 || count >= 99.95 ? 0 : count >= 9.995 ? 1 : 2;
+    snprintf(text, size, "%.*f%s", decimals, count, words[word]);
+    return text;
+}
+
+const char *bp_format_whole(uint64_t number, char *text, size_t size) {
+    char digits[24];
+    const size_t length = (size_t)snprintf(digits, sizeof digits, "%" PRIu64, number);
+    size_t used = 0;
+    for (size_t i = 0; i < length && used + 2 < size; ++i) {
+        if (i > 0 && (length - i) % 3 == 0) text[used++] = ',';
+        text[used++] = digits[i];
+    }
+    text[used] = '\0';
+    return text;
+}

@@ -1,0 +1,88 @@
+/* result_file.c: see result_file.h. */
+#include "result_file.h"
+
+#include "../base/output_file.h"
+#include "../engine/accumulator_file.h"
+#include "../image/image.h"
+
+#include <stdio.h>
+#include <string.h>
+#include <unistd.h>
+
+static const char *format_ending(BpFormat format) {
+    switch (format) {
+    case BP_FORMAT_PNG:
+        return ".png";
+    case BP_FORMAT_PPM:
+    case BP_FORMAT_PPM_ASCII:
+        return ".ppm";
+    case BP_FORMAT_PFM:
+        return ".pfm";
+    case BP_FORMAT_EXR:
+        return ".exr";
+    case BP_FORMAT_BPA:
+        return ".bpa";
+    }
+    return "";
+}
+
+/* The last part of `path` with another ending, in the current folder. */
+static BpStatus default_name(const char *path, BpFormat format, BpResultFile *result, BpError *err) {
+    const char *base = strrchr(path, '/');
+    base = base == NULL ? path : base + 1;
+    const char *dot = strrchr(base, '.');
+    const int stem = dot == NULL || dot == base ? (int)strlen(base) : (int)(dot - base);
+    const int length =
+        snprintf(result->path, sizeof result->path, "%.*s%s", stem, base, format_ending(format));
+    if (length >= (int)sizeof result->path)
+        return bp_fail(err, BP_ERR_FILE, "the name %.200s... is too long", base);
+    return BP_OK;
+}
+
+BpStatus bp_result_choose(const BpCommandLine *line, const char *default_path, BpResultFile *result,
+                          BpError *err) {
+    const bool has_format = bp_option_given(line, BP_OPTION_FORMAT);
+    result->format = has_format ? line->format : BP_FORMAT_PNG;
+    if (line->output == NULL) {
+        BP_TRY(default_name(default_path, result->format, result, err));
+        return bp_output_check(result->path, err);
+    }
+    const size_t length = strlen(line->output);
+    if (length >= sizeof result->path)
+        return bp_fail(err, BP_ERR_FILE, "the path after --output is too long");
+    memcpy(result->path, line->output, length + 1);
+    if (strcmp(line->output, "-") == 0) {
+        if (isatty(STDOUT_FILENO) && result->format != BP_FORMAT_PPM_ASCII)
+            return bp_fail(
+                err, BP_ERR_USAGE,
+                "--output -: a picture would be written to the terminal; redirect standard output to a "
+                "file or a pipe");
+        return BP_OK;
+    }
+    if (!has_format && !bp_format_from_path(line->output, &result->format))
+        return bp_fail(
+            err, BP_ERR_USAGE,
+            "--output %.400s: the ending names no format; use .png .ppm .pfm .exr .bpa, or say --format",
+            line->output);
+    return bp_output_check(result->path, err);
+}
+
+BpStatus bp_result_write(const BpCommandLine *line, const BpResultFile *result,
+                         const BpAccumulator *accumulator, BpTransfer transfer, BpError *err) {
+    const bool to_stream = strcmp(result->path, "-") == 0;
+    if (result->format == BP_FORMAT_BPA)
+        return to_stream ? bp_accumulator_save_stream(accumulator, stdout, err)
+                         : bp_accumulator_save(accumulator, result->path, err);
+    if (bp_option_given(line, BP_OPTION_TRANSFER)) transfer = line->transfer;
+    BpPicture picture = {0};
+    BP_TRY(bp_accumulator_picture(accumulator, &picture, err));
+    const BpStatus status = to_stream
+                                ? bp_picture_write_stream(&picture, stdout, result->format, transfer, err)
+                                : bp_picture_write(&picture, result->path, result->format, transfer, err);
+    bp_picture_clear(&picture);
+    return status;
+}
+
+const char *bp_result_name(const BpResultFile *result) {
+    return strcmp(result->path, "-") == 0 ? "standard output" : result->path;
+}

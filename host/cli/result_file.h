@@ -1,0 +1,29 @@
+/* result_file.h: an accumulator as the picture that -o, --format and --transfer ask for.
+ *
+ * In:    the command line, an accumulator.   Out: a file, or bytes on standard output.
+ * Knows: output names and formats.           Does not know: how the sums were made. */
+#ifndef BP_CLI_RESULT_FILE_H
+#define BP_CLI_RESULT_FILE_H
+
+#include "../engine/accumulator.h"
+#include "options.h"
+
+typedef struct BpResultFile {
+    char path[4096]; /* "-": standard output */
+    BpFormat format;
+} BpResultFile;
+
+/* Where the result goes: -o, or `default_path` with its ending replaced by that of the format, in the current
+ * folder; in which format: --format, else by the ending, else PNG. Finds out that it can be written, before
+ * any work is done. BP_ERR_USAGE (no format has that ending; binary data to a terminal) or BP_ERR_FILE. */
+BpStatus bp_result_choose(const BpCommandLine *line, const char *default_path, BpResultFile *result,
+                          BpError *err);
+
+/* Writes it. `transfer`: unless --transfer says otherwise. */
+BpStatus bp_result_write(const BpCommandLine *line, const BpResultFile *result,
+                         const BpAccumulator *accumulator, BpTransfer transfer, BpError *err);
+
+/* "cover.png", or "standard output". */
+const char *bp_result_name(const BpResultFile *result);
+
+#endif

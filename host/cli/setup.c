@@ -1,0 +1,63 @@
+/* setup.c: see setup.h. */
+#include "setup.h"
+
+#include <inttypes.h>
+#include <stdlib.h>
+#include <string.h>
+
+BpStatus bp_setup_scene(const BpCommandLine *line, const char *path, BpScene **scene, BpError *err) {
+    BP_TRY(bp_scene_load(path, scene, err));
+    if (!bp_option_given(line, BP_OPTION_WIDTH)) return BP_OK;
+    const BpStatus status = bp_scene_set_width(*scene, line->width, err);
+    if (status != BP_OK) bp_scene_destroy(scene);
+    return status;
+}
+
+BpStatus bp_setup_options(const BpCommandLine *line, const BpScene *scene, BpRenderOptions *options,
+                          BpError *err) {
+    bp_render_defaults(scene, options);
+    if (bp_option_given(line, BP_OPTION_SPP)) options->samples_per_pixel = line->spp;
+    if (bp_option_given(line, BP_OPTION_DEPTH)) options->max_depth = line->depth;
+    if (bp_option_given(line, BP_OPTION_SEED)) options->seed = line->seed;
+    if (bp_option_given(line, BP_OPTION_FIRST_SAMPLE)) options->first_sample = line->first_sample;
+    if (bp_option_given(line, BP_OPTION_PRECISION)) options->precision = line->precision;
+    if (bp_option_given(line, BP_OPTION_MATH)) options->math = line->math;
+    if (bp_option_given(line, BP_OPTION_NUMERICS)) options->numerics = line->numerics;
+    if (bp_option_given(line, BP_OPTION_SAMPLER)) options->sampler = line->sampler;
+    if (bp_option_given(line, BP_OPTION_KERNEL)) options->kernel = line->kernel;
+    options->all_effects = line->all_effects;
+    const uint64_t samples_max = ((uint64_t)1 << 32) - options->first_sample;
+    if (options->samples_per_pixel > samples_max)
+        return bp_fail(err, BP_ERR_USAGE,
+                       "--first-sample %" PRIu64 " leaves numbers for %" PRIu64 " samples, %" PRIu64
+                       " are asked for",
+                       options->first_sample, samples_max, options->samples_per_pixel);
+    return BP_OK;
+}
+
+static BpStatus all_devices(BpDeviceInfo **devices, size_t *count, BpError *err) {
+    BP_TRY(bp_devices_list(devices, count, err));
+    size_t kept = 0;
+    for (size_t d = 0; d < *count; ++d)
+        if ((*devices)[d].refusal[0] == '\0') (*devices)[kept++] = (*devices)[d];
+    *count = kept;
+    if (kept > 0) return BP_OK;
+    free(*devices);
+    *devices = NULL;
+    BpDeviceInfo none;
+    const BpStatus status = bp_device_find(NULL, &none, err); /* says what to install */
+    return status != BP_OK ? status : bp_fail(err, BP_ERR_DEVICE, "no OpenCL device that can render");
+}
+
+BpStatus bp_setup_devices(const BpCommandLine *line, BpDeviceInfo **devices, size_t *count, BpError *err) {
+    if (line->device != NULL && strcmp(line->device, "all") == 0) return all_devices(devices, count, err);
+    *devices = malloc(sizeof **devices);
+    if (*devices == NULL) return bp_fail(err, BP_ERR_MEMORY, "out of memory for a device's description");
+    const BpStatus status = bp_device_find(line->device, *devices, err);
+    *count = status == BP_OK ? 1 : 0;
+    if (status != BP_OK) {
+        free(*devices);
+        *devices = NULL;
+    }
+    return status;
+}

@@ -1,0 +1,21 @@
+/* setup.h: from a command line to what the library wants: the scene, the options, the devices.
+ *
+ * Knows: the command line, the public interface.   Does not know: what a command does with them. */
+#ifndef BP_CLI_SETUP_H
+#define BP_CLI_SETUP_H
+
+#include "options.h"
+
+/* Loads `path` and applies --width. */
+BpStatus bp_setup_scene(const BpCommandLine *line, const char *path, BpScene **scene, BpError *err);
+
+/* The scene's own settings, overridden by the options that were given: --spp --depth --seed --first-sample
+ * --precision --math --numerics --sampler --effects --kernel. BP_ERR_USAGE when they do not go together. */
+BpStatus bp_setup_options(const BpCommandLine *line, const BpScene *scene, BpRenderOptions *options,
+                          BpError *err);
+
+/* The devices that --device means: one, or with "all" every device that can render. Free *devices with
+ * free(). Never empty on success. */
+BpStatus bp_setup_devices(const BpCommandLine *line, BpDeviceInfo **devices, size_t *count, BpError *err);
+
+#endif

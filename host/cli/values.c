@@ -1,0 +1,69 @@
+/* values.c: see values.h. */
+#include "values.h"
+
+#include <errno.h>
+#include <inttypes.h>
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+BpStatus bp_value_whole(const char *option, const char *text, uint64_t min, uint64_t max, uint64_t *value,
+                        BpError *err) {
+    const bool hexadecimal = text[0] == '0' && (text[1] == 'x' || text[1] == 'X');
+    const char *digits = hexadecimal ? text + 2 : text;
+    const char *allowed = hexadecimal ? "0123456789abcdefABCDEF" : "0123456789";
+    const bool well_formed = digits[0] != '\0' && digits[strspn(digits, allowed)] == '\0';
+    errno = 0;
+    const unsigned long long number = well_formed ? strtoull(digits, NULL, hexadecimal ? 16 : 10) : 0;
+    if (!well_formed || errno == ERANGE || number < min || number > max)
+        return bp_fail(err, BP_ERR_USAGE,
+                       "%s: expected a whole number from %" PRIu64 " to %" PRIu64 ", found \"%.80s\"", option,
+                       min, max, text);
+    *value = number;
+    return BP_OK;
+}
+
+BpStatus bp_value_real(const char *option, const char *text, double min, double max, double *value,
+                       BpError *err) {
+    char *end = NULL;
+    const bool plain = text[0] != '\0' && text[strspn(text, "+-.0123456789eE")] == '\0';
+    const double number = plain ? strtod(text, &end) : 0.0;
+    if (!plain || *end != '\0' || !(number > min) || !(number <= max))
+        return bp_fail(err, BP_ERR_USAGE, "%s: expected a number above %g, up to %g, found \"%.80s\"", option,
+                       min, max, text);
+    *value = number;
+    return BP_OK;
+}
+
+BpStatus bp_value_choice(const char *option, const char *text, const char *const *words, size_t count,
+                         unsigned *index, BpError *err) {
+    for (size_t i = 0; i < count; ++i) {
+        if (strcmp(text, words[i]) == 0) {
+            *index = (unsigned)i;
+            return BP_OK;
+        }
+    }
+    char list[256] = "";
+    for (size_t i = 0, used = 0; i < count && used < sizeof list; ++i)
+        used += (size_t)snprintf(list + used, sizeof list - used, "%s%s",
+                                 i == 0 ? "" : (i + 1 == count ? " or " : ", "), words[i]);
+    return bp_fail(err, BP_ERR_USAGE, "%s: expected %s, found \"%.80s\"", option, list, text);
+}
+
+BpStatus bp_value_pair(const char *option, const char *text, uint64_t max, uint32_t *x, uint32_t *y,
+                       BpError *err) {
+    const char *comma = strchr(text, ',');
+    char first[32];
+    uint64_t numbers[2];
+    if (comma == NULL || (size_t)(comma - text) >= sizeof first)
+        return bp_fail(err, BP_ERR_USAGE, "%s: expected two whole numbers X,Y, found \"%.80s\"", option,
+                       text);
+    memcpy(first, text, (size_t)(comma - text));
+    first[comma - text] = '\0';
+    BP_TRY(bp_value_whole(option, first, 0, max, &numbers[0], err));
+    BP_TRY(bp_value_whole(option, comma + 1, 0, max, &numbers[1], err));
+    *x = (uint32_t)numbers[0];
+    *y = (uint32_t)numbers[1];
+    return BP_OK;
+}

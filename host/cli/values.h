@@ -1,0 +1,26 @@
+/* values.h: the texts after options, turned into checked values.
+ *
+ * In:    the option's name, its text, the range.   Out: the value, or BP_ERR_USAGE that names all three.
+ * Knows: how numbers are written.   Does not know: which options there are. */
+#ifndef BP_CLI_VALUES_H
+#define BP_CLI_VALUES_H
+
+#include "../base/status.h"
+
+/* A whole number, decimal or 0x hexadecimal, min <= value <= max; no sign, no blanks, nothing behind it. */
+BpStatus bp_value_whole(const char *option, const char *text, uint64_t min, uint64_t max, uint64_t *value,
+                        BpError *err);
+
+/* A number, min < value <= max (finite, C's spelling without hexadecimal, infinity and NaN). */
+BpStatus bp_value_real(const char *option, const char *text, double min, double max, double *value,
+                       BpError *err);
+
+/* One of `count` words; *index is its place. The error lists them. */
+BpStatus bp_value_choice(const char *option, const char *text, const char *const *words, size_t count,
+                         unsigned *index, BpError *err);
+
+/* "X,Y", both whole and up to `max`. */
+BpStatus bp_value_pair(const char *option, const char *text, uint64_t max, uint32_t *x, uint32_t *y,
+                       BpError *err);
+
+#endif

@@ -1,0 +1,44 @@
+/* main.c: the program: read the command line, run the command, say what went wrong.
+ *
+ * In:    argc, argv.   Out: an exit code (BP_STATUS_LIST).
+ * Knows: how an error is shown.   Does not know: what any command does. */
+#include "cli/commands.h"
+
+#include <signal.h>
+#include <stdio.h>
+#include <string.h>
+
+/* "ballpark: file:line:column: message", then the attachment (a build log) as it is. */
+static void print_error(const BpError *err, BpStatus status) {
+    /* A message about a file as a whole often names it already. */
+    const bool names_file = err->line == 0 && strstr(err->message, err->file) != NULL;
+    fputs("ballpark: ", stderr);
+    if (err->file[0] != '\0' && !names_file) {
+        fputs(err->file, stderr);
+        if (err->line > 0) fprintf(stderr, ":%d", err->line);
+        if (err->line > 0 && err->column > 0) fprintf(stderr, ":%d", err->column);
+        fputs(": ", stderr);
+    }
+    fprintf(stderr, "%s\n", err->message[0] != '\0' ? err->message : bp_status_name(status));
+    if (err->attachment != NULL) fprintf(stderr, "\n%s\n", err->attachment);
+}
+
+int main(int argc, char **argv) {
+    BpCommandLine line;
+    BpError err = {0};
+    /* A reader that goes away is a failed write like any other: reported, and nothing is left half done. */
+    signal(SIGPIPE, SIG_IGN);
+
+    BpStatus status = bp_command_line_parse(argc, argv, &line, &err);
+    if (status == BP_OK) {
+        if (line.version)
+            printf("ballpark %s\n", bp_version());
+        else if (line.help)
+            status = bp_help_print(line.command, &err);
+        else
+            status = line.command->run(&line, &err);
+    }
+    if (status != BP_OK) print_error(&err, status);
+    bp_error_clear(&err);
+    return bp_status_exit_code(status);
+}
