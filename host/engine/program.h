@@ -12,6 +12,9 @@
 
 #include "device.h"
 
+/* The embedded text of one file of kernels/, static; NULL when there is none of that name. */
+const char *bp_kernel_file(const char *name);
+
 typedef struct BpProgramOptions {
     uint32_t effects; /* bits of effects.h */
     BpPrecision precision;

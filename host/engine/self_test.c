@@ -1,0 +1,314 @@
+/* self_test.c: the known answers, and the comparison; see self_test.h. */
+#include "self_test.h"
+#include "program.h"
+
+#define BP_HOST
+#include "scene_types.h"
+
+#include <math.h>
+#include <stddef.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#define ITEMS 512u
+#define LAYOUT_WORDS 6u
+
+/* name, allowed error in units in the last place of a float (0: every bit), needs double, what it shows */
+#define COLUMN_LIST(X)                                                                                       \
+    X(INTEGERS, 0.0, false, "32-bit integer arithmetic")                                                     \
+    X(LONGS, 0.0, false, "64-bit integer arithmetic")                                                        \
+    X(FIXED_POINT, 0.0, false, "conversion of floats to 64-bit integers")                                    \
+    X(WALK, 0.0, false, "a loop with a private array")                                                       \
+    X(UNIT, 0.0, false, "uniform numbers from random bits")                                                  \
+    X(SUM, 0.0, false, "rounding of a + b")                                                                  \
+    X(PRODUCT, 0.0, false, "rounding of a * b")                                                              \
+    X(CONTRACTION, 0.0, false, "a * b - c is fused although FP_CONTRACT is off, that is")                    \
+    X(FMA, 0.0, false, "fma(a, b, c)")                                                                       \
+    X(FMA_RESIDUE, 0.0, false, "the exact error of a product by fma")                                        \
+    X(DIVIDE, 2.5, false, "a / b within 2.5 units in the last place")                                        \
+    X(SQRT, 3.0, false, "sqrt(a) within 3 units in the last place")                                          \
+    X(SUM_RESIDUE, 0.0, false, "the exact error of a sum")                                                   \
+    X(SPECIAL, 0.0, false, "NaN and infinities")                                                             \
+    X(NAN_BITS, 0.0, false, "the bits of a NaN")                                                             \
+    X(LANES, 0.0, false, "comparing and choosing in vectors of eight")                                       \
+    X(DOUBLE_FMA, 0.0, true, "the exact error of a product of doubles by fma")                               \
+    X(DOUBLE_DIVIDE, 0.0, true, "rounding of x / y in double")                                               \
+    X(DOUBLE_SQRT, 0.0, true, "rounding of sqrt(x) in double")                                               \
+    X(DOUBLE_CONTRACTION, 0.0, true, "x * y - z in double is fused although FP_CONTRACT is off, that is")
+
+typedef enum Column {
+#define COLUMN_ENUM(name, ulps, needs_double, text) COLUMN_##name,
+    COLUMN_LIST(COLUMN_ENUM)
+#undef COLUMN_ENUM
+        COLUMN_COUNT
+} Column;
+
+static const struct {
+    const char *name, *text;
+    double ulps;
+    bool needs_double;
+} columns[] = {
+#define COLUMN_ENTRY(name, ulps, needs_double, text) {#name, text, ulps, needs_double},
+    COLUMN_LIST(COLUMN_ENTRY)
+#undef COLUMN_ENTRY
+};
+
+typedef struct Inputs {
+    uint32_t uints[ITEMS * 2];
+    float floats[ITEMS * 5 + 8]; /* a, b, c, 0, a NaN; eight more for the last vector load */
+} Inputs;
+
+static uint32_t float_bits(float x) {
+    uint32_t bits;
+    memcpy(&bits, &x, sizeof bits);
+    return bits;
+}
+static float bits_float(uint32_t bits) {
+    float x;
+    memcpy(&x, &bits, sizeof x);
+    return x;
+}
+static uint32_t folded_double_bits(double x) {
+    uint64_t bits;
+    memcpy(&bits, &x, sizeof bits);
+    return (uint32_t)bits ^ (uint32_t)(bits >> 32);
+}
+
+/* A quiet NaN that carries some of `word`. */
+static uint32_t nan_bits(uint32_t word) {
+    return 0x7fc00000u | (word & 0x003fffffu);
+}
+
+/* Numbers of both signs whose magnitudes spread over 2^-16 .. 2^15, so that sums, products, residues and
+ * their squares are all normal numbers: a device may flush others. */
+static void make_inputs(Inputs *in) {
+    uint64_t state = 0x9e3779b97f4a7c15u;
+    memset(in, 0, sizeof *in);
+    for (uint32_t i = 0; i < ITEMS * 5; ++i) {
+        /* A linear congruential generator's upper half (Knuth's MMIX constants) is ample here. */
+        state = state * 6364136223846793005u + 1442695040888963407u;
+        const uint32_t bits = (uint32_t)(state >> 32);
+        if (i < ITEMS * 2) {
+            in->uints[i] = bits;
+        } else {
+            const uint32_t j = i - ITEMS * 2;
+            const uint32_t exponent = 111u + (bits >> 23 & 31u);
+            in->floats[j / 3 * 5 + j % 3] = bits_float((bits & 0x807fffffu) | exponent << 23);
+        }
+    }
+    for (uint32_t item = 0; item < ITEMS; ++item)
+        in->floats[item * 5 + 4] = bits_float(nan_bits(in->uints[item]));
+}
+
+static uint32_t walk(uint32_t seed) {
+    uint32_t stack[32], top = 0, digest = seed;
+    stack[top++] = 1u;
+    while (top > 0) {
+        const uint32_t node = stack[--top];
+        digest = (digest ^ node) * 0x01000193u;
+        if (node >= 64u) continue;
+        if ((digest >> 20 & 3u) != 0u) stack[top++] = node * 2u + 1u;
+        if ((digest >> 22 & 3u) != 0u) stack[top++] = node * 2u;
+    }
+    return digest;
+}
+
+static uint32_t vector_lanes(const float *values, float limit) {
+    uint32_t bits = 0;
+    for (uint32_t lane = 0; lane < 8; ++lane)
+        if (values[lane] < limit) bits |= 1u << lane;
+    const uint32_t first = values[0] < limit ? float_bits(values[0]) : 0u;
+    const uint32_t last = values[7] < limit ? float_bits(values[7]) : 0u;
+    return bits ^ first ^ (last >> 1);
+}
+
+static uint32_t count_ones(uint32_t bits) {
+    uint32_t count = 0;
+    for (; bits != 0; bits &= bits - 1) ++count;
+    return count;
+}
+
+/* What a right device answers; `exact` where a column has room for error. */
+static void expect(const Inputs *in, uint32_t item, uint32_t row[COLUMN_COUNT], double exact[COLUMN_COUNT]) {
+    const uint32_t m = in->uints[2 * item], n = in->uints[2 * item + 1];
+    const float *floats = in->floats + 5 * item;
+    const float a = floats[0], b = floats[1], c = floats[2];
+    const uint64_t product = (uint64_t)m * n, wide = product + ((uint64_t)n << 32);
+    row[COLUMN_INTEGERS] = (m * n + (m << 7)) ^ (n >> 9) ^ ((uint32_t)(product >> 32) - count_ones(m));
+    row[COLUMN_LONGS] = (uint32_t)(wide >> 32) ^ (uint32_t)wide;
+    row[COLUMN_FIXED_POINT] = (uint32_t)(uint64_t)llrint((double)(a * 65536.0f)) ^
+                              (uint32_t)((uint64_t)(int64_t)(c * 16777216.0f) >> 32);
+    row[COLUMN_WALK] = walk(m);
+    row[COLUMN_UNIT] = float_bits((float)(m >> 8) * 0x1p-24f);
+    row[COLUMN_SUM] = float_bits(a + b);
+    row[COLUMN_PRODUCT] = float_bits(a * b);
+    row[COLUMN_CONTRACTION] = 0;
+    row[COLUMN_FMA] = float_bits(fmaf(a, b, c));
+    row[COLUMN_FMA_RESIDUE] = float_bits((float)((double)a * (double)b - (double)(a * b)));
+    exact[COLUMN_DIVIDE] = (double)a / (double)b;
+    exact[COLUMN_SQRT] = sqrt(fabs((double)a));
+    const float sum = a + b, b_part = sum - a, a_part = sum - b_part;
+    row[COLUMN_SUM_RESIDUE] = float_bits((a - a_part) + (b - b_part));
+    row[COLUMN_SPECIAL] = 0x7f;
+    row[COLUMN_NAN_BITS] = nan_bits(in->uints[item]);
+    row[COLUMN_LANES] = vector_lanes(floats, c);
+    const double x = (double)a / 3.0, y = (double)b * 1.1;
+    row[COLUMN_DOUBLE_FMA] = folded_double_bits(fma(x, y, -(x * y)));
+    row[COLUMN_DOUBLE_DIVIDE] = folded_double_bits(x / y);
+    row[COLUMN_DOUBLE_SQRT] = folded_double_bits(sqrt(fabs(x)));
+    row[COLUMN_DOUBLE_CONTRACTION] = 0;
+}
+
+static const char *const layout_names[LAYOUT_WORDS] = {
+    "real", "PackedCamera", "PackedSky", "PackedMaterial", "PackedMaterialKind", "PackedSphereLook"};
+
+/* The device's real is float here, half of the host's. */
+static void expect_layout(uint32_t words[LAYOUT_WORDS]) {
+    words[0] = 4;
+    words[1] = (uint32_t)(sizeof(PackedCamera) / 2 << 16 | offsetof(PackedCamera, lens_up) / 2);
+    words[2] = (uint32_t)(sizeof(PackedSky) / 2 << 16 | offsetof(PackedSky, top) / 2);
+    words[3] = (uint32_t)(sizeof(PackedMaterial) / 2 << 16 | offsetof(PackedMaterial, refraction_index) / 2);
+    words[4] = (uint32_t)(sizeof(PackedMaterialKind) << 16 | offsetof(PackedMaterialKind, total_reflection));
+    words[5] = (uint32_t)(sizeof(PackedSphereLook) << 16 | offsetof(PackedSphereLook, albedo));
+}
+
+static bool within(float got, double exact, double ulps) {
+    if (!isfinite(got)) return false;
+    const double unit = ldexp(1.0, ilogb(exact) - 23);
+    return fabs((double)got - exact) <= ulps * unit;
+}
+
+/* Compares all rows; *failures counts the columns that are wrong, `story` is about the first of them. */
+static void compare(const Inputs *in, const uint32_t *rows, const uint32_t *layout, bool has_double,
+                    unsigned *failures, char *story, size_t size) {
+    uint32_t expected_layout[LAYOUT_WORDS];
+    bool wrong[COLUMN_COUNT] = {false};
+    *failures = 0;
+    expect_layout(expected_layout);
+    for (unsigned w = 0; w < LAYOUT_WORDS; ++w) {
+        if (layout[w] == expected_layout[w]) continue;
+        if ((*failures)++ == 0)
+            snprintf(story, size, "the layout of %s (size and last member: 0x%08x, not 0x%08x)",
+                     layout_names[w], (unsigned)layout[w], (unsigned)expected_layout[w]);
+    }
+    for (uint32_t item = 0; item < ITEMS; ++item) {
+        uint32_t row[COLUMN_COUNT] = {0};
+        double exact[COLUMN_COUNT] = {0};
+        expect(in, item, row, exact);
+        for (int column = 0; column < COLUMN_COUNT; ++column) {
+            if (wrong[column] || (columns[column].needs_double && !has_double)) continue;
+            const uint32_t got = rows[item * COLUMN_COUNT + (uint32_t)column];
+            const bool right = columns[column].ulps > 0
+                                   ? within(bits_float(got), exact[column], columns[column].ulps)
+                                   : got == row[column];
+            if (right) continue;
+            wrong[column] = true;
+            if ((*failures)++ > 0) continue;
+            if (columns[column].ulps > 0) row[column] = float_bits((float)exact[column]);
+            snprintf(story, size, "%s (case %u: 0x%08x, not 0x%08x)", columns[column].text, (unsigned)item,
+                     (unsigned)got, (unsigned)row[column]);
+        }
+    }
+}
+
+/* The test's own program: the kernels' dialect, the packed structs and self_test.cl, and nothing else, so
+ * that it builds fast and speaks even where the whole kernel does not build. The caller frees *source. */
+static BpStatus assemble(bool has_double, const char *kernel_text, char **source, BpError *err) {
+    static const char *const files[] = {"real.cl", "scene_types.h"};
+    const char *texts[3];
+    char head[2048] = "";
+    size_t used =
+        (size_t)snprintf(head, sizeof head,
+                         "#define REAL_IS_DOUBLE 0\n#define REFINE_IS_DOUBLE %d\n#define TREE_WIDTH 8\n"
+                         "#define LANES 1\n#define ROW_COLUMNS %du\n",
+                         has_double ? 1 : 0, COLUMN_COUNT);
+    for (int column = 0; column < COLUMN_COUNT; ++column)
+        used += (size_t)snprintf(head + used, sizeof head - used, "#define COLUMN_%s %du\n",
+                                 columns[column].name, column);
+    for (int f = 0; f < 2; ++f) {
+        texts[f] = bp_kernel_file(files[f]);
+        if (texts[f] == NULL) return bp_fail(err, BP_ERR_FILE, "kernels/%s is not in this program", files[f]);
+    }
+    texts[2] = kernel_text != NULL ? kernel_text : bp_kernel_file("self_test.cl");
+    if (texts[2] == NULL) return bp_fail(err, BP_ERR_FILE, "kernels/self_test.cl is not in this program");
+    const size_t size = used + strlen(texts[0]) + strlen(texts[1]) + strlen(texts[2]) + 256;
+    *source = malloc(size);
+    if (*source == NULL) return bp_fail(err, BP_ERR_MEMORY, "no memory for the self-test");
+    snprintf(*source, size,
+             "%s#line 1 \"real.cl\"\n%s\n#line 1 \"scene_types.h\"\n%s\n#line 1 \"self_test.cl\"\n%s\n", head,
+             texts[0], texts[1], texts[2]);
+    return BP_OK;
+}
+
+/* Runs the built kernel over `in`. */
+static BpStatus launch(BpDevice *device, cl_program program, const Inputs *in, uint32_t *rows,
+                       size_t rows_size, uint32_t layout[LAYOUT_WORDS], BpError *err) {
+    BpStatus status = BP_OK;
+    cl_mem buffers[4] = {NULL};
+    const size_t sizes[4] = {sizeof in->uints, sizeof in->floats, rows_size, LAYOUT_WORDS * sizeof(uint32_t)};
+    const void *contents[4] = {in->uints, in->floats, rows, layout};
+    cl_int code;
+    const char *call = "clCreateKernel(self_test)";
+    cl_kernel kernel = clCreateKernel(program, "self_test", &code);
+    for (cl_uint i = 0; i < 4 && code == CL_SUCCESS; ++i) {
+        call = "clCreateBuffer";
+        /* The host's copy of what comes out is 0, so an answer that is never written is wrong. */
+        buffers[i] = clCreateBuffer(device->context, CL_MEM_READ_WRITE | CL_MEM_COPY_HOST_PTR, sizes[i],
+                                    (void *)(uintptr_t)contents[i], &code);
+        if (code == CL_SUCCESS) {
+            call = "clSetKernelArg";
+            code = clSetKernelArg(kernel, i, sizeof buffers[i], &buffers[i]);
+        }
+    }
+    if (code == CL_SUCCESS) {
+        const size_t items = ITEMS;
+        call = "clEnqueueNDRangeKernel(self_test)";
+        code = clEnqueueNDRangeKernel(device->queue, kernel, 1, NULL, &items, NULL, 0, NULL, NULL);
+    }
+    if (code == CL_SUCCESS) {
+        call = "clEnqueueReadBuffer";
+        code = clEnqueueReadBuffer(device->queue, buffers[2], CL_TRUE, 0, sizes[2], rows, 0, NULL, NULL);
+    }
+    if (code == CL_SUCCESS)
+        code = clEnqueueReadBuffer(device->queue, buffers[3], CL_TRUE, 0, sizes[3], layout, 0, NULL, NULL);
+    if (code != CL_SUCCESS) status = bp_cl_fail(err, code, call, device);
+    for (int i = 0; i < 4; ++i)
+        if (buffers[i] != NULL) clReleaseMemObject(buffers[i]);
+    if (kernel != NULL) clReleaseKernel(kernel);
+    return status;
+}
+
+BpStatus bp_self_test_run(BpDevice *device, const char *kernel_text, BpError *err) {
+    BpStatus status;
+    char *source = NULL, story[256] = "";
+    Inputs *in = malloc(sizeof *in);
+    const size_t rows_size = ITEMS * COLUMN_COUNT * sizeof(uint32_t);
+    uint32_t *rows = calloc(1, rows_size), layout[LAYOUT_WORDS] = {0};
+    cl_program program = NULL;
+    unsigned failures;
+
+    if (in == NULL || rows == NULL) {
+        status = bp_fail(err, BP_ERR_MEMORY, "no memory for the self-test");
+        goto cleanup;
+    }
+    make_inputs(in);
+    BP_TRY_GOTO(status, assemble(device->info.has_double, kernel_text, &source, err), cleanup);
+    BP_TRY_GOTO(status, bp_device_build(device, source, NULL, &program, NULL, err), cleanup);
+    BP_TRY_GOTO(status, launch(device, program, in, rows, rows_size, layout, err), cleanup);
+    compare(in, rows, layout, device->info.has_double, &failures, story, sizeof story);
+    if (failures > 0)
+        status = bp_fail(
+            err, BP_ERR_DEVICE,
+            "device %u (%s, driver %s) failed its self-test, its pictures could be wrong: %s is wrong%s; "
+            "use another --device, another driver version, or --force to render all the same",
+            device->info.number, device->info.name, device->info.driver, story,
+            failures > 1 ? ", and more" : "");
+
+cleanup:
+    if (program != NULL) clReleaseProgram(program);
+    free(source);
+    free(in);
+    free(rows);
+    return status;
+}
