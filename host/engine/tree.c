@@ -1,17 +1,15 @@
 /* tree.c: see tree.h.
  *
- * Three steps: the huge spheres are set apart, a binary tree over the others is built (tree_binary.c), and it
- * is gathered into nodes of `width` children. Boxes are computed afterwards, upwards, from the spheres in
- * double. */
+ * Three steps: the huge spheres are set apart, a binary tree over the others is built (tree_binary.c,
+ * tree_top.c), and it is gathered into nodes of `width` children and written (tree_write.c). */
+#define BP_HOST
 #include "tree.h"
 
-#define BP_HOST
-#include "../base/status.h"
-#include "reals.h"
 #include "scene_types.h"
 #include "tree_binary.h"
+#include "tree_write.h"
 
-#include <float.h>
+#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 #include <time.h>
@@ -19,25 +17,23 @@
 /* A sphere whose box has more than this part of the area of the box around all others is met by so many rays,
  * and makes every box above it so large, that it is cheaper to test it always. */
 #define HUGE_AREA_PART (1.0 / 64.0)
-/* A child box that no ray meets; finite, so that (low - origin) * (1 / direction) is never NaN. */
-#define EMPTY_LANE 1.0e30
-#define WIDTH_MAX 8
+#define BLOCK 16384u
 
-typedef struct Bounds {
-    double low[3], high[3];
-} Bounds;
+/* The largest spheres, by radius, then index. */
+typedef struct Largest {
+    uint32_t index[BP_TREE_WIDTH_MAX], count;
+} Largest;
 
-typedef struct Writer {
+/* Both passes over the scene's spheres, block by block. */
+typedef struct Scan {
     const BpScene *scene;
     const double *origin;
-    const BpTreeItem *items;
-    const BpBinaryTree *binary;
-    BpTree *tree;
-    uint32_t height_bits; /* log2 of the width */
-} Writer;
-
-static const Bounds empty_bounds = {{EMPTY_LANE, EMPTY_LANE, EMPTY_LANE},
-                                    {-EMPTY_LANE, -EMPTY_LANE, -EMPTY_LANE}};
+    uint32_t width;
+    Largest *largest;   /* one a block */
+    Largest candidates; /* of all */
+    BpBounds *bounds;   /* one a block, without the candidates */
+    BpTreeItem *items;  /* without the candidates */
+} Scan;
 
 static double now_seconds(void) {
     struct timespec t;
@@ -45,284 +41,131 @@ static double now_seconds(void) {
     return (double)t.tv_sec + 1e-9 * (double)t.tv_nsec;
 }
 
-static void bounds_add(Bounds *bounds, const Bounds *other) {
-    for (int a = 0; a < 3; ++a) {
-        if (other->low[a] < bounds->low[a]) bounds->low[a] = other->low[a];
-        if (other->high[a] > bounds->high[a]) bounds->high[a] = other->high[a];
-    }
-}
-
-/* Half the surface area. */
-static double bounds_half_area(const Bounds *bounds) {
-    const double x = bounds->high[0] - bounds->low[0], y = bounds->high[1] - bounds->low[1],
-                 z = bounds->high[2] - bounds->low[2];
-    return x < 0 ? 0 : x * y + y * z + z * x;
-}
-
-/* The radius as the kernel will see it. What is too small for float becomes the smallest normal number, so
- * that a lane in use always has a radius above 0. */
-static double stored_radius(double radius, bool single) {
-    const double r = fabs(radius);
-    if (!single) return r;
-    return r < FLT_MIN ? FLT_MIN : (double)(float)r;
-}
-
-/* The box that contains the sphere as the scene has it and as the kernel sees it, rounded centre, rounded
- * radius. Widened by a bound of the rounding of these very sums: three roundings of numbers up to |center| +
- * radius, each at most 2^-53 of it. */
-static Bounds sphere_bounds(const BpSphere *sphere, const double origin[3], bool single) {
-    const double r = fabs(sphere->radius), r_stored = stored_radius(r, single);
-    const double r_max = r > r_stored ? r : r_stored;
-    Bounds bounds;
-    for (int a = 0; a < 3; ++a) {
-        const double c = sphere->center[a] - origin[a];
-        const double c_stored = single ? (double)(float)c : c;
-        const double margin = (fabs(c) + r_max) * 0x1p-51;
-        bounds.low[a] = (c < c_stored ? c : c_stored) - r_max - margin;
-        bounds.high[a] = (c > c_stored ? c : c_stored) + r_max + margin;
-    }
-    return bounds;
-}
-
-/* ---- huge spheres ------------------------------------------------------------------------------------ */
-
 static bool larger(const BpScene *scene, uint32_t a, uint32_t b) {
     const double ra = fabs(scene->spheres[a].radius), rb = fabs(scene->spheres[b].radius);
     return ra > rb || (ra == rb && a < b);
 }
 
-/* Writes the spheres that are to be tested before the tree to `huge`, the largest first; returns how many,
- * at most `width`. They are the longest prefix of the spheres by size of which each is huge against the box
- * around all spheres that are not among the `width` largest. */
-static uint32_t find_huge(const BpScene *scene, const double origin[3], uint32_t width,
-                          uint32_t huge[WIDTH_MAX]) {
-    const uint32_t count = (uint32_t)scene->sphere_count;
-    uint32_t found = 0;
-    for (uint32_t i = 0; i < count; ++i) {
-        if (found == width && !larger(scene, i, huge[width - 1])) continue;
-        uint32_t place = found < width ? found++ : width - 1;
-        for (; place > 0 && larger(scene, i, huge[place - 1]); --place) huge[place] = huge[place - 1];
-        huge[place] = i;
+static void offer(const BpScene *scene, uint32_t width, Largest *largest, uint32_t sphere) {
+    if (largest->count == width && !larger(scene, sphere, largest->index[width - 1])) return;
+    uint32_t place = largest->count < width ? largest->count++ : width - 1;
+    for (; place > 0 && larger(scene, sphere, largest->index[place - 1]); --place)
+        largest->index[place] = largest->index[place - 1];
+    largest->index[place] = sphere;
+}
+
+static uint32_t block_end(const Scan *scan, uint32_t block) {
+    const size_t end = ((size_t)block + 1) * BLOCK;
+    return (uint32_t)(end < scan->scene->sphere_count ? end : scan->scene->sphere_count);
+}
+
+static void find_largest(void *context, uint32_t block, unsigned worker) {
+    (void)worker;
+    Scan *scan = context;
+    Largest largest = {.count = 0};
+    for (uint32_t i = block * BLOCK; i < block_end(scan, block); ++i)
+        offer(scan->scene, scan->width, &largest, i);
+    scan->largest[block] = largest;
+}
+
+static BpTreeItem make_item(const Scan *scan, uint32_t index) {
+    const BpSphere *sphere = &scan->scene->spheres[index];
+    BpTreeItem item = {.radius = (float)fabs(sphere->radius), .sphere = index};
+    for (int a = 0; a < 3; ++a) item.center[a] = (float)(sphere->center[a] - scan->origin[a]);
+    return item;
+}
+
+static void make_items(void *context, uint32_t block, unsigned worker) {
+    (void)worker;
+    Scan *scan = context;
+    /* Candidates before this block leave no gap; those within are passed over. */
+    bool skip[BLOCK / 64][64];
+    memset(skip, 0, sizeof skip);
+    uint32_t place = block * BLOCK;
+    for (uint32_t k = 0; k < scan->candidates.count; ++k) {
+        const uint32_t index = scan->candidates.index[k];
+        if (index < block * BLOCK) --place;
+        if (index / BLOCK == block) skip[index % BLOCK / 64][index % 64] = true;
     }
-    Bounds rest = empty_bounds;
-    for (uint32_t i = 0; i < count; ++i) {
-        bool among = false;
-        for (uint32_t k = 0; k < found; ++k) among = among || huge[k] == i;
-        if (among) continue;
-        const Bounds bounds = sphere_bounds(&scene->spheres[i], origin, false);
-        bounds_add(&rest, &bounds);
+    BpBounds bounds = BP_BOUNDS_EMPTY;
+    for (uint32_t i = block * BLOCK; i < block_end(scan, block); ++i) {
+        if (skip[i % BLOCK / 64][i % 64]) continue;
+        const BpBounds box = bp_sphere_bounds(&scan->scene->spheres[i], scan->origin, false);
+        bp_bounds_add(&bounds, &box);
+        scan->items[place++] = make_item(scan, i);
     }
-    const double rest_area = bounds_half_area(&rest);
-    uint32_t keep = 0;
-    while (keep < found) {
-        const double r = scene->spheres[huge[keep]].radius;
-        if (!(12.0 * r * r > HUGE_AREA_PART * rest_area)) break;
-        ++keep;
+    scan->bounds[block] = bounds;
+}
+
+/* Makes the items of all spheres but the huge ones, which it leaves in `candidates`, the largest first: the
+ * longest prefix of the `width` largest spheres of which each is huge against the box around all spheres that
+ * are not among the `width` largest. Returns the number of items. */
+static uint32_t scan_spheres(Scan *scan, BpTeam *team) {
+    const uint32_t count = (uint32_t)scan->scene->sphere_count, blocks = (count + BLOCK - 1) / BLOCK;
+    bp_team_run(team, find_largest, scan, blocks);
+    for (uint32_t b = 0; b < blocks; ++b)
+        for (uint32_t k = 0; k < scan->largest[b].count; ++k)
+            offer(scan->scene, scan->width, &scan->candidates, scan->largest[b].index[k]);
+    bp_team_run(team, make_items, scan, blocks);
+    BpBounds rest = BP_BOUNDS_EMPTY;
+    for (uint32_t b = 0; b < blocks; ++b) bp_bounds_add(&rest, &scan->bounds[b]);
+    const double x = rest.high[0] - rest.low[0], y = rest.high[1] - rest.low[1],
+                 z = rest.high[2] - rest.low[2];
+    const double rest_area = x < 0 ? 0 : 2 * (x * y + y * z + z * x);
+    Largest *candidates = &scan->candidates;
+    uint32_t huge = 0, items = count - candidates->count;
+    for (; huge < candidates->count; ++huge) {
+        const double r = scan->scene->spheres[candidates->index[huge]].radius;
+        if (!(24 * r * r > HUGE_AREA_PART * rest_area)) break;
     }
-    return keep;
+    for (uint32_t k = huge; k < candidates->count; ++k)
+        scan->items[items++] = make_item(scan, candidates->index[k]);
+    candidates->count = huge;
+    return items;
 }
 
-/* ---- writing the packed arrays ------------------------------------------------------------------------- */
-
-/* Fills a leaf, its unused lanes too, and returns its box. */
-static Bounds write_leaf(const Writer *writer, uint32_t leaf, const uint32_t *spheres, uint32_t count) {
-    BpTree *tree = writer->tree;
-    const uint32_t width = tree->width;
-    const bool single = tree->single_precision;
-    const size_t base = (size_t)leaf * LEAF_REALS(width);
-    Bounds box = empty_bounds;
-    for (uint32_t lane = 0; lane < width; ++lane) {
-        uint32_t index = NO_SPHERE;
-        double center[3] = {0, 0, 0}, radius = -1;
-        if (lane < count) {
-            index = spheres[lane];
-            const BpSphere *sphere = &writer->scene->spheres[index];
-            const Bounds bounds = sphere_bounds(sphere, writer->origin, single);
-            bounds_add(&box, &bounds);
-            for (int a = 0; a < 3; ++a) center[a] = sphere->center[a] - writer->origin[a];
-            radius = stored_radius(sphere->radius, single);
-        }
-        for (uint32_t a = 0; a < 3; ++a)
-            bp_reals_store(tree->leaves, single, base + a * width + lane, center[a]);
-        bp_reals_store(tree->leaves, single, base + 3 * width + lane, radius);
-        tree->slot_sphere[(size_t)leaf * width + lane] = index;
-    }
-    return box;
-}
-
-static void write_child(BpTree *tree, uint32_t node, uint32_t lane, const Bounds *box, uint32_t word) {
-    const size_t base = (size_t)node * NODE_REALS(tree->width) + lane;
-    for (uint32_t a = 0; a < 3; ++a) {
-        bp_reals_store_down(tree->node_boxes, tree->single_precision, base + a * tree->width, box->low[a]);
-        bp_reals_store_up(tree->node_boxes, tree->single_precision, base + (3 + a) * tree->width,
-                          box->high[a]);
-    }
-    tree->children[(size_t)node * tree->width + lane] = word;
-}
-
-static double binary_half_area(const BpBinaryNode *node) {
-    const double x = (double)node->high[0] - (double)node->low[0];
-    const double y = (double)node->high[1] - (double)node->low[1];
-    const double z = (double)node->high[2] - (double)node->low[2];
-    return x * y + y * z + z * x;
-}
-
-/* Replaces children[place] by its two halves. */
-static void open_child(const BpBinaryTree *binary, uint32_t *children, uint32_t *count, uint32_t place) {
-    const BpBinaryNode *node = &binary->nodes[children[place]];
-    memmove(children + place + 2, children + place + 1, (*count - place - 1) * sizeof *children);
-    children[place] = node->left;
-    children[place + 1] = node->right;
-    ++*count;
-}
-
-/* Chooses up to `width` descendants of a binary node as the children of a wide one: the inner node with the
- * largest area is opened until there are enough. If that left one higher than `height_max`, all are opened
- * level by level instead, which takes log2(width) off every height. */
-static uint32_t gather_children(const Writer *writer, uint32_t number, uint32_t height_max,
-                                uint32_t *children) {
-    const BpBinaryTree *binary = writer->binary;
-    const uint32_t width = writer->tree->width;
-    uint32_t count = 1;
-    children[0] = number;
-    while (count < width) {
-        uint32_t best = width;
-        double best_area = -1;
-        for (uint32_t i = 0; i < count; ++i) {
-            const BpBinaryNode *node = &binary->nodes[children[i]];
-            const double area = binary_half_area(node);
-            if (node->height > 0 && area > best_area) {
-                best_area = area;
-                best = i;
-            }
-        }
-        if (best == width) break;
-        open_child(binary, children, &count, best);
-    }
-    bool fits = true;
-    for (uint32_t i = 0; i < count; ++i) fits = fits && binary->nodes[children[i]].height <= height_max;
-    if (fits) return count;
-    count = 1;
-    children[0] = number;
-    for (uint32_t level = 0; level < writer->height_bits; ++level)
-        for (uint32_t i = 0; i < count; ++i)
-            if (binary->nodes[children[i]].height > 0) open_child(binary, children, &count, i++);
-    return count;
-}
-
-/* Writes the wide node of a binary one and everything below; returns its box. `depth` counts from 1. */
-static Bounds write_node(const Writer *writer, uint32_t number, uint32_t depth) {
-    BpTree *tree = writer->tree;
-    const uint32_t node = tree->node_count++;
-    if (depth > tree->depth) tree->depth = depth;
-    uint32_t children[WIDTH_MAX];
-    const uint32_t count =
-        gather_children(writer, number, (TREE_DEPTH_MAX - depth) * writer->height_bits, children);
-    Bounds box = empty_bounds;
-    for (uint32_t lane = 0; lane < tree->width; ++lane) {
-        Bounds child_box = empty_bounds;
-        uint32_t word = CHILD_LEAF;
-        if (lane < count) {
-            const BpBinaryNode *child = &writer->binary->nodes[children[lane]];
-            if (child->height == 0) {
-                const uint32_t leaf = tree->leaf_count++;
-                word = CHILD_LEAF | leaf;
-                uint32_t spheres[WIDTH_MAX];
-                for (uint32_t i = 0; i < child->count; ++i)
-                    spheres[i] = writer->items[child->first + i].sphere;
-                child_box = write_leaf(writer, leaf, spheres, child->count);
-            } else {
-                word = tree->node_count; /* the number that the next call takes */
-                child_box = write_node(writer, children[lane], depth + 1);
-            }
-            bounds_add(&box, &child_box);
-        }
-        write_child(tree, node, lane, &child_box, word);
-    }
-    return box;
-}
-
-/* ---- the whole -------------------------------------------------------------------------------------------
- */
-
-/* Allocates the arrays; each has room for one entry at least, so that a device buffer can be made of it. */
-static BpStatus allocate(BpTree *tree, uint32_t nodes, uint32_t leaves, BpError *err) {
-    const size_t real_size = tree->single_precision ? sizeof(float) : sizeof(double);
-    const size_t n = nodes > 0 ? nodes : 1, l = leaves > 0 ? leaves : 1, width = tree->width;
-    tree->node_boxes = calloc(n * NODE_REALS(width), real_size);
-    tree->children = calloc(n * width, sizeof *tree->children);
-    tree->leaves = calloc(l * LEAF_REALS(width), real_size);
-    tree->slot_sphere = calloc(l * width, sizeof *tree->slot_sphere);
-    if (tree->node_boxes != NULL && tree->children != NULL && tree->leaves != NULL &&
-        tree->slot_sphere != NULL)
-        return BP_OK;
-    return bp_fail(err, BP_ERR_MEMORY, "out of memory for a tree of %u leaves and %u nodes", leaves, nodes);
-}
-
-static BpStatus build_list(const Writer *writer, BpError *err) {
+static BpStatus build_list(const BpTreeWriter *writer, BpError *err) {
     BpTree *tree = writer->tree;
     const uint32_t count = (uint32_t)writer->scene->sphere_count, width = tree->width;
     tree->first_leaves = tree->leaf_count = (count + width - 1) / width;
-    BP_TRY(allocate(tree, 0, tree->leaf_count, err));
+    BP_TRY(bp_tree_allocate(tree, 0, tree->leaf_count, err));
     for (uint32_t leaf = 0; leaf < tree->leaf_count; ++leaf) {
-        uint32_t spheres[WIDTH_MAX], n = 0;
+        uint32_t spheres[BP_TREE_WIDTH_MAX], n = 0;
         for (; n < width && leaf * width + n < count; ++n) spheres[n] = leaf * width + n;
-        write_leaf(writer, leaf, spheres, n);
+        bp_tree_write_leaf(writer, leaf, spheres, n);
     }
     return BP_OK;
 }
 
-/* Narrows all spheres but the huge ones. */
-static BpTreeItem *make_items(const BpScene *scene, const double origin[3], const uint32_t *huge,
-                              uint32_t huge_count) {
-    const uint32_t count = (uint32_t)scene->sphere_count;
-    BpTreeItem *items = malloc(((size_t)count + 1) * sizeof *items);
-    if (items == NULL) return NULL;
-    uint32_t n = 0;
-    for (uint32_t i = 0; i < count; ++i) {
-        bool set_apart = false;
-        for (uint32_t k = 0; k < huge_count; ++k) set_apart = set_apart || huge[k] == i;
-        if (set_apart) continue;
-        const BpSphere *sphere = &scene->spheres[i];
-        for (int a = 0; a < 3; ++a) items[n].center[a] = (float)(sphere->center[a] - origin[a]);
-        items[n].radius = (float)fabs(sphere->radius);
-        items[n++].sphere = i;
-    }
-    return items;
-}
-
-static BpStatus build_tree(Writer *writer, BpError *err) {
+static BpStatus build_tree(BpTreeWriter *writer, unsigned threads, BpError *err) {
     BpTree *tree = writer->tree;
-    uint32_t huge[WIDTH_MAX];
+    const uint32_t count = (uint32_t)writer->scene->sphere_count, blocks = count / BLOCK + 1;
+    if (threads == 0 && count < BLOCK) threads = 1; /* waking them would take longer */
     BpStatus status = BP_OK;
     BpBinaryTree binary = {0};
-    const uint32_t huge_count = find_huge(writer->scene, writer->origin, tree->width, huge);
-    const uint32_t count = (uint32_t)writer->scene->sphere_count - huge_count;
-    const uint32_t height_max = TREE_DEPTH_MAX * writer->height_bits;
-    BpTreeItem *items = make_items(writer->scene, writer->origin, huge, huge_count);
-    if (items == NULL) {
+    BpTeam *team = bp_team_create(threads);
+    Scan scan = {.scene = writer->scene, .origin = writer->origin, .width = tree->width};
+    scan.items = malloc(((size_t)count + 1) * sizeof *scan.items);
+    scan.largest = malloc(blocks * sizeof *scan.largest);
+    scan.bounds = malloc(blocks * sizeof *scan.bounds);
+    if (team == NULL || scan.items == NULL || scan.largest == NULL || scan.bounds == NULL) {
         status = bp_fail(err, BP_ERR_MEMORY, "out of memory while building the tree of %u spheres", count);
         goto cleanup;
     }
-    BP_TRY_GOTO(status, bp_binary_tree_build(items, count, tree->width, height_max, &binary, err), cleanup);
-    tree->first_leaves = huge_count > 0 ? 1 : 0;
-    /* A wide node takes at least width - 1 splits, except where leaves end it early: no tighter bound is
-     * known beforehand, and pages never written cost nothing. */
-    const uint32_t inner = binary.node_count - binary.leaf_count;
-    BP_TRY_GOTO(status, allocate(tree, inner + 1, binary.leaf_count + tree->first_leaves, err), cleanup);
-    writer->items = items;
-    writer->binary = &binary;
-    if (huge_count > 0) write_leaf(writer, tree->leaf_count++, huge, huge_count);
-    if (count > 0) {
-        write_node(writer, 0, 1);
-    } else {
-        tree->node_count = tree->depth = 1;
-        for (uint32_t lane = 0; lane < tree->width; ++lane)
-            write_child(tree, 0, lane, &empty_bounds, CHILD_LEAF);
-    }
+    const uint32_t items = scan_spheres(&scan, team);
+    BpBinaryOptions options = {.width = tree->width};
+    for (uint32_t w = tree->width; w > 1; w /= 2) options.height_max += TREE_DEPTH_MAX;
+    BP_TRY_GOTO(status, bp_binary_tree_build(scan.items, items, &options, team, &binary, err), cleanup);
+    writer->items = scan.items;
+    tree->first_leaves = tree->leaf_count = scan.candidates.count > 0 ? 1 : 0;
+    BP_TRY_GOTO(status, bp_tree_write_nodes(writer, binary.root, team, err), cleanup);
+    if (tree->first_leaves > 0) bp_tree_write_leaf(writer, 0, scan.candidates.index, scan.candidates.count);
 cleanup:
     bp_binary_tree_clear(&binary);
-    free(items);
+    free(scan.items);
+    free(scan.largest);
+    free(scan.bounds);
+    bp_team_destroy(&team);
     return status;
 }
 
@@ -333,19 +176,18 @@ BpStatus bp_tree_build(const BpScene *scene, const double origin[3], const BpTre
     *tree = (BpTree){.width = width, .single_precision = options->single_precision};
     if (width != 2 && width != 4 && width != 8)
         return bp_fail(err, BP_ERR_LIMIT, "a tree is 2, 4 or 8 wide, not %u", width);
-    Writer writer = {.scene = scene, .origin = origin, .tree = tree};
-    for (uint32_t w = width; w > 1; w /= 2) ++writer.height_bits;
-    const uint64_t limit = writer.height_bits == 1 ? (uint64_t)width << TREE_DEPTH_MAX : BP_SPHERES_MAX;
-    BpStatus status = BP_OK;
-    if (scene->sphere_count > limit) {
-        status = bp_fail(err, BP_ERR_LIMIT, "%zu spheres; a tree %u wide holds at most %llu",
-                         scene->sphere_count, width, (unsigned long long)limit);
-        goto cleanup;
-    }
-    status = options->list ? build_list(&writer, err) : build_tree(&writer, err);
-cleanup:
-    if (status != BP_OK) bp_tree_clear(tree);
-    tree->build_seconds = now_seconds() - start;
+    /* A list has no depth to run out of; nor has, within BP_SPHERES_MAX, a tree 4 or 8 wide. */
+    const uint64_t limit = width == 2 && !options->list ? (uint64_t)width << TREE_DEPTH_MAX : BP_SPHERES_MAX;
+    if (scene->sphere_count > limit)
+        return bp_fail(err, BP_ERR_LIMIT, "%zu spheres; a tree %u wide holds at most %llu",
+                       scene->sphere_count, width, (unsigned long long)limit);
+    BpTreeWriter writer = {.scene = scene, .origin = origin, .tree = tree};
+    const BpStatus status =
+        options->list ? build_list(&writer, err) : build_tree(&writer, options->threads, err);
+    if (status != BP_OK)
+        bp_tree_clear(tree);
+    else
+        tree->build_seconds = now_seconds() - start;
     return status;
 }
 

@@ -26,10 +26,10 @@ typedef struct BpTree {
     uint32_t first_leaves;
     uint32_t node_count; /* node 0 is the root; 0: a list */
     uint32_t leaf_count;
-    uint32_t depth;      /* levels of nodes, <= TREE_DEPTH_MAX */
-    void *node_boxes;    /* node_count * NODE_REALS(width) reals */
-    uint32_t *children;  /* node_count * width */
-    void *leaves;        /* leaf_count * LEAF_REALS(width) reals */
+    uint32_t depth;        /* levels of nodes, <= TREE_DEPTH_MAX */
+    void *node_boxes;      /* node_count * NODE_REALS(width) reals */
+    uint32_t *children;    /* node_count * width */
+    void *leaves;          /* leaf_count * LEAF_REALS(width) reals */
     uint32_t *slot_sphere; /* leaf_count * width */
     double build_seconds;
 } BpTree;
@@ -37,8 +37,8 @@ typedef struct BpTree {
 /* Builds a tree over the scene's spheres with `origin` (the camera's position) subtracted. Every sphere
  * stands in exactly one slot. The result does not depend on the number of threads.
  * On failure `tree` is empty. BP_ERR_MEMORY or BP_ERR_LIMIT. Free with bp_tree_clear(). */
-BpStatus bp_tree_build(const BpScene *scene, const double origin[3], const BpTreeOptions *options, BpTree *tree,
-                       BpError *err);
+BpStatus bp_tree_build(const BpScene *scene, const double origin[3], const BpTreeOptions *options,
+                       BpTree *tree, BpError *err);
 void bp_tree_clear(BpTree *tree);
 
 #endif

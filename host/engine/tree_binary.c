@@ -1,8 +1,12 @@
-/* tree_binary.c: see tree_binary.h.
+/* tree_binary.c: see tree_binary.h. One run of spheres on one thread; tree_top.c cuts large scenes into runs.
  *
  * Top down, binned surface area heuristic (Wald, "On fast construction of SAH-based bounding volume
- * hierarchies", 2007). The cost of a side is its area times the leaves that it fills, ceil(n / leaf_max),
- * because a leaf costs the same however many of its lanes are used. */
+ * hierarchies", 2007). The cost of a side is its area times the leaves that it fills, ceil(n / width),
+ * because a leaf costs the same however many of its lanes are used.
+ *
+ * The least cost of every node below a wide one, by the number of children it may take there, is found by
+ * dynamic programming from the leaves up (Ylitie, Karras and Laine, "Efficient incoherent ray traversal on
+ * GPUs through compressed wide BVHs", 2017, section 4.1). */
 #include "tree_binary.h"
 
 #include <float.h>
@@ -11,152 +15,178 @@
 #include <string.h>
 
 #define BINS 16
+#define POOL_BLOCK 1024u
 
-typedef struct Box {
-    float low[3], high[3];
-} Box;
+typedef struct BpNodeBlock {
+    struct BpNodeBlock *next;
+    BpBinaryNode nodes[POOL_BLOCK];
+} BpNodeBlock;
 
-typedef struct Builder {
-    BpTreeItem *items;
-    BpBinaryTree *tree;
-    uint32_t leaf_max;
-} Builder;
+BpBinaryNode *bp_node_pool_take(BpNodePool *pool) {
+    if (pool->blocks == NULL || pool->used == POOL_BLOCK) {
+        BpNodeBlock *block = malloc(sizeof *block);
+        if (block == NULL) {
+            pool->failed = true;
+            return NULL;
+        }
+        block->next = pool->blocks;
+        pool->blocks = block;
+        pool->used = 0;
+    }
+    return &pool->blocks->nodes[pool->used++];
+}
 
-static const Box empty_box = {{FLT_MAX, FLT_MAX, FLT_MAX}, {-FLT_MAX, -FLT_MAX, -FLT_MAX}};
+void bp_node_pool_clear(BpNodePool *pool) {
+    while (pool->blocks != NULL) {
+        BpNodeBlock *next = pool->blocks->next;
+        free(pool->blocks);
+        pool->blocks = next;
+    }
+    *pool = (BpNodePool){0};
+}
 
-static void box_add_item(Box *box, const BpTreeItem *item) {
-    for (int a = 0; a < 3; ++a) {
-        const float low = item->center[a] - item->radius, high = item->center[a] + item->radius;
-        if (low < box->low[a]) box->low[a] = low;
-        if (high > box->high[a]) box->high[a] = high;
+/* ---- costs of wide nodes ------------------------------------------------------------------------------- */
+
+uint32_t bp_binary_left_places(const BpBinaryNode *node, uint32_t places) {
+    uint32_t best = 1;
+    for (uint32_t k = 2; k < places; ++k)
+        if (node->left->cost[k] + node->right->cost[places - k] <
+            node->left->cost[best] + node->right->cost[places - best])
+            best = k;
+    return best;
+}
+
+static float cost_of_places(const BpBinaryNode *node, uint32_t places) {
+    const uint32_t k = bp_binary_left_places(node, places);
+    return node->left->cost[k] + node->right->cost[places - k];
+}
+
+void bp_binary_finish(BpBinaryNode *node, uint32_t width) {
+    const BpBinaryNode *l = node->left, *r = node->right;
+    node->box = l->box;
+    bp_tree_box_add(&node->box, &r->box);
+    node->leaves = l->leaves + r->leaves;
+    node->height = 1 + (l->height > r->height ? l->height : r->height);
+    node->cost[0] = INFINITY;
+    /* One place: a wide node of its own. */
+    node->cost[1] = bp_tree_box_half_area(&node->box) + cost_of_places(node, width);
+    for (uint32_t k = 2; k < width; ++k) {
+        const float cost = cost_of_places(node, k);
+        node->cost[k] = cost < node->cost[k - 1] ? cost : node->cost[k - 1];
     }
 }
 
-static void box_add_box(Box *box, const Box *other) {
-    for (int a = 0; a < 3; ++a) {
-        if (other->low[a] < box->low[a]) box->low[a] = other->low[a];
-        if (other->high[a] > box->high[a]) box->high[a] = other->high[a];
-    }
-}
+/* ---- splitting -------------------------------------------------------------------------------------------
+ */
 
-/* Half the surface area. In double: the squares of large scenes leave float. */
-static double box_half_area(const Box *box) {
-    const double x = (double)box->high[0] - (double)box->low[0];
-    const double y = (double)box->high[1] - (double)box->low[1];
-    const double z = (double)box->high[2] - (double)box->low[2];
-    return x < 0 ? 0 : x * y + y * z + z * x;
-}
-
-static double leaves_of(const Builder *builder, uint32_t count) {
-    return (double)((count + builder->leaf_max - 1) / builder->leaf_max);
-}
+typedef struct Split {
+    int axis; /* < 0: none */
+    int bin;  /* the first on the right */
+    float low, scale;
+} Split;
 
 static int bin_of(float center, float low, float scale) {
     const int bin = (int)((center - low) * scale);
-    return bin < 0 ? 0 : bin >= BINS ? BINS - 1 : bin;
+    return bin >= BINS ? BINS - 1 : bin;
 }
 
-/* Finds the cheapest of the splits between bins, on the axis where the centres spread most. Returns the
- * number of items on the left, having moved them there, or 0 when no split between bins separates the items.
- */
-static uint32_t split_by_bins(const Builder *builder, uint32_t first, uint32_t count) {
-    BpTreeItem *items = builder->items + first;
-    float low[3], high[3];
-    for (int a = 0; a < 3; ++a) low[a] = high[a] = items[0].center[a];
+/* The cheapest of the splits between bins, over the three axes. */
+static Split find_split(const BpTreeItem *items, uint32_t count, uint32_t width) {
+    float low[4], high[4], scale[3];
+    memcpy(low, &items[0], sizeof low);
+    memcpy(high, &items[0], sizeof high);
     for (uint32_t i = 1; i < count; ++i)
         for (int a = 0; a < 3; ++a) {
-            if (items[i].center[a] < low[a]) low[a] = items[i].center[a];
-            if (items[i].center[a] > high[a]) high[a] = items[i].center[a];
+            low[a] = items[i].center[a] < low[a] ? items[i].center[a] : low[a];
+            high[a] = items[i].center[a] > high[a] ? items[i].center[a] : high[a];
         }
-    double best_cost = INFINITY;
-    int best_axis = -1, best_bin = 0;
-    float best_scale = 0;
-    for (int axis = 0; axis < 3; ++axis) {
-        const float extent = high[axis] - low[axis];
-        const float scale = (float)BINS / extent;
-        if (!(extent > 0) || !(scale < FLT_MAX)) continue;
-        Box boxes[BINS];
-        uint32_t counts[BINS] = {0};
-        for (int b = 0; b < BINS; ++b) boxes[b] = empty_box;
-        for (uint32_t i = 0; i < count; ++i) {
-            const int b = bin_of(items[i].center[axis], low[axis], scale);
-            ++counts[b];
-            box_add_item(&boxes[b], &items[i]);
+    for (int a = 0; a < 3; ++a) {
+        scale[a] = (float)BINS / (high[a] - low[a]);
+        if (!(scale[a] < FLT_MAX)) scale[a] = 0; /* all in one bin */
+    }
+    static const BpTreeBox empty = BP_TREE_BOX_EMPTY;
+    BpTreeBox boxes[3][BINS];
+    uint32_t counts[3][BINS] = {{0}};
+    for (int a = 0; a < 3; ++a)
+        for (int b = 0; b < BINS; ++b) boxes[a][b] = empty;
+    for (uint32_t i = 0; i < count; ++i)
+        for (int a = 0; a < 3; ++a) {
+            const int b = bin_of(items[i].center[a], low[a], scale[a]);
+            ++counts[a][b];
+            bp_tree_box_add_item(&boxes[a][b], &items[i]);
         }
-        double cost_right[BINS];
-        Box box = empty_box;
+    Split best = {.axis = -1};
+    float best_cost = INFINITY;
+    for (int a = 0; a < 3; ++a) {
+        if (!(scale[a] > 0)) continue;
+        float cost_right[BINS];
+        BpTreeBox box = empty;
         uint32_t n = 0;
         for (int b = BINS - 1; b > 0; --b) {
-            box_add_box(&box, &boxes[b]);
-            n += counts[b];
-            cost_right[b] = box_half_area(&box) * leaves_of(builder, n);
+            bp_tree_box_add(&box, &boxes[a][b]);
+            n += counts[a][b];
+            cost_right[b] = bp_tree_box_half_area(&box) * (float)((n + width - 1) / width);
         }
-        box = empty_box;
+        box = empty;
         n = 0;
         for (int b = 1; b < BINS; ++b) {
-            box_add_box(&box, &boxes[b - 1]);
-            n += counts[b - 1];
-            const double cost = box_half_area(&box) * leaves_of(builder, n) + cost_right[b];
+            bp_tree_box_add(&box, &boxes[a][b - 1]);
+            n += counts[a][b - 1];
+            const float cost = bp_tree_box_half_area(&box) * (float)((n + width - 1) / width) + cost_right[b];
             if (n > 0 && n < count && cost < best_cost) {
                 best_cost = cost;
-                best_axis = axis;
-                best_bin = b;
-                best_scale = scale;
+                best = (Split){a, b, low[a], scale[a]};
             }
         }
     }
-    if (best_axis < 0) return 0;
-    uint32_t left = 0;
-    for (uint32_t i = 0; i < count; ++i)
-        if (bin_of(items[i].center[best_axis], low[best_axis], best_scale) < best_bin) {
-            const BpTreeItem item = items[i];
-            items[i] = items[left];
-            items[left++] = item;
-        }
-    return left;
+    return best;
 }
 
-static uint32_t build(const Builder *builder, uint32_t first, uint32_t count, uint32_t height_max) {
-    BpBinaryTree *tree = builder->tree;
-    const uint32_t number = tree->node_count++;
-    BpBinaryNode *node = &tree->nodes[number];
-    *node = (BpBinaryNode){.first = first, .count = count};
-    if (count <= builder->leaf_max) {
-        Box box = empty_box;
-        for (uint32_t i = first; i < first + count; ++i) box_add_item(&box, &builder->items[i]);
-        memcpy(node->low, box.low, sizeof node->low);
-        memcpy(node->high, box.high, sizeof node->high);
-        ++tree->leaf_count;
-        return number;
+/* Moves the items left of the split to the front and returns their number. */
+static uint32_t partition(BpTreeItem *items, uint32_t count, const Split *split) {
+    uint32_t left = 0, right = count;
+    for (;;) {
+        while (left < right && bin_of(items[left].center[split->axis], split->low, split->scale) < split->bin)
+            ++left;
+        while (left < right &&
+               bin_of(items[right - 1].center[split->axis], split->low, split->scale) >= split->bin)
+            --right;
+        if (left >= right) return left;
+        const BpTreeItem item = items[left];
+        items[left++] = items[--right];
+        items[right] = item;
     }
-    const uint64_t side_max = (uint64_t)builder->leaf_max << (height_max > 32 ? 32 : height_max - 1);
-    uint32_t left = split_by_bins(builder, first, count);
+}
+
+static BpBinaryNode *build(BpTreeItem *items, uint32_t first, uint32_t count, uint32_t width,
+                           uint32_t height_max, BpNodePool *pool) {
+    BpBinaryNode *node = bp_node_pool_take(pool);
+    if (node == NULL) return NULL;
+    node->first = first;
+    node->count = count;
+    if (count <= width) {
+        node->box = (BpTreeBox)BP_TREE_BOX_EMPTY;
+        node->left = node->right = NULL;
+        node->leaves = 1;
+        node->height = 0;
+        for (uint32_t i = first; i < first + count; ++i) bp_tree_box_add_item(&node->box, &items[i]);
+        for (int k = 0; k < BP_TREE_WIDTH_MAX; ++k) node->cost[k] = 0;
+        return node;
+    }
+    const uint64_t side_max = (uint64_t)width << (height_max > 32 ? 32 : height_max - 1);
+    const Split split = find_split(items + first, count, width);
+    uint32_t left = split.axis < 0 ? 0 : partition(items + first, count, &split);
     /* Equal centres, or no height left for a lopsided split: halves, whatever lies in them. */
-    if (left == 0 || left > side_max || count - left > side_max) left = count / 2;
-    node->left = build(builder, first, left, height_max - 1);
-    node->right = build(builder, first + left, count - left, height_max - 1);
-    const BpBinaryNode *l = &tree->nodes[node->left], *r = &tree->nodes[node->right];
-    for (int a = 0; a < 3; ++a) {
-        node->low[a] = l->low[a] < r->low[a] ? l->low[a] : r->low[a];
-        node->high[a] = l->high[a] > r->high[a] ? l->high[a] : r->high[a];
-    }
-    node->height = 1 + (l->height > r->height ? l->height : r->height);
-    return number;
+    if (left == 0 || left == count || left > side_max || count - left > side_max) left = count / 2;
+    node->left = build(items, first, left, width, height_max - 1, pool);
+    if (node->left == NULL) return NULL;
+    node->right = build(items, first + left, count - left, width, height_max - 1, pool);
+    if (node->right == NULL) return NULL;
+    bp_binary_finish(node, width);
+    return node;
 }
 
-BpStatus bp_binary_tree_build(BpTreeItem *items, uint32_t count, uint32_t leaf_max, uint32_t height_max,
-                              BpBinaryTree *tree, BpError *err) {
-    *tree = (BpBinaryTree){0};
-    if (count == 0) return BP_OK;
-    tree->nodes = malloc(2 * (size_t)count * sizeof *tree->nodes);
-    if (tree->nodes == NULL)
-        return bp_fail(err, BP_ERR_MEMORY, "out of memory while building the tree of %u spheres", count);
-    const Builder builder = {items, tree, leaf_max};
-    build(&builder, 0, count, height_max);
-    return BP_OK;
-}
-
-void bp_binary_tree_clear(BpBinaryTree *tree) {
-    free(tree->nodes);
-    *tree = (BpBinaryTree){0};
+BpBinaryNode *bp_binary_build_run(BpTreeItem *items, uint32_t first, uint32_t count,
+                                  const BpBinaryOptions *options, BpNodePool *pool) {
+    return build(items, first, count, options->width, options->height_max, pool);
 }

@@ -1,34 +1,106 @@
-/* tree_binary.h: the binary tree from which the wide one is made.
+/* tree_binary.h: the binary tree from which the wide one is gathered.
  *
  * In:    spheres, narrowed to float: good enough to choose splits, never used as bounds.
- * Out:   a binary tree whose leaves hold runs of the reordered spheres.
- * Knows: the surface area heuristic.   Does not know: the packed layout, the scene. */
+ * Out:   a binary tree whose leaves hold runs of the reordered spheres, and for every node what it would cost
+ *        below a wide node.
+ * Knows: the surface area heuristic.   Does not know: the packed layout, the scene, boxes that must hold. */
 #ifndef BP_ENGINE_TREE_BINARY_H
 #define BP_ENGINE_TREE_BINARY_H
 
 #include "../base/status.h"
+#include "tree_team.h"
+
+#define BP_TREE_WIDTH_MAX 8
 
 typedef struct BpTreeItem {
     float center[3], radius;
     uint32_t sphere; /* index in the scene */
 } BpTreeItem;
 
+typedef struct BpTreeBox {
+    float low[4], high[4]; /* x, y, z; the fourth is not used, and makes vector code of four lanes possible */
+} BpTreeBox;
+
 typedef struct BpBinaryNode {
-    float low[3], high[3]; /* about right */
-    uint32_t first, count; /* the run of items below this node */
-    uint32_t left, right;  /* node numbers; both 0: a leaf */
-    uint32_t height;       /* 0: a leaf */
+    BpTreeBox box;                     /* about right */
+    struct BpBinaryNode *left, *right; /* both NULL: a leaf */
+    uint32_t first, count;             /* the run of items below this node */
+    uint32_t leaves;                   /* below this node, or 1 */
+    uint32_t height;                   /* 0: a leaf */
+    /* cost[k]: the least expected number of visits of wide nodes below (times the area of the whole), if this
+     * node's place under a wide node may take up to k children, 1 <= k < width. */
+    float cost[BP_TREE_WIDTH_MAX];
 } BpBinaryNode;
 
+/* Nodes in blocks that never move. Zero it before use. */
+typedef struct BpNodePool {
+    struct BpNodeBlock *blocks;
+    uint32_t used; /* of the first block */
+    bool failed;   /* ran out of memory */
+} BpNodePool;
+
+/* NULL and `failed` when there is no memory. */
+BpBinaryNode *bp_node_pool_take(BpNodePool *pool);
+void bp_node_pool_clear(BpNodePool *pool);
+
+typedef struct BpBinaryOptions {
+    uint32_t width;      /* items a leaf holds, children a wide node has */
+    uint32_t height_max; /* count <= width * 2^height_max must hold */
+} BpBinaryOptions;
+
+/* Builds the tree of one run, on the calling thread; reorders the run. NULL: out of memory. */
+BpBinaryNode *bp_binary_build_run(BpTreeItem *items, uint32_t first, uint32_t count,
+                                  const BpBinaryOptions *options, BpNodePool *pool);
+
+/* Makes an inner node whole once its two children are: box, height, leaves, cost. */
+void bp_binary_finish(BpBinaryNode *node, uint32_t width);
+
+/* How many of `places` the left child gets so that the cost is least; the right one gets the others. */
+uint32_t bp_binary_left_places(const BpBinaryNode *node, uint32_t places);
+
 typedef struct BpBinaryTree {
-    BpBinaryNode *nodes; /* node 0 is the root; none if there are no items */
-    uint32_t node_count, leaf_count;
+    BpBinaryNode *root; /* NULL: no items */
+    BpNodePool *pools;
+    unsigned pool_count;
 } BpBinaryTree;
 
-/* Reorders `items` and builds a tree over them with at most `leaf_max` items a leaf and a height of at most
- * `height_max`, where count <= leaf_max * 2^height_max must hold. Free with bp_binary_tree_clear(). */
-BpStatus bp_binary_tree_build(BpTreeItem *items, uint32_t count, uint32_t leaf_max, uint32_t height_max,
+/* Reorders `items` and builds the tree over them. The result does not depend on the team's size. */
+BpStatus bp_binary_tree_build(BpTreeItem *items, uint32_t count, const BpBinaryOptions *options, BpTeam *team,
                               BpBinaryTree *tree, BpError *err);
 void bp_binary_tree_clear(BpBinaryTree *tree);
+
+/* ---- boxes ------------------------------------------------------------------------------------------- */
+
+#define BP_TREE_BOX_EMPTY                                                                                    \
+    {                                                                                                        \
+        {1e30f, 1e30f, 1e30f, 1e30f}, {                                                                      \
+            -1e30f, -1e30f, -1e30f, -1e30f                                                                   \
+        }                                                                                                    \
+    }
+
+static inline void bp_tree_box_add(BpTreeBox *box, const BpTreeBox *other) {
+    for (int a = 0; a < 4; ++a) {
+        box->low[a] = other->low[a] < box->low[a] ? other->low[a] : box->low[a];
+        box->high[a] = other->high[a] > box->high[a] ? other->high[a] : box->high[a];
+    }
+}
+
+static inline void bp_tree_box_add_item(BpTreeBox *box, const BpTreeItem *item) {
+    const float r = item->radius;
+    const float c[4] = {item->center[0], item->center[1], item->center[2], 0};
+    for (int a = 0; a < 4; ++a) {
+        const float low = c[a] - r, high = c[a] + r;
+        box->low[a] = low < box->low[a] ? low : box->low[a];
+        box->high[a] = high > box->high[a] ? high : box->high[a];
+    }
+}
+
+/* Half the surface area; of an empty box something large. Coordinates are below 1e13, so nothing overflows.
+ */
+static inline float bp_tree_box_half_area(const BpTreeBox *box) {
+    const float x = box->high[0] - box->low[0], y = box->high[1] - box->low[1],
+                z = box->high[2] - box->low[2];
+    return x * y + y * z + z * x;
+}
 
 #endif

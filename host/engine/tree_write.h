@@ -1,0 +1,52 @@
+/* tree_write.h: from the binary tree to the packed arrays of BpTree.
+ *
+ * In:    the scene, the reordered items, the binary tree.   Out: node boxes, child words, leaves, slots.
+ * Knows: the packed layout, rounding.   Does not know: how splits were chosen. */
+#ifndef BP_ENGINE_TREE_WRITE_H
+#define BP_ENGINE_TREE_WRITE_H
+
+#include "tree.h"
+#include "tree_binary.h"
+
+/* In double; rounded outward when stored. */
+typedef struct BpBounds {
+    double low[3], high[3];
+} BpBounds;
+
+#define BP_BOUNDS_EMPTY                                                                                      \
+    {                                                                                                        \
+        {1e30, 1e30, 1e30}, {                                                                                \
+            -1e30, -1e30, -1e30                                                                              \
+        }                                                                                                    \
+    }
+
+static inline void bp_bounds_add(BpBounds *bounds, const BpBounds *other) {
+    for (int a = 0; a < 3; ++a) {
+        bounds->low[a] = other->low[a] < bounds->low[a] ? other->low[a] : bounds->low[a];
+        bounds->high[a] = other->high[a] > bounds->high[a] ? other->high[a] : bounds->high[a];
+    }
+}
+
+typedef struct BpTreeWriter {
+    const BpScene *scene;
+    const double *origin;
+    const BpTreeItem *items;
+    BpTree *tree;
+} BpTreeWriter;
+
+/* The box that contains a sphere both as the scene has it and as the kernel will see it. */
+BpBounds bp_sphere_bounds(const BpSphere *sphere, const double origin[3], bool single);
+
+/* Fills leaf `leaf` with the spheres of these indices, 0 <= count <= width, and returns its box. */
+BpBounds bp_tree_write_leaf(const BpTreeWriter *writer, uint32_t leaf, const uint32_t *spheres,
+                            uint32_t count);
+
+/* Allocates the arrays; each has room for one entry at least, so that a device buffer can be made of it. */
+BpStatus bp_tree_allocate(BpTree *tree, uint32_t nodes, uint32_t leaves, BpError *err);
+
+/* Gathers the binary tree into wide nodes, allocates the arrays of the tree and writes them, from leaf
+ * `tree->leaf_count` on. root NULL: one node whose lanes are all empty. */
+BpStatus bp_tree_write_nodes(const BpTreeWriter *writer, const BpBinaryNode *root, BpTeam *team,
+                             BpError *err);
+
+#endif
