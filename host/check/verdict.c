@@ -1,0 +1,196 @@
+/* verdict.c: see verdict.h. */
+#include "verdict.h"
+
+#include "../base/status.h"
+#include "statistics.h"
+
+#include <math.h>
+
+enum { LIT_FEW = 20 };
+static const double z_without_noise = 1e6;
+/* The part of the level that each family of tests may spend. */
+static const double level_share[BP_FAMILIES] = {0.45, 0.45, 0.05, 0.05};
+
+typedef struct Region {
+    uint32_t left, top, right, bottom; /* half open */
+    uint32_t column, row;
+} Region;
+
+/* A mean over a region: of x (moment 1) or of x^2 (moment 2). */
+typedef struct Mean {
+    double value, variance;
+    uint64_t lit, samples;
+} Mean;
+
+/* Mean of a pixel's samples and the variance of that mean. */
+static void pixel_mean(const BpPixelSums *pixel, int channel, int moment, double *mean, double *variance) {
+    const double n = (double)pixel->count;
+    *mean = *variance = 0;
+    if (pixel->count < 2) return;
+    const double sum = moment == 1 ? pixel->sum[channel] : pixel->sum2[channel];
+    const double square = moment == 1 ? pixel->sum2[channel] : pixel->sum4[channel];
+    *mean = sum / n;
+    *variance = fmax(0, square / n - *mean * *mean) / (n - 1);
+}
+
+static Mean region_mean(const BpSums *sums, const Region *region, int channel, int moment) {
+    const double area = (double)(region->right - region->left) * (region->bottom - region->top);
+    Mean result = {0};
+    for (uint32_t y = region->top; y < region->bottom; ++y) {
+        for (uint32_t x = region->left; x < region->right; ++x) {
+            const BpPixelSums *pixel = &sums->pixels[(size_t)y * sums->width + x];
+            double mean, variance;
+            pixel_mean(pixel, channel, moment, &mean, &variance);
+            result.value += mean / area;
+            result.variance += variance / (area * area);
+            result.lit += pixel->lit[channel];
+            result.samples += pixel->count;
+        }
+    }
+    return result;
+}
+
+static double rounding(double reference, int moment) {
+    return moment * (BP_VERDICT_ROUNDING * fabs(reference) + 1e-7);
+}
+
+static double z_of_means(const Mean *kernel, const Mean *reference, int moment) {
+    const double variance = kernel->variance + reference->variance;
+    const double rest = fabs(kernel->value - reference->value) - rounding(reference->value, moment);
+    if (rest <= 0) return 0;
+    if (!(variance > 0)) return z_without_noise;
+    return fmin(rest / sqrt(variance), z_without_noise);
+}
+
+/* The z with the two-sided probability of the split of lit samples, given their total. */
+static double z_of_counts(const Mean *kernel, const Mean *reference) {
+    const uint64_t total = kernel->lit + reference->lit;
+    const double share = (double)kernel->samples / (double)(kernel->samples + reference->samples);
+    const double p = bp_binomial_two_sided(kernel->lit, total, share);
+    return p >= 1 ? 0 : p > 0 ? bp_normal_upper_quantile(p / 2) : z_without_noise;
+}
+
+/* Tests one region and remembers it if it is the most suspicious so far. */
+static void test_region(const BpSums *kernel, const BpSums *reference, const Region *region, int moment,
+                        BpVerdictTest *worst) {
+    for (int channel = BP_SUMS_RED; channel <= BP_SUMS_BLUE; ++channel) {
+        const Mean k = region_mean(kernel, region, channel, moment);
+        const Mean r = region_mean(reference, region, channel, moment);
+        const bool counted = (k.lit < LIT_FEW || r.lit < LIT_FEW) && k.samples > 0 && r.samples > 0;
+        const double z = counted ? z_of_counts(&k, &r) : z_of_means(&k, &r, moment);
+        if (z > worst->z || (channel == BP_SUMS_RED && region->column == 0 && region->row == 0)) {
+            const double limit = worst->limit;
+            *worst = (BpVerdictTest){.limit = limit,
+                                     .z = z,
+                                     .channel = channel,
+                                     .column = region->column,
+                                     .row = region->row,
+                                     .kernel = k.value,
+                                     .reference = r.value,
+                                     .counted = counted};
+        }
+    }
+}
+
+static uint32_t at_most(uint32_t value, uint32_t limit) {
+    return value < limit ? value : limit;
+}
+
+static double family_limit(double level, int family, uint64_t tests) {
+    return bp_normal_upper_quantile(bp_level_bonferroni(level * level_share[family], tests) / 2);
+}
+
+static void test_families(const BpSums *kernel, const BpSums *reference, BpVerdict *verdict) {
+    const Region whole = {0, 0, kernel->width, kernel->height, 0, 0};
+    verdict->block_columns = at_most(kernel->width, BP_VERDICT_BLOCKS_SIDE);
+    verdict->block_rows = at_most(kernel->height, BP_VERDICT_BLOCKS_SIDE);
+    const uint32_t blocks = verdict->block_columns * verdict->block_rows;
+    for (int moment = 1; moment <= 2; ++moment) {
+        const int first = moment == 1 ? BP_FAMILY_PICTURE : BP_FAMILY_PICTURE_SQUARES;
+        BpVerdictTest *picture = &verdict->worst[first], *worst = &verdict->worst[first + 1];
+        picture->limit = family_limit(verdict->level, first, 3);
+        test_region(kernel, reference, &whole, moment, picture);
+
+        worst->limit = family_limit(verdict->level, first + 1, 3 * (uint64_t)blocks);
+        for (uint32_t row = 0; row < verdict->block_rows; ++row) {
+            for (uint32_t column = 0; column < verdict->block_columns; ++column) {
+                const Region block = {column * kernel->width / verdict->block_columns,
+                                      row * kernel->height / verdict->block_rows,
+                                      (column + 1) * kernel->width / verdict->block_columns,
+                                      (row + 1) * kernel->height / verdict->block_rows,
+                                      column,
+                                      row};
+                test_region(kernel, reference, &block, moment, worst);
+            }
+        }
+    }
+}
+
+/* Ratio, interval, equivalence, power: how wrong the kernel could still be. */
+static void state_accuracy(const BpSums *kernel, const BpSums *reference, BpVerdict *verdict) {
+    const Region whole = {0, 0, kernel->width, kernel->height, 0, 0};
+    const double z_95 = bp_normal_upper_quantile(0.025);
+    verdict->smallest_bias = NAN;
+    const double shift = bp_z_detectable(verdict->worst[BP_FAMILY_PICTURE].limit, BP_VERDICT_POWER);
+    for (int channel = 0; channel < BP_SUMS_CHANNELS; ++channel) {
+        const Mean k = region_mean(kernel, &whole, channel, 1),
+                   r = region_mean(reference, &whole, channel, 1);
+        verdict->mean_kernel[channel] = k.value;
+        verdict->mean_reference[channel] = r.value;
+        if (channel == BP_SUMS_LUMINANCE) {
+            verdict->ratio = r.value > 0 ? k.value / r.value : NAN;
+            if (!bp_ratio_interval(k.value, k.variance, r.value, r.variance, z_95, &verdict->ratio_low,
+                                   &verdict->ratio_high))
+                verdict->ratio_low = verdict->ratio_high = NAN;
+        } else if (r.value > 0) {
+            const double found = shift * sqrt(k.variance + r.variance) + rounding(r.value, 1);
+            verdict->smallest_bias = fmin(found / r.value, verdict->smallest_bias); /* fmin passes over NaN */
+        }
+    }
+    verdict->equivalent =
+        verdict->ratio_low > 1 - BP_VERDICT_MARGIN && verdict->ratio_high < 1 + BP_VERDICT_MARGIN;
+}
+
+static double count_segments(const BpSums *sums, uint64_t *samples, uint64_t *invalid) {
+    double segments = 0;
+    uint64_t count = 0;
+    for (size_t p = 0; p < (size_t)sums->width * sums->height; ++p) {
+        segments += (double)sums->pixels[p].segments;
+        count += sums->pixels[p].count;
+        *invalid += sums->pixels[p].invalid;
+    }
+    *samples += count;
+    return count > 0 ? segments / (double)count : 0;
+}
+
+BpStatus bp_verdict(const BpSums *kernel, const BpSums *reference, double level, BpVerdict *verdict,
+                    BpError *err) {
+    if (kernel->width != reference->width || kernel->height != reference->height)
+        return bp_fail(err, BP_ERR_USAGE, "cannot compare a picture of %u x %u pixels with one of %u x %u",
+                       kernel->width, kernel->height, reference->width, reference->height);
+    if (!(level > 0 && level < 1))
+        return bp_fail(err, BP_ERR_USAGE, "the level %g is not between 0 and 1", level);
+    for (size_t p = 0; p < (size_t)kernel->width * kernel->height; ++p)
+        if (kernel->pixels[p].count + kernel->pixels[p].invalid < 2 ||
+            reference->pixels[p].count + reference->pixels[p].invalid < 2)
+            return bp_fail(err, BP_ERR_USAGE, "a comparison needs at least 2 samples in every pixel");
+
+    *verdict = (BpVerdict){.level = level};
+    verdict->segments_kernel = count_segments(kernel, &verdict->samples, &verdict->invalid_kernel);
+    verdict->segments_reference = count_segments(reference, &verdict->samples, &verdict->invalid_reference);
+    test_families(kernel, reference, verdict);
+    state_accuracy(kernel, reference, verdict);
+    verdict->agree = verdict->invalid_kernel == 0 && verdict->invalid_reference == 0;
+    for (int f = 0; f < BP_FAMILIES; ++f)
+        if (verdict->worst[f].z > verdict->worst[f].limit) verdict->agree = false;
+    return BP_OK;
+}
+
+double bp_verdict_pixel_z(const BpPixelSums *kernel, const BpPixelSums *reference) {
+    double k, r, variance_k, variance_r;
+    pixel_mean(kernel, BP_SUMS_LUMINANCE, 1, &k, &variance_k);
+    pixel_mean(reference, BP_SUMS_LUMINANCE, 1, &r, &variance_r);
+    const double variance = variance_k + variance_r, rest = fmax(0, fabs(k - r) - rounding(r, 1));
+    if (rest <= 0) return 0;
+    return copysign(variance > 0 ? fmin(rest / sqrt(variance), z_without_noise) : z_without_noise, k - r);
+}

@@ -1,0 +1,77 @@
+/* verdict.h: do two sets of samples of one picture come from the same light?
+ *
+ * In:    power sums of two renderers (reference/sums.h), drawn independently of each other.
+ * Out:   a verdict at a stated error rate, and how wrong the first could still be.
+ * Knows: statistics.   Does not know: scenes, renderers, devices.
+ *
+ * What is tested: the mean of each channel over the whole picture and over up to 8 x 8 blocks, and the same
+ * for the mean of squares, which sees a wrong spread. Picture and blocks get 45 % of the level each, their
+ * squares, which mostly repeat what the means say, 5 % each; every family divides its part among its tests
+ * (Bonferroni), so that a right kernel is rejected with at most the probability `level`. Small errors are
+ * seen by the whole picture, local ones by the blocks; single pixels are not tested, since thousands of tests
+ * of one pixel each are blind to an error of a hundredth of their noise.
+ *
+ * A difference D of means with variance V counts as z = max(0, |D| - e) / sqrt V, where e is what single
+ * precision may cost (BP_VERDICT_ROUNDING). Where one side has fewer than 20 samples that are not black,
+ * means follow no normal law: the numbers of such samples are compared instead, exactly (binomial). */
+#ifndef BP_CHECK_VERDICT_H
+#define BP_CHECK_VERDICT_H
+
+#include "../reference/sums.h"
+
+#define BP_VERDICT_LEVEL 1e-4    /* default: one right kernel in ten thousand is rejected */
+#define BP_VERDICT_MARGIN 0.005  /* "equivalent": brightness shown to be equal within 0.5 % */
+#define BP_VERDICT_POWER 0.9     /* of the smallest bias that would have been found */
+#define BP_VERDICT_ROUNDING 2e-5 /* relative; of squares twice that */
+#define BP_VERDICT_BLOCKS_SIDE 8u
+
+typedef enum BpVerdictFamily {
+    BP_FAMILY_PICTURE,         /* 3 tests: channel means of the whole picture */
+    BP_FAMILY_BLOCKS,          /* 3 a block */
+    BP_FAMILY_PICTURE_SQUARES, /* the same for squares */
+    BP_FAMILY_BLOCKS_SQUARES,
+    BP_FAMILIES
+} BpVerdictFamily;
+
+const char *bp_verdict_family_name(BpVerdictFamily family);
+
+/* The most suspicious test of a family. */
+typedef struct BpVerdictTest {
+    double limit;             /* |z| above this rejects */
+    double z;                 /* >= 0; 1e6 where there is no noise but a difference */
+    int channel;              /* BP_SUMS_RED .. BLUE */
+    uint32_t column, row;     /* of the block; 0 for the whole picture */
+    double kernel, reference; /* the two means, of x or of x^2 */
+    bool counted;             /* compared by numbers of lit samples */
+} BpVerdictTest;
+
+typedef struct BpVerdict {
+    bool agree;
+    double level;
+    BpVerdictTest worst[BP_FAMILIES];
+    uint32_t block_columns, block_rows;
+    uint64_t samples;                           /* valid ones, of both sides together */
+    uint64_t invalid_kernel, invalid_reference; /* any is a disagreement */
+    double mean_kernel[BP_SUMS_CHANNELS], mean_reference[BP_SUMS_CHANNELS];
+    double segments_kernel, segments_reference; /* mean number of ray segments of a path; shown, not judged */
+    /* Brightness (luminance) of kernel over reference, with its 95 % interval; NaN for a black picture. */
+    double ratio, ratio_low, ratio_high;
+    bool equivalent; /* the interval lies within 1 -+ BP_VERDICT_MARGIN */
+    /* A common factor 1 + smallest_bias on the kernel's radiance would have been found with BP_VERDICT_POWER
+     * by the means of the whole picture. NaN for a black picture. */
+    double smallest_bias;
+} BpVerdict;
+
+/* Judges. Both sums must be of the same size, with at least 2 samples in every pixel (a pixel without is left
+ * out of both). BP_ERR_USAGE otherwise. `level` in (0, 1). */
+BpStatus bp_verdict(const BpSums *kernel, const BpSums *reference, double level, BpVerdict *verdict,
+                    BpError *err);
+
+/* Signed z of one pixel's luminance: for maps, not for judging. */
+double bp_verdict_pixel_z(const BpPixelSums *kernel, const BpPixelSums *reference);
+
+/* One line for each of: verdict, families, brightness, power; ends with a newline. Returns a string that the
+ * caller frees, NULL when out of memory. */
+char *bp_verdict_text(const BpVerdict *verdict);
+
+#endif

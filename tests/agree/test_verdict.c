@@ -1,0 +1,294 @@
+/* test_verdict.c: what the verdict says of the reference against itself, right and wronged.
+ *
+ * Nothing here touches a device: both sides are the reference, with other seeds, so every rejection is the
+ * verdict's own. */
+#include "build_scene.h"
+#include "check/statistics.h"
+#include "check/verdict.h"
+#include "reference/reference.h"
+#include "unit_test.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+/* Coloured matte spheres under three lamps and a dim sky: noise in every channel, of different sources. */
+static void coloured_scene(BuiltScene *built) {
+    built_scene_init(built);
+    BpMaterial *material;
+    const double places[3][2] = {{-1.5, -2}, {0, -3}, {1.5, -2}};
+    for (int c = 0; c < 3; ++c) {
+        const uint32_t matte = built_material(built, BP_MATERIAL_LAMBERTIAN, 0.4, NULL);
+        const uint32_t lamp = built_material(built, BP_MATERIAL_DIFFUSE_LIGHT, 0, &material);
+        material->emit[c] = 12;
+        built->scene.background_bottom[c] = 0.1;
+        built->scene.background_top[c] = 0.3;
+        built_sphere(built, places[c][0], 0, places[c][1], 0.5, matte);
+        built_sphere(built, places[2 - c][0], 2, places[c][1], 0.4, lamp);
+    }
+    built_sphere(built, 0, -100.5, -2, 100, 0);
+    BpCamera *camera = &built->scene.camera;
+    camera->width = camera->height = 16;
+    camera->pixel_sampling = BP_PIXEL_SQUARE;
+}
+
+static void draw(const BpScene *scene, uint64_t samples, uint64_t seed, BpSums *sums) {
+    const BpReferenceOptions options = {.samples = samples, .seed = seed, .max_depth = 6};
+    assert_int_equal(bp_sums_init(sums, scene->camera.width, scene->camera.height, NULL), BP_OK);
+    assert_int_equal(bp_reference_render(scene, &options, sums, NULL, NULL), BP_OK);
+}
+
+/* The sums as they would be had every sample been brighter by the factor. */
+static void brighten(BpSums *sums, double factor) {
+    for (size_t p = 0; p < (size_t)sums->width * sums->height; ++p) {
+        for (int c = 0; c < BP_SUMS_CHANNELS; ++c) {
+            sums->pixels[p].sum[c] *= factor;
+            sums->pixels[p].sum2[c] *= pow(factor, 2);
+            sums->pixels[p].sum4[c] *= pow(factor, 4);
+        }
+    }
+}
+
+static BpVerdict judge(const BpSums *kernel, const BpSums *reference, double level) {
+    BpVerdict verdict;
+    assert_int_equal(bp_verdict(kernel, reference, level, &verdict, NULL), BP_OK);
+    return verdict;
+}
+
+/* 200 pairs of right renderers at the level 0.05: rejected by chance, 2 to 21 times (see test_statistics). */
+static void control(void **state) {
+    (void)state;
+    BuiltScene built;
+    coloured_scene(&built);
+    int rejected = 0, by_family[BP_FAMILIES] = {0}, ratio_missed = 0;
+    for (uint64_t i = 0; i < 200; ++i) {
+        BpSums a, b;
+        draw(&built.scene, 200, 2 * i + 1, &a);
+        draw(&built.scene, 200, 2 * i + 2, &b);
+        const BpVerdict verdict = judge(&a, &b, 0.05);
+        rejected += !verdict.agree;
+        for (int f = 0; f < BP_FAMILIES; ++f) by_family[f] += verdict.worst[f].z > verdict.worst[f].limit;
+        ratio_missed += verdict.ratio_low > 1 || verdict.ratio_high < 1;
+        bp_sums_clear(&a);
+        bp_sums_clear(&b);
+    }
+    printf("rejected %d of 200 (families %d %d %d %d); the 95 %% interval missed 1 %d times\n", rejected,
+           by_family[0], by_family[1], by_family[2], by_family[3], ratio_missed);
+    assert_in_range(rejected, 2, 21);
+    /* 10 expected; exact binomial at 1e-4 */
+    assert_true(bp_binomial_two_sided((uint64_t)ratio_missed, 200, 0.05) > 1e-4);
+}
+
+/* Radiance x (1 + e), e chosen for power 0.1, 0.5 and 0.9 of the whole picture's means: 100 runs each must
+ * reject that often. The scene is grey, so that the three channels are one test; then the power is a matter
+ * of one z. */
+static void calibrated(void **state) {
+    (void)state;
+    BuiltScene built;
+    coloured_scene(&built);
+    for (int i = 0; i < 8; ++i)
+        for (int c = 0; c < 3; ++c)
+            built.materials[i].emit[c] = built.materials[i].emit[i / 2 < 3 ? i / 2 : 0];
+    BpSums a, b;
+    draw(&built.scene, 4096, 99, &a);
+    double mean = 0, variance = 0; /* of the mean over the picture, per sample of each pixel */
+    for (int p = 0; p < 256; ++p) {
+        const double m = a.pixels[p].sum[0] / 4096;
+        mean += m / 256;
+        variance += (a.pixels[p].sum2[0] / 4096 - m * m) / (256.0 * 256);
+    }
+    bp_sums_clear(&a);
+    const double samples = 256;
+    const double powers[3] = {0.1, 0.5, 0.9};
+    for (int i = 0; i < 3; ++i) {
+        double limit = 0, bias = 0;
+        for (int step = 0; step < 20; ++step) { /* the brighter side is noisier in proportion */
+            const double error = sqrt(variance * (1 + pow(1 + bias, 2)) / samples) / mean;
+            limit = bp_normal_upper_quantile(bp_level_bonferroni(0.45 * BP_VERDICT_LEVEL, 3) / 2);
+            bias = bp_z_detectable(limit, powers[i]) * error + BP_VERDICT_ROUNDING;
+        }
+        int by_picture = 0, rejected = 0;
+        for (uint64_t run = 0; run < 100; ++run) {
+            draw(&built.scene, (uint64_t)samples, 1000 + 200 * (uint64_t)i + 2 * run, &a);
+            draw(&built.scene, (uint64_t)samples, 1001 + 200 * (uint64_t)i + 2 * run, &b);
+            brighten(&a, 1 + bias);
+            const BpVerdict verdict = judge(&a, &b, BP_VERDICT_LEVEL);
+            by_picture += verdict.worst[BP_FAMILY_PICTURE].z > limit;
+            rejected += !verdict.agree;
+            bp_sums_clear(&a);
+            bp_sums_clear(&b);
+        }
+        const double p = bp_binomial_two_sided((uint64_t)by_picture, 100, powers[i]);
+        printf("radiance x %.5f: predicted power %.1f, found by the picture's means %d, in all %d of 100 (p "
+               "= %.3f)\n",
+               1 + bias, powers[i], by_picture, rejected, p);
+        assert_true(p > 1e-4);
+        assert_true(rejected >= by_picture);
+    }
+}
+
+/* 0.5 % too bright on a 64 x 64 diffuse scene at the default count must be found, and nothing must be found
+ * where there is nothing. */
+static void half_percent(void **state) {
+    (void)state;
+    BuiltScene built;
+    built_scene_init(&built);
+    built_material(&built, BP_MATERIAL_LAMBERTIAN, 0.5, NULL);
+    built_sphere(&built, 0, -100.5, -1, 100, 0);
+    built_sphere(&built, 0, 0, -1, 0.5, 0);
+    for (int c = 0; c < 3; ++c) built.scene.background_top[c] = 0.5 + 0.2 * c;
+    BpCamera *camera = &built.scene.camera;
+    camera->width = camera->height = 64;
+    camera->pixel_sampling = BP_PIXEL_SQUARE;
+    BpSums a, b;
+    draw(&built.scene, 1024, 1, &a);
+    draw(&built.scene, 1024, 2, &b);
+    const BpVerdict right = judge(&a, &b, BP_VERDICT_LEVEL);
+    char *text = bp_verdict_text(&right);
+    assert_non_null(text);
+    fputs(text, stdout);
+    assert_true(right.agree && right.equivalent && right.smallest_bias < 0.005);
+    assert_true(strncmp(text, "agree", 5) == 0);
+    free(text);
+    brighten(&a, 1.005);
+    const BpVerdict wrong = judge(&a, &b, BP_VERDICT_LEVEL);
+    text = bp_verdict_text(&wrong);
+    assert_non_null(text);
+    fputs(text, stdout);
+    assert_false(wrong.agree);
+    assert_true(wrong.worst[BP_FAMILY_PICTURE].z > wrong.worst[BP_FAMILY_PICTURE].limit);
+    assert_true(strncmp(text, "DISAGREE", 8) == 0);
+    free(text);
+    bp_sums_clear(&a);
+    bp_sums_clear(&b);
+}
+
+/* ---- corner cases: sums written by hand ------------------------------------------------------------ */
+
+static void constant_picture(BpSums *sums, uint32_t width, uint32_t height, uint64_t samples, double value) {
+    assert_int_equal(bp_sums_init(sums, width, height, NULL), BP_OK);
+    for (size_t p = 0; p < (size_t)width * height; ++p)
+        for (uint64_t s = 0; s < samples; ++s)
+            bp_pixel_sums_add(&sums->pixels[p], (double[3]){value, value, value}, 1);
+}
+
+static void without_noise(void **state) {
+    (void)state;
+    BpSums a, b;
+    constant_picture(&a, 3, 2, 10, 0.7);
+    constant_picture(&b, 3, 2, 10, 0.7 * (1 + 1e-5)); /* what single precision may cost */
+    assert_true(judge(&a, &b, 1e-4).agree);
+    bp_sums_clear(&b);
+    constant_picture(&b, 3, 2, 10, 0.7 * (1 + 1e-4));
+    const BpVerdict verdict = judge(&a, &b, 1e-4);
+    assert_false(verdict.agree);
+    assert_true(verdict.block_columns == 3 && verdict.block_rows == 2);
+    bp_sums_clear(&a);
+    bp_sums_clear(&b);
+}
+
+static void black_pictures(void **state) {
+    (void)state;
+    BpSums a, b;
+    constant_picture(&a, 4, 4, 100, 0);
+    constant_picture(&b, 4, 4, 100, 0);
+    BpVerdict verdict = judge(&a, &b, 1e-4);
+    assert_true(verdict.agree && isnan(verdict.ratio) && isnan(verdict.smallest_bias) && !verdict.equivalent);
+    char *text = bp_verdict_text(&verdict);
+    assert_non_null(strstr(text, "no ratio"));
+    free(text);
+    /* 30 bright fireflies on one side alone: too few for means, plain for their number. */
+    for (int p = 0; p < 16; ++p)
+        for (int i = 0; i < 2; ++i) {
+            bp_pixel_sums_add(&a.pixels[p], (double[3]){50, 50, 50}, 1);
+            bp_pixel_sums_add(&b.pixels[p], (double[3]){0, 0, 0}, 1);
+        }
+    verdict = judge(&a, &b, 1e-4);
+    assert_true(!verdict.agree && verdict.worst[BP_FAMILY_PICTURE].counted);
+    bp_sums_clear(&a);
+    bp_sums_clear(&b);
+}
+
+static void one_wrong_block(void **state) {
+    (void)state;
+    BpSums a, b;
+    constant_picture(&a, 64, 64, 4, 0.5);
+    constant_picture(&b, 64, 64, 4, 0.5);
+    for (int p = 0; p < 64 * 64; ++p) { /* the same noise everywhere, and one block of a darker by a tenth */
+        const double dim = p % 64 / 8 == 5 && p / 64 / 8 == 2 ? 0.9 : 1;
+        for (int i = 0; i < 200; ++i) {
+            const double x = i % 2, y = (i + p) % 2;
+            bp_pixel_sums_add(&a.pixels[p], (double[3]){dim * x, dim * x, dim * x}, 1);
+            bp_pixel_sums_add(&b.pixels[p], (double[3]){y, y, y}, 1);
+        }
+    }
+    const BpVerdict verdict = judge(&a, &b, 1e-4);
+    assert_false(verdict.agree);
+    assert_true(verdict.worst[BP_FAMILY_PICTURE].z < verdict.worst[BP_FAMILY_PICTURE].limit);
+    const BpVerdictTest *block = &verdict.worst[BP_FAMILY_BLOCKS];
+    assert_true(block->z > block->limit && block->column == 5 && block->row == 2);
+    bp_sums_clear(&a);
+    bp_sums_clear(&b);
+}
+
+/* The mean right and the spread wrong: only the squares can tell. */
+static void wrong_spread(void **state) {
+    (void)state;
+    BpSums a, b;
+    assert_int_equal(bp_sums_init(&a, 8, 8, NULL), BP_OK);
+    assert_int_equal(bp_sums_init(&b, 8, 8, NULL), BP_OK);
+    for (int p = 0; p < 64; ++p)
+        for (int i = 0; i < 400; ++i) {
+            const double x = i % 4 == 0 ? 2 : 0, y = i % 2 == 0 ? 1 : 0;
+            bp_pixel_sums_add(&a.pixels[p], (double[3]){x, x, x}, 1);
+            bp_pixel_sums_add(&b.pixels[p], (double[3]){y, y, y}, 1);
+        }
+    const BpVerdict verdict = judge(&a, &b, 1e-4);
+    assert_false(verdict.agree);
+    assert_true(verdict.worst[BP_FAMILY_PICTURE].z == 0);
+    assert_true(verdict.worst[BP_FAMILY_PICTURE_SQUARES].z > 10);
+    bp_sums_clear(&a);
+    bp_sums_clear(&b);
+}
+
+static void invalid_samples(void **state) {
+    (void)state;
+    BpSums a, b;
+    constant_picture(&a, 2, 2, 10, 0.5);
+    constant_picture(&b, 2, 2, 10, 0.5);
+    assert_true(judge(&a, &b, 1e-4).agree);
+    bp_pixel_sums_add(&a.pixels[3], (double[3]){0.5, NAN, 0.5}, 2);
+    const BpVerdict verdict = judge(&a, &b, 1e-4);
+    assert_false(verdict.agree);
+    assert_int_equal(verdict.invalid_kernel, 1);
+    bp_sums_clear(&a);
+    bp_sums_clear(&b);
+}
+
+static void refusals(void **state) {
+    (void)state;
+    BpSums a, b;
+    BpVerdict verdict;
+    BpError err = {0};
+    constant_picture(&a, 2, 2, 10, 0.5);
+    constant_picture(&b, 2, 3, 10, 0.5);
+    assert_int_equal(bp_verdict(&a, &b, 1e-4, &verdict, &err), BP_ERR_USAGE);
+    assert_non_null(strstr(err.message, "2 x 3"));
+    assert_int_equal(bp_verdict(&a, &a, 0, &verdict, &err), BP_ERR_USAGE);
+    bp_sums_clear(&b);
+    constant_picture(&b, 2, 2, 1, 0.5);
+    assert_int_equal(bp_verdict(&a, &b, 1e-4, &verdict, &err), BP_ERR_USAGE);
+    bp_error_clear(&err);
+    bp_sums_clear(&a);
+    bp_sums_clear(&b);
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(control),       cmocka_unit_test(calibrated),      cmocka_unit_test(half_percent),
+        cmocka_unit_test(without_noise), cmocka_unit_test(black_pictures),  cmocka_unit_test(one_wrong_block),
+        cmocka_unit_test(wrong_spread),  cmocka_unit_test(invalid_samples), cmocka_unit_test(refusals),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
