@@ -1,0 +1,31 @@
+/* text.h: small letters drawn into an 8-bit picture, for legends.
+ *
+ * In:    a canvas, a string.   Out: pixels.
+ * Knows: the shapes of digits, small letters and . % < >.   Does not know: what is written. */
+#ifndef BP_IMAGE_TEXT_H
+#define BP_IMAGE_TEXT_H
+
+#include <stdint.h>
+
+/* 8-bit RGB, top row first; the pixels are the caller's. */
+typedef struct BpCanvas {
+    uint32_t width, height;
+    uint8_t *rgb;
+} BpCanvas;
+
+#define BP_TEXT_ADVANCE 6u /* pixels from one letter to the next, at scale 1 */
+#define BP_TEXT_HEIGHT 8u  /* seven above the line and one below */
+
+/* Fills a rectangle; what lies outside the canvas is left out. */
+void bp_canvas_fill(BpCanvas *canvas, uint32_t x, uint32_t y, uint32_t width, uint32_t height,
+                    const uint8_t color[3]);
+
+/* Writes `text` with its upper left corner at (x, y), each dot `scale` pixels wide. An unknown letter is a
+ * gap. */
+void bp_canvas_text(BpCanvas *canvas, uint32_t x, uint32_t y, uint32_t scale, const char *text,
+                    const uint8_t color[3]);
+
+/* Pixels that `text` is wide, without the gap after its last letter. */
+uint32_t bp_text_width(const char *text, uint32_t scale);
+
+#endif
