@@ -210,6 +210,9 @@ static BpStatus parse_head(const BpNode *root, BpScene *scene, BpError *err) {
     const BpNode title_node = bp_node_member(root, "title");
     const BpNode source_node = bp_node_member(root, "source");
     const BpNode transfer_node = bp_node_member(root, "transfer");
+    const BpNode schema = bp_node_member(root, "$schema"); /* for editors alone */
+    const char *ignored = "";
+    BP_TRY(bp_node_string(&schema, &ignored, err));
     if (format.value != NULL && !(json_is_number(format.value) && json_number_value(format.value) == 1))
         return bp_node_wrong(&format, "1, the only format that this version reads; a newer one may read it",
                              err);
@@ -223,9 +226,9 @@ static BpStatus parse_head(const BpNode *root, BpScene *scene, BpError *err) {
     return bp_copy_text(source, &scene->source, err);
 }
 
-static BpStatus parse_body(const BpNode *root, BpScene *scene, BpError *err) {
-    static const char *const names[] = {"format",     "title",    "source",    "camera",
-                                        "background", "transfer", "materials", "spheres"};
+static BpStatus parse_body(const BpNode *root, unsigned flags, BpScene *scene, BpError *err) {
+    static const char *const names[] = {"format",   "title",     "source",  "camera", "background",
+                                        "transfer", "materials", "spheres", "clouds", "$schema"};
     BP_TRY(bp_node_object(root, names, BP_COUNT(names), err));
     BP_TRY(bp_node_require(root, "camera", "one, such as \"camera\": { \"image_width\": 400 }", err));
     BP_TRY(parse_head(root, scene, err));
@@ -233,12 +236,14 @@ static BpStatus parse_body(const BpNode *root, BpScene *scene, BpError *err) {
     const BpNode background = bp_node_member(root, "background");
     const BpNode materials = bp_node_member(root, "materials");
     const BpNode spheres = bp_node_member(root, "spheres");
+    const BpNode clouds = bp_node_member(root, "clouds");
     BP_TRY(bp_parse_camera(&camera, &scene->camera, err));
     BP_TRY(parse_background(&background, scene, err));
     BP_TRY(parse_materials(&materials, scene, err));
     BpMaterialIndex index = {0};
     BpStatus status = index_materials(scene, &index, err);
     if (status == BP_OK) status = parse_spheres(&spheres, &index, scene, err);
+    if (status == BP_OK) status = bp_parse_clouds(&clouds, &index, flags, scene, err);
     free(index.by_name);
     BP_TRY(status);
     return refuse_faults(root, scene, err);
@@ -249,12 +254,11 @@ BpStatus bp_scene_parse_with(const char *text, size_t length, const char *name, 
     BpDocument document = {0};
     BpScene *result = NULL;
     *scene = NULL;
-    (void)flags;
     BpStatus status;
     BP_TRY_GOTO(status, bp_document_open(text, length, name, &document, err), done);
     BP_TRY_GOTO(status, bp_scene_create_empty(name, &result, err), done);
     const BpNode root = bp_node_root(&document);
-    BP_TRY_GOTO(status, parse_body(&root, result, err), done);
+    BP_TRY_GOTO(status, parse_body(&root, flags, result, err), done);
     *scene = result;
     result = NULL;
 done:

@@ -34,6 +34,10 @@ typedef struct BpMaterialIndex {
 BpStatus bp_parse_material_name(const BpNode *node, const BpMaterialIndex *index, uint32_t *material,
                                 BpError *err);
 
+/* Adds the points of the clouds' files to the scene's spheres; `flags` as in bp_scene_parse_with. */
+BpStatus bp_parse_clouds(const BpNode *node, const BpMaterialIndex *index, unsigned flags, BpScene *scene,
+                         BpError *err);
+
 /* Copies a string; NULL becomes "". */
 BpStatus bp_copy_text(const char *text, char **copy, BpError *err);
 /* A scene that holds nothing but defaults. */

@@ -40,7 +40,7 @@ const char *bp_nearest_name(const char *name, const char *const *names, size_t n
     const size_t length = strlen(name);
     if (length > NAME_MAX_COMPARED) return NULL;
     const char *nearest = NULL;
-    size_t nearest_distance = length / 2 + 2; /* further than this, nobody meant it */
+    size_t nearest_distance = length / 2 + 1; /* further than this, nobody meant it */
     for (size_t i = 0; i < name_count; i++) {
         const size_t other_length = strlen(names[i]);
         if (other_length > NAME_MAX_COMPARED) continue;
