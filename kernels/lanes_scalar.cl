@@ -25,6 +25,8 @@
 #undef load_lanes
 #undef store_lanes
 #undef uint_to_reals
+#undef gather_reals
+#undef gather_uints
 #undef LANE_COUNT
 
 #define LANE_COUNT 1
@@ -50,3 +52,5 @@
 #define load_lanes(array) ((array)[0])
 #define store_lanes(x, array) ((array)[0] = (x))
 #define uint_to_reals(x) ((real)(x))
+#define gather_reals(base, index) ((base)[index])
+#define gather_uints(base, index) ((base)[index])

@@ -22,6 +22,8 @@
 #undef load_lanes
 #undef store_lanes
 #undef uint_to_reals
+#undef gather_reals
+#undef gather_uints
 #undef LANE_COUNT
 
 #define LANE_COUNT 8
@@ -47,3 +49,8 @@
 #define load_lanes(array) vload8(0, array)
 #define store_lanes(x, array) vstore8(x, 0, array)
 #define uint_to_reals(x) JOIN(JOIN(convert_, REAL), 8)(x)
+#define gather_lanes(type, base, index)                                                                      \
+    (type)((base)[(index).s0], (base)[(index).s1], (base)[(index).s2], (base)[(index).s3], (base)[(index).s4],  \
+           (base)[(index).s5], (base)[(index).s6], (base)[(index).s7])
+#define gather_reals(base, index) gather_lanes(reals, base, index)
+#define gather_uints(base, index) gather_lanes(uints, base, index)

@@ -4,8 +4,8 @@
  *   REAL_IS_DOUBLE    0 or 1: what `real` is
  *   REFINE_IS_DOUBLE  0 or 1: whether intersections are refined in double (always 1 with REAL_IS_DOUBLE)
  *   TREE_WIDTH        2, 4 or 8: lanes of a tree node and of a leaf
- *   LANES             1 or 8: pixel samples that a work-item traces side by side
- *   NUMERICS_ROBUST   0 or 1;  EFFECT_... 0 or 1, one for each effect
+ *   NUMERICS_ROBUST   1: refine.cl decides; 0: plain.cl
+ *   EFFECT_...        0 or 1, one for each effect
  *
  * Rounding is part of the product: no contraction of a*b+c unless fma() is written. */
 #pragma OPENCL FP_CONTRACT OFF

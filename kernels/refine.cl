@@ -28,7 +28,8 @@ static LANED(Roots) LANED(sphere_roots)(reals high_x, reals high_y, reals high_z
     const refineds ocx = to_refined(cx) - (to_refined(high_x) + to_refined(low_x));
     const refineds ocy = to_refined(cy) - (to_refined(high_y) + to_refined(low_y));
     const refineds ocz = to_refined(cz) - (to_refined(high_z) + to_refined(low_z));
-    const refineds inverse = splat_refined(1) / fma(dx, dx, fma(dy, dy, dz * dz));
+    /* 1 / d.d to the square of its distance from 1, which is at most 8 ROUNDOFF */
+    const refineds inverse = splat_refined(2) - fma(dx, dx, fma(dy, dy, dz * dz));
     const refineds p = fma(ocx, dx, fma(ocy, dy, ocz * dz)) * inverse;
     const refineds lx = fma(-p, dx, ocx), ly = fma(-p, dy, ocy), lz = fma(-p, dz, ocz);
     const refineds r = to_refined(radius);
@@ -63,7 +64,7 @@ static LANED(Roots) LANED(sphere_roots)(reals high_x, reals high_y, reals high_z
     const reals ex = LANED(sum_error)(cx, -high_x, ocx) - low_x;
     const reals ey = LANED(sum_error)(cy, -high_y, ocy) - low_y;
     const reals ez = LANED(sum_error)(cz, -high_z, ocz) - low_z;
-    const reals inverse = splat(1) / fma(dx, dx, fma(dy, dy, dz * dz));
+    const reals inverse = splat(2) - fma(dx, dx, fma(dy, dy, dz * dz));
     const reals p1 = fma(ocx, dx, fma(ocy, dy, ocz * dz)) * inverse;
     reals lx = fma(-p1, dx, ocx) + ex, ly = fma(-p1, dy, ocy) + ey, lz = fma(-p1, dz, ocz) + ez;
     const reals p2 = fma(lx, dx, fma(ly, dy, lz * dz)) * inverse;

@@ -9,7 +9,16 @@ typedef struct Point {
     reals slack;
 } Point;
 
-#if REFINE_IS_DOUBLE
+#if !NUMERICS_ROBUST
+/* As the book has it: the rounded point, and the normal from it. */
+static void surface_point(const Point *origin, Vec3 direction, refineds t, masks enters, Vec3 centre, reals radius,
+                          Point *point, Vec3 *normal) {
+    point->high = madd3(t, direction, origin->high);
+    point->low = zero3();
+    point->slack = splat(0);
+    *normal = scale3(splat(1) / radius, subtract3(point->high, centre));
+}
+#elif REFINE_IS_DOUBLE
 static void surface_point(const Point *origin, Vec3 direction, refineds t, masks enters, Vec3 centre, reals radius,
                           Point *point, Vec3 *normal) {
     const refineds x = fma(t, to_refined(direction.x), to_refined(origin->high.x) + to_refined(origin->low.x));

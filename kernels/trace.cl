@@ -11,11 +11,19 @@
 typedef struct Scene {
     Geometry geometry;
     __global const PackedSky *sky;
-    __global const PackedMaterial *materials;
-    __global const PackedMaterialKind *kinds;
-    __global const PackedSphereLook *looks;
+    __global const real *materials; /* PackedMaterial */
+    __global const uint *kinds;     /* PackedMaterialKind */
+    __global const uint *looks;     /* PackedSphereLook */
     __global const real *albedos;
 } Scene;
+
+/* The packed structs as the gathers see them: arrays of their only type. */
+#define LOOK_UINTS ((uint)(sizeof(PackedSphereLook) / sizeof(uint)))
+#define MATERIAL_UINTS ((uint)(sizeof(PackedMaterialKind) / sizeof(uint)))
+#define MATERIAL_REALS ((uint)(sizeof(PackedMaterial) / sizeof(real)))
+#define MATERIAL_EMIT 4u
+#define MATERIAL_FUZZ 8u
+#define MATERIAL_INDEX 9u
 
 /* The paths that a work-item follows, one a lane. */
 typedef struct Paths {
@@ -36,6 +44,58 @@ typedef struct Meeting {
     uints slot;
 } Meeting;
 
+#if LANE_COUNT > 1
+/* The leaves before the tree (all of them, in a list): one sphere at a time against all lanes. The margin is that of
+ * test_leaf in tree.cl. */
+static void meet_first_leaves(const Geometry *geometry, const Paths *paths, Meeting *meeting) {
+    const Point *origin = &paths->origin;
+    const Vec3 direction = paths->direction;
+#if NUMERICS_ROBUST
+    const reals ray_margin = fma(fabs(origin->high.x) + fabs(origin->high.y) + fabs(origin->high.z),
+                                 splat(R(4.0) * ROUNDOFF), origin->slack);
+#endif
+    uints best_sphere = splat_uint(NO_SPHERE);
+    for (uint slot = 0; slot < geometry->first_leaves * TREE_WIDTH; ++slot) {
+        const uint lane = slot % TREE_WIDTH;
+        __global const real *leaf = geometry->leaves + (slot - lane) * 4;
+        if (leaf[3 * TREE_WIDTH + lane] <= 0) continue;
+        const reals radius = splat(leaf[3 * TREE_WIDTH + lane]);
+        const Vec3 centre = vec3(splat(leaf[lane]), splat(leaf[TREE_WIDTH + lane]), splat(leaf[2 * TREE_WIDTH + lane]));
+        const Vec3 oc = subtract3(centre, origin->high);
+        const reals p = dot3(oc, direction);
+        const Vec3 across = madd3(-p, direction, oc);
+#if NUMERICS_ROBUST
+        const reals margin = fma(splat(R(32.0) * ROUNDOFF), fabs(p) + radius, ray_margin);
+        const reals reach = radius + margin;
+        const reals room = fma(reach, reach, -dot3(across, across));
+        const reals behind = at_least(-p - margin, splat(0));
+        const masks candidate =
+            (room >= behind * behind) & paths->alive & mask_of_uint(paths->own_slot != splat_uint(slot));
+        if (!any_lane(candidate)) continue;
+        const LANED(Roots) roots = LANED(sphere_roots)(origin->high.x, origin->high.y, origin->high.z, origin->low.x,
+                                                       origin->low.y, origin->low.z, direction.x, direction.y,
+                                                       direction.z, centre.x, centre.y, centre.z, radius);
+        refineds t;
+        masks enters;
+        const masks hit = LANED(choose_root)(roots, radius, origin->slack, &t, &enters) & candidate;
+#else
+        const reals discriminant = fma(radius, radius, -dot3(across, across));
+        const reals half_chord = sqrt(at_least(discriminant, splat(0)));
+        const masks enters = p - half_chord > splat(PLAIN_T_MIN);
+        const reals t = choose(enters, p - half_chord, p + half_chord);
+        const masks hit = (discriminant >= splat(0)) & (t > splat(PLAIN_T_MIN)) & paths->alive;
+#endif
+        const uints sphere = splat_uint(geometry->slot_sphere[slot]);
+        const masks closer = hit & (mask_of_refined(t < meeting->t) |
+                                    (mask_of_refined(t == meeting->t) & mask_of_uint(sphere < best_sphere)));
+        meeting->t = choose_refined(closer, t, meeting->t);
+        meeting->slot = choose_uint(closer, splat_uint(slot), meeting->slot);
+        meeting->enters = (closer & enters) | (not_mask(closer) & meeting->enters);
+        best_sphere = choose_uint(closer, sphere, best_sphere);
+    }
+}
+#endif
+
 static Meeting meet(const Geometry *geometry, const Paths *paths) {
     real high_x[LANE_COUNT], high_y[LANE_COUNT], high_z[LANE_COUNT];
     real low_x[LANE_COUNT], low_y[LANE_COUNT], low_z[LANE_COUNT];
@@ -43,6 +103,13 @@ static Meeting meet(const Geometry *geometry, const Paths *paths) {
     uint own_slot[LANE_COUNT], slot[LANE_COUNT];
     real inward[LANE_COUNT], alive[LANE_COUNT], enters[LANE_COUNT];
     refined t[LANE_COUNT];
+    Meeting meeting;
+    meeting.t = splat_refined(REAL_LARGE);
+    meeting.slot = splat_uint(NO_SLOT);
+    meeting.enters = splat(0) != splat(0);
+#if LANE_COUNT > 1
+    meet_first_leaves(geometry, paths, &meeting);
+#endif
     store_lanes(paths->origin.high.x, high_x);
     store_lanes(paths->origin.high.y, high_y);
     store_lanes(paths->origin.high.z, high_z);
@@ -56,10 +123,10 @@ static Meeting meet(const Geometry *geometry, const Paths *paths) {
     store_lanes(paths->own_slot, own_slot);
     store_lanes(choose(paths->inward, splat(1), splat(0)), inward);
     store_lanes(choose(paths->alive, splat(1), splat(0)), alive);
+    store_lanes(meeting.t, t);
+    store_lanes(meeting.slot, slot);
+    store_lanes(choose(meeting.enters, splat(1), splat(0)), enters);
     for (uint lane = 0; lane < LANE_COUNT; ++lane) {
-        t[lane] = 0;
-        slot[lane] = NO_SLOT;
-        enters[lane] = 0;
         if (alive[lane] == 0) continue;
         Ray ray;
         ray.high[0] = high_x[lane];
@@ -74,66 +141,55 @@ static Meeting meet(const Geometry *geometry, const Paths *paths) {
         ray.slack = slack[lane];
         ray.own_slot = own_slot[lane];
         ray.inward = inward[lane] != 0;
-        const Hit hit = intersect_closest(geometry, &ray);
+        Hit hit = no_hit(t[lane]);
+        hit.slot = slot[lane];
+        hit.enters = enters[lane] != 0;
+        meet_own_sphere(geometry, &ray, &hit);
+        search_spheres(geometry, &ray, LANE_COUNT > 1 ? geometry->first_leaves : 0, 0, &hit);
         t[lane] = hit.t;
         slot[lane] = hit.slot;
         enters[lane] = hit.enters ? 1 : 0;
     }
-    Meeting meeting;
     meeting.t = load_lanes(t);
     meeting.slot = load_lanes(slot);
-    meeting.met = mask_of_uint(meeting.slot != splat_uint(NO_SLOT));
     meeting.enters = load_lanes(enters) != splat(0);
+    meeting.met = mask_of_uint(meeting.slot != splat_uint(NO_SLOT));
     return meeting;
 }
 
-/* The sphere and the material at each lane's slot; lanes that met nothing get a unit sphere and material 0. */
+/* The sphere and the material at each lane's slot; lanes that met nothing get those of slot 0. */
 static void look_up(const Scene *scene, const Meeting *meeting, Vec3 *centre, reals *radius, Surface *surface,
                     Vec3 *emitted) {
-    real cx[LANE_COUNT], cy[LANE_COUNT], cz[LANE_COUNT], r[LANE_COUNT];
-    real red[LANE_COUNT], green[LANE_COUNT], blue[LANE_COUNT], fuzz[LANE_COUNT], index[LANE_COUNT];
-    real emit_red[LANE_COUNT], emit_green[LANE_COUNT], emit_blue[LANE_COUNT];
-    uint slots[LANE_COUNT], kind[LANE_COUNT], lobe[LANE_COUNT], variant[LANE_COUNT], total[LANE_COUNT];
-    store_lanes(meeting->slot, slots);
-    for (uint lane = 0; lane < LANE_COUNT; ++lane) {
-        const uint slot = slots[lane];
-        const int met = slot != NO_SLOT;
-        const uint leaf_lane = slot % TREE_WIDTH;
-        __global const real *leaf = scene->geometry.leaves + (met ? slot - leaf_lane : 0) * 4;
-        cx[lane] = met ? leaf[leaf_lane] : 0;
-        cy[lane] = met ? leaf[TREE_WIDTH + leaf_lane] : 0;
-        cz[lane] = met ? leaf[2 * TREE_WIDTH + leaf_lane] : 0;
-        r[lane] = met ? leaf[3 * TREE_WIDTH + leaf_lane] : 1;
-        const uint sphere = met ? scene->geometry.slot_sphere[slot] : 0;
-        const uint material_number = met ? scene->looks[sphere].material : 0;
-        const uint albedo_number = met ? scene->looks[sphere].albedo : NO_ALBEDO;
-        __global const PackedMaterial *material = scene->materials + material_number;
-        __global const PackedMaterialKind *kinds = scene->kinds + material_number;
-        __global const real *albedo =
-            albedo_number == NO_ALBEDO ? material->albedo : scene->albedos + (size_t)albedo_number * 4;
-        red[lane] = albedo[0];
-        green[lane] = albedo[1];
-        blue[lane] = albedo[2];
-        fuzz[lane] = material->fuzz;
-        index[lane] = material->refraction_index;
-        emit_red[lane] = material->emit[0];
-        emit_green[lane] = material->emit[1];
-        emit_blue[lane] = material->emit[2];
-        kind[lane] = kinds->kind;
-        lobe[lane] = kinds->lobe;
-        variant[lane] = kinds->variant;
-        total[lane] = kinds->total_reflection;
+    const uints slot = choose_uint(meeting->met, meeting->slot, splat_uint(0));
+    const uints lane = slot % TREE_WIDTH;
+    const uints place = (slot - lane) * 4u + lane;
+    *centre = vec3(gather_reals(scene->geometry.leaves, place),
+                   gather_reals(scene->geometry.leaves, place + (uint)TREE_WIDTH),
+                   gather_reals(scene->geometry.leaves, place + (uint)(2 * TREE_WIDTH)));
+    *radius = gather_reals(scene->geometry.leaves, place + (uint)(3 * TREE_WIDTH));
+    const uints sphere = gather_uints(scene->geometry.slot_sphere, slot);
+    const uints material = gather_uints(scene->looks, sphere * LOOK_UINTS);
+    const uints colour = gather_uints(scene->looks, sphere * LOOK_UINTS + 1u);
+    const uints numbers = material * MATERIAL_REALS;
+    const uints kinds = material * MATERIAL_UINTS;
+    surface->albedo = vec3(gather_reals(scene->materials, numbers), gather_reals(scene->materials, numbers + 1u),
+                           gather_reals(scene->materials, numbers + 2u));
+    const masks own_colour = mask_of_uint(colour != splat_uint(NO_ALBEDO));
+    if (any_lane(own_colour)) {
+        const uints entry = choose_uint(own_colour, colour, splat_uint(0)) * 4u;
+        const Vec3 albedo = vec3(gather_reals(scene->albedos, entry), gather_reals(scene->albedos, entry + 1u),
+                                 gather_reals(scene->albedos, entry + 2u));
+        surface->albedo = choose3(own_colour, albedo, surface->albedo);
     }
-    *centre = vec3(load_lanes(cx), load_lanes(cy), load_lanes(cz));
-    *radius = load_lanes(r);
-    surface->albedo = vec3(load_lanes(red), load_lanes(green), load_lanes(blue));
-    surface->fuzz = load_lanes(fuzz);
-    surface->refraction_index = load_lanes(index);
-    surface->kind = load_lanes(kind);
-    surface->lobe = load_lanes(lobe);
-    surface->variant = load_lanes(variant);
-    surface->total_reflection = load_lanes(total);
-    *emitted = vec3(load_lanes(emit_red), load_lanes(emit_green), load_lanes(emit_blue));
+    *emitted = vec3(gather_reals(scene->materials, numbers + MATERIAL_EMIT),
+                    gather_reals(scene->materials, numbers + (MATERIAL_EMIT + 1u)),
+                    gather_reals(scene->materials, numbers + (MATERIAL_EMIT + 2u)));
+    surface->fuzz = gather_reals(scene->materials, numbers + MATERIAL_FUZZ);
+    surface->refraction_index = gather_reals(scene->materials, numbers + MATERIAL_INDEX);
+    surface->kind = gather_uints(scene->kinds, kinds);
+    surface->lobe = gather_uints(scene->kinds, kinds + 1u);
+    surface->variant = gather_uints(scene->kinds, kinds + 2u);
+    surface->total_reflection = gather_uints(scene->kinds, kinds + 3u);
 }
 
 /* One segment of every living path: intersect, collect radiance, scatter. */
@@ -194,9 +250,9 @@ __kernel void trace(__global const PackedCamera *camera, __global const PackedSk
     scene.geometry.first_leaves = first_leaves;
     scene.geometry.leaf_count = leaf_count;
     scene.sky = sky;
-    scene.materials = materials;
-    scene.kinds = kinds;
-    scene.looks = looks;
+    scene.materials = (__global const real *)materials;
+    scene.kinds = (__global const uint *)kinds;
+    scene.looks = (__global const uint *)looks;
     scene.albedos = albedos;
 
     const uint item = get_global_id(0);

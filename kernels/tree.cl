@@ -36,7 +36,8 @@ typedef struct Hit {
 static real upper_bound(refined t) { return (real)t * (R(1.0) + R(4.0) * ROUNDOFF); }
 
 static void keep_closer(const Geometry *geometry, refined t, uint slot, int enters, Hit *best) {
-    if (t < best->t || (t == best->t && geometry->slot_sphere[slot] < geometry->slot_sphere[best->slot])) {
+    if (t < best->t || (t == best->t && best->slot != NO_SLOT &&
+                        geometry->slot_sphere[slot] < geometry->slot_sphere[best->slot])) {
         best->t = t;
         best->slot = slot;
         best->enters = enters;
@@ -44,6 +45,7 @@ static void keep_closer(const Geometry *geometry, refined t, uint slot, int ente
     }
 }
 
+#if NUMERICS_ROBUST
 /* A sphere that the conservative test could not rule out. */
 static void refine_slot(const Geometry *geometry, const Ray *ray, uint slot, Hit *best) {
     const uint lane = slot % TREE_WIDTH;
@@ -88,6 +90,36 @@ static void test_leaf(const Geometry *geometry, const Ray *ray, real ray_margin,
         refine_slot(geometry, ray, leaf_number * TREE_WIDTH + lane, best);
     }
 }
+#else
+/* --numerics plain: the perpendicular form in `real`, decided on the spot, TREE_WIDTH spheres at a time; a root
+ * counts from PLAIN_T_MIN on (plain.cl says what that costs). */
+static void test_leaf(const Geometry *geometry, const Ray *ray, real ray_margin, uint leaf_number, Hit *best) {
+    __global const real *leaf = geometry->leaves + leaf_number * (4 * TREE_WIDTH);
+    const wide ocx = load_wide(0, leaf) - ray->high[0];
+    const wide ocy = load_wide(1, leaf) - ray->high[1];
+    const wide ocz = load_wide(2, leaf) - ray->high[2];
+    const wide radius = load_wide(3, leaf);
+    const wide dx = (wide)ray->direction[0], dy = (wide)ray->direction[1], dz = (wide)ray->direction[2];
+    const wide p = fma(ocx, dx, fma(ocy, dy, ocz * dz));
+    const wide lx = fma(-p, dx, ocx), ly = fma(-p, dy, ocy), lz = fma(-p, dz, ocz);
+    const wide discriminant = fma(radius, radius, -fma(lx, lx, fma(ly, ly, lz * lz)));
+    const wide half_chord = sqrt(discriminant > (wide)0 ? discriminant : (wide)0);
+    const wide near = p - half_chord;
+    const wide far = p + half_chord;
+    const wide t = near > (wide)PLAIN_T_MIN ? near : far;
+    lane_bytes hits = to_lane_bytes((discriminant >= (wide)0) & (t > (wide)PLAIN_T_MIN) & (t <= (wide)best->bound) &
+                                    (radius > (wide)0));
+    if (hits == 0) return;
+    real roots[TREE_WIDTH], entries[TREE_WIDTH];
+    JOIN(vstore, TREE_WIDTH)(t, 0, roots);
+    JOIN(vstore, TREE_WIDTH)(near, 0, entries);
+    while (hits != 0) {
+        const uint lane = lowest_lane(hits);
+        hits = without_lane(hits, lane);
+        keep_closer(geometry, roots[lane], leaf_number * TREE_WIDTH + lane, entries[lane] == roots[lane], best);
+    }
+}
+#endif
 
 #if EFFECT_TREE
 /* What a box test needs of a ray, once a ray. A box plane at x is met at fma(x, inverse, offset). Each origin is
@@ -120,14 +152,19 @@ static BoxRay box_ray(const Ray *ray) {
 /* The children of `node` that the ray meets before `bound`: their lanes, and where it enters them. */
 static lane_bytes test_node(const Geometry *geometry, const BoxRay *box, uint node, real bound, wide *entry) {
     __global const real *planes = geometry->boxes + node * (6 * TREE_WIDTH);
-    wide near = (wide)0, far = (wide)bound;
-    for (uint axis = 0; axis < 3; ++axis) {
-        const wide inverse = (wide)box->inverse[axis];
-        const wide enter = fma(load_wide(box->near_plane[axis], planes), inverse, (wide)box->near_offset[axis]);
-        const wide leave = fma(load_wide(box->far_plane[axis], planes), inverse, (wide)box->far_offset[axis]);
-        near = enter > near ? enter : near;
-        far = leave < far ? leave : far;
-    }
+    /* Written out, axis by axis: a loop is not always unrolled. */
+    const wide enter_x = fma(load_wide(box->near_plane[0], planes), (wide)box->inverse[0], (wide)box->near_offset[0]);
+    const wide enter_y = fma(load_wide(box->near_plane[1], planes), (wide)box->inverse[1], (wide)box->near_offset[1]);
+    const wide enter_z = fma(load_wide(box->near_plane[2], planes), (wide)box->inverse[2], (wide)box->near_offset[2]);
+    const wide leave_x = fma(load_wide(box->far_plane[0], planes), (wide)box->inverse[0], (wide)box->far_offset[0]);
+    const wide leave_y = fma(load_wide(box->far_plane[1], planes), (wide)box->inverse[1], (wide)box->far_offset[1]);
+    const wide leave_z = fma(load_wide(box->far_plane[2], planes), (wide)box->inverse[2], (wide)box->far_offset[2]);
+    const wide enter_xy = enter_x > enter_y ? enter_x : enter_y;
+    const wide enter_z0 = enter_z > (wide)0 ? enter_z : (wide)0;
+    const wide near = enter_xy > enter_z0 ? enter_xy : enter_z0;
+    const wide leave_xy = leave_x < leave_y ? leave_x : leave_y;
+    const wide leave_zb = leave_z < (wide)bound ? leave_z : (wide)bound;
+    const wide far = leave_xy < leave_zb ? leave_xy : leave_zb;
     *entry = near;
     /* 4u for the rounding of 1/d, which scales both sides alike */
     return to_lane_bytes(near <= far * (R(1.0) + R(8.0) * ROUNDOFF));
@@ -201,8 +238,9 @@ static Hit no_hit(refined limit) {
     return hit;
 }
 
-/* The sphere being left, met again from inside. */
+/* The sphere being left, met again from inside. Plain numerics meet it like any other. */
 static void meet_own_sphere(const Geometry *geometry, const Ray *ray, Hit *best) {
+#if NUMERICS_ROBUST
     if (ray->own_slot == NO_SLOT || !ray->inward) return;
     const uint lane = ray->own_slot % TREE_WIDTH;
     __global const real *leaf = geometry->leaves + (ray->own_slot - lane) * 4;
@@ -210,10 +248,8 @@ static void meet_own_sphere(const Geometry *geometry, const Ray *ray, Hit *best)
         sphere_roots_1(ray->high[0], ray->high[1], ray->high[2], ray->low[0], ray->low[1], ray->low[2],
                        ray->direction[0], ray->direction[1], ray->direction[2], leaf[lane], leaf[TREE_WIDTH + lane],
                        leaf[2 * TREE_WIDTH + lane], leaf[3 * TREE_WIDTH + lane]);
-    best->t = chord_1(roots);
-    best->slot = ray->own_slot;
-    best->enters = 0;
-    best->bound = upper_bound(best->t);
+    keep_closer(geometry, chord_1(roots), ray->own_slot, 0, best);
+#endif
 }
 
 /* The closest hit: least (t, sphere index). */

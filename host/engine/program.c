@@ -75,11 +75,12 @@ static BpStatus append_from_folder(Text *text, const char *directory, const char
 BpStatus bp_program_source(const BpProgramOptions *options, const char *extra_name, const char *extra_text,
                            char **source, BpError *err) {
     Text text = {0};
+    const bool plain = options->numerics == BP_NUMERICS_PLAIN;
     const bool all_double = options->precision == BP_PRECISION_DOUBLE;
     text_print(&text, "#define REAL_IS_DOUBLE %d\n", all_double);
-    text_print(&text, "#define REFINE_IS_DOUBLE %d\n", all_double || options->double_refine);
+    text_print(&text, "#define REFINE_IS_DOUBLE %d\n", all_double || (options->double_refine && !plain));
     text_print(&text, "#define TREE_WIDTH %u\n", options->tree_width);
-    text_print(&text, "#define NUMERICS_ROBUST %d\n", options->numerics == BP_NUMERICS_ROBUST);
+    text_print(&text, "#define NUMERICS_ROBUST %d\n", !plain);
     text_print(&text, "#define SAMPLER_SOBOL %d\n", options->sampler == BP_SAMPLER_SOBOL);
     for (int e = 0; e < BP_EFFECT_COUNT; ++e)
         text_print(&text, "#define EFFECT_%s %d\n", bp_effect_identifier((BpEffect)e),
@@ -87,15 +88,16 @@ BpStatus bp_program_source(const BpProgramOptions *options, const char *extra_na
     const char *directory = getenv("BALLPARK_KERNELS");
     const char *const *files = options->form == BP_KERNEL_PACKET ? packet_files : sample_files;
     for (size_t i = 0; files[i] != NULL; ++i) {
-        text_print(&text, "#line 1 \"%s\"\n", files[i]);
+        const char *name = plain && strcmp(files[i], "refine.cl") == 0 ? "plain.cl" : files[i];
+        text_print(&text, "#line 1 \"%s\"\n", name);
         if (directory != NULL && directory[0] != '\0') {
-            const BpStatus status = append_from_folder(&text, directory, files[i], err);
+            const BpStatus status = append_from_folder(&text, directory, name, err);
             if (status != BP_OK) {
                 free(text.bytes);
                 return status;
             }
         } else {
-            const char *embedded = bp_kernel_file(files[i]);
+            const char *embedded = bp_kernel_file(name);
             text_append(&text, embedded, strlen(embedded));
         }
     }

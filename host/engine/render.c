@@ -51,8 +51,6 @@ static BpStatus check_options(const BpScene *scene, const BpRenderOptions *optio
         return bp_fail(err, BP_ERR_USAGE, "tree width %u: 2, 4 or 8", options->tree_width);
     if (options->sampler != BP_SAMPLER_INDEPENDENT)
         return bp_fail(err, BP_ERR_USAGE, "the kernel knows the independent sampler only");
-    if (options->numerics != BP_NUMERICS_ROBUST)
-        return bp_fail(err, BP_ERR_USAGE, "the kernel knows the robust numerics only");
     return BP_OK;
 }
 
