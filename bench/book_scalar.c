@@ -53,13 +53,27 @@ typedef struct Walk {
     uint64_t rays;
 } Walk;
 
-static Vec vec(const double v[3]) { return (Vec){v[0], v[1], v[2]}; }
-static Vec add(Vec a, Vec b) { return (Vec){a.x + b.x, a.y + b.y, a.z + b.z}; }
-static Vec sub(Vec a, Vec b) { return (Vec){a.x - b.x, a.y - b.y, a.z - b.z}; }
-static Vec scale(double s, Vec a) { return (Vec){s * a.x, s * a.y, s * a.z}; }
-static Vec mul(Vec a, Vec b) { return (Vec){a.x * b.x, a.y * b.y, a.z * b.z}; }
-static double dot(Vec a, Vec b) { return a.x * b.x + a.y * b.y + a.z * b.z; }
-static Vec unit(Vec a) { return scale(1 / sqrt(dot(a, a)), a); }
+static Vec vec(const double v[3]) {
+    return (Vec){v[0], v[1], v[2]};
+}
+static Vec add(Vec a, Vec b) {
+    return (Vec){a.x + b.x, a.y + b.y, a.z + b.z};
+}
+static Vec sub(Vec a, Vec b) {
+    return (Vec){a.x - b.x, a.y - b.y, a.z - b.z};
+}
+static Vec scale(double s, Vec a) {
+    return (Vec){s * a.x, s * a.y, s * a.z};
+}
+static Vec mul(Vec a, Vec b) {
+    return (Vec){a.x * b.x, a.y * b.y, a.z * b.z};
+}
+static double dot(Vec a, Vec b) {
+    return a.x * b.x + a.y * b.y + a.z * b.z;
+}
+static Vec unit(Vec a) {
+    return scale(1 / sqrt(dot(a, a)), a);
+}
 
 /* SplitMix64 (Steele, Lea and Flood 2014). */
 static double uniform(Walk *walk) {
@@ -77,7 +91,9 @@ static Vec random_in_ball(Walk *walk) {
     }
 }
 
-static Vec random_unit_vector(Walk *walk) { return unit(random_in_ball(walk)); }
+static Vec random_unit_vector(Walk *walk) {
+    return unit(random_in_ball(walk));
+}
 
 /* ---- hits ---- */
 
@@ -168,9 +184,15 @@ static int compare(const void *a, const void *b, int axis) {
     const double x = low_end(a, axis), y = low_end(b, axis);
     return (x > y) - (x < y);
 }
-static int compare_x(const void *a, const void *b) { return compare(a, b, 0); }
-static int compare_y(const void *a, const void *b) { return compare(a, b, 1); }
-static int compare_z(const void *a, const void *b) { return compare(a, b, 2); }
+static int compare_x(const void *a, const void *b) {
+    return compare(a, b, 0);
+}
+static int compare_y(const void *a, const void *b) {
+    return compare(a, b, 1);
+}
+static int compare_z(const void *a, const void *b) {
+    return compare(a, b, 2);
+}
 
 /* Builds the tree over `spheres` and returns its root; nodes are taken from *next on. */
 static Node *build(const BpSphere **spheres, size_t count, Node **next) {
@@ -200,7 +222,9 @@ static Node *build(const BpSphere **spheres, size_t count, Node **next) {
 
 /* ---- materials ---- */
 
-static Vec reflect(Vec v, Vec n) { return sub(v, scale(2 * dot(v, n), n)); }
+static Vec reflect(Vec v, Vec n) {
+    return sub(v, scale(2 * dot(v, n), n));
+}
 
 static Vec refract(Vec v, Vec n, double ratio, double cosine) {
     const Vec perpendicular = scale(ratio, add(v, scale(cosine, n)));
@@ -238,9 +262,12 @@ static bool scatter(Walk *walk, const BpMaterial *material, const Ray *ray, cons
         *attenuation = (Vec){(double)albedo[0], (double)albedo[1], (double)albedo[2]};
     }
     switch (material->kind) {
-    case BP_MATERIAL_LAMBERTIAN: *direction = diffuse_direction(walk, material->scatter, hit->normal); return true;
+    case BP_MATERIAL_LAMBERTIAN:
+        *direction = diffuse_direction(walk, material->scatter, hit->normal);
+        return true;
     case BP_MATERIAL_METAL: {
-        const Vec random = material->fuzz_shape == BP_FUZZ_BALL ? random_in_ball(walk) : random_unit_vector(walk);
+        const Vec random =
+            material->fuzz_shape == BP_FUZZ_BALL ? random_in_ball(walk) : random_unit_vector(walk);
         *direction = add(unit(reflect(ray->direction, hit->normal)), scale(material->fuzz, random));
         return dot(*direction, hit->normal) > 0;
     }
@@ -261,7 +288,8 @@ static bool scatter(Walk *walk, const BpMaterial *material, const Ray *ray, cons
         return true;
     }
     case BP_MATERIAL_DIFFUSE_LIGHT:
-    case BP_MATERIAL_NORMALS: break;
+    case BP_MATERIAL_NORMALS:
+        break;
     }
     return false;
 }
@@ -292,7 +320,8 @@ static Ray camera_ray(Walk *walk, uint32_t column, uint32_t row) {
     const PeerCamera *camera = &walk->job->camera;
     const double x = column + (camera->center ? 0.5 : uniform(walk));
     const double y = row + (camera->center ? 0.5 : uniform(walk));
-    const Vec target = add(vec(camera->corner), add(scale(x, vec(camera->right)), scale(y, vec(camera->down))));
+    const Vec target =
+        add(vec(camera->corner), add(scale(x, vec(camera->right)), scale(y, vec(camera->down))));
     Vec lens = {0, 0, 0};
     while (camera->lens) { /* rejection in the unit disk */
         const double u = 2 * uniform(walk) - 1, v = 2 * uniform(walk) - 1;

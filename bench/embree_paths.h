@@ -10,26 +10,43 @@
 
 #include "peer.h"
 
-#define LANE_BLOCK 16u          /* batches hold a multiple of this many lanes */
+#define LANE_BLOCK 16u /* batches hold a multiple of this many lanes */
 #define LANES_MAX 4096u
-#define NO_HIT 0xffffffffu      /* as Embree's RTC_INVALID_GEOMETRY_ID */
+#define SURFACE_VALUES 8u
+#define NO_HIT 0xffffffffu /* as Embree's RTC_INVALID_GEOMETRY_ID */
 
 /* What materials the world holds: loops for absent ones are skipped. */
 enum {
-    HAS_METAL = 1, HAS_GLASS = 2, HAS_EMISSION = 4, HAS_NORMALS = 8, HAS_BALL = 16, HAS_HEMISPHERE = 32,
-    HAS_EXACT = 64, HAS_TOTAL_OTHER = 128
+    HAS_METAL = 1,
+    HAS_GLASS = 2,
+    HAS_EMISSION = 4,
+    HAS_NORMALS = 8,
+    HAS_BALL = 16,
+    HAS_HEMISPHERE = 32,
+    HAS_EXACT = 64,
+    HAS_ODD_GLASS = 128
+};
+
+enum {
+    FLAG_KIND = 7,
+    FLAG_BALL = 8, /* scatter cosine_cubed, or fuzz_shape ball: a point of the ball */
+    FLAG_HEMISPHERE = 16,
+    FLAG_EXACT = 32, /* fresnel */
+    FLAG_NO_FRESNEL = 64,
+    FLAG_ABSORB = 128, /* total reflection */
+    FLAG_REFRACT = 256
 };
 
 typedef struct World {
     const BpScene *scene;
     float origin[3], corner[3], right[3], down[3], lens_right[3], lens_up[3]; /* relative to lookfrom */
-    float sky_bottom[3], sky_slope[3];
+    float sky_middle[3], sky_slope[3];                                        /* at y = 0; a unit of y */
     bool lens, center;
     uint32_t has, max_depth, seed;
-    float *points;      /* sphere_count * 4: centre relative to lookfrom, |radius|; for Embree's vertex buffer */
-    uint32_t *surface;  /* of a sphere: entry in the tables below */
-    float (*values)[8]; /* albedo r g b, fuzz or index, emit r g b, unused */
-    uint32_t *flags;    /* kind and variants */
+    float *points; /* sphere_count * 4: centre relative to lookfrom, |radius|; for Embree's vertex buffer */
+    uint32_t *surface; /* of a sphere: entry in the tables below; one more for the sky */
+    float *values;     /* SURFACE_VALUES each: albedo r g b, fuzz or index, emit r g b, unused */
+    uint32_t *flags;   /* kind and variants */
 } World;
 
 World world_create(const BpScene *scene, uint64_t seed);
@@ -43,8 +60,8 @@ typedef struct Batch {
     float *t, *normal[3]; /* the normal outward, of any length */
     uint32_t *sphere;     /* NO_HIT: none */
     /* Between the loops of a bounce: */
-    float *uniform[3], *random[3], *value, *cosine, *offset, *next[3];
-    uint32_t *front, *alive, *kind;
+    float *random[3], *next[3], *uniform, *value, *cosine, *offset;
+    uint32_t *front, *alive, *kind, *entry;
 } Batch;
 
 Batch batch_create(uint32_t lanes);
@@ -58,5 +75,11 @@ typedef struct RowCursor {
 bool batch_refill(Batch *batch, const World *world, RowCursor *cursor);
 /* Turns hits into scattered rays, adds finished paths to the film and closes their gaps. */
 void batch_bounce(Batch *batch, const World *world, const RowCursor *cursor, const PeerFilm *film);
+
+/* The two loops behind them (embree_shade.c). Camera rays for lanes first .. end-1, whose column and sample
+ * are set: */
+void lanes_start(const Batch *batch, const World *world, uint32_t row, uint32_t first, uint32_t end);
+/* Radiance found at the hits or in the sky; then the next ray, or `alive` 0: */
+void lanes_scatter(const Batch *batch, const World *world, uint32_t first_pixel);
 
 #endif

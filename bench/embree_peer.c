@@ -104,8 +104,10 @@ static Worker worker_create(uint32_t lanes) {
     Worker worker = {.batch = batch_create(lanes), .single = peer_allocate(lanes, sizeof(struct RTCRayHit))};
     float **floats[] = {&worker.t_near, &worker.time, &worker.u, &worker.v};
     uint32_t **words[] = {&worker.mask, &worker.id, &worker.flag, &worker.geometry, &worker.instance};
-    for (size_t a = 0; a < sizeof floats / sizeof *floats; a++) *floats[a] = peer_allocate(lanes, sizeof(float));
-    for (size_t a = 0; a < sizeof words / sizeof *words; a++) *words[a] = peer_allocate(lanes, sizeof(uint32_t));
+    for (size_t a = 0; a < sizeof floats / sizeof *floats; a++)
+        *floats[a] = peer_allocate(lanes, sizeof(float));
+    for (size_t a = 0; a < sizeof words / sizeof *words; a++)
+        *words[a] = peer_allocate(lanes, sizeof(uint32_t));
     for (uint32_t i = 0; i < lanes; i++) {
         worker.t_near[i] = (float)PEER_T_MIN;
         worker.mask[i] = UINT32_MAX;
@@ -115,53 +117,48 @@ static Worker worker_create(uint32_t lanes) {
 
 /* ---- rays, in every form Embree takes ---- */
 
+/* All rays are written before the first is traced: a call right after the stores would wait for them. */
 static void trace_single(const Job *job, Worker *worker, struct RTCIntersectContext *context, uint32_t begin,
                          uint32_t end) {
     Batch *batch = &worker->batch;
+    struct RTCRayHit *rays = worker->single;
     for (uint32_t i = begin; i < end; i++) {
-        struct RTCRayHit *at = &worker->single[job->method.rays == RAYS_1 ? 0 : i];
-        at->ray = (struct RTCRay){.org_x = batch->origin[0][i],
-                                  .org_y = batch->origin[1][i],
-                                  .org_z = batch->origin[2][i],
-                                  .tnear = (float)PEER_T_MIN,
-                                  .dir_x = batch->direction[0][i],
-                                  .dir_y = batch->direction[1][i],
-                                  .dir_z = batch->direction[2][i],
-                                  .tfar = INFINITY,
-                                  .mask = UINT32_MAX};
-        at->hit.primID = at->hit.geomID = RTC_INVALID_GEOMETRY_ID;
-        at->hit.instID[0] = RTC_INVALID_GEOMETRY_ID;
-        if (job->method.rays != RAYS_1) continue;
-        rtcIntersect1(job->scene, context, at);
-        batch->t[i] = at->ray.tfar;
-        batch->sphere[i] = at->hit.primID;
-        batch->normal[0][i] = at->hit.Ng_x;
-        batch->normal[1][i] = at->hit.Ng_y;
-        batch->normal[2][i] = at->hit.Ng_z;
+        rays[i].ray = (struct RTCRay){.org_x = batch->origin[0][i],
+                                      .org_y = batch->origin[1][i],
+                                      .org_z = batch->origin[2][i],
+                                      .tnear = (float)PEER_T_MIN,
+                                      .dir_x = batch->direction[0][i],
+                                      .dir_y = batch->direction[1][i],
+                                      .dir_z = batch->direction[2][i],
+                                      .tfar = INFINITY,
+                                      .mask = UINT32_MAX};
+        rays[i].hit.primID = rays[i].hit.geomID = rays[i].hit.instID[0] = RTC_INVALID_GEOMETRY_ID;
     }
-    if (job->method.rays == RAYS_1) return;
-    rtcIntersect1M(job->scene, context, worker->single + begin, end - begin, sizeof *worker->single);
+    if (job->method.rays == RAYS_1) {
+        for (uint32_t i = begin; i < end; i++) rtcIntersect1(job->scene, context, &rays[i]);
+    } else {
+        rtcIntersect1M(job->scene, context, rays + begin, end - begin, sizeof *rays);
+    }
     for (uint32_t i = begin; i < end; i++) {
-        const struct RTCRayHit *at = &worker->single[i];
-        batch->t[i] = at->ray.tfar;
-        batch->sphere[i] = at->hit.primID;
-        batch->normal[0][i] = at->hit.Ng_x;
-        batch->normal[1][i] = at->hit.Ng_y;
-        batch->normal[2][i] = at->hit.Ng_z;
+        batch->t[i] = rays[i].ray.tfar;
+        batch->sphere[i] = rays[i].hit.primID;
+        batch->normal[0][i] = rays[i].hit.Ng_x;
+        batch->normal[1][i] = rays[i].hit.Ng_y;
+        batch->normal[2][i] = rays[i].hit.Ng_z;
     }
 }
 
-/* One function for each packet width: lanes are copied in and out in whole vectors; a batch's arrays are padded,
- * so the last packet may read and write past `end`, where lanes are free (never: the first range is followed by
- * the second, which is traced after it). */
+/* One function for each packet width: lanes are copied in and out in whole vectors; a batch's arrays are
+ * padded, so the last packet may read and write past `end`, where lanes are free (never: the first range is
+ * followed by the second, which is traced after it). */
 #define TRACE_PACKETS(WIDTH)                                                                                 \
-    static void trace_packets_##WIDTH(const Job *job, Worker *worker, struct RTCIntersectContext *context,    \
+    static void trace_packets_##WIDTH(const Job *job, Worker *worker, struct RTCIntersectContext *context,   \
                                       uint32_t begin, uint32_t end) {                                        \
         Batch *batch = &worker->batch;                                                                       \
         struct RTCRayHit##WIDTH packet;                                                                      \
         _Alignas(64) int valid[WIDTH];                                                                       \
         memset(&packet, 0, sizeof packet);                                                                   \
-        for (uint32_t l = 0; l < WIDTH; l++) packet.ray.mask[l] = UINT32_MAX;                                 \
+        for (uint32_t l = 0; l < WIDTH; l++) packet.ray.mask[l] = UINT32_MAX;                                \
         for (uint32_t i = begin; i < end; i += WIDTH) {                                                      \
             const uint32_t here = end - i < WIDTH ? end - i : WIDTH;                                         \
             for (uint32_t l = 0; l < WIDTH; l++) {                                                           \
@@ -228,11 +225,21 @@ static void trace_range(const Job *job, Worker *worker, bool coherent, uint32_t 
     if (coherent) context.flags = RTC_INTERSECT_CONTEXT_FLAG_COHERENT;
     switch (job->method.rays) {
     case RAYS_1:
-    case RAYS_1M: trace_single(job, worker, &context, begin, end); break;
-    case RAYS_4: trace_packets_4(job, worker, &context, begin, end); break;
-    case RAYS_8: trace_packets_8(job, worker, &context, begin, end); break;
-    case RAYS_16: trace_packets_16(job, worker, &context, begin, end); break;
-    case RAYS_NP: trace_stream(job, worker, &context, begin, end); break;
+    case RAYS_1M:
+        trace_single(job, worker, &context, begin, end);
+        break;
+    case RAYS_4:
+        trace_packets_4(job, worker, &context, begin, end);
+        break;
+    case RAYS_8:
+        trace_packets_8(job, worker, &context, begin, end);
+        break;
+    case RAYS_16:
+        trace_packets_16(job, worker, &context, begin, end);
+        break;
+    case RAYS_NP:
+        trace_stream(job, worker, &context, begin, end);
+        break;
     }
 }
 

@@ -51,16 +51,35 @@ void peer_options(int argc, char **argv, const char *methods, PeerOptions *optio
     int letter;
     while ((letter = getopt_long(argc, argv, "", table, NULL)) != -1) {
         switch (letter) {
-        case 's': options->samples = (uint32_t)number(optarg, UINT32_MAX); break;
-        case 'w': options->width = (uint32_t)number(optarg, BP_PICTURE_SIDE_MAX); break;
-        case 'd': options->depth = (uint32_t)number(optarg, BP_DEPTH_MAX); break;
-        case 't': options->threads = (uint32_t)number(optarg, 4096); break;
-        case 'S': options->seed = number(optarg, UINT64_MAX); break;
-        case 'm': options->method = optarg; break;
-        case 'p': options->picture_path = optarg; break;
-        case 'c': options->config = optarg; break;
-        case 'l': options->lanes = (uint32_t)number(optarg, 65536); break;
-        default: goto usage;
+        case 's':
+            options->samples = (uint32_t)number(optarg, UINT32_MAX);
+            break;
+        case 'w':
+            options->width = (uint32_t)number(optarg, BP_PICTURE_SIDE_MAX);
+            break;
+        case 'd':
+            options->depth = (uint32_t)number(optarg, BP_DEPTH_MAX);
+            break;
+        case 't':
+            options->threads = (uint32_t)number(optarg, 4096);
+            break;
+        case 'S':
+            options->seed = number(optarg, UINT64_MAX);
+            break;
+        case 'm':
+            options->method = optarg;
+            break;
+        case 'p':
+            options->picture_path = optarg;
+            break;
+        case 'c':
+            options->config = optarg;
+            break;
+        case 'l':
+            options->lanes = (uint32_t)number(optarg, 65536);
+            break;
+        default:
+            goto usage;
         }
     }
     if (optind + 1 != argc) goto usage;

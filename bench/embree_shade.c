@@ -1,0 +1,329 @@
+/* embree_shade.c: camera rays and one bounce, loop by loop, each a plain loop over lanes (embree_paths.h). */
+#include "embree_lanes.h"
+#include "embree_paths.h"
+
+#include <string.h>
+
+#define DIMENSION_CAMERA 0x80000000u /* bounces count from 0 */
+
+/* ---- camera ---- */
+
+/* Camera rays for lanes first .. end-1, whose column and sample are set. */
+void lanes_start(const Batch *batch, const World *world, uint32_t row, uint32_t first, uint32_t end) {
+    const uint32_t count = end - first, seed = world->seed;
+    const uint32_t first_pixel = row * world->scene->camera.width;
+    const uint32_t *restrict const column = batch->column + first, *restrict const sample =
+                                                                       batch->sample + first;
+    uint32_t *restrict const depth = batch->depth + first;
+    float *restrict const x = batch->next[0] + first, *restrict const y = batch->next[1] + first;
+    float *restrict const lens_x = batch->random[0] + first, *restrict const lens_y =
+                                                                 batch->random[1] + first;
+    float *restrict const scale = batch->t + first;
+    EACH_LANE {
+        uint32_t a = first_pixel + column[i], b = sample[i], c = DIMENSION_CAMERA + seed;
+        hash3(&a, &b, &c);
+        x[i] = (float)(int32_t)column[i] + to_uniform(a);
+        y[i] = (float)(int32_t)row + to_uniform(b);
+        depth[i] = 0;
+    }
+    if (world->center) {
+        EACH_LANE {
+            x[i] = (float)(int32_t)column[i] + 0.5f;
+            y[i] = (float)(int32_t)row + 0.5f;
+        }
+    }
+    if (world->lens) {
+        EACH_LANE {
+            uint32_t a = first_pixel + column[i], b = sample[i], c = DIMENSION_CAMERA + 1 + seed;
+            hash3(&a, &b, &c);
+            float sine, cosine;
+            circle(to_uniform(a), &sine, &cosine);
+            const float radius = sqrtf(to_uniform(b));
+            lens_x[i] = radius * cosine;
+            lens_y[i] = radius * sine;
+        }
+    } else {
+        memset(lens_x, 0, count * sizeof *lens_x);
+        memset(lens_y, 0, count * sizeof *lens_y);
+    }
+    EACH_LANE {
+        scale[i] = 0;
+    }
+    for (int k = 0; k < 3; k++) {
+        float *restrict const origin = batch->origin[k] + first, *restrict const direction =
+                                                                     batch->direction[k] + first;
+        float *restrict const throughput = batch->throughput[k] + first, *restrict const radiance =
+                                                                             batch->radiance[k] + first;
+        const float lens_right = world->lens_right[k], lens_up = world->lens_up[k];
+        const float corner = world->corner[k], right = world->right[k], down = world->down[k];
+        EACH_LANE {
+            const float o = lens_right * lens_x[i] + lens_up * lens_y[i];
+            const float d = corner + x[i] * right + y[i] * down - o;
+            origin[i] = o;
+            direction[i] = d;
+            scale[i] += d * d;
+            throughput[i] = 1;
+            radiance[i] = 0;
+        }
+    }
+    float *restrict const dx = batch->direction[0] + first, *restrict const dy = batch->direction[1] + first;
+    float *restrict const dz = batch->direction[2] + first;
+    EACH_LANE {
+        const float unit = 1 / sqrtf(scale[i]);
+        dx[i] *= unit;
+        dy[i] *= unit;
+        dz[i] *= unit;
+    }
+}
+
+/* ---- a bounce ---- */
+
+/* The surface's normal facing the ray. The normal that comes in points outward and is as long as the radius.
+ */
+static void meet_surfaces(const Batch *batch) {
+    const uint32_t count = batch->active;
+    FLOATS3(nx, ny, nz, batch->normal);
+    FLOATS3(ox, oy, oz, batch->origin);
+    FLOATS3(dx, dy, dz, batch->direction);
+    FLOATS(t, batch->t);
+    FLOATS(cosine, batch->cosine);
+    FLOATS(offset, batch->offset);
+    WORDS(front, batch->front);
+    WORDS(sphere, batch->sphere);
+    EACH_LANE {
+        const float length2 = sphere[i] != NO_HIT ? nx[i] * nx[i] + ny[i] * ny[i] + nz[i] * nz[i] : 1.0f;
+        const float scale = 1 / sqrtf(length2);
+        const float outward = (dx[i] * nx[i] + dy[i] * ny[i] + dz[i] * nz[i]) * scale;
+        const float facing = outward < 0 ? scale : -scale;
+        const float distance = sphere[i] != NO_HIT ? t[i] : 0.0f;
+        const float c = fabsf(outward);
+        front[i] = outward < 0 ? 1u : 0u;
+        cosine[i] = c < 1 ? c : 1.0f;
+        offset[i] = length2 * scale * 0x1p-21f;
+        nx[i] *= facing;
+        ny[i] *= facing;
+        nz[i] *= facing;
+        ox[i] += distance * dx[i];
+        oy[i] += distance * dy[i];
+        oz[i] += distance * dz[i];
+    }
+}
+
+/* A direction over the whole sphere, and one number more, from (pixel, sample, depth). */
+static void draw_random(const Batch *batch, uint32_t first_pixel, uint32_t seed) {
+    const uint32_t count = batch->active;
+    FLOATS3(rx, ry, rz, batch->random);
+    FLOATS(uniform, batch->uniform);
+    WORDS(column, batch->column);
+    WORDS(sample, batch->sample);
+    WORDS(depth, batch->depth);
+    EACH_LANE {
+        uint32_t a = first_pixel + column[i], b = sample[i], c = depth[i] + seed;
+        hash3(&a, &b, &c);
+        const float z = 1 - 2 * to_uniform(a), radius2 = 1 - z * z;
+        const float radius = sqrtf(radius2 > 0 ? radius2 : 0.0f);
+        float sine, cosine;
+        circle(to_uniform(b), &sine, &cosine);
+        rx[i] = radius * cosine;
+        ry[i] = radius * sine;
+        rz[i] = z;
+        uniform[i] = to_uniform(c);
+    }
+}
+
+/* What the spheres are made of, and the radiance found there or in the sky. */
+static void gather_surfaces(const Batch *batch, const World *world) {
+    const uint32_t count = batch->active, has = world->has, max_depth = world->max_depth;
+    const uint32_t sky_sphere = (uint32_t)world->scene->sphere_count; /* a miss meets the sky's surface */
+    const uint32_t *restrict const surface = world->surface, *restrict const flags = world->flags;
+    const float *restrict const values = world->values;
+    FLOATS(value, batch->value);
+    WORDS(sphere, batch->sphere);
+    WORDS(entry, batch->entry);
+    WORDS(kind, batch->kind);
+    WORDS(alive, batch->alive);
+    WORDS(depth, batch->depth);
+    EACH_LANE {
+        entry[i] = surface[sphere[i] < sky_sphere ? sphere[i] : sky_sphere];
+    }
+    EACH_LANE {
+        kind[i] = flags[entry[i]];
+        value[i] = values[entry[i] * SURFACE_VALUES + 3];
+        depth[i]++;
+    }
+    EACH_LANE {
+        const uint32_t scatters = (kind[i] & FLAG_KIND) <= BP_MATERIAL_DIELECTRIC ? 1u : 0u;
+        alive[i] = depth[i] < max_depth ? scatters : 0;
+    }
+    FLOATS(dy, batch->direction[1]);
+    for (int k = 0; k < 3; k++) {
+        FLOATS(throughput, batch->throughput[k]);
+        FLOATS(radiance, batch->radiance[k]);
+        FLOATS(normal, batch->normal[k]);
+        const float middle = world->sky_middle[k], slope = world->sky_slope[k];
+        if (has & HAS_EMISSION) {
+            EACH_LANE {
+                radiance[i] += throughput[i] * values[entry[i] * SURFACE_VALUES + 4 + (uint32_t)k];
+            }
+        }
+        if (has & HAS_NORMALS) {
+            EACH_LANE {
+                const float shown = throughput[i] * (0.5f * normal[i] + 0.5f);
+                radiance[i] += (kind[i] & FLAG_KIND) == BP_MATERIAL_NORMALS ? shown : 0.0f;
+            }
+        }
+        EACH_LANE {
+            const float sky = throughput[i] * (middle + slope * dy[i]);
+            radiance[i] += sphere[i] != NO_HIT ? 0.0f : sky;
+            throughput[i] *= values[entry[i] * SURFACE_VALUES + (uint32_t)k];
+        }
+    }
+}
+
+static void scatter_diffuse(const Batch *batch, uint32_t has) {
+    const uint32_t count = batch->active;
+    FLOATS3(rx, ry, rz, batch->random);
+    FLOATS3(nx, ny, nz, batch->normal);
+    FLOATS3(x, y, z, batch->next);
+    FLOATS(uniform, batch->uniform);
+    WORDS(kind, batch->kind);
+    if (has & HAS_BALL) {
+        EACH_LANE {
+            const float radius = cube_root(uniform[i]);
+            const float scale = kind[i] & FLAG_BALL ? radius : 1.0f;
+            rx[i] *= scale;
+            ry[i] *= scale;
+            rz[i] *= scale;
+        }
+    }
+    EACH_LANE {
+        x[i] = nx[i] + rx[i];
+        y[i] = ny[i] + ry[i];
+        z[i] = nz[i] + rz[i];
+    }
+    if (has & HAS_HEMISPHERE) {
+        EACH_LANE {
+            const float side = nx[i] * rx[i] + ny[i] * ry[i] + nz[i] * rz[i] < 0 ? -1.0f : 1.0f;
+            x[i] = kind[i] & FLAG_HEMISPHERE ? side * rx[i] : x[i];
+            y[i] = kind[i] & FLAG_HEMISPHERE ? side * ry[i] : y[i];
+            z[i] = kind[i] & FLAG_HEMISPHERE ? side * rz[i] : z[i];
+        }
+    }
+}
+
+static void scatter_metal(const Batch *batch) {
+    const uint32_t count = batch->active;
+    FLOATS3(rx, ry, rz, batch->random);
+    FLOATS3(nx, ny, nz, batch->normal);
+    FLOATS3(dx, dy, dz, batch->direction);
+    FLOATS3(x, y, z, batch->next);
+    FLOATS(fuzz, batch->value);
+    FLOATS(cosine, batch->cosine);
+    WORDS(kind, batch->kind);
+    WORDS(alive, batch->alive);
+    EACH_LANE {
+        const uint32_t metal = (kind[i] & FLAG_KIND) == BP_MATERIAL_METAL ? 1u : 0u;
+        const float twice = 2 * cosine[i]; /* the normal faces the ray */
+        const float mx = dx[i] + twice * nx[i] + fuzz[i] * rx[i];
+        const float my = dy[i] + twice * ny[i] + fuzz[i] * ry[i];
+        const float mz = dz[i] + twice * nz[i] + fuzz[i] * rz[i];
+        const uint32_t below = mx * nx[i] + my * ny[i] + mz * nz[i] > 0 ? 0u : 1u;
+        alive[i] &= ~(metal & below);
+        x[i] = metal ? mx : x[i];
+        y[i] = metal ? my : y[i];
+        z[i] = metal ? mz : z[i];
+    }
+}
+
+static void scatter_glass(const Batch *batch, uint32_t has) {
+    const uint32_t count = batch->active;
+    FLOATS3(nx, ny, nz, batch->normal);
+    FLOATS3(dx, dy, dz, batch->direction);
+    FLOATS3(x, y, z, batch->next);
+    FLOATS(index, batch->value);
+    FLOATS(cosine, batch->cosine);
+    FLOATS(uniform, batch->uniform);
+    FLOATS(reflectance, batch->t);
+    WORDS(front, batch->front);
+    WORDS(kind, batch->kind);
+    WORDS(alive, batch->alive);
+    EACH_LANE {
+        const float ratio = front[i] ? 1 / index[i] : index[i];
+        const float root = (1 - ratio) / (1 + ratio), r0 = root * root, away = 1 - cosine[i];
+        const float away2 = away * away;
+        reflectance[i] = r0 + (1 - r0) * away2 * away2 * away; /* Schlick 1994 */
+    }
+    if (has & HAS_EXACT) {
+        EACH_LANE {
+            const float ratio = front[i] ? 1 / index[i] : index[i], c = cosine[i];
+            const float square = 1 - ratio * ratio * (1 - c * c);
+            const float inner = sqrtf(square > 0 ? square : 0.0f);
+            const float across = (ratio * c - inner) / (ratio * c + inner);
+            const float along = (c - ratio * inner) / (c + ratio * inner);
+            const float exact = 0.5f * (across * across + along * along);
+            reflectance[i] = kind[i] & FLAG_EXACT ? exact : reflectance[i];
+        }
+    }
+    if (has & HAS_ODD_GLASS) {
+        EACH_LANE {
+            const float ratio = front[i] ? 1 / index[i] : index[i], c = cosine[i];
+            const uint32_t total = ratio * ratio * (1 - c * c) > 1 ? 1u : 0u;
+            const uint32_t glass = (kind[i] & FLAG_KIND) == BP_MATERIAL_DIELECTRIC ? 1u : 0u;
+            const uint32_t absorbs = kind[i] & FLAG_ABSORB ? 1u : 0u;
+            alive[i] &= ~(glass & total & absorbs);
+            reflectance[i] = kind[i] & FLAG_NO_FRESNEL ? 0.0f : reflectance[i];
+        }
+    }
+    EACH_LANE {
+        const float ratio = front[i] ? 1 / index[i] : index[i], c = cosine[i];
+        const float square = 1 - ratio * ratio * (1 - c * c); /* of the transmitted cosine */
+        const float transmitted = sqrtf(fabsf(square));
+        const float total = kind[i] & FLAG_REFRACT ? 0.0f : square; /* below 0: always a mirror */
+        const float chance = total < 0 ? 2.0f : reflectance[i];
+        const float along_ray = uniform[i] < chance ? 1.0f : ratio;
+        const float along_normal = uniform[i] < chance ? 2 * c : ratio * c - transmitted;
+        const uint32_t glass = (kind[i] & FLAG_KIND) == BP_MATERIAL_DIELECTRIC ? 1u : 0u;
+        const float gx = along_ray * dx[i] + along_normal * nx[i];
+        const float gy = along_ray * dy[i] + along_normal * ny[i];
+        const float gz = along_ray * dz[i] + along_normal * nz[i];
+        x[i] = glass ? gx : x[i];
+        y[i] = glass ? gy : y[i];
+        z[i] = glass ? gz : z[i];
+    }
+}
+
+/* Unit directions; and points on float spheres lie up to about 1e-7 radii off the surface, so that a path
+ * could slip under a huge one: they are moved to the side that the ray leaves by. */
+static void leave_surfaces(const Batch *batch) {
+    const uint32_t count = batch->active;
+    FLOATS3(x, y, z, batch->next);
+    FLOATS3(nx, ny, nz, batch->normal);
+    FLOATS3(ox, oy, oz, batch->origin);
+    FLOATS3(dx, dy, dz, batch->direction);
+    FLOATS(offset, batch->offset);
+    EACH_LANE {
+        const float length2 = x[i] * x[i] + y[i] * y[i] + z[i] * z[i];
+        const float scale = 1 / sqrtf(length2 > 1e-12f ? length2 : 1.0f);
+        /* Next to nothing left: the random vector met the normal's opposite. Take the normal. */
+        const float ux = length2 > 1e-12f ? x[i] * scale : nx[i];
+        const float uy = length2 > 1e-12f ? y[i] * scale : ny[i];
+        const float uz = length2 > 1e-12f ? z[i] * scale : nz[i];
+        const float away = ux * nx[i] + uy * ny[i] + uz * nz[i] < 0 ? -offset[i] : offset[i];
+        dx[i] = ux;
+        dy[i] = uy;
+        dz[i] = uz;
+        ox[i] += away * nx[i];
+        oy[i] += away * ny[i];
+        oz[i] += away * nz[i];
+    }
+}
+
+void lanes_scatter(const Batch *batch, const World *world, uint32_t first_pixel) {
+    meet_surfaces(batch);
+    draw_random(batch, first_pixel, world->seed);
+    gather_surfaces(batch, world);
+    scatter_diffuse(batch, world->has);
+    if (world->has & HAS_METAL) scatter_metal(batch);
+    if (world->has & HAS_GLASS) scatter_glass(batch, world->has);
+    leave_surfaces(batch);
+}
