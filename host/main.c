@@ -3,6 +3,7 @@
  * In:    argc, argv.   Out: an exit code (BP_STATUS_LIST).
  * Knows: how an error is shown.   Does not know: what any command does. */
 #include "cli/commands.h"
+#include "cli/interrupt.h"
 
 #include <signal.h>
 #include <stdio.h>
@@ -28,6 +29,7 @@ int main(int argc, char **argv) {
     BpError err = {0};
     /* A reader that goes away is a failed write like any other: reported, and nothing is left half done. */
     signal(SIGPIPE, SIG_IGN);
+    bp_interrupt_install();
 
     BpStatus status = bp_command_line_parse(argc, argv, &line, &err);
     if (status == BP_OK) {

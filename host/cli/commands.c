@@ -15,6 +15,37 @@
 
 const BpCommand bp_commands[] = {
     {
+        .name = "render",
+        .operands = "SCENE",
+        .operands_min = 1,
+        .operands_max = 1,
+        .summary = "render a scene to a picture",
+        .description =
+            "Renders SCENE, a JSON document (scenes/README.md says how to write one). The picture is named "
+            "like the scene and stands in the current folder, unless --output says otherwise; its ending "
+            "picks the "
+            "format: .png .ppm .pfm .exr, or .bpa, which keeps the samples' sums for ballpark merge.\n"
+            "\n"
+            "The last line tells the error of the picture: the size of its noise beside its mean brightness "
+            "(NRMSE). Half the error takes four times as long. --error and --time replace the scene's number "
+            "of "
+            "samples as the rule to stop by; --spp may stand beside them, and the first rule reached "
+            "counts.\n"
+            "\n"
+            "Ctrl-C stops, and keeps what has been rendered. The same scene, seed and samples give the same "
+            "picture bit for bit on one device.",
+        .examples =
+            "  ballpark render scenes/cover.json                        cover.png, as the scene says\n"
+            "  ballpark render scenes/cover.json --width 300 --spp 20   a quick look\n"
+            "  ballpark render scenes/cover.json --error 1              until the noise is 1 %\n"
+            "  ballpark render scenes/cover.json --time 30 -o half.exr  as good as 30 seconds allow\n"
+            "  ballpark render scenes/cover.json -o - | display         to another program\n",
+        .options = TAKES_DRAWING | TAKES(OUTPUT) | TAKES(SPP) | TAKES(ERROR) | TAKES(TIME) |
+                   TAKES(FIRST_SAMPLE) | TAKES(SAMPLER) | TAKES(TRANSFER) | TAKES(FORMAT) | TAKES(STATS) |
+                   TAKES(FORCE) | TAKES(QUIET),
+        .run = bp_command_render,
+    },
+    {
         .name = "merge",
         .operands = "FILE.bpa...",
         .operands_min = 1,

@@ -2,15 +2,19 @@
  *
  * Knows: signals.   Does not know: what is interrupted.
  *
- * The flag that the signals set is the only global of the program. A command that has something worth saving
- * calls bp_interrupt_catch(), asks bp_interrupted() between steps, saves, and returns BP_ERR_INTERRUPTED. */
+ * The flag that the signals set is the only global of the program. At first there is nothing to save, and a
+ * signal ends the program with code 130. A command that has something worth saving calls
+ * bp_interrupt_catch(), asks bp_interrupted() between steps, saves, and returns BP_ERR_INTERRUPTED. */
 #ifndef BP_CLI_INTERRUPT_H
 #define BP_CLI_INTERRUPT_H
 
 #include <stdbool.h>
 
-/* From now on the first signal sets the flag and the second ends the program at once, with code 130. (Signals
- * within a quarter of a second of the first are the same Ctrl-C, delivered twice.) */
+/* For main, once, before anything else. */
+void bp_interrupt_install(void);
+
+/* From now on the first signal is noted, and the second ends the program at once. (Signals within a quarter
+ * of a second of the first are the same Ctrl-C, delivered twice.) */
 void bp_interrupt_catch(void);
 bool bp_interrupted(void);
 

@@ -7,7 +7,7 @@
 #include <string.h>
 
 static bool dump(const json_t *root, FILE *stream) {
-    return json_dumpf(root, stream, JSON_INDENT(2) | JSON_REAL_PRECISION(17)) == 0 &&
+    return json_dumpf(root, stream, JSON_INDENT(2) | JSON_REAL_PRECISION(12)) == 0 &&
            fputc('\n', stream) != EOF && fflush(stream) == 0;
 }
 

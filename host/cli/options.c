@@ -1,8 +1,8 @@
 /* options.c: see options.h. */
 #include "commands.h"
 
+#include "../engine/accumulator.h"
 #include "../image/image.h"
-#include "../scene/scene.h"
 #include "option_table.h"
 #include "values.h"
 
@@ -11,8 +11,9 @@
 #include <stdio.h>
 #include <string.h>
 
-#define SAMPLES_MAX ((uint64_t)1 << 32)
 #define COUNT_OF(array) (sizeof(array) / sizeof(array)[0])
+
+_Static_assert(BP_SPP_MAX == (uint64_t)BP_REPLICATE_SAMPLES_MAX * BP_REPLICATES_DEFAULT, "the sums' limit");
 
 /* Stores the value of `option`, whose written name (for messages) is `name`. */
 static BpStatus store_value(BpOption option, const char *name, const char *text, BpCommandLine *line,
@@ -24,7 +25,7 @@ static BpStatus store_value(BpOption option, const char *name, const char *text,
         line->output = text;
         break;
     case BP_OPTION_SPP:
-        return bp_value_whole(name, text, 1, SAMPLES_MAX, &line->spp, err);
+        return bp_value_whole(name, text, 1, BP_SPP_MAX, &line->spp, err);
     case BP_OPTION_ERROR:
         return bp_value_real(name, text, 0.0, 100.0, &line->error_percent, err);
     case BP_OPTION_TIME:
@@ -40,7 +41,7 @@ static BpStatus store_value(BpOption option, const char *name, const char *text,
     case BP_OPTION_SEED:
         return bp_value_whole(name, text, 0, UINT64_MAX, &line->seed, err);
     case BP_OPTION_FIRST_SAMPLE:
-        return bp_value_whole(name, text, 0, SAMPLES_MAX - 1, &line->first_sample, err);
+        return bp_value_whole(name, text, 0, BP_SAMPLE_NUMBERS - 1, &line->first_sample, err);
     case BP_OPTION_DEVICE:
         line->device = text;
         break;
@@ -57,9 +58,9 @@ static BpStatus store_value(BpOption option, const char *name, const char *text,
         break;
     }
     case BP_OPTION_NUMERICS: {
-        static const char *const words[] = {"robust", "plain"};
+        static const char *const words[] = {"robust"};
         BP_TRY(bp_value_choice(name, text, words, COUNT_OF(words), &choice, err));
-        line->numerics = choice == 0 ? BP_NUMERICS_ROBUST : BP_NUMERICS_PLAIN;
+        line->numerics = BP_NUMERICS_ROBUST;
         break;
     }
     case BP_OPTION_SAMPLER: {
@@ -121,6 +122,9 @@ static BpStatus store_value(BpOption option, const char *name, const char *text,
         line->edition = words[choice];
         break;
     }
+    case BP_OPTION_FORCE:
+        line->force = true;
+        break;
     case BP_OPTION_QUIET:
         line->quiet = true;
         break;

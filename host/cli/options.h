@@ -29,6 +29,7 @@ typedef enum BpOption {
     BP_OPTION_TRANSFER,
     BP_OPTION_FORMAT,
     BP_OPTION_STATS,
+    BP_OPTION_FORCE,
     BP_OPTION_MEASURE,
     BP_OPTION_PIXEL,
     BP_OPTION_JSON,
@@ -42,6 +43,10 @@ typedef enum BpOption {
     BP_OPTION_NUMBER /* how many there are */
 } BpOption;
 
+#define BP_SAMPLE_NUMBERS ((uint64_t)1 << 32) /* sample numbers go from 0 to one below */
+#define BP_SPP_MAX                                                                                           \
+    ((uint64_t)1 << 26) /* BP_REPLICATE_SAMPLES_MAX in each replicate: then sums may overflow */
+
 /* What the command line says. Every member is checked; a member whose option was not given is 0, NULL or the
  * enum's first value, and bp_option_given() tells. Texts point into argv. */
 typedef struct BpCommandLine {
@@ -50,7 +55,7 @@ typedef struct BpCommandLine {
     size_t operand_count;
     uint64_t given;       /* bit o: option o stood there */
     const char *output;   /* -o; "-": standard output */
-    uint64_t spp;         /* samples a pixel, 1 .. 2^32 */
+    uint64_t spp;         /* samples a pixel, 1 .. BP_SPP_MAX */
     double error_percent; /* (0, 100] */
     double time_seconds;  /* (0, 1e7] */
     uint32_t width;       /* pixels, 1 .. BP_PICTURE_SIDE_MAX */
@@ -74,7 +79,7 @@ typedef struct BpCommandLine {
     unsigned grid;
     uint64_t count;
     const char *edition; /* "1", "3", "3rust" or "4" */
-    bool quiet, help, version;
+    bool force, quiet, help, version;
 } BpCommandLine;
 
 static inline bool bp_option_given(const BpCommandLine *line, BpOption option) {

@@ -19,7 +19,11 @@ const char *bp_format_seconds(double seconds, char *text, size_t size) {
     if (!(seconds < 1.0e9)) {
         snprintf(text, size, "ages");
     } else if (seconds < 9.95) {
-        snprintf(text, size, seconds < 0.995 ? "%.2f s" : "%.1f s", seconds);
+        snprintf(text, size,
+                 seconds == floor(seconds) ? "%.0f s"
+                 : seconds < 0.995         ? "%.2f s"
+                                           : "%.1f s",
+                 seconds);
     } else if (seconds < 99.5) {
         snprintf(text, size, "%.0f s", seconds);
     } else {

@@ -1,7 +1,10 @@
 /* setup.c: see setup.h. */
 #include "setup.h"
 
+#include "../engine/self_test.h"
+
 #include <inttypes.h>
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -26,7 +29,7 @@ BpStatus bp_setup_options(const BpCommandLine *line, const BpScene *scene, BpRen
     if (bp_option_given(line, BP_OPTION_SAMPLER)) options->sampler = line->sampler;
     if (bp_option_given(line, BP_OPTION_KERNEL)) options->kernel = line->kernel;
     options->all_effects = line->all_effects;
-    const uint64_t samples_max = ((uint64_t)1 << 32) - options->first_sample;
+    const uint64_t samples_max = BP_SAMPLE_NUMBERS - options->first_sample;
     if (options->samples_per_pixel > samples_max)
         return bp_fail(err, BP_ERR_USAGE,
                        "--first-sample %" PRIu64 " leaves numbers for %" PRIu64 " samples, %" PRIu64
@@ -60,4 +63,24 @@ BpStatus bp_setup_devices(const BpCommandLine *line, BpDeviceInfo **devices, siz
         *devices = NULL;
     }
     return status;
+}
+
+BpStatus bp_setup_self_test(const BpCommandLine *line, const BpDeviceInfo *devices, size_t count,
+                            BpError *err) {
+    for (size_t d = 0; d < count; ++d) {
+        BpDevice *device = NULL;
+        BpError fault = {0};
+        BP_TRY(bp_device_open(&devices[d], &device, err));
+        const BpStatus status = bp_self_test_once(device, NULL, &fault);
+        bp_device_close(&device);
+        if (status != BP_OK && line->force) {
+            fprintf(stderr, "ballpark: warning: %s\n", fault.message);
+        } else if (status != BP_OK) {
+            bp_fail(err, status, "%s; --force renders all the same", fault.message);
+            bp_error_attach(err, fault.attachment);
+        }
+        bp_error_clear(&fault);
+        if (status != BP_OK && !line->force) return status;
+    }
+    return BP_OK;
 }

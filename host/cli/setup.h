@@ -18,4 +18,9 @@ BpStatus bp_setup_options(const BpCommandLine *line, const BpScene *scene, BpRen
  * free(). Never empty on success. */
 BpStatus bp_setup_devices(const BpCommandLine *line, BpDeviceInfo **devices, size_t *count, BpError *err);
 
+/* Asks every device for known answers (once per device, driver and version; a pass is remembered). One that
+ * gives wrong answers is refused; with --force this is said, and no more. */
+BpStatus bp_setup_self_test(const BpCommandLine *line, const BpDeviceInfo *devices, size_t count,
+                            BpError *err);
+
 #endif

@@ -1,0 +1,162 @@
+/* cmd_render.c: `ballpark render`.
+ *
+ * In:    a scene's file, options.   Out: its picture, statistics, a summary.
+ * Knows: the order of the steps.    Does not know: how any of them is done. */
+#include "commands.h"
+
+#include "../base/clock.h"
+#include "json_file.h"
+#include "render_loop.h"
+#include "report.h"
+#include "result_file.h"
+#include "setup.h"
+#include "stats.h"
+#include "terminal.h"
+
+#include <inttypes.h>
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+/* Refuses now what could not be written later. */
+static BpStatus check_outputs(const BpCommandLine *line, BpResultFile *result, BpError *err) {
+    BP_TRY(bp_result_choose(line, line->operands[0], result, err));
+    if (line->stats == NULL) return BP_OK;
+    if (strcmp(line->stats, result->path) == 0)
+        return bp_fail(err, BP_ERR_USAGE, "--stats and --output both name %s", bp_result_name(result));
+    return bp_json_check(line->stats, err);
+}
+
+static void init_rule(const BpCommandLine *line, const BpRenderOptions *options, uint64_t pixels,
+                      BpStopRule *rule) {
+    const bool has_error = bp_option_given(line, BP_OPTION_ERROR),
+               has_time = bp_option_given(line, BP_OPTION_TIME);
+    uint64_t samples_max = options->samples_per_pixel;
+    /* The scene's own count is no rule once another one is given; --spp is. */
+    if ((has_error || has_time) && !bp_option_given(line, BP_OPTION_SPP)) {
+        samples_max = BP_SPP_MAX;
+        if (samples_max > BP_SAMPLE_NUMBERS - options->first_sample)
+            samples_max = BP_SAMPLE_NUMBERS - options->first_sample;
+    }
+    bp_stop_rule_init(rule, has_error ? line->error_percent / 100.0 : 0.0,
+                      has_time ? line->time_seconds : 0.0, samples_max, pixels);
+}
+
+static void print_summary(const BpRunResult *result, const BpStopRule *rule, const BpLoopEnd *end) {
+    const BpRenderReport *report = &result->report;
+    char samples[32], text[32], rate[32];
+    BpSceneInfo info;
+    bp_scene_info(result->scene, &info);
+    fprintf(stderr, "%s: %" PRIu32 "x%" PRIu32 ", %" PRIu64 " %s a pixel%s, error %s\n", result->output,
+            info.width, info.height, result->samples_per_pixel,
+            result->samples_per_pixel == 1 ? "sample" : "samples",
+            result->accumulator->partial ? " and part of another round" : "",
+            bp_format_error(result->nrmse, text, sizeof text));
+    fprintf(stderr, "%s samples in %s (%s/s)",
+            bp_format_count((double)report->samples, samples, sizeof samples),
+            bp_format_seconds(end->seconds, text, sizeof text),
+            bp_format_count((double)report->samples / fmax(end->seconds, 1.0e-9), rate, sizeof rate));
+    /* Half the error takes four times the samples; the kernel is not built again. */
+    const double more = 3.0 * (end->seconds - report->first_launch_seconds);
+    if (result->nrmse > 0.0)
+        fprintf(stderr, "; half the error: %s more", bp_format_seconds(more, text, sizeof text));
+    else if (isnan(result->nrmse))
+        fprintf(stderr, "; an error needs %s",
+                result->samples_per_pixel < 2 ? "two samples a pixel at least"
+                                              : "a picture that is not black");
+    fprintf(stderr, "\n");
+    if (rule->error > 0.0 && end->reason == BP_STOP_SAMPLES)
+        fprintf(stderr, "the error asked for was not reached: all %" PRIu64 " samples are used up\n",
+                rule->samples_max);
+    if (rule->error > 0.0 && end->reason == BP_STOP_TIME)
+        fprintf(stderr, "the error asked for was not reached in time\n");
+    /* Nothing seen in n independent samples: below 3/n with 95 % confidence (Hanley, Lippman-Hand 1983). */
+    if (end->reason == BP_STOP_BLACK)
+        fprintf(
+            stderr,
+            "the picture is black, so --error has nothing to go by: of %s samples none brought light, hence "
+            "fewer than %.1g do\n",
+            samples, 3.0 / (double)report->samples);
+    if (end->reason == BP_STOP_CONSTANT)
+        fprintf(
+            stderr,
+            "the samples of every pixel agree, so --error has nothing to wait for: of %s samples none stood "
+            "out, hence fewer than %.1g do\n",
+            samples, 3.0 / (double)report->samples);
+    if (report->cut_paths > 0)
+        fprintf(stderr,
+                "%.2g %% of the paths were cut at %" PRIu32 " segments (--depth) and count as black\n",
+                100.0 * (double)report->cut_paths / (double)report->samples, result->options->max_depth);
+    if (report->invalid_samples > 0)
+        fprintf(stderr, "warning: %" PRIu64 " samples were not finite; they are left out of the picture\n",
+                report->invalid_samples);
+}
+
+/* Picture, statistics and summary of a render that has stopped. */
+static BpStatus deliver(const BpCommandLine *line, const BpResultFile *file, const BpStopRule *rule,
+                        const BpLoopEnd *end, BpRender *render, BpRunResult *result, BpError *err) {
+    BP_TRY(bp_render_accumulator(render, &result->accumulator, err));
+    bp_render_report(render, &result->report);
+    result->samples_per_pixel = bp_render_samples_done(render);
+    result->stopped_by = end->reason;
+    result->nrmse = bp_accumulator_nrmse(result->accumulator);
+    const double write_start = bp_clock_seconds();
+    BP_TRY(bp_result_write(line, file, result->accumulator, (BpTransfer)result->accumulator->transfer, err));
+    result->times.write = bp_clock_seconds() - write_start;
+    if (line->stats != NULL) BP_TRY(bp_json_write(bp_stats_json(result), line->stats, err));
+    if (!line->quiet) print_summary(result, rule, end);
+    if (end->reason != BP_STOP_NOT_YET) return BP_OK;
+    return bp_fail(err, BP_ERR_INTERRUPTED,
+                   "interrupted after %" PRIu64 " of %" PRIu64 " samples a pixel%s; %s shows what there is",
+                   result->samples_per_pixel, rule->samples_max,
+                   result->samples_per_pixel == 0 ? " (some pixels have one, the others are black)" : "",
+                   result->output);
+}
+
+BpStatus bp_command_render(const BpCommandLine *line, BpError *err) {
+    BpStatus status = BP_OK;
+    BpScene *scene = NULL;
+    BpRender *render = NULL;
+    BpDeviceInfo *devices = NULL;
+    BpWaiting *waiting = NULL;
+    BpResultFile file;
+    BpRenderOptions options;
+    BpSceneInfo info;
+    BpStopRule rule;
+    BpLoopEnd end;
+    BpRunResult result = {
+        .scene_path = line->operands[0], .times.start = bp_clock_seconds(), .options = &options};
+
+    BP_TRY(check_outputs(line, &file, err));
+    result.output = bp_result_name(&file);
+
+    waiting = bp_waiting_begin(line->quiet, "reading %s", line->operands[0]);
+    BP_TRY_GOTO(status, bp_setup_scene(line, line->operands[0], &scene, err), done);
+    bp_waiting_end(waiting);
+    waiting = NULL;
+    result.scene = scene;
+    result.times.load = bp_clock_seconds() - result.times.start;
+    bp_scene_info(scene, &info);
+    const uint64_t pixels = (uint64_t)info.width * info.height;
+    BP_TRY_GOTO(status, bp_setup_options(line, scene, &options, err), done);
+    init_rule(line, &options, pixels, &rule);
+    options.samples_per_pixel = bp_stop_first(&rule);
+
+    BP_TRY_GOTO(status, bp_setup_devices(line, &devices, &result.device_count, err), done);
+    waiting = bp_waiting_begin(line->quiet, "preparing %zu spheres and the kernel for %s", info.spheres,
+                               devices[0].name);
+    BP_TRY_GOTO(status, bp_setup_self_test(line, devices, result.device_count, err), done);
+    BP_TRY_GOTO(status, bp_render_create(scene, &options, devices, result.device_count, &render, err), done);
+    bp_waiting_end(waiting);
+    waiting = NULL;
+
+    BP_TRY_GOTO(status, bp_render_loop(render, &rule, pixels, line->quiet, &end, err), done);
+    status = deliver(line, &file, &rule, &end, render, &result, err);
+done:
+    bp_waiting_end(waiting);
+    bp_render_destroy(&render);
+    free(devices);
+    bp_scene_destroy(&scene);
+    return status;
+}

@@ -1,0 +1,98 @@
+/* stats.c: see stats.h. */
+#include "stats.h"
+
+#include "../base/clock.h"
+
+#include <inttypes.h>
+#include <math.h>
+#include <stdio.h>
+
+/* JSON is UTF-8; a file's name need not be. Bytes outside ASCII of one that is not become '?'. */
+static json_t *json_text(const char *text) {
+    json_t *value = json_string(text);
+    if (value != NULL) return value;
+    char plain[4096];
+    size_t length = 0;
+    for (; text[length] != '\0' && length + 1 < sizeof plain; ++length)
+        plain[length] = (unsigned char)text[length] < 0x80 ? text[length] : '?';
+    plain[length] = '\0';
+    return json_string(plain);
+}
+
+/* JSON has no NaN. */
+static json_t *json_number(double value) {
+    return isfinite(value) ? json_real(value) : json_null();
+}
+
+/* A seed of 64 bits; jansson's integers have a sign, so the upper half is written as a text. */
+static json_t *json_seed(uint64_t seed) {
+    char text[24];
+    if (seed <= INT64_MAX) return json_integer((json_int_t)seed);
+    snprintf(text, sizeof text, "%" PRIu64, seed);
+    return json_string(text);
+}
+
+static json_t *device_json(const BpDeviceInfo *info) {
+    static const char *const types[] = {"cpu", "gpu", "other"};
+    return json_pack("{s:o, s:o, s:o, s:s}", "platform", json_text(info->platform), "name",
+                     json_text(info->name), "driver", json_text(info->driver), "type", types[info->type]);
+}
+
+static json_t *effects_json(const BpEffects *effects) {
+    json_t *names = json_array();
+    for (int e = 0; e < BP_EFFECT_COUNT && names != NULL; ++e)
+        if (bp_effects_has(effects->bits, (BpEffect)e))
+            json_array_append_new(names, json_string(bp_effect_name((BpEffect)e)));
+    return names;
+}
+
+static json_t *seconds_json(const BpRunResult *result) {
+    const BpRenderReport *report = &result->report;
+    const BpRunTimes *times = &result->times;
+    return json_pack("{s:f, s:f, s:f, s:f, s:f, s:f, s:f, s:f, s:f}", "total",
+                     bp_clock_seconds() - times->start, "load", times->load, "tree", report->tree_seconds,
+                     "kernel_build", report->kernel_build_seconds, "trace", report->trace_seconds, "write",
+                     times->write, "pack", report->pack_seconds, "first_launch", report->first_launch_seconds,
+                     "device", report->device_seconds);
+}
+
+json_t *bp_stats_json(const BpRunResult *result) {
+    const BpRenderReport *report = &result->report;
+    const BpRenderOptions *options = result->options;
+    BpSceneInfo info;
+    bp_scene_info(result->scene, &info);
+    double mean[3];
+    bp_accumulator_mean(result->accumulator, mean);
+    json_t *root =
+        json_pack("{s:o, s:i, s:i, s:I, s:I, s:o, s:I, s:o, s:o}", "scene", json_text(result->scene_path),
+                  "width", (int)info.width, "height", (int)info.height, "samples_per_pixel",
+                  (json_int_t)result->samples_per_pixel, "max_depth", (json_int_t)options->max_depth, "seed",
+                  json_seed(options->seed), "spheres", (json_int_t)info.spheres, "device",
+                  device_json(&report->device), "effects", effects_json(&report->effects));
+    json_t *choices = json_pack("{s:s, s:s, s:s, s:s, s:s}", "kernel",
+                                report->kernel == BP_KERNEL_PACKET ? "packet" : "sample", "precision",
+                                report->precision == BP_PRECISION_DOUBLE ? "double" : "single", "math",
+                                report->math == BP_MATH_FAST ? "fast" : "strict", "sampler",
+                                report->sampler == BP_SAMPLER_SOBOL ? "sobol" : "independent", "numerics",
+                                report->numerics == BP_NUMERICS_PLAIN ? "plain" : "robust");
+    json_t *counts =
+        json_pack("{s:o, s:I, s:I, s:[f,f,f], s:o, s:I, s:I}", "seconds", seconds_json(result), "samples",
+                  (json_int_t)report->samples, "rays", (json_int_t)report->segments, "mean_radiance", mean[0],
+                  mean[1], mean[2], "nrmse", json_number(result->nrmse), "invalid_samples",
+                  (json_int_t)report->invalid_samples, "cut_paths", (json_int_t)report->cut_paths);
+    json_t *run = json_pack(
+        "{s:o, s:I, s:i, s:b, s:s, s:i, s:I, s:I, s:s}", "output", json_text(result->output), "first_sample",
+        (json_int_t)options->first_sample, "replicates", (int)result->accumulator->replicates, "partial",
+        result->accumulator->partial, "stopped_by", bp_stop_reason_name(result->stopped_by), "devices",
+        (int)result->device_count, "device_bytes", (json_int_t)report->device_bytes, "scene_bytes",
+        (json_int_t)report->scene_bytes, "version", bp_version());
+    const bool whole = root != NULL && choices != NULL && counts != NULL && run != NULL &&
+                       json_object_update(root, choices) == 0 && json_object_update(root, counts) == 0 &&
+                       json_object_update(root, run) == 0;
+    json_decref(choices);
+    json_decref(counts);
+    json_decref(run);
+    if (whole) return root;
+    json_decref(root);
+    return NULL;
+}

@@ -1,0 +1,33 @@
+/* terminal.h: one line on a terminal that says what is going on, and takes itself away.
+ *
+ * Knows: standard error, whether it is a terminal, its width.   Does not know: what is going on.
+ *
+ * On anything but a terminal, and with --quiet, nothing is ever written. */
+#ifndef BP_CLI_TERMINAL_H
+#define BP_CLI_TERMINAL_H
+
+#include "../base/status.h"
+
+/* Whether a status line is wanted: standard error is a terminal that can move its cursor, and not `quiet`. */
+bool bp_terminal_is_live(bool quiet);
+
+/* Columns of the terminal now, 80 if it does not say; at least 20. */
+unsigned bp_terminal_columns(void);
+
+/* Whether characters outside ASCII are shown (by LC_ALL, LC_CTYPE, LANG). */
+bool bp_terminal_has_utf8(void);
+
+/* Shows `text` as the status line, in place of the one before. "" takes it away. The caller cuts it to width.
+ */
+void bp_terminal_show(const char *text);
+
+/* A wait during which nothing can be counted: after half a second a line of its own thread says what is
+ * awaited and for how long already. */
+typedef struct BpWaiting BpWaiting;
+
+/* Begins; `format` as for printf. NULL when no line is wanted or no thread can be had: that is no failure. */
+BpWaiting *bp_waiting_begin(bool quiet, const char *format, ...) BP_PRINTF_LIKE(2, 3);
+/* Ends, takes the line away, frees. Accepts NULL. */
+void bp_waiting_end(BpWaiting *waiting);
+
+#endif
