@@ -8,7 +8,7 @@
 #include <jansson.h>
 #include <stdlib.h>
 #include <string.h>
-#include <sys/stat.h>
+#include <sys/types.h>
 
 #define FORMAT_VERSION 1
 #define HEADER_SIZE_MAX (1u << 20)
@@ -264,13 +264,14 @@ static BpStatus read_header(FILE *in, const char *name, json_t **header, size_t 
 /* Whether the file is as long as sums and counts of `sizes` need; before anything is allocated. */
 static BpStatus check_length(FILE *in, const char *name, const BpAccumulator *sizes, size_t header_size,
                              BpError *err) {
-    struct stat info;
-    if (fstat(fileno(in), &info) != 0)
+    if (fseeko(in, 0, SEEK_END) != 0)
+        return bp_fail(err, BP_ERR_FILE, "%s is a pipe or a device: accumulators are read from files", name);
+    const off_t length = ftello(in);
+    if (length < 0 || fseeko(in, (off_t)header_size, SEEK_SET) != 0)
         return bp_fail(err, BP_ERR_FILE, "reading %s failed: %s", name, strerror(errno));
-    if (!S_ISREG(info.st_mode)) return bp_fail(err, BP_ERR_FILE, "%s is not a regular file", name);
     /* At most 2^16 * 2^16 * 2^6 * 28 bytes: far below 2^64. */
     const uint64_t expected = header_size + (uint64_t)cell_count(sizes) * (3 * 8 + 4);
-    const uint64_t actual = (uint64_t)info.st_size;
+    const uint64_t actual = (uint64_t)length;
     if (actual == expected) return BP_OK;
     return bp_fail(err, BP_ERR_FILE,
                    "%s is %s: %" PRIu64 " bytes, where its header (%" PRIu32 " x %" PRIu32 " pixels, %" PRIu32
