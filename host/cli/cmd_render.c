@@ -17,16 +17,6 @@
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
-#include <string.h>
-
-/* Refuses now what could not be written later. */
-static BpStatus check_outputs(const BpCommandLine *line, BpResultFile *result, BpError *err) {
-    BP_TRY(bp_result_choose(line, line->operands[0], result, err));
-    if (line->stats == NULL) return BP_OK;
-    if (strcmp(line->stats, result->path) == 0)
-        return bp_fail(err, BP_ERR_USAGE, "--stats and --output both name %s", bp_result_name(result));
-    return bp_json_check(line->stats, err);
-}
 
 static void init_rule(const BpCommandLine *line, const BpRenderOptions *options, uint64_t pixels,
                       BpStopRule *rule) {
@@ -128,7 +118,7 @@ BpStatus bp_command_render(const BpCommandLine *line, BpError *err) {
     BpRunResult result = {
         .scene_path = line->operands[0], .times.start = bp_clock_seconds(), .options = &options};
 
-    BP_TRY(check_outputs(line, &file, err));
+    BP_TRY(bp_result_choose(line, line->operands[0], &file, err));
     result.output = bp_result_name(&file);
 
     waiting = bp_waiting_begin(line->quiet, "reading %s", line->operands[0]);

@@ -41,8 +41,8 @@ const BpCommand bp_commands[] = {
             "  ballpark render scenes/cover.json --time 30 -o half.exr  as good as 30 seconds allow\n"
             "  ballpark render scenes/cover.json -o - | display         to another program\n",
         .options = TAKES_DRAWING | TAKES(OUTPUT) | TAKES(SPP) | TAKES(ERROR) | TAKES(TIME) |
-                   TAKES(FIRST_SAMPLE) | TAKES(SAMPLER) | TAKES(TRANSFER) | TAKES(FORMAT) | TAKES(STATS) |
-                   TAKES(FORCE) | TAKES(QUIET),
+                   TAKES(FIRST_SAMPLE) | TAKES(SAMPLER) | TAKES(TRANSFER) | TAKES(FORMAT) | TAKES(ERROR_MAP) |
+                   TAKES(STATS) | TAKES(FORCE) | TAKES(QUIET),
         .run = bp_command_render,
     },
     {
@@ -59,7 +59,7 @@ const BpCommand bp_commands[] = {
         .examples = "  ballpark render cover.json --spp 500 -o a.bpa\n"
                     "  ballpark render cover.json --spp 500 --first-sample 500 -o b.bpa\n"
                     "  ballpark merge a.bpa b.bpa -o cover.png\n",
-        .options = TAKES(OUTPUT) | TAKES(FORMAT) | TAKES(TRANSFER) | TAKES(QUIET),
+        .options = TAKES(OUTPUT) | TAKES(FORMAT) | TAKES(TRANSFER) | TAKES(ERROR_MAP) | TAKES(QUIET),
         .run = bp_command_merge,
     },
     {

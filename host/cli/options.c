@@ -58,9 +58,9 @@ static BpStatus store_value(BpOption option, const char *name, const char *text,
         break;
     }
     case BP_OPTION_NUMERICS: {
-        static const char *const words[] = {"robust"};
+        static const char *const words[] = {"robust", "plain"};
         BP_TRY(bp_value_choice(name, text, words, COUNT_OF(words), &choice, err));
-        line->numerics = BP_NUMERICS_ROBUST;
+        line->numerics = choice == 0 ? BP_NUMERICS_ROBUST : BP_NUMERICS_PLAIN;
         break;
     }
     case BP_OPTION_SAMPLER: {
@@ -96,6 +96,9 @@ static BpStatus store_value(BpOption option, const char *name, const char *text,
         line->format = formats[choice];
         break;
     }
+    case BP_OPTION_ERROR_MAP:
+        line->error_map = text;
+        break;
     case BP_OPTION_STATS:
         line->stats = text;
         break;

@@ -28,6 +28,7 @@ typedef enum BpOption {
     BP_OPTION_KERNEL,
     BP_OPTION_TRANSFER,
     BP_OPTION_FORMAT,
+    BP_OPTION_ERROR_MAP,
     BP_OPTION_STATS,
     BP_OPTION_FORCE,
     BP_OPTION_MEASURE,
@@ -71,7 +72,8 @@ typedef struct BpCommandLine {
     BpKernelForm kernel;
     BpTransfer transfer;
     BpFormat format;
-    const char *stats; /* file for --stats */
+    const char *error_map; /* file for --error-map */
+    const char *stats;     /* file for --stats */
     bool measure;
     uint32_t pixel_x, pixel_y; /* --pixel, from the picture's top left corner, from 0 */
     const char *json;          /* file; "-": standard output */

@@ -3,7 +3,9 @@
 
 #include "../base/output_file.h"
 #include "../engine/accumulator_file.h"
+#include "../image/error_map.h"
 #include "../image/image.h"
+#include "json_file.h"
 
 #include <stdio.h>
 #include <string.h>
@@ -39,8 +41,8 @@ static BpStatus default_name(const char *path, BpFormat format, BpResultFile *re
     return BP_OK;
 }
 
-BpStatus bp_result_choose(const BpCommandLine *line, const char *default_path, BpResultFile *result,
-                          BpError *err) {
+static BpStatus choose_output(const BpCommandLine *line, const char *default_path, BpResultFile *result,
+                              BpError *err) {
     const bool has_format = bp_option_given(line, BP_OPTION_FORMAT);
     result->format = has_format ? line->format : BP_FORMAT_PNG;
     if (line->output == NULL) {
@@ -67,18 +69,45 @@ BpStatus bp_result_choose(const BpCommandLine *line, const char *default_path, B
     return bp_output_check(result->path, err);
 }
 
+BpStatus bp_result_choose(const BpCommandLine *line, const char *default_path, BpResultFile *result,
+                          BpError *err) {
+    BP_TRY(choose_output(line, default_path, result, err));
+    if (line->stats != NULL) {
+        if (strcmp(line->stats, result->path) == 0)
+            return bp_fail(err, BP_ERR_USAGE, "--stats and --output both name %s", bp_result_name(result));
+        BP_TRY(bp_json_check(line->stats, err));
+    }
+    if (line->error_map != NULL) {
+        BpFormat format;
+        if (!bp_format_from_path(line->error_map, &format) || format != BP_FORMAT_PNG)
+            return bp_fail(err, BP_ERR_USAGE, "--error-map %.400s: expected a name that ends in .png",
+                           line->error_map);
+        if (strcmp(line->error_map, result->path) == 0)
+            return bp_fail(err, BP_ERR_USAGE, "--error-map and --output both name %s",
+                           bp_result_name(result));
+        BP_TRY(bp_output_check(line->error_map, err));
+    }
+    return BP_OK;
+}
+
 BpStatus bp_result_write(const BpCommandLine *line, const BpResultFile *result,
                          const BpAccumulator *accumulator, BpTransfer transfer, BpError *err) {
-    const bool to_stream = strcmp(result->path, "-") == 0;
-    if (result->format == BP_FORMAT_BPA)
-        return to_stream ? bp_accumulator_save_stream(accumulator, stdout, err)
-                         : bp_accumulator_save(accumulator, result->path, err);
-    if (bp_option_given(line, BP_OPTION_TRANSFER)) transfer = line->transfer;
+    BpStatus status = BP_OK;
     BpPicture picture = {0};
-    BP_TRY(bp_accumulator_picture(accumulator, &picture, err));
-    const BpStatus status = to_stream
-                                ? bp_picture_write_stream(&picture, stdout, result->format, transfer, err)
-                                : bp_picture_write(&picture, result->path, result->format, transfer, err);
+    const bool to_stream = strcmp(result->path, "-") == 0;
+    const bool is_picture = result->format != BP_FORMAT_BPA;
+    if (bp_option_given(line, BP_OPTION_TRANSFER)) transfer = line->transfer;
+    if (is_picture || line->error_map != NULL) BP_TRY(bp_accumulator_picture(accumulator, &picture, err));
+    if (is_picture && to_stream)
+        status = bp_picture_write_stream(&picture, stdout, result->format, transfer, err);
+    else if (is_picture)
+        status = bp_picture_write(&picture, result->path, result->format, transfer, err);
+    else if (to_stream)
+        status = bp_accumulator_save_stream(accumulator, stdout, err);
+    else
+        status = bp_accumulator_save(accumulator, result->path, err);
+    if (status == BP_OK && line->error_map != NULL)
+        status = bp_error_map_write(&picture, line->error_map, err);
     bp_picture_clear(&picture);
     return status;
 }

@@ -13,13 +13,14 @@ typedef struct BpResultFile {
     BpFormat format;
 } BpResultFile;
 
-/* Where the result goes: -o, or `default_path` with its ending replaced by that of the format, in the current
- * folder; in which format: --format, else by the ending, else PNG. Finds out that it can be written, before
- * any work is done. BP_ERR_USAGE (no format has that ending; binary data to a terminal) or BP_ERR_FILE. */
+/* Where the result goes (and that --error-map and --stats can be written too, to files of their own): -o, or
+ * `default_path` with its ending replaced by that of the format, in the current folder; in which format:
+ * --format, else by the ending, else PNG. Finds out that it can be written, before any work is done.
+ * BP_ERR_USAGE (no format has that ending; binary data to a terminal) or BP_ERR_FILE. */
 BpStatus bp_result_choose(const BpCommandLine *line, const char *default_path, BpResultFile *result,
                           BpError *err);
 
-/* Writes it. `transfer`: unless --transfer says otherwise. */
+/* Writes it, and the error map if there is to be one. `transfer`: unless --transfer says otherwise. */
 BpStatus bp_result_write(const BpCommandLine *line, const BpResultFile *result,
                          const BpAccumulator *accumulator, BpTransfer transfer, BpError *err);
 
