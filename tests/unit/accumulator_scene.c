@@ -152,6 +152,10 @@ static void the_hash_keeps_to_the_meaning(void **state) {
     SAME((again.albedos[0][0] = 0.5f, again.albedos[0][1] = 0.25f, again.albedos[0][2] = 0.75f,
           again.spheres[0].albedo = 0));
 #undef SAME
+    /* A mirror without fuzz has no shape of fuzz. */
+    scene.materials[1].fuzz = again.materials[1].fuzz = again.materials[5].fuzz = 0;
+    again.materials[5].fuzz_shape = BP_FUZZ_BALL;
+    assert_true(bp_scene_hash(&scene) == bp_scene_hash(&again));
     free_scene(&again);
     free_scene(&scene);
 }
