@@ -147,6 +147,8 @@ typedef struct BpRenderOptions {
     BpSampler sampler;
     BpKernelForm kernel;
     bool all_effects;    /* build the general kernel instead of the specialised one */
+    uint32_t extra_effects; /* bit e: simulate effect e of bp_scene_effects() although nothing calls for it */
+    bool force;             /* render even on a device that fails its self-test */
     uint32_t replicates; /* K of the error estimate; 0: the default */
     /* For tests and tuning; 0 means: choose. None of these changes a picture. */
     uint32_t chunk_samples; /* samples in one dispatch */

@@ -75,7 +75,9 @@ static BpStatus open_worker(BpRender *render, const BpDeviceInfo *device, size_t
                        "%s has no double precision; leave --precision double out, or use another --device",
                        device->name);
     BpWorkerSetup setup = {
-        .program = {.effects = options->all_effects ? BP_EFFECTS_ALL : render->effects.bits,
+        .program = {.effects = options->all_effects
+                                   ? BP_EFFECTS_ALL
+                                   : render->effects.bits | (options->extra_effects & BP_EFFECTS_ALL),
                     .precision = options->precision,
                     .math = options->math,
                     .numerics = options->numerics,
@@ -88,6 +90,7 @@ static BpStatus open_worker(BpRender *render, const BpDeviceInfo *device, size_t
         .seed = options->seed,
         .pixel_center = scene->camera.pixel_sampling == BP_PIXEL_CENTER,
         .local_size = options->local_size,
+        .untested = options->force,
     };
     choose_arrangement(device, options, &setup.program);
     if (options->force_tree) setup.program.effects |= 1u << BP_EFFECT_TREE;
@@ -308,7 +311,9 @@ void bp_render_report(const BpRender *render, BpRenderReport *report) {
     const BpWorker *first = render->workers[0];
     report->device = first->device->info;
     report->effects = render->effects;
+    report->effects.bits |= render->options.extra_effects & BP_EFFECTS_ALL;
     if (render->options.all_effects) report->effects.bits = BP_EFFECTS_ALL;
+    report->self_test_seconds = first->self_test_seconds;
     report->kernel = first->samples_per_item > 1 ? BP_KERNEL_PACKET : BP_KERNEL_SAMPLE;
     report->sampler = render->options.sampler;
     report->precision = render->options.precision;

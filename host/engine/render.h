@@ -19,6 +19,7 @@ typedef struct BpRenderReport {
     uint64_t program_key;  /* equal keys: the same program, nothing was built anew */
     const char *build_log; /* valid while the render lives */
     double tree_seconds, pack_seconds, kernel_build_seconds;
+    double self_test_seconds;    /* of the device's first use; 0 once it has passed */
     double first_launch_seconds; /* of the first, tiny chunk: drivers may compile once more there */
     double trace_seconds;        /* wall clock spent in steps, without the first launch */
     double device_seconds;       /* kernel time by the device's own clock: trace and fold */

@@ -5,6 +5,7 @@
 #include "../base/clock.h"
 #include "layout.h"
 #include "scene_types.h"
+#include "self_test.h"
 
 #include <stdlib.h>
 #include <string.h>
@@ -184,6 +185,13 @@ BpStatus bp_worker_create(const BpDeviceInfo *info, const BpPacked *packed, cons
     made->replicates = setup->replicates;
     BpStatus status = bp_device_open(info, &made->device, err);
     if (status != BP_OK) goto failed;
+    if (!setup->untested) {
+        const double start = bp_clock_seconds();
+        bool ran = false;
+        status = bp_self_test_once(made->device, &ran, err);
+        if (status != BP_OK) goto failed;
+        if (ran) made->self_test_seconds = bp_clock_seconds() - start;
+    }
     BP_TRY_GOTO(status, bp_program_build(made->device, &setup->program, NULL, NULL, &made->program, err),
                 failed);
     BP_TRY_GOTO(status, bp_layout_check(made->device, made->program->program, packed->single_precision, err),

@@ -21,6 +21,7 @@ typedef struct BpWorkerSetup {
     uint64_t seed;
     bool pixel_center;
     uint32_t local_size; /* 0: choose */
+    bool untested;       /* do without the device's self-test */
 } BpWorkerSetup;
 
 #define BP_WORKER_FLIGHT 2 /* chunks queued at a time */
@@ -47,7 +48,7 @@ typedef struct BpWorker {
     /* Measured on chunks that are done. */
     double device_seconds, fold_seconds;
     double seconds_per_sample; /* of the latest chunk; 0: none yet */
-    double first_launch_seconds;
+    double first_launch_seconds, self_test_seconds;
     uint64_t samples_done;
 } BpWorker;
 

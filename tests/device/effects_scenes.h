@@ -1,0 +1,124 @@
+/* effects_scenes.h: a small scene for every set of effects that can occur.
+ *
+ * In:    a set of bits.   Out: a scene that calls for exactly these effects, with every sub-kind of each
+ * (lobes, fuzz shapes, Fresnel, total reflection), for tests of specialised kernels. Knows: BpScene, the
+ * effects.   Does not know: kernels. */
+#ifndef TESTS_DEVICE_EFFECTS_SCENES_H
+#define TESTS_DEVICE_EFFECTS_SCENES_H
+
+#include "engine/effects.h"
+
+#include <string.h>
+
+#define EFFECT_BIT(effect) (1u << BP_EFFECT_##effect)
+#define MATERIAL_EFFECTS                                                                                     \
+    (EFFECT_BIT(LAMBERTIAN) | EFFECT_BIT(METAL) | EFFECT_BIT(DIELECTRIC) | EFFECT_BIT(EMISSION) |            \
+     EFFECT_BIT(NORMALS))
+
+typedef struct EffectsScene {
+    BpScene scene; /* points into the arrays below: pass it on by address, do not copy it */
+    BpMaterial materials[16];
+    BpSphere spheres[48];
+} EffectsScene;
+
+/* A tree needs spheres, and spheres need a material. */
+static inline bool effects_can_occur(uint32_t bits) {
+    return (bits & MATERIAL_EFFECTS) != 0 || !bp_effects_has(bits, BP_EFFECT_TREE);
+}
+
+static inline BpMaterial *effects_material(EffectsScene *made, BpMaterialKind kind, double r, double g,
+                                           double b) {
+    BpMaterial *material = &made->materials[made->scene.material_count++];
+    *material = (BpMaterial){.name = (char *)"m", .kind = kind, .albedo = {r, g, b}, .refraction_index = 1.5};
+    return material;
+}
+
+static inline void effects_materials(EffectsScene *made, uint32_t bits) {
+    if (bp_effects_has(bits, BP_EFFECT_LAMBERTIAN)) {
+        effects_material(made, BP_MATERIAL_LAMBERTIAN, 0.8, 0.3, 0.3)->scatter = BP_SCATTER_COSINE_CUBED;
+        effects_material(made, BP_MATERIAL_LAMBERTIAN, 0.3, 0.8, 0.3)->scatter = BP_SCATTER_HEMISPHERE;
+        BpMaterial *ember = effects_material(made, BP_MATERIAL_LAMBERTIAN, 0.5, 0.5, 0.5);
+        if (bp_effects_has(bits, BP_EFFECT_EMISSION)) ember->emit[0] = 0.25;
+    }
+    if (bp_effects_has(bits, BP_EFFECT_METAL)) {
+        effects_material(made, BP_MATERIAL_METAL, 0.9, 0.8, 0.7);
+        effects_material(made, BP_MATERIAL_METAL, 0.7, 0.8, 0.9)->fuzz = 0.4;
+        BpMaterial *ball = effects_material(made, BP_MATERIAL_METAL, 0.8, 0.8, 0.8);
+        ball->fuzz = 1;
+        ball->fuzz_shape = BP_FUZZ_BALL;
+    }
+    if (bp_effects_has(bits, BP_EFFECT_DIELECTRIC)) {
+        effects_material(made, BP_MATERIAL_DIELECTRIC, 1, 1, 1);
+        BpMaterial *exact = effects_material(made, BP_MATERIAL_DIELECTRIC, 1, 1, 1);
+        exact->fresnel = BP_FRESNEL_EXACT;
+        exact->total_reflection = BP_TOTAL_ABSORB;
+        BpMaterial *none = effects_material(made, BP_MATERIAL_DIELECTRIC, 1, 1, 1);
+        none->refraction_index = 1 / 1.3;
+        none->fresnel = BP_FRESNEL_NONE;
+        none->total_reflection = BP_TOTAL_REFRACT;
+        effects_material(made, BP_MATERIAL_DIELECTRIC, 1, 1, 1)->refraction_index = 1;
+    }
+    if (bp_effects_has(bits, BP_EFFECT_EMISSION)) {
+        BpMaterial *lamp = effects_material(made, BP_MATERIAL_DIFFUSE_LIGHT, 0, 0, 0);
+        lamp->emit[0] = 4, lamp->emit[1] = 3, lamp->emit[2] = 0.5;
+        effects_material(made, BP_MATERIAL_DIFFUSE_LIGHT, 0, 0, 0); /* black */
+    }
+    if (bp_effects_has(bits, BP_EFFECT_NORMALS)) effects_material(made, BP_MATERIAL_NORMALS, 0, 0, 0);
+}
+
+/* A ground, a row of spheres that overlap and repeat (of equal ones the first must be met), bubbles, and with
+ * a tree two more rows. */
+static inline void effects_spheres(EffectsScene *made, uint32_t bits) {
+    const size_t count = bp_effects_has(bits, BP_EFFECT_TREE) ? 48 : BP_LIST_SPHERES_MAX;
+    const size_t materials = made->scene.material_count;
+    if (materials == 0) return;
+    for (size_t i = 0; i < count; ++i) {
+        BpSphere *sphere = &made->spheres[i];
+        const double column = (double)(i % 8), row = (double)(i / 8);
+        *sphere = (BpSphere){.center = {column - 3.5, 0.1 * row, -2 - 0.9 * row},
+                             .radius = 0.5,
+                             .material = (uint32_t)(i % materials),
+                             .albedo = BP_NO_ALBEDO};
+        const bool glass = made->materials[sphere->material].kind == BP_MATERIAL_DIELECTRIC;
+        if (glass && i % 3 == 0) sphere->radius = -0.4; /* inside out */
+        if (!glass && i % 5 == 4) {                     /* again where one stands, in another material */
+            const BpSphere *before = &made->spheres[i - 1];
+            memcpy(sphere->center, before->center, sizeof sphere->center);
+            if (made->materials[before->material].kind != BP_MATERIAL_DIELECTRIC)
+                sphere->radius = before->radius;
+        }
+    }
+    made->spheres[0] = (BpSphere){.center = {0, -100.5, -2}, .radius = 100, .albedo = BP_NO_ALBEDO};
+    made->scene.sphere_count = count;
+}
+
+/* Odd sides, so that a pixel's centre can lie exactly on the axis; sets with an even number of effects are
+ * sampled in the centre only. */
+static inline void effects_scene(EffectsScene *made, uint32_t bits) {
+    memset(made, 0, sizeof *made);
+    BpScene *scene = &made->scene;
+    scene->materials = made->materials;
+    scene->spheres = made->spheres;
+    unsigned effects = 0;
+    for (int e = 0; e < BP_EFFECT_COUNT; ++e) effects += bp_effects_has(bits, (BpEffect)e);
+    scene->camera = (BpCamera){.width = 33,
+                               .height = 17,
+                               .aspect_ratio = 33.0 / 17.0,
+                               .samples_per_pixel = 6,
+                               .max_depth = 12,
+                               .vfov_degrees = 60,
+                               .lookat = {0, 0, -1},
+                               .vup = {0, 1, 0},
+                               .lens_radius = bp_effects_has(bits, BP_EFFECT_LENS) ? 0.1 : 0,
+                               .focus_dist = 2,
+                               .pixel_sampling = effects % 2 == 0 ? BP_PIXEL_CENTER : BP_PIXEL_SQUARE};
+    for (int c = 0; c < 3; ++c) {
+        scene->background_bottom[c] = 0.9 - 0.2 * c;
+        scene->background_top[c] =
+            scene->background_bottom[c] - (bp_effects_has(bits, BP_EFFECT_GRADIENT) ? 0.4 : 0);
+    }
+    effects_materials(made, bits);
+    effects_spheres(made, bits);
+}
+
+#endif
