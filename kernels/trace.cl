@@ -181,15 +181,26 @@ static void look_up(const Scene *scene, const Meeting *meeting, Vec3 *centre, re
                                  gather_reals(scene->albedos, entry + 2u));
         surface->albedo = choose3(own_colour, albedo, surface->albedo);
     }
+    surface->kind = gather_uints(scene->kinds, kinds);
+    *emitted = zero3();
+#if EFFECT_EMISSION
     *emitted = vec3(gather_reals(scene->materials, numbers + MATERIAL_EMIT),
                     gather_reals(scene->materials, numbers + (MATERIAL_EMIT + 1u)),
                     gather_reals(scene->materials, numbers + (MATERIAL_EMIT + 2u)));
-    surface->fuzz = gather_reals(scene->materials, numbers + MATERIAL_FUZZ);
-    surface->refraction_index = gather_reals(scene->materials, numbers + MATERIAL_INDEX);
-    surface->kind = gather_uints(scene->kinds, kinds);
+#endif
+#if EFFECT_LAMBERTIAN
     surface->lobe = gather_uints(scene->kinds, kinds + 1u);
+#endif
+#if EFFECT_METAL
+    surface->fuzz = gather_reals(scene->materials, numbers + MATERIAL_FUZZ);
+#endif
+#if EFFECT_METAL || EFFECT_DIELECTRIC
     surface->variant = gather_uints(scene->kinds, kinds + 2u);
+#endif
+#if EFFECT_DIELECTRIC
+    surface->refraction_index = gather_reals(scene->materials, numbers + MATERIAL_INDEX);
     surface->total_reflection = gather_uints(scene->kinds, kinds + 3u);
+#endif
 }
 
 /* One segment of every living path: intersect, collect radiance, scatter. */

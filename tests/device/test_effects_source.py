@@ -1,0 +1,76 @@
+"""With an effect's bit off, its code is not in the kernel: looked up in the preprocessed source of all 256 sets.
+
+Usage: test_effects_source.py DUMP_KERNELS
+"""
+
+import concurrent.futures
+import os
+import pathlib
+import re
+import shutil
+import subprocess
+import sys
+import tempfile
+
+NAMES = ["clang"] + [f"clang-{version}" for version in range(22, 13, -1)]
+clang = next(filter(None, map(shutil.which, NAMES)), None)
+if clang is None:
+    print("skipped: no clang here")
+    sys.exit(77)
+
+# The order of the bits, from the one list of effects.
+header = pathlib.Path(__file__).parents[2] / "host/engine/effects.h"
+BITS = re.findall(r"^ +X\(([A-Z]+), \"", header.read_text(), re.MULTILINE)
+
+# Words that stand in the code of one effect and nowhere else.
+MARKS = {
+    "LAMBERTIAN": ["scatter_lambertian", "hemisphere"],
+    "METAL": ["scatter_metal", "fuzzy"],
+    "DIELECTRIC": ["scatter_dielectric", "fresnel_schlick", "fresnel_exact", "refraction_index = "],
+    "EMISSION": ["emitted = vec3"],
+    "NORMALS": ["shows_normal"],
+    "LENS": ["lens_x", "->lens_up", "sample_disk(u"],
+    "GRADIENT": ["->top"],
+    "TREE": ["BoxRay", "search_tree", "boxes["],
+}
+# Code that several effects share.
+SHARED = {
+    "random_ball_radius": {"LAMBERTIAN", "METAL"},
+    "surface->variant = ": {"METAL", "DIELECTRIC"},
+    "throughput, emitted": {"EMISSION", "NORMALS"},
+}
+
+
+def preprocessed(path):
+    command = [clang, "-E", "-P", "-x", "cl", "-cl-std=CL1.2", str(path)]
+    text = subprocess.run(command, capture_output=True, text=True, check=True).stdout
+    return re.sub(r"\s+", " ", text)
+
+
+def complaints(path):
+    bits = int(re.match(r"e([0-9a-f]{2})_", path.name).group(1), 16)
+    effects = {name for number, name in enumerate(BITS) if bits >> number & 1}
+    text = preprocessed(path)
+    found = []
+    for name, marks in MARKS.items():
+        found += [f"{path.name}: {mark!r} of {name} {'is missing' if name in effects else 'is there'}"
+                  for mark in marks if (mark in text) != (name in effects)]
+    found += [f"{path.name}: {mark!r} of {sorted(names)} {'is missing' if names & effects else 'is there'}"
+              for mark, names in SHARED.items() if (mark in text) != bool(names & effects)]
+    return found, bits, len(text)
+
+
+assert len(BITS) == 8 and set(BITS) == set(MARKS), f"effects.h lists {BITS}: give each its marks here"
+with tempfile.TemporaryDirectory() as folder:
+    subprocess.run([sys.argv[1], folder], check=True)
+    paths = sorted(pathlib.Path(folder).glob("e*.cl"))
+    with concurrent.futures.ThreadPoolExecutor(os.cpu_count()) as pool:
+        results = list(pool.map(complaints, paths))
+found = [line for lines, _, _ in results for line in lines]
+sets = {bits for _, bits, _ in results}
+print(f"{len(paths)} programs, {len(sets)} sets of effects; "
+      f"{min(size for _, _, size in results)} to {max(size for _, _, size in results)} characters")
+assert sets == set(range(256)), "not every set was written"
+if found:
+    print("\n".join(found[:40]))
+    sys.exit(f"{len(found)} marks are wrong")
