@@ -13,8 +13,9 @@
 #define FORMAT_VERSION 1
 #define HEADER_SIZE_MAX (1u << 20)
 #define RANGES_MAX 10000u
-#define SUM_MAX ((int64_t)1 << 62) /* what 2^24 samples of at most 2^38 come to */
-#define BLOCK 65536                /* numbers converted at a time */
+#define SUM_MAX                                                                                              \
+    ((int64_t)3 << 61) /* 2^24 samples of at most 2^38 come to 2^62; half as much again for rounding */
+#define BLOCK 65536    /* numbers converted at a time */
 
 /* Names instead of numbers, so that a file outlives a change of the enumerations. In their order. */
 static const char *const sampler_names[] = {"independent", "sobol", NULL};

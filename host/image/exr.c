@@ -80,7 +80,8 @@ static exr_result_t write_head(exr_context_t exr, const BpPicture *picture, cons
     result = exr_initialize_required_attr_simple(exr, part, (int32_t)picture->width, (int32_t)picture->height,
                                                  EXR_COMPRESSION_ZIP);
     for (size_t i = 0; i < count && result == EXR_ERR_SUCCESS; i++)
-        result = exr_add_channel(exr, part, layers[i].name, layers[i].type, EXR_PERCEPTUALLY_LINEAR, 1, 1);
+        result =
+            exr_add_channel(exr, part, layers[i].name, layers[i].type, EXR_PERCEPTUALLY_LOGARITHMIC, 1, 1);
     if (result != EXR_ERR_SUCCESS) return result;
     /* Primaries and white of Rec. 709 and sRGB. */
     const exr_attr_chromaticities_t rec709 = {0.64f, 0.33f, 0.30f, 0.60f, 0.15f, 0.06f, 0.3127f, 0.3290f};

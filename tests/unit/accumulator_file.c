@@ -273,7 +273,7 @@ static void wrong_numbers_are_refused(void **state) {
     sums[8 * 3 * 33 + 7] = 0x80;
     temp_write(files.bad, files.bytes, files.size);
     refuse(&files, "the sum of pixel 8 is negative");
-    sums[8 * 3 * 33 + 7] = 0x41;
+    sums[8 * 3 * 33 + 7] = 0x61;
     temp_write(files.bad, files.bytes, files.size);
     refuse(&files, "the sum of pixel 8 is larger");
     sums[8 * 3 * 33 + 7] = 0x3f;
