@@ -114,7 +114,7 @@ static Vec3 scatter_dielectric(const Surface *surface, SampleKey key, uints boun
     reflectance = choose(none, splat(0), reflectance);
     const masks as_reflection = mask_of_uint(surface->total_reflection == splat_uint(TOTAL_REFLECT));
     const masks as_refraction = mask_of_uint(surface->total_reflection == splat_uint(TOTAL_REFRACT));
-    const masks by_chance = uniform(key, bounce + BOUNCE_CHOICE) < reflectance;
+    const masks by_chance = sample_1d(key, bounce + BOUNCE_CHOICE) < reflectance;
     const masks reflects = (total & as_reflection) | (not_mask(total) & by_chance);
     *lost = total & not_mask(as_reflection | as_refraction);
     const Vec3 mirrored = madd3(splat(2) * c, surface->normal, surface->incoming);

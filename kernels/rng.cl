@@ -20,11 +20,15 @@
 /* What identifies a pixel sample to the generator. */
 typedef struct SampleKey {
     uints a, b;
+#if SAMPLER_SOBOL
+    uints index_reversed;         /* of the sample within its replicate, its bits in reverse */
+    uints scramble_a, scramble_b; /* shared by the samples of a pixel's replicate */
+#endif
 } SampleKey;
 
 /* pcg4d (M. Jarzynski and M. Olano, "Hash Functions for GPU Rendering", JCGT 9(3), 2020): four words in, four
  * well mixed words out; two of them are the key. */
-static SampleKey sample_key(uint seed_low, uint seed_high, uints pixel, uints sample) {
+static SampleKey mix_key(uint seed_low, uint seed_high, uints pixel, uints sample) {
     uints x = pixel * 1664525u + 1013904223u;
     uints y = sample * 1664525u + 1013904223u;
     uints z = splat_uint(seed_low * 1664525u + 1013904223u);
@@ -65,9 +69,3 @@ static uints random_bits(SampleKey key, uints dimension) {
 static reals bits_to_unit(uints bits) { return uint_to_reals(bits >> 8) * R(0x1p-24); }
 
 static reals uniform(SampleKey key, uints dimension) { return bits_to_unit(random_bits(key, dimension)); }
-
-/* Two numbers for a pair of dimensions that begins at `dimension`. */
-static void sample_2d(SampleKey key, uints dimension, reals *u, reals *v) {
-    *u = uniform(key, dimension);
-    *v = uniform(key, dimension + 1u);
-}

@@ -35,6 +35,9 @@ typedef struct Paths {
     uints own_slot;
     masks inward;
     masks alive;
+    /* Of the latest segment, for follow.cl. */
+    masks met, entered;
+    refineds distance;
 } Paths;
 
 /* What the paths meet, gathered lane by lane. */
@@ -206,6 +209,9 @@ static void look_up(const Scene *scene, const Meeting *meeting, Vec3 *centre, re
 /* One segment of every living path: intersect, collect radiance, scatter. */
 static void advance(const Scene *scene, Paths *paths) {
     const Meeting meeting = meet(&scene->geometry, paths);
+    paths->met = meeting.met;
+    paths->entered = meeting.enters;
+    paths->distance = meeting.t;
     paths->depth = choose_uint(paths->alive, paths->depth + 1u, paths->depth);
 
     const masks escaped = paths->alive & not_mask(meeting.met);
@@ -246,13 +252,21 @@ static void advance(const Scene *scene, Paths *paths) {
     paths->alive = paths->alive & scattering.goes_on;
 }
 
-__kernel void trace(__global const PackedCamera *camera, __global const PackedSky *sky,
-                    __global const PackedMaterial *materials, __global const PackedMaterialKind *kinds,
-                    __global const PackedSphereLook *looks, __global const real *albedos, __global const real *boxes,
-                    __global const uint *children, __global const real *leaves, __global const uint *slot_sphere,
-                    uint first_leaves, uint leaf_count, uint pixel_center, uint max_depth, uint seed_low,
-                    uint seed_high, uint width, uint first_pixel, uint first_sample, uint samples_per_pixel,
-                    uint sample_count, uint samples_per_item, __global real *samples) {
+/* What every kernel that traces is told; begin_scene and begin_paths take it apart. */
+#define SCENE_PARAMETERS                                                                                     \
+    __global const PackedCamera *camera, __global const PackedSky *sky, __global const PackedMaterial *materials, \
+        __global const PackedMaterialKind *kinds, __global const PackedSphereLook *looks,                    \
+        __global const real *albedos, __global const real *boxes, __global const uint *children,             \
+        __global const real *leaves, __global const uint *slot_sphere, uint first_leaves, uint leaf_count,   \
+        uint pixel_center, uint max_depth, uint seed_low, uint seed_high, uint replicates, uint width
+#define SCENE_ARGUMENTS                                                                                      \
+    sky, materials, kinds, looks, albedos, boxes, children, leaves, slot_sphere, first_leaves, leaf_count
+
+static Scene begin_scene(__global const PackedSky *sky, __global const PackedMaterial *materials,
+                         __global const PackedMaterialKind *kinds, __global const PackedSphereLook *looks,
+                         __global const real *albedos, __global const real *boxes, __global const uint *children,
+                         __global const real *leaves, __global const uint *slot_sphere, uint first_leaves,
+                         uint leaf_count) {
     Scene scene;
     scene.geometry.boxes = boxes;
     scene.geometry.children = children;
@@ -265,7 +279,38 @@ __kernel void trace(__global const PackedCamera *camera, __global const PackedSk
     scene.kinds = (__global const uint *)kinds;
     scene.looks = (__global const uint *)looks;
     scene.albedos = albedos;
+    return scene;
+}
 
+/* Sets the lanes of `fresh` to the beginning of the path of their pixel sample. */
+static void begin_paths(__global const PackedCamera *camera, uint pixel_center, uint width, SampleKey key, uints pixel,
+                        masks fresh, Paths *paths) {
+    const uints row = pixel / width;
+    const uints column = pixel - row * width;
+    Vec3 origin, direction;
+    camera_ray(camera, pixel_center, key, uint_to_reals(column), uint_to_reals(row), &origin, &direction);
+    paths->origin.high = choose3(fresh, origin, paths->origin.high);
+    paths->origin.low = choose3(fresh, zero3(), paths->origin.low);
+    paths->origin.slack = choose(fresh, splat(0), paths->origin.slack);
+    paths->direction = choose3(fresh, direction, paths->direction);
+    paths->throughput = choose3(fresh, vec3(splat(1), splat(1), splat(1)), paths->throughput);
+    paths->radiance = choose3(fresh, zero3(), paths->radiance);
+    paths->key.a = choose_uint(fresh, key.a, paths->key.a);
+    paths->key.b = choose_uint(fresh, key.b, paths->key.b);
+#if SAMPLER_SOBOL
+    paths->key.index_reversed = choose_uint(fresh, key.index_reversed, paths->key.index_reversed);
+    paths->key.scramble_a = choose_uint(fresh, key.scramble_a, paths->key.scramble_a);
+    paths->key.scramble_b = choose_uint(fresh, key.scramble_b, paths->key.scramble_b);
+#endif
+    paths->depth = choose_uint(fresh, splat_uint(0), paths->depth);
+    paths->own_slot = choose_uint(fresh, splat_uint(NO_SLOT), paths->own_slot);
+    paths->inward = paths->inward & not_mask(fresh);
+    paths->alive = paths->alive | fresh;
+}
+
+__kernel void trace(SCENE_PARAMETERS, uint first_pixel, uint first_sample, uint samples_per_pixel, uint sample_count,
+                    uint samples_per_item, __global real *samples) {
+    const Scene scene = begin_scene(SCENE_ARGUMENTS);
     const uint item = get_global_id(0);
     uint next = item * samples_per_item;
     const uint end = min(next + samples_per_item, sample_count);
@@ -304,33 +349,19 @@ __kernel void trace(__global const PackedCamera *camera, __global const PackedSk
             uint busy_count = 0;
             for (uint lane = 0; lane < LANE_COUNT; ++lane) busy_count += busy[lane] != 0;
             if (busy_count <= LANE_COUNT / 2) {
-                uint pixel[LANE_COUNT], sample[LANE_COUNT];
-                real column[LANE_COUNT], row[LANE_COUNT], fresh_lane[LANE_COUNT];
+                uint pixels[LANE_COUNT], sample_numbers[LANE_COUNT];
+                real fresh_lane[LANE_COUNT];
                 for (uint lane = 0; lane < LANE_COUNT; ++lane) {
                     const int takes = busy[lane] == 0 && next < end;
                     fresh_lane[lane] = takes ? 1 : 0;
-                    pixel[lane] = first_pixel + next / samples_per_pixel;
-                    sample[lane] = first_sample + next % samples_per_pixel;
-                    column[lane] = (real)(pixel[lane] % width);
-                    row[lane] = (real)(pixel[lane] / width);
+                    pixels[lane] = first_pixel + next / samples_per_pixel;
+                    sample_numbers[lane] = first_sample + next % samples_per_pixel;
                     if (takes) number[lane] = next++;
                 }
                 const masks fresh = load_lanes(fresh_lane) != splat(0);
-                const SampleKey key = sample_key(seed_low, seed_high, load_lanes(pixel), load_lanes(sample));
-                Vec3 origin, direction;
-                camera_ray(camera, pixel_center, key, load_lanes(column), load_lanes(row), &origin, &direction);
-                paths.origin.high = choose3(fresh, origin, paths.origin.high);
-                paths.origin.low = choose3(fresh, zero3(), paths.origin.low);
-                paths.origin.slack = choose(fresh, splat(0), paths.origin.slack);
-                paths.direction = choose3(fresh, direction, paths.direction);
-                paths.throughput = choose3(fresh, vec3(splat(1), splat(1), splat(1)), paths.throughput);
-                paths.radiance = choose3(fresh, zero3(), paths.radiance);
-                paths.key.a = choose_uint(fresh, key.a, paths.key.a);
-                paths.key.b = choose_uint(fresh, key.b, paths.key.b);
-                paths.depth = choose_uint(fresh, splat_uint(0), paths.depth);
-                paths.own_slot = choose_uint(fresh, splat_uint(NO_SLOT), paths.own_slot);
-                paths.inward = paths.inward & not_mask(fresh);
-                paths.alive = paths.alive | fresh;
+                const uints pixel = load_lanes(pixels);
+                const SampleKey key = sample_key(seed_low, seed_high, pixel, load_lanes(sample_numbers), replicates);
+                begin_paths(camera, pixel_center, width, key, pixel, fresh, &paths);
                 taken = taken | fresh;
                 continue; /* a cap of 0 cuts at once */
             }

@@ -3,7 +3,7 @@
 
 #include "../base/clock.h"
 #include "../base/status.h"
-#include "worker.h"
+#include "arrangement.h"
 
 #include <stdlib.h>
 #include <string.h>
@@ -49,60 +49,15 @@ static BpStatus check_options(const BpScene *scene, const BpRenderOptions *optio
     if (options->tree_width != 0 && options->tree_width != 2 && options->tree_width != 4 &&
         options->tree_width != 8)
         return bp_fail(err, BP_ERR_USAGE, "tree width %u: 2, 4 or 8", options->tree_width);
-    if (options->sampler != BP_SAMPLER_INDEPENDENT)
-        return bp_fail(err, BP_ERR_USAGE, "the kernel knows the independent sampler only");
     return BP_OK;
 }
 
-/* How the kernel is arranged for a device. CPUs spread explicit vectors over their lanes, so they get eight
- * lanes and eight-wide nodes, and double costs them little. GPUs spread work-items, and many have next to no
- * double: one lane, narrower nodes, error-free float transforms. */
-static void choose_arrangement(const BpDeviceInfo *device, const BpRenderOptions *options,
-                               BpProgramOptions *program) {
-    const bool cpu = device->type == BP_DEVICE_CPU;
-    program->form = options->kernel != BP_KERNEL_AUTO ? options->kernel
-                    : cpu                             ? BP_KERNEL_PACKET
-                                                      : BP_KERNEL_SAMPLE;
-    program->tree_width = options->tree_width != 0 ? options->tree_width : cpu ? 8 : 4;
-    program->double_refine = cpu && device->has_double && !options->force_float_refine;
-}
-
 static BpStatus open_worker(BpRender *render, const BpDeviceInfo *device, size_t index, BpError *err) {
-    const BpScene *scene = render->scene;
-    const BpRenderOptions *options = &render->options;
-    if (options->precision == BP_PRECISION_DOUBLE && !device->has_double)
-        return bp_fail(err, BP_ERR_DEVICE,
-                       "%s has no double precision; leave --precision double out, or use another --device",
-                       device->name);
-    BpWorkerSetup setup = {
-        .program = {.effects = options->all_effects
-                                   ? BP_EFFECTS_ALL
-                                   : render->effects.bits | (options->extra_effects & BP_EFFECTS_ALL),
-                    .precision = options->precision,
-                    .math = options->math,
-                    .numerics = options->numerics,
-                    .sampler = options->sampler},
-        .width = scene->camera.width,
-        .height = scene->camera.height,
-        .replicates = options->replicates,
-        .scale_log2 = bp_accumulator_scale(scene),
-        .max_depth = options->max_depth,
-        .seed = options->seed,
-        .pixel_center = scene->camera.pixel_sampling == BP_PIXEL_CENTER,
-        .local_size = options->local_size,
-        .untested = options->force,
-    };
-    choose_arrangement(device, options, &setup.program);
-    if (options->force_tree) setup.program.effects |= 1u << BP_EFFECT_TREE;
-    if (options->force_list) setup.program.effects &= ~(1u << BP_EFFECT_TREE);
-    const BpTreeOptions tree_options = {
-        .width = setup.program.tree_width,
-        .single_precision = options->precision == BP_PRECISION_SINGLE,
-        .list = !bp_effects_has(setup.program.effects, BP_EFFECT_TREE),
-    };
+    BpWorkerSetup setup;
     BpPacked packed;
     const double start = bp_clock_seconds();
-    BP_TRY(bp_scene_pack(scene, &tree_options, &packed, err));
+    BP_TRY(bp_arrange(render->scene, &render->options, device, &setup, &packed, err));
+    render->effects.bits = setup.program.effects;
     render->tree_seconds += packed.tree.build_seconds;
     render->pack_seconds += bp_clock_seconds() - start - packed.tree.build_seconds;
     const BpStatus status = bp_worker_create(device, &packed, &setup, &render->workers[index], err);
@@ -311,8 +266,6 @@ void bp_render_report(const BpRender *render, BpRenderReport *report) {
     const BpWorker *first = render->workers[0];
     report->device = first->device->info;
     report->effects = render->effects;
-    report->effects.bits |= render->options.extra_effects & BP_EFFECTS_ALL;
-    if (render->options.all_effects) report->effects.bits = BP_EFFECTS_ALL;
     report->self_test_seconds = first->self_test_seconds;
     report->kernel = first->samples_per_item > 1 ? BP_KERNEL_PACKET : BP_KERNEL_SAMPLE;
     report->sampler = render->options.sampler;

@@ -133,28 +133,39 @@ static BpStatus set_argument(BpWorker *worker, cl_kernel kernel, cl_uint index, 
 }
 
 /* Places of the arguments that change with the chunk; trace.cl and fold.cl declare them in this order. */
-enum { TRACE_FIRST_PIXEL = 17, TRACE_FIRST_SAMPLE, TRACE_SAMPLES, TRACE_COUNT, TRACE_PER_ITEM, TRACE_OUT };
+enum {
+    TRACE_FIRST_PIXEL = BP_WORKER_SCENE_ARGUMENTS,
+    TRACE_FIRST_SAMPLE,
+    TRACE_SAMPLES,
+    TRACE_COUNT,
+    TRACE_PER_ITEM,
+    TRACE_OUT
+};
 enum { FOLD_IN, FOLD_PIXELS, FOLD_SAMPLES, FOLD_FIRST_PIXEL, FOLD_FIRST_SAMPLE, FOLD_CONSTANTS };
 
-static BpStatus create_kernels(BpWorker *worker, const BpPacked *packed, const BpWorkerSetup *setup,
-                               BpError *err) {
-    cl_int code = CL_SUCCESS;
-    worker->trace = clCreateKernel(worker->program->program, "trace", &code);
-    CL_TRY(worker, code, "clCreateKernel(trace)");
-    worker->fold = clCreateKernel(worker->program->program, "fold", &code);
-    CL_TRY(worker, code, "clCreateKernel(fold)");
+BpStatus bp_worker_bind_scene(BpWorker *worker, cl_kernel kernel, BpError *err) {
     const cl_mem buffers[] = {worker->camera, worker->sky,        worker->materials, worker->kinds,
                               worker->looks,  worker->albedos,    worker->boxes,     worker->children,
                               worker->leaves, worker->slot_sphere};
     cl_uint index = 0;
     for (size_t i = 0; i < sizeof buffers / sizeof buffers[0]; ++i)
-        BP_TRY(set_argument(worker, worker->trace, index++, sizeof(cl_mem), &buffers[i], err));
-    const cl_uint numbers[] = {
-        packed->tree.first_leaves, packed->tree.leaf_count,      setup->pixel_center, setup->max_depth,
-        (cl_uint)setup->seed,      (cl_uint)(setup->seed >> 32), setup->width};
+        BP_TRY(set_argument(worker, kernel, index++, sizeof(cl_mem), &buffers[i], err));
+    const cl_uint numbers[] = {worker->first_leaves, worker->leaf_count,    worker->pixel_center,
+                               worker->max_depth,    (cl_uint)worker->seed, (cl_uint)(worker->seed >> 32),
+                               worker->replicates,   worker->width};
     for (size_t i = 0; i < sizeof numbers / sizeof numbers[0]; ++i)
-        BP_TRY(set_argument(worker, worker->trace, index++, sizeof(cl_uint), &numbers[i], err));
-    index = FOLD_CONSTANTS;
+        BP_TRY(set_argument(worker, kernel, index++, sizeof(cl_uint), &numbers[i], err));
+    return BP_OK;
+}
+
+static BpStatus create_kernels(BpWorker *worker, const BpWorkerSetup *setup, BpError *err) {
+    cl_int code = CL_SUCCESS;
+    worker->trace = clCreateKernel(worker->program->program, "trace", &code);
+    CL_TRY(worker, code, "clCreateKernel(trace)");
+    worker->fold = clCreateKernel(worker->program->program, "fold", &code);
+    CL_TRY(worker, code, "clCreateKernel(fold)");
+    BP_TRY(bp_worker_bind_scene(worker, worker->trace, err));
+    cl_uint index = FOLD_CONSTANTS;
     BP_TRY(set_argument(worker, worker->fold, index++, sizeof(cl_uint), &worker->replicates, err));
     BP_TRY(set_argument(worker, worker->fold, index++, sizeof(cl_int), &setup->scale_log2, err));
     const cl_mem sums[] = {worker->sums, worker->counts, worker->tallies};
@@ -183,6 +194,11 @@ BpStatus bp_worker_create(const BpDeviceInfo *info, const BpPacked *packed, cons
     made->width = setup->width;
     made->pixels = setup->width * setup->height;
     made->replicates = setup->replicates;
+    made->max_depth = setup->max_depth;
+    made->pixel_center = setup->pixel_center;
+    made->seed = setup->seed;
+    made->first_leaves = packed->tree.first_leaves;
+    made->leaf_count = packed->tree.leaf_count;
     BpStatus status = bp_device_open(info, &made->device, err);
     if (status != BP_OK) goto failed;
     if (!setup->untested) {
@@ -192,13 +208,15 @@ BpStatus bp_worker_create(const BpDeviceInfo *info, const BpPacked *packed, cons
         if (status != BP_OK) goto failed;
         if (ran) made->self_test_seconds = bp_clock_seconds() - start;
     }
-    BP_TRY_GOTO(status, bp_program_build(made->device, &setup->program, NULL, NULL, &made->program, err),
+    BP_TRY_GOTO(status,
+                bp_program_build(made->device, &setup->program, setup->extra_name, setup->extra_text,
+                                 &made->program, err),
                 failed);
     BP_TRY_GOTO(status, bp_layout_check(made->device, made->program->program, packed->single_precision, err),
                 failed);
     BP_TRY_GOTO(status, upload_scene(made, packed, err), failed);
     BP_TRY_GOTO(status, create_picture(made, err), failed);
-    BP_TRY_GOTO(status, create_kernels(made, packed, setup, err), failed);
+    BP_TRY_GOTO(status, create_kernels(made, setup, err), failed);
 
     const uint64_t sample_bytes = 4 * made->real_size;
     uint64_t room = info->memory_bytes / SAMPLES_MEMORY_SHARE;

@@ -20,8 +20,9 @@ typedef struct BpWorkerSetup {
     uint32_t max_depth;
     uint64_t seed;
     bool pixel_center;
-    uint32_t local_size; /* 0: choose */
-    bool untested;       /* do without the device's self-test */
+    uint32_t local_size;                 /* 0: choose */
+    const char *extra_name, *extra_text; /* Optional. A file appended to the program. */
+    bool untested;                       /* do without the device's self-test */
 } BpWorkerSetup;
 
 #define BP_WORKER_FLIGHT 2 /* chunks queued at a time */
@@ -33,7 +34,8 @@ typedef struct BpWorker {
     cl_mem camera, sky, materials, kinds, looks, albedos, boxes, children, leaves, slot_sphere;
     cl_mem sums, counts, tallies, samples;
     size_t real_size;
-    uint32_t width, replicates, pixels;
+    uint32_t width, replicates, pixels, max_depth, pixel_center, first_leaves, leaf_count;
+    uint64_t seed;
     uint32_t samples_per_item; /* pixel samples of a work-item */
     size_t local_size;
     uint32_t samples_capacity,
@@ -57,6 +59,10 @@ typedef struct BpWorker {
 BpStatus bp_worker_create(const BpDeviceInfo *info, const BpPacked *packed, const BpWorkerSetup *setup,
                           BpWorker **worker, BpError *err);
 void bp_worker_destroy(BpWorker **worker);
+
+#define BP_WORKER_SCENE_ARGUMENTS 18
+/* Sets the arguments that every tracing kernel begins with (SCENE_PARAMETERS of kernels/trace.cl). */
+BpStatus bp_worker_bind_scene(BpWorker *worker, cl_kernel kernel, BpError *err);
 
 /* Queues a chunk and returns; waits for the oldest first when BP_WORKER_FLIGHT are under way. */
 BpStatus bp_worker_start(BpWorker *worker, const BpChunk *chunk, BpError *err);
