@@ -44,9 +44,12 @@ static uint64_t load_little(const uint8_t *bytes, size_t size) {
 
 static json_t *ranges_json(const BpAccumulator *accumulator) {
     json_t *list = json_array();
-    for (size_t i = 0; i < accumulator->range_count; i++)
+    for (size_t i = 0; i < accumulator->range_count; i++) {
+        if (accumulator->ranges[i].count == 0)
+            continue; /* a render that was stopped before its first sample */
         json_array_append_new(list, json_pack("[I,I]", (json_int_t)accumulator->ranges[i].first,
                                               (json_int_t)accumulator->ranges[i].count));
+    }
     return list;
 }
 

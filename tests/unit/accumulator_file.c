@@ -100,6 +100,24 @@ static void a_large_one_loads(void **state) {
     temp_remove(folder);
 }
 
+/* A render that was stopped before its first sample has a range of none. */
+static void an_empty_one_loads(void **state) {
+    (void)state;
+    char folder[64], path[512];
+    temp_make(folder);
+    BpAccumulator *a = NULL, *b = NULL;
+    BpError err = {0};
+    assert_int_equal(bp_accumulator_create(2, 1, 4, &a, NULL), BP_OK);
+    a->ranges = calloc(1, sizeof *a->ranges);
+    a->range_count = 1;
+    assert_int_equal(bp_accumulator_save(a, temp_path(path, folder, "a.bpa"), &err), BP_OK);
+    if (bp_accumulator_load(path, &b, &err) != BP_OK) fail_msg("%s", err.message);
+    assert_int_equal(b->range_count, 0);
+    bp_accumulator_destroy(&a);
+    bp_accumulator_destroy(&b);
+    temp_remove(folder);
+}
+
 /* The layout, byte by byte: what is documented is what is there. */
 static void the_layout_is_as_documented(void **state) {
     (void)state;
@@ -342,6 +360,7 @@ int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(what_is_saved_loads),
         cmocka_unit_test(a_large_one_loads),
+        cmocka_unit_test(an_empty_one_loads),
         cmocka_unit_test(the_layout_is_as_documented),
         cmocka_unit_test(wrong_members_are_named),
         cmocka_unit_test(wrong_lengths_are_refused),
