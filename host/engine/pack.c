@@ -39,7 +39,7 @@ static void *narrow(const double *values, size_t count, size_t least, bool singl
     return array;
 }
 
-/* ---- camera and sky ------------------------------------------------------------------------------------ */
+/* ---- camera and sky -------------------------------------------------------------------------------- */
 
 /* Scaled by the largest component first, so that no square leaves the range of double. */
 static void normalize(double v[3]) {
@@ -94,8 +94,7 @@ static BpStatus pack_view(const BpScene *scene, BpPacked *packed, BpError *err) 
     return packed->camera != NULL && packed->sky != NULL ? BP_OK : out_of_memory(scene, err);
 }
 
-/* ---- materials -------------------------------------------------------------------------------------------
- */
+/* ---- materials ------------------------------------------------------------------------------------- */
 
 static void pack_material(const BpMaterial *material, bool inside_out, PackedMaterial *numbers,
                           PackedMaterialKind *kind) {
@@ -188,8 +187,7 @@ static BpStatus pack_albedos(const BpScene *scene, BpPacked *packed, BpError *er
     return BP_OK;
 }
 
-/* ---- the whole -------------------------------------------------------------------------------------------
- */
+/* ---- the whole ------------------------------------------------------------------------------------- */
 
 BpStatus bp_scene_pack(const BpScene *scene, const BpTreeOptions *options, BpPacked *packed, BpError *err) {
     *packed = (BpPacked){.single_precision = options->single_precision};

@@ -68,13 +68,6 @@ static void find_largest(void *context, uint32_t block, unsigned worker) {
     scan->largest[block] = largest;
 }
 
-static BpTreeItem make_item(const Scan *scan, uint32_t index) {
-    const BpSphere *sphere = &scan->scene->spheres[index];
-    BpTreeItem item = {.radius = (float)fabs(sphere->radius), .sphere = index};
-    for (int a = 0; a < 3; ++a) item.center[a] = (float)(sphere->center[a] - scan->origin[a]);
-    return item;
-}
-
 static void make_items(void *context, uint32_t block, unsigned worker) {
     (void)worker;
     Scan *scan = context;
@@ -90,9 +83,10 @@ static void make_items(void *context, uint32_t block, unsigned worker) {
     BpBounds bounds = BP_BOUNDS_EMPTY;
     for (uint32_t i = block * BLOCK; i < block_end(scan, block); ++i) {
         if (skip[i % BLOCK / 64][i % 64]) continue;
-        const BpBounds box = bp_sphere_bounds(&scan->scene->spheres[i], scan->origin, false);
+        const BpTreeItem item = bp_tree_item(scan->scene, i, scan->origin);
+        const BpBounds box = bp_tree_item_bounds(&item);
         bp_bounds_add(&bounds, &box);
-        scan->items[place++] = make_item(scan, i);
+        scan->items[place++] = item;
     }
     scan->bounds[block] = bounds;
 }
@@ -119,7 +113,7 @@ static uint32_t scan_spheres(Scan *scan, BpTeam *team) {
         if (!(24 * r * r > HUGE_AREA_PART * rest_area)) break;
     }
     for (uint32_t k = huge; k < candidates->count; ++k)
-        scan->items[items++] = make_item(scan, candidates->index[k]);
+        scan->items[items++] = bp_tree_item(scan->scene, candidates->index[k], scan->origin);
     candidates->count = huge;
     return items;
 }
@@ -130,9 +124,11 @@ static BpStatus build_list(const BpTreeWriter *writer, BpError *err) {
     tree->first_leaves = tree->leaf_count = (count + width - 1) / width;
     BP_TRY(bp_tree_allocate(tree, 0, tree->leaf_count, err));
     for (uint32_t leaf = 0; leaf < tree->leaf_count; ++leaf) {
-        uint32_t spheres[BP_TREE_WIDTH_MAX], n = 0;
-        for (; n < width && leaf * width + n < count; ++n) spheres[n] = leaf * width + n;
-        bp_tree_write_leaf(writer, leaf, spheres, n);
+        BpTreeItem items[BP_TREE_WIDTH_MAX];
+        uint32_t n = 0;
+        for (; n < width && leaf * width + n < count; ++n)
+            items[n] = bp_tree_item(writer->scene, leaf * width + n, writer->origin);
+        bp_tree_write_leaf(writer, leaf, items, n);
     }
     return BP_OK;
 }
@@ -159,7 +155,10 @@ static BpStatus build_tree(BpTreeWriter *writer, unsigned threads, BpError *err)
     writer->items = scan.items;
     tree->first_leaves = tree->leaf_count = scan.candidates.count > 0 ? 1 : 0;
     BP_TRY_GOTO(status, bp_tree_write_nodes(writer, binary.root, team, err), cleanup);
-    if (tree->first_leaves > 0) bp_tree_write_leaf(writer, 0, scan.candidates.index, scan.candidates.count);
+    BpTreeItem huge[BP_TREE_WIDTH_MAX];
+    for (uint32_t k = 0; k < scan.candidates.count; ++k)
+        huge[k] = bp_tree_item(writer->scene, scan.candidates.index[k], writer->origin);
+    if (tree->first_leaves > 0) bp_tree_write_leaf(writer, 0, huge, scan.candidates.count);
 cleanup:
     bp_binary_tree_clear(&binary);
     free(scan.items);

@@ -14,7 +14,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#define BINS 16
+#define BINS 32
 #define POOL_BLOCK 1024u
 
 typedef struct BpNodeBlock {
@@ -45,7 +45,7 @@ void bp_node_pool_clear(BpNodePool *pool) {
     *pool = (BpNodePool){0};
 }
 
-/* ---- costs of wide nodes ------------------------------------------------------------------------------- */
+/* ---- costs of wide nodes --------------------------------------------------------------------------- */
 
 uint32_t bp_binary_left_places(const BpBinaryNode *node, uint32_t places) {
     uint32_t best = 1;
@@ -76,8 +76,7 @@ void bp_binary_finish(BpBinaryNode *node, uint32_t width) {
     }
 }
 
-/* ---- splitting -------------------------------------------------------------------------------------------
- */
+/* ---- splitting ------------------------------------------------------------------------------------- */
 
 typedef struct Split {
     int axis; /* < 0: none */
@@ -125,14 +124,14 @@ static Split find_split(const BpTreeItem *items, uint32_t count, uint32_t width)
         for (int b = BINS - 1; b > 0; --b) {
             bp_tree_box_add(&box, &boxes[a][b]);
             n += counts[a][b];
-            cost_right[b] = bp_tree_box_half_area(&box) * (float)((n + width - 1) / width);
+            cost_right[b] = bp_tree_box_half_area(&box) * bp_tree_run_cost(n, width);
         }
         box = empty;
         n = 0;
         for (int b = 1; b < BINS; ++b) {
             bp_tree_box_add(&box, &boxes[a][b - 1]);
             n += counts[a][b - 1];
-            const float cost = bp_tree_box_half_area(&box) * (float)((n + width - 1) / width) + cost_right[b];
+            const float cost = bp_tree_box_half_area(&box) * bp_tree_run_cost(n, width) + cost_right[b];
             if (n > 0 && n < count && cost < best_cost) {
                 best_cost = cost;
                 best = (Split){a, b, low[a], scale[a]};

@@ -13,8 +13,8 @@
 #define BP_TREE_WIDTH_MAX 8
 
 typedef struct BpTreeItem {
-    float center[3], radius;
-    uint32_t sphere; /* index in the scene */
+    float center[3], radius; /* as a packed tree in single precision stores them */
+    uint32_t sphere;         /* index in the scene */
 } BpTreeItem;
 
 typedef struct BpTreeBox {
@@ -69,7 +69,13 @@ BpStatus bp_binary_tree_build(BpTreeItem *items, uint32_t count, const BpBinaryO
                               BpBinaryTree *tree, BpError *err);
 void bp_binary_tree_clear(BpBinaryTree *tree);
 
-/* ---- boxes ------------------------------------------------------------------------------------------- */
+/* What the heuristic takes a run of `count` items to cost when it is met: a leaf costs the same however many
+ * of its lanes are used, and so does a wide node above leaves. */
+static inline float bp_tree_run_cost(uint32_t count, uint32_t width) {
+    return (float)((count + width - 1) / width + (count + width * width - 1) / (width * width));
+}
+
+/* ---- boxes ----------------------------------------------------------------------------------------- */
 
 #define BP_TREE_BOX_EMPTY                                                                                    \
     {                                                                                                        \

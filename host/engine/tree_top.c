@@ -16,9 +16,7 @@
 
 #define CELLS_MAX 32768u
 #define PLANES 32
-#ifndef RUN_DIV
-#define RUN_DIV 64
-#endif
+#define RUNS 64u /* about so many runs, or more, keep the threads of most machines busy */
 #define BLOCKS_MAX 256u
 
 typedef struct Cell {
@@ -80,8 +78,7 @@ static bool push_run(RunList *list, const Run *run) {
     return true;
 }
 
-/* ---- passes over the items of the range, block by block --------------------------------------------------
- */
+/* ---- passes over the items of the range, block by block -------------------------------------------- */
 
 static uint32_t block_items(const Top *top, uint32_t block, BpTreeItem **items, uint32_t *first) {
     *first = block * top->block_size;
@@ -154,8 +151,7 @@ static void clear_cells(void *context, uint32_t piece, unsigned worker) {
     for (uint32_t c = 0; c < top->cell_count; ++c) top->cells[(size_t)piece * CELLS_MAX + c] = empty;
 }
 
-/* ---- the grid
- * ----------------------------------------------------------------------------------------------- */
+/* ---- the grid -------------------------------------------------------------------------------------- */
 
 /* Cells about as wide as high as deep, about one for eight items. */
 static void lay_grid(Top *top) {
@@ -257,14 +253,14 @@ static Plane find_plane(const Top *top, const uint32_t *cells, uint32_t cell_cou
         for (uint32_t b = plane.bins - 1; b > 0; --b) {
             bp_tree_box_add(&box, &boxes[b]);
             n += counts[b];
-            cost_right[b] = bp_tree_box_half_area(&box) * (float)((n + width - 1) / width);
+            cost_right[b] = bp_tree_box_half_area(&box) * bp_tree_run_cost(n, width);
         }
         box = empty;
         n = 0;
         for (uint32_t b = 1; b < plane.bins; ++b) {
             bp_tree_box_add(&box, &boxes[b - 1]);
             n += counts[b - 1];
-            const float cost = bp_tree_box_half_area(&box) * (float)((n + width - 1) / width) + cost_right[b];
+            const float cost = bp_tree_box_half_area(&box) * bp_tree_run_cost(n, width) + cost_right[b];
             if (n > 0 && n < items && n <= side_max && items - n <= side_max && cost < best_cost) {
                 best_cost = cost;
                 best = plane;
@@ -362,8 +358,7 @@ static void split_range(Top *top, uint32_t *used) {
     top->runs.count = kept;
 }
 
-/* ---- the runs
- * ------------------------------------------------------------------------------------------------ */
+/* ---- the runs -------------------------------------------------------------------------------------- */
 
 static void build_run(void *context, uint32_t piece, unsigned worker) {
     Top *top = context;
@@ -426,7 +421,7 @@ BpStatus bp_binary_tree_build(BpTreeItem *items, uint32_t count, const BpBinaryO
         goto cleanup;
     }
     *top = (Top){.items = {items, NULL}, .options = options, .team = team, .tree = tree};
-    top->run_max = count / RUN_DIV;
+    top->run_max = count / RUNS;
     if (top->run_max < 2048) top->run_max = 2048;
     if (count > 4 * top->run_max) {
         status = build_large(top, count, err);

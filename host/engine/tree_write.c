@@ -9,7 +9,6 @@
 #include "reals.h"
 #include "scene_types.h"
 
-#include <float.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -32,61 +31,7 @@ typedef struct Gather {
     bool failed; /* out of memory */
 } Gather;
 
-/* ---- spheres and leaves -----------------------------------------------------------------------------------
- */
-
-/* The radius as the kernel will see it. What is too small for float becomes the smallest normal number, so
- * that a lane in use always has a radius above 0. */
-static double stored_radius(double radius, bool single) {
-    const double r = fabs(radius);
-    if (!single) return r;
-    return r < (double)FLT_MIN ? (double)FLT_MIN : (double)(float)r;
-}
-
-/* Widened by a bound of the rounding of these very sums: three roundings of numbers up to |center| + radius,
- * each at most 2^-53 of it. */
-BpBounds bp_sphere_bounds(const BpSphere *sphere, const double origin[3], bool single) {
-    const double r = fabs(sphere->radius), r_stored = stored_radius(r, single);
-    const double r_max = r > r_stored ? r : r_stored;
-    BpBounds bounds;
-    for (int a = 0; a < 3; ++a) {
-        const double c = sphere->center[a] - origin[a];
-        const double c_stored = single ? (double)(float)c : c;
-        const double margin = (fabs(c) + r_max) * 0x1p-51;
-        bounds.low[a] = (c < c_stored ? c : c_stored) - r_max - margin;
-        bounds.high[a] = (c > c_stored ? c : c_stored) + r_max + margin;
-    }
-    return bounds;
-}
-
-BpBounds bp_tree_write_leaf(const BpTreeWriter *writer, uint32_t leaf, const uint32_t *spheres,
-                            uint32_t count) {
-    BpTree *tree = writer->tree;
-    const uint32_t width = tree->width;
-    const bool single = tree->single_precision;
-    const size_t base = (size_t)leaf * LEAF_REALS(width);
-    BpBounds box = BP_BOUNDS_EMPTY;
-    for (uint32_t lane = 0; lane < width; ++lane) {
-        uint32_t index = NO_SPHERE;
-        double center[3] = {0, 0, 0}, radius = -1;
-        if (lane < count) {
-            index = spheres[lane];
-            const BpSphere *sphere = &writer->scene->spheres[index];
-            const BpBounds bounds = bp_sphere_bounds(sphere, writer->origin, single);
-            bp_bounds_add(&box, &bounds);
-            for (int a = 0; a < 3; ++a) center[a] = sphere->center[a] - writer->origin[a];
-            radius = stored_radius(sphere->radius, single);
-        }
-        for (uint32_t a = 0; a < 3; ++a)
-            bp_reals_store(tree->leaves, single, base + a * width + lane, center[a]);
-        bp_reals_store(tree->leaves, single, base + 3 * width + lane, radius);
-        tree->slot_sphere[(size_t)leaf * width + lane] = index;
-    }
-    return box;
-}
-
-/* ---- nodes
- * -------------------------------------------------------------------------------------------------- */
+/* ---- nodes ----------------------------------------------------------------------------------------- */
 
 static void write_child(BpTree *tree, uint32_t node, uint32_t lane, const BpBounds *box, uint32_t word) {
     const size_t base = (size_t)node * NODE_REALS(tree->width) + lane;
@@ -171,9 +116,7 @@ static void count_below(const Gather *gather, const BpBinaryNode *node, uint32_t
 }
 
 static BpBounds write_binary_leaf(const BpTreeWriter *writer, const BpBinaryNode *node, uint32_t leaf) {
-    uint32_t spheres[BP_TREE_WIDTH_MAX];
-    for (uint32_t i = 0; i < node->count; ++i) spheres[i] = writer->items[node->first + i].sphere;
-    return bp_tree_write_leaf(writer, leaf, spheres, node->count);
+    return bp_tree_write_leaf(writer, leaf, writer->items + node->first, node->count);
 }
 
 /* Writes the wide node of a binary one and everything below; returns its box. `next_node` and `next_leaf` are
@@ -201,8 +144,7 @@ static BpBounds write_below(const Gather *gather, const BpBinaryNode *node, uint
     return box;
 }
 
-/* ---- jobs
- * ----------------------------------------------------------------------------------------------------- */
+/* ---- jobs ------------------------------------------------------------------------------------------ */
 
 static void count_job(void *context, uint32_t piece, unsigned worker) {
     (void)worker;
@@ -265,19 +207,6 @@ static void write_top(const Gather *gather, const BpBinaryNode *node, uint32_t d
         }
         write_child(writer->tree, number, lane, &box, word);
     }
-}
-
-BpStatus bp_tree_allocate(BpTree *tree, uint32_t nodes, uint32_t leaves, BpError *err) {
-    const size_t real_size = tree->single_precision ? sizeof(float) : sizeof(double);
-    const size_t n = nodes > 0 ? nodes : 1, l = leaves > 0 ? leaves : 1, width = tree->width;
-    tree->node_boxes = calloc(n * NODE_REALS(width), real_size);
-    tree->children = calloc(n * width, sizeof *tree->children);
-    tree->leaves = calloc(l * LEAF_REALS(width), real_size);
-    tree->slot_sphere = calloc(l * width, sizeof *tree->slot_sphere);
-    if (tree->node_boxes != NULL && tree->children != NULL && tree->leaves != NULL &&
-        tree->slot_sphere != NULL)
-        return BP_OK;
-    return bp_fail(err, BP_ERR_MEMORY, "out of memory for a tree of %u leaves and %u nodes", leaves, nodes);
 }
 
 static BpStatus write_empty_root(const BpTreeWriter *writer, BpError *err) {

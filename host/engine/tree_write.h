@@ -34,11 +34,15 @@ typedef struct BpTreeWriter {
     BpTree *tree;
 } BpTreeWriter;
 
-/* The box that contains a sphere both as the scene has it and as the kernel will see it. */
-BpBounds bp_sphere_bounds(const BpSphere *sphere, const double origin[3], bool single);
+/* The sphere as the splits see it and as a tree in single precision stores it, relative to `origin`. */
+BpTreeItem bp_tree_item(const BpScene *scene, uint32_t sphere, const double origin[3]);
 
-/* Fills leaf `leaf` with the spheres of these indices, 0 <= count <= width, and returns its box. */
-BpBounds bp_tree_write_leaf(const BpTreeWriter *writer, uint32_t leaf, const uint32_t *spheres,
+/* A box that contains the sphere of an item, the one that was rounded to it as well. */
+BpBounds bp_tree_item_bounds(const BpTreeItem *item);
+
+/* Fills leaf `leaf` with 0 <= count <= width spheres, and returns a box that contains them as the scene has
+ * them and as the kernel will see them. */
+BpBounds bp_tree_write_leaf(const BpTreeWriter *writer, uint32_t leaf, const BpTreeItem *items,
                             uint32_t count);
 
 /* Allocates the arrays; each has room for one entry at least, so that a device buffer can be made of it. */

@@ -1,0 +1,92 @@
+/* tree_leaf.c: leaves and their boxes; see tree_write.h. */
+#define BP_HOST
+#include "tree_write.h"
+
+#include "reals.h"
+#include "scene_types.h"
+
+#include <float.h>
+#include <stdlib.h>
+
+/* A radius too small for float becomes the smallest normal number, so that a lane in use always has a radius
+ * above 0. */
+BpTreeItem bp_tree_item(const BpScene *scene, uint32_t sphere, const double origin[3]) {
+    const BpSphere *s = &scene->spheres[sphere];
+    const float radius = (float)fabs(s->radius);
+    BpTreeItem item = {.radius = radius > FLT_MIN ? radius : FLT_MIN, .sphere = sphere};
+    for (int a = 0; a < 3; ++a) item.center[a] = (float)(s->center[a] - origin[a]);
+    return item;
+}
+
+/* Widened by what rounding to float may have moved center and radius, at most 2^-24 of each or, below the
+ * normal numbers, less than FLT_MIN; and by the few 2^-53 that these sums in double, and the subtraction of
+ * the origin, may be off. */
+BpBounds bp_tree_item_bounds(const BpTreeItem *item) {
+    const double r = (double)item->radius;
+    BpBounds bounds;
+    for (int a = 0; a < 3; ++a) {
+        const double c = (double)item->center[a];
+        const double margin = (fabs(c) + r) * (0x1p-24 + 0x1p-46) + (double)FLT_MIN;
+        bounds.low[a] = c - r - margin;
+        bounds.high[a] = c + r + margin;
+    }
+    return bounds;
+}
+
+/* The same from the scene's own numbers, which a tree in double precision stores. Widened by a bound of the
+ * rounding of these very sums: three roundings of numbers up to |center| + radius, each at most 2^-53 of it.
+ */
+static BpBounds sphere_bounds(const double center[3], double radius) {
+    BpBounds bounds;
+    for (int a = 0; a < 3; ++a) {
+        const double margin = (fabs(center[a]) + radius) * 0x1p-51;
+        bounds.low[a] = center[a] - radius - margin;
+        bounds.high[a] = center[a] + radius + margin;
+    }
+    return bounds;
+}
+
+BpBounds bp_tree_write_leaf(const BpTreeWriter *writer, uint32_t leaf, const BpTreeItem *items,
+                            uint32_t count) {
+    BpTree *tree = writer->tree;
+    const uint32_t width = tree->width;
+    const bool single = tree->single_precision;
+    const size_t base = (size_t)leaf * LEAF_REALS(width);
+    BpBounds box = BP_BOUNDS_EMPTY;
+    for (uint32_t lane = 0; lane < width; ++lane) {
+        uint32_t index = NO_SPHERE;
+        double center[3] = {0, 0, 0}, radius = -1;
+        if (lane < count && single) {
+            for (int a = 0; a < 3; ++a) center[a] = (double)items[lane].center[a];
+            radius = (double)items[lane].radius;
+        } else if (lane < count) {
+            const BpSphere *sphere = &writer->scene->spheres[items[lane].sphere];
+            for (int a = 0; a < 3; ++a) center[a] = sphere->center[a] - writer->origin[a];
+            radius = fabs(sphere->radius);
+        }
+        if (lane < count) {
+            const BpBounds bounds =
+                single ? bp_tree_item_bounds(&items[lane]) : sphere_bounds(center, radius);
+            bp_bounds_add(&box, &bounds);
+            index = items[lane].sphere;
+        }
+        for (uint32_t a = 0; a < 3; ++a)
+            bp_reals_store(tree->leaves, single, base + a * width + lane, center[a]);
+        bp_reals_store(tree->leaves, single, base + 3 * width + lane, radius);
+        tree->slot_sphere[(size_t)leaf * width + lane] = index;
+    }
+    return box;
+}
+
+BpStatus bp_tree_allocate(BpTree *tree, uint32_t nodes, uint32_t leaves, BpError *err) {
+    const size_t real_size = tree->single_precision ? sizeof(float) : sizeof(double);
+    const size_t n = nodes > 0 ? nodes : 1, l = leaves > 0 ? leaves : 1, width = tree->width;
+    tree->node_boxes = calloc(n * NODE_REALS(width), real_size);
+    tree->children = calloc(n * width, sizeof *tree->children);
+    tree->leaves = calloc(l * LEAF_REALS(width), real_size);
+    tree->slot_sphere = calloc(l * width, sizeof *tree->slot_sphere);
+    if (tree->node_boxes != NULL && tree->children != NULL && tree->leaves != NULL &&
+        tree->slot_sphere != NULL)
+        return BP_OK;
+    return bp_fail(err, BP_ERR_MEMORY, "out of memory for a tree of %u leaves and %u nodes", leaves, nodes);
+}
