@@ -63,6 +63,25 @@ const BpCommand bp_commands[] = {
         .run = bp_command_merge,
     },
     {
+        .name = "bench",
+        .operands = "[SCENE...]",
+        .operands_max = SIZE_MAX,
+        .summary = "measure throughput",
+        .description =
+            "Measures how fast scenes load, build and render: samples and ray segments a second, "
+            "nanoseconds a segment, bytes a sphere. A SCENE is a file, or one of the fixed scenes: "
+            "cover, diffuse (the same spheres, all matte), glass (all glass), field-1e4, field-1e6 "
+            "or any other number (random spheres in a cube); without any, these five. Scenes take "
+            "turns for five rounds; the table shows medians. --time is what each scene is traced for, "
+            "all rounds together. With -o, the fixed scenes are written into that folder and nothing "
+            "is measured.",
+        .examples = "  ballpark bench\n"
+                    "  ballpark bench cover field-1e7 --kernel sample --json figures.json\n"
+                    "  ballpark bench -o scenes        write the fixed scenes, for other programs\n",
+        .options = TAKES_DRAWING | TAKES(SAMPLER) | TAKES(TIME) | TAKES(JSON) | TAKES(OUTPUT) | TAKES(QUIET),
+        .run = bp_command_bench,
+    },
+    {
         .name = "devices",
         .operands = "",
         .summary = "list the OpenCL devices",

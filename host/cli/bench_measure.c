@@ -1,0 +1,110 @@
+/* bench_measure.c: see bench_measure.h. */
+#include "bench_measure.h"
+
+#include "../base/clock.h"
+#include "interrupt.h"
+#include "setup.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <sys/resource.h>
+
+#define WARM_UP_SECONDS 0.3
+
+static double cpu_seconds(void) {
+    struct rusage usage;
+    getrusage(RUSAGE_SELF, &usage);
+    return (double)(usage.ru_utime.tv_sec + usage.ru_stime.tv_sec) +
+           1e-6 * (double)(usage.ru_utime.tv_usec + usage.ru_stime.tv_usec);
+}
+
+/* Traces until every pixel has `samples`, and reads what came of it: all work is done, all counts are whole.
+ */
+static BpStatus trace_to(BpRender *render, uint64_t samples, const BpAccumulator **accumulator,
+                         BpError *err) {
+    BpProgress progress = {0};
+    BP_TRY(bp_render_extend(render, samples, err));
+    do {
+        BP_TRY(bp_render_step(render, &progress, err));
+        if (bp_interrupted())
+            return bp_fail(err, BP_ERR_INTERRUPTED, "interrupted; figures of a part of a run mean nothing");
+    } while (!progress.finished);
+    return bp_render_accumulator(render, accumulator, err);
+}
+
+/* Whole passes only: the rows of a picture cost differently. */
+static BpStatus trace(BpRender *render, double seconds, BpBenchRun *run, BpError *err) {
+    const BpAccumulator *accumulator = NULL;
+    uint64_t samples = 0;
+    const double warm_up = bp_clock_seconds();
+    double start, last;
+    do {
+        last = bp_clock_seconds();
+        samples = 2 * samples + 1;
+        BP_TRY(trace_to(render, samples, &accumulator, err));
+        start = bp_clock_seconds();
+    } while (start - warm_up < WARM_UP_SECONDS);
+    /* The last pass of the warm-up took about half of all samples. */
+    const double more = seconds / (start - last) * (double)(samples / 2 + 1);
+    BpRenderReport before;
+    bp_render_report(render, &before);
+
+    const double cpu = cpu_seconds();
+    BP_TRY(trace_to(render, samples + (more > 1 ? (uint64_t)more : 1), &accumulator, err));
+    run->seconds = bp_clock_seconds() - start;
+    run->cpu_seconds = cpu_seconds() - cpu;
+    bp_render_report(render, &run->report);
+    run->samples = run->report.samples - before.samples;
+    run->segments = run->report.segments - before.segments;
+    run->device_seconds = run->report.device_seconds - before.device_seconds;
+    bp_accumulator_mean(accumulator, run->mean);
+    run->nrmse = bp_accumulator_nrmse(accumulator);
+    if (run->segments == 0)
+        return bp_fail(err, BP_ERR_USAGE, "no ray was traced; a depth of 0 has nothing to measure");
+    return BP_OK;
+}
+
+BpStatus bp_bench_run(const BpCommandLine *line, const char *path, const BpDeviceInfo *devices,
+                      size_t device_count, double seconds, BpBenchRun *run, BpError *err) {
+    BpScene *scene = NULL;
+    BpRender *render = NULL;
+    BpRenderOptions options;
+    *run = (BpBenchRun){0};
+
+    const double start = bp_clock_seconds();
+    BpStatus status = bp_setup_scene(line, path, &scene, err);
+    if (status != BP_OK) goto done;
+    run->load_seconds = bp_clock_seconds() - start;
+    run->spheres = scene->sphere_count;
+    run->width = scene->camera.width;
+    run->height = scene->camera.height;
+
+    BP_TRY_GOTO(status, bp_setup_options(line, scene, &options, err), done);
+    options.samples_per_pixel = 1; /* more follow */
+    run->max_depth = options.max_depth;
+    BP_TRY_GOTO(status, bp_render_create(scene, &options, devices, device_count, &render, err), done);
+    status = trace(render, seconds, run, err);
+    run->tree_seconds = run->report.tree_seconds + run->report.pack_seconds;
+    run->kernel_build_seconds = run->report.kernel_build_seconds + run->report.first_launch_seconds;
+done:
+    bp_render_destroy(&render);
+    bp_scene_destroy(&scene);
+    return status;
+}
+
+static int compare(const void *a, const void *b) {
+    const double x = *(const double *)a, y = *(const double *)b;
+    return (x > y) - (x < y);
+}
+
+static double quantile(const double *sorted, size_t count, double q) {
+    const double place = q * (double)(count - 1), below = floor(place);
+    const size_t i = (size_t)below;
+    return i + 1 < count ? sorted[i] + (place - below) * (sorted[i + 1] - sorted[i]) : sorted[i];
+}
+
+BpBenchFigure bp_bench_figure(double *values, size_t count) {
+    qsort(values, count, sizeof *values, compare);
+    return (BpBenchFigure){quantile(values, count, 0.5), quantile(values, count, 0.25),
+                           quantile(values, count, 0.75)};
+}

@@ -1,0 +1,255 @@
+/* cmd_bench.c: `ballpark bench`.
+ *
+ * In:    scenes, or the names of fixed ones, or nothing.   Out: a table of throughput, and JSON.
+ * Knows: rounds, medians, tables.   Does not know: how a run is timed (bench_measure.h).
+ *
+ * Scenes take turns, round after round, so that what else the machine does spreads over all of them. */
+#include "commands.h"
+
+#include "bench_measure.h"
+#include "bench_scenes.h"
+#include "interrupt.h"
+#include "json_file.h"
+#include "report.h"
+#include "setup.h"
+
+#include <errno.h>
+#include <inttypes.h>
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#define ROUNDS 5u
+#define SECONDS_DEFAULT 5.0 /* of tracing, a scene */
+
+typedef struct Entry {
+    const char *name; /* as asked for */
+    bool fixed;       /* written by us */
+    char path[4096];
+    BpBenchRun runs[ROUNDS];
+} Entry;
+
+typedef struct Bench {
+    Entry *entries;
+    size_t count;
+    char folder[4096]; /* where fixed scenes stand */
+    bool temporary;    /* the folder is ours to remove */
+} Bench;
+
+/* ---- figures of the rounds ---- */
+
+typedef double RunValue(const BpBenchRun *run);
+
+static double load_seconds(const BpBenchRun *run) {
+    return run->load_seconds;
+}
+static double tree_seconds(const BpBenchRun *run) {
+    return run->tree_seconds;
+}
+static double kernel_seconds(const BpBenchRun *run) {
+    return run->kernel_build_seconds;
+}
+static double samples_rate(const BpBenchRun *run) {
+    return (double)run->samples / run->seconds;
+}
+static double segments_rate(const BpBenchRun *run) {
+    return (double)run->segments / run->seconds;
+}
+static double segment_nanoseconds(const BpBenchRun *run) {
+    return 1e9 * run->seconds / (double)run->segments;
+}
+static double segment_cpu_nanoseconds(const BpBenchRun *run) {
+    return 1e9 * run->cpu_seconds / (double)run->segments;
+}
+static double segment_device_nanoseconds(const BpBenchRun *run) {
+    return 1e9 * run->device_seconds / (double)run->segments;
+}
+
+static BpBenchFigure figure(const Entry *entry, RunValue *value) {
+    double values[ROUNDS];
+    for (size_t r = 0; r < ROUNDS; ++r) values[r] = value(&entry->runs[r]);
+    return bp_bench_figure(values, ROUNDS);
+}
+
+static double bytes_per_sphere(const Entry *entry) {
+    return entry->runs[0].spheres > 0
+               ? (double)entry->runs[0].report.scene_bytes / (double)entry->runs[0].spheres
+               : 0.0;
+}
+
+/* ---- the table ---- */
+
+/* "1.23 ms": three digits and a unit. */
+static const char *short_time(double seconds, char *text, size_t size) {
+    const char *unit = seconds < 1.0 ? "ms" : "s";
+    const double value = seconds < 1.0 ? 1e3 * seconds : seconds;
+    snprintf(text, size, "%.*f %s", value < 9.995 ? 2 : value < 99.95 ? 1 : 0, value, unit);
+    return text;
+}
+
+static void print_row(const Entry *entry) {
+    char load[32], tree[32], kernel[32], spheres[32];
+    const BpBenchFigure segments = figure(entry, segments_rate);
+    printf("%-12s %11s %9s %9s %9s %10.2f %11.2f %9.1f %9.1f %7.0f %% %8.0f\n", entry->name,
+           bp_format_whole(entry->runs[0].spheres, spheres, sizeof spheres),
+           short_time(figure(entry, load_seconds).median, load, sizeof load),
+           short_time(figure(entry, tree_seconds).median, tree, sizeof tree),
+           short_time(figure(entry, kernel_seconds).median, kernel, sizeof kernel),
+           1e-6 * figure(entry, samples_rate).median, 1e-6 * segments.median,
+           figure(entry, segment_nanoseconds).median, figure(entry, segment_cpu_nanoseconds).median,
+           100.0 * (segments.high - segments.low) / segments.median, bytes_per_sphere(entry));
+}
+
+static BpStatus print_table(const Bench *bench, BpError *err) {
+    const BpRenderReport *report = &bench->entries[0].runs[0].report;
+    printf("%s, %s; %s kernel, %s, %s numerics, %s math\n", report->device.name, report->device.platform,
+           report->kernel == BP_KERNEL_PACKET ? "packet" : "sample",
+           report->precision == BP_PRECISION_DOUBLE ? "double" : "single",
+           report->numerics == BP_NUMERICS_PLAIN ? "plain" : "robust",
+           report->math == BP_MATH_FAST ? "fast" : "strict");
+    printf("%-12s %11s %9s %9s %9s %10s %11s %9s %9s %9s %8s\n", "scene", "spheres", "load", "tree", "kernel",
+           "Msamples/s", "Msegments/s", "ns/segm.", "CPU ns", "spread", "B/sphere");
+    for (size_t i = 0; i < bench->count; ++i) print_row(&bench->entries[i]);
+    printf("medians of %u rounds; spread: between the quartiles; CPU ns: processor time a segment, all "
+           "threads\n",
+           ROUNDS);
+    if (fflush(stdout) != 0 || ferror(stdout))
+        return bp_fail(err, BP_ERR_FILE, "cannot write to standard output: %s", strerror(errno));
+    return BP_OK;
+}
+
+/* ---- JSON ---- */
+
+static json_t *figure_json(const Entry *entry, RunValue *value) {
+    const BpBenchFigure f = figure(entry, value);
+    json_t *values = json_array();
+    for (size_t r = 0; r < ROUNDS && values != NULL; ++r)
+        json_array_append_new(values, json_real(value(&entry->runs[r])));
+    return json_pack("{s:f, s:f, s:f, s:o}", "median", f.median, "low", f.low, "high", f.high, "rounds",
+                     values);
+}
+
+static json_t *entry_json(const Entry *entry) {
+    const BpBenchRun *run = &entry->runs[0];
+    uint64_t samples = 0, segments = 0;
+    for (size_t r = 0; r < ROUNDS; ++r) {
+        samples += entry->runs[r].samples;
+        segments += entry->runs[r].segments;
+    }
+    json_t *nrmse = isfinite(run->nrmse) ? json_real(run->nrmse) : json_null();
+    return json_pack(
+        "{s:s, s:s, s:I, s:I, s:I, s:I, s:o, s:o, s:o, s:o, s:o, s:o, s:o, s:o, s:f, s:I, s:f, s:[fff], s:o, "
+        "s:I}",
+        "name", entry->name, "path", entry->path, "spheres", (json_int_t)run->spheres, "width",
+        (json_int_t)run->width, "height", (json_int_t)run->height, "max_depth", (json_int_t)run->max_depth,
+        "load_seconds", figure_json(entry, load_seconds), "tree_seconds", figure_json(entry, tree_seconds),
+        "kernel_build_seconds", figure_json(entry, kernel_seconds), "samples_per_second",
+        figure_json(entry, samples_rate), "segments_per_second", figure_json(entry, segments_rate),
+        "nanoseconds_per_segment", figure_json(entry, segment_nanoseconds), "cpu_nanoseconds_per_segment",
+        figure_json(entry, segment_cpu_nanoseconds), "device_nanoseconds_per_segment",
+        figure_json(entry, segment_device_nanoseconds), "segments_per_sample",
+        (double)segments / (double)samples, "scene_bytes", (json_int_t)run->report.scene_bytes,
+        "bytes_per_sphere", bytes_per_sphere(entry), "mean_radiance", run->mean[0], run->mean[1],
+        run->mean[2], "nrmse", nrmse, "invalid_samples", (json_int_t)run->report.invalid_samples);
+}
+
+static BpStatus write_json(const Bench *bench, const char *path, BpError *err) {
+    const BpRenderReport *report = &bench->entries[0].runs[0].report;
+    json_t *scenes = json_array();
+    for (size_t i = 0; i < bench->count; ++i) {
+        if (json_array_append_new(scenes, entry_json(&bench->entries[i])) == 0) continue;
+        json_decref(scenes);
+        return bp_json_write(NULL, path, err);
+    }
+    return bp_json_write(json_pack("{s:s, s:{s:s, s:s, s:s}, s:s, s:s, s:s, s:s, s:s, s:i, s:o}", "version",
+                                   bp_version(), "device", "platform", report->device.platform, "name",
+                                   report->device.name, "driver", report->device.driver, "kernel",
+                                   report->kernel == BP_KERNEL_PACKET ? "packet" : "sample", "precision",
+                                   report->precision == BP_PRECISION_DOUBLE ? "double" : "single", "numerics",
+                                   report->numerics == BP_NUMERICS_PLAIN ? "plain" : "robust", "math",
+                                   report->math == BP_MATH_FAST ? "fast" : "strict", "sampler",
+                                   report->sampler == BP_SAMPLER_SOBOL ? "sobol" : "independent", "rounds",
+                                   (int)ROUNDS, "scenes", scenes),
+                         path, err);
+}
+
+/* ---- the command ---- */
+
+/* The folder of the fixed scenes: --output, made if it is not there; or one of our own. */
+static BpStatus open_folder(const BpCommandLine *line, Bench *bench, BpError *err) {
+    if (line->output != NULL) {
+        snprintf(bench->folder, sizeof bench->folder, "%s", line->output);
+        if (mkdir(bench->folder, 0777) != 0 && errno != EEXIST)
+            return bp_fail(err, BP_ERR_FILE, "cannot make the folder %s: %s", line->output, strerror(errno));
+        return BP_OK;
+    }
+    const char *above = getenv("TMPDIR");
+    snprintf(bench->folder, sizeof bench->folder, "%s/ballpark-bench-XXXXXX", above != NULL ? above : "/tmp");
+    if (mkdtemp(bench->folder) == NULL)
+        return bp_fail(err, BP_ERR_FILE, "cannot make the folder %s: %s", bench->folder, strerror(errno));
+    bench->temporary = true;
+    return BP_OK;
+}
+
+static BpStatus prepare(const BpCommandLine *line, Bench *bench, BpError *err) {
+    size_t fixed_count = 0;
+    while (bp_bench_scene_names[fixed_count] != NULL) ++fixed_count;
+    bench->count = line->operand_count > 0 ? line->operand_count : fixed_count;
+    bench->entries = calloc(bench->count, sizeof *bench->entries);
+    if (bench->entries == NULL) return bp_fail(err, BP_ERR_MEMORY, "out of memory for the list of scenes");
+    for (size_t i = 0; i < bench->count; ++i) {
+        Entry *entry = &bench->entries[i];
+        entry->name = line->operand_count > 0 ? line->operands[i] : bp_bench_scene_names[i];
+        entry->fixed = bp_bench_scene_known(entry->name);
+        if (!entry->fixed) {
+            snprintf(entry->path, sizeof entry->path, "%s", entry->name);
+            continue;
+        }
+        if (bench->folder[0] == '\0') BP_TRY(open_folder(line, bench, err));
+        BP_TRY(bp_bench_scene_write(entry->name, bench->folder, entry->path, sizeof entry->path, err));
+    }
+    return BP_OK;
+}
+
+static BpStatus run_rounds(const BpCommandLine *line, Bench *bench, BpError *err) {
+    const double seconds = bp_option_given(line, BP_OPTION_TIME) ? line->time_seconds : SECONDS_DEFAULT;
+    BpDeviceInfo *devices = NULL;
+    size_t device_count = 0;
+    BpStatus status = bp_setup_devices(line, &devices, &device_count, err);
+    for (size_t r = 0; r < ROUNDS && status == BP_OK; ++r) {
+        for (size_t i = 0; i < bench->count && status == BP_OK; ++i) {
+            Entry *entry = &bench->entries[i];
+            if (!line->quiet) fprintf(stderr, "round %zu of %u: %s\n", r + 1, ROUNDS, entry->name);
+            status = bp_bench_run(line, entry->path, devices, device_count, seconds / ROUNDS, &entry->runs[r],
+                                  err);
+        }
+    }
+    free(devices);
+    return status;
+}
+
+static void clear(Bench *bench) {
+    for (size_t i = 0; i < bench->count && bench->temporary && bench->entries != NULL; ++i)
+        if (bench->entries[i].fixed) bp_bench_scene_remove(bench->entries[i].name, bench->folder);
+    if (bench->temporary) rmdir(bench->folder);
+    free(bench->entries);
+}
+
+BpStatus bp_command_bench(const BpCommandLine *line, BpError *err) {
+    Bench bench = {0};
+    BpStatus status = BP_OK;
+    if (line->json != NULL) BP_TRY(bp_json_check(line->json, err));
+    bp_interrupt_catch();
+    BP_TRY_GOTO(status, prepare(line, &bench, err), done);
+    if (line->output != NULL) goto done; /* the scenes were wanted, not figures */
+    BP_TRY_GOTO(status, run_rounds(line, &bench, err), done);
+    if (line->json == NULL || strcmp(line->json, "-") != 0)
+        BP_TRY_GOTO(status, print_table(&bench, err), done);
+    if (line->json != NULL) status = write_json(&bench, line->json, err);
+done:
+    clear(&bench);
+    return status;
+}
