@@ -22,19 +22,21 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
-#define ROUNDS 5u
+#define ROUNDS_DEFAULT 5u
+#define ROUNDS_MAX 1000u    /* --rounds */
 #define SECONDS_DEFAULT 5.0 /* of tracing, a scene */
 
 typedef struct Entry {
     const char *name; /* as asked for */
     bool fixed;       /* written by us */
     char path[4096];
-    BpBenchRun runs[ROUNDS];
+    BpBenchRun *runs; /* one a round */
 } Entry;
 
 typedef struct Bench {
     Entry *entries;
     size_t count;
+    uint32_t rounds;
     char folder[4096]; /* where fixed scenes stand */
     bool temporary;    /* the folder is ours to remove */
 } Bench;
@@ -68,10 +70,10 @@ static double segment_device_nanoseconds(const BpBenchRun *run) {
     return 1e9 * run->device_seconds / (double)run->segments;
 }
 
-static BpBenchFigure figure(const Entry *entry, RunValue *value) {
-    double values[ROUNDS];
-    for (size_t r = 0; r < ROUNDS; ++r) values[r] = value(&entry->runs[r]);
-    return bp_bench_figure(values, ROUNDS);
+static BpBenchFigure figure(const Bench *bench, const Entry *entry, RunValue *value) {
+    double values[ROUNDS_MAX];
+    for (size_t r = 0; r < bench->rounds; ++r) values[r] = value(&entry->runs[r]);
+    return bp_bench_figure(values, bench->rounds);
 }
 
 static double bytes_per_sphere(const Entry *entry) {
@@ -90,16 +92,17 @@ static const char *short_time(double seconds, char *text, size_t size) {
     return text;
 }
 
-static void print_row(const Entry *entry) {
+static void print_row(const Bench *bench, const Entry *entry) {
     char load[32], tree[32], kernel[32], spheres[32];
-    const BpBenchFigure segments = figure(entry, segments_rate);
+    const BpBenchFigure segments = figure(bench, entry, segments_rate);
     printf("%-12s %11s %9s %9s %9s %10.2f %11.2f %9.1f %9.1f %7.0f %% %8.0f\n", entry->name,
            bp_format_whole(entry->runs[0].spheres, spheres, sizeof spheres),
-           short_time(figure(entry, load_seconds).median, load, sizeof load),
-           short_time(figure(entry, tree_seconds).median, tree, sizeof tree),
-           short_time(figure(entry, kernel_seconds).median, kernel, sizeof kernel),
-           1e-6 * figure(entry, samples_rate).median, 1e-6 * segments.median,
-           figure(entry, segment_nanoseconds).median, figure(entry, segment_cpu_nanoseconds).median,
+           short_time(figure(bench, entry, load_seconds).median, load, sizeof load),
+           short_time(figure(bench, entry, tree_seconds).median, tree, sizeof tree),
+           short_time(figure(bench, entry, kernel_seconds).median, kernel, sizeof kernel),
+           1e-6 * figure(bench, entry, samples_rate).median, 1e-6 * segments.median,
+           figure(bench, entry, segment_nanoseconds).median,
+           figure(bench, entry, segment_cpu_nanoseconds).median,
            100.0 * (segments.high - segments.low) / segments.median, bytes_per_sphere(entry));
 }
 
@@ -112,10 +115,10 @@ static BpStatus print_table(const Bench *bench, BpError *err) {
            report->math == BP_MATH_FAST ? "fast" : "strict");
     printf("%-12s %11s %9s %9s %9s %10s %11s %9s %9s %9s %8s\n", "scene", "spheres", "load", "tree", "kernel",
            "Msamples/s", "Msegments/s", "ns/segm.", "CPU ns", "spread", "B/sphere");
-    for (size_t i = 0; i < bench->count; ++i) print_row(&bench->entries[i]);
+    for (size_t i = 0; i < bench->count; ++i) print_row(bench, &bench->entries[i]);
     printf("medians of %u rounds; spread: between the quartiles; CPU ns: processor time a segment, all "
            "threads\n",
-           ROUNDS);
+           bench->rounds);
     if (fflush(stdout) != 0 || ferror(stdout))
         return bp_fail(err, BP_ERR_FILE, "cannot write to standard output: %s", strerror(errno));
     return BP_OK;
@@ -123,19 +126,19 @@ static BpStatus print_table(const Bench *bench, BpError *err) {
 
 /* ---- JSON ---- */
 
-static json_t *figure_json(const Entry *entry, RunValue *value) {
-    const BpBenchFigure f = figure(entry, value);
+static json_t *figure_json(const Bench *bench, const Entry *entry, RunValue *value) {
+    const BpBenchFigure f = figure(bench, entry, value);
     json_t *values = json_array();
-    for (size_t r = 0; r < ROUNDS && values != NULL; ++r)
+    for (size_t r = 0; r < bench->rounds && values != NULL; ++r)
         json_array_append_new(values, json_real(value(&entry->runs[r])));
     return json_pack("{s:f, s:f, s:f, s:o}", "median", f.median, "low", f.low, "high", f.high, "rounds",
                      values);
 }
 
-static json_t *entry_json(const Entry *entry) {
+static json_t *entry_json(const Bench *bench, const Entry *entry) {
     const BpBenchRun *run = &entry->runs[0];
     uint64_t samples = 0, segments = 0;
-    for (size_t r = 0; r < ROUNDS; ++r) {
+    for (size_t r = 0; r < bench->rounds; ++r) {
         samples += entry->runs[r].samples;
         segments += entry->runs[r].segments;
     }
@@ -145,12 +148,14 @@ static json_t *entry_json(const Entry *entry) {
         "s:I}",
         "name", entry->name, "path", entry->path, "spheres", (json_int_t)run->spheres, "width",
         (json_int_t)run->width, "height", (json_int_t)run->height, "max_depth", (json_int_t)run->max_depth,
-        "load_seconds", figure_json(entry, load_seconds), "tree_seconds", figure_json(entry, tree_seconds),
-        "kernel_build_seconds", figure_json(entry, kernel_seconds), "samples_per_second",
-        figure_json(entry, samples_rate), "segments_per_second", figure_json(entry, segments_rate),
-        "nanoseconds_per_segment", figure_json(entry, segment_nanoseconds), "cpu_nanoseconds_per_segment",
-        figure_json(entry, segment_cpu_nanoseconds), "device_nanoseconds_per_segment",
-        figure_json(entry, segment_device_nanoseconds), "segments_per_sample",
+        "load_seconds", figure_json(bench, entry, load_seconds), "tree_seconds",
+        figure_json(bench, entry, tree_seconds), "kernel_build_seconds",
+        figure_json(bench, entry, kernel_seconds), "samples_per_second",
+        figure_json(bench, entry, samples_rate), "segments_per_second",
+        figure_json(bench, entry, segments_rate), "nanoseconds_per_segment",
+        figure_json(bench, entry, segment_nanoseconds), "cpu_nanoseconds_per_segment",
+        figure_json(bench, entry, segment_cpu_nanoseconds), "device_nanoseconds_per_segment",
+        figure_json(bench, entry, segment_device_nanoseconds), "segments_per_sample",
         (double)segments / (double)samples, "scene_bytes", (json_int_t)run->report.scene_bytes,
         "bytes_per_sphere", bytes_per_sphere(entry), "mean_radiance", run->mean[0], run->mean[1],
         run->mean[2], "nrmse", nrmse, "invalid_samples", (json_int_t)run->report.invalid_samples);
@@ -160,7 +165,7 @@ static BpStatus write_json(const Bench *bench, const char *path, BpError *err) {
     const BpRenderReport *report = &bench->entries[0].runs[0].report;
     json_t *scenes = json_array();
     for (size_t i = 0; i < bench->count; ++i) {
-        if (json_array_append_new(scenes, entry_json(&bench->entries[i])) == 0) continue;
+        if (json_array_append_new(scenes, entry_json(bench, &bench->entries[i])) == 0) continue;
         json_decref(scenes);
         return bp_json_write(NULL, path, err);
     }
@@ -172,7 +177,7 @@ static BpStatus write_json(const Bench *bench, const char *path, BpError *err) {
                                    report->numerics == BP_NUMERICS_PLAIN ? "plain" : "robust", "math",
                                    report->math == BP_MATH_FAST ? "fast" : "strict", "sampler",
                                    report->sampler == BP_SAMPLER_SOBOL ? "sobol" : "independent", "rounds",
-                                   (int)ROUNDS, "scenes", scenes),
+                                   (int)bench->rounds, "scenes", scenes),
                          path, err);
 }
 
@@ -200,8 +205,11 @@ static BpStatus prepare(const BpCommandLine *line, Bench *bench, BpError *err) {
     bench->count = line->operand_count > 0 ? line->operand_count : fixed_count;
     bench->entries = calloc(bench->count, sizeof *bench->entries);
     if (bench->entries == NULL) return bp_fail(err, BP_ERR_MEMORY, "out of memory for the list of scenes");
+    bench->rounds = line->rounds != 0 ? line->rounds : ROUNDS_DEFAULT;
     for (size_t i = 0; i < bench->count; ++i) {
         Entry *entry = &bench->entries[i];
+        entry->runs = calloc(bench->rounds, sizeof *entry->runs);
+        if (entry->runs == NULL) return bp_fail(err, BP_ERR_MEMORY, "out of memory for the rounds");
         entry->name = line->operand_count > 0 ? line->operands[i] : bp_bench_scene_names[i];
         entry->fixed = bp_bench_scene_known(entry->name);
         if (!entry->fixed) {
@@ -219,12 +227,12 @@ static BpStatus run_rounds(const BpCommandLine *line, Bench *bench, BpError *err
     BpDeviceInfo *devices = NULL;
     size_t device_count = 0;
     BpStatus status = bp_setup_devices(line, &devices, &device_count, err);
-    for (size_t r = 0; r < ROUNDS && status == BP_OK; ++r) {
+    for (size_t r = 0; r < bench->rounds && status == BP_OK; ++r) {
         for (size_t i = 0; i < bench->count && status == BP_OK; ++i) {
             Entry *entry = &bench->entries[i];
-            if (!line->quiet) fprintf(stderr, "round %zu of %u: %s\n", r + 1, ROUNDS, entry->name);
-            status = bp_bench_run(line, entry->path, devices, device_count, seconds / ROUNDS, &entry->runs[r],
-                                  err);
+            if (!line->quiet) fprintf(stderr, "round %zu of %u: %s\n", r + 1, bench->rounds, entry->name);
+            status = bp_bench_run(line, entry->path, devices, device_count, seconds / bench->rounds,
+                                  &entry->runs[r], err);
         }
     }
     free(devices);
@@ -232,8 +240,11 @@ static BpStatus run_rounds(const BpCommandLine *line, Bench *bench, BpError *err
 }
 
 static void clear(Bench *bench) {
-    for (size_t i = 0; i < bench->count && bench->temporary && bench->entries != NULL; ++i)
-        if (bench->entries[i].fixed) bp_bench_scene_remove(bench->entries[i].name, bench->folder);
+    for (size_t i = 0; i < bench->count && bench->entries != NULL; ++i) {
+        Entry *entry = &bench->entries[i];
+        if (bench->temporary && entry->fixed) bp_bench_scene_remove(entry->name, bench->folder);
+        free(entry->runs);
+    }
     if (bench->temporary) rmdir(bench->folder);
     free(bench->entries);
 }

@@ -72,13 +72,14 @@ const BpCommand bp_commands[] = {
             "nanoseconds a segment, bytes a sphere. A SCENE is a file, or one of the fixed scenes: "
             "cover, diffuse (the same spheres, all matte), glass (all glass), field-1e4, field-1e6 "
             "or any other number (random spheres in a cube); without any, these five. Scenes take "
-            "turns for five rounds; the table shows medians. --time is what each scene is traced for, "
+            "turns, round after round; the table shows medians. --time is what each scene is traced for, "
             "all rounds together. With -o, the fixed scenes are written into that folder and nothing "
             "is measured.",
         .examples = "  ballpark bench\n"
                     "  ballpark bench cover field-1e7 --kernel sample --json figures.json\n"
                     "  ballpark bench -o scenes        write the fixed scenes, for other programs\n",
-        .options = TAKES_DRAWING | TAKES(SAMPLER) | TAKES(TIME) | TAKES(JSON) | TAKES(OUTPUT) | TAKES(QUIET),
+        .options = TAKES_DRAWING | TAKES(SAMPLER) | TAKES(TIME) | TAKES(ROUNDS) | TAKES(JSON) |
+                   TAKES(OUTPUT) | TAKES(QUIET),
         .run = bp_command_bench,
     },
     {

@@ -46,6 +46,7 @@ static const OptionRow rows[BP_OPTION_NUMBER] = {
     [BP_OPTION_GRID] = {"grid", "G", "half the side of the square of small spheres (11)", 0},
     [BP_OPTION_COUNT] = {"count", "N", "number of spheres of a field (1000000)", 0},
     [BP_OPTION_EDITION] = {"edition", "1|3|3rust|4", "edition of the book whose cover it is (4)", 0},
+    [BP_OPTION_ROUNDS] = {"rounds", "N", "how often each scene is measured (5)", 0},
     [BP_OPTION_QUIET] = {"quiet", "", "say nothing but errors", 'q'},
     [BP_OPTION_HELP] = {"help", "", "this text", 'h'},
     [BP_OPTION_VERSION] = {"version", "", "version and commit", 'V'},

@@ -119,6 +119,10 @@ static BpStatus store_value(BpOption option, const char *name, const char *text,
         break;
     case BP_OPTION_COUNT:
         return bp_value_whole(name, text, 1, BP_SPHERES_MAX, &line->count, err);
+    case BP_OPTION_ROUNDS:
+        BP_TRY(bp_value_whole(name, text, 1, 1000, &whole, err));
+        line->rounds = (uint32_t)whole;
+        break;
     case BP_OPTION_EDITION: {
         static const char *const words[] = {"1", "3", "3rust", "4"};
         BP_TRY(bp_value_choice(name, text, words, COUNT_OF(words), &choice, err));

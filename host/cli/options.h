@@ -38,6 +38,7 @@ typedef enum BpOption {
     BP_OPTION_GRID,
     BP_OPTION_COUNT,
     BP_OPTION_EDITION,
+    BP_OPTION_ROUNDS,
     BP_OPTION_QUIET,
     BP_OPTION_HELP,
     BP_OPTION_VERSION,
@@ -80,6 +81,7 @@ typedef struct BpCommandLine {
     const char *map;           /* picture file */
     unsigned grid;
     uint64_t count;
+    uint32_t rounds; /* of bench, 1 .. 1000 */
     const char *edition; /* "1", "3", "3rust" or "4" */
     bool force, quiet, help, version;
 } BpCommandLine;
