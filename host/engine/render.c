@@ -42,6 +42,12 @@ static BpStatus check_options(const BpScene *scene, const BpRenderOptions *optio
     if (options->replicates == 1 || options->replicates > BP_REPLICATES_MAX)
         return bp_fail(err, BP_ERR_USAGE, "%u replicates: an error bar needs 2 to %u", options->replicates,
                        BP_REPLICATES_MAX);
+    const uint32_t replicates = options->replicates != 0 ? options->replicates : BP_REPLICATES_DEFAULT;
+    if (options->samples_per_pixel > (uint64_t)BP_REPLICATE_SAMPLES_MAX * replicates)
+        return bp_fail(err, BP_ERR_LIMIT,
+                       "%llu samples a pixel: sums of %u replicates hold %llu; render parts and merge",
+                       (unsigned long long)options->samples_per_pixel, replicates,
+                       (unsigned long long)BP_REPLICATE_SAMPLES_MAX * replicates);
     const uint64_t pixels = (uint64_t)scene->camera.width * scene->camera.height;
     if (pixels > UINT32_MAX / 4)
         return bp_fail(err, BP_ERR_LIMIT, "a picture of %u x %u has %llu pixels; at most %u",
@@ -226,13 +232,9 @@ static BpStatus describe(const BpRender *render, BpAccumulator *accumulator, BpE
     accumulator->numerics = options->numerics;
     accumulator->transfer = render->scene->transfer;
     if (render->scene->title != NULL) accumulator->title = strdup(render->scene->title);
-    accumulator->ranges = malloc(sizeof *accumulator->ranges);
-    if (accumulator->ranges == NULL) return bp_fail(err, BP_ERR_MEMORY, "no memory for an accumulator");
     /* A pass in progress counts as begun: its samples are taken, though not yet by every pixel. */
     const uint64_t begun = render->schedule.done + render->schedule.pass_samples;
-    accumulator->ranges[0].first = options->first_sample;
-    accumulator->ranges[0].count = begun;
-    accumulator->range_count = 1;
+    if (begun > 0) BP_TRY(bp_accumulator_add_range(accumulator, options->first_sample, begun, err));
     accumulator->partial = render->schedule.pass_samples > 0;
     return BP_OK;
 }

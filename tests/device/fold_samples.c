@@ -1,0 +1,174 @@
+/* fold_samples.c: the fold kernel, fed with samples made by the test: invalid ones are found, left out and
+ * counted; sums are exact whatever their order; a million equal samples keep their mean, where a float sum
+ * does not. */
+#include "engine/device.h"
+#include "engine/effects.h"
+#include "engine/program.h"
+
+#include <math.h>
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include <cmocka.h>
+
+#define REPLICATES 4u
+#define SCALE 37
+
+static BpError err;
+
+typedef struct Folder {
+    BpDevice *device;
+    BpProgram *program;
+    cl_kernel kernel;
+} Folder;
+
+static int open_folder(void **state) {
+    static Folder folder;
+    BpDeviceInfo info;
+    BpProgramOptions options = {.form = BP_KERNEL_SAMPLE, .tree_width = 8, .effects = 0};
+    cl_int code = CL_SUCCESS;
+    if (bp_device_find(NULL, &info, &err) != BP_OK || bp_device_open(&info, &folder.device, &err) != BP_OK ||
+        bp_program_build(folder.device, &options, NULL, NULL, &folder.program, &err) != BP_OK) {
+        fprintf(stderr, "%s\n", err.message);
+        return -1;
+    }
+    folder.kernel = clCreateKernel(folder.program->program, "fold", &code);
+    *state = &folder;
+    return code == CL_SUCCESS ? 0 : -1;
+}
+
+static int close_folder(void **state) {
+    Folder *folder = *state;
+    clReleaseKernel(folder->kernel);
+    bp_program_destroy(&folder->program);
+    bp_device_close(&folder->device);
+    return 0;
+}
+
+/* Folds `count` samples of one pixel, starting at absolute number `first`, into sums and tallies, which keep
+ * what they held. */
+static void fold(const Folder *folder, const float *samples, cl_uint count, cl_uint first,
+                 cl_long sums[REPLICATES * 3], cl_uint counts[REPLICATES], cl_ulong tallies[3]) {
+    cl_context context = folder->device->context;
+    const cl_mem_flags flags = CL_MEM_READ_WRITE | CL_MEM_COPY_HOST_PTR;
+    const size_t sizes[4] = {(size_t)count * 4 * sizeof(float), REPLICATES * 3 * sizeof(cl_long),
+                             REPLICATES * sizeof(cl_uint), 3 * sizeof(cl_ulong)};
+    void *const data[4] = {(void *)(uintptr_t)samples, sums, counts, tallies};
+    cl_mem buffers[4];
+    for (int i = 0; i < 4; ++i) {
+        cl_int code = CL_SUCCESS;
+        buffers[i] = clCreateBuffer(context, flags, sizes[i], data[i], &code);
+        assert_int_equal(code, CL_SUCCESS);
+    }
+    const cl_uint zero = 0, one = 1, replicates = REPLICATES;
+    const cl_int scale = SCALE;
+    const struct {
+        size_t size;
+        const void *value;
+    } arguments[] = {{sizeof(cl_mem), &buffers[0]}, {sizeof one, &one},
+                     {sizeof count, &count},        {sizeof zero, &zero},
+                     {sizeof first, &first},        {sizeof replicates, &replicates},
+                     {sizeof scale, &scale},        {sizeof(cl_mem), &buffers[1]},
+                     {sizeof(cl_mem), &buffers[2]}, {sizeof(cl_mem), &buffers[3]}};
+    for (cl_uint i = 0; i < sizeof arguments / sizeof arguments[0]; ++i)
+        assert_int_equal(clSetKernelArg(folder->kernel, i, arguments[i].size, arguments[i].value),
+                         CL_SUCCESS);
+    const size_t items = 64;
+    cl_command_queue queue = folder->device->queue;
+    assert_int_equal(clEnqueueNDRangeKernel(queue, folder->kernel, 1, NULL, &items, &items, 0, NULL, NULL),
+                     CL_SUCCESS);
+    for (int i = 1; i < 4; ++i)
+        assert_int_equal(clEnqueueReadBuffer(queue, buffers[i], CL_TRUE, 0, sizes[i], data[i], 0, NULL, NULL),
+                         CL_SUCCESS);
+    for (int i = 0; i < 4; ++i) clReleaseMemObject(buffers[i]);
+}
+
+static void invalid_samples_are_left_out(void **state) {
+    const float tiny = -1e-30f;
+    float samples[12][4];
+    for (int i = 0; i < 12; ++i) {
+        for (int c = 0; c < 3; ++c) samples[i][c] = 0.25f;
+        samples[i][3] = 3;
+    }
+    samples[1][0] = NAN;
+    samples[2][1] = INFINITY;
+    samples[3][2] = -INFINITY;
+    samples[4][0] = tiny;  /* any negative number */
+    samples[5][1] = 1e9f;  /* beyond what a path can bring at this scale */
+    samples[6][2] = -0.0f; /* a zero: valid */
+    samples[7][3] = 50.5f; /* cut by the depth cap: valid */
+    cl_long sums[REPLICATES * 3] = {0};
+    cl_uint counts[REPLICATES] = {0};
+    cl_ulong tallies[3] = {0};
+    fold(*state, &samples[0][0], 12, 0, sums, counts, tallies);
+    assert_int_equal(tallies[0], 11 * 3 + 50);
+    assert_int_equal(tallies[1], 1);
+    assert_int_equal(tallies[2], 5);
+    /* replicate k: samples k, k + 4, k + 8 without 1, 2, 3, 4, 5 */
+    const cl_uint expected[REPLICATES] = {2, 1, 2, 2};
+    const cl_long quarter = (cl_long)1 << (SCALE - 2);
+    for (cl_uint k = 0; k < REPLICATES; ++k) {
+        assert_int_equal(counts[k], expected[k]);
+        for (int c = 0; c < 3; ++c) {
+            const cl_long missing = k == 2 && c == 2 ? 1 : 0; /* sample 6 */
+            assert_int_equal(sums[k * 3 + c], quarter * ((cl_long)expected[k] - missing));
+        }
+    }
+}
+
+static void replicate_is_sample_modulo(void **state) {
+    float samples[3][4] = {{0.5f, 0, 0, 1}, {0, 0.5f, 0, 1}, {0, 0, 0.5f, 1}};
+    cl_long sums[REPLICATES * 3] = {0};
+    cl_uint counts[REPLICATES] = {0};
+    cl_ulong tallies[3] = {0};
+    fold(*state, &samples[0][0], 3, 6, sums, counts, tallies); /* numbers 6, 7, 8 */
+    const cl_uint expected[REPLICATES] = {1, 0, 1, 1};
+    for (cl_uint k = 0; k < REPLICATES; ++k) assert_int_equal(counts[k], expected[k]);
+    const cl_long one_half = (cl_long)1 << (SCALE - 1);
+    assert_int_equal(sums[2 * 3 + 0], one_half);
+    assert_int_equal(sums[3 * 3 + 1], one_half);
+    assert_int_equal(sums[0 * 3 + 2], one_half);
+}
+
+static void a_million_equal_samples_keep_their_mean(void **state) {
+    const cl_uint count = 1000000;
+    float *samples = malloc((size_t)count * 4 * sizeof *samples);
+    assert_non_null(samples);
+    for (cl_uint i = 0; i < count * 4; ++i) samples[i] = i % 4 == 3u ? 1.0f : 0.1f;
+    cl_long sums[REPLICATES * 3] = {0};
+    cl_uint counts[REPLICATES] = {0};
+    cl_ulong tallies[3] = {0};
+    fold(*state, samples, count, 0, sums, counts, tallies);
+    double total = 0;
+    for (cl_uint k = 0; k < REPLICATES; ++k) total += (double)sums[k * 3];
+    const double mean = ldexp(total, -SCALE) / count;
+    assert_true(fabs(mean / 0.1 - 1) <= 1e-6);
+    /* the control: a float sum drifts */
+    volatile float naive = 0;
+    for (cl_uint i = 0; i < count; ++i) naive += 0.1f;
+    assert_true(fabs((double)naive / count / 0.1 - 1) > 1e-3);
+    /* and the order does not matter: in two parts, the later one first */
+    const cl_uint part = 333333;
+    cl_long parts[REPLICATES * 3] = {0};
+    cl_uint part_counts[REPLICATES] = {0};
+    cl_ulong part_tallies[3] = {0};
+    fold(*state, samples + (size_t)part * 4, count - part, part, parts, part_counts, part_tallies);
+    fold(*state, samples, part, 0, parts, part_counts, part_tallies);
+    assert_memory_equal(sums, parts, sizeof sums);
+    assert_memory_equal(counts, part_counts, sizeof counts);
+    free(samples);
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(invalid_samples_are_left_out),
+        cmocka_unit_test(replicate_is_sample_modulo),
+        cmocka_unit_test(a_million_equal_samples_keep_their_mean),
+    };
+    return cmocka_run_group_tests(tests, open_folder, close_folder);
+}
