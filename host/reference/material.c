@@ -57,6 +57,11 @@ double bp_ref_fresnel(double cosine, double ratio) {
  * the book's fabs under the root. */
 static bool scatter_dielectric(const BpMaterial *glass, Vec direction, const Hit *hit, Random *random,
                                Vec *scattered) {
+    if (glass->refraction_index ==
+        1) { /* equal indices: there is no surface, whatever the Fresnel form says */
+        *scattered = direction;
+        return true;
+    }
     const double ratio = hit->front_face ? 1 / glass->refraction_index : glass->refraction_index;
     const double cosine = fmin(-dot(direction, hit->normal), 1);
     const double sine2_beyond = ratio * ratio * (1 - cosine) * (1 + cosine);

@@ -1,0 +1,58 @@
+/* check.h: one scene by the kernel and by the reference tracer, with equal samples, and the verdict on them.
+ *
+ * In:    Scene, options, a device.   Out: both sums, the verdict.
+ * Knows: the render loop, the reference.   Does not know: OpenCL, the command line, files.
+ *
+ * The result depends on scene, samples, seed and device, not on chunks, threads or the machine's load. */
+#ifndef BP_CHECK_CHECK_H
+#define BP_CHECK_CHECK_H
+
+#include "../engine/render.h"
+#include "verdict.h"
+
+#define BP_CHECK_WIDTH_DEFAULT 64u
+#define BP_CHECK_SAMPLES_DEFAULT 1024u
+
+typedef struct BpCheckOptions {
+    BpRenderOptions render; /* samples, depth, seed, kernel; the sampler must be the independent one */
+    double level;           /* probability of rejecting a right kernel */
+    unsigned threads;       /* of the reference; 0: one a processor */
+} BpCheckOptions;
+
+typedef struct BpCheck BpCheck;
+
+typedef struct BpCheckProgress {
+    bool reference; /* the kernel is done, the reference at work */
+    double done;    /* of the present part, 0 .. 1 */
+    double seconds; /* spent on the present part */
+    bool finished;
+} BpCheckProgress;
+
+typedef struct BpCheckResult {
+    BpVerdict verdict;
+    BpSums kernel, reference; /* owned by the check */
+    uint64_t cut_kernel, cut_reference;
+    double kernel_seconds, reference_seconds;
+    BpRenderReport report;
+} BpCheckResult;
+
+/* The scene must outlive the check. `device`: Optional, the default one. Opens the device and builds the
+ * kernel. BP_ERR_USAGE: fewer than 2 samples, or another sampler. */
+BpStatus bp_check_create(const BpScene *scene, const BpCheckOptions *options, const BpDeviceInfo *device,
+                         BpCheck **check, BpError *err);
+/* Works for about 0.3 s (on a huge scene: one sample of every pixel). `progress`: Optional. */
+BpStatus bp_check_step(BpCheck *check, BpCheckProgress *progress, BpError *err);
+/* After the last step; valid while the check lives. BP_ERR_USAGE before. */
+BpStatus bp_check_result(const BpCheck *check, const BpCheckResult **result, BpError *err);
+void bp_check_destroy(BpCheck **check);
+
+/* The kernel's half alone, for tests: runs `render` to its end and adds every sample to `sums` (of the
+ * scene's size). `cut_paths`: Optional, added to. */
+BpStatus bp_check_render_kernel(BpRender *render, BpSums *sums, uint64_t *cut_paths, BpError *err);
+
+/* Three pictures side by side, scaled up to a visible size: kernel, reference, and the z of each pixel, blue
+ * where the kernel is darker, red where it is brighter, white at 0, full colour from 4 on. Encoded so that
+ * `transfer` shows them as meant. The caller clears the picture. */
+BpStatus bp_check_map(const BpCheckResult *result, BpTransfer transfer, BpPicture *picture, BpError *err);
+
+#endif

@@ -1,0 +1,72 @@
+/* apart.c: see apart.h. */
+#include "apart.h"
+
+#include <errno.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+/* Exit codes of the child: it did its work; it failed and wrote why. */
+enum { CHILD_DONE = 0, CHILD_FAILED = 1 };
+
+static _Noreturn void be_child(bool (*work)(void *argument, FILE *out), void *argument, int descriptor) {
+    FILE *out = fdopen(descriptor, "w");
+    if (out == NULL) _exit(CHILD_FAILED);
+    const bool good = work(argument, out);
+    const bool written = fclose(out) == 0;
+    /* Without the parent's atexit handlers and buffers. */
+    _exit(good && written ? CHILD_DONE : CHILD_FAILED);
+}
+
+static BpStatus read_all(int descriptor, char **bytes, size_t *size, BpError *err) {
+    size_t room = 4096, used = 0;
+    char *text = malloc(room);
+    while (text != NULL) {
+        const ssize_t got = read(descriptor, text + used, room - used - 1);
+        if (got < 0 && errno == EINTR) continue;
+        if (got <= 0) break;
+        used += (size_t)got;
+        if (room - used > 1) continue;
+        char *larger = realloc(text, room *= 2);
+        if (larger == NULL) free(text);
+        text = larger;
+    }
+    if (text == NULL) return bp_fail(err, BP_ERR_MEMORY, "out of memory for the answer of a process");
+    text[used] = '\0';
+    *bytes = text;
+    *size = used;
+    return BP_OK;
+}
+
+BpStatus bp_run_apart(bool (*work)(void *argument, FILE *out), void *argument, char **bytes, size_t *size,
+                      char failure[256], BpError *err) {
+    int ends[2];
+    *bytes = NULL;
+    *size = 0;
+    failure[0] = '\0';
+    if (pipe(ends) != 0) return bp_fail(err, BP_ERR_FILE, "cannot open a pipe: %s", strerror(errno));
+    fflush(NULL); /* or the child would write it again */
+    const pid_t child = fork();
+    if (child == 0) {
+        close(ends[0]);
+        be_child(work, argument, ends[1]);
+    }
+    close(ends[1]);
+    if (child < 0) {
+        close(ends[0]);
+        return bp_fail(err, BP_ERR_MEMORY, "cannot start a process: %s", strerror(errno));
+    }
+    const BpStatus status = read_all(ends[0], bytes, size, err);
+    close(ends[0]);
+    int ended = 0;
+    while (waitpid(child, &ended, 0) < 0 && errno == EINTR) {
+    }
+    if (WIFSIGNALED(ended))
+        snprintf(failure, 256, "crashed: %s", strsignal(WTERMSIG(ended)));
+    else if (WEXITSTATUS(ended) > CHILD_FAILED)
+        snprintf(failure, 256, "its driver ended the process with exit code %d", WEXITSTATUS(ended));
+    else if (WEXITSTATUS(ended) == CHILD_FAILED)
+        snprintf(failure, 256, "%s", status == BP_OK && *size > 0 ? *bytes : "failed without a word");
+    return status;
+}
