@@ -64,7 +64,7 @@ static void reference(void **state) {
         assert_int_equal(bp_reference_render(scene, &options, &sums, NULL, NULL), BP_OK);
         if (is_noisy(&sums)) {
             options.first_sample = options.samples;
-            options.samples = 1000000 / pixels - options.samples;
+            options.samples = 250000 / pixels - options.samples;
             assert_int_equal(bp_reference_render(scene, &options, &sums, NULL, NULL), BP_OK);
         }
         for (size_t p = 0; p < pixels; ++p)
