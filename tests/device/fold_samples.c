@@ -114,7 +114,7 @@ static void invalid_samples_are_left_out(void **state) {
     const cl_long quarter = (cl_long)1 << (SCALE - 2);
     for (cl_uint k = 0; k < REPLICATES; ++k) {
         assert_int_equal(counts[k], expected[k]);
-        for (int c = 0; c < 3; ++c) {
+        for (cl_uint c = 0; c < 3; ++c) {
             const cl_long missing = k == 2 && c == 2 ? 1 : 0; /* sample 6 */
             assert_int_equal(sums[k * 3 + c], quarter * ((cl_long)expected[k] - missing));
         }
