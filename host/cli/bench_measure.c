@@ -9,7 +9,7 @@
 #include <stdlib.h>
 #include <sys/resource.h>
 
-#define WARM_UP_SECONDS 0.3
+#define WARM_UP_SECONDS 0.2
 
 static double cpu_seconds(void) {
     struct rusage usage;
@@ -18,10 +18,8 @@ static double cpu_seconds(void) {
            1e-6 * (double)(usage.ru_utime.tv_usec + usage.ru_stime.tv_usec);
 }
 
-/* Traces until every pixel has `samples`, and reads what came of it: all work is done, all counts are whole.
- */
-static BpStatus trace_to(BpRender *render, uint64_t samples, const BpAccumulator **accumulator,
-                         BpError *err) {
+/* Traces until every pixel has `samples`; all work is done when it returns. */
+static BpStatus trace_to(BpRender *render, uint64_t samples, BpError *err) {
     BpProgress progress = {0};
     BP_TRY(bp_render_extend(render, samples, err));
     do {
@@ -29,31 +27,47 @@ static BpStatus trace_to(BpRender *render, uint64_t samples, const BpAccumulator
         if (bp_interrupted())
             return bp_fail(err, BP_ERR_INTERRUPTED, "interrupted; figures of a part of a run mean nothing");
     } while (!progress.finished);
-    return bp_render_accumulator(render, accumulator, err);
+    return BP_OK;
+}
+
+/* The counts of a render are whole once its accumulator was read. */
+static BpStatus read_report(BpRender *render, BpRenderReport *report, const BpAccumulator **accumulator,
+                            BpError *err) {
+    BP_TRY(bp_render_accumulator(render, accumulator, err));
+    bp_render_report(render, report);
+    return BP_OK;
+}
+
+/* Seconds that tracing would take of a machine with nothing else to do: for a CPU, the processor time spread
+ * over its cores, so that other work on the machine does not make the stretch short. */
+static double own_seconds(const BpRenderReport *report, double wall, double cpu) {
+    const double spread = cpu / fmax(1.0, report->device.compute_units);
+    return report->device.type == BP_DEVICE_CPU ? fmin(wall, spread) : wall;
 }
 
 /* Whole passes only: the rows of a picture cost differently. */
 static BpStatus trace(BpRender *render, double seconds, BpBenchRun *run, BpError *err) {
     const BpAccumulator *accumulator = NULL;
-    uint64_t samples = 0;
-    const double warm_up = bp_clock_seconds();
-    double start, last;
-    do {
-        last = bp_clock_seconds();
-        samples = 2 * samples + 1;
-        BP_TRY(trace_to(render, samples, &accumulator, err));
-        start = bp_clock_seconds();
-    } while (start - warm_up < WARM_UP_SECONDS);
-    /* The last pass of the warm-up took about half of all samples. */
-    const double more = seconds / (start - last) * (double)(samples / 2 + 1);
     BpRenderReport before;
     bp_render_report(render, &before);
+    uint64_t samples = 0;
+    double taken, whole = 0;
+    do {
+        const double start = bp_clock_seconds(), cpu_start = cpu_seconds();
+        samples = 2 * samples + 1;
+        BP_TRY(trace_to(render, samples, err));
+        taken = own_seconds(&before, bp_clock_seconds() - start, cpu_seconds() - cpu_start);
+        whole += taken;
+    } while (whole < WARM_UP_SECONDS);
+    BP_TRY(read_report(render, &before, &accumulator, err));
 
-    const double cpu = cpu_seconds();
-    BP_TRY(trace_to(render, samples + (more > 1 ? (uint64_t)more : 1), &accumulator, err));
+    /* The last pass of the warm-up was samples / 2 + 1. */
+    const double more = seconds / taken * (double)(samples / 2 + 1);
+    const double start = bp_clock_seconds(), cpu_start = cpu_seconds();
+    BP_TRY(trace_to(render, samples + (more > 1 ? (uint64_t)more : 1), err));
     run->seconds = bp_clock_seconds() - start;
-    run->cpu_seconds = cpu_seconds() - cpu;
-    bp_render_report(render, &run->report);
+    run->cpu_seconds = cpu_seconds() - cpu_start;
+    BP_TRY(read_report(render, &run->report, &accumulator, err));
     run->samples = run->report.samples - before.samples;
     run->segments = run->report.segments - before.segments;
     run->device_seconds = run->report.device_seconds - before.device_seconds;
