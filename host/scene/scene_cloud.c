@@ -13,10 +13,11 @@
 static char *resolve(const char *document, const char *file) {
     const char *const slash = strrchr(document, '/');
     const size_t folder = file[0] == '/' || slash == NULL ? 0 : (size_t)(slash - document) + 1;
-    char *path = malloc(folder + strlen(file) + 1);
+    const size_t file_size = strlen(file) + 1;
+    char *path = malloc(folder + file_size);
     if (path == NULL) return NULL;
     memcpy(path, document, folder);
-    strcpy(path + folder, file);
+    memcpy(path + folder, file, file_size);
     return path;
 }
 

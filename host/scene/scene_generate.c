@@ -24,12 +24,12 @@ enum { GRID_MAX = 5000, GLASS = 1, BIG_MATTE = 2, BIG_METAL = 3, NAMED_MATERIALS
 
 typedef struct Edition {
     const char *name, *title, *source;
-    bool extra_row, keeps_all; /* cells up to +grid; no room kept round the big metal sphere */
     double metal_low;
     BpScatter scatter;
     BpFuzzShape fuzz_shape;
     uint32_t height, samples_per_pixel, max_depth;
     double aperture, defocus_degrees; /* one of the two */
+    bool extra_row, keeps_all;        /* cells up to +grid; no room kept round the big metal sphere */
 } Edition;
 
 static const Edition editions[] = {

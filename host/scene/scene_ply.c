@@ -92,7 +92,7 @@ static BpStatus store(Reader *r, uint64_t number, const double value[PLY_ROLE_CO
 
 static double decode(const unsigned char *bytes, PlyType type, bool swap) {
     const size_t size = ply_type_size(type);
-    unsigned char raw[8];
+    unsigned char raw[8] = {0};
     if (swap) {
         for (size_t i = 0; i < size; i++) raw[i] = bytes[size - 1 - i];
         bytes = raw;

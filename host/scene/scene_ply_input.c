@@ -61,7 +61,7 @@ BpStatus ply_input_line(PlyInput *input, char **line, BpError *err) {
     input->line++;
     size_t seen = 0;
     unsigned char *end = NULL;
-    while (end == NULL) {
+    for (;;) {
         const size_t here = input->end - input->begin;
         if (here > seen) end = memchr(input->buffer + input->begin + seen, '\n', here - seen);
         seen = here;
@@ -73,6 +73,7 @@ BpStatus ply_input_line(PlyInput *input, char **line, BpError *err) {
             if (here == 0)
                 return ply_fail(input, true, err, "found the end of the file, expected more lines");
             end = input->buffer + input->end; /* a last line without its end */
+            break;
         }
     }
     unsigned char *const start = input->buffer + input->begin;

@@ -62,12 +62,17 @@ void bp_printable(const char *text, char *out, size_t size) {
             count--; /* whole characters only */
     }
     for (size_t i = 0; i < count; i++) out[i] = (unsigned char)text[i] < 32 || text[i] == 127 ? '?' : text[i];
-    strcpy(out + count, count < length ? "..." : "");
+    if (count < length)
+        memcpy(out + count, "...", sizeof "...");
+    else
+        out[count] = '\0';
 }
 
 const char *bp_number_text(double value, char text[BP_NUMBER_TEXT_SIZE]) {
-    if (value == 0 && signbit(value))
-        return strcpy(text, "-0.0"); /* as "-0" it would read back as a whole number */
+    if (value == 0 && signbit(value)) { /* as "-0" it would read back as a whole number, without its sign */
+        memcpy(text, "-0.0", sizeof "-0.0");
+        return text;
+    }
     for (int digits = 15; digits <= 17; digits++) {
         snprintf(text, BP_NUMBER_TEXT_SIZE, "%.*g", digits, value);
         if (strtod(text, NULL) == value) break;

@@ -41,8 +41,8 @@ static BpStatus put_text(FILE *out, const char *text, BpError *err) {
     return BP_OK;
 }
 
-static bool same_vector(const double a[3], const double b[3]) {
-    return memcmp(a, b, 3 * sizeof *a) == 0;
+static bool is_dark(const double emit[3]) {
+    return emit[0] == 0 && emit[1] == 0 && emit[2] == 0;
 }
 
 /* ---- the camera -----------------------------------------------------------------------------------------
@@ -108,7 +108,6 @@ static void put_camera(FILE *out, const BpCamera *camera) {
  */
 
 static BpStatus put_material(FILE *out, const BpMaterial *material, BpError *err) {
-    static const double dark[3] = {0, 0, 0};
     static const char *const scatters[] = {"lambertian", "cosine_cubed", "hemisphere"};
     static const char *const fresnels[] = {"schlick", "exact", "none"};
     static const char *const totals[] = {"reflect", "absorb", "refract"};
@@ -134,7 +133,7 @@ static BpStatus put_material(FILE *out, const BpMaterial *material, BpError *err
         if (material->total_reflection != BP_TOTAL_REFLECT)
             fprintf(out, ", \"total_reflection\": \"%s\"", totals[material->total_reflection]);
     }
-    if (material->kind == BP_MATERIAL_DIFFUSE_LIGHT || !same_vector(material->emit, dark)) {
+    if (material->kind == BP_MATERIAL_DIFFUSE_LIGHT || !is_dark(material->emit)) {
         fputs(", \"emit\": ", out);
         put_vector(out, material->emit);
     }
