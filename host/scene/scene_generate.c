@@ -28,8 +28,8 @@ typedef struct Edition {
     BpScatter scatter;
     BpFuzzShape fuzz_shape;
     uint32_t height, samples_per_pixel, max_depth;
-    double aperture, defocus_degrees; /* one of the two */
     bool extra_row, keeps_all;        /* cells up to +grid; no room kept round the big metal sphere */
+    double aperture, defocus_degrees; /* one of the two */
 } Edition;
 
 static const Edition editions[] = {
