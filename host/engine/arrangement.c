@@ -5,17 +5,19 @@
 
 #include <string.h>
 
-/* CPUs spread explicit vectors over their lanes, so they get eight lanes and eight-wide nodes, and double
- * costs them little. GPUs spread work-items, and many have next to no double: one lane, narrower nodes,
- * error-free float transforms. The options can force each choice, so every arrangement can be tested on every
- * device. */
+/* CPUs whose driver knows vectors spread explicit ones over their lanes, so they get eight lanes and
+ * eight-wide nodes, and double costs them little. A CPU driver that takes vectors apart (it says one lane)
+ * gets nothing from eight, and has been seen to compile that form for ever. GPUs spread work-items, and many
+ * have next to no double: one lane, narrower nodes, error-free float transforms. The options can force each
+ * choice, so every arrangement can be tested on every device. */
 static void choose_form(const BpDeviceInfo *device, const BpRenderOptions *options,
                         BpProgramOptions *program) {
     const bool cpu = device->type == BP_DEVICE_CPU;
+    const bool vectors = cpu && device->float_lanes >= 4;
     program->form = options->kernel != BP_KERNEL_AUTO ? options->kernel
-                    : cpu                             ? BP_KERNEL_PACKET
+                    : vectors                         ? BP_KERNEL_PACKET
                                                       : BP_KERNEL_SAMPLE;
-    program->tree_width = options->tree_width != 0 ? options->tree_width : cpu ? 8 : 4;
+    program->tree_width = options->tree_width != 0 ? options->tree_width : vectors ? 8 : 4;
     program->double_refine = cpu && device->has_double && !options->force_float_refine;
 }
 

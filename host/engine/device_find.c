@@ -59,6 +59,11 @@ static uint64_t device_ulong(cl_device_id id, cl_device_info what) {
     return clGetDeviceInfo(id, what, sizeof number, &number, NULL) == CL_SUCCESS ? number : 0;
 }
 
+static unsigned device_uint(cl_device_id id, cl_device_info what) {
+    cl_uint number = 0;
+    return clGetDeviceInfo(id, what, sizeof number, &number, NULL) == CL_SUCCESS ? number : 0;
+}
+
 bool bp_device_has_extension(cl_device_id id, const char *name) {
     char *text = device_text(id, CL_DEVICE_EXTENSIONS);
     bool found = false;
@@ -109,9 +114,8 @@ static void describe(cl_device_id id, cl_platform_id platform, unsigned number, 
     info->type = (type & CL_DEVICE_TYPE_GPU) != 0   ? BP_DEVICE_GPU
                  : (type & CL_DEVICE_TYPE_CPU) != 0 ? BP_DEVICE_CPU
                                                     : BP_DEVICE_OTHER;
-    cl_uint units = 0;
-    if (clGetDeviceInfo(id, CL_DEVICE_MAX_COMPUTE_UNITS, sizeof units, &units, NULL) == CL_SUCCESS)
-        info->compute_units = units;
+    info->compute_units = device_uint(id, CL_DEVICE_MAX_COMPUTE_UNITS);
+    info->float_lanes = device_uint(id, CL_DEVICE_NATIVE_VECTOR_WIDTH_FLOAT);
     info->memory_bytes = device_ulong(id, CL_DEVICE_GLOBAL_MEM_SIZE);
     info->largest_allocation_bytes = device_ulong(id, CL_DEVICE_MAX_MEM_ALLOC_SIZE);
     info->has_double = device_ulong(id, CL_DEVICE_DOUBLE_FP_CONFIG) != 0;
