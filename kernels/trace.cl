@@ -317,6 +317,7 @@ __kernel void trace(SCENE_PARAMETERS, uint first_pixel, uint first_sample, uint 
 
     Paths paths;
     paths.alive = splat(0) != splat(0);
+    paths.depth = splat_uint(0);
     masks taken = paths.alive; /* lanes whose result is still to be written */
     uint number[LANE_COUNT];   /* of the pixel sample within the chunk */
     for (;;) {
