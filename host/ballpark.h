@@ -158,6 +158,7 @@ typedef struct BpRenderOptions {
     bool force_list;        /* no tree, however many spheres */
     bool force_tree;        /* a tree, however few */
     bool force_float_refine; /* error-free float transforms even where the device has double */
+    uint64_t build_mark;     /* written into the kernel as an unused type: a new one makes every cache miss */
 } BpRenderOptions;
 
 void bp_render_defaults(const BpScene *scene, BpRenderOptions *options);

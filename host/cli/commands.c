@@ -66,6 +66,24 @@ const BpCommand bp_commands[] = {
         .run = bp_command_check,
     },
     {
+        .name = "explain",
+        .operands = "SCENE...",
+        .operands_min = 1,
+        .operands_max = SIZE_MAX,
+        .summary = "which effects a scene calls for, why, and what each costs",
+        .description =
+            "For each SCENE, lists the effects that the kernel can simulate: which are in its kernel, which "
+            "are left out, and why. With --measure, times the scene's kernel against kernels that simulate "
+            "one effect more, and against one that simulates everything: all trace the same samples in turn, "
+            "and the table gives the ratio of their times, with the range of the middle half of the rounds.",
+        .examples = "  ballpark explain scenes/cover.json\n"
+                    "  ballpark explain scenes/*.json --json effects.json\n"
+                    "  ballpark explain scenes/v4-13-metal.json --measure\n",
+        .options = (TAKES_DRAWING & ~TAKES(EFFECTS)) | TAKES(MEASURE) | TAKES(JSON) | TAKES(SAMPLER) | TAKES(FORCE) |
+                   TAKES(QUIET),
+        .run = bp_command_explain,
+    },
+    {
         .name = "merge",
         .operands = "FILE.bpa...",
         .operands_min = 1,

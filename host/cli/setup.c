@@ -29,6 +29,7 @@ BpStatus bp_setup_options(const BpCommandLine *line, const BpScene *scene, BpRen
     if (bp_option_given(line, BP_OPTION_SAMPLER)) options->sampler = line->sampler;
     if (bp_option_given(line, BP_OPTION_KERNEL)) options->kernel = line->kernel;
     options->all_effects = line->all_effects;
+    options->force = line->force;
     const uint64_t samples_max = BP_SAMPLE_NUMBERS - options->first_sample;
     if (options->samples_per_pixel > samples_max)
         return bp_fail(err, BP_ERR_USAGE,

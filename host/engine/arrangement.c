@@ -53,6 +53,7 @@ BpStatus bp_arrange(const BpScene *scene, const BpRenderOptions *options, const 
     setup->pixel_center = scene->camera.pixel_sampling == BP_PIXEL_CENTER;
     setup->local_size = options->local_size;
     setup->untested = options->force;
+    setup->build_mark = options->build_mark;
     const BpTreeOptions tree_options = {
         .width = setup->program.tree_width,
         .single_precision = options->precision == BP_PRECISION_SINGLE,

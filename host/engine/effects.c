@@ -117,6 +117,9 @@ static void explain_material(BpEffect effect, const Use *use, const Use *all, bo
     else if (effect == BP_EFFECT_EMISSION)
         snprintf(reason, size, "nothing emits: none of the %zu material%s in use does", all->materials,
                  plural(all->materials));
+    else if (effect == BP_EFFECT_NORMALS)
+        snprintf(reason, size, "none of the %zu material%s in use shows normals", all->materials,
+                 plural(all->materials));
     else
         snprintf(reason, size, "no %s among the %zu material%s in use: %s", name, all->materials,
                  plural(all->materials), left_out(effect));

@@ -276,6 +276,10 @@ void bp_render_report(const BpRender *render, BpRenderReport *report) {
     report->numerics = render->options.numerics;
     report->program_key = first->program->key;
     report->build_log = first->program->log;
+    cl_ulong private_bytes = 0;
+    if (clGetKernelWorkGroupInfo(first->trace, first->device->id, CL_KERNEL_PRIVATE_MEM_SIZE,
+                                 sizeof private_bytes, &private_bytes, NULL) == CL_SUCCESS)
+        report->private_bytes = private_bytes;
     report->tree_seconds = render->tree_seconds;
     report->pack_seconds = render->pack_seconds;
     report->trace_seconds = render->trace_seconds - first->first_launch_seconds;

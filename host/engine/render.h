@@ -16,8 +16,9 @@ typedef struct BpRenderReport {
     BpPrecision precision;
     BpMath math;
     BpNumerics numerics;
-    uint64_t program_key;  /* equal keys: the same program, nothing was built anew */
-    const char *build_log; /* valid while the render lives */
+    uint64_t program_key;   /* equal keys: the same program, nothing was built anew */
+    uint64_t private_bytes; /* of one work-item of the trace kernel, as the driver tells; 0: it does not */
+    const char *build_log;  /* valid while the render lives */
     double tree_seconds, pack_seconds, kernel_build_seconds;
     double self_test_seconds;    /* of the device's first use; 0 once it has passed */
     double first_launch_seconds; /* of the first, tiny chunk: drivers may compile once more there */

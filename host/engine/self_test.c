@@ -301,7 +301,7 @@ BpStatus bp_self_test_run(BpDevice *device, const char *kernel_text, BpError *er
         status = bp_fail(
             err, BP_ERR_DEVICE,
             "device %u (%s, driver %s) failed its self-test, its pictures could be wrong: %s is wrong%s; "
-            "use another --device, another driver version, or --force to render all the same",
+            "use another --device or another version of the driver",
             device->info.number, device->info.name, device->info.driver, story,
             failures > 1 ? ", and more" : "");
 

@@ -7,6 +7,7 @@
 #include "scene_types.h"
 #include "self_test.h"
 
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -208,9 +209,12 @@ BpStatus bp_worker_create(const BpDeviceInfo *info, const BpPacked *packed, cons
         if (status != BP_OK) goto failed;
         if (ran) made->self_test_seconds = bp_clock_seconds() - start;
     }
+    char mark[64];
+    snprintf(mark, sizeof mark, "typedef uint build_mark_%llu;\n", (unsigned long long)setup->build_mark);
+    const bool marked = setup->build_mark != 0 && setup->extra_text == NULL;
     BP_TRY_GOTO(status,
-                bp_program_build(made->device, &setup->program, setup->extra_name, setup->extra_text,
-                                 &made->program, err),
+                bp_program_build(made->device, &setup->program, marked ? "mark.cl" : setup->extra_name,
+                                 marked ? mark : setup->extra_text, &made->program, err),
                 failed);
     BP_TRY_GOTO(status, bp_layout_check(made->device, made->program->program, packed->single_precision, err),
                 failed);

@@ -23,6 +23,7 @@ typedef struct BpWorkerSetup {
     uint32_t local_size;                 /* 0: choose */
     const char *extra_name, *extra_text; /* Optional. A file appended to the program. */
     bool untested;                       /* do without the device's self-test */
+    uint64_t build_mark;                 /* 0, or a number that makes the source a new one */
 } BpWorkerSetup;
 
 #define BP_WORKER_FLIGHT 2 /* chunks queued at a time */

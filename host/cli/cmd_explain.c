@@ -1,0 +1,232 @@
+/* cmd_explain.c: `ballpark explain`.
+ *
+ * In:    scenes.   Out: for each a table of effects, in or out and why; with --measure what each costs; or
+ * JSON. Knows: the effects' analysis, its measurement, tables on a terminal.   Does not know: OpenCL. */
+#include "commands.h"
+
+#include "../engine/effects.h"
+#include "explain_measure.h"
+#include "json_file.h"
+#include "report.h"
+#include "setup.h"
+#include "terminal.h"
+
+#include <errno.h>
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#define ROUNDS 21u
+/* Pictures are measured at this width unless --width says otherwise: a ratio needs no large picture. */
+#define MEASURED_WIDTH 400u
+
+/* ---- the table of effects -------------------------------------------------------------------------------
+ */
+
+static void print_heading(const char *path, const BpScene *scene) {
+    BpSceneInfo info;
+    bp_scene_info(scene, &info);
+    printf("%s: %s%s%zu sphere%s, %zu material%s, %ux%u\n", path, info.title,
+           info.title[0] != '\0' ? "; " : "", info.spheres, info.spheres == 1 ? "" : "s", info.materials,
+           info.materials == 1 ? "" : "s", info.width, info.height);
+}
+
+static void print_effects(const BpEffectInfo *effects, size_t count) {
+    size_t in = 0;
+    for (size_t e = 0; e < count; ++e) in += effects[e].simulated ? 1 : 0;
+    for (size_t e = 0; e < count; ++e)
+        printf("  %-12s %-4s %s\n", effects[e].name, effects[e].simulated ? "in" : "out", effects[e].reason);
+    printf("  %zu of %zu effects are in the kernel\n", in, count);
+}
+
+/* ---- what they cost --------------------------------------------------------------------------------------
+ */
+
+/* A bar of one sign for each percent over 1, at most `columns`. */
+static void print_bar(double ratio, unsigned columns, bool utf8) {
+    const double percent = 100.0 * (ratio - 1.0);
+    const unsigned signs = percent > 0.5 ? (unsigned)(percent + 0.5) : 0;
+    for (unsigned i = 0; i < signs && i < columns; ++i) fputs(utf8 ? "\xe2\x96\x88" : "#", stdout);
+    if (signs > columns) fputs("...", stdout);
+}
+
+static void print_costs(const BpCosts *costs) {
+    const bool utf8 = bp_terminal_has_utf8();
+    const unsigned terminal = bp_terminal_columns();
+    const unsigned columns = terminal > 60 ? terminal - 56 : 8;
+    char rate[32];
+    printf("  %s, %s kernel, %ux%u, %u rounds of %s samples%s\n", costs->device.name,
+           costs->form == BP_KERNEL_PACKET ? "packet" : "sample", costs->width, costs->height, costs->rounds,
+           bp_format_count((double)costs->samples, rate, sizeof rate),
+           costs->device.type == BP_DEVICE_CPU ? ", processor time" : "");
+    printf("  %-18s %6s %15s\n", "kernel", "time", "half within");
+    for (size_t k = 0; k < costs->kernel_count; ++k) {
+        const BpKernelCost *kernel = &costs->kernels[k];
+        printf("  %-18s %6.3f", kernel->name, kernel->ratio);
+        if (k == 0)
+            printf("  %s samples/s%s\n", bp_format_count(kernel->samples_per_second, rate, sizeof rate),
+                   costs->device.type == BP_DEVICE_CPU ? " a core" : "");
+        else {
+            printf(" %6.3f .. %5.3f  ", kernel->low, kernel->high);
+            print_bar(kernel->ratio, columns, utf8);
+            printf("\n");
+        }
+    }
+    for (size_t k = 0; k < costs->kernel_count; ++k) {
+        const BpKernelCost *kernel = &costs->kernels[k];
+        if (isnan(kernel->cold_seconds)) continue;
+        printf("  %s: ready to trace in %.2f s, %.2f s once the driver has kept it", kernel->name,
+               kernel->cold_seconds, kernel->warm_seconds);
+        if (kernel->registers > 0) printf("; %llu registers", (unsigned long long)kernel->registers);
+        if (kernel->private_bytes > 0)
+            printf("; %llu bytes of private memory", (unsigned long long)kernel->private_bytes);
+        printf("\n");
+    }
+}
+
+/* A status line while kernels are built and timed. */
+static void tell_terminal(const char *what, void *context) {
+    const BpCommandLine *line = context;
+    if (bp_terminal_is_live(line->quiet)) bp_terminal_show(what);
+}
+
+static BpStatus measure(const BpCommandLine *line, BpScene *scene, const BpDeviceInfo *device, BpCosts *costs,
+                        BpError *err) {
+    BpRenderOptions options;
+    BpSceneInfo info;
+    bp_scene_info(scene, &info);
+    if (!bp_option_given(line, BP_OPTION_WIDTH) && info.width > MEASURED_WIDTH)
+        BP_TRY(bp_scene_set_width(scene, MEASURED_WIDTH, err));
+    BP_TRY(bp_setup_options(line, scene, &options, err));
+    const BpStatus status =
+        bp_costs_measure(scene, &options, device, ROUNDS, tell_terminal, (void *)(uintptr_t)line, costs, err);
+    if (bp_terminal_is_live(line->quiet)) bp_terminal_show("");
+    return status;
+}
+
+/* ---- JSON -------------------------------------------------------------------------------------------------
+ */
+
+/* JSON has no NaN. */
+static json_t *number_or_null(double value) {
+    return isfinite(value) ? json_real(value) : json_null();
+}
+static json_t *count_or_null(uint64_t value) {
+    return value > 0 ? json_integer((json_int_t)value) : json_null();
+}
+
+static json_t *names_of(uint32_t bits) {
+    json_t *names = json_array();
+    for (int e = 0; e < BP_EFFECT_COUNT && names != NULL; ++e)
+        if (bp_effects_has(bits, (BpEffect)e))
+            json_array_append_new(names, json_string(bp_effect_name((BpEffect)e)));
+    return names;
+}
+
+static json_t *costs_json(const BpCosts *costs) {
+    json_t *kernels = json_array();
+    for (size_t k = 0; k < costs->kernel_count && kernels != NULL; ++k) {
+        const BpKernelCost *kernel = &costs->kernels[k];
+        json_array_append_new(
+            kernels,
+            json_pack(
+                "{s:s, s:o, s:o, s:f, s:f, s:f, s:f, s:o, s:o, s:o, s:o}", "name", kernel->name, "forced",
+                kernel->forced >= 0 ? json_string(bp_effect_name((BpEffect)kernel->forced)) : json_null(),
+                "effects", names_of(kernel->bits), "ratio", kernel->ratio, "low", kernel->low, "high",
+                kernel->high, "samples_per_second", kernel->samples_per_second, "cold_seconds",
+                number_or_null(kernel->cold_seconds), "warm_seconds", number_or_null(kernel->warm_seconds),
+                "registers", count_or_null(kernel->registers), "private_bytes",
+                count_or_null(kernel->private_bytes)));
+    }
+    return json_pack("{s:{s:s, s:s, s:s}, s:s, s:i, s:i, s:i, s:I, s:o}", "device", "platform",
+                     costs->device.platform, "name", costs->device.name, "driver", costs->device.driver,
+                     "form", costs->form == BP_KERNEL_PACKET ? "packet" : "sample", "width",
+                     (int)costs->width, "height", (int)costs->height, "rounds", (int)costs->rounds, "samples",
+                     (json_int_t)costs->samples, "kernels", kernels);
+}
+
+static json_t *scene_json(const char *path, const BpScene *scene, const BpEffectInfo *effects, size_t count,
+                          const BpCosts *costs) {
+    BpSceneInfo info;
+    bp_scene_info(scene, &info);
+    json_t *list = json_array();
+    for (size_t e = 0; e < count && list != NULL; ++e)
+        json_array_append_new(list, json_pack("{s:s, s:s, s:b, s:s}", "name", effects[e].name, "description",
+                                              effects[e].description, "simulated", effects[e].simulated,
+                                              "reason", effects[e].reason));
+    json_t *root =
+        json_pack("{s:s, s:s, s:I, s:I, s:o}", "scene", path, "title", info.title, "spheres",
+                  (json_int_t)info.spheres, "materials", (json_int_t)info.materials, "effects", list);
+    if (root != NULL && costs != NULL && json_object_set_new(root, "costs", costs_json(costs)) != 0) {
+        json_decref(root);
+        return NULL;
+    }
+    return root;
+}
+
+/* ---- the command ------------------------------------------------------------------------------------------
+ */
+
+/* One scene: its table on standard output, or its entry of `list` when that is not NULL. */
+static BpStatus explain(const BpCommandLine *line, const char *path, const BpDeviceInfo *device, json_t *list,
+                        BpError *err) {
+    BpStatus status;
+    BpScene *scene = NULL;
+    BpEffectInfo effects[BP_EFFECTS_MAX];
+    BpCosts costs;
+    BP_TRY(bp_setup_scene(line, path, &scene, err));
+    const size_t count = bp_scene_effects(scene, effects);
+    if (list == NULL) {
+        print_heading(path, scene);
+        print_effects(effects, count);
+        fflush(stdout); /* measuring takes a while */
+    }
+    if (device != NULL) {
+        BP_TRY_GOTO(status, measure(line, scene, device, &costs, err), done);
+        if (list == NULL) print_costs(&costs);
+    }
+    status = BP_OK;
+    if (list != NULL && json_array_append_new(list, scene_json(path, scene, effects, count,
+                                                               device != NULL ? &costs : NULL)) != 0)
+        status = bp_fail(err, BP_ERR_MEMORY, "out of memory, or a name that is not UTF-8, for %s", path);
+
+done:
+    bp_scene_destroy(&scene);
+    return status;
+}
+
+BpStatus bp_command_explain(const BpCommandLine *line, BpError *err) {
+    BpStatus status = BP_OK;
+    BpDeviceInfo *devices = NULL;
+    size_t device_count = 0;
+    json_t *list = NULL;
+    if (line->json != NULL) BP_TRY(bp_json_check(line->json, err));
+    if (line->measure) {
+        BP_TRY(bp_setup_devices(line, &devices, &device_count, err));
+        if (device_count > 1) {
+            status = bp_fail(err, BP_ERR_USAGE, "--device all: costs are measured on one device at a time");
+            goto done;
+        }
+        BP_TRY_GOTO(status, bp_setup_self_test(line, devices, device_count, err), done);
+    }
+    if (line->json != NULL && (list = json_array()) == NULL) {
+        status = bp_fail(err, BP_ERR_MEMORY, "out of memory for a document");
+        goto done;
+    }
+    for (size_t i = 0; i < line->operand_count; ++i) {
+        if (list == NULL && i > 0) printf("\n");
+        BP_TRY_GOTO(status, explain(line, line->operands[i], devices, list, err), done);
+    }
+    if (list != NULL) {
+        json_t *root = json_pack("{s:O}", "scenes", list);
+        status = bp_json_write(root, line->json, err);
+    } else if (fflush(stdout) != 0 || ferror(stdout)) {
+        status = bp_fail(err, BP_ERR_FILE, "cannot write to standard output: %s", strerror(errno));
+    }
+
+done:
+    json_decref(list);
+    free(devices);
+    return status;
+}

@@ -1,0 +1,68 @@
+"""`ballpark explain` end to end: the tables and JSON of scenes whose effects are known, and a measurement's shape.
+
+Usage: test_explain.py BALLPARK SCENES
+"""
+
+import json
+import pathlib
+import subprocess
+import sys
+import tempfile
+
+program, scenes = sys.argv[1], pathlib.Path(sys.argv[2])
+ALL = ["lambertian", "metal", "dielectric", "emission", "normals", "lens", "gradient", "tree"]
+
+
+def run(*arguments, code=0):
+    done = subprocess.run([program, *map(str, arguments)], capture_output=True, text=True)
+    assert done.returncode == code, f"{arguments}: exit {done.returncode}\n{done.stdout}\n{done.stderr}"
+    return done
+
+
+# A table: every effect once, in or out, with a reason.
+table = run("explain", scenes / "v4-13-metal.json").stdout.splitlines()
+rows = {line.split()[0]: line.split(maxsplit=2)[1:] for line in table[1:9]}
+assert list(rows) == ALL, table
+assert [name for name in ALL if rows[name][0] == "in"] == ["lambertian", "metal", "gradient"], table
+assert all(rows[name][0] in ("in", "out") and len(rows[name][1]) > 10 for name in ALL), table
+assert "no dielectric among the 4 materials in use" in rows["dielectric"][1]
+assert "4 spheres: a list, no tree" in rows["tree"][1]
+assert "3 of 8 effects" in table[9]
+
+# JSON of all scenes says what the tables say, one entry a scene, in the order given.
+paths = sorted(scenes.glob("*.json"))
+paths = [path for path in paths if path.name != "scene.schema.json"]
+document = json.loads(run("explain", *paths, "--json", "-").stdout)["scenes"]
+assert [entry["scene"] for entry in document] == list(map(str, paths))
+for entry in document:
+    assert [effect["name"] for effect in entry["effects"]] == ALL
+    assert all(effect["reason"] and effect["description"] for effect in entry["effects"])
+    assert "costs" not in entry
+    assert entry["effects"][7]["simulated"] == (entry["spheres"] > 16), entry["scene"]
+
+# Mistakes are refused, and leave no file.
+with tempfile.TemporaryDirectory() as folder:
+    target = pathlib.Path(folder, "effects.json")
+    run("explain", code=2)
+    run("explain", scenes / "nothing-like-this.json", "--json", target, code=2)
+    run("explain", paths[0], "--measure", "--device", "nothing like this", "--json", target, code=1)
+    assert not target.exists()
+
+    # Measured: one kernel for each effect that is out, between the specialised and the general one.
+    run("explain", scenes / "v4-sky.json", "--measure", "--width", 64, "--json", target)
+    costs = json.loads(target.read_text())["scenes"][0]["costs"]
+    names = [kernel["name"] for kernel in costs["kernels"]]
+    assert names == ["specialised"] + [f"with {name}" for name in ALL if name != "gradient"] + ["general"], names
+    first, last = costs["kernels"][0], costs["kernels"][-1]
+    assert first["effects"] == ["gradient"] and last["effects"] == ALL
+    assert first["ratio"] == first["low"] == first["high"] == 1
+    for kernel in costs["kernels"]:
+        assert 0 < kernel["low"] <= kernel["ratio"] <= kernel["high"], kernel
+        assert kernel["samples_per_second"] > 0
+        assert (kernel["cold_seconds"] is not None) == (kernel["forced"] is None), kernel
+    # What the driver keeps is not built again.
+    assert first["warm_seconds"] < first["cold_seconds"] and last["warm_seconds"] < last["cold_seconds"], costs
+    # A lens of no size is really sampled when it is forced in: the same sky takes longer.
+    lens = costs["kernels"][names.index("with lens")]
+    assert lens["ratio"] > 1, lens
+print(f"{len(document)} scenes explained")
