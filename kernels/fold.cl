@@ -19,11 +19,20 @@
 #define BITS_INFINITE 0x7f800000u
 #endif
 
-static int is_valid(real x, int scale_log2) {
+/* 2^exponent, -126 to 126, by its bits: ldexp is a slow call on some devices. */
+static real power_of_two(int exponent) {
+#if REAL_IS_DOUBLE
+    return as_double((ulong)(exponent + 1023) << 52);
+#else
+    return as_float((uint)(exponent + 127) << 23);
+#endif
+}
+
+static int is_valid(real x, real scale) {
     const BITS bits = as_bits(x);
     if ((bits & BITS_INFINITE) == BITS_INFINITE) return 0;
     if ((bits & BITS_SIGN) != 0 && bits != BITS_SIGN) return 0;
-    return ldexp(x, scale_log2) < R(0x1p39);
+    return x * scale < R(0x1p39);
 }
 
 /* One work-item a pixel of the chunk. */
@@ -32,6 +41,7 @@ __kernel void fold(__global const real *samples, uint pixel_count, uint samples_
                    __global ulong *tallies) {
     const uint item = get_global_id(0);
     if (item >= pixel_count) return;
+    const real scale = power_of_two(scale_log2);
     const size_t pixel = first_pixel + item;
     __global const real *mine = samples + (size_t)item * samples_per_pixel * 4;
     ulong segments = 0, cut = 0, invalid = 0;
@@ -44,10 +54,10 @@ __kernel void fold(__global const real *samples, uint pixel_count, uint samples_
             const real r = sample[0], g = sample[1], b = sample[2], path = sample[3];
             segments += (ulong)path;
             cut += path != floor(path);
-            if (is_valid(r, scale_log2) && is_valid(g, scale_log2) && is_valid(b, scale_log2)) {
-                red += convert_long_rte(ldexp(r, scale_log2));
-                green += convert_long_rte(ldexp(g, scale_log2));
-                blue += convert_long_rte(ldexp(b, scale_log2));
+            if (is_valid(r, scale) && is_valid(g, scale) && is_valid(b, scale)) {
+                red += convert_long_rte(r * scale);
+                green += convert_long_rte(g * scale);
+                blue += convert_long_rte(b * scale);
                 ++count;
             } else {
                 ++invalid;

@@ -23,7 +23,8 @@ __kernel void follow(SCENE_PARAMETERS, uint pixel, uint sample, uint capacity, _
     Paths path;
     path.alive = 0;
     path.inward = 0;
-    begin_paths(camera, pixel_center, width, sample_key(seed_low, seed_high, pixel, sample, replicates), pixel, 1, &path);
+    begin_paths(camera, pixel_center, sample_key(seed_low, seed_high, pixel, sample, replicates), (real)(pixel % width),
+                (real)(pixel / width), 1, &path);
     uint step = 0;
     while (path.alive && step < max_depth && step < capacity) {
         __global real *record = records + (size_t)step * FOLLOW_REALS;

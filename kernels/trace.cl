@@ -113,6 +113,21 @@ static Meeting meet(const Geometry *geometry, const Paths *paths) {
 #if LANE_COUNT > 1
     meet_first_leaves(geometry, paths, &meeting);
 #endif
+#if LANE_COUNT > 1 && EFFECT_TREE
+    real inverse[3][LANE_COUNT], near_offset[3][LANE_COUNT], far_offset[3][LANE_COUNT];
+    const LANED(BoxAxis) x = LANED(box_axis)(paths->origin.high.x, paths->direction.x);
+    const LANED(BoxAxis) y = LANED(box_axis)(paths->origin.high.y, paths->direction.y);
+    const LANED(BoxAxis) z = LANED(box_axis)(paths->origin.high.z, paths->direction.z);
+    store_lanes(x.inverse, inverse[0]);
+    store_lanes(y.inverse, inverse[1]);
+    store_lanes(z.inverse, inverse[2]);
+    store_lanes(x.near_offset, near_offset[0]);
+    store_lanes(y.near_offset, near_offset[1]);
+    store_lanes(z.near_offset, near_offset[2]);
+    store_lanes(x.far_offset, far_offset[0]);
+    store_lanes(y.far_offset, far_offset[1]);
+    store_lanes(z.far_offset, far_offset[2]);
+#endif
     store_lanes(paths->origin.high.x, high_x);
     store_lanes(paths->origin.high.y, high_y);
     store_lanes(paths->origin.high.z, high_z);
@@ -148,7 +163,15 @@ static Meeting meet(const Geometry *geometry, const Paths *paths) {
         hit.slot = slot[lane];
         hit.enters = enters[lane] != 0;
         meet_own_sphere(geometry, &ray, &hit);
-        search_spheres(geometry, &ray, LANE_COUNT > 1 ? geometry->first_leaves : 0, 0, &hit);
+#if LANE_COUNT == 1
+        search_spheres(geometry, &ray, 0, &hit);
+#elif EFFECT_TREE
+        BoxRay box;
+        set_box_axis(&box, 0, inverse[0][lane], near_offset[0][lane], far_offset[0][lane]);
+        set_box_axis(&box, 1, inverse[1][lane], near_offset[1][lane], far_offset[1][lane]);
+        set_box_axis(&box, 2, inverse[2][lane], near_offset[2][lane], far_offset[2][lane]);
+        search_tree(geometry, &ray, &box, margin_of_ray(&ray), 0, &hit);
+#endif
         t[lane] = hit.t;
         slot[lane] = hit.slot;
         enters[lane] = hit.enters ? 1 : 0;
@@ -282,13 +305,11 @@ static Scene begin_scene(__global const PackedSky *sky, __global const PackedMat
     return scene;
 }
 
-/* Sets the lanes of `fresh` to the beginning of the path of their pixel sample. */
-static void begin_paths(__global const PackedCamera *camera, uint pixel_center, uint width, SampleKey key, uints pixel,
+/* Sets the lanes of `fresh` to the beginning of the path of their pixel sample; row and column are whole numbers. */
+static void begin_paths(__global const PackedCamera *camera, uint pixel_center, SampleKey key, reals column, reals row,
                         masks fresh, Paths *paths) {
-    const uints row = pixel / width;
-    const uints column = pixel - row * width;
     Vec3 origin, direction;
-    camera_ray(camera, pixel_center, key, uint_to_reals(column), uint_to_reals(row), &origin, &direction);
+    camera_ray(camera, pixel_center, key, column, row, &origin, &direction);
     paths->origin.high = choose3(fresh, origin, paths->origin.high);
     paths->origin.low = choose3(fresh, zero3(), paths->origin.low);
     paths->origin.slack = choose(fresh, splat(0), paths->origin.slack);
@@ -314,6 +335,9 @@ __kernel void trace(SCENE_PARAMETERS, uint first_pixel, uint first_sample, uint 
     const uint item = get_global_id(0);
     uint next = item * samples_per_item;
     const uint end = min(next + samples_per_item, sample_count);
+    /* The pixel sample `next` stands for, counted along: division is slow, in lanes above all. */
+    const uint first = first_pixel + next / samples_per_pixel;
+    uint sample = next % samples_per_pixel, row = first / width, column = first % width;
 
     Paths paths;
     paths.alive = splat(0) != splat(0);
@@ -351,18 +375,25 @@ __kernel void trace(SCENE_PARAMETERS, uint first_pixel, uint first_sample, uint 
             for (uint lane = 0; lane < LANE_COUNT; ++lane) busy_count += busy[lane] != 0;
             if (busy_count <= LANE_COUNT / 2) {
                 uint pixels[LANE_COUNT], sample_numbers[LANE_COUNT];
-                real fresh_lane[LANE_COUNT];
+                real rows[LANE_COUNT], columns[LANE_COUNT], fresh_lane[LANE_COUNT];
                 for (uint lane = 0; lane < LANE_COUNT; ++lane) {
                     const int takes = busy[lane] == 0 && next < end;
                     fresh_lane[lane] = takes ? 1 : 0;
-                    pixels[lane] = first_pixel + next / samples_per_pixel;
-                    sample_numbers[lane] = first_sample + next % samples_per_pixel;
-                    if (takes) number[lane] = next++;
+                    pixels[lane] = row * width + column;
+                    sample_numbers[lane] = first_sample + sample;
+                    rows[lane] = (real)row;
+                    columns[lane] = (real)column;
+                    if (!takes) continue;
+                    number[lane] = next++;
+                    if (++sample < samples_per_pixel) continue;
+                    sample = 0;
+                    if (++column < width) continue;
+                    column = 0;
+                    ++row;
                 }
                 const masks fresh = load_lanes(fresh_lane) != splat(0);
-                const uints pixel = load_lanes(pixels);
-                const SampleKey key = sample_key(seed_low, seed_high, pixel, load_lanes(sample_numbers), replicates);
-                begin_paths(camera, pixel_center, width, key, pixel, fresh, &paths);
+                const SampleKey key = sample_key(seed_low, seed_high, load_lanes(pixels), load_lanes(sample_numbers), replicates);
+                begin_paths(camera, pixel_center, key, load_lanes(columns), load_lanes(rows), fresh, &paths);
                 taken = taken | fresh;
                 continue; /* a cap of 0 cuts at once */
             }

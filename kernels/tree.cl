@@ -122,29 +122,25 @@ static void test_leaf(const Geometry *geometry, const Ray *ray, real ray_margin,
 #endif
 
 #if EFFECT_TREE
-/* What a box test needs of a ray, once a ray. A box plane at x is met at fma(x, inverse, offset). Each origin is
- * moved outward by more than the rounding of the product, of the low part left out, and of 1/d (the boxes are
- * padded for the rounding of their own planes), so that no box that the ray meets is missed. A direction
- * component of 0 counts as 1e-24: no NaN, and a deviation far below every margin. */
+/* The three axes of box_ray.cl, and which of the six rows of a node hold the planes that are met first and last. */
 typedef struct BoxRay {
     real inverse[3], near_offset[3], far_offset[3];
-    uint near_plane[3], far_plane[3]; /* which of the six rows of a node holds the plane that is met first */
+    uint near_plane[3], far_plane[3];
 } BoxRay;
+
+static void set_box_axis(BoxRay *box, uint axis, real inverse, real near_offset, real far_offset) {
+    box->inverse[axis] = inverse;
+    box->near_offset[axis] = near_offset;
+    box->far_offset[axis] = far_offset;
+    box->near_plane[axis] = inverse < 0 ? axis + 3 : axis;
+    box->far_plane[axis] = inverse < 0 ? axis : axis + 3;
+}
 
 static BoxRay box_ray(const Ray *ray) {
     BoxRay box;
     for (uint axis = 0; axis < 3; ++axis) {
-        const real d = ray->direction[axis];
-        const real safe = fabs(d) < R(1e-24) ? copysign(R(1e-24), d) : d;
-        const real inverse = R(1.0) / safe;
-        const real shift = fabs(ray->high[axis]) * (R(4.0) * ROUNDOFF);
-        const real first = inverse < 0 ? ray->high[axis] - shift : ray->high[axis] + shift;
-        const real second = inverse < 0 ? ray->high[axis] + shift : ray->high[axis] - shift;
-        box.inverse[axis] = inverse;
-        box.near_offset[axis] = -first * inverse;
-        box.far_offset[axis] = -second * inverse;
-        box.near_plane[axis] = inverse < 0 ? axis + 3 : axis;
-        box.far_plane[axis] = inverse < 0 ? axis : axis + 3;
+        const BoxAxis_1 found = box_axis_1(ray->high[axis], ray->direction[axis]);
+        set_box_axis(&box, axis, found.inverse, found.near_offset, found.far_offset);
     }
     return box;
 }
@@ -172,8 +168,8 @@ static lane_bytes test_node(const Geometry *geometry, const BoxRay *box, uint no
 
 #define STACK_SIZE (TREE_DEPTH_MAX * (TREE_WIDTH - 1) + 1)
 
-static void search_tree(const Geometry *geometry, const Ray *ray, real ray_margin, int any, Hit *best) {
-    const BoxRay box = box_ray(ray);
+static void search_tree(const Geometry *geometry, const Ray *ray, const BoxRay *box, real ray_margin, int any,
+                        Hit *best) {
     uint stack_child[STACK_SIZE];
     real stack_entry[STACK_SIZE];
     real entries[TREE_WIDTH];
@@ -181,7 +177,7 @@ static void search_tree(const Geometry *geometry, const Ray *ray, real ray_margi
     uint node = 0;
     for (;;) {
         wide entry;
-        lane_bytes met = test_node(geometry, &box, node, best->bound, &entry);
+        lane_bytes met = test_node(geometry, box, node, best->bound, &entry);
         JOIN(vstore, TREE_WIDTH)(entry, 0, entries);
         const uint base = top;
         while (met != 0) {
@@ -215,16 +211,20 @@ static void search_tree(const Geometry *geometry, const Ray *ray, real ray_margi
 }
 #endif
 
-/* `best` brings a bound (and perhaps a hit) along; leaves before `from_leaf` have been tested already. */
-static void search_spheres(const Geometry *geometry, const Ray *ray, uint from_leaf, int any, Hit *best) {
-    const real ray_margin =
-        R(4.0) * ROUNDOFF * (fabs(ray->high[0]) + fabs(ray->high[1]) + fabs(ray->high[2])) + ray->slack;
+/* How far the rounding of a ray's origin can move what test_leaf computes. */
+static real margin_of_ray(const Ray *ray) {
+    return R(4.0) * ROUNDOFF * (fabs(ray->high[0]) + fabs(ray->high[1]) + fabs(ray->high[2])) + ray->slack;
+}
+
+/* Everything, for a ray that stands alone. `best` brings a bound and perhaps a hit along. */
+static void search_spheres(const Geometry *geometry, const Ray *ray, int any, Hit *best) {
+    const real ray_margin = margin_of_ray(ray);
 #if EFFECT_TREE
-    for (uint leaf = from_leaf; leaf < geometry->first_leaves; ++leaf)
-        test_leaf(geometry, ray, ray_margin, leaf, best);
-    search_tree(geometry, ray, ray_margin, any, best);
+    const BoxRay box = box_ray(ray);
+    for (uint leaf = 0; leaf < geometry->first_leaves; ++leaf) test_leaf(geometry, ray, ray_margin, leaf, best);
+    search_tree(geometry, ray, &box, ray_margin, any, best);
 #else
-    for (uint leaf = from_leaf; leaf < geometry->leaf_count; ++leaf) test_leaf(geometry, ray, ray_margin, leaf, best);
+    for (uint leaf = 0; leaf < geometry->leaf_count; ++leaf) test_leaf(geometry, ray, ray_margin, leaf, best);
 #endif
 }
 
@@ -256,7 +256,7 @@ static void meet_own_sphere(const Geometry *geometry, const Ray *ray, Hit *best)
 static Hit intersect_closest(const Geometry *geometry, const Ray *ray) {
     Hit best = no_hit(REAL_LARGE);
     meet_own_sphere(geometry, ray, &best);
-    search_spheres(geometry, ray, 0, 0, &best);
+    search_spheres(geometry, ray, 0, &best);
     return best;
 }
 
@@ -266,6 +266,6 @@ static int intersect_any(const Geometry *geometry, const Ray *ray, refined limit
     Hit own = best;
     meet_own_sphere(geometry, ray, &own);
     if (own.slot != NO_SLOT && own.t < limit) return 1;
-    search_spheres(geometry, ray, 0, 1, &best);
+    search_spheres(geometry, ray, 1, &best);
     return best.slot != NO_SLOT;
 }
