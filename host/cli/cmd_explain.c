@@ -6,6 +6,7 @@
 
 #include "../engine/effects.h"
 #include "explain_measure.h"
+#include "explain_path.h"
 #include "json_file.h"
 #include "report.h"
 #include "setup.h"
@@ -105,6 +106,14 @@ static BpStatus measure(const BpCommandLine *line, BpScene *scene, const BpDevic
     return status;
 }
 
+static BpStatus follow(const BpCommandLine *line, const BpScene *scene, const BpDeviceInfo *device,
+                       BpPath *path, BpError *err) {
+    BpRenderOptions options;
+    BP_TRY(bp_setup_options(line, scene, &options, err));
+    return bp_path_follow(scene, &options, device, line->pixel_x, line->pixel_y,
+                          (uint32_t)options.first_sample, path, err);
+}
+
 /* ---- JSON -------------------------------------------------------------------------------------------------
  */
 
@@ -146,8 +155,7 @@ static json_t *costs_json(const BpCosts *costs) {
                      (json_int_t)costs->samples, "kernels", kernels);
 }
 
-static json_t *scene_json(const char *path, const BpScene *scene, const BpEffectInfo *effects, size_t count,
-                          const BpCosts *costs) {
+static json_t *scene_json(const char *path, const BpScene *scene, const BpEffectInfo *effects, size_t count) {
     BpSceneInfo info;
     bp_scene_info(scene, &info);
     json_t *list = json_array();
@@ -155,43 +163,66 @@ static json_t *scene_json(const char *path, const BpScene *scene, const BpEffect
         json_array_append_new(list, json_pack("{s:s, s:s, s:b, s:s}", "name", effects[e].name, "description",
                                               effects[e].description, "simulated", effects[e].simulated,
                                               "reason", effects[e].reason));
-    json_t *root =
-        json_pack("{s:s, s:s, s:I, s:I, s:o}", "scene", path, "title", info.title, "spheres",
-                  (json_int_t)info.spheres, "materials", (json_int_t)info.materials, "effects", list);
-    if (root != NULL && costs != NULL && json_object_set_new(root, "costs", costs_json(costs)) != 0) {
-        json_decref(root);
-        return NULL;
-    }
-    return root;
+    return json_pack("{s:s, s:s, s:I, s:I, s:o}", "scene", path, "title", info.title, "spheres",
+                     (json_int_t)info.spheres, "materials", (json_int_t)info.materials, "effects", list);
 }
 
 /* ---- the command ------------------------------------------------------------------------------------------
  */
 
-/* One scene: its table on standard output, or its entry of `list` when that is not NULL. */
+/* What was found out about one scene. */
+typedef struct Findings {
+    BpEffectInfo effects[BP_EFFECTS_MAX];
+    size_t count;
+    BpCosts costs; /* with --measure */
+    BpPath path;   /* with --pixel */
+} Findings;
+
+/* Appends the scene's entry to `list`. */
+static BpStatus append_json(const BpCommandLine *line, const char *path, const BpScene *scene,
+                            const Findings *found, json_t *list, BpError *err) {
+    json_t *entry = scene_json(path, scene, found->effects, found->count);
+    bool whole = entry != NULL;
+    if (whole && line->measure) whole = json_object_set_new(entry, "costs", costs_json(&found->costs)) == 0;
+    if (whole && bp_option_given(line, BP_OPTION_PIXEL))
+        whole = json_object_set_new(
+                    entry, "path",
+                    bp_path_json(scene, &found->path, line->pixel_x, line->pixel_y, line->first_sample)) == 0;
+    if (whole && json_array_append(list, entry) != 0) whole = false;
+    json_decref(entry);
+    return whole ? BP_OK
+                 : bp_fail(err, BP_ERR_MEMORY, "out of memory, or a name that is not UTF-8, for %s", path);
+}
+
+/* One scene: its table on standard output, or its entry of `list` when that is not NULL. `device`: NULL where
+ * nothing but the scene is needed. */
 static BpStatus explain(const BpCommandLine *line, const char *path, const BpDeviceInfo *device, json_t *list,
                         BpError *err) {
-    BpStatus status;
+    BpStatus status = BP_OK;
     BpScene *scene = NULL;
-    BpEffectInfo effects[BP_EFFECTS_MAX];
-    BpCosts costs;
+    Findings found;
+    memset(&found, 0, sizeof found);
+    const bool pixel = bp_option_given(line, BP_OPTION_PIXEL);
     BP_TRY(bp_setup_scene(line, path, &scene, err));
-    const size_t count = bp_scene_effects(scene, effects);
+    found.count = bp_scene_effects(scene, found.effects);
     if (list == NULL) {
         print_heading(path, scene);
-        print_effects(effects, count);
-        fflush(stdout); /* measuring takes a while */
+        if (!pixel || line->measure) print_effects(found.effects, found.count);
+        fflush(stdout); /* what follows can take a while */
     }
-    if (device != NULL) {
-        BP_TRY_GOTO(status, measure(line, scene, device, &costs, err), done);
-        if (list == NULL) print_costs(&costs);
+    if (pixel) {
+        BP_TRY_GOTO(status, follow(line, scene, device, &found.path, err), done);
+        if (list == NULL)
+            bp_path_print(scene, &found.path, line->pixel_x, line->pixel_y, line->first_sample, line->seed);
     }
-    status = BP_OK;
-    if (list != NULL && json_array_append_new(list, scene_json(path, scene, effects, count,
-                                                               device != NULL ? &costs : NULL)) != 0)
-        status = bp_fail(err, BP_ERR_MEMORY, "out of memory, or a name that is not UTF-8, for %s", path);
+    if (line->measure) {
+        BP_TRY_GOTO(status, measure(line, scene, device, &found.costs, err), done);
+        if (list == NULL) print_costs(&found.costs);
+    }
+    if (list != NULL) status = append_json(line, path, scene, &found, list, err);
 
 done:
+    bp_path_clear(&found.path);
     bp_scene_destroy(&scene);
     return status;
 }
@@ -202,10 +233,10 @@ BpStatus bp_command_explain(const BpCommandLine *line, BpError *err) {
     size_t device_count = 0;
     json_t *list = NULL;
     if (line->json != NULL) BP_TRY(bp_json_check(line->json, err));
-    if (line->measure) {
+    if (line->measure || bp_option_given(line, BP_OPTION_PIXEL)) {
         BP_TRY(bp_setup_devices(line, &devices, &device_count, err));
         if (device_count > 1) {
-            status = bp_fail(err, BP_ERR_USAGE, "--device all: costs are measured on one device at a time");
+            status = bp_fail(err, BP_ERR_USAGE, "--device all: explain looks at one device at a time");
             goto done;
         }
         BP_TRY_GOTO(status, bp_setup_self_test(line, devices, device_count, err), done);

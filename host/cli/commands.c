@@ -75,12 +75,15 @@ const BpCommand bp_commands[] = {
             "For each SCENE, lists the effects that the kernel can simulate: which are in its kernel, which "
             "are left out, and why. With --measure, times the scene's kernel against kernels that simulate "
             "one effect more, and against one that simulates everything: all trace the same samples in turn, "
-            "and the table gives the ratio of their times, with the range of the middle half of the rounds.",
+            "and the table gives the ratio of their times, with the range of the middle half of the rounds.\n"
+            "\n"
+            "With --pixel, follows one path of that pixel, step by step; --first-sample says which one.",
         .examples = "  ballpark explain scenes/cover.json\n"
                     "  ballpark explain scenes/*.json --json effects.json\n"
-                    "  ballpark explain scenes/v4-13-metal.json --measure\n",
-        .options = (TAKES_DRAWING & ~TAKES(EFFECTS)) | TAKES(MEASURE) | TAKES(JSON) | TAKES(SAMPLER) | TAKES(FORCE) |
-                   TAKES(QUIET),
+                    "  ballpark explain scenes/v4-13-metal.json --measure\n"
+                    "  ballpark explain scenes/cover.json --pixel 600,300\n",
+        .options = (TAKES_DRAWING & ~TAKES(EFFECTS)) | TAKES(PIXEL) | TAKES(FIRST_SAMPLE) | TAKES(MEASURE) |
+                   TAKES(JSON) | TAKES(SAMPLER) | TAKES(FORCE) | TAKES(QUIET),
         .run = bp_command_explain,
     },
     {

@@ -5,6 +5,7 @@ Usage: test_explain.py BALLPARK SCENES
 
 import json
 import pathlib
+import struct
 import subprocess
 import sys
 import tempfile
@@ -47,6 +48,29 @@ with tempfile.TemporaryDirectory() as folder:
     run("explain", scenes / "nothing-like-this.json", "--json", target, code=2)
     run("explain", paths[0], "--measure", "--device", "nothing like this", "--json", target, code=1)
     assert not target.exists()
+
+    # A path's steps hang together, and its radiance is that of the rendered pixel.
+    picture, scene = pathlib.Path(folder, "one.pfm"), scenes / "v4-18-glass-hollow.json"
+    run("render", scene, "--width", 48, "--spp", 1, "--seed", 7, "-o", picture, "--quiet")
+    words, values = picture.read_bytes().split(b"\n", 3)[:3], picture.read_bytes().split(b"\n", 3)[3]
+    width, height = map(int, words[1].split())
+    assert words[0] == b"PF" and float(words[2]) < 0 and (width, height) == (48, 27), words
+    lengths = set()
+    for x, y in ((0, 0), (24, 13), (15, 14), (12, 20), (35, 14), (24, 25)):
+        place = ((height - 1 - y) * width + x) * 12  # rows of a PFM go upwards
+        pixel = struct.unpack("<3f", values[place : place + 12])
+        run("explain", scene, "--pixel", f"{x},{y}", "--width", 48, "--seed", 7, "--json", target)
+        path = json.loads(target.read_text())["scenes"][0]["path"]
+        steps = path["steps"]
+        assert path["pixel"] == [x, y] and not path["cut"]
+        for before, after in zip(steps, steps[1:]):
+            assert before["met"] and before["goes_on"] and before["point"] == after["origin"], path
+        assert all(abs(a - b) <= 1e-6 for a, b in zip(steps[-1]["radiance"], pixel)), (pixel, path)
+        lengths.add(len(steps))
+        text = run("explain", scene, "--pixel", f"{x},{y}", "--width", 48, "--seed", 7).stdout
+        assert text.count("from (") == len(steps) and "meets nothing: the sky" in text, text
+    assert len(lengths) > 1, "every path is as long as the others"
+    run("explain", scene, "--pixel", "48,0", "--width", 48, code=2)
 
     # Measured: one kernel for each effect that is out, between the specialised and the general one.
     run("explain", scenes / "v4-sky.json", "--measure", "--width", 64, "--json", target)
