@@ -9,10 +9,19 @@
 #include <stdio.h>
 #include <string.h>
 
+/* Whether `text` has `word` standing by itself. */
+static bool has_word(const char *text, const char *word) {
+    const size_t length = strlen(word);
+    for (const char *at = strstr(text, word); length > 0 && at != NULL; at = strstr(at + 1, word))
+        if ((at == text || at[-1] == ' ') && strchr(" :;,", at[length]) != NULL)
+            return true; /* '\0' as well */
+    return false;
+}
+
 /* "ballpark: file:line:column: message", then the attachment (a build log) as it is. */
 static void print_error(const BpError *err, BpStatus status) {
     /* A message about a file as a whole often names it already. */
-    const bool names_file = err->line == 0 && strstr(err->message, err->file) != NULL;
+    const bool names_file = err->line == 0 && has_word(err->message, err->file);
     fputs("ballpark: ", stderr);
     if (err->file[0] != '\0' && !names_file) {
         fputs(err->file, stderr);

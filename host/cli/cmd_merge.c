@@ -77,7 +77,7 @@ BpStatus bp_command_merge(const BpCommandLine *line, BpError *err) {
     BP_TRY_GOTO(status, bp_result_write(line, &result, sum, (BpTransfer)sum->transfer, err), done);
     if (!line->quiet) {
         char nrmse[32], ranges[120];
-        bp_format_error(bp_accumulator_nrmse(sum), nrmse, sizeof nrmse);
+        bp_format_percent(bp_accumulator_nrmse(sum), nrmse, sizeof nrmse);
         describe_ranges(sum, ranges, sizeof ranges);
         fprintf(stderr, "%s: %" PRIu32 "x%" PRIu32 ", %" PRIu64 " samples a pixel (%s%s), error %s\n",
                 bp_result_name(&result), sum->width, sum->height, bp_accumulator_range_total(sum), ranges,

@@ -42,7 +42,7 @@ static void print_summary(const BpRunResult *result, const BpStopRule *rule, con
             info.width, info.height, result->samples_per_pixel,
             result->samples_per_pixel == 1 ? "sample" : "samples",
             result->accumulator->partial ? " and part of another round" : "",
-            bp_format_error(result->nrmse, text, sizeof text));
+            bp_format_percent(result->nrmse, text, sizeof text));
     fprintf(stderr, "%s samples in %s (%s/s)",
             bp_format_count((double)report->samples, samples, sizeof samples),
             bp_format_seconds(end->seconds, text, sizeof text),
@@ -75,9 +75,9 @@ static void print_summary(const BpRunResult *result, const BpStopRule *rule, con
             "out, hence fewer than %.1g do\n",
             samples, 3.0 / (double)report->samples);
     if (report->cut_paths > 0)
-        fprintf(stderr,
-                "%.2g %% of the paths were cut at %" PRIu32 " segments (--depth) and count as black\n",
-                100.0 * (double)report->cut_paths / (double)report->samples, result->options->max_depth);
+        fprintf(stderr, "%s of the paths were cut at %" PRIu32 " segments (--depth) and count as black\n",
+                bp_format_percent((double)report->cut_paths / (double)report->samples, text, sizeof text),
+                result->options->max_depth);
     if (report->invalid_samples > 0)
         fprintf(stderr, "warning: %" PRIu64 " samples were not finite; they are left out of the picture\n",
                 report->invalid_samples);

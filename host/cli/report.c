@@ -6,8 +6,8 @@
 #include <stdio.h>
 #include <string.h>
 
-const char *bp_format_error(double nrmse, char *text, size_t size) {
-    const double percent = 100.0 * nrmse;
+const char *bp_format_percent(double fraction, char *text, size_t size) {
+    const double percent = 100.0 * fraction;
     if (!isfinite(percent))
         snprintf(text, size, "unknown");
     else

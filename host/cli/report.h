@@ -7,8 +7,8 @@
 #include <stddef.h>
 #include <stdint.h>
 
-/* "1.2 %", or "unknown" for NaN. `nrmse` is a fraction. Returns `text`. */
-const char *bp_format_error(double nrmse, char *text, size_t size);
+/* "1.2 %", or "unknown" for NaN. Returns `text`. */
+const char *bp_format_percent(double fraction, char *text, size_t size);
 
 /* "0.45 s", "12 s", "3 min 20 s", "2 h 05 min". */
 const char *bp_format_seconds(double seconds, char *text, size_t size);

@@ -69,22 +69,22 @@ json_t *bp_stats_json(const BpRunResult *result) {
                   (json_int_t)result->samples_per_pixel, "max_depth", (json_int_t)options->max_depth, "seed",
                   json_seed(options->seed), "spheres", (json_int_t)info.spheres, "device",
                   device_json(&report->device), "effects", effects_json(&report->effects));
-    json_t *choices = json_pack("{s:s, s:s, s:s, s:s, s:s}", "kernel",
+    json_t *choices = json_pack("{s:s, s:s, s:s, s:s}", "kernel",
                                 report->kernel == BP_KERNEL_PACKET ? "packet" : "sample", "precision",
                                 report->precision == BP_PRECISION_DOUBLE ? "double" : "single", "math",
                                 report->math == BP_MATH_FAST ? "fast" : "strict", "sampler",
-                                report->sampler == BP_SAMPLER_SOBOL ? "sobol" : "independent", "numerics",
-                                report->numerics == BP_NUMERICS_PLAIN ? "plain" : "robust");
+                                report->sampler == BP_SAMPLER_SOBOL ? "sobol" : "independent");
     json_t *counts =
         json_pack("{s:o, s:I, s:I, s:[f,f,f], s:o, s:I, s:I}", "seconds", seconds_json(result), "samples",
                   (json_int_t)report->samples, "rays", (json_int_t)report->segments, "mean_radiance", mean[0],
                   mean[1], mean[2], "nrmse", json_number(result->nrmse), "invalid_samples",
                   (json_int_t)report->invalid_samples, "cut_paths", (json_int_t)report->cut_paths);
     json_t *run = json_pack(
-        "{s:o, s:I, s:i, s:b, s:s, s:i, s:I, s:I, s:s}", "output", json_text(result->output), "first_sample",
-        (json_int_t)options->first_sample, "replicates", (int)result->accumulator->replicates, "partial",
-        result->accumulator->partial, "stopped_by", bp_stop_reason_name(result->stopped_by), "devices",
-        (int)result->device_count, "device_bytes", (json_int_t)report->device_bytes, "scene_bytes",
+        "{s:s, s:o, s:I, s:i, s:b, s:s, s:i, s:I, s:I, s:s}", "numerics",
+        report->numerics == BP_NUMERICS_PLAIN ? "plain" : "robust", "output", json_text(result->output),
+        "first_sample", (json_int_t)options->first_sample, "replicates", (int)result->accumulator->replicates,
+        "partial", result->accumulator->partial, "stopped_by", bp_stop_reason_name(result->stopped_by),
+        "devices", (int)result->device_count, "device_bytes", (json_int_t)report->device_bytes, "scene_bytes",
         (json_int_t)report->scene_bytes, "version", bp_version());
     const bool whole = root != NULL && choices != NULL && counts != NULL && run != NULL &&
                        json_object_update(root, choices) == 0 && json_object_update(root, counts) == 0 &&

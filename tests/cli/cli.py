@@ -1,0 +1,111 @@
+"""What the tests of the program share: running it in a folder of its own, and small scenes.
+
+Each test file is run as: python3 test_X.py PROGRAM SOURCE_DIR [unittest's arguments]
+"""
+
+import json
+import os
+import shutil
+import subprocess
+import sys
+import tempfile
+import unittest
+
+PROGRAM = os.path.abspath(sys.argv[1]) if len(sys.argv) > 1 else ""
+SOURCE = os.path.abspath(sys.argv[2]) if len(sys.argv) > 2 else ""
+LIMIT_SECONDS = 300  # only so that a hang is a failure
+
+
+def scene(width=16, height=None, spheres=1, materials=None, **members):
+    """A scene document: `spheres` small ones in a row before the camera, or the list given."""
+    if isinstance(spheres, int):
+        spheres = [{"center": [0.3 * i - 0.1, 0, -1 - 0.01 * i], "radius": 0.5, "material": "m"}
+                   for i in range(spheres)]
+    camera = {"image_width": width, "samples_per_pixel": 8, "max_depth": 10}
+    if height is not None:
+        camera["image_height"] = height
+    camera.update(members.pop("camera", {}))
+    document = {"camera": camera,
+                "materials": materials or {"m": {"type": "lambertian", "albedo": [0.5, 0.4, 0.3]}},
+                "spheres": spheres}
+    document.update(members)
+    return document
+
+
+class ProgramTest(unittest.TestCase):
+    """Every test has an empty current folder, self.folder."""
+
+    maxDiff = None
+
+    def setUp(self):
+        self.folder = tempfile.mkdtemp(prefix="ballpark-cli-")
+        self.addCleanup(shutil.rmtree, self.folder)
+        self.environment = dict(os.environ, LC_ALL="C.UTF-8")
+
+    def path(self, name):
+        return os.path.join(self.folder, name)
+
+    def write(self, name, content):
+        """A file of text, bytes, or a JSON document; returns its name."""
+        if isinstance(content, (dict, list)):
+            content = json.dumps(content)
+        with open(self.path(name), "wb") as file:
+            file.write(content if isinstance(content, bytes) else content.encode())
+        return name
+
+    def read(self, name):
+        with open(self.path(name), "rb") as file:
+            return file.read()
+
+    def files(self):
+        return sorted(os.listdir(self.folder))
+
+    def run_program(self, *arguments, environment=None, stdin=subprocess.DEVNULL, stdout=subprocess.PIPE):
+        result = subprocess.run([PROGRAM, *map(str, arguments)], cwd=self.folder, stdin=stdin, stdout=stdout,
+                                stderr=subprocess.PIPE, timeout=LIMIT_SECONDS,
+                                env=dict(self.environment, **(environment or {})))
+        result.errors = result.stderr.decode(errors="replace")
+        return result
+
+    def assert_same(self, one, other, what=None):
+        """assertEqual for whole files, without showing them."""
+        self.assertTrue(one == other, f"differ: {what}")
+
+    def assert_different(self, one, other, what=None):
+        self.assertTrue(one != other, f"the same: {what}")
+
+    def succeed(self, *arguments, **options):
+        result = self.run_program(*arguments, **options)
+        self.assertEqual(result.returncode, 0, f"{arguments}: {result.errors}")
+        return result
+
+    def fail_with(self, code, *arguments, says=(), **options):
+        """Fails with the exit code, and a message of one "ballpark: " line that has every text of `says`."""
+        result = self.run_program(*arguments, **options)
+        self.assertEqual(result.returncode, code, f"{arguments}: {result.errors}")
+        self.assertRegex(result.errors, r"(?m)^ballpark: ")  # a driver may have its say first
+        for text in [says] if isinstance(says, str) else says:
+            self.assertIn(text, result.errors, arguments)
+        if options.get("stdout", subprocess.PIPE) == subprocess.PIPE:
+            self.assertEqual(result.stdout, b"", arguments)
+        return result
+
+
+def read_pfm(data):
+    """Width, height and the floats of a PFM, bottom row first as in the file."""
+    import array
+    kind, size, scale, rest = data.split(b"\n", 3)
+    assert kind == b"PF" and float(scale) == -1.0, (kind, scale)
+    width, height = map(int, size.split())
+    values = array.array("f")
+    values.frombytes(rest)
+    if sys.byteorder == "big":
+        values.byteswap()
+    assert len(values) == width * height * 3
+    return width, height, values
+
+
+def main():
+    if len(sys.argv) < 3:
+        sys.exit(__doc__)
+    unittest.main(argv=[sys.argv[0]] + sys.argv[3:], verbosity=1)

@@ -1,0 +1,214 @@
+"""`ballpark render`: what each option does to the picture, the statistics, the stop rules."""
+
+import json
+import math
+import os
+import shutil
+
+from cli import SOURCE, ProgramTest, main, read_pfm, scene
+
+
+class Render(ProgramTest):
+    def setUp(self):
+        super().setUp()
+        self.write("s.json", scene())
+
+    def pfm(self, *options, name="s.json"):
+        return self.succeed("render", name, "-o", "-", "--format", "pfm", "-q", *options).stdout
+
+    def stats(self, *options, name="s.json"):
+        return json.loads(self.succeed("render", name, "-o", "x.pfm", "-q", "--stats", "-", *options).stdout)
+
+
+class Picture(Render):
+    def test_options_that_change_the_picture(self):
+        whole = self.pfm()
+        self.assert_same(whole, self.pfm(), "the same run again")
+        for options in (["--seed", "1"], ["--first-sample", "8"], ["--spp", "9"], ["--depth", "1"],
+                        ["--width", "17"], ["--precision", "double"]):
+            with self.subTest(options):
+                self.assert_different(whole, self.pfm(*options), options)
+        self.assertEqual(read_pfm(self.pfm("--width", "17"))[:2], (17, 17))
+        self.assertEqual(set(read_pfm(self.pfm("--depth", "0"))[2]), {0.0})
+
+    def test_options_that_do_not(self):
+        whole = self.pfm()
+        for options in (["--seed", "0"], ["--first-sample", "0"], ["--spp", "8"], ["--depth", "10"],
+                        ["--kernel", "sample"], ["--kernel", "packet"], ["--effects", "all"], ["--device", "0"],
+                        ["--precision", "single"], ["--math", "strict"], ["--sampler", "independent"],
+                        ["--numerics", "robust"], ["--force"], ["--transfer", "srgb"]):
+            with self.subTest(options):
+                self.assert_same(whole, self.pfm(*options), options)
+
+    def test_choices_of_computing(self):
+        """Fast mathematics and plain numerics give about the same picture."""
+        _, _, right = read_pfm(self.pfm("--spp", "256"))
+        for options in (["--math", "fast"], ["--numerics", "plain"], ["--precision", "double"]):
+            _, _, values = read_pfm(self.pfm("--spp", "256", *options))
+            self.assertAlmostEqual(sum(values) / sum(right), 1.0, delta=0.01, msg=options)
+
+    def test_seeds_of_64_bits(self):
+        last = self.pfm("--seed", "18446744073709551615")
+        self.assert_same(last, self.pfm("--seed", "0xffffffffffffffff"))
+        self.assert_different(last, self.pfm("--seed", "4294967295"))
+        self.assertEqual(self.stats("--seed", str(2**63 - 1))["seed"], 2**63 - 1)
+        self.assertEqual(self.stats("--seed", "0xffffffffffffffff")["seed"], "18446744073709551615")
+
+    def test_transfer(self):
+        def bytes_of(*options):
+            return self.succeed("render", "s.json", "-o", "-", "--format", "ppm", "-q", *options).stdout
+        pictures = {transfer: bytes_of("--transfer", transfer) for transfer in ("gamma2", "srgb", "linear")}
+        self.assertEqual(len(set(pictures.values())), 3)
+        self.assertEqual(bytes_of(), pictures["gamma2"])
+        self.write("s.json", scene(transfer="srgb"))
+        self.assertEqual(bytes_of(), pictures["srgb"])
+
+    def test_device(self):
+        whole = self.pfm()
+        listed = json.loads(self.succeed("devices", "--json", "-").stdout)["devices"]
+        default = [device for device in listed if device["default"]][0]
+        for text in (str(default["number"]), default["name"], default["name"][2:8].upper()):
+            self.assert_same(whole, self.pfm("--device", text), text)
+        if len(listed) == 1:
+            self.assert_same(whole, self.pfm("--device", "all"))
+        self.fail_with(1, "render", "s.json", "--device", "99", says="99")
+        self.fail_with(1, "render", "s.json", "--device", "no such thing", says=[default["name"]])
+
+    def test_shapes(self):
+        for width, height in ((1, 1), (1, 2000), (2000, 1)):
+            with self.subTest(f"{width}x{height}"):
+                self.write("shape.json", scene(width, height))
+                self.assertEqual(read_pfm(self.pfm("--spp", "2", name="shape.json"))[:2], (width, height))
+
+    def test_numbers_of_spheres(self):
+        self.write("none.json", {"camera": {"image_width": 8}})
+        _, _, values = read_pfm(self.pfm(name="none.json"))
+        self.assertTrue(all(0.5 <= value <= 1.0 for value in values), "the sky")
+        many = [{"center": [(i % 317 - 158) * 0.02, (i // 317 - 158) * 0.02, -2], "radius": 0.008,
+                 "material": "m"} for i in range(100000)]
+        self.write("many.json", scene(spheres=many))
+        stats = self.stats("--spp", "4", name="many.json")
+        self.assertEqual(stats["spheres"], 100000)
+        self.assertIn("tree", stats["effects"])
+        self.assertGreater(stats["rays"], stats["samples"])
+
+    def test_too_large(self):
+        self.fail_with(1, "render", "s.json", "--width", "65535", says=["65535"])
+        self.fail_with(1, "render", "s.json", "--width", "32000", says=["--width"])
+        self.assertEqual(self.files(), ["s.json"])
+
+    def test_no_device(self):
+        result = self.fail_with(1, "render", "s.json", says="install",
+                                environment={"OCL_ICD_VENDORS": self.path("none") + "/"})
+        self.assertIn("OpenCL", result.errors)
+        self.fail_with(1, "devices", says="install", environment={"OCL_ICD_VENDORS": self.path("none") + "/"})
+        self.assertEqual(self.files(), ["s.json"])
+
+    def test_a_kernel_that_does_not_build(self):
+        """The whole build log, with the place in the kernel's own file."""
+        shutil.copytree(os.path.join(SOURCE, "kernels"), self.path("kernels"))
+        with open(self.path("kernels/trace.cl"), "a") as file:
+            file.write("\nvoid broken(void) { this_is_no_function(); }\n")
+        with open(os.path.join(SOURCE, "kernels/trace.cl")) as file:
+            line = len(file.readlines()) + 2
+        result = self.fail_with(1, "render", "s.json", says=[f"trace.cl:{line}:", "this_is_no_function"],
+                                environment={"BALLPARK_KERNELS": self.path("kernels")})
+        self.assertIn("\n\n", result.errors, "the log stands below the message")
+
+
+class Statistics(Render):
+    FIXED = {"scene": str, "width": int, "height": int, "samples_per_pixel": int, "max_depth": int, "seed": int,
+             "spheres": int, "device": dict, "effects": list, "kernel": str, "precision": str, "math": str,
+             "sampler": str, "seconds": dict, "samples": int, "rays": int, "mean_radiance": list, "nrmse": float,
+             "invalid_samples": int}
+
+    def test_names_and_types(self):
+        stats = self.stats()
+        self.assertEqual(list(stats)[:len(self.FIXED)], list(self.FIXED))
+        for name, kind in self.FIXED.items():
+            self.assertIs(type(stats[name]), kind, name)
+        self.assertEqual(set(stats["device"]), {"platform", "name", "driver", "type"})
+        self.assertIn(stats["device"]["type"], ("cpu", "gpu", "other"))
+        self.assertLessEqual({"total", "load", "tree", "kernel_build", "trace", "write"}, set(stats["seconds"]))
+        for name, seconds in stats["seconds"].items():
+            self.assertGreaterEqual(seconds, 0.0, name)
+            self.assertLessEqual(seconds, stats["seconds"]["total"], name)
+        self.assertEqual(len(stats["mean_radiance"]), 3)
+
+    def test_values(self):
+        stats = self.stats("--seed", "5", "--depth", "7", "--spp", "6", "--width", "12", "--precision", "double")
+        expected = {"scene": "s.json", "width": 12, "height": 12, "samples_per_pixel": 6, "max_depth": 7, "seed": 5,
+                    "spheres": 1, "effects": ["lambertian", "gradient"], "precision": "double", "math": "strict",
+                    "sampler": "independent", "samples": 12 * 12 * 6, "invalid_samples": 0, "stopped_by": "samples",
+                    "partial": False, "output": "x.pfm", "first_sample": 0}
+        self.assertEqual({name: stats[name] for name in expected}, expected)
+        self.assertTrue(stats["samples"] < stats["rays"] <= 7 * stats["samples"])
+        width, height, values = read_pfm(self.read("x.pfm"))
+        for channel in range(3):
+            mean = math.fsum(values[channel::3]) / (width * height)
+            self.assertAlmostEqual(stats["mean_radiance"][channel], mean, delta=1e-6)
+        self.assertEqual(self.stats("--kernel", "sample")["kernel"], "sample")
+        self.assertEqual(self.stats("--kernel", "packet")["kernel"], "packet")
+        self.assertEqual(self.stats("--math", "fast")["math"], "fast")
+        self.assertEqual(len(self.stats("--effects", "all")["effects"]), 8)
+
+    def test_no_error_known(self):
+        self.assertIsNone(self.stats("--spp", "1")["nrmse"], "one replicate")
+        self.assertIsNone(self.stats("--depth", "0")["nrmse"], "black")
+
+    def test_cut_paths(self):
+        """In a closed white ball without light every path is cut."""
+        self.write("ball.json", scene(spheres=[{"center": [0, 0, 0], "radius": 5, "material": "m"}]))
+        stats = self.stats("--depth", "4", name="ball.json")
+        self.assertEqual(stats["cut_paths"], stats["samples"])
+        self.assertEqual(stats["rays"], 4 * stats["samples"])
+        said = self.succeed("render", "ball.json", "--depth", "4", "-o", "x.png").errors
+        self.assertIn("100 % of the paths were cut at 4 segments", said)
+
+
+class StopRules(Render):
+    def test_error(self):
+        stats = self.stats("--error", "0.5")
+        self.assertEqual(stats["stopped_by"], "error")
+        self.assertLessEqual(stats["nrmse"], 0.005)
+        self.assertGreater(stats["nrmse"], 0.0042, "not many times the samples needed")
+        self.assertEqual(stats["samples"], stats["samples_per_pixel"] * 256)
+        again = self.stats("--error", "0.5")
+        self.assertEqual(stats["samples_per_pixel"], again["samples_per_pixel"], "the clock has no say")
+        whole = self.read("x.pfm")
+        self.assert_same(whole, self.pfm("--spp", str(stats["samples_per_pixel"])), "the same render is the same")
+
+    def test_error_and_samples(self):
+        stats = self.stats("--error", "0.001", "--spp", "300")
+        self.assertEqual((stats["stopped_by"], stats["samples_per_pixel"]), ("samples", 300))
+        said = self.succeed("render", "s.json", "--error", "0.001", "--spp", "300", "-o", "x.png").errors
+        self.assertIn("not reached", said)
+
+    def test_time(self):
+        stats = self.stats("--time", "0.5")
+        self.assertEqual(stats["stopped_by"], "time")
+        self.assertGreater(stats["samples_per_pixel"], 8, "the scene's own count is no limit")
+        if not stats["partial"]:
+            self.assert_same(self.read("x.pfm"), self.pfm("--spp", str(stats["samples_per_pixel"])))
+
+    def test_black(self):
+        self.write("dark.json", scene(background=[0, 0, 0]))
+        said = self.succeed("render", "dark.json", "--error", "1", "-o", "x.png").errors
+        self.assertIn("the picture is black", said)
+        self.assertEqual(self.stats("--error", "1", name="dark.json")["stopped_by"], "black")
+
+    def test_constant(self):
+        self.write("plain.json", scene(spheres=0, background=[0.5, 0.5, 0.5]))
+        stats = self.stats("--error", "1", name="plain.json")
+        self.assertEqual((stats["stopped_by"], stats["nrmse"]), ("constant", 0.0))
+        said = self.succeed("render", "plain.json", "--error", "1", "-o", "x.png").errors
+        self.assertIn("the samples of every pixel agree", said)
+
+    def test_summary(self):
+        said = self.succeed("render", "s.json").errors
+        self.assertRegex(said, r"\As\.png: 16x16, 8 samples a pixel, error [\d.]+ %\n"
+                               r"2\.05 thousand samples in [\d.]+ s \([\d.]+ .*/s\); half the error: [\d.]+ s more\n")
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,185 @@
+"""What a person at a terminal sees: the progress bar, its width, and Ctrl-C."""
+
+import fcntl
+import json
+import os
+import pty
+import re
+import select
+import signal
+import struct
+import subprocess
+import termios
+import time
+import unicodedata
+
+from cli import LIMIT_SECONDS, PROGRAM, ProgramTest, main, scene
+
+FOREVER = ("--spp", "60000000")
+
+
+class Terminal:
+    """The program with its standard error (and output, unless told) on a terminal of `columns`."""
+
+    def __init__(self, test, *arguments, columns=80, stdout=None, environment=None):
+        self.master, slave = pty.openpty()
+        fcntl.ioctl(slave, termios.TIOCSWINSZ, struct.pack("HHHH", 24, columns, 0, 0))
+        values = {**test.environment, "TERM": "xterm", **(environment or {})}
+        self.process = subprocess.Popen([PROGRAM, *arguments], cwd=test.folder, stdin=slave, stderr=slave,
+                                        stdout=slave if stdout is None else stdout, env=values,
+                                        start_new_session=True)
+        os.close(slave)
+        self.seen = b""
+        self.deadline = time.monotonic() + LIMIT_SECONDS
+        test.addCleanup(self.close)
+
+    def close(self):
+        if self.process.poll() is None:
+            self.process.kill()
+            self.process.wait()
+        os.close(self.master)
+
+    def read_until(self, pattern=None):
+        """Reads until `pattern` has been seen, or the program has ended."""
+        while pattern is None or not re.search(pattern, self.seen):
+            if time.monotonic() > self.deadline:
+                raise AssertionError(f"waited too long for {pattern}: {self.seen[-500:]}")
+            ready, _, _ = select.select([self.master], [], [], 0.1)
+            if ready:
+                try:
+                    self.seen += os.read(self.master, 65536)
+                except OSError:  # the other end is closed
+                    break
+            elif self.process.poll() is not None:
+                break
+        return self.seen
+
+    def finish(self):
+        self.read_until()
+        return self.process.wait(timeout=LIMIT_SECONDS)
+
+    def drawings(self):
+        """The texts of the status line, one after the other."""
+        return [text.decode() for text in re.findall(rb"\r([^\r\n\x1b]*)\x1b\[K", self.seen)]
+
+
+class Bar(ProgramTest):
+    def setUp(self):
+        super().setUp()
+        self.write("s.json", scene(64))
+
+    def draw(self, *options, seconds="0.7", **terminal):
+        screen = Terminal(self, "render", "s.json", "--time", seconds, *options, **terminal)
+        self.assertEqual(screen.finish(), 0, screen.seen)
+        return screen
+
+    def test_what_it_says(self):
+        screen = self.draw(seconds="1.5")
+        bars = [text for text in screen.drawings() if "%" in text]
+        self.assertGreater(len(bars), 2)
+        self.assertRegex(bars[-1], r"^[█░▏▎▍▌▋▊▉]+ +\d+ %  \d+ s left  error [\d.]+ %  [\d.]+ \w+ samples/s$")
+        shares = [int(re.search(r"(\d+) %", text)[1]) for text in bars]
+        self.assertGreater(shares[-1], shares[0])
+        self.assertEqual(screen.drawings()[-1], "", "it takes itself away")
+        self.assertRegex(screen.seen.decode().split("\x1b[K")[-1], r"^s\.png: 64x64, ")
+
+    def test_width(self):
+        for columns in (20, 33, 60, 80, 200):
+            for text in self.draw(columns=columns).drawings():
+                self.assertLess(sum(not unicodedata.combining(c) for c in text), columns, text)
+
+    def test_plain_letters(self):
+        screen = self.draw(environment={"LC_ALL": "C"})
+        self.assertTrue(screen.seen.isascii())
+        self.assertIn(b"#", screen.seen)
+
+    def test_nothing_where_it_is_not_wanted(self):
+        self.assertNotIn(b"\x1b", self.draw("--quiet").seen)
+        self.assertEqual(self.draw("--quiet").seen, b"")
+        self.assertNotIn(b"\x1b", self.draw(environment={"TERM": "dumb"}).seen)
+        piped = self.succeed("render", "s.json", "--time", "0.7")
+        self.assertNotIn("\x1b", piped.errors)
+        self.assertNotIn("\r", piped.errors)
+
+    def test_no_picture_on_a_terminal(self):
+        screen = Terminal(self, "render", "s.json", "-o", "-")
+        self.assertEqual(screen.finish(), 2)
+        self.assertIn(b"terminal", screen.seen)
+        with open(self.path("out.ppm"), "wb") as file:
+            screen = Terminal(self, "render", "s.json", "-o", "-", "--format", "ppm", stdout=file)
+            self.assertEqual(screen.finish(), 0)
+        self.assertTrue(self.read("out.ppm").startswith(b"P6\n64 64\n"))
+
+    def test_waiting(self):
+        """A scene that takes a while to read says so; a pipe that is slow to deliver it stands in for a large one."""
+        os.mkfifo(self.path("slow.json"))
+        screen = Terminal(self, "render", "slow.json", "--spp", "1")
+        screen.read_until(rb"reading slow\.json")
+        with open(self.path("slow.json"), "wb") as pipe:
+            pipe.write(b'{"camera": {}, "spheres": 3}')
+        self.assertEqual(screen.finish(), 2)
+        self.assertNotRegex(screen.seen.decode().split("\x1b[K")[-1], "reading")
+
+
+class Interrupt(ProgramTest):
+    def setUp(self):
+        super().setUp()
+        self.write("s.json", scene(64))
+
+    def stop(self, *options, by=signal.SIGINT, wait_for=rb"left  error"):
+        screen = Terminal(self, "render", "s.json", *FOREVER, *options)
+        screen.read_until(wait_for)
+        os.kill(screen.process.pid, by)
+        self.assertEqual(screen.finish(), 130, screen.seen)
+        return screen.seen.decode().split("\x1b[K")[-1]
+
+    def test_picture_is_there(self):
+        for by in (signal.SIGINT, signal.SIGTERM):
+            said = self.stop("-o", f"{by.name}.png", "--stats", "stats.json", by=by)
+            samples = int(re.search(r"interrupted after (\d+) of 60000000 samples a pixel", said)[1])
+            self.assertGreater(samples, 0)
+            self.assertIn(f"{by.name}.png", said)
+            self.assertTrue(self.read(f"{by.name}.png").endswith(b"IEND\xaeB`\x82"))
+            stats = json.loads(self.read("stats.json"))
+            self.assertEqual((stats["samples_per_pixel"], stats["stopped_by"]), (samples, "interrupt"))
+            self.assertGreaterEqual(stats["samples"], samples * 64 * 64)
+        self.assertEqual(self.files(), ["SIGINT.png", "SIGTERM.png", "s.json", "stats.json"])
+
+    def test_control_c_from_the_keyboard(self):
+        screen = Terminal(self, "render", "s.json", *FOREVER)
+        # A session of its own has no controlling terminal: the key is stood in for by the signal to the group.
+        screen.read_until(rb"left  error")
+        os.killpg(screen.process.pid, signal.SIGINT)
+        os.killpg(screen.process.pid, signal.SIGINT)
+        self.assertEqual(screen.finish(), 130)
+        self.assertIn("s.png", self.files())
+
+    def test_quiet_still_tells(self):
+        process = subprocess.Popen([PROGRAM, "render", "s.json", *FOREVER, "--quiet"], cwd=self.folder,
+                                   stderr=subprocess.PIPE, env=self.environment)
+        # Without a bar nothing tells from outside that the first samples are there; the picture tells in the end.
+        time.sleep(3.0)
+        process.send_signal(signal.SIGINT)
+        _, errors = process.communicate(timeout=LIMIT_SECONDS)
+        self.assertEqual(process.returncode, 130)
+        if "s.png" in self.files():
+            self.assertRegex(errors.decode(), r"\Aballpark: interrupted after \d+ of 60000000")
+
+    def test_sums_that_were_interrupted_can_be_kept(self):
+        self.stop("-o", "a.bpa")
+        self.succeed("merge", "a.bpa", "-o", "a.png")
+
+    def test_before_anything_is_there(self):
+        """Nothing to save: it ends at once, and an old picture stays."""
+        self.write("s.png", "precious")
+        os.mkfifo(self.path("slow.json"))
+        screen = Terminal(self, "render", "slow.json", "-o", "s.png")
+        screen.read_until(rb"reading slow\.json")
+        os.kill(screen.process.pid, signal.SIGINT)
+        self.assertEqual(screen.process.wait(timeout=LIMIT_SECONDS), 130)
+        self.assertEqual(self.read("s.png"), b"precious")
+        self.assertEqual(self.files(), ["s.json", "s.png", "slow.json"])
+
+
+if __name__ == "__main__":
+    main()
