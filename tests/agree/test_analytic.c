@@ -1,5 +1,6 @@
-/* test_analytic.c: closed forms against the reference tracer. */
+/* test_analytic.c: closed forms against the reference tracer and against the kernel. */
 #include "analytic.h"
+#include "check/check.h"
 #include "check/statistics.h"
 #include "reference/reference.h"
 #include "unit_test.h"
@@ -47,35 +48,67 @@ static int judge(const AnalyticCase *analytic, const BpSums *sums, double tolera
     return !(worst < z_limit);
 }
 
-static void reference(void **state) {
-    (void)state;
+typedef void Tracer(const BpScene *scene, uint64_t first_sample, uint64_t samples, uint64_t seed,
+                    BpSums *sums);
+
+static void trace_reference(const BpScene *scene, uint64_t first_sample, uint64_t samples, uint64_t seed,
+                            BpSums *sums) {
+    const BpReferenceOptions options = {
+        .first_sample = first_sample, .samples = samples, .seed = seed, .max_depth = scene->camera.max_depth};
+    assert_int_equal(bp_reference_render(scene, &options, sums, NULL, NULL), BP_OK);
+}
+
+static void trace_kernel(const BpScene *scene, uint64_t first_sample, uint64_t samples, uint64_t seed,
+                         BpSums *sums) {
+    BpRender *render = NULL;
+    BpError err = {0};
+    BpRenderOptions options;
+    bp_render_defaults(scene, &options);
+    options.first_sample = first_sample;
+    options.samples_per_pixel = samples;
+    options.seed = seed;
+    BpStatus status = bp_render_create(scene, &options, NULL, 0, &render, &err);
+    if (status == BP_OK) status = bp_check_render_kernel(render, sums, NULL, &err);
+    if (status != BP_OK) fail_msg("%s", err.message);
+    bp_render_destroy(&render);
+}
+
+/* Every case, to 1e-5 over all cases and channels together. */
+static void judge_all(Tracer *trace, double tolerance) {
     static AnalyticCase analytic;
     size_t cases = 0;
     while (analytic_case(cases, &analytic)) ++cases;
-    /* 1e-5 over all cases and channels together. */
     const double z_limit = bp_normal_upper_quantile(bp_level_bonferroni(1e-5, 3 * cases) / 2);
     int failures = 0;
     for (size_t i = 0; analytic_case(i, &analytic); ++i) {
         const BpScene *scene = &analytic.built.scene;
         BpSums sums;
         assert_int_equal(bp_sums_init(&sums, scene->camera.width, scene->camera.height, NULL), BP_OK);
-        const uint64_t pixels = (uint64_t)scene->camera.width * scene->camera.height;
-        BpReferenceOptions options = {.samples = 1000, .seed = 100 + i, .max_depth = scene->camera.max_depth};
-        assert_int_equal(bp_reference_render(scene, &options, &sums, NULL, NULL), BP_OK);
+        const uint64_t pixels = (uint64_t)scene->camera.width * scene->camera.height, few = 1000;
+        uint64_t samples = few;
+        trace(scene, 0, few, 100 + i, &sums);
         if (is_noisy(&sums)) {
-            options.first_sample = options.samples;
-            options.samples = 250000 / pixels - options.samples;
-            assert_int_equal(bp_reference_render(scene, &options, &sums, NULL, NULL), BP_OK);
+            samples = 250000 / pixels;
+            trace(scene, few, samples - few, 100 + i, &sums);
         }
-        for (size_t p = 0; p < pixels; ++p)
-            assert_int_equal(sums.pixels[p].count, options.first_sample + options.samples);
-        failures += judge(&analytic, &sums, 1e-10, z_limit);
+        for (size_t p = 0; p < pixels; ++p) assert_int_equal(sums.pixels[p].count, samples);
+        failures += judge(&analytic, &sums, tolerance, z_limit);
         bp_sums_clear(&sums);
     }
     assert_int_equal(failures, 0);
 }
 
+static void reference(void **state) {
+    (void)state;
+    judge_all(trace_reference, 1e-10);
+}
+
+static void kernel(void **state) {
+    (void)state;
+    judge_all(trace_kernel, BP_VERDICT_ROUNDING);
+}
+
 int main(void) {
-    const struct CMUnitTest tests[] = {cmocka_unit_test(reference)};
+    const struct CMUnitTest tests[] = {cmocka_unit_test(reference), cmocka_unit_test(kernel)};
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
