@@ -79,8 +79,9 @@ static void test_region(const BpSums *kernel, const BpSums *reference, const Reg
         const bool counted = (k.lit < LIT_FEW || r.lit < LIT_FEW) && k.samples > 0 && r.samples > 0;
         const double z = counted ? z_of_counts(&k, &r) : z_of_means(&k, &r, moment);
         if (z > worst->z || (channel == BP_SUMS_RED && region->column == 0 && region->row == 0)) {
-            const double limit = worst->limit;
-            *worst = (BpVerdictTest){.limit = limit,
+            const BpVerdictTest old = *worst;
+            *worst = (BpVerdictTest){.limit = old.limit,
+                                     .tests = old.tests,
                                      .z = z,
                                      .channel = channel,
                                      .column = region->column,
@@ -96,8 +97,10 @@ static uint32_t at_most(uint32_t value, uint32_t limit) {
     return value < limit ? value : limit;
 }
 
-static double family_limit(double level, int family, uint64_t tests) {
-    return bp_normal_upper_quantile(bp_level_bonferroni(level * level_share[family], tests) / 2);
+static void begin_family(BpVerdict *verdict, int family, uint32_t tests) {
+    const double level = bp_level_bonferroni(verdict->level * level_share[family], tests);
+    verdict->worst[family].limit = bp_normal_upper_quantile(level / 2);
+    verdict->worst[family].tests = tests;
 }
 
 static void test_families(const BpSums *kernel, const BpSums *reference, BpVerdict *verdict) {
@@ -108,10 +111,9 @@ static void test_families(const BpSums *kernel, const BpSums *reference, BpVerdi
     for (int moment = 1; moment <= 2; ++moment) {
         const int first = moment == 1 ? BP_FAMILY_PICTURE : BP_FAMILY_PICTURE_SQUARES;
         BpVerdictTest *picture = &verdict->worst[first], *worst = &verdict->worst[first + 1];
-        picture->limit = family_limit(verdict->level, first, 3);
+        begin_family(verdict, first, 3);
+        begin_family(verdict, first + 1, 3 * blocks);
         test_region(kernel, reference, &whole, moment, picture);
-
-        worst->limit = family_limit(verdict->level, first + 1, 3 * (uint64_t)blocks);
         for (uint32_t row = 0; row < verdict->block_rows; ++row) {
             for (uint32_t column = 0; column < verdict->block_columns; ++column) {
                 const Region block = {column * kernel->width / verdict->block_columns,

@@ -38,6 +38,7 @@ const char *bp_verdict_family_name(BpVerdictFamily family);
 /* The most suspicious test of a family. */
 typedef struct BpVerdictTest {
     double limit;             /* |z| above this rejects */
+    uint32_t tests;           /* in the family, which share its part of the level */
     double z;                 /* >= 0; 1e6 where there is no noise but a difference */
     int channel;              /* BP_SUMS_RED .. BLUE */
     uint32_t column, row;     /* of the block; 0 for the whole picture */

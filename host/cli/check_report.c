@@ -24,11 +24,11 @@ static json_t *device_json(const BpDeviceInfo *device) {
 
 static json_t *test_json(BpVerdictFamily family, const BpVerdictTest *test) {
     static const char *const channels[] = {"red", "green", "blue"};
-    return json_pack("{s:s, s:b, s:o, s:o, s:s, s:[i, i], s:o, s:o, s:b}", "family",
-                     bp_verdict_family_name(family), "rejected", test->z > test->limit, "z", number(test->z),
-                     "limit", number(test->limit), "channel", channels[test->channel], "block",
-                     (int)test->column, (int)test->row, "kernel", number(test->kernel), "reference",
-                     number(test->reference), "by_counts", test->counted);
+    return json_pack("{s:s, s:i, s:b, s:o, s:o, s:s, s:[i, i], s:o, s:o, s:b}", "family",
+                     bp_verdict_family_name(family), "tests", (int)test->tests, "rejected",
+                     test->z > test->limit, "z", number(test->z), "limit", number(test->limit), "channel",
+                     channels[test->channel], "block", (int)test->column, (int)test->row, "kernel",
+                     number(test->kernel), "reference", number(test->reference), "by_counts", test->counted);
 }
 
 json_t *bp_check_report_json(const BpCheckResult *result) {
