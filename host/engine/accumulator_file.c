@@ -210,7 +210,11 @@ done:
 BpStatus bp_accumulator_load(const char *path, BpAccumulator **accumulator, BpError *err) {
     *accumulator = NULL;
     FILE *in = fopen(path, "rb");
-    if (in == NULL) return bp_output_fail(err, "read", path, errno);
+    if (in == NULL) {
+        bp_fail(err, BP_ERR_FILE, "cannot read %s: %s; check the path", path, strerror(errno));
+        bp_error_at(err, path, 0, 0);
+        return BP_ERR_FILE;
+    }
     const BpStatus status = bp_accumulator_load_stream(in, path, accumulator, err);
     fclose(in);
     return status;

@@ -1,0 +1,117 @@
+"""`ballpark check`, `explain`, `bench` and `devices` as their user meets them: answers, documents, exit codes."""
+
+import json
+import os
+import shutil
+
+from cli import SOURCE, ProgramTest, main, scene
+
+
+class Check(ProgramTest):
+    SIZE = ("--width", "16", "--spp", "64")
+
+    def setUp(self):
+        super().setUp()
+        self.write("s.json", scene())
+
+    def broken_kernels(self, find, replace):
+        """A copy of the kernels with a fault, as BALLPARK_KERNELS."""
+        shutil.copytree(os.path.join(SOURCE, "kernels"), self.path("kernels"))
+        with open(self.path("kernels/sky.cl")) as file:
+            text = file.read()
+        self.assertEqual(text.count(find), 1, "the place of the fault has moved")
+        self.write("kernels/sky.cl", text.replace(find, replace))
+        return {"BALLPARK_KERNELS": self.path("kernels")}
+
+    def test_agree(self):
+        result = self.succeed("check", "s.json", *self.SIZE, "--json", "r.json", "--map", "map.png", "--seed", "7")
+        self.assertIn(b"agree", result.stdout)
+        report = json.loads(self.read("r.json"))
+        self.assertIs(type(report), dict)
+        self.assertTrue(self.read("map.png").startswith(b"\x89PNG"))
+        self.assertNotIn("\x1b", result.errors)
+        quiet = self.succeed("check", "s.json", *self.SIZE, "--quiet")
+        self.assertEqual(quiet.errors, "")
+
+    def test_all_devices(self):
+        result = self.succeed("check", "s.json", *self.SIZE, "--device", "all", "--json", "r.json")
+        listed = json.loads(self.succeed("devices", "--json", "-").stdout)["devices"]
+        text = self.read("r.json").decode()
+        for device in listed:
+            self.assertIn(device["name"], text)
+            self.assertIn(device["name"].encode(), result.stdout)
+
+    def test_disagree(self):
+        """A sky whose gradient runs the wrong way must be noticed."""
+        fault = self.broken_kernels("madd3(fma(splat(R(0.5)), direction.y", "madd3(fma(splat(R(-0.5)), direction.y")
+        result = self.run_program("check", "s.json", *self.SIZE, environment=fault)
+        self.assertEqual(result.returncode, 3, result.errors)
+        self.assertRegex(result.errors, r"(?m)^ballpark: .*disagree")
+
+    def test_wrong(self):
+        self.fail_with(2, "check", "none.json", says="none.json")
+        self.fail_with(1, "check", "s.json", "--device", "none", says="none")
+        self.fail_with(1, "check", "s.json", *self.SIZE, "--json", "no/such.json", says="no/such.json")
+        self.fail_with(1, "check", "s.json", *self.SIZE, "--map", "no/such.png", says="no/such.png")
+
+
+class Explain(ProgramTest):
+    def test_table(self):
+        self.write("s.json", scene())
+        self.write("other.json", scene(spheres=0))
+        text = self.succeed("explain", "s.json", "other.json").stdout.decode()
+        for word in ("s.json", "other.json", "lambertian", "dielectric"):
+            self.assertIn(word, text)
+        self.assertEqual(self.succeed("explain", "s.json", environment={"OCL_ICD_VENDORS": "/none/"}).returncode, 0,
+                         "no device is needed")
+
+    def test_pixel(self):
+        self.write("s.json", scene())
+        text = self.succeed("explain", "s.json", "--pixel", "8,8").stdout.decode()
+        self.assertIn("sphere 0", text)
+        self.assertIn("sky", text)
+        outside = self.run_program("explain", "s.json", "--pixel", "16,3")
+        self.assertEqual(outside.returncode, 2)
+        self.assertIn("16", outside.errors)
+        self.fail_with(2, "explain", "s.json", "--pixel", "3", says="--pixel")
+        self.fail_with(2, "explain", "s.json", "--pixel", "-3,1", says="--pixel")
+
+
+class Bench(ProgramTest):
+    def test_table_and_document(self):
+        self.write("s.json", scene(32))
+        result = self.succeed("bench", "s.json", "--rounds", "1", "--time", "0.2", "--json", "b.json", "-q")
+        self.assertIn(b"s", result.stdout)
+        report = json.loads(self.read("b.json"))
+        self.assertEqual(len(report["scenes"]), 1)
+        self.assertGreater(report["scenes"][0]["samples_per_second"]["median"], 0)
+        self.assertEqual(self.files(), ["b.json", "s.json"])
+        self.fail_with(2, "bench", "none.json", says="none.json")
+
+
+class Devices(ProgramTest):
+    def test_table(self):
+        text = self.succeed("devices").stdout.decode()
+        listed = json.loads(self.succeed("devices", "--json", "-").stdout)["devices"]
+        lines = text.split("\n")
+        for device in listed:
+            row = [line for line in lines if device["name"] in line]
+            self.assertTrue(row and device["platform"] in row[0] and device["driver"] in row[0], text)
+            for member in ("number", "type", "platform", "name", "vendor", "version", "driver", "compute_units",
+                           "memory_bytes", "largest_allocation_bytes", "double", "default", "refusal"):
+                self.assertIn(member, device)
+        self.assertEqual(sum(device["default"] for device in listed), 1)
+        self.assertIn("*", text)
+        # The columns stand below each other.
+        name_at = lines[0].index("name")
+        for device in listed:
+            self.assertEqual([line for line in lines if device["name"] in line][0].index(device["name"]), name_at)
+
+    def test_document(self):
+        self.succeed("devices", "--json", "d.json")
+        self.assertEqual(json.loads(self.read("d.json")), json.loads(self.succeed("devices", "--json", "-").stdout))
+        self.fail_with(1, "devices", "--json", "no/such.json", says="no/such.json")
+
+
+if __name__ == "__main__":
+    main()
