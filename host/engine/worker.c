@@ -13,9 +13,9 @@
 
 /* One work-item of the lane form follows this many pixel samples, eight at a time: enough that the last,
  * partly filled round weighs little, few enough that a small chunk still keeps all cores busy. */
-#define PACKET_SAMPLES_PER_ITEM 64u
+#define PACKET_SAMPLES_PER_ITEM 512u
 #define LOCAL_SIZE_SAMPLE 64u
-#define LOCAL_SIZE_PACKET 4u
+#define LOCAL_SIZE_PACKET 1u
 /* The first chunk only measures speed (and lets the driver finish compiling). */
 #define FIRST_CHUNK_SAMPLES 16384u
 /* Raw samples take at most this part of the device's memory. */
