@@ -125,15 +125,15 @@ static void test_leaf(const Geometry *geometry, const Ray *ray, real ray_margin,
 /* The three axes of box_ray.cl, and which of the six rows of a node hold the planes that are met first and last. */
 typedef struct BoxRay {
     real inverse[3], near_offset[3], far_offset[3];
-    uint near_plane[3], far_plane[3];
+    uint near_row[3], far_row[3]; /* in reals from the node's first */
 } BoxRay;
 
 static void set_box_axis(BoxRay *box, uint axis, real inverse, real near_offset, real far_offset) {
     box->inverse[axis] = inverse;
     box->near_offset[axis] = near_offset;
     box->far_offset[axis] = far_offset;
-    box->near_plane[axis] = inverse < 0 ? axis + 3 : axis;
-    box->far_plane[axis] = inverse < 0 ? axis : axis + 3;
+    box->near_row[axis] = (inverse < 0 ? axis + 3 : axis) * TREE_WIDTH;
+    box->far_row[axis] = (inverse < 0 ? axis : axis + 3) * TREE_WIDTH;
 }
 
 static BoxRay box_ray(const Ray *ray) {
@@ -145,16 +145,20 @@ static BoxRay box_ray(const Ray *ray) {
     return box;
 }
 
+/* A whole row, by its address: rows are aligned to their own size, and an offset that the compiler knows not to wrap
+ * makes it one load. */
+static wide row_of(__global const real *planes, uint row) { return *(__global const wide *)(planes + (size_t)row); }
+
 /* The children of `node` that the ray meets before `bound`: their lanes, and where it enters them. */
 static lane_bytes test_node(const Geometry *geometry, const BoxRay *box, uint node, real bound, wide *entry) {
     __global const real *planes = geometry->boxes + node * (6 * TREE_WIDTH);
     /* Written out, axis by axis: a loop is not always unrolled. */
-    const wide enter_x = fma(load_wide(box->near_plane[0], planes), (wide)box->inverse[0], (wide)box->near_offset[0]);
-    const wide enter_y = fma(load_wide(box->near_plane[1], planes), (wide)box->inverse[1], (wide)box->near_offset[1]);
-    const wide enter_z = fma(load_wide(box->near_plane[2], planes), (wide)box->inverse[2], (wide)box->near_offset[2]);
-    const wide leave_x = fma(load_wide(box->far_plane[0], planes), (wide)box->inverse[0], (wide)box->far_offset[0]);
-    const wide leave_y = fma(load_wide(box->far_plane[1], planes), (wide)box->inverse[1], (wide)box->far_offset[1]);
-    const wide leave_z = fma(load_wide(box->far_plane[2], planes), (wide)box->inverse[2], (wide)box->far_offset[2]);
+    const wide enter_x = fma(row_of(planes, box->near_row[0]), (wide)box->inverse[0], (wide)box->near_offset[0]);
+    const wide enter_y = fma(row_of(planes, box->near_row[1]), (wide)box->inverse[1], (wide)box->near_offset[1]);
+    const wide enter_z = fma(row_of(planes, box->near_row[2]), (wide)box->inverse[2], (wide)box->near_offset[2]);
+    const wide leave_x = fma(row_of(planes, box->far_row[0]), (wide)box->inverse[0], (wide)box->far_offset[0]);
+    const wide leave_y = fma(row_of(planes, box->far_row[1]), (wide)box->inverse[1], (wide)box->far_offset[1]);
+    const wide leave_z = fma(row_of(planes, box->far_row[2]), (wide)box->inverse[2], (wide)box->far_offset[2]);
     const wide enter_xy = enter_x > enter_y ? enter_x : enter_y;
     const wide enter_z0 = enter_z > (wide)0 ? enter_z : (wide)0;
     const wide near = enter_xy > enter_z0 ? enter_xy : enter_z0;
