@@ -35,20 +35,23 @@ static void init_rule(const BpCommandLine *line, const BpRenderOptions *options,
 
 static void print_summary(const BpRunResult *result, const BpStopRule *rule, const BpLoopEnd *end) {
     const BpRenderReport *report = &result->report;
-    char samples[32], text[32], rate[32];
+    char samples[32], text[32], rate[32], count[64];
     BpSceneInfo info;
     bp_scene_info(result->scene, &info);
-    fprintf(stderr, "%s: %" PRIu32 "x%" PRIu32 ", %" PRIu64 " %s a pixel%s, error %s\n", result->output,
-            info.width, info.height, result->samples_per_pixel,
-            result->samples_per_pixel == 1 ? "sample" : "samples",
-            result->accumulator->partial ? " and part of another round" : "",
+    snprintf(count, sizeof count, "%" PRIu64 " sample%s a pixel", result->samples_per_pixel,
+             result->samples_per_pixel == 1 ? "" : "s");
+    if (result->samples_per_pixel == 0) snprintf(count, sizeof count, "less than one sample a pixel");
+    fprintf(stderr, "%s: %" PRIu32 "x%" PRIu32 ", %s%s, error %s\n", result->output, info.width, info.height,
+            count,
+            result->accumulator->partial && result->samples_per_pixel > 0 ? " and part of another round" : "",
             bp_format_percent(result->nrmse, text, sizeof text));
+    /* The first launch, in which a driver may compile, says nothing about the rate. */
+    const double tracing = fmax(end->seconds - report->first_launch_seconds, 1.0e-9);
     fprintf(stderr, "%s samples in %s (%s/s)",
             bp_format_count((double)report->samples, samples, sizeof samples),
             bp_format_seconds(end->seconds, text, sizeof text),
-            bp_format_count((double)report->samples / fmax(end->seconds, 1.0e-9), rate, sizeof rate));
-    /* Half the error takes four times the samples; the kernel is not built again. */
-    const double more = 3.0 * (end->seconds - report->first_launch_seconds);
+            bp_format_count((double)report->samples / tracing, rate, sizeof rate));
+    const double more = 3.0 * tracing; /* half the error takes four times the samples */
     if (result->nrmse > 0.0)
         fprintf(stderr, "; half the error: %s more", bp_format_seconds(more, text, sizeof text));
     else if (isnan(result->nrmse))

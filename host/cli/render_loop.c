@@ -42,20 +42,24 @@ static BpStatus draw(BpRender *render, const BpStopRule *rule, const BpProgress 
     const double now = bp_clock_seconds();
     if (!bar->live || now - bar->drawn < REDRAW_SECONDS) return BP_OK;
     const double samples = (double)progress->samples_done / (double)pixels;
+    BpRenderReport report;
+    bp_render_report(render, &report);
+    /* The first launch, in which a driver may compile, says nothing about the rate. */
+    const double tracing = fmax(seconds - report.first_launch_seconds, 1.0e-3);
     BP_TRY(refresh_error(render, pixels, bar, err));
     /* Between two looks it falls with the square root of the samples. */
     const double nrmse = samples > 0.0 ? bar->nrmse * sqrt(bar->nrmse_samples / samples) : NAN;
     const BpStopState state = {.samples = (uint64_t)samples, .seconds = seconds, .nrmse = nrmse};
     const double expected = fmax(bp_stop_expected(rule, &state), samples);
     double fraction = samples / expected;
-    double left = samples > 0.0 ? seconds * (expected - samples) / samples : NAN;
+    double left = samples > 0.0 ? tracing * (expected - samples) / samples : NAN;
     if (rule->seconds > 0.0) {
         /* Until the first whole pass the clock is all there is to go by. */
         fraction = fmax(state.samples > 0 ? fraction : 0.0, fmin(1.0, seconds / rule->seconds));
         left = fmin(left, fmax(0.0, rule->seconds - seconds));
     }
     const BpProgressView view = {.fraction = fraction,
-                                 .samples_per_second = (double)progress->samples_done / seconds,
+                                 .samples_per_second = (double)progress->samples_done / tracing,
                                  .nrmse = nrmse,
                                  .seconds_left = left};
     bp_terminal_show(bp_progress_format(&view, bp_terminal_columns(), bp_terminal_has_utf8(), bar->text,
@@ -94,7 +98,8 @@ BpStatus bp_render_loop(BpRender *render, const BpStopRule *rule, uint64_t pixel
         BpProgress progress;
         BP_TRY_GOTO(status, bp_render_step(render, &progress, err), done);
         state.seconds = bp_clock_seconds() - start;
-        BP_TRY_GOTO(status, draw(render, rule, &progress, pixels, state.seconds, &bar, err), done);
+        if (!bp_interrupted())
+            BP_TRY_GOTO(status, draw(render, rule, &progress, pixels, state.seconds, &bar, err), done);
         uint64_t next = state.samples;
         if (progress.finished) {
             BP_TRY_GOTO(status, look(render, rule, &state, err), done);

@@ -69,11 +69,11 @@ json_t *bp_stats_json(const BpRunResult *result) {
                   (json_int_t)result->samples_per_pixel, "max_depth", (json_int_t)options->max_depth, "seed",
                   json_seed(options->seed), "spheres", (json_int_t)info.spheres, "device",
                   device_json(&report->device), "effects", effects_json(&report->effects));
-    json_t *choices = json_pack("{s:s, s:s, s:s, s:s}", "kernel",
-                                report->kernel == BP_KERNEL_PACKET ? "packet" : "sample", "precision",
-                                report->precision == BP_PRECISION_DOUBLE ? "double" : "single", "math",
-                                report->math == BP_MATH_FAST ? "fast" : "strict", "sampler",
-                                report->sampler == BP_SAMPLER_SOBOL ? "sobol" : "independent");
+    json_t *choices =
+        json_pack("{s:s, s:s, s:s, s:s}", "kernel", report->kernel == BP_KERNEL_PACKET ? "packet" : "sample",
+                  "precision", report->precision == BP_PRECISION_DOUBLE ? "double" : "single", "math",
+                  report->math == BP_MATH_FAST ? "fast" : "strict", "sampler",
+                  report->sampler == BP_SAMPLER_SOBOL ? "sobol" : "independent");
     json_t *counts =
         json_pack("{s:o, s:I, s:I, s:[f,f,f], s:o, s:I, s:I}", "seconds", seconds_json(result), "samples",
                   (json_int_t)report->samples, "rays", (json_int_t)report->segments, "mean_radiance", mean[0],
