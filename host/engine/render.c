@@ -50,7 +50,8 @@ static BpStatus check_options(const BpScene *scene, const BpRenderOptions *optio
                        (unsigned long long)BP_REPLICATE_SAMPLES_MAX * replicates);
     const uint64_t pixels = (uint64_t)scene->camera.width * scene->camera.height;
     if (pixels > UINT32_MAX / 4)
-        return bp_fail(err, BP_ERR_LIMIT, "a picture of %u x %u has %llu pixels; at most %u",
+        return bp_fail(err, BP_ERR_LIMIT,
+                       "a picture of %u x %u has %llu pixels; at most %u: use a smaller --width",
                        scene->camera.width, scene->camera.height, (unsigned long long)pixels, UINT32_MAX / 4);
     if (options->tree_width != 0 && options->tree_width != 2 && options->tree_width != 4 &&
         options->tree_width != 8)

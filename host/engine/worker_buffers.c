@@ -1,0 +1,103 @@
+/* worker_buffers.c: see worker_buffers.h. */
+#define BP_HOST
+#include "worker_buffers.h"
+
+#include "scene_types.h"
+
+#include <stdio.h>
+
+/* A buffer of `bytes` (at least one, since OpenCL knows no empty buffer), with `data` in it when there is
+ * any. */
+static BpStatus create_buffer(BpWorker *worker, cl_mem *buffer, uint64_t bytes, const void *data,
+                              const char *what, BpError *err) {
+    const BpDeviceInfo *info = &worker->device->info;
+    if (bytes > info->largest_allocation_bytes)
+        return bp_fail(err, BP_ERR_LIMIT,
+                       "%s takes %.1f MiB, but %s allows %.1f MiB in one allocation; "
+                       "use a smaller picture or scene, or another --device",
+                       what, (double)bytes / 1048576, info->name,
+                       (double)info->largest_allocation_bytes / 1048576);
+    cl_int code = CL_SUCCESS;
+    const cl_mem_flags flags = CL_MEM_READ_WRITE | (data != NULL && bytes > 0 ? CL_MEM_COPY_HOST_PTR : 0);
+    *buffer = clCreateBuffer(worker->device->context, flags, bytes > 0 ? (size_t)bytes : 16,
+                             bytes > 0 ? (void *)(uintptr_t)data : NULL, &code);
+    CL_TRY(worker, code, "clCreateBuffer");
+    return BP_OK;
+}
+
+BpStatus bp_worker_upload_scene(BpWorker *worker, const BpPacked *packed, BpError *err) {
+    const size_t real_size = worker->real_size;
+    const BpTree *tree = &packed->tree;
+    const uint64_t width = tree->width;
+    const uint64_t materials = packed->material_count > 0 ? packed->material_count : 1;
+    const uint64_t spheres = packed->sphere_count > 0 ? packed->sphere_count : 1;
+    const uint64_t albedos = packed->albedo_count > 0 ? packed->albedo_count : 1;
+    const struct {
+        cl_mem *buffer;
+        uint64_t bytes;
+        const void *data;
+        const char *what;
+    } uploads[] = {
+        {&worker->camera, sizeof(PackedCamera) / sizeof(real) * real_size, packed->camera, "the camera"},
+        {&worker->sky, sizeof(PackedSky) / sizeof(real) * real_size, packed->sky, "the background"},
+        {&worker->materials, materials * (sizeof(PackedMaterial) / sizeof(real)) * real_size,
+         packed->materials, "the table of materials"},
+        {&worker->kinds, materials * sizeof(PackedMaterialKind), packed->material_kinds,
+         "the table of materials"},
+        {&worker->looks, spheres * sizeof(PackedSphereLook), packed->looks, "the table of sphere materials"},
+        {&worker->albedos, albedos * 4 * real_size, packed->albedos, "the table of sphere colours"},
+        {&worker->boxes, tree->node_count * NODE_REALS(width) * real_size, tree->node_boxes,
+         "the tree's boxes"},
+        {&worker->children, tree->node_count * width * 4, tree->children, "the tree's nodes"},
+        {&worker->leaves, tree->leaf_count * LEAF_REALS(width) * real_size, tree->leaves, "the spheres"},
+        {&worker->slot_sphere, tree->leaf_count * width * 4, tree->slot_sphere, "the spheres' numbers"},
+    };
+    for (size_t i = 0; i < sizeof uploads / sizeof uploads[0]; ++i) {
+        BP_TRY(create_buffer(worker, uploads[i].buffer, uploads[i].bytes, uploads[i].data, uploads[i].what,
+                             err));
+        worker->scene_bytes += uploads[i].bytes;
+    }
+    return BP_OK;
+}
+
+BpStatus bp_worker_create_picture(BpWorker *worker, BpError *err) {
+    const uint64_t pixels = worker->pixels;
+    const uint64_t sums = pixels * worker->replicates * 3 * sizeof(cl_long);
+    const uint64_t counts = pixels * worker->replicates * sizeof(cl_uint);
+    const uint64_t tallies = pixels * 3 * sizeof(cl_ulong);
+    worker->picture_bytes = sums + counts + tallies;
+    const BpDeviceInfo *info = &worker->device->info;
+    if (worker->picture_bytes + worker->scene_bytes > info->memory_bytes)
+        return bp_fail(
+            err, BP_ERR_LIMIT,
+            "scene and picture take %.1f MiB, but %s has %.1f MiB; use a smaller --width or another --device",
+            (double)(worker->picture_bytes + worker->scene_bytes) / 1048576, info->name,
+            (double)info->memory_bytes / 1048576);
+    BP_TRY(create_buffer(worker, &worker->sums, sums, NULL, "the picture's sums", err));
+    BP_TRY(create_buffer(worker, &worker->counts, counts, NULL, "the picture's counts", err));
+    BP_TRY(create_buffer(worker, &worker->tallies, tallies, NULL, "the picture's tallies", err));
+    const cl_uint zero = 0; /* new buffers are not zeroed */
+    const struct {
+        cl_mem buffer;
+        uint64_t bytes;
+    } fills[] = {{worker->sums, sums}, {worker->counts, counts}, {worker->tallies, tallies}};
+    for (size_t i = 0; i < sizeof fills / sizeof fills[0]; ++i)
+        CL_TRY(worker,
+               clEnqueueFillBuffer(worker->device->queue, fills[i].buffer, &zero, sizeof zero, 0,
+                                   (size_t)fills[i].bytes, 0, NULL, NULL),
+               "clEnqueueFillBuffer");
+    return BP_OK;
+}
+
+/* Room for the raw samples of `count` pixel samples. Only called with nothing under way that uses the old
+ * room. */
+BpStatus bp_worker_reserve_samples(BpWorker *worker, uint32_t count, BpError *err) {
+    if (count <= worker->samples_capacity) return BP_OK;
+    if (worker->samples != NULL) clReleaseMemObject(worker->samples);
+    worker->samples = NULL;
+    worker->samples_capacity = 0;
+    BP_TRY(create_buffer(worker, &worker->samples, (uint64_t)count * 4 * worker->real_size, NULL,
+                         "the chunk's samples", err));
+    worker->samples_capacity = count;
+    return BP_OK;
+}

@@ -1,0 +1,64 @@
+/* look_up.cl: the sphere and the material at a hit, gathered for all lanes from the packed tables. */
+
+typedef struct Scene {
+    Geometry geometry;
+    __global const PackedSky *sky;
+    __global const real *materials; /* PackedMaterial */
+    __global const uint *kinds;     /* PackedMaterialKind */
+    __global const uint *looks;     /* PackedSphereLook */
+    __global const real *albedos;
+} Scene;
+
+/* The packed structs as the gathers see them: arrays of their only type. */
+#define LOOK_UINTS ((uint)(sizeof(PackedSphereLook) / sizeof(uint)))
+#define MATERIAL_UINTS ((uint)(sizeof(PackedMaterialKind) / sizeof(uint)))
+#define MATERIAL_REALS ((uint)(sizeof(PackedMaterial) / sizeof(real)))
+#define MATERIAL_EMIT 4u
+#define MATERIAL_FUZZ 8u
+#define MATERIAL_INDEX 9u
+
+/* The sphere and the material at each lane's slot; lanes that met nothing get those of slot 0. */
+static void look_up(const Scene *scene, const Meeting *meeting, Vec3 *centre, reals *radius, Surface *surface,
+                    Vec3 *emitted) {
+    const uints slot = choose_uint(meeting->met, meeting->slot, splat_uint(0));
+    const uints lane = slot % TREE_WIDTH;
+    const uints place = (slot - lane) * 4u + lane;
+    *centre = vec3(gather_reals(scene->geometry.leaves, place),
+                   gather_reals(scene->geometry.leaves, place + (uint)TREE_WIDTH),
+                   gather_reals(scene->geometry.leaves, place + (uint)(2 * TREE_WIDTH)));
+    *radius = gather_reals(scene->geometry.leaves, place + (uint)(3 * TREE_WIDTH));
+    const uints sphere = gather_uints(scene->geometry.slot_sphere, slot);
+    const uints material = gather_uints(scene->looks, sphere * LOOK_UINTS);
+    const uints colour = gather_uints(scene->looks, sphere * LOOK_UINTS + 1u);
+    const uints numbers = material * MATERIAL_REALS;
+    const uints kinds = material * MATERIAL_UINTS;
+    surface->albedo = vec3(gather_reals(scene->materials, numbers), gather_reals(scene->materials, numbers + 1u),
+                           gather_reals(scene->materials, numbers + 2u));
+    const masks own_colour = mask_of_uint(colour != splat_uint(NO_ALBEDO));
+    if (any_lane(own_colour)) {
+        const uints entry = choose_uint(own_colour, colour, splat_uint(0)) * 4u;
+        const Vec3 albedo = vec3(gather_reals(scene->albedos, entry), gather_reals(scene->albedos, entry + 1u),
+                                 gather_reals(scene->albedos, entry + 2u));
+        surface->albedo = choose3(own_colour, albedo, surface->albedo);
+    }
+    surface->kind = gather_uints(scene->kinds, kinds);
+    *emitted = zero3();
+#if EFFECT_EMISSION
+    *emitted = vec3(gather_reals(scene->materials, numbers + MATERIAL_EMIT),
+                    gather_reals(scene->materials, numbers + (MATERIAL_EMIT + 1u)),
+                    gather_reals(scene->materials, numbers + (MATERIAL_EMIT + 2u)));
+#endif
+#if EFFECT_LAMBERTIAN
+    surface->lobe = gather_uints(scene->kinds, kinds + 1u);
+#endif
+#if EFFECT_METAL
+    surface->fuzz = gather_reals(scene->materials, numbers + MATERIAL_FUZZ);
+#endif
+#if EFFECT_METAL || EFFECT_DIELECTRIC
+    surface->variant = gather_uints(scene->kinds, kinds + 2u);
+#endif
+#if EFFECT_DIELECTRIC
+    surface->refraction_index = gather_reals(scene->materials, numbers + MATERIAL_INDEX);
+    surface->total_reflection = gather_uints(scene->kinds, kinds + 3u);
+#endif
+}
