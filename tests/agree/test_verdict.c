@@ -2,36 +2,16 @@
  *
  * Nothing here touches a device: both sides are the reference, with other seeds, so every rejection is the
  * verdict's own. */
-#include "build_scene.h"
 #include "check/statistics.h"
 #include "check/verdict.h"
 #include "reference/reference.h"
 #include "unit_test.h"
+#include "verdict_scenes.h"
 
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-
-/* Coloured matte spheres under three lamps and a dim sky: noise in every channel, of different sources. */
-static void coloured_scene(BuiltScene *built) {
-    built_scene_init(built);
-    BpMaterial *material;
-    const double places[3][2] = {{-1.5, -2}, {0, -3}, {1.5, -2}};
-    for (int c = 0; c < 3; ++c) {
-        const uint32_t matte = built_material(built, BP_MATERIAL_LAMBERTIAN, 0.4, NULL);
-        const uint32_t lamp = built_material(built, BP_MATERIAL_DIFFUSE_LIGHT, 0, &material);
-        material->emit[c] = 12;
-        built->scene.background_bottom[c] = 0.1;
-        built->scene.background_top[c] = 0.3;
-        built_sphere(built, places[c][0], 0, places[c][1], 0.5, matte);
-        built_sphere(built, places[2 - c][0], 2, places[c][1], 0.4, lamp);
-    }
-    built_sphere(built, 0, -100.5, -2, 100, 0);
-    BpCamera *camera = &built->scene.camera;
-    camera->width = camera->height = 16;
-    camera->pixel_sampling = BP_PIXEL_SQUARE;
-}
 
 static void draw(const BpScene *scene, uint64_t samples, uint64_t seed, BpSums *sums) {
     const BpReferenceOptions options = {.samples = samples, .seed = seed, .max_depth = 6};

@@ -1,0 +1,143 @@
+/* test_kernel_power.c: how often the check rejects the kernel: the true one over 200 seeds, and kernels that
+ * were made too bright by factors chosen for a predicted power. */
+#include "check/check.h"
+#include "check/statistics.h"
+#include "kernel_copy.h"
+#include "reference/reference.h"
+#include "verdict_scenes.h"
+
+#include <math.h>
+
+static void draw_kernel(const BpScene *scene, uint64_t samples, uint64_t seed, BpSums *sums) {
+    BpRender *render = NULL;
+    BpRenderOptions options;
+    BpError err = {0};
+    bp_render_defaults(scene, &options);
+    options.samples_per_pixel = samples;
+    options.max_depth = 6;
+    options.seed = seed;
+    BpStatus status = bp_sums_init(sums, scene->camera.width, scene->camera.height, &err);
+    if (status == BP_OK) status = bp_render_create(scene, &options, NULL, 0, &render, &err);
+    if (status == BP_OK) status = bp_check_render_kernel(render, sums, NULL, &err);
+    if (status != BP_OK) fail_msg("%s\n%s", err.message, err.attachment != NULL ? err.attachment : "");
+    bp_render_destroy(&render);
+}
+
+static void draw_reference(const BpScene *scene, uint64_t samples, uint64_t seed, BpSums *sums) {
+    const BpReferenceOptions options = {.samples = samples, .seed = ~seed, .max_depth = 6};
+    assert_int_equal(bp_sums_init(sums, scene->camera.width, scene->camera.height, NULL), BP_OK);
+    assert_int_equal(bp_reference_render(scene, &options, sums, NULL, NULL), BP_OK);
+}
+
+static BpVerdict check(const BpScene *scene, uint64_t samples, uint64_t seed, double level) {
+    BpSums kernel, reference;
+    BpVerdict verdict;
+    draw_kernel(scene, samples, seed, &kernel);
+    draw_reference(scene, samples, seed, &reference);
+    assert_int_equal(bp_verdict(&kernel, &reference, level, &verdict, NULL), BP_OK);
+    bp_sums_clear(&kernel);
+    bp_sums_clear(&reference);
+    return verdict;
+}
+
+static void control(void **state) {
+    (void)state;
+    BuiltScene built;
+    coloured_scene(&built);
+    int rejected = 0, interval_missed = 0;
+    for (uint64_t seed = 0; seed < 200; ++seed) {
+        const BpVerdict verdict = check(&built.scene, 200, seed, 0.05);
+        rejected += !verdict.agree;
+        interval_missed += verdict.ratio_low > 1 || verdict.ratio_high < 1;
+    }
+    printf("control: rejected %d of 200 at 0.05; the 95 %% interval missed 1 %d times\n", rejected,
+           interval_missed);
+    assert_in_range(rejected, 2, 21);
+    assert_true(bp_binomial_two_sided((uint64_t)interval_missed, 200, 0.05) > 1e-4);
+}
+
+/* The mean of a pixel's samples over the picture, and the variance of one sample's share in it. */
+static void measure(const BpScene *scene, double *mean, double *variance) {
+    BpSums sums;
+    draw_reference(scene, 4096, 99, &sums);
+    *mean = *variance = 0;
+    const double pixels = (double)sums.width * sums.height;
+    for (size_t p = 0; p < (size_t)sums.width * sums.height; ++p) {
+        const double m = sums.pixels[p].sum[0] / 4096;
+        *mean += m / pixels;
+        *variance += (sums.pixels[p].sum2[0] / 4096 - m * m) / (pixels * pixels);
+    }
+    bp_sums_clear(&sums);
+}
+
+static void calibrated(void **state) {
+    (void)state;
+    BuiltScene built;
+    grey_scene(&built);
+    double mean, variance;
+    measure(&built.scene, &mean, &variance);
+    const double limit = bp_normal_upper_quantile(bp_level_bonferroni(0.45 * BP_VERDICT_LEVEL, 3) / 2);
+    const double powers[3] = {0.1, 0.5, 0.9}, samples = 256;
+    for (int i = 0; i < 3; ++i) {
+        double bias = 0;
+        for (int step = 0; step < 20; ++step) { /* the brighter side is noisier in proportion */
+            const double error = sqrt(variance * (1 + pow(1 + bias, 2)) / samples) / mean;
+            bias = bp_z_detectable(limit, powers[i]) * error + BP_VERDICT_ROUNDING;
+        }
+        char brighter[512];
+        snprintf(brighter, sizeof brighter,
+                 "paths.radiance = choose3(ended, scale3(splat(R(%.9f)), paths.radiance), paths.radiance);\n"
+                 "store_lanes(paths.radiance.x, red);",
+                 1 + bias);
+        KernelCopy copy;
+        kernel_copy_open(&copy, "trace.cl", "store_lanes(paths.radiance.x, red);", brighter);
+        int by_picture = 0, rejected = 0;
+        for (uint64_t run = 0; run < 100; ++run) {
+            const BpVerdict verdict =
+                check(&built.scene, (uint64_t)samples, 1000 * (uint64_t)(i + 1) + run, 1e-4);
+            by_picture += verdict.worst[BP_FAMILY_PICTURE].z > limit;
+            rejected += !verdict.agree;
+        }
+        kernel_copy_close(&copy);
+        const double p = bp_binomial_two_sided((uint64_t)by_picture, 100, powers[i]);
+        printf("calibrated: radiance x %.5f: predicted power %.1f, found by the picture's means %d, in all "
+               "%d of 100 "
+               "(p = %.4f)\n",
+               1 + bias, powers[i], by_picture, rejected, p);
+        assert_true(p > 1e-4);
+        assert_true(rejected >= by_picture);
+    }
+}
+
+/* 0.5 % too bright on a 64 x 64 diffuse scene at the default count: rejected at least 9 times of 10; the true
+ * kernel never. */
+static void half_percent(void **state) {
+    (void)state;
+    BuiltScene built;
+    built_scene_init(&built);
+    built_material(&built, BP_MATERIAL_LAMBERTIAN, 0.5, NULL);
+    built_sphere(&built, 0, -100.5, -1, 100, 0);
+    built_sphere(&built, 0, 0, -1, 0.5, 0);
+    built.scene.camera.width = built.scene.camera.height = 64;
+    built.scene.camera.pixel_sampling = BP_PIXEL_SQUARE;
+    int wrong = 0, right = 0;
+    for (uint64_t seed = 0; seed < 10; ++seed)
+        right += !check(&built.scene, BP_CHECK_SAMPLES_DEFAULT, seed, BP_VERDICT_LEVEL).agree;
+    KernelCopy copy;
+    kernel_copy_open(
+        &copy, "trace.cl", "store_lanes(paths.radiance.x, red);",
+        "paths.radiance = choose3(ended, scale3(splat(R(1.005)), paths.radiance), paths.radiance);\n"
+        "store_lanes(paths.radiance.x, red);");
+    for (uint64_t seed = 10; seed < 20; ++seed)
+        wrong += !check(&built.scene, BP_CHECK_SAMPLES_DEFAULT, seed, BP_VERDICT_LEVEL).agree;
+    kernel_copy_close(&copy);
+    printf("0.5 %% too bright: rejected %d of 10; the true kernel %d of 10\n", wrong, right);
+    assert_true(wrong >= 9);
+    assert_int_equal(right, 0);
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {cmocka_unit_test(control), cmocka_unit_test(calibrated),
+                                       cmocka_unit_test(half_percent)};
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}

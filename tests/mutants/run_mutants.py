@@ -1,0 +1,188 @@
+#!/usr/bin/env python3
+"""Every known bug must be found: applies each mutant to a copy of the product's text, builds what is needed, runs its
+trials, and fails when one survives.
+
+usage: run_mutants.py SOURCE_DIR BUILD_DIR RESULT.json [NAME...]
+
+Kernel text is patched in a copy that the program reads through BALLPARK_KERNELS. Host text is patched in a copy,
+compiled with the command that built the product, and linked before the library. A build that fails, a crash, or a
+text that no longer stands where a patch looks for it is an error, not a kill. First every trial is run on the product
+unpatched: there it must pass.
+"""
+import json
+import os
+import shlex
+import shutil
+import subprocess
+import sys
+import tempfile
+import time
+
+from mutants import MUTANTS, Check
+
+SURVIVED, KILLED, ERROR = "SURVIVED", "killed", "ERROR"
+
+
+class Bench:
+    """Where mutants are made and tried."""
+
+    def __init__(self, source, build, scratch):
+        self.source, self.build, self.scratch = source, build, scratch
+        with open(os.path.join(build, "compile_commands.json"), encoding="utf-8") as file:
+            self.compile = {os.path.realpath(e["file"]): e for e in json.load(file)}
+
+    def patched_texts(self, mutant):
+        """{path: text} with all patches applied."""
+        texts = {}
+        for path, find, replace in mutant.patches:
+            if path not in texts:
+                with open(os.path.join(self.source, path), encoding="utf-8") as file:
+                    texts[path] = file.read()
+            if texts[path].count(find) != 1:
+                raise LookupError(f"{path} holds {texts[path].count(find)} times: {find}")
+            texts[path] = texts[path].replace(find, replace)
+        return texts
+
+    def link_command(self, target):
+        listed = subprocess.run(["ninja", "-C", self.build, "-t", "commands", target], capture_output=True, text=True,
+                                check=True).stdout
+        return shlex.split(listed.splitlines()[-1].split(" && ")[1])
+
+    def relink(self, target, objects):
+        """The program `target` with objects put before the library; returns its path."""
+        words = self.link_command(target)
+        made = os.path.join(self.scratch, os.path.basename(target))
+        words[words.index("-o") + 1] = made
+        library = next(i for i, w in enumerate(words) if w.endswith("libballpark.a"))
+        words[library:library] = objects
+        subprocess.run(words, cwd=self.build, check=True, capture_output=True, text=True)
+        return made
+
+    def make(self, mutant):
+        """Writes the mutant. Returns (environment, objects): where the kernels are, what to link first."""
+        environment, objects = dict(os.environ), []
+        texts = self.patched_texts(mutant)
+        if any(path.startswith("kernels/") for path in texts):
+            folder = os.path.join(self.scratch, "kernels")
+            shutil.rmtree(folder, ignore_errors=True)
+            shutil.copytree(os.path.join(self.source, "kernels"), folder)
+            environment["BALLPARK_KERNELS"] = folder
+        for path, text in texts.items():
+            if path.startswith("kernels/"):
+                with open(os.path.join(self.scratch, path), "w", encoding="utf-8") as file:
+                    file.write(text)
+                continue
+            entry = self.compile[os.path.join(self.source, path)]
+            words = shlex.split(entry["command"])
+            copy = os.path.join(self.scratch, os.path.basename(path))
+            with open(copy, "w", encoding="utf-8") as file:
+                file.write(text)
+            made = copy + ".o"
+            words[words.index("-o") + 1] = made
+            words = [copy if os.path.realpath(w) == os.path.join(self.source, path) else w for w in words]
+            words.append("-I" + os.path.join(self.source, os.path.dirname(path)))
+            # Headers named relative to the file: "../base/status.h".
+            for sibling in os.listdir(os.path.join(self.source, "host")):
+                link = os.path.join(os.path.dirname(self.scratch), sibling)
+                if not os.path.lexists(link):
+                    os.symlink(os.path.join(self.source, "host", sibling), link)
+            subprocess.run(words, cwd=entry["directory"], check=True, capture_output=True, text=True)
+            objects.append(made)
+        return environment, objects
+
+    def run_check(self, trial, environment, program):
+        book = trial.scene.startswith("book:")
+        folder = os.path.join(self.source, "scenes" if book else "tests/agree/scenes")
+        scene = os.path.join(folder, trial.scene.removeprefix("book:") + ".json")
+        command = [program, "check", scene, "--spp", str(trial.samples), "--seed", "1", "--quiet", "--json", "-",
+                   *trial.options]
+        done = subprocess.run(command, env=environment, capture_output=True, text=True, timeout=300)
+        if done.returncode not in (0, 3):
+            return ERROR, f"exit code {done.returncode}: {done.stderr.strip()[:300]}"
+        result = json.loads(done.stdout)["results"][0]
+        worst = max(result["tests"], key=lambda t: t["z"] / t["limit"])
+        z = "no noise" if worst["z"] >= 1e6 else f"z = {worst['z']:.1f}"
+        said = f"{z} of {worst['limit']:.1f} ({worst['family']})"
+        invalid = result["invalid_samples"]["kernel"]
+        if invalid:
+            said += f", {invalid} invalid samples"
+        return (SURVIVED if result["agree"] else KILLED), said
+
+    def run_test(self, trial, environment, program):
+        done = subprocess.run([program], env=environment, capture_output=True, text=True, timeout=300)
+        if done.returncode < 0:
+            return ERROR, f"crashed with signal {-done.returncode}"
+        if done.returncode == 77:
+            return ERROR, "the test was skipped"
+        failed = [line.split("]")[1].strip() for line in (done.stdout + done.stderr).splitlines()
+                  if line.startswith("[  FAILED  ]") and "test(s)" not in line]
+        return (KILLED, f"{trial.program}: {failed[0] if failed else 'failed'}") if done.returncode else (SURVIVED, "passed")
+
+    def run(self, trial, environment, objects):
+        is_check = isinstance(trial, Check)
+        target = "ballpark" if is_check else f"tests/{trial.program}"
+        program = self.relink(target, objects) if objects else os.path.join(self.build, target)
+        return (self.run_check if is_check else self.run_test)(trial, environment, program)
+
+
+def name_of(trial):
+    return f"{trial.scene}, {trial.samples} samples" if isinstance(trial, Check) else trial.program
+
+
+def control(bench, mutants):
+    """Every trial on the product itself. Returns the number that do not pass."""
+    wrong = 0
+    for trial in dict.fromkeys(t for m in mutants for t in m.trials):
+        outcome, said = bench.run(trial, dict(os.environ), [])
+        if outcome != SURVIVED:
+            wrong += 1
+            print(f"CONTROL {outcome}: {name_of(trial)}: {said}", flush=True)
+    return wrong
+
+
+def try_mutant(bench, mutant):
+    outcome, said, trial = ERROR, "", None
+    try:
+        environment, objects = bench.make(mutant)
+        for trial in mutant.trials:
+            outcome, said = bench.run(trial, environment, objects)
+            if outcome != SURVIVED:
+                break
+    except LookupError as error:
+        outcome, said = ERROR, str(error)
+    except subprocess.CalledProcessError as error:
+        outcome, said = ERROR, "it does not build: " + error.stderr.strip()[:300]
+    except subprocess.TimeoutExpired:
+        outcome, said = ERROR, "it did not end"
+    return {"name": mutant.name, "origin": mutant.origin, "files": sorted({p[0] for p in mutant.patches}),
+            "outcome": outcome, "said": said, "layer": trial.layer if trial else "",
+            "trial": name_of(trial) if trial else ""}
+
+
+def main():
+    source, build, result_path, *names = sys.argv[1:]
+    source, build = os.path.realpath(source), os.path.realpath(build)
+    mutants = [m for m in MUTANTS if not names or m.name in names]
+    start = time.monotonic()
+    with tempfile.TemporaryDirectory() as folder:
+        scratch = os.path.join(folder, "mutant")
+        os.mkdir(scratch)
+        # Drivers keep what they compiled; these kernels are no use to anyone afterwards.
+        cache = os.path.join(folder, "cache")
+        os.mkdir(cache)
+        os.environ["POCL_CACHE_DIR"] = os.environ["MESA_SHADER_CACHE_DIR"] = cache
+        bench = Bench(source, build, scratch)
+        wrong = control(bench, mutants)
+        rows = []
+        for mutant in mutants:
+            rows.append(row := try_mutant(bench, mutant))
+            print(f"{row['outcome']:8} {row['name']:44} {row['layer']:12} {row['trial']}: {row['said']}", flush=True)
+    killed = sum(row["outcome"] == KILLED for row in rows)
+    with open(result_path, "w", encoding="utf-8") as file:
+        json.dump({"mutants": rows, "control_failures": wrong}, file, indent=1)
+    print(f"{killed} of {len(rows)} mutants killed in {time.monotonic() - start:.0f} s; "
+          f"{wrong} trials fail on the product itself")
+    return 0 if killed == len(rows) and wrong == 0 else 1
+
+
+sys.exit(main())
