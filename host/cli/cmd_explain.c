@@ -4,8 +4,7 @@
  * JSON. Knows: the effects' analysis, its measurement, tables on a terminal.   Does not know: OpenCL. */
 #include "commands.h"
 
-#include "../engine/effects.h"
-#include "explain_measure.h"
+#include "../engine/effect_costs.h"
 #include "explain_path.h"
 #include "json_file.h"
 #include "report.h"
@@ -19,6 +18,7 @@
 #include <string.h>
 
 #define ROUNDS 21u
+#define ROUND_SECONDS 0.12 /* long against a dispatch, short against a disturbance */
 /* Pictures are measured at this width unless --width says otherwise: a ratio needs no large picture. */
 #define MEASURED_WIDTH 400u
 
@@ -100,8 +100,12 @@ static BpStatus measure(const BpCommandLine *line, BpScene *scene, const BpDevic
     if (!bp_option_given(line, BP_OPTION_WIDTH) && info.width > MEASURED_WIDTH)
         BP_TRY(bp_scene_set_width(scene, MEASURED_WIDTH, err));
     BP_TRY(bp_setup_options(line, scene, &options, err));
-    const BpStatus status =
-        bp_costs_measure(scene, &options, device, ROUNDS, tell_terminal, (void *)(uintptr_t)line, costs, err);
+    const BpCostPlan plan = {.rounds = ROUNDS,
+                             .round_seconds = ROUND_SECONDS,
+                             .builds = true,
+                             .tell = tell_terminal,
+                             .tell_context = (void *)(uintptr_t)line};
+    const BpStatus status = bp_costs_measure(scene, &options, device, &plan, costs, err);
     if (bp_terminal_is_live(line->quiet)) bp_terminal_show("");
     return status;
 }
@@ -137,16 +141,20 @@ static json_t *costs_json(const BpCosts *costs) {
     json_t *kernels = json_array();
     for (size_t k = 0; k < costs->kernel_count && kernels != NULL; ++k) {
         const BpKernelCost *kernel = &costs->kernels[k];
-        json_array_append_new(
-            kernels,
-            json_pack(
-                "{s:s, s:o, s:o, s:f, s:f, s:f, s:f, s:o, s:o, s:o, s:o}", "name", kernel->name, "forced",
-                kernel->forced >= 0 ? json_string(bp_effect_name((BpEffect)kernel->forced)) : json_null(),
-                "effects", names_of(kernel->bits), "ratio", kernel->ratio, "low", kernel->low, "high",
-                kernel->high, "samples_per_second", kernel->samples_per_second, "cold_seconds",
-                number_or_null(kernel->cold_seconds), "warm_seconds", number_or_null(kernel->warm_seconds),
-                "registers", count_or_null(kernel->registers), "private_bytes",
-                count_or_null(kernel->private_bytes)));
+        json_t *times =
+            json_pack("{s:o, s:o, s:o, s:o}", "cold_seconds", number_or_null(kernel->cold_seconds),
+                      "cold_processor_seconds", number_or_null(kernel->cold_processor_seconds),
+                      "warm_seconds", number_or_null(kernel->warm_seconds), "warm_processor_seconds",
+                      number_or_null(kernel->warm_processor_seconds));
+        json_t *entry = json_pack(
+            "{s:s, s:o, s:o, s:f, s:f, s:f, s:f, s:o, s:o}", "name", kernel->name, "forced",
+            kernel->forced >= 0 ? json_string(bp_effect_name((BpEffect)kernel->forced)) : json_null(),
+            "effects", names_of(kernel->bits), "ratio", kernel->ratio, "low", kernel->low, "high",
+            kernel->high, "samples_per_second", kernel->samples_per_second, "registers",
+            count_or_null(kernel->registers), "private_bytes", count_or_null(kernel->private_bytes));
+        if (entry != NULL) json_object_update(entry, times);
+        json_decref(times);
+        json_array_append_new(kernels, entry);
     }
     return json_pack("{s:{s:s, s:s, s:s}, s:s, s:i, s:i, s:i, s:I, s:o}", "device", "platform",
                      costs->device.platform, "name", costs->device.name, "driver", costs->device.driver,

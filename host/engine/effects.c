@@ -100,6 +100,8 @@ static const char *left_out(BpEffect effect) {
 static void explain_material(BpEffect effect, const Use *use, const Use *all, bool one_kind, size_t size,
                              char *reason) {
     const char *name = bp_effect_name(effect);
+    char in_use[64];
+    snprintf(in_use, sizeof in_use, "none of the %zu materials in use", all->materials);
     char kinds[64] = "";
     if (all->materials > 1) snprintf(kinds, sizeof kinds, " (%zu of it)", all->materials);
     if (use->materials > 0 && one_kind)
@@ -115,14 +117,16 @@ static void explain_material(BpEffect effect, const Use *use, const Use *all, bo
         snprintf(reason, size, "%zu material%s would, but no sphere has %s: %s", use->unused,
                  plural(use->unused), use->unused == 1 ? "it" : "them", left_out(effect));
     else if (effect == BP_EFFECT_EMISSION)
-        snprintf(reason, size, "nothing emits: none of the %zu material%s in use does", all->materials,
-                 plural(all->materials));
+        snprintf(reason, size, "nothing emits: %s",
+                 all->materials == 1 ? "not the one material in use" : in_use);
     else if (effect == BP_EFFECT_NORMALS)
-        snprintf(reason, size, "none of the %zu material%s in use shows normals", all->materials,
-                 plural(all->materials));
+        snprintf(reason, size, "nothing shows normals: %s",
+                 all->materials == 1 ? "not the one material in use" : in_use);
+    else if (all->materials == 1)
+        snprintf(reason, size, "the one material in use is not %s: %s", name, left_out(effect));
     else
-        snprintf(reason, size, "no %s among the %zu material%s in use: %s", name, all->materials,
-                 plural(all->materials), left_out(effect));
+        snprintf(reason, size, "no %s among the %zu materials in use: %s", name, all->materials,
+                 left_out(effect));
 }
 
 /* Fills `uses` (one an effect) and `all`, and returns the bits; false without memory. */

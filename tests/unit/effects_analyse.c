@@ -100,8 +100,7 @@ static void reasons_a_person_understands(void **state) {
         effects.reason[BP_EFFECT_DIELECTRIC],
         "no dielectric among the 3 materials in use: refraction, Fresnel and the inside of spheres are "
         "left out");
-    assert_string_equal(effects.reason[BP_EFFECT_EMISSION],
-                        "nothing emits: none of the 3 materials in use does");
+    assert_string_equal(effects.reason[BP_EFFECT_EMISSION], "nothing emits: none of the 3 materials in use");
     assert_string_equal(effects.reason[BP_EFFECT_LENS], "defocus_angle 0: the lens is a pinhole");
     assert_string_equal(effects.reason[BP_EFFECT_GRADIENT], "background constant (1, 1, 1): no gradient");
     assert_string_equal(effects.reason[BP_EFFECT_TREE], "5 spheres: a list, no tree");
@@ -119,6 +118,11 @@ static void reasons_a_person_understands(void **state) {
     effects = analyse(three, 1, 1, 2, 0, 1);
     assert_string_equal(effects.reason[BP_EFFECT_LAMBERTIAN],
                         "the one kind of material in use, on all 2 spheres: no switch between kinds");
+    assert_string_equal(effects.reason[BP_EFFECT_METAL],
+                        "the one material in use is not metal: mirror reflection and fuzz are left out");
+    assert_string_equal(effects.reason[BP_EFFECT_EMISSION], "nothing emits: not the one material in use");
+    assert_string_equal(effects.reason[BP_EFFECT_NORMALS],
+                        "nothing shows normals: not the one material in use");
     effects = analyse(three, 1, 1, 0, 0, 1);
     assert_string_equal(effects.reason[BP_EFFECT_LAMBERTIAN], "no spheres: the picture is the sky");
 }

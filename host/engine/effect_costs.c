@@ -1,17 +1,16 @@
-/* explain_measure.c: see explain_measure.h. */
-#include "explain_measure.h"
+/* effect_costs.c: see effect_costs.h. */
+#include "effect_costs.h"
 
 #include "../base/clock.h"
 #include "../base/status.h"
 
 #include <math.h>
+#include <stdarg.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 #include <time.h>
 
-#define ROUND_SECONDS                                                                                        \
-    0.12 /* of one kernel in one round: long against a dispatch, short against a disturbance */
 #define ROUNDS_MAX 101u
 
 static int compare_doubles(const void *a, const void *b) {
@@ -59,46 +58,68 @@ static BpStatus finish(BpRender *render, double *seconds, BpError *err) {
     return BP_OK;
 }
 
-/* Opens the kernel's render and traces one sample a pixel; *seconds is the time from opening the device to
- * the first sample: building, uploading and launching, without the scene's tree. */
+/* What it takes until a kernel traces: by the wall clock, and in processor time. */
+typedef struct Start {
+    double wall, processor;
+} Start;
+
+/* Opens the kernel's render and traces two samples a pixel. *start is the time from opening the device to the
+ * first sample: building, uploading and launching, without the scene's tree. */
 static BpStatus open_render(const BpScene *scene, const BpRenderOptions *options, const BpDeviceInfo *device,
-                            BpRender **render, double *seconds, BpError *err) {
-    double traced;
+                            BpRender **render, Start *start, BpError *err) {
+    BpStatus status;
+    double first, second;
     BpRenderReport report;
-    const double start = bp_clock_seconds();
+    const double wall = bp_clock_seconds(), processor = processor_seconds();
     BP_TRY(bp_render_create(scene, options, device, 1, render, err));
-    *seconds = bp_clock_seconds() - start;
-    const BpStatus status = finish(*render, &traced, err);
-    if (status != BP_OK) {
-        bp_render_destroy(render);
-        return status;
-    }
+    start->wall = bp_clock_seconds() - wall;
+    BP_TRY_GOTO(status, finish(*render, &first, err), failed);
+    start->processor = processor_seconds() - processor;
+    BP_TRY_GOTO(status, bp_render_extend(*render, 2, err), failed);
+    BP_TRY_GOTO(status, finish(*render, &second, err), failed);
     bp_render_report(*render, &report);
-    *seconds += report.first_launch_seconds - report.tree_seconds - report.pack_seconds;
+    start->wall += report.first_launch_seconds - report.tree_seconds - report.pack_seconds;
+    start->processor -= report.tree_seconds + report.pack_seconds;
+    /* On a CPU the processor time up to here held the tracing of the first sample, too: as much as the
+     * second's. */
+    if (report.device.type == BP_DEVICE_CPU) start->processor -= second;
     return BP_OK;
+
+failed:
+    bp_render_destroy(render);
+    return status;
 }
 
 /* Build times of one kernel: once with a mark that no cache has seen, then three times with the same mark. */
 static BpStatus measure_builds(const BpScene *scene, const BpRenderOptions *options,
                                const BpDeviceInfo *device, BpKernelCost *kernel, BpError *err) {
     BpRenderOptions marked = *options;
-    double warm[3];
+    Start starts[4];
+    double wall[3], processor[3];
     struct timespec now;
     clock_gettime(CLOCK_REALTIME, &now);
     marked.build_mark = (uint64_t)now.tv_sec * 1000000000u + (uint64_t)now.tv_nsec;
-    for (int run = -1; run < 3; ++run) {
+    for (int run = 0; run < 4; ++run) {
         BpRender *render = NULL;
-        BP_TRY(
-            open_render(scene, &marked, device, &render, run < 0 ? &kernel->cold_seconds : &warm[run], err));
+        BP_TRY(open_render(scene, &marked, device, &render, &starts[run], err));
         bp_render_destroy(&render);
     }
-    qsort(warm, 3, sizeof warm[0], compare_doubles);
-    kernel->warm_seconds = warm[1];
+    for (int run = 0; run < 3; ++run) {
+        wall[run] = starts[run + 1].wall;
+        processor[run] = starts[run + 1].processor;
+    }
+    qsort(wall, 3, sizeof wall[0], compare_doubles);
+    qsort(processor, 3, sizeof processor[0], compare_doubles);
+    kernel->cold_seconds = starts[0].wall;
+    kernel->cold_processor_seconds = starts[0].processor;
+    kernel->warm_seconds = wall[1];
+    kernel->warm_processor_seconds = processor[1];
     return BP_OK;
 }
 
 /* The kernels to compare: specialised, one for each effect that is out, general. */
-static void list_kernels(const BpScene *scene, const BpRenderOptions *options, BpCosts *costs) {
+static void list_kernels(const BpScene *scene, const BpRenderOptions *options, bool general_only,
+                         BpCosts *costs) {
     BpEffects effects;
     bp_effects_analyse(scene, &effects);
     const uint32_t base = effects.bits | (options->extra_effects & BP_EFFECTS_ALL);
@@ -106,7 +127,7 @@ static void list_kernels(const BpScene *scene, const BpRenderOptions *options, B
     *kernel = (BpKernelCost){.forced = -1, .bits = base};
     snprintf(kernel->name, sizeof kernel->name, "specialised");
     for (int e = 0; e < BP_EFFECT_COUNT; ++e) {
-        if (bp_effects_has(base, (BpEffect)e)) continue;
+        if (general_only || bp_effects_has(base, (BpEffect)e)) continue;
         *++kernel = (BpKernelCost){.forced = e, .bits = base | 1u << e};
         snprintf(kernel->name, sizeof kernel->name, "with %s", bp_effect_name((BpEffect)e));
     }
@@ -114,7 +135,8 @@ static void list_kernels(const BpScene *scene, const BpRenderOptions *options, B
     snprintf(kernel->name, sizeof kernel->name, "general");
     costs->kernel_count = (size_t)(kernel - costs->kernels) + 1;
     for (size_t k = 0; k < costs->kernel_count; ++k)
-        costs->kernels[k].cold_seconds = costs->kernels[k].warm_seconds = NAN;
+        costs->kernels[k].cold_seconds = costs->kernels[k].cold_processor_seconds =
+            costs->kernels[k].warm_seconds = costs->kernels[k].warm_processor_seconds = NAN;
 }
 
 /* One round: every kernel traces `spp` more samples a pixel. The order turns from round to round, so that
@@ -146,14 +168,24 @@ static void summarise(const double *seconds, unsigned rounds, size_t count, uint
     }
 }
 
+static void tell(const BpCostPlan *plan, const char *format, ...) BP_PRINTF_LIKE(2, 3);
+static void tell(const BpCostPlan *plan, const char *format, ...) {
+    char what[160];
+    va_list arguments;
+    if (plan->tell == NULL) return;
+    va_start(arguments, format);
+    vsnprintf(what, sizeof what, format, arguments);
+    va_end(arguments);
+    plan->tell(what, plan->tell_context);
+}
+
 BpStatus bp_costs_measure(const BpScene *scene, const BpRenderOptions *options, const BpDeviceInfo *device,
-                          unsigned rounds, BpCostProgress *tell, void *context, BpCosts *costs,
-                          BpError *err) {
+                          const BpCostPlan *plan, BpCosts *costs, BpError *err) {
     BpStatus status = BP_OK;
     BpRender *renders[BP_KERNELS_MAX] = {NULL};
     double *seconds = NULL;
-    char what[160];
     BpRenderOptions base = *options;
+    const unsigned rounds = plan->rounds;
     if (rounds < 3 || rounds > ROUNDS_MAX)
         return bp_fail(err, BP_ERR_USAGE, "%u rounds: 3 to %u", rounds, ROUNDS_MAX);
     memset(costs, 0, sizeof *costs);
@@ -161,7 +193,7 @@ BpStatus bp_costs_measure(const BpScene *scene, const BpRenderOptions *options, 
     costs->rounds = rounds;
     costs->width = scene->camera.width;
     costs->height = scene->camera.height;
-    list_kernels(scene, options, costs);
+    list_kernels(scene, options, plan->general_only, costs);
     const size_t count = costs->kernel_count;
     base.all_effects = false;
     base.samples_per_pixel = 1;
@@ -170,13 +202,12 @@ BpStatus bp_costs_measure(const BpScene *scene, const BpRenderOptions *options, 
     if (seconds == NULL) return bp_fail(err, BP_ERR_MEMORY, "no memory to measure");
 
     for (size_t k = 0; k < count; ++k) {
-        double ignored;
+        Start ignored;
         BpRenderOptions one = base;
         BpKernelCost *kernel = &costs->kernels[k];
         one.extra_effects = kernel->bits;
-        snprintf(what, sizeof what, "building kernel %zu of %zu: %s", k + 1, count, kernel->name);
-        if (tell != NULL) tell(what, context);
-        if (k == 0 || k == count - 1)
+        tell(plan, "building kernel %zu of %zu: %s", k + 1, count, kernel->name);
+        if (plan->builds && (k == 0 || k == count - 1))
             BP_TRY_GOTO(status, measure_builds(scene, &one, device, kernel, err), done);
         BP_TRY_GOTO(status, open_render(scene, &one, device, &renders[k], &ignored, err), done);
         BpRenderReport report;
@@ -187,17 +218,16 @@ BpStatus bp_costs_measure(const BpScene *scene, const BpRenderOptions *options, 
     }
 
     /* A first round settles clocks and caches, and tells how many samples fill a round. */
-    BP_TRY_GOTO(status, run_round(renders, count, 0, 1, 1, seconds, err), done);
-    double spp_wanted = ROUND_SECONDS / fmax(seconds[0], 1e-6);
+    BP_TRY_GOTO(status, run_round(renders, count, 0, 2, 1, seconds, err), done);
+    double spp_wanted = plan->round_seconds / fmax(seconds[0], 1e-6);
     if (spp_wanted < 1) spp_wanted = 1;
     if (spp_wanted > 4096) spp_wanted = 4096;
     const uint64_t spp = (uint64_t)spp_wanted;
     const uint64_t pixels = (uint64_t)costs->width * costs->height;
     costs->samples = pixels * spp;
     for (unsigned r = 0; r < rounds; ++r) {
-        snprintf(what, sizeof what, "round %u of %u", r + 1, rounds);
-        if (tell != NULL) tell(what, context);
-        BP_TRY_GOTO(status, run_round(renders, count, r, 2 + r * spp, spp, seconds + r * count, err), done);
+        tell(plan, "round %u of %u", r + 1, rounds);
+        BP_TRY_GOTO(status, run_round(renders, count, r, 3 + r * spp, spp, seconds + r * count, err), done);
     }
     summarise(seconds, rounds, count, costs->samples, costs);
 

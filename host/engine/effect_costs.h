@@ -1,4 +1,4 @@
-/* explain_measure.h: what each effect costs on a device, measured.
+/* effect_costs.h: what each effect costs on a device, measured.
  *
  * In:    a scene, options, a device.   Out: for each kernel that could render it, its time as a ratio to the
  *        specialised one's, with a spread; build times; registers.
@@ -8,10 +8,10 @@
  * their own clock. All kernels trace the same samples of the same paths, in rounds: each round runs every
  * kernel once, so that what disturbs the computer disturbs all alike. A ratio is formed within a round; the
  * median over rounds counts. */
-#ifndef BP_CLI_EXPLAIN_MEASURE_H
-#define BP_CLI_EXPLAIN_MEASURE_H
+#ifndef BP_ENGINE_EFFECT_COSTS_H
+#define BP_ENGINE_EFFECT_COSTS_H
 
-#include "../engine/render.h"
+#include "render.h"
 
 #define BP_KERNELS_MAX (BP_EFFECT_COUNT + 2)
 
@@ -25,8 +25,10 @@ typedef struct BpKernelCost {
     double samples_per_second; /* of device time (on a CPU: of one core), median over rounds */
     uint64_t registers;        /* of the trace kernel, where the build log tells; else 0 */
     uint64_t private_bytes;    /* 0: the driver does not tell */
-    double cold_seconds;       /* build and first launch with empty caches; NaN: not measured */
-    double warm_seconds;       /* the same when the driver has it already; NaN: not measured */
+    /* From opening the device to the first sample, without the scene's tree, by the wall clock and in
+     * processor time of this process; cold: nothing is cached, warm: the driver has kept the kernel. NaN: not
+     * measured. */
+    double cold_seconds, cold_processor_seconds, warm_seconds, warm_processor_seconds;
 } BpKernelCost;
 
 typedef struct BpCosts {
@@ -42,8 +44,18 @@ typedef struct BpCosts {
 /* Called before each piece of work with a line that says what it is; `context` is handed through. */
 typedef void BpCostProgress(const char *what, void *context);
 
-/* Takes about `kernel_count` times `rounds` times 0.15 s, plus the builds. `tell`: Optional. */
+typedef struct BpCostPlan {
+    unsigned rounds;      /* 3 .. 101 */
+    double round_seconds; /* of tracing, a kernel and round */
+    bool builds;          /* measure build times of the specialised and the general kernel */
+    bool general_only;    /* nothing but these two kernels */
+    BpCostProgress *tell; /* Optional. */
+    void *tell_context;
+} BpCostPlan;
+
+/* Costs on `device` of the kernels that could render `scene`; options->samples_per_pixel, first_sample and
+ * all_effects do not count. Takes about kernels * rounds * round_seconds, plus the builds. */
 BpStatus bp_costs_measure(const BpScene *scene, const BpRenderOptions *options, const BpDeviceInfo *device,
-                          unsigned rounds, BpCostProgress *tell, void *context, BpCosts *costs, BpError *err);
+                          const BpCostPlan *plan, BpCosts *costs, BpError *err);
 
 #endif
