@@ -37,7 +37,7 @@ typedef struct BpEffects {
 
 #define BP_EFFECTS_ALL ((1u << BP_EFFECT_COUNT) - 1u)
 /* Up to this many spheres a list is at least as fast as a tree (measured: docs/EFFECTS.md). */
-#define BP_LIST_SPHERES_MAX 16u
+#define BP_LIST_SPHERES_MAX 32u
 
 static inline bool bp_effects_has(uint32_t bits, BpEffect effect) { return (bits >> effect & 1u) != 0; }
 

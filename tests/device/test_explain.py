@@ -39,7 +39,7 @@ for entry in document:
     assert [effect["name"] for effect in entry["effects"]] == ALL
     assert all(effect["reason"] and effect["description"] for effect in entry["effects"])
     assert "costs" not in entry
-    assert entry["effects"][7]["simulated"] == (entry["spheres"] > 16), entry["scene"]
+    assert entry["effects"][7]["simulated"] == (entry["spheres"] > 32), entry["scene"]
 
 # Mistakes are refused, and leave no file.
 with tempfile.TemporaryDirectory() as folder:

@@ -113,7 +113,7 @@ static void reasons_a_person_understands(void **state) {
     assert_string_equal(effects.reason[BP_EFFECT_LENS], "a lens of radius 0.05, in focus at 10");
     assert_string_equal(effects.reason[BP_EFFECT_GRADIENT],
                         "the background goes from (1, 1, 1) below to (1, 1, 0.7) above");
-    assert_string_equal(effects.reason[BP_EFFECT_TREE], "484 spheres, more than 16: a tree");
+    assert_string_equal(effects.reason[BP_EFFECT_TREE], "484 spheres, more than 32: a tree");
 
     effects = analyse(three, 1, 1, 2, 0, 1);
     assert_string_equal(effects.reason[BP_EFFECT_LAMBERTIAN],
