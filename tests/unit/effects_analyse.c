@@ -67,7 +67,7 @@ static void material_effects(void **state) {
     for (size_t i = 0; i < sizeof cases / sizeof cases[0]; ++i)
         assert_int_equal(analyse(&cases[i].material, 1, 1, 1, 0, 1).bits, cases[i].bits);
     const BpMaterial all[] = {grey, steel, glass, ember, debug};
-    assert_int_equal(analyse(all, 5, 5, 17, 0.1, 0.5).bits, BP_EFFECTS_ALL);
+    assert_int_equal(analyse(all, 5, 5, BP_LIST_SPHERES_MAX + 1, 0.1, 0.5).bits, BP_EFFECTS_ALL);
     assert_int_equal(analyse(all, 5, 5, 5, 0, 1).bits,
                      BP_EFFECTS_ALL & ~(BIT(LENS) | BIT(GRADIENT) | BIT(TREE)));
 }
