@@ -64,9 +64,9 @@ static BpStatus store_value(BpOption option, const char *name, const char *text,
         break;
     }
     case BP_OPTION_SAMPLER: {
-        static const char *const words[] = {"independent"};
+        static const char *const words[] = {"sobol", "independent"};
         BP_TRY(bp_value_choice(name, text, words, COUNT_OF(words), &choice, err));
-        line->sampler = BP_SAMPLER_INDEPENDENT;
+        line->sampler = choice == 0 ? BP_SAMPLER_SOBOL : BP_SAMPLER_INDEPENDENT;
         break;
     }
     case BP_OPTION_EFFECTS: {
