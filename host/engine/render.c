@@ -7,6 +7,7 @@
 
 #include <stdlib.h>
 #include <string.h>
+#include <time.h>
 
 #define CHUNK_SECONDS 0.1 /* of one dispatch: short of every watchdog, long against its overhead */
 #define STEP_SECONDS 0.15 /* a step starts no chunk after this */
@@ -119,12 +120,26 @@ void bp_render_destroy(BpRender **render) {
     *render = NULL;
 }
 
-/* The worker that will be free first: none of its chunks under way, or the fewest. */
-static BpWorker *least_busy(const BpRender *render) {
+/* A worker with room for a chunk. When all are full, the one whose oldest chunk is done first: devices differ
+ * in speed, and waiting for a slow one would keep a fast one idle. */
+static BpStatus free_worker(const BpRender *render, BpWorker **found, BpError *err) {
     BpWorker *best = render->workers[0];
     for (size_t i = 1; i < render->worker_count; ++i)
         if (render->workers[i]->flight_count < best->flight_count) best = render->workers[i];
-    return best;
+    const struct timespec pause = {.tv_nsec = 200000};
+    while (render->worker_count > 1 && best->flight_count == BP_WORKER_FLIGHT) {
+        for (size_t i = 0; i < render->worker_count && best->flight_count == BP_WORKER_FLIGHT; ++i) {
+            BpWorker *worker = render->workers[i];
+            bool done = false;
+            BP_TRY(bp_worker_oldest_done(worker, &done, err));
+            if (!done) continue;
+            BP_TRY(bp_worker_wait(worker, err));
+            best = worker;
+        }
+        if (best->flight_count == BP_WORKER_FLIGHT) nanosleep(&pause, NULL);
+    }
+    *found = best;
+    return bp_worker_make_room(best, err);
 }
 
 static uint64_t samples_done(const BpRender *render) {
@@ -141,8 +156,8 @@ static bool in_flight(const BpRender *render) {
 
 /* Starts one chunk; *started is false when all has been handed out. */
 static BpStatus start_chunk(BpRender *render, bool *started, BpError *err) {
-    BpWorker *worker = least_busy(render);
-    if (worker->flight_count == BP_WORKER_FLIGHT) BP_TRY(bp_worker_wait(worker, err));
+    BpWorker *worker = NULL;
+    BP_TRY(free_worker(render, &worker, err));
     const uint32_t wanted = render->options.chunk_samples != 0
                                 ? render->options.chunk_samples
                                 : bp_worker_chunk_samples(worker, CHUNK_SECONDS);

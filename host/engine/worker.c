@@ -186,6 +186,22 @@ BpStatus bp_worker_wait(BpWorker *worker, BpError *err) {
     return BP_OK;
 }
 
+BpStatus bp_worker_make_room(BpWorker *worker, BpError *err) {
+    return worker->flight_count == BP_WORKER_FLIGHT ? bp_worker_wait(worker, err) : BP_OK;
+}
+
+BpStatus bp_worker_oldest_done(BpWorker *worker, bool *done, BpError *err) {
+    *done = true;
+    if (worker->flight_count == 0) return BP_OK;
+    cl_int state = CL_QUEUED;
+    CL_TRY(worker,
+           clGetEventInfo(worker->flights[0].fold_end, CL_EVENT_COMMAND_EXECUTION_STATUS, sizeof state,
+                          &state, NULL),
+           "clGetEventInfo");
+    *done = state <= CL_COMPLETE; /* below: an error, which waiting reports */
+    return BP_OK;
+}
+
 static BpStatus wait_for_all(BpWorker *worker, BpError *err) {
     while (worker->flight_count > 0) BP_TRY(bp_worker_wait(worker, err));
     return BP_OK;
@@ -203,7 +219,7 @@ static BpStatus enqueue(BpWorker *worker, cl_kernel kernel, size_t items, size_t
 BpStatus bp_worker_start(BpWorker *worker, const BpChunk *chunk, BpError *err) {
     const uint32_t count = chunk->pixel_count * chunk->samples;
     const bool first = worker->samples_done == 0 && worker->flight_count == 0;
-    if (worker->flight_count == BP_WORKER_FLIGHT) BP_TRY(bp_worker_wait(worker, err));
+    BP_TRY(bp_worker_make_room(worker, err));
     if (count > worker->samples_capacity) {
         BP_TRY(wait_for_all(worker, err));
         BP_TRY(bp_worker_reserve_samples(worker, count, err));

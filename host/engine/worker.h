@@ -70,6 +70,11 @@ BpStatus bp_worker_start(BpWorker *worker, const BpChunk *chunk, BpError *err);
 /* Waits for the oldest chunk; does nothing when there is none. */
 BpStatus bp_worker_wait(BpWorker *worker, BpError *err);
 
+/* The same unless there is room for one more. */
+BpStatus bp_worker_make_room(BpWorker *worker, BpError *err);
+/* Whether the oldest chunk is done, without waiting; true when none is under way. */
+BpStatus bp_worker_oldest_done(BpWorker *worker, bool *done, BpError *err);
+
 /* Pixel samples that a chunk should have to take `seconds`, by the latest measurement, 1 .. samples_limit. */
 uint32_t bp_worker_chunk_samples(const BpWorker *worker, double seconds);
 

@@ -25,12 +25,14 @@ static BpScene *scene_of(const char *name, uint32_t width) {
 }
 
 /* Renders and copies the accumulator's sums and counts into a new one that the caller destroys. */
-static BpAccumulator *render(const BpScene *scene, const BpRenderOptions *options, uint64_t *segments) {
+static BpAccumulator *render_on(const BpScene *scene, const BpRenderOptions *options,
+                                const BpDeviceInfo *devices, size_t device_count, uint64_t *segments) {
     BpRender *made = NULL;
     BpProgress progress = {0};
     const BpAccumulator *read = NULL;
     BpAccumulator *copy = NULL;
-    if (bp_render_create(scene, options, NULL, 0, &made, &err) != BP_OK) fail_msg("%s", err.message);
+    if (bp_render_create(scene, options, devices, device_count, &made, &err) != BP_OK)
+        fail_msg("%s", err.message);
     do {
         if (bp_render_step(made, &progress, &err) != BP_OK) fail_msg("%s", err.message);
     } while (!progress.finished);
@@ -43,6 +45,10 @@ static BpAccumulator *render(const BpScene *scene, const BpRenderOptions *option
     assert_int_equal(read->invalid_samples, 0);
     bp_render_destroy(&made);
     return copy;
+}
+
+static BpAccumulator *render(const BpScene *scene, const BpRenderOptions *options, uint64_t *segments) {
+    return render_on(scene, options, NULL, 0, segments);
 }
 
 static bool same(const BpAccumulator *a, const BpAccumulator *b) {
@@ -203,6 +209,27 @@ static void extension_adds_up(void **state) {
     bp_scene_destroy(&scene);
 }
 
+/* Three workers share a picture; that all are on one device is nothing they know of. */
+static void several_devices_are_the_same(void **state) {
+    (void)state;
+    BpScene *scene = scene_of("cover.json", 48);
+    BpRenderOptions options;
+    bp_render_defaults(scene, &options);
+    options.samples_per_pixel = 20;
+    uint64_t segments = 0, shared_segments = 0;
+    BpAccumulator *alone = render(scene, &options, &segments);
+    BpDeviceInfo devices[3];
+    assert_int_equal(bp_device_find(NULL, &devices[0], &err), BP_OK);
+    devices[1] = devices[2] = devices[0];
+    options.chunk_samples = 500; /* enough chunks for all to get some */
+    BpAccumulator *shared = render_on(scene, &options, devices, 3, &shared_segments);
+    assert_true(same(alone, shared));
+    assert_int_equal(segments, shared_segments);
+    bp_accumulator_destroy(&alone);
+    bp_accumulator_destroy(&shared);
+    bp_scene_destroy(&scene);
+}
+
 /* Paths that the cap cuts are black for what they miss, and counted. */
 static void depth_cap_is_black_and_counted(void **state) {
     (void)state;
@@ -244,6 +271,7 @@ int main(void) {
         cmocka_unit_test(cover_is_the_same),
         cmocka_unit_test(hollow_glass_is_the_same),
         cmocka_unit_test(work_groups_and_widths_are_the_same),
+        cmocka_unit_test(several_devices_are_the_same),
         cmocka_unit_test(halves_add_up),
         cmocka_unit_test(extension_adds_up),
         cmocka_unit_test(depth_cap_is_black_and_counted),
