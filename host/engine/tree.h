@@ -21,8 +21,10 @@ typedef struct BpTreeOptions {
 typedef struct BpTree {
     uint32_t width;
     bool single_precision;
-    /* Leaf 0 .. first_leaves-1 hold spheres that are tested before the tree is entered: the few huge ones
-     * (all of them, for a list). Child words never point at them. */
+    /* Leaf 0 .. first_leaves-1 hold spheres that are tested before the tree is entered (all of them, for a
+     * list). Child words never point at them. A tree has one at most, with up to `width` huge spheres, the
+     * largest first: those whose box has more than 1/64 of the surface of the box around all but the `width`
+     * largest. */
     uint32_t first_leaves;
     uint32_t node_count; /* node 0 is the root; 0: a list */
     uint32_t leaf_count;

@@ -172,11 +172,13 @@ static BpBinaryNode *build(BpTreeItem *items, uint32_t first, uint32_t count, ui
         for (int k = 0; k < BP_TREE_WIDTH_MAX; ++k) node->cost[k] = 0;
         return node;
     }
-    const uint64_t side_max = (uint64_t)width << (height_max > 32 ? 32 : height_max - 1);
+    const uint64_t side_max = bp_binary_side_max(width, height_max);
     const Split split = find_split(items + first, count, width);
     uint32_t left = split.axis < 0 ? 0 : partition(items + first, count, &split);
-    /* Equal centres, or no height left for a lopsided split: halves, whatever lies in them. */
-    if (left == 0 || left == count || left > side_max || count - left > side_max) left = count / 2;
+    /* Equal centers, or no height left for a lopsided split: about halves, whatever lies in them, with full
+     * leaves on the left. */
+    if (left == 0 || left == count || left > side_max || count - left > side_max)
+        left = (count + 2 * width - 1) / (2 * width) * width;
     node->left = build(items, first, left, width, height_max - 1, pool);
     if (node->left == NULL) return NULL;
     node->right = build(items, first + left, count - left, width, height_max - 1, pool);

@@ -10,10 +10,14 @@
 #include "../base/status.h"
 #include "tree_team.h"
 
+#if defined(__SSE__)
+#include <xmmintrin.h>
+#endif
+
 #define BP_TREE_WIDTH_MAX 8
 
 typedef struct BpTreeItem {
-    float center[3], radius; /* as a packed tree in single precision stores them */
+    float center[3], radius; /* together four lanes; as a packed tree in single precision stores them */
     uint32_t sphere;         /* index in the scene */
 } BpTreeItem;
 
@@ -75,6 +79,11 @@ static inline float bp_tree_run_cost(uint32_t count, uint32_t width) {
     return (float)((count + width - 1) / width + (count + width * width - 1) / (width * width));
 }
 
+/* The most items that a child of a node may hold, if the node may be `height_max` > 0 high. */
+static inline uint64_t bp_binary_side_max(uint32_t width, uint32_t height_max) {
+    return (uint64_t)width << (height_max > 32 ? 32 : height_max - 1);
+}
+
 /* ---- boxes ----------------------------------------------------------------------------------------- */
 
 #define BP_TREE_BOX_EMPTY                                                                                    \
@@ -84,6 +93,23 @@ static inline float bp_tree_run_cost(uint32_t count, uint32_t width) {
         }                                                                                                    \
     }
 
+#if defined(__SSE__)
+/* The build spends half its time here, and compilers do not make vector code of the plain form below. */
+static inline void bp_tree_box_widen(BpTreeBox *box, __m128 low, __m128 high) {
+    _mm_storeu_ps(box->low, _mm_min_ps(low, _mm_loadu_ps(box->low)));
+    _mm_storeu_ps(box->high, _mm_max_ps(high, _mm_loadu_ps(box->high)));
+}
+
+static inline void bp_tree_box_add(BpTreeBox *box, const BpTreeBox *other) {
+    bp_tree_box_widen(box, _mm_loadu_ps(other->low), _mm_loadu_ps(other->high));
+}
+
+/* The fourth lane is radius -+ radius. */
+static inline void bp_tree_box_add_item(BpTreeBox *box, const BpTreeItem *item) {
+    const __m128 c = _mm_loadu_ps(&item->center[0]), r = _mm_set1_ps(item->radius);
+    bp_tree_box_widen(box, _mm_sub_ps(c, r), _mm_add_ps(c, r));
+}
+#else
 static inline void bp_tree_box_add(BpTreeBox *box, const BpTreeBox *other) {
     for (int a = 0; a < 4; ++a) {
         box->low[a] = other->low[a] < box->low[a] ? other->low[a] : box->low[a];
@@ -93,13 +119,14 @@ static inline void bp_tree_box_add(BpTreeBox *box, const BpTreeBox *other) {
 
 static inline void bp_tree_box_add_item(BpTreeBox *box, const BpTreeItem *item) {
     const float r = item->radius;
-    const float c[4] = {item->center[0], item->center[1], item->center[2], 0};
+    const float c[4] = {item->center[0], item->center[1], item->center[2], r};
     for (int a = 0; a < 4; ++a) {
         const float low = c[a] - r, high = c[a] + r;
         box->low[a] = low < box->low[a] ? low : box->low[a];
         box->high[a] = high > box->high[a] ? high : box->high[a];
     }
 }
+#endif
 
 /* Half the surface area; of an empty box something large. Coordinates are below 1e13, so nothing overflows.
  */

@@ -7,7 +7,7 @@
 #include <stdlib.h>
 #include <unistd.h>
 
-#define THREADS_MAX 256u
+#define THREADS_MAX 64u /* more would wait for memory and for each other */
 
 typedef struct Member {
     BpTeam *team;

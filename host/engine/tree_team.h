@@ -13,7 +13,7 @@ typedef struct BpTeam BpTeam;
 typedef void BpTeamWork(void *context, uint32_t piece, unsigned worker);
 
 /* `threads` in all, the caller's among them; 0: as many as the machine has cores. Where the system grants
- * fewer, the team is smaller. NULL: out of memory. */
+ * fewer, and beyond 64, the team is smaller. NULL: out of memory. */
 BpTeam *bp_team_create(unsigned threads);
 void bp_team_destroy(BpTeam **team);
 unsigned bp_team_size(const BpTeam *team);
