@@ -122,10 +122,10 @@ typedef struct BpDeviceInfo {
  * *count is 0. */
 BpStatus bp_devices_list(BpDeviceInfo **list, size_t *count, BpError *err);
 
-/* The device that `text` means: its number; "gpu" or "cpu" (the first); a part of its name, vendor, version or
- * platform (any case); or for NULL or "" the default: a GPU if there is one, else a CPU. A device that cannot
- * render is passed over; asked for by number, it is refused with what it lacks. A text that fits different
- * devices is an error. Every error lists what there is, or what to install. */
+/* The device that `text` means: its number; "gpu" or "cpu" (the first); a part of its name, vendor, version
+ * or platform (any case); or for NULL or "" the default: a GPU if there is one, else a CPU. A device that
+ * cannot render is passed over; asked for by number, it is refused with what it lacks. A text that fits
+ * different devices is an error. Every error lists what there is, or what to install. */
 BpStatus bp_device_find(const char *text, BpDeviceInfo *device, BpError *err);
 
 /* ---- rendering --------------------------------------------------------------------------------------- */
@@ -147,16 +147,16 @@ typedef struct BpRenderOptions {
     BpNumerics numerics;
     BpSampler sampler;
     BpKernelForm kernel;
-    bool all_effects;    /* build the general kernel instead of the specialised one */
+    bool all_effects;       /* build the general kernel instead of the specialised one */
     uint32_t extra_effects; /* bit e: simulate effect e of bp_scene_effects() although nothing calls for it */
     bool force;             /* render even on a device that fails its self-test */
-    uint32_t replicates; /* K of the error estimate; 0: the default */
+    uint32_t replicates;    /* K of the error estimate; 0: the default */
     /* For tests and tuning; 0 means: choose. None of these changes a picture. */
-    uint32_t chunk_samples; /* samples in one dispatch */
-    uint32_t local_size;    /* work-items in a work-group */
-    uint32_t tree_width;    /* children of a tree node: 2, 4 or 8 */
-    bool force_list;        /* no tree, however many spheres */
-    bool force_tree;        /* a tree, however few */
+    uint32_t chunk_samples;  /* samples in one dispatch */
+    uint32_t local_size;     /* work-items in a work-group */
+    uint32_t tree_width;     /* children of a tree node: 2, 4 or 8 */
+    bool force_list;         /* no tree, however many spheres */
+    bool force_tree;         /* a tree, however few */
     bool force_float_refine; /* error-free float transforms even where the device has double */
     uint64_t build_mark;     /* written into the kernel as an unused type: a new one makes every cache miss */
 } BpRenderOptions;

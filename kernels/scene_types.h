@@ -25,9 +25,9 @@ typedef uint packed_uint;
 /* The pinhole or thin-lens camera. A ray leaves `lens_right * x + lens_up * y`, (x, y) in the unit disk,
  * towards `corner + right * column + down * row`, a point of the plane in focus. Rows run downwards. */
 typedef struct PackedCamera {
-    real corner[4]; /* upper left corner of pixel (0, 0) */
-    real right[4];  /* one pixel to the right */
-    real down[4];   /* one pixel down */
+    real corner[4];                 /* upper left corner of pixel (0, 0) */
+    real right[4];                  /* one pixel to the right */
+    real down[4];                   /* one pixel down */
     real lens_right[4], lens_up[4]; /* scaled by the lens radius */
 } PackedCamera;
 
@@ -66,7 +66,7 @@ typedef struct PackedSphereLook {
 /* A node is `width` child boxes as structure of arrays: low x, y, z, high x, y, z, width reals each. Empty
  * lanes have low > high. Its `width` child words stand in a buffer of their own. */
 #define NODE_REALS(width) (6 * (width))
-#define CHILD_LEAF 0x80000000u  /* set: the rest is a leaf number; clear: a node number */
+#define CHILD_LEAF 0x80000000u /* set: the rest is a leaf number; clear: a node number */
 #define NO_SPHERE 0xffffffffu
 #define NO_ALBEDO 0xffffffffu
 /* A tree is at most this deep, so a stack of TREE_DEPTH_MAX * (width - 1) + 1 entries suffices. */

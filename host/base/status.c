@@ -9,7 +9,8 @@
 const char *bp_status_name(BpStatus status) {
     switch (status) {
 #define BP_STATUS_NAME(name, exit_code, text)                                                                \
-    case name: return text;
+    case name:                                                                                               \
+        return text;
         BP_STATUS_LIST(BP_STATUS_NAME)
 #undef BP_STATUS_NAME
     }
@@ -19,7 +20,8 @@ const char *bp_status_name(BpStatus status) {
 int bp_status_exit_code(BpStatus status) {
     switch (status) {
 #define BP_STATUS_EXIT(name, exit_code, text)                                                                \
-    case name: return exit_code;
+    case name:                                                                                               \
+        return exit_code;
         BP_STATUS_LIST(BP_STATUS_EXIT)
 #undef BP_STATUS_EXIT
     }

@@ -81,7 +81,7 @@ typedef struct BpCommandLine {
     const char *map;           /* picture file */
     unsigned grid;
     uint64_t count;
-    uint32_t rounds; /* of bench, 1 .. 1000 */
+    uint32_t rounds;     /* of bench, 1 .. 1000 */
     const char *edition; /* "1", "3", "3rust" or "4" */
     bool force, quiet, help, version;
 } BpCommandLine;

@@ -37,9 +37,9 @@ BpStatus bp_cl_fail(BpError *err, cl_int code, const char *call, const BpDevice 
 bool bp_device_has_extension(cl_device_id id, const char *name);
 
 /* Builds `source` with `options` (always -cl-std=CL1.2 first; NVIDIA's compiler is asked for its register
- * counts). `options`: Optional. The log, also of a successful build, is written to *log when `log` is not NULL;
- * the caller frees it. On failure the error carries the place of the first complaint, and the whole log as its
- * attachment. Release *program with clReleaseProgram(). */
+ * counts). `options`: Optional. The log, also of a successful build, is written to *log when `log` is not
+ * NULL; the caller frees it. On failure the error carries the place of the first complaint, and the whole log
+ * as its attachment. Release *program with clReleaseProgram(). */
 BpStatus bp_device_build(BpDevice *device, const char *source, const char *options, cl_program *program,
                          char **log, BpError *err);
 

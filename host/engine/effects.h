@@ -25,10 +25,11 @@ typedef enum BpEffect {
 #define BP_EFFECT_ENUM(identifier, name, text) BP_EFFECT_##identifier,
     BP_EFFECT_LIST(BP_EFFECT_ENUM)
 #undef BP_EFFECT_ENUM
-    BP_EFFECT_COUNT
+        BP_EFFECT_COUNT
 } BpEffect;
 
-_Static_assert(BP_EFFECT_COUNT <= BP_EFFECTS_MAX, "every combination that can occur is tested: at most eight bits");
+_Static_assert(BP_EFFECT_COUNT <= BP_EFFECTS_MAX,
+               "every combination that can occur is tested: at most eight bits");
 
 typedef struct BpEffects {
     uint32_t bits; /* bit e set: effect e is simulated */
@@ -39,10 +40,12 @@ typedef struct BpEffects {
 /* Up to this many spheres a list is at least as fast as a tree (measured: docs/EFFECTS.md). */
 #define BP_LIST_SPHERES_MAX 32u
 
-static inline bool bp_effects_has(uint32_t bits, BpEffect effect) { return (bits >> effect & 1u) != 0; }
+static inline bool bp_effects_has(uint32_t bits, BpEffect effect) {
+    return (bits >> effect & 1u) != 0;
+}
 
-const char *bp_effect_name(BpEffect effect);        /* "lambertian" */
-const char *bp_effect_identifier(BpEffect effect);  /* "LAMBERTIAN" */
+const char *bp_effect_name(BpEffect effect);       /* "lambertian" */
+const char *bp_effect_identifier(BpEffect effect); /* "LAMBERTIAN" */
 const char *bp_effect_description(BpEffect effect);
 
 void bp_effects_analyse(const BpScene *scene, BpEffects *effects);
