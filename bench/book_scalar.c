@@ -3,15 +3,19 @@
  * In:    a scene file.   Out: one line of JSON (peer.h).
  * Knows: the fourth edition (Shirley, Black and Hollasch, 2024): a list of spheres tried one by one (--method
  *        list), or the second book's binary tree with a median split along the longest axis (--method tree);
- *        recursive ray_color, rejection sampling, t_min = 0.001.
+ *        recursive ray_color, rejection sampling.
  * Does not know: float, vectors, wide trees, ballpark's kernels.
  *
- * Two things are kinder than the book's C++: a fast random generator, and threads over rows. */
+ * Three things are kinder than the book's C++: a fast random generator, threads over rows, and T_MIN. */
 #include "peer.h"
 
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
+
+/* The shortest distance that counts as a hit. The book has 0.001, which lets paths slip into small spheres
+ * that overlap, where they are lost; in double this is far enough, and costs the same. */
+#define T_MIN 1e-6
 
 typedef struct Vec {
     double x, y, z;
@@ -122,7 +126,7 @@ static bool hit_sphere(const BpSphere *sphere, const Ray *ray, double t_min, dou
 static bool hit_list(const BpScene *scene, const Ray *ray, double t_max, Hit *hit) {
     bool any = false;
     for (size_t i = 0; i < scene->sphere_count; i++) {
-        if (hit_sphere(&scene->spheres[i], ray, PEER_T_MIN, t_max, hit)) {
+        if (hit_sphere(&scene->spheres[i], ray, T_MIN, t_max, hit)) {
             any = true;
             t_max = hit->t;
         }
@@ -150,8 +154,8 @@ static bool hit_box(const Box *box, const Ray *ray, double t_min, double t_max) 
 }
 
 static bool hit_node(const Node *node, const Ray *ray, double t_max, Hit *hit) {
-    if (node->sphere != NULL) return hit_sphere(node->sphere, ray, PEER_T_MIN, t_max, hit);
-    if (!hit_box(&node->box, ray, PEER_T_MIN, t_max)) return false;
+    if (node->sphere != NULL) return hit_sphere(node->sphere, ray, T_MIN, t_max, hit);
+    if (!hit_box(&node->box, ray, T_MIN, t_max)) return false;
     const bool left = hit_node(node->left, ray, t_max, hit);
     const bool right = hit_node(node->right, ray, left ? hit->t : t_max, hit);
     return left || right;

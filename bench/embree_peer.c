@@ -109,7 +109,6 @@ static Worker worker_create(uint32_t lanes) {
     for (size_t a = 0; a < sizeof words / sizeof *words; a++)
         *words[a] = peer_allocate(lanes, sizeof(uint32_t));
     for (uint32_t i = 0; i < lanes; i++) {
-        worker.t_near[i] = (float)PEER_T_MIN;
         worker.mask[i] = UINT32_MAX;
     }
     return worker;
@@ -126,7 +125,6 @@ static void trace_single(const Job *job, Worker *worker, struct RTCIntersectCont
         rays[i].ray = (struct RTCRay){.org_x = batch->origin[0][i],
                                       .org_y = batch->origin[1][i],
                                       .org_z = batch->origin[2][i],
-                                      .tnear = (float)PEER_T_MIN,
                                       .dir_x = batch->direction[0][i],
                                       .dir_y = batch->direction[1][i],
                                       .dir_z = batch->direction[2][i],
@@ -169,7 +167,7 @@ static void trace_single(const Job *job, Worker *worker, struct RTCIntersectCont
                 packet.ray.dir_x[l] = batch->direction[0][i + l];                                            \
                 packet.ray.dir_y[l] = batch->direction[1][i + l];                                            \
                 packet.ray.dir_z[l] = batch->direction[2][i + l];                                            \
-                packet.ray.tnear[l] = (float)PEER_T_MIN;                                                     \
+                packet.ray.tnear[l] = 0;                                                                     \
                 packet.ray.tfar[l] = INFINITY;                                                               \
                 packet.hit.primID[l] = RTC_INVALID_GEOMETRY_ID;                                              \
                 packet.hit.geomID[l] = RTC_INVALID_GEOMETRY_ID;                                              \

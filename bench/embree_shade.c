@@ -99,13 +99,13 @@ static void meet_surfaces(const Batch *batch) {
         const float c = fabsf(outward);
         front[i] = outward < 0 ? 1u : 0u;
         cosine[i] = c < 1 ? c : 1.0f;
-        offset[i] = length2 * scale * 0x1p-21f;
         nx[i] *= facing;
         ny[i] *= facing;
         nz[i] *= facing;
         ox[i] += distance * dx[i];
         oy[i] += distance * dy[i];
         oz[i] += distance * dz[i];
+        offset[i] = 0x1p-21f * (length2 * scale + fabsf(ox[i]) + fabsf(oy[i]) + fabsf(oz[i]));
     }
 }
 
@@ -292,8 +292,9 @@ static void scatter_glass(const Batch *batch, uint32_t has) {
     }
 }
 
-/* Unit directions; and points on float spheres lie up to about 1e-7 radii off the surface, so that a path
- * could slip under a huge one: they are moved to the side that the ray leaves by. */
+/* Unit directions; and points computed in float lie off the surface by parts of their coordinates and of the
+ * radius, so that a path could meet its own sphere again or slip under it: they are moved, by four such
+ * parts, to the side that the ray leaves by (as Waechter and Binder 2019 do, by other means). */
 static void leave_surfaces(const Batch *batch) {
     const uint32_t count = batch->active;
     FLOATS3(x, y, z, batch->next);

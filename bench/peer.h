@@ -10,8 +10,6 @@
 
 #include "scene/scene.h"
 
-#define PEER_T_MIN 1e-3 /* the book's shortest distance that counts as a hit */
-
 typedef struct PeerOptions {
     const char *scene_path, *method, *picture_path, *config;
     uint32_t width, samples, depth, threads; /* 0: the scene's own; threads: every core */

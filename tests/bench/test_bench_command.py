@@ -1,0 +1,68 @@
+"""`ballpark bench`: what it writes, and that its figures fit together."""
+import json
+import os
+import statistics
+import subprocess
+import sys
+import tempfile
+
+program = sys.argv[1]
+folder = tempfile.mkdtemp()
+environment = dict(os.environ, TMPDIR=folder)
+
+
+def run(*words, code=0):
+    done = subprocess.run([program, "bench", *words], capture_output=True, text=True, env=environment)
+    assert done.returncode == code, (words, done.returncode, done.stderr)
+    return done
+
+
+def close(a, b, tolerance=1e-9):
+    assert abs(a - b) <= tolerance * max(abs(a), abs(b)), (a, b)
+
+
+# The fixed scenes on request, and nothing else.
+scenes = os.path.join(folder, "scenes")
+done = run("cover", "diffuse", "glass", "field-500", "-o", scenes)
+assert done.stdout == ""
+assert sorted(os.listdir(scenes)) == ["cover.json", "diffuse.json", "field-500.json", "field-500.ply", "glass.json"]
+cover, diffuse, glass = (json.load(open(os.path.join(scenes, n + ".json"))) for n in ("cover", "diffuse", "glass"))
+assert len(cover["spheres"]) == len(diffuse["spheres"]) == len(glass["spheres"]) > 450
+assert {m["type"] for m in diffuse["materials"].values()} == {"lambertian"}
+assert sum(m["type"] == "lambertian" for m in glass["materials"].values()) == 1
+assert [s["center"] for s in cover["spheres"]] == [s["center"] for s in glass["spheres"]]
+
+# A measurement: a file and a fixed scene, small and short.
+path = os.path.join(scenes, "cover.json")
+report = json.loads(run(path, "field-500", "--width", "40", "--time", "0.03", "--rounds", "3", "--json", "-", "-q").stdout)
+assert report["rounds"] == 3 and report["device"]["name"]
+assert [s["name"] for s in report["scenes"]] == [path, "field-500"]
+for scene in report["scenes"]:
+    assert scene["width"] == 40 and scene["height"] == 22
+    for key in ("samples_per_second", "segments_per_second", "nanoseconds_per_segment", "cpu_nanoseconds_per_segment",
+                "load_seconds", "tree_seconds", "kernel_build_seconds"):
+        figure = scene[key]
+        assert len(figure["rounds"]) == 3 and min(figure["rounds"]) > 0, (key, figure)
+        low, middle, high = statistics.quantiles(figure["rounds"], n=4, method="inclusive")
+        close(figure["low"], low)
+        close(figure["median"], middle)
+        close(figure["high"], high)
+    close(scene["nanoseconds_per_segment"]["median"] * scene["segments_per_second"]["median"], 1e9)
+    # samples of different rounds see the same picture, so segments a sample stay close
+    for samples, segments in zip(scene["samples_per_second"]["rounds"], scene["segments_per_second"]["rounds"]):
+        close(segments / samples, scene["segments_per_sample"], .2)
+    assert 1 <= scene["segments_per_sample"] < 10
+    assert scene["bytes_per_sphere"] * scene["spheres"] >= 16 * scene["spheres"]
+    assert scene["invalid_samples"] == 0 and all(0 < m < 1 for m in scene["mean_radiance"])
+assert report["scenes"][1]["spheres"] == 500
+assert os.listdir(folder) == ["scenes"], "the temporary folder must be gone"
+
+# The table.
+lines = run("field-500", "--width", "20", "--time", "0.02", "--rounds", "1", "-q").stdout.splitlines()
+assert any(line.startswith("field-500") and " 500 " in line for line in lines), lines
+
+# What cannot be measured is refused by name.
+assert "nowhere.json" in run("nowhere.json", code=2).stderr
+assert "field-0" in run("field-0", code=2).stderr
+assert "depth" in run("field-500", "--depth", "0", "--width", "20", "-q", code=2).stderr
+assert os.listdir(folder) == ["scenes"]

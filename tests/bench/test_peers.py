@@ -1,0 +1,53 @@
+"""Peers show the same pictures as ballpark: mean radiance within statistics, so that speeds are of the same work."""
+import json
+import math
+import os
+import subprocess
+import sys
+import tempfile
+
+program, peers, scenes = sys.argv[1:4]
+Z_MAX = 4.0  # of 3 channels of all pairs below; by chance about 1 run in 300
+SAMPLES = 128
+
+
+def call(command):
+    return json.loads(subprocess.run(command, check=True, capture_output=True, text=True).stdout)
+
+
+def peer(name, path, *options):
+    figures = call([os.path.join(peers, name), path, "--width", "160", "--spp", str(SAMPLES), *options])
+    return figures["mean_radiance"], figures["standard_error"], figures["rays"] / figures["samples"]
+
+
+def ours(path, folder):
+    stats = os.path.join(folder, "stats.json")
+    subprocess.run([program, "render", path, "--width", "160", "--spp", str(SAMPLES), "--sampler", "independent", "--seed",
+                    "77", "-o", os.path.join(folder, "x.pfm"), "--stats", stats, "--quiet"], check=True)
+    with open(stats) as file:
+        figures = json.load(file)
+    return figures["mean_radiance"], figures["rays"] / figures["samples"]
+
+
+with tempfile.TemporaryDirectory() as folder:
+    subprocess.run([program, "bench", "cover", "diffuse", "glass", "field-2000", "-o", folder], check=True)
+    paths = [os.path.join(folder, name + ".json") for name in ("cover", "diffuse", "glass", "field-2000")]
+    # every lobe, fuzz, Fresnel and total reflection that the book has
+    paths += [os.path.join(scenes, name + ".json") for name in
+              ("v4-09-hemisphere", "v1-metal-fuzz", "v4-14-metal-fuzz", "v4-16-glass-always", "v4-17-air-bubble",
+               "v3-18-view-distant", "v1-glass-hollow")]
+    embree = os.path.exists(os.path.join(peers, "embree_peer"))
+    for path in paths:
+        means, rays = ours(path, folder)
+        entries = [("book tree", *peer("book_scalar", path, "--method", "tree", "--seed", "1"))]
+        if "field" not in path:
+            entries.append(("book list", *peer("book_scalar", path, "--method", "list", "--seed", "2")))
+        for method in ("1", "16,coherent", "np,robust") if embree else ():
+            entries.append((f"embree {method}", *peer("embree_peer", path, "--method", method, "--seed", "3")))
+        for name, mean, error, peer_rays in entries:
+            # ours has the variance of the peer: same samples, same scene
+            zs = [(a - b) / (e * math.sqrt(2)) for a, b, e in zip(means, mean, error)]
+            print(f"{os.path.basename(path):26s} {name:20s} z {' '.join(f'{z:5.1f}' for z in zs)}  "
+                  f"segments a sample {rays:.4f} {peer_rays:.4f}")
+            assert max(map(abs, zs)) < Z_MAX, (path, name, zs)
+            assert abs(rays / peer_rays - 1) < .005, (path, name, rays, peer_rays)
