@@ -45,10 +45,10 @@ class Book:
         return figures["rays"] / figures["cpu_seconds"]
 
 
-def measure(program, peer, paths):
+def measure(program, peer, paths, rounds=ROUNDS):
     books = {scene: Book(peer, path) for scene, path in paths.items()}
     ratios = {case: [] for case in CASES}
-    for _ in range(ROUNDS):
+    for _ in range(rounds):
         yardsticks = {scene: book.rate() for scene, book in books.items()}
         for case in CASES:
             rate, device = rate_of_ours(program, paths[case[0]], case[1])
@@ -70,7 +70,7 @@ def main():
         scenes = sorted({scene for scene, _ in CASES})
         subprocess.run([program, "bench", *scenes, "--output", folder], check=True)
         paths = {scene: os.path.join(folder, scene + ".json") for scene in scenes}
-        ratios, device = measure(program, peer, paths)
+        ratios, device = measure(program, peer, paths, ROUNDS if demand == 1 else 1)
         print(f"device: {device}")
         if "--record" in options:
             records[device] = {name: round(ratio, 2) for name, ratio in ratios.items()}
