@@ -13,7 +13,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum { COLUMNS = 8, CELL_SIZE = 260 };
+enum { COLUMNS = 8, CELL_SIZE = 280 };
 
 typedef char Cells[COLUMNS][CELL_SIZE];
 

@@ -9,9 +9,6 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* Generated from kernels/ (cmake/embed_kernels.cmake); NULL for an unknown name. */
-const char *bp_kernel_file(const char *name);
-
 /* The order in which the files stand in a program. A lane file says for how many lanes what follows is meant;
  * refine.cl serves single rays in tree.cl and, below lanes_wide.cl, all lanes together. */
 static const char *const sample_files[] = {
@@ -58,18 +55,33 @@ static void text_print(Text *text, const char *format, ...) {
     text_append(text, line, (size_t)length);
 }
 
-/* Appends a whole file of the folder `directory`. */
-static BpStatus append_from_folder(Text *text, const char *directory, const char *name, BpError *err) {
-    char path[1024];
-    snprintf(path, sizeof path, "%s/%s", directory, name);
-    FILE *file = fopen(path, "rb");
-    if (file == NULL)
-        return bp_fail(err, BP_ERR_FILE,
-                       "%s: cannot be read; BALLPARK_KERNELS must name a folder with all kernel files", path);
-    char block[4096];
-    size_t count;
-    while ((count = fread(block, 1, sizeof block, file)) > 0) text_append(text, block, count);
-    fclose(file);
+BpStatus bp_kernel_text(const char *name, char **text, BpError *err) {
+    Text read = {0};
+    const char *directory = getenv("BALLPARK_KERNELS");
+    const char *embedded = bp_kernel_file(name);
+    *text = NULL;
+    if (directory != NULL && directory[0] != '\0') {
+        char path[1024], block[4096];
+        size_t count;
+        snprintf(path, sizeof path, "%s/%s", directory, name);
+        FILE *file = fopen(path, "rb");
+        if (file == NULL)
+            return bp_fail(err, BP_ERR_FILE,
+                           "%s: cannot be read; BALLPARK_KERNELS must name a folder with all kernel files",
+                           path);
+        text_append(&read, "", 0);
+        while ((count = fread(block, 1, sizeof block, file)) > 0) text_append(&read, block, count);
+        fclose(file);
+    } else if (embedded != NULL) {
+        text_append(&read, embedded, strlen(embedded));
+    } else {
+        return bp_fail(err, BP_ERR_FILE, "kernels/%s is not in this program", name);
+    }
+    if (read.failed) {
+        free(read.bytes);
+        return bp_fail(err, BP_ERR_MEMORY, "no memory for the kernel's source");
+    }
+    *text = read.bytes;
     return BP_OK;
 }
 
@@ -86,21 +98,18 @@ BpStatus bp_program_source(const BpProgramOptions *options, const char *extra_na
     for (int e = 0; e < BP_EFFECT_COUNT; ++e)
         text_print(&text, "#define EFFECT_%s %d\n", bp_effect_identifier((BpEffect)e),
                    bp_effects_has(options->effects, (BpEffect)e));
-    const char *directory = getenv("BALLPARK_KERNELS");
     const char *const *files = options->form == BP_KERNEL_PACKET ? packet_files : sample_files;
     for (size_t i = 0; files[i] != NULL; ++i) {
         const char *name = plain && strcmp(files[i], "refine.cl") == 0 ? "plain.cl" : files[i];
         text_print(&text, "#line 1 \"%s\"\n", name);
-        if (directory != NULL && directory[0] != '\0') {
-            const BpStatus status = append_from_folder(&text, directory, name, err);
-            if (status != BP_OK) {
-                free(text.bytes);
-                return status;
-            }
-        } else {
-            const char *embedded = bp_kernel_file(name);
-            text_append(&text, embedded, strlen(embedded));
+        char *file = NULL;
+        const BpStatus status = bp_kernel_text(name, &file, err);
+        if (status != BP_OK) {
+            free(text.bytes);
+            return status;
         }
+        text_append(&text, file, strlen(file));
+        free(file);
     }
     if (extra_text != NULL) {
         text_print(&text, "#line 1 \"%s\"\n", extra_name != NULL ? extra_name : "extra.cl");

@@ -15,6 +15,10 @@
 /* The embedded text of one file of kernels/, static; NULL when there is none of that name. */
 const char *bp_kernel_file(const char *name);
 
+/* The text of one file of kernels/ as programs get it: embedded, or from BALLPARK_KERNELS. The caller frees
+ * *text. BP_ERR_FILE: there is no such file. */
+BpStatus bp_kernel_text(const char *name, char **text, BpError *err);
+
 typedef struct BpProgramOptions {
     uint32_t effects; /* bits of effects.h */
     BpPrecision precision;

@@ -215,8 +215,8 @@ static void compare(const Inputs *in, const uint32_t *rows, const uint32_t *layo
 /* The test's own program: the kernels' dialect, the packed structs and self_test.cl, and nothing else, so
  * that it builds fast and speaks even where the whole kernel does not build. The caller frees *source. */
 static BpStatus assemble(bool has_double, const char *kernel_text, char **source, BpError *err) {
-    static const char *const files[] = {"real.cl", "scene_types.h"};
-    const char *texts[3];
+    BpStatus status;
+    char *texts[3] = {NULL};
     char head[2048] = "";
     size_t used =
         (size_t)snprintf(head, sizeof head,
@@ -226,19 +226,24 @@ static BpStatus assemble(bool has_double, const char *kernel_text, char **source
     for (int column = 0; column < COLUMN_COUNT; ++column)
         used += (size_t)snprintf(head + used, sizeof head - used, "#define COLUMN_%s %du\n",
                                  columns[column].name, column);
-    for (int f = 0; f < 2; ++f) {
-        texts[f] = bp_kernel_file(files[f]);
-        if (texts[f] == NULL) return bp_fail(err, BP_ERR_FILE, "kernels/%s is not in this program", files[f]);
+    BP_TRY_GOTO(status, bp_kernel_text("real.cl", &texts[0], err), done);
+    BP_TRY_GOTO(status, bp_kernel_text("scene_types.h", &texts[1], err), done);
+    if (kernel_text == NULL) {
+        BP_TRY_GOTO(status, bp_kernel_text("self_test.cl", &texts[2], err), done);
+        kernel_text = texts[2];
     }
-    texts[2] = kernel_text != NULL ? kernel_text : bp_kernel_file("self_test.cl");
-    if (texts[2] == NULL) return bp_fail(err, BP_ERR_FILE, "kernels/self_test.cl is not in this program");
-    const size_t size = used + strlen(texts[0]) + strlen(texts[1]) + strlen(texts[2]) + 256;
+    const size_t size = used + strlen(texts[0]) + strlen(texts[1]) + strlen(kernel_text) + 256;
     *source = malloc(size);
-    if (*source == NULL) return bp_fail(err, BP_ERR_MEMORY, "no memory for the self-test");
-    snprintf(*source, size,
-             "%s#line 1 \"real.cl\"\n%s\n#line 1 \"scene_types.h\"\n%s\n#line 1 \"self_test.cl\"\n%s\n", head,
-             texts[0], texts[1], texts[2]);
-    return BP_OK;
+    if (*source == NULL)
+        status = bp_fail(err, BP_ERR_MEMORY, "no memory for the self-test");
+    else
+        snprintf(*source, size,
+                 "%s#line 1 \"real.cl\"\n%s\n#line 1 \"scene_types.h\"\n%s\n#line 1 \"self_test.cl\"\n%s\n",
+                 head, texts[0], texts[1], kernel_text);
+
+done:
+    for (int i = 0; i < 3; ++i) free(texts[i]);
+    return status;
 }
 
 /* Runs the built kernel over `in`. */

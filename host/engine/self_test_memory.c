@@ -26,8 +26,9 @@ static void identify(const BpDeviceInfo *device, char *to, size_t size) {
     static const char *const files[] = {"real.cl", "scene_types.h", "self_test.cl"};
     uint64_t sources = HASH_START;
     for (int f = 0; f < 3; ++f) {
-        const char *text = bp_kernel_file(files[f]);
-        sources = hash_text(sources, text != NULL ? text : "");
+        char *text = NULL;
+        if (bp_kernel_text(files[f], &text, NULL) == BP_OK) sources = hash_text(sources, text);
+        free(text);
     }
     snprintf(to, size,
              "This device passed Ballpark's self-test.\nplatform: %s\ndevice: %s\nversion: %s\ndriver: %s\n"
