@@ -52,8 +52,8 @@ static Vec3 scatter_lambertian(const Surface *surface, SampleKey key, uints boun
         const reals side = choose(dot3(offset, surface->normal) < splat(0), splat(-1), splat(1));
         direction = choose3(hemisphere, scale3(side, offset), direction);
     }
-    /* normal + offset can vanish, or be too short to have a direction: then straight up. */
-    const masks vanished = dot3(direction, direction) < splat(R(1e-12));
+    /* normal + offset can vanish, or be so short that rounding may point it below the surface: then straight up. */
+    const masks vanished = dot3(direction, surface->normal) < splat(R(8.0) * ROUNDOFF);
     return normalise3(choose3(vanished, surface->normal, direction));
 }
 #endif

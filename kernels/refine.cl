@@ -28,8 +28,9 @@ static LANED(Roots) LANED(sphere_roots)(reals high_x, reals high_y, reals high_z
     const refineds ocx = to_refined(cx) - (to_refined(high_x) + to_refined(low_x));
     const refineds ocy = to_refined(cy) - (to_refined(high_y) + to_refined(low_y));
     const refineds ocz = to_refined(cz) - (to_refined(high_z) + to_refined(low_z));
-    /* 1 / d.d to the square of its distance from 1, which is at most 8 ROUNDOFF */
-    const refineds inverse = splat_refined(2) - fma(dx, dx, fma(dy, dy, dz * dz));
+    /* d.d = 1 + e with |e| of a few ROUNDOFF: 1 / d.d = 1 - e + e e, to the cube of e */
+    const refineds e = fma(dx, dx, fma(dy, dy, fma(dz, dz, splat_refined(-1))));
+    const refineds inverse = fma(e, e - splat_refined(1), splat_refined(1));
     const refineds p = fma(ocx, dx, fma(ocy, dy, ocz * dz)) * inverse;
     const refineds lx = fma(-p, dx, ocx), ly = fma(-p, dy, ocy), lz = fma(-p, dz, ocz);
     const refineds r = to_refined(radius);

@@ -44,8 +44,8 @@ static void multiply_add_exactly(reals a, reals b, reals c, reals *high, reals *
 }
 
 /* Relative to the centre the point is l across the ray and s along it, whichever way t was rounded. In space: close
- * by it is origin + t d, where t errs by 2u t; far away against its radius, centre + r n, where n errs by 2u. The
- * smaller error is taken. */
+ * by it is origin + t d, off the sphere by the error of t, at most 16u t; far away against its radius, centre + r n,
+ * off the sphere by the error of |n|, at most 3u. */
 static void surface_point(const Point *origin, Vec3 direction, refineds t, masks enters, Vec3 centre, reals radius,
                           Point *point, Vec3 *normal) {
     const LANED(Roots) roots = LANED(sphere_roots)(origin->high.x, origin->high.y, origin->high.z, origin->low.x,
@@ -54,7 +54,10 @@ static void surface_point(const Point *origin, Vec3 direction, refineds t, masks
     const Vec3 across = vec3(roots.across_x, roots.across_y, roots.across_z);
     const Vec3 relative = subtract3(scale3(choose(enters, -roots.half_chord, roots.half_chord), direction), across);
     const masks degenerate = not_mask(dot3(relative, relative) > splat(0));
-    *normal = normalise3(choose3(degenerate, direction, relative));
+    const Vec3 unit = normalise3(choose3(degenerate, direction, relative));
+    /* Once more, so that the length errs by 3u however well the device divides and takes roots. */
+    const reals excess = fma(unit.x, unit.x, fma(unit.y, unit.y, fma(unit.z, unit.z, splat(-1))));
+    *normal = scale3(fma(excess, splat(R(-0.5)), splat(1)), unit);
     Vec3 near_high, near_low, far_high, far_low;
     multiply_add_exactly(t, direction.x, origin->high.x, &near_high.x, &near_low.x);
     multiply_add_exactly(t, direction.y, origin->high.y, &near_high.y, &near_low.y);
@@ -67,6 +70,6 @@ static void surface_point(const Point *origin, Vec3 direction, refineds t, masks
     point->high = choose3(close_by, near_high, far_high);
     point->low = choose3(close_by, near_low, far_low);
     const reals size = fabs(point->high.x) + fabs(point->high.y) + fabs(point->high.z);
-    point->slack = fma(size, splat(R(0x1p-45)), choose(close_by, t, radius) * (R(16.0) * ROUNDOFF));
+    point->slack = fma(size, splat(R(0x1p-45)), choose(close_by, t * R(16.0), radius * R(4.0)) * ROUNDOFF);
 }
 #endif

@@ -62,12 +62,9 @@ static void refine_slot(const Geometry *geometry, const Ray *ray, uint slot, Hit
 }
 
 /* Rules out, TREE_WIDTH at a time, the spheres that the ray surely misses or meets surely later than best->bound;
- * refines the rest.
- *
- * The margin. With u = ROUNDOFF and |d|^2 = 1 + 8u at most: oc errs by u |oc| and by the origin's low part
- * (ray_margin >= |low|); p by 3u |oc| from its sum and 8u |oc| from d's length; l = oc - p d by these and u |l|. In
- * all below 14 u |oc| + |low|, and |oc| <= |p| + |l|, |l| <= r where it matters: margin = 32 u (|p| + r) +
- * ray_margin covers it twice. The sphere is met before `bound` only if sqrt(r^2 - l^2) >= max(-p, p - bound). */
+ * refines the rest. The sphere is met before `bound` only if sqrt(r^2 - l^2) >= max(-p, p - bound); p and l err by
+ * less than half of margin = 64 u (|p| + r) + ray_margin (u = ROUNDOFF, |d|^2 = 1 within 28 u). docs/NUMERICS.md
+ * proves that nothing is ruled out wrongly. */
 static void test_leaf(const Geometry *geometry, const Ray *ray, real ray_margin, uint leaf_number, Hit *best) {
     __global const real *leaf = geometry->leaves + leaf_number * (4 * TREE_WIDTH);
     const wide ocx = load_wide(0, leaf) - ray->high[0];
@@ -77,7 +74,7 @@ static void test_leaf(const Geometry *geometry, const Ray *ray, real ray_margin,
     const wide dx = (wide)ray->direction[0], dy = (wide)ray->direction[1], dz = (wide)ray->direction[2];
     const wide p = fma(ocx, dx, fma(ocy, dy, ocz * dz));
     const wide lx = fma(-p, dx, ocx), ly = fma(-p, dy, ocy), lz = fma(-p, dz, ocz);
-    const wide margin = fma((wide)(R(32.0) * ROUNDOFF), fabs(p) + radius, (wide)ray_margin);
+    const wide margin = fma((wide)(R(64.0) * ROUNDOFF), fabs(p) + radius, (wide)ray_margin);
     const wide reach = radius + margin;
     const wide room = fma(reach, reach, -fma(lx, lx, fma(ly, ly, lz * lz)));
     const wide behind = -p, beyond = p - best->bound;

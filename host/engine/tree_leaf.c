@@ -19,14 +19,15 @@ BpTreeItem bp_tree_item(const BpScene *scene, uint32_t sphere, const double orig
 }
 
 /* Widened by what rounding to float may have moved center and radius, at most 2^-24 of each or, below the
- * normal numbers, less than FLT_MIN; and by the few 2^-53 that these sums in double, and the subtraction of
- * the origin, may be off. */
+ * normal numbers, less than FLT_MIN; by the few 2^-53 that these sums in double, and the subtraction of the
+ * origin, may be off; and by 8 * 2^-24 of the radius, since the kernel's intersection in single precision
+ * takes for hits what passes the sphere by up to 4 of them. */
 BpBounds bp_tree_item_bounds(const BpTreeItem *item) {
     const double r = (double)item->radius;
     BpBounds bounds;
     for (int a = 0; a < 3; ++a) {
         const double c = (double)item->center[a];
-        const double margin = (fabs(c) + r) * (0x1p-24 + 0x1p-46) + (double)FLT_MIN;
+        const double margin = (fabs(c) + r) * (0x1p-24 + 0x1p-46) + r * 0x1p-21 + (double)FLT_MIN;
         bounds.low[a] = c - r - margin;
         bounds.high[a] = c + r + margin;
     }

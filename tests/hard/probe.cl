@@ -1,0 +1,269 @@
+/* probe.cl: kernels that hand arrays to the product's own functions; appended to a program of one lane.
+ *
+ * In:    numbers that the host made.   Out: what the functions say, unchanged, in refined precision.
+ * `count` items; the host rounds the number of work-items up. Layouts are those of lab.h. */
+#define PROBE_ITEM                                                                                           \
+    const uint item = (uint)get_global_id(0);                                                                \
+    if (item >= count) return;
+
+enum { PROBE_RAY_REALS = 10, PROBE_HIT_REALS = 8, PROBE_POINT_REALS = 10 };
+
+/* `own`: 0 for a ray from free space, 1 for one that leaves the sphere of `slot` outward, 2 inward. */
+static Ray probe_ray(__global const real *in, uint own, uint slot) {
+    Ray ray;
+    for (uint axis = 0; axis < 3; ++axis) {
+        ray.high[axis] = in[axis];
+        ray.low[axis] = in[3 + axis];
+        ray.direction[axis] = in[6 + axis];
+    }
+    ray.slack = in[9];
+    ray.own_slot = own != 0 ? slot : NO_SLOT;
+    ray.inward = own == 2;
+    return ray;
+}
+
+static Geometry probe_geometry(__global const real *boxes, __global const uint *children, __global const real *leaves,
+                               __global const uint *slot_sphere, uint first_leaves, uint leaf_count) {
+    Geometry geometry;
+    geometry.boxes = boxes;
+    geometry.children = children;
+    geometry.leaves = leaves;
+    geometry.slot_sphere = slot_sphere;
+    geometry.first_leaves = first_leaves;
+    geometry.leaf_count = leaf_count;
+    return geometry;
+}
+
+/* Each ray against a leaf of its own, whose sphere `item % TREE_WIDTH` is the one that counts. `boxes` is an empty
+ * root. Out: t, hit, enters, and the roots without filter or choice: near, far, meets, middle; slot. */
+__kernel void probe_leaf(uint count, __global const real *rays, __global const uint *own, __global const real *leaves,
+                         __global const real *boxes, __global const uint *children, __global const uint *slot_sphere,
+                         __global refined *out) {
+    PROBE_ITEM
+    __global const real *leaf = leaves + (size_t)item * 4 * TREE_WIDTH;
+    const uint lane = item % TREE_WIDTH;
+    const Geometry geometry = probe_geometry(boxes, children, leaf, slot_sphere, 1, 1);
+    const Ray ray = probe_ray(rays + (size_t)item * PROBE_RAY_REALS, own[item], lane);
+    const Hit hit = intersect_closest(&geometry, &ray);
+    __global refined *row = out + (size_t)item * PROBE_HIT_REALS;
+    row[0] = hit.t;
+    row[1] = hit.slot != NO_SLOT;
+    row[2] = hit.enters;
+#if NUMERICS_ROBUST
+    const Roots_1 roots =
+        sphere_roots_1(ray.high[0], ray.high[1], ray.high[2], ray.low[0], ray.low[1], ray.low[2], ray.direction[0],
+                       ray.direction[1], ray.direction[2], leaf[lane], leaf[TREE_WIDTH + lane],
+                       leaf[2 * TREE_WIDTH + lane], leaf[3 * TREE_WIDTH + lane]);
+    row[3] = roots.near;
+    row[4] = roots.far;
+    row[5] = roots.meets != 0;
+    row[6] = roots.middle;
+#else
+    row[3] = row[4] = row[5] = row[6] = 0;
+#endif
+    row[7] = hit.slot == NO_SLOT ? -1 : (refined)hit.slot;
+}
+
+/* The point where a ray of probe_leaf met its sphere (hits: probe_leaf's rows). Out: high, low, slack, normal. */
+__kernel void probe_point(uint count, __global const real *rays, __global const real *spheres,
+                          __global const refined *hits, __global refined *out) {
+    PROBE_ITEM
+    __global const real *ray = rays + (size_t)item * PROBE_RAY_REALS;
+    __global const real *sphere = spheres + (size_t)item * 4;
+    __global const refined *hit = hits + (size_t)item * PROBE_HIT_REALS;
+    Point origin, point;
+    Vec3 normal;
+    origin.high = vec3(ray[0], ray[1], ray[2]);
+    origin.low = vec3(ray[3], ray[4], ray[5]);
+    origin.slack = ray[9];
+    surface_point(&origin, vec3(ray[6], ray[7], ray[8]), hit[0], hit[2] != 0, vec3(sphere[0], sphere[1], sphere[2]),
+                  sphere[3], &point, &normal);
+    __global refined *row = out + (size_t)item * PROBE_POINT_REALS;
+    row[0] = point.high.x;
+    row[1] = point.high.y;
+    row[2] = point.high.z;
+    row[3] = point.low.x;
+    row[4] = point.low.y;
+    row[5] = point.low.z;
+    row[6] = point.slack;
+    row[7] = normal.x;
+    row[8] = normal.y;
+    row[9] = normal.z;
+}
+
+/* One scattering. In: incoming, normal, index, fuzz, albedo. choices: enters, kind, lobe, variant, total_reflection,
+ * sample. Out: direction, goes_on, refracted, the random direction and ball radius that the sample has. */
+__kernel void probe_scatter(uint count, __global const real *in, __global const uint *choices, uint seed,
+                            __global refined *out) {
+    PROBE_ITEM
+    __global const real *numbers = in + (size_t)item * 8;
+    __global const uint *words = choices + (size_t)item * 6;
+    Surface surface;
+    surface.incoming = vec3(numbers[0], numbers[1], numbers[2]);
+    surface.normal = vec3(numbers[3], numbers[4], numbers[5]);
+    surface.refraction_index = numbers[6];
+    surface.fuzz = numbers[7];
+    surface.albedo = vec3(1, 1, 1);
+    surface.enters = words[0] != 0;
+    surface.kind = words[1];
+    surface.lobe = words[2];
+    surface.variant = words[3];
+    surface.total_reflection = words[4];
+    const SampleKey key = sample_key(seed, 0, 0, words[5], 4);
+    const Scattering scattering = scatter(&surface, key, 0);
+    const Vec3 offset = random_direction(key, DIMENSION_BOUNCE);
+    __global refined *row = out + (size_t)item * 8;
+    row[0] = scattering.direction.x;
+    row[1] = scattering.direction.y;
+    row[2] = scattering.direction.z;
+    row[3] = scattering.goes_on != 0;
+    row[4] = scattering.refracted != 0;
+    row[5] = offset.x;
+    row[6] = offset.y;
+    row[7] = offset.z;
+}
+
+/* In: cosine, index. Out: exact reflectance, Schlick's. */
+__kernel void probe_fresnel(uint count, __global const real *in, __global refined *out) {
+    PROBE_ITEM
+    const real c = in[2 * item], n = in[2 * item + 1], ratio = R(1.0) / n;
+    const real transmitted2 = fma(-ratio * ratio, (R(1.0) - c) * (R(1.0) + c), R(1.0));
+    out[2 * item] = transmitted2 < 0 ? R(1.0) : fresnel_exact(c, n, sqrt(transmitted2));
+    out[2 * item + 1] = fresnel_schlick(c, ratio);
+}
+
+/* In: u, v. Out: sine and cosine of v turns, the disk's x, y, the sphere's x, y, z, the ball's radius. */
+__kernel void probe_maps(uint count, __global const real *in, __global refined *out) {
+    PROBE_ITEM
+    const real u = in[2 * item], v = in[2 * item + 1];
+    real sine, cosine, x, y;
+    sin_cos_turn(v, &sine, &cosine);
+    sample_disk(u, v, &x, &y);
+    const Vec3 sphere = sample_sphere(u, v);
+    __global refined *row = out + (size_t)item * 8;
+    row[0] = sine;
+    row[1] = cosine;
+    row[2] = x;
+    row[3] = y;
+    row[4] = sphere.x;
+    row[5] = sphere.y;
+    row[6] = sphere.z;
+    row[7] = sample_ball_radius(u, v, v);
+}
+
+/* In: bits. Out: the uniform number made of them; number 0 of pixel `item`, sample 0. */
+__kernel void probe_random(uint count, __global const uint *bits, uint seed, __global refined *out) {
+    PROBE_ITEM
+    out[2 * item] = bits_to_unit(bits[item]);
+    out[2 * item + 1] = uniform(sample_key(seed, 0, item, 0, 4), DIMENSION_PIXEL);
+}
+
+/* In: column, row. Out: origin, direction. */
+__kernel void probe_camera(uint count, __global const PackedCamera *camera, __global const real *in,
+                           __global refined *out) {
+    PROBE_ITEM
+    Vec3 origin, direction;
+    camera_ray(camera, 1, sample_key(1, 0, item, 0, 4), in[2 * item], in[2 * item + 1], &origin, &direction);
+    __global refined *row = out + (size_t)item * 6;
+    row[0] = origin.x;
+    row[1] = origin.y;
+    row[2] = origin.z;
+    row[3] = direction.x;
+    row[4] = direction.y;
+    row[5] = direction.z;
+}
+
+/* In: three numbers. Out: normalise3 of them, their length's square after it. */
+__kernel void probe_normalise(uint count, __global const real *in, __global refined *out) {
+    PROBE_ITEM
+    const Vec3 a = normalise3(vec3(in[3 * item], in[3 * item + 1], in[3 * item + 2]));
+    out[3 * item] = a.x;
+    out[3 * item + 1] = a.y;
+    out[3 * item + 2] = a.z;
+}
+
+/* The boxes of node `item` against its ray. Out: the byte of each lane, as one number a lane. */
+__kernel void probe_boxes(uint count, __global const real *rays, __global const real *boxes, __global uint *out) {
+    PROBE_ITEM
+    const Geometry geometry = probe_geometry(boxes, 0, 0, 0, 0, 0);
+    const Ray ray = probe_ray(rays + (size_t)item * PROBE_RAY_REALS, 0, 0);
+    const BoxRay box = box_ray(&ray);
+    wide entry;
+    lane_bytes met = test_node(&geometry, &box, item, REAL_LARGE, &entry);
+    for (uint lane = 0; lane < TREE_WIDTH; ++lane) {
+        out[(size_t)item * TREE_WIDTH + lane] = 0;
+    }
+    while (met != 0) {
+        const uint lane = lowest_lane(met);
+        met = without_lane(met, lane);
+        out[(size_t)item * TREE_WIDTH + lane] = 1;
+    }
+}
+
+/* The tree against all leaves one by one. Out: t and sphere of both (-1: none), and intersect_any. */
+__kernel void probe_tree(uint count, __global const real *rays, __global const real *boxes,
+                         __global const uint *children, __global const real *leaves, __global const uint *slot_sphere,
+                         uint first_leaves, uint leaf_count, __global refined *out) {
+    PROBE_ITEM
+    const Geometry geometry = probe_geometry(boxes, children, leaves, slot_sphere, first_leaves, leaf_count);
+    const Ray ray = probe_ray(rays + (size_t)item * PROBE_RAY_REALS, 0, 0);
+    const Hit tree = intersect_closest(&geometry, &ray);
+    Hit list = no_hit(REAL_LARGE);
+    for (uint slot = 0; slot < leaf_count * TREE_WIDTH; ++slot) refine_slot(&geometry, &ray, slot, &list);
+    __global refined *row = out + (size_t)item * 5;
+    row[0] = tree.t;
+    row[1] = tree.slot == NO_SLOT ? -1 : (refined)slot_sphere[tree.slot];
+    row[2] = list.t;
+    row[3] = list.slot == NO_SLOT ? -1 : (refined)slot_sphere[list.slot];
+    row[4] = intersect_any(&geometry, &ray, REAL_LARGE);
+}
+
+/* Arithmetic that the compiler must leave alone. In: a, b, zero. Out: see test_arithmetic.c. */
+__kernel void probe_arithmetic(uint count, __global const real *in, __global real *out) {
+    PROBE_ITEM
+    const real a = in[3 * item], b = in[3 * item + 1], zero = in[3 * item + 2];
+    const real nan_value = zero / zero;
+    __global real *row = out + (size_t)item * 8;
+    row[0] = !(nan_value >= 0) && nan_value != nan_value;
+    const real sum = a + b;
+    row[1] = (a - (sum - (sum - a))) + (b - (sum - a));
+    const real product = a * b;
+    row[2] = a * b - product;
+    row[3] = fma(a, b, -product);
+    row[4] = a / b;
+    row[5] = sqrt(fabs(a));
+    row[6] = R(1.0) / sqrt(fabs(a));
+    row[7] = sum;
+}
+
+/* Paths from given rays, refracted or reflected as the scene's materials say. Out: for each segment the sphere met
+ * (-1: none) and its distance; after PROBE_PATH_SEGMENTS of them the last direction, and whether it lives. */
+enum { PROBE_PATH_SEGMENTS = 12 };
+__kernel void probe_paths(SCENE_PARAMETERS, uint count, __global const real *rays, __global refined *out) {
+    PROBE_ITEM
+    const Scene scene = begin_scene(SCENE_ARGUMENTS);
+    __global const real *in = rays + (size_t)item * PROBE_RAY_REALS;
+    Paths path;
+    path.origin.high = vec3(in[0], in[1], in[2]);
+    path.origin.low = vec3(in[3], in[4], in[5]);
+    path.origin.slack = in[9];
+    path.direction = vec3(in[6], in[7], in[8]);
+    path.throughput = vec3(1, 1, 1);
+    path.radiance = zero3();
+    path.key = sample_key(seed_low, seed_high, item, 0, replicates);
+    path.depth = 0;
+    path.own_slot = NO_SLOT;
+    path.inward = 0;
+    path.alive = 1;
+    __global refined *row = out + (size_t)item * (2 * PROBE_PATH_SEGMENTS + 4);
+    for (uint segment = 0; segment < PROBE_PATH_SEGMENTS; ++segment) {
+        const int alive = path.alive;
+        if (alive) advance(&scene, &path);
+        row[2 * segment] = alive && path.met ? (refined)slot_sphere[path.own_slot] : -1;
+        row[2 * segment + 1] = alive && path.met ? path.distance : 0;
+    }
+    row[2 * PROBE_PATH_SEGMENTS] = path.direction.x;
+    row[2 * PROBE_PATH_SEGMENTS + 1] = path.direction.y;
+    row[2 * PROBE_PATH_SEGMENTS + 2] = path.direction.z;
+    row[2 * PROBE_PATH_SEGMENTS + 3] = path.alive;
+}

@@ -1,0 +1,31 @@
+/* suite.h: the forty tests of numerical stability, by group. Each group runs its tests on one variant of the
+ * program and returns the number that failed. Tests print the figures they judged. */
+#ifndef TESTS_HARD_SUITE_H
+#define TESTS_HARD_SUITE_H
+
+#include "cases.h"
+#include "lab.h"
+
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+
+#include <cmocka.h>
+
+int run_sphere(Lab *lab);
+int run_departure(Lab *lab);
+int run_shells(Lab *lab);
+int run_dielectric(Lab *lab);
+int run_sampling(Lab *lab);
+int run_camera(Lab *lab);
+int run_sums(Lab *lab);
+int run_boxes(Lab *lab);
+
+/* The lab of a test is its state from the start. */
+#define HARD_TEST(function) cmocka_unit_test_prestate(function, lab)
+
+/* A scene from a document's text; the caller destroys it. Ends the test if it is refused. */
+BpScene *suite_scene(const char *format, ...) BP_PRINTF_LIKE(1, 2);
+
+#endif
