@@ -33,7 +33,8 @@ int main(int argc, char **argv) {
     }
     if (!lab_open(&lab, argv[1])) return 77;
     printf("%s on %s\n", lab.name, lab.info.name);
-    const int failed = run_sphere(&lab) + run_departure(&lab) + run_shells(&lab);
+    const int failed = run_sphere(&lab) + run_departure(&lab) + run_shells(&lab) + run_dielectric(&lab) +
+                       run_sampling(&lab) + run_sums(&lab) + run_boxes(&lab);
     const bool report_only = strcmp(lab.name, "fast") == 0;
     lab_close(&lab);
     printf("%d tests failed%s\n", failed, report_only ? " (a report, not a verdict)" : "");

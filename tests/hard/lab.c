@@ -234,3 +234,12 @@ void lab_float_unit(double v[3]) {
     const double length = sqrt(lab_dot(v, v));
     for (int a = 0; a < 3; ++a) v[a] = lab_float(v[a] / length);
 }
+
+void lab_unit_rays(const Lab *lab, size_t count, double *rays) {
+    if (!lab->real_double) return;
+    for (size_t i = 0; i < count; ++i) {
+        double *v = rays + i * RAY_REALS + RAY_DIRECTION;
+        const double length = sqrt(lab_dot(v, v));
+        for (int a = 0; a < 3; ++a) v[a] /= length;
+    }
+}

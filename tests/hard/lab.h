@@ -107,5 +107,8 @@ static inline void lab_cross(const double a[3], const double b[3], double out[3]
 /* Scales v to unit length in double, then rounds each part to float: as near to unit length as a kernel's
  * directions are. */
 void lab_float_unit(double v[3]);
+/* Brings the directions of `count` rays to the unit length that a variant in double throughout has; leaves
+ * them to the others. */
+void lab_unit_rays(const Lab *lab, size_t count, double *rays);
 
 #endif

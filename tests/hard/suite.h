@@ -18,7 +18,6 @@ int run_departure(Lab *lab);
 int run_shells(Lab *lab);
 int run_dielectric(Lab *lab);
 int run_sampling(Lab *lab);
-int run_camera(Lab *lab);
 int run_sums(Lab *lab);
 int run_boxes(Lab *lab);
 

@@ -13,9 +13,10 @@
     "\"" name "\":{\"type\":\"dielectric\",\"refraction_index\":" index ",\"fresnel\":\"none\"}"
 
 /* Traces paths from `rays`; rows of PATH_REALS. */
-static void run_paths(const Lab *lab, const BpScene *scene, const double *rays, size_t count, double *paths) {
+static void run_paths(const Lab *lab, const BpScene *scene, double *rays, size_t count, double *paths) {
+    lab_unit_rays(lab, count, rays);
     BpWorker *worker = lab_scene(lab, scene);
-    const LabArgument arguments[] = {{LAB_REALS, (void *)(size_t)rays, count * RAY_REALS},
+    const LabArgument arguments[] = {{LAB_REALS, rays, count * RAY_REALS},
                                      {LAB_OUT_REFINED, paths, count * PATH_REALS}};
     lab_run(lab, "probe_paths", count, arguments, 2, worker);
     bp_worker_destroy(&worker);
