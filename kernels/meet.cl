@@ -61,7 +61,7 @@ static void test_leaf_lanes(const Geometry *geometry, const Paths *paths, masks 
         const reals p = dot3(oc, direction);
         const Vec3 across = madd3(-p, direction, oc);
 #if NUMERICS_ROBUST
-        const reals margin = fma(splat(R(32.0) * ROUNDOFF), fabs(p) + radius, ray_margin);
+        const reals margin = fma(splat(R(64.0) * ROUNDOFF), fabs(p) + radius, ray_margin);
         const reals reach = radius + margin;
         const reals room = fma(reach, reach, -dot3(across, across));
         const reals outside = at_least(at_least(-p, p - bound_of(meeting)) - margin, splat(0));
@@ -107,7 +107,7 @@ static void search_tree_lanes(const Geometry *geometry, const Paths *paths, mask
             const reals leave_z = fma(splat(planes[signs->far_row[2] + child]), z->inverse, z->far_offset);
             const reals near = at_least(at_least(enter_x, enter_y), at_least(enter_z, splat(0)));
             const reals far = at_most(at_most(leave_x, leave_y), at_most(leave_z, bound));
-            const masks met = (near <= far * (R(1.0) + R(8.0) * ROUNDOFF)) & active;
+            const masks met = (near <= far * (R(1.0) + R(16.0) * ROUNDOFF)) & active;
             if (!any_lane(met)) continue;
             stack[top] = geometry->children[node * TREE_WIDTH + child];
             stack_entry[top] = choose(met, near, splat(REAL_LARGE));

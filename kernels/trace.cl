@@ -30,6 +30,9 @@ static void advance(const Scene *scene, Paths *paths) {
     Point point;
     look_up(scene, &meeting, &centre, &radius, &surface, &emitted);
     surface_point(&paths->origin, paths->direction, meeting.t, meeting.enters, centre, radius, &point, &outward);
+    /* A chord ends as far off its sphere as it began, and a little more. */
+    const masks own = mask_of_uint(meeting.slot == paths->own_slot);
+    point.slack = choose(own, point.slack + paths->origin.slack, point.slack);
     surface.incoming = paths->direction;
     surface.enters = meeting.enters;
     surface.normal = choose3(meeting.enters, outward, scale3(splat(-1), outward));

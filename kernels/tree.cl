@@ -163,8 +163,8 @@ static lane_bytes test_node(const Geometry *geometry, const BoxRay *box, uint no
     const wide leave_zb = leave_z < (wide)bound ? leave_z : (wide)bound;
     const wide far = leave_xy < leave_zb ? leave_xy : leave_zb;
     *entry = near;
-    /* 4u for the rounding of 1/d, which scales both sides alike */
-    return to_lane_bytes(near <= far * (R(1.0) + R(8.0) * ROUNDOFF));
+    /* 1/d errs by 5u at most, which scales a side, and the products by u more */
+    return to_lane_bytes(near <= far * (R(1.0) + R(16.0) * ROUNDOFF));
 }
 
 #define STACK_SIZE (TREE_DEPTH_MAX * (TREE_WIDTH - 1) + 1)
