@@ -165,7 +165,9 @@ Score cases_score(const Cases *cases, size_t first, size_t count, double band) {
         if (exact.impact < 0.9 && fabs(exact.power) > 1e-6) {
             const double error = fabs((hit[HIT_T] - t) / t);
             errors[error_count++] = error;
-            if (error > score.worst_t) {
+            if (inside) {
+                score.worst_inside = fmax(score.worst_inside, error);
+            } else if (error > score.worst_t) {
                 score.worst_t = error;
                 score.worst_case = i;
             }
@@ -192,5 +194,6 @@ void score_add(Score *sum, const Score *score) {
         sum->worst_t = score->worst_t;
         sum->worst_case = score->worst_case;
     }
+    if (score->worst_inside > sum->worst_inside) sum->worst_inside = score->worst_inside;
     if (score->worst_off > sum->worst_off) sum->worst_off = score->worst_off;
 }

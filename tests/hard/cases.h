@@ -36,8 +36,9 @@ typedef struct Score {
     size_t rays, right_hits;
     size_t false_hits, false_misses; /* outside `band` of tangency */
     size_t not_finite;
-    size_t filtered; /* ruled out although the exact test meets it ahead */
-    double worst_t;  /* relative error of t, impact below 0.9 r, from 5e-7 r off the surface on */
+    size_t filtered;     /* ruled out although the exact test meets it ahead */
+    double worst_t;      /* relative error of t, impact below 0.9 r, from 5e-7 r off the surface on */
+    double worst_inside; /* the same for rays that start inside */
     double median_t;
     double worst_off;  /* impact from 0.9 r on: distance of o + t d from the sphere, less half an ulp of t, in
                           radii */

@@ -10,6 +10,7 @@
 #include <stdarg.h>
 #include <stddef.h>
 #include <stdint.h>
+#include <stdlib.h>
 
 #include <cmocka.h>
 
@@ -23,6 +24,13 @@ int run_boxes(Lab *lab);
 
 /* The lab of a test is its state from the start. */
 #define HARD_TEST(function) cmocka_unit_test_prestate(function, lab)
+
+/* Zeroed memory; freed with free(). (cmocka's own ends the process when a test fails before freeing it.) */
+static inline void *suite_calloc(size_t count, size_t size) {
+    void *memory = calloc(count, size);
+    if (memory == NULL) abort();
+    return memory;
+}
 
 /* A scene from a document's text; the caller destroys it. Ends the test if it is refused. */
 BpScene *suite_scene(const char *format, ...) BP_PRINTF_LIKE(1, 2);

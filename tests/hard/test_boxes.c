@@ -20,17 +20,17 @@ typedef struct Boxes {
 static void boxes_init(const Lab *lab, size_t count, Boxes *boxes) {
     boxes->count = count;
     boxes->width = lab->options.tree_width;
-    boxes->rays = test_calloc(count * RAY_REALS, sizeof(double));
-    boxes->planes = test_calloc(count * 6 * boxes->width, sizeof(double));
-    boxes->boxes = test_calloc(count * 6, sizeof(double));
-    boxes->met = test_calloc(count * boxes->width, sizeof(uint32_t));
+    boxes->rays = suite_calloc(count * RAY_REALS, sizeof(double));
+    boxes->planes = suite_calloc(count * 6 * boxes->width, sizeof(double));
+    boxes->boxes = suite_calloc(count * 6, sizeof(double));
+    boxes->met = suite_calloc(count * boxes->width, sizeof(uint32_t));
 }
 
 static void boxes_clear(Boxes *boxes) {
-    test_free(boxes->rays);
-    test_free(boxes->planes);
-    test_free(boxes->boxes);
-    test_free(boxes->met);
+    free(boxes->rays);
+    free(boxes->planes);
+    free(boxes->boxes);
+    free(boxes->met);
 }
 
 static void boxes_run(const Lab *lab, Boxes *boxes) {
@@ -181,8 +181,8 @@ static void bvh_equals_brute(void **state) {
             .width = lab->options.tree_width, .single_precision = !lab->real_double, .threads = 1};
         BpTree tree;
         assert_int_equal(bp_tree_build(&scene, view, &options, &tree, NULL), BP_OK);
-        double *rays = test_calloc(COUNT * RAY_REALS, sizeof *rays),
-               *out = test_calloc(COUNT * 5, sizeof *out);
+        double *rays = suite_calloc(COUNT * RAY_REALS, sizeof *rays),
+               *out = suite_calloc(COUNT * 5, sizeof *out);
         uint64_t seed = 40 + (uint64_t)shape;
         for (size_t i = 0; i < COUNT; ++i) {
             double *ray = rays + i * RAY_REALS, off[3], to[3], side[3];
@@ -232,8 +232,8 @@ static void bvh_equals_brute(void **state) {
         }
         bp_tree_clear(&tree);
         free(scene.spheres);
-        test_free(rays);
-        test_free(out);
+        free(rays);
+        free(out);
     }
     print_message("    %zu hits, %zu differ\n", hits, different);
     assert_true(hits > COUNT);

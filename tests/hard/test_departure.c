@@ -26,7 +26,7 @@ static void normal_local(void **state) {
     cases_init(&cases, COUNT);
     cases_aim(&cases, 0, COUNT, &cell, &seed);
     cases_run(lab, &cases, NULL);
-    double *points = test_calloc(COUNT * POINT_REALS, sizeof *points);
+    double *points = suite_calloc(COUNT * POINT_REALS, sizeof *points);
     run_points(lab, &cases, points);
     for (size_t i = 0; i < COUNT; ++i) {
         const double *ray = cases.rays + i * RAY_REALS, *sphere = cases.spheres + i * 4;
@@ -49,7 +49,7 @@ static void normal_local(void **state) {
     assert_true(hits > COUNT / 2);
     assert_true(worst <= 2e-6);
     assert_true(worst_point > 1e-2);
-    test_free(points);
+    free(points);
     cases_clear(&cases);
 }
 
@@ -70,8 +70,8 @@ static void depart(const Lab *lab, const Cell *cell, size_t count, uint64_t *see
     cases_init(&book, count);
     cases_aim(&cases, 0, count, cell, seed);
     cases_run(lab, &cases, NULL);
-    double *points = test_calloc(count * POINT_REALS, sizeof *points);
-    uint32_t *own = test_calloc(count, sizeof *own);
+    double *points = suite_calloc(count * POINT_REALS, sizeof *points);
+    uint32_t *own = suite_calloc(count, sizeof *own);
     run_points(lab, &cases, points);
     for (size_t i = 0; i < count; ++i) {
         const double *point = points + i * POINT_REALS, *normal = point + POINT_NORMAL;
@@ -115,8 +115,8 @@ static void depart(const Lab *lab, const Cell *cell, size_t count, uint64_t *see
         sum->worst_off =
             fmax(sum->worst_off, fabs(exact_off_sphere(ray, sphere, t)) - 0x1p-24 * t / sphere[3]);
     }
-    test_free(points);
-    test_free(own);
+    free(points);
+    free(own);
     cases_clear(&cases);
     cases_clear(&left);
     cases_clear(&book);

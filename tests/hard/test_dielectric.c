@@ -94,7 +94,7 @@ static void fresnel_table(void **state) {
  * together: inside = 1 - (1 - outside) / n^2. Schlick's mean is another. */
 static void fresnel_mean(void **state) {
     enum { STEPS = 65536 };
-    double *in = test_calloc(2 * STEPS, sizeof *in), *out = test_calloc(2 * STEPS, sizeof *out);
+    double *in = suite_calloc(2 * STEPS, sizeof *in), *out = suite_calloc(2 * STEPS, sizeof *out);
     double mean[2] = {0}, schlick = 0;
     for (int side = 0; side < 2; ++side) {
         for (size_t i = 0; i < STEPS; ++i) {
@@ -112,8 +112,8 @@ static void fresnel_mean(void **state) {
     assert_true(fabs(mean[0] - 0.09178) <= 1e-5 && fabs(mean[1] - 0.59635) <= 2e-5);
     assert_true(fabs(mean[1] - (1 - (1 - mean[0]) / 2.25)) <= 2e-5);
     assert_true(fabs(schlick - mean[0]) > 5e-3);
-    test_free(in);
-    test_free(out);
+    free(in);
+    free(out);
 }
 
 static void render_material(const Lab *lab, const char *material, double view, unsigned width,

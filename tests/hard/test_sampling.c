@@ -47,8 +47,8 @@ static double lag_correlation(const double *numbers, size_t count, size_t stride
  * ports, does. */
 static void rng_pixels(void **state) {
     enum { COUNT = 1 << 20 };
-    uint32_t *bits = test_calloc(COUNT, sizeof *bits);
-    double *out = test_calloc(2 * COUNT, sizeof *out), *naive = test_calloc(COUNT, sizeof *naive);
+    uint32_t *bits = suite_calloc(COUNT, sizeof *bits);
+    double *out = suite_calloc(2 * COUNT, sizeof *out), *naive = suite_calloc(COUNT, sizeof *naive);
     run_random(*state, bits, COUNT, out);
     for (uint32_t i = 0; i < COUNT; ++i) {
         uint32_t x = i + 1;
@@ -60,9 +60,9 @@ static void rng_pixels(void **state) {
     const double ours = lag_correlation(out + 1, COUNT, 2), theirs = lag_correlation(naive, COUNT, 1);
     print_message("    correlation of neighbours %.5f; xorshift32 seeded by the pixel %.3f\n", ours, theirs);
     assert_true(fabs(ours) < 5e-3 && fabs(theirs) > 0.5);
-    test_free(bits);
-    test_free(out);
-    test_free(naive);
+    free(bits);
+    free(out);
+    free(naive);
 }
 
 /* 28: the normal is set to minus the random offset that the sample will have, exactly and up to a tenth off:
@@ -70,8 +70,8 @@ static void rng_pixels(void **state) {
 static void scatter_zero(void **state) {
     const Lab *lab = *state;
     enum { COUNT = 3 * 3000 };
-    double *in = test_calloc(COUNT * 8, sizeof *in), *out = test_calloc(COUNT * 8, sizeof *out);
-    uint32_t *words = test_calloc(COUNT * 6, sizeof *words);
+    double *in = suite_calloc(COUNT * 8, sizeof *in), *out = suite_calloc(COUNT * 8, sizeof *out);
+    uint32_t *words = suite_calloc(COUNT * 6, sizeof *words);
     const LabArgument arguments[] = {{LAB_REALS, in, COUNT * 8},
                                      {LAB_WORDS, words, COUNT * 6},
                                      {LAB_NUMBER, NULL, 28},
@@ -105,16 +105,16 @@ static void scatter_zero(void **state) {
     print_message("    least cosine %.2g, off unit length by %.2g, %zu straight up\n", lowest, longest,
                   vanished);
     assert_true(lowest >= 0 && longest <= 5e-7 && vanished > COUNT / 8 && vanished < COUNT);
-    test_free(in);
-    test_free(out);
-    test_free(words);
+    free(in);
+    free(out);
+    free(words);
 }
 
 /* 29: the maps at the ends and middle of their domain, and against libm in between. */
 static void sampler_maps(void **state) {
     const double ends[] = {0, 0.5, 1 - 0x1p-24, 0.25, 0.75, 0x1p-24};
     enum { COUNT = 6 * 6 + 20000 };
-    double *in = test_calloc(2 * COUNT, sizeof *in), *out = test_calloc(8 * COUNT, sizeof *out), worst = 0,
+    double *in = suite_calloc(2 * COUNT, sizeof *in), *out = suite_calloc(8 * COUNT, sizeof *out), worst = 0,
            length = 0;
     uint64_t seed = 29;
     for (size_t i = 0; i < COUNT; ++i) {
@@ -133,8 +133,8 @@ static void sampler_maps(void **state) {
     }
     print_message("    sine and cosine off by %.2g, points of the sphere by %.2g\n", worst, length);
     assert_true(worst <= 2e-7 && length <= 3e-7);
-    test_free(in);
-    test_free(out);
+    free(in);
+    free(out);
 }
 
 /* Directions through the corners and the middle of the picture. */

@@ -42,8 +42,8 @@ static void aim(const double centre[3], double reach, size_t count, uint64_t see
 static void tiny_glass(void **state) {
     enum { COUNT = 20000 };
     const double distances[] = {0.1, 13, 1000};
-    double *rays = test_calloc(COUNT * RAY_REALS, sizeof *rays),
-           *paths = test_calloc(COUNT * PATH_REALS, sizeof *paths);
+    double *rays = suite_calloc(COUNT * RAY_REALS, sizeof *rays),
+           *paths = suite_calloc(COUNT * PATH_REALS, sizeof *paths);
     for (int k = 0; k < 3; ++k) {
         BpScene *scene = suite_scene(
             "{\"format\":1,\"camera\":{\"lookfrom\":[0,0,0],\"lookat\":[0,0,-1]},\"materials\":{" GLASS(
@@ -64,8 +64,8 @@ static void tiny_glass(void **state) {
         assert_int_equal(left, entered);
         bp_scene_destroy(&scene);
     }
-    test_free(rays);
-    test_free(paths);
+    free(rays);
+    free(paths);
 }
 
 /* A glass sphere of radius 0.5 around (0, 0, -distance), hollow to `inner`; or solid for inner = 0. */
@@ -102,8 +102,8 @@ static void shell_deflection(void **state) {
 static void shell_gap_sweep(void **state) {
     enum { COUNT = 4000 };
     const double gaps[] = {5e-2, 5e-3, 5e-4, 5e-5, 5e-6, 1e-6, 5e-7}, distances[] = {3, 1000};
-    double *rays = test_calloc(COUNT * RAY_REALS, sizeof *rays),
-           *paths = test_calloc(COUNT * PATH_REALS, sizeof *paths);
+    double *rays = suite_calloc(COUNT * RAY_REALS, sizeof *rays),
+           *paths = suite_calloc(COUNT * PATH_REALS, sizeof *paths);
     size_t wrong_in_all = 0;
     for (size_t d = 0; d < 2; ++d)
         for (size_t g = 0; g < sizeof gaps / sizeof gaps[0]; ++g) {
@@ -121,8 +121,8 @@ static void shell_gap_sweep(void **state) {
             wrong_in_all += wrong;
             bp_scene_destroy(&scene);
         }
-    test_free(rays);
-    test_free(paths);
+    free(rays);
+    free(paths);
     assert_int_equal(wrong_in_all, 0);
 }
 

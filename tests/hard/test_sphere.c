@@ -203,7 +203,7 @@ static void hit_on_sphere(void **state) {
         cases_aim(&cases, c * EACH, EACH, &cell, &seed);
     }
     cases_run(lab, &cases, NULL);
-    double *points = test_calloc(cases.count * POINT_REALS, sizeof *points);
+    double *points = suite_calloc(cases.count * POINT_REALS, sizeof *points);
     const LabArgument arguments[] = {{LAB_REALS, cases.rays, cases.count * RAY_REALS},
                                      {LAB_REALS, cases.spheres, cases.count * 4},
                                      {LAB_REFINED, cases.hits, cases.count * HIT_REALS},
@@ -225,7 +225,7 @@ static void hit_on_sphere(void **state) {
     assert_true(hits > cases.count / 2);
     assert_true(worst <= 4e-7);
     assert_true(worst_bound <= 1);
-    test_free(points);
+    free(points);
     cases_clear(&cases);
 }
 

@@ -28,7 +28,7 @@ static void fold(const Lab *lab, const double *samples, uint32_t count, uint32_t
         const uint32_t first = (uint32_t)((uint64_t)count * part / parts);
         const uint32_t end = (uint32_t)((uint64_t)count * (part + 1) / parts);
         const size_t numbers = (size_t)(end - first) * 4, size = lab->real_double ? 8 : 4;
-        char *narrow = test_calloc(numbers, size);
+        char *narrow = suite_calloc(numbers, size);
         for (size_t i = 0; i < numbers; ++i) {
             const double value = samples[(size_t)first * 4 + i];
             const float single = (float)value;
@@ -54,7 +54,7 @@ static void fold(const Lab *lab, const double *samples, uint32_t count, uint32_t
             CL_SUCCESS);
         clFinish(lab->device->queue);
         clReleaseMemObject(buffer);
-        test_free(narrow);
+        free(narrow);
     }
     clEnqueueReadBuffer(lab->device->queue, sums, CL_TRUE, 0, sizeof folded->sums, folded->sums, 0, NULL,
                         NULL);
@@ -81,7 +81,7 @@ static double mean_of(const Folded *folded, int channel) {
 /* 33: a million times 0.1. The naive float sum is off by a percent. */
 static void accum_const(void **state) {
     enum { COUNT = 1000000 };
-    double *samples = test_calloc(COUNT * 4, sizeof *samples);
+    double *samples = suite_calloc(COUNT * 4, sizeof *samples);
     volatile float naive = 0;
     for (size_t i = 0; i < COUNT; ++i) {
         for (int c = 0; c < 3; ++c) samples[4 * i + (size_t)c] = lab_float(0.1);
@@ -95,14 +95,14 @@ static void accum_const(void **state) {
     print_message("    mean off by %.2g; naive float %.2g\n", off, naive_off);
     assert_true(off <= 1e-6 && naive_off > 1e-3);
     assert_true(folded.tallies[0] == COUNT && folded.tallies[2] == 0);
-    test_free(samples);
+    free(samples);
 }
 
 /* 34: however the samples are cut into chunks, the sums are the same to the bit. */
 static void accum_split(void **state) {
     enum { COUNT = 4099 };
     const uint32_t parts[] = {1, 2, 3, 7, 64, COUNT};
-    double *samples = test_calloc(COUNT * 4, sizeof *samples);
+    double *samples = suite_calloc(COUNT * 4, sizeof *samples);
     uint64_t seed = 34;
     Folded whole, split;
     for (size_t i = 0; i < COUNT * 4; ++i)
@@ -112,7 +112,7 @@ static void accum_split(void **state) {
         fold(*state, samples, COUNT, parts[p], &split);
         assert_memory_equal(&whole, &split, sizeof whole);
     }
-    test_free(samples);
+    free(samples);
 }
 
 /* 35: samples that are not light are left out and counted. */
