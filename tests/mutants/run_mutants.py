@@ -3,12 +3,14 @@
 trials, and fails when one survives.
 
 usage: run_mutants.py SOURCE_DIR BUILD_DIR RESULT.json [NAME...]
+       run_mutants.py --fit SOURCE_DIR BUILD_DIR      only whether every patch still finds its place
 
 Kernel text is patched in a copy that the program reads through BALLPARK_KERNELS. Host text is patched in a copy,
 compiled with the command that built the product, and linked before the library. A build that fails, a crash, or a
 text that no longer stands where a patch looks for it is an error, not a kill. First every trial is run on the product
 unpatched: there it must pass.
 """
+import concurrent.futures
 import json
 import os
 import shlex
@@ -24,24 +26,39 @@ SURVIVED, KILLED, ERROR = "SURVIVED", "killed", "ERROR"
 
 
 class Bench:
-    """Where mutants are made and tried."""
+    """Where one mutant, or the product itself, is made and tried: a scratch folder and a kernel cache of its own."""
 
-    def __init__(self, source, build, scratch):
-        self.source, self.build, self.scratch = source, build, scratch
+    def __init__(self, source, build, folder):
+        self.source, self.build, self.scratch = source, build, os.path.join(folder, "mutant")
+        os.mkdir(self.scratch)
+        cache = os.path.join(folder, "cache")
+        os.mkdir(cache)
+        self.environment = {**os.environ, "POCL_CACHE_DIR": cache, "MESA_SHADER_CACHE_DIR": cache}
         with open(os.path.join(build, "compile_commands.json"), encoding="utf-8") as file:
             self.compile = {os.path.realpath(e["file"]): e for e in json.load(file)}
 
-    def patched_texts(self, mutant):
-        """{path: text} with all patches applied."""
+    def texts_of(self, path):
+        """{path: text} of a host file, or of all kernel files."""
+        paths = [path]
+        if path == "kernels":
+            paths = [os.path.join(path, name) for name in sorted(os.listdir(os.path.join(self.source, path)))]
         texts = {}
-        for path, find, replace in mutant.patches:
-            if path not in texts:
-                with open(os.path.join(self.source, path), encoding="utf-8") as file:
-                    texts[path] = file.read()
-            if texts[path].count(find) != 1:
-                raise LookupError(f"{path} holds {texts[path].count(find)} times: {find}")
-            texts[path] = texts[path].replace(find, replace)
+        for one in paths:
+            with open(os.path.join(self.source, one), encoding="utf-8") as file:
+                texts[one] = file.read()
         return texts
+
+    def patched_texts(self, mutant):
+        """{path: text} of the files that the patches change."""
+        texts, changed = {}, {}
+        for path, find, replace in mutant.patches:
+            for one, text in self.texts_of(path).items():
+                texts.setdefault(one, text)
+            holders = [one for one, text in texts.items() if one.startswith(path) and find in text]
+            if len(holders) != 1 or texts[holders[0]].count(find) != 1:
+                raise LookupError(f"{path} does not hold exactly once: {find}")
+            texts[holders[0]] = changed[holders[0]] = texts[holders[0]].replace(find, replace)
+        return changed
 
     def link_command(self, target):
         listed = subprocess.run(["ninja", "-C", self.build, "-t", "commands", target], capture_output=True, text=True,
@@ -60,7 +77,7 @@ class Bench:
 
     def make(self, mutant):
         """Writes the mutant. Returns (environment, objects): where the kernels are, what to link first."""
-        environment, objects = dict(os.environ), []
+        environment, objects = dict(self.environment), []
         texts = self.patched_texts(mutant)
         if any(path.startswith("kernels/") for path in texts):
             folder = os.path.join(self.scratch, "kernels")
@@ -129,15 +146,10 @@ def name_of(trial):
     return f"{trial.scene}, {trial.samples} samples" if isinstance(trial, Check) else trial.program
 
 
-def control(bench, mutants):
-    """Every trial on the product itself. Returns the number that do not pass."""
-    wrong = 0
-    for trial in dict.fromkeys(t for m in mutants for t in m.trials):
-        outcome, said = bench.run(trial, dict(os.environ), [])
-        if outcome != SURVIVED:
-            wrong += 1
-            print(f"CONTROL {outcome}: {name_of(trial)}: {said}", flush=True)
-    return wrong
+def try_product(bench, trial):
+    """A trial on the product itself."""
+    outcome, said = bench.run(trial, bench.environment, [])
+    return {"trial": name_of(trial), "outcome": outcome, "said": said}
 
 
 def try_mutant(bench, mutant):
@@ -154,29 +166,51 @@ def try_mutant(bench, mutant):
         outcome, said = ERROR, "it does not build: " + error.stderr.strip()[:300]
     except subprocess.TimeoutExpired:
         outcome, said = ERROR, "it did not end"
-    return {"name": mutant.name, "origin": mutant.origin, "files": sorted({p[0] for p in mutant.patches}),
-            "outcome": outcome, "said": said, "layer": trial.layer if trial else "",
+    return {"name": mutant.name, "origin": mutant.origin, "outcome": outcome, "said": said, "layer": trial.layer if trial else "",
             "trial": name_of(trial) if trial else ""}
 
 
+def fit(source, build):
+    """Names the mutants whose patches no longer find their place."""
+    wrong = 0
+    with tempfile.TemporaryDirectory() as folder:
+        bench = Bench(source, build, folder)
+        for mutant in MUTANTS:
+            try:
+                bench.patched_texts(mutant)
+            except LookupError as error:
+                wrong += 1
+                print(f"{mutant.name}: {error}; bring tests/mutants/mutants.py up to date")
+    print(f"{len(MUTANTS) - wrong} of {len(MUTANTS)} mutants fit")
+    return 1 if wrong else 0
+
+
+def in_parallel(source, build, work, items):
+    """[work(bench, item)], each with a bench of its own, a few at a time; in order."""
+
+    def one(item):
+        with tempfile.TemporaryDirectory() as folder:
+            return work(Bench(source, build, folder), item)
+
+    with concurrent.futures.ThreadPoolExecutor(max_workers=min(4, os.cpu_count() or 1)) as pool:
+        yield from pool.map(one, items)
+
+
 def main():
+    if sys.argv[1] == "--fit":
+        return fit(os.path.realpath(sys.argv[2]), os.path.realpath(sys.argv[3]))
     source, build, result_path, *names = sys.argv[1:]
     source, build = os.path.realpath(source), os.path.realpath(build)
     mutants = [m for m in MUTANTS if not names or m.name in names]
     start = time.monotonic()
-    with tempfile.TemporaryDirectory() as folder:
-        scratch = os.path.join(folder, "mutant")
-        os.mkdir(scratch)
-        # Drivers keep what they compiled; these kernels are no use to anyone afterwards.
-        cache = os.path.join(folder, "cache")
-        os.mkdir(cache)
-        os.environ["POCL_CACHE_DIR"] = os.environ["MESA_SHADER_CACHE_DIR"] = cache
-        bench = Bench(source, build, scratch)
-        wrong = control(bench, mutants)
-        rows = []
-        for mutant in mutants:
-            rows.append(row := try_mutant(bench, mutant))
-            print(f"{row['outcome']:8} {row['name']:44} {row['layer']:12} {row['trial']}: {row['said']}", flush=True)
+    wrong, rows = 0, []
+    for row in in_parallel(source, build, try_product, list(dict.fromkeys(t for m in mutants for t in m.trials))):
+        if row["outcome"] != SURVIVED:
+            wrong += 1
+            print(f"CONTROL {row['outcome']}: {row['trial']}: {row['said']}", flush=True)
+    for row in in_parallel(source, build, try_mutant, mutants):
+        rows.append(row)
+        print(f"{row['outcome']:8} {row['name']:46} {row['layer']:12} {row['trial']}: {row['said']}", flush=True)
     killed = sum(row["outcome"] == KILLED for row in rows)
     with open(result_path, "w", encoding="utf-8") as file:
         json.dump({"mutants": rows, "control_failures": wrong}, file, indent=1)
