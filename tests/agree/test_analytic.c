@@ -64,6 +64,7 @@ static void trace_kernel(const BpScene *scene, uint64_t first_sample, uint64_t s
     BpError err = {0};
     BpRenderOptions options;
     bp_render_defaults(scene, &options);
+    options.sampler = BP_SAMPLER_INDEPENDENT;
     options.first_sample = first_sample;
     options.samples_per_pixel = samples;
     options.seed = seed;

@@ -89,6 +89,7 @@ static void kernel(void **state) {
         BpError err = {0};
         BpSums sums;
         bp_render_defaults(&built.scene, &options);
+        options.sampler = BP_SAMPLER_INDEPENDENT;
         options.samples_per_pixel = SAMPLES;
         options.seed = (uint64_t)seed; /* neighbours, as a user would choose them */
         BpStatus status = bp_sums_init(&sums, SIDE, SIDE, &err);

@@ -13,6 +13,7 @@ static void draw_kernel(const BpScene *scene, uint64_t samples, uint64_t seed, B
     BpRenderOptions options;
     BpError err = {0};
     bp_render_defaults(scene, &options);
+    options.sampler = BP_SAMPLER_INDEPENDENT;
     options.samples_per_pixel = samples;
     options.max_depth = 6;
     options.seed = seed;

@@ -1,0 +1,123 @@
+/* test_check.c: a check's result depends on scene, samples and seed, not on chunks, threads or steps; and
+ * what it refuses. */
+#include "check/check.h"
+#include "unit_test.h"
+
+#include <stdio.h>
+#include <string.h>
+
+static BpScene *scene_of(const char *name, uint32_t width) {
+    char path[512];
+    BpScene *scene = NULL;
+    BpError err = {0};
+    snprintf(path, sizeof path, "%s/scenes/%s", SOURCE_DIR, name);
+    if (bp_scene_load(path, &scene, &err) != BP_OK || bp_scene_set_width(scene, width, &err) != BP_OK)
+        fail_msg("%s", err.message);
+    return scene;
+}
+
+static BpCheckOptions options_for(const BpScene *scene) {
+    BpCheckOptions options = {.level = BP_VERDICT_LEVEL};
+    bp_render_defaults(scene, &options.render);
+    options.render.samples_per_pixel = 50;
+    options.render.sampler = BP_SAMPLER_INDEPENDENT;
+    options.render.seed = 8;
+    return options;
+}
+
+static BpCheck *check_with(const BpScene *scene, const BpCheckOptions *options) {
+    BpCheck *check = NULL;
+    BpCheckProgress progress = {0};
+    const BpCheckResult *result = NULL;
+    BpError err = {0};
+    if (bp_check_create(scene, options, NULL, &check, &err) != BP_OK) fail_msg("%s", err.message);
+    assert_int_equal(bp_check_result(check, &result, NULL), BP_ERR_USAGE);
+    while (!progress.finished) {
+        if (bp_check_step(check, &progress, &err) != BP_OK) fail_msg("%s", err.message);
+        assert_true(progress.done >= 0 && progress.done <= 1);
+    }
+    return check;
+}
+
+static const BpCheckResult *result_of(const BpCheck *check) {
+    const BpCheckResult *result = NULL;
+    assert_int_equal(bp_check_result(check, &result, NULL), BP_OK);
+    return result;
+}
+
+static bool same_sums(const BpSums *a, const BpSums *b) {
+    return memcmp(a->pixels, b->pixels, (size_t)a->width * a->height * sizeof *a->pixels) == 0;
+}
+
+static void chunks_and_threads_change_nothing(void **state) {
+    (void)state;
+    BpScene *scene = scene_of("v4-18-glass-hollow.json", 40);
+    BpCheckOptions options = options_for(scene);
+    BpCheck *plain = check_with(scene, &options);
+    assert_true(result_of(plain)->verdict.agree);
+    assert_int_equal(result_of(plain)->verdict.samples, 2u * 40u * scene->camera.height * 50u);
+    const uint32_t chunks[3] = {999, 4096, 100000};
+    for (unsigned i = 0; i < 3; ++i) {
+        options.render.chunk_samples = chunks[i];
+        options.threads = i + 1;
+        BpCheck *other = check_with(scene, &options);
+        const BpCheckResult *a = result_of(plain), *b = result_of(other);
+        assert_true(same_sums(&a->kernel, &b->kernel));
+        assert_true(same_sums(&a->reference, &b->reference));
+        assert_int_equal(a->cut_kernel, b->cut_kernel);
+        assert_int_equal(a->cut_reference, b->cut_reference);
+        for (int f = 0; f < BP_FAMILIES; ++f) assert_true(a->verdict.worst[f].z == b->verdict.worst[f].z);
+        bp_check_destroy(&other);
+    }
+    options.render.seed = 9;
+    BpCheck *other = check_with(scene, &options);
+    assert_false(same_sums(&result_of(plain)->kernel, &result_of(other)->kernel));
+    assert_false(same_sums(&result_of(plain)->reference, &result_of(other)->reference));
+    bp_check_destroy(&other);
+    bp_check_destroy(&plain);
+    bp_scene_destroy(&scene);
+}
+
+/* Three panels with gaps; the third is white where the z is 0. */
+static void map(void **state) {
+    (void)state;
+    BpScene *scene = scene_of("v4-red-sphere.json", 40); /* no noise: every z is 0 */
+    const BpCheckOptions options = options_for(scene);
+    BpCheck *check = check_with(scene, &options);
+    BpPicture picture;
+    assert_int_equal(bp_check_map(result_of(check), BP_TRANSFER_GAMMA2, &picture, NULL), BP_OK);
+    const uint32_t zoom = picture.height / scene->camera.height;
+    assert_int_equal(picture.height, scene->camera.height * zoom);
+    assert_int_equal(picture.width, 3 * 40 * zoom + 16);
+    const float *last = &picture.rgb[((size_t)picture.width * picture.height - 1) * 3];
+    assert_true(last[0] == 1 && last[1] == 1 && last[2] == 1);
+    const float *first = picture.rgb, *reference = &picture.rgb[(size_t)(40 * zoom + 8) * 3];
+    for (int c = 0; c < 3; ++c)
+        assert_true(first[c] - reference[c] < 1e-5f && reference[c] - first[c] < 1e-5f);
+    bp_picture_clear(&picture);
+    bp_check_destroy(&check);
+    bp_scene_destroy(&scene);
+}
+
+static void refusals(void **state) {
+    (void)state;
+    BpScene *scene = scene_of("v4-sky.json", 8);
+    BpCheckOptions options = options_for(scene);
+    BpCheck *check = NULL;
+    BpError err = {0};
+    options.render.samples_per_pixel = 1;
+    assert_int_equal(bp_check_create(scene, &options, NULL, &check, &err), BP_ERR_USAGE);
+    assert_null(check);
+    options = options_for(scene);
+    options.render.sampler = BP_SAMPLER_SOBOL;
+    assert_int_equal(bp_check_create(scene, &options, NULL, &check, &err), BP_ERR_USAGE);
+    assert_non_null(strstr(err.message, "independent"));
+    bp_error_clear(&err);
+    bp_scene_destroy(&scene);
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {cmocka_unit_test(chunks_and_threads_change_nothing),
+                                       cmocka_unit_test(map), cmocka_unit_test(refusals)};
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
