@@ -12,10 +12,10 @@
 #include "json_file.h"
 #include "report.h"
 #include "setup.h"
+#include "terminal.h"
 
 #include <stdlib.h>
 #include <string.h>
-#include <unistd.h>
 
 typedef struct CheckTask {
     const BpCommandLine *line;
@@ -27,12 +27,13 @@ typedef struct CheckTask {
 } CheckTask;
 
 static void show_progress(const BpCheckProgress *progress) {
-    char left[32];
-    const double rest = progress->done > 0 ? progress->seconds * (1 / progress->done - 1) : 0;
-    fprintf(stderr, "\r%-9s %3.0f %%  %s left   ", progress->reference ? "reference" : "kernel",
-            100 * progress->done, bp_format_seconds(rest, left, sizeof left));
-    if (progress->finished) fprintf(stderr, "\r%40s\r", "");
-    fflush(stderr);
+    char left[32], text[80] = "";
+    const char *part = progress->reference ? "reference" : "kernel";
+    if (!progress->finished) snprintf(text, sizeof text, "%s %3.0f %%", part, 100 * progress->done);
+    if (!progress->finished && progress->done > 0.02) /* before, the time left is a guess */
+        snprintf(text, sizeof text, "%s %3.0f %%  %s left", part, 100 * progress->done,
+                 bp_format_seconds(progress->seconds * (1 / progress->done - 1), left, sizeof left));
+    bp_terminal_show(text);
 }
 
 static BpStatus write_map(const CheckTask *task, const BpCheckResult *result, BpError *err) {
@@ -49,9 +50,13 @@ static BpStatus check_device(const CheckTask *task, FILE *shown, json_t **report
     BpCheck *check = NULL;
     BpCheckProgress progress = {0};
     const BpCheckResult *result = NULL;
-    const bool live = !task->line->quiet && isatty(STDERR_FILENO);
+    const bool live = bp_terminal_is_live(task->line->quiet);
     BpStatus status = BP_OK;
-    BP_TRY_GOTO(status, bp_check_create(task->scene, task->options, task->device, &check, err), done);
+    BpWaiting *waiting =
+        bp_waiting_begin(task->line->quiet, "building the kernel for %s", task->device->name);
+    status = bp_check_create(task->scene, task->options, task->device, &check, err);
+    bp_waiting_end(waiting);
+    if (status != BP_OK) goto done;
     while (!progress.finished) {
         BP_TRY_GOTO(status, bp_check_step(check, &progress, err), done);
         if (live) show_progress(&progress);
@@ -73,6 +78,7 @@ static BpStatus check_device(const CheckTask *task, FILE *shown, json_t **report
                 result->kernel.height, (unsigned long long)task->options->render.samples_per_pixel, text);
     free(text);
 done:
+    if (live) bp_terminal_show("");
     bp_check_destroy(&check);
     return status;
 }
