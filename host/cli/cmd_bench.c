@@ -169,10 +169,14 @@ static BpStatus write_json(const Bench *bench, const char *path, BpError *err) {
         json_decref(scenes);
         return bp_json_write(NULL, path, err);
     }
-    return bp_json_write(json_pack("{s:s, s:{s:s, s:s, s:s}, s:s, s:s, s:s, s:s, s:s, s:i, s:o}", "version",
-                                   bp_version(), "device", "platform", report->device.platform, "name",
-                                   report->device.name, "driver", report->device.driver, "kernel",
-                                   report->kernel == BP_KERNEL_PACKET ? "packet" : "sample", "precision",
+    return bp_json_write(json_pack("{s:s, s:{s:s, s:s, s:s, s:s}, s:s, s:s, s:s, s:s, s:s, s:i, s:o}",
+                                   "version", bp_version(), "device", "platform", report->device.platform,
+                                   "name", report->device.name, "driver", report->device.driver, "type",
+                                   report->device.type == BP_DEVICE_CPU   ? "cpu"
+                                   : report->device.type == BP_DEVICE_GPU ? "gpu"
+                                                                          : "other",
+                                   "kernel", report->kernel == BP_KERNEL_PACKET ? "packet" : "sample",
+                                   "precision",
                                    report->precision == BP_PRECISION_DOUBLE ? "double" : "single", "numerics",
                                    report->numerics == BP_NUMERICS_PLAIN ? "plain" : "robust", "math",
                                    report->math == BP_MATH_FAST ? "fast" : "strict", "sampler",

@@ -1,0 +1,77 @@
+"""Line plots as SVG, on logarithmic axes, without any library: what docs/BENCHMARKS.md needs and no more."""
+import math
+from html import escape
+
+WIDTH, HEIGHT = 720, 400
+LEFT, RIGHT, TOP, BOTTOM = 70, 180, 44, 56
+COLOURS = ["#0b6e99", "#d9730d", "#6b8e23", "#8e44ad", "#c0392b"]  # told apart by every kind of sight, with the marks
+MARKS = ["circle", "square", "triangle", "diamond", "cross"]
+
+
+def ticks(low, high):
+    """1, 2 and 5 times powers of ten between low and high; powers alone when they are many."""
+    decades = range(math.floor(math.log10(low)), math.ceil(math.log10(high)) + 1)
+    steps = (1,) if len(decades) > 4 else (1, 2, 5)
+    return [step * 10 ** d for d in decades for step in steps if low * .999 <= step * 10 ** d <= high * 1.001]
+
+
+def label(value):
+    if value >= 1e6:
+        return f"{value / 1e6:g} M"
+    if value >= 1e4:
+        return f"{value / 1e3:g} k"
+    return f"{value:g}"
+
+
+def mark(kind, x, y, colour):
+    if kind == "circle":
+        return f'<circle cx="{x:.1f}" cy="{y:.1f}" r="4" fill="{colour}"/>'
+    shapes = {"square": "-3.5,-3.5 3.5,-3.5 3.5,3.5 -3.5,3.5", "triangle": "0,-4.5 4.5,3.5 -4.5,3.5",
+              "diamond": "0,-5 5,0 0,5 -5,0", "cross": "-5,-1 -1,-1 -1,-5 1,-5 1,-1 5,-1 5,1 1,1 1,5 -1,5 -1,1 -5,1"}
+    points = " ".join(f"{x + float(a.split(',')[0]):.1f},{y + float(a.split(',')[1]):.1f}" for a in shapes[kind].split())
+    return f'<polygon points="{points}" fill="{colour}"/>'
+
+
+def plot(path, lines, x_label, y_label, title):
+    """`lines`: name -> [(x, y), ...], all above 0. The y axis begins at a round number below the least."""
+    points = [p for line in lines.values() for p in line]
+    x_low, x_high = min(p[0] for p in points), max(p[0] for p in points)
+    y_low, y_high = min(p[1] for p in points) / 1.15, max(p[1] for p in points) * 1.15
+
+    def place_x(x):
+        return LEFT + (WIDTH - LEFT - RIGHT) * (math.log(x / x_low) / math.log(x_high / x_low) if x_high > x_low else .5)
+
+    def place_y(y):
+        return HEIGHT - BOTTOM - (HEIGHT - TOP - BOTTOM) * math.log(y / y_low) / math.log(y_high / y_low)
+
+    out = [f'<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 {WIDTH} {HEIGHT}" font-family="sans-serif" font-size="12">',
+           f'<title>{escape(title)}</title>', f'<rect width="{WIDTH}" height="{HEIGHT}" fill="white"/>',
+           f'<text x="{LEFT}" y="24" font-size="15">{escape(title)}</text>']
+    for y in ticks(y_low, y_high):
+        at = place_y(y)
+        out.append(f'<line x1="{LEFT}" x2="{WIDTH - RIGHT}" y1="{at:.1f}" y2="{at:.1f}" stroke="#dddddd"/>')
+        out.append(f'<text x="{LEFT - 8}" y="{at + 4:.1f}" text-anchor="end">{label(y)}</text>')
+    for x in sorted({p[0] for p in points}):
+        at = place_x(x)
+        out.append(f'<line x1="{at:.1f}" x2="{at:.1f}" y1="{TOP}" y2="{HEIGHT - BOTTOM}" stroke="#eeeeee"/>')
+        out.append(f'<text x="{at:.1f}" y="{HEIGHT - BOTTOM + 18}" text-anchor="middle">{label(x)}</text>')
+    out.append(f'<text x="{(LEFT + WIDTH - RIGHT) / 2}" y="{HEIGHT - 14}" text-anchor="middle">{escape(x_label)}</text>')
+    out.append(f'<text transform="translate(18 {(TOP + HEIGHT - BOTTOM) / 2}) rotate(-90)" text-anchor="middle">'
+               f'{escape(y_label)}</text>')
+    ends = []
+    for number, (name, line) in enumerate(lines.items()):
+        colour, kind = COLOURS[number % len(COLOURS)], MARKS[number % len(MARKS)]
+        spots = [(place_x(x), place_y(y)) for x, y in line]
+        out.append(f'<polyline fill="none" stroke="{colour}" stroke-width="2" points="'
+                   + " ".join(f"{x:.1f},{y:.1f}" for x, y in spots) + '"/>')
+        out += [mark(kind, x, y, colour) for x, y in spots]
+        ends.append([spots[-1][1], name, colour, spots[-1][0]])
+    # names at the lines' ends, pushed apart
+    ends.sort()
+    for above, below in zip(ends, ends[1:]):
+        below[0] = max(below[0], above[0] + 16)
+    for y, name, colour, _ in ends:
+        out.append(f'<text x="{WIDTH - RIGHT + 12}" y="{y + 4:.1f}" fill="{colour}">{escape(name)}</text>')
+    out.append("</svg>")
+    with open(path, "w") as file:
+        file.write("\n".join(out) + "\n")
