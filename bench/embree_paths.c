@@ -11,8 +11,8 @@ Batch batch_create(uint32_t lanes) {
     float **single[] = {&batch.t, &batch.value, &batch.offset, &batch.cosine, &batch.uniform};
     for (size_t a = 0; a < sizeof single / sizeof *single; a++)
         *single[a] = peer_allocate(lanes, sizeof(float));
-    uint32_t **words[] = {&batch.column, &batch.sample, &batch.depth, &batch.sphere,
-                          &batch.front,  &batch.alive,  &batch.kind,  &batch.entry};
+    uint32_t **words[] = {&batch.column, &batch.sample, &batch.depth, &batch.sphere, &batch.front,
+                          &batch.alive,  &batch.kind,   &batch.entry, &batch.huge};
     for (size_t a = 0; a < sizeof words / sizeof *words; a++)
         *words[a] = peer_allocate(lanes, sizeof(uint32_t));
     return batch;

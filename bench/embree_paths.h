@@ -13,6 +13,7 @@
 #define LANE_BLOCK 16u /* batches hold a multiple of this many lanes */
 #define LANES_MAX 4096u
 #define SURFACE_VALUES 8u
+#define HUGE_MAX 4u
 #define NO_HIT 0xffffffffu /* as Embree's RTC_INVALID_GEOMETRY_ID */
 
 /* What materials the world holds: loops for absent ones are skipped. */
@@ -47,9 +48,12 @@ typedef struct World {
     uint32_t *surface; /* of a sphere: entry in the tables below; one more for the sky */
     float *values;     /* SURFACE_VALUES each: albedo r g b, fuzz or index, emit r g b, unused */
     uint32_t *flags;   /* kind and variants */
+    /* Spheres far larger than most, few: met before the tree is entered, and not in it. */
+    uint32_t huge_count, huge[HUGE_MAX];
 } World;
 
-World world_create(const BpScene *scene, uint64_t seed);
+/* `huge`: whether to take out huge spheres. */
+World world_create(const BpScene *scene, uint64_t seed, bool huge);
 
 /* One array a member, `lanes` entries each. */
 typedef struct Batch {
@@ -59,6 +63,7 @@ typedef struct Batch {
     /* Set by the caller for each active lane: */
     float *t, *normal[3]; /* the normal outward, of any length */
     uint32_t *sphere;     /* NO_HIT: none */
+    uint32_t *huge; /* the huge sphere met at t before the caller traces: its hits must be nearer than t */
     /* Between the loops of a bounce: */
     float *random[3], *next[3], *uniform, *value, *cosine, *offset;
     uint32_t *front, *alive, *kind, *entry;
@@ -73,6 +78,9 @@ typedef struct RowCursor {
 
 /* Fills free lanes with camera paths of the row; false when nothing is left to trace. */
 bool batch_refill(Batch *batch, const World *world, RowCursor *cursor);
+/* Sets t and huge of all active lanes: where a ray meets a huge sphere first; infinity and NO_HIT if it meets
+ * none. */
+void batch_meet_huge(Batch *batch, const World *world);
 /* Turns hits into scattered rays, adds finished paths to the film and closes their gaps. */
 void batch_bounce(Batch *batch, const World *world, const RowCursor *cursor, const PeerFilm *film);
 

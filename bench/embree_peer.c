@@ -9,7 +9,8 @@
  *   coherent         camera rays are traced with Embree's coherent flag
  *   robust           RTC_SCENE_FLAG_ROBUST
  *   medium           build quality MEDIUM instead of HIGH
- *   compact          RTC_SCENE_FLAG_COMPACT */
+ *   compact          RTC_SCENE_FLAG_COMPACT
+ *   huge             huge spheres are met first, in vector code, and bound what Embree has to search */
 #include "embree_paths.h"
 
 #include <embree3/rtcore.h>
@@ -22,7 +23,7 @@
 
 typedef struct Method {
     enum { RAYS_1, RAYS_4, RAYS_8, RAYS_16, RAYS_1M, RAYS_NP } rays;
-    bool coherent, robust, medium, compact;
+    bool coherent, robust, medium, compact, huge;
 } Method;
 
 /* One thread's own: its batch and buffers for Embree's ray formats. */
@@ -58,6 +59,7 @@ static Method parse_method(const char *text) {
         if (strcmp(word, "robust") == 0) known = method.robust = true;
         if (strcmp(word, "medium") == 0) known = method.medium = true;
         if (strcmp(word, "compact") == 0) known = method.compact = true;
+        if (strcmp(word, "huge") == 0) known = method.huge = true;
         if (known) continue;
         fprintf(stderr, "unknown method word '%s'\n", word);
         exit(2);
@@ -88,8 +90,13 @@ static RTCScene build(RTCDevice device, const World *world, const Method *method
     const enum RTCBuildQuality quality = method->medium ? RTC_BUILD_QUALITY_MEDIUM : RTC_BUILD_QUALITY_HIGH;
     rtcSetSceneBuildQuality(scene, quality);
     if (world->scene->sphere_count > 0) {
+        /* Spheres without a radius are left out of the tree. */
+        const size_t floats = 4 * world->scene->sphere_count;
+        float *points = peer_allocate(floats, sizeof *points);
+        memcpy(points, world->points, floats * sizeof *points);
+        for (uint32_t h = 0; h < world->huge_count; h++) points[4 * world->huge[h] + 3] = NAN;
         RTCGeometry geometry = rtcNewGeometry(device, RTC_GEOMETRY_TYPE_SPHERE_POINT);
-        rtcSetSharedGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT4, world->points, 0,
+        rtcSetSharedGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT4, points, 0,
                                    4 * sizeof(float), world->scene->sphere_count);
         rtcSetGeometryBuildQuality(geometry, quality);
         rtcCommitGeometry(geometry);
@@ -128,7 +135,7 @@ static void trace_single(const Job *job, Worker *worker, struct RTCIntersectCont
                                       .dir_x = batch->direction[0][i],
                                       .dir_y = batch->direction[1][i],
                                       .dir_z = batch->direction[2][i],
-                                      .tfar = INFINITY,
+                                      .tfar = batch->t[i],
                                       .mask = UINT32_MAX};
         rays[i].hit.primID = rays[i].hit.geomID = rays[i].hit.instID[0] = RTC_INVALID_GEOMETRY_ID;
     }
@@ -168,7 +175,7 @@ static void trace_single(const Job *job, Worker *worker, struct RTCIntersectCont
                 packet.ray.dir_y[l] = batch->direction[1][i + l];                                            \
                 packet.ray.dir_z[l] = batch->direction[2][i + l];                                            \
                 packet.ray.tnear[l] = 0;                                                                     \
-                packet.ray.tfar[l] = INFINITY;                                                               \
+                packet.ray.tfar[l] = batch->t[i + l];                                                        \
                 packet.hit.primID[l] = RTC_INVALID_GEOMETRY_ID;                                              \
                 packet.hit.geomID[l] = RTC_INVALID_GEOMETRY_ID;                                              \
                 packet.hit.instID[0][l] = RTC_INVALID_GEOMETRY_ID;                                           \
@@ -191,7 +198,6 @@ static void trace_stream(const Job *job, Worker *worker, struct RTCIntersectCont
                          uint32_t end) {
     Batch *batch = &worker->batch;
     for (uint32_t i = begin; i < end; i++) {
-        batch->t[i] = INFINITY;
         batch->sphere[i] = worker->geometry[i] = worker->instance[i] = RTC_INVALID_GEOMETRY_ID;
     }
     struct RTCRayHitNp rays = {.ray = {.org_x = batch->origin[0] + begin,
@@ -251,6 +257,7 @@ static uint64_t trace_row(void *argument, unsigned thread, uint32_t row) {
     if (job->world.max_depth == 0) return 0;
     while (batch_refill(batch, &job->world, &cursor)) {
         rays += batch->active;
+        batch_meet_huge(batch, &job->world);
         if (job->method.coherent) {
             trace_range(job, worker, false, 0, batch->fresh);
             trace_range(job, worker, true, batch->fresh, batch->active);
@@ -265,15 +272,16 @@ static uint64_t trace_row(void *argument, unsigned thread, uint32_t row) {
 int main(int argc, char **argv) {
     PeerOptions options;
     PeerRun run;
-    peer_options(argc, argv, "1|4|8|16|1m|np,coherent,robust,medium,compact", &options);
+    peer_options(argc, argv, "1|4|8|16|1m|np,coherent,robust,medium,compact,huge", &options);
     if (options.method == NULL) options.method = "1";
     if (options.lanes == 0) options.lanes = 64;
     options.lanes = (options.lanes + LANE_BLOCK - 1) / LANE_BLOCK * LANE_BLOCK;
     if (options.lanes > LANES_MAX) options.lanes = LANES_MAX;
 
     BpScene *scene = peer_load(&options, &run);
-    Job job = {.world = world_create(scene, options.seed),
-               .method = parse_method(options.method),
+    const Method method = parse_method(options.method);
+    Job job = {.world = world_create(scene, options.seed, method.huge),
+               .method = method,
                .film = peer_film(scene),
                .workers = peer_allocate(options.threads, sizeof(Worker))};
     for (uint32_t t = 0; t < options.threads; t++) job.workers[t] = worker_create(options.lanes);

@@ -76,6 +76,65 @@ void lanes_start(const Batch *batch, const World *world, uint32_t row, uint32_t 
     }
 }
 
+/* ---- huge spheres ---- */
+
+void batch_meet_huge(Batch *batch, const World *world) {
+    const uint32_t count = batch->active;
+    FLOATS3(ox, oy, oz, batch->origin);
+    FLOATS3(dx, dy, dz, batch->direction);
+    FLOATS(t, batch->t);
+    WORDS(huge, batch->huge);
+    EACH_LANE {
+        t[i] = INFINITY;
+        huge[i] = NO_HIT;
+    }
+    for (uint32_t h = 0; h < world->huge_count; h++) {
+        const uint32_t sphere = world->huge[h];
+        const float *point = world->points + 4 * (size_t)sphere;
+        const float cx = point[0], cy = point[1], cz = point[2], radius2 = point[3] * point[3];
+        EACH_LANE {
+            /* Haines, Guenther and Akenine-Moeller 2019: the discriminant from the perpendicular */
+            const float x = cx - ox[i], y = cy - oy[i], z = cz - oz[i];
+            const float along = x * dx[i] + y * dy[i] + z * dz[i];
+            const float px = x - along * dx[i], py = y - along * dy[i], pz = z - along * dz[i];
+            const float square = radius2 - (px * px + py * py + pz * pz);
+            const float half = sqrtf(square > 0 ? square : 0.0f);
+            const float near = along - half, far = along + half;
+            const float root = near > 0 ? near : far;
+            const float limit = square > 0 ? t[i] : 0.0f;
+            const uint32_t nearer = root < limit ? 1u : 0u, ahead = root > 0 ? 1u : 0u;
+            t[i] = nearer & ahead ? root : t[i];
+            huge[i] = nearer & ahead ? sphere : huge[i];
+        }
+    }
+}
+
+/* Lanes that met nothing nearer than their huge sphere met that. */
+static void take_huge(const Batch *batch, const World *world) {
+    const uint32_t count = batch->active;
+    const float *restrict const points = world->points;
+    FLOATS3(ox, oy, oz, batch->origin);
+    FLOATS3(dx, dy, dz, batch->direction);
+    FLOATS3(nx, ny, nz, batch->normal);
+    FLOATS(t, batch->t);
+    WORDS(huge, batch->huge);
+    WORDS(sphere, batch->sphere);
+    WORDS(entry, batch->entry);
+    EACH_LANE {
+        entry[i] = huge[i] != NO_HIT ? 4 * huge[i] : 0u;
+    }
+    EACH_LANE {
+        const uint32_t take = sphere[i] == NO_HIT ? 1u : 0u;
+        const float x = ox[i] + t[i] * dx[i] - points[entry[i]];
+        const float y = oy[i] + t[i] * dy[i] - points[entry[i] + 1];
+        const float z = oz[i] + t[i] * dz[i] - points[entry[i] + 2];
+        nx[i] = take ? x : nx[i];
+        ny[i] = take ? y : ny[i];
+        nz[i] = take ? z : nz[i];
+        sphere[i] = take ? huge[i] : sphere[i];
+    }
+}
+
 /* ---- a bounce ---- */
 
 /* The surface's normal facing the ray. The normal that comes in points outward and is as long as the radius.
@@ -320,6 +379,7 @@ static void leave_surfaces(const Batch *batch) {
 }
 
 void lanes_scatter(const Batch *batch, const World *world, uint32_t first_pixel) {
+    if (world->huge_count > 0) take_huge(batch, world);
     meet_surfaces(batch);
     draw_random(batch, first_pixel, world->seed);
     gather_surfaces(batch, world);

@@ -2,6 +2,7 @@
 #include "embree_paths.h"
 
 #include <math.h>
+#include <stdlib.h>
 #include <string.h>
 
 static uint32_t material_flags(const BpMaterial *material) {
@@ -54,7 +55,26 @@ static void set_surface(World *world, size_t entry, const BpMaterial *material, 
     values[3] = (float)(material->kind == BP_MATERIAL_DIELECTRIC ? index : material->fuzz);
 }
 
-World world_create(const BpScene *scene, uint64_t seed) {
+static int compare_radius(const void *a, const void *b) {
+    const float x = *(const float *)a, y = *(const float *)b;
+    return (x > y) - (x < y);
+}
+
+/* The largest spheres, when they are at least four times as large as most. */
+static void choose_huge(World *world) {
+    const size_t count = world->scene->sphere_count;
+    float *radii = peer_allocate(count, sizeof *radii);
+    for (size_t i = 0; i < count; i++) radii[i] = world->points[4 * i + 3];
+    qsort(radii, count, sizeof *radii, compare_radius);
+    const float least =
+        count > 2 * HUGE_MAX ? fmaxf(4 * radii[count / 2], radii[count - HUGE_MAX]) : INFINITY;
+    for (size_t i = 0; i < count && world->huge_count < HUGE_MAX; i++) {
+        if (world->points[4 * i + 3] >= least) world->huge[world->huge_count++] = (uint32_t)i;
+    }
+    free(radii);
+}
+
+World world_create(const BpScene *scene, uint64_t seed, bool huge) {
     PeerCamera camera;
     peer_camera(scene, &camera);
     World world = {.scene = scene,
@@ -102,5 +122,6 @@ World world_create(const BpScene *scene, uint64_t seed) {
             world.surface[i] = (uint32_t)next++;
         }
     }
+    if (huge) choose_huge(&world);
     return world;
 }

@@ -43,7 +43,7 @@ with tempfile.TemporaryDirectory() as folder:
         entries = [("book tree", *peer("book_scalar", path, "--method", "tree", "--seed", "1"))]
         if "cover" in path or "glass.json" in path:
             entries.append(("book list", *peer("book_scalar", path, "--method", "list", "--seed", "2")))
-        methods = ("1", "16,coherent", "np") if "cover" in path else ("np,robust",)
+        methods = ("1", "16,coherent", "np", "np,huge") if "cover" in path else ("np,robust,huge",)
         for method in methods if embree else ():
             entries.append((f"embree {method}", *peer("embree_peer", path, "--method", method, "--seed", "3")))
         for name, mean, error, peer_rays in entries:
