@@ -5,6 +5,7 @@
 #include "commands.h"
 
 #include "../base/clock.h"
+#include "../engine/limits.h"
 #include "json_file.h"
 #include "render_loop.h"
 #include "report.h"
@@ -31,6 +32,12 @@ static void init_rule(const BpCommandLine *line, const BpRenderOptions *options,
     }
     bp_stop_rule_init(rule, has_error ? line->error_percent / 100.0 : 0.0,
                       has_time ? line->time_seconds : 0.0, samples_max, pixels);
+}
+
+static void warn_of_limits(const BpScene *scene, const BpRenderOptions *options) {
+    BpLimits limits;
+    bp_scene_limits(scene, options->precision, &limits);
+    for (unsigned i = 0; i < limits.count; ++i) fprintf(stderr, "warning: %s\n", limits.text[i]);
 }
 
 static void print_summary(const BpRunResult *result, const BpStopRule *rule, const BpLoopEnd *end) {
@@ -133,6 +140,7 @@ BpStatus bp_command_render(const BpCommandLine *line, BpError *err) {
     bp_scene_info(scene, &info);
     const uint64_t pixels = (uint64_t)info.width * info.height;
     BP_TRY_GOTO(status, bp_setup_options(line, scene, &options, err), done);
+    if (!line->quiet) warn_of_limits(scene, &options);
     /* Less noise in the same time on every picture of the book: docs/COST.md. */
     if (!bp_option_given(line, BP_OPTION_SAMPLER)) options.sampler = BP_SAMPLER_SOBOL;
     init_rule(line, &options, pixels, &rule);

@@ -1,0 +1,25 @@
+/* limits.h: what rounding a scene to single precision does to it, where that can be seen.
+ *
+ * In:    a validated scene.   Out: warnings, each naming a sphere, a ratio and a remedy.
+ * Knows: that the kernel sees centres relative to the camera, and all in float (docs/NUMERICS.md).
+ * Does not know: OpenCL, where the warnings go. */
+#ifndef BP_ENGINE_LIMITS_H
+#define BP_ENGINE_LIMITS_H
+
+#include "../scene/scene.h"
+
+#define BP_LIMIT_SHIFT 0.01   /* of its own radius that a sphere may lie off its place */
+#define BP_LIMIT_CONTACT 0.05 /* of the smallest radius that a larger sphere's surface may lie off */
+#define BP_LIMIT_WALL 0.01    /* of its thickness that a hollow sphere's wall may be off */
+
+#define BP_LIMITS_MAX 3
+typedef struct BpLimits {
+    unsigned count;
+    char text[BP_LIMITS_MAX][320]; /* one line each, without "warning:" */
+} BpLimits;
+
+/* At most one warning of each kind, about the worst sphere, saying how many more there are. Double precision
+ * has none: within the grammar's sizes its rounding stays below 1e-3 of a radius of 1e-7 or more. */
+void bp_scene_limits(const BpScene *scene, BpPrecision precision, BpLimits *limits);
+
+#endif
