@@ -206,11 +206,71 @@ static void eta_one_invisible(void **state) {
     bp_picture_clear(&empty);
 }
 
+/* The book's own spheres touch exactly: C with L and R, the wide-angle pair, the large one with the ground.
+ * Made of glass that only bends, rays a hundredth beside the contact enter and leave all of them in order;
+ * through the contact itself, where leaving one and entering the other are one event, the lower number may
+ * win and the other event go missing, but every sphere is met, none twice over, and the path gets out. */
+static void book_tangencies(void **state) {
+    static const struct {
+        const char *spheres;
+        double origin[3], direction[3];
+        double order[8];
+    } cases[] = {
+        {"{\"center\":[0,0,-1],\"radius\":0.5,\"material\":\"g\"},{\"center\":[-1,0,-1],\"radius\":0.5,"
+         "\"material\":\"g\"},{\"center\":[1,0,-1],\"radius\":0.5,\"material\":\"g\"}",
+         {-3, 0, -1},
+         {1, 0, 0},
+         {1, 1, 0, 0, 2, 2, -1, -1}},
+        {"{\"center\":[-0.7071067811865475,0,-1],\"radius\":0.7071067811865476,\"material\":\"g\"},"
+         "{\"center\":[0.7071067811865475,0,-1],\"radius\":0.7071067811865476,\"material\":\"g\"}",
+         {-3, 0, -1},
+         {1, 0, 0},
+         {0, 0, 1, 1, -1, -1, -1, -1}},
+        {"{\"center\":[0,1,0],\"radius\":1,\"material\":\"g\"},{\"center\":[0,-1000,0],\"radius\":1000,"
+         "\"material\":\"g\"}",
+         {0, 7, 0},
+         {0, -1, 0},
+         {0, 0, 1, 1, -1, -1, -1, -1}},
+    };
+    const double aside[] = {0, 0x1p-30, 1e-6, 0.01};
+    for (size_t c = 0; c < sizeof cases / sizeof cases[0]; ++c) {
+        BpScene *scene = suite_scene("{\"format\":1,\"camera\":{\"lookfrom\":[0,0,0],\"lookat\":[0,0,-1]},"
+                                     "\"materials\":{" GLASS("g", "1.5") "},\"spheres\":[%s]}",
+                                     cases[c].spheres);
+        double rays[4 * RAY_REALS] = {0}, paths[4 * PATH_REALS];
+        for (int i = 0; i < 4; ++i) {
+            double *ray = rays + i * RAY_REALS;
+            for (int a = 0; a < 3; ++a) {
+                ray[RAY_HIGH + a] = cases[c].origin[a];
+                ray[RAY_DIRECTION + a] = cases[c].direction[a];
+            }
+            ray[RAY_HIGH + 2] += aside[i]; /* all three run in a plane of constant z */
+        }
+        run_paths(*state, scene, rays, 4, paths);
+        for (int i = 0; i < 4; ++i) {
+            int met[3] = {0};
+            for (int k = 0; k < 8; ++k) {
+                const double sphere = paths[i * PATH_REALS + 2 * k];
+                if (sphere >= 0) ++met[(int)sphere];
+                if (i == 3) assert_true(sphere == cases[c].order[k]);
+            }
+            for (int k = 0; k < 3; ++k) {
+                int wanted = 0;
+                for (int m = 0; m < 8; ++m) wanted += cases[c].order[m] == k;
+                assert_true(wanted == 0 ? met[k] == 0 : met[k] == 1 || met[k] == 2);
+            }
+            assert_true(paths[i * PATH_REALS + 2 * 7] == -1 && paths[i * PATH_REALS + PATH_REALS - 1] == 0);
+        }
+        bp_scene_destroy(&scene);
+    }
+}
+
 int run_shells(Lab *lab) {
     const struct CMUnitTest tests[] = {
         HARD_TEST(tiny_glass),         HARD_TEST(shell_deflection),
         HARD_TEST(shell_gap_sweep),    HARD_TEST(coincident_dielectrics),
         HARD_TEST(bubble_equivalence), HARD_TEST(eta_one_invisible),
+        HARD_TEST(book_tangencies),
     };
     return cmocka_run_group_tests_name("shells", tests, NULL, NULL);
 }
