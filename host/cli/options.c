@@ -1,5 +1,6 @@
 /* options.c: see options.h. */
 #include "commands.h"
+#include "files_apart.h"
 
 #include "../engine/accumulator.h"
 #include "../image/image.h"
@@ -254,5 +255,6 @@ BpStatus bp_command_line_parse(int argc, char **argv, BpCommandLine *line, BpErr
     if (line->command == NULL)
         return bp_fail(err, BP_ERR_USAGE,
                        "which command? ballpark --help shows them; to begin: ballpark render SCENE");
-    return check_operands(line, err);
+    BP_TRY(check_operands(line, err));
+    return bp_files_check_apart(line, err);
 }

@@ -91,8 +91,8 @@ static inline bool bp_option_given(const BpCommandLine *line, BpOption option) {
 }
 
 /* Parses and checks. BP_ERR_USAGE names the option at fault, what was found, what is expected; a command or
- * an option that does not exist comes with the nearest that does. Nothing to release. `argv` is reordered:
- * operands come last, and the result points into it. */
+ * an option that does not exist comes with the nearest that does; one file in two parts names both. Nothing
+ * to release. `argv` is reordered: operands come last, and the result points into it. */
 BpStatus bp_command_line_parse(int argc, char **argv, BpCommandLine *line, BpError *err);
 
 /* The help of the whole program (`command` NULL) or of one command, on standard output. BP_ERR_FILE if that

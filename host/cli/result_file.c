@@ -1,6 +1,8 @@
 /* result_file.c: see result_file.h. */
 #include "result_file.h"
 
+#include "files_apart.h"
+
 #include "../base/output_file.h"
 #include "../engine/accumulator_file.h"
 #include "../image/error_map.h"
@@ -73,7 +75,7 @@ BpStatus bp_result_choose(const BpCommandLine *line, const char *default_path, B
                           BpError *err) {
     BP_TRY(choose_output(line, default_path, result, err));
     if (line->stats != NULL) {
-        if (strcmp(line->stats, result->path) == 0)
+        if (bp_same_file(line->stats, result->path))
             return bp_fail(err, BP_ERR_USAGE, "--stats and --output both name %s", bp_result_name(result));
         BP_TRY(bp_json_check(line->stats, err));
     }
@@ -82,7 +84,7 @@ BpStatus bp_result_choose(const BpCommandLine *line, const char *default_path, B
         if (!bp_format_from_path(line->error_map, &format) || format != BP_FORMAT_PNG)
             return bp_fail(err, BP_ERR_USAGE, "--error-map %.400s: expected a name that ends in .png",
                            line->error_map);
-        if (strcmp(line->error_map, result->path) == 0)
+        if (bp_same_file(line->error_map, result->path))
             return bp_fail(err, BP_ERR_USAGE, "--error-map and --output both name %s",
                            bp_result_name(result));
         BP_TRY(bp_output_check(line->error_map, err));

@@ -145,6 +145,21 @@ class Writing(ProgramTest):
         self.assertTrue(os.path.islink(self.path("link.png")))
         self.assertTrue(self.read("far/real.png").startswith(b"\x89PNG"))
 
+    def test_no_file_plays_two_parts(self):
+        before = self.read("s.json")
+        os.symlink("s.json", self.path("link.json"))
+        for target in ("s.json", "./s.json", "link.json"):
+            self.fail_with(2, "render", "s.json", "-o", target, "--format", "png", says="--output " + target)
+            self.fail_with(2, "render", "s.json", "-o", "a.png", "--stats", target, says="--stats " + target)
+            self.fail_with(2, "explain", "s.json", "--json", target, says="--json " + target)
+            self.fail_with(2, "check", "s.json", "--json", target, says="--json " + target)
+        self.assert_same(self.read("s.json"), before, "s.json")
+        self.fail_with(2, "render", "s.json", "--error-map", "e.png", "--stats", "e.png", says="both name e.png")
+        self.write("a.png", "")
+        self.fail_with(2, "render", "s.json", "-o", "a.png", "--stats", "./a.png", says="--stats and --output")
+        self.succeed("render", "s.json", "-o", "a.bpa")
+        self.succeed("merge", "a.bpa", "-o", "a.bpa")
+
     def test_nothing_to_write_to_is_still_a_render(self):
         self.succeed("render", "s.json", "-o", "/dev/null", "--format", "exr")
         self.assertEqual(self.files(), ["s.json"])
