@@ -13,7 +13,8 @@ typedef struct OptionRow {
 
 static const OptionRow rows[BP_OPTION_NUMBER] = {
     [BP_OPTION_OUTPUT] = {"output", "FILE", "where the result goes; \"-\" is standard output", 'o'},
-    [BP_OPTION_SPP] = {"spp", "N", "samples a pixel (the scene's own number if not given)", 0},
+    [BP_OPTION_SPP] = {"spp", "N",
+                       "samples a pixel (if not given: render takes the scene's number, check 1024)", 0},
     [BP_OPTION_ERROR] = {"error", "PERCENT",
                          "stop when the error bar of the picture (NRMSE) is below PERCENT", 0},
     [BP_OPTION_TIME] = {"time", "SECONDS", "stop after SECONDS of rendering", 0},

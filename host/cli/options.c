@@ -203,6 +203,10 @@ static BpStatus check_operands(const BpCommandLine *line, BpError *err) {
         return bp_fail(err, BP_ERR_USAGE, "ballpark %s takes one %s at a time, found \"%.200s\" too",
                        command->name, command->operands, extra);
     }
+    for (size_t i = 0; i < line->operand_count; ++i)
+        if (line->operands[i][0] == '\0')
+            return bp_fail(err, BP_ERR_USAGE, "ballpark %s needs %s, found an empty name", command->name,
+                           command->operands);
     return BP_OK;
 }
 

@@ -145,6 +145,9 @@ class Writing(ProgramTest):
         self.assertTrue(os.path.islink(self.path("link.png")))
         self.assertTrue(self.read("far/real.png").startswith(b"\x89PNG"))
 
+    def test_an_empty_name_is_no_scene(self):
+        self.fail_with(2, "render", "", says="needs SCENE, found an empty name")
+
     def test_no_file_plays_two_parts(self):
         before = self.read("s.json")
         os.symlink("s.json", self.path("link.json"))
