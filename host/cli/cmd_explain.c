@@ -86,6 +86,14 @@ static void print_costs(const BpCosts *costs) {
     }
 }
 
+/* What `ballpark render` would be told. */
+static BpStatus render_options(const BpCommandLine *line, const BpScene *scene, BpRenderOptions *options,
+                               BpError *err) {
+    BP_TRY(bp_setup_options(line, scene, options, err));
+    if (!bp_option_given(line, BP_OPTION_SAMPLER)) options->sampler = BP_SAMPLER_SOBOL;
+    return BP_OK;
+}
+
 /* A status line while kernels are built and timed. */
 static void tell_terminal(const char *what, void *context) {
     const BpCommandLine *line = context;
@@ -99,7 +107,7 @@ static BpStatus measure(const BpCommandLine *line, BpScene *scene, const BpDevic
     bp_scene_info(scene, &info);
     if (!bp_option_given(line, BP_OPTION_WIDTH) && info.width > MEASURED_WIDTH)
         BP_TRY(bp_scene_set_width(scene, MEASURED_WIDTH, err));
-    BP_TRY(bp_setup_options(line, scene, &options, err));
+    BP_TRY(render_options(line, scene, &options, err));
     const BpCostPlan plan = {.rounds = ROUNDS,
                              .round_seconds = ROUND_SECONDS,
                              .builds = true,
@@ -113,7 +121,7 @@ static BpStatus measure(const BpCommandLine *line, BpScene *scene, const BpDevic
 static BpStatus follow(const BpCommandLine *line, const BpScene *scene, const BpDeviceInfo *device,
                        BpPath *path, BpError *err) {
     BpRenderOptions options;
-    BP_TRY(bp_setup_options(line, scene, &options, err));
+    BP_TRY(render_options(line, scene, &options, err));
     return bp_path_follow(scene, &options, device, line->pixel_x, line->pixel_y,
                           (uint32_t)options.first_sample, path, err);
 }

@@ -28,8 +28,9 @@ static const OptionRow rows[BP_OPTION_NUMBER] = {
     [BP_OPTION_MATH] = {"math", "strict|fast", "fast allows the compiler to round differently (strict)", 0},
     [BP_OPTION_NUMERICS] = {"numerics", "robust|plain",
                             "plain is the cheap intersection, with its failures (robust)", 0},
-    [BP_OPTION_SAMPLER] = {"sampler", "sobol|independent",
-                           "how random numbers are drawn (render: sobol, less noise; else: independent)", 0},
+    [BP_OPTION_SAMPLER] =
+        {"sampler", "sobol|independent",
+         "how random numbers are drawn (render, explain: sobol, less noise; else: independent)", 0},
     [BP_OPTION_EFFECTS] = {"effects", "all", "build every effect into the kernel, also those the scene lacks",
                            0},
     [BP_OPTION_KERNEL] = {"kernel", "sample|packet", "form of the kernel; the picture is the same", 0},

@@ -124,6 +124,7 @@ static bool check_set(const BpDeviceInfo *device, BpKernelForm form, bool exact,
     bp_render_defaults(&made.scene, &options);
     options.kernel = form;
     options.seed = 20 + bits;
+    options.sampler = (bits ^ bits >> 3) & 1 ? BP_SAMPLER_SOBOL : BP_SAMPLER_INDEPENDENT;
     if (!render(&made.scene, device, &options, bits, &special)) goto done;
     options.all_effects = true;
     if (!render(&made.scene, device, &options, bits, &general)) goto done;
