@@ -2,6 +2,7 @@
 #include "limits.h"
 
 #include <math.h>
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -49,10 +50,16 @@ typedef struct Shell {
     size_t sphere;
 } Shell;
 
-static int compare_shells(const void *a_pointer, const void *b_pointer) {
-    const Shell *a = a_pointer, *b = b_pointer;
+static int compare_centers(const Shell *a, const Shell *b) {
     for (int i = 0; i < 3; ++i)
         if (a->center[i] != b->center[i]) return a->center[i] < b->center[i] ? -1 : 1;
+    return 0;
+}
+
+static int compare_shells(const void *a_pointer, const void *b_pointer) {
+    const Shell *a = a_pointer, *b = b_pointer;
+    const int centers = compare_centers(a, b);
+    if (centers != 0) return centers;
     if (a->radius != b->radius) return a->radius < b->radius ? -1 : 1;
     return a->sphere < b->sphere ? -1 : a->sphere > b->sphere;
 }
@@ -73,7 +80,7 @@ static void find_walls(const BpScene *scene, Worst *worst, double *wall) {
     qsort(shells, count, sizeof *shells, compare_shells);
     for (size_t i = 1; i < count; ++i) {
         const Shell *in = &shells[i - 1], *out = &shells[i];
-        if (memcmp(in->center, out->center, sizeof in->center) != 0) continue;
+        if (compare_centers(in, out) != 0) continue;
         const double thick = out->radius - in->radius;
         if (!(thick > 0)) continue;
         const double ratio = fabs(as_float(out->radius) - as_float(in->radius) - thick) / thick;

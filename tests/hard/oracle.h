@@ -7,7 +7,7 @@
 #include <math.h>
 #include <stdbool.h>
 
-#ifdef __SIZEOF_FLOAT128__
+#if defined(__SIZEOF_FLOAT128__) && !defined(__cppcheck__) /* which does not know the type's size */
 __extension__ typedef __float128 Wide;
 #else
 typedef long double Wide; /* 113 bits where CMake lets this be built */
