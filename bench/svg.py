@@ -1,4 +1,4 @@
-"""Line plots as SVG, on logarithmic axes, without any library: what docs/BENCHMARKS.md needs and no more."""
+"""Line plots as SVG, without any library: what docs/BENCHMARKS.md needs and no more."""
 import math
 from html import escape
 
@@ -13,6 +13,13 @@ def ticks(low, high):
     decades = range(math.floor(math.log10(low)), math.ceil(math.log10(high)) + 1)
     steps = (1,) if len(decades) > 4 else (1, 2, 5)
     return [step * 10 ** d for d in decades for step in steps if low * .999 <= step * 10 ** d <= high * 1.001]
+
+
+def even_ticks(high):
+    """0 and up in steps of 1, 2 or 5 times a power of ten, four to ten of them."""
+    power = 10 ** math.floor(math.log10(high / 4))
+    step = max(step for step in (1, 2, 5) if step * power <= high / 4) * power
+    return [i * step for i in range(int(high / step) + 1)]
 
 
 def label(value):
@@ -33,21 +40,24 @@ def mark(kind, x, y, colour):
 
 
 def plot(path, lines, x_label, y_label, title):
-    """`lines`: name -> [(x, y), ...], all above 0. The y axis begins at a round number below the least."""
+    """`lines`: name -> [(x, y), ...], all above 0. Where y spans less than a factor of 5, its axis is linear, from 0."""
     points = [p for line in lines.values() for p in line]
     x_low, x_high = min(p[0] for p in points), max(p[0] for p in points)
     y_low, y_high = min(p[1] for p in points) / 1.15, max(p[1] for p in points) * 1.15
+    linear = y_high < 5 * y_low
 
     def place_x(x):
         return LEFT + (WIDTH - LEFT - RIGHT) * (math.log(x / x_low) / math.log(x_high / x_low) if x_high > x_low else .5)
 
     def place_y(y):
+        if linear:
+            return HEIGHT - BOTTOM - (HEIGHT - TOP - BOTTOM) * y / y_high
         return HEIGHT - BOTTOM - (HEIGHT - TOP - BOTTOM) * math.log(y / y_low) / math.log(y_high / y_low)
 
     out = [f'<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 {WIDTH} {HEIGHT}" font-family="sans-serif" font-size="12">',
            f'<title>{escape(title)}</title>', f'<rect width="{WIDTH}" height="{HEIGHT}" fill="white"/>',
            f'<text x="{LEFT}" y="24" font-size="15">{escape(title)}</text>']
-    for y in ticks(y_low, y_high):
+    for y in even_ticks(y_high) if linear else ticks(y_low, y_high):
         at = place_y(y)
         out.append(f'<line x1="{LEFT}" x2="{WIDTH - RIGHT}" y1="{at:.1f}" y2="{at:.1f}" stroke="#dddddd"/>')
         out.append(f'<text x="{LEFT - 8}" y="{at + 4:.1f}" text-anchor="end">{label(y)}</text>')
