@@ -84,8 +84,8 @@ void batch_meet_huge(Batch *batch, const World *world);
 /* Turns hits into scattered rays, adds finished paths to the film and closes their gaps. */
 void batch_bounce(Batch *batch, const World *world, const RowCursor *cursor, const PeerFilm *film);
 
-/* The two loops behind them (embree_shade.c). Camera rays for lanes first .. end-1, whose column and sample
- * are set: */
+/* The loops behind them (embree_camera.c, embree_shade.c). Camera rays for lanes first .. end-1, whose column
+ * and sample are set: */
 void lanes_start(const Batch *batch, const World *world, uint32_t row, uint32_t first, uint32_t end);
 /* Radiance found at the hits or in the sky; then the next ray, or `alive` 0: */
 void lanes_scatter(const Batch *batch, const World *world, uint32_t first_pixel);
