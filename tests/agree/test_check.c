@@ -89,9 +89,9 @@ static void map(void **state) {
     const uint32_t zoom = picture.height / scene->camera.height;
     assert_int_equal(picture.height, scene->camera.height * zoom);
     assert_int_equal(picture.width, 3 * 40 * zoom + 16);
-    const float *last = &picture.rgb[((size_t)picture.width * picture.height - 1) * 3];
+    const float *last = picture.rgb + ((size_t)picture.width * picture.height - 1) * 3;
     assert_true(last[0] == 1 && last[1] == 1 && last[2] == 1);
-    const float *first = picture.rgb, *reference = &picture.rgb[(size_t)(40 * zoom + 8) * 3];
+    const float *first = picture.rgb, *reference = picture.rgb + (size_t)(40 * zoom + 8) * 3;
     for (int c = 0; c < 3; ++c)
         assert_true(first[c] - reference[c] < 1e-5f && reference[c] - first[c] < 1e-5f);
     bp_picture_clear(&picture);

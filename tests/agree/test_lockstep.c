@@ -60,7 +60,7 @@ static void compare(const char *name, uint32_t width, double parting) {
     size_t parted = 0;
     double close_sum = 0, difference = 0, square = 0, brightness = 0;
     for (size_t i = 0; i < single.count; ++i) {
-        const float *a = &single.values[4 * i], *b = &wide.values[4 * i];
+        const float *a = single.values + 4 * i, *b = wide.values + 4 * i;
         double worst = 0, delta = 0;
         for (int c = 0; c < 3; ++c) {
             worst = fmax(worst, fabs((double)a[c] - (double)b[c]) / (0.1 + fabs((double)b[c])));
