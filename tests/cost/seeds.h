@@ -1,0 +1,71 @@
+/* seeds.h: small renders of the book's scenes, seed after seed, and references that have converged.
+ *
+ * In:    a scene's name, a width, samples, a sampler, seeds.   Out: accumulators, pictures.
+ * Knows: the render loop.   Does not know: what is asked of the pictures. */
+#ifndef TESTS_COST_SEEDS_H
+#define TESTS_COST_SEEDS_H
+
+#include "agree/unit_test.h"
+
+#include "base/status.h"
+#include "engine/render.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+
+static const double luminance_weights[3] = {0.2126, 0.7152, 0.0722}; /* Rec. ITU-R BT.709-6, item 3.2 */
+
+static inline void must(BpStatus status, const BpError *err) {
+    if (status != BP_OK) fail_msg("%s", err->message);
+}
+
+static inline BpScene *load_scene(const char *name, uint32_t width) {
+    char path[512];
+    BpScene *scene = NULL;
+    BpError err = {0};
+    snprintf(path, sizeof path, SOURCE_DIR "/scenes/%s.json", name);
+    must(bp_scene_load(path, &scene, &err), &err);
+    must(bp_scene_set_width(scene, width, &err), &err);
+    return scene;
+}
+
+static inline BpRender *open_render(const BpScene *scene, BpSampler sampler, uint64_t seed,
+                                    uint64_t samples) {
+    BpRenderOptions options;
+    BpRender *render = NULL;
+    BpError err = {0};
+    bp_render_defaults(scene, &options);
+    options.sampler = sampler;
+    options.seed = seed;
+    options.samples_per_pixel = samples;
+    must(bp_render_create(scene, &options, NULL, 0, &render, &err), &err);
+    return render;
+}
+
+static inline const BpAccumulator *finish_render(BpRender *render) {
+    BpProgress progress = {0};
+    const BpAccumulator *accumulator = NULL;
+    BpError err = {0};
+    while (!progress.finished) must(bp_render_step(render, &progress, &err), &err);
+    must(bp_render_accumulator(render, &accumulator, &err), &err);
+    return accumulator;
+}
+
+static inline BpPicture make_picture(const BpScene *scene, BpSampler sampler, uint64_t seed,
+                                     uint64_t samples) {
+    BpPicture picture;
+    BpError err = {0};
+    BpRender *render = open_render(scene, sampler, seed, samples);
+    must(bp_accumulator_picture(finish_render(render), &picture, &err), &err);
+    bp_render_destroy(&render);
+    return picture;
+}
+
+static inline double luminance(const float *rgb) {
+    double sum = 0;
+    for (int c = 0; c < 3; c++) sum += luminance_weights[c] * (double)rgb[c];
+    return sum;
+}
+
+#endif
