@@ -9,13 +9,19 @@
 
 #define SEEDS 64
 #define TARGET 0.01
+#define SCENE "cover"
 #ifdef NIGHTLY
 #define WIDTH 48u
 #define REFERENCE_SAMPLES (1u << 17)
 #else
-#define WIDTH 24u
+#define WIDTH 18u
 #define REFERENCE_SAMPLES (1u << 15)
 #endif
+
+typedef struct Case {
+    BpScene *scene;
+    BpPicture references[2];
+} Case;
 
 typedef struct Stopped {
     BpPicture picture;
@@ -53,10 +59,9 @@ static void render_until(const BpScene *scene, const BpStopRule *rule, BpSampler
     bp_render_destroy(&render);
 }
 
-static void check_scene(const char *name, BpSampler sampler) {
-    BpScene *scene = load_scene(name, WIDTH);
-    BpPicture r1 = make_picture(scene, BP_SAMPLER_SOBOL, 1001, REFERENCE_SAMPLES);
-    BpPicture r2 = make_picture(scene, BP_SAMPLER_SOBOL, 1002, REFERENCE_SAMPLES);
+static void check_sampler(const Case *test, BpSampler sampler) {
+    const BpScene *scene = test->scene;
+    const BpPicture r1 = test->references[0], r2 = test->references[1];
     const size_t pixels = (size_t)r1.width * r1.height;
     BpStopRule rule;
     bp_stop_rule_init(&rule, TARGET, 0, 1u << 24, pixels);
@@ -90,25 +95,36 @@ static void check_scene(const char *name, BpSampler sampler) {
     print_message(
         "%s, %s: told %.1f %%, true RMS %.3f %%, after %.0f samples a pixel on average, %d of %d at the "
         "minimum; foretold within %.0f %% (%d looks); brightness off by %.1f standard errors of %.4f %%\n",
-        name, sampler == BP_SAMPLER_SOBOL ? "sobol" : "independent", 100 * TARGET, 100 * nrmse, samples,
+        SCENE, sampler == BP_SAMPLER_SOBOL ? "sobol" : "independent", 100 * TARGET, 100 * nrmse, samples,
         at_minimum, SEEDS, 100 * foretold_worst, foretold, z, 100 * standard / truth);
     if (at_minimum < SEEDS) assert_true(nrmse >= 0.90 * TARGET);
     assert_true(nrmse <= 1.05 * TARGET);
     assert_true(20 * missed <= foretold);
     assert_true(fabs(z) <= 4.5);
-    bp_picture_clear(&r1);
-    bp_picture_clear(&r2);
-    bp_scene_destroy(&scene);
 }
 
 static void test_independent(void **state) {
-    (void)state;
-    check_scene("cover", BP_SAMPLER_INDEPENDENT);
+    check_sampler(*state, BP_SAMPLER_INDEPENDENT);
 }
 
 static void test_sobol(void **state) {
-    (void)state;
-    check_scene("cover", BP_SAMPLER_SOBOL);
+    check_sampler(*state, BP_SAMPLER_SOBOL);
+}
+
+static int set_up(void **state) {
+    static Case test;
+    test.scene = load_scene(SCENE, WIDTH);
+    for (uint64_t r = 0; r < 2; r++)
+        test.references[r] = make_picture(test.scene, BP_SAMPLER_SOBOL, 1001 + r, REFERENCE_SAMPLES);
+    *state = &test;
+    return 0;
+}
+
+static int tear_down(void **state) {
+    Case *test = *state;
+    for (int r = 0; r < 2; r++) bp_picture_clear(&test->references[r]);
+    bp_scene_destroy(&test->scene);
+    return 0;
 }
 
 int main(void) {
@@ -116,5 +132,5 @@ int main(void) {
         cmocka_unit_test(test_independent),
         cmocka_unit_test(test_sobol),
     };
-    return cmocka_run_group_tests(tests, NULL, NULL);
+    return cmocka_run_group_tests(tests, set_up, tear_down);
 }
