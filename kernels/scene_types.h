@@ -29,6 +29,9 @@ typedef struct PackedCamera {
     real right[4];                  /* one pixel to the right */
     real down[4];                   /* one pixel down */
     real lens_right[4], lens_up[4]; /* scaled by the lens radius */
+    real inward[4];   /* unit vector to the centre of the sphere that a pinhole stands on, or 0 */
+    real own_slot[4]; /* the slot of that sphere, in two halves (a float counts to 2^24): its low 16 bits,
+                         its high 16 bits; NO_SLOT: none; how far off the surface; 0 */
 } PackedCamera;
 
 /* Radiance of a ray that meets nothing: bottom at y = -1, top at y = +1, linear in the unit direction's y. */
@@ -68,6 +71,7 @@ typedef struct PackedSphereLook {
 #define NODE_REALS(width) (6 * (width))
 #define CHILD_LEAF 0x80000000u /* set: the rest is a leaf number; clear: a node number */
 #define NO_SPHERE 0xffffffffu
+#define NO_SLOT 0xffffffffu
 #define NO_ALBEDO 0xffffffffu
 /* A tree is at most this deep, so a stack of TREE_DEPTH_MAX * (width - 1) + 1 entries suffices. */
 #define TREE_DEPTH_MAX 24
@@ -80,7 +84,7 @@ enum { TOTAL_REFLECT, TOTAL_ABSORB, TOTAL_REFRACT };
 
 #ifdef BP_HOST
 _Static_assert(sizeof(real) == 8, "the host packs in double");
-_Static_assert(sizeof(PackedCamera) == 20 * sizeof(real), "PackedCamera has padding");
+_Static_assert(sizeof(PackedCamera) == 28 * sizeof(real), "PackedCamera has padding");
 _Static_assert(sizeof(PackedSky) == 8 * sizeof(real), "PackedSky has padding");
 _Static_assert(sizeof(PackedMaterial) == 12 * sizeof(real), "PackedMaterial has padding");
 _Static_assert(sizeof(PackedMaterialKind) == 16, "PackedMaterialKind has padding");

@@ -94,7 +94,7 @@ static void begin_paths(__global const PackedCamera *camera, uint pixel_center, 
     camera_ray(camera, pixel_center, key, column, row, &origin, &direction);
     paths->origin.high = choose3(fresh, origin, paths->origin.high);
     paths->origin.low = choose3(fresh, zero3(), paths->origin.low);
-    paths->origin.slack = choose(fresh, splat(0), paths->origin.slack);
+    paths->origin.slack = choose(fresh, splat(camera->own_slot[2]), paths->origin.slack);
     paths->direction = choose3(fresh, direction, paths->direction);
     paths->throughput = choose3(fresh, vec3(splat(1), splat(1), splat(1)), paths->throughput);
     paths->radiance = choose3(fresh, zero3(), paths->radiance);
@@ -106,8 +106,11 @@ static void begin_paths(__global const PackedCamera *camera, uint pixel_center, 
     paths->key.scramble_b = choose_uint(fresh, key.scramble_b, paths->key.scramble_b);
 #endif
     paths->depth = choose_uint(fresh, splat_uint(0), paths->depth);
-    paths->own_slot = choose_uint(fresh, splat_uint(NO_SLOT), paths->own_slot);
-    paths->inward = paths->inward & not_mask(fresh);
+    /* A camera that stands on a sphere leaves it like any other point of its surface. */
+    const masks inward = dot3(splat3(camera->inward), direction) > splat(0);
+    const uint own_slot = (uint)camera->own_slot[0] | (uint)camera->own_slot[1] << 16;
+    paths->own_slot = choose_uint(fresh, splat_uint(own_slot), paths->own_slot);
+    paths->inward = (fresh & inward) | (not_mask(fresh) & paths->inward);
     paths->alive = paths->alive | fresh;
 }
 

@@ -15,8 +15,6 @@ typedef struct Geometry {
     uint first_leaves, leaf_count;
 } Geometry;
 
-#define NO_SLOT 0xffffffffu
-
 typedef struct Ray {
     real high[3], low[3]; /* origin, an unevaluated sum */
     real direction[3];    /* |d| = 1 within 4 ROUNDOFF */

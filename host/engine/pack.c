@@ -80,10 +80,28 @@ static void pack_camera(const BpCamera *camera, PackedCamera *packed) {
     }
 }
 
+/* Where a pinhole stands on a sphere: rays that leave the camera leave that sphere. From the points of a
+ * lens, only a few of them on the surface, every sphere is met like any other. */
+static void pack_standpoint(const BpScene *scene, const BpTree *tree, PackedCamera *packed) {
+    const uint32_t slot = scene->camera.lens_radius > 0 ? NO_SLOT : tree->own_slot;
+    packed->own_slot[0] = slot & 0xffffu;
+    packed->own_slot[1] = slot >> 16;
+    if (slot == NO_SLOT) return;
+    const BpSphere *sphere = &scene->spheres[tree->slot_sphere[slot]];
+    double size = fabs(sphere->radius);
+    for (int a = 0; a < 3; ++a) {
+        packed->inward[a] = sphere->center[a] - scene->camera.lookfrom[a];
+        size += fabs(sphere->center[a]) + fabs(scene->camera.lookfrom[a]);
+    }
+    normalize(packed->inward);
+    packed->own_slot[2] = 0x1p-49 * size + (tree->single_precision ? 0x1p-22 * fabs(sphere->radius) : 0);
+}
+
 static BpStatus pack_view(const BpScene *scene, BpPacked *packed, BpError *err) {
     PackedCamera camera;
     PackedSky sky = {0};
     pack_camera(&scene->camera, &camera);
+    pack_standpoint(scene, &packed->tree, &camera);
     for (int a = 0; a < 3; ++a) {
         sky.bottom[a] = scene->background_bottom[a];
         sky.top[a] = scene->background_top[a];

@@ -172,7 +172,7 @@ BpStatus bp_tree_build(const BpScene *scene, const double origin[3], const BpTre
                        BpTree *tree, BpError *err) {
     const double start = now_seconds();
     const uint32_t width = options->width;
-    *tree = (BpTree){.width = width, .single_precision = options->single_precision};
+    *tree = (BpTree){.width = width, .single_precision = options->single_precision, .own_slot = NO_SLOT};
     if (width != 2 && width != 4 && width != 8)
         return bp_fail(err, BP_ERR_LIMIT, "a tree is 2, 4 or 8 wide, not %u", width);
     /* A list has no depth to run out of; nor has, within BP_SPHERES_MAX, a tree 4 or 8 wide. */

@@ -33,12 +33,14 @@ typedef struct BpTree {
     uint32_t *children;    /* node_count * width */
     void *leaves;          /* leaf_count * LEAF_REALS(width) reals */
     uint32_t *slot_sphere; /* leaf_count * width */
+    uint32_t own_slot;     /* of the sphere whose surface `origin` lies on, or NO_SLOT */
     double build_seconds;
 } BpTree;
 
 /* Builds a tree over the scene's spheres with `origin` (the camera's position) subtracted. Every sphere
- * stands in exactly one slot. The result does not depend on the number of threads.
- * On failure `tree` is empty. BP_ERR_MEMORY or BP_ERR_LIMIT. Free with bp_tree_clear(). */
+ * stands in exactly one slot. `origin` stays on its side of every surface, rounded as the spheres may be, and
+ * lies on one at most. The result does not depend on the number of threads. On failure `tree` is empty.
+ * BP_ERR_MEMORY or BP_ERR_LIMIT. Free with bp_tree_clear(). */
 BpStatus bp_tree_build(const BpScene *scene, const double origin[3], const BpTreeOptions *options,
                        BpTree *tree, BpError *err);
 void bp_tree_clear(BpTree *tree);

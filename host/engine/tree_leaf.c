@@ -2,26 +2,59 @@
 #define BP_HOST
 #include "tree_write.h"
 
+#include "../scene/scene_side.h"
 #include "reals.h"
 #include "scene_types.h"
 
 #include <float.h>
+#include <math.h>
 #include <stdlib.h>
+
+/* So near to a surface, in its radius, that rounding to float might carry a point across. */
+#define NEAR_SURFACE 0x1p-18
+
+static double square_of(const float v[3]) {
+    const double x = (double)v[0], y = (double)v[1], z = (double)v[2];
+    return x * x + y * y + z * z;
+}
+
+/* Whether the sphere's surface may pass through the origin: all but surely not, at the price of few
+ * operations. */
+static bool near_origin(const BpTreeItem *item) {
+    const double square = (double)item->radius * (double)item->radius;
+    return fabs(square_of(item->center) - square) <= 2 * NEAR_SURFACE * square;
+}
+
+/* The radius in float that leaves the origin where it is in the scene: on the surface, as nearly as float
+ * can, or clearly on its side of it. A few units in the last place from the radius that was rounded. */
+static float radius_beside_origin(const BpTreeItem *item, BpSide side) {
+    const double distance = sqrt(square_of(item->center));
+    float radius = item->radius;
+    if (side == BP_SIDE_ON) return (float)distance;
+    while (side == BP_SIDE_OUTSIDE && (double)radius >= distance * (1 - 0x1p-40))
+        radius = nextafterf(radius, 0);
+    while (side == BP_SIDE_INSIDE && (double)radius <= distance * (1 + 0x1p-40))
+        radius = nextafterf(radius, FLT_MAX);
+    return radius;
+}
 
 /* A radius too small for float becomes the smallest normal number, so that a lane in use always has a radius
  * above 0. */
 BpTreeItem bp_tree_item(const BpScene *scene, uint32_t sphere, const double origin[3]) {
     const BpSphere *s = &scene->spheres[sphere];
     const float radius = (float)fabs(s->radius);
-    BpTreeItem item = {.radius = radius > FLT_MIN ? radius : FLT_MIN, .sphere = sphere};
+    BpTreeItem item = {.radius = radius, .sphere = sphere};
     for (int a = 0; a < 3; ++a) item.center[a] = (float)(s->center[a] - origin[a]);
+    if (near_origin(&item)) item.radius = radius_beside_origin(&item, bp_sphere_side(s, origin));
+    if (!(item.radius > FLT_MIN)) item.radius = FLT_MIN;
     return item;
 }
 
 /* Widened by what rounding to float may have moved center and radius, at most 2^-24 of each or, below the
  * normal numbers, less than FLT_MIN; by the few 2^-53 that these sums in double, and the subtraction of the
  * origin, may be off; and by 8 * 2^-24 of the radius, since the kernel's intersection in single precision
- * takes for hits what passes the sphere by up to 4 of them. */
+ * takes for hits what passes the sphere by up to 4 of them, and a radius beside the origin is up to 4 of them
+ * off. */
 BpBounds bp_tree_item_bounds(const BpTreeItem *item) {
     const double r = (double)item->radius;
     BpBounds bounds;
@@ -70,6 +103,9 @@ BpBounds bp_tree_write_leaf(const BpTreeWriter *writer, uint32_t leaf, const BpT
                 single ? bp_tree_item_bounds(&items[lane]) : sphere_bounds(center, radius);
             bp_bounds_add(&box, &bounds);
             index = items[lane].sphere;
+            if (near_origin(&items[lane]) &&
+                bp_sphere_side(&writer->scene->spheres[index], writer->origin) == BP_SIDE_ON)
+                tree->own_slot = leaf * width + lane;
         }
         for (uint32_t a = 0; a < 3; ++a)
             bp_reals_store(tree->leaves, single, base + a * width + lane, center[a]);

@@ -1,10 +1,19 @@
 /* trace.c: intersection and the recursion; see trace.h. */
 #include "trace.h"
 
-/* A ray that starts on a sphere starts also on every other one of the same place and size. */
+#include <float.h>
+
+/* A ray that starts on a sphere starts also on every other one of the same place and size. A camera may stand
+ * on a sphere too: within the rounding of the numbers that place both. */
 static bool starts_on(const Ray *ray, const BpSphere *sphere) {
     const BpSphere *from = ray->leaves;
-    if (from == NULL || from == sphere) return from != NULL;
+    if (from == sphere) return true;
+    if (from == NULL) {
+        const Vec center = vec(sphere->center);
+        const double radius = fabs(sphere->radius), distance = sqrt(length2(sub(center, ray->origin)));
+        const double size = sqrt(length2(center)) + sqrt(length2(ray->origin)) + radius;
+        return fabs(distance - radius) <= 4 * DBL_EPSILON * size;
+    }
     return fabs(from->radius) == fabs(sphere->radius) && from->center[0] == sphere->center[0] &&
            from->center[1] == sphere->center[1] && from->center[2] == sphere->center[2];
 }

@@ -6,7 +6,8 @@
  * Invariants of every BpScene that reaches another module (bp_scene_validate proves them): all numbers are
  * finite; radius != 0 (negative: turned inside out); material indices in range; albedo in [0,1]; emit >= 0;
  * 0 <= fuzz <= 1; refraction_index > 0; 0 < vfov < 180; lookfrom != lookat; vup not along the view;
- * 1 <= width, height <= BP_PICTURE_SIDE_MAX; no two coincident dielectrics. */
+ * 1 <= width, height <= BP_PICTURE_SIDE_MAX; no two coincident dielectrics; a pinhole camera on the surface
+ * of one sphere at most. */
 #ifndef BP_SCENE_SCENE_H
 #define BP_SCENE_SCENE_H
 

@@ -1,6 +1,7 @@
 /* scene_validate.c: see scene_fault.h, and bp_scene_validate in scene.h. */
 #include "scene_document.h"
 #include "scene_fault.h"
+#include "scene_side.h"
 
 #include <float.h>
 #include <math.h>
@@ -127,6 +128,23 @@ bool bp_sphere_find_fault(const BpSphere *sphere, BpFault *fault) {
                    "a radius from 1.2e-38 to 1e12 (or its negative); choose another unit of length");
 }
 
+/* A pinhole may stand on one sphere; on two at once, rays would have to leave both. */
+static bool standpoint_fault(const BpScene *scene, BpFault *fault) {
+    size_t found = 0, first = 0;
+    if (scene->camera.lens_radius > 0) return false;
+    for (size_t i = 0; i < scene->sphere_count; i++) {
+        if (bp_sphere_side(&scene->spheres[i], scene->camera.lookfrom) != BP_SIDE_ON) continue;
+        if (found++ > 0)
+            return set_fault(
+                fault, BP_FAULT_CAMERA, "lookfrom",
+                "found a point on the surfaces of spheres %zu and %zu at once, expected one surface at "
+                "most: move the camera a little, or one of the spheres",
+                first, i);
+        first = i;
+    }
+    return false;
+}
+
 BpStatus bp_scene_find_fault(const BpScene *scene, BpFault *fault, BpError *err) {
     *fault = (BpFault){.subject = BP_FAULT_NONE, .member = ""};
     if (camera_fault(&scene->camera, fault)) return BP_OK;
@@ -161,7 +179,9 @@ BpStatus bp_scene_find_fault(const BpScene *scene, BpFault *fault, BpError *err)
         if (any_outside(fault, BP_FAULT_ALBEDO, "", albedo, 0, 1, "shares of light from 0 to 1"))
             return BP_OK;
     }
-    return bp_scene_find_coincident(scene, fault, err);
+    BP_TRY(bp_scene_find_coincident(scene, fault, err));
+    if (fault->subject == BP_FAULT_NONE) standpoint_fault(scene, fault);
+    return BP_OK;
 }
 
 BpStatus bp_scene_validate(const BpScene *scene, BpError *err) {

@@ -186,6 +186,53 @@ static void materials_and_looks(void **state) {
     bp_packed_clear(&packed);
 }
 
+/* A camera on a sphere, in decimals that no double hits: it leaves the sphere in that slot. Beside a sphere
+ * by far less than float resolves it stays on its side. */
+static void camera_on_a_sphere(void **state) {
+    (void)state;
+    BpScene scene = empty_scene();
+    BpMaterial material = {.kind = BP_MATERIAL_DIELECTRIC, .refraction_index = 1.5};
+    BpSphere spheres[] = {
+        {.center = {0, 1, 0}, .radius = .2, .albedo = BP_NO_ALBEDO},
+        {.center = {.4, .6, .3}, .radius = -.5, .albedo = BP_NO_ALBEDO},
+        {.center = {.1, .2, 4000.3}, .radius = 4000 * (1 + 1e-12), .albedo = BP_NO_ALBEDO},
+        {.center = {.1, .2, -4000.3}, .radius = 4000.6 * (1 - 1e-12), .albedo = BP_NO_ALBEDO},
+    };
+    scene.materials = &material;
+    scene.material_count = 1;
+    scene.spheres = spheres;
+    scene.sphere_count = 4;
+    const double from[3] = {.1, .2, .3};
+    memcpy(scene.camera.lookfrom, from, sizeof from);
+    for (int variant = 0; variant < 4; ++variant) {
+        const bool single = variant % 2 != 0, lens = variant >= 2;
+        scene.camera.lens_radius = lens ? .1 : 0;
+        BpPacked packed;
+        pack(&scene, single, &packed);
+        uint32_t slot[4] = {0};
+        for (uint32_t s = 0; s < packed.tree.leaf_count * packed.tree.width; ++s)
+            if (packed.tree.slot_sphere[s] != NO_SPHERE) slot[packed.tree.slot_sphere[s]] = s;
+        double camera[28], power[4];
+        for (size_t i = 0; i < 28; ++i) camera[i] = bp_reals_load(packed.camera, single, i);
+        for (int i = 0; i < 4; ++i) {
+            const size_t lane = slot[i] % 8, base = (size_t)(slot[i] - lane) * 4 + lane;
+            double x[4];
+            for (size_t a = 0; a < 4; ++a) x[a] = bp_reals_load(packed.tree.leaves, single, base + 8 * a);
+            power[i] = sqrt(x[0] * x[0] + x[1] * x[1] + x[2] * x[2]) / x[3] - 1;
+        }
+        assert_true(fabs(power[1]) < (single ? 0x1p-23 : 1e-15));
+        assert_true(power[2] < -1e-13 && power[3] > 1e-13);
+        const double *own = &camera[24], *inward = &camera[20];
+        if (lens) {
+            assert_true(own[0] == 65535 && own[1] == 65535 && inward[0] == 0);
+        } else {
+            assert_true(own[0] == slot[1] && own[1] == 0 && own[2] > 0 && own[2] < 1e-6);
+            assert_true(fabs(inward[0] - .6) < 1e-7 && fabs(inward[1] - .8) < 1e-7 && fabs(inward[2]) < 1e-7);
+        }
+        bp_packed_clear(&packed);
+    }
+}
+
 static void nothing_at_all(void **state) {
     (void)state;
     const BpScene scene = empty_scene();
@@ -207,7 +254,7 @@ int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(camera_along_minus_z), cmocka_unit_test(camera_anywhere),
         cmocka_unit_test(extreme_vup),          cmocka_unit_test(materials_and_looks),
-        cmocka_unit_test(nothing_at_all),
+        cmocka_unit_test(camera_on_a_sphere),   cmocka_unit_test(nothing_at_all),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
