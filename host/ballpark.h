@@ -149,6 +149,7 @@ typedef struct BpRenderOptions {
     BpKernelForm kernel;
     bool all_effects;       /* build the general kernel instead of the specialised one */
     uint32_t extra_effects; /* bit e: simulate effect e of bp_scene_effects() although nothing calls for it */
+    bool features;          /* bp_render_features() will be asked */
     bool force;             /* render even on a device that fails its self-test */
     uint32_t replicates;    /* K of the error estimate; 0: the default */
     /* For tests and tuning; 0 means: choose. None of these changes a picture. */
@@ -190,10 +191,21 @@ typedef struct BpPicture {
     float *rgb;        /* width * height * 3 */
     float *error;      /* standard error of each channel's mean, same shape; NaN where unknown */
     uint64_t *samples; /* valid samples of each pixel */
+    /* Optional, see bp_render_features(): of what each pixel shows first, averaged over camera rays. */
+    float *depth; /* along the view direction from the camera, mean of the rays that met something; +Inf: none
+                     did */
+    float *normal; /* 3 a pixel; unit, facing the camera, in the scene's axes; a ray that met nothing counts
+                      as 0 */
+    float *albedo; /* 3 a pixel; share of light scattered: the colour, 1 for glass, 0 for lamps and for
+                      nothing */
 } BpPicture;
 
 /* Reads the picture as it stands, during or after the render; the caller clears it. */
 BpStatus bp_render_read(BpRender *render, BpPicture *picture, BpError *err);
+/* Adds depth, normal and albedo to a picture that bp_render_read() filled, for a render that was created with
+ * options.features: from the camera rays of the first 16 samples of each pixel (fewer in a shorter render),
+ * by the first device. BP_ERR_USAGE without options.features. */
+BpStatus bp_render_features(BpRender *render, BpPicture *picture, BpError *err);
 void bp_picture_clear(BpPicture *picture);
 
 typedef enum BpFormat {

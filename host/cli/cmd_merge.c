@@ -74,7 +74,12 @@ BpStatus bp_command_merge(const BpCommandLine *line, BpError *err) {
     BP_TRY(bp_result_choose(line, line->operands[0], &result, err));
     BP_TRY_GOTO(status, bp_accumulator_load(line->operands[0], &sum, err), done);
     for (size_t f = 1; f < line->operand_count; ++f) BP_TRY_GOTO(status, add_file(line, f, sum, err), done);
-    BP_TRY_GOTO(status, bp_result_write(line, &result, sum, (BpTransfer)sum->transfer, err), done);
+    BP_TRY_GOTO(status, bp_result_write(line, &result, sum, NULL, (BpTransfer)sum->transfer, err), done);
+    if (!line->quiet && result.format == BP_FORMAT_EXR)
+        fprintf(
+            stderr,
+            "depth, normals and albedo follow from the scene, of which accumulators hold nothing: left out; "
+            "ballpark render -o FILE.exr has them\n");
     if (!line->quiet) {
         char nrmse[32], ranges[120];
         bp_format_percent(bp_accumulator_nrmse(sum), nrmse, sizeof nrmse);

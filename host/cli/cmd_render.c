@@ -102,7 +102,8 @@ static BpStatus deliver(const BpCommandLine *line, const BpResultFile *file, con
     result->stopped_by = end->reason;
     result->nrmse = bp_accumulator_nrmse(result->accumulator);
     const double write_start = bp_clock_seconds();
-    BP_TRY(bp_result_write(line, file, result->accumulator, (BpTransfer)result->accumulator->transfer, err));
+    BP_TRY(bp_result_write(line, file, result->accumulator, render, (BpTransfer)result->accumulator->transfer,
+                           err));
     result->times.write = bp_clock_seconds() - write_start;
     if (line->stats != NULL) BP_TRY(bp_json_write(bp_stats_json(result), line->stats, err));
     if (!line->quiet) print_summary(result, rule, end);
@@ -143,6 +144,7 @@ BpStatus bp_command_render(const BpCommandLine *line, BpError *err) {
     if (!line->quiet) warn_of_limits(scene, &options);
     /* Less noise in the same time on every picture of the book: docs/COST.md. */
     if (!bp_option_given(line, BP_OPTION_SAMPLER)) options.sampler = BP_SAMPLER_SOBOL;
+    options.features = file.format == BP_FORMAT_EXR;
     init_rule(line, &options, pixels, &rule);
     options.samples_per_pixel = bp_stop_first(&rule);
 

@@ -93,13 +93,19 @@ BpStatus bp_result_choose(const BpCommandLine *line, const char *default_path, B
 }
 
 BpStatus bp_result_write(const BpCommandLine *line, const BpResultFile *result,
-                         const BpAccumulator *accumulator, BpTransfer transfer, BpError *err) {
+                         const BpAccumulator *accumulator, BpRender *render, BpTransfer transfer,
+                         BpError *err) {
     BpStatus status = BP_OK;
     BpPicture picture = {0};
     const bool to_stream = strcmp(result->path, "-") == 0;
     const bool is_picture = result->format != BP_FORMAT_BPA;
     if (bp_option_given(line, BP_OPTION_TRANSFER)) transfer = line->transfer;
     if (is_picture || line->error_map != NULL) BP_TRY(bp_accumulator_picture(accumulator, &picture, err));
+    if (result->format == BP_FORMAT_EXR && render != NULL) status = bp_render_features(render, &picture, err);
+    if (status != BP_OK) {
+        bp_picture_clear(&picture);
+        return status;
+    }
     if (is_picture && to_stream)
         status = bp_picture_write_stream(&picture, stdout, result->format, transfer, err);
     else if (is_picture)

@@ -20,9 +20,12 @@ typedef struct BpResultFile {
 BpStatus bp_result_choose(const BpCommandLine *line, const char *default_path, BpResultFile *result,
                           BpError *err);
 
-/* Writes it, and the error map if there is to be one. `transfer`: unless --transfer says otherwise. */
+/* Writes it, and the error map if there is to be one. `transfer`: unless --transfer says otherwise. `render`:
+ * Optional, created with options.features for an EXR; it gives the layers that follow from the scene, which
+ * are left out without it. */
 BpStatus bp_result_write(const BpCommandLine *line, const BpResultFile *result,
-                         const BpAccumulator *accumulator, BpTransfer transfer, BpError *err);
+                         const BpAccumulator *accumulator, BpRender *render, BpTransfer transfer,
+                         BpError *err);
 
 /* "cover.png", or "standard output". */
 const char *bp_result_name(const BpResultFile *result);

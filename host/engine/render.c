@@ -4,6 +4,7 @@
 #include "../base/clock.h"
 #include "../base/status.h"
 #include "arrangement.h"
+#include "features.h"
 
 #include <stdlib.h>
 #include <string.h>
@@ -64,12 +65,20 @@ static BpStatus open_worker(BpRender *render, const BpDeviceInfo *device, size_t
     BpWorkerSetup setup;
     BpPacked packed;
     const double start = bp_clock_seconds();
+    char *features = NULL;
     BP_TRY(bp_arrange(render->scene, &render->options, device, &setup, &packed, err));
     render->effects.bits = setup.program.effects;
     render->tree_seconds += packed.tree.build_seconds;
     render->pack_seconds += bp_clock_seconds() - start - packed.tree.build_seconds;
-    const BpStatus status = bp_worker_create(device, &packed, &setup, &render->workers[index], err);
+    BpStatus status = BP_OK;
+    if (render->options.features) {
+        setup.extra_name = "features.cl";
+        status = bp_kernel_text(setup.extra_name, &features, err);
+        setup.extra_text = features;
+    }
+    if (status == BP_OK) status = bp_worker_create(device, &packed, &setup, &render->workers[index], err);
     bp_packed_clear(&packed);
+    free(features);
     return status;
 }
 
@@ -277,6 +286,17 @@ BpStatus bp_render_read(BpRender *render, BpPicture *picture, BpError *err) {
     const BpAccumulator *accumulator = NULL;
     BP_TRY(bp_render_accumulator(render, &accumulator, err));
     return bp_accumulator_picture(accumulator, picture, err);
+}
+
+BpStatus bp_render_features(BpRender *render, BpPicture *picture, BpError *err) {
+    const BpRenderOptions *options = &render->options;
+    if (!options->features)
+        return bp_fail(err, BP_ERR_USAGE,
+                       "depth, normals and albedo: the render was created without features");
+    const uint64_t samples = options->samples_per_pixel;
+    return bp_features_fill(render->workers[0], &render->scene->camera, (uint32_t)options->first_sample,
+                            samples < BP_FEATURE_SAMPLES ? (uint32_t)samples : BP_FEATURE_SAMPLES, picture,
+                            err);
 }
 
 void bp_render_report(const BpRender *render, BpRenderReport *report) {

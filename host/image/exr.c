@@ -69,6 +69,14 @@ static size_t list_layers(const BpPicture *picture, const uint32_t *samples, Lay
     for (size_t c = 0; c < 3 && picture->error != NULL; c++)
         layers[count++] = (Layer){error_names[c], picture->error + c, rgb_stride, EXR_PIXEL_FLOAT};
     if (samples != NULL) layers[count++] = (Layer){"samples", samples, sizeof *samples, EXR_PIXEL_UINT};
+    if (picture->depth != NULL)
+        layers[count++] = (Layer){"depth.Z", picture->depth, sizeof *picture->depth, EXR_PIXEL_FLOAT};
+    static const char *const normal_names[3] = {"normal.X", "normal.Y", "normal.Z"};
+    for (size_t c = 0; c < 3 && picture->normal != NULL; c++)
+        layers[count++] = (Layer){normal_names[c], picture->normal + c, rgb_stride, EXR_PIXEL_FLOAT};
+    static const char *const albedo_names[3] = {"albedo.R", "albedo.G", "albedo.B"};
+    for (size_t c = 0; c < 3 && picture->albedo != NULL; c++)
+        layers[count++] = (Layer){albedo_names[c], picture->albedo + c, rgb_stride, EXR_PIXEL_FLOAT};
     return count;
 }
 

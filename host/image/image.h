@@ -24,7 +24,8 @@ BpStatus bp_png_write(const BpPicture *picture, FILE *out, BpTransfer transfer, 
 BpStatus bp_ppm_write(const BpPicture *picture, FILE *out, BpTransfer transfer, bool ascii, BpError *err);
 BpStatus bp_pfm_write(const BpPicture *picture, FILE *out,
                       BpError *err); /* little endian, bottom row first */
-/* Layers: R G B, error.R/G/B and samples, as far as the picture carries them; 32-bit, ZIP compressed. */
+/* Layers: R G B, error.R/G/B, samples, depth.Z, normal.X/Y/Z and albedo.R/G/B, as far as the picture carries
+ * them; 32-bit, ZIP compressed. */
 BpStatus bp_exr_write(const BpPicture *picture, FILE *out, BpError *err);
 
 /* 8-bit RGB, 3 bytes a pixel, top row first, as an sRGB PNG: for pictures that are drawn, not rendered. */

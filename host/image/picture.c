@@ -81,5 +81,8 @@ void bp_picture_clear(BpPicture *picture) {
     free(picture->rgb);
     free(picture->error);
     free(picture->samples);
+    free(picture->depth);
+    free(picture->normal);
+    free(picture->albedo);
     memset(picture, 0, sizeof *picture);
 }

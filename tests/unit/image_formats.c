@@ -13,13 +13,25 @@
 /* A picture of all kinds of values, the odd ones first. */
 static BpPicture make_picture(uint32_t width, uint32_t height) {
     const size_t count = (size_t)width * height;
-    BpPicture picture = {width, height, malloc(count * 12), malloc(count * 12), malloc(count * 8)};
+    BpPicture picture = {.width = width,
+                         .height = height,
+                         .rgb = malloc(count * 12),
+                         .error = malloc(count * 12),
+                         .samples = malloc(count * 8),
+                         .depth = malloc(count * 4),
+                         .normal = malloc(count * 12),
+                         .albedo = malloc(count * 12)};
     static const float odd[] = {NAN, INFINITY, -1, 1e-42f, 3e38f, -0.0f};
     for (size_t i = 0; i < 3 * count; i++) {
         picture.rgb[i] = i < 6 ? odd[i] : (float)((double)(i * 2654435761u % 1000003) / 900000);
         picture.error[i] = i % 7 == 0 ? NAN : (float)i * 1e-3f;
+        picture.normal[i] = (float)(i % 13) / 6 - 1;
+        picture.albedo[i] = (float)(i % 17) / 16;
     }
-    for (size_t i = 0; i < count; i++) picture.samples[i] = i == 1 ? UINT64_C(1) << 33 : i;
+    for (size_t i = 0; i < count; i++) {
+        picture.samples[i] = i == 1 ? UINT64_C(1) << 33 : i;
+        picture.depth[i] = i % 5 == 0 ? INFINITY : (float)i;
+    }
     return picture;
 }
 
@@ -204,18 +216,23 @@ static void assert_exr(uint32_t width, uint32_t height) {
     assert_int_equal(compression, EXR_COMPRESSION_ZIP);
     const exr_attr_chlist_t *channels = NULL;
     assert_int_equal(exr_get_channels(exr, 0, &channels), EXR_ERR_SUCCESS);
-    assert_int_equal(channels->num_channels, 7);
+    assert_int_equal(channels->num_channels, 14);
     const size_t pixels = (size_t)width * height;
     uint32_t *values = malloc(pixels * 4);
-    static const char *const names[] = {"R", "G", "B", "error.R", "error.G", "error.B"};
-    for (size_t layer = 0; layer < 6; layer++) {
+    static const char *const names[] = {"R",        "G",        "B",        "error.R",
+                                        "error.G",  "error.B",  "normal.X", "normal.Y",
+                                        "normal.Z", "albedo.R", "albedo.G", "albedo.B"};
+    const float *const planes[] = {picture.rgb, picture.error, picture.normal, picture.albedo};
+    for (size_t layer = 0; layer < 12; layer++) {
         read_exr_channel(exr, names[layer], EXR_PIXEL_FLOAT, width, height, values);
-        const float *plane = layer < 3 ? picture.rgb : picture.error;
+        const float *plane = planes[layer / 3];
         for (size_t i = 0; i < pixels; i++)
             assert_memory_equal(&values[i], &plane[3 * i + layer % 3], 4); /* bits, so NaN too */
     }
     read_exr_channel(exr, "samples", EXR_PIXEL_UINT, width, height, values);
     for (size_t i = 0; i < pixels; i++) assert_int_equal(values[i], i == 1 ? UINT32_MAX : i);
+    read_exr_channel(exr, "depth.Z", EXR_PIXEL_FLOAT, width, height, values);
+    assert_memory_equal(values, picture.depth, pixels * 4);
     free(values);
     exr_finish(&exr);
     bp_picture_clear(&picture);
