@@ -97,7 +97,7 @@ void bp_scene_limits(const BpScene *scene, BpPrecision precision, BpLimits *limi
     Worst off_place = {0}, contact = {0}, thin = {0};
     double smallest = INFINITY, wall = 0;
     size_t smallest_sphere = 0;
-    char more[48];
+    char more[48], name[BP_SPHERE_NAME_SIZE], other[BP_SPHERE_NAME_SIZE];
     for (size_t i = 0; i < scene->sphere_count; ++i)
         if (fabs(scene->spheres[i].radius) < smallest) {
             smallest = fabs(scene->spheres[i].radius);
@@ -112,22 +112,22 @@ void bp_scene_limits(const BpScene *scene, BpPrecision precision, BpLimits *limi
     find_walls(scene, &thin, &wall);
     if (off_place.count > 0)
         snprintf(limits->text[limits->count++], sizeof limits->text[0],
-                 "sphere %zu (radius %g)%s lies %.2g of its radius off its place in single precision; use "
+                 "%s (radius %g)%s lies %.2g of its radius off its place in single precision; use "
                  "--precision "
                  "double, or a camera nearer to it",
-                 off_place.sphere, fabs(scene->spheres[off_place.sphere].radius), others(&off_place, more),
-                 off_place.ratio);
+                 bp_sphere_name(scene, off_place.sphere, name), fabs(scene->spheres[off_place.sphere].radius),
+                 others(&off_place, more), off_place.ratio);
     if (contact.count > 0)
         snprintf(limits->text[limits->count++], sizeof limits->text[0],
-                 "the surface of sphere %zu (radius %g)%s lies off its place by %.2g of the radius of sphere "
-                 "%zu (%g) "
+                 "the surface of %s (radius %g)%s lies off its place by %.2g of the radius of %s (%g) "
                  "in single precision; use --precision double, or a radius below %.2g",
-                 contact.sphere, fabs(scene->spheres[contact.sphere].radius), others(&contact, more),
-                 contact.ratio, smallest_sphere, smallest, smallest * BP_LIMIT_CONTACT * 0x1p23);
+                 bp_sphere_name(scene, contact.sphere, name), fabs(scene->spheres[contact.sphere].radius),
+                 others(&contact, more), contact.ratio, bp_sphere_name(scene, smallest_sphere, other),
+                 smallest, smallest * BP_LIMIT_CONTACT * 0x1p23);
     if (thin.count > 0)
         snprintf(limits->text[limits->count++], sizeof limits->text[0],
-                 "the wall between sphere %zu and the dielectric around it%s, %.2g thick, is off by %.2g of "
+                 "the wall between %s and the dielectric around it%s, %.2g thick, is off by %.2g of "
                  "that in "
                  "single precision; use --precision double, or a thicker wall",
-                 thin.sphere, others(&thin, more), wall, thin.ratio);
+                 bp_sphere_name(scene, thin.sphere, name), others(&thin, more), wall, thin.ratio);
 }

@@ -15,7 +15,7 @@
 #define BP_LIMITS_MAX 3
 typedef struct BpLimits {
     unsigned count;
-    char text[BP_LIMITS_MAX][320]; /* one line each, without "warning:" */
+    char text[BP_LIMITS_MAX][480]; /* one line each, without "warning:" */
 } BpLimits;
 
 /* At most one warning of each kind, about the worst sphere, saying how many more there are. Double precision

@@ -53,11 +53,27 @@ void bp_scene_destroy(BpScene **scene) {
     free(s->materials);
     free(s->spheres);
     free(s->albedos);
+    for (size_t i = 0; i < s->cloud_count; i++) free(s->clouds[i].file);
+    free(s->clouds);
     free(s->path);
     free(s->title);
     free(s->source);
     free(s);
     *scene = NULL;
+}
+
+const char *bp_sphere_name(const BpScene *scene, size_t sphere, char text[BP_SPHERE_NAME_SIZE]) {
+    const BpCloud *cloud = NULL;
+    char file[64];
+    for (size_t i = 0; i < scene->cloud_count && scene->clouds[i].first <= sphere; i++)
+        cloud = &scene->clouds[i];
+    if (cloud == NULL) {
+        snprintf(text, BP_SPHERE_NAME_SIZE, "spheres[%zu]", sphere);
+    } else {
+        bp_printable(cloud->file, file, sizeof file);
+        snprintf(text, BP_SPHERE_NAME_SIZE, "vertex %zu (from 0) of %s", sphere - cloud->first, file);
+    }
+    return text;
 }
 
 BpStatus bp_scene_set_width(BpScene *scene, uint32_t width, BpError *err) {

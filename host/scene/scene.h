@@ -68,6 +68,12 @@ typedef struct BpCamera {
     BpPixelSampling pixel_sampling;
 } BpCamera;
 
+/* A file of points: spheres from `first` on, up to the next cloud's or the end, one a vertex. */
+typedef struct BpCloud {
+    char *file; /* as the scene names it */
+    size_t first;
+} BpCloud;
+
 struct BpScene {
     char *path; /* where it came from, for messages */
     char *title, *source;
@@ -80,10 +86,16 @@ struct BpScene {
     size_t sphere_count;
     float (*albedos)[3]; /* linear, in [0,1]; of cloud points that bring their own colour */
     size_t albedo_count;
+    BpCloud *clouds; /* in the order of their spheres, which follow all others */
+    size_t cloud_count;
 };
 
 /* height = max(1, floor(width / aspect + 1e-6)) */
 uint32_t bp_camera_height(uint32_t width, double aspect_ratio);
+
+#define BP_SPHERE_NAME_SIZE 128
+/* How a message names a sphere: "spheres[3]", or "vertex 12 (from 0) of points.ply". Returns `text`. */
+const char *bp_sphere_name(const BpScene *scene, size_t sphere, char text[BP_SPHERE_NAME_SIZE]);
 
 /* Whether the kind has an albedo, which a sphere's own then replaces. */
 bool bp_material_has_albedo(BpMaterialKind kind);

@@ -21,6 +21,24 @@ static char *resolve(const char *document, const char *file) {
     return path;
 }
 
+/* Adds to an error that stands in the file of points where the scene asks for that file. */
+static void name_document(const BpNode *file_node, BpError *err) {
+    BpError place = {0};
+    const size_t used = strlen(err->message);
+    bp_node_fail(file_node, BP_PART_VALUE, &place, "%s", "");
+    snprintf(err->message + used, sizeof err->message - used, " (a cloud of %.400s:%d:%d)", place.file,
+             place.line, place.column);
+    bp_error_clear(&place);
+}
+
+static BpStatus keep_origin(const char *file, size_t first, BpScene *scene, BpError *err) {
+    BpCloud *clouds = realloc(scene->clouds, (scene->cloud_count + 1) * sizeof *clouds);
+    if (clouds == NULL) return bp_fail(err, BP_ERR_MEMORY, "out of memory for a cloud");
+    scene->clouds = clouds;
+    clouds[scene->cloud_count++] = (BpCloud){.first = first};
+    return bp_copy_text(file, &clouds[scene->cloud_count - 1].file, err);
+}
+
 static BpStatus read_file(const BpNode *file_node, const char *file, const BpPlyOptions *options,
                           BpScene *scene, BpError *err) {
     FILE *stream = NULL;
@@ -36,8 +54,11 @@ static BpStatus read_file(const BpNode *file_node, const char *file, const BpPly
         bp_error_clear(&inner);
         goto done;
     }
+    const size_t first = scene->sphere_count;
     status = bp_ply_read(stream, size, path, options, scene, err);
     fclose(stream);
+    if (status == BP_ERR_SCENE && err != NULL) name_document(file_node, err);
+    if (status == BP_OK) status = keep_origin(file, first, scene, err);
 done:
     free(path);
     return status;

@@ -25,7 +25,7 @@ typedef struct BpFault {
     BpFaultSubject subject;
     size_t index, other;
     const char *member; /* the name of the member at fault in the grammar; "" when it is the whole */
-    char text[256];     /* "found ..., expected ..." */
+    char text[512];     /* "found ..., expected ..." */
 } BpFault;
 
 /* Looks for the first fault; fault->subject is BP_FAULT_NONE when there is none. Fails for lack of memory. */

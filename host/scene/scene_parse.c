@@ -163,6 +163,7 @@ static BpStatus refuse_faults(const BpNode *root, const BpScene *scene, BpError 
     const BpNode background = bp_node_member(root, "background");
     const BpNode materials = bp_node_member(root, "materials");
     const BpNode spheres = bp_node_member(root, "spheres");
+    const BpNode clouds = bp_node_member(root, "clouds");
     const size_t listed = json_array_size(spheres.value); /* the rest came from clouds */
     switch (fault.subject) {
     case BP_FAULT_NONE:
@@ -190,10 +191,16 @@ static BpStatus refuse_faults(const BpNode *root, const BpScene *scene, BpError 
         return fail_member(&sphere, fault.member, fault.text, err);
     }
     case BP_FAULT_COINCIDENT: {
-        if (fault.other >= listed) break;
-        const BpNode sphere = bp_node_element(&spheres, fault.index < listed ? fault.index : fault.other);
-        return bp_node_fail(&sphere, BP_PART_VALUE, err, "spheres[%zu] and spheres[%zu]: %s", fault.other,
-                            fault.index, fault.text);
+        /* At the later one that stands in the document itself, or at the cloud that brought the later one. */
+        const size_t written = fault.index < listed ? fault.index : fault.other;
+        char a[BP_SPHERE_NAME_SIZE], b[BP_SPHERE_NAME_SIZE];
+        size_t cloud = scene->cloud_count;
+        while (cloud > 0 && scene->clouds[cloud - 1].first > fault.index) --cloud;
+        const BpNode sphere = bp_node_element(&spheres, written);
+        const BpNode entry = bp_node_element(&clouds, cloud - (cloud > 0));
+        return bp_node_fail(written < listed ? &sphere : &entry, BP_PART_VALUE, err, "%s and %s: %s",
+                            bp_sphere_name(scene, fault.other, a), bp_sphere_name(scene, fault.index, b),
+                            fault.text);
     }
     case BP_FAULT_ALBEDO:
         break;

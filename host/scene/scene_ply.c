@@ -68,6 +68,11 @@ static BpStatus store(Reader *r, uint64_t number, const double value[PLY_ROLE_CO
                        .material = r->options->material,
                        .albedo = BP_NO_ALBEDO};
     BpFault fault;
+    for (int i = PLY_X; i <= PLY_Z; i++) {
+        if (!isfinite(value[i]))
+            return fail_value(r, number, (PlyRole)i, value[i], "a coordinate: remove the point, or mend it",
+                              err);
+    }
     if (bp_sphere_find_fault(&sphere, &fault)) return fail_vertex(r, number, fault.member, fault.text, err);
     if (r->has_material) {
         const double m = value[PLY_MATERIAL];
@@ -310,6 +315,11 @@ static BpStatus read_all(Reader *r, BpError *err) {
     const PlyElement *vertex = &r->header.elements[r->header.vertex];
     BP_TRY(make_room(r, vertex->count, err));
     BP_TRY(ascii ? read_ascii(r, vertex, err) : read_binary(r, vertex, err));
+    for (size_t i = r->header.vertex + 1; i < r->header.element_count; i++) {
+        const PlyElement *element = &r->header.elements[i];
+        BP_TRY(ascii ? skip_ascii(r, element, err) : skip_binary(r, element, err));
+    }
+    BP_TRY(ply_input_end(&r->input, ascii, err));
     r->scene->sphere_count += (size_t)vertex->count;
     if (r->has_colour) r->scene->albedo_count = r->albedo_number;
     return BP_OK;

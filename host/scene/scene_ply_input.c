@@ -1,6 +1,7 @@
 /* scene_ply_input.c: see scene_ply_parts.h. */
 #include "scene_ply_parts.h"
 
+#include <inttypes.h>
 #include <stdarg.h>
 #include <stdlib.h>
 #include <string.h>
@@ -82,6 +83,22 @@ BpStatus ply_input_line(PlyInput *input, char **line, BpError *err) {
     *end = '\0';
     if (length > 0 && start[length - 1] == '\r') start[length - 1] = '\0';
     *line = (char *)start;
+    return BP_OK;
+}
+
+BpStatus ply_input_end(PlyInput *input, bool lines, BpError *err) {
+    static const char remedy[] =
+        "expected the end of the file: correct the counts in its header, or remove what follows";
+    while (ply_input_fill(input, 1)) {
+        char *line;
+        if (!lines)
+            return ply_fail(input, false, err,
+                            "found %" PRIu64 " bytes after the last element, from byte %" PRIu64 " on, %s",
+                            input->size - input->taken, input->taken, remedy);
+        BP_TRY(ply_input_line(input, &line, err));
+        if (line[strspn(line, " \t\r")] != '\0')
+            return ply_fail(input, true, err, "found another line after the last element, %s", remedy);
+    }
     return BP_OK;
 }
 

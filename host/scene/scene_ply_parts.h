@@ -32,6 +32,8 @@ bool ply_input_skip(PlyInput *input, uint64_t count);
 /* Takes a line; *line is ended by a NUL in place of its end, and valid until the next call. Fails at the end
  * of the file and on lines longer than the buffer. */
 BpStatus ply_input_line(PlyInput *input, char **line, BpError *err);
+/* Fails unless nothing is left (but blank lines, where the file has lines). */
+BpStatus ply_input_end(PlyInput *input, bool lines, BpError *err);
 /* Fails with the input's name and, if with_line, the line last taken. */
 BpStatus ply_fail(const PlyInput *input, bool with_line, BpError *err, const char *format, ...)
     BP_PRINTF_LIKE(4, 5);

@@ -130,16 +130,16 @@ bool bp_sphere_find_fault(const BpSphere *sphere, BpFault *fault) {
 
 /* A pinhole may stand on one sphere; on two at once, rays would have to leave both. */
 static bool standpoint_fault(const BpScene *scene, BpFault *fault) {
+    char a[BP_SPHERE_NAME_SIZE], b[BP_SPHERE_NAME_SIZE];
     size_t found = 0, first = 0;
     if (scene->camera.lens_radius > 0) return false;
     for (size_t i = 0; i < scene->sphere_count; i++) {
         if (bp_sphere_side(&scene->spheres[i], scene->camera.lookfrom) != BP_SIDE_ON) continue;
         if (found++ > 0)
-            return set_fault(
-                fault, BP_FAULT_CAMERA, "lookfrom",
-                "found a point on the surfaces of spheres %zu and %zu at once, expected one surface at "
-                "most: move the camera a little, or one of the spheres",
-                first, i);
+            return set_fault(fault, BP_FAULT_CAMERA, "lookfrom",
+                             "found a point on the surfaces of %s and %s at once, expected one surface at "
+                             "most: move the camera a little, or one of the spheres",
+                             bp_sphere_name(scene, first, a), bp_sphere_name(scene, i, b));
         first = i;
     }
     return false;
@@ -186,7 +186,7 @@ BpStatus bp_scene_find_fault(const BpScene *scene, BpFault *fault, BpError *err)
 
 BpStatus bp_scene_validate(const BpScene *scene, BpError *err) {
     BpFault fault;
-    char name[64];
+    char name[BP_SPHERE_NAME_SIZE], other[BP_SPHERE_NAME_SIZE];
     if (scene->sphere_count > BP_SPHERES_MAX)
         return bp_fail(err, BP_ERR_LIMIT, "found %zu spheres, expected at most %u", scene->sphere_count,
                        BP_SPHERES_MAX);
@@ -206,8 +206,8 @@ BpStatus bp_scene_validate(const BpScene *scene, BpError *err) {
     case BP_FAULT_ALBEDO:
         return bp_fail(err, BP_ERR_SCENE, "albedo %zu: %s", fault.index, fault.text);
     case BP_FAULT_COINCIDENT:
-        return bp_fail(err, BP_ERR_SCENE, "spheres[%zu] and spheres[%zu]: %s", fault.other, fault.index,
-                       fault.text);
+        return bp_fail(err, BP_ERR_SCENE, "%s and %s: %s", bp_sphere_name(scene, fault.other, name),
+                       bp_sphere_name(scene, fault.index, other), fault.text);
     }
     return BP_OK;
 }

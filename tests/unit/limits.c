@@ -29,7 +29,7 @@ static void off_its_place(void **state) {
     const char *far = "{\"center\":[100000.003,0,0],\"radius\":0.01,\"material\":\"m\"}";
     const BpLimits warned = limits_of("", far, BP_PRECISION_SINGLE);
     assert_int_equal(warned.count, 1);
-    assert_non_null(strstr(warned.text[0], "sphere 0 (radius 0.01) lies"));
+    assert_non_null(strstr(warned.text[0], "spheres[0] (radius 0.01) lies"));
     assert_non_null(strstr(warned.text[0], "--precision double"));
     assert_int_equal(limits_of("", far, BP_PRECISION_DOUBLE).count, 0);
     /* Seen from nearby all is well: what counts is the distance from the camera. */
@@ -42,8 +42,8 @@ static void off_its_neighbours(void **state) {
                          "{\"center\":[0,0.2,0],\"radius\":0.2,\"material\":\"m\"}";
     const BpLimits warned = limits_of("\"lookfrom\":[0,1,5]", ground, BP_PRECISION_SINGLE);
     assert_int_equal(warned.count, 1);
-    assert_non_null(strstr(warned.text[0], "the surface of sphere 0 (radius 1e+06)"));
-    assert_non_null(strstr(warned.text[0], "of sphere 1 (0.2)"));
+    assert_non_null(strstr(warned.text[0], "the surface of spheres[0] (radius 1e+06)"));
+    assert_non_null(strstr(warned.text[0], "of spheres[1] (0.2)"));
     const char *book = "{\"center\":[0,-1000,0],\"radius\":1000,\"material\":\"m\"},"
                        "{\"center\":[0,0.2,0],\"radius\":0.2,\"material\":\"m\"}";
     assert_int_equal(limits_of("\"lookfrom\":[13,2,3]", book, BP_PRECISION_SINGLE).count, 0);
@@ -57,7 +57,7 @@ static void thin_walls(void **state) {
                         "{\"center\":[0,0,-3],\"radius\":-0.45,\"material\":\"g\"}";
     const BpLimits warned = limits_of("", thin, BP_PRECISION_SINGLE);
     assert_int_equal(warned.count, 1);
-    assert_non_null(strstr(warned.text[0], "the wall between sphere 1"));
+    assert_non_null(strstr(warned.text[0], "the wall between spheres[1]"));
     assert_int_equal(limits_of("", thick, BP_PRECISION_SINGLE).count, 0);
     assert_int_equal(limits_of("", "", BP_PRECISION_SINGLE).count, 0);
 }

@@ -181,7 +181,7 @@ static void bad_cameras(void **state) {
          "{ \"center\": [0, -0.2, 0], \"radius\": -0.3, \"material\": \"m\" } ] }",
          1,
          27,
-         {"camera.lookfrom", "spheres 0 and 1 at once", "move the camera"}},
+         {"camera.lookfrom", "spheres[0] and spheres[1] at once", "move the camera"}},
         {"{ \"camera\": { \"lookfrom\": [0, 0, -1] } }", 1, 27, {"camera.lookfrom", "same point"}},
         {"{ \"camera\": { \"vup\": [0, 0, 3] } }", 1, 22, {"camera.vup", "direction of the view"}},
         {"{ \"camera\": { \"vup\": [0, 0, 0] } }", 1, 22, {"camera.vup", "no direction"}},

@@ -204,6 +204,8 @@ static void binary(void **state) {
                 n += put(bytes + n, &(float){0.125f}, 4, big);
                 n += put(bytes + n, &(int32_t){i}, 4, big);
             }
+            bytes[n++] = 1; /* the face */
+            n += put(bytes + n, &(int32_t){0}, 4, big);
             const BpPlyOptions options = {
                 .material = BP_PLY_NO_MATERIAL, .materials = two_materials, .material_count = 2};
             BpScene *scene = accept(bytes, n, &options);
