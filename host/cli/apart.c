@@ -1,7 +1,10 @@
 /* apart.c: see apart.h. */
 #include "apart.h"
 
+#include "../engine/pocl.h"
+
 #include <errno.h>
+#include <signal.h>
 #include <stdlib.h>
 #include <string.h>
 #include <sys/wait.h>
@@ -62,7 +65,13 @@ BpStatus bp_run_apart(bool (*work)(void *argument, FILE *out), void *argument, c
     int ended = 0;
     while (waitpid(child, &ended, 0) < 0 && errno == EINTR) {
     }
-    if (WIFSIGNALED(ended))
+    if (WIFSIGNALED(ended) && WTERMSIG(ended) == SIGABRT && !bp_pocl_finds_linker())
+        snprintf(failure, 256,
+                 "crashed: %s; PoCL, the driver for processors, needs the linker `ld`, which is nowhere in "
+                 "PATH: install "
+                 "binutils, or add the folder of `ld` to PATH",
+                 strsignal(SIGABRT));
+    else if (WIFSIGNALED(ended))
         snprintf(failure, 256, "crashed: %s", strsignal(WTERMSIG(ended)));
     else if (WEXITSTATUS(ended) > CHILD_FAILED)
         snprintf(failure, 256, "its driver ended the process with exit code %d", WEXITSTATUS(ended));

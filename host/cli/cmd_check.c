@@ -200,6 +200,7 @@ BpStatus bp_command_check(const BpCommandLine *line, BpError *err) {
         BP_TRY_GOTO(status, check_all(&task, results, &agree, &broken, err), done);
         if (!to_stdout) bp_check_report_table(results, stdout);
     } else {
+        BP_TRY_GOTO(status, bp_setup_try_device(line->device, err), done);
         BP_TRY_GOTO(status, bp_device_find(line->device, &device, err), done);
         task.device = &device;
         BP_TRY_GOTO(status, check_device(&task, to_stdout ? NULL : stdout, &report, &agree, err), done);

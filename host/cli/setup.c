@@ -1,7 +1,9 @@
 /* setup.c: see setup.h. */
 #include "setup.h"
 
+#include "../engine/pocl.h"
 #include "../engine/self_test.h"
+#include "apart.h"
 
 #include <inttypes.h>
 #include <stdio.h>
@@ -53,8 +55,30 @@ static BpStatus all_devices(BpDeviceInfo **devices, size_t *count, BpError *err)
     return status != BP_OK ? status : bp_fail(err, BP_ERR_DEVICE, "no OpenCL device that can render");
 }
 
+/* Work for bp_run_apart. What goes wrong in other ways is left to be told when it happens again. */
+static bool try_device(void *argument, FILE *out) {
+    BpDeviceInfo device;
+    (void)out;
+    if (bp_device_find(argument, &device, NULL) == BP_OK && strcmp(device.platform, BP_POCL_PLATFORM) == 0)
+        (void)bp_pocl_try_kernel(&device, NULL);
+    return true;
+}
+
+BpStatus bp_setup_try_device(const char *name, BpError *err) {
+    char failure[256], copy[256], *bytes = NULL;
+    size_t size = 0;
+    if (bp_pocl_finds_linker()) return BP_OK;
+    snprintf(copy, sizeof copy, "%s", name != NULL ? name : "");
+    BP_TRY(bp_run_apart(try_device, copy, &bytes, &size, failure, err));
+    free(bytes);
+    if (failure[0] == '\0') return BP_OK;
+    return bp_fail(err, BP_ERR_DEVICE, "the OpenCL driver %s", failure);
+}
+
 BpStatus bp_setup_devices(const BpCommandLine *line, BpDeviceInfo **devices, size_t *count, BpError *err) {
-    if (line->device != NULL && strcmp(line->device, "all") == 0) return all_devices(devices, count, err);
+    const bool all = line->device != NULL && strcmp(line->device, "all") == 0;
+    BP_TRY(bp_setup_try_device(all ? NULL : line->device, err));
+    if (all) return all_devices(devices, count, err);
     *devices = malloc(sizeof **devices);
     if (*devices == NULL) return bp_fail(err, BP_ERR_MEMORY, "out of memory for a device's description");
     const BpStatus status = bp_device_find(line->device, *devices, err);

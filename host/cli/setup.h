@@ -18,6 +18,11 @@ BpStatus bp_setup_options(const BpCommandLine *line, const BpScene *scene, BpRen
  * free(). Never empty on success. */
 BpStatus bp_setup_devices(const BpCommandLine *line, BpDeviceInfo **devices, size_t *count, BpError *err);
 
+/* Where PATH has no linker, which PoCL may need and then miss by ending the process: lets the device that
+ * `name` means (as for bp_device_find) try a kernel in a process of its own. Call it before anything touches
+ * OpenCL. */
+BpStatus bp_setup_try_device(const char *name, BpError *err);
+
 /* Asks every device for known answers (once per device, driver and version; a pass is remembered). One that
  * gives wrong answers is refused; with --force this is said, and no more. */
 BpStatus bp_setup_self_test(const BpCommandLine *line, const BpDeviceInfo *devices, size_t count,

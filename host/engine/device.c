@@ -1,6 +1,8 @@
 /* device.c: opening a device and building programs for it; see device.h. */
 #include "device.h"
 
+#include "pocl.h"
+
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -116,7 +118,7 @@ static bool first_complaint(const char *log, char file[128], int *line, int *col
 }
 
 static BpStatus build_failure(const BpDevice *device, cl_int code, const char *log, BpError *err) {
-    char file[128], text[256];
+    char file[128], text[256], fault[512];
     int line = 0, column = 0;
     if (code != CL_BUILD_PROGRAM_FAILURE && (log == NULL || log[0] == '\0'))
         return bp_cl_fail(err, code, "clBuildProgram", device);
@@ -124,6 +126,8 @@ static BpStatus build_failure(const BpDevice *device, cl_int code, const char *l
         bp_fail(err, BP_ERR_BUILD, "the kernel does not compile for %s (driver %s): %s", device->info.name,
                 device->info.driver, text);
         bp_error_at(err, file, line, column);
+    } else if (strcmp(device->info.platform, BP_POCL_PLATFORM) == 0 && bp_pocl_cache_fails(fault)) {
+        bp_fail(err, BP_ERR_BUILD, "the kernel does not compile for %s: %s", device->info.name, fault);
     } else {
         bp_fail(err, BP_ERR_BUILD, "the kernel does not compile for %s (driver %s): %s", device->info.name,
                 device->info.driver, bp_cl_error_name(code));

@@ -4,6 +4,8 @@
  * Knows: OpenCL's platforms and devices.   Does not know: contexts, programs. */
 #include "device.h"
 
+#include "pocl.h"
+
 #include <ctype.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -230,16 +232,19 @@ static void append_devices(char *to, size_t size, const BpDeviceInfo *list, size
 static BpStatus fail_without_devices(BpError *err) {
     cl_platform_id *platforms = NULL;
     cl_uint count = 0;
-    char names[384] = "";
+    char names[384] = "", fault[512];
+    bool pocl = false;
     BP_TRY(list_platforms(&platforms, &count, err));
     for (cl_uint p = 0; p < count; ++p) {
         char name[128];
         platform_name(platforms[p], name, sizeof name);
+        pocl = pocl || strcmp(name, BP_POCL_PLATFORM) == 0;
         const size_t used = strlen(names);
         snprintf(names + used, sizeof names - used, "%s%s", p == 0 ? "" : ", ", name);
     }
     free(platforms);
     if (count == 0) return bp_fail(err, BP_ERR_DEVICE, "no OpenCL platform: " NO_DEVICE_REMEDY);
+    if (pocl && bp_pocl_cache_fails(fault)) return bp_fail(err, BP_ERR_DEVICE, "no OpenCL device: %s", fault);
     return bp_fail(err, BP_ERR_DEVICE, "no OpenCL device (platforms without devices: %s): " NO_DEVICE_REMEDY,
                    names);
 }

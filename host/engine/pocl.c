@@ -1,0 +1,101 @@
+/* pocl.c: see pocl.h. */
+#include "pocl.h"
+
+#include <errno.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/stat.h>
+#include <time.h>
+#include <unistd.h>
+
+#define FOLDER_MAX 1024
+
+/* The folder that PoCL takes (its manual, "Environment variables"): POCL_CACHE_DIR, else below
+ * XDG_CACHE_HOME, else below HOME. False: none is known. */
+static bool cache_folder(char folder[FOLDER_MAX]) {
+    const char *own = getenv("POCL_CACHE_DIR"), *cache = getenv("XDG_CACHE_HOME"), *home = getenv("HOME");
+    if (own != NULL && own[0] != '\0')
+        snprintf(folder, FOLDER_MAX, "%s", own);
+    else if (cache != NULL && cache[0] != '\0')
+        snprintf(folder, FOLDER_MAX, "%s/pocl/kcache", cache);
+    else if (home != NULL && home[0] != '\0')
+        snprintf(folder, FOLDER_MAX, "%s/.cache/pocl/kcache", home);
+    else
+        return false;
+    return true;
+}
+
+/* 0, or the errno of what failed. Permissions alone do not tell: a file system may be read-only or full. */
+static int try_writing(const char *folder) {
+    char path[FOLDER_MAX + 32];
+    snprintf(path, sizeof path, "%s", folder);
+    for (char *slash = strchr(path + 1, '/'); slash != NULL; slash = strchr(slash + 1, '/')) {
+        *slash = '\0';
+        if (mkdir(path, 0777) != 0 && errno != EEXIST) return errno;
+        *slash = '/';
+    }
+    if (mkdir(path, 0777) != 0 && errno != EEXIST) return errno;
+    snprintf(path, sizeof path, "%s/ballpark-XXXXXX", folder);
+    const int file = mkstemp(path);
+    if (file < 0) return errno;
+    const int failed = write(file, "", 1) == 1 ? 0 : errno;
+    close(file);
+    unlink(path);
+    return failed;
+}
+
+bool bp_pocl_finds_linker(void) {
+    const char *folder = getenv("PATH");
+    while (folder != NULL && *folder != '\0') {
+        char file[FOLDER_MAX];
+        const size_t length = strcspn(folder, ":");
+        const int written =
+            snprintf(file, sizeof file, "%.*s%sld", (int)length, folder, length > 0 ? "/" : "");
+        if (written > 0 && (size_t)written < sizeof file && access(file, X_OK) == 0) return true;
+        folder += length + (folder[length] == ':');
+    }
+    return false;
+}
+
+BpStatus bp_pocl_try_kernel(const BpDeviceInfo *info, BpError *err) {
+    char source[128];
+    BpDevice *device = NULL;
+    cl_program program = NULL;
+    cl_kernel kernel = NULL;
+    cl_mem word = NULL;
+    const size_t one = 1;
+    BpStatus status = BP_OK;
+    snprintf(source, sizeof source, "__kernel void trial(__global uint *word) { *word = %luu; } /* %ld */",
+             (unsigned long)time(NULL) & 0xfffffffful, (long)getpid());
+    BP_TRY_GOTO(status, bp_device_open(info, &device, err), done);
+    BP_TRY_GOTO(status, bp_device_build(device, source, NULL, &program, NULL, err), done);
+    cl_int code = CL_SUCCESS;
+    kernel = clCreateKernel(program, "trial", &code);
+    if (code == CL_SUCCESS)
+        word = clCreateBuffer(device->context, CL_MEM_WRITE_ONLY, sizeof(cl_uint), NULL, &code);
+    if (code == CL_SUCCESS) code = clSetKernelArg(kernel, 0, sizeof(cl_mem), &word);
+    if (code == CL_SUCCESS)
+        code = clEnqueueNDRangeKernel(device->queue, kernel, 1, NULL, &one, &one, 0, NULL, NULL);
+    if (code == CL_SUCCESS) code = clFinish(device->queue);
+    if (code != CL_SUCCESS) status = bp_cl_fail(err, code, "running a first kernel", device);
+done:
+    if (word != NULL) clReleaseMemObject(word);
+    if (kernel != NULL) clReleaseKernel(kernel);
+    if (program != NULL) clReleaseProgram(program);
+    bp_device_close(&device);
+    return status;
+}
+
+bool bp_pocl_cache_fails(char text[512]) {
+    char folder[FOLDER_MAX];
+    if (!cache_folder(folder)) return false;
+    const int failed = try_writing(folder);
+    if (failed == 0) return false;
+    snprintf(text, 512,
+             "PoCL cannot write its folder for compiled kernels, %.256s (%s): make it writable, or set "
+             "POCL_CACHE_DIR to "
+             "a folder that is",
+             folder, strerror(failed));
+    return true;
+}

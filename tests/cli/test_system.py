@@ -1,0 +1,49 @@
+"""What the system lacks is said, with the remedy: a linker for PoCL, a folder for its kernels."""
+
+import os
+import unittest
+
+import cli
+
+
+class System(cli.ProgramTest):
+    def setUp(self):
+        super().setUp()
+        listed = self.run_program("devices")
+        if b"Portable Computing Language" not in listed.stdout:
+            self.skipTest("PoCL is not installed")
+        self.write("x.json", cli.scene(width=4))
+        os.mkdir(self.path("bin"))  # no programs
+
+    def test_no_linker(self):
+        for number, path in enumerate((self.path("bin"), "")):
+            here = {"PATH": path, "POCL_CACHE_DIR": self.path(f"cache-{number}")}
+            for command in (("render", "x.json", "--device", "portable"), ("check", "x.json", "--device", "portable")):
+                result = self.run_program(*command, environment=here)
+                if result.returncode == 0:
+                    self.skipTest("this PoCL needs no linker")
+                self.assertEqual(result.returncode, 1, f"{command}: {result.errors}")
+                self.assertIn("`ld`", result.errors, command)
+                self.assertIn("install binutils", result.errors)
+                self.assertNotIn("x.png", self.files())
+        result = self.run_program("check", "x.json", "--device", "all", environment=here)
+        self.assertEqual(result.returncode, 1)
+        self.assertIn("install binutils", result.stdout.decode() + result.errors)
+
+    def test_cache_that_cannot_be_written(self):
+        self.write("file", "")
+        for folder, what in (("/proc/no-such-folder", "No such file or directory"),
+                             (self.path("file"), "Not a directory")):
+            result = self.run_program("render", "x.json", "--device", "portable", environment={"POCL_CACHE_DIR": folder})
+            self.assertEqual(result.returncode, 1, result.errors)
+            for text in ("PoCL cannot write", folder, what, "POCL_CACHE_DIR"):
+                self.assertIn(text, result.errors)
+            self.assertNotIn("apt install", result.errors)
+
+    def test_cache_that_can_be_made(self):
+        cache = self.path("a/b/c")
+        self.succeed("render", "x.json", "--device", "portable", "--quiet", environment={"POCL_CACHE_DIR": cache})
+
+
+if __name__ == "__main__":
+    cli.main()
