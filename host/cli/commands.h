@@ -34,6 +34,7 @@ BpStatus bp_command_find(const char *name, const BpCommand **command, BpError *e
 BpCommandRun bp_command_render;   /* cmd_render.c */
 BpCommandRun bp_command_explain;  /* cmd_explain.c */
 BpCommandRun bp_command_check;    /* cmd_check.c */
+BpCommandRun bp_command_cost;     /* cmd_cost.c */
 BpCommandRun bp_command_merge;    /* cmd_merge.c */
 BpCommandRun bp_command_bench;    /* cmd_bench.c */
 BpCommandRun bp_command_devices;  /* cmd_devices.c */

@@ -10,7 +10,7 @@ typedef struct Result {
     const char *option, *path;
 } Result;
 
-enum { RESULTS = 5 };
+enum { RESULTS = 6 };
 
 bool bp_same_file(const char *a, const char *b) {
     struct stat first, second;
@@ -21,11 +21,9 @@ bool bp_same_file(const char *a, const char *b) {
 }
 
 BpStatus bp_files_check_apart(const BpCommandLine *line, BpError *err) {
-    const Result results[RESULTS] = {{"--output", line->output},
-                                     {"--stats", line->stats},
-                                     {"--error-map", line->error_map},
-                                     {"--json", line->json},
-                                     {"--map", line->map}};
+    const Result results[RESULTS] = {
+        {"--output", line->output}, {"--stats", line->stats}, {"--error-map", line->error_map},
+        {"--json", line->json},     {"--csv", line->csv},     {"--map", line->map}};
     const bool merges = strcmp(line->command->name, "merge") == 0;
     for (size_t r = 0; r < RESULTS; ++r) {
         const Result *result = &results[r];

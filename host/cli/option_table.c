@@ -45,6 +45,7 @@ static const OptionRow rows[BP_OPTION_NUMBER] = {
     [BP_OPTION_MEASURE] = {"measure", "", "measure what each effect costs", 0},
     [BP_OPTION_PIXEL] = {"pixel", "X,Y", "follow one path of this pixel, step by step; 0,0 is top left", 0},
     [BP_OPTION_JSON] = {"json", "FILE", "write the result as JSON; \"-\" is standard output", 0},
+    [BP_OPTION_CSV] = {"csv", "FILE", "write the points as CSV; \"-\" is standard output", 0},
     [BP_OPTION_MAP] = {"map", "FILE", "write a picture of where the two differ", 0},
     [BP_OPTION_GRID] = {"grid", "G", "half the side of the square of small spheres (11)", 0},
     [BP_OPTION_COUNT] = {"count", "N", "number of spheres of a field (1000000)", 0},

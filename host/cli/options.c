@@ -111,6 +111,9 @@ static BpStatus store_value(BpOption option, const char *name, const char *text,
     case BP_OPTION_JSON:
         line->json = text;
         break;
+    case BP_OPTION_CSV:
+        line->csv = text;
+        break;
     case BP_OPTION_MAP:
         line->map = text;
         break;

@@ -34,6 +34,7 @@ typedef enum BpOption {
     BP_OPTION_MEASURE,
     BP_OPTION_PIXEL,
     BP_OPTION_JSON,
+    BP_OPTION_CSV,
     BP_OPTION_MAP,
     BP_OPTION_GRID,
     BP_OPTION_COUNT,
@@ -78,6 +79,7 @@ typedef struct BpCommandLine {
     bool measure;
     uint32_t pixel_x, pixel_y; /* --pixel, from the picture's top left corner, from 0 */
     const char *json;          /* file; "-": standard output */
+    const char *csv;           /* file; "-": standard output */
     const char *map;           /* picture file */
     unsigned grid;
     uint64_t count;

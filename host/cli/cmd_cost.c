@@ -1,0 +1,118 @@
+/* cmd_cost.c: `ballpark cost`.
+ *
+ * In:    a scene, a time budget.   Out: a table; a page, a document, a CSV file.
+ * Knows: the study, files, the terminal.   Does not know: how anything is measured. */
+#include "commands.h"
+
+#include "../base/output_file.h"
+#include "../cost/study.h"
+#include "interrupt.h"
+#include "json_file.h"
+#include "report.h"
+#include "setup.h"
+#include "terminal.h"
+
+#include <errno.h>
+#include <stdlib.h>
+#include <string.h>
+
+static void show_progress(const BpStudyProgress *progress) {
+    char text[160], left[32];
+    snprintf(text, sizeof text, "%3.0f %%  %s left  %s", 100 * progress->fraction,
+             bp_format_seconds(progress->seconds_left, left, sizeof left), progress->doing);
+    text[bp_terminal_columns() < sizeof text ? bp_terminal_columns() - 1 : sizeof text - 1] = '\0';
+    bp_terminal_show(progress->finished ? "" : text);
+}
+
+/* Ctrl-C ends a study early; what every setting has reached by then is a result. */
+static BpStatus run_study(const BpCommandLine *line, BpStudy *study, BpError *err) {
+    BpStudyProgress progress = {0};
+    const bool live = bp_terminal_is_live(line->quiet);
+    BpStatus status = BP_OK;
+    while (status == BP_OK && !progress.finished && !bp_interrupted()) {
+        status = bp_study_step(study, &progress, err);
+        if (live && status == BP_OK) show_progress(&progress);
+    }
+    if (live) bp_terminal_show("");
+    return status == BP_OK && !progress.finished ? bp_study_stop(study, err) : status;
+}
+
+typedef bool Print(const BpStudyResult *result, FILE *out);
+
+/* Writes by `print` to the file, whole or not at all; "-" is standard output. */
+static BpStatus write_file(const BpStudyResult *result, const char *path, Print *print, BpError *err) {
+    if (strcmp(path, "-") == 0)
+        return print(result, stdout)
+                   ? BP_OK
+                   : bp_fail(err, BP_ERR_FILE, "cannot write to standard output: %s", strerror(errno));
+    BpOutputFile file = {0};
+    BP_TRY(bp_output_open(path, &file, err));
+    if (print(result, file.stream)) return bp_output_commit(&file, err);
+    const BpStatus status = bp_output_fail(err, "write", path, errno);
+    bp_output_discard(&file);
+    return status;
+}
+
+static BpStatus check_outputs(const BpCommandLine *line, BpError *err) {
+    if (line->csv != NULL && strcmp(line->csv, "-") != 0) BP_TRY(bp_output_check(line->csv, err));
+    return line->json != NULL ? bp_json_check(line->json, err) : BP_OK;
+}
+
+static BpStatus deliver(const BpCommandLine *line, const BpStudyResult *result, BpError *err) {
+    const bool to_stdout = (line->json != NULL && strcmp(line->json, "-") == 0) ||
+                           (line->csv != NULL && strcmp(line->csv, "-") == 0);
+    if (line->csv != NULL) BP_TRY(write_file(result, line->csv, bp_study_print_csv, err));
+    if (line->json != NULL) BP_TRY(bp_json_write(bp_study_json(result), line->json, err));
+    if (!to_stdout) BP_TRY(write_file(result, "-", bp_study_print, err));
+    if (result->cut_short)
+        return bp_fail(err, BP_ERR_INTERRUPTED, "interrupted; these figures are of the first %.0f seconds",
+                       result->seconds);
+    return BP_OK;
+}
+
+/* The study's size: --width, else the scene's, unless that is much larger than telling errors apart takes. */
+static BpStatus load_scene(const BpCommandLine *line, BpScene **scene, BpSceneInfo *full, BpError *err) {
+    BP_TRY(bp_scene_load(line->operands[0], scene, err));
+    bp_scene_info(*scene, full);
+    if (bp_option_given(line, BP_OPTION_WIDTH)) return bp_scene_set_width(*scene, line->width, err);
+    if (full->width <= BP_STUDY_WIDTH_DEFAULT) return BP_OK;
+    return bp_scene_set_width(*scene, BP_STUDY_WIDTH_DEFAULT, err);
+}
+
+static BpStatus find_device(const BpCommandLine *line, BpDeviceInfo *device, BpError *err) {
+    BpDeviceInfo *devices = NULL;
+    size_t count = 0;
+    if (line->device != NULL && strcmp(line->device, "all") == 0)
+        return bp_fail(err, BP_ERR_USAGE, "--device all: a study is of one device; name or number it");
+    BP_TRY(bp_setup_devices(line, &devices, &count, err));
+    *device = devices[0];
+    free(devices);
+    return bp_setup_self_test(line, device, 1, err);
+}
+
+BpStatus bp_command_cost(const BpCommandLine *line, BpError *err) {
+    BpStatus status = BP_OK;
+    BpScene *scene = NULL;
+    BpStudy *study = NULL;
+    BpDeviceInfo device;
+    BpRenderOptions options;
+    BpSceneInfo full;
+    const double seconds =
+        bp_option_given(line, BP_OPTION_TIME) ? line->time_seconds : BP_STUDY_SECONDS_DEFAULT;
+
+    BP_TRY(check_outputs(line, err));
+    BP_TRY_GOTO(status, load_scene(line, &scene, &full, err), done);
+    BP_TRY_GOTO(status, bp_setup_options(line, scene, &options, err), done);
+    if (!bp_option_given(line, BP_OPTION_SAMPLER)) options.sampler = BP_SAMPLER_SOBOL; /* as render */
+    BP_TRY_GOTO(status, find_device(line, &device, err), done);
+    bp_interrupt_catch();
+    BP_TRY_GOTO(status,
+                bp_study_create(scene, &options, &device, full.width, full.height, seconds, &study, err),
+                done);
+    BP_TRY_GOTO(status, run_study(line, study, err), done);
+    status = deliver(line, bp_study_result(study), err);
+done:
+    bp_study_destroy(&study);
+    bp_scene_destroy(&scene);
+    return status;
+}

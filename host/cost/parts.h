@@ -1,0 +1,60 @@
+/* parts.h: the parts of a study, apart so that tests can see them.
+ *
+ * In:    pictures and accumulators, measured points.   Out: settings, errors, intervals, fits, crops.
+ * Knows: arithmetic, what render can do.   Does not know: the order of a study (study.c), how results look.
+ */
+#ifndef BP_COST_PARTS_H
+#define BP_COST_PARTS_H
+
+#include "study.h"
+
+#define BP_STUDY_CROP_WIDTH 96u
+#define BP_STUDY_CROP_HEIGHT 64u
+
+/* ---- settings.c ---- */
+
+/* Fills the settings of a scene and returns their number: 0 is the base; with `has_double`, 1 is the truth.
+ * Ways that change nothing against the base are left out. */
+size_t bp_study_settings(const BpScene *scene, const BpRenderOptions *base, bool has_double,
+                         BpStudySetting settings[BP_STUDY_SETTINGS_MAX]);
+
+/* ---- measure.c ---- */
+
+double bp_study_luminance(const float rgb[3]);
+
+/* Mean of (x - r1)(x - r2) of luminance over brightness^2, its standard error from the spread over pixels,
+ * and the relative MSE of the channels: mse, mse_error and rel_mse of `point`, and nrmse from them. */
+void bp_study_errors(const BpPicture *x, const BpPicture *r1, const BpPicture *r2, double brightness,
+                     BpStudyPoint *point);
+
+/* Differences of two accumulators of one size and number of replicates, pixel by pixel and replicate by
+ * replicate: of brightness, and the mean squared systematic change of a pixel's luminance, both relative to
+ * `brightness`. BP_ERR_USAGE: sizes or replicates differ, or there are fewer than two replicates. */
+BpStatus bp_study_paired(const BpAccumulator *x, const BpAccumulator *base, double brightness,
+                         BpStudyEstimate *bias, BpStudyEstimate *square, BpError *err);
+/* The difference of brightness between x and the mean of two references with random numbers of their own. */
+BpStudyEstimate bp_study_unpaired(const BpPicture *x, const BpPicture *r1, const BpPicture *r2,
+                                  double brightness);
+
+/* ---- crop.c ---- */
+
+/* The window of a crop's size where x is noisiest. */
+void bp_study_crop_place(const BpPicture *x, uint32_t *left, uint32_t *top);
+/* Fills the crop; clear it with bp_study_crop_clear() also on failure. */
+BpStatus bp_study_crop(const BpPicture *x, const BpPicture *r1, const BpPicture *r2, uint32_t left,
+                       uint32_t top, BpTransfer transfer, BpStudyCrop *crop, BpError *err);
+void bp_study_crop_clear(BpStudyCrop *crop);
+
+/* ---- fit.c ---- */
+
+/* Least squares of relative errors of y = floor + slope / n, with floor and slope >= 0. Values that are not
+ * positive are left out; false (and NaN) with fewer than two at different n. */
+bool bp_study_fit(const double *n, const double *y, size_t count, double *floor, double *slope);
+/* Marks the points that no other beats in seconds or nrmse without losing in the other. */
+void bp_study_front(BpStudyResult *result);
+/* Fits, times, efficiencies. */
+void bp_study_summarize(BpStudyResult *result);
+/* For each target the setting that gets there soonest; the base, unless another is sooner by a tenth. */
+void bp_study_advise(BpStudyResult *result);
+
+#endif

@@ -1,0 +1,116 @@
+/* settings.c: which ways to render a scene are compared; see parts.h. */
+#include "parts.h"
+
+#include <stdio.h>
+#include <string.h>
+
+/* What a row changes; 0 keeps what the base has, enumerations are stored plus 1. */
+typedef struct Change {
+    uint32_t depth;
+    unsigned sampler, precision, math, numerics;
+    BpStudyFresnel fresnel;
+} Change;
+
+typedef struct Row {
+    const char *axis, *name;
+    Change change;
+} Row;
+
+#define SAMPLER(x) .sampler = (BP_SAMPLER_##x + 1)
+#define PRECISION(x) .precision = (BP_PRECISION_##x + 1)
+#define MATH(x) .math = (BP_MATH_##x + 1)
+#define NUMERICS(x) .numerics = (BP_NUMERICS_##x + 1)
+#define FRESNEL(x) .fresnel = BP_STUDY_FRESNEL_##x
+
+/* One line for each way. A new axis is a line here, a member of Change, and a line each in apply() and
+ * write_command(). */
+static const Row rows[] = {
+    {"truth",
+     "everything right",
+     {.depth = BP_STUDY_DEPTH, PRECISION(DOUBLE), MATH(STRICT), NUMERICS(ROBUST), FRESNEL(EXACT)}},
+    {"sampler", "independent samples", {SAMPLER(INDEPENDENT)}},
+    {"sampler", "Sobol samples", {SAMPLER(SOBOL)}},
+    {"depth", "depth 5", {.depth = 5}},
+    {"depth", "depth 10", {.depth = 10}},
+    {"depth", "depth 20", {.depth = 20}},
+    {"depth", "depth 50", {.depth = 50}},
+    {"depth", "depth 1000", {.depth = BP_STUDY_DEPTH}},
+    {"precision", "double precision", {PRECISION(DOUBLE)}},
+    {"precision", "single precision", {PRECISION(SINGLE)}},
+    {"math", "fast math", {MATH(FAST)}},
+    {"math", "strict math", {MATH(STRICT)}},
+    {"numerics", "plain numerics", {NUMERICS(PLAIN)}},
+    {"numerics", "robust numerics", {NUMERICS(ROBUST)}},
+    {"fresnel", "exact Fresnel", {FRESNEL(EXACT)}},
+    {"fresnel", "Schlick's Fresnel", {FRESNEL(SCHLICK)}},
+    {"together",
+     "as the book does it",
+     {.depth = 50, SAMPLER(INDEPENDENT), PRECISION(DOUBLE), NUMERICS(PLAIN), FRESNEL(SCHLICK)}},
+    {"together", "all short cuts", {.depth = 10, MATH(FAST), NUMERICS(PLAIN)}},
+};
+
+const char *bp_study_fresnel_name(BpStudyFresnel fresnel) {
+    static const char *const names[] = {"scene", "schlick", "exact"};
+    return names[fresnel];
+}
+
+/* Whether a dielectric that some sphere wears would look otherwise with this Fresnel. */
+static bool fresnel_matters(const BpScene *scene, BpStudyFresnel fresnel) {
+    const BpFresnel wanted = fresnel == BP_STUDY_FRESNEL_EXACT ? BP_FRESNEL_EXACT : BP_FRESNEL_SCHLICK;
+    for (size_t s = 0; s < scene->sphere_count && fresnel != BP_STUDY_FRESNEL_SCENE; s++) {
+        const BpMaterial *material = &scene->materials[scene->spheres[s].material];
+        if (material->kind == BP_MATERIAL_DIELECTRIC && material->fresnel != BP_FRESNEL_NONE &&
+            material->fresnel != wanted)
+            return true;
+    }
+    return false;
+}
+
+/* What `ballpark render` is told beside the scene, which has a depth of its own. */
+static void write_command(const BpScene *scene, BpStudySetting *setting) {
+    const BpRenderOptions *options = &setting->options;
+    char depth[24] = "";
+    if (options->max_depth != scene->camera.max_depth)
+        snprintf(depth, sizeof depth, " --depth %u", options->max_depth);
+    snprintf(setting->command, sizeof setting->command, "%s%s%s%s%s",
+             options->sampler == BP_SAMPLER_INDEPENDENT ? " --sampler independent" : "",
+             options->precision == BP_PRECISION_DOUBLE ? " --precision double" : "",
+             options->math == BP_MATH_FAST ? " --math fast" : "",
+             options->numerics == BP_NUMERICS_PLAIN ? " --numerics plain" : "", depth);
+    if (setting->command[0] != '\0')
+        memmove(setting->command, setting->command + 1, strlen(setting->command));
+}
+
+/* Makes a setting of a row; false when it is the base itself. */
+static bool apply(const Row *row, const BpScene *scene, const BpRenderOptions *base,
+                  BpStudySetting *setting) {
+    const Change *change = &row->change;
+    BpRenderOptions *options = &setting->options;
+    *setting = (BpStudySetting){.axis = row->axis, .name = row->name};
+    *options = *base;
+    if (change->depth > 0) options->max_depth = change->depth;
+    if (change->sampler > 0) options->sampler = (BpSampler)(change->sampler - 1);
+    if (change->precision > 0) options->precision = (BpPrecision)(change->precision - 1);
+    if (change->math > 0) options->math = (BpMath)(change->math - 1);
+    if (change->numerics > 0) options->numerics = (BpNumerics)(change->numerics - 1);
+    if (fresnel_matters(scene, change->fresnel)) setting->fresnel = change->fresnel;
+    write_command(scene, setting);
+    return options->max_depth != base->max_depth || options->sampler != base->sampler ||
+           options->precision != base->precision || options->math != base->math ||
+           options->numerics != base->numerics || setting->fresnel != BP_STUDY_FRESNEL_SCENE;
+}
+
+size_t bp_study_settings(const BpScene *scene, const BpRenderOptions *base, bool has_double,
+                         BpStudySetting settings[BP_STUDY_SETTINGS_MAX]) {
+    _Static_assert(sizeof rows / sizeof rows[0] < BP_STUDY_SETTINGS_MAX, "room for every row and the base");
+    size_t count = 1;
+    settings[0] = (BpStudySetting){.axis = "base", .name = "as render does it", .options = *base};
+    write_command(scene, &settings[0]);
+    for (size_t r = 0; r < sizeof rows / sizeof rows[0]; r++) {
+        const bool differs = apply(&rows[r], scene, base, &settings[count]);
+        const bool possible = has_double || settings[count].options.precision == BP_PRECISION_SINGLE;
+        /* The truth is a row of its own even when the base is as good. */
+        if (possible && (differs || r == 0)) count++;
+    }
+    return count;
+}

@@ -1,0 +1,348 @@
+/* study.c: the order of a study: references, every setting at every count, results, within the time.
+ * See study.h. */
+#include "study.h"
+
+#include "../base/clock.h"
+#include "../base/status.h"
+#include "parts.h"
+#include "references.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/resource.h>
+
+#define REFERENCE_SHARE 0.4 /* of the time */
+#define LEVEL_FIRST 4u      /* samples a pixel: one a replicate */
+#define LEVEL_FACTOR 4u
+
+enum Phase { OPEN_REFERENCES, REFERENCES, OPEN_SETTINGS, LEVELS, DONE };
+
+/* A setting at work. */
+typedef struct Runner {
+    BpRender *render;
+    double cpu_seconds, wall_seconds, warm_device_seconds;
+} Runner;
+
+struct BpStudy {
+    BpStudyResult result;
+    BpScene variants[3]; /* by BpStudyFresnel; share everything but the materials with the scene */
+    BpDeviceInfo device;
+    enum Phase phase;
+    double start;
+    BpReferences references;
+    Runner runners[BP_STUDY_SETTINGS_MAX];
+    size_t turn; /* the setting at work */
+    uint64_t level;
+    bool last_level; /* the present one is */
+    uint32_t crop_left, crop_top;
+};
+
+static double cpu_seconds(void) {
+    struct rusage usage;
+    getrusage(RUSAGE_SELF, &usage);
+    return (double)(usage.ru_utime.tv_sec + usage.ru_stime.tv_sec) +
+           1e-6 * (double)(usage.ru_utime.tv_usec + usage.ru_stime.tv_usec);
+}
+
+static double elapsed(const BpStudy *study) {
+    return bp_clock_seconds() - study->start;
+}
+
+static BpStatus make_variants(const BpScene *scene, BpStudy *study, BpError *err) {
+    static const BpFresnel fresnel[3] = {
+        [BP_STUDY_FRESNEL_SCHLICK] = BP_FRESNEL_SCHLICK, [BP_STUDY_FRESNEL_EXACT] = BP_FRESNEL_EXACT};
+    for (int f = 0; f < 3; f++) {
+        BpScene *variant = &study->variants[f];
+        *variant = *scene;
+        variant->materials = malloc((scene->material_count + 1) * sizeof *scene->materials);
+        if (variant->materials == NULL) return bp_fail(err, BP_ERR_MEMORY, "no memory for materials");
+        if (scene->material_count > 0)
+            memcpy(variant->materials, scene->materials, scene->material_count * sizeof *scene->materials);
+        for (size_t m = 0; m < scene->material_count && f != BP_STUDY_FRESNEL_SCENE; m++)
+            if (variant->materials[m].fresnel != BP_FRESNEL_NONE) variant->materials[m].fresnel = fresnel[f];
+    }
+    return BP_OK;
+}
+
+BpStatus bp_study_create(const BpScene *scene, const BpRenderOptions *base, const BpDeviceInfo *device,
+                         uint32_t full_width, uint32_t full_height, double seconds, BpStudy **study,
+                         BpError *err) {
+    BpStudy *made = calloc(1, sizeof *made);
+    BpStudySetting settings[BP_STUDY_SETTINGS_MAX];
+    if (made == NULL) return bp_fail(err, BP_ERR_MEMORY, "no memory for a study");
+    made->start = bp_clock_seconds();
+    made->device = *device;
+    made->result.scene = scene;
+    made->result.full_width = full_width;
+    made->result.full_height = full_height;
+    made->result.budget = seconds;
+    made->result.reference_is_kernel = device->has_double;
+    made->result.count = bp_study_settings(scene, base, device->has_double, settings);
+    for (size_t s = 0; s < made->result.count; s++) made->result.series[s].setting = settings[s];
+    const BpStatus status = make_variants(scene, made, err);
+    if (status == BP_OK)
+        *study = made;
+    else
+        bp_study_destroy(&made);
+    return status;
+}
+
+void bp_study_destroy(BpStudy **study) {
+    if (study == NULL || *study == NULL) return;
+    BpStudyResult *result = &(*study)->result;
+    bp_references_clear(&(*study)->references);
+    for (size_t s = 0; s < result->count; s++) {
+        bp_render_destroy(&(*study)->runners[s].render);
+        for (size_t p = 0; p < BP_STUDY_LEVELS_MAX; p++)
+            bp_study_crop_clear(&result->series[s].points[p].crop);
+    }
+    bp_study_crop_clear(&result->truth);
+    for (int f = 0; f < 3; f++) free((*study)->variants[f].materials);
+    free(*study);
+    *study = NULL;
+}
+
+const BpStudyResult *bp_study_result(const BpStudy *study) {
+    return &study->result;
+}
+
+/* ---- references -------------------------------------------------------------------------------------- */
+
+static BpStatus open_references(BpStudy *study, BpError *err) {
+    const BpRenderOptions *base = &study->result.series[0].setting.options;
+    study->phase = REFERENCES;
+    return bp_references_open(&study->references, &study->variants[BP_STUDY_FRESNEL_EXACT], base,
+                              &study->device, err);
+}
+
+static BpStatus step_references(BpStudy *study, BpError *err) {
+    BpStudyResult *result = &study->result;
+    bool finished = false;
+    BP_TRY(bp_references_step(&study->references, REFERENCE_SHARE * result->budget, &finished, err));
+    if (!finished) return BP_OK;
+    study->phase = OPEN_SETTINGS;
+    result->reference_samples = study->references.done[0];
+    bp_references_judge(&study->references, &result->brightness, &result->reference_error);
+    if (!(result->brightness > 0))
+        return bp_fail(err, BP_ERR_SCENE,
+                       "%s: the picture is black, and no error is relative to nothing; give it light",
+                       result->scene->path);
+    return BP_OK;
+}
+
+/* ---- settings ---------------------------------------------------------------------------------------- */
+
+static BpStatus trace_to_end(BpRender *render, BpError *err) {
+    BpProgress progress = {0};
+    while (!progress.finished) BP_TRY(bp_render_step(render, &progress, err));
+    return BP_OK;
+}
+
+/* Builds the kernel and takes one sample of every pixel, which drivers may use to compile once more. */
+static BpStatus open_setting(BpStudy *study, BpError *err) {
+    const size_t s = study->turn;
+    const BpStudySetting *setting = &study->result.series[s].setting;
+    Runner *runner = &study->runners[s];
+    BpRenderOptions options = setting->options;
+    options.samples_per_pixel = 1;
+    options.first_sample = 0;
+    BP_TRY(bp_render_create(&study->variants[setting->fresnel], &options, &study->device, 1, &runner->render,
+                            err));
+    BP_TRY(trace_to_end(runner->render, err));
+    BpRenderReport report;
+    bp_render_report(runner->render, &report);
+    runner->warm_device_seconds = report.device_seconds;
+    if (s == 0) {
+        study->result.report = report;
+        study->result.report.build_log = NULL;
+    }
+    if (++study->turn < study->result.count) return BP_OK;
+    study->phase = LEVELS;
+    study->level = LEVEL_FIRST;
+    study->turn = 0;
+    for (size_t i = 0; i < study->result.count; i++)
+        BP_TRY(bp_render_extend(study->runners[i].render, study->level, err));
+    return BP_OK;
+}
+
+/* ---- points ------------------------------------------------------------------------------------------ */
+
+/* The first sample of every pixel was the warm-up and is not in the times, hence n / (n - 1). */
+static void note_times(const BpStudy *study, const Runner *runner, BpStudyPoint *point) {
+    const double scale = (double)point->samples / (double)(point->samples - 1);
+    BpRenderReport report;
+    bp_render_report(runner->render, &report);
+    point->wall_seconds = scale * runner->wall_seconds;
+    point->cpu_seconds = scale * runner->cpu_seconds;
+    point->device_seconds = scale * (report.device_seconds - runner->warm_device_seconds);
+    point->seconds = point->wall_seconds;
+    if (study->device.type == BP_DEVICE_CPU)
+        point->seconds = fmin(point->seconds, point->cpu_seconds / fmax(1, study->device.compute_units));
+}
+
+static bool is_truth(const BpStudyResult *result, size_t s) {
+    return s == 1 && result->reference_is_kernel;
+}
+
+/* Against the base and the truth, which have the same counts: in each round the base comes first. */
+static BpStatus note_differences(BpStudy *study, size_t s, const BpAccumulator *sums,
+                                 const BpPicture *picture, BpError *err) {
+    const BpStudyEstimate unknown = {(double)NAN, (double)NAN, (double)NAN};
+    const BpPicture *truths = study->references.pictures;
+    const double brightness = study->result.brightness;
+    BpStudySeries *series = &study->result.series[s];
+    const BpAccumulator *other = NULL;
+    if (s == 0) {
+        series->change = series->change_square = series->bias_square = unknown;
+        series->bias = bp_study_unpaired(picture, &truths[0], &truths[1], brightness);
+        return BP_OK;
+    }
+    BP_TRY(bp_render_accumulator(study->runners[0].render, &other, err));
+    BP_TRY(bp_study_paired(sums, other, brightness, &series->change, &series->change_square, err));
+    if (is_truth(&study->result, s)) {
+        BpStudySeries *base = &study->result.series[0];
+        series->bias = bp_study_unpaired(picture, &truths[0], &truths[1], brightness);
+        series->bias_square = (BpStudyEstimate){0, 0, 0}; /* by definition */
+        return bp_study_paired(other, sums, brightness, &base->bias, &base->bias_square, err);
+    }
+    if (!study->result.reference_is_kernel) {
+        series->bias = bp_study_unpaired(picture, &truths[0], &truths[1], brightness);
+        series->bias_square = unknown;
+        return BP_OK;
+    }
+    BP_TRY(bp_render_accumulator(study->runners[1].render, &other, err));
+    return bp_study_paired(sums, other, brightness, &series->bias, &series->bias_square, err);
+}
+
+static BpStatus note_point(BpStudy *study, size_t s, BpError *err) {
+    BpStudySeries *series = &study->result.series[s];
+    BpStudyPoint *point = &series->points[series->count++];
+    const BpPicture *truths = study->references.pictures;
+    const BpAccumulator *sums = NULL;
+    BpPicture picture;
+    BpStatus status = BP_OK;
+    point->samples = study->level;
+    note_times(study, &study->runners[s], point);
+    BP_TRY(bp_render_accumulator(study->runners[s].render, &sums, err));
+    point->claimed = bp_accumulator_nrmse(sums);
+    BP_TRY(bp_accumulator_picture(sums, &picture, err));
+    bp_study_errors(&picture, &truths[0], &truths[1], study->result.brightness, point);
+    if (s == 0 && series->count == 1) bp_study_crop_place(&picture, &study->crop_left, &study->crop_top);
+    BP_TRY_GOTO(status,
+                bp_study_crop(&picture, &truths[0], &truths[1], study->crop_left, study->crop_top,
+                              study->result.scene->transfer, &point->crop, err),
+                done);
+    status = note_differences(study, s, sums, &picture, err);
+done:
+    bp_picture_clear(&picture);
+    return status;
+}
+
+/* ---- the end ----------------------------------------------------------------------------------------- */
+
+static BpStatus conclude(BpStudy *study, BpError *err) {
+    BpStudyResult *result = &study->result;
+    const BpCamera *camera = &result->scene->camera;
+    const BpPicture *truths = study->references.pictures;
+    size_t whole = BP_STUDY_LEVELS_MAX;
+    for (size_t s = 0; s < result->count; s++)
+        if (result->series[s].count < whole) whole = result->series[s].count;
+    for (size_t s = 0; s < result->count; s++) result->series[s].count = whole;
+    bp_study_summarize(result);
+    BP_TRY(bp_study_crop(&truths[0], &truths[0], &truths[1], study->crop_left, study->crop_top,
+                         result->scene->transfer, &result->truth, err));
+    result->crop_width = camera->width < BP_STUDY_CROP_WIDTH ? camera->width : BP_STUDY_CROP_WIDTH;
+    result->crop_height = camera->height < BP_STUDY_CROP_HEIGHT ? camera->height : BP_STUDY_CROP_HEIGHT;
+    result->seconds = elapsed(study);
+    study->phase = DONE;
+    return BP_OK;
+}
+
+BpStatus bp_study_stop(BpStudy *study, BpError *err) {
+    if (study->phase == DONE) return BP_OK;
+    for (size_t s = 0; s < study->result.count; s++)
+        if (study->result.series[s].count < 2)
+            return bp_fail(err, BP_ERR_INTERRUPTED,
+                           "interrupted before every setting had two sample counts: nothing to compare yet");
+    study->result.cut_short = true;
+    return conclude(study, err);
+}
+
+/* Seconds that all settings together need to come from the present count to `level`. */
+static double foretold(const BpStudy *study, uint64_t level) {
+    double wall = 0;
+    for (size_t s = 0; s < study->result.count; s++) wall += study->runners[s].wall_seconds;
+    return wall / (double)(study->level - 1) * (double)(level - study->level);
+}
+
+static BpStatus next_level(BpStudy *study, BpError *err) {
+    const double left = study->result.budget - elapsed(study);
+    const size_t count = study->result.series[0].count;
+    uint64_t next = LEVEL_FACTOR * study->level;
+    if (study->last_level || count == BP_STUDY_LEVELS_MAX) return conclude(study, err);
+    /* Two counts there are in any case. Where four times the samples do not fit, twice may, once. */
+    if (count > 1 && foretold(study, next) > left) {
+        next = 2 * study->level;
+        if (foretold(study, next) > left) return conclude(study, err);
+        study->last_level = true;
+    }
+    study->level = next;
+    for (size_t s = 0; s < study->result.count; s++)
+        BP_TRY(bp_render_extend(study->runners[s].render, next, err));
+    return BP_OK;
+}
+
+static BpStatus step_levels(BpStudy *study, BpError *err) {
+    Runner *runner = &study->runners[study->turn];
+    const double wall = bp_clock_seconds(), cpu = cpu_seconds();
+    BpProgress progress;
+    BP_TRY(bp_render_step(runner->render, &progress, err));
+    runner->wall_seconds += bp_clock_seconds() - wall;
+    runner->cpu_seconds += cpu_seconds() - cpu;
+    if (!progress.finished) return BP_OK;
+    BP_TRY(note_point(study, study->turn, err));
+    if (++study->turn < study->result.count) return BP_OK;
+    study->turn = 0;
+    return next_level(study, err);
+}
+
+static void report_progress(const BpStudy *study, BpStudyProgress *progress) {
+    static const char *const words[] = {"opening the references", "rendering the references",
+                                        "building kernels", "", "done"};
+    const double spent = elapsed(study);
+    progress->finished = study->phase == DONE;
+    progress->seconds_left = progress->finished ? 0 : fmax(0, study->result.budget - spent);
+    progress->fraction = progress->finished ? 1 : fmin(0.99, spent / study->result.budget);
+    if (study->phase == LEVELS || study->phase == OPEN_SETTINGS)
+        snprintf(progress->doing, sizeof progress->doing, "%s%s",
+                 study->phase == LEVELS ? "" : "building: ", study->result.series[study->turn].setting.name);
+    else
+        snprintf(progress->doing, sizeof progress->doing, "%s", words[study->phase]);
+    if (study->phase == LEVELS) {
+        const size_t used = strlen(progress->doing);
+        snprintf(progress->doing + used, sizeof progress->doing - used, ", %llu samples",
+                 (unsigned long long)study->level);
+    }
+}
+
+BpStatus bp_study_step(BpStudy *study, BpStudyProgress *progress, BpError *err) {
+    switch (study->phase) {
+    case OPEN_REFERENCES:
+        BP_TRY(open_references(study, err));
+        break;
+    case REFERENCES:
+        BP_TRY(step_references(study, err));
+        break;
+    case OPEN_SETTINGS:
+        BP_TRY(open_setting(study, err));
+        break;
+    case LEVELS:
+        BP_TRY(step_levels(study, err));
+        break;
+    case DONE:
+        break;
+    }
+    if (progress != NULL) report_progress(study, progress);
+    return BP_OK;
+}

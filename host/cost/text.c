@@ -1,0 +1,114 @@
+/* text.c: the study as a table for a terminal, as CSV, and the advice; see study.h. */
+#include "format.h"
+#include "study.h"
+
+#include <inttypes.h>
+#include <math.h>
+
+static void print_head(const BpStudyResult *result, FILE *out) {
+    const BpScene *scene = result->scene;
+    char error[32];
+    fprintf(out, "%s at %ux%u on %s\n", scene->path, scene->camera.width, scene->camera.height,
+            result->report.device.name);
+    fprintf(out,
+            "truth: exact Fresnel, depth %u, %s, two references of %" PRIu64
+            " samples a pixel (error of their mean: %s)\n\n",
+            BP_STUDY_DEPTH, result->reference_is_kernel ? "double precision" : "the reference tracer",
+            result->reference_samples, bp_study_percent(result->reference_error, error, sizeof error));
+}
+
+static void print_settings(const BpStudyResult *result, FILE *out) {
+    char time[32], noise[32], error[32], factor[32], change[48], bias[48];
+    const BpStudySeries *base = &result->series[0];
+    fprintf(out, "Ways to render it, at %" PRIu64 " samples a pixel:\n",
+            base->points[base->count - 1].samples);
+    fprintf(out, "  %-21s %9s %9s %9s %11s %24s %24s\n", "", "time", "noise", "error", "efficiency",
+            "changes brightness by", "off the true one by");
+    for (size_t s = 0; s < result->count; s++) {
+        const BpStudySeries *series = &result->series[s];
+        const BpStudyPoint *last = &series->points[series->count - 1];
+        fprintf(out, "  %-21s %9s %9s %9s %11s %24s %24s\n", series->setting.name,
+                bp_study_seconds(last->seconds, time, sizeof time),
+                bp_study_percent(last->claimed, noise, sizeof noise),
+                bp_study_percent(last->nrmse, error, sizeof error),
+                bp_study_ratio(series->efficiency, factor, sizeof factor),
+                s == 0 ? "" : bp_study_interval(&series->change, "+-", change, sizeof change),
+                bp_study_interval(&series->bias, "+-", bias, sizeof bias));
+    }
+}
+
+static void print_counts(const BpStudyResult *result, FILE *out) {
+    char time[32], noise[32], error[32];
+    const BpStudySeries *base = &result->series[0];
+    fprintf(out, "\nMore samples, %s:\n  %12s %12s %9s %9s %13s\n", base->setting.name, "samples", "time",
+            "noise", "error", "relative MSE");
+    for (size_t i = 0; i < base->count; i++) {
+        const BpStudyPoint *point = &base->points[i];
+        fprintf(out, "  %12" PRIu64 " %12s %9s %9s %13.3g\n", point->samples,
+                bp_study_seconds(point->seconds, time, sizeof time),
+                bp_study_percent(point->claimed, noise, sizeof noise),
+                bp_study_percent(point->nrmse, error, sizeof error), point->rel_mse);
+    }
+}
+
+bool bp_study_print(const BpStudyResult *result, FILE *out) {
+    char line[512];
+    print_head(result, out);
+    print_settings(result, out);
+    print_counts(result, out);
+    fprintf(out,
+            "\nerror: noise and bias together, against the truth; a dash where the references cannot tell."
+            "\nefficiency: 1 / (noise^2 x time), over that of the first line."
+            "\n\nWhat to use for an error of\n");
+    for (int t = 0; t < BP_STUDY_TARGETS; t++)
+        fprintf(out, "  %s\n", bp_study_advice_text(result, &result->advice[t], line, sizeof line));
+    return fflush(out) == 0 && !ferror(out);
+}
+
+const char *bp_study_advice_text(const BpStudyResult *result, const BpStudyAdvice *advice, char *text,
+                                 size_t size) {
+    if (!advice->reachable) {
+        snprintf(text, size, "%g %%: none of these ways gets there", 100 * advice->target);
+        return text;
+    }
+    const BpStudySetting *setting = &result->series[advice->series].setting;
+    char seconds[32];
+    snprintf(text, size, "%g %%: %s, %.0f %s a pixel, %s at %ux%u: ballpark render %.300s --spp %.0f%s%s%s",
+             100 * advice->target, setting->name, advice->samples, advice->samples > 1 ? "samples" : "sample",
+             bp_study_seconds(advice->seconds, seconds, sizeof seconds), result->full_width,
+             result->full_height, result->scene->path, advice->samples,
+             setting->command[0] != '\0' ? " " : "", setting->command,
+             setting->fresnel == BP_STUDY_FRESNEL_EXACT     ? ", with \"fresnel\": \"exact\" in the scene"
+             : setting->fresnel == BP_STUDY_FRESNEL_SCHLICK ? ", with \"fresnel\": \"schlick\" in the scene"
+                                                            : "");
+    return text;
+}
+
+/* An empty cell where unknown. */
+static void cell(FILE *out, double value) {
+    if (isnan(value))
+        fputc(',', out);
+    else
+        fprintf(out, ",%.9g", value);
+}
+
+bool bp_study_print_csv(const BpStudyResult *result, FILE *out) {
+    fputs(
+        "setting,axis,options,fresnel,samples,seconds,wall_seconds,device_seconds,cpu_seconds,claimed_nrmse,"
+        "nrmse,mse,mse_error,rel_mse,front\n",
+        out);
+    for (size_t s = 0; s < result->count; s++) {
+        const BpStudySeries *series = &result->series[s];
+        for (size_t i = 0; i < series->count; i++) {
+            const BpStudyPoint *point = &series->points[i];
+            fprintf(out, "\"%s\",%s,%s,%s,%" PRIu64, series->setting.name, series->setting.axis,
+                    series->setting.command, bp_study_fresnel_name(series->setting.fresnel), point->samples);
+            const double values[] = {point->seconds,     point->wall_seconds, point->device_seconds,
+                                     point->cpu_seconds, point->claimed,      point->nrmse,
+                                     point->mse,         point->mse_error,    point->rel_mse};
+            for (size_t v = 0; v < sizeof values / sizeof values[0]; v++) cell(out, values[v]);
+            fprintf(out, ",%d\n", point->front);
+        }
+    }
+    return fflush(out) == 0 && !ferror(out);
+}
