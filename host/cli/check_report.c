@@ -1,6 +1,8 @@
 /* check_report.c: see check_report.h. */
 #include "check_report.h"
 
+#include "json_file.h"
+
 #include "report.h"
 
 #include <math.h>
@@ -66,10 +68,10 @@ json_t *bp_check_report_failure(const BpDeviceInfo *device, const char *message)
 }
 
 json_t *bp_check_report_document(const BpScene *scene, const BpCheckOptions *options, json_t *results) {
-    return json_pack("{s:s, s:i, s:i, s:I, s:i, s:I, s:I, s:o}", "scene", scene->path, "width",
+    return json_pack("{s:s, s:i, s:i, s:I, s:i, s:o, s:I, s:o}", "scene", scene->path, "width",
                      (int)scene->camera.width, "height", (int)scene->camera.height, "samples_per_pixel",
                      (json_int_t)options->render.samples_per_pixel, "max_depth",
-                     (int)options->render.max_depth, "seed", (json_int_t)options->render.seed, "spheres",
+                     (int)options->render.max_depth, "seed", bp_json_whole(options->render.seed), "spheres",
                      (json_int_t)scene->sphere_count, "results", results);
 }
 

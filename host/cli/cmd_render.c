@@ -42,7 +42,7 @@ static void warn_of_limits(const BpScene *scene, const BpRenderOptions *options)
 
 static void print_summary(const BpRunResult *result, const BpStopRule *rule, const BpLoopEnd *end) {
     const BpRenderReport *report = &result->report;
-    char samples[32], text[32], rate[32], count[64];
+    char samples[32], text[32], all[32], rate[32], count[64];
     BpSceneInfo info;
     bp_scene_info(result->scene, &info);
     snprintf(count, sizeof count, "%" PRIu64 " sample%s a pixel", result->samples_per_pixel,
@@ -54,10 +54,11 @@ static void print_summary(const BpRunResult *result, const BpStopRule *rule, con
             bp_format_percent(result->nrmse, text, sizeof text));
     /* The first launch, in which a driver may compile, says nothing about the rate. */
     const double tracing = fmax(end->seconds - report->first_launch_seconds, 1.0e-9);
-    fprintf(stderr, "%s samples in %s (%s/s)",
+    fprintf(stderr, "%s samples traced in %s (%s/s), %s in all",
             bp_format_count((double)report->samples, samples, sizeof samples),
-            bp_format_seconds(end->seconds, text, sizeof text),
-            bp_format_count((double)report->samples / tracing, rate, sizeof rate));
+            bp_format_seconds(tracing, text, sizeof text),
+            bp_format_count((double)report->samples / tracing, rate, sizeof rate),
+            bp_format_seconds(bp_clock_seconds() - result->times.start, all, sizeof all));
     const double more = 3.0 * tracing; /* half the error takes four times the samples */
     if (result->nrmse > 0.0)
         fprintf(stderr, "; half the error: %s more", bp_format_seconds(more, text, sizeof text));

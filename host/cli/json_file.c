@@ -4,6 +4,8 @@
 #include "../base/output_file.h"
 
 #include <errno.h>
+#include <inttypes.h>
+#include <stdio.h>
 #include <string.h>
 
 static bool dump(const json_t *root, FILE *stream) {
@@ -32,6 +34,13 @@ BpStatus bp_json_write(json_t *root, const char *path, BpError *err) {
 done:
     json_decref(root);
     return status;
+}
+
+json_t *bp_json_whole(uint64_t number) {
+    char text[24];
+    if (number <= INT64_MAX) return json_integer((json_int_t)number);
+    snprintf(text, sizeof text, "%" PRIu64, number);
+    return json_string(text);
 }
 
 BpStatus bp_json_check(const char *path, BpError *err) {

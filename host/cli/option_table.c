@@ -40,7 +40,9 @@ static const OptionRow rows[BP_OPTION_NUMBER] = {
                           0},
     [BP_OPTION_ERROR_MAP] = {"error-map", "FILE.png", "draw where the picture is how uncertain", 0},
     [BP_OPTION_STATS] = {"stats", "FILE",
-                         "write times, counts and the error as JSON; \"-\" is standard output", 0},
+                         "write times, counts and the error as JSON; \"-\" is standard output; "
+                         "a seed from 2^63 on is a text",
+                         0},
     [BP_OPTION_FORCE] = {"force", "", "render although the device fails its self-test", 0},
     [BP_OPTION_MEASURE] = {"measure", "", "measure what each effect costs", 0},
     [BP_OPTION_PIXEL] = {"pixel", "X,Y", "follow one path of this pixel, step by step; 0,0 is top left", 0},

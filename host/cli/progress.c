@@ -43,7 +43,12 @@ const char *bp_progress_format(const BpProgressView *view, unsigned columns, boo
              bp_format_count(view->samples_per_second, number, sizeof number));
 
     /* One column stays free: some terminals wrap when the last one is written. */
-    const unsigned room = columns - 1;
+    const unsigned room = columns > 0 ? columns - 1 : 0;
+    if (room < BAR_COLUMNS_MIN + strlen(parts[0])) {
+        const char *share = parts[0] + strspn(parts[0], " ");
+        snprintf(text, size, "%s", strlen(share) <= room ? share : "");
+        return text;
+    }
     unsigned wanted = BAR_COLUMNS_MIN;
     size_t part_count = 0;
     while (part_count < 4 && wanted + strlen(parts[part_count]) <= room)

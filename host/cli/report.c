@@ -18,6 +18,8 @@ const char *bp_format_percent(double fraction, char *text, size_t size) {
 const char *bp_format_seconds(double seconds, char *text, size_t size) {
     if (!(seconds < 1.0e9)) {
         snprintf(text, size, "ages");
+    } else if (seconds > 0.0 && seconds < 0.0995) {
+        snprintf(text, size, seconds < 0.00995 ? "%.2g ms" : "%.0f ms", 1000.0 * seconds);
     } else if (seconds < 9.95) {
         snprintf(text, size,
                  seconds == floor(seconds) ? "%.0f s"

@@ -10,7 +10,7 @@
 /* "1.2 %", or "unknown" for NaN. Returns `text`. */
 const char *bp_format_percent(double fraction, char *text, size_t size);
 
-/* "0.45 s", "12 s", "3 min 20 s", "2 h 05 min". */
+/* "23 ms", "0.45 s", "12 s", "3 min 20 s", "2 h 05 min". */
 const char *bp_format_seconds(double seconds, char *text, size_t size);
 
 /* Three digits and a word: "950", "23.4 thousand", "5.76 million", "1.20 billion". */

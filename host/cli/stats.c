@@ -2,6 +2,7 @@
 #include "stats.h"
 
 #include "../base/clock.h"
+#include "json_file.h"
 
 #include <inttypes.h>
 #include <math.h>
@@ -22,14 +23,6 @@ static json_t *json_text(const char *text) {
 /* JSON has no NaN. */
 static json_t *json_number(double value) {
     return isfinite(value) ? json_real(value) : json_null();
-}
-
-/* A seed of 64 bits; jansson's integers have a sign, so the upper half is written as a text. */
-static json_t *json_seed(uint64_t seed) {
-    char text[24];
-    if (seed <= INT64_MAX) return json_integer((json_int_t)seed);
-    snprintf(text, sizeof text, "%" PRIu64, seed);
-    return json_string(text);
 }
 
 static json_t *device_json(const BpDeviceInfo *info) {
@@ -67,7 +60,7 @@ json_t *bp_stats_json(const BpRunResult *result) {
         json_pack("{s:o, s:i, s:i, s:I, s:I, s:o, s:I, s:o, s:o}", "scene", json_text(result->scene_path),
                   "width", (int)info.width, "height", (int)info.height, "samples_per_pixel",
                   (json_int_t)result->samples_per_pixel, "max_depth", (json_int_t)options->max_depth, "seed",
-                  json_seed(options->seed), "spheres", (json_int_t)info.spheres, "device",
+                  bp_json_whole(options->seed), "spheres", (json_int_t)info.spheres, "device",
                   device_json(&report->device), "effects", effects_json(&report->effects));
     json_t *choices =
         json_pack("{s:s, s:s, s:s, s:s}", "kernel", report->kernel == BP_KERNEL_PACKET ? "packet" : "sample",

@@ -14,7 +14,7 @@
 #include <sys/ioctl.h>
 #include <unistd.h>
 
-enum { COLUMNS_DEFAULT = 80, COLUMNS_MIN = 20 };
+enum { COLUMNS_DEFAULT = 80 };
 #define SILENT_SECONDS 0.5
 #define REDRAW_SECONDS 0.1
 
@@ -35,7 +35,7 @@ bool bp_terminal_is_live(bool quiet) {
 unsigned bp_terminal_columns(void) {
     struct winsize size;
     if (ioctl(STDERR_FILENO, TIOCGWINSZ, &size) != 0 || size.ws_col == 0) return COLUMNS_DEFAULT;
-    return size.ws_col < COLUMNS_MIN ? COLUMNS_MIN : size.ws_col;
+    return size.ws_col;
 }
 
 bool bp_terminal_has_utf8(void) {
@@ -60,8 +60,13 @@ static void draw_waiting(const BpWaiting *waiting) {
     const double seconds = bp_clock_seconds() - waiting->start;
     char line[320];
     const int columns = (int)bp_terminal_columns();
-    snprintf(line, sizeof line, "%.*s%s %.0f s", columns > 14 ? columns - 14 : 1, waiting->text,
-             dots[(int)(seconds * 4.0) % 4], seconds);
+    size_t cut = columns > 14 ? (size_t)columns - 14 : 0;
+    if (cut > strlen(waiting->text)) cut = strlen(waiting->text);
+    while (cut > 0 && ((unsigned char)waiting->text[cut] & 0xc0u) == 0x80u) --cut; /* whole characters */
+    snprintf(line, sizeof line, "%.*s%s %.0f s", (int)cut, waiting->text, dots[(int)(seconds * 4.0) % 4],
+             seconds);
+    /* One column stays free. Bytes are at least as many as columns. */
+    if ((size_t)columns <= strlen(line)) line[columns - 1] = '\0';
     bp_terminal_show(line);
 }
 

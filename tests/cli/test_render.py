@@ -3,6 +3,7 @@
 import json
 import math
 import os
+import re
 import shutil
 
 from cli import SOURCE, ProgramTest, main, read_pfm, scene
@@ -52,7 +53,11 @@ class Picture(Render):
         self.assert_same(last, self.pfm("--seed", "0xffffffffffffffff"))
         self.assert_different(last, self.pfm("--seed", "4294967295"))
         self.assertEqual(self.stats("--seed", str(2**63 - 1))["seed"], 2**63 - 1)
-        self.assertEqual(self.stats("--seed", "0xffffffffffffffff")["seed"], "18446744073709551615")
+        for seed in (2**63, 2**64 - 1):
+            self.assertEqual(self.stats("--seed", str(seed))["seed"], str(seed))
+            report = json.loads(self.succeed("check", "s.json", "--width", "4", "--spp", "4", "--seed", str(seed),
+                                             "--json", "-").stdout)
+            self.assertEqual(report["seed"], str(seed))
 
     def test_transfer(self):
         def bytes_of(*options):
@@ -209,7 +214,22 @@ class StopRules(Render):
     def test_summary(self):
         said = self.succeed("render", "s.json").errors
         self.assertRegex(said, r"\As\.png: 16x16, 8 samples a pixel, error [\d.]+ %\n"
-                               r"2\.05 thousand samples in [\d.]+ s \([\d.]+ .*/s\); half the error: [\d.]+ s more\n")
+                               r"2\.05 thousand samples traced in [\d.]+ m?s \([\d.]+ .*/s\), [\d.]+ m?s in all; "
+                               r"half the error: [\d.]+ m?s more\n")
+
+    def test_summary_does_not_contradict_itself(self):
+        """The rate is that of the time beside it, which is a part of the whole, on short runs above all."""
+        words = {"": 1.0, "thousand": 1e3, "million": 1e6, "billion": 1e9}
+        for options in (["--spp", "1"], ["--spp", "2", "--width", "1"], ["--spp", "3000"]):
+            said = self.succeed("render", "s.json", *options).errors
+            number, word, time, unit, rate, rate_word, whole, whole_unit = re.search(
+                r"([\d.]+) ?(\w*) samples traced in ([\d.]+) (m?s) \(([\d.]+) ?(\w*)/s\), ([\d.]+) (m?s) in all",
+                said).groups()
+            seconds = float(time) / (1e3 if unit == "ms" else 1)
+            total = float(whole) / (1e3 if whole_unit == "ms" else 1)
+            samples = float(number) * words[word]
+            self.assertLess(abs(samples / seconds / (float(rate) * words[rate_word]) - 1), 0.1, said)
+            self.assertLessEqual(seconds, total, said)
 
 
 if __name__ == "__main__":

@@ -88,6 +88,29 @@ class Bar(ProgramTest):
             for text in self.draw(columns=columns).drawings():
                 self.assertLess(sum(not unicodedata.combining(c) for c in text), columns, text)
 
+    def test_every_narrow_width(self):
+        """One render, whose terminal is resized: what is drawn never reaches the last column, where lines would wrap."""
+        screen = Terminal(self, "render", "s.json", *FOREVER, columns=80)
+        for columns in range(1, 41):
+            fcntl.ioctl(screen.master, termios.TIOCSWINSZ, struct.pack("HHHH", 24, columns, 0, 0))
+            screen.read_until(rb"\x1b\[K")
+            screen.seen = b""  # the drawing under way may not have known
+            screen.read_until(rb"\r[^\r\x1b]*\x1b\[K")
+            for text in screen.drawings():
+                self.assertLess(len(text), columns, text)
+                self.assertTrue(columns < 7 or "%" in text, text)
+        os.kill(screen.process.pid, signal.SIGINT)
+        self.assertEqual(screen.finish(), 130)
+
+    def test_waiting_in_a_narrow_terminal(self):
+        os.mkfifo(self.path("slöw.json"))
+        for columns in (1, 10, 17, 18):
+            screen = Terminal(self, "render", "slöw.json", columns=columns)
+            screen.read_until(rb"\x1b\[K[^\x1b]*\x1b\[K")
+            for text in screen.drawings():
+                self.assertLess(len(text), columns, text)
+            screen.process.kill()
+
     def test_plain_letters(self):
         screen = self.draw(environment={"LC_ALL": "C"})
         self.assertTrue(screen.seen.isascii())
