@@ -103,9 +103,3 @@ BpStatus bp_bench_scene_write(const char *name, const char *folder, char *path, 
     BP_TRY(join(folder, name, ".json", path, path_size, err));
     return field_count(name) != 0 ? write_field(name, folder, path, err) : write_cover(name, path, err);
 }
-
-void bp_bench_scene_remove(const char *name, const char *folder) {
-    char path[4096];
-    if (join(folder, name, ".json", path, sizeof path, NULL) == BP_OK) unlink(path);
-    if (field_count(name) != 0 && join(folder, name, ".ply", path, sizeof path, NULL) == BP_OK) unlink(path);
-}

@@ -18,7 +18,4 @@ bool bp_bench_scene_known(const char *name);
 BpStatus bp_bench_scene_write(const char *name, const char *folder, char *path, size_t path_size,
                               BpError *err);
 
-/* Removes the files that bp_bench_scene_write() made. */
-void bp_bench_scene_remove(const char *name, const char *folder);
-
 #endif

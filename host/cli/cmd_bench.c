@@ -6,12 +6,14 @@
  * Scenes take turns, round after round, so that what else the machine does spreads over all of them. */
 #include "commands.h"
 
+#include "../base/plural.h"
 #include "bench_measure.h"
 #include "bench_scenes.h"
 #include "interrupt.h"
 #include "json_file.h"
 #include "report.h"
 #include "setup.h"
+#include "temporary_folder.h"
 
 #include <errno.h>
 #include <inttypes.h>
@@ -37,8 +39,8 @@ typedef struct Bench {
     Entry *entries;
     size_t count;
     uint32_t rounds;
-    char folder[4096]; /* where fixed scenes stand */
-    bool temporary;    /* the folder is ours to remove */
+    const char *folder; /* where fixed scenes stand: --output, or our own */
+    BpTemporaryFolder own;
 } Bench;
 
 /* ---- figures of the rounds ---- */
@@ -116,9 +118,9 @@ static BpStatus print_table(const Bench *bench, BpError *err) {
     printf("%-12s %11s %9s %9s %9s %10s %11s %9s %9s %9s %8s\n", "scene", "spheres", "load", "tree", "kernel",
            "Msamples/s", "Msegments/s", "ns/segm.", "CPU ns", "spread", "B/sphere");
     for (size_t i = 0; i < bench->count; ++i) print_row(bench, &bench->entries[i]);
-    printf("medians of %u rounds; spread: between the quartiles; CPU ns: processor time a segment, all "
+    printf("medians of %u round%s; spread: between the quartiles; CPU ns: processor time a segment, all "
            "threads\n",
-           bench->rounds);
+           bench->rounds, bp_plural(bench->rounds));
     if (fflush(stdout) != 0 || ferror(stdout))
         return bp_fail(err, BP_ERR_FILE, "cannot write to standard output: %s", strerror(errno));
     return BP_OK;
@@ -189,17 +191,10 @@ static BpStatus write_json(const Bench *bench, const char *path, BpError *err) {
 
 /* The folder of the fixed scenes: --output, made if it is not there; or one of our own. */
 static BpStatus open_folder(const BpCommandLine *line, Bench *bench, BpError *err) {
-    if (line->output != NULL) {
-        snprintf(bench->folder, sizeof bench->folder, "%s", line->output);
-        if (mkdir(bench->folder, 0777) != 0 && errno != EEXIST)
-            return bp_fail(err, BP_ERR_FILE, "cannot make the folder %s: %s", line->output, strerror(errno));
-        return BP_OK;
-    }
-    const char *above = getenv("TMPDIR");
-    snprintf(bench->folder, sizeof bench->folder, "%s/ballpark-bench-XXXXXX", above != NULL ? above : "/tmp");
-    if (mkdtemp(bench->folder) == NULL)
-        return bp_fail(err, BP_ERR_FILE, "cannot make the folder %s: %s", bench->folder, strerror(errno));
-    bench->temporary = true;
+    bench->folder = line->output != NULL ? line->output : bench->own.path;
+    if (line->output == NULL) return bp_temporary_folder_make(&bench->own, err);
+    if (mkdir(line->output, 0777) != 0 && errno != EEXIST)
+        return bp_fail(err, BP_ERR_FILE, "cannot make the folder %s: %s", line->output, strerror(errno));
     return BP_OK;
 }
 
@@ -216,11 +211,18 @@ static BpStatus prepare(const BpCommandLine *line, Bench *bench, BpError *err) {
         if (entry->runs == NULL) return bp_fail(err, BP_ERR_MEMORY, "out of memory for the rounds");
         entry->name = line->operand_count > 0 ? line->operands[i] : bp_bench_scene_names[i];
         entry->fixed = bp_bench_scene_known(entry->name);
+        if (strcmp(entry->name, "-") == 0)
+            return bp_fail(
+                err, BP_ERR_USAGE,
+                "ballpark bench reads a scene again in every round, standard input (\"-\") can be read once "
+                "only: name a file");
         if (!entry->fixed) {
             snprintf(entry->path, sizeof entry->path, "%s", entry->name);
             continue;
         }
-        if (bench->folder[0] == '\0') BP_TRY(open_folder(line, bench, err));
+        if (bench->folder == NULL) BP_TRY(open_folder(line, bench, err));
+        if (bp_interrupted())
+            return bp_fail(err, BP_ERR_INTERRUPTED, "interrupted before a scene was traced");
         BP_TRY(bp_bench_scene_write(entry->name, bench->folder, entry->path, sizeof entry->path, err));
     }
     return BP_OK;
@@ -244,12 +246,8 @@ static BpStatus run_rounds(const BpCommandLine *line, Bench *bench, BpError *err
 }
 
 static void clear(Bench *bench) {
-    for (size_t i = 0; i < bench->count && bench->entries != NULL; ++i) {
-        Entry *entry = &bench->entries[i];
-        if (bench->temporary && entry->fixed) bp_bench_scene_remove(entry->name, bench->folder);
-        free(entry->runs);
-    }
-    if (bench->temporary) rmdir(bench->folder);
+    for (size_t i = 0; i < bench->count && bench->entries != NULL; ++i) free(bench->entries[i].runs);
+    bp_temporary_folder_remove(&bench->own);
     free(bench->entries);
 }
 

@@ -5,6 +5,7 @@
 #include "commands.h"
 
 #include "../base/output_file.h"
+#include "../base/plural.h"
 #include "../image/image.h"
 #include "apart.h"
 #include "check_report.h"
@@ -73,9 +74,10 @@ static BpStatus check_device(const CheckTask *task, FILE *shown, json_t **report
     if (*report == NULL || text == NULL)
         status = bp_fail(err, BP_ERR_MEMORY, "out of memory for a report");
     else if (shown != NULL)
-        fprintf(shown, "%s on %s (%s), %ux%u pixels, %llu samples each: %s", task->scene->path,
+        fprintf(shown, "%s on %s (%s), %ux%u pixels, %llu sample%s each: %s", task->scene->path,
                 result->report.device.name, result->report.device.platform, result->kernel.width,
-                result->kernel.height, (unsigned long long)task->options->render.samples_per_pixel, text);
+                result->kernel.height, (unsigned long long)task->options->render.samples_per_pixel,
+                bp_plural(task->options->render.samples_per_pixel), text);
     free(text);
 done:
     if (live) bp_terminal_show("");

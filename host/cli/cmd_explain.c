@@ -38,7 +38,7 @@ static void print_effects(const BpEffectInfo *effects, size_t count) {
     for (size_t e = 0; e < count; ++e) in += effects[e].simulated ? 1 : 0;
     for (size_t e = 0; e < count; ++e)
         printf("  %-12s %-4s %s\n", effects[e].name, effects[e].simulated ? "in" : "out", effects[e].reason);
-    printf("  %zu of %zu effects are in the kernel\n", in, count);
+    printf("  %zu of %zu effects %s in the kernel\n", in, count, in == 1 ? "is" : "are");
 }
 
 /* ---- what they cost --------------------------------------------------------------------------------------

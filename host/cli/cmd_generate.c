@@ -5,6 +5,7 @@
 #include "commands.h"
 
 #include "../base/output_file.h"
+#include "../base/plural.h"
 #include "../scene/scene.h"
 #include "../scene/scene_field.h"
 
@@ -31,8 +32,8 @@ static BpStatus generate_cover(const BpCommandLine *line, uint64_t seed, BpError
     if (status == BP_OK && !line->quiet) {
         BpSceneInfo info;
         bp_scene_info(scene, &info);
-        fprintf(stderr, "%s: %zu spheres, %s\n", to_stream ? "standard output" : path, info.spheres,
-                info.title);
+        fprintf(stderr, "%s: %zu sphere%s, %s\n", to_stream ? "standard output" : path, info.spheres,
+                bp_plural(info.spheres), info.title);
     }
     bp_scene_destroy(&scene);
     return status;
@@ -46,7 +47,9 @@ static BpStatus generate_field(const BpCommandLine *line, uint64_t seed, BpError
                        "--output -: a field is written to a file; name one ending in .ply");
     BP_TRY(bp_output_check(path, err));
     BP_TRY(bp_field_write_ply(count, seed, path, err));
-    if (!line->quiet) fprintf(stderr, "%s: %" PRIu64 " spheres in the cube from -10 to 10\n", path, count);
+    if (!line->quiet)
+        fprintf(stderr, "%s: %" PRIu64 " sphere%s in the cube from -10 to 10\n", path, count,
+                bp_plural(count));
     return BP_OK;
 }
 

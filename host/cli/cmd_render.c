@@ -5,6 +5,7 @@
 #include "commands.h"
 
 #include "../base/clock.h"
+#include "../base/plural.h"
 #include "../engine/limits.h"
 #include "json_file.h"
 #include "render_loop.h"
@@ -46,7 +47,7 @@ static void print_summary(const BpRunResult *result, const BpStopRule *rule, con
     BpSceneInfo info;
     bp_scene_info(result->scene, &info);
     snprintf(count, sizeof count, "%" PRIu64 " sample%s a pixel", result->samples_per_pixel,
-             result->samples_per_pixel == 1 ? "" : "s");
+             bp_plural(result->samples_per_pixel));
     if (result->samples_per_pixel == 0) snprintf(count, sizeof count, "less than one sample a pixel");
     fprintf(stderr, "%s: %" PRIu32 "x%" PRIu32 ", %s%s, error %s\n", result->output, info.width, info.height,
             count,
@@ -54,8 +55,8 @@ static void print_summary(const BpRunResult *result, const BpStopRule *rule, con
             bp_format_percent(result->nrmse, text, sizeof text));
     /* The first launch, in which a driver may compile, says nothing about the rate. */
     const double tracing = fmax(end->seconds - report->first_launch_seconds, 1.0e-9);
-    fprintf(stderr, "%s samples traced in %s (%s/s), %s in all",
-            bp_format_count((double)report->samples, samples, sizeof samples),
+    fprintf(stderr, "%s sample%s traced in %s (%s/s), %s in all",
+            bp_format_count((double)report->samples, samples, sizeof samples), bp_plural(report->samples),
             bp_format_seconds(tracing, text, sizeof text),
             bp_format_count((double)report->samples / tracing, rate, sizeof rate),
             bp_format_seconds(bp_clock_seconds() - result->times.start, all, sizeof all));
@@ -68,30 +69,31 @@ static void print_summary(const BpRunResult *result, const BpStopRule *rule, con
                                               : "a picture that is not black");
     fprintf(stderr, "\n");
     if (rule->error > 0.0 && end->reason == BP_STOP_SAMPLES)
-        fprintf(stderr, "the error asked for was not reached: all %" PRIu64 " samples are used up\n",
-                rule->samples_max);
+        fprintf(stderr,
+                "the error asked for was not reached: the limit of %" PRIu64 " sample%s a pixel came first\n",
+                rule->samples_max, bp_plural(rule->samples_max));
     if (rule->error > 0.0 && end->reason == BP_STOP_TIME)
         fprintf(stderr, "the error asked for was not reached in time\n");
     /* Nothing seen in n independent samples: below 3/n with 95 % confidence (Hanley, Lippman-Hand 1983). */
     if (end->reason == BP_STOP_BLACK)
         fprintf(
             stderr,
-            "the picture is black, so --error has nothing to go by: of %s samples none brought light, hence "
+            "the picture is black, so --error has nothing to go by: of %s sample%s none brought light, hence "
             "fewer than %.1g do\n",
-            samples, 3.0 / (double)report->samples);
+            samples, bp_plural(report->samples), 3.0 / (double)report->samples);
     if (end->reason == BP_STOP_CONSTANT)
         fprintf(
             stderr,
-            "the samples of every pixel agree, so --error has nothing to wait for: of %s samples none stood "
+            "the samples of every pixel agree, so --error has nothing to wait for: of %s sample%s none stood "
             "out, hence fewer than %.1g do\n",
-            samples, 3.0 / (double)report->samples);
+            samples, bp_plural(report->samples), 3.0 / (double)report->samples);
     if (report->cut_paths > 0)
-        fprintf(stderr, "%s of the paths were cut at %" PRIu32 " segments (--depth) and count as black\n",
+        fprintf(stderr, "%s of the paths were cut at %" PRIu32 " segment%s (--depth) and count as black\n",
                 bp_format_percent((double)report->cut_paths / (double)report->samples, text, sizeof text),
-                result->options->max_depth);
+                result->options->max_depth, bp_plural(result->options->max_depth));
     if (report->invalid_samples > 0)
-        fprintf(stderr, "warning: %" PRIu64 " samples were not finite; they are left out of the picture\n",
-                report->invalid_samples);
+        fprintf(stderr, "warning: %" PRIu64 " sample%s not finite; left out of the picture\n",
+                report->invalid_samples, report->invalid_samples == 1 ? " was" : "s were");
 }
 
 /* Picture, statistics and summary of a render that has stopped. */
@@ -110,8 +112,8 @@ static BpStatus deliver(const BpCommandLine *line, const BpResultFile *file, con
     if (!line->quiet) print_summary(result, rule, end);
     if (end->reason != BP_STOP_NOT_YET) return BP_OK;
     return bp_fail(err, BP_ERR_INTERRUPTED,
-                   "interrupted after %" PRIu64 " of %" PRIu64 " samples a pixel%s; %s shows what there is",
-                   result->samples_per_pixel, rule->samples_max,
+                   "interrupted after %" PRIu64 " of %" PRIu64 " sample%s a pixel%s; %s shows what there is",
+                   result->samples_per_pixel, rule->samples_max, bp_plural(rule->samples_max),
                    result->samples_per_pixel == 0 ? " (some pixels have one, the others are black)" : "",
                    result->output);
 }
@@ -150,8 +152,8 @@ BpStatus bp_command_render(const BpCommandLine *line, BpError *err) {
     options.samples_per_pixel = bp_stop_first(&rule);
 
     BP_TRY_GOTO(status, bp_setup_devices(line, &devices, &result.device_count, err), done);
-    waiting = bp_waiting_begin(line->quiet, "preparing %zu spheres and the kernel for %s", info.spheres,
-                               devices[0].name);
+    waiting = bp_waiting_begin(line->quiet, "preparing %zu sphere%s and the kernel for %s", info.spheres,
+                               bp_plural(info.spheres), devices[0].name);
     BP_TRY_GOTO(status, bp_setup_self_test(line, devices, result.device_count, err), done);
     BP_TRY_GOTO(status, bp_render_create(scene, &options, devices, result.device_count, &render, err), done);
     bp_waiting_end(waiting);

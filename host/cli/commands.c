@@ -21,7 +21,8 @@ const BpCommand bp_commands[] = {
         .operands_max = 1,
         .summary = "render a scene to a picture",
         .description =
-            "Renders SCENE, a JSON document (scenes/README.md says how to write one). The picture is named "
+            "Renders SCENE, a JSON document (scenes/README.md says how to write one; \"-\" is standard "
+            "input, for every command that takes a scene). The picture is named "
             "like the scene and stands in the current folder, unless --output says otherwise; its ending "
             "picks the "
             "format: .png .ppm .pfm .exr (with layers for error, samples, depth, normal and albedo), or "
@@ -41,7 +42,8 @@ const BpCommand bp_commands[] = {
             "  ballpark render scenes/cover.json --width 300 --spp 20   a quick look\n"
             "  ballpark render scenes/cover.json --error 1              until the noise is 1 %\n"
             "  ballpark render scenes/cover.json --time 30 -o half.exr  as good as 30 seconds allow\n"
-            "  ballpark render scenes/cover.json -o - | display         to another program\n",
+            "  ballpark render scenes/cover.json -o - | display         to another program\n"
+            "  ballpark generate cover | ballpark render - -o cover.png from another program\n",
         .options = TAKES_DRAWING | TAKES(OUTPUT) | TAKES(SPP) | TAKES(ERROR) | TAKES(TIME) |
                    TAKES(FIRST_SAMPLE) | TAKES(SAMPLER) | TAKES(TRANSFER) | TAKES(FORMAT) | TAKES(ERROR_MAP) |
                    TAKES(STATS) | TAKES(FORCE) | TAKES(QUIET),

@@ -12,7 +12,8 @@
  * (BP_ERR_MEMORY), so that the result of json_pack() can be handed over unseen. */
 BpStatus bp_json_write(json_t *root, const char *path, BpError *err);
 
-/* A number of 64 bits, exact: jansson's integers have a sign, so from 2^63 on it is a text of decimal digits. */
+/* A number of 64 bits, exact: jansson's integers have a sign, so from 2^63 on it is a text of decimal digits.
+ */
 json_t *bp_json_whole(uint64_t number);
 
 /* Whether `path` can be written; before work begins. */

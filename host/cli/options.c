@@ -206,10 +206,16 @@ static BpStatus check_operands(const BpCommandLine *line, BpError *err) {
         return bp_fail(err, BP_ERR_USAGE, "ballpark %s takes one %s at a time, found \"%.200s\" too",
                        command->name, command->operands, extra);
     }
-    for (size_t i = 0; i < line->operand_count; ++i)
+    size_t from_input = 0;
+    for (size_t i = 0; i < line->operand_count; ++i) {
         if (line->operands[i][0] == '\0')
             return bp_fail(err, BP_ERR_USAGE, "ballpark %s needs %s, found an empty name", command->name,
                            command->operands);
+        from_input += strcmp(line->operands[i], "-") == 0;
+    }
+    if (from_input > 1)
+        return bp_fail(err, BP_ERR_USAGE, "ballpark %s: \"-\", standard input, can be read once only",
+                       command->name);
     return BP_OK;
 }
 

@@ -16,7 +16,8 @@ typedef struct BpProgressView {
 } BpProgressView;
 
 /* "███░░░  43 %  12 s left  error 2.1 %  5.2 million samples/s" in less than `columns` columns: what does not
- * fit is left out, from the right; where a bar has no room the share stands alone, or nothing. Returns `text`. */
+ * fit is left out, from the right; where a bar has no room the share stands alone, or nothing. Returns
+ * `text`. */
 const char *bp_progress_format(const BpProgressView *view, unsigned columns, bool utf8, char *text,
                                size_t size);
 

@@ -47,6 +47,9 @@ static BpStatus choose_output(const BpCommandLine *line, const char *default_pat
                               BpError *err) {
     const bool has_format = bp_option_given(line, BP_OPTION_FORMAT);
     result->format = has_format ? line->format : BP_FORMAT_PNG;
+    if (line->output == NULL && strcmp(default_path, "-") == 0)
+        return bp_fail(err, BP_ERR_USAGE,
+                       "a scene from standard input has no name for its picture to take: say --output FILE");
     if (line->output == NULL) {
         BP_TRY(default_name(default_path, result->format, result, err));
         return bp_output_check(result->path, err);

@@ -1,17 +1,36 @@
 /* setup.c: see setup.h. */
 #include "setup.h"
 
+#include "../base/plural.h"
 #include "../engine/pocl.h"
 #include "../engine/self_test.h"
+#include "../scene/scene_file.h"
 #include "apart.h"
 
 #include <inttypes.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <unistd.h>
+
+BpStatus bp_setup_load(const char *path, BpScene **scene, BpError *err) {
+    static const char name[] = "standard input";
+    char *text = NULL;
+    size_t length = 0;
+    if (strcmp(path, "-") != 0) return bp_scene_load(path, scene, err);
+    if (isatty(STDIN_FILENO))
+        return bp_fail(
+            err, BP_ERR_USAGE,
+            "the scene \"-\" is standard input, and that is the terminal: send a scene there, as in "
+            "ballpark generate cover | ballpark render - -o cover.png");
+    BP_TRY(bp_stream_read(stdin, 0, name, &text, &length, err));
+    const BpStatus status = bp_scene_parse(text, length, name, scene, err);
+    free(text);
+    return status;
+}
 
 BpStatus bp_setup_scene(const BpCommandLine *line, const char *path, BpScene **scene, BpError *err) {
-    BP_TRY(bp_scene_load(path, scene, err));
+    BP_TRY(bp_setup_load(path, scene, err));
     if (!bp_option_given(line, BP_OPTION_WIDTH)) return BP_OK;
     const BpStatus status = bp_scene_set_width(*scene, line->width, err);
     if (status != BP_OK) bp_scene_destroy(scene);
@@ -34,10 +53,10 @@ BpStatus bp_setup_options(const BpCommandLine *line, const BpScene *scene, BpRen
     options->force = line->force;
     const uint64_t samples_max = BP_SAMPLE_NUMBERS - options->first_sample;
     if (options->samples_per_pixel > samples_max)
-        return bp_fail(err, BP_ERR_USAGE,
-                       "--first-sample %" PRIu64 " leaves numbers for %" PRIu64 " samples, %" PRIu64
-                       " are asked for",
-                       options->first_sample, samples_max, options->samples_per_pixel);
+        return bp_fail(
+            err, BP_ERR_USAGE,
+            "--first-sample %" PRIu64 " leaves numbers for %" PRIu64 " sample%s; asked for are %" PRIu64,
+            options->first_sample, samples_max, bp_plural(samples_max), options->samples_per_pixel);
     return BP_OK;
 }
 

@@ -1,6 +1,7 @@
 /* accumulator.c: making, ranges and merging; see accumulator.h. */
 #include "accumulator.h"
 
+#include "../base/plural.h"
 #include "../base/status.h"
 
 #include <inttypes.h>
@@ -78,8 +79,8 @@ static BpStatus check_range(const BpAccumulator *accumulator, const struct BpSam
                             BpError *err) {
     if (range->count < 1 || range->first >= SAMPLES_END || range->count > SAMPLES_END - range->first)
         return bp_fail(err, BP_ERR_USAGE,
-                       "%" PRIu64 " samples from number %" PRIu64 " on: sample numbers are 0 to 2^32 - 1",
-                       range->count, range->first);
+                       "%" PRIu64 " sample%s from number %" PRIu64 " on: sample numbers are 0 to 2^32 - 1",
+                       range->count, bp_plural(range->count), range->first);
     for (size_t i = 0; i < accumulator->range_count; i++) {
         const struct BpSampleRange *other = &accumulator->ranges[i];
         if (range->first < other->first + other->count && other->first < range->first + range->count)

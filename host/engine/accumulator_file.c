@@ -2,6 +2,7 @@
 #include "accumulator_file.h"
 
 #include "../base/output_file.h"
+#include "../base/plural.h"
 #include "accumulator_header.h"
 
 #include <errno.h>
@@ -121,10 +122,10 @@ static BpStatus check_length(FILE *in, const char *name, const BpAccumulator *si
     const uint64_t actual = (uint64_t)length;
     if (actual == expected) return BP_OK;
     return bp_fail(err, BP_ERR_FILE,
-                   "%s is %s: %" PRIu64 " bytes, where its header (%" PRIu32 " x %" PRIu32 " pixels, %" PRIu32
-                   " replicates) says %" PRIu64,
-                   name, actual < expected ? "truncated" : "too long", actual, sizes->width, sizes->height,
-                   sizes->replicates, expected);
+                   "%s is %s: %" PRIu64 " byte%s, where its header (%" PRIu32 " x %" PRIu32
+                   " pixels, %" PRIu32 " replicate%s) says %" PRIu64,
+                   name, actual < expected ? "truncated" : "too long", actual, bp_plural(actual),
+                   sizes->width, sizes->height, sizes->replicates, bp_plural(sizes->replicates), expected);
 }
 
 static BpStatus read_failed(FILE *in, const char *name, BpError *err) {

@@ -1,6 +1,8 @@
 /* effects.c: see effects.h. */
 #include "effects.h"
 
+#include "../base/plural.h"
+
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -75,10 +77,6 @@ static uint32_t material_bits(const BpMaterial *material) {
     return bits;
 }
 
-static const char *plural(size_t count) {
-    return count == 1 ? "" : "s";
-}
-
 /* What is left out with an effect of a material, as "... are left out" continues. */
 static const char *left_out(BpEffect effect) {
     switch (effect) {
@@ -107,15 +105,16 @@ static void explain_material(BpEffect effect, const Use *use, const Use *all, bo
     if (use->materials > 0 && one_kind)
         snprintf(reason, size,
                  "the one kind of material in use%s, on all %zu sphere%s: no switch between kinds", kinds,
-                 all->spheres, plural(all->spheres));
+                 all->spheres, bp_plural(all->spheres));
     else if (use->materials > 0)
         snprintf(reason, size, "%zu of the %zu material%s in use, on %zu of %zu sphere%s", use->materials,
-                 all->materials, plural(all->materials), use->spheres, all->spheres, plural(all->spheres));
+                 all->materials, bp_plural(all->materials), use->spheres, all->spheres,
+                 bp_plural(all->spheres));
     else if (all->spheres == 0)
         snprintf(reason, size, "no spheres: the picture is the sky");
     else if (use->unused > 0)
         snprintf(reason, size, "%zu material%s would, but no sphere has %s: %s", use->unused,
-                 plural(use->unused), use->unused == 1 ? "it" : "them", left_out(effect));
+                 bp_plural(use->unused), use->unused == 1 ? "it" : "them", left_out(effect));
     else if (effect == BP_EFFECT_EMISSION)
         snprintf(reason, size, "nothing emits: %s",
                  all->materials == 1 ? "not the one material in use" : in_use);
@@ -202,7 +201,7 @@ void bp_effects_analyse(const BpScene *scene, BpEffects *effects) {
         snprintf(effects->reason[BP_EFFECT_TREE], size, "no spheres: the picture is the sky");
     } else {
         snprintf(effects->reason[BP_EFFECT_TREE], size, "%zu sphere%s: a list, no tree", scene->sphere_count,
-                 plural(scene->sphere_count));
+                 bp_plural(scene->sphere_count));
     }
 }
 

@@ -1,6 +1,7 @@
 /* scene_field.c: see scene_field.h. */
 #include "scene_field.h"
 
+#include "../base/plural.h"
 #include "base/output_file.h"
 #include "scene.h"
 #include "scene_random.h"
@@ -43,8 +44,8 @@ static BpStatus put_all(uint64_t count, uint64_t seed, FILE *stream, BpError *er
         unsigned char *end = block;
         for (uint64_t i = 0; i < some; i++) end = put_sphere(end, spacing, &random);
         if (fwrite(block, SPHERE_BYTES, (size_t)some, stream) != some)
-            return bp_fail(err, BP_ERR_FILE, "cannot write the field after %" PRIu64 " spheres: %s", done,
-                           strerror(errno));
+            return bp_fail(err, BP_ERR_FILE, "cannot write the field after %" PRIu64 " sphere%s: %s", done,
+                           bp_plural(done), strerror(errno));
         done += some;
     }
     return BP_OK;

@@ -58,10 +58,8 @@ BpStatus bp_file_open(const char *path, bool accept_pipe, const char *expected, 
     return BP_OK;
 }
 
-BpStatus bp_file_read(const char *path, const char *expected, char **bytes, size_t *length, BpError *err) {
-    FILE *stream = NULL;
-    uint64_t size = 0;
-    BP_TRY(bp_file_open(path, true, expected, &stream, &size, err));
+BpStatus bp_stream_read(FILE *stream, uint64_t size, const char *path, char **bytes, size_t *length,
+                        BpError *err) {
     BpStatus status = BP_OK;
     char *buffer = NULL;
     size_t used = 0, capacity = 0;
@@ -86,6 +84,14 @@ BpStatus bp_file_read(const char *path, const char *expected, char **bytes, size
     buffer = NULL;
 done:
     free(buffer);
+    return status;
+}
+
+BpStatus bp_file_read(const char *path, const char *expected, char **bytes, size_t *length, BpError *err) {
+    FILE *stream = NULL;
+    uint64_t size = 0;
+    BP_TRY(bp_file_open(path, true, expected, &stream, &size, err));
+    const BpStatus status = bp_stream_read(stream, size, path, bytes, length, err);
     fclose(stream);
     return status;
 }

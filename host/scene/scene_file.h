@@ -10,6 +10,10 @@
  * error what should have been there. *size is in bytes, 0 for a pipe. The caller closes the stream. */
 BpStatus bp_file_open(const char *path, bool accept_pipe, const char *expected, FILE **stream, uint64_t *size,
                       BpError *err);
+/* Reads an open stream to its end; `size`: how much that is, 0 when not known; `path` names it in errors.
+ * Free *bytes with free(). */
+BpStatus bp_stream_read(FILE *stream, uint64_t size, const char *path, char **bytes, size_t *length,
+                        BpError *err);
 /* Reads a file or pipe whole. Free *bytes with free(). */
 BpStatus bp_file_read(const char *path, const char *expected, char **bytes, size_t *length, BpError *err);
 

@@ -1,6 +1,7 @@
 /* scene_ply.c: the vertices of a PLY file; see scene_ply.h. */
 #include "scene_ply.h"
 
+#include "../base/plural.h"
 #include "scene_document.h"
 #include "scene_fault.h"
 #include "scene_ply_parts.h"
@@ -263,13 +264,13 @@ static BpStatus make_room(Reader *r, uint64_t count, BpError *err) {
     const uint64_t left = r->input.size > r->input.taken ? r->input.size - r->input.taken + 1 : 0;
     if (count > left / row_size)
         return ply_fail(&r->input, false, err,
-                        "found room for %" PRIu64 " vertices at most, expected %" PRIu64
+                        "found room for %" PRIu64 " rows of vertices, expected %" PRIu64
                         "; the file was cut short",
                         left / row_size, count);
     if (count > BP_SPHERES_MAX - scene->sphere_count)
         return ply_fail(&r->input, false, err,
-                        "found %" PRIu64 " points more, expected at most %u spheres in a scene", count,
-                        BP_SPHERES_MAX);
+                        "found %" PRIu64 " point%s more, expected at most %u spheres in a scene", count,
+                        bp_plural(count), BP_SPHERES_MAX);
     BpSphere *spheres = realloc(scene->spheres, (scene->sphere_count + (size_t)count + 1) * sizeof *spheres);
     if (spheres == NULL) return bp_fail(err, BP_ERR_MEMORY, "out of memory for %" PRIu64 " points", count);
     scene->spheres = spheres;

@@ -1,6 +1,8 @@
 /* scene_ply_input.c: see scene_ply_parts.h. */
 #include "scene_ply_parts.h"
 
+#include "../base/plural.h"
+
 #include <inttypes.h>
 #include <stdarg.h>
 #include <stdlib.h>
@@ -93,8 +95,9 @@ BpStatus ply_input_end(PlyInput *input, bool lines, BpError *err) {
         char *line;
         if (!lines)
             return ply_fail(input, false, err,
-                            "found %" PRIu64 " bytes after the last element, from byte %" PRIu64 " on, %s",
-                            input->size - input->taken, input->taken, remedy);
+                            "found %" PRIu64 " byte%s after the last element, from byte %" PRIu64 " on, %s",
+                            input->size - input->taken, bp_plural(input->size - input->taken), input->taken,
+                            remedy);
         BP_TRY(ply_input_line(input, &line, err));
         if (line[strspn(line, " \t\r")] != '\0')
             return ply_fail(input, true, err, "found another line after the last element, %s", remedy);

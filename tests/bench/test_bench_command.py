@@ -1,13 +1,18 @@
 """`ballpark bench`: what it writes, and that its figures fit together."""
+import atexit
 import json
 import os
+import shutil
+import signal
 import statistics
 import subprocess
 import sys
 import tempfile
+import time
 
 program = sys.argv[1]
 folder = tempfile.mkdtemp()
+atexit.register(shutil.rmtree, folder)
 environment = dict(os.environ, TMPDIR=folder)
 
 
@@ -66,3 +71,23 @@ assert "nowhere.json" in run("nowhere.json", code=2).stderr
 assert "field-0" in run("field-0", code=2).stderr
 assert "depth" in run("field-500", "--depth", "0", "--width", "20", "-q", code=2).stderr
 assert os.listdir(folder) == ["scenes"]
+
+# However it ends, the folder of the fixed scenes goes with it: Ctrl-C, an impatient second one, a kill.
+for signals in ([signal.SIGINT], [signal.SIGINT, signal.SIGINT], [signal.SIGKILL]):
+    process = subprocess.Popen([program, "bench", "field-200000", "--time", "60"], env=environment,
+                               stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL, start_new_session=True)
+    limit = time.monotonic() + 60
+    while os.listdir(folder) == ["scenes"] and time.monotonic() < limit:
+        time.sleep(0.005)
+    assert os.listdir(folder) != ["scenes"], "it has written no scene"
+    for number in signals:
+        if number == signal.SIGINT:
+            os.killpg(process.pid, number)  # as the terminal sends it
+        else:
+            process.send_signal(number)
+        time.sleep(0.3)
+    code = process.wait(timeout=60)
+    assert code == (130 if signals[0] == signal.SIGINT else -signal.SIGKILL), code
+    while os.listdir(folder) != ["scenes"] and time.monotonic() < limit:
+        time.sleep(0.01)
+    assert os.listdir(folder) == ["scenes"], signals

@@ -2,6 +2,7 @@
 
 import json
 import os
+import re
 import shutil
 
 from cli import SOURCE, ProgramTest, main, scene
@@ -111,6 +112,27 @@ class Devices(ProgramTest):
         self.succeed("devices", "--json", "d.json")
         self.assertEqual(json.loads(self.read("d.json")), json.loads(self.succeed("devices", "--json", "-").stdout))
         self.fail_with(1, "devices", "--json", "no/such.json", says="no/such.json")
+
+
+class OneOfEach(ProgramTest):
+    def test_one_is_no_plural(self):
+        """Where there is one of something, its noun says so."""
+        self.write("s.json", scene(1, spheres=1, background=[1, 1, 1]))
+        said = ""
+        for words in (["render", "s.json", "--spp", "1", "--depth", "1", "-o", "a.bpa"],
+                      ["render", "s.json", "--spp", "1", "--error", "0.001"],
+                      ["render", "s.json", "--spp", "2", "--first-sample", str(2**32 - 1)],
+                      ["merge", "a.bpa", "-o", "a.png"], ["explain", "s.json"], ["explain", "s.json", "--pixel", "0,0"],
+                      ["check", "s.json", "--width", "1", "--spp", "1"], ["generate", "field", "--count", "1"],
+                      ["generate", "cover", "--grid", "0"],
+                      ["bench", "s.json", "--rounds", "1", "--time", "0.01", "--spp", "1"],
+                      ["bench", "s.json", "--rounds", "1", "--time", "0.01"]):
+            result = self.run_program(*words)
+            said += result.stdout.decode() + result.errors
+        self.assertRegex(said, r"\b1 sample a pixel")
+        found = re.findall(r"[^\n]*(?<![\d.,])1 (?:sample|sphere|material|round|segment|effect|byte|device|pixel)s\b"
+                           r"[^\n]*", said)
+        self.assertEqual(found, [])
 
 
 if __name__ == "__main__":

@@ -34,6 +34,43 @@ def decode_png(data):
     return width, height, b"".join(rows)
 
 
+class StandardInput(ProgramTest):
+    """"-" is a scene on standard input, for every command that takes a scene and reads it once."""
+
+    def with_input(self, content, *arguments, code=0):
+        with open(self.path(self.write("sent", content)), "rb") as sent:
+            result = self.run_program(*arguments, stdin=sent)
+        self.assertEqual(result.returncode, code, f"{arguments}: {result.errors}")
+        return result
+
+    def test_same_picture(self):
+        document = scene(20, 10, spheres=3)
+        self.write("s.json", document)
+        self.succeed("render", "s.json", "-o", "file.pfm")
+        self.with_input(document, "render", "-", "-o", "input.pfm")
+        self.assert_same(self.read("file.pfm"), self.read("input.pfm"))
+        self.with_input(document, "explain", "-")
+        self.with_input(document, "explain", "-", "--pixel", "3,3")
+        self.with_input(document, "check", "-", "--width", "4", "--spp", "4")
+
+    def test_clouds_are_sought_here(self):
+        self.write("points.ply", "ply\nformat ascii 1.0\nelement vertex 1\nproperty float x\nproperty float y\n"
+                                 "property float z\nend_header\n0 0 -2\n")
+        document = scene(4, spheres=0, clouds=[{"file": "points.ply", "radius": 1, "material": "m"}])
+        self.assertIn(": 1 sphere,", self.with_input(document, "explain", "-").stdout.decode())
+
+    def test_what_is_wrong(self):
+        document = scene(4)
+        said = self.with_input(document, "render", "-", code=2).errors
+        self.assertIn("--output FILE", said)
+        said = self.with_input('{ "camera": { "vfovv": 1 } }', "render", "-", "-o", "x.png", code=2).errors
+        self.assertIn("standard input:1:15: camera.vfovv", said)
+        self.assertIn("empty file", self.with_input("", "render", "-", "-o", "x.png", code=2).errors)
+        self.assertIn("once only", self.with_input(document, "explain", "-", "-", code=2).errors)
+        self.assertIn("once only", self.with_input(document, "bench", "-", code=2).errors)
+        self.assertEqual(self.files(), ["sent"])
+
+
 class Formats(ProgramTest):
     def setUp(self):
         super().setUp()
