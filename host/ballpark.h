@@ -149,6 +149,7 @@ typedef struct BpRenderOptions {
     BpKernelForm kernel;
     bool all_effects;       /* build the general kernel instead of the specialised one */
     uint32_t extra_effects; /* bit e: simulate effect e of bp_scene_effects() although nothing calls for it */
+    bool adaptive;          /* samples_per_pixel is a mean: pixels get samples where the error is */
     bool features;          /* bp_render_features() will be asked */
     bool force;             /* render even on a device that fails its self-test */
     uint32_t replicates;    /* K of the error estimate; 0: the default */

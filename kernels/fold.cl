@@ -38,11 +38,15 @@ static int is_valid(real x, real scale) {
 /* One work-item a pixel of the chunk. */
 __kernel void fold(__global const real *samples, uint pixel_count, uint samples_per_pixel, uint first_pixel,
                    uint first_sample, uint replicates, int scale_log2, __global long *sums, __global uint *counts,
-                   __global ulong *tallies) {
+                   __global ulong *tallies PIXEL_LIST_PARAMETER) {
     const uint item = get_global_id(0);
     if (item >= pixel_count) return;
     const real scale = power_of_two(scale_log2);
+    #if PIXEL_LIST
+    const size_t pixel = pixel_list[first_pixel + item];
+#else
     const size_t pixel = first_pixel + item;
+#endif
     __global const real *mine = samples + (size_t)item * samples_per_pixel * 4;
     ulong segments = 0, cut = 0, invalid = 0;
     for (uint k = 0; k < replicates; ++k) {

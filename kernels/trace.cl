@@ -1,6 +1,6 @@
 /* trace.cl: the bounce loop, in lane code, and the kernel around it.
  *
- * In:    the packed scene; a chunk: a range of pixels times a range of samples.
+ * In:    the packed scene; a chunk: a range of pixels (or of a list of pixels) times a range of samples.
  * Out:   for each pixel sample its radiance, and in a fourth number the ray segments traced, plus 1/2 for a path
  *        that the depth cap cut.
  *
@@ -114,14 +114,26 @@ static void begin_paths(__global const PackedCamera *camera, uint pixel_center, 
     paths->alive = paths->alive | fresh;
 }
 
+/* The pixels of a chunk: a range, or places `first_pixel` and on of a list, for adaptive sampling. */
+#if PIXEL_LIST
+#define PIXEL_LIST_PARAMETER , __global const uint *pixel_list
+#else
+#define PIXEL_LIST_PARAMETER
+#endif
+
 __kernel void trace(SCENE_PARAMETERS, uint first_pixel, uint first_sample, uint samples_per_pixel, uint sample_count,
-                    uint samples_per_item, __global real *samples) {
+                    uint samples_per_item, __global real *samples PIXEL_LIST_PARAMETER) {
     const Scene scene = begin_scene(SCENE_ARGUMENTS);
     const uint item = get_global_id(0);
     uint next = item * samples_per_item;
     const uint end = min(next + samples_per_item, sample_count);
     /* The pixel sample `next` stands for, counted along: division is slow, in lanes above all. */
+#if PIXEL_LIST
+    uint place = first_pixel + next / samples_per_pixel;
+    const uint first = next < end ? pixel_list[place] : 0;
+#else
     const uint first = first_pixel + next / samples_per_pixel;
+#endif
     uint sample = next % samples_per_pixel, row = first / width, column = first % width;
 
     Paths paths;
@@ -172,9 +184,15 @@ __kernel void trace(SCENE_PARAMETERS, uint first_pixel, uint first_sample, uint 
                     number[lane] = next++;
                     if (++sample < samples_per_pixel) continue;
                     sample = 0;
+#if PIXEL_LIST
+                    if (next == end) continue;
+                    row = pixel_list[++place] / width;
+                    column = pixel_list[place] % width;
+#else
                     if (++column < width) continue;
                     column = 0;
                     ++row;
+#endif
                 }
                 const masks fresh = load_lanes(fresh_lane) != splat(0);
                 const SampleKey key = sample_key(seed_low, seed_high, load_lanes(pixels), load_lanes(sample_numbers), replicates);

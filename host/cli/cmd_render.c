@@ -6,6 +6,7 @@
 
 #include "../base/clock.h"
 #include "../base/plural.h"
+#include "../engine/adaptive.h"
 #include "../engine/limits.h"
 #include "json_file.h"
 #include "render_loop.h"
@@ -33,6 +34,17 @@ static void init_rule(const BpCommandLine *line, const BpRenderOptions *options,
     }
     bp_stop_rule_init(rule, has_error ? line->error_percent / 100.0 : 0.0,
                       has_time ? line->time_seconds : 0.0, samples_max, pixels);
+    rule->adaptive = line->adaptive;
+}
+
+/* Below twice what every pixel gets there is next to nothing to decide. */
+static BpStatus check_adaptive(const BpCommandLine *line, const BpStopRule *rule, BpError *err) {
+    if (!line->adaptive || rule->samples_max >= 2 * BP_ADAPTIVE_FIRST) return BP_OK;
+    return bp_fail(
+        err, BP_ERR_USAGE,
+        "--adaptive with %" PRIu64 " sample%s a pixel: the first %u go to every pixel, so that only more "
+        "can go where the error is; ask for --spp %u at least, or for --error or --time",
+        rule->samples_max, rule->samples_max == 1 ? "" : "s", BP_ADAPTIVE_FIRST, 2 * BP_ADAPTIVE_FIRST);
 }
 
 static void warn_of_limits(const BpScene *scene, const BpRenderOptions *options) {
@@ -49,10 +61,17 @@ static void print_summary(const BpRunResult *result, const BpStopRule *rule, con
     snprintf(count, sizeof count, "%" PRIu64 " sample%s a pixel", result->samples_per_pixel,
              bp_plural(result->samples_per_pixel));
     if (result->samples_per_pixel == 0) snprintf(count, sizeof count, "less than one sample a pixel");
+    const char *more_samples = "";
+    if (result->options->adaptive) {
+        uint64_t least, most;
+        double mean;
+        bp_accumulator_sample_counts(result->accumulator, &least, &most, &mean);
+        snprintf(count, sizeof count, "%.1f samples a pixel (%" PRIu64 " to %" PRIu64 ")", mean, least, most);
+    } else if (result->accumulator->partial && result->samples_per_pixel > 0) {
+        more_samples = " and part of another round";
+    }
     fprintf(stderr, "%s: %" PRIu32 "x%" PRIu32 ", %s%s, error %s\n", result->output, info.width, info.height,
-            count,
-            result->accumulator->partial && result->samples_per_pixel > 0 ? " and part of another round" : "",
-            bp_format_percent(result->nrmse, text, sizeof text));
+            count, more_samples, bp_format_percent(result->nrmse, text, sizeof text));
     /* The first launch, in which a driver may compile, says nothing about the rate. */
     const double tracing = fmax(end->seconds - report->first_launch_seconds, 1.0e-9);
     fprintf(stderr, "%s sample%s traced in %s (%s/s), %s in all",
@@ -147,8 +166,10 @@ BpStatus bp_command_render(const BpCommandLine *line, BpError *err) {
     if (!line->quiet) warn_of_limits(scene, &options);
     /* Less noise in the same time on every picture of the book: docs/COST.md. */
     if (!bp_option_given(line, BP_OPTION_SAMPLER)) options.sampler = BP_SAMPLER_SOBOL;
+    options.adaptive = line->adaptive;
     options.features = file.format == BP_FORMAT_EXR;
     init_rule(line, &options, pixels, &rule);
+    BP_TRY_GOTO(status, check_adaptive(line, &rule, err), done);
     options.samples_per_pixel = bp_stop_first(&rule);
 
     BP_TRY_GOTO(status, bp_setup_devices(line, &devices, &result.device_count, err), done);

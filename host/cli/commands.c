@@ -33,7 +33,8 @@ const BpCommand bp_commands[] = {
             "(NRMSE). Half the error takes four times as long. --error and --time replace the scene's number "
             "of "
             "samples as the rule to stop by; --spp may stand beside them, and the first rule reached "
-            "counts.\n"
+            "counts. --adaptive gives more samples to the pixels where the error is, and less to the others; "
+            "--spp is then their mean.\n"
             "\n"
             "Ctrl-C stops, and keeps what has been rendered. The same scene, seed and samples give the same "
             "picture bit for bit on one device.",
@@ -41,12 +42,13 @@ const BpCommand bp_commands[] = {
             "  ballpark render scenes/cover.json                        cover.png, as the scene says\n"
             "  ballpark render scenes/cover.json --width 300 --spp 20   a quick look\n"
             "  ballpark render scenes/cover.json --error 1              until the noise is 1 %\n"
+            "  ballpark render scenes/cover.json --error 1 --adaptive   sooner, on most scenes\n"
             "  ballpark render scenes/cover.json --time 30 -o half.exr  as good as 30 seconds allow\n"
             "  ballpark render scenes/cover.json -o - | display         to another program\n"
             "  ballpark generate cover | ballpark render - -o cover.png from another program\n",
         .options = TAKES_DRAWING | TAKES(OUTPUT) | TAKES(SPP) | TAKES(ERROR) | TAKES(TIME) |
-                   TAKES(FIRST_SAMPLE) | TAKES(SAMPLER) | TAKES(TRANSFER) | TAKES(FORMAT) | TAKES(ERROR_MAP) |
-                   TAKES(STATS) | TAKES(FORCE) | TAKES(QUIET),
+                   TAKES(FIRST_SAMPLE) | TAKES(SAMPLER) | TAKES(ADAPTIVE) | TAKES(TRANSFER) | TAKES(FORMAT) |
+                   TAKES(ERROR_MAP) | TAKES(STATS) | TAKES(FORCE) | TAKES(QUIET),
         .run = bp_command_render,
     },
     {

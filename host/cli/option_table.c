@@ -31,6 +31,9 @@ static const OptionRow rows[BP_OPTION_NUMBER] = {
     [BP_OPTION_SAMPLER] =
         {"sampler", "sobol|independent",
          "how random numbers are drawn (render, explain: sobol, less noise; else: independent)", 0},
+    [BP_OPTION_ADAPTIVE] = {"adaptive", "",
+                            "give samples to the pixels where the error is; N of --spp is then their mean",
+                            0},
     [BP_OPTION_EFFECTS] = {"effects", "all", "build every effect into the kernel, also those the scene lacks",
                            0},
     [BP_OPTION_KERNEL] = {"kernel", "sample|packet", "form of the kernel; the picture is the same", 0},

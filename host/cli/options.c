@@ -70,6 +70,9 @@ static BpStatus store_value(BpOption option, const char *name, const char *text,
         line->sampler = choice == 0 ? BP_SAMPLER_SOBOL : BP_SAMPLER_INDEPENDENT;
         break;
     }
+    case BP_OPTION_ADAPTIVE:
+        line->adaptive = true;
+        break;
     case BP_OPTION_EFFECTS: {
         static const char *const words[] = {"all"};
         BP_TRY(bp_value_choice(name, text, words, COUNT_OF(words), &choice, err));

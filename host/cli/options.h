@@ -24,6 +24,7 @@ typedef enum BpOption {
     BP_OPTION_MATH,
     BP_OPTION_NUMERICS,
     BP_OPTION_SAMPLER,
+    BP_OPTION_ADAPTIVE,
     BP_OPTION_EFFECTS,
     BP_OPTION_KERNEL,
     BP_OPTION_TRANSFER,
@@ -70,7 +71,7 @@ typedef struct BpCommandLine {
     BpMath math;
     BpNumerics numerics;
     BpSampler sampler;
-    bool all_effects;
+    bool all_effects, adaptive;
     BpKernelForm kernel;
     BpTransfer transfer;
     BpFormat format;

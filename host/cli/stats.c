@@ -79,12 +79,19 @@ json_t *bp_stats_json(const BpRunResult *result) {
         "partial", result->accumulator->partial, "stopped_by", bp_stop_reason_name(result->stopped_by),
         "devices", (int)result->device_count, "device_bytes", (json_int_t)report->device_bytes, "scene_bytes",
         (json_int_t)report->scene_bytes, "version", bp_version());
-    const bool whole = root != NULL && choices != NULL && counts != NULL && run != NULL &&
+    uint64_t least, most;
+    double mean_samples;
+    bp_accumulator_sample_counts(result->accumulator, &least, &most, &mean_samples);
+    json_t *pixels =
+        json_pack("{s:b, s:I, s:f, s:I}", "adaptive", options->adaptive, "samples_min", (json_int_t)least,
+                  "samples_mean", mean_samples, "samples_max", (json_int_t)most);
+    const bool whole = root != NULL && choices != NULL && counts != NULL && run != NULL && pixels != NULL &&
                        json_object_update(root, choices) == 0 && json_object_update(root, counts) == 0 &&
-                       json_object_update(root, run) == 0;
+                       json_object_update(root, run) == 0 && json_object_update(root, pixels) == 0;
     json_decref(choices);
     json_decref(counts);
     json_decref(run);
+    json_decref(pixels);
     if (whole) return root;
     json_decref(root);
     return NULL;

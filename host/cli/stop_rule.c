@@ -7,10 +7,12 @@ enum { PIXEL_SAMPLES_MIN = 16, PICTURE_SAMPLES_MIN = 65536, COUNT_STEP = 4 };
 
 /* An estimate from few samples is not trusted to jump further than this. */
 #define JUMP_MAX 4.0
+#define JUMP_MAX_ADAPTIVE 2.0
 /* A jump lands short of the predicted end, so that the end is met in small steps. */
 #define JUMP_SHARE 0.85
 /* Share of the remaining time that one stretch of samples takes, the rate being an estimate. */
 #define TIME_SHARE 0.8
+#define TIME_SHARE_ADAPTIVE 0.5 /* its samples go to dearer pixels as it goes on */
 
 static uint64_t round_up(uint64_t count) {
     return (count + COUNT_STEP - 1) / COUNT_STEP * COUNT_STEP;
@@ -21,6 +23,7 @@ void bp_stop_rule_init(BpStopRule *rule, double error, double seconds, uint64_t 
     rule->error = error;
     rule->seconds = seconds;
     rule->samples_max = samples_max;
+    rule->adaptive = false;
     rule->samples_min = round_up((PICTURE_SAMPLES_MIN + pixels - 1) / pixels);
     if (rule->samples_min < PIXEL_SAMPLES_MIN) rule->samples_min = PIXEL_SAMPLES_MIN;
 }
@@ -70,14 +73,16 @@ BpStopReason bp_stop_decide(const BpStopRule *rule, const BpStopState *state, ui
     if (state->samples >= rule->samples_max) return BP_STOP_SAMPLES;
     *next = rule->samples_max;
     if (rule->error > 0.0) {
+        const double jump_max = rule->adaptive ? JUMP_MAX_ADAPTIVE : JUMP_MAX;
         const double wanted =
-            fmin(JUMP_SHARE * samples_for_error(rule, state), JUMP_MAX * (double)state->samples);
+            fmin(JUMP_SHARE * samples_for_error(rule, state), jump_max * (double)state->samples);
         *next = smaller(*next, bp_stop_checkpoint(rule, fmax(wanted, (double)(state->samples + 1))));
     }
     if (rule->seconds > 0.0) {
         const double more = samples_in_time(rule, state);
         if (more < 1.0) return BP_STOP_TIME;
-        const double share = fmax(1.0, floor(TIME_SHARE * more));
+        const double part = rule->adaptive ? TIME_SHARE_ADAPTIVE : TIME_SHARE;
+        const double share = fmax(1.0, floor(part * more));
         if (share < 9.0e18) *next = smaller(*next, state->samples + (uint64_t)share);
     }
     return BP_STOP_NOT_YET;

@@ -18,6 +18,7 @@ typedef struct BpStopRule {
     double seconds;       /* 0: no such rule */
     uint64_t samples_max; /* a pixel */
     uint64_t samples_min; /* a pixel, before the error is believed; unless samples_max is less */
+    bool adaptive;        /* samples are means; the error falls faster at first than their square root */
 } BpStopRule;
 
 typedef enum BpStopReason {
@@ -37,7 +38,8 @@ typedef struct BpStopState {
     bool black;       /* the mean of the picture is 0 */
 } BpStopState;
 
-/* Fills samples_min for a picture of `pixels`: enough samples of each pixel (16) and of the picture (65536).
+/* Fills all but `adaptive`, which becomes false; samples_min for a picture of `pixels`: enough samples of
+ * each pixel (16) and of the picture (65536).
  */
 void bp_stop_rule_init(BpStopRule *rule, double error, double seconds, uint64_t samples_max, uint64_t pixels);
 

@@ -92,6 +92,12 @@ BpStatus bp_accumulator_picture(const BpAccumulator *accumulator, BpPicture *pic
  * The luminance's error comes from the luminances of the replicates, so that correlated channels count right.
  * NaN when the mean is 0 or a pixel has fewer than two replicates. */
 double bp_accumulator_nrmse(const BpAccumulator *accumulator);
+/* Squared standard error of one pixel's luminance, by the same formula; NaN with fewer than two replicates.
+ */
+double bp_accumulator_squared_error(const BpAccumulator *accumulator, size_t pixel);
+/* The fewest and the most valid samples that a pixel has, and the mean. */
+void bp_accumulator_sample_counts(const BpAccumulator *accumulator, uint64_t *least, uint64_t *most,
+                                  double *mean);
 /* Mean of linear pixel values over the picture (pixels without samples count as 0). */
 void bp_accumulator_mean(const BpAccumulator *accumulator, double mean[3]);
 

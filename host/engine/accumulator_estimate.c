@@ -102,3 +102,24 @@ void bp_accumulator_mean(const BpAccumulator *accumulator, double mean[3]) {
     }
     for (size_t c = 0; c < 3; c++) mean[c] = sum[c] / (double)pixels;
 }
+
+double bp_accumulator_squared_error(const BpAccumulator *accumulator, size_t pixel) {
+    return estimate_pixel(accumulator, pixel).squared_error[3];
+}
+
+void bp_accumulator_sample_counts(const BpAccumulator *accumulator, uint64_t *least, uint64_t *most,
+                                  double *mean) {
+    const size_t pixels = (size_t)accumulator->width * accumulator->height;
+    uint64_t total = 0;
+    *least = UINT64_MAX;
+    *most = 0;
+    for (size_t pixel = 0; pixel < pixels; pixel++) {
+        uint64_t samples = 0;
+        for (uint32_t k = 0; k < accumulator->replicates; k++)
+            samples += accumulator->counts[pixel * accumulator->replicates + k];
+        total += samples;
+        if (samples < *least) *least = samples;
+        if (samples > *most) *most = samples;
+    }
+    *mean = (double)total / (double)pixels;
+}

@@ -43,6 +43,7 @@ BpStatus bp_arrange(const BpScene *scene, const BpRenderOptions *options, const 
     setup->program.math = options->math;
     setup->program.numerics = options->numerics;
     setup->program.sampler = options->sampler;
+    setup->program.pixel_list = options->adaptive;
     choose_form(device, options, &setup->program);
     setup->width = scene->camera.width;
     setup->height = scene->camera.height;

@@ -95,6 +95,7 @@ BpStatus bp_program_source(const BpProgramOptions *options, const char *extra_na
     text_print(&text, "#define TREE_WIDTH %u\n", options->tree_width);
     text_print(&text, "#define NUMERICS_ROBUST %d\n", !plain);
     text_print(&text, "#define SAMPLER_SOBOL %d\n", options->sampler == BP_SAMPLER_SOBOL);
+    text_print(&text, "#define PIXEL_LIST %d\n", options->pixel_list);
     for (int e = 0; e < BP_EFFECT_COUNT; ++e)
         text_print(&text, "#define EFFECT_%s %d\n", bp_effect_identifier((BpEffect)e),
                    bp_effects_has(options->effects, (BpEffect)e));

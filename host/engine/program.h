@@ -27,6 +27,7 @@ typedef struct BpProgramOptions {
     BpSampler sampler;
     BpKernelForm form;   /* BP_KERNEL_SAMPLE or BP_KERNEL_PACKET */
     uint32_t tree_width; /* 2, 4 or 8 */
+    bool pixel_list;     /* chunks take their pixels from a list */
     bool double_refine;  /* refine intersections in double; else error-free float transforms */
 } BpProgramOptions;
 

@@ -4,7 +4,7 @@
 #include "../base/clock.h"
 #include "../base/status.h"
 #include "arrangement.h"
-#include "features.h"
+#include "render_state.h"
 
 #include <stdlib.h>
 #include <string.h>
@@ -12,19 +12,6 @@
 
 #define CHUNK_SECONDS 0.1 /* of one dispatch: short of every watchdog, long against its overhead */
 #define STEP_SECONDS 0.15 /* a step starts no chunk after this */
-
-struct BpRender {
-    const BpScene *scene;
-    BpRenderOptions options;
-    BpEffects effects;
-    BpWorker **workers;
-    size_t worker_count;
-    BpSchedule schedule;
-    BpAccumulator *accumulator; /* as last read; NULL before that */
-    BpChunk last_chunk;
-    double tree_seconds, pack_seconds, trace_seconds;
-    uint64_t samples_total, samples_before; /* before: those of ranges already extended past */
-};
 
 void bp_render_defaults(const BpScene *scene, BpRenderOptions *options) {
     memset(options, 0, sizeof *options);
@@ -82,6 +69,30 @@ static BpStatus open_worker(BpRender *render, const BpDeviceInfo *device, size_t
     return status;
 }
 
+/* Samples that every pixel gets before any decision, of a mean of `samples`. */
+static uint64_t samples_for_all(uint64_t samples) {
+    return samples < BP_ADAPTIVE_FIRST ? samples : BP_ADAPTIVE_FIRST;
+}
+
+/* The first samples go to all pixels: a list that names every one. */
+static BpStatus begin_adaptive(BpRender *render, BpError *err) {
+    const BpCamera *camera = &render->scene->camera;
+    const uint32_t pixels = camera->width * camera->height;
+    const uint64_t exact = (uint64_t)BP_REPLICATE_SAMPLES_MAX * render->options.replicates;
+    const uint64_t numbers = (uint64_t)UINT32_MAX + 1 - render->options.first_sample;
+    BP_TRY(bp_adaptive_create(camera->width, camera->height, exact < numbers ? exact : numbers,
+                              &render->adaptive, err));
+    uint32_t *list = malloc(pixels * sizeof *list);
+    if (list == NULL) return bp_fail(err, BP_ERR_MEMORY, "no memory for a list of %u pixels", pixels);
+    for (uint32_t i = 0; i < pixels; ++i) list[i] = i;
+    BpStatus status = BP_OK;
+    for (size_t i = 0; i < render->worker_count && status == BP_OK; ++i)
+        status = bp_worker_set_pixels(render->workers[i], list, pixels, err);
+    free(list);
+    render->schedule.samples = samples_for_all(render->options.samples_per_pixel);
+    return status;
+}
+
 BpStatus bp_render_create(const BpScene *scene, const BpRenderOptions *options, const BpDeviceInfo *devices,
                           size_t device_count, BpRender **render, BpError *err) {
     BpRenderOptions defaults;
@@ -110,6 +121,7 @@ BpStatus bp_render_create(const BpScene *scene, const BpRenderOptions *options, 
         BP_TRY_GOTO(status, open_worker(made, &devices[i], i, err), failed);
     const uint32_t pixels = scene->camera.width * scene->camera.height;
     bp_schedule_init(&made->schedule, pixels, options->first_sample, options->samples_per_pixel);
+    if (options->adaptive) BP_TRY_GOTO(status, begin_adaptive(made, err), failed);
     made->samples_total = (uint64_t)pixels * options->samples_per_pixel;
     *render = made;
     return BP_OK;
@@ -125,6 +137,7 @@ void bp_render_destroy(BpRender **render) {
         bp_worker_destroy(&(*render)->workers[i]);
     free((*render)->workers);
     bp_accumulator_destroy(&(*render)->accumulator);
+    bp_adaptive_destroy(&(*render)->adaptive);
     free(*render);
     *render = NULL;
 }
@@ -151,7 +164,7 @@ static BpStatus free_worker(const BpRender *render, BpWorker **found, BpError *e
     return bp_worker_make_room(best, err);
 }
 
-static uint64_t samples_done(const BpRender *render) {
+uint64_t bp_render_pixel_samples(const BpRender *render) {
     uint64_t done = 0;
     for (size_t i = 0; i < render->worker_count; ++i) done += render->workers[i]->samples_done;
     return done;
@@ -163,6 +176,27 @@ static bool in_flight(const BpRender *render) {
     return false;
 }
 
+/* Adaptive sampling, when a pass has been handed out whole: waits for it and schedules the next, if there is
+ * one. */
+static BpStatus begin_next_pass(BpRender *render, bool *begun, BpError *err) {
+    *begun = false;
+    if (render->adaptive == NULL || render->options.samples_per_pixel < BP_ADAPTIVE_FIRST) return BP_OK;
+    const BpAccumulator *accumulator = NULL;
+    BpAdaptivePass pass;
+    bp_accumulator_destroy(&render->accumulator); /* what was read before the latest chunks */
+    BP_TRY(bp_render_accumulator(render, &accumulator, err));
+    render->decides = true;
+    BP_TRY(bp_adaptive_next(render->adaptive, accumulator, render->options.samples_per_pixel, begun, &pass,
+                            err));
+    bp_accumulator_destroy(&render->accumulator);
+    if (!*begun) return BP_OK;
+    for (size_t i = 0; i < render->worker_count; ++i)
+        BP_TRY(bp_worker_set_pixels(render->workers[i], pass.pixels, pass.pixel_count, err));
+    bp_schedule_init(&render->schedule, pass.pixel_count, render->options.first_sample + pass.first,
+                     pass.count);
+    return BP_OK;
+}
+
 /* Starts one chunk; *started is false when all has been handed out. */
 static BpStatus start_chunk(BpRender *render, bool *started, BpError *err) {
     BpWorker *worker = NULL;
@@ -171,12 +205,16 @@ static BpStatus start_chunk(BpRender *render, bool *started, BpError *err) {
                                 ? render->options.chunk_samples
                                 : bp_worker_chunk_samples(worker, CHUNK_SECONDS);
     *started = bp_schedule_take(&render->schedule, wanted, &render->last_chunk);
+    if (!*started) {
+        BP_TRY(begin_next_pass(render, started, err));
+        if (*started) *started = bp_schedule_take(&render->schedule, wanted, &render->last_chunk);
+    }
     return *started ? bp_worker_start(worker, &render->last_chunk, err) : BP_OK;
 }
 
 static void report_progress(const BpRender *render, bool finished, BpProgress *progress) {
     if (progress == NULL) return;
-    progress->samples_done = samples_done(render);
+    progress->samples_done = bp_render_pixel_samples(render);
     progress->samples_total = render->samples_total;
     progress->segments = render->accumulator != NULL ? render->accumulator->segments : 0;
     progress->trace_seconds = render->trace_seconds;
@@ -201,6 +239,8 @@ BpStatus bp_render_step(BpRender *render, BpProgress *progress, BpError *err) {
 BpStatus bp_render_step_samples(BpRender *render, BpSampleBlock *block, bool *finished, BpError *err) {
     bp_accumulator_destroy(&render->accumulator);
     memset(block, 0, sizeof *block);
+    if (render->adaptive != NULL)
+        return bp_fail(err, BP_ERR_USAGE, "an adaptive render hands out no single samples");
     bool started = false;
     BP_TRY(start_chunk(render, &started, err));
     *finished = !started;
@@ -236,103 +276,11 @@ BpStatus bp_render_extend(BpRender *render, uint64_t samples_per_pixel, BpError 
                        (unsigned long long)render->options.samples_per_pixel,
                        (unsigned long long)samples_per_pixel);
     render->options = wanted;
-    render->schedule.samples = samples_per_pixel;
-    render->samples_total = (uint64_t)render->schedule.pixels * samples_per_pixel;
+    if (render->adaptive == NULL)
+        render->schedule.samples = samples_per_pixel;
+    else if (!render->decides)
+        render->schedule.samples = samples_for_all(samples_per_pixel);
+    render->samples_total =
+        (uint64_t)render->scene->camera.width * render->scene->camera.height * samples_per_pixel;
     return BP_OK;
-}
-
-uint64_t bp_render_samples_done(const BpRender *render) {
-    return render->schedule.done;
-}
-
-static BpStatus describe(const BpRender *render, BpAccumulator *accumulator, BpError *err) {
-    const BpRenderOptions *options = &render->options;
-    accumulator->scale_log2 = bp_accumulator_scale(render->scene);
-    accumulator->scene_hash = bp_scene_hash(render->scene);
-    accumulator->seed = options->seed;
-    accumulator->max_depth = options->max_depth;
-    accumulator->sampler = options->sampler;
-    accumulator->precision = options->precision;
-    accumulator->math = options->math;
-    accumulator->numerics = options->numerics;
-    accumulator->transfer = render->scene->transfer;
-    if (render->scene->title != NULL) accumulator->title = strdup(render->scene->title);
-    /* A pass in progress counts as begun: its samples are taken, though not yet by every pixel. */
-    const uint64_t begun = render->schedule.done + render->schedule.pass_samples;
-    if (begun > 0) BP_TRY(bp_accumulator_add_range(accumulator, options->first_sample, begun, err));
-    accumulator->partial = render->schedule.pass_samples > 0;
-    return BP_OK;
-}
-
-BpStatus bp_render_accumulator(BpRender *render, const BpAccumulator **accumulator, BpError *err) {
-    if (render->accumulator == NULL) {
-        BpAccumulator *read = NULL;
-        BpStatus status = bp_accumulator_create(render->scene->camera.width, render->scene->camera.height,
-                                                render->options.replicates, &read, err);
-        if (status == BP_OK) status = describe(render, read, err);
-        for (size_t i = 0; status == BP_OK && i < render->worker_count; ++i)
-            status = bp_worker_collect(render->workers[i], read, err);
-        if (status != BP_OK) {
-            bp_accumulator_destroy(&read);
-            return status;
-        }
-        render->accumulator = read;
-    }
-    *accumulator = render->accumulator;
-    return BP_OK;
-}
-
-BpStatus bp_render_read(BpRender *render, BpPicture *picture, BpError *err) {
-    const BpAccumulator *accumulator = NULL;
-    BP_TRY(bp_render_accumulator(render, &accumulator, err));
-    return bp_accumulator_picture(accumulator, picture, err);
-}
-
-BpStatus bp_render_features(BpRender *render, BpPicture *picture, BpError *err) {
-    const BpRenderOptions *options = &render->options;
-    if (!options->features)
-        return bp_fail(err, BP_ERR_USAGE,
-                       "depth, normals and albedo: the render was created without features");
-    const uint64_t samples = options->samples_per_pixel;
-    return bp_features_fill(render->workers[0], &render->scene->camera, (uint32_t)options->first_sample,
-                            samples < BP_FEATURE_SAMPLES ? (uint32_t)samples : BP_FEATURE_SAMPLES, picture,
-                            err);
-}
-
-void bp_render_report(const BpRender *render, BpRenderReport *report) {
-    memset(report, 0, sizeof *report);
-    const BpWorker *first = render->workers[0];
-    report->device = first->device->info;
-    report->effects = render->effects;
-    report->self_test_seconds = first->self_test_seconds;
-    report->kernel = first->samples_per_item > 1 ? BP_KERNEL_PACKET : BP_KERNEL_SAMPLE;
-    report->sampler = render->options.sampler;
-    report->precision = render->options.precision;
-    report->math = render->options.math;
-    report->numerics = render->options.numerics;
-    report->program_key = first->program->key;
-    report->build_log = first->program->log;
-    cl_ulong private_bytes = 0;
-    if (clGetKernelWorkGroupInfo(first->trace, first->device->id, CL_KERNEL_PRIVATE_MEM_SIZE,
-                                 sizeof private_bytes, &private_bytes, NULL) == CL_SUCCESS)
-        report->private_bytes = private_bytes;
-    report->tree_seconds = render->tree_seconds;
-    report->pack_seconds = render->pack_seconds;
-    report->trace_seconds = render->trace_seconds - first->first_launch_seconds;
-    report->first_launch_seconds = first->first_launch_seconds;
-    for (size_t i = 0; i < render->worker_count; ++i) {
-        const BpWorker *worker = render->workers[i];
-        report->kernel_build_seconds += worker->program->build_seconds;
-        report->device_seconds += worker->device_seconds;
-        report->fold_seconds += worker->fold_seconds;
-        report->scene_bytes += worker->scene_bytes;
-        report->device_bytes += worker->scene_bytes + worker->picture_bytes +
-                                (uint64_t)worker->samples_capacity * 4 * worker->real_size;
-    }
-    report->samples = samples_done(render);
-    if (render->accumulator != NULL) {
-        report->segments = render->accumulator->segments;
-        report->cut_paths = render->accumulator->cut_paths;
-        report->invalid_samples = render->accumulator->invalid_samples;
-    }
 }

@@ -36,7 +36,8 @@ enum {
     TRACE_SAMPLES,
     TRACE_COUNT,
     TRACE_PER_ITEM,
-    TRACE_OUT
+    TRACE_OUT,
+    TRACE_LIST
 };
 enum { FOLD_IN, FOLD_PIXELS, FOLD_SAMPLES, FOLD_FIRST_PIXEL, FOLD_FIRST_SAMPLE, FOLD_CONSTANTS };
 
@@ -68,6 +69,11 @@ static BpStatus create_kernels(BpWorker *worker, const BpWorkerSetup *setup, BpE
     const cl_mem sums[] = {worker->sums, worker->counts, worker->tallies};
     for (size_t i = 0; i < sizeof sums / sizeof sums[0]; ++i)
         BP_TRY(set_argument(worker, worker->fold, index++, sizeof(cl_mem), &sums[i], err));
+    if (setup->program.pixel_list) {
+        BP_TRY(bp_worker_create_pixel_list(worker, err));
+        BP_TRY(set_argument(worker, worker->fold, index, sizeof(cl_mem), &worker->pixel_list, err));
+        BP_TRY(set_argument(worker, worker->trace, TRACE_LIST, sizeof(cl_mem), &worker->pixel_list, err));
+    }
 
     const bool packet = setup->program.form == BP_KERNEL_PACKET;
     worker->samples_per_item = packet ? PACKET_SAMPLES_PER_ITEM : 1;
@@ -144,9 +150,9 @@ void bp_worker_destroy(BpWorker **worker) {
     BpWorker *w = *worker;
     if (w->device != NULL) clFinish(w->device->queue);
     for (int i = 0; i < w->flight_count; ++i) release_flight(&w->flights[i]);
-    const cl_mem buffers[] = {w->camera,  w->sky,    w->materials, w->kinds,  w->looks,
-                              w->albedos, w->boxes,  w->children,  w->leaves, w->slot_sphere,
-                              w->sums,    w->counts, w->tallies,   w->samples};
+    const cl_mem buffers[] = {w->camera,  w->sky,    w->materials, w->kinds,   w->looks,
+                              w->albedos, w->boxes,  w->children,  w->leaves,  w->slot_sphere,
+                              w->sums,    w->counts, w->tallies,   w->samples, w->pixel_list};
     for (size_t i = 0; i < sizeof buffers / sizeof buffers[0]; ++i)
         if (buffers[i] != NULL) clReleaseMemObject(buffers[i]);
     if (w->trace != NULL) clReleaseKernel(w->trace);
@@ -261,6 +267,15 @@ BpStatus bp_worker_start(BpWorker *worker, const BpChunk *chunk, BpError *err) {
         const double overhead = bp_clock_seconds() - start - worker->device_seconds;
         worker->first_launch_seconds = overhead > 0 ? overhead : 0;
     }
+    return BP_OK;
+}
+
+BpStatus bp_worker_set_pixels(BpWorker *worker, const uint32_t *list, uint32_t count, BpError *err) {
+    BP_TRY(wait_for_all(worker, err));
+    CL_TRY(worker,
+           clEnqueueWriteBuffer(worker->device->queue, worker->pixel_list, CL_TRUE, 0, count * sizeof *list,
+                                list, 0, NULL, NULL),
+           "clEnqueueWriteBuffer");
     return BP_OK;
 }
 

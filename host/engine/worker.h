@@ -34,6 +34,7 @@ typedef struct BpWorker {
     cl_kernel trace, fold;
     cl_mem camera, sky, materials, kinds, looks, albedos, boxes, children, leaves, slot_sphere;
     cl_mem sums, counts, tallies, samples;
+    cl_mem pixel_list; /* NULL: chunks are ranges of pixels */
     size_t real_size;
     uint32_t width, replicates, pixels, max_depth, pixel_center, first_leaves, leaf_count;
     uint64_t seed;
@@ -67,6 +68,10 @@ BpStatus bp_worker_bind_scene(BpWorker *worker, cl_kernel kernel, BpError *err);
 
 /* Queues a chunk and returns; waits for the oldest first when BP_WORKER_FLIGHT are under way. */
 BpStatus bp_worker_start(BpWorker *worker, const BpChunk *chunk, BpError *err);
+/* For a program with a pixel list: waits for everything, and from here on a chunk's pixels are numbers in
+ * `list` (of `count` pixels, at most those of the picture), which is copied. */
+BpStatus bp_worker_set_pixels(BpWorker *worker, const uint32_t *list, uint32_t count, BpError *err);
+
 /* Waits for the oldest chunk; does nothing when there is none. */
 BpStatus bp_worker_wait(BpWorker *worker, BpError *err);
 

@@ -89,6 +89,12 @@ BpStatus bp_worker_create_picture(BpWorker *worker, BpError *err) {
     return BP_OK;
 }
 
+BpStatus bp_worker_create_pixel_list(BpWorker *worker, BpError *err) {
+    const uint64_t bytes = (uint64_t)worker->pixels * sizeof(cl_uint);
+    worker->picture_bytes += bytes;
+    return create_buffer(worker, &worker->pixel_list, bytes, NULL, "the list of pixels", err);
+}
+
 /* Room for the raw samples of `count` pixel samples. Only called with nothing under way that uses the old
  * room. */
 BpStatus bp_worker_reserve_samples(BpWorker *worker, uint32_t count, BpError *err) {

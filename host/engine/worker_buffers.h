@@ -18,6 +18,8 @@
 BpStatus bp_worker_upload_scene(BpWorker *worker, const BpPacked *packed, BpError *err);
 /* Sums, counts and tallies of every pixel, zeroed. After the scene: both together must fit. */
 BpStatus bp_worker_create_picture(BpWorker *worker, BpError *err);
+/* For a program with a pixel list: room for all pixels, not filled. */
+BpStatus bp_worker_create_pixel_list(BpWorker *worker, BpError *err);
 /* Room for the raw samples of `count` pixel samples. Only with nothing under way that uses the old room. */
 BpStatus bp_worker_reserve_samples(BpWorker *worker, uint32_t count, BpError *err);
 

@@ -27,6 +27,8 @@ static BpProgramOptions combination(unsigned c) {
     options.sampler = c & 8 ? BP_SAMPLER_SOBOL : BP_SAMPLER_INDEPENDENT;
     options.form = c & 16 ? BP_KERNEL_PACKET : BP_KERNEL_SAMPLE;
     options.double_refine = (c & 32) != 0;
+    /* No combination of its own: it goes with no other choice, and half of all have it. */
+    options.pixel_list = (c & 1) != ((c >> 3 & 1) != (c >> 4 & 1));
     return options;
 }
 
