@@ -54,13 +54,18 @@ static BpStatus write_file(const BpStudyResult *result, const char *path, Print 
 }
 
 static BpStatus check_outputs(const BpCommandLine *line, BpError *err) {
-    if (line->csv != NULL && strcmp(line->csv, "-") != 0) BP_TRY(bp_output_check(line->csv, err));
+    const char *const files[] = {line->output, line->csv};
+    for (size_t f = 0; f < sizeof files / sizeof files[0]; ++f)
+        if (files[f] != NULL && strcmp(files[f], "-") != 0) BP_TRY(bp_output_check(files[f], err));
     return line->json != NULL ? bp_json_check(line->json, err) : BP_OK;
 }
 
 static BpStatus deliver(const BpCommandLine *line, const BpStudyResult *result, BpError *err) {
-    const bool to_stdout = (line->json != NULL && strcmp(line->json, "-") == 0) ||
-                           (line->csv != NULL && strcmp(line->csv, "-") == 0);
+    const char *const files[] = {line->output, line->json, line->csv};
+    bool to_stdout = false;
+    for (size_t f = 0; f < sizeof files / sizeof files[0]; ++f)
+        if (files[f] != NULL && strcmp(files[f], "-") == 0) to_stdout = true;
+    if (line->output != NULL) BP_TRY(write_file(result, line->output, bp_study_print_page, err));
     if (line->csv != NULL) BP_TRY(write_file(result, line->csv, bp_study_print_csv, err));
     if (line->json != NULL) BP_TRY(bp_json_write(bp_study_json(result), line->json, err));
     if (!to_stdout) BP_TRY(write_file(result, "-", bp_study_print, err));

@@ -105,15 +105,15 @@ const BpCommand bp_commands[] = {
             "rendered in double precision with exact Fresnel and depth 1000 (on a device without double, by "
             "the reference tracer). The table says what each way costs and what it changes; the last lines "
             "say what to use for an error of 5 %, 1 % and 0.2 %, and what that costs at the scene's own "
-            "size.\n\n"
+            "size. With -o it is all drawn on one page, with pictures, that needs nothing beside itself.\n\n"
             "--time is the budget (60 seconds); a short one tells less. --depth, --sampler, --precision, "
             "--math and --numerics choose the way that the others are compared with. Ctrl-C stops early, "
             "with the figures there are.",
         .examples = "  ballpark cost cover.json\n"
-                    "  ballpark cost cover.json --json cost.json --time 300     a deeper look\n"
+                    "  ballpark cost cover.json -o cost.html --time 300     a deeper look, as a page\n"
                     "  ballpark cost cover.json --csv - --width 300\n",
-        .options = (TAKES_DRAWING & ~TAKES(EFFECTS)) | TAKES(JSON) | TAKES(CSV) | TAKES(TIME) |
-                   TAKES(SAMPLER) | TAKES(FORCE) | TAKES(QUIET),
+        .options = (TAKES_DRAWING & ~TAKES(EFFECTS)) | TAKES(OUTPUT) | TAKES(JSON) | TAKES(CSV) |
+                   TAKES(TIME) | TAKES(SAMPLER) | TAKES(FORCE) | TAKES(QUIET),
         .run = bp_command_cost,
     },
     {

@@ -13,30 +13,29 @@ static uint32_t smaller(uint32_t a, uint32_t b) {
     return a < b ? a : b;
 }
 
-static double window_noise(const BpPicture *x, uint32_t left, uint32_t top, uint32_t width, uint32_t height) {
-    double sum = 0;
-    for (uint32_t y = top; y < top + height; y++)
-        for (uint32_t i = left; i < left + width; i++) {
-            const double relative = bp_pixel_relative_error(x, (size_t)y * x->width + i);
-            if (isfinite(relative)) sum += fmin(relative, 1); /* a black corner with one speck is no sight */
-        }
-    return sum;
+void bp_study_interest_add(double *interest, const BpPicture *x, const BpPicture *y, double brightness) {
+    for (size_t p = 0; p < (size_t)x->width * x->height; p++) {
+        const double a = bp_study_luminance(x->rgb + 3 * p), b = bp_study_luminance(y->rgb + 3 * p);
+        /* One bright speck is not to outshine everything. */
+        interest[p] += fmin(1, fabs(a - b) / brightness);
+    }
 }
 
-void bp_study_crop_place(const BpPicture *x, uint32_t *left, uint32_t *top) {
-    const uint32_t width = smaller(x->width, BP_STUDY_CROP_WIDTH),
-                   height = smaller(x->height, BP_STUDY_CROP_HEIGHT);
+void bp_study_crop_place(const double *interest, uint32_t width, uint32_t height, uint32_t *left,
+                         uint32_t *top) {
+    const uint32_t across = smaller(width, BP_STUDY_CROP_WIDTH), down = smaller(height, BP_STUDY_CROP_HEIGHT);
     double most = -1;
     *left = *top = 0;
-    for (uint32_t y0 = 0; y0 + height <= x->height; y0 += 4) {
-        for (uint32_t x0 = 0; x0 + width <= x->width; x0 += 4) {
-            const double noise = window_noise(x, x0, y0, width, height);
-            if (noise <= most) continue;
-            most = noise;
+    for (uint32_t y0 = 0; y0 + down <= height; y0 += 4)
+        for (uint32_t x0 = 0; x0 + across <= width; x0 += 4) {
+            double sum = 0;
+            for (uint32_t y = y0; y < y0 + down; y++)
+                for (uint32_t x = x0; x < x0 + across; x++) sum += interest[(size_t)y * width + x];
+            if (sum <= most) continue;
+            most = sum;
             *left = x0;
             *top = y0;
         }
-    }
 }
 
 static BpStatus encode(const uint8_t *rgb, uint32_t width, uint32_t height, BpStudyPng *png, BpError *err) {

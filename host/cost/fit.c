@@ -76,6 +76,12 @@ void bp_study_summarize(BpStudyResult *result) {
     bp_study_advise(result);
 }
 
+double bp_study_pixel_bias(const BpStudySeries *series) {
+    const BpStudyEstimate *square = &series->bias_square;
+    if (square->low > 0) return sqrt(square->value);
+    return square->low == 0 && square->high == 0 ? 0 : (double)NAN;
+}
+
 /* What no number of samples takes away: where it is shown to be there, its interval lying above 0. */
 static double floor_of(const BpStudySeries *series) {
     if (isnan(series->bias_square.value)) return isfinite(series->fit_floor) ? series->fit_floor : 0;

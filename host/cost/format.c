@@ -11,35 +11,28 @@ static int decimals(double x, int digits, int most) {
     return after < 0 ? 0 : after > most ? most : after;
 }
 
-static const char *percent(double fraction, const char *format, char *text, size_t size) {
+const char *bp_study_percent(double fraction, char *text, size_t size) {
     const double p = 100 * fraction;
     if (isnan(p))
         snprintf(text, size, "-");
     else
-        snprintf(text, size, format, decimals(p, fabs(p) < 0.0995 ? 2 : 3, 7), p);
+        snprintf(text, size, "%.*f %%", decimals(p, fabs(p) < 0.0995 ? 2 : 3, 7), p);
     return text;
 }
 
-const char *bp_study_percent(double fraction, char *text, size_t size) {
-    return percent(fraction, "%.*f %%", text, size);
-}
-
-const char *bp_study_signed_percent(double fraction, char *text, size_t size) {
-    return percent(fraction, "%+.*f %%", text, size);
-}
-
-const char *bp_study_interval(const BpStudyEstimate *estimate, const char *plus_minus, char *text,
-                              size_t size) {
-    const double value = 100 * estimate->value, half = 50 * (estimate->high - estimate->low);
+const char *bp_study_interval(const BpStudyEstimate *estimate, const char *plus_minus, const char *minus,
+                              char *text, size_t size) {
+    const char *sign = estimate->value < 0 ? minus : "+";
+    const double value = 100 * fabs(estimate->value), half = 50 * (estimate->high - estimate->low);
     if (isnan(value)) {
         snprintf(text, size, "-");
-    } else if (!(half > 0) && !(fabs(value) > 0)) {
+    } else if (!(half > 0) && !(value > 0)) {
         snprintf(text, size, "none");
     } else if (!(half > 0)) {
-        snprintf(text, size, "%+.*f %%", decimals(value, 2, 7), value);
+        snprintf(text, size, "%s%.*f %%", sign, decimals(value, 2, 7), value);
     } else {
         const int after = decimals(half, 1, 7);
-        snprintf(text, size, "%+.*f %s %.*f %%", after, value, plus_minus, after, half);
+        snprintf(text, size, "%s%.*f %s %.*f %%", sign, after, value, plus_minus, after, half);
     }
     return text;
 }

@@ -10,12 +10,10 @@
 
 /* "12.3 %", "1.23 %", "0.123 %", "0.0012 %": three digits, or two of what is small. */
 const char *bp_study_percent(double fraction, char *text, size_t size);
-/* The same with a sign. */
-const char *bp_study_signed_percent(double fraction, char *text, size_t size);
-/* "+0.123 % ± 0.004": half the interval beside the value, with as many decimals. `plus_minus`: "±" or "+-".
- */
-const char *bp_study_interval(const BpStudyEstimate *estimate, const char *plus_minus, char *text,
-                              size_t size);
+/* "+0.123 ± 0.004 %": half the interval beside the value, with as many decimals. `plus_minus`: "±" or "+-";
+ * `minus`: "−" or "-". */
+const char *bp_study_interval(const BpStudyEstimate *estimate, const char *plus_minus, const char *minus,
+                              char *text, size_t size);
 /* "12 ms", "4.1 s", "3 min 20 s", "5.2 h". */
 const char *bp_study_seconds(double seconds, char *text, size_t size);
 /* "1.23": three digits; dash for NaN. */

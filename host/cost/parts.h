@@ -38,8 +38,11 @@ BpStudyEstimate bp_study_unpaired(const BpPicture *x, const BpPicture *r1, const
 
 /* ---- crop.c ---- */
 
-/* The window of a crop's size where x is noisiest. */
-void bp_study_crop_place(const BpPicture *x, uint32_t *left, uint32_t *top);
+/* Adds how far each pixel of x is from y, in units of `brightness`, at most 1. */
+void bp_study_interest_add(double *interest, const BpPicture *x, const BpPicture *y, double brightness);
+/* The window of a crop's size with the most of it. */
+void bp_study_crop_place(const double *interest, uint32_t width, uint32_t height, uint32_t *left,
+                         uint32_t *top);
 /* Fills the crop; clear it with bp_study_crop_clear() also on failure. */
 BpStatus bp_study_crop(const BpPicture *x, const BpPicture *r1, const BpPicture *r2, uint32_t left,
                        uint32_t top, BpTransfer transfer, BpStudyCrop *crop, BpError *err);

@@ -5,7 +5,7 @@
 #include "../base/clock.h"
 #include "../base/status.h"
 #include "parts.h"
-#include "references.h"
+#include "study_state.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -15,28 +15,6 @@
 #define REFERENCE_SHARE 0.4 /* of the time */
 #define LEVEL_FIRST 4u      /* samples a pixel: one a replicate */
 #define LEVEL_FACTOR 4u
-
-enum Phase { OPEN_REFERENCES, REFERENCES, OPEN_SETTINGS, LEVELS, DONE };
-
-/* A setting at work. */
-typedef struct Runner {
-    BpRender *render;
-    double cpu_seconds, wall_seconds, warm_device_seconds;
-} Runner;
-
-struct BpStudy {
-    BpStudyResult result;
-    BpScene variants[3]; /* by BpStudyFresnel; share everything but the materials with the scene */
-    BpDeviceInfo device;
-    enum Phase phase;
-    double start;
-    BpReferences references;
-    Runner runners[BP_STUDY_SETTINGS_MAX];
-    size_t turn; /* the setting at work */
-    uint64_t level;
-    bool last_level; /* the present one is */
-    uint32_t crop_left, crop_top;
-};
 
 static double cpu_seconds(void) {
     struct rusage usage;
@@ -80,7 +58,9 @@ BpStatus bp_study_create(const BpScene *scene, const BpRenderOptions *base, cons
     made->result.reference_is_kernel = device->has_double;
     made->result.count = bp_study_settings(scene, base, device->has_double, settings);
     for (size_t s = 0; s < made->result.count; s++) made->result.series[s].setting = settings[s];
-    const BpStatus status = make_variants(scene, made, err);
+    made->interest = calloc((size_t)scene->camera.width * scene->camera.height, sizeof *made->interest);
+    BpStatus status = made->interest != NULL ? BP_OK : bp_fail(err, BP_ERR_MEMORY, "no memory for a study");
+    if (status == BP_OK) status = make_variants(scene, made, err);
     if (status == BP_OK)
         *study = made;
     else
@@ -98,6 +78,8 @@ void bp_study_destroy(BpStudy **study) {
             bp_study_crop_clear(&result->series[s].points[p].crop);
     }
     bp_study_crop_clear(&result->truth);
+    bp_picture_clear(&(*study)->first);
+    free((*study)->interest);
     for (int f = 0; f < 3; f++) free((*study)->variants[f].materials);
     free(*study);
     *study = NULL;
@@ -111,7 +93,7 @@ const BpStudyResult *bp_study_result(const BpStudy *study) {
 
 static BpStatus open_references(BpStudy *study, BpError *err) {
     const BpRenderOptions *base = &study->result.series[0].setting.options;
-    study->phase = REFERENCES;
+    study->phase = BP_STUDY_REFERENCES;
     return bp_references_open(&study->references, &study->variants[BP_STUDY_FRESNEL_EXACT], base,
                               &study->device, err);
 }
@@ -121,7 +103,7 @@ static BpStatus step_references(BpStudy *study, BpError *err) {
     bool finished = false;
     BP_TRY(bp_references_step(&study->references, REFERENCE_SHARE * result->budget, &finished, err));
     if (!finished) return BP_OK;
-    study->phase = OPEN_SETTINGS;
+    study->phase = BP_STUDY_OPEN_SETTINGS;
     result->reference_samples = study->references.done[0];
     bp_references_judge(&study->references, &result->brightness, &result->reference_error);
     if (!(result->brightness > 0))
@@ -143,7 +125,7 @@ static BpStatus trace_to_end(BpRender *render, BpError *err) {
 static BpStatus open_setting(BpStudy *study, BpError *err) {
     const size_t s = study->turn;
     const BpStudySetting *setting = &study->result.series[s].setting;
-    Runner *runner = &study->runners[s];
+    BpStudyRunner *runner = &study->runners[s];
     BpRenderOptions options = setting->options;
     options.samples_per_pixel = 1;
     options.first_sample = 0;
@@ -153,90 +135,20 @@ static BpStatus open_setting(BpStudy *study, BpError *err) {
     BpRenderReport report;
     bp_render_report(runner->render, &report);
     runner->warm_device_seconds = report.device_seconds;
+    BP_TRY(bp_study_note_first(study, s, err));
     if (s == 0) {
         study->result.report = report;
         study->result.report.build_log = NULL;
     }
     if (++study->turn < study->result.count) return BP_OK;
-    study->phase = LEVELS;
+    bp_study_crop_place(study->interest, study->first.width, study->first.height, &study->crop_left,
+                        &study->crop_top);
+    study->phase = BP_STUDY_LEVELS;
     study->level = LEVEL_FIRST;
     study->turn = 0;
     for (size_t i = 0; i < study->result.count; i++)
         BP_TRY(bp_render_extend(study->runners[i].render, study->level, err));
     return BP_OK;
-}
-
-/* ---- points ------------------------------------------------------------------------------------------ */
-
-/* The first sample of every pixel was the warm-up and is not in the times, hence n / (n - 1). */
-static void note_times(const BpStudy *study, const Runner *runner, BpStudyPoint *point) {
-    const double scale = (double)point->samples / (double)(point->samples - 1);
-    BpRenderReport report;
-    bp_render_report(runner->render, &report);
-    point->wall_seconds = scale * runner->wall_seconds;
-    point->cpu_seconds = scale * runner->cpu_seconds;
-    point->device_seconds = scale * (report.device_seconds - runner->warm_device_seconds);
-    point->seconds = point->wall_seconds;
-    if (study->device.type == BP_DEVICE_CPU)
-        point->seconds = fmin(point->seconds, point->cpu_seconds / fmax(1, study->device.compute_units));
-}
-
-static bool is_truth(const BpStudyResult *result, size_t s) {
-    return s == 1 && result->reference_is_kernel;
-}
-
-/* Against the base and the truth, which have the same counts: in each round the base comes first. */
-static BpStatus note_differences(BpStudy *study, size_t s, const BpAccumulator *sums,
-                                 const BpPicture *picture, BpError *err) {
-    const BpStudyEstimate unknown = {(double)NAN, (double)NAN, (double)NAN};
-    const BpPicture *truths = study->references.pictures;
-    const double brightness = study->result.brightness;
-    BpStudySeries *series = &study->result.series[s];
-    const BpAccumulator *other = NULL;
-    if (s == 0) {
-        series->change = series->change_square = series->bias_square = unknown;
-        series->bias = bp_study_unpaired(picture, &truths[0], &truths[1], brightness);
-        return BP_OK;
-    }
-    BP_TRY(bp_render_accumulator(study->runners[0].render, &other, err));
-    BP_TRY(bp_study_paired(sums, other, brightness, &series->change, &series->change_square, err));
-    if (is_truth(&study->result, s)) {
-        BpStudySeries *base = &study->result.series[0];
-        series->bias = bp_study_unpaired(picture, &truths[0], &truths[1], brightness);
-        series->bias_square = (BpStudyEstimate){0, 0, 0}; /* by definition */
-        return bp_study_paired(other, sums, brightness, &base->bias, &base->bias_square, err);
-    }
-    if (!study->result.reference_is_kernel) {
-        series->bias = bp_study_unpaired(picture, &truths[0], &truths[1], brightness);
-        series->bias_square = unknown;
-        return BP_OK;
-    }
-    BP_TRY(bp_render_accumulator(study->runners[1].render, &other, err));
-    return bp_study_paired(sums, other, brightness, &series->bias, &series->bias_square, err);
-}
-
-static BpStatus note_point(BpStudy *study, size_t s, BpError *err) {
-    BpStudySeries *series = &study->result.series[s];
-    BpStudyPoint *point = &series->points[series->count++];
-    const BpPicture *truths = study->references.pictures;
-    const BpAccumulator *sums = NULL;
-    BpPicture picture;
-    BpStatus status = BP_OK;
-    point->samples = study->level;
-    note_times(study, &study->runners[s], point);
-    BP_TRY(bp_render_accumulator(study->runners[s].render, &sums, err));
-    point->claimed = bp_accumulator_nrmse(sums);
-    BP_TRY(bp_accumulator_picture(sums, &picture, err));
-    bp_study_errors(&picture, &truths[0], &truths[1], study->result.brightness, point);
-    if (s == 0 && series->count == 1) bp_study_crop_place(&picture, &study->crop_left, &study->crop_top);
-    BP_TRY_GOTO(status,
-                bp_study_crop(&picture, &truths[0], &truths[1], study->crop_left, study->crop_top,
-                              study->result.scene->transfer, &point->crop, err),
-                done);
-    status = note_differences(study, s, sums, &picture, err);
-done:
-    bp_picture_clear(&picture);
-    return status;
 }
 
 /* ---- the end ----------------------------------------------------------------------------------------- */
@@ -255,12 +167,12 @@ static BpStatus conclude(BpStudy *study, BpError *err) {
     result->crop_width = camera->width < BP_STUDY_CROP_WIDTH ? camera->width : BP_STUDY_CROP_WIDTH;
     result->crop_height = camera->height < BP_STUDY_CROP_HEIGHT ? camera->height : BP_STUDY_CROP_HEIGHT;
     result->seconds = elapsed(study);
-    study->phase = DONE;
+    study->phase = BP_STUDY_DONE;
     return BP_OK;
 }
 
 BpStatus bp_study_stop(BpStudy *study, BpError *err) {
-    if (study->phase == DONE) return BP_OK;
+    if (study->phase == BP_STUDY_DONE) return BP_OK;
     for (size_t s = 0; s < study->result.count; s++)
         if (study->result.series[s].count < 2)
             return bp_fail(err, BP_ERR_INTERRUPTED,
@@ -294,14 +206,14 @@ static BpStatus next_level(BpStudy *study, BpError *err) {
 }
 
 static BpStatus step_levels(BpStudy *study, BpError *err) {
-    Runner *runner = &study->runners[study->turn];
+    BpStudyRunner *runner = &study->runners[study->turn];
     const double wall = bp_clock_seconds(), cpu = cpu_seconds();
     BpProgress progress;
     BP_TRY(bp_render_step(runner->render, &progress, err));
     runner->wall_seconds += bp_clock_seconds() - wall;
     runner->cpu_seconds += cpu_seconds() - cpu;
     if (!progress.finished) return BP_OK;
-    BP_TRY(note_point(study, study->turn, err));
+    BP_TRY(bp_study_note_point(study, study->turn, err));
     if (++study->turn < study->result.count) return BP_OK;
     study->turn = 0;
     return next_level(study, err);
@@ -311,15 +223,16 @@ static void report_progress(const BpStudy *study, BpStudyProgress *progress) {
     static const char *const words[] = {"opening the references", "rendering the references",
                                         "building kernels", "", "done"};
     const double spent = elapsed(study);
-    progress->finished = study->phase == DONE;
+    progress->finished = study->phase == BP_STUDY_DONE;
     progress->seconds_left = progress->finished ? 0 : fmax(0, study->result.budget - spent);
     progress->fraction = progress->finished ? 1 : fmin(0.99, spent / study->result.budget);
-    if (study->phase == LEVELS || study->phase == OPEN_SETTINGS)
+    if (study->phase == BP_STUDY_LEVELS || study->phase == BP_STUDY_OPEN_SETTINGS)
         snprintf(progress->doing, sizeof progress->doing, "%s%s",
-                 study->phase == LEVELS ? "" : "building: ", study->result.series[study->turn].setting.name);
+                 study->phase == BP_STUDY_LEVELS ? "" : "building: ",
+                 study->result.series[study->turn].setting.name);
     else
         snprintf(progress->doing, sizeof progress->doing, "%s", words[study->phase]);
-    if (study->phase == LEVELS) {
+    if (study->phase == BP_STUDY_LEVELS) {
         const size_t used = strlen(progress->doing);
         snprintf(progress->doing + used, sizeof progress->doing - used, ", %llu samples",
                  (unsigned long long)study->level);
@@ -328,19 +241,19 @@ static void report_progress(const BpStudy *study, BpStudyProgress *progress) {
 
 BpStatus bp_study_step(BpStudy *study, BpStudyProgress *progress, BpError *err) {
     switch (study->phase) {
-    case OPEN_REFERENCES:
+    case BP_STUDY_OPEN_REFERENCES:
         BP_TRY(open_references(study, err));
         break;
-    case REFERENCES:
+    case BP_STUDY_REFERENCES:
         BP_TRY(step_references(study, err));
         break;
-    case OPEN_SETTINGS:
+    case BP_STUDY_OPEN_SETTINGS:
         BP_TRY(open_setting(study, err));
         break;
-    case LEVELS:
+    case BP_STUDY_LEVELS:
         BP_TRY(step_levels(study, err));
         break;
-    case DONE:
+    case BP_STUDY_DONE:
         break;
     }
     if (progress != NULL) report_progress(study, progress);

@@ -135,6 +135,8 @@ void bp_study_destroy(BpStudy **study);
 
 /* ---- results ---- */
 
+/* Root of the mean squared systematic error of a pixel; NaN where it is not told from none. */
+double bp_study_pixel_bias(const BpStudySeries *series);
 const char *bp_study_fresnel_name(BpStudyFresnel fresnel);
 /* One line: what to do for this error and what it costs; no line end. */
 const char *bp_study_advice_text(const BpStudyResult *result, const BpStudyAdvice *advice, char *text,

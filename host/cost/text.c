@@ -32,8 +32,8 @@ static void print_settings(const BpStudyResult *result, FILE *out) {
                 bp_study_percent(last->claimed, noise, sizeof noise),
                 bp_study_percent(last->nrmse, error, sizeof error),
                 bp_study_ratio(series->efficiency, factor, sizeof factor),
-                s == 0 ? "" : bp_study_interval(&series->change, "+-", change, sizeof change),
-                bp_study_interval(&series->bias, "+-", bias, sizeof bias));
+                s == 0 ? "" : bp_study_interval(&series->change, "+-", "-", change, sizeof change),
+                bp_study_interval(&series->bias, "+-", "-", bias, sizeof bias));
     }
 }
 
