@@ -8,15 +8,15 @@
  * that is NaN, infinite, negative or larger than any path can bring (2^39 in fixed point) is left out and counted;
  * it is found by its bits, since a compiler may assume that NaN does not exist. */
 #if REAL_IS_DOUBLE
-#define BITS ulong
-#define as_bits as_ulong
+#define BITS4 ulong4
+#define as_bits4 as_ulong4
 #define BITS_SIGN 0x8000000000000000ul
-#define BITS_INFINITE 0x7ff0000000000000ul
+#define BITS_LIMIT 0x4260000000000000ul /* of 2^39 */
 #else
-#define BITS uint
-#define as_bits as_uint
+#define BITS4 uint4
+#define as_bits4 as_uint4
 #define BITS_SIGN 0x80000000u
-#define BITS_INFINITE 0x7f800000u
+#define BITS_LIMIT 0x53000000u
 #endif
 
 /* 2^exponent, -126 to 126, by its bits: ldexp is a slow call on some devices. */
@@ -26,13 +26,6 @@ static real power_of_two(int exponent) {
 #else
     return as_float((uint)(exponent + 127) << 23);
 #endif
-}
-
-static int is_valid(real x, real scale) {
-    const BITS bits = as_bits(x);
-    if ((bits & BITS_INFINITE) == BITS_INFINITE) return 0;
-    if ((bits & BITS_SIGN) != 0 && bits != BITS_SIGN) return 0;
-    return x * scale < R(0x1p39);
 }
 
 /* One work-item a pixel of the chunk. */
@@ -48,32 +41,33 @@ __kernel void fold(__global const real *samples, uint pixel_count, uint samples_
     const size_t pixel = first_pixel + item;
 #endif
     __global const real *mine = samples + (size_t)item * samples_per_pixel * 4;
-    ulong segments = 0, cut = 0, invalid = 0;
+    const real4 scales = (real4)(scale, scale, scale, 2); /* the fourth number: twice the segments, plus 1 for a cut */
+    ulong twice_segments = 0, cut = 0, invalid = 0;
     for (uint k = 0; k < replicates; ++k) {
-        long red = 0, green = 0, blue = 0;
+        long4 sum = 0;
         uint count = 0;
         for (uint s = (k + replicates - first_sample % replicates) % replicates; s < samples_per_pixel;
              s += replicates) {
-            __global const real *sample = mine + (size_t)s * 4;
-            const real r = sample[0], g = sample[1], b = sample[2], path = sample[3];
-            segments += (ulong)path;
-            cut += path != floor(path);
-            if (is_valid(r, scale) && is_valid(g, scale) && is_valid(b, scale)) {
-                red += convert_long_rte(r * scale);
-                green += convert_long_rte(g * scale);
-                blue += convert_long_rte(b * scale);
-                ++count;
-            } else {
-                ++invalid;
-            }
+            const real4 sample = vload4(s, mine) * scales;
+            /* As bits, what is NaN, infinite, negative or too large is a larger integer; but -0 is 0. */
+            const BITS4 bits = as_bits4(sample);
+            const BITS4 magnitude = bits == (BITS4)BITS_SIGN ? (BITS4)0 : bits;
+            const uint valid =
+                magnitude.x < BITS_LIMIT && magnitude.y < BITS_LIMIT && magnitude.z < BITS_LIMIT;
+            const long4 fixed = convert_long4(rint(sample));
+            twice_segments += (ulong)fixed.w;
+            cut += (ulong)fixed.w & 1u;
+            sum += valid ? fixed : (long4)0;
+            count += valid;
+            invalid += 1u - valid;
         }
-        __global long *sum = sums + (pixel * replicates + k) * 3;
-        sum[0] += red;
-        sum[1] += green;
-        sum[2] += blue;
+        __global long *total = sums + (pixel * replicates + k) * 3;
+        total[0] += sum.x;
+        total[1] += sum.y;
+        total[2] += sum.z;
         counts[pixel * replicates + k] += count;
     }
-    tallies[pixel * 3] += segments;
+    tallies[pixel * 3] += (twice_segments - cut) / 2;
     tallies[pixel * 3 + 1] += cut;
     tallies[pixel * 3 + 2] += invalid;
 }

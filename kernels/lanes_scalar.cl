@@ -1,8 +1,8 @@
 /* lanes_scalar.cl: from here on, lane code means one lane: `reals` is a real, a mask is 0 or 1.
  *
- * Lane code is written once, for one lane or for eight: a mask is made by a comparison, combined with & | and
+ * Lane code is written once, for one lane or for many: a mask is made by a comparison, combined with & | and
  * not_mask, asked by any_lane, and spent by choose. `if (any_lane(m)) ...` is a plain branch for one lane and
- * "skip when no lane wants it" for eight. LANED(f) is f's name for this number of lanes. */
+ * "skip when no lane wants it" for many. LANED(f) is f's name for this number of lanes. */
 #undef LANED
 #undef reals
 #undef masks
@@ -14,6 +14,7 @@
 #undef choose_uint
 #undef choose_refined
 #undef any_lane
+#undef count_lanes
 #undef not_mask
 #undef mask_of_uint
 #undef mask_of_refined
@@ -41,6 +42,7 @@
 #define choose_uint(mask, a, b) ((mask) ? (a) : (b))
 #define choose_refined(mask, a, b) ((mask) ? (a) : (b))
 #define any_lane(mask) ((mask) != 0)
+#define count_lanes(mask) ((mask) != 0)
 #define not_mask(mask) (!(mask))
 #define mask_of_uint(mask) (mask)
 #define mask_of_refined(mask) (mask)

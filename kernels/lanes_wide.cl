@@ -1,4 +1,4 @@
-/* lanes_wide.cl: from here on, lane code means eight lanes (see lanes_scalar.cl). A mask is 0 or -1 a lane, as
+/* lanes_wide.cl: from here on, lane code means PACKET_LANES lanes (see lanes_scalar.cl). A mask is 0 or -1 a lane, as
  * wide as a real. */
 #undef LANED
 #undef reals
@@ -11,6 +11,7 @@
 #undef choose_uint
 #undef choose_refined
 #undef any_lane
+#undef count_lanes
 #undef not_mask
 #undef mask_of_uint
 #undef mask_of_refined
@@ -26,31 +27,60 @@
 #undef gather_uints
 #undef LANE_COUNT
 
-#define LANE_COUNT 8
-#define LANED(name) JOIN(name, _8)
-#define reals JOIN(REAL, 8)
-#define masks JOIN(REAL_MASK, 8)
-#define uints uint8
-#define uint_masks int8
-#define refineds JOIN(REFINED, 8)
-#define refined_masks JOIN(REFINED_MASK, 8)
+#define LANE_COUNT PACKET_LANES
+#define LANED(name) JOIN(JOIN(name, _), PACKET_LANES)
+#define reals JOIN(REAL, PACKET_LANES)
+#define masks JOIN(REAL_MASK, PACKET_LANES)
+#define uints JOIN(uint, PACKET_LANES)
+#define uint_masks JOIN(int, PACKET_LANES)
+#define refineds JOIN(REFINED, PACKET_LANES)
+#define refined_masks JOIN(REFINED_MASK, PACKET_LANES)
 #define choose(mask, a, b) ((mask) ? (a) : (b))
-#define choose_uint(mask, a, b) (convert_int8(mask) ? (a) : (b))
-#define choose_refined(mask, a, b) (JOIN(JOIN(convert_, REFINED_MASK), 8)(mask) ? (a) : (b))
-#define any_lane(mask) any(mask)
+#define choose_uint(mask, a, b) (JOIN(convert_int, PACKET_LANES)(mask) ? (a) : (b))
+#define choose_refined(mask, a, b) (JOIN(JOIN(convert_, REFINED_MASK), PACKET_LANES)(mask) ? (a) : (b))
+#define any_lane(mask) any_of_lanes(mask)
+#define count_lanes(mask) count_of_lanes(mask)
 #define not_mask(mask) (~(mask))
-#define mask_of_uint(mask) JOIN(JOIN(convert_, REAL_MASK), 8)(mask)
-#define mask_of_refined(mask) JOIN(JOIN(convert_, REAL_MASK), 8)(mask)
-#define to_refined(x) JOIN(JOIN(convert_, REFINED), 8)(x)
-#define to_real(x) JOIN(JOIN(convert_, REAL), 8)(x)
+#define mask_of_uint(mask) JOIN(JOIN(convert_, REAL_MASK), PACKET_LANES)(mask)
+#define mask_of_refined(mask) JOIN(JOIN(convert_, REAL_MASK), PACKET_LANES)(mask)
+#define to_refined(x) JOIN(JOIN(convert_, REFINED), PACKET_LANES)(x)
+#define to_real(x) JOIN(JOIN(convert_, REAL), PACKET_LANES)(x)
 #define splat(x) ((reals)(x))
-#define splat_uint(x) ((uint8)(x))
+#define splat_uint(x) ((uints)(x))
 #define splat_refined(x) ((refineds)(x))
-#define load_lanes(array) vload8(0, array)
-#define store_lanes(x, array) vstore8(x, 0, array)
-#define uint_to_reals(x) JOIN(JOIN(convert_, REAL), 8)(x)
-#define gather_lanes(type, base, index)                                                                      \
-    (type)((base)[(index).s0], (base)[(index).s1], (base)[(index).s2], (base)[(index).s3], (base)[(index).s4],  \
-           (base)[(index).s5], (base)[(index).s6], (base)[(index).s7])
+#define load_lanes(array) JOIN(vload, PACKET_LANES)(0, array)
+#define store_lanes(x, array) JOIN(vstore, PACKET_LANES)(x, 0, array)
+#define uint_to_reals(x) JOIN(JOIN(convert_, REAL), PACKET_LANES)(x)
+/* Tables have fewer than 2^31 entries, and some processors gather faster with signed offsets. */
+#define gather_8(base, index)                                                                                \
+    (base)[(int)(index).s0], (base)[(int)(index).s1], (base)[(int)(index).s2], (base)[(int)(index).s3],            \
+        (base)[(int)(index).s4], (base)[(int)(index).s5], (base)[(int)(index).s6], (base)[(int)(index).s7]
+#if PACKET_LANES == 16
+#define gather_lanes(type, base, index) (type)(gather_8(base, (index).lo), gather_8(base, (index).hi))
+#else
+#define gather_lanes(type, base, index) (type)(gather_8(base, index))
+#endif
 #define gather_reals(base, index) gather_lanes(reals, base, index)
 #define gather_uints(base, index) gather_lanes(uints, base, index)
+
+/* Drivers' own any() may ask lane by lane. */
+static int any_of_lanes(masks mask) {
+#if PACKET_LANES == 16
+    const JOIN(REAL_MASK, 8) eight = mask.lo | mask.hi;
+    const JOIN(REAL_MASK, 4) four = eight.lo | eight.hi;
+#else
+    const JOIN(REAL_MASK, 4) four = mask.lo | mask.hi;
+#endif
+    const JOIN(REAL_MASK, 2) two = four.lo | four.hi;
+    return (two.x | two.y) != 0;
+}
+static uint count_of_lanes(masks mask) {
+#if PACKET_LANES == 16
+    const JOIN(REAL_MASK, 8) eight = mask.lo + mask.hi;
+    const JOIN(REAL_MASK, 4) four = eight.lo + eight.hi;
+#else
+    const JOIN(REAL_MASK, 4) four = mask.lo + mask.hi;
+#endif
+    const JOIN(REAL_MASK, 2) two = four.lo + four.hi;
+    return (uint)(0 - (two.x + two.y));
+}

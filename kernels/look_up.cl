@@ -1,14 +1,5 @@
 /* look_up.cl: the sphere and the material at a hit, gathered for all lanes from the packed tables. */
 
-typedef struct Scene {
-    Geometry geometry;
-    __global const PackedSky *sky;
-    __global const real *materials; /* PackedMaterial */
-    __global const uint *kinds;     /* PackedMaterialKind */
-    __global const uint *looks;     /* PackedSphereLook */
-    __global const real *albedos;
-} Scene;
-
 /* The packed structs as the gathers see them: arrays of their only type. */
 #define LOOK_UINTS ((uint)(sizeof(PackedSphereLook) / sizeof(uint)))
 #define MATERIAL_UINTS ((uint)(sizeof(PackedMaterialKind) / sizeof(uint)))

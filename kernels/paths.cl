@@ -14,3 +14,13 @@ typedef struct Paths {
     masks met, entered;
     refineds distance;
 } Paths;
+
+/* What the paths meet next. */
+typedef struct Meeting {
+    refineds t;
+    masks met, enters;
+    uints slot, sphere;
+} Meeting;
+
+/* Not below the distance met so far. */
+static reals bound_of(const Meeting *meeting) { return to_real(meeting->t) * (R(1.0) + R(4.0) * ROUNDOFF); }

@@ -3,7 +3,8 @@
  * The program's first lines (host/engine/program.c) define:
  *   REAL_IS_DOUBLE    0 or 1: what `real` is
  *   REFINE_IS_DOUBLE  0 or 1: whether intersections are refined in double (always 1 with REAL_IS_DOUBLE)
- *   TREE_WIDTH        2, 4 or 8: lanes of a tree node and of a leaf
+ *   TREE_WIDTH        2, 4, 8 or 16: lanes of a tree node and of a leaf
+ *   PACKET_LANES      8 or 16: paths that a work-item of the packet form follows at a time
  *   NUMERICS_ROBUST   1: refine.cl decides; 0: plain.cl
  *   EFFECT_...        0 or 1, one for each effect
  *
@@ -14,21 +15,27 @@
 #pragma OPENCL EXTENSION cl_khr_fp64 : enable
 #endif
 
+#define JOIN_(a, b) a##b
+#define JOIN(a, b) JOIN_(a, b)
+
 #if REAL_IS_DOUBLE
 #define REAL double
 #define REAL_MASK long
 /* The distance between 1 and the next larger real, halved: the unit roundoff u. */
 #define ROUNDOFF 0x1p-53
 #define REAL_LARGE 1e300
+#define REAL_MAX DBL_MAX
 #define R(literal) literal
 #else
 #define REAL float
 #define REAL_MASK int
 #define ROUNDOFF 0x1p-24f
 #define REAL_LARGE 1e38f
+#define REAL_MAX FLT_MAX
 #define R(literal) literal##f
 #endif
 typedef REAL real;
+typedef JOIN(REAL, 4) real4;
 
 #if REFINE_IS_DOUBLE
 #define REFINED double
@@ -39,27 +46,8 @@ typedef REAL real;
 #endif
 typedef REFINED refined;
 
-#define JOIN_(a, b) a##b
-#define JOIN(a, b) JOIN_(a, b)
-
 /* ---- one ray against TREE_WIDTH boxes or spheres ---- */
 
 #define WIDE(type) JOIN(type, TREE_WIDTH)
 typedef WIDE(REAL) wide;
 #define load_wide JOIN(vload, TREE_WIDTH)
-
-/* A comparison of wides as bytes in one integer: byte l is 0xff where lane l is true. On most CPUs this is two
- * instructions, and the lowest lane is one count of trailing zeros away. */
-#if TREE_WIDTH == 8
-typedef ulong lane_bytes;
-#define to_lane_bytes(mask) as_ulong(convert_char8(mask))
-#elif TREE_WIDTH == 4
-typedef uint lane_bytes;
-#define to_lane_bytes(mask) as_uint(convert_char4(mask))
-#else
-typedef ushort lane_bytes;
-#define to_lane_bytes(mask) as_ushort(convert_char2(mask))
-#endif
-/* The lowest true lane of `bytes` != 0. popcount((b & -b) - 1) counts the zeros below the lowest set bit. */
-#define lowest_lane(bytes) ((uint)(popcount((lane_bytes)(((bytes) & (0 - (bytes))) - 1)) >> 3))
-#define without_lane(bytes, lane) ((lane_bytes)((bytes) & ~((lane_bytes)0xff << ((lane) * 8))))

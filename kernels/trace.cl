@@ -10,7 +10,7 @@
 
 /* One segment of every living path: intersect, collect radiance, scatter. */
 static void advance(const Scene *scene, Paths *paths) {
-    const Meeting meeting = meet(&scene->geometry, paths);
+    const Meeting meeting = meet(scene, paths);
     paths->met = meeting.met;
     paths->entered = meeting.enters;
     paths->distance = meeting.t;
@@ -84,6 +84,9 @@ static Scene begin_scene(__global const PackedSky *sky, __global const PackedMat
     scene.kinds = (__global const uint *)kinds;
     scene.looks = (__global const uint *)looks;
     scene.albedos = albedos;
+#if LANE_COUNT > 1 && EFFECT_TREE
+    flatten_tree(&scene.geometry, &scene.flat);
+#endif
     return scene;
 }
 
@@ -127,10 +130,11 @@ __kernel void trace(SCENE_PARAMETERS, uint first_pixel, uint first_sample, uint 
     const uint item = get_global_id(0);
     uint next = item * samples_per_item;
     const uint end = min(next + samples_per_item, sample_count);
+    if (next >= end) return;
     /* The pixel sample `next` stands for, counted along: division is slow, in lanes above all. */
 #if PIXEL_LIST
     uint place = first_pixel + next / samples_per_pixel;
-    const uint first = next < end ? pixel_list[place] : 0;
+    const uint first = pixel_list[place];
 #else
     const uint first = first_pixel + next / samples_per_pixel;
 #endif
@@ -139,69 +143,63 @@ __kernel void trace(SCENE_PARAMETERS, uint first_pixel, uint first_sample, uint 
     Paths paths;
     paths.alive = splat(0) != splat(0);
     paths.depth = splat_uint(0);
-    masks taken = paths.alive; /* lanes whose result is still to be written */
-    uint number[LANE_COUNT];   /* of the pixel sample within the chunk */
+    paths.radiance = zero3();
+    masks cut = paths.alive;   /* lanes whose path the cap has ended, black for what is missing */
+    uint number[LANE_COUNT];   /* of a lane's pixel sample within the chunk */
+    const uint lanes = min((uint)LANE_COUNT, end - next); /* that ever have one */
+    uint used = 0;
     for (;;) {
-        /* Paths that reached the cap end here, black for what is missing. */
-        const masks cut = paths.alive & mask_of_uint(paths.depth >= splat_uint(max_depth));
-        const masks ended = taken & (not_mask(paths.alive) | cut);
-        if (any_lane(ended)) {
-            real red[LANE_COUNT], green[LANE_COUNT], blue[LANE_COUNT], count[LANE_COUNT], done[LANE_COUNT];
+        const masks reached = paths.alive & mask_of_uint(paths.depth >= splat_uint(max_depth));
+        cut = cut | reached;
+        paths.alive = paths.alive & not_mask(reached);
+
+        /* Once half of the lanes are free: results out, the next pixel samples in. */
+        const uint alive = count_lanes(paths.alive);
+        if (alive == 0 || (alive <= LANE_COUNT / 2 && next < end)) {
+            real red[LANE_COUNT], green[LANE_COUNT], blue[LANE_COUNT], count[LANE_COUNT], busy[LANE_COUNT];
             store_lanes(paths.radiance.x, red);
             store_lanes(paths.radiance.y, green);
             store_lanes(paths.radiance.z, blue);
             store_lanes(uint_to_reals(paths.depth) + choose(cut, splat(R(0.5)), splat(0)), count);
-            store_lanes(choose(ended, splat(1), splat(0)), done);
+            store_lanes(choose(paths.alive, splat(1), splat(0)), busy);
+            /* Of a path that goes on this is not the last word, but its place is its own, and to ask costs more. */
+            for (uint lane = 0; lane < used; ++lane)
+                vstore4((real4)(red[lane], green[lane], blue[lane], count[lane]), number[lane], samples);
+            if (next >= end) return;
+            used = lanes;
+            uint pixels[LANE_COUNT], sample_numbers[LANE_COUNT];
+            real rows[LANE_COUNT], columns[LANE_COUNT], fresh_lane[LANE_COUNT];
             for (uint lane = 0; lane < LANE_COUNT; ++lane) {
-                if (done[lane] == 0) continue;
-                __global real *sample = samples + (size_t)number[lane] * 4;
-                sample[0] = red[lane];
-                sample[1] = green[lane];
-                sample[2] = blue[lane];
-                sample[3] = count[lane];
-            }
-            taken = taken & not_mask(ended);
-            paths.alive = paths.alive & not_mask(cut);
-        }
-
-        /* Lanes that are free take the next pixel samples, once half of them are. */
-        if (next < end) {
-            real busy[LANE_COUNT];
-            store_lanes(choose(taken, splat(1), splat(0)), busy);
-            uint busy_count = 0;
-            for (uint lane = 0; lane < LANE_COUNT; ++lane) busy_count += busy[lane] != 0;
-            if (busy_count <= LANE_COUNT / 2) {
-                uint pixels[LANE_COUNT], sample_numbers[LANE_COUNT];
-                real rows[LANE_COUNT], columns[LANE_COUNT], fresh_lane[LANE_COUNT];
-                for (uint lane = 0; lane < LANE_COUNT; ++lane) {
-                    const int takes = busy[lane] == 0 && next < end;
-                    fresh_lane[lane] = takes ? 1 : 0;
-                    pixels[lane] = row * width + column;
-                    sample_numbers[lane] = first_sample + sample;
-                    rows[lane] = (real)row;
-                    columns[lane] = (real)column;
-                    if (!takes) continue;
-                    number[lane] = next++;
-                    if (++sample < samples_per_pixel) continue;
-                    sample = 0;
+                const uint takes = busy[lane] == 0 && next < end;
+                fresh_lane[lane] = (real)takes;
+                pixels[lane] = row * width + column;
+                sample_numbers[lane] = first_sample + sample;
+                rows[lane] = (real)row;
+                columns[lane] = (real)column;
+                number[lane] = takes ? next : number[lane];
+                /* Counted on without a branch. */
+                next += takes;
+                sample += takes;
+                const uint next_pixel = sample == samples_per_pixel;
+                sample = next_pixel ? 0 : sample;
 #if PIXEL_LIST
-                    if (next == end) continue;
+                if (next_pixel && next < end) {
                     row = pixel_list[++place] / width;
                     column = pixel_list[place] % width;
-#else
-                    if (++column < width) continue;
-                    column = 0;
-                    ++row;
-#endif
                 }
-                const masks fresh = load_lanes(fresh_lane) != splat(0);
-                const SampleKey key = sample_key(seed_low, seed_high, load_lanes(pixels), load_lanes(sample_numbers), replicates);
-                begin_paths(camera, pixel_center, key, load_lanes(columns), load_lanes(rows), fresh, &paths);
-                taken = taken | fresh;
-                continue; /* a cap of 0 cuts at once */
+#else
+                column += next_pixel;
+                const uint next_row = column == width;
+                column = next_row ? 0 : column;
+                row += next_row;
+#endif
             }
+            const masks fresh = load_lanes(fresh_lane) != splat(0);
+            const SampleKey key = sample_key(seed_low, seed_high, load_lanes(pixels), load_lanes(sample_numbers), replicates);
+            begin_paths(camera, pixel_center, key, load_lanes(columns), load_lanes(rows), fresh, &paths);
+            cut = cut & not_mask(fresh);
+            continue; /* a cap of 0 cuts at once */
         }
-        if (!any_lane(taken)) return;
         advance(&scene, &paths);
     }
 }

@@ -5,7 +5,7 @@
  * Knows: nodes, leaves, slots.   Does not know: materials, what made the ray.
  *
  * Boxes and spheres are tested TREE_WIDTH at a time, conservatively in `real`; what cannot be ruled out is decided
- * by refine.cl, one sphere at a time. */
+ * by refine.cl, one sphere at a time. rounds.cl walks the same tree for many rays, by the same steps. */
 
 typedef struct Geometry {
     __global const real *boxes;
@@ -19,6 +19,7 @@ typedef struct Ray {
     real high[3], low[3]; /* origin, an unevaluated sum */
     real direction[3];    /* |d| = 1 within 4 ROUNDOFF */
     real slack;           /* bound on the distance of the origin from its true place */
+    real margin;          /* bound on what the rounding of the origin does to a distance: margin_of_origin */
     uint own_slot;        /* the sphere being left, or NO_SLOT */
     int inward;           /* it is left into its inside */
 } Ray;
@@ -43,78 +44,77 @@ static void keep_closer(const Geometry *geometry, refined t, uint slot, int ente
     }
 }
 
+/* How far the rounding of a ray's origin, and its slack, can move what leaf_candidates computes. */
+static real margin_of_origin(const Ray *ray) {
+    return fma(fabs(ray->high[0]) + fabs(ray->high[1]) + fabs(ray->high[2]), R(4.0) * ROUNDOFF, ray->slack);
+}
+
+/* The spheres of a leaf that the ray may meet before `bound`; the rest of them it surely does not. TREE_WIDTH at a
+ * time, without a branch. */
+static lane_set leaf_candidates(const Geometry *geometry, const Ray *ray, uint leaf_number, real bound) {
+    __global const real *leaf = geometry->leaves + leaf_number * (4 * TREE_WIDTH);
+    const wide ocx = load_wide(0, leaf) - ray->high[0];
+    const wide ocy = load_wide(1, leaf) - ray->high[1];
+    const wide ocz = load_wide(2, leaf) - ray->high[2];
+    const wide radius = load_wide(3, leaf);
+    const wide dx = (wide)ray->direction[0], dy = (wide)ray->direction[1], dz = (wide)ray->direction[2];
+    const wide p = fma(ocx, dx, fma(ocy, dy, ocz * dz));
+    const wide lx = fma(-p, dx, ocx), ly = fma(-p, dy, ocy), lz = fma(-p, dz, ocz);
 #if NUMERICS_ROBUST
-/* A sphere that the conservative test could not rule out. */
+    /* The sphere is met before `bound` only if sqrt(r^2 - l^2) >= max(-p, p - bound); p and l err by less than half
+     * of margin = 64 u (|p| + r) + ray->margin (u = ROUNDOFF, |d|^2 = 1 within 28 u). docs/NUMERICS.md proves that
+     * nothing is ruled out wrongly. */
+    const wide margin = fma((wide)(R(64.0) * ROUNDOFF), fabs(p) + radius, (wide)ray->margin);
+    const wide reach = radius + margin;
+    const wide room = fma(reach, reach, -fma(lx, lx, fma(ly, ly, lz * lz)));
+    const wide behind = -p, beyond = p - bound;
+    wide outside = (behind > beyond ? behind : beyond) - margin;
+    outside = outside > (wide)0 ? outside : (wide)0;
+    const lane_set candidates = to_lane_set((room >= outside * outside) & (radius > (wide)0));
+    /* The sphere being left is not met from outside, and from inside it has been (meet_own_sphere). */
+    const lane_set own = ray->own_slot / TREE_WIDTH == leaf_number ? (lane_set)1 << ray->own_slot % TREE_WIDTH : 0;
+    return candidates & ~own;
+#else
+    const wide discriminant = fma(radius, radius, -fma(lx, lx, fma(ly, ly, lz * lz)));
+    const wide half_chord = sqrt(discriminant > (wide)0 ? discriminant : (wide)0);
+    const wide near = p - half_chord, far = p + half_chord;
+    const wide t = near > (wide)PLAIN_T_MIN ? near : far;
+    return to_lane_set((discriminant >= (wide)0) & (t > (wide)PLAIN_T_MIN) & (t <= (wide)bound) & (radius > (wide)0));
+#endif
+}
+
+/* Decides about a candidate. */
 static void refine_slot(const Geometry *geometry, const Ray *ray, uint slot, Hit *best) {
     const uint lane = slot % TREE_WIDTH;
     __global const real *leaf = geometry->leaves + (slot - lane) * 4;
+    const real x = leaf[lane], y = leaf[TREE_WIDTH + lane], z = leaf[2 * TREE_WIDTH + lane];
     const real radius = leaf[3 * TREE_WIDTH + lane];
-    if (slot == ray->own_slot || radius <= 0) return;
+#if NUMERICS_ROBUST
     const Roots_1 roots =
         sphere_roots_1(ray->high[0], ray->high[1], ray->high[2], ray->low[0], ray->low[1], ray->low[2],
-                       ray->direction[0], ray->direction[1], ray->direction[2], leaf[lane], leaf[TREE_WIDTH + lane],
-                       leaf[2 * TREE_WIDTH + lane], radius);
+                       ray->direction[0], ray->direction[1], ray->direction[2], x, y, z, radius);
     refined t;
     int enters;
     if (choose_root_1(roots, radius, ray->slack, &t, &enters)) keep_closer(geometry, t, slot, enters, best);
+#else
+    /* The perpendicular form in `real`; a root counts from PLAIN_T_MIN on (plain.cl says what that costs). */
+    const real ocx = x - ray->high[0], ocy = y - ray->high[1], ocz = z - ray->high[2];
+    const real dx = ray->direction[0], dy = ray->direction[1], dz = ray->direction[2];
+    const real p = fma(ocx, dx, fma(ocy, dy, ocz * dz));
+    const real lx = fma(-p, dx, ocx), ly = fma(-p, dy, ocy), lz = fma(-p, dz, ocz);
+    const real discriminant = fma(radius, radius, -fma(lx, lx, fma(ly, ly, lz * lz)));
+    const real half_chord = sqrt(discriminant > 0 ? discriminant : 0);
+    const real near = p - half_chord, far = p + half_chord;
+    const int enters = near > PLAIN_T_MIN;
+    keep_closer(geometry, enters ? near : far, slot, enters, best);
+#endif
 }
 
-/* Rules out, TREE_WIDTH at a time, the spheres that the ray surely misses or meets surely later than best->bound;
- * refines the rest. The sphere is met before `bound` only if sqrt(r^2 - l^2) >= max(-p, p - bound); p and l err by
- * less than half of margin = 64 u (|p| + r) + ray_margin (u = ROUNDOFF, |d|^2 = 1 within 28 u). docs/NUMERICS.md
- * proves that nothing is ruled out wrongly. */
-static void test_leaf(const Geometry *geometry, const Ray *ray, real ray_margin, uint leaf_number, Hit *best) {
-    __global const real *leaf = geometry->leaves + leaf_number * (4 * TREE_WIDTH);
-    const wide ocx = load_wide(0, leaf) - ray->high[0];
-    const wide ocy = load_wide(1, leaf) - ray->high[1];
-    const wide ocz = load_wide(2, leaf) - ray->high[2];
-    const wide radius = load_wide(3, leaf);
-    const wide dx = (wide)ray->direction[0], dy = (wide)ray->direction[1], dz = (wide)ray->direction[2];
-    const wide p = fma(ocx, dx, fma(ocy, dy, ocz * dz));
-    const wide lx = fma(-p, dx, ocx), ly = fma(-p, dy, ocy), lz = fma(-p, dz, ocz);
-    const wide margin = fma((wide)(R(64.0) * ROUNDOFF), fabs(p) + radius, (wide)ray_margin);
-    const wide reach = radius + margin;
-    const wide room = fma(reach, reach, -fma(lx, lx, fma(ly, ly, lz * lz)));
-    const wide behind = -p, beyond = p - best->bound;
-    wide outside = (behind > beyond ? behind : beyond) - margin;
-    outside = outside > (wide)0 ? outside : (wide)0;
-    lane_bytes candidates = to_lane_bytes(room >= outside * outside);
-    while (candidates != 0) {
-        const uint lane = lowest_lane(candidates);
-        candidates = without_lane(candidates, lane);
-        refine_slot(geometry, ray, leaf_number * TREE_WIDTH + lane, best);
-    }
+static void test_leaf(const Geometry *geometry, const Ray *ray, uint leaf_number, Hit *best) {
+    for (lane_set candidates = leaf_candidates(geometry, ray, leaf_number, best->bound); candidates != 0;
+         candidates = without_lowest(candidates))
+        refine_slot(geometry, ray, leaf_number * TREE_WIDTH + lowest_lane(candidates), best);
 }
-#else
-/* --numerics plain: the perpendicular form in `real`, decided on the spot, TREE_WIDTH spheres at a time; a root
- * counts from PLAIN_T_MIN on (plain.cl says what that costs). */
-static void test_leaf(const Geometry *geometry, const Ray *ray, real ray_margin, uint leaf_number, Hit *best) {
-    __global const real *leaf = geometry->leaves + leaf_number * (4 * TREE_WIDTH);
-    const wide ocx = load_wide(0, leaf) - ray->high[0];
-    const wide ocy = load_wide(1, leaf) - ray->high[1];
-    const wide ocz = load_wide(2, leaf) - ray->high[2];
-    const wide radius = load_wide(3, leaf);
-    const wide dx = (wide)ray->direction[0], dy = (wide)ray->direction[1], dz = (wide)ray->direction[2];
-    const wide p = fma(ocx, dx, fma(ocy, dy, ocz * dz));
-    const wide lx = fma(-p, dx, ocx), ly = fma(-p, dy, ocy), lz = fma(-p, dz, ocz);
-    const wide discriminant = fma(radius, radius, -fma(lx, lx, fma(ly, ly, lz * lz)));
-    const wide half_chord = sqrt(discriminant > (wide)0 ? discriminant : (wide)0);
-    const wide near = p - half_chord;
-    const wide far = p + half_chord;
-    const wide t = near > (wide)PLAIN_T_MIN ? near : far;
-    lane_bytes hits = to_lane_bytes((discriminant >= (wide)0) & (t > (wide)PLAIN_T_MIN) & (t <= (wide)best->bound) &
-                                    (radius > (wide)0));
-    if (hits == 0) return;
-    real roots[TREE_WIDTH], entries[TREE_WIDTH];
-    JOIN(vstore, TREE_WIDTH)(t, 0, roots);
-    JOIN(vstore, TREE_WIDTH)(near, 0, entries);
-    while (hits != 0) {
-        const uint lane = lowest_lane(hits);
-        hits = without_lane(hits, lane);
-        keep_closer(geometry, roots[lane], leaf_number * TREE_WIDTH + lane, entries[lane] == roots[lane], best);
-    }
-}
-#endif
 
 #if EFFECT_TREE
 /* The three axes of box_ray.cl, and which of the six rows of a node hold the planes that are met first and last. */
@@ -144,8 +144,11 @@ static BoxRay box_ray(const Ray *ray) {
  * makes it one load. */
 static wide row_of(__global const real *planes, uint row) { return *(__global const wide *)(planes + (size_t)row); }
 
-/* The children of `node` that the ray meets before `bound`: their lanes, and where it enters them. */
-static lane_bytes test_node(const Geometry *geometry, const BoxRay *box, uint node, real bound, wide *entry) {
+/* 1/d errs by 5u at most, which scales a side of a box, and the products by u more. */
+#define SLAB_TOLERANCE (R(1.0) + R(16.0) * ROUNDOFF)
+
+/* The children of `node` that the ray meets before `bound`, and where it enters them. */
+static lane_set test_node(const Geometry *geometry, const BoxRay *box, uint node, real bound, wide *entry) {
     __global const real *planes = geometry->boxes + node * (6 * TREE_WIDTH);
     /* Written out, axis by axis: a loop is not always unrolled. */
     const wide enter_x = fma(row_of(planes, box->near_row[0]), (wide)box->inverse[0], (wide)box->near_offset[0]);
@@ -161,14 +164,13 @@ static lane_bytes test_node(const Geometry *geometry, const BoxRay *box, uint no
     const wide leave_zb = leave_z < (wide)bound ? leave_z : (wide)bound;
     const wide far = leave_xy < leave_zb ? leave_xy : leave_zb;
     *entry = near;
-    /* 1/d errs by 5u at most, which scales a side, and the products by u more */
-    return to_lane_bytes(near <= far * (R(1.0) + R(16.0) * ROUNDOFF));
+    return to_lane_set(near <= far * SLAB_TOLERANCE);
 }
 
 #define STACK_SIZE (TREE_DEPTH_MAX * (TREE_WIDTH - 1) + 1)
 
-static void search_tree(const Geometry *geometry, const Ray *ray, const BoxRay *box, real ray_margin, int any,
-                        Hit *best) {
+static void search_tree(const Geometry *geometry, const Ray *ray, int any, Hit *best) {
+    const BoxRay box = box_ray(ray);
     uint stack_child[STACK_SIZE];
     real stack_entry[STACK_SIZE];
     real entries[TREE_WIDTH];
@@ -176,12 +178,11 @@ static void search_tree(const Geometry *geometry, const Ray *ray, const BoxRay *
     uint node = 0;
     for (;;) {
         wide entry;
-        lane_bytes met = test_node(geometry, box, node, best->bound, &entry);
+        lane_set met = test_node(geometry, &box, node, best->bound, &entry);
         JOIN(vstore, TREE_WIDTH)(entry, 0, entries);
         const uint base = top;
-        while (met != 0) {
+        for (; met != 0; met = without_lowest(met)) {
             const uint lane = lowest_lane(met);
-            met = without_lane(met, lane);
             const real lane_entry = entries[lane];
             uint place = top;
             while (place > base && stack_entry[place - 1] < lane_entry) {
@@ -197,33 +198,26 @@ static void search_tree(const Geometry *geometry, const Ray *ray, const BoxRay *
         for (;;) {
             if (top == 0) return;
             --top;
-            if (stack_entry[top] > best->bound) continue;
+            if (stack_entry[top] > best->bound * SLAB_TOLERANCE) continue;
             const uint child = stack_child[top];
             if ((child & CHILD_LEAF) == 0) {
                 node = child;
                 break;
             }
-            test_leaf(geometry, ray, ray_margin, child & ~CHILD_LEAF, best);
+            test_leaf(geometry, ray, child & ~CHILD_LEAF, best);
             if (any && best->slot != NO_SLOT) return;
         }
     }
 }
 #endif
 
-/* How far the rounding of a ray's origin can move what test_leaf computes. */
-static real margin_of_ray(const Ray *ray) {
-    return R(4.0) * ROUNDOFF * (fabs(ray->high[0]) + fabs(ray->high[1]) + fabs(ray->high[2])) + ray->slack;
-}
-
-/* Everything, for a ray that stands alone. `best` brings a bound and perhaps a hit along. */
+/* Everything but the sphere being left. `best` brings a bound and perhaps a hit along. */
 static void search_spheres(const Geometry *geometry, const Ray *ray, int any, Hit *best) {
-    const real ray_margin = margin_of_ray(ray);
 #if EFFECT_TREE
-    const BoxRay box = box_ray(ray);
-    for (uint leaf = 0; leaf < geometry->first_leaves; ++leaf) test_leaf(geometry, ray, ray_margin, leaf, best);
-    search_tree(geometry, ray, &box, ray_margin, any, best);
+    for (uint leaf = 0; leaf < geometry->first_leaves; ++leaf) test_leaf(geometry, ray, leaf, best);
+    search_tree(geometry, ray, any, best);
 #else
-    for (uint leaf = 0; leaf < geometry->leaf_count; ++leaf) test_leaf(geometry, ray, ray_margin, leaf, best);
+    for (uint leaf = 0; leaf < geometry->leaf_count; ++leaf) test_leaf(geometry, ray, leaf, best);
 #endif
 }
 

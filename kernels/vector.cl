@@ -27,3 +27,5 @@ static Vec3 normalise3(Vec3 a) { return scale3(splat(1) / sqrt(dot3(a, a)), a); 
 /* Ternaries rather than fmax: a NaN in `a` passes through and is found, and it is faster. */
 static reals at_least(reals a, reals floor_value) { return choose(a < floor_value, floor_value, a); }
 static reals at_most(reals a, reals ceiling) { return choose(a > ceiling, ceiling, a); }
+static reals larger(reals a, reals b) { return choose(a > b, a, b); }
+static reals smaller(reals a, reals b) { return choose(a < b, a, b); }

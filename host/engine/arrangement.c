@@ -5,9 +5,10 @@
 
 #include <string.h>
 
-/* CPUs whose driver knows vectors spread explicit ones over their lanes, so they get eight lanes and
- * eight-wide nodes, and double costs them little. A CPU driver that takes vectors apart (it says one lane)
- * gets nothing from eight, and has been seen to compile that form for ever. GPUs spread work-items, and many
+/* CPUs whose driver knows vectors spread explicit ones over their lanes, so they follow as many paths at a
+ * time as the widest vectors have lanes, eight at least, through sixteen-wide nodes (docs/BENCHMARKS.md,
+ * "What was tried"), and double costs them little. A CPU driver that takes vectors apart (it says one lane)
+ * gets nothing from many, and has been seen to compile that form for ever. GPUs spread work-items, and many
  * have next to no double: one lane, narrower nodes, error-free float transforms. The options can force each
  * choice, so every arrangement can be tested on every device. */
 static void choose_form(const BpDeviceInfo *device, const BpRenderOptions *options,
@@ -17,7 +18,10 @@ static void choose_form(const BpDeviceInfo *device, const BpRenderOptions *optio
     program->form = options->kernel != BP_KERNEL_AUTO ? options->kernel
                     : vectors                         ? BP_KERNEL_PACKET
                                                       : BP_KERNEL_SAMPLE;
-    program->tree_width = options->tree_width != 0 ? options->tree_width : vectors ? 8 : 4;
+    program->tree_width = options->tree_width != 0 ? options->tree_width : vectors ? 16 : 4;
+    program->packet_lanes = options->packet_lanes != 0  ? options->packet_lanes
+                            : device->float_lanes >= 16 ? 16
+                                                        : 8;
     program->double_refine = cpu && device->has_double && !options->force_float_refine;
 }
 

@@ -25,10 +25,11 @@ typedef struct BpProgramOptions {
     BpMath math;
     BpNumerics numerics;
     BpSampler sampler;
-    BpKernelForm form;   /* BP_KERNEL_SAMPLE or BP_KERNEL_PACKET */
-    uint32_t tree_width; /* 2, 4 or 8 */
-    bool pixel_list;     /* chunks take their pixels from a list */
-    bool double_refine;  /* refine intersections in double; else error-free float transforms */
+    BpKernelForm form;     /* BP_KERNEL_SAMPLE or BP_KERNEL_PACKET */
+    uint32_t tree_width;   /* 2, 4, 8 or 16 */
+    uint32_t packet_lanes; /* 8 or 16; of the packet form alone */
+    bool pixel_list;       /* chunks take their pixels from a list */
+    bool double_refine;    /* refine intersections in double; else error-free float transforms */
 } BpProgramOptions;
 
 /* The whole source. `extra_name`, `extra_text`: Optional, a file appended at the end (probe kernels of

@@ -43,8 +43,10 @@ static BpStatus check_options(const BpScene *scene, const BpRenderOptions *optio
                        "a picture of %u x %u has %llu pixels; at most %u: use a smaller --width",
                        scene->camera.width, scene->camera.height, (unsigned long long)pixels, UINT32_MAX / 4);
     if (options->tree_width != 0 && options->tree_width != 2 && options->tree_width != 4 &&
-        options->tree_width != 8)
-        return bp_fail(err, BP_ERR_USAGE, "tree width %u: 2, 4 or 8", options->tree_width);
+        options->tree_width != 8 && options->tree_width != 16)
+        return bp_fail(err, BP_ERR_USAGE, "tree width %u: 2, 4, 8 or 16", options->tree_width);
+    if (options->packet_lanes != 0 && options->packet_lanes != 8 && options->packet_lanes != 16)
+        return bp_fail(err, BP_ERR_USAGE, "packet lanes %u: 8 or 16", options->packet_lanes);
     return BP_OK;
 }
 

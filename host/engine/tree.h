@@ -12,7 +12,7 @@
 #include "../scene/scene.h"
 
 typedef struct BpTreeOptions {
-    uint32_t width;        /* lanes of a node and of a leaf: 2, 4 or 8 */
+    uint32_t width;        /* lanes of a node and of a leaf: 2, 4, 8 or 16 */
     bool single_precision; /* store float, else double */
     bool list;             /* leaves only, in order of index; no nodes */
     unsigned threads;      /* 0: all cores */

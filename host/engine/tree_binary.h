@@ -14,7 +14,7 @@
 #include <xmmintrin.h>
 #endif
 
-#define BP_TREE_WIDTH_MAX 8
+#define BP_TREE_WIDTH_MAX 16
 
 typedef struct BpTreeItem {
     float center[3], radius; /* together four lanes; as a packed tree in single precision stores them */

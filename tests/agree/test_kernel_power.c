@@ -87,11 +87,12 @@ static void calibrated(void **state) {
         }
         char brighter[512];
         snprintf(brighter, sizeof brighter,
-                 "paths.radiance = choose3(ended, scale3(splat(R(%.9f)), paths.radiance), paths.radiance);\n"
-                 "store_lanes(paths.radiance.x, red);",
-                 1 + bias);
+                 "(real4)(R(%.9f), R(%.9f), R(%.9f), 1) * (real4)(red[lane], green[lane], blue[lane], "
+                 "count[lane])",
+                 1 + bias, 1 + bias, 1 + bias);
         KernelCopy copy;
-        kernel_copy_open(&copy, "trace.cl", "store_lanes(paths.radiance.x, red);", brighter);
+        kernel_copy_open(&copy, "trace.cl", "(real4)(red[lane], green[lane], blue[lane], count[lane])",
+                         brighter);
         int by_picture = 0, rejected = 0;
         for (uint64_t run = 0; run < 100; ++run) {
             const BpVerdict verdict =
@@ -126,9 +127,8 @@ static void half_percent(void **state) {
         right += !check(&built.scene, BP_CHECK_SAMPLES_DEFAULT, seed, BP_VERDICT_LEVEL).agree;
     KernelCopy copy;
     kernel_copy_open(
-        &copy, "trace.cl", "store_lanes(paths.radiance.x, red);",
-        "paths.radiance = choose3(ended, scale3(splat(R(1.005)), paths.radiance), paths.radiance);\n"
-        "store_lanes(paths.radiance.x, red);");
+        &copy, "trace.cl", "(real4)(red[lane], green[lane], blue[lane], count[lane])",
+        "(real4)(R(1.005) * red[lane], R(1.005) * green[lane], R(1.005) * blue[lane], count[lane])");
     for (uint64_t seed = 10; seed < 20; ++seed)
         wrong += !check(&built.scene, BP_CHECK_SAMPLES_DEFAULT, seed, BP_VERDICT_LEVEL).agree;
     kernel_copy_close(&copy);

@@ -116,7 +116,9 @@ static void check_variations(const char *name, uint32_t width, BpSampler sampler
 /* Each of these is a kernel of its own, so they take turns between the forms. */
 static void work_groups_and_widths_are_the_same(void **state) {
     (void)state;
-    BpScene *scene = scene_of("v3-12-metal-fuzz.json", 24);
+    /* Sixteen-wide, its tree has few enough leaves to be tried one by one; narrower ones are walked in
+     * rounds. */
+    BpScene *scene = scene_of("cover.json", 24);
     BpRenderOptions options;
     bp_render_defaults(scene, &options);
     options.samples_per_pixel = 6;
@@ -124,20 +126,25 @@ static void work_groups_and_widths_are_the_same(void **state) {
     BpAccumulator *expected = render(scene, &options, &segments);
     const struct {
         BpKernelForm form;
-        uint32_t local_size, tree_width;
+        uint32_t local_size, tree_width, packet_lanes;
         const char *what;
-    } variations[] = {{BP_KERNEL_SAMPLE, 1, 0, "work-groups of 1"},
-                      {BP_KERNEL_SAMPLE, 8, 0, "work-groups of 8"},
-                      {BP_KERNEL_SAMPLE, 64, 0, "work-groups of 64"},
-                      {BP_KERNEL_PACKET, 8, 0, "packets in groups of 8"},
-                      {BP_KERNEL_PACKET, 64, 0, "packets in groups of 64"},
-                      {BP_KERNEL_SAMPLE, 0, 2, "two-wide nodes"},
-                      {BP_KERNEL_PACKET, 0, 4, "four-wide nodes"}};
+    } variations[] = {{BP_KERNEL_SAMPLE, 1, 0, 0, "work-groups of 1"},
+                      {BP_KERNEL_SAMPLE, 8, 0, 0, "work-groups of 8"},
+                      {BP_KERNEL_SAMPLE, 64, 0, 0, "work-groups of 64"},
+                      {BP_KERNEL_PACKET, 8, 0, 0, "packets in groups of 8"},
+                      {BP_KERNEL_PACKET, 64, 0, 0, "packets in groups of 64"},
+                      {BP_KERNEL_SAMPLE, 0, 2, 0, "two-wide nodes"},
+                      {BP_KERNEL_SAMPLE, 0, 8, 0, "eight-wide nodes"},
+                      {BP_KERNEL_PACKET, 0, 4, 8, "four-wide nodes, eight lanes"},
+                      {BP_KERNEL_PACKET, 0, 8, 16, "eight-wide nodes, sixteen lanes"},
+                      {BP_KERNEL_PACKET, 0, 16, 8, "sixteen-wide nodes, eight lanes"},
+                      {BP_KERNEL_PACKET, 0, 16, 16, "sixteen-wide nodes, sixteen lanes"}};
     for (size_t i = 0; i < sizeof variations / sizeof variations[0]; ++i) {
         BpRenderOptions varied = options;
         varied.kernel = variations[i].form;
         varied.local_size = variations[i].local_size;
         varied.tree_width = variations[i].tree_width;
+        varied.packet_lanes = variations[i].packet_lanes;
         varied.force_tree = variations[i].tree_width != 0;
         check_same(scene, &varied, expected, segments, variations[i].what);
     }

@@ -19,6 +19,7 @@ static Ray probe_ray(__global const real *in, uint own, uint slot) {
     ray.slack = in[9];
     ray.own_slot = own != 0 ? slot : NO_SLOT;
     ray.inward = own == 2;
+    ray.margin = margin_of_origin(&ray);
     return ray;
 }
 
@@ -189,13 +190,13 @@ __kernel void probe_boxes(uint count, __global const real *rays, __global const 
     const Ray ray = probe_ray(rays + (size_t)item * PROBE_RAY_REALS, 0, 0);
     const BoxRay box = box_ray(&ray);
     wide entry;
-    lane_bytes met = test_node(&geometry, &box, item, REAL_LARGE, &entry);
+    lane_set met = test_node(&geometry, &box, item, REAL_LARGE, &entry);
     for (uint lane = 0; lane < TREE_WIDTH; ++lane) {
         out[(size_t)item * TREE_WIDTH + lane] = 0;
     }
     while (met != 0) {
         const uint lane = lowest_lane(met);
-        met = without_lane(met, lane);
+        met = without_lowest(met);
         out[(size_t)item * TREE_WIDTH + lane] = 1;
     }
 }
@@ -209,7 +210,8 @@ __kernel void probe_tree(uint count, __global const real *rays, __global const r
     const Ray ray = probe_ray(rays + (size_t)item * PROBE_RAY_REALS, 0, 0);
     const Hit tree = intersect_closest(&geometry, &ray);
     Hit list = no_hit(REAL_LARGE);
-    for (uint slot = 0; slot < leaf_count * TREE_WIDTH; ++slot) refine_slot(&geometry, &ray, slot, &list);
+    for (uint slot = 0; slot < leaf_count * TREE_WIDTH; ++slot)
+        if (slot_sphere[slot] != NO_SPHERE) refine_slot(&geometry, &ray, slot, &list);
     __global refined *row = out + (size_t)item * 5;
     row[0] = tree.t;
     row[1] = tree.slot == NO_SLOT ? -1 : (refined)slot_sphere[tree.slot];

@@ -3,7 +3,7 @@
  * In:    a folder.   Out: one .cl file a variant; its name ends in _fp64.cl where the program needs double.
  * Knows: program.h.  Does not know: any device; what checks the files (test_kernels_syntax.py).
  *
- * All combinations of all choices would be 256 * 192 programs. Written are: every combination of the other
+ * All combinations of all choices would be 256 * 512 programs. Written are: every combination of the other
  * choices with every effect, and every set of effects with one of those combinations, a different one in
  * turn: so each set of effects and each combination is there. */
 #include "engine/effects.h"
@@ -13,14 +13,14 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum { COMBINATIONS = 3 * 2 * 2 * 2 * 2 * 2 * 2 };
+enum { COMBINATIONS = 4 * 2 * 2 * 2 * 2 * 2 * 2 * 2 };
 
 /* Combination number `c` in mixed radix; effects are left 0. */
 static BpProgramOptions combination(unsigned c) {
-    static const uint32_t widths[3] = {2, 4, 8};
+    static const uint32_t widths[4] = {2, 4, 8, 16};
     BpProgramOptions options = {0};
-    options.tree_width = widths[c % 3];
-    c /= 3;
+    options.tree_width = widths[c % 4];
+    c /= 4;
     options.precision = c & 1 ? BP_PRECISION_DOUBLE : BP_PRECISION_SINGLE;
     options.math = c & 2 ? BP_MATH_FAST : BP_MATH_STRICT;
     options.numerics = c & 4 ? BP_NUMERICS_PLAIN : BP_NUMERICS_ROBUST;
@@ -29,6 +29,7 @@ static BpProgramOptions combination(unsigned c) {
     options.double_refine = (c & 32) != 0;
     /* No combination of its own: it goes with no other choice, and half of all have it. */
     options.pixel_list = (c & 1) != ((c >> 3 & 1) != (c >> 4 & 1));
+    options.packet_lanes = c & 64 ? 16 : 8;
     return options;
 }
 
@@ -38,10 +39,10 @@ static BpStatus dump(const char *folder, const BpProgramOptions *options, BpErro
     char path[4096];
     FILE *file = NULL;
     BpStatus status = BP_OK;
-    snprintf(path, sizeof path, "%s/e%02x_w%u_p%d_m%d_n%d_s%d_k%d_r%d%s.cl", folder,
-             (unsigned)options->effects, (unsigned)options->tree_width, (int)options->precision,
-             (int)options->math, (int)options->numerics, (int)options->sampler, (int)options->form,
-             (int)options->double_refine, needs_double ? "_fp64" : "");
+    snprintf(path, sizeof path, "%s/e%02x_w%u_l%u_p%d_m%d_n%d_s%d_k%d_r%d%s.cl", folder,
+             (unsigned)options->effects, (unsigned)options->tree_width, (unsigned)options->packet_lanes,
+             (int)options->precision, (int)options->math, (int)options->numerics, (int)options->sampler,
+             (int)options->form, (int)options->double_refine, needs_double ? "_fp64" : "");
     BP_TRY_GOTO(status,
                 bp_program_source(options, "features.cl", bp_kernel_file("features.cl"), &source, err), done);
     file = fopen(path, "w");
@@ -65,7 +66,7 @@ int main(int argc, char **argv) {
         status = dump(argv[1], &options, &err);
     }
     for (uint32_t effects = 0; status == BP_OK && effects < BP_EFFECTS_ALL; ++effects) {
-        /* 35 and 192 have no common divisor: neighbours differ in most choices, and all of them turn up. */
+        /* 35 and 512 have no common divisor: neighbours differ in most choices, and all of them turn up. */
         BpProgramOptions options = combination(effects * 35u % COMBINATIONS);
         options.effects = effects;
         status = dump(argv[1], &options, &err);

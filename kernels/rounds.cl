@@ -1,0 +1,270 @@
+/* rounds.cl: the tree for the paths of all lanes at once.
+ *
+ * In:    paths and what they have met so far (huge spheres, the sphere being left).
+ * Out:   the closest hit of each, the same as intersect_closest (tree.cl) finds.
+ * Knows: tree.cl's steps for one ray.   Does not know: what rays are for.
+ *
+ * What a ray does next depends on what it met, and a processor that guesses wrong throws away more work than a box
+ * test is. So rays take turns, a round for all: first every ray that stands at a node tests it, then every ray that
+ * stands at a leaf, then what they found is refined, then each chooses where to go. Within a step nothing depends on
+ * the step before of the same ray: no branch to guess, and memory is fetched for many rays at a time.
+ *
+ * A tree of few leaves needs no walk: the boxes of all its leaves are tested, one after the other, against all
+ * lanes. */
+#if EFFECT_TREE
+
+/* Lane `lane` is to visit a node, a leaf or a sphere's slot. */
+typedef struct Visit {
+    uint lane, what;
+} Visit;
+
+#define FLAT_LEAVES_MAX 32u /* one bit each */
+#define FOUND_MAX 64u
+
+/* The leaves of a tree that has few, below the first ones; count 0: it has more than FLAT_LEAVES_MAX. */
+typedef struct FlatTree {
+    uint count;
+    uint leaf[FLAT_LEAVES_MAX];
+    real planes[FLAT_LEAVES_MAX][6]; /* low x, y, z, high x, y, z */
+} FlatTree;
+
+static void flatten_tree(const Geometry *geometry, FlatTree *flat) {
+    const uint wanted = geometry->leaf_count - geometry->first_leaves;
+    flat->count = 0;
+    if (wanted > FLAT_LEAVES_MAX) return;
+    for (uint node = 0; flat->count < wanted; ++node) {
+        for (uint lane = 0; lane < TREE_WIDTH; ++lane) {
+            __global const real *plane = geometry->boxes + node * (6 * TREE_WIDTH) + lane;
+            const uint child = geometry->children[node * TREE_WIDTH + lane];
+            if ((child & CHILD_LEAF) == 0 || plane[0] > plane[3 * TREE_WIDTH]) continue;
+            flat->leaf[flat->count] = child & ~CHILD_LEAF;
+            for (uint row = 0; row < 6; ++row) flat->planes[flat->count][row] = plane[row * TREE_WIDTH];
+            ++flat->count;
+        }
+    }
+}
+
+/* The rays of all lanes, and what each has met. */
+typedef struct LaneRays {
+    real high[3][LANE_COUNT], low[3][LANE_COUNT], direction[3][LANE_COUNT];
+    real slack[LANE_COUNT], margin[LANE_COUNT];
+    uint own_slot[LANE_COUNT];
+    refined t[LANE_COUNT];
+    uint slot[LANE_COUNT], enters[LANE_COUNT];
+    real bound[LANE_COUNT];
+} LaneRays;
+
+static Ray ray_of_lane(const LaneRays *rays, uint lane) {
+    Ray ray;
+    for (uint axis = 0; axis < 3; ++axis) {
+        ray.high[axis] = rays->high[axis][lane];
+        ray.low[axis] = rays->low[axis][lane];
+        ray.direction[axis] = rays->direction[axis][lane];
+    }
+    ray.slack = rays->slack[lane];
+    ray.margin = rays->margin[lane];
+    ray.own_slot = rays->own_slot[lane];
+    ray.inward = 0; /* that has been seen to */
+    return ray;
+}
+
+static void refine_lane(const Geometry *geometry, LaneRays *rays, uint lane, uint slot) {
+    const Ray ray = ray_of_lane(rays, lane);
+    Hit hit;
+    hit.t = rays->t[lane];
+    hit.slot = rays->slot[lane];
+    hit.enters = (int)rays->enters[lane];
+    hit.bound = rays->bound[lane];
+    refine_slot(geometry, &ray, slot, &hit);
+    rays->t[lane] = hit.t;
+    rays->slot[lane] = hit.slot;
+    rays->enters[lane] = (uint)hit.enters;
+    rays->bound[lane] = hit.bound;
+}
+
+/* Visits leaves and decides about the spheres that may be met there. */
+static void visit_leaves(const Geometry *geometry, const Visit *visits, uint count, LaneRays *rays) {
+    Visit found[FOUND_MAX + TREE_WIDTH];
+    uint found_count = 0;
+    for (uint i = 0; i < count; ++i) {
+        const uint lane = visits[i].lane, first = visits[i].what * TREE_WIDTH;
+        const Ray ray = ray_of_lane(rays, lane);
+        lane_set candidates = leaf_candidates(geometry, &ray, visits[i].what, rays->bound[lane]);
+        /* One candidate or none is the rule: noted without asking which. */
+        found[found_count].lane = lane;
+        found[found_count].what = first + lowest_lane(candidates);
+        found_count += candidates != 0;
+        for (candidates = without_lowest(candidates); candidates != 0; candidates = without_lowest(candidates)) {
+            found[found_count].lane = lane;
+            found[found_count].what = first + lowest_lane(candidates);
+            ++found_count;
+        }
+        if (found_count < FOUND_MAX && i + 1 < count) continue;
+        for (uint k = 0; k < found_count; ++k) refine_lane(geometry, rays, found[k].lane, found[k].what);
+        found_count = 0;
+    }
+}
+
+static void search_flat(const Geometry *geometry, const FlatTree *flat, const LANED(BoxAxis) *axes, reals bound,
+                        LaneRays *rays) {
+    /* Lanes differ in which plane of a pair they meet first. */
+    reals low_offset[3], high_offset[3];
+    for (uint axis = 0; axis < 3; ++axis) {
+        const masks backwards = axes[axis].inverse < splat(0);
+        low_offset[axis] = choose(backwards, axes[axis].far_offset, axes[axis].near_offset);
+        high_offset[axis] = choose(backwards, axes[axis].near_offset, axes[axis].far_offset);
+    }
+    uints met = splat_uint(0);
+    for (uint k = 0; k < flat->count; ++k) {
+        const real *planes = flat->planes[k];
+        const reals low_x = fma(splat(planes[0]), axes[0].inverse, low_offset[0]);
+        const reals low_y = fma(splat(planes[1]), axes[1].inverse, low_offset[1]);
+        const reals low_z = fma(splat(planes[2]), axes[2].inverse, low_offset[2]);
+        const reals high_x = fma(splat(planes[3]), axes[0].inverse, high_offset[0]);
+        const reals high_y = fma(splat(planes[4]), axes[1].inverse, high_offset[1]);
+        const reals high_z = fma(splat(planes[5]), axes[2].inverse, high_offset[2]);
+        const reals near = larger(larger(smaller(low_x, high_x), smaller(low_y, high_y)),
+                                  larger(smaller(low_z, high_z), splat(0)));
+        const reals far = smaller(smaller(larger(low_x, high_x), larger(low_y, high_y)),
+                                  smaller(larger(low_z, high_z), bound));
+        met |= choose_uint(near <= far * SLAB_TOLERANCE, splat_uint(1u << k), splat_uint(0));
+    }
+    uint leaves[LANE_COUNT];
+    store_lanes(met, leaves);
+    Visit visits[LANE_COUNT * FLAT_LEAVES_MAX + 1];
+    uint count = 0;
+    for (uint lane = 0; lane < LANE_COUNT; ++lane) {
+        /* Mostly two at most. */
+        uint left = leaves[lane];
+        for (uint k = 0; k < 2; ++k) {
+            visits[count].lane = lane;
+            visits[count].what = flat->leaf[lowest_lane(left) % FLAT_LEAVES_MAX];
+            count += left != 0;
+            left = without_lowest(left);
+        }
+        for (; left != 0; left = without_lowest(left)) {
+            visits[count].lane = lane;
+            visits[count].what = flat->leaf[lowest_lane(left)];
+            ++count;
+        }
+    }
+    visit_leaves(geometry, visits, count, rays);
+}
+
+/* How far a walk through the tree has come: for each level the node entered, which of its children are still to be
+ * visited, and where the ray enters them. Nothing is sorted: the nearest child is looked for when it is wanted,
+ * by a few steps without a branch. */
+typedef struct Walk {
+    uint depth; /* levels that have children left */
+    uint node[TREE_DEPTH_MAX];
+    lane_set left[TREE_DEPTH_MAX];
+    wide entry[TREE_DEPTH_MAX];
+} Walk;
+
+static void enter_node(const Geometry *geometry, const BoxRay *box, uint node, real bound, Walk *walk) {
+    const uint level = walk->depth;
+    const lane_set met = test_node(geometry, box, node, bound, &walk->entry[level]);
+    walk->node[level] = node;
+    walk->left[level] = met;
+    walk->depth = level + (met != 0);
+}
+
+/* Takes the nearest child of the deepest level, of which there is one. Returns whether it is worth a visit, that is,
+ * entered before `bound`; if not, nor is any other of its level, and they are gone. */
+static int take_nearest(const Geometry *geometry, real bound, Walk *walk, uint *child) {
+    const uint level = walk->depth - 1;
+    const lane_set left = walk->left[level];
+    const wide entry = choose_lanes(left, walk->entry[level], REAL_MAX);
+    const real nearest = least_lane(entry);
+    const uint lane = lowest_lane(to_lane_set(entry == (wide)nearest));
+    *child = geometry->children[walk->node[level] * TREE_WIDTH + lane];
+    const int worth = nearest <= bound * SLAB_TOLERANCE;
+    const lane_set rest = worth ? without_lane(left, lane) : 0;
+    walk->left[level] = rest;
+    walk->depth = level + (rest != 0);
+    return worth;
+}
+
+static void search_in_rounds(const Geometry *geometry, const LANED(BoxAxis) *axes, const uint *alive,
+                             LaneRays *rays) {
+    real inverse[3][LANE_COUNT], near_offset[3][LANE_COUNT], far_offset[3][LANE_COUNT];
+    for (uint axis = 0; axis < 3; ++axis) {
+        store_lanes(axes[axis].inverse, inverse[axis]);
+        store_lanes(axes[axis].near_offset, near_offset[axis]);
+        store_lanes(axes[axis].far_offset, far_offset[axis]);
+    }
+    BoxRay boxes[LANE_COUNT];
+    Walk walks[LANE_COUNT];
+    uint walking[LANE_COUNT + 1], walking_count = 0; /* lanes that are not through */
+    Visit nodes[LANE_COUNT + 1], leaves[LANE_COUNT + 1];
+    uint node_count = 0, leaf_count = 0;
+    for (uint lane = 0; lane < LANE_COUNT; ++lane) {
+        for (uint axis = 0; axis < 3; ++axis)
+            set_box_axis(&boxes[lane], axis, inverse[axis][lane], near_offset[axis][lane], far_offset[axis][lane]);
+        walks[lane].depth = 0;
+        nodes[node_count].lane = walking[walking_count] = lane;
+        nodes[node_count].what = 0;
+        node_count += alive[lane];
+        walking_count += alive[lane];
+    }
+    for (;;) {
+        for (uint i = 0; i < node_count; ++i) {
+            const uint lane = nodes[i].lane;
+            enter_node(geometry, &boxes[lane], nodes[i].what, rays->bound[lane], &walks[lane]);
+        }
+        visit_leaves(geometry, leaves, leaf_count, rays);
+        uint left = 0;
+        node_count = leaf_count = 0;
+        for (uint i = 0; i < walking_count; ++i) {
+            const uint lane = walking[i];
+            if (walks[lane].depth == 0) continue;
+            walking[left++] = lane;
+            uint child;
+            const int worth = take_nearest(geometry, rays->bound[lane], &walks[lane], &child);
+            const int is_leaf = (child & CHILD_LEAF) != 0;
+            nodes[node_count].lane = leaves[leaf_count].lane = lane;
+            nodes[node_count].what = child;
+            leaves[leaf_count].what = child & ~CHILD_LEAF;
+            node_count += worth & !is_leaf;
+            leaf_count += worth & is_leaf;
+        }
+        walking_count = left;
+        if (left == 0) return;
+    }
+}
+
+/* The spheres below the first leaves, against what the paths have met so far. */
+static void search_trees(const Geometry *geometry, const FlatTree *flat, const Paths *paths, reals margin, reals bound,
+                         Meeting *meeting) {
+    LaneRays rays;
+    uint alive[LANE_COUNT];
+    store_lanes(paths->origin.high.x, rays.high[0]);
+    store_lanes(paths->origin.high.y, rays.high[1]);
+    store_lanes(paths->origin.high.z, rays.high[2]);
+    store_lanes(paths->origin.low.x, rays.low[0]);
+    store_lanes(paths->origin.low.y, rays.low[1]);
+    store_lanes(paths->origin.low.z, rays.low[2]);
+    store_lanes(paths->direction.x, rays.direction[0]);
+    store_lanes(paths->direction.y, rays.direction[1]);
+    store_lanes(paths->direction.z, rays.direction[2]);
+    store_lanes(paths->origin.slack, rays.slack);
+    store_lanes(margin, rays.margin);
+    store_lanes(paths->own_slot, rays.own_slot);
+    store_lanes(meeting->t, rays.t);
+    store_lanes(meeting->slot, rays.slot);
+    store_lanes(choose_uint(meeting->enters, splat_uint(1), splat_uint(0)), rays.enters);
+    store_lanes(bound, rays.bound);
+    store_lanes(choose_uint(paths->alive, splat_uint(1), splat_uint(0)), alive);
+    LANED(BoxAxis) axes[3];
+    axes[0] = LANED(box_axis)(paths->origin.high.x, paths->direction.x);
+    axes[1] = LANED(box_axis)(paths->origin.high.y, paths->direction.y);
+    axes[2] = LANED(box_axis)(paths->origin.high.z, paths->direction.z);
+    if (flat->count > 0)
+        search_flat(geometry, flat, axes, choose(paths->alive, bound, splat(-1)), &rays);
+    else
+        search_in_rounds(geometry, axes, alive, &rays);
+    meeting->t = load_lanes(rays.t);
+    meeting->slot = load_lanes(rays.slot);
+    meeting->enters = mask_of_uint(load_lanes(rays.enters) != splat_uint(0));
+}
+#endif
