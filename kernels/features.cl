@@ -35,7 +35,7 @@ __kernel void features(SCENE_PARAMETERS, uint first_pixel, uint pixel_count, uin
         const SampleKey key = sample_key(seed_low, seed_high, splat_uint(pixel), load_lanes(numbers), replicates);
         begin_paths(camera, pixel_center, key, splat((real)(pixel % width)), splat((real)(pixel / width)),
                     load_lanes(fresh_lane) != splat(0), &paths);
-        const Meeting meeting = meet(&scene.geometry, &paths);
+        const Meeting meeting = meet(&scene, &paths);
         const masks met = paths.alive & meeting.met;
         if (!any_lane(met)) continue;
 

@@ -3,7 +3,7 @@
  * In:    a folder.   Out: one .cl file a variant; its name ends in _fp64.cl where the program needs double.
  * Knows: program.h.  Does not know: any device; what checks the files (test_kernels_syntax.py).
  *
- * All combinations of all choices would be 256 * 512 programs. Written are: every combination of the other
+ * All combinations of all choices would be 256 * 256 programs. Written are: every combination of the other
  * choices with every effect, and every set of effects with one of those combinations, a different one in
  * turn: so each set of effects and each combination is there. */
 #include "engine/effects.h"
@@ -13,7 +13,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum { COMBINATIONS = 4 * 2 * 2 * 2 * 2 * 2 * 2 * 2 };
+enum { COMBINATIONS = 4 * 2 * 2 * 2 * 2 * 2 * 2 };
 
 /* Combination number `c` in mixed radix; effects are left 0. */
 static BpProgramOptions combination(unsigned c) {
@@ -27,9 +27,9 @@ static BpProgramOptions combination(unsigned c) {
     options.sampler = c & 8 ? BP_SAMPLER_SOBOL : BP_SAMPLER_INDEPENDENT;
     options.form = c & 16 ? BP_KERNEL_PACKET : BP_KERNEL_SAMPLE;
     options.double_refine = (c & 32) != 0;
-    /* No combination of its own: it goes with no other choice, and half of all have it. */
+    /* No combinations of their own: they go with no other choice, and half of all have each. */
     options.pixel_list = (c & 1) != ((c >> 3 & 1) != (c >> 4 & 1));
-    options.packet_lanes = c & 64 ? 16 : 8;
+    options.packet_lanes = (c >> 1 & 1) != (c >> 5 & 1) ? 16 : 8;
     return options;
 }
 
@@ -66,7 +66,7 @@ int main(int argc, char **argv) {
         status = dump(argv[1], &options, &err);
     }
     for (uint32_t effects = 0; status == BP_OK && effects < BP_EFFECTS_ALL; ++effects) {
-        /* 35 and 512 have no common divisor: neighbours differ in most choices, and all of them turn up. */
+        /* 35 and 256 have no common divisor: neighbours differ in most choices, and all of them turn up. */
         BpProgramOptions options = combination(effects * 35u % COMBINATIONS);
         options.effects = effects;
         status = dump(argv[1], &options, &err);

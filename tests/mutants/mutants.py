@@ -103,7 +103,7 @@ MUTANTS = [
     Mutant("the farther root", "classic",
            [patch(KERNEL, "choose_refined(inside, roots.far, entry)", "roots.far")], [check("mirror")]),
     Mutant("normal not flipped inside", "first: outward normals everywhere",
-           [patch(KERNEL, "choose3(meeting.enters, outward, scale3(splat(-1), outward))", "outward")],
+           [patch(KERNEL, "surface.normal = choose3(meeting.enters, outward, scale3(splat(-1), outward))", "surface.normal = outward")],
            [check("furnace"), check("glass-schlick")]),
     Mutant("front face from the flipped normal", "classic: every hit enters",
            [patch(KERNEL, "surface.enters = meeting.enters;", "surface.enters = splat(0) == splat(0);")],
