@@ -4,9 +4,6 @@
 #define LOOK_UINTS ((uint)(sizeof(PackedSphereLook) / sizeof(uint)))
 #define MATERIAL_UINTS ((uint)(sizeof(PackedMaterialKind) / sizeof(uint)))
 #define MATERIAL_REALS ((uint)(sizeof(PackedMaterial) / sizeof(real)))
-#define MATERIAL_EMIT 4u
-#define MATERIAL_FUZZ 8u
-#define MATERIAL_INDEX 9u
 
 /* The sphere and the material at each lane's slot; lanes that met nothing get those of slot 0. */
 static void look_up(const Scene *scene, const Meeting *meeting, Vec3 *centre, reals *radius, Surface *surface,
@@ -20,7 +17,7 @@ static void look_up(const Scene *scene, const Meeting *meeting, Vec3 *centre, re
     *radius = gather_reals(scene->geometry.leaves, place + (uint)(3 * TREE_WIDTH));
     const uints sphere = gather_uints(scene->geometry.slot_sphere, slot);
     const uints material = gather_uints(scene->looks, sphere * LOOK_UINTS);
-    const uints colour = gather_uints(scene->looks, sphere * LOOK_UINTS + 1u);
+    const uints colour = gather_uints(scene->looks, sphere * LOOK_UINTS + LOOK_ALBEDO);
     const uints numbers = material * MATERIAL_REALS;
     const uints kinds = material * MATERIAL_UINTS;
     surface->albedo = vec3(gather_reals(scene->materials, numbers), gather_reals(scene->materials, numbers + 1u),
@@ -40,16 +37,16 @@ static void look_up(const Scene *scene, const Meeting *meeting, Vec3 *centre, re
                     gather_reals(scene->materials, numbers + (MATERIAL_EMIT + 2u)));
 #endif
 #if EFFECT_LAMBERTIAN
-    surface->lobe = gather_uints(scene->kinds, kinds + 1u);
+    surface->lobe = gather_uints(scene->kinds, kinds + MATERIAL_LOBE);
 #endif
 #if EFFECT_METAL
     surface->fuzz = gather_reals(scene->materials, numbers + MATERIAL_FUZZ);
 #endif
 #if EFFECT_METAL || EFFECT_DIELECTRIC
-    surface->variant = gather_uints(scene->kinds, kinds + 2u);
+    surface->variant = gather_uints(scene->kinds, kinds + MATERIAL_VARIANT);
 #endif
 #if EFFECT_DIELECTRIC
     surface->refraction_index = gather_reals(scene->materials, numbers + MATERIAL_INDEX);
-    surface->total_reflection = gather_uints(scene->kinds, kinds + 3u);
+    surface->total_reflection = gather_uints(scene->kinds, kinds + MATERIAL_TOTAL_REFLECTION);
 #endif
 }

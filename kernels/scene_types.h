@@ -13,6 +13,7 @@
 #define BP_SCENE_TYPES_H
 
 #ifdef BP_HOST
+#include <stddef.h>
 #include <stdint.h>
 typedef double real;
 typedef uint32_t packed_uint;
@@ -62,6 +63,16 @@ typedef struct PackedSphereLook {
     packed_uint albedo; /* into the albedo table (4 reals an entry), or NO_ALBEDO */
 } PackedSphereLook;
 
+/* The kernel gathers members for several lanes at once, from the structs as arrays of their only type. Places
+ * of members in them: */
+#define MATERIAL_EMIT 4u
+#define MATERIAL_FUZZ 8u
+#define MATERIAL_INDEX 9u
+#define MATERIAL_LOBE 1u /* of PackedMaterialKind, like the next two */
+#define MATERIAL_VARIANT 2u
+#define MATERIAL_TOTAL_REFLECTION 3u
+#define LOOK_ALBEDO 1u
+
 /* A leaf is `width` spheres as structure of arrays: width reals each of center x, y, z and radius (> 0).
  * An empty lane has radius -1. Lane l of leaf f is slot f * width + l; `slot_sphere[slot]` is the sphere's
  * index in the scene (NO_SPHERE when empty). Sizes in reals: */
@@ -89,6 +100,19 @@ _Static_assert(sizeof(PackedSky) == 8 * sizeof(real), "PackedSky has padding");
 _Static_assert(sizeof(PackedMaterial) == 12 * sizeof(real), "PackedMaterial has padding");
 _Static_assert(sizeof(PackedMaterialKind) == 16, "PackedMaterialKind has padding");
 _Static_assert(sizeof(PackedSphereLook) == 8, "PackedSphereLook has padding");
+#define BP_PLACE(place, type, member, element)                                                               \
+    _Static_assert(offsetof(type, member) == (place) * sizeof(element), "the place of " #member)
+BP_PLACE(0, PackedMaterial, albedo, real);
+BP_PLACE(MATERIAL_EMIT, PackedMaterial, emit, real);
+BP_PLACE(MATERIAL_FUZZ, PackedMaterial, fuzz, real);
+BP_PLACE(MATERIAL_INDEX, PackedMaterial, refraction_index, real);
+BP_PLACE(0, PackedMaterialKind, kind, packed_uint);
+BP_PLACE(MATERIAL_LOBE, PackedMaterialKind, lobe, packed_uint);
+BP_PLACE(MATERIAL_VARIANT, PackedMaterialKind, variant, packed_uint);
+BP_PLACE(MATERIAL_TOTAL_REFLECTION, PackedMaterialKind, total_reflection, packed_uint);
+BP_PLACE(0, PackedSphereLook, material, packed_uint);
+BP_PLACE(LOOK_ALBEDO, PackedSphereLook, albedo, packed_uint);
+#undef BP_PLACE
 #endif
 
 #endif

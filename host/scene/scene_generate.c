@@ -32,49 +32,24 @@ typedef struct Edition {
     double aperture, defocus_degrees; /* one of the two */
 } Edition;
 
+#define FIRST_EDITION                                                                                        \
+    .metal_low = 0.5, .scatter = BP_SCATTER_COSINE_CUBED, .fuzz_shape = BP_FUZZ_BALL, .height = 800,         \
+    .samples_per_pixel = 10, .max_depth = 51, .aperture = 0.1
+#define THIRD_EDITION                                                                                        \
+    .scatter = BP_SCATTER_LAMBERTIAN, .fuzz_shape = BP_FUZZ_BALL, .height = 800, .samples_per_pixel = 500,   \
+    .max_depth = 50, .aperture = 0.1
+#define FOURTH_EDITION                                                                                       \
+    .metal_low = 0.5, .scatter = BP_SCATTER_LAMBERTIAN, .fuzz_shape = BP_FUZZ_SPHERE, .height = 675,         \
+    .samples_per_pixel = 500, .max_depth = 50, .defocus_degrees = 0.6
+#define BOOK "Ray Tracing in One Weekend, "
+
 static const Edition editions[] = {
-    {.name = "1",
-     .title = "The cover, first edition",
-     .source = "Ray Tracing in One Weekend, first edition (1.53), chapter 12",
-     .metal_low = 0.5,
-     .scatter = BP_SCATTER_COSINE_CUBED,
-     .fuzz_shape = BP_FUZZ_BALL,
-     .height = 800,
-     .samples_per_pixel = 10,
-     .max_depth = 51,
-     .aperture = 0.1},
-    {.name = "3",
-     .title = "The cover, third edition",
-     .source = "Ray Tracing in One Weekend, third edition (3.2.3), Image 21",
-     .metal_low = 0.5,
-     .scatter = BP_SCATTER_LAMBERTIAN,
-     .fuzz_shape = BP_FUZZ_BALL,
-     .height = 800,
-     .samples_per_pixel = 500,
-     .max_depth = 50,
-     .aperture = 0.1},
-    {.name = "3rust",
-     .title = "The cover, third edition in Rust",
-     .source = "Ray Tracing in One Weekend, third edition (3.2.3) in Rust, Image 21",
-     .extra_row = true,
-     .keeps_all = true,
-     .metal_low = 0.4,
-     .scatter = BP_SCATTER_LAMBERTIAN,
-     .fuzz_shape = BP_FUZZ_BALL,
-     .height = 800,
-     .samples_per_pixel = 500,
-     .max_depth = 50,
-     .aperture = 0.1},
-    {.name = "4",
-     .title = "The cover, fourth edition",
-     .source = "Ray Tracing in One Weekend, fourth edition, Image 23",
-     .metal_low = 0.5,
-     .scatter = BP_SCATTER_LAMBERTIAN,
-     .fuzz_shape = BP_FUZZ_SPHERE,
-     .height = 675,
-     .samples_per_pixel = 500,
-     .max_depth = 50,
-     .defocus_degrees = 0.6},
+    {"1", "The cover, first edition", BOOK "first edition (1.53), chapter 12", FIRST_EDITION},
+    {"3", "The cover, third edition", BOOK "third edition (3.2.3), Image 21", .metal_low = 0.5,
+     THIRD_EDITION},
+    {"3rust", "The cover, third edition in Rust", BOOK "third edition (3.2.3) in Rust, Image 21",
+     .metal_low = 0.4, .extra_row = true, .keeps_all = true, THIRD_EDITION},
+    {"4", "The cover, fourth edition", BOOK "fourth edition, Image 23", FOURTH_EDITION},
 };
 
 /* ---- materials and spheres ------------------------------------------------------------------------------
