@@ -1,0 +1,57 @@
+"""What README.md shows is what the program does: its scene, its error, its commands."""
+
+import json
+import os
+import re
+import shlex
+import textwrap
+
+from cli import SOURCE, ProgramTest, main
+
+SMALL = {"render": ["--width", "8", "--spp", "1"], "check": ["--width", "4", "--spp", "4"],
+         "cost": ["--time", "1", "--width", "16"]}
+
+
+class Readme(ProgramTest):
+    def setUp(self):
+        super().setUp()
+        with open(os.path.join(SOURCE, "README.md"), encoding="utf-8") as file:
+            self.text = file.read()
+        os.symlink(os.path.join(SOURCE, "scenes"), self.path("scenes"))
+
+    def scene(self):
+        """The document under "How a scene is written", as a person would copy it."""
+        block = re.search(r"(?m)^    \{ \"camera\":.*\n(?:    .*\n)*", self.text)[0]
+        return textwrap.dedent(block)
+
+    def test_scene(self):
+        self.write("scene.json", self.scene())
+        document = json.loads(self.scene())
+        said = self.succeed("explain", "scene.json").stdout.decode()
+        self.assertIn(f"{len(document['spheres'])} spheres", said)
+
+    def test_error(self):
+        """The mistake that README quotes, made in the scene that stands above it."""
+        quoted = re.search(r"(?m)^    (ballpark: scene\.json:.*)$", self.text)[1]
+        self.write("scene.json", self.scene().replace('"lookfrom"', '"lookform"'))
+        self.fail_with(2, "explain", "scene.json", says=quoted + "\n")
+
+    def test_commands(self):
+        """Every command of the page, the large ones at a small size."""
+        lines = re.findall(r"(?m)^    build/release/ballpark (.*?)(?: +#.*)?$", self.text)
+        self.assertGreater(len(lines), 8)
+        for line in lines:
+            words = shlex.split(line)
+            if "--pixel" not in words:
+                words += SMALL.get(words[0], [])
+            self.succeed(*words)
+
+    def test_camera_members_are_those_of_the_grammar(self):
+        with open(os.path.join(SOURCE, "scenes/scene.schema.json"), encoding="utf-8") as file:
+            known = set(re.findall(r'"([a-z_]+)"', file.read()))
+        words = set(re.findall(r"`([a-z_]+)`", self.text))
+        self.assertEqual({word for word in words if "_" in word or word.endswith("fov")} - known, set())
+
+
+if __name__ == "__main__":
+    main()
