@@ -11,11 +11,6 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* One work-item of the lane form follows this many pixel samples, eight at a time: enough that the last,
- * partly filled round weighs little, few enough that a small chunk still keeps all cores busy. */
-#define PACKET_SAMPLES_PER_ITEM 512u
-#define LOCAL_SIZE_SAMPLE 64u
-#define LOCAL_SIZE_PACKET 1u
 /* The first chunk only measures speed (and lets the driver finish compiling). */
 #define FIRST_CHUNK_SAMPLES 16384u
 /* Raw samples take at most this part of the device's memory. */
@@ -76,10 +71,10 @@ static BpStatus create_kernels(BpWorker *worker, const BpWorkerSetup *setup, BpE
     }
 
     const bool packet = setup->program.form == BP_KERNEL_PACKET;
-    worker->samples_per_item = packet ? PACKET_SAMPLES_PER_ITEM : 1;
+    worker->samples_per_item = packet ? BP_PACKET_SAMPLES_PER_ITEM : 1;
     worker->local_size = setup->local_size != 0 ? setup->local_size
-                         : packet               ? LOCAL_SIZE_PACKET
-                                                : LOCAL_SIZE_SAMPLE;
+                         : packet               ? BP_LOCAL_SIZE_PACKET
+                                                : BP_LOCAL_SIZE_SAMPLE;
     size_t most = 0;
     CL_TRY(worker,
            clGetKernelWorkGroupInfo(worker->trace, worker->device->id, CL_KERNEL_WORK_GROUP_SIZE, sizeof most,
@@ -259,7 +254,7 @@ BpStatus bp_worker_start(BpWorker *worker, const BpChunk *chunk, BpError *err) {
     const size_t items = (count + worker->samples_per_item - 1) / worker->samples_per_item;
     BP_TRY(enqueue(worker, worker->trace, items, worker->local_size, &flight->trace_start,
                    "clEnqueueNDRangeKernel(trace)", err));
-    BP_TRY(enqueue(worker, worker->fold, chunk->pixel_count, LOCAL_SIZE_SAMPLE, &flight->fold_end,
+    BP_TRY(enqueue(worker, worker->fold, chunk->pixel_count, BP_LOCAL_SIZE_SAMPLE, &flight->fold_end,
                    "clEnqueueNDRangeKernel(fold)", err));
     CL_TRY(worker, clFlush(worker->device->queue), "clFlush");
     if (first) {

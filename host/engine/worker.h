@@ -26,6 +26,12 @@ typedef struct BpWorkerSetup {
     uint64_t build_mark;                 /* 0, or a number that makes the source a new one */
 } BpWorkerSetup;
 
+/* One work-item of the lane form follows this many pixel samples, eight at a time: enough that the last,
+ * partly filled round weighs little, few enough that a small chunk still keeps all cores busy. */
+#define BP_PACKET_SAMPLES_PER_ITEM 512u
+#define BP_LOCAL_SIZE_SAMPLE 64u
+#define BP_LOCAL_SIZE_PACKET 1u
+
 #define BP_WORKER_FLIGHT 2 /* chunks queued at a time */
 
 typedef struct BpWorker {
