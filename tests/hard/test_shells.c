@@ -234,7 +234,7 @@ static void book_tangencies(void **state) {
     };
     const double aside[] = {0, 0x1p-30, 1e-6, 0.01};
     for (size_t c = 0; c < sizeof cases / sizeof cases[0]; ++c) {
-        BpScene *scene = suite_scene("{\"format\":1,\"camera\":{\"lookfrom\":[0,0,0],\"lookat\":[0,0,-1]},"
+        BpScene *scene = suite_scene("{\"format\":1,\"camera\":{\"lookfrom\":[0,16,0],\"lookat\":[0,16,-1]},"
                                      "\"materials\":{" GLASS("g", "1.5") "},\"spheres\":[%s]}",
                                      cases[c].spheres);
         double rays[4 * RAY_REALS] = {0}, paths[4 * PATH_REALS];
@@ -244,6 +244,7 @@ static void book_tangencies(void **state) {
                 ray[RAY_HIGH + a] = cases[c].origin[a];
                 ray[RAY_DIRECTION + a] = cases[c].direction[a];
             }
+            ray[RAY_HIGH + 1] -= 16;       /* relative to the camera */
             ray[RAY_HIGH + 2] += aside[i]; /* all three run in a plane of constant z */
         }
         run_paths(*state, scene, rays, 4, paths);
