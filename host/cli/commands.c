@@ -100,7 +100,8 @@ const BpCommand bp_commands[] = {
         .summary = "show what accuracy costs in time",
         .description =
             "Renders SCENE, unless told otherwise 240 pixels across, in every way that trades time for "
-            "accuracy: more samples, the other sampler, less depth, double precision, fast math, plain "
+            "accuracy: more samples, the other sampler, adaptive samples, less depth, double precision, fast "
+            "math, plain "
             "numerics, the other Fresnel, and some of these together. Each is compared with a truth that is "
             "rendered in double precision with exact Fresnel and depth 1000 (on a device without double, by "
             "the reference tracer). The table says what each way costs and what it changes; the last lines "

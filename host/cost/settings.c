@@ -9,6 +9,7 @@ typedef struct Change {
     uint32_t depth;
     unsigned sampler, precision, math, numerics;
     BpStudyFresnel fresnel;
+    bool adaptive;
 } Change;
 
 typedef struct Row {
@@ -30,6 +31,7 @@ static const Row rows[] = {
      {.depth = BP_STUDY_DEPTH, PRECISION(DOUBLE), MATH(STRICT), NUMERICS(ROBUST), FRESNEL(EXACT)}},
     {"sampler", "independent samples", {SAMPLER(INDEPENDENT)}},
     {"sampler", "Sobol samples", {SAMPLER(SOBOL)}},
+    {"adaptive", "adaptive samples", {.adaptive = true}},
     {"depth", "depth 5", {.depth = 5}},
     {"depth", "depth 10", {.depth = 10}},
     {"depth", "depth 20", {.depth = 20}},
@@ -72,8 +74,9 @@ static void write_command(const BpScene *scene, BpStudySetting *setting) {
     char depth[24] = "";
     if (options->max_depth != scene->camera.max_depth)
         snprintf(depth, sizeof depth, " --depth %u", options->max_depth);
-    snprintf(setting->command, sizeof setting->command, "%s%s%s%s%s",
+    snprintf(setting->command, sizeof setting->command, "%s%s%s%s%s%s",
              options->sampler == BP_SAMPLER_INDEPENDENT ? " --sampler independent" : "",
+             options->adaptive ? " --adaptive" : "",
              options->precision == BP_PRECISION_DOUBLE ? " --precision double" : "",
              options->math == BP_MATH_FAST ? " --math fast" : "",
              options->numerics == BP_NUMERICS_PLAIN ? " --numerics plain" : "", depth);
@@ -93,11 +96,13 @@ static bool apply(const Row *row, const BpScene *scene, const BpRenderOptions *b
     if (change->precision > 0) options->precision = (BpPrecision)(change->precision - 1);
     if (change->math > 0) options->math = (BpMath)(change->math - 1);
     if (change->numerics > 0) options->numerics = (BpNumerics)(change->numerics - 1);
+    if (change->adaptive) options->adaptive = true;
     if (fresnel_matters(scene, change->fresnel)) setting->fresnel = change->fresnel;
     write_command(scene, setting);
     return options->max_depth != base->max_depth || options->sampler != base->sampler ||
            options->precision != base->precision || options->math != base->math ||
-           options->numerics != base->numerics || setting->fresnel != BP_STUDY_FRESNEL_SCENE;
+           options->numerics != base->numerics || options->adaptive != base->adaptive ||
+           setting->fresnel != BP_STUDY_FRESNEL_SCENE;
 }
 
 size_t bp_study_settings(const BpScene *scene, const BpRenderOptions *base, bool has_double,

@@ -63,7 +63,7 @@ class Cost(ProgramTest):
         result = self.glass()
         self.assertEqual((result["width"], result["height"]), (32, 32))
         self.assertEqual({s["axis"] for s in result["series"]},
-                         {"base", "truth", "sampler", "depth", "precision", "math", "numerics", "fresnel", "together"})
+                         {"base", "truth", "sampler", "adaptive", "depth", "precision", "math", "numerics", "fresnel", "together"})
         base, truth = result["series"][:2]
         points = [p for s in result["series"] for p in s["points"]]
         counts = [p["samples"] for p in base["points"]]
