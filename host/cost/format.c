@@ -28,6 +28,8 @@ const char *bp_study_interval(const BpStudyEstimate *estimate, const char *plus_
         snprintf(text, size, "-");
     } else if (!(half > 0) && !(value > 0)) {
         snprintf(text, size, "none");
+    } else if (value < 5e-7 && half < 5e-7) {
+        snprintf(text, size, "under 0.000001 %%");
     } else if (!(half > 0)) {
         snprintf(text, size, "%s%.*f %%", sign, decimals(value, 2, 7), value);
     } else {

@@ -4,6 +4,7 @@
 
 #include <inttypes.h>
 #include <math.h>
+#include <string.h>
 
 static void print_head(const BpStudyResult *result, FILE *out) {
     const BpScene *scene = result->scene;
@@ -72,11 +73,14 @@ const char *bp_study_advice_text(const BpStudyResult *result, const BpStudyAdvic
         return text;
     }
     const BpStudySetting *setting = &result->series[advice->series].setting;
+    /* A line to be pasted: a path that a shell would take apart, or standard input, is left to the reader. */
+    const char *path = result->scene->path;
+    const bool plain = strpbrk(path, " \"'\\$") == NULL;
     char seconds[32];
     snprintf(text, size, "%g %%: %s, %.0f %s a pixel, %s at %ux%u: ballpark render %.300s --spp %.0f%s%s%s",
              100 * advice->target, setting->name, advice->samples, advice->samples > 1 ? "samples" : "sample",
              bp_study_seconds(advice->seconds, seconds, sizeof seconds), result->full_width,
-             result->full_height, result->scene->path, advice->samples,
+             result->full_height, plain ? path : "SCENE", advice->samples,
              setting->command[0] != '\0' ? " " : "", setting->command,
              setting->fresnel == BP_STUDY_FRESNEL_EXACT     ? ", with \"fresnel\": \"exact\" in the scene"
              : setting->fresnel == BP_STUDY_FRESNEL_SCHLICK ? ", with \"fresnel\": \"schlick\" in the scene"

@@ -73,6 +73,8 @@ def text_agrees(text, value):
     """Whether "1.23 %", "4.5 s", "−0.097 ± 0.003 %" or "-" is `value`, rounded."""
     if text in ("-", "", "none"):
         return value is None or value == 0 or text == ""
+    if text == "under 0.000001 %":
+        return abs(value) < 1e-8
     found = re.fullmatch(r"([+−]?)([\d.]+(?:e-?\d+)?)(?: ± [\d.]+)? ?(ms|s|%|)", text)
     if value is None or not found:
         return False
