@@ -85,12 +85,18 @@ static void print_summary(const BpRunResult *result, const BpStopRule *rule, con
     else if (isnan(result->nrmse))
         fprintf(stderr, "; an error needs %s",
                 result->samples_per_pixel < 2 ? "two samples a pixel at least"
+                : report->invalid_samples > 0 ? "finite samples in every pixel"
                                               : "a picture that is not black");
     fprintf(stderr, "\n");
     if (rule->error > 0.0 && end->reason == BP_STOP_SAMPLES)
         fprintf(stderr,
                 "the error asked for was not reached: the limit of %" PRIu64 " sample%s a pixel came first\n",
                 rule->samples_max, bp_plural(rule->samples_max));
+    if (end->reason == BP_STOP_INVALID)
+        fprintf(
+            stderr,
+            "a pixel has hardly any sample that is finite, so the picture has no error and --error cannot be "
+            "reached\n");
     if (rule->error > 0.0 && end->reason == BP_STOP_TIME)
         fprintf(stderr, "the error asked for was not reached in time\n");
     /* Nothing seen in n independent samples: below 3/n with 95 % confidence (Hanley, Lippman-Hand 1983). */

@@ -62,6 +62,9 @@ static BpStopReason decide_error(const BpStopRule *rule, const BpStopState *stat
     if (rule->error <= 0.0 || state->samples < rule->samples_min) return BP_STOP_NOT_YET;
     if (state->black) return BP_STOP_BLACK;
     if (state->nrmse == 0.0) return BP_STOP_CONSTANT;
+    /* By now only samples that were left out can have kept a pixel from having an error, and more would too.
+     */
+    if (isnan(state->nrmse)) return BP_STOP_INVALID;
     /* Between fixed counts, where --time may have stopped for a look, no decision is made. */
     if (state->samples != bp_stop_checkpoint(rule, (double)state->samples)) return BP_STOP_NOT_YET;
     return state->nrmse <= rule->error ? BP_STOP_ERROR : BP_STOP_NOT_YET;
@@ -111,6 +114,8 @@ const char *bp_stop_reason_name(BpStopReason reason) {
         return "constant";
     case BP_STOP_BLACK:
         return "black";
+    case BP_STOP_INVALID:
+        return "invalid";
     }
     return "";
 }

@@ -27,7 +27,8 @@ typedef enum BpStopReason {
     BP_STOP_ERROR,
     BP_STOP_TIME,
     BP_STOP_CONSTANT, /* no two samples of a pixel differ */
-    BP_STOP_BLACK     /* no sample brought light: there is no relative error */
+    BP_STOP_BLACK,    /* no sample brought light: there is no relative error */
+    BP_STOP_INVALID   /* a pixel has no sample that is light, or next to none: its error stays unknown */
 } BpStopReason;
 
 /* How far a render is, all pixels having the same number of samples. */

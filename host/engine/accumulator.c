@@ -147,7 +147,12 @@ static BpStatus check_same_settings(const BpAccumulator *a, const BpAccumulator 
     if (a->field != b->field)                                                                                \
     return bp_fail(err, BP_ERR_USAGE, "the renders cannot be merged: their " what " differ" remedy,          \
                    (int64_t)a->field, (int64_t)b->field)
-    BP_SAME(width, "widths", " (%" PRId64 " and %" PRId64 " pixels)");
+#define BP_SAME_WORD(field, what, value, word, other)                                                        \
+    if (a->field != b->field)                                                                                \
+    return bp_fail(err, BP_ERR_USAGE, "the renders cannot be merged: their " what " differ (%s and %s)",     \
+                   (int)a->field == (int)(value) ? word : other,                                             \
+                   (int)b->field == (int)(value) ? word : other)
+    BP_SAME(width, "widths", " (%" PRId64 " and %" PRId64 " pixels: --width)");
     BP_SAME(height, "heights", " (%" PRId64 " and %" PRId64 " pixels)");
     if (a->scene_hash != b->scene_hash)
         return bp_fail(err, BP_ERR_USAGE,
@@ -162,12 +167,13 @@ static BpStatus check_same_settings(const BpAccumulator *a, const BpAccumulator 
     BP_SAME(replicates, "numbers of replicates", " (%" PRId64 " and %" PRId64 ")");
     BP_SAME(scale_log2, "fixed-point scales", " (2^%" PRId64 " and 2^%" PRId64 ")");
     BP_SAME(max_depth, "depths", " (--depth %" PRId64 " and %" PRId64 ")");
-    BP_SAME(sampler, "samplers", " (--sampler, numbers %" PRId64 " and %" PRId64 ")");
-    BP_SAME(precision, "precisions", " (--precision, numbers %" PRId64 " and %" PRId64 ")");
-    BP_SAME(math, "kinds of mathematics", " (--math, numbers %" PRId64 " and %" PRId64 ")");
-    BP_SAME(numerics, "numerics", " (--numerics, numbers %" PRId64 " and %" PRId64 ")");
+    BP_SAME_WORD(sampler, "samplers", BP_SAMPLER_SOBOL, "--sampler sobol", "--sampler independent");
+    BP_SAME_WORD(precision, "precisions", BP_PRECISION_DOUBLE, "--precision double", "--precision single");
+    BP_SAME_WORD(math, "kinds of mathematics", BP_MATH_FAST, "--math fast", "--math strict");
+    BP_SAME_WORD(numerics, "numerics", BP_NUMERICS_PLAIN, "--numerics plain", "--numerics robust");
     BP_SAME(transfer, "transfer curves", " (numbers %" PRId64 " and %" PRId64 ")");
 #undef BP_SAME
+#undef BP_SAME_WORD
     return BP_OK;
 }
 

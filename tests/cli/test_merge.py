@@ -53,13 +53,23 @@ class Merge(ProgramTest):
 
     def test_what_does_not_belong_together(self):
         self.part("a.bpa", 0, 10)
-        for name, options in (("seed.bpa", ["--seed", "1"]), ("depth.bpa", ["--depth", "3"]),
-                              ("size.bpa", ["--width", "13"]), ("double.bpa", ["--precision", "double"])):
-            self.part(name, 10, 10, *options)
-            self.fail_with(2, "merge", "a.bpa", name, "-o", "x.png", says=[name, "a.bpa"])
+        for options, says in ((["--seed", "1"], ["seeds differ (0 and 1)", "--first-sample"]),
+                              (["--depth", "3"], ["depths differ (--depth 10 and 3)"]),
+                              (["--width", "13"], ["widths differ (12 and 13 pixels: --width)"]),
+                              (["--precision", "double"], ["(--precision single and --precision double)"]),
+                              (["--math", "fast"], ["(--math strict and --math fast)"]),
+                              (["--numerics", "plain"], ["(--numerics robust and --numerics plain)"]),
+                              (["--sampler", "independent"], ["(--sampler sobol and --sampler independent)"])):
+            self.part("other.bpa", 10, 10, *options)
+            self.fail_with(2, "merge", "a.bpa", "other.bpa", "-o", "x.png",
+                           says=["other.bpa does not go with a.bpa: the renders cannot be merged", *says])
+        # What changes no sample is no difference.
+        for options in (["--kernel", "sample"], ["--effects", "all"], ["--transfer", "srgb"]):
+            self.part("other.bpa", 10, 10, *options)
+            self.succeed("merge", "a.bpa", "other.bpa", "-o", "y.png")
         self.write("s.json", scene(12, materials={"m": {"type": "lambertian", "albedo": [0.5, 0.4, 0.31]}}))
         self.part("colour.bpa", 10, 10)
-        self.fail_with(2, "merge", "a.bpa", "colour.bpa", "-o", "x.png", says="colour.bpa")
+        self.fail_with(2, "merge", "a.bpa", "colour.bpa", "-o", "x.png", says=["colour.bpa", "different scenes"])
         self.assertNotIn("x.png", self.files())
 
     def test_bad_files(self):

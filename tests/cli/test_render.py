@@ -211,6 +211,28 @@ class StopRules(Render):
         said = self.succeed("render", "plain.json", "--error", "1", "-o", "x.png").errors
         self.assertIn("the samples of every pixel agree", said)
 
+    def test_a_pixel_that_is_never_light(self):
+        """Samples that are no numbers are left out; where a pixel has no other, --error ends and says so."""
+        shutil.copytree(os.path.join(SOURCE, "kernels"), self.path("kernels"))
+        with open(self.path("kernels/sky.cl")) as file:
+            text = file.read()
+        at = text.rindex("return bottom;")
+        broken = ("Vec3 light = bottom; light.x = choose(direction.x < splat(R(-0.5)), splat(NAN), light.x); "
+                  "return light;")
+        with open(self.path("kernels/sky.cl"), "w") as file:
+            file.write(text[:at] + broken + text[at + len("return bottom;"):])
+        self.write("n.json", scene(16, background=[0.5, 0.6, 0.7]))
+        here = {"BALLPARK_KERNELS": self.path("kernels")}
+        for options in (["--error", "0.1"], ["--error", "0.1", "--time", "100"], ["--error", "0.1", "--spp", "100000"]):
+            said = self.succeed("render", "n.json", "--stats", "n.stats", *options, environment=here).errors
+            self.assertIn("--error cannot be reached", said)
+            self.assertIn("an error needs finite samples in every pixel", said)
+            self.assertRegex(said, r"warning: \d+ samples were not finite; left out of the picture")
+            with open(self.path("n.stats")) as file:
+                stats = json.load(file)
+            self.assertEqual((stats["stopped_by"], stats["nrmse"]), ("invalid", None))
+            self.assertGreater(stats["invalid_samples"], 0)
+
     def test_summary(self):
         said = self.succeed("render", "s.json").errors
         self.assertRegex(said, r"\As\.png: 16x16, 8 samples a pixel, error [\d.]+ %\n"
