@@ -5,12 +5,12 @@ const char *const bp_page_style[] = {
     ":root { color-scheme: light dark; --paper: #fbfaf7; --sheet: #ffffff; --ink: #1d1f23; --soft: #5d636c;\n"
     "  --line: #dcdad3; --grid: #ebe9e3; --accent: #b4530a; --glow: #f3c98f;\n"
     "  --base: #1d1f23; --truth: #15803d; --sampler: #7c3aed; --depth: #c2410c; --precision: #1d63d8;\n"
-    "  --math: #0e7490; --numerics: #be185d; --fresnel: #8a6a00; --together: #64748b; --adaptive: #4d7c0f; "
+    "  --math: #0e7490; --numerics: #be185d; --fresnel: #8a6a00; --together: #64748b; --adaptive: #c026d3; "
     "}\n",
     "@media (prefers-color-scheme: dark) { :root { --paper: #131417; --sheet: #1b1d21; --ink: #eceae4;\n"
     "  --soft: #a2a7b0; --line: #383b42; --grid: #272a2f; --accent: #ffb35c; --glow: #7a4a12;\n"
     "  --base: #f4f2ec; --truth: #4ade80; --sampler: #b794ff; --depth: #ff9057; --precision: #75aaff;\n"
-    "  --math: #4fd1e0; --numerics: #ff7ab8; --fresnel: #e3c04b; --together: #9fb0c6; --adaptive: #b5d334; } "
+    "  --math: #4fd1e0; --numerics: #ff7ab8; --fresnel: #e3c04b; --together: #9fb0c6; --adaptive: #ef8bff; } "
     "}\n",
     "* { box-sizing: border-box; }\n",
     "body { margin: 0; background: var(--paper); color: var(--ink);\n"
