@@ -152,7 +152,7 @@ typedef struct BpRenderOptions {
     bool adaptive;          /* samples_per_pixel is a mean: pixels get samples where the error is */
     bool features;          /* bp_render_features() will be asked */
     bool force;             /* render even on a device that fails its self-test */
-    uint32_t replicates;    /* K of the error estimate; 0: the default */
+    uint32_t replicates;    /* K of the error estimate; 0: the default; 1: no estimate */
     /* For tests and tuning; 0 means: choose. None of these changes a picture. */
     uint32_t chunk_samples;  /* samples in one dispatch */
     uint32_t local_size;     /* work-items in a work-group */

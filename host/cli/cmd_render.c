@@ -170,7 +170,7 @@ BpStatus bp_command_render(const BpCommandLine *line, BpError *err) {
     const uint64_t pixels = (uint64_t)info.width * info.height;
     BP_TRY_GOTO(status, bp_setup_options(line, scene, &options, err), done);
     if (!line->quiet) warn_of_limits(scene, &options);
-    /* Less noise in the same time on every picture of the book: docs/COST.md. */
+    /* Less noise in the same time on every scene that was measured: docs/ACCURACY.md. */
     if (!bp_option_given(line, BP_OPTION_SAMPLER)) options.sampler = BP_SAMPLER_SOBOL;
     options.adaptive = line->adaptive;
     options.features = file.format == BP_FORMAT_EXR;

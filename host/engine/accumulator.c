@@ -45,6 +45,7 @@ void bp_accumulator_destroy(BpAccumulator **accumulator) {
     free((*accumulator)->title);
     free((*accumulator)->sums);
     free((*accumulator)->counts);
+    free((*accumulator)->pixel_segments);
     free(*accumulator);
     *accumulator = NULL;
 }

@@ -12,7 +12,7 @@
 
 #include "../scene/scene.h"
 
-#define BP_REPLICATES_DEFAULT 4u
+#define BP_REPLICATES_DEFAULT 4u /* chosen by measurement: docs/ACCURACY.md */
 #define BP_REPLICATES_MAX 64u
 #define BP_REPLICATE_SAMPLES_MAX (1u << 24)
 
@@ -36,6 +36,8 @@ typedef struct BpAccumulator {
     int64_t *sums;    /* width * height * K * 3, index ((pixel * K) + k) * 3 + channel */
     uint32_t *counts; /* width * height * K: valid samples */
     uint64_t segments, cut_paths, invalid_samples; /* totals over the picture */
+    uint64_t *pixel_segments; /* Optional. Of each pixel; in no file, and not merged: adaptive sampling asks
+                                 for it. */
 } BpAccumulator;
 
 /* ---- what of a scene the sums depend on (accumulator_scene.c) ---- */

@@ -5,6 +5,7 @@
 
 #include <math.h>
 #include <stdlib.h>
+#include <string.h>
 
 enum { TILE_SIDE = 8, LEVELS_MAX = 28 };
 
@@ -22,9 +23,10 @@ struct BpAdaptive {
     uint32_t *half_pixels;   /* how many each has */
     uint8_t *level, *wanted; /* of each half; level l: BP_ADAPTIVE_FIRST << l samples a pixel */
     bool *passing;           /* halves of the pass under way */
-    float *
-        errors[LEVELS_MAX]; /* of each half, mean squared error of its pixels at that level; NULL: none yet */
-    uint32_t *list;         /* pixels of the pass under way */
+    /* Of each half at each level, means over its pixels: squared error, ray segments a sample. NULL: none
+     * yet. */
+    float *errors[LEVELS_MAX], *costs[LEVELS_MAX];
+    uint32_t *list;            /* pixels of the pass under way */
     uint64_t pass_samples_max; /* that these will have */
     uint64_t planned;          /* mean samples that `wanted` is for */
 };
@@ -74,7 +76,10 @@ BpStatus bp_adaptive_create(uint32_t width, uint32_t height, uint64_t samples_ma
 
 void bp_adaptive_destroy(BpAdaptive **adaptive) {
     if (adaptive == NULL || *adaptive == NULL) return;
-    for (size_t l = 0; l < LEVELS_MAX; ++l) free((*adaptive)->errors[l]);
+    for (size_t l = 0; l < LEVELS_MAX; ++l) {
+        free((*adaptive)->errors[l]);
+        free((*adaptive)->costs[l]);
+    }
     free((*adaptive)->half_pixels);
     free((*adaptive)->level);
     free((*adaptive)->wanted);
@@ -86,77 +91,80 @@ void bp_adaptive_destroy(BpAdaptive **adaptive) {
 
 /* ---- errors ---- */
 
-/* Keeps the errors of the halves that have just come to `level`. */
+/* Keeps the errors and costs of the halves that have just come to `level`: those of the pass, or at first
+ * all. */
 static BpStatus record(BpAdaptive *adaptive, const BpAccumulator *accumulator, uint32_t level, BpError *err) {
-    if (adaptive->errors[level] == NULL)
+    if (adaptive->errors[level] == NULL) {
         adaptive->errors[level] = calloc(adaptive->halves, sizeof *adaptive->errors[level]);
-    double *sums = calloc(adaptive->halves, sizeof *sums);
-    if (adaptive->errors[level] == NULL || sums == NULL) {
-        free(sums);
-        return bp_fail(err, BP_ERR_MEMORY, "no memory for the errors of %u tiles", adaptive->halves / 2);
+        adaptive->costs[level] = calloc(adaptive->halves, sizeof *adaptive->costs[level]);
     }
+    float *errors = adaptive->errors[level], *costs = adaptive->costs[level];
+    if (errors == NULL || costs == NULL)
+        return bp_fail(err, BP_ERR_MEMORY, "no memory for the errors of %u tiles", adaptive->halves / 2);
     for (uint32_t y = 0; y < adaptive->height; ++y)
         for (uint32_t x = 0; x < adaptive->width; ++x) {
             const uint32_t half = half_of(adaptive, x, y);
-            if (adaptive->level[half] != level) continue;
-            const double error = bp_accumulator_squared_error(accumulator, (size_t)y * adaptive->width + x);
-            if (isfinite(error)) sums[half] += error / adaptive->half_pixels[half];
+            if (level > 0 && !adaptive->passing[half]) continue;
+            const size_t pixel = (size_t)y * adaptive->width + x;
+            const double error = bp_accumulator_squared_error(accumulator, pixel);
+            const double share = 1.0 / adaptive->half_pixels[half];
+            if (isfinite(error)) errors[half] += (float)(error * share);
+            if (accumulator->pixel_segments != NULL)
+                costs[half] += (float)((double)accumulator->pixel_segments[pixel] * share /
+                                       (double)level_samples(level));
         }
-    for (uint32_t half = 0; half < adaptive->halves; ++half)
-        if (adaptive->level[half] == level) adaptive->errors[level][half] = (float)sums[half];
-    free(sums);
     return BP_OK;
 }
 
-/* What decides about `half`: the error of the tile's other half, and with half the weight the mean of those
- * of the same colour in the tiles around. All had `pilot` as their level at some time. */
-static double deciding_error(const BpAdaptive *adaptive, uint32_t half, uint32_t pilot) {
-    const float *errors = adaptive->errors[pilot];
+/* What decides about `half`: the value of the tile's other half, and with half the weight the mean of those
+ * of the same colour in the tiles around. All had the level of `values` at some time. */
+static double deciding(const BpAdaptive *adaptive, uint32_t half, const float *values) {
     const uint32_t tile = half / 2, colour = 1 - half % 2;
     const uint32_t x = tile % adaptive->tiles_x, y = tile / adaptive->tiles_x;
     double around = 0;
     unsigned count = 0;
-    if (x > 0) around += (double)errors[2 * (tile - 1) + colour], ++count;
-    if (y > 0) around += (double)errors[2 * (tile - adaptive->tiles_x) + colour], ++count;
-    if (x + 1 < adaptive->tiles_x) around += (double)errors[2 * (tile + 1) + colour], ++count;
-    if (y + 1 < adaptive->tiles_y) around += (double)errors[2 * (tile + adaptive->tiles_x) + colour], ++count;
-    const double own = (double)errors[2 * tile + colour];
+    if (x > 0) around += (double)values[2 * (tile - 1) + colour], ++count;
+    if (y > 0) around += (double)values[2 * (tile - adaptive->tiles_x) + colour], ++count;
+    if (x + 1 < adaptive->tiles_x) around += (double)values[2 * (tile + 1) + colour], ++count;
+    if (y + 1 < adaptive->tiles_y) around += (double)values[2 * (tile + adaptive->tiles_x) + colour], ++count;
+    const double own = (double)values[2 * tile + colour];
     return count == 0 ? own : (2 * own + around / count) / 3;
 }
 
 /* ---- the plan ---- */
 
-/* The level to which doubling `half` still gains at least `least` a sample. At n samples the squared error is
- * about s^2 / n, so doubling gains s^2 / (2 n) for n samples: s^2 / (2 n^2) each. `variance`: s^2. */
-static uint32_t level_for(const BpAdaptive *adaptive, uint32_t half, uint32_t pilot, double variance,
+/* The level to which doubling `half` still gains at least `least` a segment. At n samples the squared error
+ * is about s^2 / n, so doubling gains s^2 / (2 n) for n samples of c segments: s^2 / (2 c n^2) each.
+ * `values`: s^2 / c. */
+static uint32_t level_for(const BpAdaptive *adaptive, uint32_t half, uint32_t pilot, double value,
                           double least) {
     uint32_t level = adaptive->level[half];
     const uint32_t reach =
         pilot + REACH_LEVELS < adaptive->level_max ? pilot + REACH_LEVELS : adaptive->level_max;
     while (level < reach) {
         const double samples = (double)level_samples(level);
-        if (variance / (2 * samples * samples) < least) break;
+        if (value / (2 * samples * samples) < least) break;
         ++level;
     }
     return level;
 }
 
-static double samples_for(const BpAdaptive *adaptive, uint32_t colour, uint32_t pilot,
-                          const double *variances, double least) {
+static double samples_for(const BpAdaptive *adaptive, uint32_t colour, uint32_t pilot, const double *values,
+                          double least) {
     double total = 0;
     for (uint32_t half = colour; half < adaptive->halves; half += 2)
         total += adaptive->half_pixels[half] *
-                 (double)level_samples(level_for(adaptive, half, pilot, variances[half], least));
+                 (double)level_samples(level_for(adaptive, half, pilot, values[half], least));
     return total;
 }
 
 /* Plans the halves of one colour, so that neither colour's total depends on what its own samples brought. */
-static void plan_colour(BpAdaptive *adaptive, uint32_t colour, uint32_t pilot, const double *variances,
+static void plan_colour(BpAdaptive *adaptive, uint32_t colour, uint32_t pilot, const double *values,
                         uint64_t samples) {
     double pixels = 0, largest = 0;
     for (uint32_t half = colour; half < adaptive->halves; half += 2) {
         pixels += adaptive->half_pixels[half];
-        largest = fmax(largest, variances[half]);
+        largest = fmax(largest, values[half]);
     }
     const double budget = pixels * (double)samples;
     /* The least gain for which the budget suffices: above `too_low`, at most `enough`. */
@@ -164,16 +172,16 @@ static void plan_colour(BpAdaptive *adaptive, uint32_t colour, uint32_t pilot, c
     for (int i = 0; i < 200; ++i) {
         const double middle = too_low > 0 ? sqrt(too_low * enough) : enough / 1024;
         if (middle <= 0 || middle <= too_low || middle >= enough) break;
-        if (samples_for(adaptive, colour, pilot, variances, middle) > budget)
+        if (samples_for(adaptive, colour, pilot, values, middle) > budget)
             too_low = middle;
         else
             enough = middle;
         if (too_low <= 0 && enough < 1e-60 * largest) break;
     }
-    double left = budget - samples_for(adaptive, colour, pilot, variances, enough);
+    double left = budget - samples_for(adaptive, colour, pilot, values, enough);
     for (uint32_t half = colour; half < adaptive->halves; half += 2) {
-        const uint32_t level = level_for(adaptive, half, pilot, variances[half], enough);
-        const uint32_t next = level_for(adaptive, half, pilot, variances[half], too_low);
+        const uint32_t level = level_for(adaptive, half, pilot, values[half], enough);
+        const uint32_t next = level_for(adaptive, half, pilot, values[half], too_low);
         const double more = adaptive->half_pixels[half] * (double)level_samples(level);
         /* Equal gains, one after the other while there is room. */
         const bool takes = next > level && more <= left;
@@ -183,21 +191,23 @@ static void plan_colour(BpAdaptive *adaptive, uint32_t colour, uint32_t pilot, c
 }
 
 static BpStatus plan(BpAdaptive *adaptive, uint32_t pilot, uint64_t samples, BpError *err) {
-    double *variances = malloc(adaptive->halves * sizeof *variances);
-    if (variances == NULL)
+    double *values = malloc(adaptive->halves * sizeof *values);
+    if (values == NULL)
         return bp_fail(err, BP_ERR_MEMORY, "no memory for a plan of %u tiles", adaptive->halves / 2);
     for (uint32_t colour = 0; colour < 2; ++colour) {
         double mean = 0;
         for (uint32_t half = colour; half < adaptive->halves; half += 2) {
-            variances[half] = deciding_error(adaptive, half, pilot) * (double)level_samples(pilot);
-            mean += variances[half] / (adaptive->halves / 2);
+            values[half] = deciding(adaptive, half, adaptive->errors[pilot]) * (double)level_samples(pilot);
+            mean += values[half] / (adaptive->halves / 2);
         }
-        const double floor = mean > 0 ? ERROR_FLOOR * mean : 1;
-        for (uint32_t half = colour; half < adaptive->halves; half += 2)
-            variances[half] = fmax(variances[half], floor);
-        plan_colour(adaptive, colour, pilot, variances, samples);
+        for (uint32_t half = colour; half < adaptive->halves; half += 2) {
+            const double cost = deciding(adaptive, half, adaptive->costs[pilot]);
+            values[half] = fmax(values[half], ERROR_FLOOR * mean) / (cost > 0 ? cost : 1);
+            if (mean <= 0) values[half] = 1; /* nothing to go by: all alike */
+        }
+        plan_colour(adaptive, colour, pilot, values, samples);
     }
-    free(variances);
+    free(values);
     adaptive->planned = samples;
     return BP_OK;
 }
@@ -231,12 +241,10 @@ static bool begin_pass(BpAdaptive *adaptive, BpAdaptivePass *pass) {
 /* The halves of the pass that is done go up a level, all to the same. */
 static BpStatus end_pass(BpAdaptive *adaptive, const BpAccumulator *accumulator, BpError *err) {
     uint32_t level = 0;
-    for (uint32_t half = 0; half < adaptive->halves; ++half) {
-        if (!adaptive->passing[half]) continue;
-        adaptive->passing[half] = false;
-        level = ++adaptive->level[half];
-    }
-    if (level > 0 || adaptive->errors[0] == NULL) return record(adaptive, accumulator, level, err);
+    for (uint32_t half = 0; half < adaptive->halves; ++half)
+        if (adaptive->passing[half]) level = ++adaptive->level[half];
+    if (level > 0 || adaptive->errors[0] == NULL) BP_TRY(record(adaptive, accumulator, level, err));
+    memset(adaptive->passing, 0, adaptive->halves * sizeof *adaptive->passing);
     return BP_OK;
 }
 

@@ -8,13 +8,14 @@
  * white half. All pixels of a half have the same number of samples, BP_ADAPTIVE_FIRST times a power of two
  * (which is what Sobol's sequence likes), and a pass doubles some. For a mean of n samples, the first quarter
  * (rounded down to such a count, at least BP_ADAPTIVE_FIRST) goes to every pixel; the errors found in it
- * decide about the rest: the half is doubled whose squared error would fall most for the samples it takes,
- * until the mean is reached.
+ * decide about the rest: the half is doubled whose squared error would fall most for the ray segments it
+ * takes (they stand for time), until the mean is reached.
  *
- * No bias: a half's count is decided by errors of halves of the other colour, in samples of the first quarter
- * only, whose number depends on no sample. So whether a pixel gets more samples has nothing to do with what
- * its own have brought, and its mean stays the mean of a number of samples chosen independently of them.
- * (Deciding by a pixel's own samples makes pictures darker: pixels that have not yet found the light stop.)
+ * No bias: a half's count is decided by errors and segments of halves of the other colour, in samples of the
+ * first quarter only, whose number depends on no sample. So whether a pixel gets more samples has nothing to
+ * do with what its own have brought, and its mean stays the mean of a number of samples chosen independently
+ * of them. (Deciding by a pixel's own samples makes pictures darker: pixels that have not yet found the light
+ * stop.)
  */
 #ifndef BP_ENGINE_ADAPTIVE_H
 #define BP_ENGINE_ADAPTIVE_H

@@ -28,8 +28,8 @@ static BpStatus check_options(const BpScene *scene, const BpRenderOptions *optio
                        (unsigned long long)(options->first_sample + options->samples_per_pixel - 1));
     if (options->max_depth > BP_DEPTH_MAX)
         return bp_fail(err, BP_ERR_USAGE, "depth %u: at most %u", options->max_depth, BP_DEPTH_MAX);
-    if (options->replicates == 1 || options->replicates > BP_REPLICATES_MAX)
-        return bp_fail(err, BP_ERR_USAGE, "%u replicates: an error bar needs 2 to %u", options->replicates,
+    if (options->replicates > BP_REPLICATES_MAX)
+        return bp_fail(err, BP_ERR_USAGE, "%u replicates: at most %u", options->replicates,
                        BP_REPLICATES_MAX);
     const uint32_t replicates = options->replicates != 0 ? options->replicates : BP_REPLICATES_DEFAULT;
     if (options->samples_per_pixel > (uint64_t)BP_REPLICATE_SAMPLES_MAX * replicates)
@@ -196,6 +196,7 @@ static BpStatus begin_next_pass(BpRender *render, bool *begun, BpError *err) {
         BP_TRY(bp_worker_set_pixels(render->workers[i], pass.pixels, pass.pixel_count, err));
     bp_schedule_init(&render->schedule, pass.pixel_count, render->options.first_sample + pass.first,
                      pass.count);
+    render->schedule.before = pass.first;
     return BP_OK;
 }
 

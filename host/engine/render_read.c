@@ -6,6 +6,7 @@
 #include "render_state.h"
 
 #include <math.h>
+#include <stdlib.h>
 #include <string.h>
 
 uint64_t bp_render_samples_done(const BpRender *render) {
@@ -44,6 +45,12 @@ BpStatus bp_render_accumulator(BpRender *render, const BpAccumulator **accumulat
         BpStatus status = bp_accumulator_create(render->scene->camera.width, render->scene->camera.height,
                                                 render->options.replicates, &read, err);
         if (status == BP_OK) status = describe(render, read, err);
+        if (status == BP_OK && render->adaptive != NULL) {
+            const size_t pixels = (size_t)read->width * read->height;
+            read->pixel_segments = calloc(pixels, sizeof *read->pixel_segments);
+            if (read->pixel_segments == NULL)
+                status = bp_fail(err, BP_ERR_MEMORY, "no memory for the path lengths of %zu pixels", pixels);
+        }
         for (size_t i = 0; status == BP_OK && i < render->worker_count; ++i)
             status = bp_worker_collect(render->workers[i], read, err);
         if (status != BP_OK) {

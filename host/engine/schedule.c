@@ -22,7 +22,8 @@ bool bp_schedule_take(BpSchedule *schedule, uint32_t wanted, BpChunk *chunk) {
         if (left == 0 || schedule->pixels == 0) return false;
         const uint64_t most = at_least(PASS_SAMPLES_MAX, wanted / schedule->pixels);
         /* As many again as there are: 1, 1, 2, 4, 8, ... */
-        const uint64_t pass = at_most(at_most(at_least(schedule->done, 1), most), at_most(left, wanted));
+        const uint64_t pass =
+            at_most(at_most(at_least(schedule->before + schedule->done, 1), most), at_most(left, wanted));
         schedule->pass_samples = (uint32_t)at_least(pass, 1);
         schedule->next_pixel = 0;
     }

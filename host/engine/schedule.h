@@ -21,6 +21,7 @@ typedef struct BpChunk {
 typedef struct BpSchedule {
     uint32_t pixels;
     uint64_t first_sample, samples; /* the range that every pixel gets; `samples` may be raised later */
+    uint64_t before;                /* samples that every pixel has from elsewhere */
     uint64_t done;                  /* samples of the passes that were handed out whole */
     uint32_t pass_samples;          /* of the pass in progress; 0: none is */
     uint32_t next_pixel;

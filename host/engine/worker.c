@@ -311,6 +311,7 @@ BpStatus bp_worker_collect(BpWorker *worker, BpAccumulator *accumulator, BpError
     for (size_t i = 0; i < cells; ++i) accumulator->counts[i] += counts[i];
     for (size_t i = 0; i < worker->pixels; ++i) {
         accumulator->segments += tallies[i * 3];
+        if (accumulator->pixel_segments != NULL) accumulator->pixel_segments[i] += tallies[i * 3];
         accumulator->cut_paths += tallies[i * 3 + 1];
         accumulator->invalid_samples += tallies[i * 3 + 2];
     }

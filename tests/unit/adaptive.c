@@ -42,6 +42,9 @@ static void sample_pixel(Run *run, size_t pixel, uint64_t first, uint64_t count)
         const double rgb[3] = {x, x, x};
         data_add(run->accumulator, pixel, s, rgb);
         data_add(run->shown, run->exchanged ? pixel ^ 1 : pixel, s, rgb);
+        /* Paths of 1 to 4 segments. */
+        run->shown->pixel_segments[run->exchanged ? pixel ^ 1 : pixel] +=
+            1 + data_bits((run->seeds[colour_of(pixel)] << 40) + ((uint64_t)pixel << 20) + s) % 4;
     }
     run->counts[pixel] += count;
 }
@@ -54,6 +57,8 @@ static void run_open(Run *run, uint64_t black, uint64_t white, bool exchanged, d
     run->rare = rare;
     assert_int_equal(bp_accumulator_create(WIDTH, HEIGHT, REPLICATES, &run->accumulator, NULL), BP_OK);
     assert_int_equal(bp_accumulator_create(WIDTH, HEIGHT, REPLICATES, &run->shown, NULL), BP_OK);
+    run->shown->pixel_segments = calloc(PIXELS, sizeof *run->shown->pixel_segments);
+    assert_non_null(run->shown->pixel_segments);
     run->accumulator->scale_log2 = run->shown->scale_log2 = 30;
     assert_int_equal(bp_adaptive_create(WIDTH, HEIGHT, 1u << 26, &run->adaptive, NULL), BP_OK);
     for (size_t pixel = 0; pixel < PIXELS; pixel++) sample_pixel(run, pixel, 0, BP_ADAPTIVE_FIRST);
