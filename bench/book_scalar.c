@@ -7,10 +7,10 @@
  * Does not know: float, vectors, wide trees, ballpark's kernels.
  *
  * Three things are kinder than the book's C++: a fast random generator, threads over rows, and T_MIN. */
+#include "book_tree.h"
 #include "peer.h"
 
 #include <math.h>
-#include <stdlib.h>
 #include <string.h>
 
 /* The shortest distance that counts as a hit. The book has 0.001, which lets paths slip into small spheres
@@ -32,20 +32,9 @@ typedef struct Hit {
     const BpSphere *sphere;
 } Hit;
 
-typedef struct Box {
-    double low[3], high[3];
-} Box;
-
-/* An inner node has two children; a leaf has one sphere. */
-typedef struct Node {
-    Box box;
-    struct Node *left, *right;
-    const BpSphere *sphere;
-} Node;
-
 typedef struct Job {
     const BpScene *scene;
-    const Node *root; /* NULL: the list */
+    const BookNode *root; /* NULL: the list */
     PeerCamera camera;
     PeerFilm film;
     uint64_t seed;
@@ -134,7 +123,7 @@ static bool hit_list(const BpScene *scene, const Ray *ray, double t_max, Hit *hi
     return any;
 }
 
-static bool hit_box(const Box *box, const Ray *ray, double t_min, double t_max) {
+static bool hit_box(const BookBox *box, const Ray *ray, double t_min, double t_max) {
     const double origin[3] = {ray->origin.x, ray->origin.y, ray->origin.z};
     const double direction[3] = {ray->direction.x, ray->direction.y, ray->direction.z};
     for (int axis = 0; axis < 3; axis++) {
@@ -153,7 +142,7 @@ static bool hit_box(const Box *box, const Ray *ray, double t_min, double t_max) 
     return true;
 }
 
-static bool hit_node(const Node *node, const Ray *ray, double t_max, Hit *hit) {
+static bool hit_node(const BookNode *node, const Ray *ray, double t_max, Hit *hit) {
     if (node->sphere != NULL) return hit_sphere(node->sphere, ray, T_MIN, t_max, hit);
     if (!hit_box(&node->box, ray, T_MIN, t_max)) return false;
     const bool left = hit_node(node->left, ray, t_max, hit);
@@ -166,62 +155,6 @@ static bool hit_world(Walk *walk, const Ray *ray, Hit *hit) {
     const Job *job = walk->job;
     if (job->root != NULL) return hit_node(job->root, ray, INFINITY, hit);
     return hit_list(job->scene, ray, INFINITY, hit);
-}
-
-/* ---- the tree of the second book ---- */
-
-static Box sphere_box(const BpSphere *sphere) {
-    const double radius = fabs(sphere->radius);
-    Box box;
-    for (int k = 0; k < 3; k++) {
-        box.low[k] = sphere->center[k] - radius;
-        box.high[k] = sphere->center[k] + radius;
-    }
-    return box;
-}
-
-static double low_end(const void *entry, int axis) {
-    const BpSphere *sphere = *(const BpSphere *const *)entry;
-    return sphere->center[axis] - fabs(sphere->radius);
-}
-static int compare(const void *a, const void *b, int axis) {
-    const double x = low_end(a, axis), y = low_end(b, axis);
-    return (x > y) - (x < y);
-}
-static int compare_x(const void *a, const void *b) {
-    return compare(a, b, 0);
-}
-static int compare_y(const void *a, const void *b) {
-    return compare(a, b, 1);
-}
-static int compare_z(const void *a, const void *b) {
-    return compare(a, b, 2);
-}
-
-/* Builds the tree over `spheres` and returns its root; nodes are taken from *next on. */
-static Node *build(const BpSphere **spheres, size_t count, Node **next) {
-    Node *node = (*next)++;
-    node->box = sphere_box(spheres[0]);
-    if (count == 1) {
-        node->sphere = spheres[0];
-        return node;
-    }
-    for (size_t i = 1; i < count; i++) {
-        const Box box = sphere_box(spheres[i]);
-        for (int k = 0; k < 3; k++) {
-            node->box.low[k] = fmin(node->box.low[k], box.low[k]);
-            node->box.high[k] = fmax(node->box.high[k], box.high[k]);
-        }
-    }
-    static int (*const compare_by[3])(const void *, const void *) = {compare_x, compare_y, compare_z};
-    int axis = 0;
-    for (int k = 1; k < 3; k++) {
-        if (node->box.high[k] - node->box.low[k] > node->box.high[axis] - node->box.low[axis]) axis = k;
-    }
-    qsort(spheres, count, sizeof *spheres, compare_by[axis]);
-    node->left = build(spheres, count / 2, next);
-    node->right = build(spheres + count / 2, count - count / 2, next);
-    return node;
 }
 
 /* ---- materials ---- */
@@ -367,13 +300,9 @@ int main(int argc, char **argv) {
     const size_t count = scene->sphere_count;
     if (strcmp(options.method, "tree") == 0 && count > 0) {
         const double start = peer_seconds();
-        const BpSphere **order = peer_allocate(count, sizeof(BpSphere *));
-        for (size_t i = 0; i < count; i++) order[i] = &scene->spheres[i];
-        Node *nodes = peer_allocate(2 * count, sizeof *nodes), *next = nodes;
-        job.root = build(order, count, &next);
-        free(order);
+        job.root = book_tree_build(scene);
         run.build_seconds = peer_seconds() - start;
-        run.structure_bytes = (uint64_t)(2 * count) * sizeof *nodes;
+        run.structure_bytes = (uint64_t)(2 * count) * sizeof(BookNode);
     }
     peer_trace(scene, options.threads, trace_row, &job, &run);
     peer_report("book", &options, scene, &job.film, &run);
