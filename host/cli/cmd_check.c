@@ -193,6 +193,7 @@ BpStatus bp_command_check(const BpCommandLine *line, BpError *err) {
     BP_TRY_GOTO(status, bp_setup_options(line, scene, &options.render, err), done);
     if (!bp_option_given(line, BP_OPTION_SPP)) options.render.samples_per_pixel = BP_CHECK_SAMPLES_DEFAULT;
     options.render.sampler = BP_SAMPLER_INDEPENDENT;
+    bp_setup_warn(line, scene, options.render.precision);
     task.scene = scene;
     task.options = &options;
     results = json_array();

@@ -7,7 +7,6 @@
 #include "../base/clock.h"
 #include "../base/plural.h"
 #include "../engine/adaptive.h"
-#include "../engine/limits.h"
 #include "json_file.h"
 #include "render_loop.h"
 #include "report.h"
@@ -45,12 +44,6 @@ static BpStatus check_adaptive(const BpCommandLine *line, const BpStopRule *rule
         "--adaptive with %" PRIu64 " sample%s a pixel: the first %u go to every pixel, so that only more "
         "can go where the error is; ask for --spp %u at least, or for --error or --time",
         rule->samples_max, rule->samples_max == 1 ? "" : "s", BP_ADAPTIVE_FIRST, 2 * BP_ADAPTIVE_FIRST);
-}
-
-static void warn_of_limits(const BpScene *scene, const BpRenderOptions *options) {
-    BpLimits limits;
-    bp_scene_limits(scene, options->precision, &limits);
-    for (unsigned i = 0; i < limits.count; ++i) fprintf(stderr, "warning: %s\n", limits.text[i]);
 }
 
 static void print_summary(const BpRunResult *result, const BpStopRule *rule, const BpLoopEnd *end) {
@@ -169,7 +162,7 @@ BpStatus bp_command_render(const BpCommandLine *line, BpError *err) {
     bp_scene_info(scene, &info);
     const uint64_t pixels = (uint64_t)info.width * info.height;
     BP_TRY_GOTO(status, bp_setup_options(line, scene, &options, err), done);
-    if (!line->quiet) warn_of_limits(scene, &options);
+    bp_setup_warn(line, scene, options.precision);
     /* Less noise in the same time on every scene that was measured: docs/ACCURACY.md. */
     if (!bp_option_given(line, BP_OPTION_SAMPLER)) options.sampler = BP_SAMPLER_SOBOL;
     options.adaptive = line->adaptive;

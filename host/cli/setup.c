@@ -2,6 +2,7 @@
 #include "setup.h"
 
 #include "../base/plural.h"
+#include "../engine/limits.h"
 #include "../engine/pocl.h"
 #include "../engine/self_test.h"
 #include "../scene/scene_file.h"
@@ -58,6 +59,13 @@ BpStatus bp_setup_options(const BpCommandLine *line, const BpScene *scene, BpRen
             "--first-sample %" PRIu64 " leaves numbers for %" PRIu64 " sample%s; asked for are %" PRIu64,
             options->first_sample, samples_max, bp_plural(samples_max), options->samples_per_pixel);
     return BP_OK;
+}
+
+void bp_setup_warn(const BpCommandLine *line, const BpScene *scene, BpPrecision precision) {
+    BpLimits limits;
+    if (line->quiet) return;
+    bp_scene_limits(scene, precision, &limits);
+    for (unsigned i = 0; i < limits.count; ++i) fprintf(stderr, "warning: %s\n", limits.text[i]);
 }
 
 static BpStatus all_devices(BpDeviceInfo **devices, size_t *count, BpError *err) {

@@ -18,6 +18,9 @@ BpStatus bp_setup_scene(const BpCommandLine *line, const char *path, BpScene **s
 BpStatus bp_setup_options(const BpCommandLine *line, const BpScene *scene, BpRenderOptions *options,
                           BpError *err);
 
+/* Warns on standard error, unless --quiet, of what rounding the scene to `precision` does to it. */
+void bp_setup_warn(const BpCommandLine *line, const BpScene *scene, BpPrecision precision);
+
 /* The devices that --device means: one, or with "all" every device that can render. Free *devices with
  * free(). Never empty on success. */
 BpStatus bp_setup_devices(const BpCommandLine *line, BpDeviceInfo **devices, size_t *count, BpError *err);

@@ -9,7 +9,7 @@
 #include "../scene/scene.h"
 
 #define BP_LIMIT_SHIFT 0.01   /* of its own radius that a sphere may lie off its place */
-#define BP_LIMIT_CONTACT 0.05 /* of the smallest radius that a larger sphere's surface may lie off */
+#define BP_LIMIT_CONTACT 0.02 /* of the smallest radius that a larger sphere's surface may lie off */
 #define BP_LIMIT_WALL 0.01    /* of its thickness that a hollow sphere's wall may be off */
 
 #define BP_LIMITS_MAX 3

@@ -114,6 +114,20 @@ class Devices(ProgramTest):
         self.fail_with(1, "devices", "--json", "no/such.json", says="no/such.json")
 
 
+class Limits(ProgramTest):
+    def test_rounding_that_shows_is_said(self):
+        """A bead of 2e-4 on the book's ground is moved by rounding: render and check say so, double has no need to."""
+        self.write("s.json", scene(4, camera={"lookfrom": [0, 0.0004, 0.0016], "lookat": [0, 0.0002, 0]}, spheres=[
+            {"center": [0, -1000, 0], "radius": 1000, "material": "m"},
+            {"center": [0, 0.0002, 0], "radius": 0.0002, "material": "m"}]))
+        for words in (["render", "s.json", "--spp", "1"], ["check", "s.json", "--spp", "2"]):
+            result = self.run_program(*words)
+            self.assertRegex(result.errors, r"warning: .*spheres\[0\] \(radius 1000\).*spheres\[1\] \(0\.0002\).*"
+                                            r"--precision double")
+            self.assertNotIn("warning", self.run_program(*words, "--quiet").errors)
+            self.assertNotIn("warning", self.run_program(*words, "--precision", "double").errors)
+
+
 class OneOfEach(ProgramTest):
     def test_one_is_no_plural(self):
         """Where there is one of something, its noun says so."""

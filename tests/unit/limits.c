@@ -1,9 +1,11 @@
 /* limits.c: scenes that single precision cannot hold are named, others are not. */
 #include "engine/limits.h"
 
+#include <math.h>
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stdint.h>
+#include <stdlib.h>
 #include <string.h>
 
 #include <cmocka.h>
@@ -49,6 +51,30 @@ static void off_its_neighbours(void **state) {
     assert_int_equal(limits_of("\"lookfrom\":[13,2,3]", book, BP_PRECISION_SINGLE).count, 0);
 }
 
+/* A bead of 2e-4 on the book's ground: which camera sees it decides how the ground's centre is rounded. */
+static void beads_on_the_ground(void **state) {
+    (void)state;
+    const char *bead = "{\"center\":[0,-1000,0],\"radius\":1000,\"material\":\"m\"},"
+                       "{\"center\":[0,0.0002,0],\"radius\":0.0002,\"material\":\"g\"}";
+    static const char *const cameras[] = {
+        "\"lookfrom\":[0,0.0004,0.0016]", "\"lookfrom\":[0,0.000411,0.0016]",
+        "\"lookfrom\":[0,0.00048,0.0016]", "\"lookfrom\":[0,0.00055,0.0016]"};
+    for (size_t i = 0; i < sizeof cameras / sizeof *cameras; ++i) {
+        const double y = strtod(strstr(cameras[i], ",") + 1, NULL), down = -1000 - y;
+        volatile float rounded = (float)down;
+        const double part = fabs((double)rounded - down) / 0.0002;
+        const BpLimits warned = limits_of(cameras[i], bead, BP_PRECISION_SINGLE);
+        assert_int_equal(warned.count, part > 0.02);
+        if (warned.count == 0) continue;
+        assert_non_null(strstr(warned.text[0], "the surface of spheres[0] (radius 1000) lies off its place"));
+        assert_non_null(strstr(warned.text[0], "of the radius of spheres[1] (0.0002)"));
+        assert_non_null(strstr(warned.text[0], "--precision double"));
+        assert_int_equal(limits_of(cameras[i], bead, BP_PRECISION_DOUBLE).count, 0);
+    }
+    /* Where float has the numbers exactly, nothing moves, and nothing is said. */
+    assert_int_equal(limits_of("\"lookfrom\":[0,0.00048828125,0.0016]", bead, BP_PRECISION_SINGLE).count, 0);
+}
+
 static void thin_walls(void **state) {
     (void)state;
     const char *thin = "{\"center\":[0,0,-3],\"radius\":0.5,\"material\":\"g\"},"
@@ -64,6 +90,6 @@ static void thin_walls(void **state) {
 
 int main(void) {
     const struct CMUnitTest tests[] = {cmocka_unit_test(off_its_place), cmocka_unit_test(off_its_neighbours),
-                                       cmocka_unit_test(thin_walls)};
+                                       cmocka_unit_test(beads_on_the_ground), cmocka_unit_test(thin_walls)};
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
