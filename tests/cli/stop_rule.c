@@ -80,6 +80,36 @@ static void error_is_reached_and_not_passed_by_far(void **unused) {
     }
 }
 
+/* An adaptive render's error falls faster at first than its samples foretell: shorter jumps, and more looks.
+ */
+static void adaptive_goes_in_smaller_steps(void **unused) {
+    (void)unused;
+    for (double error = 0.3; error > 1.0e-3; error *= 0.77) {
+        BpStopRule rule;
+        BpStopState state = {.samples = 0};
+        bp_stop_rule_init(&rule, error, 0.0, (uint64_t)1 << 26, 1000000);
+        assert_false(rule.adaptive);
+        rule.adaptive = true;
+        uint64_t next = bp_stop_first(&rule);
+        int looks = 0;
+        do {
+            state.samples = next;
+            state.nrmse = (next > 16 ? 1.4 : 2.0) / sqrt((double)next);
+            assert_true(++looks <= 40);
+        } while (bp_stop_decide(&rule, &state, &next) == BP_STOP_NOT_YET &&
+                 next <= 2.26 * (double)state.samples);
+        assert_true(state.nrmse <= error);
+        assert_true((double)state.samples <= 1.13 * fmax(16.0, pow(1.4 / error, 2.0)) + 20.0);
+    }
+    BpStopRule rule;
+    BpStopState state;
+    int looks = 0;
+    bp_stop_rule_init(&rule, 0.0, 10.0, (uint64_t)1 << 26, 10000);
+    rule.adaptive = true;
+    assert_int_equal(run(&rule, 1.0, 100.0, &state, &looks), BP_STOP_TIME);
+    assert_true(state.seconds <= 10.0 * (1.0 + 1.0e-9) && state.seconds > 9.9);
+}
+
 static void the_clock_does_not_move_an_error_rule(void **unused) {
     (void)unused;
     BpStopRule rule;
@@ -153,6 +183,7 @@ int main(void) {
         cmocka_unit_test(checkpoints_are_fixed),
         cmocka_unit_test(small_pictures_wait_longer),
         cmocka_unit_test(error_is_reached_and_not_passed_by_far),
+        cmocka_unit_test(adaptive_goes_in_smaller_steps),
         cmocka_unit_test(the_clock_does_not_move_an_error_rule),
         cmocka_unit_test(time_is_used_and_kept),
         cmocka_unit_test(the_first_rule_counts),
