@@ -151,8 +151,8 @@ static BpStatus check_same_settings(const BpAccumulator *a, const BpAccumulator 
 #define BP_SAME_WORD(field, what, value, word, other)                                                        \
     if (a->field != b->field)                                                                                \
     return bp_fail(err, BP_ERR_USAGE, "the renders cannot be merged: their " what " differ (%s and %s)",     \
-                   (int)a->field == (int)(value) ? word : other,                                             \
-                   (int)b->field == (int)(value) ? word : other)
+                   (int)a->field == (int)(value) ? (word) : (other),                                         \
+                   (int)b->field == (int)(value) ? (word) : (other))
     BP_SAME(width, "widths", " (%" PRId64 " and %" PRId64 " pixels: --width)");
     BP_SAME(height, "heights", " (%" PRId64 " and %" PRId64 " pixels)");
     if (a->scene_hash != b->scene_hash)

@@ -63,7 +63,7 @@ static BpStatus set_arguments(BpWorker *worker, cl_kernel kernel, const BpCamera
 /* `sums`: room for a batch. */
 static BpStatus run_batch(BpWorker *worker, cl_kernel kernel, size_t local, cl_mem out, cl_uint first,
                           cl_uint count, cl_float *sums, BpError *err) {
-    const cl_command_queue queue = worker->device->queue;
+    cl_command_queue queue = worker->device->queue;
     const size_t global = (count + local - 1) / local * local;
     cl_int code = clSetKernelArg(kernel, ARGUMENT_FIRST_PIXEL, sizeof first, &first);
     if (code == CL_SUCCESS) code = clSetKernelArg(kernel, ARGUMENT_PIXEL_COUNT, sizeof count, &count);

@@ -13,7 +13,7 @@
 
 #define ASCII(count)                                                                                         \
     "ply\nformat ascii 1.0\nelement vertex " count "\nproperty float x\nproperty float y\nproperty float "   \
-                                                   "z\n"
+    "z\n"
 #define BINARY(count)                                                                                        \
     "ply\nformat binary_little_endian 1.0\nelement vertex " count                                            \
     "\nproperty float x\nproperty float y\nproperty float z\n"
