@@ -2,7 +2,7 @@
  *
  * Over 48 seeds of three balls of metal and matte: no bias in any block, the claimed error is the actual one,
  * and both are below those of as many samples spread evenly. Where nothing is to be decided, the result is
- * the even one bit for bit; and neither chunks nor the kernel's form change a bit. */
+ * the even one bit for bit; and neither chunks, the kernel's form nor the number of devices change a bit. */
 #include "seeds.h"
 
 #include <string.h>
@@ -128,6 +128,16 @@ static void arrangement_changes_nothing(void **state) {
     other = options;
     other.kernel = BP_KERNEL_PACKET;
     assert_same_sums(open_adaptive(scene, &options), open_adaptive(scene, &other));
+
+    BpDeviceInfo devices[2]; /* one device twice is two to the render */
+    BpRender *both = NULL;
+    BpError err = {0};
+    must(bp_device_find(NULL, &devices[0], &err), &err);
+    devices[1] = devices[0];
+    other.adaptive = true;
+    other.chunk_samples = 3000;
+    must(bp_render_create(scene, &other, devices, 2, &both, &err), &err);
+    assert_same_sums(open_adaptive(scene, &options), both);
     bp_scene_destroy(&scene);
 }
 
