@@ -29,8 +29,10 @@
 #undef gather_reals
 #undef gather_uints
 #undef LANE_COUNT
+#undef FORCE_INLINE
 
 #define LANE_COUNT 1
+#define FORCE_INLINE
 #define LANED(name) JOIN(name, _1)
 #define reals real
 #define masks int

@@ -26,8 +26,10 @@
 #undef gather_reals
 #undef gather_uints
 #undef LANE_COUNT
+#undef FORCE_INLINE
 
 #define LANE_COUNT PACKET_LANES
+#define FORCE_INLINE __attribute__((always_inline))
 #define LANED(name) JOIN(JOIN(name, _), PACKET_LANES)
 #define reals JOIN(REAL, PACKET_LANES)
 #define masks JOIN(REAL_MASK, PACKET_LANES)

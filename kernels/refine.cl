@@ -5,7 +5,7 @@
  *        precision), a direction of nearly unit length, a sphere as it is stored.
  * Out:   both roots, as distances in units of the direction's length.
  *
- * Inlined by force: some compilers would pass two dozen vectors through memory instead.
+ * Inlined by force for many lanes: some compilers would pass two dozen vectors through memory instead.
  *
  * Notation: oc = centre - origin; the centre projects to distance p along the ray; l = oc - p d is the part of oc
  * across the ray; s = sqrt((r^2 - l.l) / d.d) is half the chord; the roots are p - s and p + s.
@@ -23,7 +23,7 @@ typedef struct LANED(Roots) {
 #if REFINE_IS_DOUBLE
 /* In double, from float inputs, every step is right to about 1e-15 of its largest term: a sphere of radius 1e6 a
  * unit away gets its near root to 1e-9. */
-__attribute__((always_inline)) static LANED(Roots) LANED(sphere_roots)(reals high_x, reals high_y, reals high_z, reals low_x, reals low_y,
+FORCE_INLINE static LANED(Roots) LANED(sphere_roots)(reals high_x, reals high_y, reals high_z, reals low_x, reals low_y,
                                         reals low_z, reals dir_x, reals dir_y, reals dir_z, reals cx, reals cy,
                                         reals cz, reals radius) {
     const refineds dx = to_refined(dir_x), dy = to_refined(dir_y), dz = to_refined(dir_z);
@@ -60,7 +60,7 @@ static reals LANED(sum_error)(reals a, reals b, reals sum) {
 /* The same in float by error-free transforms: oc as an unevaluated sum, its projection removed twice, so that l is
  * right to an ulp of itself and not of oc; and oc.oc - r^2 by a compensated sum (T. Ogita, S. Rump and S. Oishi,
  * "Accurate Sum and Dot Product", 2005) for the root that p and s would cancel to. */
-__attribute__((always_inline)) static LANED(Roots) LANED(sphere_roots)(reals high_x, reals high_y, reals high_z, reals low_x, reals low_y,
+FORCE_INLINE static LANED(Roots) LANED(sphere_roots)(reals high_x, reals high_y, reals high_z, reals low_x, reals low_y,
                                         reals low_z, reals dx, reals dy, reals dz, reals cx, reals cy, reals cz,
                                         reals radius) {
     const reals ocx = cx - high_x, ocy = cy - high_y, ocz = cz - high_z;

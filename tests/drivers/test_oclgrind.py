@@ -21,8 +21,8 @@ if shutil.which("oclgrind") is None:
     sys.exit(77)
 
 # A kernel that does read what nobody wrote: the check must see it.
-PLACE = "        const masks ended ="
-PLANTED = "        if (number[0] == 0xffffffffu) taken = not_mask(taken);\n" + PLACE
+PLACE = "        const masks reached ="
+PLANTED = "        if (number[0] == 0xffffffffu) cut = not_mask(cut);\n" + PLACE
 
 def reports(scene, folder, environment=None, check="--uninitialized"):
     """(kernel, report) of every report; the run itself must succeed."""

@@ -31,6 +31,7 @@ static const struct {
     {"v1-normals", "normals gradient"},
     {"v1-normals-antialiased", "normals gradient"},
     {"v1-normals-ground", "normals gradient"},
+    {"lamps", "lambertian metal dielectric emission"},
     {"v1-red-sphere", "emission gradient"},
     {"v1-sky", "gradient"},
     {"v1-view-distant", "lambertian metal dielectric gradient"},
