@@ -135,11 +135,13 @@ class Cost(ProgramTest):
         self.assertEqual((result["width"], result["advice_size"]), (16, [32, 32]))
 
     def test_standard_output(self):
-        self.write("s.json", scene(8))
+        self.write("s.json", GLASS_SCENE)
         done = self.succeed("cost", "s.json", "--time", "1", "--json", "-", "-q")
-        self.assertEqual(json.loads(done.stdout)["width"], 8)
+        self.assertEqual(json.loads(done.stdout)["width"], 32)
         done = self.succeed("cost", "s.json", "--time", "1", "--csv", "-", "-q")
         self.assertTrue(done.stdout.startswith(b"setting,axis,"))
+        done = self.succeed("cost", "s.json", "--time", "1", "-o", "-", "-q")
+        self.assertTrue(done.stdout.startswith(b"<!DOCTYPE html>") and done.stdout.endswith(b"</html>\n"))
         self.assertEqual(self.files(), ["s.json"])
 
     def test_noise_free(self):
@@ -159,6 +161,7 @@ class Cost(ProgramTest):
         self.fail_with(2, "cost", "s.json", "--csv", "s.json", says="--csv s.json would overwrite")
         self.fail_with(2, "cost", "s.json", "--csv", "-", "--json", "-", says=["--csv", "--json", "standard output"])
         self.fail_with(1, "cost", "s.json", "--csv", "none/x.csv", says="none/x.csv")
+        self.fail_with(1, "cost", "s.json", "-o", "none/x.html", says="none/x.html")
         self.fail_with(2, "cost", "none.json", says="none.json")
         self.fail_with(2, "cost", "black.json", "--time", "1", "--json", "x.json", says=["black.json", "black"])
         self.assertEqual(self.files(), ["black.json", "s.json"])
