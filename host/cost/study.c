@@ -200,22 +200,40 @@ static BpStatus next_level(BpStudy *study, BpError *err) {
         study->last_level = true;
     }
     study->level = next;
-    for (size_t s = 0; s < study->result.count; s++)
+    study->turn = count % study->result.count; /* another one begins each time */
+    for (size_t s = 0; s < study->result.count; s++) {
+        study->runners[s].done = false;
         BP_TRY(bp_render_extend(study->runners[s].render, next, err));
+    }
     return BP_OK;
 }
 
+/* The next setting from `turn` on, in a circle, that has not reached the present count; false: all have. */
+static bool find_turn(BpStudy *study) {
+    for (size_t i = 0; i < study->result.count; i++) {
+        const size_t s = (study->turn + i) % study->result.count;
+        if (study->runners[s].done) continue;
+        study->turn = s;
+        return true;
+    }
+    return false;
+}
+
+/* Settings take turns step by step, so that whatever disturbs the clock disturbs all alike; once all have the
+ * samples, their points are noted. */
 static BpStatus step_levels(BpStudy *study, BpError *err) {
-    BpStudyRunner *runner = &study->runners[study->turn];
-    const double wall = bp_clock_seconds(), cpu = cpu_seconds();
-    BpProgress progress;
-    BP_TRY(bp_render_step(runner->render, &progress, err));
-    runner->wall_seconds += bp_clock_seconds() - wall;
-    runner->cpu_seconds += cpu_seconds() - cpu;
-    if (!progress.finished) return BP_OK;
-    BP_TRY(bp_study_note_point(study, study->turn, err));
-    if (++study->turn < study->result.count) return BP_OK;
-    study->turn = 0;
+    if (find_turn(study)) {
+        BpStudyRunner *runner = &study->runners[study->turn];
+        const double wall = bp_clock_seconds(), cpu = cpu_seconds();
+        BpProgress progress;
+        BP_TRY(bp_render_step(runner->render, &progress, err));
+        runner->wall_seconds += bp_clock_seconds() - wall;
+        runner->cpu_seconds += cpu_seconds() - cpu;
+        runner->done = progress.finished;
+        study->turn = (study->turn + 1) % study->result.count;
+        return BP_OK;
+    }
+    for (size_t s = 0; s < study->result.count; s++) BP_TRY(bp_study_note_point(study, s, err));
     return next_level(study, err);
 }
 

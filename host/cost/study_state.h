@@ -20,6 +20,7 @@ typedef enum BpStudyPhase {
 typedef struct BpStudyRunner {
     BpRender *render;
     double cpu_seconds, wall_seconds, warm_device_seconds;
+    bool done; /* has the present count */
 } BpStudyRunner;
 
 struct BpStudy {
@@ -40,8 +41,8 @@ struct BpStudy {
 
 /* The setting s has one sample a pixel: notes where it differs. */
 BpStatus bp_study_note_first(BpStudy *study, size_t s, BpError *err);
-/* The setting s has reached the present count, the ones before it too: adds its point, and says how it
- * differs from base and truth. */
+/* Every setting has reached the present count: adds the point of s, and says how it differs from base and
+ * truth. */
 BpStatus bp_study_note_point(BpStudy *study, size_t s, BpError *err);
 
 #endif
