@@ -200,7 +200,7 @@ static BpStatus next_level(BpStudy *study, BpError *err) {
         study->last_level = true;
     }
     study->level = next;
-    study->turn = count % study->result.count; /* another one begins each time */
+    study->turn = count % study->result.count;
     for (size_t s = 0; s < study->result.count; s++) {
         study->runners[s].done = false;
         BP_TRY(bp_render_extend(study->runners[s].render, next, err));
@@ -219,8 +219,8 @@ static bool find_turn(BpStudy *study) {
     return false;
 }
 
-/* Settings take turns step by step, so that whatever disturbs the clock disturbs all alike; once all have the
- * samples, their points are noted. */
+/* Settings take turns, count by count, and another one begins each time; once all have the samples, their
+ * points are noted. (Turns of a step each were tried: times scattered three times as much.) */
 static BpStatus step_levels(BpStudy *study, BpError *err) {
     if (find_turn(study)) {
         BpStudyRunner *runner = &study->runners[study->turn];
@@ -230,7 +230,6 @@ static BpStatus step_levels(BpStudy *study, BpError *err) {
         runner->wall_seconds += bp_clock_seconds() - wall;
         runner->cpu_seconds += cpu_seconds() - cpu;
         runner->done = progress.finished;
-        study->turn = (study->turn + 1) % study->result.count;
         return BP_OK;
     }
     for (size_t s = 0; s < study->result.count; s++) BP_TRY(bp_study_note_point(study, s, err));
