@@ -220,7 +220,7 @@ static bool find_turn(BpStudy *study) {
 }
 
 /* Settings take turns, count by count, and another one begins each time; once all have the samples, their
- * points are noted. (Turns of a step each were tried: times scattered three times as much.) */
+ * points are noted. */
 static BpStatus step_levels(BpStudy *study, BpError *err) {
     if (find_turn(study)) {
         BpStudyRunner *runner = &study->runners[study->turn];
