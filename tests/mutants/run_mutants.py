@@ -97,7 +97,7 @@ class Bench:
             made = copy + ".o"
             words[words.index("-o") + 1] = made
             words = [copy if os.path.realpath(w) == os.path.join(self.source, path) else w for w in words]
-            words.append("-I" + os.path.join(self.source, os.path.dirname(path)))
+            words.append("-iquote" + os.path.join(self.source, os.path.dirname(path)))
             # Headers named relative to the file: "../base/status.h".
             for sibling in os.listdir(os.path.join(self.source, "host")):
                 link = os.path.join(os.path.dirname(self.scratch), sibling)
