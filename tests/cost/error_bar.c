@@ -5,7 +5,12 @@
  * over pixels that have variance and an effective count (sum x)^2 / sum x^2 of at least 50: the replicates'
  * means of a pixel that few samples light follow no normal law. The truth is two references with other seeds,
  * of which each has at most 2 % of the variance of what it judges; (x - r1)(x - r2) is free of the
- * references' noise. */
+ * references' noise.
+ *
+ * The nightly run goes deeper, and adds a caustic: lamps seen through glass, where few samples bring most of
+ * the light. There the claim for the whole picture is held to the same 10 %, and of single pixels the
+ * intervals' share is reported, not judged: replicates of heavy tails follow no normal law before they are
+ * many. */
 #include "seeds.h"
 
 #include "check/statistics.h"
@@ -70,7 +75,7 @@ static double claimed_square(const BpScene *scene, BpSampler sampler, uint64_t s
     return error * error * (double)(picture->width * picture->height);
 }
 
-static void check_scene(const char *name, double cv_max) {
+static void check_scene(const char *name, double cv_max, bool heavy_tails) {
     BpScene *scene = load_scene(name, WIDTH);
     BpPicture r1 = make_picture(scene, BP_SAMPLER_SOBOL, 1001, REFERENCE_SAMPLES);
     BpPicture r2 = make_picture(scene, BP_SAMPLER_SOBOL, 1002, REFERENCE_SAMPLES);
@@ -104,7 +109,7 @@ static void check_scene(const char *name, double cv_max) {
         assert_true(reference_noise * SEEDS <= 0.02 * tally.claimed);
         assert_true(ratio >= 0.9 && ratio <= 1.1);
         assert_true(tally.asked > 10000);
-        assert_true(coverage >= 0.92 && coverage <= 0.97);
+        if (!heavy_tails) assert_true(coverage >= 0.92 && coverage <= 0.97);
     }
     free(variance);
     bp_picture_clear(&r1);
@@ -114,24 +119,34 @@ static void check_scene(const char *name, double cv_max) {
 
 static void test_cover(void **state) {
     (void)state;
-    check_scene("cover", 2);
+    check_scene("cover", 2, false);
 }
 
 static void test_diffuse(void **state) {
     (void)state;
-    check_scene("v4-10-lambertian", 2);
+    check_scene("v4-10-lambertian", 2, false);
 }
 
 static void test_glass(void **state) {
     (void)state;
-    check_scene("v4-18-glass-hollow", 2);
+    check_scene("v4-18-glass-hollow", 2, false);
 }
+
+#ifdef NIGHTLY
+static void test_caustic(void **state) {
+    (void)state;
+    check_scene("lamps", 20, true);
+}
+#endif
 
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_cover),
         cmocka_unit_test(test_diffuse),
         cmocka_unit_test(test_glass),
+#ifdef NIGHTLY
+        cmocka_unit_test(test_caustic),
+#endif
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
