@@ -1,36 +1,8 @@
-/* lanes_scalar.cl: from here on, lane code means one lane: `reals` is a real, a mask is 0 or 1.
+/* lanes_scalar.cl: from here on, until lanes_wide.cl, lane code means one lane: `reals` is a real, a mask is 0 or 1.
  *
  * Lane code is written once, for one lane or for many: a mask is made by a comparison, combined with & | and
  * not_mask, asked by any_lane, and spent by choose. `if (any_lane(m)) ...` is a plain branch for one lane and
  * "skip when no lane wants it" for many. LANED(f) is f's name for this number of lanes. */
-#undef LANED
-#undef reals
-#undef masks
-#undef uints
-#undef uint_masks
-#undef refineds
-#undef refined_masks
-#undef choose
-#undef choose_uint
-#undef choose_refined
-#undef any_lane
-#undef count_lanes
-#undef not_mask
-#undef mask_of_uint
-#undef mask_of_refined
-#undef to_refined
-#undef to_real
-#undef splat
-#undef splat_uint
-#undef splat_refined
-#undef load_lanes
-#undef store_lanes
-#undef uint_to_reals
-#undef gather_reals
-#undef gather_uints
-#undef LANE_COUNT
-#undef FORCE_INLINE
-
 #define LANE_COUNT 1
 #define FORCE_INLINE
 #define LANED(name) JOIN(name, _1)
