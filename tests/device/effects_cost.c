@@ -108,28 +108,44 @@ static bool check_scene(const char *name, const BpScene *scene, const BpDeviceIn
     return false;
 }
 
-static bool check_builds(const BpScene *scene, const BpDeviceInfo *device) {
+/* The median of three: one build has been seen to take a quarter of its usual time. */
+static bool time_yardstick(const BpDeviceInfo *device, uint64_t mark, double *seconds, BpError *err) {
+    double taken[3];
+    /* The first time a process builds anything, the driver loads its compiler. */
+    if (!build_yardstick(device, mark, &taken[0], err)) return false;
+    for (uint64_t i = 0; i < 3; ++i)
+        if (!build_yardstick(device, mark + 1 + i, &taken[i], err)) return false;
+    const double low = fmin(taken[0], taken[1]), high = fmax(taken[0], taken[1]);
+    *seconds = fmax(low, fmin(high, taken[2]));
+    return true;
+}
+
+/* Whether both kernels of a scene build within BUILD_RATIO_MAX yardsticks. */
+static bool builds_fast(const BpScene *scene, const BpDeviceInfo *device, uint64_t mark) {
     BpError err = {0};
     BpCosts costs;
     double small;
     const BpCostPlan plan = {.rounds = 3, .round_seconds = 0.01, .builds = true, .general_only = true};
-    /* The first time a process builds anything, the driver loads its compiler: the second time counts. */
-    const uint64_t mark = (uint64_t)time(NULL);
-    if (!build_yardstick(device, mark * 2, &small, &err) ||
-        !build_yardstick(device, mark * 2 + 1, &small, &err) || !measure(scene, device, &plan, &costs, &err))
+    if (!time_yardstick(device, mark, &small, &err) || !measure(scene, device, &plan, &costs, &err))
         return false;
     bool right = true;
     for (size_t k = 0; k < costs.kernel_count; ++k) {
         const BpKernelCost *kernel = &costs.kernels[k];
         const double ratio = kernel->cold_processor_seconds / small;
-        printf("%-12s builds in %.2f s of processor time (%.1f yardsticks), again in %.2f s\n", kernel->name,
-               kernel->cold_processor_seconds, ratio, kernel->warm_processor_seconds);
+        printf("%-12s builds in %.2f s of processor time (%.1f yardsticks of %.2f s), again in %.2f s\n",
+               kernel->name, kernel->cold_processor_seconds, ratio, small, kernel->warm_processor_seconds);
         if (!(ratio <= BUILD_RATIO_MAX)) {
             fprintf(stderr, "%s: %.1f yardsticks, more than %.1f\n", kernel->name, ratio, BUILD_RATIO_MAX);
             right = false;
         }
     }
     return right;
+}
+
+/* A first look may be wrong by noise: a second one decides. */
+static bool check_builds(const BpScene *scene, const BpDeviceInfo *device) {
+    const uint64_t mark = (uint64_t)time(NULL) * 16;
+    return builds_fast(scene, device, mark) || builds_fast(scene, device, mark + 8);
 }
 
 int main(int argc, char **argv) {
