@@ -34,7 +34,12 @@ void bp_interrupt_install(void) {
 }
 
 void bp_interrupt_catch(void) {
-    if (interrupted_ms == NOTHING_TO_SAVE) interrupted_ms = 0;
+    if (interrupted_ms != NOTHING_TO_SAVE) return;
+    interrupted_ms = 0;
+    /* A driver's compiler (LLVM) may by now have put a handler of its own before this one, and while that
+     * runs a second signal ends the program. It has done its work: kernels are built before there is anything
+     * to save. */
+    bp_interrupt_install();
 }
 
 bool bp_interrupted(void) {
