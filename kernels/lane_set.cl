@@ -7,6 +7,11 @@ typedef uint lane_set;
  * Everybody else gathers one bit of each lane's byte by a multiplication. */
 #if TREE_WIDTH == 16 && !REAL_IS_DOUBLE && defined(__AVX512DQ__)
 static lane_set to_lane_set(int16 mask) { return (ushort)__builtin_ia32_cvtd2mask512(mask); }
+#elif TREE_WIDTH == 16 && REAL_IS_DOUBLE && defined(__AVX512DQ__)
+static lane_set to_lane_set(long16 mask) {
+    return (lane_set)(uchar)__builtin_ia32_cvtq2mask512(mask.lo) |
+           (lane_set)(uchar)__builtin_ia32_cvtq2mask512(mask.hi) << 8;
+}
 #elif TREE_WIDTH == 8 && !REAL_IS_DOUBLE && defined(__AVX512DQ__) && defined(__AVX512VL__)
 static lane_set to_lane_set(int8 mask) { return (uchar)__builtin_ia32_cvtd2mask256(mask); }
 #elif TREE_WIDTH == 8 && !REAL_IS_DOUBLE && defined(__AVX__)

@@ -18,30 +18,42 @@ typedef struct Visit {
     uint lane, what;
 } Visit;
 
-#define FLAT_LEAVES_MAX 32u /* one bit each */
+#define BATCH_LEAVES 32u /* one bit each */
+#define BATCHES_MAX 3u
 #define FOUND_MAX 64u
 
-/* The leaves of a tree that has few, below the first ones; count 0: it has more than FLAT_LEAVES_MAX. */
-typedef struct FlatTree {
+/* Some leaves and their boxes. */
+typedef struct FlatBatch {
     uint count;
-    uint leaf[FLAT_LEAVES_MAX];
-    real planes[FLAT_LEAVES_MAX][6]; /* low x, y, z, high x, y, z */
+    uint leaf[BATCH_LEAVES];
+    real planes[BATCH_LEAVES][6]; /* low x, y, z, high x, y, z */
+} FlatBatch;
+
+/* The leaves of a tree that has few, below the first ones; no batches: it has too many. */
+typedef struct FlatTree {
+    uint batch_count;
+    FlatBatch batches[BATCHES_MAX];
 } FlatTree;
 
 static void flatten_tree(const Geometry *geometry, FlatTree *flat) {
     const uint wanted = geometry->leaf_count - geometry->first_leaves;
-    flat->count = 0;
-    if (wanted > FLAT_LEAVES_MAX) return;
-    for (uint node = 0; flat->count < wanted; ++node) {
+    flat->batch_count = 0;
+    if (wanted > BATCHES_MAX * BATCH_LEAVES) return;
+    uint count = 0;
+    for (uint node = 0; count < wanted; ++node) {
         for (uint lane = 0; lane < TREE_WIDTH; ++lane) {
             __global const real *plane = geometry->boxes + node * (6 * TREE_WIDTH) + lane;
             const uint child = geometry->children[node * TREE_WIDTH + lane];
             if ((child & CHILD_LEAF) == 0 || plane[0] > plane[3 * TREE_WIDTH]) continue;
-            flat->leaf[flat->count] = child & ~CHILD_LEAF;
-            for (uint row = 0; row < 6; ++row) flat->planes[flat->count][row] = plane[row * TREE_WIDTH];
-            ++flat->count;
+            FlatBatch *batch = &flat->batches[count / BATCH_LEAVES];
+            const uint place = count % BATCH_LEAVES;
+            batch->leaf[place] = child & ~CHILD_LEAF;
+            for (uint row = 0; row < 6; ++row) batch->planes[place][row] = plane[row * TREE_WIDTH];
+            batch->count = place + 1;
+            ++count;
         }
     }
+    flat->batch_count = (wanted + BATCH_LEAVES - 1) / BATCH_LEAVES;
 }
 
 /* The rays of all lanes, and what each has met. */
@@ -54,13 +66,18 @@ typedef struct LaneRays {
     real bound[LANE_COUNT];
 } LaneRays;
 
+/* Written out: a loop over axes is not always unrolled, and then the ray passes through memory. */
 static Ray ray_of_lane(const LaneRays *rays, uint lane) {
     Ray ray;
-    for (uint axis = 0; axis < 3; ++axis) {
-        ray.high[axis] = rays->high[axis][lane];
-        ray.low[axis] = rays->low[axis][lane];
-        ray.direction[axis] = rays->direction[axis][lane];
-    }
+    ray.high[0] = rays->high[0][lane];
+    ray.high[1] = rays->high[1][lane];
+    ray.high[2] = rays->high[2][lane];
+    ray.low[0] = rays->low[0][lane];
+    ray.low[1] = rays->low[1][lane];
+    ray.low[2] = rays->low[2][lane];
+    ray.direction[0] = rays->direction[0][lane];
+    ray.direction[1] = rays->direction[1][lane];
+    ray.direction[2] = rays->direction[2][lane];
     ray.slack = rays->slack[lane];
     ray.margin = rays->margin[lane];
     ray.own_slot = rays->own_slot[lane];
@@ -105,7 +122,8 @@ static void visit_leaves(const Geometry *geometry, const Visit *visits, uint cou
     }
 }
 
-static void search_flat(const Geometry *geometry, const FlatTree *flat, const LANED(BoxAxis) *axes, reals bound,
+/* The leaves of one batch, against all lanes; a bound below 0 switches a lane off. */
+static void search_flat(const Geometry *geometry, const FlatBatch *batch, const LANED(BoxAxis) *axes, reals bound,
                         LaneRays *rays) {
     /* Lanes differ in which plane of a pair they meet first. */
     reals low_offset[3], high_offset[3];
@@ -115,8 +133,8 @@ static void search_flat(const Geometry *geometry, const FlatTree *flat, const LA
         high_offset[axis] = choose(backwards, axes[axis].near_offset, axes[axis].far_offset);
     }
     uints met = splat_uint(0);
-    for (uint k = 0; k < flat->count; ++k) {
-        const real *planes = flat->planes[k];
+    for (uint k = 0; k < batch->count; ++k) {
+        const real *planes = batch->planes[k];
         const reals low_x = fma(splat(planes[0]), axes[0].inverse, low_offset[0]);
         const reals low_y = fma(splat(planes[1]), axes[1].inverse, low_offset[1]);
         const reals low_z = fma(splat(planes[2]), axes[2].inverse, low_offset[2]);
@@ -131,20 +149,20 @@ static void search_flat(const Geometry *geometry, const FlatTree *flat, const LA
     }
     uint leaves[LANE_COUNT];
     store_lanes(met, leaves);
-    Visit visits[LANE_COUNT * FLAT_LEAVES_MAX + 1];
+    Visit visits[LANE_COUNT * BATCH_LEAVES + 1];
     uint count = 0;
     for (uint lane = 0; lane < LANE_COUNT; ++lane) {
         /* Mostly two at most. */
         uint left = leaves[lane];
         for (uint k = 0; k < 2; ++k) {
             visits[count].lane = lane;
-            visits[count].what = flat->leaf[lowest_lane(left) % FLAT_LEAVES_MAX];
+            visits[count].what = batch->leaf[lowest_lane(left) % BATCH_LEAVES];
             count += left != 0;
             left = without_lowest(left);
         }
         for (; left != 0; left = without_lowest(left)) {
             visits[count].lane = lane;
-            visits[count].what = flat->leaf[lowest_lane(left)];
+            visits[count].what = batch->leaf[lowest_lane(left)];
             ++count;
         }
     }
@@ -259,9 +277,10 @@ static void search_trees(const Geometry *geometry, const FlatTree *flat, const P
     axes[0] = LANED(box_axis)(paths->origin.high.x, paths->direction.x);
     axes[1] = LANED(box_axis)(paths->origin.high.y, paths->direction.y);
     axes[2] = LANED(box_axis)(paths->origin.high.z, paths->direction.z);
-    if (flat->count > 0)
-        search_flat(geometry, flat, axes, choose(paths->alive, bound, splat(-1)), &rays);
-    else
+    if (flat->batch_count > 0) {
+        for (uint batch = 0; batch < flat->batch_count; ++batch)
+            search_flat(geometry, &flat->batches[batch], axes, choose(paths->alive, load_lanes(rays.bound), splat(-1)), &rays);
+    } else
         search_in_rounds(geometry, axes, alive, &rays);
     meeting->t = load_lanes(rays.t);
     meeting->slot = load_lanes(rays.slot);
