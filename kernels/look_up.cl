@@ -1,7 +1,6 @@
 /* look_up.cl: the sphere and the material at a hit, gathered for all lanes from the packed tables. */
 
 /* The packed structs as the gathers see them: arrays of their only type. */
-#define LOOK_UINTS ((uint)(sizeof(PackedSphereLook) / sizeof(uint)))
 #define MATERIAL_UINTS ((uint)(sizeof(PackedMaterialKind) / sizeof(uint)))
 #define MATERIAL_REALS ((uint)(sizeof(PackedMaterial) / sizeof(real)))
 
@@ -15,26 +14,17 @@ static void look_up(const Scene *scene, const Meeting *meeting, Vec3 *centre, re
                    gather_reals(scene->geometry.leaves, place + (uint)TREE_WIDTH),
                    gather_reals(scene->geometry.leaves, place + (uint)(2 * TREE_WIDTH)));
     *radius = gather_reals(scene->geometry.leaves, place + (uint)(3 * TREE_WIDTH));
-    const uints sphere = gather_uints(scene->geometry.slot_sphere, slot);
-    const uints material = gather_uints(scene->looks, sphere * LOOK_UINTS);
-    const uints colour = gather_uints(scene->looks, sphere * LOOK_UINTS + LOOK_ALBEDO);
+    const uints material = gather_uints(scene->slot_material, slot);
+    const uints colour = slot * (uint)ALBEDO_REALS;
     const uints numbers = material * MATERIAL_REALS;
     const uints kinds = material * MATERIAL_UINTS;
-    surface->albedo = vec3(gather_reals(scene->materials, numbers), gather_reals(scene->materials, numbers + 1u),
-                           gather_reals(scene->materials, numbers + 2u));
-    const masks own_colour = mask_of_uint(colour != splat_uint(NO_ALBEDO));
-    if (any_lane(own_colour)) {
-        const uints entry = choose_uint(own_colour, colour, splat_uint(0)) * 4u;
-        const Vec3 albedo = vec3(gather_reals(scene->albedos, entry), gather_reals(scene->albedos, entry + 1u),
-                                 gather_reals(scene->albedos, entry + 2u));
-        surface->albedo = choose3(own_colour, albedo, surface->albedo);
-    }
+    surface->albedo = vec3(gather_reals(scene->slot_albedo, colour), gather_reals(scene->slot_albedo, colour + 1u),
+                           gather_reals(scene->slot_albedo, colour + 2u));
     surface->kind = gather_uints(scene->kinds, kinds);
     *emitted = zero3();
 #if EFFECT_EMISSION
-    *emitted = vec3(gather_reals(scene->materials, numbers + MATERIAL_EMIT),
-                    gather_reals(scene->materials, numbers + (MATERIAL_EMIT + 1u)),
-                    gather_reals(scene->materials, numbers + (MATERIAL_EMIT + 2u)));
+    *emitted = vec3(gather_reals(scene->materials, numbers), gather_reals(scene->materials, numbers + 1u),
+                    gather_reals(scene->materials, numbers + 2u));
 #endif
 #if EFFECT_LAMBERTIAN
     surface->lobe = gather_uints(scene->kinds, kinds + MATERIAL_LOBE);

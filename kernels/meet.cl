@@ -14,8 +14,8 @@ typedef struct Scene {
     __global const PackedSky *sky;
     __global const real *materials; /* PackedMaterial */
     __global const uint *kinds;     /* PackedMaterialKind */
-    __global const uint *looks;     /* PackedSphereLook */
-    __global const real *albedos;
+    __global const uint *slot_material;
+    __global const real *slot_albedo;
 } Scene;
 
 #if LANE_COUNT > 1

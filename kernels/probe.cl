@@ -12,7 +12,6 @@ __kernel void probe_layout(__global uint *out) {
     SIZE_AND_OFFSET(PackedSky, top)
     SIZE_AND_OFFSET(PackedMaterial, refraction_index)
     SIZE_AND_OFFSET(PackedMaterialKind, total_reflection)
-    SIZE_AND_OFFSET(PackedSphereLook, albedo)
     *out++ = (uint)sizeof(real);
     *out = (uint)sizeof(refined);
 }

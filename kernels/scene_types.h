@@ -40,9 +40,8 @@ typedef struct PackedSky {
     real bottom[4], top[4];
 } PackedSky;
 
-/* The numbers of a material. */
+/* The numbers of a material. What it scatters stands with each sphere. */
 typedef struct PackedMaterial {
-    real albedo[4];
     real emit[4];
     real fuzz;             /* in [0, 1] */
     real refraction_index; /* inside over outside; for a negative radius already its reciprocal */
@@ -57,33 +56,26 @@ typedef struct PackedMaterialKind {
     packed_uint total_reflection;
 } PackedMaterialKind;
 
-/* What a sphere looks like: one entry a sphere, in the scene's order. */
-typedef struct PackedSphereLook {
-    packed_uint material;
-    packed_uint albedo; /* into the albedo table (4 reals an entry), or NO_ALBEDO */
-} PackedSphereLook;
-
 /* The kernel gathers members for several lanes at once, from the structs as arrays of their only type. Places
  * of members in them: */
-#define MATERIAL_EMIT 4u
-#define MATERIAL_FUZZ 8u
-#define MATERIAL_INDEX 9u
+#define MATERIAL_FUZZ 4u
+#define MATERIAL_INDEX 5u
 #define MATERIAL_LOBE 1u /* of PackedMaterialKind, like the next two */
 #define MATERIAL_VARIANT 2u
 #define MATERIAL_TOTAL_REFLECTION 3u
-#define LOOK_ALBEDO 1u
 
 /* A leaf is `width` spheres as structure of arrays: width reals each of center x, y, z and radius (> 0).
- * An empty lane has radius -1. Lane l of leaf f is slot f * width + l; `slot_sphere[slot]` is the sphere's
- * index in the scene (NO_SPHERE when empty). Sizes in reals: */
+ * An empty lane has radius -1. Lane l of leaf f is slot f * width + l. What a path needs of a sphere that it has
+ * met stands by slot, so that nothing has to be looked up to find it: `slot_sphere`, the sphere's index in the
+ * scene (NO_SPHERE when empty); `slot_material`; `slot_albedo`, ALBEDO_REALS each. Sizes in reals: */
 #define LEAF_REALS(width) (4 * (width))
+#define ALBEDO_REALS 3
 /* A node is `width` child boxes as structure of arrays: low x, y, z, high x, y, z, width reals each. Empty
  * lanes have low > high. Its `width` child words stand in a buffer of their own. */
 #define NODE_REALS(width) (6 * (width))
 #define CHILD_LEAF 0x80000000u /* set: the rest is a leaf number; clear: a node number */
 #define NO_SPHERE 0xffffffffu
 #define NO_SLOT 0xffffffffu
-#define NO_ALBEDO 0xffffffffu
 /* A tree is at most this deep, so a stack of TREE_DEPTH_MAX * (width - 1) + 1 entries suffices. */
 #define TREE_DEPTH_MAX 24
 
@@ -97,21 +89,17 @@ enum { TOTAL_REFLECT, TOTAL_ABSORB, TOTAL_REFRACT };
 _Static_assert(sizeof(real) == 8, "the host packs in double");
 _Static_assert(sizeof(PackedCamera) == 28 * sizeof(real), "PackedCamera has padding");
 _Static_assert(sizeof(PackedSky) == 8 * sizeof(real), "PackedSky has padding");
-_Static_assert(sizeof(PackedMaterial) == 12 * sizeof(real), "PackedMaterial has padding");
+_Static_assert(sizeof(PackedMaterial) == 8 * sizeof(real), "PackedMaterial has padding");
 _Static_assert(sizeof(PackedMaterialKind) == 16, "PackedMaterialKind has padding");
-_Static_assert(sizeof(PackedSphereLook) == 8, "PackedSphereLook has padding");
 #define BP_PLACE(place, type, member, element)                                                               \
     _Static_assert(offsetof(type, member) == (place) * sizeof(element), "the place of " #member)
-BP_PLACE(0, PackedMaterial, albedo, real);
-BP_PLACE(MATERIAL_EMIT, PackedMaterial, emit, real);
+BP_PLACE(0, PackedMaterial, emit, real);
 BP_PLACE(MATERIAL_FUZZ, PackedMaterial, fuzz, real);
 BP_PLACE(MATERIAL_INDEX, PackedMaterial, refraction_index, real);
 BP_PLACE(0, PackedMaterialKind, kind, packed_uint);
 BP_PLACE(MATERIAL_LOBE, PackedMaterialKind, lobe, packed_uint);
 BP_PLACE(MATERIAL_VARIANT, PackedMaterialKind, variant, packed_uint);
 BP_PLACE(MATERIAL_TOTAL_REFLECTION, PackedMaterialKind, total_reflection, packed_uint);
-BP_PLACE(0, PackedSphereLook, material, packed_uint);
-BP_PLACE(LOOK_ALBEDO, PackedSphereLook, albedo, packed_uint);
 #undef BP_PLACE
 #endif
 

@@ -57,14 +57,12 @@ static void layout(__global uint *out) {
     PackedSky sky;
     PackedMaterial material;
     PackedMaterialKind kind;
-    PackedSphereLook look;
 #define OFFSET(object, member) ((uint)((__private char *)&object.member - (__private char *)&object))
     out[0] = (uint)sizeof(real);
     out[1] = (uint)sizeof(PackedCamera) << 16 | OFFSET(camera, lens_up);
     out[2] = (uint)sizeof(PackedSky) << 16 | OFFSET(sky, top);
     out[3] = (uint)sizeof(PackedMaterial) << 16 | OFFSET(material, refraction_index);
     out[4] = (uint)sizeof(PackedMaterialKind) << 16 | OFFSET(kind, total_reflection);
-    out[5] = (uint)sizeof(PackedSphereLook) << 16 | OFFSET(look, albedo);
 #undef OFFSET
 }
 

@@ -60,16 +60,16 @@ static void advance(const Scene *scene, Paths *paths) {
 /* What every kernel that traces is told; begin_scene and begin_paths take it apart. */
 #define SCENE_PARAMETERS                                                                                     \
     __global const PackedCamera *camera, __global const PackedSky *sky, __global const PackedMaterial *materials, \
-        __global const PackedMaterialKind *kinds, __global const PackedSphereLook *looks,                    \
-        __global const real *albedos, __global const real *boxes, __global const uint *children,             \
+        __global const PackedMaterialKind *kinds, __global const uint *slot_material,                         \
+        __global const real *slot_albedo, __global const real *boxes, __global const uint *children,         \
         __global const real *leaves, __global const uint *slot_sphere, uint first_leaves, uint leaf_count,   \
         uint pixel_center, uint max_depth, uint seed_low, uint seed_high, uint replicates, uint width
 #define SCENE_ARGUMENTS                                                                                      \
-    sky, materials, kinds, looks, albedos, boxes, children, leaves, slot_sphere, first_leaves, leaf_count
+    sky, materials, kinds, slot_material, slot_albedo, boxes, children, leaves, slot_sphere, first_leaves, leaf_count
 
 static Scene begin_scene(__global const PackedSky *sky, __global const PackedMaterial *materials,
-                         __global const PackedMaterialKind *kinds, __global const PackedSphereLook *looks,
-                         __global const real *albedos, __global const real *boxes, __global const uint *children,
+                         __global const PackedMaterialKind *kinds, __global const uint *slot_material,
+                         __global const real *slot_albedo, __global const real *boxes, __global const uint *children,
                          __global const real *leaves, __global const uint *slot_sphere, uint first_leaves,
                          uint leaf_count) {
     Scene scene;
@@ -82,8 +82,8 @@ static Scene begin_scene(__global const PackedSky *sky, __global const PackedMat
     scene.sky = sky;
     scene.materials = (__global const real *)materials;
     scene.kinds = (__global const uint *)kinds;
-    scene.looks = (__global const uint *)looks;
-    scene.albedos = albedos;
+    scene.slot_material = slot_material;
+    scene.slot_albedo = slot_albedo;
 #if LANE_COUNT > 1 && EFFECT_TREE
     flatten_tree(&scene.geometry, &scene.flat);
 #endif

@@ -4,7 +4,7 @@
 
 #include "scene_types.h"
 
-#define STRUCTS 5
+#define STRUCTS 4
 
 BpStatus bp_layout_check(BpDevice *device, cl_program program, bool single_precision, BpError *err) {
     /* Structs of reals shrink with the real; probe.cl lists the same members in the same order. */
@@ -24,7 +24,6 @@ BpStatus bp_layout_check(BpDevice *device, cl_program program, bool single_preci
         OF_REALS(PackedSky, top),
         OF_REALS(PackedMaterial, refraction_index),
         OF_UINTS(PackedMaterialKind, total_reflection),
-        OF_UINTS(PackedSphereLook, albedo),
     };
     cl_uint found[2 * STRUCTS + 2] = {0};
     cl_int code = CL_SUCCESS;

@@ -121,87 +121,82 @@ static void pack_material(const BpMaterial *material, bool inside_out, PackedMat
     for (int a = 0; a < 3; ++a) numbers->emit[a] = material->emit[a];
     switch (material->kind) {
     case BP_MATERIAL_LAMBERTIAN:
-        memcpy(numbers->albedo, material->albedo, sizeof material->albedo);
         kind->lobe = (packed_uint)material->scatter;
         break;
     case BP_MATERIAL_METAL:
-        memcpy(numbers->albedo, material->albedo, sizeof material->albedo);
         numbers->fuzz = material->fuzz;
         kind->variant = (packed_uint)material->fuzz_shape;
         break;
     case BP_MATERIAL_DIELECTRIC:
-        for (int a = 0; a < 3; ++a) numbers->albedo[a] = 1;
         numbers->refraction_index = inside_out ? 1 / material->refraction_index : material->refraction_index;
         kind->variant = (packed_uint)material->fresnel;
         kind->total_reflection = (packed_uint)material->total_reflection;
         break;
     case BP_MATERIAL_DIFFUSE_LIGHT:
     case BP_MATERIAL_NORMALS:
-        break; /* scatter nothing */
+        break;
     }
 }
 
-/* Looks, and the materials they name. A dielectric that a sphere of negative radius uses gets a second entry,
- * with the reciprocal index: seen from inside out is the same as inside and outside exchanged. Normals face
- * the ray, so no other kind can tell a negative radius. */
-static BpStatus pack_materials(const BpScene *scene, BpPacked *packed, BpError *err) {
+static bool is_inside_out(const BpScene *scene, const BpSphere *sphere) {
+    return sphere->radius < 0 && scene->materials[sphere->material].kind == BP_MATERIAL_DIELECTRIC;
+}
+
+/* The materials. A dielectric that a sphere of negative radius uses gets a second entry, with the reciprocal
+ * index: seen from inside out is the same as inside and outside exchanged. Normals face the ray, so no other
+ * kind can tell a negative radius. `second[m]`: the number of that entry of material m. */
+static BpStatus pack_materials(const BpScene *scene, uint32_t *second, BpPacked *packed, BpError *err) {
     const size_t count = scene->material_count;
+    if (count > UINT32_MAX / 4)
+        return bp_fail(err, BP_ERR_LIMIT, "%zu materials; at most %u can be packed", count, UINT32_MAX / 4);
     BpStatus status = BP_OK;
     PackedMaterialKind *kinds = calloc(2 * count + 1, sizeof *kinds);
     PackedMaterial *numbers = calloc(2 * count + 1, sizeof *numbers);
-    uint32_t *inside_out = calloc(count + 1, sizeof *inside_out); /* number of the second entry; 0: none */
-    PackedSphereLook *looks = malloc((scene->sphere_count + 1) * sizeof *looks);
-    if (kinds == NULL || numbers == NULL || inside_out == NULL || looks == NULL) {
+    if (kinds == NULL || numbers == NULL) {
         status = out_of_memory(scene, err);
-        goto cleanup;
-    }
-    if (count > UINT32_MAX / 4) {
-        status = bp_fail(err, BP_ERR_LIMIT, "%zu materials; at most %u can be packed", count, UINT32_MAX / 4);
         goto cleanup;
     }
     uint32_t used = (uint32_t)count;
     for (size_t m = 0; m < count; ++m) pack_material(&scene->materials[m], false, &numbers[m], &kinds[m]);
     for (size_t i = 0; i < scene->sphere_count; ++i) {
-        const BpSphere *sphere = &scene->spheres[i];
-        const uint32_t m = sphere->material;
-        looks[i] = (PackedSphereLook){.material = m, .albedo = sphere->albedo};
-        if (sphere->radius > 0 || scene->materials[m].kind != BP_MATERIAL_DIELECTRIC) continue;
-        if (inside_out[m] == 0) {
-            pack_material(&scene->materials[m], true, &numbers[used], &kinds[used]);
-            inside_out[m] = used++;
-        }
-        looks[i].material = inside_out[m];
+        const uint32_t m = scene->spheres[i].material;
+        if (!is_inside_out(scene, &scene->spheres[i]) || second[m] != 0) continue;
+        pack_material(&scene->materials[m], true, &numbers[used], &kinds[used]);
+        second[m] = used++;
     }
     packed->material_count = used > 0 ? used : 1; /* at least one, unused */
-    packed->sphere_count = (uint32_t)scene->sphere_count;
     packed->materials =
         narrow((const double *)numbers, packed->material_count * (sizeof *numbers / sizeof(double)), 1,
                packed->single_precision);
     packed->material_kinds = (uint32_t *)kinds;
-    packed->looks = (uint32_t *)looks;
     kinds = NULL;
-    looks = NULL;
     if (packed->materials == NULL) status = out_of_memory(scene, err);
 cleanup:
     free(kinds);
     free(numbers);
-    free(inside_out);
-    free(looks);
     return status;
 }
 
-static BpStatus pack_albedos(const BpScene *scene, BpPacked *packed, BpError *err) {
-    const size_t count = scene->albedo_count;
-    if (count >= BP_NO_ALBEDO)
-        return bp_fail(err, BP_ERR_LIMIT, "%zu colours of spheres; at most %u can be packed", count,
-                       BP_NO_ALBEDO - 1);
-    packed->albedo_count = (uint32_t)count;
-    packed->albedos = calloc(count > 0 ? 4 * count : 4, bp_packed_real_size(packed));
-    if (packed->albedos == NULL) return out_of_memory(scene, err);
-    for (size_t i = 0; i < count; ++i)
-        for (size_t a = 0; a < 3; ++a)
-            bp_reals_store(packed->albedos, packed->single_precision, 4 * i + a,
-                           (double)scene->albedos[i][a]);
+/* What the sphere in each slot is made of. Empty slots, and what scatters nothing or everything, are black.
+ */
+static BpStatus pack_slots(const BpScene *scene, const uint32_t *second, BpPacked *packed, BpError *err) {
+    const BpTree *tree = &packed->tree;
+    const size_t slots = (size_t)tree->leaf_count * tree->width;
+    packed->slot_material = calloc(slots + 1, sizeof *packed->slot_material);
+    packed->slot_albedo = calloc(slots + 1, ALBEDO_REALS * bp_packed_real_size(packed));
+    if (packed->slot_material == NULL || packed->slot_albedo == NULL) return out_of_memory(scene, err);
+    for (size_t slot = 0; slot < slots; ++slot) {
+        if (tree->slot_sphere[slot] == NO_SPHERE) continue;
+        const BpSphere *sphere = &scene->spheres[tree->slot_sphere[slot]];
+        const BpMaterial *material = &scene->materials[sphere->material];
+        packed->slot_material[slot] =
+            is_inside_out(scene, sphere) ? second[sphere->material] : sphere->material;
+        if (material->kind != BP_MATERIAL_LAMBERTIAN && material->kind != BP_MATERIAL_METAL) continue;
+        for (size_t a = 0; a < ALBEDO_REALS; ++a)
+            bp_reals_store(packed->slot_albedo, packed->single_precision, ALBEDO_REALS * slot + a,
+                           sphere->albedo == BP_NO_ALBEDO ? material->albedo[a]
+                                                          : (double)scene->albedos[sphere->albedo][a]);
+    }
     return BP_OK;
 }
 
@@ -210,11 +205,18 @@ static BpStatus pack_albedos(const BpScene *scene, BpPacked *packed, BpError *er
 BpStatus bp_scene_pack(const BpScene *scene, const BpTreeOptions *options, BpPacked *packed, BpError *err) {
     *packed = (BpPacked){.single_precision = options->single_precision};
     BpStatus status = BP_OK;
+    uint32_t *second = NULL;
     BP_TRY_GOTO(status, bp_tree_build(scene, scene->camera.lookfrom, options, &packed->tree, err), cleanup);
     BP_TRY_GOTO(status, pack_view(scene, packed, err), cleanup);
-    BP_TRY_GOTO(status, pack_materials(scene, packed, err), cleanup);
-    BP_TRY_GOTO(status, pack_albedos(scene, packed, err), cleanup);
+    second = calloc(scene->material_count + 1, sizeof *second);
+    if (second == NULL) {
+        status = out_of_memory(scene, err);
+        goto cleanup;
+    }
+    BP_TRY_GOTO(status, pack_materials(scene, second, packed, err), cleanup);
+    BP_TRY_GOTO(status, pack_slots(scene, second, packed, err), cleanup);
 cleanup:
+    free(second);
     if (status != BP_OK) bp_packed_clear(packed);
     return status;
 }
@@ -224,8 +226,8 @@ void bp_packed_clear(BpPacked *packed) {
     free(packed->camera);
     free(packed->sky);
     free(packed->materials);
-    free(packed->albedos);
     free(packed->material_kinds);
-    free(packed->looks);
+    free(packed->slot_material);
+    free(packed->slot_albedo);
     *packed = (BpPacked){0};
 }

@@ -17,11 +17,11 @@ typedef struct BpPacked {
     void *camera;    /* one PackedCamera */
     void *sky;       /* one PackedSky */
     void *materials; /* material_count PackedMaterial, at least one */
-    void *albedos;   /* albedo_count * 4 reals, at least one entry */
+    void *slot_albedo; /* ALBEDO_REALS a slot of the tree */
     /* Arrays of uints. */
     uint32_t *material_kinds; /* material_count PackedMaterialKind */
-    uint32_t *looks;          /* sphere_count PackedSphereLook, at least one */
-    uint32_t material_count, albedo_count, sphere_count;
+    uint32_t *slot_material;  /* one a slot of the tree */
+    uint32_t material_count;
 } BpPacked;
 
 BpStatus bp_scene_pack(const BpScene *scene, const BpTreeOptions *options, BpPacked *packed, BpError *err);

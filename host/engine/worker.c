@@ -37,9 +37,9 @@ enum {
 enum { FOLD_IN, FOLD_PIXELS, FOLD_SAMPLES, FOLD_FIRST_PIXEL, FOLD_FIRST_SAMPLE, FOLD_CONSTANTS };
 
 BpStatus bp_worker_bind_scene(BpWorker *worker, cl_kernel kernel, BpError *err) {
-    const cl_mem buffers[] = {worker->camera, worker->sky,        worker->materials, worker->kinds,
-                              worker->looks,  worker->albedos,    worker->boxes,     worker->children,
-                              worker->leaves, worker->slot_sphere};
+    const cl_mem buffers[] = {worker->camera,        worker->sky,         worker->materials, worker->kinds,
+                              worker->slot_material, worker->slot_albedo, worker->boxes,     worker->children,
+                              worker->leaves,        worker->slot_sphere};
     cl_uint index = 0;
     for (size_t i = 0; i < sizeof buffers / sizeof buffers[0]; ++i)
         BP_TRY(set_argument(worker, kernel, index++, sizeof(cl_mem), &buffers[i], err));
@@ -145,9 +145,9 @@ void bp_worker_destroy(BpWorker **worker) {
     BpWorker *w = *worker;
     if (w->device != NULL) clFinish(w->device->queue);
     for (int i = 0; i < w->flight_count; ++i) release_flight(&w->flights[i]);
-    const cl_mem buffers[] = {w->camera,  w->sky,    w->materials, w->kinds,   w->looks,
-                              w->albedos, w->boxes,  w->children,  w->leaves,  w->slot_sphere,
-                              w->sums,    w->counts, w->tallies,   w->samples, w->pixel_list};
+    const cl_mem buffers[] = {w->camera,      w->sky,    w->materials, w->kinds,   w->slot_material,
+                              w->slot_albedo, w->boxes,  w->children,  w->leaves,  w->slot_sphere,
+                              w->sums,        w->counts, w->tallies,   w->samples, w->pixel_list};
     for (size_t i = 0; i < sizeof buffers / sizeof buffers[0]; ++i)
         if (buffers[i] != NULL) clReleaseMemObject(buffers[i]);
     if (w->trace != NULL) clReleaseKernel(w->trace);

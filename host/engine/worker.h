@@ -38,7 +38,7 @@ typedef struct BpWorker {
     BpDevice *device;
     BpProgram *program;
     cl_kernel trace, fold;
-    cl_mem camera, sky, materials, kinds, looks, albedos, boxes, children, leaves, slot_sphere;
+    cl_mem camera, sky, materials, kinds, slot_material, slot_albedo, boxes, children, leaves, slot_sphere;
     cl_mem sums, counts, tallies, samples;
     cl_mem pixel_list; /* NULL: chunks are ranges of pixels */
     size_t real_size;

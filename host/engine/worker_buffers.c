@@ -30,8 +30,7 @@ BpStatus bp_worker_upload_scene(BpWorker *worker, const BpPacked *packed, BpErro
     const BpTree *tree = &packed->tree;
     const uint64_t width = tree->width;
     const uint64_t materials = packed->material_count > 0 ? packed->material_count : 1;
-    const uint64_t spheres = packed->sphere_count > 0 ? packed->sphere_count : 1;
-    const uint64_t albedos = packed->albedo_count > 0 ? packed->albedo_count : 1;
+    const uint64_t slots = tree->leaf_count * width;
     const struct {
         cl_mem *buffer;
         uint64_t bytes;
@@ -44,13 +43,14 @@ BpStatus bp_worker_upload_scene(BpWorker *worker, const BpPacked *packed, BpErro
          packed->materials, "the table of materials"},
         {&worker->kinds, materials * sizeof(PackedMaterialKind), packed->material_kinds,
          "the table of materials"},
-        {&worker->looks, spheres * sizeof(PackedSphereLook), packed->looks, "the table of sphere materials"},
-        {&worker->albedos, albedos * 4 * real_size, packed->albedos, "the table of sphere colours"},
+        {&worker->slot_material, slots * 4, packed->slot_material, "the table of sphere materials"},
+        {&worker->slot_albedo, slots * ALBEDO_REALS * real_size, packed->slot_albedo,
+         "the table of sphere colours"},
         {&worker->boxes, tree->node_count * NODE_REALS(width) * real_size, tree->node_boxes,
          "the tree's boxes"},
         {&worker->children, tree->node_count * width * 4, tree->children, "the tree's nodes"},
         {&worker->leaves, tree->leaf_count * LEAF_REALS(width) * real_size, tree->leaves, "the spheres"},
-        {&worker->slot_sphere, tree->leaf_count * width * 4, tree->slot_sphere, "the spheres' numbers"},
+        {&worker->slot_sphere, slots * 4, tree->slot_sphere, "the spheres' numbers"},
     };
     for (size_t i = 0; i < sizeof uploads / sizeof uploads[0]; ++i) {
         BP_TRY(create_buffer(worker, uploads[i].buffer, uploads[i].bytes, uploads[i].data, uploads[i].what,
