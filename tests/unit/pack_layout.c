@@ -136,29 +136,25 @@ static void materials_and_looks(void **state) {
         {.center = {8, 0, 0}, .radius = -1, .material = 0, .albedo = 1},
         {.center = {9, 0, 0}, .radius = 1, .material = 1, .albedo = 0},
         {.center = {9, 9, 0}, .radius = -1, .material = 4, .albedo = BP_NO_ALBEDO},
+        {.center = {9, 9, 9}, .radius = -1, .material = 1, .albedo = BP_NO_ALBEDO},
     };
     scene.materials = materials;
     scene.material_count = 5;
     scene.spheres = spheres;
-    scene.sphere_count = 6;
+    scene.sphere_count = 7;
     scene.albedos = albedos;
     scene.albedo_count = 2;
     BpPacked packed;
     pack(&scene, false, &packed);
     assert_int_equal(packed.material_count, 6);
-    assert_int_equal(packed.sphere_count, 6);
     const PackedMaterial *numbers = packed.materials;
     const PackedMaterialKind *kinds = (const PackedMaterialKind *)packed.material_kinds;
-    const PackedSphereLook *looks = (const PackedSphereLook *)packed.looks;
-    assert_vector(numbers[0].albedo, .1, .2, .3);
     assert_vector(numbers[0].emit, 1, 2, 3);
     assert_int_equal(kinds[0].kind, KIND_LAMBERTIAN);
     assert_int_equal(kinds[0].lobe, LOBE_HEMISPHERE);
-    assert_vector(numbers[1].albedo, .4, .5, .6);
     assert_true(numbers[1].fuzz == .25);
     assert_int_equal(kinds[1].kind, KIND_METAL);
     assert_int_equal(kinds[1].variant, FUZZ_BALL);
-    assert_vector(numbers[2].albedo, 1, 1, 1);
     assert_true(numbers[2].refraction_index == 1.5 && numbers[5].refraction_index == 1 / 1.5);
     for (int m = 2; m <= 5; m += 3) {
         assert_int_equal(kinds[m].kind, KIND_DIELECTRIC);
@@ -166,23 +162,38 @@ static void materials_and_looks(void **state) {
         assert_int_equal(kinds[m].total_reflection, TOTAL_ABSORB);
     }
     assert_vector(numbers[3].emit, 4, 5, 6);
-    assert_vector(numbers[3].albedo, 0, 0, 0);
     assert_int_equal(kinds[3].kind, KIND_LIGHT);
     assert_int_equal(kinds[4].kind, KIND_NORMALS);
-    const uint32_t expected[6][2] = {{2, NO_ALBEDO}, {5, NO_ALBEDO}, {5, NO_ALBEDO},
-                                     {0, 1},         {1, 0},         {4, NO_ALBEDO}};
-    for (int i = 0; i < 6; ++i) {
-        assert_int_equal(looks[i].material, expected[i][0]);
-        assert_int_equal(looks[i].albedo, expected[i][1]);
+    /* By slot: the material, from inside out where the radius says so, and the colour, the sphere's own if it
+     * has one. */
+    const struct {
+        uint32_t material;
+        double albedo[3];
+    } expected[7] = {
+        {2, {0, 0, 0}},
+        {5, {0, 0, 0}},
+        {5, {0, 0, 0}},
+        {0, {(double).5f, (double).6f, (double).7f}},
+        {1, {(double).1f, (double).2f, (double).3f}},
+        {4, {0, 0, 0}},
+        {1, {.4, .5, .6}},
+    };
+    unsigned seen = 0;
+    for (uint32_t s = 0; s < packed.tree.leaf_count * packed.tree.width; ++s) {
+        const uint32_t sphere = packed.tree.slot_sphere[s];
+        if (sphere == NO_SPHERE) continue;
+        assert_int_equal(packed.slot_material[s], expected[sphere].material);
+        for (size_t a = 0; a < 3; ++a)
+            assert_true(bp_reals_load(packed.slot_albedo, false, ALBEDO_REALS * (size_t)s + a) ==
+                        expected[sphere].albedo[a]);
+        ++seen;
     }
-    assert_int_equal(packed.albedo_count, 2);
-    for (size_t a = 0; a < 3; ++a)
-        assert_true(bp_reals_load(packed.albedos, false, 4 + a) == (double)albedos[1][a]);
+    assert_int_equal(seen, 7);
     bp_packed_clear(&packed);
 
     pack(&scene, true, &packed);
     const float *single = packed.materials;
-    assert_true(single[0] == .1f && single[12 * 5 + 9] == (float)(1 / 1.5) && single[12 + 8] == .25f);
+    assert_true(single[0] == 1.f && single[8 * 5 + 5] == (float)(1 / 1.5) && single[8 + 4] == .25f);
     bp_packed_clear(&packed);
 }
 
@@ -239,12 +250,11 @@ static void nothing_at_all(void **state) {
     for (int single = 0; single < 2; ++single) {
         BpPacked packed;
         pack(&scene, single, &packed);
-        assert_int_equal(packed.sphere_count, 0);
         assert_int_equal(packed.material_count, 1);
         assert_non_null(packed.materials);
         assert_non_null(packed.material_kinds);
-        assert_non_null(packed.albedos);
-        assert_non_null(packed.looks);
+        assert_non_null(packed.slot_material);
+        assert_non_null(packed.slot_albedo);
         bp_packed_clear(&packed);
         assert_null(packed.materials);
     }
