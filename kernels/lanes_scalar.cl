@@ -16,7 +16,8 @@
 #define choose_uint(mask, a, b) ((mask) ? (a) : (b))
 #define choose_refined(mask, a, b) ((mask) ? (a) : (b))
 #define any_lane(mask) ((mask) != 0)
-#define count_lanes(mask) ((mask) != 0)
+#define set_of_lanes(mask) ((uint)((mask) != 0))
+#define RANK_BITS 0u
 #define not_mask(mask) (!(mask))
 #define mask_of_uint(mask) (mask)
 #define mask_of_refined(mask) (mask)

@@ -11,7 +11,8 @@
 #undef choose_uint
 #undef choose_refined
 #undef any_lane
-#undef count_lanes
+#undef set_of_lanes
+#undef RANK_BITS
 #undef not_mask
 #undef mask_of_uint
 #undef mask_of_refined
@@ -41,7 +42,7 @@
 #define choose_uint(mask, a, b) (JOIN(convert_int, PACKET_LANES)(mask) ? (a) : (b))
 #define choose_refined(mask, a, b) (JOIN(JOIN(convert_, REFINED_MASK), PACKET_LANES)(mask) ? (a) : (b))
 #define any_lane(mask) any_of_lanes(mask)
-#define count_lanes(mask) count_of_lanes(mask)
+#define set_of_lanes(mask) bits_of_lanes(mask)
 #define not_mask(mask) (~(mask))
 #define mask_of_uint(mask) JOIN(JOIN(convert_, REAL_MASK), PACKET_LANES)(mask)
 #define mask_of_refined(mask) JOIN(JOIN(convert_, REAL_MASK), PACKET_LANES)(mask)
@@ -76,13 +77,21 @@ static int any_of_lanes(masks mask) {
     const JOIN(REAL_MASK, 2) two = four.lo | four.hi;
     return (two.x | two.y) != 0;
 }
-static uint count_of_lanes(masks mask) {
+/* Bit l: lane l. And for each lane the bits of all lanes below it. */
 #if PACKET_LANES == 16
-    const JOIN(REAL_MASK, 8) eight = mask.lo + mask.hi;
-    const JOIN(REAL_MASK, 4) four = eight.lo + eight.hi;
+#define LANE_BITS ((uints)(1, 2, 4, 8, 16, 32, 64, 128, 256, 512, 1024, 2048, 4096, 8192, 16384, 32768))
 #else
-    const JOIN(REAL_MASK, 4) four = mask.lo + mask.hi;
+#define LANE_BITS ((uints)(1, 2, 4, 8, 16, 32, 64, 128))
 #endif
-    const JOIN(REAL_MASK, 2) two = four.lo + four.hi;
-    return (uint)(0 - (two.x + two.y));
+#define RANK_BITS (LANE_BITS - 1u)
+static uint bits_of_lanes(masks mask) {
+    const uints bits = choose_uint(mask, LANE_BITS, splat_uint(0));
+#if PACKET_LANES == 16
+    const uint8 eight = bits.lo | bits.hi;
+    const uint4 four = eight.lo | eight.hi;
+#else
+    const uint4 four = bits.lo | bits.hi;
+#endif
+    const uint2 two = four.lo | four.hi;
+    return two.x | two.y;
 }

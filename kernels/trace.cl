@@ -117,13 +117,6 @@ static void begin_paths(__global const PackedCamera *camera, uint pixel_center, 
     paths->alive = paths->alive | fresh;
 }
 
-/* The pixels of a chunk: a range, or places `first_pixel` and on of a list, for adaptive sampling. */
-#if PIXEL_LIST
-#define PIXEL_LIST_PARAMETER , __global const uint *pixel_list
-#else
-#define PIXEL_LIST_PARAMETER
-#endif
-
 __kernel void trace(SCENE_PARAMETERS, uint first_pixel, uint first_sample, uint samples_per_pixel, uint sample_count,
                     uint samples_per_item, __global real *samples PIXEL_LIST_PARAMETER) {
     const Scene scene = begin_scene(SCENE_ARGUMENTS);
@@ -131,21 +124,17 @@ __kernel void trace(SCENE_PARAMETERS, uint first_pixel, uint first_sample, uint 
     uint next = item * samples_per_item;
     const uint end = min(next + samples_per_item, sample_count);
     if (next >= end) return;
-    /* The pixel sample `next` stands for, counted along: division is slow, in lanes above all. */
-#if PIXEL_LIST
-    uint place = first_pixel + next / samples_per_pixel;
-    const uint first = pixel_list[place];
-#else
-    const uint first = first_pixel + next / samples_per_pixel;
-#endif
-    uint sample = next % samples_per_pixel, row = first / width, column = first % width;
+    /* The pixel sample that `next` stands for. */
+    Pixel pixel = pixel_of_chunk(PIXEL_LIST_ARGUMENT first_pixel, next / samples_per_pixel,
+                                 sample_count / samples_per_pixel, width);
+    uint sample = next % samples_per_pixel;
 
     Paths paths;
     paths.alive = splat(0) != splat(0);
     paths.depth = splat_uint(0);
     paths.radiance = zero3();
     masks cut = paths.alive;   /* lanes whose path the cap has ended, black for what is missing */
-    uint number[LANE_COUNT];   /* of a lane's pixel sample within the chunk */
+    uints number = splat_uint(0); /* of a lane's pixel sample within the chunk */
     const uint lanes = min((uint)LANE_COUNT, end - next); /* that ever have one */
     uint used = 0;
     for (;;) {
@@ -154,49 +143,40 @@ __kernel void trace(SCENE_PARAMETERS, uint first_pixel, uint first_sample, uint 
         paths.alive = paths.alive & not_mask(reached);
 
         /* Once half of the lanes are free: results out, the next pixel samples in. */
-        const uint alive = count_lanes(paths.alive);
+        const uint alive = popcount(set_of_lanes(paths.alive));
         if (alive == 0 || (alive <= LANE_COUNT / 2 && next < end)) {
-            real red[LANE_COUNT], green[LANE_COUNT], blue[LANE_COUNT], count[LANE_COUNT], busy[LANE_COUNT];
+            real red[LANE_COUNT], green[LANE_COUNT], blue[LANE_COUNT], count[LANE_COUNT];
+            uint place[LANE_COUNT];
             store_lanes(paths.radiance.x, red);
             store_lanes(paths.radiance.y, green);
             store_lanes(paths.radiance.z, blue);
             store_lanes(uint_to_reals(paths.depth) + choose(cut, splat(R(0.5)), splat(0)), count);
-            store_lanes(choose(paths.alive, splat(1), splat(0)), busy);
+            store_lanes(number, place);
             /* Of a path that goes on this is not the last word, but its place is its own, and to ask costs more. */
             for (uint lane = 0; lane < used; ++lane)
-                vstore4((real4)(red[lane], green[lane], blue[lane], count[lane]), number[lane], samples);
+                vstore4((real4)(red[lane], green[lane], blue[lane], count[lane]), place[lane], samples);
             if (next >= end) return;
             used = lanes;
-            uint pixels[LANE_COUNT], sample_numbers[LANE_COUNT];
-            real rows[LANE_COUNT], columns[LANE_COUNT], fresh_lane[LANE_COUNT];
-            for (uint lane = 0; lane < LANE_COUNT; ++lane) {
-                const uint takes = busy[lane] == 0 && next < end;
-                fresh_lane[lane] = (real)takes;
-                pixels[lane] = row * width + column;
-                sample_numbers[lane] = first_sample + sample;
-                rows[lane] = (real)row;
-                columns[lane] = (real)column;
-                number[lane] = takes ? next : number[lane];
-                /* Counted on without a branch. */
-                next += takes;
-                sample += takes;
-                const uint next_pixel = sample == samples_per_pixel;
-                sample = next_pixel ? 0 : sample;
-#if PIXEL_LIST
-                if (next_pixel && next < end) {
-                    row = pixel_list[++place] / width;
-                    column = pixel_list[place] % width;
-                }
-#else
-                column += next_pixel;
-                const uint next_row = column == width;
-                column = next_row ? 0 : column;
-                row += next_row;
-#endif
+            /* The free lanes take the next pixel samples, the lowest lane first. */
+            const uint free = set_of_lanes(not_mask(paths.alive));
+            const uints rank = popcount(splat_uint(free) & RANK_BITS);
+            const masks fresh = not_mask(paths.alive) & mask_of_uint(rank < splat_uint(end - next));
+            number = choose_uint(fresh, next + rank, number);
+            uints sample_number = sample + rank, ahead = splat_uint(0);
+            for (;;) {
+                const masks beyond = mask_of_uint(sample_number >= splat_uint(samples_per_pixel));
+                if (!any_lane(beyond)) break;
+                sample_number = choose_uint(beyond, sample_number - samples_per_pixel, sample_number);
+                ahead = choose_uint(beyond, ahead + 1u, ahead);
             }
-            const masks fresh = load_lanes(fresh_lane) != splat(0);
-            const SampleKey key = sample_key(seed_low, seed_high, load_lanes(pixels), load_lanes(sample_numbers), replicates);
-            begin_paths(camera, pixel_center, key, load_lanes(columns), load_lanes(rows), fresh, &paths);
+            const Pixels pixels = pixels_ahead(&pixel, ahead, width);
+            const uint taken = min((uint)popcount(free), end - next);
+            next += taken;
+            for (sample += taken; sample >= samples_per_pixel; sample -= samples_per_pixel) next_pixel(&pixel, width);
+            const SampleKey key = sample_key(seed_low, seed_high, pixels.row * width + pixels.column,
+                                             first_sample + sample_number, replicates);
+            begin_paths(camera, pixel_center, key, uint_to_reals(pixels.column), uint_to_reals(pixels.row), fresh,
+                        &paths);
             cut = cut & not_mask(fresh);
             continue; /* a cap of 0 cuts at once */
         }

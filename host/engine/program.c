@@ -12,17 +12,16 @@
 /* The order in which the files stand in a program. A lane file says for how many lanes what follows is meant;
  * refine.cl serves single rays in tree.cl and, below lanes_wide.cl, all lanes together. */
 static const char *const sample_files[] = {
-    "real.cl",     "scene_types.h", "lane_set.cl", "lanes_scalar.cl", "refine.cl",  "box_ray.cl", "tree.cl",
-    "vector.cl",   "rng.cl",        "sampler.cl",  "sampling.cl",     "surface.cl", "sky.cl",     "camera.cl",
-    "material.cl", "paths.cl",      "meet.cl",     "look_up.cl",      "trace.cl",   "fold.cl",    "probe.cl",
-    NULL};
+    "real.cl",   "scene_types.h", "lane_set.cl", "lanes_scalar.cl", "refine.cl",   "box_ray.cl",
+    "tree.cl",   "vector.cl",     "rng.cl",      "sampler.cl",      "sampling.cl", "surface.cl",
+    "sky.cl",    "camera.cl",     "material.cl", "paths.cl",        "meet.cl",     "look_up.cl",
+    "pixels.cl", "trace.cl",      "fold.cl",     "probe.cl",        NULL};
 static const char *const packet_files[] = {
-    "real.cl",    "scene_types.h", "lane_set.cl",   "lanes_scalar.cl", "refine.cl",
-    "box_ray.cl", "tree.cl",       "lanes_wide.cl", "refine.cl",       "box_ray.cl",
-    "vector.cl",  "rng.cl",        "sampler.cl",    "sampling.cl",     "surface.cl",
-    "sky.cl",     "camera.cl",     "material.cl",   "paths.cl",        "rounds.cl",
-    "meet.cl",    "look_up.cl",    "trace.cl",      "fold.cl",         "probe.cl",
-    NULL};
+    "real.cl",    "scene_types.h", "lane_set.cl", "lanes_scalar.cl", "refine.cl", "box_ray.cl",
+    "tree.cl",    "lanes_wide.cl", "refine.cl",   "box_ray.cl",      "vector.cl", "rng.cl",
+    "sampler.cl", "sampling.cl",   "surface.cl",  "sky.cl",          "camera.cl", "material.cl",
+    "paths.cl",   "rounds.cl",     "meet.cl",     "look_up.cl",      "pixels.cl", "trace.cl",
+    "fold.cl",    "probe.cl",      NULL};
 
 /* A text that grows. `failed` remembers an allocation that did not succeed. */
 typedef struct Text {
