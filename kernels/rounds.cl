@@ -147,24 +147,18 @@ static void search_flat(const Geometry *geometry, const FlatBatch *batch, const 
                                   smaller(larger(low_z, high_z), bound));
         met |= choose_uint(near <= far * SLAB_TOLERANCE, splat_uint(1u << k), splat_uint(0));
     }
-    uint leaves[LANE_COUNT];
-    store_lanes(met, leaves);
+    /* The first of each lane, the second of each lane, and so on: most have two at most. */
     Visit visits[LANE_COUNT * BATCH_LEAVES + 1];
     uint count = 0;
-    for (uint lane = 0; lane < LANE_COUNT; ++lane) {
-        /* Mostly two at most. */
-        uint left = leaves[lane];
-        for (uint k = 0; k < 2; ++k) {
+    while (any_lane(mask_of_uint(met != splat_uint(0)))) {
+        uint first[LANE_COUNT];
+        store_lanes(popcount(~met & (met - 1u)), first); /* the lowest bit; 32: none */
+        for (uint lane = 0; lane < LANE_COUNT; ++lane) {
             visits[count].lane = lane;
-            visits[count].what = batch->leaf[lowest_lane(left) % BATCH_LEAVES];
-            count += left != 0;
-            left = without_lowest(left);
+            visits[count].what = batch->leaf[first[lane] % BATCH_LEAVES];
+            count += first[lane] < 32;
         }
-        for (; left != 0; left = without_lowest(left)) {
-            visits[count].lane = lane;
-            visits[count].what = batch->leaf[lowest_lane(left)];
-            ++count;
-        }
+        met &= met - 1u;
     }
     visit_leaves(geometry, visits, count, rays);
 }
