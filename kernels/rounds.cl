@@ -5,8 +5,8 @@
  * Knows: tree.cl's steps for one ray.   Does not know: what rays are for.
  *
  * What a ray does next depends on what it met, and a processor that guesses wrong throws away more work than a box
- * test is. So rays take turns, a round for all: first every ray that stands at a node tests it, then every ray that
- * stands at a leaf, then what they found is refined, then each chooses where to go. Within a step nothing depends on
+ * test is. So rays take turns, a round for all: first every ray that stands at a node tests it, then the leaves met
+ * there, then what they found is refined, then each ray chooses the node to go to. Within a step nothing depends on
  * the step before of the same ray: no branch to guess, and memory is fetched for many rays at a time.
  *
  * A tree of few leaves needs no walk: the boxes of all its leaves are tested, one after the other, against all
@@ -163,8 +163,8 @@ static void search_flat(const Geometry *geometry, const FlatBatch *batch, const 
     visit_leaves(geometry, visits, count, rays);
 }
 
-/* How far a walk through the tree has come: for each level the node entered, which of its children are still to be
- * visited, and where the ray enters them. Nothing is sorted: the nearest child is looked for when it is wanted,
+/* How far a walk through the tree has come: for each level the node entered, which of its child nodes are still to
+ * be entered, and where the ray enters them. Nothing is sorted: the nearest child is looked for when it is wanted,
  * by a few steps without a branch. */
 typedef struct Walk {
     uint depth; /* levels that have children left */
@@ -173,12 +173,15 @@ typedef struct Walk {
     wide entry[TREE_DEPTH_MAX];
 } Walk;
 
-static void enter_node(const Geometry *geometry, const BoxRay *box, uint node, real bound, Walk *walk) {
+/* Returns which children are leaves that the ray meets before `bound`; nodes are left for later. */
+static lane_set enter_node(const Geometry *geometry, const BoxRay *box, uint node, real bound, Walk *walk) {
     const uint level = walk->depth;
     const lane_set met = test_node(geometry, box, node, bound, &walk->entry[level]);
+    const lane_set leaves = leaf_children(geometry, node);
     walk->node[level] = node;
-    walk->left[level] = met;
-    walk->depth = level + (met != 0);
+    walk->left[level] = met & ~leaves;
+    walk->depth = level + ((met & ~leaves) != 0);
+    return met & leaves;
 }
 
 /* Takes the nearest child of the deepest level, of which there is one. Returns whether it is worth a visit, that is,
@@ -208,8 +211,8 @@ static void search_in_rounds(const Geometry *geometry, const LANED(BoxAxis) *axe
     BoxRay boxes[LANE_COUNT];
     Walk walks[LANE_COUNT];
     uint walking[LANE_COUNT + 1], walking_count = 0; /* lanes that are not through */
-    Visit nodes[LANE_COUNT + 1], leaves[LANE_COUNT + 1];
-    uint node_count = 0, leaf_count = 0;
+    Visit nodes[LANE_COUNT + 1], leaves[LANE_COUNT * TREE_WIDTH + 1];
+    uint node_count = 0;
     for (uint lane = 0; lane < LANE_COUNT; ++lane) {
         for (uint axis = 0; axis < 3; ++axis)
             set_box_axis(&boxes[lane], axis, inverse[axis][lane], near_offset[axis][lane], far_offset[axis][lane]);
@@ -220,25 +223,30 @@ static void search_in_rounds(const Geometry *geometry, const LANED(BoxAxis) *axe
         walking_count += alive[lane];
     }
     for (;;) {
+        uint leaf_count = 0;
         for (uint i = 0; i < node_count; ++i) {
             const uint lane = nodes[i].lane;
-            enter_node(geometry, &boxes[lane], nodes[i].what, rays->bound[lane], &walks[lane]);
+            const uint first = nodes[i].what * TREE_WIDTH;
+            lane_set met = enter_node(geometry, &boxes[lane], nodes[i].what, rays->bound[lane], &walks[lane]);
+            /* One leaf or none is the rule. */
+            leaves[leaf_count].lane = lane;
+            leaves[leaf_count].what = geometry->children[first + lowest_lane(met) % TREE_WIDTH] & ~CHILD_LEAF;
+            leaf_count += met != 0;
+            for (met = without_lowest(met); met != 0; met = without_lowest(met)) {
+                leaves[leaf_count].lane = lane;
+                leaves[leaf_count].what = geometry->children[first + lowest_lane(met)] & ~CHILD_LEAF;
+                ++leaf_count;
+            }
         }
         visit_leaves(geometry, leaves, leaf_count, rays);
         uint left = 0;
-        node_count = leaf_count = 0;
+        node_count = 0;
         for (uint i = 0; i < walking_count; ++i) {
             const uint lane = walking[i];
             if (walks[lane].depth == 0) continue;
             walking[left++] = lane;
-            uint child;
-            const int worth = take_nearest(geometry, rays->bound[lane], &walks[lane], &child);
-            const int is_leaf = (child & CHILD_LEAF) != 0;
-            nodes[node_count].lane = leaves[leaf_count].lane = lane;
-            nodes[node_count].what = child;
-            leaves[leaf_count].what = child & ~CHILD_LEAF;
-            node_count += worth & !is_leaf;
-            leaf_count += worth & is_leaf;
+            nodes[node_count].lane = lane;
+            node_count += take_nearest(geometry, rays->bound[lane], &walks[lane], &nodes[node_count].what);
         }
         walking_count = left;
         if (left == 0) return;

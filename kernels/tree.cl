@@ -167,6 +167,12 @@ static lane_set test_node(const Geometry *geometry, const BoxRay *box, uint node
     return to_lane_set(near <= far * SLAB_TOLERANCE);
 }
 
+/* Which children of a node are leaves. */
+static lane_set leaf_children(const Geometry *geometry, uint node) {
+    const WIDE(uint) words = JOIN(vload, TREE_WIDTH)(node, geometry->children);
+    return to_lane_set(JOIN(convert_, WIDE(REAL_MASK))((words & (WIDE(uint))CHILD_LEAF) != (WIDE(uint))0));
+}
+
 #define STACK_SIZE (TREE_DEPTH_MAX * (TREE_WIDTH - 1) + 1)
 
 static void search_tree(const Geometry *geometry, const Ray *ray, int any, Hit *best) {
@@ -180,6 +186,15 @@ static void search_tree(const Geometry *geometry, const Ray *ray, int any, Hit *
         wide entry;
         lane_set met = test_node(geometry, &box, node, best->bound, &entry);
         JOIN(vstore, TREE_WIDTH)(entry, 0, entries);
+        /* Leaves at once, in any order: to sort them costs more than it spares. */
+        const lane_set leaves = leaf_children(geometry, node);
+        for (lane_set now = met & leaves; now != 0; now = without_lowest(now)) {
+            const uint child = geometry->children[node * TREE_WIDTH + lowest_lane(now)];
+            test_leaf(geometry, ray, child & ~CHILD_LEAF, best);
+            if (any && best->slot != NO_SLOT) return;
+        }
+        /* Nodes onto the stack, the nearest on top. */
+        met &= ~leaves;
         const uint base = top;
         for (; met != 0; met = without_lowest(met)) {
             const uint lane = lowest_lane(met);
@@ -194,19 +209,11 @@ static void search_tree(const Geometry *geometry, const Ray *ray, int any, Hit *
             stack_child[place] = geometry->children[node * TREE_WIDTH + lane];
             ++top;
         }
-        /* The nearest child is on top. Leaves are tested at once; the next node goes round. */
-        for (;;) {
+        do {
             if (top == 0) return;
             --top;
-            if (stack_entry[top] > best->bound * SLAB_TOLERANCE) continue;
-            const uint child = stack_child[top];
-            if ((child & CHILD_LEAF) == 0) {
-                node = child;
-                break;
-            }
-            test_leaf(geometry, ray, child & ~CHILD_LEAF, best);
-            if (any && best->slot != NO_SLOT) return;
-        }
+        } while (stack_entry[top] > best->bound * SLAB_TOLERANCE);
+        node = stack_child[top];
     }
 }
 #endif
