@@ -7,7 +7,7 @@
 
 /* CPUs whose driver knows vectors spread explicit ones over their lanes, so they follow as many paths at a
  * time as the widest vectors have lanes, eight at least, through sixteen-wide nodes (docs/BENCHMARKS.md,
- * "What was tried"), and double costs them little. A CPU driver that takes vectors apart (it says one lane)
+ * "Tuning log"), and double costs them little. A CPU driver that takes vectors apart (it says one lane)
  * gets nothing from many, and has been seen to compile that form for ever. GPUs spread work-items, and many
  * have next to no double: one lane, narrower nodes, error-free float transforms. The options can force each
  * choice, so every arrangement can be tested on every device. */
