@@ -161,7 +161,7 @@ MUTANTS = [
            [patch(PACK, "numbers->fuzz = material->fuzz;", "numbers->fuzz = material->fuzz * material->fuzz;")],
            [check("fuzz-sphere")]),
     Mutant("colours of points ignored", "a table that is not read",
-           [patch(KERNEL, "if (any_lane(own_colour)) {", "if (any_lane(own_colour) && TREE_WIDTH == 0) {")],
+           [patch(PACK, "sphere->albedo == BP_NO_ALBEDO ? material->albedo[a]", "sphere->albedo != 0 ? material->albedo[a]")],
            [check("cloud")]),
     # ---- paths and sums ------------------------------------------------------------------------------------
     Mutant("depth off by one, longer", "first: depth < 50 from 0",
