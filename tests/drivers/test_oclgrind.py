@@ -22,7 +22,7 @@ if shutil.which("oclgrind") is None:
 
 # A kernel that does read what nobody wrote: the check must see it.
 PLACE = "        const masks reached ="
-PLANTED = "        if (number[0] == 0xffffffffu) cut = not_mask(cut);\n" + PLACE
+PLANTED = "        uint unwritten[1];\n        if (unwritten[0] == 0xffffffffu) cut = not_mask(cut);\n" + PLACE
 
 def reports(scene, folder, environment=None, check="--uninitialized"):
     """(kernel, report) of every report; the run itself must succeed."""
