@@ -116,8 +116,8 @@ static void check_variations(const char *name, uint32_t width, BpSampler sampler
 /* Each of these is a kernel of its own, so they take turns between the forms. */
 static void work_groups_and_widths_are_the_same(void **state) {
     (void)state;
-    /* Sixteen-wide, its tree has few enough leaves to be tried one by one; narrower ones are walked in
-     * rounds. */
+    /* Of its trees, the sixteen-wide one has one batch of leaves to be tried one by one, the eight-wide one
+     * has three, and the narrower ones are walked. */
     BpScene *scene = scene_of("cover.json", 24);
     BpRenderOptions options;
     bp_render_defaults(scene, &options);
@@ -160,6 +160,12 @@ static void cover_is_the_same(void **state) {
 static void hollow_glass_is_the_same(void **state) {
     (void)state;
     check_variations("v4-18-glass-hollow.json", 24, BP_SAMPLER_SOBOL);
+}
+
+/* Its tree is walked, sixteen wide. */
+static void swarm_is_the_same(void **state) {
+    (void)state;
+    check_variations("../tests/agree/scenes/swarm.json", 16, BP_SAMPLER_INDEPENDENT);
 }
 
 /* Samples 0..9 equal samples 0..3 plus 4..9: what merging runs rests on. */
@@ -277,6 +283,7 @@ int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(cover_is_the_same),
         cmocka_unit_test(hollow_glass_is_the_same),
+        cmocka_unit_test(swarm_is_the_same),
         cmocka_unit_test(work_groups_and_widths_are_the_same),
         cmocka_unit_test(several_devices_are_the_same),
         cmocka_unit_test(halves_add_up),
