@@ -4,7 +4,15 @@
  * not_mask, asked by any_lane, and spent by choose. `if (any_lane(m)) ...` is a plain branch for one lane and
  * "skip when no lane wants it" for many. LANED(f) is f's name for this number of lanes. */
 #define LANE_COUNT 1
+
+/* Some compilers leave parts of a ray's search functions of their own, and pass the ray through memory. Where nothing is
+ * optimised, nothing is inlined either: Oclgrind cannot run what the inliner leaves behind. */
+#ifdef __OPTIMIZE__
+#define FORCE_INLINE __attribute__((always_inline))
+#else
 #define FORCE_INLINE
+#endif
+
 #define LANED(name) JOIN(name, _1)
 #define reals real
 #define masks int

@@ -51,7 +51,7 @@ static real margin_of_origin(const Ray *ray) {
 
 /* The spheres of a leaf that the ray may meet before `bound`; the rest of them it surely does not. TREE_WIDTH at a
  * time, without a branch. */
-static lane_set leaf_candidates(const Geometry *geometry, const Ray *ray, uint leaf_number, real bound) {
+FORCE_INLINE static lane_set leaf_candidates(const Geometry *geometry, const Ray *ray, uint leaf_number, real bound) {
     __global const real *leaf = geometry->leaves + leaf_number * (4 * TREE_WIDTH);
     const wide ocx = load_wide(0, leaf) - ray->high[0];
     const wide ocy = load_wide(1, leaf) - ray->high[1];
@@ -84,7 +84,7 @@ static lane_set leaf_candidates(const Geometry *geometry, const Ray *ray, uint l
 }
 
 /* Decides about a candidate. */
-static void refine_slot(const Geometry *geometry, const Ray *ray, uint slot, Hit *best) {
+FORCE_INLINE static void refine_slot(const Geometry *geometry, const Ray *ray, uint slot, Hit *best) {
     const uint lane = slot % TREE_WIDTH;
     __global const real *leaf = geometry->leaves + (slot - lane) * 4;
     const real x = leaf[lane], y = leaf[TREE_WIDTH + lane], z = leaf[2 * TREE_WIDTH + lane];
@@ -110,7 +110,7 @@ static void refine_slot(const Geometry *geometry, const Ray *ray, uint slot, Hit
 #endif
 }
 
-static void test_leaf(const Geometry *geometry, const Ray *ray, uint leaf_number, Hit *best) {
+FORCE_INLINE static void test_leaf(const Geometry *geometry, const Ray *ray, uint leaf_number, Hit *best) {
     for (lane_set candidates = leaf_candidates(geometry, ray, leaf_number, best->bound); candidates != 0;
          candidates = without_lowest(candidates))
         refine_slot(geometry, ray, leaf_number * TREE_WIDTH + lowest_lane(candidates), best);
@@ -175,7 +175,7 @@ static lane_set leaf_children(const Geometry *geometry, uint node) {
 
 #define STACK_SIZE (TREE_DEPTH_MAX * (TREE_WIDTH - 1) + 1)
 
-static void search_tree(const Geometry *geometry, const Ray *ray, int any, Hit *best) {
+FORCE_INLINE static void search_tree(const Geometry *geometry, const Ray *ray, int any, Hit *best) {
     const BoxRay box = box_ray(ray);
     uint stack_child[STACK_SIZE];
     real stack_entry[STACK_SIZE];
@@ -253,7 +253,7 @@ static void meet_own_sphere(const Geometry *geometry, const Ray *ray, Hit *best)
 }
 
 /* The closest hit: least (t, sphere index). */
-static Hit intersect_closest(const Geometry *geometry, const Ray *ray) {
+FORCE_INLINE static Hit intersect_closest(const Geometry *geometry, const Ray *ray) {
     Hit best = no_hit(REAL_LARGE);
     meet_own_sphere(geometry, ray, &best);
     search_spheres(geometry, ray, 0, &best);
