@@ -151,12 +151,12 @@ static void search_flat(const Geometry *geometry, const FlatBatch *batch, const 
     Visit visits[LANE_COUNT * BATCH_LEAVES + 1];
     uint count = 0;
     while (any_lane(mask_of_uint(met != splat_uint(0)))) {
-        uint first[LANE_COUNT];
-        store_lanes(popcount(~met & (met - 1u)), first); /* the lowest bit; 32: none */
+        uint left[LANE_COUNT];
+        store_lanes(met, left);
         for (uint lane = 0; lane < LANE_COUNT; ++lane) {
             visits[count].lane = lane;
-            visits[count].what = batch->leaf[first[lane] % BATCH_LEAVES];
-            count += first[lane] < 32;
+            visits[count].what = batch->leaf[lowest_lane(left[lane]) % BATCH_LEAVES];
+            count += left[lane] != 0;
         }
         met &= met - 1u;
     }
