@@ -65,9 +65,9 @@ typedef struct PackedMaterialKind {
 #define MATERIAL_TOTAL_REFLECTION 3u
 
 /* A leaf is `width` spheres as structure of arrays: width reals each of center x, y, z and radius (> 0).
- * An empty lane has radius -1. Lane l of leaf f is slot f * width + l. What a path needs of a sphere that it has
- * met stands by slot, so that nothing has to be looked up to find it: `slot_sphere`, the sphere's index in the
- * scene (NO_SPHERE when empty); `slot_material`; `slot_albedo`, ALBEDO_REALS each. Sizes in reals: */
+ * An empty lane has radius -1. Lane l of leaf f is slot f * width + l. What a path needs of a sphere that it
+ * has met stands by slot, so that nothing has to be looked up to find it: `slot_sphere`, the sphere's index
+ * in the scene (NO_SPHERE when empty); `slot_material`; `slot_albedo`, ALBEDO_REALS each. Sizes in reals: */
 #define LEAF_REALS(width) (4 * (width))
 #define ALBEDO_REALS 3
 /* A node is `width` child boxes as structure of arrays: low x, y, z, high x, y, z, width reals each. Empty

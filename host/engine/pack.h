@@ -14,9 +14,9 @@ typedef struct BpPacked {
     bool single_precision;
     BpTree tree;
     /* Arrays of reals in the device's precision. */
-    void *camera;    /* one PackedCamera */
-    void *sky;       /* one PackedSky */
-    void *materials; /* material_count PackedMaterial, at least one */
+    void *camera;      /* one PackedCamera */
+    void *sky;         /* one PackedSky */
+    void *materials;   /* material_count PackedMaterial, at least one */
     void *slot_albedo; /* ALBEDO_REALS a slot of the tree */
     /* Arrays of uints. */
     uint32_t *material_kinds; /* material_count PackedMaterialKind */
