@@ -256,6 +256,7 @@ static void search_in_rounds(const Geometry *geometry, const LANED(BoxAxis) *axe
 /* The spheres below the first leaves, against what the paths have met so far. */
 static void search_trees(const Geometry *geometry, const FlatTree *flat, const Paths *paths, reals margin, reals bound,
                          Meeting *meeting) {
+    if (geometry->leaf_count == geometry->first_leaves) return;
     LaneRays rays;
     uint alive[LANE_COUNT];
     store_lanes(paths->origin.high.x, rays.high[0]);
