@@ -4,12 +4,10 @@
  * Counted along, since division is slow, in lanes above all. */
 #if PIXEL_LIST
 #define PIXEL_LIST_PARAMETER , __global const uint *pixel_list
-#define PIXEL_LIST_ARGUMENT pixel_list,
-#define PIXEL_LIST_FIRST __global const uint *pixel_list,
+#define PIXEL_LIST_ARGUMENT , pixel_list
 #else
 #define PIXEL_LIST_PARAMETER
 #define PIXEL_LIST_ARGUMENT
-#define PIXEL_LIST_FIRST
 #endif
 
 /* A pixel of the chunk. */
@@ -26,19 +24,22 @@ typedef struct Pixels {
     uints row, column;
 } Pixels;
 
+static void set_pixel(Pixel *pixel, uint number, uint width) {
+    pixel->row = number / width;
+    pixel->column = number % width;
+}
+
 /* Pixel `ahead` of a chunk of `pixel_count` that begins at `first`. */
-static Pixel pixel_of_chunk(PIXEL_LIST_FIRST uint first, uint ahead, uint pixel_count, uint width) {
+static Pixel pixel_of_chunk(uint first, uint ahead, uint pixel_count, uint width PIXEL_LIST_PARAMETER) {
     Pixel pixel;
 #if PIXEL_LIST
     pixel.list = pixel_list;
     pixel.place = first + ahead;
     pixel.last_place = first + pixel_count - 1;
-    const uint number = pixel_list[pixel.place];
+    set_pixel(&pixel, pixel_list[pixel.place], width);
 #else
-    const uint number = first + ahead;
+    set_pixel(&pixel, first + ahead, width);
 #endif
-    pixel.row = number / width;
-    pixel.column = number % width;
     return pixel;
 }
 
@@ -46,9 +47,7 @@ static Pixel pixel_of_chunk(PIXEL_LIST_FIRST uint first, uint ahead, uint pixel_
 static void next_pixel(Pixel *pixel, uint width) {
 #if PIXEL_LIST
     pixel->place = min(pixel->place + 1u, pixel->last_place);
-    const uint number = pixel->list[pixel->place];
-    pixel->row = number / width;
-    pixel->column = number % width;
+    set_pixel(pixel, pixel->list[pixel->place], width);
 #else
     ++pixel->column;
     if (pixel->column < width) return;
@@ -57,11 +56,21 @@ static void next_pixel(Pixel *pixel, uint width) {
 #endif
 }
 
+/* Brings `digit` below `base` and adds to `carry` how often that took: mostly not once, so no division. */
+static void carry_over(uints *digit, uint base, uints *carry) {
+    for (;;) {
+        const masks beyond = mask_of_uint(*digit >= splat_uint(base));
+        if (!any_lane(beyond)) return;
+        *digit = choose_uint(beyond, *digit - base, *digit);
+        *carry = choose_uint(beyond, *carry + 1u, *carry);
+    }
+}
+
 /* The pixels `ahead` of this one, of which the chunk need not have all. */
 static Pixels pixels_ahead(const Pixel *pixel, uints ahead, uint width) {
     Pixels pixels;
-#if PIXEL_LIST
     pixels.row = splat_uint(pixel->row);
+#if PIXEL_LIST
     pixels.column = splat_uint(pixel->column);
     if (any_lane(mask_of_uint(ahead > splat_uint(0)))) {
         const uints place = pixel->place + ahead;
@@ -71,14 +80,8 @@ static Pixels pixels_ahead(const Pixel *pixel, uints ahead, uint width) {
         pixels.column = number - pixels.row * width;
     }
 #else
-    pixels.row = splat_uint(pixel->row);
     pixels.column = pixel->column + ahead;
-    for (;;) {
-        const masks beyond = mask_of_uint(pixels.column >= splat_uint(width));
-        if (!any_lane(beyond)) break;
-        pixels.column = choose_uint(beyond, pixels.column - width, pixels.column);
-        pixels.row = choose_uint(beyond, pixels.row + 1u, pixels.row);
-    }
+    carry_over(&pixels.column, width, &pixels.row);
 #endif
     return pixels;
 }

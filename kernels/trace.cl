@@ -125,15 +125,15 @@ __kernel void trace(SCENE_PARAMETERS, uint first_pixel, uint first_sample, uint 
     const uint end = min(next + samples_per_item, sample_count);
     if (next >= end) return;
     /* The pixel sample that `next` stands for. */
-    Pixel pixel = pixel_of_chunk(PIXEL_LIST_ARGUMENT first_pixel, next / samples_per_pixel,
-                                 sample_count / samples_per_pixel, width);
+    Pixel pixel = pixel_of_chunk(first_pixel, next / samples_per_pixel, sample_count / samples_per_pixel,
+                                 width PIXEL_LIST_ARGUMENT);
     uint sample = next % samples_per_pixel;
 
     Paths paths;
     paths.alive = splat(0) != splat(0);
     paths.depth = splat_uint(0);
     paths.radiance = zero3();
-    masks cut = paths.alive;   /* lanes whose path the cap has ended, black for what is missing */
+    masks cut = paths.alive;      /* lanes whose path the cap has ended, black for what is missing */
     uints number = splat_uint(0); /* of a lane's pixel sample within the chunk */
     const uint lanes = min((uint)LANE_COUNT, end - next); /* that ever have one */
     uint used = 0;
@@ -163,12 +163,7 @@ __kernel void trace(SCENE_PARAMETERS, uint first_pixel, uint first_sample, uint 
             const masks fresh = not_mask(paths.alive) & mask_of_uint(rank < splat_uint(end - next));
             number = choose_uint(fresh, next + rank, number);
             uints sample_number = sample + rank, ahead = splat_uint(0);
-            for (;;) {
-                const masks beyond = mask_of_uint(sample_number >= splat_uint(samples_per_pixel));
-                if (!any_lane(beyond)) break;
-                sample_number = choose_uint(beyond, sample_number - samples_per_pixel, sample_number);
-                ahead = choose_uint(beyond, ahead + 1u, ahead);
-            }
+            carry_over(&sample_number, samples_per_pixel, &ahead);
             const Pixels pixels = pixels_ahead(&pixel, ahead, width);
             const uint taken = min((uint)popcount(free), end - next);
             next += taken;
