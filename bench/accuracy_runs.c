@@ -15,7 +15,6 @@
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
-#include <time.h>
 
 static const double luminance_weights[3] = {0.2126, 0.7152, 0.0722}; /* Rec. ITU-R BT.709-6, item 3.2 */
 
@@ -44,12 +43,6 @@ static void must(BpStatus status, const BpError *err) {
     if (status == BP_OK) return;
     fprintf(stderr, "accuracy_runs: %s\n", err->message);
     exit(EXIT_FAILURE);
-}
-
-static double processor_seconds(void) {
-    struct timespec now;
-    clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &now);
-    return (double)now.tv_sec + 1e-9 * (double)now.tv_nsec;
 }
 
 static void read_pixels(const BpAccumulator *accumulator, bool with_error, Run *run) {
@@ -83,11 +76,11 @@ static Run render(const BpScene *scene, const Way *way, uint64_t seed, uint64_t 
     options.seed = seed;
     options.samples_per_pixel = samples;
     must(bp_render_create(scene, &options, NULL, 0, &made, &err), &err);
-    const double wall = bp_clock_seconds(), processor = processor_seconds();
+    const double wall = bp_clock_seconds(), processor = bp_processor_seconds();
     while (!progress.finished) must(bp_render_step(made, &progress, &err), &err);
     must(bp_render_accumulator(made, &accumulator, &err), &err);
     const double nrmse = way->replicates > 1 ? bp_accumulator_nrmse(accumulator) : 0;
-    Run run = {.processor = processor_seconds() - processor, .wall = bp_clock_seconds() - wall};
+    Run run = {.processor = bp_processor_seconds() - processor, .wall = bp_clock_seconds() - wall};
     if (nrmse < 0) exit(EXIT_FAILURE); /* so that it is not left out */
     bp_render_report(made, &report);
     run.device = report.device_seconds;

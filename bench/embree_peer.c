@@ -11,6 +11,7 @@
  *   medium           build quality MEDIUM instead of HIGH
  *   compact          RTC_SCENE_FLAG_COMPACT
  *   huge             huge spheres are met first, in vector code, and bound what Embree has to search */
+#include "../host/base/clock.h"
 #include "embree_paths.h"
 
 #include <embree3/rtcore.h>
@@ -297,9 +298,9 @@ int main(int argc, char **argv) {
     int64_t bytes = 0;
     rtcSetDeviceErrorFunction(device, embree_error, NULL);
     rtcSetDeviceMemoryMonitorFunction(device, count_memory, &bytes);
-    const double start = peer_seconds();
+    const double start = bp_clock_seconds();
     job.scene = build(device, &job.world, &job.method);
-    run.build_seconds = peer_seconds() - start;
+    run.build_seconds = bp_clock_seconds() - start;
     run.structure_bytes = bytes > 0 ? (uint64_t)bytes : 0;
 
     peer_trace(scene, options.threads, trace_row, &job, &run);

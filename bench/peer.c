@@ -1,6 +1,8 @@
 /* peer.c: see peer.h. */
 #include "peer.h"
 
+#include "../host/base/clock.h"
+
 #include <errno.h>
 #include <getopt.h>
 #include <math.h>
@@ -9,8 +11,6 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-#include <sys/resource.h>
-#include <time.h>
 #include <unistd.h>
 
 #define PI 3.14159265358979323846
@@ -97,23 +97,10 @@ usage:
     exit(2);
 }
 
-double peer_seconds(void) {
-    struct timespec now;
-    clock_gettime(CLOCK_MONOTONIC, &now);
-    return (double)now.tv_sec + 1e-9 * (double)now.tv_nsec;
-}
-
-static double cpu_seconds(void) {
-    struct rusage usage;
-    getrusage(RUSAGE_SELF, &usage);
-    return (double)(usage.ru_utime.tv_sec + usage.ru_stime.tv_sec) +
-           1e-6 * (double)(usage.ru_utime.tv_usec + usage.ru_stime.tv_usec);
-}
-
 BpScene *peer_load(const PeerOptions *options, PeerRun *run) {
     BpScene *scene = NULL;
     BpError err = {0};
-    const double start = peer_seconds();
+    const double start = bp_clock_seconds();
     BpStatus status = bp_scene_load(options->scene_path, &scene, &err);
     if (status == BP_OK && options->width != 0) status = bp_scene_set_width(scene, options->width, &err);
     if (status != BP_OK) {
@@ -122,7 +109,7 @@ BpScene *peer_load(const PeerOptions *options, PeerRun *run) {
     }
     if (options->samples != 0) scene->camera.samples_per_pixel = options->samples;
     if (options->depth != 0) scene->camera.max_depth = options->depth;
-    *run = (PeerRun){.load_seconds = peer_seconds() - start};
+    *run = (PeerRun){.load_seconds = bp_clock_seconds() - start};
     return scene;
 }
 
@@ -202,14 +189,14 @@ void peer_trace(const BpScene *scene, unsigned threads, PeerRow *work, void *job
     Crew crew = {.work = work, .job = job, .rows = scene->camera.height};
     Hand *hands = peer_allocate(threads, sizeof *hands);
     pthread_t *ids = peer_allocate(threads, sizeof *ids);
-    const double wall = peer_seconds(), cpu = cpu_seconds();
+    const double wall = bp_clock_seconds(), cpu = bp_processor_seconds();
     for (unsigned i = 0; i < threads; i++) {
         hands[i] = (Hand){&crew, i};
         if (pthread_create(&ids[i], NULL, hand_main, &hands[i]) != 0) die("cannot start a thread");
     }
     for (unsigned i = 0; i < threads; i++) pthread_join(ids[i], NULL);
-    run->seconds += peer_seconds() - wall;
-    run->cpu_seconds += cpu_seconds() - cpu;
+    run->seconds += bp_clock_seconds() - wall;
+    run->cpu_seconds += bp_processor_seconds() - cpu;
     run->rays += atomic_load(&crew.rays);
     free(ids);
     free(hands);

@@ -50,7 +50,6 @@ void peer_camera(const BpScene *scene, PeerCamera *camera);
 /* Exits with 1 when memory runs out, as everything here does. */
 void *peer_allocate(size_t count, size_t size);
 PeerFilm peer_film(const BpScene *scene);
-double peer_seconds(void);
 /* Runs `work` over all rows on `threads` threads and adds rays and both times to `run`. */
 void peer_trace(const BpScene *scene, unsigned threads, PeerRow *work, void *job, PeerRun *run);
 /* Prints the figures as one line of JSON and writes the picture (PFM) where one was asked for. */

@@ -4,10 +4,20 @@
 
 #include <time.h>
 
-static inline double bp_clock_seconds(void) {
+static inline double bp_clock_read(clockid_t clock) {
     struct timespec now;
-    clock_gettime(CLOCK_MONOTONIC, &now);
+    clock_gettime(clock, &now);
     return (double)now.tv_sec + 1e-9 * (double)now.tv_nsec;
+}
+
+/* Of the wall. */
+static inline double bp_clock_seconds(void) {
+    return bp_clock_read(CLOCK_MONOTONIC);
+}
+
+/* That all threads of this process spent on all cores, which other programs hardly disturb. */
+static inline double bp_processor_seconds(void) {
+    return bp_clock_read(CLOCK_PROCESS_CPUTIME_ID);
 }
 
 #endif

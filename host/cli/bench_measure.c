@@ -7,16 +7,8 @@
 
 #include <math.h>
 #include <stdlib.h>
-#include <sys/resource.h>
 
 #define WARM_UP_SECONDS 0.2
-
-static double cpu_seconds(void) {
-    struct rusage usage;
-    getrusage(RUSAGE_SELF, &usage);
-    return (double)(usage.ru_utime.tv_sec + usage.ru_stime.tv_sec) +
-           1e-6 * (double)(usage.ru_utime.tv_usec + usage.ru_stime.tv_usec);
-}
 
 /* Traces until every pixel has `samples`; all work is done when it returns. */
 static BpStatus trace_to(BpRender *render, uint64_t samples, BpError *err) {
@@ -53,20 +45,20 @@ static BpStatus trace(BpRender *render, double seconds, BpBenchRun *run, BpError
     uint64_t samples = 0;
     double taken, whole = 0;
     do {
-        const double start = bp_clock_seconds(), cpu_start = cpu_seconds();
+        const double start = bp_clock_seconds(), cpu_start = bp_processor_seconds();
         samples = 2 * samples + 1;
         BP_TRY(trace_to(render, samples, err));
-        taken = own_seconds(&before, bp_clock_seconds() - start, cpu_seconds() - cpu_start);
+        taken = own_seconds(&before, bp_clock_seconds() - start, bp_processor_seconds() - cpu_start);
         whole += taken;
     } while (whole < WARM_UP_SECONDS);
     BP_TRY(read_report(render, &before, &accumulator, err));
 
     /* The last pass of the warm-up was samples / 2 + 1. */
     const double more = seconds / taken * (double)(samples / 2 + 1);
-    const double start = bp_clock_seconds(), cpu_start = cpu_seconds();
+    const double start = bp_clock_seconds(), cpu_start = bp_processor_seconds();
     BP_TRY(trace_to(render, samples + (more > 1 ? (uint64_t)more : 1), err));
     run->seconds = bp_clock_seconds() - start;
-    run->cpu_seconds = cpu_seconds() - cpu_start;
+    run->cpu_seconds = bp_processor_seconds() - cpu_start;
     BP_TRY(read_report(render, &run->report, &accumulator, err));
     run->samples = run->report.samples - before.samples;
     run->segments = run->report.segments - before.segments;

@@ -3,11 +3,12 @@
 
 #include <dirent.h>
 #include <errno.h>
-#include <fcntl.h>
 #include <signal.h>
+#include <stdbool.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/socket.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
@@ -20,60 +21,86 @@ static void remove_files(const char *path) {
     rmdir(path);
 }
 
-/* Waits for the other end to close, whoever closes it, then cleans up. */
-static _Noreturn void keep(const char *path, int alive) {
+/* What the keeper answers: the folder, or why there is none. */
+typedef struct Answer {
+    int failed; /* errno, 0: made */
+    char path[sizeof((BpTemporaryFolder *)0)->path];
+} Answer;
+
+/* Makes the folder, tells its path, waits for the other end to close, whoever closes it, and cleans up. The
+ * keeper makes it, not the process that asked: one that is killed meanwhile leaves nothing behind. */
+static _Noreturn void keep(Answer *answer, int other) {
     char nothing;
     /* Ctrl-C reaches every process of the terminal; this one has to outlive it. */
     signal(SIGINT, SIG_IGN);
     signal(SIGTERM, SIG_IGN);
     signal(SIGHUP, SIG_IGN);
+    signal(SIGPIPE, SIG_IGN);
     close(STDIN_FILENO);
     close(STDOUT_FILENO);
     close(STDERR_FILENO);
-    while (read(alive, &nothing, 1) < 0 && errno == EINTR) {
-    }
-    remove_files(path);
+    answer->failed = mkdtemp(answer->path) == NULL ? errno : 0;
+    if (write(other, answer, sizeof *answer) == (ssize_t)sizeof *answer)
+        while (read(other, &nothing, 1) < 0 && errno == EINTR) {
+        }
+    if (answer->failed == 0) remove_files(answer->path);
     _exit(0);
+}
+
+/* Starts the keeper and hears its answer. false: there is none, errno says why. */
+static bool start_keeper(BpTemporaryFolder *folder, Answer *answer) {
+    int ends[2];
+    if (socketpair(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0, ends) != 0) return false;
+    fflush(NULL);
+    folder->keeper = fork();
+    if (folder->keeper == 0) {
+        close(ends[0]);
+        keep(answer, ends[1]);
+    }
+    const int failed = errno;
+    close(ends[1]);
+    folder->alive = ends[0];
+    if (folder->keeper > 0) {
+        ssize_t got;
+        while ((got = recv(ends[0], answer, sizeof *answer, MSG_WAITALL)) < 0 && errno == EINTR) {
+        }
+        if (got == (ssize_t)sizeof *answer) return true;
+        errno = ECHILD;
+    } else {
+        errno = failed;
+    }
+    close(ends[0]);
+    return false;
+}
+
+static void end_keeper(BpTemporaryFolder *folder) {
+    close(folder->alive);
+    while (waitpid(folder->keeper, NULL, 0) < 0 && errno == EINTR) {
+    }
 }
 
 BpStatus bp_temporary_folder_make(BpTemporaryFolder *folder, BpError *err) {
     const char *above = getenv("TMPDIR");
-    int ends[2];
-    const int length = snprintf(folder->path, sizeof folder->path, "%s/ballpark-XXXXXX",
+    Answer answer = {0};
+    const int length = snprintf(answer.path, sizeof answer.path, "%s/ballpark-XXXXXX",
                                 above != NULL && above[0] != '\0' ? above : "/tmp");
-    if (length < 0 || (size_t)length >= sizeof folder->path) {
-        folder->path[0] = '\0';
-        return bp_fail(err, BP_ERR_FILE, "the path in TMPDIR is too long");
-    }
-    if (mkdtemp(folder->path) == NULL) {
-        const int failed = errno;
-        bp_fail(err, BP_ERR_FILE, "cannot make the folder %s: %s; set TMPDIR to a folder that can be written",
-                folder->path, strerror(failed));
-        folder->path[0] = '\0';
-        return BP_ERR_FILE;
-    }
-    if (pipe(ends) != 0) goto failed;
-    fcntl(ends[1], F_SETFD, FD_CLOEXEC);
-    fflush(NULL);
-    folder->keeper = fork();
-    if (folder->keeper == 0) {
-        close(ends[1]);
-        keep(folder->path, ends[0]);
-    }
-    close(ends[0]);
-    folder->alive = ends[1];
-    if (folder->keeper > 0) return BP_OK;
-    close(ends[1]);
-failed:
-    rmdir(folder->path);
     folder->path[0] = '\0';
-    return bp_fail(err, BP_ERR_MEMORY, "cannot start a process: %s", strerror(errno));
+    if (length < 0 || (size_t)length >= sizeof answer.path)
+        return bp_fail(err, BP_ERR_FILE, "the path in TMPDIR is too long");
+    if (!start_keeper(folder, &answer))
+        return bp_fail(err, BP_ERR_MEMORY, "cannot start a process: %s", strerror(errno));
+    if (answer.failed != 0) {
+        end_keeper(folder);
+        return bp_fail(err, BP_ERR_FILE,
+                       "cannot make the folder %s: %s; set TMPDIR to a folder that can be written",
+                       answer.path, strerror(answer.failed));
+    }
+    memcpy(folder->path, answer.path, sizeof folder->path);
+    return BP_OK;
 }
 
 void bp_temporary_folder_remove(BpTemporaryFolder *folder) {
     if (folder->path[0] == '\0') return;
-    close(folder->alive);
-    while (waitpid(folder->keeper, NULL, 0) < 0 && errno == EINTR) {
-    }
+    end_keeper(folder);
     folder->path[0] = '\0';
 }

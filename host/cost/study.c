@@ -10,18 +10,10 @@
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
-#include <sys/resource.h>
 
 #define REFERENCE_SHARE 0.4 /* of the time */
 #define LEVEL_FIRST 4u      /* samples a pixel: one a replicate */
 #define LEVEL_FACTOR 4u
-
-static double cpu_seconds(void) {
-    struct rusage usage;
-    getrusage(RUSAGE_SELF, &usage);
-    return (double)(usage.ru_utime.tv_sec + usage.ru_stime.tv_sec) +
-           1e-6 * (double)(usage.ru_utime.tv_usec + usage.ru_stime.tv_usec);
-}
 
 static double elapsed(const BpStudy *study) {
     return bp_clock_seconds() - study->start;
@@ -224,11 +216,11 @@ static bool find_turn(BpStudy *study) {
 static BpStatus step_levels(BpStudy *study, BpError *err) {
     if (find_turn(study)) {
         BpStudyRunner *runner = &study->runners[study->turn];
-        const double wall = bp_clock_seconds(), cpu = cpu_seconds();
+        const double wall = bp_clock_seconds(), cpu = bp_processor_seconds();
         BpProgress progress;
         BP_TRY(bp_render_step(runner->render, &progress, err));
         runner->wall_seconds += bp_clock_seconds() - wall;
-        runner->cpu_seconds += cpu_seconds() - cpu;
+        runner->cpu_seconds += bp_processor_seconds() - cpu;
         runner->done = progress.finished;
         return BP_OK;
     }

@@ -35,25 +35,18 @@ static uint64_t find_registers(const char *log) {
     return at != NULL && sscanf(at, "Used %llu registers", &registers) == 1 ? registers : 0;
 }
 
-/* Seconds of all this process's threads on all cores. */
-static double processor_seconds(void) {
-    struct timespec now;
-    clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &now);
-    return (double)now.tv_sec + 1e-9 * (double)now.tv_nsec;
-}
-
 /* Finishes what has been ordered; *seconds is the time that the device spent on it: of a CPU the processor
  * time of this process, which other programs hardly disturb, of other devices their own clock's. */
 static BpStatus finish(BpRender *render, double *seconds, BpError *err) {
     BpProgress progress = {0};
     BpRenderReport before, after;
     bp_render_report(render, &before);
-    const double start = processor_seconds();
+    const double start = bp_processor_seconds();
     do {
         BP_TRY(bp_render_step(render, &progress, err));
     } while (!progress.finished);
     bp_render_report(render, &after);
-    *seconds = after.device.type == BP_DEVICE_CPU ? processor_seconds() - start
+    *seconds = after.device.type == BP_DEVICE_CPU ? bp_processor_seconds() - start
                                                   : after.device_seconds - before.device_seconds;
     return BP_OK;
 }
@@ -70,11 +63,11 @@ static BpStatus open_render(const BpScene *scene, const BpRenderOptions *options
     BpStatus status;
     double first, second;
     BpRenderReport report;
-    const double wall = bp_clock_seconds(), processor = processor_seconds();
+    const double wall = bp_clock_seconds(), processor = bp_processor_seconds();
     BP_TRY(bp_render_create(scene, options, device, 1, render, err));
     start->wall = bp_clock_seconds() - wall;
     BP_TRY_GOTO(status, finish(*render, &first, err), failed);
-    start->processor = processor_seconds() - processor;
+    start->processor = bp_processor_seconds() - processor;
     BP_TRY_GOTO(status, bp_render_extend(*render, 2, err), failed);
     BP_TRY_GOTO(status, finish(*render, &second, err), failed);
     bp_render_report(*render, &report);

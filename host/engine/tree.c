@@ -5,6 +5,7 @@
 #define BP_HOST
 #include "tree.h"
 
+#include "../base/clock.h"
 #include "scene_types.h"
 #include "tree_binary.h"
 #include "tree_write.h"
@@ -12,7 +13,6 @@
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
-#include <time.h>
 
 /* A sphere whose box has more than this part of the area of the box around all others is met by so many rays,
  * and makes every box above it so large, that it is cheaper to test it always. */
@@ -34,12 +34,6 @@ typedef struct Scan {
     BpBounds *bounds;   /* one a block, without the candidates */
     BpTreeItem *items;  /* without the candidates */
 } Scan;
-
-static double now_seconds(void) {
-    struct timespec t;
-    clock_gettime(CLOCK_MONOTONIC, &t);
-    return (double)t.tv_sec + 1e-9 * (double)t.tv_nsec;
-}
 
 static bool larger(const BpScene *scene, uint32_t a, uint32_t b) {
     const double ra = fabs(scene->spheres[a].radius), rb = fabs(scene->spheres[b].radius);
@@ -170,7 +164,7 @@ cleanup:
 
 BpStatus bp_tree_build(const BpScene *scene, const double origin[3], const BpTreeOptions *options,
                        BpTree *tree, BpError *err) {
-    const double start = now_seconds();
+    const double start = bp_clock_seconds();
     const uint32_t width = options->width;
     *tree = (BpTree){.width = width, .single_precision = options->single_precision, .own_slot = NO_SLOT};
     if (width != 2 && width != 4 && width != 8 && width != 16)
@@ -186,7 +180,7 @@ BpStatus bp_tree_build(const BpScene *scene, const double origin[3], const BpTre
     if (status != BP_OK)
         bp_tree_clear(tree);
     else
-        tree->build_seconds = now_seconds() - start;
+        tree->build_seconds = bp_clock_seconds() - start;
     return status;
 }
 

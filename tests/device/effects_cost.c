@@ -4,6 +4,7 @@
  * The yardstick for building is the compiler's time for a small fixed kernel in the same run.
  *
  * effects_cost [all]: one scene for each set of effects that occurs in scenes/; or all scenes. */
+#include "base/clock.h"
 #include "engine/device.h"
 #include "engine/effect_costs.h"
 #include "scene/scene.h"
@@ -32,12 +33,6 @@ static const char yardstick[] =
     "    vstore8(sum, item, out);\n"
     "}\n";
 
-static double processor_seconds(void) {
-    struct timespec now;
-    clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &now);
-    return (double)now.tv_sec + 1e-9 * (double)now.tv_nsec;
-}
-
 static bool complain(const char *what, const BpError *err) {
     fprintf(stderr, "%s: %s\n%s\n", what, err->message, err->attachment != NULL ? err->attachment : "");
     return false;
@@ -54,7 +49,7 @@ static bool build_yardstick(const BpDeviceInfo *info, uint64_t mark, double *sec
     const cl_uint count = 4;
     const size_t items = 64;
     bool right = false;
-    const double start = processor_seconds();
+    const double start = bp_processor_seconds();
     snprintf(source, sizeof source, "typedef uint unknown_%llu;\n%s", (unsigned long long)mark, yardstick);
     if (bp_device_open(info, &device, err) != BP_OK) return complain("yardstick", err);
     if (bp_device_build(device, source, NULL, &program, NULL, err) != BP_OK) {
@@ -70,7 +65,7 @@ static bool build_yardstick(const BpDeviceInfo *info, uint64_t mark, double *sec
     if (code == CL_SUCCESS)
         code = clEnqueueNDRangeKernel(device->queue, kernel, 1, NULL, &items, NULL, 0, NULL, NULL);
     if (code == CL_SUCCESS) code = clFinish(device->queue);
-    *seconds = processor_seconds() - start;
+    *seconds = bp_processor_seconds() - start;
     right = code == CL_SUCCESS;
     if (!right) fprintf(stderr, "yardstick: %s\n", bp_cl_error_name(code));
 

@@ -12,7 +12,6 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-#include <time.h>
 
 enum { ROUNDS = 15, SPHERES_MAX = 256 };
 
@@ -51,23 +50,17 @@ static void make_scene(BpScene *scene, BpSphere *spheres, BpMaterial *material, 
     scene->sphere_count = count;
 }
 
-static double processor_seconds(void) {
-    struct timespec now;
-    clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &now);
-    return (double)now.tv_sec + 1e-9 * (double)now.tv_nsec;
-}
-
 static bool finish(BpRender *render, uint64_t samples, double *seconds, BpError *err) {
     BpProgress progress = {0};
     BpRenderReport before, after;
     if (bp_render_extend(render, samples, err) != BP_OK) return false;
     bp_render_report(render, &before);
-    const double start = processor_seconds();
+    const double start = bp_processor_seconds();
     do {
         if (bp_render_step(render, &progress, err) != BP_OK) return false;
     } while (!progress.finished);
     bp_render_report(render, &after);
-    *seconds = after.device.type == BP_DEVICE_CPU ? processor_seconds() - start
+    *seconds = after.device.type == BP_DEVICE_CPU ? bp_processor_seconds() - start
                                                   : after.device_seconds - before.device_seconds;
     return true;
 }
