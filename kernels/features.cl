@@ -45,10 +45,7 @@ __kernel void features(SCENE_PARAMETERS, uint first_pixel, uint pixel_count, uin
         Point point;
         look_up(&scene, &meeting, &centre, &radius, &surface, &emitted);
         surface_point(&paths.origin, paths.direction, meeting.t, meeting.enters, centre, radius, &point, &outward);
-        Vec3 albedo = surface.albedo;
-#if EFFECT_DIELECTRIC
-        albedo = choose3(has_kind(&surface, KIND_DIELECTRIC), vec3(splat(1), splat(1), splat(1)), albedo);
-#endif
+        const Vec3 albedo = surface.albedo;
         const Vec3 normal = choose3(meeting.enters, outward, scale3(splat(-1), outward));
         const reals values[FEATURE_FLOATS] = {dot3(point.high, forward), normal.x, normal.y,  normal.z,
                                               albedo.x,                  albedo.y, albedo.z, splat(1)};

@@ -96,8 +96,8 @@ static reals fresnel_schlick(reals c, reals n) {
     return fma(R(1.0) - r0, m2 * m2 * m, r0);
 }
 
-/* Chooses reflection with the probability of the reflectance, so the weight is 1. *lost: absorbed, where the scene
- * wants total reflection to absorb. */
+/* Chooses reflection with the probability of the reflectance, so the weight is the albedo, which is 1. *lost:
+ * absorbed, where the scene wants total reflection to absorb. */
 static Vec3 scatter_dielectric(const Surface *surface, SampleKey key, uints bounce, masks *refracted, masks *lost) {
     /* index of the far side over the near side */
     const reals n = choose(surface->enters, surface->refraction_index, splat(1) / surface->refraction_index);
@@ -157,7 +157,6 @@ static Scattering scatter(const Surface *surface, SampleKey key, uints depth) {
         masks refracted, lost;
         scattering.direction =
             choose3(glass, scatter_dielectric(surface, key, bounce, &refracted, &lost), scattering.direction);
-        scattering.weight = choose3(glass, vec3(splat(1), splat(1), splat(1)), scattering.weight);
         scattering.goes_on = scattering.goes_on | (glass & not_mask(lost));
         scattering.refracted = glass & refracted;
     }

@@ -177,8 +177,16 @@ cleanup:
     return status;
 }
 
-/* What the sphere in each slot is made of. Empty slots, and what scatters nothing or everything, are black.
- */
+/* What a sphere scatters of a primary colour: glass all, a lamp nothing, whatever colour a cloud gives. */
+static double scattered(const BpScene *scene, const BpSphere *sphere, size_t channel) {
+    const BpMaterial *material = &scene->materials[sphere->material];
+    if (material->kind == BP_MATERIAL_DIELECTRIC) return 1;
+    if (material->kind != BP_MATERIAL_LAMBERTIAN && material->kind != BP_MATERIAL_METAL) return 0;
+    return sphere->albedo == BP_NO_ALBEDO ? material->albedo[channel]
+                                          : (double)scene->albedos[sphere->albedo][channel];
+}
+
+/* What the sphere in each slot is made of. Empty slots are black. */
 static BpStatus pack_slots(const BpScene *scene, const uint32_t *second, BpPacked *packed, BpError *err) {
     const BpTree *tree = &packed->tree;
     const size_t slots = (size_t)tree->leaf_count * tree->width;
@@ -188,14 +196,11 @@ static BpStatus pack_slots(const BpScene *scene, const uint32_t *second, BpPacke
     for (size_t slot = 0; slot < slots; ++slot) {
         if (tree->slot_sphere[slot] == NO_SPHERE) continue;
         const BpSphere *sphere = &scene->spheres[tree->slot_sphere[slot]];
-        const BpMaterial *material = &scene->materials[sphere->material];
         packed->slot_material[slot] =
             is_inside_out(scene, sphere) ? second[sphere->material] : sphere->material;
-        if (material->kind != BP_MATERIAL_LAMBERTIAN && material->kind != BP_MATERIAL_METAL) continue;
         for (size_t a = 0; a < ALBEDO_REALS; ++a)
             bp_reals_store(packed->slot_albedo, packed->single_precision, ALBEDO_REALS * slot + a,
-                           sphere->albedo == BP_NO_ALBEDO ? material->albedo[a]
-                                                          : (double)scene->albedos[sphere->albedo][a]);
+                           scattered(scene, sphere, a));
     }
     return BP_OK;
 }
