@@ -155,7 +155,7 @@ typedef struct BpRenderOptions {
     uint32_t replicates;    /* K of the error estimate; 0: the default; 1: no estimate */
     /* For tests and tuning; 0 means: choose. None of these changes a picture. */
     uint32_t chunk_samples;  /* samples in one dispatch */
-    uint32_t local_size;     /* work-items in a work-group */
+    uint32_t local_size;     /* work-items in a work-group; at most 64 in the sample form */
     uint32_t tree_width;     /* children of a tree node: 2, 4, 8 or 16 */
     uint32_t packet_lanes;   /* paths that a work-item of the packet form follows at a time: 8 or 16 */
     bool force_list;         /* no tree, however many spheres */

@@ -4,8 +4,11 @@
  * `center` is 1 for rays through pixel centres only. */
 static void camera_ray(__global const PackedCamera *camera, uint center, SampleKey key, reals column, reals row,
                        Vec3 *origin, Vec3 *direction) {
-    reals x = splat(R(0.5)), y = splat(R(0.5));
-    if (center == 0) sample_2d(key, splat_uint(DIMENSION_PIXEL), &x, &y);
+    reals x, y;
+    sample_2d(key, splat_uint(DIMENSION_PIXEL), &x, &y);
+    /* Chosen, not branched to: see trace_sample.cl. */
+    x = center != 0 ? splat(R(0.5)) : x;
+    y = center != 0 ? splat(R(0.5)) : y;
     /* The pixel's corner first, the offset in it last: the offset keeps its bits in wide pictures. */
     const Vec3 right = splat3(camera->right), down = splat3(camera->down);
     const Vec3 corner = madd3(row, down, madd3(column, right, splat3(camera->corner)));

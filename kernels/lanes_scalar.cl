@@ -37,5 +37,6 @@
 #define load_lanes(array) ((array)[0])
 #define store_lanes(x, array) ((array)[0] = (x))
 #define uint_to_reals(x) ((real)(x))
+#define to_uints(x) ((uint)(int)(x))
 #define gather_reals(base, index) ((base)[index])
 #define gather_uints(base, index) ((base)[index])

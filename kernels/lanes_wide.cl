@@ -24,6 +24,7 @@
 #undef load_lanes
 #undef store_lanes
 #undef uint_to_reals
+#undef to_uints
 #undef gather_reals
 #undef gather_uints
 #undef LANE_COUNT
@@ -53,6 +54,7 @@
 #define splat_refined(x) ((refineds)(x))
 #define load_lanes(array) JOIN(vload, PACKET_LANES)(0, array)
 #define store_lanes(x, array) JOIN(vstore, PACKET_LANES)(x, 0, array)
+#define to_uints(x) JOIN(convert_uint, PACKET_LANES)(JOIN(convert_int, PACKET_LANES)(x))
 #define uint_to_reals(x) JOIN(JOIN(convert_, REAL), PACKET_LANES)(x)
 /* Tables have fewer than 2^31 entries, and some processors gather faster with signed offsets. */
 #define gather_8(base, index)                                                                                \

@@ -5,6 +5,8 @@
  *   REFINE_IS_DOUBLE  0 or 1: whether intersections are refined in double (always 1 with REAL_IS_DOUBLE)
  *   TREE_WIDTH        2, 4, 8 or 16: lanes of a tree node and of a leaf
  *   PACKET_LANES      8 or 16: paths that a work-item of the packet form follows at a time
+ *   SAMPLES_PER_ITEM  pixel samples that it traces in all
+ *   GROUP_MAX         work-items in a work-group of the sample form, at most
  *   NUMERICS_ROBUST   1: refine.cl decides; 0: plain.cl
  *   EFFECT_...        0 or 1, one for each effect
  *

@@ -7,7 +7,8 @@
  * double: Taylor series). Plain arithmetic, so one lane and eight give the same bits on every device. */
 static void sin_cos_turn(reals u, reals *sine, reals *cosine) {
     const reals turns4 = u * R(4.0);
-    const reals quarter = floor(turns4 + R(0.5));
+    /* Whole part of what is positive: some drivers' floor() takes a dozen steps and two branches. */
+    const reals quarter = uint_to_reals(to_uints(turns4 + R(0.5)));
     const reals f = turns4 - quarter;
     const reals z = f * f;
 #if REAL_IS_DOUBLE

@@ -1,12 +1,9 @@
-/* trace.cl: the bounce loop, in lane code, and the kernel around it.
+/* trace.cl: how paths begin and how they go on by one segment, in lane code.
  *
- * In:    the packed scene; a chunk: a range of pixels (or of a list of pixels) times a range of samples.
- * Out:   for each pixel sample its radiance, and in a fourth number the ray segments traced, plus 1/2 for a path
- *        that the depth cap cut.
- *
- * One lane: a work-item traces one pixel sample. Eight lanes: a work-item takes `samples_per_item` pixel samples of
- * the chunk, eight at a time; a lane whose path has ended takes the next. What is computed for a pixel sample
- * depends on neither. */
+ * The kernel around it is in trace_sample.cl or trace_packet.cl. Both are given the packed scene and a chunk: a range
+ * of pixels (or of a list of pixels) times a range of samples. Both write for each pixel sample of the chunk its
+ * radiance, and in a fourth number the ray segments traced, plus 1/2 for a path that the depth cap cut. What is
+ * computed for a pixel sample depends on neither of them. */
 
 /* One segment of every living path: intersect, collect radiance, scatter. */
 static void advance(const Scene *scene, Paths *paths) {
@@ -90,11 +87,9 @@ static Scene begin_scene(__global const PackedSky *sky, __global const PackedMat
     return scene;
 }
 
-/* Sets the lanes of `fresh` to the beginning of the path of their pixel sample; row and column are whole numbers. */
-static void begin_paths(__global const PackedCamera *camera, uint pixel_center, SampleKey key, reals column, reals row,
-                        masks fresh, Paths *paths) {
-    Vec3 origin, direction;
-    camera_ray(camera, pixel_center, key, column, row, &origin, &direction);
+/* Sets the lanes of `fresh` to the beginning of a path: a camera ray, and the key of its pixel sample. */
+static void set_out(__global const PackedCamera *camera, SampleKey key, Vec3 origin, Vec3 direction, masks fresh,
+                    Paths *paths) {
     paths->origin.high = choose3(fresh, origin, paths->origin.high);
     paths->origin.low = choose3(fresh, zero3(), paths->origin.low);
     paths->origin.slack = choose(fresh, splat(camera->own_slot[2]), paths->origin.slack);
@@ -117,64 +112,14 @@ static void begin_paths(__global const PackedCamera *camera, uint pixel_center, 
     paths->alive = paths->alive | fresh;
 }
 
-__kernel void trace(SCENE_PARAMETERS, uint first_pixel, uint first_sample, uint samples_per_pixel, uint sample_count,
-                    uint samples_per_item, __global real *samples PIXEL_LIST_PARAMETER) {
-    const Scene scene = begin_scene(SCENE_ARGUMENTS);
-    const uint item = get_global_id(0);
-    uint next = item * samples_per_item;
-    const uint end = min(next + samples_per_item, sample_count);
-    if (next >= end) return;
-    /* The pixel sample that `next` stands for. */
-    Pixel pixel = pixel_of_chunk(first_pixel, next / samples_per_pixel, sample_count / samples_per_pixel,
-                                 width PIXEL_LIST_ARGUMENT);
-    uint sample = next % samples_per_pixel;
-
-    Paths paths;
-    paths.alive = splat(0) != splat(0);
-    paths.depth = splat_uint(0);
-    paths.radiance = zero3();
-    masks cut = paths.alive;      /* lanes whose path the cap has ended, black for what is missing */
-    uints number = splat_uint(0); /* of a lane's pixel sample within the chunk */
-    const uint lanes = min((uint)LANE_COUNT, end - next); /* that ever have one */
-    uint used = 0;
-    for (;;) {
-        const masks reached = paths.alive & mask_of_uint(paths.depth >= splat_uint(max_depth));
-        cut = cut | reached;
-        paths.alive = paths.alive & not_mask(reached);
-
-        /* Once half of the lanes are free: results out, the next pixel samples in. */
-        const uint alive = popcount(set_of_lanes(paths.alive));
-        if (alive == 0 || (alive <= LANE_COUNT / 2 && next < end)) {
-            real red[LANE_COUNT], green[LANE_COUNT], blue[LANE_COUNT], count[LANE_COUNT];
-            uint place[LANE_COUNT];
-            store_lanes(paths.radiance.x, red);
-            store_lanes(paths.radiance.y, green);
-            store_lanes(paths.radiance.z, blue);
-            store_lanes(uint_to_reals(paths.depth) + choose(cut, splat(R(0.5)), splat(0)), count);
-            store_lanes(number, place);
-            /* Of a path that goes on this is not the last word, but its place is its own, and to ask costs more. */
-            for (uint lane = 0; lane < used; ++lane)
-                vstore4((real4)(red[lane], green[lane], blue[lane], count[lane]), place[lane], samples);
-            if (next >= end) return;
-            used = lanes;
-            /* The free lanes take the next pixel samples, the lowest lane first. */
-            const uint free = set_of_lanes(not_mask(paths.alive));
-            const uints rank = popcount(splat_uint(free) & RANK_BITS);
-            const masks fresh = not_mask(paths.alive) & mask_of_uint(rank < splat_uint(end - next));
-            number = choose_uint(fresh, next + rank, number);
-            uints sample_number = sample + rank, ahead = splat_uint(0);
-            carry_over(&sample_number, samples_per_pixel, &ahead);
-            const Pixels pixels = pixels_ahead(&pixel, ahead, width);
-            const uint taken = min((uint)popcount(free), end - next);
-            next += taken;
-            for (sample += taken; sample >= samples_per_pixel; sample -= samples_per_pixel) next_pixel(&pixel, width);
-            const SampleKey key = sample_key(seed_low, seed_high, pixels.row * width + pixels.column,
-                                             first_sample + sample_number, replicates);
-            begin_paths(camera, pixel_center, key, uint_to_reals(pixels.column), uint_to_reals(pixels.row), fresh,
-                        &paths);
-            cut = cut & not_mask(fresh);
-            continue; /* a cap of 0 cuts at once */
-        }
-        advance(&scene, &paths);
-    }
+/* The same for the pixel sample at a row and a column, whole numbers. */
+static void begin_paths(__global const PackedCamera *camera, uint pixel_center, SampleKey key, reals column, reals row,
+                        masks fresh, Paths *paths) {
+    Vec3 origin, direction;
+    camera_ray(camera, pixel_center, key, column, row, &origin, &direction);
+    set_out(camera, key, origin, direction, fresh, paths);
 }
+
+#define TRACE_PARAMETERS                                                                                     \
+    SCENE_PARAMETERS, uint first_pixel, uint first_sample, uint samples_per_pixel, uint sample_count,            \
+        __global real *samples PIXEL_LIST_PARAMETER

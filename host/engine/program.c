@@ -12,16 +12,18 @@
 /* The order in which the files stand in a program. A lane file says for how many lanes what follows is meant;
  * refine.cl serves single rays in tree.cl and, below lanes_wide.cl, all lanes together. */
 static const char *const sample_files[] = {
-    "real.cl",   "scene_types.h", "lane_set.cl", "lanes_scalar.cl", "refine.cl",   "box_ray.cl",
-    "tree.cl",   "vector.cl",     "rng.cl",      "sampler.cl",      "sampling.cl", "surface.cl",
-    "sky.cl",    "camera.cl",     "material.cl", "paths.cl",        "meet.cl",     "look_up.cl",
-    "pixels.cl", "trace.cl",      "fold.cl",     "probe.cl",        NULL};
+    "real.cl",   "scene_types.h", "lane_set.cl",     "lanes_scalar.cl", "refine.cl",   "box_ray.cl",
+    "tree.cl",   "vector.cl",     "rng.cl",          "sampler.cl",      "sampling.cl", "surface.cl",
+    "sky.cl",    "camera.cl",     "material.cl",     "paths.cl",        "meet.cl",     "look_up.cl",
+    "pixels.cl", "trace.cl",      "trace_sample.cl", "fold.cl",         "probe.cl",    NULL};
 static const char *const packet_files[] = {
-    "real.cl",    "scene_types.h", "lane_set.cl", "lanes_scalar.cl", "refine.cl", "box_ray.cl",
-    "tree.cl",    "lanes_wide.cl", "refine.cl",   "box_ray.cl",      "vector.cl", "rng.cl",
-    "sampler.cl", "sampling.cl",   "surface.cl",  "sky.cl",          "camera.cl", "material.cl",
-    "paths.cl",   "rounds.cl",     "meet.cl",     "look_up.cl",      "pixels.cl", "trace.cl",
-    "fold.cl",    "probe.cl",      NULL};
+    "real.cl",         "scene_types.h", "lane_set.cl", "lanes_scalar.cl",
+    "refine.cl",       "box_ray.cl",    "tree.cl",     "lanes_wide.cl",
+    "refine.cl",       "box_ray.cl",    "vector.cl",   "rng.cl",
+    "sampler.cl",      "sampling.cl",   "surface.cl",  "sky.cl",
+    "camera.cl",       "material.cl",   "paths.cl",    "rounds.cl",
+    "meet.cl",         "look_up.cl",    "pixels.cl",   "trace.cl",
+    "trace_packet.cl", "fold.cl",       "probe.cl",    NULL};
 
 /* A text that grows. `failed` remembers an allocation that did not succeed. */
 typedef struct Text {
@@ -95,8 +97,12 @@ BpStatus bp_program_source(const BpProgramOptions *options, const char *extra_na
     text_print(&text, "#define REAL_IS_DOUBLE %d\n", all_double);
     text_print(&text, "#define REFINE_IS_DOUBLE %d\n", all_double || (options->double_refine && !plain));
     text_print(&text, "#define TREE_WIDTH %u\n", options->tree_width);
-    if (options->form == BP_KERNEL_PACKET)
+    if (options->form == BP_KERNEL_PACKET) {
         text_print(&text, "#define PACKET_LANES %u\n", options->packet_lanes);
+        text_print(&text, "#define SAMPLES_PER_ITEM %uu\n", BP_PACKET_SAMPLES_PER_ITEM);
+    } else {
+        text_print(&text, "#define GROUP_MAX %uu\n", BP_SAMPLE_GROUP_MAX);
+    }
     text_print(&text, "#define NUMERICS_ROBUST %d\n", !plain);
     text_print(&text, "#define SAMPLER_SOBOL %d\n", options->sampler == BP_SAMPLER_SOBOL);
     text_print(&text, "#define PIXEL_LIST %d\n", options->pixel_list);

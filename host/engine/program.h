@@ -19,6 +19,13 @@ const char *bp_kernel_file(const char *name);
  * *text. BP_ERR_FILE: there is no such file. */
 BpStatus bp_kernel_text(const char *name, char **text, BpError *err);
 
+/* A work-item of the packet form traces this many pixel samples, as many at a time as it has lanes: enough
+ * that the last, partly filled round weighs little, few enough that a small chunk still keeps all cores busy.
+ */
+#define BP_PACKET_SAMPLES_PER_ITEM 512u
+/* Work-items in a work-group of the sample form, at most: they share an array of this length. */
+#define BP_SAMPLE_GROUP_MAX 64u
+
 typedef struct BpProgramOptions {
     uint32_t effects; /* bits of effects.h */
     BpPrecision precision;

@@ -24,13 +24,13 @@ static BpStatus set_argument(BpWorker *worker, cl_kernel kernel, cl_uint index, 
     return BP_OK;
 }
 
-/* Places of the arguments that change with the chunk; trace.cl and fold.cl declare them in this order. */
+/* Places of the arguments that change with the chunk; TRACE_PARAMETERS and fold.cl declare them in this
+ * order. */
 enum {
     TRACE_FIRST_PIXEL = BP_WORKER_SCENE_ARGUMENTS,
     TRACE_FIRST_SAMPLE,
     TRACE_SAMPLES,
     TRACE_COUNT,
-    TRACE_PER_ITEM,
     TRACE_OUT,
     TRACE_LIST
 };
@@ -76,6 +76,7 @@ static BpStatus create_kernels(BpWorker *worker, const BpWorkerSetup *setup, BpE
                          : packet               ? BP_LOCAL_SIZE_PACKET
                                                 : BP_LOCAL_SIZE_SAMPLE;
     size_t most = 0;
+    if (!packet && worker->local_size > BP_SAMPLE_GROUP_MAX) worker->local_size = BP_SAMPLE_GROUP_MAX;
     CL_TRY(worker,
            clGetKernelWorkGroupInfo(worker->trace, worker->device->id, CL_KERNEL_WORK_GROUP_SIZE, sizeof most,
                                     &most, NULL),
@@ -236,7 +237,6 @@ BpStatus bp_worker_start(BpWorker *worker, const BpChunk *chunk, BpError *err) {
         {worker->trace, TRACE_FIRST_SAMPLE, sizeof(cl_uint), &first_sample},
         {worker->trace, TRACE_SAMPLES, sizeof(cl_uint), &chunk->samples},
         {worker->trace, TRACE_COUNT, sizeof(cl_uint), &count},
-        {worker->trace, TRACE_PER_ITEM, sizeof(cl_uint), &worker->samples_per_item},
         {worker->trace, TRACE_OUT, sizeof(cl_mem), &worker->samples},
         {worker->fold, FOLD_IN, sizeof(cl_mem), &worker->samples},
         {worker->fold, FOLD_PIXELS, sizeof(cl_uint), &chunk->pixel_count},

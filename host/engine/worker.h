@@ -26,9 +26,7 @@ typedef struct BpWorkerSetup {
     uint64_t build_mark;                 /* 0, or a number that makes the source a new one */
 } BpWorkerSetup;
 
-/* One work-item of the lane form follows this many pixel samples, eight at a time: enough that the last,
- * partly filled round weighs little, few enough that a small chunk still keeps all cores busy. */
-#define BP_PACKET_SAMPLES_PER_ITEM 512u
+/* Work-items in a work-group, where nobody wants another number. */
 #define BP_LOCAL_SIZE_SAMPLE 64u
 #define BP_LOCAL_SIZE_PACKET 1u
 

@@ -21,8 +21,8 @@ if shutil.which("oclgrind") is None:
     sys.exit(77)
 
 # A kernel that does read what nobody wrote: the check must see it.
-PLACE = "        const masks reached ="
-PLANTED = "        uint unwritten[1];\n        if (unwritten[0] == 0xffffffffu) cut = not_mask(cut);\n" + PLACE
+PLACE = "    const real cut ="
+PLANTED = "    uint unwritten[1];\n    if (unwritten[0] == 0xffffffffu) path.alive = !path.alive;\n" + PLACE
 
 def reports(scene, folder, environment=None, check="--uninitialized"):
     """(kernel, report) of every report; the run itself must succeed."""
@@ -42,9 +42,9 @@ def reports(scene, folder, environment=None, check="--uninitialized"):
 with tempfile.TemporaryDirectory() as folder:
     kernels = pathlib.Path(folder, "kernels")
     shutil.copytree(scenes.parent / "kernels", kernels)
-    trace = (kernels / "trace.cl").read_text()
-    assert trace.count(PLACE) == 1, "the place for the planted fault is gone from trace.cl"
-    (kernels / "trace.cl").write_text(trace.replace(PLACE, PLANTED))
+    trace = (kernels / "trace_sample.cl").read_text()
+    assert trace.count(PLACE) == 1, "the place for the planted fault is gone from trace_sample.cl"
+    (kernels / "trace_sample.cl").write_text(trace.replace(PLACE, PLANTED))
 
     found = reports("v4-21-view-zoom.json", folder, dict(os.environ, BALLPARK_KERNELS=str(kernels)))
     assert any(kernel == "trace" for kernel, _ in found), "a planted fault was not reported"

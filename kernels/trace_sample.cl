@@ -1,0 +1,71 @@
+/* trace_sample.cl: the kernel of the one-path form: a work-item traces one pixel sample. In and out: trace.cl.
+ *
+ * The paths of a work-group set out together, then each goes its way. Where a camera ray comes from takes no branch, so
+ * compilers for processors can make those of a group in vector lanes, if nothing else stands between: hence the barrier,
+ * and the numbers in memory, one array a component. */
+
+typedef struct Starts {
+    real origin_x[GROUP_MAX], origin_y[GROUP_MAX], origin_z[GROUP_MAX];
+    real direction_x[GROUP_MAX], direction_y[GROUP_MAX], direction_z[GROUP_MAX];
+    uint key_a[GROUP_MAX], key_b[GROUP_MAX];
+#if SAMPLER_SOBOL
+    uint index_reversed[GROUP_MAX], scramble_a[GROUP_MAX], scramble_b[GROUP_MAX];
+#endif
+} Starts;
+
+static void put_start(SampleKey key, Vec3 origin, Vec3 direction, uint place, __local Starts *starts) {
+    starts->origin_x[place] = origin.x;
+    starts->origin_y[place] = origin.y;
+    starts->origin_z[place] = origin.z;
+    starts->direction_x[place] = direction.x;
+    starts->direction_y[place] = direction.y;
+    starts->direction_z[place] = direction.z;
+    starts->key_a[place] = key.a;
+    starts->key_b[place] = key.b;
+#if SAMPLER_SOBOL
+    starts->index_reversed[place] = key.index_reversed;
+    starts->scramble_a[place] = key.scramble_a;
+    starts->scramble_b[place] = key.scramble_b;
+#endif
+}
+
+static void take_start(const __local Starts *starts, uint place, SampleKey *key, Vec3 *origin, Vec3 *direction) {
+    *origin = vec3(starts->origin_x[place], starts->origin_y[place], starts->origin_z[place]);
+    *direction = vec3(starts->direction_x[place], starts->direction_y[place], starts->direction_z[place]);
+    key->a = starts->key_a[place];
+    key->b = starts->key_b[place];
+#if SAMPLER_SOBOL
+    key->index_reversed = starts->index_reversed[place];
+    key->scramble_a = starts->scramble_a[place];
+    key->scramble_b = starts->scramble_b[place];
+#endif
+}
+
+__kernel void trace(TRACE_PARAMETERS) {
+    __local Starts starts;
+    const uint item = get_global_id(0), place = get_local_id(0);
+    {
+        /* Work-items beyond the chunk begin its last path once more, and leave it there. */
+        const uint number = min(item, sample_count - 1);
+        const uint ahead = number / samples_per_pixel;
+        const Pixel pixel = pixel_of_chunk(first_pixel, ahead, sample_count / samples_per_pixel,
+                                           width PIXEL_LIST_ARGUMENT);
+        const SampleKey key = sample_key(seed_low, seed_high, pixel.row * width + pixel.column,
+                                         first_sample + number - ahead * samples_per_pixel, replicates);
+        Vec3 origin, direction;
+        camera_ray(camera, pixel_center, key, (real)pixel.column, (real)pixel.row, &origin, &direction);
+        put_start(key, origin, direction, place, &starts);
+    }
+    barrier(CLK_LOCAL_MEM_FENCE);
+    if (item >= sample_count) return;
+    const Scene scene = begin_scene(SCENE_ARGUMENTS);
+    SampleKey key;
+    Vec3 origin, direction;
+    take_start(&starts, place, &key, &origin, &direction);
+    Paths path;
+    path.inward = path.alive = 0;
+    set_out(camera, key, origin, direction, 1, &path);
+    while (path.alive && path.depth < max_depth) advance(&scene, &path);
+    const real cut = path.alive ? R(0.5) : R(0.0);
+    vstore4((real4)(path.radiance.x, path.radiance.y, path.radiance.z, (real)path.depth + cut), item, samples);
+}
