@@ -36,14 +36,13 @@ static void init_rule(const BpCommandLine *line, const BpRenderOptions *options,
     rule->adaptive = line->adaptive;
 }
 
-/* Below twice what every pixel gets there is next to nothing to decide. */
 static BpStatus check_adaptive(const BpCommandLine *line, const BpStopRule *rule, BpError *err) {
-    if (!line->adaptive || rule->samples_max >= 2 * BP_ADAPTIVE_FIRST) return BP_OK;
+    if (!line->adaptive || rule->samples_max >= BP_ADAPTIVE_MEAN_MIN) return BP_OK;
     return bp_fail(
         err, BP_ERR_USAGE,
         "--adaptive with %" PRIu64 " sample%s a pixel: the first %u go to every pixel, so that only more "
         "can go where the error is; ask for --spp %u at least, or for --error or --time",
-        rule->samples_max, rule->samples_max == 1 ? "" : "s", BP_ADAPTIVE_FIRST, 2 * BP_ADAPTIVE_FIRST);
+        rule->samples_max, rule->samples_max == 1 ? "" : "s", BP_ADAPTIVE_FIRST, BP_ADAPTIVE_MEAN_MIN);
 }
 
 static void print_summary(const BpRunResult *result, const BpStopRule *rule, const BpLoopEnd *end) {

@@ -1,6 +1,8 @@
 /* fit.c: the law of the error, the front of best choices, the advice; see parts.h. */
 #include "parts.h"
 
+#include "../engine/adaptive.h"
+
 #include <math.h>
 
 /* What makes a setting better than the base by more than the clock's scatter. */
@@ -125,6 +127,8 @@ void bp_study_advise(BpStudyResult *result) {
             const double samples = samples_for(series, targets[t] * targets[t]);
             const double seconds = samples * pixels * series->seconds_per_sample;
             if (!(samples > 0) || !(seconds < least)) continue;
+            /* So few make the same picture as without, and render refuses them. */
+            if (series->setting.options.adaptive && samples < BP_ADAPTIVE_MEAN_MIN) continue;
             *advice = (BpStudyAdvice){targets[t], true, s, samples, seconds};
             least = s == 0 ? CLEARLY_SOONER * seconds : seconds;
         }

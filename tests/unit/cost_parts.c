@@ -279,6 +279,29 @@ static void test_advice(void **state) {
     assert_true(result.series[3].points[1].front);
 }
 
+/* What render would refuse is no advice: adaptive sampling begins at 32 samples a pixel. */
+static void test_advice_can_be_followed(void **state) {
+    (void)state;
+    static BpStudyResult result;
+    static BpScene scene;
+    scene.camera.width = scene.camera.height = 10;
+    result.scene = &scene;
+    result.full_width = result.full_height = 10;
+    result.count = 2;
+    set_series(&result.series[0], 0.05, 1, 0);
+    set_series(&result.series[1], 0.025, 0.5, 0); /* V = 1/16, in half of the time */
+    result.series[1].setting.options.adaptive = true;
+    bp_study_summarize(&result);
+    assert_int_equal(result.advice[0].series, 0); /* 5 %: 25 of those */
+    assert_true(result.advice[0].samples == 100);
+    assert_int_equal(result.advice[1].series, 1); /* 1 % */
+    assert_true(result.advice[1].samples == 625);
+    result.series[1].setting.options.adaptive = false;
+    bp_study_advise(&result);
+    assert_int_equal(result.advice[0].series, 1);
+    assert_true(result.advice[0].samples == 25);
+}
+
 /* ---- the settings ---- */
 
 static const BpStudySetting *find(const BpStudySetting *settings, size_t count, const char *name) {
@@ -339,10 +362,15 @@ static void test_settings(void **state) {
 
 int main(void) {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_fit_exact),      cmocka_unit_test(test_fit_noisy),
-        cmocka_unit_test(test_fit_limits),     cmocka_unit_test(test_errors),
-        cmocka_unit_test(test_errors_by_hand), cmocka_unit_test(test_paired),
-        cmocka_unit_test(test_unpaired),       cmocka_unit_test(test_advice),
+        cmocka_unit_test(test_fit_exact),
+        cmocka_unit_test(test_fit_noisy),
+        cmocka_unit_test(test_fit_limits),
+        cmocka_unit_test(test_errors),
+        cmocka_unit_test(test_errors_by_hand),
+        cmocka_unit_test(test_paired),
+        cmocka_unit_test(test_unpaired),
+        cmocka_unit_test(test_advice),
+        cmocka_unit_test(test_advice_can_be_followed),
         cmocka_unit_test(test_settings),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
