@@ -200,7 +200,7 @@ class Page(ProgramTest):
         self.assertEqual([e["text"] for e in dom.elements if e["attributes"].get("class") == "lead"], [TITLE])
 
         self.check_dots(dom)
-        self.check_pictures(dom, ways, counts)
+        self.check_pictures(dom, result)
         self.check_schemes()
         self.check_the_checks(source, result)
 
@@ -215,22 +215,31 @@ class Page(ProgramTest):
             for at, pixels in known:
                 self.assertAlmostEqual(pixels, first + (last - first) * (at - low) / (high - low), delta=0.05)
 
-    def check_pictures(self, dom, ways, counts):
+    def check_pictures(self, dom, result):
         """A crop and a map of every count, of the truth, and of every other way."""
-        self.assertEqual(len(dom.images), 2 * (counts + 1 + ways - 1))
+        counts = [point["samples"] for point in result["series"][0]["points"]]
+        names = ["base"] * len(counts) + ["truth"] + [way["name"] for way in result["series"][1:]]
+        self.assertEqual(len(dom.images), 2 * len(names))
         crops = []
-        for image in dom.images:
+        for number, image in enumerate(dom.images):
             kind, _, data = image["src"].partition(",")
             self.assertEqual(kind, "data:image/png;base64")
             width, height, channels, rows = decode_png(base64.b64decode(data, validate=True))
             self.assertEqual((width, height, channels), (48, 48, 3))
             self.assertEqual((image["width"], image["height"]), ("48", "48"))
-            self.assertGreater(len({row[i:i + 3] for row in rows for i in range(0, len(row), 3)}), 50)
+            # Where nothing but noise is wrong, a fast machine's map is nearly black: few shades are left.
+            name, is_map = names[number // 2], number % 2 == 1
+            noise_alone = is_map and name in ("truth", "everything right", "exact Fresnel")
+            shades = len({row[i:i + 3] for row in rows for i in range(0, len(row), 3)})
+            self.assertGreater(shades, 3 if noise_alone else 50, name)
             crops.append(sum(map(sum, rows)) / (3 * width * height))
-        # Maps of more samples are darker: the error falls.
-        maps = crops[1:2 * counts:2]
-        self.assertEqual(maps, sorted(maps, reverse=True))
-        self.assertLess(maps[-1], 0.8 * maps[0])
+        # Maps of more samples are darker: the error falls, until Schlick's is all that is left. How many counts
+        # there are is a matter of the machine's speed and of what its kernel cache holds; two there are in any case.
+        maps = dict(zip(counts, crops[1::2]))
+        for count, next_count in zip(counts, counts[1:]):
+            self.assertLess(maps[next_count], (0.97 if count < 64 else 1.01) * maps[count], (count, maps))
+        if 64 in maps:
+            self.assertLess(maps[64], 0.8 * maps[4])
 
     def check_schemes(self):
         shades = {}
