@@ -5,8 +5,9 @@ usage: gate.py PROGRAM BOOK_PEER [--record] [--demand FACTOR]
 
 Both take turns; rates are ray segments for a second of processor time, so that other work on the machine hardly
 shows, and the figure judged is the median of the rounds' ratios. It fails when a ratio lies more than 15 % below the
-recorded one, twice. The records (recorded.json) go by the device's name, since a ratio belongs to a machine: where none is
-recorded, nothing is judged and the exit code is 77. --record writes this machine's; do so when ballpark became faster.
+recorded one, twice. The records (recorded.json) go by the device's name and the processor's family and model, since a
+ratio belongs to a machine, and hypervisors give many the same name: where none is recorded, nothing is judged and the
+exit code is 77. --record writes this machine's; do so when ballpark became faster.
 --demand multiplies the records, and then exits with 0 only if the gate fails: the test of the gate.
 """
 import json
@@ -27,10 +28,22 @@ def call(command):
     return json.loads(subprocess.run(command, check=True, capture_output=True, text=True).stdout)
 
 
+def processor():
+    """Which one it is, in numbers: its maker's, on x86 or Arm; "" where the system does not tell."""
+    wanted = ("vendor_id", "cpu family", "model", "CPU implementer", "CPU part")
+    try:
+        with open("/proc/cpuinfo") as file:
+            first = file.read().split("\n\n")[0]
+    except OSError:
+        return ""
+    lines = [[part.strip() for part in line.partition(":")[::2]] for line in first.splitlines()]
+    return "".join(f", {name} {value}" for name, value in lines if name in wanted)
+
+
 def rate_of_ours(program, path, kernel):
     report = call([program, "bench", path, "--kernel", kernel, "--sampler", "independent", "--device", "cpu", "--rounds",
                    "1", "--time", str(SECONDS), "--quiet", "--json", "-"])
-    device = f"{report['device']['name']}, {report['device']['platform']} {report['device']['driver']}"
+    device = f"{report['device']['name']}, {report['device']['platform']} {report['device']['driver']}{processor()}"
     return 1e9 / report["scenes"][0]["cpu_nanoseconds_per_segment"]["median"], device
 
 
