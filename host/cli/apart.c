@@ -2,6 +2,7 @@
 #include "apart.h"
 
 #include "../engine/pocl.h"
+#include "interrupt.h"
 
 #include <errno.h>
 #include <signal.h>
@@ -14,6 +15,7 @@
 enum { CHILD_DONE = 0, CHILD_FAILED = 1 };
 
 static _Noreturn void be_child(bool (*work)(void *argument, FILE *out), void *argument, int descriptor) {
+    bp_interrupt_install(); /* the thread that waits for signals has stayed with the parent */
     FILE *out = fdopen(descriptor, "w");
     if (out == NULL) _exit(CHILD_FAILED);
     const bool good = work(argument, out);

@@ -1,19 +1,19 @@
 /* interrupt.c: see interrupt.h. */
 #include "interrupt.h"
 
+#include <pthread.h>
 #include <signal.h>
-#include <string.h>
+#include <stdatomic.h>
+#include <stddef.h>
 #include <time.h>
 #include <unistd.h>
 
 enum { NOTHING_TO_SAVE = -1, SAME_KEY_MS = 250, EXIT_INTERRUPTED = 130 };
 
 /* NOTHING_TO_SAVE; or 0: no signal yet; or the time of the first one, in milliseconds, with bit 0 set. */
-static volatile sig_atomic_t interrupted_ms = NOTHING_TO_SAVE;
+static atomic_int interrupted_ms = NOTHING_TO_SAVE;
 
-/* clock_gettime and _exit may be called in a signal handler (POSIX.1-2017, 2.4.3). */
-static void on_signal(int signal_number) {
-    (void)signal_number;
+static void note_signal(void) {
     struct timespec now;
     clock_gettime(CLOCK_MONOTONIC, &now);
     const int now_ms = (int)((now.tv_sec % 1000000) * 1000 + now.tv_nsec / 1000000) | 1;
@@ -23,23 +23,43 @@ static void on_signal(int signal_number) {
     if (first_ms == 0) interrupted_ms = now_ms;
 }
 
+static sigset_t watched_signals(void) {
+    sigset_t set;
+    sigemptyset(&set);
+    sigaddset(&set, SIGINT);
+    sigaddset(&set, SIGTERM);
+    return set;
+}
+
+static void *watch(void *unused) {
+    (void)unused;
+    const sigset_t set = watched_signals();
+    int number;
+    for (;;)
+        if (sigwait(&set, &number) == 0) note_signal();
+    return NULL;
+}
+
+/* A thread waits for the signals, and every other one holds them off. A handler would not do: Ctrl-C reaches
+ * every process of the terminal, and a driver's linker, which starts with this process's mask but not with
+ * its handlers, would die of it and take the driver and us along; and a driver's compiler (LLVM) puts
+ * handlers of its own before ours. */
 void bp_interrupt_install(void) {
-    struct sigaction action;
-    memset(&action, 0, sizeof action);
-    action.sa_handler = on_signal;
-    action.sa_flags = SA_RESTART;
-    sigemptyset(&action.sa_mask);
-    sigaction(SIGINT, &action, NULL);
-    sigaction(SIGTERM, &action, NULL);
+    const sigset_t set = watched_signals();
+    pthread_t watcher;
+    /* Ignored ones, as a shell leaves them to what it runs in the background, need not become pending. */
+    signal(SIGINT, SIG_DFL);
+    signal(SIGTERM, SIG_DFL);
+    pthread_sigmask(SIG_BLOCK, &set, NULL);
+    if (pthread_create(&watcher, NULL, watch, NULL) == 0)
+        pthread_detach(watcher);
+    else
+        pthread_sigmask(SIG_UNBLOCK, &set, NULL); /* they end the program, as they do by default */
 }
 
 void bp_interrupt_catch(void) {
-    if (interrupted_ms != NOTHING_TO_SAVE) return;
-    interrupted_ms = 0;
-    /* A driver's compiler (LLVM) may by now have put a handler of its own before this one, and while that
-     * runs a second signal ends the program. It has done its work: kernels are built before there is anything
-     * to save. */
-    bp_interrupt_install();
+    int before = NOTHING_TO_SAVE;
+    atomic_compare_exchange_strong(&interrupted_ms, &before, 0);
 }
 
 bool bp_interrupted(void) {

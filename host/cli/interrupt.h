@@ -1,6 +1,6 @@
 /* interrupt.h: Ctrl-C and SIGTERM, noticed instead of obeyed at once.
  *
- * Knows: signals.   Does not know: what is interrupted.
+ * Knows: signals, the thread that waits for them.   Does not know: what is interrupted.
  *
  * The flag that the signals set is the only global of the program. At first there is nothing to save, and a
  * signal ends the program with code 130. A command that has something worth saving calls
@@ -10,7 +10,8 @@
 
 #include <stdbool.h>
 
-/* For main, once, before anything else. */
+/* For main, once, before anything else: threads and processes that are started later hold the signals off.
+ * And for a process that was forked and is to be interrupted like this one. */
 void bp_interrupt_install(void);
 
 /* From now on the first signal is noted, and the second ends the program at once. (Signals within a quarter

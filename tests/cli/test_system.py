@@ -1,6 +1,11 @@
 """What the system lacks is said, with the remedy: a linker for PoCL, a folder for its kernels."""
 
 import os
+import shutil
+import signal
+import subprocess
+import sys
+import time
 import unittest
 
 import cli
@@ -29,6 +34,32 @@ class System(cli.ProgramTest):
         result = self.run_program("check", "x.json", "--device", "all", environment=here)
         self.assertEqual(result.returncode, 1)
         self.assertIn("install binutils", result.stdout.decode() + result.errors)
+
+    def test_control_c_spares_the_linker(self):
+        """The key reaches every process of the terminal; a linker that dies of it would take PoCL and us along."""
+        real = shutil.which("ld")
+        if real is None:
+            self.skipTest("there is no linker")
+        self.write("bin/ld", f"#!{sys.executable}\n"
+                             "import os, sys, time\n"
+                             f"open({self.path('began')!r}, 'w').close()\n"
+                             f"while not os.path.exists({self.path('may-end')!r}):\n"
+                             "    time.sleep(0.01)\n"
+                             f"os.execv({real!r}, ['ld', *sys.argv[1:]])\n")
+        os.chmod(self.path("bin/ld"), 0o755)
+        here = dict(self.environment, PATH=self.path("bin") + ":" + os.environ["PATH"], POCL_CACHE_DIR=self.path("cache"))
+        process = subprocess.Popen([cli.PROGRAM, "check", "x.json", "--device", "portable", "--quiet"], cwd=self.folder,
+                                   env=here, stderr=subprocess.PIPE, start_new_session=True)
+        while process.poll() is None and "began" not in self.files():
+            time.sleep(0.01)
+        if "began" not in self.files():
+            process.communicate()
+            self.skipTest("this PoCL needs no linker")
+        os.killpg(process.pid, signal.SIGINT)
+        self.write("may-end", "")
+        said = process.communicate(timeout=cli.LIMIT_SECONDS)[1].decode()
+        self.assertEqual(process.returncode, 130, said)
+        self.assertIn("interrupted before there was a verdict", said)
 
     def test_cache_that_cannot_be_written(self):
         self.write("file", "")
