@@ -90,6 +90,7 @@ for signals in ([signal.SIGINT], [signal.SIGINT, signal.SIGINT], *3 * [[signal.S
         time.sleep(0.3)
     code = process.wait(timeout=60)
     assert code == (130 if signals[0] == signal.SIGINT else -signal.SIGKILL), code
+    limit = time.monotonic() + 60
     while os.listdir(folder) != ["scenes"] and time.monotonic() < limit:
         time.sleep(0.01)
     assert os.listdir(folder) == ["scenes"], signals

@@ -192,8 +192,12 @@ class StopRules(Render):
         self.assertIn("not reached", said)
 
     def test_time(self):
-        stats = self.stats("--time", "0.5")
-        self.assertEqual(stats["stopped_by"], "time")
+        # The first launch, in which a driver may compile, is in the time: on a slow machine it may be all of it.
+        for seconds in "0.5", "4", "32":
+            stats = self.stats("--time", seconds)
+            self.assertEqual(stats["stopped_by"], "time")
+            if stats["samples_per_pixel"] > 8:
+                break
         self.assertGreater(stats["samples_per_pixel"], 8, "the scene's own count is no limit")
         if not stats["partial"]:
             self.assert_same(self.read("x.pfm"), self.pfm("--spp", str(stats["samples_per_pixel"])))

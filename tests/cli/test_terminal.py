@@ -58,6 +58,16 @@ class Terminal:
         self.read_until()
         return self.process.wait(timeout=LIMIT_SECONDS)
 
+    def resize(self, columns):
+        """Changes the width and reads on until a drawing has been seen that was begun afterwards; forgets all before."""
+        fcntl.ioctl(self.master, termios.TIOCSWINSZ, struct.pack("HHHH", 24, columns, 0, 0))
+        # The terminal echoes what is typed: what stands before the mark may have been drawn any time ago. The drawing
+        # after it may have been under way; the next one was not, for there is one at a time.
+        self.seen = b""
+        os.write(self.master, b"~")
+        self.read_until(rb"~[^\x1b]*\x1b\[K[^\x1b]*\x1b\[K")
+        self.seen = re.sub(rb"(?s)^.*~[^\x1b]*\x1b\[K", b"", self.seen)
+
     def drawings(self):
         """The texts of the status line, one after the other."""
         return [text.decode() for text in re.findall(rb"\r([^\r\n\x1b]*)\x1b\[K", self.seen)]
@@ -74,8 +84,12 @@ class Bar(ProgramTest):
         return screen
 
     def test_what_it_says(self):
-        screen = self.draw(seconds="1.5")
-        bars = [text for text in screen.drawings() if "%" in text]
+        # How often it is drawn in a second is the machine's affair: one that stands still for one gets another chance.
+        for seconds in "1.5", "6", "24":
+            screen = self.draw(seconds=seconds)
+            bars = [text for text in screen.drawings() if "%" in text]
+            if len(bars) > 2:
+                break
         self.assertGreater(len(bars), 2)
         self.assertRegex(bars[-1], r"^[█░▏▎▍▌▋▊▉]+ +\d+ %  \d+ s left  error [\d.]+ %  [\d.]+ \w+ samples/s$")
         shares = [int(re.search(r"(\d+) %", text)[1]) for text in bars]
@@ -93,10 +107,8 @@ class Bar(ProgramTest):
         screen = Terminal(self, "render", "s.json", *FOREVER, columns=80)
         screen.read_until(rb"left  error")  # the bar itself, not the wait for the kernel before it
         for columns in range(1, 41):
-            fcntl.ioctl(screen.master, termios.TIOCSWINSZ, struct.pack("HHHH", 24, columns, 0, 0))
-            screen.read_until(rb"\x1b\[K")
-            screen.seen = b""  # the drawing under way may not have known
-            screen.read_until(rb"\r[^\r\x1b]*\x1b\[K")
+            screen.resize(columns)
+            self.assertTrue(screen.drawings())
             for text in screen.drawings():
                 self.assertLess(len(text), columns, text)
                 self.assertTrue(columns < 7 or "%" in text, text)
@@ -172,24 +184,38 @@ class Interrupt(ProgramTest):
         self.assertEqual(self.files(), ["SIGINT.png", "SIGTERM.png", "s.json", "stats.json"])
 
     def test_control_c_from_the_keyboard(self):
-        screen = Terminal(self, "render", "s.json", *FOREVER)
-        # A session of its own has no controlling terminal: the key is stood in for by the signal to the group.
-        screen.read_until(rb"left  error")
-        os.killpg(screen.process.pid, signal.SIGINT)
-        os.killpg(screen.process.pid, signal.SIGINT)
-        self.assertEqual(screen.finish(), 130)
+        """A terminal and a shell may both pass the same key on: a quarter of a second is one key."""
+        for _ in range(10):
+            screen = Terminal(self, "render", "s.json", *FOREVER)
+            # A session of its own has no controlling terminal: the key is stood in for by the signal to the group.
+            screen.read_until(rb"left  error")
+            start = time.monotonic()
+            os.killpg(screen.process.pid, signal.SIGINT)
+            time.sleep(0.03)
+            os.killpg(screen.process.pid, signal.SIGINT)
+            self.assertEqual(screen.finish(), 130)
+            # Where the machine stood still for that long between the two, they were two keys and prove nothing.
+            if "s.png" in self.files() or time.monotonic() - start < 0.25:
+                break
         self.assertIn("s.png", self.files())
 
     def test_quiet_still_tells(self):
-        process = subprocess.Popen([PROGRAM, "render", "s.json", *FOREVER, "--quiet"], cwd=self.folder,
-                                   stderr=subprocess.PIPE, env=self.environment)
-        # Without a bar nothing tells from outside that the first samples are there; the picture tells in the end.
-        time.sleep(3.0)
-        process.send_signal(signal.SIGINT)
-        _, errors = process.communicate(timeout=LIMIT_SECONDS)
-        self.assertEqual(process.returncode, 130)
-        if "s.png" in self.files():
-            self.assertRegex(errors.decode(), r"\Aballpark: interrupted after \d+ of 60000000")
+        # Without a bar nothing tells from outside that the first samples are there; the picture tells in the end. That
+        # the program has begun, a pipe tells from which it reads its scene.
+        os.mkfifo(self.path("pipe.json"))
+        for seconds in 1, 4, 16, 64:
+            process = subprocess.Popen([PROGRAM, "render", "pipe.json", *FOREVER, "--quiet", "-o", "s.png"],
+                                       cwd=self.folder, stderr=subprocess.PIPE, env=self.environment)
+            with open(self.path("pipe.json"), "wb") as pipe:
+                pipe.write(self.read("s.json"))
+            time.sleep(seconds)
+            process.send_signal(signal.SIGINT)
+            _, errors = process.communicate(timeout=LIMIT_SECONDS)
+            self.assertEqual(process.returncode, 130)
+            if "s.png" in self.files():
+                break
+            self.assertEqual(errors, b"")
+        self.assertRegex(errors.decode(), r"\Aballpark: interrupted after \d+ of 60000000")
 
     def test_sums_that_were_interrupted_can_be_kept(self):
         self.stop("-o", "a.bpa")
