@@ -2,6 +2,7 @@
 #include "interrupt.h"
 
 #include <pthread.h>
+#include <semaphore.h>
 #include <signal.h>
 #include <stdatomic.h>
 #include <stddef.h>
@@ -31,10 +32,10 @@ static sigset_t watched_signals(void) {
     return set;
 }
 
-static void *watch(void *unused) {
-    (void)unused;
+static void *watch(void *began) {
     const sigset_t set = watched_signals();
     int number;
+    sem_post(began);
     for (;;)
         if (sigwait(&set, &number) == 0) note_signal();
     return NULL;
@@ -47,14 +48,22 @@ static void *watch(void *unused) {
 void bp_interrupt_install(void) {
     const sigset_t set = watched_signals();
     pthread_t watcher;
+    sem_t began;
     /* Ignored ones, as a shell leaves them to what it runs in the background, need not become pending. */
     signal(SIGINT, SIG_DFL);
     signal(SIGTERM, SIG_DFL);
     pthread_sigmask(SIG_BLOCK, &set, NULL);
-    if (pthread_create(&watcher, NULL, watch, NULL) == 0)
+    sem_init(&began, 0, 0);
+    if (pthread_create(&watcher, NULL, watch, &began) == 0) {
         pthread_detach(watcher);
-    else
+        /* A fork while a thread is starting copies the locks that it holds then (AddressSanitizer takes
+         * some), and nobody in the child will ever open them. */
+        while (sem_wait(&began) != 0) {
+        }
+    } else {
         pthread_sigmask(SIG_UNBLOCK, &set, NULL); /* they end the program, as they do by default */
+    }
+    sem_destroy(&began);
 }
 
 void bp_interrupt_catch(void) {
