@@ -16,27 +16,26 @@ typedef struct PixelEstimate {
     uint64_t samples;
 } PixelEstimate;
 
-static void replicate_mean(const BpAccumulator *accumulator, size_t cell, double mean[4]) {
-    mean[3] = 0;
-    for (size_t c = 0; c < 3; c++) {
-        mean[c] = ldexp((double)accumulator->sums[3 * cell + c], -accumulator->scale_log2) /
-                  accumulator->counts[cell];
-        mean[3] += luminance_weights[c] * mean[c];
-    }
-}
-
 /* Two passes over the replicates, mean first: no difference of large squares. */
 static PixelEstimate estimate_pixel(const BpAccumulator *accumulator, size_t pixel) {
     PixelEstimate estimate = {.samples = 0};
-    const size_t first = pixel * accumulator->replicates;
-    const size_t end = first + accumulator->replicates;
+    const size_t k_count = accumulator->replicates;
+    const int64_t *sums = accumulator->sums + 3 * pixel * k_count;
+    const uint32_t *counts = accumulator->counts + pixel * k_count;
+    const double unit = ldexp(1, -accumulator->scale_log2);
+    double means[BP_REPLICATES_MAX][4];
     unsigned filled = 0;
-    double mean[4];
-    for (size_t cell = first; cell < end; cell++) {
-        if (accumulator->counts[cell] == 0) continue;
-        replicate_mean(accumulator, cell, mean);
-        for (size_t c = 0; c < 4; c++) estimate.mean[c] += accumulator->counts[cell] * mean[c];
-        estimate.samples += accumulator->counts[cell];
+    for (size_t k = 0; k < k_count; k++) {
+        if (counts[k] == 0) continue;
+        const double count = counts[k];
+        double *mean = means[k];
+        mean[3] = 0;
+        for (size_t c = 0; c < 3; c++) {
+            mean[c] = (double)sums[3 * k + c] * unit / count;
+            mean[3] += luminance_weights[c] * mean[c];
+        }
+        for (size_t c = 0; c < 4; c++) estimate.mean[c] += count * mean[c];
+        estimate.samples += counts[k];
         filled++;
     }
     const double total = (double)estimate.samples;
@@ -45,12 +44,11 @@ static PixelEstimate estimate_pixel(const BpAccumulator *accumulator, size_t pix
         for (size_t c = 0; c < 4; c++) estimate.squared_error[c] = NAN;
         return estimate;
     }
-    for (size_t cell = first; cell < end; cell++) {
-        if (accumulator->counts[cell] == 0) continue;
-        replicate_mean(accumulator, cell, mean);
+    for (size_t k = 0; k < k_count; k++) {
+        if (counts[k] == 0) continue;
         for (size_t c = 0; c < 4; c++) {
-            const double difference = mean[c] - estimate.mean[c];
-            estimate.squared_error[c] += accumulator->counts[cell] * difference * difference;
+            const double difference = means[k][c] - estimate.mean[c];
+            estimate.squared_error[c] += counts[k] * difference * difference;
         }
     }
     for (size_t c = 0; c < 4; c++) estimate.squared_error[c] /= (filled - 1) * total;

@@ -16,6 +16,7 @@
 #include <setjmp.h>
 #include <stdlib.h>
 #include <string.h>
+#include <zlib.h>
 
 /* What libpng's callbacks need. */
 typedef struct PngFailure {
@@ -48,7 +49,9 @@ static void put_tags(png_structp png, png_infop info, BpTransfer transfer) {
     png_set_text(png, info, &software, 1);
 }
 
-/* Everything that can jump. `linear`, or else `bytes`, is the picture; `row` a buffer for one row. */
+/* Everything that can jump. `linear`, or else `bytes`, is the picture; `row` a buffer for one row. Of what
+ * the filtered rows of a noisy picture hold, hardly anything comes again but runs: zlib's strategy for those
+ * takes half the time, and the file is 1 or 2 % larger. */
 static bool write_all(png_structp png, png_infop info, FILE *out, uint32_t width, uint32_t height,
                       const float *linear, const uint8_t *bytes, BpTransfer transfer, uint8_t *row) {
     if (setjmp(png_jmpbuf(png))) return false;
@@ -58,6 +61,7 @@ static bool write_all(png_structp png, png_infop info, FILE *out, uint32_t width
     png_set_IHDR(png, info, width, height, 8, PNG_COLOR_TYPE_RGB, PNG_INTERLACE_NONE,
                  PNG_COMPRESSION_TYPE_DEFAULT, PNG_FILTER_TYPE_DEFAULT);
     put_tags(png, info, transfer);
+    png_set_compression_strategy(png, Z_RLE);
     png_write_info(png, info);
     for (uint32_t y = 0; y < height; y++) {
         if (linear != NULL)
