@@ -84,6 +84,15 @@ double bp_study_pixel_bias(const BpStudySeries *series) {
     return square->low == 0 && square->high == 0 ? 0 : (double)NAN;
 }
 
+double bp_study_time_scatter(const BpStudyResult *result) {
+    double widest = NAN;
+    for (size_t s = 1; s < result->count; s++) {
+        const BpStudyEstimate *ratio = &result->series[s].time_ratio;
+        widest = fmax(widest, 0.5 * (ratio->high - ratio->low) / ratio->value); /* of NaN, the other one */
+    }
+    return widest;
+}
+
 /* What no number of samples takes away: where it is shown to be there, its interval lying above 0. */
 static double floor_of(const BpStudySeries *series) {
     if (isnan(series->bias_square.value)) return isfinite(series->fit_floor) ? series->fit_floor : 0;

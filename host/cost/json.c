@@ -34,14 +34,15 @@ static json_t *series_json(const BpStudySeries *series) {
     const BpStudySetting *setting = &series->setting;
     json_t *points = json_array();
     for (size_t i = 0; i < series->count; i++) append(&points, point_json(&series->points[i]));
-    return json_pack("{s:s, s:s, s:s, s:s, s:I, s:o, s:o, s:o, s:o, s:o, s:{s:o, s:o}, s:o, s:o}", "name",
-                     setting->name, "axis", setting->axis, "options", setting->command, "fresnel",
+    return json_pack("{s:s, s:s, s:s, s:s, s:I, s:o, s:o, s:o, s:o, s:o, s:o, s:{s:o, s:o}, s:o, s:o}",
+                     "name", setting->name, "axis", setting->axis, "options", setting->command, "fresnel",
                      bp_study_fresnel_name(setting->fresnel), "max_depth",
                      (json_int_t)setting->options.max_depth, "bias", estimate(&series->bias), "bias_square",
                      estimate(&series->bias_square), "change", estimate(&series->change), "change_square",
                      estimate(&series->change_square), "seconds_per_sample",
-                     number(series->seconds_per_sample), "fit", "floor", number(series->fit_floor), "slope",
-                     number(series->fit_slope), "efficiency", number(series->efficiency), "points", points);
+                     number(series->seconds_per_sample), "time_ratio", estimate(&series->time_ratio), "fit",
+                     "floor", number(series->fit_floor), "slope", number(series->fit_slope), "efficiency",
+                     number(series->efficiency), "points", points);
 }
 
 static json_t *advice_json(const BpStudyResult *result, const BpStudyAdvice *advice) {

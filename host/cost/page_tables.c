@@ -59,13 +59,19 @@ static void print_point(const BpStudySeries *series, const BpStudyPoint *point, 
 
 void bp_page_tables(const BpStudyResult *result, FILE *out) {
     const BpStudySeries *base = &result->series[0];
+    const double scatter = bp_study_time_scatter(result);
     fprintf(out,
             "<section id=\"figures\">\n<h2>The figures</h2>\n<p class=\"caption\">At %" PRIu64
-            " samples a pixel.</p>\n<div class=\"sheet\">\n<table>\n<thead><tr><th>way</th><th>time</th>"
-            "<th>noise</th><th>error</th><th>efficiency</th><th>changes<br>brightness by</th>"
-            "<th>off the true<br>one by</th><th>bias of<br>a pixel</th><th>fitted<br>floor</th>"
-            "<th>fitted<br>V</th></tr></thead>\n<tbody>\n",
+            " samples a pixel.",
             base->points[base->count - 1].samples);
+    if (isfinite(scatter))
+        fprintf(out,
+                " One time over another is good to ± %.2g %% (95 %%); less is known of adaptive samples.",
+                100 * scatter);
+    fprintf(out, "</p>\n<div class=\"sheet\">\n<table>\n<thead><tr><th>way</th><th>time</th>"
+                 "<th>noise</th><th>error</th><th>efficiency</th><th>changes<br>brightness by</th>"
+                 "<th>off the true<br>one by</th><th>bias of<br>a pixel</th><th>fitted<br>floor</th>"
+                 "<th>fitted<br>V</th></tr></thead>\n<tbody>\n");
     for (size_t s = 0; s < result->count; s++) print_way(&result->series[s], s == 0, out);
     fputs("</tbody>\n</table>\n</div>\n<details>\n<summary>Every point</summary>\n<div "
           "class=\"sheet\">\n<table>\n"

@@ -18,6 +18,20 @@
 size_t bp_study_settings(const BpScene *scene, const BpRenderOptions *base, bool has_double,
                          BpStudySetting settings[BP_STUDY_SETTINGS_MAX]);
 
+/* ---- timing.c ----
+ *
+ * A machine that has other work is slower now and then, by a quarter or more, for a tenth of a second or
+ * several. So ways to render take turns in short rounds of equal work, and medians over rounds are compared:
+ * what hits one way in one round is an outlier, and what hits a whole round cancels. */
+
+#define BP_STUDY_ROUNDS_MAX 16u
+
+/* Seconds of all `count` <= BP_STUDY_ROUNDS_MAX rounds as if none had been disturbed: the median rate times
+ * all samples. Of few rounds their sum. */
+double bp_study_round_seconds(const double *rounds, const double *samples, size_t count);
+/* One way's time over the base's: the median of the rounds' ratios, with its 95 % interval. NaN: too few. */
+BpStudyEstimate bp_study_round_ratio(const double *own, const double *base, size_t count);
+
 /* ---- measure.c ---- */
 
 double bp_study_luminance(const float rgb[3]);

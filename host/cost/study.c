@@ -14,6 +14,7 @@
 #define REFERENCE_SHARE 0.4 /* of the time */
 #define LEVEL_FIRST 4u      /* samples a pixel: one a replicate */
 #define LEVEL_FACTOR 4u
+#define ROUND_SECONDS 0.005
 
 static double elapsed(const BpStudy *study) {
     return bp_clock_seconds() - study->start;
@@ -105,6 +106,62 @@ static BpStatus step_references(BpStudy *study, BpError *err) {
     return BP_OK;
 }
 
+/* ---- rounds of a level ---- */
+
+/* Samples a pixel at the end of round `round`. */
+static uint64_t round_end(const BpStudy *study, size_t round) {
+    const uint64_t samples = study->level - study->level_before;
+    return study->level_before + samples * (round + 1) / study->round_count;
+}
+
+/* Everyone's next round; another way goes first each time. */
+static BpStatus begin_round(BpStudy *study, BpError *err) {
+    study->turn = (study->result.series[0].count + study->round) % study->result.count;
+    for (size_t s = 0; s < study->result.count; s++) {
+        BpStudyRunner *runner = &study->runners[s];
+        runner->rounds[study->round] = 0;
+        if (runner->at_once && study->round > 0) continue;
+        runner->done = false;
+        const uint64_t end = runner->at_once ? study->level : round_end(study, study->round);
+        BP_TRY(bp_render_extend(runner->render, end, err));
+    }
+    return BP_OK;
+}
+
+/* From `before` samples a pixel to study->level: in as many rounds as last long enough for launches and
+ * clocks not to matter. */
+static BpStatus begin_level(BpStudy *study, uint64_t before, BpError *err) {
+    const BpStudyRunner *base = &study->runners[0];
+    const uint64_t samples = study->level - before;
+    const double seconds = before > 1 ? base->seconds / (double)(before - 1) * (double)samples : 0;
+    study->level_before = before;
+    study->round = 0;
+    study->round_count = (size_t)fmin(fmax(1, seconds / ROUND_SECONDS), BP_STUDY_ROUNDS_MAX);
+    if (study->round_count > samples) study->round_count = (size_t)samples;
+    return begin_round(study, err);
+}
+
+/* Adds the seconds of the level that has ended, and says what everyone's were over the base's. */
+static void add_seconds(BpStudy *study) {
+    double samples[BP_STUDY_ROUNDS_MAX], all = 0;
+    uint64_t before = study->level_before;
+    const double *base = study->runners[0].rounds;
+    for (size_t r = 0; r < study->round_count; r++) {
+        samples[r] = (double)(round_end(study, r) - before);
+        before = round_end(study, r);
+        all += base[r];
+    }
+    const double undisturbed = bp_study_round_seconds(base, samples, study->round_count);
+    for (size_t s = 0; s < study->result.count; s++) {
+        BpStudyRunner *runner = &study->runners[s];
+        double own = 0;
+        for (size_t r = 0; r < study->round_count; r++) own += runner->rounds[r];
+        runner->seconds += all > 0 ? own * undisturbed / all : own; /* disturbed as much as the base */
+        study->result.series[s].time_ratio =
+            bp_study_round_ratio(runner->rounds, base, runner->at_once ? 0 : study->round_count);
+    }
+}
+
 /* ---- settings ---------------------------------------------------------------------------------------- */
 
 static BpStatus trace_to_end(BpRender *render, BpError *err) {
@@ -127,6 +184,7 @@ static BpStatus open_setting(BpStudy *study, BpError *err) {
     BpRenderReport report;
     bp_render_report(runner->render, &report);
     runner->warm_device_seconds = report.device_seconds;
+    runner->at_once = options.adaptive;
     BP_TRY(bp_study_note_first(study, s, err));
     if (s == 0) {
         study->result.report = report;
@@ -137,13 +195,20 @@ static BpStatus open_setting(BpStudy *study, BpError *err) {
                         &study->crop_top);
     study->phase = BP_STUDY_LEVELS;
     study->level = LEVEL_FIRST;
-    study->turn = 0;
-    for (size_t i = 0; i < study->result.count; i++)
-        BP_TRY(bp_render_extend(study->runners[i].render, study->level, err));
-    return BP_OK;
+    return begin_level(study, 1, err);
 }
 
 /* ---- the end ----------------------------------------------------------------------------------------- */
+
+/* A sample costs the same at every count, so the largest, with the most rounds, tells for all. */
+static void settle_seconds(BpStudyResult *result) {
+    for (size_t s = 1; s < result->count; s++) {
+        BpStudySeries *series = &result->series[s];
+        if (isnan(series->time_ratio.value)) continue;
+        for (size_t p = 0; p < series->count; p++)
+            series->points[p].seconds = result->series[0].points[p].seconds * series->time_ratio.value;
+    }
+}
 
 static BpStatus conclude(BpStudy *study, BpError *err) {
     BpStudyResult *result = &study->result;
@@ -153,6 +218,7 @@ static BpStatus conclude(BpStudy *study, BpError *err) {
     for (size_t s = 0; s < result->count; s++)
         if (result->series[s].count < whole) whole = result->series[s].count;
     for (size_t s = 0; s < result->count; s++) result->series[s].count = whole;
+    settle_seconds(result);
     bp_study_summarize(result);
     BP_TRY(bp_study_crop(&truths[0], &truths[0], &truths[1], study->crop_left, study->crop_top,
                          result->scene->transfer, &result->truth, err));
@@ -191,16 +257,13 @@ static BpStatus next_level(BpStudy *study, BpError *err) {
         if (foretold(study, next) > left) return conclude(study, err);
         study->last_level = true;
     }
+    const uint64_t before = study->level;
     study->level = next;
-    study->turn = count % study->result.count;
-    for (size_t s = 0; s < study->result.count; s++) {
-        study->runners[s].done = false;
-        BP_TRY(bp_render_extend(study->runners[s].render, next, err));
-    }
-    return BP_OK;
+    return begin_level(study, before, err);
 }
 
-/* The next setting from `turn` on, in a circle, that has not reached the present count; false: all have. */
+/* The next setting from `turn` on, in a circle, that is not done with the round; false: all are. One is done
+ * before the next begins, for it may have chunks under way until then. */
 static bool find_turn(BpStudy *study) {
     for (size_t i = 0; i < study->result.count; i++) {
         const size_t s = (study->turn + i) % study->result.count;
@@ -211,19 +274,26 @@ static bool find_turn(BpStudy *study) {
     return false;
 }
 
-/* Settings take turns, count by count, and another one begins each time; once all have the samples, their
- * points are noted. */
+static BpStatus step_runner(BpStudy *study, BpStudyRunner *runner, BpError *err) {
+    const double wall = bp_clock_seconds(), cpu = bp_processor_seconds();
+    BpProgress progress;
+    BP_TRY(bp_render_step(runner->render, &progress, err));
+    const double wall_seconds = bp_clock_seconds() - wall, cpu_seconds = bp_processor_seconds() - cpu;
+    runner->wall_seconds += wall_seconds;
+    runner->cpu_seconds += cpu_seconds;
+    double seconds = wall_seconds;
+    if (study->device.type == BP_DEVICE_CPU)
+        seconds = fmin(seconds, cpu_seconds / fmax(1, study->device.compute_units));
+    runner->rounds[study->round] += seconds;
+    runner->done = progress.finished;
+    return BP_OK;
+}
+
+/* Settings take turns, round by round; once all have the samples of a level, their points are noted. */
 static BpStatus step_levels(BpStudy *study, BpError *err) {
-    if (find_turn(study)) {
-        BpStudyRunner *runner = &study->runners[study->turn];
-        const double wall = bp_clock_seconds(), cpu = bp_processor_seconds();
-        BpProgress progress;
-        BP_TRY(bp_render_step(runner->render, &progress, err));
-        runner->wall_seconds += bp_clock_seconds() - wall;
-        runner->cpu_seconds += bp_processor_seconds() - cpu;
-        runner->done = progress.finished;
-        return BP_OK;
-    }
+    if (find_turn(study)) return step_runner(study, &study->runners[study->turn], err);
+    if (++study->round < study->round_count) return begin_round(study, err);
+    add_seconds(study);
     for (size_t s = 0; s < study->result.count; s++) BP_TRY(bp_study_note_point(study, s, err));
     return next_level(study, err);
 }

@@ -60,8 +60,8 @@ typedef struct BpStudyCrop {
 typedef struct BpStudyPoint {
     uint64_t samples; /* a pixel */
     /* wall: as lived through; device: kernels by the device's clock; cpu: of all threads of this process.
-     * seconds: wall, or on a CPU device cpu / cores if that is less, so that a loaded machine changes little.
-     */
+     * seconds: wall, or on a CPU device cpu / cores if that is less; without what disturbed single rounds
+     * (parts.h), so that other work on the machine changes little. */
     double seconds, wall_seconds, device_seconds, cpu_seconds;
     double claimed;        /* NRMSE as the replicates say: noise alone */
     double mse, mse_error; /* against the truth, noise and bias; its standard error. It may be negative. */
@@ -77,6 +77,7 @@ typedef struct BpStudySeries {
     BpStudyPoint points[BP_STUDY_LEVELS_MAX];
     size_t count;
     double seconds_per_sample;     /* of one pixel, from the largest count */
+    BpStudyEstimate time_ratio;    /* seconds over the base's, from the rounds of the largest count; or NaN */
     BpStudyEstimate bias;          /* of brightness against the truth */
     BpStudyEstimate bias_square;   /* mean squared systematic error of a pixel against the truth */
     BpStudyEstimate change;        /* of brightness against the base */
@@ -138,6 +139,9 @@ void bp_study_destroy(BpStudy **study);
 /* Root of the mean squared systematic error of a pixel; NaN where it is not told from none. */
 double bp_study_pixel_bias(const BpStudySeries *series);
 const char *bp_study_fresnel_name(BpStudyFresnel fresnel);
+/* What the times of two ways, one over the other, are good to, as a part of it: half the widest 95 % interval
+ * of time_ratio. NaN where none is known. */
+double bp_study_time_scatter(const BpStudyResult *result);
 /* One line: what to do for this error and what it costs; no line end. */
 const char *bp_study_advice_text(const BpStudyResult *result, const BpStudyAdvice *advice, char *text,
                                  size_t size);

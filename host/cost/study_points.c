@@ -20,16 +20,14 @@ BpStatus bp_study_note_first(BpStudy *study, size_t s, BpError *err) {
 }
 
 /* The first sample of every pixel was the warm-up and is not in the times, hence n / (n - 1). */
-static void note_times(const BpStudy *study, const BpStudyRunner *runner, BpStudyPoint *point) {
+static void note_times(const BpStudyRunner *runner, BpStudyPoint *point) {
     const double scale = (double)point->samples / (double)(point->samples - 1);
     BpRenderReport report;
     bp_render_report(runner->render, &report);
     point->wall_seconds = scale * runner->wall_seconds;
     point->cpu_seconds = scale * runner->cpu_seconds;
     point->device_seconds = scale * (report.device_seconds - runner->warm_device_seconds);
-    point->seconds = point->wall_seconds;
-    if (study->device.type == BP_DEVICE_CPU)
-        point->seconds = fmin(point->seconds, point->cpu_seconds / fmax(1, study->device.compute_units));
+    point->seconds = scale * runner->seconds;
 }
 
 static bool is_truth(const BpStudyResult *result, size_t s) {
@@ -74,7 +72,7 @@ BpStatus bp_study_note_point(BpStudy *study, size_t s, BpError *err) {
     BpPicture picture;
     BpStatus status = BP_OK;
     point->samples = study->level;
-    note_times(study, &study->runners[s], point);
+    note_times(&study->runners[s], point);
     BP_TRY(bp_render_accumulator(study->runners[s].render, &sums, err));
     point->claimed = bp_accumulator_nrmse(sums);
     BP_TRY(bp_accumulator_picture(sums, &picture, err));

@@ -5,8 +5,8 @@
 #ifndef BP_COST_STUDY_STATE_H
 #define BP_COST_STUDY_STATE_H
 
+#include "parts.h"
 #include "references.h"
-#include "study.h"
 
 typedef enum BpStudyPhase {
     BP_STUDY_OPEN_REFERENCES,
@@ -20,7 +20,11 @@ typedef enum BpStudyPhase {
 typedef struct BpStudyRunner {
     BpRender *render;
     double cpu_seconds, wall_seconds, warm_device_seconds;
-    bool done; /* has the present count */
+    double seconds;                     /* of the counts before the present one, undisturbed */
+    double rounds[BP_STUDY_ROUNDS_MAX]; /* seconds, of the present count */
+    bool at_once; /* is given the present count at once, not round by round: it decides itself where to sample
+                   */
+    bool done;    /* with the present round */
 } BpStudyRunner;
 
 struct BpStudy {
@@ -32,10 +36,11 @@ struct BpStudy {
     BpReferences references;
     BpStudyRunner runners[BP_STUDY_SETTINGS_MAX];
     size_t turn; /* the setting at work */
-    uint64_t level;
-    bool last_level;  /* the present one is */
-    BpPicture first;  /* of the base, one sample a pixel */
-    double *interest; /* of every pixel: how much there is to see */
+    uint64_t level, level_before;
+    size_t round, round_count; /* of the present level */
+    bool last_level;           /* the present one is */
+    BpPicture first;           /* of the base, one sample a pixel */
+    double *interest;          /* of every pixel: how much there is to see */
     uint32_t crop_left, crop_top;
 };
 

@@ -59,8 +59,13 @@ bool bp_study_print(const BpStudyResult *result, FILE *out) {
     print_counts(result, out);
     fprintf(out,
             "\nerror: noise and bias together, against the truth; a dash where the references cannot tell."
-            "\nefficiency: 1 / (noise^2 x time), over that of the first line."
-            "\n\nWhat to use for an error of\n");
+            "\nefficiency: 1 / (noise^2 x time), over that of the first line.\n");
+    const double scatter = bp_study_time_scatter(result);
+    if (isfinite(scatter))
+        fprintf(out,
+                "time: one over another is good to +- %.2g %% (95 %%); less is known of adaptive samples.\n",
+                100 * scatter);
+    fprintf(out, "\nWhat to use for an error of\n");
     for (int t = 0; t < BP_STUDY_TARGETS; t++)
         fprintf(out, "  %s\n", bp_study_advice_text(result, &result->advice[t], line, sizeof line));
     return fflush(out) == 0 && !ferror(out);

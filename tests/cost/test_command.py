@@ -65,6 +65,7 @@ class Cost(ProgramTest):
         self.assertEqual({s["axis"] for s in result["series"]},
                          {"base", "truth", "sampler", "adaptive", "depth", "precision", "math", "numerics", "fresnel", "together"})
         base, truth = result["series"][:2]
+        self.assertIsNone(self.series["adaptive samples"]["time_ratio"]["value"])
         points = [p for s in result["series"] for p in s["points"]]
         counts = [p["samples"] for p in base["points"]]
         self.assertEqual(counts[:2], [4, 16])
@@ -76,7 +77,11 @@ class Cost(ProgramTest):
             self.assertAlmostEqual(series["seconds_per_sample"] * last["samples"] * 32 * 32 / last["seconds"], 1)
             for point in series["points"]:
                 self.assertGreater(point["device_seconds"], 0)
-                self.assertGreaterEqual(point["wall_seconds"], point["seconds"])
+                self.assertGreater(point["wall_seconds"], 0)
+                self.assertGreater(point["seconds"], 0)
+                if series["time_ratio"]["value"] is not None:
+                    same = next(p for p in base["points"] if p["samples"] == point["samples"])
+                    self.assertAlmostEqual(point["seconds"] / same["seconds"], series["time_ratio"]["value"])
                 if point["nrmse"] is not None:
                     self.assertAlmostEqual(point["nrmse"] ** 2, point["mse"])
                 # Of two with the same picture in the same time, which a coarse clock can give, both are on it.
