@@ -8,11 +8,13 @@
  * that is NaN, infinite, negative or larger than any path can bring (2^39 in fixed point) is left out and counted;
  * it is found by its bits, since a compiler may assume that NaN does not exist. */
 #if REAL_IS_DOUBLE
+#define REALS_WHOLE 0x1p52 /* from here on all numbers are whole */
 #define BITS4 ulong4
 #define as_bits4 as_ulong4
 #define BITS_SIGN 0x8000000000000000ul
 #define BITS_LIMIT 0x4260000000000000ul /* of 2^39 */
 #else
+#define REALS_WHOLE 0x1p23f
 #define BITS4 uint4
 #define as_bits4 as_uint4
 #define BITS_SIGN 0x80000000u
@@ -28,6 +30,26 @@ static real power_of_two(int exponent) {
 #endif
 }
 
+/* rint() of what is not negative, NaN or infinite; some drivers spell it out in a dozen steps. */
+static real4 nearest_whole(real4 x) {
+#ifdef __FAST_RELAXED_MATH__
+    return rint(x); /* the sum below may be taken for x */
+#else
+    return x < (real4)REALS_WHOLE ? (x + (real4)REALS_WHOLE) - (real4)REALS_WHOLE : x;
+#endif
+}
+
+/* A sample in fixed point; the fourth number, which has a scale of its own, along with it. */
+static long4 fixed_point(real4 scaled) { return convert_long4(nearest_whole(scaled)); }
+
+/* As bits, what is NaN, infinite, negative or too large is a larger integer than any valid number; but -0 is 0. */
+static BITS4 order_of(real4 scaled) {
+    const BITS4 bits = as_bits4(scaled);
+    return bits == (BITS4)BITS_SIGN ? (BITS4)0 : bits;
+}
+
+static int is_valid(BITS4 order) { return order.x < BITS_LIMIT && order.y < BITS_LIMIT && order.z < BITS_LIMIT; }
+
 /* One work-item a pixel of the chunk. */
 __kernel void fold(__global const real *samples, uint pixel_count, uint samples_per_pixel, uint first_pixel,
                    uint first_sample, uint replicates, int scale_log2, __global long *sums, __global uint *counts,
@@ -35,7 +57,7 @@ __kernel void fold(__global const real *samples, uint pixel_count, uint samples_
     const uint item = get_global_id(0);
     if (item >= pixel_count) return;
     const real scale = power_of_two(scale_log2);
-    #if PIXEL_LIST
+#if PIXEL_LIST
     const size_t pixel = pixel_list[first_pixel + item];
 #else
     const size_t pixel = first_pixel + item;
@@ -44,22 +66,31 @@ __kernel void fold(__global const real *samples, uint pixel_count, uint samples_
     const real4 scales = (real4)(scale, scale, scale, 2); /* the fourth number: twice the segments, plus 1 for a cut */
     ulong twice_segments = 0, cut = 0, invalid = 0;
     for (uint k = 0; k < replicates; ++k) {
-        long4 sum = 0;
+        const uint begin = (k + replicates - first_sample % replicates) % replicates;
+        long4 sum = 0, odd = 0;
+        BITS4 largest = 0;
         uint count = 0;
-        for (uint s = (k + replicates - first_sample % replicates) % replicates; s < samples_per_pixel;
-             s += replicates) {
-            const real4 sample = vload4(s, mine) * scales;
-            /* As bits, what is NaN, infinite, negative or too large is a larger integer; but -0 is 0. */
-            const BITS4 bits = as_bits4(sample);
-            const BITS4 magnitude = bits == (BITS4)BITS_SIGN ? (BITS4)0 : bits;
-            const uint valid =
-                magnitude.x < BITS_LIMIT && magnitude.y < BITS_LIMIT && magnitude.z < BITS_LIMIT;
-            const long4 fixed = convert_long4(rint(sample));
-            twice_segments += (ulong)fixed.w;
-            cut += (ulong)fixed.w & 1u;
-            sum += valid ? fixed : (long4)0;
-            count += valid;
-            invalid += 1u - valid;
+        for (uint s = begin; s < samples_per_pixel; s += replicates) {
+            const real4 scaled = vload4(s, mine) * scales;
+            const long4 fixed = fixed_point(scaled);
+            largest = max(largest, order_of(scaled));
+            sum += fixed;
+            odd += fixed & 1;
+            ++count;
+        }
+        twice_segments += (ulong)sum.w;
+        cut += (ulong)odd.w;
+        if (!is_valid(largest)) { /* hardly ever: once more, without those */
+            sum = 0;
+            invalid += count;
+            count = 0;
+            for (uint s = begin; s < samples_per_pixel; s += replicates) {
+                const real4 scaled = vload4(s, mine) * scales;
+                if (!is_valid(order_of(scaled))) continue;
+                sum += fixed_point(scaled);
+                ++count;
+            }
+            invalid -= count;
         }
         __global long *total = sums + (pixel * replicates + k) * 3;
         total[0] += sum.x;
