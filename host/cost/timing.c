@@ -45,7 +45,8 @@ double bp_study_round_seconds(const double *rounds, const double *samples, size_
     if (count < ROUNDS_MIN) return sum_of(rounds, count);
     for (size_t i = 0; i < count; i++) rates[i] = rounds[i] / samples[i];
     sort(rates, count);
-    return median(rates, count) * sum_of(samples, count);
+    const double rate = median(rates, count);
+    return rate > 0 ? rate * sum_of(samples, count) : sum_of(rounds, count); /* 0: a clock too coarse */
 }
 
 BpStudyEstimate bp_study_round_ratio(const double *own, const double *base, size_t count) {

@@ -76,6 +76,8 @@ static void test_few_rounds(void **state) {
     assert_true(bp_study_round_seconds(base, samples, 4) == 10);
     assert_true(bp_study_round_seconds(base, samples, 6) == 21);
     assert_true(bp_study_round_seconds(base, samples, 0) == 0);
+    const double coarse[6] = {0, 0, 4, 0, 0, 4};
+    assert_true(bp_study_round_seconds(coarse, samples, 6) == 8);
     assert_true(isnan(bp_study_round_ratio(own, base, 5).value));
     const BpStudyEstimate twice = bp_study_round_ratio(own, base, 6);
     assert_true(twice.value == 2 && twice.low == 2 && twice.high == 2);
