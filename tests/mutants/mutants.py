@@ -191,11 +191,10 @@ MUTANTS = [
                   "paths->alive = paths->alive & scattering.goes_on & (uniform(paths->key, paths->depth * "
                   "DIMENSIONS_PER_BOUNCE + 6u) >= splat(R(0.05)));")], [check("lobe-lambertian")]),
     Mutant("NaN counted as a sample", "a clamp that hides it",
-           [patch(KERNEL, "magnitude.x < BITS_LIMIT", "(magnitude.x < BITS_LIMIT || sample.x != sample.x)")],
+           [patch(KERNEL, "return bits == (BITS4)BITS_SIGN ?", "return (bits == (BITS4)BITS_SIGN) | (scaled != scaled) ?")],
            [test("fold_samples", "1 exact, by injection")]),
     Mutant("sums in float", "lost past 2^24 samples",
-           [patch(KERNEL, "sum += valid ? fixed : (long4)0;",
-                  "sum = convert_long4(convert_float4(sum) + convert_float4(valid ? fixed : (long4)0));")],
+           [patch(KERNEL, "sum += fixed;", "sum = convert_long4(convert_float4(sum) + convert_float4(fixed));")],
            [test("fold_samples", "1 exact")]),
     # ---- random numbers ------------------------------------------------------------------------------------
     Mutant("bounces share their numbers", "a dimension used twice",
