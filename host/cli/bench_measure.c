@@ -2,6 +2,7 @@
 #include "bench_measure.h"
 
 #include "../base/clock.h"
+#include "../base/quantile.h"
 #include "interrupt.h"
 #include "setup.h"
 
@@ -98,19 +99,8 @@ done:
     return status;
 }
 
-static int compare(const void *a, const void *b) {
-    const double x = *(const double *)a, y = *(const double *)b;
-    return (x > y) - (x < y);
-}
-
-static double quantile(const double *sorted, size_t count, double q) {
-    const double place = q * (double)(count - 1), below = floor(place);
-    const size_t i = (size_t)below;
-    return i + 1 < count ? sorted[i] + (place - below) * (sorted[i + 1] - sorted[i]) : sorted[i];
-}
-
 BpBenchFigure bp_bench_figure(double *values, size_t count) {
-    qsort(values, count, sizeof *values, compare);
-    return (BpBenchFigure){quantile(values, count, 0.5), quantile(values, count, 0.25),
-                           quantile(values, count, 0.75)};
+    bp_sort_doubles(values, count);
+    return (BpBenchFigure){bp_quantile(values, count, 0.5), bp_quantile(values, count, 0.25),
+                           bp_quantile(values, count, 0.75)};
 }

@@ -2,6 +2,7 @@
 #include "effect_costs.h"
 
 #include "../base/clock.h"
+#include "../base/quantile.h"
 #include "../base/status.h"
 
 #include <math.h>
@@ -12,20 +13,6 @@
 #include <time.h>
 
 #define ROUNDS_MAX 101u
-
-static int compare_doubles(const void *a, const void *b) {
-    const double x = *(const double *)a, y = *(const double *)b;
-    return (x > y) - (x < y);
-}
-
-/* The quantile `q` of values[count], which are sorted, between neighbours linearly (Hyndman and Fan 1996,
- * type 7). */
-static double quantile(const double *sorted, size_t count, double q) {
-    const double place = q * (double)(count - 1);
-    const size_t below = (size_t)place;
-    if (below + 1 >= count) return sorted[count - 1];
-    return sorted[below] + (place - (double)below) * (sorted[below + 1] - sorted[below]);
-}
 
 /* "Used 96 registers" of the trace kernel in NVIDIA's log; 0 where it does not stand. */
 static uint64_t find_registers(const char *log) {
@@ -101,8 +88,8 @@ static BpStatus measure_builds(const BpScene *scene, const BpRenderOptions *opti
         wall[run] = starts[run + 1].wall;
         processor[run] = starts[run + 1].processor;
     }
-    qsort(wall, 3, sizeof wall[0], compare_doubles);
-    qsort(processor, 3, sizeof processor[0], compare_doubles);
+    bp_sort_doubles(wall, 3);
+    bp_sort_doubles(processor, 3);
     kernel->cold_seconds = starts[0].wall;
     kernel->cold_processor_seconds = starts[0].processor;
     kernel->warm_seconds = wall[1];
@@ -152,12 +139,12 @@ static void summarise(const double *seconds, unsigned rounds, size_t count, uint
             ratios[r] = seconds[r * count + k] / seconds[r * count];
             rates[r] = (double)samples / seconds[r * count + k];
         }
-        qsort(ratios, rounds, sizeof ratios[0], compare_doubles);
-        qsort(rates, rounds, sizeof rates[0], compare_doubles);
-        costs->kernels[k].ratio = quantile(ratios, rounds, 0.5);
-        costs->kernels[k].low = quantile(ratios, rounds, 0.25);
-        costs->kernels[k].high = quantile(ratios, rounds, 0.75);
-        costs->kernels[k].samples_per_second = quantile(rates, rounds, 0.5);
+        bp_sort_doubles(ratios, rounds);
+        bp_sort_doubles(rates, rounds);
+        costs->kernels[k].ratio = bp_quantile(ratios, rounds, 0.5);
+        costs->kernels[k].low = bp_quantile(ratios, rounds, 0.25);
+        costs->kernels[k].high = bp_quantile(ratios, rounds, 0.75);
+        costs->kernels[k].samples_per_second = bp_quantile(rates, rounds, 0.5);
     }
 }
 

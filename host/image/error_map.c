@@ -2,6 +2,7 @@
 #include "error_map.h"
 
 #include "../base/output_file.h"
+#include "../base/quantile.h"
 #include "image.h"
 
 #include <math.h>
@@ -117,11 +118,6 @@ static void draw_pixels(const BpPicture *picture, const MapPlan *plan, BpCanvas 
         }
 }
 
-static int compare_doubles(const void *a, const void *b) {
-    const double x = *(const double *)a, y = *(const double *)b;
-    return (x > y) - (x < y);
-}
-
 /* The middle one of the known relative errors; NaN when none is known. */
 static BpStatus median_error(const BpPicture *picture, double *median, BpError *err) {
     const size_t pixels = (size_t)picture->width * picture->height;
@@ -132,7 +128,7 @@ static BpStatus median_error(const BpPicture *picture, double *median, BpError *
         const double error = bp_pixel_relative_error(picture, i);
         if (!isnan(error)) errors[count++] = error;
     }
-    qsort(errors, count, sizeof *errors, compare_doubles);
+    bp_sort_doubles(errors, count);
     *median = count == 0 ? (double)NAN : errors[count / 2];
     free(errors);
     return BP_OK;
