@@ -26,6 +26,7 @@ size_t bp_study_settings(const BpScene *scene, const BpRenderOptions *base, bool
 
 #define BP_STUDY_ROUNDS_MAX 16u
 
+double bp_study_round_sum(const double *rounds, size_t count);
 /* Seconds of all `count` <= BP_STUDY_ROUNDS_MAX rounds as if none had been disturbed: the median rate times
  * all samples. Of few rounds their sum. */
 double bp_study_round_seconds(const double *rounds, const double *samples, size_t count);

@@ -108,10 +108,21 @@ static BpStatus step_references(BpStudy *study, BpError *err) {
 
 /* ---- rounds of a level ---- */
 
-/* Samples a pixel at the end of round `round`. */
-static uint64_t round_end(const BpStudy *study, size_t round) {
-    const uint64_t samples = study->level - study->level_before;
-    return study->level_before + samples * (round + 1) / study->round_count;
+/* Samples a pixel when the level began: those of the last point, or at first the warm-up's one. */
+static uint64_t samples_before(const BpStudy *study) {
+    const BpStudySeries *base = &study->result.series[0];
+    return base->count > 0 ? base->points[base->count - 1].samples : 1;
+}
+
+/* Samples a pixel after so many rounds of the level. */
+static uint64_t samples_after(const BpStudy *study, size_t rounds) {
+    const uint64_t before = samples_before(study);
+    return before + (study->level - before) * rounds / study->round_count;
+}
+
+/* Adaptive samples go where earlier ones say: such a way is given a level at once, not round by round. */
+static bool goes_at_once(const BpStudy *study, size_t s) {
+    return study->result.series[s].setting.options.adaptive;
 }
 
 /* Everyone's next round; another way goes first each time. */
@@ -120,21 +131,20 @@ static BpStatus begin_round(BpStudy *study, BpError *err) {
     for (size_t s = 0; s < study->result.count; s++) {
         BpStudyRunner *runner = &study->runners[s];
         runner->rounds[study->round] = 0;
-        if (runner->at_once && study->round > 0) continue;
+        if (goes_at_once(study, s) && study->round > 0) continue;
         runner->done = false;
-        const uint64_t end = runner->at_once ? study->level : round_end(study, study->round);
-        BP_TRY(bp_render_extend(runner->render, end, err));
+        const size_t rounds = goes_at_once(study, s) ? study->round_count : study->round + 1;
+        BP_TRY(bp_render_extend(runner->render, samples_after(study, rounds), err));
     }
     return BP_OK;
 }
 
-/* From `before` samples a pixel to study->level: in as many rounds as last long enough for launches and
- * clocks not to matter. */
-static BpStatus begin_level(BpStudy *study, uint64_t before, BpError *err) {
-    const BpStudyRunner *base = &study->runners[0];
-    const uint64_t samples = study->level - before;
-    const double seconds = before > 1 ? base->seconds / (double)(before - 1) * (double)samples : 0;
-    study->level_before = before;
+/* To `level` samples a pixel, in as many rounds as last long enough for launches and clocks not to matter. */
+static BpStatus begin_level(BpStudy *study, uint64_t level, BpError *err) {
+    const uint64_t before = samples_before(study), samples = level - before;
+    const double seconds =
+        before > 1 ? study->runners[0].seconds / (double)(before - 1) * (double)samples : 0;
+    study->level = level;
     study->round = 0;
     study->round_count = (size_t)fmin(fmax(1, seconds / ROUND_SECONDS), BP_STUDY_ROUNDS_MAX);
     if (study->round_count > samples) study->round_count = (size_t)samples;
@@ -143,22 +153,19 @@ static BpStatus begin_level(BpStudy *study, uint64_t before, BpError *err) {
 
 /* Adds the seconds of the level that has ended, and says what everyone's were over the base's. */
 static void add_seconds(BpStudy *study) {
-    double samples[BP_STUDY_ROUNDS_MAX], all = 0;
-    uint64_t before = study->level_before;
+    double samples[BP_STUDY_ROUNDS_MAX];
     const double *base = study->runners[0].rounds;
-    for (size_t r = 0; r < study->round_count; r++) {
-        samples[r] = (double)(round_end(study, r) - before);
-        before = round_end(study, r);
-        all += base[r];
-    }
-    const double undisturbed = bp_study_round_seconds(base, samples, study->round_count);
+    const size_t count = study->round_count;
+    for (size_t r = 0; r < count; r++)
+        samples[r] = (double)(samples_after(study, r + 1) - samples_after(study, r));
+    const double all = bp_study_round_sum(base, count);
+    const double undisturbed = bp_study_round_seconds(base, samples, count);
     for (size_t s = 0; s < study->result.count; s++) {
         BpStudyRunner *runner = &study->runners[s];
-        double own = 0;
-        for (size_t r = 0; r < study->round_count; r++) own += runner->rounds[r];
+        const double own = bp_study_round_sum(runner->rounds, count);
         runner->seconds += all > 0 ? own * undisturbed / all : own; /* disturbed as much as the base */
         study->result.series[s].time_ratio =
-            bp_study_round_ratio(runner->rounds, base, runner->at_once ? 0 : study->round_count);
+            bp_study_round_ratio(runner->rounds, base, goes_at_once(study, s) ? 0 : count);
     }
 }
 
@@ -184,7 +191,6 @@ static BpStatus open_setting(BpStudy *study, BpError *err) {
     BpRenderReport report;
     bp_render_report(runner->render, &report);
     runner->warm_device_seconds = report.device_seconds;
-    runner->at_once = options.adaptive;
     BP_TRY(bp_study_note_first(study, s, err));
     if (s == 0) {
         study->result.report = report;
@@ -194,8 +200,7 @@ static BpStatus open_setting(BpStudy *study, BpError *err) {
     bp_study_crop_place(study->interest, study->first.width, study->first.height, &study->crop_left,
                         &study->crop_top);
     study->phase = BP_STUDY_LEVELS;
-    study->level = LEVEL_FIRST;
-    return begin_level(study, 1, err);
+    return begin_level(study, LEVEL_FIRST, err);
 }
 
 /* ---- the end ----------------------------------------------------------------------------------------- */
@@ -257,9 +262,7 @@ static BpStatus next_level(BpStudy *study, BpError *err) {
         if (foretold(study, next) > left) return conclude(study, err);
         study->last_level = true;
     }
-    const uint64_t before = study->level;
-    study->level = next;
-    return begin_level(study, before, err);
+    return begin_level(study, next, err);
 }
 
 /* The next setting from `turn` on, in a circle, that is not done with the round; false: all are. One is done

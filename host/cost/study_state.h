@@ -22,9 +22,7 @@ typedef struct BpStudyRunner {
     double cpu_seconds, wall_seconds, warm_device_seconds;
     double seconds;                     /* of the counts before the present one, undisturbed */
     double rounds[BP_STUDY_ROUNDS_MAX]; /* seconds, of the present count */
-    bool at_once; /* is given the present count at once, not round by round: it decides itself where to sample
-                   */
-    bool done;    /* with the present round */
+    bool done;                          /* with the present round */
 } BpStudyRunner;
 
 struct BpStudy {
@@ -35,8 +33,8 @@ struct BpStudy {
     double start;
     BpReferences references;
     BpStudyRunner runners[BP_STUDY_SETTINGS_MAX];
-    size_t turn; /* the setting at work */
-    uint64_t level, level_before;
+    size_t turn;               /* the setting at work */
+    uint64_t level;            /* samples a pixel that everyone is given now */
     size_t round, round_count; /* of the present level */
     bool last_level;           /* the present one is */
     BpPicture first;           /* of the base, one sample a pixel */

@@ -1,23 +1,11 @@
 /* timing.c: what one way to render takes, as a multiple of another, from rounds in turn; see parts.h. */
 #include "parts.h"
 
+#include "../base/quantile.h"
+
 #include <math.h>
-#include <stdlib.h>
 
 #define ROUNDS_MIN 6u /* the fewest whose least and largest hold the median with 95 % */
-
-static int by_size(const void *a, const void *b) {
-    const double x = *(const double *)a, y = *(const double *)b;
-    return (x > y) - (x < y);
-}
-
-static void sort(double *values, size_t count) {
-    qsort(values, count, sizeof *values, by_size);
-}
-
-static double median(const double *sorted, size_t count) {
-    return 0.5 * (sorted[(count - 1) / 2] + sorted[count / 2]);
-}
 
 /* How many values at either end of `count` sorted ones the 95 % interval of their median leaves out: the
  * median lies below the value of rank k, counted from 0, when at most k of them do, with the probability of
@@ -34,7 +22,7 @@ static size_t left_out(size_t count) {
     }
 }
 
-static double sum_of(const double *values, size_t count) {
+double bp_study_round_sum(const double *values, size_t count) {
     double sum = 0;
     for (size_t i = 0; i < count; i++) sum += values[i];
     return sum;
@@ -42,11 +30,12 @@ static double sum_of(const double *values, size_t count) {
 
 double bp_study_round_seconds(const double *rounds, const double *samples, size_t count) {
     double rates[BP_STUDY_ROUNDS_MAX];
-    if (count < ROUNDS_MIN) return sum_of(rounds, count);
+    if (count < ROUNDS_MIN) return bp_study_round_sum(rounds, count);
     for (size_t i = 0; i < count; i++) rates[i] = rounds[i] / samples[i];
-    sort(rates, count);
-    const double rate = median(rates, count);
-    return rate > 0 ? rate * sum_of(samples, count) : sum_of(rounds, count); /* 0: a clock too coarse */
+    bp_sort_doubles(rates, count);
+    const double rate = bp_quantile(rates, count, 0.5);
+    return rate > 0 ? rate * bp_study_round_sum(samples, count)
+                    : bp_study_round_sum(rounds, count); /* 0: a clock too coarse */
 }
 
 BpStudyEstimate bp_study_round_ratio(const double *own, const double *base, size_t count) {
@@ -55,7 +44,7 @@ BpStudyEstimate bp_study_round_ratio(const double *own, const double *base, size
         if (!(base[i] > 0) || !(own[i] > 0)) count = 0; /* a clock too coarse for rounds */
     if (count < ROUNDS_MIN) return (BpStudyEstimate){(double)NAN, (double)NAN, (double)NAN};
     for (size_t i = 0; i < count; i++) ratios[i] = own[i] / base[i];
-    sort(ratios, count);
+    bp_sort_doubles(ratios, count);
     const size_t k = left_out(count);
-    return (BpStudyEstimate){median(ratios, count), ratios[k], ratios[count - 1 - k]};
+    return (BpStudyEstimate){bp_quantile(ratios, count, 0.5), ratios[k], ratios[count - 1 - k]};
 }
