@@ -233,7 +233,7 @@ BpStatus bp_render_step(BpRender *render, BpProgress *progress, BpError *err) {
     } while (more && bp_clock_seconds() - start < STEP_SECONDS);
     if (!more)
         for (size_t i = 0; i < render->worker_count; ++i)
-            while (render->workers[i]->flight_count > 0) BP_TRY(bp_worker_wait(render->workers[i], err));
+            BP_TRY(bp_worker_wait_for_all(render->workers[i], err));
     render->trace_seconds += bp_clock_seconds() - start;
     report_progress(render, !more && !in_flight(render), progress);
     return BP_OK;

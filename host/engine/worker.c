@@ -15,8 +15,6 @@
 #define FIRST_CHUNK_SAMPLES 16384u
 /* Raw samples take at most this part of the device's memory. */
 #define SAMPLES_MEMORY_SHARE 8u
-/* Replicates of pixels that are read back at a time; no less than one pixel has. */
-#define COLLECT_CELLS 65536u
 
 /* ---- kernels ------------------------------------------------------------------------------------------- */
 
@@ -214,7 +212,7 @@ BpStatus bp_worker_oldest_done(BpWorker *worker, bool *done, BpError *err) {
     return BP_OK;
 }
 
-static BpStatus wait_for_all(BpWorker *worker, BpError *err) {
+BpStatus bp_worker_wait_for_all(BpWorker *worker, BpError *err) {
     while (worker->flight_count > 0) BP_TRY(bp_worker_wait(worker, err));
     return BP_OK;
 }
@@ -233,7 +231,7 @@ BpStatus bp_worker_start(BpWorker *worker, const BpChunk *chunk, BpError *err) {
     const bool first = worker->samples_done == 0 && worker->flight_count == 0;
     BP_TRY(bp_worker_make_room(worker, err));
     if (count > worker->samples_capacity) {
-        BP_TRY(wait_for_all(worker, err));
+        BP_TRY(bp_worker_wait_for_all(worker, err));
         BP_TRY(bp_worker_reserve_samples(worker, count, err));
     }
     const cl_uint first_sample = (cl_uint)chunk->first_sample;
@@ -276,7 +274,7 @@ BpStatus bp_worker_start(BpWorker *worker, const BpChunk *chunk, BpError *err) {
 }
 
 BpStatus bp_worker_set_pixels(BpWorker *worker, const uint32_t *list, uint32_t count, BpError *err) {
-    BP_TRY(wait_for_all(worker, err));
+    BP_TRY(bp_worker_wait_for_all(worker, err));
     CL_TRY(worker,
            clEnqueueWriteBuffer(worker->device->queue, worker->pixel_list, CL_TRUE, 0, count * sizeof *list,
                                 list, 0, NULL, NULL),
@@ -290,68 +288,4 @@ uint32_t bp_worker_chunk_samples(const BpWorker *worker, double seconds) {
     const double samples = seconds / worker->seconds_per_sample;
     if (samples < 1) return 1;
     return samples > worker->samples_limit ? worker->samples_limit : (uint32_t)samples;
-}
-
-/* ---- results ------------------------------------------------------------------------------------------- */
-
-static BpStatus read_buffer(BpWorker *worker, cl_mem buffer, size_t offset, size_t bytes, void *out,
-                            BpError *err) {
-    CL_TRY(worker,
-           clEnqueueReadBuffer(worker->device->queue, buffer, CL_TRUE, offset, bytes, out, 0, NULL, NULL),
-           "clEnqueueReadBuffer");
-    return BP_OK;
-}
-
-/* Adds one block of `count` pixels, from `first` on; the arrays are room for it. */
-static BpStatus collect_block(BpWorker *worker, size_t first, size_t count, cl_long *sums, cl_uint *counts,
-                              cl_ulong *tallies, BpAccumulator *accumulator, BpError *err) {
-    const size_t k_count = worker->replicates, cell = first * k_count, cells = count * k_count;
-    BP_TRY(read_buffer(worker, worker->sums, 3 * cell * sizeof *sums, 3 * cells * sizeof *sums, sums, err));
-    BP_TRY(read_buffer(worker, worker->counts, cell * sizeof *counts, cells * sizeof *counts, counts, err));
-    BP_TRY(read_buffer(worker, worker->tallies, 3 * first * sizeof *tallies, 3 * count * sizeof *tallies,
-                       tallies, err));
-    for (size_t i = 0; i < 3 * cells; ++i) accumulator->sums[3 * cell + i] += sums[i];
-    for (size_t i = 0; i < cells; ++i) accumulator->counts[cell + i] += counts[i];
-    for (size_t i = 0; i < count; ++i) {
-        accumulator->segments += tallies[i * 3];
-        if (accumulator->pixel_segments != NULL) accumulator->pixel_segments[first + i] += tallies[i * 3];
-        accumulator->cut_paths += tallies[i * 3 + 1];
-        accumulator->invalid_samples += tallies[i * 3 + 2];
-    }
-    return BP_OK;
-}
-
-/* Block by block: room for all of it would be as much memory again, new to the process every time. */
-BpStatus bp_worker_collect(BpWorker *worker, BpAccumulator *accumulator, BpError *err) {
-    BP_TRY(wait_for_all(worker, err));
-    size_t block = COLLECT_CELLS / worker->replicates;
-    if (block > worker->pixels) block = worker->pixels;
-    cl_long *sums = malloc(block * worker->replicates * 3 * sizeof *sums);
-    cl_uint *counts = malloc(block * worker->replicates * sizeof *counts);
-    cl_ulong *tallies = malloc(block * 3 * sizeof *tallies);
-    BpStatus status = BP_OK;
-    if (sums == NULL || counts == NULL || tallies == NULL)
-        status = bp_fail(err, BP_ERR_MEMORY, "no memory to read a picture of %u pixels back", worker->pixels);
-    for (size_t first = 0; first < worker->pixels && status == BP_OK; first += block) {
-        const size_t left = worker->pixels - first;
-        status = collect_block(worker, first, left < block ? left : block, sums, counts, tallies, accumulator,
-                               err);
-    }
-    free(sums);
-    free(counts);
-    free(tallies);
-    return status;
-}
-
-BpStatus bp_worker_samples(BpWorker *worker, uint32_t count, float *values, BpError *err) {
-    BP_TRY(wait_for_all(worker, err));
-    const size_t numbers = (size_t)count * 4;
-    if (worker->real_size == sizeof(float))
-        return read_buffer(worker, worker->samples, 0, numbers * sizeof(float), values, err);
-    double *wide = malloc(numbers * sizeof *wide);
-    if (wide == NULL) return bp_fail(err, BP_ERR_MEMORY, "no memory to read %u samples back", count);
-    const BpStatus status = read_buffer(worker, worker->samples, 0, numbers * sizeof *wide, wide, err);
-    for (size_t i = 0; status == BP_OK && i < numbers; ++i) values[i] = (float)wide[i];
-    free(wide);
-    return status;
 }

@@ -78,8 +78,9 @@ BpStatus bp_worker_set_pixels(BpWorker *worker, const uint32_t *list, uint32_t c
 
 /* Waits for the oldest chunk; does nothing when there is none. */
 BpStatus bp_worker_wait(BpWorker *worker, BpError *err);
-
-/* The same unless there is room for one more. */
+/* Waits for all chunks. */
+BpStatus bp_worker_wait_for_all(BpWorker *worker, BpError *err);
+/* Waits for the oldest unless there is room for one more. */
 BpStatus bp_worker_make_room(BpWorker *worker, BpError *err);
 /* Whether the oldest chunk is done, without waiting; true when none is under way. */
 BpStatus bp_worker_oldest_done(BpWorker *worker, bool *done, BpError *err);

@@ -1,0 +1,69 @@
+/* worker_read.c: what a device has added up, and its raw samples, read back; see worker.h. */
+#include "worker_buffers.h"
+
+#include <stdlib.h>
+
+/* Replicates of pixels that are read back at a time; no less than one pixel has. */
+#define COLLECT_CELLS 65536u
+
+static BpStatus read_buffer(BpWorker *worker, cl_mem buffer, size_t offset, size_t bytes, void *out,
+                            BpError *err) {
+    CL_TRY(worker,
+           clEnqueueReadBuffer(worker->device->queue, buffer, CL_TRUE, offset, bytes, out, 0, NULL, NULL),
+           "clEnqueueReadBuffer");
+    return BP_OK;
+}
+
+/* Adds one block of `count` pixels, from `first` on; the arrays are room for it. */
+static BpStatus collect_block(BpWorker *worker, size_t first, size_t count, cl_long *sums, cl_uint *counts,
+                              cl_ulong *tallies, BpAccumulator *accumulator, BpError *err) {
+    const size_t k_count = worker->replicates, cell = first * k_count, cells = count * k_count;
+    BP_TRY(read_buffer(worker, worker->sums, 3 * cell * sizeof *sums, 3 * cells * sizeof *sums, sums, err));
+    BP_TRY(read_buffer(worker, worker->counts, cell * sizeof *counts, cells * sizeof *counts, counts, err));
+    BP_TRY(read_buffer(worker, worker->tallies, 3 * first * sizeof *tallies, 3 * count * sizeof *tallies,
+                       tallies, err));
+    for (size_t i = 0; i < 3 * cells; ++i) accumulator->sums[3 * cell + i] += sums[i];
+    for (size_t i = 0; i < cells; ++i) accumulator->counts[cell + i] += counts[i];
+    for (size_t i = 0; i < count; ++i) {
+        accumulator->segments += tallies[i * 3];
+        if (accumulator->pixel_segments != NULL) accumulator->pixel_segments[first + i] += tallies[i * 3];
+        accumulator->cut_paths += tallies[i * 3 + 1];
+        accumulator->invalid_samples += tallies[i * 3 + 2];
+    }
+    return BP_OK;
+}
+
+/* Block by block: room for all of it would be as much memory again, new to the process every time. */
+BpStatus bp_worker_collect(BpWorker *worker, BpAccumulator *accumulator, BpError *err) {
+    BP_TRY(bp_worker_wait_for_all(worker, err));
+    size_t block = COLLECT_CELLS / worker->replicates;
+    if (block > worker->pixels) block = worker->pixels;
+    cl_long *sums = malloc(block * worker->replicates * 3 * sizeof *sums);
+    cl_uint *counts = malloc(block * worker->replicates * sizeof *counts);
+    cl_ulong *tallies = malloc(block * 3 * sizeof *tallies);
+    BpStatus status = BP_OK;
+    if (sums == NULL || counts == NULL || tallies == NULL)
+        status = bp_fail(err, BP_ERR_MEMORY, "no memory to read a picture of %u pixels back", worker->pixels);
+    for (size_t first = 0; first < worker->pixels && status == BP_OK; first += block) {
+        const size_t left = worker->pixels - first;
+        status = collect_block(worker, first, left < block ? left : block, sums, counts, tallies, accumulator,
+                               err);
+    }
+    free(sums);
+    free(counts);
+    free(tallies);
+    return status;
+}
+
+BpStatus bp_worker_samples(BpWorker *worker, uint32_t count, float *values, BpError *err) {
+    BP_TRY(bp_worker_wait_for_all(worker, err));
+    const size_t numbers = (size_t)count * 4;
+    if (worker->real_size == sizeof(float))
+        return read_buffer(worker, worker->samples, 0, numbers * sizeof(float), values, err);
+    double *wide = malloc(numbers * sizeof *wide);
+    if (wide == NULL) return bp_fail(err, BP_ERR_MEMORY, "no memory to read %u samples back", count);
+    const BpStatus status = read_buffer(worker, worker->samples, 0, numbers * sizeof *wide, wide, err);
+    for (size_t i = 0; status == BP_OK && i < numbers; ++i) values[i] = (float)wide[i];
+    free(wide);
+    return status;
+}
