@@ -2,22 +2,9 @@
 #include "agree/unit_test.h"
 
 #include "cost/parts.h"
+#include "cost_random.h"
 
 #include <math.h>
-
-static uint64_t stream;
-
-static double uniform(void) {
-    stream = stream * UINT64_C(6364136223846793005) + UINT64_C(1442695040888963407);
-    return ((double)(stream >> 11) + 0.5) * 0x1p-53;
-}
-
-/* Mean 0, standard deviation 1, nearly normal: a sum of twelve. */
-static double normal(void) {
-    double sum = -6;
-    for (int i = 0; i < 12; i++) sum += uniform();
-    return sum;
-}
 
 typedef struct Summary {
     double ratio, seconds, width; /* means */
