@@ -1,24 +1,31 @@
 /* fold.cl: adds the samples of a chunk to the replicate sums of their pixels, in 64-bit fixed point.
  *
  * In:    samples as trace.cl leaves them.
- * Out:   sums[(pixel * K + k) * 3 + channel], counts[pixel * K + k], tallies[pixel * 3 + ...]: ray segments, paths
- *        cut by the depth cap, invalid samples.
+ * Out:   sums and fine_sums[(pixel * K + k) * 3 + channel], counts[pixel * K + k] with their flags,
+ *        tallies[pixel * 3 + ...]: ray segments, paths cut by the depth cap, invalid samples.
+ * Knows: fixed point, replicates.   Does not know: what a sample shows, the picture's estimates (the host does).
  *
  * Sums of integers do not depend on their order: chunks, merged runs and several devices agree to the bit. A sample
  * that is NaN, infinite, negative or larger than any path can bring (2^39 in fixed point) is left out and counted;
  * it is found by its bits, since a compiler may assume that NaN does not exist. */
 #if REAL_IS_DOUBLE
-#define REALS_WHOLE 0x1p52 /* from here on all numbers are whole */
+#define BITS ulong
 #define BITS4 ulong4
 #define as_bits4 as_ulong4
 #define BITS_SIGN 0x8000000000000000ul
 #define BITS_LIMIT 0x4260000000000000ul /* of 2^39 */
+#define BITS_SPLIT 0x4140000000000000ul  /* of 2^21 */
+#define BITS_COARSE 0x3ed0000000000000ul /* of 2^-18: 2^20 fine steps */
+#define to_real4 convert_double4
 #else
-#define REALS_WHOLE 0x1p23f
+#define BITS uint
 #define BITS4 uint4
 #define as_bits4 as_uint4
 #define BITS_SIGN 0x80000000u
 #define BITS_LIMIT 0x53000000u
+#define BITS_SPLIT 0x4a000000u
+#define BITS_COARSE 0x36800000u
+#define to_real4 convert_float4
 #endif
 
 /* 2^exponent, -126 to 126, by its bits: ldexp is a slow call on some devices. */
@@ -30,18 +37,6 @@ static real power_of_two(int exponent) {
 #endif
 }
 
-/* rint() of what is not negative, NaN or infinite; some drivers spell it out in a dozen steps. */
-static real4 nearest_whole(real4 x) {
-#ifdef __FAST_RELAXED_MATH__
-    return rint(x); /* the sum below may be taken for x */
-#else
-    return x < (real4)REALS_WHOLE ? (x + (real4)REALS_WHOLE) - (real4)REALS_WHOLE : x;
-#endif
-}
-
-/* A sample in fixed point; the fourth number, which has a scale of its own, along with it. */
-static long4 fixed_point(real4 scaled) { return convert_long4(nearest_whole(scaled)); }
-
 /* As bits, what is NaN, infinite, negative or too large is a larger integer than any valid number; but -0 is 0. */
 static BITS4 order_of(real4 scaled) {
     const BITS4 bits = as_bits4(scaled);
@@ -50,10 +45,47 @@ static BITS4 order_of(real4 scaled) {
 
 static int is_valid(BITS4 order) { return order.x < BITS_LIMIT && order.y < BITS_LIMIT && order.z < BITS_LIMIT; }
 
+/* Whether a channel lies between 0 and a limit, both left out: `least` is the least of the orders less 1, which makes
+ * 0 the largest number of all. */
+static int any_below(BITS4 least, BITS limit) { return least.x < limit || least.y < limit || least.z < limit; }
+
+/* What the samples of one replicate of one pixel come to. */
+typedef struct ReplicateSum {
+    long4 sum, fine;
+    uint count, coarse;
+} ReplicateSum;
+
+/* The sum of the valid samples `begin`, `begin` + `stride`, ...: fractions of steps count in those samples of which a
+ * channel is below 2^21 steps, the others are right to 2^-21 without. */
+static ReplicateSum sum_split(__global const real *samples, uint begin, uint end, uint stride, real4 scales) {
+    ReplicateSum total = {0, 0, 0, 0};
+    for (uint s = begin; s < end; s += stride) {
+        const real4 scaled = vload4(s, samples) * scales;
+        const BITS4 order = order_of(scaled);
+        if (!is_valid(order)) continue;
+        ++total.count;
+        const long4 whole = convert_long4(scaled);
+        total.sum += whole;
+        if (!any_below(order - 1, BITS_SPLIT - 1)) continue;
+        const real4 rest = (scaled - to_real4(whole)) * (real4)(1l << FINE_BITS);
+        total.fine += convert_long4(rest);
+        total.coarse |= any_below(order - 1, BITS_COARSE - 1);
+    }
+    return total;
+}
+
+/* Adds to the fine sums of a cell, which hold nothing until its count says so. */
+static void add_fine(__global long *fine_sums, long4 fine, uint known) {
+    const int begun = (known & COUNT_HAS_FINE) != 0;
+    fine_sums[0] = (begun ? fine_sums[0] : 0) + fine.x;
+    fine_sums[1] = (begun ? fine_sums[1] : 0) + fine.y;
+    fine_sums[2] = (begun ? fine_sums[2] : 0) + fine.z;
+}
+
 /* One work-item a pixel of the chunk. */
 __kernel void fold(__global const real *samples, uint pixel_count, uint samples_per_pixel, uint first_pixel,
-                   uint first_sample, uint replicates, int scale_log2, __global long *sums, __global uint *counts,
-                   __global ulong *tallies PIXEL_LIST_PARAMETER) {
+                   uint first_sample, uint replicates, int scale_log2, __global long *sums, __global long *fine_sums,
+                   __global uint *counts, __global ulong *tallies PIXEL_LIST_PARAMETER) {
     const uint item = get_global_id(0);
     if (item >= pixel_count) return;
     const real scale = power_of_two(scale_log2);
@@ -68,35 +100,38 @@ __kernel void fold(__global const real *samples, uint pixel_count, uint samples_
     for (uint k = 0; k < replicates; ++k) {
         const uint begin = (k + replicates - first_sample % replicates) % replicates;
         long4 sum = 0, odd = 0;
-        BITS4 largest = 0;
+        BITS4 largest = 0, least = ~(BITS4)0;
         uint count = 0;
         for (uint s = begin; s < samples_per_pixel; s += replicates) {
             const real4 scaled = vload4(s, mine) * scales;
-            const long4 fixed = fixed_point(scaled);
-            largest = max(largest, order_of(scaled));
+            const long4 fixed = convert_long4(scaled);
+            const BITS4 order = order_of(scaled);
+            largest = max(largest, order);
+            least = min(least, order - 1);
             sum += fixed;
             odd += fixed & 1;
             ++count;
         }
         twice_segments += (ulong)sum.w;
         cut += (ulong)odd.w;
-        if (!is_valid(largest)) { /* hardly ever: once more, without those */
-            sum = 0;
-            invalid += count;
-            count = 0;
-            for (uint s = begin; s < samples_per_pixel; s += replicates) {
-                const real4 scaled = vload4(s, mine) * scales;
-                if (!is_valid(order_of(scaled))) continue;
-                sum += fixed_point(scaled);
-                ++count;
+        const size_t cell = pixel * replicates + k;
+        uint known = counts[cell];
+        if (!is_valid(largest) || any_below(least, BITS_SPLIT - 1)) { /* hardly ever: once more, with more care */
+            const ReplicateSum careful = sum_split(mine, begin, samples_per_pixel, replicates, scales);
+            invalid += count - careful.count;
+            count = careful.count;
+            sum = careful.sum;
+            if ((careful.fine.x | careful.fine.y | careful.fine.z) != 0) {
+                add_fine(fine_sums + cell * 3, careful.fine, known);
+                known |= COUNT_HAS_FINE;
             }
-            invalid -= count;
+            if (careful.coarse) known |= COUNT_COARSE;
         }
-        __global long *total = sums + (pixel * replicates + k) * 3;
+        __global long *total = sums + cell * 3;
         total[0] += sum.x;
         total[1] += sum.y;
         total[2] += sum.z;
-        counts[pixel * replicates + k] += count;
+        counts[cell] = known + count;
     }
     tallies[pixel * 3] += (twice_segments - cut) / 2;
     tallies[pixel * 3 + 1] += cut;

@@ -43,7 +43,7 @@ void bp_study_errors(const BpPicture *x, const BpPicture *r1, const BpPicture *r
 /* Mean luminance of one replicate of a pixel; NaN without samples. */
 static double replicate(const BpAccumulator *a, size_t cell) {
     double sum = 0;
-    for (size_t c = 0; c < 3; c++) sum += weights[c] * ldexp((double)a->sums[3 * cell + c], -a->scale_log2);
+    for (size_t c = 0; c < 3; c++) sum += weights[c] * bp_accumulator_sum(a, 3 * cell + c);
     return a->counts[cell] > 0 ? sum / a->counts[cell] : (double)NAN;
 }
 

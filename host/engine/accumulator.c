@@ -44,10 +44,20 @@ void bp_accumulator_destroy(BpAccumulator **accumulator) {
     free((*accumulator)->ranges);
     free((*accumulator)->title);
     free((*accumulator)->sums);
+    free((*accumulator)->fine_sums);
     free((*accumulator)->counts);
     free((*accumulator)->pixel_segments);
     free(*accumulator);
     *accumulator = NULL;
+}
+
+BpStatus bp_accumulator_add_fine_sums(BpAccumulator *accumulator, BpError *err) {
+    if (accumulator->fine_sums != NULL) return BP_OK;
+    const size_t cells = (size_t)accumulator->width * accumulator->height * accumulator->replicates;
+    accumulator->fine_sums = calloc(cells, 3 * sizeof *accumulator->fine_sums);
+    if (accumulator->fine_sums != NULL) return BP_OK;
+    return bp_fail(err, BP_ERR_MEMORY, "out of memory for the fine sums of %zu pixels (%zu MiB)",
+                   cells / accumulator->replicates, cells * 24 >> 20);
 }
 
 /* ---- ranges of samples ---- */
@@ -57,41 +67,23 @@ static uint64_t samples_before(uint64_t end, uint32_t replicates, uint32_t repli
     return end / replicates + (end % replicates > replicate ? 1 : 0);
 }
 
-static uint64_t range_expected(const struct BpSampleRange *range, uint32_t replicates, uint32_t replicate) {
-    return samples_before(range->first + range->count, replicates, replicate) -
-           samples_before(range->first, replicates, replicate);
+static uint64_t ranges_expected(const struct BpSampleRange *ranges, size_t count, uint32_t replicates,
+                                uint32_t replicate) {
+    uint64_t total = 0;
+    for (size_t i = 0; i < count; i++)
+        total += samples_before(ranges[i].first + ranges[i].count, replicates, replicate) -
+                 samples_before(ranges[i].first, replicates, replicate);
+    return total;
 }
 
 uint64_t bp_accumulator_expected(const BpAccumulator *accumulator, uint32_t replicate) {
-    uint64_t total = 0;
-    for (size_t i = 0; i < accumulator->range_count; i++)
-        total += range_expected(&accumulator->ranges[i], accumulator->replicates, replicate);
-    return total;
+    return ranges_expected(accumulator->ranges, accumulator->range_count, accumulator->replicates, replicate);
 }
 
 uint64_t bp_accumulator_range_total(const BpAccumulator *accumulator) {
     uint64_t total = 0;
     for (size_t i = 0; i < accumulator->range_count; i++) total += accumulator->ranges[i].count;
     return total;
-}
-
-/* Whether `range` can join the accumulator's ranges. */
-static BpStatus check_range(const BpAccumulator *accumulator, const struct BpSampleRange *range,
-                            BpError *err) {
-    if (range->count < 1 || range->first >= SAMPLES_END || range->count > SAMPLES_END - range->first)
-        return bp_fail(err, BP_ERR_USAGE,
-                       "%" PRIu64 " sample%s from number %" PRIu64 " on: sample numbers are 0 to 2^32 - 1",
-                       range->count, bp_plural(range->count), range->first);
-    for (size_t i = 0; i < accumulator->range_count; i++) {
-        const struct BpSampleRange *other = &accumulator->ranges[i];
-        if (range->first < other->first + other->count && other->first < range->first + range->count)
-            return bp_fail(err, BP_ERR_USAGE,
-                           "samples %" PRIu64 " to %" PRIu64 " and %" PRIu64 " to %" PRIu64
-                           " overlap: the same samples would count twice; render with another --first-sample",
-                           other->first, other->first + other->count - 1, range->first,
-                           range->first + range->count - 1);
-    }
-    return BP_OK;
 }
 
 static BpStatus check_limit(uint64_t samples, BpError *err) {
@@ -103,42 +95,75 @@ static BpStatus check_limit(uint64_t samples, BpError *err) {
                    samples, BP_REPLICATE_SAMPLES_MAX);
 }
 
-/* Puts a checked range in its place and joins it with its neighbours; there is room for one more. */
-static void insert_range(BpAccumulator *accumulator, struct BpSampleRange range) {
-    struct BpSampleRange *ranges = accumulator->ranges;
-    size_t at = 0;
-    while (at < accumulator->range_count && ranges[at].first < range.first) at++;
-    memmove(&ranges[at + 1], &ranges[at], (accumulator->range_count - at) * sizeof *ranges);
-    ranges[at] = range;
-    accumulator->range_count++;
-    size_t last = 0;
-    for (size_t i = 1; i < accumulator->range_count; i++) {
-        if (ranges[last].first + ranges[last].count == ranges[i].first)
-            ranges[last].count += ranges[i].count;
-        else
-            ranges[++last] = ranges[i];
+/* Adds a range at the end of a sorted list, or to its last range if they adjoin. */
+static BpStatus append_range(struct BpSampleRange *list, size_t *count, const struct BpSampleRange *range,
+                             BpError *err) {
+    struct BpSampleRange *last = *count > 0 ? &list[*count - 1] : NULL;
+    if (last == NULL || last->first + last->count < range->first) {
+        list[(*count)++] = *range;
+        return BP_OK;
     }
-    accumulator->range_count = last + 1;
+    if (last->first + last->count > range->first)
+        return bp_fail(err, BP_ERR_USAGE,
+                       "samples %" PRIu64 " to %" PRIu64 " and %" PRIu64 " to %" PRIu64
+                       " overlap: the same samples would count twice; render with another --first-sample",
+                       last->first, last->first + last->count - 1, range->first,
+                       range->first + range->count - 1);
+    last->count += range->count;
+    return BP_OK;
 }
 
-static BpStatus make_room(BpAccumulator *accumulator, size_t more, BpError *err) {
-    const size_t count = accumulator->range_count + more;
-    struct BpSampleRange *ranges = realloc(accumulator->ranges, count * sizeof *ranges);
-    if (ranges == NULL) return bp_fail(err, BP_ERR_MEMORY, "out of memory for %zu sample ranges", count);
-    accumulator->ranges = ranges;
+/* The ranges of `accumulator` and those of a sorted list as one sorted list, which the caller frees; refused
+ * where they overlap or exceed a limit. The accumulator stays as it is. */
+static BpStatus join_ranges(const BpAccumulator *accumulator, const struct BpSampleRange *more,
+                            size_t more_count, struct BpSampleRange **joined, size_t *joined_count,
+                            BpError *err) {
+    const size_t most = accumulator->range_count + more_count;
+    struct BpSampleRange *list = malloc((most > 0 ? most : 1) * sizeof *list);
+    if (list == NULL) return bp_fail(err, BP_ERR_MEMORY, "out of memory for %zu sample ranges", most);
+    size_t count = 0, a = 0, b = 0;
+    BpStatus status = BP_OK;
+    while (status == BP_OK && a + b < most) {
+        const bool own = b == more_count ||
+                         (a < accumulator->range_count && accumulator->ranges[a].first <= more[b].first);
+        status = append_range(list, &count, own ? &accumulator->ranges[a++] : &more[b++], err);
+    }
+    if (status == BP_OK && count > BP_SAMPLE_RANGES_MAX)
+        status = bp_fail(err, BP_ERR_LIMIT,
+                         "%zu separate sample ranges: an accumulator has at most %u; merge neighbours first",
+                         count, BP_SAMPLE_RANGES_MAX);
+    for (uint32_t k = 0; status == BP_OK && k < accumulator->replicates; k++)
+        status = check_limit(ranges_expected(list, count, accumulator->replicates, k), err);
+    if (status != BP_OK) {
+        free(list);
+        return status;
+    }
+    *joined = list;
+    *joined_count = count;
+    return BP_OK;
+}
+
+BpStatus bp_accumulator_add_ranges(BpAccumulator *accumulator, const struct BpSampleRange *ranges,
+                                   size_t count, BpError *err) {
+    for (size_t i = 0; i < count; i++)
+        if (ranges[i].count < 1 || ranges[i].first >= SAMPLES_END ||
+            ranges[i].count > SAMPLES_END - ranges[i].first)
+            return bp_fail(err, BP_ERR_USAGE,
+                           "%" PRIu64 " sample%s from number %" PRIu64
+                           " on: sample numbers are 0 to 2^32 - 1",
+                           ranges[i].count, bp_plural(ranges[i].count), ranges[i].first);
+    struct BpSampleRange *joined = NULL;
+    size_t joined_count = 0;
+    BP_TRY(join_ranges(accumulator, ranges, count, &joined, &joined_count, err));
+    free(accumulator->ranges);
+    accumulator->ranges = joined;
+    accumulator->range_count = joined_count;
     return BP_OK;
 }
 
 BpStatus bp_accumulator_add_range(BpAccumulator *accumulator, uint64_t first, uint64_t count, BpError *err) {
     const struct BpSampleRange range = {first, count};
-    BP_TRY(check_range(accumulator, &range, err));
-    for (uint32_t k = 0; k < accumulator->replicates; k++)
-        BP_TRY(check_limit(bp_accumulator_expected(accumulator, k) +
-                               range_expected(&range, accumulator->replicates, k),
-                           err));
-    BP_TRY(make_room(accumulator, 1, err));
-    insert_range(accumulator, range);
-    return BP_OK;
+    return bp_accumulator_add_ranges(accumulator, &range, 1, err);
 }
 
 /* ---- merging ---- */
@@ -178,29 +203,45 @@ static BpStatus check_same_settings(const BpAccumulator *a, const BpAccumulator 
     return BP_OK;
 }
 
-static bool sum_overflows(int64_t a, int64_t b) {
-    return b > 0 ? a > INT64_MAX - b : a < INT64_MIN - b;
+/* Whether the two sums of every cell can be added: those of any render can. */
+static BpStatus check_sums(const BpAccumulator *into, const BpAccumulator *from, const int64_t *a,
+                           const int64_t *b, BpError *err) {
+    const size_t channels = (size_t)into->width * into->height * into->replicates * 3;
+    for (size_t i = 0; i < channels; i++)
+        if (b[i] > 0 ? a[i] > INT64_MAX - b[i] : a[i] < INT64_MIN - b[i])
+            return bp_fail(err, BP_ERR_LIMIT, "the sums of pixel %zu overflow 64 bits: a file is damaged",
+                           i / 3 / from->replicates);
+    return BP_OK;
+}
+
+static bool total_overflows(uint64_t a, uint64_t b) {
+    return a > INT64_MAX || b > INT64_MAX - a;
 }
 
 BpStatus bp_accumulator_merge(BpAccumulator *into, const BpAccumulator *from, BpError *err) {
     BP_TRY(check_same_settings(into, from, err));
-    for (size_t i = 0; i < from->range_count; i++) BP_TRY(check_range(into, &from->ranges[i], err));
-    for (uint32_t k = 0; k < into->replicates; k++)
-        BP_TRY(check_limit(bp_accumulator_expected(into, k) + bp_accumulator_expected(from, k), err));
     const size_t cells = (size_t)into->width * into->height * into->replicates;
-    for (size_t i = 0; i < cells; i++) {
-        BP_TRY(check_limit((uint64_t)into->counts[i] + from->counts[i], err));
-        for (size_t c = 3 * i; c < 3 * i + 3; c++)
-            if (sum_overflows(into->sums[c], from->sums[c]))
-                return bp_fail(err, BP_ERR_LIMIT, "the sums of pixel %zu overflow 64 bits: a file is damaged",
-                               i / into->replicates);
-    }
-    BP_TRY(make_room(into, from->range_count, err));
+    for (size_t i = 0; i < cells; i++) BP_TRY(check_limit((uint64_t)into->counts[i] + from->counts[i], err));
+    BP_TRY(check_sums(into, from, into->sums, from->sums, err));
+    if (into->fine_sums != NULL && from->fine_sums != NULL)
+        BP_TRY(check_sums(into, from, into->fine_sums, from->fine_sums, err));
+    /* A .bpa file holds totals up to 2^63 - 1; no sum of real renders comes near. */
+    if (total_overflows(into->segments, from->segments) ||
+        total_overflows(into->cut_paths, from->cut_paths) ||
+        total_overflows(into->invalid_samples, from->invalid_samples))
+        return bp_fail(
+            err, BP_ERR_LIMIT,
+            "the numbers of ray segments, cut paths or invalid samples overflow 63 bits: a file is damaged");
+    if (from->fine_sums != NULL) BP_TRY(bp_accumulator_add_fine_sums(into, err));
+    BP_TRY(bp_accumulator_add_ranges(into, from->ranges, from->range_count, err));
 
-    for (size_t i = 0; i < from->range_count; i++) insert_range(into, from->ranges[i]);
     for (size_t i = 0; i < cells; i++) into->counts[i] += from->counts[i];
     for (size_t i = 0; i < 3 * cells; i++) into->sums[i] += from->sums[i];
+    for (size_t i = 0; from->fine_sums != NULL && i < 3 * cells; i++)
+        into->fine_sums[i] += from->fine_sums[i];
     into->partial = into->partial || from->partial;
+    into->coarse = into->coarse || from->coarse;
+    into->unverified = into->unverified || from->unverified;
     into->segments += from->segments;
     into->cut_paths += from->cut_paths;
     into->invalid_samples += from->invalid_samples;

@@ -4,9 +4,13 @@
  * Out:   means, standard errors, NRMSE; sums of two runs added exactly.
  * Knows: arithmetic.   Does not know: OpenCL, scenes, file formats (accumulator_file.h does).
  *
- * Sample s of a pixel belongs to replicate s mod K. Radiance x is kept as the integer nearest to
- * x * 2^scale_log2, so sums do not depend on their order and cannot drift. bp_accumulator_scale() chooses the
- * scale so that 2^24 samples of one replicate cannot overflow 64 bits. */
+ * Sample s of a pixel belongs to replicate s mod K. Sums are integers, so they do not depend on their order
+ * and cannot drift. A channel x of a sample is y = x * 2^scale_log2 steps, at most 2^38. Its whole part goes
+ * to `sums`. That is right to 2^-21 of y where y is at least 2^21; so where a channel of the sample is
+ * smaller than that (and not 0), the fractions of its channels go to `fine_sums`, in steps that are 2^38
+ * times finer. Every sample down to 2^-18 of a step is kept to within a millionth of itself, however bright
+ * the lamp is that the scale must leave room for. bp_accumulator_scale() chooses the scale so that 2^24
+ * samples of one replicate overflow neither sum. */
 #ifndef BP_ENGINE_ACCUMULATOR_H
 #define BP_ENGINE_ACCUMULATOR_H
 
@@ -15,6 +19,10 @@
 #define BP_REPLICATES_DEFAULT 4u /* chosen by measurement: docs/ACCURACY.md */
 #define BP_REPLICATES_MAX 64u
 #define BP_REPLICATE_SAMPLES_MAX (1u << 24)
+#define BP_FINE_BITS 38 /* a fine step is 2^-38 steps */
+#define BP_SAMPLE_RANGES_MAX 10000u
+/* What rounding to steps may cost a picture, relative to its mean; see bp_accumulator_rounding(). */
+#define BP_ROUNDING_MAX 1e-6
 
 typedef struct BpAccumulator {
     uint32_t width, height;
@@ -31,10 +39,13 @@ typedef struct BpAccumulator {
         uint64_t first, count;
     } * ranges;
     size_t range_count;
-    bool partial;     /* interrupted: some pixels have fewer samples than the ranges say */
-    char *title;      /* Optional. The scene's title, for people; owned, not compared by a merge. */
-    int64_t *sums;    /* width * height * K * 3, index ((pixel * K) + k) * 3 + channel */
-    uint32_t *counts; /* width * height * K: valid samples */
+    bool partial;       /* interrupted: some pixels have fewer samples than the ranges say */
+    bool coarse;        /* some sample was so dim that a fine step may be over a millionth of it */
+    bool unverified;    /* read from a file of version 1, which has no checksum */
+    char *title;        /* Optional. The scene's title, for people; owned, not compared by a merge. */
+    int64_t *sums;      /* width * height * K * 3, index ((pixel * K) + k) * 3 + channel */
+    int64_t *fine_sums; /* Optional. Of the same shape, in steps 2^38 times finer; NULL: all are 0 */
+    uint32_t *counts;   /* width * height * K: valid samples */
     uint64_t segments, cut_paths, invalid_samples; /* totals over the picture */
     uint64_t *pixel_segments; /* Optional. Of each pixel; in no file, and not merged: adaptive sampling asks
                                  for it. */
@@ -42,13 +53,14 @@ typedef struct BpAccumulator {
 
 /* ---- what of a scene the sums depend on (accumulator_scene.c) ---- */
 
-/* The scale for a scene: 38 - ceil(log2(bound)) with bp_scene_radiance_bound(), within +-126 so that 2^scale
- * is a float. A sample is then at most 2^38, and 2^24 of them stay below 2^62. */
-int32_t bp_accumulator_scale(const BpScene *scene);
-/* An upper bound of the radiance that one path can carry, at any depth up to BP_DEPTH_MAX: the brightest of
- * sky and lamps, times the sum of the geometric series of the largest albedo of a material that both emits
- * and scatters. 0 for a black scene. */
-double bp_scene_radiance_bound(const BpScene *scene);
+/* The scale for a scene traced to `max_depth` segments: 38 - ceil(log2(bound)) with
+ * bp_scene_radiance_bound(), within +-126 so that 2^scale is a float. A sample is then at most 2^38 steps,
+ * and 2^24 of them are at most 2^62. */
+int32_t bp_accumulator_scale(const BpScene *scene, uint32_t max_depth);
+/* An upper bound of the radiance that one path of at most `max_depth` segments can carry: the brightest of
+ * sky and lamps, times min(1 / (1 - a), max_depth), where a is the largest albedo of a material that both
+ * emits and scatters: 1 + a + a^2 + ... with as many terms as the path has segments. 0 for a black scene. */
+double bp_scene_radiance_bound(const BpScene *scene, uint32_t max_depth);
 /* A hash of the meaning of the scene: camera, sky, spheres in their order, each with what its material says.
  * Names, unused materials, members without effect (the fuzz of glass) and the sign of zero change nothing;
  * nor do sample counts and depth, which the accumulator keeps apart. */
@@ -66,6 +78,16 @@ void bp_accumulator_destroy(BpAccumulator **accumulator);
  * BP_ERR_USAGE for an overlap or samples past 2^32; BP_ERR_LIMIT when a replicate would get more than
  * BP_REPLICATE_SAMPLES_MAX samples, past which 64 bits could overflow. Unchanged on failure. */
 BpStatus bp_accumulator_add_range(BpAccumulator *accumulator, uint64_t first, uint64_t count, BpError *err);
+/* The same for `count` ranges, sorted and disjoint, at once. BP_ERR_LIMIT also where more than
+ * BP_SAMPLE_RANGES_MAX separate ranges would come of it. */
+BpStatus bp_accumulator_add_ranges(BpAccumulator *accumulator, const struct BpSampleRange *ranges,
+                                   size_t count, BpError *err);
+
+/* Gives `accumulator` fine sums, all 0, unless it has them. BP_ERR_MEMORY. */
+BpStatus bp_accumulator_add_fine_sums(BpAccumulator *accumulator, BpError *err);
+
+/* The sum of radiance of one channel of one replicate; `index` as in `sums`. */
+double bp_accumulator_sum(const BpAccumulator *accumulator, size_t index);
 
 /* Samples of every pixel that the ranges name for `replicate`, and in all. */
 uint64_t bp_accumulator_expected(const BpAccumulator *accumulator, uint32_t replicate);
@@ -100,6 +122,10 @@ double bp_accumulator_squared_error(const BpAccumulator *accumulator, size_t pix
 /* The fewest and the most valid samples that a pixel has, and the mean. */
 void bp_accumulator_sample_counts(const BpAccumulator *accumulator, uint64_t *least, uint64_t *most,
                                   double *mean);
+/* The most that rounding samples to steps can have changed the picture's mean luminance by, relative to it.
+ * At most BP_ROUNDING_MAX unless samples were `coarse` and nothing brighter is seen; infinite for a picture
+ * that is black because of it. */
+double bp_accumulator_rounding(const BpAccumulator *accumulator);
 /* Mean of linear pixel values over the picture (pixels without samples count as 0). */
 void bp_accumulator_mean(const BpAccumulator *accumulator, double mean[3]);
 

@@ -9,6 +9,18 @@
 /* Rec. ITU-R BT.709-6, item 3.2 */
 static const double luminance_weights[3] = {0.2126, 0.7152, 0.0722};
 
+/* A sum in steps. */
+static double sum_steps(const BpAccumulator *accumulator, size_t index) {
+    const double fine_step = 1.0 / (double)(INT64_C(1) << BP_FINE_BITS);
+    const double steps = (double)accumulator->sums[index];
+    if (accumulator->fine_sums == NULL) return steps;
+    return steps + (double)accumulator->fine_sums[index] * fine_step;
+}
+
+double bp_accumulator_sum(const BpAccumulator *accumulator, size_t index) {
+    return ldexp(sum_steps(accumulator, index), -accumulator->scale_log2);
+}
+
 /* One pixel: index 0 to 2 the channels, 3 the luminance. */
 typedef struct PixelEstimate {
     double mean[4];
@@ -20,7 +32,6 @@ typedef struct PixelEstimate {
 static PixelEstimate estimate_pixel(const BpAccumulator *accumulator, size_t pixel) {
     PixelEstimate estimate = {.samples = 0};
     const size_t k_count = accumulator->replicates;
-    const int64_t *sums = accumulator->sums + 3 * pixel * k_count;
     const uint32_t *counts = accumulator->counts + pixel * k_count;
     const double unit = ldexp(1, -accumulator->scale_log2);
     double means[BP_REPLICATES_MAX][4];
@@ -31,7 +42,7 @@ static PixelEstimate estimate_pixel(const BpAccumulator *accumulator, size_t pix
         double *mean = means[k];
         mean[3] = 0;
         for (size_t c = 0; c < 3; c++) {
-            mean[c] = (double)sums[3 * k + c] * unit / count;
+            mean[c] = sum_steps(accumulator, 3 * (pixel * k_count + k) + c) * unit / count;
             mean[3] += luminance_weights[c] * mean[c];
         }
         for (size_t c = 0; c < 4; c++) estimate.mean[c] += count * mean[c];
@@ -99,6 +110,16 @@ void bp_accumulator_mean(const BpAccumulator *accumulator, double mean[3]) {
         for (size_t c = 0; c < 3; c++) sum[c] += estimate.mean[c];
     }
     for (size_t c = 0; c < 3; c++) mean[c] = sum[c] / (double)pixels;
+}
+
+double bp_accumulator_rounding(const BpAccumulator *accumulator) {
+    if (!accumulator->coarse) return BP_ROUNDING_MAX;
+    double mean[3];
+    bp_accumulator_mean(accumulator, mean);
+    double luminance = 0;
+    for (size_t c = 0; c < 3; c++) luminance += luminance_weights[c] * mean[c];
+    const double fine_step = ldexp(1, -accumulator->scale_log2 - BP_FINE_BITS);
+    return fmax(fine_step / luminance, BP_ROUNDING_MAX);
 }
 
 double bp_accumulator_squared_error(const BpAccumulator *accumulator, size_t pixel) {

@@ -6,7 +6,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#define SAMPLE_BITS 38 /* a sample is at most 2^38; 2^24 of them reach 2^62 */
+#define SAMPLE_BITS 38 /* a sample is at most 2^38 steps; 2^24 of them reach 2^62 */
 #define SCALE_MAX 126  /* 2^scale and its inverse are normal floats */
 
 static double largest(const double rgb[3]) {
@@ -27,7 +27,7 @@ static double sphere_albedo(const BpScene *scene, const BpSphere *sphere) {
     return (double)fmaxf(albedo[0], fmaxf(albedo[1], albedo[2]));
 }
 
-double bp_scene_radiance_bound(const BpScene *scene) {
+double bp_scene_radiance_bound(const BpScene *scene, uint32_t max_depth) {
     double brightest = fmax(largest(scene->background_bottom), largest(scene->background_top));
     double passed_on = 0;
     for (size_t i = 0; i < scene->sphere_count; i++) {
@@ -39,12 +39,11 @@ double bp_scene_radiance_bound(const BpScene *scene) {
         if (emitted > 0 && scatters(material))
             passed_on = fmax(passed_on, sphere_albedo(scene, &scene->spheres[i]));
     }
-    /* 1 + a + a^2 + ...; a path of an emitting mirror ends with the depth. */
-    return brightest * fmin(1 / (1 - fmin(passed_on, 1)), BP_DEPTH_MAX);
+    return brightest * fmin(1 / (1 - fmin(passed_on, 1)), max_depth);
 }
 
-int32_t bp_accumulator_scale(const BpScene *scene) {
-    const double bound = bp_scene_radiance_bound(scene);
+int32_t bp_accumulator_scale(const BpScene *scene, uint32_t max_depth) {
+    const double bound = bp_scene_radiance_bound(scene, max_depth);
     if (!(bound > 0)) return SAMPLE_BITS;
     int exponent = 0;
     const double mantissa = frexp(bound, &exponent); /* bound = mantissa * 2^exponent, 1/2 <= mantissa < 1 */

@@ -52,7 +52,7 @@ BpStatus bp_arrange(const BpScene *scene, const BpRenderOptions *options, const 
     setup->width = scene->camera.width;
     setup->height = scene->camera.height;
     setup->replicates = options->replicates != 0 ? options->replicates : BP_REPLICATES_DEFAULT;
-    setup->scale_log2 = bp_accumulator_scale(scene);
+    setup->scale_log2 = bp_accumulator_scale(scene, options->max_depth);
     setup->max_depth = options->max_depth;
     setup->seed = options->seed;
     setup->pixel_center = scene->camera.pixel_sampling == BP_PIXEL_CENTER;

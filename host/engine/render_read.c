@@ -17,7 +17,7 @@ uint64_t bp_render_samples_done(const BpRender *render) {
 
 static BpStatus describe(const BpRender *render, BpAccumulator *accumulator, BpError *err) {
     const BpRenderOptions *options = &render->options;
-    accumulator->scale_log2 = bp_accumulator_scale(render->scene);
+    accumulator->scale_log2 = bp_accumulator_scale(render->scene, options->max_depth);
     accumulator->scene_hash = bp_scene_hash(render->scene);
     accumulator->seed = options->seed;
     accumulator->max_depth = options->max_depth;

@@ -61,7 +61,7 @@ static BpStatus create_kernels(BpWorker *worker, const BpWorkerSetup *setup, BpE
     cl_uint index = FOLD_CONSTANTS;
     BP_TRY(set_argument(worker, worker->fold, index++, sizeof(cl_uint), &worker->replicates, err));
     BP_TRY(set_argument(worker, worker->fold, index++, sizeof(cl_int), &setup->scale_log2, err));
-    const cl_mem sums[] = {worker->sums, worker->counts, worker->tallies};
+    const cl_mem sums[] = {worker->sums, worker->fine_sums, worker->counts, worker->tallies};
     for (size_t i = 0; i < sizeof sums / sizeof sums[0]; ++i)
         BP_TRY(set_argument(worker, worker->fold, index++, sizeof(cl_mem), &sums[i], err));
     if (setup->program.pixel_list) {
@@ -154,9 +154,10 @@ void bp_worker_destroy(BpWorker **worker) {
     BpWorker *w = *worker;
     if (w->device != NULL) clFinish(w->device->queue);
     for (int i = 0; i < w->flight_count; ++i) release_flight(&w->flights[i]);
-    const cl_mem buffers[] = {w->camera,      w->sky,    w->materials, w->kinds,   w->slot_material,
-                              w->slot_albedo, w->boxes,  w->children,  w->leaves,  w->slot_sphere,
-                              w->sums,        w->counts, w->tallies,   w->samples, w->pixel_list};
+    const cl_mem buffers[] = {w->camera,        w->sky,         w->materials, w->kinds,
+                              w->slot_material, w->slot_albedo, w->boxes,     w->children,
+                              w->leaves,        w->slot_sphere, w->sums,      w->fine_sums,
+                              w->counts,        w->tallies,     w->samples,   w->pixel_list};
     for (size_t i = 0; i < sizeof buffers / sizeof buffers[0]; ++i)
         if (buffers[i] != NULL) clReleaseMemObject(buffers[i]);
     if (w->trace != NULL) clReleaseKernel(w->trace);

@@ -37,7 +37,7 @@ typedef struct BpWorker {
     BpProgram *program;
     cl_kernel trace, fold;
     cl_mem camera, sky, materials, kinds, slot_material, slot_albedo, boxes, children, leaves, slot_sphere;
-    cl_mem sums, counts, tallies, samples;
+    cl_mem sums, fine_sums, counts, tallies, samples;
     cl_mem pixel_list; /* NULL: chunks are ranges of pixels */
     size_t real_size;
     uint32_t width, replicates, pixels, max_depth, pixel_center, first_leaves, leaf_count;

@@ -65,7 +65,7 @@ BpStatus bp_worker_create_picture(BpWorker *worker, BpError *err) {
     const uint64_t sums = pixels * worker->replicates * 3 * sizeof(cl_long);
     const uint64_t counts = pixels * worker->replicates * sizeof(cl_uint);
     const uint64_t tallies = pixels * 3 * sizeof(cl_ulong);
-    worker->picture_bytes = sums + counts + tallies;
+    worker->picture_bytes = 2 * sums + counts + tallies;
     const BpDeviceInfo *info = &worker->device->info;
     if (worker->picture_bytes + worker->scene_bytes > info->memory_bytes)
         return bp_fail(
@@ -74,9 +74,12 @@ BpStatus bp_worker_create_picture(BpWorker *worker, BpError *err) {
             (double)(worker->picture_bytes + worker->scene_bytes) / 1048576, info->name,
             (double)info->memory_bytes / 1048576);
     BP_TRY(create_buffer(worker, &worker->sums, sums, NULL, "the picture's sums", err));
+    BP_TRY(create_buffer(worker, &worker->fine_sums, sums, NULL, "the picture's fine sums", err));
     BP_TRY(create_buffer(worker, &worker->counts, counts, NULL, "the picture's counts", err));
     BP_TRY(create_buffer(worker, &worker->tallies, tallies, NULL, "the picture's tallies", err));
-    const cl_uint zero = 0; /* new buffers are not zeroed */
+    /* New buffers are not zeroed. The fine sums need not be: a count says whether its cell has any, and
+     * memory that most pictures never use stays untouched. */
+    const cl_uint zero = 0;
     const struct {
         cl_mem buffer;
         uint64_t bytes;

@@ -1,7 +1,12 @@
 /* worker_read.c: what a device has added up, and its raw samples, read back; see worker.h. */
+#define BP_HOST
 #include "worker_buffers.h"
 
+#include "scene_types.h"
+
 #include <stdlib.h>
+
+_Static_assert(FINE_BITS == BP_FINE_BITS, "the device's fine steps are the accumulator's");
 
 /* Replicates of pixels that are read back at a time; no less than one pixel has. */
 #define COLLECT_CELLS 65536u
@@ -14,6 +19,22 @@ static BpStatus read_buffer(BpWorker *worker, cl_mem buffer, size_t offset, size
     return BP_OK;
 }
 
+/* Adds the fine sums of the cells whose counts say that they have some; `fine` is room for a block. Most
+ * pictures have none, and read nothing. */
+static BpStatus collect_fine_sums(BpWorker *worker, size_t cell, size_t cells, const cl_uint *counts,
+                                  cl_long *fine, BpAccumulator *accumulator, BpError *err) {
+    cl_uint flags = 0;
+    for (size_t i = 0; i < cells; ++i) flags |= counts[i];
+    accumulator->coarse = accumulator->coarse || (flags & COUNT_COARSE) != 0;
+    if ((flags & COUNT_HAS_FINE) == 0) return BP_OK;
+    BP_TRY(bp_accumulator_add_fine_sums(accumulator, err));
+    BP_TRY(
+        read_buffer(worker, worker->fine_sums, 3 * cell * sizeof *fine, 3 * cells * sizeof *fine, fine, err));
+    for (size_t i = 0; i < 3 * cells; ++i)
+        if ((counts[i / 3] & COUNT_HAS_FINE) != 0) accumulator->fine_sums[3 * cell + i] += fine[i];
+    return BP_OK;
+}
+
 /* Adds one block of `count` pixels, from `first` on; the arrays are room for it. */
 static BpStatus collect_block(BpWorker *worker, size_t first, size_t count, cl_long *sums, cl_uint *counts,
                               cl_ulong *tallies, BpAccumulator *accumulator, BpError *err) {
@@ -23,14 +44,14 @@ static BpStatus collect_block(BpWorker *worker, size_t first, size_t count, cl_l
     BP_TRY(read_buffer(worker, worker->tallies, 3 * first * sizeof *tallies, 3 * count * sizeof *tallies,
                        tallies, err));
     for (size_t i = 0; i < 3 * cells; ++i) accumulator->sums[3 * cell + i] += sums[i];
-    for (size_t i = 0; i < cells; ++i) accumulator->counts[cell + i] += counts[i];
+    for (size_t i = 0; i < cells; ++i) accumulator->counts[cell + i] += counts[i] & COUNT_SAMPLES;
     for (size_t i = 0; i < count; ++i) {
         accumulator->segments += tallies[i * 3];
         if (accumulator->pixel_segments != NULL) accumulator->pixel_segments[first + i] += tallies[i * 3];
         accumulator->cut_paths += tallies[i * 3 + 1];
         accumulator->invalid_samples += tallies[i * 3 + 2];
     }
-    return BP_OK;
+    return collect_fine_sums(worker, cell, cells, counts, sums, accumulator, err);
 }
 
 /* Block by block: room for all of it would be as much memory again, new to the process every time. */

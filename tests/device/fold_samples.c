@@ -1,9 +1,11 @@
 /* fold_samples.c: the fold kernel, fed with samples made by the test: invalid ones are found, left out and
  * counted; sums are exact whatever their order; a million equal samples keep their mean, where a float sum
  * does not. */
+#define BP_HOST
 #include "engine/device.h"
 #include "engine/effects.h"
 #include "engine/program.h"
+#include "scene_types.h"
 
 #include <math.h>
 #include <setjmp.h>
@@ -50,23 +52,30 @@ static int close_folder(void **state) {
     return 0;
 }
 
-/* Folds `count` samples of one pixel, starting at absolute number `first`, into sums and tallies, which keep
- * what they held. */
-static void fold(const Folder *folder, const float *samples, cl_uint count, cl_uint first,
-                 cl_long sums[REPLICATES * 3], cl_uint counts[REPLICATES], cl_ulong tallies[3]) {
+/* What a pixel has, and what the kernel is told. */
+typedef struct Pixel {
+    cl_long sums[REPLICATES * 3], fine_sums[REPLICATES * 3];
+    cl_uint counts[REPLICATES];
+    cl_ulong tallies[3];
+} Pixel;
+
+/* Folds `count` samples of one pixel, starting at absolute number `first`, into the pixel, which keeps what
+ * it held. */
+static void fold_scaled(const Folder *folder, const float *samples, cl_uint count, cl_uint first,
+                        cl_int scale, Pixel *pixel) {
     cl_context context = folder->device->context;
     const cl_mem_flags flags = CL_MEM_READ_WRITE | CL_MEM_COPY_HOST_PTR;
-    const size_t sizes[4] = {(size_t)count * 4 * sizeof(float), REPLICATES * 3 * sizeof(cl_long),
-                             REPLICATES * sizeof(cl_uint), 3 * sizeof(cl_ulong)};
-    void *const data[4] = {(void *)(uintptr_t)samples, sums, counts, tallies};
-    cl_mem buffers[4];
-    for (int i = 0; i < 4; ++i) {
+    const size_t sizes[5] = {(size_t)count * 4 * sizeof(float), sizeof pixel->sums, sizeof pixel->fine_sums,
+                             sizeof pixel->counts, sizeof pixel->tallies};
+    void *const data[5] = {(void *)(uintptr_t)samples, pixel->sums, pixel->fine_sums, pixel->counts,
+                           pixel->tallies};
+    cl_mem buffers[5];
+    for (int i = 0; i < 5; ++i) {
         cl_int code = CL_SUCCESS;
         buffers[i] = clCreateBuffer(context, flags, sizes[i], data[i], &code);
         assert_int_equal(code, CL_SUCCESS);
     }
     const cl_uint zero = 0, one = 1, replicates = REPLICATES;
-    const cl_int scale = SCALE;
     const struct {
         size_t size;
         const void *value;
@@ -74,7 +83,8 @@ static void fold(const Folder *folder, const float *samples, cl_uint count, cl_u
                      {sizeof count, &count},        {sizeof zero, &zero},
                      {sizeof first, &first},        {sizeof replicates, &replicates},
                      {sizeof scale, &scale},        {sizeof(cl_mem), &buffers[1]},
-                     {sizeof(cl_mem), &buffers[2]}, {sizeof(cl_mem), &buffers[3]}};
+                     {sizeof(cl_mem), &buffers[2]}, {sizeof(cl_mem), &buffers[3]},
+                     {sizeof(cl_mem), &buffers[4]}};
     for (cl_uint i = 0; i < sizeof arguments / sizeof arguments[0]; ++i)
         assert_int_equal(clSetKernelArg(folder->kernel, i, arguments[i].size, arguments[i].value),
                          CL_SUCCESS);
@@ -82,10 +92,23 @@ static void fold(const Folder *folder, const float *samples, cl_uint count, cl_u
     cl_command_queue queue = folder->device->queue;
     assert_int_equal(clEnqueueNDRangeKernel(queue, folder->kernel, 1, NULL, &items, &items, 0, NULL, NULL),
                      CL_SUCCESS);
-    for (int i = 1; i < 4; ++i)
+    for (int i = 1; i < 5; ++i)
         assert_int_equal(clEnqueueReadBuffer(queue, buffers[i], CL_TRUE, 0, sizes[i], data[i], 0, NULL, NULL),
                          CL_SUCCESS);
-    for (int i = 0; i < 4; ++i) clReleaseMemObject(buffers[i]);
+    for (int i = 0; i < 5; ++i) clReleaseMemObject(buffers[i]);
+}
+
+/* The same at SCALE, for samples that need no fine sums. */
+static void fold(const Folder *folder, const float *samples, cl_uint count, cl_uint first,
+                 cl_long sums[REPLICATES * 3], cl_uint counts[REPLICATES], cl_ulong tallies[3]) {
+    Pixel pixel = {{0}, {0}, {0}, {0}};
+    memcpy(pixel.sums, sums, sizeof pixel.sums);
+    memcpy(pixel.counts, counts, sizeof pixel.counts);
+    memcpy(pixel.tallies, tallies, sizeof pixel.tallies);
+    fold_scaled(folder, samples, count, first, SCALE, &pixel);
+    memcpy(sums, pixel.sums, sizeof pixel.sums);
+    memcpy(counts, pixel.counts, sizeof pixel.counts);
+    memcpy(tallies, pixel.tallies, sizeof pixel.tallies);
 }
 
 static void invalid_samples_are_left_out(void **state) {
@@ -164,11 +187,76 @@ static void a_million_equal_samples_keep_their_mean(void **state) {
     free(samples);
 }
 
+/* Any float between 2^-18 and 2^38 steps is kept to within a millionth of itself, and what the fine sums held
+ * before their flag was set is not believed. */
+static void dim_samples_are_kept(void **state) {
+    enum { COUNT = 4000 };
+    static float samples[COUNT][4];
+    double expected[REPLICATES * 3] = {0};
+    uint64_t seed = 7;
+    for (size_t i = 0; i < COUNT; ++i)
+        for (size_t c = 0; c < 4; ++c) {
+            seed = seed * 6364136223846793005u + 1442695040888963407u;
+            /* Each replicate has a brightness of its own, so that none hides another's rounding. */
+            const int exponent = 1 - 13 * (int)(i % REPLICATES) + (int)(seed >> 60);
+            samples[i][c] = c == 3 ? 1 : ldexpf(1 + (float)(seed >> 41) * 0x1p-23f, exponent);
+            if (c < 3) expected[i % REPLICATES * 3 + c] += (double)samples[i][c];
+        }
+    Pixel whole = {{0}, {0}, {0}, {0}}, parts = {{0}, {0}, {0}, {0}};
+    for (int i = 0; i < 12; ++i)
+        whole.fine_sums[i] = parts.fine_sums[i] = 0x5555555555555555; /* never zeroed */
+    fold_scaled(*state, &samples[0][0], COUNT, 0, 38 - 17, &whole);
+    for (cl_uint k = 0; k < REPLICATES; ++k) {
+        assert_int_equal(whole.counts[k] & COUNT_SAMPLES, COUNT / REPLICATES);
+        const bool fine = (whole.counts[k] & COUNT_HAS_FINE) != 0;
+        assert_int_equal(fine, k > 0); /* the brightest replicate needs none */
+        assert_int_equal(whole.counts[k] & COUNT_COARSE, 0);
+        for (cl_uint i = 3 * k; i < 3 * k + 3; ++i) {
+            const double sum = (double)whole.sums[i] + (fine ? ldexp((double)whole.fine_sums[i], -38) : 0);
+            assert_true(fabs(ldexp(sum, -21) / expected[i] - 1) <= 1e-6);
+            if (!fine) assert_int_equal(whole.fine_sums[i], 0x5555555555555555);
+        }
+    }
+    assert_int_equal(whole.tallies[2], 0);
+    /* In parts, in another order: the same numbers. */
+    fold_scaled(*state, samples[1001], COUNT - 1001, 1001, 38 - 17, &parts);
+    fold_scaled(*state, samples[0], 1001, 0, 38 - 17, &parts);
+    assert_memory_equal(&whole, &parts, sizeof whole);
+}
+
+/* A sample below 2^20 fine steps is marked; a zero is not, nor is an invalid one. */
+static void samples_too_dim_are_marked(void **state) {
+    const float step = ldexpf(1, -SCALE - 38);
+    const float bright[8][4] = {{0, step * 1048576, 0, 1},
+                                {NAN, step, 1, 1},
+                                {0, 0, 0, 1},
+                                {-0.0f, 1, 1, 1},
+                                {0, 0, 0, 1},
+                                {1, 1, 1, 1},
+                                {0, 0, 0, 1},
+                                {0, 0, 0, 1}};
+    Pixel pixel = {{0}, {0}, {0}, {0}};
+    fold_scaled(*state, &bright[0][0], 8, 0, SCALE, &pixel);
+    assert_int_equal(pixel.counts[0], 2 | COUNT_HAS_FINE);
+    assert_int_equal(pixel.fine_sums[1], 1048576);
+    assert_int_equal(pixel.counts[1], 1);
+    assert_int_equal(pixel.counts[2], 2);
+    assert_int_equal(pixel.counts[3], 2);
+    assert_int_equal(pixel.tallies[2], 1);
+    const float dim[4] = {0, 0, step * 1048575, 1}, lost[4] = {step * 0.25f, 0, 0, 1};
+    fold_scaled(*state, dim, 1, 0, SCALE, &pixel);
+    assert_int_equal(pixel.counts[0], 3 | COUNT_HAS_FINE | COUNT_COARSE);
+    fold_scaled(*state, lost, 1, 1, SCALE, &pixel);
+    assert_int_equal(pixel.counts[1], 2 | COUNT_COARSE); /* nothing of it is left */
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(invalid_samples_are_left_out),
         cmocka_unit_test(replicate_is_sample_modulo),
         cmocka_unit_test(a_million_equal_samples_keep_their_mean),
+        cmocka_unit_test(dim_samples_are_kept),
+        cmocka_unit_test(samples_too_dim_are_marked),
     };
     return cmocka_run_group_tests(tests, open_folder, close_folder);
 }

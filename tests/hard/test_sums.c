@@ -1,5 +1,8 @@
 /* test_sums.c: tests 33 to 37: sums that do not drift, invalid samples, and arithmetic left as written. */
+#define BP_HOST
 #include "suite.h"
+
+#include "scene_types.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -8,7 +11,7 @@
 #define SCALE 24
 
 typedef struct Folded {
-    int64_t sums[4 * 3];
+    int64_t sums[4 * 3], fine_sums[4 * 3];
     uint32_t counts[4];
     uint64_t tallies[3];
 } Folded;
@@ -22,6 +25,7 @@ static void fold(const Lab *lab, const double *samples, uint32_t count, uint32_t
     const cl_context context = lab->device->context;
     const cl_mem_flags copy = CL_MEM_READ_WRITE | CL_MEM_COPY_HOST_PTR;
     cl_mem sums = clCreateBuffer(context, copy, sizeof folded->sums, folded->sums, &code);
+    cl_mem fine_sums = clCreateBuffer(context, copy, sizeof folded->fine_sums, folded->fine_sums, &code);
     cl_mem counts = clCreateBuffer(context, copy, sizeof folded->counts, folded->counts, &code);
     cl_mem tallies = clCreateBuffer(context, copy, sizeof folded->tallies, folded->tallies, &code);
     for (uint32_t part = 0; part < parts; ++part) {
@@ -46,6 +50,7 @@ static void fold(const Lab *lab, const double *samples, uint32_t count, uint32_t
         for (int i = 0; i < 5; ++i) clSetKernelArg(kernel, index++, sizeof(cl_uint), &words[i]);
         clSetKernelArg(kernel, index++, sizeof scale, &scale);
         clSetKernelArg(kernel, index++, sizeof sums, &sums);
+        clSetKernelArg(kernel, index++, sizeof fine_sums, &fine_sums);
         clSetKernelArg(kernel, index++, sizeof counts, &counts);
         clSetKernelArg(kernel, index++, sizeof tallies, &tallies);
         const size_t one = 1;
@@ -58,24 +63,28 @@ static void fold(const Lab *lab, const double *samples, uint32_t count, uint32_t
     }
     clEnqueueReadBuffer(lab->device->queue, sums, CL_TRUE, 0, sizeof folded->sums, folded->sums, 0, NULL,
                         NULL);
+    clEnqueueReadBuffer(lab->device->queue, fine_sums, CL_TRUE, 0, sizeof folded->fine_sums,
+                        folded->fine_sums, 0, NULL, NULL);
     clEnqueueReadBuffer(lab->device->queue, counts, CL_TRUE, 0, sizeof folded->counts, folded->counts, 0,
                         NULL, NULL);
     clEnqueueReadBuffer(lab->device->queue, tallies, CL_TRUE, 0, sizeof folded->tallies, folded->tallies, 0,
                         NULL, NULL);
     clReleaseMemObject(sums);
+    clReleaseMemObject(fine_sums);
     clReleaseMemObject(counts);
     clReleaseMemObject(tallies);
     clReleaseKernel(kernel);
 }
 
 static double mean_of(const Folded *folded, int channel) {
-    int64_t sum = 0;
+    double sum = 0;
     uint32_t count = 0;
     for (int k = 0; k < 4; ++k) {
-        sum += folded->sums[k * 3 + channel];
-        count += folded->counts[k];
+        sum += (double)folded->sums[k * 3 + channel] +
+               ldexp((double)folded->fine_sums[k * 3 + channel], -FINE_BITS);
+        count += folded->counts[k] & COUNT_SAMPLES;
     }
-    return ldexp((double)sum, -SCALE) / count;
+    return ldexp(sum, -SCALE) / count;
 }
 
 /* 33: a million times 0.1. The naive float sum is off by a percent. */
@@ -134,7 +143,7 @@ static void nan_quarantine(void **state) {
     fold(*state, samples, COUNT, 3, &folded);
     assert_true(folded.tallies[2] == expected);
     uint32_t count = 0;
-    for (int k = 0; k < 4; ++k) count += folded.counts[k];
+    for (int k = 0; k < 4; ++k) count += folded.counts[k] & COUNT_SAMPLES;
     assert_true(count == COUNT - expected);
     assert_true(mean_of(&folded, 1) == 0.5);
     assert_true(fabs(mean_of(&folded, 0) - 0.5 * (count - 1) / count) < 1e-7);
