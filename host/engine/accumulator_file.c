@@ -10,8 +10,10 @@
 #include <stdlib.h>
 #include <string.h>
 #include <sys/types.h>
+#include <zlib.h>
 
 #define HEADER_SIZE_MAX (1u << 20)
+#define CHECKSUM_SIZE 4 /* zlib's CRC-32 */
 #define SUM_MAX                                                                                              \
     ((int64_t)3 << 61) /* 2^24 samples of at most 2^38 come to 2^62; half as much again for rounding */
 #define BLOCK 65536    /* numbers converted at a time */
@@ -34,42 +36,56 @@ static uint64_t load_little(const uint8_t *bytes, size_t size) {
 
 /* ---- saving ---- */
 
-static void write_sums(const BpAccumulator *accumulator, uint8_t *buffer, FILE *out) {
-    const size_t count = 3 * cell_count(accumulator);
-    for (size_t done = 0; done < count && !ferror(out); done += BLOCK) {
+/* A stream, and the checksum of what was written to it. */
+typedef struct Writer {
+    FILE *out;
+    uint8_t *buffer; /* of 8 * BLOCK bytes */
+    uLong checksum;
+} Writer;
+
+static void put(Writer *writer, const void *bytes, size_t size) {
+    writer->checksum = crc32_z(writer->checksum, bytes, size);
+    fwrite(bytes, 1, size, writer->out);
+}
+
+static void write_sums(Writer *writer, const int64_t *sums, size_t count) {
+    for (size_t done = 0; done < count && !ferror(writer->out); done += BLOCK) {
         const size_t block = count - done < BLOCK ? count - done : BLOCK;
-        for (size_t i = 0; i < block; i++)
-            store_little(buffer + 8 * i, (uint64_t)accumulator->sums[done + i], 8);
-        fwrite(buffer, 8, block, out);
+        for (size_t i = 0; i < block; i++) store_little(writer->buffer + 8 * i, (uint64_t)sums[done + i], 8);
+        put(writer, writer->buffer, 8 * block);
     }
 }
 
-static void write_counts(const BpAccumulator *accumulator, uint8_t *buffer, FILE *out) {
-    const size_t count = cell_count(accumulator);
-    for (size_t done = 0; done < count && !ferror(out); done += BLOCK) {
+static void write_counts(Writer *writer, const uint32_t *counts, size_t count) {
+    for (size_t done = 0; done < count && !ferror(writer->out); done += BLOCK) {
         const size_t block = count - done < BLOCK ? count - done : BLOCK;
-        for (size_t i = 0; i < block; i++) store_little(buffer + 4 * i, accumulator->counts[done + i], 4);
-        fwrite(buffer, 4, block, out);
+        for (size_t i = 0; i < block; i++) store_little(writer->buffer + 4 * i, counts[done + i], 4);
+        put(writer, writer->buffer, 4 * block);
     }
 }
 
 BpStatus bp_accumulator_save_stream(const BpAccumulator *accumulator, FILE *out, BpError *err) {
     BpStatus status = BP_OK;
-    uint8_t *buffer = malloc(8 * BLOCK);
+    Writer writer = {out, malloc(8 * BLOCK), crc32_z(0, NULL, 0)};
     char *header = bp_accumulator_header_make(accumulator);
-    if (buffer == NULL || header == NULL) {
+    if (writer.buffer == NULL || header == NULL) {
         status = bp_fail(err, BP_ERR_MEMORY, "out of memory for writing the accumulator");
     } else {
-        fprintf(out, "%s\n", header);
-        write_sums(accumulator, buffer, out);
-        write_counts(accumulator, buffer, out);
+        const size_t cells = cell_count(accumulator);
+        put(&writer, header, strlen(header));
+        put(&writer, "\n", 1);
+        write_sums(&writer, accumulator->sums, 3 * cells);
+        if (accumulator->fine_sums != NULL) write_sums(&writer, accumulator->fine_sums, 3 * cells);
+        write_counts(&writer, accumulator->counts, cells);
+        store_little(writer.buffer, writer.checksum, CHECKSUM_SIZE);
+        fwrite(writer.buffer, 1, CHECKSUM_SIZE, out);
         const int failed_before = ferror(out) ? errno : 0;
         if (fflush(out) != 0 || failed_before != 0)
             status = bp_fail(err, BP_ERR_FILE, "writing the accumulator failed: %s",
                              strerror(failed_before != 0 ? failed_before : errno));
     }
     free(header);
-    free(buffer);
+    free(writer.buffer);
     return status;
 }
 
@@ -86,123 +102,167 @@ BpStatus bp_accumulator_save(const BpAccumulator *accumulator, const char *path,
 
 /* ---- loading ---- */
 
-/* Reads the header line, at most HEADER_SIZE_MAX bytes with its newline; its size goes to *size. */
-static BpStatus read_header(FILE *in, const char *name, json_t **header, size_t *size, BpError *err) {
+/* A file being read, and the checksum of what was read of it. */
+typedef struct Loader {
+    FILE *in;
+    const char *name;
+    uint8_t *buffer; /* of 8 * BLOCK bytes */
+    uLong checksum;
+    bool fine_sums;
+    size_t header_size;
+} Loader;
+
+/* Reads the header line, at most HEADER_SIZE_MAX bytes with its newline. */
+static BpStatus read_header(Loader *loader, json_t **header, BpError *err) {
     char *text = malloc(HEADER_SIZE_MAX);
-    if (text == NULL) return bp_fail(err, BP_ERR_MEMORY, "out of memory for the header of %s", name);
+    if (text == NULL) return bp_fail(err, BP_ERR_MEMORY, "out of memory for the header of %s", loader->name);
     size_t length = 0;
     int c = EOF;
-    while (length < HEADER_SIZE_MAX && (c = getc(in)) != EOF && c != '\n') text[length++] = (char)c;
+    while (length < HEADER_SIZE_MAX && (c = getc(loader->in)) != EOF && c != '\n') text[length++] = (char)c;
     json_error_t json_error;
     BpStatus status = BP_OK;
-    if (ferror(in))
-        status = bp_fail(err, BP_ERR_FILE, "reading %s failed: %s", name, strerror(errno));
+    if (ferror(loader->in))
+        status = bp_fail(err, BP_ERR_FILE, "reading %s failed: %s", loader->name, strerror(errno));
     else if (c != '\n')
         status = bp_fail(err, BP_ERR_FILE, "%s is not an accumulator: it does not begin with a line of JSON",
-                         name);
+                         loader->name);
     else if ((*header = json_loadb(text, length, JSON_REJECT_DUPLICATES, &json_error)) == NULL)
-        status =
-            bp_fail(err, BP_ERR_FILE, "%s is not an accumulator: its first line is no JSON: %s (column %d)",
-                    name, json_error.text, json_error.column);
-    *size = length + 1;
+        status = json_error_code(&json_error) == json_error_out_of_memory
+                     ? bp_fail(err, BP_ERR_MEMORY, "out of memory for the header of %s", loader->name)
+                     : bp_fail(err, BP_ERR_FILE,
+                               "%s is not an accumulator: its first line is no JSON: %s (column %d)",
+                               loader->name, json_error.text, json_error.column);
+    loader->checksum =
+        crc32_z(crc32_z(crc32_z(0, NULL, 0), (const uint8_t *)text, length), (const uint8_t *)"\n", 1);
+    loader->header_size = length + 1;
     free(text);
     return status;
 }
 
 /* Whether the file is as long as sums and counts of `sizes` need; before anything is allocated. */
-static BpStatus check_length(FILE *in, const char *name, const BpAccumulator *sizes, size_t header_size,
-                             BpError *err) {
+static BpStatus check_length(Loader *loader, const BpAccumulator *sizes, BpError *err) {
+    FILE *in = loader->in;
     if (fseeko(in, 0, SEEK_END) != 0)
-        return bp_fail(err, BP_ERR_FILE, "%s is a pipe or a device: accumulators are read from files", name);
+        return bp_fail(err, BP_ERR_FILE, "%s is a pipe or a device: accumulators are read from files",
+                       loader->name);
     const off_t length = ftello(in);
-    if (length < 0 || fseeko(in, (off_t)header_size, SEEK_SET) != 0)
-        return bp_fail(err, BP_ERR_FILE, "reading %s failed: %s", name, strerror(errno));
-    /* At most 2^16 * 2^16 * 2^6 * 28 bytes: far below 2^64. */
-    const uint64_t expected = header_size + (uint64_t)cell_count(sizes) * (3 * 8 + 4);
+    if (length < 0 || fseeko(in, (off_t)loader->header_size, SEEK_SET) != 0)
+        return bp_fail(err, BP_ERR_FILE, "reading %s failed: %s", loader->name, strerror(errno));
+    /* At most 2^16 * 2^16 * 2^6 * 52 bytes: far below 2^64. */
+    const uint64_t cell_size = (loader->fine_sums ? 2 : 1) * 3 * 8 + 4;
+    const uint64_t expected = loader->header_size + (uint64_t)cell_count(sizes) * cell_size +
+                              (sizes->unverified ? 0 : CHECKSUM_SIZE);
     const uint64_t actual = (uint64_t)length;
     if (actual == expected) return BP_OK;
     return bp_fail(err, BP_ERR_FILE,
                    "%s is %s: %" PRIu64 " byte%s, where its header (%" PRIu32 " x %" PRIu32
                    " pixels, %" PRIu32 " replicate%s) says %" PRIu64,
-                   name, actual < expected ? "truncated" : "too long", actual, bp_plural(actual),
+                   loader->name, actual < expected ? "truncated" : "too long", actual, bp_plural(actual),
                    sizes->width, sizes->height, sizes->replicates, bp_plural(sizes->replicates), expected);
 }
 
-static BpStatus read_failed(FILE *in, const char *name, BpError *err) {
-    return bp_fail(err, BP_ERR_FILE, "reading %s failed: %s", name,
-                   ferror(in) ? strerror(errno) : "it ends too early");
+static BpStatus get(Loader *loader, size_t size, BpError *err) {
+    if (fread(loader->buffer, 1, size, loader->in) != size)
+        return bp_fail(err, BP_ERR_FILE, "reading %s failed: %s", loader->name,
+                       ferror(loader->in) ? strerror(errno) : "it ends too early");
+    return BP_OK;
 }
 
-static BpStatus read_sums(FILE *in, const char *name, BpAccumulator *accumulator, uint8_t *buffer,
-                          BpError *err) {
+static BpStatus read_sums(Loader *loader, const BpAccumulator *accumulator, int64_t *sums, BpError *err) {
     const size_t count = 3 * cell_count(accumulator);
     for (size_t done = 0; done < count; done += BLOCK) {
         const size_t block = count - done < BLOCK ? count - done : BLOCK;
-        if (fread(buffer, 8, block, in) != block) return read_failed(in, name, err);
+        BP_TRY(get(loader, 8 * block, err));
+        loader->checksum = crc32_z(loader->checksum, loader->buffer, 8 * block);
         for (size_t i = 0; i < block; i++) {
-            const uint64_t sum = load_little(buffer + 8 * i, 8);
+            const uint64_t sum = load_little(loader->buffer + 8 * i, 8);
             if (sum > (uint64_t)SUM_MAX)
-                return bp_fail(err, BP_ERR_FILE, "%s is damaged: the sum of pixel %zu is %s", name,
+                return bp_fail(err, BP_ERR_FILE, "%s is damaged: the sum of pixel %zu is %s", loader->name,
                                (done + i) / 3 / accumulator->replicates,
                                sum >> 63 != 0 ? "negative" : "larger than a render can make it");
-            accumulator->sums[done + i] = (int64_t)sum;
+            sums[done + i] = (int64_t)sum;
         }
     }
     return BP_OK;
 }
 
-static BpStatus read_counts(FILE *in, const char *name, BpAccumulator *accumulator, uint8_t *buffer,
-                            BpError *err) {
+static bool cell_is_empty(const BpAccumulator *accumulator, size_t cell) {
+    for (size_t i = 3 * cell; i < 3 * cell + 3; i++)
+        if (accumulator->sums[i] != 0 || (accumulator->fine_sums != NULL && accumulator->fine_sums[i] != 0))
+            return false;
+    return true;
+}
+
+static BpStatus read_counts(Loader *loader, BpAccumulator *accumulator, BpError *err) {
     const size_t count = cell_count(accumulator);
     for (size_t done = 0; done < count; done += BLOCK) {
         const size_t block = count - done < BLOCK ? count - done : BLOCK;
-        if (fread(buffer, 4, block, in) != block) return read_failed(in, name, err);
+        BP_TRY(get(loader, 4 * block, err));
+        loader->checksum = crc32_z(loader->checksum, loader->buffer, 4 * block);
         for (size_t i = 0; i < block; i++)
-            accumulator->counts[done + i] = (uint32_t)load_little(buffer + 4 * i, 4);
+            accumulator->counts[done + i] = (uint32_t)load_little(loader->buffer + 4 * i, 4);
     }
     uint64_t expected[BP_REPLICATES_MAX];
     for (uint32_t k = 0; k < accumulator->replicates; k++)
         expected[k] = bp_accumulator_expected(accumulator, k);
     for (size_t i = 0; i < count; i++) {
-        const int64_t *sums = &accumulator->sums[3 * i];
         const uint32_t samples = accumulator->counts[i];
         if (samples > expected[i % accumulator->replicates] ||
-            (samples == 0 && (sums[0] != 0 || sums[1] != 0 || sums[2] != 0)))
+            (samples == 0 && !cell_is_empty(accumulator, i)))
             return bp_fail(err, BP_ERR_FILE,
                            "%s is damaged: pixel %zu holds %" PRIu32
                            " samples in replicate %zu, which is at odds "
                            "with its %s",
-                           name, i / accumulator->replicates, samples, i % accumulator->replicates,
+                           loader->name, i / accumulator->replicates, samples, i % accumulator->replicates,
                            samples == 0 ? "sums" : "sample ranges");
     }
     return BP_OK;
 }
 
+static BpStatus check_checksum(Loader *loader, BpError *err) {
+    BP_TRY(get(loader, CHECKSUM_SIZE, err));
+    const uint64_t expected = load_little(loader->buffer, CHECKSUM_SIZE);
+    if (expected == loader->checksum) return BP_OK;
+    return bp_fail(err, BP_ERR_FILE,
+                   "%s is damaged: its checksum is %08" PRIx64 ", and its content has %08" PRIx64
+                   "; copy it again, or render its samples again",
+                   loader->name, expected, (uint64_t)loader->checksum);
+}
+
+/* Everything after the header, into an accumulator of the right size. */
+static BpStatus read_body(Loader *loader, const json_t *header, BpAccumulator *accumulator, BpError *err) {
+    BP_TRY(bp_accumulator_header_settings(header, loader->name, accumulator, err));
+    if (loader->fine_sums) BP_TRY(bp_accumulator_add_fine_sums(accumulator, err));
+    BP_TRY(read_sums(loader, accumulator, accumulator->sums, err));
+    if (loader->fine_sums) BP_TRY(read_sums(loader, accumulator, accumulator->fine_sums, err));
+    BP_TRY(read_counts(loader, accumulator, err));
+    return accumulator->unverified ? BP_OK : check_checksum(loader, err);
+}
+
 BpStatus bp_accumulator_load_stream(FILE *in, const char *name, BpAccumulator **accumulator, BpError *err) {
     *accumulator = NULL;
     json_t *header = NULL;
-    uint8_t *buffer = NULL;
     BpAccumulator *made = NULL;
     BpAccumulator sizes = {.width = 0};
-    size_t header_size = 0;
-    BpStatus status = read_header(in, name, &header, &header_size, err);
+    Loader loader = {.in = in, .name = name};
+    BpStatus status = read_header(&loader, &header, err);
     if (status != BP_OK) goto done;
-    BP_TRY_GOTO(status, bp_accumulator_header_sizes(header, name, &sizes, err), done);
-    BP_TRY_GOTO(status, check_length(in, name, &sizes, header_size, err), done);
+    BP_TRY_GOTO(status, bp_accumulator_header_sizes(header, name, &sizes, &loader.fine_sums, err), done);
+    BP_TRY_GOTO(status, check_length(&loader, &sizes, err), done);
     BP_TRY_GOTO(status, bp_accumulator_create(sizes.width, sizes.height, sizes.replicates, &made, err), done);
-    BP_TRY_GOTO(status, bp_accumulator_header_settings(header, name, made, err), done);
-    buffer = malloc(8 * BLOCK);
-    if (buffer == NULL) {
+    made->unverified = sizes.unverified;
+    made->coarse = sizes.coarse;
+    loader.buffer = malloc(8 * BLOCK);
+    if (loader.buffer == NULL) {
         status = bp_fail(err, BP_ERR_MEMORY, "out of memory for reading %s", name);
         goto done;
     }
-    BP_TRY_GOTO(status, read_sums(in, name, made, buffer, err), done);
-    BP_TRY_GOTO(status, read_counts(in, name, made, buffer, err), done);
+    BP_TRY_GOTO(status, read_body(&loader, header, made, err), done);
     *accumulator = made;
     made = NULL;
 done:
     if (status != BP_OK) bp_error_at(err, name, 0, 0);
-    free(buffer);
+    free(loader.buffer);
     json_decref(header);
     bp_accumulator_destroy(&made);
     return status;

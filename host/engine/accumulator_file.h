@@ -2,9 +2,12 @@
  *
  * In and out: BpAccumulator.   Knows: the file's layout.   Does not know: how the sums were made.
  *
- * Layout, version 1: a JSON object on one line ended by a newline, then width * height * replicates * 3 sums
- * of 8 bytes (two's complement) and width * height * replicates counts of 4 bytes, in the order of
- * BpAccumulator. Scene hash and seed are strings, since many readers of JSON keep 53 bits of a number. */
+ * Layout, version 2 (docs/FILES.md has it byte by byte): a JSON object on one line ended by a newline, then
+ * width * height * replicates * 3 sums of 8 bytes (two's complement); as many fine sums, if the header says
+ * so; width * height * replicates counts of 4 bytes, all in the order of BpAccumulator; and the CRC-32 of
+ * everything before it, 4 bytes. Version 1 has no fine sums and no checksum; it is read and marked
+ * `unverified`, and never written. Scene hash and seed are strings, since many readers of JSON keep 53 bits
+ * of a number. */
 #ifndef BP_ENGINE_ACCUMULATOR_FILE_H
 #define BP_ENGINE_ACCUMULATOR_FILE_H
 
@@ -17,9 +20,10 @@ BpStatus bp_accumulator_save(const BpAccumulator *accumulator, const char *path,
 /* The same to an open stream ("-o -"), flushed at the end. */
 BpStatus bp_accumulator_save_stream(const BpAccumulator *accumulator, FILE *out, BpError *err);
 
-/* Refuses what is truncated, too long, or not an accumulator, naming what is wrong (BP_ERR_FILE); allocates
- * nothing before the file is as long as its header says. Whatever loads obeys what accumulator.h says: ranges
- * sorted and disjoint, counts within the ranges, sums not negative and without risk of overflow. */
+/* Refuses what is truncated, too long, damaged, of a newer version or not an accumulator, naming what is
+ * wrong (BP_ERR_FILE); allocates nothing before the file is as long as its header says. Whatever loads obeys
+ * what accumulator.h says: ranges sorted and disjoint, counts within the ranges, sums not negative and
+ * without risk of overflow. */
 BpStatus bp_accumulator_load(const char *path, BpAccumulator **accumulator, BpError *err);
 /* The same from a stream that can seek; `name` stands in messages where a path would. */
 BpStatus bp_accumulator_load_stream(FILE *in, const char *name, BpAccumulator **accumulator, BpError *err);

@@ -8,8 +8,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#define FORMAT_VERSION 1
-#define RANGES_MAX 10000u
+#define TITLE_BYTES_MAX 65536u /* in the file: a header is at most 1 MiB */
 
 /* Names instead of numbers, so that a file outlives a change of the enumerations. In their order. */
 static const char *const sampler_names[] = {"independent", "sobol", NULL};
@@ -20,27 +19,40 @@ static const char *const transfer_names[] = {"gamma2", "srgb", "linear", NULL};
 
 /* ---- making ---- */
 
+/* NULL when out of memory, like the header then. */
 static json_t *ranges_json(const BpAccumulator *accumulator) {
     json_t *list = json_array();
-    for (size_t i = 0; i < accumulator->range_count; i++) {
-        if (accumulator->ranges[i].count == 0)
-            continue; /* a render that was stopped before its first sample */
-        json_array_append_new(list, json_pack("[I,I]", (json_int_t)accumulator->ranges[i].first,
-                                              (json_int_t)accumulator->ranges[i].count));
+    for (size_t i = 0; i < accumulator->range_count && list != NULL; i++) {
+        json_t *range = json_pack("[I,I]", (json_int_t)accumulator->ranges[i].first,
+                                  (json_int_t)accumulator->ranges[i].count);
+        if (json_array_append_new(list, range) == 0) continue;
+        json_decref(list);
+        list = NULL;
     }
     return list;
+}
+
+/* Bytes of a title that go to the file: whole characters of UTF-8, not too many. */
+static size_t title_bytes(const char *title) {
+    size_t length = strlen(title);
+    if (length <= TITLE_BYTES_MAX) return length;
+    length = TITLE_BYTES_MAX;
+    while (length > 0 && ((unsigned char)title[length] & 0xc0) == 0x80) length--;
+    return length;
 }
 
 char *bp_accumulator_header_make(const BpAccumulator *accumulator) {
     char hash[32], seed[32];
     snprintf(hash, sizeof hash, "%016" PRIx64, accumulator->scene_hash);
     snprintf(seed, sizeof seed, "%" PRIu64, accumulator->seed);
+    const char *title = accumulator->title != NULL ? accumulator->title : "";
     json_t *header = json_pack(
-        "{s:i,s:s,s:s,s:I,s:I,s:I,s:i,s:s,s:s,s:I,s:s,s:s,s:s,s:s,s:s,s:o,s:b,s:I,s:I,s:I}",
-        "ballpark_accumulator", FORMAT_VERSION, "byte_order", "little", "title",
-        accumulator->title != NULL ? accumulator->title : "", "width", (json_int_t)accumulator->width,
-        "height", (json_int_t)accumulator->height, "replicates", (json_int_t)accumulator->replicates,
-        "scale_log2", (int)accumulator->scale_log2, "scene_hash", hash, "seed", seed, "max_depth",
+        "{s:i,s:s,s:s%,s:I,s:I,s:I,s:i,s:b,s:b,s:s,s:s,s:I,s:s,s:s,s:s,s:s,s:s,s:o,s:b,s:I,s:I,s:I}",
+        "ballpark_accumulator", BP_ACCUMULATOR_VERSION, "byte_order", "little", "title", title,
+        title_bytes(title), "width", (json_int_t)accumulator->width, "height",
+        (json_int_t)accumulator->height, "replicates", (json_int_t)accumulator->replicates, "scale_log2",
+        (int)accumulator->scale_log2, "fine_sums", (int)(accumulator->fine_sums != NULL), "coarse",
+        (int)accumulator->coarse, "scene_hash", hash, "seed", seed, "max_depth",
         (json_int_t)accumulator->max_depth, "sampler", sampler_names[accumulator->sampler], "precision",
         precision_names[accumulator->precision], "math", math_names[accumulator->math], "numerics",
         numerics_names[accumulator->numerics], "transfer", transfer_names[accumulator->transfer], "ranges",
@@ -105,40 +117,67 @@ static uint64_t read_wide(Reader *reader, const char *member, int base, const ch
     return 0;
 }
 
+static bool read_truth(Reader *reader, const char *member) {
+    const json_t *value = json_object_get(reader->header, member);
+    if (!json_is_boolean(value)) bad_member(reader, member, "true or false");
+    return json_is_true(value);
+}
+
 static void read_ranges(Reader *reader, BpAccumulator *accumulator) {
     const json_t *list = json_object_get(reader->header, "ranges");
-    if (!json_is_array(list) || json_array_size(list) > RANGES_MAX) {
+    const size_t count_of_ranges = json_array_size(list);
+    if (!json_is_array(list) || count_of_ranges > BP_SAMPLE_RANGES_MAX) {
         bad_member(reader, "ranges", "a list of at most 10000 [first, count]");
         return;
     }
+    struct BpSampleRange *ranges = malloc((count_of_ranges > 0 ? count_of_ranges : 1) * sizeof *ranges);
+    if (ranges == NULL) {
+        if (reader->status == BP_OK) reader->status = bp_fail(reader->err, BP_ERR_MEMORY, "out of memory");
+        return;
+    }
     uint64_t end = 0;
-    for (size_t i = 0; i < json_array_size(list) && reader->status == BP_OK; i++) {
+    for (size_t i = 0; i < count_of_ranges && reader->status == BP_OK; i++) {
         const json_t *range = json_array_get(list, i);
         const json_t *first = json_array_get(range, 0), *count = json_array_get(range, 1);
         if (json_array_size(range) != 2 || !json_is_integer(first) || !json_is_integer(count) ||
             json_integer_value(first) < 0 || json_integer_value(count) < 1 ||
             (uint64_t)json_integer_value(first) < end) {
             bad_member(reader, "ranges", "a list of [first, count], sorted and disjoint, count at least 1");
-            return;
+            break;
         }
-        end = (uint64_t)json_integer_value(first) + (uint64_t)json_integer_value(count);
-        const BpStatus status = bp_accumulator_add_range(accumulator, (uint64_t)json_integer_value(first),
-                                                         (uint64_t)json_integer_value(count), reader->err);
+        ranges[i] =
+            (struct BpSampleRange){(uint64_t)json_integer_value(first), (uint64_t)json_integer_value(count)};
+        end = ranges[i].first + ranges[i].count;
+    }
+    if (reader->status == BP_OK) {
+        const BpStatus status = bp_accumulator_add_ranges(accumulator, ranges, count_of_ranges, reader->err);
         if (status == BP_ERR_MEMORY)
             reader->status = status;
         else if (status != BP_OK)
             bad_member(reader, "ranges", "sample numbers below 2^32, at most 2^24 of them in a replicate");
     }
+    free(ranges);
 }
 
 /* The part of the header that decides how long the file is. */
-static void read_sizes(Reader *reader, BpAccumulator *sizes) {
-    read_integer(reader, "ballpark_accumulator", FORMAT_VERSION, FORMAT_VERSION);
+static void read_sizes(Reader *reader, BpAccumulator *sizes, bool *fine_sums) {
+    const uint64_t version = read_integer(reader, "ballpark_accumulator", 1, INT64_MAX);
+    if (version > BP_ACCUMULATOR_VERSION && reader->status == BP_OK)
+        reader->status =
+            bp_fail(reader->err, BP_ERR_FILE,
+                    "%s is of version %" PRIu64 " of the format, and this program reads versions 1 to %d: "
+                    "use a newer ballpark",
+                    reader->name, version, BP_ACCUMULATOR_VERSION);
+    sizes->unverified = version == 1;
     static const char *const byte_orders[] = {"little", NULL};
     read_name(reader, "byte_order", byte_orders);
     sizes->width = (uint32_t)read_integer(reader, "width", 1, BP_PICTURE_SIDE_MAX);
     sizes->height = (uint32_t)read_integer(reader, "height", 1, BP_PICTURE_SIDE_MAX);
     sizes->replicates = (uint32_t)read_integer(reader, "replicates", 1, BP_REPLICATES_MAX);
+    if (!sizes->unverified) {
+        *fine_sums = read_truth(reader, "fine_sums");
+        sizes->coarse = read_truth(reader, "coarse");
+    }
 }
 
 static void read_settings(Reader *reader, BpAccumulator *accumulator) {
@@ -158,9 +197,7 @@ static void read_settings(Reader *reader, BpAccumulator *accumulator) {
     accumulator->segments = read_integer(reader, "segments", 0, INT64_MAX);
     accumulator->cut_paths = read_integer(reader, "cut_paths", 0, INT64_MAX);
     accumulator->invalid_samples = read_integer(reader, "invalid_samples", 0, INT64_MAX);
-    const json_t *partial = json_object_get(reader->header, "partial");
-    if (!json_is_boolean(partial)) bad_member(reader, "partial", "true or false");
-    accumulator->partial = json_is_true(partial);
+    accumulator->partial = read_truth(reader, "partial");
     const char *title = json_string_value(json_object_get(reader->header, "title"));
     if (title == NULL) bad_member(reader, "title", "a string");
     read_ranges(reader, accumulator);
@@ -170,12 +207,13 @@ static void read_settings(Reader *reader, BpAccumulator *accumulator) {
 }
 
 BpStatus bp_accumulator_header_sizes(const json_t *header, const char *name, BpAccumulator *sizes,
-                                     BpError *err) {
+                                     bool *fine_sums, BpError *err) {
     if (json_object_get(header, "ballpark_accumulator") == NULL)
         return bp_fail(err, BP_ERR_FILE, "%s is not an accumulator: \"ballpark_accumulator\" is missing",
                        name);
     Reader reader = {header, name, BP_OK, err};
-    read_sizes(&reader, sizes);
+    *fine_sums = false;
+    read_sizes(&reader, sizes, fine_sums);
     return reader.status;
 }
 

@@ -10,13 +10,16 @@
 
 #include <jansson.h>
 
+#define BP_ACCUMULATOR_VERSION 2 /* of the files that are written */
+
 /* The header line without its newline; the caller frees it. NULL when out of memory. */
 char *bp_accumulator_header_make(const BpAccumulator *accumulator);
 
-/* Checks version and byte order and reads width, height and replicates into `sizes`: what decides how long
- * the file has to be. `name` is the file's, for messages; BP_ERR_FILE names the member that is wrong. */
+/* Checks version and byte order, and reads what decides how long the file has to be: width, height,
+ * replicates and whether the version is 1 (`unverified`) into `sizes`, and whether there are fine sums.
+ * `name` is the file's, for messages; BP_ERR_FILE names the member that is wrong. */
 BpStatus bp_accumulator_header_sizes(const json_t *header, const char *name, BpAccumulator *sizes,
-                                     BpError *err);
+                                     bool *fine_sums, BpError *err);
 
 /* Reads everything else into `accumulator`, which has its sizes. BP_ERR_FILE or BP_ERR_MEMORY. */
 BpStatus bp_accumulator_header_settings(const json_t *header, const char *name, BpAccumulator *accumulator,

@@ -27,10 +27,13 @@ static BpAccumulator *make(void) {
                       "en");
     assert_int_equal(bp_accumulator_add_range(a, 0, 9, NULL), BP_OK);
     assert_int_equal(bp_accumulator_add_range(a, (UINT64_C(1) << 32) - 2, 2, NULL), BP_OK);
+    assert_int_equal(bp_accumulator_add_fine_sums(a, NULL), BP_OK);
+    a->coarse = true;
     for (size_t cell = 0; cell < 60; cell++) {
         a->counts[cell] = cell % 7 == 0 ? 0 : 1 + (uint32_t)(cell % 2);
         for (size_t c = 0; c < 3 && a->counts[cell] > 0; c++)
-            a->sums[3 * cell + c] = (int64_t)(data_bits(3 * cell + c) >> 2);
+            a->sums[3 * cell + c] = (int64_t)(data_bits(3 * cell + c) >> 2),
+                               a->fine_sums[3 * cell + c] = (int64_t)(data_bits(1000 + 3 * cell + c) >> 2);
     }
     return a;
 }
