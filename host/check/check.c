@@ -99,6 +99,42 @@ static BpStatus step_reference(BpCheck *check, BpError *err) {
     return BP_OK;
 }
 
+/* How far the picture is from the means of its samples (BpVerdict, picture_off). */
+static double picture_off(const BpSums *samples, const BpAccumulator *picture) {
+    const size_t pixels = (size_t)samples->width * samples->height;
+    double mean[3] = {0}, off = 0;
+    for (size_t p = 0; p < pixels; ++p)
+        for (size_t c = 0; c < 3; ++c)
+            if (samples->pixels[p].count > 0)
+                mean[c] += samples->pixels[p].sum[c] / (double)samples->pixels[p].count / (double)pixels;
+    for (size_t p = 0; p < pixels; ++p) {
+        const BpPixelSums *pixel = &samples->pixels[p];
+        const double n = (double)pixel->count;
+        double sum[3] = {0};
+        uint64_t count = 0;
+        for (size_t cell = p * picture->replicates; cell < (p + 1) * picture->replicates; ++cell) {
+            count += picture->counts[cell];
+            for (size_t c = 0; c < 3; ++c) sum[c] += bp_accumulator_sum(picture, 3 * cell + c);
+        }
+        if (count != pixel->count) return INFINITY;
+        for (size_t c = 0; c < 3; ++c) {
+            const double difference = fabs(sum[c] - pixel->sum[c]) / n;
+            if (difference > 0) off = fmax(off, difference / (pixel->sum[c] / n + mean[c]));
+        }
+    }
+    return off;
+}
+
+/* The verdict on the samples of both, and on what the kernel's picture makes of its own. */
+static BpStatus judge(BpCheck *check, BpError *err) {
+    BpCheckResult *result = &check->result;
+    const BpAccumulator *picture = NULL;
+    BP_TRY(bp_verdict(&result->kernel, &result->reference, check->options.level, &result->verdict, err));
+    BP_TRY(bp_render_accumulator(check->render, &picture, err));
+    bp_verdict_add_picture(&result->verdict, picture_off(&result->kernel, picture));
+    return BP_OK;
+}
+
 BpStatus bp_check_step(BpCheck *check, BpCheckProgress *progress, BpError *err) {
     BpCheckResult *result = &check->result;
     const uint64_t total = check->options.render.samples_per_pixel;
@@ -114,7 +150,7 @@ BpStatus bp_check_step(BpCheck *check, BpCheckProgress *progress, BpError *err) 
         result->reference_seconds += bp_clock_seconds() - start;
     }
     if (check->reference_samples == total && !check->finished) {
-        BP_TRY(bp_verdict(&result->kernel, &result->reference, check->options.level, &result->verdict, err));
+        BP_TRY(judge(check, err));
         check->finished = true;
     }
     if (progress != NULL) {

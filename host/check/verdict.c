@@ -188,6 +188,11 @@ BpStatus bp_verdict(const BpSums *kernel, const BpSums *reference, double level,
     return BP_OK;
 }
 
+void bp_verdict_add_picture(BpVerdict *verdict, double picture_off) {
+    verdict->picture_off = picture_off;
+    if (!(picture_off <= BP_VERDICT_PICTURE_OFF)) verdict->agree = false;
+}
+
 double bp_verdict_pixel_z(const BpPixelSums *kernel, const BpPixelSums *reference) {
     double k, r, variance_k, variance_r;
     pixel_mean(kernel, BP_SUMS_LUMINANCE, 1, &k, &variance_k);

@@ -24,6 +24,7 @@
 #define BP_VERDICT_POWER 0.9     /* of the smallest bias that would have been found */
 #define BP_VERDICT_ROUNDING 2e-5 /* relative; of squares twice that */
 #define BP_VERDICT_BLOCKS_SIDE 8u
+#define BP_VERDICT_PICTURE_OFF 1e-6 /* what adding the samples up may cost a pixel; see picture_off */
 
 typedef enum BpVerdictFamily {
     BP_FAMILY_PICTURE,         /* 3 tests: channel means of the whole picture */
@@ -58,6 +59,11 @@ typedef struct BpVerdict {
     /* Brightness (luminance) of kernel over reference, with its 95 % interval; NaN for a black picture. */
     double ratio, ratio_low, ratio_high;
     bool equivalent; /* the interval lies within 1 -+ BP_VERDICT_MARGIN */
+    /* How far the kernel's picture is from the samples that it is made of: the largest |picture - mean of the
+     * samples| of a pixel's channel, over the sum of that mean and the channel's mean in the picture.
+     * Infinite where a pixel counts other samples as valid. Above BP_VERDICT_PICTURE_OFF it is a
+     * disagreement. */
+    double picture_off;
     /* A common factor 1 + smallest_bias on the kernel's radiance would have been found with BP_VERDICT_POWER
      * by the means of the whole picture. NaN for a black picture. */
     double smallest_bias;
@@ -67,6 +73,9 @@ typedef struct BpVerdict {
  * out of both). BP_ERR_USAGE otherwise. `level` in (0, 1). */
 BpStatus bp_verdict(const BpSums *kernel, const BpSums *reference, double level, BpVerdict *verdict,
                     BpError *err);
+
+/* Takes `picture_off` into a verdict that bp_verdict() gave. */
+void bp_verdict_add_picture(BpVerdict *verdict, double picture_off);
 
 /* Signed z of one pixel's luminance: for maps, not for judging. */
 double bp_verdict_pixel_z(const BpPixelSums *kernel, const BpPixelSums *reference);

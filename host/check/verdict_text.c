@@ -47,6 +47,9 @@ static void print_verdict(FILE *out, const BpVerdict *v) {
     if (!isnan(v->smallest_bias))
         fprintf(out, "  power             a bias of %.3f %% would have been found with probability %.2g\n",
                 100 * v->smallest_bias, BP_VERDICT_POWER);
+    fprintf(out, "  sums              the picture is within %.1g of its samples' means, %.1g allowed%s\n",
+            v->picture_off, BP_VERDICT_PICTURE_OFF,
+            v->picture_off <= BP_VERDICT_PICTURE_OFF ? "" : ", EXCEEDED");
     fprintf(out, "  invalid samples   %llu of the kernel, %llu of the reference; %llu samples in all\n",
             (unsigned long long)v->invalid_kernel, (unsigned long long)v->invalid_reference,
             (unsigned long long)v->samples);

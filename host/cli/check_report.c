@@ -49,7 +49,7 @@ json_t *bp_check_report_json(const BpCheckResult *result) {
                   report->numerics == BP_NUMERICS_PLAIN ? "plain" : "robust");
     return json_pack(
         "{s:o, s:o, s:b, s:f, s:o, s:o, s:{s:o, s:f}, s:o, s:o, s:{s:I, s:I}, s:{s:f, s:f}, s:{s:I, s:I}, "
-        "s:{s:f, s:f}}",
+        "s:{s:f, s:f}, s:{s:o, s:f}}",
         "device", device_json(&report->device), "settings", settings, "agree", v->agree, "level", v->level,
         "tests", tests, "brightness", brightness, "smallest_bias", "value", number(v->smallest_bias), "power",
         BP_VERDICT_POWER, "mean_kernel", three(v->mean_kernel), "mean_reference", three(v->mean_reference),
@@ -57,7 +57,7 @@ json_t *bp_check_report_json(const BpCheckResult *result) {
         (json_int_t)v->invalid_reference, "segments", "kernel", v->segments_kernel, "reference",
         v->segments_reference, "cut_paths", "kernel", (json_int_t)result->cut_kernel, "reference",
         (json_int_t)result->cut_reference, "seconds", "kernel", result->kernel_seconds, "reference",
-        result->reference_seconds);
+        result->reference_seconds, "picture", "off", number(v->picture_off), "limit", BP_VERDICT_PICTURE_OFF);
 }
 
 json_t *bp_check_report_failure(const BpDeviceInfo *device, const char *message) {

@@ -90,6 +90,7 @@ BpStatus bp_command_merge(const BpCommandLine *line, BpError *err) {
                 bp_plural(bp_accumulator_range_total(sum)), ranges,
                 sum->partial ? ", not all of them in every pixel" : "", nrmse);
     }
+    if (!line->quiet) bp_result_warn(sum);
 done:
     bp_accumulator_destroy(&sum);
     return status;

@@ -108,6 +108,7 @@ static void print_summary(const BpRunResult *result, const BpStopRule *rule, con
         fprintf(stderr, "%s of the paths were cut at %" PRIu32 " segment%s (--depth) and count as black\n",
                 bp_format_percent((double)report->cut_paths / (double)report->samples, text, sizeof text),
                 result->options->max_depth, bp_plural(result->options->max_depth));
+    bp_result_warn(result->accumulator);
     if (report->invalid_samples > 0)
         fprintf(stderr, "warning: %" PRIu64 " sample%s not finite; left out of the picture\n",
                 report->invalid_samples, report->invalid_samples == 1 ? " was" : "s were");

@@ -8,7 +8,9 @@
 #include "../image/error_map.h"
 #include "../image/image.h"
 #include "json_file.h"
+#include "report.h"
 
+#include <math.h>
 #include <stdio.h>
 #include <string.h>
 #include <unistd.h>
@@ -125,4 +127,25 @@ BpStatus bp_result_write(const BpCommandLine *line, const BpResultFile *result,
 
 const char *bp_result_name(const BpResultFile *result) {
     return strcmp(result->path, "-") == 0 ? "standard output" : result->path;
+}
+
+void bp_result_warn(const BpAccumulator *accumulator) {
+    const double off = bp_accumulator_rounding(accumulator);
+    char text[32];
+    if (isinf(off))
+        fprintf(
+            stderr,
+            "warning: the picture is black because its light is over 10^17 times dimmer than the brightest "
+            "path of the scene, too dim to be added up; dim or remove that lamp\n");
+    else if (off > BP_ROUNDING_MAX)
+        fprintf(stderr,
+                "warning: rounding may have changed the picture by %s, since its light is so much dimmer "
+                "than the "
+                "brightest path of the scene; dim or remove that lamp\n",
+                bp_format_percent(off, text, sizeof text));
+    if (accumulator->unverified)
+        fprintf(
+            stderr,
+            "warning: a .bpa file of version 1 has no checksum, so damage to it goes unnoticed; render its "
+            "samples again if you cannot be sure of it\n");
 }

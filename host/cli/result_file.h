@@ -30,4 +30,8 @@ BpStatus bp_result_write(const BpCommandLine *line, const BpResultFile *result,
 /* "cover.png", or "standard output". */
 const char *bp_result_name(const BpResultFile *result);
 
+/* Warns on standard error of what may be wrong with sums that look right: rounding that shows, since the
+ * picture is that dim beside the brightest lamp of its scene, and sums from a file without a checksum. */
+void bp_result_warn(const BpAccumulator *accumulator);
+
 #endif

@@ -1,0 +1,87 @@
+"""A picture is right however bright the lamps are that it does not show: sums keep dim light beside bright lamps."""
+import json
+import struct
+import unittest
+
+from cli import ProgramTest, main, scene
+
+HIDDEN = [1e3, 1e6, 1e9, 1e12]  # times the radiance that is seen
+SEEN = [1e-6, 1e-2, 1, 1e2, 1e6]
+RADIANCE_MAX = 1e12
+
+
+def pixels(pfm):
+    body = pfm.split(b"\n", 3)[3]
+    return struct.unpack(f"<{len(body) // 4}f", body)
+
+
+class DimTest(ProgramTest):
+    def document(self, seen, hidden, emitter, spheres=()):
+        """A sky of one radiance, and behind the camera a sphere that emits."""
+        materials = {"m": {"type": "lambertian", "albedo": [0.5, 0.4, 0.3]}}
+        spheres = list(spheres)
+        if hidden > 0:
+            materials["lamp"] = dict(emitter, emit=[hidden] * 3)
+            spheres.append({"center": [0, 0, 1e4], "radius": 1e-3, "material": "lamp"})
+        return scene(width=8, height=8, spheres=spheres, materials=materials, background=[seen] * 3,
+                     camera={"max_depth": 50, "vfov": 40})
+
+    def statistics(self, name, *options):
+        self.succeed("render", name, "-o", "x.pfm", "--stats", "stats.json", "-q", *options)
+        return json.loads(self.read("stats.json"))
+
+    def test_a_sky_keeps_its_radiance(self):
+        for emitter in ({"type": "diffuse_light"}, {"type": "dielectric", "refraction_index": 1.5}):
+            for seen in SEEN:
+                for ratio in HIDDEN:
+                    if seen * ratio > RADIANCE_MAX:
+                        continue
+                    with self.subTest(seen=seen, ratio=ratio, emitter=emitter["type"]):
+                        self.write("scene.json", self.document(seen, seen * ratio, emitter))
+                        statistics = self.statistics("scene.json", "--spp", "4")
+                        exact = struct.unpack("<f", struct.pack("<f", seen))[0]
+                        for channel in statistics["mean_radiance"]:
+                            self.assertLessEqual(abs(channel / exact - 1), 1e-6)
+                        self.assertEqual(statistics["invalid_samples"], 0)
+                        self.assertLessEqual(statistics["rounding"], 1e-6)
+
+    def test_shaded_spheres_look_the_same(self):
+        """Light of many bounces, dimmer at each: pixel by pixel, in both precisions and forms."""
+        spheres = [{"center": [0.3 * i - 0.6, 0, -2], "radius": 0.2, "material": "m"} for i in range(5)]
+        for seen in (1e-6, 1e-2, 1):
+            for options in ([], ["--precision", "double"], ["--kernel", "sample"]):
+                with self.subTest(seen=seen, options=options):
+                    pictures = []
+                    for hidden in (0, seen * 1e12):
+                        self.write("scene.json", self.document(seen, hidden, {"type": "diffuse_light"}, spheres))
+                        self.statistics("scene.json", "--spp", "8", *options)
+                        pictures.append(pixels(self.read("x.pfm")))
+                    mean = sum(pictures[0]) / len(pictures[0])
+                    for without, beside in zip(*pictures):
+                        self.assertLessEqual(abs(without - beside), 1e-6 * (mean + without))
+
+    def test_the_check_looks_at_the_sums(self):
+        self.write("scene.json", self.document(0.01, 100, {"type": "dielectric", "refraction_index": 1.5}))
+        self.succeed("check", "scene.json", "--spp", "16", "--json", "c.json")
+        picture = json.loads(self.read("c.json"))["results"][0]["picture"]
+        self.assertLessEqual(picture["off"], picture["limit"])
+        self.assertEqual(picture["limit"], 1e-6)
+
+    def test_what_cannot_be_kept_is_said(self):
+        """Emitting glass at full depth leaves less room than the sky of this scene needs."""
+        document = self.document(1e-2, 1e12, {"type": "dielectric", "refraction_index": 1.5})
+        self.write("scene.json", document)
+        for depth, said in (("50", False), ("1000000", True)):
+            done = self.succeed("render", "scene.json", "-o", "x.bpa", "--spp", "4", "--depth", depth, "--stats", "t.json")
+            self.assertEqual("warning: rounding may have changed the picture by" in done.errors, said, done.errors)
+            self.assertEqual(json.loads(self.read("t.json"))["rounding"] > 1e-6, said)
+        done = self.succeed("merge", "x.bpa", "-o", "y.png")
+        self.assertIn("warning: rounding may have changed the picture by", done.errors)
+        document["background"] = [1e-6] * 3
+        self.write("scene.json", document)
+        done = self.succeed("render", "scene.json", "-o", "x.png", "--spp", "4", "--depth", "1000000")
+        self.assertIn("warning: the picture is black because its light is", done.errors)
+
+
+if __name__ == "__main__":
+    main()
