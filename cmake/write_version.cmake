@@ -4,7 +4,9 @@ execute_process(COMMAND git -C ${SOURCE_DIR} describe --always --dirty --abbrev=
 if(NOT result EQUAL 0 OR commit STREQUAL "")
   set(commit "unknown")
 endif()
-set(text "const char *bp_version(void);\nconst char *bp_version(void) { return \"${VERSION} (commit ${commit})\"; }\n")
+set(text "#include \"ballpark.h\"\n
+const char *bp_version(void) { return \"${VERSION} (commit ${commit})\"; }
+int bp_api_version(void) { return BP_API_VERSION; }\n")
 set(old "")
 if(EXISTS ${OUTPUT})
   file(READ ${OUTPUT} old)

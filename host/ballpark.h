@@ -1,28 +1,56 @@
-/* ballpark.h: the public face of libballpark, a path tracer for spheres on any OpenCL device.
+/* ballpark.h: the public interface of libballpark, a path tracer for spheres on any OpenCL device.
  *
- * The straight line: load a scene, open a render of it on a list of devices, step until content, read the
- * picture, destroy.
+ * The straight line: load a scene, open a render of it on a list of devices, step until it is finished, read
+ * the picture, destroy.
  *
  *     BpScene *scene = NULL; BpRender *render = NULL; BpError err = {0};
  *     bp_scene_load("cover.json", &scene, &err);
- *     bp_render_create(scene, NULL, NULL, &render, &err);
+ *     bp_render_create(scene, NULL, NULL, 0, &render, &err);
  *     do bp_render_step(render, &progress, &err); while (!progress.finished);
  *     bp_render_read(render, &picture, &err);
  *
  * General rules, stated once:
- * - Fallible functions return BpStatus and take `BpError *err` last; `err` may be NULL. Begin with a zeroed
- *   BpError and end with bp_error_clear().
- * - `_create` and `_load` give a heap object that the caller owns; `_destroy` takes its address, frees it and
- *   sets it to NULL; it accepts a NULL object. `_clear` releases what a caller-owned struct holds.
- * - Strings are UTF-8 and copied; nothing keeps a caller's pointer beyond the call unless it says so.
- * - A handle is used by one thread at a time; different handles may be used by different threads.
- * - Colours are linear RGB radiance. Lengths are the scene's own unit. Angles are degrees where named so. */
+ * - Errors. A function that can fail returns BpStatus and takes `BpError *err` last; `err` may be NULL. Begin
+ *   with a zeroed BpError and end with bp_error_clear(). Any such function can fail with BP_ERR_MEMORY, and
+ *   one that works on a device with BP_ERR_DEVICE; comments name what else is to be expected. After a failed
+ *   step of a render or a study, destroy it; every other failure leaves its arguments as they were.
+ * - Arguments. A pointer must not be NULL unless it is called Optional here.
+ * - Ownership. A function that takes the address of a handle to fill it gives an object that the caller owns;
+ *   the handle is NULL before, and stays NULL on failure. `_destroy` takes its address, frees it and
+ *   sets it to NULL; it accepts a NULL object. `_clear` releases what a struct of the caller's holds, and
+ *   zeroes it. What a getter points to belongs to the handle, and is valid until the handle changes or is
+ *   destroyed.
+ * - Strings are UTF-8, end with a zero byte and are copied; nothing keeps a caller's pointer beyond the call
+ *   unless it says so.
+ * - Threads. A handle is used by one thread at a time, but functions that take a `const` handle may run at
+ *   the same time: many threads may render one scene, each by a render of its own. Different handles are
+ *   independent, and nothing is remembered outside of handles. The environment (BALLPARK_KERNELS, and what
+ *   OpenCL drivers read) must not change meanwhile. No function prints, exits, or touches signals; a driver
+ *   may.
+ * - Options. A struct of options is filled by its function `_defaults`; then change what matters. New members
+ *   may come in any version, so a struct that was filled member by member would lack them.
+ * - Versions. While the version is 0.x, structs may grow in a minor version and not in a patch: see
+ *   BP_API_VERSION. There are no callbacks, variadic functions or structs passed by value, so that other
+ *   languages can call everything.
+ * - Units. Colours are linear RGB radiance. Lengths are the scene's own unit. Angles are degrees where named
+ *   so. Times are seconds of wall clock. Errors (NRMSE) are fractions: 0.01 is 1 %. */
 #ifndef BALLPARK_H
 #define BALLPARK_H
 
 #include <stdbool.h>
 #include <stddef.h>
 #include <stdint.h>
+
+/* What the shared library shows to others. */
+#if defined(__GNUC__)
+#define BP_API __attribute__((visibility("default")))
+#else
+#define BP_API
+#endif
+
+/* 1000 * major + minor of the version: 0.1. A program must be compiled again for another value; the shared
+ * library's name follows it (libballpark.so.0.1), and bp_api_version() says that of the library at hand. */
+#define BP_API_VERSION 1
 
 #ifdef __cplusplus
 extern "C" {
@@ -49,7 +77,8 @@ typedef enum BpStatus {
 #undef BP_STATUS_ENUM
 } BpStatus;
 
-/* The story of a failure. Zero it before first use. */
+/* The story of a failure. Zero it before its first use; it is written on failure alone, and may be used
+ * again. */
 typedef struct BpError {
     BpStatus code;
     char message[1024]; /* what happened, where, and the remedy */
@@ -58,12 +87,20 @@ typedef struct BpError {
     char *attachment;   /* Optional. A long text, such as a whole build log. */
 } BpError;
 
-const char *bp_status_name(BpStatus status);
-int bp_status_exit_code(BpStatus status);
-void bp_error_clear(BpError *err);
+/* "file error", and for a number that is none of BpStatus "unknown status"; static. */
+BP_API const char *bp_status_name(BpStatus status);
+/* What the command line program exits with: 0 for BP_OK, never 0 for another. */
+BP_API int bp_status_exit_code(BpStatus status);
+/* Releases the attachment and zeroes the rest. `err`: Optional. */
+BP_API void bp_error_clear(BpError *err);
+
+/* Releases what a function here says to release with it. `memory`: Optional. */
+BP_API void bp_free(void *memory);
 
 /* "0.1.0 (commit abcdef1)"; static. */
-const char *bp_version(void);
+BP_API const char *bp_version(void);
+/* The BP_API_VERSION that the library was compiled with. */
+BP_API int bp_api_version(void);
 
 /* ---- scenes ------------------------------------------------------------------------------------------ */
 
@@ -71,26 +108,29 @@ typedef struct BpScene BpScene;
 
 typedef enum BpTransfer { BP_TRANSFER_GAMMA2, BP_TRANSFER_SRGB, BP_TRANSFER_LINEAR } BpTransfer;
 
-/* Reads and validates a scene document (docs: scenes/README.md). Errors name file:line:column. */
-BpStatus bp_scene_load(const char *path, BpScene **scene, BpError *err);
+/* Reads and validates a scene document (docs: scenes/README.md). BP_ERR_SCENE: it is no valid scene, or
+ * cannot be opened; BP_ERR_FILE: reading failed. Errors name file:line:column. */
+BP_API BpStatus bp_scene_load(const char *path, BpScene **scene, BpError *err);
 
-/* The same from memory; `name` stands in messages where a path would, and relative files of the scene
- * (clouds) are looked up beside it. */
-BpStatus bp_scene_parse(const char *text, size_t length, const char *name, BpScene **scene, BpError *err);
+/* The same from `length` bytes of memory, which need not end with a zero byte; `name` stands in messages
+ * where a path would, and relative files of the scene (clouds) are looked up beside it. */
+BP_API BpStatus bp_scene_parse(const char *text, size_t length, const char *name, BpScene **scene,
+                               BpError *err);
 
-void bp_scene_destroy(BpScene **scene);
+BP_API void bp_scene_destroy(BpScene **scene);
 
-/* Overrides the picture's width in pixels; the height follows from the scene's aspect ratio. */
-BpStatus bp_scene_set_width(BpScene *scene, uint32_t width, BpError *err);
+/* Overrides the picture's width in pixels; the height follows from the scene's aspect ratio. BP_ERR_USAGE: a
+ * side would be out of range. No render or study of the scene may live meanwhile. */
+BP_API BpStatus bp_scene_set_width(BpScene *scene, uint32_t width, BpError *err);
 
-/* What the document says; valid while the scene lives. */
+/* What the document says; its strings are valid while the scene lives. */
 typedef struct BpSceneInfo {
     const char *title, *source; /* "" where the document has none */
     uint32_t width, height, samples_per_pixel, max_depth;
     size_t spheres, materials;
     BpTransfer transfer;
 } BpSceneInfo;
-void bp_scene_info(const BpScene *scene, BpSceneInfo *info);
+BP_API void bp_scene_info(const BpScene *scene, BpSceneInfo *info);
 
 /* An effect that the kernel can simulate, and whether a scene calls for it. */
 #define BP_EFFECTS_MAX 8
@@ -101,7 +141,7 @@ typedef struct BpEffectInfo {
 } BpEffectInfo;
 
 /* Fills `list` and returns the number of effects; the same ones in the same order for every scene. */
-size_t bp_scene_effects(const BpScene *scene, BpEffectInfo list[BP_EFFECTS_MAX]);
+BP_API size_t bp_scene_effects(const BpScene *scene, BpEffectInfo list[BP_EFFECTS_MAX]);
 
 /* ---- devices ----------------------------------------------------------------------------------------- */
 
@@ -118,15 +158,15 @@ typedef struct BpDeviceInfo {
     char refusal[128]; /* what the device lacks, so that it cannot render; "": nothing */
 } BpDeviceInfo;
 
-/* Every device of every platform. Free *list with free(). No platform or no device at all is not an error:
- * *count is 0. */
-BpStatus bp_devices_list(BpDeviceInfo **list, size_t *count, BpError *err);
+/* Every device of every platform. Release *list with bp_free(). No platform or no device at all is not an
+ * error: *count is 0. */
+BP_API BpStatus bp_devices_list(BpDeviceInfo **list, size_t *count, BpError *err);
 
 /* The device that `text` means: its number; "gpu" or "cpu" (the first); a part of its name, vendor, version
  * or platform (any case); or for NULL or "" the default: a GPU if there is one, else a CPU. A device that
- * cannot render is passed over; asked for by number, it is refused with what it lacks. A text that fits
- * different devices is an error. Every error lists what there is, or what to install. */
-BpStatus bp_device_find(const char *text, BpDeviceInfo *device, BpError *err);
+ * cannot render is passed over; asked for by number, it is refused with what it lacks. BP_ERR_DEVICE: nothing
+ * fits, or a text fits different devices; the error lists what there is, or what to install. */
+BP_API BpStatus bp_device_find(const char *text, BpDeviceInfo *device, BpError *err);
 
 /* ---- rendering --------------------------------------------------------------------------------------- */
 
@@ -136,7 +176,7 @@ typedef enum BpNumerics { BP_NUMERICS_ROBUST, BP_NUMERICS_PLAIN } BpNumerics;
 typedef enum BpSampler { BP_SAMPLER_INDEPENDENT, BP_SAMPLER_SOBOL } BpSampler;
 typedef enum BpKernelForm { BP_KERNEL_AUTO, BP_KERNEL_SAMPLE, BP_KERNEL_PACKET } BpKernelForm;
 
-/* Start from bp_render_defaults(), which takes samples and depth from the scene. */
+/* Start from bp_render_defaults(). */
 typedef struct BpRenderOptions {
     uint64_t samples_per_pixel; /* 1 .. 2^32 - first_sample */
     uint64_t first_sample;      /* absolute number of the first sample of every pixel */
@@ -145,7 +185,7 @@ typedef struct BpRenderOptions {
     BpPrecision precision;
     BpMath math;
     BpNumerics numerics;
-    BpSampler sampler;
+    BpSampler sampler; /* `ballpark render` uses Sobol's sequence, which has less noise in the same time */
     BpKernelForm kernel;
     bool all_effects;       /* build the general kernel instead of the specialised one */
     uint32_t extra_effects; /* bit e: simulate effect e of bp_scene_effects() although nothing calls for it */
@@ -164,30 +204,102 @@ typedef struct BpRenderOptions {
     uint64_t build_mark;     /* written into the kernel as an unused type: a new one makes every cache miss */
 } BpRenderOptions;
 
-void bp_render_defaults(const BpScene *scene, BpRenderOptions *options);
+/* Samples and depth of the scene; zeros elsewhere, which are the first choice of each enumeration. */
+BP_API void bp_render_defaults(const BpScene *scene, BpRenderOptions *options);
 
 typedef struct BpRender BpRender;
 
 typedef struct BpProgress {
-    uint64_t samples_done, samples_total; /* pixel samples */
-    uint64_t segments;                    /* ray segments traced */
-    double trace_seconds;                 /* spent tracing, by the wall clock */
+    uint64_t samples_done, samples_total; /* of all pixels together */
+    double trace_seconds;                 /* spent in bp_render_step() so far */
     bool finished;
 } BpProgress;
 
-/* Opens a render. `devices`: Optional, `device_count` of them; none means the default device. The scene must
- * outlive the render. Builds the kernel, so this can take a second. */
-BpStatus bp_render_create(const BpScene *scene, const BpRenderOptions *options, const BpDeviceInfo *devices,
-                          size_t device_count, BpRender **render, BpError *err);
+/* Opens a render. `options`: Optional; NULL means the defaults. `devices`: Optional, `device_count` of them;
+ * a count of 0 means the default device. The scene must outlive the render, unchanged. Builds the kernel, so
+ * this can take a second. BP_ERR_USAGE: an option is out of range; BP_ERR_LIMIT: more samples or pixels than
+ * sums or the device hold; BP_ERR_BUILD: the driver cannot build the kernel, and the error's attachment is
+ * its log; BP_ERR_DEVICE: it lacks something, or fails its self-test. */
+BP_API BpStatus bp_render_create(const BpScene *scene, const BpRenderOptions *options,
+                                 const BpDeviceInfo *devices, size_t device_count, BpRender **render,
+                                 BpError *err);
 
-/* Traces for about 0.2 s and returns. `progress`: Optional. */
-BpStatus bp_render_step(BpRender *render, BpProgress *progress, BpError *err);
+/* Traces for about 0.2 s and returns. `progress`: Optional. Does nothing once the render has finished. */
+BP_API BpStatus bp_render_step(BpRender *render, BpProgress *progress, BpError *err);
 
-void bp_render_destroy(BpRender **render);
+/* More samples: raises options.samples_per_pixel to `samples_per_pixel`, and the render is no longer
+ * finished. Before the first step it may lower it as well. The picture is the one that a render of so many
+ * samples gives at once; only what an adaptive render does depends on the numbers on the way too.
+ * BP_ERR_USAGE: a lower number, or past the last sample number; BP_ERR_LIMIT: more than the sums hold. */
+BP_API BpStatus bp_render_extend(BpRender *render, uint64_t samples_per_pixel, BpError *err);
+
+/* Samples that every pixel has so far (a pass in progress not counted); of an adaptive render, their mean. */
+BP_API uint64_t bp_render_samples_done(const BpRender *render);
+
+BP_API void bp_render_destroy(BpRender **render);
+
+/* ---- stop rules -------------------------------------------------------------------------------------- */
+
+/* When a render has enough samples: at the first of these. Start from bp_stop_rule_defaults(). */
+typedef struct BpStopRule {
+    double error; /* NRMSE to reach: noise as a share of the mean brightness, 0.01 is 1 %; 0: no such rule */
+    double seconds; /* since bp_stop_create(); 0: no such rule. Every pixel gets one sample in any case. */
+    uint64_t samples_max; /* a pixel; 0: as many as the sums hold, at the default of 4 replicates 2^26 */
+    uint64_t samples_min; /* a pixel, before the error is believed; unless samples_max is less */
+    bool adaptive;        /* as in the render's options */
+} BpStopRule;
+
+typedef enum BpStopReason {
+    BP_STOP_NOT_YET,
+    BP_STOP_SAMPLES,
+    BP_STOP_ERROR,
+    BP_STOP_TIME,
+    BP_STOP_CONSTANT, /* no two samples of a pixel differ, so no error is left */
+    BP_STOP_BLACK,    /* no sample brought light, so an error relative to brightness does not exist */
+    BP_STOP_INVALID   /* a pixel has no finite sample, or next to none, so the error stays unknown */
+} BpStopReason;
+
+/* "samples", "error", "time", "constant", "black", "invalid"; "interrupt" for not yet; static. */
+BP_API const char *bp_stop_reason_name(BpStopReason reason);
+
+/* No error, no time, the options' samples as the limit, and a minimum that suits the picture's size: 16
+ * samples a pixel, and 65536 in all. */
+BP_API void bp_stop_rule_defaults(const BpScene *scene, const BpRenderOptions *options, BpStopRule *rule);
+
+/* A render followed by a rule. */
+typedef struct BpStop BpStop;
+
+/* Begins to follow a render that has made no step yet; its clock starts now. The rule decides from here on
+ * how many samples the render gets. The render must outlive it. BP_ERR_USAGE: the render has begun, the rule
+ * is out of range, asks for nothing, or is adaptive where the render is not. */
+BP_API BpStatus bp_stop_create(BpRender *render, const BpStopRule *rule, BpStop **stop, BpError *err);
+
+/* Call it after every bp_render_step(), with what that said. *reason: why to stop; BP_STOP_NOT_YET: go on,
+ * and the render has been given more samples if it had finished those before. The error is looked at on fixed
+ * sample counts alone, so the same scene, seed and error end at the same count on every run; time ends a
+ * render at a whole number of samples, unless its pace dropped. */
+BP_API BpStatus bp_stop_check(BpStop *stop, const BpProgress *progress, BpStopReason *reason, BpError *err);
+
+/* How far it is, for a progress bar. */
+typedef struct BpStopEstimate {
+    double seconds;            /* since bp_stop_create() */
+    double samples_per_second; /* of all pixels together */
+    double nrmse;              /* NaN: unknown */
+    double fraction;           /* of the way, 0 to 1 */
+    double seconds_left;       /* NaN: unknown */
+} BpStopEstimate;
+
+/* After a step, as often as wanted: it reads the sums to look at the error, but spends at most 2 % of the
+ * time on that. */
+BP_API BpStatus bp_stop_estimate(BpStop *stop, const BpProgress *progress, BpStopEstimate *estimate,
+                                 BpError *err);
+
+BP_API void bp_stop_destroy(BpStop **stop);
 
 /* ---- pictures ---------------------------------------------------------------------------------------- */
 
-/* Linear radiance, row 0 at the top, 3 floats a pixel. */
+/* Linear radiance, row 0 at the top, 3 floats a pixel. The arrays may be read and changed in place; they are
+ * released by bp_picture_clear() alone. */
 typedef struct BpPicture {
     uint32_t width, height;
     float *rgb;        /* width * height * 3 */
@@ -202,26 +314,147 @@ typedef struct BpPicture {
                       nothing */
 } BpPicture;
 
-/* Reads the picture as it stands, during or after the render; the caller clears it. */
-BpStatus bp_render_read(BpRender *render, BpPicture *picture, BpError *err);
+/* Reads the picture as it stands, during or after the render. What `picture` held is not released: clear it
+ * before it is filled again. */
+BP_API BpStatus bp_render_read(BpRender *render, BpPicture *picture, BpError *err);
 /* Adds depth, normal and albedo to a picture that bp_render_read() filled, for a render that was created with
  * options.features: from the camera rays of the first 16 samples of each pixel (fewer in a shorter render),
- * by the first device. BP_ERR_USAGE without options.features. */
-BpStatus bp_render_features(BpRender *render, BpPicture *picture, BpError *err);
-void bp_picture_clear(BpPicture *picture);
+ * by the first device. What the picture held of them is released. BP_ERR_USAGE: without options.features, or
+ * for a picture of another size. */
+BP_API BpStatus bp_render_features(BpRender *render, BpPicture *picture, BpError *err);
+/* `picture`: Optional. */
+BP_API void bp_picture_clear(BpPicture *picture);
 
 typedef enum BpFormat {
     BP_FORMAT_PNG,
     BP_FORMAT_PPM,
     BP_FORMAT_PPM_ASCII,
     BP_FORMAT_PFM,
-    BP_FORMAT_EXR,
-    BP_FORMAT_BPA
+    BP_FORMAT_EXR, /* with what there is of error, samples, depth, normal and albedo as layers */
+    BP_FORMAT_BPA  /* sums, not a picture: bp_film_write() */
 } BpFormat;
 
-/* Writes atomically: a temporary file beside `path`, renamed when whole. */
-BpStatus bp_picture_write(const BpPicture *picture, const char *path, BpFormat format, BpTransfer transfer,
-                          BpError *err);
+/* Writes atomically: a temporary file beside `path`, renamed when whole. `transfer` is for the 8-bit formats,
+ * PNG and PPM. BP_ERR_FILE: it cannot be written; BP_ERR_USAGE: an empty picture, or BP_FORMAT_BPA. */
+BP_API BpStatus bp_picture_write(const BpPicture *picture, const char *path, BpFormat format,
+                                 BpTransfer transfer, BpError *err);
+
+/* ---- error maps -------------------------------------------------------------------------------------- */
+
+/* Standard error of a pixel's luminance over its luminance, a fraction; NaN where it is unknown, +Inf for
+ * black with an error. `pixel`: row * width + column. The error of the luminance is taken as the weighted sum
+ * of its channels' (Rec. 709), which holds when the channels err together, as they mostly do, and is too
+ * large otherwise. The picture must have `error`. */
+BP_API double bp_pixel_relative_error(const BpPicture *picture, size_t pixel);
+
+/* The colour of a relative error on a map, 8-bit sRGB: from dark at 0.1 % and below to bright at 100 % and
+ * above, by logarithm; grey for NaN. */
+BP_API void bp_error_color(double relative_error, uint8_t rgb[3]);
+
+/* Writes a map of the picture's errors with a legend as a PNG, atomically. The scale is the same for every
+ * picture, so that two maps can be compared; small pictures are enlarged. BP_ERR_USAGE: the picture has no
+ * errors; BP_ERR_FILE: it cannot be written. */
+BP_API BpStatus bp_error_map_write(const BpPicture *picture, const char *path, BpError *err);
+
+/* ---- films: the sums behind a picture ---------------------------------------------------------------- */
+
+/* The exact sums of a render's samples, which can be kept in a file (.bpa) and added to those of other
+ * samples of the same picture. */
+typedef struct BpAccumulator BpFilm;
+
+/* The sums of a render as they stand, during or after it: a film of the caller's own, which the render does
+ * not change. */
+BP_API BpStatus bp_render_film(BpRender *render, BpFilm **film, BpError *err);
+
+/* Reads a .bpa file. BP_ERR_FILE: it cannot be read, or is damaged; the error says what is wrong. */
+BP_API BpStatus bp_film_read(const char *path, BpFilm **film, BpError *err);
+
+/* Writes a .bpa file, atomically. BP_ERR_FILE. */
+BP_API BpStatus bp_film_write(const BpFilm *film, const char *path, BpError *err);
+
+/* Adds `from` to `into`, exactly: the result is the film of one render of all their samples. BP_ERR_USAGE:
+ * they are not of the same scene, size and options, or have samples in common, and the error says which;
+ * BP_ERR_LIMIT: more samples than the sums hold. `into` is unchanged on failure. */
+BP_API BpStatus bp_film_merge(BpFilm *into, const BpFilm *from, BpError *err);
+
+/* The picture of the sums, to be cleared by the caller, as bp_render_read() gives it; depth, normal and
+ * albedo are not among them. */
+BP_API BpStatus bp_film_picture(const BpFilm *film, BpPicture *picture, BpError *err);
+
+/* NRMSE = sqrt(mean over pixels of the squared standard error of luminance) / mean luminance, a fraction. NaN
+ * where it is unknown: the picture is black, or a pixel has too few samples. */
+BP_API double bp_film_nrmse(const BpFilm *film);
+
+typedef struct BpFilmInfo {
+    const char *title;          /* of the scene, or ""; valid while the film lives */
+    uint32_t width, height;     /* pixels */
+    uint64_t samples_per_pixel; /* that the film is of; where it is partial, not every pixel has them all */
+    uint64_t samples_least, samples_most; /* valid samples of the pixels that have the fewest and the most */
+    double samples_mean;
+    size_t range_count;                            /* see bp_film_range() */
+    bool partial;                                  /* of an interrupted or an adaptive render */
+    uint64_t segments, cut_paths, invalid_samples; /* in all: ray segments; paths that the depth ended;
+                                                      samples that were not finite and are left out */
+    /* What two films must have in common to be merged. */
+    uint64_t scene_hash; /* of all in a scene that can change radiance */
+    uint64_t seed;
+    uint32_t max_depth, replicates;
+    BpSampler sampler;
+    BpPrecision precision;
+    BpMath math;
+    BpNumerics numerics;
+    BpTransfer transfer; /* of the scene, for writing the picture */
+} BpFilmInfo;
+BP_API void bp_film_info(const BpFilm *film, BpFilmInfo *info);
+
+/* The sample numbers that a film is of are *count from *first on, for each of its ranges in rising order.
+ * False, and nothing is written, for an `index` that is not below range_count. */
+BP_API bool bp_film_range(const BpFilm *film, size_t index, uint64_t *first, uint64_t *count);
+
+BP_API void bp_film_destroy(BpFilm **film);
+
+/* ---- studies: what accuracy costs -------------------------------------------------------------------- */
+
+/* What `ballpark cost` does: renders a scene by many settings and says what each costs in time, and errs. */
+typedef struct BpStudy BpStudy;
+
+/* Begins a study. `scene`: of the size to study, 240 pixels wide say, larger ones taking longer to tell
+ * errors apart; it must outlive the study, unchanged. `options`: Optional; what a render would use, NULL
+ * meaning the defaults. `device`: Optional; NULL means the default one. `full_width`, `full_height`: pixels
+ * of the picture that the advice is for; 0 means the scene's own. `seconds`: the budget, above 0 and counted
+ * from here; a study takes longer where two sample counts do not fit. Run nothing else meanwhile, other
+ * threads of this process least of all: their time is measured too. BP_ERR_USAGE: no budget. */
+BP_API BpStatus bp_study_create(const BpScene *scene, const BpRenderOptions *options,
+                                const BpDeviceInfo *device, uint32_t full_width, uint32_t full_height,
+                                double seconds, BpStudy **study, BpError *err);
+
+typedef struct BpStudyProgress {
+    char doing[80]; /* for a person */
+    double fraction, seconds_left;
+    bool finished;
+} BpStudyProgress;
+
+/* Works for about 0.2 s; a step that builds a kernel takes longer. `progress`: Optional. BP_ERR_SCENE: the
+ * picture is black, so that no error is relative to anything; else as bp_render_create(). */
+BP_API BpStatus bp_study_step(BpStudy *study, BpStudyProgress *progress, BpError *err);
+
+/* Ends it early, with the sample counts that every setting has reached. BP_ERR_INTERRUPTED: fewer than two.
+ */
+BP_API BpStatus bp_study_stop(BpStudy *study, BpError *err);
+
+typedef enum BpStudyFormat {
+    BP_STUDY_TABLE, /* plain text, for a terminal */
+    BP_STUDY_JSON,
+    BP_STUDY_CSV,
+    BP_STUDY_PAGE /* one HTML file that needs no other */
+} BpStudyFormat;
+
+/* The results of a study that has finished or was stopped, as a text that ends with a zero byte. Release
+ * *text with bp_free(); it is NULL before, and stays so on failure. BP_ERR_USAGE: the study has not finished.
+ */
+BP_API BpStatus bp_study_text(const BpStudy *study, BpStudyFormat format, char **text, BpError *err);
+
+BP_API void bp_study_destroy(BpStudy **study);
 
 #ifdef __cplusplus
 }

@@ -34,6 +34,10 @@ void bp_error_clear(BpError *err) {
     memset(err, 0, sizeof *err);
 }
 
+void bp_free(void *memory) {
+    free(memory);
+}
+
 BpStatus bp_fail(BpError *err, BpStatus code, const char *format, ...) {
     if (err == NULL) return code;
     /* The new message may quote the old one, so it is formatted before the old one is released. */

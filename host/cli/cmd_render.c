@@ -7,6 +7,7 @@
 #include "../base/clock.h"
 #include "../base/plural.h"
 #include "../engine/adaptive.h"
+#include "../engine/stop_rule.h"
 #include "json_file.h"
 #include "render_loop.h"
 #include "report.h"
@@ -20,20 +21,19 @@
 #include <stdio.h>
 #include <stdlib.h>
 
-static void init_rule(const BpCommandLine *line, const BpRenderOptions *options, uint64_t pixels,
+static void init_rule(const BpCommandLine *line, const BpScene *scene, const BpRenderOptions *options,
                       BpStopRule *rule) {
     const bool has_error = bp_option_given(line, BP_OPTION_ERROR),
                has_time = bp_option_given(line, BP_OPTION_TIME);
-    uint64_t samples_max = options->samples_per_pixel;
+    bp_stop_rule_defaults(scene, options, rule);
     /* The scene's own count is no rule once another one is given; --spp is. */
     if ((has_error || has_time) && !bp_option_given(line, BP_OPTION_SPP)) {
-        samples_max = BP_SPP_MAX;
-        if (samples_max > BP_SAMPLE_NUMBERS - options->first_sample)
-            samples_max = BP_SAMPLE_NUMBERS - options->first_sample;
+        rule->samples_max = BP_SPP_MAX;
+        if (rule->samples_max > BP_SAMPLE_NUMBERS - options->first_sample)
+            rule->samples_max = BP_SAMPLE_NUMBERS - options->first_sample;
     }
-    bp_stop_rule_init(rule, has_error ? line->error_percent / 100.0 : 0.0,
-                      has_time ? line->time_seconds : 0.0, samples_max, pixels);
-    rule->adaptive = line->adaptive;
+    if (has_error) rule->error = line->error_percent / 100.0;
+    if (has_time) rule->seconds = line->time_seconds;
 }
 
 static BpStatus check_adaptive(const BpCommandLine *line, const BpStopRule *rule, BpError *err) {
@@ -160,14 +160,13 @@ BpStatus bp_command_render(const BpCommandLine *line, BpError *err) {
     result.scene = scene;
     result.times.load = bp_clock_seconds() - result.times.start;
     bp_scene_info(scene, &info);
-    const uint64_t pixels = (uint64_t)info.width * info.height;
     BP_TRY_GOTO(status, bp_setup_options(line, scene, &options, err), done);
     bp_setup_warn(line, scene, options.precision);
     /* Less noise in the same time on every scene that was measured: docs/ACCURACY.md. */
     if (!bp_option_given(line, BP_OPTION_SAMPLER)) options.sampler = BP_SAMPLER_SOBOL;
     options.adaptive = line->adaptive;
     options.features = file.format == BP_FORMAT_EXR;
-    init_rule(line, &options, pixels, &rule);
+    init_rule(line, scene, &options, &rule);
     BP_TRY_GOTO(status, check_adaptive(line, &rule, err), done);
     options.samples_per_pixel = bp_stop_first(&rule);
 
@@ -179,7 +178,7 @@ BpStatus bp_command_render(const BpCommandLine *line, BpError *err) {
     bp_waiting_end(waiting);
     waiting = NULL;
 
-    BP_TRY_GOTO(status, bp_render_loop(render, &rule, pixels, line->quiet, &end, err), done);
+    BP_TRY_GOTO(status, bp_render_loop(render, &rule, line->quiet, &end, err), done);
     status = deliver(line, &file, &rule, &end, render, &result, err);
 done:
     bp_waiting_end(waiting);

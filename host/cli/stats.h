@@ -6,7 +6,6 @@
 #define BP_CLI_STATS_H
 
 #include "../engine/render.h"
-#include "stop_rule.h"
 
 #include <jansson.h>
 

@@ -39,14 +39,26 @@ static BpStatus make_variants(const BpScene *scene, BpStudy *study, BpError *err
 BpStatus bp_study_create(const BpScene *scene, const BpRenderOptions *base, const BpDeviceInfo *device,
                          uint32_t full_width, uint32_t full_height, double seconds, BpStudy **study,
                          BpError *err) {
+    BpRenderOptions defaults;
+    BpDeviceInfo found;
+    if (!(seconds > 0) || isinf(seconds))
+        return bp_fail(err, BP_ERR_USAGE, "a study in %g seconds: give it a time above 0", seconds);
+    if (base == NULL) {
+        bp_render_defaults(scene, &defaults);
+        base = &defaults;
+    }
+    if (device == NULL) {
+        BP_TRY(bp_device_find(NULL, &found, err));
+        device = &found;
+    }
     BpStudy *made = calloc(1, sizeof *made);
     BpStudySetting settings[BP_STUDY_SETTINGS_MAX];
     if (made == NULL) return bp_fail(err, BP_ERR_MEMORY, "no memory for a study");
     made->start = bp_clock_seconds();
     made->device = *device;
     made->result.scene = scene;
-    made->result.full_width = full_width;
-    made->result.full_height = full_height;
+    made->result.full_width = full_width > 0 ? full_width : scene->camera.width;
+    made->result.full_height = full_height > 0 ? full_height : scene->camera.height;
     made->result.budget = seconds;
     made->result.reference_is_kernel = device->has_double;
     made->result.count = bp_study_settings(scene, base, device->has_double, settings);

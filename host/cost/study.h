@@ -112,27 +112,8 @@ typedef struct BpStudyResult {
     BpStudyAdvice advice[BP_STUDY_TARGETS];
 } BpStudyResult;
 
-typedef struct BpStudy BpStudy;
-
-typedef struct BpStudyProgress {
-    char doing[80];
-    double fraction, seconds_left;
-    bool finished;
-} BpStudyProgress;
-
-/* `scene` has the size of the study and outlives it. `base`: what a render would use. `full_width` and
- * `full_height`: of the picture that the advice is for. `seconds`: the budget, > 0; a study takes longer when
- * two sample counts do not fit. Opens nothing yet. */
-BpStatus bp_study_create(const BpScene *scene, const BpRenderOptions *base, const BpDeviceInfo *device,
-                         uint32_t full_width, uint32_t full_height, double seconds, BpStudy **study,
-                         BpError *err);
-/* Works for about 0.2 s; a step that builds a kernel takes longer. BP_ERR_SCENE: the picture is black. */
-BpStatus bp_study_step(BpStudy *study, BpStudyProgress *progress, BpError *err);
-/* Ends now, with the sample counts that every setting has reached. BP_ERR_INTERRUPTED: fewer than two. */
-BpStatus bp_study_stop(BpStudy *study, BpError *err);
-/* Once finished; owned by `study`. */
+/* A study is made and run by what ballpark.h declares. Its result, once it has finished; owned by `study`. */
 const BpStudyResult *bp_study_result(const BpStudy *study);
-void bp_study_destroy(BpStudy **study);
 
 /* ---- results ---- */
 

@@ -219,7 +219,6 @@ static void report_progress(const BpRender *render, bool finished, BpProgress *p
     if (progress == NULL) return;
     progress->samples_done = bp_render_pixel_samples(render);
     progress->samples_total = render->samples_total;
-    progress->segments = render->accumulator != NULL ? render->accumulator->segments : 0;
     progress->trace_seconds = render->trace_seconds;
     progress->finished = finished;
 }
@@ -270,11 +269,15 @@ void bp_sample_block_clear(BpSampleBlock *block) {
     memset(block, 0, sizeof *block);
 }
 
+bool bp_render_has_begun(const BpRender *render) {
+    return render->decides || render->schedule.done > 0 || render->schedule.pass_samples > 0;
+}
+
 BpStatus bp_render_extend(BpRender *render, uint64_t samples_per_pixel, BpError *err) {
     BpRenderOptions wanted = render->options;
     wanted.samples_per_pixel = samples_per_pixel;
     BP_TRY(check_options(render->scene, &wanted, err));
-    if (samples_per_pixel < render->options.samples_per_pixel)
+    if (samples_per_pixel < render->options.samples_per_pixel && bp_render_has_begun(render))
         return bp_fail(err, BP_ERR_USAGE, "a render of %llu samples cannot be extended to %llu",
                        (unsigned long long)render->options.samples_per_pixel,
                        (unsigned long long)samples_per_pixel);

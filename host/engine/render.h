@@ -35,12 +35,8 @@ void bp_render_report(const BpRender *render, BpRenderReport *report);
 /* The accumulator as it stands, read from the device; owned by the render, valid until the next step. */
 BpStatus bp_render_accumulator(BpRender *render, const BpAccumulator **accumulator, BpError *err);
 
-/* More samples for a render that has finished its own: raises samples_per_pixel to `samples_per_pixel`. What
- * an adaptive render does then depends on the numbers on the way as well as on the last. */
-BpStatus bp_render_extend(BpRender *render, uint64_t samples_per_pixel, BpError *err);
-
-/* Samples done so far by every pixel (a pass in progress not counted); of an adaptive render, their mean. */
-uint64_t bp_render_samples_done(const BpRender *render);
+/* Whether a sample has been handed out yet. */
+bool bp_render_has_begun(const BpRender *render);
 
 /* One chunk of raw samples. */
 typedef struct BpSampleBlock {

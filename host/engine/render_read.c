@@ -5,6 +5,7 @@
 #include "features.h"
 #include "render_state.h"
 
+#include <inttypes.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -74,8 +75,14 @@ BpStatus bp_render_features(BpRender *render, BpPicture *picture, BpError *err) 
     if (!options->features)
         return bp_fail(err, BP_ERR_USAGE,
                        "depth, normals and albedo: the render was created without features");
+    const BpCamera *camera = &render->scene->camera;
+    if (picture->width != camera->width || picture->height != camera->height)
+        return bp_fail(err, BP_ERR_USAGE,
+                       "depth, normals and albedo of %" PRIu32 " x %" PRIu32
+                       " pixels for a picture of %" PRIu32 " x %" PRIu32 ": read the picture first",
+                       camera->width, camera->height, picture->width, picture->height);
     const uint64_t samples = options->samples_per_pixel;
-    return bp_features_fill(render->workers[0], &render->scene->camera, (uint32_t)options->first_sample,
+    return bp_features_fill(render->workers[0], camera, (uint32_t)options->first_sample,
                             samples < BP_FEATURE_SAMPLES ? (uint32_t)samples : BP_FEATURE_SAMPLES, picture,
                             err);
 }

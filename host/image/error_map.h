@@ -1,6 +1,6 @@
 /* error_map.h: where a picture is uncertain, as a picture.
  *
- * In:    a BpPicture with standard errors.   Out: an 8-bit picture, or a PNG of it.
+ * In:    a BpPicture with standard errors.   Out: an 8-bit picture; by ballpark.h, a PNG of it.
  * Knows: colours, the legend.   Does not know: how the errors were estimated.
  *
  * Each pixel shows its relative standard error on a scale that is the same for every picture, 0.1 % to 100 %
@@ -18,18 +18,7 @@
 #define BP_ERROR_MAP_LEAST 0.001 /* relative errors at the ends of the scale */
 #define BP_ERROR_MAP_MOST 1.0
 
-/* Standard error of a pixel's luminance over its luminance; NaN when unknown, +Inf for black with an error.
- * The error of the luminance is taken as the weighted sum of its channels' (Rec. 709), which holds when the
- * channels err together, as they mostly do, and is too large otherwise. */
-double bp_pixel_relative_error(const BpPicture *picture, size_t pixel);
-
-/* The colour of a relative error; grey for NaN. */
-void bp_error_color(double relative_error, uint8_t rgb[3]);
-
 /* Draws the map; free canvas->rgb with free(). BP_ERR_USAGE when the picture has no errors, BP_ERR_MEMORY. */
 BpStatus bp_error_map_draw(const BpPicture *picture, BpCanvas *canvas, BpError *err);
-
-/* The same as a PNG, written atomically. */
-BpStatus bp_error_map_write(const BpPicture *picture, const char *path, BpError *err);
 
 #endif

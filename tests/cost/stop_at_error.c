@@ -5,7 +5,7 @@
  * actual one; the mean over all seeds of the picture's brightness is that of the reference. */
 #include "seeds.h"
 
-#include "cli/stop_rule.h"
+#include "engine/stop_rule.h"
 
 #define SEEDS 64
 #define TARGET 0.01

@@ -99,23 +99,3 @@ double bp_stop_expected(const BpStopRule *rule, const BpStopState *state) {
         end = fmin(end, (double)state->samples + fmax(0.0, samples_in_time(rule, state)));
     return end;
 }
-
-const char *bp_stop_reason_name(BpStopReason reason) {
-    switch (reason) {
-    case BP_STOP_NOT_YET:
-        return "interrupt";
-    case BP_STOP_SAMPLES:
-        return "samples";
-    case BP_STOP_ERROR:
-        return "error";
-    case BP_STOP_TIME:
-        return "time";
-    case BP_STOP_CONSTANT:
-        return "constant";
-    case BP_STOP_BLACK:
-        return "black";
-    case BP_STOP_INVALID:
-        return "invalid";
-    }
-    return "";
-}

@@ -1,5 +1,5 @@
 /* The stop rules on made-up renders: counts are fixed, every rule ends, none ends early. */
-#include "cli/stop_rule.h"
+#include "engine/stop_rule.h"
 
 #include <math.h>
 #include <setjmp.h>
