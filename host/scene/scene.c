@@ -47,8 +47,8 @@ BpStatus bp_scene_load(const char *path, BpScene **scene, BpError *err) {
 }
 
 void bp_scene_destroy(BpScene **scene) {
+    if (scene == NULL || *scene == NULL) return;
     BpScene *s = *scene;
-    if (s == NULL) return;
     for (size_t i = 0; i < s->material_count; i++) free(s->materials[i].name);
     free(s->materials);
     free(s->spheres);

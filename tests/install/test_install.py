@@ -1,10 +1,14 @@
-"""Installs into an empty folder, moves it, and builds and runs the example program against what is there.
+"""Installs into an empty folder, moves it, and uses the library there as others do: what the shared form shows is what
+the header declares; the header is C11 and C++17; both examples build without a warning, shared and static, and draw
+what they should; another language can call it.
 
-Usage: test_install.py BUILD_DIR SOURCE_DIR CC
+Usage: test_install.py BUILD_DIR SOURCE_DIR CC CXX; CXX may be "", and then C++ is left out.
 """
 
+import math
 import os
 import pathlib
+import re
 import shutil
 import struct
 import subprocess
@@ -12,7 +16,13 @@ import sys
 import tempfile
 import zlib
 
-build, source, compiler = pathlib.Path(sys.argv[1]), pathlib.Path(sys.argv[2]), sys.argv[3]
+build, source = pathlib.Path(sys.argv[1]), pathlib.Path(sys.argv[2])
+compiler, cxx_compiler = sys.argv[3], sys.argv[4]
+sys.path.insert(0, str(source / "tests/cli"))
+import exr  # noqa: E402: it lies beside the tests of the command line
+
+# A line of the public header that no strict compiler takes would fail with these.
+WARNINGS = ["-Wall", "-Wextra", "-Wpedantic", "-Werror"]
 
 
 def run(*command, **options):
@@ -41,6 +51,94 @@ def read_png(path):
     return size, zlib.decompress(packed)
 
 
+def declared(header):
+    """The names of all functions that the header declares."""
+    text = run(compiler, "-std=c11", "-E", "-P", header)
+    return sorted(set(re.findall(r"\b(bp_\w+)\s*\(", text)))
+
+
+def exported(library):
+    """The names that the shared library shows to others."""
+    lines = run("nm", "-D", "--defined-only", library).splitlines()
+    return sorted(line.split()[-1] for line in lines)
+
+
+def check_names(prefix, library):
+    header = prefix / "include/ballpark.h"
+    names = declared(header)
+    assert len(names) > 20 and "bp_render_create" in names, names
+    hidden, undeclared = set(names) - set(exported(library)), set(exported(library)) - set(names)
+    assert not hidden and not undeclared, f"declared but hidden: {hidden}; shown but not declared: {undeclared}"
+
+
+def check_version(prefix, library, environment):
+    """The header, the soname and pkg-config agree."""
+    version = run("pkg-config", "--modversion", "ballpark", env=environment).strip()
+    major, minor, _ = version.split(".")
+    header = (prefix / "include/ballpark.h").read_text()
+    (number,) = re.findall(r"#define BP_API_VERSION (\d+)", header)
+    assert int(number) == 1000 * int(major) + int(minor), f"BP_API_VERSION {number}, version {version}"
+    assert library.name == f"libballpark.so.{version}", library
+    soname = f"libballpark.so.{major}.{minor}"
+    assert f"[{soname}]" in run("readelf", "-d", library), f"the soname is not {soname}"
+    for link in (soname, "libballpark.so"):
+        assert (library.parent / link).resolve() == library.resolve(), f"{link} does not lead to the library"
+
+
+def check_header(prefix):
+    """The header stands alone, in C11 and in C++17."""
+    flags = [*WARNINGS, f"-I{prefix}/include", "-c", "-o", prefix / "header.o"]
+    file = prefix / "header.c"
+    file.write_text("#include <ballpark.h>\nint main(void) { return bp_api_version() - BP_API_VERSION; }\n")
+    run(compiler, "-std=c11", *flags, file)
+    if cxx_compiler:
+        run(cxx_compiler, "-x", "c++", "-std=c++17", *flags, file)
+
+
+def check_example(prefix, flags, environment):
+    """The first example: a PNG."""
+    example, picture = prefix / "example", prefix / "cover.png"
+    picture.unlink(missing_ok=True)
+    run(compiler, "-std=c11", *WARNINGS, source / "tests/install/example.c", *flags, "-o", example)
+    run(example, prefix / "share/ballpark/scenes/cover.json", picture, env=environment)
+    size, rows = read_png(picture)
+    assert size[0] == 160, f"width {size[0]}"
+    assert len(set(rows)) > 100, "the picture is nearly uniform"
+
+
+def luminance(values):
+    return sum(weight * value for weight, value in zip((0.2126, 0.7152, 0.0722), values))
+
+
+def check_until_error(prefix, flags, environment):
+    """The second example: an EXR, whose error is the one that was asked for, and the sums behind it."""
+    example, picture, sums = prefix / "until_error", prefix / "cover.exr", prefix / "cover.bpa"
+    for file in (picture, sums):
+        file.unlink(missing_ok=True)
+    run(compiler, "-std=c11", *WARNINGS, source / "tests/install/until_error.c", *flags, "-o", example)
+    text = run(example, prefix / "share/ballpark/scenes/v4-22-defocus.json", "0.02", picture, sums, env=environment)
+    reason, told, samples = re.match(r"stopped by (\w+): error ([\d.]+) after (\d+) samples", text).groups()
+    assert reason == "error" and float(told) <= 0.02, text
+
+    width, height, layers = exr.read(picture.read_bytes())
+    pixels = range(width * height)
+    assert width == 96, f"width {width}"
+    assert set(layers) == {"R", "G", "B", "error.R", "error.G", "error.B", "samples", "depth.Z", "normal.X", "normal.Y",
+                           "normal.Z", "albedo.R", "albedo.G", "albedo.B"}, sorted(layers)
+    assert all(layers["samples"][p] == int(samples) for p in pixels), "not every pixel has the samples"
+    assert sum(math.isfinite(z) and z > 0 for z in layers["depth.Z"]) > len(pixels) / 4, "little is near the camera"
+    # The channels' errors taken as one bound the error of luminance from above, and not by much.
+    square = sum(luminance([layers[f"error.{c}"][p] for c in "RGB"]) ** 2 for p in pixels) / len(pixels)
+    mean = sum(luminance([layers[c][p] for c in "RGB"]) for p in pixels) / len(pixels)
+    assert 0.95 * float(told) <= math.sqrt(square) / mean <= 1.5 * float(told), (math.sqrt(square) / mean, told)
+
+    # The program's own picture of the same sums.
+    merged = prefix / "merged.exr"
+    run(prefix / "bin/ballpark", "merge", sums, "-o", merged)
+    _, _, again = exr.read(merged.read_bytes())
+    assert all(again[c] == layers[c] for c in "RGB"), "the sums are not those of the picture"
+
+
 with tempfile.TemporaryDirectory() as folder:
     first, prefix = pathlib.Path(folder, "first"), pathlib.Path(folder, "moved")
     run("cmake", "--install", build, "--prefix", first)
@@ -49,21 +147,30 @@ with tempfile.TemporaryDirectory() as folder:
     assert run(prefix / "bin/ballpark", "--version").strip(), "--version prints nothing"
     headers = [str(path.relative_to(prefix)) for path in prefix.rglob("*.h")]
     assert headers == ["include/ballpark.h"], f"one public header, found {headers}"
-    scene = prefix / "share/ballpark/scenes/cover.json"
-    assert scene.is_file(), "the scenes are not installed"
+    assert (prefix / "share/ballpark/scenes/cover.json").is_file(), "the scenes are not installed"
 
     (pkgconfig,) = prefix.rglob("pkgconfig")
+    libraries = pkgconfig.parent
     search = os.environ.get("PKG_CONFIG_PATH", "")
-    environment = dict(os.environ, PKG_CONFIG_PATH=f"{pkgconfig}:{search}", LD_LIBRARY_PATH=str(pkgconfig.parent))
-    flags = run("pkg-config", "--cflags", "--libs", "ballpark", env=environment).split()
-    example = prefix / "example"
-    # A line of the public header that no strict C11 compiler takes would fail here.
-    strict = ["-std=c11", "-Wall", "-Wextra", "-Wpedantic", "-Werror"]
-    run(compiler, *strict, source / "tests/install/example.c", *flags, "-o", example)
+    environment = dict(os.environ, PKG_CONFIG_PATH=f"{pkgconfig}:{search}")
+    with_library = dict(environment, LD_LIBRARY_PATH=str(libraries))
+    (library,) = (path for path in libraries.glob("libballpark.so*") if not path.is_symlink())
 
-    picture = prefix / "cover.png"
-    run(example, scene, picture, env=environment)
-    size, rows = read_png(picture)
-    assert size[0] == 160, f"width {size[0]}"
-    assert len(set(rows)) > 100, "the picture is nearly uniform"
-    print("installed, moved, built against, rendered: ok")
+    check_names(prefix, library)
+    check_version(prefix, library, environment)
+    check_header(prefix)
+    shared = run("pkg-config", "--cflags", "--libs", "ballpark", env=environment).split()
+    assert not [flag for flag in shared if "jansson" in flag or "OpenCL" in flag], f"the shared form needs {shared}"
+    check_example(prefix, shared, with_library)
+    check_until_error(prefix, shared, with_library)
+    assert f"[{library.name.rsplit('.', 1)[0]}]" in run("readelf", "-d", prefix / "example"), "not linked shared"
+    run(sys.executable, "-B", source / "tests/install/foreign.py", library,
+        prefix / "share/ballpark/scenes/v4-22-defocus.json", prefix, env=environment)
+
+    # Without the shared form beside it, the same flags and --static give the static one.
+    for path in libraries.glob("libballpark.so*"):
+        path.unlink()
+    static = run("pkg-config", "--static", "--cflags", "--libs", "ballpark", env=environment).split()
+    check_example(prefix, static, environment)
+    check_until_error(prefix, static, environment)
+    print("installed, moved, built against, rendered: ok" + ("" if cxx_compiler else "; no C++ compiler to try"))
