@@ -16,19 +16,18 @@
  *   step of a render or a study, destroy it; every other failure leaves its arguments as they were.
  * - Arguments. A pointer must not be NULL unless it is called Optional here.
  * - Ownership. A function that takes the address of a handle to fill it gives an object that the caller owns;
- *   the handle is NULL before, and stays NULL on failure. `_destroy` takes its address, frees it and
- *   sets it to NULL; it accepts NULL and the address of NULL. `_clear` releases what a struct of the caller's
- * holds, and zeroes it. What a getter points to belongs to the handle, and is valid until the handle changes
- * or is destroyed.
+ *   the handle is NULL before, and stays NULL on failure. `_destroy` takes its address, frees it and sets
+ *   it to NULL; it accepts NULL and the address of NULL. `_clear` releases what a caller's struct holds and
+ *   zeroes it. What a getter points to belongs to the handle; it is valid until that changes or is destroyed.
  * - Strings are UTF-8, end with a zero byte and are copied; nothing keeps a caller's pointer beyond the call
  *   unless it says so.
  * - Threads. A handle is used by one thread at a time, but functions that take a `const` handle may run at
  *   the same time: many threads may render one scene, each by a render of its own. Different handles are
  *   independent: there is no state outside of handles, but for caches in files. The environment
- * (BALLPARK_KERNELS, and what OpenCL drivers read) must not change meanwhile. No function prints, exits, or
- * touches signals; a driver may.
+ *   (BALLPARK_KERNELS, and what OpenCL drivers read) must not change meanwhile. No function prints, exits or
+ *   touches signals; a driver may.
  * - Options. A struct of options is filled by its function `_defaults`; then change what matters. New members
- * may come in a minor version, so a struct that was filled member by member would lack them.
+ *   may come in a minor version, so a struct that was filled member by member would lack them.
  * - Versions. While the version is 0.x, structs may grow in a minor version and not in a patch: see
  *   BP_API_VERSION. There are no callbacks, variadic functions or structs passed by value, so that other
  *   languages can call everything.
