@@ -23,22 +23,24 @@ typedef struct Layer {
     exr_pixel_type_t type;
 } Layer;
 
-/* The file while it is made; also collects what the library complains of. */
+/* The file while it is made. */
 typedef struct Memory {
     uint8_t *bytes;
     size_t size, capacity;
-    char complaint[256];
+    bool failed; /* there was no more */
 } Memory;
 
 static int64_t write_memory(exr_const_context_t context, void *user_data, const void *buffer, uint64_t size,
                             uint64_t offset, exr_stream_error_func_ptr_t error_callback) {
+    (void)context;
+    (void)error_callback;
     Memory *memory = user_data;
     const size_t end = (size_t)(offset + size);
     if (end > memory->capacity) {
         const size_t capacity = end + end / 2 + 4096;
         uint8_t *bytes = realloc(memory->bytes, capacity);
         if (bytes == NULL) {
-            error_callback(context, EXR_ERR_OUT_OF_MEMORY, "out of memory for the file");
+            memory->failed = true;
             return -1;
         }
         memset(bytes + memory->capacity, 0, capacity - memory->capacity);
@@ -50,12 +52,13 @@ static int64_t write_memory(exr_const_context_t context, void *user_data, const 
     return (int64_t)size;
 }
 
-static void keep_complaint(exr_const_context_t context, exr_result_t code, const char *message) {
-    void *user_data = NULL;
+/* The library calls this while it holds the context's lock, which is not recursive: to ask the context for
+ * anything here, its user data included, waits for ever. The code that the failed call returns says enough.
+ */
+static void keep_quiet(exr_const_context_t context, exr_result_t code, const char *message) {
+    (void)context;
     (void)code;
-    if (exr_get_user_data(context, &user_data) != EXR_ERR_SUCCESS || user_data == NULL) return;
-    Memory *memory = user_data;
-    snprintf(memory->complaint, sizeof memory->complaint, "%s", message);
+    (void)message;
 }
 
 /* The layers of `picture`. A new one is one line here. `samples` holds the counts as 32-bit numbers. */
@@ -153,7 +156,7 @@ BpStatus bp_exr_write(const BpPicture *picture, FILE *out, BpError *err) {
     exr_context_initializer_t setup = EXR_DEFAULT_CONTEXT_INITIALIZER;
     setup.user_data = &memory;
     setup.write_fn = write_memory;
-    setup.error_handler_fn = keep_complaint;
+    setup.error_handler_fn = keep_quiet;
     exr_result_t result = exr_start_write(&exr, NO_FILE, EXR_WRITE_FILE_DIRECTLY, &setup);
     if (result == EXR_ERR_SUCCESS) result = write_head(exr, picture, layers, count);
     if (result == EXR_ERR_SUCCESS) result = write_rows(exr, picture, layers, count);
@@ -161,9 +164,10 @@ BpStatus bp_exr_write(const BpPicture *picture, FILE *out, BpError *err) {
     const exr_result_t finished = exr != NULL ? exr_finish(&exr) : EXR_ERR_SUCCESS;
     if (result == EXR_ERR_SUCCESS) result = finished;
     if (result != EXR_ERR_SUCCESS) {
+        if (memory.failed) result = EXR_ERR_OUT_OF_MEMORY;
         status = bp_fail(err, result == EXR_ERR_OUT_OF_MEMORY ? BP_ERR_MEMORY : BP_ERR_FILE,
-                         "encoding the EXR failed: %s%s%s", exr_get_default_error_message(result),
-                         memory.complaint[0] != '\0' ? ": " : "", memory.complaint);
+                         "encoding the EXR of %u x %u pixels failed: %s", (unsigned)picture->width,
+                         (unsigned)picture->height, exr_get_default_error_message(result));
     } else {
         fwrite(memory.bytes, 1, memory.size, out);
         status = bp_image_finish(out, "EXR", err);

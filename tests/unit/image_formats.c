@@ -316,6 +316,30 @@ static void what_is_no_picture_is_refused(void **state) {
     bp_picture_clear(&picture); /* a second time does no harm */
 }
 
+/* OpenEXR reports such a failure while it holds its lock: whoever asks it for something then waits for ever.
+ */
+static void what_the_exr_library_refuses_is_an_error(void **state) {
+    (void)state;
+    static const uint32_t sides[][2] = {{0, 4}, {4, 0}, {UINT32_MAX, 2}};
+    float rgb[3] = {0};
+    alarm(60); /* only so that a hang is a failure */
+    for (size_t i = 0; i < 3; i++) {
+        const BpPicture picture = {.width = sides[i][0], .height = sides[i][1], .rgb = rgb};
+        char *bytes = NULL;
+        size_t size = 0;
+        FILE *out = open_memstream(&bytes, &size);
+        BpError err = {0};
+        assert_int_equal(bp_exr_write(&picture, out, &err), BP_ERR_FILE);
+        assert_non_null(strstr(err.message, "encoding the EXR"));
+        assert_non_null(strstr(err.message, "Invalid attribute"));
+        fclose(out);
+        assert_int_equal(size, 0);
+        free(bytes);
+        bp_error_clear(&err);
+    }
+    alarm(0);
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(names_and_endings),
@@ -328,6 +352,7 @@ int main(void) {
         cmocka_unit_test(a_full_disk_is_an_error),
         cmocka_unit_test(a_failed_write_keeps_the_old_picture),
         cmocka_unit_test(what_is_no_picture_is_refused),
+        cmocka_unit_test(what_the_exr_library_refuses_is_an_error),
     };
     return cmocka_run_group_tests_name("image_formats", tests, NULL, NULL);
 }
