@@ -128,6 +128,12 @@ static BpStatus deliver(const BpCommandLine *line, const BpResultFile *file, con
     result->times.write = bp_clock_seconds() - write_start;
     if (line->stats != NULL) BP_TRY(bp_json_write(bp_stats_json(result), line->stats, err));
     if (!line->quiet) print_summary(result, rule, end);
+    if (end->reason == BP_STOP_TIME && result->samples_per_pixel == 0)
+        return bp_fail(
+            err, BP_ERR_LIMIT,
+            "--time %g was over before every pixel had a sample, so parts of %s are black: allow more "
+            "time, or ask for a smaller --width or --depth",
+            rule->seconds, result->output);
     if (end->reason != BP_STOP_NOT_YET) return BP_OK;
     return bp_fail(err, BP_ERR_INTERRUPTED,
                    "interrupted after %" PRIu64 " of %" PRIu64 " sample%s a pixel%s; %s shows what there is",

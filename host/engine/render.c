@@ -200,19 +200,32 @@ static BpStatus begin_next_pass(BpRender *render, bool *begun, BpError *err) {
     return BP_OK;
 }
 
+/* Of all devices, since each meets only some parts of the picture. */
+static double slowest_samples(const BpRender *render) {
+    double slowest = 0;
+    for (size_t i = 0; i < render->worker_count; ++i) {
+        const double own = bp_pace_slowest(&render->workers[i]->pace);
+        if (own > slowest) slowest = own;
+    }
+    return slowest;
+}
+
 /* Starts one chunk; *started is false when all has been handed out. */
 static BpStatus start_chunk(BpRender *render, bool *started, BpError *err) {
     BpWorker *worker = NULL;
     BP_TRY(free_worker(render, &worker, err));
     const uint32_t wanted = render->options.chunk_samples != 0
                                 ? render->options.chunk_samples
-                                : bp_worker_chunk_samples(worker, CHUNK_SECONDS);
+                                : bp_worker_chunk_samples(worker, CHUNK_SECONDS, slowest_samples(render));
     *started = bp_schedule_take(&render->schedule, wanted, &render->last_chunk);
     if (!*started) {
         BP_TRY(begin_next_pass(render, started, err));
         if (*started) *started = bp_schedule_take(&render->schedule, wanted, &render->last_chunk);
     }
-    return *started ? bp_worker_start(worker, &render->last_chunk, err) : BP_OK;
+    if (!*started) return BP_OK;
+    if (render->last_chunk.first_pixel == 0)
+        for (size_t i = 0; i < render->worker_count; ++i) bp_pace_begin_pass(&render->workers[i]->pace);
+    return bp_worker_start(worker, &render->last_chunk, err);
 }
 
 static void report_progress(const BpRender *render, bool finished, BpProgress *progress) {

@@ -14,6 +14,8 @@
 /* A look at the error between two decisions costs a read of all sums: at most this share of the time. */
 #define ERROR_SHARE 0.02
 #define ERROR_SECONDS_MIN 1.0
+/* Beyond the time that a rule allows, for the first sample of every pixel. */
+#define FIRST_SAMPLE_SECONDS 1.0
 
 struct BpStop {
     BpRender *render;
@@ -106,12 +108,16 @@ void bp_stop_destroy(BpStop **stop) {
 
 /* ---- deciding ---- */
 
-/* Whether the time is over although the stretch of samples under way is not: the rate fell. The first sample
- * of every pixel is waited for: half a picture is none. */
+/* Whether the time is over although the stretch of samples under way is not: the rate fell. The first sample of
+ * every pixel is waited for a little longer, since half a picture is none; a driver's compiling in the first
+ * launch does not count there. */
 static bool is_overtime(const BpStop *stop) {
-    const double seconds = stop->rule.seconds;
-    return seconds > 0.0 && stop->state.seconds > seconds + fmax(0.25, 0.02 * seconds) &&
-           bp_render_samples_done(stop->render) > 0;
+    const double limit = stop->rule.seconds, seconds = stop->state.seconds;
+    if (limit <= 0.0) return false;
+    if (bp_render_samples_done(stop->render) > 0) return seconds > limit + fmax(0.25, 0.02 * limit);
+    BpRenderReport report;
+    bp_render_report(stop->render, &report);
+    return seconds - report.first_launch_seconds > limit + FIRST_SAMPLE_SECONDS;
 }
 
 static BpStatus look(BpStop *stop, BpError *err) {

@@ -11,8 +11,6 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* The first chunk only measures speed (and lets the driver finish compiling). */
-#define FIRST_CHUNK_SAMPLES 16384u
 /* Raw samples take at most this part of the device's memory. */
 #define SAMPLES_MEMORY_SHARE 8u
 
@@ -85,6 +83,14 @@ static BpStatus create_kernels(BpWorker *worker, const BpWorkerSetup *setup, BpE
     return BP_OK;
 }
 
+/* Samples that take as long as one: the lanes of a packet, or one work-group on each unit of a GPU. */
+static uint32_t samples_together(const BpWorker *worker, const BpDeviceInfo *info,
+                                 const BpWorkerSetup *setup) {
+    if (setup->program.form == BP_KERNEL_PACKET) return setup->program.packet_lanes;
+    if (info->type == BP_DEVICE_CPU) return 1;
+    return info->compute_units * (uint32_t)worker->local_size;
+}
+
 /* A processor's caches hold a few MiB a core: the raw samples of a larger chunk go to memory and back, and
  * new memory at that (a scene of few spheres took 1.25 times as long with 2^22 samples on two cores). */
 static uint64_t chunk_samples_max(const BpDeviceInfo *info) {
@@ -135,6 +141,7 @@ BpStatus bp_worker_create(const BpDeviceInfo *info, const BpPacked *packed, cons
     const uint64_t most = chunk_samples_max(info);
     if (limit > most) limit = most;
     made->samples_limit = limit > 0 ? (uint32_t)limit : 1;
+    bp_pace_init(&made->pace, setup->max_depth, samples_together(made, info, setup));
     *worker = made;
     return BP_OK;
 
@@ -188,7 +195,7 @@ BpStatus bp_worker_wait(BpWorker *worker, BpError *err) {
     const double seconds = event_seconds(flight->trace_start, CL_PROFILING_COMMAND_START, flight->fold_end);
     worker->device_seconds += seconds;
     worker->fold_seconds += event_seconds(flight->fold_end, CL_PROFILING_COMMAND_START, flight->fold_end);
-    worker->seconds_per_sample = seconds / (double)flight->samples;
+    bp_pace_measure(&worker->pace, flight->samples, seconds);
     worker->samples_done += flight->samples;
     release_flight(flight);
     memmove(worker->flights, worker->flights + 1, sizeof worker->flights[0] * (BP_WORKER_FLIGHT - 1));
@@ -283,10 +290,7 @@ BpStatus bp_worker_set_pixels(BpWorker *worker, const uint32_t *list, uint32_t c
     return BP_OK;
 }
 
-uint32_t bp_worker_chunk_samples(const BpWorker *worker, double seconds) {
-    if (worker->seconds_per_sample <= 0)
-        return worker->samples_limit < FIRST_CHUNK_SAMPLES ? worker->samples_limit : FIRST_CHUNK_SAMPLES;
-    const double samples = seconds / worker->seconds_per_sample;
-    if (samples < 1) return 1;
-    return samples > worker->samples_limit ? worker->samples_limit : (uint32_t)samples;
+uint32_t bp_worker_chunk_samples(const BpWorker *worker, double seconds, double slowest) {
+    const uint32_t samples = bp_pace_samples(&worker->pace, seconds, slowest);
+    return samples > worker->samples_limit ? worker->samples_limit : samples;
 }

@@ -7,6 +7,7 @@
 
 #include "accumulator.h"
 #include "effects.h"
+#include "pace.h"
 #include "pack.h"
 #include "program.h"
 #include "schedule.h"
@@ -55,7 +56,7 @@ typedef struct BpWorker {
     int flight_count;
     /* Measured on chunks that are done. */
     double device_seconds, fold_seconds;
-    double seconds_per_sample; /* of the latest chunk; 0: none yet */
+    BpPace pace;
     double first_launch_seconds, self_test_seconds;
     uint64_t samples_done;
 } BpWorker;
@@ -85,8 +86,9 @@ BpStatus bp_worker_make_room(BpWorker *worker, BpError *err);
 /* Whether the oldest chunk is done, without waiting; true when none is under way. */
 BpStatus bp_worker_oldest_done(BpWorker *worker, bool *done, BpError *err);
 
-/* Pixel samples that a chunk should have to take `seconds`, by the latest measurement, 1 .. samples_limit. */
-uint32_t bp_worker_chunk_samples(const BpWorker *worker, double seconds);
+/* Pixel samples that a chunk should have to take `seconds`, 1 .. samples_limit; `slowest` as for
+ * bp_pace_samples(). */
+uint32_t bp_worker_chunk_samples(const BpWorker *worker, double seconds, double slowest);
 
 /* Waits for everything and adds this device's sums, counts and tallies into `accumulator`. */
 BpStatus bp_worker_collect(BpWorker *worker, BpAccumulator *accumulator, BpError *err);

@@ -30,6 +30,13 @@ def patch(path, find, replace):
 KERNEL, PACK, TRANSFER = "kernels", "host/engine/pack.c", "host/image/transfer.c"
 
 MUTANTS = [
+    # ---- chunks ----------------------------------------------------------------------------------------------
+    Mutant("first chunk of any depth", "16,384 samples, whatever a path costs",
+           [patch("host/engine/pace.c", "return samples < BP_PACE_FIRST_SAMPLES ? samples : BP_PACE_FIRST_SAMPLES;",
+                  "return samples > 0 ? BP_PACE_FIRST_SAMPLES : 1;")], [test("pace", "1 exact")]),
+    Mutant("the slowest samples forgotten", "a chunk sized by the sky goes to the mirrors",
+           [patch("host/engine/pace.c", "if (samples > bearable) samples = bearable;", "(void)bearable;")],
+           [test("pace", "1 exact")]),
     # ---- the books' own history ----------------------------------------------------------------------------
     Mutant("blue killed in glass", "first: attenuation (1, 1, 0)",
            [patch(PACK, "if (material->kind == BP_MATERIAL_DIELECTRIC) return 1;",
