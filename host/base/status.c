@@ -28,6 +28,28 @@ int bp_status_exit_code(BpStatus status) {
     return 1;
 }
 
+/* Within a character of UTF-8. */
+static bool is_continuation(char c) {
+    return ((unsigned char)c & 0xc0u) == 0x80u;
+}
+
+/* What is too long is mostly so by a path in it. What went wrong stands before the path, why and what to do
+ * after it; so what is left out is the middle. */
+static void shorten(const char *text, char *out, size_t size) {
+    static const char gap[] = "[...]";
+    const size_t length = strlen(text);
+    if (length < size) {
+        memcpy(out, text, length + 1);
+        return;
+    }
+    size_t head = (size - sizeof gap) / 2, tail = length - (size - sizeof gap - head);
+    while (head > 0 && is_continuation(text[head])) --head;
+    while (tail < length && is_continuation(text[tail])) ++tail;
+    memcpy(out, text, head);
+    memcpy(out + head, gap, sizeof gap - 1);
+    memcpy(out + head + sizeof gap - 1, text + tail, length - tail + 1);
+}
+
 void bp_error_clear(BpError *err) {
     if (err == NULL) return;
     free(err->attachment);
@@ -44,8 +66,18 @@ BpStatus bp_fail(BpError *err, BpStatus code, const char *format, ...) {
     char message[sizeof err->message];
     va_list arguments;
     va_start(arguments, format);
-    vsnprintf(message, sizeof message, format, arguments);
+    const int length = vsnprintf(message, sizeof message, format, arguments);
     va_end(arguments);
+    if (length >= (int)sizeof message) {
+        char *whole = malloc((size_t)length + 1);
+        if (whole != NULL) {
+            va_start(arguments, format);
+            vsnprintf(whole, (size_t)length + 1, format, arguments);
+            va_end(arguments);
+            shorten(whole, message, sizeof message);
+            free(whole);
+        }
+    }
     bp_error_clear(err);
     err->code = code;
     memcpy(err->message, message, sizeof err->message);
@@ -54,7 +86,7 @@ BpStatus bp_fail(BpError *err, BpStatus code, const char *format, ...) {
 
 void bp_error_at(BpError *err, const char *file, int line, int column) {
     if (err == NULL) return;
-    snprintf(err->file, sizeof err->file, "%s", file != NULL ? file : "");
+    shorten(file != NULL ? file : "", err->file, sizeof err->file);
     err->line = line;
     err->column = column;
 }

@@ -53,12 +53,21 @@ BpStatus bp_setup_options(const BpCommandLine *line, const BpScene *scene, BpRen
     options->all_effects = line->all_effects;
     options->force = line->force;
     const uint64_t samples_max = BP_SAMPLE_NUMBERS - options->first_sample;
-    if (options->samples_per_pixel > samples_max)
-        return bp_fail(
-            err, BP_ERR_USAGE,
-            "--first-sample %" PRIu64 " leaves numbers for %" PRIu64 " sample%s; asked for are %" PRIu64,
-            options->first_sample, samples_max, bp_plural(samples_max), options->samples_per_pixel);
-    return BP_OK;
+    if (options->samples_per_pixel <= samples_max) return BP_OK;
+    const bool asked = bp_option_given(line, BP_OPTION_SPP);
+    /* With one of these the scene's own count is no request. */
+    if (!asked && (bp_option_given(line, BP_OPTION_ERROR) || bp_option_given(line, BP_OPTION_TIME) ||
+                   bp_option_given(line, BP_OPTION_PIXEL))) {
+        options->samples_per_pixel = samples_max;
+        return BP_OK;
+    }
+    return bp_fail(err, BP_ERR_USAGE,
+                   "--first-sample %" PRIu64 " leaves numbers for %" PRIu64
+                   " sample%s a pixel (they end at %" PRIu64 "), and %s asks for %" PRIu64
+                   ": give --spp %" PRIu64 " at most, or --first-sample %" PRIu64 " at most",
+                   options->first_sample, samples_max, bp_plural(samples_max), BP_SAMPLE_NUMBERS - 1,
+                   asked ? "--spp" : "the scene's \"samples_per_pixel\"", options->samples_per_pixel,
+                   samples_max, BP_SAMPLE_NUMBERS - options->samples_per_pixel);
 }
 
 void bp_setup_warn(const BpCommandLine *line, const BpScene *scene, BpPrecision precision) {
@@ -125,14 +134,16 @@ BpStatus bp_setup_self_test(const BpCommandLine *line, const BpDeviceInfo *devic
         BP_TRY(bp_device_open(&devices[d], &device, err));
         const BpStatus status = bp_self_test_once(device, NULL, &fault);
         bp_device_close(&device);
-        if (status != BP_OK && line->force) {
+        /* A test that could not be held says nothing about the device. */
+        const bool failed = status == BP_ERR_DEVICE || status == BP_ERR_BUILD;
+        if (failed && line->force) {
             fprintf(stderr, "ballpark: warning: %s\n", fault.message);
         } else if (status != BP_OK) {
-            bp_fail(err, status, "%s; --force renders all the same", fault.message);
+            bp_fail(err, status, "%s%s", fault.message, failed ? "; --force renders all the same" : "");
             bp_error_attach(err, fault.attachment);
         }
         bp_error_clear(&fault);
-        if (status != BP_OK && !line->force) return status;
+        if (status != BP_OK && !(failed && line->force)) return status;
     }
     return BP_OK;
 }

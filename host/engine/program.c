@@ -4,6 +4,7 @@
 #include "../base/clock.h"
 #include "effects.h"
 
+#include <errno.h>
 #include <stdarg.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -65,14 +66,21 @@ BpStatus bp_kernel_text(const char *name, char **text, BpError *err) {
     const char *embedded = bp_kernel_file(name);
     *text = NULL;
     if (directory != NULL && directory[0] != '\0') {
-        char path[1024], block[4096];
+        char block[4096];
         size_t count;
-        snprintf(path, sizeof path, "%s/%s", directory, name);
+        const size_t size = strlen(directory) + strlen(name) + 2;
+        char *path = malloc(size);
+        if (path == NULL) return bp_fail(err, BP_ERR_MEMORY, "no memory for a path of %zu bytes", size);
+        snprintf(path, size, "%s/%s", directory, name);
         FILE *file = fopen(path, "rb");
         if (file == NULL)
-            return bp_fail(err, BP_ERR_FILE,
-                           "%s: cannot be read; BALLPARK_KERNELS must name a folder with all kernel files",
-                           path);
+            bp_fail(
+                err, BP_ERR_FILE,
+                "cannot open %s: %s; the environment variable BALLPARK_KERNELS must name a folder with all "
+                "kernel files: correct it, or unset it for those in the program",
+                path, strerror(errno));
+        free(path);
+        if (file == NULL) return BP_ERR_FILE;
         text_append(&read, "", 0);
         while ((count = fread(block, 1, sizeof block, file)) > 0) text_append(&read, block, count);
         fclose(file);

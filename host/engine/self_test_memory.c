@@ -9,10 +9,13 @@
 #include "program.h"
 #include "self_test.h"
 
+#include <errno.h>
+#include <fcntl.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 #include <sys/stat.h>
+#include <unistd.h>
 
 /* FNV-1a, 64 bits (G. Fowler, L. C. Noll, K.-P. Vo). */
 static uint64_t hash_text(uint64_t hash, const char *text) {
@@ -74,13 +77,21 @@ char *bp_self_test_memory_path(const BpDeviceInfo *device) {
     return memory_path(identity, false);
 }
 
+/* Whether the file can be used: anything but a regular file may keep whoever opens it waiting. */
+static bool is_regular_or_absent(const char *path) {
+    struct stat state;
+    return stat(path, &state) == 0 ? S_ISREG(state.st_mode) : errno == ENOENT;
+}
+
 static bool remembered(const char *path, const char *identity) {
     char text[1024] = "";
-    FILE *file = fopen(path, "rb");
-    if (file == NULL) return false;
-    const size_t length = fread(text, 1, sizeof text - 1, file);
-    fclose(file);
-    return length == strlen(identity) && memcmp(text, identity, length) == 0;
+    struct stat state;
+    const int file = open(path, O_RDONLY | O_CLOEXEC | O_NOCTTY | O_NONBLOCK);
+    if (file < 0) return false;
+    ssize_t length = -1;
+    if (fstat(file, &state) == 0 && S_ISREG(state.st_mode)) length = read(file, text, sizeof text);
+    close(file);
+    return length >= 0 && (size_t)length == strlen(identity) && memcmp(text, identity, (size_t)length) == 0;
 }
 
 BpStatus bp_self_test_once(BpDevice *device, bool *ran, BpError *err) {
@@ -88,6 +99,10 @@ BpStatus bp_self_test_once(BpDevice *device, bool *ran, BpError *err) {
     char identity[1024];
     identify(&device->info, identity, sizeof identity);
     char *path = memory_path(identity, true);
+    if (path != NULL && !is_regular_or_absent(path)) {
+        free(path);
+        path = NULL;
+    }
     const bool passed_before = path != NULL && remembered(path, identity);
     if (ran != NULL) *ran = !passed_before;
     if (!passed_before) {

@@ -117,8 +117,16 @@ BpStatus bp_document_open(const char *text, size_t length, const char *name, BpD
             document, 0, err,
             "found a text of over 2 GiB, expected less: keep many spheres in a PLY file and name it "
             "in \"clouds\"");
+    const char *const nul = memchr(text, '\0', length); /* jansson takes it for the end */
+    if (nul != NULL)
+        return fail_at_offset(document, (size_t)(nul - text), err,
+                              "found a byte of value 0, expected text: remove it, and check that the file is "
+                              "whole and saved as UTF-8");
     json_error_t error;
     document->root = json_loadb(text, length, JSON_REJECT_DUPLICATES, &error);
+    /* An integer of over 64 bits is a number like any other, for its member to refuse by its own limits. */
+    if (document->root == NULL && json_error_code(&error) == json_error_numeric_overflow)
+        document->root = json_loadb(text, length, JSON_REJECT_DUPLICATES | JSON_DECODE_INT_AS_REAL, &error);
     if (document->root == NULL) return fail_syntax(document, &error, err);
     if (!json_is_object(document->root)) {
         bp_document_close(document);

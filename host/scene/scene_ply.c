@@ -134,6 +134,15 @@ static BpStatus fail_end(const Reader *r, uint64_t row, BpError *err) {
                     row);
 }
 
+static BpStatus fail_count(const Reader *r, bool with_line, uint64_t row, double number, BpError *err) {
+    char found[BP_NUMBER_TEXT_SIZE];
+    return ply_fail(&r->input, with_line, err,
+                    "row %" PRIu64
+                    " (from 0): found %s as the length of a list, expected a whole number of at "
+                    "least 0",
+                    row, bp_number_text(number, found));
+}
+
 /* One row with lists, property by property. `value`: Optional. */
 static BpStatus take_row(Reader *r, const PlyElement *element, uint64_t row, double *value, BpError *err) {
     for (size_t i = 0; i < element->property_count; i++) {
@@ -145,7 +154,9 @@ static BpStatus take_row(Reader *r, const PlyElement *element, uint64_t row, dou
         ply_input_take(&r->input, size);
         if (p->count_type == PLY_NONE) {
             if (value != NULL && p->role != PLY_NO_ROLE) value[p->role] = number;
-        } else if (number < 0 || !ply_input_skip(&r->input, (uint64_t)number * ply_type_size(p->type))) {
+        } else if (number < 0) {
+            return fail_count(r, false, row, number, err);
+        } else if (!ply_input_skip(&r->input, (uint64_t)number * ply_type_size(p->type))) {
             return fail_end(r, row, err);
         }
     }
@@ -228,6 +239,7 @@ static BpStatus read_ascii(Reader *r, const PlyElement *element, BpError *err) {
             double number = 0, ignored = 0;
             bool good = ply_parse_number(&line, &number);
             if (good && p->count_type != PLY_NONE) {
+                if (!(number >= 0 && number == floor(number))) return fail_count(r, true, row, number, err);
                 for (double k = 0; good && k < number; k++) good = ply_parse_number(&line, &ignored);
             } else if (good && p->role != PLY_NO_ROLE) {
                 value[p->role] = number;

@@ -82,6 +82,11 @@ BpStatus ply_input_line(PlyInput *input, char **line, BpError *err) {
     unsigned char *const start = input->buffer + input->begin;
     const size_t length = (size_t)(end - start);
     ply_input_take(input, input->begin + length < input->end ? length + 1 : length);
+    if (memchr(start, '\0', length) != NULL)
+        return ply_fail(
+            input, true, err,
+            "found a byte of value 0, expected text: a binary file needs another \"format\", or the "
+            "file is damaged");
     *end = '\0';
     if (length > 0 && start[length - 1] == '\r') start[length - 1] = '\0';
     *line = (char *)start;

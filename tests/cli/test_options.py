@@ -108,7 +108,17 @@ class Wrong(ProgramTest):
 
     def test_samples_past_the_last_number(self):
         self.write("s.json", scene())
-        self.fail_with(2, "render", "s.json", "--first-sample", "4294967295", "--spp", "2", says="--first-sample")
+        last = ["--first-sample", "4294967295", "-o", "x.png"]
+        self.fail_with(2, "render", "s.json", *last, "--spp", "2",
+                       says=["--first-sample 4294967295 leaves numbers for 1 sample a pixel", "--spp asks for 2",
+                             "--spp 1 at most", "--first-sample 4294967294 at most"])
+        self.fail_with(2, "render", "s.json", *last,
+                       says=["--first-sample 4294967295", "the scene's \"samples_per_pixel\" asks for 8", "--spp 1 at most",
+                             "--first-sample 4294967288 at most"])
+        self.succeed("render", "s.json", *last, "--spp", "1")
+        self.succeed("render", "s.json", *last, "--error", "1")
+        self.succeed("render", "s.json", *last, "--time", "100")
+        self.succeed("explain", "s.json", "--first-sample", "4294967295", "--pixel", "1,1")
 
     def test_two_outputs_of_one_name(self):
         self.write("s.json", scene())

@@ -59,7 +59,18 @@ static void not_json(void **state) {
         {"{ \"camera\": { \"vfov\": Infinity } }", 1, 23, {"not JSON", "no Infinity"}},
         {"{ \"camera\": { \"vfov\": -Infinity } }", 1, 23, {"not JSON", "no -Infinity"}},
         {"{ \"camera\": { \"vfov\": 1e400 } }", 1, 23, {"1e400", "1.7e308"}},
-        {"{ \"camera\": { \"vfov\": 99999999999999999999 } }", 1, 23, {"too big"}},
+        {"{ \"camera\": { \"vfov\": 99999999999999999999 } }",
+         1,
+         23,
+         {"camera.vfov: found 1e+20", "below 180"}},
+        {"{ \"camera\": { \"image_width\": 99999999999999999999 } }",
+         1,
+         30,
+         {"camera.image_width: found 1e+20", "from 1 to 65535"}},
+        {"{ \"camera\": { \"lookfrom\": [0, -9223372036854775809, 0] } }",
+         1,
+         27,
+         {"lookfrom", "-1e12 to 1e12"}},
         {"{ \"title\": \"caf\xe9\" }", 1, 12, {"0xe9", "UTF-8"}},
         {"{ \"title\": \"a\\u0000b\" }", 1, 12, {"not JSON"}},
     };
@@ -356,12 +367,24 @@ static void not_a_file(void **state) {
     }
 }
 
+/* A text ends where its bytes end, not at the first that is 0. */
+static void bytes_of_value_zero(void **state) {
+    (void)state;
+    static const char after[] = "{ \"camera\": {} }\n\0 anything";
+    static const char within[] = "{ \"camera\": {},\n  \"title\": \"a\0b\" }";
+    static const char *const says[4] = {"a byte of value 0", "remove it"};
+    refuse(after, sizeof after - 1, 2, 1, says);
+    refuse(within, sizeof within - 1, 2, 14, says);
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(not_json),    cmocka_unit_test(repeated_members), cmocka_unit_test(unknown_members),
-        cmocka_unit_test(wrong_types), cmocka_unit_test(bad_cameras),      cmocka_unit_test(bad_materials),
-        cmocka_unit_test(bad_spheres), cmocka_unit_test(bad_clouds),       cmocka_unit_test(deep_nesting),
-        cmocka_unit_test(long_names),  cmocka_unit_test(not_a_file),
+        cmocka_unit_test(not_json),         cmocka_unit_test(bytes_of_value_zero),
+        cmocka_unit_test(repeated_members), cmocka_unit_test(unknown_members),
+        cmocka_unit_test(wrong_types),      cmocka_unit_test(bad_cameras),
+        cmocka_unit_test(bad_materials),    cmocka_unit_test(bad_spheres),
+        cmocka_unit_test(bad_clouds),       cmocka_unit_test(deep_nesting),
+        cmocka_unit_test(long_names),       cmocka_unit_test(not_a_file),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -57,6 +57,18 @@ static void refused(void **state) {
               "1 2 3 1 1 1.5\n",
          11,
          {"blue: found 1.5", "0 to 1"}},
+        {HEAD "element vertex 1\n" XYZ "property list char int many\nend_header\n1 2 3 -1\n",
+         9,
+         {"row 0", "found -1 as the length of a list"}},
+        {HEAD "element vertex 2\n" XYZ "property list char int many\nend_header\n1 2 3 0\n1 2 3 nan\n",
+         10,
+         {"row 1", "found nan"}},
+        {HEAD "element vertex 1\n" XYZ "property list char int many\nend_header\n1 2 3 1.5 7 8\n",
+         9,
+         {"found 1.5", "a whole number"}},
+        {HEAD "element vertex 1\n" XYZ "property list char int many\nend_header\n1 2 3 inf 7 8\n",
+         9,
+         {"vertex 0", "expected a number"}},
     };
     for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
         BpScene *scene = empty_scene();
@@ -118,11 +130,48 @@ static void binary_nan(void **state) {
     bp_error_clear(&err);
 }
 
+static void refuse_bytes(const char *bytes, size_t size, int line, const char *says) {
+    BpScene *scene = empty_scene();
+    BpError err = {0};
+    assert_int_equal(read_bytes(bytes, size, &all_matte, scene, &err), BP_ERR_SCENE);
+    if (err.line != line || strstr(err.message, says) == NULL)
+        fail_msg("line %d: \"%s\", expected \"%s\" in line %d", err.line, err.message, says, line);
+    bp_scene_destroy(&scene);
+    bp_error_clear(&err);
+}
+
+static void bytes_of_value_zero(void **state) {
+    (void)state;
+    static const char header[] =
+        "ply\0 hidden\nformat ascii 1.0\nelement vertex 1\n" XYZ "end_header\n1 2 3\n";
+    static const char comment[] =
+        "ply\nformat ascii 1.0\ncomment a\0b\nelement vertex 1\n" XYZ "end_header\n1 2 3\n";
+    static const char row[] = "ply\nformat ascii 1.0\nelement vertex 1\n" XYZ "end_header\n1 2 3\0 4 5\n";
+    static const char end[] = "ply\nformat ascii 1.0\nelement vertex 1\n" XYZ "end_header\n1 2 3\n\0 4\n";
+    refuse_bytes(header, sizeof header - 1, 1, "a byte of value 0");
+    refuse_bytes(comment, sizeof comment - 1, 3, "a byte of value 0");
+    refuse_bytes(row, sizeof row - 1, 8, "a byte of value 0");
+    refuse_bytes(end, sizeof end - 1, 9, "a byte of value 0");
+}
+
+static void binary_list_of_negative_length(void **state) {
+    (void)state;
+    char bytes[512];
+    size_t n = (size_t)snprintf(bytes, sizeof bytes,
+                                "ply\nformat binary_little_endian 1.0\nelement vertex 1\n" XYZ
+                                "property list char int many\nend_header\n");
+    memset(bytes + n, 0, 12);
+    bytes[n + 12] = -1;
+    refuse_bytes(bytes, n + 13, 0, "found -1 as the length of a list");
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(refused),
         cmocka_unit_test(refused_by_options),
         cmocka_unit_test(binary_nan),
+        cmocka_unit_test(bytes_of_value_zero),
+        cmocka_unit_test(binary_list_of_negative_length),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
