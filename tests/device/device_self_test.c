@@ -158,6 +158,33 @@ static void a_pass_is_remembered(void **state) {
     free(other_path);
 }
 
+/* Whoever opens a pipe waits for its other end, and a folder is no file: neither is a memory, nor replaced.
+ */
+static void what_is_no_regular_file_is_no_memory(void **state) {
+    BpDevice *device = *state;
+    char folder[] = "/tmp/ballpark-self-test-XXXXXX", below[64];
+    struct stat kind;
+    assert_non_null(mkdtemp(folder));
+    assert_int_equal(setenv("XDG_CACHE_HOME", folder, 1), 0);
+    snprintf(below, sizeof below, "%s/ballpark", folder);
+    assert_int_equal(mkdir(below, 0700), 0);
+    char *path = bp_self_test_memory_path(&device->info);
+    alarm(300); /* only so that a hang is a failure */
+    assert_int_equal(mkfifo(path, 0600), 0);
+    assert_true(runs_now(device));
+    assert_true(runs_now(device));
+    assert_int_equal(stat(path, &kind), 0);
+    assert_true(S_ISFIFO(kind.st_mode));
+    assert_int_equal(unlink(path), 0);
+    assert_int_equal(mkdir(path, 0700), 0);
+    assert_true(runs_now(device));
+    assert_int_equal(rmdir(path), 0);
+    alarm(0);
+    assert_int_equal(rmdir(below), 0);
+    assert_int_equal(rmdir(folder), 0);
+    free(path);
+}
+
 static void a_cache_that_cannot_be_written_is_tolerated(void **state) {
     BpDevice *device = *state;
     assert_int_equal(setenv("XDG_CACHE_HOME", "/dev/null/nowhere", 1), 0);
@@ -199,6 +226,7 @@ int main(void) {
         cmocka_unit_test_prestate(what_cannot_be_built_is_a_build_error, device),
         cmocka_unit_test_prestate(silence_is_a_failure, device),
         cmocka_unit_test_prestate(a_pass_is_remembered, device),
+        cmocka_unit_test_prestate(what_is_no_regular_file_is_no_memory, device),
         cmocka_unit_test_prestate(a_cache_that_cannot_be_written_is_tolerated, device),
         cmocka_unit_test_prestate(without_xdg_the_home_counts, device),
     };

@@ -47,4 +47,13 @@ with tempfile.TemporaryDirectory() as folder:
     code, words = run({**environment, "BALLPARK_KERNELS": str(broken)}, *small, "--force")
     assert code == 0 and picture.exists(), words
     assert "self-test" in words, "--force without a warning"
+    # Kernels that are not there say nothing about the device, so nothing can be forced.
+    missing = str(pathlib.Path(folder, "no" * 100, "such" * 60, "folder" * 30, "of" * 90, "kernels" * 20))
+    for options in (), ("--force",):
+        picture.unlink(missing_ok=True)
+        code, words = run({**environment, "BALLPARK_KERNELS": missing}, *small, *options)
+        assert code == 1 and not picture.exists(), words
+        for text in f"cannot open {missing[:200]}", "/real.cl: No such file", "BALLPARK_KERNELS", "unset it":
+            assert text in words, f"{text}: {words}"
+        assert "--force" not in words and "warning" not in words, words
 print("refused, and forced")
