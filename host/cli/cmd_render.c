@@ -122,6 +122,17 @@ static BpStatus deliver(const BpCommandLine *line, const BpResultFile *file, con
     result->samples_per_pixel = bp_render_samples_done(render);
     result->stopped_by = end->reason;
     result->nrmse = bp_accumulator_nrmse(result->accumulator);
+    /* What little is left says nothing of the scene, so no picture of it is written. */
+    const uint64_t samples = result->report.samples, invalid = result->report.invalid_samples;
+    if (invalid > samples / 2)
+        return bp_fail(
+            err, BP_ERR_LIMIT,
+            "%" PRIu64 " of %" PRIu64 " sample%s not finite, so there is no picture, and %s was not "
+            "written: the scene's numbers may be too large or too small for %s precision; %schoose another "
+            "unit of length, or ask ballpark check which of its pixels are wrong",
+            invalid, samples, samples == 1 ? " is" : "s are", result->output,
+            result->options->precision == BP_PRECISION_DOUBLE ? "double" : "single",
+            result->options->precision == BP_PRECISION_DOUBLE ? "" : "use --precision double, ");
     const double write_start = bp_clock_seconds();
     BP_TRY(bp_result_write(line, file, result->accumulator, render, (BpTransfer)result->accumulator->transfer,
                            err));

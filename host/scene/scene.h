@@ -5,7 +5,8 @@
  *
  * Invariants of every BpScene that reaches another module (bp_scene_validate proves them): all numbers are
  * finite; radius != 0 (negative: turned inside out); material indices in range; albedo in [0,1]; emit >= 0;
- * 0 <= fuzz <= 1; refraction_index > 0; 0 < vfov < 180; lookfrom != lookat; vup not along the view;
+ * 0 <= fuzz <= 1; refraction_index > 0; 0 < vfov < 180, and the plane in focus of a size that float can hold;
+ * lookfrom != lookat; vup not along the view;
  * 1 <= width, height <= BP_PICTURE_SIDE_MAX; no two coincident dielectrics; a pinhole camera on the surface
  * of one sphere at most. */
 #ifndef BP_SCENE_SCENE_H
@@ -21,6 +22,8 @@
 #define BP_COORDINATE_MAX 1.0e12      /* |centre|, |radius|, |lookfrom|: squares stay finite in float */
 #define BP_RADIANCE_MAX 1.0e12        /* emit, background */
 #define BP_REFRACTION_INDEX_MAX 1.0e6 /* and at least its reciprocal */
+#define BP_FOCUS_DIST_MIN 1.0e-15     /* rays begin as vectors of this length: squares stay normal in float */
+#define BP_HALF_HEIGHT_MAX 1.0e14     /* of the plane in focus; it is up to 65,535 times as wide */
 #define BP_NO_ALBEDO UINT32_MAX
 
 typedef enum BpMaterialKind {

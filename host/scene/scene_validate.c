@@ -8,6 +8,7 @@
 #include <stdarg.h>
 #include <stdio.h>
 
+#define PI 3.14159265358979323846
 #define LENGTH_MIN 1.0e-30 /* below, squares of lengths vanish even in double */
 #define ALONG_VIEW_MAX                                                                                       \
     1.0e-9 /* sine of the angle between vup and the view that still gives a picture plane */
@@ -75,6 +76,19 @@ static bool camera_basis_fault(const BpCamera *camera, BpFault *fault) {
     return false;
 }
 
+/* Whether the plane in focus is too large for rays to be aimed at it in float. */
+static bool plane_fault(const BpCamera *camera, BpFault *fault) {
+    char vfov[BP_NUMBER_TEXT_SIZE], focus[BP_NUMBER_TEXT_SIZE];
+    const double half_height = camera->focus_dist * tan(camera->vfov_degrees * (PI / 360));
+    if (half_height <= BP_HALF_HEIGHT_MAX) return false;
+    return set_fault(
+        fault, BP_FAULT_CAMERA, "vfov",
+        "found %s with a focus_dist of %s, which makes the plane in focus %.3g high, expected at most "
+        "%g; choose a smaller vfov or focus_dist",
+        bp_number_text(camera->vfov_degrees, vfov), bp_number_text(camera->focus_dist, focus),
+        2 * half_height, 2 * BP_HALF_HEIGHT_MAX);
+}
+
 static bool camera_fault(const BpCamera *camera, BpFault *fault) {
     const char *const side = "1 to 65535 pixels";
     char text[BP_NUMBER_TEXT_SIZE];
@@ -88,8 +102,10 @@ static bool camera_fault(const BpCamera *camera, BpFault *fault) {
            outside(fault, BP_FAULT_CAMERA, "samples_per_pixel", camera->samples_per_pixel, 1, UINT32_MAX,
                    "at least 1") ||
            outside(fault, BP_FAULT_CAMERA, "max_depth", camera->max_depth, 0, BP_DEPTH_MAX, "0 to 1000000") ||
-           outside(fault, BP_FAULT_CAMERA, "focus_dist", camera->focus_dist, LENGTH_MIN, BP_COORDINATE_MAX,
-                   "a distance above 0, up to 1e12") ||
+           outside(fault, BP_FAULT_CAMERA, "focus_dist", camera->focus_dist, BP_FOCUS_DIST_MIN,
+                   BP_COORDINATE_MAX,
+                   "a distance above 0, from 1e-15 to 1e12; choose another unit of length") ||
+           plane_fault(camera, fault) ||
            outside(fault, BP_FAULT_CAMERA, "aperture", camera->lens_radius, 0, BP_COORDINATE_MAX,
                    "a lens of radius 0 to 1e12") ||
            coordinates_outside(fault, BP_FAULT_CAMERA, "lookfrom", camera->lookfrom) ||

@@ -216,18 +216,33 @@ class StopRules(Render):
         said = self.succeed("render", "plain.json", "--error", "1", "-o", "x.png").errors
         self.assertIn("the samples of every pixel agree", said)
 
-    def test_a_pixel_that_is_never_light(self):
-        """Samples that are no numbers are left out; where a pixel has no other, --error ends and says so."""
+    def broken_sky(self, red):
+        """Kernels whose sky has another red; the environment that uses them."""
         shutil.copytree(os.path.join(SOURCE, "kernels"), self.path("kernels"))
         with open(self.path("kernels/sky.cl")) as file:
             text = file.read()
         at = text.rindex("return bottom;")
-        broken = ("Vec3 light = bottom; light.x = choose(direction.x < splat(R(-0.5)), splat(NAN), light.x); "
-                  "return light;")
+        broken = f"Vec3 light = bottom; light.x = {red}; return light;"
         with open(self.path("kernels/sky.cl"), "w") as file:
             file.write(text[:at] + broken + text[at + len("return bottom;"):])
+        return {"BALLPARK_KERNELS": self.path("kernels")}
+
+    def test_hardly_any_sample_is_light(self):
+        """No picture then, and none of those that were there is touched."""
+        here = self.broken_sky("splat(NAN)")
+        self.write("n.json", scene(16, spheres=0, background=[0.5, 0.6, 0.7]))
+        for output in "x.png", "x.exr", "x.bpa":
+            self.write(output, "precious")
+            self.fail_with(1, "render", "n.json", "-o", output, "--stats", "n.stats", environment=here,
+                           says=["2048 of 2048 samples are not finite", output, "was not written", "--precision double",
+                                 "unit of length"])
+            self.assertEqual(self.read(output), b"precious")
+        self.assertEqual(self.files(), ["kernels", "n.json", "s.json", "x.bpa", "x.exr", "x.png"])
+
+    def test_a_pixel_that_is_never_light(self):
+        """Samples that are no numbers are left out; where a pixel has no other, --error ends and says so."""
+        here = self.broken_sky("choose(direction.x < splat(R(-0.5)), splat(NAN), light.x)")
         self.write("n.json", scene(16, background=[0.5, 0.6, 0.7]))
-        here = {"BALLPARK_KERNELS": self.path("kernels")}
         for options in (["--error", "0.1"], ["--error", "0.1", "--time", "100"], ["--error", "0.1", "--spp", "100000"]):
             said = self.succeed("render", "n.json", "--stats", "n.stats", *options, environment=here).errors
             self.assertIn("--error cannot be reached", said)
