@@ -115,7 +115,20 @@ BpBounds bp_tree_write_leaf(const BpTreeWriter *writer, uint32_t leaf, const BpT
     return box;
 }
 
+BpStatus bp_tree_check_size(uint32_t width, uint64_t nodes, uint64_t leaves, BpError *err) {
+    const uint64_t words = (uint64_t)UINT32_MAX + 1;
+    const uint64_t nodes_max = words / NODE_REALS(width), leaves_max = words / LEAF_REALS(width);
+    if (nodes <= nodes_max && leaves <= leaves_max) return BP_OK;
+    return bp_fail(
+        err, BP_ERR_LIMIT,
+        "a tree of %llu leaves and %llu nodes; %u wide it may have %llu and %llu: take fewer spheres, or a "
+        "narrower tree (tree_width)",
+        (unsigned long long)leaves, (unsigned long long)nodes, width, (unsigned long long)leaves_max,
+        (unsigned long long)nodes_max);
+}
+
 BpStatus bp_tree_allocate(BpTree *tree, uint32_t nodes, uint32_t leaves, BpError *err) {
+    BP_TRY(bp_tree_check_size(tree->width, nodes, leaves, err));
     const size_t real_size = tree->single_precision ? sizeof(float) : sizeof(double);
     const size_t n = nodes > 0 ? nodes : 1, l = leaves > 0 ? leaves : 1, width = tree->width;
     tree->node_boxes = calloc(n * NODE_REALS(width), real_size);

@@ -45,7 +45,12 @@ BpBounds bp_tree_item_bounds(const BpTreeItem *item);
 BpBounds bp_tree_write_leaf(const BpTreeWriter *writer, uint32_t leaf, const BpTreeItem *items,
                             uint32_t count);
 
-/* Allocates the arrays; each has room for one entry at least, so that a device buffer can be made of it. */
+/* Refuses what the kernels cannot number: they find a node's and a leaf's reals by offsets of 32 bits.
+ * BP_ERR_LIMIT. */
+BpStatus bp_tree_check_size(uint32_t width, uint64_t nodes, uint64_t leaves, BpError *err);
+
+/* Allocates the arrays, if the kernels can number that many; each has room for one entry at least, so that a
+ * device buffer can be made of it. */
 BpStatus bp_tree_allocate(BpTree *tree, uint32_t nodes, uint32_t leaves, BpError *err);
 
 /* Gathers the binary tree into wide nodes, allocates the arrays of the tree and writes them, from leaf

@@ -3,6 +3,7 @@
 #include "base/status.h"
 #include "engine/reals.h"
 #include "engine/tree.h"
+#include "engine/tree_write.h"
 #include "scene_types.h"
 #include "tree_scenes.h"
 
@@ -11,6 +12,7 @@
 #include <stdarg.h>
 #include <stdint.h>
 #include <stdio.h>
+#include <string.h>
 
 #include <cmocka.h>
 
@@ -295,6 +297,28 @@ static void refusals(void **state) {
     free(scene.spheres);
 }
 
+/* The last real of the last leaf and node must have an offset of 32 bits, and the first beyond is refused
+ * before there is any memory for it. */
+static void no_offset_wraps(void **state) {
+    (void)state;
+    for (uint32_t width = 2; width <= 16; width *= 2) {
+        const uint64_t leaves = (UINT64_C(1) << 32) / (4 * width), nodes = (UINT64_C(1) << 32) / (6 * width);
+        BpError err = {0};
+        assert_true(leaves * LEAF_REALS(width) - 1 <= UINT32_MAX);
+        assert_true((leaves + 1) * LEAF_REALS(width) - 1 > UINT32_MAX);
+        assert_true(nodes * NODE_REALS(width) - 1 <= UINT32_MAX);
+        assert_true((nodes + 1) * NODE_REALS(width) - 1 > UINT32_MAX);
+        assert_int_equal(bp_tree_check_size(width, nodes, leaves, &err), BP_OK);
+        assert_int_equal(bp_tree_check_size(width, nodes, leaves + 1, &err), BP_ERR_LIMIT);
+        assert_int_equal(bp_tree_check_size(width, nodes + 1, leaves, &err), BP_ERR_LIMIT);
+        assert_non_null(strstr(err.message, "narrower tree"));
+        BpTree tree = {.width = width, .single_precision = true};
+        assert_int_equal(bp_tree_allocate(&tree, 1, (uint32_t)(leaves + 1), &err), BP_ERR_LIMIT);
+        assert_null(tree.leaves);
+        bp_error_clear(&err);
+    }
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(every_shape_and_size),
@@ -304,6 +328,7 @@ int main(void) {
         cmocka_unit_test(huge_spheres_come_first),
         cmocka_unit_test(leaves_are_full_and_memory_small),
         cmocka_unit_test(refusals),
+        cmocka_unit_test(no_offset_wraps),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
