@@ -117,9 +117,23 @@ static void aim_channels(exr_encode_pipeline_t *encoder, uint32_t width, uint32_
     }
 }
 
+typedef exr_result_t Compress(exr_encode_pipeline_t *);
+
+/* Readers take a block as long as its pixels for one that is not compressed. OpenEXRCore 3.1 stores pixels as
+ * they are when compressing makes them longer, but not when it leaves them as long: then they are read as
+ * noise. */
+static exr_result_t compress_or_keep(exr_encode_pipeline_t *encoder) {
+    Compress *const *const compress = encoder->encoding_user_data;
+    const exr_result_t result = (*compress)(encoder);
+    if (result == EXR_ERR_SUCCESS && encoder->compressed_bytes == encoder->packed_bytes)
+        memcpy(encoder->compressed_buffer, encoder->packed_buffer, (size_t)encoder->packed_bytes);
+    return result;
+}
+
 static exr_result_t write_rows(exr_context_t exr, const BpPicture *picture, const Layer *layers,
                                size_t count) {
     exr_encode_pipeline_t encoder = EXR_ENCODE_PIPELINE_INITIALIZER;
+    Compress *compress = NULL;
     int32_t chunk_rows = 0;
     exr_result_t result = exr_get_scanlines_per_chunk(exr, 0, &chunk_rows);
     if (result == EXR_ERR_SUCCESS && chunk_rows < 1) result = EXR_ERR_UNKNOWN;
@@ -131,7 +145,12 @@ static exr_result_t write_rows(exr_context_t exr, const BpPicture *picture, cons
                         : exr_encoding_update(exr, 0, &chunk, &encoder);
         if (result != EXR_ERR_SUCCESS) break;
         aim_channels(&encoder, picture->width, y, layers, count);
-        if (y == 0) result = exr_encoding_choose_default_routines(exr, 0, &encoder);
+        if (y == 0) {
+            result = exr_encoding_choose_default_routines(exr, 0, &encoder);
+            compress = encoder.compress_fn;
+            encoder.encoding_user_data = &compress;
+            encoder.compress_fn = compress_or_keep;
+        }
         if (result == EXR_ERR_SUCCESS) result = exr_encoding_run(exr, 0, &encoder);
     }
     exr_encoding_destroy(exr, &encoder);

@@ -248,6 +248,40 @@ static void exr_reads_back_bit_for_bit(void **state) {
     assert_exr(300, 1);
 }
 
+/* Pixels of ever more noise: at some amount compressing them leaves them exactly as long as they were, which
+ * readers take for pixels that are not compressed. */
+static void exr_of_any_noise_reads_back(void **state) {
+    (void)state;
+    char folder[64], path[512];
+    temp_make(folder);
+    temp_path(path, folder, "a.exr");
+    enum { SIDE = 3, REALS = 3 * SIDE * SIDE, BYTES = 4 * REALS };
+    for (uint32_t seed = 0; seed < 8; seed++)
+        for (size_t noise = BYTES / 2; noise <= BYTES; noise++) {
+            uint8_t bytes[BYTES] = {0};
+            uint32_t number = 12345 + seed;
+            for (size_t i = 0; i < noise; i++) {
+                number = number * 1664525u + 1013904223u;
+                bytes[i] = (uint8_t)(number >> 24);
+            }
+            float rgb[REALS];
+            memcpy(rgb, bytes, BYTES);
+            const BpPicture picture = {.width = SIDE, .height = SIDE, .rgb = rgb};
+            assert_int_equal(bp_picture_write(&picture, path, BP_FORMAT_EXR, BP_TRANSFER_SRGB, NULL), BP_OK);
+            exr_context_t exr = NULL;
+            exr_context_initializer_t setup = EXR_DEFAULT_CONTEXT_INITIALIZER;
+            assert_int_equal(exr_start_read(&exr, path, &setup), EXR_ERR_SUCCESS);
+            for (size_t c = 0; c < 3; c++) {
+                static const char *const names[] = {"R", "G", "B"};
+                uint32_t values[SIDE * SIDE];
+                read_exr_channel(exr, names[c], EXR_PIXEL_FLOAT, SIDE, SIDE, values);
+                for (size_t i = 0; i < SIDE * SIDE; i++) assert_memory_equal(&values[i], &rgb[3 * i + c], 4);
+            }
+            exr_finish(&exr);
+        }
+    temp_remove(folder);
+}
+
 static void exr_is_compressed(void **state) {
     (void)state;
     BpPicture picture = {.width = 200, .height = 100, .rgb = calloc(60000, sizeof(float))};
@@ -348,6 +382,7 @@ int main(void) {
         cmocka_unit_test(pfm_keeps_every_bit),
         cmocka_unit_test(png_reads_back_with_its_tags),
         cmocka_unit_test(exr_reads_back_bit_for_bit),
+        cmocka_unit_test(exr_of_any_noise_reads_back),
         cmocka_unit_test(exr_is_compressed),
         cmocka_unit_test(a_full_disk_is_an_error),
         cmocka_unit_test(a_failed_write_keeps_the_old_picture),
