@@ -1,14 +1,6 @@
 /* fuzz_ply.c: any bytes as a PLY file. What is accepted makes a valid scene. */
+#include "fuzz.h"
 #include "scene/scene_ply.h"
-
-#include <stdlib.h>
-#include <string.h>
-
-int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size);
-
-static void require(bool holds) {
-    if (!holds) abort();
-}
 
 int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size) {
     static const char text[] = "{ \"camera\": {}, \"materials\": { \"a\": { \"type\": \"normals\" },"

@@ -1,16 +1,8 @@
 /* fuzz_scene.c: any text as a scene document. What is accepted is valid, and survives being written and read.
  *
- * Files of clouds are not opened: a fuzzer would find its way to anything on the disk. */
+ * Files of clouds are not opened; fuzz_cloud.c does that. */
+#include "fuzz.h"
 #include "scene/scene_parse.h"
-
-#include <stdlib.h>
-#include <string.h>
-
-int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size);
-
-static void require(bool holds) {
-    if (!holds) abort();
-}
 
 static char *print(const BpScene *scene, size_t *length) {
     char *text = NULL;

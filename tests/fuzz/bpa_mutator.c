@@ -1,0 +1,107 @@
+/* bpa_mutator.c: see bpa_mutator.h. */
+#include "bpa_mutator.h"
+
+#include <jansson.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#define CELL_BYTES 28u /* three sums of 8 bytes and a count of 4 */
+
+size_t LLVMFuzzerMutate(uint8_t *data, size_t size, size_t size_max); /* libFuzzer's own */
+
+/* The header line's length, with its newline; 0: there is none. */
+static size_t header_length(const uint8_t *data, size_t size) {
+    const uint8_t *end = size > 0 ? memchr(data, '\n', size) : NULL;
+    return end == NULL ? 0 : (size_t)(end - data) + 1;
+}
+
+static uint32_t next(uint32_t *state) { /* Numerical Recipes' quick generator: only speed matters */
+    *state = *state * 1664525u + 1013904223u;
+    return *state >> 8;
+}
+
+/* Gives one member of the header a value near what is allowed. */
+static void change_member(json_t *header, uint32_t *state) {
+    static const char *const sizes[] = {"width", "height", "replicates"};
+    static const char *const numbers[] = {"scale_log2", "max_depth",       "segments",
+                                          "cut_paths",  "invalid_samples", "ballpark_accumulator"};
+    static const json_int_t values[] = {0, 1, 2, -1, 126, -126, 127, 1000000, 1000001, INT64_MAX, INT64_MIN};
+    static const char *const words[][2] = {{"sampler", "sobol"},       {"sampler", "independent"},
+                                           {"precision", "single"},    {"precision", "double"},
+                                           {"math", "strict"},         {"math", "fast"},
+                                           {"numerics", "plain"},      {"transfer", "linear"},
+                                           {"transfer", "srgb"},       {"seed", "18446744073709551615"},
+                                           {"scene_hash", "ffffffff"}, {"title", "a\x1b[31m\n"}};
+    switch (next(state) % 4) {
+    case 0:
+        json_object_set_new(header, sizes[next(state) % 3], json_integer(1 + next(state) % 6));
+        break;
+    case 1:
+        json_object_set_new(header, numbers[next(state) % (sizeof numbers / sizeof *numbers)],
+                            json_integer(values[next(state) % (sizeof values / sizeof *values)]));
+        break;
+    case 2: {
+        const char *const *pair = words[next(state) % (sizeof words / sizeof *words)];
+        json_object_set_new(header, pair[0], json_string(pair[1]));
+        break;
+    }
+    default: {
+        json_t *ranges = json_array();
+        json_int_t first = next(state) % 3;
+        for (uint32_t i = next(state) % 4; i > 0; i--) {
+            const json_int_t count = next(state) % 8 == 0 ? 1 << 24 : 1 + next(state) % 40;
+            json_array_append_new(ranges, json_pack("[I,I]", first, count));
+            first += count + (json_int_t)(next(state) % 3);
+        }
+        json_object_set_new(header, "ranges", ranges);
+    }
+    }
+}
+
+/* How long the body should be; 0: the header does not say, or more than `room`. */
+static size_t body_length(const json_t *header, size_t room) {
+    uint64_t cells = 1;
+    static const char *const sizes[] = {"width", "height", "replicates"};
+    for (size_t i = 0; i < 3; i++) {
+        const json_int_t side = json_integer_value(json_object_get(header, sizes[i]));
+        if (side < 1 || side > 65535) return 0;
+        cells *= (uint64_t)side;
+    }
+    return cells <= room / CELL_BYTES ? (size_t)cells * CELL_BYTES : 0;
+}
+
+size_t bpa_mutate(uint8_t *data, size_t size, size_t size_max, unsigned seed) {
+    uint32_t state = seed;
+    const size_t head = header_length(data, size);
+    json_t *header = head > 0 ? json_loadb((const char *)data, head, 0, NULL) : NULL;
+    if (!json_is_object(header) || next(&state) % 8 == 0) {
+        json_decref(header);
+        return LLVMFuzzerMutate(data, size, size_max);
+    }
+    size_t body = size - head;
+    uint8_t *old = malloc(body + 1);
+    if (old == NULL) abort();
+    memcpy(old, data + head, body);
+    if (next(&state) % 2 == 0 && body > 0)
+        LLVMFuzzerMutate(old, body, body);
+    else
+        change_member(header, &state);
+
+    size_t result = size;
+    char *text = json_dumps(header, JSON_PRESERVE_ORDER | JSON_COMPACT);
+    const size_t text_length = text != NULL ? strlen(text) + 1 : 0;
+    const size_t wanted =
+        text != NULL && text_length < size_max ? body_length(header, size_max - text_length) : 0;
+    if (wanted > 0) {
+        memcpy(data, text, text_length - 1);
+        data[text_length - 1] = '\n';
+        memset(data + text_length, 0, wanted);
+        memcpy(data + text_length, old, body < wanted ? body : wanted);
+        result = text_length + wanted;
+    }
+    free(text);
+    free(old);
+    json_decref(header);
+    return result;
+}

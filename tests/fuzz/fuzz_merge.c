@@ -1,0 +1,129 @@
+/* fuzz_merge.c: two accumulator files in one input, merged.
+ *
+ * The input is the first file's length (4 bytes, little endian), the first file, the second. A merge is
+ * refused and changes nothing; or sums, counts and totals are added, whichever comes first, and the result
+ * can be saved and loaded. */
+#include "bpa_io.h"
+#include "bpa_mutator.h"
+
+size_t LLVMFuzzerCustomMutator(uint8_t *data, size_t size, size_t size_max, unsigned seed);
+
+enum { LENGTH_BYTES = 4 };
+
+static size_t first_length(const uint8_t *data, size_t size) {
+    Bytes bytes = {data, LENGTH_BYTES, 0};
+    const uint64_t length = take_bits(&bytes, LENGTH_BYTES);
+    return length < size - LENGTH_BYTES ? (size_t)length : size - LENGTH_BYTES;
+}
+
+static size_t join(uint8_t *data, const uint8_t *first, size_t first_size, const uint8_t *second,
+                   size_t second_size) {
+    for (size_t i = 0; i < LENGTH_BYTES; i++) data[i] = (uint8_t)(first_size >> (8 * i));
+    memcpy(data + LENGTH_BYTES, first, first_size);
+    memcpy(data + LENGTH_BYTES + first_size, second, second_size);
+    return LENGTH_BYTES + first_size + second_size;
+}
+
+/* Changes one of the two files, the other keeps its half of the room. */
+size_t LLVMFuzzerCustomMutator(uint8_t *data, size_t size, size_t size_max, unsigned seed) {
+    if (size < LENGTH_BYTES || size_max < LENGTH_BYTES) return 0;
+    const size_t room = (size_max - LENGTH_BYTES) / 2, split = first_length(data, size);
+    size_t sizes[2] = {split, size - LENGTH_BYTES - split};
+    uint8_t *files[2];
+    for (size_t f = 0; f < 2; f++) {
+        if (sizes[f] > room) sizes[f] = room;
+        files[f] = calloc(1, room + 1);
+        require(files[f] != NULL);
+        memcpy(files[f], data + LENGTH_BYTES + (f == 0 ? 0 : split), sizes[f]);
+    }
+    const size_t changed = seed % 2;
+    sizes[changed] = bpa_mutate(files[changed], sizes[changed], room, seed / 2);
+    const size_t result = join(data, files[0], sizes[0], files[1], sizes[1]);
+    free(files[0]);
+    free(files[1]);
+    return result;
+}
+
+static bool same_bytes(const BpAccumulator *accumulator, const char *bytes, size_t size) {
+    size_t now = 0;
+    char *saved = bpa_save(accumulator, &now);
+    require(saved != NULL);
+    const bool same = now == size && memcmp(saved, bytes, size) == 0;
+    free(saved);
+    return same;
+}
+
+/* `sum` is a + b; both were taken before the merge. */
+static void check_sum(const BpAccumulator *sum, const BpAccumulator *a, const BpAccumulator *b) {
+    const size_t cells = bpa_cells(a);
+    require(bpa_cells(b) == cells && bpa_cells(sum) == cells && a->scene_hash == b->scene_hash &&
+            a->seed == b->seed);
+    for (size_t i = 0; i < 3 * cells; i++) require(sum->sums[i] == a->sums[i] + b->sums[i]);
+    for (size_t i = 0; i < cells; i++) require(sum->counts[i] == a->counts[i] + b->counts[i]);
+    for (uint32_t k = 0; k < a->replicates; k++)
+        require(bp_accumulator_expected(sum, k) ==
+                bp_accumulator_expected(a, k) + bp_accumulator_expected(b, k));
+    for (size_t i = 1; i < sum->range_count; i++)
+        require(sum->ranges[i].first > sum->ranges[i - 1].first + sum->ranges[i - 1].count);
+    require(sum->partial == (a->partial || b->partial));
+    require(sum->segments >= a->segments && sum->segments >= b->segments);
+    require(sum->cut_paths >= a->cut_paths && sum->invalid_samples >= a->invalid_samples);
+}
+
+/* Merges the second file into the first and checks it; the sum, or NULL when it was refused. */
+static BpAccumulator *merge(const uint8_t *first, size_t first_size, const uint8_t *second,
+                            size_t second_size) {
+    BpAccumulator *into = bpa_load(first, first_size), *from = bpa_load(second, second_size);
+    BpAccumulator *before = bpa_load(first, first_size);
+    if (into == NULL || from == NULL) goto done;
+    size_t size = 0;
+    char *bytes = bpa_save(into, &size);
+    require(bytes != NULL);
+    BpError err = {0};
+    const BpStatus status = bp_accumulator_merge(into, from, &err);
+    if (status != BP_OK) {
+        require(err.code == status && err.message[0] != '\0' && same_bytes(into, bytes, size));
+        bp_accumulator_destroy(&into);
+    } else {
+        check_sum(into, before, from);
+        size_t saved_size = 0;
+        char *saved = bpa_save(into, &saved_size);
+        require(saved != NULL);
+        BpAccumulator *again = bpa_load(saved, saved_size);
+        require(again != NULL && same_bytes(again, saved, saved_size));
+        bp_accumulator_destroy(&again);
+        free(saved);
+    }
+    bp_error_clear(&err);
+    free(bytes);
+    bp_accumulator_destroy(&from);
+    bp_accumulator_destroy(&before);
+    return into;
+done:
+    bp_accumulator_destroy(&into);
+    bp_accumulator_destroy(&from);
+    bp_accumulator_destroy(&before);
+    return NULL;
+}
+
+int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size) {
+    if (size < LENGTH_BYTES) return 0;
+    const size_t split = first_length(data, size);
+    const uint8_t *first = data + LENGTH_BYTES, *second = first + split;
+    const size_t second_size = size - LENGTH_BYTES - split;
+    BpAccumulator *forth = merge(first, split, second, second_size);
+    BpAccumulator *back = merge(second, second_size, first, split);
+    require((forth == NULL) == (back == NULL));
+    if (forth != NULL) {
+        const size_t cells = bpa_cells(forth);
+        require(memcmp(forth->sums, back->sums, 3 * cells * sizeof *forth->sums) == 0);
+        require(memcmp(forth->counts, back->counts, cells * sizeof *forth->counts) == 0);
+        require(forth->range_count == back->range_count);
+        for (size_t i = 0; i < forth->range_count; i++)
+            require(forth->ranges[i].first == back->ranges[i].first &&
+                    forth->ranges[i].count == back->ranges[i].count);
+    }
+    bp_accumulator_destroy(&forth);
+    bp_accumulator_destroy(&back);
+    return 0;
+}
