@@ -2,11 +2,15 @@
 #include "bpa_mutator.h"
 
 #include <jansson.h>
+#include <stdbool.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <zlib.h>
 
-#define CELL_BYTES 28u /* three sums of 8 bytes and a count of 4 */
+#define SUMS_BYTES 24u /* of a cell: three of 8 bytes */
+#define COUNT_BYTES 4u
+#define CHECKSUM_BYTES 4u
 
 size_t LLVMFuzzerMutate(uint8_t *data, size_t size, size_t size_max); /* libFuzzer's own */
 
@@ -26,14 +30,15 @@ static void change_member(json_t *header, uint32_t *state) {
     static const char *const sizes[] = {"width", "height", "replicates"};
     static const char *const numbers[] = {"scale_log2", "max_depth",       "segments",
                                           "cut_paths",  "invalid_samples", "ballpark_accumulator"};
-    static const json_int_t values[] = {0, 1, 2, -1, 126, -126, 127, 1000000, 1000001, INT64_MAX, INT64_MIN};
+    static const json_int_t values[] = {0,    1,   2,       3,       -1,        126,
+                                        -126, 127, 1000000, 1000001, INT64_MAX, INT64_MIN};
     static const char *const words[][2] = {{"sampler", "sobol"},       {"sampler", "independent"},
                                            {"precision", "single"},    {"precision", "double"},
                                            {"math", "strict"},         {"math", "fast"},
                                            {"numerics", "plain"},      {"transfer", "linear"},
                                            {"transfer", "srgb"},       {"seed", "18446744073709551615"},
                                            {"scene_hash", "ffffffff"}, {"title", "a\x1b[31m\n"}};
-    switch (next(state) % 4) {
+    switch (next(state) % 5) {
     case 0:
         json_object_set_new(header, sizes[next(state) % 3], json_integer(1 + next(state) % 6));
         break;
@@ -44,6 +49,11 @@ static void change_member(json_t *header, uint32_t *state) {
     case 2: {
         const char *const *pair = words[next(state) % (sizeof words / sizeof *words)];
         json_object_set_new(header, pair[0], json_string(pair[1]));
+        break;
+    }
+    case 3: {
+        static const char *const switches[] = {"fine_sums", "coarse", "partial"};
+        json_object_set_new(header, switches[next(state) % 3], json_boolean(next(state) % 2 == 0));
         break;
     }
     default: {
@@ -59,8 +69,14 @@ static void change_member(json_t *header, uint32_t *state) {
     }
 }
 
-/* How long the body should be; 0: the header does not say, or more than `room`. */
+static bool has_checksum(const json_t *header) {
+    return json_integer_value(json_object_get(header, "ballpark_accumulator")) != 1;
+}
+
+/* How long sums and counts should be; 0: the header does not say, or more than `room`. */
 static size_t body_length(const json_t *header, size_t room) {
+    const bool fine = has_checksum(header) && json_is_true(json_object_get(header, "fine_sums"));
+    const size_t cell = (fine ? 2 : 1) * SUMS_BYTES + COUNT_BYTES;
     uint64_t cells = 1;
     static const char *const sizes[] = {"width", "height", "replicates"};
     for (size_t i = 0; i < 3; i++) {
@@ -68,18 +84,25 @@ static size_t body_length(const json_t *header, size_t room) {
         if (side < 1 || side > 65535) return 0;
         cells *= (uint64_t)side;
     }
-    return cells <= room / CELL_BYTES ? (size_t)cells * CELL_BYTES : 0;
+    return cells <= room / cell ? (size_t)cells * cell : 0;
+}
+
+/* Appends the checksum of all before it. */
+static size_t append_checksum(uint8_t *data, size_t size) {
+    const uLong checksum = crc32_z(crc32_z(0, NULL, 0), data, size);
+    for (size_t i = 0; i < CHECKSUM_BYTES; i++) data[size + i] = (uint8_t)(checksum >> (8 * i));
+    return size + CHECKSUM_BYTES;
 }
 
 size_t bpa_mutate(uint8_t *data, size_t size, size_t size_max, unsigned seed) {
     uint32_t state = seed;
     const size_t head = header_length(data, size);
     json_t *header = head > 0 ? json_loadb((const char *)data, head, 0, NULL) : NULL;
-    if (!json_is_object(header) || next(&state) % 8 == 0) {
+    if (!json_is_object(header) || size - head <= CHECKSUM_BYTES || next(&state) % 8 == 0) {
         json_decref(header);
         return LLVMFuzzerMutate(data, size, size_max);
     }
-    size_t body = size - head;
+    const size_t body = size - head - (has_checksum(header) ? CHECKSUM_BYTES : 0);
     uint8_t *old = malloc(body + 1);
     if (old == NULL) abort();
     memcpy(old, data + head, body);
@@ -91,14 +114,16 @@ size_t bpa_mutate(uint8_t *data, size_t size, size_t size_max, unsigned seed) {
     size_t result = size;
     char *text = json_dumps(header, JSON_PRESERVE_ORDER | JSON_COMPACT);
     const size_t text_length = text != NULL ? strlen(text) + 1 : 0;
-    const size_t wanted =
-        text != NULL && text_length < size_max ? body_length(header, size_max - text_length) : 0;
+    const size_t wanted = text != NULL && text_length + CHECKSUM_BYTES < size_max
+                              ? body_length(header, size_max - text_length - CHECKSUM_BYTES)
+                              : 0;
     if (wanted > 0) {
         memcpy(data, text, text_length - 1);
         data[text_length - 1] = '\n';
         memset(data + text_length, 0, wanted);
         memcpy(data + text_length, old, body < wanted ? body : wanted);
         result = text_length + wanted;
+        if (has_checksum(header)) result = append_checksum(data, result);
     }
     free(text);
     free(old);

@@ -53,12 +53,17 @@ static bool same_bytes(const BpAccumulator *accumulator, const char *bytes, size
     return same;
 }
 
+static int64_t fine_sum(const BpAccumulator *accumulator, size_t i) {
+    return accumulator->fine_sums != NULL ? accumulator->fine_sums[i] : 0;
+}
+
 /* `sum` is a + b; both were taken before the merge. */
 static void check_sum(const BpAccumulator *sum, const BpAccumulator *a, const BpAccumulator *b) {
     const size_t cells = bpa_cells(a);
     require(bpa_cells(b) == cells && bpa_cells(sum) == cells && a->scene_hash == b->scene_hash &&
             a->seed == b->seed);
     for (size_t i = 0; i < 3 * cells; i++) require(sum->sums[i] == a->sums[i] + b->sums[i]);
+    for (size_t i = 0; i < 3 * cells; i++) require(fine_sum(sum, i) == fine_sum(a, i) + fine_sum(b, i));
     for (size_t i = 0; i < cells; i++) require(sum->counts[i] == a->counts[i] + b->counts[i]);
     for (uint32_t k = 0; k < a->replicates; k++)
         require(bp_accumulator_expected(sum, k) ==
@@ -66,8 +71,9 @@ static void check_sum(const BpAccumulator *sum, const BpAccumulator *a, const Bp
     for (size_t i = 1; i < sum->range_count; i++)
         require(sum->ranges[i].first > sum->ranges[i - 1].first + sum->ranges[i - 1].count);
     require(sum->partial == (a->partial || b->partial));
-    require(sum->segments >= a->segments && sum->segments >= b->segments);
-    require(sum->cut_paths >= a->cut_paths && sum->invalid_samples >= a->invalid_samples);
+    require(sum->coarse == (a->coarse || b->coarse) && sum->unverified == (a->unverified || b->unverified));
+    require(sum->segments == a->segments + b->segments && sum->cut_paths == a->cut_paths + b->cut_paths);
+    require(sum->invalid_samples == a->invalid_samples + b->invalid_samples);
 }
 
 /* Merges the second file into the first and checks it; the sum, or NULL when it was refused. */
@@ -117,6 +123,7 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size) {
     if (forth != NULL) {
         const size_t cells = bpa_cells(forth);
         require(memcmp(forth->sums, back->sums, 3 * cells * sizeof *forth->sums) == 0);
+        for (size_t i = 0; i < 3 * cells; i++) require(fine_sum(forth, i) == fine_sum(back, i));
         require(memcmp(forth->counts, back->counts, cells * sizeof *forth->counts) == 0);
         require(forth->range_count == back->range_count);
         for (size_t i = 0; i < forth->range_count; i++)

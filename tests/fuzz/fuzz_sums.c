@@ -30,8 +30,9 @@ static BpAccumulator *make_accumulator(Bytes *bytes) {
     made->precision = words >> 1 & 1u;
     made->math = words >> 2 & 1u;
     made->numerics = words >> 3 & 1u;
-    made->transfer = (words >> 4) % 3u;
+    made->transfer = (words >> 4 & 3u) % 3u;
     made->partial = words >> 7 != 0;
+    made->coarse = (words & 3u) == 3;
     made->segments = take_bits(bytes, 8) >> 1;
     made->cut_paths = take_bits(bytes, 8) >> 1;
     made->invalid_samples = take_bits(bytes, 8) >> 1;
@@ -40,11 +41,14 @@ static BpAccumulator *make_accumulator(Bytes *bytes) {
         const uint64_t first = take_bits(bytes, 4), count = 1 + take_bits(bytes, i % 2 == 0 ? 1 : 3);
         if (first + count <= SAMPLES_END) bp_accumulator_add_range(made, first, count, NULL); /* or refused */
     }
+    if (words >> 6 & 1u) require(bp_accumulator_add_fine_sums(made, NULL) == BP_OK);
     for (size_t cell = 0; cell < bpa_cells(made); cell++) {
         const uint64_t most = bp_accumulator_expected(made, (uint32_t)(cell % made->replicates));
         made->counts[cell] = (uint32_t)(take_bits(bytes, 3) % (most + 1));
-        for (size_t c = 0; c < 3 && made->counts[cell] > 0; c++)
-            made->sums[3 * cell + c] = (int64_t)(take_bits(bytes, 8) % (SUM_MAX + 1));
+        for (size_t i = 3 * cell; i < 3 * cell + 3 && made->counts[cell] > 0; i++) {
+            made->sums[i] = (int64_t)(take_bits(bytes, 8) % (SUM_MAX + 1));
+            if (made->fine_sums != NULL) made->fine_sums[i] = (int64_t)(take_bits(bytes, 8) % (SUM_MAX + 1));
+        }
     }
     return made;
 }
@@ -63,7 +67,8 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size) {
     require(read->seed == made->seed && read->max_depth == made->max_depth && read->sampler == made->sampler);
     require(read->precision == made->precision && read->math == made->math &&
             read->numerics == made->numerics);
-    require(read->transfer == made->transfer && read->partial == made->partial);
+    require(read->transfer == made->transfer && read->partial == made->partial &&
+            read->coarse == made->coarse);
     require(read->segments == made->segments && read->cut_paths == made->cut_paths);
     require(read->invalid_samples == made->invalid_samples && strcmp(read->title, made->title) == 0);
     require(read->range_count == made->range_count);
@@ -71,6 +76,9 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size) {
         require(read->ranges[i].first == made->ranges[i].first &&
                 read->ranges[i].count == made->ranges[i].count);
     require(memcmp(read->sums, made->sums, 3 * bpa_cells(made) * sizeof *made->sums) == 0);
+    require((read->fine_sums == NULL) == (made->fine_sums == NULL) && !read->unverified);
+    require(made->fine_sums == NULL ||
+            memcmp(read->fine_sums, made->fine_sums, 3 * bpa_cells(made) * sizeof *made->fine_sums) == 0);
     require(memcmp(read->counts, made->counts, bpa_cells(made) * sizeof *made->counts) == 0);
     free(file);
     bp_accumulator_destroy(&read);
