@@ -1,6 +1,7 @@
 /* map.c: the picture of a check; see check.h. */
 #include "check.h"
 
+#include "../base/color.h"
 #include "../base/status.h"
 
 #include <math.h>
@@ -15,8 +16,8 @@ static float decode(double value, BpTransfer transfer) {
         return (float)value;
     case BP_TRANSFER_GAMMA2:
         return (float)(value * value);
-    case BP_TRANSFER_SRGB: /* IEC 61966-2-1 */
-        return (float)(value <= 0.04045 ? value / 12.92 : pow((value + 0.055) / 1.055, 2.4));
+    case BP_TRANSFER_SRGB:
+        return (float)bp_linear_from_srgb(value);
     }
     return (float)value;
 }

@@ -1,9 +1,8 @@
 /* check_report.c: see check_report.h. */
 #include "check_report.h"
 
+#include "../base/format.h"
 #include "json_file.h"
-
-#include "report.h"
 
 #include <math.h>
 #include <string.h>

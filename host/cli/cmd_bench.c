@@ -6,12 +6,12 @@
  * Scenes take turns, round after round, so that what else the machine does spreads over all of them. */
 #include "commands.h"
 
+#include "../base/format.h"
 #include "../base/plural.h"
 #include "bench_measure.h"
 #include "bench_scenes.h"
 #include "interrupt.h"
 #include "json_file.h"
-#include "report.h"
 #include "setup.h"
 #include "temporary_folder.h"
 

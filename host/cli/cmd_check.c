@@ -4,6 +4,7 @@
  * Knows: the check, devices, processes.   Does not know: statistics, OpenCL. */
 #include "commands.h"
 
+#include "../base/format.h"
 #include "../base/output_file.h"
 #include "../base/plural.h"
 #include "../image/image.h"
@@ -11,7 +12,6 @@
 #include "check_report.h"
 #include "interrupt.h"
 #include "json_file.h"
-#include "report.h"
 #include "setup.h"
 #include "terminal.h"
 

@@ -4,11 +4,11 @@
  * Knows: the study, files, the terminal.   Does not know: how anything is measured. */
 #include "commands.h"
 
+#include "../base/format.h"
 #include "../base/output_file.h"
 #include "../cost/study.h"
 #include "interrupt.h"
 #include "json_file.h"
-#include "report.h"
 #include "setup.h"
 #include "terminal.h"
 
@@ -24,7 +24,7 @@ static void show_progress(const BpStudyProgress *progress) {
     bp_terminal_show(progress->finished ? "" : text);
 }
 
-/* Ctrl-C ends a study early; what every setting has reached by then is a result. */
+/* Ctrl-C ends a study early; what every configuration has reached by then is a result. */
 static BpStatus run_study(const BpCommandLine *line, BpStudy *study, BpError *err) {
     BpStudyProgress progress = {0};
     const bool live = bp_terminal_is_live(line->quiet);

@@ -4,10 +4,10 @@
  * JSON. Knows: the effects' analysis, its measurement, tables on a terminal.   Does not know: OpenCL. */
 #include "commands.h"
 
+#include "../base/format.h"
 #include "../engine/effect_costs.h"
 #include "explain_path.h"
 #include "json_file.h"
-#include "report.h"
 #include "setup.h"
 #include "terminal.h"
 

@@ -4,9 +4,9 @@
  * Knows: files, in which order they are added.   Does not know: how sums are added. */
 #include "commands.h"
 
+#include "../base/format.h"
 #include "../base/plural.h"
 #include "../engine/accumulator_file.h"
-#include "report.h"
 #include "result_file.h"
 
 #include <inttypes.h>

@@ -5,12 +5,12 @@
 #include "commands.h"
 
 #include "../base/clock.h"
+#include "../base/format.h"
 #include "../base/plural.h"
 #include "../engine/adaptive.h"
 #include "../engine/stop_rule.h"
 #include "json_file.h"
 #include "render_loop.h"
-#include "report.h"
 #include "result_file.h"
 #include "setup.h"
 #include "stats.h"

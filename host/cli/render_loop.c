@@ -2,6 +2,7 @@
 #include "render_loop.h"
 
 #include "../base/clock.h"
+#include "../base/format.h"
 #include "interrupt.h"
 #include "progress.h"
 #include "terminal.h"

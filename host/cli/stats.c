@@ -2,23 +2,12 @@
 #include "stats.h"
 
 #include "../base/clock.h"
+#include "../base/json_text.h"
 #include "json_file.h"
 
 #include <inttypes.h>
 #include <math.h>
 #include <stdio.h>
-
-/* JSON is UTF-8; a file's name need not be. Bytes outside ASCII of one that is not become '?'. */
-static json_t *json_text(const char *text) {
-    json_t *value = json_string(text);
-    if (value != NULL) return value;
-    char plain[4096];
-    size_t length = 0;
-    for (; text[length] != '\0' && length + 1 < sizeof plain; ++length)
-        plain[length] = (unsigned char)text[length] < 0x80 ? text[length] : '?';
-    plain[length] = '\0';
-    return json_string(plain);
-}
 
 /* JSON has no NaN. */
 static json_t *json_number(double value) {
@@ -27,8 +16,9 @@ static json_t *json_number(double value) {
 
 static json_t *device_json(const BpDeviceInfo *info) {
     static const char *const types[] = {"cpu", "gpu", "other"};
-    return json_pack("{s:o, s:o, s:o, s:s}", "platform", json_text(info->platform), "name",
-                     json_text(info->name), "driver", json_text(info->driver), "type", types[info->type]);
+    return json_pack("{s:o, s:o, s:o, s:s}", "platform", bp_json_text(info->platform), "name",
+                     bp_json_text(info->name), "driver", bp_json_text(info->driver), "type",
+                     types[info->type]);
 }
 
 static json_t *effects_json(const BpEffects *effects) {
@@ -57,7 +47,7 @@ json_t *bp_stats_json(const BpRunResult *result) {
     double mean[3];
     bp_accumulator_mean(result->accumulator, mean);
     json_t *root =
-        json_pack("{s:o, s:i, s:i, s:I, s:I, s:o, s:I, s:o, s:o}", "scene", json_text(result->scene_path),
+        json_pack("{s:o, s:i, s:i, s:I, s:I, s:o, s:I, s:o, s:o}", "scene", bp_json_text(result->scene_path),
                   "width", (int)info.width, "height", (int)info.height, "samples_per_pixel",
                   (json_int_t)result->samples_per_pixel, "max_depth", (json_int_t)options->max_depth, "seed",
                   bp_json_whole(options->seed), "spheres", (json_int_t)info.spheres, "device",
@@ -75,7 +65,7 @@ json_t *bp_stats_json(const BpRunResult *result) {
     json_t *run =
         json_pack("{s:s, s:o, s:I, s:i, s:b, s:o, s:s, s:i, s:I, s:I, s:s}", "numerics",
                   report->numerics == BP_NUMERICS_PLAIN ? "plain" : "robust", "output",
-                  json_text(result->output), "first_sample", (json_int_t)options->first_sample, "replicates",
+                  bp_json_text(result->output), "first_sample", (json_int_t)options->first_sample, "replicates",
                   (int)result->accumulator->replicates, "partial", result->accumulator->partial, "rounding",
                   json_number(bp_accumulator_rounding(result->accumulator)), "stopped_by",
                   bp_stop_reason_name(result->stopped_by), "devices", (int)result->device_count,

@@ -1,6 +1,7 @@
 /* error_map.c: see error_map.h. */
 #include "error_map.h"
 
+#include "../base/color.h"
 #include "../base/output_file.h"
 #include "../base/quantile.h"
 #include "image.h"
@@ -17,12 +18,9 @@ static const uint8_t paper[3] = {22, 22, 26}, ink[3] = {225, 225, 225}, faint[3]
                      unknown[3] = {128, 128, 128};
 
 double bp_pixel_relative_error(const BpPicture *picture, size_t pixel) {
-    static const double weights[3] = {0.2126, 0.7152, 0.0722}; /* Rec. ITU-R BT.709-6, item 3.2 */
-    double luminance = 0, error = 0;
-    for (size_t c = 0; c < 3; c++) {
-        luminance += weights[c] * (double)picture->rgb[3 * pixel + c];
-        error += weights[c] * (double)picture->error[3 * pixel + c];
-    }
+    const double luminance = bp_luminance(picture->rgb + 3 * pixel);
+    double error = 0;
+    for (size_t c = 0; c < 3; c++) error += bp_luminance_weights[c] * (double)picture->error[3 * pixel + c];
     if (!(luminance > 0)) return error > 0 ? (double)INFINITY : (double)NAN;
     return error / luminance;
 }

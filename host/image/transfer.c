@@ -1,6 +1,8 @@
 /* transfer.c: from linear radiance to bytes; see image.h. */
 #include "image.h"
 
+#include "../base/color.h"
+
 #include <math.h>
 
 uint8_t bp_transfer_byte(double linear, BpTransfer transfer) {
@@ -9,8 +11,8 @@ uint8_t bp_transfer_byte(double linear, BpTransfer transfer) {
     case BP_TRANSFER_GAMMA2:
         encoded = linear > 0 ? sqrt(linear) : 0;
         break;
-    case BP_TRANSFER_SRGB: /* IEC 61966-2-1:1999 */
-        encoded = linear <= 0.0031308 ? 12.92 * linear : 1.055 * pow(linear, 1 / 2.4) - 0.055;
+    case BP_TRANSFER_SRGB:
+        encoded = bp_srgb_from_linear(linear);
         break;
     case BP_TRANSFER_LINEAR:
         break;

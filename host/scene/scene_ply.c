@@ -1,6 +1,7 @@
 /* scene_ply.c: the vertices of a PLY file; see scene_ply.h. */
 #include "scene_ply.h"
 
+#include "../base/color.h"
 #include "../base/plural.h"
 #include "scene_document.h"
 #include "scene_fault.h"
@@ -24,11 +25,6 @@ typedef struct Reader {
     bool has_radius, has_colour, has_material;
     float srgb_to_linear[256];
 } Reader;
-
-/* IEC 61966-2-1, 1999. */
-static float linear_from_srgb(double value) {
-    return (float)(value <= 0.04045 ? value / 12.92 : pow((value + 0.055) / 1.055, 2.4));
-}
 
 /* ---- one vertex -----------------------------------------------------------------------------------------
  */
@@ -313,7 +309,7 @@ static BpStatus choose(Reader *r, BpError *err) {
     unsigned char first;
     memcpy(&first, &one, 1);
     r->swap = r->header.format == (first == 1 ? PLY_BIG_ENDIAN : PLY_LITTLE_ENDIAN);
-    for (int i = 0; i < 256; i++) r->srgb_to_linear[i] = linear_from_srgb(i / 255.0);
+    for (int i = 0; i < 256; i++) r->srgb_to_linear[i] = (float)bp_linear_from_srgb(i / 255.0);
     return BP_OK;
 }
 

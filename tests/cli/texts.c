@@ -1,6 +1,6 @@
 /* Numbers as people read them, the progress bar at every width. */
+#include "base/format.h"
 #include "cli/progress.h"
-#include "cli/report.h"
 #include "cli/values.h"
 
 #include <math.h>

@@ -1,10 +1,17 @@
-/* report.c: see report.h. */
-#include "report.h"
+/* format.c: see format.h. */
+#include "format.h"
 
 #include <inttypes.h>
 #include <math.h>
 #include <stdio.h>
 #include <string.h>
+
+/* Decimals that show `digits` digits of x. */
+static int decimals(double x, int digits, int most) {
+    if (!(fabs(x) > 0)) return 0;
+    const int after = digits - 1 - (int)floor(log10(fabs(x)));
+    return after < 0 ? 0 : after > most ? most : after;
+}
 
 const char *bp_format_percent(double fraction, char *text, size_t size) {
     const double percent = 100.0 * fraction;
@@ -12,6 +19,41 @@ const char *bp_format_percent(double fraction, char *text, size_t size) {
         snprintf(text, size, "unknown");
     else
         snprintf(text, size, percent >= 9.95 ? "%.0f %%" : percent >= 0.995 ? "%.1f %%" : "%.2g %%", percent);
+    return text;
+}
+
+const char *bp_format_percent_cell(double fraction, char *text, size_t size) {
+    const double p = 100 * fraction;
+    if (isnan(p))
+        snprintf(text, size, "-");
+    else
+        snprintf(text, size, "%.*f %%", decimals(p, fabs(p) < 0.0995 ? 2 : 3, 7), p);
+    return text;
+}
+
+const char *bp_format_interval(double value, double low, double high, char *text, size_t size) {
+    const char *sign = value < 0 ? "-" : "+";
+    const double percent = 100 * fabs(value), half = 50 * (high - low);
+    if (isnan(value)) {
+        snprintf(text, size, "-");
+    } else if (!(half > 0) && !(percent > 0)) {
+        snprintf(text, size, "none");
+    } else if (percent < 5e-7 && half < 5e-7) {
+        snprintf(text, size, "under 0.000001 %%");
+    } else if (!(half > 0)) {
+        snprintf(text, size, "%s%.*f %%", sign, decimals(percent, 2, 7), percent);
+    } else {
+        const int after = decimals(half, 1, 7);
+        snprintf(text, size, "%s%.*f +- %.*f %%", sign, after, percent, after, half);
+    }
+    return text;
+}
+
+const char *bp_format_ratio(double ratio, char *text, size_t size) {
+    if (!isfinite(ratio))
+        snprintf(text, size, "-");
+    else
+        snprintf(text, size, "%.*f", decimals(ratio, 3, 4), ratio);
     return text;
 }
 

@@ -1,0 +1,27 @@
+/* color.h: what the numbers of Rec. 709 and sRGB colours mean.
+ *
+ * Knows: published constants.   Does not know: pictures. */
+#ifndef BP_BASE_COLOR_H
+#define BP_BASE_COLOR_H
+
+#include <math.h>
+
+/* Luminance of linear red, green, blue (Rec. ITU-R BT.709-6, item 3.2). */
+static const double bp_luminance_weights[3] = {0.2126, 0.7152, 0.0722};
+
+static inline double bp_luminance(const float rgb[3]) {
+    double sum = 0;
+    for (int c = 0; c < 3; c++) sum += bp_luminance_weights[c] * (double)rgb[c];
+    return sum;
+}
+
+/* The sRGB transfer function and its inverse (IEC 61966-2-1:1999). */
+static inline double bp_srgb_from_linear(double linear) {
+    return linear <= 0.0031308 ? 12.92 * linear : 1.055 * pow(linear, 1 / 2.4) - 0.055;
+}
+
+static inline double bp_linear_from_srgb(double encoded) {
+    return encoded <= 0.04045 ? encoded / 12.92 : pow((encoded + 0.055) / 1.055, 2.4);
+}
+
+#endif
