@@ -1,6 +1,7 @@
-/* crop.c: the same small window of every picture, and its true error as a map; see parts.h. */
-#include "parts.h"
+/* crop.c: the same small window of every picture, and its true error as a map; see crop.h. */
+#include "crop.h"
 
+#include "../base/color.h"
 #include "../base/status.h"
 #include "../image/error_map.h"
 #include "../image/image.h"
@@ -15,7 +16,7 @@ static uint32_t smaller(uint32_t a, uint32_t b) {
 
 void bp_study_interest_add(double *interest, const BpPicture *x, const BpPicture *y, double brightness) {
     for (size_t p = 0; p < (size_t)x->width * x->height; p++) {
-        const double a = bp_study_luminance(x->rgb + 3 * p), b = bp_study_luminance(y->rgb + 3 * p);
+        const double a = bp_luminance(x->rgb + 3 * p), b = bp_luminance(y->rgb + 3 * p);
         /* One bright speck is not to outshine everything. */
         interest[p] += fmin(1, fabs(a - b) / brightness);
     }
@@ -61,9 +62,8 @@ BpStatus bp_study_crop(const BpPicture *x, const BpPicture *r1, const BpPicture 
             const size_t p = (size_t)(y + top) * x->width + i + left, q = 3 * ((size_t)y * width + i);
             for (size_t c = 0; c < 3; c++)
                 picture[q + c] = bp_transfer_byte((double)x->rgb[3 * p + c], transfer);
-            const double truth =
-                0.5 * (bp_study_luminance(r1->rgb + 3 * p) + bp_study_luminance(r2->rgb + 3 * p));
-            const double off = fabs(bp_study_luminance(x->rgb + 3 * p) - truth);
+            const double truth = 0.5 * (bp_luminance(r1->rgb + 3 * p) + bp_luminance(r2->rgb + 3 * p));
+            const double off = fabs(bp_luminance(x->rgb + 3 * p) - truth);
             bp_error_color(truth > 0 ? off / truth : (double)NAN, map + q);
         }
     }

@@ -1,11 +1,11 @@
-/* fit.c: the law of the error, the front of best choices, the advice; see parts.h. */
-#include "parts.h"
+/* fit.c: the law of the error, the front of best choices, the advice; see fit.h. */
+#include "fit.h"
 
 #include "../engine/adaptive.h"
 
 #include <math.h>
 
-/* What makes a setting better than the base by more than the clock's scatter. */
+/* What makes a configuration better than the base by more than the clock's scatter. */
 #define CLEARLY_SOONER 0.9
 
 static const double targets[BP_STUDY_TARGETS] = {0.05, 0.01, 0.002};
@@ -78,12 +78,6 @@ void bp_study_summarize(BpStudyResult *result) {
     bp_study_advise(result);
 }
 
-double bp_study_pixel_bias(const BpStudySeries *series) {
-    const BpStudyEstimate *square = &series->bias_square;
-    if (square->low > 0) return sqrt(square->value);
-    return square->low == 0 && square->high == 0 ? 0 : (double)NAN;
-}
-
 double bp_study_time_scatter(const BpStudyResult *result) {
     double widest = NAN;
     for (size_t s = 1; s < result->count; s++) {
@@ -137,8 +131,10 @@ void bp_study_advise(BpStudyResult *result) {
             const double seconds = samples * pixels * series->seconds_per_sample;
             if (!(samples > 0) || !(seconds < least)) continue;
             /* So few make the same picture as without, and render refuses them. */
-            if (series->setting.options.adaptive && samples < BP_ADAPTIVE_MEAN_MIN) continue;
-            *advice = (BpStudyAdvice){targets[t], true, s, samples, seconds};
+            if (series->configuration.options.adaptive && samples < BP_ADAPTIVE_MEAN_MIN) continue;
+            const bool extrapolated = samples < (double)series->points[0].samples ||
+                                      samples > (double)series->points[series->count - 1].samples;
+            *advice = (BpStudyAdvice){targets[t], true, s, samples, seconds, extrapolated};
             least = s == 0 ? CLEARLY_SOONER * seconds : seconds;
         }
     }

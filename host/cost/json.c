@@ -2,6 +2,8 @@
  * NULL in the end. */
 #include "study.h"
 
+#include "../base/json_text.h"
+
 #include <math.h>
 
 static json_t *number(double value) {
@@ -31,42 +33,47 @@ static json_t *point_json(const BpStudyPoint *point) {
 }
 
 static json_t *series_json(const BpStudySeries *series) {
-    const BpStudySetting *setting = &series->setting;
+    const BpStudyConfiguration *configuration = &series->configuration;
     json_t *points = json_array();
     for (size_t i = 0; i < series->count; i++) append(&points, point_json(&series->points[i]));
     return json_pack("{s:s, s:s, s:s, s:s, s:I, s:o, s:o, s:o, s:o, s:o, s:o, s:{s:o, s:o}, s:o, s:o}",
-                     "name", setting->name, "axis", setting->axis, "options", setting->command, "fresnel",
-                     bp_study_fresnel_name(setting->fresnel), "max_depth",
-                     (json_int_t)setting->options.max_depth, "bias", estimate(&series->bias), "bias_square",
-                     estimate(&series->bias_square), "change", estimate(&series->change), "change_square",
-                     estimate(&series->change_square), "seconds_per_sample",
-                     number(series->seconds_per_sample), "time_ratio", estimate(&series->time_ratio), "fit",
-                     "floor", number(series->fit_floor), "slope", number(series->fit_slope), "efficiency",
-                     number(series->efficiency), "points", points);
+                     "name", configuration->name, "axis", configuration->axis, "options",
+                     configuration->command, "fresnel", bp_study_fresnel_name(configuration->fresnel),
+                     "max_depth", (json_int_t)configuration->options.max_depth, "bias",
+                     estimate(&series->bias), "bias_square", estimate(&series->bias_square), "change",
+                     estimate(&series->change), "change_square", estimate(&series->change_square),
+                     "seconds_per_sample", number(series->seconds_per_sample), "time_ratio",
+                     estimate(&series->time_ratio), "fit", "floor", number(series->fit_floor), "slope",
+                     number(series->fit_slope), "efficiency", number(series->efficiency), "points", points);
 }
 
 static json_t *advice_json(const BpStudyResult *result, const BpStudyAdvice *advice) {
-    const BpStudySetting *setting = &result->series[advice->series].setting;
+    const BpStudyConfiguration *configuration = &result->series[advice->series].configuration;
     char text[512];
-    return json_pack("{s:f, s:b, s:o, s:o, s:o, s:s}", "nrmse", advice->target, "reached", advice->reachable,
-                     "setting", advice->reachable ? json_string(setting->name) : json_null(),
-                     "samples_per_pixel", number(advice->samples), "seconds", number(advice->seconds), "text",
-                     bp_study_advice_text(result, advice, text, sizeof text));
+    return json_pack(
+        "{s:f, s:b, s:o, s:o, s:o, s:b, s:o}", "nrmse", advice->target, "reached", advice->reachable,
+        "configuration", advice->reachable ? json_string(configuration->name) : json_null(),
+        "samples_per_pixel", number(advice->samples), "seconds", number(advice->seconds), "extrapolated",
+        advice->extrapolated, "text", bp_json_text(bp_study_advice_text(result, advice, text, sizeof text)));
 }
 
 json_t *bp_study_json(const BpStudyResult *result) {
     const BpCamera *camera = &result->scene->camera;
     const BpDeviceInfo *device = &result->report.device;
+    BpSceneInfo info;
+    bp_scene_info(result->scene, &info);
     json_t *series = json_array(), *advice = json_array();
     for (size_t s = 0; s < result->count; s++) append(&series, series_json(&result->series[s]));
     for (int t = 0; t < BP_STUDY_TARGETS; t++) append(&advice, advice_json(result, &result->advice[t]));
-    return json_pack(
-        "{s:s, s:s, s:i, s:i, s:[i,i], s:{s:s, s:s, s:s}, s:{s:s, s:I, s:o}, s:o, s:f, s:f, s:b, s:o, s:o}",
-        "version", bp_version(), "scene", result->scene->path, "width", (int)camera->width, "height",
-        (int)camera->height, "advice_size", (int)result->full_width, (int)result->full_height, "device",
-        "platform", device->platform, "name", device->name, "driver", device->driver, "reference", "kind",
-        result->reference_is_kernel ? "kernel in double precision" : "reference tracer", "samples_per_pixel",
-        (json_int_t)result->reference_samples, "nrmse", number(result->reference_error), "brightness",
-        number(result->brightness), "budget_seconds", result->budget, "seconds", result->seconds, "cut_short",
-        result->cut_short, "series", series, "advice", advice);
+    return json_pack("{s:s, s:o, s:s, s:i, s:i, s:[i,i], s:{s:s, s:s, s:s}, s:{s:s, s:i, s:I, s:o}, s:o, "
+                     "s:f, s:f, s:b, s:o, s:o}",
+                     "version", bp_version(), "scene", bp_json_text(result->scene->path), "title", info.title,
+                     "width", (int)camera->width, "height", (int)camera->height, "advice_size",
+                     (int)result->full_width, (int)result->full_height, "device", "platform",
+                     device->platform, "name", device->name, "driver", device->driver, "reference", "kind",
+                     result->reference_is_kernel ? "kernel in double precision" : "reference tracer",
+                     "max_depth", (int)BP_STUDY_DEPTH, "samples_per_pixel",
+                     (json_int_t)result->reference_samples, "nrmse", number(result->reference_error),
+                     "brightness", number(result->brightness), "budget_seconds", result->budget, "seconds",
+                     result->seconds, "cut_short", result->cut_short, "series", series, "advice", advice);
 }

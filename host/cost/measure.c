@@ -1,6 +1,7 @@
-/* measure.c: errors and differences of pictures; see parts.h. */
-#include "parts.h"
+/* measure.c: errors and differences of pictures; see measure.h. */
+#include "measure.h"
 
+#include "../base/color.h"
 #include "../base/status.h"
 
 #include <math.h>
@@ -8,23 +9,14 @@
 #define REL_MSE_OFFSET 0.01 /* keeps dark pixels from ruling (pbrt's imgtool) */
 #define Z_95 1.959964       /* of the normal distribution */
 
-static const double weights[3] = {0.2126, 0.7152, 0.0722}; /* Rec. ITU-R BT.709-6, item 3.2 */
-
-double bp_study_luminance(const float rgb[3]) {
-    double sum = 0;
-    for (int c = 0; c < 3; c++) sum += weights[c] * (double)rgb[c];
-    return sum;
-}
-
 void bp_study_errors(const BpPicture *x, const BpPicture *r1, const BpPicture *r2, double brightness,
                      BpStudyPoint *point) {
     const size_t pixels = (size_t)x->width * x->height;
     const double n = (double)pixels, scale = 1 / (brightness * brightness);
     double sum = 0, sum2 = 0, relative = 0;
     for (size_t p = 0; p < pixels; p++) {
-        const double y = bp_study_luminance(x->rgb + 3 * p);
-        const double product =
-            (y - bp_study_luminance(r1->rgb + 3 * p)) * (y - bp_study_luminance(r2->rgb + 3 * p));
+        const double y = bp_luminance(x->rgb + 3 * p);
+        const double product = (y - bp_luminance(r1->rgb + 3 * p)) * (y - bp_luminance(r2->rgb + 3 * p));
         sum += product;
         sum2 += product * product;
         for (size_t i = 3 * p; i < 3 * p + 3; i++) {
@@ -43,7 +35,7 @@ void bp_study_errors(const BpPicture *x, const BpPicture *r1, const BpPicture *r
 /* Mean luminance of one replicate of a pixel; NaN without samples. */
 static double replicate(const BpAccumulator *a, size_t cell) {
     double sum = 0;
-    for (size_t c = 0; c < 3; c++) sum += weights[c] * bp_accumulator_sum(a, 3 * cell + c);
+    for (size_t c = 0; c < 3; c++) sum += bp_luminance_weights[c] * bp_accumulator_sum(a, 3 * cell + c);
     return a->counts[cell] > 0 ? sum / a->counts[cell] : (double)NAN;
 }
 
@@ -85,10 +77,10 @@ BpStudyEstimate bp_study_unpaired(const BpPicture *x, const BpPicture *r1, const
     const size_t pixels = (size_t)x->width * x->height;
     double sum = 0, variance = 0;
     for (size_t p = 0; p < pixels; p++) {
-        const double a = bp_study_luminance(r1->rgb + 3 * p), b = bp_study_luminance(r2->rgb + 3 * p);
+        const double a = bp_luminance(r1->rgb + 3 * p), b = bp_luminance(r2->rgb + 3 * p);
         double error = 0; /* of luminance: as if the channels erred together, which is never too small */
-        for (size_t c = 0; c < 3; c++) error += weights[c] * (double)x->error[3 * p + c];
-        sum += bp_study_luminance(x->rgb + 3 * p) - 0.5 * (a + b);
+        for (size_t c = 0; c < 3; c++) error += bp_luminance_weights[c] * (double)x->error[3 * p + c];
+        sum += bp_luminance(x->rgb + 3 * p) - 0.5 * (a + b);
         variance += error * error + 0.25 * (a - b) * (a - b);
     }
     return interval(sum / (double)pixels / brightness, sqrt(variance) / (double)pixels / brightness);

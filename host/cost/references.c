@@ -2,8 +2,8 @@
 #include "references.h"
 
 #include "../base/clock.h"
+#include "../base/color.h"
 #include "../base/status.h"
-#include "parts.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -102,7 +102,7 @@ void bp_references_judge(const BpReferences *references, double *brightness, dou
     const size_t pixels = (size_t)first->width * first->height;
     double sum = 0, square = 0;
     for (size_t p = 0; p < pixels; p++) {
-        const double a = bp_study_luminance(first->rgb + 3 * p), b = bp_study_luminance(second->rgb + 3 * p);
+        const double a = bp_luminance(first->rgb + 3 * p), b = bp_luminance(second->rgb + 3 * p);
         sum += 0.5 * (a + b);
         square += 0.25 * (a - b) * (a - b);
     }

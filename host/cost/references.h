@@ -1,7 +1,7 @@
 /* references.h: two pictures of the truth, with random numbers of their own.
  *
  * In:    the scene with exact Fresnel, a device.   Out: two pictures, as good as the time allows.
- * Knows: the kernel in double, the reference tracer.   Does not know: settings, errors.
+ * Knows: the kernel in double, the reference tracer.   Does not know: configurations, errors.
  *
  * Both grow in turns; their samples are doubled as long as the doubling fits. */
 #ifndef BP_COST_REFERENCES_H

@@ -1,11 +1,15 @@
-/* study.c: the order of a study: references, every setting at every count, results, within the time.
+/* study.c: the order of a study: references, every configuration at every count, results, within the time.
  * See study.h. */
 #include "study.h"
 
 #include "../base/clock.h"
 #include "../base/status.h"
-#include "parts.h"
-#include "study_state.h"
+#include "configurations.h"
+#include "crop.h"
+#include "fit.h"
+#include "measure.h"
+#include "references.h"
+#include "timing.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -15,6 +19,40 @@
 #define LEVEL_FIRST 4u      /* samples a pixel: one a replicate */
 #define LEVEL_FACTOR 4u
 #define ROUND_SECONDS 0.005
+
+typedef enum BpStudyPhase {
+    BP_STUDY_OPEN_REFERENCES,
+    BP_STUDY_REFERENCES,
+    BP_STUDY_OPEN_CONFIGURATIONS,
+    BP_STUDY_LEVELS,
+    BP_STUDY_DONE
+} BpStudyPhase;
+
+/* A configuration at work. */
+typedef struct BpStudyRunner {
+    BpRender *render;
+    double cpu_seconds, wall_seconds, warm_device_seconds;
+    double seconds;                     /* of the counts before the present one, undisturbed */
+    double rounds[BP_STUDY_ROUNDS_MAX]; /* seconds, of the present count */
+    bool done;                          /* with the present round */
+} BpStudyRunner;
+
+struct BpStudy {
+    BpStudyResult result;
+    BpScene variants[3]; /* by BpStudyFresnel; share everything but the materials with the scene */
+    BpDeviceInfo device;
+    BpStudyPhase phase;
+    double start;
+    BpReferences references;
+    BpStudyRunner runners[BP_STUDY_CONFIGURATIONS_MAX];
+    size_t turn;               /* the configuration at work */
+    uint64_t level;            /* samples a pixel that everyone is given now */
+    size_t round, round_count; /* of the present level */
+    bool last_level;           /* the present one is */
+    BpPicture first;           /* of the base, one sample a pixel */
+    double *interest;          /* of every pixel: how much there is to see */
+    uint32_t crop_left, crop_top;
+};
 
 static double elapsed(const BpStudy *study) {
     return bp_clock_seconds() - study->start;
@@ -52,7 +90,7 @@ BpStatus bp_study_create(const BpScene *scene, const BpRenderOptions *base, cons
         device = &found;
     }
     BpStudy *made = calloc(1, sizeof *made);
-    BpStudySetting settings[BP_STUDY_SETTINGS_MAX];
+    BpStudyConfiguration configurations[BP_STUDY_CONFIGURATIONS_MAX];
     if (made == NULL) return bp_fail(err, BP_ERR_MEMORY, "no memory for a study");
     made->start = bp_clock_seconds();
     made->device = *device;
@@ -61,8 +99,8 @@ BpStatus bp_study_create(const BpScene *scene, const BpRenderOptions *base, cons
     made->result.full_height = full_height > 0 ? full_height : scene->camera.height;
     made->result.budget = seconds;
     made->result.reference_is_kernel = device->has_double;
-    made->result.count = bp_study_settings(scene, base, device->has_double, settings);
-    for (size_t s = 0; s < made->result.count; s++) made->result.series[s].setting = settings[s];
+    made->result.count = bp_study_configurations(scene, base, device->has_double, configurations);
+    for (size_t s = 0; s < made->result.count; s++) made->result.series[s].configuration = configurations[s];
     made->interest = calloc((size_t)scene->camera.width * scene->camera.height, sizeof *made->interest);
     BpStatus status = made->interest != NULL ? BP_OK : bp_fail(err, BP_ERR_MEMORY, "no memory for a study");
     if (status == BP_OK) status = make_variants(scene, made, err);
@@ -90,6 +128,10 @@ void bp_study_destroy(BpStudy **study) {
     *study = NULL;
 }
 
+bool bp_study_has_finished(const BpStudy *study) {
+    return study->phase == BP_STUDY_DONE;
+}
+
 const BpStudyResult *bp_study_result(const BpStudy *study) {
     return &study->result;
 }
@@ -97,7 +139,7 @@ const BpStudyResult *bp_study_result(const BpStudy *study) {
 /* ---- references -------------------------------------------------------------------------------------- */
 
 static BpStatus open_references(BpStudy *study, BpError *err) {
-    const BpRenderOptions *base = &study->result.series[0].setting.options;
+    const BpRenderOptions *base = &study->result.series[0].configuration.options;
     study->phase = BP_STUDY_REFERENCES;
     return bp_references_open(&study->references, &study->variants[BP_STUDY_FRESNEL_EXACT], base,
                               &study->device, err);
@@ -108,7 +150,7 @@ static BpStatus step_references(BpStudy *study, BpError *err) {
     bool finished = false;
     BP_TRY(bp_references_step(&study->references, REFERENCE_SHARE * result->budget, &finished, err));
     if (!finished) return BP_OK;
-    study->phase = BP_STUDY_OPEN_SETTINGS;
+    study->phase = BP_STUDY_OPEN_CONFIGURATIONS;
     result->reference_samples = study->references.done[0];
     bp_references_judge(&study->references, &result->brightness, &result->reference_error);
     if (!(result->brightness > 0))
@@ -132,12 +174,13 @@ static uint64_t samples_after(const BpStudy *study, size_t rounds) {
     return before + (study->level - before) * rounds / study->round_count;
 }
 
-/* Adaptive samples go where earlier ones say: such a way is given a level at once, not round by round. */
+/* Adaptive samples go where earlier ones say: such a configuration is given a level at once, not round by
+ * round. */
 static bool goes_at_once(const BpStudy *study, size_t s) {
-    return study->result.series[s].setting.options.adaptive;
+    return study->result.series[s].configuration.options.adaptive;
 }
 
-/* Everyone's next round; another way goes first each time. */
+/* Everyone's next round; another configuration goes first each time. */
 static BpStatus begin_round(BpStudy *study, BpError *err) {
     study->turn = (study->result.series[0].count + study->round) % study->result.count;
     for (size_t s = 0; s < study->result.count; s++) {
@@ -181,7 +224,95 @@ static void add_seconds(BpStudy *study) {
     }
 }
 
-/* ---- settings ---------------------------------------------------------------------------------------- */
+/* ---- points ------------------------------------------------------------------------------------------- */
+
+/* Configuration s has one sample a pixel: notes where it differs. */
+static BpStatus note_first(BpStudy *study, size_t s, BpError *err) {
+    BpPicture picture;
+    BP_TRY(bp_render_read(study->runners[s].render, &picture, err));
+    if (s > 0) {
+        bp_study_interest_add(study->interest, &picture, &study->first, study->result.brightness);
+        bp_picture_clear(&picture);
+        return BP_OK;
+    }
+    study->first = picture;
+    bp_study_interest_add(study->interest, &picture, &study->references.pictures[0],
+                          study->result.brightness);
+    return BP_OK;
+}
+
+/* The first sample of every pixel was the warm-up and is not in the times, hence n / (n - 1). */
+static void note_times(const BpStudyRunner *runner, BpStudyPoint *point) {
+    const double scale = (double)point->samples / (double)(point->samples - 1);
+    BpRenderReport report;
+    bp_render_report(runner->render, &report);
+    point->wall_seconds = scale * runner->wall_seconds;
+    point->cpu_seconds = scale * runner->cpu_seconds;
+    point->device_seconds = scale * (report.device_seconds - runner->warm_device_seconds);
+    point->seconds = scale * runner->seconds;
+}
+
+static bool is_truth(const BpStudyResult *result, size_t s) {
+    return s == 1 && result->reference_is_kernel;
+}
+
+/* Against the base and the truth, which have the same counts: in each round the base comes first. */
+static BpStatus note_differences(BpStudy *study, size_t s, const BpAccumulator *sums,
+                                 const BpPicture *picture, BpError *err) {
+    const BpStudyEstimate unknown = {(double)NAN, (double)NAN, (double)NAN};
+    const BpPicture *truths = study->references.pictures;
+    const double brightness = study->result.brightness;
+    BpStudySeries *series = &study->result.series[s];
+    const BpAccumulator *other = NULL;
+    if (s == 0) {
+        series->change = series->change_square = series->bias_square = unknown;
+        series->bias = bp_study_unpaired(picture, &truths[0], &truths[1], brightness);
+        return BP_OK;
+    }
+    BP_TRY(bp_render_accumulator(study->runners[0].render, &other, err));
+    BP_TRY(bp_study_paired(sums, other, brightness, &series->change, &series->change_square, err));
+    if (is_truth(&study->result, s)) {
+        BpStudySeries *base = &study->result.series[0];
+        series->bias = bp_study_unpaired(picture, &truths[0], &truths[1], brightness);
+        series->bias_square = (BpStudyEstimate){0, 0, 0}; /* by definition */
+        return bp_study_paired(other, sums, brightness, &base->bias, &base->bias_square, err);
+    }
+    if (!study->result.reference_is_kernel) {
+        series->bias = bp_study_unpaired(picture, &truths[0], &truths[1], brightness);
+        series->bias_square = unknown;
+        return BP_OK;
+    }
+    BP_TRY(bp_render_accumulator(study->runners[1].render, &other, err));
+    return bp_study_paired(sums, other, brightness, &series->bias, &series->bias_square, err);
+}
+
+/* Every configuration has reached the present count: adds the point of s, and how it differs from base and
+ * truth. */
+static BpStatus note_point(BpStudy *study, size_t s, BpError *err) {
+    BpStudySeries *series = &study->result.series[s];
+    BpStudyPoint *point = &series->points[series->count++];
+    const BpPicture *truths = study->references.pictures;
+    const BpAccumulator *sums = NULL;
+    BpPicture picture;
+    BpStatus status = BP_OK;
+    point->samples = study->level;
+    note_times(&study->runners[s], point);
+    BP_TRY(bp_render_accumulator(study->runners[s].render, &sums, err));
+    point->claimed = bp_accumulator_nrmse(sums);
+    BP_TRY(bp_accumulator_picture(sums, &picture, err));
+    bp_study_errors(&picture, &truths[0], &truths[1], study->result.brightness, point);
+    BP_TRY_GOTO(status,
+                bp_study_crop(&picture, &truths[0], &truths[1], study->crop_left, study->crop_top,
+                              study->result.scene->transfer, &point->crop, err),
+                done);
+    status = note_differences(study, s, sums, &picture, err);
+done:
+    bp_picture_clear(&picture);
+    return status;
+}
+
+/* ---- configurations
+ * ---------------------------------------------------------------------------------------- */
 
 static BpStatus trace_to_end(BpRender *render, BpError *err) {
     BpProgress progress = {0};
@@ -190,20 +321,20 @@ static BpStatus trace_to_end(BpRender *render, BpError *err) {
 }
 
 /* Builds the kernel and takes one sample of every pixel, which drivers may use to compile once more. */
-static BpStatus open_setting(BpStudy *study, BpError *err) {
+static BpStatus open_configuration(BpStudy *study, BpError *err) {
     const size_t s = study->turn;
-    const BpStudySetting *setting = &study->result.series[s].setting;
+    const BpStudyConfiguration *configuration = &study->result.series[s].configuration;
     BpStudyRunner *runner = &study->runners[s];
-    BpRenderOptions options = setting->options;
+    BpRenderOptions options = configuration->options;
     options.samples_per_pixel = 1;
     options.first_sample = 0;
-    BP_TRY(bp_render_create(&study->variants[setting->fresnel], &options, &study->device, 1, &runner->render,
-                            err));
+    BP_TRY(bp_render_create(&study->variants[configuration->fresnel], &options, &study->device, 1,
+                            &runner->render, err));
     BP_TRY(trace_to_end(runner->render, err));
     BpRenderReport report;
     bp_render_report(runner->render, &report);
     runner->warm_device_seconds = report.device_seconds;
-    BP_TRY(bp_study_note_first(study, s, err));
+    BP_TRY(note_first(study, s, err));
     if (s == 0) {
         study->result.report = report;
         study->result.report.build_log = NULL;
@@ -250,13 +381,14 @@ BpStatus bp_study_stop(BpStudy *study, BpError *err) {
     if (study->phase == BP_STUDY_DONE) return BP_OK;
     for (size_t s = 0; s < study->result.count; s++)
         if (study->result.series[s].count < 2)
-            return bp_fail(err, BP_ERR_INTERRUPTED,
-                           "interrupted before every setting had two sample counts: nothing to compare yet");
+            return bp_fail(
+                err, BP_ERR_INTERRUPTED,
+                "interrupted before every configuration had two sample counts: nothing to compare yet");
     study->result.cut_short = true;
     return conclude(study, err);
 }
 
-/* Seconds that all settings together need to come from the present count to `level`. */
+/* Seconds that all configurations together need to come from the present count to `level`. */
 static double foretold(const BpStudy *study, uint64_t level) {
     double wall = 0;
     for (size_t s = 0; s < study->result.count; s++) wall += study->runners[s].wall_seconds;
@@ -277,8 +409,8 @@ static BpStatus next_level(BpStudy *study, BpError *err) {
     return begin_level(study, next, err);
 }
 
-/* The next setting from `turn` on, in a circle, that is not done with the round; false: all are. One is done
- * before the next begins, for it may have chunks under way until then. */
+/* The next configuration from `turn` on, in a circle, that is not done with the round; false: all are. One is
+ * done before the next begins, for it may have chunks under way until then. */
 static bool find_turn(BpStudy *study) {
     for (size_t i = 0; i < study->result.count; i++) {
         const size_t s = (study->turn + i) % study->result.count;
@@ -304,12 +436,12 @@ static BpStatus step_runner(BpStudy *study, BpStudyRunner *runner, BpError *err)
     return BP_OK;
 }
 
-/* Settings take turns, round by round; once all have the samples of a level, their points are noted. */
+/* Configurations take turns, round by round; once all have the samples of a level, their points are noted. */
 static BpStatus step_levels(BpStudy *study, BpError *err) {
     if (find_turn(study)) return step_runner(study, &study->runners[study->turn], err);
     if (++study->round < study->round_count) return begin_round(study, err);
     add_seconds(study);
-    for (size_t s = 0; s < study->result.count; s++) BP_TRY(bp_study_note_point(study, s, err));
+    for (size_t s = 0; s < study->result.count; s++) BP_TRY(note_point(study, s, err));
     return next_level(study, err);
 }
 
@@ -320,10 +452,10 @@ static void report_progress(const BpStudy *study, BpStudyProgress *progress) {
     progress->finished = study->phase == BP_STUDY_DONE;
     progress->seconds_left = progress->finished ? 0 : fmax(0, study->result.budget - spent);
     progress->fraction = progress->finished ? 1 : fmin(0.99, spent / study->result.budget);
-    if (study->phase == BP_STUDY_LEVELS || study->phase == BP_STUDY_OPEN_SETTINGS)
+    if (study->phase == BP_STUDY_LEVELS || study->phase == BP_STUDY_OPEN_CONFIGURATIONS)
         snprintf(progress->doing, sizeof progress->doing, "%s%s",
                  study->phase == BP_STUDY_LEVELS ? "" : "building: ",
-                 study->result.series[study->turn].setting.name);
+                 study->result.series[study->turn].configuration.name);
     else
         snprintf(progress->doing, sizeof progress->doing, "%s", words[study->phase]);
     if (study->phase == BP_STUDY_LEVELS) {
@@ -341,8 +473,8 @@ BpStatus bp_study_step(BpStudy *study, BpStudyProgress *progress, BpError *err) 
     case BP_STUDY_REFERENCES:
         BP_TRY(step_references(study, err));
         break;
-    case BP_STUDY_OPEN_SETTINGS:
-        BP_TRY(open_setting(study, err));
+    case BP_STUDY_OPEN_CONFIGURATIONS:
+        BP_TRY(open_configuration(study, err));
         break;
     case BP_STUDY_LEVELS:
         BP_TRY(step_levels(study, err));

@@ -1,4 +1,4 @@
-/* study.h: what accuracy costs on one scene and device: settings, their errors, their seconds, and the
+/* study.h: what accuracy costs on one scene and device: configurations, their errors, their seconds, and the
  * advice.
  *
  * In:    a scene, the options that a render of it would have, a device, a time budget.
@@ -9,9 +9,9 @@
  * without double, the reference tracer's. It is rendered twice with seeds of their own, r1 and r2, and the
  * mean squared error of a picture x is the mean of (x - r1)(x - r2): free of the references' noise.
  *
- * Every setting is rendered at the same sample counts, taking turns. What one setting changes is told by
- * paired differences: the same seed gives the same random numbers, whatever the precision, depth or Fresnel,
- * so most noise cancels. */
+ * Every configuration is rendered at the same sample counts, taking turns. What one configuration changes is
+ * told by paired differences: the same seed gives the same random numbers, whatever the precision, depth or
+ * Fresnel, so most noise cancels. */
 #ifndef BP_COST_STUDY_H
 #define BP_COST_STUDY_H
 
@@ -23,7 +23,7 @@
 #define BP_STUDY_WIDTH_DEFAULT 240u
 #define BP_STUDY_SECONDS_DEFAULT 60.0
 #define BP_STUDY_DEPTH 1000u /* of the truth */
-#define BP_STUDY_SETTINGS_MAX 20
+#define BP_STUDY_CONFIGURATIONS_MAX 20
 #define BP_STUDY_LEVELS_MAX 10
 #define BP_STUDY_TARGETS 3
 
@@ -33,14 +33,14 @@ typedef enum BpStudyFresnel {
     BP_STUDY_FRESNEL_EXACT
 } BpStudyFresnel;
 
-/* One way to render. */
-typedef struct BpStudySetting {
+/* One way to configure a render. */
+typedef struct BpStudyConfiguration {
     const char *axis;  /* "base", "truth", "sampler", "depth", ...; static */
     const char *name;  /* "depth 10"; static */
     char command[128]; /* options of `ballpark render` that give it; "": none are needed */
     BpRenderOptions options;
     BpStudyFresnel fresnel; /* SCENE: as the scene says; else a change of the scene */
-} BpStudySetting;
+} BpStudyConfiguration;
 
 /* A mean and its 95 % interval; NaN: unknown. */
 typedef struct BpStudyEstimate {
@@ -56,12 +56,12 @@ typedef struct BpStudyCrop {
     BpStudyPng picture, map;
 } BpStudyCrop;
 
-/* One setting at one sample count. Errors are relative to the brightness of the truth. */
+/* One configuration at one sample count. Errors are relative to the brightness of the truth. */
 typedef struct BpStudyPoint {
     uint64_t samples; /* a pixel */
     /* wall: as lived through; device: kernels by the device's clock; cpu: of all threads of this process.
      * seconds: wall, or on a CPU device cpu / cores if that is less; without what disturbed single rounds
-     * (parts.h), so that other work on the machine changes little. */
+     * (timing.h), so that other work on the machine changes little. */
     double seconds, wall_seconds, device_seconds, cpu_seconds;
     double claimed;        /* NRMSE as the replicates say: noise alone */
     double mse, mse_error; /* against the truth, noise and bias; its standard error. It may be negative. */
@@ -73,7 +73,7 @@ typedef struct BpStudyPoint {
 } BpStudyPoint;
 
 typedef struct BpStudySeries {
-    BpStudySetting setting;
+    BpStudyConfiguration configuration;
     BpStudyPoint points[BP_STUDY_LEVELS_MAX];
     size_t count;
     double seconds_per_sample;     /* of one pixel, from the largest count */
@@ -91,8 +91,9 @@ typedef struct BpStudyAdvice {
     double target; /* NRMSE */
     bool reachable;
     size_t series;
-    double samples; /* a pixel */
-    double seconds; /* of tracing a picture of the scene's own size */
+    double samples;    /* a pixel */
+    double seconds;    /* of tracing a picture of the scene's own size, estimated */
+    bool extrapolated; /* fewer or more samples than any measured */
 } BpStudyAdvice;
 
 typedef struct BpStudyResult {
@@ -104,8 +105,8 @@ typedef struct BpStudyResult {
     double reference_error;     /* NRMSE of their mean */
     double brightness;          /* mean luminance of the truth */
     double budget, seconds;
-    bool cut_short;                              /* ended by bp_study_stop() */
-    BpStudySeries series[BP_STUDY_SETTINGS_MAX]; /* 0: the base; 1: the truth where there is double */
+    bool cut_short;                                    /* ended by bp_study_stop() */
+    BpStudySeries series[BP_STUDY_CONFIGURATIONS_MAX]; /* 0: the base; 1: the truth where there is double */
     size_t count;
     BpStudyCrop truth;
     uint32_t crop_width, crop_height;
@@ -114,14 +115,14 @@ typedef struct BpStudyResult {
 
 /* A study is made and run by what ballpark.h declares. Its result, once it has finished; owned by `study`. */
 const BpStudyResult *bp_study_result(const BpStudy *study);
+bool bp_study_has_finished(const BpStudy *study);
+const BpStudyResult *bp_study_result(const BpStudy *study);
 
 /* ---- results ---- */
 
-/* Root of the mean squared systematic error of a pixel; NaN where it is not told from none. */
-double bp_study_pixel_bias(const BpStudySeries *series);
 const char *bp_study_fresnel_name(BpStudyFresnel fresnel);
-/* What the times of two ways, one over the other, are good to, as a part of it: half the widest 95 % interval
- * of time_ratio. NaN where none is known. */
+/* The relative uncertainty of a ratio of two times: half the widest 95 % interval of time_ratio. NaN where
+ * none is known. */
 double bp_study_time_scatter(const BpStudyResult *result);
 /* One line: what to do for this error and what it costs; no line end. */
 const char *bp_study_advice_text(const BpStudyResult *result, const BpStudyAdvice *advice, char *text,

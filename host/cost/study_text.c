@@ -3,7 +3,7 @@
  * In:    a study that has ended.   Out: table, JSON, CSV or page.
  * Knows: which function prints which.   Does not know: what they print, files. */
 #include "../base/status.h"
-#include "study_state.h"
+#include "study.h"
 
 #include <errno.h>
 #include <stdlib.h>
@@ -24,14 +24,14 @@ BpStatus bp_study_text(const BpStudy *study, BpStudyFormat format, char **text, 
                                                                    [BP_STUDY_PAGE] = bp_study_print_page};
     if ((size_t)format >= sizeof print / sizeof print[0])
         return bp_fail(err, BP_ERR_USAGE, "format %d of a study: there is none of that number", (int)format);
-    if (study->phase != BP_STUDY_DONE)
+    if (!bp_study_has_finished(study))
         return bp_fail(err, BP_ERR_USAGE,
                        "results of a study that has not finished: step it to its end, or stop it");
     char *bytes = NULL;
     size_t size = 0;
     FILE *out = open_memstream(&bytes, &size);
     if (out == NULL) return bp_fail(err, BP_ERR_MEMORY, "no memory for the results: %s", strerror(errno));
-    const bool printed = print[format](&study->result, out);
+    const bool printed = print[format](bp_study_result(study), out);
     if (fclose(out) == 0 && printed) {
         *text = bytes;
         return BP_OK;

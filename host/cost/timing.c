@@ -1,5 +1,5 @@
-/* timing.c: what one way to render takes, as a multiple of another, from rounds in turn; see parts.h. */
-#include "parts.h"
+/* timing.c: what one configuration takes, as a multiple of another, from rounds in turn; see timing.h. */
+#include "timing.h"
 
 #include "../base/quantile.h"
 

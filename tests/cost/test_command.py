@@ -45,7 +45,7 @@ class Cost(ProgramTest):
         rows = list(csv.DictReader(io.StringIO(self.csv)))
         self.assertEqual(len(rows), sum(len(s["points"]) for s in result["series"]))
         for row in rows:
-            series = self.series[row["setting"]]
+            series = self.series[row["configuration"]]
             point = next(p for p in series["points"] if p["samples"] == int(row["samples"]))
             self.assertEqual((row["axis"], row["options"]), (series["axis"], series["options"]))
             self.assertEqual(row["front"] == "1", point["front"])
@@ -119,7 +119,7 @@ class Cost(ProgramTest):
                 self.assertAlmostEqual(point["nrmse"], 2.0 ** -depth, delta=1e-6)
         # Depth 5 is off by 3.1 %: right for 5 %, never for 1 %; and one sample is enough.
         self.assertEqual([a["samples_per_pixel"] for a in result["advice"]], [1, 1, 1])
-        self.assertTrue(all(a["setting"] != "depth 5" for a in result["advice"][1:]))
+        self.assertTrue(all(a["configuration"] != "depth 5" for a in result["advice"][1:]))
 
     def test_advice_can_be_followed(self):
         result = self.glass()
@@ -146,7 +146,7 @@ class Cost(ProgramTest):
         done = self.succeed("cost", "s.json", "--time", "1", "--json", "-", "-q")
         self.assertEqual(json.loads(done.stdout)["width"], 32)
         done = self.succeed("cost", "s.json", "--time", "1", "--csv", "-", "-q")
-        self.assertTrue(done.stdout.startswith(b"setting,axis,"))
+        self.assertTrue(done.stdout.startswith(b"configuration,axis,"))
         done = self.succeed("cost", "s.json", "--time", "1", "-o", "-", "-q")
         self.assertTrue(done.stdout.startswith(b"<!DOCTYPE html>") and done.stdout.endswith(b"</html>\n"))
         self.assertEqual(self.files(), ["s.json"])

@@ -53,7 +53,7 @@ static Run run_study(const char *text, double seconds) {
     assert_false(run.result->reference_is_kernel);
     assert_false(run.result->cut_short);
     for (size_t s = 0; s < run.result->count; s++)
-        assert_int_equal(run.result->series[s].setting.options.precision, BP_PRECISION_SINGLE);
+        assert_int_equal(run.result->series[s].configuration.options.precision, BP_PRECISION_SINGLE);
     return run;
 }
 
@@ -64,7 +64,7 @@ static void end(Run *run) {
 
 static const BpStudySeries *find(const BpStudyResult *result, const char *name) {
     for (size_t s = 0; s < result->count; s++)
-        if (strcmp(result->series[s].setting.name, name) == 0) return &result->series[s];
+        if (strcmp(result->series[s].configuration.name, name) == 0) return &result->series[s];
     fail_msg("there is no %s", name);
     return NULL;
 }

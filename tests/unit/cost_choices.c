@@ -1,7 +1,8 @@
 /* cost_choices.c: which ways `ballpark cost` compares, and what it advises. */
 #include "agree/unit_test.h"
 
-#include "cost/parts.h"
+#include "cost/configurations.h"
+#include "cost/fit.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -47,6 +48,7 @@ static void test_advice(void **state) {
      * pixel's sample takes 0.5 s / 10^4, and there are 400 pixels. */
     assert_int_equal(result.advice[0].series, 2);
     assert_true(result.advice[0].reachable && result.advice[0].samples == 445);
+    assert_true(result.advice[0].extrapolated); /* 400 are the most that were measured */
     assert_true(fabs(result.advice[0].seconds - 445 * 400 * 0.5e-4) < 1e-9);
     /* 1 %: the quick one cannot; the base can, and what is 5 % quicker is not clearly so. */
     assert_int_equal(result.advice[1].series, 0);
@@ -60,17 +62,19 @@ static void test_advice(void **state) {
     assert_int_equal(result.advice[0].series,
                      2); /* 0.0475^2 = 0.0025 - 0.00025: 100 * 4^(log 4.44 / log 16) */
     assert_true(result.advice[0].samples == ceil(100 * pow(4, log(0.01 / 0.00225) / log(16))));
+    assert_false(result.advice[0].extrapolated);
     for (size_t s = 0; s < 4; s++) result.series[s].points[1].claimed = 0.10 / 2;
     bp_study_advise(&result);
 
     char text[512];
     assert_non_null(strstr(bp_study_advice_text(&result, &result.advice[0], text, sizeof text),
-                           "445 samples a pixel, 8.9 s at 20x20"));
+                           "445 samples a pixel, extrapolated 8.9 s at 20x20"));
     /* No way there. */
     for (size_t s = 0; s < 4; s++) result.series[s].bias_square = (BpStudyEstimate){1e-5, 0.9e-5, 1.1e-5};
     bp_study_advise(&result);
     assert_true(result.advice[1].reachable && !result.advice[2].reachable);
-    assert_non_null(strstr(bp_study_advice_text(&result, &result.advice[2], text, sizeof text), "none"));
+    assert_non_null(
+        strstr(bp_study_advice_text(&result, &result.advice[2], text, sizeof text), "gets there"));
 
     /* The front: of equal noise the quick one, until its floor; never the slowest. */
     assert_true(result.series[2].points[0].front);
@@ -94,23 +98,24 @@ static void test_advice_can_be_followed(void **state) {
     result.count = 2;
     set_series(&result.series[0], 0.05, 1, 0);
     set_series(&result.series[1], 0.025, 0.5, 0); /* V = 1/16, in half of the time */
-    result.series[1].setting.options.adaptive = true;
+    result.series[1].configuration.options.adaptive = true;
     bp_study_summarize(&result);
     assert_int_equal(result.advice[0].series, 0); /* 5 %: 25 of those */
     assert_true(result.advice[0].samples == 100);
     assert_int_equal(result.advice[1].series, 1); /* 1 % */
     assert_true(result.advice[1].samples == 625);
-    result.series[1].setting.options.adaptive = false;
+    result.series[1].configuration.options.adaptive = false;
     bp_study_advise(&result);
     assert_int_equal(result.advice[0].series, 1);
     assert_true(result.advice[0].samples == 25);
 }
 
-/* ---- the settings ---- */
+/* ---- the configurations ---- */
 
-static const BpStudySetting *find(const BpStudySetting *settings, size_t count, const char *name) {
+static const BpStudyConfiguration *find(const BpStudyConfiguration *configurations, size_t count,
+                                        const char *name) {
     for (size_t s = 0; s < count; s++)
-        if (strcmp(settings[s].name, name) == 0) return &settings[s];
+        if (strcmp(configurations[s].name, name) == 0) return &configurations[s];
     return NULL;
 }
 
@@ -123,43 +128,44 @@ static BpScene *load(const char *name) {
     return scene;
 }
 
-static void test_settings(void **state) {
+static void test_configurations(void **state) {
     (void)state;
-    BpStudySetting settings[BP_STUDY_SETTINGS_MAX];
+    BpStudyConfiguration configurations[BP_STUDY_CONFIGURATIONS_MAX];
     BpRenderOptions base;
     BpScene *glass = load("v4-18-glass-hollow"), *matte = load("v4-10-lambertian");
     bp_render_defaults(glass, &base);
     base.sampler = BP_SAMPLER_SOBOL;
-    size_t count = bp_study_settings(glass, &base, true, settings);
-    assert_string_equal(settings[0].axis, "base");
-    assert_string_equal(settings[0].command, "");
-    assert_string_equal(settings[1].axis, "truth");
-    assert_string_equal(settings[1].command, "--precision double --depth 1000");
-    assert_int_equal(settings[1].fresnel, BP_STUDY_FRESNEL_EXACT);
-    assert_null(find(settings, count, "Sobol samples")); /* that is the base */
-    assert_null(find(settings, count, "depth 50"));
-    assert_null(find(settings, count, "Schlick's Fresnel"));
-    assert_string_equal(find(settings, count, "depth 10")->command, "--depth 10");
-    assert_int_equal(find(settings, count, "exact Fresnel")->fresnel, BP_STUDY_FRESNEL_EXACT);
-    assert_string_equal(find(settings, count, "all short cuts")->command,
+    size_t count = bp_study_configurations(glass, &base, true, configurations);
+    assert_string_equal(configurations[0].axis, "base");
+    assert_string_equal(configurations[0].command, "");
+    assert_string_equal(configurations[1].axis, "truth");
+    assert_string_equal(configurations[1].command, "--precision double --depth 1000");
+    assert_int_equal(configurations[1].fresnel, BP_STUDY_FRESNEL_EXACT);
+    assert_null(find(configurations, count, "Sobol samples")); /* that is the base */
+    assert_null(find(configurations, count, "depth 50"));
+    assert_null(find(configurations, count, "Schlick's Fresnel"));
+    assert_string_equal(find(configurations, count, "depth 10")->command, "--depth 10");
+    assert_int_equal(find(configurations, count, "exact Fresnel")->fresnel, BP_STUDY_FRESNEL_EXACT);
+    assert_string_equal(find(configurations, count, "all shortcuts")->command,
                         "--math fast --numerics plain --depth 10");
     for (size_t a = 0; a < count; a++) /* one axis at a time: no two are the same */
         for (size_t b = 0; b < a && a != 1; b++)
-            assert_true(strcmp(settings[a].command, settings[b].command) != 0 ||
-                        settings[a].fresnel != settings[b].fresnel);
+            assert_true(strcmp(configurations[a].command, configurations[b].command) != 0 ||
+                        configurations[a].fresnel != configurations[b].fresnel);
 
-    count = bp_study_settings(glass, &base, false, settings); /* a device without double */
-    for (size_t s = 0; s < count; s++) assert_int_equal(settings[s].options.precision, BP_PRECISION_SINGLE);
-    assert_non_null(find(settings, count, "exact Fresnel"));
+    count = bp_study_configurations(glass, &base, false, configurations); /* a device without double */
+    for (size_t s = 0; s < count; s++)
+        assert_int_equal(configurations[s].options.precision, BP_PRECISION_SINGLE);
+    assert_non_null(find(configurations, count, "exact Fresnel"));
 
     bp_render_defaults(matte, &base);
     base.sampler = BP_SAMPLER_INDEPENDENT;
     base.max_depth = 10;
-    count = bp_study_settings(matte, &base, true, settings);
-    for (size_t s = 0; s < count; s++) assert_int_equal(settings[s].fresnel, BP_STUDY_FRESNEL_SCENE);
-    assert_string_equal(settings[0].command, "--sampler independent --depth 10");
-    assert_string_equal(find(settings, count, "Sobol samples")->command, "--depth 10");
-    assert_string_equal(find(settings, count, "depth 50")->command, "--sampler independent");
+    count = bp_study_configurations(matte, &base, true, configurations);
+    for (size_t s = 0; s < count; s++) assert_int_equal(configurations[s].fresnel, BP_STUDY_FRESNEL_SCENE);
+    assert_string_equal(configurations[0].command, "--sampler independent --depth 10");
+    assert_string_equal(find(configurations, count, "Sobol samples")->command, "--depth 10");
+    assert_string_equal(find(configurations, count, "depth 50")->command, "--sampler independent");
     bp_scene_destroy(&glass);
     bp_scene_destroy(&matte);
 }
@@ -168,7 +174,7 @@ int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_advice),
         cmocka_unit_test(test_advice_can_be_followed),
-        cmocka_unit_test(test_settings),
+        cmocka_unit_test(test_configurations),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -1,7 +1,8 @@
 /* cost_parts.c: the arithmetic of `ballpark cost` on data whose answers are known. */
 #include "agree/unit_test.h"
 
-#include "cost/parts.h"
+#include "cost/fit.h"
+#include "cost/measure.h"
 #include "cost_random.h"
 
 #include <math.h>

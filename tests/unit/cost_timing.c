@@ -1,7 +1,7 @@
 /* cost_timing.c: what `ballpark cost` makes of the times of rounds, disturbed ones among them. */
 #include "agree/unit_test.h"
 
-#include "cost/parts.h"
+#include "cost/timing.h"
 #include "cost_random.h"
 
 #include <math.h>

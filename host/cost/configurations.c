@@ -1,5 +1,5 @@
-/* settings.c: which ways to render a scene are compared; see parts.h. */
-#include "parts.h"
+/* configurations.c: which configurations are compared; see configurations.h. */
+#include "configurations.h"
 
 #include <stdio.h>
 #include <string.h>
@@ -23,11 +23,11 @@ typedef struct Row {
 #define NUMERICS(x) .numerics = (BP_NUMERICS_##x + 1)
 #define FRESNEL(x) .fresnel = BP_STUDY_FRESNEL_##x
 
-/* One line for each way. A new axis is a line here, a member of Change, and a line each in apply() and
- * write_command(). */
+/* One line for each configuration. A new axis is a line here, a member of Change, and a line each in apply()
+ * and write_command(). */
 static const Row rows[] = {
     {"truth",
-     "everything right",
+     "no approximations",
      {.depth = BP_STUDY_DEPTH, PRECISION(DOUBLE), MATH(STRICT), NUMERICS(ROBUST), FRESNEL(EXACT)}},
     {"sampler", "independent samples", {SAMPLER(INDEPENDENT)}},
     {"sampler", "Sobol samples", {SAMPLER(SOBOL)}},
@@ -46,9 +46,9 @@ static const Row rows[] = {
     {"fresnel", "exact Fresnel", {FRESNEL(EXACT)}},
     {"fresnel", "Schlick's Fresnel", {FRESNEL(SCHLICK)}},
     {"together",
-     "as the book does it",
+     "as in the book",
      {.depth = 50, SAMPLER(INDEPENDENT), PRECISION(DOUBLE), NUMERICS(PLAIN), FRESNEL(SCHLICK)}},
-    {"together", "all short cuts", {.depth = 10, MATH(FAST), NUMERICS(PLAIN)}},
+    {"together", "all shortcuts", {.depth = 10, MATH(FAST), NUMERICS(PLAIN)}},
 };
 
 const char *bp_study_fresnel_name(BpStudyFresnel fresnel) {
@@ -69,27 +69,27 @@ static bool fresnel_matters(const BpScene *scene, BpStudyFresnel fresnel) {
 }
 
 /* What `ballpark render` is told beside the scene, which has a depth of its own. */
-static void write_command(const BpScene *scene, BpStudySetting *setting) {
-    const BpRenderOptions *options = &setting->options;
+static void write_command(const BpScene *scene, BpStudyConfiguration *configuration) {
+    const BpRenderOptions *options = &configuration->options;
     char depth[24] = "";
     if (options->max_depth != scene->camera.max_depth)
         snprintf(depth, sizeof depth, " --depth %u", options->max_depth);
-    snprintf(setting->command, sizeof setting->command, "%s%s%s%s%s%s",
+    snprintf(configuration->command, sizeof configuration->command, "%s%s%s%s%s%s",
              options->sampler == BP_SAMPLER_INDEPENDENT ? " --sampler independent" : "",
              options->adaptive ? " --adaptive" : "",
              options->precision == BP_PRECISION_DOUBLE ? " --precision double" : "",
              options->math == BP_MATH_FAST ? " --math fast" : "",
              options->numerics == BP_NUMERICS_PLAIN ? " --numerics plain" : "", depth);
-    if (setting->command[0] != '\0')
-        memmove(setting->command, setting->command + 1, strlen(setting->command));
+    if (configuration->command[0] != '\0')
+        memmove(configuration->command, configuration->command + 1, strlen(configuration->command));
 }
 
-/* Makes a setting of a row; false when it is the base itself. */
+/* Makes a configuration of a row; false when it is the base itself. */
 static bool apply(const Row *row, const BpScene *scene, const BpRenderOptions *base,
-                  BpStudySetting *setting) {
+                  BpStudyConfiguration *configuration) {
     const Change *change = &row->change;
-    BpRenderOptions *options = &setting->options;
-    *setting = (BpStudySetting){.axis = row->axis, .name = row->name};
+    BpRenderOptions *options = &configuration->options;
+    *configuration = (BpStudyConfiguration){.axis = row->axis, .name = row->name};
     *options = *base;
     if (change->depth > 0) options->max_depth = change->depth;
     if (change->sampler > 0) options->sampler = (BpSampler)(change->sampler - 1);
@@ -97,23 +97,25 @@ static bool apply(const Row *row, const BpScene *scene, const BpRenderOptions *b
     if (change->math > 0) options->math = (BpMath)(change->math - 1);
     if (change->numerics > 0) options->numerics = (BpNumerics)(change->numerics - 1);
     if (change->adaptive) options->adaptive = true;
-    if (fresnel_matters(scene, change->fresnel)) setting->fresnel = change->fresnel;
-    write_command(scene, setting);
+    if (fresnel_matters(scene, change->fresnel)) configuration->fresnel = change->fresnel;
+    write_command(scene, configuration);
     return options->max_depth != base->max_depth || options->sampler != base->sampler ||
            options->precision != base->precision || options->math != base->math ||
            options->numerics != base->numerics || options->adaptive != base->adaptive ||
-           setting->fresnel != BP_STUDY_FRESNEL_SCENE;
+           configuration->fresnel != BP_STUDY_FRESNEL_SCENE;
 }
 
-size_t bp_study_settings(const BpScene *scene, const BpRenderOptions *base, bool has_double,
-                         BpStudySetting settings[BP_STUDY_SETTINGS_MAX]) {
-    _Static_assert(sizeof rows / sizeof rows[0] < BP_STUDY_SETTINGS_MAX, "room for every row and the base");
+size_t bp_study_configurations(const BpScene *scene, const BpRenderOptions *base, bool has_double,
+                               BpStudyConfiguration configurations[BP_STUDY_CONFIGURATIONS_MAX]) {
+    _Static_assert(sizeof rows / sizeof rows[0] < BP_STUDY_CONFIGURATIONS_MAX,
+                   "room for every row and the base");
     size_t count = 1;
-    settings[0] = (BpStudySetting){.axis = "base", .name = "as render does it", .options = *base};
-    write_command(scene, &settings[0]);
+    configurations[0] =
+        (BpStudyConfiguration){.axis = "base", .name = "base configuration", .options = *base};
+    write_command(scene, &configurations[0]);
     for (size_t r = 0; r < sizeof rows / sizeof rows[0]; r++) {
-        const bool differs = apply(&rows[r], scene, base, &settings[count]);
-        const bool possible = has_double || settings[count].options.precision == BP_PRECISION_SINGLE;
+        const bool differs = apply(&rows[r], scene, base, &configurations[count]);
+        const bool possible = has_double || configurations[count].options.precision == BP_PRECISION_SINGLE;
         /* The truth is a row of its own even when the base is as good. */
         if (possible && (differs || r == 0)) count++;
     }
