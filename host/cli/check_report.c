@@ -2,6 +2,7 @@
 #include "check_report.h"
 
 #include "../base/format.h"
+#include "../base/names.h"
 #include "json_file.h"
 
 #include <math.h>
@@ -42,10 +43,9 @@ json_t *bp_check_report_json(const BpCheckResult *result) {
                                    number(v->ratio_low), "high", number(v->ratio_high), "confidence", 0.95,
                                    "equivalent", v->equivalent, "margin", BP_VERDICT_MARGIN);
     json_t *settings =
-        json_pack("{s:s, s:s, s:s, s:s}", "kernel", report->kernel == BP_KERNEL_PACKET ? "packet" : "sample",
-                  "precision", report->precision == BP_PRECISION_DOUBLE ? "double" : "single", "math",
-                  report->math == BP_MATH_FAST ? "fast" : "strict", "numerics",
-                  report->numerics == BP_NUMERICS_PLAIN ? "plain" : "robust");
+        json_pack("{s:s, s:s, s:s, s:s}", "kernel", bp_kernel_names[report->kernel], "precision",
+                  bp_precision_names[report->precision], "math", bp_math_names[report->math], "numerics",
+                  bp_numerics_names[report->numerics]);
     return json_pack(
         "{s:o, s:o, s:b, s:f, s:o, s:o, s:{s:o, s:f}, s:o, s:o, s:{s:I, s:I}, s:{s:f, s:f}, s:{s:I, s:I}, "
         "s:{s:f, s:f}, s:{s:o, s:f}}",

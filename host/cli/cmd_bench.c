@@ -7,6 +7,7 @@
 #include "commands.h"
 
 #include "../base/format.h"
+#include "../base/names.h"
 #include "../base/plural.h"
 #include "bench_measure.h"
 #include "bench_scenes.h"
@@ -111,10 +112,8 @@ static void print_row(const Bench *bench, const Entry *entry) {
 static BpStatus print_table(const Bench *bench, BpError *err) {
     const BpRenderReport *report = &bench->entries[0].runs[0].report;
     printf("%s, %s; %s kernel, %s, %s numerics, %s math\n", report->device.name, report->device.platform,
-           report->kernel == BP_KERNEL_PACKET ? "packet" : "sample",
-           report->precision == BP_PRECISION_DOUBLE ? "double" : "single",
-           report->numerics == BP_NUMERICS_PLAIN ? "plain" : "robust",
-           report->math == BP_MATH_FAST ? "fast" : "strict");
+           bp_kernel_names[report->kernel], bp_precision_names[report->precision],
+           bp_numerics_names[report->numerics], bp_math_names[report->math]);
     printf("%-12s %11s %9s %9s %9s %10s %11s %9s %9s %9s %8s\n", "scene", "spheres", "load", "tree", "kernel",
            "Msamples/s", "Msegments/s", "ns/segm.", "CPU ns", "spread", "B/sphere");
     for (size_t i = 0; i < bench->count; ++i) print_row(bench, &bench->entries[i]);
@@ -171,20 +170,15 @@ static BpStatus write_json(const Bench *bench, const char *path, BpError *err) {
         json_decref(scenes);
         return bp_json_write(NULL, path, err);
     }
-    return bp_json_write(json_pack("{s:s, s:{s:s, s:s, s:s, s:s}, s:s, s:s, s:s, s:s, s:s, s:i, s:o}",
-                                   "version", bp_version(), "device", "platform", report->device.platform,
-                                   "name", report->device.name, "driver", report->device.driver, "type",
-                                   report->device.type == BP_DEVICE_CPU   ? "cpu"
-                                   : report->device.type == BP_DEVICE_GPU ? "gpu"
-                                                                          : "other",
-                                   "kernel", report->kernel == BP_KERNEL_PACKET ? "packet" : "sample",
-                                   "precision",
-                                   report->precision == BP_PRECISION_DOUBLE ? "double" : "single", "numerics",
-                                   report->numerics == BP_NUMERICS_PLAIN ? "plain" : "robust", "math",
-                                   report->math == BP_MATH_FAST ? "fast" : "strict", "sampler",
-                                   report->sampler == BP_SAMPLER_SOBOL ? "sobol" : "independent", "rounds",
-                                   (int)bench->rounds, "scenes", scenes),
-                         path, err);
+    return bp_json_write(
+        json_pack("{s:s, s:{s:s, s:s, s:s, s:s}, s:s, s:s, s:s, s:s, s:s, s:i, s:o}", "version", bp_version(),
+                  "device", "platform", report->device.platform, "name", report->device.name, "driver",
+                  report->device.driver, "type", bp_device_type_names[report->device.type], "kernel",
+                  bp_kernel_names[report->kernel], "precision", bp_precision_names[report->precision],
+                  "numerics", bp_numerics_names[report->numerics], "math", bp_math_names[report->math],
+                  "sampler", bp_sampler_names[report->sampler], "rounds", (int)bench->rounds, "scenes",
+                  scenes),
+        path, err);
 }
 
 /* ---- the command ---- */

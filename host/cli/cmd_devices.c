@@ -4,6 +4,8 @@
  * Knows: BpDeviceInfo, tables on a terminal.   Does not know: OpenCL. */
 #include "commands.h"
 
+#include "../base/names.h"
+
 #include "json_file.h"
 
 #include <errno.h>
@@ -70,12 +72,9 @@ static BpStatus write_json(const char *path, const BpDeviceInfo *list, size_t co
         const BpDeviceInfo *info = &list[d];
         json_t *entry = json_pack(
             "{s:i, s:b, s:s, s:s, s:s, s:s, s:s, s:s, s:i, s:I, s:I, s:b, s:s}", "number", (int)info->number,
-            "default", info->number == default_number, "type",
-            info->type == BP_DEVICE_CPU   ? "cpu"
-            : info->type == BP_DEVICE_GPU ? "gpu"
-                                          : "other",
-            "platform", info->platform, "name", info->name, "vendor", info->vendor, "version", info->version,
-            "driver", info->driver, "compute_units", (int)info->compute_units, "memory_bytes",
+            "default", info->number == default_number, "type", bp_device_type_names[info->type], "platform",
+            info->platform, "name", info->name, "vendor", info->vendor, "version", info->version, "driver",
+            info->driver, "compute_units", (int)info->compute_units, "memory_bytes",
             (json_int_t)info->memory_bytes, "largest_allocation_bytes",
             (json_int_t)info->largest_allocation_bytes, "double", info->has_double, "refusal", info->refusal);
         if (json_array_append_new(devices, entry) != 0) {

@@ -5,6 +5,7 @@
 #include "commands.h"
 
 #include "../base/format.h"
+#include "../base/names.h"
 #include "../engine/effect_costs.h"
 #include "explain_path.h"
 #include "json_file.h"
@@ -58,7 +59,7 @@ static void print_costs(const BpCosts *costs) {
     const unsigned columns = terminal > 60 ? terminal - 56 : 8;
     char rate[32];
     printf("  %s, %s kernel, %ux%u, %u rounds of %s samples%s\n", costs->device.name,
-           costs->form == BP_KERNEL_PACKET ? "packet" : "sample", costs->width, costs->height, costs->rounds,
+           bp_kernel_names[costs->form], costs->width, costs->height, costs->rounds,
            bp_format_count((double)costs->samples, rate, sizeof rate),
            costs->device.type == BP_DEVICE_CPU ? ", processor time" : "");
     printf("  %-18s %6s %15s\n", "kernel", "time", "half within");
@@ -166,9 +167,9 @@ static json_t *costs_json(const BpCosts *costs) {
     }
     return json_pack("{s:{s:s, s:s, s:s}, s:s, s:i, s:i, s:i, s:I, s:o}", "device", "platform",
                      costs->device.platform, "name", costs->device.name, "driver", costs->device.driver,
-                     "form", costs->form == BP_KERNEL_PACKET ? "packet" : "sample", "width",
-                     (int)costs->width, "height", (int)costs->height, "rounds", (int)costs->rounds, "samples",
-                     (json_int_t)costs->samples, "kernels", kernels);
+                     "form", bp_kernel_names[costs->form], "width", (int)costs->width, "height",
+                     (int)costs->height, "rounds", (int)costs->rounds, "samples", (json_int_t)costs->samples,
+                     "kernels", kernels);
 }
 
 static json_t *scene_json(const char *path, const BpScene *scene, const BpEffectInfo *effects, size_t count) {

@@ -2,6 +2,7 @@
 #include "commands.h"
 #include "files_apart.h"
 
+#include "../base/names.h"
 #include "../engine/accumulator.h"
 #include "../image/image.h"
 #include "option_table.h"
@@ -15,6 +16,14 @@
 #define COUNT_OF(array) (sizeof(array) / sizeof(array)[0])
 
 _Static_assert(BP_SPP_MAX == (uint64_t)BP_REPLICATE_SAMPLES_MAX * BP_REPLICATES_DEFAULT, "the sums' limit");
+
+/* One of the words of names.h; *choice: its place in the list. */
+static BpStatus store_name(const char *name, const char *text, const char *const *words, unsigned *choice,
+                           BpError *err) {
+    size_t count = 0;
+    while (words[count] != NULL) ++count;
+    return bp_value_choice(name, text, words, count, choice, err);
+}
 
 /* Stores the value of `option`, whose written name (for messages) is `name`. */
 static BpStatus store_value(BpOption option, const char *name, const char *text, BpCommandLine *line,
@@ -46,30 +55,22 @@ static BpStatus store_value(BpOption option, const char *name, const char *text,
     case BP_OPTION_DEVICE:
         line->device = text;
         break;
-    case BP_OPTION_PRECISION: {
-        static const char *const words[] = {"single", "double"};
-        BP_TRY(bp_value_choice(name, text, words, COUNT_OF(words), &choice, err));
-        line->precision = choice == 0 ? BP_PRECISION_SINGLE : BP_PRECISION_DOUBLE;
+    case BP_OPTION_PRECISION:
+        BP_TRY(store_name(name, text, bp_precision_names, &choice, err));
+        line->precision = (BpPrecision)choice;
         break;
-    }
-    case BP_OPTION_MATH: {
-        static const char *const words[] = {"strict", "fast"};
-        BP_TRY(bp_value_choice(name, text, words, COUNT_OF(words), &choice, err));
-        line->math = choice == 0 ? BP_MATH_STRICT : BP_MATH_FAST;
+    case BP_OPTION_MATH:
+        BP_TRY(store_name(name, text, bp_math_names, &choice, err));
+        line->math = (BpMath)choice;
         break;
-    }
-    case BP_OPTION_NUMERICS: {
-        static const char *const words[] = {"robust", "plain"};
-        BP_TRY(bp_value_choice(name, text, words, COUNT_OF(words), &choice, err));
-        line->numerics = choice == 0 ? BP_NUMERICS_ROBUST : BP_NUMERICS_PLAIN;
+    case BP_OPTION_NUMERICS:
+        BP_TRY(store_name(name, text, bp_numerics_names, &choice, err));
+        line->numerics = (BpNumerics)choice;
         break;
-    }
-    case BP_OPTION_SAMPLER: {
-        static const char *const words[] = {"sobol", "independent"};
-        BP_TRY(bp_value_choice(name, text, words, COUNT_OF(words), &choice, err));
-        line->sampler = choice == 0 ? BP_SAMPLER_SOBOL : BP_SAMPLER_INDEPENDENT;
+    case BP_OPTION_SAMPLER:
+        BP_TRY(store_name(name, text, bp_sampler_names, &choice, err));
+        line->sampler = (BpSampler)choice;
         break;
-    }
     case BP_OPTION_ADAPTIVE:
         line->adaptive = true;
         break;
@@ -79,27 +80,18 @@ static BpStatus store_value(BpOption option, const char *name, const char *text,
         line->all_effects = true;
         break;
     }
-    case BP_OPTION_KERNEL: {
-        static const char *const words[] = {"sample", "packet"};
-        BP_TRY(bp_value_choice(name, text, words, COUNT_OF(words), &choice, err));
-        line->kernel = choice == 0 ? BP_KERNEL_SAMPLE : BP_KERNEL_PACKET;
+    case BP_OPTION_KERNEL:
+        BP_TRY(store_name(name, text, bp_kernel_names + BP_KERNEL_SAMPLE, &choice, err));
+        line->kernel = (BpKernelForm)(BP_KERNEL_SAMPLE + choice);
         break;
-    }
-    case BP_OPTION_TRANSFER: {
-        static const char *const words[] = {"gamma2", "srgb", "linear"};
-        static const BpTransfer transfers[] = {BP_TRANSFER_GAMMA2, BP_TRANSFER_SRGB, BP_TRANSFER_LINEAR};
-        BP_TRY(bp_value_choice(name, text, words, COUNT_OF(words), &choice, err));
-        line->transfer = transfers[choice];
+    case BP_OPTION_TRANSFER:
+        BP_TRY(store_name(name, text, bp_transfer_names, &choice, err));
+        line->transfer = (BpTransfer)choice;
         break;
-    }
-    case BP_OPTION_FORMAT: {
-        static const char *const words[] = {"png", "ppm", "ppm-ascii", "pfm", "exr", "bpa"};
-        static const BpFormat formats[] = {BP_FORMAT_PNG, BP_FORMAT_PPM, BP_FORMAT_PPM_ASCII,
-                                           BP_FORMAT_PFM, BP_FORMAT_EXR, BP_FORMAT_BPA};
-        BP_TRY(bp_value_choice(name, text, words, COUNT_OF(words), &choice, err));
-        line->format = formats[choice];
+    case BP_OPTION_FORMAT:
+        BP_TRY(store_name(name, text, bp_format_names, &choice, err));
+        line->format = (BpFormat)choice;
         break;
-    }
     case BP_OPTION_ERROR_MAP:
         line->error_map = text;
         break;

@@ -3,6 +3,7 @@
 
 #include "../base/clock.h"
 #include "../base/json_text.h"
+#include "../base/names.h"
 #include "json_file.h"
 
 #include <inttypes.h>
@@ -15,10 +16,9 @@ static json_t *json_number(double value) {
 }
 
 static json_t *device_json(const BpDeviceInfo *info) {
-    static const char *const types[] = {"cpu", "gpu", "other"};
     return json_pack("{s:o, s:o, s:o, s:s}", "platform", bp_json_text(info->platform), "name",
                      bp_json_text(info->name), "driver", bp_json_text(info->driver), "type",
-                     types[info->type]);
+                     bp_device_type_names[info->type]);
 }
 
 static json_t *effects_json(const BpEffects *effects) {
@@ -52,11 +52,9 @@ json_t *bp_stats_json(const BpRunResult *result) {
                   (json_int_t)result->samples_per_pixel, "max_depth", (json_int_t)options->max_depth, "seed",
                   bp_json_whole(options->seed), "spheres", (json_int_t)info.spheres, "device",
                   device_json(&report->device), "effects", effects_json(&report->effects));
-    json_t *choices =
-        json_pack("{s:s, s:s, s:s, s:s}", "kernel", report->kernel == BP_KERNEL_PACKET ? "packet" : "sample",
-                  "precision", report->precision == BP_PRECISION_DOUBLE ? "double" : "single", "math",
-                  report->math == BP_MATH_FAST ? "fast" : "strict", "sampler",
-                  report->sampler == BP_SAMPLER_SOBOL ? "sobol" : "independent");
+    json_t *choices = json_pack("{s:s, s:s, s:s, s:s}", "kernel", bp_kernel_names[report->kernel],
+                                "precision", bp_precision_names[report->precision], "math",
+                                bp_math_names[report->math], "sampler", bp_sampler_names[report->sampler]);
     json_t *counts =
         json_pack("{s:o, s:I, s:I, s:[f,f,f], s:o, s:I, s:I}", "seconds", seconds_json(result), "samples",
                   (json_int_t)report->samples, "rays", (json_int_t)report->segments, "mean_radiance", mean[0],
@@ -64,7 +62,7 @@ json_t *bp_stats_json(const BpRunResult *result) {
                   (json_int_t)report->invalid_samples, "cut_paths", (json_int_t)report->cut_paths);
     json_t *run =
         json_pack("{s:s, s:o, s:I, s:i, s:b, s:o, s:s, s:i, s:I, s:I, s:s}", "numerics",
-                  report->numerics == BP_NUMERICS_PLAIN ? "plain" : "robust", "output",
+                  bp_numerics_names[report->numerics], "output",
                   bp_json_text(result->output), "first_sample", (json_int_t)options->first_sample, "replicates",
                   (int)result->accumulator->replicates, "partial", result->accumulator->partial, "rounding",
                   json_number(bp_accumulator_rounding(result->accumulator)), "stopped_by",

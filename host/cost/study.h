@@ -116,7 +116,6 @@ typedef struct BpStudyResult {
 /* A study is made and run by what ballpark.h declares. Its result, once it has finished; owned by `study`. */
 const BpStudyResult *bp_study_result(const BpStudy *study);
 bool bp_study_has_finished(const BpStudy *study);
-const BpStudyResult *bp_study_result(const BpStudy *study);
 
 /* ---- results ---- */
 

@@ -1,6 +1,7 @@
 /* picture.c: pictures to files by their format's name; see image.h and ballpark.h. */
 #include "image.h"
 
+#include "../base/names.h"
 #include "../base/output_file.h"
 
 #include <errno.h>
@@ -9,14 +10,9 @@
 #include <strings.h>
 
 bool bp_format_from_name(const char *name, BpFormat *format) {
-    static const struct {
-        const char *name;
-        BpFormat format;
-    } formats[] = {{"png", BP_FORMAT_PNG}, {"ppm", BP_FORMAT_PPM}, {"ppm-ascii", BP_FORMAT_PPM_ASCII},
-                   {"pfm", BP_FORMAT_PFM}, {"exr", BP_FORMAT_EXR}, {"bpa", BP_FORMAT_BPA}};
-    for (size_t i = 0; i < sizeof formats / sizeof formats[0]; i++) {
-        if (strcasecmp(name, formats[i].name) != 0) continue;
-        *format = formats[i].format;
+    for (size_t i = 0; bp_format_names[i] != NULL; i++) {
+        if (strcasecmp(name, bp_format_names[i]) != 0) continue;
+        *format = (BpFormat)i;
         return true;
     }
     return false;

@@ -4,6 +4,8 @@
  * scene_cloud.c; ranges: scene_validate.c, whose faults are given their place in the text here. */
 #include "scene_parse.h"
 
+#include "../base/names.h"
+
 #include "scene_fault.h"
 
 #include <stdio.h>
@@ -211,8 +213,6 @@ static BpStatus refuse_faults(const BpNode *root, const BpScene *scene, BpError 
 /* ---- the whole ----------------------------------------------------------------------------------------- */
 
 static BpStatus parse_head(const BpNode *root, BpScene *scene, BpError *err) {
-    static const char *const transfers[] = {
-        [BP_TRANSFER_GAMMA2] = "gamma2", [BP_TRANSFER_SRGB] = "srgb", [BP_TRANSFER_LINEAR] = "linear"};
     const BpNode format = bp_node_member(root, "format");
     const BpNode title_node = bp_node_member(root, "title");
     const BpNode source_node = bp_node_member(root, "source");
@@ -227,7 +227,7 @@ static BpStatus parse_head(const BpNode *root, BpScene *scene, BpError *err) {
     int transfer = (int)scene->transfer;
     BP_TRY(bp_node_string(&title_node, &title, err));
     BP_TRY(bp_node_string(&source_node, &source, err));
-    BP_TRY(bp_node_choice(&transfer_node, transfers, BP_COUNT(transfers), &transfer, err));
+    BP_TRY(bp_node_choice(&transfer_node, bp_transfer_names, BP_TRANSFER_LINEAR + 1, &transfer, err));
     scene->transfer = (BpTransfer)transfer;
     BP_TRY(bp_copy_text(title, &scene->title, err));
     return bp_copy_text(source, &scene->source, err);

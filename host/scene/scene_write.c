@@ -3,6 +3,8 @@
  * In:    a scene.   Out: JSON text that reads back to the same scene, bit for bit.
  * Knows: the grammar.  Does not know: how the file comes to stand at its place (output_file.h). */
 #include "base/output_file.h"
+
+#include "../base/names.h"
 #include "scene_parse.h"
 
 #include <errno.h>
@@ -11,9 +13,6 @@
 #include <string.h>
 
 #define PI 3.14159265358979323846
-
-static const char *const transfer_names[] = {
-    [BP_TRANSFER_GAMMA2] = "gamma2", [BP_TRANSFER_SRGB] = "srgb", [BP_TRANSFER_LINEAR] = "linear"};
 
 static void put_number(FILE *out, double value) {
     char text[BP_NUMBER_TEXT_SIZE];
@@ -186,7 +185,7 @@ BpStatus bp_scene_print(const BpScene *scene, FILE *out, BpError *err) {
     put_vector(out, scene->background_bottom);
     fputs(", \"top\": ", out);
     put_vector(out, scene->background_top);
-    fprintf(out, " },\n  \"transfer\": \"%s\"", transfer_names[scene->transfer]);
+    fprintf(out, " },\n  \"transfer\": \"%s\"", bp_transfer_names[scene->transfer]);
     if (scene->material_count > 0) BP_TRY(put_materials(out, scene, err));
     if (scene->sphere_count > 0) BP_TRY(put_spheres(out, scene, err));
     fputs("\n}\n", out);
