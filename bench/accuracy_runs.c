@@ -9,14 +9,13 @@
  * luminance, the mean over pixels of (x - r1)(x - r2) with two references of other seeds: free of their
  * noise. */
 #include "../host/base/clock.h"
+#include "../host/base/color.h"
 #include "../host/check/statistics.h"
 #include "../host/engine/render.h"
 
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
-
-static const double luminance_weights[3] = {0.2126, 0.7152, 0.0722}; /* Rec. ITU-R BT.709-6, item 3.2 */
 
 typedef struct Way {
     const char *name;
@@ -55,7 +54,7 @@ static void read_pixels(const BpAccumulator *accumulator, bool with_error, Run *
     if (run->luminance == NULL || run->error == NULL) exit(EXIT_FAILURE);
     for (size_t p = 0; p < pixels; ++p) {
         for (size_t c = 0; c < 3; ++c)
-            run->luminance[p] += luminance_weights[c] * (double)picture.rgb[3 * p + c];
+            run->luminance[p] += bp_luminance_weights[c] * (double)picture.rgb[3 * p + c];
         run->error[p] = with_error ? sqrt(bp_accumulator_squared_error(accumulator, p)) : NAN;
     }
     bp_picture_clear(&picture);

@@ -2,9 +2,9 @@
 #include "scene_field.h"
 
 #include "../base/plural.h"
+#include "../base/random.h"
 #include "base/output_file.h"
 #include "scene.h"
-#include "scene_random.h"
 
 #include <errno.h>
 #include <inttypes.h>

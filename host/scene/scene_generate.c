@@ -11,9 +11,9 @@
  *     below 0.80 matte: six draws, red = u1 u2, green = u3 u4, blue = u5 u6;
  *     below 0.95 metal: three draws, 0.5 + 0.5 u each (edition 3rust: 0.4 + 0.6 u), then fuzz = 0.5 u;
  *     else glass: no draw.
- * The draws are those of bp_random_next (scene_random.h). */
+ * The draws are those of bp_random_next (base/random.h). */
+#include "../base/random.h"
 #include "scene_parse.h"
-#include "scene_random.h"
 
 #include <math.h>
 #include <stdio.h>

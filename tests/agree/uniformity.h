@@ -7,16 +7,12 @@
 #ifndef TESTS_AGREE_UNIFORMITY_H
 #define TESTS_AGREE_UNIFORMITY_H
 
+#include "base/quantile.h"
 #include "check/statistics.h"
 
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
-
-static int compare_doubles(const void *a, const void *b) {
-    const double x = *(const double *)a, y = *(const double *)b;
-    return (x > y) - (x < y);
-}
 
 /* `points`: count * dimensions, dimensions 1 to 3. 0 when a coordinate lies outside [0, 1] or is NaN. */
 static inline double uniformity(const double *points, size_t count, int dimensions) {
@@ -44,7 +40,7 @@ static inline double uniformity(const double *points, size_t count, int dimensio
     if (sorted == NULL) return 0;
     for (int d = 0; d < dimensions; ++d) {
         for (size_t i = 0; i < sorted_count; ++i) sorted[i] = points[i * (size_t)dimensions + (size_t)d];
-        qsort(sorted, sorted_count, sizeof *sorted, compare_doubles);
+        bp_sort_doubles(sorted, sorted_count);
         least = fmin(least, bp_kolmogorov_test(sorted, sorted_count));
     }
     free(sorted);

@@ -69,7 +69,7 @@ static double claimed_square(const BpScene *scene, BpSampler sampler, uint64_t s
     must(bp_accumulator_picture(accumulator, picture, &err), &err);
     bp_accumulator_mean(accumulator, mean);
     double brightness = 0;
-    for (int c = 0; c < 3; c++) brightness += luminance_weights[c] * mean[c];
+    for (int c = 0; c < 3; c++) brightness += bp_luminance_weights[c] * mean[c];
     const double error = bp_accumulator_nrmse(accumulator) * brightness;
     bp_render_destroy(&render);
     return error * error * (double)(picture->width * picture->height);

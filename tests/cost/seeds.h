@@ -6,6 +6,7 @@
 #define TESTS_COST_SEEDS_H
 
 #include "agree/unit_test.h"
+#include "base/color.h"
 
 #include "base/status.h"
 #include "engine/render.h"
@@ -13,8 +14,6 @@
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
-
-static const double luminance_weights[3] = {0.2126, 0.7152, 0.0722}; /* Rec. ITU-R BT.709-6, item 3.2 */
 
 static inline void must(BpStatus status, const BpError *err) {
     if (status != BP_OK) fail_msg("%s", err->message);
@@ -64,7 +63,7 @@ static inline BpPicture make_picture(const BpScene *scene, BpSampler sampler, ui
 
 static inline double luminance(const float *rgb) {
     double sum = 0;
-    for (int c = 0; c < 3; c++) sum += luminance_weights[c] * (double)rgb[c];
+    for (int c = 0; c < 3; c++) sum += bp_luminance_weights[c] * (double)rgb[c];
     return sum;
 }
 

@@ -7,6 +7,8 @@
  *
  * list_or_tree [auto|sample|packet [DEVICE]] */
 #include "base/clock.h"
+#include "base/quantile.h"
+#include "base/random.h"
 #include "engine/render.h"
 
 #include <stdio.h>
@@ -15,16 +17,15 @@
 
 enum { ROUNDS = 15, SPHERES_MAX = 256 };
 
-static uint64_t state;
-/* In [0, 1): Knuth's MMIX generator, upper bits. */
+static BpRandom random_numbers;
+
 static double uniform(void) {
-    state = state * 6364136223846793005u + 1442695040888963407u;
-    return (double)(state >> 40) * 0x1p-24;
+    return bp_random_next(&random_numbers);
 }
 
 static void make_scene(BpScene *scene, BpSphere *spheres, BpMaterial *material, size_t count, bool ground) {
     memset(scene, 0, sizeof *scene);
-    state = count;
+    random_numbers.state = count;
     *material = (BpMaterial){.name = (char *)"grey", .albedo = {0.5, 0.5, 0.5}, .refraction_index = 1.5};
     scene->camera = (BpCamera){.width = 200,
                                .height = 112,
@@ -65,11 +66,6 @@ static bool finish(BpRender *render, uint64_t samples, double *seconds, BpError 
     return true;
 }
 
-static int compare(const void *a, const void *b) {
-    const double x = *(const double *)a, y = *(const double *)b;
-    return (x > y) - (x < y);
-}
-
 static bool measure(const BpDeviceInfo *device, BpKernelForm form, size_t count, bool ground, BpError *err) {
     static BpScene scene;
     static BpSphere spheres[SPHERES_MAX];
@@ -99,7 +95,7 @@ static bool measure(const BpDeviceInfo *device, BpKernelForm form, size_t count,
     }
     BpRenderReport report;
     bp_render_report(list, &report);
-    qsort(ratios, ROUNDS, sizeof ratios[0], compare);
+    bp_sort_doubles(ratios, ROUNDS);
     printf("{\"form\": \"%s\", \"family\": \"%s\", \"spheres\": %zu, \"tree_over_list\": %.4f, \"low\": "
            "%.4f, \"high\": %.4f}\n",
            report.kernel == BP_KERNEL_PACKET ? "packet" : "sample", ground ? "ground" : "scattered", count,

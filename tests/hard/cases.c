@@ -1,5 +1,6 @@
 /* cases.c: see cases.h. */
 #include "cases.h"
+#include "base/quantile.h"
 
 #include "oracle.h"
 
@@ -133,11 +134,6 @@ void cases_host(HostForm form, float t_min, Cases *cases) {
     }
 }
 
-static int compare_doubles(const void *a, const void *b) {
-    const double x = *(const double *)a, y = *(const double *)b;
-    return (x > y) - (x < y);
-}
-
 Score cases_score(const Cases *cases, size_t first, size_t count, double band) {
     Score score = {.rays = count};
     double *errors = malloc((count + 1) * sizeof *errors);
@@ -177,7 +173,7 @@ Score cases_score(const Cases *cases, size_t first, size_t count, double band) {
             if (off > score.worst_off) score.worst_off = off;
         }
     }
-    qsort(errors, error_count, sizeof *errors, compare_doubles);
+    bp_sort_doubles(errors, error_count);
     score.median_t = error_count > 0 ? errors[error_count / 2] : 0;
     free(errors);
     return score;

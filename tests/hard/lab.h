@@ -7,6 +7,7 @@
 #ifndef TESTS_HARD_LAB_H
 #define TESTS_HARD_LAB_H
 
+#include "base/random.h"
 #include "engine/worker.h"
 
 #include <math.h>
@@ -79,12 +80,12 @@ static inline double lab_float(double x) {
     return (double)rounded;
 }
 
-/* SplitMix64 (Steele, Lea and Flood, 2014), so that every run has the same numbers. */
+/* Every run has the same numbers. */
 static inline uint64_t lab_bits(uint64_t *state) {
-    uint64_t z = (*state += 0x9e3779b97f4a7c15u);
-    z = (z ^ (z >> 30)) * 0xbf58476d1ce4e5b9u;
-    z = (z ^ (z >> 27)) * 0x94d049bb133111ebu;
-    return z ^ (z >> 31);
+    BpRandom random = {*state};
+    const uint64_t bits = bp_random_bits(&random);
+    *state = random.state;
+    return bits;
 }
 static inline double lab_unit(uint64_t *state) {
     return (double)(lab_bits(state) >> 11) * 0x1p-53;

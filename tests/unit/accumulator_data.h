@@ -2,16 +2,15 @@
 #ifndef BP_TEST_ACCUMULATOR_DATA_H
 #define BP_TEST_ACCUMULATOR_DATA_H
 
+#include "base/random.h"
 #include "engine/accumulator.h"
 
 #include <math.h>
 
-/* SplitMix64 (Steele, Lea and Flood 2014), as a function of its counter. */
+/* The generator's number after `counter` others. */
 static inline uint64_t data_bits(uint64_t counter) {
-    uint64_t z = (counter + 1) * 0x9e3779b97f4a7c15u;
-    z = (z ^ (z >> 30)) * 0xbf58476d1ce4e5b9u;
-    z = (z ^ (z >> 27)) * 0x94d049bb133111ebu;
-    return z ^ (z >> 31);
+    BpRandom random = {counter * BP_RANDOM_STEP};
+    return bp_random_bits(&random);
 }
 
 /* In (0, 1). */

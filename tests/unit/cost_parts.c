@@ -29,7 +29,7 @@ static void test_fit_noisy(void **state) {
     const double n[] = {4, 16, 64, 256, 1024};
     double sum_floor = 0, sum_slope = 0, sum_floor2 = 0;
     enum { TRIALS = 4000 };
-    stream = 1;
+    stream.state = 1;
     for (int t = 0; t < TRIALS; t++) {
         double y[5], floor, slope;
         for (size_t i = 0; i < 5; i++) y[i] = (0.01 + 2 / n[i]) * (1 + 0.1 * normal());
@@ -82,7 +82,7 @@ static void test_errors(void **state) {
     (void)state;
     enum { TRIALS = 40 };
     double sum = 0, sum_z2 = 0;
-    stream = 2;
+    stream.state = 2;
     for (int t = 0; t < TRIALS; t++) {
         BpPicture x = make_grey(0.02, 0.03), r1 = make_grey(0, 0.15), r2 = make_grey(0, 0.15);
         BpStudyPoint point = {0};
@@ -140,7 +140,7 @@ static void test_paired(void **state) {
     BpError err = {0};
     int held = 0, held_square = 0;
     double widest = 0, mean_square = 0;
-    stream = 3;
+    stream.state = 3;
     assert_int_equal(bp_accumulator_create(WIDTH, HEIGHT, K, &base, &err), BP_OK);
     assert_int_equal(bp_accumulator_create(WIDTH, HEIGHT, K, &x, &err), BP_OK);
     const double bias = 0.001, swing = 0.002, brightness = 2;
@@ -176,7 +176,7 @@ static void test_unpaired(void **state) {
     (void)state;
     enum { TRIALS = 300 };
     int held = 0;
-    stream = 4;
+    stream.state = 4;
     for (int t = 0; t < TRIALS; t++) {
         BpPicture x = make_grey(0.01, 0.05), r1 = make_grey(0, 0.03), r2 = make_grey(0, 0.03);
         x.error = malloc(3 * PIXELS * sizeof(float));

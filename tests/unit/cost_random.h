@@ -2,14 +2,15 @@
 #ifndef COST_RANDOM_H
 #define COST_RANDOM_H
 
+#include "base/random.h"
+
 #include <math.h>
-#include <stdint.h>
 
-static uint64_t stream;
+static BpRandom stream;
 
+/* In (0, 1), as logarithms need it. */
 static double uniform(void) {
-    stream = stream * UINT64_C(6364136223846793005) + UINT64_C(1442695040888963407);
-    return ((double)(stream >> 11) + 0.5) * 0x1p-53;
+    return bp_random_next(&stream) + 0x1p-54;
 }
 
 static double normal(void) {

@@ -38,7 +38,7 @@ static Summary run_trials(bool disturbed) {
 
 static void test_quiet(void **state) {
     (void)state;
-    stream = 7;
+    stream.state = 7;
     const Summary quiet = run_trials(false);
     assert_true(fabs(quiet.ratio - 1.2) < 0.003);
     assert_true(fabs(quiet.seconds - 0.76) < 0.002);
@@ -48,7 +48,7 @@ static void test_quiet(void **state) {
 
 static void test_disturbed(void **state) {
     (void)state;
-    stream = 8;
+    stream.state = 8;
     const Summary disturbed = run_trials(true);
     assert_true(fabs(disturbed.ratio - 1.2) < 0.01);
     assert_true(fabs(disturbed.seconds - 0.76) < 0.01);

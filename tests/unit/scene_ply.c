@@ -1,4 +1,5 @@
 /* scene_ply.c: points from PLY files in every form. */
+#include "base/random.h"
 #include "ply_data.h"
 #include "scene/scene_field.h"
 #include "scene/scene_ply_parts.h"
@@ -76,9 +77,9 @@ static void ascii_numbers(void **state) {
         if (ply_parse_number(&cursor, &value)) fail_msg("accepted \"%s\"", bad[i]);
     }
     /* Against strtod, over numbers of all lengths. */
-    uint64_t bits = 1;
+    BpRandom random = {1};
     for (int i = 0; i < 20000; i++) {
-        bits = bits * UINT64_C(6364136223846793005) + 1442695040888963407u;
+        const uint64_t bits = bp_random_bits(&random);
         char text[64];
         double value;
         snprintf(text, sizeof text, "%s%.*g", bits & 1u ? "" : "-", (int)(bits >> 60) + 3,

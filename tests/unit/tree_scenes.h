@@ -2,18 +2,18 @@
 #ifndef TREE_SCENES_H
 #define TREE_SCENES_H
 
+#include "base/random.h"
 #include "scene/scene.h"
 
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
-/* SplitMix64 (Steele, Lea and Flood, "Fast splittable pseudorandom number generators", 2014). */
 static inline uint64_t random_bits(uint64_t *state) {
-    uint64_t z = (*state += 0x9e3779b97f4a7c15u);
-    z = (z ^ (z >> 30)) * 0xbf58476d1ce4e5b9u;
-    z = (z ^ (z >> 27)) * 0x94d049bb133111ebu;
-    return z ^ (z >> 31);
+    BpRandom random = {*state};
+    const uint64_t bits = bp_random_bits(&random);
+    *state = random.state;
+    return bits;
 }
 static inline double random_unit(uint64_t *state) {
     return (double)(random_bits(state) >> 11) * 0x1p-53;

@@ -1,18 +1,21 @@
-/* scene_random.h: the draws of scenes that are made by chance, alike on every machine.
+/* random.h: random numbers of the host, alike on every machine: of scenes made by chance, and of tests.
  *
  * SplitMix64 (G. L. Steele, D. Lea, C. H. Flood, "Fast splittable pseudorandom number generators", 2014): a
- * counter with a step of the golden ratio, mixed. The renderer has random numbers of its own. */
-#ifndef BP_SCENE_RANDOM_H
-#define BP_SCENE_RANDOM_H
+ * counter with a step of the golden ratio, mixed. Kernels have random numbers of their own, and so has the
+ * reference tracer, which shares nothing. */
+#ifndef BP_BASE_RANDOM_H
+#define BP_BASE_RANDOM_H
 
 #include <stdint.h>
+
+#define BP_RANDOM_STEP UINT64_C(0x9e3779b97f4a7c15)
 
 typedef struct BpRandom {
     uint64_t state; /* begins as the seed */
 } BpRandom;
 
 static inline uint64_t bp_random_bits(BpRandom *random) {
-    uint64_t z = random->state += UINT64_C(0x9e3779b97f4a7c15);
+    uint64_t z = random->state += BP_RANDOM_STEP;
     z = (z ^ z >> 30) * UINT64_C(0xbf58476d1ce4e5b9);
     z = (z ^ z >> 27) * UINT64_C(0x94d049bb133111eb);
     return z ^ z >> 31;
