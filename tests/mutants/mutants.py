@@ -277,4 +277,7 @@ MUTANTS = [
            [patch(KERNEL, "multiply3(paths->throughput, sky_radiance(scene->sky, paths->direction))",
                   "scale3(splat(R(0.995)), multiply3(paths->throughput, sky_radiance(scene->sky, paths->direction)))")],
            [check("lobe-lambertian", 1024)]),
+    Mutant("extrapolation not told", "classic: a prediction beyond the data",
+           [patch("host/cost/fit.c", "samples > (double)series->points[series->count - 1].samples", "false")],
+           [test("cost_choices", "1 exact")]),
 ]
