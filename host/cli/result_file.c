@@ -3,12 +3,12 @@
 
 #include "files_apart.h"
 
+#include "../base/format.h"
 #include "../base/output_file.h"
 #include "../engine/accumulator_file.h"
 #include "../image/error_map.h"
 #include "../image/image.h"
 #include "json_file.h"
-#include "report.h"
 
 #include <math.h>
 #include <stdio.h>

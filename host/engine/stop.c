@@ -108,9 +108,9 @@ void bp_stop_destroy(BpStop **stop) {
 
 /* ---- deciding ---- */
 
-/* Whether the time is over although the stretch of samples under way is not: the rate fell. The first sample of
- * every pixel is waited for a little longer, since half a picture is none; a driver's compiling in the first
- * launch does not count there. */
+/* Whether the time is over although the stretch of samples under way is not: the rate fell. The first sample
+ * of every pixel is waited for a little longer, since half a picture is none; a driver's compiling in the
+ * first launch does not count there. */
 static bool is_overtime(const BpStop *stop) {
     const double limit = stop->rule.seconds, seconds = stop->state.seconds;
     if (limit <= 0.0) return false;
