@@ -1,184 +1,84 @@
 /* output_file.c: see output_file.h. */
+#define _GNU_SOURCE /* O_TMPFILE */
 #include "output_file.h"
+
+#include "output_temporary.h"
 
 #include <errno.h>
 #include <fcntl.h>
-#include <stdint.h>
 #include <stdlib.h>
 #include <string.h>
-#include <sys/stat.h>
-#include <time.h>
 #include <unistd.h>
 
-#define LINKS_MAX 40           /* as the kernel's own limit on chains of symbolic links */
-#define BASE_NAME_KEPT_MAX 200 /* so that a long name and its suffix still fit a file system's 255 bytes */
-
-static const char *remedy(int error_number) {
-    switch (error_number) {
-    case ENOENT:
-        return "; create the folder first, or choose another with -o";
-    case ENOTDIR:
-        return "; a part of the path is a file where a folder should be";
-    case EACCES:
-    case EPERM:
-        return "; change the permissions, or choose another place with -o";
-    case EROFS:
-        return "; choose a place that can be written with -o";
-    case ENOSPC:
-    case EDQUOT:
-        return "; make room, or choose another place with -o";
-    case EISDIR:
-        return "; name a file in it";
-    case ENAMETOOLONG:
-        return "; choose a shorter name";
-    default:
-        return "";
-    }
-}
-
-BpStatus bp_output_fail(BpError *err, const char *action, const char *path, int error_number) {
-    char reason[128];
-    if (strerror_r(error_number, reason, sizeof reason) != 0)
-        snprintf(reason, sizeof reason, "error %d", error_number);
-    bp_fail(err, BP_ERR_FILE, "cannot %s %s: %s%s", action, path, reason, remedy(error_number));
-    bp_error_at(err, path, 0, 0);
-    return BP_ERR_FILE;
-}
-
-/* Length of the folder part of `path`, its slash included; 0 when there is none. */
-static size_t folder_length(const char *path) {
-    const char *slash = strrchr(path, '/');
-    return slash == NULL ? 0 : (size_t)(slash - path) + 1;
-}
-
-/* The path that `path` stands for when the symbolic links in its last part are followed; NULL and errno on
- * failure. realpath() would not do: it needs the target to exist. */
-static char *follow_links(const char *path) {
-    char *current = strdup(path);
-    for (int links = 0; current != NULL; links++) {
-        struct stat info;
-        if (lstat(current, &info) != 0 || !S_ISLNK(info.st_mode)) return current;
-        char text[4096];
-        const ssize_t length = readlink(current, text, sizeof text - 1);
-        if (length < 0 || links == LINKS_MAX) {
-            const int error_number = length < 0 ? errno : ELOOP;
-            free(current);
-            errno = error_number;
-            return NULL;
-        }
-        text[length] = '\0';
-        const size_t folder = text[0] == '/' ? 0 : folder_length(current);
-        char *next = malloc(folder + (size_t)length + 1);
-        if (next != NULL) {
-            memcpy(next, current, folder);
-            memcpy(next + folder, text, (size_t)length + 1);
-        }
-        free(current);
-        current = next;
-    }
-    errno = ENOMEM;
-    return NULL;
-}
-
-/* Creates TARGET.XXXXXX; its path goes to *temporary. Not mkstemp(), which would set mode 0600: this way the
- * system itself applies umask and default access lists. Returns the descriptor, or -1 and errno. */
-static int create_beside(const char *target, char **temporary) {
-    static const char letters[] = "abcdefghijklmnopqrstuvwxyz0123456789";
-    const size_t folder = folder_length(target);
-    size_t kept = strlen(target + folder);
-    if (kept > BASE_NAME_KEPT_MAX) kept = BASE_NAME_KEPT_MAX;
-    char *path = malloc(folder + kept + 8);
-    if (path == NULL) {
-        errno = ENOMEM;
-        return -1;
-    }
-    memcpy(path, target, folder + kept);
-    struct timespec now;
-    clock_gettime(CLOCK_REALTIME, &now);
-    uint64_t state = (uint64_t)now.tv_nsec ^ ((uint64_t)now.tv_sec << 30) ^ ((uint64_t)getpid() << 40);
-    int descriptor = -1;
-    for (int attempt = 0; attempt < 100; attempt++) {
-        char *suffix = path + folder + kept;
-        *suffix++ = '.';
-        for (int i = 0; i < 6; i++) {
-            state = state * 6364136223846793005u + 1442695040888963407u;
-            *suffix++ = letters[(state >> 33) % (sizeof letters - 1)];
-        }
-        *suffix = '\0';
-        descriptor = open(path, O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
-        if (descriptor >= 0 || errno != EEXIST) break;
-    }
-    if (descriptor < 0) {
-        const int error_number = errno;
-        free(path);
-        errno = error_number;
-        return -1;
-    }
-    *temporary = path;
-    return descriptor;
-}
-
-/* Gives the new file the owner and the permissions of the one it replaces. A different owner can only be kept
- * by root, so a failure of that is none. */
+/* Gives the new file what it may have of the owner, the group and the permissions of the one it replaces. */
 static int copy_permissions(int descriptor, const struct stat *replaced) {
-    if (fchown(descriptor, replaced->st_uid, replaced->st_gid) != 0 && errno != EPERM && errno != EINVAL)
-        return -1;
-    return fchmod(descriptor, replaced->st_mode & 07777);
+    struct stat own;
+    mode_t mode = replaced->st_mode & 0777;
+    /* Only root can keep another owner; the group can be one of the user's own. A failure of either is none.
+     */
+    if (fchown(descriptor, replaced->st_uid, replaced->st_gid) != 0)
+        (void)!fchown(descriptor, (uid_t)-1, replaced->st_gid);
+    if (fstat(descriptor, &own) != 0) return -1;
+    if (own.st_gid != replaced->st_gid) mode = (mode & ~(mode_t)070) | (mode & 070 & (mode & 07) << 3);
+    return fchmod(descriptor, mode);
 }
 
-/* What can be told of `path` without opening anything: the target once links are followed, and whether
- * there is a file already. */
-static BpStatus find_target(const char *path, char **target, struct stat *info, bool *exists, BpError *err) {
-    if (path[0] == '\0') return bp_fail(err, BP_ERR_FILE, "the name of the output file is empty");
-    *target = follow_links(path);
-    if (*target == NULL && errno == ENOMEM) return bp_fail(err, BP_ERR_MEMORY, "out of memory");
-    if (*target == NULL) return bp_output_fail(err, "write", path, errno);
-    *exists = stat(*target, info) == 0;
-    int problem = 0;
-    if (!*exists && errno != ENOENT)
-        problem = errno;
-    else if (*exists && S_ISDIR(info->st_mode))
-        problem = EISDIR;
-    else if (*exists && access(*target, W_OK) != 0)
-        problem = errno;
-    else if (!*exists && (*target)[folder_length(*target)] == '\0')
-        problem = EISDIR; /* "folder/" */
-    if (problem == 0) return BP_OK;
-    free(*target);
-    *target = NULL;
-    return bp_output_fail(err, "write", path, problem);
+/* Opens what is written through; the descriptor, or -1 and errno. Appending: what another process has in its
+ * file stays there. */
+static int open_direct(const BpOutputTarget *target) {
+    if (target->descriptor >= 0) return fcntl(target->descriptor, F_DUPFD_CLOEXEC, 3);
+    return open(target->path, O_WRONLY | O_CLOEXEC | O_NOCTTY | (target->through ? O_APPEND : 0));
+}
+
+/* Whether the bytes can be copied into the target, where nothing can be made beside it. */
+static bool can_copy_into(const BpOutputTarget *target) {
+    const int descriptor = target->exists ? open(target->path, O_WRONLY | O_CLOEXEC | O_NOCTTY) : -1;
+    if (descriptor >= 0) close(descriptor);
+    return descriptor >= 0;
 }
 
 BpStatus bp_output_open(const char *path, BpOutputFile *file, BpError *err) {
     memset(file, 0, sizeof *file);
-    struct stat info;
-    bool exists = false;
-    int descriptor = -1;
-    BpStatus status = find_target(path, &file->target, &info, &exists, err);
+    BpStatus status = bp_output_target_find(path, &file->target, err);
     if (status != BP_OK) return status;
-    const bool direct = exists && !S_ISREG(info.st_mode);
-    if (direct)
-        descriptor = open(file->target, O_WRONLY | O_CLOEXEC | O_NOCTTY);
-    else
-        descriptor = create_beside(file->target, &file->temporary);
+    int descriptor, of_stream = -1, problem = 0;
+    const bool exists = file->target.exists;
+    file->direct = !bp_output_target_is_replaced(&file->target);
+    if (file->direct) {
+        descriptor = open_direct(&file->target);
+    } else {
+        const mode_t mode = exists ? 0600 : 0666; /* until the permissions of the replaced file are there */
+        descriptor = bp_temporary_create(file->target.path, mode, &file->unnamed, &file->temporary);
+        problem = errno;
+        if (descriptor < 0 && can_copy_into(&file->target)) {
+            descriptor = bp_temporary_create_elsewhere(file->target.path, mode, &file->temporary);
+            file->unnamed = false;
+        }
+        if (descriptor < 0) errno = problem;
+    }
     if (descriptor < 0) goto fail;
-    if (!direct && exists && copy_permissions(descriptor, &info) != 0) goto fail;
-    file->stream = fdopen(descriptor, "wb");
+    if (!file->direct && exists && copy_permissions(descriptor, &file->target.info) != 0) goto fail;
+    /* The stream has a descriptor of its own: closing it tells what some file systems tell only then, and the
+     * finished file can still be linked and copied. */
+    of_stream = fcntl(descriptor, F_DUPFD_CLOEXEC, 3);
+    if (of_stream < 0) goto fail;
+    file->stream = fdopen(of_stream, "wb");
     if (file->stream == NULL) goto fail;
+    file->descriptor = descriptor;
     return BP_OK;
 fail:
     status = bp_output_fail(err, "write", path, errno);
+    if (of_stream >= 0) close(of_stream);
     if (descriptor >= 0) close(descriptor);
     bp_output_discard(file);
     return status;
 }
 
-/* Makes the rename itself last through a power cut. Not every file system can, so nothing is said if not. */
+/* Makes the new name itself last through a power cut. Not every file system can, so nothing is said if not.
+ */
 static void sync_folder(const char *target) {
-    const size_t length = folder_length(target);
-    char *folder = length == 0 ? strdup(".") : strndup(target, length);
-    if (folder == NULL) return;
-    const int descriptor = open(folder, O_RDONLY | O_CLOEXEC);
+    char *folder = bp_folder_of(target);
+    const int descriptor = folder != NULL ? open(folder, O_RDONLY | O_CLOEXEC) : -1;
     if (descriptor >= 0) {
         fsync(descriptor);
         close(descriptor);
@@ -186,48 +86,76 @@ static void sync_folder(const char *target) {
     free(folder);
 }
 
+/* Puts the finished temporary, open as `descriptor`, at its place; 0, or the errno of what failed first.
+ * *left: its name, if it lies beside its place now. */
+static int put_in_place(BpOutputFile *file, int descriptor, char **left) {
+    const char *target = file->target.path;
+    int problem = bp_temporary_place(&file->unnamed, &file->temporary, descriptor, target);
+    if (problem == 0) {
+        sync_folder(target);
+        return 0;
+    }
+    /* From here on the file is finished and its place is not free: it must not be lost. */
+    if (file->unnamed && bp_temporary_name_elsewhere(descriptor, target, &file->temporary) == 0)
+        file->unnamed = false;
+    *left = bp_temporary_keep(&file->temporary);
+    struct stat now;
+    if (stat(target, &now) != 0 || !S_ISREG(now.st_mode)) return problem;
+    const int copied = bp_temporary_copy(descriptor, target);
+    if (copied != 0) return copied;
+    if (*left != NULL) unlink(*left);
+    free(*left);
+    *left = NULL;
+    return 0;
+}
+
 BpStatus bp_output_commit(BpOutputFile *file, BpError *err) {
     BpStatus status = BP_OK;
     int problem = 0;
+    char *left = NULL;
     /* A failed write that the caller did not notice leaves its mark on the stream, but no errno. */
     if (ferror(file->stream)) problem = EIO;
+    const int descriptor = file->descriptor;
     if (fflush(file->stream) != 0) problem = errno;
-    if (problem == 0 && file->temporary != NULL && fsync(fileno(file->stream)) != 0 && errno != EINVAL)
-        problem = errno;
+    if (problem == 0 && !file->direct && fsync(descriptor) != 0 && errno != EINVAL) problem = errno;
     if (fclose(file->stream) != 0 && problem == 0) problem = errno;
     file->stream = NULL;
-    if (problem == 0 && file->temporary != NULL) {
-        if (rename(file->temporary, file->target) == 0) {
-            free(file->temporary);
-            file->temporary = NULL;
-            sync_folder(file->target);
-        } else {
-            problem = errno;
-        }
+    if (problem == 0 && !file->direct) problem = put_in_place(file, descriptor, &left);
+    close(descriptor);
+    if (problem != 0) status = bp_output_fail(err, "write", file->target.path, problem);
+    if (left != NULL) {
+        const size_t used = err != NULL ? strlen(err->message) : 0;
+        if (err != NULL)
+            snprintf(err->message + used, sizeof err->message - used,
+                     "; what was to be written is whole, as %s", left);
+        free(left);
     }
-    if (problem != 0) status = bp_output_fail(err, "write", file->target, problem);
     bp_output_discard(file);
     return status;
 }
 
 void bp_output_discard(BpOutputFile *file) {
-    if (file->stream != NULL) fclose(file->stream);
-    if (file->temporary != NULL) unlink(file->temporary);
-    free(file->temporary);
-    free(file->target);
+    if (file->stream != NULL) {
+        fclose(file->stream);
+        close(file->descriptor);
+    }
+    bp_temporary_remove(&file->temporary);
+    bp_output_target_clear(&file->target);
     memset(file, 0, sizeof *file);
 }
 
 BpStatus bp_output_check(const char *path, BpError *err) {
-    char *target = NULL;
-    struct stat info;
-    bool exists = false;
-    BP_TRY(find_target(path, &target, &info, &exists, err));
-    free(target);
-    /* A pipe is not opened: that would wait for its reader. */
-    if (exists && !S_ISREG(info.st_mode)) return BP_OK;
+    BpOutputTarget target;
+    BP_TRY(bp_output_target_find(path, &target, err));
+    const bool replaced = bp_output_target_is_replaced(&target);
+    bp_output_target_clear(&target);
+    if (!replaced) return BP_OK; /* a pipe is not opened: that would wait for its reader */
     BpOutputFile file;
     BP_TRY(bp_output_open(path, &file, err));
     bp_output_discard(&file);
     return BP_OK;
+}
+
+void bp_output_abandon(void) {
+    bp_temporary_abandon();
 }

@@ -1,30 +1,48 @@
-/* output_file.h: a file that appears whole or not at all.
+/* output_file.h: a file that appears whole or not at all, and that is never lost once it is finished.
  *
  * In:    a path.   Out: a stream; on commit, the file at that path.
- * Knows: temporary names, rename, permissions, symbolic links.   Does not know: what is written.
+ * Knows: temporary files, rename, permissions.   Does not know: what is written.
  *
- * Opens TARGET.XXXXXX beside the target; commit flushes, syncs and renames it over the target; discard
- * removes it. Symbolic links are followed (also one whose target does not exist yet), permissions of a
- * replaced file are kept, a new file gets those of the umask. A write-protected file is refused, although a
- * rename could replace it. A target that is no regular file (/dev/null, a pipe) is written directly. */
+ * How a file is written. What is written goes to a temporary file, which commit syncs and puts in the
+ * target's place. Where the system can, the temporary has no name until it is finished, so that nothing is
+ * left when the program is killed; elsewhere it is TARGET.XXXXXX beside the target. A target that is there
+ * already is replaced by a rename, for which the finished file is called TARGET.XXXXXX for a moment.
+ *
+ * What can go wrong after that does not cost the file. If the target cannot be replaced (something is mounted
+ * on it, or its folder lets nobody rename it), the finished file is copied into it; if that fails too, it
+ * stays, and the error says where. If nothing can be made beside a target that can be written, the temporary
+ * is in $TMPDIR or /tmp and is copied likewise.
+ *
+ * A replaced file hands on its owner and group, as far as the user may set them, and its permissions, but
+ * never set-user-ID and set-group-ID: they were granted to what was in it. If the group cannot be kept, the
+ * new one may do no more than everybody. A new file gets what the umask says. A write-protected file is
+ * refused, although a rename could replace it.
+ *
+ * A target that is no regular file (a device, a pipe) is written through, and so is an open file of this
+ * process (/dev/stdout, /dev/fd/3): from where its other writers left it, and nothing in it is replaced. */
 #ifndef BP_BASE_OUTPUT_FILE_H
 #define BP_BASE_OUTPUT_FILE_H
 
-#include "status.h"
+#include "output_target.h"
 
 #include <stdio.h>
 
 /* Zeroed when not open. */
 typedef struct BpOutputFile {
-    FILE *stream;    /* to be written by the caller */
-    char *temporary; /* its path; NULL when written directly */
-    char *target;    /* what `path` means once links are followed */
+    FILE *stream;   /* to be written by the caller */
+    int descriptor; /* of the same file, while `stream` is open */
+    BpOutputTarget target;
+    bool direct;     /* written through, without a temporary */
+    bool unnamed;    /* the temporary has no name yet */
+    char *temporary; /* its name; NULL when it has none */
 } BpOutputFile;
 
-/* On failure `file` is zeroed. BP_ERR_FILE or BP_ERR_MEMORY. */
+/* On failure `file` is zeroed. BP_ERR_FILE or BP_ERR_MEMORY. `file` must stay where it is until it is
+ * committed or discarded. */
 BpStatus bp_output_open(const char *path, BpOutputFile *file, BpError *err);
 
-/* Closes in any case; on failure nothing is left behind and an earlier file at the target is untouched. */
+/* Closes in any case. On failure an earlier file at the target is untouched, unless the error says that it
+ * was being copied into; what could not be finished is gone, what was finished stays where the error says. */
 BpStatus bp_output_commit(BpOutputFile *file, BpError *err);
 
 /* Removes what was written. Accepts a zeroed or committed file. */
@@ -34,7 +52,8 @@ void bp_output_discard(BpOutputFile *file);
  */
 BpStatus bp_output_check(const char *path, BpError *err);
 
-/* "cannot ACTION PATH: reason; remedy", BP_ERR_FILE; `error_number` is an errno. */
-BpStatus bp_output_fail(BpError *err, const char *action, const char *path, int error_number);
+/* For the end of the program at a signal, from any thread: waits for a commit that is just putting a file in
+ * its place, removes the temporaries that are not finished, and lets no other thread go on writing files. */
+void bp_output_abandon(void);
 
 #endif

@@ -1,10 +1,13 @@
 /* interrupt.c: see interrupt.h. */
 #include "interrupt.h"
 
+#include "../base/output_file.h"
+
 #include <pthread.h>
 #include <semaphore.h>
 #include <signal.h>
 #include <stdatomic.h>
+#include <stdbool.h>
 #include <stddef.h>
 #include <time.h>
 #include <unistd.h>
@@ -14,13 +17,22 @@ enum { NOTHING_TO_SAVE = -1, SAME_KEY_MS = 250, EXIT_INTERRUPTED = 130 };
 /* NOTHING_TO_SAVE; or 0: no signal yet; or the time of the first one, in milliseconds, with bit 0 set. */
 static atomic_int interrupted_ms = NOTHING_TO_SAVE;
 
-static void note_signal(void) {
+/* Whether a second one means "at once". A limit on processor time tells again every second, and a terminal
+ * that goes away tells through the shell and by itself. */
+static bool hastens(int number) {
+    return number == SIGINT || number == SIGTERM;
+}
+
+static void note_signal(int number) {
     struct timespec now;
     clock_gettime(CLOCK_MONOTONIC, &now);
     const int now_ms = (int)((now.tv_sec % 1000000) * 1000 + now.tv_nsec / 1000000) | 1;
     const int first_ms = interrupted_ms;
-    if (first_ms == NOTHING_TO_SAVE || (first_ms != 0 && now_ms - first_ms > SAME_KEY_MS))
+    if (first_ms == NOTHING_TO_SAVE ||
+        (first_ms != 0 && hastens(number) && now_ms - first_ms > SAME_KEY_MS)) {
+        bp_output_abandon();
         _exit(EXIT_INTERRUPTED);
+    }
     if (first_ms == 0) interrupted_ms = now_ms;
 }
 
@@ -29,6 +41,10 @@ static sigset_t watched_signals(void) {
     sigemptyset(&set);
     sigaddset(&set, SIGINT);
     sigaddset(&set, SIGTERM);
+    sigaddset(&set, SIGXCPU);
+    /* nohup means it; but a blocked signal becomes pending even if it is ignored. */
+    struct sigaction hangup;
+    if (sigaction(SIGHUP, NULL, &hangup) != 0 || hangup.sa_handler != SIG_IGN) sigaddset(&set, SIGHUP);
     return set;
 }
 
@@ -37,7 +53,7 @@ static void *watch(void *began) {
     int number;
     sem_post(began);
     for (;;)
-        if (sigwait(&set, &number) == 0) note_signal();
+        if (sigwait(&set, &number) == 0) note_signal(number);
     return NULL;
 }
 
@@ -52,6 +68,7 @@ void bp_interrupt_install(void) {
     /* Ignored ones, as a shell leaves them to what it runs in the background, need not become pending. */
     signal(SIGINT, SIG_DFL);
     signal(SIGTERM, SIG_DFL);
+    signal(SIGXCPU, SIG_DFL);
     pthread_sigmask(SIG_BLOCK, &set, NULL);
     sem_init(&began, 0, 0);
     if (pthread_create(&watcher, NULL, watch, &began) == 0) {

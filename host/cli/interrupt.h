@@ -1,8 +1,11 @@
-/* interrupt.h: Ctrl-C and SIGTERM, noticed instead of obeyed at once.
+/* interrupt.h: the signals that ask the program to end, noticed instead of obeyed at once: Ctrl-C (SIGINT),
+ * SIGTERM, SIGHUP (the terminal is gone; unless it is ignored, as nohup has it) and SIGXCPU (the limit on
+ * processor time).
  *
- * Knows: signals, the thread that waits for them.   Does not know: what is interrupted.
+ * Knows: signals, the thread that waits for them, that unfinished files have to go.
+ * Does not know: what is interrupted.
  *
- * The flag that the signals set is the only global of the program. At first there is nothing to save, and a
+ * At first there is nothing to save, and a
  * signal ends the program with code 130. A command that has something worth saving calls
  * bp_interrupt_catch(), asks bp_interrupted() between steps, saves, and returns BP_ERR_INTERRUPTED. */
 #ifndef BP_CLI_INTERRUPT_H
@@ -14,8 +17,8 @@
  * And for a process that was forked and is to be interrupted like this one. */
 void bp_interrupt_install(void);
 
-/* From now on the first signal is noted, and the second ends the program at once. (Signals within a quarter
- * of a second of the first are the same Ctrl-C, delivered twice.) */
+/* From now on the first signal is noted, and a second SIGINT or SIGTERM ends the program at once. (Signals
+ * within a quarter of a second of the first are the same Ctrl-C, delivered twice.) */
 void bp_interrupt_catch(void);
 bool bp_interrupted(void);
 

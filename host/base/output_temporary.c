@@ -1,0 +1,252 @@
+/* output_temporary.c: see output_temporary.h. */
+#define _GNU_SOURCE /* O_TMPFILE */
+#include "output_temporary.h"
+
+#include "output_target.h"
+
+#include <errno.h>
+#include <fcntl.h>
+#include <pthread.h>
+#include <stdint.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/stat.h>
+#include <time.h>
+#include <unistd.h>
+
+#define BASE_NAME_KEPT_MAX 200 /* so that a long name and its suffix still fit a file system's 255 bytes */
+#define SUFFIX_SIZE 8          /* ".XXXXXX" and its end */
+#define ATTEMPTS 100
+
+/* ---- the names in use ------------------------------------------------------------------------------------
+ *
+ * Beside the flag of interrupt.c the only thing that outlives a call: a signal can come at any time, and who
+ * ends the program then must know what to remove. */
+
+static pthread_mutex_t names_lock = PTHREAD_MUTEX_INITIALIZER;
+static char *names[16]; /* more at once are not opened; they would only not be removed at a signal */
+
+static void note_name(char *name) {
+    for (size_t i = 0; i < sizeof names / sizeof names[0]; i++) {
+        if (names[i] != NULL) continue;
+        names[i] = name;
+        return;
+    }
+}
+
+static void forget_name(const char *name) {
+    for (size_t i = 0; i < sizeof names / sizeof names[0]; i++)
+        if (names[i] == name) names[i] = NULL;
+}
+
+void bp_temporary_abandon(void) {
+    pthread_mutex_lock(&names_lock); /* for good */
+    for (size_t i = 0; i < sizeof names / sizeof names[0]; i++)
+        if (names[i] != NULL) unlink(names[i]);
+}
+
+void bp_temporary_remove(char **name) {
+    if (*name == NULL) return;
+    pthread_mutex_lock(&names_lock);
+    unlink(*name);
+    forget_name(*name);
+    pthread_mutex_unlock(&names_lock);
+    free(*name);
+    *name = NULL;
+}
+
+char *bp_temporary_keep(char **name) {
+    char *kept = *name;
+    pthread_mutex_lock(&names_lock);
+    forget_name(kept);
+    pthread_mutex_unlock(&names_lock);
+    *name = NULL;
+    return kept;
+}
+
+/* ---- making them -----------------------------------------------------------------------------------------
+ */
+
+/* FOLDER/NAME with room for a suffix, NAME being that of `target`; heap, NULL when out of memory. */
+static char *stem_in(const char *folder, size_t folder_length, const char *target, size_t *length) {
+    const char *base = target + bp_folder_length(target);
+    size_t kept = strlen(base);
+    if (kept > BASE_NAME_KEPT_MAX) kept = BASE_NAME_KEPT_MAX;
+    const size_t slash = folder_length > 0 && folder[folder_length - 1] != '/' ? 1 : 0;
+    char *path = malloc(folder_length + slash + kept + SUFFIX_SIZE);
+    if (path == NULL) return NULL;
+    memcpy(path, folder, folder_length);
+    if (slash == 1) path[folder_length] = '/';
+    memcpy(path + folder_length + slash, base, kept);
+    *length = folder_length + slash + kept;
+    return path;
+}
+
+/* Writes another ".XXXXXX" to `suffix`. */
+static void make_suffix(char *suffix, uint64_t *state) {
+    static const char letters[] = "abcdefghijklmnopqrstuvwxyz0123456789";
+    *suffix++ = '.';
+    for (int i = 0; i < 6; i++) {
+        *state = *state * 6364136223846793005u + 1442695040888963407u;
+        *suffix++ = letters[(*state >> 33) % (sizeof letters - 1)];
+    }
+    *suffix = '\0';
+}
+
+static uint64_t first_state(void) {
+    struct timespec now;
+    clock_gettime(CLOCK_REALTIME, &now);
+    return (uint64_t)now.tv_nsec ^ ((uint64_t)now.tv_sec << 30) ^ ((uint64_t)getpid() << 40);
+}
+
+/* Gives the file of `descriptor`, which has no name, the name `path`; 0 or an errno. */
+static int link_descriptor(int descriptor, const char *path) {
+    char own[64];
+    snprintf(own, sizeof own, "/proc/self/fd/%d", descriptor);
+    return linkat(AT_FDCWD, own, AT_FDCWD, path, AT_SYMLINK_FOLLOW) == 0 ? 0 : errno;
+}
+
+/* Creates a file STEM.XXXXXX or, where `descriptor` is one without a name, names that. The descriptor, or -1
+ * and errno. Not mkstemp(), which would set mode 0600: this way the system itself applies umask and default
+ * access lists. Noted as soon as it is there: no signal can come between. */
+static int make_name(const char *folder, size_t folder_length, const char *target, mode_t mode,
+                     int descriptor, char **name) {
+    size_t length = 0;
+    char *path = stem_in(folder, folder_length, target, &length);
+    int made = -1, problem = path == NULL ? ENOMEM : EEXIST;
+    uint64_t state = first_state();
+    pthread_mutex_lock(&names_lock);
+    for (int attempt = 0; attempt < ATTEMPTS && problem == EEXIST; attempt++) {
+        make_suffix(path + length, &state);
+        if (descriptor >= 0) {
+            problem = link_descriptor(descriptor, path);
+            made = problem == 0 ? descriptor : -1;
+        } else {
+            made = open(path, O_RDWR | O_CREAT | O_EXCL | O_CLOEXEC, mode);
+            problem = made >= 0 ? 0 : errno;
+        }
+    }
+    if (made >= 0) note_name(path);
+    pthread_mutex_unlock(&names_lock);
+    if (made < 0) {
+        free(path);
+        errno = problem;
+        return -1;
+    }
+    *name = path;
+    return made;
+}
+
+/* A file without a name in the folder of `target`; -1 where that cannot be had, or could not be named later.
+ */
+static int create_unnamed(const char *target, mode_t mode) {
+    int descriptor = -1;
+#ifdef O_TMPFILE
+    char own[64];
+    char *folder = bp_folder_of(target);
+    if (folder != NULL) descriptor = open(folder, O_RDWR | O_TMPFILE | O_CLOEXEC, mode);
+    free(folder);
+    if (descriptor < 0) return -1;
+    snprintf(own, sizeof own, "/proc/self/fd/%d", descriptor);
+    if (access(own, F_OK) == 0) return descriptor;
+    close(descriptor); /* no /proc here */
+    descriptor = -1;
+#else
+    (void)target;
+    (void)mode;
+#endif
+    return descriptor;
+}
+
+int bp_temporary_create(const char *target, mode_t mode, bool *unnamed, char **name) {
+    const int descriptor = create_unnamed(target, mode);
+    *unnamed = descriptor >= 0;
+    if (*unnamed) return descriptor;
+    return make_name(target, bp_folder_length(target), target, mode, -1, name);
+}
+
+int bp_temporary_create_elsewhere(const char *target, mode_t mode, char **name) {
+    const char *folder = getenv("TMPDIR");
+    if (folder == NULL || folder[0] == '\0') folder = "/tmp";
+    return make_name(folder, strlen(folder), target, mode, -1, name);
+}
+
+/* ---- putting them in place -------------------------------------------------------------------------------
+ */
+
+static int copy_bytes(int from, int to) {
+    char block[1 << 16];
+    off_t done = 0;
+    for (;;) {
+        ssize_t got = pread(from, block, sizeof block, done);
+        if (got < 0 && errno == EINTR) continue;
+        if (got < 0) return errno;
+        if (got == 0) break;
+        for (ssize_t put = 0; put < got;) {
+            const ssize_t written = pwrite(to, block + put, (size_t)(got - put), done + put);
+            if (written < 0 && errno != EINTR) return errno;
+            if (written > 0) put += written;
+        }
+        done += got;
+    }
+    if (ftruncate(to, done) != 0) return errno;
+    return fsync(to) == 0 || errno == EINVAL ? 0 : errno;
+}
+
+/* Copies to `to`, which is closed in any case. */
+static int copy_and_close(int from, int to) {
+    int problem = copy_bytes(from, to);
+    if (close(to) != 0 && problem == 0) problem = errno;
+    return problem;
+}
+
+int bp_temporary_copy(int descriptor, const char *target) {
+    const int to = open(target, O_WRONLY | O_CLOEXEC | O_NOCTTY);
+    return to < 0 ? errno : copy_and_close(descriptor, to);
+}
+
+/* The permissions of the copy are those of the file without a name. */
+static int copy_to_name(int from, int to, char **name) {
+    struct stat own;
+    if (to < 0) return errno;
+    if (fstat(from, &own) == 0) (void)!fchmod(to, own.st_mode & 0777);
+    const int problem = copy_and_close(from, to);
+    if (problem != 0) bp_temporary_remove(name);
+    return problem;
+}
+
+int bp_temporary_name_elsewhere(int descriptor, const char *target, char **name) {
+    return copy_to_name(descriptor, bp_temporary_create_elsewhere(target, 0600, name), name);
+}
+
+/* Gives a file without a name one beside `target`: by a link, or by a copy where links are refused. */
+static int name_beside(bool *unnamed, char **name, int descriptor, const char *target) {
+    const size_t folder = bp_folder_length(target);
+    int problem = 0;
+    if (make_name(target, folder, target, 0, descriptor, name) < 0)
+        problem = copy_to_name(descriptor, make_name(target, folder, target, 0600, -1, name), name);
+    *unnamed = problem != 0;
+    return problem;
+}
+
+int bp_temporary_place(bool *unnamed, char **name, int descriptor, const char *target) {
+    struct stat info;
+    if (*unnamed && lstat(target, &info) != 0 && link_descriptor(descriptor, target) == 0) {
+        *unnamed = false;
+        return 0;
+    }
+    if (*unnamed) {
+        const int problem = name_beside(unnamed, name, descriptor, target);
+        if (problem != 0) return problem;
+    }
+    /* From the name on, the file is finished: a signal waits until it is in its place. */
+    pthread_mutex_lock(&names_lock);
+    const int problem = rename(*name, target) == 0 ? 0 : errno;
+    if (problem == 0) forget_name(*name);
+    pthread_mutex_unlock(&names_lock);
+    if (problem != 0) return problem;
+    free(*name);
+    *name = NULL;
+    return 0;
+}

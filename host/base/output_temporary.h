@@ -1,0 +1,40 @@
+/* output_temporary.h: the temporary files behind output_file.h.
+ *
+ * In:    where a file is to stand.   Out: a file without a name, or with one that nobody else has.
+ * Knows: unnamed files, links, renames, the names that are in use.   Does not know: what is written, to whom
+ * errors are told: everything here answers with an errno.
+ *
+ * The names of the unfinished temporaries are kept in one place, so that the thread that ends the program at
+ * a signal can remove them. */
+#ifndef BP_BASE_OUTPUT_TEMPORARY_H
+#define BP_BASE_OUTPUT_TEMPORARY_H
+
+#include <stdbool.h>
+#include <sys/types.h>
+
+/* Creates the temporary of `target` in its folder, to be read and written: without a name where the system
+ * can
+ * (*unnamed), else as TARGET.XXXXXX (*name, heap). The descriptor, or -1 and errno. */
+int bp_temporary_create(const char *target, mode_t mode, bool *unnamed, char **name);
+/* The same with a name in $TMPDIR or /tmp. */
+int bp_temporary_create_elsewhere(const char *target, mode_t mode, char **name);
+
+/* Puts the finished temporary at `target`, in the place of what is there; 0, or an errno. After a failure it
+ * still exists, as it was or with a name. */
+int bp_temporary_place(bool *unnamed, char **name, int descriptor, const char *target);
+
+/* Gives a finished temporary without a name one in $TMPDIR or /tmp, by copying it; 0, or an errno. */
+int bp_temporary_name_elsewhere(int descriptor, const char *target, char **name);
+
+/* Copies a finished temporary into the file at `target`, which stays the same file; 0, or an errno. */
+int bp_temporary_copy(int descriptor, const char *target);
+
+/* Removes the temporary, and forgets and frees its name. Accepts NULL. */
+void bp_temporary_remove(char **name);
+/* Hands the name over to the caller: nothing here will remove that file any more. */
+char *bp_temporary_keep(char **name);
+
+/* See bp_output_abandon(). */
+void bp_temporary_abandon(void);
+
+#endif
