@@ -2,8 +2,10 @@
  *
  * In:    argc, argv.   Out: an exit code (BP_STATUS_LIST).
  * Knows: how an error is shown.   Does not know: what any command does. */
+#include "base/shown.h"
 #include "cli/commands.h"
 #include "cli/interrupt.h"
+#include "cli/standard_streams.h"
 
 #include <signal.h>
 #include <stdio.h>
@@ -24,20 +26,27 @@ static void print_error(const BpError *err, BpStatus status) {
     const bool names_file = err->line == 0 && has_word(err->message, err->file);
     fputs("ballpark: ", stderr);
     if (err->file[0] != '\0' && !names_file) {
-        fputs(err->file, stderr);
+        bp_show(err->file, false, stderr);
         if (err->line > 0) fprintf(stderr, ":%d", err->line);
         if (err->line > 0 && err->column > 0) fprintf(stderr, ":%d", err->column);
         fputs(": ", stderr);
     }
-    fprintf(stderr, "%s\n", err->message[0] != '\0' ? err->message : bp_status_name(status));
-    if (err->attachment != NULL) fprintf(stderr, "\n%s\n", err->attachment);
+    bp_show(err->message[0] != '\0' ? err->message : bp_status_name(status), false, stderr);
+    fputc('\n', stderr);
+    if (err->attachment == NULL) return;
+    fputc('\n', stderr);
+    bp_show(err->attachment, true, stderr);
+    fputc('\n', stderr);
 }
 
 int main(int argc, char **argv) {
     BpCommandLine line;
     BpError err = {0};
-    /* A reader that goes away is a failed write like any other: reported, and nothing is left half done. */
+    bp_streams_open();
+    /* A reader that goes away, and a limit on the size of files, are failed writes like any other: reported,
+     * and nothing is left half done. */
     signal(SIGPIPE, SIG_IGN);
+    signal(SIGXFSZ, SIG_IGN);
     bp_interrupt_install();
 
     BpStatus status = bp_command_line_parse(argc, argv, &line, &err);
@@ -50,6 +59,10 @@ int main(int argc, char **argv) {
             status = line.command->run(&line, &err);
     }
     if (status != BP_OK) print_error(&err, status);
+    bp_error_clear(&err);
+    const BpStatus finished = bp_streams_finish(&err);
+    if (status == BP_OK && finished != BP_OK) print_error(&err, finished);
+    if (status == BP_OK) status = finished;
     bp_error_clear(&err);
     return bp_status_exit_code(status);
 }

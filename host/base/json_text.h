@@ -1,13 +1,13 @@
-/* json_text.h: text from outside in a JSON document.
+/* json_text.h: text of any bytes as a text of JSON.
  *
- * Knows: UTF-8 as jansson demands it.   Does not know: documents. */
+ * In:    the name of a file, a driver's message.   Out: a jansson string.
+ * Knows: JSON is UTF-8, names of files need not be.   Does not know: what the text says. */
 #ifndef BP_BASE_JSON_TEXT_H
 #define BP_BASE_JSON_TEXT_H
 
 #include <jansson.h>
 
-/* A new string; text that is not UTF-8, as a path may be, has "?" for each byte beyond ASCII. NULL: no
- * memory. */
+/* `text`, with the replacement character (U+FFFD) for every byte that is not UTF-8. NULL: out of memory. */
 json_t *bp_json_text(const char *text);
 
 #endif

@@ -2,7 +2,9 @@
 #include "check_report.h"
 
 #include "../base/format.h"
+#include "../base/json_text.h"
 #include "../base/names.h"
+#include "../base/shown.h"
 #include "json_file.h"
 
 #include <math.h>
@@ -19,9 +21,10 @@ static json_t *three(const double *values) {
 
 static json_t *device_json(const BpDeviceInfo *device) {
     static const char *const types[] = {"cpu", "gpu", "other"};
-    return json_pack("{s:i, s:s, s:s, s:s, s:s, s:s}", "number", (int)device->number, "platform",
-                     device->platform, "name", device->name, "version", device->version, "driver",
-                     device->driver, "type", types[device->type]);
+    return json_pack("{s:i, s:o, s:o, s:o, s:o, s:s}", "number", (int)device->number, "platform",
+                     bp_json_text(device->platform), "name", bp_json_text(device->name), "version",
+                     bp_json_text(device->version), "driver", bp_json_text(device->driver), "type",
+                     types[device->type]);
 }
 
 static json_t *test_json(BpVerdictFamily family, const BpVerdictTest *test) {
@@ -60,14 +63,11 @@ json_t *bp_check_report_json(const BpCheckResult *result) {
 }
 
 json_t *bp_check_report_failure(const BpDeviceInfo *device, const char *message) {
-    /* A driver may have left anything in its message. */
-    json_t *text = json_string(message);
-    return json_pack("{s:o, s:o}", "device", device_json(device), "error",
-                     text != NULL ? text : json_string("an error whose text is not UTF-8"));
+    return json_pack("{s:o, s:o}", "device", device_json(device), "error", bp_json_text(message));
 }
 
 json_t *bp_check_report_document(const BpScene *scene, const BpCheckOptions *options, json_t *results) {
-    return json_pack("{s:s, s:i, s:i, s:I, s:i, s:o, s:I, s:o}", "scene", scene->path, "width",
+    return json_pack("{s:o, s:i, s:i, s:I, s:i, s:o, s:I, s:o}", "scene", bp_json_text(scene->path), "width",
                      (int)scene->camera.width, "height", (int)scene->camera.height, "samples_per_pixel",
                      (json_int_t)options->render.samples_per_pixel, "max_depth",
                      (int)options->render.max_depth, "seed", bp_json_whole(options->render.seed), "spheres",
@@ -96,10 +96,15 @@ static void table_row(const json_t *entry, FILE *out) {
         fprintf(out, "%6.2f  ", worst);
     else
         fprintf(out, "%6s  ", "-");
-    fprintf(out, "%s (%s)\n", json_string_value(json_object_get(device, "name")),
-            json_string_value(json_object_get(device, "platform")));
+    bp_show(json_string_value(json_object_get(device, "name")), false, out);
+    fputs(" (", out);
+    bp_show(json_string_value(json_object_get(device, "platform")), false, out);
+    fputs(")\n", out);
     const char *error = json_string_value(json_object_get(entry, "error"));
-    if (error != NULL) fprintf(out, "     %s\n", error);
+    if (error == NULL) return;
+    fputs("     ", out);
+    bp_show(error, false, out);
+    fputc('\n', out);
 }
 
 void bp_check_report_table(const json_t *results, FILE *out) {

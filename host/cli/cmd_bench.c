@@ -7,8 +7,10 @@
 #include "commands.h"
 
 #include "../base/format.h"
+#include "../base/json_text.h"
 #include "../base/names.h"
 #include "../base/plural.h"
+#include "../base/shown.h"
 #include "bench_measure.h"
 #include "bench_scenes.h"
 #include "interrupt.h"
@@ -96,9 +98,10 @@ static const char *short_time(double seconds, char *text, size_t size) {
 }
 
 static void print_row(const Bench *bench, const Entry *entry) {
-    char load[32], tree[32], kernel[32], spheres[32];
+    char load[32], tree[32], kernel[32], spheres[32], name[256];
     const BpBenchFigure segments = figure(bench, entry, segments_rate);
-    printf("%-12s %11s %9s %9s %9s %10.2f %11.2f %9.1f %9.1f %7.0f %% %8.0f\n", entry->name,
+    printf("%-12s %11s %9s %9s %9s %10.2f %11.2f %9.1f %9.1f %7.0f %% %8.0f\n",
+           bp_shown(entry->name, name, sizeof name),
            bp_format_whole(entry->runs[0].spheres, spheres, sizeof spheres),
            short_time(figure(bench, entry, load_seconds).median, load, sizeof load),
            short_time(figure(bench, entry, tree_seconds).median, tree, sizeof tree),
@@ -145,12 +148,12 @@ static json_t *entry_json(const Bench *bench, const Entry *entry) {
     }
     json_t *nrmse = isfinite(run->nrmse) ? json_real(run->nrmse) : json_null();
     return json_pack(
-        "{s:s, s:s, s:I, s:I, s:I, s:I, s:o, s:o, s:o, s:o, s:o, s:o, s:o, s:o, s:f, s:I, s:f, s:[fff], s:o, "
+        "{s:o, s:o, s:I, s:I, s:I, s:I, s:o, s:o, s:o, s:o, s:o, s:o, s:o, s:o, s:f, s:I, s:f, s:[fff], s:o, "
         "s:I}",
-        "name", entry->name, "path", entry->path, "spheres", (json_int_t)run->spheres, "width",
-        (json_int_t)run->width, "height", (json_int_t)run->height, "max_depth", (json_int_t)run->max_depth,
-        "load_seconds", figure_json(bench, entry, load_seconds), "tree_seconds",
-        figure_json(bench, entry, tree_seconds), "kernel_build_seconds",
+        "name", bp_json_text(entry->name), "path", bp_json_text(entry->path), "spheres",
+        (json_int_t)run->spheres, "width", (json_int_t)run->width, "height", (json_int_t)run->height,
+        "max_depth", (json_int_t)run->max_depth, "load_seconds", figure_json(bench, entry, load_seconds),
+        "tree_seconds", figure_json(bench, entry, tree_seconds), "kernel_build_seconds",
         figure_json(bench, entry, kernel_seconds), "samples_per_second",
         figure_json(bench, entry, samples_rate), "segments_per_second",
         figure_json(bench, entry, segments_rate), "nanoseconds_per_segment",
@@ -171,13 +174,13 @@ static BpStatus write_json(const Bench *bench, const char *path, BpError *err) {
         return bp_json_write(NULL, path, err);
     }
     return bp_json_write(
-        json_pack("{s:s, s:{s:s, s:s, s:s, s:s}, s:s, s:s, s:s, s:s, s:s, s:i, s:o}", "version", bp_version(),
-                  "device", "platform", report->device.platform, "name", report->device.name, "driver",
-                  report->device.driver, "type", bp_device_type_names[report->device.type], "kernel",
-                  bp_kernel_names[report->kernel], "precision", bp_precision_names[report->precision],
-                  "numerics", bp_numerics_names[report->numerics], "math", bp_math_names[report->math],
-                  "sampler", bp_sampler_names[report->sampler], "rounds", (int)bench->rounds, "scenes",
-                  scenes),
+        json_pack("{s:s, s:{s:o, s:o, s:o, s:s}, s:s, s:s, s:s, s:s, s:s, s:i, s:o}", "version", bp_version(),
+                  "device", "platform", bp_json_text(report->device.platform), "name",
+                  bp_json_text(report->device.name), "driver", bp_json_text(report->device.driver), "type",
+                  bp_device_type_names[report->device.type], "kernel", bp_kernel_names[report->kernel],
+                  "precision", bp_precision_names[report->precision], "numerics",
+                  bp_numerics_names[report->numerics], "math", bp_math_names[report->math], "sampler",
+                  bp_sampler_names[report->sampler], "rounds", (int)bench->rounds, "scenes", scenes),
         path, err);
 }
 
@@ -230,7 +233,10 @@ static BpStatus run_rounds(const BpCommandLine *line, Bench *bench, BpError *err
     for (size_t r = 0; r < bench->rounds && status == BP_OK; ++r) {
         for (size_t i = 0; i < bench->count && status == BP_OK; ++i) {
             Entry *entry = &bench->entries[i];
-            if (!line->quiet) fprintf(stderr, "round %zu of %u: %s\n", r + 1, bench->rounds, entry->name);
+            char name[256];
+            if (!line->quiet)
+                fprintf(stderr, "round %zu of %u: %s\n", r + 1, bench->rounds,
+                        bp_shown(entry->name, name, sizeof name));
             status = bp_bench_run(line, entry->path, devices, device_count, seconds / bench->rounds,
                                   &entry->runs[r], err);
         }

@@ -7,6 +7,7 @@
 #include "../base/format.h"
 #include "../base/output_file.h"
 #include "../base/plural.h"
+#include "../base/shown.h"
 #include "../image/image.h"
 #include "apart.h"
 #include "check_report.h"
@@ -73,11 +74,13 @@ static BpStatus check_device(const CheckTask *task, FILE *shown, json_t **report
     char *text = bp_verdict_text(&result->verdict);
     if (*report == NULL || text == NULL)
         status = bp_fail(err, BP_ERR_MEMORY, "out of memory for a report");
-    else if (shown != NULL)
-        fprintf(shown, "%s on %s (%s), %ux%u pixels, %llu sample%s each: %s", task->scene->path,
-                result->report.device.name, result->report.device.platform, result->kernel.width,
-                result->kernel.height, (unsigned long long)task->options->render.samples_per_pixel,
+    else if (shown != NULL) {
+        bp_show(task->scene->path, false, shown);
+        fprintf(shown, " on %s (%s), %ux%u pixels, %llu sample%s each: %s", result->report.device.name,
+                result->report.device.platform, result->kernel.width, result->kernel.height,
+                (unsigned long long)task->options->render.samples_per_pixel,
                 bp_plural(task->options->render.samples_per_pixel), text);
+    }
     free(text);
 done:
     if (live) bp_terminal_show("");

@@ -77,7 +77,7 @@ static BpStatus deliver(const BpCommandLine *line, const BpStudyResult *result, 
 
 /* The study's size: --width, else the scene's, unless that is much larger than telling errors apart takes. */
 static BpStatus load_scene(const BpCommandLine *line, BpScene **scene, BpSceneInfo *full, BpError *err) {
-    BP_TRY(bp_setup_load(line->operands[0], scene, err));
+    BP_TRY(bp_setup_load(line, line->operands[0], scene, err));
     bp_scene_info(*scene, full);
     if (bp_option_given(line, BP_OPTION_WIDTH)) return bp_scene_set_width(*scene, line->width, err);
     if (full->width <= BP_STUDY_WIDTH_DEFAULT) return BP_OK;

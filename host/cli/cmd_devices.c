@@ -4,8 +4,9 @@
  * Knows: BpDeviceInfo, tables on a terminal.   Does not know: OpenCL. */
 #include "commands.h"
 
+#include "../base/json_text.h"
 #include "../base/names.h"
-
+#include "../base/shown.h"
 #include "json_file.h"
 
 #include <errno.h>
@@ -34,12 +35,14 @@ static void format_bytes(uint64_t bytes, char *text) {
 static void fill_row(const BpDeviceInfo *info, bool is_default, Cells cells) {
     snprintf(cells[0], CELL_SIZE, "%u%s", info->number, is_default ? "*" : " ");
     snprintf(cells[1], CELL_SIZE, "%s", type_text(info->type));
-    snprintf(cells[2], CELL_SIZE, "%s", info->name);
+    bp_shown(info->name, cells[2], CELL_SIZE);
     snprintf(cells[3], CELL_SIZE, "%u", info->compute_units);
     format_bytes(info->memory_bytes, cells[4]);
     format_bytes(info->largest_allocation_bytes, cells[5]);
     snprintf(cells[6], CELL_SIZE, "%s", info->has_double ? "yes" : "no");
-    snprintf(cells[7], CELL_SIZE, "%s, driver %s", info->platform, info->driver);
+    char text[2 * CELL_SIZE];
+    snprintf(text, sizeof text, "%s, driver %s", info->platform, info->driver);
+    bp_shown(text, cells[7], CELL_SIZE);
 }
 
 static BpStatus print_table(const BpDeviceInfo *list, size_t count, unsigned default_number, BpError *err) {
@@ -57,8 +60,11 @@ static BpStatus print_table(const BpDeviceInfo *list, size_t count, unsigned def
     for (size_t r = 0; r <= count; ++r) {
         for (int c = 0; c < COLUMNS - 1; ++c) printf(right[c] ? "%*s  " : "%-*s  ", widths[c], rows[r][c]);
         printf("%s\n", rows[r][COLUMNS - 1]);
-        if (r > 0 && list[r - 1].refusal[0] != '\0')
-            printf("%*s  cannot render: %s\n", widths[0], "", list[r - 1].refusal);
+        if (r > 0 && list[r - 1].refusal[0] != '\0') {
+            printf("%*s  cannot render: ", widths[0], "");
+            bp_show(list[r - 1].refusal, false, stdout);
+            putchar('\n');
+        }
     }
     free(rows);
     if (default_number != UINT32_MAX) printf("* used unless --device says otherwise\n");
@@ -70,13 +76,15 @@ static BpStatus write_json(const char *path, const BpDeviceInfo *list, size_t co
     json_t *devices = json_array();
     for (size_t d = 0; d < count && devices != NULL; ++d) {
         const BpDeviceInfo *info = &list[d];
-        json_t *entry = json_pack(
-            "{s:i, s:b, s:s, s:s, s:s, s:s, s:s, s:s, s:i, s:I, s:I, s:b, s:s}", "number", (int)info->number,
-            "default", info->number == default_number, "type", bp_device_type_names[info->type], "platform",
-            info->platform, "name", info->name, "vendor", info->vendor, "version", info->version, "driver",
-            info->driver, "compute_units", (int)info->compute_units, "memory_bytes",
-            (json_int_t)info->memory_bytes, "largest_allocation_bytes",
-            (json_int_t)info->largest_allocation_bytes, "double", info->has_double, "refusal", info->refusal);
+        json_t *entry =
+            json_pack("{s:i, s:b, s:s, s:o, s:o, s:o, s:o, s:o, s:i, s:I, s:I, s:b, s:o}", "number",
+                      (int)info->number, "default", info->number == default_number, "type",
+                      bp_device_type_names[info->type], "platform", bp_json_text(info->platform), "name",
+                      bp_json_text(info->name), "vendor", bp_json_text(info->vendor), "version",
+                      bp_json_text(info->version), "driver", bp_json_text(info->driver), "compute_units",
+                      (int)info->compute_units, "memory_bytes", (json_int_t)info->memory_bytes,
+                      "largest_allocation_bytes", (json_int_t)info->largest_allocation_bytes, "double",
+                      info->has_double, "refusal", bp_json_text(info->refusal));
         if (json_array_append_new(devices, entry) != 0) {
             json_decref(devices);
             devices = NULL;

@@ -5,7 +5,9 @@
 #include "commands.h"
 
 #include "../base/format.h"
+#include "../base/json_text.h"
 #include "../base/names.h"
+#include "../base/shown.h"
 #include "../engine/effect_costs.h"
 #include "explain_path.h"
 #include "json_file.h"
@@ -29,9 +31,12 @@
 static void print_heading(const char *path, const BpScene *scene) {
     BpSceneInfo info;
     bp_scene_info(scene, &info);
-    printf("%s: %s%s%zu sphere%s, %zu material%s, %ux%u\n", path, info.title,
-           info.title[0] != '\0' ? "; " : "", info.spheres, info.spheres == 1 ? "" : "s", info.materials,
-           info.materials == 1 ? "" : "s", info.width, info.height);
+    bp_show(path, false, stdout);
+    fputs(": ", stdout);
+    bp_show(info.title, false, stdout);
+    printf("%s%zu sphere%s, %zu material%s, %ux%u\n", info.title[0] != '\0' ? "; " : "", info.spheres,
+           info.spheres == 1 ? "" : "s", info.materials, info.materials == 1 ? "" : "s", info.width,
+           info.height);
 }
 
 static void print_effects(const BpEffectInfo *effects, size_t count) {
@@ -165,11 +170,11 @@ static json_t *costs_json(const BpCosts *costs) {
         json_decref(times);
         json_array_append_new(kernels, entry);
     }
-    return json_pack("{s:{s:s, s:s, s:s}, s:s, s:i, s:i, s:i, s:I, s:o}", "device", "platform",
-                     costs->device.platform, "name", costs->device.name, "driver", costs->device.driver,
-                     "form", bp_kernel_names[costs->form], "width", (int)costs->width, "height",
-                     (int)costs->height, "rounds", (int)costs->rounds, "samples", (json_int_t)costs->samples,
-                     "kernels", kernels);
+    return json_pack("{s:{s:o, s:o, s:o}, s:s, s:i, s:i, s:i, s:I, s:o}", "device", "platform",
+                     bp_json_text(costs->device.platform), "name", bp_json_text(costs->device.name), "driver",
+                     bp_json_text(costs->device.driver), "form", bp_kernel_names[costs->form], "width",
+                     (int)costs->width, "height", (int)costs->height, "rounds", (int)costs->rounds, "samples",
+                     (json_int_t)costs->samples, "kernels", kernels);
 }
 
 static json_t *scene_json(const char *path, const BpScene *scene, const BpEffectInfo *effects, size_t count) {
@@ -180,7 +185,7 @@ static json_t *scene_json(const char *path, const BpScene *scene, const BpEffect
         json_array_append_new(list, json_pack("{s:s, s:s, s:b, s:s}", "name", effects[e].name, "description",
                                               effects[e].description, "simulated", effects[e].simulated,
                                               "reason", effects[e].reason));
-    return json_pack("{s:s, s:s, s:I, s:I, s:o}", "scene", path, "title", info.title, "spheres",
+    return json_pack("{s:o, s:s, s:I, s:I, s:o}", "scene", bp_json_text(path), "title", info.title, "spheres",
                      (json_int_t)info.spheres, "materials", (json_int_t)info.materials, "effects", list);
 }
 
@@ -207,8 +212,7 @@ static BpStatus append_json(const BpCommandLine *line, const char *path, const B
                     bp_path_json(scene, &found->path, line->pixel_x, line->pixel_y, line->first_sample)) == 0;
     if (whole && json_array_append(list, entry) != 0) whole = false;
     json_decref(entry);
-    return whole ? BP_OK
-                 : bp_fail(err, BP_ERR_MEMORY, "out of memory, or a name that is not UTF-8, for %s", path);
+    return whole ? BP_OK : bp_fail(err, BP_ERR_MEMORY, "out of memory for the document on %s", path);
 }
 
 /* One scene: its table on standard output, or its entry of `list` when that is not NULL. `device`: NULL where

@@ -6,6 +6,7 @@
 
 #include "../base/output_file.h"
 #include "../base/plural.h"
+#include "../base/shown.h"
 #include "../scene/scene.h"
 #include "../scene/scene_field.h"
 
@@ -32,8 +33,8 @@ static BpStatus generate_cover(const BpCommandLine *line, uint64_t seed, BpError
     if (status == BP_OK && !line->quiet) {
         BpSceneInfo info;
         bp_scene_info(scene, &info);
-        fprintf(stderr, "%s: %zu sphere%s, %s\n", to_stream ? "standard output" : path, info.spheres,
-                bp_plural(info.spheres), info.title);
+        bp_show(to_stream ? "standard output" : path, false, stderr);
+        fprintf(stderr, ": %zu sphere%s, %s\n", info.spheres, bp_plural(info.spheres), info.title);
     }
     bp_scene_destroy(&scene);
     return status;
@@ -47,9 +48,9 @@ static BpStatus generate_field(const BpCommandLine *line, uint64_t seed, BpError
                        "--output -: a field is written to a file; name one ending in .ply");
     BP_TRY(bp_output_check(path, err));
     BP_TRY(bp_field_write_ply(count, seed, path, err));
-    if (!line->quiet)
-        fprintf(stderr, "%s: %" PRIu64 " sphere%s in the cube from -10 to 10\n", path, count,
-                bp_plural(count));
+    if (line->quiet) return BP_OK;
+    bp_show(path, false, stderr);
+    fprintf(stderr, ": %" PRIu64 " sphere%s in the cube from -10 to 10\n", count, bp_plural(count));
     return BP_OK;
 }
 

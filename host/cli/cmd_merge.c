@@ -6,6 +6,7 @@
 
 #include "../base/format.h"
 #include "../base/plural.h"
+#include "../base/shown.h"
 #include "../engine/accumulator_file.h"
 #include "result_file.h"
 
@@ -85,8 +86,9 @@ BpStatus bp_command_merge(const BpCommandLine *line, BpError *err) {
         char nrmse[32], ranges[120];
         bp_format_percent(bp_accumulator_nrmse(sum), nrmse, sizeof nrmse);
         describe_ranges(sum, ranges, sizeof ranges);
-        fprintf(stderr, "%s: %" PRIu32 "x%" PRIu32 ", %" PRIu64 " sample%s a pixel (%s%s), error %s\n",
-                bp_result_name(&result), sum->width, sum->height, bp_accumulator_range_total(sum),
+        bp_show(bp_result_name(&result), false, stderr);
+        fprintf(stderr, ": %" PRIu32 "x%" PRIu32 ", %" PRIu64 " sample%s a pixel (%s%s), error %s\n",
+                sum->width, sum->height, bp_accumulator_range_total(sum),
                 bp_plural(bp_accumulator_range_total(sum)), ranges,
                 sum->partial ? ", not all of them in every pixel" : "", nrmse);
     }

@@ -7,8 +7,10 @@
 #include "../base/clock.h"
 #include "../base/format.h"
 #include "../base/plural.h"
+#include "../base/shown.h"
 #include "../engine/adaptive.h"
 #include "../engine/stop_rule.h"
+#include "files_apart.h"
 #include "json_file.h"
 #include "render_loop.h"
 #include "result_file.h"
@@ -62,8 +64,9 @@ static void print_summary(const BpRunResult *result, const BpStopRule *rule, con
     } else if (result->accumulator->partial && result->samples_per_pixel > 0) {
         more_samples = " and part of another round";
     }
-    fprintf(stderr, "%s: %" PRIu32 "x%" PRIu32 ", %s%s, error %s\n", result->output, info.width, info.height,
-            count, more_samples, bp_format_percent(result->nrmse, text, sizeof text));
+    bp_show(result->output, false, stderr);
+    fprintf(stderr, ": %" PRIu32 "x%" PRIu32 ", %s%s, error %s\n", info.width, info.height, count,
+            more_samples, bp_format_percent(result->nrmse, text, sizeof text));
     /* The first launch, in which a driver may compile, says nothing about the rate. */
     const double tracing = fmax(end->seconds - report->first_launch_seconds, 1.0e-9);
     fprintf(stderr, "%s sample%s traced in %s (%s/s), %s in all",
@@ -174,6 +177,7 @@ BpStatus bp_command_render(const BpCommandLine *line, BpError *err) {
     BP_TRY_GOTO(status, bp_setup_scene(line, line->operands[0], &scene, err), done);
     bp_waiting_end(waiting);
     waiting = NULL;
+    BP_TRY_GOTO(status, bp_files_check_scene(line, file.path, scene, err), done);
     result.scene = scene;
     result.times.load = bp_clock_seconds() - result.times.start;
     bp_scene_info(scene, &info);

@@ -1,6 +1,9 @@
 /* explain_path.c: see explain_path.h. */
 #include "explain_path.h"
 
+#include "../base/json_text.h"
+#include "../base/shown.h"
+
 #include <inttypes.h>
 #include <math.h>
 #include <stdio.h>
@@ -54,8 +57,9 @@ void bp_path_print(const BpScene *scene, const BpPath *path, uint32_t x, uint32_
             printf("       after %.6g meets sphere %" PRIu32 " from %s at (%.6g, %.6g, %.6g)\n",
                    step->distance, step->sphere, step->enters ? "outside" : "inside", step->point[0],
                    step->point[1], step->point[2]);
-            printf("       %s (%s) %s", material->name, kind_name(material->kind),
-                   outcome(step, material->kind));
+            fputs("       ", stdout);
+            bp_show(material->name, false, stdout);
+            printf(" (%s) %s", kind_name(material->kind), outcome(step, material->kind));
             if (step->goes_on)
                 printf(", with (%.4g, %.4g, %.4g) of its light", step->throughput[0], step->throughput[1],
                        step->throughput[2]);
@@ -99,6 +103,7 @@ json_t *bp_path_json(const BpScene *scene, const BpPath *path, uint32_t x, uint3
         json_decref(steps);
         steps = NULL;
     }
-    return json_pack("{s:[I,I], s:I, s:s, s:b, s:o}", "pixel", (json_int_t)x, (json_int_t)y, "sample",
-                     (json_int_t)sample, "device", path->device.name, "cut", path->cut, "steps", steps);
+    return json_pack("{s:[I,I], s:I, s:o, s:b, s:o}", "pixel", (json_int_t)x, (json_int_t)y, "sample",
+                     (json_int_t)sample, "device", bp_json_text(path->device.name), "cut", path->cut, "steps",
+                     steps);
 }

@@ -1,10 +1,14 @@
 /* files_apart.c: see files_apart.h. */
 #include "files_apart.h"
 
+#include "../base/output_target.h"
+#include "../scene/scene.h"
+#include "../scene/scene_file.h"
 #include "commands.h"
 
+#include <stdlib.h>
 #include <string.h>
-#include <sys/stat.h>
+#include <unistd.h>
 
 typedef struct Result {
     const char *option, *path;
@@ -12,33 +16,58 @@ typedef struct Result {
 
 enum { RESULTS = 6 };
 
-bool bp_same_file(const char *a, const char *b) {
-    struct stat first, second;
-    const bool first_stands = stat(a, &first) == 0, second_stands = stat(b, &second) == 0;
-    if (first_stands && !S_ISREG(first.st_mode)) return false;
-    if (strcmp(a, b) == 0) return true;
-    return first_stands && second_stands && first.st_dev == second.st_dev && first.st_ino == second.st_ino;
+static void list_results(const BpCommandLine *line, const char *picture, Result results[RESULTS]) {
+    results[0] = (Result){line->output != NULL ? "--output" : "the picture",
+                          line->output != NULL ? line->output : picture};
+    results[1] = (Result){"--stats", line->stats};
+    results[2] = (Result){"--error-map", line->error_map};
+    results[3] = (Result){"--json", line->json};
+    results[4] = (Result){"--csv", line->csv};
+    results[5] = (Result){"--map", line->map};
 }
 
-BpStatus bp_files_check_apart(const BpCommandLine *line, BpError *err) {
-    const Result results[RESULTS] = {
-        {"--output", line->output}, {"--stats", line->stats}, {"--error-map", line->error_map},
-        {"--json", line->json},     {"--csv", line->csv},     {"--map", line->map}};
+/* Whether the operands are files, and not names of something to be made. */
+static bool reads_files(const BpCommandLine *line) {
+    return strcmp(line->command->name, "generate") != 0 && strcmp(line->command->name, "help") != 0;
+}
+
+static BpStatus refuse(const Result *result, const char *what, BpError *err) {
+    return bp_fail(err, BP_ERR_USAGE, "%s %.400s would overwrite %s; choose another name", result->option,
+                   strcmp(result->path, "-") == 0 ? "(standard output)" : result->path, what);
+}
+
+BpStatus bp_files_check_apart(const BpCommandLine *line, const char *picture, BpError *err) {
+    Result results[RESULTS];
+    list_results(line, picture, results);
     const bool merges = strcmp(line->command->name, "merge") == 0;
     for (size_t r = 0; r < RESULTS; ++r) {
         const Result *result = &results[r];
         if (result->path == NULL) continue;
         for (size_t o = 0; o < r; ++o) {
-            if (results[o].path == NULL || !bp_same_file(result->path, results[o].path)) continue;
+            if (results[o].path == NULL || !bp_output_same(result->path, results[o].path, STDOUT_FILENO))
+                continue;
             return bp_fail(err, BP_ERR_USAGE, "%s and %s both name %.400s", result->option, results[o].option,
                            strcmp(result->path, "-") == 0 ? "standard output" : result->path);
         }
-        if (strcmp(result->path, "-") == 0 || (merges && r == 0)) continue;
-        for (size_t i = 0; i < line->operand_count; ++i)
-            if (bp_same_file(result->path, line->operands[i]))
-                return bp_fail(err, BP_ERR_USAGE,
-                               "%s %.400s would overwrite the file that is to be read; choose another name",
-                               result->option, result->path);
+        for (size_t i = 0; i < line->operand_count && reads_files(line) && !(merges && r == 0); ++i)
+            if (bp_output_same(result->path, line->operands[i], STDIN_FILENO))
+                return refuse(result, "the file that is to be read", err);
     }
     return BP_OK;
+}
+
+BpStatus bp_files_check_scene(const BpCommandLine *line, const char *picture, const BpScene *scene,
+                              BpError *err) {
+    Result results[RESULTS];
+    BpStatus status = BP_OK;
+    list_results(line, picture, results);
+    for (size_t c = 0; c < scene->cloud_count && status == BP_OK; ++c) {
+        char *points = bp_path_beside(scene->path, scene->clouds[c].file);
+        if (points == NULL) return bp_fail(err, BP_ERR_MEMORY, "out of memory for a path");
+        for (size_t r = 0; r < RESULTS && status == BP_OK; ++r)
+            if (results[r].path != NULL && bp_output_same(results[r].path, points, STDIN_FILENO))
+                status = refuse(&results[r], "points of the scene", err);
+        free(points);
+    }
+    return status;
 }

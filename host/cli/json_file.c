@@ -16,9 +16,7 @@ static bool dump(const json_t *root, FILE *stream) {
 BpStatus bp_json_write(json_t *root, const char *path, BpError *err) {
     BpStatus status = BP_OK;
     BpOutputFile file = {0};
-    if (root == NULL)
-        return bp_fail(err, BP_ERR_MEMORY, "out of memory, or a name that is not UTF-8, for the document %s",
-                       path);
+    if (root == NULL) return bp_fail(err, BP_ERR_MEMORY, "out of memory for the document %s", path);
     if (strcmp(path, "-") == 0) {
         if (!dump(root, stdout))
             status = bp_fail(err, BP_ERR_FILE, "cannot write to standard output: %s", strerror(errno));

@@ -54,6 +54,7 @@ static BpStatus choose_output(const BpCommandLine *line, const char *default_pat
                        "a scene from standard input has no name for its picture to take: say --output FILE");
     if (line->output == NULL) {
         BP_TRY(default_name(default_path, result->format, result, err));
+        BP_TRY(bp_files_check_apart(line, result->path, err));
         return bp_output_check(result->path, err);
     }
     const size_t length = strlen(line->output);
@@ -79,19 +80,12 @@ static BpStatus choose_output(const BpCommandLine *line, const char *default_pat
 BpStatus bp_result_choose(const BpCommandLine *line, const char *default_path, BpResultFile *result,
                           BpError *err) {
     BP_TRY(choose_output(line, default_path, result, err));
-    if (line->stats != NULL) {
-        if (bp_same_file(line->stats, result->path))
-            return bp_fail(err, BP_ERR_USAGE, "--stats and --output both name %s", bp_result_name(result));
-        BP_TRY(bp_json_check(line->stats, err));
-    }
+    if (line->stats != NULL) BP_TRY(bp_json_check(line->stats, err));
     if (line->error_map != NULL) {
         BpFormat format;
         if (!bp_format_from_path(line->error_map, &format) || format != BP_FORMAT_PNG)
             return bp_fail(err, BP_ERR_USAGE, "--error-map %.400s: expected a name that ends in .png",
                            line->error_map);
-        if (bp_same_file(line->error_map, result->path))
-            return bp_fail(err, BP_ERR_USAGE, "--error-map and --output both name %s",
-                           bp_result_name(result));
         BP_TRY(bp_output_check(line->error_map, err));
     }
     return BP_OK;

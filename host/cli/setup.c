@@ -2,11 +2,13 @@
 #include "setup.h"
 
 #include "../base/plural.h"
+#include "../base/shown.h"
 #include "../engine/limits.h"
 #include "../engine/pocl.h"
 #include "../engine/self_test.h"
 #include "../scene/scene_file.h"
 #include "apart.h"
+#include "files_apart.h"
 
 #include <inttypes.h>
 #include <stdio.h>
@@ -14,7 +16,7 @@
 #include <string.h>
 #include <unistd.h>
 
-BpStatus bp_setup_load(const char *path, BpScene **scene, BpError *err) {
+static BpStatus load(const char *path, BpScene **scene, BpError *err) {
     static const char name[] = "standard input";
     char *text = NULL;
     size_t length = 0;
@@ -30,8 +32,15 @@ BpStatus bp_setup_load(const char *path, BpScene **scene, BpError *err) {
     return status;
 }
 
+BpStatus bp_setup_load(const BpCommandLine *line, const char *path, BpScene **scene, BpError *err) {
+    BP_TRY(load(path, scene, err));
+    const BpStatus status = bp_files_check_scene(line, NULL, *scene, err);
+    if (status != BP_OK) bp_scene_destroy(scene);
+    return status;
+}
+
 BpStatus bp_setup_scene(const BpCommandLine *line, const char *path, BpScene **scene, BpError *err) {
-    BP_TRY(bp_setup_load(path, scene, err));
+    BP_TRY(bp_setup_load(line, path, scene, err));
     if (!bp_option_given(line, BP_OPTION_WIDTH)) return BP_OK;
     const BpStatus status = bp_scene_set_width(*scene, line->width, err);
     if (status != BP_OK) bp_scene_destroy(scene);
@@ -137,7 +146,9 @@ BpStatus bp_setup_self_test(const BpCommandLine *line, const BpDeviceInfo *devic
         /* A test that could not be held says nothing about the device. */
         const bool failed = status == BP_ERR_DEVICE || status == BP_ERR_BUILD;
         if (failed && line->force) {
-            fprintf(stderr, "ballpark: warning: %s\n", fault.message);
+            fputs("ballpark: warning: ", stderr);
+            bp_show(fault.message, false, stderr);
+            fputc('\n', stderr);
         } else if (status != BP_OK) {
             bp_fail(err, status, "%s%s", fault.message, failed ? "; --force renders all the same" : "");
             bp_error_attach(err, fault.attachment);

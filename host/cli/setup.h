@@ -8,7 +8,7 @@
 
 /* Loads `path`; "-" is standard input, which ends up as the scene's name in messages; clouds are then sought
  * from the current folder. */
-BpStatus bp_setup_load(const char *path, BpScene **scene, BpError *err);
+BpStatus bp_setup_load(const BpCommandLine *line, const char *path, BpScene **scene, BpError *err);
 
 /* The same, and applies --width. */
 BpStatus bp_setup_scene(const BpCommandLine *line, const char *path, BpScene **scene, BpError *err);

@@ -3,6 +3,7 @@
 #include "terminal.h"
 
 #include "../base/clock.h"
+#include "../base/shown.h"
 
 #include <errno.h>
 #include <pthread.h>
@@ -99,8 +100,10 @@ BpWaiting *bp_waiting_begin(bool quiet, const char *format, ...) {
     if (waiting == NULL) return NULL;
     va_list arguments;
     va_start(arguments, format);
-    vsnprintf(waiting->text, sizeof waiting->text, format, arguments);
+    char text[sizeof waiting->text];
+    vsnprintf(text, sizeof text, format, arguments);
     va_end(arguments);
+    bp_shown(text, waiting->text, sizeof waiting->text);
     waiting->start = bp_clock_seconds();
     pthread_mutex_init(&waiting->mutex, NULL);
     pthread_cond_init(&waiting->ended_changed, NULL);

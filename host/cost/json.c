@@ -65,12 +65,13 @@ json_t *bp_study_json(const BpStudyResult *result) {
     json_t *series = json_array(), *advice = json_array();
     for (size_t s = 0; s < result->count; s++) append(&series, series_json(&result->series[s]));
     for (int t = 0; t < BP_STUDY_TARGETS; t++) append(&advice, advice_json(result, &result->advice[t]));
-    return json_pack("{s:s, s:o, s:s, s:i, s:i, s:[i,i], s:{s:s, s:s, s:s}, s:{s:s, s:i, s:I, s:o}, s:o, "
+    return json_pack("{s:s, s:o, s:o, s:i, s:i, s:[i,i], s:{s:o, s:o, s:o}, s:{s:s, s:i, s:I, s:o}, s:o, "
                      "s:f, s:f, s:b, s:o, s:o}",
-                     "version", bp_version(), "scene", bp_json_text(result->scene->path), "title", info.title,
-                     "width", (int)camera->width, "height", (int)camera->height, "advice_size",
-                     (int)result->full_width, (int)result->full_height, "device", "platform",
-                     device->platform, "name", device->name, "driver", device->driver, "reference", "kind",
+                     "version", bp_version(), "scene", bp_json_text(result->scene->path), "title",
+                     bp_json_text(info.title), "width", (int)camera->width, "height", (int)camera->height,
+                     "advice_size", (int)result->full_width, (int)result->full_height, "device", "platform",
+                     bp_json_text(device->platform), "name", bp_json_text(device->name), "driver",
+                     bp_json_text(device->driver), "reference", "kind",
                      result->reference_is_kernel ? "kernel in double precision" : "reference tracer",
                      "max_depth", (int)BP_STUDY_DEPTH, "samples_per_pixel",
                      (json_int_t)result->reference_samples, "nrmse", number(result->reference_error),

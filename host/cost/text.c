@@ -2,6 +2,7 @@
 #include "study.h"
 
 #include "../base/format.h"
+#include "../base/shown.h"
 
 #include <inttypes.h>
 #include <math.h>
@@ -14,8 +15,8 @@ static const char *interval(const BpStudyEstimate *estimate, char *text, size_t 
 static void print_head(const BpStudyResult *result, FILE *out) {
     const BpScene *scene = result->scene;
     char error[32];
-    fprintf(out, "%s at %ux%u on %s\n", scene->path, scene->camera.width, scene->camera.height,
-            result->report.device.name);
+    bp_show(scene->path, false, out);
+    fprintf(out, " at %ux%u on %s\n", scene->camera.width, scene->camera.height, result->report.device.name);
     fprintf(out,
             "truth: exact Fresnel, depth %u, %s, two references of %" PRIu64
             " samples a pixel (noise of their mean: %s)\n\n",
@@ -86,7 +87,9 @@ const char *bp_study_advice_text(const BpStudyResult *result, const BpStudyAdvic
     const BpStudyConfiguration *configuration = &result->series[advice->series].configuration;
     /* A line to be pasted: a path that a shell would take apart, or standard input, is left to the reader. */
     const char *path = result->scene->path;
-    const bool plain = strpbrk(path, " \"'\\$") == NULL;
+    char clean[4096];
+    const bool plain = strpbrk(path, " \"'\\$`;&|<>()*?[]#~!{}") == NULL &&
+                       strcmp(bp_shown(path, clean, sizeof clean), path) == 0;
     char seconds[32];
     snprintf(
         text, size, "%g %%: %s, %.0f %s a pixel, %s %s at %ux%u: ballpark render %.300s --spp %.0f%s%s%s",

@@ -27,6 +27,8 @@ static const char *const packet_files[] = {
     "trace_packet.cl", "fold.cl",       "probe.cl",    NULL};
 
 /* A text that grows. `failed` remembers an allocation that did not succeed. */
+#define KERNEL_FILE_BYTES_MAX (1u << 20) /* BALLPARK_KERNELS can name a folder of anything */
+
 typedef struct Text {
     char *bytes;
     size_t length, capacity;
@@ -73,17 +75,27 @@ BpStatus bp_kernel_text(const char *name, char **text, BpError *err) {
         if (path == NULL) return bp_fail(err, BP_ERR_MEMORY, "no memory for a path of %zu bytes", size);
         snprintf(path, size, "%s/%s", directory, name);
         FILE *file = fopen(path, "rb");
-        if (file == NULL)
+        if (file == NULL) {
             bp_fail(
                 err, BP_ERR_FILE,
                 "cannot open %s: %s; the environment variable BALLPARK_KERNELS must name a folder with all "
                 "kernel files: correct it, or unset it for those in the program",
                 path, strerror(errno));
-        free(path);
-        if (file == NULL) return BP_ERR_FILE;
+            free(path);
+            return BP_ERR_FILE;
+        }
         text_append(&read, "", 0);
-        while ((count = fread(block, 1, sizeof block, file)) > 0) text_append(&read, block, count);
+        while (read.length <= KERNEL_FILE_BYTES_MAX && (count = fread(block, 1, sizeof block, file)) > 0)
+            text_append(&read, block, count);
         fclose(file);
+        if (read.length > KERNEL_FILE_BYTES_MAX) {
+            bp_fail(err, BP_ERR_FILE, "%s: is no kernel file: it has more than %u bytes", path,
+                    KERNEL_FILE_BYTES_MAX);
+            free(path);
+            free(read.bytes);
+            return BP_ERR_FILE;
+        }
+        free(path);
     } else if (embedded != NULL) {
         text_append(&read, embedded, strlen(embedded));
     } else {

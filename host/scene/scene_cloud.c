@@ -9,18 +9,6 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* `file` as seen from the folder of the document; the caller frees it. NULL: out of memory. */
-static char *resolve(const char *document, const char *file) {
-    const char *const slash = strrchr(document, '/');
-    const size_t folder = file[0] == '/' || slash == NULL ? 0 : (size_t)(slash - document) + 1;
-    const size_t file_size = strlen(file) + 1;
-    char *path = malloc(folder + file_size);
-    if (path == NULL) return NULL;
-    memcpy(path, document, folder);
-    memcpy(path + folder, file, file_size);
-    return path;
-}
-
 /* Adds to an error that stands in the file of points where the scene asks for that file. */
 static void name_document(const BpNode *file_node, BpError *err) {
     BpError place = {0};
@@ -43,7 +31,7 @@ static BpStatus read_file(const BpNode *file_node, const char *file, const BpPly
                           BpScene *scene, BpError *err) {
     FILE *stream = NULL;
     uint64_t size = 0;
-    char *path = resolve(file_node->document->name, file);
+    char *path = bp_path_beside(file_node->document->name, file);
     if (path == NULL) return bp_fail(err, BP_ERR_MEMORY, "out of memory for a path");
     BpError inner = {0};
     BpStatus status = bp_file_open(path, false, "a PLY file", &stream, &size, &inner);
@@ -52,6 +40,15 @@ static BpStatus read_file(const BpNode *file_node, const char *file, const BpPly
         bp_printable(path, shown, sizeof shown);
         status = bp_node_fail(file_node, BP_PART_VALUE, err, "\"%s\": %s", shown, inner.message);
         bp_error_clear(&inner);
+        goto done;
+    }
+    if (size > BP_PLY_BYTES_MAX) {
+        status =
+            bp_node_fail(file_node, BP_PART_VALUE, err,
+                         "\"%.200s\": found %llu bytes, expected at most %llu, which is a kilobyte for every "
+                         "sphere that a scene can have",
+                         file, (unsigned long long)size, (unsigned long long)BP_PLY_BYTES_MAX);
+        fclose(stream);
         goto done;
     }
     const size_t first = scene->sphere_count;

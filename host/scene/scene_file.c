@@ -32,6 +32,17 @@ static BpStatus fail_kind(const char *path, mode_t mode, const char *expected, B
     return status;
 }
 
+char *bp_path_beside(const char *document, const char *file) {
+    const char *const slash = strrchr(document, '/');
+    const size_t folder = file[0] == '/' || slash == NULL ? 0 : (size_t)(slash - document) + 1;
+    const size_t file_size = strlen(file) + 1;
+    char *path = malloc(folder + file_size);
+    if (path == NULL) return NULL;
+    memcpy(path, document, folder);
+    memcpy(path + folder, file, file_size);
+    return path;
+}
+
 BpStatus bp_file_open(const char *path, bool accept_pipe, const char *expected, FILE **stream, uint64_t *size,
                       BpError *err) {
     struct stat state;
@@ -58,11 +69,21 @@ BpStatus bp_file_open(const char *path, bool accept_pipe, const char *expected, 
     return BP_OK;
 }
 
+static BpStatus fail_size(const char *path, BpError *err) {
+    const BpStatus status = bp_fail(err, BP_ERR_SCENE,
+                                    "found more than %u MiB, expected a document of no more; put the spheres "
+                                    "into a PLY file (\"clouds\")",
+                                    (unsigned)(BP_TEXT_BYTES_MAX >> 20));
+    bp_error_at(err, path, 0, 0);
+    return status;
+}
+
 BpStatus bp_stream_read(FILE *stream, uint64_t size, const char *path, char **bytes, size_t *length,
                         BpError *err) {
     BpStatus status = BP_OK;
     char *buffer = NULL;
     size_t used = 0, capacity = 0;
+    if (size > BP_TEXT_BYTES_MAX) return fail_size(path, err);
     do { /* one byte more than the file's size, so that its end is met in the first round */
         capacity = capacity > 0 ? 2 * capacity : size > 0 ? (size_t)size + 1 : FIRST_CAPACITY;
         char *grown = realloc(buffer, capacity);
@@ -73,7 +94,11 @@ BpStatus bp_stream_read(FILE *stream, uint64_t size, const char *path, char **by
         }
         buffer = grown;
         used += fread(buffer + used, 1, capacity - used, stream);
-    } while (used == capacity);
+    } while (used == capacity && used <= BP_TEXT_BYTES_MAX);
+    if (used > BP_TEXT_BYTES_MAX) {
+        status = fail_size(path, err);
+        goto done;
+    }
     if (ferror(stream)) {
         status = bp_fail(err, BP_ERR_FILE, "cannot read it: %s", strerror(errno));
         bp_error_at(err, path, 0, 0);
