@@ -2,6 +2,7 @@
  *
  * In:    argc, argv.   Out: an exit code (BP_STATUS_LIST).
  * Knows: how an error is shown.   Does not know: what any command does. */
+#include "base/json_memory.h"
 #include "base/shown.h"
 #include "cli/commands.h"
 #include "cli/interrupt.h"
@@ -48,6 +49,7 @@ int main(int argc, char **argv) {
     signal(SIGPIPE, SIG_IGN);
     signal(SIGXFSZ, SIG_IGN);
     bp_interrupt_install();
+    bp_json_memory_watch();
 
     BpStatus status = bp_command_line_parse(argc, argv, &line, &err);
     if (status == BP_OK) {

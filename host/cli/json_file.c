@@ -1,6 +1,7 @@
 /* json_file.c: see json_file.h. */
 #include "json_file.h"
 
+#include "../base/json_memory.h"
 #include "../base/output_file.h"
 
 #include <errno.h>
@@ -16,7 +17,11 @@ static bool dump(const json_t *root, FILE *stream) {
 BpStatus bp_json_write(json_t *root, const char *path, BpError *err) {
     BpStatus status = BP_OK;
     BpOutputFile file = {0};
-    if (root == NULL) return bp_fail(err, BP_ERR_MEMORY, "out of memory for the document %s", path);
+    /* A list that could not grow may have been left without a word, too. */
+    if (root == NULL || bp_json_memory_failed()) {
+        json_decref(root);
+        return bp_fail(err, BP_ERR_MEMORY, "out of memory for the document %s", path);
+    }
     if (strcmp(path, "-") == 0) {
         if (!dump(root, stdout))
             status = bp_fail(err, BP_ERR_FILE, "cannot write to standard output: %s", strerror(errno));

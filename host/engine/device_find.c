@@ -38,10 +38,13 @@ static char *device_text(cl_device_id id, cl_device_info what) {
     return text;
 }
 
-static void device_text_into(cl_device_id id, cl_device_info what, char *to, size_t size) {
+/* false: out of memory, which is no answer of the device. */
+static bool device_text_into(cl_device_id id, cl_device_info what, char *to, size_t size) {
     char *text = device_text(id, what);
-    copy_trimmed(to, size, text != NULL ? text : "");
+    const bool known = text != NULL;
+    copy_trimmed(to, size, known ? text : "");
     free(text);
+    return known;
 }
 
 static void platform_name(cl_platform_id platform, char *to, size_t size) {
@@ -79,11 +82,12 @@ bool bp_device_has_extension(cl_device_id id, const char *name) {
     return found;
 }
 
-/* What the device lacks of what every kernel needs, as a whole phrase; "" when nothing. */
-static void find_lack(cl_device_id id, const BpDeviceInfo *info, char refusal[128]) {
+/* What the device lacks of what every kernel needs, as a whole phrase; "" when nothing. false: out of memory.
+ */
+static bool find_lack(cl_device_id id, const BpDeviceInfo *info, char refusal[128]) {
     unsigned major = 0, minor = 0;
     char profile[64];
-    device_text_into(id, CL_DEVICE_PROFILE, profile, sizeof profile);
+    if (!device_text_into(id, CL_DEVICE_PROFILE, profile, sizeof profile)) return false;
     const uint64_t single = device_ulong(id, CL_DEVICE_SINGLE_FP_CONFIG);
     refusal[0] = '\0';
     if (sscanf(info->version, "OpenCL %u.%u", &major, &minor) != 2)
@@ -102,16 +106,19 @@ static void find_lack(cl_device_id id, const BpDeviceInfo *info, char refusal[12
         snprintf(refusal, 128, "its float does not round to nearest");
     else if (!info->available)
         snprintf(refusal, 128, "it is not available now");
+    return true;
 }
 
-static void describe(cl_device_id id, cl_platform_id platform, unsigned number, BpDeviceInfo *info) {
+/* false: out of memory. */
+static bool describe(cl_device_id id, cl_platform_id platform, unsigned number, BpDeviceInfo *info) {
     memset(info, 0, sizeof *info);
     info->number = number;
     platform_name(platform, info->platform, sizeof info->platform);
-    device_text_into(id, CL_DEVICE_NAME, info->name, sizeof info->name);
-    device_text_into(id, CL_DEVICE_VENDOR, info->vendor, sizeof info->vendor);
-    device_text_into(id, CL_DEVICE_VERSION, info->version, sizeof info->version);
-    device_text_into(id, CL_DRIVER_VERSION, info->driver, sizeof info->driver);
+    if (!device_text_into(id, CL_DEVICE_NAME, info->name, sizeof info->name) ||
+        !device_text_into(id, CL_DEVICE_VENDOR, info->vendor, sizeof info->vendor) ||
+        !device_text_into(id, CL_DEVICE_VERSION, info->version, sizeof info->version) ||
+        !device_text_into(id, CL_DRIVER_VERSION, info->driver, sizeof info->driver))
+        return false;
     const uint64_t type = device_ulong(id, CL_DEVICE_TYPE);
     info->type = (type & CL_DEVICE_TYPE_GPU) != 0   ? BP_DEVICE_GPU
                  : (type & CL_DEVICE_TYPE_CPU) != 0 ? BP_DEVICE_CPU
@@ -123,7 +130,7 @@ static void describe(cl_device_id id, cl_platform_id platform, unsigned number, 
     info->has_double = device_ulong(id, CL_DEVICE_DOUBLE_FP_CONFIG) != 0;
     info->has_compiler = device_flag(id, CL_DEVICE_COMPILER_AVAILABLE);
     info->available = device_flag(id, CL_DEVICE_AVAILABLE);
-    find_lack(id, info, info->refusal);
+    return find_lack(id, info, info->refusal);
 }
 
 /* All platforms, heap; *count 0 and NULL where there is none, which is no error. */
@@ -172,8 +179,11 @@ BpStatus bp_device_ids(BpDeviceInfo **list, cl_device_id **ids, size_t *count, B
         }
         if (clGetDeviceIDs(platforms[p], CL_DEVICE_TYPE_ALL, here, handles + found, NULL) != CL_SUCCESS)
             continue;
-        for (cl_uint d = 0; d < here; ++d, ++found)
-            describe(handles[found], platforms[p], (unsigned)found, &infos[found]);
+        for (cl_uint d = 0; d < here; ++d, ++found) {
+            if (describe(handles[found], platforms[p], (unsigned)found, &infos[found])) continue;
+            status = bp_fail(err, BP_ERR_MEMORY, "out of memory for the description of an OpenCL device");
+            goto cleanup;
+        }
     }
     *list = infos;
     infos = NULL;

@@ -83,13 +83,18 @@ static BpStatus write_png(FILE *out, uint32_t width, uint32_t height, const floa
     uint8_t *row = malloc((size_t)width * 3);
     png_structp png = png_create_write_struct(PNG_LIBPNG_VER_STRING, &failure, on_error, on_warning);
     if (png != NULL) info = png_create_info_struct(png);
+    errno = 0;
     if (row == NULL || info == NULL) {
         status = bp_fail(err, BP_ERR_MEMORY, "out of memory for the PNG encoder");
     } else if (write_all(png, info, out, width, height, linear, bytes, transfer, row)) {
         status = bp_image_finish(out, "PNG", err);
     } else {
         const char *reason = ferror(out) ? strerror(failure.error_number) : failure.text;
-        status = bp_fail(err, BP_ERR_FILE, "writing the PNG failed: %s", reason);
+        /* libpng has other words for it ("too many text chunks"). */
+        if (failure.error_number == ENOMEM)
+            status = bp_fail(err, BP_ERR_MEMORY, "out of memory for the PNG encoder");
+        else
+            status = bp_fail(err, BP_ERR_FILE, "writing the PNG failed: %s", reason);
     }
     png_destroy_write_struct(&png, &info);
     free(row);

@@ -1,6 +1,8 @@
 /* scene_document.c: see scene_document.h. */
 #include "scene_document.h"
 
+#include "../base/json_memory.h"
+
 #include <limits.h>
 #include <math.h>
 #include <stdarg.h>
@@ -61,8 +63,6 @@ static BpStatus fail_syntax(const BpDocument *document, const json_error_t *erro
     char found[sizeof error->text], text[512];
     bp_printable(error->text, found, sizeof found);
     switch (json_error_code(error)) {
-    case json_error_out_of_memory:
-        return bp_fail(err, BP_ERR_MEMORY, "out of memory while reading the scene");
     case json_error_duplicate_key:
         return fail_duplicate(document, error, err);
     case json_error_stack_overflow:
@@ -123,10 +123,13 @@ BpStatus bp_document_open(const char *text, size_t length, const char *name, BpD
                               "found a byte of value 0, expected text: remove it, and check that the file is "
                               "whole and saved as UTF-8");
     json_error_t error;
-    document->root = json_loadb(text, length, JSON_REJECT_DUPLICATES, &error);
+    bool no_memory = false;
+    document->root = bp_json_load(text, length, JSON_REJECT_DUPLICATES, &error, &no_memory);
     /* An integer of over 64 bits is a number like any other, for its member to refuse by its own limits. */
-    if (document->root == NULL && json_error_code(&error) == json_error_numeric_overflow)
-        document->root = json_loadb(text, length, JSON_REJECT_DUPLICATES | JSON_DECODE_INT_AS_REAL, &error);
+    if (document->root == NULL && !no_memory && json_error_code(&error) == json_error_numeric_overflow)
+        document->root =
+            bp_json_load(text, length, JSON_REJECT_DUPLICATES | JSON_DECODE_INT_AS_REAL, &error, &no_memory);
+    if (no_memory) return bp_fail(err, BP_ERR_MEMORY, "out of memory while reading the scene");
     if (document->root == NULL) return fail_syntax(document, &error, err);
     if (!json_is_object(document->root)) {
         bp_document_close(document);

@@ -1,0 +1,32 @@
+/* json_memory.c: see json_memory.h. */
+#include "json_memory.h"
+
+#include <errno.h>
+#include <stdatomic.h>
+#include <stdlib.h>
+
+/* jansson's functions take no context, so what they note has no other place. It is never taken back. */
+static atomic_bool refused;
+
+static void *allocate(size_t size) {
+    void *bytes = malloc(size);
+    if (bytes == NULL) refused = true;
+    return bytes;
+}
+
+void bp_json_memory_watch(void) {
+    json_set_alloc_funcs(allocate, free);
+}
+
+bool bp_json_memory_failed(void) {
+    return refused;
+}
+
+json_t *bp_json_load(const char *text, size_t length, size_t flags, json_error_t *error, bool *no_memory) {
+    errno = 0;
+    json_t *root = json_loadb(text, length, flags, error);
+    *no_memory = bp_json_memory_failed() || (root == NULL && errno == ENOMEM);
+    if (!*no_memory) return root;
+    json_decref(root);
+    return NULL;
+}

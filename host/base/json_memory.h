@@ -1,0 +1,24 @@
+/* json_memory.h: documents that jansson had no memory for are noticed.
+ *
+ * In:    the text of a document.   Out: the document; or whether memory ran out.
+ * Knows: jansson's allocations.    Does not know: what a document says.
+ *
+ * jansson calls a text wrong that it had no room for, and now and then loses a letter of it without a word.
+ * So the program has it allocate through functions that note a failure; a program that uses libballpark may
+ * have functions of its own, and is told what errno says. */
+#ifndef BP_BASE_JSON_MEMORY_H
+#define BP_BASE_JSON_MEMORY_H
+
+#include <jansson.h>
+#include <stdbool.h>
+
+/* For main, once, before jansson is used. */
+void bp_json_memory_watch(void);
+
+/* Whether jansson has ever been refused memory: whatever it made in this process may lack something. */
+bool bp_json_memory_failed(void);
+
+/* json_loadb(); *no_memory: it failed for lack of memory, whatever `error` says. */
+json_t *bp_json_load(const char *text, size_t length, size_t flags, json_error_t *error, bool *no_memory);
+
+#endif
