@@ -1,6 +1,7 @@
 /* accumulator_file.c: see accumulator_file.h. */
 #include "accumulator_file.h"
 
+#include "../base/json_memory.h"
 #include "../base/output_file.h"
 #include "../base/plural.h"
 #include "accumulator_header.h"
@@ -120,18 +121,18 @@ static BpStatus read_header(Loader *loader, json_t **header, BpError *err) {
     int c = EOF;
     while (length < HEADER_SIZE_MAX && (c = getc(loader->in)) != EOF && c != '\n') text[length++] = (char)c;
     json_error_t json_error;
+    bool no_memory = false;
     BpStatus status = BP_OK;
     if (ferror(loader->in))
         status = bp_fail(err, BP_ERR_FILE, "reading %s failed: %s", loader->name, strerror(errno));
     else if (c != '\n')
         status = bp_fail(err, BP_ERR_FILE, "%s is not an accumulator: it does not begin with a line of JSON",
                          loader->name);
-    else if ((*header = json_loadb(text, length, JSON_REJECT_DUPLICATES, &json_error)) == NULL)
-        status = json_error_code(&json_error) == json_error_out_of_memory
-                     ? bp_fail(err, BP_ERR_MEMORY, "out of memory for the header of %s", loader->name)
-                     : bp_fail(err, BP_ERR_FILE,
-                               "%s is not an accumulator: its first line is no JSON: %s (column %d)",
-                               loader->name, json_error.text, json_error.column);
+    else if ((*header = bp_json_load(text, length, JSON_REJECT_DUPLICATES, &json_error, &no_memory)) == NULL)
+        status = no_memory ? bp_fail(err, BP_ERR_MEMORY, "out of memory for the header of %s", loader->name)
+                           : bp_fail(err, BP_ERR_FILE,
+                                     "%s is not an accumulator: its first line is no JSON: %s (column %d)",
+                                     loader->name, json_error.text, json_error.column);
     loader->checksum =
         crc32_z(crc32_z(crc32_z(0, NULL, 0), (const uint8_t *)text, length), (const uint8_t *)"\n", 1);
     loader->header_size = length + 1;
