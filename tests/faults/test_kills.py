@@ -1,0 +1,122 @@
+"""A render or a merge that is stopped at any moment leaves the old file or the new one, whole, and nothing else.
+
+Run as: python3 test_kills.py PROGRAM SOURCE_DIR KILLS [unittest's arguments]
+KILLS: how many tries of each command, at moments spread over a run's time by a fixed seed; by SIGINT, SIGTERM, SIGHUP
+and SIGKILL in turns."""
+
+import os
+import random
+import signal
+import subprocess
+import sys
+import time
+
+KILLS = int(sys.argv[3])
+sys.argv[3:4] = []
+sys.path.insert(0, os.path.join(os.path.abspath(sys.argv[2]), "tests", "cli"))
+
+import cli  # noqa: E402
+
+OLD = b"what was there before"
+SIGNALS = (signal.SIGINT, signal.SIGTERM, signal.SIGHUP, signal.SIGKILL)
+
+
+class Kills(cli.ProgramTest):
+    def has_unnamed_files(self):
+        try:
+            os.close(os.open(self.folder, os.O_TMPFILE | os.O_WRONLY))
+        except (OSError, AttributeError):
+            return False
+        return os.path.exists("/proc/self/fd/0")
+
+    def start(self, arguments):
+        return subprocess.Popen([cli.PROGRAM, *arguments], cwd=self.folder, env=self.environment,
+                                stdin=subprocess.DEVNULL, stderr=subprocess.PIPE, start_new_session=True)
+
+    def kill_often(self, arguments, result, is_whole):
+        """`is_whole(content)`: whether that is a result."""
+        begin = time.monotonic()
+        self.succeed(*arguments)
+        lasts = time.monotonic() - begin
+        there = set(self.files()) - {result}
+        chance, unnamed = random.Random(7), self.has_unnamed_files()
+        outcomes = {"old": 0, "new": 0}
+        for number in range(KILLS):
+            existing, kind = number % 8 < 6, SIGNALS[number % len(SIGNALS)]
+            if existing:
+                self.write(result, OLD)
+            elif result in self.files():
+                os.remove(self.path(result))
+            process = self.start(arguments)
+            time.sleep(chance.uniform(0, 1.1 * lasts))
+            process.send_signal(kind)
+            said = process.communicate(timeout=cli.LIMIT_SECONDS)[1].decode(errors="replace")
+            where = f"{arguments[0]} {number}, {kind.name}: {process.returncode}, {said}"
+            # A signal that comes before main has its own way; one that comes after the end changes nothing.
+            self.assertIn(process.returncode, (0, 130, -kind), where)
+            if result in self.files():
+                content = self.read(result)
+                self.assertTrue(is_whole(content) or (existing and content == OLD), f"{where}: {content[:40]}")
+                outcomes["old" if content == OLD else "new"] += 1
+            else:
+                self.assertFalse(existing, f"{where}: the old file is gone")
+                outcomes["old"] += 1
+            left = set(self.files()) - there - {result}
+            if kind != signal.SIGKILL:
+                self.assertEqual(left, set(), where)
+            for name in left:
+                # Nobody can be kept from being killed between giving a finished file its name and renaming it; a file
+                # that is not finished has no name.
+                self.assertTrue(not unnamed or is_whole(self.read(name)), f"{where}: {name} is not whole")
+                os.remove(self.path(name))
+        self.assertGreater(outcomes["old"], 0, outcomes)
+        return outcomes
+
+    def test_merge(self):
+        self.write("s.json", cli.scene(500, 400, camera={"samples_per_pixel": 1}))
+        for number in (0, 1):
+            self.succeed("render", "s.json", "--first-sample", number, "-o", f"{number}.bpa", "-q")
+        self.succeed("merge", "0.bpa", "1.bpa", "-o", "right.bpa", "-q")
+        right = self.read("right.bpa")
+        outcomes = self.kill_often(("merge", "0.bpa", "1.bpa", "-o", "m.bpa", "-q"), "m.bpa",
+                                   lambda content: content == right)
+        self.assertGreater(outcomes["new"], 0, outcomes)
+
+    def test_render(self):
+        """What is written when it is interrupted is a picture of what there is: it has every byte of one."""
+        self.write("s.json", cli.scene(64, 64, camera={"samples_per_pixel": 3000}))
+        size = len(b"PF\n64 64\n-1.0\n") + 64 * 64 * 12
+        self.kill_often(("render", "s.json", "-o", "a.pfm", "-q"), "a.pfm", lambda content: len(content) == size)
+
+    def test_limits(self):
+        """A terminal that goes away and a limit on processor time end a render as Ctrl-C does: it keeps what there is."""
+        self.write("s.json", cli.scene(64, 64, camera={"samples_per_pixel": 3000}))
+        for kind in (signal.SIGHUP, signal.SIGXCPU):
+            for wait in (0.5, 1, 2, 4, 8, 16, 32):  # a signal before there is anything to keep ends it at once
+                process = self.start(("render", "s.json", "--time", "200", "-o", "a.pfm"))
+                time.sleep(wait)
+                process.send_signal(kind)
+                said = process.communicate(timeout=cli.LIMIT_SECONDS)[1].decode()
+                self.assertEqual(process.returncode, 130, f"{kind.name}: {said}")
+                if "a.pfm" in self.files():
+                    break
+            self.assertIn("interrupted after", said, kind.name)
+            self.assertEqual(self.files(), ["a.pfm", "s.json"], kind.name)
+            os.remove(self.path("a.pfm"))
+
+    def test_nohup(self):
+        """A hangup that is ignored stays ignored."""
+        self.write("s.json", cli.scene(16, 9))
+        process = subprocess.Popen([cli.PROGRAM, "render", "s.json", "--time", "2", "-o", "a.pfm", "-q"],
+                                   cwd=self.folder, env=self.environment, stderr=subprocess.PIPE,
+                                   preexec_fn=lambda: signal.signal(signal.SIGHUP, signal.SIG_IGN))
+        for _ in range(10):
+            time.sleep(0.15)
+            if process.poll() is None:
+                process.send_signal(signal.SIGHUP)
+        said = process.communicate(timeout=cli.LIMIT_SECONDS)[1].decode()
+        self.assertEqual(process.returncode, 0, said)
+
+
+if __name__ == "__main__":
+    cli.main()
