@@ -69,7 +69,8 @@ BpStatus bp_accumulator_save_stream(const BpAccumulator *accumulator, FILE *out,
     BpStatus status = BP_OK;
     Writer writer = {out, malloc(8 * BLOCK), crc32_z(0, NULL, 0)};
     char *header = bp_accumulator_header_make(accumulator);
-    if (writer.buffer == NULL || header == NULL) {
+    if (writer.buffer == NULL || header == NULL ||
+        bp_json_memory_failed()) { /* or the header may lack a part */
         status = bp_fail(err, BP_ERR_MEMORY, "out of memory for writing the accumulator");
     } else {
         const size_t cells = cell_count(accumulator);
