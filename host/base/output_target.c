@@ -12,7 +12,7 @@
 
 #define LINKS_MAX 40 /* as the kernel's own limit on chains of symbolic links */
 
-static const char *remedy(int error_number) {
+const char *bp_output_remedy(int error_number) {
     switch (error_number) {
     case ENOENT:
         return "; create the folder first, or choose another with -o";
@@ -44,7 +44,7 @@ BpStatus bp_output_fail(BpError *err, const char *action, const char *path, int 
     if (error_number == ENOMEM) return bp_fail(err, BP_ERR_MEMORY, "out of memory for writing %s", path);
     if (strerror_r(error_number, reason, sizeof reason) != 0)
         snprintf(reason, sizeof reason, "error %d", error_number);
-    bp_fail(err, BP_ERR_FILE, "cannot %s %s: %s%s", action, path, reason, remedy(error_number));
+    bp_fail(err, BP_ERR_FILE, "cannot %s %s: %s%s", action, path, reason, bp_output_remedy(error_number));
     bp_error_at(err, path, 0, 0);
     return BP_ERR_FILE;
 }

@@ -32,7 +32,8 @@ BpStatus bp_image_finish(FILE *out, const char *what, BpError *err) {
     const int error_before = errno;
     if (fflush(out) == 0 && !failed_before) return BP_OK;
     const int error_number = failed_before ? error_before : errno;
-    return bp_fail(err, BP_ERR_FILE, "writing the %s failed: %s", what, strerror(error_number));
+    return bp_fail(err, BP_ERR_FILE, "writing the %s failed: %s%s", what, strerror(error_number),
+                   bp_output_remedy(error_number));
 }
 
 BpStatus bp_picture_write_stream(const BpPicture *picture, FILE *out, BpFormat format, BpTransfer transfer,

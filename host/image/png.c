@@ -9,6 +9,7 @@
  * the book's pictures before its gamma section are meant to look. */
 #include "image.h"
 
+#include "../base/output_target.h"
 #include "../base/status.h"
 
 #include <errno.h>
@@ -90,11 +91,12 @@ static BpStatus write_png(FILE *out, uint32_t width, uint32_t height, const floa
         status = bp_image_finish(out, "PNG", err);
     } else {
         const char *reason = ferror(out) ? strerror(failure.error_number) : failure.text;
+        const char *remedy = ferror(out) ? bp_output_remedy(failure.error_number) : "";
         /* libpng has other words for it ("too many text chunks"). */
         if (failure.error_number == ENOMEM)
             status = bp_fail(err, BP_ERR_MEMORY, "out of memory for the PNG encoder");
         else
-            status = bp_fail(err, BP_ERR_FILE, "writing the PNG failed: %s", reason);
+            status = bp_fail(err, BP_ERR_FILE, "writing the PNG failed: %s%s", reason, remedy);
     }
     png_destroy_write_struct(&png, &info);
     free(row);

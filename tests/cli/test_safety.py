@@ -1,0 +1,221 @@
+"""No file is lost: targets that cannot be replaced, two names of one file, inputs, open files, full devices, limits."""
+
+import json
+import os
+import stat
+import subprocess
+
+import cli
+from cli import ProgramTest, main, scene
+
+NOBODY = 65534
+
+
+class Safety(ProgramTest):
+    def setUp(self):
+        super().setUp()
+        self.write("s.json", scene(8))
+
+    def shell(self, line, code=0):
+        """`line` by a shell; "$B" is the program."""
+        result = subprocess.run(["/bin/sh", "-c", line], cwd=self.folder, env=dict(self.environment, B=cli.PROGRAM),
+                                stdout=subprocess.PIPE, stderr=subprocess.PIPE, timeout=cli.LIMIT_SECONDS)
+        result.errors = result.stderr.decode(errors="replace")
+        self.assertEqual(result.returncode, code, f"{line}: {result.errors}")
+        return result
+
+
+class Replacing(Safety):
+    def test_mounted_target(self):
+        """A file on which another is mounted cannot be renamed over: the render is copied into it."""
+        self.write("a.png", "")
+        self.write("outside", "old")
+        if subprocess.run(["mount", "--bind", self.path("outside"), self.path("a.png")], check=False,
+                          stderr=subprocess.DEVNULL).returncode != 0:
+            self.skipTest("nothing can be mounted here")
+        self.addCleanup(subprocess.run, ["umount", self.path("a.png")], check=True)
+        self.succeed("render", "s.json", "-o", "a.png", "-q")
+        self.assertTrue(self.read("outside").startswith(b"\x89PNG"))
+        self.assertEqual(self.files(), ["a.png", "outside", "s.json"])
+
+    def test_anothers_file_in_a_sticky_folder(self):
+        if os.geteuid() != 0:
+            self.skipTest("only root can make a file of somebody else's")
+        os.chmod(self.folder, 0o1777)
+        self.write("a.png", "old" * 1000)
+        os.chown(self.path("a.png"), 12345, 12345)
+        os.chmod(self.path("a.png"), 0o666)
+        self.succeed("render", "s.json", "-o", "a.bpa", "-q")
+        command = ("merge", "a.bpa", "-o", "a.png", "-q")
+        try:
+            result = subprocess.run([cli.PROGRAM, *command], cwd=self.folder, check=False, user=NOBODY, group=NOBODY,
+                                    extra_groups=[], env=self.environment, stderr=subprocess.PIPE)
+        except PermissionError:
+            self.skipTest("another user cannot run the program here")
+        self.assertEqual(result.returncode, 0, result.stderr)
+        self.assertTrue(self.read("a.png").startswith(b"\x89PNG"))
+        self.assertEqual(os.stat(self.path("a.png")).st_uid, 12345)
+        self.assertEqual(self.files(), ["a.bpa", "a.png", "s.json"])
+
+    def test_permissions(self):
+        self.write("a.png", "old")
+        if os.geteuid() == 0:
+            os.chown(self.path("a.png"), NOBODY, NOBODY)
+        os.chmod(self.path("a.png"), 0o6751)
+        self.succeed("render", "s.json", "-o", "a.png", "-q")
+        state = os.stat(self.path("a.png"))
+        self.assertEqual(stat.S_IMODE(state.st_mode), 0o751, "set-ID bits are not for another content")
+        if os.geteuid() == 0:
+            self.assertEqual((state.st_uid, state.st_gid), (NOBODY, NOBODY))
+
+    def test_limit_on_the_size_of_files(self):
+        self.write("a.pfm", "old")
+        self.write("large.json", scene(64))
+        self.succeed("render", "large.json", "-o", "a.bpa", "-q")
+        result = self.shell("ulimit -f 1; exec \"$B\" merge a.bpa -o a.pfm -q", 1)  # drivers write files, too
+        for text in ("File too large", "ulimit -f"):
+            self.assertIn(text, result.errors)
+        self.assertEqual(self.read("a.pfm"), b"old")
+        self.assertEqual(self.files(), ["a.bpa", "a.pfm", "large.json", "s.json"])
+
+
+class TwoNames(Safety):
+    def refuse(self, *arguments, says):
+        before = {name: self.read(name) for name in self.files() if os.path.isfile(self.path(name))}
+        self.fail_with(2, *arguments, "--device", "none", says=says)
+        for name, content in before.items():
+            self.assert_same(self.read(name), content, name)
+        return before
+
+    def test_results(self):
+        os.mkdir(self.path("d"))
+        os.symlink("..", self.path("d/up"))
+        os.symlink("a.png", self.path("link.png"))
+        for other in ("./a.png", "d/../a.png", "d/up/a.png", "link.png", self.path("a.png")):
+            self.refuse("render", "s.json", "-o", "a.png", "--error-map", other, says="both name " + other)
+        self.refuse("render", "s.json", "--error-map", "./s.png", says="both name ./s.png")
+        self.refuse("render", "s.json", "--stats", "s.png", says="both name s.png")
+        self.write("a.png", "old")
+        os.link(self.path("a.png"), self.path("hard.png"))
+        self.refuse("render", "s.json", "-o", "a.png", "--error-map", "hard.png", says="both name hard.png")
+        os.mkdir(self.path("other"))
+        self.succeed("render", "s.json", "-o", "b.png", "--error-map", "other/b.png", "-q")
+
+    def test_inputs(self):
+        self.write("s.png", scene(8))  # a scene may be called that
+        self.refuse("render", "s.png", says="the picture s.png would overwrite")
+        os.link(self.path("s.json"), self.path("hard.png"))
+        self.refuse("render", "s.json", "-o", "hard.png", says="--output hard.png would overwrite")
+        self.write("points.png", "ply\nformat ascii 1.0\nelement vertex 1\nproperty float x\nproperty float y\n"
+                                 "property float z\nend_header\n0 0 -2\n")
+        os.mkdir(self.path("d"))
+        cloud = scene(4, spheres=0, clouds=[{"file": "../points.png", "radius": 1, "material": "m"}])
+        self.write("d/points.json", cloud)
+        for more in (("-o", "points.png"), ("-o", "x.png", "--error-map", "points.png"), ()):
+            self.refuse("render", "d/points.json", *more, says="points.png would overwrite points of the scene")
+        self.refuse("check", "d/points.json", "--map", "points.png", says="points of the scene")
+        with open(self.path("s.json"), "rb") as sent:
+            self.fail_with(2, "render", "-", "-o", "s.json", "--format", "png", stdin=sent, says="would overwrite")
+
+    def test_names_of_what_is_made(self):
+        self.write("cover", "old")
+        self.succeed("generate", "cover", "-o", "cover", "-q")
+
+
+class OpenFiles(Safety):
+    def test_written_through(self):
+        picture = self.succeed("render", "s.json", "-o", "-", "--format", "ppm", "-q").stdout
+        for name in ("/dev/stdout", "/dev/fd/1", "/proc/self/fd/1"):
+            if not os.path.exists(name):
+                continue
+            self.write("out", "before\n")
+            self.shell(f"\"$B\" render s.json --format ppm -q -o {name} >> out")
+            self.assert_same(self.read("out"), b"before\n" + picture, name)
+            self.shell(f"(echo before; \"$B\" render s.json --format ppm -q -o {name}; echo after) > out")
+            self.assert_same(self.read("out"), b"before\n" + picture + b"after\n", name)
+            piped = self.shell(f"\"$B\" render s.json --format ppm -q -o {name} | cat").stdout
+            self.assert_same(piped, picture, name)
+        self.shell("\"$B\" render s.json --format ppm -q -o /dev/fd/3 3> third")
+        self.assert_same(self.read("third"), picture, "3")
+        self.assertIn("no file is open", self.shell("\"$B\" render s.json --format ppm -o /dev/fd/9 9>&-", 1).errors)
+        self.assertIn("no file is open", self.shell("\"$B\" render s.json --format ppm -o /dev/fd/0 < /dev/null", 1).errors)
+        self.assertIn("both name", self.shell("\"$B\" render s.json --format ppm -o /dev/stdout --stats - > x", 2).errors)
+
+    def test_named_pipe(self):
+        os.mkfifo(self.path("pipe"))
+        got = self.shell("cat pipe & \"$B\" render s.json --format ppm -q -o pipe; wait").stdout
+        self.assertTrue(got.startswith(b"P6\n8 8\n"))
+        self.assertTrue(stat.S_ISFIFO(os.stat(self.path("pipe")).st_mode))
+
+    def test_closed_streams(self):
+        self.shell("\"$B\" render s.json -o a.png --stats t.json --error-map e.png <&- >&- 2>&-")
+        self.succeed("render", "s.json", "-o", "b.png", "-q")
+        self.assert_same(self.read("a.png"), self.read("b.png"))
+        self.assertEqual(json.loads(self.read("t.json"))["width"], 8)
+        self.assertIn("Bad file descriptor", self.shell("\"$B\" devices >&-", 1).errors)
+        self.shell("\"$B\" render - -o c.png <&-", 1)
+
+    def test_full_device(self):
+        if not os.path.exists("/dev/full"):
+            self.skipTest("there is no /dev/full")
+        for command in ("--version", "--help", "help render", "devices", "devices --json -", "explain s.json",
+                        "explain s.json --json -", "explain s.json --pixel 1,1", "generate cover -o -",
+                        "check s.json --width 4 --spp 4", "check s.json --width 4 --spp 4 --device all",
+                        "render s.json -o - -q", "render s.json -o a.png --stats - -q",
+                        "bench s.json --time 0.01 --rounds 1 -q"):
+            self.assertIn("No space left", self.shell(f"\"$B\" {command} > /dev/full", 1).errors, command)
+
+
+class Foreign(Safety):
+    def test_escapes(self):
+        evil = "\x1b]0;owned\x07\u009b31m\u202e"
+        shown = "\\x1b]0;owned\\x07\\xc2\\x9b31m\\xe2\\x80\\xae"
+        name = self.write("t" + evil + ".json", scene(8, title="T" + evil))
+        runs = [self.succeed("explain", name), self.succeed("render", name, "-o", "p" + evil + ".png"),
+                self.succeed("check", name, "--width", "4", "--spp", "4"),
+                self.run_program("render", name, "-o", "no" + evil + "/a.png"),
+                self.run_program("render", "none" + evil), self.run_program("what" + evil)]
+        self.succeed("render", name, "-o", "a.bpa", "-q")
+        runs.append(self.succeed("merge", "a.bpa", "-o", "m" + evil + ".png"))
+        for run in runs:
+            text = run.stdout.decode(errors="surrogateescape") + run.errors
+            for bad in evil.replace("]0;owned", "").replace("31m", ""):
+                self.assertNotIn(bad, text, run.args)
+        self.assertIn("T" + shown, runs[0].stdout.decode())
+        self.assertIn("p" + shown, runs[1].errors)
+        entry = json.loads(self.succeed("explain", name, "--json", "-").stdout)["scenes"][0]
+        self.assertEqual((entry["scene"], entry["title"]), (name, "T" + evil))
+
+    def test_names_that_are_not_utf8(self):
+        name = os.fsdecode(b"n\xff\xc0.json")
+        try:
+            self.write(name, scene(8))
+        except OSError:
+            self.skipTest("this file system has no such names")
+        for command in (("render", name, "-o", os.fsdecode(b"o\xfe.png"), "--stats", "t.json", "-q"),
+                        ("explain", name, "--json", "t.json"),
+                        ("check", name, "--width", "4", "--spp", "4", "--json", "t.json"),
+                        ("bench", name, "--time", "0.01", "--rounds", "1", "--json", "t.json", "-q")):
+            self.succeed(*command)
+            self.assertIn("n\ufffd\ufffd.json", self.read("t.json").decode(), command)
+            self.assertIsInstance(json.loads(self.read("t.json")), dict)
+        self.assertIn(b"o\xfe.png", os.listdir(os.fsencode(self.folder)))
+
+
+class Bounds(Safety):
+    def test_what_has_no_end(self):
+        with open("/dev/zero", "rb") as zeros:
+            self.fail_with(2, "render", "-", "-o", "a.png", stdin=zeros, says="more than 512 MiB")
+        self.fail_with(2, "render", "/dev/zero", "-o", "a.png", says="found a device")
+        with open(self.path("sparse.json"), "wb") as file:
+            file.truncate(1 << 40)
+        self.fail_with(2, "render", "sparse.json", "-o", "a.png", says="more than 512 MiB")
+        self.write("p.ply", "ply\nformat ascii 1.0\n")
+        with open(self.path("p.ply"), "r+b") as file:
+            file.truncate(1 << 40)
+        self.write("c.json", scene(4, clouds=[{"file": "p.ply", "radius": 1, "material": "m"}]))
+        self.fail_with(2, "render", "c.json", "-o", "a.png", says="expected at most")
+
+
+if __name__ == "__main__":
+    main()
