@@ -152,6 +152,15 @@ class OpenFiles(Safety):
         self.succeed("render", "s.json", "-o", "b.png", "-q")
         self.assert_same(self.read("a.png"), self.read("b.png"))
         self.assertEqual(json.loads(self.read("t.json"))["width"], 8)
+        if os.path.isdir("/proc/self/fd"):
+            os.mkfifo(self.path("pipe"))
+            process = subprocess.Popen(["/bin/sh", "-c", "exec \"$B\" render s.json --format ppm -o pipe <&- >&- 2>&-"],
+                                       cwd=self.folder, env=dict(self.environment, B=cli.PROGRAM))
+            with open(self.path("pipe"), "rb"):  # opened on both sides: neither goes on before
+                opened = [os.readlink(f"/proc/{process.pid}/fd/{stream}") for stream in range(3)]
+                process.kill()
+                process.wait()
+            self.assertEqual(opened, 3 * ["/dev/null"])
         self.assertIn("Bad file descriptor", self.shell("\"$B\" devices >&-", 1).errors)
         self.shell("\"$B\" render - -o c.png <&-", 1)
 

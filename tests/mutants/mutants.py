@@ -280,4 +280,17 @@ MUTANTS = [
     Mutant("extrapolation not told", "classic: a prediction beyond the data",
            [patch("host/cost/fit.c", "samples > (double)series->points[series->count - 1].samples", "false")],
            [test("cost_choices", "1 exact")]),
+    # ---- files ---------------------------------------------------------------------------------------------
+    Mutant("set-ID bits handed on", "classic: the mode of a replaced file, all of it",
+           [patch("host/base/output_file.c", "replaced->st_mode & 0777;", "replaced->st_mode & 07777;")],
+           [test("output_file", "1 exact")]),
+    Mutant("a finished file is deleted", "this program: when the rename failed",
+           [patch("host/base/output_file.c", "*left = bp_temporary_keep(&file->temporary);", "*left = NULL;")],
+           [test("output_file", "1 exact")]),
+    Mutant("an open file is replaced", "this program: -o /dev/stdout",
+           [patch("host/base/output_target.c", "return (flags & O_ACCMODE) == O_RDONLY ? EBADF : 0;",
+                  "target->descriptor = -1; return 0;")], [test("output_file", "1 exact")]),
+    Mutant("names compared by their letters", "this program: -o a.png --error-map ./a.png",
+           [patch("host/base/output_target.c", "return same_inode(&a->folder, &b->folder) &&",
+                  "return strcmp(first->path, second->path) == 0 &&")], [test("output_file", "1 exact")]),
 ]

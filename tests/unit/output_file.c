@@ -221,10 +221,84 @@ static void permissions_are_respected(void **state) {
     temp_remove(closed);
 }
 
+static void set_id_bits_are_not_handed_on(void **state) {
+    (void)state;
+    char folder[64], path[512];
+    temp_make(folder);
+    temp_write(temp_path(path, folder, "old.txt"), "old", 3);
+    assert_int_equal(chmod(path, 06755), 0);
+    put(path, "new");
+    assert_int_equal(mode_of(path), 0755);
+    temp_remove(folder);
+}
+
+/* A folder at the target's name stands for whatever keeps a finished file from its place. */
+static void a_finished_file_is_not_lost(void **state) {
+    (void)state;
+    char folder[64], path[512], *named;
+    temp_make(folder);
+    BpOutputFile file;
+    BpError err = {0};
+    assert_int_equal(bp_output_open(temp_path(path, folder, "new.txt"), &file, &err), BP_OK);
+    fputs("finished", file.stream);
+    assert_int_equal(mkdir(path, 0700), 0);
+    assert_int_equal(bp_output_commit(&file, &err), BP_ERR_FILE);
+    named = strstr(err.message, "is whole, as ");
+    assert_non_null(named);
+    named += strlen("is whole, as ");
+    temp_assert_text(named, "finished");
+    assert_int_equal(temp_count(folder), 2);
+    assert_int_equal(rmdir(path), 0);
+    temp_remove(folder);
+}
+
+/* An open file of the process is written where its other writers left it. */
+static void open_descriptors_are_written_through(void **state) {
+    (void)state;
+    char folder[64], path[512], name[64];
+    temp_make(folder);
+    temp_write(temp_path(path, folder, "shared.txt"), "", 0);
+    const int descriptor = open(path, O_WRONLY);
+    assert_true(descriptor >= 0);
+    assert_int_equal(write(descriptor, "before ", 7), 7);
+    snprintf(name, sizeof name, "/dev/fd/%d", descriptor);
+    if (access("/dev/fd", X_OK) != 0) skip();
+    put(name, "amid");
+    assert_int_equal(write(descriptor, " after", 6), 6);
+    close(descriptor);
+    temp_assert_text(path, "before amid after");
+    BpError err = {0};
+    assert_int_equal(bp_output_check(name, &err), BP_ERR_FILE); /* closed by now */
+    assert_non_null(strstr(err.message, "no file is open"));
+    temp_remove(folder);
+}
+
+static void names_are_compared_by_what_they_lead_to(void **state) {
+    (void)state;
+    char folder[64], path[512], other[512], link_path[512];
+    temp_make(folder);
+    temp_path(path, folder, "a.png");
+    snprintf(other, sizeof other, "%s/./a.png", folder);
+    assert_true(bp_output_same(path, other, 1)); /* neither is there yet */
+    assert_false(bp_output_same(path, temp_path(link_path, folder, "b.png"), 1));
+    assert_int_equal(symlink("a.png", link_path), 0);
+    assert_true(bp_output_same(path, link_path, 1));
+    temp_write(path, "x", 1);
+    assert_true(bp_output_same(path, other, 1));
+    assert_int_equal(link(path, temp_path(other, folder, "c.png")), 0);
+    assert_true(bp_output_same(path, other, 1));
+    assert_false(bp_output_same("/dev/null", "/dev/null", 1)); /* may be named twice */
+    temp_remove(folder);
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(new_file_gets_the_umask),
         cmocka_unit_test(replaced_file_keeps_its_mode_and_stays_until_the_commit),
+        cmocka_unit_test(set_id_bits_are_not_handed_on),
+        cmocka_unit_test(a_finished_file_is_not_lost),
+        cmocka_unit_test(open_descriptors_are_written_through),
+        cmocka_unit_test(names_are_compared_by_what_they_lead_to),
         cmocka_unit_test(discard_leaves_nothing_behind),
         cmocka_unit_test(symbolic_links_are_followed),
         cmocka_unit_test(devices_and_pipes_are_written_directly),
