@@ -74,12 +74,11 @@ static char *stem_in(const char *folder, size_t folder_length, const char *targe
     size_t kept = strlen(base);
     if (kept > BASE_NAME_KEPT_MAX) kept = BASE_NAME_KEPT_MAX;
     const size_t slash = folder_length > 0 && folder[folder_length - 1] != '/' ? 1 : 0;
-    char *path = malloc(folder_length + slash + kept + SUFFIX_SIZE);
-    if (path == NULL) return NULL;
-    memcpy(path, folder, folder_length);
-    if (slash == 1) path[folder_length] = '/';
-    memcpy(path + folder_length + slash, base, kept);
     *length = folder_length + slash + kept;
+    char *path = malloc(*length + SUFFIX_SIZE);
+    if (path == NULL) return NULL;
+    snprintf(path, *length + 1, "%.*s%s%.*s", (int)folder_length, folder, slash == 1 ? "/" : "", (int)kept,
+             base);
     return path;
 }
 
