@@ -1,6 +1,6 @@
 /* fold.cl: adds the samples of a chunk to the replicate sums of their pixels, in 64-bit fixed point.
  *
- * In:    samples as trace.cl leaves them.
+ * In:    samples as pixels.cl describes them.
  * Out:   sums and fine_sums[(pixel * K + k) * 3 + channel], counts[pixel * K + k] with their flags,
  *        tallies[pixel * 3 + ...]: ray segments, paths cut by the depth cap, invalid samples.
  * Knows: fixed point, replicates.   Does not know: what a sample shows, the picture's estimates (the host does).

@@ -6,7 +6,7 @@
 #include <math.h>
 #include <stdlib.h>
 
-/* Places in the sums of a pixel, as in the enum of kernels/features.cl. */
+/* Places in the sums of a pixel, as in the enum of kernels/entry/aovs.cl. */
 enum {
     FEATURE_DEPTH,
     FEATURE_NORMAL = FEATURE_DEPTH + 1,

@@ -7,7 +7,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* Places in a record, as in the enum of kernels/follow.cl. */
+/* Places in a record, as in the enum of kernels/entry/path_log.cl. */
 enum {
     FOLLOW_ORIGIN,
     FOLLOW_DIRECTION = FOLLOW_ORIGIN + 3,
@@ -118,8 +118,8 @@ BpStatus bp_path_follow(const BpScene *scene, const BpRenderOptions *options, co
     BpWorker *worker = NULL;
     Records records = {0};
     BP_TRY(bp_arrange(scene, &wanted, &chosen, &setup, &packed, err));
-    setup.extra_name = "follow.cl";
-    setup.extra_text = bp_kernel_file("follow.cl");
+    setup.extra_name = "entry/path_log.cl";
+    setup.extra_text = bp_kernel_file("entry/path_log.cl");
     BpStatus status = bp_worker_create(&chosen, &packed, &setup, &worker, err);
     if (status != BP_OK) goto cleanup;
     const uint32_t capacity = wanted.max_depth < 1           ? 1

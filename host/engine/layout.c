@@ -7,7 +7,7 @@
 #define STRUCTS 4
 
 BpStatus bp_layout_check(BpDevice *device, cl_program program, bool single_precision, BpError *err) {
-    /* Structs of reals shrink with the real; probe.cl lists the same members in the same order. */
+    /* Structs of reals shrink with the real; probe_layout.cl lists the same members in the same order. */
     const cl_uint real_size = single_precision ? 4 : 8;
 #define OF_REALS(type, member)                                                                               \
     {                                                                                                        \

@@ -10,21 +10,46 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* The order in which the files stand in a program. A lane file says for how many lanes what follows is meant;
- * refine.cl serves single rays in tree.cl and, below lanes_wide.cl, all lanes together. */
-static const char *const sample_files[] = {
-    "real.cl",   "scene_types.h", "lane_set.cl",     "lanes_scalar.cl", "refine.cl",   "box_ray.cl",
-    "tree.cl",   "vector.cl",     "rng.cl",          "sampler.cl",      "sampling.cl", "surface.cl",
-    "sky.cl",    "camera.cl",     "material.cl",     "paths.cl",        "meet.cl",     "look_up.cl",
-    "pixels.cl", "trace.cl",      "trace_sample.cl", "fold.cl",         "probe.cl",    NULL};
-static const char *const packet_files[] = {
-    "real.cl",         "scene_types.h", "lane_set.cl", "lanes_scalar.cl",
-    "refine.cl",       "box_ray.cl",    "tree.cl",     "lanes_wide.cl",
-    "refine.cl",       "box_ray.cl",    "vector.cl",   "rng.cl",
-    "sampler.cl",      "sampling.cl",   "surface.cl",  "sky.cl",
-    "camera.cl",       "material.cl",   "paths.cl",    "rounds.cl",
-    "meet.cl",         "look_up.cl",    "pixels.cl",   "trace.cl",
-    "trace_packet.cl", "fold.cl",       "probe.cl",    NULL};
+/* Which programs a file stands in: those of one form or one kind of numerics, or all. */
+enum { IN_SAMPLE = 1, IN_PACKET = 2, IN_ROBUST = 4, IN_PLAIN = 8, IN_ALL = 0 };
+
+/* The order in which the files of kernels/ stand in a program. A lanes_... file says for how many lanes what
+ * follows is meant; the files of shape/ serve single rays and, below lanes_packet.cl, all lanes together. */
+static const struct {
+    const char *name;
+    unsigned only_in;
+} files[] = {
+    {"dialect/real.cl", IN_ALL},
+    {"scene_types.h", IN_ALL},
+    {"bvh/child_mask.cl", IN_ALL},
+    {"dialect/lanes_one.cl", IN_ALL},
+    {"shape/sphere_robust.cl", IN_ROBUST},
+    {"shape/sphere_plain.cl", IN_PLAIN},
+    {"bvh/box_ray.cl", IN_ALL},
+    {"bvh/traverse_single.cl", IN_ALL},
+    {"dialect/lanes_packet.cl", IN_PACKET},
+    {"shape/sphere_robust.cl", IN_PACKET | IN_ROBUST},
+    {"shape/sphere_plain.cl", IN_PACKET | IN_PLAIN},
+    {"bvh/box_ray.cl", IN_PACKET},
+    {"dialect/vector.cl", IN_ALL},
+    {"sampling/rng.cl", IN_ALL},
+    {"sampling/sampler.cl", IN_ALL},
+    {"sampling/warps.cl", IN_ALL},
+    {"shape/surface.cl", IN_ALL},
+    {"light/sky.cl", IN_ALL},
+    {"camera/camera.cl", IN_ALL},
+    {"bsdf/bsdf.cl", IN_ALL},
+    {"integrator/path.cl", IN_ALL},
+    {"bvh/traverse_packet.cl", IN_PACKET},
+    {"integrator/intersect.cl", IN_ALL},
+    {"integrator/fetch_surface.cl", IN_ALL},
+    {"integrator/pixels.cl", IN_ALL},
+    {"integrator/bounce.cl", IN_ALL},
+    {"entry/trace_sample.cl", IN_SAMPLE},
+    {"entry/trace_packet.cl", IN_PACKET},
+    {"fold.cl", IN_ALL},
+    {"entry/probe_layout.cl", IN_ALL},
+};
 
 /* A text that grows. `failed` remembers an allocation that did not succeed. */
 #define KERNEL_FILE_BYTES_MAX (1u << 20) /* BALLPARK_KERNELS can name a folder of anything */
@@ -129,9 +154,11 @@ BpStatus bp_program_source(const BpProgramOptions *options, const char *extra_na
     for (int e = 0; e < BP_EFFECT_COUNT; ++e)
         text_print(&text, "#define EFFECT_%s %d\n", bp_effect_identifier((BpEffect)e),
                    bp_effects_has(options->effects, (BpEffect)e));
-    const char *const *files = options->form == BP_KERNEL_PACKET ? packet_files : sample_files;
-    for (size_t i = 0; files[i] != NULL; ++i) {
-        const char *name = plain && strcmp(files[i], "refine.cl") == 0 ? "plain.cl" : files[i];
+    const unsigned kind =
+        (options->form == BP_KERNEL_PACKET ? IN_PACKET : IN_SAMPLE) | (plain ? IN_PLAIN : IN_ROBUST);
+    for (size_t i = 0; i < sizeof files / sizeof files[0]; ++i) {
+        const char *name = files[i].name;
+        if ((files[i].only_in & ~kind) != 0) continue;
         text_print(&text, "#line 1 \"%s\"\n", name);
         char *file = NULL;
         const BpStatus status = bp_kernel_text(name, &file, err);

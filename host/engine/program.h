@@ -1,7 +1,7 @@
 /* program.h: puts the kernel's source together for one set of choices.
  *
  * In:    which effects, precision, math, numerics, form.   Out: one OpenCL C source text, or a built program.
- * Knows: the files of kernels/ and their order.            Does not know: scenes, buffers.
+ * Knows: the files of kernels/ and their order, in one list. Does not know: scenes, buffers.
  *
  * Every switch is a #define in the first lines of the text, so the text alone decides what is compiled (some
  * drivers' caches ignore -D). Each file is opened by `#line 1 "file"`.
@@ -12,7 +12,8 @@
 
 #include "device.h"
 
-/* The embedded text of one file of kernels/, static; NULL when there is none of that name. */
+/* The embedded text of one file of kernels/, by its path there ("light/sky.cl"), static; NULL when there is
+ * none of that name. */
 const char *bp_kernel_file(const char *name);
 
 /* The text of one file of kernels/ as programs get it: embedded, or from BALLPARK_KERNELS. The caller frees

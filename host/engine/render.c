@@ -61,7 +61,7 @@ static BpStatus open_worker(BpRender *render, const BpDeviceInfo *device, size_t
     render->pack_seconds += bp_clock_seconds() - start - packed.tree.build_seconds;
     BpStatus status = BP_OK;
     if (render->options.features) {
-        setup.extra_name = "features.cl";
+        setup.extra_name = "entry/aovs.cl";
         status = bp_kernel_text(setup.extra_name, &features, err);
         setup.extra_text = features;
     }

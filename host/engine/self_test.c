@@ -225,10 +225,10 @@ static BpStatus assemble(bool has_double, const char *kernel_text, char **source
     for (int column = 0; column < COLUMN_COUNT; ++column)
         used += (size_t)snprintf(head + used, sizeof head - used, "#define COLUMN_%s %du\n",
                                  columns[column].name, column);
-    BP_TRY_GOTO(status, bp_kernel_text("real.cl", &texts[0], err), done);
+    BP_TRY_GOTO(status, bp_kernel_text("dialect/real.cl", &texts[0], err), done);
     BP_TRY_GOTO(status, bp_kernel_text("scene_types.h", &texts[1], err), done);
     if (kernel_text == NULL) {
-        BP_TRY_GOTO(status, bp_kernel_text("self_test.cl", &texts[2], err), done);
+        BP_TRY_GOTO(status, bp_kernel_text("entry/self_test.cl", &texts[2], err), done);
         kernel_text = texts[2];
     }
     const size_t size = used + strlen(texts[0]) + strlen(texts[1]) + strlen(kernel_text) + 256;
@@ -237,7 +237,8 @@ static BpStatus assemble(bool has_double, const char *kernel_text, char **source
         status = bp_fail(err, BP_ERR_MEMORY, "no memory for the self-test");
     else
         snprintf(*source, size,
-                 "%s#line 1 \"real.cl\"\n%s\n#line 1 \"scene_types.h\"\n%s\n#line 1 \"self_test.cl\"\n%s\n",
+                 "%s#line 1 \"dialect/real.cl\"\n%s\n#line 1 \"scene_types.h\"\n%s\n#line 1 "
+                 "\"entry/self_test.cl\"\n%s\n",
                  head, texts[0], texts[1], kernel_text);
 
 done:

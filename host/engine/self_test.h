@@ -1,7 +1,7 @@
 /* self_test.h: known answers that a device must give before it renders.
  *
  * In:    an open device.   Out: nothing, or a message that names what it computes wrongly.
- * Knows: OpenCL, kernels/self_test.cl, where caches live.   Does not know: scenes, pictures.
+ * Knows: OpenCL, kernels/entry/self_test.cl, where caches live.   Does not know: scenes, pictures.
  *
  * Integers (random numbers and fixed-point sums rest on them), rounding, fused and unfused products,
  * quotients and square roots within OpenCL's bounds, NaN and infinities, vector lanes, loops with private
@@ -14,7 +14,7 @@
 
 /* Runs the self-test. BP_ERR_DEVICE: the message names the device, its driver and the first thing that is
  * wrong, and how many more are. BP_ERR_BUILD, BP_ERR_MEMORY: it could not run. `kernel_text`: Optional, takes
- * the place of kernels/self_test.cl (tests break it). */
+ * the place of kernels/entry/self_test.cl (tests break it). */
 BpStatus bp_self_test_run(BpDevice *device, const char *kernel_text, BpError *err);
 
 /* Runs the self-test unless this device, driver, program version and test passed before. What passed is

@@ -26,7 +26,7 @@ static uint64_t hash_text(uint64_t hash, const char *text) {
 
 /* Everything that the outcome depends on. */
 static void identify(const BpDeviceInfo *device, char *to, size_t size) {
-    static const char *const files[] = {"real.cl", "scene_types.h", "self_test.cl"};
+    static const char *const files[] = {"dialect/real.cl", "scene_types.h", "entry/self_test.cl"};
     uint64_t sources = HASH_START;
     for (int f = 0; f < 3; ++f) {
         char *text = NULL;

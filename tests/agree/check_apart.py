@@ -27,7 +27,7 @@ def check(folder, *more, kernels=None):
 def patched(folder, name, replacement):
     copy = pathlib.Path(folder) / name
     shutil.copytree(source / "kernels", copy)
-    holders = [p for p in copy.iterdir() if store in p.read_text()]
+    holders = [p for p in copy.rglob("*.cl") if store in p.read_text()]
     assert len(holders) == 1, holders
     holders[0].write_text(holders[0].read_text().replace(store, replacement))
     return copy

@@ -91,8 +91,8 @@ static void calibrated(void **state) {
                  "count[lane])",
                  1 + bias, 1 + bias, 1 + bias);
         KernelCopy copy;
-        kernel_copy_open(&copy, "trace_packet.cl", "(real4)(red[lane], green[lane], blue[lane], count[lane])",
-                         brighter);
+        kernel_copy_open(&copy, "entry/trace_packet.cl",
+                         "(real4)(red[lane], green[lane], blue[lane], count[lane])", brighter);
         int by_picture = 0, rejected = 0;
         for (uint64_t run = 0; run < 100; ++run) {
             const BpVerdict verdict =
@@ -127,7 +127,7 @@ static void half_percent(void **state) {
         right += !check(&built.scene, BP_CHECK_SAMPLES_DEFAULT, seed, BP_VERDICT_LEVEL).agree;
     KernelCopy copy;
     kernel_copy_open(
-        &copy, "trace_packet.cl", "(real4)(red[lane], green[lane], blue[lane], count[lane])",
+        &copy, "entry/trace_packet.cl", "(real4)(red[lane], green[lane], blue[lane], count[lane])",
         "(real4)(R(1.005) * red[lane], R(1.005) * green[lane], R(1.005) * blue[lane], count[lane])");
     for (uint64_t seed = 10; seed < 20; ++seed)
         wrong += !check(&built.scene, BP_CHECK_SAMPLES_DEFAULT, seed, BP_VERDICT_LEVEL).agree;

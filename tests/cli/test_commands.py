@@ -18,10 +18,10 @@ class Check(ProgramTest):
     def broken_kernels(self, find, replace):
         """A copy of the kernels with a fault, as BALLPARK_KERNELS."""
         shutil.copytree(os.path.join(SOURCE, "kernels"), self.path("kernels"))
-        with open(self.path("kernels/sky.cl")) as file:
+        with open(self.path("kernels/light/sky.cl")) as file:
             text = file.read()
         self.assertEqual(text.count(find), 1, "the place of the fault has moved")
-        self.write("kernels/sky.cl", text.replace(find, replace))
+        self.write("kernels/light/sky.cl", text.replace(find, replace))
         return {"BALLPARK_KERNELS": self.path("kernels")}
 
     def test_agree(self):

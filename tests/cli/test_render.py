@@ -113,11 +113,11 @@ class Picture(Render):
     def test_a_kernel_that_does_not_build(self):
         """The whole build log, with the place in the kernel's own file."""
         shutil.copytree(os.path.join(SOURCE, "kernels"), self.path("kernels"))
-        with open(self.path("kernels/trace.cl"), "a") as file:
+        with open(self.path("kernels/integrator/bounce.cl"), "a") as file:
             file.write("\nvoid broken(void) { this_is_no_function(); }\n")
-        with open(os.path.join(SOURCE, "kernels/trace.cl")) as file:
+        with open(os.path.join(SOURCE, "kernels/integrator/bounce.cl")) as file:
             line = len(file.readlines()) + 2
-        result = self.fail_with(1, "render", "s.json", says=[f"trace.cl:{line}:", "this_is_no_function"],
+        result = self.fail_with(1, "render", "s.json", says=[f"integrator/bounce.cl:{line}:", "this_is_no_function"],
                                 environment={"BALLPARK_KERNELS": self.path("kernels")})
         self.assertIn("\n\n", result.errors, "the log stands below the message")
 
@@ -219,11 +219,11 @@ class StopRules(Render):
     def broken_sky(self, red):
         """Kernels whose sky has another red; the environment that uses them."""
         shutil.copytree(os.path.join(SOURCE, "kernels"), self.path("kernels"))
-        with open(self.path("kernels/sky.cl")) as file:
+        with open(self.path("kernels/light/sky.cl")) as file:
             text = file.read()
         at = text.rindex("return bottom;")
         broken = f"Vec3 light = bottom; light.x = {red}; return light;"
-        with open(self.path("kernels/sky.cl"), "w") as file:
+        with open(self.path("kernels/light/sky.cl"), "w") as file:
             file.write(text[:at] + broken + text[at + len("return bottom;"):])
         return {"BALLPARK_KERNELS": self.path("kernels")}
 

@@ -66,7 +66,7 @@ static void every_fault_is_named(void **state) {
         {"OFFSET(camera, lens_up)", "OFFSET(camera, lens_right)", "layout of PackedCamera", false},
         {"(uint)sizeof(real)", "8u", "layout of real", false},
     };
-    const char *text = bp_kernel_file("self_test.cl");
+    const char *text = bp_kernel_file("entry/self_test.cl");
     assert_non_null(text);
     for (size_t i = 0; i < sizeof faults / sizeof faults[0]; ++i) {
         if (faults[i].needs_double && !device->info.has_double) continue;

@@ -24,9 +24,9 @@ def run(environment, *arguments):
 with tempfile.TemporaryDirectory() as folder:
     broken = pathlib.Path(folder, "kernels")
     shutil.copytree(kernels, broken)
-    text = (broken / "self_test.cl").read_text()
-    (broken / "self_test.cl").write_text(text.replace("as_uint(fma(a, b, c))", "as_uint(a * b + c)"))
-    assert (broken / "self_test.cl").read_text() != text
+    text = (broken / "entry/self_test.cl").read_text()
+    (broken / "entry/self_test.cl").write_text(text.replace("as_uint(fma(a, b, c))", "as_uint(a * b + c)"))
+    assert (broken / "entry/self_test.cl").read_text() != text
     environment = {"XDG_CACHE_HOME": str(pathlib.Path(folder, "cache"))}
     picture = pathlib.Path(folder, "picture.ppm")
     os.mkdir(environment["XDG_CACHE_HOME"])

@@ -42,9 +42,9 @@ def reports(scene, folder, environment=None, check="--uninitialized"):
 with tempfile.TemporaryDirectory() as folder:
     kernels = pathlib.Path(folder, "kernels")
     shutil.copytree(scenes.parent / "kernels", kernels)
-    trace = (kernels / "trace_sample.cl").read_text()
+    trace = (kernels / "entry/trace_sample.cl").read_text()
     assert trace.count(PLACE) == 1, "the place for the planted fault is gone from trace_sample.cl"
-    (kernels / "trace_sample.cl").write_text(trace.replace(PLACE, PLANTED))
+    (kernels / "entry/trace_sample.cl").write_text(trace.replace(PLACE, PLANTED))
 
     found = reports("v4-21-view-zoom.json", folder, dict(os.environ, BALLPARK_KERNELS=str(kernels)))
     assert any(kernel == "trace" for kernel, _ in found), "a planted fault was not reported"

@@ -44,7 +44,8 @@ static BpStatus dump(const char *folder, const BpProgramOptions *options, BpErro
              (int)options->precision, (int)options->math, (int)options->numerics, (int)options->sampler,
              (int)options->form, (int)options->double_refine, needs_double ? "_fp64" : "");
     BP_TRY_GOTO(status,
-                bp_program_source(options, "features.cl", bp_kernel_file("features.cl"), &source, err), done);
+                bp_program_source(options, "entry/aovs.cl", bp_kernel_file("entry/aovs.cl"), &source, err),
+                done);
     file = fopen(path, "w");
     if (file == NULL || fputs(source, file) < 0)
         status = bp_fail(err, BP_ERR_FILE, "cannot write '%s'", path);

@@ -41,7 +41,9 @@ class Bench:
         """{path: text} of a host file, or of all kernel files."""
         paths = [path]
         if path == "kernels":
-            paths = [os.path.join(path, name) for name in sorted(os.listdir(os.path.join(self.source, path)))]
+            top = os.path.join(self.source, path)
+            paths = [os.path.relpath(os.path.join(folder, name), self.source)
+                     for folder, _, names in sorted(os.walk(top)) for name in sorted(names)]
         texts = {}
         for one in paths:
             with open(os.path.join(self.source, one), encoding="utf-8") as file:

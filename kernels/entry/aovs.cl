@@ -1,4 +1,4 @@
-/* features.cl: what each pixel's camera rays meet first: how far, which way it faces, what colour it is.
+/* aovs.cl: what each pixel's camera rays meet first: how far, which way it faces, what colour it is.
  *
  * Appended to a render's program when someone asks (host/engine/features.c).
  * In:    the packed scene; a range of pixels; a range of samples, whose camera rays are those of the render.

@@ -1,4 +1,4 @@
-/* lanes_scalar.cl: from here on, until lanes_wide.cl, lane code means one lane: `reals` is a real, a mask is 0 or 1.
+/* lanes_one.cl: from here on, until lanes_packet.cl, lane code means one lane: `reals` is a real, a mask is 0 or 1.
  *
  * Lane code is written once, for one lane or for many: a mask is made by a comparison, combined with & | and
  * not_mask, asked by any_lane, and spent by choose. `if (any_lane(m)) ...` is a plain branch for one lane and

@@ -1,4 +1,4 @@
-/* lane_set.cl: which of the TREE_WIDTH lanes of a node or leaf, as the low bits of one integer.
+/* child_mask.cl: which of the TREE_WIDTH lanes of a node or leaf, as the low bits of one integer.
  *
  * A set is made by a comparison of wides, and taken apart lane by lane, lowest first. */
 typedef uint lane_set;

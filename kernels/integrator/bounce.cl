@@ -1,4 +1,4 @@
-/* trace.cl: how paths begin and how they go on by one segment, in lane code.
+/* bounce.cl: how paths begin and how they go on by one segment, in lane code.
  *
  * The kernel around it is in trace_sample.cl or trace_packet.cl. Both are given the packed scene and a chunk: a range
  * of pixels (or of a list of pixels) times a range of samples. Both write for each pixel sample of the chunk its

@@ -1,8 +1,8 @@
-/* rounds.cl: the tree for the paths of all lanes at once.
+/* traverse_packet.cl: the tree for the paths of all lanes at once.
  *
  * In:    paths and what they have met so far (huge spheres, the sphere being left).
- * Out:   the closest hit of each, the same as intersect_closest (tree.cl) finds.
- * Knows: tree.cl's steps for one ray.   Does not know: what rays are for.
+ * Out:   the closest hit of each, the same as intersect_closest (traverse_single.cl) finds.
+ * Knows: traverse_single.cl's steps for one ray.   Does not know: what rays are for.
  *
  * What a ray does next depends on what it met, and a processor that guesses wrong throws away more work than a box
  * test is. So rays take turns, a round for all: first every ray that stands at a node tests it, then the leaves met

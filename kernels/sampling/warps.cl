@@ -1,4 +1,4 @@
-/* sampling.cl: from uniform numbers to directions: direct maps, no rejection loops, no division by zero.
+/* warps.cl: from uniform numbers to directions: direct maps, no rejection loops, no division by zero.
  *
  * In: numbers in [0, 1).   Out: points of the unit disk and the unit sphere. */
 

@@ -1,4 +1,4 @@
-/* lanes_wide.cl: from here on, lane code means PACKET_LANES lanes (see lanes_scalar.cl). A mask is 0 or -1 a lane, as
+/* lanes_packet.cl: from here on, lane code means PACKET_LANES lanes (see lanes_one.cl). A mask is 0 or -1 a lane, as
  * wide as a real. */
 #undef LANED
 #undef reals

@@ -1,5 +1,5 @@
 /* box_ray.cl: what a box test needs of a ray, once a ray. Read twice when a work-item traces several lanes, like
- * refine.cl.
+ * sphere_robust.cl.
  *
  * A box plane at x is met at fma(x, inverse, offset). The origin is moved apart for the planes met first and last, by
  * more than the rounding of the product, of the low part left out, and of 1/d (the boxes are padded for the rounding

@@ -1,6 +1,6 @@
-/* meet.cl: what the paths of all lanes meet next.
+/* intersect.cl: what the paths of all lanes meet next.
  *
- * In:    paths, geometry.   Out: for each lane the closest hit, as intersect_closest (tree.cl) has it.
+ * In:    paths, geometry.   Out: for each lane the closest hit, as intersect_closest (traverse_single.cl) has it.
  *
  * The few huge spheres, which most rays meet, are tried against all lanes at once; then each lane searches the tree
  * with the bound that gave it. */
@@ -49,7 +49,7 @@ static void meet_own_spheres(const Geometry *geometry, const Paths *paths, Meeti
 }
 #endif
 
-/* One leaf's spheres, one at a time, against all lanes of `active`. The margin is that of test_leaf in tree.cl. */
+/* One leaf's spheres, one at a time, against all lanes of `active`. The margin is that of test_leaf in traverse_single.cl. */
 static void test_leaf_lanes(const Geometry *geometry, const Paths *paths, masks active, reals ray_margin,
                             uint leaf_number, Meeting *meeting) {
     const Point *origin = &paths->origin;

@@ -1,4 +1,4 @@
-/* paths.cl: the state of the paths that a work-item follows, in lane code. */
+/* path.cl: the state of the paths that a work-item follows, in lane code. */
 
 /* The paths that a work-item follows, one a lane. */
 typedef struct Paths {
@@ -10,7 +10,7 @@ typedef struct Paths {
     uints own_slot;
     masks inward;
     masks alive;
-    /* Of the latest segment, for follow.cl. */
+    /* Of the latest segment, for path_log.cl. */
     masks met, entered;
     refineds distance;
 } Paths;

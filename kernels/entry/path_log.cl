@@ -1,4 +1,4 @@
-/* follow.cl: one path, step by step, for a person: the same code as trace.cl, with a record of each segment.
+/* path_log.cl: one path, step by step, for a person: the same code as bounce.cl, with a record of each segment.
  *
  * Appended to a program of one lane when someone asks (host/engine/follow.c).
  * Out: for each segment FOLLOW_REALS numbers, in the order of the enum. */

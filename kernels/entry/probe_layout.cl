@@ -1,4 +1,4 @@
-/* probe.cl: how this device's compiler lays out the packed structs; the host compares it with its own
+/* probe_layout.cl: how this device's compiler lays out the packed structs; the host compares it with its own
  * (host/engine/layout.c) before the first launch. */
 #define SIZE_AND_OFFSET(type, member)                                                                        \
     {                                                                                                        \

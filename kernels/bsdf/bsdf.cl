@@ -1,4 +1,4 @@
-/* material.cl: what a surface does to a path: one sampling function per effect, in lane code.
+/* bsdf.cl: what a surface does to a path: one sampling function per effect, in lane code.
  *
  * In:    the surface where the path stands, the incoming direction, random numbers.
  * Out:   the next direction, the weight on radiance that comes along it, and on which side the path goes on. */

@@ -1,4 +1,4 @@
-/* refine.cl: where a ray meets a sphere, right to a few units in the last place of the answer, for every ratio of
+/* sphere_robust.cl: where a ray meets a sphere, right to a few units in the last place of the answer, for every ratio of
  * radius to distance. Read twice when a work-item traces several lanes: once for one lane, once for all.
  *
  * In:    a ray whose origin is the unevaluated sum high + low (a point of a surface, known beyond single

@@ -1,11 +1,11 @@
-/* tree.cl: the one interface to the spheres: intersect_closest and intersect_any, for one ray.
+/* traverse_single.cl: the one interface to the spheres: intersect_closest and intersect_any, for one ray.
  *
  * In:    a ray; packed leaves, and nodes when EFFECT_TREE.
  * Out:   the hit of least (distance, sphere index), so list and tree, and any order of visits, agree to the bit.
  * Knows: nodes, leaves, slots.   Does not know: materials, what made the ray.
  *
  * Boxes and spheres are tested TREE_WIDTH at a time, conservatively in `real`; what cannot be ruled out is decided
- * by refine.cl, one sphere at a time. rounds.cl walks the same tree for many rays, by the same steps. */
+ * by sphere_robust.cl, one sphere at a time. traverse_packet.cl walks the same tree for many rays, by the same steps. */
 
 typedef struct Geometry {
     __global const real *boxes;
@@ -97,7 +97,7 @@ FORCE_INLINE static void refine_slot(const Geometry *geometry, const Ray *ray, u
     int enters;
     if (choose_root_1(roots, radius, ray->slack, &t, &enters)) keep_closer(geometry, t, slot, enters, best);
 #else
-    /* The perpendicular form in `real`; a root counts from PLAIN_T_MIN on (plain.cl says what that costs). */
+    /* The perpendicular form in `real`; a root counts from PLAIN_T_MIN on (sphere_plain.cl says what that costs). */
     const real ocx = x - ray->high[0], ocy = y - ray->high[1], ocz = z - ray->high[2];
     const real dx = ray->direction[0], dy = ray->direction[1], dz = ray->direction[2];
     const real p = fma(ocx, dx, fma(ocy, dy, ocz * dz));

@@ -7,7 +7,7 @@
  *   PACKET_LANES      8 or 16: paths that a work-item of the packet form follows at a time
  *   SAMPLES_PER_ITEM  pixel samples that it traces in all
  *   GROUP_MAX         work-items in a work-group of the sample form, at most
- *   NUMERICS_ROBUST   1: refine.cl decides; 0: plain.cl
+ *   NUMERICS_ROBUST   1: sphere_robust.cl decides; 0: sphere_plain.cl
  *   EFFECT_...        0 or 1, one for each effect
  *
  * Rounding is part of the product: no contraction of a*b+c unless fma() is written. */

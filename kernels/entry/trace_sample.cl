@@ -1,4 +1,4 @@
-/* trace_sample.cl: the kernel of the one-path form: a work-item traces one pixel sample. In and out: trace.cl.
+/* trace_sample.cl: the kernel of the one-path form: a work-item traces one pixel sample. In and out: bounce.cl.
  *
  * The paths of a work-group set out together, then each goes its way. Where a camera ray comes from takes no branch, so
  * compilers for processors can make those of a group in vector lanes, if nothing else stands between: hence the barrier,

@@ -1,5 +1,5 @@
 /* trace_packet.cl: the kernel of the packet form: a work-item takes SAMPLES_PER_ITEM pixel samples of the chunk, as many
- * at a time as there are lanes; lanes whose path has ended take the next ones. In and out: trace.cl. */
+ * at a time as there are lanes; lanes whose path has ended take the next ones. In and out: bounce.cl. */
 __kernel void trace(TRACE_PARAMETERS) {
     const Scene scene = begin_scene(SCENE_ARGUMENTS);
     const uint item = get_global_id(0);

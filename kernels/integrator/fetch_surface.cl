@@ -1,4 +1,4 @@
-/* look_up.cl: the sphere and the material at a hit, gathered for all lanes from the packed tables. */
+/* fetch_surface.cl: the sphere and the material at a hit, gathered for all lanes from the packed tables. */
 
 /* The packed structs as the gathers see them: arrays of their only type. */
 #define MATERIAL_UINTS ((uint)(sizeof(PackedMaterialKind) / sizeof(uint)))
