@@ -57,7 +57,7 @@ static BpStatus set_arguments(BpWorker *worker, cl_kernel kernel, const BpCamera
     for (cl_uint a = 0; a < 3 && code == CL_SUCCESS; ++a)
         code = clSetKernelArg(kernel, ARGUMENT_FORWARD + a, sizeof(cl_float), &forward[a]);
     if (code == CL_SUCCESS) code = clSetKernelArg(kernel, ARGUMENT_OUT, sizeof(cl_mem), &out);
-    return code == CL_SUCCESS ? BP_OK : bp_cl_fail(err, code, "clSetKernelArg(features)", worker->device);
+    return code == CL_SUCCESS ? BP_OK : bp_cl_fail(err, code, "clSetKernelArg(aovs)", worker->device);
 }
 
 /* `sums`: room for a batch. */
@@ -91,9 +91,9 @@ BpStatus bp_features_fill(BpWorker *worker, const BpCamera *camera, uint32_t fir
     cl_mem out = NULL;
     size_t local = LOCAL_SIZE, most = 0;
     cl_float *sums = malloc((size_t)batch * FEATURE_FLOATS * sizeof *sums);
-    cl_kernel kernel = clCreateKernel(worker->program->program, "features", &code);
+    cl_kernel kernel = clCreateKernel(worker->program->program, "aovs", &code);
     if (code != CL_SUCCESS) {
-        status = bp_cl_fail(err, code, "clCreateKernel(features)", worker->device);
+        status = bp_cl_fail(err, code, "clCreateKernel(aovs)", worker->device);
         goto cleanup;
     }
     drop_layers(picture);

@@ -44,8 +44,8 @@ static BpStatus run(BpWorker *worker, uint32_t pixel, uint32_t sample, uint32_t 
     cl_mem buffers[3] = {NULL, NULL, NULL};
     const size_t sizes[3] = {numbers_size, spheres_size, sizeof(cl_uint)};
     const size_t one = 1;
-    cl_kernel kernel = clCreateKernel(worker->program->program, "follow", &code);
-    if (code != CL_SUCCESS) return bp_cl_fail(err, code, "clCreateKernel(follow)", device);
+    cl_kernel kernel = clCreateKernel(worker->program->program, "path_log", &code);
+    if (code != CL_SUCCESS) return bp_cl_fail(err, code, "clCreateKernel(path_log)", device);
     BP_TRY_GOTO(status, bp_worker_bind_scene(worker, kernel, err), cleanup);
     for (int i = 0; i < 3; ++i) {
         buffers[i] = clCreateBuffer(device->context, CL_MEM_WRITE_ONLY, sizes[i], NULL, &code);

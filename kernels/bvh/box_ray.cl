@@ -7,12 +7,12 @@
  * NaN, and a deviation far below every margin. */
 #if EFFECT_TREE
 typedef struct LANED(BoxAxis) {
-    reals inverse, near_offset, far_offset;
+    vreal inverse, near_offset, far_offset;
 } LANED(BoxAxis);
 
-static LANED(BoxAxis) LANED(box_axis)(reals origin, reals direction) {
-    const reals safe = choose(fabs(direction) < splat(R(1e-24)), copysign(splat(R(1e-24)), direction), direction);
-    const reals shift = copysign(origin * (R(4.0) * ROUNDOFF), safe);
+static LANED(BoxAxis) LANED(box_axis)(vreal origin, vreal direction) {
+    const vreal safe = choose(fabs(direction) < splat(R(1e-24)), copysign(splat(R(1e-24)), direction), direction);
+    const vreal shift = copysign(origin * (R(4.0) * ROUNDOFF), safe);
     LANED(BoxAxis) axis;
     axis.inverse = splat(1) / safe;
     axis.near_offset = -(origin + shift) * axis.inverse;

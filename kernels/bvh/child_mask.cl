@@ -1,52 +1,52 @@
 /* child_mask.cl: which of the TREE_WIDTH lanes of a node or leaf, as the low bits of one integer.
  *
  * A set is made by a comparison of wides, and taken apart lane by lane, lowest first. */
-typedef uint lane_set;
+typedef uint child_mask;
 
 /* Some compilers offer the one instruction that their processors have for this (a macro says which processor).
  * Everybody else gathers one bit of each lane's byte by a multiplication. */
 #if TREE_WIDTH == 16 && !REAL_IS_DOUBLE && defined(__AVX512DQ__)
-static lane_set to_lane_set(int16 mask) { return (ushort)__builtin_ia32_cvtd2mask512(mask); }
+static child_mask child_mask_of(int16 mask) { return (ushort)__builtin_ia32_cvtd2mask512(mask); }
 #elif TREE_WIDTH == 16 && REAL_IS_DOUBLE && defined(__AVX512DQ__)
-static lane_set to_lane_set(long16 mask) {
-    return (lane_set)(uchar)__builtin_ia32_cvtq2mask512(mask.lo) |
-           (lane_set)(uchar)__builtin_ia32_cvtq2mask512(mask.hi) << 8;
+static child_mask child_mask_of(long16 mask) {
+    return (child_mask)(uchar)__builtin_ia32_cvtq2mask512(mask.lo) |
+           (child_mask)(uchar)__builtin_ia32_cvtq2mask512(mask.hi) << 8;
 }
 #elif TREE_WIDTH == 8 && !REAL_IS_DOUBLE && defined(__AVX512DQ__) && defined(__AVX512VL__)
-static lane_set to_lane_set(int8 mask) { return (uchar)__builtin_ia32_cvtd2mask256(mask); }
+static child_mask child_mask_of(int8 mask) { return (uchar)__builtin_ia32_cvtd2mask256(mask); }
 #elif TREE_WIDTH == 8 && !REAL_IS_DOUBLE && defined(__AVX__)
-static lane_set to_lane_set(int8 mask) { return (lane_set)__builtin_ia32_movmskps256(as_float8(mask)); }
+static child_mask child_mask_of(int8 mask) { return (child_mask)__builtin_ia32_movmskps256(as_float8(mask)); }
 #elif TREE_WIDTH >= 8
 /* Byte l holds bit l; the product adds them up in its highest byte. */
-static lane_set bits_of_bytes(ulong bytes) {
-    return (lane_set)(((bytes & (ulong)0x8040201008040201) * (ulong)0x0101010101010101) >> 56);
+static child_mask bits_of_bytes(ulong bytes) {
+    return (child_mask)(((bytes & (ulong)0x8040201008040201) * (ulong)0x0101010101010101) >> 56);
 }
 #if TREE_WIDTH == 16
-static lane_set to_lane_set(JOIN(REAL_MASK, 16) mask) {
+static child_mask child_mask_of(JOIN(REAL_MASK, 16) mask) {
     const ulong2 bytes = as_ulong2(convert_char16(mask));
     return bits_of_bytes(bytes.x) | bits_of_bytes(bytes.y) << 8;
 }
 #else
-static lane_set to_lane_set(JOIN(REAL_MASK, 8) mask) { return bits_of_bytes(as_ulong(convert_char8(mask))); }
+static child_mask child_mask_of(JOIN(REAL_MASK, 8) mask) { return bits_of_bytes(as_ulong(convert_char8(mask))); }
 #endif
 #elif TREE_WIDTH == 4
-static lane_set to_lane_set(JOIN(REAL_MASK, 4) mask) {
-    return ((lane_set)mask.x & 1u) | ((lane_set)mask.y & 2u) | ((lane_set)mask.z & 4u) | ((lane_set)mask.w & 8u);
+static child_mask child_mask_of(JOIN(REAL_MASK, 4) mask) {
+    return ((child_mask)mask.x & 1u) | ((child_mask)mask.y & 2u) | ((child_mask)mask.z & 4u) | ((child_mask)mask.w & 8u);
 }
 #else
-static lane_set to_lane_set(JOIN(REAL_MASK, 2) mask) {
-    return ((lane_set)mask.x & 1u) | ((lane_set)mask.y & 2u);
+static child_mask child_mask_of(JOIN(REAL_MASK, 2) mask) {
+    return ((child_mask)mask.x & 1u) | ((child_mask)mask.y & 2u);
 }
 #endif
 
 /* The lowest lane of a set: the number of zeros below the lowest bit, 32 for the empty set. Compilers know this form
  * and have an instruction for it. */
-static uint lowest_lane(lane_set set) { return popcount(~set & (set - 1u)); }
-static lane_set without_lowest(lane_set set) { return set & (set - 1u); }
-static lane_set without_lane(lane_set set, uint lane) { return set & ~((lane_set)1 << lane); }
+static uint lowest_bit(child_mask set) { return popcount(~set & (set - 1u)); }
+static child_mask without_lowest_bit(child_mask set) { return set & (set - 1u); }
+static child_mask without_bit(child_mask set, uint lane) { return set & ~((child_mask)1 << lane); }
 
 /* `inside` for the lanes of the set, `outside` for the others. */
-static wide choose_lanes(lane_set set, wide inside, real outside) {
+static wide choose_children(child_mask set, wide inside, real outside) {
 #if TREE_WIDTH == 16
     const WIDE(REAL_MASK) bit = (WIDE(REAL_MASK))(1, 2, 4, 8, 16, 32, 64, 128, 256, 512, 1024, 2048, 4096, 8192, 16384, 32768);
 #elif TREE_WIDTH == 8
@@ -60,7 +60,7 @@ static wide choose_lanes(lane_set set, wide inside, real outside) {
 }
 
 /* The least of all lanes. */
-static real least_lane(wide x) {
+static real least_of_children(wide x) {
 #if TREE_WIDTH == 16
     const JOIN(REAL, 8) eight = x.lo < x.hi ? x.lo : x.hi;
     const JOIN(REAL, 4) four = eight.lo < eight.hi ? eight.lo : eight.hi;

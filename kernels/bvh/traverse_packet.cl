@@ -1,7 +1,7 @@
 /* traverse_packet.cl: the tree for the paths of all lanes at once.
  *
  * In:    paths and what they have met so far (huge spheres, the sphere being left).
- * Out:   the closest hit of each, the same as intersect_closest (traverse_single.cl) finds.
+ * Out:   the closest hit of each, the same as intersect_closest_one (traverse_single.cl) finds.
  * Knows: traverse_single.cl's steps for one ray.   Does not know: what rays are for.
  *
  * What a ray does next depends on what it met, and a processor that guesses wrong throws away more work than a box
@@ -59,7 +59,7 @@ static void flatten_tree(const Geometry *geometry, FlatTree *flat) {
 /* The rays of all lanes, and what each has met. */
 typedef struct LaneRays {
     real high[3][LANE_COUNT], low[3][LANE_COUNT], direction[3][LANE_COUNT];
-    real slack[LANE_COUNT], margin[LANE_COUNT];
+    real origin_error[LANE_COUNT], cull_margin[LANE_COUNT];
     uint own_slot[LANE_COUNT];
     refined t[LANE_COUNT];
     uint slot[LANE_COUNT], enters[LANE_COUNT];
@@ -67,8 +67,8 @@ typedef struct LaneRays {
 } LaneRays;
 
 /* Written out: a loop over axes is not always unrolled, and then the ray passes through memory. */
-static Ray ray_of_lane(const LaneRays *rays, uint lane) {
-    Ray ray;
+static Ray_one ray_of_lane(const LaneRays *rays, uint lane) {
+    Ray_one ray;
     ray.high[0] = rays->high[0][lane];
     ray.high[1] = rays->high[1][lane];
     ray.high[2] = rays->high[2][lane];
@@ -78,21 +78,21 @@ static Ray ray_of_lane(const LaneRays *rays, uint lane) {
     ray.direction[0] = rays->direction[0][lane];
     ray.direction[1] = rays->direction[1][lane];
     ray.direction[2] = rays->direction[2][lane];
-    ray.slack = rays->slack[lane];
-    ray.margin = rays->margin[lane];
+    ray.origin_error = rays->origin_error[lane];
+    ray.cull_margin = rays->cull_margin[lane];
     ray.own_slot = rays->own_slot[lane];
     ray.inward = 0; /* that has been seen to */
     return ray;
 }
 
-static void refine_lane(const Geometry *geometry, LaneRays *rays, uint lane, uint slot) {
-    const Ray ray = ray_of_lane(rays, lane);
-    Hit hit;
+static void intersect_slot_of_lane(const Geometry *geometry, LaneRays *rays, uint lane, uint slot) {
+    const Ray_one ray = ray_of_lane(rays, lane);
+    Hit_one hit;
     hit.t = rays->t[lane];
     hit.slot = rays->slot[lane];
     hit.enters = (int)rays->enters[lane];
     hit.bound = rays->bound[lane];
-    refine_slot(geometry, &ray, slot, &hit);
+    intersect_slot_one(geometry, &ray, slot, &hit);
     rays->t[lane] = hit.t;
     rays->slot[lane] = hit.slot;
     rays->enters[lane] = (uint)hit.enters;
@@ -100,67 +100,67 @@ static void refine_lane(const Geometry *geometry, LaneRays *rays, uint lane, uin
 }
 
 /* Visits leaves and decides about the spheres that may be met there. */
-static void visit_leaves(const Geometry *geometry, const Visit *visits, uint count, LaneRays *rays) {
+static void intersect_leaves(const Geometry *geometry, const Visit *visits, uint count, LaneRays *rays) {
     Visit found[FOUND_MAX + TREE_WIDTH];
     uint found_count = 0;
     for (uint i = 0; i < count; ++i) {
         const uint lane = visits[i].lane, first = visits[i].what * TREE_WIDTH;
-        const Ray ray = ray_of_lane(rays, lane);
-        lane_set candidates = leaf_candidates(geometry, &ray, visits[i].what, rays->bound[lane]);
+        const Ray_one ray = ray_of_lane(rays, lane);
+        child_mask candidates = leaf_candidates(geometry, &ray, visits[i].what, rays->bound[lane]);
         /* One candidate or none is the rule: noted without asking which. */
         found[found_count].lane = lane;
-        found[found_count].what = first + lowest_lane(candidates);
+        found[found_count].what = first + lowest_bit(candidates);
         found_count += candidates != 0;
-        for (candidates = without_lowest(candidates); candidates != 0; candidates = without_lowest(candidates)) {
+        for (candidates = without_lowest_bit(candidates); candidates != 0; candidates = without_lowest_bit(candidates)) {
             found[found_count].lane = lane;
-            found[found_count].what = first + lowest_lane(candidates);
+            found[found_count].what = first + lowest_bit(candidates);
             ++found_count;
         }
         if (found_count < FOUND_MAX && i + 1 < count) continue;
-        for (uint k = 0; k < found_count; ++k) refine_lane(geometry, rays, found[k].lane, found[k].what);
+        for (uint k = 0; k < found_count; ++k) intersect_slot_of_lane(geometry, rays, found[k].lane, found[k].what);
         found_count = 0;
     }
 }
 
 /* The leaves of one batch, against all lanes; a bound below 0 switches a lane off. */
-static void search_flat(const Geometry *geometry, const FlatBatch *batch, const LANED(BoxAxis) *axes, reals bound,
+static void traverse_batch(const Geometry *geometry, const FlatBatch *batch, const LANED(BoxAxis) *axes, vreal bound,
                         LaneRays *rays) {
     /* Lanes differ in which plane of a pair they meet first. */
-    reals low_offset[3], high_offset[3];
+    vreal low_offset[3], high_offset[3];
     for (uint axis = 0; axis < 3; ++axis) {
-        const masks backwards = axes[axis].inverse < splat(0);
+        const vbool backwards = axes[axis].inverse < splat(0);
         low_offset[axis] = choose(backwards, axes[axis].far_offset, axes[axis].near_offset);
         high_offset[axis] = choose(backwards, axes[axis].near_offset, axes[axis].far_offset);
     }
-    uints met = splat_uint(0);
+    vuint met = splat_uint(0);
     for (uint k = 0; k < batch->count; ++k) {
         const real *planes = batch->planes[k];
-        const reals low_x = fma(splat(planes[0]), axes[0].inverse, low_offset[0]);
-        const reals low_y = fma(splat(planes[1]), axes[1].inverse, low_offset[1]);
-        const reals low_z = fma(splat(planes[2]), axes[2].inverse, low_offset[2]);
-        const reals high_x = fma(splat(planes[3]), axes[0].inverse, high_offset[0]);
-        const reals high_y = fma(splat(planes[4]), axes[1].inverse, high_offset[1]);
-        const reals high_z = fma(splat(planes[5]), axes[2].inverse, high_offset[2]);
-        const reals near = larger(larger(smaller(low_x, high_x), smaller(low_y, high_y)),
+        const vreal low_x = fma(splat(planes[0]), axes[0].inverse, low_offset[0]);
+        const vreal low_y = fma(splat(planes[1]), axes[1].inverse, low_offset[1]);
+        const vreal low_z = fma(splat(planes[2]), axes[2].inverse, low_offset[2]);
+        const vreal high_x = fma(splat(planes[3]), axes[0].inverse, high_offset[0]);
+        const vreal high_y = fma(splat(planes[4]), axes[1].inverse, high_offset[1]);
+        const vreal high_z = fma(splat(planes[5]), axes[2].inverse, high_offset[2]);
+        const vreal near = larger(larger(smaller(low_x, high_x), smaller(low_y, high_y)),
                                   larger(smaller(low_z, high_z), splat(0)));
-        const reals far = smaller(smaller(larger(low_x, high_x), larger(low_y, high_y)),
+        const vreal far = smaller(smaller(larger(low_x, high_x), larger(low_y, high_y)),
                                   smaller(larger(low_z, high_z), bound));
         met |= choose_uint(near <= far * SLAB_TOLERANCE, splat_uint(1u << k), splat_uint(0));
     }
     /* The first of each lane, the second of each lane, and so on: most have two at most. */
     Visit visits[LANE_COUNT * BATCH_LEAVES + 1];
     uint count = 0;
-    while (any_lane(mask_of_uint(met != splat_uint(0)))) {
+    while (any_lane(vbool_of_uint(met != splat_uint(0)))) {
         uint left[LANE_COUNT];
         store_lanes(met, left);
         for (uint lane = 0; lane < LANE_COUNT; ++lane) {
             visits[count].lane = lane;
-            visits[count].what = batch->leaf[lowest_lane(left[lane]) % BATCH_LEAVES];
+            visits[count].what = batch->leaf[lowest_bit(left[lane]) % BATCH_LEAVES];
             count += left[lane] != 0;
         }
         met &= met - 1u;
     }
-    visit_leaves(geometry, visits, count, rays);
+    intersect_leaves(geometry, visits, count, rays);
 }
 
 /* How far a walk through the tree has come: for each level the node entered, which of its child nodes are still to
@@ -169,15 +169,15 @@ static void search_flat(const Geometry *geometry, const FlatBatch *batch, const 
 typedef struct Walk {
     uint depth; /* levels that have children left */
     uint node[TREE_DEPTH_MAX];
-    lane_set left[TREE_DEPTH_MAX];
+    child_mask left[TREE_DEPTH_MAX];
     wide entry[TREE_DEPTH_MAX];
 } Walk;
 
 /* Returns which children are leaves that the ray meets before `bound`; nodes are left for later. */
-static lane_set enter_node(const Geometry *geometry, const BoxRay *box, uint node, real bound, Walk *walk) {
+static child_mask enter_node(const Geometry *geometry, const BoxRay *box, uint node, real bound, Walk *walk) {
     const uint level = walk->depth;
-    const lane_set met = test_node(geometry, box, node, bound, &walk->entry[level]);
-    const lane_set leaves = leaf_children(geometry, node);
+    const child_mask met = test_node(geometry, box, node, bound, &walk->entry[level]);
+    const child_mask leaves = leaf_children(geometry, node);
     walk->node[level] = node;
     walk->left[level] = met & ~leaves;
     walk->depth = level + ((met & ~leaves) != 0);
@@ -188,19 +188,19 @@ static lane_set enter_node(const Geometry *geometry, const BoxRay *box, uint nod
  * entered before `bound`; if not, nor is any other of its level, and they are gone. */
 static int take_nearest(const Geometry *geometry, real bound, Walk *walk, uint *child) {
     const uint level = walk->depth - 1;
-    const lane_set left = walk->left[level];
-    const wide entry = choose_lanes(left, walk->entry[level], REAL_MAX);
-    const real nearest = least_lane(entry);
-    const uint lane = lowest_lane(to_lane_set(entry == (wide)nearest));
+    const child_mask left = walk->left[level];
+    const wide entry = choose_children(left, walk->entry[level], REAL_MAX);
+    const real nearest = least_of_children(entry);
+    const uint lane = lowest_bit(child_mask_of(entry == (wide)nearest));
     *child = geometry->children[walk->node[level] * TREE_WIDTH + lane];
     const int worth = nearest <= bound * SLAB_TOLERANCE;
-    const lane_set rest = worth ? without_lane(left, lane) : 0;
+    const child_mask rest = worth ? without_bit(left, lane) : 0;
     walk->left[level] = rest;
     walk->depth = level + (rest != 0);
     return worth;
 }
 
-static void search_in_rounds(const Geometry *geometry, const LANED(BoxAxis) *axes, const uint *alive,
+static void traverse_nodes(const Geometry *geometry, const LANED(BoxAxis) *axes, const uint *alive,
                              LaneRays *rays) {
     real inverse[3][LANE_COUNT], near_offset[3][LANE_COUNT], far_offset[3][LANE_COUNT];
     for (uint axis = 0; axis < 3; ++axis) {
@@ -227,18 +227,18 @@ static void search_in_rounds(const Geometry *geometry, const LANED(BoxAxis) *axe
         for (uint i = 0; i < node_count; ++i) {
             const uint lane = nodes[i].lane;
             const uint first = nodes[i].what * TREE_WIDTH;
-            lane_set met = enter_node(geometry, &boxes[lane], nodes[i].what, rays->bound[lane], &walks[lane]);
+            child_mask met = enter_node(geometry, &boxes[lane], nodes[i].what, rays->bound[lane], &walks[lane]);
             /* One leaf or none is the rule. */
             leaves[leaf_count].lane = lane;
-            leaves[leaf_count].what = geometry->children[first + lowest_lane(met) % TREE_WIDTH] & ~CHILD_LEAF;
+            leaves[leaf_count].what = geometry->children[first + lowest_bit(met) % TREE_WIDTH] & ~CHILD_LEAF;
             leaf_count += met != 0;
-            for (met = without_lowest(met); met != 0; met = without_lowest(met)) {
+            for (met = without_lowest_bit(met); met != 0; met = without_lowest_bit(met)) {
                 leaves[leaf_count].lane = lane;
-                leaves[leaf_count].what = geometry->children[first + lowest_lane(met)] & ~CHILD_LEAF;
+                leaves[leaf_count].what = geometry->children[first + lowest_bit(met)] & ~CHILD_LEAF;
                 ++leaf_count;
             }
         }
-        visit_leaves(geometry, leaves, leaf_count, rays);
+        intersect_leaves(geometry, leaves, leaf_count, rays);
         uint left = 0;
         node_count = 0;
         for (uint i = 0; i < walking_count; ++i) {
@@ -254,39 +254,39 @@ static void search_in_rounds(const Geometry *geometry, const LANED(BoxAxis) *axe
 }
 
 /* The spheres below the first leaves, against what the paths have met so far. */
-static void search_trees(const Geometry *geometry, const FlatTree *flat, const Paths *paths, reals margin, reals bound,
-                         Meeting *meeting) {
+static void traverse_packet(const Geometry *geometry, const FlatTree *flat, const Path *path, vreal margin, vreal bound,
+                         Hit *hit) {
     if (geometry->leaf_count == geometry->first_leaves) return;
     LaneRays rays;
     uint alive[LANE_COUNT];
-    store_lanes(paths->origin.high.x, rays.high[0]);
-    store_lanes(paths->origin.high.y, rays.high[1]);
-    store_lanes(paths->origin.high.z, rays.high[2]);
-    store_lanes(paths->origin.low.x, rays.low[0]);
-    store_lanes(paths->origin.low.y, rays.low[1]);
-    store_lanes(paths->origin.low.z, rays.low[2]);
-    store_lanes(paths->direction.x, rays.direction[0]);
-    store_lanes(paths->direction.y, rays.direction[1]);
-    store_lanes(paths->direction.z, rays.direction[2]);
-    store_lanes(paths->origin.slack, rays.slack);
-    store_lanes(margin, rays.margin);
-    store_lanes(paths->own_slot, rays.own_slot);
-    store_lanes(meeting->t, rays.t);
-    store_lanes(meeting->slot, rays.slot);
-    store_lanes(choose_uint(meeting->enters, splat_uint(1), splat_uint(0)), rays.enters);
+    store_lanes(path->origin.high.x, rays.high[0]);
+    store_lanes(path->origin.high.y, rays.high[1]);
+    store_lanes(path->origin.high.z, rays.high[2]);
+    store_lanes(path->origin.low.x, rays.low[0]);
+    store_lanes(path->origin.low.y, rays.low[1]);
+    store_lanes(path->origin.low.z, rays.low[2]);
+    store_lanes(path->direction.x, rays.direction[0]);
+    store_lanes(path->direction.y, rays.direction[1]);
+    store_lanes(path->direction.z, rays.direction[2]);
+    store_lanes(path->origin.error, rays.origin_error);
+    store_lanes(margin, rays.cull_margin);
+    store_lanes(path->own_slot, rays.own_slot);
+    store_lanes(hit->t, rays.t);
+    store_lanes(hit->slot, rays.slot);
+    store_lanes(choose_uint(hit->enters, splat_uint(1), splat_uint(0)), rays.enters);
     store_lanes(bound, rays.bound);
-    store_lanes(choose_uint(paths->alive, splat_uint(1), splat_uint(0)), alive);
+    store_lanes(choose_uint(path->alive, splat_uint(1), splat_uint(0)), alive);
     LANED(BoxAxis) axes[3];
-    axes[0] = LANED(box_axis)(paths->origin.high.x, paths->direction.x);
-    axes[1] = LANED(box_axis)(paths->origin.high.y, paths->direction.y);
-    axes[2] = LANED(box_axis)(paths->origin.high.z, paths->direction.z);
+    axes[0] = LANED(box_axis)(path->origin.high.x, path->direction.x);
+    axes[1] = LANED(box_axis)(path->origin.high.y, path->direction.y);
+    axes[2] = LANED(box_axis)(path->origin.high.z, path->direction.z);
     if (flat->batch_count > 0) {
         for (uint batch = 0; batch < flat->batch_count; ++batch)
-            search_flat(geometry, &flat->batches[batch], axes, choose(paths->alive, load_lanes(rays.bound), splat(-1)), &rays);
+            traverse_batch(geometry, &flat->batches[batch], axes, choose(path->alive, load_lanes(rays.bound), splat(-1)), &rays);
     } else
-        search_in_rounds(geometry, axes, alive, &rays);
-    meeting->t = load_lanes(rays.t);
-    meeting->slot = load_lanes(rays.slot);
-    meeting->enters = mask_of_uint(load_lanes(rays.enters) != splat_uint(0));
+        traverse_nodes(geometry, axes, alive, &rays);
+    hit->t = load_lanes(rays.t);
+    hit->slot = load_lanes(rays.slot);
+    hit->enters = vbool_of_uint(load_lanes(rays.enters) != splat_uint(0));
 }
 #endif

@@ -2,9 +2,9 @@
 
 /* The point of the lens that the ray leaves, and its unit direction. `column` and `row` are whole numbers;
  * `center` is 1 for rays through pixel centres only. */
-static void camera_ray(__global const PackedCamera *camera, uint center, SampleKey key, reals column, reals row,
+static void camera_ray(__global const PackedCamera *camera, uint center, SampleKey key, vreal column, vreal row,
                        Vec3 *origin, Vec3 *direction) {
-    reals x, y;
+    vreal x, y;
     sample_2d(key, splat_uint(DIMENSION_PIXEL), &x, &y);
     /* Chosen, not branched to: see trace_sample.cl. */
     x = center != 0 ? splat(R(0.5)) : x;
@@ -14,7 +14,7 @@ static void camera_ray(__global const PackedCamera *camera, uint center, SampleK
     const Vec3 corner = madd3(row, down, madd3(column, right, splat3(camera->corner)));
     const Vec3 target = madd3(y, down, madd3(x, right, corner));
 #if EFFECT_LENS
-    reals u, v, lens_x, lens_y;
+    vreal u, v, lens_x, lens_y;
     sample_2d(key, splat_uint(DIMENSION_LENS), &u, &v);
     sample_disk(u, v, &lens_x, &lens_y);
     *origin = madd3(lens_y, splat3(camera->lens_up), scale3(lens_x, splat3(camera->lens_right)));

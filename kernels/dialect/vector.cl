@@ -1,9 +1,9 @@
 /* vector.cl: points, directions and colours in lane code, structure of arrays. */
 typedef struct Vec3 {
-    reals x, y, z;
+    vreal x, y, z;
 } Vec3;
 
-static Vec3 vec3(reals x, reals y, reals z) {
+static Vec3 vec3(vreal x, vreal y, vreal z) {
     Vec3 v;
     v.x = x;
     v.y = y;
@@ -15,17 +15,17 @@ static Vec3 zero3(void) { return vec3(splat(0), splat(0), splat(0)); }
 static Vec3 add3(Vec3 a, Vec3 b) { return vec3(a.x + b.x, a.y + b.y, a.z + b.z); }
 static Vec3 subtract3(Vec3 a, Vec3 b) { return vec3(a.x - b.x, a.y - b.y, a.z - b.z); }
 static Vec3 multiply3(Vec3 a, Vec3 b) { return vec3(a.x * b.x, a.y * b.y, a.z * b.z); }
-static Vec3 scale3(reals s, Vec3 a) { return vec3(s * a.x, s * a.y, s * a.z); }
+static Vec3 scale3(vreal s, Vec3 a) { return vec3(s * a.x, s * a.y, s * a.z); }
 /* s * a + b */
-static Vec3 madd3(reals s, Vec3 a, Vec3 b) { return vec3(fma(s, a.x, b.x), fma(s, a.y, b.y), fma(s, a.z, b.z)); }
-static reals dot3(Vec3 a, Vec3 b) { return fma(a.x, b.x, fma(a.y, b.y, a.z * b.z)); }
-static Vec3 choose3(masks mask, Vec3 a, Vec3 b) {
+static Vec3 madd3(vreal s, Vec3 a, Vec3 b) { return vec3(fma(s, a.x, b.x), fma(s, a.y, b.y), fma(s, a.z, b.z)); }
+static vreal dot3(Vec3 a, Vec3 b) { return fma(a.x, b.x, fma(a.y, b.y, a.z * b.z)); }
+static Vec3 choose3(vbool mask, Vec3 a, Vec3 b) {
     return vec3(choose(mask, a.x, b.x), choose(mask, a.y, b.y), choose(mask, a.z, b.z));
 }
 /* Of unit length to within 4 ROUNDOFF. `a` must not be zero. */
 static Vec3 normalise3(Vec3 a) { return scale3(splat(1) / sqrt(dot3(a, a)), a); }
 /* Ternaries rather than fmax: a NaN in `a` passes through and is found, and it is faster. */
-static reals at_least(reals a, reals floor_value) { return choose(a < floor_value, floor_value, a); }
-static reals at_most(reals a, reals ceiling) { return choose(a > ceiling, ceiling, a); }
-static reals larger(reals a, reals b) { return choose(a > b, a, b); }
-static reals smaller(reals a, reals b) { return choose(a < b, a, b); }
+static vreal at_least(vreal a, vreal floor_value) { return choose(a < floor_value, floor_value, a); }
+static vreal at_most(vreal a, vreal ceiling) { return choose(a > ceiling, ceiling, a); }
+static vreal larger(vreal a, vreal b) { return choose(a > b, a, b); }
+static vreal smaller(vreal a, vreal b) { return choose(a < b, a, b); }

@@ -2,26 +2,26 @@
  *
  * Appended to a render's program when someone asks (host/engine/features.c).
  * In:    the packed scene; a range of pixels; a range of samples, whose camera rays are those of the render.
- * Out:   for each pixel FEATURE_FLOATS sums over its samples, in the order of the enum. A ray that meets nothing adds
+ * Out:   for each pixel AOV_FLOATS sums over its samples, in the order of the enum. A ray that meets nothing adds
  *        nothing. */
 enum {
-    FEATURE_DEPTH,                       /* along `forward_x, forward_y, forward_z`, from the camera */
-    FEATURE_NORMAL = FEATURE_DEPTH + 1,  /* unit, towards where the ray came from */
-    FEATURE_ALBEDO = FEATURE_NORMAL + 3, /* what the surface scatters: its colour, 1 for glass, 0 for a lamp */
-    FEATURE_MET = FEATURE_ALBEDO + 3,    /* rays that met something */
-    FEATURE_FLOATS
+    AOV_DEPTH,                       /* along `forward_x, forward_y, forward_z`, from the camera */
+    AOV_NORMAL = AOV_DEPTH + 1,  /* unit, towards where the ray came from */
+    AOV_ALBEDO = AOV_NORMAL + 3, /* what the surface scatters: its colour, 1 for glass, 0 for a lamp */
+    AOV_MET = AOV_ALBEDO + 3,    /* rays that met something */
+    AOV_FLOATS
 };
 
 /* One work-item a pixel; as many of its samples at a time as there are lanes. */
-__kernel void features(SCENE_PARAMETERS, uint first_pixel, uint pixel_count, uint first_sample, uint samples,
+__kernel void aovs(SCENE_PARAMETERS, uint first_pixel, uint pixel_count, uint first_sample, uint samples,
                        float forward_x, float forward_y, float forward_z, __global float *out) {
     const uint item = get_global_id(0);
     if (item >= pixel_count) return;
-    const Scene scene = begin_scene(SCENE_ARGUMENTS);
+    const Scene scene = scene_init(SCENE_ARGUMENTS);
     const uint pixel = first_pixel + item;
     const Vec3 forward = vec3(splat(forward_x), splat(forward_y), splat(forward_z));
-    real sums[FEATURE_FLOATS];
-    for (uint i = 0; i < FEATURE_FLOATS; ++i) sums[i] = 0;
+    real sums[AOV_FLOATS];
+    for (uint i = 0; i < AOV_FLOATS; ++i) sums[i] = 0;
     for (uint begun = 0; begun < samples; begun += LANE_COUNT) {
         uint numbers[LANE_COUNT];
         real fresh_lane[LANE_COUNT];
@@ -29,31 +29,31 @@ __kernel void features(SCENE_PARAMETERS, uint first_pixel, uint pixel_count, uin
             numbers[lane] = first_sample + begun + lane;
             fresh_lane[lane] = begun + lane < samples ? 1 : 0;
         }
-        Paths paths;
-        paths.alive = splat(0) != splat(0);
-        paths.inward = paths.alive;
+        Path path;
+        path.alive = splat(0) != splat(0);
+        path.inward = path.alive;
         const SampleKey key = sample_key(seed_low, seed_high, splat_uint(pixel), load_lanes(numbers), replicates);
-        begin_paths(camera, pixel_center, key, splat((real)(pixel % width)), splat((real)(pixel / width)),
-                    load_lanes(fresh_lane) != splat(0), &paths);
-        const Meeting meeting = meet(&scene, &paths);
-        const masks met = paths.alive & meeting.met;
+        path_init_from_camera(camera, pixel_center, key, splat((real)(pixel % width)), splat((real)(pixel / width)),
+                    load_lanes(fresh_lane) != splat(0), &path);
+        const Hit hit = intersect_closest(&scene, &path);
+        const vbool met = path.alive & hit.met;
         if (!any_lane(met)) continue;
 
         Surface surface;
         Vec3 centre, outward, emitted;
-        reals radius;
+        vreal radius;
         Point point;
-        look_up(&scene, &meeting, &centre, &radius, &surface, &emitted);
-        surface_point(&paths.origin, paths.direction, meeting.t, meeting.enters, centre, radius, &point, &outward);
+        fetch_surface(&scene, &hit, &centre, &radius, &surface, &emitted);
+        surface_point(&path.origin, path.direction, hit.t, hit.enters, centre, radius, &point, &outward);
         const Vec3 albedo = surface.albedo;
-        const Vec3 normal = choose3(meeting.enters, outward, scale3(splat(-1), outward));
-        const reals values[FEATURE_FLOATS] = {dot3(point.high, forward), normal.x, normal.y,  normal.z,
+        const Vec3 normal = choose3(hit.enters, outward, scale3(splat(-1), outward));
+        const vreal values[AOV_FLOATS] = {dot3(point.high, forward), normal.x, normal.y,  normal.z,
                                               albedo.x,                  albedo.y, albedo.z, splat(1)};
-        for (uint i = 0; i < FEATURE_FLOATS; ++i) {
+        for (uint i = 0; i < AOV_FLOATS; ++i) {
             real lanes[LANE_COUNT];
             store_lanes(choose(met, values[i], splat(0)), lanes);
             for (uint lane = 0; lane < LANE_COUNT; ++lane) sums[i] += lanes[lane];
         }
     }
-    for (uint i = 0; i < FEATURE_FLOATS; ++i) out[(size_t)item * FEATURE_FLOATS + i] = (float)sums[i];
+    for (uint i = 0; i < AOV_FLOATS; ++i) out[(size_t)item * AOV_FLOATS + i] = (float)sums[i];
 }

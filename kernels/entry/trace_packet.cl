@@ -1,7 +1,7 @@
 /* trace_packet.cl: the kernel of the packet form: a work-item takes SAMPLES_PER_ITEM pixel samples of the chunk, as many
  * at a time as there are lanes; lanes whose path has ended take the next ones. In and out: bounce.cl. */
 __kernel void trace(TRACE_PARAMETERS) {
-    const Scene scene = begin_scene(SCENE_ARGUMENTS);
+    const Scene scene = scene_init(SCENE_ARGUMENTS);
     const uint item = get_global_id(0);
     uint next = item * SAMPLES_PER_ITEM;
     const uint end = min(next + SAMPLES_PER_ITEM, sample_count);
@@ -11,28 +11,28 @@ __kernel void trace(TRACE_PARAMETERS) {
                                  width PIXEL_LIST_ARGUMENT);
     uint sample = next % samples_per_pixel;
 
-    Paths paths;
-    paths.alive = splat(0) != splat(0);
-    paths.depth = splat_uint(0);
-    paths.radiance = zero3();
-    masks cut = paths.alive;      /* lanes whose path the cap has ended, black for what is missing */
-    uints number = splat_uint(0); /* of a lane's pixel sample within the chunk */
+    Path path;
+    path.alive = splat(0) != splat(0);
+    path.depth = splat_uint(0);
+    path.radiance = zero3();
+    vbool cut = path.alive;      /* lanes whose path the cap has ended, black for what is missing */
+    vuint number = splat_uint(0); /* of a lane's pixel sample within the chunk */
     const uint lanes = min((uint)LANE_COUNT, end - next); /* that ever have one */
     uint used = 0;
     for (;;) {
-        const masks reached = paths.alive & mask_of_uint(paths.depth >= splat_uint(max_depth));
+        const vbool reached = path.alive & vbool_of_uint(path.depth >= splat_uint(max_depth));
         cut = cut | reached;
-        paths.alive = paths.alive & not_mask(reached);
+        path.alive = path.alive & vbool_not(reached);
 
         /* Once half of the lanes are free: results out, the next pixel samples in. */
-        const uint alive = popcount(set_of_lanes(paths.alive));
+        const uint alive = popcount(lane_bits(path.alive));
         if (alive == 0 || (alive <= LANE_COUNT / 2 && next < end)) {
             real red[LANE_COUNT], green[LANE_COUNT], blue[LANE_COUNT], count[LANE_COUNT];
             uint place[LANE_COUNT];
-            store_lanes(paths.radiance.x, red);
-            store_lanes(paths.radiance.y, green);
-            store_lanes(paths.radiance.z, blue);
-            store_lanes(uint_to_reals(paths.depth) + choose(cut, splat(R(0.5)), splat(0)), count);
+            store_lanes(path.radiance.x, red);
+            store_lanes(path.radiance.y, green);
+            store_lanes(path.radiance.z, blue);
+            store_lanes(uint_to_real(path.depth) + choose(cut, splat(R(0.5)), splat(0)), count);
             store_lanes(number, place);
             /* Of a path that goes on this is not the last word, but its place is its own, and to ask costs more. */
             for (uint lane = 0; lane < used; ++lane)
@@ -40,11 +40,11 @@ __kernel void trace(TRACE_PARAMETERS) {
             if (next >= end) return;
             used = lanes;
             /* The free lanes take the next pixel samples, the lowest lane first. */
-            const uint free = set_of_lanes(not_mask(paths.alive));
-            const uints rank = popcount(splat_uint(free) & RANK_BITS);
-            const masks fresh = not_mask(paths.alive) & mask_of_uint(rank < splat_uint(end - next));
+            const uint free = lane_bits(vbool_not(path.alive));
+            const vuint rank = popcount(splat_uint(free) & BITS_BELOW);
+            const vbool fresh = vbool_not(path.alive) & vbool_of_uint(rank < splat_uint(end - next));
             number = choose_uint(fresh, next + rank, number);
-            uints sample_number = sample + rank, ahead = splat_uint(0);
+            vuint sample_number = sample + rank, ahead = splat_uint(0);
             carry_over(&sample_number, samples_per_pixel, &ahead);
             const Pixels pixels = pixels_ahead(&pixel, ahead, width);
             const uint taken = min((uint)popcount(free), end - next);
@@ -52,11 +52,11 @@ __kernel void trace(TRACE_PARAMETERS) {
             for (sample += taken; sample >= samples_per_pixel; sample -= samples_per_pixel) next_pixel(&pixel, width);
             const SampleKey key = sample_key(seed_low, seed_high, pixels.row * width + pixels.column,
                                              first_sample + sample_number, replicates);
-            begin_paths(camera, pixel_center, key, uint_to_reals(pixels.column), uint_to_reals(pixels.row), fresh,
-                        &paths);
-            cut = cut & not_mask(fresh);
+            path_init_from_camera(camera, pixel_center, key, uint_to_real(pixels.column), uint_to_real(pixels.row), fresh,
+                        &path);
+            cut = cut & vbool_not(fresh);
             continue; /* a cap of 0 cuts at once */
         }
-        advance(&scene, &paths);
+        trace_bounce(&scene, &path);
     }
 }

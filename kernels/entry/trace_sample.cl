@@ -58,14 +58,14 @@ __kernel void trace(TRACE_PARAMETERS) {
     }
     barrier(CLK_LOCAL_MEM_FENCE);
     if (item >= sample_count) return;
-    const Scene scene = begin_scene(SCENE_ARGUMENTS);
+    const Scene scene = scene_init(SCENE_ARGUMENTS);
     SampleKey key;
     Vec3 origin, direction;
     take_start(&starts, place, &key, &origin, &direction);
-    Paths path;
+    Path path;
     path.inward = path.alive = 0;
-    set_out(camera, key, origin, direction, 1, &path);
-    while (path.alive && path.depth < max_depth) advance(&scene, &path);
+    path_init(camera, key, origin, direction, 1, &path);
+    while (path.alive && path.depth < max_depth) trace_bounce(&scene, &path);
     const real cut = path.alive ? R(0.5) : R(0.0);
     vstore4((real4)(path.radiance.x, path.radiance.y, path.radiance.z, (real)path.depth + cut), item, samples);
 }

@@ -1,6 +1,6 @@
 /* intersect.cl: what the paths of all lanes meet next.
  *
- * In:    paths, geometry.   Out: for each lane the closest hit, as intersect_closest (traverse_single.cl) has it.
+ * In:    paths, geometry.   Out: for each lane the closest hit, as intersect_closest_one (traverse_single.cl) has it.
  *
  * The few huge spheres, which most rays meet, are tried against all lanes at once; then each lane searches the tree
  * with the bound that gave it. */
@@ -20,102 +20,102 @@ typedef struct Scene {
 
 #if LANE_COUNT > 1
 /* Keeps what is least in (distance, sphere index), lane by lane. */
-static void keep_closer_lanes(masks hit, refineds t, uints slot, uints sphere, masks enters, Meeting *meeting) {
-    const masks closer = hit & (mask_of_refined(t < meeting->t) |
-                                (mask_of_refined(t == meeting->t) & mask_of_uint(sphere < meeting->sphere)));
-    meeting->t = choose_refined(closer, t, meeting->t);
-    meeting->slot = choose_uint(closer, slot, meeting->slot);
-    meeting->sphere = choose_uint(closer, sphere, meeting->sphere);
-    meeting->enters = (closer & enters) | (not_mask(closer) & meeting->enters);
+static void keep_closer(vbool found, vrefined t, vuint slot, vuint sphere, vbool enters, Hit *hit) {
+    const vbool closer = found & (vbool_of_refined(t < hit->t) |
+                                (vbool_of_refined(t == hit->t) & vbool_of_uint(sphere < hit->sphere)));
+    hit->t = choose_refined(closer, t, hit->t);
+    hit->slot = choose_uint(closer, slot, hit->slot);
+    hit->sphere = choose_uint(closer, sphere, hit->sphere);
+    hit->enters = (closer & enters) | (vbool_not(closer) & hit->enters);
 }
 
 #if NUMERICS_ROBUST
 /* The spheres being left, met again from inside. */
-static void meet_own_spheres(const Geometry *geometry, const Paths *paths, Meeting *meeting) {
-    const masks inward = paths->alive & paths->inward;
+static void intersect_own_sphere(const Geometry *geometry, const Path *path, Hit *hit) {
+    const vbool inward = path->alive & path->inward;
     if (!any_lane(inward)) return;
-    const uints slot = choose_uint(inward, paths->own_slot, splat_uint(0));
-    const uints lane = slot % TREE_WIDTH;
-    const uints place = (slot - lane) * 4u + lane;
-    const Point *origin = &paths->origin;
+    const vuint slot = choose_uint(inward, path->own_slot, splat_uint(0));
+    const vuint lane = slot % TREE_WIDTH;
+    const vuint place = (slot - lane) * 4u + lane;
+    const Point *origin = &path->origin;
     const LANED(Roots) roots = LANED(sphere_roots)(
-        origin->high.x, origin->high.y, origin->high.z, origin->low.x, origin->low.y, origin->low.z, paths->direction.x,
-        paths->direction.y, paths->direction.z, gather_reals(geometry->leaves, place),
-        gather_reals(geometry->leaves, place + (uint)TREE_WIDTH),
-        gather_reals(geometry->leaves, place + (uint)(2 * TREE_WIDTH)),
-        gather_reals(geometry->leaves, place + (uint)(3 * TREE_WIDTH)));
-    keep_closer_lanes(inward, LANED(chord)(roots), slot, gather_uints(geometry->slot_sphere, slot),
-                      splat(0) != splat(0), meeting);
+        origin->high.x, origin->high.y, origin->high.z, origin->low.x, origin->low.y, origin->low.z, path->direction.x,
+        path->direction.y, path->direction.z, gather_real(geometry->leaves, place),
+        gather_real(geometry->leaves, place + (uint)TREE_WIDTH),
+        gather_real(geometry->leaves, place + (uint)(2 * TREE_WIDTH)),
+        gather_real(geometry->leaves, place + (uint)(3 * TREE_WIDTH)));
+    keep_closer(inward, LANED(chord)(roots), slot, gather_uint(geometry->slot_sphere, slot),
+                      splat(0) != splat(0), hit);
 }
 #endif
 
-/* One leaf's spheres, one at a time, against all lanes of `active`. The margin is that of test_leaf in traverse_single.cl. */
-static void test_leaf_lanes(const Geometry *geometry, const Paths *paths, masks active, reals ray_margin,
-                            uint leaf_number, Meeting *meeting) {
-    const Point *origin = &paths->origin;
-    const Vec3 direction = paths->direction;
+/* One leaf's spheres, one at a time, against all lanes of `active`. The margin is that of intersect_leaf_one in traverse_single.cl. */
+static void intersect_leaf(const Geometry *geometry, const Path *path, vbool active, vreal cull_margin,
+                            uint leaf_number, Hit *hit) {
+    const Point *origin = &path->origin;
+    const Vec3 direction = path->direction;
     __global const real *leaf = geometry->leaves + leaf_number * (4 * TREE_WIDTH);
     for (uint lane = 0; lane < TREE_WIDTH; ++lane) {
         if (leaf[3 * TREE_WIDTH + lane] <= 0) continue;
         const uint slot = leaf_number * TREE_WIDTH + lane;
-        const reals radius = splat(leaf[3 * TREE_WIDTH + lane]);
+        const vreal radius = splat(leaf[3 * TREE_WIDTH + lane]);
         const Vec3 centre = vec3(splat(leaf[lane]), splat(leaf[TREE_WIDTH + lane]), splat(leaf[2 * TREE_WIDTH + lane]));
         const Vec3 oc = subtract3(centre, origin->high);
-        const reals p = dot3(oc, direction);
+        const vreal p = dot3(oc, direction);
         const Vec3 across = madd3(-p, direction, oc);
 #if NUMERICS_ROBUST
-        const reals margin = fma(splat(R(64.0) * ROUNDOFF), fabs(p) + radius, ray_margin);
-        const reals reach = radius + margin;
-        const reals room = fma(reach, reach, -dot3(across, across));
-        const reals outside = at_least(at_least(-p, p - bound_of(meeting)) - margin, splat(0));
-        const masks candidate =
-            (room >= outside * outside) & active & mask_of_uint(paths->own_slot != splat_uint(slot));
+        const vreal margin = fma(splat(R(64.0) * ROUNDOFF), fabs(p) + radius, cull_margin);
+        const vreal reach = radius + margin;
+        const vreal room = fma(reach, reach, -dot3(across, across));
+        const vreal outside = at_least(at_least(-p, p - bound_of(hit)) - margin, splat(0));
+        const vbool candidate =
+            (room >= outside * outside) & active & vbool_of_uint(path->own_slot != splat_uint(slot));
         if (!any_lane(candidate)) continue;
         const LANED(Roots) roots = LANED(sphere_roots)(origin->high.x, origin->high.y, origin->high.z, origin->low.x,
                                                        origin->low.y, origin->low.z, direction.x, direction.y,
                                                        direction.z, centre.x, centre.y, centre.z, radius);
-        refineds t;
-        masks enters;
-        const masks hit = LANED(choose_root)(roots, radius, origin->slack, &t, &enters) & candidate;
+        vrefined t;
+        vbool enters;
+        const vbool found = LANED(choose_root)(roots, radius, origin->error, &t, &enters) & candidate;
 #else
-        const reals discriminant = fma(radius, radius, -dot3(across, across));
-        const reals half_chord = sqrt(at_least(discriminant, splat(0)));
-        const masks enters = p - half_chord > splat(PLAIN_T_MIN);
-        const reals t = choose(enters, p - half_chord, p + half_chord);
-        const masks hit = (discriminant >= splat(0)) & (t > splat(PLAIN_T_MIN)) & active;
+        const vreal discriminant = fma(radius, radius, -dot3(across, across));
+        const vreal half_chord = sqrt(at_least(discriminant, splat(0)));
+        const vbool enters = p - half_chord > splat(PLAIN_T_MIN);
+        const vreal t = choose(enters, p - half_chord, p + half_chord);
+        const vbool found = (discriminant >= splat(0)) & (t > splat(PLAIN_T_MIN)) & active;
 #endif
-        keep_closer_lanes(hit, t, splat_uint(slot), splat_uint(geometry->slot_sphere[slot]), enters, meeting);
+        keep_closer(found, t, splat_uint(slot), splat_uint(geometry->slot_sphere[slot]), enters, hit);
     }
 }
 
 /* How far the rounding of the rays' origins, and their slack, can move a distance. */
-static reals margin_of_origins(const Point *origin) {
+static vreal cull_margin(const Point *origin) {
     return fma(fabs(origin->high.x) + fabs(origin->high.y) + fabs(origin->high.z), splat(R(4.0) * ROUNDOFF),
-               origin->slack);
+               origin->error);
 }
 
-static Meeting meet(const Scene *scene, const Paths *paths) {
+static Hit intersect_closest(const Scene *scene, const Path *path) {
     const Geometry *geometry = &scene->geometry;
-    Meeting meeting;
-    meeting.t = splat_refined(REAL_LARGE);
-    meeting.slot = splat_uint(NO_SLOT);
-    meeting.sphere = splat_uint(NO_SPHERE);
-    meeting.enters = splat(0) != splat(0);
-    const reals margin = margin_of_origins(&paths->origin);
+    Hit hit;
+    hit.t = splat_refined(REAL_LARGE);
+    hit.slot = splat_uint(NO_SLOT);
+    hit.sphere = splat_uint(NO_SPHERE);
+    hit.enters = splat(0) != splat(0);
+    const vreal margin = cull_margin(&path->origin);
 #if NUMERICS_ROBUST
-    meet_own_spheres(geometry, paths, &meeting);
+    intersect_own_sphere(geometry, path, &hit);
 #endif
     for (uint leaf = 0; leaf < geometry->first_leaves; ++leaf)
-        test_leaf_lanes(geometry, paths, paths->alive, margin, leaf, &meeting);
+        intersect_leaf(geometry, path, path->alive, margin, leaf, &hit);
 #if EFFECT_TREE
-    search_trees(geometry, &scene->flat, paths, margin, bound_of(&meeting), &meeting);
+    traverse_packet(geometry, &scene->flat, path, margin, bound_of(&hit), &hit);
 #endif
-    meeting.met = mask_of_uint(meeting.slot != splat_uint(NO_SLOT));
-    return meeting;
+    hit.met = vbool_of_uint(hit.slot != splat_uint(NO_SLOT));
+    return hit;
 }
 #else
-static Meeting meet(const Scene *scene, const Paths *path) {
-    Ray ray;
+static Hit intersect_closest(const Scene *scene, const Path *path) {
+    Ray_one ray;
     ray.high[0] = path->origin.high.x;
     ray.high[1] = path->origin.high.y;
     ray.high[2] = path->origin.high.z;
@@ -125,16 +125,16 @@ static Meeting meet(const Scene *scene, const Paths *path) {
     ray.direction[0] = path->direction.x;
     ray.direction[1] = path->direction.y;
     ray.direction[2] = path->direction.z;
-    ray.slack = path->origin.slack;
-    ray.margin = margin_of_origin(&ray);
+    ray.origin_error = path->origin.error;
+    ray.cull_margin = cull_margin_one(&ray);
     ray.own_slot = path->own_slot;
     ray.inward = path->inward;
-    const Hit hit = intersect_closest(&scene->geometry, &ray);
-    Meeting meeting;
-    meeting.t = hit.t;
-    meeting.met = hit.slot != NO_SLOT;
-    meeting.enters = hit.enters;
-    meeting.slot = hit.slot;
-    return meeting;
+    const Hit_one found = intersect_closest_one(&scene->geometry, &ray);
+    Hit hit;
+    hit.t = found.t;
+    hit.met = found.slot != NO_SLOT;
+    hit.enters = found.enters;
+    hit.slot = found.slot;
+    return hit;
 }
 #endif

@@ -1,26 +1,26 @@
 /* path.cl: the state of the paths that a work-item follows, in lane code. */
 
 /* The paths that a work-item follows, one a lane. */
-typedef struct Paths {
+typedef struct Path {
     Point origin;
     Vec3 direction;
     Vec3 throughput, radiance;
     SampleKey key;
-    uints depth;   /* ray segments traced */
-    uints own_slot;
-    masks inward;
-    masks alive;
+    vuint depth;   /* ray segments traced */
+    vuint own_slot;
+    vbool inward;
+    vbool alive;
     /* Of the latest segment, for path_log.cl. */
-    masks met, entered;
-    refineds distance;
-} Paths;
+    vbool met, entered;
+    vrefined distance;
+} Path;
 
 /* What the paths meet next. */
-typedef struct Meeting {
-    refineds t;
-    masks met, enters;
-    uints slot, sphere;
-} Meeting;
+typedef struct Hit {
+    vrefined t;
+    vbool met, enters;
+    vuint slot, sphere;
+} Hit;
 
 /* Not below the distance met so far. */
-static reals bound_of(const Meeting *meeting) { return to_real(meeting->t) * (R(1.0) + R(4.0) * ROUNDOFF); }
+static vreal bound_of(const Hit *hit) { return to_real(hit->t) * (R(1.0) + R(4.0) * ROUNDOFF); }

@@ -21,7 +21,7 @@ typedef struct Pixel {
 
 /* The same for all lanes. */
 typedef struct Pixels {
-    uints row, column;
+    vuint row, column;
 } Pixels;
 
 static void set_pixel(Pixel *pixel, uint number, uint width) {
@@ -57,9 +57,9 @@ static void next_pixel(Pixel *pixel, uint width) {
 }
 
 /* Brings `digit` below `base` and adds to `carry` how often that took: mostly not once, so no division. */
-static void carry_over(uints *digit, uint base, uints *carry) {
+static void carry_over(vuint *digit, uint base, vuint *carry) {
     for (;;) {
-        const masks beyond = mask_of_uint(*digit >= splat_uint(base));
+        const vbool beyond = vbool_of_uint(*digit >= splat_uint(base));
         if (!any_lane(beyond)) return;
         *digit = choose_uint(beyond, *digit - base, *digit);
         *carry = choose_uint(beyond, *carry + 1u, *carry);
@@ -67,15 +67,15 @@ static void carry_over(uints *digit, uint base, uints *carry) {
 }
 
 /* The pixels `ahead` of this one, of which the chunk need not have all. */
-static Pixels pixels_ahead(const Pixel *pixel, uints ahead, uint width) {
+static Pixels pixels_ahead(const Pixel *pixel, vuint ahead, uint width) {
     Pixels pixels;
     pixels.row = splat_uint(pixel->row);
 #if PIXEL_LIST
     pixels.column = splat_uint(pixel->column);
-    if (any_lane(mask_of_uint(ahead > splat_uint(0)))) {
-        const uints place = pixel->place + ahead;
-        const uints last = splat_uint(pixel->last_place);
-        const uints number = gather_uints(pixel->list, choose_uint(mask_of_uint(place < last), place, last));
+    if (any_lane(vbool_of_uint(ahead > splat_uint(0)))) {
+        const vuint place = pixel->place + ahead;
+        const vuint last = splat_uint(pixel->last_place);
+        const vuint number = gather_uint(pixel->list, choose_uint(vbool_of_uint(place < last), place, last));
         pixels.row = number / width;
         pixels.column = number - pixels.row * width;
     }

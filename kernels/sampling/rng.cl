@@ -5,7 +5,7 @@
  * Dimensions, by purpose. An effect that is absent leaves its places unused:
  *   0, 1  position in the pixel        2, 3  position on the lens        4  time (kept)       5..15  kept
  *   16 + 16 b + k, for bounce b:
- *     k = 0, 1     direction of scattering
+ *     k = 0, 1     direction of bsdf_sample
  *     k = 2, 3, 4  radius in a ball (fuzz and the cosine-cubed lobe)
  *     k = 5        choice between reflection and refraction
  *     k = 6        roulette (kept)    7, 8, 9  a light (kept)    10..15  kept */
@@ -19,20 +19,20 @@
 
 /* What identifies a pixel sample to the generator. */
 typedef struct SampleKey {
-    uints a, b;
+    vuint a, b;
 #if SAMPLER_SOBOL
-    uints index_reversed;         /* of the sample within its replicate, its bits in reverse */
-    uints scramble_a, scramble_b; /* shared by the samples of a pixel's replicate */
+    vuint index_reversed;         /* of the sample within its replicate, its bits in reverse */
+    vuint scramble_a, scramble_b; /* shared by the samples of a pixel's replicate */
 #endif
 } SampleKey;
 
 /* pcg4d (M. Jarzynski and M. Olano, "Hash Functions for GPU Rendering", JCGT 9(3), 2020): four words in, four
  * well mixed words out; two of them are the key. */
-static SampleKey mix_key(uint seed_low, uint seed_high, uints pixel, uints sample) {
-    uints x = pixel * 1664525u + 1013904223u;
-    uints y = sample * 1664525u + 1013904223u;
-    uints z = splat_uint(seed_low * 1664525u + 1013904223u);
-    uints w = splat_uint(seed_high * 1664525u + 1013904223u);
+static SampleKey mix_key(uint seed_low, uint seed_high, vuint pixel, vuint sample) {
+    vuint x = pixel * 1664525u + 1013904223u;
+    vuint y = sample * 1664525u + 1013904223u;
+    vuint z = splat_uint(seed_low * 1664525u + 1013904223u);
+    vuint w = splat_uint(seed_high * 1664525u + 1013904223u);
     x += y * w;
     y += z * x;
     z += x * y;
@@ -54,8 +54,8 @@ static SampleKey mix_key(uint seed_low, uint seed_high, uints pixel, uints sampl
 /* 32 random bits for one dimension: a Weyl sequence of odd step (2^32 / golden ratio) through a two-round
  * multiply-xorshift finaliser (constants found by C. Wellons, "hash-prospector", 2018), with the key's second
  * word added between the rounds, so that equal first words do not make equal sequences. */
-static uints random_bits(SampleKey key, uints dimension) {
-    uints x = key.a + dimension * 0x9e3779b9u;
+static vuint random_bits(SampleKey key, vuint dimension) {
+    vuint x = key.a + dimension * 0x9e3779b9u;
     x ^= x >> 16;
     x *= 0x21f0aaadu;
     x += key.b;
@@ -66,6 +66,6 @@ static uints random_bits(SampleKey key, uints dimension) {
 }
 
 /* [0, 1): the 24 upper bits, so 1 cannot appear by rounding. */
-static reals bits_to_unit(uints bits) { return uint_to_reals(bits >> 8) * R(0x1p-24); }
+static vreal bits_to_unit(vuint bits) { return uint_to_real(bits >> 8) * R(0x1p-24); }
 
-static reals uniform(SampleKey key, uints dimension) { return bits_to_unit(random_bits(key, dimension)); }
+static vreal uniform(SampleKey key, vuint dimension) { return bits_to_unit(random_bits(key, dimension)); }

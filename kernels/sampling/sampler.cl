@@ -11,7 +11,7 @@
 #if SAMPLER_SOBOL
 #define SOBOL_BOUNCES 3u
 
-static uints reverse_bits(uints x) {
+static vuint reverse_bits(vuint x) {
     x = ((x >> 1) & 0x55555555u) | ((x & 0x55555555u) << 1);
     x = ((x >> 2) & 0x33333333u) | ((x & 0x33333333u) << 2);
     x = ((x >> 4) & 0x0f0f0f0fu) | ((x & 0x0f0f0f0fu) << 4);
@@ -21,7 +21,7 @@ static uints reverse_bits(uints x) {
 
 /* A random permutation in which each bit is flipped or not by the bits below it. On reversed bits that is a nested
  * uniform scramble (A. Owen, "Randomly Permuted (t,m,s)-Nets and (t,s)-Sequences", 1995). */
-static uints permute_upwards(uints x, uints seed) {
+static vuint permute_upwards(vuint x, vuint seed) {
     x ^= x * 0x3d20adeau;
     x += seed;
     x *= (seed >> 16) | 1u;
@@ -31,7 +31,7 @@ static uints permute_upwards(uints x, uints seed) {
 }
 
 /* The second Sobol dimension from the first: Pascal's triangle modulo 2, on bits of place value 1/2, 1/4, ... */
-static uints second_dimension(uints x) {
+static vuint second_dimension(vuint x) {
     x ^= (x & 0x55555555u) << 1;
     x ^= (x & 0x33333333u) << 2;
     x ^= (x & 0x0f0f0f0fu) << 4;
@@ -48,13 +48,13 @@ static SampleKey scramble_key(SampleKey key) {
 }
 
 /* Dimensions of pixel, lens and the first bounces. */
-static uint_masks is_low(uints dimension) {
-    return dimension < splat_uint(DIMENSION_BOUNCE + SOBOL_BOUNCES * DIMENSIONS_PER_BOUNCE);
+static vbool is_low(vuint dimension) {
+    return vbool_of_uint(dimension < splat_uint(DIMENSION_BOUNCE + SOBOL_BOUNCES * DIMENSIONS_PER_BOUNCE));
 }
 #endif
 
 /* `replicates`: K; sample s is number s / K of replicate s mod K. */
-static SampleKey sample_key(uint seed_low, uint seed_high, uints pixel, uints sample, uint replicates) {
+static SampleKey sample_key(uint seed_low, uint seed_high, vuint pixel, vuint sample, uint replicates) {
     SampleKey key = mix_key(seed_low, seed_high, pixel, sample);
 #if SAMPLER_SOBOL
     /* ~replicate: far from the numbers that samples have, so that no scramble is a sample's own key */
@@ -66,10 +66,10 @@ static SampleKey sample_key(uint seed_low, uint seed_high, uints pixel, uints sa
     return key;
 }
 
-static reals sample_1d(SampleKey key, uints dimension) {
-    reals u = uniform(key, dimension);
+static vreal sample_1d(SampleKey key, vuint dimension) {
+    vreal u = uniform(key, dimension);
 #if SAMPLER_SOBOL
-    const masks low = mask_of_uint(is_low(dimension));
+    const vbool low = is_low(dimension);
     if (any_lane(low))
         u = choose(low, bits_to_unit(permute_upwards(key.index_reversed, random_bits(scramble_key(key), dimension))), u);
 #endif
@@ -77,15 +77,15 @@ static reals sample_1d(SampleKey key, uints dimension) {
 }
 
 /* Two numbers for a pair of dimensions that begins at `dimension`. */
-static void sample_2d(SampleKey key, uints dimension, reals *u, reals *v) {
+static void sample_2d(SampleKey key, vuint dimension, vreal *u, vreal *v) {
     *u = uniform(key, dimension);
     *v = uniform(key, dimension + 1u);
 #if SAMPLER_SOBOL
-    const masks low = mask_of_uint(is_low(dimension));
+    const vbool low = is_low(dimension);
     if (any_lane(low)) {
         const SampleKey scramble = scramble_key(key);
-        const uints x = permute_upwards(key.index_reversed, random_bits(scramble, dimension));
-        const uints y = reverse_bits(
+        const vuint x = permute_upwards(key.index_reversed, random_bits(scramble, dimension));
+        const vuint y = reverse_bits(
             permute_upwards(reverse_bits(second_dimension(x)), random_bits(scramble, dimension + 1u)));
         *u = choose(low, bits_to_unit(x), *u);
         *v = choose(low, bits_to_unit(y), *v);

@@ -13,7 +13,7 @@ import tempfile
 
 program, source = sys.argv[1], pathlib.Path(sys.argv[2])
 scene = source / "tests/agree/scenes/lobe-lambertian.json"
-store = "store_lanes(paths.radiance.x, red);"
+store = "store_lanes(path.radiance.x, red);"
 
 
 def check(folder, *more, kernels=None):
@@ -54,7 +54,7 @@ with tempfile.TemporaryDirectory() as folder:
     done = check(folder, "--json", "-", kernels=crash)
     assert "crashed" in json.loads(done.stdout)["results"][0]["error"], done.stdout
 
-    wrong = patched(folder, "wrong", "paths.radiance = scale3(splat(R(1.1)), paths.radiance); " + store)
+    wrong = patched(folder, "wrong", "path.radiance = scale3(splat(R(1.1)), path.radiance); " + store)
     expect("a kernel too bright by a tenth", check(folder, kernels=wrong), 3, "DISAGREE")
     expect("a kernel that does not compile", check(folder, kernels=patched(folder, "broken", "this is no C;")), 1,
            "BROKEN")

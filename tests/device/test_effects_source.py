@@ -31,7 +31,7 @@ MARKS = {
     "NORMALS": ["shows_normal"],
     "LENS": ["lens_x", "->lens_up", "sample_disk(u"],
     "GRADIENT": ["->top"],
-    "TREE": ["BoxRay", "search_tree", "->children"],
+    "TREE": ["BoxRay", "traverse_tree_one", "->children"],
 }
 # Code that several effects share.
 SHARED = {

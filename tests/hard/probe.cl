@@ -9,17 +9,17 @@
 enum { PROBE_RAY_REALS = 10, PROBE_HIT_REALS = 8, PROBE_POINT_REALS = 10 };
 
 /* `own`: 0 for a ray from free space, 1 for one that leaves the sphere of `slot` outward, 2 inward. */
-static Ray probe_ray(__global const real *in, uint own, uint slot) {
-    Ray ray;
+static Ray_one probe_ray(__global const real *in, uint own, uint slot) {
+    Ray_one ray;
     for (uint axis = 0; axis < 3; ++axis) {
         ray.high[axis] = in[axis];
         ray.low[axis] = in[3 + axis];
         ray.direction[axis] = in[6 + axis];
     }
-    ray.slack = in[9];
+    ray.origin_error = in[9];
     ray.own_slot = own != 0 ? slot : NO_SLOT;
     ray.inward = own == 2;
-    ray.margin = margin_of_origin(&ray);
+    ray.cull_margin = cull_margin_one(&ray);
     return ray;
 }
 
@@ -44,15 +44,15 @@ __kernel void probe_leaf(uint count, __global const real *rays, __global const u
     __global const real *leaf = leaves + (size_t)item * 4 * TREE_WIDTH;
     const uint lane = item % TREE_WIDTH;
     const Geometry geometry = probe_geometry(boxes, children, leaf, slot_sphere, 1, 1);
-    const Ray ray = probe_ray(rays + (size_t)item * PROBE_RAY_REALS, own[item], lane);
-    const Hit hit = intersect_closest(&geometry, &ray);
+    const Ray_one ray = probe_ray(rays + (size_t)item * PROBE_RAY_REALS, own[item], lane);
+    const Hit_one hit = intersect_closest_one(&geometry, &ray);
     __global refined *row = out + (size_t)item * PROBE_HIT_REALS;
     row[0] = hit.t;
     row[1] = hit.slot != NO_SLOT;
     row[2] = hit.enters;
 #if NUMERICS_ROBUST
-    const Roots_1 roots =
-        sphere_roots_1(ray.high[0], ray.high[1], ray.high[2], ray.low[0], ray.low[1], ray.low[2], ray.direction[0],
+    const Roots_one roots =
+        sphere_roots_one(ray.high[0], ray.high[1], ray.high[2], ray.low[0], ray.low[1], ray.low[2], ray.direction[0],
                        ray.direction[1], ray.direction[2], leaf[lane], leaf[TREE_WIDTH + lane],
                        leaf[2 * TREE_WIDTH + lane], leaf[3 * TREE_WIDTH + lane]);
     row[3] = roots.near;
@@ -76,7 +76,7 @@ __kernel void probe_point(uint count, __global const real *rays, __global const 
     Vec3 normal;
     origin.high = vec3(ray[0], ray[1], ray[2]);
     origin.low = vec3(ray[3], ray[4], ray[5]);
-    origin.slack = ray[9];
+    origin.error = ray[9];
     surface_point(&origin, vec3(ray[6], ray[7], ray[8]), hit[0], hit[2] != 0, vec3(sphere[0], sphere[1], sphere[2]),
                   sphere[3], &point, &normal);
     __global refined *row = out + (size_t)item * PROBE_POINT_REALS;
@@ -86,14 +86,14 @@ __kernel void probe_point(uint count, __global const real *rays, __global const 
     row[3] = point.low.x;
     row[4] = point.low.y;
     row[5] = point.low.z;
-    row[6] = point.slack;
+    row[6] = point.error;
     row[7] = normal.x;
     row[8] = normal.y;
     row[9] = normal.z;
 }
 
-/* One scattering. In: incoming, normal, index, fuzz, albedo. choices: enters, kind, lobe, variant, total_reflection,
- * sample. Out: direction, goes_on, refracted, the random direction and ball radius that the sample has. */
+/* One bsdf_sample. In: incoming, normal, index, fuzz, albedo. choices: enters, kind, lobe, variant, total_reflection,
+ * sample. Out: direction, scattered, refracted, the random direction and ball radius that the sample has. */
 __kernel void probe_scatter(uint count, __global const real *in, __global const uint *choices, uint seed,
                             __global refined *out) {
     PROBE_ITEM
@@ -111,14 +111,14 @@ __kernel void probe_scatter(uint count, __global const real *in, __global const 
     surface.variant = words[3];
     surface.total_reflection = words[4];
     const SampleKey key = sample_key(seed, 0, 0, words[5], 4);
-    const Scattering scattering = scatter(&surface, key, 0);
+    const BsdfSample bsdf_sample = scatter(&surface, key, 0);
     const Vec3 offset = random_direction(key, DIMENSION_BOUNCE);
     __global refined *row = out + (size_t)item * 8;
-    row[0] = scattering.direction.x;
-    row[1] = scattering.direction.y;
-    row[2] = scattering.direction.z;
-    row[3] = scattering.goes_on != 0;
-    row[4] = scattering.refracted != 0;
+    row[0] = bsdf_sample.direction.x;
+    row[1] = bsdf_sample.direction.y;
+    row[2] = bsdf_sample.direction.z;
+    row[3] = bsdf_sample.scattered != 0;
+    row[4] = bsdf_sample.transmitted != 0;
     row[5] = offset.x;
     row[6] = offset.y;
     row[7] = offset.z;
@@ -187,37 +187,37 @@ __kernel void probe_normalise(uint count, __global const real *in, __global refi
 __kernel void probe_boxes(uint count, __global const real *rays, __global const real *boxes, __global uint *out) {
     PROBE_ITEM
     const Geometry geometry = probe_geometry(boxes, 0, 0, 0, 0, 0);
-    const Ray ray = probe_ray(rays + (size_t)item * PROBE_RAY_REALS, 0, 0);
+    const Ray_one ray = probe_ray(rays + (size_t)item * PROBE_RAY_REALS, 0, 0);
     const BoxRay box = box_ray(&ray);
     wide entry;
-    lane_set met = test_node(&geometry, &box, item, REAL_LARGE, &entry);
+    child_mask met = test_node(&geometry, &box, item, REAL_LARGE, &entry);
     for (uint lane = 0; lane < TREE_WIDTH; ++lane) {
         out[(size_t)item * TREE_WIDTH + lane] = 0;
     }
     while (met != 0) {
-        const uint lane = lowest_lane(met);
-        met = without_lowest(met);
+        const uint lane = lowest_bit(met);
+        met = without_lowest_bit(met);
         out[(size_t)item * TREE_WIDTH + lane] = 1;
     }
 }
 
-/* The tree against all leaves one by one. Out: t and sphere of both (-1: none), and intersect_any. */
+/* The tree against all leaves one by one. Out: t and sphere of both (-1: none), and intersect_any_one. */
 __kernel void probe_tree(uint count, __global const real *rays, __global const real *boxes,
                          __global const uint *children, __global const real *leaves, __global const uint *slot_sphere,
                          uint first_leaves, uint leaf_count, __global refined *out) {
     PROBE_ITEM
     const Geometry geometry = probe_geometry(boxes, children, leaves, slot_sphere, first_leaves, leaf_count);
-    const Ray ray = probe_ray(rays + (size_t)item * PROBE_RAY_REALS, 0, 0);
-    const Hit tree = intersect_closest(&geometry, &ray);
-    Hit list = no_hit(REAL_LARGE);
+    const Ray_one ray = probe_ray(rays + (size_t)item * PROBE_RAY_REALS, 0, 0);
+    const Hit_one tree = intersect_closest_one(&geometry, &ray);
+    Hit_one list = no_hit_one(REAL_LARGE);
     for (uint slot = 0; slot < leaf_count * TREE_WIDTH; ++slot)
-        if (slot_sphere[slot] != NO_SPHERE) refine_slot(&geometry, &ray, slot, &list);
+        if (slot_sphere[slot] != NO_SPHERE) intersect_slot_one(&geometry, &ray, slot, &list);
     __global refined *row = out + (size_t)item * 5;
     row[0] = tree.t;
     row[1] = tree.slot == NO_SLOT ? -1 : (refined)slot_sphere[tree.slot];
     row[2] = list.t;
     row[3] = list.slot == NO_SLOT ? -1 : (refined)slot_sphere[list.slot];
-    row[4] = intersect_any(&geometry, &ray, REAL_LARGE);
+    row[4] = intersect_any_one(&geometry, &ray, REAL_LARGE);
 }
 
 /* Arithmetic that the compiler must leave alone. In: a, b, zero. Out: see test_arithmetic.c. */
@@ -238,17 +238,17 @@ __kernel void probe_arithmetic(uint count, __global const real *in, __global rea
     row[7] = sum;
 }
 
-/* Paths from given rays, refracted or reflected as the scene's materials say. Out: for each segment the sphere met
+/* Path from given rays, refracted or reflected as the scene's materials say. Out: for each segment the sphere met
  * (-1: none) and its distance; after PROBE_PATH_SEGMENTS of them the last direction, and whether it lives. */
 enum { PROBE_PATH_SEGMENTS = 12 };
 __kernel void probe_paths(SCENE_PARAMETERS, uint count, __global const real *rays, __global refined *out) {
     PROBE_ITEM
-    const Scene scene = begin_scene(SCENE_ARGUMENTS);
+    const Scene scene = scene_init(SCENE_ARGUMENTS);
     __global const real *in = rays + (size_t)item * PROBE_RAY_REALS;
-    Paths path;
+    Path path;
     path.origin.high = vec3(in[0], in[1], in[2]);
     path.origin.low = vec3(in[3], in[4], in[5]);
-    path.origin.slack = in[9];
+    path.origin.error = in[9];
     path.direction = vec3(in[6], in[7], in[8]);
     path.throughput = vec3(1, 1, 1);
     path.radiance = zero3();
@@ -260,7 +260,7 @@ __kernel void probe_paths(SCENE_PARAMETERS, uint count, __global const real *ray
     __global refined *row = out + (size_t)item * (2 * PROBE_PATH_SEGMENTS + 4);
     for (uint segment = 0; segment < PROBE_PATH_SEGMENTS; ++segment) {
         const int alive = path.alive;
-        if (alive) advance(&scene, &path);
+        if (alive) trace_bounce(&scene, &path);
         row[2 * segment] = alive && path.met ? (refined)slot_sphere[path.own_slot] : -1;
         row[2 * segment + 1] = alive && path.met ? path.distance : 0;
     }
