@@ -14,34 +14,53 @@
 enum { IN_SAMPLE = 1, IN_PACKET = 2, IN_ROBUST = 4, IN_PLAIN = 8, IN_ALL = 0 };
 
 /* The order in which the files of kernels/ stand in a program. A lanes_... file says for how many lanes what
- * follows is meant; the files of shape/ serve single rays and, below lanes_packet.cl, all lanes together. */
+ * follows is meant (dialect/lanes.cl); some files are read again for another number of lanes. */
 static const struct {
     const char *name;
     unsigned only_in;
 } files[] = {
     {"dialect/real.cl", IN_ALL},
     {"scene_types.h", IN_ALL},
-    {"bvh/child_mask.cl", IN_ALL},
+    /* for one lane */
     {"dialect/lanes_one.cl", IN_ALL},
+    {"dialect/lanes.cl", IN_ALL},
+    {"dialect/vector.cl", IN_ALL},
+    {"shape/ray.cl", IN_ALL},
     {"shape/sphere_robust.cl", IN_ROBUST},
     {"shape/sphere_plain.cl", IN_PLAIN},
+    {"bvh/flat_tree.cl", IN_PACKET},
+    {"bvh/geometry.cl", IN_ALL},
+    {"bvh/hit.cl", IN_ALL},
     {"bvh/box_ray.cl", IN_ALL},
-    {"bvh/traverse_single.cl", IN_ALL},
+    /* for the children of a node */
+    {"dialect/lanes_node.cl", IN_ALL},
+    {"dialect/lanes.cl", IN_ALL},
+    {"dialect/vector.cl", IN_ALL},
+    {"shape/ray.cl", IN_ALL},
+    {"shape/sphere_robust.cl", IN_ROBUST},
+    {"shape/sphere_plain.cl", IN_PLAIN},
+    {"bvh/child_mask.cl", IN_ALL},
+    {"bvh/node.cl", IN_ALL},
+    /* for one path, or for the paths of a packet */
+    {"dialect/lanes_one.cl", IN_SAMPLE},
     {"dialect/lanes_packet.cl", IN_PACKET},
+    {"dialect/lanes.cl", IN_ALL},
+    {"dialect/vector.cl", IN_PACKET},
+    {"shape/ray.cl", IN_PACKET},
     {"shape/sphere_robust.cl", IN_PACKET | IN_ROBUST},
     {"shape/sphere_plain.cl", IN_PACKET | IN_PLAIN},
+    {"bvh/hit.cl", IN_PACKET},
     {"bvh/box_ray.cl", IN_PACKET},
-    {"dialect/vector.cl", IN_ALL},
+    {"bvh/traverse_single.cl", IN_SAMPLE},
+    {"bvh/traverse_packet.cl", IN_PACKET},
     {"sampling/rng.cl", IN_ALL},
     {"sampling/sampler.cl", IN_ALL},
     {"sampling/warps.cl", IN_ALL},
-    {"shape/surface.cl", IN_ALL},
     {"light/sky.cl", IN_ALL},
     {"camera/camera.cl", IN_ALL},
     {"bsdf/bsdf.cl", IN_ALL},
+    {"integrator/scene.cl", IN_ALL},
     {"integrator/path.cl", IN_ALL},
-    {"bvh/traverse_packet.cl", IN_PACKET},
-    {"integrator/intersect.cl", IN_ALL},
     {"integrator/fetch_surface.cl", IN_ALL},
     {"integrator/pixels.cl", IN_ALL},
     {"integrator/bounce.cl", IN_ALL},
@@ -148,7 +167,6 @@ BpStatus bp_program_source(const BpProgramOptions *options, const char *extra_na
     } else {
         text_print(&text, "#define GROUP_MAX %uu\n", BP_SAMPLE_GROUP_MAX);
     }
-    text_print(&text, "#define NUMERICS_ROBUST %d\n", !plain);
     text_print(&text, "#define SAMPLER_SOBOL %d\n", options->sampler == BP_SAMPLER_SOBOL);
     text_print(&text, "#define PIXEL_LIST %d\n", options->pixel_list);
     for (int e = 0; e < BP_EFFECT_COUNT; ++e)

@@ -68,7 +68,8 @@ BpStatus bp_worker_create(const BpDeviceInfo *info, const BpPacked *packed, cons
 void bp_worker_destroy(BpWorker **worker);
 
 #define BP_WORKER_SCENE_ARGUMENTS 18
-/* Sets the arguments that every tracing kernel begins with (SCENE_PARAMETERS of kernels/integrator/bounce.cl). */
+/* Sets the arguments that every tracing kernel begins with (SCENE_PARAMETERS of kernels/integrator/scene.cl).
+ */
 BpStatus bp_worker_bind_scene(BpWorker *worker, cl_kernel kernel, BpError *err);
 
 /* Queues a chunk and returns; waits for the oldest first when BP_WORKER_FLIGHT are under way. */

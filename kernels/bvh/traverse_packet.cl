@@ -1,16 +1,12 @@
-/* traverse_packet.cl: the tree for the paths of all lanes at once.
+/* traverse_packet.cl: the closest hits of the rays of all lanes.
  *
- * In:    paths and what they have met so far (huge spheres, the sphere being left).
- * Out:   the closest hit of each, the same as intersect_closest_one (traverse_single.cl) finds.
- * Knows: traverse_single.cl's steps for one ray.   Does not know: what rays are for.
+ * In:    rays, the geometry.   Out: the closest hit of each ray, the same as traverse_single.cl finds.
+ * Knows: node.cl, hit.cl, flat_tree.cl.   Does not know: materials, what made the rays.
  *
  * What a ray does next depends on what it met, and a processor that guesses wrong throws away more work than a box
- * test is. So rays take turns, a round for all: first every ray that stands at a node tests it, then the leaves met
- * there, then what they found is refined, then each ray chooses the node to go to. Within a step nothing depends on
- * the step before of the same ray: no branch to guess, and memory is fetched for many rays at a time.
- *
- * A tree of few leaves needs no walk: the boxes of all its leaves are tested, one after the other, against all
- * lanes. */
+ * test is. So rays take turns, one step for all: first every ray that stands at a node tests it, then the leaves met
+ * there, then the spheres found there, then each ray chooses the node to go to. Within a step nothing depends on the
+ * step before of the same ray: there is no branch to guess, and memory is fetched for many rays at a time. */
 #if EFFECT_TREE
 
 /* Lane `lane` is to visit a node, a leaf or a sphere's slot. */
@@ -18,43 +14,7 @@ typedef struct Visit {
     uint lane, what;
 } Visit;
 
-#define BATCH_LEAVES 32u /* one bit each */
-#define BATCHES_MAX 3u
 #define FOUND_MAX 64u
-
-/* Some leaves and their boxes. */
-typedef struct FlatBatch {
-    uint count;
-    uint leaf[BATCH_LEAVES];
-    real planes[BATCH_LEAVES][6]; /* low x, y, z, high x, y, z */
-} FlatBatch;
-
-/* The leaves of a tree that has few, below the first ones; no batches: it has too many. */
-typedef struct FlatTree {
-    uint batch_count;
-    FlatBatch batches[BATCHES_MAX];
-} FlatTree;
-
-static void flatten_tree(const Geometry *geometry, FlatTree *flat) {
-    const uint wanted = geometry->leaf_count - geometry->first_leaves;
-    flat->batch_count = 0;
-    if (wanted > BATCHES_MAX * BATCH_LEAVES) return;
-    uint count = 0;
-    for (uint node = 0; count < wanted; ++node) {
-        for (uint lane = 0; lane < TREE_WIDTH; ++lane) {
-            __global const real *plane = geometry->boxes + node * (6 * TREE_WIDTH) + lane;
-            const uint child = geometry->children[node * TREE_WIDTH + lane];
-            if ((child & CHILD_LEAF) == 0 || plane[0] > plane[3 * TREE_WIDTH]) continue;
-            FlatBatch *batch = &flat->batches[count / BATCH_LEAVES];
-            const uint place = count % BATCH_LEAVES;
-            batch->leaf[place] = child & ~CHILD_LEAF;
-            for (uint row = 0; row < 6; ++row) batch->planes[place][row] = plane[row * TREE_WIDTH];
-            batch->count = place + 1;
-            ++count;
-        }
-    }
-    flat->batch_count = (wanted + BATCH_LEAVES - 1) / BATCH_LEAVES;
-}
 
 /* The rays of all lanes, and what each has met. */
 typedef struct LaneRays {
@@ -66,33 +26,27 @@ typedef struct LaneRays {
     real bound[LANE_COUNT];
 } LaneRays;
 
-/* Written out: a loop over axes is not always unrolled, and then the ray passes through memory. */
 static Ray_one ray_of_lane(const LaneRays *rays, uint lane) {
     Ray_one ray;
-    ray.high[0] = rays->high[0][lane];
-    ray.high[1] = rays->high[1][lane];
-    ray.high[2] = rays->high[2][lane];
-    ray.low[0] = rays->low[0][lane];
-    ray.low[1] = rays->low[1][lane];
-    ray.low[2] = rays->low[2][lane];
-    ray.direction[0] = rays->direction[0][lane];
-    ray.direction[1] = rays->direction[1][lane];
-    ray.direction[2] = rays->direction[2][lane];
-    ray.origin_error = rays->origin_error[lane];
+    ray.origin.high = vec3_one(rays->high[0][lane], rays->high[1][lane], rays->high[2][lane]);
+    ray.origin.low = vec3_one(rays->low[0][lane], rays->low[1][lane], rays->low[2][lane]);
+    ray.origin.error = rays->origin_error[lane];
+    ray.direction = vec3_one(rays->direction[0][lane], rays->direction[1][lane], rays->direction[2][lane]);
     ray.cull_margin = rays->cull_margin[lane];
     ray.own_slot = rays->own_slot[lane];
-    ray.inward = 0; /* that has been seen to */
+    ray.inward = 0; /* intersect_own_sphere has seen to that */
     return ray;
 }
 
 static void intersect_slot_of_lane(const Geometry *geometry, LaneRays *rays, uint lane, uint slot) {
     const Ray_one ray = ray_of_lane(rays, lane);
+    const Sphere_one sphere = load_sphere_one(geometry, slot);
     Hit_one hit;
     hit.t = rays->t[lane];
     hit.slot = rays->slot[lane];
     hit.enters = (int)rays->enters[lane];
     hit.bound = rays->bound[lane];
-    intersect_slot_one(geometry, &ray, slot, &hit);
+    intersect_sphere_one(geometry, &ray, 1, &sphere, slot, &hit);
     rays->t[lane] = hit.t;
     rays->slot[lane] = hit.slot;
     rays->enters[lane] = (uint)hit.enters;
@@ -123,7 +77,7 @@ static void intersect_leaves(const Geometry *geometry, const Visit *visits, uint
 }
 
 /* The leaves of one batch, against all lanes; a bound below 0 switches a lane off. */
-static void traverse_batch(const Geometry *geometry, const FlatBatch *batch, const LANED(BoxAxis) *axes, vreal bound,
+static void traverse_batch(const Geometry *geometry, const FlatBatch *batch, const BoxAxis *axes, vreal bound,
                         LaneRays *rays) {
     /* Lanes differ in which plane of a pair they meet first. */
     vreal low_offset[3], high_offset[3];
@@ -170,7 +124,7 @@ typedef struct Walk {
     uint depth; /* levels that have children left */
     uint node[TREE_DEPTH_MAX];
     child_mask left[TREE_DEPTH_MAX];
-    wide entry[TREE_DEPTH_MAX];
+    vreal_node entry[TREE_DEPTH_MAX];
 } Walk;
 
 /* Returns which children are leaves that the ray meets before `bound`; nodes are left for later. */
@@ -189,9 +143,8 @@ static child_mask enter_node(const Geometry *geometry, const BoxRay *box, uint n
 static int take_nearest(const Geometry *geometry, real bound, Walk *walk, uint *child) {
     const uint level = walk->depth - 1;
     const child_mask left = walk->left[level];
-    const wide entry = choose_children(left, walk->entry[level], REAL_MAX);
-    const real nearest = least_of_children(entry);
-    const uint lane = lowest_bit(child_mask_of(entry == (wide)nearest));
+    real nearest;
+    const uint lane = nearest_child(left, walk->entry[level], &nearest);
     *child = geometry->children[walk->node[level] * TREE_WIDTH + lane];
     const int worth = nearest <= bound * SLAB_TOLERANCE;
     const child_mask rest = worth ? without_bit(left, lane) : 0;
@@ -200,7 +153,7 @@ static int take_nearest(const Geometry *geometry, real bound, Walk *walk, uint *
     return worth;
 }
 
-static void traverse_nodes(const Geometry *geometry, const LANED(BoxAxis) *axes, const uint *alive,
+static void traverse_nodes(const Geometry *geometry, const BoxAxis *axes, const uint *alive,
                              LaneRays *rays) {
     real inverse[3][LANE_COUNT], near_offset[3][LANE_COUNT], far_offset[3][LANE_COUNT];
     for (uint axis = 0; axis < 3; ++axis) {
@@ -253,40 +206,67 @@ static void traverse_nodes(const Geometry *geometry, const LANED(BoxAxis) *axes,
     }
 }
 
-/* The spheres below the first leaves, against what the paths have met so far. */
-static void traverse_packet(const Geometry *geometry, const FlatTree *flat, const Path *path, vreal margin, vreal bound,
-                         Hit *hit) {
+/* The spheres below the first leaves, against what the rays have hit so far. */
+static void traverse_packet(const Geometry *geometry, const Ray *ray, vbool active, Hit *hit) {
     if (geometry->leaf_count == geometry->first_leaves) return;
     LaneRays rays;
     uint alive[LANE_COUNT];
-    store_lanes(path->origin.high.x, rays.high[0]);
-    store_lanes(path->origin.high.y, rays.high[1]);
-    store_lanes(path->origin.high.z, rays.high[2]);
-    store_lanes(path->origin.low.x, rays.low[0]);
-    store_lanes(path->origin.low.y, rays.low[1]);
-    store_lanes(path->origin.low.z, rays.low[2]);
-    store_lanes(path->direction.x, rays.direction[0]);
-    store_lanes(path->direction.y, rays.direction[1]);
-    store_lanes(path->direction.z, rays.direction[2]);
-    store_lanes(path->origin.error, rays.origin_error);
-    store_lanes(margin, rays.cull_margin);
-    store_lanes(path->own_slot, rays.own_slot);
+    store_lanes(ray->origin.high.x, rays.high[0]);
+    store_lanes(ray->origin.high.y, rays.high[1]);
+    store_lanes(ray->origin.high.z, rays.high[2]);
+    store_lanes(ray->origin.low.x, rays.low[0]);
+    store_lanes(ray->origin.low.y, rays.low[1]);
+    store_lanes(ray->origin.low.z, rays.low[2]);
+    store_lanes(ray->direction.x, rays.direction[0]);
+    store_lanes(ray->direction.y, rays.direction[1]);
+    store_lanes(ray->direction.z, rays.direction[2]);
+    store_lanes(ray->origin.error, rays.origin_error);
+    store_lanes(ray->cull_margin, rays.cull_margin);
+    store_lanes(ray->own_slot, rays.own_slot);
     store_lanes(hit->t, rays.t);
     store_lanes(hit->slot, rays.slot);
     store_lanes(choose_uint(hit->enters, splat_uint(1), splat_uint(0)), rays.enters);
-    store_lanes(bound, rays.bound);
-    store_lanes(choose_uint(path->alive, splat_uint(1), splat_uint(0)), alive);
-    LANED(BoxAxis) axes[3];
-    axes[0] = LANED(box_axis)(path->origin.high.x, path->direction.x);
-    axes[1] = LANED(box_axis)(path->origin.high.y, path->direction.y);
-    axes[2] = LANED(box_axis)(path->origin.high.z, path->direction.z);
+    store_lanes(hit->bound, rays.bound);
+    store_lanes(choose_uint(active, splat_uint(1), splat_uint(0)), alive);
+    BoxAxis axes[3];
+    axes[0] = box_axis(ray->origin.high.x, ray->direction.x);
+    axes[1] = box_axis(ray->origin.high.y, ray->direction.y);
+    axes[2] = box_axis(ray->origin.high.z, ray->direction.z);
+    const FlatTree *flat = &geometry->flat;
     if (flat->batch_count > 0) {
         for (uint batch = 0; batch < flat->batch_count; ++batch)
-            traverse_batch(geometry, &flat->batches[batch], axes, choose(path->alive, load_lanes(rays.bound), splat(-1)), &rays);
+            traverse_batch(geometry, &flat->batches[batch], axes, choose(active, load_lanes(rays.bound), splat(-1)), &rays);
     } else
         traverse_nodes(geometry, axes, alive, &rays);
     hit->t = load_lanes(rays.t);
     hit->slot = load_lanes(rays.slot);
     hit->enters = vbool_of_uint(load_lanes(rays.enters) != splat_uint(0));
+    hit->bound = load_lanes(rays.bound);
 }
 #endif
+
+/* One leaf's spheres, one at a time, against all lanes. */
+static void intersect_leaf(const Geometry *geometry, const Ray *ray, vbool active, uint leaf_number, Hit *hit) {
+    __global const real *leaf = geometry->leaves + leaf_number * (4 * TREE_WIDTH);
+    for (uint lane = 0; lane < TREE_WIDTH; ++lane) {
+        if (leaf[3 * TREE_WIDTH + lane] <= 0) continue;
+        const vuint slot = splat_uint(leaf_number * TREE_WIDTH + lane);
+        Sphere sphere;
+        sphere.centre = vec3(splat(leaf[lane]), splat(leaf[TREE_WIDTH + lane]), splat(leaf[2 * TREE_WIDTH + lane]));
+        sphere.radius = splat(leaf[3 * TREE_WIDTH + lane]);
+        const vbool candidate = sphere_is_candidate(ray, hit->bound, &sphere, slot) & active;
+        if (any_lane(candidate)) intersect_sphere(geometry, ray, candidate, &sphere, slot, hit);
+    }
+}
+
+/* The closest hit of every ray that is `active`. The few huge spheres, which most rays meet, are tried against all lanes
+ * at once; then each lane searches the tree with the bound that gave it. */
+static Hit intersect_closest(const Geometry *geometry, const Ray *ray, vbool active) {
+    Hit hit = no_hit(REAL_LARGE);
+    intersect_own_sphere(geometry, ray, active, &hit);
+    for (uint leaf = 0; leaf < geometry->first_leaves; ++leaf) intersect_leaf(geometry, ray, active, leaf, &hit);
+#if EFFECT_TREE
+    traverse_packet(geometry, ray, active, &hit);
+#endif
+    return hit;
+}

@@ -1,4 +1,6 @@
-/* real.cl: the dialect. Types and a few operations that every other kernel file is written in.
+/* real.cl: the numbers that every other kernel file is written in.
+ *
+ * Out:   real, refined, their constants, JOIN, FORCE_INLINE.   Does not know: lanes (lanes.cl).
  *
  * The program's first lines (host/engine/program.c) define:
  *   REAL_IS_DOUBLE    0 or 1: what `real` is
@@ -7,7 +9,6 @@
  *   PACKET_LANES      8 or 16: paths that a work-item of the packet form follows at a time
  *   SAMPLES_PER_ITEM  pixel samples that it traces in all
  *   GROUP_MAX         work-items in a work-group of the sample form, at most
- *   NUMERICS_ROBUST   1: sphere_robust.cl decides; 0: sphere_plain.cl
  *   EFFECT_...        0 or 1, one for each effect
  *
  * Rounding is part of the product: no contraction of a*b+c unless fma() is written. */
@@ -48,8 +49,10 @@ typedef JOIN(REAL, 4) real4;
 #endif
 typedef REFINED refined;
 
-/* ---- one ray against TREE_WIDTH boxes or spheres ---- */
-
-#define WIDE(type) JOIN(type, TREE_WIDTH)
-typedef WIDE(REAL) wide;
-#define load_wide JOIN(vload, TREE_WIDTH)
+/* Some compilers leave parts of a ray's search functions of their own, and pass the ray, or two dozen vectors, through
+ * memory. Where nothing is optimised, nothing is inlined either: Oclgrind cannot run what the inliner leaves behind. */
+#ifdef __OPTIMIZE__
+#define FORCE_INLINE __attribute__((always_inline))
+#else
+#define FORCE_INLINE
+#endif

@@ -1,4 +1,23 @@
-/* vector.cl: points, directions and colours in lane code, structure of arrays. */
+/* vector.cl: points, directions and colours in lane code, structure of arrays.
+ *
+ * Knows: lanes.cl.   Does not know: what the vectors mean. Read once for each number of lanes. */
+#define Vec3 LANED(Vec3)
+#define vec3 LANED(vec3)
+#define splat3 LANED(splat3)
+#define zero3 LANED(zero3)
+#define add3 LANED(add3)
+#define subtract3 LANED(subtract3)
+#define multiply3 LANED(multiply3)
+#define scale3 LANED(scale3)
+#define madd3 LANED(madd3)
+#define dot3 LANED(dot3)
+#define choose3 LANED(choose3)
+#define normalise3 LANED(normalise3)
+#define at_least LANED(at_least)
+#define at_most LANED(at_most)
+#define larger LANED(larger)
+#define smaller LANED(smaller)
+
 typedef struct Vec3 {
     vreal x, y, z;
 } Vec3;

@@ -35,16 +35,17 @@ __kernel void aovs(SCENE_PARAMETERS, uint first_pixel, uint pixel_count, uint fi
         const SampleKey key = sample_key(seed_low, seed_high, splat_uint(pixel), load_lanes(numbers), replicates);
         path_init_from_camera(camera, pixel_center, key, splat((real)(pixel % width)), splat((real)(pixel / width)),
                     load_lanes(fresh_lane) != splat(0), &path);
-        const Hit hit = intersect_closest(&scene, &path);
-        const vbool met = path.alive & hit.met;
+        const Ray ray = path_ray(&path);
+        const Hit hit = intersect_closest(&scene.geometry, &ray, path.alive);
+        const vbool met = path.alive & is_hit(&hit);
         if (!any_lane(met)) continue;
 
+        Sphere sphere;
         Surface surface;
-        Vec3 centre, outward, emitted;
-        vreal radius;
+        Vec3 outward, emitted;
         Point point;
-        fetch_surface(&scene, &hit, &centre, &radius, &surface, &emitted);
-        surface_point(&path.origin, path.direction, hit.t, hit.enters, centre, radius, &point, &outward);
+        fetch_surface(&scene, &hit, &sphere, &surface, &emitted);
+        sphere_surface(&ray, &sphere, hit.slot, hit.t, hit.enters, &point, &outward);
         const Vec3 albedo = surface.albedo;
         const Vec3 normal = choose3(hit.enters, outward, scale3(splat(-1), outward));
         const vreal values[AOV_FLOATS] = {dot3(point.high, forward), normal.x, normal.y,  normal.z,

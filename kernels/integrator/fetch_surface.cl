@@ -4,16 +4,10 @@
 #define MATERIAL_UINTS ((uint)(sizeof(PackedMaterialKind) / sizeof(uint)))
 #define MATERIAL_REALS ((uint)(sizeof(PackedMaterial) / sizeof(real)))
 
-/* The sphere and the material at each lane's slot; lanes that met nothing get those of slot 0. */
-static void fetch_surface(const Scene *scene, const Hit *hit, Vec3 *centre, vreal *radius, Surface *surface,
-                    Vec3 *emitted) {
-    const vuint slot = choose_uint(hit->met, hit->slot, splat_uint(0));
-    const vuint lane = slot % TREE_WIDTH;
-    const vuint place = (slot - lane) * 4u + lane;
-    *centre = vec3(gather_real(scene->geometry.leaves, place),
-                   gather_real(scene->geometry.leaves, place + (uint)TREE_WIDTH),
-                   gather_real(scene->geometry.leaves, place + (uint)(2 * TREE_WIDTH)));
-    *radius = gather_real(scene->geometry.leaves, place + (uint)(3 * TREE_WIDTH));
+/* The sphere and the material at each lane's hit; lanes without one get those of slot 0. */
+static void fetch_surface(const Scene *scene, const Hit *hit, Sphere *sphere, Surface *surface, Vec3 *emitted) {
+    const vuint slot = choose_uint(is_hit(hit), hit->slot, splat_uint(0));
+    *sphere = load_sphere(&scene->geometry, slot);
     const vuint material = gather_uint(scene->slot_material, slot);
     const vuint colour = slot * (uint)ALBEDO_REALS;
     const vuint numbers = material * MATERIAL_REALS;

@@ -1,7 +1,12 @@
-/* pixels.cl: the pixels of a chunk, one after the other, in lane code: a range, or places of a list for adaptive
- * sampling.
+/* pixels.cl: the pixels of a chunk, one after the other, in lane code.
  *
- * Counted along, since division is slow, in lanes above all. */
+ * A chunk is a range of pixels, or of places in a list of pixels for adaptive sampling, times a range of samples. The
+ * kernels trace_sample.cl and trace_packet.cl write for each pixel sample of it the radiance, and in a fourth number
+ * the ray segments traced, plus 1/2 for a path that the depth cap cut. What is computed for a pixel sample depends on
+ * neither of them.
+ *
+ * Pixels are counted along, since division is slow, in lanes above all.
+ * Knows: lanes.cl.   Does not know: what is traced. */
 #if PIXEL_LIST
 #define PIXEL_LIST_PARAMETER , __global const uint *pixel_list
 #define PIXEL_LIST_ARGUMENT , pixel_list
@@ -85,3 +90,8 @@ static Pixels pixels_ahead(const Pixel *pixel, vuint ahead, uint width) {
 #endif
     return pixels;
 }
+
+/* What a kernel is told that traces a chunk. */
+#define TRACE_PARAMETERS                                                                                     \
+    SCENE_PARAMETERS, uint first_pixel, uint first_sample, uint samples_per_pixel, uint sample_count,            \
+        __global real *samples PIXEL_LIST_PARAMETER

@@ -1,57 +1,86 @@
 /* sphere_robust.cl: where a ray meets a sphere, right to a few units in the last place of the answer, for every ratio of
- * radius to distance. Read twice when a work-item traces several lanes: once for one lane, once for all.
+ * radius to distance. docs/NUMERICS.md proves the bounds.
  *
- * In:    a ray whose origin is the unevaluated sum high + low (a point of a surface, known beyond single
- *        precision), a direction of nearly unit length, a sphere as it is stored.
- * Out:   both roots, as distances in units of the direction's length.
- *
- * Inlined by force for many lanes: some compilers would pass two dozen vectors through memory instead.
+ * In:    a ray whose origin is the unevaluated sum high + low, a sphere as it is stored.
+ * Out:   the interface of a shape, the same in sphere_plain.cl:
+ *          sphere_is_candidate  may the ray meet the sphere before `bound`? Quick; what it rules out is surely not met.
+ *          sphere_intersect     does the ray meet it, at which distance, and from outside or inside?
+ *          sphere_exit          where does a ray meet the sphere that it has left into its inside?
+ *          sphere_surface       the point that was met, as an origin for the next ray, and the outward unit normal
+ * Knows: ray.cl.   Does not know: trees, materials. Read once for each number of lanes.
  *
  * Notation: oc = centre - origin; the centre projects to distance p along the ray; l = oc - p d is the part of oc
  * across the ray; s = sqrt((r^2 - l.l) / d.d) is half the chord; the roots are p - s and p + s.
- * l instead of oc.oc - r^2: E. Haines, J. Guenther and T. Akenine-Moeller, "Precision Improvements for Ray_one/Sphere
- * Intersection", Ray_one Tracing Gems, 2019. */
+ * l instead of oc.oc - r^2: E. Haines, J. Guenther and T. Akenine-Moeller, "Precision Improvements for Ray/Sphere
+ * Intersection", Ray Tracing Gems, 2019. */
+#define Sphere LANED(Sphere)
+#define Roots LANED(Roots)
+#define sphere_is_candidate LANED(sphere_is_candidate)
+#define sphere_roots LANED(sphere_roots)
+#define sphere_intersect LANED(sphere_intersect)
+#define sphere_exit LANED(sphere_exit)
+#define sphere_surface LANED(sphere_surface)
+#define sum_error LANED(sum_error)
+#define multiply_add_exactly LANED(multiply_add_exactly)
 
-typedef struct LANED(Roots) {
+typedef struct Sphere {
+    Vec3 centre;
+    vreal radius; /* above 0 */
+} Sphere;
+
+/* The sphere is met before `bound` only if sqrt(r^2 - l^2) >= max(-p, p - bound); p and l err by less than half of
+ * margin = 64 u (|p| + r) + the ray's own margin (u = ROUNDOFF, |d|^2 = 1 within 28 u).
+ * The sphere being left is not met from outside, and from inside sphere_exit meets it. */
+FORCE_INLINE static vbool sphere_is_candidate(const Ray *ray, vreal bound, const Sphere *sphere, vuint slot) {
+    const Vec3 oc = subtract3(sphere->centre, ray->origin.high);
+    const vreal p = dot3(oc, ray->direction);
+    const Vec3 l = madd3(-p, ray->direction, oc);
+    const vreal margin = fma(splat(R(64.0) * ROUNDOFF), fabs(p) + sphere->radius, ray->cull_margin);
+    const vreal reach = sphere->radius + margin;
+    const vreal room = fma(reach, reach, -dot3(l, l));
+    const vreal outside = larger(larger(-p, p - bound) - margin, splat(0));
+    return (room >= outside * outside) & vbool_of_uint(ray->own_slot != slot);
+}
+
+typedef struct Roots {
     vrefined near, far;
-    vrefined middle; /* p: negative when the sphere's centre lies behind */
+    vrefined middle;     /* p: negative when the sphere's centre lies behind */
     vrefined half_chord; /* s */
-    vrefined across_x, across_y, across_z; /* l */
-    vbool meets;     /* the line meets the sphere; else the rest means nothing */
-} LANED(Roots);
+    vbool meets;         /* the line meets the sphere; else the rest means nothing */
+#if !REFINE_IS_DOUBLE
+    Vec3 across; /* l */
+#endif
+} Roots;
 
 #if REFINE_IS_DOUBLE
 /* In double, from float inputs, every step is right to about 1e-15 of its largest term: a sphere of radius 1e6 a
  * unit away gets its near root to 1e-9. */
-FORCE_INLINE static LANED(Roots) LANED(sphere_roots)(vreal high_x, vreal high_y, vreal high_z, vreal low_x, vreal low_y,
-                                        vreal low_z, vreal dir_x, vreal dir_y, vreal dir_z, vreal cx, vreal cy,
-                                        vreal cz, vreal radius) {
-    const vrefined dx = to_refined(dir_x), dy = to_refined(dir_y), dz = to_refined(dir_z);
-    const vrefined ocx = to_refined(cx) - (to_refined(high_x) + to_refined(low_x));
-    const vrefined ocy = to_refined(cy) - (to_refined(high_y) + to_refined(low_y));
-    const vrefined ocz = to_refined(cz) - (to_refined(high_z) + to_refined(low_z));
+FORCE_INLINE static Roots sphere_roots(const Ray *ray, const Sphere *sphere) {
+    const Point *o = &ray->origin;
+    const Vec3 d = ray->direction, c = sphere->centre;
+    const vrefined dx = to_refined(d.x), dy = to_refined(d.y), dz = to_refined(d.z);
+    const vrefined ocx = to_refined(c.x) - (to_refined(o->high.x) + to_refined(o->low.x));
+    const vrefined ocy = to_refined(c.y) - (to_refined(o->high.y) + to_refined(o->low.y));
+    const vrefined ocz = to_refined(c.z) - (to_refined(o->high.z) + to_refined(o->low.z));
     /* d.d = 1 + e with |e| of a few ROUNDOFF: 1 / d.d = 1 - e + e e, to the cube of e */
     const vrefined e = fma(dx, dx, fma(dy, dy, fma(dz, dz, splat_refined(-1))));
     const vrefined inverse = fma(e, e - splat_refined(1), splat_refined(1));
     const vrefined p = fma(ocx, dx, fma(ocy, dy, ocz * dz)) * inverse;
     const vrefined lx = fma(-p, dx, ocx), ly = fma(-p, dy, ocy), lz = fma(-p, dz, ocz);
-    const vrefined r = to_refined(radius);
+    const vrefined r = to_refined(sphere->radius);
     const vrefined discriminant = fma(r, r, -fma(lx, lx, fma(ly, ly, lz * lz)));
-    LANED(Roots) roots;
+    Roots roots;
     roots.meets = vbool_of_refined(discriminant >= splat_refined(0));
     const vrefined s = sqrt(choose_refined(roots.meets, discriminant, splat_refined(0)) * inverse);
     roots.near = p - s;
     roots.far = p + s;
     roots.middle = p;
     roots.half_chord = s;
-    roots.across_x = lx;
-    roots.across_y = ly;
-    roots.across_z = lz;
     return roots;
 }
 #else
 /* The error of sum = a + b, exactly (D. Knuth, The Art of Computer Programming 2, 4.2.2). */
-static vreal LANED(sum_error)(vreal a, vreal b, vreal sum) {
+static vreal sum_error(vreal a, vreal b, vreal sum) {
     const vreal b_part = sum - a;
     const vreal a_part = sum - b_part;
     return (a - a_part) + (b - b_part);
@@ -60,35 +89,34 @@ static vreal LANED(sum_error)(vreal a, vreal b, vreal sum) {
 /* The same in float by error-free transforms: oc as an unevaluated sum, its projection removed twice, so that l is
  * right to an ulp of itself and not of oc; and oc.oc - r^2 by a compensated sum (T. Ogita, S. Rump and S. Oishi,
  * "Accurate Sum and Dot Product", 2005) for the root that p and s would cancel to. */
-FORCE_INLINE static LANED(Roots) LANED(sphere_roots)(vreal high_x, vreal high_y, vreal high_z, vreal low_x, vreal low_y,
-                                        vreal low_z, vreal dx, vreal dy, vreal dz, vreal cx, vreal cy, vreal cz,
-                                        vreal radius) {
-    const vreal ocx = cx - high_x, ocy = cy - high_y, ocz = cz - high_z;
-    const vreal ex = LANED(sum_error)(cx, -high_x, ocx) - low_x;
-    const vreal ey = LANED(sum_error)(cy, -high_y, ocy) - low_y;
-    const vreal ez = LANED(sum_error)(cz, -high_z, ocz) - low_z;
-    const vreal inverse = splat(2) - fma(dx, dx, fma(dy, dy, dz * dz));
-    const vreal p1 = fma(ocx, dx, fma(ocy, dy, ocz * dz)) * inverse;
-    vreal lx = fma(-p1, dx, ocx) + ex, ly = fma(-p1, dy, ocy) + ey, lz = fma(-p1, dz, ocz) + ez;
-    const vreal p2 = fma(lx, dx, fma(ly, dy, lz * dz)) * inverse;
-    lx = fma(-p2, dx, lx);
-    ly = fma(-p2, dy, ly);
-    lz = fma(-p2, dz, lz);
-    const vreal impact = sqrt(fma(lx, lx, fma(ly, ly, lz * lz)));
+FORCE_INLINE static Roots sphere_roots(const Ray *ray, const Sphere *sphere) {
+    const Vec3 high = ray->origin.high, low = ray->origin.low, d = ray->direction, c = sphere->centre;
+    const vreal radius = sphere->radius;
+    const Vec3 oc = subtract3(c, high);
+    const vreal ex = sum_error(c.x, -high.x, oc.x) - low.x;
+    const vreal ey = sum_error(c.y, -high.y, oc.y) - low.y;
+    const vreal ez = sum_error(c.z, -high.z, oc.z) - low.z;
+    const vreal inverse = splat(2) - dot3(d, d);
+    const vreal p1 = dot3(oc, d) * inverse;
+    Vec3 l = add3(madd3(-p1, d, oc), vec3(ex, ey, ez));
+    const vreal p2 = dot3(l, d) * inverse;
+    l = madd3(-p2, d, l);
+    const vreal impact = sqrt(dot3(l, l));
     const vreal discriminant = (radius - impact) * (radius + impact);
-    LANED(Roots) roots;
+    Roots roots;
     roots.meets = discriminant >= splat(0);
     const vreal s = sqrt(choose(roots.meets, discriminant, splat(0)) * inverse);
     const vreal p = p1 + p2;
     /* The root away from zero adds up; the other one is (oc.oc - r^2) / d.d over it. */
     const vbool ahead = p >= splat(0);
     const vreal outer = p1 + (p2 + choose(ahead, s, -s));
-    const vreal xx = ocx * ocx, yy = ocy * ocy, zz = ocz * ocz, rr = radius * radius;
-    const vreal a = xx - rr, b = a + yy, c = b + zz;
-    const vreal products = (fma(ocx, ocx, -xx) + fma(ocy, ocy, -yy)) + (fma(ocz, ocz, -zz) - fma(radius, radius, -rr));
-    const vreal sums = (LANED(sum_error)(xx, -rr, a) + LANED(sum_error)(a, yy, b)) + LANED(sum_error)(b, zz, c);
-    const vreal cross = splat(2) * fma(ocx, ex, fma(ocy, ey, ocz * ez));
-    const vreal power = c + ((products + sums) + cross);
+    const vreal xx = oc.x * oc.x, yy = oc.y * oc.y, zz = oc.z * oc.z, rr = radius * radius;
+    const vreal a = xx - rr, b = a + yy, sum = b + zz;
+    const vreal products =
+        (fma(oc.x, oc.x, -xx) + fma(oc.y, oc.y, -yy)) + (fma(oc.z, oc.z, -zz) - fma(radius, radius, -rr));
+    const vreal sums = (sum_error(xx, -rr, a) + sum_error(a, yy, b)) + sum_error(b, zz, sum);
+    const vreal cross = splat(2) * fma(oc.x, ex, fma(oc.y, ey, oc.z * ez));
+    const vreal power = sum + ((products + sums) + cross);
     const vreal quotient = choose(outer != splat(0), power * inverse / outer, splat(0));
     const vreal difference = p1 + (p2 - choose(ahead, s, -s));
     const vreal inner = choose(fabs(difference) < R(0.5) * fabs(p), quotient, difference);
@@ -96,29 +124,95 @@ FORCE_INLINE static LANED(Roots) LANED(sphere_roots)(vreal high_x, vreal high_y,
     roots.far = choose(ahead, outer, inner);
     roots.middle = p;
     roots.half_chord = s;
-    roots.across_x = lx;
-    roots.across_y = ly;
-    roots.across_z = lz;
+    roots.across = l;
     return roots;
 }
 #endif
 
-/* Which root counts, for a sphere that is not the one being left. `origin_error` bounds how far the origin may lie off
+/* Which root counts, for a sphere that is not the one being left. The origin's error bounds how far it may lie off
  * its true place: the power of the origin (near * far) tells outside from inside beyond that; outside and moving
- * towards the centre the ray enters at the near root, and an entry that rounding put behind the origin counts as
- * 0. Sets *enters; returns whether there is a hit. */
-static vbool LANED(choose_root)(LANED(Roots) roots, vreal radius, vreal origin_error, vrefined *t, vbool *enters) {
-    const vbool inside =
-        vbool_of_refined(roots.near * roots.far < to_refined(radius * origin_error) * splat_refined(-2));
+ * towards the centre the ray enters at the near root, and an entry that rounding put behind the origin counts as 0. */
+FORCE_INLINE static vbool sphere_intersect(const Ray *ray, const Sphere *sphere, vrefined *t, vbool *enters) {
+    const Roots roots = sphere_roots(ray, sphere);
+    const vbool inside = vbool_of_refined(roots.near * roots.far <
+                                          to_refined(sphere->radius * ray->origin.error) * splat_refined(-2));
     const vbool ahead = vbool_of_refined(roots.middle > splat_refined(0));
-    const vrefined entry = choose_refined(vbool_of_refined(roots.near > splat_refined(0)), roots.near, splat_refined(0));
+    const vrefined entry =
+        choose_refined(vbool_of_refined(roots.near > splat_refined(0)), roots.near, splat_refined(0));
     *t = choose_refined(inside, roots.far, entry);
     *enters = vbool_not(inside);
     return roots.meets & (inside | ahead);
 }
 
-/* The sphere being left into its inside is met again at the end of the chord: 2 p, since the origin is on it. */
-static vrefined LANED(chord)(LANED(Roots) roots) {
+/* At the end of the chord: 2 p, since the origin is on the sphere. */
+FORCE_INLINE static vbool sphere_exit(const Ray *ray, const Sphere *sphere, vrefined *t) {
+    const Roots roots = sphere_roots(ray, sphere);
     const vrefined length = roots.middle + roots.middle;
-    return choose_refined(vbool_of_refined(length > splat_refined(0)), length, splat_refined(0));
+    *t = choose_refined(vbool_of_refined(length > splat_refined(0)), length, splat_refined(0));
+    return vbool_all;
 }
+
+/* The normal comes from the point relative to the centre, never from the rounded point. */
+#if REFINE_IS_DOUBLE
+FORCE_INLINE static void sphere_surface(const Ray *ray, const Sphere *sphere, vuint slot, vrefined t, vbool enters,
+                                        Point *point, Vec3 *normal) {
+    const Point *origin = &ray->origin;
+    const Vec3 direction = ray->direction, centre = sphere->centre;
+    const vrefined x = fma(t, to_refined(direction.x), to_refined(origin->high.x) + to_refined(origin->low.x));
+    const vrefined y = fma(t, to_refined(direction.y), to_refined(origin->high.y) + to_refined(origin->low.y));
+    const vrefined z = fma(t, to_refined(direction.z), to_refined(origin->high.z) + to_refined(origin->low.z));
+    const vrefined inverse = splat_refined(1) / to_refined(sphere->radius);
+    normal->x = to_real((x - to_refined(centre.x)) * inverse);
+    normal->y = to_real((y - to_refined(centre.y)) * inverse);
+    normal->z = to_real((z - to_refined(centre.z)) * inverse);
+    point->high = vec3(to_real(x), to_real(y), to_real(z));
+    point->low = vec3(to_real(x - to_refined(point->high.x)), to_real(y - to_refined(point->high.y)),
+                      to_real(z - to_refined(point->high.z)));
+    /* The low part ends at 2^-48 of the point; the sums above and t err by a few 2^-53 of their terms. */
+    const vreal size = fabs(point->high.x) + fabs(point->high.y) + fabs(point->high.z);
+    const vreal error = fma(size, splat(R(0x1p-45)), (to_real(t) + sphere->radius) * R(0x1p-49));
+    /* A chord ends as far off its sphere as it began, and a little more. */
+    const vbool own = vbool_of_uint(slot == ray->own_slot);
+    point->error = choose(own, error + origin->error, error);
+}
+#else
+/* a * b + c as high + low. */
+static void multiply_add_exactly(vreal a, vreal b, vreal c, vreal *high, vreal *low) {
+    const vreal product = a * b;
+    *high = product + c;
+    *low = fma(a, b, -product) + sum_error(product, c, *high);
+}
+
+/* Relative to the centre the point is l across the ray and s along it, whichever way t was rounded. In space: close
+ * by it is origin + t d, off the sphere by the error of t, at most 16u t; far away against its radius, centre + r n,
+ * off the sphere by the error of |n|, at most 3u. */
+FORCE_INLINE static void sphere_surface(const Ray *ray, const Sphere *sphere, vuint slot, vrefined t, vbool enters,
+                                        Point *point, Vec3 *normal) {
+    const Point *origin = &ray->origin;
+    const Vec3 direction = ray->direction, centre = sphere->centre;
+    const vreal radius = sphere->radius;
+    const Roots roots = sphere_roots(ray, sphere);
+    const Vec3 relative = subtract3(scale3(choose(enters, -roots.half_chord, roots.half_chord), direction), roots.across);
+    const vbool degenerate = vbool_not(dot3(relative, relative) > splat(0));
+    const Vec3 unit = normalise3(choose3(degenerate, direction, relative));
+    /* Once more, so that the length errs by 3u however well the device divides and takes roots. */
+    const vreal excess = fma(unit.x, unit.x, fma(unit.y, unit.y, fma(unit.z, unit.z, splat(-1))));
+    *normal = scale3(fma(excess, splat(R(-0.5)), splat(1)), unit);
+    Vec3 near_high, near_low, far_high, far_low;
+    multiply_add_exactly(t, direction.x, origin->high.x, &near_high.x, &near_low.x);
+    multiply_add_exactly(t, direction.y, origin->high.y, &near_high.y, &near_low.y);
+    multiply_add_exactly(t, direction.z, origin->high.z, &near_high.z, &near_low.z);
+    near_low = add3(near_low, origin->low);
+    multiply_add_exactly(radius, normal->x, centre.x, &far_high.x, &far_low.x);
+    multiply_add_exactly(radius, normal->y, centre.y, &far_high.y, &far_low.y);
+    multiply_add_exactly(radius, normal->z, centre.z, &far_high.z, &far_low.z);
+    const vbool close_by = t < radius;
+    point->high = choose3(close_by, near_high, far_high);
+    point->low = choose3(close_by, near_low, far_low);
+    const vreal size = fabs(point->high.x) + fabs(point->high.y) + fabs(point->high.z);
+    const vreal error = fma(size, splat(R(0x1p-45)), choose(close_by, t * R(16.0), radius * R(4.0)) * ROUNDOFF);
+    /* A chord ends as far off its sphere as it began, and a little more. */
+    const vbool own = vbool_of_uint(slot == ray->own_slot);
+    point->error = choose(own, error + origin->error, error);
+}
+#endif

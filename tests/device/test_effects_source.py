@@ -31,7 +31,7 @@ MARKS = {
     "NORMALS": ["shows_normal"],
     "LENS": ["lens_x", "->lens_up", "sample_disk(u"],
     "GRADIENT": ["->top"],
-    "TREE": ["BoxRay", "traverse_tree_one", "->children"],
+    "TREE": ["BoxRay", "leaf_children"],
 }
 # Code that several effects share.
 SHARED = {

@@ -9,30 +9,16 @@
 enum { PROBE_RAY_REALS = 10, PROBE_HIT_REALS = 8, PROBE_POINT_REALS = 10 };
 
 /* `own`: 0 for a ray from free space, 1 for one that leaves the sphere of `slot` outward, 2 inward. */
-static Ray_one probe_ray(__global const real *in, uint own, uint slot) {
-    Ray_one ray;
-    for (uint axis = 0; axis < 3; ++axis) {
-        ray.high[axis] = in[axis];
-        ray.low[axis] = in[3 + axis];
-        ray.direction[axis] = in[6 + axis];
-    }
-    ray.origin_error = in[9];
+static Ray probe_ray(__global const real *in, uint own, uint slot) {
+    Ray ray;
+    ray.origin.high = vec3(in[0], in[1], in[2]);
+    ray.origin.low = vec3(in[3], in[4], in[5]);
+    ray.origin.error = in[9];
+    ray.direction = vec3(in[6], in[7], in[8]);
+    ray.cull_margin = cull_margin_of(&ray.origin);
     ray.own_slot = own != 0 ? slot : NO_SLOT;
     ray.inward = own == 2;
-    ray.cull_margin = cull_margin_one(&ray);
     return ray;
-}
-
-static Geometry probe_geometry(__global const real *boxes, __global const uint *children, __global const real *leaves,
-                               __global const uint *slot_sphere, uint first_leaves, uint leaf_count) {
-    Geometry geometry;
-    geometry.boxes = boxes;
-    geometry.children = children;
-    geometry.leaves = leaves;
-    geometry.slot_sphere = slot_sphere;
-    geometry.first_leaves = first_leaves;
-    geometry.leaf_count = leaf_count;
-    return geometry;
 }
 
 /* Each ray against a leaf of its own, whose sphere `item % TREE_WIDTH` is the one that counts. `boxes` is an empty
@@ -43,18 +29,17 @@ __kernel void probe_leaf(uint count, __global const real *rays, __global const u
     PROBE_ITEM
     __global const real *leaf = leaves + (size_t)item * 4 * TREE_WIDTH;
     const uint lane = item % TREE_WIDTH;
-    const Geometry geometry = probe_geometry(boxes, children, leaf, slot_sphere, 1, 1);
-    const Ray_one ray = probe_ray(rays + (size_t)item * PROBE_RAY_REALS, own[item], lane);
-    const Hit_one hit = intersect_closest_one(&geometry, &ray);
+    Geometry geometry;
+    geometry_init(boxes, children, leaf, slot_sphere, 1, 1, &geometry);
+    const Ray ray = probe_ray(rays + (size_t)item * PROBE_RAY_REALS, own[item], lane);
+    const Hit hit = intersect_closest(&geometry, &ray, 1);
     __global refined *row = out + (size_t)item * PROBE_HIT_REALS;
     row[0] = hit.t;
     row[1] = hit.slot != NO_SLOT;
     row[2] = hit.enters;
-#if NUMERICS_ROBUST
-    const Roots_one roots =
-        sphere_roots_one(ray.high[0], ray.high[1], ray.high[2], ray.low[0], ray.low[1], ray.low[2], ray.direction[0],
-                       ray.direction[1], ray.direction[2], leaf[lane], leaf[TREE_WIDTH + lane],
-                       leaf[2 * TREE_WIDTH + lane], leaf[3 * TREE_WIDTH + lane]);
+#ifdef Roots /* sphere_robust.cl alone has them */
+    const Sphere sphere = load_sphere(&geometry, lane);
+    const Roots roots = sphere_roots(&ray, &sphere);
     row[3] = roots.near;
     row[4] = roots.far;
     row[5] = roots.meets != 0;
@@ -65,20 +50,19 @@ __kernel void probe_leaf(uint count, __global const real *rays, __global const u
     row[7] = hit.slot == NO_SLOT ? -1 : (refined)hit.slot;
 }
 
-/* The point where a ray of probe_leaf met its sphere (hits: probe_leaf's rows). Out: high, low, slack, normal. */
+/* The point where a ray of probe_leaf met its sphere (hits: probe_leaf's rows). Out: high, low, error, normal. */
 __kernel void probe_point(uint count, __global const real *rays, __global const real *spheres,
                           __global const refined *hits, __global refined *out) {
     PROBE_ITEM
-    __global const real *ray = rays + (size_t)item * PROBE_RAY_REALS;
-    __global const real *sphere = spheres + (size_t)item * 4;
+    const Ray ray = probe_ray(rays + (size_t)item * PROBE_RAY_REALS, 0, 0);
+    __global const real *numbers = spheres + (size_t)item * 4;
     __global const refined *hit = hits + (size_t)item * PROBE_HIT_REALS;
-    Point origin, point;
+    Sphere sphere;
+    sphere.centre = vec3(numbers[0], numbers[1], numbers[2]);
+    sphere.radius = numbers[3];
+    Point point;
     Vec3 normal;
-    origin.high = vec3(ray[0], ray[1], ray[2]);
-    origin.low = vec3(ray[3], ray[4], ray[5]);
-    origin.error = ray[9];
-    surface_point(&origin, vec3(ray[6], ray[7], ray[8]), hit[0], hit[2] != 0, vec3(sphere[0], sphere[1], sphere[2]),
-                  sphere[3], &point, &normal);
+    sphere_surface(&ray, &sphere, 0, hit[0], hit[2] != 0, &point, &normal);
     __global refined *row = out + (size_t)item * PROBE_POINT_REALS;
     row[0] = point.high.x;
     row[1] = point.high.y;
@@ -186,10 +170,11 @@ __kernel void probe_normalise(uint count, __global const real *in, __global refi
 /* The boxes of node `item` against its ray. Out: the byte of each lane, as one number a lane. */
 __kernel void probe_boxes(uint count, __global const real *rays, __global const real *boxes, __global uint *out) {
     PROBE_ITEM
-    const Geometry geometry = probe_geometry(boxes, 0, 0, 0, 0, 0);
-    const Ray_one ray = probe_ray(rays + (size_t)item * PROBE_RAY_REALS, 0, 0);
+    Geometry geometry;
+    geometry_init(boxes, 0, 0, 0, 0, 0, &geometry);
+    const Ray ray = probe_ray(rays + (size_t)item * PROBE_RAY_REALS, 0, 0);
     const BoxRay box = box_ray(&ray);
-    wide entry;
+    vreal_node entry;
     child_mask met = test_node(&geometry, &box, item, REAL_LARGE, &entry);
     for (uint lane = 0; lane < TREE_WIDTH; ++lane) {
         out[(size_t)item * TREE_WIDTH + lane] = 0;
@@ -201,23 +186,27 @@ __kernel void probe_boxes(uint count, __global const real *rays, __global const 
     }
 }
 
-/* The tree against all leaves one by one. Out: t and sphere of both (-1: none), and intersect_any_one. */
+/* The tree against all leaves one by one. Out: t and sphere of both (-1: none), and intersect_any. */
 __kernel void probe_tree(uint count, __global const real *rays, __global const real *boxes,
                          __global const uint *children, __global const real *leaves, __global const uint *slot_sphere,
                          uint first_leaves, uint leaf_count, __global refined *out) {
     PROBE_ITEM
-    const Geometry geometry = probe_geometry(boxes, children, leaves, slot_sphere, first_leaves, leaf_count);
-    const Ray_one ray = probe_ray(rays + (size_t)item * PROBE_RAY_REALS, 0, 0);
-    const Hit_one tree = intersect_closest_one(&geometry, &ray);
-    Hit_one list = no_hit_one(REAL_LARGE);
+    Geometry geometry;
+    geometry_init(boxes, children, leaves, slot_sphere, first_leaves, leaf_count, &geometry);
+    const Ray ray = probe_ray(rays + (size_t)item * PROBE_RAY_REALS, 0, 0);
+    const Hit tree = intersect_closest(&geometry, &ray, 1);
+    Hit list = no_hit(REAL_LARGE);
     for (uint slot = 0; slot < leaf_count * TREE_WIDTH; ++slot)
-        if (slot_sphere[slot] != NO_SPHERE) intersect_slot_one(&geometry, &ray, slot, &list);
+        if (slot_sphere[slot] != NO_SPHERE) {
+            const Sphere sphere = load_sphere(&geometry, slot);
+            intersect_sphere(&geometry, &ray, 1, &sphere, slot, &list);
+        }
     __global refined *row = out + (size_t)item * 5;
     row[0] = tree.t;
     row[1] = tree.slot == NO_SLOT ? -1 : (refined)slot_sphere[tree.slot];
     row[2] = list.t;
     row[3] = list.slot == NO_SLOT ? -1 : (refined)slot_sphere[list.slot];
-    row[4] = intersect_any_one(&geometry, &ray, REAL_LARGE);
+    row[4] = intersect_any(&geometry, &ray, REAL_LARGE);
 }
 
 /* Arithmetic that the compiler must leave alone. In: a, b, zero. Out: see test_arithmetic.c. */

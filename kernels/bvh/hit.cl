@@ -1,0 +1,80 @@
+/* hit.cl: the closest hit so far, and what one sphere makes of it.
+ *
+ * In:    rays, spheres.   Out: the hit of least (distance, sphere index), so list and tree, and any order of visits,
+ *        agree to the bit.
+ * Knows: the interface of shape/, geometry.cl.   Does not know: nodes, materials. Read for one lane and for a packet. */
+#define Hit LANED(Hit)
+#define no_hit LANED(no_hit)
+#define is_hit LANED(is_hit)
+#define upper_bound LANED(upper_bound)
+#define keep_closer LANED(keep_closer)
+#define load_sphere LANED(load_sphere)
+#define intersect_sphere LANED(intersect_sphere)
+#define intersect_own_sphere LANED(intersect_own_sphere)
+
+typedef struct Hit {
+    vrefined t;
+    vuint slot;   /* NO_SLOT: nothing was hit */
+    vbool enters; /* from outside to inside */
+    vreal bound;  /* not below t: what prunes */
+} Hit;
+
+/* t rounded up to a real. */
+static vreal upper_bound(vrefined t) { return to_real(t) * (R(1.0) + R(4.0) * ROUNDOFF); }
+
+/* Nothing hit yet, within `limit`. */
+static Hit no_hit(refined limit) {
+    Hit hit;
+    hit.t = splat_refined(limit);
+    hit.slot = splat_uint(NO_SLOT);
+    hit.enters = vbool_none;
+    hit.bound = upper_bound(hit.t);
+    return hit;
+}
+
+static vbool is_hit(const Hit *hit) { return vbool_of_uint(hit->slot != splat_uint(NO_SLOT)); }
+
+FORCE_INLINE static void keep_closer(const Geometry *geometry, vbool found, vrefined t, vuint slot, vbool enters,
+                                     Hit *hit) {
+    vbool closer = found & vbool_of_refined(t < hit->t);
+    const vbool tie = found & vbool_of_refined(t == hit->t) & is_hit(hit);
+    if (any_lane(tie)) {
+        const vuint other = choose_uint(tie, hit->slot, splat_uint(0));
+        closer = closer | (tie & vbool_of_uint(gather_uint(geometry->slot_sphere, slot) <
+                                               gather_uint(geometry->slot_sphere, other)));
+    }
+    hit->t = choose_refined(closer, t, hit->t);
+    hit->slot = choose_uint(closer, slot, hit->slot);
+    hit->enters = (closer & enters) | (vbool_not(closer) & hit->enters);
+    hit->bound = choose(closer, upper_bound(t), hit->bound);
+}
+
+static Sphere load_sphere(const Geometry *geometry, vuint slot) {
+    const vuint lane = slot % TREE_WIDTH;
+    const vuint place = (slot - lane) * 4u + lane;
+    Sphere sphere;
+    sphere.centre = vec3(gather_real(geometry->leaves, place), gather_real(geometry->leaves, place + (uint)TREE_WIDTH),
+                         gather_real(geometry->leaves, place + (uint)(2 * TREE_WIDTH)));
+    sphere.radius = gather_real(geometry->leaves, place + (uint)(3 * TREE_WIDTH));
+    return sphere;
+}
+
+/* Decides about a candidate. */
+FORCE_INLINE static void intersect_sphere(const Geometry *geometry, const Ray *ray, vbool active, const Sphere *sphere,
+                                          vuint slot, Hit *hit) {
+    vrefined t;
+    vbool enters;
+    const vbool found = sphere_intersect(ray, sphere, &t, &enters) & active;
+    keep_closer(geometry, found, t, slot, enters, hit);
+}
+
+/* The sphere being left, met again from inside. */
+FORCE_INLINE static void intersect_own_sphere(const Geometry *geometry, const Ray *ray, vbool active, Hit *hit) {
+    const vbool inward = active & ray->inward;
+    if (!any_lane(inward)) return;
+    const vuint slot = choose_uint(inward, ray->own_slot, splat_uint(0));
+    const Sphere sphere = load_sphere(geometry, slot);
+    vrefined t;
+    const vbool found = sphere_exit(ray, &sphere, &t) & inward;
+    keep_closer(geometry, found, t, slot, vbool_none, hit);
+}

@@ -1,0 +1,128 @@
+/* node.cl: a node's children and a leaf's spheres, all TREE_WIDTH of them at once, against one ray.
+ *
+ * In:    a ray, packed nodes and leaves.   Out: which of them the ray may meet before a bound, as a child_mask.
+ * Knows: how nodes and leaves are packed; the interface of shape/.   Does not know: the order of visits.
+ *
+ * The tests are conservative and in `real`: what they cannot rule out is decided by sphere_intersect, one sphere at a
+ * time. */
+
+typedef vreal vreal_node; /* for code that has other lanes */
+
+/* The same ray in every lane. */
+static Ray ray_for_all(const Ray_one *one) {
+    Ray ray;
+    ray.origin.high = vec3(splat(one->origin.high.x), splat(one->origin.high.y), splat(one->origin.high.z));
+    ray.origin.low = vec3(splat(one->origin.low.x), splat(one->origin.low.y), splat(one->origin.low.z));
+    ray.origin.error = splat(one->origin.error);
+    ray.direction = vec3(splat(one->direction.x), splat(one->direction.y), splat(one->direction.z));
+    ray.cull_margin = splat(one->cull_margin);
+    ray.own_slot = splat_uint(one->own_slot);
+    ray.inward = one->inward ? vbool_all : vbool_none;
+    return ray;
+}
+
+/* The spheres of a leaf that the ray may meet before `bound`, without a branch. */
+FORCE_INLINE static child_mask leaf_candidates(const Geometry *geometry, const Ray_one *one, uint leaf_number,
+                                               real bound) {
+    __global const real *leaf = geometry->leaves + leaf_number * (4 * TREE_WIDTH);
+    const Ray ray = ray_for_all(one);
+    Sphere sphere;
+    sphere.centre.x = JOIN(vload, LANE_COUNT)(0, leaf);
+    sphere.centre.y = JOIN(vload, LANE_COUNT)(1, leaf);
+    sphere.centre.z = JOIN(vload, LANE_COUNT)(2, leaf);
+    sphere.radius = JOIN(vload, LANE_COUNT)(3, leaf);
+    const vuint slot = leaf_number * TREE_WIDTH + LANE_NUMBERS;
+    const vbool candidates = sphere_is_candidate(&ray, splat(bound), &sphere, slot);
+    return lane_bits(candidates & (sphere.radius > splat(0))); /* an empty lane has radius -1 */
+}
+
+#if EFFECT_TREE
+/* The three axes of box_ray.cl, and which of the six rows of a node hold the planes that are met first and last. */
+typedef struct BoxRay {
+    real inverse[3], near_offset[3], far_offset[3];
+    uint near_row[3], far_row[3]; /* in vreal from the node's first */
+} BoxRay;
+
+static void set_box_axis(BoxRay *box, uint axis, real inverse, real near_offset, real far_offset) {
+    box->inverse[axis] = inverse;
+    box->near_offset[axis] = near_offset;
+    box->far_offset[axis] = far_offset;
+    box->near_row[axis] = (inverse < 0 ? axis + 3 : axis) * TREE_WIDTH;
+    box->far_row[axis] = (inverse < 0 ? axis : axis + 3) * TREE_WIDTH;
+}
+
+static BoxRay box_ray(const Ray_one *ray) {
+    const BoxAxis_one x = box_axis_one(ray->origin.high.x, ray->direction.x);
+    const BoxAxis_one y = box_axis_one(ray->origin.high.y, ray->direction.y);
+    const BoxAxis_one z = box_axis_one(ray->origin.high.z, ray->direction.z);
+    BoxRay box;
+    set_box_axis(&box, 0, x.inverse, x.near_offset, x.far_offset);
+    set_box_axis(&box, 1, y.inverse, y.near_offset, y.far_offset);
+    set_box_axis(&box, 2, z.inverse, z.near_offset, z.far_offset);
+    return box;
+}
+
+/* A whole row, by its address: rows are aligned to their own size, and an offset that the compiler knows not to wrap
+ * makes it one load. */
+static vreal row_of(__global const real *planes, uint row) { return *(__global const vreal *)(planes + (size_t)row); }
+
+/* 1/d errs by 5u at most, which scales a side of a box, and the products by u more. */
+#define SLAB_TOLERANCE (R(1.0) + R(16.0) * ROUNDOFF)
+
+/* The children of `node` that the ray meets before `bound`, and where it enters them. */
+static child_mask test_node(const Geometry *geometry, const BoxRay *box, uint node, real bound, vreal *entry) {
+    __global const real *planes = geometry->boxes + node * (6 * TREE_WIDTH);
+    /* Written out, axis by axis: a loop is not always unrolled. */
+    const vreal enter_x = fma(row_of(planes, box->near_row[0]), splat(box->inverse[0]), splat(box->near_offset[0]));
+    const vreal enter_y = fma(row_of(planes, box->near_row[1]), splat(box->inverse[1]), splat(box->near_offset[1]));
+    const vreal enter_z = fma(row_of(planes, box->near_row[2]), splat(box->inverse[2]), splat(box->near_offset[2]));
+    const vreal leave_x = fma(row_of(planes, box->far_row[0]), splat(box->inverse[0]), splat(box->far_offset[0]));
+    const vreal leave_y = fma(row_of(planes, box->far_row[1]), splat(box->inverse[1]), splat(box->far_offset[1]));
+    const vreal leave_z = fma(row_of(planes, box->far_row[2]), splat(box->inverse[2]), splat(box->far_offset[2]));
+    const vreal enter_xy = larger(enter_x, enter_y);
+    const vreal enter_z0 = larger(enter_z, splat(0));
+    const vreal near = larger(enter_xy, enter_z0);
+    const vreal leave_xy = smaller(leave_x, leave_y);
+    const vreal leave_zb = smaller(leave_z, splat(bound));
+    const vreal far = smaller(leave_xy, leave_zb);
+    *entry = near;
+    return lane_bits(near <= far * SLAB_TOLERANCE);
+}
+
+/* Which children of a node are leaves. */
+static child_mask leaf_children(const Geometry *geometry, uint node) {
+    const vuint words = JOIN(vload, LANE_COUNT)(node, geometry->children);
+    return lane_bits(vbool_of_uint((words & splat_uint(CHILD_LEAF)) != splat_uint(0)));
+}
+
+/* `inside` for the children in the mask, `outside` for the others. */
+static vreal choose_children(child_mask mask, vreal inside, real outside) {
+    const vbool chosen = vbool_of_uint((splat_uint(mask) & (splat_uint(1) << LANE_NUMBERS)) != splat_uint(0));
+    return choose(chosen, inside, splat(outside));
+}
+
+/* The least of all lanes. */
+static real least_of_children(vreal x) {
+#if TREE_WIDTH == 16
+    const JOIN(REAL, 8) eight = x.lo < x.hi ? x.lo : x.hi;
+    const JOIN(REAL, 4) four = eight.lo < eight.hi ? eight.lo : eight.hi;
+#elif TREE_WIDTH == 8
+    const JOIN(REAL, 4) four = x.lo < x.hi ? x.lo : x.hi;
+#elif TREE_WIDTH == 4
+    const JOIN(REAL, 4) four = x;
+#endif
+#if TREE_WIDTH >= 4
+    const JOIN(REAL, 2) two = four.lo < four.hi ? four.lo : four.hi;
+#else
+    const JOIN(REAL, 2) two = x;
+#endif
+    return two.x < two.y ? two.x : two.y;
+}
+
+/* The first of the children in the mask, of which there is one, that is entered first, and where. */
+static uint nearest_child(child_mask mask, vreal entry, real *nearest) {
+    const vreal entries = choose_children(mask, entry, REAL_MAX);
+    *nearest = least_of_children(entries);
+    return lowest_bit(lane_bits(entries == splat(*nearest)));
+}
+#endif

@@ -1,0 +1,157 @@
+/* lanes.cl: the words of lane code, for the number of lanes that the file before this one has set.
+ *
+ * In:    LANE_COUNT, and LANED(name), the name that this number of lanes has for something.
+ * Out:   types and operations.
+ * Knows: real.cl.   Does not know: what the lanes stand for.
+ *
+ * Lane code is written once, and read for one lane, for the children of a node, and for the paths of a packet. A file
+ * that is read more than once opens with `#define f LANED(f)` for each of its names, so that lane code may call f
+ * and means the f of its own lanes; code for other lanes is called by its full name: f_one, f_node, f_packet.
+ *
+ *   vreal vuint vrefined   numbers, one a lane          vbool  a condition, one a lane, as wide as a real
+ * A vbool is made by a comparison of vreals, by vbool_of_uint and vbool_of_refined from other comparisons, combined
+ * with & | and vbool_not, asked by any_lane, and spent by choose. `if (any_lane(m)) ...` is a plain branch for one lane
+ * and "skip this when no lane wants it" for many. */
+#undef vreal
+#undef vbool
+#undef vuint
+#undef vrefined
+#undef vbool_none
+#undef vbool_all
+#undef choose
+#undef choose_uint
+#undef choose_refined
+#undef any_lane
+#undef lane_bits
+#undef BITS_BELOW
+#undef LANE_NUMBERS
+#undef vbool_not
+#undef vbool_of_uint
+#undef vbool_of_refined
+#undef to_refined
+#undef to_real
+#undef splat
+#undef splat_uint
+#undef splat_refined
+#undef load_lanes
+#undef store_lanes
+#undef uint_to_real
+#undef to_uint
+#undef gather_real
+#undef gather_uint
+
+#define splat(x) ((vreal)(x))
+#define splat_uint(x) ((vuint)(x))
+#define splat_refined(x) ((vrefined)(x))
+
+#if LANE_COUNT == 1
+/* A vbool is 0 or 1. */
+#define vreal real
+#define vbool int
+#define vuint uint
+#define vrefined refined
+#define vbool_none 0
+#define vbool_all 1
+#define choose(mask, a, b) ((mask) ? (a) : (b))
+#define choose_uint(mask, a, b) ((mask) ? (a) : (b))
+#define choose_refined(mask, a, b) ((mask) ? (a) : (b))
+#define any_lane(mask) ((mask) != 0)
+#define lane_bits(mask) ((uint)((mask) != 0))
+#define BITS_BELOW 0u
+#define LANE_NUMBERS 0u
+#define vbool_not(mask) (!(mask))
+#define vbool_of_uint(mask) (mask)
+#define vbool_of_refined(mask) (mask)
+#define to_refined(x) ((refined)(x))
+#define to_real(x) ((real)(x))
+#define load_lanes(array) ((array)[0])
+#define store_lanes(x, array) ((array)[0] = (x))
+#define uint_to_real(x) ((real)(x))
+#define to_uint(x) ((uint)(int)(x))
+#define gather_real(base, index) ((base)[index])
+#define gather_uint(base, index) ((base)[index])
+#else
+/* A vbool is 0 or -1 a lane. */
+#define vreal JOIN(REAL, LANE_COUNT)
+#define vbool JOIN(REAL_MASK, LANE_COUNT)
+#define vuint JOIN(uint, LANE_COUNT)
+#define vrefined JOIN(REFINED, LANE_COUNT)
+#define vbool_none ((vbool)(0))
+#define vbool_all ((vbool)(-1))
+#define choose(mask, a, b) ((mask) ? (a) : (b))
+#define choose_uint(mask, a, b) (JOIN(convert_int, LANE_COUNT)(mask) ? (a) : (b))
+#define choose_refined(mask, a, b) (JOIN(JOIN(convert_, REFINED_MASK), LANE_COUNT)(mask) ? (a) : (b))
+#define any_lane(mask) LANED(any_of_lanes)(mask)
+#define lane_bits(mask) LANED(bits_of_lanes)(mask)
+#define BITS_BELOW (((vuint)(1u) << LANE_NUMBERS) - 1u)
+#define vbool_not(mask) (~(mask))
+#define vbool_of_uint(mask) JOIN(JOIN(convert_, REAL_MASK), LANE_COUNT)(mask)
+#define vbool_of_refined(mask) JOIN(JOIN(convert_, REAL_MASK), LANE_COUNT)(mask)
+#define to_refined(x) JOIN(JOIN(convert_, REFINED), LANE_COUNT)(x)
+#define to_real(x) JOIN(JOIN(convert_, REAL), LANE_COUNT)(x)
+#define load_lanes(array) JOIN(vload, LANE_COUNT)(0, array)
+#define store_lanes(x, array) JOIN(vstore, LANE_COUNT)(x, 0, array)
+#define to_uint(x) JOIN(convert_uint, LANE_COUNT)(JOIN(convert_int, LANE_COUNT)(x))
+#define uint_to_real(x) JOIN(JOIN(convert_, REAL), LANE_COUNT)(x)
+/* Tables have fewer than 2^31 entries, and some processors gather faster with signed offsets. */
+#define gather_2(base, index) (base)[(int)(index).x], (base)[(int)(index).y]
+#define gather_4(base, index) gather_2(base, (index).lo), gather_2(base, (index).hi)
+#define gather_8(base, index) gather_4(base, (index).lo), gather_4(base, (index).hi)
+#define gather_16(base, index) gather_8(base, (index).lo), gather_8(base, (index).hi)
+#define gather_real(base, index) ((vreal)(JOIN(gather_, LANE_COUNT)(base, index)))
+#define gather_uint(base, index) ((vuint)(JOIN(gather_, LANE_COUNT)(base, index)))
+
+/* The number of each lane. */
+#if LANE_COUNT == 16
+#define LANE_NUMBERS ((vuint)(0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15))
+#elif LANE_COUNT == 8
+#define LANE_NUMBERS ((vuint)(0, 1, 2, 3, 4, 5, 6, 7))
+#elif LANE_COUNT == 4
+#define LANE_NUMBERS ((vuint)(0, 1, 2, 3))
+#else
+#define LANE_NUMBERS ((vuint)(0, 1))
+#endif
+
+/* Drivers' own any() may ask lane by lane. */
+static int LANED(any_of_lanes)(vbool mask) {
+#if LANE_COUNT == 16
+    const JOIN(REAL_MASK, 8) eight = mask.lo | mask.hi;
+    const JOIN(REAL_MASK, 4) four = eight.lo | eight.hi;
+#elif LANE_COUNT == 8
+    const JOIN(REAL_MASK, 4) four = mask.lo | mask.hi;
+#elif LANE_COUNT == 4
+    const JOIN(REAL_MASK, 4) four = mask;
+#endif
+#if LANE_COUNT >= 4
+    const JOIN(REAL_MASK, 2) two = four.lo | four.hi;
+#else
+    const JOIN(REAL_MASK, 2) two = mask;
+#endif
+    return (two.x | two.y) != 0;
+}
+
+/* Bit l: lane l. Some compilers offer the one instruction that their processors have for this (a macro says which
+ * processor). Everybody else gathers one bit of each lane's byte by a multiplication: byte l holds bit l, and the
+ * product adds them up in its highest byte. */
+static uint LANED(bits_of_lanes)(vbool mask) {
+#if LANE_COUNT == 16 && !REAL_IS_DOUBLE && defined(__AVX512DQ__)
+    return (ushort)__builtin_ia32_cvtd2mask512(mask);
+#elif LANE_COUNT == 16 && REAL_IS_DOUBLE && defined(__AVX512DQ__)
+    return (uint)(uchar)__builtin_ia32_cvtq2mask512(mask.lo) | (uint)(uchar)__builtin_ia32_cvtq2mask512(mask.hi) << 8;
+#elif LANE_COUNT == 8 && !REAL_IS_DOUBLE && defined(__AVX512DQ__) && defined(__AVX512VL__)
+    return (uchar)__builtin_ia32_cvtd2mask256(mask);
+#elif LANE_COUNT == 8 && !REAL_IS_DOUBLE && defined(__AVX__)
+    return (uint)__builtin_ia32_movmskps256(as_float8(mask));
+#elif LANE_COUNT == 16
+    const ulong2 bytes = as_ulong2(convert_char16(mask)) & (ulong2)0x8040201008040201;
+    const ulong2 bits = (bytes * (ulong2)0x0101010101010101) >> (ulong2)56;
+    return (uint)bits.x | (uint)bits.y << 8;
+#elif LANE_COUNT == 8
+    return (uint)(((as_ulong(convert_char8(mask)) & (ulong)0x8040201008040201) * (ulong)0x0101010101010101) >> 56);
+#elif LANE_COUNT == 4
+    return ((uint)mask.x & 1u) | ((uint)mask.y & 2u) | ((uint)mask.z & 4u) | ((uint)mask.w & 8u);
+#else
+    return ((uint)mask.x & 1u) | ((uint)mask.y & 2u);
+#endif
+}
+#endif
