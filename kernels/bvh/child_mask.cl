@@ -1,6 +1,7 @@
-/* child_mask.cl: which of the TREE_WIDTH children of a node, or spheres of a leaf, as the low bits of one integer.
+/* child_mask.cl: some of the TREE_WIDTH children of a node, or spheres of a leaf, as the low bits of one integer.
  *
- * Made by lane_bits (lanes.cl), and taken apart bit by bit, lowest first. Does not know: nodes, leaves. */
+ * lane_bits makes a mask; these functions take it apart bit by bit, the lowest first.
+ * Knows: lanes.cl.   Does not know: nodes, leaves. */
 typedef uint child_mask;
 
 /* The number of zeros below the lowest bit, 32 for no bit. Compilers know this form and have an instruction for it. */

@@ -2,7 +2,7 @@
  *
  * In:    rays, spheres.   Out: the hit of least (distance, sphere index), so list and tree, and any order of visits,
  *        agree to the bit.
- * Knows: the interface of shape/, geometry.cl.   Does not know: nodes, materials. Read for one lane and for a packet. */
+ * Knows: the interface of shape/, geometry.cl.   Does not know: nodes, materials. Read for one lane and for packets. */
 #define Hit LANED(Hit)
 #define no_hit LANED(no_hit)
 #define is_hit LANED(is_hit)
@@ -40,8 +40,9 @@ FORCE_INLINE static void keep_closer(const Geometry *geometry, vbool found, vref
     const vbool tie = found & vbool_of_refined(t == hit->t) & is_hit(hit);
     if (any_lane(tie)) {
         const vuint other = choose_uint(tie, hit->slot, splat_uint(0));
-        closer = closer | (tie & vbool_of_uint(gather_uint(geometry->slot_sphere, slot) <
-                                               gather_uint(geometry->slot_sphere, other)));
+        closer =
+            closer |
+            (tie & vbool_of_uint(gather_uint(geometry->slot_sphere, slot) < gather_uint(geometry->slot_sphere, other)));
     }
     hit->t = choose_refined(closer, t, hit->t);
     hit->slot = choose_uint(closer, slot, hit->slot);

@@ -40,7 +40,7 @@ FORCE_INLINE static child_mask leaf_candidates(const Geometry *geometry, const R
 /* The three axes of box_ray.cl, and which of the six rows of a node hold the planes that are met first and last. */
 typedef struct BoxRay {
     real inverse[3], near_offset[3], far_offset[3];
-    uint near_row[3], far_row[3]; /* in vreal from the node's first */
+    uint near_row[3], far_row[3]; /* in reals from the node's first */
 } BoxRay;
 
 static void set_box_axis(BoxRay *box, uint axis, real inverse, real near_offset, real far_offset) {

@@ -65,7 +65,8 @@ static void intersect_leaves(const Geometry *geometry, const Visit *visits, uint
         found[found_count].lane = lane;
         found[found_count].what = first + lowest_bit(candidates);
         found_count += candidates != 0;
-        for (candidates = without_lowest_bit(candidates); candidates != 0; candidates = without_lowest_bit(candidates)) {
+        for (candidates = without_lowest_bit(candidates); candidates != 0;
+             candidates = without_lowest_bit(candidates)) {
             found[found_count].lane = lane;
             found[found_count].what = first + lowest_bit(candidates);
             ++found_count;
@@ -78,7 +79,7 @@ static void intersect_leaves(const Geometry *geometry, const Visit *visits, uint
 
 /* The leaves of one batch, against all lanes; a bound below 0 switches a lane off. */
 static void traverse_batch(const Geometry *geometry, const FlatBatch *batch, const BoxAxis *axes, vreal bound,
-                        LaneRays *rays) {
+                           LaneRays *rays) {
     /* Lanes differ in which plane of a pair they meet first. */
     vreal low_offset[3], high_offset[3];
     for (uint axis = 0; axis < 3; ++axis) {
@@ -95,10 +96,10 @@ static void traverse_batch(const Geometry *geometry, const FlatBatch *batch, con
         const vreal high_x = fma(splat(planes[3]), axes[0].inverse, high_offset[0]);
         const vreal high_y = fma(splat(planes[4]), axes[1].inverse, high_offset[1]);
         const vreal high_z = fma(splat(planes[5]), axes[2].inverse, high_offset[2]);
-        const vreal near = larger(larger(smaller(low_x, high_x), smaller(low_y, high_y)),
-                                  larger(smaller(low_z, high_z), splat(0)));
-        const vreal far = smaller(smaller(larger(low_x, high_x), larger(low_y, high_y)),
-                                  smaller(larger(low_z, high_z), bound));
+        const vreal near =
+            larger(larger(smaller(low_x, high_x), smaller(low_y, high_y)), larger(smaller(low_z, high_z), splat(0)));
+        const vreal far =
+            smaller(smaller(larger(low_x, high_x), larger(low_y, high_y)), smaller(larger(low_z, high_z), bound));
         met |= choose_uint(near <= far * SLAB_TOLERANCE, splat_uint(1u << k), splat_uint(0));
     }
     /* The first of each lane, the second of each lane, and so on: most have two at most. */
@@ -153,8 +154,7 @@ static int take_nearest(const Geometry *geometry, real bound, Walk *walk, uint *
     return worth;
 }
 
-static void traverse_nodes(const Geometry *geometry, const BoxAxis *axes, const uint *alive,
-                             LaneRays *rays) {
+static void traverse_nodes(const Geometry *geometry, const BoxAxis *axes, const uint *alive, LaneRays *rays) {
     real inverse[3][LANE_COUNT], near_offset[3][LANE_COUNT], far_offset[3][LANE_COUNT];
     for (uint axis = 0; axis < 3; ++axis) {
         store_lanes(axes[axis].inverse, inverse[axis]);
@@ -235,7 +235,8 @@ static void traverse_packet(const Geometry *geometry, const Ray *ray, vbool acti
     const FlatTree *flat = &geometry->flat;
     if (flat->batch_count > 0) {
         for (uint batch = 0; batch < flat->batch_count; ++batch)
-            traverse_batch(geometry, &flat->batches[batch], axes, choose(active, load_lanes(rays.bound), splat(-1)), &rays);
+            traverse_batch(geometry, &flat->batches[batch], axes, choose(active, load_lanes(rays.bound), splat(-1)),
+                           &rays);
     } else
         traverse_nodes(geometry, axes, alive, &rays);
     hit->t = load_lanes(rays.t);
@@ -259,8 +260,8 @@ static void intersect_leaf(const Geometry *geometry, const Ray *ray, vbool activ
     }
 }
 
-/* The closest hit of every ray that is `active`. The few huge spheres, which most rays meet, are tried against all lanes
- * at once; then each lane searches the tree with the bound that gave it. */
+/* The closest hit of every ray that is `active`. The few huge spheres, which most rays meet, are tried against all
+ * lanes at once; then each lane searches the tree within the bound that they leave. */
 static Hit intersect_closest(const Geometry *geometry, const Ray *ray, vbool active) {
     Hit hit = no_hit(REAL_LARGE);
     intersect_own_sphere(geometry, ray, active, &hit);

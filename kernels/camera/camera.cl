@@ -1,4 +1,7 @@
-/* camera.cl: from a pixel and random numbers to a ray. The camera's position is the origin of space. */
+/* camera.cl: from a pixel and random numbers to a ray. The camera's position is the origin of space.
+ *
+ * In:    a pixel, the key of its sample.   Out: where the ray begins and its direction.
+ * Knows: scene_types.h, sampler.cl, warps.cl.   Does not know: chunks, paths. */
 
 /* The point of the lens that the ray leaves, and its unit direction. `column` and `row` are whole numbers;
  * `center` is 1 for rays through pixel centres only. */

@@ -3,18 +3,19 @@
  * Appended to a render's program when someone asks (host/engine/features.c).
  * In:    the packed scene; a range of pixels; a range of samples, whose camera rays are those of the render.
  * Out:   for each pixel AOV_FLOATS sums over its samples, in the order of the enum. A ray that meets nothing adds
- *        nothing. */
+ *        nothing.
+ * Knows: path.cl, fetch_surface.cl.   Does not know: how paths go on. */
 enum {
-    AOV_DEPTH,                       /* along `forward_x, forward_y, forward_z`, from the camera */
+    AOV_DEPTH,                   /* along `forward_x, forward_y, forward_z`, from the camera */
     AOV_NORMAL = AOV_DEPTH + 1,  /* unit, towards where the ray came from */
-    AOV_ALBEDO = AOV_NORMAL + 3, /* what the surface scatters: its colour, 1 for glass, 0 for a lamp */
+    AOV_ALBEDO = AOV_NORMAL + 3, /* what the surface scatters: its colour, 1 for a dielectric, 0 for a lamp */
     AOV_MET = AOV_ALBEDO + 3,    /* rays that met something */
     AOV_FLOATS
 };
 
 /* One work-item a pixel; as many of its samples at a time as there are lanes. */
 __kernel void aovs(SCENE_PARAMETERS, uint first_pixel, uint pixel_count, uint first_sample, uint samples,
-                       float forward_x, float forward_y, float forward_z, __global float *out) {
+                   float forward_x, float forward_y, float forward_z, __global float *out) {
     const uint item = get_global_id(0);
     if (item >= pixel_count) return;
     const Scene scene = scene_init(SCENE_ARGUMENTS);
@@ -30,11 +31,11 @@ __kernel void aovs(SCENE_PARAMETERS, uint first_pixel, uint pixel_count, uint fi
             fresh_lane[lane] = begun + lane < samples ? 1 : 0;
         }
         Path path;
-        path.alive = splat(0) != splat(0);
+        path.alive = vbool_none;
         path.inward = path.alive;
         const SampleKey key = sample_key(seed_low, seed_high, splat_uint(pixel), load_lanes(numbers), replicates);
         path_init_from_camera(camera, pixel_center, key, splat((real)(pixel % width)), splat((real)(pixel / width)),
-                    load_lanes(fresh_lane) != splat(0), &path);
+                              load_lanes(fresh_lane) != splat(0), &path);
         const Ray ray = path_ray(&path);
         const Hit hit = intersect_closest(&scene.geometry, &ray, path.alive);
         const vbool met = path.alive & is_hit(&hit);
@@ -48,8 +49,8 @@ __kernel void aovs(SCENE_PARAMETERS, uint first_pixel, uint pixel_count, uint fi
         sphere_surface(&ray, &sphere, hit.slot, hit.t, hit.enters, &point, &outward);
         const Vec3 albedo = surface.albedo;
         const Vec3 normal = choose3(hit.enters, outward, scale3(splat(-1), outward));
-        const vreal values[AOV_FLOATS] = {dot3(point.high, forward), normal.x, normal.y,  normal.z,
-                                              albedo.x,                  albedo.y, albedo.z, splat(1)};
+        const vreal values[AOV_FLOATS] = {
+            dot3(point.high, forward), normal.x, normal.y, normal.z, albedo.x, albedo.y, albedo.z, splat(1)};
         for (uint i = 0; i < AOV_FLOATS; ++i) {
             real lanes[LANE_COUNT];
             store_lanes(choose(met, values[i], splat(0)), lanes);

@@ -1,16 +1,17 @@
 /* path_log.cl: one path, step by step, for a person: the same code as bounce.cl, with a record of each segment.
  *
  * Appended to a program of one lane when someone asks (host/engine/follow.c).
- * Out: for each segment LOG_REALS numbers, in the order of the enum. */
+ * In:    the packed scene, a pixel, a sample.   Out: for each segment LOG_REALS numbers, in the order of the enum.
+ * Knows: path.cl, bounce.cl.   Does not know: how a person wants to read it. */
 enum {
-    LOG_ORIGIN,                          /* of the segment, relative to the camera */
-    LOG_DIRECTION = LOG_ORIGIN + 3,   /* of the segment */
-    LOG_DISTANCE = LOG_DIRECTION + 3, /* to what it meets */
-    LOG_POINT,                           /* where it meets it */
-    LOG_THROUGHPUT = LOG_POINT + 3,   /* after the hit */
+    LOG_ORIGIN,                        /* of the segment, relative to the camera */
+    LOG_DIRECTION = LOG_ORIGIN + 3,    /* of the segment */
+    LOG_DISTANCE = LOG_DIRECTION + 3,  /* to what it meets */
+    LOG_POINT,                         /* where it meets it */
+    LOG_THROUGHPUT = LOG_POINT + 3,    /* after the hit */
     LOG_RADIANCE = LOG_THROUGHPUT + 3, /* collected so far */
-    LOG_MET = LOG_RADIANCE + 3,       /* 0: the sky */
-    LOG_ENTERS,                          /* from outside to inside */
+    LOG_MET = LOG_RADIANCE + 3,        /* 0: the sky */
+    LOG_ENTERS,                        /* from outside to inside */
     LOG_GOES_ON,
     LOG_INWARD, /* goes on inside */
     LOG_REALS
@@ -18,13 +19,13 @@ enum {
 
 /* `spheres[s]`: the number of the sphere that segment s met. `steps`: how many segments there were. */
 __kernel void path_log(SCENE_PARAMETERS, uint pixel, uint sample, uint capacity, __global real *records,
-                     __global uint *spheres, __global uint *steps) {
+                       __global uint *spheres, __global uint *steps) {
     const Scene scene = scene_init(SCENE_ARGUMENTS);
     Path path;
     path.alive = 0;
     path.inward = 0;
-    path_init_from_camera(camera, pixel_center, sample_key(seed_low, seed_high, pixel, sample, replicates), (real)(pixel % width),
-                (real)(pixel / width), 1, &path);
+    path_init_from_camera(camera, pixel_center, sample_key(seed_low, seed_high, pixel, sample, replicates),
+                          (real)(pixel % width), (real)(pixel / width), 1, &path);
     uint step = 0;
     while (path.alive && step < max_depth && step < capacity) {
         __global real *record = records + (size_t)step * LOG_REALS;

@@ -1,5 +1,8 @@
-/* trace_packet.cl: the kernel of the packet form: a work-item takes SAMPLES_PER_ITEM pixel samples of the chunk, as many
- * at a time as there are lanes; lanes whose path has ended take the next ones. In and out: bounce.cl. */
+/* trace_packet.cl: the kernel of the packet form: a work-item takes SAMPLES_PER_ITEM pixel samples of the chunk, as
+ * many at a time as there are lanes; lanes whose path has ended take the next ones.
+ *
+ * In:    the packed scene, a chunk.   Out: the samples of the chunk, as pixels.cl says.
+ * Knows: path.cl, bounce.cl, pixels.cl.   Does not know: what a bounce does. */
 __kernel void trace(TRACE_PARAMETERS) {
     const Scene scene = scene_init(SCENE_ARGUMENTS);
     const uint item = get_global_id(0);
@@ -12,10 +15,10 @@ __kernel void trace(TRACE_PARAMETERS) {
     uint sample = next % samples_per_pixel;
 
     Path path;
-    path.alive = splat(0) != splat(0);
+    path.alive = vbool_none;
     path.depth = splat_uint(0);
     path.radiance = zero3();
-    vbool cut = path.alive;      /* lanes whose path the cap has ended, black for what is missing */
+    vbool cut = path.alive;       /* lanes whose path the cap has ended, black for what is missing */
     vuint number = splat_uint(0); /* of a lane's pixel sample within the chunk */
     const uint lanes = min((uint)LANE_COUNT, end - next); /* that ever have one */
     uint used = 0;
@@ -52,8 +55,8 @@ __kernel void trace(TRACE_PARAMETERS) {
             for (sample += taken; sample >= samples_per_pixel; sample -= samples_per_pixel) next_pixel(&pixel, width);
             const SampleKey key = sample_key(seed_low, seed_high, pixels.row * width + pixels.column,
                                              first_sample + sample_number, replicates);
-            path_init_from_camera(camera, pixel_center, key, uint_to_real(pixels.column), uint_to_real(pixels.row), fresh,
-                        &path);
+            path_init_from_camera(camera, pixel_center, key, uint_to_real(pixels.column), uint_to_real(pixels.row),
+                                  fresh, &path);
             cut = cut & vbool_not(fresh);
             continue; /* a cap of 0 cuts at once */
         }

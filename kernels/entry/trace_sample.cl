@@ -1,8 +1,11 @@
-/* trace_sample.cl: the kernel of the one-path form: a work-item traces one pixel sample. In and out: bounce.cl.
+/* trace_sample.cl: the kernel of the one-path form: a work-item traces one pixel sample.
  *
- * The paths of a work-group set out together, then each goes its way. Where a camera ray comes from takes no branch, so
- * compilers for processors can make those of a group in vector lanes, if nothing else stands between: hence the barrier,
- * and the numbers in memory, one array a component. */
+ * In:    the packed scene, a chunk.   Out: the samples of the chunk, as pixels.cl says.
+ * Knows: path.cl, bounce.cl, pixels.cl.   Does not know: what a bounce does.
+ *
+ * The paths of a work-group begin together, then each goes its way. A camera ray is made without a branch, so compilers
+ * for processors can make those of a group in vector lanes, if nothing else stands between: hence the barrier, and the
+ * numbers in memory, one array a component. */
 
 typedef struct Starts {
     real origin_x[GROUP_MAX], origin_y[GROUP_MAX], origin_z[GROUP_MAX];
@@ -48,8 +51,8 @@ __kernel void trace(TRACE_PARAMETERS) {
         /* Work-items beyond the chunk begin its last path once more, and leave it there. */
         const uint number = min(item, sample_count - 1);
         const uint ahead = number / samples_per_pixel;
-        const Pixel pixel = pixel_of_chunk(first_pixel, ahead, sample_count / samples_per_pixel,
-                                           width PIXEL_LIST_ARGUMENT);
+        const Pixel pixel =
+            pixel_of_chunk(first_pixel, ahead, sample_count / samples_per_pixel, width PIXEL_LIST_ARGUMENT);
         const SampleKey key = sample_key(seed_low, seed_high, pixel.row * width + pixel.column,
                                          first_sample + number - ahead * samples_per_pixel, replicates);
         Vec3 origin, direction;
@@ -63,8 +66,8 @@ __kernel void trace(TRACE_PARAMETERS) {
     Vec3 origin, direction;
     take_start(&starts, place, &key, &origin, &direction);
     Path path;
-    path.inward = path.alive = 0;
-    path_init(camera, key, origin, direction, 1, &path);
+    path.inward = path.alive = vbool_none;
+    path_init(camera, key, origin, direction, vbool_all, &path);
     while (path.alive && path.depth < max_depth) trace_bounce(&scene, &path);
     const real cut = path.alive ? R(0.5) : R(0.0);
     vstore4((real4)(path.radiance.x, path.radiance.y, path.radiance.z, (real)path.depth + cut), item, samples);

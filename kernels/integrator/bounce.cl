@@ -1,7 +1,7 @@
 /* bounce.cl: how a path goes on by one segment, in lane code.
  *
  * In:    paths and the scene.   Out: the same paths, one segment longer.
- * Knows: the shape, the tree, the sky and the materials, each by one function.   Does not know: pixels. */
+ * Knows: the tree, the shape, the sky and the materials, each by one function.   Does not know: pixels. */
 
 /* One segment of every living path: intersect, collect radiance, scatter. */
 static void trace_bounce(const Scene *scene, Path *path) {
@@ -32,14 +32,13 @@ static void trace_bounce(const Scene *scene, Path *path) {
     surface.normal = choose3(hit.enters, outward, scale3(splat(-1), outward));
 #if EFFECT_NORMALS
     const vbool shows_normal = has_kind(&surface, KIND_NORMALS);
-    const Vec3 colour = vec3(fma(surface.normal.x, splat(R(0.5)), splat(R(0.5))),
-                             fma(surface.normal.y, splat(R(0.5)), splat(R(0.5))),
-                             fma(surface.normal.z, splat(R(0.5)), splat(R(0.5))));
+    const Vec3 colour =
+        vec3(fma(surface.normal.x, splat(R(0.5)), splat(R(0.5))), fma(surface.normal.y, splat(R(0.5)), splat(R(0.5))),
+             fma(surface.normal.z, splat(R(0.5)), splat(R(0.5))));
     emitted = choose3(shows_normal, add3(emitted, colour), emitted);
 #endif
 #if EFFECT_EMISSION || EFFECT_NORMALS
-    path->radiance = choose3(path->alive, add3(path->radiance, multiply3(path->throughput, emitted)),
-                              path->radiance);
+    path->radiance = choose3(path->alive, add3(path->radiance, multiply3(path->throughput, emitted)), path->radiance);
 #endif
     const BsdfSample bsdf_sample = scatter(&surface, path->key, path->depth - 1u);
     path->throughput = multiply3(path->throughput, bsdf_sample.weight);
@@ -47,6 +46,7 @@ static void trace_bounce(const Scene *scene, Path *path) {
     path->origin = point;
     path->own_slot = hit.slot;
     /* Coming from outside and staying there, or from inside and going through: outside. */
-    path->inward = (hit.enters & bsdf_sample.transmitted) | (vbool_not(hit.enters) & vbool_not(bsdf_sample.transmitted));
+    path->inward =
+        (hit.enters & bsdf_sample.transmitted) | (vbool_not(hit.enters) & vbool_not(bsdf_sample.transmitted));
     path->alive = path->alive & bsdf_sample.scattered;
 }

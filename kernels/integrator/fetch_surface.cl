@@ -1,4 +1,7 @@
-/* fetch_surface.cl: the sphere and the material at a hit, gathered for all lanes from the packed tables. */
+/* fetch_surface.cl: the sphere and the material at a hit, gathered for all lanes from the packed tables.
+ *
+ * In:    hits.   Out: what the materials say; the point, the normal and the direction are the caller's.
+ * Knows: scene_types.h, hit.cl, bsdf.cl.   Does not know: paths. */
 
 /* The packed structs as the gathers see them: arrays of their only type. */
 #define MATERIAL_UINTS ((uint)(sizeof(PackedMaterialKind) / sizeof(uint)))

@@ -7,9 +7,9 @@ typedef struct Path {
     Vec3 direction;
     Vec3 throughput, radiance;
     SampleKey key;
-    vuint depth; /* ray segments traced */
+    vuint depth;    /* ray segments traced */
     vuint own_slot; /* of the sphere being left */
-    vbool inward; /* it is left into its inside */
+    vbool inward;   /* it is left into its inside */
     vbool alive;
     /* Of the latest segment, for path_log.cl. */
     vbool met, entered;
@@ -29,7 +29,7 @@ static Ray path_ray(const Path *path) {
 
 /* Sets the lanes of `fresh` to the beginning of a path: a camera ray, and the key of its pixel sample. */
 static void path_init(__global const PackedCamera *camera, SampleKey key, Vec3 origin, Vec3 direction, vbool fresh,
-                    Path *path) {
+                      Path *path) {
     path->origin.high = choose3(fresh, origin, path->origin.high);
     path->origin.low = choose3(fresh, zero3(), path->origin.low);
     path->origin.error = choose(fresh, splat(camera->own_slot[2]), path->origin.error);
@@ -53,8 +53,8 @@ static void path_init(__global const PackedCamera *camera, SampleKey key, Vec3 o
 }
 
 /* The same for the pixel sample at a row and a column, whole numbers. */
-static void path_init_from_camera(__global const PackedCamera *camera, uint pixel_center, SampleKey key, vreal column, vreal row,
-                        vbool fresh, Path *path) {
+static void path_init_from_camera(__global const PackedCamera *camera, uint pixel_center, SampleKey key, vreal column,
+                                  vreal row, vbool fresh, Path *path) {
     Vec3 origin, direction;
     camera_ray(camera, pixel_center, key, column, row, &origin, &direction);
     path_init(camera, key, origin, direction, fresh, path);

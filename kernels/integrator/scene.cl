@@ -12,20 +12,20 @@ typedef struct Scene {
 } Scene;
 
 /* What every kernel that traces is told; scene_init and path_init_from_camera take it apart. */
-#define SCENE_PARAMETERS                                                                                     \
-    __global const PackedCamera *camera, __global const PackedSky *sky, __global const PackedMaterial *materials, \
-        __global const PackedMaterialKind *kinds, __global const uint *slot_material,                         \
-        __global const real *slot_albedo, __global const real *boxes, __global const uint *children,         \
-        __global const real *leaves, __global const uint *slot_sphere, uint first_leaves, uint leaf_count,   \
+#define SCENE_PARAMETERS                                                                                               \
+    __global const PackedCamera *camera, __global const PackedSky *sky, __global const PackedMaterial *materials,      \
+        __global const PackedMaterialKind *kinds, __global const uint *slot_material,                                  \
+        __global const real *slot_albedo, __global const real *boxes, __global const uint *children,                   \
+        __global const real *leaves, __global const uint *slot_sphere, uint first_leaves, uint leaf_count,             \
         uint pixel_center, uint max_depth, uint seed_low, uint seed_high, uint replicates, uint width
-#define SCENE_ARGUMENTS                                                                                      \
+#define SCENE_ARGUMENTS                                                                                                \
     sky, materials, kinds, slot_material, slot_albedo, boxes, children, leaves, slot_sphere, first_leaves, leaf_count
 
 static Scene scene_init(__global const PackedSky *sky, __global const PackedMaterial *materials,
-                         __global const PackedMaterialKind *kinds, __global const uint *slot_material,
-                         __global const real *slot_albedo, __global const real *boxes, __global const uint *children,
-                         __global const real *leaves, __global const uint *slot_sphere, uint first_leaves,
-                         uint leaf_count) {
+                        __global const PackedMaterialKind *kinds, __global const uint *slot_material,
+                        __global const real *slot_albedo, __global const real *boxes, __global const uint *children,
+                        __global const real *leaves, __global const uint *slot_sphere, uint first_leaves,
+                        uint leaf_count) {
     Scene scene;
     geometry_init(boxes, children, leaves, slot_sphere, first_leaves, leaf_count, &scene.geometry);
     scene.sky = sky;

@@ -1,4 +1,6 @@
-/* sky.cl: the radiance of a ray that meets nothing. */
+/* sky.cl: the radiance of a ray that meets nothing.
+ *
+ * In:    a unit direction.   Out: radiance.   Knows: scene_types.h.   Does not know: paths. */
 static Vec3 sky_radiance(__global const PackedSky *sky, Vec3 direction) {
     const Vec3 bottom = splat3(sky->bottom);
 #if EFFECT_GRADIENT

@@ -1,11 +1,14 @@
 /* rng.cl: random numbers as a pure function of (seed, pixel, sample, dimension).
  *
+ * In:    a key, a dimension.   Out: 32 random bits, or a number in [0, 1).
+ * Knows: lanes.cl.   Does not know: what the numbers are for.
+ *
  * Nothing is carried along, so neither chunks, nor devices, nor effects that are absent shift a number.
  *
  * Dimensions, by purpose. An effect that is absent leaves its places unused:
  *   0, 1  position in the pixel        2, 3  position on the lens        4  time (kept)       5..15  kept
  *   16 + 16 b + k, for bounce b:
- *     k = 0, 1     direction of bsdf_sample
+ *     k = 0, 1     direction of scattering
  *     k = 2, 3, 4  radius in a ball (fuzz and the cosine-cubed lobe)
  *     k = 5        choice between reflection and refraction
  *     k = 6        roulette (kept)    7, 8, 9  a light (kept)    10..15  kept */

@@ -71,7 +71,8 @@ static vreal sample_1d(SampleKey key, vuint dimension) {
 #if SAMPLER_SOBOL
     const vbool low = is_low(dimension);
     if (any_lane(low))
-        u = choose(low, bits_to_unit(permute_upwards(key.index_reversed, random_bits(scramble_key(key), dimension))), u);
+        u = choose(low, bits_to_unit(permute_upwards(key.index_reversed, random_bits(scramble_key(key), dimension))),
+                   u);
 #endif
     return u;
 }
@@ -85,8 +86,8 @@ static void sample_2d(SampleKey key, vuint dimension, vreal *u, vreal *v) {
     if (any_lane(low)) {
         const SampleKey scramble = scramble_key(key);
         const vuint x = permute_upwards(key.index_reversed, random_bits(scramble, dimension));
-        const vuint y = reverse_bits(
-            permute_upwards(reverse_bits(second_dimension(x)), random_bits(scramble, dimension + 1u)));
+        const vuint y =
+            reverse_bits(permute_upwards(reverse_bits(second_dimension(x)), random_bits(scramble, dimension + 1u)));
         *u = choose(low, bits_to_unit(x), *u);
         *v = choose(low, bits_to_unit(y), *v);
     }

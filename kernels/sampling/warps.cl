@@ -1,6 +1,7 @@
 /* warps.cl: from uniform numbers to directions: direct maps, no rejection loops, no division by zero.
  *
- * In: numbers in [0, 1).   Out: points of the unit disk and the unit sphere. */
+ * In:    numbers in [0, 1).   Out: points of the unit disk and the unit sphere, radii in the unit ball.
+ * Knows: vector.cl.   Does not know: where the numbers come from. */
 
 /* sin and cos of 2 pi u, u in [0, 1]. The turn is cut at the nearest quarter q, and a short polynomial in
  * f = 4u - q in [-1/2, 1/2] does the rest (float: Chebyshev interpolation, error below 5e-9 before rounding;

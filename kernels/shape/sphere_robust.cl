@@ -1,5 +1,5 @@
-/* sphere_robust.cl: where a ray meets a sphere, right to a few units in the last place of the answer, for every ratio of
- * radius to distance. docs/NUMERICS.md proves the bounds.
+/* sphere_robust.cl: where a ray meets a sphere, right to a few units in the last place of the answer, for every ratio
+ * of radius to distance. docs/NUMERICS.md proves the bounds.
  *
  * In:    a ray whose origin is the unevaluated sum high + low, a sphere as it is stored.
  * Out:   the interface of a shape, the same in sphere_plain.cl:
@@ -134,8 +134,8 @@ FORCE_INLINE static Roots sphere_roots(const Ray *ray, const Sphere *sphere) {
  * towards the centre the ray enters at the near root, and an entry that rounding put behind the origin counts as 0. */
 FORCE_INLINE static vbool sphere_intersect(const Ray *ray, const Sphere *sphere, vrefined *t, vbool *enters) {
     const Roots roots = sphere_roots(ray, sphere);
-    const vbool inside = vbool_of_refined(roots.near * roots.far <
-                                          to_refined(sphere->radius * ray->origin.error) * splat_refined(-2));
+    const vbool inside =
+        vbool_of_refined(roots.near * roots.far < to_refined(sphere->radius * ray->origin.error) * splat_refined(-2));
     const vbool ahead = vbool_of_refined(roots.middle > splat_refined(0));
     const vrefined entry =
         choose_refined(vbool_of_refined(roots.near > splat_refined(0)), roots.near, splat_refined(0));
@@ -192,7 +192,8 @@ FORCE_INLINE static void sphere_surface(const Ray *ray, const Sphere *sphere, vu
     const Vec3 direction = ray->direction, centre = sphere->centre;
     const vreal radius = sphere->radius;
     const Roots roots = sphere_roots(ray, sphere);
-    const Vec3 relative = subtract3(scale3(choose(enters, -roots.half_chord, roots.half_chord), direction), roots.across);
+    const Vec3 relative =
+        subtract3(scale3(choose(enters, -roots.half_chord, roots.half_chord), direction), roots.across);
     const vbool degenerate = vbool_not(dot3(relative, relative) > splat(0));
     const Vec3 unit = normalise3(choose3(degenerate, direction, relative));
     /* Once more, so that the length errs by 3u however well the device divides and takes roots. */

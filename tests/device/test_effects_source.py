@@ -24,9 +24,9 @@ BITS = re.findall(r"^ +X\(([A-Z]+), \"", header.read_text(), re.MULTILINE)
 
 # Words that stand in the code of one effect and nowhere else.
 MARKS = {
-    "LAMBERTIAN": ["scatter_lambertian", "hemisphere"],
-    "METAL": ["scatter_metal", "fuzzy"],
-    "DIELECTRIC": ["scatter_dielectric", "fresnel_schlick", "fresnel_exact", "refraction_index = "],
+    "LAMBERTIAN": ["lambertian_sample", "hemisphere"],
+    "METAL": ["metal_sample", "fuzzy"],
+    "DIELECTRIC": ["dielectric_sample", "fresnel_schlick", "fresnel_exact", "refraction_index = "],
     "EMISSION": ["emitted = vec3"],
     "NORMALS": ["shows_normal"],
     "LENS": ["lens_x", "->lens_up", "sample_disk(u"],

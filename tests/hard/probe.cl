@@ -2,8 +2,8 @@
  *
  * In:    numbers that the host made.   Out: what the functions say, unchanged, in refined precision.
  * `count` items; the host rounds the number of work-items up. Layouts are those of lab.h. */
-#define PROBE_ITEM                                                                                           \
-    const uint item = (uint)get_global_id(0);                                                                \
+#define PROBE_ITEM                                                                                                     \
+    const uint item = (uint)get_global_id(0);                                                                          \
     if (item >= count) return;
 
 enum { PROBE_RAY_REALS = 10, PROBE_HIT_REALS = 8, PROBE_POINT_REALS = 10 };
@@ -76,8 +76,8 @@ __kernel void probe_point(uint count, __global const real *rays, __global const 
     row[9] = normal.z;
 }
 
-/* One bsdf_sample. In: incoming, normal, index, fuzz, albedo. choices: enters, kind, lobe, variant, total_reflection,
- * sample. Out: direction, scattered, refracted, the random direction and ball radius that the sample has. */
+/* One sample of a BSDF. In: incoming, normal, index, fuzz, albedo. choices: enters, kind, lobe, variant, total_reflection,
+ * sample. Out: direction, scattered, transmitted, the random direction and ball radius that the sample has. */
 __kernel void probe_scatter(uint count, __global const real *in, __global const uint *choices, uint seed,
                             __global refined *out) {
     PROBE_ITEM
@@ -95,14 +95,14 @@ __kernel void probe_scatter(uint count, __global const real *in, __global const 
     surface.variant = words[3];
     surface.total_reflection = words[4];
     const SampleKey key = sample_key(seed, 0, 0, words[5], 4);
-    const BsdfSample bsdf_sample = scatter(&surface, key, 0);
+    const BsdfSample sample = scatter(&surface, key, 0);
     const Vec3 offset = random_direction(key, DIMENSION_BOUNCE);
     __global refined *row = out + (size_t)item * 8;
-    row[0] = bsdf_sample.direction.x;
-    row[1] = bsdf_sample.direction.y;
-    row[2] = bsdf_sample.direction.z;
-    row[3] = bsdf_sample.scattered != 0;
-    row[4] = bsdf_sample.transmitted != 0;
+    row[0] = sample.direction.x;
+    row[1] = sample.direction.y;
+    row[2] = sample.direction.z;
+    row[3] = sample.scattered != 0;
+    row[4] = sample.transmitted != 0;
     row[5] = offset.x;
     row[6] = offset.y;
     row[7] = offset.z;

@@ -1,0 +1,57 @@
+/* dielectric.cl: refraction, Fresnel reflection and total reflection.
+ *
+ * In and out: as bsdf.cl says.   Knows: bsdf.cl.   Does not know: other lobes. */
+#if EFFECT_DIELECTRIC
+/* Reflectance of unpolarised light. c: cosine of incidence, in [0, 1]; n: index of the far over the near side;
+ * t: cosine of refraction. Fresnel's equations (M. Born and E. Wolf, Principles of Optics, 1.5.2). */
+static vreal fresnel_exact(vreal c, vreal n, vreal t) {
+    const vreal across = (c - n * t) / (c + n * t);
+    const vreal along = (n * c - t) / (n * c + t);
+    return R(0.5) * fma(across, across, along * along);
+}
+
+/* C. Schlick, "An Inexpensive BRDF Model for Physically-based Rendering", 1994, as the book uses it: always the
+ * cosine of incidence, from inside too. */
+static vreal fresnel_schlick(vreal c, vreal n) {
+    const vreal root = (R(1.0) - n) / (R(1.0) + n);
+    const vreal r0 = root * root;
+    const vreal m = R(1.0) - c;
+    const vreal m2 = m * m;
+    return fma(R(1.0) - r0, m2 * m2 * m, r0);
+}
+
+/* Chooses reflection with the probability of the reflectance, so the weight is the albedo, which is stored as 1. Where
+ * the scene wants total reflection to absorb, it ends the path. */
+static BsdfSample dielectric_sample(const Surface *surface, SampleKey key, vuint bounce) {
+    /* index of the far side over the near side */
+    const vreal n = choose(surface->enters, surface->refraction_index, splat(1) / surface->refraction_index);
+    const vreal c = at_most(at_least(-dot3(surface->incoming, surface->normal), splat(0)), splat(1));
+    const vreal ratio = splat(1) / n;
+    /* (1-c)(1+c) keeps the bits that 1 - c c loses near normal incidence */
+    const vreal transmitted2 = fma(-ratio * ratio, (R(1.0) - c) * (R(1.0) + c), splat(1));
+    const vbool total = transmitted2 < splat(0);
+    const vreal t = sqrt(fabs(transmitted2));
+    const vbool exact = vbool_of_uint(surface->variant == splat_uint(FRESNEL_EXACT));
+    const vbool none = vbool_of_uint(surface->variant == splat_uint(FRESNEL_NONE));
+    vreal reflectance = fresnel_schlick(c, ratio);
+    if (any_lane(exact)) reflectance = choose(exact, fresnel_exact(c, n, t), reflectance);
+    reflectance = choose(none, splat(0), reflectance);
+    const vbool as_reflection = vbool_of_uint(surface->total_reflection == splat_uint(TOTAL_REFLECT));
+    const vbool as_refraction = vbool_of_uint(surface->total_reflection == splat_uint(TOTAL_REFRACT));
+    const vbool by_chance = sample_1d(key, bounce + BOUNCE_CHOICE) < reflectance;
+    const vbool reflects = (total & as_reflection) | (vbool_not(total) & by_chance);
+    const vbool lost = total & vbool_not(as_reflection | as_refraction);
+    const Vec3 mirrored = madd3(splat(2) * c, surface->normal, surface->incoming);
+    const Vec3 bent = madd3(fma(ratio, c, -t), surface->normal, scale3(ratio, surface->incoming));
+    /* Equal indices: there is no surface. */
+    const vbool matched = surface->refraction_index == splat(1);
+    const vbool refracted = vbool_not(reflects) | matched;
+    const Vec3 direction = normalise3(choose3(refracted, bent, mirrored));
+    BsdfSample sample;
+    sample.direction = choose3(matched, surface->incoming, direction);
+    sample.weight = surface->albedo;
+    sample.scattered = vbool_not(lost) | matched;
+    sample.transmitted = refracted;
+    return sample;
+}
+#endif
