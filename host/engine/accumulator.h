@@ -1,6 +1,6 @@
 /* accumulator.h: the sums from which a picture and its error bar are made.
  *
- * In:    fixed-point replicate sums, as the fold kernel leaves them.
+ * In:    fixed-point replicate sums, as the kernel `accumulate` leaves them.
  * Out:   means, standard errors, NRMSE; sums of two runs added exactly.
  * Knows: arithmetic.   Does not know: OpenCL, scenes, file formats (accumulator_file.h does).
  *

@@ -70,7 +70,7 @@ static const struct {
     {"integrator/bounce.cl", IN_ALL},
     {"entry/trace_sample.cl", IN_SAMPLE},
     {"entry/trace_packet.cl", IN_PACKET},
-    {"fold.cl", IN_ALL},
+    {"film/accumulate.cl", IN_ALL},
     {"entry/probe_layout.cl", IN_ALL},
 };
 

@@ -22,7 +22,7 @@ static BpStatus set_argument(BpWorker *worker, cl_kernel kernel, cl_uint index, 
     return BP_OK;
 }
 
-/* Places of the arguments that change with the chunk; TRACE_PARAMETERS and fold.cl declare them in this
+/* Places of the arguments that change with the chunk; TRACE_PARAMETERS and accumulate.cl declare them in this
  * order. */
 enum {
     TRACE_FIRST_PIXEL = BP_WORKER_SCENE_ARGUMENTS,
@@ -53,8 +53,8 @@ static BpStatus create_kernels(BpWorker *worker, const BpWorkerSetup *setup, BpE
     cl_int code = CL_SUCCESS;
     worker->trace = clCreateKernel(worker->program->program, "trace", &code);
     CL_TRY(worker, code, "clCreateKernel(trace)");
-    worker->fold = clCreateKernel(worker->program->program, "fold", &code);
-    CL_TRY(worker, code, "clCreateKernel(fold)");
+    worker->fold = clCreateKernel(worker->program->program, "accumulate", &code);
+    CL_TRY(worker, code, "clCreateKernel(accumulate)");
     BP_TRY(bp_worker_bind_scene(worker, worker->trace, err));
     cl_uint index = FOLD_CONSTANTS;
     BP_TRY(set_argument(worker, worker->fold, index++, sizeof(cl_uint), &worker->replicates, err));
@@ -271,7 +271,7 @@ BpStatus bp_worker_start(BpWorker *worker, const BpChunk *chunk, BpError *err) {
     BP_TRY(enqueue(worker, worker->trace, items, worker->local_size, &flight->trace_start,
                    "clEnqueueNDRangeKernel(trace)", err));
     BP_TRY(enqueue(worker, worker->fold, chunk->pixel_count, BP_LOCAL_SIZE_SAMPLE, &flight->fold_end,
-                   "clEnqueueNDRangeKernel(fold)", err));
+                   "clEnqueueNDRangeKernel(accumulate)", err));
     CL_TRY(worker, clFlush(worker->device->queue), "clFlush");
     if (first) {
         BP_TRY(bp_worker_wait(worker, err));

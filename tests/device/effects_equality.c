@@ -2,9 +2,9 @@
  * general one does.
  *
  * On PoCL, bit for bit: radiance, segments and cut of every single pixel sample, as the trace kernel writes
- * them. What sums them (fold.cl) has no effects in it (effects_source), so equal samples make equal pictures.
- * Other implementations may round differently in different programs; there the difference is reported, and
- * the pictures must agree within their error.
+ * them. What sums them (accumulate.cl) has no effects in it (effects_source), so equal samples make equal
+ * pictures. Other implementations may round differently in different programs; there the difference is
+ * reported, and the pictures must agree within their error.
  *
  * Nearly all of the time is the compiler's, so nothing but the trace kernels is compiled, and the general
  * ones once.

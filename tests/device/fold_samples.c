@@ -1,6 +1,6 @@
-/* fold_samples.c: the fold kernel, fed with samples made by the test: invalid ones are found, left out and
- * counted; sums are exact whatever their order; a million equal samples keep their mean, where a float sum
- * does not. */
+/* fold_samples.c: the kernel `accumulate`, fed with samples made by the test: invalid ones are found, left
+ * out and counted; sums are exact whatever their order; a million equal samples keep their mean, where a
+ * float sum does not. */
 #define BP_HOST
 #include "engine/device.h"
 #include "engine/effects.h"
@@ -39,7 +39,7 @@ static int open_folder(void **state) {
         fprintf(stderr, "%s\n", err.message);
         return -1;
     }
-    folder.kernel = clCreateKernel(folder.program->program, "fold", &code);
+    folder.kernel = clCreateKernel(folder.program->program, "accumulate", &code);
     *state = &folder;
     return code == CL_SUCCESS ? 0 : -1;
 }

@@ -62,8 +62,9 @@ def complaints(path):
 
 assert len(BITS) == 8 and set(BITS) == set(MARKS), f"effects.h lists {BITS}: give each its marks here"
 # Tests of equality compare what is traced; what sums it is the same text in every program.
-fold = (pathlib.Path(__file__).parents[2] / "kernels/fold.cl").read_text()
-assert "__kernel" in fold and "EFFECT_" not in fold and "LANE" not in fold, "fold.cl depends on effects or form"
+accumulate = (pathlib.Path(__file__).parents[2] / "kernels/film/accumulate.cl").read_text()
+assert "__kernel" in accumulate and "EFFECT_" not in accumulate and "LANE" not in accumulate, \
+    "accumulate.cl depends on effects or form"
 with tempfile.TemporaryDirectory() as folder:
     subprocess.run([sys.argv[1], folder], check=True)
     paths = sorted(pathlib.Path(folder).glob("e*.cl"))

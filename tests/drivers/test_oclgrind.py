@@ -3,7 +3,7 @@
 Usage: test_oclgrind.py BALLPARK SCENES
 
 Two things are known of Oclgrind 21.10. It does not see that clEnqueueFillBuffer initialises a buffer, so it
-reports every sum of the fold kernel; what the fold reads of samples is watched where the trace kernel writes
+reports every sum of the kernel `accumulate`; what it reads of samples is watched where the trace kernel writes
 them. And it keeps one state for a whole vector, so the eight-lane kernel drowns in reports: it is left out.
 """
 
@@ -52,7 +52,7 @@ with tempfile.TemporaryDirectory() as folder:
     ours = []
     # A list of spheres with glass, metal and diffuse ones; a tree and a lens; normals as colours.
     for scene in ("v4-21-view-zoom.json", "cover.json", "v4-normals-ground.json"):
-        ours += [block for kernel, block in reports(scene, folder) if kernel != "fold"]
+        ours += [block for kernel, block in reports(scene, folder) if kernel != "accumulate"]
     ours += [block for _, block in reports("v4-21-view-zoom.json", folder, check="--data-races")]
 
 for block in ours[:5]:

@@ -16,10 +16,10 @@ typedef struct Folded {
     uint64_t tallies[3];
 } Folded;
 
-/* The product's fold kernel on `count` samples of one pixel, `parts` chunks, 4 replicates. */
+/* The product's kernel `accumulate` on `count` samples of one pixel, `parts` chunks, 4 replicates. */
 static void fold(const Lab *lab, const double *samples, uint32_t count, uint32_t parts, Folded *folded) {
     cl_int code;
-    cl_kernel kernel = clCreateKernel(lab->program->program, "fold", &code);
+    cl_kernel kernel = clCreateKernel(lab->program->program, "accumulate", &code);
     assert_int_equal(code, CL_SUCCESS);
     memset(folded, 0, sizeof *folded);
     const cl_context context = lab->device->context;

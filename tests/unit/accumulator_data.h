@@ -23,7 +23,7 @@ static inline double data_normal(uint64_t counter) {
     return sqrt(-2 * log(data_uniform(2 * counter))) * cos(6.283185307179586 * data_uniform(2 * counter + 1));
 }
 
-/* Adds one sample of one pixel, as the fold kernel would. */
+/* Adds one sample of one pixel, as the kernel `accumulate` would. */
 static inline void data_add(BpAccumulator *accumulator, size_t pixel, uint64_t sample, const double rgb[3]) {
     const size_t cell = pixel * accumulator->replicates + sample % accumulator->replicates;
     for (size_t c = 0; c < 3; c++)

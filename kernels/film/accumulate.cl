@@ -1,4 +1,4 @@
-/* fold.cl: adds the samples of a chunk to the replicate sums of their pixels, in 64-bit fixed point.
+/* accumulate.cl: adds the samples of a chunk to the replicate sums of their pixels, in 64-bit fixed point.
  *
  * In:    samples as pixels.cl describes them.
  * Out:   sums and fine_sums[(pixel * K + k) * 3 + channel], counts[pixel * K + k] with their flags,
@@ -83,7 +83,7 @@ static void add_fine(__global long *fine_sums, long4 fine, uint known) {
 }
 
 /* One work-item a pixel of the chunk. */
-__kernel void fold(__global const real *samples, uint pixel_count, uint samples_per_pixel, uint first_pixel,
+__kernel void accumulate(__global const real *samples, uint pixel_count, uint samples_per_pixel, uint first_pixel,
                    uint first_sample, uint replicates, int scale_log2, __global long *sums, __global long *fine_sums,
                    __global uint *counts, __global ulong *tallies PIXEL_LIST_PARAMETER) {
     const uint item = get_global_id(0);
