@@ -186,7 +186,7 @@ static void degenerate_size(void **state) {
     cases_clear(&cases);
 }
 
-/* 10: the point that a path goes on from lies on its sphere, its own bound (slack) included. */
+/* 10: the point that a path goes on from lies on its sphere, its own bound on its error included. */
 static void hit_on_sphere(void **state) {
     const Lab *lab = *state;
     const double radii[] = {1e-3, 1, 1e3, 1e6}, distances[] = {1e-2, 1, 1e3, 1e6},
