@@ -22,7 +22,10 @@ class Terminal:
     """The program with its standard error (and output, unless told) on a terminal of `columns`."""
 
     def __init__(self, test, *arguments, columns=80, stdout=None, environment=None):
-        self.master, slave = pty.openpty()
+        try:
+            self.master, slave = pty.openpty()
+        except OSError as error:
+            test.skipTest(f"this machine gives no pseudo-terminal ({error})")
         fcntl.ioctl(slave, termios.TIOCSWINSZ, struct.pack("HHHH", 24, columns, 0, 0))
         values = {**test.environment, "TERM": "xterm", **(environment or {})}
         self.process = subprocess.Popen([PROGRAM, *arguments], cwd=test.folder, stdin=slave, stderr=slave,

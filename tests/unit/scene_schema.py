@@ -11,7 +11,7 @@ import sys
 try:
     import jsonschema
 except ImportError:
-    print("python3-jsonschema is missing: skipped")
+    print("skipped: python3-jsonschema is not installed")
     sys.exit(77)
 
 GOOD = {

@@ -1,0 +1,85 @@
+"""The last words of scripts/test: what is counted as passed, failed and skipped, with which reason."""
+import pathlib
+import tempfile
+import unittest
+
+import summary
+
+CASE = '<testcase name="{}" status="{}">{}<system-out>{}</system-out></testcase>'
+
+
+def case(name, status="run", inside="", output=""):
+    return CASE.format(name, status, inside, output)
+
+
+class Summary(unittest.TestCase):
+    def setUp(self):
+        folder = tempfile.TemporaryDirectory()
+        self.addCleanup(folder.cleanup)
+        self.folder = pathlib.Path(folder.name)
+
+    def stage(self, name, status, log="", cases=None):
+        with open(self.folder / "stages", "a", encoding="utf-8") as file:
+            file.write(f"{name} {status}\n")
+        (self.folder / f"{name}.log").write_text(log, encoding="utf-8")
+        if cases is not None:
+            (self.folder / f"{name}.xml").write_text(f"<testsuite>{''.join(cases)}</testsuite>", encoding="utf-8")
+
+    def lines(self):
+        return list(summary.summarise(self.folder).lines())
+
+    def test_all_is_well(self):
+        self.stage("lint", 0, "lint: clean")
+        self.stage("tests", 0, cases=[case("a"), case("b")])
+        self.assertEqual(self.lines(), ["test: 3 passed, 0 failed, 0 skipped"])
+
+    def test_a_failed_test_has_its_stage(self):
+        self.stage("tests", 8, cases=[case("a"), case("b", "fail", '<failure message="Failed"/>')])
+        self.assertEqual(self.lines(), ["test: failed: b (tests): Failed", "test: 1 passed, 1 failed, 0 skipped"])
+
+    def test_a_test_that_cannot_start_failed(self):
+        self.stage("tests", 8, cases=[case("a", "notrun", '<skipped message="Unable to find executable"/>')])
+        self.assertEqual(self.lines(), ["test: failed: a (tests): Unable to find executable",
+                                        "test: 0 passed, 1 failed, 0 skipped"])
+
+    def test_a_skipped_test_has_its_reason(self):
+        skipped = '<skipped message="SKIP_RETURN_CODE=77"/>'
+        self.stage("tests", 0, cases=[case("a", "notrun", skipped, "skipped: no device\nskipped: no device\n"),
+                                      case("b", "notrun", skipped)])
+        self.assertEqual(self.lines(), ["test: skipped: a (tests): no device",
+                                        "test: skipped: b (tests): it does not say why",
+                                        "test: 0 passed, 0 failed, 2 skipped"])
+
+    def test_a_part_that_was_skipped_is_named(self):
+        self.stage("tests", 0, cases=[case("a", output="ran 3\nskipped: no terminal\nskipped: no linker\n")])
+        self.assertEqual(self.lines(), ["test: skipped: a (tests): no terminal (a part of it)",
+                                        "test: skipped: a (tests): no linker (a part of it)",
+                                        "test: 1 passed, 0 failed, 2 skipped"])
+
+    def test_a_stage_that_ran_no_test(self):
+        self.stage("setup", 0)
+        self.stage("tests", 1, "does not build")
+        self.stage("fuzz", 77, "fuzz: skipped: no clang")
+        self.assertEqual(self.lines(), ["test: skipped: fuzz: no clang", "test: failed: tests: exit code 1",
+                                        "test: 1 passed, 1 failed, 1 skipped"])
+
+    def test_ctest_fails_by_itself(self):
+        self.stage("tests", 2, cases=[case("a")])
+        self.assertEqual(self.lines()[0], "test: failed: tests: ctest ended with exit code 2")
+
+    def test_no_test_was_chosen(self):
+        self.stage("lint", 0)
+        self.stage("tests", 0, cases=[])
+        self.assertEqual(self.lines()[-1], "test: 1 passed, 1 failed, 0 skipped")
+
+    def test_a_check_that_lint_left_out(self):
+        self.stage("lint", 0, "lint: shellcheck left out: not installed\nlint: clean")
+        self.assertEqual(self.lines(), ["test: skipped: shellcheck (lint): not installed",
+                                        "test: 1 passed, 0 failed, 1 skipped"])
+
+    def test_nothing_at_all(self):
+        self.assertEqual(self.lines(), ["test: 0 passed, 0 failed, 0 skipped"])
+
+
+if __name__ == "__main__":
+    unittest.main()
