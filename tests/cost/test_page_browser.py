@@ -8,7 +8,6 @@ import re
 import shutil
 import subprocess
 import unittest
-import sys
 
 from page import SCENE, TITLE, PageTest, decode_png, embedded
 from cli import main, scene  # the folder of cli.py is found by page

@@ -1,6 +1,9 @@
 """Every kind of kernel program is OpenCL C 1.2 to clang, without a warning; without double where none is needed.
 
-Usage: test_kernels_syntax.py DUMP_KERNELS
+Usage: test_kernels_syntax.py DUMP_KERNELS [--lint]
+
+--lint reads every eighth program only, with every warning of clang but those listed here. Each version of clang has its
+own: it is meant for Debian 12's.
 """
 
 import concurrent.futures
@@ -21,6 +24,18 @@ COMMAND = [clang, "-x", "cl", "-cl-std=CL1.2", "-fsyntax-only", "-Xclang", "-fin
 # A specialised program does not use everything it has.
 COMMAND += ["-Wall", "-Wextra", "-Werror", "-Wno-unused-function", "-Wno-unused-parameter", "-Wno-unused-variable"]
 
+if "--lint" in sys.argv:
+    COMMAND += ["-Weverything"]
+    # The language and its extensions as they are: declarations where they are needed, comparing to 0, padding that the
+    # layout check sees, the pragma that OpenCL 1.2 needs for double.
+    COMMAND += [f"-Wno-{name}" for name in ("declaration-after-statement", "float-equal", "padded", "pedantic-core-features")]
+    # A specialised program does not use everything it has.
+    COMMAND += [f"-Wno-{name}" for name in ("unused-macros", "unused-function", "unused-parameter", "unused-variable")]
+    # Meant: a name of the lane dialect stands for itself with its lanes; work-items are counted in 32 bits; a count adds
+    # a 0 or 1; `float` is refined in double; rows of boxes are aligned by the host; a lane set is read only where it was
+    # written.
+    COMMAND += [f"-Wno-{name}" for name in ("disabled-macro-expansion", "shorten-64-to-32", "sign-conversion",
+                                            "double-promotion", "cast-align", "conditional-uninitialized")]
 
 def complaints(path):
     # Without the extension a double literal is an error, as on a device that has none.
@@ -42,11 +57,14 @@ with tempfile.TemporaryDirectory() as folder:
         assert complaints(bad), f"{name}: clang found nothing wrong with: {text}"
 
     # A choice that another one decides leaves the text as it is: each text is read once.
-    paths = {path.read_bytes(): path for path in sorted(pathlib.Path(folder).glob("*.cl"))}.values()
+    paths = list({path.read_bytes(): path for path in sorted(pathlib.Path(folder).glob("*.cl"))}.values())
+    assert len(paths) >= 256, f"only {len(paths)} programs"
+    if "--lint" in sys.argv:
+        paths = paths[::8]
     with concurrent.futures.ThreadPoolExecutor(os.cpu_count()) as pool:
         found = [text for text in pool.map(complaints, paths) if text]
 
 for text in found[:3]:
     print(text)
 print(f"{len(paths)} programs, {len(found)} with complaints ({clang})")
-sys.exit(1 if found or len(paths) < 256 else 0)
+sys.exit(1 if found else 0)
