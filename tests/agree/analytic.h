@@ -5,7 +5,7 @@
 #ifndef TESTS_AGREE_ANALYTIC_H
 #define TESTS_AGREE_ANALYTIC_H
 
-#include "build_scene.h"
+#include "support/build_scene.h"
 
 typedef struct AnalyticCase {
     char name[64];

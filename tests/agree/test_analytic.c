@@ -3,7 +3,7 @@
 #include "check/check.h"
 #include "check/statistics.h"
 #include "reference/reference.h"
-#include "unit_test.h"
+#include "support/unit_test.h"
 
 #include <math.h>
 #include <stdio.h>

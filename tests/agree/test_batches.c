@@ -3,12 +3,12 @@
  * 32 seeds render the same picture. The variance of a block's mean between seeds must be what the spread of
  * the samples within pixels predicts: their ratio, pooled over 64 blocks, is 1 with 31 * 64 degrees of
  * freedom. Pixels that share random numbers raise it, samples of a pixel that repel each other lower it. */
-#include "build_scene.h"
 #include "check/check.h"
 #include "check/statistics.h"
 #include "reference/reference.h"
 #include "reference/vec.h"
-#include "unit_test.h"
+#include "support/build_scene.h"
+#include "support/unit_test.h"
 
 #include <math.h>
 #include <stdio.h>

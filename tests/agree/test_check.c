@@ -1,7 +1,7 @@
 /* test_check.c: a check's result depends on scene, samples and seed, not on chunks, threads or steps; and
  * what it refuses. */
 #include "check/check.h"
-#include "unit_test.h"
+#include "support/unit_test.h"
 
 #include <stdio.h>
 #include <string.h>

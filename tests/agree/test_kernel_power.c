@@ -2,8 +2,8 @@
  * were made too bright by factors chosen for a predicted power. */
 #include "check/check.h"
 #include "check/statistics.h"
-#include "kernel_copy.h"
 #include "reference/reference.h"
+#include "support/kernel_copy.h"
 #include "verdict_scenes.h"
 
 #include <math.h>

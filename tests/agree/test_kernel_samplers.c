@@ -1,7 +1,7 @@
 /* test_kernel_samplers.c: every direction and point the kernel draws, against the law it should follow; and
  * pairs of dimensions, which must be independent. */
-#include "probe.h"
-#include "uniformity.h"
+#include "support/probe.h"
+#include "support/uniformity.h"
 
 #include <stdio.h>
 

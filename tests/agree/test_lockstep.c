@@ -5,7 +5,7 @@
  * independent evidence, since both come from one kernel text; it finds numerical trouble that statistics
  * would need 1e10 samples to see. */
 #include "check/check.h"
-#include "unit_test.h"
+#include "support/unit_test.h"
 
 #include <math.h>
 #include <stdio.h>

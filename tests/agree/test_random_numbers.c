@@ -1,6 +1,6 @@
 /* test_random_numbers.c: the kernel's random bits against an independent implementation, and its uniform
  * numbers at the ends of their range. */
-#include "probe.h"
+#include "support/probe.h"
 
 #include <string.h>
 

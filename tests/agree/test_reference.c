@@ -1,8 +1,8 @@
 /* test_reference.c: what must hold of the reference exactly. */
-#include "build_scene.h"
 #include "reference/reference.h"
 #include "reference/trace.h"
-#include "unit_test.h"
+#include "support/build_scene.h"
+#include "support/unit_test.h"
 
 #include <math.h>
 #include <string.h>

@@ -1,9 +1,9 @@
 /* test_reference_samplers.c: every direction and point the reference draws, against the law it should follow.
  */
-#include "build_scene.h"
 #include "reference/trace.h"
-#include "uniformity.h"
-#include "unit_test.h"
+#include "support/build_scene.h"
+#include "support/uniformity.h"
+#include "support/unit_test.h"
 
 #include <stdio.h>
 

@@ -1,6 +1,6 @@
 /* test_statistics.c: the distributions against published tables. */
 #include "check/statistics.h"
-#include "unit_test.h"
+#include "support/unit_test.h"
 
 #include <math.h>
 

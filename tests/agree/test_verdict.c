@@ -5,7 +5,7 @@
 #include "check/statistics.h"
 #include "check/verdict.h"
 #include "reference/reference.h"
-#include "unit_test.h"
+#include "support/unit_test.h"
 #include "verdict_scenes.h"
 
 #include <math.h>

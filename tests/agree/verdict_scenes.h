@@ -2,7 +2,7 @@
 #ifndef TESTS_AGREE_VERDICT_SCENES_H
 #define TESTS_AGREE_VERDICT_SCENES_H
 
-#include "build_scene.h"
+#include "support/build_scene.h"
 
 /* Coloured matte spheres under three lamps and a dim sky: noise in every channel, of different sources. */
 static inline void coloured_scene(BuiltScene *built) {

@@ -1,7 +1,6 @@
 """A picture is right however bright the lamps are that it does not show: sums keep dim light beside bright lamps."""
 import json
 import struct
-import unittest
 
 from cli import ProgramTest, main, scene
 

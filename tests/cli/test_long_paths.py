@@ -3,7 +3,6 @@
 How long a path takes is measured first, so that every limit is a ratio of times of this run."""
 
 import json
-import os
 import signal
 import subprocess
 import time

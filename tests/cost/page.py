@@ -1,14 +1,11 @@
 """What the tests of the page of `ballpark cost` share: the scene, what is embedded in a page, pictures."""
 import base64
 import json
-import os
 import re
 import struct
-import sys
 import zlib
 
-sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", "cli"))
-from cli import ProgramTest, scene  # noqa: E402
+from cli import ProgramTest, scene
 
 # Text that would end the script element that it stands in, open a comment there, or be markup outside.
 TITLE = 'Glass <b>&amp; "matte"</b></script><!-- <script> {{crops}} \u2028'

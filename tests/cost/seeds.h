@@ -5,8 +5,8 @@
 #ifndef TESTS_COST_SEEDS_H
 #define TESTS_COST_SEEDS_H
 
-#include "agree/unit_test.h"
 #include "base/color.h"
+#include "support/unit_test.h"
 
 #include "base/status.h"
 #include "engine/render.h"

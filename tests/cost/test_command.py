@@ -4,13 +4,10 @@ import csv
 import io
 import json
 import math
-import os
 import signal
-import sys
 
-sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", "cli"))
-from cli import ProgramTest, main, scene  # noqa: E402
-from test_terminal import Terminal  # noqa: E402
+from cli import ProgramTest, main, scene
+from terminal import Terminal
 
 GLASS = {"m": {"type": "dielectric", "refraction_index": 1.5},
          "ground": {"type": "lambertian", "albedo": [0.5, 0.4, 0.3]}}

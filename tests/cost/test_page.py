@@ -4,7 +4,7 @@ import json
 import re
 
 from page import SCENE, TITLE, PageTest, crop_images, decode_png, embedded
-from cli import main  # the folder of cli.py is found by page
+from cli import main
 
 
 class Page(PageTest):

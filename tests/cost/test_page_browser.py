@@ -10,7 +10,7 @@ import subprocess
 import unittest
 
 from page import SCENE, TITLE, PageTest, decode_png, embedded
-from cli import main, scene  # the folder of cli.py is found by page
+from cli import main, scene
 
 BROWSER = next(filter(None, map(shutil.which, ("chromium", "chromium-browser", "google-chrome"))), None)
 class Dom(html.parser.HTMLParser):

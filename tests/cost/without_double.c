@@ -1,6 +1,6 @@
 /* without_double.c: a study on a device that says it has no double: the truth is the reference tracer's, and
  * what is known without it still comes out. */
-#include "agree/unit_test.h"
+#include "support/unit_test.h"
 
 #include "base/status.h"
 #include "cost/study.h"

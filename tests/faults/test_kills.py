@@ -15,9 +15,8 @@ import time
 
 KILLS = int(sys.argv[3])
 sys.argv[3:4] = []
-sys.path.insert(0, os.path.join(os.path.abspath(sys.argv[2]), "tests", "cli"))
 
-import cli  # noqa: E402
+import cli
 
 OLD = b"what was there before"
 SIGNALS = (signal.SIGINT, signal.SIGTERM, signal.SIGHUP, signal.SIGKILL)

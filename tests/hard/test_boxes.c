@@ -1,10 +1,10 @@
 /* test_boxes.c: tests 38 to 40: boxes and the tree. */
 #include "suite.h"
 
-#include "../unit/tree_scenes.h"
 #include "engine/reals.h"
 #include "engine/tree.h"
 #include "oracle.h"
+#include "support/tree_scenes.h"
 
 #include <math.h>
 #include <string.h>

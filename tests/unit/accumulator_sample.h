@@ -2,7 +2,7 @@
 #ifndef BP_TEST_ACCUMULATOR_SAMPLE_H
 #define BP_TEST_ACCUMULATOR_SAMPLE_H
 
-#include "output_temp.h"
+#include "support/output_temp.h"
 
 #include "accumulator_data.h"
 

@@ -1,5 +1,5 @@
 /* cost_choices.c: which ways `ballpark cost` compares, and what it advises. */
-#include "agree/unit_test.h"
+#include "support/unit_test.h"
 
 #include "cost/configurations.h"
 #include "cost/fit.h"

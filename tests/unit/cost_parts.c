@@ -1,5 +1,5 @@
 /* cost_parts.c: the arithmetic of `ballpark cost` on data whose answers are known. */
-#include "agree/unit_test.h"
+#include "support/unit_test.h"
 
 #include "cost/fit.h"
 #include "cost/measure.h"

@@ -1,5 +1,5 @@
 /* cost_timing.c: what `ballpark cost` makes of the times of rounds, disturbed ones among them. */
-#include "agree/unit_test.h"
+#include "support/unit_test.h"
 
 #include "cost/timing.h"
 #include "cost_random.h"

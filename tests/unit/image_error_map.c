@@ -1,5 +1,5 @@
 /* image_error_map.c: the error map's numbers, its colours and its legend (host/image/error_map.h). */
-#include "output_temp.h"
+#include "support/output_temp.h"
 
 #include "image/error_map.h"
 

@@ -1,6 +1,6 @@
 /* image_formats.c: what is written reads back: PPM and PFM byte by byte, PNG by libpng, EXR by OpenEXRCore.
  */
-#include "output_temp.h"
+#include "support/output_temp.h"
 
 #include "image/image.h"
 

@@ -1,5 +1,5 @@
 /* output_file.c: files appear whole or not at all, whatever the target is (host/base/output_file.h). */
-#include "output_temp.h"
+#include "support/output_temp.h"
 
 #include "base/output_file.h"
 

@@ -5,7 +5,7 @@
 #include "engine/tree.h"
 #include "engine/tree_write.h"
 #include "scene_types.h"
-#include "tree_scenes.h"
+#include "support/tree_scenes.h"
 
 #include <float.h>
 #include <setjmp.h>

@@ -4,7 +4,7 @@
 #include "engine/reals.h"
 #include "engine/tree.h"
 #include "scene_types.h"
-#include "tree_scenes.h"
+#include "support/tree_scenes.h"
 
 #include <setjmp.h>
 #include <stdarg.h>

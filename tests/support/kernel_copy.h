@@ -1,10 +1,10 @@
 /* kernel_copy.h: a copy of kernels/ with one text replaced, which the program then reads.
  *
  * Knows: files, BALLPARK_KERNELS.   Does not know: what the patch does. */
-#ifndef TESTS_AGREE_KERNEL_COPY_H
-#define TESTS_AGREE_KERNEL_COPY_H
+#ifndef TESTS_SUPPORT_KERNEL_COPY_H
+#define TESTS_SUPPORT_KERNEL_COPY_H
 
-#include "unit_test.h"
+#include "support/unit_test.h"
 
 #include <dirent.h>
 #include <errno.h>

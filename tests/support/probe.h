@@ -1,13 +1,13 @@
 /* probe.h: runs small kernels of a test inside the product's kernel text, on the default device.
  *
  * Knows: OpenCL, the program's assembly.   Does not know: what is probed. */
-#ifndef TESTS_AGREE_PROBE_H
-#define TESTS_AGREE_PROBE_H
+#ifndef TESTS_SUPPORT_PROBE_H
+#define TESTS_SUPPORT_PROBE_H
 
 #include "engine/device.h"
 #include "engine/effects.h"
 #include "engine/program.h"
-#include "unit_test.h"
+#include "support/unit_test.h"
 
 typedef struct Probe {
     BpDevice *device;

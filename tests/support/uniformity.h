@@ -4,8 +4,8 @@
  * Out:   the smallest p-value of a chi-square test over about 100 equal cells and of a Kolmogorov test on
  * each coordinate. Few cells on purpose: at the same sample a fine grid has less power against smooth errors.
  */
-#ifndef TESTS_AGREE_UNIFORMITY_H
-#define TESTS_AGREE_UNIFORMITY_H
+#ifndef TESTS_SUPPORT_UNIFORMITY_H
+#define TESTS_SUPPORT_UNIFORMITY_H
 
 #include "base/quantile.h"
 #include "check/statistics.h"

@@ -1,6 +1,6 @@
 /* tree_scenes.h: scenes of spheres for the tests of the tree, from fixed seeds. */
-#ifndef TREE_SCENES_H
-#define TREE_SCENES_H
+#ifndef TESTS_SUPPORT_TREE_SCENES_H
+#define TESTS_SUPPORT_TREE_SCENES_H
 
 #include "base/random.h"
 #include "scene/scene.h"

@@ -1,8 +1,8 @@
 /* build_scene.h: small scenes put together in C, for tests that want no parser between them and the tracer.
  *
  * Knows: BpScene.   Does not know: documents, renderers. */
-#ifndef TESTS_AGREE_BUILD_SCENE_H
-#define TESTS_AGREE_BUILD_SCENE_H
+#ifndef TESTS_SUPPORT_BUILD_SCENE_H
+#define TESTS_SUPPORT_BUILD_SCENE_H
 
 #include "scene/scene.h"
 

@@ -1,6 +1,6 @@
 """What the tests of the program share: running it in a folder of its own, and small scenes.
 
-Each test file is run as: python3 test_X.py PROGRAM SOURCE_DIR [unittest's arguments]
+Each test file is run as: PYTHONPATH=tests/support python3 test_X.py PROGRAM SOURCE_DIR [unittest's arguments]
 """
 
 import json

@@ -1,6 +1,6 @@
 /* unit_test.h: cmocka with the headers it needs to stand before it. */
-#ifndef TESTS_AGREE_UNIT_TEST_H
-#define TESTS_AGREE_UNIT_TEST_H
+#ifndef TESTS_SUPPORT_UNIT_TEST_H
+#define TESTS_SUPPORT_UNIT_TEST_H
 
 #include <setjmp.h>
 #include <stdarg.h>

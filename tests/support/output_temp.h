@@ -1,6 +1,6 @@
 /* output_temp.h: a folder for the files of a test, and what is needed to look into them. */
-#ifndef BP_TEST_OUTPUT_TEMP_H
-#define BP_TEST_OUTPUT_TEMP_H
+#ifndef TESTS_SUPPORT_OUTPUT_TEMP_H
+#define TESTS_SUPPORT_OUTPUT_TEMP_H
 
 #include <setjmp.h>
 #include <stdarg.h>
