@@ -1,5 +1,5 @@
 """Reads the EXR files that the program writes: scan lines, ZIP compressed, 32-bit channels. Standard library only;
-that other programs can read them too is the business of tests/unit/image_formats.c.
+that other programs can read them too is the business of tests/image/test_image_formats.c.
 
 The layout is that of "OpenEXR File Layout" (openexr.com): a header of attributes, a table of chunks, chunks of 16
 rows; in a chunk, row by row, each channel's values, channels in the order of their names."""

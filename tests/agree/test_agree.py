@@ -1,0 +1,73 @@
+#!/usr/bin/env python3
+"""Kernel against reference on many scenes, judged as one suite.
+
+usage: test_agree.py PROGRAM RESULT.json SAMPLES [--seed N] [--device D] SCENE...
+
+Runs `ballpark check` on each scene and collects its report. The whole suite rejects a right kernel with probability
+1e-3 at most: each scene gets an equal part of it, and each of its four families of tests the part that the
+check itself gives it, so the limits here are a little wider than those of a single check. Every scene has a seed of
+its own (N, N + 1, ...), so that their errors are independent.
+"""
+import json
+import os
+import statistics
+import subprocess
+import sys
+
+SUITE_LEVEL = 1e-3
+SHARES = {"picture": 0.45, "blocks": 0.45, "picture, squares": 0.05, "blocks, squares": 0.05}
+
+
+def limit_of(level, tests):
+    return statistics.NormalDist().inv_cdf(1 - level / tests / 2)
+
+
+def check(program, scene, samples, more):
+    command = [program, "check", scene, "--spp", str(samples), "--quiet", "--json", "-", *more]
+    done = subprocess.run(command, capture_output=True, text=True)
+    if done.returncode not in (0, 3):
+        return None, f"exit code {done.returncode}: {done.stderr.strip()}"
+    return json.loads(done.stdout), ""
+
+
+def main():
+    program, result_path, samples, *rest = sys.argv[1:]
+    more, seed = [], 1
+    while rest and rest[0].startswith("--"):
+        option, value = rest.pop(0), rest.pop(0)
+        if option == "--seed":
+            seed = int(value)
+        else:
+            more += [option, value]
+    rows, failures = [], 0
+    print(f"{'scene':32} {'|z| / limit':>11}  {'ratio':>9} {'95 % interval':>20}  {'least bias':>10}")
+    for number, scene in enumerate(rest):
+        name = os.path.splitext(os.path.basename(scene))[0]
+        report, trouble = check(program, scene, samples, [*more, "--seed", str(seed + number)])
+        if report is None:
+            failures += 1
+            print(f"{name:32} FAILED: {trouble}")
+            rows.append({"scene": name, "error": trouble})
+            continue
+        result = report["results"][0]
+        level = SUITE_LEVEL / len(rest)
+        worst = max(t["z"] / limit_of(level * SHARES[t["family"]], t["tests"]) for t in result["tests"])
+        invalid = sum(result["invalid_samples"].values())
+        agree = worst <= 1 and invalid == 0
+        failures += not agree
+        b = result["brightness"]
+        interval = f"{b['low']:.5f} .. {b['high']:.5f}" if b["low"] is not None else "-"
+        ratio = f"{b['ratio']:.5f}" if b["ratio"] is not None else "-"
+        bias = result["smallest_bias"]["value"]
+        print(f"{name:32} {worst:11.2f}  {ratio:>9} {interval:>20}  {100 * (bias or 0):8.3f} %"
+              + ("" if agree else "  DISAGREE") + (f"  {invalid} invalid samples" if invalid else ""), flush=True)
+        rows.append({"scene": name, "agree": agree, "worst": worst, "width": report["width"],
+                     "height": report["height"], "samples": report["samples_per_pixel"], "result": result})
+    with open(result_path, "w", encoding="utf-8") as file:
+        json.dump({"level": SUITE_LEVEL, "scenes": rows}, file, indent=1)
+    print(f"{len(rest)} scenes, {failures} disagree or fail (a right kernel is rejected with probability "
+          f"{SUITE_LEVEL} at most)")
+    return 1 if failures else 0
+
+
+sys.exit(main())

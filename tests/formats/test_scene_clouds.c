@@ -1,0 +1,134 @@
+/* test_scene_clouds.c: what is wrong with a file of points is told with the file, the vertex, and the scene
+ * that asks for it; files end where their header says. */
+#include "scene/scene.h"
+
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <unistd.h>
+
+#include <cmocka.h>
+
+#define ASCII(count)                                                                                         \
+    "ply\nformat ascii 1.0\nelement vertex " count "\nproperty float x\nproperty float y\nproperty float "   \
+    "z\n"
+#define BINARY(count)                                                                                        \
+    "ply\nformat binary_little_endian 1.0\nelement vertex " count                                            \
+    "\nproperty float x\nproperty float y\nproperty float z\n"
+#define SCENE(spheres, clouds)                                                                               \
+    "{ \"camera\": {}, \"materials\": {\n"                                                                   \
+    "\"glass\": { \"type\": \"dielectric\", \"refraction_index\": 1.5 } },\n"                                \
+    "\"spheres\": [" spheres "],\n"                                                                          \
+    "\"clouds\": [" clouds "] }\n"
+#define CLOUD(file) "{ \"file\": \"" file "\", \"radius\": 0.5, \"material\": \"glass\" }"
+
+static void write_file(const char *name, const void *bytes, size_t size) {
+    FILE *file = fopen(name, "wb");
+    assert_non_null(file);
+    assert_int_equal(fwrite(bytes, 1, size, file), size);
+    assert_int_equal(fclose(file), 0);
+}
+
+static void write_text(const char *name, const char *text) {
+    write_file(name, text, strlen(text));
+}
+
+/* Loads a scene whose file stands at the place, and whose message has all of `says`. */
+static void refuse(const char *text, const char *file, int line, int column, const char *const says[5]) {
+    BpScene *scene = NULL;
+    BpError err = {0};
+    write_text("scene.json", text);
+    assert_int_equal(bp_scene_load("scene.json", &scene, &err), BP_ERR_SCENE);
+    for (int i = 0; i < 5 && says[i] != NULL; ++i)
+        if (strstr(err.message, says[i]) == NULL) fail_msg("expected \"%s\" in \"%s\"", says[i], err.message);
+    if (strcmp(err.file, file) != 0 || err.line != line || err.column != column)
+        fail_msg("%s:%d:%d: %s", err.file, err.line, err.column, err.message);
+    bp_error_clear(&err);
+}
+
+static void accept(const char *text, size_t spheres) {
+    BpScene *scene = NULL;
+    BpError err = {0};
+    write_text("scene.json", text);
+    if (bp_scene_load("scene.json", &scene, &err) != BP_OK) fail_msg("%s", err.message);
+    assert_int_equal(scene->sphere_count, spheres);
+    bp_scene_destroy(&scene);
+}
+
+static void coincident_vertices_are_named(void **state) {
+    (void)state;
+    write_text("twice.ply", ASCII("3") "end_header\n1 2 3\n4 5 6\n1 2 3\n");
+    write_text("more.ply", ASCII("2") "end_header\n7 8 9\n4 5 6\n");
+    refuse(SCENE("", CLOUD("twice.ply")), "scene.json", 4, 12,
+           (const char *const[5]){"vertex 0 (from 0) of twice.ply and vertex 2 (from 0) of twice.ply",
+                                  "dielectrics", "clouds[0]"});
+    write_text("twice.ply", ASCII("3") "end_header\n1 2 3\n4 5 6\n1 2 4\n");
+    refuse(SCENE("", CLOUD("more.ply") ", \n" CLOUD("twice.ply")), "scene.json", 5, 1,
+           (const char *const[5]){"vertex 1 (from 0) of more.ply and vertex 1 (from 0) of twice.ply",
+                                  "clouds[1]"});
+    refuse(SCENE("{ \"center\": [0, 0, 5], \"radius\": 1, \"material\": \"glass\" },\n"
+                 "{ \"center\": [7, 8, 9], \"radius\": 0.5, \"material\": \"glass\" }",
+                 CLOUD("more.ply")),
+           "scene.json", 4, 1, (const char *const[5]){"spheres[1] and vertex 0 (from 0) of more.ply"});
+}
+
+static void not_a_number_is_named(void **state) {
+    (void)state;
+    char bytes[256];
+    const char *header = BINARY("2") "end_header\n";
+    const size_t n = strlen(header);
+    static const unsigned char nan_bytes[4] = {0, 0, 0xc0, 0x7f};
+    memcpy(bytes, header, n);
+    memset(bytes + n, 0, 24);
+    memcpy(bytes + n + 12 + 8, nan_bytes, 4); /* z of vertex 1 */
+    write_file("points.ply", bytes, n + 24);
+    refuse(SCENE("", CLOUD("points.ply")), "points.ply", 0, 0,
+           (const char *const[5]){"vertex 1 (from 0): z: found nan", "remove the point", "scene.json:4:22"});
+    write_text("points.ply", ASCII("1") "end_header\n1 inf 3\n");
+    refuse(SCENE("", CLOUD("points.ply")), "points.ply", 8, 0,
+           (const char *const[5]){"vertex 0 (from 0): y: found inf", "remove the point", "scene.json:4:22"});
+}
+
+static void what_follows_the_last_element(void **state) {
+    (void)state;
+    static const char *const scene = SCENE("", CLOUD("points.ply"));
+    write_text("points.ply", ASCII("1") "end_header\n1 2 3\n\n 4 5 6\n7 8 9\n");
+    refuse(scene, "points.ply", 10, 0,
+           (const char *const[5]){"another line after the last element", "counts"});
+    write_text("points.ply", ASCII("1") "end_header\n1 2 3\n \t\r\n\n");
+    accept(scene, 1);
+    write_text("points.ply", ASCII("1") "element face 2\nproperty list uchar int vertex_index\nend_header\n"
+                                        "1 2 3\n3 0 0 0\n4 0 0 0 0\n");
+    accept(scene, 1);
+
+    char bytes[256];
+    const char *header = BINARY("2") "element face 1\nproperty list uchar uchar vertex_index\nend_header\n";
+    const size_t n = strlen(header);
+    memcpy(bytes, header, n);
+    memset(bytes + n, 0, sizeof bytes - n);
+    bytes[n + 3] = 0x41; /* x of vertex 0 is 8: the two lie apart */
+    bytes[n + 24] = 2;   /* the face has two vertices */
+    write_file("points.ply", bytes, n + 27);
+    accept(scene, 2);
+    write_file("points.ply", bytes, n + 30);
+    char at[64];
+    snprintf(at, sizeof at, "3 bytes after the last element, from byte %zu on", n + 27);
+    refuse(scene, "points.ply", 0, 0, (const char *const[5]){at, "counts in its header", "scene.json:4:22"});
+    write_file("points.ply", bytes, n + 26);
+    refuse(scene, "points.ply", 0, 0, (const char *const[5]){"cut short", "scene.json:4:22"});
+}
+
+int main(void) {
+    char folder[] = "/tmp/ballpark-clouds-XXXXXX";
+    if (mkdtemp(folder) == NULL || chdir(folder) != 0) return 1;
+    const struct CMUnitTest tests[] = {cmocka_unit_test(coincident_vertices_are_named),
+                                       cmocka_unit_test(not_a_number_is_named),
+                                       cmocka_unit_test(what_follows_the_last_element)};
+    const int failed = cmocka_run_group_tests(tests, NULL, NULL);
+    static const char *const files[] = {"scene.json", "points.ply", "twice.ply", "more.ply"};
+    for (size_t i = 0; i < sizeof files / sizeof *files; ++i) unlink(files[i]);
+    if (chdir("/") == 0) rmdir(folder);
+    return failed;
+}

@@ -1,0 +1,98 @@
+/* test_device_build.c: opening and building on whatever real device is there; skipped without one. */
+#include "engine/device.h"
+
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include <cmocka.h>
+
+static void builds_and_runs(void **state) {
+    BpDevice *device = *state;
+    static const char source[] =
+        "#line 1 \"seven.cl\"\n__kernel void seven(__global uint *out) { out[0] = 7u; }\n";
+    cl_program program = NULL;
+    char *log = NULL;
+    BpError err = {0};
+    cl_int code;
+    cl_uint seven = 0;
+    if (bp_device_build(device, source, NULL, &program, &log, &err) != BP_OK) fail_msg("%s", err.message);
+    assert_non_null(log);
+    cl_kernel kernel = clCreateKernel(program, "seven", &code);
+    assert_int_equal(code, CL_SUCCESS);
+    cl_mem out = clCreateBuffer(device->context, CL_MEM_WRITE_ONLY, sizeof seven, NULL, &code);
+    assert_int_equal(code, CL_SUCCESS);
+    assert_int_equal(clSetKernelArg(kernel, 0, sizeof out, &out), CL_SUCCESS);
+    const size_t one = 1;
+    assert_int_equal(clEnqueueNDRangeKernel(device->queue, kernel, 1, NULL, &one, NULL, 0, NULL, NULL),
+                     CL_SUCCESS);
+    assert_int_equal(clEnqueueReadBuffer(device->queue, out, CL_TRUE, 0, sizeof seven, &seven, 0, NULL, NULL),
+                     CL_SUCCESS);
+    assert_int_equal(seven, 7);
+    clReleaseMemObject(out);
+    clReleaseKernel(kernel);
+    clReleaseProgram(program);
+    free(log);
+}
+
+static void names_the_place_of_an_error(void **state) {
+    BpDevice *device = *state;
+    static const char source[] = "#line 1 \"fine.cl\"\nfloat fine(float x) { return x; }\n"
+                                 "#line 1 \"broken.cl\"\n__kernel void broken(__global float *out) {\n"
+                                 "    out[0] = nothing_like_this;\n}\n";
+    cl_program program = NULL;
+    char *log = NULL;
+    BpError err = {0};
+    assert_int_equal(bp_device_build(device, source, NULL, &program, &log, &err), BP_ERR_BUILD);
+    assert_null(program);
+    assert_null(log);
+    assert_non_null(err.attachment);
+    assert_non_null(strstr(err.attachment, "nothing_like_this"));
+    assert_string_equal(err.file, "broken.cl");
+    assert_int_equal(err.line, 2);
+    assert_int_equal(err.column, 14);
+    assert_non_null(strstr(err.message, "nothing_like_this"));
+    bp_error_clear(&err);
+    /* A device survives a failed build, and a caller that wants no story. */
+    assert_int_equal(bp_device_build(device, source, NULL, &program, NULL, NULL), BP_ERR_BUILD);
+}
+
+static void bad_options_are_a_build_error(void **state) {
+    BpDevice *device = *state;
+    cl_program program = NULL;
+    BpError err = {0};
+    const BpStatus status =
+        bp_device_build(device, "__kernel void nothing(void) {}\n", "-no-such-option", &program, NULL, &err);
+    if (status == BP_OK) {
+        clReleaseProgram(program);
+        printf("skipped: this driver takes options that it does not know\n");
+        skip();
+    }
+    assert_true(status == BP_ERR_BUILD || status == BP_ERR_DEVICE);
+    assert_true(err.message[0] != '\0');
+    bp_error_clear(&err);
+}
+
+int main(void) {
+    BpDeviceInfo info;
+    BpDevice *device = NULL;
+    BpError err = {0};
+    if (bp_device_find(getenv("BALLPARK_TEST_DEVICE"), &info, &err) != BP_OK) {
+        fprintf(stderr, "skipped: %s\n", err.message);
+        return 77;
+    }
+    if (bp_device_open(&info, &device, &err) != BP_OK) {
+        fprintf(stderr, "%s\n", err.message);
+        return 1;
+    }
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test_prestate(builds_and_runs, device),
+        cmocka_unit_test_prestate(names_the_place_of_an_error, device),
+        cmocka_unit_test_prestate(bad_options_are_a_build_error, device),
+    };
+    const int failed = cmocka_run_group_tests(tests, NULL, NULL);
+    bp_device_close(&device);
+    return failed;
+}

@@ -1,0 +1,270 @@
+/* test_device_find.c: choosing, refusing, opening and building, against a driver made for the test
+ * (fake_icd.c).
+ */
+#include "engine/device.h"
+
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include <cmocka.h>
+
+static void assert_contains(const char *text, const char *part) {
+    if (strstr(text, part) == NULL) fail_msg("'%s' does not contain '%s'", text, part);
+}
+
+static void with(const char *devices) {
+    assert_int_equal(setenv("FAKE_DEVICES", devices, 1), 0);
+}
+
+/* `text` means device `number`. */
+static void expect(const char *devices, const char *text, unsigned number) {
+    BpDeviceInfo device;
+    BpError err = {0};
+    with(devices);
+    if (bp_device_find(text, &device, &err) != BP_OK)
+        fail_msg("%s, '%s': %s", devices, text != NULL ? text : "(default)", err.message);
+    if (device.number != number)
+        fail_msg("%s, '%s': device %u, not %u", devices, text != NULL ? text : "(default)", device.number,
+                 number);
+}
+
+/* `text` is an error whose message contains `part`. */
+static void expect_error(const char *devices, const char *text, const char *part) {
+    BpDeviceInfo device;
+    BpError err = {0};
+    with(devices);
+    if (bp_device_find(text, &device, &err) == BP_OK)
+        fail_msg("%s, '%s': device %u instead of an error", devices, text != NULL ? text : "(default)",
+                 device.number);
+    assert_int_equal(err.code, BP_ERR_DEVICE);
+    assert_contains(err.message, part);
+    bp_error_clear(&err);
+}
+
+static void lists_every_platform(void **state) {
+    (void)state;
+    BpDeviceInfo *list = NULL;
+    size_t count = 0;
+    BpError err = {0};
+    with("gpu=Big Card,cpu|accelerator");
+    assert_int_equal(bp_devices_list(&list, &count, &err), BP_OK);
+    assert_int_equal(count, 3);
+    for (unsigned i = 0; i < 3; ++i) assert_int_equal(list[i].number, i);
+    assert_string_equal(list[0].name, "Big Card");
+    assert_string_equal(list[0].platform, "Fake One");
+    assert_string_equal(list[0].driver, "7.5");
+    assert_int_equal(list[0].type, BP_DEVICE_GPU);
+    assert_true(list[0].has_double && list[0].has_compiler && list[0].available);
+    assert_int_equal(list[0].compute_units, 6);
+    assert_int_equal(list[0].memory_bytes, 1u << 30);
+    assert_int_equal(list[0].largest_allocation_bytes, 1u << 28);
+    assert_string_equal(list[0].refusal, "");
+    assert_int_equal(list[1].type, BP_DEVICE_CPU);
+    assert_string_equal(list[2].platform, "Fake Two");
+    assert_int_equal(list[2].type, BP_DEVICE_OTHER);
+    assert_false(list[2].has_double);
+    free(list);
+}
+
+static void tolerates_platforms_without_devices(void **state) {
+    (void)state;
+    BpDeviceInfo *list = NULL;
+    size_t count = 1;
+    BpError err = {0};
+    with("");
+    assert_int_equal(bp_devices_list(&list, &count, &err), BP_OK);
+    assert_int_equal(count, 0);
+    free(list);
+    expect("|gpu", NULL, 0);
+    expect_error("", NULL, "Fake One, Fake Two");
+    expect_error("", "0", "apt install pocl-opencl-icd");
+    expect_error("", NULL, "clinfo");
+}
+
+static void prefers_a_gpu_that_can_render(void **state) {
+    (void)state;
+    expect("cpu,gpu", NULL, 1);
+    expect("cpu|gpu", "", 1);
+    expect("cpu,old|no-compiler", NULL, 0);
+    expect("accelerator,cpu", NULL, 1);
+    expect("accelerator", NULL, 0);
+    expect_error("old|away", NULL, "1: away (Fake Two), cannot render: it is not available now");
+}
+
+static void numbers_come_first(void **state) {
+    (void)state;
+    expect("cpu,gpu=Card 0", "0", 0);
+    expect("cpu,gpu=Card 7", "1", 1);
+    expect("cpu,gpu=Card 4090", "4090", 1);
+    expect_error("cpu,gpu=Card 7", "7",
+                 "no device fits '7'; there is 0: cpu (Fake One); 1: Card 7 (Fake One)");
+    expect_error("cpu", "-1", "no device fits '-1'");
+}
+
+static void parts_of_names_in_any_case(void **state) {
+    (void)state;
+    expect("cpu=Slow,gpu=Big Card", "bIG", 1);
+    expect("cpu=Slow|gpu=Big", "fake two", 1);
+    expect("cpu=Slow|nvidia=Big", "cuda", 1); /* in the version */
+    expect("cpu=Slow,gpu=Big", "cpu", 0);
+    expect("cpu=Slow,gpu=Big,gpu=Bigger", "GPU", 1);
+    expect_error("cpu=Slow", "fast", "no device fits 'fast'");
+    expect_error("cpu=Slow", "gpu", "no device fits 'gpu'");
+}
+
+static void one_text_for_several_devices(void **state) {
+    (void)state;
+    expect_error("gpu=Card A,gpu=Card B,cpu=Slow", "card",
+                 "fits several devices, give a number: 0: Card A (Fake One); "
+                 "1: Card B (Fake One)");
+    expect("gpu=Card,gpu=Card", "card", 0);               /* equal ones: the first */
+    expect_error("gpu=Card|gpu=Card", "card", "several"); /* not equal: another driver */
+    expect("gpu=Card XT,gpu=Card", "card", 1);            /* the whole name */
+    expect("gpu=Card,gpu=Card XT", "card", 0);
+    expect("old=Card,gpu=Card XT", "card", 1); /* one of them cannot render */
+    expect("gpu=Card XT,old=Card", "card", 0);
+}
+
+static void refuses_by_what_is_lacking(void **state) {
+    (void)state;
+    expect_error("old", "0", "it has OpenCL 1.1 (1.2 is needed)");
+    expect_error("mute", "0", "does not tell its OpenCL version");
+    expect_error("big-endian", "0", "not little-endian");
+    expect_error("no-compiler", "0", "no compiler");
+    expect_error("embedded", "embedded", "`long`");
+    expect("embedded-long", "0", 0);
+    expect_error("truncating", "0", "does not round to nearest");
+    expect_error("no-infinity", "0", "no infinities and NaN");
+    expect_error("away", "0", "not available");
+}
+
+static void opening(void **state) {
+    (void)state;
+    BpDeviceInfo info;
+    BpDevice *device = NULL;
+    BpError err = {0};
+    with("cpu,gpu");
+    assert_int_equal(bp_device_find("1", &info, &err), BP_OK);
+    assert_int_equal(bp_device_open(&info, &device, &err), BP_OK);
+    assert_string_equal(device->info.name, "gpu");
+    bp_device_close(&device);
+    assert_null(device);
+    bp_device_close(&device);
+
+    with("cpu"); /* unplugged */
+    assert_int_equal(bp_device_open(&info, &device, &err), BP_ERR_DEVICE);
+    assert_contains(err.message, "no longer there");
+    assert_null(device);
+    with("cpu,gpu=other"); /* exchanged */
+    assert_int_equal(bp_device_open(&info, &device, &err), BP_ERR_DEVICE);
+    with("cpu,old=gpu"); /* the list is asked again, not the caller's copy */
+    assert_int_equal(bp_device_open(&info, &device, &err), BP_ERR_DEVICE);
+    assert_contains(err.message, "OpenCL 1.1");
+
+    with("full");
+    assert_int_equal(bp_device_find("0", &info, &err), BP_OK);
+    assert_int_equal(bp_device_open(&info, &device, &err), BP_ERR_MEMORY);
+    assert_contains(err.message, "clCreateContext failed with CL_OUT_OF_RESOURCES (-5) on full");
+    assert_contains(err.message, "--width");
+    assert_contains(err.message, "--device");
+    assert_null(device);
+    bp_error_clear(&err);
+}
+
+/* The build log for `options` on a device of `kind`, which the fake driver makes of the options. */
+static char *build_on(const char *kind, const char *options) {
+    BpDeviceInfo info;
+    BpDevice *device = NULL;
+    cl_program program = NULL;
+    char *log = NULL;
+    with(kind);
+    assert_int_equal(bp_device_find("0", &info, NULL), BP_OK);
+    assert_int_equal(bp_device_open(&info, &device, NULL), BP_OK);
+    assert_int_equal(bp_device_build(device, "kernel", options, &program, &log, NULL), BP_OK);
+    assert_non_null(program);
+    clReleaseProgram(program);
+    bp_device_close(&device);
+    return log;
+}
+
+static void build_options(void **state) {
+    (void)state;
+    static const struct {
+        const char *kind, *options, *log;
+    } cases[] = {
+        {"gpu", NULL, "options: -cl-std=CL1.2"},
+        {"gpu", "-w", "options: -cl-std=CL1.2 -w"},
+        {"nvidia", "-w", "options: -cl-std=CL1.2 -cl-nv-verbose -w"},
+        {"almost-nvidia", "-w", "options: -cl-std=CL1.2 -w"},
+    };
+    for (size_t i = 0; i < sizeof cases / sizeof cases[0]; ++i) {
+        char *log = build_on(cases[i].kind, cases[i].options);
+        assert_string_equal(log, cases[i].log);
+        free(log);
+    }
+}
+
+static void build_failure_names_the_first_place(void **state) {
+    (void)state;
+    BpDeviceInfo info;
+    BpDevice *device = NULL;
+    cl_program program = NULL;
+    char *log = NULL;
+    BpError err = {0};
+    with("gpu");
+    assert_int_equal(bp_device_find("0", &info, &err), BP_OK);
+    assert_int_equal(bp_device_open(&info, &device, &err), BP_OK);
+    assert_int_equal(bp_device_build(device, "#error", "", &program, &log, &err), BP_ERR_BUILD);
+    assert_null(program);
+    assert_null(log);
+    assert_string_equal(err.file, "sphere.cl");
+    assert_int_equal(err.line, 31);
+    assert_int_equal(err.column, 7);
+    assert_contains(err.message, "use of 'x': gone");
+    assert_string_equal(err.attachment,
+                        "tree.cl:3:1: warning: unused\nsphere.cl:31:7: error: use of 'x': gone\n"
+                        "tree.cl:9:9: error: later\n");
+    bp_error_clear(&err);
+    bp_device_close(&device);
+}
+
+static void errors_have_names_and_remedies(void **state) {
+    (void)state;
+    BpError err = {0};
+    assert_string_equal(bp_cl_error_name(CL_SUCCESS), "CL_SUCCESS");
+    assert_string_equal(bp_cl_error_name(-5), "CL_OUT_OF_RESOURCES");
+    assert_string_equal(bp_cl_error_name(-1001), "CL_PLATFORM_NOT_FOUND_KHR");
+    assert_non_null(bp_cl_error_name(-4711));
+    assert_int_equal(bp_cl_fail(&err, CL_MEM_OBJECT_ALLOCATION_FAILURE, "clCreateBuffer", NULL),
+                     BP_ERR_MEMORY);
+    assert_string_equal(err.message,
+                        "clCreateBuffer failed with CL_MEM_OBJECT_ALLOCATION_FAILURE (-4); the device's "
+                        "memory is full: try a smaller --width, or another --device");
+    assert_int_equal(bp_cl_fail(&err, CL_INVALID_BUFFER_SIZE, "clCreateBuffer", NULL), BP_ERR_LIMIT);
+    assert_int_equal(bp_cl_fail(&err, CL_OUT_OF_HOST_MEMORY, "clCreateBuffer", NULL), BP_ERR_MEMORY);
+    assert_int_equal(bp_cl_fail(&err, CL_INVALID_KERNEL_ARGS, "clEnqueueNDRangeKernel", NULL), BP_ERR_DEVICE);
+    assert_contains(err.message, "CL_INVALID_KERNEL_ARGS (-52)");
+    bp_error_clear(&err);
+}
+
+int main(void) {
+    /* Before the first OpenCL call: the loader reads it once. */
+    if (setenv("OCL_ICD_VENDORS", FAKE_ICD_FILE, 1) != 0) return 1;
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(lists_every_platform),
+        cmocka_unit_test(tolerates_platforms_without_devices),
+        cmocka_unit_test(prefers_a_gpu_that_can_render),
+        cmocka_unit_test(numbers_come_first),
+        cmocka_unit_test(parts_of_names_in_any_case),
+        cmocka_unit_test(one_text_for_several_devices),
+        cmocka_unit_test(refuses_by_what_is_lacking),
+        cmocka_unit_test(opening),
+        cmocka_unit_test(build_options),
+        cmocka_unit_test(build_failure_names_the_first_place),
+        cmocka_unit_test(errors_have_names_and_remedies),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}

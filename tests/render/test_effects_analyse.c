@@ -1,0 +1,148 @@
+/* test_effects_analyse.c: the sets of effects of scenes made by hand, and what is said about them. */
+#include "engine/effects.h"
+
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include <cmocka.h>
+
+#define BIT(effect) (1u << BP_EFFECT_##effect)
+#define GREY .albedo = {0.5, 0.5, 0.5}
+
+static const BpMaterial grey = {.name = (char *)"grey", .kind = BP_MATERIAL_LAMBERTIAN, GREY};
+static const BpMaterial steel = {.name = (char *)"steel", .kind = BP_MATERIAL_METAL, GREY};
+static const BpMaterial glass = {
+    .name = (char *)"glass", .kind = BP_MATERIAL_DIELECTRIC, .refraction_index = 1.5};
+static const BpMaterial lamp = {.name = (char *)"lamp", .kind = BP_MATERIAL_DIFFUSE_LIGHT, .emit = {4, 4, 4}};
+static const BpMaterial black = {.name = (char *)"black", .kind = BP_MATERIAL_DIFFUSE_LIGHT};
+static const BpMaterial ember = {
+    .name = (char *)"ember", .kind = BP_MATERIAL_LAMBERTIAN, GREY, .emit = {0, 0, 0.1}};
+static const BpMaterial debug = {.name = (char *)"debug", .kind = BP_MATERIAL_NORMALS};
+
+/* The effects of a scene under a constant sky and a pinhole, with `spheres` spheres that have the first
+ * `used` of the materials in turn. */
+static BpEffects analyse(const BpMaterial *materials, size_t count, size_t used, size_t spheres, double lens,
+                         double top_blue) {
+    BpMaterial copy[8];
+    BpSphere *list = calloc(spheres + 1, sizeof *list);
+    BpEffects effects;
+    assert_non_null(list);
+    assert_true(count <= 8);
+    if (count > 0) memcpy(copy, materials, count * sizeof *copy);
+    for (size_t i = 0; i < spheres; ++i)
+        list[i] = (BpSphere){.radius = 1, .material = (uint32_t)(i % used), .albedo = BP_NO_ALBEDO};
+    const BpScene scene = {.camera = {.lens_radius = lens, .focus_dist = 10},
+                           .background_bottom = {1, 1, 1},
+                           .background_top = {1, 1, top_blue},
+                           .materials = copy,
+                           .material_count = count,
+                           .spheres = list,
+                           .sphere_count = spheres};
+    bp_effects_analyse(&scene, &effects);
+    free(list);
+    for (int e = 0; e < BP_EFFECT_COUNT; ++e) {
+        assert_true(effects.reason[e][0] != '\0');
+        assert_true(strlen(effects.reason[e]) + 1 < sizeof effects.reason[e]); /* whole */
+    }
+    return effects;
+}
+
+static void material_effects(void **state) {
+    (void)state;
+    const struct {
+        BpMaterial material;
+        uint32_t bits;
+    } cases[] = {
+        {grey, BIT(LAMBERTIAN)},
+        {steel, BIT(METAL)},
+        {glass, BIT(DIELECTRIC)},
+        {lamp, BIT(EMISSION)},
+        {black, BIT(EMISSION)}, /* the code that ends a path stands with emission */
+        {ember, BIT(LAMBERTIAN) | BIT(EMISSION)},
+        {debug, BIT(NORMALS)},
+    };
+    for (size_t i = 0; i < sizeof cases / sizeof cases[0]; ++i)
+        assert_int_equal(analyse(&cases[i].material, 1, 1, 1, 0, 1).bits, cases[i].bits);
+    const BpMaterial all[] = {grey, steel, glass, ember, debug};
+    assert_int_equal(analyse(all, 5, 5, BP_LIST_SPHERES_MAX + 1, 0.1, 0.5).bits, BP_EFFECTS_ALL);
+    assert_int_equal(analyse(all, 5, 5, 5, 0, 1).bits,
+                     BP_EFFECTS_ALL & ~(BIT(LENS) | BIT(GRADIENT) | BIT(TREE)));
+}
+
+static void only_materials_in_use_count(void **state) {
+    (void)state;
+    const BpMaterial all[] = {grey, steel, glass, lamp, debug};
+    assert_int_equal(analyse(all, 5, 1, 3, 0, 1).bits, BIT(LAMBERTIAN));
+    assert_int_equal(analyse(all, 5, 3, 2, 0, 1).bits, BIT(LAMBERTIAN) | BIT(METAL));
+    assert_int_equal(analyse(all, 5, 5, 0, 0, 1).bits, 0);
+    assert_int_equal(analyse(NULL, 0, 1, 0, 0, 1).bits, 0);
+}
+
+static void camera_sky_and_tree(void **state) {
+    (void)state;
+    assert_int_equal(analyse(&grey, 1, 1, 1, 1e-9, 1).bits, BIT(LAMBERTIAN) | BIT(LENS));
+    assert_int_equal(analyse(&grey, 1, 1, 1, 0, 0.999).bits, BIT(LAMBERTIAN) | BIT(GRADIENT));
+    assert_int_equal(analyse(&grey, 1, 1, BP_LIST_SPHERES_MAX, 0, 1).bits, BIT(LAMBERTIAN));
+    assert_int_equal(analyse(&grey, 1, 1, BP_LIST_SPHERES_MAX + 1, 0, 1).bits, BIT(LAMBERTIAN) | BIT(TREE));
+}
+
+static void reasons_a_person_understands(void **state) {
+    (void)state;
+    const BpMaterial three[] = {grey, steel, steel, glass, lamp};
+    BpEffects effects = analyse(three, 3, 3, 5, 0, 1);
+    assert_string_equal(effects.reason[BP_EFFECT_LAMBERTIAN],
+                        "1 of the 3 materials in use, on 2 of 5 spheres");
+    assert_string_equal(effects.reason[BP_EFFECT_METAL], "2 of the 3 materials in use, on 3 of 5 spheres");
+    assert_string_equal(
+        effects.reason[BP_EFFECT_DIELECTRIC],
+        "no dielectric among the 3 materials in use: refraction, Fresnel and the inside of spheres are "
+        "left out");
+    assert_string_equal(effects.reason[BP_EFFECT_EMISSION], "nothing emits: none of the 3 materials in use");
+    assert_string_equal(effects.reason[BP_EFFECT_LENS], "defocus_angle 0: the lens is a pinhole");
+    assert_string_equal(effects.reason[BP_EFFECT_GRADIENT], "background constant (1, 1, 1): no gradient");
+    assert_string_equal(effects.reason[BP_EFFECT_TREE], "5 spheres: a list, no tree");
+
+    effects = analyse(three, 5, 3, 484, 0.05, 0.7);
+    assert_string_equal(
+        effects.reason[BP_EFFECT_DIELECTRIC],
+        "1 material would, but no sphere has it: refraction, Fresnel and the inside of spheres are left "
+        "out");
+    assert_string_equal(effects.reason[BP_EFFECT_LENS], "a lens of radius 0.05, in focus at 10");
+    assert_string_equal(effects.reason[BP_EFFECT_GRADIENT],
+                        "the background goes from (1, 1, 1) below to (1, 1, 0.7) above");
+    assert_string_equal(effects.reason[BP_EFFECT_TREE], "484 spheres, more than 32: a tree");
+
+    effects = analyse(three, 1, 1, 2, 0, 1);
+    assert_string_equal(effects.reason[BP_EFFECT_LAMBERTIAN],
+                        "the one kind of material in use, on all 2 spheres: no switch between kinds");
+    assert_string_equal(effects.reason[BP_EFFECT_METAL],
+                        "the one material in use is not metal: mirror reflection and fuzz are left out");
+    assert_string_equal(effects.reason[BP_EFFECT_EMISSION], "nothing emits: not the one material in use");
+    assert_string_equal(effects.reason[BP_EFFECT_NORMALS],
+                        "nothing shows normals: not the one material in use");
+    effects = analyse(three, 1, 1, 0, 0, 1);
+    assert_string_equal(effects.reason[BP_EFFECT_LAMBERTIAN], "no spheres: the picture is the sky");
+}
+
+static void one_list_names_them(void **state) {
+    (void)state;
+    assert_string_equal(bp_effect_name(BP_EFFECT_DIELECTRIC), "dielectric");
+    assert_string_equal(bp_effect_identifier(BP_EFFECT_DIELECTRIC), "DIELECTRIC");
+    assert_string_equal(bp_effect_description(BP_EFFECT_LENS), "a lens with an aperture: defocus blur");
+    for (int a = 0; a < BP_EFFECT_COUNT; ++a)
+        for (int b = 0; b < a; ++b)
+            assert_string_not_equal(bp_effect_name((BpEffect)a), bp_effect_name((BpEffect)b));
+    assert_int_equal(BP_EFFECTS_ALL, (1u << BP_EFFECT_COUNT) - 1);
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(material_effects),    cmocka_unit_test(only_materials_in_use_count),
+        cmocka_unit_test(camera_sky_and_tree), cmocka_unit_test(reasons_a_person_understands),
+        cmocka_unit_test(one_list_names_them),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}

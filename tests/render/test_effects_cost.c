@@ -1,0 +1,184 @@
+/* test_effects_cost.c: a specialised kernel is never slower than the general one, and kernels build fast.
+ *
+ * Ratios only, medians of interleaved rounds (engine/effect_costs.h): a slow or busy machine fails nothing.
+ * The yardstick for building is the compiler's time for a small fixed kernel in the same run.
+ *
+ * effects_cost [all]: one scene for each set of effects that occurs in scenes/; or all scenes. */
+#include "base/clock.h"
+#include "engine/device.h"
+#include "engine/effect_costs.h"
+#include "scene/scene.h"
+
+#include <dirent.h>
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <time.h>
+
+enum { WIDTH = 160, SETS_MAX = 256 };
+#define SLOWER_MAX 1.02
+/* Cold build of a trace program over that of the yardstick, in processor time. 2.1 to 3.0 were measured. */
+#define BUILD_RATIO_MAX 5.0
+
+/* Its building exercises the same parts of a driver: parser, optimiser, code generator. */
+static const char yardstick[] =
+    "__kernel void yardstick(__global const float *in, __global float *out, uint count) {\n"
+    "    const uint item = (uint)get_global_id(0);\n"
+    "    float8 sum = 0.0f;\n"
+    "    for (uint i = 0; i < count; ++i) {\n"
+    "        const float8 v = vload8(i, in);\n"
+    "        sum = select(fma(v, sum, v), sqrt(fabs(v)) / (sum + 1.0f), v < sum);\n"
+    "    }\n"
+    "    vstore8(sum, item, out);\n"
+    "}\n";
+
+static bool complain(const char *what, const BpError *err) {
+    fprintf(stderr, "%s: %s\n%s\n", what, err->message, err->attachment != NULL ? err->attachment : "");
+    return false;
+}
+
+/* Processor time of building and launching the yardstick, which no cache knows. */
+static bool build_yardstick(const BpDeviceInfo *info, uint64_t mark, double *seconds, BpError *err) {
+    BpDevice *device = NULL;
+    cl_program program = NULL;
+    cl_kernel kernel = NULL;
+    cl_mem memory[2] = {NULL, NULL};
+    char source[sizeof yardstick + 64];
+    cl_int code = CL_SUCCESS;
+    const cl_uint count = 4;
+    const size_t items = 64;
+    bool right = false;
+    const double start = bp_processor_seconds();
+    snprintf(source, sizeof source, "typedef uint unknown_%llu;\n%s", (unsigned long long)mark, yardstick);
+    if (bp_device_open(info, &device, err) != BP_OK) return complain("yardstick", err);
+    if (bp_device_build(device, source, NULL, &program, NULL, err) != BP_OK) {
+        complain("yardstick", err);
+        goto done;
+    }
+    kernel = clCreateKernel(program, "yardstick", &code);
+    for (cl_uint i = 0; i < 2 && code == CL_SUCCESS; ++i) {
+        memory[i] = clCreateBuffer(device->context, CL_MEM_READ_WRITE, items * 32, NULL, &code);
+        if (code == CL_SUCCESS) code = clSetKernelArg(kernel, i, sizeof memory[i], &memory[i]);
+    }
+    if (code == CL_SUCCESS) code = clSetKernelArg(kernel, 2, sizeof count, &count);
+    if (code == CL_SUCCESS)
+        code = clEnqueueNDRangeKernel(device->queue, kernel, 1, NULL, &items, NULL, 0, NULL, NULL);
+    if (code == CL_SUCCESS) code = clFinish(device->queue);
+    *seconds = bp_processor_seconds() - start;
+    right = code == CL_SUCCESS;
+    if (!right) fprintf(stderr, "yardstick: %s\n", bp_cl_error_name(code));
+
+done:
+    for (int i = 0; i < 2; ++i)
+        if (memory[i] != NULL) clReleaseMemObject(memory[i]);
+    if (kernel != NULL) clReleaseKernel(kernel);
+    if (program != NULL) clReleaseProgram(program);
+    bp_device_close(&device);
+    return right;
+}
+
+static bool measure(const BpScene *scene, const BpDeviceInfo *device, const BpCostPlan *plan, BpCosts *costs,
+                    BpError *err) {
+    BpRenderOptions options;
+    bp_render_defaults(scene, &options);
+    return bp_costs_measure(scene, &options, device, plan, costs, err) == BP_OK || complain("measuring", err);
+}
+
+/* Whether the scene's kernel is as fast as the general one. A first look may be wrong by noise: a second,
+ * longer one decides. */
+static bool check_scene(const char *name, const BpScene *scene, const BpDeviceInfo *device) {
+    BpError err = {0};
+    BpCosts costs;
+    const BpCostPlan look = {.rounds = 9, .round_seconds = 0.03, .general_only = true};
+    const BpCostPlan longer = {.rounds = 31, .round_seconds = 0.06, .general_only = true};
+    if (!measure(scene, device, &look, &costs, &err)) return false;
+    double general = costs.kernels[1].ratio;
+    if (general * SLOWER_MAX < 1 && !measure(scene, device, &longer, &costs, &err)) return false;
+    general = costs.kernels[1].ratio;
+    printf("%-28s general kernel / specialised kernel: %.3f (%.3f .. %.3f)\n", name, general,
+           costs.kernels[1].low, costs.kernels[1].high);
+    if (general * SLOWER_MAX >= 1) return true;
+    fprintf(stderr, "%s: the specialised kernel takes %.3f of the general one's time\n", name, 1 / general);
+    return false;
+}
+
+/* The median of three: one build has been seen to take a quarter of its usual time. */
+static bool time_yardstick(const BpDeviceInfo *device, uint64_t mark, double *seconds, BpError *err) {
+    double taken[3];
+    /* The first time a process builds anything, the driver loads its compiler. */
+    if (!build_yardstick(device, mark, &taken[0], err)) return false;
+    for (uint64_t i = 0; i < 3; ++i)
+        if (!build_yardstick(device, mark + 1 + i, &taken[i], err)) return false;
+    const double low = fmin(taken[0], taken[1]), high = fmax(taken[0], taken[1]);
+    *seconds = fmax(low, fmin(high, taken[2]));
+    return true;
+}
+
+/* Whether both kernels of a scene build within BUILD_RATIO_MAX yardsticks. */
+static bool builds_fast(const BpScene *scene, const BpDeviceInfo *device, uint64_t mark) {
+    BpError err = {0};
+    BpCosts costs;
+    double small;
+    const BpCostPlan plan = {.rounds = 3, .round_seconds = 0.01, .builds = true, .general_only = true};
+    if (!time_yardstick(device, mark, &small, &err) || !measure(scene, device, &plan, &costs, &err))
+        return false;
+    bool right = true;
+    for (size_t k = 0; k < costs.kernel_count; ++k) {
+        const BpKernelCost *kernel = &costs.kernels[k];
+        const double ratio = kernel->cold_processor_seconds / small;
+        printf("%-12s builds in %.2f s of processor time (%.1f yardsticks of %.2f s), again in %.2f s\n",
+               kernel->name, kernel->cold_processor_seconds, ratio, small, kernel->warm_processor_seconds);
+        if (!(ratio <= BUILD_RATIO_MAX)) {
+            fprintf(stderr, "%s: %.1f yardsticks, more than %.1f\n", kernel->name, ratio, BUILD_RATIO_MAX);
+            right = false;
+        }
+    }
+    return right;
+}
+
+/* A first look may be wrong by noise: a second one decides. */
+static bool check_builds(const BpScene *scene, const BpDeviceInfo *device) {
+    const uint64_t mark = (uint64_t)time(NULL) * 16;
+    return builds_fast(scene, device, mark) || builds_fast(scene, device, mark + 8);
+}
+
+int main(int argc, char **argv) {
+    const bool all = argc > 1 && strcmp(argv[1], "all") == 0;
+    BpDeviceInfo device;
+    BpError err = {0};
+    bool seen[SETS_MAX] = {false}, right = true, built = false;
+    unsigned scenes = 0;
+    if (bp_device_find(getenv("BALLPARK_TEST_DEVICE"), &device, &err) != BP_OK) {
+        fprintf(stderr, "skipped: %s\n", err.message);
+        return 77;
+    }
+    struct dirent **entries = NULL;
+    const int count = scandir(SOURCE_DIR "/scenes", &entries, NULL, alphasort);
+    for (int i = 0; i < count; ++i) {
+        const char *name = entries[i]->d_name, *end = strstr(name, ".json");
+        if (end == NULL || strcmp(end, ".json") != 0 || strcmp(name, "scene.schema.json") == 0) continue;
+        char path[1024];
+        BpScene *scene = NULL;
+        BpEffects effects;
+        snprintf(path, sizeof path, SOURCE_DIR "/scenes/%s", name);
+        if (bp_scene_load(path, &scene, &err) != BP_OK || bp_scene_set_width(scene, WIDTH, &err) != BP_OK) {
+            right = complain(path, &err);
+        } else {
+            bp_effects_analyse(scene, &effects);
+            if (all || !seen[effects.bits]) {
+                seen[effects.bits] = true;
+                ++scenes;
+                if (!check_scene(name, scene, &device)) right = false;
+                if (!built && !check_builds(scene, &device)) right = false;
+                built = true;
+            }
+        }
+        bp_scene_destroy(&scene);
+    }
+    for (int i = 0; i < count; ++i) free(entries[i]);
+    free(entries);
+    printf("%u scenes\n", scenes);
+    bp_error_clear(&err);
+    return right && scenes > 0 ? 0 : 1;
+}

@@ -1,0 +1,257 @@
+/* test_effects_equality.c: for every set of effects that can occur, the specialised kernel computes what the
+ * general one does.
+ *
+ * On PoCL, bit for bit: radiance, segments and cut of every single pixel sample, as the trace kernel writes
+ * them. What sums them (accumulate.cl) has no effects in it (effects_source), so equal samples make equal
+ * pictures. Other implementations may round differently in different programs; there the difference is
+ * reported, and the pictures must agree within their error.
+ *
+ * Nearly all of the time is the compiler's, so nothing but the trace kernels is compiled, and the general
+ * ones once.
+ *
+ * effects_equality FORM [PART OF]: FORM is sample, packet, or one of two halves of both: mixed (packet for
+ * sets with an even number of effects, sample for odd) and other (the other way round). PART of OF shares,
+ * which can run side by side if each has a kernel cache of its own. */
+#include "effects_scenes.h"
+#include "engine/arrangement.h"
+#include "engine/worker_buffers.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+enum { FORMS = 2, SAMPLERS = 2 };
+
+typedef struct Lab {
+    BpDevice *device;
+    bool exact;
+    BpProgram *general[FORMS][SAMPLERS]; /* each built when first needed */
+    unsigned dark;                       /* pictures without light, which would prove nothing */
+    unsigned inexact;
+} Lab;
+
+typedef struct Samples {
+    float *values; /* 4 each: radiance, segments (and a half where the path was cut) */
+    uint32_t count;
+} Samples;
+
+static bool failed(const BpError *err, const char *what, uint32_t bits) {
+    fprintf(stderr, "set 0x%02x, %s: %s\n%s\n", (unsigned)bits, what, err->message,
+            err->attachment != NULL ? err->attachment : "");
+    return false;
+}
+
+static BpStatus bind_chunk(BpWorker *worker, const Samples *samples, uint32_t per_pixel, BpError *err) {
+    const cl_uint numbers[] = {0, 0, per_pixel, samples->count};
+    cl_uint index = BP_WORKER_SCENE_ARGUMENTS;
+    for (size_t i = 0; i < sizeof numbers / sizeof numbers[0]; ++i)
+        CL_TRY(worker, clSetKernelArg(worker->trace, index++, sizeof(cl_uint), &numbers[i]),
+               "clSetKernelArg");
+    CL_TRY(worker, clSetKernelArg(worker->trace, index, sizeof(cl_mem), &worker->samples), "clSetKernelArg");
+    return BP_OK;
+}
+
+/* All samples of the picture in one launch, of the size that a render would choose. */
+static BpStatus launch(BpWorker *worker, const BpPacked *packed, bool packet, uint32_t per_pixel,
+                       Samples *samples, BpError *err) {
+    cl_int code = CL_SUCCESS;
+    worker->samples_per_item = packet ? BP_PACKET_SAMPLES_PER_ITEM : 1;
+    const size_t local = packet ? BP_LOCAL_SIZE_PACKET : BP_LOCAL_SIZE_SAMPLE;
+    const size_t items = (samples->count + worker->samples_per_item - 1) / worker->samples_per_item;
+    const size_t global = (items + local - 1) / local * local;
+    BP_TRY(bp_worker_upload_scene(worker, packed, err));
+    BP_TRY(bp_worker_reserve_samples(worker, samples->count, err));
+    worker->trace = clCreateKernel(worker->program->program, "trace", &code);
+    CL_TRY(worker, code, "clCreateKernel(trace)");
+    BP_TRY(bp_worker_bind_scene(worker, worker->trace, err));
+    BP_TRY(bind_chunk(worker, samples, per_pixel, err));
+    CL_TRY(
+        worker,
+        clEnqueueNDRangeKernel(worker->device->queue, worker->trace, 1, NULL, &global, &local, 0, NULL, NULL),
+        "clEnqueueNDRangeKernel(trace)");
+    return bp_worker_samples(worker, samples->count, samples->values, err);
+}
+
+/* What the program makes of the scene. `program` is built if NULL. */
+static BpStatus trace(const Lab *lab, const BpScene *scene, const BpRenderOptions *options,
+                      BpProgram **program, Samples *samples, BpError *err) {
+    BpWorkerSetup setup;
+    BpPacked packed = {0};
+    BpStatus status = bp_arrange(scene, options, &lab->device->info, &setup, &packed, err);
+    if (status == BP_OK && *program == NULL)
+        status = bp_program_build(lab->device, &setup.program, NULL, NULL, program, err);
+    if (status != BP_OK) goto done;
+    BpWorker *worker = calloc(1, sizeof *worker);
+    samples->count = setup.width * setup.height * (uint32_t)options->samples_per_pixel;
+    samples->values = malloc(4 * sizeof(float) * samples->count);
+    if (worker == NULL || samples->values == NULL) {
+        free(worker);
+        status = bp_fail(err, BP_ERR_MEMORY, "no memory for %u samples", samples->count);
+        goto done;
+    }
+    worker->device = lab->device;
+    worker->program = *program;
+    worker->real_size = sizeof(float);
+    worker->width = setup.width;
+    worker->pixels = setup.width * setup.height;
+    worker->replicates = setup.replicates;
+    worker->max_depth = setup.max_depth;
+    worker->pixel_center = setup.pixel_center;
+    worker->seed = setup.seed;
+    worker->first_leaves = packed.tree.first_leaves;
+    worker->leaf_count = packed.tree.leaf_count;
+    worker->samples_limit = samples->count;
+    status = launch(worker, &packed, setup.program.form == BP_KERNEL_PACKET,
+                    (uint32_t)options->samples_per_pixel, samples, err);
+    worker->device = NULL; /* the lab's */
+    worker->program = NULL;
+    bp_worker_destroy(&worker);
+done:
+    bp_packed_clear(&packed);
+    return status;
+}
+
+static bool is_light(const float *sample) {
+    for (int c = 0; c < 3; ++c)
+        if (!isfinite(sample[c]) || sample[c] < 0) return false;
+    return true;
+}
+
+/* Whether the means agree within 5 of their joint standard errors, each channel. */
+static bool agree(const Samples *a, const Samples *b) {
+    for (uint32_t c = 0; c < 3; ++c) {
+        double sum[2] = {0}, squares[2] = {0};
+        for (uint32_t i = 0; i < a->count; ++i) {
+            const double x = (double)a->values[4 * i + c], y = (double)b->values[4 * i + c];
+            sum[0] += x, sum[1] += y;
+            squares[0] += x * x, squares[1] += y * y;
+        }
+        const double n = a->count, mean[2] = {sum[0] / n, sum[1] / n};
+        const double variance = squares[0] / n - mean[0] * mean[0] + squares[1] / n - mean[1] * mean[1];
+        if (fabs(mean[0] - mean[1]) > 5 * sqrt(fmax(variance, 0) / n) + 1e-5 * fabs(mean[0])) return false;
+    }
+    return true;
+}
+
+static void print_set(uint32_t bits) {
+    for (int e = 0; e < BP_EFFECT_COUNT; ++e)
+        if (bp_effects_has(bits, (BpEffect)e)) fprintf(stderr, " %s", bp_effect_name((BpEffect)e));
+    fprintf(stderr, "\n");
+}
+
+/* Samples that are the same, counted; what is no light, and a picture without any, counts as wrong. */
+static bool compare(Lab *lab, uint32_t bits, const Samples *special, const Samples *general) {
+    uint32_t different = 0;
+    bool light = true;
+    double total = 0;
+    for (uint32_t i = 0; i < special->count; ++i) {
+        const float *a = special->values + 4 * (size_t)i, *b = general->values + 4 * (size_t)i;
+        different += memcmp(a, b, 4 * sizeof(float)) != 0;
+        light = light && is_light(a) && is_light(b) && a[3] >= 1;
+        total += (double)a[0] + (double)a[1] + (double)a[2];
+    }
+    if (total <= 0) ++lab->dark;
+    if (different > 0) {
+        ++lab->inexact;
+        fprintf(stderr, "set 0x%02x: %u of %u samples differ:", (unsigned)bits, different, special->count);
+        print_set(bits);
+    }
+    if (!light) fprintf(stderr, "set 0x%02x: samples that are no light\n", (unsigned)bits);
+    return light && (lab->exact ? different == 0 : agree(special, general));
+}
+
+/* True when set `bits` is all right. */
+static bool check_set(Lab *lab, BpKernelForm form, uint32_t bits) {
+    static EffectsScene made;
+    BpEffects effects;
+    BpError err = {0};
+    BpRenderOptions options;
+    BpProgram *program = NULL;
+    Samples special = {0}, general = {0};
+    bool right = false;
+    effects_scene(&made, bits);
+    if (bp_scene_validate(&made.scene, &err) != BP_OK) return failed(&err, "scene", bits);
+    bp_effects_analyse(&made.scene, &effects);
+    if (effects.bits != bits) {
+        fprintf(stderr, "set 0x%02x: the scene made for it calls for 0x%02x\n", (unsigned)bits,
+                (unsigned)effects.bits);
+        return false;
+    }
+    bp_render_defaults(&made.scene, &options);
+    options.kernel = form;
+    options.seed = 20 + bits;
+    options.sampler = (bits ^ bits >> 3) & 1 ? BP_SAMPLER_SOBOL : BP_SAMPLER_INDEPENDENT;
+    BpProgram **all = &lab->general[form == BP_KERNEL_PACKET][options.sampler == BP_SAMPLER_SOBOL];
+    if (trace(lab, &made.scene, &options, &program, &special, &err) != BP_OK) {
+        failed(&err, "its own kernel", bits);
+        goto done;
+    }
+    options.all_effects = true;
+    if (trace(lab, &made.scene, &options, all, &general, &err) != BP_OK) {
+        failed(&err, "the general kernel", bits);
+        goto done;
+    }
+    if ((program->key == (*all)->key) != (bits == BP_EFFECTS_ALL)) {
+        fprintf(stderr, "set 0x%02x: specialised and general kernel are the same program\n", (unsigned)bits);
+        goto done;
+    }
+    right = compare(lab, bits, &special, &general);
+
+done:
+    free(special.values);
+    free(general.values);
+    bp_program_destroy(&program);
+    bp_error_clear(&err);
+    return right;
+}
+
+/* The kernel form for a set, by FORM; false for a word that is none. */
+static bool choose_form(const char *word, uint32_t bits, BpKernelForm *form) {
+    bool odd = false;
+    for (int e = 0; e < BP_EFFECT_COUNT; ++e) odd ^= bp_effects_has(bits, (BpEffect)e);
+    if (strcmp(word, "sample") == 0)
+        *form = BP_KERNEL_SAMPLE;
+    else if (strcmp(word, "packet") == 0)
+        *form = BP_KERNEL_PACKET;
+    else if (strcmp(word, "mixed") == 0)
+        *form = odd ? BP_KERNEL_SAMPLE : BP_KERNEL_PACKET;
+    else if (strcmp(word, "other") == 0)
+        *form = odd ? BP_KERNEL_PACKET : BP_KERNEL_SAMPLE;
+    else
+        return false;
+    return true;
+}
+
+int main(int argc, char **argv) {
+    BpDeviceInfo device;
+    BpError err = {0};
+    const unsigned part = argc > 3 ? (unsigned)atoi(argv[2]) : 0, of = argc > 3 ? (unsigned)atoi(argv[3]) : 1;
+    BpKernelForm form;
+    if (argc < 2 || !choose_form(argv[1], 0, &form) || of == 0 || part >= of) {
+        fprintf(stderr, "usage: effects_equality sample|packet|mixed|other [PART OF]\n");
+        return 2;
+    }
+    if (bp_device_find(getenv("BALLPARK_TEST_DEVICE"), &device, &err) != BP_OK) {
+        fprintf(stderr, "skipped: %s\n", err.message);
+        return 77;
+    }
+    Lab lab = {.exact = strcmp(device.platform, "Portable Computing Language") == 0};
+    if (bp_device_open(&device, &lab.device, &err) != BP_OK) {
+        fprintf(stderr, "%s\n", err.message);
+        return 1;
+    }
+    unsigned sets = 0, wrong = 0;
+    for (uint32_t bits = 0; bits <= BP_EFFECTS_ALL; ++bits) {
+        if (bits % of != part || !effects_can_occur(bits)) continue;
+        ++sets;
+        choose_form(argv[1], bits, &form);
+        if (!check_set(&lab, form, bits)) ++wrong;
+    }
+    printf("%s, %s: %u sets, %u wrong, %u not bit for bit, %u without light\n", device.name, argv[1], sets,
+           wrong, lab.inexact, lab.dark);
+    for (int f = 0; f < FORMS; ++f)
+        for (int k = 0; k < SAMPLERS; ++k) bp_program_destroy(&lab.general[f][k]);
+    bp_device_close(&lab.device);
+    return sets > 0 && wrong == 0 && lab.dark == 0 ? 0 : 1;
+}

@@ -1,0 +1,141 @@
+/* test_effects_scenes.c: the effects of every scene of scenes/, against sets written by hand.
+ *
+ * A scene that has no line here fails the test: read it, and write down what its picture shows. */
+#include "ballpark.h"
+#include "engine/effects.h"
+
+#include <dirent.h>
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include <cmocka.h>
+
+/* All of the book's pictures have its sky, which is a gradient, unless said otherwise. */
+static const struct {
+    const char *scene, *effects;
+} expected[] = {
+    {"cover", "lambertian metal dielectric lens gradient tree"},
+    {"cover-v1", "lambertian metal dielectric lens gradient tree"},
+    {"cover-v3", "lambertian metal dielectric lens gradient tree"},
+    {"cover-v3-rust", "lambertian metal dielectric lens gradient tree"},
+    {"v1-defocus", "lambertian metal dielectric lens gradient"},
+    {"v1-diffuse-gamma", "lambertian gradient"},
+    {"v1-diffuse-linear", "lambertian gradient"},
+    {"v1-glass-hollow", "lambertian metal dielectric gradient"},
+    {"v1-glass-refract", "lambertian metal dielectric gradient"},
+    {"v1-metal", "lambertian metal gradient"},
+    {"v1-metal-fuzz", "lambertian metal gradient"},
+    {"v1-normals", "normals gradient"},
+    {"v1-normals-antialiased", "normals gradient"},
+    {"v1-normals-ground", "normals gradient"},
+    {"lamps", "lambertian metal dielectric emission"},
+    {"v1-red-sphere", "emission gradient"},
+    {"v1-sky", "gradient"},
+    {"v1-view-distant", "lambertian metal dielectric gradient"},
+    {"v1-view-zoom", "lambertian metal dielectric gradient"},
+    {"v1-wide", "lambertian gradient"},
+    {"v3-07-diffuse", "lambertian gradient"},
+    {"v3-08-gamma", "lambertian gradient"},
+    {"v3-09-lambertian", "lambertian gradient"},
+    {"v3-10-hemisphere", "lambertian gradient"},
+    {"v3-11-metal", "lambertian metal gradient"},
+    {"v3-12-metal-fuzz", "lambertian metal gradient"},
+    {"v3-14-glass-always", "lambertian metal dielectric gradient"},
+    {"v3-15-glass-sometimes", "lambertian metal dielectric gradient"},
+    {"v3-16-glass-hollow", "lambertian metal dielectric gradient"},
+    {"v3-17-wide", "lambertian gradient"},
+    {"v3-18-view-distant", "lambertian metal dielectric gradient"},
+    {"v3-19-view-zoom", "lambertian metal dielectric gradient"},
+    {"v3-20-defocus", "lambertian metal dielectric lens gradient"},
+    {"v3-normals", "normals gradient"},
+    {"v3-normals-antialiased", "normals gradient"},
+    {"v3-normals-ground", "normals gradient"},
+    {"v3-red-sphere", "emission gradient"},
+    {"v3-sky", "gradient"},
+    {"v4-07-hemisphere", "lambertian gradient"},
+    {"v4-08-hemisphere", "lambertian gradient"},
+    {"v4-09-hemisphere", "lambertian gradient"},
+    {"v4-10-lambertian", "lambertian gradient"},
+    {"v4-11-reflectance-10", "lambertian gradient"},
+    {"v4-11-reflectance-30", "lambertian gradient"},
+    {"v4-11-reflectance-50", "lambertian gradient"},
+    {"v4-11-reflectance-70", "lambertian gradient"},
+    {"v4-11-reflectance-90", "lambertian gradient"},
+    {"v4-12-reflectance-10", "lambertian gradient"},
+    {"v4-12-reflectance-30", "lambertian gradient"},
+    {"v4-12-reflectance-50", "lambertian gradient"},
+    {"v4-12-reflectance-70", "lambertian gradient"},
+    {"v4-12-reflectance-90", "lambertian gradient"},
+    {"v4-13-metal", "lambertian metal gradient"},
+    {"v4-14-metal-fuzz", "lambertian metal gradient"},
+    {"v4-16-glass-always", "lambertian metal dielectric gradient"},
+    {"v4-17-air-bubble", "lambertian metal dielectric gradient"},
+    {"v4-18-glass-hollow", "lambertian metal dielectric gradient"},
+    {"v4-19-wide", "lambertian gradient"},
+    {"v4-20-view-distant", "lambertian metal dielectric gradient"},
+    {"v4-21-view-zoom", "lambertian metal dielectric gradient"},
+    {"v4-22-defocus", "lambertian metal dielectric lens gradient"},
+    {"v4-normals", "normals gradient"},
+    {"v4-normals-antialiased", "normals gradient"},
+    {"v4-normals-ground", "normals gradient"},
+    {"v4-red-sphere", "emission gradient"},
+    {"v4-sky", "gradient"},
+};
+
+static void join_names(uint32_t bits, char *to, size_t size) {
+    to[0] = '\0';
+    for (int e = 0; e < BP_EFFECT_COUNT; ++e) {
+        if (!bp_effects_has(bits, (BpEffect)e)) continue;
+        const size_t used = strlen(to);
+        snprintf(to + used, size - used, "%s%s", used > 0 ? " " : "", bp_effect_name((BpEffect)e));
+    }
+}
+
+static void each_scene_has_the_effects_written_by_hand(void **state) {
+    (void)state;
+    const size_t expected_count = sizeof expected / sizeof expected[0];
+    size_t seen = 0;
+    DIR *folder = opendir(SOURCE_DIR "/scenes");
+    assert_non_null(folder);
+    for (const struct dirent *entry; (entry = readdir(folder)) != NULL;) {
+        const char *end = strstr(entry->d_name, ".json");
+        if (end == NULL || strcmp(end, ".json") != 0 || strcmp(entry->d_name, "scene.schema.json") == 0)
+            continue;
+        const size_t length = (size_t)(end - entry->d_name);
+        char path[512], names[128];
+        BpScene *scene = NULL;
+        BpError err = {0};
+        BpEffects effects;
+        BpEffectInfo infos[BP_EFFECTS_MAX];
+        snprintf(path, sizeof path, SOURCE_DIR "/scenes/%s", entry->d_name);
+        if (bp_scene_load(path, &scene, &err) != BP_OK) fail_msg("%s: %s", path, err.message);
+        bp_effects_analyse(scene, &effects);
+        join_names(effects.bits, names, sizeof names);
+        size_t at = 0;
+        while (at < expected_count && (strlen(expected[at].scene) != length ||
+                                       strncmp(expected[at].scene, entry->d_name, length) != 0))
+            ++at;
+        if (at == expected_count) fail_msg("%s has no set written by hand; found: %s", entry->d_name, names);
+        if (strcmp(names, expected[at].effects) != 0)
+            fail_msg("%s: found '%s', expected '%s'", entry->d_name, names, expected[at].effects);
+        /* The public face says the same. */
+        assert_int_equal(bp_scene_effects(scene, infos), BP_EFFECT_COUNT);
+        for (int e = 0; e < BP_EFFECT_COUNT; ++e) {
+            assert_string_equal(infos[e].name, bp_effect_name((BpEffect)e));
+            assert_int_equal(infos[e].simulated, bp_effects_has(effects.bits, (BpEffect)e));
+            assert_string_equal(infos[e].reason, effects.reason[e]);
+        }
+        bp_scene_destroy(&scene);
+        ++seen;
+    }
+    closedir(folder);
+    assert_int_equal(seen, expected_count);
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {cmocka_unit_test(each_scene_has_the_effects_written_by_hand)};
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}

@@ -1,0 +1,294 @@
+/* test_render_same.c: a picture depends on scene, seed and samples, and on nothing else.
+ *
+ * On the default device: chunks, work-group sizes, kernel forms, list or tree, tree widths, first samples and
+ * repetition change no bit of the accumulator; the seed changes it. */
+#include "engine/render.h"
+
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <stdio.h>
+#include <string.h>
+
+#include <cmocka.h>
+
+static BpError err;
+
+static BpScene *scene_of(const char *name, uint32_t width) {
+    char path[512];
+    BpScene *scene = NULL;
+    snprintf(path, sizeof path, "%s/scenes/%s", SOURCE_DIR, name);
+    if (bp_scene_load(path, &scene, &err) != BP_OK || bp_scene_set_width(scene, width, &err) != BP_OK)
+        fail_msg("%s", err.message);
+    return scene;
+}
+
+/* Renders and copies the accumulator's sums and counts into a new one that the caller destroys. */
+static BpAccumulator *render_on(const BpScene *scene, const BpRenderOptions *options,
+                                const BpDeviceInfo *devices, size_t device_count, uint64_t *segments) {
+    BpRender *made = NULL;
+    BpProgress progress = {0};
+    const BpAccumulator *read = NULL;
+    BpAccumulator *copy = NULL;
+    if (bp_render_create(scene, options, devices, device_count, &made, &err) != BP_OK)
+        fail_msg("%s", err.message);
+    do {
+        if (bp_render_step(made, &progress, &err) != BP_OK) fail_msg("%s", err.message);
+    } while (!progress.finished);
+    if (bp_render_accumulator(made, &read, &err) != BP_OK) fail_msg("%s", err.message);
+    assert_int_equal(bp_accumulator_create(read->width, read->height, read->replicates, &copy, &err), BP_OK);
+    const size_t cells = (size_t)read->width * read->height * read->replicates;
+    memcpy(copy->sums, read->sums, cells * 3 * sizeof *copy->sums);
+    memcpy(copy->counts, read->counts, cells * sizeof *copy->counts);
+    if (segments != NULL) *segments = read->segments;
+    assert_int_equal(read->invalid_samples, 0);
+    bp_render_destroy(&made);
+    return copy;
+}
+
+static BpAccumulator *render(const BpScene *scene, const BpRenderOptions *options, uint64_t *segments) {
+    return render_on(scene, options, NULL, 0, segments);
+}
+
+static bool same(const BpAccumulator *a, const BpAccumulator *b) {
+    const size_t cells = (size_t)a->width * a->height * a->replicates;
+    return memcmp(a->sums, b->sums, cells * 3 * sizeof *a->sums) == 0 &&
+           memcmp(a->counts, b->counts, cells * sizeof *a->counts) == 0;
+}
+
+/* Renders `varied` and checks it against `expected`. */
+static void check_same(const BpScene *scene, const BpRenderOptions *varied, const BpAccumulator *expected,
+                       uint64_t expected_segments, const char *what) {
+    uint64_t segments = 0;
+    BpAccumulator *found = render(scene, varied, &segments);
+    if (!same(expected, found)) fail_msg("another picture with %s", what);
+    if (segments != expected_segments) fail_msg("other ray segments with %s", what);
+    bp_accumulator_destroy(&found);
+}
+
+/* The form of the kernel, the chunks, tree and list: cheap to vary, since little or nothing is compiled anew.
+ */
+static void check_variations(const char *name, uint32_t width, BpSampler sampler) {
+    BpScene *scene = scene_of(name, width);
+    BpRenderOptions options;
+    bp_render_defaults(scene, &options);
+    options.samples_per_pixel = 6;
+    options.sampler = sampler;
+    options.kernel = BP_KERNEL_SAMPLE;
+    uint64_t segments = 0;
+    BpAccumulator *expected = render(scene, &options, &segments);
+    assert_true(segments >= (uint64_t)expected->width * expected->height * 6);
+
+    check_same(scene, &options, expected, segments, "a second run");
+    const BpKernelForm forms[] = {BP_KERNEL_SAMPLE, BP_KERNEL_PACKET};
+    const uint32_t chunks[] = {1, 7, 4096};
+    for (size_t f = 0; f < 2; ++f) {
+        BpRenderOptions varied = options;
+        varied.kernel = forms[f];
+        check_same(scene, &varied, expected, segments, "another form of the kernel");
+        for (size_t i = 0; i < 3; ++i) {
+            varied.chunk_samples = chunks[i];
+            check_same(scene, &varied, expected, segments, "another chunk size");
+        }
+    }
+    BpRenderOptions varied = options;
+    varied.force_list = true;
+    check_same(scene, &varied, expected, segments, "a list");
+    varied.force_list = false;
+    varied.force_tree = true;
+    varied.kernel = BP_KERNEL_PACKET;
+    check_same(scene, &varied, expected, segments, "a tree");
+
+    varied = options;
+    varied.seed = 1;
+    BpAccumulator *other = render(scene, &varied, NULL);
+    assert_false(same(expected, other));
+    bp_accumulator_destroy(&other);
+    varied.seed = (uint64_t)1 << 32; /* the upper half of the seed counts too */
+    other = render(scene, &varied, NULL);
+    assert_false(same(expected, other));
+    bp_accumulator_destroy(&other);
+    bp_accumulator_destroy(&expected);
+    bp_scene_destroy(&scene);
+}
+
+/* Each of these is a kernel of its own, so they take turns between the forms. */
+static void work_groups_and_widths_are_the_same(void **state) {
+    (void)state;
+    /* Of its trees, the sixteen-wide one has one batch of leaves to be tried one by one, the eight-wide one
+     * has three, and the narrower ones are walked. */
+    BpScene *scene = scene_of("cover.json", 24);
+    BpRenderOptions options;
+    bp_render_defaults(scene, &options);
+    options.samples_per_pixel = 6;
+    uint64_t segments = 0;
+    BpAccumulator *expected = render(scene, &options, &segments);
+    const struct {
+        BpKernelForm form;
+        uint32_t local_size, tree_width, packet_lanes;
+        const char *what;
+    } variations[] = {{BP_KERNEL_SAMPLE, 1, 0, 0, "work-groups of 1"},
+                      {BP_KERNEL_SAMPLE, 8, 0, 0, "work-groups of 8"},
+                      {BP_KERNEL_SAMPLE, 64, 0, 0, "work-groups of 64"},
+                      {BP_KERNEL_PACKET, 8, 0, 0, "packets in groups of 8"},
+                      {BP_KERNEL_PACKET, 64, 0, 0, "packets in groups of 64"},
+                      {BP_KERNEL_SAMPLE, 0, 2, 0, "two-wide nodes"},
+                      {BP_KERNEL_SAMPLE, 0, 8, 0, "eight-wide nodes"},
+                      {BP_KERNEL_PACKET, 0, 4, 8, "four-wide nodes, eight lanes"},
+                      {BP_KERNEL_PACKET, 0, 8, 16, "eight-wide nodes, sixteen lanes"},
+                      {BP_KERNEL_PACKET, 0, 16, 8, "sixteen-wide nodes, eight lanes"},
+                      {BP_KERNEL_PACKET, 0, 16, 16, "sixteen-wide nodes, sixteen lanes"}};
+    for (size_t i = 0; i < sizeof variations / sizeof variations[0]; ++i) {
+        BpRenderOptions varied = options;
+        varied.kernel = variations[i].form;
+        varied.local_size = variations[i].local_size;
+        varied.tree_width = variations[i].tree_width;
+        varied.packet_lanes = variations[i].packet_lanes;
+        varied.force_tree = variations[i].tree_width != 0;
+        check_same(scene, &varied, expected, segments, variations[i].what);
+    }
+    bp_accumulator_destroy(&expected);
+    bp_scene_destroy(&scene);
+}
+
+static void cover_is_the_same(void **state) {
+    (void)state;
+    check_variations("cover.json", 24, BP_SAMPLER_INDEPENDENT);
+}
+
+static void hollow_glass_is_the_same(void **state) {
+    (void)state;
+    check_variations("v4-18-glass-hollow.json", 24, BP_SAMPLER_SOBOL);
+}
+
+/* Its tree is walked, sixteen wide. */
+static void swarm_is_the_same(void **state) {
+    (void)state;
+    check_variations("../tests/agree/scenes/swarm.json", 16, BP_SAMPLER_INDEPENDENT);
+}
+
+/* Samples 0..9 equal samples 0..3 plus 4..9: what merging runs rests on. */
+static void halves_add_up(void **state) {
+    (void)state;
+    BpScene *scene = scene_of("cover.json", 24);
+    for (int sampler = 0; sampler < 2; ++sampler) {
+        BpRenderOptions options;
+        bp_render_defaults(scene, &options);
+        options.sampler = sampler == 0 ? BP_SAMPLER_INDEPENDENT : BP_SAMPLER_SOBOL;
+        options.samples_per_pixel = 10;
+        BpAccumulator *whole = render(scene, &options, NULL);
+        options.samples_per_pixel = 4;
+        BpAccumulator *first = render(scene, &options, NULL);
+        options.first_sample = 4;
+        options.samples_per_pixel = 6;
+        BpAccumulator *second = render(scene, &options, NULL);
+        const size_t cells = (size_t)whole->width * whole->height * whole->replicates;
+        for (size_t i = 0; i < cells * 3; ++i) first->sums[i] += second->sums[i];
+        for (size_t i = 0; i < cells; ++i) first->counts[i] += second->counts[i];
+        assert_true(same(whole, first));
+        bp_accumulator_destroy(&whole);
+        bp_accumulator_destroy(&first);
+        bp_accumulator_destroy(&second);
+    }
+    bp_scene_destroy(&scene);
+}
+
+/* A render that is extended equals one that asked for all samples at once. */
+static void extension_adds_up(void **state) {
+    (void)state;
+    BpScene *scene = scene_of("v3-12-metal-fuzz.json", 24);
+    BpRenderOptions options;
+    bp_render_defaults(scene, &options);
+    options.samples_per_pixel = 9;
+    BpAccumulator *whole = render(scene, &options, NULL);
+    options.samples_per_pixel = 2;
+    BpRender *made = NULL;
+    BpProgress progress = {0};
+    const BpAccumulator *read = NULL;
+    assert_int_equal(bp_render_create(scene, &options, NULL, 0, &made, &err), BP_OK);
+    do assert_int_equal(bp_render_step(made, &progress, &err), BP_OK);
+    while (!progress.finished);
+    assert_int_equal(bp_render_accumulator(made, &read, &err), BP_OK); /* a look in between changes nothing */
+    assert_int_equal(bp_render_extend(made, 1, &err), BP_ERR_USAGE);
+    assert_int_equal(bp_render_extend(made, 9, &err), BP_OK);
+    do assert_int_equal(bp_render_step(made, &progress, &err), BP_OK);
+    while (!progress.finished);
+    assert_int_equal(bp_render_samples_done(made), 9);
+    assert_int_equal(bp_render_accumulator(made, &read, &err), BP_OK);
+    assert_true(same(whole, read));
+    bp_render_destroy(&made);
+    bp_accumulator_destroy(&whole);
+    bp_scene_destroy(&scene);
+}
+
+/* Three workers share a picture; that all are on one device is nothing they know of. */
+static void several_devices_are_the_same(void **state) {
+    (void)state;
+    BpScene *scene = scene_of("cover.json", 48);
+    BpRenderOptions options;
+    bp_render_defaults(scene, &options);
+    options.samples_per_pixel = 20;
+    uint64_t segments = 0, shared_segments = 0;
+    BpAccumulator *alone = render(scene, &options, &segments);
+    BpDeviceInfo devices[3];
+    assert_int_equal(bp_device_find(NULL, &devices[0], &err), BP_OK);
+    devices[1] = devices[2] = devices[0];
+    options.chunk_samples = 500; /* enough chunks for all to get some */
+    BpAccumulator *shared = render_on(scene, &options, devices, 3, &shared_segments);
+    assert_true(same(alone, shared));
+    assert_int_equal(segments, shared_segments);
+    bp_accumulator_destroy(&alone);
+    bp_accumulator_destroy(&shared);
+    bp_scene_destroy(&scene);
+}
+
+/* Paths that the cap cuts are black for what they miss, and counted. */
+static void depth_cap_is_black_and_counted(void **state) {
+    (void)state;
+    BpScene *scene = scene_of("v4-12-reflectance-90.json", 16);
+    BpRenderOptions options;
+    bp_render_defaults(scene, &options);
+    options.samples_per_pixel = 8;
+    double last = -1;
+    const uint32_t depths[] = {0, 1, 3, 50};
+    for (size_t i = 0; i < 4; ++i) {
+        options.max_depth = depths[i];
+        BpRender *made = NULL;
+        BpProgress progress = {0};
+        const BpAccumulator *read = NULL;
+        double mean[3];
+        assert_int_equal(bp_render_create(scene, &options, NULL, 0, &made, &err), BP_OK);
+        do assert_int_equal(bp_render_step(made, &progress, &err), BP_OK);
+        while (!progress.finished);
+        assert_int_equal(bp_render_accumulator(made, &read, &err), BP_OK);
+        bp_accumulator_mean(read, mean);
+        const uint64_t samples = (uint64_t)read->width * read->height * 8;
+        if (depths[i] == 0) {
+            assert_true(mean[0] == 0 && mean[1] == 0 && mean[2] == 0);
+            assert_int_equal(read->cut_paths, samples);
+            assert_int_equal(read->segments, 0);
+        } else if (depths[i] == 1) {
+            assert_int_equal(read->segments, samples);
+            assert_true(read->cut_paths > 0 && read->cut_paths < samples);
+        }
+        assert_true(mean[2] > last);
+        last = mean[2];
+        bp_render_destroy(&made);
+    }
+    bp_scene_destroy(&scene);
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(cover_is_the_same),
+        cmocka_unit_test(hollow_glass_is_the_same),
+        cmocka_unit_test(swarm_is_the_same),
+        cmocka_unit_test(work_groups_and_widths_are_the_same),
+        cmocka_unit_test(several_devices_are_the_same),
+        cmocka_unit_test(halves_add_up),
+        cmocka_unit_test(extension_adds_up),
+        cmocka_unit_test(depth_cap_is_black_and_counted),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}

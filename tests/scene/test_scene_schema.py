@@ -1,0 +1,86 @@
+#!/usr/bin/env python3
+"""Every scene of scenes/ validates against scene.schema.json, and the schema refuses what the reader refuses.
+
+Usage: test_scene_schema.py FOLDER_OF_SCENES. Exit code 77 where the module jsonschema is missing.
+"""
+import copy
+import json
+import pathlib
+import sys
+
+try:
+    import jsonschema
+except ImportError:
+    print("skipped: python3-jsonschema is not installed")
+    sys.exit(77)
+
+GOOD = {
+    "format": 1, "title": "t", "source": "s",
+    "camera": {"image_width": 400, "aspect_ratio": [16, 9], "vfov": 20, "lookfrom": [13, 2, 3], "aperture": 0.1},
+    "background": [0, 0, 0],
+    "transfer": "srgb",
+    "materials": {
+        "a": {"type": "lambertian", "albedo": [0, 0.5, 1], "scatter": "hemisphere", "emit": [1, 1, 1]},
+        "b": {"type": "metal", "albedo": [1, 1, 1], "fuzz": 3, "fuzz_shape": "ball"},
+        "c": {"type": "dielectric", "refraction_index": 1.5, "fresnel": "exact", "total_reflection": "absorb"},
+        "d": {"type": "diffuse_light", "emit": [4, 4, 4]},
+        "e": {"type": "normals"},
+    },
+    "spheres": [{"center": [0, 0, -1], "radius": -0.5, "material": "a"}],
+    "clouds": [{"file": "a.ply", "radius": 1, "material": "a", "materials": ["a", "b"]}],
+}
+
+# Where, and what is put there. None: the member is removed.
+BAD = [
+    (["camera"], None), (["camera"], []), (["sphere"], []), (["format"], 2), (["title"], 1),
+    (["transfer"], "gamma"), (["background"], [0, 0]), (["background"], {"bottom": [0, 0, -1]}),
+    (["background"], {"botom": [0, 0, 1]}),
+    (["camera", "image_width"], 0), (["camera", "image_width"], 1e9), (["camera", "image_width"], 1.5),
+    (["camera", "image_width"], "400"), (["camera", "image_height"], 100), (["camera", "aspect_ratio"], 0),
+    (["camera", "aspect_ratio"], [16, 9, 1]), (["camera", "vfov"], 0), (["camera", "vfov"], 180),
+    (["camera", "defocus_angle"], 1), (["camera", "focus_dist"], 0), (["camera", "samples_per_pixel"], 0),
+    (["camera", "max_depth"], -1), (["camera", "lookfrom"], [0, 0, 2e12]), (["camera", "pixel_sampling"], "centre"),
+    (["materials", "a", "albedo"], [0, 0, 1.1]), (["materials", "a", "albedo"], None), (["materials", "a", "fuzz"], 0),
+    (["materials", "a", "type"], "lambertain"), (["materials", "a", "type"], None),
+    (["materials", "a", "emit"], [-1, 0, 0]), (["materials", "b", "fuzz"], -1), (["materials", "b", "fresnel"], "none"),
+    (["materials", "c", "refraction_index"], -1.5), (["materials", "c", "refraction_index"], None),
+    (["materials", "c", "albedo"], [1, 1, 1]), (["materials", "d", "emit"], None),
+    (["spheres", 0, "radius"], 0), (["spheres", 0, "radius"], None), (["spheres", 0, "center"], [0, 0]),
+    (["spheres", 0, "material"], 1), (["spheres", 0, "centre"], [0, 0, 0]), (["spheres"], {}),
+    (["clouds", 0, "file"], None), (["clouds", 0, "radius"], 0), (["clouds", 0, "materials"], []),
+]
+
+
+def changed(place, value):
+    scene = copy.deepcopy(GOOD)
+    target = scene
+    for step in place[:-1]:
+        target = target[step]
+    if value is None:
+        del target[place[-1]]
+    else:
+        target[place[-1]] = value
+    return scene
+
+
+def main():
+    folder = pathlib.Path(sys.argv[1])
+    schema = json.loads((folder / "scene.schema.json").read_text())
+    jsonschema.Draft202012Validator.check_schema(schema)
+    validator = jsonschema.Draft202012Validator(schema)
+    failures = []
+    scenes = sorted(p for p in folder.glob("*.json") if p.name != "scene.schema.json")
+    for path in scenes:
+        for error in validator.iter_errors(json.loads(path.read_text())):
+            failures.append(f"{path.name}: {error.json_path}: {error.message}")
+    if len(scenes) < 65:
+        failures.append(f"found {len(scenes)} scenes, expected 65 or more")
+    failures += [f"a good scene: {error.json_path}: {error.message}" for error in validator.iter_errors(GOOD)]
+    for place, value in BAD:
+        if validator.is_valid(changed(place, value)):
+            failures.append(f"accepted: {place} = {value!r}")
+    print("\n".join(failures) if failures else f"{len(scenes)} scenes valid, {len(BAD)} bad ones refused")
+    return 1 if failures else 0
+
+
+sys.exit(main())
