@@ -42,7 +42,7 @@ static sigset_t watched_signals(void) {
     sigaddset(&set, SIGINT);
     sigaddset(&set, SIGTERM);
     sigaddset(&set, SIGXCPU);
-    /* nohup means it; but a blocked signal becomes pending even if it is ignored. */
+    /* nohup means it; but a blocked signal becomes pending even if it is ignored, and would be waited for. */
     struct sigaction hangup;
     if (sigaction(SIGHUP, NULL, &hangup) != 0 || hangup.sa_handler != SIG_IGN) sigaddset(&set, SIGHUP);
     return set;
@@ -63,13 +63,17 @@ static void *watch(void *began) {
  * handlers of its own before ours. */
 void bp_interrupt_install(void) {
     const sigset_t set = watched_signals();
+    sigset_t held = set;
     pthread_t watcher;
     sem_t began;
+    /* A hangup that is ignored as well: LLVM's handler, which comes before that, removes the files that it is
+     * compiling into. */
+    sigaddset(&held, SIGHUP);
     /* Ignored ones, as a shell leaves them to what it runs in the background, need not become pending. */
     signal(SIGINT, SIG_DFL);
     signal(SIGTERM, SIG_DFL);
     signal(SIGXCPU, SIG_DFL);
-    pthread_sigmask(SIG_BLOCK, &set, NULL);
+    pthread_sigmask(SIG_BLOCK, &held, NULL);
     sem_init(&began, 0, 0);
     if (pthread_create(&watcher, NULL, watch, &began) == 0) {
         pthread_detach(watcher);
@@ -78,7 +82,7 @@ void bp_interrupt_install(void) {
         while (sem_wait(&began) != 0) {
         }
     } else {
-        pthread_sigmask(SIG_UNBLOCK, &set, NULL); /* they end the program, as they do by default */
+        pthread_sigmask(SIG_UNBLOCK, &held, NULL); /* they end the program, as they do by default */
     }
     sem_destroy(&began);
 }
