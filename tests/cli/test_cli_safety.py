@@ -154,9 +154,10 @@ class OpenFiles(Safety):
         self.assertEqual(json.loads(self.read("t.json"))["width"], 8)
         if os.path.isdir("/proc/self/fd"):
             os.mkfifo(self.path("pipe"))
-            process = subprocess.Popen(["/bin/sh", "-c", "exec \"$B\" render s.json --format ppm -o pipe <&- >&- 2>&-"],
+            process = subprocess.Popen(["/bin/sh", "-c", "exec \"$B\" render s.json --width 512 --spp 1 "
+                                        "--format pfm -o pipe <&- >&- 2>&-"],
                                        cwd=self.folder, env=dict(self.environment, B=cli.PROGRAM))
-            with open(self.path("pipe"), "rb"):  # opened on both sides: neither goes on before
+            with open(self.path("pipe"), "rb"):  # both sides open it, and a pipe holds less than this picture
                 opened = [os.readlink(f"/proc/{process.pid}/fd/{stream}") for stream in range(3)]
                 process.kill()
                 process.wait()

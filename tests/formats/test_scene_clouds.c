@@ -113,7 +113,7 @@ static void what_follows_the_last_element(void **state) {
     write_file("points.ply", bytes, n + 27);
     accept(scene, 2);
     write_file("points.ply", bytes, n + 30);
-    char at[64];
+    char at[96];
     snprintf(at, sizeof at, "3 bytes after the last element, from byte %zu on", n + 27);
     refuse(scene, "points.ply", 0, 0, (const char *const[5]){at, "counts in its header", "scene.json:4:22"});
     write_file("points.ply", bytes, n + 26);
