@@ -20,11 +20,10 @@ static json_t *three(const double *values) {
 }
 
 static json_t *device_json(const BpDeviceInfo *device) {
-    static const char *const types[] = {"cpu", "gpu", "other"};
     return json_pack("{s:i, s:o, s:o, s:o, s:o, s:s}", "number", (int)device->number, "platform",
                      bp_json_text(device->platform), "name", bp_json_text(device->name), "version",
                      bp_json_text(device->version), "driver", bp_json_text(device->driver), "type",
-                     types[device->type]);
+                     bp_device_type_names[device->type]);
 }
 
 static json_t *test_json(BpVerdictFamily family, const BpVerdictTest *test) {

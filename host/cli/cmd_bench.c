@@ -114,9 +114,12 @@ static void print_row(const Bench *bench, const Entry *entry) {
 
 static BpStatus print_table(const Bench *bench, BpError *err) {
     const BpRenderReport *report = &bench->entries[0].runs[0].report;
-    printf("%s, %s; %s kernel, %s, %s numerics, %s math\n", report->device.name, report->device.platform,
-           bp_kernel_names[report->kernel], bp_precision_names[report->precision],
-           bp_numerics_names[report->numerics], bp_math_names[report->math]);
+    bp_show(report->device.name, false, stdout);
+    fputs(", ", stdout);
+    bp_show(report->device.platform, false, stdout);
+    printf("; %s kernel, %s, %s numerics, %s math\n", bp_kernel_names[report->kernel],
+           bp_precision_names[report->precision], bp_numerics_names[report->numerics],
+           bp_math_names[report->math]);
     printf("%-12s %11s %9s %9s %9s %10s %11s %9s %9s %9s %8s\n", "scene", "spheres", "load", "tree", "kernel",
            "Msamples/s", "Msegments/s", "ns/segm.", "CPU ns", "spread", "B/sphere");
     for (size_t i = 0; i < bench->count; ++i) print_row(bench, &bench->entries[i]);

@@ -76,8 +76,11 @@ static BpStatus check_device(const CheckTask *task, FILE *shown, json_t **report
         status = bp_fail(err, BP_ERR_MEMORY, "out of memory for a report");
     else if (shown != NULL) {
         bp_show(task->scene->path, false, shown);
-        fprintf(shown, " on %s (%s), %ux%u pixels, %llu sample%s each: %s", result->report.device.name,
-                result->report.device.platform, result->kernel.width, result->kernel.height,
+        fputs(" on ", shown);
+        bp_show(result->report.device.name, false, shown);
+        fputs(" (", shown);
+        bp_show(result->report.device.platform, false, shown);
+        fprintf(shown, "), %ux%u pixels, %llu sample%s each: %s", result->kernel.width, result->kernel.height,
                 (unsigned long long)task->options->render.samples_per_pixel,
                 bp_plural(task->options->render.samples_per_pixel), text);
     }
@@ -143,8 +146,11 @@ static BpStatus check_all(CheckTask *task, json_t *results, bool *agree, bool *b
         task->device = &devices[d];
         map_name(map != NULL ? map : "", devices[d].number, name, sizeof name);
         task->map = map != NULL ? name : NULL;
-        if (!task->line->quiet)
-            fprintf(stderr, "checking device %u, %s\n", devices[d].number, devices[d].name);
+        if (!task->line->quiet) {
+            fprintf(stderr, "checking device %u, ", devices[d].number);
+            bp_show(devices[d].name, false, stderr);
+            fputc('\n', stderr);
+        }
         if (devices[d].refusal[0] != '\0') {
             entry = bp_check_report_failure(&devices[d], devices[d].refusal);
         } else {

@@ -5,6 +5,7 @@
 #include "commands.h"
 
 #include "../base/format.h"
+#include "../base/json_memory.h"
 #include "../base/output_file.h"
 #include "../cost/study.h"
 #include "interrupt.h"
@@ -41,14 +42,17 @@ typedef bool Print(const BpStudyResult *result, FILE *out);
 
 /* Writes by `print` to the file, whole or not at all; "-" is standard output. */
 static BpStatus write_file(const BpStudyResult *result, const char *path, Print *print, BpError *err) {
-    if (strcmp(path, "-") == 0)
-        return print(result, stdout)
-                   ? BP_OK
-                   : bp_fail(err, BP_ERR_FILE, "cannot write to standard output: %s", strerror(errno));
+    if (strcmp(path, "-") == 0) {
+        if (print(result, stdout)) return BP_OK;
+        if (bp_json_memory_failed()) return bp_fail(err, BP_ERR_MEMORY, "out of memory for the results");
+        return bp_fail(err, BP_ERR_FILE, "cannot write to standard output: %s", strerror(errno));
+    }
     BpOutputFile file = {0};
     BP_TRY(bp_output_open(path, &file, err));
     if (print(result, file.stream)) return bp_output_commit(&file, err);
-    const BpStatus status = bp_output_fail(err, "write", path, errno);
+    const BpStatus status = bp_json_memory_failed()
+                                ? bp_fail(err, BP_ERR_MEMORY, "out of memory for %s", path)
+                                : bp_output_fail(err, "write", path, errno);
     bp_output_discard(&file);
     return status;
 }

@@ -63,9 +63,10 @@ static void print_costs(const BpCosts *costs) {
     const unsigned terminal = bp_terminal_columns();
     const unsigned columns = terminal > 60 ? terminal - 56 : 8;
     char rate[32];
-    printf("  %s, %s kernel, %ux%u, %u rounds of %s samples%s\n", costs->device.name,
-           bp_kernel_names[costs->form], costs->width, costs->height, costs->rounds,
-           bp_format_count((double)costs->samples, rate, sizeof rate),
+    fputs("  ", stdout);
+    bp_show(costs->device.name, false, stdout);
+    printf(", %s kernel, %ux%u, %u rounds of %s samples%s\n", bp_kernel_names[costs->form], costs->width,
+           costs->height, costs->rounds, bp_format_count((double)costs->samples, rate, sizeof rate),
            costs->device.type == BP_DEVICE_CPU ? ", processor time" : "");
     printf("  %-18s %6s %15s\n", "kernel", "time", "half within");
     for (size_t k = 0; k < costs->kernel_count; ++k) {

@@ -44,8 +44,10 @@ static const char *outcome(const BpPathStep *step, BpMaterialKind kind) {
 
 void bp_path_print(const BpScene *scene, const BpPath *path, uint32_t x, uint32_t y, uint64_t sample,
                    uint64_t seed) {
-    printf("  pixel (%" PRIu32 ", %" PRIu32 "), sample %" PRIu64 ", seed %" PRIu64 ", on %s\n", x, y, sample,
-           seed, path->device.name);
+    printf("  pixel (%" PRIu32 ", %" PRIu32 "), sample %" PRIu64 ", seed %" PRIu64 ", on ", x, y, sample,
+           seed);
+    bp_show(path->device.name, false, stdout);
+    putchar('\n');
     const double nothing[3] = {0};
     const double *radiance = nothing;
     for (size_t i = 0; i < path->count; ++i) {

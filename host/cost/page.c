@@ -2,6 +2,7 @@
  * study.h. */
 #include "study.h"
 
+#include "../base/json_memory.h"
 #include "../image/error_map.h"
 
 #include <inttypes.h>
@@ -22,7 +23,7 @@ static void print_json(const char *json, FILE *out) {
 
 static bool print_study(const BpStudyResult *result, FILE *out) {
     json_t *root = bp_study_json(result);
-    char *text = root != NULL ? json_dumps(root, JSON_REAL_PRECISION(12)) : NULL;
+    char *text = root != NULL && !bp_json_memory_failed() ? json_dumps(root, JSON_REAL_PRECISION(12)) : NULL;
     if (text != NULL) print_json(text, out);
     free(text);
     json_decref(root);

@@ -2,6 +2,7 @@
  *
  * In:    a study that has ended.   Out: table, JSON, CSV or page.
  * Knows: which function prints which.   Does not know: what they print, files. */
+#include "../base/json_memory.h"
 #include "../base/status.h"
 #include "study.h"
 
@@ -11,7 +12,8 @@
 
 static bool print_json(const BpStudyResult *result, FILE *out) {
     json_t *root = bp_study_json(result);
-    const bool done = root != NULL && json_dumpf(root, out, JSON_INDENT(2) | JSON_REAL_PRECISION(12)) == 0 &&
+    const bool done = root != NULL && !bp_json_memory_failed() &&
+                      json_dumpf(root, out, JSON_INDENT(2) | JSON_REAL_PRECISION(12)) == 0 &&
                       fputc('\n', out) != EOF;
     json_decref(root);
     return done;

@@ -16,7 +16,9 @@ static void print_head(const BpStudyResult *result, FILE *out) {
     const BpScene *scene = result->scene;
     char error[32];
     bp_show(scene->path, false, out);
-    fprintf(out, " at %ux%u on %s\n", scene->camera.width, scene->camera.height, result->report.device.name);
+    fprintf(out, " at %ux%u on ", scene->camera.width, scene->camera.height);
+    bp_show(result->report.device.name, false, out);
+    fputc('\n', out);
     fprintf(out,
             "truth: exact Fresnel, depth %u, %s, two references of %" PRIu64
             " samples a pixel (noise of their mean: %s)\n\n",
