@@ -11,7 +11,7 @@
 #include "../host/base/clock.h"
 #include "../host/base/color.h"
 #include "../host/check/statistics.h"
-#include "../host/engine/render.h"
+#include "render/render.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -44,18 +44,18 @@ static void must(BpStatus status, const BpError *err) {
     exit(EXIT_FAILURE);
 }
 
-static void read_pixels(const BpAccumulator *accumulator, bool with_error, Run *run) {
-    const size_t pixels = (size_t)accumulator->width * accumulator->height;
+static void read_pixels(const BpFilm *film, bool with_error, Run *run) {
+    const size_t pixels = (size_t)film->width * film->height;
     BpPicture picture;
     BpError err = {0};
-    must(bp_accumulator_picture(accumulator, &picture, &err), &err);
+    must(bp_film_picture(film, &picture, &err), &err);
     run->luminance = calloc(pixels, sizeof *run->luminance);
     run->error = calloc(pixels, sizeof *run->error);
     if (run->luminance == NULL || run->error == NULL) exit(EXIT_FAILURE);
     for (size_t p = 0; p < pixels; ++p) {
         for (size_t c = 0; c < 3; ++c)
             run->luminance[p] += bp_luminance_weights[c] * (double)picture.rgb[3 * p + c];
-        run->error[p] = with_error ? sqrt(bp_accumulator_squared_error(accumulator, p)) : NAN;
+        run->error[p] = with_error ? sqrt(bp_film_squared_error(film, p)) : NAN;
     }
     bp_picture_clear(&picture);
 }
@@ -65,7 +65,7 @@ static Run render(const BpScene *scene, const Way *way, uint64_t seed, uint64_t 
     BpRenderOptions options;
     BpRender *made = NULL;
     BpProgress progress = {0};
-    const BpAccumulator *accumulator = NULL;
+    const BpFilm *film = NULL;
     BpRenderReport report;
     BpError err = {0};
     bp_render_defaults(scene, &options);
@@ -77,16 +77,16 @@ static Run render(const BpScene *scene, const Way *way, uint64_t seed, uint64_t 
     must(bp_render_create(scene, &options, NULL, 0, &made, &err), &err);
     const double wall = bp_clock_seconds(), processor = bp_processor_seconds();
     while (!progress.finished) must(bp_render_step(made, &progress, &err), &err);
-    must(bp_render_accumulator(made, &accumulator, &err), &err);
-    const double nrmse = way->replicates > 1 ? bp_accumulator_nrmse(accumulator) : 0;
+    must(bp_render_read_film(made, &film, &err), &err);
+    const double nrmse = way->replicates > 1 ? bp_film_nrmse(film) : 0;
     Run run = {.processor = bp_processor_seconds() - processor, .wall = bp_clock_seconds() - wall};
     if (nrmse < 0) exit(EXIT_FAILURE); /* so that it is not left out */
     bp_render_report(made, &report);
     run.device = report.device_seconds;
-    run.fold = report.fold_seconds;
+    run.fold = report.accumulate_seconds;
     run.samples = report.samples;
     run.rays = report.segments;
-    read_pixels(accumulator, way->replicates > 1, &run);
+    read_pixels(film, way->replicates > 1, &run);
     bp_render_destroy(&made);
     return run;
 }

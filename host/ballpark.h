@@ -189,7 +189,7 @@ typedef struct BpRenderOptions {
     bool all_effects;       /* build the general kernel instead of the specialised one */
     uint32_t extra_effects; /* bit e: simulate effect e of bp_scene_effects() although nothing calls for it */
     bool adaptive;          /* samples_per_pixel is a mean: pixels get samples where the error is */
-    bool features;          /* bp_render_features() will be asked */
+    bool features;          /* bp_render_aovs() will be asked */
     bool force;             /* render even on a device that fails its self-test */
     uint32_t replicates;    /* K of the error estimate; 0: the default; 1: no estimate */
     /* For tests and tuning; 0 means: choose. None of these changes a picture. */
@@ -304,7 +304,7 @@ typedef struct BpPicture {
     float *rgb;        /* width * height * 3 */
     float *error;      /* standard error of each channel's mean, same shape; NaN where unknown */
     uint64_t *samples; /* valid samples of each pixel */
-    /* Optional, see bp_render_features(): of what each pixel shows first, averaged over camera rays. */
+    /* Optional, see bp_render_aovs(): of what each pixel shows first, averaged over camera rays. */
     float *depth; /* along the view direction from the camera, mean of the rays that met something; +Inf: none
                      did */
     float *normal; /* 3 a pixel; unit, facing the camera, in the scene's axes; a ray that met nothing counts
@@ -320,7 +320,7 @@ BP_API BpStatus bp_render_read(BpRender *render, BpPicture *picture, BpError *er
  * options.features: from the camera rays of the first 16 samples of each pixel (fewer in a shorter render),
  * by the first device. What the picture held of them is released. BP_ERR_USAGE: without options.features, or
  * for a picture of another size. */
-BP_API BpStatus bp_render_features(BpRender *render, BpPicture *picture, BpError *err);
+BP_API BpStatus bp_render_aovs(BpRender *render, BpPicture *picture, BpError *err);
 /* `picture`: Optional. */
 BP_API void bp_picture_clear(BpPicture *picture);
 
@@ -359,7 +359,7 @@ BP_API BpStatus bp_error_map_write(const BpPicture *picture, const char *path, B
 
 /* The exact sums of a render's samples, which can be kept in a file (.bpa) and added to those of other
  * samples of the same picture. */
-typedef struct BpAccumulator BpFilm;
+typedef struct BpFilm BpFilm;
 
 /* The sums of a render as they stand, during or after it: a film of the caller's own, which the render does
  * not change. */

@@ -4,7 +4,7 @@
 #ifndef BP_BASE_NAMES_H
 #define BP_BASE_NAMES_H
 
-#include "../ballpark.h"
+#include "ballpark.h"
 
 /* Each by the enumeration's value; NULL ends the list. */
 extern const char *const bp_precision_names[],

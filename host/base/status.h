@@ -9,7 +9,7 @@
 #ifndef BP_BASE_STATUS_H
 #define BP_BASE_STATUS_H
 
-#include "../ballpark.h"
+#include "ballpark.h"
 
 #include <stddef.h>
 

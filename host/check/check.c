@@ -1,9 +1,9 @@
 /* check.c: see check.h. */
 #include "check.h"
 
-#include "../base/clock.h"
-#include "../base/status.h"
-#include "../reference/reference.h"
+#include "base/clock.h"
+#include "base/status.h"
+#include "reference/reference.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -100,7 +100,7 @@ static BpStatus step_reference(BpCheck *check, BpError *err) {
 }
 
 /* How far the picture is from the means of its samples (BpVerdict, picture_off). */
-static double picture_off(const BpSums *samples, const BpAccumulator *picture) {
+static double picture_off(const BpSums *samples, const BpFilm *picture) {
     const size_t pixels = (size_t)samples->width * samples->height;
     double mean[3] = {0}, off = 0;
     for (size_t p = 0; p < pixels; ++p)
@@ -114,7 +114,7 @@ static double picture_off(const BpSums *samples, const BpAccumulator *picture) {
         uint64_t count = 0;
         for (size_t cell = p * picture->replicates; cell < (p + 1) * picture->replicates; ++cell) {
             count += picture->counts[cell];
-            for (size_t c = 0; c < 3; ++c) sum[c] += bp_accumulator_sum(picture, 3 * cell + c);
+            for (size_t c = 0; c < 3; ++c) sum[c] += bp_film_sum(picture, 3 * cell + c);
         }
         if (count != pixel->count) return INFINITY;
         for (size_t c = 0; c < 3; ++c) {
@@ -128,9 +128,9 @@ static double picture_off(const BpSums *samples, const BpAccumulator *picture) {
 /* The verdict on the samples of both, and on what the kernel's picture makes of its own. */
 static BpStatus judge(BpCheck *check, BpError *err) {
     BpCheckResult *result = &check->result;
-    const BpAccumulator *picture = NULL;
+    const BpFilm *picture = NULL;
     BP_TRY(bp_verdict(&result->kernel, &result->reference, check->options.level, &result->verdict, err));
-    BP_TRY(bp_render_accumulator(check->render, &picture, err));
+    BP_TRY(bp_render_read_film(check->render, &picture, err));
     bp_verdict_add_picture(&result->verdict, picture_off(&result->kernel, picture));
     return BP_OK;
 }

@@ -7,7 +7,7 @@
 #ifndef BP_CHECK_CHECK_H
 #define BP_CHECK_CHECK_H
 
-#include "../engine/render.h"
+#include "render/render.h"
 #include "verdict.h"
 
 #define BP_CHECK_WIDTH_DEFAULT 64u

@@ -1,8 +1,8 @@
 /* map.c: the picture of a check; see check.h. */
 #include "check.h"
 
-#include "../base/color.h"
-#include "../base/status.h"
+#include "base/color.h"
+#include "base/status.h"
 
 #include <math.h>
 #include <stdlib.h>

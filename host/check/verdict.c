@@ -1,7 +1,7 @@
 /* verdict.c: see verdict.h. */
 #include "verdict.h"
 
-#include "../base/status.h"
+#include "base/status.h"
 #include "statistics.h"
 
 #include <math.h>

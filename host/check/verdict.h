@@ -17,7 +17,7 @@
 #ifndef BP_CHECK_VERDICT_H
 #define BP_CHECK_VERDICT_H
 
-#include "../reference/sums.h"
+#include "reference/sums.h"
 
 #define BP_VERDICT_LEVEL 1e-4    /* default: one right kernel in ten thousand is rejected */
 #define BP_VERDICT_MARGIN 0.005  /* "equivalent": brightness shown to be equal within 0.5 % */

@@ -1,8 +1,8 @@
 /* apart.c: see apart.h. */
 #include "apart.h"
 
-#include "../engine/pocl.h"
 #include "interrupt.h"
+#include "opencl/pocl.h"
 
 #include <errno.h>
 #include <signal.h>

@@ -8,7 +8,7 @@
 #ifndef BP_CLI_APART_H
 #define BP_CLI_APART_H
 
-#include "../base/status.h"
+#include "base/status.h"
 
 #include <stdio.h>
 

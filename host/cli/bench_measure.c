@@ -1,8 +1,8 @@
 /* bench_measure.c: see bench_measure.h. */
 #include "bench_measure.h"
 
-#include "../base/clock.h"
-#include "../base/quantile.h"
+#include "base/clock.h"
+#include "base/quantile.h"
 #include "interrupt.h"
 #include "setup.h"
 
@@ -23,10 +23,9 @@ static BpStatus trace_to(BpRender *render, uint64_t samples, BpError *err) {
     return BP_OK;
 }
 
-/* The counts of a render are whole once its accumulator was read. */
-static BpStatus read_report(BpRender *render, BpRenderReport *report, const BpAccumulator **accumulator,
-                            BpError *err) {
-    BP_TRY(bp_render_accumulator(render, accumulator, err));
+/* The counts of a render are whole once its film was read. */
+static BpStatus read_report(BpRender *render, BpRenderReport *report, const BpFilm **film, BpError *err) {
+    BP_TRY(bp_render_read_film(render, film, err));
     bp_render_report(render, report);
     return BP_OK;
 }
@@ -40,7 +39,7 @@ static double own_seconds(const BpRenderReport *report, double wall, double cpu)
 
 /* Whole passes only: the rows of a picture cost differently. */
 static BpStatus trace(BpRender *render, double seconds, BpBenchRun *run, BpError *err) {
-    const BpAccumulator *accumulator = NULL;
+    const BpFilm *film = NULL;
     BpRenderReport before;
     bp_render_report(render, &before);
     uint64_t samples = 0;
@@ -52,7 +51,7 @@ static BpStatus trace(BpRender *render, double seconds, BpBenchRun *run, BpError
         taken = own_seconds(&before, bp_clock_seconds() - start, bp_processor_seconds() - cpu_start);
         whole += taken;
     } while (whole < WARM_UP_SECONDS);
-    BP_TRY(read_report(render, &before, &accumulator, err));
+    BP_TRY(read_report(render, &before, &film, err));
 
     /* The last pass of the warm-up was samples / 2 + 1. */
     const double more = seconds / taken * (double)(samples / 2 + 1);
@@ -60,12 +59,12 @@ static BpStatus trace(BpRender *render, double seconds, BpBenchRun *run, BpError
     BP_TRY(trace_to(render, samples + (more > 1 ? (uint64_t)more : 1), err));
     run->seconds = bp_clock_seconds() - start;
     run->cpu_seconds = bp_processor_seconds() - cpu_start;
-    BP_TRY(read_report(render, &run->report, &accumulator, err));
+    BP_TRY(read_report(render, &run->report, &film, err));
     run->samples = run->report.samples - before.samples;
     run->segments = run->report.segments - before.segments;
     run->device_seconds = run->report.device_seconds - before.device_seconds;
-    bp_accumulator_mean(accumulator, run->mean);
-    run->nrmse = bp_accumulator_nrmse(accumulator);
+    bp_film_mean(film, run->mean);
+    run->nrmse = bp_film_nrmse(film);
     if (run->segments == 0)
         return bp_fail(err, BP_ERR_USAGE, "no ray was traced; a depth of 0 has nothing to measure");
     return BP_OK;

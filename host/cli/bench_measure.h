@@ -5,8 +5,8 @@
 #ifndef BP_CLI_BENCH_MEASURE_H
 #define BP_CLI_BENCH_MEASURE_H
 
-#include "../engine/render.h"
 #include "options.h"
+#include "render/render.h"
 
 /* Times are wall-clock seconds unless they say otherwise. */
 typedef struct BpBenchRun {

@@ -7,9 +7,9 @@
  *            figures show what the number of spheres costs */
 #include "bench_scenes.h"
 
-#include "../base/output_file.h"
-#include "../scene/scene.h"
-#include "../scene/scene_field.h"
+#include "base/output_file.h"
+#include "formats/field.h"
+#include "scene/scene.h"
 
 #include <errno.h>
 #include <stdio.h>

@@ -5,7 +5,7 @@
 #ifndef BP_CLI_BENCH_SCENES_H
 #define BP_CLI_BENCH_SCENES_H
 
-#include "../base/status.h"
+#include "base/status.h"
 
 /* The names that are measured when none is given, ended by NULL. */
 extern const char *const bp_bench_scene_names[];

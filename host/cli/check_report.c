@@ -1,10 +1,10 @@
 /* check_report.c: see check_report.h. */
 #include "check_report.h"
 
-#include "../base/format.h"
-#include "../base/json_text.h"
-#include "../base/names.h"
-#include "../base/shown.h"
+#include "base/format.h"
+#include "base/json_text.h"
+#include "base/names.h"
+#include "base/shown.h"
 #include "json_file.h"
 
 #include <math.h>

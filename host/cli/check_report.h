@@ -4,7 +4,7 @@
 #ifndef BP_CLI_CHECK_REPORT_H
 #define BP_CLI_CHECK_REPORT_H
 
-#include "../check/check.h"
+#include "check/check.h"
 
 #include <jansson.h>
 #include <stdio.h>

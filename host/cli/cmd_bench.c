@@ -6,11 +6,11 @@
  * Scenes take turns, round after round, so that what else the machine does spreads over all of them. */
 #include "commands.h"
 
-#include "../base/format.h"
-#include "../base/json_text.h"
-#include "../base/names.h"
-#include "../base/plural.h"
-#include "../base/shown.h"
+#include "base/format.h"
+#include "base/json_text.h"
+#include "base/names.h"
+#include "base/plural.h"
+#include "base/shown.h"
 #include "bench_measure.h"
 #include "bench_scenes.h"
 #include "interrupt.h"

@@ -4,13 +4,13 @@
  * Knows: the check, devices, processes.   Does not know: statistics, OpenCL. */
 #include "commands.h"
 
-#include "../base/format.h"
-#include "../base/output_file.h"
-#include "../base/plural.h"
-#include "../base/shown.h"
-#include "../image/image.h"
 #include "apart.h"
+#include "base/format.h"
+#include "base/output_file.h"
+#include "base/plural.h"
+#include "base/shown.h"
 #include "check_report.h"
+#include "image/image.h"
 #include "interrupt.h"
 #include "json_file.h"
 #include "setup.h"

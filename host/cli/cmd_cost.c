@@ -4,13 +4,13 @@
  * Knows: the study, files, the terminal.   Does not know: how anything is measured. */
 #include "commands.h"
 
-#include "../base/format.h"
-#include "../base/json_memory.h"
-#include "../base/output_file.h"
-#include "../cost/study.h"
+#include "base/format.h"
+#include "base/json_memory.h"
+#include "base/output_file.h"
 #include "interrupt.h"
 #include "json_file.h"
 #include "setup.h"
+#include "study/study.h"
 #include "terminal.h"
 
 #include <errno.h>

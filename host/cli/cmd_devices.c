@@ -4,9 +4,9 @@
  * Knows: BpDeviceInfo, tables on a terminal.   Does not know: OpenCL. */
 #include "commands.h"
 
-#include "../base/json_text.h"
-#include "../base/names.h"
-#include "../base/shown.h"
+#include "base/json_text.h"
+#include "base/names.h"
+#include "base/shown.h"
 #include "json_file.h"
 
 #include <errno.h>

@@ -4,14 +4,14 @@
  * JSON. Knows: the effects' analysis, its measurement, tables on a terminal.   Does not know: OpenCL. */
 #include "commands.h"
 
-#include "../base/format.h"
-#include "../base/json_text.h"
-#include "../base/names.h"
-#include "../base/shown.h"
-#include "../engine/effect_costs.h"
+#include "base/format.h"
+#include "base/json_text.h"
+#include "base/names.h"
+#include "base/shown.h"
 #include "explain_path.h"
 #include "json_file.h"
 #include "setup.h"
+#include "study/effect_costs.h"
 #include "terminal.h"
 
 #include <errno.h>
@@ -126,11 +126,11 @@ static BpStatus measure(const BpCommandLine *line, BpScene *scene, const BpDevic
 }
 
 static BpStatus follow(const BpCommandLine *line, const BpScene *scene, const BpDeviceInfo *device,
-                       BpPath *path, BpError *err) {
+                       BpPathLog *path, BpError *err) {
     BpRenderOptions options;
     BP_TRY(render_options(line, scene, &options, err));
-    return bp_path_follow(scene, &options, device, line->pixel_x, line->pixel_y,
-                          (uint32_t)options.first_sample, path, err);
+    return bp_path_log(scene, &options, device, line->pixel_x, line->pixel_y, (uint32_t)options.first_sample,
+                       path, err);
 }
 
 /* ---- JSON -------------------------------------------------------------------------------------------------
@@ -197,8 +197,8 @@ static json_t *scene_json(const char *path, const BpScene *scene, const BpEffect
 typedef struct Findings {
     BpEffectInfo effects[BP_EFFECTS_MAX];
     size_t count;
-    BpCosts costs; /* with --measure */
-    BpPath path;   /* with --pixel */
+    BpCosts costs;  /* with --measure */
+    BpPathLog path; /* with --pixel */
 } Findings;
 
 /* Appends the scene's entry to `list`. */
@@ -244,7 +244,7 @@ static BpStatus explain(const BpCommandLine *line, const char *path, const BpDev
     if (list != NULL) status = append_json(line, path, scene, &found, list, err);
 
 done:
-    bp_path_clear(&found.path);
+    bp_path_log_clear(&found.path);
     bp_scene_destroy(&scene);
     return status;
 }

@@ -4,11 +4,11 @@
  * Knows: the generators' names.       Does not know: the order of their draws. */
 #include "commands.h"
 
-#include "../base/output_file.h"
-#include "../base/plural.h"
-#include "../base/shown.h"
-#include "../scene/scene.h"
-#include "../scene/scene_field.h"
+#include "base/output_file.h"
+#include "base/plural.h"
+#include "base/shown.h"
+#include "formats/field.h"
+#include "scene/scene.h"
 
 #include <inttypes.h>
 #include <stdio.h>

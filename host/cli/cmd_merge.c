@@ -1,13 +1,13 @@
 /* cmd_merge.c: `ballpark merge`.
  *
- * In:    accumulators of disjoint samples.   Out: the picture, or the accumulator, of them all.
+ * In:    films of disjoint samples.   Out: the picture, or the film, of them all.
  * Knows: files, in which order they are added.   Does not know: how sums are added. */
 #include "commands.h"
 
-#include "../base/format.h"
-#include "../base/plural.h"
-#include "../base/shown.h"
-#include "../engine/accumulator_file.h"
+#include "base/format.h"
+#include "base/plural.h"
+#include "base/shown.h"
+#include "film/film_file.h"
 #include "result_file.h"
 
 #include <inttypes.h>
@@ -16,17 +16,16 @@
 #include <string.h>
 
 /* A name for a sample range: "0 to 499", or the first of several. */
-static void describe_ranges(const BpAccumulator *accumulator, char *text, size_t size) {
+static void describe_ranges(const BpFilm *film, char *text, size_t size) {
     size_t used = 0;
     text[0] = '\0';
-    for (size_t r = 0; r < accumulator->range_count && used < size; ++r)
+    for (size_t r = 0; r < film->range_count && used < size; ++r)
         used += (size_t)snprintf(text + used, size - used, "%s%" PRIu64 " to %" PRIu64, r > 0 ? ", " : "",
-                                 accumulator->ranges[r].first,
-                                 accumulator->ranges[r].first + accumulator->ranges[r].count - 1);
+                                 film->ranges[r].first, film->ranges[r].first + film->ranges[r].count - 1);
     if (used == 0) snprintf(text, size, "none");
 }
 
-static bool ranges_overlap(const BpAccumulator *a, const BpAccumulator *b) {
+static bool ranges_overlap(const BpFilm *a, const BpFilm *b) {
     for (size_t i = 0; i < a->range_count; ++i)
         for (size_t j = 0; j < b->range_count; ++j)
             if (a->ranges[i].first < b->ranges[j].first + b->ranges[j].count &&
@@ -36,21 +35,21 @@ static bool ranges_overlap(const BpAccumulator *a, const BpAccumulator *b) {
 }
 
 /* Which of the files before `at` has samples of `from` already: the merged sums no longer know. */
-static const char *find_overlap(const BpCommandLine *line, size_t at, const BpAccumulator *from) {
+static const char *find_overlap(const BpCommandLine *line, size_t at, const BpFilm *from) {
     for (size_t f = 0; f < at; ++f) {
-        BpAccumulator *other = NULL;
-        if (bp_accumulator_load(line->operands[f], &other, NULL) != BP_OK) continue;
+        BpFilm *other = NULL;
+        if (bp_film_read(line->operands[f], &other, NULL) != BP_OK) continue;
         const bool found = ranges_overlap(other, from);
-        bp_accumulator_destroy(&other);
+        bp_film_destroy(&other);
         if (found) return line->operands[f];
     }
     return NULL;
 }
 
-static BpStatus add_file(const BpCommandLine *line, size_t at, BpAccumulator *sum, BpError *err) {
-    BpAccumulator *from = NULL;
-    BP_TRY(bp_accumulator_load(line->operands[at], &from, err));
-    BpStatus status = bp_accumulator_merge(sum, from, err);
+static BpStatus add_file(const BpCommandLine *line, size_t at, BpFilm *sum, BpError *err) {
+    BpFilm *from = NULL;
+    BP_TRY(bp_film_read(line->operands[at], &from, err));
+    BpStatus status = bp_film_merge(sum, from, err);
     if (status != BP_OK) {
         const char *other = find_overlap(line, at, from);
         char ranges[120], reason[sizeof err->message];
@@ -63,37 +62,35 @@ static BpStatus add_file(const BpCommandLine *line, size_t at, BpAccumulator *su
             bp_fail(err, status, "%s does not go with %s: %.600s", line->operands[at], line->operands[0],
                     reason);
     }
-    bp_accumulator_destroy(&from);
+    bp_film_destroy(&from);
     return status;
 }
 
 BpStatus bp_command_merge(const BpCommandLine *line, BpError *err) {
     BpStatus status = BP_OK;
-    BpAccumulator *sum = NULL;
+    BpFilm *sum = NULL;
     BpResultFile result;
     if (line->output == NULL)
         return bp_fail(err, BP_ERR_USAGE, "ballpark merge needs --output FILE: a picture, or another .bpa");
     BP_TRY(bp_result_choose(line, line->operands[0], &result, err));
-    BP_TRY_GOTO(status, bp_accumulator_load(line->operands[0], &sum, err), done);
+    BP_TRY_GOTO(status, bp_film_read(line->operands[0], &sum, err), done);
     for (size_t f = 1; f < line->operand_count; ++f) BP_TRY_GOTO(status, add_file(line, f, sum, err), done);
     BP_TRY_GOTO(status, bp_result_write(line, &result, sum, NULL, (BpTransfer)sum->transfer, err), done);
     if (!line->quiet && result.format == BP_FORMAT_EXR)
-        fprintf(
-            stderr,
-            "depth, normals and albedo follow from the scene, of which accumulators hold nothing: left out; "
-            "ballpark render -o FILE.exr has them\n");
+        fprintf(stderr,
+                "depth, normals and albedo follow from the scene, of which films hold nothing: left out; "
+                "ballpark render -o FILE.exr has them\n");
     if (!line->quiet) {
         char nrmse[32], ranges[120];
-        bp_format_percent(bp_accumulator_nrmse(sum), nrmse, sizeof nrmse);
+        bp_format_percent(bp_film_nrmse(sum), nrmse, sizeof nrmse);
         describe_ranges(sum, ranges, sizeof ranges);
         bp_show(bp_result_name(&result), false, stderr);
         fprintf(stderr, ": %" PRIu32 "x%" PRIu32 ", %" PRIu64 " sample%s a pixel (%s%s), error %s\n",
-                sum->width, sum->height, bp_accumulator_range_total(sum),
-                bp_plural(bp_accumulator_range_total(sum)), ranges,
-                sum->partial ? ", not all of them in every pixel" : "", nrmse);
+                sum->width, sum->height, bp_film_range_total(sum), bp_plural(bp_film_range_total(sum)),
+                ranges, sum->partial ? ", not all of them in every pixel" : "", nrmse);
     }
     if (!line->quiet) bp_result_warn(sum);
 done:
-    bp_accumulator_destroy(&sum);
+    bp_film_destroy(&sum);
     return status;
 }

@@ -4,14 +4,14 @@
  * Knows: the order of the steps.    Does not know: how any of them is done. */
 #include "commands.h"
 
-#include "../base/clock.h"
-#include "../base/format.h"
-#include "../base/plural.h"
-#include "../base/shown.h"
-#include "../engine/adaptive.h"
-#include "../engine/stop_rule.h"
+#include "base/clock.h"
+#include "base/format.h"
+#include "base/plural.h"
+#include "base/shown.h"
 #include "files_apart.h"
+#include "film/adaptive.h"
 #include "json_file.h"
+#include "render/stop_rule.h"
 #include "render_loop.h"
 #include "result_file.h"
 #include "setup.h"
@@ -59,9 +59,9 @@ static void print_summary(const BpRunResult *result, const BpStopRule *rule, con
     if (result->options->adaptive) {
         uint64_t least, most;
         double mean;
-        bp_accumulator_sample_counts(result->accumulator, &least, &most, &mean);
+        bp_film_sample_counts(result->film, &least, &most, &mean);
         snprintf(count, sizeof count, "%.1f samples a pixel (%" PRIu64 " to %" PRIu64 ")", mean, least, most);
-    } else if (result->accumulator->partial && result->samples_per_pixel > 0) {
+    } else if (result->film->partial && result->samples_per_pixel > 0) {
         more_samples = " and part of another round";
     }
     bp_show(result->output, false, stderr);
@@ -111,7 +111,7 @@ static void print_summary(const BpRunResult *result, const BpStopRule *rule, con
         fprintf(stderr, "%s of the paths were cut at %" PRIu32 " segment%s (--depth) and count as black\n",
                 bp_format_percent((double)report->cut_paths / (double)report->samples, text, sizeof text),
                 result->options->max_depth, bp_plural(result->options->max_depth));
-    bp_result_warn(result->accumulator);
+    bp_result_warn(result->film);
     if (report->invalid_samples > 0)
         fprintf(stderr, "warning: %" PRIu64 " sample%s not finite; left out of the picture\n",
                 report->invalid_samples, report->invalid_samples == 1 ? " was" : "s were");
@@ -120,11 +120,11 @@ static void print_summary(const BpRunResult *result, const BpStopRule *rule, con
 /* Picture, statistics and summary of a render that has stopped. */
 static BpStatus deliver(const BpCommandLine *line, const BpResultFile *file, const BpStopRule *rule,
                         const BpLoopEnd *end, BpRender *render, BpRunResult *result, BpError *err) {
-    BP_TRY(bp_render_accumulator(render, &result->accumulator, err));
+    BP_TRY(bp_render_read_film(render, &result->film, err));
     bp_render_report(render, &result->report);
     result->samples_per_pixel = bp_render_samples_done(render);
     result->stopped_by = end->reason;
-    result->nrmse = bp_accumulator_nrmse(result->accumulator);
+    result->nrmse = bp_film_nrmse(result->film);
     /* What little is left says nothing of the scene, so no picture of it is written. */
     const uint64_t samples = result->report.samples, invalid = result->report.invalid_samples;
     if (invalid > samples / 2)
@@ -137,8 +137,7 @@ static BpStatus deliver(const BpCommandLine *line, const BpResultFile *file, con
             result->options->precision == BP_PRECISION_DOUBLE ? "double" : "single",
             result->options->precision == BP_PRECISION_DOUBLE ? "" : "use --precision double, ");
     const double write_start = bp_clock_seconds();
-    BP_TRY(bp_result_write(line, file, result->accumulator, render, (BpTransfer)result->accumulator->transfer,
-                           err));
+    BP_TRY(bp_result_write(line, file, result->film, render, (BpTransfer)result->film->transfer, err));
     result->times.write = bp_clock_seconds() - write_start;
     if (line->stats != NULL) BP_TRY(bp_json_write(bp_stats_json(result), line->stats, err));
     if (!line->quiet) print_summary(result, rule, end);

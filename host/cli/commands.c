@@ -1,7 +1,7 @@
 /* commands.c: the table of commands; see commands.h. */
 #include "commands.h"
 
-#include "../scene/scene_document.h"
+#include "base/message_text.h"
 
 #include <stdint.h>
 #include <string.h>
@@ -124,7 +124,7 @@ const BpCommand bp_commands[] = {
         .operands_max = SIZE_MAX,
         .summary = "make one picture of renders of different samples",
         .description =
-            "Adds up accumulators (.bpa) of the same scene, seed and settings whose sample numbers do "
+            "Adds up films (.bpa) of the same scene, seed and settings whose sample numbers do "
             "not overlap, and writes the picture, or another .bpa. The result is that of one run over "
             "all samples, bit for bit: a long render can be shared among machines of one kind, or "
             "carried on later.",

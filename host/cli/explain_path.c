@@ -1,8 +1,8 @@
 /* explain_path.c: see explain_path.h. */
 #include "explain_path.h"
 
-#include "../base/json_text.h"
-#include "../base/shown.h"
+#include "base/json_text.h"
+#include "base/shown.h"
 
 #include <inttypes.h>
 #include <math.h>
@@ -42,7 +42,7 @@ static const char *outcome(const BpPathStep *step, BpMaterialKind kind) {
     return kind == BP_MATERIAL_METAL ? "reflects it" : "scatters it";
 }
 
-void bp_path_print(const BpScene *scene, const BpPath *path, uint32_t x, uint32_t y, uint64_t sample,
+void bp_path_print(const BpScene *scene, const BpPathLog *path, uint32_t x, uint32_t y, uint64_t sample,
                    uint64_t seed) {
     printf("  pixel (%" PRIu32 ", %" PRIu32 "), sample %" PRIu64 ", seed %" PRIu64 ", on ", x, y, sample,
            seed);
@@ -98,7 +98,7 @@ static json_t *step_json(const BpScene *scene, const BpPathStep *step) {
     return NULL;
 }
 
-json_t *bp_path_json(const BpScene *scene, const BpPath *path, uint32_t x, uint32_t y, uint64_t sample) {
+json_t *bp_path_json(const BpScene *scene, const BpPathLog *path, uint32_t x, uint32_t y, uint64_t sample) {
     json_t *steps = json_array();
     for (size_t i = 0; i < path->count && steps != NULL; ++i) {
         if (json_array_append_new(steps, step_json(scene, &path->steps[i])) == 0) continue;

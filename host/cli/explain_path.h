@@ -5,14 +5,14 @@
 #ifndef BP_CLI_EXPLAIN_PATH_H
 #define BP_CLI_EXPLAIN_PATH_H
 
-#include "../engine/follow.h"
+#include "render/path_log.h"
 
 #include <jansson.h>
 
-void bp_path_print(const BpScene *scene, const BpPath *path, uint32_t x, uint32_t y, uint64_t sample,
+void bp_path_print(const BpScene *scene, const BpPathLog *path, uint32_t x, uint32_t y, uint64_t sample,
                    uint64_t seed);
 
 /* A new object, or NULL without memory. */
-json_t *bp_path_json(const BpScene *scene, const BpPath *path, uint32_t x, uint32_t y, uint64_t sample);
+json_t *bp_path_json(const BpScene *scene, const BpPathLog *path, uint32_t x, uint32_t y, uint64_t sample);
 
 #endif

@@ -1,10 +1,10 @@
 /* files_apart.c: see files_apart.h. */
 #include "files_apart.h"
 
-#include "../base/output_target.h"
-#include "../scene/scene.h"
-#include "../scene/scene_file.h"
+#include "base/output_target.h"
 #include "commands.h"
+#include "formats/input_file.h"
+#include "scene/scene.h"
 
 #include <stdlib.h>
 #include <string.h>
@@ -61,8 +61,8 @@ BpStatus bp_files_check_scene(const BpCommandLine *line, const char *picture, co
     Result results[RESULTS];
     BpStatus status = BP_OK;
     list_results(line, picture, results);
-    for (size_t c = 0; c < scene->cloud_count && status == BP_OK; ++c) {
-        char *points = bp_path_beside(scene->path, scene->clouds[c].file);
+    for (size_t c = 0; c < scene->point_file_count && status == BP_OK; ++c) {
+        char *points = bp_path_beside(scene->path, scene->point_files[c].file);
         if (points == NULL) return bp_fail(err, BP_ERR_MEMORY, "out of memory for a path");
         for (size_t r = 0; r < RESULTS && status == BP_OK; ++r)
             if (results[r].path != NULL && bp_output_same(results[r].path, points, STDIN_FILENO))

@@ -10,7 +10,7 @@
 
 /* BP_ERR_USAGE names the two options, or the option and the operand, that lead to one file. `picture`: where
  * the result goes when --output does not say, or NULL. `merge` may write its result over one of the
- * accumulators: they have all been read by then, and the file is replaced as a whole. */
+ * films: they have all been read by then, and the file is replaced as a whole. */
 BpStatus bp_files_check_apart(const BpCommandLine *line, const char *picture, BpError *err);
 
 /* The same for the files of points that the scene has been read from. */

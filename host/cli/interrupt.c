@@ -1,7 +1,7 @@
 /* interrupt.c: see interrupt.h. */
 #include "interrupt.h"
 
-#include "../base/output_file.h"
+#include "base/output_file.h"
 
 #include <pthread.h>
 #include <semaphore.h>

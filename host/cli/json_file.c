@@ -1,8 +1,8 @@
 /* json_file.c: see json_file.h. */
 #include "json_file.h"
 
-#include "../base/json_memory.h"
-#include "../base/output_file.h"
+#include "base/json_memory.h"
+#include "base/output_file.h"
 
 #include <errno.h>
 #include <inttypes.h>

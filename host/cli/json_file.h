@@ -4,7 +4,7 @@
 #ifndef BP_CLI_JSON_FILE_H
 #define BP_CLI_JSON_FILE_H
 
-#include "../base/status.h"
+#include "base/status.h"
 
 #include <jansson.h>
 

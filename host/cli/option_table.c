@@ -1,7 +1,7 @@
 /* option_table.c: see option_table.h. */
 #include "option_table.h"
 
-#include "../scene/scene_document.h"
+#include "base/message_text.h"
 
 #include <stdio.h>
 #include <string.h>

@@ -2,9 +2,9 @@
 #include "commands.h"
 #include "files_apart.h"
 
-#include "../base/names.h"
-#include "../engine/accumulator.h"
-#include "../image/image.h"
+#include "base/names.h"
+#include "film/film.h"
+#include "image/image.h"
 #include "option_table.h"
 #include "values.h"
 

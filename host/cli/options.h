@@ -8,7 +8,7 @@
 #ifndef BP_CLI_OPTIONS_H
 #define BP_CLI_OPTIONS_H
 
-#include "../base/status.h"
+#include "base/status.h"
 
 typedef enum BpOption {
     BP_OPTION_OUTPUT,

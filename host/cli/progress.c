@@ -1,7 +1,7 @@
 /* progress.c: see progress.h. */
 #include "progress.h"
 
-#include "../base/format.h"
+#include "base/format.h"
 #include <math.h>
 #include <stdio.h>
 #include <string.h>

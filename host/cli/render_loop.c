@@ -1,8 +1,8 @@
 /* render_loop.c: see render_loop.h. */
 #include "render_loop.h"
 
-#include "../base/clock.h"
-#include "../base/format.h"
+#include "base/clock.h"
+#include "base/format.h"
 #include "interrupt.h"
 #include "progress.h"
 #include "terminal.h"

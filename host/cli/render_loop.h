@@ -5,7 +5,7 @@
 #ifndef BP_CLI_RENDER_LOOP_H
 #define BP_CLI_RENDER_LOOP_H
 
-#include "../engine/render.h"
+#include "render/render.h"
 
 typedef struct BpLoopEnd {
     BpStopReason reason; /* BP_STOP_NOT_YET: interrupted */

@@ -3,11 +3,11 @@
 
 #include "files_apart.h"
 
-#include "../base/format.h"
-#include "../base/output_file.h"
-#include "../engine/accumulator_file.h"
-#include "../image/error_map.h"
-#include "../image/image.h"
+#include "base/format.h"
+#include "base/output_file.h"
+#include "film/film_file.h"
+#include "image/error_map.h"
+#include "image/image.h"
 #include "json_file.h"
 
 #include <math.h>
@@ -91,16 +91,15 @@ BpStatus bp_result_choose(const BpCommandLine *line, const char *default_path, B
     return BP_OK;
 }
 
-BpStatus bp_result_write(const BpCommandLine *line, const BpResultFile *result,
-                         const BpAccumulator *accumulator, BpRender *render, BpTransfer transfer,
-                         BpError *err) {
+BpStatus bp_result_write(const BpCommandLine *line, const BpResultFile *result, const BpFilm *film,
+                         BpRender *render, BpTransfer transfer, BpError *err) {
     BpStatus status = BP_OK;
     BpPicture picture = {0};
     const bool to_stream = strcmp(result->path, "-") == 0;
     const bool is_picture = result->format != BP_FORMAT_BPA;
     if (bp_option_given(line, BP_OPTION_TRANSFER)) transfer = line->transfer;
-    if (is_picture || line->error_map != NULL) BP_TRY(bp_accumulator_picture(accumulator, &picture, err));
-    if (result->format == BP_FORMAT_EXR && render != NULL) status = bp_render_features(render, &picture, err);
+    if (is_picture || line->error_map != NULL) BP_TRY(bp_film_picture(film, &picture, err));
+    if (result->format == BP_FORMAT_EXR && render != NULL) status = bp_render_aovs(render, &picture, err);
     if (status != BP_OK) {
         bp_picture_clear(&picture);
         return status;
@@ -110,9 +109,9 @@ BpStatus bp_result_write(const BpCommandLine *line, const BpResultFile *result,
     else if (is_picture)
         status = bp_picture_write(&picture, result->path, result->format, transfer, err);
     else if (to_stream)
-        status = bp_accumulator_save_stream(accumulator, stdout, err);
+        status = bp_film_write_stream(film, stdout, err);
     else
-        status = bp_accumulator_save(accumulator, result->path, err);
+        status = bp_film_write(film, result->path, err);
     if (status == BP_OK && line->error_map != NULL)
         status = bp_error_map_write(&picture, line->error_map, err);
     bp_picture_clear(&picture);
@@ -123,8 +122,8 @@ const char *bp_result_name(const BpResultFile *result) {
     return strcmp(result->path, "-") == 0 ? "standard output" : result->path;
 }
 
-void bp_result_warn(const BpAccumulator *accumulator) {
-    const double off = bp_accumulator_rounding(accumulator);
+void bp_result_warn(const BpFilm *film) {
+    const double off = bp_film_rounding(film);
     char text[32];
     if (isinf(off))
         fprintf(
@@ -137,7 +136,7 @@ void bp_result_warn(const BpAccumulator *accumulator) {
                 "than the "
                 "brightest path of the scene; dim or remove that lamp\n",
                 bp_format_percent(off, text, sizeof text));
-    if (accumulator->unverified)
+    if (film->unverified)
         fprintf(
             stderr,
             "warning: a .bpa file of version 1 has no checksum, so damage to it goes unnoticed; render its "

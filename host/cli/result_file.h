@@ -1,11 +1,11 @@
-/* result_file.h: an accumulator as the picture that -o, --format and --transfer ask for.
+/* result_file.h: a film as the picture that -o, --format and --transfer ask for.
  *
- * In:    the command line, an accumulator.   Out: a file, or bytes on standard output.
+ * In:    the command line, a film.   Out: a file, or bytes on standard output.
  * Knows: output names and formats.           Does not know: how the sums were made. */
 #ifndef BP_CLI_RESULT_FILE_H
 #define BP_CLI_RESULT_FILE_H
 
-#include "../engine/accumulator.h"
+#include "film/film.h"
 #include "options.h"
 
 typedef struct BpResultFile {
@@ -23,15 +23,14 @@ BpStatus bp_result_choose(const BpCommandLine *line, const char *default_path, B
 /* Writes it, and the error map if there is to be one. `transfer`: unless --transfer says otherwise. `render`:
  * Optional, created with options.features for an EXR; it gives the layers that follow from the scene, which
  * are left out without it. */
-BpStatus bp_result_write(const BpCommandLine *line, const BpResultFile *result,
-                         const BpAccumulator *accumulator, BpRender *render, BpTransfer transfer,
-                         BpError *err);
+BpStatus bp_result_write(const BpCommandLine *line, const BpResultFile *result, const BpFilm *film,
+                         BpRender *render, BpTransfer transfer, BpError *err);
 
 /* "cover.png", or "standard output". */
 const char *bp_result_name(const BpResultFile *result);
 
 /* Warns on standard error of what may be wrong with sums that look right: rounding that shows, since the
  * picture is that dim beside the brightest lamp of its scene, and sums from a file without a checksum. */
-void bp_result_warn(const BpAccumulator *accumulator);
+void bp_result_warn(const BpFilm *film);
 
 #endif

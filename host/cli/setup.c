@@ -1,14 +1,14 @@
 /* setup.c: see setup.h. */
 #include "setup.h"
 
-#include "../base/plural.h"
-#include "../base/shown.h"
-#include "../engine/limits.h"
-#include "../engine/pocl.h"
-#include "../engine/self_test.h"
-#include "../scene/scene_file.h"
 #include "apart.h"
+#include "base/plural.h"
+#include "base/shown.h"
 #include "files_apart.h"
+#include "formats/input_file.h"
+#include "opencl/pocl.h"
+#include "opencl/self_test.h"
+#include "packed/rounding.h"
 
 #include <inttypes.h>
 #include <stdio.h>
@@ -80,9 +80,9 @@ BpStatus bp_setup_options(const BpCommandLine *line, const BpScene *scene, BpRen
 }
 
 void bp_setup_warn(const BpCommandLine *line, const BpScene *scene, BpPrecision precision) {
-    BpLimits limits;
+    BpRoundingWarnings limits;
     if (line->quiet) return;
-    bp_scene_limits(scene, precision, &limits);
+    bp_rounding_warnings(scene, precision, &limits);
     for (unsigned i = 0; i < limits.count; ++i) fprintf(stderr, "warning: %s\n", limits.text[i]);
 }
 

@@ -4,7 +4,7 @@
 #ifndef BP_CLI_STANDARD_STREAMS_H
 #define BP_CLI_STANDARD_STREAMS_H
 
-#include "../base/status.h"
+#include "base/status.h"
 
 /* For main, before anything is opened: a standard stream that is closed is opened on /dev/null, or the next
  * file that is opened would take its place, and what is meant for the stream would be written into it. It is

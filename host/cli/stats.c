@@ -1,9 +1,9 @@
 /* stats.c: see stats.h. */
 #include "stats.h"
 
-#include "../base/clock.h"
-#include "../base/json_text.h"
-#include "../base/names.h"
+#include "base/clock.h"
+#include "base/json_text.h"
+#include "base/names.h"
 #include "json_file.h"
 
 #include <inttypes.h>
@@ -45,7 +45,7 @@ json_t *bp_stats_json(const BpRunResult *result) {
     BpSceneInfo info;
     bp_scene_info(result->scene, &info);
     double mean[3];
-    bp_accumulator_mean(result->accumulator, mean);
+    bp_film_mean(result->film, mean);
     json_t *root =
         json_pack("{s:o, s:i, s:i, s:I, s:I, s:o, s:I, s:o, s:o}", "scene", bp_json_text(result->scene_path),
                   "width", (int)info.width, "height", (int)info.height, "samples_per_pixel",
@@ -60,17 +60,17 @@ json_t *bp_stats_json(const BpRunResult *result) {
                   (json_int_t)report->samples, "rays", (json_int_t)report->segments, "mean_radiance", mean[0],
                   mean[1], mean[2], "nrmse", json_number(result->nrmse), "invalid_samples",
                   (json_int_t)report->invalid_samples, "cut_paths", (json_int_t)report->cut_paths);
-    json_t *run = json_pack("{s:s, s:o, s:I, s:i, s:b, s:o, s:s, s:i, s:I, s:I, s:s}", "numerics",
-                            bp_numerics_names[report->numerics], "output", bp_json_text(result->output),
-                            "first_sample", (json_int_t)options->first_sample, "replicates",
-                            (int)result->accumulator->replicates, "partial", result->accumulator->partial,
-                            "rounding", json_number(bp_accumulator_rounding(result->accumulator)),
-                            "stopped_by", bp_stop_reason_name(result->stopped_by), "devices",
-                            (int)result->device_count, "device_bytes", (json_int_t)report->device_bytes,
-                            "scene_bytes", (json_int_t)report->scene_bytes, "version", bp_version());
+    json_t *run =
+        json_pack("{s:s, s:o, s:I, s:i, s:b, s:o, s:s, s:i, s:I, s:I, s:s}", "numerics",
+                  bp_numerics_names[report->numerics], "output", bp_json_text(result->output), "first_sample",
+                  (json_int_t)options->first_sample, "replicates", (int)result->film->replicates, "partial",
+                  result->film->partial, "rounding", json_number(bp_film_rounding(result->film)),
+                  "stopped_by", bp_stop_reason_name(result->stopped_by), "devices", (int)result->device_count,
+                  "device_bytes", (json_int_t)report->device_bytes, "scene_bytes",
+                  (json_int_t)report->scene_bytes, "version", bp_version());
     uint64_t least, most;
     double mean_samples;
-    bp_accumulator_sample_counts(result->accumulator, &least, &most, &mean_samples);
+    bp_film_sample_counts(result->film, &least, &most, &mean_samples);
     json_t *pixels =
         json_pack("{s:b, s:I, s:f, s:I}", "adaptive", options->adaptive, "samples_min", (json_int_t)least,
                   "samples_mean", mean_samples, "samples_max", (json_int_t)most);

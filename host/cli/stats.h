@@ -5,7 +5,7 @@
 #ifndef BP_CLI_STATS_H
 #define BP_CLI_STATS_H
 
-#include "../engine/render.h"
+#include "render/render.h"
 
 #include <jansson.h>
 
@@ -18,7 +18,7 @@ typedef struct BpRunResult {
     const char *scene_path, *output;
     const BpScene *scene;
     const BpRenderOptions *options;
-    const BpAccumulator *accumulator;
+    const BpFilm *film;
     BpRenderReport report;
     BpRunTimes times;
     size_t device_count;

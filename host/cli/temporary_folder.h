@@ -9,7 +9,7 @@
 #ifndef BP_CLI_TEMPORARY_FOLDER_H
 #define BP_CLI_TEMPORARY_FOLDER_H
 
-#include "../base/status.h"
+#include "base/status.h"
 
 #include <sys/types.h>
 

@@ -2,8 +2,8 @@
 #define _DEFAULT_SOURCE /* TIOCGWINSZ */
 #include "terminal.h"
 
-#include "../base/clock.h"
-#include "../base/shown.h"
+#include "base/clock.h"
+#include "base/shown.h"
 
 #include <errno.h>
 #include <pthread.h>

@@ -6,7 +6,7 @@
 #ifndef BP_CLI_TERMINAL_H
 #define BP_CLI_TERMINAL_H
 
-#include "../base/status.h"
+#include "base/status.h"
 
 /* Whether a status line is wanted: standard error is a terminal that can move its cursor, and not `quiet`. */
 bool bp_terminal_is_live(bool quiet);

@@ -5,7 +5,7 @@
 #ifndef BP_CLI_VALUES_H
 #define BP_CLI_VALUES_H
 
-#include "../base/status.h"
+#include "base/status.h"
 
 /* A whole number, decimal or 0x hexadecimal, min <= value <= max; no sign, no blanks, nothing behind it. */
 BpStatus bp_value_whole(const char *option, const char *text, uint64_t min, uint64_t max, uint64_t *value,

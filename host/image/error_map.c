@@ -1,9 +1,9 @@
 /* error_map.c: see error_map.h. */
 #include "error_map.h"
 
-#include "../base/color.h"
-#include "../base/output_file.h"
-#include "../base/quantile.h"
+#include "base/color.h"
+#include "base/output_file.h"
+#include "base/quantile.h"
 #include "image.h"
 
 #include <math.h>

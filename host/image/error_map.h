@@ -13,7 +13,7 @@
 
 #include "text.h"
 
-#include "../ballpark.h"
+#include "ballpark.h"
 
 #define BP_ERROR_MAP_LEAST 0.001 /* relative errors at the ends of the scale */
 #define BP_ERROR_MAP_MOST 1.0

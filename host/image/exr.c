@@ -5,7 +5,7 @@
  * than the picture) and then goes out in one piece: to a file, a pipe or a test alike. */
 #include "image.h"
 
-#include "../base/status.h"
+#include "base/status.h"
 
 #include <openexr.h>
 #include <stdlib.h>

@@ -5,7 +5,7 @@
 #ifndef BP_IMAGE_IMAGE_H
 #define BP_IMAGE_IMAGE_H
 
-#include "../ballpark.h"
+#include "ballpark.h"
 
 #include <stdio.h>
 

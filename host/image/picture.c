@@ -1,8 +1,8 @@
 /* picture.c: pictures to files by their format's name; see image.h and ballpark.h. */
 #include "image.h"
 
-#include "../base/names.h"
-#include "../base/output_file.h"
+#include "base/names.h"
+#include "base/output_file.h"
 
 #include <errno.h>
 #include <stdlib.h>

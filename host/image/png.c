@@ -9,8 +9,8 @@
  * the book's pictures before its gamma section are meant to look. */
 #include "image.h"
 
-#include "../base/output_target.h"
-#include "../base/status.h"
+#include "base/output_target.h"
+#include "base/status.h"
 
 #include <errno.h>
 #include <png.h>

@@ -1,7 +1,7 @@
 /* ppm.c: the Netpbm formats, PPM in binary (P6) and text (P3), and PFM; see image.h. */
 #include "image.h"
 
-#include "../base/status.h"
+#include "base/status.h"
 
 #include <stdlib.h>
 #include <string.h>

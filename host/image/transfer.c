@@ -1,7 +1,7 @@
 /* transfer.c: from linear radiance to bytes; see image.h. */
 #include "image.h"
 
-#include "../base/color.h"
+#include "base/color.h"
 
 #include <math.h>
 

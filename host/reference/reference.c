@@ -1,7 +1,7 @@
 /* reference.c: samples of a picture over threads, a row at a time; see reference.h. */
 #include "reference.h"
 
-#include "../base/status.h"
+#include "base/status.h"
 #include "trace.h"
 
 #include <pthread.h>

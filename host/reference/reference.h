@@ -15,7 +15,7 @@
 #ifndef BP_REFERENCE_REFERENCE_H
 #define BP_REFERENCE_REFERENCE_H
 
-#include "../scene/scene.h"
+#include "scene/scene.h"
 #include "sums.h"
 
 typedef struct BpReferenceOptions {

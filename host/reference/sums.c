@@ -1,7 +1,7 @@
 /* sums.c: see sums.h. */
 #include "sums.h"
 
-#include "../base/status.h"
+#include "base/status.h"
 
 #include <math.h>
 #include <stdlib.h>

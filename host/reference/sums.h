@@ -8,7 +8,7 @@
 #ifndef BP_REFERENCE_SUMS_H
 #define BP_REFERENCE_SUMS_H
 
-#include "../ballpark.h"
+#include "ballpark.h"
 
 enum { BP_SUMS_RED, BP_SUMS_GREEN, BP_SUMS_BLUE, BP_SUMS_LUMINANCE, BP_SUMS_CHANNELS };
 

@@ -5,7 +5,7 @@
 #ifndef BP_REFERENCE_TRACE_H
 #define BP_REFERENCE_TRACE_H
 
-#include "../scene/scene.h"
+#include "scene/scene.h"
 #include "vec.h"
 
 typedef struct Ray {

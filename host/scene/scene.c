@@ -1,9 +1,37 @@
 /* scene.c: the life of a BpScene, and what the public header says of it; see scene.h and ballpark.h. */
-#include "scene_file.h"
-#include "scene_parse.h"
+#include "scene.h"
+#include "base/message_text.h"
+#include "base/status.h"
 
+#include <math.h>
 #include <stdlib.h>
 #include <string.h>
+
+#define PI 3.14159265358979323846
+
+uint32_t bp_camera_height(uint32_t width, double aspect_ratio) {
+    /* The 1e-6 forgives the rounding of ratios such as 16.0/9.0. */
+    const double height = floor(width / aspect_ratio + 1e-6);
+    if (!(height >= 1)) return 1;
+    return height >= UINT32_MAX ? UINT32_MAX : (uint32_t)height;
+}
+
+double bp_lens_radius(double defocus_degrees, double focus_dist) {
+    return focus_dist * tan(defocus_degrees * (PI / 180) / 2);
+}
+
+void bp_camera_defaults(BpCamera *camera) {
+    *camera = (BpCamera){.width = 100,
+                         .height = 100,
+                         .aspect_ratio = 1,
+                         .samples_per_pixel = 10,
+                         .max_depth = 10,
+                         .vfov_degrees = 90,
+                         .lookat = {0, 0, -1},
+                         .vup = {0, 1, 0},
+                         .focus_dist = 10,
+                         .pixel_sampling = BP_PIXEL_SQUARE};
+}
 
 BpStatus bp_copy_text(const char *text, char **copy, BpError *err) {
     const size_t size = text != NULL ? strlen(text) + 1 : 1;
@@ -36,16 +64,6 @@ BpStatus bp_scene_create_empty(const char *path, BpScene **scene, BpError *err) 
     return BP_OK;
 }
 
-BpStatus bp_scene_load(const char *path, BpScene **scene, BpError *err) {
-    char *text = NULL;
-    size_t length = 0;
-    *scene = NULL;
-    BP_TRY(bp_file_read(path, "a scene document (a JSON file)", &text, &length, err));
-    const BpStatus status = bp_scene_parse(text, length, path, scene, err);
-    free(text);
-    return status;
-}
-
 void bp_scene_destroy(BpScene **scene) {
     if (scene == NULL || *scene == NULL) return;
     BpScene *s = *scene;
@@ -53,8 +71,8 @@ void bp_scene_destroy(BpScene **scene) {
     free(s->materials);
     free(s->spheres);
     free(s->albedos);
-    for (size_t i = 0; i < s->cloud_count; i++) free(s->clouds[i].file);
-    free(s->clouds);
+    for (size_t i = 0; i < s->point_file_count; i++) free(s->point_files[i].file);
+    free(s->point_files);
     free(s->path);
     free(s->title);
     free(s->source);
@@ -63,10 +81,10 @@ void bp_scene_destroy(BpScene **scene) {
 }
 
 const char *bp_sphere_name(const BpScene *scene, size_t sphere, char text[BP_SPHERE_NAME_SIZE]) {
-    const BpCloud *cloud = NULL;
+    const BpPointFile *cloud = NULL;
     char file[64];
-    for (size_t i = 0; i < scene->cloud_count && scene->clouds[i].first <= sphere; i++)
-        cloud = &scene->clouds[i];
+    for (size_t i = 0; i < scene->point_file_count && scene->point_files[i].first <= sphere; i++)
+        cloud = &scene->point_files[i];
     if (cloud == NULL) {
         snprintf(text, BP_SPHERE_NAME_SIZE, "spheres[%zu]", sphere);
     } else {

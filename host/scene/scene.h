@@ -12,7 +12,7 @@
 #ifndef BP_SCENE_SCENE_H
 #define BP_SCENE_SCENE_H
 
-#include "../ballpark.h"
+#include "ballpark.h"
 
 #include <stdio.h>
 
@@ -72,10 +72,10 @@ typedef struct BpCamera {
 } BpCamera;
 
 /* A file of points: spheres from `first` on, up to the next cloud's or the end, one a vertex. */
-typedef struct BpCloud {
+typedef struct BpPointFile {
     char *file; /* as the scene names it */
     size_t first;
-} BpCloud;
+} BpPointFile;
 
 struct BpScene {
     char *path; /* where it came from, for messages */
@@ -89,12 +89,22 @@ struct BpScene {
     size_t sphere_count;
     float (*albedos)[3]; /* linear, in [0,1]; of cloud points that bring their own colour */
     size_t albedo_count;
-    BpCloud *clouds; /* in the order of their spheres, which follow all others */
-    size_t cloud_count;
+    BpPointFile *point_files; /* in the order of their spheres, which follow all others */
+    size_t point_file_count;
 };
 
 /* height = max(1, floor(width / aspect + 1e-6)) */
 uint32_t bp_camera_height(uint32_t width, double aspect_ratio);
+
+/* The fourth edition's camera, all by default. */
+void bp_camera_defaults(BpCamera *camera);
+/* Of a lens whose cone of rays has the angle at its point in focus. */
+double bp_lens_radius(double defocus_degrees, double focus_dist);
+
+/* Copies a string; NULL becomes "". */
+BpStatus bp_copy_text(const char *text, char **copy, BpError *err);
+/* A scene that holds nothing but defaults. */
+BpStatus bp_scene_create_empty(const char *path, BpScene **scene, BpError *err);
 
 #define BP_SPHERE_NAME_SIZE 128
 /* How a message names a sphere: "spheres[3]", or "vertex 12 (from 0) of points.ply". Returns `text`. */
@@ -113,7 +123,7 @@ BpStatus bp_scene_write(const BpScene *scene, const char *path, BpError *err);
 BpStatus bp_scene_print(const BpScene *scene, FILE *stream, BpError *err);
 
 /* The book's cover. edition: "1", "3", "3rust" or "4"; grid: half side, 11 in the book (cells -grid ..
- * grid-1; 3rust: -grid .. grid). The draw order is fixed: see scene_generate.c. */
+ * grid-1; 3rust: -grid .. grid). The draw order is fixed: see cover.c. */
 BpStatus bp_scene_generate_cover(const char *edition, unsigned grid, uint64_t seed, BpScene **scene,
                                  BpError *err);
 

@@ -5,8 +5,8 @@
  *
  * The rules are written once, here: the reader of documents turns a fault into file:line:column, the reader
  * of clouds into a vertex number, bp_scene_validate into an index. */
-#ifndef BP_SCENE_FAULT_H
-#define BP_SCENE_FAULT_H
+#ifndef BP_SCENE_SCENE_FAULT_H
+#define BP_SCENE_SCENE_FAULT_H
 
 #include "base/status.h"
 #include "scene.h"

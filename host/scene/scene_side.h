@@ -6,8 +6,8 @@
  * A camera that stands on a sphere is a camera that leaves it: the sphere is met at the far end of its chord
  * by rays that go in, and not at all by rays that go out. The book's program, with its least distance, does
  * the same. */
-#ifndef BP_SCENE_SIDE_H
-#define BP_SCENE_SIDE_H
+#ifndef BP_SCENE_SCENE_SIDE_H
+#define BP_SCENE_SCENE_SIDE_H
 
 #include "scene.h"
 

@@ -1,5 +1,5 @@
 /* scene_validate.c: see scene_fault.h, and bp_scene_validate in scene.h. */
-#include "scene_document.h"
+#include "base/message_text.h"
 #include "scene_fault.h"
 #include "scene_side.h"
 

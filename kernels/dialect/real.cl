@@ -2,7 +2,7 @@
  *
  * Out:   real, refined, their constants, JOIN, FORCE_INLINE.   Does not know: lanes (lanes.cl).
  *
- * The program's first lines (host/engine/program.c) define:
+ * The program's first lines (host/opencl/program.c) define:
  *   REAL_IS_DOUBLE    0 or 1: what `real` is
  *   REFINE_IS_DOUBLE  0 or 1: whether intersections are refined in double (always 1 with REAL_IS_DOUBLE)
  *   TREE_WIDTH        2, 4, 8 or 16: lanes of a tree node and of a leaf

@@ -1,6 +1,6 @@
 /* aovs.cl: what each pixel's camera rays meet first: how far, which way it faces, what colour it is.
  *
- * Appended to a render's program when someone asks (host/engine/features.c).
+ * Appended to a render's program when someone asks (host/render/aovs.c).
  * In:    the packed scene; a range of pixels; a range of samples, whose camera rays are those of the render.
  * Out:   for each pixel AOV_FLOATS sums over its samples, in the order of the enum. A ray that meets nothing adds
  *        nothing.

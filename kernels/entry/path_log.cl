@@ -1,6 +1,6 @@
 /* path_log.cl: one path, step by step, for a person: the same code as bounce.cl, with a record of each segment.
  *
- * Appended to a program of one lane when someone asks (host/engine/follow.c).
+ * Appended to a program of one lane when someone asks (host/render/path_log.c).
  * In:    the packed scene, a pixel, a sample.   Out: for each segment LOG_REALS numbers, in the order of the enum.
  * Knows: path.cl, bounce.cl.   Does not know: how a person wants to read it. */
 enum {

@@ -1,5 +1,5 @@
 /* probe_layout.cl: how this device's compiler lays out the packed structs; the host compares it with its own
- * (host/engine/layout.c) before the first launch.
+ * (host/opencl/layout.c) before the first launch.
  *
  * Out:   sizes and offsets in bytes.   Knows: scene_types.h.   Does not know: what the structs mean. */
 #define SIZE_AND_OFFSET(type, member)                                                                                  \

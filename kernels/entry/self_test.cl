@@ -1,7 +1,7 @@
 /* self_test.cl: small sums with known answers, run once on every device before it renders.
  *
  * In:    uints and floats that the host made, so that no compiler can work the answers out beforehand.
- * Out:   one row of bits for each work-item; host/engine/self_test.c knows what stands in each column and
+ * Out:   one row of bits for each work-item; host/opencl/self_test.c knows what stands in each column and
  *        defines COLUMN_... and ROW_COLUMNS for both sides.
  *
  * Each column is something that the kernels rely on; together they find drivers that contract a*b+c, reassociate,

@@ -1,8 +1,8 @@
 /* test_adaptive.c: passes on made-up samples: the budget is kept, samples go where the error is, and nothing
  * that a pixel's samples bring decides about how many it gets. */
-#include "accumulator_data.h"
+#include "film_data.h"
 
-#include "engine/adaptive.h"
+#include "film/adaptive.h"
 
 #include <setjmp.h>
 #include <stdarg.h>
@@ -23,7 +23,7 @@ static double draw(uint64_t seed, size_t pixel, uint64_t sample, double rare) {
 }
 
 typedef struct Run {
-    BpAccumulator *accumulator, *shown; /* shown to the planner: the same, or with neighbours exchanged */
+    BpFilm *film, *shown; /* shown to the planner: the same, or with neighbours exchanged */
     BpAdaptive *adaptive;
     uint64_t seeds[2]; /* of black and of white pixels */
     uint64_t counts[PIXELS];
@@ -40,7 +40,7 @@ static void sample_pixel(Run *run, size_t pixel, uint64_t first, uint64_t count)
     for (uint64_t s = first; s < first + count; s++) {
         const double x = draw(run->seeds[colour_of(pixel)], pixel, s, run->rare);
         const double rgb[3] = {x, x, x};
-        data_add(run->accumulator, pixel, s, rgb);
+        data_add(run->film, pixel, s, rgb);
         data_add(run->shown, run->exchanged ? pixel ^ 1 : pixel, s, rgb);
         /* Paths of 1 to 4 segments. */
         run->shown->pixel_segments[run->exchanged ? pixel ^ 1 : pixel] +=
@@ -55,18 +55,18 @@ static void run_open(Run *run, uint64_t black, uint64_t white, bool exchanged, d
     run->seeds[1] = white;
     run->exchanged = exchanged;
     run->rare = rare;
-    assert_int_equal(bp_accumulator_create(WIDTH, HEIGHT, REPLICATES, &run->accumulator, NULL), BP_OK);
-    assert_int_equal(bp_accumulator_create(WIDTH, HEIGHT, REPLICATES, &run->shown, NULL), BP_OK);
+    assert_int_equal(bp_film_create(WIDTH, HEIGHT, REPLICATES, &run->film, NULL), BP_OK);
+    assert_int_equal(bp_film_create(WIDTH, HEIGHT, REPLICATES, &run->shown, NULL), BP_OK);
     run->shown->pixel_segments = calloc(PIXELS, sizeof *run->shown->pixel_segments);
     assert_non_null(run->shown->pixel_segments);
-    run->accumulator->scale_log2 = run->shown->scale_log2 = 30;
+    run->film->scale_log2 = run->shown->scale_log2 = 30;
     assert_int_equal(bp_adaptive_create(WIDTH, HEIGHT, 1u << 26, &run->adaptive, NULL), BP_OK);
     for (size_t pixel = 0; pixel < PIXELS; pixel++) sample_pixel(run, pixel, 0, BP_ADAPTIVE_FIRST);
 }
 
 static void run_close(Run *run) {
-    bp_accumulator_destroy(&run->accumulator);
-    bp_accumulator_destroy(&run->shown);
+    bp_film_destroy(&run->film);
+    bp_film_destroy(&run->shown);
     bp_adaptive_destroy(&run->adaptive);
 }
 
@@ -131,24 +131,24 @@ static void samples_go_where_the_error_is(void **state) {
 
 static void equal_errors_get_equal_counts(void **state) {
     (void)state;
-    BpAccumulator *accumulator = NULL;
+    BpFilm *film = NULL;
     BpAdaptive *adaptive = NULL;
     bool more = true;
     BpAdaptivePass pass;
-    assert_int_equal(bp_accumulator_create(WIDTH, HEIGHT, REPLICATES, &accumulator, NULL), BP_OK);
-    for (size_t i = 0; i < PIXELS * REPLICATES; i++) accumulator->counts[i] = 4; /* black, all of it */
+    assert_int_equal(bp_film_create(WIDTH, HEIGHT, REPLICATES, &film, NULL), BP_OK);
+    for (size_t i = 0; i < PIXELS * REPLICATES; i++) film->counts[i] = 4; /* black, all of it */
     assert_int_equal(bp_adaptive_create(WIDTH, HEIGHT, 1u << 26, &adaptive, NULL), BP_OK);
     for (uint64_t have = 16; have < 128; have *= 2) {
-        assert_int_equal(bp_adaptive_next(adaptive, accumulator, 128, &more, &pass, NULL), BP_OK);
+        assert_int_equal(bp_adaptive_next(adaptive, film, 128, &more, &pass, NULL), BP_OK);
         assert_true(more);
         assert_int_equal(pass.pixel_count, PIXELS);
         assert_int_equal(pass.first, have);
         assert_int_equal(pass.count, have);
     }
-    assert_int_equal(bp_adaptive_next(adaptive, accumulator, 128, &more, &pass, NULL), BP_OK);
+    assert_int_equal(bp_adaptive_next(adaptive, film, 128, &more, &pass, NULL), BP_OK);
     assert_false(more);
     bp_adaptive_destroy(&adaptive);
-    bp_accumulator_destroy(&accumulator);
+    bp_film_destroy(&film);
 }
 
 /* The proof that there is no bias: other samples in the black pixels change no black pixel's count, whatever
@@ -187,7 +187,7 @@ static double deviation(bool exchanged, double *mean) {
         run_open(&run, seed + 1000, seed + 1000, exchanged, 0.004);
         run_to(&run, 48);
         double means[3];
-        bp_accumulator_mean(run.accumulator, means);
+        bp_film_mean(run.film, means);
         sum += means[0];
         square += means[0] * means[0];
         run_close(&run);
@@ -211,26 +211,25 @@ static void odd_sizes(void **state) {
     static const uint32_t sizes[][2] = {{1, 1}, {1, 9}, {7, 1}, {8, 8}, {17, 3}, {2, 2}};
     for (size_t i = 0; i < sizeof sizes / sizeof sizes[0]; i++) {
         const size_t pixels = (size_t)sizes[i][0] * sizes[i][1];
-        BpAccumulator *accumulator = NULL;
+        BpFilm *film = NULL;
         BpAdaptive *adaptive = NULL;
         bool more = true;
         BpAdaptivePass pass;
-        assert_int_equal(bp_accumulator_create(sizes[i][0], sizes[i][1], REPLICATES, &accumulator, NULL),
-                         BP_OK);
+        assert_int_equal(bp_film_create(sizes[i][0], sizes[i][1], REPLICATES, &film, NULL), BP_OK);
         for (size_t p = 0; p < pixels; p++)
             for (uint64_t s = 0; s < 16; s++) {
                 const double x = draw(5, p, s, 0.05);
-                data_add(accumulator, p, s, (const double[3]){x, x, x});
+                data_add(film, p, s, (const double[3]){x, x, x});
             }
         assert_int_equal(bp_adaptive_create(sizes[i][0], sizes[i][1], 100, &adaptive, NULL), BP_OK);
         for (int passes = 0; more; passes++) {
             assert_true(passes < 20);
-            assert_int_equal(bp_adaptive_next(adaptive, accumulator, 90, &more, &pass, NULL), BP_OK);
+            assert_int_equal(bp_adaptive_next(adaptive, film, 90, &more, &pass, NULL), BP_OK);
         }
         assert_true(bp_adaptive_samples(adaptive) <= 90 * pixels);
         assert_true(bp_adaptive_samples_max(adaptive) <= 100); /* the most that was allowed */
         bp_adaptive_destroy(&adaptive);
-        bp_accumulator_destroy(&accumulator);
+        bp_film_destroy(&film);
     }
 }
 

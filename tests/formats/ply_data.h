@@ -2,8 +2,8 @@
 #ifndef BP_TEST_PLY_DATA_H
 #define BP_TEST_PLY_DATA_H
 
+#include "formats/ply.h"
 #include "scene/scene.h"
-#include "scene/scene_ply.h"
 
 #include <setjmp.h>
 #include <stdarg.h>

@@ -1,8 +1,8 @@
 /* test_scene_ply.c: points from PLY files in every form. */
 #include "base/random.h"
+#include "formats/field.h"
+#include "formats/ply_parts.h"
 #include "ply_data.h"
-#include "scene/scene_field.h"
-#include "scene/scene_ply_parts.h"
 
 #include <math.h>
 #include <setjmp.h>

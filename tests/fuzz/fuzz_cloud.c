@@ -4,7 +4,7 @@
  * cloud.ply in a folder of its own, and the document beside it. A document that names a file in another
  * folder is read without its clouds: a fuzzer would find its way to anything on the disk. What is accepted is
  * valid, keeps the order of its clouds, and makes a tree in which every sphere stands once. */
-#include "scene/scene_parse.h"
+#include "formats/scene_parse.h"
 #include "tree_check.h"
 
 #include <jansson.h>
@@ -58,9 +58,9 @@ static bool stays_home(const uint8_t *document, size_t length) {
 
 static void check_scene(const BpScene *scene) {
     require(bp_scene_validate(scene, NULL) == BP_OK);
-    for (size_t i = 0; i < scene->cloud_count; i++)
-        require(scene->clouds[i].first <= scene->sphere_count &&
-                (i == 0 || scene->clouds[i - 1].first <= scene->clouds[i].first));
+    for (size_t i = 0; i < scene->point_file_count; i++)
+        require(scene->point_files[i].first <= scene->sphere_count &&
+                (i == 0 || scene->point_files[i - 1].first <= scene->point_files[i].first));
     for (size_t i = 0; i < scene->sphere_count; i++) {
         const BpSphere *sphere = &scene->spheres[i];
         require(sphere->material < scene->material_count);

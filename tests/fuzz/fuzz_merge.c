@@ -1,4 +1,4 @@
-/* fuzz_merge.c: two accumulator files in one input, merged.
+/* fuzz_merge.c: two film files in one input, merged.
  *
  * The input is the first file's length (4 bytes, little endian), the first file, the second. A merge is
  * refused and changes nothing; or sums, counts and totals are added, whichever comes first, and the result
@@ -44,21 +44,21 @@ size_t LLVMFuzzerCustomMutator(uint8_t *data, size_t size, size_t size_max, unsi
     return result;
 }
 
-static bool same_bytes(const BpAccumulator *accumulator, const char *bytes, size_t size) {
+static bool same_bytes(const BpFilm *film, const char *bytes, size_t size) {
     size_t now = 0;
-    char *saved = bpa_save(accumulator, &now);
+    char *saved = bpa_save(film, &now);
     require(saved != NULL);
     const bool same = now == size && memcmp(saved, bytes, size) == 0;
     free(saved);
     return same;
 }
 
-static int64_t fine_sum(const BpAccumulator *accumulator, size_t i) {
-    return accumulator->fine_sums != NULL ? accumulator->fine_sums[i] : 0;
+static int64_t fine_sum(const BpFilm *film, size_t i) {
+    return film->fine_sums != NULL ? film->fine_sums[i] : 0;
 }
 
 /* `sum` is a + b; both were taken before the merge. */
-static void check_sum(const BpAccumulator *sum, const BpAccumulator *a, const BpAccumulator *b) {
+static void check_sum(const BpFilm *sum, const BpFilm *a, const BpFilm *b) {
     const size_t cells = bpa_cells(a);
     require(bpa_cells(b) == cells && bpa_cells(sum) == cells && a->scene_hash == b->scene_hash &&
             a->seed == b->seed);
@@ -66,8 +66,7 @@ static void check_sum(const BpAccumulator *sum, const BpAccumulator *a, const Bp
     for (size_t i = 0; i < 3 * cells; i++) require(fine_sum(sum, i) == fine_sum(a, i) + fine_sum(b, i));
     for (size_t i = 0; i < cells; i++) require(sum->counts[i] == a->counts[i] + b->counts[i]);
     for (uint32_t k = 0; k < a->replicates; k++)
-        require(bp_accumulator_expected(sum, k) ==
-                bp_accumulator_expected(a, k) + bp_accumulator_expected(b, k));
+        require(bp_film_expected(sum, k) == bp_film_expected(a, k) + bp_film_expected(b, k));
     for (size_t i = 1; i < sum->range_count; i++)
         require(sum->ranges[i].first > sum->ranges[i - 1].first + sum->ranges[i - 1].count);
     require(sum->partial == (a->partial || b->partial));
@@ -77,38 +76,37 @@ static void check_sum(const BpAccumulator *sum, const BpAccumulator *a, const Bp
 }
 
 /* Merges the second file into the first and checks it; the sum, or NULL when it was refused. */
-static BpAccumulator *merge(const uint8_t *first, size_t first_size, const uint8_t *second,
-                            size_t second_size) {
-    BpAccumulator *into = bpa_load(first, first_size), *from = bpa_load(second, second_size);
-    BpAccumulator *before = bpa_load(first, first_size);
+static BpFilm *merge(const uint8_t *first, size_t first_size, const uint8_t *second, size_t second_size) {
+    BpFilm *into = bpa_load(first, first_size), *from = bpa_load(second, second_size);
+    BpFilm *before = bpa_load(first, first_size);
     if (into == NULL || from == NULL) goto done;
     size_t size = 0;
     char *bytes = bpa_save(into, &size);
     require(bytes != NULL);
     BpError err = {0};
-    const BpStatus status = bp_accumulator_merge(into, from, &err);
+    const BpStatus status = bp_film_merge(into, from, &err);
     if (status != BP_OK) {
         require(err.code == status && err.message[0] != '\0' && same_bytes(into, bytes, size));
-        bp_accumulator_destroy(&into);
+        bp_film_destroy(&into);
     } else {
         check_sum(into, before, from);
         size_t saved_size = 0;
         char *saved = bpa_save(into, &saved_size);
         require(saved != NULL);
-        BpAccumulator *again = bpa_load(saved, saved_size);
+        BpFilm *again = bpa_load(saved, saved_size);
         require(again != NULL && same_bytes(again, saved, saved_size));
-        bp_accumulator_destroy(&again);
+        bp_film_destroy(&again);
         free(saved);
     }
     bp_error_clear(&err);
     free(bytes);
-    bp_accumulator_destroy(&from);
-    bp_accumulator_destroy(&before);
+    bp_film_destroy(&from);
+    bp_film_destroy(&before);
     return into;
 done:
-    bp_accumulator_destroy(&into);
-    bp_accumulator_destroy(&from);
-    bp_accumulator_destroy(&before);
+    bp_film_destroy(&into);
+    bp_film_destroy(&from);
+    bp_film_destroy(&before);
     return NULL;
 }
 
@@ -117,8 +115,8 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size) {
     const size_t split = first_length(data, size);
     const uint8_t *first = data + LENGTH_BYTES, *second = first + split;
     const size_t second_size = size - LENGTH_BYTES - split;
-    BpAccumulator *forth = merge(first, split, second, second_size);
-    BpAccumulator *back = merge(second, second_size, first, split);
+    BpFilm *forth = merge(first, split, second, second_size);
+    BpFilm *back = merge(second, second_size, first, split);
     require((forth == NULL) == (back == NULL));
     if (forth != NULL) {
         const size_t cells = bpa_cells(forth);
@@ -130,7 +128,7 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size) {
             require(forth->ranges[i].first == back->ranges[i].first &&
                     forth->ranges[i].count == back->ranges[i].count);
     }
-    bp_accumulator_destroy(&forth);
-    bp_accumulator_destroy(&back);
+    bp_film_destroy(&forth);
+    bp_film_destroy(&back);
     return 0;
 }

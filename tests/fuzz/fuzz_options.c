@@ -4,7 +4,7 @@
  * reason. Nothing is run: at most files are asked whether they are the same one. */
 #include "cli/option_table.h"
 #include "cli/values.h"
-#include "engine/accumulator.h"
+#include "film/film.h"
 #include "fuzz.h"
 #include "scene/scene.h"
 

@@ -1,6 +1,6 @@
 /* fuzz_ply.c: any bytes as a PLY file. What is accepted makes a valid scene. */
+#include "formats/ply.h"
 #include "fuzz.h"
-#include "scene/scene_ply.h"
 
 int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size) {
     static const char text[] = "{ \"camera\": {}, \"materials\": { \"a\": { \"type\": \"normals\" },"

@@ -1,8 +1,8 @@
 /* fuzz_scene.c: any text as a scene document. What is accepted is valid, and survives being written and read.
  *
  * Files of clouds are not opened; fuzz_cloud.c does that. */
+#include "formats/scene_parse.h"
 #include "fuzz.h"
-#include "scene/scene_parse.h"
 
 static char *print(const BpScene *scene, size_t *length) {
     char *text = NULL;

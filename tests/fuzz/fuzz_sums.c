@@ -1,4 +1,4 @@
-/* fuzz_sums.c: any sums that a render could make, written as an accumulator file: they read back equal.
+/* fuzz_sums.c: any sums that a render could make, written as a film file: they read back equal.
  *
  * The input is the sizes, the settings, sample ranges, then sums and counts. */
 #include "bpa_io.h"
@@ -16,11 +16,10 @@ static char *make_title(Bytes *bytes) {
     return title;
 }
 
-static BpAccumulator *make_accumulator(Bytes *bytes) {
-    BpAccumulator *made = NULL;
+static BpFilm *make_accumulator(Bytes *bytes) {
+    BpFilm *made = NULL;
     const uint32_t width = 1 + take_byte(bytes) % 9, height = 1 + take_byte(bytes) % 9;
-    require(bp_accumulator_create(width, height, 1 + take_byte(bytes) % BP_REPLICATES_MAX, &made, NULL) ==
-            BP_OK);
+    require(bp_film_create(width, height, 1 + take_byte(bytes) % BP_REPLICATES_MAX, &made, NULL) == BP_OK);
     made->scale_log2 = (int32_t)(take_byte(bytes) % 253) - 126;
     made->scene_hash = take_bits(bytes, 8);
     made->seed = take_bits(bytes, 8);
@@ -39,11 +38,11 @@ static BpAccumulator *make_accumulator(Bytes *bytes) {
     made->title = make_title(bytes);
     for (unsigned i = take_byte(bytes) % 6; i > 0; i--) {
         const uint64_t first = take_bits(bytes, 4), count = 1 + take_bits(bytes, i % 2 == 0 ? 1 : 3);
-        if (first + count <= SAMPLES_END) bp_accumulator_add_range(made, first, count, NULL); /* or refused */
+        if (first + count <= SAMPLES_END) bp_film_add_range(made, first, count, NULL); /* or refused */
     }
-    if (words >> 6 & 1u) require(bp_accumulator_add_fine_sums(made, NULL) == BP_OK);
+    if (words >> 6 & 1u) require(bp_film_add_fine_sums(made, NULL) == BP_OK);
     for (size_t cell = 0; cell < bpa_cells(made); cell++) {
-        const uint64_t most = bp_accumulator_expected(made, (uint32_t)(cell % made->replicates));
+        const uint64_t most = bp_film_expected(made, (uint32_t)(cell % made->replicates));
         made->counts[cell] = (uint32_t)(take_bits(bytes, 3) % (most + 1));
         for (size_t i = 3 * cell; i < 3 * cell + 3 && made->counts[cell] > 0; i++) {
             made->sums[i] = (int64_t)(take_bits(bytes, 8) % (SUM_MAX + 1));
@@ -55,11 +54,11 @@ static BpAccumulator *make_accumulator(Bytes *bytes) {
 
 int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size) {
     Bytes bytes = {data, size, 0};
-    BpAccumulator *made = make_accumulator(&bytes);
+    BpFilm *made = make_accumulator(&bytes);
     size_t file_size = 0;
     char *file = bpa_save(made, &file_size);
     require(file != NULL);
-    BpAccumulator *read = bpa_load(file, file_size);
+    BpFilm *read = bpa_load(file, file_size);
     require(read != NULL);
     require(read->width == made->width && read->height == made->height &&
             read->replicates == made->replicates);
@@ -81,7 +80,7 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size) {
             memcmp(read->fine_sums, made->fine_sums, 3 * bpa_cells(made) * sizeof *made->fine_sums) == 0);
     require(memcmp(read->counts, made->counts, bpa_cells(made) * sizeof *made->counts) == 0);
     free(file);
-    bp_accumulator_destroy(&read);
-    bp_accumulator_destroy(&made);
+    bp_film_destroy(&read);
+    bp_film_destroy(&made);
     return 0;
 }

@@ -2,7 +2,7 @@
  *
  * The input is the camera's position, then spheres: a byte says which way one is made (any doubles, small
  * whole numbers, on the surface seen from the camera, or copies of the one before, moved or not). */
-#include "engine/limits.h"
+#include "packed/rounding.h"
 #include "tree_check.h"
 
 #include "scene/scene_side.h"
@@ -93,8 +93,8 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size) {
             before = spheres[scene.sphere_count++] = sphere;
         }
     }
-    BpLimits limits;
-    bp_scene_limits(&scene, BP_PRECISION_SINGLE, &limits);
+    BpRoundingWarnings limits;
+    bp_rounding_warnings(&scene, BP_PRECISION_SINGLE, &limits);
     for (uint32_t width = 2; width <= 16; width *= 2)
         for (int form = 0; form < 4; ++form) {
             const BpTreeOptions options = {width, form % 2 == 0, form / 2 == 0, 1};

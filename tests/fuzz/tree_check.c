@@ -2,8 +2,8 @@
 #define BP_HOST
 #include "tree_check.h"
 
-#include "engine/pack.h"
-#include "engine/reals.h"
+#include "packed/pack.h"
+#include "packed/reals.h"
 #include "scene/scene_side.h"
 #include "scene_types.h"
 

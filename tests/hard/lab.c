@@ -1,9 +1,9 @@
 /* lab.c: see lab.h. */
 #include "lab.h"
 
-#include "engine/arrangement.h"
-#include "engine/effects.h"
-#include "engine/render.h"
+#include "packed/effects.h"
+#include "render/render.h"
+#include "render/render_plan.h"
 
 #include <stdio.h>
 #include <stdlib.h>
@@ -191,7 +191,7 @@ BpWorker *lab_scene(const Lab *lab, const BpScene *scene) {
     options.all_effects = true;
     options.tree_width = lab->options.tree_width;
     options.force_float_refine = !lab->refined_double;
-    check(bp_arrange(scene, &options, &lab->info, &setup, &packed, &err), &err);
+    check(bp_render_plan(scene, &options, &lab->info, &setup, &packed, &err), &err);
     setup.program = lab->options; /* the program that is built already, and so in the driver's cache */
     char *text = probe_text();
     setup.extra_name = "probe.cl";

@@ -8,7 +8,7 @@
 #define TESTS_HARD_LAB_H
 
 #include "base/random.h"
-#include "engine/worker.h"
+#include "render/worker.h"
 
 #include <math.h>
 #include <stddef.h>

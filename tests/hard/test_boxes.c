@@ -1,9 +1,9 @@
 /* test_boxes.c: tests 38 to 40: boxes and the tree. */
 #include "suite.h"
 
-#include "engine/reals.h"
-#include "engine/tree.h"
 #include "oracle.h"
+#include "packed/reals.h"
+#include "packed/tree.h"
 #include "support/tree_scenes.h"
 
 #include <math.h>
@@ -134,7 +134,8 @@ static void slab_edges(void **state) {
 }
 
 /* 39: directions with components of +0 and -0, origins in, on and outside the planes of a box around the unit
- * cube's sphere, padded as the tree pads it (host/engine/tree_leaf.c); what meets the cube must meet the box.
+ * cube's sphere, padded as the tree pads it (host/packed/tree_write.c); what meets the cube must meet the
+ * box.
  */
 static void slab_zero_dir(void **state) {
     const Lab *lab = *state;

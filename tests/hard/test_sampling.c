@@ -3,7 +3,7 @@
 #include "suite.h"
 
 #include "base/status.h"
-#include "engine/pack.h"
+#include "packed/pack.h"
 #include "scene_types.h"
 
 #include <math.h>

@@ -44,7 +44,7 @@ static BpStatus write_results(BpRender *render, const char *picture_path, const 
     BpStatus status = bp_render_film(render, &film, err);
     if (status == BP_OK) status = bp_film_write(film, film_path, err);
     if (status == BP_OK) status = bp_film_picture(film, &picture, err);
-    if (status == BP_OK) status = bp_render_features(render, &picture, err);
+    if (status == BP_OK) status = bp_render_aovs(render, &picture, err);
     if (status == BP_OK)
         status = bp_picture_write(&picture, picture_path, BP_FORMAT_EXR, BP_TRANSFER_LINEAR, err);
     if (status == BP_OK) {

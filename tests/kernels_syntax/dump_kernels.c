@@ -6,8 +6,8 @@
  * All combinations of all choices would be 256 * 256 programs. Written are: every combination of the other
  * choices with every effect, and every set of effects with one of those combinations, a different one in
  * turn: so each set of effects and each combination is there. */
-#include "engine/effects.h"
-#include "engine/program.h"
+#include "opencl/program.h"
+#include "packed/effects.h"
 
 #include <stdio.h>
 #include <stdlib.h>

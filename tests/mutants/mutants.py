@@ -27,15 +27,15 @@ def patch(path, find, replace):
 
 
 # A patch of kernel text names no file: the text must stand exactly once in all of kernels/.
-KERNEL, PACK, TRANSFER = "kernels", "host/engine/pack.c", "host/image/transfer.c"
+KERNEL, PACK, TRANSFER = "kernels", "host/packed/pack.c", "host/image/transfer.c"
 
 MUTANTS = [
     # ---- chunks ----------------------------------------------------------------------------------------------
     Mutant("first chunk of any depth", "16,384 samples, whatever a path costs",
-           [patch("host/engine/pace.c", "return samples < BP_PACE_FIRST_SAMPLES ? samples : BP_PACE_FIRST_SAMPLES;",
+           [patch("host/render/pace.c", "return samples < BP_PACE_FIRST_SAMPLES ? samples : BP_PACE_FIRST_SAMPLES;",
                   "return samples > 0 ? BP_PACE_FIRST_SAMPLES : 1;")], [test("test_pace", "1 exact")]),
     Mutant("the slowest samples forgotten", "a chunk sized by the sky goes to the mirrors",
-           [patch("host/engine/pace.c", "if (samples > bearable) samples = bearable;", "(void)bearable;")],
+           [patch("host/render/pace.c", "if (samples > bearable) samples = bearable;", "(void)bearable;")],
            [test("test_pace", "1 exact")]),
     # ---- the books' own history ----------------------------------------------------------------------------
     Mutant("blue killed in glass", "first: attenuation (1, 1, 0)",
@@ -196,32 +196,32 @@ MUTANTS = [
                   "DIMENSIONS_PER_BOUNCE + 6u) >= splat(R(0.05)));")], [check("lobe-lambertian")]),
     Mutant("NaN counted as a sample", "a clamp that hides it",
            [patch(KERNEL, "return bits == (BITS4)BITS_SIGN ?", "return (bits == (BITS4)BITS_SIGN) | (scaled != scaled) ?")],
-           [test("test_fold_samples", "1 exact, by injection")]),
+           [test("test_accumulate", "1 exact, by injection")]),
     Mutant("sums in float", "lost past 2^24 samples",
            [patch(KERNEL, "sum += fixed;", "sum = convert_long4(convert_float4(sum) + convert_float4(fixed));")],
-           [test("test_fold_samples", "1 exact")]),
+           [test("test_accumulate", "1 exact")]),
     Mutant("fractions of dim samples dropped", "dim scenes beside bright lamps",
            [patch(KERNEL, "total.fine += convert_long4(rest);", "total.fine += convert_long4(rest) & 0;")],
-           [test("test_fold_samples", "1 exact")]),
+           [test("test_accumulate", "1 exact")]),
     Mutant("a fine sum that never was zeroed", "added to before its flag is set",
-           [patch(KERNEL, "(begun ? fine_sums[1] : 0)", "fine_sums[1]")], [test("test_fold_samples", "1 exact")]),
+           [patch(KERNEL, "(begun ? fine_sums[1] : 0)", "fine_sums[1]")], [test("test_accumulate", "1 exact")]),
     Mutant("dim samples not marked", "rounding that nobody hears of",
-           [patch(KERNEL, "if (careful.coarse) known |= COUNT_COARSE;", "")], [test("test_fold_samples", "1 exact")]),
+           [patch(KERNEL, "if (careful.coarse) known |= COUNT_COARSE;", "")], [test("test_accumulate", "1 exact")]),
     Mutant("a thousandth of green lost in the sums", "seen by comparing the picture with its samples only",
            [patch(KERNEL, "total[1] += sum.y;", "total[1] += sum.y - sum.y / 1000;")], [check("furnace")]),
     Mutant("the bound at any depth", "a scale for a million bounces",
-           [patch("host/engine/accumulator_scene.c", "fmin(1 / (1 - fmin(passed_on, 1)), max_depth)",
-                  "fmin(1 / (1 - fmin(passed_on, 1)), BP_DEPTH_MAX)")], [test("test_accumulator_scene", "1 exact")]),
+           [patch("host/film/film_scene.c", "fmin(1 / (1 - fmin(passed_on, 1)), max_depth)",
+                  "fmin(1 / (1 - fmin(passed_on, 1)), BP_DEPTH_MAX)")], [test("test_film_scene", "1 exact")]),
     Mutant("the bound for one bounce", "bright samples taken for invalid ones",
-           [patch("host/engine/accumulator_scene.c", "fmin(1 / (1 - fmin(passed_on, 1)), max_depth)", "1")],
-           [test("test_accumulator_scene", "1 exact")]),
+           [patch("host/film/film_scene.c", "fmin(1 / (1 - fmin(passed_on, 1)), max_depth)", "1")],
+           [test("test_film_scene", "1 exact")]),
     Mutant("a checksum of the header alone", ".bpa files with flipped bits",
-           [patch("host/engine/accumulator_file.c",
+           [patch("host/film/film_file.c",
                   "loader->checksum = crc32_z(loader->checksum, loader->buffer, 8 * block);", ""),
-            patch("host/engine/accumulator_file.c",
+            patch("host/film/film_file.c",
                   "store_little(writer->buffer + 8 * i, (uint64_t)sums[done + i], 8);\n        put(writer, writer->buffer, 8 * block);",
                   "store_little(writer->buffer + 8 * i, (uint64_t)sums[done + i], 8);\n        fwrite(writer->buffer, 1, 8 * block, writer->out);")],
-           [test("test_accumulator_damaged", "1 exact")]),
+           [test("test_film_damaged", "1 exact")]),
     # ---- random numbers ------------------------------------------------------------------------------------
     Mutant("bounces share their numbers", "a dimension used twice",
            [patch(KERNEL, "#define DIMENSIONS_PER_BOUNCE 16u", "#define DIMENSIONS_PER_BOUNCE 0u")],
@@ -274,7 +274,7 @@ MUTANTS = [
                   "scale3(splat(R(0.995)), multiply3(path->throughput, sky_radiance(scene->sky, path->direction)))")],
            [check("lobe-lambertian", 1024)]),
     Mutant("extrapolation not told", "classic: a prediction beyond the data",
-           [patch("host/cost/fit.c", "samples > (double)series->points[series->count - 1].samples", "false")],
+           [patch("host/study/fit.c", "samples > (double)series->points[series->count - 1].samples", "false")],
            [test("test_cost_choices", "1 exact")]),
     # ---- files ---------------------------------------------------------------------------------------------
     Mutant("set-ID bits handed on", "classic: the mode of a replaced file, all of it",

@@ -1,5 +1,5 @@
 /* test_device_build.c: opening and building on whatever real device is there; skipped without one. */
-#include "engine/device.h"
+#include "opencl/device.h"
 
 #include <setjmp.h>
 #include <stdarg.h>

@@ -1,7 +1,7 @@
 /* test_device_find.c: choosing, refusing, opening and building, against a driver made for the test
  * (fake_icd.c).
  */
-#include "engine/device.h"
+#include "opencl/device.h"
 
 #include <setjmp.h>
 #include <stdarg.h>

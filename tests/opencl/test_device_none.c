@@ -1,5 +1,5 @@
 /* test_device_none.c: a computer without any OpenCL driver is told what to install. */
-#include "engine/device.h"
+#include "opencl/device.h"
 
 #include <setjmp.h>
 #include <stdarg.h>

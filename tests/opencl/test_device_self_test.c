@@ -2,8 +2,8 @@
  *
  * Wrong devices are made by breaking the kernel's text in one place: what the host then sees is what a driver
  * with that fault would answer. */
-#include "engine/program.h"
-#include "engine/self_test.h"
+#include "opencl/program.h"
+#include "opencl/self_test.h"
 
 #include <setjmp.h>
 #include <stdarg.h>

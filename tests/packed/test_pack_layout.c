@@ -1,8 +1,8 @@
 /* test_pack_layout.c: what the packed buffers hold, entry by entry. */
 #define BP_HOST
 #include "base/status.h"
-#include "engine/pack.h"
-#include "engine/reals.h"
+#include "packed/pack.h"
+#include "packed/reals.h"
 #include "scene_types.h"
 
 #include <setjmp.h>

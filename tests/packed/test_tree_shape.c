@@ -1,9 +1,9 @@
 /* test_tree_shape.c: what every tree must be, over many scenes, widths and both precisions. */
 #define BP_HOST
 #include "base/status.h"
-#include "engine/reals.h"
-#include "engine/tree.h"
-#include "engine/tree_write.h"
+#include "packed/reals.h"
+#include "packed/tree.h"
+#include "packed/tree_write.h"
 #include "scene_types.h"
 #include "support/tree_scenes.h"
 

@@ -1,5 +1,5 @@
 /* test_tree_team.c: a team does every piece once, round after round. */
-#include "engine/tree_team.h"
+#include "packed/tree_team.h"
 
 #include <setjmp.h>
 #include <stdarg.h>

@@ -2,8 +2,8 @@
  */
 #define BP_HOST
 #include "base/status.h"
-#include "engine/reals.h"
-#include "engine/tree.h"
+#include "packed/reals.h"
+#include "packed/tree.h"
 #include "scene_types.h"
 #include "support/tree_scenes.h"
 

@@ -6,7 +6,7 @@
 #ifndef TESTS_DEVICE_EFFECTS_SCENES_H
 #define TESTS_DEVICE_EFFECTS_SCENES_H
 
-#include "engine/effects.h"
+#include "packed/effects.h"
 
 #include <string.h>
 

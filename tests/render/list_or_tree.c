@@ -9,7 +9,7 @@
 #include "base/clock.h"
 #include "base/quantile.h"
 #include "base/random.h"
-#include "engine/render.h"
+#include "render/render.h"
 
 #include <stdio.h>
 #include <stdlib.h>

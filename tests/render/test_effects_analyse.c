@@ -1,5 +1,5 @@
 /* test_effects_analyse.c: the sets of effects of scenes made by hand, and what is said about them. */
-#include "engine/effects.h"
+#include "packed/effects.h"
 
 #include <setjmp.h>
 #include <stdarg.h>

@@ -4,7 +4,7 @@
  * Counted are the programs (equal keys: the same source and options) and, on PoCL, what its compiler leaves
  * in an empty cache. */
 #include "effects_scenes.h"
-#include "engine/render.h"
+#include "render/render.h"
 
 #include <ftw.h>
 #include <setjmp.h>

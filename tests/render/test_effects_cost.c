@@ -5,9 +5,9 @@
  *
  * effects_cost [all]: one scene for each set of effects that occurs in scenes/; or all scenes. */
 #include "base/clock.h"
-#include "engine/device.h"
-#include "engine/effect_costs.h"
+#include "opencl/device.h"
 #include "scene/scene.h"
+#include "study/effect_costs.h"
 
 #include <dirent.h>
 #include <math.h>

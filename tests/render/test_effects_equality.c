@@ -13,8 +13,8 @@
  * sets with an even number of effects, sample for odd) and other (the other way round). PART of OF shares,
  * which can run side by side if each has a kernel cache of its own. */
 #include "effects_scenes.h"
-#include "engine/arrangement.h"
-#include "engine/worker_buffers.h"
+#include "render/render_plan.h"
+#include "render/worker_buffers.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -78,7 +78,7 @@ static BpStatus trace(const Lab *lab, const BpScene *scene, const BpRenderOption
                       BpProgram **program, Samples *samples, BpError *err) {
     BpWorkerSetup setup;
     BpPacked packed = {0};
-    BpStatus status = bp_arrange(scene, options, &lab->device->info, &setup, &packed, err);
+    BpStatus status = bp_render_plan(scene, options, &lab->device->info, &setup, &packed, err);
     if (status == BP_OK && *program == NULL)
         status = bp_program_build(lab->device, &setup.program, NULL, NULL, program, err);
     if (status != BP_OK) goto done;

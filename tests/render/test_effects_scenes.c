@@ -2,7 +2,7 @@
  *
  * A scene that has no line here fails the test: read it, and write down what its picture shows. */
 #include "ballpark.h"
-#include "engine/effects.h"
+#include "packed/effects.h"
 
 #include <dirent.h>
 #include <setjmp.h>

@@ -19,7 +19,7 @@ if clang is None:
     sys.exit(77)
 
 # The order of the bits, from the one list of effects.
-header = pathlib.Path(__file__).parents[2] / "host/engine/effects.h"
+header = pathlib.Path(__file__).parents[2] / "host/packed/effects.h"
 BITS = re.findall(r"^ +X\(([A-Z]+), \"", header.read_text(), re.MULTILINE)
 
 # Words that stand in the code of one effect and nowhere else.

@@ -3,7 +3,7 @@
  *
  * The sky differs in every direction, so that a ray without a direction cannot pass for one that met nothing.
  */
-#include "engine/render.h"
+#include "render/render.h"
 #include "scene/scene.h"
 
 #include <float.h>
@@ -91,7 +91,7 @@ static void render(const BpScene *scene, const char *text) {
     BpRender *made = NULL;
     BpProgress progress = {0};
     BpError err = {0};
-    const BpAccumulator *accumulator = NULL;
+    const BpFilm *film = NULL;
     bp_render_defaults(scene, &options);
     options.samples_per_pixel = 4;
     options.all_effects = true; /* one program for all */
@@ -101,11 +101,11 @@ static void render(const BpScene *scene, const char *text) {
     do {
         if (bp_render_step(made, &progress, &err) != BP_OK) fail_msg("%s: %s", err.message, text);
     } while (!progress.finished);
-    if (bp_render_accumulator(made, &accumulator, &err) != BP_OK) fail_msg("%s: %s", err.message, text);
-    if (accumulator->invalid_samples != 0)
-        fail_msg("%llu invalid samples: %s", (unsigned long long)accumulator->invalid_samples, text);
+    if (bp_render_read_film(made, &film, &err) != BP_OK) fail_msg("%s: %s", err.message, text);
+    if (film->invalid_samples != 0)
+        fail_msg("%llu invalid samples: %s", (unsigned long long)film->invalid_samples, text);
     double mean[3];
-    bp_accumulator_mean(accumulator, mean);
+    bp_film_mean(film, mean);
     if (!(mean[0] + mean[1] + mean[2] > 0)) fail_msg("black: %s", text);
     bp_render_destroy(&made);
 }

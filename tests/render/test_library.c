@@ -157,10 +157,10 @@ static void film_of_a_render_under_way(void **state) {
     must(bp_film_picture(late, &other, &err));
     assert_same_pictures(&picture, &other);
 
-    must(bp_render_features(render, &picture, &err));
+    must(bp_render_aovs(render, &picture, &err));
     assert_true(picture.depth != NULL && picture.normal != NULL && picture.albedo != NULL);
     other.width++;
-    assert_int_equal(bp_render_features(render, &other, &err), BP_ERR_USAGE);
+    assert_int_equal(bp_render_aovs(render, &other, &err), BP_ERR_USAGE);
     assert_null(other.depth);
     bp_picture_clear(&picture);
     bp_picture_clear(&other);

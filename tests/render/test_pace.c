@@ -1,7 +1,7 @@
 /* test_pace.c: chunks stay short whatever a path costs, and few where paths are short. Pictures are made up:
  * a number of seconds for every pixel; the clock is a sum. */
-#include "engine/pace.h"
-#include "engine/schedule.h"
+#include "render/pace.h"
+#include "render/schedule.h"
 
 #include <setjmp.h>
 #include <stdarg.h>

@@ -1,8 +1,8 @@
 /* test_render_same.c: a picture depends on scene, seed and samples, and on nothing else.
  *
  * On the default device: chunks, work-group sizes, kernel forms, list or tree, tree widths, first samples and
- * repetition change no bit of the accumulator; the seed changes it. */
-#include "engine/render.h"
+ * repetition change no bit of the film; the seed changes it. */
+#include "render/render.h"
 
 #include <setjmp.h>
 #include <stdarg.h>
@@ -24,20 +24,20 @@ static BpScene *scene_of(const char *name, uint32_t width) {
     return scene;
 }
 
-/* Renders and copies the accumulator's sums and counts into a new one that the caller destroys. */
-static BpAccumulator *render_on(const BpScene *scene, const BpRenderOptions *options,
-                                const BpDeviceInfo *devices, size_t device_count, uint64_t *segments) {
+/* Renders and copies the film's sums and counts into a new one that the caller destroys. */
+static BpFilm *render_on(const BpScene *scene, const BpRenderOptions *options, const BpDeviceInfo *devices,
+                         size_t device_count, uint64_t *segments) {
     BpRender *made = NULL;
     BpProgress progress = {0};
-    const BpAccumulator *read = NULL;
-    BpAccumulator *copy = NULL;
+    const BpFilm *read = NULL;
+    BpFilm *copy = NULL;
     if (bp_render_create(scene, options, devices, device_count, &made, &err) != BP_OK)
         fail_msg("%s", err.message);
     do {
         if (bp_render_step(made, &progress, &err) != BP_OK) fail_msg("%s", err.message);
     } while (!progress.finished);
-    if (bp_render_accumulator(made, &read, &err) != BP_OK) fail_msg("%s", err.message);
-    assert_int_equal(bp_accumulator_create(read->width, read->height, read->replicates, &copy, &err), BP_OK);
+    if (bp_render_read_film(made, &read, &err) != BP_OK) fail_msg("%s", err.message);
+    assert_int_equal(bp_film_create(read->width, read->height, read->replicates, &copy, &err), BP_OK);
     const size_t cells = (size_t)read->width * read->height * read->replicates;
     memcpy(copy->sums, read->sums, cells * 3 * sizeof *copy->sums);
     memcpy(copy->counts, read->counts, cells * sizeof *copy->counts);
@@ -47,24 +47,24 @@ static BpAccumulator *render_on(const BpScene *scene, const BpRenderOptions *opt
     return copy;
 }
 
-static BpAccumulator *render(const BpScene *scene, const BpRenderOptions *options, uint64_t *segments) {
+static BpFilm *render(const BpScene *scene, const BpRenderOptions *options, uint64_t *segments) {
     return render_on(scene, options, NULL, 0, segments);
 }
 
-static bool same(const BpAccumulator *a, const BpAccumulator *b) {
+static bool same(const BpFilm *a, const BpFilm *b) {
     const size_t cells = (size_t)a->width * a->height * a->replicates;
     return memcmp(a->sums, b->sums, cells * 3 * sizeof *a->sums) == 0 &&
            memcmp(a->counts, b->counts, cells * sizeof *a->counts) == 0;
 }
 
 /* Renders `varied` and checks it against `expected`. */
-static void check_same(const BpScene *scene, const BpRenderOptions *varied, const BpAccumulator *expected,
+static void check_same(const BpScene *scene, const BpRenderOptions *varied, const BpFilm *expected,
                        uint64_t expected_segments, const char *what) {
     uint64_t segments = 0;
-    BpAccumulator *found = render(scene, varied, &segments);
+    BpFilm *found = render(scene, varied, &segments);
     if (!same(expected, found)) fail_msg("another picture with %s", what);
     if (segments != expected_segments) fail_msg("other ray segments with %s", what);
-    bp_accumulator_destroy(&found);
+    bp_film_destroy(&found);
 }
 
 /* The form of the kernel, the chunks, tree and list: cheap to vary, since little or nothing is compiled anew.
@@ -77,7 +77,7 @@ static void check_variations(const char *name, uint32_t width, BpSampler sampler
     options.sampler = sampler;
     options.kernel = BP_KERNEL_SAMPLE;
     uint64_t segments = 0;
-    BpAccumulator *expected = render(scene, &options, &segments);
+    BpFilm *expected = render(scene, &options, &segments);
     assert_true(segments >= (uint64_t)expected->width * expected->height * 6);
 
     check_same(scene, &options, expected, segments, "a second run");
@@ -102,14 +102,14 @@ static void check_variations(const char *name, uint32_t width, BpSampler sampler
 
     varied = options;
     varied.seed = 1;
-    BpAccumulator *other = render(scene, &varied, NULL);
+    BpFilm *other = render(scene, &varied, NULL);
     assert_false(same(expected, other));
-    bp_accumulator_destroy(&other);
+    bp_film_destroy(&other);
     varied.seed = (uint64_t)1 << 32; /* the upper half of the seed counts too */
     other = render(scene, &varied, NULL);
     assert_false(same(expected, other));
-    bp_accumulator_destroy(&other);
-    bp_accumulator_destroy(&expected);
+    bp_film_destroy(&other);
+    bp_film_destroy(&expected);
     bp_scene_destroy(&scene);
 }
 
@@ -123,7 +123,7 @@ static void work_groups_and_widths_are_the_same(void **state) {
     bp_render_defaults(scene, &options);
     options.samples_per_pixel = 6;
     uint64_t segments = 0;
-    BpAccumulator *expected = render(scene, &options, &segments);
+    BpFilm *expected = render(scene, &options, &segments);
     const struct {
         BpKernelForm form;
         uint32_t local_size, tree_width, packet_lanes;
@@ -148,7 +148,7 @@ static void work_groups_and_widths_are_the_same(void **state) {
         varied.force_tree = variations[i].tree_width != 0;
         check_same(scene, &varied, expected, segments, variations[i].what);
     }
-    bp_accumulator_destroy(&expected);
+    bp_film_destroy(&expected);
     bp_scene_destroy(&scene);
 }
 
@@ -177,19 +177,19 @@ static void halves_add_up(void **state) {
         bp_render_defaults(scene, &options);
         options.sampler = sampler == 0 ? BP_SAMPLER_INDEPENDENT : BP_SAMPLER_SOBOL;
         options.samples_per_pixel = 10;
-        BpAccumulator *whole = render(scene, &options, NULL);
+        BpFilm *whole = render(scene, &options, NULL);
         options.samples_per_pixel = 4;
-        BpAccumulator *first = render(scene, &options, NULL);
+        BpFilm *first = render(scene, &options, NULL);
         options.first_sample = 4;
         options.samples_per_pixel = 6;
-        BpAccumulator *second = render(scene, &options, NULL);
+        BpFilm *second = render(scene, &options, NULL);
         const size_t cells = (size_t)whole->width * whole->height * whole->replicates;
         for (size_t i = 0; i < cells * 3; ++i) first->sums[i] += second->sums[i];
         for (size_t i = 0; i < cells; ++i) first->counts[i] += second->counts[i];
         assert_true(same(whole, first));
-        bp_accumulator_destroy(&whole);
-        bp_accumulator_destroy(&first);
-        bp_accumulator_destroy(&second);
+        bp_film_destroy(&whole);
+        bp_film_destroy(&first);
+        bp_film_destroy(&second);
     }
     bp_scene_destroy(&scene);
 }
@@ -201,24 +201,24 @@ static void extension_adds_up(void **state) {
     BpRenderOptions options;
     bp_render_defaults(scene, &options);
     options.samples_per_pixel = 9;
-    BpAccumulator *whole = render(scene, &options, NULL);
+    BpFilm *whole = render(scene, &options, NULL);
     options.samples_per_pixel = 2;
     BpRender *made = NULL;
     BpProgress progress = {0};
-    const BpAccumulator *read = NULL;
+    const BpFilm *read = NULL;
     assert_int_equal(bp_render_create(scene, &options, NULL, 0, &made, &err), BP_OK);
     do assert_int_equal(bp_render_step(made, &progress, &err), BP_OK);
     while (!progress.finished);
-    assert_int_equal(bp_render_accumulator(made, &read, &err), BP_OK); /* a look in between changes nothing */
+    assert_int_equal(bp_render_read_film(made, &read, &err), BP_OK); /* a look in between changes nothing */
     assert_int_equal(bp_render_extend(made, 1, &err), BP_ERR_USAGE);
     assert_int_equal(bp_render_extend(made, 9, &err), BP_OK);
     do assert_int_equal(bp_render_step(made, &progress, &err), BP_OK);
     while (!progress.finished);
     assert_int_equal(bp_render_samples_done(made), 9);
-    assert_int_equal(bp_render_accumulator(made, &read, &err), BP_OK);
+    assert_int_equal(bp_render_read_film(made, &read, &err), BP_OK);
     assert_true(same(whole, read));
     bp_render_destroy(&made);
-    bp_accumulator_destroy(&whole);
+    bp_film_destroy(&whole);
     bp_scene_destroy(&scene);
 }
 
@@ -230,16 +230,16 @@ static void several_devices_are_the_same(void **state) {
     bp_render_defaults(scene, &options);
     options.samples_per_pixel = 20;
     uint64_t segments = 0, shared_segments = 0;
-    BpAccumulator *alone = render(scene, &options, &segments);
+    BpFilm *alone = render(scene, &options, &segments);
     BpDeviceInfo devices[3];
     assert_int_equal(bp_device_find(NULL, &devices[0], &err), BP_OK);
     devices[1] = devices[2] = devices[0];
     options.chunk_samples = 500; /* enough chunks for all to get some */
-    BpAccumulator *shared = render_on(scene, &options, devices, 3, &shared_segments);
+    BpFilm *shared = render_on(scene, &options, devices, 3, &shared_segments);
     assert_true(same(alone, shared));
     assert_int_equal(segments, shared_segments);
-    bp_accumulator_destroy(&alone);
-    bp_accumulator_destroy(&shared);
+    bp_film_destroy(&alone);
+    bp_film_destroy(&shared);
     bp_scene_destroy(&scene);
 }
 
@@ -256,13 +256,13 @@ static void depth_cap_is_black_and_counted(void **state) {
         options.max_depth = depths[i];
         BpRender *made = NULL;
         BpProgress progress = {0};
-        const BpAccumulator *read = NULL;
+        const BpFilm *read = NULL;
         double mean[3];
         assert_int_equal(bp_render_create(scene, &options, NULL, 0, &made, &err), BP_OK);
         do assert_int_equal(bp_render_step(made, &progress, &err), BP_OK);
         while (!progress.finished);
-        assert_int_equal(bp_render_accumulator(made, &read, &err), BP_OK);
-        bp_accumulator_mean(read, mean);
+        assert_int_equal(bp_render_read_film(made, &read, &err), BP_OK);
+        bp_film_mean(read, mean);
         const uint64_t samples = (uint64_t)read->width * read->height * 8;
         if (depths[i] == 0) {
             assert_true(mean[0] == 0 && mean[1] == 0 && mean[2] == 0);

@@ -1,7 +1,7 @@
 /* test_scene_documents.c: good scene documents: defaults, every member, every file of scenes/, what is
  * written and made. */
+#include "formats/document.h"
 #include "scene/scene.h"
-#include "scene/scene_document.h"
 
 #include <glob.h>
 #include <math.h>

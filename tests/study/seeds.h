@@ -1,6 +1,6 @@
 /* seeds.h: small renders of the book's scenes, seed after seed, and references that have converged.
  *
- * In:    a scene's name, a width, samples, a sampler, seeds.   Out: accumulators, pictures.
+ * In:    a scene's name, a width, samples, a sampler, seeds.   Out: films, pictures.
  * Knows: the render loop.   Does not know: what is asked of the pictures. */
 #ifndef TESTS_COST_SEEDS_H
 #define TESTS_COST_SEEDS_H
@@ -9,7 +9,7 @@
 #include "support/unit_test.h"
 
 #include "base/status.h"
-#include "engine/render.h"
+#include "render/render.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -42,13 +42,13 @@ static inline BpRender *open_render(const BpScene *scene, BpSampler sampler, uin
     return render;
 }
 
-static inline const BpAccumulator *finish_render(BpRender *render) {
+static inline const BpFilm *finish_render(BpRender *render) {
     BpProgress progress = {0};
-    const BpAccumulator *accumulator = NULL;
+    const BpFilm *film = NULL;
     BpError err = {0};
     while (!progress.finished) must(bp_render_step(render, &progress, &err), &err);
-    must(bp_render_accumulator(render, &accumulator, &err), &err);
-    return accumulator;
+    must(bp_render_read_film(render, &film, &err), &err);
+    return film;
 }
 
 static inline BpPicture make_picture(const BpScene *scene, BpSampler sampler, uint64_t seed,
@@ -56,7 +56,7 @@ static inline BpPicture make_picture(const BpScene *scene, BpSampler sampler, ui
     BpPicture picture;
     BpError err = {0};
     BpRender *render = open_render(scene, sampler, seed, samples);
-    must(bp_accumulator_picture(finish_render(render), &picture, &err), &err);
+    must(bp_film_picture(finish_render(render), &picture, &err), &err);
     bp_render_destroy(&render);
     return picture;
 }

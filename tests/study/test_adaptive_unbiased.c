@@ -27,14 +27,14 @@ typedef struct Errors {
     double actual, claimed; /* mean squares over pixels and seeds */
 } Errors;
 
-static void add_errors(const BpAccumulator *accumulator, const BpPicture *x, const BpPicture references[2],
+static void add_errors(const BpFilm *film, const BpPicture *x, const BpPicture references[2],
                        Errors *errors) {
     const size_t pixels = (size_t)x->width * x->height;
     for (size_t p = 0; p < pixels; p++) {
         const double y = luminance(x->rgb + 3 * p);
         errors->actual += (y - luminance(references[0].rgb + 3 * p)) *
                           (y - luminance(references[1].rgb + 3 * p)) / (double)pixels / SEEDS;
-        errors->claimed += bp_accumulator_squared_error(accumulator, p) / (double)pixels / SEEDS;
+        errors->claimed += bp_film_squared_error(film, p) / (double)pixels / SEEDS;
     }
 }
 
@@ -72,9 +72,9 @@ static void honest_and_better(void **state) {
         for (int a = 0; a < 2; a++) {
             BpRender *render = a == 1 ? open_adaptive(scene, &options)
                                       : open_render(scene, BP_SAMPLER_SOBOL, options.seed, SAMPLES);
-            const BpAccumulator *accumulator = finish_render(render);
-            must(bp_accumulator_picture(accumulator, &pictures[a], &err), &err);
-            add_errors(accumulator, &pictures[a], references, a == 1 ? &adaptive : &even);
+            const BpFilm *film = finish_render(render);
+            must(bp_film_picture(film, &pictures[a], &err), &err);
+            add_errors(film, &pictures[a], references, a == 1 ? &adaptive : &even);
             bp_render_destroy(&render);
         }
         add_blocks(&pictures[1], &pictures[0], sum, square);
@@ -104,7 +104,7 @@ static void honest_and_better(void **state) {
 }
 
 static void assert_same_sums(BpRender *one, BpRender *other) {
-    const BpAccumulator *a = finish_render(one), *b = finish_render(other);
+    const BpFilm *a = finish_render(one), *b = finish_render(other);
     const size_t cells = (size_t)a->width * a->height * a->replicates;
     assert_memory_equal(a->sums, b->sums, cells * 3 * sizeof *a->sums);
     assert_memory_equal(a->counts, b->counts, cells * sizeof *a->counts);

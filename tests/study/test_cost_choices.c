@@ -1,8 +1,8 @@
 /* test_cost_choices.c: which ways `ballpark cost` compares, and what it advises. */
 #include "support/unit_test.h"
 
-#include "cost/configurations.h"
-#include "cost/fit.h"
+#include "study/configurations.h"
+#include "study/fit.h"
 
 #include <math.h>
 #include <stdlib.h>

@@ -1,9 +1,9 @@
 /* test_cost_parts.c: the arithmetic of `ballpark cost` on data whose answers are known. */
 #include "support/unit_test.h"
 
-#include "cost/fit.h"
-#include "cost/measure.h"
 #include "cost_random.h"
+#include "study/fit.h"
+#include "study/measure.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -120,7 +120,7 @@ static void test_errors_by_hand(void **state) {
 
 /* Two renders of the same random numbers: noise 0.3 in common, and in each replicate of x `bias` (alternately
  * up and down by `swing` from pixel to pixel) and noise 0.01 of its own. */
-static void make_pair(double bias, double swing, BpAccumulator *base, BpAccumulator *x) {
+static void make_pair(double bias, double swing, BpFilm *base, BpFilm *x) {
     base->scale_log2 = x->scale_log2 = 30;
     for (size_t cell = 0; cell < PIXELS * K; cell++) {
         const uint32_t count = base->counts[cell] = x->counts[cell] = 8;
@@ -136,13 +136,13 @@ static void make_pair(double bias, double swing, BpAccumulator *base, BpAccumula
 static void test_paired(void **state) {
     (void)state;
     enum { TRIALS = 300 };
-    BpAccumulator *base = NULL, *x = NULL;
+    BpFilm *base = NULL, *x = NULL;
     BpError err = {0};
     int held = 0, held_square = 0;
     double widest = 0, mean_square = 0;
     stream.state = 3;
-    assert_int_equal(bp_accumulator_create(WIDTH, HEIGHT, K, &base, &err), BP_OK);
-    assert_int_equal(bp_accumulator_create(WIDTH, HEIGHT, K, &x, &err), BP_OK);
+    assert_int_equal(bp_film_create(WIDTH, HEIGHT, K, &base, &err), BP_OK);
+    assert_int_equal(bp_film_create(WIDTH, HEIGHT, K, &x, &err), BP_OK);
     const double bias = 0.001, swing = 0.002, brightness = 2;
     const double square = (bias * bias + swing * swing) / (brightness * brightness);
     for (int t = 0; t < TRIALS; t++) {
@@ -161,14 +161,14 @@ static void test_paired(void **state) {
     assert_true(fabs(mean_square - 1) < 0.05);
     /* Unpaired, the common noise would make it 0.3 / 0.01 times wider. */
     assert_true(widest < 3 * 2 * 1.96 * 0.01 / sqrt((double)(PIXELS * K)) / brightness);
-    BpAccumulator *narrow = NULL;
+    BpFilm *narrow = NULL;
     BpStudyEstimate a, b;
-    assert_int_equal(bp_accumulator_create(WIDTH - 1, HEIGHT, K, &narrow, &err), BP_OK);
+    assert_int_equal(bp_film_create(WIDTH - 1, HEIGHT, K, &narrow, &err), BP_OK);
     assert_int_equal(bp_study_paired(narrow, base, 1, &a, &b, &err), BP_ERR_USAGE);
     bp_error_clear(&err);
-    bp_accumulator_destroy(&narrow);
-    bp_accumulator_destroy(&base);
-    bp_accumulator_destroy(&x);
+    bp_film_destroy(&narrow);
+    bp_film_destroy(&base);
+    bp_film_destroy(&x);
 }
 
 /* The difference from references of other random numbers, as devices without double have it. */

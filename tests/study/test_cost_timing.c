@@ -1,8 +1,8 @@
 /* test_cost_timing.c: what `ballpark cost` makes of the times of rounds, disturbed ones among them. */
 #include "support/unit_test.h"
 
-#include "cost/timing.h"
 #include "cost_random.h"
+#include "study/timing.h"
 
 #include <math.h>
 

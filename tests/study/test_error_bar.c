@@ -63,14 +63,14 @@ static void judge(const BpPicture *x, const BpPicture *r1, const BpPicture *r2, 
 
 static double claimed_square(const BpScene *scene, BpSampler sampler, uint64_t seed, BpPicture *picture) {
     BpRender *render = open_render(scene, sampler, seed, SAMPLES);
-    const BpAccumulator *accumulator = finish_render(render);
+    const BpFilm *film = finish_render(render);
     BpError err = {0};
     double mean[3];
-    must(bp_accumulator_picture(accumulator, picture, &err), &err);
-    bp_accumulator_mean(accumulator, mean);
+    must(bp_film_picture(film, picture, &err), &err);
+    bp_film_mean(film, mean);
     double brightness = 0;
     for (int c = 0; c < 3; c++) brightness += bp_luminance_weights[c] * mean[c];
-    const double error = bp_accumulator_nrmse(accumulator) * brightness;
+    const double error = bp_film_nrmse(film) * brightness;
     bp_render_destroy(&render);
     return error * error * (double)(picture->width * picture->height);
 }

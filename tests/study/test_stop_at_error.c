@@ -5,7 +5,7 @@
  * actual one; the mean over all seeds of the picture's brightness is that of the reference. */
 #include "seeds.h"
 
-#include "engine/stop_rule.h"
+#include "render/stop_rule.h"
 
 #define SEEDS 64
 #define TARGET 0.01
@@ -44,13 +44,13 @@ static void render_until(const BpScene *scene, const BpStopRule *rule, BpSampler
     options.adaptive = rule->adaptive;
     must(bp_render_create(scene, &options, NULL, 0, &render, &err), &err);
     for (;;) {
-        const BpAccumulator *accumulator = finish_render(render);
+        const BpFilm *film = finish_render(render);
         uint64_t next = 0;
-        state.nrmse = bp_accumulator_nrmse(accumulator);
+        state.nrmse = bp_film_nrmse(film);
         const BpStopReason reason = bp_stop_decide(rule, &state, &next);
         if (reason != BP_STOP_NOT_YET) {
             assert_int_equal(reason, BP_STOP_ERROR);
-            must(bp_accumulator_picture(accumulator, &stopped->picture, &err), &err);
+            must(bp_film_picture(film, &stopped->picture, &err), &err);
             break;
         }
         assert_true(looks < 64);

@@ -3,7 +3,7 @@
 #include "support/unit_test.h"
 
 #include "base/status.h"
-#include "cost/study.h"
+#include "study/study.h"
 
 #include <math.h>
 #include <string.h>

@@ -4,9 +4,9 @@
 #ifndef TESTS_SUPPORT_PROBE_H
 #define TESTS_SUPPORT_PROBE_H
 
-#include "engine/device.h"
-#include "engine/effects.h"
-#include "engine/program.h"
+#include "opencl/device.h"
+#include "opencl/program.h"
+#include "packed/effects.h"
 #include "support/unit_test.h"
 
 typedef struct Probe {

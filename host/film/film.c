@@ -1,0 +1,276 @@
+/* film.c: making, ranges and merging; see film.h. */
+#include "film.h"
+
+#include "base/plural.h"
+#include "base/status.h"
+
+#include <inttypes.h>
+#include <stdlib.h>
+#include <string.h>
+
+#define SAMPLES_END 4294967296u /* 2^32, one past the last sample number */
+
+BpStatus bp_film_create(uint32_t width, uint32_t height, uint32_t replicates, BpFilm **film, BpError *err) {
+    *film = NULL;
+    if (width < 1 || height < 1 || width > BP_PICTURE_SIDE_MAX || height > BP_PICTURE_SIDE_MAX)
+        return bp_fail(err, BP_ERR_LIMIT, "a picture of %" PRIu32 " x %" PRIu32 " pixels: sides are 1 to %u",
+                       width, height, BP_PICTURE_SIDE_MAX);
+    if (replicates < 1 || replicates > BP_REPLICATES_MAX)
+        return bp_fail(err, BP_ERR_LIMIT, "%" PRIu32 " replicates: there are 1 to %u", replicates,
+                       BP_REPLICATES_MAX);
+    const size_t cells = (size_t)width * height * replicates;
+    BpFilm *made = calloc(1, sizeof *made);
+    if (made != NULL) {
+        made->width = width;
+        made->height = height;
+        made->replicates = replicates;
+        made->sums = calloc(cells, 3 * sizeof *made->sums);
+        made->counts = calloc(cells, sizeof *made->counts);
+    }
+    if (made == NULL || made->sums == NULL || made->counts == NULL) {
+        bp_film_destroy(&made);
+        return bp_fail(err, BP_ERR_MEMORY,
+                       "out of memory for %" PRIu32 " x %" PRIu32 " pixels of %" PRIu32
+                       " replicates (%zu MiB); make the picture smaller",
+                       width, height, replicates, cells * 28 >> 20);
+    }
+    *film = made;
+    return BP_OK;
+}
+
+void bp_film_destroy(BpFilm **film) {
+    if (film == NULL || *film == NULL) return;
+    free((*film)->ranges);
+    free((*film)->title);
+    free((*film)->sums);
+    free((*film)->fine_sums);
+    free((*film)->counts);
+    free((*film)->pixel_segments);
+    free(*film);
+    *film = NULL;
+}
+
+BpStatus bp_film_add_fine_sums(BpFilm *film, BpError *err) {
+    if (film->fine_sums != NULL) return BP_OK;
+    const size_t cells = (size_t)film->width * film->height * film->replicates;
+    film->fine_sums = calloc(cells, 3 * sizeof *film->fine_sums);
+    if (film->fine_sums != NULL) return BP_OK;
+    return bp_fail(err, BP_ERR_MEMORY, "out of memory for the fine sums of %zu pixels (%zu MiB)",
+                   cells / film->replicates, cells * 24 >> 20);
+}
+
+void bp_film_info(const BpFilm *film, BpFilmInfo *info) {
+    *info = (BpFilmInfo){
+        .title = film->title != NULL ? film->title : "",
+        .width = film->width,
+        .height = film->height,
+        .samples_per_pixel = bp_film_range_total(film),
+        .range_count = film->range_count,
+        .partial = film->partial,
+        .segments = film->segments,
+        .cut_paths = film->cut_paths,
+        .invalid_samples = film->invalid_samples,
+        .scene_hash = film->scene_hash,
+        .seed = film->seed,
+        .max_depth = film->max_depth,
+        .replicates = film->replicates,
+        .sampler = (BpSampler)film->sampler,
+        .precision = (BpPrecision)film->precision,
+        .math = (BpMath)film->math,
+        .numerics = (BpNumerics)film->numerics,
+        .transfer = (BpTransfer)film->transfer,
+    };
+    bp_film_sample_counts(film, &info->samples_least, &info->samples_most, &info->samples_mean);
+}
+
+bool bp_film_range(const BpFilm *film, size_t index, uint64_t *first, uint64_t *count) {
+    if (index >= film->range_count) return false;
+    *first = film->ranges[index].first;
+    *count = film->ranges[index].count;
+    return true;
+}
+
+/* ---- ranges of samples ---- */
+
+/* How many s of [0, end) have s mod K = replicate. */
+static uint64_t samples_before(uint64_t end, uint32_t replicates, uint32_t replicate) {
+    return end / replicates + (end % replicates > replicate ? 1 : 0);
+}
+
+static uint64_t ranges_expected(const struct BpSampleRange *ranges, size_t count, uint32_t replicates,
+                                uint32_t replicate) {
+    uint64_t total = 0;
+    for (size_t i = 0; i < count; i++)
+        total += samples_before(ranges[i].first + ranges[i].count, replicates, replicate) -
+                 samples_before(ranges[i].first, replicates, replicate);
+    return total;
+}
+
+uint64_t bp_film_expected(const BpFilm *film, uint32_t replicate) {
+    return ranges_expected(film->ranges, film->range_count, film->replicates, replicate);
+}
+
+uint64_t bp_film_range_total(const BpFilm *film) {
+    uint64_t total = 0;
+    for (size_t i = 0; i < film->range_count; i++) total += film->ranges[i].count;
+    return total;
+}
+
+static BpStatus check_limit(uint64_t samples, BpError *err) {
+    if (samples <= BP_REPLICATE_SAMPLES_MAX) return BP_OK;
+    return bp_fail(err, BP_ERR_LIMIT,
+                   "%" PRIu64
+                   " samples in one replicate of a pixel: the sums are exact up to %u; render fewer "
+                   "samples, or more replicates",
+                   samples, BP_REPLICATE_SAMPLES_MAX);
+}
+
+/* Adds a range at the end of a sorted list, or to its last range if they adjoin. */
+static BpStatus append_range(struct BpSampleRange *list, size_t *count, const struct BpSampleRange *range,
+                             BpError *err) {
+    struct BpSampleRange *last = *count > 0 ? &list[*count - 1] : NULL;
+    if (last == NULL || last->first + last->count < range->first) {
+        list[(*count)++] = *range;
+        return BP_OK;
+    }
+    if (last->first + last->count > range->first)
+        return bp_fail(err, BP_ERR_USAGE,
+                       "samples %" PRIu64 " to %" PRIu64 " and %" PRIu64 " to %" PRIu64
+                       " overlap: the same samples would count twice; render with another --first-sample",
+                       last->first, last->first + last->count - 1, range->first,
+                       range->first + range->count - 1);
+    last->count += range->count;
+    return BP_OK;
+}
+
+/* The ranges of `film` and those of a sorted list as one sorted list, which the caller frees; refused
+ * where they overlap or exceed a limit. The film stays as it is. */
+static BpStatus join_ranges(const BpFilm *film, const struct BpSampleRange *more, size_t more_count,
+                            struct BpSampleRange **joined, size_t *joined_count, BpError *err) {
+    const size_t most = film->range_count + more_count;
+    struct BpSampleRange *list = malloc((most > 0 ? most : 1) * sizeof *list);
+    if (list == NULL) return bp_fail(err, BP_ERR_MEMORY, "out of memory for %zu sample ranges", most);
+    size_t count = 0, a = 0, b = 0;
+    BpStatus status = BP_OK;
+    while (status == BP_OK && a + b < most) {
+        const bool own = b == more_count || (a < film->range_count && film->ranges[a].first <= more[b].first);
+        status = append_range(list, &count, own ? &film->ranges[a++] : &more[b++], err);
+    }
+    if (status == BP_OK && count > BP_SAMPLE_RANGES_MAX)
+        status = bp_fail(err, BP_ERR_LIMIT,
+                         "%zu separate sample ranges: a film has at most %u; merge neighbours first", count,
+                         BP_SAMPLE_RANGES_MAX);
+    for (uint32_t k = 0; status == BP_OK && k < film->replicates; k++)
+        status = check_limit(ranges_expected(list, count, film->replicates, k), err);
+    if (status != BP_OK) {
+        free(list);
+        return status;
+    }
+    *joined = list;
+    *joined_count = count;
+    return BP_OK;
+}
+
+BpStatus bp_film_add_ranges(BpFilm *film, const struct BpSampleRange *ranges, size_t count, BpError *err) {
+    for (size_t i = 0; i < count; i++)
+        if (ranges[i].count < 1 || ranges[i].first >= SAMPLES_END ||
+            ranges[i].count > SAMPLES_END - ranges[i].first)
+            return bp_fail(err, BP_ERR_USAGE,
+                           "%" PRIu64 " sample%s from number %" PRIu64
+                           " on: sample numbers are 0 to 2^32 - 1",
+                           ranges[i].count, bp_plural(ranges[i].count), ranges[i].first);
+    struct BpSampleRange *joined = NULL;
+    size_t joined_count = 0;
+    BP_TRY(join_ranges(film, ranges, count, &joined, &joined_count, err));
+    free(film->ranges);
+    film->ranges = joined;
+    film->range_count = joined_count;
+    return BP_OK;
+}
+
+BpStatus bp_film_add_range(BpFilm *film, uint64_t first, uint64_t count, BpError *err) {
+    const struct BpSampleRange range = {first, count};
+    return bp_film_add_ranges(film, &range, 1, err);
+}
+
+/* ---- merging ---- */
+
+static BpStatus check_same_settings(const BpFilm *a, const BpFilm *b, BpError *err) {
+#define BP_SAME(field, what, remedy)                                                                         \
+    if (a->field != b->field)                                                                                \
+    return bp_fail(err, BP_ERR_USAGE, "the renders cannot be merged: their " what " differ" remedy,          \
+                   (int64_t)a->field, (int64_t)b->field)
+#define BP_SAME_WORD(field, what, value, word, other)                                                        \
+    if (a->field != b->field)                                                                                \
+    return bp_fail(err, BP_ERR_USAGE, "the renders cannot be merged: their " what " differ (%s and %s)",     \
+                   (int)a->field == (int)(value) ? (word) : (other),                                         \
+                   (int)b->field == (int)(value) ? (word) : (other))
+    BP_SAME(width, "widths", " (%" PRId64 " and %" PRId64 " pixels: --width)");
+    BP_SAME(height, "heights", " (%" PRId64 " and %" PRId64 " pixels)");
+    if (a->scene_hash != b->scene_hash)
+        return bp_fail(err, BP_ERR_USAGE,
+                       "the renders cannot be merged: they show different scenes (%016" PRIx64
+                       " and %016" PRIx64 ")",
+                       a->scene_hash, b->scene_hash);
+    if (a->seed != b->seed)
+        return bp_fail(err, BP_ERR_USAGE,
+                       "the renders cannot be merged: their seeds differ (%" PRIu64 " and %" PRIu64
+                       "); render both with one --seed and another --first-sample",
+                       a->seed, b->seed);
+    BP_SAME(replicates, "numbers of replicates", " (%" PRId64 " and %" PRId64 ")");
+    BP_SAME(scale_log2, "fixed-point scales", " (2^%" PRId64 " and 2^%" PRId64 ")");
+    BP_SAME(max_depth, "depths", " (--depth %" PRId64 " and %" PRId64 ")");
+    BP_SAME_WORD(sampler, "samplers", BP_SAMPLER_SOBOL, "--sampler sobol", "--sampler independent");
+    BP_SAME_WORD(precision, "precisions", BP_PRECISION_DOUBLE, "--precision double", "--precision single");
+    BP_SAME_WORD(math, "kinds of mathematics", BP_MATH_FAST, "--math fast", "--math strict");
+    BP_SAME_WORD(numerics, "numerics", BP_NUMERICS_PLAIN, "--numerics plain", "--numerics robust");
+    BP_SAME(transfer, "transfer curves", " (numbers %" PRId64 " and %" PRId64 ")");
+#undef BP_SAME
+#undef BP_SAME_WORD
+    return BP_OK;
+}
+
+/* Whether the two sums of every cell can be added: those of any render can. */
+static BpStatus check_sums(const BpFilm *into, const BpFilm *from, const int64_t *a, const int64_t *b,
+                           BpError *err) {
+    const size_t channels = (size_t)into->width * into->height * into->replicates * 3;
+    for (size_t i = 0; i < channels; i++)
+        if (b[i] > 0 ? a[i] > INT64_MAX - b[i] : a[i] < INT64_MIN - b[i])
+            return bp_fail(err, BP_ERR_LIMIT, "the sums of pixel %zu overflow 64 bits: a file is damaged",
+                           i / 3 / from->replicates);
+    return BP_OK;
+}
+
+static bool total_overflows(uint64_t a, uint64_t b) {
+    return a > INT64_MAX || b > INT64_MAX - a;
+}
+
+BpStatus bp_film_merge(BpFilm *into, const BpFilm *from, BpError *err) {
+    BP_TRY(check_same_settings(into, from, err));
+    const size_t cells = (size_t)into->width * into->height * into->replicates;
+    for (size_t i = 0; i < cells; i++) BP_TRY(check_limit((uint64_t)into->counts[i] + from->counts[i], err));
+    BP_TRY(check_sums(into, from, into->sums, from->sums, err));
+    if (into->fine_sums != NULL && from->fine_sums != NULL)
+        BP_TRY(check_sums(into, from, into->fine_sums, from->fine_sums, err));
+    /* A .bpa file holds totals up to 2^63 - 1; no sum of real renders comes near. */
+    if (total_overflows(into->segments, from->segments) ||
+        total_overflows(into->cut_paths, from->cut_paths) ||
+        total_overflows(into->invalid_samples, from->invalid_samples))
+        return bp_fail(
+            err, BP_ERR_LIMIT,
+            "the numbers of ray segments, cut paths or invalid samples overflow 63 bits: a file is damaged");
+    if (from->fine_sums != NULL) BP_TRY(bp_film_add_fine_sums(into, err));
+    BP_TRY(bp_film_add_ranges(into, from->ranges, from->range_count, err));
+
+    for (size_t i = 0; i < cells; i++) into->counts[i] += from->counts[i];
+    for (size_t i = 0; i < 3 * cells; i++) into->sums[i] += from->sums[i];
+    for (size_t i = 0; from->fine_sums != NULL && i < 3 * cells; i++)
+        into->fine_sums[i] += from->fine_sums[i];
+    into->partial = into->partial || from->partial;
+    into->coarse = into->coarse || from->coarse;
+    into->unverified = into->unverified || from->unverified;
+    into->segments += from->segments;
+    into->cut_paths += from->cut_paths;
+    into->invalid_samples += from->invalid_samples;
+    return BP_OK;
+}

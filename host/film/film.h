@@ -1,0 +1,119 @@
+/* film.h: the sums from which a picture and its error bar are made.
+ *
+ * In:    fixed-point replicate sums, as the kernel `accumulate` leaves them.
+ * Out:   means, standard errors, NRMSE; sums of two runs added exactly.
+ * Knows: arithmetic.   Does not know: OpenCL, scenes, file formats (film_file.h does).
+ *
+ * Sample s of a pixel belongs to replicate s mod K. Sums are integers, so they do not depend on their order
+ * and cannot drift. A channel x of a sample is y = x * 2^scale_log2 steps, at most 2^38. Its whole part goes
+ * to `sums`. That is right to 2^-21 of y where y is at least 2^21; so where a channel of the sample is
+ * smaller than that (and not 0), the fractions of its channels go to `fine_sums`, in steps that are 2^38
+ * times finer. Every sample down to 2^-18 of a step is kept to within a millionth of itself, however bright
+ * the lamp is that the scale must leave room for. bp_film_scale() chooses the scale so that 2^24
+ * samples of one replicate overflow neither sum. */
+#ifndef BP_FILM_FILM_H
+#define BP_FILM_FILM_H
+
+#include "scene/scene.h"
+
+#define BP_REPLICATES_DEFAULT 4u /* chosen by measurement: docs/ACCURACY.md */
+#define BP_REPLICATES_MAX 64u
+#define BP_REPLICATE_SAMPLES_MAX (1u << 24)
+#define BP_FINE_BITS 38 /* a fine step is 2^-38 steps */
+#define BP_SAMPLE_RANGES_MAX 10000u
+/* What rounding to steps may cost a picture, relative to its mean; see bp_film_rounding(). */
+#define BP_ROUNDING_MAX 1e-6
+
+struct BpFilm {
+    uint32_t width, height;
+    uint32_t replicates; /* K */
+    int32_t scale_log2;
+    /* What the samples were drawn from; two films merge only when all of these agree. */
+    uint64_t scene_hash; /* of everything that can change radiance */
+    uint64_t seed;
+    uint32_t max_depth;
+    uint32_t sampler, precision, math, numerics; /* BpSampler, BpPrecision, BpMath, BpNumerics */
+    uint32_t transfer; /* BpTransfer of the scene, for the picture made from a merged file */
+    /* Sample ranges [first, first + count) that every pixel was meant to get, sorted, disjoint. */
+    struct BpSampleRange {
+        uint64_t first, count;
+    } * ranges;
+    size_t range_count;
+    bool partial;       /* interrupted: some pixels have fewer samples than the ranges say */
+    bool coarse;        /* some sample was so dim that a fine step may be over a millionth of it */
+    bool unverified;    /* read from a file of version 1, which has no checksum */
+    char *title;        /* Optional. The scene's title, for people; owned, not compared by a merge. */
+    int64_t *sums;      /* width * height * K * 3, index ((pixel * K) + k) * 3 + channel */
+    int64_t *fine_sums; /* Optional. Of the same shape, in steps 2^38 times finer; NULL: all are 0 */
+    uint32_t *counts;   /* width * height * K: valid samples */
+    uint64_t segments, cut_paths, invalid_samples; /* totals over the picture */
+    uint64_t *pixel_segments; /* Optional. Of each pixel; in no file, and not merged: adaptive sampling asks
+                                 for it. */
+};
+
+/* ---- what of a scene the sums depend on (film_scene.c) ---- */
+
+/* The scale for a scene traced to `max_depth` segments: 38 - ceil(log2(bound)) with
+ * bp_scene_radiance_bound(), within +-126 so that 2^scale is a float. A sample is then at most 2^38 steps,
+ * and 2^24 of them are at most 2^62. */
+int32_t bp_film_scale(const BpScene *scene, uint32_t max_depth);
+/* An upper bound of the radiance that one path of at most `max_depth` segments can carry: the brightest of
+ * sky and lamps, times min(1 / (1 - a), max_depth), where a is the largest albedo of a material that both
+ * emits and scatters: 1 + a + a^2 + ... with as many terms as the path has segments. 0 for a black scene. */
+double bp_scene_radiance_bound(const BpScene *scene, uint32_t max_depth);
+/* A hash of the meaning of the scene: camera, sky, spheres in their order, each with what its material says.
+ * Names, unused materials, members without effect (the fuzz of glass) and the sign of zero change nothing;
+ * nor do sample counts and depth, which the film keeps apart. */
+uint64_t bp_scene_hash(const BpScene *scene);
+
+/* ---- the sums (film.c) ---- */
+
+/* Zeroed but for the three sizes. 1 <= replicates <= BP_REPLICATES_MAX; sides up to BP_PICTURE_SIDE_MAX.
+ * BP_ERR_LIMIT or BP_ERR_MEMORY. */
+BpStatus bp_film_create(uint32_t width, uint32_t height, uint32_t replicates, BpFilm **film, BpError *err);
+
+/* Notes that every pixel gets the samples [first, first + count), count > 0; adjoining ranges become one.
+ * BP_ERR_USAGE for an overlap or samples past 2^32; BP_ERR_LIMIT when a replicate would get more than
+ * BP_REPLICATE_SAMPLES_MAX samples, past which 64 bits could overflow. Unchanged on failure. */
+BpStatus bp_film_add_range(BpFilm *film, uint64_t first, uint64_t count, BpError *err);
+/* The same for `count` ranges, sorted and disjoint, at once. BP_ERR_LIMIT also where more than
+ * BP_SAMPLE_RANGES_MAX separate ranges would come of it. */
+BpStatus bp_film_add_ranges(BpFilm *film, const struct BpSampleRange *ranges, size_t count, BpError *err);
+
+/* Gives `film` fine sums, all 0, unless it has them. BP_ERR_MEMORY. */
+BpStatus bp_film_add_fine_sums(BpFilm *film, BpError *err);
+
+/* The sum of radiance of one channel of one replicate; `index` as in `sums`. */
+double bp_film_sum(const BpFilm *film, size_t index);
+
+/* Samples of every pixel that the ranges name for `replicate`, and in all. */
+uint64_t bp_film_expected(const BpFilm *film, uint32_t replicate);
+uint64_t bp_film_range_total(const BpFilm *film);
+
+/* ---- estimates (film_estimate.c) ----
+ *
+ * Replicates may hold unequal counts n_k (a range that K does not divide, an interrupted run). With replicate
+ * means m_k of variance s^2 / n_k and N = sum n_k, the mean is m = sum n_k m_k / N, and
+ *     s^2 = sum n_k (m_k - m)^2 / (K' - 1),    standard error of m = sqrt(s^2 / N),
+ * over the K' replicates that have samples: the mean square between groups of a one-way layout (Scheffe, The
+ * Analysis of Variance, 1959, ch. 3), unbiased since E sum n_k (m_k - m)^2 = K' s^2 - s^2. For equal counts
+ * it is the variance of the replicate means over K. With low-discrepancy samples the variance of m_k falls
+ * faster than 1 / n_k, and s^2 is exact for equal counts only. */
+
+/* bp_film_nrmse() of ballpark.h: NRMSE = sqrt(mean over pixels of squared standard error of luminance) / mean
+ * luminance, Rec. 709 weights. The luminance's error comes from the luminances of the replicates, so that
+ * correlated channels count right. NaN when the mean is 0 or a pixel has fewer than two replicates. */
+
+/* Squared standard error of one pixel's luminance, by the same formula; NaN with fewer than two replicates.
+ */
+double bp_film_squared_error(const BpFilm *film, size_t pixel);
+/* The fewest and the most valid samples that a pixel has, and the mean. */
+void bp_film_sample_counts(const BpFilm *film, uint64_t *least, uint64_t *most, double *mean);
+/* The most that rounding samples to steps can have changed the picture's mean luminance by, relative to it.
+ * At most BP_ROUNDING_MAX unless samples were `coarse` and nothing brighter is seen; infinite for a picture
+ * that is black because of it. */
+double bp_film_rounding(const BpFilm *film);
+/* Mean of linear pixel values over the picture (pixels without samples count as 0). */
+void bp_film_mean(const BpFilm *film, double mean[3]);
+
+#endif

@@ -1,0 +1,142 @@
+/* film_estimate.c: means and standard errors from replicate sums; formulas in film.h. */
+#include "film.h"
+
+#include "base/status.h"
+
+#include <math.h>
+#include <stdlib.h>
+
+/* Rec. ITU-R BT.709-6, item 3.2 */
+static const double luminance_weights[3] = {0.2126, 0.7152, 0.0722};
+
+/* A sum in steps. */
+static double sum_steps(const BpFilm *film, size_t index) {
+    const double fine_step = 1.0 / (double)(INT64_C(1) << BP_FINE_BITS);
+    const double steps = (double)film->sums[index];
+    if (film->fine_sums == NULL) return steps;
+    return steps + (double)film->fine_sums[index] * fine_step;
+}
+
+double bp_film_sum(const BpFilm *film, size_t index) {
+    return ldexp(sum_steps(film, index), -film->scale_log2);
+}
+
+/* One pixel: index 0 to 2 the channels, 3 the luminance. */
+typedef struct PixelEstimate {
+    double mean[4];
+    double squared_error[4]; /* of the mean; NaN where unknown */
+    uint64_t samples;
+} PixelEstimate;
+
+/* Two passes over the replicates, mean first: no difference of large squares. */
+static PixelEstimate estimate_pixel(const BpFilm *film, size_t pixel) {
+    PixelEstimate estimate = {.samples = 0};
+    const size_t k_count = film->replicates;
+    const uint32_t *counts = film->counts + pixel * k_count;
+    const double unit = ldexp(1, -film->scale_log2);
+    double means[BP_REPLICATES_MAX][4];
+    unsigned filled = 0;
+    for (size_t k = 0; k < k_count; k++) {
+        if (counts[k] == 0) continue;
+        const double count = counts[k];
+        double *mean = means[k];
+        mean[3] = 0;
+        for (size_t c = 0; c < 3; c++) {
+            mean[c] = sum_steps(film, 3 * (pixel * k_count + k) + c) * unit / count;
+            mean[3] += luminance_weights[c] * mean[c];
+        }
+        for (size_t c = 0; c < 4; c++) estimate.mean[c] += count * mean[c];
+        estimate.samples += counts[k];
+        filled++;
+    }
+    const double total = (double)estimate.samples;
+    for (size_t c = 0; c < 4 && filled > 0; c++) estimate.mean[c] /= total;
+    if (filled < 2) {
+        for (size_t c = 0; c < 4; c++) estimate.squared_error[c] = NAN;
+        return estimate;
+    }
+    for (size_t k = 0; k < k_count; k++) {
+        if (counts[k] == 0) continue;
+        for (size_t c = 0; c < 4; c++) {
+            const double difference = means[k][c] - estimate.mean[c];
+            estimate.squared_error[c] += counts[k] * difference * difference;
+        }
+    }
+    for (size_t c = 0; c < 4; c++) estimate.squared_error[c] /= (filled - 1) * total;
+    return estimate;
+}
+
+BpStatus bp_film_picture(const BpFilm *film, BpPicture *picture, BpError *err) {
+    const size_t pixels = (size_t)film->width * film->height;
+    *picture = (BpPicture){
+        .width = film->width,
+        .height = film->height,
+        .rgb = malloc(pixels * 3 * sizeof *picture->rgb),
+        .error = malloc(pixels * 3 * sizeof *picture->error),
+        .samples = malloc(pixels * sizeof *picture->samples),
+    };
+    if (picture->rgb == NULL || picture->error == NULL || picture->samples == NULL) {
+        bp_picture_clear(picture);
+        return bp_fail(err, BP_ERR_MEMORY, "out of memory for a picture of %zu pixels", pixels);
+    }
+    for (size_t pixel = 0; pixel < pixels; pixel++) {
+        const PixelEstimate estimate = estimate_pixel(film, pixel);
+        for (size_t c = 0; c < 3; c++) {
+            picture->rgb[3 * pixel + c] = (float)estimate.mean[c];
+            picture->error[3 * pixel + c] = (float)sqrt(estimate.squared_error[c]);
+        }
+        picture->samples[pixel] = estimate.samples;
+    }
+    return BP_OK;
+}
+
+double bp_film_nrmse(const BpFilm *film) {
+    const size_t pixels = (size_t)film->width * film->height;
+    double luminance = 0, squared_error = 0;
+    for (size_t pixel = 0; pixel < pixels; pixel++) {
+        const PixelEstimate estimate = estimate_pixel(film, pixel);
+        luminance += estimate.mean[3];
+        squared_error += estimate.squared_error[3];
+    }
+    if (!(luminance > 0)) return NAN;
+    return sqrt(squared_error / (double)pixels) / (luminance / (double)pixels);
+}
+
+void bp_film_mean(const BpFilm *film, double mean[3]) {
+    const size_t pixels = (size_t)film->width * film->height;
+    double sum[3] = {0};
+    for (size_t pixel = 0; pixel < pixels; pixel++) {
+        const PixelEstimate estimate = estimate_pixel(film, pixel);
+        for (size_t c = 0; c < 3; c++) sum[c] += estimate.mean[c];
+    }
+    for (size_t c = 0; c < 3; c++) mean[c] = sum[c] / (double)pixels;
+}
+
+double bp_film_rounding(const BpFilm *film) {
+    if (!film->coarse) return BP_ROUNDING_MAX;
+    double mean[3];
+    bp_film_mean(film, mean);
+    double luminance = 0;
+    for (size_t c = 0; c < 3; c++) luminance += luminance_weights[c] * mean[c];
+    const double fine_step = ldexp(1, -film->scale_log2 - BP_FINE_BITS);
+    return fmax(fine_step / luminance, BP_ROUNDING_MAX);
+}
+
+double bp_film_squared_error(const BpFilm *film, size_t pixel) {
+    return estimate_pixel(film, pixel).squared_error[3];
+}
+
+void bp_film_sample_counts(const BpFilm *film, uint64_t *least, uint64_t *most, double *mean) {
+    const size_t pixels = (size_t)film->width * film->height;
+    uint64_t total = 0;
+    *least = UINT64_MAX;
+    *most = 0;
+    for (size_t pixel = 0; pixel < pixels; pixel++) {
+        uint64_t samples = 0;
+        for (uint32_t k = 0; k < film->replicates; k++) samples += film->counts[pixel * film->replicates + k];
+        total += samples;
+        if (samples < *least) *least = samples;
+        if (samples > *most) *most = samples;
+    }
+    *mean = (double)total / (double)pixels;
+}

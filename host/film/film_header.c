@@ -1,0 +1,221 @@
+/* film_header.c: see film_header.h. */
+#include "film_header.h"
+
+#include "base/status.h"
+
+#include <errno.h>
+#include <inttypes.h>
+#include <stdlib.h>
+#include <string.h>
+
+#define TITLE_BYTES_MAX 65536u /* in the file: a header is at most 1 MiB */
+
+/* Names instead of numbers, so that a file outlives a change of the enumerations. In their order. */
+static const char *const sampler_names[] = {"independent", "sobol", NULL};
+static const char *const precision_names[] = {"single", "double", NULL};
+static const char *const math_names[] = {"strict", "fast", NULL};
+static const char *const numerics_names[] = {"robust", "plain", NULL};
+static const char *const transfer_names[] = {"gamma2", "srgb", "linear", NULL};
+
+/* ---- making ---- */
+
+/* NULL when out of memory, like the header then. */
+static json_t *ranges_json(const BpFilm *film) {
+    json_t *list = json_array();
+    for (size_t i = 0; i < film->range_count && list != NULL; i++) {
+        json_t *range =
+            json_pack("[I,I]", (json_int_t)film->ranges[i].first, (json_int_t)film->ranges[i].count);
+        if (json_array_append_new(list, range) == 0) continue;
+        json_decref(list);
+        list = NULL;
+    }
+    return list;
+}
+
+/* Bytes of a title that go to the file: whole characters of UTF-8, not too many. */
+static size_t title_bytes(const char *title) {
+    size_t length = strlen(title);
+    if (length <= TITLE_BYTES_MAX) return length;
+    length = TITLE_BYTES_MAX;
+    while (length > 0 && ((unsigned char)title[length] & 0xc0) == 0x80) length--;
+    return length;
+}
+
+char *bp_film_header_make(const BpFilm *film) {
+    char hash[32], seed[32];
+    snprintf(hash, sizeof hash, "%016" PRIx64, film->scene_hash);
+    snprintf(seed, sizeof seed, "%" PRIu64, film->seed);
+    const char *title = film->title != NULL ? film->title : "";
+    json_t *header = json_pack(
+        "{s:i,s:s,s:s%,s:I,s:I,s:I,s:i,s:b,s:b,s:s,s:s,s:I,s:s,s:s,s:s,s:s,s:s,s:o,s:b,s:I,s:I,s:I}",
+        "ballpark_accumulator", BP_FILM_VERSION, "byte_order", "little", "title", title, title_bytes(title),
+        "width", (json_int_t)film->width, "height", (json_int_t)film->height, "replicates",
+        (json_int_t)film->replicates, "scale_log2", (int)film->scale_log2, "fine_sums",
+        (int)(film->fine_sums != NULL), "coarse", (int)film->coarse, "scene_hash", hash, "seed", seed,
+        "max_depth", (json_int_t)film->max_depth, "sampler", sampler_names[film->sampler], "precision",
+        precision_names[film->precision], "math", math_names[film->math], "numerics",
+        numerics_names[film->numerics], "transfer", transfer_names[film->transfer], "ranges",
+        ranges_json(film), "partial", (int)film->partial, "segments", (json_int_t)film->segments, "cut_paths",
+        (json_int_t)film->cut_paths, "invalid_samples", (json_int_t)film->invalid_samples);
+    char *text = header != NULL ? json_dumps(header, JSON_PRESERVE_ORDER) : NULL;
+    json_decref(header);
+    return text;
+}
+
+/* ---- reading ---- */
+
+/* Reads members of the header one after the other; the first fault stays. */
+typedef struct Reader {
+    const json_t *header;
+    const char *name; /* of the file */
+    BpStatus status;
+    BpError *err;
+} Reader;
+
+static void bad_member(Reader *reader, const char *member, const char *expected) {
+    if (reader->status != BP_OK) return;
+    reader->status = bp_fail(reader->err, BP_ERR_FILE, "%s: \"%s\" in the header should be %s", reader->name,
+                             member, expected);
+}
+
+static uint64_t read_integer(Reader *reader, const char *member, int64_t least, int64_t most) {
+    const json_t *value = json_object_get(reader->header, member);
+    char expected[96];
+    snprintf(expected, sizeof expected, "a whole number from %" PRId64 " to %" PRId64, least, most);
+    if (!json_is_integer(value) || json_integer_value(value) < least || json_integer_value(value) > most) {
+        bad_member(reader, member, expected);
+        return (uint64_t)least;
+    }
+    return (uint64_t)json_integer_value(value);
+}
+
+static uint32_t read_name(Reader *reader, const char *member, const char *const *names) {
+    const char *value = json_string_value(json_object_get(reader->header, member));
+    for (uint32_t i = 0; value != NULL && names[i] != NULL; i++)
+        if (strcmp(value, names[i]) == 0) return i;
+    char expected[96] = "";
+    for (size_t i = 0; names[i] != NULL; i++)
+        snprintf(expected + strlen(expected), sizeof expected - strlen(expected), "%s\"%s\"",
+                 i > 0 ? " or " : "", names[i]);
+    bad_member(reader, member, expected);
+    return 0;
+}
+
+/* A string of digits that is a number of 64 bits. */
+static uint64_t read_wide(Reader *reader, const char *member, int base, const char *expected) {
+    const char *value = json_string_value(json_object_get(reader->header, member));
+    const char *digits = base == 16 ? "0123456789abcdef" : "0123456789";
+    char *end = NULL;
+    errno = 0;
+    if (value != NULL && value[0] != '\0' && strspn(value, digits) == strlen(value)) {
+        const uint64_t number = strtoull(value, &end, base);
+        if (errno == 0) return number;
+    }
+    bad_member(reader, member, expected);
+    return 0;
+}
+
+static bool read_truth(Reader *reader, const char *member) {
+    const json_t *value = json_object_get(reader->header, member);
+    if (!json_is_boolean(value)) bad_member(reader, member, "true or false");
+    return json_is_true(value);
+}
+
+static void read_ranges(Reader *reader, BpFilm *film) {
+    const json_t *list = json_object_get(reader->header, "ranges");
+    const size_t count_of_ranges = json_array_size(list);
+    if (!json_is_array(list) || count_of_ranges > BP_SAMPLE_RANGES_MAX) {
+        bad_member(reader, "ranges", "a list of at most 10000 [first, count]");
+        return;
+    }
+    struct BpSampleRange *ranges = malloc((count_of_ranges > 0 ? count_of_ranges : 1) * sizeof *ranges);
+    if (ranges == NULL) {
+        if (reader->status == BP_OK) reader->status = bp_fail(reader->err, BP_ERR_MEMORY, "out of memory");
+        return;
+    }
+    uint64_t end = 0;
+    for (size_t i = 0; i < count_of_ranges && reader->status == BP_OK; i++) {
+        const json_t *range = json_array_get(list, i);
+        const json_t *first = json_array_get(range, 0), *count = json_array_get(range, 1);
+        if (json_array_size(range) != 2 || !json_is_integer(first) || !json_is_integer(count) ||
+            json_integer_value(first) < 0 || json_integer_value(count) < 1 ||
+            (uint64_t)json_integer_value(first) < end) {
+            bad_member(reader, "ranges", "a list of [first, count], sorted and disjoint, count at least 1");
+            break;
+        }
+        ranges[i] =
+            (struct BpSampleRange){(uint64_t)json_integer_value(first), (uint64_t)json_integer_value(count)};
+        end = ranges[i].first + ranges[i].count;
+    }
+    if (reader->status == BP_OK) {
+        const BpStatus status = bp_film_add_ranges(film, ranges, count_of_ranges, reader->err);
+        if (status == BP_ERR_MEMORY)
+            reader->status = status;
+        else if (status != BP_OK)
+            bad_member(reader, "ranges", "sample numbers below 2^32, at most 2^24 of them in a replicate");
+    }
+    free(ranges);
+}
+
+/* The part of the header that decides how long the file is. */
+static void read_sizes(Reader *reader, BpFilm *sizes, bool *fine_sums) {
+    const uint64_t version = read_integer(reader, "ballpark_accumulator", 1, INT64_MAX);
+    if (version > BP_FILM_VERSION && reader->status == BP_OK)
+        reader->status =
+            bp_fail(reader->err, BP_ERR_FILE,
+                    "%s is of version %" PRIu64 " of the format, and this program reads versions 1 to %d: "
+                    "use a newer ballpark",
+                    reader->name, version, BP_FILM_VERSION);
+    sizes->unverified = version == 1;
+    static const char *const byte_orders[] = {"little", NULL};
+    read_name(reader, "byte_order", byte_orders);
+    sizes->width = (uint32_t)read_integer(reader, "width", 1, BP_PICTURE_SIDE_MAX);
+    sizes->height = (uint32_t)read_integer(reader, "height", 1, BP_PICTURE_SIDE_MAX);
+    sizes->replicates = (uint32_t)read_integer(reader, "replicates", 1, BP_REPLICATES_MAX);
+    if (!sizes->unverified) {
+        *fine_sums = read_truth(reader, "fine_sums");
+        sizes->coarse = read_truth(reader, "coarse");
+    }
+}
+
+static void read_settings(Reader *reader, BpFilm *film) {
+    const json_t *scale = json_object_get(reader->header, "scale_log2");
+    if (!json_is_integer(scale) || json_integer_value(scale) < -126 || json_integer_value(scale) > 126)
+        bad_member(reader, "scale_log2", "a whole number from -126 to 126");
+    else
+        film->scale_log2 = (int32_t)json_integer_value(scale);
+    film->scene_hash = read_wide(reader, "scene_hash", 16, "a string of up to 16 hexadecimal digits");
+    film->seed = read_wide(reader, "seed", 10, "a string of decimal digits, below 2^64");
+    film->max_depth = (uint32_t)read_integer(reader, "max_depth", 0, BP_DEPTH_MAX);
+    film->sampler = read_name(reader, "sampler", sampler_names);
+    film->precision = read_name(reader, "precision", precision_names);
+    film->math = read_name(reader, "math", math_names);
+    film->numerics = read_name(reader, "numerics", numerics_names);
+    film->transfer = read_name(reader, "transfer", transfer_names);
+    film->segments = read_integer(reader, "segments", 0, INT64_MAX);
+    film->cut_paths = read_integer(reader, "cut_paths", 0, INT64_MAX);
+    film->invalid_samples = read_integer(reader, "invalid_samples", 0, INT64_MAX);
+    film->partial = read_truth(reader, "partial");
+    const char *title = json_string_value(json_object_get(reader->header, "title"));
+    if (title == NULL) bad_member(reader, "title", "a string");
+    read_ranges(reader, film);
+    if (reader->status != BP_OK) return;
+    film->title = strdup(title);
+    if (film->title == NULL) reader->status = bp_fail(reader->err, BP_ERR_MEMORY, "out of memory");
+}
+
+BpStatus bp_film_header_sizes(const json_t *header, const char *name, BpFilm *sizes, bool *fine_sums,
+                              BpError *err) {
+    if (json_object_get(header, "ballpark_accumulator") == NULL)
+        return bp_fail(err, BP_ERR_FILE, "%s is not a .bpa file: \"ballpark_accumulator\" is missing", name);
+    Reader reader = {header, name, BP_OK, err};
+    *fine_sums = false;
+    read_sizes(&reader, sizes, fine_sums);
+    return reader.status;
+}
+
+BpStatus bp_film_header_settings(const json_t *header, const char *name, BpFilm *film, BpError *err) {
+    Reader reader = {header, name, BP_OK, err};
+    read_settings(&reader, film);
+    return reader.status;
+}

@@ -1,0 +1,27 @@
+/* film_header.h: the line of JSON that a .bpa file begins with.
+ *
+ * In:    a film, or a parsed header.   Out: the header's text, or the film's settings.
+ * Knows: the header's members and their limits.   Does not know: files, sums and counts (film_file.h).
+ */
+#ifndef BP_FILM_FILM_HEADER_H
+#define BP_FILM_FILM_HEADER_H
+
+#include "film.h"
+
+#include <jansson.h>
+
+#define BP_FILM_VERSION 2 /* of the files that are written */
+
+/* The header line without its newline; the caller frees it. NULL when out of memory. */
+char *bp_film_header_make(const BpFilm *film);
+
+/* Checks version and byte order, and reads what decides how long the file has to be: width, height,
+ * replicates and whether the version is 1 (`unverified`) into `sizes`, and whether there are fine sums.
+ * `name` is the file's, for messages; BP_ERR_FILE names the member that is wrong. */
+BpStatus bp_film_header_sizes(const json_t *header, const char *name, BpFilm *sizes, bool *fine_sums,
+                              BpError *err);
+
+/* Reads everything else into `film`, which has its sizes. BP_ERR_FILE or BP_ERR_MEMORY. */
+BpStatus bp_film_header_settings(const json_t *header, const char *name, BpFilm *film, BpError *err);
+
+#endif

@@ -1,0 +1,345 @@
+/* document.c: see document.h. */
+#include "document.h"
+
+#include "base/json_memory.h"
+
+#include <limits.h>
+#include <math.h>
+#include <stdarg.h>
+#include <stdio.h>
+#include <string.h>
+
+enum { DEPTH_MAX = 16, FOUND_SIZE = 80 };
+
+/* ---- syntax -------------------------------------------------------------------------------------------- */
+
+/* Where the token begins that jansson says it stumbled over; it reports where the token ends. */
+static size_t token_start(const BpDocument *document, const json_error_t *error) {
+    size_t end = error->position < 0 ? 0 : (size_t)error->position;
+    if (end > document->length) end = document->length;
+    const char *near = strstr(error->text, " near '");
+    if (near == NULL) return end;
+    const char *const token = near + strlen(" near '");
+    const size_t token_length = strlen(token) > 0 ? strlen(token) - 1 : 0;
+    if (token_length <= end && memcmp(document->text + end - token_length, token, token_length) == 0)
+        return end - token_length;
+    return end;
+}
+
+static BpStatus fail_at_offset(const BpDocument *document, size_t offset, BpError *err, const char *text) {
+    int line = 0, column = 0;
+    bp_text_position(document->text, document->length, offset, &line, &column);
+    const BpStatus status = bp_fail(err, BP_ERR_SCENE, "%s", text);
+    bp_error_at(err, document->name, line, column);
+    return status;
+}
+
+static BpStatus fail_duplicate(const BpDocument *document, const json_error_t *error, BpError *err) {
+    size_t end = error->position < 1 ? 1 : (size_t)error->position;
+    if (end > document->length) end = document->length;
+    size_t start = end - 1; /* at the closing quote; look for the opening one */
+    while (start > 0) {
+        start--;
+        size_t backslashes = 0;
+        while (backslashes < start && document->text[start - 1 - backslashes] == '\\') backslashes++;
+        if (document->text[start] == '"' && backslashes % 2 == 0) break;
+    }
+    char raw[FOUND_SIZE] = {0}, name[FOUND_SIZE], text[256];
+    if (end > start + 2) {
+        const size_t count = end - start - 2 < sizeof raw - 1 ? end - start - 2 : sizeof raw - 1;
+        memcpy(raw, document->text + start + 1, count);
+    }
+    bp_printable(raw, name, sizeof name);
+    snprintf(text, sizeof text,
+             "%s: found a second time in the same object, expected once; remove one of the two", name);
+    return fail_at_offset(document, start, err, text);
+}
+
+static BpStatus fail_syntax(const BpDocument *document, const json_error_t *error, BpError *err) {
+    const size_t at = token_start(document, error);
+    const char *const rest = document->text + at;
+    const size_t rest_length = document->length - at;
+    const char *hint = "";
+    char found[sizeof error->text], text[512];
+    bp_printable(error->text, found, sizeof found);
+    switch (json_error_code(error)) {
+    case json_error_duplicate_key:
+        return fail_duplicate(document, error, err);
+    case json_error_stack_overflow:
+        return fail_at_offset(document, at, err,
+                              "found lists or objects nested too deeply, expected a scene of a few levels");
+    case json_error_invalid_utf8:
+        hint = "; expected UTF-8: save the file in that encoding";
+        break;
+    case json_error_premature_end_of_input:
+        return fail_at_offset(
+            document, document->length, err,
+            "found the end of the text, expected more: a bracket or a quote is not closed, or the "
+            "file was cut short");
+    case json_error_end_of_input_expected:
+        hint = "; expected nothing after the closing brace";
+        break;
+    case json_error_numeric_overflow:
+        hint = "; expected a number that double precision holds (up to 1.7e308)";
+        break;
+    default:
+        if (rest_length > 0 && (rest[0] == '/' || rest[0] == '#'))
+            hint = "; JSON has no comments: use \"title\" and \"source\", or remove it";
+        else if (rest_length > 2 && (strncmp(rest, "NaN", 3) == 0 || strncmp(rest, "nan", 3) == 0))
+            hint = "; JSON has no NaN: expected a finite number";
+        else if (rest_length > 2 && (strncmp(rest, "Inf", 3) == 0 || strncmp(rest, "inf", 3) == 0))
+            hint = "; JSON has no Infinity: expected a finite number";
+        else if (rest_length > 0 && (rest[0] == '}' || rest[0] == ']'))
+            hint = "; is there a comma too many before it?";
+        else if (rest_length > 0 && rest[0] == '-')
+            hint = "; JSON has no -Infinity or -NaN: expected a finite number";
+        break;
+    }
+    snprintf(text, sizeof text, "not JSON: %s%s", found, hint);
+    return fail_at_offset(document, at, err, text);
+}
+
+BpStatus bp_document_open(const char *text, size_t length, const char *name, BpDocument *document,
+                          BpError *err) {
+    if (length >= 3 && memcmp(text, "\xef\xbb\xbf", 3) == 0) { /* a byte order mark says nothing in UTF-8 */
+        text += 3;
+        length -= 3;
+    }
+    *document = (BpDocument){.name = name, .text = text, .length = length, .root = NULL};
+    size_t start = 0;
+    while (start < length && strchr(" \t\r\n", text[start]) != NULL && text[start] != '\0') start++;
+    if (start == length)
+        return fail_at_offset(
+            document, 0, err,
+            "found an empty file, expected a scene such as { \"camera\": { \"image_width\": 400 } }");
+    if (length > INT_MAX)
+        return fail_at_offset(
+            document, 0, err,
+            "found a text of over 2 GiB, expected less: keep many spheres in a PLY file and name it "
+            "in \"clouds\"");
+    const char *const nul = memchr(text, '\0', length); /* jansson takes it for the end */
+    if (nul != NULL)
+        return fail_at_offset(document, (size_t)(nul - text), err,
+                              "found a byte of value 0, expected text: remove it, and check that the file is "
+                              "whole and saved as UTF-8");
+    json_error_t error;
+    bool no_memory = false;
+    document->root = bp_json_load(text, length, JSON_REJECT_DUPLICATES, &error, &no_memory);
+    /* An integer of over 64 bits is a number like any other, for its member to refuse by its own limits. */
+    if (document->root == NULL && !no_memory && json_error_code(&error) == json_error_numeric_overflow)
+        document->root =
+            bp_json_load(text, length, JSON_REJECT_DUPLICATES | JSON_DECODE_INT_AS_REAL, &error, &no_memory);
+    if (no_memory) return bp_fail(err, BP_ERR_MEMORY, "out of memory while reading the scene");
+    if (document->root == NULL) return fail_syntax(document, &error, err);
+    if (!json_is_object(document->root)) {
+        bp_document_close(document);
+        return fail_at_offset(document, start, err,
+                              "found a list, expected an object: { \"camera\": { ... }, ... }");
+    }
+    return BP_OK;
+}
+
+void bp_document_close(BpDocument *document) {
+    json_decref(document->root);
+    document->root = NULL;
+}
+
+/* ---- nodes --------------------------------------------------------------------------------------------- */
+
+BpNode bp_node_root(const BpDocument *document) {
+    return (BpNode){.document = document, .value = document->root};
+}
+
+BpNode bp_node_member(const BpNode *object, const char *name) {
+    return (BpNode){.document = object->document,
+                    .parent = object,
+                    .member = name,
+                    .value = json_object_get(object->value, name)};
+}
+
+BpNode bp_node_element(const BpNode *list, size_t index) {
+    return (BpNode){.document = list->document,
+                    .parent = list,
+                    .index = index,
+                    .value = json_array_get(list->value, index)};
+}
+
+/* The members' order in jansson's object is that of the text, so a member is found again by its number. */
+static size_t member_number(const BpNode *node) {
+    size_t number = 0;
+    const char *name;
+    json_t *value;
+    json_object_foreach(node->parent->value, name, value) {
+        if (strcmp(name, node->member) == 0) break;
+        number++;
+    }
+    return number;
+}
+
+static size_t node_offset(const BpNode *node, BpPart part) {
+    size_t steps[DEPTH_MAX], depth = 0;
+    for (const BpNode *n = node; n->parent != NULL && depth < DEPTH_MAX; n = n->parent) depth++;
+    size_t level = depth;
+    for (const BpNode *n = node; n->parent != NULL && level > 0; n = n->parent)
+        steps[--level] = n->member != NULL ? member_number(n) : n->index;
+    return bp_json_locate(node->document->text, node->document->length, steps, depth, part);
+}
+
+static void node_path(const BpNode *node, char *out, size_t size) {
+    out[0] = '\0';
+    if (node->parent == NULL) return;
+    node_path(node->parent, out, size);
+    const size_t used = strlen(out);
+    if (node->member != NULL) {
+        char name[48];
+        bp_printable(node->member, name, sizeof name);
+        snprintf(out + used, size - used, "%s%s", used > 0 ? "." : "", name);
+    } else {
+        snprintf(out + used, size - used, "[%zu]", node->index);
+    }
+}
+
+BpStatus bp_node_fail(const BpNode *node, BpPart part, BpError *err, const char *format, ...) {
+    char path[256], text[768];
+    va_list arguments;
+    va_start(arguments, format);
+    vsnprintf(text, sizeof text, format, arguments);
+    va_end(arguments);
+    node_path(node, path, sizeof path);
+    int line = 0, column = 0;
+    bp_text_position(node->document->text, node->document->length, node_offset(node, part), &line, &column);
+    const BpStatus status = bp_fail(err, BP_ERR_SCENE, "%s%s%s", path, path[0] != '\0' ? ": " : "", text);
+    bp_error_at(err, node->document->name, line, column);
+    return status;
+}
+
+static void describe(const json_t *value, char *out, size_t size) {
+    char text[FOUND_SIZE];
+    switch (json_typeof(value)) {
+    case JSON_OBJECT:
+        snprintf(out, size, "an object");
+        break;
+    case JSON_ARRAY:
+        snprintf(out, size, "a list of %zu", json_array_size(value));
+        break;
+    case JSON_STRING:
+        bp_printable(json_string_value(value), text, sizeof text);
+        snprintf(out, size, "the text \"%s\"", text);
+        break;
+    case JSON_INTEGER:
+        snprintf(out, size, "%" JSON_INTEGER_FORMAT, json_integer_value(value));
+        break;
+    case JSON_REAL:
+        snprintf(out, size, "%s", bp_number_text(json_real_value(value), text));
+        break;
+    case JSON_TRUE:
+        snprintf(out, size, "true");
+        break;
+    case JSON_FALSE:
+        snprintf(out, size, "false");
+        break;
+    case JSON_NULL:
+        snprintf(out, size, "null");
+        break;
+    }
+}
+
+BpStatus bp_node_wrong(const BpNode *node, const char *expected, BpError *err) {
+    char found[FOUND_SIZE + 16];
+    describe(node->value, found, sizeof found);
+    return bp_node_fail(node, BP_PART_VALUE, err, "found %s, expected %s", found, expected);
+}
+
+BpStatus bp_node_require(const BpNode *object, const char *name, const char *expected, BpError *err) {
+    if (json_object_get(object->value, name) != NULL) return BP_OK;
+    return bp_node_fail(object, BP_PART_VALUE, err, "found no \"%s\", expected %s", name, expected);
+}
+
+BpStatus bp_node_object(const BpNode *node, const char *const *names, size_t name_count, BpError *err) {
+    if (node->value == NULL) return BP_OK;
+    if (!json_is_object(node->value)) return bp_node_wrong(node, "an object: { ... }", err);
+    const char *name;
+    json_t *value;
+    json_object_foreach(node->value, name, value) {
+        size_t i = 0;
+        while (i < name_count && strcmp(name, names[i]) != 0) i++;
+        if (i < name_count) continue;
+        const BpNode unknown = bp_node_member(node, name);
+        const char *nearest = bp_nearest_name(name, names, name_count);
+        if (nearest != NULL)
+            return bp_node_fail(&unknown, BP_PART_NAME, err, "unknown member; did you mean \"%s\"?", nearest);
+        char list[384] = "";
+        for (size_t k = 0; k < name_count; k++) {
+            const size_t used = strlen(list);
+            snprintf(list + used, sizeof list - used, "%s%s", k > 0 ? ", " : "", names[k]);
+        }
+        return bp_node_fail(&unknown, BP_PART_NAME, err, "unknown member; expected one of %s", list);
+    }
+    return BP_OK;
+}
+
+BpStatus bp_node_list(const BpNode *node, const char *expected, BpError *err) {
+    if (node->value == NULL || json_is_array(node->value)) return BP_OK;
+    return bp_node_wrong(node, expected, err);
+}
+
+BpStatus bp_node_number(const BpNode *node, double *value, BpError *err) {
+    if (node->value == NULL) return BP_OK;
+    if (!json_is_number(node->value)) return bp_node_wrong(node, "a number", err);
+    *value = json_number_value(node->value);
+    return BP_OK;
+}
+
+BpStatus bp_node_integer(const BpNode *node, uint32_t low, uint32_t high, uint32_t *value, BpError *err) {
+    if (node->value == NULL) return BP_OK;
+    const double number = json_number_value(node->value); /* 0 for what is no number */
+    if (json_is_number(node->value) && number == floor(number) && number >= low && number <= high) {
+        *value = (uint32_t)number;
+        return BP_OK;
+    }
+    char expected[64];
+    snprintf(expected, sizeof expected, "a whole number from %u to %u", (unsigned)low, (unsigned)high);
+    return bp_node_wrong(node, expected, err);
+}
+
+BpStatus bp_node_vector(const BpNode *node, double value[3], BpError *err) {
+    if (node->value == NULL) return BP_OK;
+    if (json_array_size(node->value) != 3) return bp_node_wrong(node, "three numbers: [x, y, z]", err);
+    for (size_t i = 0; i < 3; i++) {
+        const BpNode element = bp_node_element(node, i);
+        BP_TRY(bp_node_number(&element, &value[i], err));
+    }
+    return BP_OK;
+}
+
+BpStatus bp_node_string(const BpNode *node, const char **value, BpError *err) {
+    if (node->value == NULL) return BP_OK;
+    if (!json_is_string(node->value)) return bp_node_wrong(node, "a text in double quotes", err);
+    *value = json_string_value(node->value);
+    return BP_OK;
+}
+
+BpStatus bp_node_choice(const BpNode *node, const char *const *names, size_t name_count, int *value,
+                        BpError *err) {
+    if (node->value == NULL) return BP_OK;
+    const char *text = json_string_value(node->value); /* NULL for what is no string */
+    char expected[256] = "";
+    for (size_t i = 0; i < name_count; i++) {
+        if (text != NULL && strcmp(text, names[i]) == 0) {
+            *value = (int)i;
+            return BP_OK;
+        }
+        const size_t used = strlen(expected);
+        snprintf(expected + used, sizeof expected - used, "%s\"%s\"",
+                 i == 0               ? ""
+                 : i + 1 < name_count ? ", "
+                                      : " or ",
+                 names[i]);
+    }
+    const char *nearest = text != NULL ? bp_nearest_name(text, names, name_count) : NULL;
+    if (nearest != NULL) {
+        const size_t used = strlen(expected);
+        snprintf(expected + used, sizeof expected - used, "; did you mean \"%s\"?", nearest);
+    }
+    return bp_node_wrong(node, expected, err);
+}

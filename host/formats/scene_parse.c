@@ -1,0 +1,291 @@
+/* scene_parse.c: from the text of a scene document to a BpScene; see scene_parse.h.
+ *
+ * Knows: the grammar's top level, materials by name, spheres. The rest: scene_camera.c, scene_material.c,
+ * scene_points.c; ranges: scene_validate.c, whose faults are given their place in the text here. */
+#include "scene_parse.h"
+
+#include "input_file.h"
+
+#include "base/names.h"
+
+#include "scene/scene_fault.h"
+
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+static BpStatus parse_background(const BpNode *node, BpScene *scene, BpError *err) {
+    static const char *const names[] = {"bottom", "top"};
+    if (json_is_array(node->value)) {
+        BP_TRY(bp_node_vector(node, scene->background_bottom, err));
+        memcpy(scene->background_top, scene->background_bottom, sizeof scene->background_top);
+        return BP_OK;
+    }
+    if (node->value != NULL && !json_is_object(node->value))
+        return bp_node_wrong(node, "{ \"bottom\": [r, g, b], \"top\": [r, g, b] }, or one colour [r, g, b]",
+                             err);
+    BP_TRY(bp_node_object(node, names, BP_COUNT(names), err));
+    const BpNode bottom = bp_node_member(node, "bottom");
+    const BpNode top = bp_node_member(node, "top");
+    BP_TRY(bp_node_vector(&bottom, scene->background_bottom, err));
+    return bp_node_vector(&top, scene->background_top, err);
+}
+
+static BpStatus parse_materials(const BpNode *node, BpScene *scene, BpError *err) {
+    if (node->value == NULL) return BP_OK;
+    if (!json_is_object(node->value))
+        return bp_node_wrong(
+            node, "an object of named materials: { \"ground\": { \"type\": \"lambertian\", ... } }", err);
+    const size_t count = json_object_size(node->value);
+    scene->materials = calloc(count > 0 ? count : 1, sizeof *scene->materials);
+    if (scene->materials == NULL)
+        return bp_fail(err, BP_ERR_MEMORY, "out of memory for %zu materials", count);
+    const char *name;
+    json_t *value;
+    json_object_foreach(node->value, name, value) {
+        const BpNode child = bp_node_member(node, name);
+        BpMaterial *material = &scene->materials[scene->material_count++];
+        BP_TRY(bp_copy_text(name, &material->name, err));
+        BP_TRY(bp_parse_material(&child, material, err));
+    }
+    return BP_OK;
+}
+
+/* ---- materials by name --------------------------------------------------------------------------------- */
+
+static int compare_names(const void *a, const void *b) {
+    return strcmp((*(const BpMaterial *const *)a)->name, (*(const BpMaterial *const *)b)->name);
+}
+
+static BpStatus index_materials(const BpScene *scene, BpMaterialIndex *index, BpError *err) {
+    index->count = scene->material_count;
+    index->first = scene->materials;
+    index->by_name = malloc((index->count > 0 ? index->count : 1) * sizeof(BpMaterial *));
+    if (index->by_name == NULL)
+        return bp_fail(err, BP_ERR_MEMORY, "out of memory for %zu materials", index->count);
+    for (size_t i = 0; i < index->count; i++) index->by_name[i] = &scene->materials[i];
+    qsort(index->by_name, index->count, sizeof(BpMaterial *), compare_names);
+    return BP_OK;
+}
+
+static BpStatus fail_missing_material(const BpNode *node, const BpMaterialIndex *index, const char *name,
+                                      BpError *err) {
+    char shown[64], near_shown[64];
+    bp_printable(name, shown, sizeof shown);
+    const char **names = malloc((index->count > 0 ? index->count : 1) * sizeof *names);
+    if (names == NULL) return bp_fail(err, BP_ERR_MEMORY, "out of memory");
+    for (size_t i = 0; i < index->count; i++) names[i] = index->by_name[i]->name;
+    const char *nearest = bp_nearest_name(name, names, index->count);
+    if (nearest == NULL && index->count > 0) nearest = names[0];
+    free(names);
+    if (nearest == NULL)
+        return bp_node_fail(
+            node, BP_PART_VALUE, err,
+            "found the material \"%s\", expected a name from \"materials\", which is empty or absent; "
+            "add it there",
+            shown);
+    bp_printable(nearest, near_shown, sizeof near_shown);
+    return bp_node_fail(node, BP_PART_VALUE, err,
+                        "found the material \"%s\", expected a name from \"materials\"; did you mean \"%s\"?",
+                        shown, near_shown);
+}
+
+BpStatus bp_parse_material_name(const BpNode *node, const BpMaterialIndex *index, uint32_t *material,
+                                BpError *err) {
+    const char *name = NULL;
+    BP_TRY(bp_node_string(node, &name, err));
+    size_t low = 0, high = index->count;
+    while (low < high) {
+        const size_t middle = low + (high - low) / 2;
+        const int order = strcmp(name, index->by_name[middle]->name);
+        if (order == 0) {
+            *material = (uint32_t)(index->by_name[middle] - index->first);
+            return BP_OK;
+        }
+        if (order < 0)
+            high = middle;
+        else
+            low = middle + 1;
+    }
+    return fail_missing_material(node, index, name, err);
+}
+
+/* ---- spheres ------------------------------------------------------------------------------------------- */
+
+static BpStatus parse_sphere(const BpNode *node, const BpMaterialIndex *index, BpSphere *sphere,
+                             BpError *err) {
+    static const char *const names[] = {"center", "radius", "material"};
+    BP_TRY(bp_node_object(node, names, BP_COUNT(names), err));
+    BP_TRY(bp_node_require(node, "center", "\"center\": [x, y, z]", err));
+    BP_TRY(bp_node_require(node, "radius", "a number such as \"radius\": 0.5", err));
+    BP_TRY(bp_node_require(node, "material", "a name from \"materials\"", err));
+    const BpNode center = bp_node_member(node, "center");
+    const BpNode radius = bp_node_member(node, "radius");
+    const BpNode material = bp_node_member(node, "material");
+    BP_TRY(bp_node_vector(&center, sphere->center, err));
+    BP_TRY(bp_node_number(&radius, &sphere->radius, err));
+    sphere->albedo = BP_NO_ALBEDO;
+    return bp_parse_material_name(&material, index, &sphere->material, err);
+}
+
+static BpStatus parse_spheres(const BpNode *node, const BpMaterialIndex *index, BpScene *scene,
+                              BpError *err) {
+    BP_TRY(bp_node_list(
+        node, "a list of spheres: [ { \"center\": [0, 0, -1], \"radius\": 0.5, \"material\": ... } ]", err));
+    const size_t count = json_array_size(node->value);
+    if (count == 0) return BP_OK;
+    if (count > BP_SPHERES_MAX)
+        return bp_node_fail(node, BP_PART_VALUE, err, "found %zu spheres, expected at most %u", count,
+                            BP_SPHERES_MAX);
+    scene->spheres = malloc(count * sizeof *scene->spheres);
+    if (scene->spheres == NULL) return bp_fail(err, BP_ERR_MEMORY, "out of memory for %zu spheres", count);
+    for (size_t i = 0; i < count; i++) {
+        const BpNode element = bp_node_element(node, i);
+        if (!json_is_object(element.value))
+            return bp_node_wrong(&element,
+                                 "an object: { \"center\": ..., \"radius\": ..., \"material\": ... }", err);
+        BP_TRY(parse_sphere(&element, index, &scene->spheres[i], err));
+    }
+    scene->sphere_count = count;
+    return BP_OK;
+}
+
+/* ---- faults find their place ----------------------------------------------------------------------------
+ */
+
+/* The member of `object` that is at fault, or the object where the member is absent (a default). */
+static BpStatus fail_member(const BpNode *object, const char *member, const char *text, BpError *err) {
+    const BpNode node = bp_node_member(object, member);
+    if (node.value != NULL) return bp_node_fail(&node, BP_PART_VALUE, err, "%s", text);
+    return bp_node_fail(object, BP_PART_VALUE, err, "%s: %s", member, text);
+}
+
+static BpStatus refuse_faults(const BpNode *root, const BpScene *scene, BpError *err) {
+    BpFault fault;
+    BP_TRY(bp_scene_find_fault(scene, &fault, err));
+    const BpNode camera = bp_node_member(root, "camera");
+    const BpNode background = bp_node_member(root, "background");
+    const BpNode materials = bp_node_member(root, "materials");
+    const BpNode spheres = bp_node_member(root, "spheres");
+    const BpNode clouds = bp_node_member(root, "clouds");
+    const size_t listed = json_array_size(spheres.value); /* the rest came from clouds */
+    switch (fault.subject) {
+    case BP_FAULT_NONE:
+        return BP_OK;
+    case BP_FAULT_CAMERA: {
+        const char *member = fault.member;
+        if (json_object_get(camera.value, member) ==
+            NULL) { /* a default; what was written stands beside it */
+            if (strcmp(member, "lookat") == 0) member = "lookfrom";
+            if (strcmp(member, "aperture") == 0) member = "defocus_angle";
+        }
+        return fail_member(&camera, member, fault.text, err);
+    }
+    case BP_FAULT_BACKGROUND:
+        if (json_is_array(background.value))
+            return bp_node_fail(&background, BP_PART_VALUE, err, "%s", fault.text);
+        return fail_member(&background, fault.member, fault.text, err);
+    case BP_FAULT_MATERIAL: {
+        const BpNode material = bp_node_member(&materials, scene->materials[fault.index].name);
+        return fail_member(&material, fault.member, fault.text, err);
+    }
+    case BP_FAULT_SPHERE: {
+        if (fault.index >= listed) break;
+        const BpNode sphere = bp_node_element(&spheres, fault.index);
+        return fail_member(&sphere, fault.member, fault.text, err);
+    }
+    case BP_FAULT_COINCIDENT: {
+        /* At the later one that stands in the document itself, or at the cloud that brought the later one. */
+        const size_t written = fault.index < listed ? fault.index : fault.other;
+        char a[BP_SPHERE_NAME_SIZE], b[BP_SPHERE_NAME_SIZE];
+        size_t cloud = scene->point_file_count;
+        while (cloud > 0 && scene->point_files[cloud - 1].first > fault.index) --cloud;
+        const BpNode sphere = bp_node_element(&spheres, written);
+        const BpNode entry = bp_node_element(&clouds, cloud - (cloud > 0));
+        return bp_node_fail(written < listed ? &sphere : &entry, BP_PART_VALUE, err, "%s and %s: %s",
+                            bp_sphere_name(scene, fault.other, a), bp_sphere_name(scene, fault.index, b),
+                            fault.text);
+    }
+    case BP_FAULT_ALBEDO:
+        break;
+    }
+    return bp_scene_validate(scene, err);
+}
+
+/* ---- the whole ----------------------------------------------------------------------------------------- */
+
+static BpStatus parse_head(const BpNode *root, BpScene *scene, BpError *err) {
+    const BpNode format = bp_node_member(root, "format");
+    const BpNode title_node = bp_node_member(root, "title");
+    const BpNode source_node = bp_node_member(root, "source");
+    const BpNode transfer_node = bp_node_member(root, "transfer");
+    const BpNode schema = bp_node_member(root, "$schema"); /* for editors alone */
+    const char *ignored = "";
+    BP_TRY(bp_node_string(&schema, &ignored, err));
+    if (format.value != NULL && !(json_is_number(format.value) && json_number_value(format.value) == 1))
+        return bp_node_wrong(&format, "1, the only format that this version reads; a newer one may read it",
+                             err);
+    const char *title = "", *source = "";
+    int transfer = (int)scene->transfer;
+    BP_TRY(bp_node_string(&title_node, &title, err));
+    BP_TRY(bp_node_string(&source_node, &source, err));
+    BP_TRY(bp_node_choice(&transfer_node, bp_transfer_names, BP_TRANSFER_LINEAR + 1, &transfer, err));
+    scene->transfer = (BpTransfer)transfer;
+    BP_TRY(bp_copy_text(title, &scene->title, err));
+    return bp_copy_text(source, &scene->source, err);
+}
+
+static BpStatus parse_body(const BpNode *root, unsigned flags, BpScene *scene, BpError *err) {
+    static const char *const names[] = {"format",   "title",     "source",  "camera", "background",
+                                        "transfer", "materials", "spheres", "clouds", "$schema"};
+    BP_TRY(bp_node_object(root, names, BP_COUNT(names), err));
+    BP_TRY(bp_node_require(root, "camera", "one, such as \"camera\": { \"image_width\": 400 }", err));
+    BP_TRY(parse_head(root, scene, err));
+    const BpNode camera = bp_node_member(root, "camera");
+    const BpNode background = bp_node_member(root, "background");
+    const BpNode materials = bp_node_member(root, "materials");
+    const BpNode spheres = bp_node_member(root, "spheres");
+    const BpNode clouds = bp_node_member(root, "clouds");
+    BP_TRY(bp_parse_camera(&camera, &scene->camera, err));
+    BP_TRY(parse_background(&background, scene, err));
+    BP_TRY(parse_materials(&materials, scene, err));
+    BpMaterialIndex index = {0};
+    BpStatus status = index_materials(scene, &index, err);
+    if (status == BP_OK) status = parse_spheres(&spheres, &index, scene, err);
+    if (status == BP_OK) status = bp_parse_clouds(&clouds, &index, flags, scene, err);
+    free(index.by_name);
+    BP_TRY(status);
+    return refuse_faults(root, scene, err);
+}
+
+BpStatus bp_scene_parse_with(const char *text, size_t length, const char *name, unsigned flags,
+                             BpScene **scene, BpError *err) {
+    BpDocument document = {0};
+    BpScene *result = NULL;
+    *scene = NULL;
+    BpStatus status;
+    BP_TRY_GOTO(status, bp_document_open(text, length, name, &document, err), done);
+    BP_TRY_GOTO(status, bp_scene_create_empty(name, &result, err), done);
+    const BpNode root = bp_node_root(&document);
+    BP_TRY_GOTO(status, parse_body(&root, flags, result, err), done);
+    *scene = result;
+    result = NULL;
+done:
+    bp_scene_destroy(&result);
+    bp_document_close(&document);
+    return status;
+}
+
+BpStatus bp_scene_parse(const char *text, size_t length, const char *name, BpScene **scene, BpError *err) {
+    return bp_scene_parse_with(text, length, name, 0, scene, err);
+}
+
+BpStatus bp_scene_load(const char *path, BpScene **scene, BpError *err) {
+    char *text = NULL;
+    size_t length = 0;
+    *scene = NULL;
+    BP_TRY(bp_file_read(path, "a scene document (a JSON file)", &text, &length, err));
+    const BpStatus status = bp_scene_parse(text, length, path, scene, err);
+    free(text);
+    return status;
+}

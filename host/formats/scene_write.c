@@ -1,0 +1,205 @@
+/* scene_write.c: a BpScene as a document of the grammar, laid out for people: one sphere a line.
+ *
+ * In:    a scene.   Out: JSON text that reads back to the same scene, bit for bit.
+ * Knows: the grammar.  Does not know: how the file comes to stand at its place (output_file.h). */
+#include "base/output_file.h"
+
+#include "base/names.h"
+#include "scene_parse.h"
+
+#include <errno.h>
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#define PI 3.14159265358979323846
+
+static void put_number(FILE *out, double value) {
+    char text[BP_NUMBER_TEXT_SIZE];
+    fputs(bp_number_text(value, text), out);
+}
+
+static void put_vector(FILE *out, const double value[3]) {
+    fputc('[', out);
+    for (int i = 0; i < 3; i++) {
+        if (i > 0) fputs(", ", out);
+        put_number(out, value[i]);
+    }
+    fputc(']', out);
+}
+
+static BpStatus put_text(FILE *out, const char *text, BpError *err) {
+    json_t *value = json_string(text);
+    char *quoted = value != NULL ? json_dumps(value, JSON_ENCODE_ANY) : NULL;
+    json_decref(value);
+    if (quoted == NULL)
+        return bp_fail(err, BP_ERR_SCENE, "cannot write the text \"%.60s\": expected UTF-8, or memory for it",
+                       text);
+    fputs(quoted, out);
+    free(quoted);
+    return BP_OK;
+}
+
+static bool is_dark(const double emit[3]) {
+    return emit[0] == 0 && emit[1] == 0 && emit[2] == 0;
+}
+
+/* ---- the camera -----------------------------------------------------------------------------------------
+ */
+
+/* As [w, h] of small whole numbers where that is the same number, since that is how people say it. */
+static void put_aspect(FILE *out, double aspect) {
+    for (int h = 1; h <= 16; h++) {
+        const double w = floor(aspect * h + 0.5);
+        if (w < 1 || w > 64 || w / h != aspect) continue;
+        if (h == 1)
+            put_number(out, aspect);
+        else
+            fprintf(out, "[%.0f, %d]", w, h);
+        return;
+    }
+    put_number(out, aspect);
+}
+
+/* The lens as a defocus angle where a round one gives the same lens, else as an aperture. */
+static void put_lens(FILE *out, const BpCamera *camera) {
+    if (camera->lens_radius == 0) return;
+    char text[BP_NUMBER_TEXT_SIZE];
+    const double exact = 2 * atan(camera->lens_radius / camera->focus_dist) * (180 / PI);
+    snprintf(text, sizeof text, "%.6g", exact);
+    const double angle = strtod(text, NULL);
+    if (angle > 0 && angle < 180 && bp_lens_radius(angle, camera->focus_dist) == camera->lens_radius) {
+        fputs("\"defocus_angle\": ", out);
+        put_number(out, angle);
+    } else {
+        fputs("\"aperture\": ", out);
+        put_number(out, 2 * camera->lens_radius);
+    }
+    fputs(", ", out);
+}
+
+static void put_camera(FILE *out, const BpCamera *camera) {
+    fprintf(out, "  \"camera\": {\n    \"image_width\": %u, ", (unsigned)camera->width);
+    if (bp_camera_height(camera->width, camera->aspect_ratio) == camera->height) {
+        fputs("\"aspect_ratio\": ", out);
+        put_aspect(out, camera->aspect_ratio);
+    } else {
+        fprintf(out, "\"image_height\": %u", (unsigned)camera->height);
+    }
+    fprintf(out, ", \"samples_per_pixel\": %u, \"max_depth\": %u,\n    \"vfov\": ",
+            (unsigned)camera->samples_per_pixel, (unsigned)camera->max_depth);
+    put_number(out, camera->vfov_degrees);
+    fputs(", \"lookfrom\": ", out);
+    put_vector(out, camera->lookfrom);
+    fputs(", \"lookat\": ", out);
+    put_vector(out, camera->lookat);
+    fputs(", \"vup\": ", out);
+    put_vector(out, camera->vup);
+    fputs(",\n    ", out);
+    put_lens(out, camera);
+    fputs("\"focus_dist\": ", out);
+    put_number(out, camera->focus_dist);
+    if (camera->pixel_sampling == BP_PIXEL_CENTER) fputs(", \"pixel_sampling\": \"center\"", out);
+    fputs("\n  }", out);
+}
+
+/* ---- materials and spheres ------------------------------------------------------------------------------
+ */
+
+static BpStatus put_material(FILE *out, const BpMaterial *material, BpError *err) {
+    static const char *const scatters[] = {"lambertian", "cosine_cubed", "hemisphere"};
+    static const char *const fresnels[] = {"schlick", "exact", "none"};
+    static const char *const totals[] = {"reflect", "absorb", "refract"};
+    fputs("    ", out);
+    BP_TRY(put_text(out, material->name, err));
+    fprintf(out, ": { \"type\": \"%s\"", bp_material_type_name(material->kind));
+    if (bp_material_has_albedo(material->kind)) {
+        fputs(", \"albedo\": ", out);
+        put_vector(out, material->albedo);
+    }
+    if (material->kind == BP_MATERIAL_LAMBERTIAN && material->scatter != BP_SCATTER_LAMBERTIAN)
+        fprintf(out, ", \"scatter\": \"%s\"", scatters[material->scatter]);
+    if (material->kind == BP_MATERIAL_METAL) {
+        fputs(", \"fuzz\": ", out);
+        put_number(out, material->fuzz);
+        if (material->fuzz_shape == BP_FUZZ_BALL) fputs(", \"fuzz_shape\": \"ball\"", out);
+    }
+    if (material->kind == BP_MATERIAL_DIELECTRIC) {
+        fputs(", \"refraction_index\": ", out);
+        put_number(out, material->refraction_index);
+        if (material->fresnel != BP_FRESNEL_SCHLICK)
+            fprintf(out, ", \"fresnel\": \"%s\"", fresnels[material->fresnel]);
+        if (material->total_reflection != BP_TOTAL_REFLECT)
+            fprintf(out, ", \"total_reflection\": \"%s\"", totals[material->total_reflection]);
+    }
+    if (material->kind == BP_MATERIAL_DIFFUSE_LIGHT || !is_dark(material->emit)) {
+        fputs(", \"emit\": ", out);
+        put_vector(out, material->emit);
+    }
+    fputs(" }", out);
+    return BP_OK;
+}
+
+static BpStatus put_materials(FILE *out, const BpScene *scene, BpError *err) {
+    fputs(",\n  \"materials\": {", out);
+    for (size_t i = 0; i < scene->material_count; i++) {
+        fputs(i > 0 ? ",\n" : "\n", out);
+        BP_TRY(put_material(out, &scene->materials[i], err));
+    }
+    fputs("\n  }", out);
+    return BP_OK;
+}
+
+static BpStatus put_spheres(FILE *out, const BpScene *scene, BpError *err) {
+    fputs(",\n  \"spheres\": [", out);
+    for (size_t i = 0; i < scene->sphere_count; i++) {
+        const BpSphere *sphere = &scene->spheres[i];
+        fputs(i > 0 ? ",\n    { \"center\": " : "\n    { \"center\": ", out);
+        put_vector(out, sphere->center);
+        fputs(", \"radius\": ", out);
+        put_number(out, sphere->radius);
+        fputs(", \"material\": ", out);
+        BP_TRY(put_text(out, scene->materials[sphere->material].name, err));
+        fputs(" }", out);
+    }
+    fputs("\n  ]", out);
+    return BP_OK;
+}
+
+/* ---- the whole ------------------------------------------------------------------------------------------
+ */
+
+BpStatus bp_scene_print(const BpScene *scene, FILE *out, BpError *err) {
+    if (scene->albedo_count > 0)
+        return bp_fail(
+            err, BP_ERR_SCENE,
+            "found points with colours of their own, expected none: the JSON grammar gives colours to "
+            "materials; keep such points in a PLY file");
+    fputs("{\n  \"format\": 1,\n  \"title\": ", out);
+    BP_TRY(put_text(out, scene->title, err));
+    fputs(",\n  \"source\": ", out);
+    BP_TRY(put_text(out, scene->source, err));
+    fputs(",\n", out);
+    put_camera(out, &scene->camera);
+    fputs(",\n  \"background\": { \"bottom\": ", out);
+    put_vector(out, scene->background_bottom);
+    fputs(", \"top\": ", out);
+    put_vector(out, scene->background_top);
+    fprintf(out, " },\n  \"transfer\": \"%s\"", bp_transfer_names[scene->transfer]);
+    if (scene->material_count > 0) BP_TRY(put_materials(out, scene, err));
+    if (scene->sphere_count > 0) BP_TRY(put_spheres(out, scene, err));
+    fputs("\n}\n", out);
+    if (ferror(out)) return bp_fail(err, BP_ERR_FILE, "cannot write the scene: %s", strerror(errno));
+    return BP_OK;
+}
+
+BpStatus bp_scene_write(const BpScene *scene, const char *path, BpError *err) {
+    BpOutputFile file;
+    BP_TRY(bp_output_open(path, &file, err));
+    const BpStatus status = bp_scene_print(scene, file.stream, err);
+    if (status != BP_OK) {
+        bp_output_discard(&file);
+        return status;
+    }
+    return bp_output_commit(&file, err);
+}

@@ -1,0 +1,46 @@
+/* device.h: OpenCL platforms, devices, contexts, and building a program for one device.
+ *
+ * In:    which device; source text.   Out: context, queue, program; a full build log on failure.
+ * Knows: OpenCL.   Does not know: scenes, pictures. */
+#ifndef BP_OPENCL_DEVICE_H
+#define BP_OPENCL_DEVICE_H
+
+#include "base/status.h"
+
+#include <stdbool.h>
+
+#define CL_TARGET_OPENCL_VERSION 120
+#include <CL/cl.h>
+
+typedef struct BpDevice {
+    BpDeviceInfo info;
+    cl_device_id id;
+    cl_context context;
+    cl_command_queue queue; /* in order, with profiling */
+} BpDevice;
+
+/* bp_devices_list with the handle of each device in *ids; the caller frees both arrays. `ids`: Optional. */
+BpStatus bp_device_ids(BpDeviceInfo **list, cl_device_id **ids, size_t *count, BpError *err);
+
+/* Opens the device that bp_devices_list or bp_device_find described. BP_ERR_DEVICE: it is gone, it lacks
+ * something (info.refusal), or its driver failed. Close with bp_device_close(). */
+BpStatus bp_device_open(const BpDeviceInfo *info, BpDevice **device, BpError *err);
+void bp_device_close(BpDevice **device);
+
+/* "CL_OUT_OF_RESOURCES" for -5, and so on; never NULL. */
+const char *bp_cl_error_name(cl_int code);
+/* bp_fail with the name of the call, the error's name and, for the common ones, what to do about it.
+ * `device`: Optional; named in the message. */
+BpStatus bp_cl_fail(BpError *err, cl_int code, const char *call, const BpDevice *device);
+
+/* True when `name` stands in the device's list of extensions. */
+bool bp_device_has_extension(cl_device_id id, const char *name);
+
+/* Builds `source` with `options` (always -cl-std=CL1.2 first; NVIDIA's compiler is asked for its register
+ * counts). `options`: Optional. The log, also of a successful build, is written to *log when `log` is not
+ * NULL; the caller frees it. On failure the error carries the place of the first complaint, and the whole log
+ * as its attachment. Release *program with clReleaseProgram(). */
+BpStatus bp_device_build(BpDevice *device, const char *source, const char *options, cl_program *program,
+                         char **log, BpError *err);
+
+#endif

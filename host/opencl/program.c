@@ -1,0 +1,241 @@
+/* program.c: see program.h. */
+#include "program.h"
+
+#include "base/clock.h"
+#include "packed/effects.h"
+
+#include <errno.h>
+#include <stdarg.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+/* Which programs a file stands in: those of one form or one kind of numerics, or all. */
+enum { IN_SAMPLE = 1, IN_PACKET = 2, IN_ROBUST = 4, IN_PLAIN = 8, IN_ALL = 0 };
+
+/* The order in which the files of kernels/ stand in a program. A lanes_... file says for how many lanes what
+ * follows is meant (dialect/lanes.cl); some files are read again for another number of lanes. */
+static const struct {
+    const char *name;
+    unsigned only_in;
+} files[] = {
+    {"dialect/real.cl", IN_ALL},
+    {"scene_types.h", IN_ALL},
+    /* for one lane */
+    {"dialect/lanes_one.cl", IN_ALL},
+    {"dialect/lanes.cl", IN_ALL},
+    {"dialect/vector.cl", IN_ALL},
+    {"shape/ray.cl", IN_ALL},
+    {"shape/sphere_robust.cl", IN_ROBUST},
+    {"shape/sphere_plain.cl", IN_PLAIN},
+    {"bvh/flat_tree.cl", IN_PACKET},
+    {"bvh/geometry.cl", IN_ALL},
+    {"bvh/hit.cl", IN_ALL},
+    {"bvh/box_ray.cl", IN_ALL},
+    /* for the children of a node */
+    {"dialect/lanes_node.cl", IN_ALL},
+    {"dialect/lanes.cl", IN_ALL},
+    {"dialect/vector.cl", IN_ALL},
+    {"shape/ray.cl", IN_ALL},
+    {"shape/sphere_robust.cl", IN_ROBUST},
+    {"shape/sphere_plain.cl", IN_PLAIN},
+    {"bvh/child_mask.cl", IN_ALL},
+    {"bvh/node.cl", IN_ALL},
+    /* for one path, or for the paths of a packet */
+    {"dialect/lanes_one.cl", IN_SAMPLE},
+    {"dialect/lanes_packet.cl", IN_PACKET},
+    {"dialect/lanes.cl", IN_ALL},
+    {"dialect/vector.cl", IN_PACKET},
+    {"shape/ray.cl", IN_PACKET},
+    {"shape/sphere_robust.cl", IN_PACKET | IN_ROBUST},
+    {"shape/sphere_plain.cl", IN_PACKET | IN_PLAIN},
+    {"bvh/hit.cl", IN_PACKET},
+    {"bvh/box_ray.cl", IN_PACKET},
+    {"bvh/traverse_single.cl", IN_SAMPLE},
+    {"bvh/traverse_packet.cl", IN_PACKET},
+    {"sampling/rng.cl", IN_ALL},
+    {"sampling/sampler.cl", IN_ALL},
+    {"sampling/warps.cl", IN_ALL},
+    {"light/sky.cl", IN_ALL},
+    {"camera/camera.cl", IN_ALL},
+    {"bsdf/bsdf.cl", IN_ALL},
+    {"bsdf/lambertian.cl", IN_ALL},
+    {"bsdf/metal.cl", IN_ALL},
+    {"bsdf/dielectric.cl", IN_ALL},
+    {"bsdf/scatter.cl", IN_ALL},
+    {"integrator/scene.cl", IN_ALL},
+    {"integrator/path.cl", IN_ALL},
+    {"integrator/fetch_surface.cl", IN_ALL},
+    {"integrator/pixels.cl", IN_ALL},
+    {"integrator/bounce.cl", IN_ALL},
+    {"entry/trace_sample.cl", IN_SAMPLE},
+    {"entry/trace_packet.cl", IN_PACKET},
+    {"film/accumulate.cl", IN_ALL},
+    {"entry/probe_layout.cl", IN_ALL},
+};
+
+/* A text that grows. `failed` remembers an allocation that did not succeed. */
+#define KERNEL_FILE_BYTES_MAX (1u << 20) /* BALLPARK_KERNELS can name a folder of anything */
+
+typedef struct Text {
+    char *bytes;
+    size_t length, capacity;
+    bool failed;
+} Text;
+
+static void text_append(Text *text, const char *bytes, size_t length) {
+    if (text->failed) return;
+    if (text->length + length + 1 > text->capacity) {
+        const size_t capacity = 2 * (text->length + length + 1);
+        char *grown = realloc(text->bytes, capacity);
+        if (grown == NULL) {
+            text->failed = true;
+            return;
+        }
+        text->bytes = grown;
+        text->capacity = capacity;
+    }
+    memcpy(text->bytes + text->length, bytes, length);
+    text->length += length;
+    text->bytes[text->length] = '\0';
+}
+
+static void text_print(Text *text, const char *format, ...) BP_PRINTF_LIKE(2, 3);
+static void text_print(Text *text, const char *format, ...) {
+    char line[256];
+    va_list arguments;
+    va_start(arguments, format);
+    const int length = vsnprintf(line, sizeof line, format, arguments);
+    va_end(arguments);
+    text_append(text, line, (size_t)length);
+}
+
+BpStatus bp_kernel_text(const char *name, char **text, BpError *err) {
+    Text read = {0};
+    const char *directory = getenv("BALLPARK_KERNELS");
+    const char *embedded = bp_kernel_file(name);
+    *text = NULL;
+    if (directory != NULL && directory[0] != '\0') {
+        char block[4096];
+        size_t count;
+        const size_t size = strlen(directory) + strlen(name) + 2;
+        char *path = malloc(size);
+        if (path == NULL) return bp_fail(err, BP_ERR_MEMORY, "no memory for a path of %zu bytes", size);
+        snprintf(path, size, "%s/%s", directory, name);
+        FILE *file = fopen(path, "rb");
+        if (file == NULL) {
+            bp_fail(
+                err, BP_ERR_FILE,
+                "cannot open %s: %s; the environment variable BALLPARK_KERNELS must name a folder with all "
+                "kernel files: correct it, or unset it for those in the program",
+                path, strerror(errno));
+            free(path);
+            return BP_ERR_FILE;
+        }
+        text_append(&read, "", 0);
+        while (read.length <= KERNEL_FILE_BYTES_MAX && (count = fread(block, 1, sizeof block, file)) > 0)
+            text_append(&read, block, count);
+        fclose(file);
+        if (read.length > KERNEL_FILE_BYTES_MAX) {
+            bp_fail(err, BP_ERR_FILE, "%s: is no kernel file: it has more than %u bytes", path,
+                    KERNEL_FILE_BYTES_MAX);
+            free(path);
+            free(read.bytes);
+            return BP_ERR_FILE;
+        }
+        free(path);
+    } else if (embedded != NULL) {
+        text_append(&read, embedded, strlen(embedded));
+    } else {
+        return bp_fail(err, BP_ERR_FILE, "kernels/%s is not in this program", name);
+    }
+    if (read.failed) {
+        free(read.bytes);
+        return bp_fail(err, BP_ERR_MEMORY, "no memory for the kernel's source");
+    }
+    *text = read.bytes;
+    return BP_OK;
+}
+
+BpStatus bp_program_source(const BpProgramOptions *options, const char *extra_name, const char *extra_text,
+                           char **source, BpError *err) {
+    Text text = {0};
+    const bool plain = options->numerics == BP_NUMERICS_PLAIN;
+    const bool all_double = options->precision == BP_PRECISION_DOUBLE;
+    text_print(&text, "#define REAL_IS_DOUBLE %d\n", all_double);
+    text_print(&text, "#define REFINE_IS_DOUBLE %d\n", all_double || (options->double_refine && !plain));
+    text_print(&text, "#define TREE_WIDTH %u\n", options->tree_width);
+    if (options->form == BP_KERNEL_PACKET) {
+        text_print(&text, "#define PACKET_LANES %u\n", options->packet_lanes);
+        text_print(&text, "#define SAMPLES_PER_ITEM %uu\n", BP_PACKET_SAMPLES_PER_ITEM);
+    } else {
+        text_print(&text, "#define GROUP_MAX %uu\n", BP_SAMPLE_GROUP_MAX);
+    }
+    text_print(&text, "#define SAMPLER_SOBOL %d\n", options->sampler == BP_SAMPLER_SOBOL);
+    text_print(&text, "#define PIXEL_LIST %d\n", options->pixel_list);
+    for (int e = 0; e < BP_EFFECT_COUNT; ++e)
+        text_print(&text, "#define EFFECT_%s %d\n", bp_effect_identifier((BpEffect)e),
+                   bp_effects_has(options->effects, (BpEffect)e));
+    const unsigned kind =
+        (options->form == BP_KERNEL_PACKET ? IN_PACKET : IN_SAMPLE) | (plain ? IN_PLAIN : IN_ROBUST);
+    for (size_t i = 0; i < sizeof files / sizeof files[0]; ++i) {
+        const char *name = files[i].name;
+        if ((files[i].only_in & ~kind) != 0) continue;
+        text_print(&text, "#line 1 \"%s\"\n", name);
+        char *file = NULL;
+        const BpStatus status = bp_kernel_text(name, &file, err);
+        if (status != BP_OK) {
+            free(text.bytes);
+            return status;
+        }
+        text_append(&text, file, strlen(file));
+        free(file);
+    }
+    if (extra_text != NULL) {
+        text_print(&text, "#line 1 \"%s\"\n", extra_name != NULL ? extra_name : "extra.cl");
+        text_append(&text, extra_text, strlen(extra_text));
+    }
+    if (text.failed) {
+        free(text.bytes);
+        return bp_fail(err, BP_ERR_MEMORY, "no memory for the kernel's source");
+    }
+    *source = text.bytes;
+    return BP_OK;
+}
+
+/* FNV-1a, 64 bit. */
+static uint64_t hash_text(uint64_t hash, const char *text) {
+    for (; *text != '\0'; ++text) hash = (hash ^ (unsigned char)*text) * 1099511628211u;
+    return hash;
+}
+
+BpStatus bp_program_build(BpDevice *device, const BpProgramOptions *options, const char *extra_name,
+                          const char *extra_text, BpProgram **program, BpError *err) {
+    char *source = NULL;
+    BpProgram *built = calloc(1, sizeof *built);
+    if (built == NULL) return bp_fail(err, BP_ERR_MEMORY, "no memory for a program");
+    const char *flags = options->math == BP_MATH_FAST ? "-cl-fast-relaxed-math" : "";
+    BpStatus status = bp_program_source(options, extra_name, extra_text, &source, err);
+    if (status != BP_OK) goto failed;
+    built->key = hash_text(hash_text(14695981039346656037u, source), flags);
+    const double start = bp_clock_seconds();
+    status = bp_device_build(device, source, flags, &built->program, &built->log, err);
+    built->build_seconds = bp_clock_seconds() - start;
+    if (status != BP_OK) goto failed;
+    free(source);
+    *program = built;
+    return BP_OK;
+
+failed:
+    free(source);
+    bp_program_destroy(&built);
+    return status;
+}
+
+void bp_program_destroy(BpProgram **program) {
+    if (program == NULL || *program == NULL) return;
+    if ((*program)->program != NULL) clReleaseProgram((*program)->program);
+    free((*program)->log);
+    free(*program);
+    *program = NULL;
+}

@@ -1,0 +1,59 @@
+/* program.h: puts the kernel's source together for one set of choices.
+ *
+ * In:    which effects, precision, math, numerics, form.   Out: one OpenCL C source text, or a built program.
+ * Knows: the files of kernels/ and their order, in one list. Does not know: scenes, buffers.
+ *
+ * Every switch is a #define in the first lines of the text, so the text alone decides what is compiled (some
+ * drivers' caches ignore -D). Each file is opened by `#line 1 "file"`.
+ * BALLPARK_KERNELS=DIR in the environment reads the files from DIR instead of the embedded copies: for work
+ * on the kernels without building the host again. */
+#ifndef BP_OPENCL_PROGRAM_H
+#define BP_OPENCL_PROGRAM_H
+
+#include "device.h"
+
+/* The embedded text of one file of kernels/, by its path there ("light/sky.cl"), static; NULL when there is
+ * none of that name. */
+const char *bp_kernel_file(const char *name);
+
+/* The text of one file of kernels/ as programs get it: embedded, or from BALLPARK_KERNELS. The caller frees
+ * *text. BP_ERR_FILE: there is no such file. */
+BpStatus bp_kernel_text(const char *name, char **text, BpError *err);
+
+/* A work-item of the packet form traces this many pixel samples, as many at a time as it has lanes: enough
+ * that the last, partly filled round weighs little, few enough that a small chunk still keeps all cores busy.
+ */
+#define BP_PACKET_SAMPLES_PER_ITEM 512u
+/* Work-items in a work-group of the sample form, at most: they share an array of this length. */
+#define BP_SAMPLE_GROUP_MAX 64u
+
+typedef struct BpProgramOptions {
+    uint32_t effects; /* bits of effects.h */
+    BpPrecision precision;
+    BpMath math;
+    BpNumerics numerics;
+    BpSampler sampler;
+    BpKernelForm form;     /* BP_KERNEL_SAMPLE or BP_KERNEL_PACKET */
+    uint32_t tree_width;   /* 2, 4, 8 or 16 */
+    uint32_t packet_lanes; /* 8 or 16; of the packet form alone */
+    bool pixel_list;       /* chunks take their pixels from a list */
+    bool double_refine;    /* refine intersections in double; else error-free float transforms */
+} BpProgramOptions;
+
+/* The whole source. `extra_name`, `extra_text`: Optional, a file appended at the end (probe kernels of
+ * tests). The caller frees *source. BP_ERR_FILE when BALLPARK_KERNELS lacks a file. */
+BpStatus bp_program_source(const BpProgramOptions *options, const char *extra_name, const char *extra_text,
+                           char **source, BpError *err);
+
+typedef struct BpProgram {
+    cl_program program;
+    uint64_t key;         /* hash of source and build options: equal keys, equal programs */
+    double build_seconds; /* clBuildProgram; the first launch compiles more on some drivers */
+    char *log;            /* build log, "" when the driver said nothing */
+} BpProgram;
+
+BpStatus bp_program_build(BpDevice *device, const BpProgramOptions *options, const char *extra_name,
+                          const char *extra_text, BpProgram **program, BpError *err);
+void bp_program_destroy(BpProgram **program);
+
+#endif

@@ -1,0 +1,121 @@
+/* self_test_memory.c: which devices have passed; see self_test.h.
+ *
+ * In:    a device's description.   Out: a small text file in the user's cache.
+ * Knows: where caches live (XDG Base Directory Specification).   Does not know: what is tested.
+ *
+ * The file's name is a hash of everything that could change the outcome, and its text is all of that in
+ * words: a file that holds other words, for whatever reason, is no memory. */
+#include "base/output_file.h"
+#include "program.h"
+#include "self_test.h"
+
+#include <errno.h>
+#include <fcntl.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+/* FNV-1a, 64 bits (G. Fowler, L. C. Noll, K.-P. Vo). */
+static uint64_t hash_text(uint64_t hash, const char *text) {
+    for (; *text != '\0'; ++text) hash = (hash ^ (unsigned char)*text) * 0x100000001b3u;
+    return hash;
+}
+#define HASH_START 0xcbf29ce484222325u
+
+/* Everything that the outcome depends on. */
+static void identify(const BpDeviceInfo *device, char *to, size_t size) {
+    static const char *const files[] = {"dialect/real.cl", "scene_types.h", "entry/self_test.cl"};
+    uint64_t sources = HASH_START;
+    for (int f = 0; f < 3; ++f) {
+        char *text = NULL;
+        if (bp_kernel_text(files[f], &text, NULL) == BP_OK) sources = hash_text(sources, text);
+        free(text);
+    }
+    snprintf(to, size,
+             "This device passed Ballpark's self-test.\nplatform: %s\ndevice: %s\nversion: %s\ndriver: %s\n"
+             "double: %s\nballpark: %s\ntest: %016llx\n",
+             device->platform, device->name, device->version, device->driver,
+             device->has_double ? "yes" : "no", bp_version(), (unsigned long long)sources);
+}
+
+/* $XDG_CACHE_HOME/ballpark or ~/.cache/ballpark, heap, made if `make`; NULL without either. */
+static char *cache_folder(bool make) {
+    const char *base = getenv("XDG_CACHE_HOME"), *below = "";
+    /* The specification has relative paths ignored. */
+    if (base == NULL || base[0] != '/') {
+        base = getenv("HOME");
+        below = "/.cache";
+    }
+    if (base == NULL || base[0] != '/') return NULL;
+    const size_t size = strlen(base) + strlen(below) + strlen("/ballpark") + 1;
+    char *folder = malloc(size);
+    if (folder == NULL) return NULL;
+    snprintf(folder, size, "%s%s", base, below);
+    if (make) mkdir(folder, 0700); /* where it fails, writing into it fails too, and that is tolerated */
+    snprintf(folder, size, "%s%s/ballpark", base, below);
+    if (make) mkdir(folder, 0700);
+    return folder;
+}
+
+static char *memory_path(const char *identity, bool make) {
+    char *folder = cache_folder(make);
+    if (folder == NULL) return NULL;
+    const size_t size = strlen(folder) + 64;
+    char *path = malloc(size);
+    if (path != NULL)
+        snprintf(path, size, "%s/self-test-%016llx.txt", folder,
+                 (unsigned long long)hash_text(HASH_START, identity));
+    free(folder);
+    return path;
+}
+
+char *bp_self_test_memory_path(const BpDeviceInfo *device) {
+    char identity[1024];
+    identify(device, identity, sizeof identity);
+    return memory_path(identity, false);
+}
+
+/* Whether the file can be used: anything but a regular file may keep whoever opens it waiting. */
+static bool is_regular_or_absent(const char *path) {
+    struct stat state;
+    return stat(path, &state) == 0 ? S_ISREG(state.st_mode) : errno == ENOENT;
+}
+
+static bool remembered(const char *path, const char *identity) {
+    char text[1024] = "";
+    struct stat state;
+    const int file = open(path, O_RDONLY | O_CLOEXEC | O_NOCTTY | O_NONBLOCK);
+    if (file < 0) return false;
+    ssize_t length = -1;
+    if (fstat(file, &state) == 0 && S_ISREG(state.st_mode)) length = read(file, text, sizeof text);
+    close(file);
+    return length >= 0 && (size_t)length == strlen(identity) && memcmp(text, identity, (size_t)length) == 0;
+}
+
+BpStatus bp_self_test_once(BpDevice *device, bool *ran, BpError *err) {
+    BpStatus status = BP_OK;
+    char identity[1024];
+    identify(&device->info, identity, sizeof identity);
+    char *path = memory_path(identity, true);
+    if (path != NULL && !is_regular_or_absent(path)) {
+        free(path);
+        path = NULL;
+    }
+    const bool passed_before = path != NULL && remembered(path, identity);
+    if (ran != NULL) *ran = !passed_before;
+    if (!passed_before) {
+        status = bp_self_test_run(device, NULL, err);
+        BpOutputFile file;
+        /* A cache that cannot be written only costs the test again. */
+        if (status == BP_OK && path != NULL && bp_output_open(path, &file, NULL) == BP_OK) {
+            if (fputs(identity, file.stream) >= 0)
+                bp_output_commit(&file, NULL);
+            else
+                bp_output_discard(&file);
+        }
+    }
+    free(path);
+    return status;
+}

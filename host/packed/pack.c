@@ -1,0 +1,238 @@
+/* pack.c: see pack.h. Everything is packed in double; narrow() is the last step. */
+#define BP_HOST
+#include "pack.h"
+
+#include "base/status.h"
+#include "reals.h"
+#include "scene_types.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+_Static_assert((int)BP_MATERIAL_LAMBERTIAN == KIND_LAMBERTIAN && (int)BP_MATERIAL_METAL == KIND_METAL &&
+                   (int)BP_MATERIAL_DIELECTRIC == KIND_DIELECTRIC &&
+                   (int)BP_MATERIAL_DIFFUSE_LIGHT == KIND_LIGHT && (int)BP_MATERIAL_NORMALS == KIND_NORMALS,
+               "kinds of material differ between host and kernel");
+_Static_assert((int)BP_SCATTER_LAMBERTIAN == LOBE_LAMBERTIAN &&
+                   (int)BP_SCATTER_COSINE_CUBED == LOBE_COSINE_CUBED &&
+                   (int)BP_SCATTER_HEMISPHERE == LOBE_HEMISPHERE,
+               "lobes differ between host and kernel");
+_Static_assert((int)BP_FUZZ_SPHERE == FUZZ_SPHERE && (int)BP_FUZZ_BALL == FUZZ_BALL,
+               "shapes of fuzz differ between host and kernel");
+_Static_assert((int)BP_FRESNEL_SCHLICK == FRESNEL_SCHLICK && (int)BP_FRESNEL_EXACT == FRESNEL_EXACT &&
+                   (int)BP_FRESNEL_NONE == FRESNEL_NONE,
+               "Fresnel forms differ between host and kernel");
+_Static_assert((int)BP_TOTAL_REFLECT == TOTAL_REFLECT && (int)BP_TOTAL_ABSORB == TOTAL_ABSORB &&
+                   (int)BP_TOTAL_REFRACT == TOTAL_REFRACT,
+               "forms of total reflection differ between host and kernel");
+
+static BpStatus out_of_memory(const BpScene *scene, BpError *err) {
+    return bp_fail(err, BP_ERR_MEMORY, "out of memory while packing a scene of %zu spheres",
+                   scene->sphere_count);
+}
+
+/* Copies `count` doubles to a new array of reals, with room for `least` at least. NULL: out of memory. */
+static void *narrow(const double *values, size_t count, size_t least, bool single) {
+    void *array = calloc(count > least ? count : least, single ? sizeof(float) : sizeof(double));
+    if (array == NULL) return NULL;
+    for (size_t i = 0; i < count; ++i) bp_reals_store(array, single, i, values[i]);
+    return array;
+}
+
+/* ---- camera and sky -------------------------------------------------------------------------------- */
+
+/* Scaled by the largest component first, so that no square leaves the range of double. */
+static void normalize(double v[3]) {
+    const double largest = fmax(fabs(v[0]), fmax(fabs(v[1]), fabs(v[2])));
+    for (int a = 0; a < 3; ++a) v[a] /= largest;
+    const double length = sqrt(v[0] * v[0] + v[1] * v[1] + v[2] * v[2]);
+    for (int a = 0; a < 3; ++a) v[a] /= length;
+}
+
+static void cross(const double a[3], const double b[3], double out[3]) {
+    out[0] = a[1] * b[2] - a[2] * b[1];
+    out[1] = a[2] * b[0] - a[0] * b[2];
+    out[2] = a[0] * b[1] - a[1] * b[0];
+}
+
+static void pack_camera(const BpCamera *camera, PackedCamera *packed) {
+    double back[3], right[3], up[3], vup[3];
+    for (int a = 0; a < 3; ++a) {
+        back[a] = camera->lookfrom[a] - camera->lookat[a];
+        vup[a] = camera->vup[a];
+    }
+    normalize(back);
+    normalize(vup);
+    cross(vup, back, right);
+    normalize(right);
+    cross(back, right, up);
+    const double pi = 3.14159265358979323846;
+    const double height = 2.0 * camera->focus_dist * tan(camera->vfov_degrees * (pi / 360.0));
+    const double pixel = height / camera->height; /* pixels are square */
+    const double width = pixel * camera->width;
+    *packed = (PackedCamera){0};
+    for (int a = 0; a < 3; ++a) {
+        packed->corner[a] = 0.5 * (height * up[a] - width * right[a]) - camera->focus_dist * back[a];
+        packed->right[a] = pixel * right[a];
+        packed->down[a] = -pixel * up[a];
+        packed->lens_right[a] = camera->lens_radius * right[a];
+        packed->lens_up[a] = camera->lens_radius * up[a];
+    }
+}
+
+/* Where a pinhole stands on a sphere: rays that leave the camera leave that sphere. From the points of a
+ * lens, only a few of them on the surface, every sphere is met like any other. */
+static void pack_standpoint(const BpScene *scene, const BpTree *tree, PackedCamera *packed) {
+    const uint32_t slot = scene->camera.lens_radius > 0 ? NO_SLOT : tree->own_slot;
+    packed->own_slot[0] = slot & 0xffffu;
+    packed->own_slot[1] = slot >> 16;
+    if (slot == NO_SLOT) return;
+    const BpSphere *sphere = &scene->spheres[tree->slot_sphere[slot]];
+    double size = fabs(sphere->radius);
+    for (int a = 0; a < 3; ++a) {
+        packed->inward[a] = sphere->center[a] - scene->camera.lookfrom[a];
+        size += fabs(sphere->center[a]) + fabs(scene->camera.lookfrom[a]);
+    }
+    normalize(packed->inward);
+    packed->own_slot[2] = 0x1p-49 * size + (tree->single_precision ? 0x1p-22 * fabs(sphere->radius) : 0);
+}
+
+static BpStatus pack_view(const BpScene *scene, BpPacked *packed, BpError *err) {
+    PackedCamera camera;
+    PackedSky sky = {0};
+    pack_camera(&scene->camera, &camera);
+    pack_standpoint(scene, &packed->tree, &camera);
+    for (int a = 0; a < 3; ++a) {
+        sky.bottom[a] = scene->background_bottom[a];
+        sky.top[a] = scene->background_top[a];
+    }
+    const size_t camera_reals = sizeof camera / sizeof(double), sky_reals = sizeof sky / sizeof(double);
+    packed->camera = narrow((const double *)&camera, camera_reals, 1, packed->single_precision);
+    packed->sky = narrow((const double *)&sky, sky_reals, 1, packed->single_precision);
+    return packed->camera != NULL && packed->sky != NULL ? BP_OK : out_of_memory(scene, err);
+}
+
+/* ---- materials ------------------------------------------------------------------------------------- */
+
+static void pack_material(const BpMaterial *material, bool inside_out, PackedMaterial *numbers,
+                          PackedMaterialKind *kind) {
+    *numbers = (PackedMaterial){.refraction_index = 1};
+    *kind = (PackedMaterialKind){.kind = (packed_uint)material->kind};
+    for (int a = 0; a < 3; ++a) numbers->emit[a] = material->emit[a];
+    switch (material->kind) {
+    case BP_MATERIAL_LAMBERTIAN:
+        kind->lobe = (packed_uint)material->scatter;
+        break;
+    case BP_MATERIAL_METAL:
+        numbers->fuzz = material->fuzz;
+        kind->variant = (packed_uint)material->fuzz_shape;
+        break;
+    case BP_MATERIAL_DIELECTRIC:
+        numbers->refraction_index = inside_out ? 1 / material->refraction_index : material->refraction_index;
+        kind->variant = (packed_uint)material->fresnel;
+        kind->total_reflection = (packed_uint)material->total_reflection;
+        break;
+    case BP_MATERIAL_DIFFUSE_LIGHT:
+    case BP_MATERIAL_NORMALS:
+        break;
+    }
+}
+
+static bool is_inside_out(const BpScene *scene, const BpSphere *sphere) {
+    return sphere->radius < 0 && scene->materials[sphere->material].kind == BP_MATERIAL_DIELECTRIC;
+}
+
+/* The materials. A dielectric that a sphere of negative radius uses gets a second entry, with the reciprocal
+ * index: seen from inside out is the same as inside and outside exchanged. Normals face the ray, so no other
+ * kind can tell a negative radius. `second[m]`: the number of that entry of material m. */
+static BpStatus pack_materials(const BpScene *scene, uint32_t *second, BpPacked *packed, BpError *err) {
+    const size_t count = scene->material_count;
+    if (count > UINT32_MAX / 4)
+        return bp_fail(err, BP_ERR_LIMIT, "%zu materials; at most %u can be packed", count, UINT32_MAX / 4);
+    BpStatus status = BP_OK;
+    PackedMaterialKind *kinds = calloc(2 * count + 1, sizeof *kinds);
+    PackedMaterial *numbers = calloc(2 * count + 1, sizeof *numbers);
+    if (kinds == NULL || numbers == NULL) {
+        status = out_of_memory(scene, err);
+        goto cleanup;
+    }
+    uint32_t used = (uint32_t)count;
+    for (size_t m = 0; m < count; ++m) pack_material(&scene->materials[m], false, &numbers[m], &kinds[m]);
+    for (size_t i = 0; i < scene->sphere_count; ++i) {
+        const uint32_t m = scene->spheres[i].material;
+        if (!is_inside_out(scene, &scene->spheres[i]) || second[m] != 0) continue;
+        pack_material(&scene->materials[m], true, &numbers[used], &kinds[used]);
+        second[m] = used++;
+    }
+    packed->material_count = used > 0 ? used : 1; /* at least one, unused */
+    packed->materials =
+        narrow((const double *)numbers, packed->material_count * (sizeof *numbers / sizeof(double)), 1,
+               packed->single_precision);
+    packed->material_kinds = (uint32_t *)kinds;
+    kinds = NULL;
+    if (packed->materials == NULL) status = out_of_memory(scene, err);
+cleanup:
+    free(kinds);
+    free(numbers);
+    return status;
+}
+
+/* What a sphere scatters of a primary colour: glass all, a lamp nothing, whatever colour a cloud gives. */
+static double scattered(const BpScene *scene, const BpSphere *sphere, size_t channel) {
+    const BpMaterial *material = &scene->materials[sphere->material];
+    if (material->kind == BP_MATERIAL_DIELECTRIC) return 1;
+    if (material->kind != BP_MATERIAL_LAMBERTIAN && material->kind != BP_MATERIAL_METAL) return 0;
+    return sphere->albedo == BP_NO_ALBEDO ? material->albedo[channel]
+                                          : (double)scene->albedos[sphere->albedo][channel];
+}
+
+/* What the sphere in each slot is made of. Empty slots are black. */
+static BpStatus pack_slots(const BpScene *scene, const uint32_t *second, BpPacked *packed, BpError *err) {
+    const BpTree *tree = &packed->tree;
+    const size_t slots = (size_t)tree->leaf_count * tree->width;
+    packed->slot_material = calloc(slots + 1, sizeof *packed->slot_material);
+    packed->slot_albedo = calloc(slots + 1, ALBEDO_REALS * bp_packed_real_size(packed));
+    if (packed->slot_material == NULL || packed->slot_albedo == NULL) return out_of_memory(scene, err);
+    for (size_t slot = 0; slot < slots; ++slot) {
+        if (tree->slot_sphere[slot] == NO_SPHERE) continue;
+        const BpSphere *sphere = &scene->spheres[tree->slot_sphere[slot]];
+        packed->slot_material[slot] =
+            is_inside_out(scene, sphere) ? second[sphere->material] : sphere->material;
+        for (size_t a = 0; a < ALBEDO_REALS; ++a)
+            bp_reals_store(packed->slot_albedo, packed->single_precision, ALBEDO_REALS * slot + a,
+                           scattered(scene, sphere, a));
+    }
+    return BP_OK;
+}
+
+/* ---- the whole ------------------------------------------------------------------------------------- */
+
+BpStatus bp_scene_pack(const BpScene *scene, const BpTreeOptions *options, BpPacked *packed, BpError *err) {
+    *packed = (BpPacked){.single_precision = options->single_precision};
+    BpStatus status = BP_OK;
+    uint32_t *second = NULL;
+    BP_TRY_GOTO(status, bp_tree_build(scene, scene->camera.lookfrom, options, &packed->tree, err), cleanup);
+    BP_TRY_GOTO(status, pack_view(scene, packed, err), cleanup);
+    second = calloc(scene->material_count + 1, sizeof *second);
+    if (second == NULL) {
+        status = out_of_memory(scene, err);
+        goto cleanup;
+    }
+    BP_TRY_GOTO(status, pack_materials(scene, second, packed, err), cleanup);
+    BP_TRY_GOTO(status, pack_slots(scene, second, packed, err), cleanup);
+cleanup:
+    free(second);
+    if (status != BP_OK) bp_packed_clear(packed);
+    return status;
+}
+
+void bp_packed_clear(BpPacked *packed) {
+    bp_tree_clear(&packed->tree);
+    free(packed->camera);
+    free(packed->sky);
+    free(packed->materials);
+    free(packed->material_kinds);
+    free(packed->slot_material);
+    free(packed->slot_albedo);
+    *packed = (BpPacked){0};
+}

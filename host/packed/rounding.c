@@ -1,0 +1,133 @@
+/* rounding.c: see rounding.h. */
+#include "rounding.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+/* x as the kernel has it. Through memory: compilers have dropped a conversion to float and back. */
+static double as_float(double x) {
+    volatile float rounded = (float)x;
+    return (double)rounded;
+}
+
+/* How far rounding may move the sphere's surface, in the scene's unit: by the centre and by the radius. */
+static double surface_shift(const BpScene *scene, const BpSphere *sphere) {
+    double square = 0;
+    for (int a = 0; a < 3; ++a) {
+        const double c = sphere->center[a] - scene->camera.lookfrom[a], off = as_float(c) - c;
+        square += off * off;
+    }
+    const double r = fabs(sphere->radius);
+    return sqrt(square) + fabs(as_float(r) - r);
+}
+
+typedef struct Worst {
+    size_t sphere, count;
+    double ratio;
+} Worst;
+
+static void note(Worst *worst, size_t sphere, double ratio, double limit) {
+    if (!(ratio > limit)) return;
+    ++worst->count;
+    if (ratio <= worst->ratio) return;
+    worst->ratio = ratio;
+    worst->sphere = sphere;
+}
+
+static const char *others(const Worst *worst, char text[48]) {
+    text[0] = '\0';
+    if (worst->count > 1) snprintf(text, 48, " (and %zu more)", worst->count - 1);
+    return text;
+}
+
+/* A shell's wall: two dielectrics around one centre, found by sorting on the rounded centre and the radius.
+ */
+typedef struct Shell {
+    float center[3];
+    double radius;
+    size_t sphere;
+} Shell;
+
+static int compare_centers(const Shell *a, const Shell *b) {
+    for (int i = 0; i < 3; ++i)
+        if (a->center[i] != b->center[i]) return a->center[i] < b->center[i] ? -1 : 1;
+    return 0;
+}
+
+static int compare_shells(const void *a_pointer, const void *b_pointer) {
+    const Shell *a = a_pointer, *b = b_pointer;
+    const int centers = compare_centers(a, b);
+    if (centers != 0) return centers;
+    if (a->radius != b->radius) return a->radius < b->radius ? -1 : 1;
+    return a->sphere < b->sphere ? -1 : a->sphere > b->sphere;
+}
+
+/* A warning is not worth a failure: without memory there is none. */
+static void find_walls(const BpScene *scene, Worst *worst, double *wall) {
+    Shell *shells = malloc((scene->sphere_count + 1) * sizeof *shells);
+    size_t count = 0;
+    if (shells == NULL) return;
+    for (size_t i = 0; i < scene->sphere_count; ++i) {
+        const BpSphere *sphere = &scene->spheres[i];
+        if (scene->materials[sphere->material].kind != BP_MATERIAL_DIELECTRIC) continue;
+        Shell *shell = &shells[count++];
+        for (int a = 0; a < 3; ++a) shell->center[a] = (float)(sphere->center[a] - scene->camera.lookfrom[a]);
+        shell->radius = fabs(sphere->radius);
+        shell->sphere = i;
+    }
+    qsort(shells, count, sizeof *shells, compare_shells);
+    for (size_t i = 1; i < count; ++i) {
+        const Shell *in = &shells[i - 1], *out = &shells[i];
+        if (compare_centers(in, out) != 0) continue;
+        const double thick = out->radius - in->radius;
+        if (!(thick > 0)) continue;
+        const double ratio = fabs(as_float(out->radius) - as_float(in->radius) - thick) / thick;
+        const double before = worst->ratio;
+        note(worst, in->sphere, ratio, BP_ROUNDING_WALL);
+        if (worst->ratio != before) *wall = thick;
+    }
+    free(shells);
+}
+
+void bp_rounding_warnings(const BpScene *scene, BpPrecision precision, BpRoundingWarnings *limits) {
+    memset(limits, 0, sizeof *limits);
+    if (precision == BP_PRECISION_DOUBLE || scene->sphere_count == 0) return;
+    Worst off_place = {0}, contact = {0}, thin = {0};
+    double smallest = INFINITY, wall = 0;
+    size_t smallest_sphere = 0;
+    char more[48], name[BP_SPHERE_NAME_SIZE], other[BP_SPHERE_NAME_SIZE];
+    for (size_t i = 0; i < scene->sphere_count; ++i)
+        if (fabs(scene->spheres[i].radius) < smallest) {
+            smallest = fabs(scene->spheres[i].radius);
+            smallest_sphere = i;
+        }
+    for (size_t i = 0; i < scene->sphere_count; ++i) {
+        const BpSphere *sphere = &scene->spheres[i];
+        const double shift = surface_shift(scene, sphere), radius = fabs(sphere->radius);
+        note(&off_place, i, shift / radius, BP_ROUNDING_SHIFT);
+        if (radius > 100 * smallest) note(&contact, i, shift / smallest, BP_ROUNDING_CONTACT);
+    }
+    find_walls(scene, &thin, &wall);
+    if (off_place.count > 0)
+        snprintf(limits->text[limits->count++], sizeof limits->text[0],
+                 "%s (radius %g)%s lies %.2g of its radius off its place in single precision; use "
+                 "--precision "
+                 "double, or a camera nearer to it",
+                 bp_sphere_name(scene, off_place.sphere, name), fabs(scene->spheres[off_place.sphere].radius),
+                 others(&off_place, more), off_place.ratio);
+    if (contact.count > 0)
+        snprintf(limits->text[limits->count++], sizeof limits->text[0],
+                 "the surface of %s (radius %g)%s lies off its place by %.2g of the radius of %s (%g) "
+                 "in single precision; use --precision double, or a radius below %.2g",
+                 bp_sphere_name(scene, contact.sphere, name), fabs(scene->spheres[contact.sphere].radius),
+                 others(&contact, more), contact.ratio, bp_sphere_name(scene, smallest_sphere, other),
+                 smallest, smallest * BP_ROUNDING_CONTACT * 0x1p23);
+    if (thin.count > 0)
+        snprintf(limits->text[limits->count++], sizeof limits->text[0],
+                 "the wall between %s and the dielectric around it%s, %.2g thick, is off by %.2g of "
+                 "that in "
+                 "single precision; use --precision double, or a thicker wall",
+                 bp_sphere_name(scene, thin.sphere, name), others(&thin, more), wall, thin.ratio);
+}

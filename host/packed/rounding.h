@@ -1,0 +1,25 @@
+/* rounding.h: what rounding a scene to single precision does to it, where that can be seen.
+ *
+ * In:    a validated scene.   Out: warnings, each naming a sphere, a ratio and a remedy.
+ * Knows: that the kernel sees centres relative to the camera, and all in float (docs/NUMERICS.md).
+ * Does not know: OpenCL, where the warnings go. */
+#ifndef BP_PACKED_ROUNDING_H
+#define BP_PACKED_ROUNDING_H
+
+#include "scene/scene.h"
+
+#define BP_ROUNDING_SHIFT 0.01   /* of its own radius that a sphere may lie off its place */
+#define BP_ROUNDING_CONTACT 0.02 /* of the smallest radius that a larger sphere's surface may lie off */
+#define BP_ROUNDING_WALL 0.01    /* of its thickness that a hollow sphere's wall may be off */
+
+#define BP_ROUNDING_WARNINGS_MAX 3
+typedef struct BpRoundingWarnings {
+    unsigned count;
+    char text[BP_ROUNDING_WARNINGS_MAX][480]; /* one line each, without "warning:" */
+} BpRoundingWarnings;
+
+/* At most one warning of each kind, about the worst sphere, saying how many more there are. Double precision
+ * has none: within the grammar's sizes its rounding stays below 1e-3 of a radius of 1e-7 or more. */
+void bp_rounding_warnings(const BpScene *scene, BpPrecision precision, BpRoundingWarnings *limits);
+
+#endif

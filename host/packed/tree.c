@@ -1,0 +1,193 @@
+/* tree.c: see tree.h.
+ *
+ * Three steps: the huge spheres are set apart, a binary tree over the others is built (tree_binary.c,
+ * tree_top.c), and it is gathered into nodes of `width` children and written (tree_write.c). */
+#define BP_HOST
+#include "tree.h"
+
+#include "base/clock.h"
+#include "scene_types.h"
+#include "tree_binary.h"
+#include "tree_write.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+/* A sphere whose box has more than this part of the area of the box around all others is met by so many rays,
+ * and makes every box above it so large, that it is cheaper to test it always. */
+#define HUGE_AREA_PART (1.0 / 64.0)
+#define BLOCK 16384u
+
+/* The largest spheres, by radius, then index. */
+typedef struct Largest {
+    uint32_t index[BP_TREE_WIDTH_MAX], count;
+} Largest;
+
+/* Both passes over the scene's spheres, block by block. */
+typedef struct Scan {
+    const BpScene *scene;
+    const double *origin;
+    uint32_t width;
+    Largest *largest;   /* one a block */
+    Largest candidates; /* of all */
+    BpBounds *bounds;   /* one a block, without the candidates */
+    BpTreeItem *items;  /* without the candidates */
+} Scan;
+
+static bool larger(const BpScene *scene, uint32_t a, uint32_t b) {
+    const double ra = fabs(scene->spheres[a].radius), rb = fabs(scene->spheres[b].radius);
+    return ra > rb || (ra == rb && a < b);
+}
+
+static void offer(const BpScene *scene, uint32_t width, Largest *largest, uint32_t sphere) {
+    if (largest->count == width && !larger(scene, sphere, largest->index[width - 1])) return;
+    uint32_t place = largest->count < width ? largest->count++ : width - 1;
+    for (; place > 0 && larger(scene, sphere, largest->index[place - 1]); --place)
+        largest->index[place] = largest->index[place - 1];
+    largest->index[place] = sphere;
+}
+
+static uint32_t block_end(const Scan *scan, uint32_t block) {
+    const size_t end = ((size_t)block + 1) * BLOCK;
+    return (uint32_t)(end < scan->scene->sphere_count ? end : scan->scene->sphere_count);
+}
+
+static void find_largest(void *context, uint32_t block, unsigned worker) {
+    (void)worker;
+    Scan *scan = context;
+    Largest largest = {.count = 0};
+    for (uint32_t i = block * BLOCK; i < block_end(scan, block); ++i)
+        offer(scan->scene, scan->width, &largest, i);
+    scan->largest[block] = largest;
+}
+
+static void make_items(void *context, uint32_t block, unsigned worker) {
+    (void)worker;
+    Scan *scan = context;
+    /* Candidates before this block leave no gap; those within are passed over. */
+    bool skip[BLOCK / 64][64];
+    memset(skip, 0, sizeof skip);
+    uint32_t place = block * BLOCK;
+    for (uint32_t k = 0; k < scan->candidates.count; ++k) {
+        const uint32_t index = scan->candidates.index[k];
+        if (index < block * BLOCK) --place;
+        if (index / BLOCK == block) skip[index % BLOCK / 64][index % 64] = true;
+    }
+    BpBounds bounds = BP_BOUNDS_EMPTY;
+    for (uint32_t i = block * BLOCK; i < block_end(scan, block); ++i) {
+        if (skip[i % BLOCK / 64][i % 64]) continue;
+        const BpTreeItem item = bp_tree_item(scan->scene, i, scan->origin);
+        const BpBounds box = bp_tree_item_bounds(&item);
+        bp_bounds_add(&bounds, &box);
+        scan->items[place++] = item;
+    }
+    scan->bounds[block] = bounds;
+}
+
+/* Makes the items of all spheres but the huge ones, which it leaves in `candidates`, the largest first: the
+ * longest prefix of the `width` largest spheres of which each is huge against the box around all spheres that
+ * are not among the `width` largest. Returns the number of items. */
+static uint32_t scan_spheres(Scan *scan, BpTeam *team) {
+    const uint32_t count = (uint32_t)scan->scene->sphere_count, blocks = (count + BLOCK - 1) / BLOCK;
+    bp_team_run(team, find_largest, scan, blocks);
+    for (uint32_t b = 0; b < blocks; ++b)
+        for (uint32_t k = 0; k < scan->largest[b].count; ++k)
+            offer(scan->scene, scan->width, &scan->candidates, scan->largest[b].index[k]);
+    bp_team_run(team, make_items, scan, blocks);
+    BpBounds rest = BP_BOUNDS_EMPTY;
+    for (uint32_t b = 0; b < blocks; ++b) bp_bounds_add(&rest, &scan->bounds[b]);
+    const double x = rest.high[0] - rest.low[0], y = rest.high[1] - rest.low[1],
+                 z = rest.high[2] - rest.low[2];
+    const double rest_area = x < 0 ? 0 : 2 * (x * y + y * z + z * x);
+    Largest *candidates = &scan->candidates;
+    uint32_t huge = 0, items = count - candidates->count;
+    for (; huge < candidates->count; ++huge) {
+        const double r = scan->scene->spheres[candidates->index[huge]].radius;
+        if (!(24 * r * r > HUGE_AREA_PART * rest_area)) break;
+    }
+    for (uint32_t k = huge; k < candidates->count; ++k)
+        scan->items[items++] = bp_tree_item(scan->scene, candidates->index[k], scan->origin);
+    candidates->count = huge;
+    return items;
+}
+
+static BpStatus build_list(const BpTreeWriter *writer, BpError *err) {
+    BpTree *tree = writer->tree;
+    const uint32_t count = (uint32_t)writer->scene->sphere_count, width = tree->width;
+    tree->first_leaves = tree->leaf_count = (count + width - 1) / width;
+    BP_TRY(bp_tree_allocate(tree, 0, tree->leaf_count, err));
+    for (uint32_t leaf = 0; leaf < tree->leaf_count; ++leaf) {
+        BpTreeItem items[BP_TREE_WIDTH_MAX];
+        uint32_t n = 0;
+        for (; n < width && leaf * width + n < count; ++n)
+            items[n] = bp_tree_item(writer->scene, leaf * width + n, writer->origin);
+        bp_tree_write_leaf(writer, leaf, items, n);
+    }
+    return BP_OK;
+}
+
+static BpStatus build_tree(BpTreeWriter *writer, unsigned threads, BpError *err) {
+    BpTree *tree = writer->tree;
+    const uint32_t count = (uint32_t)writer->scene->sphere_count, blocks = count / BLOCK + 1;
+    if (threads == 0 && count < BLOCK) threads = 1; /* waking them would take longer */
+    BpStatus status = BP_OK;
+    BpBinaryTree binary = {0};
+    BpTeam *team = bp_team_create(threads);
+    Scan scan = {.scene = writer->scene, .origin = writer->origin, .width = tree->width};
+    scan.items = malloc(((size_t)count + 1) * sizeof *scan.items);
+    scan.largest = malloc(blocks * sizeof *scan.largest);
+    scan.bounds = malloc(blocks * sizeof *scan.bounds);
+    if (team == NULL || scan.items == NULL || scan.largest == NULL || scan.bounds == NULL) {
+        status = bp_fail(err, BP_ERR_MEMORY, "out of memory while building the tree of %u spheres", count);
+        goto cleanup;
+    }
+    const uint32_t items = scan_spheres(&scan, team);
+    BpBinaryOptions options = {.width = tree->width};
+    for (uint32_t w = tree->width; w > 1; w /= 2) options.height_max += TREE_DEPTH_MAX;
+    BP_TRY_GOTO(status, bp_binary_tree_build(scan.items, items, &options, team, &binary, err), cleanup);
+    writer->items = scan.items;
+    tree->first_leaves = tree->leaf_count = scan.candidates.count > 0 ? 1 : 0;
+    BP_TRY_GOTO(status, bp_tree_write_nodes(writer, binary.root, team, err), cleanup);
+    BpTreeItem huge[BP_TREE_WIDTH_MAX];
+    for (uint32_t k = 0; k < scan.candidates.count; ++k)
+        huge[k] = bp_tree_item(writer->scene, scan.candidates.index[k], writer->origin);
+    if (tree->first_leaves > 0) bp_tree_write_leaf(writer, 0, huge, scan.candidates.count);
+cleanup:
+    bp_binary_tree_clear(&binary);
+    free(scan.items);
+    free(scan.largest);
+    free(scan.bounds);
+    bp_team_destroy(&team);
+    return status;
+}
+
+BpStatus bp_tree_build(const BpScene *scene, const double origin[3], const BpTreeOptions *options,
+                       BpTree *tree, BpError *err) {
+    const double start = bp_clock_seconds();
+    const uint32_t width = options->width;
+    *tree = (BpTree){.width = width, .single_precision = options->single_precision, .own_slot = NO_SLOT};
+    if (width != 2 && width != 4 && width != 8 && width != 16)
+        return bp_fail(err, BP_ERR_LIMIT, "a tree is 2, 4, 8 or 16 wide, not %u", width);
+    /* A list has no depth to run out of; nor has, within BP_SPHERES_MAX, a wider tree. */
+    const uint64_t limit = width == 2 && !options->list ? (uint64_t)width << TREE_DEPTH_MAX : BP_SPHERES_MAX;
+    if (scene->sphere_count > limit)
+        return bp_fail(err, BP_ERR_LIMIT, "%zu spheres; a tree %u wide holds at most %llu",
+                       scene->sphere_count, width, (unsigned long long)limit);
+    BpTreeWriter writer = {.scene = scene, .origin = origin, .tree = tree};
+    const BpStatus status =
+        options->list ? build_list(&writer, err) : build_tree(&writer, options->threads, err);
+    if (status != BP_OK)
+        bp_tree_clear(tree);
+    else
+        tree->build_seconds = bp_clock_seconds() - start;
+    return status;
+}
+
+void bp_tree_clear(BpTree *tree) {
+    free(tree->node_boxes);
+    free(tree->children);
+    free(tree->leaves);
+    free(tree->slot_sphere);
+    *tree = (BpTree){0};
+}

@@ -1,0 +1,48 @@
+/* tree.h: bounding volume hierarchy over spheres, wide nodes, leaves as structure of arrays.
+ *
+ * In:    centres and radii, in double, relative to the camera.
+ * Out:   BpTree: node boxes (rounded outward when narrowed), child words, leaves and slots, in the layout of
+ *        kernels/scene_types.h.
+ * Knows: the packed layout, threads.   Does not know: materials, OpenCL.
+ *
+ * Sizes are stored narrowed: `single_precision` decides whether the real arrays hold float or double. */
+#ifndef BP_PACKED_TREE_H
+#define BP_PACKED_TREE_H
+
+#include "scene/scene.h"
+
+typedef struct BpTreeOptions {
+    uint32_t width;        /* lanes of a node and of a leaf: 2, 4, 8 or 16 */
+    bool single_precision; /* store float, else double */
+    bool list;             /* leaves only, in order of index; no nodes */
+    unsigned threads;      /* 0: all cores */
+} BpTreeOptions;
+
+typedef struct BpTree {
+    uint32_t width;
+    bool single_precision;
+    /* Leaf 0 .. first_leaves-1 hold spheres that are tested before the tree is entered (all of them, for a
+     * list). Child words never point at them. A tree has one at most, with up to `width` huge spheres, the
+     * largest first: those whose box has more than 1/64 of the surface of the box around all but the `width`
+     * largest. */
+    uint32_t first_leaves;
+    uint32_t node_count; /* node 0 is the root; 0: a list */
+    uint32_t leaf_count;
+    uint32_t depth;        /* levels of nodes, <= TREE_DEPTH_MAX */
+    void *node_boxes;      /* node_count * NODE_REALS(width) reals */
+    uint32_t *children;    /* node_count * width */
+    void *leaves;          /* leaf_count * LEAF_REALS(width) reals */
+    uint32_t *slot_sphere; /* leaf_count * width */
+    uint32_t own_slot;     /* of the sphere whose surface `origin` lies on, or NO_SLOT */
+    double build_seconds;
+} BpTree;
+
+/* Builds a tree over the scene's spheres with `origin` (the camera's position) subtracted. Every sphere
+ * stands in exactly one slot. `origin` stays on its side of every surface, rounded as the spheres may be, and
+ * lies on one at most. The result does not depend on the number of threads. On failure `tree` is empty.
+ * BP_ERR_MEMORY or BP_ERR_LIMIT. Free with bp_tree_clear(). */
+BpStatus bp_tree_build(const BpScene *scene, const double origin[3], const BpTreeOptions *options,
+                       BpTree *tree, BpError *err);
+void bp_tree_clear(BpTree *tree);
+
+#endif

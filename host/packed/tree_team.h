@@ -1,0 +1,25 @@
+/* tree_team.h: a few threads that work through numbered pieces together.
+ *
+ * In:    a function, and how many pieces there are.   Out: every piece done, by some thread.
+ * Knows: POSIX threads.   Does not know: trees. */
+#ifndef BP_PACKED_TREE_TEAM_H
+#define BP_PACKED_TREE_TEAM_H
+
+#include <stdint.h>
+
+typedef struct BpTeam BpTeam;
+
+/* Does piece `piece`; `worker` < bp_team_size() is the thread's number, for memory of its own. */
+typedef void BpTeamWork(void *context, uint32_t piece, unsigned worker);
+
+/* `threads` in all, the caller's among them; 0: as many as the machine has cores. Where the system grants
+ * fewer, and beyond 64, the team is smaller. NULL: out of memory. */
+BpTeam *bp_team_create(unsigned threads);
+void bp_team_destroy(BpTeam **team);
+unsigned bp_team_size(const BpTeam *team);
+
+/* Calls work(context, piece, worker) once for every piece in 0 .. pieces-1, in any order, and returns when
+ * all are done. What they wrote is visible to the caller. */
+void bp_team_run(BpTeam *team, BpTeamWork *work, void *context, uint32_t pieces);
+
+#endif

@@ -1,0 +1,57 @@
+/* render.h: the render loop behind ballpark.h, with what the program, `check` and the tests need beside it.
+ *
+ * In:    Scene, options, devices.   Out: a film; a report of times and counts.
+ * Knows: OpenCL, packed buffers, chunks.   Does not know: files, stop rules, the terminal. */
+#ifndef BP_RENDER_RENDER_H
+#define BP_RENDER_RENDER_H
+
+#include "film/film.h"
+#include "packed/effects.h"
+
+typedef struct BpRenderReport {
+    BpDeviceInfo device;
+    BpEffects effects;
+    BpKernelForm kernel; /* the form that was built */
+    BpSampler sampler;
+    BpPrecision precision;
+    BpMath math;
+    BpNumerics numerics;
+    uint64_t program_key;   /* equal keys: the same program, nothing was built anew */
+    uint64_t private_bytes; /* of one work-item of the trace kernel, as the driver tells; 0: it does not */
+    const char *build_log;  /* valid while the render lives */
+    double tree_seconds, pack_seconds, kernel_build_seconds;
+    double self_test_seconds;    /* of the device's first use; 0 once it has passed */
+    double first_launch_seconds; /* of the first, tiny chunk: drivers may compile once more there */
+    double trace_seconds;        /* wall clock spent in steps, without the first launch */
+    double device_seconds;       /* kernel time by the device's own clock: trace and fold */
+    double accumulate_seconds;   /* the fold's share of device_seconds */
+    uint64_t device_bytes;       /* allocated on the device: scene and picture */
+    uint64_t scene_bytes;        /* of these, the scene */
+    uint64_t samples, segments, cut_paths, invalid_samples;
+} BpRenderReport;
+
+void bp_render_report(const BpRender *render, BpRenderReport *report);
+
+/* The film as it stands, read from the device; owned by the render, valid until the next step. */
+BpStatus bp_render_read_film(BpRender *render, const BpFilm **film, BpError *err);
+
+/* Whether a sample has been handed out yet. */
+bool bp_render_has_begun(const BpRender *render);
+
+/* One chunk of raw samples. */
+typedef struct BpSampleBlock {
+    uint32_t first_pixel, pixel_count;
+    uint64_t first_sample; /* absolute */
+    uint32_t samples;      /* a pixel */
+    /* (pixel * samples + sample) * 4: r, g, b, and the number of ray segments, plus 1/2 for a path that the
+     * depth cap cut. Single precision whatever the kernel's. */
+    float *values;
+} BpSampleBlock;
+
+/* Runs one chunk and hands out its raw samples (they are folded into the film as well): for tests and
+ * `check`. One device only. *finished: there was nothing left to do, and the block is empty. The caller
+ * clears the block with bp_sample_block_clear(). */
+BpStatus bp_render_step_samples(BpRender *render, BpSampleBlock *block, bool *finished, BpError *err);
+void bp_sample_block_clear(BpSampleBlock *block);
+
+#endif

@@ -1,0 +1,68 @@
+/* render_plan.c: see render_plan.h. */
+#include "render_plan.h"
+
+#include "base/status.h"
+
+#include <string.h>
+
+/* CPUs whose driver knows vectors spread explicit ones over their lanes, so they follow as many paths at a
+ * time as the widest vectors have lanes, eight at least, through sixteen-wide nodes (docs/BENCHMARKS.md,
+ * "Tuning log"), and double costs them little. A CPU driver that takes vectors apart (it says one lane)
+ * gets nothing from many, and has been seen to compile that form for ever. GPUs spread work-items, and many
+ * have next to no double: one lane, narrower nodes, error-free float transforms. The options can force each
+ * choice, so every arrangement can be tested on every device. */
+static void choose_form(const BpDeviceInfo *device, const BpRenderOptions *options,
+                        BpProgramOptions *program) {
+    const bool cpu = device->type == BP_DEVICE_CPU;
+    const bool vectors = cpu && device->float_lanes >= 4;
+    program->form = options->kernel != BP_KERNEL_AUTO ? options->kernel
+                    : vectors                         ? BP_KERNEL_PACKET
+                                                      : BP_KERNEL_SAMPLE;
+    program->tree_width = options->tree_width != 0 ? options->tree_width : vectors ? 16 : 4;
+    program->packet_lanes = options->packet_lanes != 0  ? options->packet_lanes
+                            : device->float_lanes >= 16 ? 16
+                                                        : 8;
+    program->double_refine = cpu && device->has_double && !options->force_float_refine;
+}
+
+static uint32_t choose_effects(const BpScene *scene, const BpRenderOptions *options) {
+    BpEffects effects;
+    bp_effects_analyse(scene, &effects);
+    uint32_t bits =
+        options->all_effects ? BP_EFFECTS_ALL : effects.bits | (options->extra_effects & BP_EFFECTS_ALL);
+    if (options->force_tree) bits |= 1u << BP_EFFECT_TREE;
+    if (options->force_list) bits &= ~(1u << BP_EFFECT_TREE);
+    return bits;
+}
+
+BpStatus bp_render_plan(const BpScene *scene, const BpRenderOptions *options, const BpDeviceInfo *device,
+                        BpWorkerSetup *setup, BpPacked *packed, BpError *err) {
+    if (options->precision == BP_PRECISION_DOUBLE && !device->has_double)
+        return bp_fail(err, BP_ERR_DEVICE,
+                       "%s has no double precision; leave --precision double out, or use another --device",
+                       device->name);
+    memset(setup, 0, sizeof *setup);
+    setup->program.effects = choose_effects(scene, options);
+    setup->program.precision = options->precision;
+    setup->program.math = options->math;
+    setup->program.numerics = options->numerics;
+    setup->program.sampler = options->sampler;
+    setup->program.pixel_list = options->adaptive;
+    choose_form(device, options, &setup->program);
+    setup->width = scene->camera.width;
+    setup->height = scene->camera.height;
+    setup->replicates = options->replicates != 0 ? options->replicates : BP_REPLICATES_DEFAULT;
+    setup->scale_log2 = bp_film_scale(scene, options->max_depth);
+    setup->max_depth = options->max_depth;
+    setup->seed = options->seed;
+    setup->pixel_center = scene->camera.pixel_sampling == BP_PIXEL_CENTER;
+    setup->local_size = options->local_size;
+    setup->untested = options->force;
+    setup->build_mark = options->build_mark;
+    const BpTreeOptions tree_options = {
+        .width = setup->program.tree_width,
+        .single_precision = options->precision == BP_PRECISION_SINGLE,
+        .list = !bp_effects_has(setup->program.effects, BP_EFFECT_TREE),
+    };
+    return bp_scene_pack(scene, &tree_options, packed, err);
+}

@@ -1,0 +1,15 @@
+/* render_plan.h: from a scene and a user's options to what one device is given.
+ *
+ * In:    scene, options, device.   Out: a worker's setup and the packed scene.
+ * Knows: which arrangement suits which kind of device.   Does not know: OpenCL calls, chunks. */
+#ifndef BP_RENDER_RENDER_PLAN_H
+#define BP_RENDER_RENDER_PLAN_H
+
+#include "worker.h"
+
+/* Packs the scene for `device` and says how to run it there; the caller clears `packed`. BP_ERR_DEVICE: the
+ * device lacks what the options ask for. `setup` keeps no pointer into anything. */
+BpStatus bp_render_plan(const BpScene *scene, const BpRenderOptions *options, const BpDeviceInfo *device,
+                        BpWorkerSetup *setup, BpPacked *packed, BpError *err);
+
+#endif

@@ -1,0 +1,297 @@
+/* worker.c: see worker.h. */
+#define BP_HOST
+#include "worker.h"
+
+#include "base/clock.h"
+#include "opencl/layout.h"
+#include "opencl/self_test.h"
+#include "worker_buffers.h"
+
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+/* Raw samples take at most this part of the device's memory. */
+#define SAMPLES_MEMORY_SHARE 8u
+
+/* ---- kernels ------------------------------------------------------------------------------------------- */
+
+static BpStatus set_argument(BpWorker *worker, cl_kernel kernel, cl_uint index, size_t size,
+                             const void *value, BpError *err) {
+    CL_TRY(worker, clSetKernelArg(kernel, index, size, value), "clSetKernelArg");
+    return BP_OK;
+}
+
+/* Places of the arguments that change with the chunk; TRACE_PARAMETERS and accumulate.cl declare them in this
+ * order. */
+enum {
+    TRACE_FIRST_PIXEL = BP_WORKER_SCENE_ARGUMENTS,
+    TRACE_FIRST_SAMPLE,
+    TRACE_SAMPLES,
+    TRACE_COUNT,
+    TRACE_OUT,
+    TRACE_LIST
+};
+enum { FOLD_IN, FOLD_PIXELS, FOLD_SAMPLES, FOLD_FIRST_PIXEL, FOLD_FIRST_SAMPLE, FOLD_CONSTANTS };
+
+BpStatus bp_worker_bind_scene(BpWorker *worker, cl_kernel kernel, BpError *err) {
+    const cl_mem buffers[] = {worker->camera,        worker->sky,         worker->materials, worker->kinds,
+                              worker->slot_material, worker->slot_albedo, worker->boxes,     worker->children,
+                              worker->leaves,        worker->slot_sphere};
+    cl_uint index = 0;
+    for (size_t i = 0; i < sizeof buffers / sizeof buffers[0]; ++i)
+        BP_TRY(set_argument(worker, kernel, index++, sizeof(cl_mem), &buffers[i], err));
+    const cl_uint numbers[] = {worker->first_leaves, worker->leaf_count,    worker->pixel_center,
+                               worker->max_depth,    (cl_uint)worker->seed, (cl_uint)(worker->seed >> 32),
+                               worker->replicates,   worker->width};
+    for (size_t i = 0; i < sizeof numbers / sizeof numbers[0]; ++i)
+        BP_TRY(set_argument(worker, kernel, index++, sizeof(cl_uint), &numbers[i], err));
+    return BP_OK;
+}
+
+static BpStatus create_kernels(BpWorker *worker, const BpWorkerSetup *setup, BpError *err) {
+    cl_int code = CL_SUCCESS;
+    worker->trace = clCreateKernel(worker->program->program, "trace", &code);
+    CL_TRY(worker, code, "clCreateKernel(trace)");
+    worker->fold = clCreateKernel(worker->program->program, "accumulate", &code);
+    CL_TRY(worker, code, "clCreateKernel(accumulate)");
+    BP_TRY(bp_worker_bind_scene(worker, worker->trace, err));
+    cl_uint index = FOLD_CONSTANTS;
+    BP_TRY(set_argument(worker, worker->fold, index++, sizeof(cl_uint), &worker->replicates, err));
+    BP_TRY(set_argument(worker, worker->fold, index++, sizeof(cl_int), &setup->scale_log2, err));
+    const cl_mem sums[] = {worker->sums, worker->fine_sums, worker->counts, worker->tallies};
+    for (size_t i = 0; i < sizeof sums / sizeof sums[0]; ++i)
+        BP_TRY(set_argument(worker, worker->fold, index++, sizeof(cl_mem), &sums[i], err));
+    if (setup->program.pixel_list) {
+        BP_TRY(bp_worker_create_pixel_list(worker, err));
+        BP_TRY(set_argument(worker, worker->fold, index, sizeof(cl_mem), &worker->pixel_list, err));
+        BP_TRY(set_argument(worker, worker->trace, TRACE_LIST, sizeof(cl_mem), &worker->pixel_list, err));
+    }
+
+    const bool packet = setup->program.form == BP_KERNEL_PACKET;
+    worker->samples_per_item = packet ? BP_PACKET_SAMPLES_PER_ITEM : 1;
+    worker->local_size = setup->local_size != 0 ? setup->local_size
+                         : packet               ? BP_LOCAL_SIZE_PACKET
+                                                : BP_LOCAL_SIZE_SAMPLE;
+    size_t most = 0;
+    if (!packet && worker->local_size > BP_SAMPLE_GROUP_MAX) worker->local_size = BP_SAMPLE_GROUP_MAX;
+    CL_TRY(worker,
+           clGetKernelWorkGroupInfo(worker->trace, worker->device->id, CL_KERNEL_WORK_GROUP_SIZE, sizeof most,
+                                    &most, NULL),
+           "clGetKernelWorkGroupInfo");
+    if (worker->local_size > most) worker->local_size = most;
+    return BP_OK;
+}
+
+/* Samples that take as long as one: the lanes of a packet, or one work-group on each unit of a GPU. */
+static uint32_t samples_together(const BpWorker *worker, const BpDeviceInfo *info,
+                                 const BpWorkerSetup *setup) {
+    if (setup->program.form == BP_KERNEL_PACKET) return setup->program.packet_lanes;
+    if (info->type == BP_DEVICE_CPU) return 1;
+    return info->compute_units * (uint32_t)worker->local_size;
+}
+
+/* A processor's caches hold a few MiB a core: the raw samples of a larger chunk go to memory and back, and
+ * new memory at that (a scene of few spheres took 1.25 times as long with 2^22 samples on two cores). */
+static uint64_t chunk_samples_max(const BpDeviceInfo *info) {
+    if (info->type != BP_DEVICE_CPU) return 1u << 26;
+    const uint64_t units = info->compute_units;
+    return units < 8 ? (units > 0 ? units : 1) << 19 : 1u << 22;
+}
+
+BpStatus bp_worker_create(const BpDeviceInfo *info, const BpPacked *packed, const BpWorkerSetup *setup,
+                          BpWorker **worker, BpError *err) {
+    BpWorker *made = calloc(1, sizeof *made);
+    if (made == NULL) return bp_fail(err, BP_ERR_MEMORY, "no memory for a device's bookkeeping");
+    made->real_size = bp_packed_real_size(packed);
+    made->width = setup->width;
+    made->pixels = setup->width * setup->height;
+    made->replicates = setup->replicates;
+    made->max_depth = setup->max_depth;
+    made->pixel_center = setup->pixel_center;
+    made->seed = setup->seed;
+    made->first_leaves = packed->tree.first_leaves;
+    made->leaf_count = packed->tree.leaf_count;
+    BpStatus status = bp_device_open(info, &made->device, err);
+    if (status != BP_OK) goto failed;
+    if (!setup->untested) {
+        const double start = bp_clock_seconds();
+        bool ran = false;
+        status = bp_self_test_once(made->device, &ran, err);
+        if (status != BP_OK) goto failed;
+        if (ran) made->self_test_seconds = bp_clock_seconds() - start;
+    }
+    char mark[64];
+    snprintf(mark, sizeof mark, "typedef uint build_mark_%llu;\n", (unsigned long long)setup->build_mark);
+    const bool marked = setup->build_mark != 0 && setup->extra_text == NULL;
+    BP_TRY_GOTO(status,
+                bp_program_build(made->device, &setup->program, marked ? "mark.cl" : setup->extra_name,
+                                 marked ? mark : setup->extra_text, &made->program, err),
+                failed);
+    BP_TRY_GOTO(status, bp_layout_check(made->device, made->program->program, packed->single_precision, err),
+                failed);
+    BP_TRY_GOTO(status, bp_worker_upload_scene(made, packed, err), failed);
+    BP_TRY_GOTO(status, bp_worker_create_picture(made, err), failed);
+    BP_TRY_GOTO(status, create_kernels(made, setup, err), failed);
+
+    const uint64_t sample_bytes = 4 * made->real_size;
+    uint64_t room = info->memory_bytes / SAMPLES_MEMORY_SHARE;
+    if (room > info->largest_allocation_bytes) room = info->largest_allocation_bytes;
+    uint64_t limit = room / sample_bytes;
+    const uint64_t most = chunk_samples_max(info);
+    if (limit > most) limit = most;
+    made->samples_limit = limit > 0 ? (uint32_t)limit : 1;
+    bp_pace_init(&made->pace, setup->max_depth, samples_together(made, info, setup));
+    *worker = made;
+    return BP_OK;
+
+failed:
+    bp_worker_destroy(&made);
+    return status;
+}
+
+static void release_flight(struct BpFlight *flight) {
+    if (flight->trace_start != NULL) clReleaseEvent(flight->trace_start);
+    if (flight->fold_end != NULL) clReleaseEvent(flight->fold_end);
+    *flight = (struct BpFlight){0};
+}
+
+void bp_worker_destroy(BpWorker **worker) {
+    if (worker == NULL || *worker == NULL) return;
+    BpWorker *w = *worker;
+    if (w->device != NULL) clFinish(w->device->queue);
+    for (int i = 0; i < w->flight_count; ++i) release_flight(&w->flights[i]);
+    const cl_mem buffers[] = {w->camera,        w->sky,         w->materials, w->kinds,
+                              w->slot_material, w->slot_albedo, w->boxes,     w->children,
+                              w->leaves,        w->slot_sphere, w->sums,      w->fine_sums,
+                              w->counts,        w->tallies,     w->samples,   w->pixel_list};
+    for (size_t i = 0; i < sizeof buffers / sizeof buffers[0]; ++i)
+        if (buffers[i] != NULL) clReleaseMemObject(buffers[i]);
+    if (w->trace != NULL) clReleaseKernel(w->trace);
+    if (w->fold != NULL) clReleaseKernel(w->fold);
+    bp_program_destroy(&w->program);
+    bp_device_close(&w->device);
+    free(w);
+    *worker = NULL;
+}
+
+/* ---- chunks -------------------------------------------------------------------------------------------- */
+
+static size_t round_up(size_t count, size_t multiple) {
+    return (count + multiple - 1) / multiple * multiple;
+}
+
+static double event_seconds(cl_event from, cl_profiling_info from_what, cl_event to) {
+    cl_ulong start_ns = 0, end_ns = 0;
+    clGetEventProfilingInfo(from, from_what, sizeof start_ns, &start_ns, NULL);
+    clGetEventProfilingInfo(to, CL_PROFILING_COMMAND_END, sizeof end_ns, &end_ns, NULL);
+    return end_ns > start_ns ? 1e-9 * (double)(end_ns - start_ns) : 0;
+}
+
+BpStatus bp_worker_wait(BpWorker *worker, BpError *err) {
+    if (worker->flight_count == 0) return BP_OK;
+    struct BpFlight *flight = &worker->flights[0];
+    CL_TRY(worker, clWaitForEvents(1, &flight->fold_end), "clWaitForEvents");
+    const double seconds = event_seconds(flight->trace_start, CL_PROFILING_COMMAND_START, flight->fold_end);
+    worker->device_seconds += seconds;
+    worker->accumulate_seconds +=
+        event_seconds(flight->fold_end, CL_PROFILING_COMMAND_START, flight->fold_end);
+    bp_pace_measure(&worker->pace, flight->samples, seconds);
+    worker->samples_done += flight->samples;
+    release_flight(flight);
+    memmove(worker->flights, worker->flights + 1, sizeof worker->flights[0] * (BP_WORKER_FLIGHT - 1));
+    worker->flights[BP_WORKER_FLIGHT - 1] = (struct BpFlight){0};
+    --worker->flight_count;
+    return BP_OK;
+}
+
+BpStatus bp_worker_make_room(BpWorker *worker, BpError *err) {
+    return worker->flight_count == BP_WORKER_FLIGHT ? bp_worker_wait(worker, err) : BP_OK;
+}
+
+BpStatus bp_worker_oldest_done(BpWorker *worker, bool *done, BpError *err) {
+    *done = true;
+    if (worker->flight_count == 0) return BP_OK;
+    cl_int state = CL_QUEUED;
+    CL_TRY(worker,
+           clGetEventInfo(worker->flights[0].fold_end, CL_EVENT_COMMAND_EXECUTION_STATUS, sizeof state,
+                          &state, NULL),
+           "clGetEventInfo");
+    *done = state <= CL_COMPLETE; /* below: an error, which waiting reports */
+    return BP_OK;
+}
+
+BpStatus bp_worker_wait_for_all(BpWorker *worker, BpError *err) {
+    while (worker->flight_count > 0) BP_TRY(bp_worker_wait(worker, err));
+    return BP_OK;
+}
+
+static BpStatus enqueue(BpWorker *worker, cl_kernel kernel, size_t items, size_t local, cl_event *event,
+                        const char *name, BpError *err) {
+    const size_t global = round_up(items, local);
+    const cl_int code =
+        clEnqueueNDRangeKernel(worker->device->queue, kernel, 1, NULL, &global, &local, 0, NULL, event);
+    if (code != CL_SUCCESS) return bp_cl_fail(err, code, name, worker->device);
+    return BP_OK;
+}
+
+BpStatus bp_worker_start(BpWorker *worker, const BpChunk *chunk, BpError *err) {
+    const uint32_t count = chunk->pixel_count * chunk->samples;
+    const bool first = worker->samples_done == 0 && worker->flight_count == 0;
+    BP_TRY(bp_worker_make_room(worker, err));
+    if (count > worker->samples_capacity) {
+        BP_TRY(bp_worker_wait_for_all(worker, err));
+        BP_TRY(bp_worker_reserve_samples(worker, count, err));
+    }
+    const cl_uint first_sample = (cl_uint)chunk->first_sample;
+    const struct {
+        cl_kernel kernel;
+        cl_uint index;
+        size_t size;
+        const void *value;
+    } arguments[] = {
+        {worker->trace, TRACE_FIRST_PIXEL, sizeof(cl_uint), &chunk->first_pixel},
+        {worker->trace, TRACE_FIRST_SAMPLE, sizeof(cl_uint), &first_sample},
+        {worker->trace, TRACE_SAMPLES, sizeof(cl_uint), &chunk->samples},
+        {worker->trace, TRACE_COUNT, sizeof(cl_uint), &count},
+        {worker->trace, TRACE_OUT, sizeof(cl_mem), &worker->samples},
+        {worker->fold, FOLD_IN, sizeof(cl_mem), &worker->samples},
+        {worker->fold, FOLD_PIXELS, sizeof(cl_uint), &chunk->pixel_count},
+        {worker->fold, FOLD_SAMPLES, sizeof(cl_uint), &chunk->samples},
+        {worker->fold, FOLD_FIRST_PIXEL, sizeof(cl_uint), &chunk->first_pixel},
+        {worker->fold, FOLD_FIRST_SAMPLE, sizeof(cl_uint), &first_sample},
+    };
+    for (size_t i = 0; i < sizeof arguments / sizeof arguments[0]; ++i)
+        BP_TRY(set_argument(worker, arguments[i].kernel, arguments[i].index, arguments[i].size,
+                            arguments[i].value, err));
+
+    struct BpFlight *flight = &worker->flights[worker->flight_count++];
+    *flight = (struct BpFlight){.samples = count};
+    const double start = bp_clock_seconds();
+    const size_t items = (count + worker->samples_per_item - 1) / worker->samples_per_item;
+    BP_TRY(enqueue(worker, worker->trace, items, worker->local_size, &flight->trace_start,
+                   "clEnqueueNDRangeKernel(trace)", err));
+    BP_TRY(enqueue(worker, worker->fold, chunk->pixel_count, BP_LOCAL_SIZE_SAMPLE, &flight->fold_end,
+                   "clEnqueueNDRangeKernel(accumulate)", err));
+    CL_TRY(worker, clFlush(worker->device->queue), "clFlush");
+    if (first) {
+        BP_TRY(bp_worker_wait(worker, err));
+        const double overhead = bp_clock_seconds() - start - worker->device_seconds;
+        worker->first_launch_seconds = overhead > 0 ? overhead : 0;
+    }
+    return BP_OK;
+}
+
+BpStatus bp_worker_set_pixels(BpWorker *worker, const uint32_t *list, uint32_t count, BpError *err) {
+    BP_TRY(bp_worker_wait_for_all(worker, err));
+    CL_TRY(worker,
+           clEnqueueWriteBuffer(worker->device->queue, worker->pixel_list, CL_TRUE, 0, count * sizeof *list,
+                                list, 0, NULL, NULL),
+           "clEnqueueWriteBuffer");
+    return BP_OK;
+}
+
+uint32_t bp_worker_chunk_samples(const BpWorker *worker, double seconds, double slowest) {
+    const uint32_t samples = bp_pace_samples(&worker->pace, seconds, slowest);
+    return samples > worker->samples_limit ? worker->samples_limit : samples;
+}

@@ -1,0 +1,100 @@
+/* worker.h: one device at work on one render: its program, its buffers, its chunks.
+ *
+ * In:    packed scene, chunks.   Out: replicate sums on the device, times.
+ * Knows: OpenCL, the kernels' arguments.   Does not know: passes, the picture as a whole, other devices. */
+#ifndef BP_RENDER_WORKER_H
+#define BP_RENDER_WORKER_H
+
+#include "film/film.h"
+#include "opencl/program.h"
+#include "pace.h"
+#include "packed/effects.h"
+#include "packed/pack.h"
+#include "schedule.h"
+
+/* Everything a worker needs to know beyond the packed scene. */
+typedef struct BpWorkerSetup {
+    BpProgramOptions program;
+    uint32_t width, height;
+    uint32_t replicates;
+    int32_t scale_log2;
+    uint32_t max_depth;
+    uint64_t seed;
+    bool pixel_center;
+    uint32_t local_size;                 /* 0: choose */
+    const char *extra_name, *extra_text; /* Optional. A file appended to the program. */
+    bool untested;                       /* do without the device's self-test */
+    uint64_t build_mark;                 /* 0, or a number that makes the source a new one */
+} BpWorkerSetup;
+
+/* Work-items in a work-group, where nobody wants another number. */
+#define BP_LOCAL_SIZE_SAMPLE 64u
+#define BP_LOCAL_SIZE_PACKET 1u
+
+#define BP_WORKER_FLIGHT 2 /* chunks queued at a time */
+
+typedef struct BpWorker {
+    BpDevice *device;
+    BpProgram *program;
+    cl_kernel trace, fold;
+    cl_mem camera, sky, materials, kinds, slot_material, slot_albedo, boxes, children, leaves, slot_sphere;
+    cl_mem sums, fine_sums, counts, tallies, samples;
+    cl_mem pixel_list; /* NULL: chunks are ranges of pixels */
+    size_t real_size;
+    uint32_t width, replicates, pixels, max_depth, pixel_center, first_leaves, leaf_count;
+    uint64_t seed;
+    uint32_t samples_per_item; /* pixel samples of a work-item */
+    size_t local_size;
+    uint32_t samples_capacity,
+        samples_limit; /* of the buffer of raw samples; limit: the most it may grow to */
+    uint64_t scene_bytes, picture_bytes;
+    /* Chunks under way, oldest first. */
+    struct BpFlight {
+        cl_event trace_start, fold_end;
+        uint64_t samples;
+    } flights[BP_WORKER_FLIGHT];
+    int flight_count;
+    /* Measured on chunks that are done. */
+    double device_seconds, accumulate_seconds;
+    BpPace pace;
+    double first_launch_seconds, self_test_seconds;
+    uint64_t samples_done;
+} BpWorker;
+
+/* Opens `info`, builds the program, uploads `packed` (not needed afterwards). Refuses what does not fit the
+ * device's memory, naming the limit. Free with bp_worker_destroy(). */
+BpStatus bp_worker_create(const BpDeviceInfo *info, const BpPacked *packed, const BpWorkerSetup *setup,
+                          BpWorker **worker, BpError *err);
+void bp_worker_destroy(BpWorker **worker);
+
+#define BP_WORKER_SCENE_ARGUMENTS 18
+/* Sets the arguments that every tracing kernel begins with (SCENE_PARAMETERS of kernels/integrator/scene.cl).
+ */
+BpStatus bp_worker_bind_scene(BpWorker *worker, cl_kernel kernel, BpError *err);
+
+/* Queues a chunk and returns; waits for the oldest first when BP_WORKER_FLIGHT are under way. */
+BpStatus bp_worker_start(BpWorker *worker, const BpChunk *chunk, BpError *err);
+/* For a program with a pixel list: waits for everything, and from here on a chunk's pixels are numbers in
+ * `list` (of `count` pixels, at most those of the picture), which is copied. */
+BpStatus bp_worker_set_pixels(BpWorker *worker, const uint32_t *list, uint32_t count, BpError *err);
+
+/* Waits for the oldest chunk; does nothing when there is none. */
+BpStatus bp_worker_wait(BpWorker *worker, BpError *err);
+/* Waits for all chunks. */
+BpStatus bp_worker_wait_for_all(BpWorker *worker, BpError *err);
+/* Waits for the oldest unless there is room for one more. */
+BpStatus bp_worker_make_room(BpWorker *worker, BpError *err);
+/* Whether the oldest chunk is done, without waiting; true when none is under way. */
+BpStatus bp_worker_oldest_done(BpWorker *worker, bool *done, BpError *err);
+
+/* Pixel samples that a chunk should have to take `seconds`, 1 .. samples_limit; `slowest` as for
+ * bp_pace_samples(). */
+uint32_t bp_worker_chunk_samples(const BpWorker *worker, double seconds, double slowest);
+
+/* Waits for everything and adds this device's sums, counts and tallies into `film`. */
+BpStatus bp_worker_collect(BpWorker *worker, BpFilm *film, BpError *err);
+
+/* Waits for everything and copies the raw samples of the last chunk: count * 4 floats. */
+BpStatus bp_worker_samples(BpWorker *worker, uint32_t count, float *values, BpError *err);
+
+#endif

@@ -1,0 +1,197 @@
+/* worker_buffers.c: see worker_buffers.h. */
+#define BP_HOST
+#include "worker_buffers.h"
+
+#include "scene_types.h"
+
+#include <stdio.h>
+#include <stdlib.h>
+
+/* A buffer of `bytes` (at least one, since OpenCL knows no empty buffer), with `data` in it when there is
+ * any. */
+static BpStatus create_buffer(BpWorker *worker, cl_mem *buffer, uint64_t bytes, const void *data,
+                              const char *what, BpError *err) {
+    const BpDeviceInfo *info = &worker->device->info;
+    if (bytes > info->largest_allocation_bytes)
+        return bp_fail(err, BP_ERR_LIMIT,
+                       "%s takes %.1f MiB, but %s allows %.1f MiB in one allocation; "
+                       "use a smaller picture or scene, or another --device",
+                       what, (double)bytes / 1048576, info->name,
+                       (double)info->largest_allocation_bytes / 1048576);
+    cl_int code = CL_SUCCESS;
+    const cl_mem_flags flags = CL_MEM_READ_WRITE | (data != NULL && bytes > 0 ? CL_MEM_COPY_HOST_PTR : 0);
+    *buffer = clCreateBuffer(worker->device->context, flags, bytes > 0 ? (size_t)bytes : 16,
+                             bytes > 0 ? (void *)(uintptr_t)data : NULL, &code);
+    CL_TRY(worker, code, "clCreateBuffer");
+    return BP_OK;
+}
+
+BpStatus bp_worker_upload_scene(BpWorker *worker, const BpPacked *packed, BpError *err) {
+    const size_t real_size = worker->real_size;
+    const BpTree *tree = &packed->tree;
+    const uint64_t width = tree->width;
+    const uint64_t materials = packed->material_count > 0 ? packed->material_count : 1;
+    const uint64_t slots = tree->leaf_count * width;
+    const struct {
+        cl_mem *buffer;
+        uint64_t bytes;
+        const void *data;
+        const char *what;
+    } uploads[] = {
+        {&worker->camera, sizeof(PackedCamera) / sizeof(real) * real_size, packed->camera, "the camera"},
+        {&worker->sky, sizeof(PackedSky) / sizeof(real) * real_size, packed->sky, "the background"},
+        {&worker->materials, materials * (sizeof(PackedMaterial) / sizeof(real)) * real_size,
+         packed->materials, "the table of materials"},
+        {&worker->kinds, materials * sizeof(PackedMaterialKind), packed->material_kinds,
+         "the table of materials"},
+        {&worker->slot_material, slots * 4, packed->slot_material, "the table of sphere materials"},
+        {&worker->slot_albedo, slots * ALBEDO_REALS * real_size, packed->slot_albedo,
+         "the table of sphere colours"},
+        {&worker->boxes, tree->node_count * NODE_REALS(width) * real_size, tree->node_boxes,
+         "the tree's boxes"},
+        {&worker->children, tree->node_count * width * 4, tree->children, "the tree's nodes"},
+        {&worker->leaves, tree->leaf_count * LEAF_REALS(width) * real_size, tree->leaves, "the spheres"},
+        {&worker->slot_sphere, slots * 4, tree->slot_sphere, "the spheres' numbers"},
+    };
+    for (size_t i = 0; i < sizeof uploads / sizeof uploads[0]; ++i) {
+        BP_TRY(create_buffer(worker, uploads[i].buffer, uploads[i].bytes, uploads[i].data, uploads[i].what,
+                             err));
+        worker->scene_bytes += uploads[i].bytes;
+    }
+    return BP_OK;
+}
+
+BpStatus bp_worker_create_picture(BpWorker *worker, BpError *err) {
+    const uint64_t pixels = worker->pixels;
+    const uint64_t sums = pixels * worker->replicates * 3 * sizeof(cl_long);
+    const uint64_t counts = pixels * worker->replicates * sizeof(cl_uint);
+    const uint64_t tallies = pixels * 3 * sizeof(cl_ulong);
+    worker->picture_bytes = 2 * sums + counts + tallies;
+    const BpDeviceInfo *info = &worker->device->info;
+    if (worker->picture_bytes + worker->scene_bytes > info->memory_bytes)
+        return bp_fail(
+            err, BP_ERR_LIMIT,
+            "scene and picture take %.1f MiB, but %s has %.1f MiB; use a smaller --width or another --device",
+            (double)(worker->picture_bytes + worker->scene_bytes) / 1048576, info->name,
+            (double)info->memory_bytes / 1048576);
+    BP_TRY(create_buffer(worker, &worker->sums, sums, NULL, "the picture's sums", err));
+    BP_TRY(create_buffer(worker, &worker->fine_sums, sums, NULL, "the picture's fine sums", err));
+    BP_TRY(create_buffer(worker, &worker->counts, counts, NULL, "the picture's counts", err));
+    BP_TRY(create_buffer(worker, &worker->tallies, tallies, NULL, "the picture's tallies", err));
+    /* New buffers are not zeroed. The fine sums need not be: a count says whether its cell has any, and
+     * memory that most pictures never use stays untouched. */
+    const cl_uint zero = 0;
+    const struct {
+        cl_mem buffer;
+        uint64_t bytes;
+    } fills[] = {{worker->sums, sums}, {worker->counts, counts}, {worker->tallies, tallies}};
+    for (size_t i = 0; i < sizeof fills / sizeof fills[0]; ++i)
+        CL_TRY(worker,
+               clEnqueueFillBuffer(worker->device->queue, fills[i].buffer, &zero, sizeof zero, 0,
+                                   (size_t)fills[i].bytes, 0, NULL, NULL),
+               "clEnqueueFillBuffer");
+    return BP_OK;
+}
+
+BpStatus bp_worker_create_pixel_list(BpWorker *worker, BpError *err) {
+    const uint64_t bytes = (uint64_t)worker->pixels * sizeof(cl_uint);
+    worker->picture_bytes += bytes;
+    return create_buffer(worker, &worker->pixel_list, bytes, NULL, "the list of pixels", err);
+}
+
+/* Room for the raw samples of `count` pixel samples. Only called with nothing under way that uses the old
+ * room. */
+BpStatus bp_worker_reserve_samples(BpWorker *worker, uint32_t count, BpError *err) {
+    if (count <= worker->samples_capacity) return BP_OK;
+    if (worker->samples != NULL) clReleaseMemObject(worker->samples);
+    worker->samples = NULL;
+    worker->samples_capacity = 0;
+    BP_TRY(create_buffer(worker, &worker->samples, (uint64_t)count * 4 * worker->real_size, NULL,
+                         "the chunk's samples", err));
+    worker->samples_capacity = count;
+    return BP_OK;
+}
+
+/* ---- reading back ---- */
+
+_Static_assert(FINE_BITS == BP_FINE_BITS, "the device's fine steps are the film's");
+
+/* Replicates of pixels that are read back at a time; no less than one pixel has. */
+#define COLLECT_CELLS 65536u
+
+static BpStatus read_buffer(BpWorker *worker, cl_mem buffer, size_t offset, size_t bytes, void *out,
+                            BpError *err) {
+    CL_TRY(worker,
+           clEnqueueReadBuffer(worker->device->queue, buffer, CL_TRUE, offset, bytes, out, 0, NULL, NULL),
+           "clEnqueueReadBuffer");
+    return BP_OK;
+}
+
+/* Adds the fine sums of the cells whose counts say that they have some; `fine` is room for a block. Most
+ * pictures have none, and read nothing. */
+static BpStatus collect_fine_sums(BpWorker *worker, size_t cell, size_t cells, const cl_uint *counts,
+                                  cl_long *fine, BpFilm *film, BpError *err) {
+    cl_uint flags = 0;
+    for (size_t i = 0; i < cells; ++i) flags |= counts[i];
+    film->coarse = film->coarse || (flags & COUNT_COARSE) != 0;
+    if ((flags & COUNT_HAS_FINE) == 0) return BP_OK;
+    BP_TRY(bp_film_add_fine_sums(film, err));
+    BP_TRY(
+        read_buffer(worker, worker->fine_sums, 3 * cell * sizeof *fine, 3 * cells * sizeof *fine, fine, err));
+    for (size_t i = 0; i < 3 * cells; ++i)
+        if ((counts[i / 3] & COUNT_HAS_FINE) != 0) film->fine_sums[3 * cell + i] += fine[i];
+    return BP_OK;
+}
+
+/* Adds one block of `count` pixels, from `first` on; the arrays are room for it. */
+static BpStatus collect_block(BpWorker *worker, size_t first, size_t count, cl_long *sums, cl_uint *counts,
+                              cl_ulong *tallies, BpFilm *film, BpError *err) {
+    const size_t k_count = worker->replicates, cell = first * k_count, cells = count * k_count;
+    BP_TRY(read_buffer(worker, worker->sums, 3 * cell * sizeof *sums, 3 * cells * sizeof *sums, sums, err));
+    BP_TRY(read_buffer(worker, worker->counts, cell * sizeof *counts, cells * sizeof *counts, counts, err));
+    BP_TRY(read_buffer(worker, worker->tallies, 3 * first * sizeof *tallies, 3 * count * sizeof *tallies,
+                       tallies, err));
+    for (size_t i = 0; i < 3 * cells; ++i) film->sums[3 * cell + i] += sums[i];
+    for (size_t i = 0; i < cells; ++i) film->counts[cell + i] += counts[i] & COUNT_SAMPLES;
+    for (size_t i = 0; i < count; ++i) {
+        film->segments += tallies[i * 3];
+        if (film->pixel_segments != NULL) film->pixel_segments[first + i] += tallies[i * 3];
+        film->cut_paths += tallies[i * 3 + 1];
+        film->invalid_samples += tallies[i * 3 + 2];
+    }
+    return collect_fine_sums(worker, cell, cells, counts, sums, film, err);
+}
+
+/* Block by block: room for all of it would be as much memory again, new to the process every time. */
+BpStatus bp_worker_collect(BpWorker *worker, BpFilm *film, BpError *err) {
+    BP_TRY(bp_worker_wait_for_all(worker, err));
+    size_t block = COLLECT_CELLS / worker->replicates;
+    if (block > worker->pixels) block = worker->pixels;
+    cl_long *sums = malloc(block * worker->replicates * 3 * sizeof *sums);
+    cl_uint *counts = malloc(block * worker->replicates * sizeof *counts);
+    cl_ulong *tallies = malloc(block * 3 * sizeof *tallies);
+    BpStatus status = BP_OK;
+    if (sums == NULL || counts == NULL || tallies == NULL)
+        status = bp_fail(err, BP_ERR_MEMORY, "no memory to read a picture of %u pixels back", worker->pixels);
+    for (size_t first = 0; first < worker->pixels && status == BP_OK; first += block) {
+        const size_t left = worker->pixels - first;
+        status = collect_block(worker, first, left < block ? left : block, sums, counts, tallies, film, err);
+    }
+    free(sums);
+    free(counts);
+    free(tallies);
+    return status;
+}
+
+BpStatus bp_worker_samples(BpWorker *worker, uint32_t count, float *values, BpError *err) {
+    BP_TRY(bp_worker_wait_for_all(worker, err));
+    const size_t numbers = (size_t)count * 4;
+    if (worker->real_size == sizeof(float))
+        return read_buffer(worker, worker->samples, 0, numbers * sizeof(float), values, err);
+    double *wide = malloc(numbers * sizeof *wide);
+    if (wide == NULL) return bp_fail(err, BP_ERR_MEMORY, "no memory to read %u samples back", count);
+    const BpStatus status = read_buffer(worker, worker->samples, 0, numbers * sizeof *wide, wide, err);
+    for (size_t i = 0; status == BP_OK && i < numbers; ++i) values[i] = (float)wide[i];
+    free(wide);
+    return status;
+}

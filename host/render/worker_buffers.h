@@ -1,0 +1,26 @@
+/* worker_buffers.h: what a worker keeps on its device.
+ *
+ * In:    packed scene, size of the picture.   Out: the worker's buffers, filled or zeroed.
+ * Knows: sizes and limits of OpenCL buffers.   Does not know: kernels, chunks. */
+#ifndef BP_RENDER_WORKER_BUFFERS_H
+#define BP_RENDER_WORKER_BUFFERS_H
+
+#include "worker.h"
+
+/* Returns from the enclosing function, naming `call`, when `code` is a failure. */
+#define CL_TRY(worker, code, call)                                                                           \
+    do {                                                                                                     \
+        const cl_int cl_try_code_ = (code);                                                                  \
+        if (cl_try_code_ != CL_SUCCESS) return bp_cl_fail(err, cl_try_code_, call, (worker)->device);        \
+    } while (0)
+
+/* All fail with BP_ERR_LIMIT, naming what is too large and the device's limit, or with the driver's error. */
+BpStatus bp_worker_upload_scene(BpWorker *worker, const BpPacked *packed, BpError *err);
+/* Sums, counts and tallies of every pixel, zeroed. After the scene: both together must fit. */
+BpStatus bp_worker_create_picture(BpWorker *worker, BpError *err);
+/* For a program with a pixel list: room for all pixels, not filled. */
+BpStatus bp_worker_create_pixel_list(BpWorker *worker, BpError *err);
+/* Room for the raw samples of `count` pixel samples. Only with nothing under way that uses the old room. */
+BpStatus bp_worker_reserve_samples(BpWorker *worker, uint32_t count, BpError *err);
+
+#endif

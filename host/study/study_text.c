@@ -1,0 +1,43 @@
+/* study_text.c: the results of a study as a text in memory; see ballpark.h.
+ *
+ * In:    a study that has ended.   Out: table, JSON, CSV or page.
+ * Knows: which function prints which.   Does not know: what they print, files. */
+#include "base/json_memory.h"
+#include "base/status.h"
+#include "study.h"
+
+#include <errno.h>
+#include <stdlib.h>
+#include <string.h>
+
+static bool print_json(const BpStudyResult *result, FILE *out) {
+    json_t *root = bp_study_json(result);
+    const bool done = root != NULL && !bp_json_memory_failed() &&
+                      json_dumpf(root, out, JSON_INDENT(2) | JSON_REAL_PRECISION(12)) == 0 &&
+                      fputc('\n', out) != EOF;
+    json_decref(root);
+    return done;
+}
+
+BpStatus bp_study_text(const BpStudy *study, BpStudyFormat format, char **text, BpError *err) {
+    static bool (*const print[])(const BpStudyResult *, FILE *) = {[BP_STUDY_TABLE] = bp_study_print,
+                                                                   [BP_STUDY_JSON] = print_json,
+                                                                   [BP_STUDY_CSV] = bp_study_print_csv,
+                                                                   [BP_STUDY_PAGE] = bp_study_print_page};
+    if ((size_t)format >= sizeof print / sizeof print[0])
+        return bp_fail(err, BP_ERR_USAGE, "format %d of a study: there is none of that number", (int)format);
+    if (!bp_study_has_finished(study))
+        return bp_fail(err, BP_ERR_USAGE,
+                       "results of a study that has not finished: step it to its end, or stop it");
+    char *bytes = NULL;
+    size_t size = 0;
+    FILE *out = open_memstream(&bytes, &size);
+    if (out == NULL) return bp_fail(err, BP_ERR_MEMORY, "no memory for the results: %s", strerror(errno));
+    const bool printed = print[format](bp_study_result(study), out);
+    if (fclose(out) == 0 && printed) {
+        *text = bytes;
+        return BP_OK;
+    }
+    free(bytes);
+    return bp_fail(err, BP_ERR_MEMORY, "no memory for the results of a study");
+}

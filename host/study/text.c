@@ -1,0 +1,137 @@
+/* text.c: the study as a table for a terminal, as CSV, and the advice; see study.h. */
+#include "study.h"
+
+#include "base/format.h"
+#include "base/shown.h"
+
+#include <inttypes.h>
+#include <math.h>
+#include <string.h>
+
+static const char *interval(const BpStudyEstimate *estimate, char *text, size_t size) {
+    return bp_format_interval(estimate->value, estimate->low, estimate->high, text, size);
+}
+
+static void print_head(const BpStudyResult *result, FILE *out) {
+    const BpScene *scene = result->scene;
+    char error[32];
+    bp_show(scene->path, false, out);
+    fprintf(out, " at %ux%u on ", scene->camera.width, scene->camera.height);
+    bp_show(result->report.device.name, false, out);
+    fputc('\n', out);
+    fprintf(out,
+            "truth: exact Fresnel, depth %u, %s, two references of %" PRIu64
+            " samples a pixel (noise of their mean: %s)\n\n",
+            BP_STUDY_DEPTH, result->reference_is_kernel ? "double precision" : "the reference tracer",
+            result->reference_samples, bp_format_percent_cell(result->reference_error, error, sizeof error));
+}
+
+static void print_configurations(const BpStudyResult *result, FILE *out) {
+    char time[32], noise[32], error[32], factor[32], change[48], bias[48];
+    const BpStudySeries *base = &result->series[0];
+    fprintf(out, "Configurations, at %" PRIu64 " samples a pixel:\n", base->points[base->count - 1].samples);
+    fprintf(out, "  %-21s %9s %9s %9s %11s %24s %24s\n", "", "time", "noise", "error", "efficiency",
+            "changes brightness by", "bias of brightness");
+    for (size_t s = 0; s < result->count; s++) {
+        const BpStudySeries *series = &result->series[s];
+        const BpStudyPoint *last = &series->points[series->count - 1];
+        fprintf(out, "  %-21s %9s %9s %9s %11s %24s %24s\n", series->configuration.name,
+                bp_format_seconds(last->seconds, time, sizeof time),
+                bp_format_percent_cell(last->claimed, noise, sizeof noise),
+                bp_format_percent_cell(last->nrmse, error, sizeof error),
+                bp_format_ratio(series->efficiency, factor, sizeof factor),
+                s == 0 ? "" : interval(&series->change, change, sizeof change),
+                interval(&series->bias, bias, sizeof bias));
+    }
+}
+
+static void print_counts(const BpStudyResult *result, FILE *out) {
+    char time[32], noise[32], error[32];
+    const BpStudySeries *base = &result->series[0];
+    fprintf(out, "\nMore samples, %s:\n  %12s %12s %9s %9s %13s\n", base->configuration.name, "samples",
+            "time", "noise", "error", "relative MSE");
+    for (size_t i = 0; i < base->count; i++) {
+        const BpStudyPoint *point = &base->points[i];
+        fprintf(out, "  %12" PRIu64 " %12s %9s %9s %13.3g\n", point->samples,
+                bp_format_seconds(point->seconds, time, sizeof time),
+                bp_format_percent_cell(point->claimed, noise, sizeof noise),
+                bp_format_percent_cell(point->nrmse, error, sizeof error), point->rel_mse);
+    }
+}
+
+bool bp_study_print(const BpStudyResult *result, FILE *out) {
+    char line[512];
+    print_head(result, out);
+    print_configurations(result, out);
+    print_counts(result, out);
+    fprintf(out, "\nnoise: what more samples remove. error: noise and bias together, against the truth; a "
+                 "dash where the "
+                 "references cannot tell."
+                 "\nefficiency: 1 / (noise^2 x time), over that of the first line.\n");
+    const double scatter = bp_study_time_scatter(result);
+    if (isfinite(scatter))
+        fprintf(out,
+                "time: the ratio of two is good to +- %.2g %% (95 %% interval); less is known of adaptive "
+                "samples.\n",
+                100 * scatter);
+    fprintf(out, "\nWhat to use for an error of (times: on this device, when it does nothing else)\n");
+    for (int t = 0; t < BP_STUDY_TARGETS; t++)
+        fprintf(out, "  %s\n", bp_study_advice_text(result, &result->advice[t], line, sizeof line));
+    return fflush(out) == 0 && !ferror(out);
+}
+
+const char *bp_study_advice_text(const BpStudyResult *result, const BpStudyAdvice *advice, char *text,
+                                 size_t size) {
+    if (!advice->reachable) {
+        snprintf(text, size, "%g %%: no configuration gets there", 100 * advice->target);
+        return text;
+    }
+    const BpStudyConfiguration *configuration = &result->series[advice->series].configuration;
+    /* A line to be pasted: a path that a shell would take apart, or standard input, is left to the reader. */
+    const char *path = result->scene->path;
+    char clean[4096];
+    const bool plain = strpbrk(path, " \"'\\$`;&|<>()*?[]#~!{}") == NULL &&
+                       strcmp(bp_shown(path, clean, sizeof clean), path) == 0;
+    char seconds[32];
+    snprintf(
+        text, size, "%g %%: %s, %.0f %s a pixel, %s %s at %ux%u: ballpark render %.300s --spp %.0f%s%s%s",
+        100 * advice->target, configuration->name, advice->samples,
+        advice->samples > 1 ? "samples" : "sample", advice->extrapolated ? "extrapolated" : "estimated",
+        bp_format_seconds(advice->seconds, seconds, sizeof seconds), result->full_width, result->full_height,
+        plain ? path : "SCENE", advice->samples, configuration->command[0] != '\0' ? " " : "",
+        configuration->command,
+        configuration->fresnel == BP_STUDY_FRESNEL_EXACT     ? ", with \"fresnel\": \"exact\" in the scene"
+        : configuration->fresnel == BP_STUDY_FRESNEL_SCHLICK ? ", with \"fresnel\": \"schlick\" in the scene"
+                                                             : "");
+    return text;
+}
+
+/* An empty cell where unknown. */
+static void cell(FILE *out, double value) {
+    if (isnan(value))
+        fputc(',', out);
+    else
+        fprintf(out, ",%.9g", value);
+}
+
+bool bp_study_print_csv(const BpStudyResult *result, FILE *out) {
+    fputs("configuration,axis,options,fresnel,samples,seconds,wall_seconds,device_seconds,cpu_seconds,"
+          "claimed_nrmse,"
+          "nrmse,mse,mse_error,rel_mse,front\n",
+          out);
+    for (size_t s = 0; s < result->count; s++) {
+        const BpStudySeries *series = &result->series[s];
+        for (size_t i = 0; i < series->count; i++) {
+            const BpStudyPoint *point = &series->points[i];
+            fprintf(out, "\"%s\",%s,%s,%s,%" PRIu64, series->configuration.name, series->configuration.axis,
+                    series->configuration.command, bp_study_fresnel_name(series->configuration.fresnel),
+                    point->samples);
+            const double values[] = {point->seconds,     point->wall_seconds, point->device_seconds,
+                                     point->cpu_seconds, point->claimed,      point->nrmse,
+                                     point->mse,         point->mse_error,    point->rel_mse};
+            for (size_t v = 0; v < sizeof values / sizeof values[0]; v++) cell(out, values[v]);
+            fprintf(out, ",%d\n", point->front);
+        }
+    }
+    return fflush(out) == 0 && !ferror(out);
+}

@@ -1,0 +1,41 @@
+/* film_sample.h: one film for the tests of .bpa files. */
+#ifndef BP_TEST_ACCUMULATOR_SAMPLE_H
+#define BP_TEST_ACCUMULATOR_SAMPLE_H
+
+#include "support/output_temp.h"
+
+#include "film_data.h"
+
+/* Small, with numbers that need all their bits. */
+static BpFilm *make(void) {
+    BpFilm *a = NULL;
+    assert_int_equal(bp_film_create(5, 3, 4, &a, NULL), BP_OK);
+    a->scale_log2 = -20;
+    a->scene_hash = 0xfedcba9876543210u;
+    a->seed = UINT64_MAX;
+    a->max_depth = 50;
+    a->sampler = BP_SAMPLER_SOBOL;
+    a->precision = BP_PRECISION_DOUBLE;
+    a->math = BP_MATH_FAST;
+    a->numerics = BP_NUMERICS_PLAIN;
+    a->transfer = BP_TRANSFER_SRGB;
+    a->partial = true;
+    a->segments = UINT64_C(1) << 60;
+    a->cut_paths = 3;
+    a->invalid_samples = 1;
+    a->title = strdup("A \"title\",\nwith Gr\xc3\xbc\xc3\x9f"
+                      "en");
+    assert_int_equal(bp_film_add_range(a, 0, 9, NULL), BP_OK);
+    assert_int_equal(bp_film_add_range(a, (UINT64_C(1) << 32) - 2, 2, NULL), BP_OK);
+    assert_int_equal(bp_film_add_fine_sums(a, NULL), BP_OK);
+    a->coarse = true;
+    for (size_t cell = 0; cell < 60; cell++) {
+        a->counts[cell] = cell % 7 == 0 ? 0 : 1 + (uint32_t)(cell % 2);
+        for (size_t c = 0; c < 3 && a->counts[cell] > 0; c++)
+            a->sums[3 * cell + c] = (int64_t)(data_bits(3 * cell + c) >> 2),
+                               a->fine_sums[3 * cell + c] = (int64_t)(data_bits(1000 + 3 * cell + c) >> 2);
+    }
+    return a;
+}
+
+#endif

@@ -1,0 +1,226 @@
+/* test_film_scene.c: the scale and the hash follow what a scene means (host/film/film.h). */
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+
+#include <cmocka.h>
+
+#include "film/film.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+/* A scene with one sphere of every kind, built by hand; free its arrays with free_scene(). */
+static BpScene make_scene(void) {
+    static const BpMaterial materials[] = {
+        {.name = NULL, .kind = BP_MATERIAL_LAMBERTIAN, .albedo = {0.5, 0.25, 0.75}},
+        {.kind = BP_MATERIAL_METAL, .albedo = {0.8, 0.8, 0.8}, .fuzz = 0.25},
+        {.kind = BP_MATERIAL_DIELECTRIC, .refraction_index = 1.5},
+        {.kind = BP_MATERIAL_DIFFUSE_LIGHT, .emit = {4, 2, 1}},
+        {.kind = BP_MATERIAL_NORMALS},
+        {.kind = BP_MATERIAL_LAMBERTIAN, .albedo = {0.1, 0.1, 0.1}}, /* not in use */
+    };
+    BpScene scene = {.title = NULL,
+                     .camera = {.width = 40,
+                                .height = 30,
+                                .aspect_ratio = 4.0 / 3,
+                                .vfov_degrees = 90,
+                                .lookat = {0, 0, -1},
+                                .vup = {0, 1, 0},
+                                .focus_dist = 10,
+                                .max_depth = 10,
+                                .samples_per_pixel = 10},
+                     .background_bottom = {1, 1, 1},
+                     .background_top = {0.5, 0.7, 1},
+                     .material_count = 6,
+                     .sphere_count = 6,
+                     .albedo_count = 2};
+    scene.materials = malloc(sizeof materials);
+    memcpy(scene.materials, materials, sizeof materials);
+    scene.spheres = calloc(6, sizeof *scene.spheres);
+    scene.albedos = calloc(2, sizeof *scene.albedos);
+    scene.albedos[1][1] = 0.625f;
+    for (uint32_t i = 0; i < 6; i++)
+        scene.spheres[i] = (BpSphere){{i, 0, -2}, 0.5, i < 5 ? i : 0, i < 5 ? BP_NO_ALBEDO : 1};
+    return scene;
+}
+
+static void free_scene(BpScene *scene) {
+    free(scene->materials);
+    free(scene->spheres);
+    free(scene->albedos);
+}
+
+static void bound_and_scale(void **state) {
+    (void)state;
+    BpScene scene = make_scene();
+    assert_true(fabs(bp_scene_radiance_bound(&scene, 50) - 4) <= 0);
+    assert_int_equal(bp_film_scale(&scene, 50), 36);
+    scene.materials[3].emit[0] = 4.5; /* past a power of two, the next one */
+    assert_int_equal(bp_film_scale(&scene, 50), 35);
+    scene.materials[3].emit[0] = 0.5; /* now the lamp's green */
+    assert_int_equal(bp_film_scale(&scene, 50), 37);
+    scene.materials[3] = scene.materials[4];
+    assert_int_equal(bp_film_scale(&scene, 50), 38); /* sky and normals: 1 */
+    scene.background_bottom[2] = 3;
+    assert_int_equal(bp_film_scale(&scene, 50), 36);
+    free_scene(&scene);
+}
+
+/* Where a surface both emits and scatters, light can come again at every bounce. */
+static void emitters_that_scatter_add_up(void **state) {
+    (void)state;
+    BpScene scene = make_scene();
+    scene.materials[0].emit[1] = 4;
+    scene.materials[0].albedo[2] = 0.5; /* 1 + 1/2 + 1/4 + ... = 2, but one sphere brings 0.625 itself */
+    assert_true(fabs(bp_scene_radiance_bound(&scene, 50) - 4 / (1 - 0.625)) <= 1e-12);
+    scene.spheres[5].albedo = BP_NO_ALBEDO;
+    assert_true(fabs(bp_scene_radiance_bound(&scene, 50) - 8) <= 1e-12);
+    scene.materials[5].emit[0] = 100; /* not in use */
+    assert_true(fabs(bp_scene_radiance_bound(&scene, 50) - 8) <= 1e-12);
+    scene.materials[2].emit[0] = 1;                                         /* glass passes everything on */
+    assert_true(fabs(bp_scene_radiance_bound(&scene, 50) - 4.0 * 50) <= 0); /* once a segment */
+    assert_int_equal(bp_film_scale(&scene, 50), 38 - 8);
+    assert_true(fabs(bp_scene_radiance_bound(&scene, 1) - 4) <= 0);
+    assert_true(fabs(bp_scene_radiance_bound(&scene, 0)) <= 0);
+    assert_true(fabs(bp_scene_radiance_bound(&scene, BP_DEPTH_MAX) - 4.0 * BP_DEPTH_MAX) <= 0);
+    free_scene(&scene);
+}
+
+/* The bound holds for the worst path that there is: it meets the brightest emitting scatterer every time. */
+static void no_path_is_brighter(void **state) {
+    (void)state;
+    BpScene scene = make_scene();
+    for (int i = 0; i < 100; i++) {
+        const double albedo = i / 100.0, emit = 0.3 + i;
+        for (int c = 0; c < 3; c++) scene.materials[1].albedo[c] = albedo;
+        scene.materials[1].emit[2] = emit;
+        double radiance = 0, throughput = 1;
+        for (int depth = 0; depth < 50; depth++, throughput *= albedo) radiance += throughput * emit;
+        const double bound = bp_scene_radiance_bound(&scene, 50);
+        assert_true(radiance <= bound * (1 + 1e-12));
+        assert_true(ldexp(bound, bp_film_scale(&scene, 50)) <= 0x1p38);
+        assert_true(ldexp(bound, bp_film_scale(&scene, 50)) > 0x1p37);
+    }
+    free_scene(&scene);
+}
+
+static void extreme_scales_stay_floats(void **state) {
+    (void)state;
+    BpScene scene = make_scene();
+    scene.sphere_count = 0;
+    memset(scene.background_bottom, 0, sizeof scene.background_bottom);
+    memset(scene.background_top, 0, sizeof scene.background_top);
+    assert_int_equal(bp_film_scale(&scene, 50), 38); /* black */
+    scene.background_top[0] = 1e-300;
+    assert_int_equal(bp_film_scale(&scene, 50), 126);
+    scene.background_top[0] = 1e300;
+    assert_int_equal(bp_film_scale(&scene, 50), -126);
+    free_scene(&scene);
+}
+
+static void the_hash_keeps_to_the_meaning(void **state) {
+    (void)state;
+    BpScene scene = make_scene();
+    const uint64_t hash = bp_scene_hash(&scene);
+    BpScene again = make_scene();
+    assert_int_equal(bp_scene_hash(&again), hash);
+#define SAME(statement)                                                                                      \
+    do {                                                                                                     \
+        statement;                                                                                           \
+        if (bp_scene_hash(&again) != hash) fail_msg("changes the hash: %s", #statement);                     \
+    } while (0)
+    char name[] = "a name", title[] = "a title";
+    SAME(again.materials[0].name = name);
+    SAME(again.title = title);
+    SAME(again.camera.samples_per_pixel = 77);
+    SAME(again.camera.max_depth = 77);
+    SAME(again.camera.aspect_ratio = 1.3333);
+    SAME(again.camera.focus_dist = 3); /* a pinhole has no focus */
+    SAME(again.transfer = BP_TRANSFER_LINEAR);
+    SAME(again.camera.lookfrom[1] = -0.0);
+    SAME(again.spheres[2].center[1] = -0.0);
+    SAME(again.materials[5].albedo[0] = 0.9);      /* in no sphere */
+    SAME(again.materials[2].albedo[0] = 0.9);      /* of glass */
+    SAME(again.materials[0].fuzz = 0.9);           /* of a matt sphere */
+    SAME(again.spheres[0].radius = -0.5);          /* matt, inside out */
+    SAME(again.materials[3].refraction_index = 2); /* of a lamp */
+    SAME(again.albedos[0][0] = 0.5f);              /* nobody's colour */
+    /* The same material under another number. */
+    SAME((again.materials[5] = again.materials[1], again.spheres[1].material = 5));
+    /* A colour of the sphere's own that is the material's. */
+    SAME((again.albedos[0][0] = 0.5f, again.albedos[0][1] = 0.25f, again.albedos[0][2] = 0.75f,
+          again.spheres[0].albedo = 0));
+#undef SAME
+    /* A mirror without fuzz has no shape of fuzz. */
+    scene.materials[1].fuzz = again.materials[1].fuzz = again.materials[5].fuzz = 0;
+    again.materials[5].fuzz_shape = BP_FUZZ_BALL;
+    assert_true(bp_scene_hash(&scene) == bp_scene_hash(&again));
+    free_scene(&again);
+    free_scene(&scene);
+}
+
+static void the_hash_sees_every_change(void **state) {
+    (void)state;
+    uint64_t seen[64];
+    size_t count = 0;
+#define SEEN(statement)                                                                                      \
+    do {                                                                                                     \
+        BpScene scene = make_scene();                                                                        \
+        statement;                                                                                           \
+        const uint64_t hash = bp_scene_hash(&scene);                                                         \
+        for (size_t i = 0; i < count; i++)                                                                   \
+            if (seen[i] == hash) fail_msg("not in the hash, or not apart: %s", #statement);                  \
+        seen[count++] = hash;                                                                                \
+        free_scene(&scene);                                                                                  \
+    } while (0)
+    SEEN((void)0);
+    SEEN(scene.camera.width = 30);
+    SEEN(scene.camera.height = 40);
+    SEEN((scene.camera.width = 30, scene.camera.height = 40));
+    SEEN(scene.camera.vfov_degrees = 90.00000000000001);
+    SEEN(scene.camera.lookfrom[0] = 1);
+    SEEN(scene.camera.lookfrom[2] = 1);
+    SEEN(scene.camera.lookat[0] = 1);
+    SEEN(scene.camera.vup[0] = 1);
+    SEEN(scene.camera.lens_radius = 0.1);
+    SEEN((scene.camera.lens_radius = 0.1, scene.camera.focus_dist = 9));
+    SEEN(scene.camera.pixel_sampling = BP_PIXEL_CENTER);
+    SEEN(scene.background_bottom[1] = 0.5);
+    SEEN(scene.background_top[1] = 0.5);
+    SEEN(scene.sphere_count = 5);
+    SEEN(scene.spheres[0].center[1] = 5e-324);
+    SEEN(scene.spheres[0].radius = 0.25);
+    SEEN(scene.spheres[2].radius = -0.5); /* glass inside out */
+    SEEN(scene.spheres[0].material = 5);
+    SEEN(scene.spheres[0].material = 4);
+    SEEN(scene.spheres[0].albedo = 1);
+    SEEN(scene.albedos[1][2] = 0.5f);
+    SEEN(scene.materials[0].albedo[0] = 0.25);
+    SEEN(scene.materials[0].scatter = BP_SCATTER_HEMISPHERE);
+    SEEN(scene.materials[0].emit[0] = 1);
+    SEEN(scene.materials[1].fuzz = 0.5);
+    SEEN(scene.materials[1].fuzz_shape = BP_FUZZ_BALL);
+    SEEN(scene.materials[2].refraction_index = 1.25);
+    SEEN(scene.materials[2].fresnel = BP_FRESNEL_EXACT);
+    SEEN(scene.materials[2].total_reflection = BP_TOTAL_ABSORB);
+    SEEN(scene.materials[3].emit[2] = 2);
+    SEEN(scene.materials[4].emit[2] = 2);
+    SEEN((scene.spheres[0].center[0] = 1, scene.spheres[1].center[0] = 0)); /* swapped */
+#undef SEEN
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(bound_and_scale),
+        cmocka_unit_test(emitters_that_scatter_add_up),
+        cmocka_unit_test(no_path_is_brighter),
+        cmocka_unit_test(extreme_scales_stay_floats),
+        cmocka_unit_test(the_hash_keeps_to_the_meaning),
+        cmocka_unit_test(the_hash_sees_every_change),
+    };
+    return cmocka_run_group_tests_name("film_scene", tests, NULL, NULL);
+}
