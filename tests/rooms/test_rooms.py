@@ -1,0 +1,58 @@
+"""The rooms of host/ are what ARCHITECTURE.md says: includes go downward only, and every file opens with its own name.
+
+Run as: python3 test_rooms.py SOURCE_DIR
+"""
+import pathlib
+import re
+import sys
+
+# Each room may include those above it in this list that its line names, and base.
+MAY_INCLUDE = {
+    "base": set(),
+    "scene": set(),
+    "formats": {"scene"},
+    "packed": {"scene"},
+    "opencl": {"packed"},
+    "film": {"scene"},
+    "image": set(),
+    "render": {"scene", "packed", "opencl", "film"},
+    "reference": {"scene"},
+    "check": {"scene", "film", "render", "reference"},
+    "study": {"scene", "film", "image", "render", "reference"},
+    "cli": {"scene", "formats", "packed", "opencl", "film", "image", "render", "check", "study"},
+}
+
+
+def faults_of(source):
+    host = source / "host"
+    rooms = {path.name for path in host.iterdir() if path.is_dir()}
+    for room in sorted(rooms ^ set(MAY_INCLUDE)):
+        yield f"host/{room}: a room that this test or the source tree does not know"
+    kernel_headers = {path.name for path in (source / "kernels").glob("*.h")}
+    for path in sorted(host.glob("*/*.[ch]")):
+        room, text = path.parent.name, path.read_text(encoding="utf-8")
+        place = path.relative_to(source)
+        if not text.startswith(f"/* {path.name}: "):
+            yield f"{place}: does not open with \"/* {path.name}: ...\""
+        if path.suffix == ".h" and f"#ifndef BP_{room}_{path.stem}_H".upper().replace("#IFNDEF", "#ifndef") not in text:
+            yield f"{place}: its guard is not BP_{room.upper()}_{path.stem.upper()}_H"
+        for include in re.findall(r'^#include "([^"]+)"', text, re.MULTILINE):
+            other = include.split("/")[0] if "/" in include else room
+            if include == "ballpark.h" or include in kernel_headers:
+                continue
+            if include.startswith("."):
+                yield f"{place}: includes {include}, not by its room"
+            elif other == room and not (path.parent / include).exists():
+                yield f"{place}: includes {include}, which is not beside it"
+            elif other not in MAY_INCLUDE[room] | {room, "base"}:
+                yield f"{place}: includes {include}, and {room} may not know {other}"
+
+
+def main():
+    faults = list(faults_of(pathlib.Path(sys.argv[1])))
+    for fault in faults:
+        print(fault)
+    return 1 if faults else 0
+
+
+sys.exit(main())
