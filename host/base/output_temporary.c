@@ -3,6 +3,7 @@
 #include "output_temporary.h"
 
 #include "output_target.h"
+#include "random.h"
 
 #include <errno.h>
 #include <fcntl.h>
@@ -83,12 +84,11 @@ static char *stem_in(const char *folder, size_t folder_length, const char *targe
 }
 
 /* Writes another ".XXXXXX" to `suffix`. */
-static void make_suffix(char *suffix, uint64_t *state) {
+static void make_suffix(char *suffix, BpRandom *random) {
     static const char letters[] = "abcdefghijklmnopqrstuvwxyz0123456789";
     *suffix++ = '.';
     for (int i = 0; i < 6; i++) {
-        *state = *state * 6364136223846793005u + 1442695040888963407u;
-        *suffix++ = letters[(*state >> 33) % (sizeof letters - 1)];
+        *suffix++ = letters[bp_random_bits(random) % (sizeof letters - 1)];
     }
     *suffix = '\0';
 }
@@ -114,10 +114,10 @@ static int make_name(const char *folder, size_t folder_length, const char *targe
     size_t length = 0;
     char *path = stem_in(folder, folder_length, target, &length);
     int made = -1, problem = path == NULL ? ENOMEM : EEXIST;
-    uint64_t state = first_state();
+    BpRandom random = {first_state()};
     pthread_mutex_lock(&names_lock);
     for (int attempt = 0; attempt < ATTEMPTS && problem == EEXIST; attempt++) {
-        make_suffix(path + length, &state);
+        make_suffix(path + length, &random);
         if (descriptor >= 0) {
             problem = link_descriptor(descriptor, path);
             made = problem == 0 ? descriptor : -1;

@@ -1,13 +1,11 @@
 /* film_estimate.c: means and standard errors from replicate sums; formulas in film.h. */
 #include "film.h"
 
+#include "base/color.h"
 #include "base/status.h"
 
 #include <math.h>
 #include <stdlib.h>
-
-/* Rec. ITU-R BT.709-6, item 3.2 */
-static const double luminance_weights[3] = {0.2126, 0.7152, 0.0722};
 
 /* A sum in steps. */
 static double sum_steps(const BpFilm *film, size_t index) {
@@ -43,7 +41,7 @@ static PixelEstimate estimate_pixel(const BpFilm *film, size_t pixel) {
         mean[3] = 0;
         for (size_t c = 0; c < 3; c++) {
             mean[c] = sum_steps(film, 3 * (pixel * k_count + k) + c) * unit / count;
-            mean[3] += luminance_weights[c] * mean[c];
+            mean[3] += bp_luminance_weights[c] * mean[c];
         }
         for (size_t c = 0; c < 4; c++) estimate.mean[c] += count * mean[c];
         estimate.samples += counts[k];
@@ -117,7 +115,7 @@ double bp_film_rounding(const BpFilm *film) {
     double mean[3];
     bp_film_mean(film, mean);
     double luminance = 0;
-    for (size_t c = 0; c < 3; c++) luminance += luminance_weights[c] * mean[c];
+    for (size_t c = 0; c < 3; c++) luminance += bp_luminance_weights[c] * mean[c];
     const double fine_step = ldexp(1, -film->scale_log2 - BP_FINE_BITS);
     return fmax(fine_step / luminance, BP_ROUNDING_MAX);
 }

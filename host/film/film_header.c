@@ -1,6 +1,7 @@
 /* film_header.c: see film_header.h. */
 #include "film_header.h"
 
+#include "base/names.h"
 #include "base/status.h"
 
 #include <errno.h>
@@ -9,13 +10,6 @@
 #include <string.h>
 
 #define TITLE_BYTES_MAX 65536u /* in the file: a header is at most 1 MiB */
-
-/* Names instead of numbers, so that a file outlives a change of the enumerations. In their order. */
-static const char *const sampler_names[] = {"independent", "sobol", NULL};
-static const char *const precision_names[] = {"single", "double", NULL};
-static const char *const math_names[] = {"strict", "fast", NULL};
-static const char *const numerics_names[] = {"robust", "plain", NULL};
-static const char *const transfer_names[] = {"gamma2", "srgb", "linear", NULL};
 
 /* ---- making ---- */
 
@@ -52,9 +46,9 @@ char *bp_film_header_make(const BpFilm *film) {
         "width", (json_int_t)film->width, "height", (json_int_t)film->height, "replicates",
         (json_int_t)film->replicates, "scale_log2", (int)film->scale_log2, "fine_sums",
         (int)(film->fine_sums != NULL), "coarse", (int)film->coarse, "scene_hash", hash, "seed", seed,
-        "max_depth", (json_int_t)film->max_depth, "sampler", sampler_names[film->sampler], "precision",
-        precision_names[film->precision], "math", math_names[film->math], "numerics",
-        numerics_names[film->numerics], "transfer", transfer_names[film->transfer], "ranges",
+        "max_depth", (json_int_t)film->max_depth, "sampler", bp_sampler_names[film->sampler], "precision",
+        bp_precision_names[film->precision], "math", bp_math_names[film->math], "numerics",
+        bp_numerics_names[film->numerics], "transfer", bp_transfer_names[film->transfer], "ranges",
         ranges_json(film), "partial", (int)film->partial, "segments", (json_int_t)film->segments, "cut_paths",
         (json_int_t)film->cut_paths, "invalid_samples", (json_int_t)film->invalid_samples);
     char *text = header != NULL ? json_dumps(header, JSON_PRESERVE_ORDER) : NULL;
@@ -187,11 +181,11 @@ static void read_settings(Reader *reader, BpFilm *film) {
     film->scene_hash = read_wide(reader, "scene_hash", 16, "a string of up to 16 hexadecimal digits");
     film->seed = read_wide(reader, "seed", 10, "a string of decimal digits, below 2^64");
     film->max_depth = (uint32_t)read_integer(reader, "max_depth", 0, BP_DEPTH_MAX);
-    film->sampler = read_name(reader, "sampler", sampler_names);
-    film->precision = read_name(reader, "precision", precision_names);
-    film->math = read_name(reader, "math", math_names);
-    film->numerics = read_name(reader, "numerics", numerics_names);
-    film->transfer = read_name(reader, "transfer", transfer_names);
+    film->sampler = read_name(reader, "sampler", bp_sampler_names);
+    film->precision = read_name(reader, "precision", bp_precision_names);
+    film->math = read_name(reader, "math", bp_math_names);
+    film->numerics = read_name(reader, "numerics", bp_numerics_names);
+    film->transfer = read_name(reader, "transfer", bp_transfer_names);
     film->segments = read_integer(reader, "segments", 0, INT64_MAX);
     film->cut_paths = read_integer(reader, "cut_paths", 0, INT64_MAX);
     film->invalid_samples = read_integer(reader, "invalid_samples", 0, INT64_MAX);

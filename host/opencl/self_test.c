@@ -1,5 +1,7 @@
 /* self_test.c: the known answers, and the comparison; see self_test.h. */
 #include "self_test.h"
+
+#include "base/random.h"
 #include "program.h"
 
 #define BP_HOST
@@ -83,12 +85,10 @@ static uint32_t nan_bits(uint32_t word) {
 /* Numbers of both signs whose magnitudes spread over 2^-16 .. 2^15, so that sums, products, residues and
  * their squares are all normal numbers: a device may flush others. */
 static void make_inputs(Inputs *in) {
-    uint64_t state = 0x9e3779b97f4a7c15u;
+    BpRandom random = {1};
     memset(in, 0, sizeof *in);
     for (uint32_t i = 0; i < ITEMS * 5; ++i) {
-        /* A linear congruential generator's upper half (Knuth's MMIX constants) is ample here. */
-        state = state * 6364136223846793005u + 1442695040888963407u;
-        const uint32_t bits = (uint32_t)(state >> 32);
+        const uint32_t bits = (uint32_t)(bp_random_bits(&random) >> 32);
         if (i < ITEMS * 2) {
             in->uints[i] = bits;
         } else {

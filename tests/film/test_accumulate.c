@@ -2,6 +2,7 @@
  * left out and counted; sums are exact whatever their order; a million equal samples keep their mean, where a
  * float sum does not. */
 #define BP_HOST
+#include "base/random.h"
 #include "opencl/device.h"
 #include "opencl/program.h"
 #include "packed/effects.h"
@@ -193,10 +194,10 @@ static void dim_samples_are_kept(void **state) {
     enum { COUNT = 4000 };
     static float samples[COUNT][4];
     double expected[REPLICATES * 3] = {0};
-    uint64_t seed = 7;
+    BpRandom random = {7};
     for (size_t i = 0; i < COUNT; ++i)
         for (size_t c = 0; c < 4; ++c) {
-            seed = seed * 6364136223846793005u + 1442695040888963407u;
+            const uint64_t seed = bp_random_bits(&random);
             /* Each replicate has a brightness of its own, so that none hides another's rounding. */
             const int exponent = 1 - 13 * (int)(i % REPLICATES) + (int)(seed >> 60);
             samples[i][c] = c == 3 ? 1 : ldexpf(1 + (float)(seed >> 41) * 0x1p-23f, exponent);
