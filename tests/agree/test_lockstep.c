@@ -77,8 +77,9 @@ static void compare(const char *name, uint32_t width, double parting) {
     const double n = (double)single.count, share = (double)parted / n,
                  mean = close_sum / (n - (double)parted);
     const double shift = difference / n, noise = sqrt(fmax(square / n - shift * shift, 0) / n);
-    printf("%-44s parted %.5f %%, else mean difference %.1e, shift of the mean %.1e +- %.1e of %.3f\n", name,
-           100 * share, mean, shift, noise, brightness / n);
+    printf("%-44s paths that diverge %.5f %%, mean difference of the others %.1e, shift of the mean %.1e +- "
+           "%.1e of %.3f\n",
+           name, 100 * share, mean, shift, noise, brightness / n);
     assert_true(share < parting);
     assert_true(mean < 2e-6);
     assert_true(fabs(shift) < 4.5 * noise + 2e-6);

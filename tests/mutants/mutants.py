@@ -243,7 +243,7 @@ MUTANTS = [
     # ---- geometry ------------------------------------------------------------------------------------------
     Mutant("least distance 0.1", "an epsilon too large",
            [patch(KERNEL, "R(1e-3)", "R(0.1)")], [check("crowd", 256, "--numerics", "plain")]),
-    Mutant("the inside of the sphere left is never met", "classic: own sphere excluded both ways",
+    Mutant("the inside of the sphere left is never hit", "classic: own sphere excluded both ways",
            [patch(KERNEL, "if (!any_lane(inward)) return;", "return;")], [check("glass-schlick")]),
     Mutant("candidates ruled out too early", "a margin of the wrong sign",
            [patch(KERNEL, "const vreal reach = sphere->radius + margin;",

@@ -120,8 +120,8 @@ class Bench:
             return ERROR, f"exit code {done.returncode}: {done.stderr.strip()[:300]}"
         result = json.loads(done.stdout)["results"][0]
         worst = max(result["tests"], key=lambda t: t["z"] / t["limit"])
-        z = "no noise" if worst["z"] >= 1e6 else f"z = {worst['z']:.1f}"
-        said = f"{z} of {worst['limit']:.1f} ({worst['family']})"
+        z = "infinite" if worst["z"] >= 1e6 else f"= {worst['z']:.1f}"
+        said = f"z {z}, limit {worst['limit']:.1f} ({worst['family']})"
         invalid = result["invalid_samples"]["kernel"]
         if invalid:
             said += f", {invalid} invalid samples"
