@@ -259,9 +259,19 @@ BpStatus bp_film_merge(BpFilm *into, const BpFilm *from, BpError *err) {
         return bp_fail(
             err, BP_ERR_LIMIT,
             "the numbers of ray segments, cut paths or invalid samples overflow 63 bits: a file is damaged");
-    if (from->fine_sums != NULL) BP_TRY(bp_film_add_fine_sums(into, err));
-    BP_TRY(bp_film_add_ranges(into, from->ranges, from->range_count, err));
+    struct BpSampleRange *joined = NULL;
+    size_t joined_count = 0;
+    BP_TRY(join_ranges(into, from->ranges, from->range_count, &joined, &joined_count, err));
+    const BpStatus status = from->fine_sums != NULL ? bp_film_add_fine_sums(into, err) : BP_OK;
+    if (status != BP_OK) {
+        free(joined);
+        return status;
+    }
 
+    /* Nothing fails from here on. */
+    free(into->ranges);
+    into->ranges = joined;
+    into->range_count = joined_count;
     for (size_t i = 0; i < cells; i++) into->counts[i] += from->counts[i];
     for (size_t i = 0; i < 3 * cells; i++) into->sums[i] += from->sums[i];
     for (size_t i = 0; from->fine_sums != NULL && i < 3 * cells; i++)

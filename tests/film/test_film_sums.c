@@ -109,6 +109,7 @@ static void refuse_merge(BpFilm *into, const BpFilm *from, BpStatus expected, co
     assert_int_equal(bp_film_merge(into, from, &err), expected);
     if (strstr(err.message, reason) == NULL) fail_msg("'%s' does not say '%s'", err.message, reason);
     assert_int_equal(into->range_count, before.range_count);
+    assert_ptr_equal(into->fine_sums, before.fine_sums);
     assert_int_equal(into->segments, before.segments);
     assert_int_equal(into->sums[0], sum);
     assert_int_equal(into->counts[0], count);
@@ -137,6 +138,10 @@ static void what_differs_is_named(void **state) {
     DIFFER(numerics, 1, "--numerics");
     DIFFER(transfer, 1, "transfer");
 #undef DIFFER
+    BpFilm *fine = render(7, 8); /* what it has and the first has not is not left there either */
+    assert_int_equal(bp_film_add_fine_sums(fine, NULL), BP_OK);
+    refuse_merge(a, fine, BP_ERR_USAGE, "samples 0 to 7 and 7 to 14 overlap");
+    bp_film_destroy(&fine);
     refuse_merge(a, a, BP_ERR_USAGE, "samples 0 to 7 and 0 to 7 overlap");
     assert_int_equal(bp_film_merge(a, b, NULL), BP_OK); /* nothing else was wrong */
     bp_film_destroy(&b);
