@@ -6,11 +6,13 @@
 #include "base/shown.h"
 #include "cli/commands.h"
 #include "cli/interrupt.h"
-#include "cli/standard_streams.h"
 
+#include <errno.h>
+#include <fcntl.h>
 #include <signal.h>
 #include <stdio.h>
 #include <string.h>
+#include <unistd.h>
 
 /* Whether `text` has `word` standing by itself. */
 static bool has_word(const char *text, const char *word) {
@@ -40,10 +42,31 @@ static void print_error(const BpError *err, BpStatus status) {
     fputc('\n', stderr);
 }
 
+/* A standard stream that is closed is opened on /dev/null. Otherwise the next file that is opened would take
+ * its number, and what is meant for the stream would be written into that file. It is opened in the wrong
+ * direction, so that writing to a closed stream fails instead of being lost silently. */
+static void open_standard_streams(void) {
+    for (int stream = STDIN_FILENO; stream <= STDERR_FILENO; ++stream) {
+        if (fcntl(stream, F_GETFD) >= 0 || errno != EBADF) continue;
+        /* The lowest free number is taken: that of this stream, as those below are open by now. */
+        if (open("/dev/null", stream == STDIN_FILENO ? O_WRONLY : O_RDONLY) < 0) (void)!open("/", O_RDONLY);
+    }
+}
+
+/* BP_ERR_FILE unless everything that was written to standard output has arrived. */
+static BpStatus finish_standard_output(BpError *err) {
+    /* A write that failed earlier has left its mark, but its reason may be forgotten. */
+    const bool failed_before = ferror(stdout) != 0;
+    const bool closed = fclose(stdout) == 0;
+    if (closed && !failed_before) return BP_OK;
+    return bp_fail(err, BP_ERR_FILE, "cannot write to standard output: %s",
+                   closed ? "not all of it was taken" : strerror(errno));
+}
+
 int main(int argc, char **argv) {
     BpCommandLine line;
     BpError err = {0};
-    bp_streams_open();
+    open_standard_streams();
     /* A reader that goes away, and a limit on the size of files, are failed writes like any other: reported,
      * and nothing is left half done. */
     signal(SIGPIPE, SIG_IGN);
@@ -62,7 +85,7 @@ int main(int argc, char **argv) {
     }
     if (status != BP_OK) print_error(&err, status);
     bp_error_clear(&err);
-    const BpStatus finished = bp_streams_finish(&err);
+    const BpStatus finished = finish_standard_output(&err);
     if (status == BP_OK && finished != BP_OK) print_error(&err, finished);
     if (status == BP_OK) status = finished;
     bp_error_clear(&err);

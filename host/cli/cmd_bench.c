@@ -1,20 +1,27 @@
 /* cmd_bench.c: `ballpark bench`.
  *
- * In:    scenes, or the names of fixed ones, or nothing.   Out: a table of throughput, and JSON.
- * Knows: rounds, medians, tables.   Does not know: how a run is timed (bench_measure.h).
+ * In:    scenes, or the names of fixed ones, or nothing.   Out: a table of throughput, and JSON; or the fixed
+ * scenes as files. Knows: the fixed scenes, timed runs, rounds, medians, tables.
+ * Does not know: how a picture is traced.
  *
- * Scenes take turns, round after round, so that what else the machine does spreads over all of them. */
+ * The scenes take turns, round after round, so that disturbances on the machine affect all of them alike. */
 #include "commands.h"
 
+#include "base/clock.h"
 #include "base/format.h"
 #include "base/json_text.h"
 #include "base/names.h"
+#include "base/output_file.h"
 #include "base/plural.h"
+#include "base/quantile.h"
 #include "base/shown.h"
-#include "bench_measure.h"
-#include "bench_scenes.h"
+#include "base/status.h"
+#include "formats/field.h"
 #include "interrupt.h"
 #include "json_file.h"
+#include "options.h"
+#include "render/render.h"
+#include "scene/scene.h"
 #include "setup.h"
 #include "temporary_folder.h"
 
@@ -27,6 +34,223 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
+/* ---- the fixed scenes -------------------------------------------------------------------------------- */
+
+/* cover      the fourth edition's cover: every material, a lens
+ * diffuse    the same spheres with metal and glass made matte: short paths, one kind of material
+ * glass      the same spheres, all glass except the ground: long paths that diverge
+ * field-N    N matte spheres of random colours in a cube, seen from outside; similar at any N, so that the
+ *            figures show what the number of spheres costs */
+enum { GRID = 11, SEED = 1, WIDTH = 400, SAMPLES = 64 };
+
+static const char field_document[] =
+    "{\n"
+    "  \"format\": 1,\n"
+    "  \"title\": \"bench: %s\",\n"
+    "  \"camera\": { \"image_width\": 400, \"aspect_ratio\": [16, 9], \"samples_per_pixel\": 64,\n"
+    "              \"max_depth\": 50, \"vfov\": 26, \"lookfrom\": [30, 18, 26] },\n"
+    "  \"materials\": { \"clay\": { \"type\": \"lambertian\", \"albedo\": [0.7, 0.6, 0.5] } },\n"
+    "  \"clouds\": [ { \"file\": \"%s.ply\", \"material\": \"clay\" } ]\n"
+    "}\n";
+
+/* The names that are measured when none is given, ended by NULL. */
+static const char *const fixed_scene_names[] = {"cover", "diffuse", "glass", "field-1e4", "field-1e6", NULL};
+
+/* The number of spheres of a field; 0: not a field. */
+static uint64_t field_count(const char *name) {
+    if (strncmp(name, "field-", 6) != 0 || name[6] < '1' || name[6] > '9') return 0;
+    char *end = NULL;
+    const double count = strtod(name + 6, &end);
+    return *end == '\0' && count >= 1 && count <= BP_SPHERES_MAX ? (uint64_t)count : 0;
+}
+
+/* "cover", "diffuse", "glass", or "field-" and a number of spheres: "field-1e6". */
+static bool is_fixed_scene(const char *name) {
+    return strcmp(name, "cover") == 0 || strcmp(name, "diffuse") == 0 || strcmp(name, "glass") == 0 ||
+           field_count(name) != 0;
+}
+
+static BpStatus join(const char *folder, const char *name, const char *ending, char *path, size_t size,
+                     BpError *err) {
+    const int length = snprintf(path, size, "%s/%s%s", folder, name, ending);
+    if (length > 0 && (size_t)length < size) return BP_OK;
+    return bp_fail(err, BP_ERR_FILE, "the name of the folder %.80s... is too long", folder);
+}
+
+static void make_matte(BpMaterial *material) {
+    if (material->kind == BP_MATERIAL_DIELECTRIC)
+        for (int k = 0; k < 3; ++k) material->albedo[k] = 0.9;
+    material->kind = BP_MATERIAL_LAMBERTIAN;
+    material->scatter = BP_SCATTER_LAMBERTIAN;
+}
+
+static void make_glass(BpMaterial *material) {
+    material->kind = BP_MATERIAL_DIELECTRIC;
+    material->refraction_index = 1.5;
+    material->fresnel = BP_FRESNEL_SCHLICK;
+    material->total_reflection = BP_TOTAL_REFLECT;
+}
+
+static BpStatus write_cover(const char *name, const char *path, BpError *err) {
+    BpScene *scene = NULL;
+    BP_TRY(bp_scene_generate_cover("4", GRID, SEED, &scene, err));
+    BpStatus status = bp_scene_set_width(scene, WIDTH, err);
+    if (status != BP_OK) goto done;
+    scene->camera.samples_per_pixel = SAMPLES;
+    const uint32_t ground = scene->spheres[0].material;
+    for (uint32_t m = 0; m < scene->material_count; ++m) {
+        if (strcmp(name, "diffuse") == 0) make_matte(&scene->materials[m]);
+        if (strcmp(name, "glass") == 0 && m != ground) make_glass(&scene->materials[m]);
+    }
+    status = bp_scene_write(scene, path, err);
+done:
+    bp_scene_destroy(&scene);
+    return status;
+}
+
+static BpStatus write_field(const char *name, const char *folder, const char *path, BpError *err) {
+    char cloud[4096];
+    BP_TRY(join(folder, name, ".ply", cloud, sizeof cloud, err));
+    if (access(cloud, R_OK) == 0 && access(path, R_OK) == 0) return BP_OK;
+    BP_TRY(bp_field_write_ply(field_count(name), SEED, cloud, err));
+    BpOutputFile file;
+    BP_TRY(bp_output_open(path, &file, err));
+    if (fprintf(file.stream, field_document, name, name) < 0) {
+        const BpStatus status = bp_output_fail(err, "write", path, errno);
+        bp_output_discard(&file);
+        return status;
+    }
+    return bp_output_commit(&file, err);
+}
+
+/* Writes the scene called `name` into `folder`, as NAME.json (a field: NAME.ply as well), and its path to
+ * `path`. A field whose two files are already there is left as it is, since it takes long. */
+static BpStatus write_fixed_scene(const char *name, const char *folder, char *path, size_t path_size,
+                                  BpError *err) {
+    BP_TRY(join(folder, name, ".json", path, path_size, err));
+    return field_count(name) != 0 ? write_field(name, folder, path, err) : write_cover(name, path, err);
+}
+
+/* ---- one timed run ----------------------------------------------------------------------------------- */
+
+/* One timed run of one scene, from file to samples. Times are wall-clock seconds unless they say otherwise.
+ */
+typedef struct Run {
+    double load_seconds, tree_seconds, kernel_build_seconds;
+    /* A stretch of tracing, begun when caches, clocks and the size of chunks had settled. cpu_seconds: of all
+     * threads of this process; for a CPU device, the processor time that tracing took. */
+    double seconds, cpu_seconds, device_seconds;
+    uint64_t samples, segments;
+    double mean[3], nrmse; /* of the whole run */
+    size_t spheres;
+    uint32_t width, height, max_depth;
+    BpRenderReport report; /* its texts are not valid any more */
+} Run;
+
+/* Median and quartiles, by linear interpolation between order statistics (Hyndman and Fan 1996, type 7). */
+typedef struct Figure {
+    double median, low, high;
+} Figure;
+
+#define WARM_UP_SECONDS 0.2
+
+/* Traces until every pixel has `samples`; all work is done when it returns. */
+static BpStatus trace_to(BpRender *render, uint64_t samples, BpError *err) {
+    BpProgress progress = {0};
+    BP_TRY(bp_render_extend(render, samples, err));
+    do {
+        BP_TRY(bp_render_step(render, &progress, err));
+        if (bp_interrupted())
+            return bp_fail(err, BP_ERR_INTERRUPTED, "interrupted; figures of a part of a run mean nothing");
+    } while (!progress.finished);
+    return BP_OK;
+}
+
+/* The counts of a render are whole once its film was read. */
+static BpStatus read_report(BpRender *render, BpRenderReport *report, const BpFilm **film, BpError *err) {
+    BP_TRY(bp_render_read_film(render, film, err));
+    bp_render_report(render, report);
+    return BP_OK;
+}
+
+/* Seconds that tracing would take of a machine with nothing else to do: for a CPU, the processor time spread
+ * over its cores, so that other work on the machine does not make the stretch short. */
+static double own_seconds(const BpRenderReport *report, double wall, double cpu) {
+    const double spread = cpu / fmax(1.0, report->device.compute_units);
+    return report->device.type == BP_DEVICE_CPU ? fmin(wall, spread) : wall;
+}
+
+/* Whole passes only: the rows of a picture cost differently. */
+static BpStatus trace(BpRender *render, double seconds, Run *run, BpError *err) {
+    const BpFilm *film = NULL;
+    BpRenderReport before;
+    bp_render_report(render, &before);
+    uint64_t samples = 0;
+    double taken, whole = 0;
+    do {
+        const double start = bp_clock_seconds(), cpu_start = bp_processor_seconds();
+        samples = 2 * samples + 1;
+        BP_TRY(trace_to(render, samples, err));
+        taken = own_seconds(&before, bp_clock_seconds() - start, bp_processor_seconds() - cpu_start);
+        whole += taken;
+    } while (whole < WARM_UP_SECONDS);
+    BP_TRY(read_report(render, &before, &film, err));
+
+    /* The last pass of the warm-up was samples / 2 + 1. */
+    const double more = seconds / taken * (double)(samples / 2 + 1);
+    const double start = bp_clock_seconds(), cpu_start = bp_processor_seconds();
+    BP_TRY(trace_to(render, samples + (more > 1 ? (uint64_t)more : 1), err));
+    run->seconds = bp_clock_seconds() - start;
+    run->cpu_seconds = bp_processor_seconds() - cpu_start;
+    BP_TRY(read_report(render, &run->report, &film, err));
+    run->samples = run->report.samples - before.samples;
+    run->segments = run->report.segments - before.segments;
+    run->device_seconds = run->report.device_seconds - before.device_seconds;
+    bp_film_mean(film, run->mean);
+    run->nrmse = bp_film_nrmse(film);
+    if (run->segments == 0)
+        return bp_fail(err, BP_ERR_USAGE, "no ray was traced; a depth of 0 has nothing to measure");
+    return BP_OK;
+}
+
+/* Loads, builds, warms up, traces for about `seconds`. */
+static BpStatus run_once(const BpCommandLine *line, const char *path, const BpDeviceInfo *devices,
+                         size_t device_count, double seconds, Run *run, BpError *err) {
+    BpScene *scene = NULL;
+    BpRender *render = NULL;
+    BpRenderOptions options;
+    *run = (Run){0};
+
+    const double start = bp_clock_seconds();
+    BpStatus status = bp_setup_scene(line, path, &scene, err);
+    if (status != BP_OK) goto done;
+    run->load_seconds = bp_clock_seconds() - start;
+    run->spheres = scene->sphere_count;
+    run->width = scene->camera.width;
+    run->height = scene->camera.height;
+
+    BP_TRY_GOTO(status, bp_setup_options(line, scene, &options, err), done);
+    options.samples_per_pixel = 1; /* more follow */
+    run->max_depth = options.max_depth;
+    BP_TRY_GOTO(status, bp_render_create(scene, &options, devices, device_count, &render, err), done);
+    status = trace(render, seconds, run, err);
+    run->tree_seconds = run->report.tree_seconds + run->report.pack_seconds;
+    run->kernel_build_seconds = run->report.kernel_build_seconds + run->report.first_launch_seconds;
+done:
+    bp_render_destroy(&render);
+    bp_scene_destroy(&scene);
+    return status;
+}
+
+/* `values` are put in order. count >= 1. */
+static Figure quartiles(double *values, size_t count) {
+    bp_sort_doubles(values, count);
+    return (Figure){bp_quantile(values, count, 0.5), bp_quantile(values, count, 0.25),
+                    bp_quantile(values, count, 0.75)};
+}
+
+/* ---- all scenes, round after round ------------------------------------------------------------------- */
+
 #define ROUNDS_DEFAULT 5u
 #define ROUNDS_MAX 1000u    /* --rounds */
 #define SECONDS_DEFAULT 5.0 /* of tracing, a scene */
@@ -35,7 +259,7 @@ typedef struct Entry {
     const char *name; /* as asked for */
     bool fixed;       /* written by us */
     char path[4096];
-    BpBenchRun *runs; /* one a round */
+    Run *runs; /* one a round */
 } Entry;
 
 typedef struct Bench {
@@ -48,37 +272,37 @@ typedef struct Bench {
 
 /* ---- figures of the rounds ---- */
 
-typedef double RunValue(const BpBenchRun *run);
+typedef double RunValue(const Run *run);
 
-static double load_seconds(const BpBenchRun *run) {
+static double load_seconds(const Run *run) {
     return run->load_seconds;
 }
-static double tree_seconds(const BpBenchRun *run) {
+static double tree_seconds(const Run *run) {
     return run->tree_seconds;
 }
-static double kernel_seconds(const BpBenchRun *run) {
+static double kernel_seconds(const Run *run) {
     return run->kernel_build_seconds;
 }
-static double samples_rate(const BpBenchRun *run) {
+static double samples_rate(const Run *run) {
     return (double)run->samples / run->seconds;
 }
-static double segments_rate(const BpBenchRun *run) {
+static double segments_rate(const Run *run) {
     return (double)run->segments / run->seconds;
 }
-static double segment_nanoseconds(const BpBenchRun *run) {
+static double segment_nanoseconds(const Run *run) {
     return 1e9 * run->seconds / (double)run->segments;
 }
-static double segment_cpu_nanoseconds(const BpBenchRun *run) {
+static double segment_cpu_nanoseconds(const Run *run) {
     return 1e9 * run->cpu_seconds / (double)run->segments;
 }
-static double segment_device_nanoseconds(const BpBenchRun *run) {
+static double segment_device_nanoseconds(const Run *run) {
     return 1e9 * run->device_seconds / (double)run->segments;
 }
 
-static BpBenchFigure figure(const Bench *bench, const Entry *entry, RunValue *value) {
+static Figure figure(const Bench *bench, const Entry *entry, RunValue *value) {
     double values[ROUNDS_MAX];
     for (size_t r = 0; r < bench->rounds; ++r) values[r] = value(&entry->runs[r]);
-    return bp_bench_figure(values, bench->rounds);
+    return quartiles(values, bench->rounds);
 }
 
 static double bytes_per_sphere(const Entry *entry) {
@@ -99,7 +323,7 @@ static const char *short_time(double seconds, char *text, size_t size) {
 
 static void print_row(const Bench *bench, const Entry *entry) {
     char load[32], tree[32], kernel[32], spheres[32], name[256];
-    const BpBenchFigure segments = figure(bench, entry, segments_rate);
+    const Figure segments = figure(bench, entry, segments_rate);
     printf("%-12s %11s %9s %9s %9s %10.2f %11.2f %9.1f %9.1f %7.0f %% %8.0f\n",
            bp_shown(entry->name, name, sizeof name),
            bp_format_whole(entry->runs[0].spheres, spheres, sizeof spheres),
@@ -134,7 +358,7 @@ static BpStatus print_table(const Bench *bench, BpError *err) {
 /* ---- JSON ---- */
 
 static json_t *figure_json(const Bench *bench, const Entry *entry, RunValue *value) {
-    const BpBenchFigure f = figure(bench, entry, value);
+    const Figure f = figure(bench, entry, value);
     json_t *values = json_array();
     for (size_t r = 0; r < bench->rounds && values != NULL; ++r)
         json_array_append_new(values, json_real(value(&entry->runs[r])));
@@ -143,7 +367,7 @@ static json_t *figure_json(const Bench *bench, const Entry *entry, RunValue *val
 }
 
 static json_t *entry_json(const Bench *bench, const Entry *entry) {
-    const BpBenchRun *run = &entry->runs[0];
+    const Run *run = &entry->runs[0];
     uint64_t samples = 0, segments = 0;
     for (size_t r = 0; r < bench->rounds; ++r) {
         samples += entry->runs[r].samples;
@@ -200,7 +424,7 @@ static BpStatus open_folder(const BpCommandLine *line, Bench *bench, BpError *er
 
 static BpStatus prepare(const BpCommandLine *line, Bench *bench, BpError *err) {
     size_t fixed_count = 0;
-    while (bp_bench_scene_names[fixed_count] != NULL) ++fixed_count;
+    while (fixed_scene_names[fixed_count] != NULL) ++fixed_count;
     bench->count = line->operand_count > 0 ? line->operand_count : fixed_count;
     bench->entries = calloc(bench->count, sizeof *bench->entries);
     if (bench->entries == NULL) return bp_fail(err, BP_ERR_MEMORY, "out of memory for the list of scenes");
@@ -209,8 +433,8 @@ static BpStatus prepare(const BpCommandLine *line, Bench *bench, BpError *err) {
         Entry *entry = &bench->entries[i];
         entry->runs = calloc(bench->rounds, sizeof *entry->runs);
         if (entry->runs == NULL) return bp_fail(err, BP_ERR_MEMORY, "out of memory for the rounds");
-        entry->name = line->operand_count > 0 ? line->operands[i] : bp_bench_scene_names[i];
-        entry->fixed = bp_bench_scene_known(entry->name);
+        entry->name = line->operand_count > 0 ? line->operands[i] : fixed_scene_names[i];
+        entry->fixed = is_fixed_scene(entry->name);
         if (strcmp(entry->name, "-") == 0)
             return bp_fail(
                 err, BP_ERR_USAGE,
@@ -223,7 +447,7 @@ static BpStatus prepare(const BpCommandLine *line, Bench *bench, BpError *err) {
         if (bench->folder == NULL) BP_TRY(open_folder(line, bench, err));
         if (bp_interrupted())
             return bp_fail(err, BP_ERR_INTERRUPTED, "interrupted before a scene was traced");
-        BP_TRY(bp_bench_scene_write(entry->name, bench->folder, entry->path, sizeof entry->path, err));
+        BP_TRY(write_fixed_scene(entry->name, bench->folder, entry->path, sizeof entry->path, err));
     }
     return BP_OK;
 }
@@ -240,8 +464,8 @@ static BpStatus run_rounds(const BpCommandLine *line, Bench *bench, BpError *err
             if (!line->quiet)
                 fprintf(stderr, "round %zu of %u: %s\n", r + 1, bench->rounds,
                         bp_shown(entry->name, name, sizeof name));
-            status = bp_bench_run(line, entry->path, devices, device_count, seconds / bench->rounds,
-                                  &entry->runs[r], err);
+            status = run_once(line, entry->path, devices, device_count, seconds / bench->rounds,
+                              &entry->runs[r], err);
         }
     }
     free(devices);

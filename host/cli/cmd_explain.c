@@ -1,20 +1,23 @@
 /* cmd_explain.c: `ballpark explain`.
  *
- * In:    scenes.   Out: for each a table of effects, in or out and why; with --measure what each costs; or
- * JSON. Knows: the effects' analysis, its measurement, tables on a terminal.   Does not know: OpenCL. */
+ * In:    scenes.   Out: which effects are in each scene's kernel and why; with --measure what each effect
+ * costs; with --pixel the steps of one path; as text or JSON.
+ * Knows: the analysis of effects, cost measurements, path logs, tables.   Does not know: OpenCL. */
 #include "commands.h"
 
 #include "base/format.h"
 #include "base/json_text.h"
 #include "base/names.h"
 #include "base/shown.h"
-#include "explain_path.h"
 #include "json_file.h"
+#include "render/path_log.h"
 #include "setup.h"
 #include "study/effect_costs.h"
 #include "terminal.h"
 
 #include <errno.h>
+#include <inttypes.h>
+#include <jansson.h>
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -24,6 +27,112 @@
 #define ROUND_SECONDS 0.12 /* long against a dispatch, short against a disturbance */
 /* Pictures are measured at this width unless --width says otherwise: a ratio needs no large picture. */
 #define MEASURED_WIDTH 400u
+
+/* ---- one path ---------------------------------------------------------------------------------------- */
+
+static const char *kind_name(BpMaterialKind kind) {
+    switch (kind) {
+    case BP_MATERIAL_LAMBERTIAN:
+        return "lambertian";
+    case BP_MATERIAL_METAL:
+        return "metal";
+    case BP_MATERIAL_DIELECTRIC:
+        return "dielectric";
+    case BP_MATERIAL_DIFFUSE_LIGHT:
+        return "diffuse_light";
+    case BP_MATERIAL_NORMALS:
+        return "normals";
+    }
+    return "unknown";
+}
+
+static bool is_black(const double colour[3]) {
+    return colour[0] == 0 && colour[1] == 0 && colour[2] == 0;
+}
+
+/* What the surface did with the path. */
+static const char *outcome(const BpPathStep *step, BpMaterialKind kind) {
+    if (!step->goes_on) {
+        if (kind == BP_MATERIAL_DIFFUSE_LIGHT) return "a lamp: the path ends";
+        if (kind == BP_MATERIAL_NORMALS) return "shows its normal: the path ends";
+        return "absorbs the path";
+    }
+    if (kind == BP_MATERIAL_DIELECTRIC) {
+        if (step->enters) return step->inward ? "refracts it into the sphere" : "reflects it";
+        return step->inward ? "reflects it back inside" : "refracts it out of the sphere";
+    }
+    return kind == BP_MATERIAL_METAL ? "reflects it" : "scatters it";
+}
+
+static void print_path(const BpScene *scene, const BpPathLog *path, uint32_t x, uint32_t y, uint64_t sample,
+                       uint64_t seed) {
+    printf("  pixel (%" PRIu32 ", %" PRIu32 "), sample %" PRIu64 ", seed %" PRIu64 ", on ", x, y, sample,
+           seed);
+    bp_show(path->device.name, false, stdout);
+    putchar('\n');
+    const double nothing[3] = {0};
+    const double *radiance = nothing;
+    for (size_t i = 0; i < path->count; ++i) {
+        const BpPathStep *step = &path->steps[i];
+        printf("  %3zu  from (%.6g, %.6g, %.6g) along (%.4f, %.4f, %.4f)\n", i + 1, step->origin[0],
+               step->origin[1], step->origin[2], step->direction[0], step->direction[1], step->direction[2]);
+        if (step->met) {
+            const BpMaterial *material = &scene->materials[step->material];
+            printf("       after %.6g meets sphere %" PRIu32 " from %s at (%.6g, %.6g, %.6g)\n",
+                   step->distance, step->sphere, step->enters ? "outside" : "inside", step->point[0],
+                   step->point[1], step->point[2]);
+            fputs("       ", stdout);
+            bp_show(material->name, false, stdout);
+            printf(" (%s) %s", kind_name(material->kind), outcome(step, material->kind));
+            if (step->goes_on)
+                printf(", with (%.4g, %.4g, %.4g) of its light", step->throughput[0], step->throughput[1],
+                       step->throughput[2]);
+            printf("\n");
+        } else {
+            printf("       meets nothing: the sky\n");
+        }
+        radiance = step->radiance;
+    }
+    if (path->cut) printf("       the depth cap ends it here\n");
+    if (path->count == 0) printf("       no segment at all: the depth cap is 0\n");
+    printf("  the sample: (%.6g, %.6g, %.6g)%s\n", radiance[0], radiance[1], radiance[2],
+           is_black(radiance) ? ", black" : "");
+}
+
+static json_t *triple(const double v[3]) {
+    return json_pack("[f,f,f]", v[0], v[1], v[2]);
+}
+
+static json_t *step_json(const BpScene *scene, const BpPathStep *step) {
+    json_t *root = json_pack("{s:o, s:o, s:o, s:o, s:b}", "origin", triple(step->origin), "direction",
+                             triple(step->direction), "throughput", triple(step->throughput), "radiance",
+                             triple(step->radiance), "met", step->met);
+    if (root == NULL || !step->met) return root;
+    const BpMaterial *material = &scene->materials[step->material];
+    json_t *meeting = json_pack("{s:f, s:o, s:I, s:s, s:s, s:b, s:b, s:b}", "distance", step->distance,
+                                "point", triple(step->point), "sphere", (json_int_t)step->sphere, "material",
+                                material->name, "type", kind_name(material->kind), "enters", step->enters,
+                                "goes_on", step->goes_on, "inward", step->inward);
+    const bool whole = meeting != NULL && json_object_update(root, meeting) == 0;
+    json_decref(meeting);
+    if (whole) return root;
+    json_decref(root);
+    return NULL;
+}
+
+/* A new object, or NULL without memory. */
+static json_t *path_json(const BpScene *scene, const BpPathLog *path, uint32_t x, uint32_t y,
+                         uint64_t sample) {
+    json_t *steps = json_array();
+    for (size_t i = 0; i < path->count && steps != NULL; ++i) {
+        if (json_array_append_new(steps, step_json(scene, &path->steps[i])) == 0) continue;
+        json_decref(steps);
+        steps = NULL;
+    }
+    return json_pack("{s:[I,I], s:I, s:o, s:b, s:o}", "pixel", (json_int_t)x, (json_int_t)y, "sample",
+                     (json_int_t)sample, "device", bp_json_text(path->device.name), "cut", path->cut, "steps",
+                     steps);
+}
 
 /* ---- the table of effects -------------------------------------------------------------------------------
  */
@@ -210,7 +319,7 @@ static BpStatus append_json(const BpCommandLine *line, const char *path, const B
     if (whole && bp_option_given(line, BP_OPTION_PIXEL))
         whole = json_object_set_new(
                     entry, "path",
-                    bp_path_json(scene, &found->path, line->pixel_x, line->pixel_y, line->first_sample)) == 0;
+                    path_json(scene, &found->path, line->pixel_x, line->pixel_y, line->first_sample)) == 0;
     if (whole && json_array_append(list, entry) != 0) whole = false;
     json_decref(entry);
     return whole ? BP_OK : bp_fail(err, BP_ERR_MEMORY, "out of memory for the document on %s", path);
@@ -235,7 +344,7 @@ static BpStatus explain(const BpCommandLine *line, const char *path, const BpDev
     if (pixel) {
         BP_TRY_GOTO(status, follow(line, scene, device, &found.path, err), done);
         if (list == NULL)
-            bp_path_print(scene, &found.path, line->pixel_x, line->pixel_y, line->first_sample, line->seed);
+            print_path(scene, &found.path, line->pixel_x, line->pixel_y, line->first_sample, line->seed);
     }
     if (line->measure) {
         BP_TRY_GOTO(status, measure(line, scene, device, &found.costs, err), done);

@@ -1,27 +1,184 @@
 /* cmd_render.c: `ballpark render`.
  *
- * In:    a scene's file, options.   Out: its picture, statistics, a summary.
- * Knows: the order of the steps.    Does not know: how any of them is done. */
+ * In:    a scene file, options.   Out: its picture, statistics (--stats), a summary.
+ * Knows: the order of the steps, the members of --stats, Ctrl-C, the progress bar.
+ * Does not know: how to trace, when a stop rule is met, picture formats. */
 #include "commands.h"
 
 #include "base/clock.h"
 #include "base/format.h"
+#include "base/json_text.h"
+#include "base/names.h"
 #include "base/plural.h"
 #include "base/shown.h"
-#include "files_apart.h"
+#include "file_conflicts.h"
 #include "film/adaptive.h"
+#include "interrupt.h"
 #include "json_file.h"
+#include "progress.h"
+#include "render/render.h"
 #include "render/stop_rule.h"
-#include "render_loop.h"
 #include "result_file.h"
 #include "setup.h"
-#include "stats.h"
 #include "terminal.h"
 
 #include <inttypes.h>
+#include <jansson.h>
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
+
+/* ---- --stats ----------------------------------------------------------------------------------------- */
+
+typedef struct RunTimes {
+    double start;       /* bp_clock_seconds() when the command began */
+    double load, write; /* seconds */
+} RunTimes;
+
+typedef struct RunResult {
+    const char *scene_path, *output;
+    const BpScene *scene;
+    const BpRenderOptions *options;
+    const BpFilm *film;
+    BpRenderReport report;
+    RunTimes times;
+    size_t device_count;
+    uint64_t samples_per_pixel; /* of every pixel */
+    double nrmse;               /* NaN: unknown */
+    BpStopReason stopped_by;    /* BP_STOP_NOT_YET: interrupted */
+} RunResult;
+
+/* JSON has no NaN. */
+static json_t *json_number(double value) {
+    return isfinite(value) ? json_real(value) : json_null();
+}
+
+static json_t *device_json(const BpDeviceInfo *info) {
+    return json_pack("{s:o, s:o, s:o, s:s}", "platform", bp_json_text(info->platform), "name",
+                     bp_json_text(info->name), "driver", bp_json_text(info->driver), "type",
+                     bp_device_type_names[info->type]);
+}
+
+static json_t *effects_json(const BpEffects *effects) {
+    json_t *names = json_array();
+    for (int e = 0; e < BP_EFFECT_COUNT && names != NULL; ++e)
+        if (bp_effects_has(effects->bits, (BpEffect)e))
+            json_array_append_new(names, json_string(bp_effect_name((BpEffect)e)));
+    return names;
+}
+
+static json_t *seconds_json(const RunResult *result) {
+    const BpRenderReport *report = &result->report;
+    const RunTimes *times = &result->times;
+    return json_pack("{s:f, s:f, s:f, s:f, s:f, s:f, s:f, s:f, s:f}", "total",
+                     bp_clock_seconds() - times->start, "load", times->load, "tree", report->tree_seconds,
+                     "kernel_build", report->kernel_build_seconds, "trace", report->trace_seconds, "write",
+                     times->write, "pack", report->pack_seconds, "first_launch", report->first_launch_seconds,
+                     "device", report->device_seconds);
+}
+
+/* The document, or NULL when memory ran out. */
+static json_t *stats_json(const RunResult *result) {
+    const BpRenderReport *report = &result->report;
+    const BpRenderOptions *options = result->options;
+    BpSceneInfo info;
+    bp_scene_info(result->scene, &info);
+    double mean[3];
+    bp_film_mean(result->film, mean);
+    json_t *root =
+        json_pack("{s:o, s:i, s:i, s:I, s:I, s:o, s:I, s:o, s:o}", "scene", bp_json_text(result->scene_path),
+                  "width", (int)info.width, "height", (int)info.height, "samples_per_pixel",
+                  (json_int_t)result->samples_per_pixel, "max_depth", (json_int_t)options->max_depth, "seed",
+                  bp_json_whole(options->seed), "spheres", (json_int_t)info.spheres, "device",
+                  device_json(&report->device), "effects", effects_json(&report->effects));
+    json_t *choices = json_pack("{s:s, s:s, s:s, s:s}", "kernel", bp_kernel_names[report->kernel],
+                                "precision", bp_precision_names[report->precision], "math",
+                                bp_math_names[report->math], "sampler", bp_sampler_names[report->sampler]);
+    json_t *counts =
+        json_pack("{s:o, s:I, s:I, s:[f,f,f], s:o, s:I, s:I}", "seconds", seconds_json(result), "samples",
+                  (json_int_t)report->samples, "rays", (json_int_t)report->segments, "mean_radiance", mean[0],
+                  mean[1], mean[2], "nrmse", json_number(result->nrmse), "invalid_samples",
+                  (json_int_t)report->invalid_samples, "cut_paths", (json_int_t)report->cut_paths);
+    json_t *run =
+        json_pack("{s:s, s:o, s:I, s:i, s:b, s:o, s:s, s:i, s:I, s:I, s:s}", "numerics",
+                  bp_numerics_names[report->numerics], "output", bp_json_text(result->output), "first_sample",
+                  (json_int_t)options->first_sample, "replicates", (int)result->film->replicates, "partial",
+                  result->film->partial, "rounding", json_number(bp_film_rounding(result->film)),
+                  "stopped_by", bp_stop_reason_name(result->stopped_by), "devices", (int)result->device_count,
+                  "device_bytes", (json_int_t)report->device_bytes, "scene_bytes",
+                  (json_int_t)report->scene_bytes, "version", bp_version());
+    uint64_t least, most;
+    double mean_samples;
+    bp_film_sample_counts(result->film, &least, &most, &mean_samples);
+    json_t *pixels =
+        json_pack("{s:b, s:I, s:f, s:I}", "adaptive", options->adaptive, "samples_min", (json_int_t)least,
+                  "samples_mean", mean_samples, "samples_max", (json_int_t)most);
+    const bool whole = root != NULL && choices != NULL && counts != NULL && run != NULL && pixels != NULL &&
+                       json_object_update(root, choices) == 0 && json_object_update(root, counts) == 0 &&
+                       json_object_update(root, run) == 0 && json_object_update(root, pixels) == 0;
+    json_decref(choices);
+    json_decref(counts);
+    json_decref(run);
+    json_decref(pixels);
+    if (whole) return root;
+    json_decref(root);
+    return NULL;
+}
+
+/* ---- rendering until a stop rule says so, or Ctrl-C -------------------------------------------------- */
+
+typedef struct LoopEnd {
+    BpStopReason reason; /* BP_STOP_NOT_YET: interrupted */
+    double seconds;      /* spent here, by the wall clock */
+} LoopEnd;
+
+#define REDRAW_SECONDS 0.1
+
+typedef struct Bar {
+    bool live;
+    double drawn; /* when */
+    char text[512];
+} Bar;
+
+static BpStatus draw(BpStop *stop, const BpProgress *progress, Bar *bar, BpError *err) {
+    const double now = bp_clock_seconds();
+    if (!bar->live || now - bar->drawn < REDRAW_SECONDS) return BP_OK;
+    BpStopEstimate estimate;
+    BP_TRY(bp_stop_estimate(stop, progress, &estimate, err));
+    const BpProgressView view = {.fraction = estimate.fraction,
+                                 .samples_per_second = estimate.samples_per_second,
+                                 .nrmse = estimate.nrmse,
+                                 .seconds_left = estimate.seconds_left};
+    bp_terminal_show(bp_progress_format(&view, bp_terminal_columns(), bp_terminal_has_utf8(), bar->text,
+                                        sizeof bar->text));
+    bar->drawn = now;
+    return BP_OK;
+}
+
+/* `render` has made no step yet. Catches Ctrl-C from here on. `quiet`: no progress bar. */
+static BpStatus run_render(BpRender *render, const BpStopRule *rule, bool quiet, LoopEnd *end, BpError *err) {
+    const double start = bp_clock_seconds();
+    BpStatus status = BP_OK;
+    BpStop *stop = NULL;
+    Bar bar = {.live = bp_terminal_is_live(quiet), .drawn = start};
+    end->reason = BP_STOP_NOT_YET;
+    bp_interrupt_catch();
+    BP_TRY_GOTO(status, bp_stop_create(render, rule, &stop, err), done);
+    while (end->reason == BP_STOP_NOT_YET) {
+        BpProgress progress;
+        BP_TRY_GOTO(status, bp_render_step(render, &progress, err), done);
+        if (!bp_interrupted()) BP_TRY_GOTO(status, draw(stop, &progress, &bar, err), done);
+        BP_TRY_GOTO(status, bp_stop_check(stop, &progress, &end->reason, err), done);
+        if (bp_interrupted()) break; /* with a reason to stop it is no interruption */
+    }
+done:
+    bp_stop_destroy(&stop);
+    end->seconds = bp_clock_seconds() - start;
+    if (bar.drawn > start) bp_terminal_show("");
+    return status;
+}
+
+/* ---- the command -------------------------------------------------------------------------------------- */
 
 static void init_rule(const BpCommandLine *line, const BpScene *scene, const BpRenderOptions *options,
                       BpStopRule *rule) {
@@ -47,7 +204,7 @@ static BpStatus check_adaptive(const BpCommandLine *line, const BpStopRule *rule
         rule->samples_max, rule->samples_max == 1 ? "" : "s", BP_ADAPTIVE_FIRST, BP_ADAPTIVE_MEAN_MIN);
 }
 
-static void print_summary(const BpRunResult *result, const BpStopRule *rule, const BpLoopEnd *end) {
+static void print_summary(const RunResult *result, const BpStopRule *rule, const LoopEnd *end) {
     const BpRenderReport *report = &result->report;
     char samples[32], text[32], all[32], rate[32], count[64];
     BpSceneInfo info;
@@ -119,7 +276,7 @@ static void print_summary(const BpRunResult *result, const BpStopRule *rule, con
 
 /* Picture, statistics and summary of a render that has stopped. */
 static BpStatus deliver(const BpCommandLine *line, const BpResultFile *file, const BpStopRule *rule,
-                        const BpLoopEnd *end, BpRender *render, BpRunResult *result, BpError *err) {
+                        const LoopEnd *end, BpRender *render, RunResult *result, BpError *err) {
     BP_TRY(bp_render_read_film(render, &result->film, err));
     bp_render_report(render, &result->report);
     result->samples_per_pixel = bp_render_samples_done(render);
@@ -139,7 +296,7 @@ static BpStatus deliver(const BpCommandLine *line, const BpResultFile *file, con
     const double write_start = bp_clock_seconds();
     BP_TRY(bp_result_write(line, file, result->film, render, (BpTransfer)result->film->transfer, err));
     result->times.write = bp_clock_seconds() - write_start;
-    if (line->stats != NULL) BP_TRY(bp_json_write(bp_stats_json(result), line->stats, err));
+    if (line->stats != NULL) BP_TRY(bp_json_write(stats_json(result), line->stats, err));
     if (!line->quiet) print_summary(result, rule, end);
     if (end->reason == BP_STOP_TIME && result->samples_per_pixel == 0)
         return bp_fail(
@@ -165,8 +322,8 @@ BpStatus bp_command_render(const BpCommandLine *line, BpError *err) {
     BpRenderOptions options;
     BpSceneInfo info;
     BpStopRule rule;
-    BpLoopEnd end;
-    BpRunResult result = {
+    LoopEnd end;
+    RunResult result = {
         .scene_path = line->operands[0], .times.start = bp_clock_seconds(), .options = &options};
 
     BP_TRY(bp_result_choose(line, line->operands[0], &file, err));
@@ -176,7 +333,7 @@ BpStatus bp_command_render(const BpCommandLine *line, BpError *err) {
     BP_TRY_GOTO(status, bp_setup_scene(line, line->operands[0], &scene, err), done);
     bp_waiting_end(waiting);
     waiting = NULL;
-    BP_TRY_GOTO(status, bp_files_check_scene(line, file.path, scene, err), done);
+    BP_TRY_GOTO(status, bp_file_conflicts_check_scene(line, file.path, scene, err), done);
     result.scene = scene;
     result.times.load = bp_clock_seconds() - result.times.start;
     bp_scene_info(scene, &info);
@@ -198,7 +355,7 @@ BpStatus bp_command_render(const BpCommandLine *line, BpError *err) {
     bp_waiting_end(waiting);
     waiting = NULL;
 
-    BP_TRY_GOTO(status, bp_render_loop(render, &rule, line->quiet, &end, err), done);
+    BP_TRY_GOTO(status, run_render(render, &rule, line->quiet, &end, err), done);
     status = deliver(line, &file, &rule, &end, render, &result, err);
 done:
     bp_waiting_end(waiting);

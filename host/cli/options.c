@@ -1,6 +1,6 @@
 /* options.c: see options.h. */
 #include "commands.h"
-#include "files_apart.h"
+#include "file_conflicts.h"
 
 #include "base/names.h"
 #include "film/film.h"
@@ -264,5 +264,5 @@ BpStatus bp_command_line_parse(int argc, char **argv, BpCommandLine *line, BpErr
         return bp_fail(err, BP_ERR_USAGE,
                        "which command? ballpark --help shows them; to begin: ballpark render SCENE");
     BP_TRY(check_operands(line, err));
-    return bp_files_check_apart(line, NULL, err);
+    return bp_file_conflicts_check(line, NULL, err);
 }

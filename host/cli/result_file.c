@@ -1,7 +1,7 @@
 /* result_file.c: see result_file.h. */
 #include "result_file.h"
 
-#include "files_apart.h"
+#include "file_conflicts.h"
 
 #include "base/format.h"
 #include "base/output_file.h"
@@ -54,7 +54,7 @@ static BpStatus choose_output(const BpCommandLine *line, const char *default_pat
                        "a scene from standard input has no name for its picture to take: say --output FILE");
     if (line->output == NULL) {
         BP_TRY(default_name(default_path, result->format, result, err));
-        BP_TRY(bp_files_check_apart(line, result->path, err));
+        BP_TRY(bp_file_conflicts_check(line, result->path, err));
         return bp_output_check(result->path, err);
     }
     const size_t length = strlen(line->output);

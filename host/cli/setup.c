@@ -1,10 +1,10 @@
 /* setup.c: see setup.h. */
 #include "setup.h"
 
-#include "apart.h"
 #include "base/plural.h"
 #include "base/shown.h"
-#include "files_apart.h"
+#include "child_process.h"
+#include "file_conflicts.h"
 #include "formats/input_file.h"
 #include "opencl/pocl.h"
 #include "opencl/self_test.h"
@@ -34,7 +34,7 @@ static BpStatus load(const char *path, BpScene **scene, BpError *err) {
 
 BpStatus bp_setup_load(const BpCommandLine *line, const char *path, BpScene **scene, BpError *err) {
     BP_TRY(load(path, scene, err));
-    const BpStatus status = bp_files_check_scene(line, NULL, *scene, err);
+    const BpStatus status = bp_file_conflicts_check_scene(line, NULL, *scene, err);
     if (status != BP_OK) bp_scene_destroy(scene);
     return status;
 }
@@ -100,7 +100,7 @@ static BpStatus all_devices(BpDeviceInfo **devices, size_t *count, BpError *err)
     return status != BP_OK ? status : bp_fail(err, BP_ERR_DEVICE, "no OpenCL device that can render");
 }
 
-/* Work for bp_run_apart. What goes wrong in other ways is left to be told when it happens again. */
+/* Work for bp_run_in_child. What goes wrong in other ways is left to be told when it happens again. */
 static bool try_device(void *argument, FILE *out) {
     BpDeviceInfo device;
     (void)out;
@@ -114,7 +114,7 @@ BpStatus bp_setup_try_device(const char *name, BpError *err) {
     size_t size = 0;
     if (bp_pocl_finds_linker()) return BP_OK;
     snprintf(copy, sizeof copy, "%s", name != NULL ? name : "");
-    BP_TRY(bp_run_apart(try_device, copy, &bytes, &size, failure, err));
+    BP_TRY(bp_run_in_child(try_device, copy, &bytes, &size, failure, err));
     free(bytes);
     if (failure[0] == '\0') return BP_OK;
     return bp_fail(err, BP_ERR_DEVICE, "the OpenCL driver %s", failure);

@@ -1,5 +1,5 @@
-/* apart.c: see apart.h. */
-#include "apart.h"
+/* child_process.c: see child_process.h. */
+#include "child_process.h"
 
 #include "interrupt.h"
 #include "opencl/pocl.h"
@@ -44,8 +44,8 @@ static BpStatus read_all(int descriptor, char **bytes, size_t *size, BpError *er
     return BP_OK;
 }
 
-BpStatus bp_run_apart(bool (*work)(void *argument, FILE *out), void *argument, char **bytes, size_t *size,
-                      char failure[256], BpError *err) {
+BpStatus bp_run_in_child(bool (*work)(void *argument, FILE *out), void *argument, char **bytes, size_t *size,
+                         char failure[256], BpError *err) {
     int ends[2];
     *bytes = NULL;
     *size = 0;

@@ -1,5 +1,5 @@
-/* files_apart.c: see files_apart.h. */
-#include "files_apart.h"
+/* file_conflicts.c: see file_conflicts.h. */
+#include "file_conflicts.h"
 
 #include "base/output_target.h"
 #include "commands.h"
@@ -36,7 +36,7 @@ static BpStatus refuse(const Result *result, const char *what, BpError *err) {
                    strcmp(result->path, "-") == 0 ? "(standard output)" : result->path, what);
 }
 
-BpStatus bp_files_check_apart(const BpCommandLine *line, const char *picture, BpError *err) {
+BpStatus bp_file_conflicts_check(const BpCommandLine *line, const char *picture, BpError *err) {
     Result results[RESULTS];
     list_results(line, picture, results);
     const bool merges = strcmp(line->command->name, "merge") == 0;
@@ -56,8 +56,8 @@ BpStatus bp_files_check_apart(const BpCommandLine *line, const char *picture, Bp
     return BP_OK;
 }
 
-BpStatus bp_files_check_scene(const BpCommandLine *line, const char *picture, const BpScene *scene,
-                              BpError *err) {
+BpStatus bp_file_conflicts_check_scene(const BpCommandLine *line, const char *picture, const BpScene *scene,
+                                       BpError *err) {
     Result results[RESULTS];
     BpStatus status = BP_OK;
     list_results(line, picture, results);
