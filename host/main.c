@@ -27,7 +27,8 @@ static bool has_word(const char *text, const char *word) {
 static void print_error(const BpError *err, BpStatus status) {
     /* A message about a file as a whole often names it already. */
     const bool names_file = err->line == 0 && has_word(err->message, err->file);
-    fputs("ballpark: ", stderr);
+    /* "ballpark render: missing SCENE" names the program already. */
+    if (err->file[0] != '\0' || strncmp(err->message, "ballpark ", 9) != 0) fputs("ballpark: ", stderr);
     if (err->file[0] != '\0' && !names_file) {
         bp_show(err->file, false, stderr);
         if (err->line > 0) fprintf(stderr, ":%d", err->line);

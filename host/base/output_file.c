@@ -126,8 +126,7 @@ BpStatus bp_output_commit(BpOutputFile *file, BpError *err) {
     if (left != NULL) {
         const size_t used = err != NULL ? strlen(err->message) : 0;
         if (err != NULL)
-            snprintf(err->message + used, sizeof err->message - used,
-                     "; what was to be written is whole, as %s", left);
+            snprintf(err->message + used, sizeof err->message - used, "; the complete result is in %s", left);
         free(left);
     }
     bp_output_discard(file);

@@ -17,12 +17,12 @@ const char *bp_output_remedy(int error_number) {
     case ENOENT:
         return "; create the folder first, or choose another with -o";
     case ENOTDIR:
-        return "; a part of the path is a file where a folder should be";
+        return "; part of the path is a file, not a folder";
     case EACCES:
     case EPERM:
         return "; change the permissions, or choose another place with -o";
     case EROFS:
-        return "; choose a place that can be written with -o";
+        return "; choose a writable place with -o";
     case ENOSPC:
     case EDQUOT:
         return "; make room, or choose another place with -o";

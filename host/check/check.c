@@ -24,10 +24,9 @@ BpStatus bp_check_create(const BpScene *scene, const BpCheckOptions *options, co
                          BpCheck **check_out, BpError *err) {
     *check_out = NULL;
     if (options->render.samples_per_pixel < 2)
-        return bp_fail(err, BP_ERR_USAGE,
-                       "a check needs at least 2 samples a pixel, since its noise is measured");
+        return bp_fail(err, BP_ERR_USAGE, "a check needs at least 2 samples per pixel to measure noise");
     if (options->render.sampler != BP_SAMPLER_INDEPENDENT)
-        return bp_fail(err, BP_ERR_USAGE, "a check needs independent samples: --sampler independent");
+        return bp_fail(err, BP_ERR_USAGE, "a check needs --sampler independent");
     BpCheck *check = calloc(1, sizeof *check);
     if (check == NULL) return bp_fail(err, BP_ERR_MEMORY, "out of memory for a check");
     check->scene = scene;

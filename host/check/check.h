@@ -1,6 +1,6 @@
-/* check.h: one scene by the kernel and by the reference tracer, with equal samples, and the verdict on them.
+/* check.h: renders a scene with the kernel and with the reference tracer, and compares the two.
  *
- * In:    Scene, options, a device.   Out: both sums, the verdict.
+ * In:    Scene, options, a device.   Out:   the sums of both, the verdict.
  * Knows: the render loop, the reference.   Does not know: OpenCL, the command line, files.
  *
  * The result depends on scene, samples, seed and device, not on chunks, threads or the machine's load. */

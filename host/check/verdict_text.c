@@ -23,34 +23,35 @@ const char *bp_verdict_family_name(BpVerdictFamily family) {
 
 static void print_verdict(FILE *out, const BpVerdict *v) {
     static const char *channels[3] = {"red", "green", "blue"};
-    fprintf(out, "%s (a right kernel is rejected with probability %g at most)\n",
-            v->agree ? "agree" : "DISAGREE", v->level);
+    fprintf(out, "%s (at most 1 false alarm in %.0f)\n", v->agree ? "agree" : "DISAGREE", 1 / v->level);
     for (int f = 0; f < BP_FAMILIES; ++f) {
         const BpVerdictTest *test = &v->worst[f];
-        fprintf(out, "  %-17s largest |z| %8.2f of %.2f allowed%s: %s",
+        fprintf(out, "  %-17s |z| %.2f of %.2f allowed%s: %s, %.4g vs. %.4g",
                 bp_verdict_family_name((BpVerdictFamily)f), test->z, test->limit,
-                test->z > test->limit ? ", EXCEEDED" : "", channels[test->channel]);
+                test->z > test->limit ? ", EXCEEDED" : "", channels[test->channel], test->kernel,
+                test->reference);
         if (f == BP_FAMILY_BLOCKS || f == BP_FAMILY_BLOCKS_SQUARES)
-            fprintf(out, ", block (%u, %u) of %u x %u", test->column, test->row, v->block_columns,
-                    v->block_rows);
-        fprintf(out, ", %.6g against %.6g%s\n", test->kernel, test->reference,
-                test->counted ? " (too few lit samples for means: numbers compared)" : "");
+            fprintf(out, ", block %u,%u", test->column, test->row);
+        fputs(test->counted
+                  ? "\n                    (too few lit samples to compare means: counts compared)\n"
+                  : "\n",
+              out);
     }
     if (isnan(v->ratio_low))
-        fprintf(out, "  brightness        no ratio: the picture is black or its noise too large\n");
+        fprintf(out, "  brightness        no ratio: the picture is black or too noisy\n");
     else
-        fprintf(
-            out,
-            "  brightness        kernel / reference %.6f, 95 %% interval %.6f to %.6f: %s within %.1f %%\n",
-            v->ratio, v->ratio_low, v->ratio_high, v->equivalent ? "shown equal" : "NOT shown equal",
-            100 * BP_VERDICT_MARGIN);
+        fprintf(out,
+                "  brightness        kernel / reference %.6f, 95 %% interval %.6f to %.6f:\n                 "
+                "   %s within %.1f %%\n",
+                v->ratio, v->ratio_low, v->ratio_high, v->equivalent ? "equal" : "NOT SHOWN equal",
+                100 * BP_VERDICT_MARGIN);
     if (!isnan(v->smallest_bias))
-        fprintf(out, "  power             a bias of %.3f %% would have been found with probability %.2g\n",
+        fprintf(out, "  power             would detect a bias of %.3f %% with probability %.2g\n",
                 100 * v->smallest_bias, BP_VERDICT_POWER);
-    fprintf(out, "  sums              the picture is within %.1g of its samples' means, %.1g allowed%s\n",
+    fprintf(out, "  sums              differs by %.1g from its samples' means, %.1g allowed%s\n",
             v->picture_off, BP_VERDICT_PICTURE_OFF,
             v->picture_off <= BP_VERDICT_PICTURE_OFF ? "" : ", EXCEEDED");
-    fprintf(out, "  invalid samples   %llu of the kernel, %llu of the reference; %llu samples in all\n",
+    fprintf(out, "  invalid samples   %llu in the kernel, %llu in the reference, of %llu samples\n",
             (unsigned long long)v->invalid_kernel, (unsigned long long)v->invalid_reference,
             (unsigned long long)v->samples);
     fprintf(out, "  path length       %.4f and %.4f segments\n", v->segments_kernel, v->segments_reference);

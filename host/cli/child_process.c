@@ -11,11 +11,11 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
-/* Exit codes of the child: it did its work; it failed and wrote why. */
+/* Exit codes of the child: the work succeeded; it failed and wrote the reason. */
 enum { CHILD_DONE = 0, CHILD_FAILED = 1 };
 
 static _Noreturn void be_child(bool (*work)(void *argument, FILE *out), void *argument, int descriptor) {
-    bp_interrupt_install(); /* the thread that waits for signals has stayed with the parent */
+    bp_interrupt_install(); /* fork does not copy the thread that waits for signals */
     FILE *out = fdopen(descriptor, "w");
     if (out == NULL) _exit(CHILD_FAILED);
     const bool good = work(argument, out);
@@ -37,7 +37,7 @@ static BpStatus read_all(int descriptor, char **bytes, size_t *size, BpError *er
         if (larger == NULL) free(text);
         text = larger;
     }
-    if (text == NULL) return bp_fail(err, BP_ERR_MEMORY, "out of memory for the answer of a process");
+    if (text == NULL) return bp_fail(err, BP_ERR_MEMORY, "out of memory for the output of a child process");
     text[used] = '\0';
     *bytes = text;
     *size = used;
@@ -69,15 +69,14 @@ BpStatus bp_run_in_child(bool (*work)(void *argument, FILE *out), void *argument
     }
     if (WIFSIGNALED(ended) && WTERMSIG(ended) == SIGABRT && !bp_pocl_finds_linker())
         snprintf(failure, 256,
-                 "crashed: %s; PoCL, the driver for processors, needs the linker `ld`, which is nowhere in "
-                 "PATH: install "
-                 "binutils, or add the folder of `ld` to PATH",
+                 "crashed: %s; PoCL, the driver for CPUs, needs the linker `ld`, which is not in PATH: "
+                 "install binutils, or add the folder of `ld` to PATH",
                  strsignal(SIGABRT));
     else if (WIFSIGNALED(ended))
         snprintf(failure, 256, "crashed: %s", strsignal(WTERMSIG(ended)));
     else if (WEXITSTATUS(ended) > CHILD_FAILED)
         snprintf(failure, 256, "its driver ended the process with exit code %d", WEXITSTATUS(ended));
     else if (WEXITSTATUS(ended) == CHILD_FAILED)
-        snprintf(failure, 256, "%s", status == BP_OK && *size > 0 ? *bytes : "failed without a word");
+        snprintf(failure, 256, "%s", status == BP_OK && *size > 0 ? *bytes : "failed without a message");
     return status;
 }

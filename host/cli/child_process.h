@@ -1,10 +1,11 @@
-/* child_process.h: work in a process of its own, so that a driver that crashes takes nothing with it.
+/* child_process.h: runs a function in a child process, so that a driver that crashes does not end the
+ * program.
  *
  * In:    a function and its argument.   Out: the bytes that it wrote, or how its process ended.
- * Knows: processes, pipes.              Does not know: what is done there.
+ * Knows: processes, pipes, PoCL's need of a linker (for the message).   Does not know: what the function
+ * does.
  *
- * Drivers start threads that do not survive a fork: call this only before the present process has touched
- * OpenCL. */
+ * Drivers start threads, which do not survive a fork: call this only before this process has used OpenCL. */
 #ifndef BP_CLI_CHILD_PROCESS_H
 #define BP_CLI_CHILD_PROCESS_H
 

@@ -161,26 +161,26 @@ static BpStatus trace_to(BpRender *render, uint64_t samples, BpError *err) {
     do {
         BP_TRY(bp_render_step(render, &progress, err));
         if (bp_interrupted())
-            return bp_fail(err, BP_ERR_INTERRUPTED, "interrupted; figures of a part of a run mean nothing");
+            return bp_fail(err, BP_ERR_INTERRUPTED, "interrupted; incomplete measurements were discarded");
     } while (!progress.finished);
     return BP_OK;
 }
 
-/* The counts of a render are whole once its film was read. */
+/* The counts of a render are complete only after its film has been read. */
 static BpStatus read_report(BpRender *render, BpRenderReport *report, const BpFilm **film, BpError *err) {
     BP_TRY(bp_render_read_film(render, film, err));
     bp_render_report(render, report);
     return BP_OK;
 }
 
-/* Seconds that tracing would take of a machine with nothing else to do: for a CPU, the processor time spread
- * over its cores, so that other work on the machine does not make the stretch short. */
+/* Seconds that tracing would take on an otherwise idle machine: for a CPU, the processor time divided by its
+ * cores, so that other work on the machine does not shorten the measurement. */
 static double own_seconds(const BpRenderReport *report, double wall, double cpu) {
     const double spread = cpu / fmax(1.0, report->device.compute_units);
     return report->device.type == BP_DEVICE_CPU ? fmin(wall, spread) : wall;
 }
 
-/* Whole passes only: the rows of a picture cost differently. */
+/* Only whole passes are timed, since the rows of a picture differ in cost. */
 static BpStatus trace(BpRender *render, double seconds, Run *run, BpError *err) {
     const BpFilm *film = NULL;
     BpRenderReport before;
@@ -209,7 +209,7 @@ static BpStatus trace(BpRender *render, double seconds, Run *run, BpError *err) 
     bp_film_mean(film, run->mean);
     run->nrmse = bp_film_nrmse(film);
     if (run->segments == 0)
-        return bp_fail(err, BP_ERR_USAGE, "no ray was traced; a depth of 0 has nothing to measure");
+        return bp_fail(err, BP_ERR_USAGE, "no rays to measure; use a --depth of at least 1");
     return BP_OK;
 }
 
@@ -347,7 +347,7 @@ static BpStatus print_table(const Bench *bench, BpError *err) {
     printf("%-12s %11s %9s %9s %9s %10s %11s %9s %9s %9s %8s\n", "scene", "spheres", "load", "tree", "kernel",
            "Msamples/s", "Msegments/s", "ns/segm.", "CPU ns", "spread", "B/sphere");
     for (size_t i = 0; i < bench->count; ++i) print_row(bench, &bench->entries[i]);
-    printf("medians of %u round%s; spread: between the quartiles; CPU ns: processor time a segment, all "
+    printf("medians of %u round%s; spread: between the quartiles; CPU ns: processor time per segment, all "
            "threads\n",
            bench->rounds, bp_plural(bench->rounds));
     if (fflush(stdout) != 0 || ferror(stdout))
@@ -418,7 +418,7 @@ static BpStatus open_folder(const BpCommandLine *line, Bench *bench, BpError *er
     bench->folder = line->output != NULL ? line->output : bench->own.path;
     if (line->output == NULL) return bp_temporary_folder_make(&bench->own, err);
     if (mkdir(line->output, 0777) != 0 && errno != EEXIST)
-        return bp_fail(err, BP_ERR_FILE, "cannot make the folder %s: %s", line->output, strerror(errno));
+        return bp_fail(err, BP_ERR_FILE, "cannot create the folder %s: %s", line->output, strerror(errno));
     return BP_OK;
 }
 
@@ -436,10 +436,9 @@ static BpStatus prepare(const BpCommandLine *line, Bench *bench, BpError *err) {
         entry->name = line->operand_count > 0 ? line->operands[i] : fixed_scene_names[i];
         entry->fixed = is_fixed_scene(entry->name);
         if (strcmp(entry->name, "-") == 0)
-            return bp_fail(
-                err, BP_ERR_USAGE,
-                "ballpark bench reads a scene again in every round, standard input (\"-\") can be read once "
-                "only: name a file");
+            return bp_fail(err, BP_ERR_USAGE,
+                           "ballpark bench: expected a file, found \"-\" (standard input), which cannot be "
+                           "read again in every round");
         if (!entry->fixed) {
             snprintf(entry->path, sizeof entry->path, "%s", entry->name);
             continue;

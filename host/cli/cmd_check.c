@@ -78,7 +78,7 @@ static json_t *result_json(const BpCheckResult *result) {
         result->reference_seconds, "picture", "off", number(v->picture_off), "limit", BP_VERDICT_PICTURE_OFF);
 }
 
-/* One device that gave no result: `message` says why. */
+/* One device that no result was returned: `message` says why. */
 static json_t *failure_json(const BpDeviceInfo *device, const char *message) {
     return json_pack("{s:o, s:o}", "device", device_json(device), "error", bp_json_text(message));
 }
@@ -95,7 +95,7 @@ static json_t *document_json(const BpScene *scene, const BpCheckOptions *options
 static void table_row(const json_t *entry, FILE *out) {
     const json_t *device = json_object_get(entry, "device");
     fprintf(out, "%3d  %-9s  ", (int)json_integer_value(json_object_get(device, "number")),
-            json_object_get(entry, "error") != NULL         ? "BROKEN"
+            json_object_get(entry, "error") != NULL         ? "FAILED"
             : json_is_true(json_object_get(entry, "agree")) ? "agree"
                                                             : "DISAGREE");
     const json_t *ratio = json_object_get(json_object_get(entry, "brightness"), "ratio");
@@ -179,7 +179,7 @@ static BpStatus check_device(const CheckTask *task, FILE *shown, json_t **report
         BP_TRY_GOTO(status, bp_check_step(check, &progress, err), done);
         if (live) show_progress(&progress);
         if (bp_interrupted()) {
-            status = bp_fail(err, BP_ERR_INTERRUPTED, "interrupted before there was a verdict");
+            status = bp_fail(err, BP_ERR_INTERRUPTED, "interrupted before a verdict was reached");
             goto done;
         }
     }
@@ -196,7 +196,7 @@ static BpStatus check_device(const CheckTask *task, FILE *shown, json_t **report
         bp_show(result->report.device.name, false, shown);
         fputs(" (", shown);
         bp_show(result->report.device.platform, false, shown);
-        fprintf(shown, "), %ux%u pixels, %llu sample%s each: %s", result->kernel.width, result->kernel.height,
+        fprintf(shown, ")\n%ux%u pixels, %llu sample%s each: %s", result->kernel.width, result->kernel.height,
                 (unsigned long long)task->options->render.samples_per_pixel,
                 bp_plural(task->options->render.samples_per_pixel), text);
     }
@@ -273,7 +273,7 @@ static BpStatus check_all(CheckTask *task, json_t *results, bool *agree, bool *b
             status = bp_run_in_child(check_in_child, task, &text, &size, failure, err);
             if (status == BP_OK && failure[0] == '\0') entry = json_loads(text, 0, NULL);
             if (status == BP_OK && entry == NULL)
-                entry = failure_json(&devices[d], failure[0] != '\0' ? failure : "gave no result");
+                entry = failure_json(&devices[d], failure[0] != '\0' ? failure : "no result was returned");
         }
         if (json_object_get(entry, "error") != NULL)
             *broken = true;
@@ -293,7 +293,7 @@ static BpStatus check_all(CheckTask *task, json_t *results, bool *agree, bool *b
 static BpStatus find_map_format(const BpCommandLine *line, CheckTask *task, BpError *err) {
     if (line->map == NULL) return BP_OK;
     if (!bp_format_from_path(line->map, &task->map_format) || task->map_format == BP_FORMAT_BPA)
-        return bp_fail(err, BP_ERR_USAGE, "--map %s: a picture's name ends in .png, .ppm, .pfm or .exr",
+        return bp_fail(err, BP_ERR_USAGE, "--map %s: expected a name that ends in .png, .ppm, .pfm or .exr",
                        line->map);
     task->map = line->map;
     return bp_output_check(line->map, err);
@@ -341,7 +341,7 @@ BpStatus bp_command_check(const BpCommandLine *line, BpError *err) {
     if (!agree)
         status = bp_fail(err, BP_ERR_DISAGREE, "%s: kernel and reference disagree", scene->path);
     else if (broken)
-        status = bp_fail(err, BP_ERR_DEVICE, "%s: a device broke before it could be checked", scene->path);
+        status = bp_fail(err, BP_ERR_DEVICE, "%s: a device failed before it could be checked", scene->path);
 done:
     json_decref(results);
     bp_scene_destroy(&scene);

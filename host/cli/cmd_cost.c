@@ -25,7 +25,7 @@ static void show_progress(const BpStudyProgress *progress) {
     bp_terminal_show(progress->finished ? "" : text);
 }
 
-/* Ctrl-C ends a study early; what every configuration has reached by then is a result. */
+/* Ctrl-C ends a study early; the results are those that every configuration has reached by then. */
 static BpStatus run_study(const BpCommandLine *line, BpStudy *study, BpError *err) {
     BpStudyProgress progress = {0};
     const bool live = bp_terminal_is_live(line->quiet);
@@ -74,12 +74,12 @@ static BpStatus deliver(const BpCommandLine *line, const BpStudyResult *result, 
     if (line->json != NULL) BP_TRY(bp_json_write(bp_study_json(result), line->json, err));
     if (!to_stdout) BP_TRY(write_file(result, "-", bp_study_print, err));
     if (result->cut_short)
-        return bp_fail(err, BP_ERR_INTERRUPTED, "interrupted; these figures are of the first %.0f seconds",
+        return bp_fail(err, BP_ERR_INTERRUPTED, "interrupted; these results are from the first %.0f seconds",
                        result->seconds);
     return BP_OK;
 }
 
-/* The study's size: --width, else the scene's, unless that is much larger than telling errors apart takes. */
+/* Loads the scene at the size of the study: --width, otherwise the scene's width, up to a limit. */
 static BpStatus load_scene(const BpCommandLine *line, BpScene **scene, BpSceneInfo *full, BpError *err) {
     BP_TRY(bp_setup_load(line, line->operands[0], scene, err));
     bp_scene_info(*scene, full);
@@ -92,7 +92,8 @@ static BpStatus find_device(const BpCommandLine *line, BpDeviceInfo *device, BpE
     BpDeviceInfo *devices = NULL;
     size_t count = 0;
     if (line->device != NULL && strcmp(line->device, "all") == 0)
-        return bp_fail(err, BP_ERR_USAGE, "--device all: a study is of one device; name or number it");
+        return bp_fail(err, BP_ERR_USAGE,
+                       "--device all: ballpark cost measures one device; give its number or name");
     BP_TRY(bp_setup_devices(line, &devices, &count, err));
     *device = devices[0];
     free(devices);

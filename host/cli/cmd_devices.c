@@ -46,8 +46,8 @@ static void fill_row(const BpDeviceInfo *info, bool is_default, Cells cells) {
 }
 
 static BpStatus print_table(const BpDeviceInfo *list, size_t count, unsigned default_number, BpError *err) {
-    static const Cells head = {"",       "type",          "name",   "units",
-                               "memory", "largest piece", "double", "platform and driver"};
+    static const Cells head = {"",       "type",           "name",   "units",
+                               "memory", "largest buffer", "double", "platform and driver"};
     static const bool right[COLUMNS] = {true, false, false, true, true, true, false, false};
     Cells *rows = malloc((count + 1) * sizeof *rows);
     if (rows == NULL) return bp_fail(err, BP_ERR_MEMORY, "out of memory for a table of %zu devices", count);
@@ -67,7 +67,7 @@ static BpStatus print_table(const BpDeviceInfo *list, size_t count, unsigned def
         }
     }
     free(rows);
-    if (default_number != UINT32_MAX) printf("* used unless --device says otherwise\n");
+    if (default_number != UINT32_MAX) printf("* default device\n");
     return BP_OK;
 }
 

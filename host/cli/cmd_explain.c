@@ -55,7 +55,7 @@ static const char *outcome(const BpPathStep *step, BpMaterialKind kind) {
     if (!step->goes_on) {
         if (kind == BP_MATERIAL_DIFFUSE_LIGHT) return "a lamp: the path ends";
         if (kind == BP_MATERIAL_NORMALS) return "shows its normal: the path ends";
-        return "absorbs the path";
+        return "absorbs it";
     }
     if (kind == BP_MATERIAL_DIELECTRIC) {
         if (step->enters) return step->inward ? "refracts it into the sphere" : "reflects it";
@@ -78,24 +78,24 @@ static void print_path(const BpScene *scene, const BpPathLog *path, uint32_t x, 
                step->origin[1], step->origin[2], step->direction[0], step->direction[1], step->direction[2]);
         if (step->met) {
             const BpMaterial *material = &scene->materials[step->material];
-            printf("       after %.6g meets sphere %" PRIu32 " from %s at (%.6g, %.6g, %.6g)\n",
+            printf("       after %.6g hits sphere %" PRIu32 " from %s at (%.6g, %.6g, %.6g)\n",
                    step->distance, step->sphere, step->enters ? "outside" : "inside", step->point[0],
                    step->point[1], step->point[2]);
             fputs("       ", stdout);
             bp_show(material->name, false, stdout);
             printf(" (%s) %s", kind_name(material->kind), outcome(step, material->kind));
             if (step->goes_on)
-                printf(", with (%.4g, %.4g, %.4g) of its light", step->throughput[0], step->throughput[1],
+                printf(", throughput (%.4g, %.4g, %.4g)", step->throughput[0], step->throughput[1],
                        step->throughput[2]);
             printf("\n");
         } else {
-            printf("       meets nothing: the sky\n");
+            printf("       hits nothing: the sky\n");
         }
         radiance = step->radiance;
     }
-    if (path->cut) printf("       the depth cap ends it here\n");
-    if (path->count == 0) printf("       no segment at all: the depth cap is 0\n");
-    printf("  the sample: (%.6g, %.6g, %.6g)%s\n", radiance[0], radiance[1], radiance[2],
+    if (path->cut) printf("       the depth limit cuts the path here\n");
+    if (path->count == 0) printf("       no segments: the depth limit is 0\n");
+    printf("  radiance of the sample: (%.6g, %.6g, %.6g)%s\n", radiance[0], radiance[1], radiance[2],
            is_black(radiance) ? ", black" : "");
 }
 
@@ -177,13 +177,13 @@ static void print_costs(const BpCosts *costs) {
     printf(", %s kernel, %ux%u, %u rounds of %s samples%s\n", bp_kernel_names[costs->form], costs->width,
            costs->height, costs->rounds, bp_format_count((double)costs->samples, rate, sizeof rate),
            costs->device.type == BP_DEVICE_CPU ? ", processor time" : "");
-    printf("  %-18s %6s %15s\n", "kernel", "time", "half within");
+    printf("  %-18s %6s %15s\n", "kernel", "time", "quartiles");
     for (size_t k = 0; k < costs->kernel_count; ++k) {
         const BpKernelCost *kernel = &costs->kernels[k];
         printf("  %-18s %6.3f", kernel->name, kernel->ratio);
         if (k == 0)
             printf("  %s samples/s%s\n", bp_format_count(kernel->samples_per_second, rate, sizeof rate),
-                   costs->device.type == BP_DEVICE_CPU ? " a core" : "");
+                   costs->device.type == BP_DEVICE_CPU ? " per core" : "");
         else {
             printf(" %6.3f .. %5.3f  ", kernel->low, kernel->high);
             print_bar(kernel->ratio, columns, utf8);
@@ -193,7 +193,7 @@ static void print_costs(const BpCosts *costs) {
     for (size_t k = 0; k < costs->kernel_count; ++k) {
         const BpKernelCost *kernel = &costs->kernels[k];
         if (isnan(kernel->cold_seconds)) continue;
-        printf("  %s: ready to trace in %.2f s, %.2f s once the driver has kept it", kernel->name,
+        printf("  %s: ready to trace in %.2f s, in %.2f s from the driver's cache", kernel->name,
                kernel->cold_seconds, kernel->warm_seconds);
         if (kernel->registers > 0) printf("; %llu registers", (unsigned long long)kernel->registers);
         if (kernel->private_bytes > 0)
@@ -367,7 +367,8 @@ BpStatus bp_command_explain(const BpCommandLine *line, BpError *err) {
     if (line->measure || bp_option_given(line, BP_OPTION_PIXEL)) {
         BP_TRY(bp_setup_devices(line, &devices, &device_count, err));
         if (device_count > 1) {
-            status = bp_fail(err, BP_ERR_USAGE, "--device all: explain looks at one device at a time");
+            status = bp_fail(err, BP_ERR_USAGE,
+                             "--device all: ballpark explain uses one device; give its number or name");
             goto done;
         }
         BP_TRY_GOTO(status, bp_setup_self_test(line, devices, device_count, err), done);

@@ -18,7 +18,7 @@ enum { GRID_DEFAULT = 11, FIELD_COUNT_DEFAULT = 1000000, SEED_DEFAULT = 1 };
 
 static BpStatus refuse(const BpCommandLine *line, BpOption option, const char *name, BpError *err) {
     if (!bp_option_given(line, option)) return BP_OK;
-    return bp_fail(err, BP_ERR_USAGE, "generate %s does not take %s", line->operands[0], name);
+    return bp_fail(err, BP_ERR_USAGE, "ballpark generate: %s does not take %s", line->operands[0], name);
 }
 
 static BpStatus generate_cover(const BpCommandLine *line, uint64_t seed, BpError *err) {
@@ -44,8 +44,9 @@ static BpStatus generate_field(const BpCommandLine *line, uint64_t seed, BpError
     const char *path = line->output != NULL ? line->output : "field.ply";
     const uint64_t count = bp_option_given(line, BP_OPTION_COUNT) ? line->count : FIELD_COUNT_DEFAULT;
     if (strcmp(path, "-") == 0)
-        return bp_fail(err, BP_ERR_USAGE,
-                       "--output -: a field is written to a file; name one ending in .ply");
+        return bp_fail(
+            err, BP_ERR_USAGE,
+            "--output -: a field cannot be written to standard output; give a file that ends in .ply");
     BP_TRY(bp_output_check(path, err));
     BP_TRY(bp_field_write_ply(count, seed, path, err));
     if (line->quiet) return BP_OK;

@@ -1,7 +1,7 @@
 /* cmd_merge.c: `ballpark merge`.
  *
- * In:    films of disjoint samples.   Out: the picture, or the film, of them all.
- * Knows: files, in which order they are added.   Does not know: how sums are added. */
+ * In:    .bpa files of disjoint samples.   Out: one picture or .bpa file of all samples.
+ * Knows: files, the order in which they are added.   Does not know: how sums are added. */
 #include "commands.h"
 
 #include "base/format.h"
@@ -15,7 +15,7 @@
 #include <stdio.h>
 #include <string.h>
 
-/* A name for a sample range: "0 to 499", or the first of several. */
+/* "0 to 499, 1000 to 1499", or "none". */
 static void describe_ranges(const BpFilm *film, char *text, size_t size) {
     size_t used = 0;
     text[0] = '\0';
@@ -34,7 +34,8 @@ static bool ranges_overlap(const BpFilm *a, const BpFilm *b) {
     return false;
 }
 
-/* Which of the files before `at` has samples of `from` already: the merged sums no longer know. */
+/* The file before `at` that already has some of the samples of `from`, or NULL. The merged sums do not tell.
+ */
 static const char *find_overlap(const BpCommandLine *line, size_t at, const BpFilm *from) {
     for (size_t f = 0; f < at; ++f) {
         BpFilm *other = NULL;
@@ -52,15 +53,10 @@ static BpStatus add_file(const BpCommandLine *line, size_t at, BpFilm *sum, BpEr
     BpStatus status = bp_film_merge(sum, from, err);
     if (status != BP_OK) {
         const char *other = find_overlap(line, at, from);
-        char ranges[120], reason[sizeof err->message];
-        describe_ranges(from, ranges, sizeof ranges);
+        char reason[sizeof err->message];
         snprintf(reason, sizeof reason, "%s", err != NULL ? err->message : "");
-        if (other != NULL)
-            bp_fail(err, status, "%s (samples %s) and %s have samples in common: %.300s", line->operands[at],
-                    ranges, other, reason);
-        else
-            bp_fail(err, status, "%s does not go with %s: %.600s", line->operands[at], line->operands[0],
-                    reason);
+        bp_fail(err, status, "cannot merge %s and %s: %.600s", line->operands[at],
+                other != NULL ? other : line->operands[0], reason);
     }
     bp_film_destroy(&from);
     return status;
@@ -71,23 +67,23 @@ BpStatus bp_command_merge(const BpCommandLine *line, BpError *err) {
     BpFilm *sum = NULL;
     BpResultFile result;
     if (line->output == NULL)
-        return bp_fail(err, BP_ERR_USAGE, "ballpark merge needs --output FILE: a picture, or another .bpa");
+        return bp_fail(err, BP_ERR_USAGE,
+                       "ballpark merge: missing --output FILE: a picture, or another .bpa file");
     BP_TRY(bp_result_choose(line, line->operands[0], &result, err));
     BP_TRY_GOTO(status, bp_film_read(line->operands[0], &sum, err), done);
     for (size_t f = 1; f < line->operand_count; ++f) BP_TRY_GOTO(status, add_file(line, f, sum, err), done);
     BP_TRY_GOTO(status, bp_result_write(line, &result, sum, NULL, (BpTransfer)sum->transfer, err), done);
     if (!line->quiet && result.format == BP_FORMAT_EXR)
-        fprintf(stderr,
-                "depth, normals and albedo follow from the scene, of which films hold nothing: left out; "
-                "ballpark render -o FILE.exr has them\n");
+        fprintf(stderr, "depth, normals and albedo omitted: .bpa files do not store the scene; `ballpark "
+                        "render -o FILE.exr` writes them\n");
     if (!line->quiet) {
         char nrmse[32], ranges[120];
         bp_format_percent(bp_film_nrmse(sum), nrmse, sizeof nrmse);
         describe_ranges(sum, ranges, sizeof ranges);
         bp_show(bp_result_name(&result), false, stderr);
-        fprintf(stderr, ": %" PRIu32 "x%" PRIu32 ", %" PRIu64 " sample%s a pixel (%s%s), error %s\n",
+        fprintf(stderr, ": %" PRIu32 "x%" PRIu32 ", %" PRIu64 " sample%s per pixel (%s%s), noise %s\n",
                 sum->width, sum->height, bp_film_range_total(sum), bp_plural(bp_film_range_total(sum)),
-                ranges, sum->partial ? ", not all of them in every pixel" : "", nrmse);
+                ranges, sum->partial ? ", incomplete in some pixels" : "", nrmse);
     }
     if (!line->quiet) bp_result_warn(sum);
 done:

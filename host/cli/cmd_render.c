@@ -169,7 +169,7 @@ static BpStatus run_render(BpRender *render, const BpStopRule *rule, bool quiet,
         BP_TRY_GOTO(status, bp_render_step(render, &progress, err), done);
         if (!bp_interrupted()) BP_TRY_GOTO(status, draw(stop, &progress, &bar, err), done);
         BP_TRY_GOTO(status, bp_stop_check(stop, &progress, &end->reason, err), done);
-        if (bp_interrupted()) break; /* with a reason to stop it is no interruption */
+        if (bp_interrupted()) break; /* after a regular stop it is not an interruption */
     }
 done:
     bp_stop_destroy(&stop);
@@ -185,7 +185,7 @@ static void init_rule(const BpCommandLine *line, const BpScene *scene, const BpR
     const bool has_error = bp_option_given(line, BP_OPTION_ERROR),
                has_time = bp_option_given(line, BP_OPTION_TIME);
     bp_stop_rule_defaults(scene, options, rule);
-    /* The scene's own count is no rule once another one is given; --spp is. */
+    /* --error and --time replace the scene's sample count, but not --spp. */
     if ((has_error || has_time) && !bp_option_given(line, BP_OPTION_SPP)) {
         rule->samples_max = BP_SPP_MAX;
         if (rule->samples_max > BP_SAMPLE_NUMBERS - options->first_sample)
@@ -199,8 +199,8 @@ static BpStatus check_adaptive(const BpCommandLine *line, const BpStopRule *rule
     if (!line->adaptive || rule->samples_max >= BP_ADAPTIVE_MEAN_MIN) return BP_OK;
     return bp_fail(
         err, BP_ERR_USAGE,
-        "--adaptive with %" PRIu64 " sample%s a pixel: the first %u go to every pixel, so that only more "
-        "can go where the error is; ask for --spp %u at least, or for --error or --time",
+        "--adaptive with %" PRIu64 " sample%s per pixel: every pixel gets the first %u, so none are left for "
+        "noisy pixels; use --spp %u or more, --error or --time",
         rule->samples_max, rule->samples_max == 1 ? "" : "s", BP_ADAPTIVE_FIRST, BP_ADAPTIVE_MEAN_MIN);
 }
 
@@ -209,68 +209,67 @@ static void print_summary(const RunResult *result, const BpStopRule *rule, const
     char samples[32], text[32], all[32], rate[32], count[64];
     BpSceneInfo info;
     bp_scene_info(result->scene, &info);
-    snprintf(count, sizeof count, "%" PRIu64 " sample%s a pixel", result->samples_per_pixel,
+    snprintf(count, sizeof count, "%" PRIu64 " sample%s per pixel", result->samples_per_pixel,
              bp_plural(result->samples_per_pixel));
-    if (result->samples_per_pixel == 0) snprintf(count, sizeof count, "less than one sample a pixel");
+    if (result->samples_per_pixel == 0) snprintf(count, sizeof count, "less than one sample per pixel");
     const char *more_samples = "";
     if (result->options->adaptive) {
         uint64_t least, most;
         double mean;
         bp_film_sample_counts(result->film, &least, &most, &mean);
-        snprintf(count, sizeof count, "%.1f samples a pixel (%" PRIu64 " to %" PRIu64 ")", mean, least, most);
+        snprintf(count, sizeof count, "%.1f samples per pixel (%" PRIu64 " to %" PRIu64 ")", mean, least,
+                 most);
     } else if (result->film->partial && result->samples_per_pixel > 0) {
-        more_samples = " and part of another round";
+        more_samples = " and part of the next";
     }
     bp_show(result->output, false, stderr);
-    fprintf(stderr, ": %" PRIu32 "x%" PRIu32 ", %s%s, error %s\n", info.width, info.height, count,
+    fprintf(stderr, ": %" PRIu32 "x%" PRIu32 ", %s%s, noise %s\n", info.width, info.height, count,
             more_samples, bp_format_percent(result->nrmse, text, sizeof text));
     /* The first launch, in which a driver may compile, says nothing about the rate. */
     const double tracing = fmax(end->seconds - report->first_launch_seconds, 1.0e-9);
-    fprintf(stderr, "%s sample%s traced in %s (%s/s), %s in all",
+    fprintf(stderr, "%s sample%s traced in %s (%s/s), %s in total",
             bp_format_count((double)report->samples, samples, sizeof samples), bp_plural(report->samples),
             bp_format_seconds(tracing, text, sizeof text),
             bp_format_count((double)report->samples / tracing, rate, sizeof rate),
             bp_format_seconds(bp_clock_seconds() - result->times.start, all, sizeof all));
-    const double more = 3.0 * tracing; /* half the error takes four times the samples */
+    const double more = 3.0 * tracing; /* half the noise takes four times the samples */
     if (result->nrmse > 0.0)
-        fprintf(stderr, "; half the error: %s more", bp_format_seconds(more, text, sizeof text));
+        fprintf(stderr, "\nhalving the noise: %s more", bp_format_seconds(more, text, sizeof text));
     else if (isnan(result->nrmse))
-        fprintf(stderr, "; an error needs %s",
-                result->samples_per_pixel < 2 ? "two samples a pixel at least"
+        fprintf(stderr, "\nestimating noise needs %s",
+                result->samples_per_pixel < 2 ? "at least two samples per pixel"
                 : report->invalid_samples > 0 ? "finite samples in every pixel"
                                               : "a picture that is not black");
     fprintf(stderr, "\n");
     if (rule->error > 0.0 && end->reason == BP_STOP_SAMPLES)
         fprintf(stderr,
-                "the error asked for was not reached: the limit of %" PRIu64 " sample%s a pixel came first\n",
+                "noise is still above --error: the limit of %" PRIu64
+                " sample%s per pixel was reached first\n",
                 rule->samples_max, bp_plural(rule->samples_max));
     if (end->reason == BP_STOP_INVALID)
-        fprintf(
-            stderr,
-            "a pixel has hardly any sample that is finite, so the picture has no error and --error cannot be "
-            "reached\n");
+        fprintf(stderr, "almost no sample of some pixel is finite, so noise cannot be estimated and --error "
+                        "cannot be reached\n");
     if (rule->error > 0.0 && end->reason == BP_STOP_TIME)
-        fprintf(stderr, "the error asked for was not reached in time\n");
+        fprintf(stderr, "noise is still above --error: time ran out\n");
     /* Nothing seen in n independent samples: below 3/n with 95 % confidence (Hanley, Lippman-Hand 1983). */
     if (end->reason == BP_STOP_BLACK)
-        fprintf(
-            stderr,
-            "the picture is black, so --error has nothing to go by: of %s sample%s none brought light, hence "
-            "fewer than %.1g do\n",
-            samples, bp_plural(report->samples), 3.0 / (double)report->samples);
+        fprintf(stderr,
+                "the picture is black, so noise cannot be estimated: none of %s sample%s found light, so "
+                "fewer than 1 in %.0f do\n",
+                samples, bp_plural(report->samples), (double)report->samples / 3.0);
     if (end->reason == BP_STOP_CONSTANT)
-        fprintf(
-            stderr,
-            "the samples of every pixel agree, so --error has nothing to wait for: of %s sample%s none stood "
-            "out, hence fewer than %.1g do\n",
-            samples, bp_plural(report->samples), 3.0 / (double)report->samples);
+        fprintf(stderr,
+                "all samples of each pixel are equal, so there is no noise to reduce: none of %s sample%s "
+                "differs, so fewer than 1 in %.0f do\n",
+                samples, bp_plural(report->samples), (double)report->samples / 3.0);
     if (report->cut_paths > 0)
-        fprintf(stderr, "%s of the paths were cut at %" PRIu32 " segment%s (--depth) and count as black\n",
+        fprintf(stderr,
+                "%s of the paths were cut off at %" PRIu32 " segment%s (--depth) and counted as black\n",
                 bp_format_percent((double)report->cut_paths / (double)report->samples, text, sizeof text),
                 result->options->max_depth, bp_plural(result->options->max_depth));
     bp_result_warn(result->film);
     if (report->invalid_samples > 0)
-        fprintf(stderr, "warning: %" PRIu64 " sample%s not finite; left out of the picture\n",
+        fprintf(stderr, "warning: %" PRIu64 " sample%s not finite and left out of the picture\n",
                 report->invalid_samples, report->invalid_samples == 1 ? " was" : "s were");
 }
 
@@ -282,34 +281,33 @@ static BpStatus deliver(const BpCommandLine *line, const BpResultFile *file, con
     result->samples_per_pixel = bp_render_samples_done(render);
     result->stopped_by = end->reason;
     result->nrmse = bp_film_nrmse(result->film);
-    /* What little is left says nothing of the scene, so no picture of it is written. */
+    /* The few samples left would misrepresent the scene, so no picture is written. */
     const uint64_t samples = result->report.samples, invalid = result->report.invalid_samples;
     if (invalid > samples / 2)
-        return bp_fail(
-            err, BP_ERR_LIMIT,
-            "%" PRIu64 " of %" PRIu64 " sample%s not finite, so there is no picture, and %s was not "
-            "written: the scene's numbers may be too large or too small for %s precision; %schoose another "
-            "unit of length, or ask ballpark check which of its pixels are wrong",
-            invalid, samples, samples == 1 ? " is" : "s are", result->output,
-            result->options->precision == BP_PRECISION_DOUBLE ? "double" : "single",
-            result->options->precision == BP_PRECISION_DOUBLE ? "" : "use --precision double, ");
+        return bp_fail(err, BP_ERR_LIMIT,
+                       "%" PRIu64 " of %" PRIu64
+                       " sample%s not finite, so %s was not written: the scene's numbers may be too large or "
+                       "too small for %s precision; %schoose another unit of length, or find the wrong "
+                       "pixels with `ballpark check`",
+                       invalid, samples, samples == 1 ? " is" : "s are", result->output,
+                       result->options->precision == BP_PRECISION_DOUBLE ? "double" : "single",
+                       result->options->precision == BP_PRECISION_DOUBLE ? "" : "use --precision double, ");
     const double write_start = bp_clock_seconds();
     BP_TRY(bp_result_write(line, file, result->film, render, (BpTransfer)result->film->transfer, err));
     result->times.write = bp_clock_seconds() - write_start;
     if (line->stats != NULL) BP_TRY(bp_json_write(stats_json(result), line->stats, err));
     if (!line->quiet) print_summary(result, rule, end);
     if (end->reason == BP_STOP_TIME && result->samples_per_pixel == 0)
-        return bp_fail(
-            err, BP_ERR_LIMIT,
-            "--time %g was over before every pixel had a sample, so parts of %s are black: allow more "
-            "time, or ask for a smaller --width or --depth",
-            rule->seconds, result->output);
+        return bp_fail(err, BP_ERR_LIMIT,
+                       "--time %g ran out before every pixel had a sample, so parts of %s are black: allow "
+                       "more time, or use a smaller --width or --depth",
+                       rule->seconds, result->output);
     if (end->reason != BP_STOP_NOT_YET) return BP_OK;
-    return bp_fail(err, BP_ERR_INTERRUPTED,
-                   "interrupted after %" PRIu64 " of %" PRIu64 " sample%s a pixel%s; %s shows what there is",
-                   result->samples_per_pixel, rule->samples_max, bp_plural(rule->samples_max),
-                   result->samples_per_pixel == 0 ? " (some pixels have one, the others are black)" : "",
-                   result->output);
+    return bp_fail(
+        err, BP_ERR_INTERRUPTED,
+        "interrupted after %" PRIu64 " of %" PRIu64 " sample%s per pixel%s; %s holds the picture so far",
+        result->samples_per_pixel, rule->samples_max, bp_plural(rule->samples_max),
+        result->samples_per_pixel == 0 ? " (pixels without a sample are black)" : "", result->output);
 }
 
 BpStatus bp_command_render(const BpCommandLine *line, BpError *err) {

@@ -20,32 +20,27 @@ const BpCommand bp_commands[] = {
         .operands_min = 1,
         .operands_max = 1,
         .summary = "render a scene to a picture",
-        .description =
-            "Renders SCENE, a JSON document (scenes/README.md says how to write one; \"-\" is standard "
-            "input, for every command that takes a scene). The picture is named "
-            "like the scene and stands in the current folder, unless --output says otherwise; its ending "
-            "picks the "
-            "format: .png .ppm .pfm .exr (with layers for error, samples, depth, normal and albedo), or "
-            ".bpa, "
-            "which keeps the samples' sums for ballpark merge.\n"
-            "\n"
-            "The last line tells the error of the picture: the size of its noise beside its mean brightness "
-            "(NRMSE). Half the error takes four times as long. --error and --time replace the scene's number "
-            "of "
-            "samples as the rule to stop by; --spp may stand beside them, and the first rule reached "
-            "counts. --adaptive gives more samples to the pixels where the error is, and less to the others; "
-            "--spp is then their mean.\n"
-            "\n"
-            "Ctrl-C stops, and keeps what has been rendered. The same scene, seed and samples give the same "
-            "picture bit for bit on one device.",
-        .examples =
-            "  ballpark render scenes/cover.json                        cover.png, as the scene says\n"
-            "  ballpark render scenes/cover.json --width 300 --spp 20   a quick look\n"
-            "  ballpark render scenes/cover.json --error 1              until the noise is 1 %\n"
-            "  ballpark render scenes/cover.json --error 1 --adaptive   sooner, on most scenes\n"
-            "  ballpark render scenes/cover.json --time 30 -o half.exr  as good as 30 seconds allow\n"
-            "  ballpark render scenes/cover.json -o - | display         to another program\n"
-            "  ballpark generate cover | ballpark render - -o cover.png from another program\n",
+        .description = "Renders SCENE, a JSON document (see scenes/README.md; \"-\" is standard input, for "
+                       "every command that takes a scene). The picture is named after the scene and written "
+                       "to the current folder, unless --output names another file. The ending selects the "
+                       "format: .png, .ppm, .pfm, .exr (with layers for error, samples, depth, normal and "
+                       "albedo), or .bpa, which keeps the sums of the samples for `ballpark merge`.\n"
+                       "\n"
+                       "The first line reports noise relative to mean brightness (NRMSE). Halving the noise "
+                       "takes four times as long. With --error or --time, rendering stops at that noise or "
+                       "time instead of at the scene's number of samples; with several of --error, --time "
+                       "and --spp, it stops at whichever comes first. --adaptive gives noisy pixels more "
+                       "samples and the others fewer; --spp is then the mean.\n"
+                       "\n"
+                       "Ctrl-C stops the render and writes the picture as it is. On one device, the same "
+                       "scene, seed and number of samples give the same picture bit for bit.",
+        .examples = "  ballpark render cover.json                          to cover.png\n"
+                    "  ballpark render cover.json --width 300 --spp 20     a quick look\n"
+                    "  ballpark render cover.json --error 1                until noise is 1 %\n"
+                    "  ballpark render cover.json --error 1 --adaptive     faster on most scenes\n"
+                    "  ballpark render cover.json --time 30 -o half.exr    for 30 seconds\n"
+                    "  ballpark render cover.json -o - | display           into another program\n"
+                    "  ballpark generate cover -o - | ballpark render - -o cover.png\n",
         .options = TAKES_DRAWING | TAKES(OUTPUT) | TAKES(SPP) | TAKES(ERROR) | TAKES(TIME) |
                    TAKES(FIRST_SAMPLE) | TAKES(SAMPLER) | TAKES(ADAPTIVE) | TAKES(TRANSFER) | TAKES(FORMAT) |
                    TAKES(ERROR_MAP) | TAKES(STATS) | TAKES(FORCE) | TAKES(QUIET),
@@ -56,18 +51,18 @@ const BpCommand bp_commands[] = {
         .operands = "SCENE",
         .operands_min = 1,
         .operands_max = 1,
-        .summary = "test a device: kernel against reference",
+        .summary = "compare a device's picture with a reference",
         .description =
-            "Renders the scene on the device, and again with a tracer in plain C that shares no code "
-            "with the kernel, with as many samples and other random numbers, and compares the two by "
-            "statistics. Says whether they agree, within what interval the ratio of brightness lies, and "
-            "how small an error would have been found. Unless told otherwise it draws 64 pixels across "
-            "with 1024 samples each. A right kernel is rejected once in 10,000 checks.\n\n"
-            "--device all checks every device, each in a process of its own, so that a driver that "
-            "crashes is one line of the table. Exit code: 0 agree, 3 disagree, 1 a device broke.",
+            "Renders the scene on the device, and again with a reference tracer in plain C that shares no "
+            "code with the kernel, using equally many samples but other random numbers, and compares the two "
+            "statistically. Reports whether they agree, the confidence interval of their ratio of "
+            "brightness, and the smallest error it would have detected. Default: 64 pixels wide, 1024 "
+            "samples per pixel. A correct kernel fails one check in 10,000.\n\n"
+            "--device all checks every device, each in its own process, so that a crashing driver does not "
+            "stop the others from being checked. Exit code: 0 agree, 3 disagree, 1 a device failed.",
         .examples = "  ballpark check cover.json\n"
                     "  ballpark check cover.json --device all --json report.json\n"
-                    "  ballpark check cover.json --spp 16384 --map map.png     deeper, with a picture\n",
+                    "  ballpark check cover.json --spp 16384 --map map.png    more sensitive\n",
         .options = TAKES_DRAWING | TAKES(SPP) | TAKES(JSON) | TAKES(MAP) | TAKES(QUIET),
         .run = bp_command_check,
     },
@@ -76,14 +71,15 @@ const BpCommand bp_commands[] = {
         .operands = "SCENE...",
         .operands_min = 1,
         .operands_max = SIZE_MAX,
-        .summary = "which effects a scene calls for, why, and what each costs",
+        .summary = "show which effects a scene uses, why, and what each costs",
         .description =
-            "For each SCENE, lists the effects that the kernel can simulate: which are in its kernel, which "
-            "are left out, and why. With --measure, times the scene's kernel against kernels that simulate "
-            "one effect more, and against one that simulates everything: all trace the same samples in turn, "
-            "and the table gives the ratio of their times, with the range of the middle half of the rounds.\n"
+            "For each SCENE, lists the effects that the kernel can simulate: which are compiled into its "
+            "kernel, which are left out, and why. With --measure, compares the speed of the scene's kernel "
+            "with kernels that simulate one more effect, and with one that simulates all of them. They take "
+            "turns tracing the same samples; the table shows the ratio of their times and the range between "
+            "the quartiles.\n"
             "\n"
-            "With --pixel, follows one path of that pixel, step by step; --first-sample says which one.",
+            "With --pixel, follows one path of that pixel, step by step; --first-sample selects the sample.",
         .examples = "  ballpark explain scenes/cover.json\n"
                     "  ballpark explain scenes/*.json --json effects.json\n"
                     "  ballpark explain scenes/v4-13-metal.json --measure\n"
@@ -99,19 +95,19 @@ const BpCommand bp_commands[] = {
         .operands_max = 1,
         .summary = "show what accuracy costs in time",
         .description =
-            "Renders SCENE, unless told otherwise 240 pixels across, in every way that trades time for "
-            "accuracy: more samples, the other sampler, adaptive samples, less depth, double precision, fast "
-            "math, plain "
-            "numerics, the other Fresnel, and some of these together. Each is compared with a truth that is "
-            "rendered in double precision with exact Fresnel and depth 1000 (on a device without double, by "
-            "the reference tracer). The table says what each way costs and what it changes; the last lines "
-            "say what to use for an error of 5 %, 1 % and 0.2 %, and what that costs at the scene's own "
-            "size. With -o it is all drawn on one page, with pictures, that needs nothing beside itself.\n\n"
-            "--time is the budget (60 seconds); a short one tells less. --depth, --sampler, --precision, "
-            "--math and --numerics choose the way that the others are compared with. Ctrl-C stops early, "
-            "with the figures there are.",
+            "Renders SCENE (default: 240 pixels wide) in every configuration that trades time for accuracy: "
+            "more samples, the other sampler, adaptive sampling, less depth, double precision, fast math, "
+            "plain numerics, the other Fresnel formula, and some combinations. Each is compared with a "
+            "reference rendered in double precision with exact Fresnel and depth 1000 (on a device without "
+            "double precision, by the reference tracer). The table shows what each configuration costs and "
+            "what it changes. The last lines recommend a configuration for errors of 5 %, 1 % and 0.2 %, "
+            "with the time at the scene's full size. -o writes all of it, with plots and pictures, as one "
+            "self-contained HTML page.\n\n"
+            "--time is the time budget (default: 60 seconds); results are less precise with a small one. "
+            "--depth, --sampler, --precision, --math and --numerics set the configuration that the others "
+            "are compared with. Ctrl-C stops early and prints the results so far.",
         .examples = "  ballpark cost cover.json\n"
-                    "  ballpark cost cover.json -o cost.html --time 300     a deeper look, as a page\n"
+                    "  ballpark cost cover.json -o cost.html --time 300     more precise, as a page\n"
                     "  ballpark cost cover.json --csv - --width 300\n",
         .options = (TAKES_DRAWING & ~TAKES(EFFECTS)) | TAKES(OUTPUT) | TAKES(JSON) | TAKES(CSV) |
                    TAKES(TIME) | TAKES(SAMPLER) | TAKES(FORCE) | TAKES(QUIET),
@@ -122,12 +118,11 @@ const BpCommand bp_commands[] = {
         .operands = "FILE.bpa...",
         .operands_min = 1,
         .operands_max = SIZE_MAX,
-        .summary = "make one picture of renders of different samples",
-        .description =
-            "Adds up films (.bpa) of the same scene, seed and settings whose sample numbers do "
-            "not overlap, and writes the picture, or another .bpa. The result is that of one run over "
-            "all samples, bit for bit: a long render can be shared among machines of one kind, or "
-            "carried on later.",
+        .summary = "combine renders of different samples into one",
+        .description = "Adds up .bpa files of the same scene, seed and settings whose sample numbers do not "
+                       "overlap, and writes a picture or another .bpa file. The result is the same, bit for "
+                       "bit, as that of one render of all the samples, so a long render can be split among "
+                       "identical machines, or continued later.",
         .examples = "  ballpark render cover.json --spp 500 -o a.bpa\n"
                     "  ballpark render cover.json --spp 500 --first-sample 500 -o b.bpa\n"
                     "  ballpark merge a.bpa b.bpa -o cover.png\n",
@@ -140,13 +135,12 @@ const BpCommand bp_commands[] = {
         .operands_max = SIZE_MAX,
         .summary = "measure throughput",
         .description =
-            "Measures how fast scenes load, build and render: samples and ray segments a second, "
-            "nanoseconds a segment, bytes a sphere. A SCENE is a file, or one of the fixed scenes: "
-            "cover, diffuse (the same spheres, all matte), glass (all glass), field-1e4, field-1e6 "
-            "or any other number (random spheres in a cube); without any, these five. Scenes take "
-            "turns, round after round; the table shows medians. --time is what each scene is traced for, "
-            "all rounds together. With -o, the fixed scenes are written into that folder and nothing "
-            "is measured.",
+            "Measures how fast scenes load, build and render: samples and ray segments per second, "
+            "nanoseconds per segment, bytes per sphere. A SCENE is a file or one of the fixed scenes: cover, "
+            "diffuse (the same spheres, all matte), glass (all glass), field-1e4, field-1e6 or any other "
+            "number (random spheres in a cube). The default is these five. The scenes take turns, round "
+            "after round; the table shows medians. --time is the tracing time per scene, over all rounds. "
+            "With -o, the fixed scenes are written to that folder and nothing is measured.",
         .examples = "  ballpark bench\n"
                     "  ballpark bench cover field-1e7 --kernel sample --json figures.json\n"
                     "  ballpark bench -o scenes        write the fixed scenes, for other programs\n",
@@ -158,11 +152,10 @@ const BpCommand bp_commands[] = {
         .name = "devices",
         .operands = "",
         .summary = "list the OpenCL devices",
-        .description =
-            "Lists every device of every OpenCL platform, and which one is used when --device says "
-            "nothing: a GPU if there is one, else a CPU.",
+        .description = "Lists every device of every OpenCL platform and marks the one that is used by "
+                       "default: a GPU if there is one, otherwise a CPU.",
         .examples = "  ballpark devices\n"
-                    "  ballpark devices --json -       the same for programs\n",
+                    "  ballpark devices --json -       the same as JSON\n",
         .options = TAKES(JSON),
         .run = bp_command_devices,
     },
@@ -171,11 +164,10 @@ const BpCommand bp_commands[] = {
         .operands = "cover|field",
         .operands_min = 1,
         .operands_max = 1,
-        .summary = "make a scene: the book's cover, or a field of spheres",
-        .description =
-            "cover: the cover of the book as a scene file; the same seed gives the same spheres "
-            "everywhere. field: spheres of random place, size and colour as a PLY file, to be named "
-            "in the \"clouds\" of a scene.",
+        .summary = "write a scene: the book's cover, or a field of spheres",
+        .description = "cover: the cover of the book as a scene file; the same seed gives the same spheres "
+                       "on every machine. field: spheres with random positions, sizes and colours as a PLY "
+                       "file, for the \"clouds\" of a scene.",
         .examples = "  ballpark generate cover -o cover.json\n"
                     "  ballpark generate cover --grid 50 --seed 7 -o wide.json     10,000 spheres\n"
                     "  ballpark generate field --count 10000000 -o field.ply\n",
@@ -187,7 +179,7 @@ const BpCommand bp_commands[] = {
         .operands = "[COMMAND]",
         .operands_max = 1,
         .summary = "explain a command",
-        .description = "Explains the program, or one command with its options and examples.",
+        .description = "Prints help about the program, or about one command with its options and examples.",
         .examples = "  ballpark help render\n",
         .run = bp_command_help,
     },
@@ -208,5 +200,5 @@ BpStatus bp_command_find(const char *name, const BpCommand **command, BpError *e
     bp_printable(name, shown, sizeof shown);
     if (nearest != NULL)
         return bp_fail(err, BP_ERR_USAGE, "unknown command \"%s\"; did you mean %s?", shown, nearest);
-    return bp_fail(err, BP_ERR_USAGE, "unknown command \"%s\"; ballpark --help shows those there are", shown);
+    return bp_fail(err, BP_ERR_USAGE, "unknown command \"%s\"; see `ballpark --help`", shown);
 }

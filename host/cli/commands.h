@@ -4,8 +4,8 @@
  * Knows: which commands there are.   Does not know: how the command line was written.
  *
  * A command returns its failure in `err` and prints no error itself: main does, and exits with the code that
- * belongs to the status. What a command answers (a table, a document) goes to standard output; what it says
- * on the way (progress, notes) goes to standard error, and is silenced by --quiet. */
+ * belongs to the status. Results (a table, a document) go to standard output; progress and notes go to
+ * standard error, and --quiet suppresses them. */
 #ifndef BP_CLI_COMMANDS_H
 #define BP_CLI_COMMANDS_H
 
@@ -19,7 +19,7 @@ typedef struct BpCommand {
     size_t operands_min, operands_max;
     const char *summary;     /* one line */
     const char *description; /* paragraphs, for `ballpark help NAME` */
-    const char *examples;    /* whole command lines with a word each */
+    const char *examples;    /* complete command lines, each with a remark */
     uint64_t options;        /* bit o: takes option o */
     BpCommandRun *run;
 } BpCommand;

@@ -51,7 +51,7 @@ BpStatus bp_file_conflicts_check(const BpCommandLine *line, const char *picture,
         }
         for (size_t i = 0; i < line->operand_count && reads_files(line) && !(merges && r == 0); ++i)
             if (bp_output_same(result->path, line->operands[i], STDIN_FILENO))
-                return refuse(result, "the file that is to be read", err);
+                return refuse(result, "its own input", err);
     }
     return BP_OK;
 }

@@ -13,7 +13,9 @@ enum { TEXT_COLUMNS = 80, OPTION_COLUMNS = 28, COMMAND_COLUMNS = 11 };
 static void print_wrapped(const char *text, size_t indent) {
     size_t column = indent;
     while (*text != '\0') {
-        const size_t word = strcspn(text, " \n");
+        size_t word = strcspn(text, " \n");
+        if (text[word] == ' ' && text[word + 1] == '%')
+            word += 1 + strcspn(text + word + 1, " \n"); /* "5 %" */
         if (column > indent && column + 1 + word > TEXT_COLUMNS) {
             printf("\n%*s", (int)indent, "");
             column = indent;
@@ -59,22 +61,22 @@ static void print_command_help(const BpCommand *command) {
 }
 
 static void print_program_help(void) {
-    printf("Ballpark renders scenes of spheres on any OpenCL device, and says how far the\n"
-           "picture may still be from the right one.\n\n"
+    printf("Ballpark renders scenes of spheres on any OpenCL device, and reports how much\n"
+           "noise is left in the picture.\n\n"
            "Usage: ballpark COMMAND [OPTION]...\n\n"
            "Commands:\n");
     for (size_t c = 0; c < bp_command_count; ++c) {
         printf("  %-*s", COMMAND_COLUMNS, bp_commands[c].name);
         print_wrapped(bp_commands[c].summary, 2 + COMMAND_COLUMNS);
     }
-    printf("\nballpark help COMMAND explains one, with its options and examples.\n"
-           "ballpark --version names version and commit.\n\n"
+    printf("\n`ballpark help COMMAND` explains a command, with its options and examples.\n"
+           "`ballpark --version` prints version and commit.\n\n"
            "To begin:\n"
-           "  ballpark devices                        what can compute here\n"
-           "  ballpark generate cover -o cover.json   the cover of the book as a scene\n"
-           "  ballpark render cover.json              its picture, as cover.png\n\n"
-           "Exit codes: 0 done; 1 failed while running (device, memory, file); 2 bad command\n"
-           "line or scene; 3 check found a disagreement; 130 interrupted.\n");
+           "  ballpark devices                        list the devices of this computer\n"
+           "  ballpark generate cover -o cover.json   write the book's cover scene\n"
+           "  ballpark render cover.json              render it to cover.png\n\n"
+           "Exit codes: 0 success; 1 failure at run time (device, memory, file); 2 invalid\n"
+           "command line or scene; 3 check found a disagreement; 130 interrupted.\n");
 }
 
 BpStatus bp_help_print(const BpCommand *command, BpError *err) {

@@ -17,8 +17,8 @@ enum { NOTHING_TO_SAVE = -1, SAME_KEY_MS = 250, EXIT_INTERRUPTED = 130 };
 /* NOTHING_TO_SAVE; or 0: no signal yet; or the time of the first one, in milliseconds, with bit 0 set. */
 static atomic_int interrupted_ms = NOTHING_TO_SAVE;
 
-/* Whether a second one means "at once". A limit on processor time tells again every second, and a terminal
- * that goes away tells through the shell and by itself. */
+/* Whether a second signal of this kind means "end at once". The limit on processor time sends SIGXCPU every
+ * second, and a terminal that is closed can send SIGHUP twice: from the shell and from the kernel. */
 static bool hastens(int number) {
     return number == SIGINT || number == SIGTERM;
 }
@@ -42,7 +42,7 @@ static sigset_t watched_signals(void) {
     sigaddset(&set, SIGINT);
     sigaddset(&set, SIGTERM);
     sigaddset(&set, SIGXCPU);
-    /* nohup means it; but a blocked signal becomes pending even if it is ignored, and would be waited for. */
+    /* Respects nohup: a blocked signal becomes pending even if it is ignored, and sigwait would return it. */
     struct sigaction hangup;
     if (sigaction(SIGHUP, NULL, &hangup) != 0 || hangup.sa_handler != SIG_IGN) sigaddset(&set, SIGHUP);
     return set;
@@ -57,19 +57,20 @@ static void *watch(void *began) {
     return NULL;
 }
 
-/* A thread waits for the signals, and every other one holds them off. A handler would not do: Ctrl-C reaches
- * every process of the terminal, and a driver's linker, which starts with this process's mask but not with
- * its handlers, would die of it and take the driver and us along; and a driver's compiler (LLVM) puts
- * handlers of its own before ours. */
+/* One thread waits for the signals, and all others block them. Signal handlers would not do: Ctrl-C reaches
+ * every process of the terminal, and a driver's linker, which inherits this process's signal mask but not its
+ * handlers, would die of it and the driver would end this process; and a driver's compiler (LLVM) installs
+ * handlers that run before ours. */
 void bp_interrupt_install(void) {
     const sigset_t set = watched_signals();
     sigset_t held = set;
     pthread_t watcher;
     sem_t began;
-    /* A hangup that is ignored as well: LLVM's handler, which comes before that, removes the files that it is
-     * compiling into. */
+    /* SIGHUP is blocked even if it is ignored: LLVM would otherwise replace the ignoring by its own handler,
+     * which removes the files that it is writing. */
     sigaddset(&held, SIGHUP);
-    /* Ignored ones, as a shell leaves them to what it runs in the background, need not become pending. */
+    /* A shell starts background programs with some signals ignored, and ignored signals may never become
+     * pending. */
     signal(SIGINT, SIG_DFL);
     signal(SIGTERM, SIG_DFL);
     signal(SIGXCPU, SIG_DFL);
@@ -77,8 +78,8 @@ void bp_interrupt_install(void) {
     sem_init(&began, 0, 0);
     if (pthread_create(&watcher, NULL, watch, &began) == 0) {
         pthread_detach(watcher);
-        /* A fork while a thread is starting copies the locks that it holds then (AddressSanitizer takes
-         * some), and nobody in the child will ever open them. */
+        /* Waits until the thread runs: a fork while it starts would copy the locks that it holds
+         * (AddressSanitizer takes some), and nothing in the child would ever release them. */
         while (sem_wait(&began) != 0) {
         }
     } else {

@@ -1,13 +1,14 @@
-/* interrupt.h: the signals that ask the program to end, noticed instead of obeyed at once: Ctrl-C (SIGINT),
- * SIGTERM, SIGHUP (the terminal is gone; unless it is ignored, as nohup has it) and SIGXCPU (the limit on
+/* interrupt.h: signals that ask the program to end are noted instead of ending it at once: Ctrl-C (SIGINT),
+ * SIGTERM, SIGHUP (the terminal was closed; unless ignored, as nohup arranges) and SIGXCPU (the limit on
  * processor time).
  *
- * Knows: signals, the thread that waits for them, that unfinished files have to go.
+ * In:    signals.   Out: whether there has been one.
+ * Knows: signals, the thread that waits for them, that unfinished files must be removed.
  * Does not know: what is interrupted.
  *
- * At first there is nothing to save, and a
- * signal ends the program with code 130. A command that has something worth saving calls
- * bp_interrupt_catch(), asks bp_interrupted() between steps, saves, and returns BP_ERR_INTERRUPTED. */
+ * At first there is nothing to save, and a signal ends the program with code 130. A command that has
+ * something worth saving calls bp_interrupt_catch(), polls bp_interrupted() between steps, saves, and returns
+ * BP_ERR_INTERRUPTED. */
 #ifndef BP_CLI_INTERRUPT_H
 #define BP_CLI_INTERRUPT_H
 

@@ -17,7 +17,7 @@ static bool dump(const json_t *root, FILE *stream) {
 BpStatus bp_json_write(json_t *root, const char *path, BpError *err) {
     BpStatus status = BP_OK;
     BpOutputFile file = {0};
-    /* A list that could not grow may have been left without a word, too. */
+    /* An allocation may also have failed without an error, leaving a list incomplete. */
     if (root == NULL || bp_json_memory_failed()) {
         json_decref(root);
         return bp_fail(err, BP_ERR_MEMORY, "out of memory for the document %s", path);

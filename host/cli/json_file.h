@@ -1,5 +1,6 @@
-/* json_file.h: a JSON document to a file, whole or not at all, or to standard output.
+/* json_file.h: writes a JSON document to a file, completely or not at all, or to standard output.
  *
+ * In:    a JSON value, a path.   Out: the file.
  * Knows: jansson, output files.   Does not know: what the document says. */
 #ifndef BP_CLI_JSON_FILE_H
 #define BP_CLI_JSON_FILE_H
@@ -9,7 +10,7 @@
 #include <jansson.h>
 
 /* Writes `root`, indented, and releases it. "-": standard output. A NULL root is memory that ran out
- * (BP_ERR_MEMORY), so that the result of json_pack() can be handed over unseen. */
+ * (BP_ERR_MEMORY), so that the result of json_pack() can be passed on unchecked. */
 BpStatus bp_json_write(json_t *root, const char *path, BpError *err);
 
 /* A number of 64 bits, exact: jansson's integers have a sign, so from 2^63 on it is a text of decimal digits.

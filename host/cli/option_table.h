@@ -1,6 +1,8 @@
-/* option_table.h: every option, in one table: its name, its value, what it does.
+/* option_table.h: the table of all options: name, value, help text.
  *
- * Knows: names and help texts, getopt's tables.   Does not know: values, commands' work. */
+ * In:    an option.   Out: its texts, getopt's tables.
+ * Knows: names, letters and help texts.   Does not know: what values are allowed (options.h), the commands'
+ * work. */
 #ifndef BP_CLI_OPTION_TABLE_H
 #define BP_CLI_OPTION_TABLE_H
 

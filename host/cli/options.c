@@ -164,11 +164,9 @@ static BpStatus fail_unknown_option(const BpCommandLine *line, const char *found
     const char *blank = command != NULL ? " " : "";
     if (command == NULL) command = "";
     if (nearest != NULL)
-        return bp_fail(err, BP_ERR_USAGE,
-                       "unknown option %s; did you mean --%s? (ballpark help%s%s lists all)", name, nearest,
-                       blank, command);
-    return bp_fail(err, BP_ERR_USAGE, "unknown option %s; ballpark help%s%s lists those there are", name,
-                   blank, command);
+        return bp_fail(err, BP_ERR_USAGE, "unknown option %s; did you mean --%s? (see `ballpark help%s%s`)",
+                       name, nearest, blank, command);
+    return bp_fail(err, BP_ERR_USAGE, "unknown option %s; see `ballpark help%s%s`", name, blank, command);
 }
 
 static BpStatus check_taken(const BpCommandLine *line, BpOption option, const char *name, BpError *err) {
@@ -179,37 +177,39 @@ static BpStatus check_taken(const BpCommandLine *line, BpOption option, const ch
     char takers[160];
     list_takers(option, takers, sizeof takers);
     if (line->command == NULL)
-        return bp_fail(err, BP_ERR_USAGE, "%s comes after a command: ballpark %.*s ... %s", name,
+        return bp_fail(err, BP_ERR_USAGE, "%s must follow a command: ballpark %.*s ... %s", name,
                        (int)strcspn(takers, ","), takers, name);
     if (takers[0] == '\0')
-        return bp_fail(err, BP_ERR_USAGE, "ballpark %s does not take %s; it stands alone: ballpark %s",
+        return bp_fail(err, BP_ERR_USAGE,
+                       "ballpark %s: unsupported option %s; use it without a command: ballpark %s",
                        line->command->name, name, name);
-    return bp_fail(err, BP_ERR_USAGE, "ballpark %s does not take %s; these do: %s", line->command->name, name,
-                   takers);
+    return bp_fail(err, BP_ERR_USAGE, "ballpark %s: unsupported option %s; it belongs to %s",
+                   line->command->name, name, takers);
 }
 
 static BpStatus check_operands(const BpCommandLine *line, BpError *err) {
     const BpCommand *command = line->command;
     if (line->operand_count < command->operands_min)
-        return bp_fail(err, BP_ERR_USAGE, "ballpark %s needs %s; see ballpark help %s", command->name,
+        return bp_fail(err, BP_ERR_USAGE, "ballpark %s: missing %s; see `ballpark help %s`", command->name,
                        command->operands, command->name);
     if (line->operand_count > command->operands_max) {
         const char *extra = line->operands[command->operands_max];
         if (command->operands_max == 0)
-            return bp_fail(err, BP_ERR_USAGE, "ballpark %s takes options only, found \"%.200s\"",
+            return bp_fail(err, BP_ERR_USAGE,
+                           "ballpark %s: unexpected argument \"%.200s\"; expected only options",
                            command->name, extra);
-        return bp_fail(err, BP_ERR_USAGE, "ballpark %s takes one %s at a time, found \"%.200s\" too",
-                       command->name, command->operands, extra);
+        return bp_fail(err, BP_ERR_USAGE, "ballpark %s: unexpected argument \"%.200s\"; expected one %s only",
+                       command->name, extra, command->operands);
     }
     size_t from_input = 0;
     for (size_t i = 0; i < line->operand_count; ++i) {
         if (line->operands[i][0] == '\0')
-            return bp_fail(err, BP_ERR_USAGE, "ballpark %s needs %s, found an empty name", command->name,
+            return bp_fail(err, BP_ERR_USAGE, "ballpark %s: expected %s, found an empty name", command->name,
                            command->operands);
         from_input += strcmp(line->operands[i], "-") == 0;
     }
     if (from_input > 1)
-        return bp_fail(err, BP_ERR_USAGE, "ballpark %s: \"-\", standard input, can be read once only",
+        return bp_fail(err, BP_ERR_USAGE, "ballpark %s: \"-\" (standard input) can be given only once",
                        command->name);
     return BP_OK;
 }
@@ -252,7 +252,7 @@ BpStatus bp_command_line_parse(int argc, char **argv, BpCommandLine *line, BpErr
             return bp_fail(err, BP_ERR_USAGE, "%s needs a value: %s %s", name, name,
                            bp_option_metavar(option));
         if (optarg != NULL && optarg[0] == '\0')
-            return bp_fail(err, BP_ERR_USAGE, "%s needs a value (%s), found nothing", name,
+            return bp_fail(err, BP_ERR_USAGE, "%s needs a value (%s), found an empty one", name,
                            bp_option_metavar(option));
         BP_TRY(store_value(option, name, optarg, line, err));
         line->given |= (uint64_t)1 << option;
@@ -262,7 +262,7 @@ BpStatus bp_command_line_parse(int argc, char **argv, BpCommandLine *line, BpErr
     if (line->help || line->version) return BP_OK;
     if (line->command == NULL)
         return bp_fail(err, BP_ERR_USAGE,
-                       "which command? ballpark --help shows them; to begin: ballpark render SCENE");
+                       "missing command; see `ballpark --help`, or begin with `ballpark render SCENE`");
     BP_TRY(check_operands(line, err));
     return bp_file_conflicts_check(line, NULL, err);
 }

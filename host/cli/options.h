@@ -1,10 +1,9 @@
 /* options.h: the command line, parsed and checked.
  *
  * In:    argc, argv.   Out: BpCommandLine; or an error that names the option and what it takes.
- * Knows: every option of every command, their ranges and defaults' places.
- * Does not know: scenes, devices, what a command does with its options (commands.h).
- *
- * OPTION_LIST in options.c is the only table: parsing, help and the error messages are all made from it. */
+ * Knows: the values that each option takes.
+ * Does not know: scenes, devices, what a command does with its options (commands.h), names and help texts of
+ * options (option_table.h). */
 #ifndef BP_CLI_OPTIONS_H
 #define BP_CLI_OPTIONS_H
 
@@ -55,11 +54,11 @@ typedef enum BpOption {
  * enum's first value, and bp_option_given() tells. Texts point into argv. */
 typedef struct BpCommandLine {
     const struct BpCommand *command; /* NULL: `ballpark`, `ballpark --help`, `ballpark --version` */
-    char **operands;                 /* what stands beside the options: scenes, files, names */
+    char **operands;                 /* the arguments that are not options: scenes, files, names */
     size_t operand_count;
-    uint64_t given;       /* bit o: option o stood there */
+    uint64_t given;       /* bit o: option o was given */
     const char *output;   /* -o; "-": standard output */
-    uint64_t spp;         /* samples a pixel, 1 .. BP_SPP_MAX */
+    uint64_t spp;         /* samples per pixel, 1 .. BP_SPP_MAX */
     double error_percent; /* (0, 100] */
     double time_seconds;  /* (0, 1e7] */
     uint32_t width;       /* pixels, 1 .. BP_PICTURE_SIDE_MAX */
@@ -94,8 +93,8 @@ static inline bool bp_option_given(const BpCommandLine *line, BpOption option) {
 }
 
 /* Parses and checks. BP_ERR_USAGE names the option at fault, what was found, what is expected; a command or
- * an option that does not exist comes with the nearest that does; one file in two parts names both. Nothing
- * to release. `argv` is reordered: operands come last, and the result points into it. */
+ * an option that does not exist comes with the most similar one; a file used for two things names both uses.
+ * Nothing to release. `argv` is reordered: operands come last, and the result points into it. */
 BpStatus bp_command_line_parse(int argc, char **argv, BpCommandLine *line, BpError *err);
 
 /* The help of the whole program (`command` NULL) or of one command, on standard output. BP_ERR_FILE if that

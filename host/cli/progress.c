@@ -35,7 +35,7 @@ const char *bp_progress_format(const BpProgressView *view, unsigned columns, boo
              isfinite(view->seconds_left) ? bp_format_seconds(ceil(view->seconds_left), number, sizeof number)
                                           : "?");
     if (isfinite(view->nrmse))
-        snprintf(parts[2], PART_SIZE, "  error %s", bp_format_percent(view->nrmse, number, sizeof number));
+        snprintf(parts[2], PART_SIZE, "  noise %s", bp_format_percent(view->nrmse, number, sizeof number));
     else
         parts[2][0] = '\0';
     snprintf(parts[3], PART_SIZE, "  %s samples/s",

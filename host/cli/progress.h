@@ -1,7 +1,7 @@
-/* progress.h: the progress bar of a render.
+/* progress.h: the text of a render's progress bar.
  *
- * In:    how far, how fast, how exact.   Out: the terminal's status line, about ten times a second.
- * Knows: what fits into a line.          Does not know: the render. */
+ * In:    progress, speed, noise, the terminal's width.   Out: one line of text.
+ * Knows: what fits into a line.   Does not know: the render, the terminal. */
 #ifndef BP_CLI_PROGRESS_H
 #define BP_CLI_PROGRESS_H
 
@@ -15,8 +15,8 @@ typedef struct BpProgressView {
     double seconds_left;       /* NaN: not known yet */
 } BpProgressView;
 
-/* "███░░░  43 %  12 s left  error 2.1 %  5.2 million samples/s" in less than `columns` columns: what does not
- * fit is left out, from the right; where a bar has no room the share stands alone, or nothing. Returns
+/* "███░░░  43 %  12 s left  noise 2.1 %  5.2 million samples/s" in less than `columns` columns: what does not
+ * fit is left out, from the right; without room for a bar, only the percentage is shown, or nothing. Returns
  * `text`. */
 const char *bp_progress_format(const BpProgressView *view, unsigned columns, bool utf8, char *text,
                                size_t size);

@@ -50,8 +50,9 @@ static BpStatus choose_output(const BpCommandLine *line, const char *default_pat
     const bool has_format = bp_option_given(line, BP_OPTION_FORMAT);
     result->format = has_format ? line->format : BP_FORMAT_PNG;
     if (line->output == NULL && strcmp(default_path, "-") == 0)
-        return bp_fail(err, BP_ERR_USAGE,
-                       "a scene from standard input has no name for its picture to take: say --output FILE");
+        return bp_fail(
+            err, BP_ERR_USAGE,
+            "a scene from standard input has no name for the picture; give one with --output FILE");
     if (line->output == NULL) {
         BP_TRY(default_name(default_path, result->format, result, err));
         BP_TRY(bp_file_conflicts_check(line, result->path, err));
@@ -63,16 +64,15 @@ static BpStatus choose_output(const BpCommandLine *line, const char *default_pat
     memcpy(result->path, line->output, length + 1);
     if (strcmp(line->output, "-") == 0) {
         if (isatty(STDOUT_FILENO) && result->format != BP_FORMAT_PPM_ASCII)
-            return bp_fail(
-                err, BP_ERR_USAGE,
-                "--output -: a picture would be written to the terminal; redirect standard output to a "
-                "file or a pipe");
+            return bp_fail(err, BP_ERR_USAGE,
+                           "--output -: refusing to write a picture to the terminal; redirect standard "
+                           "output to a file or a pipe");
         return BP_OK;
     }
     if (!has_format && !bp_format_from_path(line->output, &result->format))
         return bp_fail(
             err, BP_ERR_USAGE,
-            "--output %.400s: the ending names no format; use .png .ppm .pfm .exr .bpa, or say --format",
+            "--output %.400s: unknown ending; use .png, .ppm, .pfm, .exr or .bpa, or give --format",
             line->output);
     return bp_output_check(result->path, err);
 }
@@ -126,19 +126,15 @@ void bp_result_warn(const BpFilm *film) {
     const double off = bp_film_rounding(film);
     char text[32];
     if (isinf(off))
-        fprintf(
-            stderr,
-            "warning: the picture is black because its light is over 10^17 times dimmer than the brightest "
-            "path of the scene, too dim to be added up; dim or remove that lamp\n");
+        fprintf(stderr,
+                "warning: the picture is black because its light is more than 10^17 times dimmer than the "
+                "brightest path, too dim for the sums to hold; dim or remove the brightest lamp\n");
     else if (off > BP_ROUNDING_MAX)
         fprintf(stderr,
-                "warning: rounding may have changed the picture by %s, since its light is so much dimmer "
-                "than the "
-                "brightest path of the scene; dim or remove that lamp\n",
+                "warning: rounding may have changed the picture by %s, because its light is so much dimmer "
+                "than the brightest path; dim or remove the brightest lamp\n",
                 bp_format_percent(off, text, sizeof text));
     if (film->unverified)
-        fprintf(
-            stderr,
-            "warning: a .bpa file of version 1 has no checksum, so damage to it goes unnoticed; render its "
-            "samples again if you cannot be sure of it\n");
+        fprintf(stderr, "warning: a .bpa file of version 1 has no checksum, so damage cannot be detected; "
+                        "render its samples again if in doubt\n");
 }

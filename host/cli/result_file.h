@@ -1,7 +1,7 @@
-/* result_file.h: a film as the picture that -o, --format and --transfer ask for.
+/* result_file.h: writes a film as the picture or .bpa file that --output, --format and --transfer ask for.
  *
- * In:    the command line, a film.   Out: a file, or bytes on standard output.
- * Knows: output names and formats.           Does not know: how the sums were made. */
+ * In:    the command line, a film.   Out: a file, or bytes on standard output; the error map.
+ * Knows: output names and formats.   Does not know: how the sums were made. */
 #ifndef BP_CLI_RESULT_FILE_H
 #define BP_CLI_RESULT_FILE_H
 

@@ -22,10 +22,9 @@ static BpStatus load(const char *path, BpScene **scene, BpError *err) {
     size_t length = 0;
     if (strcmp(path, "-") != 0) return bp_scene_load(path, scene, err);
     if (isatty(STDIN_FILENO))
-        return bp_fail(
-            err, BP_ERR_USAGE,
-            "the scene \"-\" is standard input, and that is the terminal: send a scene there, as in "
-            "ballpark generate cover | ballpark render - -o cover.png");
+        return bp_fail(err, BP_ERR_USAGE,
+                       "the scene \"-\" is standard input, which is the terminal; pipe a scene into it: "
+                       "ballpark generate cover -o - | ballpark render - -o cover.png");
     BP_TRY(bp_stream_read(stdin, 0, name, &text, &length, err));
     const BpStatus status = bp_scene_parse(text, length, name, scene, err);
     free(text);
@@ -64,16 +63,16 @@ BpStatus bp_setup_options(const BpCommandLine *line, const BpScene *scene, BpRen
     const uint64_t samples_max = BP_SAMPLE_NUMBERS - options->first_sample;
     if (options->samples_per_pixel <= samples_max) return BP_OK;
     const bool asked = bp_option_given(line, BP_OPTION_SPP);
-    /* With one of these the scene's own count is no request. */
+    /* With one of these options, the scene's sample count is not used. */
     if (!asked && (bp_option_given(line, BP_OPTION_ERROR) || bp_option_given(line, BP_OPTION_TIME) ||
                    bp_option_given(line, BP_OPTION_PIXEL))) {
         options->samples_per_pixel = samples_max;
         return BP_OK;
     }
     return bp_fail(err, BP_ERR_USAGE,
-                   "--first-sample %" PRIu64 " leaves numbers for %" PRIu64
-                   " sample%s a pixel (they end at %" PRIu64 "), and %s asks for %" PRIu64
-                   ": give --spp %" PRIu64 " at most, or --first-sample %" PRIu64 " at most",
+                   "--first-sample %" PRIu64 " leaves room for %" PRIu64
+                   " sample%s per pixel (the last number is %" PRIu64 "), but %s asks for %" PRIu64
+                   "; use --spp %" PRIu64 " or less, or --first-sample %" PRIu64 " or less",
                    options->first_sample, samples_max, bp_plural(samples_max), BP_SAMPLE_NUMBERS - 1,
                    asked ? "--spp" : "the scene's \"samples_per_pixel\"", options->samples_per_pixel,
                    samples_max, BP_SAMPLE_NUMBERS - options->samples_per_pixel);
@@ -100,7 +99,7 @@ static BpStatus all_devices(BpDeviceInfo **devices, size_t *count, BpError *err)
     return status != BP_OK ? status : bp_fail(err, BP_ERR_DEVICE, "no OpenCL device that can render");
 }
 
-/* Work for bp_run_in_child. What goes wrong in other ways is left to be told when it happens again. */
+/* Runs in a child process. Other errors are ignored here: they will occur again, and be reported then. */
 static bool try_device(void *argument, FILE *out) {
     BpDeviceInfo device;
     (void)out;
@@ -143,14 +142,14 @@ BpStatus bp_setup_self_test(const BpCommandLine *line, const BpDeviceInfo *devic
         BP_TRY(bp_device_open(&devices[d], &device, err));
         const BpStatus status = bp_self_test_once(device, NULL, &fault);
         bp_device_close(&device);
-        /* A test that could not be held says nothing about the device. */
+        /* A test that could not be run says nothing about the device. */
         const bool failed = status == BP_ERR_DEVICE || status == BP_ERR_BUILD;
         if (failed && line->force) {
             fputs("ballpark: warning: ", stderr);
             bp_show(fault.message, false, stderr);
             fputc('\n', stderr);
         } else if (status != BP_OK) {
-            bp_fail(err, status, "%s%s", fault.message, failed ? "; --force renders all the same" : "");
+            bp_fail(err, status, "%s%s", fault.message, failed ? "; --force renders anyway" : "");
             bp_error_attach(err, fault.attachment);
         }
         bp_error_clear(&fault);

@@ -1,13 +1,14 @@
-/* setup.h: from a command line to what the library wants: the scene, the options, the devices.
+/* setup.h: turns a command line into the scene, the render options and the devices.
  *
+ * In:    the command line.   Out: a scene, BpRenderOptions, devices that passed the self-test; warnings.
  * Knows: the command line, the public interface.   Does not know: what a command does with them. */
 #ifndef BP_CLI_SETUP_H
 #define BP_CLI_SETUP_H
 
 #include "options.h"
 
-/* Loads `path`; "-" is standard input, which ends up as the scene's name in messages; clouds are then sought
- * from the current folder. */
+/* Loads `path`; "-" is standard input, and messages call the scene so; its clouds are then relative to
+ * the current folder. */
 BpStatus bp_setup_load(const BpCommandLine *line, const char *path, BpScene **scene, BpError *err);
 
 /* The same, and applies --width. */
@@ -25,13 +26,13 @@ void bp_setup_warn(const BpCommandLine *line, const BpScene *scene, BpPrecision 
  * free(). Never empty on success. */
 BpStatus bp_setup_devices(const BpCommandLine *line, BpDeviceInfo **devices, size_t *count, BpError *err);
 
-/* Where PATH has no linker, which PoCL may need and then miss by ending the process: lets the device that
- * `name` means (as for bp_device_find) try a kernel in a process of its own. Call it before anything touches
- * OpenCL. */
+/* PoCL may need a linker, and ends the process if PATH has none. In that case this tries a kernel on the
+ * device that `name` means (as for bp_device_find) in a child process. Call it before anything uses OpenCL.
+ */
 BpStatus bp_setup_try_device(const char *name, BpError *err);
 
-/* Asks every device for known answers (once per device, driver and version; a pass is remembered). One that
- * gives wrong answers is refused; with --force this is said, and no more. */
+/* Runs the self-test on every device (once per device, driver and version; a pass is remembered). A device
+ * that fails is refused; with --force there is only a warning. */
 BpStatus bp_setup_self_test(const BpCommandLine *line, const BpDeviceInfo *devices, size_t count,
                             BpError *err);
 

@@ -27,8 +27,9 @@ typedef struct Answer {
     char path[sizeof((BpTemporaryFolder *)0)->path];
 } Answer;
 
-/* Makes the folder, tells its path, waits for the other end to close, whoever closes it, and cleans up. The
- * keeper makes it, not the process that asked: one that is killed meanwhile leaves nothing behind. */
+/* Creates the folder, reports its path, waits until the other end of the socket closes for any reason, and
+ * cleans up. The keeper creates the folder, not its parent: a parent that is killed in between leaves nothing
+ * behind. */
 static _Noreturn void keep(Answer *answer, int other) {
     char nothing;
     /* Ctrl-C reaches every process of the terminal; this one has to outlive it. */
@@ -91,8 +92,7 @@ BpStatus bp_temporary_folder_make(BpTemporaryFolder *folder, BpError *err) {
         return bp_fail(err, BP_ERR_MEMORY, "cannot start a process: %s", strerror(errno));
     if (answer.failed != 0) {
         end_keeper(folder);
-        return bp_fail(err, BP_ERR_FILE,
-                       "cannot make the folder %s: %s; set TMPDIR to a folder that can be written",
+        return bp_fail(err, BP_ERR_FILE, "cannot create the folder %s: %s; set TMPDIR to a writable folder",
                        answer.path, strerror(answer.failed));
     }
     memcpy(folder->path, answer.path, sizeof folder->path);

@@ -1,11 +1,11 @@
-/* temporary_folder.h: a folder that is gone when the program is, however it ends.
+/* temporary_folder.h: a folder that is removed when the program ends, however it ends.
  *
  * In:    nothing.   Out: an empty folder.
  * Knows: processes, $TMPDIR.   Does not know: what is put there.
  *
- * A small process of its own makes it, waits for this one to end, by Ctrl-C pressed twice or by a crash, and
- * removes the folder with the files in it. Make it before anything touches OpenCL, whose threads do not
- * survive a fork. */
+ * A small child process creates the folder, waits for this process to end (even by a crash or by Ctrl-C
+ * pressed twice), and removes the folder with its files. Create it before anything uses OpenCL, whose threads
+ * do not survive a fork. */
 #ifndef BP_CLI_TEMPORARY_FOLDER_H
 #define BP_CLI_TEMPORARY_FOLDER_H
 

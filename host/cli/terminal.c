@@ -66,8 +66,8 @@ static void draw_waiting(const BpWaiting *waiting) {
     while (cut > 0 && ((unsigned char)waiting->text[cut] & 0xc0u) == 0x80u) --cut; /* whole characters */
     snprintf(line, sizeof line, "%.*s%s %.0f s", (int)cut, waiting->text, dots[(int)(seconds * 4.0) % 4],
              seconds);
-    /* One column stays free; bytes are at least as many as columns. Where even dots and seconds have no room,
-     * part of a number would be a wrong number: nothing is drawn. */
+    /* One column stays free; there are at least as many bytes as columns. Without room for the dots and the
+     * seconds nothing is drawn, since a truncated number would be wrong. */
     if ((size_t)columns <= strlen(line)) line[0] = '\0';
     bp_terminal_show(line);
 }

@@ -1,8 +1,9 @@
-/* terminal.h: one line on a terminal that says what is going on, and takes itself away.
+/* terminal.h: a status line on the terminal.
  *
- * Knows: standard error, whether it is a terminal, its width.   Does not know: what is going on.
+ * In:    texts.   Out: one line on standard error that replaces the one before and finally disappears.
+ * Knows: standard error, whether it is a terminal, its width.   Does not know: what the texts say.
  *
- * On anything but a terminal, and with --quiet, nothing is ever written. */
+ * With --quiet, and where standard error is not a terminal, nothing is ever written. */
 #ifndef BP_CLI_TERMINAL_H
 #define BP_CLI_TERMINAL_H
 

@@ -1,6 +1,6 @@
-/* values.h: the texts after options, turned into checked values.
+/* values.h: the arguments of options, parsed into checked values.
  *
- * In:    the option's name, its text, the range.   Out: the value, or BP_ERR_USAGE that names all three.
+ * In:    an option's name, its argument, the range.   Out: the value, or BP_ERR_USAGE that names all three.
  * Knows: how numbers are written.   Does not know: which options there are. */
 #ifndef BP_CLI_VALUES_H
 #define BP_CLI_VALUES_H

@@ -1,21 +1,20 @@
-/* adaptive.h: which pixels get how many samples, when samples go where the error is.
+/* adaptive.h: adaptive sampling: decides how many samples each pixel gets.
  *
- * In:    the film between passes; a mean number of samples to reach.   Out: passes: a list of pixels,
- * a range of samples that each of them gets. Knows: counts and errors of pixels.   Does not know: OpenCL,
- * scenes, time.
+ * In:    the film between passes; a mean number of samples to reach.   Out:   passes, each a list of
+ * pixels and the range of samples that all of them get. Knows: counts and errors of pixels.   Does not know:
+ * OpenCL, scenes, time.
  *
  * The picture is cut into tiles of about 8 x 8 pixels, and each tile like a chessboard into a black and a
  * white half. All pixels of a half have the same number of samples, BP_ADAPTIVE_FIRST times a power of two
- * (which is what Sobol's sequence likes), and a pass doubles some. For a mean of n samples, the first quarter
+ * (which suits the Sobol sequence), and a pass doubles some. For a mean of n samples, the first quarter
  * (rounded down to such a count, at least BP_ADAPTIVE_FIRST) goes to every pixel; the errors found in it
  * decide about the rest: the half is doubled whose squared error would fall most for the ray segments it
  * takes (they stand for time), until the mean is reached.
  *
  * No bias: a half's count is decided by errors and segments of halves of the other colour, in samples of the
- * first quarter only, whose number depends on no sample. So whether a pixel gets more samples has nothing to
- * do with what its own have brought, and its mean stays the mean of a number of samples chosen independently
- * of them. (Deciding by a pixel's own samples makes pictures darker: pixels that have not yet found the light
- * stop.)
+ * first quarter only, whose number depends on no sample. So whether a pixel gets more samples does not depend
+ * on the values of its own samples, and its mean stays unbiased. (Deciding by a pixel's own samples makes
+ * pictures darker: pixels that have not yet found the light would stop.)
  */
 #ifndef BP_FILM_ADAPTIVE_H
 #define BP_FILM_ADAPTIVE_H

@@ -119,9 +119,8 @@ uint64_t bp_film_range_total(const BpFilm *film) {
 static BpStatus check_limit(uint64_t samples, BpError *err) {
     if (samples <= BP_REPLICATE_SAMPLES_MAX) return BP_OK;
     return bp_fail(err, BP_ERR_LIMIT,
-                   "%" PRIu64
-                   " samples in one replicate of a pixel: the sums are exact up to %u; render fewer "
-                   "samples, or more replicates",
+                   "%" PRIu64 " samples in one replicate of a pixel: the sums are exact up to %u; render "
+                   "fewer samples, or use more replicates",
                    samples, BP_REPLICATE_SAMPLES_MAX);
 }
 
@@ -136,7 +135,7 @@ static BpStatus append_range(struct BpSampleRange *list, size_t *count, const st
     if (last->first + last->count > range->first)
         return bp_fail(err, BP_ERR_USAGE,
                        "samples %" PRIu64 " to %" PRIu64 " and %" PRIu64 " to %" PRIu64
-                       " overlap: the same samples would count twice; render with another --first-sample",
+                       " overlap, so these samples would count twice; render with another --first-sample",
                        last->first, last->first + last->count - 1, range->first,
                        range->first + range->count - 1);
     last->count += range->count;
@@ -198,24 +197,21 @@ BpStatus bp_film_add_range(BpFilm *film, uint64_t first, uint64_t count, BpError
 static BpStatus check_same_settings(const BpFilm *a, const BpFilm *b, BpError *err) {
 #define BP_SAME(field, what, remedy)                                                                         \
     if (a->field != b->field)                                                                                \
-    return bp_fail(err, BP_ERR_USAGE, "the renders cannot be merged: their " what " differ" remedy,          \
-                   (int64_t)a->field, (int64_t)b->field)
+    return bp_fail(err, BP_ERR_USAGE, what " differ" remedy, (int64_t)a->field, (int64_t)b->field)
 #define BP_SAME_WORD(field, what, value, word, other)                                                        \
     if (a->field != b->field)                                                                                \
-    return bp_fail(err, BP_ERR_USAGE, "the renders cannot be merged: their " what " differ (%s and %s)",     \
+    return bp_fail(err, BP_ERR_USAGE, what " differ (%s and %s)",                                            \
                    (int)a->field == (int)(value) ? (word) : (other),                                         \
                    (int)b->field == (int)(value) ? (word) : (other))
     BP_SAME(width, "widths", " (%" PRId64 " and %" PRId64 " pixels: --width)");
     BP_SAME(height, "heights", " (%" PRId64 " and %" PRId64 " pixels)");
     if (a->scene_hash != b->scene_hash)
-        return bp_fail(err, BP_ERR_USAGE,
-                       "the renders cannot be merged: they show different scenes (%016" PRIx64
-                       " and %016" PRIx64 ")",
-                       a->scene_hash, b->scene_hash);
+        return bp_fail(err, BP_ERR_USAGE, "scenes differ (%016" PRIx64 " and %016" PRIx64 ")", a->scene_hash,
+                       b->scene_hash);
     if (a->seed != b->seed)
         return bp_fail(err, BP_ERR_USAGE,
-                       "the renders cannot be merged: their seeds differ (%" PRIu64 " and %" PRIu64
-                       "); render both with one --seed and another --first-sample",
+                       "seeds differ (%" PRIu64 " and %" PRIu64
+                       "); render both with the same --seed and different --first-sample",
                        a->seed, b->seed);
     BP_SAME(replicates, "numbers of replicates", " (%" PRId64 " and %" PRId64 ")");
     BP_SAME(scale_log2, "fixed-point scales", " (2^%" PRId64 " and 2^%" PRId64 ")");

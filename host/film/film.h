@@ -1,16 +1,16 @@
-/* film.h: the sums from which a picture and its error bar are made.
+/* film.h: the sums from which a picture and its standard errors are computed.
  *
- * In:    fixed-point replicate sums, as the kernel `accumulate` leaves them.
- * Out:   means, standard errors, NRMSE; sums of two runs added exactly.
+ * In:    fixed-point replicate sums, as the kernel `accumulate` writes them.
+ * Out:   means, standard errors, NRMSE; the exact sum of two films.
  * Knows: arithmetic.   Does not know: OpenCL, scenes, file formats (film_file.h does).
  *
- * Sample s of a pixel belongs to replicate s mod K. Sums are integers, so they do not depend on their order
- * and cannot drift. A channel x of a sample is y = x * 2^scale_log2 steps, at most 2^38. Its whole part goes
- * to `sums`. That is right to 2^-21 of y where y is at least 2^21; so where a channel of the sample is
- * smaller than that (and not 0), the fractions of its channels go to `fine_sums`, in steps that are 2^38
- * times finer. Every sample down to 2^-18 of a step is kept to within a millionth of itself, however bright
- * the lamp is that the scale must leave room for. bp_film_scale() chooses the scale so that 2^24
- * samples of one replicate overflow neither sum. */
+ * Sample s of a pixel belongs to replicate s mod K. Sums are integers, so they do not depend on the
+ * order of addition and cannot drift. A channel x of a sample is y = x * 2^scale_log2 steps, at most 2^38.
+ * Its whole part goes to `sums`. That is right to 2^-21 of y where y is at least 2^21; so where a channel of
+ * the sample is smaller than that (and not 0), the fractions of its channels go to `fine_sums`, in steps that
+ * are 2^38 times finer. Every sample down to 2^-18 of a step is kept to within a millionth of itself, however
+ * bright the lamp for which the scale must leave room. bp_film_scale() chooses the scale so that 2^24 samples
+ * of one replicate overflow neither sum. */
 #ifndef BP_FILM_FILM_H
 #define BP_FILM_FILM_H
 

@@ -71,7 +71,7 @@ BpStatus bp_film_write_stream(const BpFilm *film, FILE *out, BpError *err) {
     char *header = bp_film_header_make(film);
     if (writer.buffer == NULL || header == NULL ||
         bp_json_memory_failed()) { /* or the header may lack a part */
-        status = bp_fail(err, BP_ERR_MEMORY, "out of memory for writing the film");
+        status = bp_fail(err, BP_ERR_MEMORY, "out of memory for writing the .bpa file");
     } else {
         const size_t cells = cell_count(film);
         put(&writer, header, strlen(header));
@@ -83,7 +83,7 @@ BpStatus bp_film_write_stream(const BpFilm *film, FILE *out, BpError *err) {
         fwrite(writer.buffer, 1, CHECKSUM_SIZE, out);
         const int failed_before = ferror(out) ? errno : 0;
         if (fflush(out) != 0 || failed_before != 0)
-            status = bp_fail(err, BP_ERR_FILE, "writing the film failed: %s",
+            status = bp_fail(err, BP_ERR_FILE, "writing the .bpa file failed: %s",
                              strerror(failed_before != 0 ? failed_before : errno));
     }
     free(header);
@@ -132,7 +132,7 @@ static BpStatus read_header(Loader *loader, json_t **header, BpError *err) {
     else if ((*header = bp_json_load(text, length, JSON_REJECT_DUPLICATES, &json_error, &no_memory)) == NULL)
         status = no_memory ? bp_fail(err, BP_ERR_MEMORY, "out of memory for the header of %s", loader->name)
                            : bp_fail(err, BP_ERR_FILE,
-                                     "%s is not a .bpa file: its first line is no JSON: %s (column %d)",
+                                     "%s is not a .bpa file: its first line is not JSON: %s (column %d)",
                                      loader->name, json_error.text, json_error.column);
     loader->checksum =
         crc32_z(crc32_z(crc32_z(0, NULL, 0), (const uint8_t *)text, length), (const uint8_t *)"\n", 1);
@@ -145,7 +145,8 @@ static BpStatus read_header(Loader *loader, json_t **header, BpError *err) {
 static BpStatus check_length(Loader *loader, const BpFilm *sizes, BpError *err) {
     FILE *in = loader->in;
     if (fseeko(in, 0, SEEK_END) != 0)
-        return bp_fail(err, BP_ERR_FILE, "%s is a pipe or a device: films are read from files", loader->name);
+        return bp_fail(err, BP_ERR_FILE, "%s is a pipe or a device: a .bpa file must be a regular file",
+                       loader->name);
     const off_t length = ftello(in);
     if (length < 0 || fseeko(in, (off_t)loader->header_size, SEEK_SET) != 0)
         return bp_fail(err, BP_ERR_FILE, "reading %s failed: %s", loader->name, strerror(errno));
@@ -156,8 +157,8 @@ static BpStatus check_length(Loader *loader, const BpFilm *sizes, BpError *err) 
     const uint64_t actual = (uint64_t)length;
     if (actual == expected) return BP_OK;
     return bp_fail(err, BP_ERR_FILE,
-                   "%s is %s: %" PRIu64 " byte%s, where its header (%" PRIu32 " x %" PRIu32
-                   " pixels, %" PRIu32 " replicate%s) says %" PRIu64,
+                   "%s is %s: %" PRIu64 " byte%s, but its header (%" PRIu32 " x %" PRIu32 " pixels, %" PRIu32
+                   " replicate%s) says %" PRIu64,
                    loader->name, actual < expected ? "truncated" : "too long", actual, bp_plural(actual),
                    sizes->width, sizes->height, sizes->replicates, bp_plural(sizes->replicates), expected);
 }
@@ -165,7 +166,7 @@ static BpStatus check_length(Loader *loader, const BpFilm *sizes, BpError *err) 
 static BpStatus get(Loader *loader, size_t size, BpError *err) {
     if (fread(loader->buffer, 1, size, loader->in) != size)
         return bp_fail(err, BP_ERR_FILE, "reading %s failed: %s", loader->name,
-                       ferror(loader->in) ? strerror(errno) : "it ends too early");
+                       ferror(loader->in) ? strerror(errno) : "the file ends too early");
     return BP_OK;
 }
 
@@ -209,8 +210,7 @@ static BpStatus read_counts(Loader *loader, BpFilm *film, BpError *err) {
         if (samples > expected[i % film->replicates] || (samples == 0 && !cell_is_empty(film, i)))
             return bp_fail(err, BP_ERR_FILE,
                            "%s is damaged: pixel %zu holds %" PRIu32
-                           " samples in replicate %zu, which is at odds "
-                           "with its %s",
+                           " samples in replicate %zu, which contradicts its %s",
                            loader->name, i / film->replicates, samples, i % film->replicates,
                            samples == 0 ? "sums" : "sample ranges");
     }
@@ -222,7 +222,7 @@ static BpStatus check_checksum(Loader *loader, BpError *err) {
     const uint64_t expected = load_little(loader->buffer, CHECKSUM_SIZE);
     if (expected == loader->checksum) return BP_OK;
     return bp_fail(err, BP_ERR_FILE,
-                   "%s is damaged: its checksum is %08" PRIx64 ", and its content has %08" PRIx64
+                   "%s is damaged: its checksum is %08" PRIx64 ", but its content has %08" PRIx64
                    "; copy it again, or render its samples again",
                    loader->name, expected, (uint64_t)loader->checksum);
 }

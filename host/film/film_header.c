@@ -157,8 +157,8 @@ static void read_sizes(Reader *reader, BpFilm *sizes, bool *fine_sums) {
     if (version > BP_FILM_VERSION && reader->status == BP_OK)
         reader->status =
             bp_fail(reader->err, BP_ERR_FILE,
-                    "%s is of version %" PRIu64 " of the format, and this program reads versions 1 to %d: "
-                    "use a newer ballpark",
+                    "%s has version %" PRIu64
+                    " of the format, but this program reads versions 1 to %d: use a newer Ballpark",
                     reader->name, version, BP_FILM_VERSION);
     sizes->unverified = version == 1;
     static const char *const byte_orders[] = {"little", NULL};

@@ -163,7 +163,7 @@ BpStatus bp_scene_generate_cover(const char *edition_name, unsigned grid, uint64
     if (edition == NULL)
         return bp_fail(err, BP_ERR_USAGE, "edition: found \"%s\", expected 1, 3, 3rust or 4", edition_name);
     if (grid > GRID_MAX)
-        return bp_fail(err, BP_ERR_USAGE, "grid: found %u, expected 0 to %d (the book's is 11)", grid,
+        return bp_fail(err, BP_ERR_USAGE, "grid: found %u, expected 0 to %d (in the book: 11)", grid,
                        GRID_MAX);
     const size_t side = 2 * (size_t)grid + (edition->extra_row ? 1 : 0);
     BpScene *result = NULL;

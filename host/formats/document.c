@@ -50,8 +50,8 @@ static BpStatus fail_duplicate(const BpDocument *document, const json_error_t *e
         memcpy(raw, document->text + start + 1, count);
     }
     bp_printable(raw, name, sizeof name);
-    snprintf(text, sizeof text,
-             "%s: found a second time in the same object, expected once; remove one of the two", name);
+    snprintf(text, sizeof text, "%s: found twice in the same object, expected once; remove one of the two",
+             name);
     return fail_at_offset(document, start, err, text);
 }
 
@@ -72,10 +72,9 @@ static BpStatus fail_syntax(const BpDocument *document, const json_error_t *erro
         hint = "; expected UTF-8: save the file in that encoding";
         break;
     case json_error_premature_end_of_input:
-        return fail_at_offset(
-            document, document->length, err,
-            "found the end of the text, expected more: a bracket or a quote is not closed, or the "
-            "file was cut short");
+        return fail_at_offset(document, document->length, err,
+                              "found the end of the text, expected more: a bracket or quote is not closed, "
+                              "or the file is truncated");
     case json_error_end_of_input_expected:
         hint = "; expected nothing after the closing brace";
         break;
@@ -113,10 +112,9 @@ BpStatus bp_document_open(const char *text, size_t length, const char *name, BpD
             document, 0, err,
             "found an empty file, expected a scene such as { \"camera\": { \"image_width\": 400 } }");
     if (length > INT_MAX)
-        return fail_at_offset(
-            document, 0, err,
-            "found a text of over 2 GiB, expected less: keep many spheres in a PLY file and name it "
-            "in \"clouds\"");
+        return fail_at_offset(document, 0, err,
+                              "found more than 2 GiB of text, expected less: keep many spheres in a PLY file "
+                              "and name it in \"clouds\"");
     const char *const nul = memchr(text, '\0', length); /* jansson takes it for the end */
     if (nul != NULL)
         return fail_at_offset(document, (size_t)(nul - text), err,

@@ -1,10 +1,10 @@
-/* document.h: a JSON text as a tree of nodes that know their place in the text.
+/* document.h: a JSON text as a tree of nodes that know their position in the text.
  *
  * In:    the text of a scene document.   Out: values, checked for type; errors with file:line:column.
  * Knows: JSON (jansson).                 Does not know: what a scene is.
  *
- * jansson keeps positions for syntax errors only. A node therefore remembers the way to it from the root, and
- * an error walks the text along that way (document_locate.c). Nothing is located while all goes well. */
+ * jansson keeps positions for syntax errors only. A node therefore remembers its path from the root, and an
+ * error follows that path through the text (document_locate.c). Without errors, nothing is located. */
 #ifndef BP_FORMATS_DOCUMENT_H
 #define BP_FORMATS_DOCUMENT_H
 

@@ -70,10 +70,10 @@ BpStatus bp_file_open(const char *path, bool accept_pipe, const char *expected, 
 }
 
 static BpStatus fail_size(const char *path, BpError *err) {
-    const BpStatus status = bp_fail(err, BP_ERR_SCENE,
-                                    "found more than %u MiB, expected a document of no more; put the spheres "
-                                    "into a PLY file (\"clouds\")",
-                                    (unsigned)(BP_TEXT_BYTES_MAX >> 20));
+    const BpStatus status = bp_fail(
+        err, BP_ERR_SCENE,
+        "found more than %u MiB, expected a smaller document; put the spheres into a PLY file (\"clouds\")",
+        (unsigned)(BP_TEXT_BYTES_MAX >> 20));
     bp_error_at(err, path, 0, 0);
     return status;
 }

@@ -67,7 +67,7 @@ static BpStatus store(Reader *r, uint64_t number, const double value[PLY_ROLE_CO
     BpFault fault;
     for (int i = PLY_X; i <= PLY_Z; i++) {
         if (!isfinite(value[i]))
-            return fail_value(r, number, (PlyRole)i, value[i], "a coordinate: remove the point, or mend it",
+            return fail_value(r, number, (PlyRole)i, value[i], "a coordinate: remove or correct the point",
                               err);
     }
     if (bp_sphere_find_fault(&sphere, &fault)) return fail_vertex(r, number, fault.member, fault.text, err);
@@ -126,7 +126,7 @@ static double decode(const unsigned char *bytes, PlyType type, bool swap) {
 static BpStatus fail_end(const Reader *r, uint64_t row, BpError *err) {
     return ply_fail(&r->input, false, err,
                     "found the end of the file in row %" PRIu64 " of an element, expected all its "
-                    "rows; the file was cut short",
+                    "rows; the file is truncated",
                     row);
 }
 
@@ -272,8 +272,8 @@ static BpStatus make_room(Reader *r, uint64_t count, BpError *err) {
     const uint64_t left = r->input.size > r->input.taken ? r->input.size - r->input.taken + 1 : 0;
     if (count > left / row_size)
         return ply_fail(&r->input, false, err,
-                        "found room for %" PRIu64 " rows of vertices, expected %" PRIu64
-                        "; the file was cut short",
+                        "found space for %" PRIu64 " rows of vertices, expected %" PRIu64
+                        "; the file is truncated",
                         left / row_size, count);
     if (count > BP_SPHERES_MAX - scene->sphere_count)
         return ply_fail(&r->input, false, err,

@@ -24,8 +24,7 @@ static BpStatus read_aspect(const BpNode *node, double *aspect, BpError *err) {
     *aspect = side[0] / side[1];
     if (!(side[0] > 0 && side[1] > 0 && *aspect > 0 && isfinite(*aspect)))
         return bp_node_fail(node, BP_PART_VALUE, err,
-                            "found width over height that is not above 0, expected a number "
-                            "above 0, or two: [16, 9]");
+                            "found a ratio that is not above 0, expected a number above 0, or two: [16, 9]");
     return BP_OK;
 }
 

@@ -178,7 +178,7 @@ static void draw_legend(const MapPlan *plan, double median, BpCanvas *canvas) {
 BpStatus bp_error_map_draw(const BpPicture *picture, BpCanvas *canvas, BpError *err) {
     memset(canvas, 0, sizeof *canvas);
     if (picture->width == 0 || picture->height == 0 || picture->rgb == NULL || picture->error == NULL)
-        return bp_fail(err, BP_ERR_USAGE, "the picture carries no standard errors to draw a map of");
+        return bp_fail(err, BP_ERR_USAGE, "the picture has no standard errors to make an error map from");
     double median = 0;
     BP_TRY(median_error(picture, &median, err));
     const MapPlan plan = plan_canvas(picture, canvas);

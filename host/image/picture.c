@@ -54,9 +54,9 @@ BpStatus bp_picture_write_stream(const BpPicture *picture, FILE *out, BpFormat f
     case BP_FORMAT_BPA:
         break;
     }
-    return bp_fail(
-        err, BP_ERR_USAGE,
-        "a .bpa file holds the sums of a render, not a picture; it is written by a render or a merge");
+    return bp_fail(err, BP_ERR_USAGE,
+                   "a .bpa file holds the sums of a render, not a picture; only ballpark render and ballpark "
+                   "merge write it");
 }
 
 BpStatus bp_picture_write(const BpPicture *picture, const char *path, BpFormat format, BpTransfer transfer,

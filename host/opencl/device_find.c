@@ -91,7 +91,7 @@ static bool find_lack(cl_device_id id, const BpDeviceInfo *info, char refusal[12
     const uint64_t single = device_ulong(id, CL_DEVICE_SINGLE_FP_CONFIG);
     refusal[0] = '\0';
     if (sscanf(info->version, "OpenCL %u.%u", &major, &minor) != 2)
-        snprintf(refusal, 128, "it does not tell its OpenCL version (1.2 is needed)");
+        snprintf(refusal, 128, "it does not report its OpenCL version (1.2 is needed)");
     else if (major < 1 || (major == 1 && minor < 2))
         snprintf(refusal, 128, "it has OpenCL %u.%u (1.2 is needed)", major, minor);
     else if (!info->has_compiler)
@@ -337,12 +337,12 @@ BpStatus bp_device_find(const char *text, BpDeviceInfo *device, BpError *err) {
     }
     append_devices(there, sizeof there, list, count, ambiguous ? text : NULL);
     if (chosen == NULL && text[0] == '\0')
-        status = bp_fail(err, BP_ERR_DEVICE,
-                         "no OpenCL device that can render (there is %s): " NO_DEVICE_REMEDY, there);
+        status =
+            bp_fail(err, BP_ERR_DEVICE, "no OpenCL device can render (found %s): " NO_DEVICE_REMEDY, there);
     else if (chosen == NULL)
-        status = bp_fail(err, BP_ERR_DEVICE, "no device fits '%s'; there is %s", text, there);
+        status = bp_fail(err, BP_ERR_DEVICE, "no device matches '%s'; available: %s", text, there);
     else if (ambiguous)
-        status = bp_fail(err, BP_ERR_DEVICE, "'%s' fits several devices, give a number: %s", text, there);
+        status = bp_fail(err, BP_ERR_DEVICE, "'%s' matches several devices; give a number: %s", text, there);
     else if (chosen->refusal[0] != '\0')
         status = bp_fail(err, BP_ERR_DEVICE, "device %u (%s) cannot render: %s", chosen->number, chosen->name,
                          chosen->refusal);

@@ -41,12 +41,11 @@ BpStatus bp_layout_check(BpDevice *device, cl_program program, bool single_preci
     if (code != CL_SUCCESS) status = bp_cl_fail(err, code, "running probe_layout", device);
     for (size_t i = 0; status == BP_OK && i < STRUCTS; ++i)
         if (found[2 * i] != expected[i].size || found[2 * i + 1] != expected[i].offset)
-            status = bp_fail(
-                err, BP_ERR_DEVICE,
-                "%s lays out %s with size %u and an offset of %u, the host with %u and %u: its compiler "
-                "cannot be used; try another --device",
-                device->info.name, expected[i].name, found[2 * i], found[2 * i + 1], expected[i].size,
-                expected[i].offset);
+            status = bp_fail(err, BP_ERR_DEVICE,
+                             "%s lays out %s with size %u and an offset of %u, the host with %u and %u: this "
+                             "compiler cannot be used; try another --device",
+                             device->info.name, expected[i].name, found[2 * i], found[2 * i + 1],
+                             expected[i].size, expected[i].offset);
     if (status == BP_OK && found[2 * STRUCTS] != real_size)
         status = bp_fail(err, BP_ERR_DEVICE, "%s takes %u bytes for a real, the host %u", device->info.name,
                          found[2 * STRUCTS], real_size);

@@ -94,8 +94,7 @@ bool bp_pocl_cache_fails(char text[512]) {
     if (failed == 0) return false;
     snprintf(text, 512,
              "PoCL cannot write its folder for compiled kernels, %.256s (%s): make it writable, or set "
-             "POCL_CACHE_DIR to "
-             "a folder that is",
+             "POCL_CACHE_DIR to a writable folder",
              folder, strerror(failed));
     return true;
 }

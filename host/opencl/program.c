@@ -124,11 +124,10 @@ BpStatus bp_kernel_text(const char *name, char **text, BpError *err) {
         snprintf(path, size, "%s/%s", directory, name);
         FILE *file = fopen(path, "rb");
         if (file == NULL) {
-            bp_fail(
-                err, BP_ERR_FILE,
-                "cannot open %s: %s; the environment variable BALLPARK_KERNELS must name a folder with all "
-                "kernel files: correct it, or unset it for those in the program",
-                path, strerror(errno));
+            bp_fail(err, BP_ERR_FILE,
+                    "cannot open %s: %s; the environment variable BALLPARK_KERNELS must name a folder with "
+                    "all kernel files: correct it, or unset it to use the built-in ones",
+                    path, strerror(errno));
             free(path);
             return BP_ERR_FILE;
         }
@@ -137,7 +136,7 @@ BpStatus bp_kernel_text(const char *name, char **text, BpError *err) {
             text_append(&read, block, count);
         fclose(file);
         if (read.length > KERNEL_FILE_BYTES_MAX) {
-            bp_fail(err, BP_ERR_FILE, "%s: is no kernel file: it has more than %u bytes", path,
+            bp_fail(err, BP_ERR_FILE, "%s is not a kernel file: it has more than %u bytes", path,
                     KERNEL_FILE_BYTES_MAX);
             free(path);
             free(read.bytes);

@@ -112,22 +112,20 @@ void bp_rounding_warnings(const BpScene *scene, BpPrecision precision, BpRoundin
     find_walls(scene, &thin, &wall);
     if (off_place.count > 0)
         snprintf(limits->text[limits->count++], sizeof limits->text[0],
-                 "%s (radius %g)%s lies %.2g of its radius off its place in single precision; use "
-                 "--precision "
-                 "double, or a camera nearer to it",
+                 "%s (radius %g)%s is displaced by %.2g of its radius in single precision; use --precision "
+                 "double, or a camera closer to it",
                  bp_sphere_name(scene, off_place.sphere, name), fabs(scene->spheres[off_place.sphere].radius),
                  others(&off_place, more), off_place.ratio);
     if (contact.count > 0)
         snprintf(limits->text[limits->count++], sizeof limits->text[0],
-                 "the surface of %s (radius %g)%s lies off its place by %.2g of the radius of %s (%g) "
-                 "in single precision; use --precision double, or a radius below %.2g",
+                 "the surface of %s (radius %g)%s is displaced by %.2g of the radius of %s (%g) in single "
+                 "precision; use --precision double, or a radius below %.2g",
                  bp_sphere_name(scene, contact.sphere, name), fabs(scene->spheres[contact.sphere].radius),
                  others(&contact, more), contact.ratio, bp_sphere_name(scene, smallest_sphere, other),
                  smallest, smallest * BP_ROUNDING_CONTACT * 0x1p23);
     if (thin.count > 0)
         snprintf(limits->text[limits->count++], sizeof limits->text[0],
-                 "the wall between %s and the dielectric around it%s, %.2g thick, is off by %.2g of "
-                 "that in "
-                 "single precision; use --precision double, or a thicker wall",
+                 "the wall between %s and the dielectric around it%s, %.2g thick, is displaced by %.2g of "
+                 "its thickness in single precision; use --precision double, or a thicker wall",
                  bp_sphere_name(scene, thin.sphere, name), others(&thin, more), wall, thin.ratio);
 }

@@ -1,11 +1,11 @@
-/* tree.h: bounding volume hierarchy over spheres, wide nodes, leaves as structure of arrays.
+/* tree.h: a bounding volume hierarchy over spheres, with wide nodes and leaves as structures of arrays.
  *
  * In:    centres and radii, in double, relative to the camera.
  * Out:   BpTree: node boxes (rounded outward when narrowed), child words, leaves and slots, in the layout of
  *        kernels/scene_types.h.
  * Knows: the packed layout, threads.   Does not know: materials, OpenCL.
  *
- * Sizes are stored narrowed: `single_precision` decides whether the real arrays hold float or double. */
+ * `single_precision` decides whether the real arrays hold float or double. */
 #ifndef BP_PACKED_TREE_H
 #define BP_PACKED_TREE_H
 

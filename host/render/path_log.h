@@ -1,7 +1,7 @@
 /* path_log.h: the path of one pixel sample, step by step, as the kernel traced it.
  *
  * In:    scene, options, device, pixel and sample number.   Out: a list of steps.
- * Knows: kernels/entry/path_log.cl, worker.h.   Does not know: how a person wants to read it. */
+ * Knows: kernels/entry/path_log.cl, worker.h.   Does not know: how it is printed. */
 #ifndef BP_RENDER_PATH_LOG_H
 #define BP_RENDER_PATH_LOG_H
 

@@ -25,8 +25,7 @@ void bp_render_defaults(const BpScene *scene, BpRenderOptions *options) {
 static BpStatus check_options(const BpScene *scene, const BpRenderOptions *options, BpError *err) {
     if (options->samples_per_pixel < 1 || options->first_sample > UINT32_MAX ||
         options->samples_per_pixel > (uint64_t)UINT32_MAX + 1 - options->first_sample)
-        return bp_fail(err, BP_ERR_USAGE,
-                       "samples %llu to %llu of a pixel: sample numbers go from 0 to 4294967295",
+        return bp_fail(err, BP_ERR_USAGE, "samples %llu to %llu: sample numbers go from 0 to 4294967295",
                        (unsigned long long)options->first_sample,
                        (unsigned long long)(options->first_sample + options->samples_per_pixel - 1));
     if (options->max_depth > BP_DEPTH_MAX)
@@ -36,10 +35,11 @@ static BpStatus check_options(const BpScene *scene, const BpRenderOptions *optio
                        BP_REPLICATES_MAX);
     const uint32_t replicates = options->replicates != 0 ? options->replicates : BP_REPLICATES_DEFAULT;
     if (options->samples_per_pixel > (uint64_t)BP_REPLICATE_SAMPLES_MAX * replicates)
-        return bp_fail(err, BP_ERR_LIMIT,
-                       "%llu samples a pixel: sums of %u replicates hold %llu; render parts and merge",
-                       (unsigned long long)options->samples_per_pixel, replicates,
-                       (unsigned long long)BP_REPLICATE_SAMPLES_MAX * replicates);
+        return bp_fail(
+            err, BP_ERR_LIMIT,
+            "%llu samples per pixel: the sums of %u replicates hold %llu; render in parts and merge them",
+            (unsigned long long)options->samples_per_pixel, replicates,
+            (unsigned long long)BP_REPLICATE_SAMPLES_MAX * replicates);
     const uint64_t pixels = (uint64_t)scene->camera.width * scene->camera.height;
     if (pixels > UINT32_MAX / 4)
         return bp_fail(err, BP_ERR_LIMIT,
@@ -257,7 +257,7 @@ BpStatus bp_render_step_samples(BpRender *render, BpSampleBlock *block, bool *fi
     bp_film_destroy(&render->film);
     memset(block, 0, sizeof *block);
     if (render->adaptive != NULL)
-        return bp_fail(err, BP_ERR_USAGE, "an adaptive render hands out no single samples");
+        return bp_fail(err, BP_ERR_USAGE, "an adaptive render cannot return single samples");
     bool started = false;
     BP_TRY(start_chunk(render, &started, err));
     *finished = !started;
@@ -373,7 +373,7 @@ BpStatus bp_render_aovs(BpRender *render, BpPicture *picture, BpError *err) {
     const BpRenderOptions *options = &render->options;
     if (!options->features)
         return bp_fail(err, BP_ERR_USAGE,
-                       "depth, normals and albedo: the render was created without features");
+                       "depth, normals and albedo: the render was created without them (options.features)");
     const BpCamera *camera = &render->scene->camera;
     if (picture->width != camera->width || picture->height != camera->height)
         return bp_fail(err, BP_ERR_USAGE,

@@ -1,4 +1,4 @@
-/* render.h: the render loop behind ballpark.h, with what the program, `check` and the tests need beside it.
+/* render.h: the render loop behind ballpark.h, and what the program, `check` and the tests need in addition.
  *
  * In:    Scene, options, devices.   Out: a film; a report of times and counts.
  * Knows: OpenCL, packed buffers, chunks.   Does not know: files, stop rules, the terminal. */

@@ -1,7 +1,7 @@
 /* schedule.h: cuts a render into chunks.
  *
  * In:    pixels, samples, how many samples a chunk should have.   Out: chunks, one after the other.
- * Knows: counting.   Does not know: OpenCL, time, who traces a chunk.
+ * Knows: numbers of pixels and samples.   Does not know: OpenCL, time, who traces a chunk.
  *
  * A render goes over the picture in passes; a pass gives every pixel the same number of samples, few at first
  * so that an early picture is whole, then more. A chunk is a range of pixels of one pass. What a pixel sample

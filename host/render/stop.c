@@ -63,17 +63,18 @@ static uint64_t samples_limit(const BpRenderOptions *options) {
 
 static BpStatus check_rule(const BpRender *render, const BpStopRule *rule, BpError *err) {
     if (bp_render_has_begun(render))
-        return bp_fail(err, BP_ERR_USAGE,
-                       "a stop rule for a render that has begun: give it before the first step");
+        return bp_fail(err, BP_ERR_USAGE, "a stop rule must be given before the first step of a render");
     if (!isfinite(rule->error) || rule->error < 0.0 || !isfinite(rule->seconds) || rule->seconds < 0.0)
         return bp_fail(err, BP_ERR_USAGE,
-                       "a stop rule of error %g and %g seconds: each is a positive number, or 0 for none",
+                       "a stop rule with error %g and %g seconds: expected positive numbers, or 0 for none",
                        rule->error, rule->seconds);
     if (rule->error == 0.0 && rule->seconds == 0.0 && rule->samples_max == 0)
-        return bp_fail(err, BP_ERR_USAGE,
-                       "a stop rule without error, time and samples would never stop: set one of them");
+        return bp_fail(
+            err, BP_ERR_USAGE,
+            "a stop rule without error, time and samples would never stop: set at least one of them");
     if (rule->adaptive != render->options.adaptive)
-        return bp_fail(err, BP_ERR_USAGE, "the stop rule is%s adaptive and the render is%s: set both alike",
+        return bp_fail(err, BP_ERR_USAGE,
+                       "the stop rule is%s adaptive, but the render is%s: use the same for both",
                        rule->adaptive ? "" : " not", render->options.adaptive ? "" : " not");
     return BP_OK;
 }

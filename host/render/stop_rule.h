@@ -1,11 +1,11 @@
 /* stop_rule.h: the decisions behind the stop rules of ballpark.h, on numbers alone.
  *
  * In:    what --spp, --error and --time ask for; how far the render is.
- * Out:   the sample count up to which to go on before asking again; or why to stop.
- * Knows: sample counts, the error's fall with their square root.   Does not know: the render, the clock.
+ * Out:   the sample count to reach before the next decision; or the reason to stop.
+ * Knows: sample counts, that noise falls with their square root.   Does not know: the render, the clock.
  *
- * The error is looked at on fixed sample counts only (bp_stop_checkpoint), and which of them are looked at
- * follows from the samples alone: the same scene, seed and --error end at the same count on every run. --time
+ * Noise is estimated at fixed sample counts only (bp_stop_checkpoint), and which of them are used depends
+ * on the samples alone: the same scene, seed and --error end at the same count on every run. --time
  * chooses a count by the clock, but always a whole one for every pixel. */
 #ifndef BP_RENDER_STOP_RULE_H
 #define BP_RENDER_STOP_RULE_H

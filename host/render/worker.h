@@ -1,4 +1,4 @@
-/* worker.h: one device at work on one render: its program, its buffers, its chunks.
+/* worker.h: one device that works on one render: its program, its buffers, its chunks.
  *
  * In:    packed scene, chunks.   Out: replicate sums on the device, times.
  * Knows: OpenCL, the kernels' arguments.   Does not know: passes, the picture as a whole, other devices. */

@@ -4,11 +4,11 @@
  * Knows: the grammar's terms.                Does not know: JSON, OpenCL, float, buffers.
  *
  * Invariants of every BpScene that reaches another module (bp_scene_validate proves them): all numbers are
- * finite; radius != 0 (negative: turned inside out); material indices in range; albedo in [0,1]; emit >= 0;
- * 0 <= fuzz <= 1; refraction_index > 0; 0 < vfov < 180, and the plane in focus of a size that float can hold;
- * lookfrom != lookat; vup not along the view;
- * 1 <= width, height <= BP_PICTURE_SIDE_MAX; no two coincident dielectrics; a pinhole camera on the surface
- * of one sphere at most. */
+ * finite; radius != 0 (negative: inside out); material indices in range; albedo in [0,1]; emit >= 0;
+ * 0 <= fuzz <= 1; refraction_index > 0; 0 < vfov < 180, and the size of the plane in focus fits a float;
+ * lookfrom != lookat; vup not parallel to the view;
+ * 1 <= width, height <= BP_PICTURE_SIDE_MAX; no two coincident dielectrics; a pinhole camera on the
+ * surface of at most one sphere. */
 #ifndef BP_SCENE_SCENE_H
 #define BP_SCENE_SCENE_H
 

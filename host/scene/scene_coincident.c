@@ -58,10 +58,9 @@ BpStatus bp_scene_find_coincident(const BpScene *scene, BpFault *fault, BpError 
         fault->member = "";
         fault->index = a > b ? a : b;
         fault->other = a > b ? b : a;
-        snprintf(
-            fault->text, sizeof fault->text,
-            "found the same centre and radius (in float, seen from the camera) for two dielectrics, expected "
-            "surfaces apart: remove one, or make one of them a little smaller");
+        snprintf(fault->text, sizeof fault->text,
+                 "found the same centre and radius (in float, seen from the camera) for two dielectrics, "
+                 "expected separate surfaces: remove one, or make one of them slightly smaller");
         break;
     }
     free(shells);

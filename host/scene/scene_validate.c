@@ -61,7 +61,7 @@ static bool camera_basis_fault(const BpCamera *camera, BpFault *fault) {
                          "one to the other");
     if (!(up_length >= LENGTH_MIN))
         return set_fault(fault, BP_FAULT_CAMERA, "vup",
-                         "found no direction, expected one that is up, such as [0, 1, 0]");
+                         "found no direction, expected the one that is up, such as [0, 1, 0]");
     double v[3], u[3];
     for (int i = 0; i < 3; i++) {
         v[i] = view[i] / distance;
@@ -69,10 +69,9 @@ static bool camera_basis_fault(const BpCamera *camera, BpFault *fault) {
     }
     const double cross[3] = {v[1] * u[2] - v[2] * u[1], v[2] * u[0] - v[0] * u[2], v[0] * u[1] - v[1] * u[0]};
     if (!(length(cross) >= ALONG_VIEW_MAX))
-        return set_fault(
-            fault, BP_FAULT_CAMERA, "vup",
-            "found the direction of the view, expected one across it: looking straight down, take "
-            "[0, 0, -1]");
+        return set_fault(fault, BP_FAULT_CAMERA, "vup",
+                         "found a direction parallel to the view, expected another: to look straight down, "
+                         "use [0, 0, -1]");
     return false;
 }
 
@@ -126,7 +125,7 @@ static bool material_fault(const BpMaterial *material, BpFault *fault) {
                        "radiances from 0 to 1e12") ||
            (material->kind == BP_MATERIAL_METAL &&
             outside(fault, BP_FAULT_MATERIAL, "fuzz", material->fuzz, 0, 1,
-                    "a number of at least 0 (over 1 is as 1)")) ||
+                    "a number of at least 0 (above 1 counts as 1)")) ||
            (material->kind == BP_MATERIAL_DIELECTRIC &&
             outside(fault, BP_FAULT_MATERIAL, "refraction_index", material->refraction_index,
                     1 / BP_REFRACTION_INDEX_MAX, BP_REFRACTION_INDEX_MAX,
@@ -153,8 +152,8 @@ static bool standpoint_fault(const BpScene *scene, BpFault *fault) {
         if (bp_sphere_side(&scene->spheres[i], scene->camera.lookfrom) != BP_SIDE_ON) continue;
         if (found++ > 0)
             return set_fault(fault, BP_FAULT_CAMERA, "lookfrom",
-                             "found a point on the surfaces of %s and %s at once, expected one surface at "
-                             "most: move the camera a little, or one of the spheres",
+                             "found a point on the surfaces of both %s and %s, expected at most one surface: "
+                             "move the camera or one of the spheres slightly",
                              bp_sphere_name(scene, first, a), bp_sphere_name(scene, i, b));
         first = i;
     }

@@ -80,7 +80,7 @@ BpStatus bp_study_create(const BpScene *scene, const BpRenderOptions *base, cons
     BpRenderOptions defaults;
     BpDeviceInfo found;
     if (!(seconds > 0) || isinf(seconds))
-        return bp_fail(err, BP_ERR_USAGE, "a study in %g seconds: give it a time above 0", seconds);
+        return bp_fail(err, BP_ERR_USAGE, "a study of %g seconds: expected a time above 0", seconds);
     if (base == NULL) {
         bp_render_defaults(scene, &defaults);
         base = &defaults;
@@ -155,7 +155,7 @@ static BpStatus step_references(BpStudy *study, BpError *err) {
     bp_references_judge(&study->references, &result->brightness, &result->reference_error);
     if (!(result->brightness > 0))
         return bp_fail(err, BP_ERR_SCENE,
-                       "%s: the picture is black, and no error is relative to nothing; give it light",
+                       "%s: the picture is black, so relative errors are undefined; add light to the scene",
                        result->scene->path);
     return BP_OK;
 }
@@ -381,9 +381,9 @@ BpStatus bp_study_stop(BpStudy *study, BpError *err) {
     if (study->phase == BP_STUDY_DONE) return BP_OK;
     for (size_t s = 0; s < study->result.count; s++)
         if (study->result.series[s].count < 2)
-            return bp_fail(
-                err, BP_ERR_INTERRUPTED,
-                "interrupted before every configuration had two sample counts: nothing to compare yet");
+            return bp_fail(err, BP_ERR_INTERRUPTED,
+                           "interrupted before every configuration had two sample counts; there is nothing "
+                           "to compare yet");
     study->result.cut_short = true;
     return conclude(study, err);
 }

@@ -25,10 +25,9 @@ BpStatus bp_study_text(const BpStudy *study, BpStudyFormat format, char **text, 
                                                                    [BP_STUDY_CSV] = bp_study_print_csv,
                                                                    [BP_STUDY_PAGE] = bp_study_print_page};
     if ((size_t)format >= sizeof print / sizeof print[0])
-        return bp_fail(err, BP_ERR_USAGE, "format %d of a study: there is none of that number", (int)format);
+        return bp_fail(err, BP_ERR_USAGE, "unknown format %d of a study", (int)format);
     if (!bp_study_has_finished(study))
-        return bp_fail(err, BP_ERR_USAGE,
-                       "results of a study that has not finished: step it to its end, or stop it");
+        return bp_fail(err, BP_ERR_USAGE, "the study has not finished: step it to its end, or stop it");
     char *bytes = NULL;
     size_t size = 0;
     FILE *out = open_memstream(&bytes, &size);

@@ -20,8 +20,8 @@ static void print_head(const BpStudyResult *result, FILE *out) {
     bp_show(result->report.device.name, false, out);
     fputc('\n', out);
     fprintf(out,
-            "truth: exact Fresnel, depth %u, %s, two references of %" PRIu64
-            " samples a pixel (noise of their mean: %s)\n\n",
+            "reference: exact Fresnel, depth %u, %s,\n           two pictures with %" PRIu64
+            " samples per pixel each (noise of their mean: %s)\n\n",
             BP_STUDY_DEPTH, result->reference_is_kernel ? "double precision" : "the reference tracer",
             result->reference_samples, bp_format_percent_cell(result->reference_error, error, sizeof error));
 }
@@ -29,7 +29,8 @@ static void print_head(const BpStudyResult *result, FILE *out) {
 static void print_configurations(const BpStudyResult *result, FILE *out) {
     char time[32], noise[32], error[32], factor[32], change[48], bias[48];
     const BpStudySeries *base = &result->series[0];
-    fprintf(out, "Configurations, at %" PRIu64 " samples a pixel:\n", base->points[base->count - 1].samples);
+    fprintf(out, "Configurations, at %" PRIu64 " samples per pixel:\n",
+            base->points[base->count - 1].samples);
     fprintf(out, "  %-21s %9s %9s %9s %11s %24s %24s\n", "", "time", "noise", "error", "efficiency",
             "changes brightness by", "bias of brightness");
     for (size_t s = 0; s < result->count; s++) {
@@ -64,26 +65,30 @@ bool bp_study_print(const BpStudyResult *result, FILE *out) {
     print_head(result, out);
     print_configurations(result, out);
     print_counts(result, out);
-    fprintf(out, "\nnoise: what more samples remove. error: noise and bias together, against the truth; a "
-                 "dash where the "
-                 "references cannot tell."
-                 "\nefficiency: 1 / (noise^2 x time), over that of the first line.\n");
+    fprintf(out, "\nnoise: removed by more samples. error: noise and bias together, relative to the\n       "
+                 "reference; a dash where the reference is too noisy to tell.\nefficiency: 1 / (noise^2 x "
+                 "time), relative to the first line.\n");
     const double scatter = bp_study_time_scatter(result);
     if (isfinite(scatter))
-        fprintf(out,
-                "time: the ratio of two is good to +- %.2g %% (95 %% interval); less is known of adaptive "
-                "samples.\n",
+        fprintf(out, "time: ratios are accurate to +- %.2g %% (95 %% interval), less so for adaptive.\n",
                 100 * scatter);
-    fprintf(out, "\nWhat to use for an error of (times: on this device, when it does nothing else)\n");
-    for (int t = 0; t < BP_STUDY_TARGETS; t++)
-        fprintf(out, "  %s\n", bp_study_advice_text(result, &result->advice[t], line, sizeof line));
+    fprintf(out, "\nRecommended for an error of (times: on this device, when otherwise idle)\n");
+    for (int t = 0; t < BP_STUDY_TARGETS; t++) {
+        bp_study_advice_text(result, &result->advice[t], line, sizeof line);
+        /* The command goes to a line of its own, so that both fit a terminal of 80 columns. */
+        const char *command = strstr(line, ": ballpark ");
+        if (command == NULL)
+            fprintf(out, "  %s\n", line);
+        else
+            fprintf(out, "  %.*s:\n      %s\n", (int)(command - line), line, command + 2);
+    }
     return fflush(out) == 0 && !ferror(out);
 }
 
 const char *bp_study_advice_text(const BpStudyResult *result, const BpStudyAdvice *advice, char *text,
                                  size_t size) {
     if (!advice->reachable) {
-        snprintf(text, size, "%g %%: no configuration gets there", 100 * advice->target);
+        snprintf(text, size, "%g %%: no configuration reaches it", 100 * advice->target);
         return text;
     }
     const BpStudyConfiguration *configuration = &result->series[advice->series].configuration;
@@ -94,7 +99,7 @@ const char *bp_study_advice_text(const BpStudyResult *result, const BpStudyAdvic
                        strcmp(bp_shown(path, clean, sizeof clean), path) == 0;
     char seconds[32];
     snprintf(
-        text, size, "%g %%: %s, %.0f %s a pixel, %s %s at %ux%u: ballpark render %.300s --spp %.0f%s%s%s",
+        text, size, "%g %%: %s, %.0f %s per pixel, %s %s at %ux%u: ballpark render %.300s --spp %.0f%s%s%s",
         100 * advice->target, configuration->name, advice->samples,
         advice->samples > 1 ? "samples" : "sample", advice->extrapolated ? "extrapolated" : "estimated",
         bp_format_seconds(advice->seconds, seconds, sizeof seconds), result->full_width, result->full_height,

@@ -246,9 +246,9 @@ static void a_finished_file_is_not_lost(void **state) {
     fputs("finished", file.stream);
     assert_int_equal(mkdir(path, 0700), 0);
     assert_int_equal(bp_output_commit(&file, &err), BP_ERR_FILE);
-    named = strstr(err.message, "is whole, as ");
+    named = strstr(err.message, "the complete result is in ");
     assert_non_null(named);
-    named += strlen("is whole, as ");
+    named += strlen("the complete result is in ");
     temp_assert_text(named, "finished");
     assert_int_equal(temp_count(folder), 2);
     assert_int_equal(rmdir(path), 0);

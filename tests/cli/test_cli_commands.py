@@ -143,7 +143,7 @@ class OneOfEach(ProgramTest):
                       ["bench", "s.json", "--rounds", "1", "--time", "0.01"]):
             result = self.run_program(*words)
             said += result.stdout.decode() + result.errors
-        self.assertRegex(said, r"\b1 sample a pixel")
+        self.assertRegex(said, r"\b1 sample per pixel")
         found = re.findall(r"[^\n]*(?<![\d.,])1 (?:sample|sphere|material|round|segment|effect|byte|device|pixel)s\b"
                            r"[^\n]*", said)
         self.assertEqual(found, [])

@@ -144,7 +144,7 @@ class Features(cli.ProgramTest):
         self.succeed("render", "scene.json", "-o", "a.bpa", "--spp", 4)
         self.succeed("render", "scene.json", "-o", "b.bpa", "--spp", 4, "--first-sample", 4)
         result = self.succeed("merge", "a.bpa", "b.bpa", "-o", "sum.exr")
-        self.assertIn("left out", result.errors)
+        self.assertIn("omitted: .bpa files do not store the scene", result.errors)
         self.assertEqual(sorted(exr.read(self.read("sum.exr"))[2]),
                          sorted(["R", "G", "B", "error.R", "error.G", "error.B", "samples"]))
 

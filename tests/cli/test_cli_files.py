@@ -66,8 +66,8 @@ class StandardInput(ProgramTest):
         said = self.with_input('{ "camera": { "vfovv": 1 } }', "render", "-", "-o", "x.png", code=2).errors
         self.assertIn("standard input:1:15: camera.vfovv", said)
         self.assertIn("empty file", self.with_input("", "render", "-", "-o", "x.png", code=2).errors)
-        self.assertIn("once only", self.with_input(document, "explain", "-", "-", code=2).errors)
-        self.assertIn("once only", self.with_input(document, "bench", "-", code=2).errors)
+        self.assertIn("only once", self.with_input(document, "explain", "-", "-", code=2).errors)
+        self.assertIn("cannot be read again", self.with_input(document, "bench", "-", code=2).errors)
         self.assertEqual(self.files(), ["sent"])
 
 
@@ -183,7 +183,7 @@ class Writing(ProgramTest):
         self.assertTrue(self.read("far/real.png").startswith(b"\x89PNG"))
 
     def test_an_empty_name_is_no_scene(self):
-        self.fail_with(2, "render", "", says="needs SCENE, found an empty name")
+        self.fail_with(2, "render", "", says="expected SCENE, found an empty name")
 
     def test_no_file_plays_two_parts(self):
         before = self.read("s.json")

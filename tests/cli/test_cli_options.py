@@ -47,10 +47,10 @@ class Wrong(ProgramTest):
         self.fail_with(2, says="ballpark --help")
         self.fail_with(2, "rendr", says=["\"rendr\"", "did you mean render?"])
         self.fail_with(2, "xyzzyplugh", says="ballpark --help")
-        self.fail_with(2, "--seed", "3", says="comes after a command")
+        self.fail_with(2, "--seed", "3", says="must follow a command")
 
     def test_operands(self):
-        self.fail_with(2, "render", says="needs SCENE")
+        self.fail_with(2, "render", says="ballpark render: missing SCENE")
         self.fail_with(2, "render", "a.json", "b.json", says="\"b.json\"")
         self.fail_with(2, "devices", "x", says="\"x\"")
         self.fail_with(2, "generate", says="cover|field")
@@ -66,8 +66,8 @@ class Wrong(ProgramTest):
         self.fail_with(2, "render", "x.json", "-qx", says="unknown option -x")
 
     def test_options_of_other_commands(self):
-        self.fail_with(2, "merge", "x.bpa", "--spp", "3", says=["merge does not take --spp", "render"])
-        self.fail_with(2, "render", "x.json", "--grid", "3", says=["render does not take --grid", "generate"])
+        self.fail_with(2, "merge", "x.bpa", "--spp", "3", says=["merge: unsupported option --spp", "render"])
+        self.fail_with(2, "render", "x.json", "--grid", "3", says=["render: unsupported option --grid", "generate"])
         self.fail_with(2, "generate", "field", "--grid", "3", says="--grid")
         self.fail_with(2, "generate", "cover", "--count", "3", says="--count")
 
@@ -110,11 +110,11 @@ class Wrong(ProgramTest):
         self.write("s.json", scene())
         last = ["--first-sample", "4294967295", "-o", "x.png"]
         self.fail_with(2, "render", "s.json", *last, "--spp", "2",
-                       says=["--first-sample 4294967295 leaves numbers for 1 sample a pixel", "--spp asks for 2",
-                             "--spp 1 at most", "--first-sample 4294967294 at most"])
+                       says=["--first-sample 4294967295 leaves room for 1 sample per pixel", "--spp asks for 2",
+                             "--spp 1 or less", "--first-sample 4294967294 or less"])
         self.fail_with(2, "render", "s.json", *last,
-                       says=["--first-sample 4294967295", "the scene's \"samples_per_pixel\" asks for 8", "--spp 1 at most",
-                             "--first-sample 4294967288 at most"])
+                       says=["--first-sample 4294967295", "the scene's \"samples_per_pixel\" asks for 8", "--spp 1 or less",
+                             "--first-sample 4294967288 or less"])
         self.succeed("render", "s.json", *last, "--spp", "1")
         self.succeed("render", "s.json", *last, "--error", "1")
         self.succeed("render", "s.json", *last, "--time", "100")
@@ -126,7 +126,7 @@ class Wrong(ProgramTest):
         self.fail_with(2, "render", "s.json", "-o", "-", "--stats", "-", says="--stats")
         self.fail_with(2, "render", "s.json", "-o", "a.png", "--error-map", "a.png", says="--error-map")
         self.fail_with(2, "render", "s.json", "--error-map", "a.exr", says=".png")
-        self.fail_with(2, "render", "s.json", "-o", "a.jpg", says=["--output", ".png .ppm .pfm .exr .bpa"])
+        self.fail_with(2, "render", "s.json", "-o", "a.jpg", says=["--output", ".png, .ppm, .pfm, .exr or .bpa"])
         self.assertEqual(self.files(), ["s.json"])
 
     def test_the_last_of_two_wins(self):

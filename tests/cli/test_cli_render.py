@@ -169,7 +169,7 @@ class Statistics(Render):
         self.assertEqual(stats["cut_paths"], stats["samples"])
         self.assertEqual(stats["rays"], 4 * stats["samples"])
         said = self.succeed("render", "ball.json", "--depth", "4", "-o", "x.png").errors
-        self.assertIn("100 % of the paths were cut at 4 segments", said)
+        self.assertIn("100 % of the paths were cut off at 4 segments", said)
 
 
 class StopRules(Render):
@@ -190,7 +190,7 @@ class StopRules(Render):
         stats = self.stats("--error", "0.001", "--spp", "300")
         self.assertEqual((stats["stopped_by"], stats["samples_per_pixel"]), ("samples", 300))
         said = self.succeed("render", "s.json", "--error", "0.001", "--spp", "300", "-o", "x.png").errors
-        self.assertIn("not reached", said)
+        self.assertIn("noise is still above --error", said)
 
     def test_time(self):
         # The first launch, in which a driver may compile, is in the time: on a slow machine it may be all of it.
@@ -214,7 +214,7 @@ class StopRules(Render):
         stats = self.stats("--error", "1", name="plain.json")
         self.assertEqual((stats["stopped_by"], stats["nrmse"]), ("constant", 0.0))
         said = self.succeed("render", "plain.json", "--error", "1", "-o", "x.png").errors
-        self.assertIn("the samples of every pixel agree", said)
+        self.assertIn("all samples of each pixel are equal", said)
 
     def broken_sky(self, red):
         """Kernels whose sky has another red; the environment that uses them."""
@@ -246,8 +246,8 @@ class StopRules(Render):
         for options in (["--error", "0.1"], ["--error", "0.1", "--time", "100"], ["--error", "0.1", "--spp", "100000"]):
             said = self.succeed("render", "n.json", "--stats", "n.stats", *options, environment=here).errors
             self.assertIn("--error cannot be reached", said)
-            self.assertIn("an error needs finite samples in every pixel", said)
-            self.assertRegex(said, r"warning: \d+ samples were not finite; left out of the picture")
+            self.assertIn("estimating noise needs finite samples in every pixel", said)
+            self.assertRegex(said, r"warning: \d+ samples were not finite and left out of the picture")
             with open(self.path("n.stats")) as file:
                 stats = json.load(file)
             self.assertEqual((stats["stopped_by"], stats["nrmse"]), ("invalid", None))
@@ -255,9 +255,9 @@ class StopRules(Render):
 
     def test_summary(self):
         said = self.succeed("render", "s.json").errors
-        self.assertRegex(said, r"\As\.png: 16x16, 8 samples a pixel, error [\d.]+ %\n"
-                               r"2\.05 thousand samples traced in [\d.]+ m?s \([\d.]+ .*/s\), [\d.]+ m?s in all; "
-                               r"half the error: [\d.]+ m?s more\n")
+        self.assertRegex(said, r"\As\.png: 16x16, 8 samples per pixel, noise [\d.]+ %\n"
+                               r"2\.05 thousand samples traced in [\d.]+ m?s \([\d.]+ .*/s\), [\d.]+ m?s in total\n"
+                               r"halving the noise: [\d.]+ m?s more\n")
 
     def test_summary_does_not_contradict_itself(self):
         """The rate is that of the time beside it, which is a part of the whole, on short runs above all."""
@@ -265,7 +265,7 @@ class StopRules(Render):
         for options in (["--spp", "1"], ["--spp", "2", "--width", "1"], ["--spp", "3000"]):
             said = self.succeed("render", "s.json", *options).errors
             number, word, time, unit, rate, rate_word, whole, whole_unit = re.search(
-                r"([\d.]+) ?(\w*) samples traced in ([\d.]+) (m?s) \(([\d.]+) ?(\w*)/s\), ([\d.]+) (m?s) in all",
+                r"([\d.]+) ?(\w*) samples traced in ([\d.]+) (m?s) \(([\d.]+) ?(\w*)/s\), ([\d.]+) (m?s) in total",
                 said).groups()
             seconds = float(time) / (1e3 if unit == "ms" else 1)
             total = float(whole) / (1e3 if whole_unit == "ms" else 1)

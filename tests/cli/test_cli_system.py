@@ -58,7 +58,7 @@ class System(cli.ProgramTest):
         self.write("may-end", "")
         said = process.communicate(timeout=cli.LIMIT_SECONDS)[1].decode()
         self.assertEqual(process.returncode, 130, said)
-        self.assertIn("interrupted before there was a verdict", said)
+        self.assertIn("interrupted before a verdict was reached", said)
 
     def test_cache_that_cannot_be_written(self):
         self.write("file", "")

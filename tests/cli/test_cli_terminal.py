@@ -32,7 +32,7 @@ class Bar(ProgramTest):
             if len(bars) > 2:
                 break
         self.assertGreater(len(bars), 2)
-        self.assertRegex(bars[-1], r"^[█░▏▎▍▌▋▊▉]+ +\d+ %  \d+ s left  error [\d.]+ %  [\d.]+ \w+ samples/s$")
+        self.assertRegex(bars[-1], r"^[█░▏▎▍▌▋▊▉]+ +\d+ %  \d+ s left  noise [\d.]+ %  [\d.]+ \w+ samples/s$")
         shares = [int(re.search(r"(\d+) %", text)[1]) for text in bars]
         self.assertGreater(shares[-1], shares[0])
         self.assertEqual(screen.drawings()[-1], "", "it takes itself away")
@@ -46,7 +46,7 @@ class Bar(ProgramTest):
     def test_every_narrow_width(self):
         """One render, whose terminal is resized: what is drawn never reaches the last column, where lines would wrap."""
         screen = Terminal(self, "render", "s.json", *FOREVER, columns=80)
-        screen.read_until(rb"left  error")  # the bar itself, not the wait for the kernel before it
+        screen.read_until(rb"left  noise")  # the bar itself, not the wait for the kernel before it
         for columns in range(1, 41):
             screen.resize(columns)
             self.assertTrue(screen.drawings())
@@ -105,7 +105,7 @@ class Interrupt(ProgramTest):
         super().setUp()
         self.write("s.json", scene(64))
 
-    def stop(self, *options, by=signal.SIGINT, wait_for=rb"left  error"):
+    def stop(self, *options, by=signal.SIGINT, wait_for=rb"left  noise"):
         screen = Terminal(self, "render", "s.json", *FOREVER, *options)
         screen.read_until(wait_for)
         os.kill(screen.process.pid, by)
@@ -115,7 +115,7 @@ class Interrupt(ProgramTest):
     def test_picture_is_there(self):
         for by in (signal.SIGINT, signal.SIGTERM):
             said = self.stop("-o", f"{by.name}.png", "--stats", "stats.json", by=by)
-            samples = int(re.search(r"interrupted after (\d+) of 60000000 samples a pixel", said)[1])
+            samples = int(re.search(r"interrupted after (\d+) of 60000000 samples per pixel", said)[1])
             self.assertGreater(samples, 0)
             self.assertIn(f"{by.name}.png", said)
             self.assertTrue(self.read(f"{by.name}.png").endswith(b"IEND\xaeB`\x82"))
@@ -129,7 +129,7 @@ class Interrupt(ProgramTest):
         for _ in range(10):
             screen = Terminal(self, "render", "s.json", *FOREVER)
             # A session of its own has no controlling terminal: the key is stood in for by the signal to the group.
-            screen.read_until(rb"left  error")
+            screen.read_until(rb"left  noise")
             start = time.monotonic()
             os.killpg(screen.process.pid, signal.SIGINT)
             time.sleep(0.03)

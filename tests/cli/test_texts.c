@@ -87,7 +87,7 @@ static void bars(void **unused) {
     }
     view.fraction = 0.5;
     assert_string_equal(bp_progress_format(&view, 70, false, text, sizeof text),
-                        "#######--------  50 %  12 s left  error 2.1 %  5.20 million samples/s");
+                        "#######--------  50 %  12 s left  noise 2.1 %  5.20 million samples/s");
     assert_string_equal(bp_progress_format(&view, 20, false, text, sizeof text), "######-------  50 %");
     view.nrmse = view.seconds_left = NAN;
     bp_progress_format(&view, 60, true, text, sizeof text);

@@ -74,7 +74,7 @@ class Faults(cli.ProgramTest):
             self.assertRegex(result.errors, r"(?m)^ballpark: .*\w", where)
         if result.returncode == 1 and kind == "alloc":
             self.assertIn("memory", result.errors.lower(), where)
-        named = re.findall(r"what was to be written is whole, as (\S+)", result.errors)
+        named = re.findall(r"the complete result is in (\S+)", result.errors)
         for name in self.results:
             there = self.read(name) if os.path.exists(self.path(name)) else None
             good = there is not None and self.is_right(name, there)

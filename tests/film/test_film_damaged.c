@@ -63,7 +63,7 @@ static void wrong_members_are_named(void **state) {
     } cases[] = {
         {"\"ballpark_accumulator\": 2", "\"ballpark_accumulator\": 0", "should be a whole number from 1"},
         {"\"ballpark_accumulator\": 2", "\"ballpark_accumulator\": 3",
-         "is of version 3 of the format, and this program reads versions 1 to 2: use a newer ballpark"},
+         "has version 3 of the format, but this program reads versions 1 to 2: use a newer Ballpark"},
         {"\"fine_sums\": true", "\"fine_sums\": false", "too long"},
         {"\"fine_sums\": true", "\"fine_sums\": 1", "\"fine_sums\" in the header should be true or false"},
         {"\"coarse\": true, ", "", "\"coarse\""},
@@ -77,7 +77,7 @@ static void wrong_members_are_named(void **state) {
         {"\"width\": 5", "\"width\": -5", "\"width\""},
         {"\"width\": 5", "\"width\": 6", "truncated"},
         {"\"width\": 5", "\"width\": 4", "too long"},
-        {"\"width\": 5", "\"width\": 99999999999999999999", "no JSON"},
+        {"\"width\": 5", "\"width\": 99999999999999999999", "not JSON"},
         {"\"width\": 5, \"height\": 3, \"replicates\": 4",
          "\"width\": 65535, \"height\": 65535, \"replicates\": 64",
          "says 14293"}, /* without allocating 7 TiB first */
@@ -116,9 +116,9 @@ static void wrong_members_are_named(void **state) {
         {"[4294967294, 2]", "[4294967294, 3]", "below 2^32"},
         {"[4294967294, 2]", "[8, 2]", "disjoint"},
         {"[[0, 9], [4294967294, 2]]", "{}", "\"ranges\""},
-        {"[0, 9]", "[0, 3]", "at odds with its sample ranges"},
-        {"{", "[", "no JSON"},
-        {"\"title\"", "\"\xff\"", "no JSON"},
+        {"[0, 9]", "[0, 3]", "contradicts its sample ranges"},
+        {"{", "[", "not JSON"},
+        {"\"title\"", "\"\xff\"", "not JSON"},
     };
     Files files;
     files_make(&files);
@@ -144,7 +144,7 @@ static void wrong_lengths_are_refused(void **state) {
     refuse(&files, "does not begin with a line of JSON");
     long_line[1] = '\n';
     temp_write(files.bad, long_line, 2000000);
-    refuse(&files, "no JSON");
+    refuse(&files, "not JSON");
     free(long_line);
     files_clear(&files);
 }
@@ -164,11 +164,11 @@ static void wrong_numbers_are_refused(void **state) {
     sums[8 * 3 * 33 + 7] = 0x3f;
     sums[8 * 3 * 35] = 1;
     temp_write(files.bad, files.bytes, files.size);
-    refuse(&files, "pixel 8 holds 0 samples in replicate 3, which is at odds with its sums");
+    refuse(&files, "pixel 8 holds 0 samples in replicate 3, which contradicts its sums");
     sums[8 * 3 * 35] = 0;
     fine_sums[8 * 3 * 35] = 1;
     temp_write(files.bad, files.bytes, files.size);
-    refuse(&files, "pixel 8 holds 0 samples in replicate 3, which is at odds with its sums");
+    refuse(&files, "pixel 8 holds 0 samples in replicate 3, which contradicts its sums");
     fine_sums[8 * 3 * 35] = 0;
     fine_sums[8 * 3 * 33 + 7] ^= 0x80;
     temp_write(files.bad, files.bytes, files.size);
@@ -176,7 +176,7 @@ static void wrong_numbers_are_refused(void **state) {
     fine_sums[8 * 3 * 33 + 7] ^= 0x80;
     counts[4 * 33] = 3;
     temp_write(files.bad, files.bytes, files.size);
-    refuse(&files, "pixel 8 holds 3 samples in replicate 1, which is at odds with its sample ranges");
+    refuse(&files, "pixel 8 holds 3 samples in replicate 1, which contradicts its sample ranges");
     counts[4 * 33] = 2;
     temp_write(files.bad, files.bytes, files.size);
     refuse(&files, "checksum"); /* the sum that was changed first */

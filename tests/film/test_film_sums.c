@@ -129,7 +129,7 @@ static void what_differs_is_named(void **state) {
     DIFFER(height, 7, "heights differ (5 and 7");
     DIFFER(replicates, 2, "replicates differ (4 and 2");
     DIFFER(scale_log2, -3, "scales differ (2^36 and 2^-3");
-    DIFFER(scene_hash, 1, "different scenes");
+    DIFFER(scene_hash, 1, "scenes differ");
     DIFFER(seed, 8, "seeds differ (7 and 8)");
     DIFFER(max_depth, 5, "--depth 50 and 5");
     DIFFER(sampler, 1, "--sampler");
@@ -142,11 +142,12 @@ static void what_differs_is_named(void **state) {
     assert_int_equal(bp_film_add_fine_sums(fine, NULL), BP_OK);
     refuse_merge(a, fine, BP_ERR_USAGE, "samples 0 to 7 and 7 to 14 overlap");
     bp_film_destroy(&fine);
-    refuse_merge(a, a, BP_ERR_USAGE, "samples 0 to 7 and 0 to 7 overlap");
+    refuse_merge(a, a, BP_ERR_USAGE, "samples 0 to 7 and 0 to 7 overlap, so these samples would count twice");
     assert_int_equal(bp_film_merge(a, b, NULL), BP_OK); /* nothing else was wrong */
     bp_film_destroy(&b);
     b = render(15, 8);
-    refuse_merge(a, b, BP_ERR_USAGE, "samples 0 to 15 and 15 to 22 overlap");
+    refuse_merge(a, b, BP_ERR_USAGE,
+                 "samples 0 to 15 and 15 to 22 overlap, so these samples would count twice");
     bp_film_destroy(&a);
     bp_film_destroy(&b);
 }

@@ -85,10 +85,12 @@ static void not_a_number_is_named(void **state) {
     memcpy(bytes + n + 12 + 8, nan_bytes, 4); /* z of vertex 1 */
     write_file("points.ply", bytes, n + 24);
     refuse(SCENE("", CLOUD("points.ply")), "points.ply", 0, 0,
-           (const char *const[5]){"vertex 1 (from 0): z: found nan", "remove the point", "scene.json:4:22"});
+           (const char *const[5]){"vertex 1 (from 0): z: found nan", "remove or correct the point",
+                                  "scene.json:4:22"});
     write_text("points.ply", ASCII("1") "end_header\n1 inf 3\n");
     refuse(SCENE("", CLOUD("points.ply")), "points.ply", 8, 0,
-           (const char *const[5]){"vertex 0 (from 0): y: found inf", "remove the point", "scene.json:4:22"});
+           (const char *const[5]){"vertex 0 (from 0): y: found inf", "remove or correct the point",
+                                  "scene.json:4:22"});
 }
 
 static void what_follows_the_last_element(void **state) {
@@ -117,7 +119,7 @@ static void what_follows_the_last_element(void **state) {
     snprintf(at, sizeof at, "3 bytes after the last element, from byte %zu on", n + 27);
     refuse(scene, "points.ply", 0, 0, (const char *const[5]){at, "counts in its header", "scene.json:4:22"});
     write_file("points.ply", bytes, n + 26);
-    refuse(scene, "points.ply", 0, 0, (const char *const[5]){"cut short", "scene.json:4:22"});
+    refuse(scene, "points.ply", 0, 0, (const char *const[5]){"truncated", "scene.json:4:22"});
 }
 
 int main(void) {

@@ -183,7 +183,7 @@ static void binary(void **state) {
                 BpError err = {0};
                 scene = empty_scene();
                 assert_int_equal(read_bytes(bytes, n - cut, &options, scene, &err), BP_ERR_SCENE);
-                assert_non_null(strstr(err.message, "cut short"));
+                assert_non_null(strstr(err.message, "truncated"));
                 assert_int_equal(scene->sphere_count, 0);
                 bp_scene_destroy(&scene);
                 bp_error_clear(&err);

@@ -100,8 +100,8 @@ static void numbers_come_first(void **state) {
     expect("cpu,gpu=Card 7", "1", 1);
     expect("cpu,gpu=Card 4090", "4090", 1);
     expect_error("cpu,gpu=Card 7", "7",
-                 "no device fits '7'; there is 0: cpu (Fake One); 1: Card 7 (Fake One)");
-    expect_error("cpu", "-1", "no device fits '-1'");
+                 "no device matches '7'; available: 0: cpu (Fake One); 1: Card 7 (Fake One)");
+    expect_error("cpu", "-1", "no device matches '-1'");
 }
 
 static void parts_of_names_in_any_case(void **state) {
@@ -111,14 +111,14 @@ static void parts_of_names_in_any_case(void **state) {
     expect("cpu=Slow|nvidia=Big", "cuda", 1); /* in the version */
     expect("cpu=Slow,gpu=Big", "cpu", 0);
     expect("cpu=Slow,gpu=Big,gpu=Bigger", "GPU", 1);
-    expect_error("cpu=Slow", "fast", "no device fits 'fast'");
-    expect_error("cpu=Slow", "gpu", "no device fits 'gpu'");
+    expect_error("cpu=Slow", "fast", "no device matches 'fast'");
+    expect_error("cpu=Slow", "gpu", "no device matches 'gpu'");
 }
 
 static void one_text_for_several_devices(void **state) {
     (void)state;
     expect_error("gpu=Card A,gpu=Card B,cpu=Slow", "card",
-                 "fits several devices, give a number: 0: Card A (Fake One); "
+                 "matches several devices; give a number: 0: Card A (Fake One); "
                  "1: Card B (Fake One)");
     expect("gpu=Card,gpu=Card", "card", 0);               /* equal ones: the first */
     expect_error("gpu=Card|gpu=Card", "card", "several"); /* not equal: another driver */
@@ -131,7 +131,7 @@ static void one_text_for_several_devices(void **state) {
 static void refuses_by_what_is_lacking(void **state) {
     (void)state;
     expect_error("old", "0", "it has OpenCL 1.1 (1.2 is needed)");
-    expect_error("mute", "0", "does not tell its OpenCL version");
+    expect_error("mute", "0", "does not report its OpenCL version");
     expect_error("big-endian", "0", "not little-endian");
     expect_error("no-compiler", "0", "no compiler");
     expect_error("embedded", "embedded", "`long`");

@@ -31,7 +31,7 @@ static void off_its_place(void **state) {
     const char *far = "{\"center\":[100000.003,0,0],\"radius\":0.01,\"material\":\"m\"}";
     const BpRoundingWarnings warned = limits_of("", far, BP_PRECISION_SINGLE);
     assert_int_equal(warned.count, 1);
-    assert_non_null(strstr(warned.text[0], "spheres[0] (radius 0.01) lies"));
+    assert_non_null(strstr(warned.text[0], "spheres[0] (radius 0.01) is displaced by"));
     assert_non_null(strstr(warned.text[0], "--precision double"));
     assert_int_equal(limits_of("", far, BP_PRECISION_DOUBLE).count, 0);
     /* Seen from nearby all is well: what counts is the distance from the camera. */
@@ -66,7 +66,7 @@ static void beads_on_the_ground(void **state) {
         const BpRoundingWarnings warned = limits_of(cameras[i], bead, BP_PRECISION_SINGLE);
         assert_int_equal(warned.count, part > 0.02);
         if (warned.count == 0) continue;
-        assert_non_null(strstr(warned.text[0], "the surface of spheres[0] (radius 1000) lies off its place"));
+        assert_non_null(strstr(warned.text[0], "the surface of spheres[0] (radius 1000) is displaced by"));
         assert_non_null(strstr(warned.text[0], "of the radius of spheres[1] (0.0002)"));
         assert_non_null(strstr(warned.text[0], "--precision double"));
         assert_int_equal(limits_of(cameras[i], bead, BP_PRECISION_DOUBLE).count, 0);

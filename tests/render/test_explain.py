@@ -68,7 +68,7 @@ with tempfile.TemporaryDirectory() as folder:
         assert all(abs(a - b) <= 1e-6 for a, b in zip(steps[-1]["radiance"], pixel)), (pixel, path)
         lengths.add(len(steps))
         text = run("explain", scene, "--pixel", f"{x},{y}", "--width", 48, "--seed", 7).stdout
-        assert text.count("from (") == len(steps) and "meets nothing: the sky" in text, text
+        assert text.count("from (") == len(steps) and "hits nothing: the sky" in text, text
     assert len(lengths) > 1, "every path is as long as the others"
     run("explain", scene, "--pixel", "48,0", "--width", 48, code=2)
 

@@ -281,7 +281,7 @@ static void bad_rules_are_refused(void **state) {
 
 static void studies_give_texts(void **state) {
     (void)state;
-    static const char *const marks[] = {[BP_STUDY_TABLE] = "truth",
+    static const char *const marks[] = {[BP_STUDY_TABLE] = "reference:",
                                         [BP_STUDY_JSON] = "\"advice\"",
                                         [BP_STUDY_CSV] = ",",
                                         [BP_STUDY_PAGE] = "</html>"};

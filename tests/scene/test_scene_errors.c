@@ -50,7 +50,7 @@ static void not_json(void **state) {
         {"hello", 1, 1, {"not JSON", "hello"}},
         {"[1, 2]", 1, 1, {"found a list", "expected an object"}},
         {"\"camera\"", 1, 1, {"not JSON"}},
-        {"{ \"camera\": {", 1, 14, {"found the end of the text", "cut short"}},
+        {"{ \"camera\": {", 1, 14, {"found the end of the text", "truncated"}},
         {"{\n\"title\": \"abc", 2, 14, {"found the end of the text"}},
         {"{ \"camera\": {} } }", 1, 18, {"not JSON", "nothing after the closing brace"}},
         {"{ \"camera\": {}, }", 1, 17, {"not JSON", "comma too many"}},
@@ -80,12 +80,12 @@ static void not_json(void **state) {
 static void repeated_members(void **state) {
     (void)state;
     static const Case cases[] = {
-        {"{ \"camera\": {},\n  \"camera\": {} }", 2, 3, {"camera", "second time", "remove one"}},
-        {"{ \"camera\": { \"vfov\": 20, \"vfov\": 30 } }", 1, 27, {"vfov", "second time"}},
+        {"{ \"camera\": {},\n  \"camera\": {} }", 2, 3, {"camera", "found twice", "remove one"}},
+        {"{ \"camera\": { \"vfov\": 20, \"vfov\": 30 } }", 1, 27, {"vfov", "found twice"}},
         {"{ \"camera\": {}, \"materials\": { \"a \\\"b\": {}, \"a \\\"b\": {} } }",
          1,
          45,
-         {"a \\\"b", "second time"}},
+         {"a \\\"b", "found twice"}},
     };
     REFUSE_ALL(cases);
 }
@@ -192,11 +192,12 @@ static void bad_cameras(void **state) {
          "{ \"center\": [0, -0.2, 0], \"radius\": -0.3, \"material\": \"m\" } ] }",
          1,
          27,
-         {"camera.lookfrom", "spheres[0] and spheres[1] at once", "move the camera"}},
+         {"camera.lookfrom", "both spheres[0] and spheres[1], expected at most one surface",
+          "move the camera"}},
         {"{ \"camera\": { \"lookfrom\": [0, 0, -1] } }", 1, 27, {"camera.lookfrom", "same point"}},
-        {"{ \"camera\": { \"vup\": [0, 0, 3] } }", 1, 22, {"camera.vup", "direction of the view"}},
+        {"{ \"camera\": { \"vup\": [0, 0, 3] } }", 1, 22, {"camera.vup", "parallel to the view"}},
         {"{ \"camera\": { \"vup\": [0, 0, 0] } }", 1, 22, {"camera.vup", "no direction"}},
-        {"{ \"camera\": { \"lookat\": [0, -1, 0] } }", 1, 13, {"vup", "direction of the view"}},
+        {"{ \"camera\": { \"lookat\": [0, -1, 0] } }", 1, 13, {"vup", "parallel to the view"}},
         {"{ \"camera\": { \"aperture\": 1, \"defocus_angle\": 2 } }",
          1,
          15,

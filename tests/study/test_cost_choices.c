@@ -68,13 +68,13 @@ static void test_advice(void **state) {
 
     char text[512];
     assert_non_null(strstr(bp_study_advice_text(&result, &result.advice[0], text, sizeof text),
-                           "445 samples a pixel, extrapolated 8.9 s at 20x20"));
+                           "445 samples per pixel, extrapolated 8.9 s at 20x20"));
     /* No way there. */
     for (size_t s = 0; s < 4; s++) result.series[s].bias_square = (BpStudyEstimate){1e-5, 0.9e-5, 1.1e-5};
     bp_study_advise(&result);
     assert_true(result.advice[1].reachable && !result.advice[2].reachable);
-    assert_non_null(
-        strstr(bp_study_advice_text(&result, &result.advice[2], text, sizeof text), "gets there"));
+    assert_non_null(strstr(bp_study_advice_text(&result, &result.advice[2], text, sizeof text),
+                           "no configuration reaches it"));
 
     /* The front: of equal noise the quick one, until its floor; never the slowest. */
     assert_true(result.series[2].points[0].front);
