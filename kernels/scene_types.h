@@ -58,6 +58,7 @@ typedef struct PackedMaterialKind {
 
 /* The kernel gathers members for several lanes at once, from the structs as arrays of their only type. Places
  * of members in them: */
+#define MATERIAL_EMIT 0u
 #define MATERIAL_FUZZ 4u
 #define MATERIAL_INDEX 5u
 #define MATERIAL_LOBE 1u /* of PackedMaterialKind, like the next two */
@@ -79,6 +80,32 @@ typedef struct PackedMaterialKind {
 /* A tree is at most this deep, so a stack of TREE_DEPTH_MAX * (width - 1) + 1 entries suffices. */
 #define TREE_DEPTH_MAX 24
 
+/* Everything that a kernel which traces is given of a scene, in this order: first the arrays, then the
+ * numbers. From these lists come the kernels' parameters and the structs that carry them on the device
+ * (integrator/scene.cl, bvh/geometry.cl), and on the host the members of BpPacked, upload, binding and
+ * release (render/worker_buffers.c). Only what fills an array knows more of it.
+ *
+ * X(numbers, element, name, count, what): `numbers` is REALS or UINTS, what `element` is made of; `count`
+ * says how many elements there are, in terms of `width` (of the tree), `nodes`, `leaf_count`, `slots` and
+ * `material_count`; `what` is how a message calls it. Arrays of the first list are pack.c's, of the second
+ * the tree's. */
+/* clang-format off */
+#define SCENE_ARRAYS_OF_PACK(X)                                                                              \
+    X(REALS, PackedCamera, camera, 1, "the camera")                                                          \
+    X(REALS, PackedSky, sky, 1, "the background")                                                            \
+    X(REALS, PackedMaterial, materials, material_count, "the table of materials")                            \
+    X(UINTS, PackedMaterialKind, material_kinds, material_count, "the table of materials")                   \
+    X(UINTS, packed_uint, slot_material, slots, "the table of sphere materials")                             \
+    X(REALS, real, slot_albedo, slots * ALBEDO_REALS, "the table of sphere colours")
+#define SCENE_ARRAYS_OF_TREE(X)                                                                              \
+    X(REALS, real, node_boxes, nodes * NODE_REALS(width), "the tree's boxes")                                \
+    X(UINTS, packed_uint, children, nodes * width, "the tree's nodes")                                       \
+    X(REALS, real, leaves, leaf_count * LEAF_REALS(width), "the spheres")                                    \
+    X(UINTS, packed_uint, slot_sphere, slots, "the spheres' numbers")
+#define SCENE_NUMBERS(X)                                                                                     \
+    X(first_leaves) X(leaf_count) X(pixel_center) X(max_depth) X(seed_low) X(seed_high) X(replicates) X(width)
+/* clang-format on */
+
 enum { KIND_LAMBERTIAN, KIND_METAL, KIND_DIELECTRIC, KIND_LIGHT, KIND_NORMALS };
 enum { LOBE_LAMBERTIAN, LOBE_COSINE_CUBED, LOBE_HEMISPHERE };
 enum { FUZZ_SPHERE, FUZZ_BALL };
@@ -93,7 +120,7 @@ _Static_assert(sizeof(PackedMaterial) == 8 * sizeof(real), "PackedMaterial has p
 _Static_assert(sizeof(PackedMaterialKind) == 16, "PackedMaterialKind has padding");
 #define BP_PLACE(place, type, member, element)                                                               \
     _Static_assert(offsetof(type, member) == (place) * sizeof(element), "the place of " #member)
-BP_PLACE(0, PackedMaterial, emit, real);
+BP_PLACE(MATERIAL_EMIT, PackedMaterial, emit, real);
 BP_PLACE(MATERIAL_FUZZ, PackedMaterial, fuzz, real);
 BP_PLACE(MATERIAL_INDEX, PackedMaterial, refraction_index, real);
 BP_PLACE(0, PackedMaterialKind, kind, packed_uint);

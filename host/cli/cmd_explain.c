@@ -11,6 +11,7 @@
 #include "base/shown.h"
 #include "json_file.h"
 #include "render/path_log.h"
+#include "scene/material.h"
 #include "setup.h"
 #include "study/effect_costs.h"
 #include "terminal.h"
@@ -30,38 +31,18 @@
 
 /* ---- one path ---------------------------------------------------------------------------------------- */
 
-static const char *kind_name(BpMaterialKind kind) {
-    switch (kind) {
-    case BP_MATERIAL_LAMBERTIAN:
-        return "lambertian";
-    case BP_MATERIAL_METAL:
-        return "metal";
-    case BP_MATERIAL_DIELECTRIC:
-        return "dielectric";
-    case BP_MATERIAL_DIFFUSE_LIGHT:
-        return "diffuse_light";
-    case BP_MATERIAL_NORMALS:
-        return "normals";
-    }
-    return "unknown";
-}
-
 static bool is_black(const double colour[3]) {
     return colour[0] == 0 && colour[1] == 0 && colour[2] == 0;
 }
 
 /* What the surface did with the path. */
 static const char *outcome(const BpPathStep *step, BpMaterialKind kind) {
-    if (!step->goes_on) {
-        if (kind == BP_MATERIAL_DIFFUSE_LIGHT) return "a lamp: the path ends";
-        if (kind == BP_MATERIAL_NORMALS) return "shows its normal: the path ends";
-        return "absorbs it";
-    }
-    if (kind == BP_MATERIAL_DIELECTRIC) {
+    if (!step->goes_on && bp_material_is(kind, BP_SCATTERS)) return "absorbs it";
+    if (step->goes_on && bp_material_is(kind, BP_HAS_INSIDE)) {
         if (step->enters) return step->inward ? "refracts it into the sphere" : "reflects it";
         return step->inward ? "reflects it back inside" : "refracts it out of the sphere";
     }
-    return kind == BP_MATERIAL_METAL ? "reflects it" : "scatters it";
+    return bp_material_types[kind].outcome;
 }
 
 static void print_path(const BpScene *scene, const BpPathLog *path, uint32_t x, uint32_t y, uint64_t sample,
@@ -83,7 +64,7 @@ static void print_path(const BpScene *scene, const BpPathLog *path, uint32_t x, 
                    step->point[1], step->point[2]);
             fputs("       ", stdout);
             bp_show(material->name, false, stdout);
-            printf(" (%s) %s", kind_name(material->kind), outcome(step, material->kind));
+            printf(" (%s) %s", bp_material_types[material->kind].name, outcome(step, material->kind));
             if (step->goes_on)
                 printf(", throughput (%.4g, %.4g, %.4g)", step->throughput[0], step->throughput[1],
                        step->throughput[2]);
@@ -111,7 +92,7 @@ static json_t *step_json(const BpScene *scene, const BpPathStep *step) {
     const BpMaterial *material = &scene->materials[step->material];
     json_t *meeting = json_pack("{s:f, s:o, s:I, s:s, s:s, s:b, s:b, s:b}", "distance", step->distance,
                                 "point", triple(step->point), "sphere", (json_int_t)step->sphere, "material",
-                                material->name, "type", kind_name(material->kind), "enters", step->enters,
+                                material->name, "type", bp_material_types[material->kind].name, "enters", step->enters,
                                 "goes_on", step->goes_on, "inward", step->inward);
     const bool whole = meeting != NULL && json_object_update(root, meeting) == 0;
     json_decref(meeting);

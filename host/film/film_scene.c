@@ -2,6 +2,8 @@
  */
 #include "film.h"
 
+#include "scene/material.h"
+
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -13,15 +15,10 @@ static double largest(const double rgb[3]) {
     return fmax(rgb[0], fmax(rgb[1], rgb[2]));
 }
 
-static bool scatters(const BpMaterial *material) {
-    return material->kind == BP_MATERIAL_LAMBERTIAN || material->kind == BP_MATERIAL_METAL ||
-           material->kind == BP_MATERIAL_DIELECTRIC;
-}
-
 /* The largest share of light that the sphere passes on. */
 static double sphere_albedo(const BpScene *scene, const BpSphere *sphere) {
     const BpMaterial *material = &scene->materials[sphere->material];
-    if (material->kind == BP_MATERIAL_DIELECTRIC) return 1;
+    if (!bp_material_has(material->kind, BP_MEMBER_ALBEDO)) return 1;
     if (sphere->albedo == BP_NO_ALBEDO) return largest(material->albedo);
     const float *albedo = scene->albedos[sphere->albedo];
     return (double)fmaxf(albedo[0], fmaxf(albedo[1], albedo[2]));
@@ -34,9 +31,8 @@ double bp_scene_radiance_bound(const BpScene *scene, uint32_t max_depth) {
         const BpMaterial *material = &scene->materials[scene->spheres[i].material];
         const double emitted = largest(material->emit);
         brightest = fmax(brightest, emitted);
-        /* What a `normals` sphere shows is a colour up to 1. */
-        if (material->kind == BP_MATERIAL_NORMALS) brightest = fmax(brightest, 1 + emitted);
-        if (emitted > 0 && scatters(material))
+        if (bp_material_is(material->kind, BP_SHOWS_COLOUR)) brightest = fmax(brightest, 1 + emitted);
+        if (emitted > 0 && bp_material_is(material->kind, BP_SCATTERS))
             passed_on = fmax(passed_on, sphere_albedo(scene, &scene->spheres[i]));
     }
     return brightest * fmin(1 / (1 - fmin(passed_on, 1)), max_depth);
@@ -89,18 +85,15 @@ static uint64_t mix_camera(uint64_t hash, const BpCamera *camera) {
 static uint64_t hash_material(const BpMaterial *material) {
     uint64_t hash = mix(0xcbf29ce484222325u, (uint64_t)material->kind);
     hash = mix_reals(hash, material->emit, 3);
-    switch (material->kind) {
-    case BP_MATERIAL_LAMBERTIAN:
-        return mix(hash, (uint64_t)material->scatter);
-    case BP_MATERIAL_METAL:
-        hash = mix_real(hash, material->fuzz);
-        return material->fuzz > 0 ? mix(hash, (uint64_t)material->fuzz_shape) : hash;
-    case BP_MATERIAL_DIELECTRIC:
-        hash = mix_real(hash, material->refraction_index);
-        return mix(mix(hash, (uint64_t)material->fresnel), (uint64_t)material->total_reflection);
-    case BP_MATERIAL_DIFFUSE_LIGHT:
-    case BP_MATERIAL_NORMALS:
-        break;
+    for (int m = 0; m < BP_MEMBER_COUNT; m++) {
+        const BpMemberInfo *member = &bp_members[m];
+        if (m == BP_MEMBER_ALBEDO || m == BP_MEMBER_EMIT || !bp_material_has(material->kind, (BpMember)m))
+            continue;
+        if (member->form != BP_FORM_CHOICE)
+            hash = mix_reals(hash, bp_member_values_of(material, (BpMember)m),
+                             member->form == BP_FORM_COLOUR ? 3 : 1);
+        else if (member->moot == BP_MEMBER_COUNT || *bp_member_values_of(material, member->moot) > 0)
+            hash = mix(hash, bp_member_choice(material, (BpMember)m));
     }
     return hash;
 }
@@ -108,9 +101,10 @@ static uint64_t hash_material(const BpMaterial *material) {
 static uint64_t mix_sphere(uint64_t hash, const BpScene *scene, const BpSphere *sphere) {
     const BpMaterial *material = &scene->materials[sphere->material];
     hash = mix_reals(hash, sphere->center, 3);
-    /* Inside out matters to glass alone: other materials turn the normal to the ray. */
-    hash = mix_real(hash, material->kind == BP_MATERIAL_DIELECTRIC ? sphere->radius : fabs(sphere->radius));
-    if (material->kind != BP_MATERIAL_LAMBERTIAN && material->kind != BP_MATERIAL_METAL) return hash;
+    /* Other materials than those with an inside turn the normal to the ray. */
+    const bool inside = bp_material_is(material->kind, BP_HAS_INSIDE);
+    hash = mix_real(hash, inside ? sphere->radius : fabs(sphere->radius));
+    if (!bp_material_has(material->kind, BP_MEMBER_ALBEDO)) return hash;
     if (sphere->albedo == BP_NO_ALBEDO) return mix_reals(hash, material->albedo, 3);
     for (size_t c = 0; c < 3; c++) hash = mix_real(hash, (double)scene->albedos[sphere->albedo][c]);
     return hash;

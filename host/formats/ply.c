@@ -5,6 +5,7 @@
 #include "base/plural.h"
 #include "document.h"
 #include "ply_parts.h"
+#include "scene/material.h"
 #include "scene/scene_fault.h"
 
 #include <inttypes.h>
@@ -80,7 +81,7 @@ static BpStatus store(Reader *r, uint64_t number, const double value[PLY_ROLE_CO
     }
     if (r->has_colour) {
         BP_TRY(store_colour(r, number, value, err));
-        if (bp_material_has_albedo(r->scene->materials[sphere.material].kind)) {
+        if (bp_material_has(r->scene->materials[sphere.material].kind, BP_MEMBER_ALBEDO)) {
             sphere.albedo = r->albedo_number++;
             r->next_albedo++;
         }

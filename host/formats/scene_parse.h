@@ -15,8 +15,6 @@ BpStatus bp_scene_parse_with(const char *text, size_t length, const char *name, 
                              BpScene **scene, BpError *err);
 
 BpStatus bp_parse_camera(const BpNode *node, BpCamera *camera, BpError *err);
-/* As the grammar has it: "lambertian". */
-const char *bp_material_type_name(BpMaterialKind kind);
 /* `material` is zeroed; its name is the caller's to set. */
 BpStatus bp_parse_material(const BpNode *node, BpMaterial *material, BpError *err);
 

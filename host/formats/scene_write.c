@@ -5,6 +5,7 @@
 #include "base/output_file.h"
 
 #include "base/names.h"
+#include "scene/material.h"
 #include "scene_parse.h"
 
 #include <errno.h>
@@ -106,36 +107,34 @@ static void put_camera(FILE *out, const BpCamera *camera) {
 /* ---- materials and spheres ------------------------------------------------------------------------------
  */
 
+/* A member that the document may leave out is left out: a choice that is the first of its names, a colour of
+ * zeros. */
+static void put_member(FILE *out, const BpMaterial *material, BpMember m) {
+    const BpMemberInfo *member = &bp_members[m];
+    const bool needed = (bp_material_types[material->kind].needed >> m & 1u) != 0;
+    const unsigned choice = member->form == BP_FORM_CHOICE ? bp_member_choice(material, m) : 0;
+    if (member->form == BP_FORM_CHOICE && choice == 0) return;
+    if (member->form == BP_FORM_COLOUR && !needed && is_dark(bp_member_values_of(material, m))) return;
+    fprintf(out, ", \"%s\": ", member->name);
+    switch (member->form) {
+    case BP_FORM_COLOUR:
+        put_vector(out, bp_member_values_of(material, m));
+        break;
+    case BP_FORM_NUMBER:
+        put_number(out, *bp_member_values_of(material, m));
+        break;
+    case BP_FORM_CHOICE:
+        fprintf(out, "\"%s\"", member->names[choice]);
+        break;
+    }
+}
+
 static BpStatus put_material(FILE *out, const BpMaterial *material, BpError *err) {
-    static const char *const scatters[] = {"lambertian", "cosine_cubed", "hemisphere"};
-    static const char *const fresnels[] = {"schlick", "exact", "none"};
-    static const char *const totals[] = {"reflect", "absorb", "refract"};
     fputs("    ", out);
     BP_TRY(put_text(out, material->name, err));
-    fprintf(out, ": { \"type\": \"%s\"", bp_material_type_name(material->kind));
-    if (bp_material_has_albedo(material->kind)) {
-        fputs(", \"albedo\": ", out);
-        put_vector(out, material->albedo);
-    }
-    if (material->kind == BP_MATERIAL_LAMBERTIAN && material->scatter != BP_SCATTER_LAMBERTIAN)
-        fprintf(out, ", \"scatter\": \"%s\"", scatters[material->scatter]);
-    if (material->kind == BP_MATERIAL_METAL) {
-        fputs(", \"fuzz\": ", out);
-        put_number(out, material->fuzz);
-        if (material->fuzz_shape == BP_FUZZ_BALL) fputs(", \"fuzz_shape\": \"ball\"", out);
-    }
-    if (material->kind == BP_MATERIAL_DIELECTRIC) {
-        fputs(", \"refraction_index\": ", out);
-        put_number(out, material->refraction_index);
-        if (material->fresnel != BP_FRESNEL_SCHLICK)
-            fprintf(out, ", \"fresnel\": \"%s\"", fresnels[material->fresnel]);
-        if (material->total_reflection != BP_TOTAL_REFLECT)
-            fprintf(out, ", \"total_reflection\": \"%s\"", totals[material->total_reflection]);
-    }
-    if (material->kind == BP_MATERIAL_DIFFUSE_LIGHT || !is_dark(material->emit)) {
-        fputs(", \"emit\": ", out);
-        put_vector(out, material->emit);
-    }
+    fprintf(out, ": { \"type\": \"%s\"", bp_material_types[material->kind].name);
+    for (int m = 0; m < BP_MEMBER_COUNT; m++)
+        if (bp_material_has(material->kind, (BpMember)m)) put_member(out, material, (BpMember)m);
     fputs(" }", out);
     return BP_OK;
 }

@@ -1,18 +1,17 @@
 /* pack.c: see pack.h. Everything is packed in double; narrow() is the last step. */
-#define BP_HOST
 #include "pack.h"
 
 #include "base/status.h"
 #include "reals.h"
-#include "scene_types.h"
+#include "scene/material.h"
 
 #include <stdlib.h>
 #include <string.h>
 
-_Static_assert((int)BP_MATERIAL_LAMBERTIAN == KIND_LAMBERTIAN && (int)BP_MATERIAL_METAL == KIND_METAL &&
-                   (int)BP_MATERIAL_DIELECTRIC == KIND_DIELECTRIC &&
-                   (int)BP_MATERIAL_DIFFUSE_LIGHT == KIND_LIGHT && (int)BP_MATERIAL_NORMALS == KIND_NORMALS,
-               "kinds of material differ between host and kernel");
+#define SAME_KIND(identifier, name, kernel_kind, effect, traits, members, needed, outcome)                   \
+    _Static_assert((int)BP_MATERIAL_##identifier == KIND_##kernel_kind,                                      \
+                   name " differs between host and kernel");
+BP_MATERIAL_LIST(SAME_KIND)
 _Static_assert((int)BP_SCATTER_LAMBERTIAN == LOBE_LAMBERTIAN &&
                    (int)BP_SCATTER_COSINE_CUBED == LOBE_COSINE_CUBED &&
                    (int)BP_SCATTER_HEMISPHERE == LOBE_HEMISPHERE,
@@ -114,32 +113,33 @@ static BpStatus pack_view(const BpScene *scene, BpPacked *packed, BpError *err) 
 
 /* ---- materials ------------------------------------------------------------------------------------- */
 
+/* Where a member stands: numbers and colours in PackedMaterial, choices in PackedMaterialKind. The albedo
+ * stands with each sphere. */
+#define MATERIAL_NOWHERE 0xffu
+#define COLOUR_PLACE(identifier, name, field, low, high, range, needed, place) MATERIAL_##place,
+#define NUMBER_PLACE(identifier, name, field, low, high, range, needed, place, cap) MATERIAL_##place,
+#define CHOICE_PLACE(identifier, name, field, place, moot, names) MATERIAL_##place,
+static const unsigned places[] = {BP_MEMBER_LIST(COLOUR_PLACE, NUMBER_PLACE, CHOICE_PLACE)};
+
 static void pack_material(const BpMaterial *material, bool inside_out, PackedMaterial *numbers,
                           PackedMaterialKind *kind) {
     *numbers = (PackedMaterial){.refraction_index = 1};
     *kind = (PackedMaterialKind){.kind = (packed_uint)material->kind};
-    for (int a = 0; a < 3; ++a) numbers->emit[a] = material->emit[a];
-    switch (material->kind) {
-    case BP_MATERIAL_LAMBERTIAN:
-        kind->lobe = (packed_uint)material->scatter;
-        break;
-    case BP_MATERIAL_METAL:
-        numbers->fuzz = material->fuzz;
-        kind->variant = (packed_uint)material->fuzz_shape;
-        break;
-    case BP_MATERIAL_DIELECTRIC:
-        numbers->refraction_index = inside_out ? 1 / material->refraction_index : material->refraction_index;
-        kind->variant = (packed_uint)material->fresnel;
-        kind->total_reflection = (packed_uint)material->total_reflection;
-        break;
-    case BP_MATERIAL_DIFFUSE_LIGHT:
-    case BP_MATERIAL_NORMALS:
-        break;
+    for (int m = 0; m < BP_MEMBER_COUNT; ++m) {
+        if (!bp_material_has(material->kind, (BpMember)m) || places[m] == MATERIAL_NOWHERE) continue;
+        if (bp_members[m].form == BP_FORM_CHOICE) {
+            ((packed_uint *)kind)[places[m]] = (packed_uint)bp_member_choice(material, (BpMember)m);
+            continue;
+        }
+        const int count = bp_members[m].form == BP_FORM_COLOUR ? 3 : 1;
+        for (int a = 0; a < count; ++a)
+            ((real *)numbers)[places[m] + (unsigned)a] = bp_member_values_of(material, (BpMember)m)[a];
     }
+    if (inside_out) numbers->refraction_index = 1 / numbers->refraction_index;
 }
 
 static bool is_inside_out(const BpScene *scene, const BpSphere *sphere) {
-    return sphere->radius < 0 && scene->materials[sphere->material].kind == BP_MATERIAL_DIELECTRIC;
+    return sphere->radius < 0 && bp_material_is(scene->materials[sphere->material].kind, BP_HAS_INSIDE);
 }
 
 /* The materials. A dielectric that a sphere of negative radius uses gets a second entry, with the reciprocal
@@ -180,8 +180,8 @@ cleanup:
 /* What a sphere scatters of a primary colour: glass all, a lamp nothing, whatever colour a cloud gives. */
 static double scattered(const BpScene *scene, const BpSphere *sphere, size_t channel) {
     const BpMaterial *material = &scene->materials[sphere->material];
-    if (material->kind == BP_MATERIAL_DIELECTRIC) return 1;
-    if (material->kind != BP_MATERIAL_LAMBERTIAN && material->kind != BP_MATERIAL_METAL) return 0;
+    if (!bp_material_is(material->kind, BP_SCATTERS)) return 0;
+    if (!bp_material_has(material->kind, BP_MEMBER_ALBEDO)) return 1;
     return sphere->albedo == BP_NO_ALBEDO ? material->albedo[channel]
                                           : (double)scene->albedos[sphere->albedo][channel];
 }
@@ -228,11 +228,8 @@ cleanup:
 
 void bp_packed_clear(BpPacked *packed) {
     bp_tree_clear(&packed->tree);
-    free(packed->camera);
-    free(packed->sky);
-    free(packed->materials);
-    free(packed->material_kinds);
-    free(packed->slot_material);
-    free(packed->slot_albedo);
+#define FREE_ARRAY(numbers, element, name, count, what) free(packed->name);
+    SCENE_ARRAYS_OF_PACK(FREE_ARRAY)
+#undef FREE_ARRAY
     *packed = (BpPacked){0};
 }

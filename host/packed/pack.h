@@ -10,18 +10,22 @@
 
 #include "tree.h"
 
+#ifndef BP_HOST
+#define BP_HOST
+#endif
+#include "scene_types.h"
+
 typedef struct BpPacked {
     bool single_precision;
     BpTree tree;
-    /* Arrays of reals in the device's precision. */
-    void *camera;      /* one PackedCamera */
-    void *sky;         /* one PackedSky */
-    void *materials;   /* material_count PackedMaterial, at least one */
-    void *slot_albedo; /* ALBEDO_REALS a slot of the tree */
-    /* Arrays of uints. */
-    uint32_t *material_kinds; /* material_count PackedMaterialKind */
-    uint32_t *slot_material;  /* one a slot of the tree */
-    uint32_t material_count;
+    /* The arrays of scene_types.h that are not the tree's: of reals in the device's precision, or of uints.
+     */
+#define BP_HOLD_REALS void
+#define BP_HOLD_UINTS uint32_t
+#define BP_HOLD(numbers, element, name, count, what) BP_HOLD_##numbers *name;
+    SCENE_ARRAYS_OF_PACK(BP_HOLD)
+#undef BP_HOLD
+    uint32_t material_count; /* at least one */
 } BpPacked;
 
 BpStatus bp_scene_pack(const BpScene *scene, const BpTreeOptions *options, BpPacked *packed, BpError *err);

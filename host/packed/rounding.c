@@ -1,6 +1,8 @@
 /* rounding.c: see rounding.h. */
 #include "rounding.h"
 
+#include "scene/material.h"
+
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -71,7 +73,7 @@ static void find_walls(const BpScene *scene, Worst *worst, double *wall) {
     if (shells == NULL) return;
     for (size_t i = 0; i < scene->sphere_count; ++i) {
         const BpSphere *sphere = &scene->spheres[i];
-        if (scene->materials[sphere->material].kind != BP_MATERIAL_DIELECTRIC) continue;
+        if (!bp_material_is(scene->materials[sphere->material].kind, BP_HAS_INSIDE)) continue;
         Shell *shell = &shells[count++];
         for (int a = 0; a < 3; ++a) shell->center[a] = (float)(sphere->center[a] - scene->camera.lookfrom[a]);
         shell->radius = fabs(sphere->radius);

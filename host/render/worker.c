@@ -1,5 +1,4 @@
 /* worker.c: see worker.h. */
-#define BP_HOST
 #include "worker.h"
 
 #include "base/clock.h"
@@ -35,15 +34,12 @@ enum {
 enum { FOLD_IN, FOLD_PIXELS, FOLD_SAMPLES, FOLD_FIRST_PIXEL, FOLD_FIRST_SAMPLE, FOLD_CONSTANTS };
 
 BpStatus bp_worker_bind_scene(BpWorker *worker, cl_kernel kernel, BpError *err) {
-    const cl_mem buffers[] = {worker->camera,        worker->sky,         worker->materials, worker->kinds,
-                              worker->slot_material, worker->slot_albedo, worker->boxes,     worker->children,
-                              worker->leaves,        worker->slot_sphere};
     cl_uint index = 0;
-    for (size_t i = 0; i < sizeof buffers / sizeof buffers[0]; ++i)
-        BP_TRY(set_argument(worker, kernel, index++, sizeof(cl_mem), &buffers[i], err));
-    const cl_uint numbers[] = {worker->first_leaves, worker->leaf_count,    worker->pixel_center,
-                               worker->max_depth,    (cl_uint)worker->seed, (cl_uint)(worker->seed >> 32),
-                               worker->replicates,   worker->width};
+    for (size_t i = 0; i < BP_SCENE_ARRAYS; ++i)
+        BP_TRY(set_argument(worker, kernel, index++, sizeof(cl_mem), &worker->scene_arrays[i], err));
+#define NUMBER(name) worker->name,
+    const cl_uint numbers[] = {SCENE_NUMBERS(NUMBER)};
+#undef NUMBER
     for (size_t i = 0; i < sizeof numbers / sizeof numbers[0]; ++i)
         BP_TRY(set_argument(worker, kernel, index++, sizeof(cl_uint), &numbers[i], err));
     return BP_OK;
@@ -109,7 +105,8 @@ BpStatus bp_worker_create(const BpDeviceInfo *info, const BpPacked *packed, cons
     made->replicates = setup->replicates;
     made->max_depth = setup->max_depth;
     made->pixel_center = setup->pixel_center;
-    made->seed = setup->seed;
+    made->seed_low = (uint32_t)setup->seed;
+    made->seed_high = (uint32_t)(setup->seed >> 32);
     made->first_leaves = packed->tree.first_leaves;
     made->leaf_count = packed->tree.leaf_count;
     BpStatus status = bp_device_open(info, &made->device, err);
@@ -161,10 +158,9 @@ void bp_worker_destroy(BpWorker **worker) {
     BpWorker *w = *worker;
     if (w->device != NULL) clFinish(w->device->queue);
     for (int i = 0; i < w->flight_count; ++i) release_flight(&w->flights[i]);
-    const cl_mem buffers[] = {w->camera,        w->sky,         w->materials, w->kinds,
-                              w->slot_material, w->slot_albedo, w->boxes,     w->children,
-                              w->leaves,        w->slot_sphere, w->sums,      w->fine_sums,
-                              w->counts,        w->tallies,     w->samples,   w->pixel_list};
+    for (size_t i = 0; i < BP_SCENE_ARRAYS; ++i)
+        if (w->scene_arrays[i] != NULL) clReleaseMemObject(w->scene_arrays[i]);
+    const cl_mem buffers[] = {w->sums, w->fine_sums, w->counts, w->tallies, w->samples, w->pixel_list};
     for (size_t i = 0; i < sizeof buffers / sizeof buffers[0]; ++i)
         if (buffers[i] != NULL) clReleaseMemObject(buffers[i]);
     if (w->trace != NULL) clReleaseKernel(w->trace);

@@ -33,16 +33,24 @@ typedef struct BpWorkerSetup {
 
 #define BP_WORKER_FLIGHT 2 /* chunks queued at a time */
 
+/* How many arrays and how many arguments the lists in scene_types.h make. */
+#define BP_COUNT_ARRAY(numbers, element, name, count, what) +1
+#define BP_COUNT_NUMBER(name) +1
+#define BP_SCENE_NUMBER_MEMBER(name) name,
+enum {
+    BP_SCENE_ARRAYS = SCENE_ARRAYS_OF_PACK(BP_COUNT_ARRAY) SCENE_ARRAYS_OF_TREE(BP_COUNT_ARRAY),
+    BP_WORKER_SCENE_ARGUMENTS = BP_SCENE_ARRAYS SCENE_NUMBERS(BP_COUNT_NUMBER)
+};
+
 typedef struct BpWorker {
     BpDevice *device;
     BpProgram *program;
     cl_kernel trace, fold;
-    cl_mem camera, sky, materials, kinds, slot_material, slot_albedo, boxes, children, leaves, slot_sphere;
+    cl_mem scene_arrays[BP_SCENE_ARRAYS]; /* in the order of the lists in scene_types.h */
     cl_mem sums, fine_sums, counts, tallies, samples;
     cl_mem pixel_list; /* NULL: chunks are ranges of pixels */
     size_t real_size;
-    uint32_t width, replicates, pixels, max_depth, pixel_center, first_leaves, leaf_count;
-    uint64_t seed;
+    uint32_t SCENE_NUMBERS(BP_SCENE_NUMBER_MEMBER) pixels;
     uint32_t samples_per_item; /* pixel samples of a work-item */
     size_t local_size;
     uint32_t samples_capacity,
@@ -67,9 +75,8 @@ BpStatus bp_worker_create(const BpDeviceInfo *info, const BpPacked *packed, cons
                           BpWorker **worker, BpError *err);
 void bp_worker_destroy(BpWorker **worker);
 
-#define BP_WORKER_SCENE_ARGUMENTS 18
-/* Sets the arguments that every tracing kernel begins with (SCENE_PARAMETERS of kernels/integrator/scene.cl).
- */
+/* Sets the arguments that every tracing kernel begins with (SCENE_PARAMETERS of kernels/integrator/scene.cl):
+ * BP_WORKER_SCENE_ARGUMENTS of them. */
 BpStatus bp_worker_bind_scene(BpWorker *worker, cl_kernel kernel, BpError *err);
 
 /* Queues a chunk and returns; waits for the oldest first when BP_WORKER_FLIGHT are under way. */

@@ -1,8 +1,5 @@
 /* worker_buffers.c: see worker_buffers.h. */
-#define BP_HOST
 #include "worker_buffers.h"
-
-#include "scene_types.h"
 
 #include <stdio.h>
 #include <stdlib.h>
@@ -27,35 +24,23 @@ static BpStatus create_buffer(BpWorker *worker, cl_mem *buffer, uint64_t bytes, 
 }
 
 BpStatus bp_worker_upload_scene(BpWorker *worker, const BpPacked *packed, BpError *err) {
-    const size_t real_size = worker->real_size;
     const BpTree *tree = &packed->tree;
-    const uint64_t width = tree->width;
-    const uint64_t materials = packed->material_count > 0 ? packed->material_count : 1;
-    const uint64_t slots = tree->leaf_count * width;
+    const uint64_t width = tree->width, nodes = tree->node_count, leaf_count = tree->leaf_count;
+    const uint64_t slots = leaf_count * width;
+    const uint64_t material_count = packed->material_count > 0 ? packed->material_count : 1;
+    /* Elements of reals shrink with the real. */
+#define BYTES_REALS(element) (sizeof(element) / sizeof(real) * worker->real_size)
+#define BYTES_UINTS(element) sizeof(element)
+#define OF_PACK(numbers, element, name, count, what) {(count)*BYTES_##numbers(element), packed->name, what},
+#define OF_TREE(numbers, element, name, count, what) {(count)*BYTES_##numbers(element), tree->name, what},
     const struct {
-        cl_mem *buffer;
         uint64_t bytes;
         const void *data;
         const char *what;
-    } uploads[] = {
-        {&worker->camera, sizeof(PackedCamera) / sizeof(real) * real_size, packed->camera, "the camera"},
-        {&worker->sky, sizeof(PackedSky) / sizeof(real) * real_size, packed->sky, "the background"},
-        {&worker->materials, materials * (sizeof(PackedMaterial) / sizeof(real)) * real_size,
-         packed->materials, "the table of materials"},
-        {&worker->kinds, materials * sizeof(PackedMaterialKind), packed->material_kinds,
-         "the table of materials"},
-        {&worker->slot_material, slots * 4, packed->slot_material, "the table of sphere materials"},
-        {&worker->slot_albedo, slots * ALBEDO_REALS * real_size, packed->slot_albedo,
-         "the table of sphere colours"},
-        {&worker->boxes, tree->node_count * NODE_REALS(width) * real_size, tree->node_boxes,
-         "the tree's boxes"},
-        {&worker->children, tree->node_count * width * 4, tree->children, "the tree's nodes"},
-        {&worker->leaves, tree->leaf_count * LEAF_REALS(width) * real_size, tree->leaves, "the spheres"},
-        {&worker->slot_sphere, slots * 4, tree->slot_sphere, "the spheres' numbers"},
-    };
-    for (size_t i = 0; i < sizeof uploads / sizeof uploads[0]; ++i) {
-        BP_TRY(create_buffer(worker, uploads[i].buffer, uploads[i].bytes, uploads[i].data, uploads[i].what,
-                             err));
+    } uploads[BP_SCENE_ARRAYS] = {SCENE_ARRAYS_OF_PACK(OF_PACK) SCENE_ARRAYS_OF_TREE(OF_TREE)};
+    for (size_t i = 0; i < BP_SCENE_ARRAYS; ++i) {
+        BP_TRY(create_buffer(worker, &worker->scene_arrays[i], uploads[i].bytes, uploads[i].data,
+                             uploads[i].what, err));
         worker->scene_bytes += uploads[i].bytes;
     }
     return BP_OK;

@@ -13,6 +13,7 @@
 #define BP_SCENE_SCENE_H
 
 #include "ballpark.h"
+#include "material.h"
 
 #include <stdio.h>
 
@@ -26,21 +27,13 @@
 #define BP_HALF_HEIGHT_MAX 1.0e14     /* of the plane in focus; it is up to 65,535 times as wide */
 #define BP_NO_ALBEDO UINT32_MAX
 
-typedef enum BpMaterialKind {
-    BP_MATERIAL_LAMBERTIAN,
-    BP_MATERIAL_METAL,
-    BP_MATERIAL_DIELECTRIC,
-    BP_MATERIAL_DIFFUSE_LIGHT, /* emits, scatters nothing */
-    BP_MATERIAL_NORMALS        /* shows (n+1)/2 of the normal that faces the ray, scatters nothing */
-} BpMaterialKind;
-
 typedef enum BpScatter { BP_SCATTER_LAMBERTIAN, BP_SCATTER_COSINE_CUBED, BP_SCATTER_HEMISPHERE } BpScatter;
 typedef enum BpFuzzShape { BP_FUZZ_SPHERE, BP_FUZZ_BALL } BpFuzzShape;
 typedef enum BpFresnel { BP_FRESNEL_SCHLICK, BP_FRESNEL_EXACT, BP_FRESNEL_NONE } BpFresnel;
 typedef enum BpTotalReflection { BP_TOTAL_REFLECT, BP_TOTAL_ABSORB, BP_TOTAL_REFRACT } BpTotalReflection;
 typedef enum BpPixelSampling { BP_PIXEL_SQUARE, BP_PIXEL_CENTER } BpPixelSampling;
 
-typedef struct BpMaterial {
+struct BpMaterial {
     char *name;
     BpMaterialKind kind;
     double albedo[3]; /* lambertian, metal */
@@ -51,7 +44,7 @@ typedef struct BpMaterial {
     double refraction_index; /* of the inside over the outside */
     BpFresnel fresnel;
     BpTotalReflection total_reflection;
-} BpMaterial;
+};
 
 typedef struct BpSphere {
     double center[3];
@@ -109,9 +102,6 @@ BpStatus bp_scene_create_empty(const char *path, BpScene **scene, BpError *err);
 #define BP_SPHERE_NAME_SIZE 128
 /* How a message names a sphere: "spheres[3]", or "vertex 12 (from 0) of points.ply". Returns `text`. */
 const char *bp_sphere_name(const BpScene *scene, size_t sphere, char text[BP_SPHERE_NAME_SIZE]);
-
-/* Whether the kind has an albedo, which a sphere's own then replaces. */
-bool bp_material_has_albedo(BpMaterialKind kind);
 
 /* Checks the invariants above; the message names the sphere, material or member by its index or name. */
 BpStatus bp_scene_validate(const BpScene *scene, BpError *err);

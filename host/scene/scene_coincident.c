@@ -3,6 +3,7 @@
  * In:    a scene whose spheres are in order.   Out: the first such pair.
  * Knows: that the kernel sees centres relative to the camera and in float. Overlapping and concentric spheres
  * are no fault. */
+#include "material.h"
 #include "scene_fault.h"
 
 #include <math.h>
@@ -36,7 +37,7 @@ static bool same_surface(const Shell *a, const Shell *b) {
 BpStatus bp_scene_find_coincident(const BpScene *scene, BpFault *fault, BpError *err) {
     size_t count = 0;
     for (size_t i = 0; i < scene->sphere_count; i++)
-        count += scene->materials[scene->spheres[i].material].kind == BP_MATERIAL_DIELECTRIC;
+        count += bp_material_is(scene->materials[scene->spheres[i].material].kind, BP_HAS_INSIDE);
     if (count < 2) return BP_OK;
     Shell *shells = malloc(count * sizeof *shells);
     if (shells == NULL)
@@ -44,7 +45,7 @@ BpStatus bp_scene_find_coincident(const BpScene *scene, BpFault *fault, BpError 
     count = 0;
     for (size_t i = 0; i < scene->sphere_count; i++) {
         const BpSphere *sphere = &scene->spheres[i];
-        if (scene->materials[sphere->material].kind != BP_MATERIAL_DIELECTRIC) continue;
+        if (!bp_material_is(scene->materials[sphere->material].kind, BP_HAS_INSIDE)) continue;
         Shell *shell = &shells[count++];
         for (int k = 0; k < 3; k++) shell->center[k] = (float)(sphere->center[k] - scene->camera.lookfrom[k]);
         shell->radius = fabs(sphere->radius);

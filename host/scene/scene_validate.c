@@ -1,5 +1,6 @@
 /* scene_validate.c: see scene_fault.h, and bp_scene_validate in scene.h. */
 #include "base/message_text.h"
+#include "material.h"
 #include "scene_fault.h"
 #include "scene_side.h"
 
@@ -113,25 +114,18 @@ static bool camera_fault(const BpCamera *camera, BpFault *fault) {
            camera_basis_fault(camera, fault);
 }
 
-bool bp_material_has_albedo(BpMaterialKind kind) {
-    return kind == BP_MATERIAL_LAMBERTIAN || kind == BP_MATERIAL_METAL;
-}
-
 static bool material_fault(const BpMaterial *material, BpFault *fault) {
-    const bool has_albedo = bp_material_has_albedo(material->kind);
-    return (has_albedo && any_outside(fault, BP_FAULT_MATERIAL, "albedo", material->albedo, 0, 1,
-                                      "shares of light from 0 to 1")) ||
-           any_outside(fault, BP_FAULT_MATERIAL, "emit", material->emit, 0, BP_RADIANCE_MAX,
-                       "radiances from 0 to 1e12") ||
-           (material->kind == BP_MATERIAL_METAL &&
-            outside(fault, BP_FAULT_MATERIAL, "fuzz", material->fuzz, 0, 1,
-                    "a number of at least 0 (above 1 counts as 1)")) ||
-           (material->kind == BP_MATERIAL_DIELECTRIC &&
-            outside(fault, BP_FAULT_MATERIAL, "refraction_index", material->refraction_index,
-                    1 / BP_REFRACTION_INDEX_MAX, BP_REFRACTION_INDEX_MAX,
-                    "the index of the inside over that of the outside, from 1e-6 to 1e6 (glass in air: 1.5, "
-                    "an air "
-                    "bubble in water: 1/1.33)"));
+    for (int m = 0; m < BP_MEMBER_COUNT; m++) {
+        const BpMemberInfo *member = &bp_members[m];
+        if (!bp_material_has(material->kind, (BpMember)m) || member->form == BP_FORM_CHOICE) continue;
+        const double *values = bp_member_values_of(material, (BpMember)m);
+        if (member->form == BP_FORM_COLOUR ? any_outside(fault, BP_FAULT_MATERIAL, member->name, values,
+                                                         member->low, member->high, member->range)
+                                           : outside(fault, BP_FAULT_MATERIAL, member->name, *values,
+                                                     member->low, member->high, member->range))
+            return true;
+    }
+    return false;
 }
 
 bool bp_sphere_find_fault(const BpSphere *sphere, BpFault *fault) {

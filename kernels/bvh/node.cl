@@ -71,7 +71,7 @@ static vreal row_of(__global const real *planes, uint row) { return *(__global c
 
 /* The children of `node` that the ray meets before `bound`, and where it enters them. */
 static child_mask test_node(const Geometry *geometry, const BoxRay *box, uint node, real bound, vreal *entry) {
-    __global const real *planes = geometry->boxes + node * (6 * TREE_WIDTH);
+    __global const real *planes = geometry->node_boxes + node * (6 * TREE_WIDTH);
     /* Written out, axis by axis: a loop is not always unrolled. */
     const vreal enter_x = fma(row_of(planes, box->near_row[0]), splat(box->inverse[0]), splat(box->near_offset[0]));
     const vreal enter_y = fma(row_of(planes, box->near_row[1]), splat(box->inverse[1]), splat(box->near_offset[1]));

@@ -14,7 +14,7 @@ enum {
 };
 
 /* One work-item a pixel; as many of its samples at a time as there are lanes. */
-__kernel void aovs(SCENE_PARAMETERS, uint first_pixel, uint pixel_count, uint first_sample, uint samples,
+__kernel void aovs(SCENE_PARAMETERS uint first_pixel, uint pixel_count, uint first_sample, uint samples,
                    float forward_x, float forward_y, float forward_z, __global float *out) {
     const uint item = get_global_id(0);
     if (item >= pixel_count) return;

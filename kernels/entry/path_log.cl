@@ -18,7 +18,7 @@ enum {
 };
 
 /* `spheres[s]`: the number of the sphere that segment s met. `steps`: how many segments there were. */
-__kernel void path_log(SCENE_PARAMETERS, uint pixel, uint sample, uint capacity, __global real *records,
+__kernel void path_log(SCENE_PARAMETERS uint pixel, uint sample, uint capacity, __global real *records,
                        __global uint *spheres, __global uint *steps) {
     const Scene scene = scene_init(SCENE_ARGUMENTS);
     Path path;

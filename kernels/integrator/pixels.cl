@@ -93,5 +93,5 @@ static Pixels pixels_ahead(const Pixel *pixel, vuint ahead, uint width) {
 
 /* What a kernel is told that traces a chunk. */
 #define TRACE_PARAMETERS                                                                                               \
-    SCENE_PARAMETERS, uint first_pixel, uint first_sample, uint samples_per_pixel, uint sample_count,                  \
+    SCENE_PARAMETERS uint first_pixel, uint first_sample, uint samples_per_pixel, uint sample_count,                  \
         __global real *samples PIXEL_LIST_PARAMETER

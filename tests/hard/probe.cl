@@ -230,7 +230,7 @@ __kernel void probe_arithmetic(uint count, __global const real *in, __global rea
 /* Path from given rays, refracted or reflected as the scene's materials say. Out: for each segment the sphere met
  * (-1: none) and its distance; after PROBE_PATH_SEGMENTS of them the last direction, and whether it lives. */
 enum { PROBE_PATH_SEGMENTS = 12 };
-__kernel void probe_paths(SCENE_PARAMETERS, uint count, __global const real *rays, __global refined *out) {
+__kernel void probe_paths(SCENE_PARAMETERS uint count, __global const real *rays, __global refined *out) {
     PROBE_ITEM
     const Scene scene = scene_init(SCENE_ARGUMENTS);
     __global const real *in = rays + (size_t)item * PROBE_RAY_REALS;

@@ -98,7 +98,8 @@ static BpStatus trace(const Lab *lab, const BpScene *scene, const BpRenderOption
     worker->replicates = setup.replicates;
     worker->max_depth = setup.max_depth;
     worker->pixel_center = setup.pixel_center;
-    worker->seed = setup.seed;
+    worker->seed_low = (uint32_t)setup.seed;
+    worker->seed_high = (uint32_t)(setup.seed >> 32);
     worker->first_leaves = packed.tree.first_leaves;
     worker->leaf_count = packed.tree.leaf_count;
     worker->samples_limit = samples->count;

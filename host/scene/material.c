@@ -1,0 +1,77 @@
+/* material.c: see material.h. */
+#include "material.h"
+
+#include "scene.h"
+
+#include <math.h>
+#include <string.h>
+
+static const char *const bp_scatter_names[] = {[BP_SCATTER_LAMBERTIAN] = "lambertian",
+                                               [BP_SCATTER_COSINE_CUBED] = "cosine_cubed",
+                                               [BP_SCATTER_HEMISPHERE] = "hemisphere"};
+static const char *const bp_fuzz_shape_names[] = {[BP_FUZZ_SPHERE] = "sphere", [BP_FUZZ_BALL] = "ball"};
+static const char *const bp_fresnel_names[] = {
+    [BP_FRESNEL_SCHLICK] = "schlick", [BP_FRESNEL_EXACT] = "exact", [BP_FRESNEL_NONE] = "none"};
+static const char *const bp_total_reflection_names[] = {
+    [BP_TOTAL_REFLECT] = "reflect", [BP_TOTAL_ABSORB] = "absorb", [BP_TOTAL_REFRACT] = "refract"};
+
+const BpMaterialType bp_material_types[] = {
+#define TYPE(identifier, name, kernel_kind, effect, traits, members, needed, outcome)                        \
+    [BP_MATERIAL_##identifier] = {name, traits, (members) | BP_HAS(EMIT), needed, outcome},
+    BP_MATERIAL_LIST(TYPE)
+#undef TYPE
+};
+const size_t bp_material_type_count = sizeof bp_material_types / sizeof bp_material_types[0];
+
+/* A choice is an enumeration, read and written as the number that it is. */
+#define CHECK_COLOUR(identifier, name, field, low, high, range, needed, place)
+#define CHECK_NUMBER(identifier, name, field, low, high, range, needed, place, cap)
+#define CHECK_CHOICE(identifier, name, field, place, moot, names)                                            \
+    _Static_assert(sizeof((BpMaterial){0}.field) == sizeof(unsigned), "a choice has the size of a number");
+BP_MEMBER_LIST(CHECK_COLOUR, CHECK_NUMBER, CHECK_CHOICE)
+
+const BpMemberInfo bp_members[BP_MEMBER_COUNT] = {
+#define COLOUR(identifier, name_, field, low_, high_, range_, needed_, place)                                \
+    [BP_MEMBER_##identifier] = {.name = (name_),                                                             \
+                                .form = BP_FORM_COLOUR,                                                      \
+                                .offset = offsetof(BpMaterial, field),                                       \
+                                .low = (low_),                                                               \
+                                .high = (high_),                                                             \
+                                .cap = INFINITY,                                                             \
+                                .range = (range_),                                                           \
+                                .needed = (needed_)},
+#define NUMBER(identifier, name_, field, low_, high_, range_, needed_, place, cap_)                          \
+    [BP_MEMBER_##identifier] = {.name = (name_),                                                             \
+                                .form = BP_FORM_NUMBER,                                                      \
+                                .offset = offsetof(BpMaterial, field),                                       \
+                                .low = (low_),                                                               \
+                                .high = (high_),                                                             \
+                                .cap = (cap_),                                                               \
+                                .range = (range_),                                                           \
+                                .needed = (needed_)},
+#define CHOICE(identifier, name_, field, place, moot_, names_)                                               \
+    [BP_MEMBER_##identifier] = {.name = (name_),                                                             \
+                                .form = BP_FORM_CHOICE,                                                      \
+                                .offset = offsetof(BpMaterial, field),                                       \
+                                .moot = (moot_),                                                             \
+                                .names = (names_),                                                           \
+                                .name_count = sizeof(names_) / sizeof((names_)[0])},
+    BP_MEMBER_LIST(COLOUR, NUMBER, CHOICE)};
+
+double *bp_member_values(BpMaterial *material, BpMember member) {
+    return (double *)(void *)((char *)material + bp_members[member].offset);
+}
+
+const double *bp_member_values_of(const BpMaterial *material, BpMember member) {
+    return (const double *)(const void *)((const char *)material + bp_members[member].offset);
+}
+
+unsigned bp_member_choice(const BpMaterial *material, BpMember member) {
+    unsigned choice;
+    memcpy(&choice, (const char *)material + bp_members[member].offset, sizeof choice);
+    return choice;
+}
+
+void bp_member_choose(BpMaterial *material, BpMember member, unsigned choice) {
+    memcpy((char *)material + bp_members[member].offset, &choice, sizeof choice);
+}
