@@ -132,15 +132,17 @@ typedef struct BpSceneInfo {
 BP_API void bp_scene_info(const BpScene *scene, BpSceneInfo *info);
 
 /* An effect that the kernel can simulate, and whether a scene calls for it. */
-#define BP_EFFECTS_MAX 8
 typedef struct BpEffectInfo {
     const char *name, *description; /* static: "lens", "a lens with an aperture: defocus blur" */
     bool simulated;
     char reason[160]; /* why it is in or out, for a person */
 } BpEffectInfo;
 
-/* Fills `list` and returns the number of effects; the same ones in the same order for every scene. */
-BP_API size_t bp_scene_effects(const BpScene *scene, BpEffectInfo list[BP_EFFECTS_MAX]);
+/* How many effects there are: the same ones in the same order for every scene, at most 31. */
+BP_API size_t bp_effect_count(void);
+/* Fills `info` with effect `index`, from 0, and returns true; false where there is none of that number. Looks
+ * through all spheres each time. */
+BP_API bool bp_scene_effect(const BpScene *scene, size_t index, BpEffectInfo *info);
 
 /* ---- devices ----------------------------------------------------------------------------------------- */
 
@@ -187,7 +189,7 @@ typedef struct BpRenderOptions {
     BpSampler sampler; /* `ballpark render` uses Sobol's sequence, which has less noise in the same time */
     BpKernelForm kernel;
     bool all_effects;       /* build the general kernel instead of the specialised one */
-    uint32_t extra_effects; /* bit e: simulate effect e of bp_scene_effects() although nothing calls for it */
+    uint32_t extra_effects; /* bit e: simulate effect e of bp_scene_effect() although nothing calls for it */
     bool adaptive;          /* samples_per_pixel is a mean: pixels get samples where the error is */
     bool features;          /* bp_render_aovs() will be asked */
     bool force;             /* render even on a device that fails its self-test */

@@ -129,12 +129,15 @@ static void print_heading(const char *path, const BpScene *scene) {
            info.height);
 }
 
-static void print_effects(const BpEffectInfo *effects, size_t count) {
+static void print_effects(const BpScene *scene, const BpEffectInfo *effects, size_t count) {
+    char reason[BP_ACCELERATION_REASON_SIZE];
     size_t in = 0;
     for (size_t e = 0; e < count; ++e) in += effects[e].simulated ? 1 : 0;
     for (size_t e = 0; e < count; ++e)
         printf("  %-12s %-4s %s\n", effects[e].name, effects[e].simulated ? "in" : "out", effects[e].reason);
     printf("  %zu of %zu effects %s in the kernel\n", in, count, in == 1 ? "is" : "are");
+    const BpAcceleration chosen = bp_acceleration_choose(scene, reason);
+    printf("  %-12s %-4s %s\n", "acceleration", bp_acceleration_name(chosen), reason);
 }
 
 /* ---- what they cost --------------------------------------------------------------------------------------
@@ -271,13 +274,16 @@ static json_t *costs_json(const BpCosts *costs) {
 static json_t *scene_json(const char *path, const BpScene *scene, const BpEffectInfo *effects, size_t count) {
     BpSceneInfo info;
     bp_scene_info(scene, &info);
+    char reason[BP_ACCELERATION_REASON_SIZE];
+    const BpAcceleration chosen = bp_acceleration_choose(scene, reason);
     json_t *list = json_array();
     for (size_t e = 0; e < count && list != NULL; ++e)
         json_array_append_new(list, json_pack("{s:s, s:s, s:b, s:s}", "name", effects[e].name, "description",
                                               effects[e].description, "simulated", effects[e].simulated,
                                               "reason", effects[e].reason));
-    return json_pack("{s:o, s:s, s:I, s:I, s:o}", "scene", bp_json_text(path), "title", info.title, "spheres",
-                     (json_int_t)info.spheres, "materials", (json_int_t)info.materials, "effects", list);
+    return json_pack("{s:o, s:s, s:I, s:I, s:o, s:s, s:s}", "scene", bp_json_text(path), "title", info.title,
+                     "spheres", (json_int_t)info.spheres, "materials", (json_int_t)info.materials, "effects",
+                     list, "acceleration", bp_acceleration_name(chosen), "acceleration_reason", reason);
 }
 
 /* ---- the command ------------------------------------------------------------------------------------------
@@ -285,7 +291,7 @@ static json_t *scene_json(const char *path, const BpScene *scene, const BpEffect
 
 /* What was found out about one scene. */
 typedef struct Findings {
-    BpEffectInfo effects[BP_EFFECTS_MAX];
+    BpEffectInfo effects[BP_EFFECT_COUNT];
     size_t count;
     BpCosts costs;  /* with --measure */
     BpPathLog path; /* with --pixel */
@@ -316,10 +322,11 @@ static BpStatus explain(const BpCommandLine *line, const char *path, const BpDev
     memset(&found, 0, sizeof found);
     const bool pixel = bp_option_given(line, BP_OPTION_PIXEL);
     BP_TRY(bp_setup_scene(line, path, &scene, err));
-    found.count = bp_scene_effects(scene, found.effects);
+    while (found.count < BP_EFFECT_COUNT && bp_scene_effect(scene, found.count, &found.effects[found.count]))
+        ++found.count;
     if (list == NULL) {
         print_heading(path, scene);
-        if (!pixel || line->measure) print_effects(found.effects, found.count);
+        if (!pixel || line->measure) print_effects(scene, found.effects, found.count);
         fflush(stdout); /* what follows can take a while */
     }
     if (pixel) {

@@ -175,6 +175,7 @@ BpStatus bp_program_source(const BpProgramOptions *options, const char *extra_na
     for (int e = 0; e < BP_EFFECT_COUNT; ++e)
         text_print(&text, "#define EFFECT_%s %d\n", bp_effect_identifier((BpEffect)e),
                    bp_effects_has(options->effects, (BpEffect)e));
+    text_print(&text, "#define ACCELERATION_TREE %d\n", options->tree);
     const unsigned kind =
         (options->form == BP_KERNEL_PACKET ? IN_PACKET : IN_SAMPLE) | (plain ? IN_PLAIN : IN_ROBUST);
     for (size_t i = 0; i < sizeof files / sizeof files[0]; ++i) {

@@ -29,6 +29,7 @@ BpStatus bp_kernel_text(const char *name, char **text, BpError *err);
 
 typedef struct BpProgramOptions {
     uint32_t effects; /* bits of effects.h */
+    bool tree;        /* spheres are found through a tree; else they are a list */
     BpPrecision precision;
     BpMath math;
     BpNumerics numerics;

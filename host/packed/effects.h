@@ -10,26 +10,28 @@
 
 #include "scene/scene.h"
 
-/* identifier (the kernel sees EFFECT_<identifier>), name, what it simulates */
+/* X(identifier, name, what it simulates, what is left out without it, who is absent): the kernel sees
+ * EFFECT_<identifier>. The last two are of effects that materials call for, as "... are left out" continues
+ * and as "...: none of the materials in use" begins; where nobody is named, it is "no <name> among the
+ * materials". */
 #define BP_EFFECT_LIST(X)                                                                                    \
-    X(LAMBERTIAN, "lambertian", "diffuse scattering, its three lobes")                                       \
-    X(METAL, "metal", "mirror reflection with fuzz")                                                         \
-    X(DIELECTRIC, "dielectric", "refraction, Fresnel reflection and the inside of spheres")                  \
-    X(EMISSION, "emission", "surfaces that emit light")                                                      \
-    X(NORMALS, "normals", "surfaces that show their normal as colour")                                       \
-    X(LENS, "lens", "a lens with an aperture: defocus blur")                                                 \
-    X(GRADIENT, "gradient", "a background that changes with height")                                         \
-    X(TREE, "tree", "a bounding volume hierarchy")
+    X(LAMBERTIAN, "lambertian", "diffuse scattering, its three lobes", "diffuse lobes are left out", "")     \
+    X(METAL, "metal", "mirror reflection with fuzz", "mirror reflection and fuzz are left out", "")          \
+    X(DIELECTRIC, "dielectric", "refraction, Fresnel reflection and the inside of spheres",                  \
+      "refraction, Fresnel and the inside of spheres are left out", "")                                      \
+    X(EMISSION, "emission", "surfaces that emit light", "looking up emission is left out", "nothing emits")  \
+    X(NORMALS, "normals", "surfaces that show their normal as colour", "normals as colours are left out",    \
+      "nothing shows normals")                                                                               \
+    X(LENS, "lens", "a lens with an aperture: defocus blur", "", "")
 
 typedef enum BpEffect {
-#define BP_EFFECT_ENUM(identifier, name, text) BP_EFFECT_##identifier,
+#define BP_EFFECT_ENUM(identifier, name, text, left_out, absent) BP_EFFECT_##identifier,
     BP_EFFECT_LIST(BP_EFFECT_ENUM)
 #undef BP_EFFECT_ENUM
         BP_EFFECT_COUNT
 } BpEffect;
 
-_Static_assert(BP_EFFECT_COUNT <= BP_EFFECTS_MAX,
-               "every combination that can occur is tested: at most eight bits");
+_Static_assert(BP_EFFECT_COUNT < 32, "effects are the bits of a uint32_t");
 
 typedef struct BpEffects {
     uint32_t bits; /* bit e set: effect e is simulated */
@@ -37,8 +39,6 @@ typedef struct BpEffects {
 } BpEffects;
 
 #define BP_EFFECTS_ALL ((1u << BP_EFFECT_COUNT) - 1u)
-/* Up to this many spheres a list is at least as fast as a tree (measured: docs/EFFECTS.md). */
-#define BP_LIST_SPHERES_MAX 32u
 
 static inline bool bp_effects_has(uint32_t bits, BpEffect effect) {
     return (bits >> effect & 1u) != 0;

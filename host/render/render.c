@@ -60,6 +60,7 @@ static BpStatus open_worker(BpRender *render, const BpDeviceInfo *device, size_t
     char *features = NULL;
     BP_TRY(bp_render_plan(render->scene, &render->options, device, &setup, &packed, err));
     render->effects.bits = setup.program.effects;
+    render->acceleration = setup.program.tree ? BP_ACCELERATION_TREE : BP_ACCELERATION_LIST;
     render->tree_seconds += packed.tree.build_seconds;
     render->pack_seconds += bp_clock_seconds() - start - packed.tree.build_seconds;
     BpStatus status = BP_OK;
@@ -390,6 +391,7 @@ void bp_render_report(const BpRender *render, BpRenderReport *report) {
     const BpWorker *first = render->workers[0];
     report->device = first->device->info;
     report->effects = render->effects;
+    report->acceleration = render->acceleration;
     report->self_test_seconds = first->self_test_seconds;
     report->kernel = first->samples_per_item > 1 ? BP_KERNEL_PACKET : BP_KERNEL_SAMPLE;
     report->sampler = render->options.sampler;

@@ -6,11 +6,13 @@
 #define BP_RENDER_RENDER_H
 
 #include "film/film.h"
+#include "packed/acceleration.h"
 #include "packed/effects.h"
 
 typedef struct BpRenderReport {
     BpDeviceInfo device;
     BpEffects effects;
+    BpAcceleration acceleration;
     BpKernelForm kernel; /* the form that was built */
     BpSampler sampler;
     BpPrecision precision;

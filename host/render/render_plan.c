@@ -2,6 +2,7 @@
 #include "render_plan.h"
 
 #include "base/status.h"
+#include "packed/acceleration.h"
 
 #include <string.h>
 
@@ -28,11 +29,12 @@ static void choose_form(const BpDeviceInfo *device, const BpRenderOptions *optio
 static uint32_t choose_effects(const BpScene *scene, const BpRenderOptions *options) {
     BpEffects effects;
     bp_effects_analyse(scene, &effects);
-    uint32_t bits =
-        options->all_effects ? BP_EFFECTS_ALL : effects.bits | (options->extra_effects & BP_EFFECTS_ALL);
-    if (options->force_tree) bits |= 1u << BP_EFFECT_TREE;
-    if (options->force_list) bits &= ~(1u << BP_EFFECT_TREE);
-    return bits;
+    return options->all_effects ? BP_EFFECTS_ALL : effects.bits | (options->extra_effects & BP_EFFECTS_ALL);
+}
+
+static bool choose_tree(const BpScene *scene, const BpRenderOptions *options) {
+    if (options->force_list) return false;
+    return options->force_tree || bp_acceleration_choose(scene, NULL) == BP_ACCELERATION_TREE;
 }
 
 BpStatus bp_render_plan(const BpScene *scene, const BpRenderOptions *options, const BpDeviceInfo *device,
@@ -43,6 +45,7 @@ BpStatus bp_render_plan(const BpScene *scene, const BpRenderOptions *options, co
                        device->name);
     memset(setup, 0, sizeof *setup);
     setup->program.effects = choose_effects(scene, options);
+    setup->program.tree = choose_tree(scene, options);
     setup->program.precision = options->precision;
     setup->program.math = options->math;
     setup->program.numerics = options->numerics;
@@ -62,7 +65,7 @@ BpStatus bp_render_plan(const BpScene *scene, const BpRenderOptions *options, co
     const BpTreeOptions tree_options = {
         .width = setup->program.tree_width,
         .single_precision = options->precision == BP_PRECISION_SINGLE,
-        .list = !bp_effects_has(setup->program.effects, BP_EFFECT_TREE),
+        .list = !setup->program.tree,
     };
     return bp_scene_pack(scene, &tree_options, packed, err);
 }

@@ -13,6 +13,7 @@ struct BpRender {
     const BpScene *scene;
     BpRenderOptions options;
     BpEffects effects;
+    BpAcceleration acceleration;
     BpWorker **workers;
     size_t worker_count;
     BpSchedule schedule;  /* adaptive: of the pass under way */

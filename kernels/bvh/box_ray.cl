@@ -6,7 +6,7 @@
  * more than the rounding of the product, of the low part left out, and of 1/d (the boxes are padded for the rounding
  * of their own planes), so that no box that the ray meets is missed. A direction component of 0 counts as 1e-24: no
  * NaN, and a deviation far below every margin. */
-#if EFFECT_TREE
+#if ACCELERATION_TREE
 #define BoxAxis LANED(BoxAxis)
 #define box_axis LANED(box_axis)
 

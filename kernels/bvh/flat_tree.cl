@@ -3,7 +3,7 @@
  *
  * In:    packed nodes.   Out: leaves and their boxes, the work-item's own copy.
  * Knows: scene_types.h.   Does not know: rays. */
-#if EFFECT_TREE
+#if ACCELERATION_TREE
 #define BATCH_LEAVES 32u /* one bit each */
 #define BATCHES_MAX 3u
 

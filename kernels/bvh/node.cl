@@ -36,7 +36,7 @@ FORCE_INLINE static child_mask leaf_candidates(const Geometry *geometry, const R
     return lane_bits(candidates & (sphere.radius > splat(0))); /* an empty lane has radius -1 */
 }
 
-#if EFFECT_TREE
+#if ACCELERATION_TREE
 /* The three axes of box_ray.cl, and which of the six rows of a node hold the planes that are met first and last. */
 typedef struct BoxRay {
     real inverse[3], near_offset[3], far_offset[3];

@@ -7,7 +7,7 @@
  * test is. So rays take turns, one step for all: first every ray that stands at a node tests it, then the leaves met
  * there, then the spheres found there, then each ray chooses the node to go to. Within a step nothing depends on the
  * step before of the same ray: there is no branch to guess, and memory is fetched for many rays at a time. */
-#if EFFECT_TREE
+#if ACCELERATION_TREE
 
 /* Lane `lane` is to visit a node, a leaf or a sphere's slot. */
 typedef struct Visit {
@@ -266,7 +266,7 @@ static Hit intersect_closest(const Geometry *geometry, const Ray *ray, vbool act
     Hit hit = no_hit(REAL_LARGE);
     intersect_own_sphere(geometry, ray, active, &hit);
     for (uint leaf = 0; leaf < geometry->first_leaves; ++leaf) intersect_leaf(geometry, ray, active, leaf, &hit);
-#if EFFECT_TREE
+#if ACCELERATION_TREE
     traverse_packet(geometry, ray, active, &hit);
 #endif
     return hit;

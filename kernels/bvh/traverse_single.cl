@@ -11,7 +11,7 @@ FORCE_INLINE static void intersect_leaf(const Geometry *geometry, const Ray *ray
     }
 }
 
-#if EFFECT_TREE
+#if ACCELERATION_TREE
 #define STACK_SIZE (TREE_DEPTH_MAX * (TREE_WIDTH - 1) + 1)
 
 FORCE_INLINE static void traverse_tree(const Geometry *geometry, const Ray *ray, int any, Hit *best) {
@@ -60,7 +60,7 @@ FORCE_INLINE static void traverse_tree(const Geometry *geometry, const Ray *ray,
 /* Everything but the sphere being left. `best` brings a bound and perhaps a hit along. */
 static void traverse_single(const Geometry *geometry, const Ray *ray, int any, Hit *best) {
     for (uint leaf = 0; leaf < geometry->first_leaves; ++leaf) intersect_leaf(geometry, ray, leaf, best);
-#if EFFECT_TREE
+#if ACCELERATION_TREE
     traverse_tree(geometry, ray, any, best);
 #endif
 }

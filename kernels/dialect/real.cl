@@ -10,6 +10,7 @@
  *   SAMPLES_PER_ITEM  pixel samples that it traces in all
  *   GROUP_MAX         work-items in a work-group of the sample form, at most
  *   EFFECT_...        0 or 1, one for each effect
+ *   ACCELERATION_TREE 0 or 1: spheres are found through a tree, or are a list
  *
  * Rounding is part of the product: no contraction of a*b+c unless fma() is written. */
 #pragma OPENCL FP_CONTRACT OFF

@@ -62,6 +62,7 @@ bool lab_open(Lab *lab, const char *variant) {
     }
     lab->options = (BpProgramOptions){
         .effects = BP_EFFECTS_ALL,
+        .tree = true,
         .precision = lab->real_double ? BP_PRECISION_DOUBLE : BP_PRECISION_SINGLE,
         .math = strcmp(variant, "fast") == 0 ? BP_MATH_FAST : BP_MATH_STRICT,
         .numerics = strcmp(variant, "plain") == 0 ? BP_NUMERICS_PLAIN : BP_NUMERICS_ROBUST,
@@ -189,6 +190,7 @@ BpWorker *lab_scene(const Lab *lab, const BpScene *scene) {
     options.math = lab->options.math;
     options.kernel = BP_KERNEL_SAMPLE;
     options.all_effects = true;
+    options.force_tree = true;
     options.tree_width = lab->options.tree_width;
     options.force_float_refine = !lab->refined_double;
     check(bp_render_plan(scene, &options, &lab->info, &setup, &packed, &err), &err);
@@ -218,6 +220,7 @@ void lab_render(const Lab *lab, const BpScene *scene, uint64_t samples, uint64_t
     options.math = lab->options.math;
     options.kernel = BP_KERNEL_SAMPLE;
     options.all_effects = true;
+    options.force_tree = true;
     options.tree_width = lab->options.tree_width;
     options.force_float_refine = !lab->refined_double;
     options.force = true;

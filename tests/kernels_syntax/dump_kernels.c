@@ -3,9 +3,9 @@
  * In:    a folder.   Out: one .cl file a variant; its name ends in _fp64.cl where the program needs double.
  * Knows: program.h.  Does not know: any device; what checks the files (test_kernels_syntax.py).
  *
- * All combinations of all choices would be 256 * 256 programs. Written are: every combination of the other
- * choices with every effect, and every set of effects with one of those combinations, a different one in
- * turn: so each set of effects and each combination is there. */
+ * All combinations of all choices would be 128 * 256 programs. Written are: every combination of the other
+ * choices with every effect, and every set of effects, with a list and with a tree, with one of those
+ * combinations, a different one in turn: so each set of effects and each combination is there. */
 #include "opencl/program.h"
 #include "packed/effects.h"
 
@@ -29,6 +29,7 @@ static BpProgramOptions combination(unsigned c) {
     options.double_refine = (c & 32) != 0;
     /* No combinations of their own: they go with no other choice, and half of all have each. */
     options.pixel_list = (c & 1) != ((c >> 3 & 1) != (c >> 4 & 1));
+    options.tree = (c >> 2 & 1) != (c >> 5 & 1);
     options.packet_lanes = (c >> 1 & 1) != (c >> 5 & 1) ? 16 : 8;
     return options;
 }
@@ -39,10 +40,11 @@ static BpStatus dump(const char *folder, const BpProgramOptions *options, BpErro
     char path[4096];
     FILE *file = NULL;
     BpStatus status = BP_OK;
-    snprintf(path, sizeof path, "%s/e%02x_w%u_l%u_p%d_m%d_n%d_s%d_k%d_r%d%s.cl", folder,
-             (unsigned)options->effects, (unsigned)options->tree_width, (unsigned)options->packet_lanes,
-             (int)options->precision, (int)options->math, (int)options->numerics, (int)options->sampler,
-             (int)options->form, (int)options->double_refine, needs_double ? "_fp64" : "");
+    snprintf(path, sizeof path, "%s/e%02x_t%d_w%u_l%u_p%d_m%d_n%d_s%d_k%d_r%d%s.cl", folder,
+             (unsigned)options->effects, (int)options->tree, (unsigned)options->tree_width,
+             (unsigned)options->packet_lanes, (int)options->precision, (int)options->math,
+             (int)options->numerics, (int)options->sampler, (int)options->form, (int)options->double_refine,
+             needs_double ? "_fp64" : "");
     BP_TRY_GOTO(status,
                 bp_program_source(options, "entry/aovs.cl", bp_kernel_file("entry/aovs.cl"), &source, err),
                 done);
@@ -66,10 +68,11 @@ int main(int argc, char **argv) {
         options.effects = BP_EFFECTS_ALL;
         status = dump(argv[1], &options, &err);
     }
-    for (uint32_t effects = 0; status == BP_OK && effects < BP_EFFECTS_ALL; ++effects) {
+    for (uint32_t set = 0; status == BP_OK && set < 2 * BP_EFFECTS_ALL; ++set) {
         /* 35 and 256 have no common divisor: neighbours differ in most choices, and all of them turn up. */
-        BpProgramOptions options = combination(effects * 35u % COMBINATIONS);
-        options.effects = effects;
+        BpProgramOptions options = combination(set * 35u % COMBINATIONS);
+        options.effects = set / 2;
+        options.tree = set % 2 == 1;
         status = dump(argv[1], &options, &err);
     }
     if (status != BP_OK) fprintf(stderr, "dump_kernels: %s\n", err.message);

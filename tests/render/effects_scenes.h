@@ -1,11 +1,12 @@
-/* effects_scenes.h: a small scene for every set of effects that can occur.
+/* effects_scenes.h: a small scene for every set of effects that can occur, with a list and with a tree.
  *
- * In:    a set of bits.   Out: a scene that calls for exactly these effects, with every sub-kind of each
- * (lobes, fuzz shapes, Fresnel, total reflection), for tests of specialised kernels. Knows: BpScene, the
- * effects.   Does not know: kernels. */
+ * In:    a set of bits, list or tree.   Out: a scene that calls for exactly these effects, with every
+ * sub-kind of each (lobes, fuzz shapes, Fresnel, total reflection), for tests of specialised kernels. Knows:
+ * BpScene, the effects.   Does not know: kernels. */
 #ifndef TESTS_DEVICE_EFFECTS_SCENES_H
 #define TESTS_DEVICE_EFFECTS_SCENES_H
 
+#include "packed/acceleration.h"
 #include "packed/effects.h"
 
 #include <string.h>
@@ -22,8 +23,8 @@ typedef struct EffectsScene {
 } EffectsScene;
 
 /* A tree needs spheres, and spheres need a material. */
-static inline bool effects_can_occur(uint32_t bits) {
-    return (bits & MATERIAL_EFFECTS) != 0 || !bp_effects_has(bits, BP_EFFECT_TREE);
+static inline bool effects_can_occur(uint32_t bits, bool tree) {
+    return (bits & MATERIAL_EFFECTS) != 0 || !tree;
 }
 
 static inline BpMaterial *effects_material(EffectsScene *made, BpMaterialKind kind, double r, double g,
@@ -68,8 +69,8 @@ static inline void effects_materials(EffectsScene *made, uint32_t bits) {
 
 /* A ground, a row of spheres that overlap and repeat (of equal ones the first must be met), bubbles, and with
  * a tree two more rows. */
-static inline void effects_spheres(EffectsScene *made, uint32_t bits) {
-    const size_t count = bp_effects_has(bits, BP_EFFECT_TREE) ? 48 : BP_LIST_SPHERES_MAX;
+static inline void effects_spheres(EffectsScene *made, bool tree) {
+    const size_t count = tree ? 48 : BP_LIST_SPHERES_MAX;
     const size_t materials = made->scene.material_count;
     if (materials == 0) return;
     for (size_t i = 0; i < count; ++i) {
@@ -94,7 +95,7 @@ static inline void effects_spheres(EffectsScene *made, uint32_t bits) {
 
 /* Odd sides, so that a pixel's centre can lie exactly on the axis; sets with an even number of effects are
  * sampled in the centre only. */
-static inline void effects_scene(EffectsScene *made, uint32_t bits) {
+static inline void effects_scene(EffectsScene *made, uint32_t bits, bool tree) {
     memset(made, 0, sizeof *made);
     BpScene *scene = &made->scene;
     scene->materials = made->materials;
@@ -115,10 +116,10 @@ static inline void effects_scene(EffectsScene *made, uint32_t bits) {
     for (int c = 0; c < 3; ++c) {
         scene->background_bottom[c] = 0.9 - 0.2 * c;
         scene->background_top[c] =
-            scene->background_bottom[c] - (bp_effects_has(bits, BP_EFFECT_GRADIENT) ? 0.4 : 0);
+            scene->background_bottom[c] - (bits % 3 != 0 ? 0.4 : 0); /* most are gradients */
     }
     effects_materials(made, bits);
-    effects_spheres(made, bits);
+    effects_spheres(made, tree);
 }
 
 #endif

@@ -1,4 +1,5 @@
 /* test_effects_analyse.c: the sets of effects of scenes made by hand, and what is said about them. */
+#include "packed/acceleration.h"
 #include "packed/effects.h"
 
 #include <setjmp.h>
@@ -68,8 +69,7 @@ static void material_effects(void **state) {
         assert_int_equal(analyse(&cases[i].material, 1, 1, 1, 0, 1).bits, cases[i].bits);
     const BpMaterial all[] = {grey, steel, glass, ember, debug};
     assert_int_equal(analyse(all, 5, 5, BP_LIST_SPHERES_MAX + 1, 0.1, 0.5).bits, BP_EFFECTS_ALL);
-    assert_int_equal(analyse(all, 5, 5, 5, 0, 1).bits,
-                     BP_EFFECTS_ALL & ~(BIT(LENS) | BIT(GRADIENT) | BIT(TREE)));
+    assert_int_equal(analyse(all, 5, 5, 5, 0, 1).bits, BP_EFFECTS_ALL & ~BIT(LENS));
 }
 
 static void only_materials_in_use_count(void **state) {
@@ -81,12 +81,35 @@ static void only_materials_in_use_count(void **state) {
     assert_int_equal(analyse(NULL, 0, 1, 0, 0, 1).bits, 0);
 }
 
-static void camera_sky_and_tree(void **state) {
+static void camera_and_sky(void **state) {
     (void)state;
     assert_int_equal(analyse(&grey, 1, 1, 1, 1e-9, 1).bits, BIT(LAMBERTIAN) | BIT(LENS));
-    assert_int_equal(analyse(&grey, 1, 1, 1, 0, 0.999).bits, BIT(LAMBERTIAN) | BIT(GRADIENT));
-    assert_int_equal(analyse(&grey, 1, 1, BP_LIST_SPHERES_MAX, 0, 1).bits, BIT(LAMBERTIAN));
-    assert_int_equal(analyse(&grey, 1, 1, BP_LIST_SPHERES_MAX + 1, 0, 1).bits, BIT(LAMBERTIAN) | BIT(TREE));
+    assert_int_equal(analyse(&grey, 1, 1, 1, 0, 0.999).bits, BIT(LAMBERTIAN)); /* a sky is a value */
+}
+
+static void a_tree_above_32_spheres(void **state) {
+    (void)state;
+    static const struct {
+        size_t spheres;
+        BpAcceleration expected;
+        const char *reason;
+    } cases[] = {
+        {0, BP_ACCELERATION_LIST, "no spheres: the picture is the sky"},
+        {1, BP_ACCELERATION_LIST, "1 sphere: a list, no tree"},
+        {32, BP_ACCELERATION_LIST, "32 spheres: a list, no tree"},
+        {33, BP_ACCELERATION_TREE, "33 spheres, more than 32: a tree"},
+        {484, BP_ACCELERATION_TREE, "484 spheres, more than 32: a tree"},
+        {SIZE_MAX, BP_ACCELERATION_TREE, NULL}, /* the longest number */
+    };
+    for (size_t i = 0; i < sizeof cases / sizeof cases[0]; ++i) {
+        const BpScene scene = {.sphere_count = cases[i].spheres};
+        char reason[BP_ACCELERATION_REASON_SIZE];
+        assert_int_equal(bp_acceleration_choose(&scene, reason), cases[i].expected);
+        if (cases[i].reason != NULL) assert_string_equal(reason, cases[i].reason);
+        assert_true(strlen(reason) + 1 < sizeof reason); /* whole */
+    }
+    assert_string_equal(bp_acceleration_name(BP_ACCELERATION_LIST), "list");
+    assert_string_equal(bp_acceleration_name(BP_ACCELERATION_TREE), "tree");
 }
 
 static void reasons_a_person_understands(void **state) {
@@ -102,8 +125,6 @@ static void reasons_a_person_understands(void **state) {
         "left out");
     assert_string_equal(effects.reason[BP_EFFECT_EMISSION], "nothing emits: none of the 3 materials in use");
     assert_string_equal(effects.reason[BP_EFFECT_LENS], "defocus_angle 0: the lens is a pinhole");
-    assert_string_equal(effects.reason[BP_EFFECT_GRADIENT], "background constant (1, 1, 1): no gradient");
-    assert_string_equal(effects.reason[BP_EFFECT_TREE], "5 spheres: a list, no tree");
 
     effects = analyse(three, 5, 3, 484, 0.05, 0.7);
     assert_string_equal(
@@ -111,9 +132,6 @@ static void reasons_a_person_understands(void **state) {
         "1 material would, but no sphere has it: refraction, Fresnel and the inside of spheres are left "
         "out");
     assert_string_equal(effects.reason[BP_EFFECT_LENS], "a lens of radius 0.05, in focus at 10");
-    assert_string_equal(effects.reason[BP_EFFECT_GRADIENT],
-                        "the background goes from (1, 1, 1) below to (1, 1, 0.7) above");
-    assert_string_equal(effects.reason[BP_EFFECT_TREE], "484 spheres, more than 32: a tree");
 
     effects = analyse(three, 1, 1, 2, 0, 1);
     assert_string_equal(effects.reason[BP_EFFECT_LAMBERTIAN],
@@ -140,8 +158,11 @@ static void one_list_names_them(void **state) {
 
 int main(void) {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(material_effects),    cmocka_unit_test(only_materials_in_use_count),
-        cmocka_unit_test(camera_sky_and_tree), cmocka_unit_test(reasons_a_person_understands),
+        cmocka_unit_test(material_effects),
+        cmocka_unit_test(only_materials_in_use_count),
+        cmocka_unit_test(camera_and_sky),
+        cmocka_unit_test(a_tree_above_32_spheres),
+        cmocka_unit_test(reasons_a_person_understands),
         cmocka_unit_test(one_list_names_them),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

@@ -1,5 +1,5 @@
-/* test_effects_builds.c: only another set of effects builds another kernel; values, camera, size, seed and
- * samples build nothing.
+/* test_effects_builds.c: only another set of effects or another acceleration builds another kernel; values,
+ * camera, size, seed and samples build nothing.
  *
  * Counted are the programs (equal keys: the same source and options) and, on PoCL, what its compiler leaves
  * in an empty cache. */
@@ -96,6 +96,12 @@ static void depth(EffectsScene *made, BpRenderOptions *options) {
     options->max_depth = 3;
 }
 
+static void constant_sky(EffectsScene *made, BpRenderOptions *options) {
+    (void)options;
+    BpScene *scene = &made->scene;
+    memcpy(scene->background_top, scene->background_bottom, sizeof scene->background_top);
+}
+
 static void without_lens(EffectsScene *made, BpRenderOptions *options) {
     (void)options;
     made->scene.camera.lens_radius = 0;
@@ -105,6 +111,11 @@ static void without_metal(EffectsScene *made, BpRenderOptions *options) {
     for (size_t i = 0; i < made->scene.sphere_count; ++i)
         if (made->materials[made->spheres[i].material].kind == BP_MATERIAL_METAL)
             made->spheres[i].material = 0;
+}
+
+static void a_list(EffectsScene *made, BpRenderOptions *options) {
+    (void)made;
+    options->force_list = true;
 }
 
 static void only_other_effects_build(void **state) {
@@ -121,21 +132,23 @@ static void only_other_effects_build(void **state) {
         {"spheres", spheres, false},
         {"seed and samples", seed_and_samples, false},
         {"depth", depth, false},
+        {"constant sky", constant_sky, false},
         {"without lens", without_lens, true},
         {"without metal", without_metal, true},
+        {"a list", a_list, true},
     };
     const bool pocl = strcmp(device->platform, "Portable Computing Language") == 0;
     const uint32_t bits = EFFECT_BIT(LAMBERTIAN) | EFFECT_BIT(METAL) | EFFECT_BIT(DIELECTRIC) |
-                          EFFECT_BIT(EMISSION) | EFFECT_BIT(LENS) | EFFECT_BIT(GRADIENT) | EFFECT_BIT(TREE);
+                          EFFECT_BIT(EMISSION) | EFFECT_BIT(LENS);
     static EffectsScene made;
     BpRenderOptions options;
-    effects_scene(&made, bits);
+    effects_scene(&made, bits, true);
     bp_render_defaults(&made.scene, &options);
     const uint64_t key = render(&made.scene, device, &options);
     unsigned in_cache = count_in_cache();
     if (pocl) assert_true(in_cache > 0); /* the cache is looked at where the compiler leaves its work */
     for (size_t i = 0; i < sizeof changes / sizeof changes[0]; ++i) {
-        effects_scene(&made, bits);
+        effects_scene(&made, bits, true);
         bp_render_defaults(&made.scene, &options);
         changes[i].change(&made, &options);
         const uint64_t other = render(&made.scene, device, &options);

@@ -16,7 +16,7 @@
 #include <string.h>
 #include <time.h>
 
-enum { WIDTH = 160, SETS_MAX = 256 };
+enum { WIDTH = 160, SETS_MAX = 1 << BP_EFFECT_COUNT };
 #define SLOWER_MAX 1.02
 /* Cold build of a trace program over that of the yardstick, in processor time. 2.1 to 3.0 were measured. */
 #define BUILD_RATIO_MAX 5.0

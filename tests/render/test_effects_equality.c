@@ -1,5 +1,5 @@
-/* test_effects_equality.c: for every set of effects that can occur, the specialised kernel computes what the
- * general one does.
+/* test_effects_equality.c: for every set of effects that can occur, with a list and with a tree, the
+ * specialised kernel computes what the general one does.
  *
  * On PoCL, bit for bit: radiance, segments and cut of every single pixel sample, as the trace kernel writes
  * them. What sums them (accumulate.cl) has no effects in it (effects_source), so equal samples make equal
@@ -10,8 +10,8 @@
  * ones once.
  *
  * effects_equality FORM [PART OF]: FORM is sample, packet, or one of two halves of both: mixed (packet for
- * sets with an even number of effects, sample for odd) and other (the other way round). PART of OF shares,
- * which can run side by side if each has a kernel cache of its own. */
+ * an even number of effects, a tree counted as one, sample for odd) and other (the other way round). PART of
+ * OF shares, which can run side by side if each has a kernel cache of its own. */
 #include "effects_scenes.h"
 #include "render/render_plan.h"
 #include "render/worker_buffers.h"
@@ -21,13 +21,13 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum { FORMS = 2, SAMPLERS = 2 };
+enum { FORMS = 2, SAMPLERS = 2, ACCELERATIONS = 2 };
 
 typedef struct Lab {
     BpDevice *device;
     bool exact;
-    BpProgram *general[FORMS][SAMPLERS]; /* each built when first needed */
-    unsigned dark;                       /* pictures without light, which would prove nothing */
+    BpProgram *general[FORMS][SAMPLERS][ACCELERATIONS]; /* each built when first needed */
+    unsigned dark; /* pictures without light, which would prove nothing */
     unsigned inexact;
 } Lab;
 
@@ -163,7 +163,7 @@ static bool compare(Lab *lab, uint32_t bits, const Samples *special, const Sampl
 }
 
 /* True when set `bits` is all right. */
-static bool check_set(Lab *lab, BpKernelForm form, uint32_t bits) {
+static bool check_set(Lab *lab, BpKernelForm form, uint32_t bits, bool tree) {
     static EffectsScene made;
     BpEffects effects;
     BpError err = {0};
@@ -171,19 +171,19 @@ static bool check_set(Lab *lab, BpKernelForm form, uint32_t bits) {
     BpProgram *program = NULL;
     Samples special = {0}, general = {0};
     bool right = false;
-    effects_scene(&made, bits);
+    effects_scene(&made, bits, tree);
     if (bp_scene_validate(&made.scene, &err) != BP_OK) return failed(&err, "scene", bits);
     bp_effects_analyse(&made.scene, &effects);
-    if (effects.bits != bits) {
-        fprintf(stderr, "set 0x%02x: the scene made for it calls for 0x%02x\n", (unsigned)bits,
-                (unsigned)effects.bits);
+    if (effects.bits != bits || (bp_acceleration_choose(&made.scene, NULL) == BP_ACCELERATION_TREE) != tree) {
+        fprintf(stderr, "set 0x%02x: the scene made for it calls for 0x%02x, or not for a %s\n",
+                (unsigned)bits, (unsigned)effects.bits, tree ? "tree" : "list");
         return false;
     }
     bp_render_defaults(&made.scene, &options);
     options.kernel = form;
-    options.seed = 20 + bits;
+    options.seed = 20 + bits + (tree ? BP_EFFECTS_ALL + 1 : 0);
     options.sampler = (bits ^ bits >> 3) & 1 ? BP_SAMPLER_SOBOL : BP_SAMPLER_INDEPENDENT;
-    BpProgram **all = &lab->general[form == BP_KERNEL_PACKET][options.sampler == BP_SAMPLER_SOBOL];
+    BpProgram **all = &lab->general[form == BP_KERNEL_PACKET][options.sampler == BP_SAMPLER_SOBOL][tree];
     if (trace(lab, &made.scene, &options, &program, &special, &err) != BP_OK) {
         failed(&err, "its own kernel", bits);
         goto done;
@@ -208,8 +208,8 @@ done:
 }
 
 /* The kernel form for a set, by FORM; false for a word that is none. */
-static bool choose_form(const char *word, uint32_t bits, BpKernelForm *form) {
-    bool odd = false;
+static bool choose_form(const char *word, uint32_t bits, bool tree, BpKernelForm *form) {
+    bool odd = tree;
     for (int e = 0; e < BP_EFFECT_COUNT; ++e) odd ^= bp_effects_has(bits, (BpEffect)e);
     if (strcmp(word, "sample") == 0)
         *form = BP_KERNEL_SAMPLE;
@@ -229,7 +229,7 @@ int main(int argc, char **argv) {
     BpError err = {0};
     const unsigned part = argc > 3 ? (unsigned)atoi(argv[2]) : 0, of = argc > 3 ? (unsigned)atoi(argv[3]) : 1;
     BpKernelForm form;
-    if (argc < 2 || !choose_form(argv[1], 0, &form) || of == 0 || part >= of) {
+    if (argc < 2 || !choose_form(argv[1], 0, false, &form) || of == 0 || part >= of) {
         fprintf(stderr, "usage: effects_equality sample|packet|mixed|other [PART OF]\n");
         return 2;
     }
@@ -244,15 +244,18 @@ int main(int argc, char **argv) {
     }
     unsigned sets = 0, wrong = 0;
     for (uint32_t bits = 0; bits <= BP_EFFECTS_ALL; ++bits) {
-        if (bits % of != part || !effects_can_occur(bits)) continue;
-        ++sets;
-        choose_form(argv[1], bits, &form);
-        if (!check_set(&lab, form, bits)) ++wrong;
+        for (int tree = 0; tree < ACCELERATIONS; ++tree) {
+            if (bits % of != part || !effects_can_occur(bits, tree)) continue;
+            ++sets;
+            choose_form(argv[1], bits, tree, &form);
+            if (!check_set(&lab, form, bits, tree)) ++wrong;
+        }
     }
-    printf("%s, %s: %u sets, %u wrong, %u not bit for bit, %u without light\n", device.name, argv[1], sets,
-           wrong, lab.inexact, lab.dark);
+    printf("%s, %s: %u sets with a list or a tree, %u wrong, %u not bit for bit, %u without light\n",
+           device.name, argv[1], sets, wrong, lab.inexact, lab.dark);
     for (int f = 0; f < FORMS; ++f)
-        for (int k = 0; k < SAMPLERS; ++k) bp_program_destroy(&lab.general[f][k]);
+        for (int k = 0; k < SAMPLERS; ++k)
+            for (int a = 0; a < ACCELERATIONS; ++a) bp_program_destroy(&lab.general[f][k][a]);
     bp_device_close(&lab.device);
     return sets > 0 && wrong == 0 && lab.dark == 0 ? 0 : 1;
 }

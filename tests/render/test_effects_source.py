@@ -1,4 +1,5 @@
-"""With an effect's bit off, its code is not in the kernel: looked up in the preprocessed source of all 256 sets.
+"""With an effect's bit off, its code is not in the kernel: looked up in the preprocessed source of all sets,
+with a list and with a tree.
 
 Usage: test_effects_source.py DUMP_KERNELS
 """
@@ -30,8 +31,7 @@ MARKS = {
     "EMISSION": ["emitted = vec3"],
     "NORMALS": ["shows_normal"],
     "LENS": ["lens_x", "->lens_up", "sample_disk(u"],
-    "GRADIENT": ["->top"],
-    "TREE": ["BoxRay", "leaf_children"],
+    "TREE": ["BoxRay", "leaf_children"],  # no effect, but looked for in the same way
 }
 # Code that several effects share.
 SHARED = {
@@ -48,8 +48,9 @@ def preprocessed(path):
 
 
 def complaints(path):
-    bits = int(re.match(r"e([0-9a-f]{2})_", path.name).group(1), 16)
-    effects = {name for number, name in enumerate(BITS) if bits >> number & 1}
+    bits, tree = re.match(r"e([0-9a-f]+)_t([01])_", path.name).groups()
+    bits, tree = int(bits, 16), tree == "1"
+    effects = {name for number, name in enumerate(BITS) if bits >> number & 1} | ({"TREE"} if tree else set())
     text = preprocessed(path)
     found = []
     for name, marks in MARKS.items():
@@ -57,10 +58,10 @@ def complaints(path):
                   for mark in marks if (mark in text) != (name in effects)]
     found += [f"{path.name}: {mark!r} of {sorted(names)} {'is missing' if names & effects else 'is there'}"
               for mark, names in SHARED.items() if (mark in text) != bool(names & effects)]
-    return found, bits, len(text)
+    return found, (bits, tree), len(text)
 
 
-assert len(BITS) == 8 and set(BITS) == set(MARKS), f"effects.h lists {BITS}: give each its marks here"
+assert set(BITS) | {"TREE"} == set(MARKS), f"effects.h lists {BITS}: give each its marks here"
 # Tests of equality compare what is traced; what sums it is the same text in every program.
 accumulate = (pathlib.Path(__file__).parents[2] / "kernels/film/accumulate.cl").read_text()
 assert "__kernel" in accumulate and "EFFECT_" not in accumulate and "LANE" not in accumulate, \
@@ -72,9 +73,9 @@ with tempfile.TemporaryDirectory() as folder:
         results = list(pool.map(complaints, paths))
 found = [line for lines, _, _ in results for line in lines]
 sets = {bits for _, bits, _ in results}
-print(f"{len(paths)} programs, {len(sets)} sets of effects; "
+print(f"{len(paths)} programs, {len(sets)} sets of effects with a list or a tree; "
       f"{min(size for _, _, size in results)} to {max(size for _, _, size in results)} characters")
-assert sets == set(range(256)), "not every set was written"
+assert sets == {(bits, tree) for bits in range(1 << len(BITS)) for tree in (False, True)}, "not every set was written"
 if found:
     print("\n".join(found[:40]))
     sys.exit(f"{len(found)} marks are wrong")

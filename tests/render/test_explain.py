@@ -11,7 +11,7 @@ import sys
 import tempfile
 
 program, scenes = sys.argv[1], pathlib.Path(sys.argv[2])
-ALL = ["lambertian", "metal", "dielectric", "emission", "normals", "lens", "gradient", "tree"]
+ALL = ["lambertian", "metal", "dielectric", "emission", "normals", "lens"]
 
 
 def run(*arguments, code=0):
@@ -22,13 +22,13 @@ def run(*arguments, code=0):
 
 # A table: every effect once, in or out, with a reason.
 table = run("explain", scenes / "v4-13-metal.json").stdout.splitlines()
-rows = {line.split()[0]: line.split(maxsplit=2)[1:] for line in table[1:9]}
+rows = {line.split()[0]: line.split(maxsplit=2)[1:] for line in table[1:7]}
 assert list(rows) == ALL, table
-assert [name for name in ALL if rows[name][0] == "in"] == ["lambertian", "metal", "gradient"], table
+assert [name for name in ALL if rows[name][0] == "in"] == ["lambertian", "metal"], table
 assert all(rows[name][0] in ("in", "out") and len(rows[name][1]) > 10 for name in ALL), table
 assert "no dielectric among the 4 materials in use" in rows["dielectric"][1]
-assert "4 spheres: a list, no tree" in rows["tree"][1]
-assert "3 of 8 effects" in table[9]
+assert "2 of 6 effects" in table[7]
+assert table[8].split(maxsplit=2) == ["acceleration", "list", "4 spheres: a list, no tree"], table
 
 # JSON of all scenes says what the tables say, one entry a scene, in the order given.
 paths = sorted(scenes.glob("*.json"))
@@ -39,7 +39,8 @@ for entry in document:
     assert [effect["name"] for effect in entry["effects"]] == ALL
     assert all(effect["reason"] and effect["description"] for effect in entry["effects"])
     assert "costs" not in entry
-    assert entry["effects"][7]["simulated"] == (entry["spheres"] > 32), entry["scene"]
+    assert entry["acceleration"] == ("tree" if entry["spheres"] > 32 else "list"), entry["scene"]
+    assert entry["acceleration"] in entry["acceleration_reason"] or entry["spheres"] == 0, entry["scene"]
 
 # Mistakes are refused, and leave no file.
 with tempfile.TemporaryDirectory() as folder:
@@ -76,9 +77,9 @@ with tempfile.TemporaryDirectory() as folder:
     run("explain", scenes / "v4-sky.json", "--measure", "--width", 64, "--json", target)
     costs = json.loads(target.read_text())["scenes"][0]["costs"]
     names = [kernel["name"] for kernel in costs["kernels"]]
-    assert names == ["specialised"] + [f"with {name}" for name in ALL if name != "gradient"] + ["general"], names
+    assert names == ["specialised"] + [f"with {name}" for name in ALL] + ["general"], names
     first, last = costs["kernels"][0], costs["kernels"][-1]
-    assert first["effects"] == ["gradient"] and last["effects"] == ALL
+    assert first["effects"] == [] and last["effects"] == ALL
     assert first["ratio"] == first["low"] == first["high"] == 1
     for kernel in costs["kernels"]:
         assert 0 < kernel["low"] <= kernel["ratio"] <= kernel["high"], kernel

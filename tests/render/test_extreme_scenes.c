@@ -94,8 +94,8 @@ static void render(const BpScene *scene, const char *text) {
     const BpFilm *film = NULL;
     bp_render_defaults(scene, &options);
     options.samples_per_pixel = 4;
-    options.all_effects = true; /* one program for all */
-    options.force = true;       /* the self-test is another test */
+    options.all_effects = options.force_tree = true; /* one program for all */
+    options.force = true;                            /* the self-test is another test */
     if (bp_render_create(scene, &options, &device, 1, &made, &err) != BP_OK)
         fail_msg("%s: %s", err.message, text);
     do {
