@@ -92,8 +92,8 @@ static json_t *step_json(const BpScene *scene, const BpPathStep *step) {
     const BpMaterial *material = &scene->materials[step->material];
     json_t *meeting = json_pack("{s:f, s:o, s:I, s:s, s:s, s:b, s:b, s:b}", "distance", step->distance,
                                 "point", triple(step->point), "sphere", (json_int_t)step->sphere, "material",
-                                material->name, "type", bp_material_types[material->kind].name, "enters", step->enters,
-                                "goes_on", step->goes_on, "inward", step->inward);
+                                material->name, "type", bp_material_types[material->kind].name, "enters",
+                                step->enters, "goes_on", step->goes_on, "inward", step->inward);
     const bool whole = meeting != NULL && json_object_update(root, meeting) == 0;
     json_decref(meeting);
     if (whole) return root;

@@ -99,14 +99,14 @@ static json_t *stats_json(const RunResult *result) {
                   (json_int_t)report->samples, "rays", (json_int_t)report->segments, "mean_radiance", mean[0],
                   mean[1], mean[2], "nrmse", json_number(result->nrmse), "invalid_samples",
                   (json_int_t)report->invalid_samples, "cut_paths", (json_int_t)report->cut_paths);
-    json_t *run =
-        json_pack("{s:s, s:s, s:o, s:I, s:i, s:b, s:o, s:s, s:i, s:I, s:I, s:s}", "acceleration",
-                  bp_acceleration_name(report->acceleration), "numerics", bp_numerics_names[report->numerics], "output", bp_json_text(result->output), "first_sample",
-                  (json_int_t)options->first_sample, "replicates", (int)result->film->replicates, "partial",
-                  result->film->partial, "rounding", json_number(bp_film_rounding(result->film)),
-                  "stopped_by", bp_stop_reason_name(result->stopped_by), "devices", (int)result->device_count,
-                  "device_bytes", (json_int_t)report->device_bytes, "scene_bytes",
-                  (json_int_t)report->scene_bytes, "version", bp_version());
+    json_t *run = json_pack(
+        "{s:s, s:s, s:o, s:I, s:i, s:b, s:o, s:s, s:i, s:I, s:I, s:s}", "acceleration",
+        bp_acceleration_name(report->acceleration), "numerics", bp_numerics_names[report->numerics], "output",
+        bp_json_text(result->output), "first_sample", (json_int_t)options->first_sample, "replicates",
+        (int)result->film->replicates, "partial", result->film->partial, "rounding",
+        json_number(bp_film_rounding(result->film)), "stopped_by", bp_stop_reason_name(result->stopped_by),
+        "devices", (int)result->device_count, "device_bytes", (json_int_t)report->device_bytes, "scene_bytes",
+        (json_int_t)report->scene_bytes, "version", bp_version());
     uint64_t least, most;
     double mean_samples;
     bp_film_sample_counts(result->film, &least, &most, &mean_samples);
