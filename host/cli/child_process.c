@@ -5,16 +5,36 @@
 #include "opencl/pocl.h"
 
 #include <errno.h>
+#include <poll.h>
 #include <signal.h>
 #include <stdlib.h>
 #include <string.h>
 #include <sys/wait.h>
 #include <unistd.h>
+#ifdef __linux__
+#include <sys/prctl.h>
+#endif
 
 /* Exit codes of the child: the work succeeded; it failed and wrote the reason. */
 enum { CHILD_DONE = 0, CHILD_FAILED = 1 };
 
-static _Noreturn void be_child(bool (*work)(void *argument, FILE *out), void *argument, int descriptor) {
+/* How often the parent looks whether it was interrupted, and how many times later it tells the child again.
+ */
+enum { LOOK_MS = 100, LOOKS_PER_SIGNAL = 10 };
+
+/* Nobody would wait for the child once the parent is gone, also by a signal that cannot be caught. */
+static void end_with_parent(pid_t parent) {
+#ifdef __linux__
+    prctl(PR_SET_PDEATHSIG, SIGTERM);
+    if (getppid() != parent) _exit(CHILD_FAILED); /* it was gone before */
+#else
+    (void)parent;
+#endif
+}
+
+static _Noreturn void be_child(bool (*work)(void *argument, FILE *out), void *argument, int descriptor,
+                               pid_t parent) {
+    end_with_parent(parent);
     bp_interrupt_install(); /* fork does not copy the thread that waits for signals */
     FILE *out = fdopen(descriptor, "w");
     if (out == NULL) _exit(CHILD_FAILED);
@@ -24,10 +44,22 @@ static _Noreturn void be_child(bool (*work)(void *argument, FILE *out), void *ar
     _exit(good && written ? CHILD_DONE : CHILD_FAILED);
 }
 
-static BpStatus read_all(int descriptor, char **bytes, size_t *size, BpError *err) {
+/* Waits until the child has written something or ended. A signal may have come to the parent alone: it is
+ * handed on. A child that does not heed the first, in a driver's long call, ends at once by the second. */
+static void wait_for_child(int descriptor, pid_t child) {
+    struct pollfd end = {.fd = descriptor, .events = POLLIN};
+    for (unsigned looks = 0; poll(&end, 1, LOOK_MS) <= 0;) {
+        if (!bp_interrupted()) continue;
+        if (looks % LOOKS_PER_SIGNAL == 0) kill(child, SIGTERM);
+        ++looks;
+    }
+}
+
+static BpStatus read_all(int descriptor, pid_t child, char **bytes, size_t *size, BpError *err) {
     size_t room = 4096, used = 0;
     char *text = malloc(room);
     while (text != NULL) {
+        wait_for_child(descriptor, child);
         const ssize_t got = read(descriptor, text + used, room - used - 1);
         if (got < 0 && errno == EINTR) continue;
         if (got <= 0) break;
@@ -52,17 +84,17 @@ BpStatus bp_run_in_child(bool (*work)(void *argument, FILE *out), void *argument
     failure[0] = '\0';
     if (pipe(ends) != 0) return bp_fail(err, BP_ERR_FILE, "cannot open a pipe: %s", strerror(errno));
     fflush(NULL); /* or the child would write it again */
-    const pid_t child = fork();
+    const pid_t parent = getpid(), child = fork();
     if (child == 0) {
         close(ends[0]);
-        be_child(work, argument, ends[1]);
+        be_child(work, argument, ends[1], parent);
     }
     close(ends[1]);
     if (child < 0) {
         close(ends[0]);
         return bp_fail(err, BP_ERR_MEMORY, "cannot start a process: %s", strerror(errno));
     }
-    const BpStatus status = read_all(ends[0], bytes, size, err);
+    const BpStatus status = read_all(ends[0], child, bytes, size, err);
     close(ends[0]);
     int ended = 0;
     while (waitpid(child, &ended, 0) < 0 && errno == EINTR) {

@@ -7,9 +7,11 @@ import json
 import os
 import pathlib
 import shutil
+import signal
 import subprocess
 import sys
 import tempfile
+import time
 
 program, source = sys.argv[1], pathlib.Path(sys.argv[2])
 scene = source / "tests/agree/scenes/lobe-lambertian.json"
@@ -58,3 +60,47 @@ with tempfile.TemporaryDirectory() as folder:
     expect("a kernel too bright by a tenth", check(folder, kernels=wrong), 3, "DISAGREE")
     expect("a kernel that does not compile", check(folder, kernels=patched(folder, "broken", "this is no C;")), 1,
            "FAILED")
+
+
+def children(process):
+    try:
+        return pathlib.Path(f"/proc/{process.pid}/task/{process.pid}/children").read_text().split()
+    except OSError:
+        return []
+
+
+def runs(pid):
+    """Whether that process is at work; a dead one that nobody has waited for is not."""
+    try:
+        return pathlib.Path(f"/proc/{pid}/stat").read_text().rsplit(")", 1)[1].split()[0] not in "ZX"
+    except OSError:
+        return False
+
+
+# In a closed mirror a path ends after a million segments: this would go on for hours.
+mirror = {"camera": {"image_width": 64, "samples_per_pixel": 1000, "max_depth": 1000000},
+          "materials": {"m": {"type": "metal", "albedo": [1, 1, 1]}},
+          "spheres": [{"center": [0, 0, 0], "radius": 5, "material": "m"}]}
+
+with tempfile.TemporaryDirectory() as folder:
+    (pathlib.Path(folder) / "mirror.json").write_text(json.dumps(mirror))
+    for kind in (signal.SIGINT, signal.SIGTERM, signal.SIGHUP, signal.SIGKILL):
+        process = subprocess.Popen([program, "check", "mirror.json", "--device", "all"], cwd=folder,
+                                   stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, text=True)
+        process.stderr.readline()  # "checking device": its process is started next
+        deadline = time.monotonic() + 60
+        while not children(process) and process.poll() is None and time.monotonic() < deadline:
+            time.sleep(0.01)
+        child = children(process)
+        if not child:
+            process.kill()
+            print("skipped: this system does not list the children of a process")
+            break
+        time.sleep(1)
+        process.send_signal(kind)
+        said = process.communicate(timeout=60)[1]
+        while runs(child[0]) and time.monotonic() < deadline:
+            time.sleep(0.01)
+        assert not runs(child[0]), f"{kind.name}: the process of the device goes on"
+        assert process.returncode == (-kind if kind == signal.SIGKILL else 130), f"{kind.name}: {process.returncode} {said}"
+        print(f"{kind.name} to the command alone: as expected")
