@@ -126,7 +126,7 @@ BpStatus bp_output_commit(BpOutputFile *file, BpError *err) {
     if (left != NULL) {
         const size_t used = err != NULL ? strlen(err->message) : 0;
         if (err != NULL)
-            snprintf(err->message + used, sizeof err->message - used, "; the complete result is in %s", left);
+            snprintf(err->message + used, sizeof err->message - used, "; " BP_OUTPUT_KEPT_AS "%s", left);
         free(left);
     }
     bp_output_discard(file);

@@ -27,6 +27,9 @@
 
 #include <stdio.h>
 
+/* What an error of bp_output_commit() says before the name of the finished file that it had to leave. */
+#define BP_OUTPUT_KEPT_AS "what was to be written is whole, as "
+
 /* Zeroed when not open. */
 typedef struct BpOutputFile {
     FILE *stream;   /* to be written by the caller */

@@ -165,10 +165,14 @@ int bp_temporary_create(const char *target, mode_t mode, bool *unnamed, char **n
     return make_name(target, bp_folder_length(target), target, mode, -1, name);
 }
 
+int bp_temporary_create_in(const char *folder, const char *target, mode_t mode, char **name) {
+    return make_name(folder, strlen(folder), target, mode, -1, name);
+}
+
 int bp_temporary_create_elsewhere(const char *target, mode_t mode, char **name) {
     const char *folder = getenv("TMPDIR");
     if (folder == NULL || folder[0] == '\0') folder = "/tmp";
-    return make_name(folder, strlen(folder), target, mode, -1, name);
+    return bp_temporary_create_in(folder, target, mode, name);
 }
 
 /* ---- putting them in place -------------------------------------------------------------------------------

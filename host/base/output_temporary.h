@@ -16,7 +16,9 @@
  * can
  * (*unnamed), else as TARGET.XXXXXX (*name, heap). The descriptor, or -1 and errno. */
 int bp_temporary_create(const char *target, mode_t mode, bool *unnamed, char **name);
-/* The same with a name in $TMPDIR or /tmp. */
+/* The same with a name in `folder`. */
+int bp_temporary_create_in(const char *folder, const char *target, mode_t mode, char **name);
+/* In $TMPDIR or /tmp. */
 int bp_temporary_create_elsewhere(const char *target, mode_t mode, char **name);
 
 /* Puts the finished temporary at `target`, in the place of what is there; 0, or an errno. After a failure it

@@ -9,6 +9,7 @@
 #include "image/error_map.h"
 #include "image/image.h"
 #include "json_file.h"
+#include "keep_sums.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -98,12 +99,10 @@ BpStatus bp_result_write(const BpCommandLine *line, const BpResultFile *result, 
     const bool to_stream = strcmp(result->path, "-") == 0;
     const bool is_picture = result->format != BP_FORMAT_BPA;
     if (bp_option_given(line, BP_OPTION_TRANSFER)) transfer = line->transfer;
-    if (is_picture || line->error_map != NULL) BP_TRY(bp_film_picture(film, &picture, err));
+    if (is_picture || line->error_map != NULL)
+        BP_TRY_GOTO(status, bp_film_picture(film, &picture, err), done);
     if (result->format == BP_FORMAT_EXR && render != NULL) status = bp_render_aovs(render, &picture, err);
-    if (status != BP_OK) {
-        bp_picture_clear(&picture);
-        return status;
-    }
+    if (status != BP_OK) goto done;
     if (is_picture && to_stream)
         status = bp_picture_write_stream(&picture, stdout, result->format, transfer, err);
     else if (is_picture)
@@ -112,6 +111,8 @@ BpStatus bp_result_write(const BpCommandLine *line, const BpResultFile *result, 
         status = bp_film_write_stream(film, stdout, err);
     else
         status = bp_film_write(film, result->path, err);
+done:
+    if (status != BP_OK && render != NULL) bp_keep_sums(film, result->path, err);
     if (status == BP_OK && line->error_map != NULL)
         status = bp_error_map_write(&picture, line->error_map, err);
     bp_picture_clear(&picture);

@@ -22,7 +22,7 @@ BpStatus bp_result_choose(const BpCommandLine *line, const char *default_path, B
 
 /* Writes it, and the error map if there is to be one. `transfer`: unless --transfer says otherwise. `render`:
  * Optional, created with options.features for an EXR; it gives the layers that follow from the scene, which
- * are left out without it. */
+ * are left out without it; and what it has rendered is kept if it cannot be written (keep_sums.h). */
 BpStatus bp_result_write(const BpCommandLine *line, const BpResultFile *result, const BpFilm *film,
                          BpRender *render, BpTransfer transfer, BpError *err);
 

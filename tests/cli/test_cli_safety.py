@@ -2,6 +2,7 @@
 
 import json
 import os
+import re
 import stat
 import subprocess
 
@@ -67,6 +68,45 @@ class Replacing(Safety):
         self.assertEqual(stat.S_IMODE(state.st_mode), 0o751, "set-ID bits are not for another content")
         if os.geteuid() == 0:
             self.assertEqual((state.st_uid, state.st_gid), (NOBODY, NOBODY))
+
+    def lose_the_folder(self, *options, **environment):
+        """A render whose folder disappears after it was found to be writable; what it says."""
+        os.mkdir(self.path("d"))
+        os.mkfifo(self.path("pipe.json"))
+        process = subprocess.Popen([cli.PROGRAM, "render", "pipe.json", *options], cwd=self.folder,
+                                   env=dict(self.environment, **environment), stderr=subprocess.PIPE)
+        with open(self.path("pipe.json"), "wb") as pipe:  # opens when the program reads, hence after the check
+            os.rmdir(self.path("d"))
+            pipe.write(self.read("s.json"))
+        os.remove(self.path("pipe.json"))
+        said = process.communicate(timeout=cli.LIMIT_SECONDS)[1].decode()
+        self.assertEqual(process.returncode, 1, said)
+        self.assertIn("create the folder first", said)
+        return said
+
+    def test_folder_that_disappears(self):
+        """The sums are kept, in $TMPDIR or else in the current folder, and the command that is named makes the picture."""
+        self.succeed("render", "s.json", "-o", "right.png", "-q")
+        os.mkdir(self.path("tmp"))
+        for folder, name in ((self.path("tmp"), "d/a.png"), ("/dev/null/no", "d/a.exr"), ("/dev/null/no", "d/a.bpa")):
+            said = self.lose_the_folder("-o", name, "-q", TMPDIR=folder)
+            kept = re.search(r"ballpark merge (\S+) -o FILE makes the picture", said)
+            self.assertTrue(kept, said)
+            kept = os.path.join(self.folder, kept.group(1))
+            self.assertEqual(os.path.dirname(os.path.normpath(kept)), folder if folder[1:4] != "dev" else self.folder)
+            self.succeed("merge", kept, "-o", "kept.png", "-q")
+            self.assert_same(self.read("kept.png"), self.read("right.png"))
+            os.remove(kept)
+            self.assertEqual(os.listdir(self.path("tmp")), [])
+
+    def test_pipe_that_is_closed(self):
+        """Who closes it wants no more of the picture: nothing is kept."""
+        os.mkdir(self.path("tmp"))
+        self.write("large.json", scene(200))
+        errors = self.shell("TMPDIR=tmp \"$B\" render large.json -o - --format pfm -q | head -c 9 > start").errors
+        self.assertIn("Broken pipe", errors)
+        self.assertNotIn("kept", errors)
+        self.assertEqual(os.listdir(self.path("tmp")), [])
 
     def test_limit_on_the_size_of_files(self):
         self.write("a.pfm", "old")

@@ -53,6 +53,15 @@ class Faults(cli.ProgramTest):
         os.remove(log)
         return result, calls
 
+    def picture_of(self, sums):
+        """What the sums of a render that could not be written make."""
+        picture = self.path("kept.pfm")
+        self.succeed("merge", sums, "-o", picture, "-q")
+        with open(picture, "rb") as file:
+            content = file.read()
+        os.remove(picture)
+        return content
+
     def is_right(self, name, content):
         """Whether that is what an undisturbed run writes; of what differs from run to run, whether it is whole."""
         if name not in self.varies:
@@ -81,6 +90,10 @@ class Faults(cli.ProgramTest):
             if result.returncode == 1 and there == (OLD if existing else None):
                 good = True
             self.assertTrue(good, f"{where}: {name} is {there and there[:60]}, {result.errors}")
+        for path in re.findall(r"ballpark merge (\S+) -o FILE makes the picture", result.errors):
+            path = os.path.join(self.folder, path)
+            self.assertEqual(self.picture_of(path), self.right["a.pfm"], where)
+            os.remove(path)
         for folder in (self.folder, self.path("elsewhere")):
             for name in set(os.listdir(folder)) - self.inputs - set(self.results):
                 path = os.path.join(folder, name)
