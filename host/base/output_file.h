@@ -28,7 +28,7 @@
 #include <stdio.h>
 
 /* What an error of bp_output_commit() says before the name of the finished file that it had to leave. */
-#define BP_OUTPUT_KEPT_AS "what was to be written is whole, as "
+#define BP_OUTPUT_KEPT_AS "the complete result is in "
 
 /* Zeroed when not open. */
 typedef struct BpOutputFile {

@@ -72,6 +72,7 @@ BpStatus bp_command_merge(const BpCommandLine *line, BpError *err) {
     BP_TRY(bp_result_choose(line, line->operands[0], &result, err));
     BP_TRY_GOTO(status, bp_film_read(line->operands[0], &sum, err), done);
     for (size_t f = 1; f < line->operand_count; ++f) BP_TRY_GOTO(status, add_file(line, f, sum, err), done);
+    BP_TRY_GOTO(status, bp_film_check_finite(sum, err), done);
     BP_TRY_GOTO(status, bp_result_write(line, &result, sum, NULL, (BpTransfer)sum->transfer, err), done);
     if (!line->quiet && result.format == BP_FORMAT_EXR)
         fprintf(stderr, "depth, normals and albedo omitted: .bpa files do not store the scene; `ballpark "
@@ -86,6 +87,9 @@ BpStatus bp_command_merge(const BpCommandLine *line, BpError *err) {
                 ranges, sum->partial ? ", incomplete in some pixels" : "", nrmse);
     }
     if (!line->quiet) bp_result_warn(sum);
+    if (!line->quiet && sum->invalid_samples > 0)
+        fprintf(stderr, "warning: %" PRIu64 " sample%s not finite; left out of the picture\n",
+                sum->invalid_samples, sum->invalid_samples == 1 ? " was" : "s were");
 done:
     bp_film_destroy(&sum);
     return status;

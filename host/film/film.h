@@ -107,6 +107,8 @@ uint64_t bp_film_range_total(const BpFilm *film);
 /* Squared standard error of one pixel's luminance, by the same formula; NaN with fewer than two replicates.
  */
 double bp_film_squared_error(const BpFilm *film, size_t pixel);
+/* BP_ERR_LIMIT when most samples were no finite numbers: what is left then says nothing of the scene. */
+BpStatus bp_film_check_finite(const BpFilm *film, BpError *err);
 /* The fewest and the most valid samples that a pixel has, and the mean. */
 void bp_film_sample_counts(const BpFilm *film, uint64_t *least, uint64_t *most, double *mean);
 /* The most that rounding samples to steps can have changed the picture's mean luminance by, relative to it.

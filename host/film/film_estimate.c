@@ -2,8 +2,10 @@
 #include "film.h"
 
 #include "base/color.h"
+#include "base/names.h"
 #include "base/status.h"
 
+#include <inttypes.h>
 #include <math.h>
 #include <stdlib.h>
 
@@ -122,6 +124,18 @@ double bp_film_rounding(const BpFilm *film) {
 
 double bp_film_squared_error(const BpFilm *film, size_t pixel) {
     return estimate_pixel(film, pixel).squared_error[3];
+}
+
+BpStatus bp_film_check_finite(const BpFilm *film, BpError *err) {
+    const size_t cells = (size_t)film->width * film->height * film->replicates;
+    uint64_t valid = 0;
+    for (size_t cell = 0; cell < cells; cell++) valid += film->counts[cell];
+    if (film->invalid_samples <= valid) return BP_OK;
+    return bp_fail(err, BP_ERR_LIMIT,
+                   "%" PRIu64 " of %" PRIu64
+                   " samples are not finite, so they show nothing of the scene: its "
+                   "numbers may be too large or too small for %s precision, and ballpark check tells more",
+                   film->invalid_samples, film->invalid_samples + valid, bp_precision_names[film->precision]);
 }
 
 void bp_film_sample_counts(const BpFilm *film, uint64_t *least, uint64_t *most, double *mean) {

@@ -4,6 +4,7 @@
 #include "base/clock.h"
 #include "base/color.h"
 #include "base/status.h"
+#include "film/film.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -52,6 +53,13 @@ static BpStatus read_sums(const BpSums *sums, BpPicture *picture, BpError *err) 
     return BP_OK;
 }
 
+static BpStatus read_render(BpRender *render, BpPicture *picture, BpError *err) {
+    const BpFilm *film = NULL;
+    BP_TRY(bp_render_read_film(render, &film, err));
+    BP_TRY(bp_film_check_finite(film, err));
+    return bp_film_picture(film, picture, err);
+}
+
 /* The one whose turn it is gets on; *done: it has all samples that are wanted. */
 static BpStatus trace(BpReferences *references, bool *done, BpError *err) {
     const int r = references->turn;
@@ -87,7 +95,7 @@ BpStatus bp_references_step(BpReferences *references, double seconds, bool *fini
     }
     for (int r = 0; r < 2; r++) {
         if (references->kernel)
-            BP_TRY(bp_render_read(references->render[r], &references->pictures[r], err));
+            BP_TRY(read_render(references->render[r], &references->pictures[r], err));
         else
             BP_TRY(read_sums(&references->sums[r], &references->pictures[r], err));
         bp_render_destroy(&references->render[r]);

@@ -229,7 +229,10 @@ static void add_seconds(BpStudy *study) {
 /* Configuration s has one sample a pixel: notes where it differs. */
 static BpStatus note_first(BpStudy *study, size_t s, BpError *err) {
     BpPicture picture;
-    BP_TRY(bp_render_read(study->runners[s].render, &picture, err));
+    const BpFilm *film = NULL;
+    BP_TRY(bp_render_read_film(study->runners[s].render, &film, err));
+    BP_TRY(bp_film_check_finite(film, err));
+    BP_TRY(bp_film_picture(film, &picture, err));
     if (s > 0) {
         bp_study_interest_add(study->interest, &picture, &study->first, study->result.brightness);
         bp_picture_clear(&picture);

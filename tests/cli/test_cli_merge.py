@@ -1,5 +1,9 @@
 """`ballpark merge`: parts of a render make the whole, bit for bit; what does not belong together is refused."""
 
+import os
+import struct
+import zlib
+
 import exr
 from cli import ProgramTest, main, scene
 
@@ -81,6 +85,22 @@ class Merge(ProgramTest):
         for name in ("short.bpa", "long.bpa", "empty.bpa", "s.json", "none.bpa"):
             self.fail_with(1, "merge", "a.bpa", name, "-o", "x.png", says=name)
         self.assertNotIn("x.png", self.files())
+
+    def test_samples_that_are_not_finite(self):
+        """They are told, and when most are, there is no picture."""
+        self.part("a.bpa", 0, 10)
+        header, body = self.read("a.bpa").split(b"\n", 1)
+        for invalid, code in ((0, 0), (1, 0), (10 * 144, 0), (10 * 144 + 1, 1)):
+            data = header.replace(b"\"invalid_samples\": 0", b"\"invalid_samples\": %d" % invalid) + b"\n" + body[:-4]
+            self.write("b.bpa", data + struct.pack("<I", zlib.crc32(data)))
+            result = self.run_program("merge", "b.bpa", "-o", "b.png")
+            self.assertEqual(result.returncode, code, result.errors)
+            if code != 0:
+                self.assertIn("1441 of 2881 samples are not finite", result.errors)
+            self.assertEqual("warning: " in result.errors, 0 < invalid <= 1440, result.errors)
+            self.assertEqual("b.png" in self.files(), code == 0)
+            if code == 0:
+                os.remove(self.path("b.png"))
 
     def test_output(self):
         self.part("a.bpa", 0, 10)

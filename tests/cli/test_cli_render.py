@@ -240,6 +240,16 @@ class StopRules(Render):
             self.assertEqual(self.read(output), b"precious")
         self.assertEqual(self.files(), ["kernels", "n.json", "s.json", "x.bpa", "x.exr", "x.png"])
 
+    def test_no_figure_of_samples_that_are_no_light(self):
+        """bench would tell the speed of broken paths, cost the errors of pictures of nothing."""
+        here = self.broken_sky("splat(NAN)")
+        self.write("n.json", scene(16, spheres=0, background=[0.5, 0.6, 0.7]))
+        for command in (("bench", "n.json", "--time", "0.01", "--rounds", "1", "--json", "n.out"),
+                        ("cost", "n.json", "--time", "0.1", "--json", "n.out"),
+                        ("cost", "n.json", "--time", "0.1", "--precision", "double", "--csv", "n.out")):
+            self.fail_with(1, *command, environment=here, says=["samples are not finite", "ballpark check"])
+        self.assertEqual(self.files(), ["kernels", "n.json", "s.json"])
+
     def test_a_pixel_that_is_never_light(self):
         """Samples that are no numbers are left out; where a pixel has no other, --error ends and says so."""
         here = self.broken_sky("choose(direction.x < splat(R(-0.5)), splat(NAN), light.x)")
