@@ -12,6 +12,7 @@
 #include "base/shown.h"
 #include "check/check.h"
 #include "child_process.h"
+#include "file_conflicts.h"
 #include "image/image.h"
 #include "interrupt.h"
 #include "json_file.h"
@@ -242,6 +243,21 @@ static void map_name(const char *map, unsigned device, char *name, size_t size) 
     snprintf(name, size, "%.*s-%u%s", (int)stem, map, device, dot != NULL ? dot : "");
 }
 
+/* The devices' own maps must be told apart from the other files, like the map that the command line names. */
+static BpStatus check_map_names(const CheckTask *task, const BpDeviceInfo *devices, size_t count,
+                                BpError *err) {
+    BpCommandLine line = *task->line;
+    char name[4096];
+    line.map = name;
+    for (size_t d = 0; d < count && task->map != NULL; ++d) {
+        map_name(task->map, devices[d].number, name, sizeof name);
+        BP_TRY(bp_files_check_apart(&line, NULL, err));
+        BP_TRY(bp_files_check_scene(&line, NULL, task->scene, err));
+        BP_TRY(bp_output_check(name, err));
+    }
+    return BP_OK;
+}
+
 static BpStatus check_all(CheckTask *task, json_t *results, bool *agree, bool *broken, BpError *err) {
     char *bytes = NULL, failure[256];
     size_t size = 0;
@@ -256,6 +272,7 @@ static BpStatus check_all(CheckTask *task, json_t *results, bool *agree, bool *b
     BpStatus status = BP_OK;
     if (count == 0)
         status = bp_fail(err, BP_ERR_DEVICE, "no OpenCL device; `ballpark devices` says what to install");
+    if (status == BP_OK) status = check_map_names(task, devices, count, err);
     for (size_t d = 0; d < count && status == BP_OK && !bp_interrupted(); ++d) {
         char *text = NULL, name[4096];
         json_t *entry = NULL;

@@ -154,6 +154,14 @@ class TwoNames(Safety):
         for more in (("-o", "points.png"), ("-o", "x.png", "--error-map", "points.png"), ()):
             self.refuse("render", "d/points.json", *more, says="points.png would overwrite points of the scene")
         self.refuse("check", "d/points.json", "--map", "points.png", says="points of the scene")
+        os.rename(self.path("points.png"), self.path("m-0.png"))  # as the map of device 0 is called
+        self.write("d/points.json", json.dumps(cloud).replace("points.png", "m-0.png"))
+        points, every = self.read("m-0.png"), ("--device", "all", "--spp", "2", "--width", "2", "-q")
+        self.fail_with(2, "check", "d/points.json", "--map", "m.png", *every, says="m-0.png would overwrite points")
+        self.assert_same(self.read("m-0.png"), points)
+        self.write("s-0.png", scene(8))
+        self.fail_with(2, "check", "s-0.png", "--map", "s.png", *every, says="s-0.png would overwrite the file")
+        self.fail_with(2, "check", "s.json", "--map", "n.png", "--json", "n-0.png", *every, says="both name n-0.png")
         with open(self.path("s.json"), "rb") as sent:
             self.fail_with(2, "render", "-", "-o", "s.json", "--format", "png", stdin=sent, says="would overwrite")
 
