@@ -134,7 +134,15 @@ BpStatus bp_kernel_text(const char *name, char **text, BpError *err) {
         text_append(&read, "", 0);
         while (read.length <= KERNEL_FILE_BYTES_MAX && (count = fread(block, 1, sizeof block, file)) > 0)
             text_append(&read, block, count);
+        const int read_problem = ferror(file) ? errno : 0;
         fclose(file);
+        if (read_problem != 0 || (read.bytes != NULL && strlen(read.bytes) != read.length)) {
+            bp_fail(err, BP_ERR_FILE, "cannot read %s: %s; it must be a kernel file", path,
+                    read_problem != 0 ? strerror(read_problem) : "it contains a byte of value 0");
+            free(path);
+            free(read.bytes);
+            return BP_ERR_FILE;
+        }
         if (read.length > KERNEL_FILE_BYTES_MAX) {
             bp_fail(err, BP_ERR_FILE, "%s is not a kernel file: it has more than %u bytes", path,
                     KERNEL_FILE_BYTES_MAX);

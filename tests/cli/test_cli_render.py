@@ -122,6 +122,21 @@ class Picture(Render):
         self.assertIn("\n\n", result.errors, "the log stands below the message")
 
 
+    def test_a_kernel_that_cannot_be_read(self):
+        """A folder in its place, or a file that would be cut short, is not taken for a shorter kernel."""
+        for content, says in ((None, "Is a directory"), (b"\0", "byte of value 0")):
+            shutil.rmtree(self.path("kernels"), ignore_errors=True)
+            shutil.copytree(os.path.join(SOURCE, "kernels"), self.path("kernels"))
+            if content is None:
+                os.remove(self.path("kernels/light/sky.cl"))
+                os.mkdir(self.path("kernels/light/sky.cl"))
+            else:
+                with open(self.path("kernels/light/sky.cl"), "ab") as file:
+                    file.write(content)
+            self.fail_with(1, "render", "s.json", says=["light/sky.cl", says],
+                           environment={"BALLPARK_KERNELS": self.path("kernels")})
+
+
 class Statistics(Render):
     FIXED = {"scene": str, "width": int, "height": int, "samples_per_pixel": int, "max_depth": int, "seed": int,
              "spheres": int, "device": dict, "effects": list, "kernel": str, "precision": str, "math": str,
