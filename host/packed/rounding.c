@@ -93,6 +93,19 @@ static void find_walls(const BpScene *scene, Worst *worst, double *wall) {
     free(shells);
 }
 
+/* A ray begins at a point of the lens, whose rounding moves where it meets the plane in focus. */
+static void add_lens(const BpCamera *camera, BpRoundingWarnings *limits) {
+    const double degree = 3.14159265358979323846 / 180;
+    const double pixel = 2 * camera->focus_dist * tan(camera->vfov_degrees * degree / 2) / camera->height;
+    const double shift = camera->lens_radius * 0x1p-24;
+    if (!(shift > BP_ROUNDING_LENS * pixel)) return;
+    snprintf(limits->text[limits->count++], sizeof limits->text[0],
+             "the lens (radius %g) is so large that rays meet the plane in focus up to %.2g pixels off their "
+             "place "
+             "in single precision; use --precision double, or a smaller aperture",
+             camera->lens_radius, shift / pixel);
+}
+
 void bp_rounding_warnings(const BpScene *scene, BpPrecision precision, BpRoundingWarnings *limits) {
     memset(limits, 0, sizeof *limits);
     if (precision == BP_PRECISION_DOUBLE || scene->sphere_count == 0) return;
@@ -130,4 +143,5 @@ void bp_rounding_warnings(const BpScene *scene, BpPrecision precision, BpRoundin
                  "the wall between %s and the dielectric around it%s, %.2g thick, is displaced by %.2g of "
                  "its thickness in single precision; use --precision double, or a thicker wall",
                  bp_sphere_name(scene, thin.sphere, name), others(&thin, more), wall, thin.ratio);
+    add_lens(&scene->camera, limits);
 }

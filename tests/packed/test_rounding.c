@@ -38,6 +38,24 @@ static void off_its_place(void **state) {
     assert_int_equal(limits_of("\"lookfrom\":[100000.0,0,1]", far, BP_PRECISION_SINGLE).count, 0);
 }
 
+/* The lens at which a tenth of a pixel is passed: 100 pixels are 20 high at 10, and 0.02 is 2^-24 of 335544.
+ */
+static void large_lens(void **state) {
+    (void)state;
+    const char *ball = "{\"center\":[0,0,-10],\"radius\":3,\"material\":\"m\"}";
+    const char *large = "\"focus_dist\":10,\"aperture\":672000",
+               *fine = "\"focus_dist\":10,\"aperture\":671000", *huge = "\"focus_dist\":10,\"aperture\":1e10",
+               *far = "\"focus_dist\":1e10,\"aperture\":1e10";
+    const BpRoundingWarnings warned = limits_of(large, ball, BP_PRECISION_SINGLE);
+    assert_int_equal(warned.count, 1);
+    assert_non_null(strstr(warned.text[0], "the lens (radius 336000)"));
+    assert_non_null(strstr(warned.text[0], "--precision double"));
+    assert_int_equal(limits_of(fine, ball, BP_PRECISION_SINGLE).count, 0);
+    assert_int_equal(limits_of(huge, ball, BP_PRECISION_SINGLE).count, 1);
+    assert_int_equal(limits_of(huge, ball, BP_PRECISION_DOUBLE).count, 0);
+    assert_int_equal(limits_of(far, ball, BP_PRECISION_SINGLE).count, 0);
+}
+
 static void off_its_neighbours(void **state) {
     (void)state;
     const char *ground = "{\"center\":[0,-1000000.01,0],\"radius\":1000000,\"material\":\"m\"},"
@@ -89,7 +107,8 @@ static void thin_walls(void **state) {
 }
 
 int main(void) {
-    const struct CMUnitTest tests[] = {cmocka_unit_test(off_its_place), cmocka_unit_test(off_its_neighbours),
+    const struct CMUnitTest tests[] = {cmocka_unit_test(off_its_place), cmocka_unit_test(large_lens),
+                                       cmocka_unit_test(off_its_neighbours),
                                        cmocka_unit_test(beads_on_the_ground), cmocka_unit_test(thin_walls)};
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
