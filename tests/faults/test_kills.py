@@ -109,7 +109,7 @@ class Kills(cli.ProgramTest):
         size = len(b"PF\n64 64\n-1.0\n") + 64 * 64 * 12
         self.kill_often(("render", "s.json", "-o", "a.pfm", "-q"), "a.pfm", lambda content: len(content) == size)
 
-    def test_rounding(self):
+    def test_hangup_and_processor_time(self):
         """A terminal that goes away and a limit on processor time end a render as Ctrl-C does: it keeps what there is."""
         self.write("s.json", cli.scene(64, 64, camera={"samples_per_pixel": 3000}))
         self.succeed("render", "s.json", "-o", "a.pfm", "-q")  # builds the kernels
