@@ -251,8 +251,8 @@ static BpStatus check_map_names(const CheckTask *task, const BpDeviceInfo *devic
     line.map = name;
     for (size_t d = 0; d < count && task->map != NULL; ++d) {
         map_name(task->map, devices[d].number, name, sizeof name);
-        BP_TRY(bp_files_check_apart(&line, NULL, err));
-        BP_TRY(bp_files_check_scene(&line, NULL, task->scene, err));
+        BP_TRY(bp_file_conflicts_check(&line, NULL, err));
+        BP_TRY(bp_file_conflicts_check_scene(&line, NULL, task->scene, err));
         BP_TRY(bp_output_check(name, err));
     }
     return BP_OK;

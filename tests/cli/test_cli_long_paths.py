@@ -44,7 +44,7 @@ class LongPaths(ProgramTest):
                 whole, many = self.measure(form)
                 start = time.monotonic()
                 self.fail_with(1, "render", "m.json", "--width", "128", "--kernel", form, "-o", "t.png", "--time", "0.5",
-                               says=["--time 0.5 was over before every pixel had a sample", "t.png", "--depth"])
+                               says=["--time 0.5 ran out before every pixel had a sample", "t.png", "--depth"])
                 self.assertLess(time.monotonic() - start, whole + many / 4)
                 self.assertIn("t.png", self.files())
 
