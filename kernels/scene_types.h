@@ -88,13 +88,16 @@ typedef struct PackedMaterialKind {
  * X(numbers, element, name, count, what): `numbers` is REALS or UINTS, what `element` is made of; `count`
  * says how many elements there are, in terms of `width` (of the tree), `nodes`, `leaf_count`, `slots` and
  * `material_count`; `what` is how a message calls it. Arrays of the first list are pack.c's, of the second
- * the tree's. */
+ * the tree's. Materials are arrays of numbers here, since Mesa's rusticl (22.3) gathers wrong ones through a
+ * pointer to structs that is cast inside a loop. */
+#define MATERIAL_REALS ((packed_uint)(sizeof(PackedMaterial) / sizeof(real)))
+#define MATERIAL_UINTS ((packed_uint)(sizeof(PackedMaterialKind) / sizeof(packed_uint)))
 /* clang-format off */
 #define SCENE_ARRAYS_OF_PACK(X)                                                                              \
     X(REALS, PackedCamera, camera, 1, "the camera")                                                          \
     X(REALS, PackedSky, sky, 1, "the background")                                                            \
-    X(REALS, PackedMaterial, materials, material_count, "the table of materials")                            \
-    X(UINTS, PackedMaterialKind, material_kinds, material_count, "the table of materials")                   \
+    X(REALS, real, materials, material_count * MATERIAL_REALS, "the table of materials")                     \
+    X(UINTS, packed_uint, material_kinds, material_count * MATERIAL_UINTS, "the table of materials")         \
     X(UINTS, packed_uint, slot_material, slots, "the table of sphere materials")                             \
     X(REALS, real, slot_albedo, slots * ALBEDO_REALS, "the table of sphere colours")
 #define SCENE_ARRAYS_OF_TREE(X)                                                                              \

@@ -3,39 +3,33 @@
  * In:    hits.   Out: what the materials say; the point, the normal and the direction are the caller's.
  * Knows: scene_types.h, hit.cl, bsdf.cl.   Does not know: paths. */
 
-/* The packed structs as the gathers see them: arrays of their only type. */
-#define MATERIAL_UINTS ((uint)(sizeof(PackedMaterialKind) / sizeof(uint)))
-#define MATERIAL_REALS ((uint)(sizeof(PackedMaterial) / sizeof(real)))
-
 /* The sphere and the material at each lane's hit; lanes without one get those of slot 0. */
 static void fetch_surface(const Scene *scene, const Hit *hit, Sphere *sphere, Surface *surface, Vec3 *emitted) {
     const vuint slot = choose_uint(is_hit(hit), hit->slot, splat_uint(0));
     *sphere = load_sphere(&scene->geometry, slot);
-    __global const real *const materials = (__global const real *)scene->materials;
-    __global const uint *const material_kinds = (__global const uint *)scene->material_kinds;
     const vuint material = gather_uint(scene->slot_material, slot);
     const vuint colour = slot * (uint)ALBEDO_REALS;
     const vuint numbers = material * MATERIAL_REALS;
     const vuint kinds = material * MATERIAL_UINTS;
     surface->albedo = vec3(gather_real(scene->slot_albedo, colour), gather_real(scene->slot_albedo, colour + 1u),
                            gather_real(scene->slot_albedo, colour + 2u));
-    surface->kind = gather_uint(material_kinds, kinds);
+    surface->kind = gather_uint(scene->material_kinds, kinds);
     *emitted = zero3();
 #if EFFECT_EMISSION
-    *emitted = vec3(gather_real(materials, numbers), gather_real(materials, numbers + 1u),
-                    gather_real(materials, numbers + 2u));
+    *emitted = vec3(gather_real(scene->materials, numbers), gather_real(scene->materials, numbers + 1u),
+                    gather_real(scene->materials, numbers + 2u));
 #endif
 #if EFFECT_LAMBERTIAN
-    surface->lobe = gather_uint(material_kinds, kinds + MATERIAL_LOBE);
+    surface->lobe = gather_uint(scene->material_kinds, kinds + MATERIAL_LOBE);
 #endif
 #if EFFECT_METAL
-    surface->fuzz = gather_real(materials, numbers + MATERIAL_FUZZ);
+    surface->fuzz = gather_real(scene->materials, numbers + MATERIAL_FUZZ);
 #endif
 #if EFFECT_METAL || EFFECT_DIELECTRIC
-    surface->variant = gather_uint(material_kinds, kinds + MATERIAL_VARIANT);
+    surface->variant = gather_uint(scene->material_kinds, kinds + MATERIAL_VARIANT);
 #endif
 #if EFFECT_DIELECTRIC
-    surface->refraction_index = gather_real(materials, numbers + MATERIAL_INDEX);
-    surface->total_reflection = gather_uint(material_kinds, kinds + MATERIAL_TOTAL_REFLECTION);
+    surface->refraction_index = gather_real(scene->materials, numbers + MATERIAL_INDEX);
+    surface->total_reflection = gather_uint(scene->material_kinds, kinds + MATERIAL_TOTAL_REFLECTION);
 #endif
 }

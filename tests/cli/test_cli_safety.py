@@ -160,7 +160,7 @@ class TwoNames(Safety):
         self.fail_with(2, "check", "d/points.json", "--map", "m.png", *every, says="m-0.png would overwrite points")
         self.assert_same(self.read("m-0.png"), points)
         self.write("s-0.png", scene(8))
-        self.fail_with(2, "check", "s-0.png", "--map", "s.png", *every, says="s-0.png would overwrite the file")
+        self.fail_with(2, "check", "s-0.png", "--map", "s.png", *every, says="--map s-0.png would overwrite its own input")
         self.fail_with(2, "check", "s.json", "--map", "n.png", "--json", "n-0.png", *every, says="both name n-0.png")
         with open(self.path("s.json"), "rb") as sent:
             self.fail_with(2, "render", "-", "-o", "s.json", "--format", "png", stdin=sent, says="would overwrite")
