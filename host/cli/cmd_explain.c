@@ -222,7 +222,7 @@ static BpStatus follow(const BpCommandLine *line, const BpScene *scene, const Bp
                        BpPathLog *path, BpError *err) {
     BpRenderOptions options;
     BP_TRY(render_options(line, scene, &options, err));
-    return bp_path_log(scene, &options, device, line->pixel_x, line->pixel_y, (uint32_t)options.first_sample,
+    return bp_path_log(scene, &options, device, line->pixel.x, line->pixel.y, (uint32_t)options.first_sample,
                        path, err);
 }
 
@@ -306,7 +306,7 @@ static BpStatus append_json(const BpCommandLine *line, const char *path, const B
     if (whole && bp_option_given(line, BP_OPTION_PIXEL))
         whole = json_object_set_new(
                     entry, "path",
-                    path_json(scene, &found->path, line->pixel_x, line->pixel_y, line->first_sample)) == 0;
+                    path_json(scene, &found->path, line->pixel.x, line->pixel.y, line->first_sample)) == 0;
     if (whole && json_array_append(list, entry) != 0) whole = false;
     json_decref(entry);
     return whole ? BP_OK : bp_fail(err, BP_ERR_MEMORY, "out of memory for the document on %s", path);
@@ -332,7 +332,7 @@ static BpStatus explain(const BpCommandLine *line, const char *path, const BpDev
     if (pixel) {
         BP_TRY_GOTO(status, follow(line, scene, device, &found.path, err), done);
         if (list == NULL)
-            print_path(scene, &found.path, line->pixel_x, line->pixel_y, line->first_sample, line->seed);
+            print_path(scene, &found.path, line->pixel.x, line->pixel.y, line->first_sample, line->seed);
     }
     if (line->measure) {
         BP_TRY_GOTO(status, measure(line, scene, device, &found.costs, err), done);

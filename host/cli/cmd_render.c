@@ -339,7 +339,6 @@ BpStatus bp_command_render(const BpCommandLine *line, BpError *err) {
     bp_setup_warn(line, scene, options.precision);
     /* Less noise in the same time on every scene that was measured: docs/ACCURACY.md. */
     if (!bp_option_given(line, BP_OPTION_SAMPLER)) options.sampler = BP_SAMPLER_SOBOL;
-    options.adaptive = line->adaptive;
     options.features = file.format == BP_FORMAT_EXR;
     init_rule(line, scene, &options, &rule);
     BP_TRY_GOTO(status, check_adaptive(line, &rule, err), done);

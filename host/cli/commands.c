@@ -6,13 +6,6 @@
 #include <stdint.h>
 #include <string.h>
 
-#define TAKES(name) ((uint64_t)1 << BP_OPTION_##name)
-
-/* What decides which radiance a pixel gets. */
-#define TAKES_DRAWING                                                                                        \
-    (TAKES(WIDTH) | TAKES(DEPTH) | TAKES(SEED) | TAKES(DEVICE) | TAKES(PRECISION) | TAKES(MATH) |            \
-     TAKES(NUMERICS) | TAKES(KERNEL) | TAKES(EFFECTS))
-
 const BpCommand bp_commands[] = {
     {
         .name = "render",
@@ -41,9 +34,7 @@ const BpCommand bp_commands[] = {
                     "  ballpark render cover.json --time 30 -o half.exr    for 30 seconds\n"
                     "  ballpark render cover.json -o - | display           into another program\n"
                     "  ballpark generate cover -o - | ballpark render - -o cover.png\n",
-        .options = TAKES_DRAWING | TAKES(OUTPUT) | TAKES(SPP) | TAKES(ERROR) | TAKES(TIME) |
-                   TAKES(FIRST_SAMPLE) | TAKES(SAMPLER) | TAKES(ADAPTIVE) | TAKES(TRANSFER) | TAKES(FORMAT) |
-                   TAKES(ERROR_MAP) | TAKES(STATS) | TAKES(FORCE) | TAKES(QUIET),
+        .bit = BP_RENDER,
         .run = bp_command_render,
     },
     {
@@ -63,7 +54,7 @@ const BpCommand bp_commands[] = {
         .examples = "  ballpark check cover.json\n"
                     "  ballpark check cover.json --device all --json report.json\n"
                     "  ballpark check cover.json --spp 16384 --map map.png    more sensitive\n",
-        .options = TAKES_DRAWING | TAKES(SPP) | TAKES(JSON) | TAKES(MAP) | TAKES(QUIET),
+        .bit = BP_CHECK,
         .run = bp_command_check,
     },
     {
@@ -84,8 +75,7 @@ const BpCommand bp_commands[] = {
                     "  ballpark explain scenes/*.json --json effects.json\n"
                     "  ballpark explain scenes/v4-13-metal.json --measure\n"
                     "  ballpark explain scenes/cover.json --pixel 600,300\n",
-        .options = (TAKES_DRAWING & ~TAKES(EFFECTS)) | TAKES(PIXEL) | TAKES(FIRST_SAMPLE) | TAKES(MEASURE) |
-                   TAKES(JSON) | TAKES(SAMPLER) | TAKES(FORCE) | TAKES(QUIET),
+        .bit = BP_EXPLAIN,
         .run = bp_command_explain,
     },
     {
@@ -109,8 +99,7 @@ const BpCommand bp_commands[] = {
         .examples = "  ballpark cost cover.json\n"
                     "  ballpark cost cover.json -o cost.html --time 300     more precise, as a page\n"
                     "  ballpark cost cover.json --csv - --width 300\n",
-        .options = (TAKES_DRAWING & ~TAKES(EFFECTS)) | TAKES(OUTPUT) | TAKES(JSON) | TAKES(CSV) |
-                   TAKES(TIME) | TAKES(SAMPLER) | TAKES(FORCE) | TAKES(QUIET),
+        .bit = BP_COST,
         .run = bp_command_cost,
     },
     {
@@ -126,7 +115,7 @@ const BpCommand bp_commands[] = {
         .examples = "  ballpark render cover.json --spp 500 -o a.bpa\n"
                     "  ballpark render cover.json --spp 500 --first-sample 500 -o b.bpa\n"
                     "  ballpark merge a.bpa b.bpa -o cover.png\n",
-        .options = TAKES(OUTPUT) | TAKES(FORMAT) | TAKES(TRANSFER) | TAKES(ERROR_MAP) | TAKES(QUIET),
+        .bit = BP_MERGE,
         .run = bp_command_merge,
     },
     {
@@ -144,8 +133,7 @@ const BpCommand bp_commands[] = {
         .examples = "  ballpark bench\n"
                     "  ballpark bench cover field-1e7 --kernel sample --json figures.json\n"
                     "  ballpark bench -o scenes        write the fixed scenes, for other programs\n",
-        .options = TAKES_DRAWING | TAKES(SAMPLER) | TAKES(TIME) | TAKES(ROUNDS) | TAKES(JSON) |
-                   TAKES(OUTPUT) | TAKES(QUIET),
+        .bit = BP_BENCH,
         .run = bp_command_bench,
     },
     {
@@ -156,7 +144,7 @@ const BpCommand bp_commands[] = {
                        "default: a GPU if there is one, otherwise a CPU.",
         .examples = "  ballpark devices\n"
                     "  ballpark devices --json -       the same as JSON\n",
-        .options = TAKES(JSON),
+        .bit = BP_DEVICES,
         .run = bp_command_devices,
     },
     {
@@ -171,7 +159,7 @@ const BpCommand bp_commands[] = {
         .examples = "  ballpark generate cover -o cover.json\n"
                     "  ballpark generate cover --grid 50 --seed 7 -o wide.json     10,000 spheres\n"
                     "  ballpark generate field --count 10000000 -o field.ply\n",
-        .options = TAKES(OUTPUT) | TAKES(GRID) | TAKES(COUNT) | TAKES(SEED) | TAKES(EDITION) | TAKES(QUIET),
+        .bit = BP_GENERATE,
         .run = bp_command_generate,
     },
     {

@@ -20,7 +20,7 @@ typedef struct BpCommand {
     const char *summary;     /* one line */
     const char *description; /* paragraphs, for `ballpark help NAME` */
     const char *examples;    /* complete command lines, each with a remark */
-    uint64_t options;        /* bit o: takes option o */
+    unsigned bit;            /* of the sets of commands in option_list.h; 0: takes no options */
     BpCommandRun *run;
 } BpCommand;
 

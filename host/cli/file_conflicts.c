@@ -2,28 +2,28 @@
 #include "file_conflicts.h"
 
 #include "base/output_target.h"
-#include "commands.h"
 #include "formats/input_file.h"
+#include "option_table.h"
 #include "scene/scene.h"
 
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 #include <unistd.h>
 
 typedef struct Result {
-    const char *option, *path;
+    char option[32];
+    const char *path; /* NULL: there is none */
 } Result;
 
-enum { RESULTS = 6 };
+enum { RESULTS = BP_OPTION_NUMBER };
 
 static void list_results(const BpCommandLine *line, const char *picture, Result results[RESULTS]) {
-    results[0] = (Result){line->output != NULL ? "--output" : "the picture",
-                          line->output != NULL ? line->output : picture};
-    results[1] = (Result){"--stats", line->stats};
-    results[2] = (Result){"--error-map", line->error_map};
-    results[3] = (Result){"--json", line->json};
-    results[4] = (Result){"--csv", line->csv};
-    results[5] = (Result){"--map", line->map};
+    for (int o = 0; o < RESULTS; ++o) {
+        snprintf(results[o].option, sizeof results[o].option, "--%s", bp_option_name((BpOption)o));
+        results[o].path = bp_option_result((BpOption)o, line);
+    }
+    if (line->output == NULL) results[BP_OPTION_OUTPUT] = (Result){"the picture", picture};
 }
 
 /* Whether the operands are files, and not names of something to be made. */
@@ -49,7 +49,8 @@ BpStatus bp_file_conflicts_check(const BpCommandLine *line, const char *picture,
             return bp_fail(err, BP_ERR_USAGE, "%s and %s both name %.400s", result->option, results[o].option,
                            strcmp(result->path, "-") == 0 ? "standard output" : result->path);
         }
-        for (size_t i = 0; i < line->operand_count && reads_files(line) && !(merges && r == 0); ++i)
+        for (size_t i = 0; i < line->operand_count && reads_files(line) && !(merges && r == BP_OPTION_OUTPUT);
+             ++i)
             if (bp_output_same(result->path, line->operands[i], STDIN_FILENO))
                 return refuse(result, "its own input", err);
     }

@@ -36,9 +36,9 @@ static void print_wrapped(const char *text, size_t indent) {
 }
 
 static void print_option(BpOption option) {
-    char left[64];
+    char left[128], metavar[80];
     const char letter = bp_option_letter(option);
-    const char *metavar = bp_option_metavar(option);
+    bp_option_metavar(option, metavar, sizeof metavar);
     char short_form[8] = "    ";
     if (letter != 0) snprintf(short_form, sizeof short_form, "-%c, ", letter);
     const int length = snprintf(left, sizeof left, "  %s--%s%s%s", short_form, bp_option_name(option),
@@ -52,11 +52,11 @@ static void print_option(BpOption option) {
 
 static void print_command_help(const BpCommand *command) {
     printf("Usage: ballpark %s%s%s%s\n\n", command->name, command->operands[0] != '\0' ? " " : "",
-           command->operands, command->options != 0 ? " [OPTION]..." : "");
+           command->operands, command->bit != 0 ? " [OPTION]..." : "");
     print_wrapped(command->description, 0);
-    if (command->options != 0) printf("\nOptions:\n");
+    if (command->bit != 0) printf("\nOptions:\n");
     for (int o = 0; o < BP_OPTION_NUMBER; ++o)
-        if ((command->options >> o & 1u) != 0) print_option((BpOption)o);
+        if (bp_option_taken((BpOption)o, command)) print_option((BpOption)o);
     if (command->examples[0] != '\0') printf("\nExamples:\n%s", command->examples);
 }
 

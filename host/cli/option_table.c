@@ -2,72 +2,57 @@
 #include "option_table.h"
 
 #include "base/message_text.h"
+#include "base/names.h"
+#include "scene/scene.h"
+#include "values.h"
 
 #include <stdio.h>
 #include <string.h>
 
+typedef enum ValueKind { FLAG, WHOLE, REAL, PIXEL, CHOICE, WORD, TEXT, RESULT } ValueKind;
+
 typedef struct OptionRow {
-    const char *name, *metavar, *help;
+    const char *name, *help;
+    unsigned commands;     /* BP_RENDER ... */
+    size_t offset, size;   /* of the member of BpCommandLine */
+    const char *shown;     /* what the help calls the value; "": its words */
+    uint64_t least, most;  /* of a whole number, of each number of a pixel */
+    double above, at_most; /* of a real number */
+    const char *const *words;
+    unsigned first; /* the enumeration's value that words[0] means */
+    ValueKind kind;
     char letter;
 } OptionRow;
 
+/* The kinds of values that option_list.h describes. */
+#define BP_FLAG .kind = FLAG, .shown = ""
+#define BP_WHOLE(name, low, high) .kind = WHOLE, .shown = (name), .least = (low), .most = (high)
+#define BP_REAL(name, low, high) .kind = REAL, .shown = (name), .above = (low), .at_most = (high)
+#define BP_PIXEL(name, high) .kind = PIXEL, .shown = (name), .most = (high)
+#define BP_CHOICE(name, names, from)                                                                         \
+    .kind = CHOICE, .shown = (name), .words = (names) + (from), .first = (from)
+#define BP_WORD(...)                                                                                         \
+    .kind = WORD, .shown = "", .words = (const char *const[]) {                                              \
+        __VA_ARGS__, NULL                                                                                    \
+    }
+#define BP_TEXT(name) .kind = TEXT, .shown = (name)
+#define BP_RESULT(name) .kind = RESULT, .shown = (name)
+
 static const OptionRow rows[BP_OPTION_NUMBER] = {
-    [BP_OPTION_OUTPUT] = {"output", "FILE", "where the result goes; \"-\" is standard output", 'o'},
-    [BP_OPTION_SPP] = {"spp", "N", "samples per pixel (default: render: the scene's number, check: 1024)", 0},
-    [BP_OPTION_ERROR] = {"error", "PERCENT", "stop when the noise of the picture (NRMSE) is below PERCENT",
-                         0},
-    [BP_OPTION_TIME] = {"time", "SECONDS",
-                        "time budget: stop after SECONDS (default: cost 60, bench 5 per scene)", 0},
-    [BP_OPTION_WIDTH] = {"width", "N", "width of the picture in pixels; the aspect ratio stays", 0},
-    [BP_OPTION_DEPTH] = {"depth", "N",
-                         "maximum number of ray segments per path; 0: black, 1: only sky and lamps", 0},
-    [BP_OPTION_SEED] = {"seed", "N", "random seed, 64 bits, decimal or 0x...", 0},
-    [BP_OPTION_FIRST_SAMPLE] =
-        {"first-sample", "N",
-         "number of the first sample, for renders to be merged; explain: which sample to follow", 0},
-    [BP_OPTION_DEVICE] = {"device", "N|NAME|all",
-                          "device number, part of its name, gpu, cpu or all (see `ballpark devices`)", 0},
-    [BP_OPTION_PRECISION] = {"precision", "single|double",
-                             "floating-point precision of the kernel (default: single)", 0},
-    [BP_OPTION_MATH] = {"math", "strict|fast", "fast: the compiler may round differently (default: strict)",
-                        0},
-    [BP_OPTION_NUMERICS] = {"numerics", "robust|plain",
-                            "plain: faster, wrong at extreme scales (default: robust)", 0},
-    [BP_OPTION_SAMPLER] = {"sampler", "sobol|independent",
-                           "sample sequence (default: sobol, less noise; bench: independent)", 0},
-    [BP_OPTION_ADAPTIVE] = {"adaptive", "",
-                            "give noisy pixels more samples and the others fewer; --spp is then the mean", 0},
-    [BP_OPTION_EFFECTS] = {"effects", "all", "compile all effects, even unused ones", 0},
-    [BP_OPTION_KERNEL] = {"kernel", "sample|packet", "kernel variant; does not change the picture", 0},
-    [BP_OPTION_TRANSFER] = {"transfer", "gamma2|srgb|linear",
-                            "tone curve of 8-bit output (default: the scene's)", 0},
-    [BP_OPTION_FORMAT] = {"format", "FORMAT",
-                          "png, ppm, ppm-ascii, pfm, exr or bpa (default: by the ending of FILE)", 0},
-    [BP_OPTION_ERROR_MAP] = {"error-map", "FILE.png", "write a heat map of each pixel's error", 0},
-    [BP_OPTION_STATS] = {"stats", "FILE",
-                         "write times, counts and noise as JSON; \"-\" is standard output; a seed of 2^63 or "
-                         "more is a string",
-                         0},
-    [BP_OPTION_FORCE] = {"force", "", "render even if the device fails its self-test", 0},
-    [BP_OPTION_MEASURE] = {"measure", "", "measure what each effect costs", 0},
-    [BP_OPTION_PIXEL] = {"pixel", "X,Y", "follow one path of this pixel, step by step; 0,0 is top left", 0},
-    [BP_OPTION_JSON] = {"json", "FILE", "write the result as JSON; \"-\" is standard output", 0},
-    [BP_OPTION_CSV] = {"csv", "FILE", "write the points as CSV; \"-\" is standard output", 0},
-    [BP_OPTION_MAP] = {"map", "FILE", "write a picture of where kernel and reference differ", 0},
-    [BP_OPTION_GRID] = {"grid", "G", "half the side of the square of small spheres (default: 11)", 0},
-    [BP_OPTION_COUNT] = {"count", "N", "number of spheres in a field (default: 1000000)", 0},
-    [BP_OPTION_EDITION] = {"edition", "1|3|3rust|4", "edition of the book (default: 4)", 0},
-    [BP_OPTION_ROUNDS] = {"rounds", "N", "how often each scene is measured (default: 5)", 0},
-    [BP_OPTION_QUIET] = {"quiet", "", "print errors only", 'q'},
-    [BP_OPTION_HELP] = {"help", "", "print this help", 'h'},
-    [BP_OPTION_VERSION] = {"version", "", "print version and commit", 'V'},
+#define ROW(number, long_name, short_name, takers, text, type, member, ...)                                  \
+    [BP_OPTION_##number] = {.name = (long_name),                                                             \
+                            .letter = (short_name),                                                          \
+                            .commands = (takers),                                                            \
+                            .help = (text),                                                                  \
+                            .offset = offsetof(BpCommandLine, member),                                       \
+                            .size = sizeof(type),                                                            \
+                            __VA_ARGS__},
+    BP_OPTION_LIST(ROW, ROW)
+#undef ROW
 };
 
 const char *bp_option_name(BpOption option) {
     return rows[option].name;
-}
-const char *bp_option_metavar(BpOption option) {
-    return rows[option].metavar;
 }
 const char *bp_option_help(BpOption option) {
     return rows[option].help;
@@ -76,10 +61,80 @@ char bp_option_letter(BpOption option) {
     return rows[option].letter;
 }
 
+const char *bp_option_metavar(BpOption option, char *text, size_t size) {
+    const OptionRow *row = &rows[option];
+    size_t used = (size_t)snprintf(text, size, "%s", row->shown);
+    for (size_t w = 0; used < size && row->shown[0] == '\0' && row->words != NULL && row->words[w] != NULL;
+         ++w)
+        used += (size_t)snprintf(text + used, size - used, "%s%s", w == 0 ? "" : "|", row->words[w]);
+    return text;
+}
+
+bool bp_option_taken(BpOption option, const BpCommand *command) {
+    return (rows[option].commands & command->bit) != 0;
+}
+
+const char *bp_option_result(BpOption option, const BpCommandLine *line) {
+    const char *path = NULL;
+    if (rows[option].kind == RESULT) memcpy(&path, (const char *)line + rows[option].offset, sizeof path);
+    return path;
+}
+
+/* A whole number, or the value of an enumeration, in a member of 4 or 8 bytes. */
+static void store_whole(uint64_t value, const OptionRow *row, void *member) {
+    const uint32_t narrow = (uint32_t)value;
+    if (row->size == sizeof value)
+        memcpy(member, &value, sizeof value);
+    else
+        memcpy(member, &narrow, sizeof narrow);
+}
+
+BpStatus bp_option_store(BpOption option, const char *text, BpCommandLine *line, BpError *err) {
+    const OptionRow *row = &rows[option];
+    void *member = (char *)line + row->offset;
+    char name[32];
+    snprintf(name, sizeof name, "--%s", row->name);
+    uint64_t whole = 0;
+    unsigned choice = 0;
+    size_t word_count = 0;
+    while (row->words != NULL && row->words[word_count] != NULL) ++word_count;
+    switch (row->kind) {
+    case FLAG:
+        *(bool *)member = true;
+        break;
+    case WHOLE:
+        BP_TRY(bp_value_whole(name, text, row->least, row->most, &whole, err));
+        store_whole(whole, row, member);
+        break;
+    case REAL:
+        BP_TRY(bp_value_real(name, text, row->above, row->at_most, member, err));
+        break;
+    case PIXEL: {
+        BpPixel *pixel = member;
+        BP_TRY(bp_value_pair(name, text, row->most, &pixel->x, &pixel->y, err));
+        break;
+    }
+    case CHOICE:
+        BP_TRY(bp_value_choice(name, text, row->words, word_count, &choice, err));
+        store_whole(row->first + choice, row, member);
+        break;
+    case WORD:
+        BP_TRY(bp_value_choice(name, text, row->words, word_count, &choice, err));
+        memcpy(member, &row->words[choice], sizeof(const char *));
+        break;
+    case TEXT:
+    case RESULT:
+        memcpy(member, &text, sizeof text);
+        break;
+    }
+    line->given[option] = true;
+    return BP_OK;
+}
+
 void bp_option_getopt_tables(struct option *long_options, char *letters) {
     size_t used = strlen(letters);
     for (int o = 0; o < BP_OPTION_NUMBER; ++o) {
-        const bool has_value = rows[o].metavar[0] != '\0';
+        const bool has_value = rows[o].kind != FLAG;
         long_options[o] = (struct option){rows[o].name, has_value ? required_argument : no_argument, NULL,
                                           BP_OPTION_LONG + o};
         if (rows[o].letter != 0) {
@@ -102,7 +157,7 @@ const char *bp_option_nearest(const char *written, const BpCommand *command) {
     const char *names[BP_OPTION_NUMBER];
     size_t count = 0;
     for (int o = 0; o < BP_OPTION_NUMBER; ++o)
-        if (o == BP_OPTION_HELP || command == NULL || (command->options >> o & 1u) != 0)
+        if (o == BP_OPTION_HELP || command == NULL || bp_option_taken((BpOption)o, command))
             names[count++] = rows[o].name;
     return bp_nearest_name(written + strspn(written, "-"), names, count);
 }

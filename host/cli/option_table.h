@@ -1,8 +1,8 @@
-/* option_table.h: the table of all options: name, value, help text.
+/* option_table.h: what the list of options (option_list.h) says of each, and the reading of its value.
  *
- * In:    an option.   Out: its texts, getopt's tables.
- * Knows: names, letters and help texts.   Does not know: what values are allowed (options.h), the commands'
- * work. */
+ * In:    an option, the text of its value.   Out: its texts, getopt's tables, the value in BpCommandLine.
+ * Knows: how each kind of value is read and shown.
+ * Does not know: which options there are (option_list.h), the commands' work. */
 #ifndef BP_CLI_OPTION_TABLE_H
 #define BP_CLI_OPTION_TABLE_H
 
@@ -13,10 +13,22 @@
 /* getopt_long returns BP_OPTION_LONG + option for the long name of an option without a letter. */
 enum { BP_OPTION_LONG = 256 };
 
-const char *bp_option_name(BpOption option);    /* "spp" */
-const char *bp_option_metavar(BpOption option); /* "N"; "" for a switch */
-const char *bp_option_help(BpOption option);    /* a line or two */
-char bp_option_letter(BpOption option);         /* 'o', or 0 */
+const char *bp_option_name(BpOption option); /* "spp" */
+const char *bp_option_help(BpOption option); /* a line or two */
+char bp_option_letter(BpOption option);      /* 'o', or 0 */
+
+/* What the help calls the value, in `text`, which it returns: "N", "robust|plain"; "" for a flag. */
+const char *bp_option_metavar(BpOption option, char *text, size_t size);
+
+/* Whether the option belongs to the command. --help and --version belong to none. */
+bool bp_option_taken(BpOption option, const BpCommand *command);
+
+/* The file that a BP_RESULT option names; NULL: it was not given, or is of another kind. */
+const char *bp_option_result(BpOption option, const BpCommandLine *line);
+
+/* Reads `text` (NULL for a flag) into the option's member of `line`, and notes that it was given.
+ * BP_ERR_USAGE names the option, what was found and what was expected. */
+BpStatus bp_option_store(BpOption option, const char *text, BpCommandLine *line, BpError *err);
 
 /* Fills getopt's tables: `letters` is appended to. Room: BP_OPTION_NUMBER + 1 options, 2 letters each. */
 void bp_option_getopt_tables(struct option *long_options, char *letters);

@@ -2,156 +2,21 @@
 #include "commands.h"
 #include "file_conflicts.h"
 
-#include "base/names.h"
 #include "film/film.h"
-#include "image/image.h"
 #include "option_table.h"
-#include "values.h"
 
 #include <getopt.h>
-#include <inttypes.h>
 #include <stdio.h>
 #include <string.h>
 
-#define COUNT_OF(array) (sizeof(array) / sizeof(array)[0])
-
 _Static_assert(BP_SPP_MAX == (uint64_t)BP_REPLICATE_SAMPLES_MAX * BP_REPLICATES_DEFAULT, "the sums' limit");
-
-/* One of the words of names.h; *choice: its place in the list. */
-static BpStatus store_name(const char *name, const char *text, const char *const *words, unsigned *choice,
-                           BpError *err) {
-    size_t count = 0;
-    while (words[count] != NULL) ++count;
-    return bp_value_choice(name, text, words, count, choice, err);
-}
-
-/* Stores the value of `option`, whose written name (for messages) is `name`. */
-static BpStatus store_value(BpOption option, const char *name, const char *text, BpCommandLine *line,
-                            BpError *err) {
-    uint64_t whole = 0;
-    unsigned choice = 0;
-    switch (option) {
-    case BP_OPTION_OUTPUT:
-        line->output = text;
-        break;
-    case BP_OPTION_SPP:
-        return bp_value_whole(name, text, 1, BP_SPP_MAX, &line->spp, err);
-    case BP_OPTION_ERROR:
-        return bp_value_real(name, text, 0.0, 100.0, &line->error_percent, err);
-    case BP_OPTION_TIME:
-        return bp_value_real(name, text, 0.0, 1.0e7, &line->time_seconds, err);
-    case BP_OPTION_WIDTH:
-        BP_TRY(bp_value_whole(name, text, 1, BP_PICTURE_SIDE_MAX, &whole, err));
-        line->width = (uint32_t)whole;
-        break;
-    case BP_OPTION_DEPTH:
-        BP_TRY(bp_value_whole(name, text, 0, BP_DEPTH_MAX, &whole, err));
-        line->depth = (uint32_t)whole;
-        break;
-    case BP_OPTION_SEED:
-        return bp_value_whole(name, text, 0, UINT64_MAX, &line->seed, err);
-    case BP_OPTION_FIRST_SAMPLE:
-        return bp_value_whole(name, text, 0, BP_SAMPLE_NUMBERS - 1, &line->first_sample, err);
-    case BP_OPTION_DEVICE:
-        line->device = text;
-        break;
-    case BP_OPTION_PRECISION:
-        BP_TRY(store_name(name, text, bp_precision_names, &choice, err));
-        line->precision = (BpPrecision)choice;
-        break;
-    case BP_OPTION_MATH:
-        BP_TRY(store_name(name, text, bp_math_names, &choice, err));
-        line->math = (BpMath)choice;
-        break;
-    case BP_OPTION_NUMERICS:
-        BP_TRY(store_name(name, text, bp_numerics_names, &choice, err));
-        line->numerics = (BpNumerics)choice;
-        break;
-    case BP_OPTION_SAMPLER:
-        BP_TRY(store_name(name, text, bp_sampler_names, &choice, err));
-        line->sampler = (BpSampler)choice;
-        break;
-    case BP_OPTION_ADAPTIVE:
-        line->adaptive = true;
-        break;
-    case BP_OPTION_EFFECTS: {
-        static const char *const words[] = {"all"};
-        BP_TRY(bp_value_choice(name, text, words, COUNT_OF(words), &choice, err));
-        line->all_effects = true;
-        break;
-    }
-    case BP_OPTION_KERNEL:
-        BP_TRY(store_name(name, text, bp_kernel_names + BP_KERNEL_SAMPLE, &choice, err));
-        line->kernel = (BpKernelForm)(BP_KERNEL_SAMPLE + choice);
-        break;
-    case BP_OPTION_TRANSFER:
-        BP_TRY(store_name(name, text, bp_transfer_names, &choice, err));
-        line->transfer = (BpTransfer)choice;
-        break;
-    case BP_OPTION_FORMAT:
-        BP_TRY(store_name(name, text, bp_format_names, &choice, err));
-        line->format = (BpFormat)choice;
-        break;
-    case BP_OPTION_ERROR_MAP:
-        line->error_map = text;
-        break;
-    case BP_OPTION_STATS:
-        line->stats = text;
-        break;
-    case BP_OPTION_MEASURE:
-        line->measure = true;
-        break;
-    case BP_OPTION_PIXEL:
-        return bp_value_pair(name, text, BP_PICTURE_SIDE_MAX - 1, &line->pixel_x, &line->pixel_y, err);
-    case BP_OPTION_JSON:
-        line->json = text;
-        break;
-    case BP_OPTION_CSV:
-        line->csv = text;
-        break;
-    case BP_OPTION_MAP:
-        line->map = text;
-        break;
-    case BP_OPTION_GRID:
-        BP_TRY(bp_value_whole(name, text, 0, 5000, &whole, err));
-        line->grid = (unsigned)whole;
-        break;
-    case BP_OPTION_COUNT:
-        return bp_value_whole(name, text, 1, BP_SPHERES_MAX, &line->count, err);
-    case BP_OPTION_ROUNDS:
-        BP_TRY(bp_value_whole(name, text, 1, 1000, &whole, err));
-        line->rounds = (uint32_t)whole;
-        break;
-    case BP_OPTION_EDITION: {
-        static const char *const words[] = {"1", "3", "3rust", "4"};
-        BP_TRY(bp_value_choice(name, text, words, COUNT_OF(words), &choice, err));
-        line->edition = words[choice];
-        break;
-    }
-    case BP_OPTION_FORCE:
-        line->force = true;
-        break;
-    case BP_OPTION_QUIET:
-        line->quiet = true;
-        break;
-    case BP_OPTION_HELP:
-        line->help = true;
-        break;
-    case BP_OPTION_VERSION:
-        line->version = true;
-        break;
-    case BP_OPTION_NUMBER:
-        break;
-    }
-    return BP_OK;
-}
 
 /* "render, check" for the commands that take `option`. */
 static void list_takers(BpOption option, char *text, size_t size) {
     size_t used = 0;
     text[0] = '\0';
     for (size_t c = 0; c < bp_command_count && used < size; ++c)
-        if ((bp_commands[c].options >> option & 1u) != 0)
+        if (bp_option_taken(option, &bp_commands[c]))
             used += (size_t)snprintf(text + used, size - used, "%s%s", used == 0 ? "" : ", ",
                                      bp_commands[c].name);
 }
@@ -170,10 +35,9 @@ static BpStatus fail_unknown_option(const BpCommandLine *line, const char *found
 }
 
 static BpStatus check_taken(const BpCommandLine *line, BpOption option, const char *name, BpError *err) {
-    const uint64_t common = (uint64_t)1 << BP_OPTION_HELP;
-    const uint64_t top = common | (uint64_t)1 << BP_OPTION_VERSION;
-    const uint64_t taken = line->command == NULL ? top : line->command->options | common;
-    if ((taken >> option & 1u) != 0) return BP_OK;
+    if (option == BP_OPTION_HELP) return BP_OK;
+    if (line->command == NULL ? option == BP_OPTION_VERSION : bp_option_taken(option, line->command))
+        return BP_OK;
     char takers[160];
     list_takers(option, takers, sizeof takers);
     if (line->command == NULL)
@@ -245,17 +109,14 @@ BpStatus bp_command_line_parse(int argc, char **argv, BpCommandLine *line, BpErr
                            bp_option_name((BpOption)(optopt - BP_OPTION_LONG)), found);
         if (result == '?') return fail_unknown_option(line, found, err);
         const BpOption option = bp_option_of_result(result == ':' ? optopt : result);
-        char name[32];
+        char name[32], metavar[80];
         snprintf(name, sizeof name, "--%s", bp_option_name(option));
+        bp_option_metavar(option, metavar, sizeof metavar);
         BP_TRY(check_taken(line, option, name, err));
-        if (result == ':')
-            return bp_fail(err, BP_ERR_USAGE, "%s needs a value: %s %s", name, name,
-                           bp_option_metavar(option));
+        if (result == ':') return bp_fail(err, BP_ERR_USAGE, "%s needs a value: %s %s", name, name, metavar);
         if (optarg != NULL && optarg[0] == '\0')
-            return bp_fail(err, BP_ERR_USAGE, "%s needs a value (%s), found an empty one", name,
-                           bp_option_metavar(option));
-        BP_TRY(store_value(option, name, optarg, line, err));
-        line->given |= (uint64_t)1 << option;
+            return bp_fail(err, BP_ERR_USAGE, "%s needs a value (%s), found an empty one", name, metavar);
+        BP_TRY(bp_option_store(option, optarg, line, err));
     }
     line->operands = argv + optind;
     line->operand_count = (size_t)(argc - optind);

@@ -49,17 +49,13 @@ BpStatus bp_setup_scene(const BpCommandLine *line, const char *path, BpScene **s
 BpStatus bp_setup_options(const BpCommandLine *line, const BpScene *scene, BpRenderOptions *options,
                           BpError *err) {
     bp_render_defaults(scene, options);
-    if (bp_option_given(line, BP_OPTION_SPP)) options->samples_per_pixel = line->spp;
-    if (bp_option_given(line, BP_OPTION_DEPTH)) options->max_depth = line->depth;
-    if (bp_option_given(line, BP_OPTION_SEED)) options->seed = line->seed;
-    if (bp_option_given(line, BP_OPTION_FIRST_SAMPLE)) options->first_sample = line->first_sample;
-    if (bp_option_given(line, BP_OPTION_PRECISION)) options->precision = line->precision;
-    if (bp_option_given(line, BP_OPTION_MATH)) options->math = line->math;
-    if (bp_option_given(line, BP_OPTION_NUMERICS)) options->numerics = line->numerics;
-    if (bp_option_given(line, BP_OPTION_SAMPLER)) options->sampler = line->sampler;
-    if (bp_option_given(line, BP_OPTION_KERNEL)) options->kernel = line->kernel;
-    options->all_effects = line->all_effects;
-    options->force = line->force;
+#define SKIP(...)
+#define TAKE(number, name, letter, commands, help, type, member, ...)                                        \
+    if (bp_option_given(line, BP_OPTION_##number)) options->member = line->member;
+    BP_OPTION_LIST(SKIP, TAKE)
+#undef TAKE
+#undef SKIP
+    options->all_effects = line->effects != NULL;
     const uint64_t samples_max = BP_SAMPLE_NUMBERS - options->first_sample;
     if (options->samples_per_pixel <= samples_max) return BP_OK;
     const bool asked = bp_option_given(line, BP_OPTION_SPP);

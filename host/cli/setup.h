@@ -14,8 +14,8 @@ BpStatus bp_setup_load(const BpCommandLine *line, const char *path, BpScene **sc
 /* The same, and applies --width. */
 BpStatus bp_setup_scene(const BpCommandLine *line, const char *path, BpScene **scene, BpError *err);
 
-/* The scene's own settings, overridden by the options that were given: --spp --depth --seed --first-sample
- * --precision --math --numerics --sampler --effects --kernel. BP_ERR_USAGE when they do not go together. */
+/* The scene's own settings, overridden by those that were given: the list's RENDER_OPTIONs, and --effects.
+ * BP_ERR_USAGE when they do not go together. */
 BpStatus bp_setup_options(const BpCommandLine *line, const BpScene *scene, BpRenderOptions *options,
                           BpError *err);
 

@@ -20,19 +20,19 @@ static void check_line(const BpCommandLine *line) {
         require(line->help || line->version);
         return;
     }
-    const uint64_t help = (uint64_t)1 << BP_OPTION_HELP;
-    require((line->given & ~(line->command->options | help)) == 0);
+    for (int o = 0; o < BP_OPTION_NUMBER; ++o)
+        require(!line->given[o] || o == BP_OPTION_HELP || bp_option_taken((BpOption)o, line->command));
     if (line->help) return;
     require(line->operand_count >= line->command->operands_min);
     require(line->operand_count <= line->command->operands_max);
-#define GIVEN(option) ((line->given >> (option)&1u) != 0)
-    require(!GIVEN(BP_OPTION_SPP) || (line->spp >= 1 && line->spp <= BP_SPP_MAX));
+#define GIVEN(option) bp_option_given(line, option)
+    require(!GIVEN(BP_OPTION_SPP) || (line->samples_per_pixel >= 1 && line->samples_per_pixel <= BP_SPP_MAX));
     require(!GIVEN(BP_OPTION_ERROR) || (line->error_percent > 0 && line->error_percent <= 100));
     require(!GIVEN(BP_OPTION_TIME) || (line->time_seconds > 0 && line->time_seconds <= 1e7));
     require(!GIVEN(BP_OPTION_WIDTH) || (line->width >= 1 && line->width <= BP_PICTURE_SIDE_MAX));
     require(!GIVEN(BP_OPTION_PIXEL) ||
-            (line->pixel_x < BP_PICTURE_SIDE_MAX && line->pixel_y < BP_PICTURE_SIDE_MAX));
-    require(line->depth <= BP_DEPTH_MAX && line->first_sample < BP_SAMPLE_NUMBERS);
+            (line->pixel.x < BP_PICTURE_SIDE_MAX && line->pixel.y < BP_PICTURE_SIDE_MAX));
+    require(line->max_depth <= BP_DEPTH_MAX && line->first_sample < BP_SAMPLE_NUMBERS);
     require(!GIVEN(BP_OPTION_COUNT) || (line->count >= 1 && line->count <= BP_SPHERES_MAX));
     require(!GIVEN(BP_OPTION_OUTPUT) || (line->output != NULL && line->output[0] != '\0'));
     require(!GIVEN(BP_OPTION_DEVICE) || (line->device != NULL && line->device[0] != '\0'));
