@@ -1,4 +1,5 @@
-/* names.h: the words for the values of the public enumerations, on the command line and in documents.
+/* names.h: the words for the values of the public enumerations, on the command line and in documents; and the
+ * list of the settings that have them.
  *
  * Knows: the enumerations of ballpark.h.   Does not know: who reads or writes the words. */
 #ifndef BP_BASE_NAMES_H
@@ -6,12 +7,27 @@
 
 #include "ballpark.h"
 
-/* Each by the enumeration's value; NULL ends the list. */
-extern const char *const bp_precision_names[],
-    *const bp_math_names[], *const bp_numerics_names[], *const bp_sampler_names[],
-                                                            *const bp_kernel_names[],
-                                                                *const bp_transfer_names[],
-                                                                    *const bp_format_names[],
-                                                                        *const bp_device_type_names[];
+/* The settings by which radiance is computed, besides the scene, its depth and the seed. X(type, member, what
+ * two of them are called): BpRenderOptions, BpProgramOptions, BpRenderReport, BpFilm and BpFilmInfo each have
+ * these members. From the list come what a render notes in its film and its report, what .bpa files say and a
+ * merge compares, and the members of documents. `bp_<member>_names` are its words, and the option --<member>
+ * sets it. */
+#define BP_SETTING_LIST(X)                                                                                   \
+    X(BpSampler, sampler, "samplers")                                                                        \
+    X(BpPrecision, precision, "precisions")                                                                  \
+    X(BpMath, math, "kinds of mathematics")                                                                  \
+    X(BpNumerics, numerics, "numerics")
+
+/* As members of a struct. */
+#define BP_SETTING_MEMBER(type, member, plural) type member;
+
+/* The words of an enumeration, each by its value; NULL ends the list. */
+#define BP_SETTING_NAMES(type, member, plural) extern const char *const bp_##member##_names[];
+BP_SETTING_LIST(BP_SETTING_NAMES)
+#undef BP_SETTING_NAMES
+extern const char *const bp_kernel_names[];
+extern const char *const bp_transfer_names[];
+extern const char *const bp_format_names[];
+extern const char *const bp_device_type_names[];
 
 #endif

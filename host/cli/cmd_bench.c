@@ -22,6 +22,7 @@
 #include "json_file.h"
 #include "options.h"
 #include "render/render.h"
+#include "report_json.h"
 #include "scene/scene.h"
 #include "setup.h"
 #include "temporary_folder.h"
@@ -402,15 +403,13 @@ static BpStatus write_json(const Bench *bench, const char *path, BpError *err) {
         json_decref(scenes);
         return bp_json_write(NULL, path, err);
     }
-    return bp_json_write(
-        json_pack("{s:s, s:{s:o, s:o, s:o, s:s}, s:s, s:s, s:s, s:s, s:s, s:i, s:o}", "version", bp_version(),
-                  "device", "platform", bp_json_text(report->device.platform), "name",
-                  bp_json_text(report->device.name), "driver", bp_json_text(report->device.driver), "type",
-                  bp_device_type_names[report->device.type], "kernel", bp_kernel_names[report->kernel],
-                  "precision", bp_precision_names[report->precision], "numerics",
-                  bp_numerics_names[report->numerics], "math", bp_math_names[report->math], "sampler",
-                  bp_sampler_names[report->sampler], "rounds", (int)bench->rounds, "scenes", scenes),
-        path, err);
+    json_t *root =
+        json_pack("{s:s, s:{s:o, s:o, s:o, s:s}}", "version", bp_version(), "device", "platform",
+                  bp_json_text(report->device.platform), "name", bp_json_text(report->device.name), "driver",
+                  bp_json_text(report->device.driver), "type", bp_device_type_names[report->device.type]);
+    root = bp_json_join(root, bp_report_settings(report));
+    root = bp_json_join(root, json_pack("{s:i, s:o}", "rounds", (int)bench->rounds, "scenes", scenes));
+    return bp_json_write(root, path, err);
 }
 
 /* ---- the command ---- */

@@ -16,6 +16,7 @@
 #include "image/image.h"
 #include "interrupt.h"
 #include "json_file.h"
+#include "report_json.h"
 #include "setup.h"
 #include "terminal.h"
 
@@ -62,21 +63,18 @@ static json_t *result_json(const BpCheckResult *result) {
     json_t *brightness = json_pack("{s:o, s:o, s:o, s:f, s:b, s:f}", "ratio", number(v->ratio), "low",
                                    number(v->ratio_low), "high", number(v->ratio_high), "confidence", 0.95,
                                    "equivalent", v->equivalent, "margin", BP_VERDICT_MARGIN);
-    json_t *settings =
-        json_pack("{s:s, s:s, s:s, s:s}", "kernel", bp_kernel_names[report->kernel], "precision",
-                  bp_precision_names[report->precision], "math", bp_math_names[report->math], "numerics",
-                  bp_numerics_names[report->numerics]);
     return json_pack(
         "{s:o, s:o, s:b, s:f, s:o, s:o, s:{s:o, s:f}, s:o, s:o, s:{s:I, s:I}, s:{s:f, s:f}, s:{s:I, s:I}, "
         "s:{s:f, s:f}, s:{s:o, s:f}}",
-        "device", device_json(&report->device), "settings", settings, "agree", v->agree, "level", v->level,
-        "tests", tests, "brightness", brightness, "smallest_bias", "value", number(v->smallest_bias), "power",
-        BP_VERDICT_POWER, "mean_kernel", three(v->mean_kernel), "mean_reference", three(v->mean_reference),
-        "invalid_samples", "kernel", (json_int_t)v->invalid_kernel, "reference",
-        (json_int_t)v->invalid_reference, "segments", "kernel", v->segments_kernel, "reference",
-        v->segments_reference, "cut_paths", "kernel", (json_int_t)result->cut_kernel, "reference",
-        (json_int_t)result->cut_reference, "seconds", "kernel", result->kernel_seconds, "reference",
-        result->reference_seconds, "picture", "off", number(v->picture_off), "limit", BP_VERDICT_PICTURE_OFF);
+        "device", device_json(&report->device), "settings", bp_report_settings(report), "agree", v->agree,
+        "level", v->level, "tests", tests, "brightness", brightness, "smallest_bias", "value",
+        number(v->smallest_bias), "power", BP_VERDICT_POWER, "mean_kernel", three(v->mean_kernel),
+        "mean_reference", three(v->mean_reference), "invalid_samples", "kernel",
+        (json_int_t)v->invalid_kernel, "reference", (json_int_t)v->invalid_reference, "segments", "kernel",
+        v->segments_kernel, "reference", v->segments_reference, "cut_paths", "kernel",
+        (json_int_t)result->cut_kernel, "reference", (json_int_t)result->cut_reference, "seconds", "kernel",
+        result->kernel_seconds, "reference", result->reference_seconds, "picture", "off",
+        number(v->picture_off), "limit", BP_VERDICT_PICTURE_OFF);
 }
 
 /* One device that no result was returned: `message` says why. */

@@ -18,6 +18,7 @@
 #include "progress.h"
 #include "render/render.h"
 #include "render/stop_rule.h"
+#include "report_json.h"
 #include "result_file.h"
 #include "setup.h"
 #include "terminal.h"
@@ -91,38 +92,29 @@ static json_t *stats_json(const RunResult *result) {
                   (json_int_t)result->samples_per_pixel, "max_depth", (json_int_t)options->max_depth, "seed",
                   bp_json_whole(options->seed), "spheres", (json_int_t)info.spheres, "device",
                   device_json(&report->device), "effects", effects_json(&report->effects));
-    json_t *choices = json_pack("{s:s, s:s, s:s, s:s}", "kernel", bp_kernel_names[report->kernel],
-                                "precision", bp_precision_names[report->precision], "math",
-                                bp_math_names[report->math], "sampler", bp_sampler_names[report->sampler]);
     json_t *counts =
         json_pack("{s:o, s:I, s:I, s:[f,f,f], s:o, s:I, s:I}", "seconds", seconds_json(result), "samples",
                   (json_int_t)report->samples, "rays", (json_int_t)report->segments, "mean_radiance", mean[0],
                   mean[1], mean[2], "nrmse", json_number(result->nrmse), "invalid_samples",
                   (json_int_t)report->invalid_samples, "cut_paths", (json_int_t)report->cut_paths);
-    json_t *run = json_pack(
-        "{s:s, s:s, s:o, s:I, s:i, s:b, s:o, s:s, s:i, s:I, s:I, s:s}", "acceleration",
-        bp_acceleration_name(report->acceleration), "numerics", bp_numerics_names[report->numerics], "output",
-        bp_json_text(result->output), "first_sample", (json_int_t)options->first_sample, "replicates",
-        (int)result->film->replicates, "partial", result->film->partial, "rounding",
-        json_number(bp_film_rounding(result->film)), "stopped_by", bp_stop_reason_name(result->stopped_by),
-        "devices", (int)result->device_count, "device_bytes", (json_int_t)report->device_bytes, "scene_bytes",
-        (json_int_t)report->scene_bytes, "version", bp_version());
+    json_t *run = json_pack("{s:s, s:o, s:I, s:i, s:b, s:o, s:s, s:i, s:I, s:I, s:s}", "acceleration",
+                            bp_acceleration_name(report->acceleration), "output",
+                            bp_json_text(result->output), "first_sample", (json_int_t)options->first_sample,
+                            "replicates", (int)result->film->replicates, "partial", result->film->partial,
+                            "rounding", json_number(bp_film_rounding(result->film)), "stopped_by",
+                            bp_stop_reason_name(result->stopped_by), "devices", (int)result->device_count,
+                            "device_bytes", (json_int_t)report->device_bytes, "scene_bytes",
+                            (json_int_t)report->scene_bytes, "version", bp_version());
     uint64_t least, most;
     double mean_samples;
     bp_film_sample_counts(result->film, &least, &most, &mean_samples);
     json_t *pixels =
         json_pack("{s:b, s:I, s:f, s:I}", "adaptive", options->adaptive, "samples_min", (json_int_t)least,
                   "samples_mean", mean_samples, "samples_max", (json_int_t)most);
-    const bool whole = root != NULL && choices != NULL && counts != NULL && run != NULL && pixels != NULL &&
-                       json_object_update(root, choices) == 0 && json_object_update(root, counts) == 0 &&
-                       json_object_update(root, run) == 0 && json_object_update(root, pixels) == 0;
-    json_decref(choices);
-    json_decref(counts);
-    json_decref(run);
-    json_decref(pixels);
-    if (whole) return root;
-    json_decref(root);
-    return NULL;
+    root = bp_json_join(root, bp_report_settings(report));
+    root = bp_json_join(root, counts);
+    root = bp_json_join(root, run);
+    return bp_json_join(root, pixels);
 }
 
 /* ---- rendering until a stop rule says so, or Ctrl-C -------------------------------------------------- */

@@ -49,3 +49,11 @@ json_t *bp_json_whole(uint64_t number) {
 BpStatus bp_json_check(const char *path, BpError *err) {
     return strcmp(path, "-") == 0 ? BP_OK : bp_output_check(path, err);
 }
+
+json_t *bp_json_join(json_t *root, json_t *part) {
+    const bool joined = json_object_update(root, part) == 0; /* fails where one is NULL */
+    json_decref(part);
+    if (joined) return root;
+    json_decref(root);
+    return NULL;
+}

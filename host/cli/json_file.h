@@ -17,6 +17,10 @@ BpStatus bp_json_write(json_t *root, const char *path, BpError *err);
  */
 json_t *bp_json_whole(uint64_t number);
 
+/* `root` with the members of `part` behind its own. Takes both over. NULL, when either is or memory ran out.
+ */
+json_t *bp_json_join(json_t *root, json_t *part);
+
 /* Whether `path` can be written; before work begins. */
 BpStatus bp_json_check(const char *path, BpError *err);
 

@@ -74,11 +74,10 @@ void bp_film_info(const BpFilm *film, BpFilmInfo *info) {
         .seed = film->seed,
         .max_depth = film->max_depth,
         .replicates = film->replicates,
-        .sampler = (BpSampler)film->sampler,
-        .precision = (BpPrecision)film->precision,
-        .math = (BpMath)film->math,
-        .numerics = (BpNumerics)film->numerics,
-        .transfer = (BpTransfer)film->transfer,
+#define SETTING(type, member, plural) .member = film->member,
+        BP_SETTING_LIST(SETTING)
+#undef SETTING
+            .transfer = film->transfer,
     };
     bp_film_sample_counts(film, &info->samples_least, &info->samples_most, &info->samples_mean);
 }
@@ -198,11 +197,10 @@ static BpStatus check_same_settings(const BpFilm *a, const BpFilm *b, BpError *e
 #define BP_SAME(field, what, remedy)                                                                         \
     if (a->field != b->field)                                                                                \
     return bp_fail(err, BP_ERR_USAGE, what " differ" remedy, (int64_t)a->field, (int64_t)b->field)
-#define BP_SAME_WORD(field, what, value, word, other)                                                        \
-    if (a->field != b->field)                                                                                \
-    return bp_fail(err, BP_ERR_USAGE, what " differ (%s and %s)",                                            \
-                   (int)a->field == (int)(value) ? (word) : (other),                                         \
-                   (int)b->field == (int)(value) ? (word) : (other))
+#define BP_SAME_SETTING(type, member, plural)                                                                \
+    if (a->member != b->member)                                                                              \
+        return bp_fail(err, BP_ERR_USAGE, plural " differ (--" #member " %s and --" #member " %s)",          \
+                       bp_##member##_names[a->member], bp_##member##_names[b->member]);
     BP_SAME(width, "widths", " (%" PRId64 " and %" PRId64 " pixels: --width)");
     BP_SAME(height, "heights", " (%" PRId64 " and %" PRId64 " pixels)");
     if (a->scene_hash != b->scene_hash)
@@ -216,13 +214,10 @@ static BpStatus check_same_settings(const BpFilm *a, const BpFilm *b, BpError *e
     BP_SAME(replicates, "numbers of replicates", " (%" PRId64 " and %" PRId64 ")");
     BP_SAME(scale_log2, "fixed-point scales", " (2^%" PRId64 " and 2^%" PRId64 ")");
     BP_SAME(max_depth, "depths", " (--depth %" PRId64 " and %" PRId64 ")");
-    BP_SAME_WORD(sampler, "samplers", BP_SAMPLER_SOBOL, "--sampler sobol", "--sampler independent");
-    BP_SAME_WORD(precision, "precisions", BP_PRECISION_DOUBLE, "--precision double", "--precision single");
-    BP_SAME_WORD(math, "kinds of mathematics", BP_MATH_FAST, "--math fast", "--math strict");
-    BP_SAME_WORD(numerics, "numerics", BP_NUMERICS_PLAIN, "--numerics plain", "--numerics robust");
+    BP_SETTING_LIST(BP_SAME_SETTING)
     BP_SAME(transfer, "transfer curves", " (numbers %" PRId64 " and %" PRId64 ")");
 #undef BP_SAME
-#undef BP_SAME_WORD
+#undef BP_SAME_SETTING
     return BP_OK;
 }
 

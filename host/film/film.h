@@ -14,6 +14,7 @@
 #ifndef BP_FILM_FILM_H
 #define BP_FILM_FILM_H
 
+#include "base/names.h"
 #include "scene/scene.h"
 
 #define BP_REPLICATES_DEFAULT 4u /* chosen by measurement: docs/ACCURACY.md */
@@ -32,8 +33,8 @@ struct BpFilm {
     uint64_t scene_hash; /* of everything that can change radiance */
     uint64_t seed;
     uint32_t max_depth;
-    uint32_t sampler, precision, math, numerics; /* BpSampler, BpPrecision, BpMath, BpNumerics */
-    uint32_t transfer; /* BpTransfer of the scene, for the picture made from a merged file */
+    BP_SETTING_LIST(BP_SETTING_MEMBER)
+    BpTransfer transfer; /* of the scene, for the picture made from a merged file */
     /* Sample ranges [first, first + count) that every pixel was meant to get, sorted, disjoint. */
     struct BpSampleRange {
         uint64_t first, count;

@@ -41,17 +41,24 @@ char *bp_film_header_make(const BpFilm *film) {
     snprintf(seed, sizeof seed, "%" PRIu64, film->seed);
     const char *title = film->title != NULL ? film->title : "";
     json_t *header = json_pack(
-        "{s:i,s:s,s:s%,s:I,s:I,s:I,s:i,s:b,s:b,s:s,s:s,s:I,s:s,s:s,s:s,s:s,s:s,s:o,s:b,s:I,s:I,s:I}",
-        "ballpark_accumulator", BP_FILM_VERSION, "byte_order", "little", "title", title, title_bytes(title),
-        "width", (json_int_t)film->width, "height", (json_int_t)film->height, "replicates",
-        (json_int_t)film->replicates, "scale_log2", (int)film->scale_log2, "fine_sums",
-        (int)(film->fine_sums != NULL), "coarse", (int)film->coarse, "scene_hash", hash, "seed", seed,
-        "max_depth", (json_int_t)film->max_depth, "sampler", bp_sampler_names[film->sampler], "precision",
-        bp_precision_names[film->precision], "math", bp_math_names[film->math], "numerics",
-        bp_numerics_names[film->numerics], "transfer", bp_transfer_names[film->transfer], "ranges",
-        ranges_json(film), "partial", (int)film->partial, "segments", (json_int_t)film->segments, "cut_paths",
-        (json_int_t)film->cut_paths, "invalid_samples", (json_int_t)film->invalid_samples);
-    char *text = header != NULL ? json_dumps(header, JSON_PRESERVE_ORDER) : NULL;
+        "{s:i,s:s,s:s%,s:I,s:I,s:I,s:i,s:b,s:b,s:s,s:s,s:I}", "ballpark_accumulator", BP_FILM_VERSION,
+        "byte_order", "little", "title", title, title_bytes(title), "width", (json_int_t)film->width,
+        "height", (json_int_t)film->height, "replicates", (json_int_t)film->replicates, "scale_log2",
+        (int)film->scale_log2, "fine_sums", (int)(film->fine_sums != NULL), "coarse", (int)film->coarse,
+        "scene_hash", hash, "seed", seed, "max_depth", (json_int_t)film->max_depth);
+    json_t *rest = json_pack("{s:s,s:o,s:b,s:I,s:I,s:I}", "transfer", bp_transfer_names[film->transfer],
+                             "ranges", ranges_json(film), "partial", (int)film->partial, "segments",
+                             (json_int_t)film->segments, "cut_paths", (json_int_t)film->cut_paths,
+                             "invalid_samples", (json_int_t)film->invalid_samples);
+    bool whole = true;
+#define WRITE(type, member, plural)                                                                          \
+    whole =                                                                                                  \
+        whole && json_object_set_new(header, #member, json_string(bp_##member##_names[film->member])) == 0;
+    BP_SETTING_LIST(WRITE)
+#undef WRITE
+    whole = whole && json_object_update(header, rest) == 0;
+    json_decref(rest);
+    char *text = whole ? json_dumps(header, JSON_PRESERVE_ORDER) : NULL;
     json_decref(header);
     return text;
 }
@@ -181,11 +188,10 @@ static void read_settings(Reader *reader, BpFilm *film) {
     film->scene_hash = read_wide(reader, "scene_hash", 16, "a string of up to 16 hexadecimal digits");
     film->seed = read_wide(reader, "seed", 10, "a string of decimal digits, below 2^64");
     film->max_depth = (uint32_t)read_integer(reader, "max_depth", 0, BP_DEPTH_MAX);
-    film->sampler = read_name(reader, "sampler", bp_sampler_names);
-    film->precision = read_name(reader, "precision", bp_precision_names);
-    film->math = read_name(reader, "math", bp_math_names);
-    film->numerics = read_name(reader, "numerics", bp_numerics_names);
-    film->transfer = read_name(reader, "transfer", bp_transfer_names);
+#define READ(type, member, plural) film->member = (type)read_name(reader, #member, bp_##member##_names);
+    BP_SETTING_LIST(READ)
+#undef READ
+    film->transfer = (BpTransfer)read_name(reader, "transfer", bp_transfer_names);
     film->segments = read_integer(reader, "segments", 0, INT64_MAX);
     film->cut_paths = read_integer(reader, "cut_paths", 0, INT64_MAX);
     film->invalid_samples = read_integer(reader, "invalid_samples", 0, INT64_MAX);

@@ -1,6 +1,6 @@
 /* program.h: puts the kernel's source together for one set of choices.
  *
- * In:    which effects, precision, math, numerics, form.   Out: one OpenCL C source text, or a built program.
+ * In:    which effects, settings and form.   Out: one OpenCL C source text, or a built program.
  * Knows: the files of kernels/ and their order, in one list. Does not know: scenes, buffers.
  *
  * Every switch is a #define in the first lines of the text, so the text alone decides what is compiled (some
@@ -10,6 +10,7 @@
 #ifndef BP_OPENCL_PROGRAM_H
 #define BP_OPENCL_PROGRAM_H
 
+#include "base/names.h"
 #include "device.h"
 
 /* The embedded text of one file of kernels/, by its path there ("light/sky.cl"), static; NULL when there is
@@ -30,10 +31,7 @@ BpStatus bp_kernel_text(const char *name, char **text, BpError *err);
 typedef struct BpProgramOptions {
     uint32_t effects; /* bits of effects.h */
     bool tree;        /* spheres are found through a tree; else they are a list */
-    BpPrecision precision;
-    BpMath math;
-    BpNumerics numerics;
-    BpSampler sampler;
+    BP_SETTING_LIST(BP_SETTING_MEMBER)
     BpKernelForm form;     /* BP_KERNEL_SAMPLE or BP_KERNEL_PACKET */
     uint32_t tree_width;   /* 2, 4, 8 or 16 */
     uint32_t packet_lanes; /* 8 or 16; of the packet form alone */

@@ -322,10 +322,9 @@ static BpStatus describe(const BpRender *render, BpFilm *film, BpError *err) {
     film->scene_hash = bp_scene_hash(render->scene);
     film->seed = options->seed;
     film->max_depth = options->max_depth;
-    film->sampler = options->sampler;
-    film->precision = options->precision;
-    film->math = options->math;
-    film->numerics = options->numerics;
+#define SETTING(type, member, plural) film->member = options->member;
+    BP_SETTING_LIST(SETTING)
+#undef SETTING
     film->transfer = render->scene->transfer;
     if (render->scene->title != NULL) film->title = strdup(render->scene->title);
     /* A pass in progress counts as begun: its samples are taken, though not yet by every pixel. */
@@ -394,10 +393,9 @@ void bp_render_report(const BpRender *render, BpRenderReport *report) {
     report->acceleration = render->acceleration;
     report->self_test_seconds = first->self_test_seconds;
     report->kernel = first->samples_per_item > 1 ? BP_KERNEL_PACKET : BP_KERNEL_SAMPLE;
-    report->sampler = render->options.sampler;
-    report->precision = render->options.precision;
-    report->math = render->options.math;
-    report->numerics = render->options.numerics;
+#define SETTING(type, member, plural) report->member = render->options.member;
+    BP_SETTING_LIST(SETTING)
+#undef SETTING
     report->program_key = first->program->key;
     report->build_log = first->program->log;
     cl_ulong private_bytes = 0;

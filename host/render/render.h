@@ -14,10 +14,7 @@ typedef struct BpRenderReport {
     BpEffects effects;
     BpAcceleration acceleration;
     BpKernelForm kernel; /* the form that was built */
-    BpSampler sampler;
-    BpPrecision precision;
-    BpMath math;
-    BpNumerics numerics;
+    BP_SETTING_LIST(BP_SETTING_MEMBER)
     uint64_t program_key;   /* equal keys: the same program, nothing was built anew */
     uint64_t private_bytes; /* of one work-item of the trace kernel, as the driver tells; 0: it does not */
     const char *build_log;  /* valid while the render lives */

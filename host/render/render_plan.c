@@ -46,10 +46,9 @@ BpStatus bp_render_plan(const BpScene *scene, const BpRenderOptions *options, co
     memset(setup, 0, sizeof *setup);
     setup->program.effects = choose_effects(scene, options);
     setup->program.tree = choose_tree(scene, options);
-    setup->program.precision = options->precision;
-    setup->program.math = options->math;
-    setup->program.numerics = options->numerics;
-    setup->program.sampler = options->sampler;
+#define SETTING(type, member, plural) setup->program.member = options->member;
+    BP_SETTING_LIST(SETTING)
+#undef SETTING
     setup->program.pixel_list = options->adaptive;
     choose_form(device, options, &setup->program);
     setup->width = scene->camera.width;

@@ -1,13 +1,17 @@
 /* configurations.c: which configurations are compared; see configurations.h. */
 #include "configurations.h"
 
+#include "base/names.h"
+
 #include <stdio.h>
 #include <string.h>
 
 /* What a row changes; 0 keeps what the base has, enumerations are stored plus 1. */
 typedef struct Change {
     uint32_t depth;
-    unsigned sampler, precision, math, numerics;
+#define MEMBER(type, member, plural) unsigned member;
+    BP_SETTING_LIST(MEMBER)
+#undef MEMBER
     BpStudyFresnel fresnel;
     bool adaptive;
 } Change;
@@ -23,8 +27,8 @@ typedef struct Row {
 #define NUMERICS(x) .numerics = (BP_NUMERICS_##x + 1)
 #define FRESNEL(x) .fresnel = BP_STUDY_FRESNEL_##x
 
-/* One line for each configuration. A new axis is a line here, a member of Change, and a line each in apply()
- * and write_command(). */
+/* One line for each configuration. A new axis that is a setting of base/names.h is a line here; another is
+ * also a member of Change, and a line each in apply() and write_command(). */
 static const Row rows[] = {
     {"truth",
      "no approximations",
@@ -68,20 +72,24 @@ static bool fresnel_matters(const BpScene *scene, BpStudyFresnel fresnel) {
     return false;
 }
 
+/* What `ballpark render` is set to where it is told nothing. */
+static const BpRenderOptions usual = {.sampler = BP_SAMPLER_SOBOL};
+
 /* What `ballpark render` is told beside the scene, which has a depth of its own. */
 static void write_command(const BpScene *scene, BpStudyConfiguration *configuration) {
     const BpRenderOptions *options = &configuration->options;
-    char depth[24] = "";
-    if (options->max_depth != scene->camera.max_depth)
-        snprintf(depth, sizeof depth, " --depth %u", options->max_depth);
-    snprintf(configuration->command, sizeof configuration->command, "%s%s%s%s%s%s",
-             options->sampler == BP_SAMPLER_INDEPENDENT ? " --sampler independent" : "",
-             options->adaptive ? " --adaptive" : "",
-             options->precision == BP_PRECISION_DOUBLE ? " --precision double" : "",
-             options->math == BP_MATH_FAST ? " --math fast" : "",
-             options->numerics == BP_NUMERICS_PLAIN ? " --numerics plain" : "", depth);
-    if (configuration->command[0] != '\0')
-        memmove(configuration->command, configuration->command + 1, strlen(configuration->command));
+    char *command = configuration->command;
+    command[0] = '\0';
+#define ADD(...)                                                                                             \
+    snprintf(command + strlen(command), sizeof configuration->command - strlen(command), __VA_ARGS__)
+#define ADD_SETTING(type, member, plural)                                                                    \
+    if (options->member != usual.member) ADD(" --" #member " %s", bp_##member##_names[options->member]);
+    BP_SETTING_LIST(ADD_SETTING)
+    if (options->adaptive) ADD(" --adaptive");
+    if (options->max_depth != scene->camera.max_depth) ADD(" --depth %u", options->max_depth);
+#undef ADD_SETTING
+#undef ADD
+    if (command[0] != '\0') memmove(command, command + 1, strlen(command));
 }
 
 /* Makes a configuration of a row; false when it is the base itself. */
@@ -92,16 +100,16 @@ static bool apply(const Row *row, const BpScene *scene, const BpRenderOptions *b
     *configuration = (BpStudyConfiguration){.axis = row->axis, .name = row->name};
     *options = *base;
     if (change->depth > 0) options->max_depth = change->depth;
-    if (change->sampler > 0) options->sampler = (BpSampler)(change->sampler - 1);
-    if (change->precision > 0) options->precision = (BpPrecision)(change->precision - 1);
-    if (change->math > 0) options->math = (BpMath)(change->math - 1);
-    if (change->numerics > 0) options->numerics = (BpNumerics)(change->numerics - 1);
+    bool differs = false;
+#define APPLY(type, member, plural)                                                                          \
+    if (change->member > 0) options->member = (type)(change->member - 1);                                    \
+    differs = differs || options->member != base->member;
+    BP_SETTING_LIST(APPLY)
+#undef APPLY
     if (change->adaptive) options->adaptive = true;
     if (fresnel_matters(scene, change->fresnel)) configuration->fresnel = change->fresnel;
     write_command(scene, configuration);
-    return options->max_depth != base->max_depth || options->sampler != base->sampler ||
-           options->precision != base->precision || options->math != base->math ||
-           options->numerics != base->numerics || options->adaptive != base->adaptive ||
+    return differs || options->max_depth != base->max_depth || options->adaptive != base->adaptive ||
            configuration->fresnel != BP_STUDY_FRESNEL_SCENE;
 }
 
