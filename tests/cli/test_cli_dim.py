@@ -3,15 +3,11 @@ import json
 import struct
 
 from cli import ProgramTest, main, scene
+from pfm import read_pfm
 
 HIDDEN = [1e3, 1e6, 1e9, 1e12]  # times the radiance that is seen
 SEEN = [1e-6, 1e-2, 1, 1e2, 1e6]
 RADIANCE_MAX = 1e12
-
-
-def pixels(pfm):
-    body = pfm.split(b"\n", 3)[3]
-    return struct.unpack(f"<{len(body) // 4}f", body)
 
 
 class DimTest(ProgramTest):
@@ -54,7 +50,7 @@ class DimTest(ProgramTest):
                     for hidden in (0, seen * 1e12):
                         self.write("scene.json", self.document(seen, hidden, {"type": "diffuse_light"}, spheres))
                         self.statistics("scene.json", "--spp", "8", *options)
-                        pictures.append(pixels(self.read("x.pfm")))
+                        pictures.append(read_pfm(self.read("x.pfm"))[2])
                     mean = sum(pictures[0]) / len(pictures[0])
                     for without, beside in zip(*pictures):
                         self.assertLessEqual(abs(without - beside), 1e-6 * (mean + without))

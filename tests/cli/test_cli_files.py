@@ -4,7 +4,8 @@ import os
 import struct
 import zlib
 
-from cli import ProgramTest, main, read_pfm, scene
+from cli import ProgramTest, main, scene
+from pfm import read_pfm
 
 
 def decode_png(data):

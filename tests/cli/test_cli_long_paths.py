@@ -7,7 +7,8 @@ import signal
 import subprocess
 import time
 
-from cli import LIMIT_SECONDS, PROGRAM, ProgramTest, main, read_pfm, scene
+from cli import LIMIT_SECONDS, PROGRAM, ProgramTest, main, scene
+from pfm import read_pfm
 
 FORMS = ("packet", "sample")
 FEW, MANY = 4 * 4, 128 * 128  # samples: of the measurement; of the first chunk there once was, whatever it cost

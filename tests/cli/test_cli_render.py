@@ -6,7 +6,8 @@ import os
 import re
 import shutil
 
-from cli import SOURCE, ProgramTest, main, read_pfm, scene
+from cli import SOURCE, ProgramTest, main, scene
+from pfm import read_pfm
 
 
 class Render(ProgramTest):

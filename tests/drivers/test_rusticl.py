@@ -29,7 +29,7 @@ def render(environment, scene, folder, *options):
     command += ["-o", str(picture), "--stats", str(stats), *options]
     done = subprocess.run(command, capture_output=True, text=True, env=environment, timeout=500)
     assert done.returncode == 0, f"exit code {done.returncode}\n{done.stdout}{done.stderr}"
-    return read_pfm(picture)[2], json.loads(stats.read_text())
+    return read_pfm(picture.read_bytes())[2], json.loads(stats.read_text())
 
 
 if not os.path.exists("/etc/OpenCL/vendors/rusticl.icd") or not has_device(RUSTICL):

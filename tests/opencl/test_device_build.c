@@ -1,5 +1,5 @@
 /* test_device_build.c: opening and building on whatever real device is there; skipped without one. */
-#include "opencl/device.h"
+#include "support/device.h"
 
 #include <setjmp.h>
 #include <stdarg.h>
@@ -76,17 +76,9 @@ static void bad_options_are_a_build_error(void **state) {
 }
 
 int main(void) {
-    BpDeviceInfo info;
     BpDevice *device = NULL;
-    BpError err = {0};
-    if (bp_device_find(getenv("BALLPARK_TEST_DEVICE"), &info, &err) != BP_OK) {
-        fprintf(stderr, "skipped: %s\n", err.message);
-        return 77;
-    }
-    if (bp_device_open(&info, &device, &err) != BP_OK) {
-        fprintf(stderr, "%s\n", err.message);
-        return 1;
-    }
+    const int missing = test_device_open(&device);
+    if (missing != 0) return missing;
     const struct CMUnitTest tests[] = {
         cmocka_unit_test_prestate(builds_and_runs, device),
         cmocka_unit_test_prestate(names_the_place_of_an_error, device),

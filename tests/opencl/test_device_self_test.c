@@ -4,6 +4,7 @@
  * with that fault would answer. */
 #include "opencl/program.h"
 #include "opencl/self_test.h"
+#include "support/device.h"
 
 #include <setjmp.h>
 #include <stdarg.h>
@@ -209,17 +210,9 @@ static void without_xdg_the_home_counts(void **state) {
 }
 
 int main(void) {
-    BpDeviceInfo info;
     BpDevice *device = NULL;
-    BpError err = {0};
-    if (bp_device_find(getenv("BALLPARK_TEST_DEVICE"), &info, &err) != BP_OK) {
-        fprintf(stderr, "skipped: %s\n", err.message);
-        return 77;
-    }
-    if (bp_device_open(&info, &device, &err) != BP_OK) {
-        fprintf(stderr, "%s\n", err.message);
-        return 1;
-    }
+    const int missing = test_device_open(&device);
+    if (missing != 0) return missing;
     const struct CMUnitTest tests[] = {
         cmocka_unit_test_prestate(a_right_device_passes, device),
         cmocka_unit_test_prestate(every_fault_is_named, device),

@@ -5,10 +5,11 @@ Usage: test_explain.py BALLPARK SCENES
 
 import json
 import pathlib
-import struct
 import subprocess
 import sys
 import tempfile
+
+from pfm import read_pfm
 
 program, scenes = sys.argv[1], pathlib.Path(sys.argv[2])
 ALL = ["lambertian", "metal", "dielectric", "emission", "normals", "lens"]
@@ -53,13 +54,12 @@ with tempfile.TemporaryDirectory() as folder:
     # A path's steps hang together, and its radiance is that of the rendered pixel.
     picture, scene = pathlib.Path(folder, "one.pfm"), scenes / "v4-18-glass-hollow.json"
     run("render", scene, "--width", 48, "--spp", 1, "--seed", 7, "-o", picture, "--quiet")
-    words, values = picture.read_bytes().split(b"\n", 3)[:3], picture.read_bytes().split(b"\n", 3)[3]
-    width, height = map(int, words[1].split())
-    assert words[0] == b"PF" and float(words[2]) < 0 and (width, height) == (48, 27), words
+    width, height, values = read_pfm(picture.read_bytes())
+    assert (width, height) == (48, 27)
     lengths = set()
     for x, y in ((0, 0), (24, 13), (15, 14), (12, 20), (35, 14), (24, 25)):
-        place = ((height - 1 - y) * width + x) * 12  # rows of a PFM go upwards
-        pixel = struct.unpack("<3f", values[place : place + 12])
+        place = ((height - 1 - y) * width + x) * 3  # rows of a PFM go upwards
+        pixel = values[place : place + 3]
         run("explain", scene, "--pixel", f"{x},{y}", "--width", 48, "--seed", 7, "--json", target)
         path = json.loads(target.read_text())["scenes"][0]["path"]
         steps = path["steps"]

@@ -91,20 +91,6 @@ class ProgramTest(unittest.TestCase):
         return result
 
 
-def read_pfm(data):
-    """Width, height and the floats of a PFM, bottom row first as in the file."""
-    import array
-    kind, size, scale, rest = data.split(b"\n", 3)
-    assert kind == b"PF" and float(scale) == -1.0, (kind, scale)
-    width, height = map(int, size.split())
-    values = array.array("f")
-    values.frombytes(rest)
-    if sys.byteorder == "big":
-        values.byteswap()
-    assert len(values) == width * height * 3
-    return width, height, values
-
-
 def main():
     if len(sys.argv) < 3:
         sys.exit(__doc__)

@@ -4,14 +4,13 @@ import array
 import sys
 
 
-def read_pfm(path):
-    """Width, height and the numbers, r g b a pixel, bottom row first."""
-    with open(path, "rb") as file:
-        assert file.readline() == b"PF\n", f"{path}: not a colour PFM"
-        width, height = map(int, file.readline().split())
-        assert float(file.readline()) < 0, f"{path}: not little endian"
-        numbers = array.array("f", file.read())
+def read_pfm(data):
+    """Width, height and the numbers of the bytes of a file: r g b a pixel, bottom row first."""
+    kind, size, scale, rest = data.split(b"\n", 3)
+    assert kind == b"PF" and float(scale) == -1.0, f"not a colour PFM, little endian: {kind} {scale}"
+    width, height = map(int, size.split())
+    numbers = array.array("f", rest)
     if sys.byteorder == "big":
         numbers.byteswap()
-    assert len(numbers) == width * height * 3, f"{path}: {len(numbers)} numbers"
+    assert len(numbers) == width * height * 3, f"{len(numbers)} numbers"
     return width, height, numbers
