@@ -7,17 +7,20 @@
 
 #include "base/status.h"
 
+#include "aov_list.h"
+
 #include <openexr.h>
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
 /* The name is for the library's messages, and for it to unlink after a failure: no file can have it. */
 #define NO_FILE "/dev/null/picture.exr"
-#define LAYERS_MAX 16
+#define LAYERS_MAX (3 + 3 + 1 + AOV_FLOATS) /* radiance, error, samples, AOVs */
 
 /* One channel of the file: where its first value lies and how far it is to the next pixel's. */
 typedef struct Layer {
-    const char *name;
+    char name[32];
     const void *values;
     size_t pixel_stride; /* bytes */
     exr_pixel_type_t type;
@@ -61,25 +64,27 @@ static void keep_quiet(exr_const_context_t context, exr_result_t code, const cha
     (void)message;
 }
 
-/* The layers of `picture`. A new one is one line here. `samples` holds the counts as 32-bit numbers. */
+/* Lists `floats` values a pixel, which lie together, as channels that are called by the letters. */
+static void list_floats(const char *before, const char *letters, const float *values, size_t floats,
+                        Layer layers[LAYERS_MAX], size_t *count) {
+    for (size_t c = 0; c < floats && values != NULL; c++) {
+        Layer *layer = &layers[(*count)++];
+        *layer =
+            (Layer){.values = values + c, .pixel_stride = floats * sizeof *values, .type = EXR_PIXEL_FLOAT};
+        snprintf(layer->name, sizeof layer->name, "%s%c", before, letters[c]);
+    }
+}
+
+/* The layers of `picture`. `samples` holds the counts as 32-bit numbers. */
 static size_t list_layers(const BpPicture *picture, const uint32_t *samples, Layer layers[LAYERS_MAX]) {
-    const size_t rgb_stride = 3 * sizeof(float);
     size_t count = 0;
-    static const char *const rgb_names[3] = {"R", "G", "B"};
-    for (size_t c = 0; c < 3; c++)
-        layers[count++] = (Layer){rgb_names[c], picture->rgb + c, rgb_stride, EXR_PIXEL_FLOAT};
-    static const char *const error_names[3] = {"error.R", "error.G", "error.B"};
-    for (size_t c = 0; c < 3 && picture->error != NULL; c++)
-        layers[count++] = (Layer){error_names[c], picture->error + c, rgb_stride, EXR_PIXEL_FLOAT};
+    list_floats("", "RGB", picture->rgb, 3, layers, &count);
+    list_floats("error.", "RGB", picture->error, 3, layers, &count);
     if (samples != NULL) layers[count++] = (Layer){"samples", samples, sizeof *samples, EXR_PIXEL_UINT};
-    if (picture->depth != NULL)
-        layers[count++] = (Layer){"depth.Z", picture->depth, sizeof *picture->depth, EXR_PIXEL_FLOAT};
-    static const char *const normal_names[3] = {"normal.X", "normal.Y", "normal.Z"};
-    for (size_t c = 0; c < 3 && picture->normal != NULL; c++)
-        layers[count++] = (Layer){normal_names[c], picture->normal + c, rgb_stride, EXR_PIXEL_FLOAT};
-    static const char *const albedo_names[3] = {"albedo.R", "albedo.G", "albedo.B"};
-    for (size_t c = 0; c < 3 && picture->albedo != NULL; c++)
-        layers[count++] = (Layer){albedo_names[c], picture->albedo + c, rgb_stride, EXR_PIXEL_FLOAT};
+#define LIST(place, member, floats, mean, channels)                                                          \
+    list_floats(#member ".", channels, picture->member, floats, layers, &count);
+    AOV_LIST(LIST)
+#undef LIST
     return count;
 }
 

@@ -4,6 +4,8 @@
 #include "base/names.h"
 #include "base/output_file.h"
 
+#include "aov_list.h"
+
 #include <errno.h>
 #include <stdlib.h>
 #include <string.h>
@@ -78,8 +80,8 @@ void bp_picture_clear(BpPicture *picture) {
     free(picture->rgb);
     free(picture->error);
     free(picture->samples);
-    free(picture->depth);
-    free(picture->normal);
-    free(picture->albedo);
+#define FREE(place, member, floats, mean, channels) free(picture->member);
+    AOV_LIST(FREE)
+#undef FREE
     memset(picture, 0, sizeof *picture);
 }

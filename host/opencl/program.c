@@ -21,6 +21,7 @@ static const struct {
 } files[] = {
     {"dialect/real.cl", IN_ALL},
     {"scene_types.h", IN_ALL},
+    {"aov_list.h", IN_ALL},
     /* for one lane */
     {"dialect/lanes_one.cl", IN_ALL},
     {"dialect/lanes.cl", IN_ALL},

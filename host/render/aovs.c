@@ -3,17 +3,10 @@
 
 #include "base/status.h"
 
+#include "aov_list.h"
+
 #include <math.h>
 #include <stdlib.h>
-
-/* Places in the sums of a pixel, as in the enum of kernels/entry/aovs.cl. */
-enum {
-    FEATURE_DEPTH,
-    FEATURE_NORMAL = FEATURE_DEPTH + 1,
-    FEATURE_ALBEDO = FEATURE_NORMAL + 3,
-    FEATURE_MET = FEATURE_ALBEDO + 3,
-    FEATURE_FLOATS
-};
 
 /* Places of the arguments that follow the scene's. */
 enum {
@@ -37,14 +30,18 @@ static void view_direction(const BpCamera *camera, cl_float forward[3]) {
     for (int a = 0; a < 3; ++a) forward[a] = (cl_float)(direction[a] / length);
 }
 
+/* What a sum is divided by for its mean; an AOV over the rays that MET something is +Inf where none did. */
+#define MEAN_OVER_ALL(sum) ((sum) / (float)samples)
+#define MEAN_OVER_MET(sum) (met > 0 ? (sum) / met : INFINITY)
+
 /* Sums over `samples` rays to the pixel's values. */
 static void store_pixel(const cl_float *sums, uint32_t samples, size_t pixel, BpPicture *picture) {
-    const float met = sums[FEATURE_MET];
-    picture->depth[pixel] = met > 0 ? sums[FEATURE_DEPTH] / met : INFINITY;
-    for (size_t a = 0; a < 3; ++a) {
-        picture->normal[3 * pixel + a] = sums[FEATURE_NORMAL + a] / (float)samples;
-        picture->albedo[3 * pixel + a] = sums[FEATURE_ALBEDO + a] / (float)samples;
-    }
+    const float met = sums[AOV_MET];
+#define STORE(place, member, floats, mean, channels)                                                         \
+    for (size_t a = 0; a < (floats); ++a)                                                                    \
+        picture->member[(floats)*pixel + a] = MEAN_OVER_##mean(sums[AOV_##place + a]);
+    AOV_LIST(STORE)
+#undef STORE
 }
 
 static BpStatus set_arguments(BpWorker *worker, cl_kernel kernel, const BpCamera *camera,
@@ -70,17 +67,28 @@ static BpStatus run_batch(BpWorker *worker, cl_kernel kernel, size_t local, cl_m
     if (code == CL_SUCCESS)
         code = clEnqueueNDRangeKernel(queue, kernel, 1, NULL, &global, &local, 0, NULL, NULL);
     if (code == CL_SUCCESS)
-        code = clEnqueueReadBuffer(queue, out, CL_TRUE, 0, count * FEATURE_FLOATS * sizeof *sums, sums, 0,
-                                   NULL, NULL);
+        code = clEnqueueReadBuffer(queue, out, CL_TRUE, 0, count * AOV_FLOATS * sizeof *sums, sums, 0, NULL,
+                                   NULL);
     return code == CL_SUCCESS ? BP_OK
                               : bp_cl_fail(err, code, "computing depth, normals and albedo", worker->device);
 }
 
 static void drop_layers(BpPicture *picture) {
-    free(picture->depth);
-    free(picture->normal);
-    free(picture->albedo);
-    picture->depth = picture->normal = picture->albedo = NULL;
+#define DROP(place, member, floats, mean, channels)                                                          \
+    free(picture->member);                                                                                   \
+    picture->member = NULL;
+    AOV_LIST(DROP)
+#undef DROP
+}
+
+static bool make_layers(BpPicture *picture, size_t pixels) {
+    bool made = true;
+#define MAKE(place, member, floats, mean, channels)                                                          \
+    picture->member = malloc(pixels * (floats) * sizeof(float));                                             \
+    made = made && picture->member != NULL;
+    AOV_LIST(MAKE)
+#undef MAKE
+    return made;
 }
 
 BpStatus bp_aovs_fill(BpWorker *worker, const BpCamera *camera, uint32_t first_sample, uint32_t samples,
@@ -90,22 +98,19 @@ BpStatus bp_aovs_fill(BpWorker *worker, const BpCamera *camera, uint32_t first_s
     cl_int code = CL_SUCCESS;
     cl_mem out = NULL;
     size_t local = LOCAL_SIZE, most = 0;
-    cl_float *sums = malloc((size_t)batch * FEATURE_FLOATS * sizeof *sums);
+    cl_float *sums = malloc((size_t)batch * AOV_FLOATS * sizeof *sums);
     cl_kernel kernel = clCreateKernel(worker->program->program, "aovs", &code);
     if (code != CL_SUCCESS) {
         status = bp_cl_fail(err, code, "clCreateKernel(aovs)", worker->device);
         goto cleanup;
     }
     drop_layers(picture);
-    picture->depth = malloc(pixels * sizeof *picture->depth);
-    picture->normal = malloc((size_t)pixels * 3 * sizeof *picture->normal);
-    picture->albedo = malloc((size_t)pixels * 3 * sizeof *picture->albedo);
-    if (sums == NULL || picture->depth == NULL || picture->normal == NULL || picture->albedo == NULL) {
+    if (!make_layers(picture, pixels) || sums == NULL) {
         status = bp_fail(err, BP_ERR_MEMORY, "no memory for depth, normals and albedo of %u pixels", pixels);
         goto cleanup;
     }
     out = clCreateBuffer(worker->device->context, CL_MEM_WRITE_ONLY,
-                         (size_t)batch * FEATURE_FLOATS * sizeof *sums, NULL, &code);
+                         (size_t)batch * AOV_FLOATS * sizeof *sums, NULL, &code);
     if (code == CL_SUCCESS)
         code = clGetKernelWorkGroupInfo(kernel, worker->device->id, CL_KERNEL_WORK_GROUP_SIZE, sizeof most,
                                         &most, NULL);
@@ -119,7 +124,7 @@ BpStatus bp_aovs_fill(BpWorker *worker, const BpCamera *camera, uint32_t first_s
         const uint32_t count = pixels - first < batch ? pixels - first : batch;
         BP_TRY_GOTO(status, run_batch(worker, kernel, local, out, first, count, sums, err), cleanup);
         for (uint32_t i = 0; i < count; ++i)
-            store_pixel(sums + (size_t)i * FEATURE_FLOATS, samples, (size_t)first + i, picture);
+            store_pixel(sums + (size_t)i * AOV_FLOATS, samples, (size_t)first + i, picture);
     }
 
 cleanup:

@@ -1,7 +1,7 @@
 /* aovs.h: depth, normal and albedo of what each pixel shows first.
  *
  * In:    a device at work on a render whose program holds kernels/entry/aovs.cl.   Out: the layers of a
- * picture. Knows: aovs.cl, worker.h.   Does not know: how the picture is written.
+ * picture. Knows: aov_list.h, aovs.cl, worker.h.   Does not know: how the picture is written.
  *
  * They follow from the scene and the camera rays of a few samples, not from the sums of the render: so they
  * cost nothing while it runs, need nothing from other devices, and a film holds none. */

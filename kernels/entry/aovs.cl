@@ -2,16 +2,9 @@
  *
  * Appended to a render's program when someone asks (host/render/aovs.c).
  * In:    the packed scene; a range of pixels; a range of samples, whose camera rays are those of the render.
- * Out:   for each pixel AOV_FLOATS sums over its samples, in the order of the enum. A ray that meets nothing adds
- *        nothing.
- * Knows: path.cl, fetch_surface.cl.   Does not know: how paths go on. */
-enum {
-    AOV_DEPTH,                   /* along `forward_x, forward_y, forward_z`, from the camera */
-    AOV_NORMAL = AOV_DEPTH + 1,  /* unit, towards where the ray came from */
-    AOV_ALBEDO = AOV_NORMAL + 3, /* what the surface scatters: its colour, 1 for a dielectric, 0 for a lamp */
-    AOV_MET = AOV_ALBEDO + 3,    /* rays that met something */
-    AOV_FLOATS
-};
+ * Out:   for each pixel AOV_FLOATS sums over its samples, in the places that aov_list.h gives them. A ray that meets
+ *        nothing adds nothing.
+ * Knows: aov_list.h, path.cl, fetch_surface.cl.   Does not know: how paths go on. */
 
 /* One work-item a pixel; as many of its samples at a time as there are lanes. */
 __kernel void aovs(SCENE_PARAMETERS uint first_pixel, uint pixel_count, uint first_sample, uint samples,
@@ -47,10 +40,15 @@ __kernel void aovs(SCENE_PARAMETERS uint first_pixel, uint pixel_count, uint fir
         Point point;
         fetch_surface(&scene, &hit, &sphere, &surface, &emitted);
         sphere_surface(&ray, &sphere, hit.slot, hit.t, hit.enters, &point, &outward);
-        const Vec3 albedo = surface.albedo;
         const Vec3 normal = choose3(hit.enters, outward, scale3(splat(-1), outward));
         const vreal values[AOV_FLOATS] = {
-            dot3(point.high, forward), normal.x, normal.y, normal.z, albedo.x, albedo.y, albedo.z, splat(1)};
+            /* along `forward_x, forward_y, forward_z`, from the camera */
+            [AOV_DEPTH] = dot3(point.high, forward),
+            /* unit, towards where the ray came from */
+            [AOV_NORMAL] = normal.x, normal.y, normal.z,
+            /* what the surface scatters: its colour, 1 for a dielectric, 0 for a lamp */
+            [AOV_ALBEDO] = surface.albedo.x, surface.albedo.y, surface.albedo.z,
+            [AOV_MET] = splat(1)};
         for (uint i = 0; i < AOV_FLOATS; ++i) {
             real lanes[LANE_COUNT];
             store_lanes(choose(met, values[i], splat(0)), lanes);
