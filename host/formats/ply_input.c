@@ -1,6 +1,7 @@
 /* ply_input.c: see ply_parts.h. */
 #include "ply_parts.h"
 
+#include "base/decimal.h"
 #include "base/plural.h"
 
 #include <inttypes.h>
@@ -113,61 +114,11 @@ BpStatus ply_input_end(PlyInput *input, bool lines, BpError *err) {
 static bool is_space(char c) {
     return c == ' ' || c == '\t' || c == '\r';
 }
-static bool is_digit(char c) {
-    return c >= '0' && c <= '9';
-}
-
-/* Digits and exponents that a double holds exactly take the short way: one rounding, hence the nearest number
- * (W. D. Clinger, "How to read floating point numbers accurately", 1990). All others go to strtod. */
-static bool parse_short(char **cursor, double *value) {
-    static const double powers[] = {1e0,  1e1,  1e2,  1e3,  1e4,  1e5,  1e6,  1e7,  1e8,  1e9,  1e10, 1e11,
-                                    1e12, 1e13, 1e14, 1e15, 1e16, 1e17, 1e18, 1e19, 1e20, 1e21, 1e22};
-    const char *c = *cursor;
-    const bool negative = *c == '-';
-    if (*c == '-' || *c == '+') c++;
-    uint64_t digits = 0;
-    int count = 0, exponent = 0;
-    for (; is_digit(*c); c++, count++) {
-        if (count >= 18) return false;
-        digits = 10 * digits + (uint64_t)(*c - '0');
-    }
-    if (*c == '.') {
-        for (c++; is_digit(*c); c++, count++) {
-            if (count >= 18) return false;
-            digits = 10 * digits + (uint64_t)(*c - '0');
-            exponent--;
-        }
-    }
-    if (count == 0) return false;
-    if (*c == 'e' || *c == 'E') {
-        c++;
-        const bool down = *c == '-';
-        if (*c == '-' || *c == '+') c++;
-        int written = 0, written_count = 0;
-        for (; is_digit(*c); c++, written_count++) {
-            if (written_count >= 4) return false;
-            written = 10 * written + (*c - '0');
-        }
-        if (written_count == 0) return false;
-        exponent += down ? -written : written;
-    }
-    if (digits > UINT64_C(1) << 53 || exponent < -22 || exponent > 22) return false;
-    const double magnitude =
-        exponent < 0 ? (double)digits / powers[-exponent] : (double)digits * powers[exponent];
-    *value = negative ? -magnitude : magnitude;
-    *cursor += c - *cursor;
-    return true;
-}
-
 bool ply_parse_number(char **cursor, double *value) {
     while (is_space(**cursor)) (*cursor)++;
     if (**cursor == '\0') return false;
-    char *after = *cursor;
-    if (!parse_short(&after, value)) {
-        *value = strtod(*cursor, &after);
-        if (after == *cursor) return false;
-    }
-    if (*after != '\0' && !is_space(*after)) return false;
-    *cursor = after;
+    const char *const after = bp_decimal_parse(*cursor, value);
+    if (after == NULL || (*after != '\0' && !is_space(*after))) return false;
+    *cursor += after - *cursor;
     return true;
 }

@@ -10,7 +10,8 @@ import sys
 MAY_INCLUDE = {
     "base": set(),
     "scene": set(),
-    "formats": {"scene"},
+    "particles": {"scene"},
+    "formats": {"scene", "particles"},
     "packed": {"scene"},
     "opencl": {"packed"},
     "film": {"scene"},

@@ -1,0 +1,35 @@
+/* elements.h: what is known of the chemical elements.
+ *
+ * Knows: published tables.   Does not know: files, scenes. */
+#ifndef BP_PARTICLES_ELEMENTS_H
+#define BP_PARTICLES_ELEMENTS_H
+
+#include <stdbool.h>
+#include <stdint.h>
+
+enum { BP_ELEMENT_MAX = 118 };
+
+typedef struct BpElement {
+    char symbol[3];
+    float mass;          /* standard atomic weight, or the longest-lived isotope's (IUPAC 2021) */
+    float van_der_waals; /* radius in angstrom */
+    float covalent;      /* radius in angstrom */
+    uint8_t color[3];    /* 8-bit sRGB */
+} BpElement;
+
+/* By atomic number; number 0 stands for what is unknown. */
+extern const BpElement bp_elements[BP_ELEMENT_MAX + 1];
+
+/* The atomic number of a symbol in any case, D and T being hydrogen; 0: none. */
+uint8_t bp_element_of_symbol(const char *symbol);
+/* The element of an atom from its name and its residue's, as in PDB and GRO files; `name` may begin with a
+ * blank, as columns 13 to 16 of a PDB line do, which tells CA (calcium) from " CA" (a carbon). `fixed`: the
+ * name is such a column. 0: unknown. *dummy: a site of a model (of water, say) and no atom. */
+uint8_t bp_element_of_name(const char *name, const char *residue, bool fixed, bool *dummy);
+/* The element whose mass is within 0.6 %; 0: none. */
+uint8_t bp_element_of_mass(double mass);
+/* Residues that are water, and those that are single ions of the water around a molecule. */
+bool bp_residue_is_water(const char *residue);
+bool bp_residue_is_ion(const char *residue);
+
+#endif

@@ -1,0 +1,204 @@
+/* frame.c: where readers put points; see reader.h and particles.h. */
+#include "reader.h"
+
+#include "base/message_text.h"
+#include "names.h"
+
+#include <math.h>
+#include <stdarg.h>
+#include <stdlib.h>
+#include <string.h>
+
+#define COORDINATE_MAX 1.0e12 /* that of a scene */
+#define PI 3.14159265358979323846
+
+enum { FIRST_CAPACITY = 4096 };
+
+static void free_arrays(BpParticles *p) {
+    free(p->position);
+    free(p->tag);
+    free(p->radius);
+    free(p->color);
+    for (int i = 0; i < BP_PARTICLE_WANTED_MAX; i++) free(p->column[i]);
+    free(p->bonds);
+    names_clear(&p->names);
+}
+
+void bp_particles_clear(BpParticles *particles) {
+    free_arrays(particles);
+    *particles = (BpParticles){0};
+}
+
+void bp_particles_note(BpParticles *particles, const char *format, ...) {
+    char text[160];
+    va_list arguments;
+    va_start(arguments, format);
+    vsnprintf(text, sizeof text, format, arguments);
+    va_end(arguments);
+    if (strstr(particles->notes, text) != NULL) return;
+    const size_t used = strlen(particles->notes);
+    if (used + strlen(text) + 3 > sizeof particles->notes) return;
+    snprintf(particles->notes + used, sizeof particles->notes - used, "%s%s", used > 0 ? "; " : "", text);
+}
+
+BpStatus frame_begin(BpParticleFile *file, const char *const *columns, size_t column_count, BpError *err) {
+    file->added = 0;
+    file->taken_count = 0;
+    if (file->out == NULL) return BP_OK; /* a frame that is passed over may lack the columns */
+    file->taken_count = file->wanted_count;
+    for (size_t w = 0; w < file->wanted_count; w++) {
+        file->wanted_column[w] = -1;
+        for (size_t c = 0; c < column_count; c++)
+            if (strcmp(file->wanted[w], columns[c]) == 0) file->wanted_column[w] = (int)c;
+        if (file->wanted_column[w] >= 0) continue;
+        char list[384] = "", shown[64];
+        for (size_t c = 0; c < column_count; c++) {
+            const size_t used = strlen(list);
+            bp_printable(columns[c], shown, sizeof shown);
+            snprintf(list + used, sizeof list - used, "%s%s", c > 0 ? ", " : "", shown);
+        }
+        bp_printable(file->wanted[w], shown, sizeof shown);
+        return input_fail(&file->input, false, err, "found no column \"%s\", expected one of %s", shown,
+                          column_count > 0 ? list : "none: this file has no columns of numbers");
+    }
+    BpParticles *const p = file->out;
+    free_arrays(p);
+    *p = (BpParticles){.up = 1};
+    return BP_OK;
+}
+
+static bool resize(void *array, size_t capacity, size_t size) {
+    void **const place = array;
+    void *const grown = realloc(*place, capacity * size);
+    if (grown != NULL) *place = grown;
+    return grown != NULL;
+}
+
+static bool grow(BpParticleFile *file, BpParticles *p) {
+    const size_t capacity = p->capacity > 0 ? p->capacity + p->capacity / 2 : FIRST_CAPACITY;
+    bool good =
+        resize(&p->position, capacity, sizeof *p->position) && resize(&p->tag, capacity, sizeof *p->tag);
+    if (p->radius != NULL) good = good && resize(&p->radius, capacity, sizeof *p->radius);
+    if (p->color != NULL) good = good && resize(&p->color, capacity, sizeof *p->color);
+    for (size_t w = 0; w < file->taken_count; w++)
+        good = good && resize(&p->column[w], capacity, sizeof *p->column[w]);
+    if (good) p->capacity = capacity;
+    return good;
+}
+
+static BpStatus add_radius(BpParticles *p, double radius, BpError *err) {
+    if (p->radius == NULL) {
+        if (isnan(radius)) return BP_OK;
+        p->radius = malloc(p->capacity * sizeof *p->radius);
+        if (p->radius == NULL) return bp_fail(err, BP_ERR_MEMORY, "out of memory for radii");
+        for (size_t i = 0; i < p->count; i++) p->radius[i] = NAN;
+    }
+    p->radius[p->count] = (float)radius;
+    return BP_OK;
+}
+
+static BpStatus add_color(BpParticles *p, const double color[3], BpError *err) {
+    if (p->color == NULL) {
+        if (isnan(color[0])) return BP_OK;
+        p->color = malloc(p->capacity * sizeof *p->color);
+        if (p->color == NULL) return bp_fail(err, BP_ERR_MEMORY, "out of memory for colours");
+        for (size_t i = 0; i < p->count; i++)
+            for (int c = 0; c < 3; c++) p->color[i][c] = NAN;
+    }
+    for (int c = 0; c < 3; c++) p->color[p->count][c] = (float)color[c];
+    return BP_OK;
+}
+
+static BpStatus add_tag(BpParticles *p, const Particle *particle, BpError *err) {
+    BpParticleTag *const tag = &p->tag[p->count];
+    *tag = (BpParticleTag){.element = particle->element, .flags = particle->flags};
+    BP_TRY(names_number(&p->names, particle->name, &tag->name, err));
+    BP_TRY(names_number(&p->names, particle->residue, &tag->residue, err));
+    BP_TRY(names_number(&p->names, particle->chain, &tag->chain, err));
+    BP_TRY(names_number(&p->names, particle->type, &tag->type, err));
+    p->has_name |= tag->name != 0;
+    p->has_residue |= tag->residue != 0;
+    p->has_chain |= tag->chain != 0;
+    p->has_type |= tag->type != 0;
+    p->has_element |= tag->element != 0;
+    if ((tag->flags & BP_PARTICLE_ELEMENT_GUESSED) != 0) bp_particles_note(p, "elements from atom names");
+    return BP_OK;
+}
+
+BpStatus frame_add(BpParticleFile *file, const Particle *particle, bool with_line, BpError *err) {
+    BpParticles *const p = file->out;
+    for (int i = 0; i < 3; i++) {
+        char text[BP_NUMBER_TEXT_SIZE];
+        if (fabs(particle->position[i]) <= COORDINATE_MAX) continue;
+        return input_fail(&file->input, with_line, err,
+                          "particle %zu (from 0): found %s, expected a coordinate from -1e12 to 1e12",
+                          file->added, bp_number_text(particle->position[i], text));
+    }
+    if (file->added >= BP_PARTICLES_MAX)
+        return input_fail(&file->input, with_line, err,
+                          "found more particles, expected at most %u in a frame", BP_PARTICLES_MAX);
+    file->added++;
+    if (p == NULL) return BP_OK;
+    if (p->count == p->capacity && !grow(file, p))
+        return bp_fail(err, BP_ERR_MEMORY, "out of memory for more than %zu particles", p->count);
+    const BpStatus status = add_tag(p, particle, err);
+    if (status == BP_ERR_SCENE) bp_error_at(err, file->input.name, (int)file->input.line, 0);
+    BP_TRY(status);
+    BP_TRY(add_radius(p, particle->radius, err));
+    BP_TRY(add_color(p, particle->color, err));
+    memcpy(p->position[p->count], particle->position, sizeof p->position[0]);
+    for (size_t w = 0; w < file->taken_count; w++) {
+        if (p->column[w] == NULL) p->column[w] = malloc(p->capacity * sizeof *p->column[w]);
+        if (p->column[w] == NULL) return bp_fail(err, BP_ERR_MEMORY, "out of memory for a column");
+        p->column[w][p->count] = (float)particle->values[file->wanted_column[w]];
+    }
+    p->count++;
+    return BP_OK;
+}
+
+BpStatus frame_add_bond(BpParticleFile *file, uint32_t a, uint32_t b, BpError *err) {
+    BpParticles *const p = file->out;
+    if (p == NULL) return BP_OK;
+    if (p->bond_count == p->bond_capacity) {
+        const size_t capacity = p->bond_capacity > 0 ? 2 * p->bond_capacity : FIRST_CAPACITY;
+        if (!resize(&p->bonds, capacity, sizeof *p->bonds))
+            return bp_fail(err, BP_ERR_MEMORY, "out of memory for %zu bonds", capacity);
+        p->bond_capacity = capacity;
+    }
+    p->bonds[p->bond_count][0] = a;
+    p->bonds[p->bond_count++][1] = b;
+    return BP_OK;
+}
+
+void frame_cell(BpParticleFile *file, const double origin[3], const double edges[3][3], bool periodic) {
+    BpParticles *const p = file->out;
+    if (p == NULL) return;
+    const double(*e)[3] = edges;
+    const double volume = e[0][0] * (e[1][1] * e[2][2] - e[1][2] * e[2][1]) -
+                          e[0][1] * (e[1][0] * e[2][2] - e[1][2] * e[2][0]) +
+                          e[0][2] * (e[1][0] * e[2][1] - e[1][1] * e[2][0]);
+    double longest = 0;
+    for (int i = 0; i < 3; i++)
+        longest =
+            fmax(longest, fmax(fabs(origin[i]), fmax(fabs(e[i][0]), fmax(fabs(e[i][1]), fabs(e[i][2])))));
+    if (!(fabs(volume) > 0) || !(longest <= COORDINATE_MAX)) return;
+    p->has_cell = true;
+    p->periodic = periodic;
+    memcpy(p->cell_origin, origin, sizeof p->cell_origin);
+    memcpy(p->cell, edges, sizeof p->cell);
+}
+
+void frame_cell_angles(BpParticleFile *file, const double lengths[3], const double angles[3]) {
+    static const double origin[3] = {0, 0, 0};
+    const double a = lengths[0], b = lengths[1], c = lengths[2];
+    if (!(a > 1 && b > 1 && c > 1)) return;
+    double cosine[3];
+    for (int i = 0; i < 3; i++)
+        cosine[i] = angles[i] == 90 ? 0 : cos(angles[i] * (PI / 180)); /* alpha, beta, gamma */
+    const double sine = sqrt(1 - cosine[2] * cosine[2]);
+    const double y = (cosine[0] - cosine[1] * cosine[2]) / sine;
+    const double z = 1 - cosine[1] * cosine[1] - y * y;
+    if (!(sine > 0 && z > 0)) return;
+    const double edges[3][3] = {{a, 0, 0}, {b * cosine[2], b * sine, 0}, {c * cosine[1], c * y, c * sqrt(z)}};
+    frame_cell(file, origin, edges, true);
+}

@@ -1,0 +1,13 @@
+/* names.h: texts that repeat, each kept once.
+ *
+ * In:    texts.   Out: their numbers. Knows: nothing of what they name. */
+#ifndef BP_PARTICLES_NAMES_H
+#define BP_PARTICLES_NAMES_H
+
+#include "particles.h"
+
+/* The number of `text`, cut to BP_PARTICLE_NAME_SIZE - 1 bytes; 0 for NULL and "". Fails on the 65,536th. */
+BpStatus names_number(BpNames *names, const char *text, uint16_t *number, BpError *err);
+void names_clear(BpNames *names);
+
+#endif

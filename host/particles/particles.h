@@ -1,0 +1,109 @@
+/* particles.h: files of particles, and the one form in which all of them are handed over.
+ *
+ * In:    an open file, or a trajectory of many frames.   Out: one frame of points at a time.
+ * Knows: which formats there are.   Does not know: scenes, how points look (style.h), how a file was found.
+ *
+ * Formats: XYZ (plain and extended), PDB, mmCIF, GRO, LAMMPS dump and data, GSD, CSV, PLY; each also packed
+ * by gzip. Nothing in a file is trusted: memory grows with what was read and never with what a count
+ * promises, and every error names the file, and the line where there are lines. A reader that has to guess
+ * says so in `notes`. Coordinates are as written, in the file's unit of length. */
+#ifndef BP_PARTICLES_PARTICLES_H
+#define BP_PARTICLES_PARTICLES_H
+
+#include "base/status.h"
+
+#include <math.h>
+#include <stdio.h>
+
+typedef enum BpParticleFormat {
+    BP_PARTICLES_NONE, /* no file of particles, as far as name and beginning tell */
+    BP_PARTICLES_XYZ,
+    BP_PARTICLES_PDB,
+    BP_PARTICLES_CIF,
+    BP_PARTICLES_GRO,
+    BP_PARTICLES_DUMP,
+    BP_PARTICLES_DATA,
+    BP_PARTICLES_GSD,
+    BP_PARTICLES_CSV,
+    BP_PARTICLES_PLY,
+    BP_PARTICLES_FORMAT_COUNT
+} BpParticleFormat;
+
+/* "XYZ", "PDB", ...; static. */
+const char *bp_particle_format_name(BpParticleFormat format);
+
+enum {
+    BP_PARTICLE_COLUMNS_MAX = 128, /* numeric columns of a file */
+    BP_PARTICLE_WANTED_MAX = 2,    /* columns kept at a time */
+    BP_PARTICLE_NAME_SIZE = 24,    /* of the name of an atom, a residue, a chain, a type */
+    BP_PARTICLE_NOTES_SIZE = 480
+};
+
+/* Texts that repeat, each kept once. Number 0 is "". */
+typedef struct BpNames {
+    char (*text)[BP_PARTICLE_NAME_SIZE];
+    size_t count, capacity;
+    uint32_t *slots; /* a hash table of numbers */
+    size_t slot_count;
+} BpNames;
+
+enum {
+    BP_PARTICLE_ALTERNATIVE = 1, /* another place of an atom that was already handed over */
+    BP_PARTICLE_DUMMY = 2,       /* a site of a model, no atom */
+    BP_PARTICLE_ELEMENT_GUESSED = 4
+};
+
+/* What the style of a particle needs, beside its place. */
+typedef struct BpParticleTag {
+    uint16_t name, residue, chain, type; /* into names */
+    uint8_t element;                     /* atomic number; 0: unknown */
+    uint8_t flags;                       /* BP_PARTICLE_... */
+} BpParticleTag;
+
+/* One frame. Arrays that are Optional are NULL where the file has no such thing. */
+typedef struct BpParticles {
+    size_t count;
+    double (*position)[3];
+    BpParticleTag *tag;
+    float *radius;                         /* Optional; NaN: none */
+    float (*color)[3];                     /* Optional; linear, in [0, 1] */
+    float *column[BP_PARTICLE_WANTED_MAX]; /* of the wanted columns, in their order */
+    BpNames names;
+    bool has_name, has_residue, has_chain, has_type, has_element; /* some particle has one */
+    bool has_cell, periodic;
+    double cell_origin[3], cell[3][3]; /* the cell's edges as rows */
+    uint32_t (*bonds)[2];              /* Optional: given in the file */
+    size_t bond_count;
+    double angstrom;                    /* in the file's unit of length; 0: the file's unit is unknown */
+    int up;                             /* the axis that the format's world has up: 1 y, 2 z */
+    bool flat;                          /* two dimensions */
+    char notes[BP_PARTICLE_NOTES_SIZE]; /* what was guessed: "elements from atom names; ..." */
+    size_t capacity, bond_capacity;     /* the arrays' */
+} BpParticles;
+
+void bp_particles_clear(BpParticles *particles);
+/* Adds to the notes what is not there yet. */
+void bp_particles_note(BpParticles *particles, const char *format, ...) BP_PRINTF_LIKE(2, 3);
+
+typedef struct BpParticleFile BpParticleFile;
+
+/* By the name's ending and the beginning of the stream, which is read to its first kilobytes and set back. A
+ * file that says itself what it is goes before the name. BP_PARTICLES_NONE: neither tells. */
+BpParticleFormat bp_particle_format_find(const char *name, FILE *stream);
+
+/* Opens a file for its frames. `stream`: a regular file, which stays the caller's and must outlive the
+ * result; `name` stands in messages. `wanted`: the columns to keep, by name; a frame without one is an
+ * error that names the nearest. */
+BpStatus bp_particle_file_open(FILE *stream, const char *name, BpParticleFormat format,
+                               const char *const *wanted, size_t wanted_count, BpParticleFile **file,
+                               BpError *err);
+/* Reads the next frame into `particles`, which holds a frame or is zeroed; NULL: passes over it, and looks
+ * only at what is needed for that. *end: there was none. The first frame of a file must exist. */
+BpStatus bp_particle_file_next(BpParticleFile *file, BpParticles *particles, bool *end, BpError *err);
+/* Reads frame `number`, counted from 0; below 0 from the end: -1 is the last. */
+BpStatus bp_particle_file_frame(BpParticleFile *file, int64_t number, BpParticles *particles, BpError *err);
+/* Counts the frames, which reads the whole file unless it has an index. */
+BpStatus bp_particle_file_count(BpParticleFile *file, uint64_t *count, BpError *err);
+void bp_particle_file_close(BpParticleFile **file);
+
+#endif

@@ -1,0 +1,196 @@
+/* read_dump.c: LAMMPS dump files in text form (dump custom, atom and their like); see reader.h.
+ *
+ * Knows: wrapped, scaled and unwrapped coordinates; boxes that are orthogonal, triclinic in LAMMPS's own
+ * form, and triclinic by three vectors. */
+#include "elements.h"
+#include "reader.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+enum { WORDS_MAX = BP_PARTICLE_COLUMNS_MAX };
+
+typedef struct Dump {
+    double origin[3], edges[3][3];
+    bool has_box, periodic, scaled, unwrapped;
+    char header[4096]; /* the words after ITEM: ATOMS */
+    char *columns[WORDS_MAX];
+    size_t column_count;
+    int position[3], type, element, radius, diameter, mass, molecule;
+} Dump;
+
+static BpStatus take_box(Input *input, const char *flags, Dump *dump, BpError *err) {
+    const bool triclinic = strstr(flags, "xy xz yz") != NULL, general = strstr(flags, "abc") != NULL;
+    const size_t count = general ? 4 : triclinic ? 3 : 2;
+    double value[3][4] = {{0}};
+    dump->periodic = strchr(flags, 'p') != NULL;
+    for (int i = 0; i < 3; i++) {
+        char *line = NULL, *words[4];
+        BP_TRY(input_needed_line(input, &line, "three lines of bounds", err));
+        if (split_words(line, words, 4) != count)
+            return input_fail(input, true, err,
+                              "found another number of words, expected %zu numbers of a box", count);
+        for (size_t k = 0; k < count; k++)
+            if (!word_number(words[k], &value[i][k]))
+                return input_wrong(input, words[k], "a finite number", err);
+    }
+    memset(dump->edges, 0, sizeof dump->edges);
+    if (general) {
+        for (int i = 0; i < 3; i++) {
+            memcpy(dump->edges[i], value[i], sizeof dump->edges[i]);
+            dump->origin[i] = value[i][3];
+        }
+    } else {
+        /* The bounds are those of the box around the parallelepiped (LAMMPS manual, "Howto triclinic"). */
+        const double xy = value[0][2], xz = value[1][2], yz = value[2][2];
+        dump->origin[0] = value[0][0] - fmin(fmin(0, xy), fmin(xz, xy + xz));
+        dump->origin[1] = value[1][0] - fmin(0, yz);
+        dump->origin[2] = value[2][0];
+        dump->edges[0][0] = value[0][1] - fmax(fmax(0, xy), fmax(xz, xy + xz)) - dump->origin[0];
+        dump->edges[1][0] = xy;
+        dump->edges[1][1] = value[1][1] - fmax(0, yz) - dump->origin[1];
+        dump->edges[2][0] = xz;
+        dump->edges[2][1] = yz;
+        dump->edges[2][2] = value[2][1] - dump->origin[2];
+    }
+    dump->has_box = true;
+    return BP_OK;
+}
+
+static int column_named(const Dump *dump, const char *name) {
+    for (size_t i = 0; i < dump->column_count; i++)
+        if (strcmp(dump->columns[i], name) == 0) return (int)i;
+    return -1;
+}
+
+static BpStatus take_columns(Input *input, const char *text, Dump *dump, BpError *err) {
+    static const char *const sets[4][3] = {
+        {"x", "y", "z"}, {"xs", "ys", "zs"}, {"xu", "yu", "zu"}, {"xsu", "ysu", "zsu"}};
+    snprintf(dump->header, sizeof dump->header, "%s", text);
+    dump->column_count = split_words(dump->header, dump->columns, WORDS_MAX);
+    if (dump->column_count > WORDS_MAX)
+        return input_fail(input, true, err, "found %zu columns, expected at most %d", dump->column_count,
+                          WORDS_MAX);
+    dump->type = column_named(dump, "type");
+    dump->element = column_named(dump, "element");
+    dump->radius = column_named(dump, "radius");
+    dump->diameter = column_named(dump, "diameter");
+    dump->mass = column_named(dump, "mass");
+    dump->molecule = column_named(dump, "mol");
+    for (int s = 0; s < 4; s++) {
+        for (int i = 0; i < 3; i++) dump->position[i] = column_named(dump, sets[s][i]);
+        if (dump->position[0] < 0 || dump->position[1] < 0 || dump->position[2] < 0) continue;
+        dump->scaled = s % 2 == 1;
+        dump->unwrapped = s >= 2;
+        if (!dump->scaled || dump->has_box) return BP_OK;
+        return input_fail(input, true, err,
+                          "found scaled coordinates before the box, expected ITEM: BOX BOUNDS");
+    }
+    return input_fail(input, true, err,
+                      "found no columns of coordinates, expected x y z, xu yu zu, xs ys zs or xsu ysu zsu");
+}
+
+static BpStatus take_atom(BpParticleFile *file, const Dump *dump, char *line, BpError *err) {
+    char *words[WORDS_MAX];
+    double values[WORDS_MAX], place[3];
+    Particle particle = PARTICLE_NONE;
+    const size_t found = split_words(line, words, WORDS_MAX);
+    if (found != dump->column_count)
+        return input_fail(&file->input, true, err, "found %zu word%s, expected %zu, as ITEM: ATOMS says",
+                          found, found == 1 ? "" : "s", dump->column_count);
+    for (int i = 0; i < 3; i++)
+        if (!word_number(words[dump->position[i]], &place[i]))
+            return input_wrong(&file->input, words[dump->position[i]], "a coordinate", err);
+    for (int i = 0; i < 3; i++) {
+        particle.position[i] = dump->scaled ? dump->origin[i] : place[i];
+        for (int k = 0; k < 3 && dump->scaled; k++) particle.position[i] += place[k] * dump->edges[k][i];
+    }
+    if (dump->type >= 0) particle.type = words[dump->type];
+    if (dump->element >= 0) {
+        particle.element = bp_element_of_symbol(words[dump->element]);
+        if (dump->type < 0) particle.type = words[dump->element];
+    } else if (dump->mass >= 0) {
+        double mass = 0;
+        if (word_number(words[dump->mass], &mass)) particle.element = bp_element_of_mass(mass);
+    }
+    if (dump->radius >= 0 && !word_number(words[dump->radius], &particle.radius))
+        return input_wrong(&file->input, words[dump->radius], "a radius", err);
+    if (dump->radius < 0 && dump->diameter >= 0) {
+        if (!word_number(words[dump->diameter], &particle.radius))
+            return input_wrong(&file->input, words[dump->diameter], "a diameter", err);
+        particle.radius /= 2;
+    }
+    for (size_t w = 0; w < file->taken_count; w++) {
+        const int c = file->wanted_column[w];
+        if (!word_number(words[c], &values[c])) values[c] = NAN;
+    }
+    particle.values = values;
+    return frame_add(file, &particle, true, err);
+}
+
+/* The frame from ITEM: TIMESTEP, which is taken, to its last atom. */
+static BpStatus take_frame(BpParticleFile *file, Dump *dump, BpError *err) {
+    static const char expected[] = "ITEM: NUMBER OF ATOMS, BOX BOUNDS and ATOMS";
+    Input *const input = &file->input;
+    char *line = NULL, *words[2];
+    uint64_t count = 0;
+    bool has_count = false;
+    for (;;) {
+        BP_TRY(input_needed_line(input, &line, expected, err));
+        if (strncmp(line, "ITEM: NUMBER OF ATOMS", 21) == 0) {
+            BP_TRY(input_needed_line(input, &line, "the number of atoms", err));
+            const size_t found = split_words(line, words, 2);
+            BP_TRY(word_count(input, found == 1 ? words[0] : "other words", "atoms", &count, err));
+            has_count = true;
+        } else if (strncmp(line, "ITEM: BOX BOUNDS", 16) == 0) {
+            char flags[64];
+            snprintf(flags, sizeof flags, "%s", line + 16);
+            BP_TRY(take_box(input, flags, dump, err));
+        } else if (strncmp(line, "ITEM: ATOMS", 11) == 0) {
+            break;
+        } else if (strncmp(line, "ITEM:", 5) == 0) { /* UNITS, TIME: one line each */
+            BP_TRY(input_needed_line(input, &line, "a line after ITEM", err));
+        } else {
+            return input_wrong(input, line, expected, err);
+        }
+    }
+    if (!has_count)
+        return input_fail(input, true, err, "found ITEM: ATOMS first, expected ITEM: NUMBER OF ATOMS");
+    BP_TRY(take_columns(input, line + 11, dump, err));
+    BP_TRY(frame_begin(file, (const char *const *)dump->columns, dump->column_count, err));
+    if (file->out != NULL) {
+        file->out->up = 2;
+        if (dump->element >= 0 || dump->mass >= 0) file->out->angstrom = 1;
+        if (dump->element < 0 && dump->mass >= 0) bp_particles_note(file->out, "elements from masses");
+    }
+    if (dump->has_box)
+        frame_cell(file, dump->origin, (const double(*)[3])dump->edges, dump->periodic && !dump->unwrapped);
+    for (uint64_t i = 0; i < count; i++) {
+        BP_TRY(input_needed_line(input, &line, "as many atoms as ITEM: NUMBER OF ATOMS says", err));
+        BP_TRY(take_atom(file, dump, line, err));
+    }
+    return BP_OK;
+}
+
+BpStatus read_dump(BpParticleFile *file, bool *end, BpError *err) {
+    Input *const input = &file->input;
+    char *line = NULL;
+    BP_TRY(input_full_line(input, &line, err));
+    *end = line == NULL && file->frame > 0;
+    if (*end) return BP_OK;
+    /* A first item of another kind (UNITS) comes with a line of its own. */
+    while (line != NULL && (strncmp(line, "ITEM: UNITS", 11) == 0 || strncmp(line, "ITEM: TIME", 10) == 0)) {
+        const bool step = strncmp(line, "ITEM: TIMESTEP", 14) == 0;
+        BP_TRY(input_needed_line(input, &line, "a line after ITEM", err));
+        if (step) {
+            Dump *const dump = calloc(1, sizeof *dump);
+            if (dump == NULL) return bp_fail(err, BP_ERR_MEMORY, "out of memory");
+            const BpStatus status = take_frame(file, dump, err);
+            free(dump);
+            return status;
+        }
+        BP_TRY(input_full_line(input, &line, err));
+    }
+    return input_fail(input, true, err, "found %s, expected ITEM: TIMESTEP, as a LAMMPS dump begins",
+                      line == NULL ? "the end of the file" : "another line");
+}

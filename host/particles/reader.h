@@ -1,0 +1,63 @@
+/* reader.h: the interface that every format's reader has, and how it hands points over.
+ *
+ * In:    an input.   Out: calls of frame_begin, frame_add, frame_end.
+ * Knows: what all formats share.   Does not know: any of them.
+ *
+ * A reader is one function that reads one frame. It is called again and again until it says that there is no
+ * further one. */
+#ifndef BP_PARTICLES_READER_H
+#define BP_PARTICLES_READER_H
+
+#include "input.h"
+#include "particles.h"
+
+struct BpParticleFile {
+    Input input;
+    BpParticleFormat format;
+    char wanted[BP_PARTICLE_WANTED_MAX][64];
+    size_t wanted_count;
+    uint64_t frame;         /* the number of the next frame */
+    uint64_t frame_count;   /* once it is known */
+    bool frame_count_known; /* from an index, or from reading all */
+    BpParticles *out;       /* where frame_add puts points; NULL: nowhere */
+    size_t taken_count; /* of the wanted columns, how many this frame's are taken: all, or none when passed
+                           over */
+    int wanted_column[BP_PARTICLE_WANTED_MAX]; /* the first taken_count of them are set */
+    size_t added;                              /* in this frame */
+    void *state;                               /* of the format's reader, freed with the file */
+};
+
+/* One particle. Texts may be NULL and are copied; those longer than BP_PARTICLE_NAME_SIZE are cut. */
+typedef struct Particle {
+    double position[3];
+    const char *name, *residue, *chain, *type;
+    uint8_t element, flags;
+    double radius;        /* NaN: none */
+    double color[3];      /* color[0] NaN: none */
+    const double *values; /* of the columns named to frame_begin */
+} Particle;
+
+#define PARTICLE_NONE                                                                                        \
+    {                                                                                                        \
+        .radius = NAN, .color = { NAN, NAN, NAN }                                                            \
+    }
+
+/* Begins a frame whose numeric columns are `columns`; fails if a wanted one is not among them. */
+BpStatus frame_begin(BpParticleFile *file, const char *const *columns, size_t column_count, BpError *err);
+/* Hands one particle over. Fails on coordinates that are not finite or too large. `with_line`: the error
+ * names the line last taken. */
+BpStatus frame_add(BpParticleFile *file, const Particle *particle, bool with_line, BpError *err);
+BpStatus frame_add_bond(BpParticleFile *file, uint32_t a, uint32_t b, BpError *err);
+/* A cell from its lengths and angles in degrees (crystallography's convention: a along x, b in the plane of x
+ * and y), its origin at 0. Cells that are none (lengths of 0 or 1, as placeholders) are passed over. */
+void frame_cell_angles(BpParticleFile *file, const double lengths[3], const double angles[3]);
+void frame_cell(BpParticleFile *file, const double origin[3], const double edges[3][3], bool periodic);
+
+typedef BpStatus ReadFrame(BpParticleFile *file, bool *end, BpError *err);
+ReadFrame read_xyz, read_pdb, read_cif, read_gro, read_dump, read_data, read_gsd, read_csv, read_ply;
+
+/* Releases what a GSD file's index takes. */
+void gsd_state_destroy(void *state);
+BpStatus gsd_frame_count(BpParticleFile *file, uint64_t *count, BpError *err);
+
+#endif

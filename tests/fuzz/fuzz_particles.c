@@ -1,0 +1,70 @@
+/* fuzz_particles.c: any bytes as a file of particles: the first byte says which format (and from 128 on, that
+ * the column "x" is wanted), the rest is the file.
+ *
+ * What is accepted is whole: arrays of one length, finite places, names and bonds that exist. Frames are read
+ * one after the other, passed over, and asked for by number, and each way finds as many. */
+#include "fuzz.h"
+#include "particles/elements.h"
+#include "particles/reader.h"
+
+#include <unistd.h>
+
+enum { FRAMES_MAX = 64 };
+
+static void check_particles(const BpParticles *p) {
+    require(p->count <= p->capacity || p->count == 0);
+    for (size_t i = 0; i < p->count; i++) {
+        for (int c = 0; c < 3; c++) require(p->position[i][c] >= -1e12 && p->position[i][c] <= 1e12);
+        const BpParticleTag *tag = &p->tag[i];
+        require(tag->element <= BP_ELEMENT_MAX);
+        require(tag->name < p->names.count || tag->name == 0);
+        require(tag->residue < p->names.count || tag->residue == 0);
+        require(tag->chain < p->names.count || tag->chain == 0);
+        require(tag->type < p->names.count || tag->type == 0);
+        if (p->color != NULL && !isnan(p->color[i][0]))
+            for (int c = 0; c < 3; c++) require(p->color[i][c] >= 0 && p->color[i][c] <= 1);
+    }
+    for (size_t b = 0; b < p->bond_count; b++)
+        require(p->bonds[b][0] < p->count && p->bonds[b][1] < p->count);
+    for (int i = 0; i < 3 && p->has_cell; i++)
+        for (int c = 0; c < 3; c++) require(isfinite(p->cell[i][c]) && isfinite(p->cell_origin[c]));
+}
+
+int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size) {
+    static FILE *file = NULL;
+    static const char *const wanted[] = {"x"};
+    BpParticleFile *particles_file = NULL;
+    BpParticles particles = {0};
+    BpError err = {0};
+    bool end = false;
+    uint64_t found = 0;
+    if (size == 0) return 0;
+    if (file == NULL) file = tmpfile();
+    require(file != NULL && ftruncate(fileno(file), 0) == 0);
+    rewind(file);
+    require(fwrite(data + 1, 1, size - 1, file) == size - 1 && fflush(file) == 0);
+    const BpParticleFormat format = (BpParticleFormat)(1 + (data[0] & 127) % (BP_PARTICLES_FORMAT_COUNT - 1));
+    (void)bp_particle_format_find("x.gz", file);
+    require(bp_particle_file_open(file, "x", format, wanted, data[0] < 128 ? 0 : 1, &particles_file, &err) ==
+            BP_OK);
+    BpStatus status = BP_OK;
+    while (status == BP_OK && !end && found < FRAMES_MAX) {
+        status = bp_particle_file_next(particles_file, &particles, &end, &err);
+        if (status == BP_OK && !end) check_particles(&particles);
+        found += status == BP_OK && !end;
+    }
+    if (status != BP_OK) require(err.code == status && err.message[0] != '\0');
+    if (status == BP_OK && end) {
+        uint64_t count = 0;
+        require(found > 0);
+        require(bp_particle_file_frame(particles_file, -1, &particles, &err) == BP_OK);
+        check_particles(&particles);
+        require(particles.count == 0 || (particles.column[0] != NULL) == (data[0] >= 128));
+        require(bp_particle_file_count(particles_file, &count, &err) == BP_OK && count == found);
+        require(bp_particle_file_frame(particles_file, (int64_t)found, &particles, &err) == BP_ERR_SCENE);
+    }
+    bp_error_clear(&err);
+    bp_particles_clear(&particles);
+    bp_particle_file_close(&particles_file);
+    return 0;
+}

@@ -1,0 +1,94 @@
+/* particle_summary.c: prints what a file of particles holds, as one line of JSON; for the scripts beside it.
+ *
+ * particle_summary FILE [FRAME [COLUMN]]. Exit code 1 and the message on standard error when it is refused.
+ */
+#include "particles/elements.h"
+#include "particles/particles.h"
+
+#include <inttypes.h>
+#include <stdlib.h>
+#include <string.h>
+
+static void print_cell(const BpParticles *p) {
+    printf(", \"periodic\": %s, \"cell\": [", p->periodic ? "true" : "false");
+    for (int i = 0; i < 3; i++)
+        printf("%s[%.9g, %.9g, %.9g]", i > 0 ? ", " : "", p->cell[i][0], p->cell[i][1], p->cell[i][2]);
+    printf("], \"origin\": [%.9g, %.9g, %.9g]", p->cell_origin[0], p->cell_origin[1], p->cell_origin[2]);
+}
+
+static void print_summary(const BpParticles *p) {
+    double low[3] = {INFINITY, INFINITY, INFINITY}, high[3] = {-INFINITY, -INFINITY, -INFINITY}, sum[3] = {0};
+    size_t elements[BP_ELEMENT_MAX + 1] = {0}, alternatives = 0, dummies = 0;
+    for (size_t i = 0; i < p->count; i++) {
+        for (int c = 0; c < 3; c++) {
+            low[c] = fmin(low[c], p->position[i][c]);
+            high[c] = fmax(high[c], p->position[i][c]);
+            sum[c] += p->position[i][c];
+        }
+        elements[p->tag[i].element]++;
+        alternatives += (p->tag[i].flags & BP_PARTICLE_ALTERNATIVE) != 0;
+        dummies += (p->tag[i].flags & BP_PARTICLE_DUMMY) != 0;
+    }
+    printf("\"count\": %zu, \"bonds\": %zu, \"angstrom\": %g, \"up\": %d, \"flat\": %s, \"notes\": \"%s\", "
+           "\"alternatives\": %zu, \"dummies\": %zu",
+           p->count, p->bond_count, p->angstrom, p->up, p->flat ? "true" : "false", p->notes, alternatives,
+           dummies);
+    if (p->count > 0)
+        printf(", \"low\": [%.9g, %.9g, %.9g], \"high\": [%.9g, %.9g, %.9g], \"mean\": [%.9g, %.9g, %.9g]",
+               low[0], low[1], low[2], high[0], high[1], high[2], sum[0] / (double)p->count,
+               sum[1] / (double)p->count, sum[2] / (double)p->count);
+    printf(", \"elements\": {");
+    const char *comma = "";
+    for (int z = 0; z <= BP_ELEMENT_MAX; z++) {
+        if (elements[z] == 0) continue;
+        printf("%s\"%s\": %zu", comma, bp_elements[z].symbol, elements[z]);
+        comma = ", ";
+    }
+    printf("}");
+    if (p->has_cell) print_cell(p);
+    if (p->radius != NULL) printf(", \"radius\": %.9g", (double)p->radius[0]);
+    if (p->color != NULL)
+        printf(", \"color\": [%.6g, %.6g, %.6g]", (double)p->color[0][0], (double)p->color[0][1],
+               (double)p->color[0][2]);
+    if (p->count > 0)
+        printf(", \"first\": {\"name\": \"%s\", \"residue\": \"%s\", \"chain\": \"%s\", \"type\": \"%s\"}",
+               p->names.count > 0 ? p->names.text[p->tag[0].name] : "",
+               p->names.count > 0 ? p->names.text[p->tag[0].residue] : "",
+               p->names.count > 0 ? p->names.text[p->tag[0].chain] : "",
+               p->names.count > 0 ? p->names.text[p->tag[0].type] : "");
+    if (p->column[0] != NULL) {
+        double total = 0;
+        for (size_t i = 0; i < p->count; i++)
+            if (!isnan(p->column[0][i])) total += (double)p->column[0][i];
+        printf(", \"column_sum\": %.9g", total);
+    }
+}
+
+int main(int argc, char **argv) {
+    BpError err = {0};
+    BpParticles particles = {0};
+    BpParticleFile *file = NULL;
+    uint64_t frames = 0;
+    const char *const wanted[] = {argc > 3 ? argv[3] : ""};
+    FILE *const stream = argc > 1 ? fopen(argv[1], "rb") : NULL;
+    if (stream == NULL) return 2;
+    const BpParticleFormat format = bp_particle_format_find(argv[1], stream);
+    BpStatus status = format == BP_PARTICLES_NONE ? BP_ERR_USAGE : BP_OK;
+    if (status == BP_OK)
+        status = bp_particle_file_open(stream, argv[1], format, wanted, argc > 3, &file, &err);
+    if (status == BP_OK)
+        status = bp_particle_file_frame(file, argc > 2 ? strtol(argv[2], NULL, 10) : 0, &particles, &err);
+    if (status == BP_OK) status = bp_particle_file_count(file, &frames, &err);
+    if (status == BP_OK) {
+        printf("{\"format\": \"%s\", \"frames\": %" PRIu64 ", ", bp_particle_format_name(format), frames);
+        print_summary(&particles);
+        printf("}\n");
+    } else {
+        fprintf(stderr, "%s:%d: %s\n", err.file, err.line, err.message);
+    }
+    bp_particle_file_close(&file);
+    bp_particles_clear(&particles);
+    bp_error_clear(&err);
+    fclose(stream);
+    return status == BP_OK ? 0 : 1;
+}
