@@ -20,6 +20,7 @@
 #include "render/stop_rule.h"
 #include "report_json.h"
 #include "result_file.h"
+#include "series.h"
 #include "setup.h"
 #include "terminal.h"
 
@@ -302,9 +303,10 @@ static BpStatus deliver(const BpCommandLine *line, const BpResultFile *file, con
         result->samples_per_pixel == 0 ? " (pixels without a sample are black)" : "", result->output);
 }
 
-BpStatus bp_command_render(const BpCommandLine *line, BpError *err) {
+/* The next picture of the series. */
+static BpStatus render_picture(const BpCommandLine *line, BpSeries *series, BpError *err) {
     BpStatus status = BP_OK;
-    BpScene *scene = NULL;
+    const BpScene *scene = NULL;
     BpRender *render = NULL;
     BpDeviceInfo *devices = NULL;
     BpWaiting *waiting = NULL;
@@ -320,7 +322,7 @@ BpStatus bp_command_render(const BpCommandLine *line, BpError *err) {
     result.output = bp_result_name(&file);
 
     waiting = bp_waiting_begin(line->quiet, "reading %s", line->operands[0]);
-    BP_TRY_GOTO(status, bp_setup_scene(line, line->operands[0], &scene, err), done);
+    BP_TRY_GOTO(status, bp_series_scene(series, &scene, err), done);
     bp_waiting_end(waiting);
     waiting = NULL;
     BP_TRY_GOTO(status, bp_file_conflicts_check_scene(line, file.path, scene, err), done);
@@ -350,6 +352,17 @@ done:
     bp_waiting_end(waiting);
     bp_render_destroy(&render);
     free(devices);
-    bp_scene_destroy(&scene);
+    return status;
+}
+
+BpStatus bp_command_render(const BpCommandLine *line, BpError *err) {
+    BpSeries series;
+    BpStatus status = bp_series_begin(line, &series, err);
+    while (status == BP_OK && series.next < series.count) {
+        BpCommandLine one;
+        status = bp_series_line(&series, &one, err);
+        if (status == BP_OK) status = render_picture(&one, &series, err);
+    }
+    bp_series_end(&series);
     return status;
 }

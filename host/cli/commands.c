@@ -13,26 +13,32 @@ const BpCommand bp_commands[] = {
         .operands_min = 1,
         .operands_max = 1,
         .summary = "render a scene to a picture",
-        .description = "Renders SCENE, a JSON document (see scenes/README.md; \"-\" is standard input, for "
-                       "every command that takes a scene). The picture is named after the scene and written "
-                       "to the current folder, unless --output names another file. The ending selects the "
-                       "format: .png, .ppm, .pfm, .exr (with layers for error, samples, depth, normal and "
-                       "albedo), or .bpa, which keeps the sums of the samples for `ballpark merge`.\n"
-                       "\n"
-                       "The first line reports noise relative to mean brightness (NRMSE). Halving the noise "
-                       "takes four times as long. With --error or --time, rendering stops at that noise or "
-                       "time instead of at the scene's number of samples; with several of --error, --time "
-                       "and --spp, it stops at whichever comes first. --adaptive gives noisy pixels more "
-                       "samples and the others fewer; --spp is then the mean.\n"
-                       "\n"
-                       "Ctrl-C stops the render and writes the picture as it is. On one device, the same "
-                       "scene, seed and number of samples give the same picture bit for bit.",
+        .description =
+            "Renders SCENE, a JSON document (see scenes/README.md; \"-\" is standard input, for "
+            "every command that takes a scene), or a file of particles (.xyz, .pdb, .cif, .gro, .dump, "
+            ".lammpstrj, .data, .gsd, .csv, .ply, and .gz of each; see docs/PARTICLES.md). The picture is "
+            "named after the scene and written "
+            "to the current folder, unless --output names another file. The ending selects the "
+            "format: .png, .ppm, .pfm, .exr (with layers for error, samples, depth, normal and "
+            "albedo), or .bpa, which keeps the sums of the samples for `ballpark merge`.\n"
+            "\n"
+            "The first line reports noise relative to mean brightness (NRMSE). Halving the noise "
+            "takes four times as long. With --error or --time, rendering stops at that noise or "
+            "time instead of at the scene's number of samples; with several of --error, --time "
+            "and --spp, it stops at whichever comes first. --adaptive gives noisy pixels more "
+            "samples and the others fewer; --spp is then the mean.\n"
+            "\n"
+            "Ctrl-C stops the render and writes the picture as it is. On one device, the same "
+            "scene, seed and number of samples give the same picture bit for bit.",
         .examples = "  ballpark render cover.json                          to cover.png\n"
                     "  ballpark render cover.json --width 300 --spp 20     a quick look\n"
                     "  ballpark render cover.json --error 1                until noise is 1 %\n"
                     "  ballpark render cover.json --error 1 --adaptive     faster on most scenes\n"
                     "  ballpark render cover.json --time 30 -o half.exr    for 30 seconds\n"
                     "  ballpark render cover.json -o - | display           into another program\n"
+                    "  ballpark render protein.pdb                         a molecule, well placed and lit\n"
+                    "  ballpark render run.gsd --frames ::10 -o run.png    run-0000.png, run-0010.png, ...\n"
+                    "  ballpark render protein.pdb --turntable 36          ten degrees from one to the next\n"
                     "  ballpark generate cover -o - | ballpark render - -o cover.png\n",
         .bit = BP_RENDER,
         .run = bp_command_render,
@@ -161,6 +167,24 @@ const BpCommand bp_commands[] = {
                     "  ballpark generate field --count 10000000 -o field.ply\n",
         .bit = BP_GENERATE,
         .run = bp_command_generate,
+    },
+    {
+        .name = "scene",
+        .operands = "FILE",
+        .operands_min = 1,
+        .operands_max = 1,
+        .summary = "print the scene that a file stands for, to edit and cite",
+        .description = "Prints the scene that `ballpark render FILE` would render as a JSON document, to "
+                       "standard output or with -o "
+                       "to a file. For a file of particles (XYZ, PDB, mmCIF, GRO, LAMMPS dump and data, GSD, "
+                       "CSV, PLY; each also "
+                       "packed by gzip), that is a document with all choices in it: camera, light, style. "
+                       "The particles stay in "
+                       "their file, which the document names. docs/PARTICLES.md describes its members.",
+        .examples = "  ballpark scene protein.pdb -o protein.json\n"
+                    "  ballpark scene run.gsd --frame -1 | ballpark render - -o last.png\n",
+        .bit = BP_SCENE,
+        .run = bp_command_scene,
     },
     {
         .name = "help",

@@ -18,10 +18,11 @@ enum {
     BP_BENCH = 1 << 5,
     BP_DEVICES = 1 << 6,
     BP_GENERATE = 1 << 7,
+    BP_SCENE = 1 << 8,
     /* All that trace paths. */
     BP_TRACERS = BP_RENDER | BP_CHECK | BP_EXPLAIN | BP_COST | BP_BENCH,
     /* All that have something to say beside their result. */
-    BP_TALKERS = BP_TRACERS | BP_MERGE | BP_GENERATE,
+    BP_TALKERS = BP_TRACERS | BP_MERGE | BP_GENERATE | BP_SCENE,
 };
 
 /* OPTION(number, name, letter or 0, commands, help, type, member of BpCommandLine, value). RENDER_OPTION is
@@ -32,13 +33,15 @@ enum {
  *   BP_WHOLE(shown, least, most)     uint32_t or uint64_t: a whole number
  *   BP_REAL(shown, above, most)      double: above the one, up to the other
  *   BP_PIXEL(shown, most)            BpPixel: two whole numbers up to `most`
+ *   BP_SIGNED(shown)                 int64_t: a whole number that may be negative
+ *   BP_SLICE(shown)                  BpSlice: A:B:S
  *   BP_CHOICE(shown, names, first)   an enumeration with its names (base/names.h), from its value `first` on
  *   BP_WORD(word, ...)               const char *: one of these words
  *   BP_TEXT(shown)                   const char *: any text that is not empty
  *   BP_RESULT(shown)                 const char *: a file to write, which no other file of the run may be
  * A choice without a name to show ("") and a word are shown as all their words: robust|plain. */
 #define BP_OPTION_LIST(OPTION, RENDER_OPTION)                                                                \
-    OPTION(OUTPUT, "output", 'o', BP_RENDER | BP_COST | BP_MERGE | BP_BENCH | BP_GENERATE,                   \
+    OPTION(OUTPUT, "output", 'o', BP_RENDER | BP_COST | BP_MERGE | BP_BENCH | BP_GENERATE | BP_SCENE,        \
            "where the result goes; \"-\" is standard output", const char *, output, BP_RESULT("FILE"))       \
     RENDER_OPTION(SPP, "spp", 0, BP_RENDER | BP_CHECK,                                                       \
                   "samples per pixel (default: render: the scene's number, check: 1024)", uint64_t,          \
@@ -50,6 +53,19 @@ enum {
            BP_REAL("SECONDS", 0, 1e7))                                                                       \
     OPTION(WIDTH, "width", 0, BP_TRACERS, "width of the picture in pixels; the aspect ratio stays",          \
            uint32_t, width, BP_WHOLE("N", 1, BP_PICTURE_SIDE_MAX))                                           \
+    OPTION(FRAME, "frame", 0, BP_TRACERS | BP_SCENE,                                                         \
+           "which frame of a file of particles; 0: the first (default), -1: the last", int64_t, frame,       \
+           BP_SIGNED("N"))                                                                                   \
+    OPTION(FRAMES, "frames", 0, BP_RENDER,                                                                   \
+           "a numbered picture of each of these frames, by one camera and one range of colours; as in "      \
+           "Python, from A up to but without B, every S-th",                                                 \
+           BpSlice, frames, BP_SLICE("A:B:S"))                                                               \
+    OPTION(TURNTABLE, "turntable", 0, BP_RENDER,                                                             \
+           "N numbered pictures on a circle around the axis that is up", uint32_t, turntable,                \
+           BP_WHOLE("N", 2, 100000))                                                                         \
+    OPTION(FIT, "fit", 0, BP_TRACERS | BP_SCENE,                                                             \
+           "move the camera so that particles, or all spheres where there are none, fill the picture", bool, \
+           fit, BP_FLAG)                                                                                     \
     RENDER_OPTION(DEPTH, "depth", 0, BP_TRACERS,                                                             \
                   "maximum number of ray segments per path; 0: black, 1: only sky and lamps", uint32_t,      \
                   max_depth, BP_WHOLE("N", 0, BP_DEPTH_MAX))                                                 \

@@ -9,7 +9,7 @@
 #include <stdio.h>
 #include <string.h>
 
-typedef enum ValueKind { FLAG, WHOLE, REAL, PIXEL, CHOICE, WORD, TEXT, RESULT } ValueKind;
+typedef enum ValueKind { FLAG, WHOLE, REAL, PIXEL, CHOICE, WORD, TEXT, RESULT, SIGNED, SLICE } ValueKind;
 
 typedef struct OptionRow {
     const char *name, *help;
@@ -35,6 +35,8 @@ typedef struct OptionRow {
     .kind = WORD, .shown = "", .words = (const char *const[]) {                                              \
         __VA_ARGS__, NULL                                                                                    \
     }
+#define BP_SIGNED(name) .kind = SIGNED, .shown = (name)
+#define BP_SLICE(name) .kind = SLICE, .shown = (name)
 #define BP_TEXT(name) .kind = TEXT, .shown = (name)
 #define BP_RESULT(name) .kind = RESULT, .shown = (name)
 
@@ -112,6 +114,14 @@ BpStatus bp_option_store(BpOption option, const char *text, BpCommandLine *line,
     case PIXEL: {
         BpPixel *pixel = member;
         BP_TRY(bp_value_pair(name, text, row->most, &pixel->x, &pixel->y, err));
+        break;
+    }
+    case SIGNED:
+        BP_TRY(bp_value_signed(name, text, member, err));
+        break;
+    case SLICE: {
+        BpSlice *slice = member;
+        BP_TRY(bp_value_slice(name, text, &slice->first, &slice->last, &slice->step, err));
         break;
     }
     case CHOICE:

@@ -26,6 +26,13 @@ typedef struct BpPixel {
     uint32_t x, y;
 } BpPixel;
 
+/* A range of frames as Python writes it: from `first` up to but without `last`, every `step`-th; below 0:
+ * counted from the end. */
+typedef struct BpSlice {
+    int64_t first, last; /* last INT64_MAX: to the end */
+    uint64_t step;
+} BpSlice;
+
 /* What the command line says: a member for each option, as option_list.h declares it. Every member is
  * checked; one whose option was not given is 0, NULL or the enumeration's first value, and bp_option_given()
  * tells. Texts point into argv, or are static. */

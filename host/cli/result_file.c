@@ -37,8 +37,13 @@ static const char *format_ending(BpFormat format) {
 static BpStatus default_name(const char *path, BpFormat format, BpResultFile *result, BpError *err) {
     const char *base = strrchr(path, '/');
     base = base == NULL ? path : base + 1;
-    const char *dot = strrchr(base, '.');
-    const int stem = dot == NULL || dot == base ? (int)strlen(base) : (int)(dot - base);
+    int stem = (int)strlen(base);
+    if (stem > 3 && strcmp(base + stem - 3, ".gz") == 0) stem -= 3; /* protein.pdb.gz becomes protein.png */
+    for (int i = stem - 1; i > 0; i--) {
+        if (base[i] != '.') continue;
+        stem = i;
+        break;
+    }
     const int length =
         snprintf(result->path, sizeof result->path, "%.*s%s", stem, base, format_ending(format));
     if (length >= (int)sizeof result->path)

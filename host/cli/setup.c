@@ -6,6 +6,7 @@
 #include "child_process.h"
 #include "file_conflicts.h"
 #include "formats/input_file.h"
+#include "formats/scene_parse.h"
 #include "opencl/pocl.h"
 #include "opencl/self_test.h"
 #include "packed/rounding.h"
@@ -16,26 +17,35 @@
 #include <string.h>
 #include <unistd.h>
 
-static BpStatus load(const char *path, BpScene **scene, BpError *err) {
+static BpStatus load(const char *path, const BpSceneChanges *changes, BpScene **scene, BpError *err) {
     static const char name[] = "standard input";
     char *text = NULL;
     size_t length = 0;
-    if (strcmp(path, "-") != 0) return bp_scene_load(path, scene, err);
+    if (strcmp(path, "-") != 0) return bp_scene_load_changed(path, changes, scene, err);
     if (isatty(STDIN_FILENO))
         return bp_fail(err, BP_ERR_USAGE,
                        "the scene \"-\" is standard input, which is the terminal; pipe a scene into it: "
                        "ballpark generate cover -o - | ballpark render - -o cover.png");
     BP_TRY(bp_stream_read(stdin, 0, name, &text, &length, err));
-    const BpStatus status = bp_scene_parse(text, length, name, scene, err);
+    const BpStatus status = bp_scene_parse_changed(text, length, name, changes, scene, err);
     free(text);
     return status;
 }
 
-BpStatus bp_setup_load(const BpCommandLine *line, const char *path, BpScene **scene, BpError *err) {
-    BP_TRY(load(path, scene, err));
+BpStatus bp_setup_load_changed(const BpCommandLine *line, const char *path, const BpSceneChanges *changes,
+                               BpScene **scene, BpError *err) {
+    BP_TRY(load(path, changes, scene, err));
     const BpStatus status = bp_file_conflicts_check_scene(line, NULL, *scene, err);
     if (status != BP_OK) bp_scene_destroy(scene);
     return status;
+}
+
+BpStatus bp_setup_load(const BpCommandLine *line, const char *path, BpScene **scene, BpError *err) {
+    BpSceneChanges changes = {
+        .has_frame = bp_option_given(line, BP_OPTION_FRAME), .frame = line->frame, .fit = line->fit};
+    BP_TRY(bp_setup_load_changed(line, path, &changes, scene, err));
+    if (!line->quiet) bp_show((*scene)->notes, true, stderr);
+    return BP_OK;
 }
 
 BpStatus bp_setup_scene(const BpCommandLine *line, const char *path, BpScene **scene, BpError *err) {

@@ -5,13 +5,20 @@
 #ifndef BP_CLI_SETUP_H
 #define BP_CLI_SETUP_H
 
+#include "formats/scene_parse.h"
 #include "options.h"
 
 /* Loads `path`; "-" is standard input, and messages call the scene so; its clouds are then relative to
- * the current folder. */
+ * the current folder. A file of particles becomes a scene (--frame, --fit); what was guessed is noted on
+ * standard error, unless --quiet. */
 BpStatus bp_setup_load(const BpCommandLine *line, const char *path, BpScene **scene, BpError *err);
 
-/* The same, and applies --width. */
+/* The same, with changes of the caller's own instead of --frame and --fit, and without the notes on standard
+ * error. */
+BpStatus bp_setup_load_changed(const BpCommandLine *line, const char *path, const BpSceneChanges *changes,
+                               BpScene **scene, BpError *err);
+
+/* The first, and applies --width. */
 BpStatus bp_setup_scene(const BpCommandLine *line, const char *path, BpScene **scene, BpError *err);
 
 /* The scene's own settings, overridden by those that were given: the list's RENDER_OPTIONs, and --effects.

@@ -67,3 +67,40 @@ BpStatus bp_value_pair(const char *option, const char *text, uint64_t max, uint3
     *y = (uint32_t)numbers[1];
     return BP_OK;
 }
+
+BpStatus bp_value_signed(const char *option, const char *text, int64_t *value, BpError *err) {
+    const size_t sign = text[0] == '-';
+    const size_t digits = strspn(text + sign, "0123456789");
+    if (digits == 0 || digits > 15 || text[sign + digits] != '\0')
+        return bp_fail(err, BP_ERR_USAGE,
+                       "%s: expected a whole number (0: the first, -1: the last), found \"%.80s\"", option,
+                       text);
+    *value = strtoll(text, NULL, 10);
+    return BP_OK;
+}
+
+BpStatus bp_value_slice(const char *option, const char *text, int64_t *first, int64_t *last, uint64_t *step,
+                        BpError *err) {
+    char part[3][24] = {"", "", ""};
+    int count = 0;
+    bool good = strchr(text, ':') != NULL;
+    for (const char *c = text; good; count++) {
+        const size_t length = strcspn(c, ":");
+        good = count < 3 && length < sizeof part[0];
+        if (good) memcpy(part[count], c, length);
+        if (good && c[length] == '\0') break;
+        c += length + 1;
+    }
+    *first = 0;
+    *last = INT64_MAX;
+    *step = 1;
+    if (good && part[0][0] != '\0') good = bp_value_signed(option, part[0], first, NULL) == BP_OK;
+    if (good && part[1][0] != '\0') good = bp_value_signed(option, part[1], last, NULL) == BP_OK;
+    if (good && part[2][0] != '\0')
+        good = bp_value_whole(option, part[2], 1, 1000000000, step, NULL) == BP_OK;
+    if (good) return BP_OK;
+    return bp_fail(err, BP_ERR_USAGE,
+                   "%s: expected A:B:S, such as 0:100:10 (from frame 0 up to 99, every 10th) or :: (all), "
+                   "found \"%.80s\"",
+                   option, text);
+}

@@ -19,6 +19,14 @@ BpStatus bp_value_real(const char *option, const char *text, double min, double 
 BpStatus bp_value_choice(const char *option, const char *text, const char *const *words, size_t count,
                          unsigned *index, BpError *err);
 
+/* A whole number with or without a minus, of at most 15 digits. */
+BpStatus bp_value_signed(const char *option, const char *text, int64_t *value, BpError *err);
+
+/* "A:B:S" as Python writes slices: each may be left out, A and B may be negative, S is at least 1. *last is
+ * INT64_MAX where B is left out. */
+BpStatus bp_value_slice(const char *option, const char *text, int64_t *first, int64_t *last, uint64_t *step,
+                        BpError *err);
+
 /* "X,Y", both whole and up to `max`. */
 BpStatus bp_value_pair(const char *option, const char *text, uint64_t max, uint32_t *x, uint32_t *y,
                        BpError *err);

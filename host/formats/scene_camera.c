@@ -4,7 +4,10 @@
  * Knows: the names and defaults of the book's fourth-edition camera. */
 #include "scene_parse.h"
 
+#include "scene/fit.h"
+
 #include <math.h>
+#include <string.h>
 
 #define PI 3.14159265358979323846
 
@@ -72,11 +75,88 @@ static BpStatus read_lens(const BpNode *node, BpCamera *camera, BpError *err) {
     return BP_OK;
 }
 
+static BpStatus read_view(const BpNode *node, BpCamera *camera, BpError *err) {
+    if (node->value == NULL) {
+        camera->view = BP_VIEW_THREE_QUARTER;
+        return BP_OK;
+    }
+    if (json_is_string(node->value)) {
+        int choice = 0;
+        BP_TRY(bp_node_choice(node, bp_view_names + 1, BP_VIEW_COUNT - 1, &choice, err));
+        camera->view = (BpView)(choice + 1);
+        return BP_OK;
+    }
+    if (!json_is_array(node->value))
+        return bp_node_wrong(node,
+                             "the name of a view, such as \"front\", or a direction to the camera, such as "
+                             "[1, 1, 1]",
+                             err);
+    BP_TRY(bp_node_vector(node, camera->view_direction, err));
+    camera->view = BP_VIEW_NONE;
+    const double *const d = camera->view_direction;
+    if (d[0] != 0 || d[1] != 0 || d[2] != 0) return BP_OK;
+    return bp_node_wrong(node, "a direction to the camera, such as [1, 1, 1]", err);
+}
+
+/* "fit" and what belongs to it. */
+static BpStatus read_fit(const BpNode *node, BpCamera *camera, BpError *err) {
+    static const char *const fit_names[] = {"scene", "particles"};
+    static const char *const without[] = {"view", "margin"}, *const beside[] = {"lookfrom", "lookat",
+                                                                                "focus_dist"};
+    const BpNode fit = bp_node_member(node, "fit");
+    const BpNode view = bp_node_member(node, "view");
+    const BpNode margin = bp_node_member(node, "margin");
+    const BpNode vup = bp_node_member(node, "vup");
+    if (fit.value == NULL) {
+        for (size_t i = 0; i < BP_COUNT(without); i++) {
+            const BpNode member = bp_node_member(node, without[i]);
+            if (member.value != NULL)
+                return bp_node_fail(&member, BP_PART_NAME, err,
+                                    "found without \"fit\", expected \"fit\": \"scene\" beside it");
+        }
+        return BP_OK;
+    }
+    for (size_t i = 0; i < BP_COUNT(beside); i++) {
+        const BpNode member = bp_node_member(node, beside[i]);
+        if (member.value != NULL)
+            return bp_node_fail(
+                &member, BP_PART_NAME, err,
+                "found beside \"fit\", which chooses it; expected one of the two: remove one");
+    }
+    const BpNode angle = bp_node_member(node, "defocus_angle");
+    if (angle.value != NULL)
+        return bp_node_fail(
+            &angle, BP_PART_NAME, err,
+            "found beside \"fit\", which chooses the distance in focus; expected \"aperture\" instead");
+    int choice = 0;
+    BP_TRY(bp_node_choice(&fit, fit_names, BP_COUNT(fit_names), &choice, err));
+    camera->fit = (BpFit)(choice + 1);
+    camera->margin = BP_FIT_MARGIN;
+    BP_TRY(bp_node_number(&margin, &camera->margin, err));
+    if (!(camera->margin >= 0 && camera->margin <= 0.45))
+        return bp_node_wrong(&margin,
+                             "the share of the picture that is left free at each side, from 0 to 0.45", err);
+    if (vup.value != NULL) memcpy(camera->fit_vup, camera->vup, sizeof camera->fit_vup);
+    return read_view(&view, camera, err);
+}
+
 BpStatus bp_parse_camera(const BpNode *node, BpCamera *camera, BpError *err) {
-    static const char *const names[] = {"image_width",   "image_height",  "aspect_ratio", "samples_per_pixel",
-                                        "max_depth",     "vfov",          "lookfrom",     "lookat",
-                                        "vup",           "defocus_angle", "aperture",     "focus_dist",
-                                        "pixel_sampling"};
+    static const char *const names[] = {"image_width",
+                                        "image_height",
+                                        "aspect_ratio",
+                                        "samples_per_pixel",
+                                        "max_depth",
+                                        "vfov",
+                                        "lookfrom",
+                                        "lookat",
+                                        "vup",
+                                        "defocus_angle",
+                                        "aperture",
+                                        "focus_dist",
+                                        "pixel_sampling",
+                                        "fit",
+                                        "view",
+                                        "margin"};
     static const char *const sampling_names[] = {[BP_PIXEL_SQUARE] = "square", [BP_PIXEL_CENTER] = "center"};
     bp_camera_defaults(camera);
     BP_TRY(bp_node_object(node, names, BP_COUNT(names), err));
@@ -97,5 +177,6 @@ BpStatus bp_parse_camera(const BpNode *node, BpCamera *camera, BpError *err) {
     BP_TRY(bp_node_vector(&vup, camera->vup, err));
     BP_TRY(bp_node_choice(&sampling, sampling_names, BP_COUNT(sampling_names), &choice, err));
     camera->pixel_sampling = (BpPixelSampling)choice;
+    BP_TRY(read_fit(node, camera, err));
     return read_lens(node, camera, err);
 }

@@ -5,14 +5,19 @@
 #include "scene_parse.h"
 
 #include "input_file.h"
+#include "particle_document.h"
 
 #include "base/names.h"
+#include "particles/particles.h"
 
+#include "scene/fit.h"
 #include "scene/scene_fault.h"
 
+#include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/stat.h>
 
 static BpStatus parse_background(const BpNode *node, BpScene *scene, BpError *err) {
     static const char *const names[] = {"bottom", "top"};
@@ -32,12 +37,11 @@ static BpStatus parse_background(const BpNode *node, BpScene *scene, BpError *er
 }
 
 static BpStatus parse_materials(const BpNode *node, BpScene *scene, BpError *err) {
-    if (node->value == NULL) return BP_OK;
-    if (!json_is_object(node->value))
+    if (node->value != NULL && !json_is_object(node->value))
         return bp_node_wrong(
             node, "an object of named materials: { \"ground\": { \"type\": \"lambertian\", ... } }", err);
     const size_t count = json_object_size(node->value);
-    scene->materials = calloc(count > 0 ? count : 1, sizeof *scene->materials);
+    scene->materials = calloc(count + 1, sizeof *scene->materials); /* one for particles */
     if (scene->materials == NULL)
         return bp_fail(err, BP_ERR_MEMORY, "out of memory for %zu materials", count);
     const char *name;
@@ -201,7 +205,10 @@ static BpStatus refuse_faults(const BpNode *root, const BpScene *scene, BpError 
         size_t cloud = scene->point_file_count;
         while (cloud > 0 && scene->point_files[cloud - 1].first > fault.index) --cloud;
         const BpNode sphere = bp_node_element(&spheres, written);
-        const BpNode entry = bp_node_element(&clouds, cloud - (cloud > 0));
+        const BpNode particles = bp_node_member(root, "particles");
+        const size_t place = cloud - (cloud > 0), cloud_count = json_array_size(clouds.value);
+        const BpNode entry = place < cloud_count ? bp_node_element(&clouds, place)
+                                                 : bp_node_element(&particles, place - cloud_count);
         return bp_node_fail(written < listed ? &sphere : &entry, BP_PART_VALUE, err, "%s and %s: %s",
                             bp_sphere_name(scene, fault.other, a), bp_sphere_name(scene, fault.index, b),
                             fault.text);
@@ -235,9 +242,56 @@ static BpStatus parse_head(const BpNode *root, BpScene *scene, BpError *err) {
     return bp_copy_text(source, &scene->source, err);
 }
 
-static BpStatus parse_body(const BpNode *root, unsigned flags, BpScene *scene, BpError *err) {
-    static const char *const names[] = {"format",   "title",     "source",  "camera", "background",
-                                        "transfer", "materials", "spheres", "clouds", "$schema"};
+void bp_scene_view(BpScene *scene, double direction[3]) {
+    BpCamera *const camera = &scene->camera;
+    const bool asked = camera->fit_vup[0] != 0 || camera->fit_vup[1] != 0 || camera->fit_vup[2] != 0;
+    int up = scene->up;
+    for (int i = 0; i < 3 && asked; i++)
+        if (fabs(camera->fit_vup[i]) > fabs(camera->fit_vup[up])) up = i;
+    for (int i = 0; i < 3; i++) camera->vup[i] = asked ? camera->fit_vup[i] : i == up;
+    if (scene->flat && !asked && camera->view == BP_VIEW_THREE_QUARTER)
+        bp_view_direction(BP_VIEW_FRONT, up, direction); /* two dimensions have one good view */
+    else if (camera->view == BP_VIEW_NONE)
+        memcpy(direction, camera->view_direction, sizeof camera->view_direction);
+    else
+        bp_view_direction(camera->view, up, direction);
+}
+
+static BpStatus fit_camera(const BpNode *node, const BpSceneChanges *changes, BpScene *scene, BpError *err) {
+    BpCamera *const camera = &scene->camera;
+    const BpNode fit = bp_node_member(node, "fit");
+    if (changes->camera != NULL) {
+        memcpy(camera->lookfrom, changes->camera->lookfrom, sizeof camera->lookfrom);
+        memcpy(camera->lookat, changes->camera->lookat, sizeof camera->lookat);
+        memcpy(camera->vup, changes->camera->vup, sizeof camera->vup);
+        camera->focus_dist = changes->camera->focus_dist;
+        return BP_OK;
+    }
+    if (camera->fit == BP_FIT_NONE) return BP_OK;
+    const bool all = camera->fit == BP_FIT_SCENE;
+    const size_t first = all ? 0 : scene->particle_first;
+    double direction[3];
+    if (!all && !scene->has_particles)
+        return bp_node_fail(&fit, BP_PART_VALUE, err,
+                            "found \"particles\", but the scene has none; expected \"scene\", or particles");
+    bp_scene_view(scene, direction);
+    const BpSphere *const spheres = scene->spheres + first;
+    const size_t count = scene->sphere_count - first;
+    BpError inner = {0};
+    const BpStatus status = changes->turning > 0
+                                ? bp_camera_fit_turning(spheres, count, direction, camera->margin,
+                                                        changes->turning, camera, &inner)
+                                : bp_camera_fit(spheres, count, direction, camera->margin, camera, &inner);
+    if (status == BP_OK) return BP_OK;
+    bp_node_fail(fit.value != NULL ? &fit : node, BP_PART_VALUE, err, "%s", inner.message);
+    bp_error_clear(&inner);
+    return status;
+}
+
+static BpStatus parse_body(const BpNode *root, const BpSceneChanges *changes, BpScene *scene, BpError *err) {
+    static const char *const names[] = {"format",     "title",     "source",    "camera",
+                                        "background", "transfer",  "materials", "spheres",
+                                        "clouds",     "particles", "$schema"};
     BP_TRY(bp_node_object(root, names, BP_COUNT(names), err));
     BP_TRY(bp_node_require(root, "camera", "one, such as \"camera\": { \"image_width\": 400 }", err));
     BP_TRY(parse_head(root, scene, err));
@@ -246,20 +300,29 @@ static BpStatus parse_body(const BpNode *root, unsigned flags, BpScene *scene, B
     const BpNode materials = bp_node_member(root, "materials");
     const BpNode spheres = bp_node_member(root, "spheres");
     const BpNode clouds = bp_node_member(root, "clouds");
+    const BpNode particles = bp_node_member(root, "particles");
     BP_TRY(bp_parse_camera(&camera, &scene->camera, err));
     BP_TRY(parse_background(&background, scene, err));
     BP_TRY(parse_materials(&materials, scene, err));
     BpMaterialIndex index = {0};
     BpStatus status = index_materials(scene, &index, err);
     if (status == BP_OK) status = parse_spheres(&spheres, &index, scene, err);
-    if (status == BP_OK) status = bp_parse_clouds(&clouds, &index, flags, scene, err);
+    if (status == BP_OK) status = bp_parse_clouds(&clouds, &index, changes->flags, scene, err);
+    if (status == BP_OK) status = bp_parse_particles(&particles, &index, changes, scene, err);
     free(index.by_name);
     BP_TRY(status);
+    if (changes->fit && scene->camera.fit == BP_FIT_NONE) {
+        scene->camera.fit = scene->has_particles ? BP_FIT_PARTICLES : BP_FIT_SCENE;
+        scene->camera.view = BP_VIEW_THREE_QUARTER;
+        scene->camera.margin = BP_FIT_MARGIN;
+    }
+    if (changes->frame_count != NULL) return BP_OK;
+    if ((changes->flags & BP_PARSE_NO_CLOUDS) == 0) BP_TRY(fit_camera(&camera, changes, scene, err));
     return refuse_faults(root, scene, err);
 }
 
-BpStatus bp_scene_parse_with(const char *text, size_t length, const char *name, unsigned flags,
-                             BpScene **scene, BpError *err) {
+BpStatus bp_scene_parse_changed(const char *text, size_t length, const char *name,
+                                const BpSceneChanges *changes, BpScene **scene, BpError *err) {
     BpDocument document = {0};
     BpScene *result = NULL;
     *scene = NULL;
@@ -267,7 +330,7 @@ BpStatus bp_scene_parse_with(const char *text, size_t length, const char *name, 
     BP_TRY_GOTO(status, bp_document_open(text, length, name, &document, err), done);
     BP_TRY_GOTO(status, bp_scene_create_empty(name, &result, err), done);
     const BpNode root = bp_node_root(&document);
-    BP_TRY_GOTO(status, parse_body(&root, flags, result, err), done);
+    BP_TRY_GOTO(status, parse_body(&root, changes, result, err), done);
     *scene = result;
     result = NULL;
 done:
@@ -276,16 +339,49 @@ done:
     return status;
 }
 
+BpStatus bp_scene_parse_with(const char *text, size_t length, const char *name, unsigned flags,
+                             BpScene **scene, BpError *err) {
+    const BpSceneChanges changes = {.flags = flags};
+    return bp_scene_parse_changed(text, length, name, &changes, scene, err);
+}
+
 BpStatus bp_scene_parse(const char *text, size_t length, const char *name, BpScene **scene, BpError *err) {
     return bp_scene_parse_with(text, length, name, 0, scene, err);
 }
 
-BpStatus bp_scene_load(const char *path, BpScene **scene, BpError *err) {
+/* A document for a file of particles; *text is NULL for other files. */
+static BpStatus make_document(const char *path, char **text, BpError *err) {
+    FILE *stream = NULL;
+    uint64_t size = 0;
+    *text = NULL;
+    struct stat state;
+    if (stat(path, &state) == 0 && S_ISFIFO(state.st_mode)) return BP_OK; /* what is read from it is gone */
+    BP_TRY(bp_file_open(path, false, "a scene document (a JSON file) or a file of particles", &stream, &size,
+                        err));
+    const BpParticleFormat format = bp_particle_format_find(path, stream);
+    fclose(stream);
+    return format == BP_PARTICLES_NONE ? BP_OK : bp_particle_document(path, text, err);
+}
+
+BpStatus bp_scene_load_changed(const char *path, const BpSceneChanges *changes, BpScene **scene,
+                               BpError *err) {
     char *text = NULL;
     size_t length = 0;
+    BpSceneChanges made = *changes;
     *scene = NULL;
-    BP_TRY(bp_file_read(path, "a scene document (a JSON file)", &text, &length, err));
-    const BpStatus status = bp_scene_parse(text, length, path, scene, err);
+    BP_TRY(make_document(path, &text, err));
+    if (text != NULL) {
+        made.flags |= BP_PARSE_MADE;
+        length = strlen(text);
+    } else {
+        BP_TRY(bp_file_read(path, "a scene document (a JSON file)", &text, &length, err));
+    }
+    const BpStatus status = bp_scene_parse_changed(text, length, path, &made, scene, err);
     free(text);
     return status;
+}
+
+BpStatus bp_scene_load(const char *path, BpScene **scene, BpError *err) {
+    const BpSceneChanges none = {0};
+    return bp_scene_load_changed(path, &none, scene, err);
 }

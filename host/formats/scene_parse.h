@@ -8,7 +8,44 @@
 #include "document.h"
 #include "scene/scene.h"
 
-enum { BP_PARSE_NO_CLOUDS = 1 }; /* check the members of "clouds", but open none of their files */
+enum {
+    BP_PARSE_NO_CLOUDS = 1, /* check the members of "clouds" and "particles", but open none of their files */
+    BP_PARSE_MADE = 2 /* the document was made for one file: errors in that need not name the document */
+};
+
+/* Files of particles that stay open, so that a trajectory is read once for all its frames. Zeros at first. */
+enum { BP_PARTICLE_CACHE_SIZE = 16 };
+typedef struct BpParticleCache {
+    struct {
+        char *path;
+        FILE *stream;
+        struct BpParticleFile *file;
+    } entry[BP_PARTICLE_CACHE_SIZE];
+    size_t count;
+} BpParticleCache;
+void bp_particle_cache_clear(BpParticleCache *cache);
+
+/* What a command line asks for beyond the document. Zeros: nothing. */
+typedef struct BpSceneChanges {
+    unsigned flags; /* BP_PARSE_... */
+    bool has_frame;
+    int64_t frame;          /* of every file of particles that has frames */
+    bool fit;               /* a camera fitted to the particles, or to the scene where there are none */
+    uint32_t turning;       /* the fitted camera is for a turntable of so many pictures */
+    const BpCamera *camera; /* Optional: takes its place, direction and focus instead of fitting */
+    BpParticleCache *cache; /* Optional: keeps files open from frame to frame */
+    uint64_t *frame_count;  /* Optional: counts frames instead of reading any; of several files, the least */
+    bool has_range;         /* of the column that gives colours, where the document has none */
+    double range[2];
+} BpSceneChanges;
+
+BpStatus bp_scene_parse_changed(const char *text, size_t length, const char *name,
+                                const BpSceneChanges *changes, BpScene **scene, BpError *err);
+/* The direction to the camera that "view" means, and the axis that is up, in camera->vup. */
+void bp_scene_view(BpScene *scene, double direction[3]);
+/* bp_scene_load with changes. */
+BpStatus bp_scene_load_changed(const char *path, const BpSceneChanges *changes, BpScene **scene,
+                               BpError *err);
 
 /* bp_scene_parse with flags. */
 BpStatus bp_scene_parse_with(const char *text, size_t length, const char *name, unsigned flags,
@@ -27,6 +64,19 @@ typedef struct BpMaterialIndex {
 /* Finds the material that the node, a string, names; the error names the nearest. */
 BpStatus bp_parse_material_name(const BpNode *node, const BpMaterialIndex *index, uint32_t *material,
                                 BpError *err);
+
+/* Adds the particles of the files of "particles" to the scene, whose materials have room for one more. */
+BpStatus bp_parse_particles(const BpNode *node, const BpMaterialIndex *index, const BpSceneChanges *changes,
+                            BpScene *scene, BpError *err);
+/* Adds to an error that stands in the file of points where the scene asks for that file. */
+void bp_name_document(const BpNode *file_node, const char *what, BpError *err);
+/* Keeps the name of a file of points, whose spheres begin at `first`. `particles`: see BpPointFile, copied.
+ */
+BpStatus bp_keep_point_file(const char *file, size_t first, const char *particles, BpScene *scene,
+                            BpError *err);
+
+/* Names the file of an entry of "particles" by its absolute path; `document`: the path of what named it. */
+BpStatus bp_point_file_make_absolute(const char *document, BpPointFile *file, BpError *err);
 
 /* Adds the points of the clouds' files to the scene's spheres; `flags` as in bp_scene_parse_with. */
 BpStatus bp_parse_clouds(const BpNode *node, const BpMaterialIndex *index, unsigned flags, BpScene *scene,

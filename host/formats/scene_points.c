@@ -9,21 +9,23 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* Adds to an error that stands in the file of points where the scene asks for that file. */
-static void name_document(const BpNode *file_node, BpError *err) {
+void bp_name_document(const BpNode *file_node, const char *what, BpError *err) {
     BpError place = {0};
     const size_t used = strlen(err->message);
     bp_node_fail(file_node, BP_PART_VALUE, &place, "%s", "");
-    snprintf(err->message + used, sizeof err->message - used, " (a cloud of %.400s:%d:%d)", place.file,
+    snprintf(err->message + used, sizeof err->message - used, " (%s of %.400s:%d:%d)", what, place.file,
              place.line, place.column);
     bp_error_clear(&place);
 }
 
-static BpStatus keep_origin(const char *file, size_t first, BpScene *scene, BpError *err) {
+BpStatus bp_keep_point_file(const char *file, size_t first, const char *particles, BpScene *scene,
+                            BpError *err) {
     BpPointFile *files = realloc(scene->point_files, (scene->point_file_count + 1) * sizeof *files);
     if (files == NULL) return bp_fail(err, BP_ERR_MEMORY, "out of memory for a cloud");
     scene->point_files = files;
     files[scene->point_file_count++] = (BpPointFile){.first = first};
+    if (particles != NULL)
+        BP_TRY(bp_copy_text(particles, &files[scene->point_file_count - 1].particles, err));
     return bp_copy_text(file, &files[scene->point_file_count - 1].file, err);
 }
 
@@ -54,8 +56,8 @@ static BpStatus read_file(const BpNode *file_node, const char *file, const BpPly
     const size_t first = scene->sphere_count;
     status = bp_ply_read(stream, size, path, options, scene, err);
     fclose(stream);
-    if (status == BP_ERR_SCENE && err != NULL) name_document(file_node, err);
-    if (status == BP_OK) status = keep_origin(file, first, scene, err);
+    if (status == BP_ERR_SCENE && err != NULL) bp_name_document(file_node, "a cloud", err);
+    if (status == BP_OK) status = bp_keep_point_file(file, first, NULL, scene, err);
 done:
     free(path);
     return status;

@@ -5,6 +5,7 @@
 #include "base/output_file.h"
 
 #include "base/names.h"
+#include "scene/fit.h"
 #include "scene/material.h"
 #include "scene_parse.h"
 
@@ -79,6 +80,27 @@ static void put_lens(FILE *out, const BpCamera *camera) {
     fputs(", ", out);
 }
 
+/* What a fitted camera was asked for; where it stands follows. */
+static void put_fit(FILE *out, const BpCamera *camera) {
+    fprintf(out, ", \"fit\": \"%s\", \"view\": ", camera->fit == BP_FIT_SCENE ? "scene" : "particles");
+    if (camera->view == BP_VIEW_NONE)
+        put_vector(out, camera->view_direction);
+    else
+        fprintf(out, "\"%s\"", bp_view_names[camera->view]);
+    fputs(", \"margin\": ", out);
+    put_number(out, camera->margin);
+    if (!is_dark(camera->fit_vup)) {
+        fputs(", \"vup\": ", out);
+        put_vector(out, camera->fit_vup);
+    }
+    if (camera->lens_radius > 0) {
+        fputs(",\n    \"aperture\": ", out);
+        put_number(out, 2 * camera->lens_radius);
+    }
+    if (camera->pixel_sampling == BP_PIXEL_CENTER) fputs(", \"pixel_sampling\": \"center\"", out);
+    fputs("\n  }", out);
+}
+
 static void put_camera(FILE *out, const BpCamera *camera) {
     fprintf(out, "  \"camera\": {\n    \"image_width\": %u, ", (unsigned)camera->width);
     if (bp_camera_height(camera->width, camera->aspect_ratio) == camera->height) {
@@ -90,6 +112,10 @@ static void put_camera(FILE *out, const BpCamera *camera) {
     fprintf(out, ", \"samples_per_pixel\": %u, \"max_depth\": %u,\n    \"vfov\": ",
             (unsigned)camera->samples_per_pixel, (unsigned)camera->max_depth);
     put_number(out, camera->vfov_degrees);
+    if (camera->fit != BP_FIT_NONE) {
+        put_fit(out, camera);
+        return;
+    }
     fputs(", \"lookfrom\": ", out);
     put_vector(out, camera->lookfrom);
     fputs(", \"lookat\": ", out);
@@ -139,9 +165,14 @@ static BpStatus put_material(FILE *out, const BpMaterial *material, BpError *err
     return BP_OK;
 }
 
+/* Without that of particles that name none, which is the last. */
+static size_t written_materials(const BpScene *scene) {
+    return scene->material_count - (scene->implicit_material != SIZE_MAX);
+}
+
 static BpStatus put_materials(FILE *out, const BpScene *scene, BpError *err) {
     fputs(",\n  \"materials\": {", out);
-    for (size_t i = 0; i < scene->material_count; i++) {
+    for (size_t i = 0; i < written_materials(scene); i++) {
         fputs(i > 0 ? ",\n" : "\n", out);
         BP_TRY(put_material(out, &scene->materials[i], err));
     }
@@ -149,9 +180,24 @@ static BpStatus put_materials(FILE *out, const BpScene *scene, BpError *err) {
     return BP_OK;
 }
 
+static size_t written_spheres(const BpScene *scene) {
+    return scene->has_particles ? scene->particle_first : scene->sphere_count;
+}
+
+static void put_particles(FILE *out, const BpScene *scene) {
+    const char *comma = "";
+    fputs(",\n  \"particles\": [", out);
+    for (size_t i = 0; i < scene->point_file_count; i++) {
+        if (scene->point_files[i].particles == NULL) continue;
+        fprintf(out, "%s\n    %s", comma, scene->point_files[i].particles);
+        comma = ",";
+    }
+    fputs("\n  ]", out);
+}
+
 static BpStatus put_spheres(FILE *out, const BpScene *scene, BpError *err) {
     fputs(",\n  \"spheres\": [", out);
-    for (size_t i = 0; i < scene->sphere_count; i++) {
+    for (size_t i = 0; i < written_spheres(scene); i++) {
         const BpSphere *sphere = &scene->spheres[i];
         fputs(i > 0 ? ",\n    { \"center\": " : "\n    { \"center\": ", out);
         put_vector(out, sphere->center);
@@ -169,7 +215,9 @@ static BpStatus put_spheres(FILE *out, const BpScene *scene, BpError *err) {
  */
 
 BpStatus bp_scene_print(const BpScene *scene, FILE *out, BpError *err) {
-    if (scene->albedo_count > 0)
+    bool coloured = false;
+    for (size_t i = 0; i < written_spheres(scene); i++) coloured |= scene->spheres[i].albedo != BP_NO_ALBEDO;
+    if (coloured)
         return bp_fail(
             err, BP_ERR_SCENE,
             "found points with colours of their own, expected none: the JSON grammar gives colours to "
@@ -185,8 +233,9 @@ BpStatus bp_scene_print(const BpScene *scene, FILE *out, BpError *err) {
     fputs(", \"top\": ", out);
     put_vector(out, scene->background_top);
     fprintf(out, " },\n  \"transfer\": \"%s\"", bp_transfer_names[scene->transfer]);
-    if (scene->material_count > 0) BP_TRY(put_materials(out, scene, err));
-    if (scene->sphere_count > 0) BP_TRY(put_spheres(out, scene, err));
+    if (written_materials(scene) > 0) BP_TRY(put_materials(out, scene, err));
+    if (written_spheres(scene) > 0) BP_TRY(put_spheres(out, scene, err));
+    if (scene->has_particles) put_particles(out, scene);
     fputs("\n}\n", out);
     if (ferror(out)) return bp_fail(err, BP_ERR_FILE, "cannot write the scene: %s", strerror(errno));
     return BP_OK;

@@ -53,7 +53,10 @@ BpStatus bp_scene_create_empty(const char *path, BpScene **scene, BpError *err) 
         result->background_top[i] = top[i];
     }
     result->transfer = BP_TRANSFER_GAMMA2;
+    result->implicit_material = SIZE_MAX;
+    result->up = 1;
     BpStatus status = bp_copy_text(path, &result->path, err);
+    if (status == BP_OK) status = bp_copy_text("", &result->notes, err);
     if (status == BP_OK) status = bp_copy_text("", &result->title, err);
     if (status == BP_OK) status = bp_copy_text("", &result->source, err);
     if (status != BP_OK) {
@@ -71,11 +74,15 @@ void bp_scene_destroy(BpScene **scene) {
     free(s->materials);
     free(s->spheres);
     free(s->albedos);
-    for (size_t i = 0; i < s->point_file_count; i++) free(s->point_files[i].file);
+    for (size_t i = 0; i < s->point_file_count; i++) {
+        free(s->point_files[i].file);
+        free(s->point_files[i].particles);
+    }
     free(s->point_files);
     free(s->path);
     free(s->title);
     free(s->source);
+    free(s->notes);
     free(s);
     *scene = NULL;
 }
@@ -89,7 +96,8 @@ const char *bp_sphere_name(const BpScene *scene, size_t sphere, char text[BP_SPH
         snprintf(text, BP_SPHERE_NAME_SIZE, "spheres[%zu]", sphere);
     } else {
         bp_printable(cloud->file, file, sizeof file);
-        snprintf(text, BP_SPHERE_NAME_SIZE, "vertex %zu (from 0) of %s", sphere - cloud->first, file);
+        snprintf(text, BP_SPHERE_NAME_SIZE, "%s %zu (from 0) of %s",
+                 cloud->particles != NULL ? "sphere" : "vertex", sphere - cloud->first, file);
     }
     return text;
 }

@@ -53,6 +53,22 @@ typedef struct BpSphere {
     uint32_t albedo;   /* into albedos[], replacing the material's; or BP_NO_ALBEDO */
 } BpSphere;
 
+/* What a camera is fitted to (fit.h), instead of standing where lookfrom and lookat say. */
+typedef enum BpFit { BP_FIT_NONE, BP_FIT_SCENE, BP_FIT_PARTICLES } BpFit;
+
+/* A direction by its name (fit.h). */
+typedef enum BpView {
+    BP_VIEW_NONE, /* a direction, not a name */
+    BP_VIEW_THREE_QUARTER,
+    BP_VIEW_FRONT,
+    BP_VIEW_BACK,
+    BP_VIEW_LEFT,
+    BP_VIEW_RIGHT,
+    BP_VIEW_TOP,
+    BP_VIEW_BOTTOM,
+    BP_VIEW_COUNT
+} BpView;
+
 typedef struct BpCamera {
     uint32_t width, height;
     double aspect_ratio; /* as asked for; height follows from width by it */
@@ -62,12 +78,20 @@ typedef struct BpCamera {
     double lens_radius; /* aperture / 2, or focus_dist * tan(defocus_angle / 2); 0: pinhole */
     double focus_dist;  /* along the view, from lookfrom to the plane in focus; > 0 */
     BpPixelSampling pixel_sampling;
+    /* How lookfrom, lookat and focus_dist were found, to be written again; nothing else depends on it. */
+    BpFit fit;
+    BpView view;
+    double view_direction[3]; /* with BP_VIEW_NONE: from the spheres to the camera */
+    double margin;            /* share of width and height that is left free at each side */
+    double fit_vup[3];        /* as asked for; 0: by the particles' format */
 } BpCamera;
 
-/* A file of points: spheres from `first` on, up to the next cloud's or the end, one a vertex. */
+/* A file of points: spheres from `first` on, up to the next file's or the end, one a vertex; of particles,
+ * those that are shown, then the beads of bonds and cell. */
 typedef struct BpPointFile {
     char *file; /* as the scene names it */
     size_t first;
+    char *particles; /* NULL for a cloud; else the entry of "particles", as JSON */
 } BpPointFile;
 
 struct BpScene {
@@ -84,6 +108,14 @@ struct BpScene {
     size_t albedo_count;
     BpPointFile *point_files; /* in the order of their spheres, which follow all others */
     size_t point_file_count;
+    size_t particle_first;    /* the spheres from here on come from "particles"; with sphere_count 0: 0 */
+    size_t implicit_material; /* of particles that name none: into materials[]; SIZE_MAX: there is none */
+    bool has_particles;
+    bool has_color_range;
+    double color_range[2]; /* of the column that gives the last particles' colours */
+    int up;                /* the axis that the particles' world has up: 1 y, 2 z */
+    bool flat;             /* the particles lie in a plane: two dimensions */
+    char *notes;           /* lines for a person about what was guessed; "" */
 };
 
 /* height = max(1, floor(width / aspect + 1e-6)) */

@@ -42,13 +42,17 @@ static size_t find_ply(const uint8_t *data, size_t size) {
     return size;
 }
 
-/* Whether all clouds are files of the document's own folder. */
+/* Whether all clouds and particles are files of the document's own folder. */
 static bool stays_home(const uint8_t *document, size_t length) {
     json_t *root = json_loadb((const char *)document, length, JSON_REJECT_DUPLICATES | JSON_ALLOW_NUL, NULL);
     json_t *cloud = NULL;
     size_t i = 0;
     bool home = root != NULL;
     json_array_foreach(json_object_get(root, "clouds"), i, cloud) {
+        const char *file = json_string_value(json_object_get(cloud, "file"));
+        if (file != NULL && strchr(file, '/') != NULL) home = false;
+    }
+    json_array_foreach(json_object_get(root, "particles"), i, cloud) {
         const char *file = json_string_value(json_object_get(cloud, "file"));
         if (file != NULL && strchr(file, '/') != NULL) home = false;
     }

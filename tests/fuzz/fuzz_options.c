@@ -36,6 +36,8 @@ static void check_line(const BpCommandLine *line) {
     require(!GIVEN(BP_OPTION_COUNT) || (line->count >= 1 && line->count <= BP_SPHERES_MAX));
     require(!GIVEN(BP_OPTION_OUTPUT) || (line->output != NULL && line->output[0] != '\0'));
     require(!GIVEN(BP_OPTION_DEVICE) || (line->device != NULL && line->device[0] != '\0'));
+    require(!GIVEN(BP_OPTION_FRAMES) || line->frames.step >= 1);
+    require(!GIVEN(BP_OPTION_TURNTABLE) || line->turntable >= 2);
 #undef GIVEN
 }
 

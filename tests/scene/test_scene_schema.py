@@ -28,6 +28,11 @@ GOOD = {
     },
     "spheres": [{"center": [0, 0, -1], "radius": -0.5, "material": "a"}],
     "clouds": [{"file": "a.ply", "radius": 1, "material": "a", "materials": ["a", "b"]}],
+    "particles": [{"file": "a.gsd", "frame": -1, "style": "ball-and-stick", "radius": {"by": "vdw", "scale": 0.5},
+                   "color": {"column": "mass", "map": "cividis", "range": [0, 1]}, "bonds": {"radius": 0.1},
+                   "box": True, "solvent": True, "whole": False, "material": "a"},
+                  {"file": "b.pdb", "radius": "covalent", "color": "chain"},
+                  {"file": "b.pdb", "radius": {"types": {"A": 1}}, "color": {"types": {"A": [1, 0, 0]}}}],
 }
 
 # Where, and what is put there. None: the member is removed.
@@ -47,6 +52,13 @@ BAD = [
     (["materials", "c", "albedo"], [1, 1, 1]), (["materials", "d", "emit"], None),
     (["spheres", 0, "radius"], 0), (["spheres", 0, "radius"], None), (["spheres", 0, "center"], [0, 0]),
     (["spheres", 0, "material"], 1), (["spheres", 0, "centre"], [0, 0, 0]), (["spheres"], {}),
+    (["camera", "fit"], "scene"), (["camera", "view"], "front"), (["camera", "margin"], 0.1),
+    (["particles", 0, "file"], None), (["particles", 0, "frame"], 0.5), (["particles", 0, "style"], "sticks"),
+    (["particles", 0, "radius"], 0), (["particles", 0, "radius"], "big"), (["particles", 0, "radius", "column"], "mass"),
+    (["particles", 0, "radius", "scale"], -1), (["particles", 0, "color"], [1, 1, 2]), (["particles", 0, "color"], "elements"),
+    (["particles", 0, "color", "map"], "jet"), (["particles", 0, "color", "column"], None),
+    (["particles", 0, "color", "range"], [1]), (["particles", 0, "bonds"], 1), (["particles", 0, "bonds", "radius"], 0),
+    (["particles", 0, "box"], "yes"), (["particles", 0, "colour"], "element"), (["particles"], {}),
     (["clouds", 0, "file"], None), (["clouds", 0, "radius"], 0), (["clouds", 0, "materials"], []),
 ]
 

@@ -1,0 +1,374 @@
+/* bonds.c: see bonds.h. */
+#include "bonds.h"
+
+#include "elements.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+#define NEVER UINT32_MAX
+
+/* Particles sorted into the cells of a grid; the lists are chains through `next`. */
+typedef struct Grid {
+    const BpParticles *particles;
+    bool periodic;
+    double origin[3], edges[3][3], inverse[3][3]; /* share = (place - origin) * inverse */
+    int32_t sides[3];
+    uint32_t *first, *next;
+} Grid;
+
+static void shares_of(const Grid *grid, const double place[3], double share[3]) {
+    for (int i = 0; i < 3; i++) {
+        share[i] = 0;
+        for (int k = 0; k < 3; k++) share[i] += (place[k] - grid->origin[k]) * grid->inverse[k][i];
+    }
+}
+
+static void cell_of(const Grid *grid, const double place[3], int32_t cell[3]) {
+    double share[3];
+    shares_of(grid, place, share);
+    for (int i = 0; i < 3; i++) {
+        if (grid->periodic) share[i] -= floor(share[i]);
+        const double at = floor(share[i] * grid->sides[i]);
+        cell[i] = at < 0 ? 0 : at >= grid->sides[i] ? grid->sides[i] - 1 : (int32_t)at;
+    }
+}
+
+/* From a to b, the shortest way that the periodic cell allows (for ways shorter than half the cell). */
+static void way(const Grid *grid, const double a[3], const double b[3], double out[3]) {
+    for (int i = 0; i < 3; i++) out[i] = b[i] - a[i];
+    if (!grid->periodic) return;
+    double share[3];
+    for (int i = 0; i < 3; i++) {
+        share[i] = 0;
+        for (int k = 0; k < 3; k++) share[i] += out[k] * grid->inverse[k][i];
+    }
+    for (int i = 0; i < 3; i++) {
+        const double whole = floor(share[i] + 0.5);
+        for (int k = 0; k < 3 && whole != 0; k++) out[k] -= whole * grid->edges[i][k];
+    }
+}
+
+static void invert(const double m[3][3], double out[3][3]) {
+    double determinant = 0;
+    for (int i = 0; i < 3; i++)
+        determinant +=
+            m[0][i] * (m[1][(i + 1) % 3] * m[2][(i + 2) % 3] - m[1][(i + 2) % 3] * m[2][(i + 1) % 3]);
+    for (int i = 0; i < 3; i++)
+        for (int k = 0; k < 3; k++)
+            out[i][k] = (m[(k + 1) % 3][(i + 1) % 3] * m[(k + 2) % 3][(i + 2) % 3] -
+                         m[(k + 1) % 3][(i + 2) % 3] * m[(k + 2) % 3][(i + 1) % 3]) /
+                        determinant;
+}
+
+static void grid_clear(Grid *grid) {
+    free(grid->first);
+    free(grid->next);
+}
+
+/* Cells are at least `reach` wide, so that neighbours nearer than that lie in the cells around. */
+static BpStatus grid_init(Grid *grid, const BpParticles *p, const bool *shown, double reach, BpError *err) {
+    *grid = (Grid){.particles = p, .periodic = p->has_cell && p->periodic};
+    if (grid->periodic) {
+        memcpy(grid->origin, p->cell_origin, sizeof grid->origin);
+        memcpy(grid->edges, p->cell, sizeof grid->edges);
+    } else {
+        double high[3] = {-INFINITY, -INFINITY, -INFINITY};
+        for (int c = 0; c < 3; c++) grid->origin[c] = INFINITY;
+        for (size_t i = 0; i < p->count; i++) {
+            for (int c = 0; c < 3 && shown[i]; c++) {
+                grid->origin[c] = fmin(grid->origin[c], p->position[i][c]);
+                high[c] = fmax(high[c], p->position[i][c]);
+            }
+        }
+        for (int c = 0; c < 3; c++) grid->edges[c][c] = fmax(high[c] - grid->origin[c], reach);
+    }
+    invert((const double(*)[3])grid->edges, grid->inverse);
+    double sides[3], cells = 1;
+    for (int i = 0; i < 3; i++) {
+        /* The distance of the two sides that the i-th edge joins. */
+        const double slope =
+            sqrt(grid->inverse[0][i] * grid->inverse[0][i] + grid->inverse[1][i] * grid->inverse[1][i] +
+                 grid->inverse[2][i] * grid->inverse[2][i]);
+        sides[i] = fmin(1024, fmax(1, floor(1 / (slope * reach))));
+        cells *= sides[i];
+    }
+    const double room = 4 * (double)p->count + 64, shrink = cells > room ? cbrt(room / cells) : 1;
+    size_t count = 1;
+    for (int i = 0; i < 3; i++) {
+        grid->sides[i] = (int32_t)fmax(1, floor(sides[i] * shrink));
+        count *= (size_t)grid->sides[i];
+    }
+    grid->first = malloc(count * sizeof *grid->first);
+    grid->next = malloc((p->count + 1) * sizeof *grid->next);
+    if (grid->first == NULL || grid->next == NULL) {
+        grid_clear(grid);
+        return bp_fail(err, BP_ERR_MEMORY, "out of memory for a grid of %zu particles", p->count);
+    }
+    for (size_t i = 0; i < count; i++) grid->first[i] = NEVER;
+    for (size_t i = p->count; i-- > 0;) {
+        int32_t cell[3];
+        if (!shown[i]) continue;
+        cell_of(grid, p->position[i], cell);
+        uint32_t *const head = &grid->first[((size_t)cell[2] * (size_t)grid->sides[1] + (size_t)cell[1]) *
+                                                (size_t)grid->sides[0] +
+                                            (size_t)cell[0]];
+        grid->next[i] = *head;
+        *head = (uint32_t)i;
+    }
+    return BP_OK;
+}
+
+/* The numbers of the cells around one, itself included; each once. At most 27. */
+static size_t cells_around(const Grid *grid, const int32_t cell[3], size_t out[27]) {
+    int32_t list[3][3];
+    int counts[3];
+    for (int i = 0; i < 3; i++) {
+        counts[i] = 0;
+        for (int32_t step = -1; step <= 1; step++) {
+            int32_t at = cell[i] + step;
+            if (grid->periodic) at = (at + grid->sides[i]) % grid->sides[i];
+            bool known = at < 0 || at >= grid->sides[i];
+            for (int k = 0; k < counts[i]; k++) known |= list[i][k] == at;
+            if (!known) list[i][counts[i]++] = at;
+        }
+    }
+    size_t count = 0;
+    for (int z = 0; z < counts[2]; z++)
+        for (int y = 0; y < counts[1]; y++)
+            for (int x = 0; x < counts[0]; x++)
+                out[count++] = ((size_t)list[2][z] * (size_t)grid->sides[1] + (size_t)list[1][y]) *
+                                   (size_t)grid->sides[0] +
+                               (size_t)list[0][x];
+    return count;
+}
+
+static BpStatus add_bond(BpBonds *bonds, uint32_t a, uint32_t b, BpError *err) {
+    if (bonds->count == bonds->capacity) {
+        const size_t capacity = bonds->capacity > 0 ? 2 * bonds->capacity : 4096;
+        void *const grown = realloc(bonds->pair, capacity * sizeof *bonds->pair);
+        if (grown == NULL) return bp_fail(err, BP_ERR_MEMORY, "out of memory for %zu bonds", capacity);
+        bonds->pair = grown;
+        bonds->capacity = capacity;
+    }
+    bonds->pair[bonds->count][0] = a;
+    bonds->pair[bonds->count++][1] = b;
+    return BP_OK;
+}
+
+/* Bonds of one particle with those of higher numbers. Alternative places of an atom have none with each
+ * other; an atom has at most 12. */
+static BpStatus bond_one(const Grid *grid, uint32_t i, BpBonds *bonds, BpError *err) {
+    enum { MOST = 12 };
+    const BpParticles *const p = grid->particles;
+    const uint8_t element = p->tag[i].element;
+    int32_t cell[3];
+    size_t around[27], found = 0;
+    if (element == 0) return BP_OK;
+    cell_of(grid, p->position[i], cell);
+    const size_t count = cells_around(grid, cell, around);
+    for (size_t c = 0; c < count; c++) {
+        for (uint32_t k = grid->first[around[c]]; k != NEVER; k = grid->next[k]) {
+            const uint8_t other = p->tag[k].element;
+            if (k <= i || other == 0 || (element == 1 && other == 1)) continue;
+            double d[3];
+            way(grid, p->position[i], p->position[k], d);
+            const double squared = d[0] * d[0] + d[1] * d[1] + d[2] * d[2];
+            const double reach =
+                ((double)bp_elements[element].covalent + (double)bp_elements[other].covalent + 0.4) *
+                p->angstrom;
+            const double least = 0.4 * p->angstrom;
+            if (squared > reach * reach || squared < least * least || found == MOST) continue;
+            found++;
+            BP_TRY(add_bond(bonds, i, k, err));
+        }
+    }
+    return BP_OK;
+}
+
+BpStatus bp_bonds_find(const BpParticles *particles, const bool *shown, BpBonds *bonds, BpError *err) {
+    *bonds = (BpBonds){0};
+    BpStatus status = BP_OK;
+    for (size_t i = 0; i < particles->bond_count && status == BP_OK; i++) {
+        const uint32_t a = particles->bonds[i][0], b = particles->bonds[i][1];
+        if (shown[a] && shown[b] && a != b) status = add_bond(bonds, a, b, err);
+    }
+    if (particles->bond_count == 0 && particles->has_element && particles->angstrom > 0) {
+        Grid grid;
+        double largest = 0;
+        for (size_t i = 0; i < particles->count; i++)
+            largest = fmax(largest, (double)bp_elements[particles->tag[i].element].covalent);
+        BP_TRY(grid_init(&grid, particles, shown, (2 * largest + 0.4) * particles->angstrom, err));
+        for (size_t i = 0; i < particles->count && status == BP_OK; i++)
+            if (shown[i]) status = bond_one(&grid, (uint32_t)i, bonds, err);
+        grid_clear(&grid);
+    }
+    if (status != BP_OK) {
+        free(bonds->pair);
+        *bonds = (BpBonds){0};
+    }
+    return status;
+}
+
+/* ---- molecules ------------------------------------------------------------------------------------------
+ */
+
+typedef struct Walk {
+    uint32_t *start, *neighbour, *queue; /* neighbours of i: neighbour[start[i] .. start[i + 1]) */
+    double (*place)[3];
+    bool *seen;
+} Walk;
+
+static void walk_clear(Walk *walk) {
+    free(walk->start);
+    free(walk->neighbour);
+    free(walk->queue);
+    free(walk->place);
+    free(walk->seen);
+}
+
+static BpStatus walk_init(Walk *walk, size_t count, const BpBonds *bonds, BpError *err) {
+    *walk = (Walk){.start = calloc(count + 2, sizeof *walk->start),
+                   .neighbour = malloc((2 * bonds->count + 1) * sizeof *walk->neighbour),
+                   .queue = malloc((count + 1) * sizeof *walk->queue),
+                   .place = malloc((count + 1) * sizeof *walk->place),
+                   .seen = calloc(count + 1, sizeof *walk->seen)};
+    if (walk->start == NULL || walk->neighbour == NULL || walk->queue == NULL || walk->place == NULL ||
+        walk->seen == NULL) {
+        walk_clear(walk);
+        return bp_fail(err, BP_ERR_MEMORY, "out of memory for the molecules of %zu particles", count);
+    }
+    for (size_t b = 0; b < bonds->count; b++)
+        for (int side = 0; side < 2; side++) walk->start[bonds->pair[b][side] + 2]++;
+    for (size_t i = 2; i < count + 2; i++) walk->start[i] += walk->start[i - 1];
+    for (size_t b = 0; b < bonds->count; b++)
+        for (int side = 0; side < 2; side++)
+            walk->neighbour[walk->start[bonds->pair[b][side] + 1]++] = bonds->pair[b][1 - side];
+    return BP_OK;
+}
+
+/* The molecule of `first`, placed atom by atom. Returns how many particles it has, which are in the queue;
+ * *endless: two ways lead to different places. */
+static size_t walk_molecule(const Grid *grid, Walk *walk, uint32_t first, bool *endless) {
+    const BpParticles *const p = grid->particles;
+    size_t count = 1;
+    *endless = false;
+    walk->queue[0] = first;
+    walk->seen[first] = true;
+    memcpy(walk->place[first], p->position[first], sizeof walk->place[0]);
+    for (size_t q = 0; q < count; q++) {
+        const uint32_t i = walk->queue[q];
+        for (uint32_t n = walk->start[i]; n < walk->start[i + 1]; n++) {
+            const uint32_t k = walk->neighbour[n];
+            double d[3], off = 0;
+            way(grid, p->position[i], p->position[k], d);
+            for (int c = 0; c < 3; c++) d[c] += walk->place[i][c];
+            if (!walk->seen[k]) {
+                walk->seen[k] = true;
+                memcpy(walk->place[k], d, sizeof d);
+                walk->queue[count++] = k;
+                continue;
+            }
+            for (int c = 0; c < 3; c++) off = fmax(off, fabs(walk->place[k][c] - d[c]));
+            double least = INFINITY; /* another place is one cell away at least */
+            for (int e = 0; e < 3; e++)
+                least = fmin(least, sqrt(grid->edges[e][0] * grid->edges[e][0] +
+                                         grid->edges[e][1] * grid->edges[e][1] +
+                                         grid->edges[e][2] * grid->edges[e][2]));
+            *endless |= off > 0.25 * least;
+        }
+    }
+    return count;
+}
+
+BpStatus bp_molecules_make_whole(BpParticles *particles, const bool *shown, const BpBonds *bonds,
+                                 size_t *moved, BpError *err) {
+    *moved = 0;
+    if (!particles->has_cell || !particles->periodic || bonds->count == 0) return BP_OK;
+    Walk walk;
+    Grid grid = {.particles = particles, .periodic = true};
+    memcpy(grid.origin, particles->cell_origin, sizeof grid.origin);
+    memcpy(grid.edges, particles->cell, sizeof grid.edges);
+    invert((const double(*)[3])grid.edges, grid.inverse);
+    BP_TRY(walk_init(&walk, particles->count, bonds, err));
+    for (size_t i = 0; i < particles->count; i++) {
+        bool endless = false;
+        if (!shown[i] || walk.seen[i]) continue;
+        const size_t count = walk_molecule(&grid, &walk, (uint32_t)i, &endless);
+        for (size_t q = 0; q < count && !endless; q++) {
+            double *const place = particles->position[walk.queue[q]];
+            const double *const better = walk.place[walk.queue[q]];
+            double off = 0;
+            for (int c = 0; c < 3; c++) off = fmax(off, fabs(place[c] - better[c]) / (1 + fabs(place[c])));
+            if (off < 1e-9) continue;
+            memcpy(place, better, sizeof walk.place[0]);
+            ++*moved;
+        }
+    }
+    walk_clear(&walk);
+    return BP_OK;
+}
+
+/* ---- spacing --------------------------------------------------------------------------------------------
+ */
+
+static int compare_reals(const void *a, const void *b) {
+    const double one = *(const double *)a, other = *(const double *)b;
+    return one < other ? -1 : one > other;
+}
+
+BpStatus bp_particles_spacing(const BpParticles *particles, const bool *shown, double *spacing,
+                              BpError *err) {
+    enum { MOST = 1000 };
+    double nearest[MOST], low[3] = {INFINITY, INFINITY, INFINITY},
+                          high[3] = {-INFINITY, -INFINITY, -INFINITY}, volume = 1;
+    size_t count = 0, found = 0;
+    int dimensions = 0;
+    *spacing = 0;
+    for (size_t i = 0; i < particles->count; i++) {
+        count += shown[i];
+        for (int c = 0; c < 3 && shown[i]; c++) {
+            low[c] = fmin(low[c], particles->position[i][c]);
+            high[c] = fmax(high[c], particles->position[i][c]);
+        }
+    }
+    if (count < 2) return BP_OK;
+    for (int c = 0; c < 3; c++) {
+        if (!(high[c] > low[c])) continue;
+        volume *= high[c] - low[c];
+        dimensions++;
+    }
+    if (dimensions == 0) return BP_OK;
+    Grid grid;
+    /* About eight particles a cell; where the nearest lies further away, what is found is near enough. */
+    const double reach = 2 * pow(volume / (double)count, 1.0 / dimensions);
+    BP_TRY(grid_init(&grid, particles, shown, reach, err));
+    const size_t step = particles->count / MOST + 1;
+    for (size_t i = 0; i < particles->count; i += step) {
+        int32_t cell[3];
+        size_t around[27];
+        double least = INFINITY;
+        if (!shown[i]) continue;
+        cell_of(&grid, particles->position[i], cell);
+        const size_t cells = cells_around(&grid, cell, around);
+        for (size_t c = 0; c < cells; c++) {
+            size_t looked = 0;
+            for (uint32_t k = grid.first[around[c]]; k != NEVER && looked < 4096;
+                 k = grid.next[k], looked++) {
+                double d[3];
+                way(&grid, particles->position[i], particles->position[k], d);
+                const double squared = d[0] * d[0] + d[1] * d[1] + d[2] * d[2];
+                if (k != i && squared > 0) least = fmin(least, squared);
+            }
+        }
+        if (isfinite(least)) nearest[found++] = sqrt(least);
+    }
+    grid_clear(&grid);
+    if (found == 0) {
+        *spacing = reach / 2;
+        return BP_OK;
+    }
+    qsort(nearest, found, sizeof *nearest, compare_reals);
+    *spacing = nearest[found / 2];
+    return BP_OK;
+}

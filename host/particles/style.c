@@ -1,0 +1,487 @@
+/* style.c: see style.h. */
+#include "style.h"
+
+#include "base/color.h"
+#include "base/format.h"
+#include "bonds.h"
+#include "elements.h"
+
+#include <stdarg.h>
+#include <stdlib.h>
+#include <string.h>
+#include <strings.h>
+
+#define BALL_SHARE 0.28     /* of the van der Waals radius, in ball-and-stick */
+#define STICK_ANGSTROM 0.14 /* half the width of a bond */
+#define EDGE_SHARE 0.002    /* half the width of the cell's edges, of its longest */
+#define BEADS_MAX 4000      /* in one bond or edge */
+
+/* Soft colours for kinds that have none of their own, 8-bit sRGB. */
+static const unsigned char palette[][3] = {{112, 148, 202}, {228, 164, 104}, {128, 186, 130}, {210, 114, 110},
+                                           {160, 132, 192}, {164, 134, 116}, {222, 164, 194}, {152, 152, 152},
+                                           {192, 186, 114}, {122, 186, 198}};
+enum { PALETTE_COUNT = sizeof palette / sizeof *palette };
+
+void bp_particle_style_defaults(BpParticleStyle *style) {
+    *style = (BpParticleStyle){.radius = 1, .whole = true};
+}
+
+size_t bp_particle_style_columns(const BpParticleStyle *style, const char *columns[BP_PARTICLE_WANTED_MAX]) {
+    size_t count = 0;
+    if (style->radius_by == BP_RADIUS_COLUMN) columns[count++] = style->radius_column;
+    if (style->color_by == BP_COLOR_COLUMN) columns[count++] = style->color_column;
+    return count;
+}
+
+typedef struct Job {
+    BpParticles *p;
+    const BpParticleStyle *style;
+    BpScene *scene;
+    uint32_t material;
+    bool *shown;
+    size_t shown_count;
+    BpBonds bonds;
+    double spacing, range[2];
+    BpRadiusBy radius_by;
+    BpColorBy color_by;
+    size_t capacity, albedo_capacity; /* of the scene's arrays */
+    uint16_t *rank; /* of a name among the kinds that get colours of the palette, from 0, in the order of the
+                       file */
+    char *summary;
+    size_t size;
+} Job;
+
+static void say(Job *job, const char *format, ...) BP_PRINTF_LIKE(2, 3);
+
+static void say(Job *job, const char *format, ...) {
+    if (job->summary == NULL) return;
+    const size_t used = strlen(job->summary);
+    if (used + 4 > job->size) return;
+    snprintf(job->summary + used, job->size - used, "%s", used > 0 ? "; " : "");
+    const size_t begin = strlen(job->summary);
+    va_list arguments;
+    va_start(arguments, format);
+    vsnprintf(job->summary + begin, job->size - begin, format, arguments);
+    va_end(arguments);
+}
+
+static const char *name_of(const BpParticles *p, uint16_t number) {
+    return p->names.count > 0 ? p->names.text[number] : "";
+}
+
+/* ---- what is shown --------------------------------------------------------------------------------------
+ */
+
+static BpStatus choose_shown(Job *job, BpError *err) {
+    enum { NOTHING, WATER, ION, DUMMY, ALTERNATIVE, KINDS };
+    static const char *const words[KINDS] = {"", "of water", "of ions", "dummy", "in alternative places"};
+    BpParticles *const p = job->p;
+    size_t counts[KINDS] = {0};
+    unsigned char *const kind = calloc(p->count + 1, 1);
+    /* Looked up once for each name. */
+    unsigned char *const by_residue = calloc(p->names.count + 1, 1);
+    job->shown = calloc(p->count + 1, sizeof *job->shown);
+    if (kind == NULL || by_residue == NULL || job->shown == NULL) {
+        free(kind);
+        free(by_residue);
+        return bp_fail(err, BP_ERR_MEMORY, "out of memory for %zu particles", p->count);
+    }
+    for (size_t n = 0; n < p->names.count; n++)
+        by_residue[n] = bp_residue_is_water(p->names.text[n]) ? WATER
+                        : bp_residue_is_ion(p->names.text[n]) ? ION
+                                                              : NOTHING;
+    for (size_t i = 0; i < p->count; i++) {
+        const BpParticleTag *const tag = &p->tag[i];
+        kind[i] = tag->residue != 0 ? by_residue[tag->residue] : NOTHING;
+        if ((tag->flags & BP_PARTICLE_ALTERNATIVE) != 0) kind[i] = ALTERNATIVE;
+        if ((tag->flags & BP_PARTICLE_DUMMY) != 0) kind[i] = DUMMY;
+        counts[kind[i]]++;
+    }
+    const bool solute = counts[NOTHING] > 0, solvent = job->style->solvent || !solute;
+    for (size_t i = 0; i < p->count; i++) {
+        const bool show = kind[i] == NOTHING || ((kind[i] == WATER || kind[i] == ION) && solvent) ||
+                          (kind[i] != NOTHING && counts[NOTHING] + counts[WATER] + counts[ION] == 0);
+        job->shown[i] = show;
+        job->shown_count += show;
+    }
+    char hidden[160] = "", number[32];
+    for (int k = WATER; k < KINDS; k++) {
+        if (counts[k] == 0 || ((k == WATER || k == ION) && solvent) || job->shown_count == p->count) continue;
+        const size_t used = strlen(hidden);
+        snprintf(hidden + used, sizeof hidden - used, "%s%s %s", used > 0 ? ", " : "",
+                 bp_format_whole(counts[k], number, sizeof number), words[k]);
+    }
+    if (hidden[0] != '\0') say(job, "hidden: %s", hidden);
+    free(kind);
+    free(by_residue);
+    return BP_OK;
+}
+
+/* ---- radii ----------------------------------------------------------------------------------------------
+ */
+
+static const BpStyleNamed *named(const BpStyleNamed *list, size_t count, const BpParticles *p,
+                                 const BpParticleTag *tag) {
+    for (size_t i = 0; i < count; i++)
+        if (strcmp(list[i].name, name_of(p, tag->type)) == 0 ||
+            (tag->element != 0 && strcmp(list[i].name, bp_elements[tag->element].symbol) == 0))
+            return &list[i];
+    return NULL;
+}
+
+static BpStatus choose_radii(Job *job, BpError *err) {
+    const BpParticleStyle *const style = job->style;
+    BpParticles *const p = job->p;
+    job->radius_by = style->radius_by;
+    if ((style->radius_by == BP_RADIUS_VDW || style->radius_by == BP_RADIUS_COVALENT) && !p->has_element)
+        return bp_fail(err, BP_ERR_SCENE,
+                       "found no elements, expected them for radii by element; give \"radius\" as a number");
+    const bool elements = p->has_element && p->angstrom > 0;
+    if (style->radius_by == BP_RADIUS_AUTO && p->radius == NULL && elements) job->radius_by = BP_RADIUS_VDW;
+    bool spacing_needed = job->radius_by == BP_RADIUS_AUTO && p->radius == NULL;
+    for (size_t i = 0; i < p->count && !spacing_needed && job->radius_by == BP_RADIUS_AUTO; i++)
+        spacing_needed = job->shown[i] && !(p->radius[i] > 0 && isfinite(p->radius[i]));
+    if ((job->radius_by == BP_RADIUS_VDW || job->radius_by == BP_RADIUS_COVALENT) && p->angstrom == 0)
+        p->angstrom = 1;
+    if (spacing_needed) {
+        BP_TRY(bp_particles_spacing(p, job->shown, &job->spacing, err));
+        if (job->spacing == 0) job->spacing = 1;
+        say(job, "radius %.3g%s: half the median distance of neighbours", job->spacing / 2 * style->radius,
+            p->radius != NULL ? " where the file has none" : "");
+    } else if (job->radius_by == BP_RADIUS_VDW) {
+        say(job, "van der Waals radii%s", style->kind == BP_STYLE_BALL_AND_STICK ? ", scaled" : "");
+    }
+    return BP_OK;
+}
+
+/* NaN for a column that has no number there. */
+static double radius_of(const Job *job, size_t i) {
+    const BpParticles *const p = job->p;
+    const BpParticleStyle *const style = job->style;
+    const BpParticleTag *const tag = &p->tag[i];
+    const BpStyleNamed *const own = named(style->radii, style->radius_count, p, tag);
+    if (own != NULL) return own->value[0];
+    const double scale = style->radius * (style->kind == BP_STYLE_BALL_AND_STICK ? BALL_SHARE : 1);
+    switch (job->radius_by) {
+    case BP_RADIUS_CONSTANT:
+        return style->radius;
+    case BP_RADIUS_COLUMN:
+        return style->radius * (double)p->column[0][i];
+    case BP_RADIUS_VDW:
+        return scale * p->angstrom * (double)bp_elements[tag->element].van_der_waals;
+    case BP_RADIUS_COVALENT:
+        return style->radius * p->angstrom * (double)bp_elements[tag->element].covalent;
+    case BP_RADIUS_AUTO:
+        break;
+    }
+    const bool has_own = p->radius != NULL && p->radius[i] > 0 && isfinite(p->radius[i]);
+    return scale * (has_own ? (double)p->radius[i] : job->spacing / 2);
+}
+
+/* ---- colours --------------------------------------------------------------------------------------------
+ */
+
+static uint16_t kind_of(const Job *job, size_t i) {
+    const BpParticleTag *const tag = &job->p->tag[i];
+    return job->color_by == BP_COLOR_CHAIN     ? tag->chain
+           : job->color_by == BP_COLOR_RESIDUE ? tag->residue
+                                               : tag->type;
+}
+
+/* So that the first kinds of a file get the first colours, whatever else has names. */
+static BpStatus rank_names(Job *job, BpError *err) {
+    uint16_t next = 1;
+    job->rank = calloc(job->p->names.count + 1, sizeof *job->rank);
+    if (job->rank == NULL) return bp_fail(err, BP_ERR_MEMORY, "out of memory for colours");
+    for (size_t i = 0; i < job->p->count; i++) {
+        uint16_t *const rank = &job->rank[kind_of(job, i)];
+        if (job->shown[i] && *rank == 0) *rank = next++;
+    }
+    return BP_OK;
+}
+
+static BpStatus choose_colors(Job *job, BpError *err) {
+    const BpParticles *const p = job->p;
+    const BpParticleStyle *const style = job->style;
+    job->color_by = style->color_by;
+    if (style->color_by == BP_COLOR_AUTO && p->color == NULL)
+        job->color_by = p->has_element ? BP_COLOR_ELEMENT : p->has_type ? BP_COLOR_TYPE : BP_COLOR_CONSTANT;
+    static const char *const names[] = {[BP_COLOR_ELEMENT] = "elements",
+                                        [BP_COLOR_CHAIN] = "chains",
+                                        [BP_COLOR_RESIDUE] = "residues",
+                                        [BP_COLOR_TYPE] = "types"};
+    const bool has = (style->color_by == BP_COLOR_ELEMENT && !p->has_element) ||
+                     (style->color_by == BP_COLOR_CHAIN && !p->has_chain) ||
+                     (style->color_by == BP_COLOR_RESIDUE && !p->has_residue) ||
+                     (style->color_by == BP_COLOR_TYPE && !p->has_type);
+    if (has)
+        return bp_fail(err, BP_ERR_SCENE, "found no %s in the file, expected them for colours",
+                       names[style->color_by]);
+    if (job->color_by == BP_COLOR_CHAIN || job->color_by == BP_COLOR_RESIDUE ||
+        job->color_by == BP_COLOR_TYPE)
+        return rank_names(job, err);
+    if (job->color_by != BP_COLOR_COLUMN) return BP_OK;
+    const float *const column = p->column[style->radius_by == BP_RADIUS_COLUMN];
+    job->range[0] = INFINITY;
+    job->range[1] = -INFINITY;
+    for (size_t i = 0; i < p->count; i++) {
+        if (!job->shown[i] || !isfinite(column[i])) continue;
+        job->range[0] = fmin(job->range[0], (double)column[i]);
+        job->range[1] = fmax(job->range[1], (double)column[i]);
+    }
+    if (style->has_range) memcpy(job->range, style->range, sizeof job->range);
+    if (!(job->range[0] <= job->range[1]))
+        return bp_fail(err, BP_ERR_SCENE, "found no number in column \"%s\", expected some to colour by",
+                       style->color_column);
+    say(job, "%s from %.4g to %.4g by %s", style->color_column, job->range[0], job->range[1],
+        bp_colormap_names[style->map]);
+    return BP_OK;
+}
+
+static void from_bytes(const unsigned char bytes[3], double color[3]) {
+    for (int c = 0; c < 3; c++) color[c] = bp_linear_from_srgb(bytes[c] / 255.0);
+}
+
+static void color_of(const Job *job, size_t i, double color[3]) {
+    const BpParticles *const p = job->p;
+    const BpParticleStyle *const style = job->style;
+    const BpParticleTag *const tag = &p->tag[i];
+    const BpStyleNamed *const own = named(style->colors, style->color_count, p, tag);
+    size_t place = 0;
+    if (own != NULL) {
+        memcpy(color, own->value, 3 * sizeof *color);
+        return;
+    }
+    switch (job->color_by) {
+    case BP_COLOR_AUTO:
+        if (p->color != NULL && !isnan(p->color[i][0])) {
+            for (int c = 0; c < 3; c++) color[c] = (double)p->color[i][c];
+            return;
+        }
+        break;
+    case BP_COLOR_CONSTANT:
+        if (style->color_by == BP_COLOR_CONSTANT) {
+            memcpy(color, style->color, sizeof style->color);
+            return;
+        }
+        break;
+    case BP_COLOR_ELEMENT:
+        from_bytes(bp_elements[tag->element].color, color);
+        return;
+    case BP_COLOR_COLUMN: {
+        const double value = (double)p->column[style->radius_by == BP_RADIUS_COLUMN][i];
+        const double width = job->range[1] - job->range[0];
+        if (!isnan(value)) {
+            bp_colormap_color(style->map, width > 0 ? (value - job->range[0]) / width : 0.5, color);
+            for (int c = 0; c < 3; c++) color[c] *= 0.9; /* albedos near 1 glare */
+            return;
+        }
+        place = 7; /* grey: no value */
+        break;
+    }
+    case BP_COLOR_CHAIN:
+    case BP_COLOR_RESIDUE:
+    case BP_COLOR_TYPE:
+        place = (size_t)job->rank[kind_of(job, i)] - 1;
+        break;
+    }
+    from_bytes(palette[place % PALETTE_COUNT], color);
+}
+
+/* ---- spheres --------------------------------------------------------------------------------------------
+ */
+
+/* Room for `count` more spheres, each with a colour. */
+static BpStatus make_room(Job *job, size_t count, BpError *err) {
+    BpScene *const scene = job->scene;
+    if (count > BP_SPHERES_MAX || scene->sphere_count > BP_SPHERES_MAX - count)
+        return bp_fail(err, BP_ERR_SCENE, "found more than %u spheres, expected fewer", BP_SPHERES_MAX);
+    if (scene->sphere_count + count > job->capacity) {
+        size_t capacity = scene->sphere_count + count;
+        if (job->capacity > 0 && capacity < job->capacity + job->capacity / 2)
+            capacity = job->capacity + job->capacity / 2;
+        BpSphere *const spheres = realloc(scene->spheres, (capacity + 1) * sizeof *spheres);
+        if (spheres == NULL) return bp_fail(err, BP_ERR_MEMORY, "out of memory for %zu spheres", capacity);
+        scene->spheres = spheres;
+        job->capacity = capacity;
+    }
+    if (scene->albedo_count + count > job->albedo_capacity) {
+        size_t capacity = scene->albedo_count + count;
+        if (job->albedo_capacity > 0 && capacity < job->albedo_capacity + job->albedo_capacity / 2)
+            capacity = job->albedo_capacity + job->albedo_capacity / 2;
+        float(*const albedos)[3] = realloc(scene->albedos, (capacity + 1) * sizeof *albedos);
+        if (albedos == NULL) return bp_fail(err, BP_ERR_MEMORY, "out of memory for %zu colours", capacity);
+        scene->albedos = albedos;
+        job->albedo_capacity = capacity;
+    }
+    return BP_OK;
+}
+
+/* After make_room. */
+static void put_sphere(Job *job, const double center[3], double radius, const double color[3]) {
+    BpScene *const scene = job->scene;
+    const bool has_albedo = bp_material_has(scene->materials[job->material].kind, BP_MEMBER_ALBEDO);
+    BpSphere *const sphere = &scene->spheres[scene->sphere_count++];
+    *sphere = (BpSphere){.radius = radius, .material = job->material, .albedo = BP_NO_ALBEDO};
+    memcpy(sphere->center, center, sizeof sphere->center);
+    if (!has_albedo) return;
+    for (int c = 0; c < 3; c++) scene->albedos[scene->albedo_count][c] = (float)fmin(1, fmax(0, color[c]));
+    sphere->albedo = (uint32_t)scene->albedo_count++;
+}
+
+static BpStatus put_particles(Job *job, BpError *err) {
+    const BpParticles *const p = job->p;
+    size_t without = 0, first = job->scene->sphere_count;
+    BP_TRY(make_room(job, job->shown_count, err));
+    for (size_t i = 0; i < p->count; i++) {
+        double color[3];
+        if (!job->shown[i]) continue;
+        const double radius = radius_of(job, i);
+        if (!(radius > 1e-37 &&
+              radius <= BP_COORDINATE_MAX)) { /* as in scenes; NaN, 0 and below: nothing to see */
+            without++;
+            job->shown[i] = false;
+            continue;
+        }
+        color_of(job, i, color);
+        put_sphere(job, p->position[i], radius, color);
+    }
+    char number[32];
+    if (without > 0)
+        say(job, "left out: %s without a radius above 0", bp_format_whole(without, number, sizeof number));
+    if (job->scene->sphere_count == first)
+        return bp_fail(err, BP_ERR_SCENE, "found no particle to show, expected one at least");
+    return BP_OK;
+}
+
+/* A row of beads from a to b, excluding both ends, whose profile dips by 0.8 % (spacing of a quarter of the
+ * radius). */
+static BpStatus put_beads(Job *job, const double a[3], const double b[3], double radius,
+                          const double color[3], BpError *err) {
+    const double length =
+        sqrt((b[0] - a[0]) * (b[0] - a[0]) + (b[1] - a[1]) * (b[1] - a[1]) + (b[2] - a[2]) * (b[2] - a[2]));
+    const double wanted = ceil(4 * length / radius);
+    const size_t count = wanted < BEADS_MAX ? (size_t)fmax(wanted, 1) : BEADS_MAX;
+    BP_TRY(make_room(job, count, err));
+    for (size_t i = 0; i < count; i++) {
+        const double t = ((double)i + 0.5) / (double)count;
+        const double place[3] = {a[0] + t * (b[0] - a[0]), a[1] + t * (b[1] - a[1]),
+                                 a[2] + t * (b[2] - a[2])};
+        put_sphere(job, place, radius, color);
+    }
+    return BP_OK;
+}
+
+/* Each half in the colour of its end. Bonds across the cell are left out, since their ends lie apart. */
+static BpStatus put_bonds(Job *job, BpError *err) {
+    const BpParticles *const p = job->p;
+    const bool molecules = p->angstrom > 0 && p->has_element;
+    size_t drawn = 0;
+    for (size_t i = 0; i < job->bonds.count; i++) {
+        const uint32_t a = job->bonds.pair[i][0], b = job->bonds.pair[i][1];
+        double middle[3], color[3], length = 0;
+        if (!job->shown[a] || !job->shown[b]) continue;
+        for (int c = 0; c < 3; c++) {
+            middle[c] = (p->position[a][c] + p->position[b][c]) / 2;
+            length += (p->position[a][c] - p->position[b][c]) * (p->position[a][c] - p->position[b][c]);
+        }
+        bool across = false;
+        for (int e = 0; e < 3 && p->has_cell && p->periodic; e++) {
+            double edge = 0;
+            for (int c = 0; c < 3; c++) edge += p->cell[e][c] * p->cell[e][c];
+            across |= length > 0.25 * edge;
+        }
+        if (across) continue;
+        double radius = job->style->bond_radius;
+        if (radius == 0)
+            radius =
+                molecules ? STICK_ANGSTROM * p->angstrom : 0.4 * fmin(radius_of(job, a), radius_of(job, b));
+        color_of(job, a, color);
+        BP_TRY(put_beads(job, p->position[a], middle, radius, color, err));
+        color_of(job, b, color);
+        BP_TRY(put_beads(job, middle, p->position[b], radius, color, err));
+        drawn++;
+    }
+    char number[32];
+    say(job, "%s bonds%s", bp_format_whole(drawn, number, sizeof number),
+        p->bond_count == 0 ? " by distance" : "");
+    return BP_OK;
+}
+
+static BpStatus put_box(Job *job, BpError *err) {
+    static const double color[3] = {0.12, 0.12, 0.12};
+    const BpParticles *const p = job->p;
+    if (!p->has_cell)
+        return bp_fail(err, BP_ERR_SCENE, "found no cell in the file, expected one for \"box\": true");
+    double longest = 0;
+    for (int e = 0; e < 3; e++)
+        longest = fmax(longest, sqrt(p->cell[e][0] * p->cell[e][0] + p->cell[e][1] * p->cell[e][1] +
+                                     p->cell[e][2] * p->cell[e][2]));
+    for (int e = 0; e < 3; e++) {
+        for (int corner = 0; corner < 4; corner++) { /* the four edges along edge e */
+            double a[3], b[3];
+            for (int c = 0; c < 3; c++) {
+                a[c] = p->cell_origin[c] + (corner & 1) * p->cell[(e + 1) % 3][c] +
+                       (corner >> 1) * p->cell[(e + 2) % 3][c];
+                b[c] = a[c] + p->cell[e][c];
+            }
+            BP_TRY(put_beads(job, a, b, EDGE_SHARE * longest, color, err));
+        }
+    }
+    for (int corner = 0; corner < 8; corner++) {
+        double place[3];
+        for (int c = 0; c < 3; c++)
+            place[c] = p->cell_origin[c] + (corner & 1) * p->cell[0][c] + (corner >> 1 & 1) * p->cell[1][c] +
+                       (corner >> 2) * p->cell[2][c];
+        BP_TRY(make_room(job, 1, err));
+        put_sphere(job, place, EDGE_SHARE * longest * 1.0001, color);
+    }
+    return BP_OK;
+}
+
+static BpStatus run(Job *job, BpError *err) {
+    BpParticles *const p = job->p;
+    char all[32], shown[32];
+    BP_TRY(choose_shown(job, err));
+    if (p->notes[0] != '\0') say(job, "%s", p->notes);
+    const bool bonds = job->style->bonds || job->style->kind == BP_STYLE_BALL_AND_STICK;
+    const bool whole =
+        job->style->whole && p->has_cell && p->periodic && (p->bond_count > 0 || p->has_element);
+    if (bonds || whole) BP_TRY(bp_bonds_find(p, job->shown, &job->bonds, err));
+    size_t moved = 0;
+    if (whole) BP_TRY(bp_molecules_make_whole(p, job->shown, &job->bonds, &moved, err));
+    if (moved > 0)
+        say(job, "molecules made whole across the cell: %s moved", bp_format_whole(moved, all, sizeof all));
+    BP_TRY(choose_radii(job, err));
+    BP_TRY(choose_colors(job, err));
+    BP_TRY(put_particles(job, err));
+    if (bonds) BP_TRY(put_bonds(job, err));
+    if (job->style->box) BP_TRY(put_box(job, err));
+    if (job->summary != NULL) { /* the counts come first, and are known last */
+        char rest[768];
+        snprintf(rest, sizeof rest, "%s", job->summary);
+        bp_format_whole(p->count, all, sizeof all);
+        bp_format_whole(job->shown_count, shown, sizeof shown);
+        snprintf(job->summary, job->size, "%s of %s particles%s%s", shown, all, rest[0] != '\0' ? "; " : "",
+                 rest);
+    }
+    return BP_OK;
+}
+
+BpStatus bp_particles_add_to_scene(BpParticles *particles, const BpParticleStyle *style, uint32_t material,
+                                   BpScene *scene, char *summary, size_t size, double range[2],
+                                   BpError *err) {
+    Job job = {.p = particles,
+               .style = style,
+               .scene = scene,
+               .material = material,
+               .summary = summary,
+               .size = size};
+    if (summary != NULL) summary[0] = '\0';
+    const BpStatus status = run(&job, err);
+    if (range != NULL) memcpy(range, job.range, sizeof job.range);
+    free(job.shown);
+    free(job.rank);
+    free(job.bonds.pair);
+    return status;
+}

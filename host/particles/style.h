@@ -1,0 +1,73 @@
+/* style.h: how particles look: what is shown, sizes, colours, bonds, the cell.
+ *
+ * In:    a frame, a style.   Out: spheres with colours, added to a scene; what was decided, as a line.
+ * Knows: elements, palettes, colormaps.   Does not know: formats, cameras. */
+#ifndef BP_PARTICLES_STYLE_H
+#define BP_PARTICLES_STYLE_H
+
+#include "colormap.h"
+#include "particles.h"
+#include "scene/scene.h"
+
+typedef enum BpStyleKind { BP_STYLE_SPACEFILL, BP_STYLE_BALL_AND_STICK } BpStyleKind;
+
+typedef enum BpRadiusBy {
+    BP_RADIUS_AUTO,
+    BP_RADIUS_CONSTANT,
+    BP_RADIUS_VDW,
+    BP_RADIUS_COVALENT,
+    BP_RADIUS_COLUMN
+} BpRadiusBy;
+
+typedef enum BpColorBy {
+    BP_COLOR_AUTO,
+    BP_COLOR_CONSTANT,
+    BP_COLOR_ELEMENT,
+    BP_COLOR_CHAIN,
+    BP_COLOR_RESIDUE,
+    BP_COLOR_TYPE,
+    BP_COLOR_COLUMN
+} BpColorBy;
+
+enum { BP_STYLE_NAMED_MAX = 128 };
+
+/* What one element or type has instead of its default. */
+typedef struct BpStyleNamed {
+    char name[BP_PARTICLE_NAME_SIZE];
+    double value[3]; /* of a radius: the first */
+} BpStyleNamed;
+
+typedef struct BpParticleStyle {
+    BpStyleKind kind;
+    BpRadiusBy radius_by;
+    double radius; /* constant; otherwise the factor */
+    char radius_column[64];
+    BpStyleNamed radii[BP_STYLE_NAMED_MAX]; /* by type, or by element's symbol */
+    size_t radius_count;
+    BpColorBy color_by;
+    double color[3]; /* constant, linear */
+    char color_column[64];
+    BpColormap map;
+    bool has_range;
+    double range[2];
+    BpStyleNamed colors[BP_STYLE_NAMED_MAX];
+    size_t color_count;
+    bool bonds;         /* drawn as beads */
+    double bond_radius; /* 0: by the style */
+    bool box, solvent, whole;
+} BpParticleStyle;
+
+/* Space-filling, everything by what the file has, solvent hidden, molecules whole. */
+void bp_particle_style_defaults(BpParticleStyle *style);
+
+/* The columns that the style needs, in the order in which a file is to be opened with them. */
+size_t bp_particle_style_columns(const BpParticleStyle *style, const char *columns[BP_PARTICLE_WANTED_MAX]);
+
+/* Adds the particles as spheres of `material`, each with a colour of its own, and bonds and cell where the
+ * style has them. Moves molecules in `particles` together. `summary` (Optional, of `size` bytes): what is
+ * shown, and every guess. `range`: Optional; the values at the ends of the colormap. Fails if nothing is left
+ * to show. */
+BpStatus bp_particles_add_to_scene(BpParticles *particles, const BpParticleStyle *style, uint32_t material,
+                                   BpScene *scene, char *summary, size_t size, double range[2], BpError *err);
+
+#endif

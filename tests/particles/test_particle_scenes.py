@@ -1,0 +1,273 @@
+"""Files of particles as scenes, through the program: `scene`, `render`, the member "particles", fitted cameras.
+
+Run as: PYTHONPATH=tests/support python3 test_particle_scenes.py PROGRAM SOURCE_DIR
+"""
+import gzip
+import json
+import math
+import os
+
+from cli import ProgramTest, main, scene
+from pfm import read_pfm
+
+ATOMS = "4\n\nO 0 0 0\nH 1 0 0\nC 0 2 0\nFe 0 0 4\n"
+SIZE = ("--width", 24, "--spp", 2, "-q")
+
+
+def pdb_line(number, name, residue, place, element="  ", chain="A", record="ATOM  "):
+    return (f"{record}{number:5d} {name:4s} {residue:>3s} {chain}{number:4d}    {place[0]:8.3f}{place[1]:8.3f}{place[2]:8.3f}"
+            f"  1.00  0.00          {element:>2s}\n")
+
+
+def dump(frames):
+    return "".join(f"ITEM: TIMESTEP\n{i}\nITEM: NUMBER OF ATOMS\n{len(points)}\nITEM: BOX BOUNDS pp pp pp\n0 10\n0 10\n0 10\n"
+                   "ITEM: ATOMS id type x y z heat\n" +
+                   "".join(f"{k} 1 {x} {y} {z} {k + 10 * i}\n" for k, (x, y, z) in enumerate(points))
+                   for i, points in enumerate(frames))
+
+
+class Scenes(ProgramTest):
+    def document(self, name, *arguments):
+        return json.loads(self.succeed("scene", name, *arguments).stdout)
+
+    def notes(self, name, *arguments):
+        return self.succeed("scene", name, *arguments).errors
+
+    def picture(self, name, *arguments, output="x.pfm"):
+        self.succeed("render", name, *SIZE, "-o", output, *arguments)
+        return self.read(output)
+
+    def document_with(self, particles, **members):
+        return self.write("x.json", dict({"camera": {"fit": "particles"}, "particles": [particles]}, **members))
+
+    def spheres(self, name, *arguments):
+        """How many spheres the scene has."""
+        self.succeed("render", name, "--width", 4, "--spp", 1, "-q", "-o", "n.pfm", "--stats", "n.json", *arguments)
+        return json.loads(self.read("n.json"))["spheres"]
+
+    def test_render_a_file(self):
+        self.write("a.xyz", ATOMS)
+        result = self.succeed("render", "a.xyz", "--width", 16, "--spp", 2)
+        self.assertEqual(self.files(), ["a.png", "a.xyz"])
+        self.assertIn("a.xyz: 4 of 4 particles; van der Waals radii", result.errors)
+        self.write("b.xyz.gz", gzip.compress(ATOMS.encode()))
+        self.succeed("render", "b.xyz.gz", *SIZE)
+        self.assertIn("b.png", self.files())
+
+    def test_scene_renders_alike(self):
+        os.mkdir(self.path("data"))
+        os.mkdir(self.path("out"))
+        self.write("data/a.xyz", ATOMS)
+        direct = self.picture("data/a.xyz")
+        self.succeed("scene", "data/a.xyz", "-o", "data/a.json", "-q")
+        self.assert_same(self.picture("data/a.json"), direct, "beside the file")
+        self.assertEqual(json.loads(self.read("data/a.json"))["particles"], [{"file": "a.xyz"}])
+        self.succeed("scene", "data/a.xyz", "-o", "out/a.json", "-q")
+        self.assert_same(self.picture("out/a.json"), direct, "in another folder")
+        self.write("piped.json", self.succeed("scene", "data/a.xyz").stdout)
+        self.assert_same(self.picture("piped.json"), direct, "by standard output")
+        # Written and read again, a document stays the same.
+        again = self.succeed("scene", "data/a.json", "-o", "data/b.json", "-q")
+        self.assertEqual(again.stdout, b"")
+        self.assertEqual(self.read("data/a.json"), self.read("data/b.json"))
+
+    def test_members_survive(self):
+        self.write("a.dump", dump([[(1, 1, 1), (2, 2, 2)]]))
+        entry = {"file": "a.dump", "frame": -1, "style": "ball-and-stick", "radius": {"column": "heat", "scale": 0.5},
+                 "color": {"column": "heat", "map": "coolwarm", "range": [0, 3]}, "bonds": {"radius": 0.1}, "box": True,
+                 "solvent": True, "whole": False, "material": "m"}
+        camera = {"image_width": 30, "fit": "scene", "view": [1, 2, 3], "margin": 0.1, "vup": [0, 1, 0], "aperture": 0.5}
+        document = scene(camera=camera, particles=[entry], spheres=1)
+        self.write("x.json", document)
+        written = self.document("x.json")
+        self.assertEqual(written["particles"], [entry])
+        for name, value in camera.items():
+            self.assertEqual(written["camera"][name], value)
+        self.assertEqual((len(written["spheres"]), list(written["materials"])), (1, ["m"]))
+
+    def test_all_scenes_can_be_printed(self):
+        self.write("x.json", scene(spheres=3))
+        self.write("y.json", self.succeed("scene", "x.json").stdout)
+        self.assert_same(self.picture("x.json"), self.picture("y.json"))
+
+    def test_bad_members(self):
+        self.write("a.xyz", ATOMS)
+        self.write("a.csv", "x,y,z,charge\n1,2,3,4\n")
+        for changes, says in [({"file": "none.xyz"}, "none.xyz"), ({"file": "x.json"}, "unknown format"),
+                              ({"frame": 1}, "expected frame 1"), ({"frame": 0.5}, "whole number"),
+                              ({"style": "stick"}, '"spacefill"'), ({"radius": 0}, "above 0"), ({"radius": "vdv"}, '"vdw"'),
+                              ({"radius": {"by": "vdw", "column": "x"}}, "one of the two"), ({"colour": 1}, '"color"'),
+                              ({"color": [0, 0, 2]}, "from 0 to 1"), ({"color": {"map": "viridis"}}, "column"),
+                              ({"color": {"column": "x", "map": "virids"}}, '"viridis"'), ({"color": "chain"}, "no chains"),
+                              ({"color": {"column": "x", "range": [2, 1]}}, "lesser"), ({"box": 1}, "true or false"),
+                              ({"box": True}, "no cell"), ({"bonds": 3}, "true, false"), ({"material": "m"}, '"m"'),
+                              ({"file": "a.csv", "color": {"column": "chrge"}}, "charge"),
+                              ({"file": "a.csv", "radius": "vdw"}, "no elements")]:
+            self.document_with(dict({"file": "a.xyz"}, **changes))
+            self.fail_with(2, "render", "x.json", "-o", "x.png", says=says)
+        for camera, says in [({"fit": "particles", "lookfrom": [1, 1, 1]}, "lookfrom"), ({"view": "front"}, "fit"),
+                             ({"fit": "scene", "view": "up"}, "front"), ({"fit": "scene", "view": [0, 0, 0]}, "direction"),
+                             ({"fit": "scene", "margin": 0.5}, "0.45"), ({"fit": "all"}, '"scene"'),
+                             ({"fit": "scene", "defocus_angle": 1}, "aperture")]:
+            self.document_with({"file": "a.xyz"}, camera=camera)
+            self.fail_with(2, "render", "x.json", "-o", "x.png", says=["x.json:1:", says])
+        self.write("x.json", scene(camera={"fit": "particles"}))
+        self.fail_with(2, "render", "x.json", "-o", "x.png", says="the scene has none")
+        self.fail_with(2, "render", "a.xyz", "-o", "a.xyz", says="overwrite")
+        self.document_with({"file": "a.xyz"})
+        self.fail_with(2, "render", "x.json", "-o", "a.xyz", "--format", "png", says="overwrite")
+
+    def test_errors_name_file_and_line(self):
+        self.write("a.xyz", "2\n\nO 0 0 0\nO 0 nan 0\n")
+        self.fail_with(2, "render", "a.xyz", "-o", "x.png", says="a.xyz:4: ")
+        self.document_with({"file": "a.xyz"})
+        self.fail_with(2, "render", "x.json", "-o", "x.png", says=["a.xyz:4: ", "(particles of x.json:1:"])
+
+    def test_hidden(self):
+        water = [pdb_line(2, " O  ", "HOH", (9, 9, 9)), pdb_line(3, " H1 ", "HOH", (10, 9, 9))]
+        protein = [pdb_line(1, " CA ", "ALA", (0, 0, 0))]
+        extra = [pdb_line(4, " MW ", "HOH", (9, 9, 8)), pdb_line(5, "NA  ", " NA", (5, 5, 5))]
+        self.write("a.pdb", "".join(protein + water + extra))
+        self.assertIn("1 of 5 particles; hidden: 2 of water, 1 of ions, 1 dummy", self.notes("a.pdb"))
+        self.assertEqual(self.spheres("a.pdb"), 1)
+        self.document_with({"file": "a.pdb", "solvent": True})
+        self.assertEqual(self.spheres("x.json"), 4)
+        self.write("w.pdb", "".join(water))
+        self.assertEqual(self.spheres("w.pdb"), 2)  # nothing else is there
+        self.assertEqual(self.notes("a.pdb", "-q"), "")
+
+    def test_molecules_made_whole(self):
+        cell = "CRYST1   20.000   20.000   20.000  90.00  90.00  90.00 P 1           1\n"
+        chain = [pdb_line(i, " C  ", "LIG", ((14 + 1.4 * i) % 20, 10, 10), " C") for i in range(10)]
+        self.write("a.pdb", cell + "".join(chain))
+        self.assertIn("made whole across the cell", self.notes("a.pdb"))
+        broken = [pdb_line(i, " C  ", "LIG", (14 + 1.4 * i, 10, 10), " C") for i in range(10)]
+        self.write("b.pdb", cell + "".join(broken))
+        self.assertNotIn("whole", self.notes("b.pdb"))
+        self.assert_same(self.picture("a.pdb"), self.picture("b.pdb"))
+        # A chain without end stays.
+        ring = [pdb_line(i, " C  ", "LIG", (20 / 14 * i, 10, 10), " C") for i in range(14)]
+        self.write("c.pdb", cell + "".join(ring))
+        self.assertNotIn("whole", self.notes("c.pdb"))
+
+    def test_bonds_and_box(self):
+        self.write("a.xyz", '2\nLattice="9 0 0 0 9 0 0 0 9" Properties=species:S:1:pos:R:3\nC 1 1 1\nO 2.2 1 1\n')
+        self.assertEqual(self.spheres("a.xyz"), 2)
+        self.document_with({"file": "a.xyz", "bonds": True})
+        bonds = self.spheres("x.json") - 2
+        self.assertTrue(20 <= bonds <= 60, bonds)
+        self.assertIn("1 bonds by distance", self.notes("x.json"))
+        self.document_with({"file": "a.xyz", "box": True})
+        self.assertGreater(self.spheres("x.json"), 1000)
+
+    def test_radii_and_colours(self):
+        """Two points that fill a picture each: the albedo is read off an EXR's place, here by the mean of a white dome."""
+        def mean(entry):
+            self.document_with(dict({"file": "a.csv"}, **entry), background=[1, 1, 1],
+                               camera={"image_width": 8, "fit": "particles", "margin": 0, "view": "front", "max_depth": 50})
+            self.succeed("render", "x.json", "-q", "--spp", 16, "-o", "x.pfm")
+            width, height, values = read_pfm(self.read("x.pfm"))
+            middle = 3 * (height // 2 * width + width // 2)
+            return [values[middle + c] for c in range(3)]
+        self.write("a.csv", "x,y,z,heat,type\n0,0,0,5,A\n")
+        for entry, expected in [({"color": [0.2, 0.4, 0.6]}, [0.2, 0.4, 0.6]),
+                                ({"color": {"types": {"A": [0.1, 0.7, 0.3]}}}, [0.1, 0.7, 0.3]),
+                                # 8-bit sRGB (253, 231, 37), dimmed by 0.9
+                                ({"color": {"column": "heat", "range": [0, 5]}}, [0.886, 0.719, 0.0167]),
+                                ({"color": {"column": "heat", "range": [5, 9], "map": "coolwarm"}}, [0.0394, 0.0652, 0.474])]:
+            for got, wanted in zip(mean(entry), expected):
+                self.assertAlmostEqual(got, wanted, delta=0.012 * max(1, wanted), msg=entry)
+        # A single sphere of a convex scene under a dome of 1 shows its albedo, whatever its radius.
+        self.write("b.csv", "x,y,z,size\n0,0,0,1\n0,0,0,3\n")
+        self.assertIn("half the median distance", self.notes("a.csv") + self.notes("b.csv"))
+
+    def test_fit(self):
+        """Nothing lit touches the margin, and the picture is filled."""
+        self.write("a.csv", "x,y,z,radius\n" + "".join(f"{math.sin(i)},{math.cos(i)},{i / 9},0.2\n" for i in range(40)))
+        for view in ("front", "right", "top", "bottom", "three-quarter", [1, -2, 0.5]):
+            self.document_with({"file": "a.csv", "color": [0.1, 0.1, 0.1]}, background=[1, 1, 1],
+                               camera={"image_width": 100, "aspect_ratio": 1.5, "fit": "particles", "view": view})
+            self.succeed("render", "x.json", "-q", "--spp", 4, "-o", "x.pfm")
+            width, height, values = read_pfm(self.read("x.pfm"))
+            lit = [(i % width, i // width) for i in range(width * height) if values[3 * i] < 0.999]
+            across = max(x for x, _ in lit) - min(x for x, _ in lit) + 1
+            up = max(y for _, y in lit) - min(y for _, y in lit) + 1
+            self.assertTrue(min(x for x, _ in lit) >= 4 and max(x for x, _ in lit) < width - 4, view)
+            self.assertTrue(min(y for _, y in lit) >= 2 and max(y for _, y in lit) < height - 2, view)
+            self.assertGreaterEqual(max(across, up), 0.85 * height, view)
+
+    def test_fit_option(self):
+        self.write("x.json", scene(spheres=2, background=[1, 1, 1], materials={"m": {"type": "lambertian", "albedo": [0, 0, 0]}}))
+        def shares(*options):
+            _, _, values = read_pfm(self.picture("x.json", *options))
+            return sum(v < 0.5 for v in values) / len(values)
+        self.assertLess(shares() + 0.1, shares("--fit"))
+        self.assertEqual(self.document("x.json", "--fit")["camera"]["fit"], "scene")
+
+    def test_frames(self):
+        frames = [[(1, 1, 1)], [(1, 1, 1), (8, 1, 1)], [(1, 8, 1)], [(1, 1, 8)]]
+        self.write("run.dump", dump(frames))
+        for frame, count in [(0, 1), (1, 2), (-3, 2)]:
+            self.assertEqual(self.spheres("run.dump", "--frame", frame), count)
+        self.assertEqual(self.document("run.dump", "--frame", 1)["particles"], [{"file": "run.dump", "frame": 1}])
+        for frame in (4, -5):
+            self.fail_with(2, "render", "run.dump", "--frame", frame, says=[f"expected frame {frame}", "4 frames"])
+        for text, numbers in [("::", [0, 1, 2, 3]), ("1:3", [1, 2]), ("::2", [0, 2]), ("-2:", [2, 3]), (":-1:2", [0, 2])]:
+            self.succeed("render", "run.dump", *SIZE, "--frames", text, "-o", "f.pfm")
+            made = [name for name in self.files() if name.startswith("f-")]
+            self.assertEqual(made, [f"f-{i:04d}.pfm" for i in numbers], text)
+            for name in made:
+                os.remove(self.path(name))
+        self.succeed("render", "run.dump", *SIZE, "--frames", "1:2")
+        self.assertIn("run-0001.png", self.files())
+        for options, says in [(("--frames", "4:"), "no such frame"), (("--frames", "3"), "A:B:S"), (("--frames", "::0"), "A:B:S"),
+                              (("--frames", "::", "--frame", 1), "--frame"), (("--frames", "::", "--turntable", 3), "together"),
+                              (("--frames", "::", "--stats", "s.json"), "--stats"), (("--frames", "::", "-o", "-"), "standard output"),
+                              (("--turntable", 3, "--error-map", "e.png"), "--error-map"), (("--turntable", 1), "2"),
+                              (("--frame", "x"), "whole number")]:
+            self.fail_with(2, "render", "run.dump", *options, says=says)
+        self.write("x.json", scene())
+        self.fail_with(2, "render", "x.json", "--frames", "::", says="no particles")
+
+    def test_one_camera_and_range_for_all_frames(self):
+        self.write("run.dump", dump([[(1, 1, 1), (2, 2, 2)], [(8, 8, 8), (2, 2, 2)]]))
+        entry = {"file": "run.dump", "radius": 0.5, "color": {"column": "heat"}}
+        self.document_with(entry, camera={"image_width": 24, "fit": "particles"})
+        self.succeed("render", "x.json", *SIZE, "--frames", "::", "-o", "f.pfm")
+        # The same camera as for both frames at once; the range of both is 0 to 11.
+        ranged = dict(entry, color={"column": "heat", "range": [0, 11]})
+        for frame in (0, 1):
+            both = [dict(ranged, frame=0), dict(ranged, frame=1)]
+            self.write("y.json", {"camera": {"image_width": 24, "fit": "particles"}, "particles": both})
+            fitted = self.read(f"f-{frame:04d}.pfm")
+            _, _, values = read_pfm(fitted)
+            _, _, all_values = read_pfm(self.picture("y.json"))
+            dark = [i for i, v in enumerate(values) if v < 0.3]
+            self.assertTrue(dark)
+            self.assertTrue(all(all_values[i] < 0.75 for i in dark), frame)
+
+    def test_turntable(self):
+        self.write("a.xyz", ATOMS)
+        self.succeed("render", "a.xyz", *SIZE, "--turntable", 4, "-o", "t.pfm")
+        self.assertEqual([name for name in self.files() if name.startswith("t-")], [f"t-{i:04d}.pfm" for i in range(4)])
+        self.assertEqual(len({self.read(f"t-{i:04d}.pfm") for i in range(4)}), 4)
+        self.write("x.json", scene(camera={"lookfrom": [0, 0, 2], "lookat": [0, 0, -1]}))
+        self.succeed("render", "x.json", *SIZE, "--turntable", 2, "-o", "u.pfm")
+        self.assert_same(self.read("u-0000.pfm"), self.picture("x.json"))
+
+    def test_pdb_and_cif_alike(self):
+        atoms = [(" N  ", "N", (1, 2, 3)), (" CA ", "C", (2.4, 2, 3)), (" O  ", "O", (3, 3, 4))]
+        self.write("a.pdb", "".join(pdb_line(i, name, "ALA", place, element) for i, (name, element, place) in enumerate(atoms)))
+        self.write("a.cif", "data_x\nloop_\n" + "".join(f"_atom_site.{n}\n" for n in (
+            "type_symbol", "label_atom_id", "label_comp_id", "auth_asym_id", "Cartn_x", "Cartn_y", "Cartn_z")) +
+            "".join(f"{e} {n.strip()} ALA A {x} {y} {z}\n" for n, e, (x, y, z) in atoms))
+        self.assert_same(self.picture("a.pdb"), self.picture("a.cif"))
+
+    def test_every_command_takes_particles(self):
+        self.write("a.xyz", ATOMS)
+        self.succeed("explain", "a.xyz")
+        self.succeed("check", "a.xyz", "--width", 16, "--spp", 64)
+
+
+if __name__ == "__main__":
+    main()
