@@ -286,7 +286,8 @@ static BpStatus deliver(const BpCommandLine *line, const BpResultFile *file, con
                        result->options->precision == BP_PRECISION_DOUBLE ? "double" : "single",
                        result->options->precision == BP_PRECISION_DOUBLE ? "" : "use --precision double, ");
     const double write_start = bp_clock_seconds();
-    BP_TRY(bp_result_write(line, file, result->film, render, (BpTransfer)result->film->transfer, err));
+    BP_TRY(bp_result_write(line, file, result->film, render, (BpTransfer)result->film->transfer,
+                           &result->scene->legend, err));
     result->times.write = bp_clock_seconds() - write_start;
     if (line->stats != NULL) BP_TRY(bp_json_write(stats_json(result), line->stats, err));
     if (!line->quiet) print_summary(result, rule, end);

@@ -6,6 +6,7 @@
 #include "base/format.h"
 #include "base/output_file.h"
 #include "film/film_file.h"
+#include "image/color_bar.h"
 #include "image/error_map.h"
 #include "image/image.h"
 #include "json_file.h"
@@ -98,7 +99,7 @@ BpStatus bp_result_choose(const BpCommandLine *line, const char *default_path, B
 }
 
 BpStatus bp_result_write(const BpCommandLine *line, const BpResultFile *result, const BpFilm *film,
-                         BpRender *render, BpTransfer transfer, BpError *err) {
+                         BpRender *render, BpTransfer transfer, const BpLegend *legend, BpError *err) {
     BpStatus status = BP_OK;
     BpPicture picture = {0};
     const bool to_stream = strcmp(result->path, "-") == 0;
@@ -107,6 +108,11 @@ BpStatus bp_result_write(const BpCommandLine *line, const BpResultFile *result, 
     if (is_picture || line->error_map != NULL)
         BP_TRY_GOTO(status, bp_film_picture(film, &picture, err), done);
     if (result->format == BP_FORMAT_EXR && render != NULL) status = bp_render_aovs(render, &picture, err);
+    const bool bytes = result->format == BP_FORMAT_PNG || result->format == BP_FORMAT_PPM ||
+                       result->format == BP_FORMAT_PPM_ASCII;
+    if (status == BP_OK && legend != NULL && legend->shown && bytes)
+        status = bp_color_bar_draw(&picture, transfer, (const float(*)[3])legend->colors, legend->range,
+                                   legend->title, err);
     if (status != BP_OK) goto done;
     if (is_picture && to_stream)
         status = bp_picture_write_stream(&picture, stdout, result->format, transfer, err);

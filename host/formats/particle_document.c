@@ -16,7 +16,7 @@ static const char form[] =
     "  \"title\": %s,\n"
     "  \"source\": \"made by `ballpark scene`\",\n"
     "  \"camera\": {\n"
-    "    \"image_width\": 1000, \"aspect_ratio\": [4, 3], \"samples_per_pixel\": 64, \"max_depth\": 50,\n"
+    "    \"image_width\": 800, \"aspect_ratio\": [4, 3], \"samples_per_pixel\": 32, \"max_depth\": 20,\n"
     "    \"vfov\": 30, \"fit\": \"particles\", \"view\": \"three-quarter\", \"margin\": 0.05\n"
     "  },\n"
     "  \"background\": [1, 1, 1],\n"

@@ -123,7 +123,7 @@ static BpStatus read_range(const BpNode *node, BpParticleStyle *style, BpError *
 
 static BpStatus read_colors(const BpNode *node, BpParticleStyle *style, BpError *err) {
     static const char *const by_names[] = {"element", "chain", "residue", "type"};
-    static const char *const names[] = {"by", "column", "map", "range", "types"};
+    static const char *const names[] = {"by", "column", "map", "range", "bar", "types"};
     static const char expected[] =
         "[r, g, b], \"element\", \"chain\", \"residue\", \"type\", or an object such as { "
         "\"column\": \"charge\", \"map\": \"viridis\", \"range\": [-1, 1] } or { \"types\": { "
@@ -143,12 +143,15 @@ static BpStatus read_colors(const BpNode *node, BpParticleStyle *style, BpError 
     BP_TRY(bp_node_object(node, names, BP_COUNT(names), err));
     const BpNode by = bp_node_member(node, "by"), column = bp_node_member(node, "column");
     const BpNode map = bp_node_member(node, "map"), range = bp_node_member(node, "range");
-    const BpNode types = bp_node_member(node, "types");
+    const BpNode bar = bp_node_member(node, "bar"), types = bp_node_member(node, "types");
     if (by.value != NULL && column.value != NULL)
         return bp_node_fail(&column, BP_PART_NAME, err,
                             "found beside \"by\", expected one of the two; remove one");
-    if (column.value == NULL && (map.value != NULL || range.value != NULL))
-        return bp_node_fail(map.value != NULL ? &map : &range, BP_PART_NAME, err,
+    if (column.value == NULL && (map.value != NULL || range.value != NULL || bar.value != NULL))
+        return bp_node_fail(map.value != NULL     ? &map
+                            : range.value != NULL ? &range
+                                                  : &bar,
+                            BP_PART_NAME, err,
                             "found without \"column\", expected the column whose numbers give the colours");
     if (by.value != NULL) {
         BP_TRY(bp_node_choice(&by, by_names, BP_COUNT(by_names), &choice, err));
@@ -162,6 +165,7 @@ static BpStatus read_colors(const BpNode *node, BpParticleStyle *style, BpError 
     BP_TRY(bp_node_choice(&map, bp_colormap_names, BP_MAP_COUNT, &choice, err));
     style->map = (BpColormap)choice;
     BP_TRY(read_range(&range, style, err));
+    BP_TRY(read_flag(&bar, &style->bar, err));
     return read_named(&types, true, style->colors, &style->color_count, err);
 }
 
@@ -266,6 +270,21 @@ static BpStatus add_notes(BpScene *scene, const char *file, const char *summary,
     return BP_OK;
 }
 
+static void keep_legend(const BpParticleStyle *style, const double range[2], BpScene *scene) {
+    enum { STOPS = sizeof scene->legend.colors / sizeof scene->legend.colors[0] };
+    scene->has_color_range = true;
+    memcpy(scene->color_range, range, sizeof scene->color_range);
+    if (!style->bar) return;
+    scene->legend.shown = true;
+    memcpy(scene->legend.title, style->color_column, sizeof scene->legend.title);
+    memcpy(scene->legend.range, range, sizeof scene->legend.range);
+    for (int i = 0; i < STOPS; i++) {
+        double color[3];
+        bp_particle_style_map(style, i / (STOPS - 1.0), color);
+        for (int c = 0; c < 3; c++) scene->legend.colors[i][c] = (float)color[c];
+    }
+}
+
 static BpStatus add_particles(BpParticleFile *file, const char *path, const Entry *entry, BpScene *scene,
                               BpError *err) {
     BpParticles particles = {0};
@@ -277,10 +296,7 @@ static BpStatus add_particles(BpParticleFile *file, const char *path, const Entr
                                            sizeof summary, range, err);
         if (status == BP_ERR_SCENE) bp_error_at(err, path, 0, 0);
     }
-    if (status == BP_OK && entry->style.color_by == BP_COLOR_COLUMN) {
-        scene->has_color_range = true;
-        memcpy(scene->color_range, range, sizeof range);
-    }
+    if (status == BP_OK && entry->style.color_by == BP_COLOR_COLUMN) keep_legend(&entry->style, range, scene);
     if (status == BP_OK && !particles.flat) scene->up = particles.up;
     if (status == BP_OK && particles.flat) scene->flat = true;
     bp_particles_clear(&particles);

@@ -1,7 +1,7 @@
 /* text.h: small letters drawn into an 8-bit picture, for legends.
  *
  * In:    a canvas, a string.   Out: pixels.
- * Knows: the shapes of digits, small letters and . % < >.   Does not know: what is written. */
+ * Knows: the shapes of digits, small letters and + - . _ % < >.   Does not know: what is written. */
 #ifndef BP_IMAGE_TEXT_H
 #define BP_IMAGE_TEXT_H
 

@@ -121,7 +121,9 @@ static BpStatus add_tag(BpParticles *p, const Particle *particle, BpError *err) 
     p->has_chain |= tag->chain != 0;
     p->has_type |= tag->type != 0;
     p->has_element |= tag->element != 0;
-    if ((tag->flags & BP_PARTICLE_ELEMENT_GUESSED) != 0) bp_particles_note(p, "elements from atom names");
+    if ((tag->flags & BP_PARTICLE_ELEMENT_GUESSED) != 0 && !p->element_guessed)
+        bp_particles_note(p, "elements from atom names");
+    p->element_guessed |= (tag->flags & BP_PARTICLE_ELEMENT_GUESSED) != 0;
     return BP_OK;
 }
 

@@ -70,6 +70,7 @@ typedef struct BpParticles {
     float *column[BP_PARTICLE_WANTED_MAX]; /* of the wanted columns, in their order */
     BpNames names;
     bool has_name, has_residue, has_chain, has_type, has_element; /* some particle has one */
+    bool element_guessed;                                         /* some from its name */
     bool has_cell, periodic;
     double cell_origin[3], cell[3][3]; /* the cell's edges as rows */
     uint32_t (*bonds)[2];              /* Optional: given in the file */

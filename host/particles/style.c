@@ -12,6 +12,7 @@
 #include <strings.h>
 
 #define BALL_SHARE 0.28     /* of the van der Waals radius, in ball-and-stick */
+#define COARSE_ANGSTROM 2.3 /* nearest neighbours further apart than that are no atoms of molecules */
 #define STICK_ANGSTROM 0.14 /* half the width of a bond */
 #define EDGE_SHARE 0.002    /* half the width of the cell's edges, of its longest */
 #define BEADS_MAX 4000      /* in one bond or edge */
@@ -31,6 +32,11 @@ size_t bp_particle_style_columns(const BpParticleStyle *style, const char *colum
     if (style->radius_by == BP_RADIUS_COLUMN) columns[count++] = style->radius_column;
     if (style->color_by == BP_COLOR_COLUMN) columns[count++] = style->color_column;
     return count;
+}
+
+void bp_particle_style_map(const BpParticleStyle *style, double share, double color[3]) {
+    bp_colormap_color(style->map, share, color);
+    for (int c = 0; c < 3; c++) color[c] *= 0.9; /* albedos near 1 glare */
 }
 
 typedef struct Job {
@@ -136,7 +142,13 @@ static BpStatus choose_radii(Job *job, BpError *err) {
     if ((style->radius_by == BP_RADIUS_VDW || style->radius_by == BP_RADIUS_COVALENT) && !p->has_element)
         return bp_fail(err, BP_ERR_SCENE,
                        "found no elements, expected them for radii by element; give \"radius\" as a number");
-    const bool elements = p->has_element && p->angstrom > 0;
+    bool elements = p->has_element && p->angstrom > 0;
+    if (style->radius_by == BP_RADIUS_AUTO && p->radius == NULL && elements && p->element_guessed) {
+        /* Beads of coarse-grained models have names that look like atoms', but lie further apart than bonds
+         * reach. */
+        BP_TRY(bp_particles_spacing(p, job->shown, &job->spacing, err));
+        elements = job->spacing < COARSE_ANGSTROM * p->angstrom;
+    }
     if (style->radius_by == BP_RADIUS_AUTO && p->radius == NULL && elements) job->radius_by = BP_RADIUS_VDW;
     bool spacing_needed = job->radius_by == BP_RADIUS_AUTO && p->radius == NULL;
     for (size_t i = 0; i < p->count && !spacing_needed && job->radius_by == BP_RADIUS_AUTO; i++)
@@ -272,8 +284,7 @@ static void color_of(const Job *job, size_t i, double color[3]) {
         const double value = (double)p->column[style->radius_by == BP_RADIUS_COLUMN][i];
         const double width = job->range[1] - job->range[0];
         if (!isnan(value)) {
-            bp_colormap_color(style->map, width > 0 ? (value - job->range[0]) / width : 0.5, color);
-            for (int c = 0; c < 3; c++) color[c] *= 0.9; /* albedos near 1 glare */
+            bp_particle_style_map(style, width > 0 ? (value - job->range[0]) / width : 0.5, color);
             return;
         }
         place = 7; /* grey: no value */

@@ -50,6 +50,7 @@ typedef struct BpParticleStyle {
     BpColormap map;
     bool has_range;
     double range[2];
+    bool bar; /* a legend is wanted */
     BpStyleNamed colors[BP_STYLE_NAMED_MAX];
     size_t color_count;
     bool bonds;         /* drawn as beads */
@@ -59,6 +60,9 @@ typedef struct BpParticleStyle {
 
 /* Space-filling, everything by what the file has, solvent hidden, molecules whole. */
 void bp_particle_style_defaults(BpParticleStyle *style);
+
+/* The linear colour that the style's colormap has at `share`: its albedo. */
+void bp_particle_style_map(const BpParticleStyle *style, double share, double color[3]);
 
 /* The columns that the style needs, in the order in which a file is to be opened with them. */
 size_t bp_particle_style_columns(const BpParticleStyle *style, const char *columns[BP_PARTICLE_WANTED_MAX]);

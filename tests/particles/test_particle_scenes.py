@@ -74,7 +74,7 @@ class Scenes(ProgramTest):
     def test_members_survive(self):
         self.write("a.dump", dump([[(1, 1, 1), (2, 2, 2)]]))
         entry = {"file": "a.dump", "frame": -1, "style": "ball-and-stick", "radius": {"column": "heat", "scale": 0.5},
-                 "color": {"column": "heat", "map": "coolwarm", "range": [0, 3]}, "bonds": {"radius": 0.1}, "box": True,
+                 "color": {"column": "heat", "map": "coolwarm", "range": [0, 3], "bar": True}, "bonds": {"radius": 0.1}, "box": True,
                  "solvent": True, "whole": False, "material": "m"}
         camera = {"image_width": 30, "fit": "scene", "view": [1, 2, 3], "margin": 0.1, "vup": [0, 1, 0], "aperture": 0.5}
         document = scene(camera=camera, particles=[entry], spheres=1)
@@ -97,7 +97,7 @@ class Scenes(ProgramTest):
                               ({"frame": 1}, "expected frame 1"), ({"frame": 0.5}, "whole number"),
                               ({"style": "stick"}, '"spacefill"'), ({"radius": 0}, "above 0"), ({"radius": "vdv"}, '"vdw"'),
                               ({"radius": {"by": "vdw", "column": "x"}}, "one of the two"), ({"colour": 1}, '"color"'),
-                              ({"color": [0, 0, 2]}, "from 0 to 1"), ({"color": {"map": "viridis"}}, "column"),
+                              ({"color": [0, 0, 2]}, "from 0 to 1"), ({"color": {"map": "viridis"}}, "column"), ({"color": {"bar": True}}, "column"),
                               ({"color": {"column": "x", "map": "virids"}}, '"viridis"'), ({"color": "chain"}, "no chains"),
                               ({"color": {"column": "x", "range": [2, 1]}}, "lesser"), ({"box": 1}, "true or false"),
                               ({"box": True}, "no cell"), ({"bonds": 3}, "true, false"), ({"material": "m"}, '"m"'),
@@ -135,6 +135,13 @@ class Scenes(ProgramTest):
         self.write("w.pdb", "".join(water))
         self.assertEqual(self.spheres("w.pdb"), 2)  # nothing else is there
         self.assertEqual(self.notes("a.pdb", "-q"), "")
+
+    def test_coarse_grains(self):
+        """Beads that have names like atoms are told by their distance."""
+        for spacing, says in [(4.7, "half the median distance"), (1.4, "van der Waals")]:
+            beads = [pdb_line(i, " C1 ", "DPP", (spacing * i, 0, 0)) for i in range(20)]
+            self.write("a.pdb", "".join(beads))
+            self.assertIn(says, self.notes("a.pdb"))
 
     def test_molecules_made_whole(self):
         cell = "CRYST1   20.000   20.000   20.000  90.00  90.00  90.00 P 1           1\n"
@@ -180,6 +187,26 @@ class Scenes(ProgramTest):
         # A single sphere of a convex scene under a dome of 1 shows its albedo, whatever its radius.
         self.write("b.csv", "x,y,z,size\n0,0,0,1\n0,0,0,3\n")
         self.assertIn("half the median distance", self.notes("a.csv") + self.notes("b.csv"))
+
+    def test_colour_bar(self):
+        self.write("a.csv", "x,y,z,heat\n" + "".join(f"{i},{i % 3},0,{i}\n" for i in range(11)))
+        pictures = {}
+        for bar in (True, False):
+            for output in ("x.ppm", "x.pfm"):
+                self.document_with({"file": "a.csv", "color": {"column": "heat", "bar": bar}}, background=[1, 1, 1], transfer="srgb",
+                                   camera={"image_width": 200, "aspect_ratio": 1.5, "fit": "particles"})
+                self.succeed("render", "x.json", "-q", "--spp", 1, "-o", output)
+                pictures[bar, output] = self.read(output)
+        self.assertEqual(pictures[True, "x.pfm"], pictures[False, "x.pfm"])  # floats stay what was rendered
+        plain, barred = pictures[False, "x.ppm"], pictures[True, "x.ppm"]
+        self.assertEqual(len(plain), len(barred))
+        width, height, head = 200, 133, len(plain) - 3 * 200 * 133
+        changed = {i // 3 % width for i, (a, b) in enumerate(zip(plain[head:], barred[head:])) if a != b}
+        self.assertGreater(min(changed), 150)  # at the right side alone
+        colours = {bytes(barred[head + 3 * i:head + 3 * i + 3]) for i in range(width * height)}
+        # The ends of viridis, dimmed by 0.9, as sRGB: about (65, 1, 80) and (241, 220, 35).
+        for end in ((65, 1, 80), (241, 220, 35)):
+            self.assertTrue(any(max(abs(a - b) for a, b in zip(end, colour)) <= 4 for colour in colours), end)
 
     def test_fit(self):
         """Nothing lit touches the margin, and the picture is filled."""

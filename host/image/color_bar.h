@@ -1,0 +1,18 @@
+/* color_bar.h: the legend of a colormap, drawn into a picture.
+ *
+ * In:    a picture, the map's colours, what they stand for.   Out: the picture with a bar at its right side.
+ * Knows: pixels, round numbers.   Does not know: where the colours come from. */
+#ifndef BP_IMAGE_COLOR_BAR_H
+#define BP_IMAGE_COLOR_BAR_H
+
+#include "base/status.h"
+
+enum { BP_COLOR_BAR_STOPS = 256 };
+
+/* Draws over the picture's radiance, so that a file of 8 bits by `transfer` shows it right. `colors`: linear,
+ * from the least value to the most. In `title`, letters that the legend's font lacks are gaps. A picture too
+ * small for it stays as it is. */
+BpStatus bp_color_bar_draw(BpPicture *picture, BpTransfer transfer, const float colors[BP_COLOR_BAR_STOPS][3],
+                           const double range[2], const char *title, BpError *err);
+
+#endif
