@@ -23,6 +23,7 @@ enum {
     BPM_SPHERE,
     DPD,
     PERI,
+    HYBRID,
     STYLE_COUNT
 };
 
@@ -43,6 +44,7 @@ static const struct Style {
     [BPM_SPHERE] = {"bpm/sphere", 8, 2, 1, -1, 3, 5},
     [DPD] = {"dpd", 6, 1, -1, -1, -1, 3},
     [PERI] = {"peri", 7, 1, -1, -1, -1, 4},
+    [HYBRID] = {"hybrid", 5, 1, -1, -1, -1, 2},
 };
 
 typedef struct Data {
@@ -56,39 +58,15 @@ typedef struct Data {
     size_t id_count, id_capacity;
 } Data;
 
-static const char *const sections[] = {"Atoms",
-                                       "Masses",
-                                       "Bonds",
-                                       "Velocities",
-                                       "Angles",
-                                       "Dihedrals",
-                                       "Impropers",
-                                       "Pair Coeffs",
-                                       "PairIJ Coeffs",
-                                       "Bond Coeffs",
-                                       "Angle Coeffs",
-                                       "Dihedral Coeffs",
-                                       "Improper Coeffs",
-                                       "Ellipsoids",
-                                       "Lines",
-                                       "Triangles",
-                                       "Bodies",
-                                       "Bond Type Labels",
-                                       "Atom Type Labels",
-                                       "Angle Type Labels",
-                                       "Dihedral Type Labels",
-                                       "Improper Type Labels",
-                                       "BondBond Coeffs",
-                                       "BondAngle Coeffs",
-                                       "MiddleBondTorsion Coeffs",
-                                       "EndBondTorsion Coeffs",
-                                       "AngleTorsion Coeffs",
-                                       "AngleAngleTorsion Coeffs",
-                                       "BondBond13 Coeffs",
-                                       "AngleAngle Coeffs"};
+/* Sections that are read; of the others, those that the format has are passed over without a word. */
+enum { ATOMS, MASSES, BONDS };
+static const char *const sections[] = {
+    [ATOMS] = "Atoms", [MASSES] = "Masses", [BONDS] = "Bonds", "Velocities", "Angles", "Dihedrals",
+    "Impropers",       "Ellipsoids",        "Lines",           "Triangles",  "Bodies"};
 
-/* The number of the section that the line opens; -1: none. */
-static int section_of(const char *line) {
+/* The number of the section that the line opens; -1: it opens none; -2: one that is not in the list. Lines of
+ * data begin with a number, those of Masses perhaps with a label. */
+static int section_of(const char *line, int section) {
     line += strspn(line, " \t");
     if (!isupper((unsigned char)*line)) return -1;
     for (size_t i = 0; i < sizeof sections / sizeof *sections; i++) {
@@ -98,7 +76,8 @@ static int section_of(const char *line) {
             (rest[strspn(rest, " \t\r")] == '\0' || rest[strspn(rest, " \t\r")] == '#'))
             return (int)i;
     }
-    return -2;
+    const bool label = section == MASSES && strpbrk(line, "0123456789") != NULL;
+    return label ? -1 : -2;
 }
 
 static void cut_comment(char *line) {
@@ -112,7 +91,7 @@ static BpStatus take_header(Input *input, char **line, Data *data, BpError *err)
     BP_TRY(input_needed_line(input, line, "a LAMMPS data file's title", err));
     for (;;) {
         BP_TRY(input_full_line(input, line, err));
-        if (*line == NULL || section_of(*line) != -1) return BP_OK;
+        if (*line == NULL || section_of(*line, -1) != -1) return BP_OK;
         cut_comment(*line);
         const size_t count = split_words(*line, words, WORDS_MAX);
         if (count == 2 && strcmp(words[1], "atoms") == 0)
@@ -268,8 +247,10 @@ static BpStatus take_bonds(BpParticleFile *file, Data *data, BpError *err) {
     for (uint64_t i = 0; i < data->bonds && status == BP_OK; i++) {
         char *line = NULL, *words[WORDS_MAX];
         uint32_t a = 0, b = 0;
-        BP_TRY_GOTO(status, input_full_line(input, &line, err), done);
-        if (line != NULL) cut_comment(line);
+        do {
+            BP_TRY_GOTO(status, input_full_line(input, &line, err), done);
+            if (line != NULL) cut_comment(line);
+        } while (line != NULL && line[strspn(line, " \t\r")] == '\0');
         if (line == NULL || split_words(line, words, WORDS_MAX) < 4) {
             status = input_fail(input, true, err,
                                 "found another line, expected bond %llu of %llu: number, type, "
@@ -292,9 +273,12 @@ static BpStatus take_sections(BpParticleFile *file, char *line, Data *data, BpEr
     int section = -1;
     bool has_atoms = false;
     for (; line != NULL;) {
-        const int opened = section_of(line);
-        if (opened == -2) return input_wrong(input, line, "a section of a LAMMPS data file", err);
-        if (opened >= 0) {
+        const int opened = section_of(line, section);
+        if (opened == -2) {
+            if (file->out != NULL && strstr(line, "Coeffs") == NULL && strstr(line, "Labels") == NULL)
+                bp_particles_note(file->out, "section %.*s passed over", (int)strcspn(line, "#\r"), line);
+            section = -2;
+        } else if (opened >= 0) {
             section = opened;
             const char *const comment = strchr(line, '#');
             named[0] = '\0';
@@ -302,23 +286,23 @@ static BpStatus take_sections(BpParticleFile *file, char *line, Data *data, BpEr
                 const char *const word = comment + 1 + strspn(comment + 1, " \t");
                 snprintf(named, sizeof named, "%.*s", (int)strcspn(word, " \t\r"), word);
             }
-            if (section == 0 && has_atoms)
+            if (section == ATOMS && has_atoms)
                 return input_fail(input, true, err, "found Atoms a second time, expected it once");
-            if (section == 0) {
+            if (section == ATOMS) {
                 has_atoms = true;
                 if (file->out != NULL && data->all_masses_known) {
                     file->out->angstrom = 1;
                     bp_particles_note(file->out, "elements from masses");
                 }
             }
-            if (section == 2) BP_TRY(take_bonds(file, data, err));
-        } else if (section == 0 || section == 1) {
+            if (section == BONDS) BP_TRY(take_bonds(file, data, err));
+        } else if (section == ATOMS || section == MASSES) {
             cut_comment(line);
             const size_t count = split_words(line, words, WORDS_MAX);
             if (count > WORDS_MAX)
                 return input_fail(input, true, err, "found more than %d words, expected fewer", WORDS_MAX);
-            if (section == 1 && count > 0) BP_TRY(take_mass(input, data, words, count, err));
-            if (section == 0 && count > 0) {
+            if (section == MASSES && count > 0) BP_TRY(take_mass(input, data, words, count, err));
+            if (section == ATOMS && count > 0) {
                 if (data->style == NULL) BP_TRY(choose_style(file, named, words, count, data, err));
                 BP_TRY(take_atom(file, data, words, count, err));
             }

@@ -200,15 +200,39 @@ static uint16_t kind_of(const Job *job, size_t i) {
                                                : tag->type;
 }
 
-/* So that the first kinds of a file get the first colours, whatever else has names. */
+typedef struct Ranked {
+    const char *name;
+    uint16_t number;
+} Ranked;
+
+/* 2 before 10, and otherwise by letters. */
+static int compare_ranked(const void *a, const void *b) {
+    const char *const one = ((const Ranked *)a)->name, *const other = ((const Ranked *)b)->name;
+    const size_t digits[2] = {strspn(one, "0123456789"), strspn(other, "0123456789")};
+    if (one[digits[0]] == '\0' && other[digits[1]] == '\0' && digits[0] != digits[1])
+        return digits[0] < digits[1] ? -1 : 1;
+    return strcmp(one, other);
+}
+
+/* The kinds in the order of their names, so that all frames of a trajectory give a kind the same colour. */
 static BpStatus rank_names(Job *job, BpError *err) {
-    uint16_t next = 1;
-    job->rank = calloc(job->p->names.count + 1, sizeof *job->rank);
-    if (job->rank == NULL) return bp_fail(err, BP_ERR_MEMORY, "out of memory for colours");
-    for (size_t i = 0; i < job->p->count; i++) {
-        uint16_t *const rank = &job->rank[kind_of(job, i)];
-        if (job->shown[i] && *rank == 0) *rank = next++;
+    const BpParticles *const p = job->p;
+    size_t count = 0;
+    job->rank = calloc(p->names.count + 1, sizeof *job->rank);
+    Ranked *const kinds = malloc((p->names.count + 1) * sizeof *kinds);
+    if (job->rank == NULL || kinds == NULL) {
+        free(kinds);
+        return bp_fail(err, BP_ERR_MEMORY, "out of memory for colours");
     }
+    for (size_t i = 0; i < p->count; i++) {
+        const uint16_t number = kind_of(job, i);
+        if (!job->shown[i] || job->rank[number] != 0) continue;
+        job->rank[number] = 1;
+        kinds[count++] = (Ranked){name_of(p, number), number};
+    }
+    qsort(kinds, count, sizeof *kinds, compare_ranked);
+    for (size_t k = 0; k < count; k++) job->rank[kinds[k].number] = (uint16_t)(k + 1);
+    free(kinds);
     return BP_OK;
 }
 
@@ -450,6 +474,18 @@ static BpStatus put_box(Job *job, BpError *err) {
     return BP_OK;
 }
 
+/* Files of three columns hold two dimensions too. */
+static void find_flat(Job *job) {
+    BpParticles *const p = job->p;
+    double low = INFINITY, high = -INFINITY;
+    for (size_t i = 0; i < p->count; i++) {
+        if (!job->shown[i]) continue;
+        low = fmin(low, p->position[i][2]);
+        high = fmax(high, p->position[i][2]);
+    }
+    p->flat |= job->shown_count > 2 && high == low;
+}
+
 static BpStatus run(Job *job, BpError *err) {
     BpParticles *const p = job->p;
     char all[32], shown[32];
@@ -463,6 +499,7 @@ static BpStatus run(Job *job, BpError *err) {
     if (whole) BP_TRY(bp_molecules_make_whole(p, job->shown, &job->bonds, &moved, err));
     if (moved > 0)
         say(job, "molecules made whole across the cell: %s moved", bp_format_whole(moved, all, sizeof all));
+    find_flat(job);
     BP_TRY(choose_radii(job, err));
     BP_TRY(choose_colors(job, err));
     BP_TRY(put_particles(job, err));

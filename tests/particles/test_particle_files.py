@@ -133,6 +133,7 @@ Atoms # full
 
 Bonds
 
+ # number type atoms
 1 1 7 5
 2 1 7 9
 """
@@ -302,6 +303,10 @@ class Formats(FileTest):
         self.near([s["column_sum"]], [0])
         guessed = self.of("a.data", DATA.replace("# full", "# my own words"))
         self.assertIn("atom style full from the number of words", guessed["notes"])
+        other = self.of("a.data", DATA.replace("Bonds", "Bnods"))
+        self.assertEqual((other["bonds"], "section Bnods passed over" in other["notes"]), (0, True))
+        hybrid = "t\n\n1 atoms\n\nAtoms # hybrid\n\n1 3 0.5 1.5 2.5 1 2 3 4 5 6\n"
+        self.assertEqual(self.of("a.data", hybrid)["low"], [0.5, 1.5, 2.5])
 
     def test_gsd(self):
         for version in (1, 2):
@@ -433,8 +438,8 @@ class Hostile(FileTest):
         self.refuse("a.dump", DUMP.replace("xs ys zs", "fx fy fz"), ":9:", "coordinates")
         self.refuse("a.dump", "ITEM: NUMBER OF ATOMS\n1\n", "ITEM: TIMESTEP")
         self.refuse("a.data", "title\n\n1 atoms\n", "Atoms")
+        self.refuse("a.data", "t\n\n1 atoms\n\nAtoms\n\n1 3 0.5 1.5 2.5 1 2 3 4 5 6\n", ":7:", "name the style")
         self.refuse("a.data", DATA.replace("1 1 7 5", "1 1 7 6"), "6", "number of an atom")
-        self.refuse("a.data", DATA.replace("Bonds", "Bnods"), "Bnods", "section")
         self.refuse("a.csv", "a,b\n1,2\n", "columns x and y")
         self.refuse("a.csv", "x,y,z\n1,2\n", ":2:", "found 2 fields, expected 3")
         self.refuse("a.csv", "x,y,z\n", "rows")

@@ -188,6 +188,24 @@ class Scenes(ProgramTest):
         self.write("b.csv", "x,y,z,size\n0,0,0,1\n0,0,0,3\n")
         self.assertIn("half the median distance", self.notes("a.csv") + self.notes("b.csv"))
 
+    def test_kinds_keep_their_colours(self):
+        """The order in a frame does not matter, and 10 comes after 2."""
+        kinds = ["A", "B", "10", "2"]
+        rows = [f"{i},0,0,{kind}" for i, kind in enumerate(kinds)]
+        self.write("a.csv", "x,y,z,type\n" + "\n".join(rows))
+        self.write("b.csv", "x,y,z,type\n" + "\n".join(reversed(rows)))
+        self.assert_same(self.picture("a.csv"), self.picture("b.csv"))
+
+    def test_two_dimensions(self):
+        flat = "x,y,z\n" + "".join(f"{i % 7},{i // 7},0\n" for i in range(49))
+        self.write("a.csv", flat)
+        self.write("b.csv", flat.replace(",z", "").replace(",0\n", "\n"))
+        self.document_with({"file": "a.csv"}, camera={"image_width": 800, "aspect_ratio": [4, 3], "vfov": 30, "max_depth": 20,
+                                                      "fit": "particles", "view": "front", "vup": [0, 1, 0]},
+                           background=[1, 1, 1])
+        for name in ("b.csv", "x.json"):
+            self.assert_same(self.picture("a.csv"), self.picture(name), name)
+
     def test_colour_bar(self):
         self.write("a.csv", "x,y,z,heat\n" + "".join(f"{i},{i % 3},0,{i}\n" for i in range(11)))
         pictures = {}
