@@ -229,7 +229,7 @@ static BpStatus open_state(BpParticleFile *file, BpError *err) {
     BP_TRY(read_at(input, s, 0, header, sizeof header, err));
     if (little(header, 8) != MAGIC)
         return input_fail(input, false, err, "found other first bytes, expected those of a GSD file");
-    if (strncmp((const char *)header + 112, "hoomd", 63) != 0)
+    if (memcmp(header + 112, "hoomd", 6) != 0) /* with the NUL */
         return input_fail(input, false, err, "found another schema, expected hoomd");
     BP_TRY(read_index(input, s, header, err));
     BP_TRY(read_names(input, s, header, err));

@@ -37,6 +37,12 @@ MUTANTS = [
     Mutant("the slowest samples forgotten", "a chunk sized by the sky goes to the mirrors",
            [patch("host/render/pace.c", "if (samples > bearable) samples = bearable;", "(void)bearable;")],
            [test("test_pace", "1 exact")]),
+    # ---- fitted cameras --------------------------------------------------------------------------------------
+    Mutant("the bounding box for the silhouette", "a camera fitted to centres and radii in the picture plane",
+           [patch("host/scene/fit.c", "cosine) * place[axis] - sine * place[2] - radius;",
+                  "cosine) * (place[axis] + (side == 0 ? radius : -radius)) - sine * place[2];")], [test("test_fit", "1 exact")]),
+    Mutant("half the margin", "one side's share taken for both",
+           [patch("host/scene/fit.c", "* (1 - 2 * margin);", "* (1 - margin);")], [test("test_fit", "1 exact")]),
     # ---- the books' own history ----------------------------------------------------------------------------
     Mutant("blue killed in glass", "first: attenuation (1, 1, 0)",
            [patch(PACK, "if (!bp_material_has(material->kind, BP_MEMBER_ALBEDO)) return 1;",
