@@ -107,7 +107,8 @@ typedef struct BpScene BpScene;
 
 typedef enum BpTransfer { BP_TRANSFER_GAMMA2, BP_TRANSFER_SRGB, BP_TRANSFER_LINEAR } BpTransfer;
 
-/* Reads and validates a scene document (docs: scenes/README.md). BP_ERR_SCENE: it is no valid scene, or
+/* Reads and validates a scene document (docs: scenes/README.md), or a file of particles (docs/PARTICLES.md),
+ * which becomes a scene with everything chosen by what it holds. BP_ERR_SCENE: it is no valid scene, or
  * cannot be opened; BP_ERR_FILE: reading failed. Errors name file:line:column. */
 BP_API BpStatus bp_scene_load(const char *path, BpScene **scene, BpError *err);
 

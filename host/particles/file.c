@@ -83,6 +83,8 @@ BpParticleFormat bp_particle_format_find(const char *name, FILE *stream) {
     }
     rewind(stream);
     text[length > 0 ? length : 0] = '\0';
+    if (text[strspn(text, "\xef\xbb\xbf \t\r\n")] == '{')
+        return BP_PARTICLES_NONE; /* a scene document, whatever its name */
     const BpParticleFormat format = format_of_beginning(text, length > 0 ? (size_t)length : 0);
     return format != BP_PARTICLES_NONE ? format : format_of_name(name);
 }

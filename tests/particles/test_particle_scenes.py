@@ -85,6 +85,11 @@ class Scenes(ProgramTest):
             self.assertEqual(written["camera"][name], value)
         self.assertEqual((len(written["spheres"]), list(written["materials"])), (1, ["m"]))
 
+    def test_documents_under_other_names(self):
+        for name in ("x.xyz", "x.csv", "data.x"):
+            self.write(name, b"\xef\xbb\xbf\n" + json.dumps(scene()).encode())
+            self.assertEqual(self.spheres(name), 1)
+
     def test_all_scenes_can_be_printed(self):
         self.write("x.json", scene(spheres=3))
         self.write("y.json", self.succeed("scene", "x.json").stdout)
