@@ -148,14 +148,8 @@ static void parse_cell(BpParticleFile *file, const char *comment) {
     free(value);
 }
 
-/* A symbol, perhaps with digits behind it, or an atomic number. */
-static uint8_t element_of(const char *species, bool *number) {
-    int64_t whole = 0;
-    *number = false;
-    if (word_whole(species, &whole)) {
-        *number = true;
-        return whole >= 1 && whole <= BP_ELEMENT_MAX ? (uint8_t)whole : 0;
-    }
+/* A symbol, perhaps with digits behind it. A number alone is a type: so LAMMPS and others write it. */
+static uint8_t element_of(const char *species) {
     char symbol[4] = "";
     for (int i = 0; i < 3 && ((species[i] | 32) >= 'a' && (species[i] | 32) <= 'z'); i++)
         symbol[i] = species[i];
@@ -185,7 +179,7 @@ static BpStatus take_atom(BpParticleFile *file, const Layout *layout, uint64_t n
     size_t w = 0;
     for (size_t p = 0; p < layout->property_count; p++) {
         const Role role = layout->property[p].role;
-        bool good = true, is_number = false;
+        bool good = true;
         double value = 0;
         for (int i = 0; i < 3 && (role == POSITION || role == COLOR); i++)
             good = good && word_number(words[w + (size_t)i],
@@ -196,7 +190,7 @@ static BpStatus take_atom(BpParticleFile *file, const Layout *layout, uint64_t n
                 if (!(particle.color[i] >= 0 && particle.color[i] <= 1))
                     return input_wrong(input, words[w], "a colour of shares from 0 to 1", err);
         if (role == SPECIES) {
-            particle.element = element_of(words[w], &is_number);
+            particle.element = element_of(words[w]);
             particle.type = words[w];
             if (particle.element == 0 && strcmp(words[w], "X") == 0) particle.flags |= BP_PARTICLE_DUMMY;
         }

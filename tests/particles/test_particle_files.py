@@ -244,6 +244,13 @@ class Formats(FileTest):
         self.near(s["low"] + s["high"], [-0.75, 0, -0.1, 0.75, 0, 0.5])
         self.assertNotIn("cell", s)
 
+    def test_species_of_xyz(self):
+        for species, element in [("Fe", "Fe"), ("C12", "C"), ("6", ""), ("Xx", ""), ("Q1", ""), ("h", "H")]:
+            s = self.of("a.xyz", f"1\n\n{species} 0 0 0\n")
+            self.assertEqual((list(s["elements"]), s["first"]["type"]), ([element], species))
+        s = self.of("a.xyz", "1\nProperties=Z:I:1:pos:R:3\n6 0 0 0\n")
+        self.assertEqual((list(s["elements"]), s["first"]["type"]), (["C"], "C"))
+
     def test_extended_xyz(self):
         s = self.of("a.xyz", EXTENDED, 0, "force_y")
         self.assertEqual((s["count"], s["elements"], s["periodic"]), (2, {"C": 1, "Fe": 1}, True))
