@@ -178,6 +178,9 @@ typedef enum BpNumerics { BP_NUMERICS_ROBUST, BP_NUMERICS_PLAIN } BpNumerics;
 typedef enum BpSampler { BP_SAMPLER_INDEPENDENT, BP_SAMPLER_SOBOL } BpSampler;
 typedef enum BpKernelForm { BP_KERNEL_AUTO, BP_KERNEL_SAMPLE, BP_KERNEL_PACKET } BpKernelForm;
 
+/* Whether rays are sent to lamps; without, paths find them by chance. Both converge to the same picture. */
+typedef enum BpLamps { BP_LAMPS_ON, BP_LAMPS_OFF } BpLamps;
+
 /* Start from bp_render_defaults(). */
 typedef struct BpRenderOptions {
     uint64_t samples_per_pixel; /* 1 .. 2^32 - first_sample */
@@ -188,6 +191,7 @@ typedef struct BpRenderOptions {
     BpMath math;
     BpNumerics numerics;
     BpSampler sampler; /* `ballpark render` uses Sobol's sequence, which has less noise in the same time */
+    BpLamps lamps; /* on does nothing in a scene that does not call for it; reports and films then say off */
     BpKernelForm kernel;
     bool all_effects;       /* build the general kernel instead of the specialised one */
     uint32_t extra_effects; /* bit e: simulate effect e of bp_scene_effect() although nothing calls for it */
@@ -405,6 +409,7 @@ typedef struct BpFilmInfo {
     BpPrecision precision;
     BpMath math;
     BpNumerics numerics;
+    BpLamps lamps;
     BpTransfer transfer; /* of the scene, for writing the picture */
 } BpFilmInfo;
 BP_API void bp_film_info(const BpFilm *film, BpFilmInfo *info);

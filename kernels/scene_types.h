@@ -77,6 +77,19 @@ typedef struct PackedMaterialKind {
 #define CHILD_LEAF 0x80000000u /* set: the rest is a leaf number; clear: a node number */
 #define NO_SPHERE 0xffffffffu
 #define NO_SLOT 0xffffffffu
+/* The tree of lamps (light/lamps.cl). A node is LAMP_WIDTH children as structure of arrays, LAMP_WIDTH reals
+ * each of centre x, y, z, radius and power. A child of positive radius is a lamp, and its word is CHILD_LEAF
+ * and the lamp's slot; one of negative radius is a node, whose lamps lie in a ball of the radius without its
+ * sign, and its word is the node's number. Power: the sum of radiance (its luminance) times squared radius,
+ * in a unit in which no lamp's radiance exceeds 1; an empty child has none. Node 0 is the root. The width and
+ * the order are the same for every device, since a picture depends on which lamp is chosen. `slot_lamp`:
+ * where the lamp in a slot stands, LAMP_CHILD_BITS bits for each level, the root's in the lowest, or NO_LAMP.
+ */
+#define LAMP_WIDTH 8u
+#define LAMP_NODE_REALS (5u * LAMP_WIDTH)
+#define LAMP_CHILD_BITS 3u
+#define LAMP_DEPTH_MAX 10u
+#define NO_LAMP 0xffffffffu
 /* A tree is at most this deep, so a stack of TREE_DEPTH_MAX * (width - 1) + 1 entries suffices. */
 #define TREE_DEPTH_MAX 24
 
@@ -86,10 +99,11 @@ typedef struct PackedMaterialKind {
  * release (render/worker_buffers.c). Only what fills an array knows more of it.
  *
  * X(numbers, element, name, count, what): `numbers` is REALS or UINTS, what `element` is made of; `count`
- * says how many elements there are, in terms of `width` (of the tree), `nodes`, `leaf_count`, `slots` and
- * `material_count`; `what` is how a message calls it. Arrays of the first list are pack.c's, of the second
- * the tree's. Materials are arrays of numbers here, since Mesa's rusticl (22.3) gathers wrong ones through a
- * pointer to structs that is cast inside a loop. */
+ * says how many elements there are, in terms of `width` (of the tree), `nodes`, `leaf_count`, `slots`,
+ * `material_count`, `lamp_nodes` and `lamp_slots`; `what` is how a message calls it. Arrays of the first list
+ * are pack.c's, of the second the tree of lamps', of the third the tree's. Materials are arrays of numbers
+ * here, since Mesa's rusticl (22.3) gathers wrong ones through a pointer to structs that is cast inside a
+ * loop. */
 #define MATERIAL_REALS ((packed_uint)(sizeof(PackedMaterial) / sizeof(real)))
 #define MATERIAL_UINTS ((packed_uint)(sizeof(PackedMaterialKind) / sizeof(packed_uint)))
 /* clang-format off */
@@ -100,6 +114,10 @@ typedef struct PackedMaterialKind {
     X(UINTS, packed_uint, material_kinds, material_count * MATERIAL_UINTS, "the table of materials")         \
     X(UINTS, packed_uint, slot_material, slots, "the table of sphere materials")                             \
     X(REALS, real, slot_albedo, slots * ALBEDO_REALS, "the table of sphere colours")
+#define SCENE_ARRAYS_OF_LAMPS(X)                                                                             \
+    X(REALS, real, lamps, lamp_nodes * LAMP_NODE_REALS, "the tree of lamps")                                 \
+    X(UINTS, packed_uint, lamp_children, lamp_nodes * LAMP_WIDTH, "the tree of lamps")                       \
+    X(UINTS, packed_uint, slot_lamp, lamp_slots, "the table of lamps")
 #define SCENE_ARRAYS_OF_TREE(X)                                                                              \
     X(REALS, real, node_boxes, nodes * NODE_REALS(width), "the tree's boxes")                                \
     X(UINTS, packed_uint, children, nodes * width, "the tree's nodes")                                       \

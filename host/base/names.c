@@ -6,6 +6,12 @@
 const char *const bp_precision_names[] = {
     [BP_PRECISION_SINGLE] = "single", [BP_PRECISION_DOUBLE] = "double", NULL};
 const char *const bp_math_names[] = {[BP_MATH_STRICT] = "strict", [BP_MATH_FAST] = "fast", NULL};
+const char *const bp_lamps_names[] = {
+    [BP_LAMPS_ON] = "on",
+    [BP_LAMPS_OFF] = "off",
+    NULL,
+};
+
 const char *const bp_numerics_names[] = {
     [BP_NUMERICS_ROBUST] = "robust", [BP_NUMERICS_PLAIN] = "plain", NULL};
 const char *const bp_sampler_names[] = {

@@ -16,7 +16,8 @@
     X(BpSampler, sampler, "samplers")                                                                        \
     X(BpPrecision, precision, "precisions")                                                                  \
     X(BpMath, math, "kinds of mathematics")                                                                  \
-    X(BpNumerics, numerics, "numerics")
+    X(BpNumerics, numerics, "numerics")                                                                      \
+    X(BpLamps, lamps, "ways to find lamps")
 
 /* As members of a struct. */
 #define BP_SETTING_MEMBER(type, member, plural) type member;

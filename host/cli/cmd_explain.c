@@ -45,6 +45,14 @@ static const char *outcome(const BpPathStep *step, BpMaterialKind kind) {
     return bp_material_types[kind].outcome;
 }
 
+static void print_lamp_ray(const BpPathStep *step) {
+    printf("       a ray to lamp %" PRIu32, step->lamp);
+    if (step->seen == step->lamp)
+        printf(" brings (%.4g, %.4g, %.4g)\n", step->lit[0], step->lit[1], step->lit[2]);
+    else
+        printf(" is stopped by sphere %" PRIu32 "\n", step->seen);
+}
+
 static void print_path(const BpScene *scene, const BpPathLog *path, uint32_t x, uint32_t y, uint64_t sample,
                        uint64_t seed) {
     printf("  pixel (%" PRIu32 ", %" PRIu32 "), sample %" PRIu64 ", seed %" PRIu64 ", on ", x, y, sample,
@@ -69,6 +77,7 @@ static void print_path(const BpScene *scene, const BpPathLog *path, uint32_t x, 
                 printf(", throughput (%.4g, %.4g, %.4g)", step->throughput[0], step->throughput[1],
                        step->throughput[2]);
             printf("\n");
+            if (step->to_lamp) print_lamp_ray(step);
         } else {
             printf("       hits nothing: the sky\n");
         }
@@ -94,8 +103,13 @@ static json_t *step_json(const BpScene *scene, const BpPathStep *step) {
                                 "point", triple(step->point), "sphere", (json_int_t)step->sphere, "material",
                                 material->name, "type", bp_material_types[material->kind].name, "enters",
                                 step->enters, "goes_on", step->goes_on, "inward", step->inward);
-    const bool whole = meeting != NULL && json_object_update(root, meeting) == 0;
+    bool whole = meeting != NULL && json_object_update(root, meeting) == 0;
     json_decref(meeting);
+    if (step->to_lamp)
+        whole =
+            whole && json_object_set_new(root, "lamp_ray",
+                                         json_pack("{s:I, s:I, s:o}", "lamp", (json_int_t)step->lamp, "meets",
+                                                   (json_int_t)step->seen, "brings", triple(step->lit))) == 0;
     if (whole) return root;
     json_decref(root);
     return NULL;

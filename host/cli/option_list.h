@@ -88,6 +88,9 @@ enum {
     RENDER_OPTION(SAMPLER, "sampler", 0, BP_RENDER | BP_EXPLAIN | BP_COST | BP_BENCH,                        \
                   "sample sequence (default: sobol, less noise; bench: independent)", BpSampler, sampler,    \
                   BP_CHOICE("", bp_sampler_names, 0))                                                        \
+    RENDER_OPTION(LAMPS, "lamps", 0, BP_TRACERS,                                                             \
+                  "off: paths find lamps by chance only, for comparison (default: on where it helps)",       \
+                  BpLamps, lamps, BP_CHOICE("", bp_lamps_names, 0))                                          \
     RENDER_OPTION(ADAPTIVE, "adaptive", 0, BP_RENDER,                                                        \
                   "give noisy pixels more samples and the others fewer; --spp is then the mean", bool,       \
                   adaptive, BP_FLAG)                                                                         \

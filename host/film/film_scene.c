@@ -24,22 +24,32 @@ static double sphere_albedo(const BpScene *scene, const BpSphere *sphere) {
     return (double)fmaxf(albedo[0], fmaxf(albedo[1], albedo[2]));
 }
 
-double bp_scene_radiance_bound(const BpScene *scene, uint32_t max_depth) {
+/* 1 + a + a^2 + ... of `terms` terms, or a little more. */
+static double geometric(double a, double terms) {
+    return a < 1 ? fmin(1 / (1 - a), terms) : terms;
+}
+
+double bp_scene_radiance_bound(const BpScene *scene, uint32_t max_depth, BpLamps lamps) {
     double brightest = fmax(largest(scene->background_bottom), largest(scene->background_top));
-    double passed_on = 0;
+    double brightest_lamp = 0, passed_on = 0, scattered = 0;
     for (size_t i = 0; i < scene->sphere_count; i++) {
         const BpMaterial *material = &scene->materials[scene->spheres[i].material];
         const double emitted = largest(material->emit);
         brightest = fmax(brightest, emitted);
+        brightest_lamp = fmax(brightest_lamp, emitted);
         if (bp_material_is(material->kind, BP_SHOWS_COLOUR)) brightest = fmax(brightest, 1 + emitted);
-        if (emitted > 0 && bp_material_is(material->kind, BP_SCATTERS))
-            passed_on = fmax(passed_on, sphere_albedo(scene, &scene->spheres[i]));
+        if (!bp_material_is(material->kind, BP_SCATTERS)) continue;
+        const double albedo = sphere_albedo(scene, &scene->spheres[i]);
+        if (bp_material_is_lit(material)) scattered = fmax(scattered, albedo);
+        if (emitted > 0) passed_on = fmax(passed_on, albedo);
     }
-    return brightest * fmin(1 / (1 - fmin(passed_on, 1)), max_depth);
+    const double by_chance = brightest * geometric(passed_on, max_depth);
+    if (lamps == BP_LAMPS_OFF || max_depth < 2) return by_chance;
+    return by_chance + 0.5 * brightest_lamp * scattered * geometric(scattered, max_depth - 1);
 }
 
-int32_t bp_film_scale(const BpScene *scene, uint32_t max_depth) {
-    const double bound = bp_scene_radiance_bound(scene, max_depth);
+int32_t bp_film_scale(const BpScene *scene, uint32_t max_depth, BpLamps lamps) {
+    const double bound = bp_scene_radiance_bound(scene, max_depth, lamps);
     if (!(bound > 0)) return SAMPLE_BITS;
     int exponent = 0;
     const double mantissa = frexp(bound, &exponent); /* bound = mantissa * 2^exponent, 1/2 <= mantissa < 1 */

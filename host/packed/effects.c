@@ -2,6 +2,7 @@
 #include "effects.h"
 
 #include "base/plural.h"
+#include "lamp_tree.h"
 #include "scene/material.h"
 
 #include <stdio.h>
@@ -105,6 +106,34 @@ static bool count_uses(const BpScene *scene, Use uses[BP_EFFECT_COUNT], Use *all
     return true;
 }
 
+/* Whether rays are sent to lamps: if there is a lamp, and another sphere that it can light. */
+static bool explain_lamps(const BpScene *scene, size_t size, char *reason) {
+    const size_t enclosing = bp_enclosing_lamp(scene);
+    size_t lamps = 0, lit = 0, both = 0;
+    for (size_t i = 0; i < scene->sphere_count; ++i) {
+        const bool is_lamp = i != enclosing && bp_sphere_emits(scene, i);
+        const bool is_lit = bp_material_is_lit(&scene->materials[scene->spheres[i].material]);
+        lamps += is_lamp;
+        lit += is_lit;
+        both += is_lamp && is_lit;
+    }
+    if (lamps == 0)
+        snprintf(reason, size,
+                 enclosing != SIZE_MAX ? "the one lamp is around everything: every path finds it"
+                                       : "no sphere gives light");
+    else if (lit == 0)
+        snprintf(reason, size, "%zu lamp%s, but no matte surface and no metal with a fuzz of 1/64 or more",
+                 lamps, bp_plural(lamps));
+    else if (lamps == 1 && lit == 1 && both == 1)
+        snprintf(reason, size, "the one lamp is the one surface that could be lit");
+    else {
+        snprintf(reason, size, "%zu lamp%s, and %zu sphere%s to be lit", lamps, bp_plural(lamps), lit,
+                 bp_plural(lit));
+        return true;
+    }
+    return false;
+}
+
 void bp_effects_analyse(const BpScene *scene, BpEffects *effects) {
     const size_t size = sizeof effects->reason[0];
     Use uses[BP_EFFECT_COUNT], all;
@@ -130,6 +159,7 @@ void bp_effects_analyse(const BpScene *scene, BpEffects *effects) {
     } else {
         snprintf(effects->reason[BP_EFFECT_LENS], size, "defocus_angle 0: the lens is a pinhole");
     }
+    if (explain_lamps(scene, size, effects->reason[BP_EFFECT_LAMPS])) effects->bits |= 1u << BP_EFFECT_LAMPS;
 }
 
 size_t bp_effect_count(void) {

@@ -22,7 +22,8 @@
     X(EMISSION, "emission", "surfaces that emit light", "looking up emission is left out", "nothing emits")  \
     X(NORMALS, "normals", "surfaces that show their normal as colour", "normals as colours are left out",    \
       "nothing shows normals")                                                                               \
-    X(LENS, "lens", "a lens with an aperture: defocus blur", "", "")
+    X(LENS, "lens", "a lens with an aperture: defocus blur", "", "")                                         \
+    X(LAMPS, "lamps", "rays to lamps, from surfaces that scatter into many directions", "", "")
 
 typedef enum BpEffect {
 #define BP_EFFECT_ENUM(identifier, name, text, left_out, absent) BP_EFFECT_##identifier,

@@ -207,7 +207,8 @@ static BpStatus pack_slots(const BpScene *scene, const uint32_t *second, BpPacke
 
 /* ---- the whole ------------------------------------------------------------------------------------- */
 
-BpStatus bp_scene_pack(const BpScene *scene, const BpTreeOptions *options, BpPacked *packed, BpError *err) {
+BpStatus bp_scene_pack(const BpScene *scene, const BpTreeOptions *options, bool sample_lamps,
+                       BpPacked *packed, BpError *err) {
     *packed = (BpPacked){.single_precision = options->single_precision};
     BpStatus status = BP_OK;
     uint32_t *second = NULL;
@@ -220,6 +221,8 @@ BpStatus bp_scene_pack(const BpScene *scene, const BpTreeOptions *options, BpPac
     }
     BP_TRY_GOTO(status, pack_materials(scene, second, packed, err), cleanup);
     BP_TRY_GOTO(status, pack_slots(scene, second, packed, err), cleanup);
+    if (sample_lamps)
+        BP_TRY_GOTO(status, bp_lamp_tree_build(scene, &packed->tree, &packed->lamps, err), cleanup);
 cleanup:
     free(second);
     if (status != BP_OK) bp_packed_clear(packed);
@@ -228,6 +231,7 @@ cleanup:
 
 void bp_packed_clear(BpPacked *packed) {
     bp_tree_clear(&packed->tree);
+    bp_lamp_tree_clear(&packed->lamps);
 #define FREE_ARRAY(numbers, element, name, count, what) free(packed->name);
     SCENE_ARRAYS_OF_PACK(FREE_ARRAY)
 #undef FREE_ARRAY

@@ -8,6 +8,7 @@
 #ifndef BP_PACKED_PACK_H
 #define BP_PACKED_PACK_H
 
+#include "lamp_tree.h"
 #include "tree.h"
 
 #ifndef BP_HOST
@@ -18,7 +19,8 @@
 typedef struct BpPacked {
     bool single_precision;
     BpTree tree;
-    /* The arrays of scene_types.h that are not the tree's: of reals in the device's precision, or of uints.
+    BpLampTree lamps; /* empty, unless lamps are to be sampled */
+    /* The arrays of scene_types.h that are neither tree's: of reals in the device's precision, or of uints.
      */
 #define BP_HOLD_REALS void
 #define BP_HOLD_UINTS uint32_t
@@ -28,7 +30,9 @@ typedef struct BpPacked {
     uint32_t material_count; /* at least one */
 } BpPacked;
 
-BpStatus bp_scene_pack(const BpScene *scene, const BpTreeOptions *options, BpPacked *packed, BpError *err);
+/* `sample_lamps`: the kernel is built to. */
+BpStatus bp_scene_pack(const BpScene *scene, const BpTreeOptions *options, bool sample_lamps,
+                       BpPacked *packed, BpError *err);
 void bp_packed_clear(BpPacked *packed);
 /* Bytes of one real. */
 static inline size_t bp_packed_real_size(const BpPacked *packed) {

@@ -19,7 +19,8 @@ enum {
     FOLLOW_ENTERS,
     FOLLOW_GOES_ON,
     FOLLOW_INWARD,
-    FOLLOW_REALS
+    FOLLOW_LIT,
+    FOLLOW_REALS = FOLLOW_LIT + 3
 };
 
 /* Nobody reads more steps than this; a longer path is shown up to here. */
@@ -29,8 +30,8 @@ const char *bp_kernel_file(const char *name);
 
 /* What comes back from the device. */
 typedef struct Records {
-    void *numbers; /* steps * FOLLOW_REALS reals */
-    cl_uint *spheres;
+    void *numbers;    /* steps * FOLLOW_REALS reals */
+    cl_uint *spheres; /* steps * 3 */
     cl_uint count;
 } Records;
 
@@ -38,7 +39,7 @@ static BpStatus run(BpWorker *worker, uint32_t pixel, uint32_t sample, uint32_t 
                     BpError *err) {
     const BpDevice *device = worker->device;
     const size_t numbers_size = (size_t)capacity * FOLLOW_REALS * worker->real_size;
-    const size_t spheres_size = (size_t)capacity * sizeof(cl_uint);
+    const size_t spheres_size = (size_t)capacity * 3 * sizeof(cl_uint);
     BpStatus status = BP_OK;
     cl_int code = CL_SUCCESS;
     cl_mem buffers[3] = {NULL, NULL, NULL};
@@ -89,13 +90,17 @@ static void read_step(const BpScene *scene, const Records *records, bool single,
         step->point[axis] = record[FOLLOW_POINT + axis] + scene->camera.lookfrom[axis];
         step->throughput[axis] = record[FOLLOW_THROUGHPUT + axis];
         step->radiance[axis] = record[FOLLOW_RADIANCE + axis];
+        step->lit[axis] = record[FOLLOW_LIT + axis];
     }
     step->met = record[FOLLOW_MET] != 0;
     step->distance = record[FOLLOW_DISTANCE];
     step->enters = record[FOLLOW_ENTERS] != 0;
     step->goes_on = record[FOLLOW_GOES_ON] != 0;
     step->inward = record[FOLLOW_INWARD] != 0;
-    step->sphere = records->spheres[number];
+    step->sphere = records->spheres[3 * number];
+    step->lamp = records->spheres[3 * number + 1];
+    step->seen = records->spheres[3 * number + 2];
+    step->to_lamp = step->lamp != NO_SPHERE;
     step->material = step->met ? scene->spheres[step->sphere].material : 0;
 }
 
@@ -126,7 +131,7 @@ BpStatus bp_path_log(const BpScene *scene, const BpRenderOptions *options, const
                               : wanted.max_depth < STEPS_MAX ? wanted.max_depth
                                                              : STEPS_MAX;
     records.numbers = calloc((size_t)capacity * FOLLOW_REALS, worker->real_size);
-    records.spheres = calloc(capacity, sizeof *records.spheres);
+    records.spheres = calloc((size_t)capacity * 3, sizeof *records.spheres);
     path->steps = calloc(capacity, sizeof *path->steps);
     if (records.numbers == NULL || records.spheres == NULL || path->steps == NULL) {
         status = bp_fail(err, BP_ERR_MEMORY, "no memory for a path of %u steps", capacity);

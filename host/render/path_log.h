@@ -19,6 +19,9 @@ typedef struct BpPathStep {
     bool inward;               /* into (or staying in) the inside of the sphere */
     double throughput[3];      /* product of weights after the meeting */
     double radiance[3];        /* collected so far; that of the last step is the sample's */
+    bool to_lamp;              /* a ray was sent to a lamp from here */
+    uint32_t lamp, seen; /* then: that lamp, and what the ray meets first, which may be the lamp itself */
+    double lit[3];       /* radiance that it brought */
 } BpPathStep;
 
 typedef struct BpPathLog {

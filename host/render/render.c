@@ -120,6 +120,7 @@ BpStatus bp_render_create(const BpScene *scene, const BpRenderOptions *options, 
     }
     made->scene = scene;
     made->options = *options;
+    made->options.lamps = bp_render_lamps(scene, options);
     if (made->options.replicates == 0) made->options.replicates = BP_REPLICATES_DEFAULT;
     made->worker_count = device_count;
     bp_effects_analyse(scene, &made->effects);
@@ -318,7 +319,7 @@ uint64_t bp_render_samples_done(const BpRender *render) {
 
 static BpStatus describe(const BpRender *render, BpFilm *film, BpError *err) {
     const BpRenderOptions *options = &render->options;
-    film->scale_log2 = bp_film_scale(render->scene, options->max_depth);
+    film->scale_log2 = bp_film_scale(render->scene, options->max_depth, options->lamps);
     film->scene_hash = bp_scene_hash(render->scene);
     film->seed = options->seed;
     film->max_depth = options->max_depth;

@@ -26,10 +26,18 @@ static void choose_form(const BpDeviceInfo *device, const BpRenderOptions *optio
     program->double_refine = cpu && device->has_double && !options->force_float_refine;
 }
 
+BpLamps bp_render_lamps(const BpScene *scene, const BpRenderOptions *options) {
+    BpEffects effects;
+    bp_effects_analyse(scene, &effects);
+    return bp_effects_has(effects.bits, BP_EFFECT_LAMPS) ? options->lamps : BP_LAMPS_OFF;
+}
+
 static uint32_t choose_effects(const BpScene *scene, const BpRenderOptions *options) {
     BpEffects effects;
     bp_effects_analyse(scene, &effects);
-    return options->all_effects ? BP_EFFECTS_ALL : effects.bits | (options->extra_effects & BP_EFFECTS_ALL);
+    const uint32_t wanted =
+        options->all_effects ? BP_EFFECTS_ALL : effects.bits | (options->extra_effects & BP_EFFECTS_ALL);
+    return options->lamps == BP_LAMPS_OFF ? wanted & ~(1u << BP_EFFECT_LAMPS) : wanted;
 }
 
 static bool choose_tree(const BpScene *scene, const BpRenderOptions *options) {
@@ -54,7 +62,7 @@ BpStatus bp_render_plan(const BpScene *scene, const BpRenderOptions *options, co
     setup->width = scene->camera.width;
     setup->height = scene->camera.height;
     setup->replicates = options->replicates != 0 ? options->replicates : BP_REPLICATES_DEFAULT;
-    setup->scale_log2 = bp_film_scale(scene, options->max_depth);
+    setup->scale_log2 = bp_film_scale(scene, options->max_depth, bp_render_lamps(scene, options));
     setup->max_depth = options->max_depth;
     setup->seed = options->seed;
     setup->pixel_center = scene->camera.pixel_sampling == BP_PIXEL_CENTER;
@@ -66,5 +74,6 @@ BpStatus bp_render_plan(const BpScene *scene, const BpRenderOptions *options, co
         .single_precision = options->precision == BP_PRECISION_SINGLE,
         .list = !setup->program.tree,
     };
-    return bp_scene_pack(scene, &tree_options, packed, err);
+    return bp_scene_pack(scene, &tree_options, bp_effects_has(setup->program.effects, BP_EFFECT_LAMPS),
+                         packed, err);
 }

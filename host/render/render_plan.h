@@ -7,6 +7,9 @@
 
 #include "worker.h"
 
+/* Whether lamps are sampled: BP_LAMPS_OFF too where the scene does not call for it. */
+BpLamps bp_render_lamps(const BpScene *scene, const BpRenderOptions *options);
+
 /* Packs the scene for `device` and says how to run it there; the caller clears `packed`. BP_ERR_DEVICE: the
  * device lacks what the options ask for. `setup` keeps no pointer into anything. */
 BpStatus bp_render_plan(const BpScene *scene, const BpRenderOptions *options, const BpDeviceInfo *device,

@@ -27,17 +27,21 @@ BpStatus bp_worker_upload_scene(BpWorker *worker, const BpPacked *packed, BpErro
     const BpTree *tree = &packed->tree;
     const uint64_t width = tree->width, nodes = tree->node_count, leaf_count = tree->leaf_count;
     const uint64_t slots = leaf_count * width;
+    const uint64_t lamp_nodes = packed->lamps.node_count, lamp_slots = packed->lamps.slot_count;
     const uint64_t material_count = packed->material_count > 0 ? packed->material_count : 1;
     /* Elements of reals shrink with the real. */
 #define BYTES_REALS(element) (sizeof(element) / sizeof(real) * worker->real_size)
 #define BYTES_UINTS(element) sizeof(element)
 #define OF_PACK(numbers, element, name, count, what) {(count)*BYTES_##numbers(element), packed->name, what},
+#define OF_LAMPS(numbers, element, name, count, what)                                                        \
+    {(count)*BYTES_##numbers(element), packed->lamps.name, what},
 #define OF_TREE(numbers, element, name, count, what) {(count)*BYTES_##numbers(element), tree->name, what},
     const struct {
         uint64_t bytes;
         const void *data;
         const char *what;
-    } uploads[BP_SCENE_ARRAYS] = {SCENE_ARRAYS_OF_PACK(OF_PACK) SCENE_ARRAYS_OF_TREE(OF_TREE)};
+    } uploads[BP_SCENE_ARRAYS] = {SCENE_ARRAYS_OF_PACK(OF_PACK) SCENE_ARRAYS_OF_LAMPS(OF_LAMPS)
+                                      SCENE_ARRAYS_OF_TREE(OF_TREE)};
     for (size_t i = 0; i < BP_SCENE_ARRAYS; ++i) {
         BP_TRY(create_buffer(worker, &worker->scene_arrays[i], uploads[i].bytes, uploads[i].data,
                              uploads[i].what, err));

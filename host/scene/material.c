@@ -75,3 +75,8 @@ unsigned bp_member_choice(const BpMaterial *material, BpMember member) {
 void bp_member_choose(BpMaterial *material, BpMember member, unsigned choice) {
     memcpy((char *)material + bp_members[member].offset, &choice, sizeof choice);
 }
+
+bool bp_material_is_lit(const BpMaterial *material) {
+    return material->kind == BP_MATERIAL_LAMBERTIAN ||
+           (material->kind == BP_MATERIAL_METAL && material->fuzz >= BP_LIT_FUZZ_MIN);
+}

@@ -15,6 +15,9 @@
 
 typedef struct BpMaterial BpMaterial; /* scene.h */
 
+/* Metal of less fuzz than this is not lit by rays to lamps (kernels/bsdf/bsdf.cl, LOBE_FUZZ_MIN). */
+#define BP_LIT_FUZZ_MIN (1.0 / 64)
+
 /* What a kind of material can be, bits of BpMaterialType.traits. */
 enum {
     BP_SCATTERS = 1,     /* paths go on from it */
@@ -125,5 +128,8 @@ const double *bp_member_values_of(const BpMaterial *material, BpMember member);
 /* Of a choice: its place among the names. */
 unsigned bp_member_choice(const BpMaterial *material, BpMember member);
 void bp_member_choose(BpMaterial *material, BpMember member, unsigned choice);
+
+/* Rays to lamps light it: it scatters into many directions. */
+bool bp_material_is_lit(const BpMaterial *material);
 
 #endif

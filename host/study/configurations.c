@@ -2,6 +2,7 @@
 #include "configurations.h"
 
 #include "base/names.h"
+#include "render/render_plan.h"
 
 #include <stdio.h>
 #include <string.h>
@@ -25,6 +26,7 @@ typedef struct Row {
 #define PRECISION(x) .precision = (BP_PRECISION_##x + 1)
 #define MATH(x) .math = (BP_MATH_##x + 1)
 #define NUMERICS(x) .numerics = (BP_NUMERICS_##x + 1)
+#define LAMPS(x) .lamps = (BP_LAMPS_##x + 1)
 #define FRESNEL(x) .fresnel = BP_STUDY_FRESNEL_##x
 
 /* One line for each configuration. A new axis that is a setting of base/names.h is a line here; another is
@@ -36,6 +38,8 @@ static const Row rows[] = {
     {"sampler", "independent samples", {SAMPLER(INDEPENDENT)}},
     {"sampler", "Sobol samples", {SAMPLER(SOBOL)}},
     {"adaptive", "adaptive samples", {.adaptive = true}},
+    {"lamps", "rays to lamps", {LAMPS(ON)}},
+    {"lamps", "lamps found by chance", {LAMPS(OFF)}},
     {"depth", "depth 5", {.depth = 5}},
     {"depth", "depth 10", {.depth = 10}},
     {"depth", "depth 20", {.depth = 20}},
@@ -106,6 +110,7 @@ static bool apply(const Row *row, const BpScene *scene, const BpRenderOptions *b
     differs = differs || options->member != base->member;
     BP_SETTING_LIST(APPLY)
 #undef APPLY
+    if (change->lamps > 0 && bp_render_lamps(scene, &usual) == BP_LAMPS_OFF) return false;
     if (change->adaptive) options->adaptive = true;
     if (fresnel_matters(scene, change->fresnel)) configuration->fresnel = change->fresnel;
     write_command(scene, configuration);

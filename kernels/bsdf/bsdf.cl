@@ -3,6 +3,8 @@
  * A lobe is a file in bsdf/ with a function `..._sample(surface, key, bounce)` in lane code:
  * In:    the surface where a path stands, the key of its sample, the first dimension of its bounce (rng.cl).
  * Out:   a BsdfSample, drawn by the distribution of the lobe.
+ * Where lamps are sampled, it has a function `..._pdf(lobe, direction)` too: the density of that distribution, per
+ * steradian. Every lobe is sampled perfectly: the light that it scatters is its albedo times the density.
  * Knows: vector.cl, sampler.cl, warps.cl.   Does not know: which lobes there are; scatter.cl calls them. */
 
 /* The surface where a path stands. */
@@ -15,11 +17,32 @@ typedef struct Surface {
     vuint kind, lobe, variant, total_reflection;
 } Surface;
 
+#if SAMPLES_LAMPS
+/* What the density of a lobe depends on, apart from the direction. */
+typedef struct Lobe {
+    Vec3 axis;  /* unit: the normal, or for metal the mirror direction */
+#if EFFECT_METAL
+    Vec3 normal; /* what lies below the surface is absorbed */
+#endif
+    vreal fuzz; /* of metal */
+    vuint kind; /* LOBE_... */
+} Lobe;
+
+/* Those that scene_types.h does not name; LOBE_NONE is no density, but a few directions. */
+enum { LOBE_FUZZ_SPHERE = LOBE_HEMISPHERE + 1, LOBE_FUZZ_BALL, LOBE_NONE };
+
+#define LOBE_FUZZ_MIN R(0x1p-6) /* smaller fuzz has no use for lamps, and densities that float does not hold well */
+#define PI_INVERSE R(0.3183098861837907)
+#endif
+
 typedef struct BsdfSample {
     Vec3 direction;    /* unit */
     Vec3 weight;       /* on the radiance that comes along the direction */
     vbool scattered;   /* the path goes on; else it has been absorbed */
     vbool transmitted; /* it goes on beyond the surface */
+#if SAMPLES_LAMPS
+    Lobe lobe; /* that the direction was drawn from */
+#endif
 } BsdfSample;
 
 /* A path that goes on along `direction`, on the side from which it came. */
@@ -29,6 +52,14 @@ static BsdfSample bsdf_sample_reflected(const Surface *surface, Vec3 direction) 
     sample.weight = surface->albedo;
     sample.scattered = vbool_all;
     sample.transmitted = vbool_none;
+#if SAMPLES_LAMPS
+    sample.lobe.axis = surface->normal;
+#if EFFECT_METAL
+    sample.lobe.normal = surface->normal;
+#endif
+    sample.lobe.fuzz = splat(1);
+    sample.lobe.kind = splat_uint(LOBE_NONE);
+#endif
     return sample;
 }
 

@@ -47,9 +47,7 @@ static BsdfSample dielectric_sample(const Surface *surface, SampleKey key, vuint
     const vbool matched = surface->refraction_index == splat(1);
     const vbool refracted = vbool_not(reflects) | matched;
     const Vec3 direction = normalise3(choose3(refracted, bent, mirrored));
-    BsdfSample sample;
-    sample.direction = choose3(matched, surface->incoming, direction);
-    sample.weight = surface->albedo;
+    BsdfSample sample = bsdf_sample_reflected(surface, choose3(matched, surface->incoming, direction));
     sample.scattered = vbool_not(lost) | matched;
     sample.transmitted = refracted;
     return sample;

@@ -16,6 +16,20 @@ static BsdfSample lambertian_sample(const Surface *surface, SampleKey key, vuint
     }
     /* normal + offset can vanish, or be so short that rounding may point it below the surface: then straight up. */
     const vbool vanished = dot3(direction, surface->normal) < splat(R(8.0) * ROUNDOFF);
-    return bsdf_sample_reflected(surface, normalise3(choose3(vanished, surface->normal, direction)));
+    BsdfSample sample = bsdf_sample_reflected(surface, normalise3(choose3(vanished, surface->normal, direction)));
+#if SAMPLES_LAMPS
+    sample.lobe.kind = surface->lobe;
+#endif
+    return sample;
 }
+
+#if SAMPLES_LAMPS
+static vreal lambertian_pdf(const Lobe *lobe, Vec3 direction) {
+    const vreal c = at_least(dot3(direction, lobe->axis), splat(0));
+    vreal density = c * PI_INVERSE;
+    density = choose(vbool_of_uint(lobe->kind == splat_uint(LOBE_COSINE_CUBED)), R(2.0) * c * c * density, density);
+    const vreal uniform_density = choose(c > splat(0), splat(R(0.5) * PI_INVERSE), splat(0));
+    return choose(vbool_of_uint(lobe->kind == splat_uint(LOBE_HEMISPHERE)), uniform_density, density);
+}
+#endif
 #endif

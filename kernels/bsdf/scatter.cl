@@ -1,6 +1,7 @@
 /* scatter.cl: which lobe draws for which material.
  *
- * In:    a surface, a sample's key, how deep the path is.   Out: a BsdfSample for each lane.
+ * In:    a surface, a sample's key, the first dimension of its bounce.   Out: a BsdfSample for each lane; for lamps, the lobe
+ *        that it is drawn from, and the lobe's density.
  * Knows: every lobe by its one function.   Does not know: how lobes draw. */
 
 /* With one kind of material in the scene there is nothing to ask. */
@@ -11,12 +12,28 @@
 #define has_kind(surface, wanted) vbool_of_uint((surface)->kind == splat_uint(wanted))
 #endif
 
+#if SAMPLES_LAMPS
+static Lobe choose_lobe(vbool mask, const Lobe *a, const Lobe *b) {
+    Lobe chosen;
+    chosen.axis = choose3(mask, a->axis, b->axis);
+#if EFFECT_METAL
+    chosen.normal = choose3(mask, a->normal, b->normal);
+#endif
+    chosen.fuzz = choose(mask, a->fuzz, b->fuzz);
+    chosen.kind = choose_uint(mask, a->kind, b->kind);
+    return chosen;
+}
+#endif
+
 static BsdfSample choose_sample(vbool mask, BsdfSample a, BsdfSample b) {
     BsdfSample chosen;
     chosen.direction = choose3(mask, a.direction, b.direction);
     chosen.weight = choose3(mask, a.weight, b.weight);
     chosen.scattered = (mask & a.scattered) | (vbool_not(mask) & b.scattered);
     chosen.transmitted = (mask & a.transmitted) | (vbool_not(mask) & b.transmitted);
+#if SAMPLES_LAMPS
+    chosen.lobe = choose_lobe(mask, &a.lobe, &b.lobe);
+#endif
     return chosen;
 }
 
@@ -28,8 +45,7 @@ static BsdfSample choose_sample(vbool mask, BsdfSample a, BsdfSample b) {
     }
 
 /* Lamps and surfaces that show their normal scatter nothing. */
-static BsdfSample scatter(const Surface *surface, SampleKey key, vuint depth) {
-    const vuint bounce = depth * DIMENSIONS_PER_BOUNCE + DIMENSION_BOUNCE;
+static BsdfSample scatter(const Surface *surface, SampleKey key, vuint bounce) {
     BsdfSample sample = bsdf_sample_reflected(surface, surface->normal);
     sample.scattered = vbool_none;
 #if EFFECT_LAMBERTIAN
@@ -43,3 +59,23 @@ static BsdfSample scatter(const Surface *surface, SampleKey key, vuint depth) {
 #endif
     return sample;
 }
+
+#if SAMPLES_LAMPS
+static vbool is_fuzzy(const Lobe *lobe) {
+    return vbool_of_uint(lobe->kind == splat_uint(LOBE_FUZZ_SPHERE)) |
+           vbool_of_uint(lobe->kind == splat_uint(LOBE_FUZZ_BALL));
+}
+
+/* Per steradian; 0 for LOBE_NONE. `drawn`: `direction` was drawn from the lobe. */
+static vreal scatter_pdf(const Lobe *lobe, Vec3 direction, int drawn) {
+    vreal density = splat(0);
+#if EFFECT_LAMBERTIAN
+    density = lambertian_pdf(lobe, direction);
+#endif
+#if EFFECT_METAL
+    const vbool fuzzy = is_fuzzy(lobe);
+    if (any_lane(fuzzy)) density = choose(fuzzy, metal_pdf(lobe, direction, drawn), density);
+#endif
+    return choose(vbool_of_uint(lobe->kind == splat_uint(LOBE_NONE)), splat(0), density);
+}
+#endif

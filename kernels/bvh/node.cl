@@ -21,9 +21,10 @@ static Ray ray_for_all(const Ray_one *one) {
     return ray;
 }
 
-/* The spheres of a leaf that the ray may meet before `bound`, without a branch. */
+/* The spheres of a leaf that the ray may meet before `bound`, without a branch. The one in `known_slot` is left out: the
+ * ray has met it already, or is sent to it. */
 FORCE_INLINE static child_mask leaf_candidates(const Geometry *geometry, const Ray_one *one, uint leaf_number,
-                                               real bound) {
+                                               real bound, uint known_slot) {
     __global const real *leaf = geometry->leaves + leaf_number * (4 * TREE_WIDTH);
     const Ray ray = ray_for_all(one);
     Sphere sphere;
@@ -33,7 +34,12 @@ FORCE_INLINE static child_mask leaf_candidates(const Geometry *geometry, const R
     sphere.radius = JOIN(vload, LANE_COUNT)(3, leaf);
     const vuint slot = leaf_number * TREE_WIDTH + LANE_NUMBERS;
     const vbool candidates = sphere_is_candidate(&ray, splat(bound), &sphere, slot);
-    return lane_bits(candidates & (sphere.radius > splat(0))); /* an empty lane has radius -1 */
+    const child_mask mask = lane_bits(candidates & (sphere.radius > splat(0))); /* an empty lane has radius -1 */
+#if SAMPLES_LAMPS
+    return known_slot / TREE_WIDTH == leaf_number ? without_bit(mask, known_slot % TREE_WIDTH) : mask;
+#else
+    return mask; /* nothing is met twice */
+#endif
 }
 
 #if ACCELERATION_TREE

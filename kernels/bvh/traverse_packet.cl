@@ -60,7 +60,7 @@ static void intersect_leaves(const Geometry *geometry, const Visit *visits, uint
     for (uint i = 0; i < count; ++i) {
         const uint lane = visits[i].lane, first = visits[i].what * TREE_WIDTH;
         const Ray_one ray = ray_of_lane(rays, lane);
-        child_mask candidates = leaf_candidates(geometry, &ray, visits[i].what, rays->bound[lane]);
+        child_mask candidates = leaf_candidates(geometry, &ray, visits[i].what, rays->bound[lane], rays->slot[lane]);
         /* One candidate or none is the rule: noted without asking which. */
         found[found_count].lane = lane;
         found[found_count].what = first + lowest_bit(candidates);
@@ -255,19 +255,29 @@ static void intersect_leaf(const Geometry *geometry, const Ray *ray, vbool activ
         Sphere sphere;
         sphere.centre = vec3(splat(leaf[lane]), splat(leaf[TREE_WIDTH + lane]), splat(leaf[2 * TREE_WIDTH + lane]));
         sphere.radius = splat(leaf[3 * TREE_WIDTH + lane]);
-        const vbool candidate = sphere_is_candidate(ray, hit->bound, &sphere, slot) & active;
+#if SAMPLES_LAMPS
+        const vbool wanted = active & vbool_of_uint(hit->slot != slot);
+#else
+        const vbool wanted = active;
+#endif
+        const vbool candidate = sphere_is_candidate(ray, hit->bound, &sphere, slot) & wanted;
         if (any_lane(candidate)) intersect_sphere(geometry, ray, candidate, &sphere, slot, hit);
     }
 }
 
-/* The closest hit of every ray that is `active`. The few huge spheres, which most rays meet, are tried against all
- * lanes at once; then each lane searches the tree within the bound that they leave. */
-static Hit intersect_closest(const Geometry *geometry, const Ray *ray, vbool active) {
-    Hit hit = no_hit(REAL_LARGE);
+/* The closest hit of every ray that is `active`, if it is closer than what the ray has hit already. The few huge
+ * spheres, which most rays meet, are tried against all lanes at once; then each lane searches the tree within the bound
+ * that they leave. */
+FORCE_INLINE static Hit intersect_closer(const Geometry *geometry, const Ray *ray, vbool active, Hit hit) {
     intersect_own_sphere(geometry, ray, active, &hit);
     for (uint leaf = 0; leaf < geometry->first_leaves; ++leaf) intersect_leaf(geometry, ray, active, leaf, &hit);
 #if ACCELERATION_TREE
     traverse_packet(geometry, ray, active, &hit);
 #endif
     return hit;
+}
+
+/* The closest hit of every ray that is `active`. */
+static Hit intersect_closest(const Geometry *geometry, const Ray *ray, vbool active) {
+    return intersect_closer(geometry, ray, active, no_hit(REAL_LARGE));
 }

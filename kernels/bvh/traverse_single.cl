@@ -3,7 +3,7 @@
  * In:    a ray, the geometry.   Out: the hit of least (distance, sphere index); or whether there is any.
  * Knows: node.cl, hit.cl.   Does not know: materials, what made the ray. */
 FORCE_INLINE static void intersect_leaf(const Geometry *geometry, const Ray *ray, uint leaf_number, Hit *best) {
-    for (child_mask candidates = leaf_candidates(geometry, ray, leaf_number, best->bound); candidates != 0;
+    for (child_mask candidates = leaf_candidates(geometry, ray, leaf_number, best->bound, best->slot); candidates != 0;
          candidates = without_lowest_bit(candidates)) {
         const uint slot = leaf_number * TREE_WIDTH + lowest_bit(candidates);
         const Sphere sphere = load_sphere(geometry, slot);
@@ -65,12 +65,16 @@ static void traverse_single(const Geometry *geometry, const Ray *ray, int any, H
 #endif
 }
 
-/* The closest hit of a ray that is `active`. */
-FORCE_INLINE static Hit intersect_closest(const Geometry *geometry, const Ray *ray, vbool active) {
-    Hit best = no_hit(REAL_LARGE);
+/* The closest hit of a ray that is `active`, if it is closer than what the ray has hit already. */
+FORCE_INLINE static Hit intersect_closer(const Geometry *geometry, const Ray *ray, vbool active, Hit best) {
     intersect_own_sphere(geometry, ray, active, &best);
     traverse_single(geometry, ray, 0, &best);
     return best;
+}
+
+/* The closest hit of a ray that is `active`. */
+FORCE_INLINE static Hit intersect_closest(const Geometry *geometry, const Ray *ray, vbool active) {
+    return intersect_closer(geometry, ray, active, no_hit(REAL_LARGE));
 }
 
 /* Whether anything lies within distance `limit`; which one is left open. */

@@ -50,6 +50,9 @@ typedef JOIN(REAL, 4) real4;
 #endif
 typedef REFINED refined;
 
+/* Lamps are sampled where the scene has any, and at surfaces that scatter into many directions. */
+#define SAMPLES_LAMPS (EFFECT_LAMPS && EFFECT_EMISSION && (EFFECT_LAMBERTIAN || EFFECT_METAL))
+
 /* Some compilers leave parts of a ray's search functions of their own, and pass the ray, or two dozen vectors, through
  * memory. Where nothing is optimised, nothing is inlined either: Oclgrind cannot run what the inliner leaves behind. */
 #ifdef __OPTIMIZE__

@@ -24,8 +24,7 @@ __kernel void aovs(SCENE_PARAMETERS uint first_pixel, uint pixel_count, uint fir
             fresh_lane[lane] = begun + lane < samples ? 1 : 0;
         }
         Path path;
-        path.alive = vbool_none;
-        path.inward = path.alive;
+        path_none(&path);
         const SampleKey key = sample_key(seed_low, seed_high, splat_uint(pixel), load_lanes(numbers), replicates);
         path_init_from_camera(camera, pixel_center, key, splat((real)(pixel % width)), splat((real)(pixel / width)),
                               load_lanes(fresh_lane) != splat(0), &path);

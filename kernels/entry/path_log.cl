@@ -14,16 +14,18 @@ enum {
     LOG_ENTERS,                        /* from outside to inside */
     LOG_GOES_ON,
     LOG_INWARD, /* goes on inside */
-    LOG_REALS
+    LOG_LIT,    /* radiance from a lamp to which the vertex sent a ray */
+    LOG_REALS = LOG_LIT + 3
 };
 
-/* `spheres[s]`: the number of the sphere that segment s met. `steps`: how many segments there were. */
+/* `spheres`: for each segment s the numbers of three spheres, or NO_SPHERE: what it met; the lamp that the vertex there
+ * was to be lit by; what stands first on the way to that lamp, which may be itself. `steps`: how many segments there
+ * were. */
 __kernel void path_log(SCENE_PARAMETERS uint pixel, uint sample, uint capacity, __global real *records,
                        __global uint *spheres, __global uint *steps) {
     const Scene scene = scene_init(SCENE_ARGUMENTS);
     Path path;
-    path.alive = 0;
-    path.inward = 0;
+    path_none(&path);
     path_init_from_camera(camera, pixel_center, sample_key(seed_low, seed_high, pixel, sample, replicates),
                           (real)(pixel % width), (real)(pixel / width), 1, &path);
     uint step = 0;
@@ -36,6 +38,16 @@ __kernel void path_log(SCENE_PARAMETERS uint pixel, uint sample, uint capacity, 
         record[LOG_DIRECTION + 1] = path.direction.y;
         record[LOG_DIRECTION + 2] = path.direction.z;
         trace_bounce(&scene, &path);
+        uint lamp = NO_SPHERE, seen = NO_SPHERE;
+        const Vec3 before = path.radiance;
+#if SAMPLES_LAMPS
+        path.lamp_slot = NO_SLOT;
+        if (path.wants_lamps) light_vertices(&scene, &path);
+        if (path.lamp_slot != NO_SLOT) {
+            lamp = slot_sphere[path.lamp_slot];
+            seen = slot_sphere[path.seen_slot];
+        }
+#endif
         record[LOG_DISTANCE] = (real)path.distance;
         record[LOG_POINT] = path.origin.high.x;
         record[LOG_POINT + 1] = path.origin.high.y;
@@ -50,7 +62,12 @@ __kernel void path_log(SCENE_PARAMETERS uint pixel, uint sample, uint capacity, 
         record[LOG_ENTERS] = path.entered;
         record[LOG_GOES_ON] = path.alive;
         record[LOG_INWARD] = path.inward;
-        spheres[step] = path.met ? slot_sphere[path.own_slot] : NO_SPHERE;
+        record[LOG_LIT] = path.radiance.x - before.x;
+        record[LOG_LIT + 1] = path.radiance.y - before.y;
+        record[LOG_LIT + 2] = path.radiance.z - before.z;
+        spheres[3 * step] = path.met ? slot_sphere[path.own_slot] : NO_SPHERE;
+        spheres[3 * step + 1] = lamp;
+        spheres[3 * step + 2] = seen;
         ++step;
     }
     *steps = step;

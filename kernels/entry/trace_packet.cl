@@ -15,20 +15,23 @@ __kernel void trace(TRACE_PARAMETERS) {
     uint sample = next % samples_per_pixel;
 
     Path path;
-    path.alive = vbool_none;
-    path.depth = splat_uint(0);
-    path.radiance = zero3();
+    path_none(&path);
     vbool cut = path.alive;       /* lanes whose path the cap has ended, black for what is missing */
     vuint number = splat_uint(0); /* of a lane's pixel sample within the chunk */
     const uint lanes = min((uint)LANE_COUNT, end - next); /* that ever have one */
     uint used = 0;
     for (;;) {
-        const vbool reached = path.alive & vbool_of_uint(path.depth >= splat_uint(max_depth));
+        const vbool reached = path_moves(&path) & vbool_of_uint(path.depth >= splat_uint(max_depth));
         cut = cut | reached;
         path.alive = path.alive & vbool_not(reached);
 
+#if SAMPLES_LAMPS
+        const vbool busy = path.alive | path.wants_lamps;
+#else
+        const vbool busy = path.alive;
+#endif
         /* Once half of the lanes are free: results out, the next pixel samples in. */
-        const uint alive = popcount(lane_bits(path.alive));
+        const uint alive = popcount(lane_bits(busy));
         if (alive == 0 || (alive <= LANE_COUNT / 2 && next < end)) {
             real red[LANE_COUNT], green[LANE_COUNT], blue[LANE_COUNT], count[LANE_COUNT];
             uint place[LANE_COUNT];
@@ -43,9 +46,9 @@ __kernel void trace(TRACE_PARAMETERS) {
             if (next >= end) return;
             used = lanes;
             /* The free lanes take the next pixel samples, the lowest lane first. */
-            const uint free = lane_bits(vbool_not(path.alive));
+            const uint free = lane_bits(vbool_not(busy));
             const vuint rank = popcount(splat_uint(free) & BITS_BELOW);
-            const vbool fresh = vbool_not(path.alive) & vbool_of_uint(rank < splat_uint(end - next));
+            const vbool fresh = vbool_not(busy) & vbool_of_uint(rank < splat_uint(end - next));
             number = choose_uint(fresh, next + rank, number);
             vuint sample_number = sample + rank, ahead = splat_uint(0);
             carry_over(&sample_number, samples_per_pixel, &ahead);
@@ -60,6 +63,13 @@ __kernel void trace(TRACE_PARAMETERS) {
             cut = cut & vbool_not(fresh);
             continue; /* a cap of 0 cuts at once */
         }
+#if SAMPLES_LAMPS
+        /* Vertices wait until most paths stand at one. */
+        if (2 * popcount(lane_bits(path.wants_lamps)) > alive) {
+            light_vertices(&scene, &path);
+            continue;
+        }
+#endif
         trace_bounce(&scene, &path);
     }
 }

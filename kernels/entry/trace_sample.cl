@@ -66,9 +66,14 @@ __kernel void trace(TRACE_PARAMETERS) {
     Vec3 origin, direction;
     take_start(&starts, place, &key, &origin, &direction);
     Path path;
-    path.inward = path.alive = vbool_none;
+    path_none(&path);
     path_init(camera, key, origin, direction, vbool_all, &path);
-    while (path.alive && path.depth < max_depth) trace_bounce(&scene, &path);
+    while (path.alive && path.depth < max_depth) {
+        trace_bounce(&scene, &path);
+#if SAMPLES_LAMPS
+        if (path.wants_lamps) light_vertices(&scene, &path);
+#endif
+    }
     const real cut = path.alive ? R(0.5) : R(0.0);
     vstore4((real4)(path.radiance.x, path.radiance.y, path.radiance.z, (real)path.depth + cut), item, samples);
 }

@@ -1,25 +1,26 @@
 /* bounce.cl: how a path goes on by one segment, in lane code.
  *
  * In:    paths and the scene.   Out: the same paths, one segment longer.
- * Knows: the tree, the shape, the sky and the materials, each by one function.   Does not know: pixels. */
+ * Knows: the tree, the shape, the sky, the lamps and the materials, each by one function.   Does not know: pixels. */
 
-/* One segment of every living path: intersect, collect radiance, scatter. */
+/* One segment of every living path that waits for nothing: intersect, collect radiance, scatter. */
 static void trace_bounce(const Scene *scene, Path *path) {
+    const vbool moving = path_moves(path);
     const Ray ray = path_ray(path);
-    const Hit hit = intersect_closest(&scene->geometry, &ray, path->alive);
-    const vbool met = is_hit(&hit);
+    const Hit hit = intersect_closest(&scene->geometry, &ray, moving);
+    const vbool met = moving & is_hit(&hit);
     path->met = met;
     path->entered = hit.enters;
     path->distance = hit.t;
-    path->depth = choose_uint(path->alive, path->depth + 1u, path->depth);
+    path->depth = choose_uint(moving, path->depth + 1u, path->depth);
 
-    const vbool escaped = path->alive & vbool_not(met);
+    const vbool escaped = moving & vbool_not(met);
     if (any_lane(escaped)) {
         const Vec3 light = multiply3(path->throughput, sky_radiance(scene->sky, path->direction));
         path->radiance = choose3(escaped, add3(path->radiance, light), path->radiance);
+        path->alive = path->alive & vbool_not(escaped);
     }
-    path->alive = path->alive & met;
-    if (!any_lane(path->alive)) return;
+    if (!any_lane(met)) return;
 
     Sphere sphere;
     Surface surface;
@@ -30,6 +31,10 @@ static void trace_bounce(const Scene *scene, Path *path) {
     surface.incoming = path->direction;
     surface.enters = hit.enters;
     surface.normal = choose3(hit.enters, outward, scale3(splat(-1), outward));
+#if SAMPLES_LAMPS
+    const vbool lit = met & hit.enters & (emitted.x + emitted.y + emitted.z > splat(0));
+    if (any_lane(lit)) emitted = scale3(lamp_hit_weight(scene, path, hit.slot, &sphere, lit), emitted);
+#endif
 #if EFFECT_NORMALS
     const vbool shows_normal = has_kind(&surface, KIND_NORMALS);
     const Vec3 colour =
@@ -38,15 +43,13 @@ static void trace_bounce(const Scene *scene, Path *path) {
     emitted = choose3(shows_normal, add3(emitted, colour), emitted);
 #endif
 #if EFFECT_EMISSION || EFFECT_NORMALS
-    path->radiance = choose3(path->alive, add3(path->radiance, multiply3(path->throughput, emitted)), path->radiance);
+    path->radiance = choose3(met, add3(path->radiance, multiply3(path->throughput, emitted)), path->radiance);
 #endif
-    const BsdfSample bsdf_sample = scatter(&surface, path->key, path->depth - 1u);
-    path->throughput = multiply3(path->throughput, bsdf_sample.weight);
-    path->direction = bsdf_sample.direction;
-    path->origin = point;
-    path->own_slot = hit.slot;
-    /* Coming from outside and staying there, or from inside and going through: outside. */
-    path->inward =
-        (hit.enters & bsdf_sample.transmitted) | (vbool_not(hit.enters) & vbool_not(bsdf_sample.transmitted));
-    path->alive = path->alive & bsdf_sample.scattered;
+    const BsdfSample bsdf_sample = scatter(&surface, path->key, first_dimension(path->depth - 1u));
+    path_scatter(path, met, &point, hit.slot, hit.enters, &bsdf_sample);
+#if SAMPLES_LAMPS
+    /* The ray to a lamp stands for the next segment of the path, so where the path ends there is none. */
+    const vbool follows = vbool_of_uint(path->depth < splat_uint(scene->max_depth));
+    path_light(path, met, &bsdf_sample.lobe, follows);
+#endif
 }

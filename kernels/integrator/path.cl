@@ -1,7 +1,7 @@
 /* path.cl: the state of the paths that a work-item follows, one a lane.
  *
  * In:    camera rays.   Out: paths that begin; the ray of a path's next segment.
- * Knows: ray.cl, sampler.cl, camera.cl.   Does not know: what the paths meet. */
+ * Knows: ray.cl, sampler.cl, camera.cl, bsdf.cl.   Does not know: what the paths meet. */
 typedef struct Path {
     Point origin;
     Vec3 direction;
@@ -11,10 +11,28 @@ typedef struct Path {
     vuint own_slot; /* of the sphere being left */
     vbool inward;   /* it is left into its inside */
     vbool alive;
+#if SAMPLES_LAMPS
+    Lobe lobe;          /* that `direction` was drawn from; of LOBE_NONE where no lamp is sampled */
+    vreal lamp_sum;    /* of importance, seen from the latest vertex: lamps.cl */
+    vbool wants_lamps; /* its latest vertex is still to be lit; a path that is not alive may want that too */
+#endif
     /* Of the latest segment, for path_log.cl. */
     vbool met, entered;
     vrefined distance;
+#if SAMPLES_LAMPS
+    vuint lamp_slot, seen_slot; /* the lamp that the vertex was to be lit by, or NO_SLOT, and what stands in front */
+#endif
 } Path;
+
+/* No path in any lane. */
+static void path_none(Path *path) {
+    path->alive = path->inward = vbool_none;
+    path->depth = splat_uint(0);
+    path->radiance = zero3();
+#if SAMPLES_LAMPS
+    path->wants_lamps = vbool_none;
+#endif
+}
 
 /* The ray of the next segment. */
 static Ray path_ray(const Path *path) {
@@ -50,6 +68,10 @@ static void path_init(__global const PackedCamera *camera, SampleKey key, Vec3 o
     path->own_slot = choose_uint(fresh, splat_uint(own_slot), path->own_slot);
     path->inward = (fresh & inward) | (vbool_not(fresh) & path->inward);
     path->alive = path->alive | fresh;
+#if SAMPLES_LAMPS
+    path->lobe.kind = choose_uint(fresh, splat_uint(LOBE_NONE), path->lobe.kind);
+    path->wants_lamps = path->wants_lamps & vbool_not(fresh);
+#endif
 }
 
 /* The same for the pixel sample at a row and a column, whole numbers. */
@@ -59,3 +81,44 @@ static void path_init_from_camera(__global const PackedCamera *camera, uint pixe
     camera_ray(camera, pixel_center, key, column, row, &origin, &direction);
     path_init(camera, key, origin, direction, fresh, path);
 }
+
+/* The lanes whose path is to be traced on: it lives and waits for nothing. */
+static vbool path_moves(const Path *path) {
+#if SAMPLES_LAMPS
+    return path->alive & vbool_not(path->wants_lamps);
+#else
+    return path->alive;
+#endif
+}
+
+/* The lanes `met` go on from `point`, of the sphere in `slot`, which they have met from outside where `enters`. Without
+ * lamps, no path that lives waits, and what becomes of those that do not live is no matter. */
+static void path_scatter(Path *path, vbool met, const Point *point, vuint slot, vbool enters,
+                         const BsdfSample *bsdf_sample) {
+#if SAMPLES_LAMPS && LANE_COUNT > 1
+#define IN_MET(type, a, b) choose##type(met, a, b)
+#else
+#define IN_MET(type, a, b) (a)
+#endif
+    const Vec3 throughput = multiply3(path->throughput, bsdf_sample->weight);
+    /* Coming from outside and staying there, or from inside and going through: outside. */
+    const vbool inward = (enters & bsdf_sample->transmitted) | (vbool_not(enters) & vbool_not(bsdf_sample->transmitted));
+    path->throughput = IN_MET(3, throughput, path->throughput);
+    path->direction = IN_MET(3, bsdf_sample->direction, path->direction);
+    path->origin.high = IN_MET(3, point->high, path->origin.high);
+    path->origin.low = IN_MET(3, point->low, path->origin.low);
+    path->origin.error = IN_MET(, point->error, path->origin.error);
+    path->own_slot = IN_MET(_uint, slot, path->own_slot);
+    path->inward = IN_MET(, inward, path->inward);
+    path->alive = path->alive & (bsdf_sample->scattered | vbool_not(met));
+#undef IN_MET
+}
+
+#if SAMPLES_LAMPS
+/* The lanes `met` stand at a surface with this lobe, to be lit where a segment `follows`. */
+static void path_light(Path *path, vbool met, const Lobe *lobe, vbool follows) {
+    path->lobe = choose_lobe(met, lobe, &path->lobe);
+    path->wants_lamps =
+        path->wants_lamps | (met & follows & vbool_of_uint(lobe->kind != splat_uint(LOBE_NONE)));
+}
+#endif

@@ -4,23 +4,30 @@
  * Knows: the lists of scene_types.h, geometry.cl.   Does not know: paths. */
 typedef struct Scene {
     Geometry geometry;
+    uint max_depth; /* ray segments of a path */
     SCENE_ARRAYS_OF_PACK(ARRAY_MEMBER)
+    SCENE_ARRAYS_OF_LAMPS(ARRAY_MEMBER)
 } Scene;
 
 /* What every kernel that traces is told, each followed by a comma; scene_init and path_init_from_camera take it
  * apart. */
 #define NUMBER_PARAMETER(name) uint name,
 #define SCENE_PARAMETERS                                                                                               \
-    SCENE_ARRAYS_OF_PACK(ARRAY_PARAMETER) SCENE_ARRAYS_OF_TREE(ARRAY_PARAMETER) SCENE_NUMBERS(NUMBER_PARAMETER)
+    SCENE_ARRAYS_OF_PACK(ARRAY_PARAMETER) SCENE_ARRAYS_OF_LAMPS(ARRAY_PARAMETER)                                       \
+    SCENE_ARRAYS_OF_TREE(ARRAY_PARAMETER) SCENE_NUMBERS(NUMBER_PARAMETER)
 #define SCENE_ARGUMENTS                                                                                                \
-    SCENE_ARRAYS_OF_PACK(ARRAY_ARGUMENT) SCENE_ARRAYS_OF_TREE(ARRAY_ARGUMENT) first_leaves, leaf_count
+    SCENE_ARRAYS_OF_PACK(ARRAY_ARGUMENT) SCENE_ARRAYS_OF_LAMPS(ARRAY_ARGUMENT)                                         \
+    SCENE_ARRAYS_OF_TREE(ARRAY_ARGUMENT) first_leaves, leaf_count, max_depth
 
-static Scene scene_init(SCENE_ARRAYS_OF_PACK(ARRAY_PARAMETER) SCENE_ARRAYS_OF_TREE(ARRAY_PARAMETER) uint first_leaves,
-                        uint leaf_count) {
+static Scene scene_init(SCENE_ARRAYS_OF_PACK(ARRAY_PARAMETER) SCENE_ARRAYS_OF_LAMPS(ARRAY_PARAMETER)
+                            SCENE_ARRAYS_OF_TREE(ARRAY_PARAMETER) uint first_leaves,
+                        uint leaf_count, uint max_depth) {
     Scene scene;
+    scene.max_depth = max_depth;
     geometry_init(SCENE_ARRAYS_OF_TREE(ARRAY_ARGUMENT) first_leaves, leaf_count, &scene.geometry);
 #define SET_ARRAY(numbers, element, name, count, what) scene.name = name;
     SCENE_ARRAYS_OF_PACK(SET_ARRAY)
+    SCENE_ARRAYS_OF_LAMPS(SET_ARRAY)
 #undef SET_ARRAY
     return scene;
 }

@@ -11,7 +11,10 @@
  *     k = 0, 1     direction of scattering
  *     k = 2, 3, 4  radius in a ball (fuzz and the cosine-cubed lobe)
  *     k = 5        choice between reflection and refraction
- *     k = 6        roulette (kept)    7, 8, 9  a light (kept)    10..15  kept */
+ *     k = 6        roulette (kept)
+ *     k = 7        the low bits of a lamp's choice; for level l of the tree of lamps, 2^24 l further on
+ *     k = 8, 9     which lamp, and the direction to it
+ *     10..15       kept */
 #define DIMENSION_PIXEL 0u
 #define DIMENSION_LENS 2u
 #define DIMENSION_BOUNCE 16u
@@ -19,6 +22,12 @@
 #define BOUNCE_DIRECTION 0u
 #define BOUNCE_BALL_RADIUS 2u
 #define BOUNCE_CHOICE 5u
+#define BOUNCE_LAMP_REFILL 7u
+#define LAMP_REFILL_STRIDE 0x1000000u
+#define BOUNCE_LAMP 8u
+
+/* Of bounce b, counted from 0. */
+static vuint first_dimension(vuint b) { return b * DIMENSIONS_PER_BOUNCE + DIMENSION_BOUNCE; }
 
 /* What identifies a pixel sample to the generator. */
 typedef struct SampleKey {

@@ -13,6 +13,7 @@
 #define sphere_is_candidate LANED(sphere_is_candidate)
 #define sphere_intersect LANED(sphere_intersect)
 #define sphere_exit LANED(sphere_exit)
+#define sphere_power LANED(sphere_power)
 #define sphere_surface LANED(sphere_surface)
 
 typedef struct Sphere {
@@ -51,6 +52,11 @@ FORCE_INLINE static vbool sphere_is_candidate(const Ray *ray, vreal bound, const
 FORCE_INLINE static vbool sphere_exit(const Ray *ray, const Sphere *sphere, vrefined *t) {
     *t = splat_refined(0);
     return vbool_none;
+}
+
+FORCE_INLINE static vreal sphere_power(const Point *origin, const Sphere *sphere, Vec3 *to_centre) {
+    *to_centre = subtract3(sphere->centre, origin->high);
+    return dot3(*to_centre, *to_centre) - sphere->radius * sphere->radius;
 }
 
 /* As the book has it: the rounded point, and the normal from it. */

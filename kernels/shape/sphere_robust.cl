@@ -6,6 +6,7 @@
  *          sphere_is_candidate  may the ray meet the sphere before `bound`? Quick; what it rules out is surely not met.
  *          sphere_intersect     does the ray meet it, at which distance, and from outside or inside?
  *          sphere_exit          where does a ray meet the sphere that it has left into its inside?
+ *          sphere_power         how far is a point outside a sphere, as a square?
  *          sphere_surface       the point that was met, as an origin for the next ray, and the outward unit normal
  * Knows: ray.cl.   Does not know: trees, materials. Read once for each number of lanes.
  *
@@ -19,7 +20,9 @@
 #define sphere_roots LANED(sphere_roots)
 #define sphere_intersect LANED(sphere_intersect)
 #define sphere_exit LANED(sphere_exit)
+#define sphere_power LANED(sphere_power)
 #define sphere_surface LANED(sphere_surface)
+#define compensated_power LANED(compensated_power)
 #define sum_error LANED(sum_error)
 #define multiply_add_exactly LANED(multiply_add_exactly)
 
@@ -86,9 +89,21 @@ static vreal sum_error(vreal a, vreal b, vreal sum) {
     return (a - a_part) + (b - b_part);
 }
 
+/* (oc + e).(oc + e) - radius^2 by a compensated sum (T. Ogita, S. Rump and S. Oishi, "Accurate Sum and Dot Product",
+ * 2005); what is of second order in e is left out. */
+FORCE_INLINE static vreal compensated_power(Vec3 oc, Vec3 e, vreal radius) {
+    const vreal xx = oc.x * oc.x, yy = oc.y * oc.y, zz = oc.z * oc.z, rr = radius * radius;
+    const vreal a = xx - rr, b = a + yy, sum = b + zz;
+    const vreal products =
+        (fma(oc.x, oc.x, -xx) + fma(oc.y, oc.y, -yy)) + (fma(oc.z, oc.z, -zz) - fma(radius, radius, -rr));
+    const vreal sums = (sum_error(xx, -rr, a) + sum_error(a, yy, b)) + sum_error(b, zz, sum);
+    const vreal cross = splat(2) * fma(oc.x, e.x, fma(oc.y, e.y, oc.z * e.z));
+    return sum + ((products + sums) + cross);
+}
+
 /* The same in float by error-free transforms: oc as an unevaluated sum, its projection removed twice, so that l is
- * right to an ulp of itself and not of oc; and oc.oc - r^2 by a compensated sum (T. Ogita, S. Rump and S. Oishi,
- * "Accurate Sum and Dot Product", 2005) for the root that p and s would cancel to. */
+ * right to an ulp of itself and not of oc; and oc.oc - r^2 by a compensated sum for the root that p and s would cancel
+ * to. */
 FORCE_INLINE static Roots sphere_roots(const Ray *ray, const Sphere *sphere) {
     const Vec3 high = ray->origin.high, low = ray->origin.low, d = ray->direction, c = sphere->centre;
     const vreal radius = sphere->radius;
@@ -110,13 +125,7 @@ FORCE_INLINE static Roots sphere_roots(const Ray *ray, const Sphere *sphere) {
     /* The root away from zero adds up; the other one is (oc.oc - r^2) / d.d over it. */
     const vbool ahead = p >= splat(0);
     const vreal outer = p1 + (p2 + choose(ahead, s, -s));
-    const vreal xx = oc.x * oc.x, yy = oc.y * oc.y, zz = oc.z * oc.z, rr = radius * radius;
-    const vreal a = xx - rr, b = a + yy, sum = b + zz;
-    const vreal products =
-        (fma(oc.x, oc.x, -xx) + fma(oc.y, oc.y, -yy)) + (fma(oc.z, oc.z, -zz) - fma(radius, radius, -rr));
-    const vreal sums = (sum_error(xx, -rr, a) + sum_error(a, yy, b)) + sum_error(b, zz, sum);
-    const vreal cross = splat(2) * fma(oc.x, ex, fma(oc.y, ey, oc.z * ez));
-    const vreal power = sum + ((products + sums) + cross);
+    const vreal power = compensated_power(oc, vec3(ex, ey, ez), radius);
     const vreal quotient = choose(outer != splat(0), power * inverse / outer, splat(0));
     const vreal difference = p1 + (p2 - choose(ahead, s, -s));
     const vreal inner = choose(fabs(difference) < R(0.5) * fabs(p), quotient, difference);
@@ -151,6 +160,29 @@ FORCE_INLINE static vbool sphere_exit(const Ray *ray, const Sphere *sphere, vref
     *t = choose_refined(vbool_of_refined(length > splat_refined(0)), length, splat_refined(0));
     return vbool_all;
 }
+
+/* The square of the distance from a point to a sphere's centre, less the square of the radius: the power of the point,
+ * right to a few units in the last place however close to the surface it lies. `to_centre`: from the point. */
+#if REFINE_IS_DOUBLE
+FORCE_INLINE static vreal sphere_power(const Point *origin, const Sphere *sphere, Vec3 *to_centre) {
+    const Vec3 high = origin->high, low = origin->low, c = sphere->centre;
+    const vrefined x = to_refined(c.x) - (to_refined(high.x) + to_refined(low.x));
+    const vrefined y = to_refined(c.y) - (to_refined(high.y) + to_refined(low.y));
+    const vrefined z = to_refined(c.z) - (to_refined(high.z) + to_refined(low.z));
+    const vrefined r = to_refined(sphere->radius);
+    *to_centre = vec3(to_real(x), to_real(y), to_real(z));
+    return to_real(fma(x, x, fma(y, y, fma(z, z, -r * r))));
+}
+#else
+FORCE_INLINE static vreal sphere_power(const Point *origin, const Sphere *sphere, Vec3 *to_centre) {
+    const Vec3 high = origin->high, low = origin->low, c = sphere->centre;
+    const Vec3 oc = subtract3(c, high);
+    const Vec3 e = vec3(sum_error(c.x, -high.x, oc.x) - low.x, sum_error(c.y, -high.y, oc.y) - low.y,
+                        sum_error(c.z, -high.z, oc.z) - low.z);
+    *to_centre = add3(oc, e);
+    return compensated_power(oc, e, sphere->radius);
+}
+#endif
 
 /* The normal comes from the point relative to the centre, never from the rounded point. */
 #if REFINE_IS_DOUBLE

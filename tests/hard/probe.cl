@@ -95,7 +95,7 @@ __kernel void probe_scatter(uint count, __global const real *in, __global const 
     surface.variant = words[3];
     surface.total_reflection = words[4];
     const SampleKey key = sample_key(seed, 0, 0, words[5], 4);
-    const BsdfSample sample = scatter(&surface, key, 0);
+    const BsdfSample sample = scatter(&surface, key, DIMENSION_BOUNCE);
     const Vec3 offset = random_direction(key, DIMENSION_BOUNCE);
     __global refined *row = out + (size_t)item * 8;
     row[0] = sample.direction.x;

@@ -22,8 +22,16 @@ typedef struct EffectsScene {
     BpSphere spheres[48];
 } EffectsScene;
 
-/* A tree needs spheres, and spheres need a material. */
+/* Lamps are sampled where something emits and something is lit, unless an option says no. */
+static inline bool effects_light(uint32_t bits) {
+    return bp_effects_has(bits, BP_EFFECT_EMISSION) &&
+           (bits & (EFFECT_BIT(LAMBERTIAN) | EFFECT_BIT(METAL))) != 0;
+}
+
+/* A tree needs spheres, and spheres need a material. With a tree, lamps are sampled where they can be. */
 static inline bool effects_can_occur(uint32_t bits, bool tree) {
+    if (bp_effects_has(bits, BP_EFFECT_LAMPS) ? !effects_light(bits) : tree && effects_light(bits))
+        return false;
     return (bits & MATERIAL_EFFECTS) != 0 || !tree;
 }
 

@@ -67,6 +67,16 @@ static void material_effects(void **state) {
     };
     for (size_t i = 0; i < sizeof cases / sizeof cases[0]; ++i)
         assert_int_equal(analyse(&cases[i].material, 1, 1, 1, 0, 1).bits, cases[i].bits);
+    /* Rays go to a lamp from another sphere only, and not from mirrors and glass. */
+    assert_int_equal(analyse(&ember, 1, 1, 2, 0, 1).bits, BIT(LAMBERTIAN) | BIT(EMISSION) | BIT(LAMPS));
+    const BpMaterial pairs[][2] = {{grey, lamp}, {steel, lamp}, {glass, lamp}};
+    const uint32_t called_for[] = {BIT(LAMBERTIAN) | BIT(EMISSION) | BIT(LAMPS), BIT(METAL) | BIT(EMISSION),
+                                   BIT(DIELECTRIC) | BIT(EMISSION)};
+    for (size_t i = 0; i < 3; ++i) assert_int_equal(analyse(pairs[i], 2, 2, 2, 0, 1).bits, called_for[i]);
+    BpMaterial brushed = steel;
+    brushed.fuzz = 1.0 / 64;
+    const BpMaterial pair[] = {brushed, lamp};
+    assert_int_equal(analyse(pair, 2, 2, 2, 0, 1).bits, BIT(METAL) | BIT(EMISSION) | BIT(LAMPS));
     const BpMaterial all[] = {grey, steel, glass, ember, debug};
     assert_int_equal(analyse(all, 5, 5, BP_LIST_SPHERES_MAX + 1, 0.1, 0.5).bits, BP_EFFECTS_ALL);
     assert_int_equal(analyse(all, 5, 5, 5, 0, 1).bits, BP_EFFECTS_ALL & ~BIT(LENS));

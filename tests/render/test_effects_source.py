@@ -26,11 +26,12 @@ BITS = re.findall(r"^ +X\(([A-Z]+), \"", header.read_text(), re.MULTILINE)
 # Words that stand in the code of one effect and nowhere else.
 MARKS = {
     "LAMBERTIAN": ["lambertian_sample", "hemisphere"],
-    "METAL": ["metal_sample", "fuzzy"],
+    "METAL": ["metal_sample", "(fuzzy, fuzzy)"],
     "DIELECTRIC": ["dielectric_sample", "fresnel_schlick", "fresnel_exact", "refraction_index = "],
     "EMISSION": ["emitted = vec3"],
     "NORMALS": ["shows_normal"],
     "LENS": ["lens_x", "->lens_up", "sample_disk(u"],
+    "LAMPS": [],  # NEEDING_OTHERS
     "TREE": ["BoxRay", "leaf_children"],  # no effect, but looked for in the same way
 }
 # Code that several effects share.
@@ -38,6 +39,11 @@ SHARED = {
     "random_ball_radius": {"LAMBERTIAN", "METAL"},
     "surface->variant = ": {"METAL", "DIELECTRIC"},
     "throughput, emitted": {"EMISSION", "NORMALS"},
+}
+# Code that needs all of the effects named, and one of the set.
+NEEDING_OTHERS = {
+    mark: ("LAMPS", "EMISSION", {"LAMBERTIAN", "METAL"})
+    for mark in ("choose_lamp", "lamp_hit_weight", "wants_lamps", "first_seen")
 }
 
 
@@ -58,6 +64,10 @@ def complaints(path):
                   for mark in marks if (mark in text) != (name in effects)]
     found += [f"{path.name}: {mark!r} of {sorted(names)} {'is missing' if names & effects else 'is there'}"
               for mark, names in SHARED.items() if (mark in text) != bool(names & effects)]
+    for mark, (*all_of, any_of) in NEEDING_OTHERS.items():
+        needed = set(all_of) <= effects and bool(any_of & effects)
+        if (mark in text) != needed:
+            found.append(f"{path.name}: {mark!r} {'is missing' if needed else 'is there'}")
     return found, (bits, tree), len(text)
 
 

@@ -12,7 +12,7 @@ import tempfile
 from pfm import read_pfm
 
 program, scenes = sys.argv[1], pathlib.Path(sys.argv[2])
-ALL = ["lambertian", "metal", "dielectric", "emission", "normals", "lens"]
+ALL = ["lambertian", "metal", "dielectric", "emission", "normals", "lens", "lamps"]
 
 
 def run(*arguments, code=0):
@@ -23,13 +23,13 @@ def run(*arguments, code=0):
 
 # A table: every effect once, in or out, with a reason.
 table = run("explain", scenes / "v4-13-metal.json").stdout.splitlines()
-rows = {line.split()[0]: line.split(maxsplit=2)[1:] for line in table[1:7]}
+rows = {line.split()[0]: line.split(maxsplit=2)[1:] for line in table[1:8]}
 assert list(rows) == ALL, table
 assert [name for name in ALL if rows[name][0] == "in"] == ["lambertian", "metal"], table
 assert all(rows[name][0] in ("in", "out") and len(rows[name][1]) > 10 for name in ALL), table
 assert "no dielectric among the 4 materials in use" in rows["dielectric"][1]
-assert "2 of 6 effects" in table[7]
-assert table[8].split(maxsplit=2) == ["acceleration", "list", "4 spheres: a list, no tree"], table
+assert "2 of 7 effects" in table[8]
+assert table[9].split(maxsplit=2) == ["acceleration", "list", "4 spheres: a list, no tree"], table
 
 # JSON of all scenes says what the tables say, one entry a scene, in the order given.
 paths = sorted(scenes.glob("*.json"))

@@ -1,0 +1,95 @@
+/* lamps_direct.cl: the light that lamps bring to a point directly, by two ways that share the work.
+ *
+ * A path finds a lamp by chance, or is led to one: a lamp is chosen and a ray sent to it (next-event estimation). Both
+ * are weighted by the power heuristic (E. Veach, "Robust Monte Carlo Methods for Light Transport Simulation", 1997,
+ * 9.2.4), so that for each length of a path the weights of its two ways add up to 1. Since a lobe is
+ * sampled perfectly, a ray to a lamp brings its radiance times the ratio of the two densities.
+ *
+ * In:    a surface where a path stands, or a lamp that it has hit.   Out: radiance to add, or the weight of a hit.
+ * Knows: lamps.cl, scatter.cl, the closest hit.   Does not know: how a path goes on. */
+#if SAMPLES_LAMPS
+#define RATIO_MAX R(1e15) /* its square is a float, and one more or less is none */
+
+/* The density of `direction` in the lobe over that with which it is drawn as one to the lamp. */
+static vreal density_ratio(const Lobe *lobe, Vec3 direction, int drawn, vreal cap, vreal probability) {
+    const vreal solid_angle = (splat(2) / splat(PI_INVERSE)) * cap;
+    return at_most(scatter_pdf(lobe, direction, drawn) * solid_angle / probability, splat(RATIO_MAX));
+}
+
+/* The weight of the radiance of a lamp in `slot` that the path has hit; `hit`: these lanes have, from outside. */
+static vreal lamp_hit_weight(const Scene *scene, const Path *path, vuint slot, const Sphere *sphere, vbool hit) {
+    vbool shared = hit & vbool_of_uint(path->lobe.kind != splat_uint(LOBE_NONE)) & vbool_of_uint(path->own_slot != slot);
+    if (!any_lane(shared)) return splat(1);
+    const LampCone cone = lamp_cone(&path->origin, sphere);
+    shared = shared & cone.outside;
+    const vreal probability = lamp_probability(scene, &path->origin, &path->lobe, path->lamp_sum, slot, shared);
+    shared = shared & (probability > splat(0));
+    const vreal ratio = density_ratio(&path->lobe, path->direction, 1, cone.cap, choose(shared, probability, splat(1)));
+    const vreal square = ratio * ratio;
+    return choose(shared, square / (splat(1) + square), splat(1));
+}
+
+static Vec3 radiance_of_slot(const Scene *scene, vuint slot) {
+    const vuint numbers = gather_uint(scene->slot_material, slot) * MATERIAL_REALS;
+    return vec3(gather_real(scene->materials, numbers + MATERIAL_EMIT),
+                gather_real(scene->materials, numbers + (MATERIAL_EMIT + 1u)),
+                gather_real(scene->materials, numbers + (MATERIAL_EMIT + 2u)));
+}
+
+/* The slot of what a ray to the lamp meets first. No point of the lamp that can be seen is nearer than distance - radius, nor
+ * farther than where a tangent touches: what is met before the one hides the lamp, what is not met before the other
+ * does not, and only in between the lamp's own root along the rounded direction has to tell, by the rule for ties. A
+ * direction that rounding has put past a tiny lamp stands for one that meets it. */
+static vuint first_seen(const Scene *scene, const Ray *ray, const LampChoice *choice, const LampCone *cone,
+                       vbool active) {
+    const Sphere *sphere = &choice->sphere;
+    const Geometry *geometry = &scene->geometry;
+    Hit lamp;
+    const vreal slack = cone->distance * R(0x1p-18);
+    lamp.t = to_refined(cone->tangent + slack);
+    lamp.slot = choice->slot;
+    lamp.enters = vbool_all;
+    lamp.bound = upper_bound(lamp.t);
+    const Hit hit = intersect_closer(geometry, ray, active, lamp);
+    const vbool other = active & vbool_of_uint(hit.slot != choice->slot);
+    const vbool close =
+        other & vbool_of_refined(hit.t >= to_refined(cone->distance - sphere->radius - slack));
+    if (!any_lane(close)) return hit.slot;
+    vrefined t;
+    vbool enters;
+    const vbool met = sphere_intersect(ray, sphere, &t, &enters);
+    t = choose_refined(met, t, to_refined(cone_distance(cone, sphere->radius, choice->rest)));
+    Hit first = hit;
+    keep_closer(geometry, close, t, choice->slot, enters, &first);
+    return first.slot;
+}
+
+/* Lights the vertices that want it: a ray to a lamp for each. A lobe's weight is its albedo whatever the direction, so
+ * the throughput is already that of the light that comes from the lamp, and a ray to it leaves as the path does. */
+static void light_vertices(const Scene *scene, Path *path) {
+    const Lobe *lobe = &path->lobe;
+    const vuint bounce = first_dimension(path->depth - 1u);
+    vbool active = path->wants_lamps;
+    path->wants_lamps = vbool_none;
+    vreal u, v;
+    sample_2d(path->key, bounce + BOUNCE_LAMP, &u, &v);
+    const LampChoice choice = choose_lamp(scene, &path->origin, lobe, path->key, bounce, u, active);
+    path->lamp_sum = choose(active, choice.sum, path->lamp_sum);
+    const LampCone cone = lamp_cone(&path->origin, &choice.sphere);
+    active = active & (choice.probability > splat(0)) & cone.outside & vbool_of_uint(choice.slot != path->own_slot);
+    Ray ray = path_ray(path);
+    ray.direction = sample_cone(&cone, choice.rest, v);
+    const vreal ratio =
+        density_ratio(lobe, ray.direction, 0, cone.cap, choose(active, choice.probability, splat(1)));
+    active = active & (ratio > splat(0));
+    path->lamp_slot = choose_uint(active, choice.slot, splat_uint(NO_SLOT));
+    if (!any_lane(active)) return;
+
+    path->seen_slot = first_seen(scene, &ray, &choice, &cone, active);
+    const vbool visible = active & vbool_of_uint(path->seen_slot == choice.slot);
+    if (!any_lane(visible)) return;
+    const vreal weight = ratio / fma(ratio, ratio, splat(1));
+    const Vec3 light = multiply3(path->throughput, scale3(weight, radiance_of_slot(scene, choice.slot)));
+    path->radiance = choose3(visible, add3(path->radiance, light), path->radiance);
+}
+#endif
