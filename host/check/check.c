@@ -52,6 +52,13 @@ void bp_check_destroy(BpCheck **check) {
     *check = NULL;
 }
 
+/* Where rays go to lamps, the samples of the kernel have the means of the reference's and less spread. */
+static bool spreads_less(const BpRender *render) {
+    BpRenderReport report;
+    bp_render_report(render, &report);
+    return report.lamps == BP_LAMPS_ON;
+}
+
 /* One chunk of the kernel. */
 static BpStatus step_kernel(BpRender *render, BpSums *sums, uint64_t *cut_paths, bool *finished,
                             BpError *err) {
@@ -70,6 +77,7 @@ static BpStatus step_kernel(BpRender *render, BpSums *sums, uint64_t *cut_paths,
 
 BpStatus bp_check_render_kernel(BpRender *render, BpSums *sums, uint64_t *cut_paths, BpError *err) {
     uint64_t cut = 0;
+    sums->means_only = spreads_less(render);
     for (bool finished = false; !finished;) BP_TRY(step_kernel(render, sums, &cut, &finished, err));
     if (cut_paths != NULL) *cut_paths += cut;
     return BP_OK;
@@ -139,6 +147,7 @@ BpStatus bp_check_step(BpCheck *check, BpCheckProgress *progress, BpError *err) 
     const uint64_t total = check->options.render.samples_per_pixel;
     const double start = bp_clock_seconds();
     if (!check->kernel_done) {
+        result->kernel.means_only = spreads_less(check->render);
         while (!check->kernel_done && bp_clock_seconds() - start < STEP_SECONDS)
             BP_TRY(
                 step_kernel(check->render, &result->kernel, &result->cut_kernel, &check->kernel_done, err));

@@ -10,6 +10,7 @@ enum { LIT_FEW = 20 };
 static const double z_without_noise = 1e6;
 /* The part of the level that each family of tests may spend. */
 static const double level_share[BP_FAMILIES] = {0.45, 0.45, 0.05, 0.05};
+static const double level_share_of_means[BP_FAMILIES] = {0.5, 0.5, 0, 0};
 
 typedef struct Region {
     uint32_t left, top, right, bottom; /* half open */
@@ -54,6 +55,31 @@ static double rounding(double reference, int moment) {
     return moment * (BP_VERDICT_ROUNDING * fabs(reference) + 1e-7);
 }
 
+/* How far above its estimate the variance of a region's mean of x may well be: three standard errors. The
+ * spread of samples of which few are bright is mostly too small where their mean is. Where both sides have
+ * them that evens out; where one side has rays to lamps it does not. */
+static double variance_margin(const BpSums *sums, const Region *region, int channel) {
+    const double area = (double)(region->right - region->left) * (region->bottom - region->top);
+    double variance = 0;
+    for (uint32_t y = region->top; y < region->bottom; ++y) {
+        for (uint32_t x = region->left; x < region->right; ++x) {
+            const BpPixelSums *pixel = &sums->pixels[(size_t)y * sums->width + x];
+            double square, of_square;
+            if (pixel->count < 2) continue;
+            pixel_mean(pixel, channel, 2, &square, &of_square);
+            variance += of_square / pow((double)(pixel->count - 1) * area * area, 2);
+        }
+    }
+    return 3 * sqrt(variance);
+}
+
+/* The variance of a mean that may have missed what is bright and rare: with the margin, and, where the mean
+ * is below the other one, larger by the square of what it lacks, as that of the missing light would be. */
+static double cautious_variance(const Mean *mean, const Mean *other, double margin) {
+    const double lacks = mean->value > 0 && other->value > mean->value ? other->value / mean->value : 1;
+    return (mean->variance + margin) * lacks * lacks;
+}
+
 static double z_of_means(const Mean *kernel, const Mean *reference, int moment) {
     const double variance = kernel->variance + reference->variance;
     const double rest = fabs(kernel->value - reference->value) - rounding(reference->value, moment);
@@ -74,10 +100,15 @@ static double z_of_counts(const Mean *kernel, const Mean *reference) {
 static void test_region(const BpSums *kernel, const BpSums *reference, const Region *region, int moment,
                         BpVerdictTest *worst) {
     for (int channel = BP_SUMS_RED; channel <= BP_SUMS_BLUE; ++channel) {
-        const Mean k = region_mean(kernel, region, channel, moment);
-        const Mean r = region_mean(reference, region, channel, moment);
+        Mean k = region_mean(kernel, region, channel, moment);
+        Mean r = region_mean(reference, region, channel, moment);
         const bool counted = (k.lit < LIT_FEW || r.lit < LIT_FEW) && k.samples > 0 && r.samples > 0;
-        const double z = counted ? z_of_counts(&k, &r) : z_of_means(&k, &r, moment);
+        const bool comparable = kernel->means_only == reference->means_only;
+        if (!comparable) {
+            k.variance = cautious_variance(&k, &r, variance_margin(kernel, region, channel));
+            r.variance = cautious_variance(&r, &k, variance_margin(reference, region, channel));
+        }
+        const double z = !counted ? z_of_means(&k, &r, moment) : comparable ? z_of_counts(&k, &r) : 0;
         if (z > worst->z || (channel == BP_SUMS_RED && region->column == 0 && region->row == 0)) {
             const BpVerdictTest old = *worst;
             *worst = (BpVerdictTest){.limit = old.limit,
@@ -98,7 +129,8 @@ static uint32_t at_most(uint32_t value, uint32_t limit) {
 }
 
 static void begin_family(BpVerdict *verdict, int family, uint32_t tests) {
-    const double level = bp_level_bonferroni(verdict->level * level_share[family], tests);
+    const double share = (verdict->means_only ? level_share_of_means : level_share)[family];
+    const double level = bp_level_bonferroni(verdict->level * share, tests);
     verdict->worst[family].limit = bp_normal_upper_quantile(level / 2);
     verdict->worst[family].tests = tests;
 }
@@ -108,7 +140,7 @@ static void test_families(const BpSums *kernel, const BpSums *reference, BpVerdi
     verdict->block_columns = at_most(kernel->width, BP_VERDICT_BLOCKS_SIDE);
     verdict->block_rows = at_most(kernel->height, BP_VERDICT_BLOCKS_SIDE);
     const uint32_t blocks = verdict->block_columns * verdict->block_rows;
-    for (int moment = 1; moment <= 2; ++moment) {
+    for (int moment = 1; moment <= (verdict->means_only ? 1 : 2); ++moment) {
         const int first = moment == 1 ? BP_FAMILY_PICTURE : BP_FAMILY_PICTURE_SQUARES;
         BpVerdictTest *picture = &verdict->worst[first], *worst = &verdict->worst[first + 1];
         begin_family(verdict, first, 3);
@@ -178,6 +210,7 @@ BpStatus bp_verdict(const BpSums *kernel, const BpSums *reference, double level,
             return bp_fail(err, BP_ERR_USAGE, "a comparison needs at least 2 samples in every pixel");
 
     *verdict = (BpVerdict){.level = level};
+    verdict->means_only = kernel->means_only != reference->means_only;
     verdict->segments_kernel = count_segments(kernel, &verdict->samples, &verdict->invalid_kernel);
     verdict->segments_reference = count_segments(reference, &verdict->samples, &verdict->invalid_reference);
     test_families(kernel, reference, verdict);

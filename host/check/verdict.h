@@ -13,7 +13,11 @@
  *
  * A difference D of means with variance V counts as z = max(0, |D| - e) / sqrt V, where e is what single
  * precision may cost (BP_VERDICT_ROUNDING). Where one side has fewer than 20 samples that are not black,
- * means follow no normal law: the numbers of such samples are compared instead, exactly (binomial). */
+ * means follow no normal law: the numbers of such samples are compared instead, exactly (binomial).
+ *
+ * Where one side sends rays to lamps and the other finds them by chance, spreads differ and so do numbers of
+ * lit samples, though means do not: the means get the whole level, with variances three of their standard
+ * errors larger than estimated, and what has too few lit samples is not compared. */
 #ifndef BP_CHECK_VERDICT_H
 #define BP_CHECK_VERDICT_H
 
@@ -50,6 +54,7 @@ typedef struct BpVerdictTest {
 typedef struct BpVerdict {
     bool agree;
     double level;
+    bool means_only; /* one side alone has rays to lamps: the families of squares are not tested (0 tests) */
     BpVerdictTest worst[BP_FAMILIES];
     uint32_t block_columns, block_rows;
     uint64_t samples;                           /* valid ones, of both sides together */

@@ -26,6 +26,7 @@ static void print_verdict(FILE *out, const BpVerdict *v) {
     fprintf(out, "%s (at most 1 false alarm in %.0f)\n", v->agree ? "agree" : "DISAGREE", 1 / v->level);
     for (int f = 0; f < BP_FAMILIES; ++f) {
         const BpVerdictTest *test = &v->worst[f];
+        if (test->tests == 0) continue;
         fprintf(out, "  %-17s |z| %.2f of %.2f allowed%s: %s, %.4g vs. %.4g",
                 bp_verdict_family_name((BpVerdictFamily)f), test->z, test->limit,
                 test->z > test->limit ? ", EXCEEDED" : "", channels[test->channel], test->kernel,
@@ -33,7 +34,9 @@ static void print_verdict(FILE *out, const BpVerdict *v) {
         if (f == BP_FAMILY_BLOCKS || f == BP_FAMILY_BLOCKS_SQUARES)
             fprintf(out, ", block %u,%u", test->column, test->row);
         fputs(test->counted
-                  ? "\n                    (too few lit samples to compare means: counts compared)\n"
+                  ? v->means_only
+                        ? "\n                    (too few lit samples to compare anything)\n"
+                        : "\n                    (too few lit samples to compare means: counts compared)\n"
                   : "\n",
               out);
     }

@@ -59,7 +59,7 @@ static json_t *result_json(const BpCheckResult *result) {
     const BpRenderReport *report = &result->report;
     json_t *tests = json_array();
     for (int f = 0; f < BP_FAMILIES; ++f)
-        json_array_append_new(tests, test_json((BpVerdictFamily)f, &v->worst[f]));
+        if (v->worst[f].tests > 0) json_array_append_new(tests, test_json((BpVerdictFamily)f, &v->worst[f]));
     json_t *brightness = json_pack("{s:o, s:o, s:o, s:f, s:b, s:f}", "ratio", number(v->ratio), "low",
                                    number(v->ratio_low), "high", number(v->ratio_high), "confidence", 0.95,
                                    "equivalent", v->equivalent, "margin", BP_VERDICT_MARGIN);

@@ -9,6 +9,7 @@
 BpStatus bp_sums_init(BpSums *sums, uint32_t width, uint32_t height, BpError *err) {
     sums->width = width;
     sums->height = height;
+    sums->means_only = false;
     sums->pixels = calloc((size_t)width * height, sizeof *sums->pixels);
     if (sums->pixels == NULL)
         return bp_fail(err, BP_ERR_MEMORY,
