@@ -1,0 +1,145 @@
+"""Hard cases of light sampling through the real program, with sampling and without (cases.py has the scenes).
+
+    test_lamp_cases.py PROGRAM SOURCE_DIR [--deep] [--on] [NUMBER...]
+
+Each case is a point whose radiance is known in closed form, or by chance alone, or to the bit. A closed form is held
+with sampling on, to a standard error of at most 0.2 %; and, where chance finds the lamp, with sampling off too. Where
+only chance knows, both are compared pixel by pixel, to a standard error of at most 0.5 %. A value is wrong when it
+lies more than Z_MAX standard errors and a rounding (2e-5, as a rule) from what is expected: of some 600 such tests of a
+right program one fails by chance with a probability of 1e-4, and a deviation of 6.5 standard errors, which is at most
+1.3 % and 0.05 % in the middle of the cases, is found with 90 %.
+
+Without numbers: all cases but those that repeat others with other values; --deep: those alone. --on: only what sampling
+alone shows, as the mutants want it: no picture is drawn without, and what needs one is left out.
+"""
+import json
+import math
+import os
+import pathlib
+import statistics
+import subprocess
+import sys
+import tempfile
+
+import cases
+from pfm import read_pfm
+
+Z_MAX = 5.2
+PRECISE = 0.002        # largest standard error of a closed form
+BRUTE_PRECISE = 0.005  # of a comparison with chance
+
+
+class Trouble(Exception):
+    pass
+
+
+class Bench:
+    def __init__(self, program, folder):
+        self.program, self.folder, self.runs = os.path.abspath(program), folder, 0
+
+    def render(self, scene, lamps, samples, options=()):
+        """The picture's bytes, its pixels' channels as three lists, and the statistics."""
+        (self.folder / "case.json").write_text(json.dumps(scene))
+        command = [self.program, "render", "case.json", "--quiet", "--effects", "all", "--lamps", lamps, "--seed", "3", "--spp",
+                   str(samples), "-o", "case.pfm", "--stats", "case-stats.json", *options]
+        done = subprocess.run(command, cwd=self.folder, capture_output=True, text=True)
+        self.runs += 1
+        if "samples are not finite" in done.stderr:
+            raise Trouble(f"samples that are not finite with lamps {lamps}")
+        if done.returncode != 0:
+            raise Trouble(f"exit code {done.returncode}: {done.stderr.strip()}")
+        stats = json.loads((self.folder / "case-stats.json").read_text())
+        if stats["invalid_samples"] != 0:
+            raise Trouble(f"{stats['invalid_samples']} invalid samples with lamps {lamps}")
+        picture = (self.folder / "case.pfm").read_bytes()
+        numbers = read_pfm(picture)[2]
+        return picture, [list(numbers[c::3]) for c in range(3)], stats
+
+
+def judge(values, expected, what, rounding):
+    """Says what is wrong with independent estimates of a number, if anything, and returns (z, relative standard error)."""
+    count = len(values)
+    mean = statistics.fmean(values)
+    error = statistics.stdev(values) / math.sqrt(count)
+    apart = max(0.0, abs(mean - expected) - rounding * abs(expected))
+    z = apart / error if error > 0 else (math.inf if apart > 0 else 0.0)
+    if not z <= Z_MAX:
+        raise Trouble(f"{what}: {mean:.9g}, expected {expected:.9g} ({mean / expected - 1 if expected else math.inf:+.3%}), z = {z:.1f}")
+    return z, error / abs(expected) if expected else 0.0
+
+
+def run_case(bench, case, on_alone=False):
+    """One line about a case; Trouble where it is wrong."""
+    for name, make in case.files.items():
+        (bench.folder / name).write_bytes(make())
+    on_bytes, on, on_stats = bench.render(case.scene, "on", case.samples, case.options)
+    lamp_rays = on_stats["lamp_rays"]
+    if case.rays is not None and (lamp_rays > 0) != case.rays:
+        raise Trouble(f"{lamp_rays} lamp rays")
+    said = []
+    if case.like is not None:
+        if bench.render(case.like, "on", case.samples, case.options)[0] != on_bytes:
+            raise Trouble("another picture than without the change")
+        said.append("same bits")
+    if case.exact:
+        for c in range(3):
+            for value in on[c]:
+                if not abs(value - case.expected[c]) <= 1e-6 * case.expected[c]:
+                    raise Trouble(f"channel {c}: {value:.9g}, expected {case.expected[c]:.9g}")
+        said.append("exact")
+    elif case.expected is not None:
+        worst = [judge(on[c], case.expected[c], f"lamps on, channel {c}", case.rounding) for c in range(3)]
+        error = max(e for _, e in worst)
+        if error > PRECISE:
+            raise Trouble(f"lamps on: a standard error of {error:.3%}, more than {PRECISE:.1%}")
+        said.append(f"on: z {max(z for z, _ in worst):.1f}, error {error:.4%}")
+    if on_alone or not case.chance:
+        return "; ".join(said)
+    off_bytes, off, off_stats = bench.render(case.scene, "off", case.samples, case.options)
+    for member in ("rays", "cut_paths"):
+        if on_stats[member] != off_stats[member]:
+            raise Trouble(f"{member}: {on_stats[member]} with lamps on, {off_stats[member]} with lamps off")
+    if off_stats["lamp_rays"] != 0:
+        raise Trouble(f"{off_stats['lamp_rays']} lamp rays with lamps off")
+    if case.bits:
+        if on_bytes != off_bytes:
+            raise Trouble("lamps on and off differ in their bits")
+        said.append("on and off: same bits")
+    if case.expected is not None and not case.exact:
+        worst = [judge(off[c], case.expected[c], f"lamps off, channel {c}", case.rounding) for c in range(3)]
+        said.append(f"off: z {max(z for z, _ in worst):.1f}, error {max(e for _, e in worst):.3%}")
+    if case.expected is None and not case.bits:
+        worst, error = 0.0, 0.0
+        for c in range(3):
+            middle = statistics.fmean(off[c])
+            z, e = judge([middle + a - b for a, b in zip(on[c], off[c])], middle, f"on against off, channel {c}", case.rounding)
+            worst, error = max(worst, z), max(error, e)
+        if error > BRUTE_PRECISE:
+            raise Trouble(f"on against off: a standard error of {error:.3%}, more than {BRUTE_PRECISE:.1%}")
+        said.append(f"on - off: z {worst:.1f}, error {error:.3%}")
+    return "; ".join(said)
+
+
+def main():
+    program, _, *rest = sys.argv[1:]
+    deep, on_alone = "--deep" in rest, "--on" in rest
+    numbers = [int(word) for word in rest if not word.startswith("--")] or sorted(cases.NUMBERED)
+    failures = count = 0
+    with tempfile.TemporaryDirectory(prefix="ballpark-lamps-") as folder:
+        bench = Bench(program, pathlib.Path(folder))
+        for number in numbers:
+            for case in cases.of_number(number, folder):
+                if case.deep != deep or on_alone and case.expected is None and case.rays is None:
+                    continue
+                count += 1
+                try:
+                    print(f"{number:2} {case.name:58} {run_case(bench, case, on_alone)}", flush=True)
+                except Trouble as trouble:
+                    failures += 1
+                    print(f"{number:2} {case.name:58} FAILED: {trouble}", flush=True)
+        print(f"{count} cases in {bench.runs} renders, {failures} failed")
+    return 1 if failures else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())

@@ -1,0 +1,186 @@
+"""Whole pictures with light sampling and without: the same light, the same paths; and no bit depends on the kernel's form.
+
+    test_lamp_pairs.py PROGRAM SOURCE_DIR [--deep] [NAME...]
+
+Each scene (lamp_scenes.py) is drawn with the same seed with lamps on, off, and on in the other form of the kernel.
+Asked are: as many ray segments and cut paths on as off; the same sums in both forms; and that on minus off is 0 in the mean,
+for each channel of the whole picture and of 3 x 2 blocks of it. The error bar of that difference comes from the four
+replicates of each pixel, which are independent of each other: the spread of their differences, three degrees of
+freedom a pixel. A difference is wrong beyond Z_MAX standard errors, which some 700 such tests of a right program reach by
+chance with a probability of 1e-4. What a scene's picture shows of a bias with 90 % probability, 6.5 standard errors, is
+printed. A block in which chance found next to nothing is not judged. With --deep: every scene, 16 times the samples, and
+the generated ones against the reference tracer, which samples no lamps, by `ballpark check`: its test of the means of the
+whole picture. Its other tests ask for equal spreads and enough light everywhere, which chance does not have.
+Some scenes without lamps are drawn with lamps on and off: no bit may differ.
+"""
+import array
+import json
+import math
+import os
+import pathlib
+import subprocess
+import sys
+import tempfile
+
+import lamp_scenes
+
+Z_MAX = 5.2
+ROUNDING = 2e-5
+BLOCKS = (3, 2)
+QUICK = ["lamps", "lobes", "metals", "embers", "crowd-of-lamps", "room", "twins"]
+QUICK_DARK = ["v4-10-lambertian", "v1-red-sphere"]
+# Where chance varies in fewer pixels than these, it found too little to say how much it missed.
+LIVELY = 30
+# With so little found by chance, differences are no news: the largest bias that must be found in a picture, deep.
+FOUND_MAX = 0.10
+
+
+class Trouble(Exception):
+    pass
+
+
+class Sums:
+    """A .bpa file: its header, and what stands behind it."""
+
+    def __init__(self, path):
+        data = path.read_bytes()
+        line, self.body = data.split(b"\n", 1)
+        self.header = json.loads(line)
+        cells = self.header["width"] * self.header["height"] * self.header["replicates"]
+        numbers = array.array("q", self.body[:24 * cells])
+        if sys.byteorder == "big":
+            numbers.byteswap()
+        unit = 2.0 ** -self.header["scale_log2"]
+        if self.header["fine_sums"]:
+            fine = array.array("q", self.body[24 * cells:48 * cells])
+            if sys.byteorder == "big":
+                fine.byteswap()
+            self.values = [(a + b * 2.0 ** -38) * unit for a, b in zip(numbers, fine)]
+        else:
+            self.values = [a * unit for a in numbers]
+
+
+def render(program, folder, scene, lamps, samples, *options):
+    """(sums, statistics)"""
+    command = [program, "render", str(scene), "--quiet", "--effects", "all", "--lamps", lamps, "--seed", "11", "--spp",
+               str(samples), "--width", "24", "-o", "pair.bpa", "--stats", "pair-stats.json", *options]
+    done = subprocess.run(command, cwd=folder, capture_output=True, text=True)
+    if done.returncode != 0:
+        raise Trouble(f"exit code {done.returncode}: {done.stderr.strip()}")
+    stats = json.loads((folder / "pair-stats.json").read_text())
+    if stats["invalid_samples"] != 0:
+        raise Trouble(f"{stats['invalid_samples']} invalid samples with lamps {lamps}")
+    return Sums(folder / "pair.bpa"), stats
+
+
+def compare(on, off, samples):
+    """The worst z of on minus off, and the share of the picture's mean that would have been found."""
+    width, height, replicates = (on.header[name] for name in ("width", "height", "replicates"))
+    columns, rows = BLOCKS
+    cells = {}
+    for y in range(height):
+        for x in range(width):
+            at = (y * width + x) * replicates * 3
+            for c in range(3):
+                pairs = [(on.values[at + 3 * r + c], off.values[at + 3 * r + c]) for r in range(replicates)]
+                apart = [(a - b) * replicates / samples for a, b in pairs]
+                mean = sum(apart) / replicates
+                variance = sum((d - mean) ** 2 for d in apart) / (replicates - 1) / replicates
+                level = sum(b for _, b in pairs) / samples
+                lively = len({b for _, b in pairs}) > 1
+                for block in ("picture", (x * columns // width, y * rows // height)):
+                    cell = cells.setdefault((block, c), [0, 0.0, 0.0, 0.0, 0])
+                    cell[0] += 1
+                    cell[1] += mean
+                    cell[2] += variance
+                    cell[3] += level
+                    cell[4] += lively
+    worst, found, where = 0.0, 0.0, ""
+    for (block, c), (count, total, variance, level, lively) in cells.items():
+        if lively < LIVELY:
+            continue
+        rest = max(0.0, abs(total) - ROUNDING * level)
+        z = rest / math.sqrt(variance) if variance > 0 else (math.inf if rest > 0 else 0.0)
+        if z > worst:
+            worst = z
+            where = f"{block}, channel {c}: {total / count:+.3g} on {level / count:.3g}"
+        if block == "picture" and level > 0:
+            found = max(found, (Z_MAX + 1.28) * math.sqrt(variance) / level)
+    return worst, found, where
+
+
+def run_scene(program, folder, scene, samples, deep):
+    on, on_stats = render(program, folder, scene, "on", samples)
+    off, off_stats = render(program, folder, scene, "off", samples)
+    few = 32
+    if deep:
+        one = render(program, folder, scene, "on", few, "--kernel", "packet")
+        other = render(program, folder, scene, "on", few, "--kernel", "sample")
+    else:
+        one, other = (on, on_stats), render(program, folder, scene, "on", samples, "--kernel", "sample")
+    if not on_stats["lamp_rays"] > 0 or off_stats["lamp_rays"] != 0:
+        raise Trouble(f"{on_stats['lamp_rays']} lamp rays with lamps on, {off_stats['lamp_rays']} with lamps off")
+    for member in ("rays", "cut_paths"):
+        if on_stats[member] != off_stats[member]:
+            raise Trouble(f"{member}: {on_stats[member]} with lamps on, {off_stats[member]} with lamps off")
+        if one[1][member] != other[1][member]:
+            raise Trouble(f"{member} differ between the forms of the kernel")
+    if one[0].body != other[0].body or one[1]["lamp_rays"] != other[1]["lamp_rays"]:
+        raise Trouble("the forms of the kernel differ")
+    z, found, where = compare(on, off, samples)
+    if not z <= Z_MAX:
+        raise Trouble(f"on minus off: z = {z:.1f} ({where})")
+    if deep and found > FOUND_MAX:
+        raise Trouble(f"a bias below {found:.1%} would not be found")
+    said = ""
+    if deep and scene.parent == folder:
+        command = [program, "check", str(scene), "--lamps", "on", "--effects", "all", "--spp", "512",
+                   "--width", "24", "--seed", "12", "--quiet", "--json", "-"]
+        done = subprocess.run(command, cwd=folder, capture_output=True, text=True)
+        if done.returncode not in (0, 3):
+            raise Trouble(f"check: exit code {done.returncode}: {done.stderr.strip()}")
+        verdict = json.loads(done.stdout)["results"][0]
+        means = next(test["z"] for test in verdict["tests"] if test["family"] == "picture")
+        if not means <= Z_MAX:
+            raise Trouble(f"against the reference: z = {means:.1f}")
+        said = f"; reference: z {means:.1f}, {verdict['brightness']['ratio']:.4f} as bright"
+    share = on_stats["lamp_rays"] / on_stats["samples"]
+    return f"on - off: z {z:.1f}; finds {found:.2%}; noise {on_stats['nrmse']:.3f} for {off_stats['nrmse']:.3f}; {share:.2f} lamp rays a path{said}"
+
+
+def main():
+    program, source, *rest = sys.argv[1:]
+    program, deep = os.path.abspath(program), "--deep" in rest
+    lit, dark = lamp_scenes.in_files(source)
+    every = {path.stem: path.resolve() for path in lit}
+    names = [word for word in rest if word != "--deep"] or (QUICK if not deep else [*every, *lamp_scenes.GENERATED])
+    failures = count = 0
+    with tempfile.TemporaryDirectory(prefix="ballpark-lamps-") as folder:
+        folder = pathlib.Path(folder)
+        for name in names:
+            path = every.get(name)
+            if path is None:
+                path = folder / f"{name}.json"
+                path.write_text(json.dumps(lamp_scenes.generated(name)))
+            count += 1
+            try:
+                print(f"{name:20} {run_scene(program, folder, path, 4096 if deep else 256, deep)}", flush=True)
+            except Trouble as trouble:
+                failures += 1
+                print(f"{name:20} FAILED: {trouble}", flush=True)
+        if not [word for word in rest if word != "--deep"]:
+            for path in dark[::5] if deep else [path for path in dark if path.stem in QUICK_DARK]:
+                count += 1
+                try:
+                    on, off = (render(program, folder, path.resolve(), lamps, 8) for lamps in ("on", "off"))
+                    if on[0].body != off[0].body or on[1]["lamp_rays"] != 0:
+                        raise Trouble("lamps on and off differ, without a lamp")
+                except Trouble as trouble:
+                    failures += 1
+                    print(f"{path.stem:20} FAILED: {trouble}", flush=True)
+    print(f"{count} scenes, {failures} failed")
+    return 1 if failures else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())
