@@ -2,7 +2,8 @@
 
 A mutant is a name, where the bug comes from, patches (file, find, replace; `find` must stand there exactly once), and
 trials, tried in order until one kills it. check(...) is a run of `ballpark check`, killed by a verdict of
-disagreement; test(...) a test program that must fail. Every trial passes on the product as it is (the control).
+disagreement; test(...) a test program that must fail; lamp_cases(...) and lamp_pairs(...) are runs of the tests of light
+sampling that must find something wrong. Every trial passes on the product as it is (the control).
 
 Sources: "first", "third", "fourth": editions of Ray Tracing in One Weekend; "Rust": the edition in Rust; "classic":
 bugs that many path tracers had."""
@@ -11,6 +12,7 @@ from collections import namedtuple
 Mutant = namedtuple("Mutant", "name origin patches trials")
 Check = namedtuple("Check", "scene samples options layer")
 Test = namedtuple("Test", "program layer")
+Script = namedtuple("Script", "path arguments layer")
 
 
 def check(scene, samples=256, *options, layer="5 picture"):
@@ -20,6 +22,16 @@ def check(scene, samples=256, *options, layer="5 picture"):
 
 def test(program, layer):
     return Test(program, layer)
+
+
+def lamp_cases(*numbers):
+    """Cases of tests/lamps/cases.py, by their numbers, with lamps on."""
+    return Script("tests/lamps/test_lamp_cases.py", ("--on", *map(str, numbers)), "9 lamps")
+
+
+def lamp_pairs(*names):
+    """Pictures of tests/lamps/lamp_scenes.py, on against off."""
+    return Script("tests/lamps/test_lamp_pairs.py", names, "9 lamps")
 
 
 def patch(path, find, replace):
@@ -187,8 +199,8 @@ MUTANTS = [
                   "cut = cut | reached;\n"
                   "        path.radiance = choose3(reached, add3(path.radiance, path.throughput), path.radiance);")], [check("depth-3")]),
     Mutant("throughput forgotten", "the last albedo only",
-           [patch(KERNEL, "path->throughput = multiply3(path->throughput, bsdf_sample.weight)",
-                  "path->throughput = bsdf_sample.weight")], [check("lobe-lambertian")]),
+           [patch(KERNEL, "const Vec3 throughput = multiply3(path->throughput, bsdf_sample->weight);",
+                  "const Vec3 throughput = bsdf_sample->weight;")], [check("lobe-lambertian")]),
     Mutant("emission without throughput", "classic",
            [patch(KERNEL, "add3(path->radiance, multiply3(path->throughput, emitted))", "add3(path->radiance, emitted)")],
            [check("furnace")]),
@@ -197,9 +209,9 @@ MUTANTS = [
            [patch(KERNEL, "store_lanes(path.radiance.x, red);",
                   "store_lanes(path.radiance.x < splat(1) ? path.radiance.x : splat(1), red);")], [check("emission"), check("lens-angle")]),
     Mutant("roulette without 1/p", "classic: 5 % of paths end unpaid",
-           [patch(KERNEL, "path->alive = path->alive & bsdf_sample.scattered;",
-                  "path->alive = path->alive & bsdf_sample.scattered & (uniform(path->key, path->depth * "
-                  "DIMENSIONS_PER_BOUNCE + 6u) >= splat(R(0.05)));")], [check("lobe-lambertian")]),
+           [patch(KERNEL, "path->alive = path->alive & (bsdf_sample->scattered | vbool_not(met));",
+                  "path->alive = path->alive & ((bsdf_sample->scattered & (uniform(path->key, path->depth * "
+                  "DIMENSIONS_PER_BOUNCE + 6u) >= splat(R(0.05)))) | vbool_not(met));")], [check("lobe-lambertian")]),
     Mutant("NaN counted as a sample", "a clamp that hides it",
            [patch(KERNEL, "return bits == (BITS4)BITS_SIGN ?", "return (bits == (BITS4)BITS_SIGN) | (scaled != scaled) ?")],
            [test("test_accumulate", "1 exact, by injection")]),
@@ -216,10 +228,10 @@ MUTANTS = [
     Mutant("a thousandth of green lost in the sums", "seen by comparing the picture with its samples only",
            [patch(KERNEL, "total[1] += sum.y;", "total[1] += sum.y - sum.y / 1000;")], [check("furnace")]),
     Mutant("the bound at any depth", "a scale for a million bounces",
-           [patch("host/film/film_scene.c", "fmin(1 / (1 - fmin(passed_on, 1)), max_depth)",
-                  "fmin(1 / (1 - fmin(passed_on, 1)), BP_DEPTH_MAX)")], [test("test_film_scene", "1 exact")]),
+           [patch("host/film/film_scene.c", "brightest * geometric(passed_on, max_depth)",
+                  "brightest * geometric(passed_on, BP_DEPTH_MAX)")], [test("test_film_scene", "1 exact")]),
     Mutant("the bound for one bounce", "bright samples taken for invalid ones",
-           [patch("host/film/film_scene.c", "fmin(1 / (1 - fmin(passed_on, 1)), max_depth)", "1")],
+           [patch("host/film/film_scene.c", "brightest * geometric(passed_on, max_depth)", "brightest")],
            [test("test_film_scene", "1 exact")]),
     Mutant("a checksum of the header alone", ".bpa files with flipped bits",
            [patch("host/film/film_file.c",
@@ -282,6 +294,106 @@ MUTANTS = [
     Mutant("extrapolation not told", "classic: a prediction beyond the data",
            [patch("host/study/fit.c", "samples > (double)series->points[series->count - 1].samples", "false")],
            [test("test_cost_choices", "1 exact")]),
+    # ---- light sampling --------------------------------------------------------------------------------------
+    Mutant("lamps hit count whole", "no weight at hits: sampled and hit, twice the light",
+           [patch(KERNEL, "return choose(shared, square / (splat(1) + square), splat(1));", "return splat(1) + splat(0) * square;")], [lamp_cases(1)]),
+    Mutant("lamps are never sampled, but weighted", "half of the light lost",
+           [patch(KERNEL, "active = active & (ratio > splat(0));", "active = active & (ratio < splat(0));")], [lamp_cases(1)]),
+    Mutant("glass keeps the lobe before it", "a weight at hits after glass",
+           [patch(KERNEL, "choose_lobe(met, lobe, &path->lobe)",
+                  "choose_lobe(met & vbool_of_uint(lobe->kind != splat_uint(LOBE_NONE)), lobe, &path->lobe)")], [lamp_cases(16)]),
+    Mutant("lamps seen by the camera are weighted", "a weight without a vertex",
+           [patch(KERNEL, "path->lobe.kind = choose_uint(fresh, splat_uint(LOBE_NONE), path->lobe.kind);",
+                  "path->lobe.axis = choose3(fresh, direction, path->lobe.axis);\n"
+                  "    path->lobe.kind = choose_uint(fresh, splat_uint(LOBE_HEMISPHERE), path->lobe.kind);")],
+           [lamp_cases(4)]),
+    Mutant("the colour of a normal is weighted as a lamp", "what is never sampled must count whole",
+           [patch(KERNEL, "choose3(shows_normal, add3(emitted, colour), emitted);",
+                  "choose3(shows_normal, add3(emitted, colour), emitted);\n#if SAMPLES_LAMPS\n"
+                  "    emitted = choose3(shows_normal, add3(emitted, scale3(lamp_hit_weight(scene, path, hit.slot, &sphere, "
+                  "met & hit.enters) - splat(1), colour)), emitted);\n#endif")], [lamp_cases(19)]),
+    Mutant("the choice of a lamp left out of the ratio", "rho without P",
+           [patch(KERNEL, "* solid_angle / probability", "* solid_angle")], [lamp_cases(32)]),
+    Mutant("the ratio of densities without a bound", "this program: infinite over infinite",
+           [patch(KERNEL, "#define RATIO_MAX R(1e15)", "#define RATIO_MAX R(1e30)")], [lamp_cases(27)]),
+    Mutant("balance heuristic at hits alone", "weights that do not add up to 1",
+           [patch(KERNEL, "choose(shared, square / (splat(1) + square), splat(1))",
+                  "choose(shared, ratio / (splat(1) + ratio) + splat(0) * square, splat(1))")], [lamp_cases(1)]),
+    Mutant("the cosine's density for its cube", "the density of another lobe",
+           [patch(KERNEL, "R(2.0) * c * c * density, density)", "density, density)")], [lamp_cases(3)]),
+    Mutant("the cosine's density for a hemisphere", "the density of another lobe",
+           [patch(KERNEL, "uniform_density, density)", "density, density)")], [lamp_cases(3)]),
+    Mutant("the density of fuzz on a sphere for a ball", "the density of another lobe",
+           [patch(KERNEL, "density = choose(ball, in_ball, density);", "density = density + splat(0) * in_ball;")], [lamp_cases(23)]),
+    Mutant("nothing at the rim of a fuzz lobe", "rounding puts a direction beyond its own lobe",
+           [patch(KERNEL, "drawn ? f * f * R(0x1p-24) : splat(0)", "splat(0)")], [lamp_cases(24)]),
+    Mutant("fuzz lights metal from below its surface", "this program: what metal absorbs lies below, and lamps shone there",
+           [patch(KERNEL, " & (dot3(direction, lobe->normal) > splat(0));", ";")], [lamp_cases(24)]),
+    Mutant("sampled only where the path goes on", "what metal absorbs hides lamps",
+           [patch(KERNEL, "path->wants_lamps | (met & follows &", "path->wants_lamps | (met & path->alive & follows &")],
+           [lamp_cases(24)]),
+    Mutant("the cone's angle by 1 - cos", "nothing is left of a small lamp in single precision",
+           [patch(KERNEL, "cone.cap = sine * sine / (splat(1) + cosine);", "cone.cap = splat(1) - cosine;")], [lamp_cases(5)]),
+    Mutant("half of the cone", "pi for 2 pi",
+           [patch(KERNEL, "(splat(2) / splat(PI_INVERSE)) * cap", "(splat(1) / splat(PI_INVERSE)) * cap")], [lamp_cases(1)]),
+    Mutant("a lamp ray beyond the last segment", "sampling at depth = max_depth",
+           [patch(KERNEL, "path->depth < splat_uint(scene->max_depth)", "path->depth <= splat_uint(scene->max_depth)")],
+           [lamp_cases(4)]),
+    Mutant("no lamp ray for the last segment", "sampling ends one vertex early",
+           [patch(KERNEL, "path->depth < splat_uint(scene->max_depth)", "path->depth + 1u < splat_uint(scene->max_depth)")],
+           [lamp_cases(4)]),
+    Mutant("lamps cast no shadows", "every lamp is visible",
+           [patch(KERNEL, "const vbool visible = active & vbool_of_uint(path->seen_slot == choice.slot);",
+                  "const vbool visible = active;")], [lamp_cases(22)]),
+    Mutant("what stands close before a lamp hides nothing", "the last stretch of a lamp ray is not asked",
+           [patch(KERNEL, "return first.slot;", "return choose_uint(close, choice->slot, hit.slot);")], [lamp_cases(14)]),
+    Mutant("a lamp hides itself", "any hit is a shadow",
+           [patch(KERNEL, "return first.slot;", "return hit.slot;")],
+           [lamp_cases(13, 22)]),
+    Mutant("a lamp is seen only where its ray meets it", "float directions miss tiny lamps",
+           [patch(KERNEL, "if (!any_lane(close)) return hit.slot;",
+                  "vrefined own;\n    vbool own_enters;\n    if (!any_lane(close))\n        return choose_uint("
+                  "sphere_intersect(ray, sphere, &own, &own_enters), hit.slot, splat_uint(NO_SLOT));")], [lamp_cases(6)]),
+    Mutant("a lamp ray forgets the sphere that it crosses", "a ray inwards leaves its own sphere unseen",
+           [patch(KERNEL, "ray.direction = sample_cone(&cone, choice.rest, v);",
+                  "ray.direction = sample_cone(&cone, choice.rest, v);\n    ray.inward = vbool_none;")], [lamp_cases(31)]),
+    Mutant("ties before a lamp go to the lamp", "the first of two coincident spheres must win",
+           [patch(KERNEL, "keep_closer(geometry, close, t, choice->slot, enters, &first);",
+                  "keep_closer(geometry, close, t * splat_refined(1 - 1e-12), choice->slot, enters, &first);")], [lamp_cases(14)]),
+    Mutant("the number that chose a lamp is used again as it is", "no remapping to [0, 1)",
+           [patch(KERNEL, "choose(active, at_most(at_least(rest, splat(0)), splat(R(1.0) - ROUNDOFF)), choice->rest)",
+                  "choose(active, choice->rest, rest)")], [lamp_cases(32)]),
+    Mutant("a wrong trail to a lamp", "the probability of another lamp",
+           [patch(KERNEL, "trail >>= LAMP_CHILD_BITS;", "trail >>= 2u;")], [lamp_cases(32)]),
+    Mutant("a trail of two bits a level", "the host writes what the kernel does not read",
+           [patch("host/packed/lamp_tree.c", "trail | p << (LAMP_CHILD_BITS * level)", "trail | p << (2 * level)")],
+           [lamp_cases(32)]),
+    Mutant("power for the probability at hits", "choosing and asking disagree",
+           [patch(KERNEL, "choose(known & (importance > splat(0)), importance / sum, splat(0))",
+                  "choose(known & (importance > splat(0)), child.power / sum, splat(0))")],
+           [lamp_cases(32)]),
+    Mutant("lamps around the point are sampled", "a cone that does not exist",
+           [patch(KERNEL, "cone.outside = share > splat(LAMP_POWER_MIN);", "cone.outside = vbool_all;"),
+            patch(KERNEL, "sqrt(choose(cone.outside, share, splat(1)));", "sqrt(fabs(share));"),
+            patch(KERNEL, "return choose(lamp & around, splat(0), child->power * cosine * spread_inverse);",
+                  "return child->power * cosine * spread_inverse;")],
+           [lamp_cases(9, 11)]),
+    Mutant("a lamp's numbers are those that made the path", "dimensions of the bounce before",
+           [patch(KERNEL, "const vuint bounce = first_dimension(path->depth - 1u);",
+                  "const vuint bounce = first_dimension(path->depth - 2u) - BOUNCE_LAMP;")], [lamp_cases(4)]),
+    Mutant("lamps lit through without the way there", "light from a lamp without the throughput",
+           [patch(KERNEL, "multiply3(path->throughput, scale3(weight, radiance_of_slot(scene, choice.slot)))",
+                  "scale3(weight, radiance_of_slot(scene, choice.slot))")], [lamp_cases(1)]),
+    Mutant("the radiance of the first channel for all", "an index forgotten",
+           [patch(KERNEL, "gather_real(scene->materials, numbers + (MATERIAL_EMIT + 1u))", "gather_real(scene->materials, numbers + MATERIAL_EMIT)")],
+           [lamp_cases(1)]),
+    Mutant("directions crowd at the lamp's middle", "sin^2 = m for m (2 - m)",
+           [patch(KERNEL, "sine = sqrt(m * (splat(2) - m));", "sine = sqrt(m);")], [lamp_cases(1)]),
+    Mutant("the first lamp of a node is passed over", "a lamp that has a probability and is never chosen",
+           [patch(KERNEL, "for (uint k = 0; k < count; ++k) {", "for (uint k = 1; k < count; ++k) {")], [lamp_cases(1, 32)]),
+    Mutant("the sums do not expect lamp rays", "a path may be brighter than by chance: the scale's bit forgotten",
+           [patch("host/film/film_scene.c", "if (lamps == BP_LAMPS_OFF || max_depth < 2) return by_chance;",
+                  "if (lamps != BP_LAMPS_OFF || max_depth < 2) return by_chance;")], [test("test_lamp_bound", "1 exact")]),
     # ---- files ---------------------------------------------------------------------------------------------
     Mutant("set-ID bits handed on", "classic: the mode of a replaced file, all of it",
            [patch("host/base/output_file.c", "replaced->st_mode & 0777;", "replaced->st_mode & 07777;")],

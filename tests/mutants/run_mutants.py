@@ -20,7 +20,7 @@ import sys
 import tempfile
 import time
 
-from mutants import MUTANTS, Check
+from mutants import MUTANTS, Check, Script
 
 SURVIVED, KILLED, ERROR = "SURVIVED", "killed", "ERROR"
 
@@ -137,15 +137,29 @@ class Bench:
                   if line.startswith("[  FAILED  ]") and "test(s)" not in line]
         return (KILLED, f"{trial.program}: {failed[0] if failed else 'failed'}") if done.returncode else (SURVIVED, "passed")
 
+    def run_script(self, trial, environment, program):
+        """A line with FAILED says what is wrong. That the program ends with an exit code of its own is no kill."""
+        environment = {**environment, "PYTHONPATH": os.path.join(self.source, "tests/support")}
+        command = [sys.executable, "-B", os.path.join(self.source, trial.path), program, self.source, *trial.arguments]
+        done = subprocess.run(command, env=environment, capture_output=True, text=True, timeout=300)
+        if done.returncode == 0:
+            return SURVIVED, "passed"
+        failed = [line for line in done.stdout.splitlines() if "FAILED: " in line and "exit code" not in line]
+        if done.returncode != 1 or not failed:
+            return ERROR, (done.stdout + done.stderr).strip()[-300:]
+        return KILLED, " ".join(failed[0].split())[:160]
+
     def run(self, trial, environment, objects):
-        is_check = isinstance(trial, Check)
-        target = "ballpark" if is_check else f"tests/{trial.program}"
+        way = {Check: self.run_check, Script: self.run_script}.get(type(trial), self.run_test)
+        target = f"tests/{trial.program}" if way == self.run_test else "ballpark"
         program = self.relink(target, objects) if objects else os.path.join(self.build, target)
-        return (self.run_check if is_check else self.run_test)(trial, environment, program)
+        return way(trial, environment, program)
 
 
 def name_of(trial):
-    return f"{trial.scene}, {trial.samples} samples" if isinstance(trial, Check) else trial.program
+    if isinstance(trial, Check):
+        return f"{trial.scene}, {trial.samples} samples"
+    return f"{os.path.basename(trial.path)} {' '.join(trial.arguments)}" if isinstance(trial, Script) else trial.program
 
 
 def try_product(bench, trial):
