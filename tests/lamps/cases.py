@@ -57,15 +57,13 @@ def towards(omega, azimuth=0.0, axis=POINT_NORMAL, tangent=TANGENT):
 class Case:
     """`expected`: radiance of each channel, None where only chance knows it. `exact`: to the bit, in every pixel.
     `chance`: without sampling the same comes out, and is held to the same value. `bits`: sampling changes no bit.
-    `rays`: whether any lamp ray is to be expected (None: no matter). `like`: another document that must give the
-    same bits. `rounding`: relative, what single precision and the sums may cost."""
+    `like`: another document that must give the same bits. `rounding`: relative, what single precision and the sums may cost."""
     name: str
     scene: dict
     expected: tuple = None
     exact: bool = False
     chance: bool = True
     bits: bool = False
-    rays: bool = None
     like: dict = None
     samples: int = 1024
     rounding: float = 2e-5
@@ -133,7 +131,7 @@ def case_01(_):
     for omega, distance, radius in ((0.0, 3, 1), (0.3, 2, 1.9), (0.7, 3, 1), (1.0, 2, 0.2), (0.5, 50, 1), (0.5, 50, 20)):
         share = forms.irradiance(math.asin(radius / distance), omega)
         yield Case(f"lamp at {omega}, radius {radius} at {distance}", simple(omega, distance, radius), lit(share),
-                   chance=found_by_chance(share), rays=True, deep=omega not in (0.3, 0.7))
+                   chance=found_by_chance(share), deep=omega not in (0.3, 0.7))
 
 
 def case_02(_):
@@ -141,7 +139,7 @@ def case_02(_):
     for omega, distance, radius in ((1.2, 2, 1.2), (PI / 2, 3, 1), (1.9, 2, 1.5), (1.65, 10, 1), (1.55, 3, 0.3)):
         share = forms.irradiance(math.asin(radius / distance), omega)
         yield Case(f"lamp at {omega:.2f}, radius {radius} at {distance}", simple(omega, distance, radius), lit(share),
-                   chance=found_by_chance(share), rays=True, deep=omega not in (1.2, 1.9))
+                   chance=found_by_chance(share), deep=omega not in (1.2, 1.9))
 
 
 def case_03(_):
@@ -151,7 +149,7 @@ def case_03(_):
         for name, share in (("cosine_cubed", forms.cosine_cubed(sigma, omega)), ("hemisphere", forms.hemisphere(sigma))):
             yield Case(f"{name}, lamp at {omega}, half angle {sigma:.2f}",
                        simple(omega, distance, radius, lambertian(scatter=name)), lit(share),
-                       chance=found_by_chance(share), rays=True, deep=omega != 0.9)
+                       chance=found_by_chance(share), deep=omega != 0.9)
 
 
 def case_04(_):
@@ -159,11 +157,11 @@ def case_04(_):
     share = forms.irradiance(math.asin(1 / 3), 0.7)
     for depth in (0, 1, 2):
         yield Case(f"receiver, depth {depth}", simple(0.7, 3, 1, depth=depth), lit(share) if depth == 2 else BLACK,
-                   exact=depth < 2, rays=depth == 2, samples=1024 if depth == 2 else 16)
+                   exact=depth < 2, samples=1024 if depth == 2 else 16)
         lamp_center = lamp_at(0.7, 3, 1)["center"]
         scene = simple(0.7, 3, 1, depth=depth)
         scene["camera"]["lookat"] = lamp_center
-        yield Case(f"lamp itself, depth {depth}", scene, LIGHT if depth > 0 else BLACK, exact=True, rays=False,
+        yield Case(f"lamp itself, depth {depth}", scene, LIGHT if depth > 0 else BLACK, exact=True,
                    samples=16, deep=depth != 1)
     # A shell of radius 2 around a lamp of radius 0.5: each point sees the lamp with a share of 1/16 and else the shell.
     shell = document({"shell": lambertian(), "lamp": lamp()}, [sphere(BLACK, 2, "shell"), sphere(BLACK, 0.5, "lamp")],
@@ -173,7 +171,7 @@ def case_04(_):
         for _ in range(depth - 1):
             radiance = tuple(a * (e / 16 + b * 15 / 16) for a, e, b in zip(ALBEDO, LIGHT, radiance))
         scene = {**shell, "camera": {**shell["camera"], "max_depth": depth}}
-        yield Case(f"shell around a lamp, depth {depth}", scene, radiance, rays=True,
+        yield Case(f"shell around a lamp, depth {depth}", scene, radiance,
                    samples=4096 if depth == 3 else 1024, deep=depth in (2, 4))
 
 
@@ -183,7 +181,7 @@ def case_05(_):
         sigma = math.asin(shrink / 3)
         light = scale(shrink ** -2, LIGHT)
         yield Case(f"radius x {shrink}", simple(0.7, 3, shrink, light=light), lit(forms.irradiance(sigma, 0.7), light),
-                   chance=False, rays=True, deep=shrink != 1e-3)
+                   chance=False, deep=shrink != 1e-3)
 
 
 def case_06(_):
@@ -191,7 +189,7 @@ def case_06(_):
     for s in (1e-5, 1e-6, 1e-7, 1e-8, 1e-9):
         light = (1e12, 1e12, 1e12)
         yield Case(f"half angle {s}", simple(0.7, 1e3, 1e3 * s, light=light),
-                   lit(s * s * math.cos(0.7), light), chance=False, rays=True, rounding=1e-3 if s < 1e-8 else 2e-5,
+                   lit(s * s * math.cos(0.7), light), chance=False, rounding=1e-3 if s < 1e-8 else 2e-5,
                    deep=s not in (1e-5, 1e-7, 1e-9))
 
 
@@ -236,17 +234,16 @@ def case_08(_):
     """A furnace in balance: every surface gives and passes on the same radiance."""
     view = (0.6, 0.5, 0.4)
     for receiver in ("shell", "matte", "cubed", "even", "glass", "mirror", "sphere fuzz", "ball fuzz"):
-        yield Case(f"furnace, {receiver}", furnace(view, receiver), furnace_radiance(),
-                   rays=True, samples=256, deep=receiver not in ("shell", "cubed", "glass", "ball fuzz"))
+        yield Case(f"furnace, {receiver}", furnace(view, receiver), furnace_radiance(), samples=256, deep=receiver not in ("shell", "cubed", "glass", "ball fuzz"))
 
 
 def case_09(_):
     """An emissive shell seen from inside is never sampled."""
     materials = {"receiver": lambertian(), "shell": lamp()}
     inside = [sphere((0.3, 0.1, 0), 5, "shell")]
-    yield Case("shell around everything", on_unit_sphere(materials, inside), lit(1), bits=True, rays=False, samples=64)
+    yield Case("shell around everything", on_unit_sphere(materials, inside), lit(1), bits=True, samples=64)
     outside = inside + [sphere((20, 0, 0), 1, "receiver")]
-    yield Case("shell around the receiver", on_unit_sphere(materials, outside), lit(1), bits=True, rays=False, samples=64)
+    yield Case("shell around the receiver", on_unit_sphere(materials, outside), lit(1), bits=True, samples=64)
 
 
 def case_10(_):
@@ -262,7 +259,7 @@ def case_11(_):
     others = [sphere((0.3, 0.1, 0), 8, "shell"), lamp_at(0.7, 3, 1), sphere((20, 0, 0), 1, "receiver")]
     share = forms.irradiance(math.asin(1 / 3), 0.7)
     light = tuple(inner * share + outer * (1 - share) for inner, outer in zip((9.0, 3.0, 1.0), (0.5, 1.0, 2.0)))
-    yield Case("inside one, outside another", on_unit_sphere(materials, others), lit(1, light), rays=True)
+    yield Case("inside one, outside another", on_unit_sphere(materials, others), lit(1, light))
 
 
 def case_12(_):
@@ -280,17 +277,16 @@ def case_12(_):
         scene = document({"floor": lambertian(), "lamp": lamp()},
                          [sphere((0, -floor, 0), floor, "floor"), sphere((0, 1, 0), 1, "lamp")], eye, point)
         yield Case(f"floor of {floor}, {offset} from the contact", scene,
-                   lit(forms.irradiance(math.asin(1 / distance), omega)), rays=True, deep=floor == 1)
+                   lit(forms.irradiance(math.asin(1 / distance), omega)), deep=floor == 1)
 
 
 def case_13(_):
     """Overlapping lamps."""
     materials = {"receiver": lambertian(), "lamp": lamp(), "other": lamp((1.0, 6.0, 2.0))}
     others = [lamp_at(0.5, 3, 1), lamp_at(0.7, 3.2, 1, 0.2, "other"), lamp_at(0.6, 2.5, 0.4, 0.1, "lamp")]
-    yield Case("three overlapping lamps", on_unit_sphere(materials, others), rays=True, samples=4096)
+    yield Case("three overlapping lamps", on_unit_sphere(materials, others), samples=4096)
     inner = [lamp_at(0.5, 3, 1), lamp_at(0.5, 3, 0.5, material="other")]
-    yield Case("a lamp inside a lamp", on_unit_sphere(materials, inner), lit(forms.irradiance(math.asin(1 / 3), 0.5)),
-               rays=True)
+    yield Case("a lamp inside a lamp", on_unit_sphere(materials, inner), lit(forms.irradiance(math.asin(1 / 3), 0.5)))
 
 
 def case_14(_):
@@ -300,15 +296,15 @@ def case_14(_):
     ordinary, twin, other = (lamp_at(0.5, 3, 1, material=name) for name in ("lamp", "black", "other"))
     yield Case("a matte twin before the lamp", on_unit_sphere(materials, [twin, ordinary]), BLACK, exact=True, samples=64)
     yield Case("a matte twin after the lamp", on_unit_sphere(materials, [ordinary, twin]), lit(share), deep=True)
-    yield Case("two coincident lamps", on_unit_sphere(materials, [ordinary, other]), lit(share), rays=True)
-    yield Case("the other one first", on_unit_sphere(materials, [other, ordinary]), lit(share, (1.0, 6.0, 2.0)), rays=True, deep=True)
+    yield Case("two coincident lamps", on_unit_sphere(materials, [ordinary, other]), lit(share))
+    yield Case("the other one first", on_unit_sphere(materials, [other, ordinary]), lit(share, (1.0, 6.0, 2.0)), deep=True)
 
 
 def case_15(_):
     """A lamp in solid glass: lamp rays end at the glass, paths go through."""
     materials = {"receiver": lambertian(), "lamp": lamp(), "glass": glass()}
     others = [lamp_at(0.5, 3, 1.2), lamp_at(0.5, 3, 1.5, material="glass")]
-    yield Case("lamp in glass", on_unit_sphere(materials, others), bits=True, rays=True, samples=256)
+    yield Case("lamp in glass", on_unit_sphere(materials, others), bits=True, samples=256)
 
 
 def case_16(_):
@@ -316,12 +312,12 @@ def case_16(_):
     materials = {"receiver": lambertian(), "lamp": lamp(), "glass": glass(1)}
     share = forms.irradiance(math.asin(1 / 3), 0.5)
     around = [lamp_at(0.5, 3, 1), lamp_at(0.5, 3, 1.4, material="glass")]
-    yield Case("around the lamp", on_unit_sphere(materials, around), lit(share), bits=True, rays=True)
+    yield Case("around the lamp", on_unit_sphere(materials, around), lit(share), bits=True)
     before = [lamp_at(0.5, 3, 1), lamp_at(0.45, 1.2, 0.25, material="glass")]
-    yield Case("before a part of the lamp", on_unit_sphere(materials, before), lit(share), rays=True, samples=4096)
+    yield Case("before a part of the lamp", on_unit_sphere(materials, before), lit(share), samples=4096)
     eye = add(POINT_NORMAL, scale(0.05, towards(0.5)))
     seen = document(materials, [sphere(BLACK, 1, "receiver"), *around], eye, lamp_at(0.5, 3, 1)["center"])
-    yield Case("between camera and lamp", seen, LIGHT, exact=True, rays=False, samples=16)
+    yield Case("between camera and lamp", seen, LIGHT, exact=True, samples=16)
 
 
 def case_17(_):
@@ -329,15 +325,15 @@ def case_17(_):
     sigma = math.asin(1 / 3)
     materials = {"receiver": lambertian(), "lamp": glass(1, emit=list(LIGHT))}
     yield Case("index 1: two crossings", on_unit_sphere(materials, [lamp_at(0.5, 3, 1)]),
-               lit(2 * forms.irradiance(sigma, 0.5)), rays=True)
+               lit(2 * forms.irradiance(sigma, 0.5)))
     materials = {"receiver": lambertian(), "lamp": glass(1.5, emit=list(LIGHT))}
-    yield Case("index 1.5", on_unit_sphere(materials, [lamp_at(0.5, 3, 1)]), rays=True, samples=4096, deep=True)
+    yield Case("index 1.5", on_unit_sphere(materials, [lamp_at(0.5, 3, 1)]), samples=4096, deep=True)
 
 
 def case_18(_):
     """Two matte spheres that light each other."""
     materials = {"receiver": lambertian(emit=[0.5, 0.2, 0.1]), "lamp": lambertian((0.3, 0.6, 0.9), emit=[1.0, 2.0, 0.5])}
-    yield Case("emissive matte pair", on_unit_sphere(materials, [lamp_at(0.4, 1.3, 1.2)]), rays=True, samples=4096)
+    yield Case("emissive matte pair", on_unit_sphere(materials, [lamp_at(0.4, 1.3, 1.2)]), samples=4096)
 
 
 def case_19(_):
@@ -359,7 +355,7 @@ def case_19(_):
         return forms.over_cone(value, math.asin(radius / distance), 60, 60)
 
     yield Case("light on normals", on_unit_sphere(materials, [lamp_at(omega, distance, radius)]),
-               tuple(a * seen(c) for c, a in enumerate(ALBEDO)), rays=True, samples=4096)
+               tuple(a * seen(c) for c, a in enumerate(ALBEDO)), samples=4096)
 
 
 def case_20(_):
@@ -368,22 +364,22 @@ def case_20(_):
     turned = simple(0.7, 3, 1)
     for each in turned["spheres"]:
         each["radius"] = -each["radius"]
-    yield Case("radii below 0", turned, lit(forms.irradiance(math.asin(1 / 3), 0.7)), like=scene, rays=True)
+    yield Case("radii below 0", turned, lit(forms.irradiance(math.asin(1 / 3), 0.7)), like=scene)
 
 
 def case_21(_):
     """A lamp below the horizon."""
-    yield Case("below the horizon", simple(2.2, 4, 1), BLACK, exact=True, rays=False, samples=64)
+    yield Case("below the horizon", simple(2.2, 4, 1), BLACK, exact=True, samples=64)
 
 
 def case_22(_):
     """A lamp wholly behind another."""
     materials = {"receiver": lambertian(), "lamp": lamp(), "behind": lamp((900.0, 900.0, 900.0))}
     others = [lamp_at(0.5, 3, 1), lamp_at(0.5, 8, 1, material="behind")]
-    yield Case("behind another", on_unit_sphere(materials, others), lit(forms.irradiance(math.asin(1 / 3), 0.5)), rays=True)
+    yield Case("behind another", on_unit_sphere(materials, others), lit(forms.irradiance(math.asin(1 / 3), 0.5)))
     materials["matte"] = lambertian(BLACK)
     others = [lamp_at(0.5, 3, 1, material="matte"), lamp_at(0.5, 8, 1, material="behind")]
-    yield Case("behind a black ball", on_unit_sphere(materials, others), BLACK, exact=True, rays=True, samples=64)
+    yield Case("behind a black ball", on_unit_sphere(materials, others), BLACK, exact=True, samples=64)
 
 
 def fuzzy(fuzz, ball, up, around, distance, radius, azimuth=0.0):
@@ -405,13 +401,13 @@ def case_23(_):
         for ball in (False, True):
             share = forms.cosine_cubed(sigma, around) if ball else forms.irradiance(sigma, around)
             yield Case(f"fuzz 1 {'in a ball' if ball else 'on a sphere'}, R at {up}, lamp {around} from R",
-                       fuzzy(1, ball, up, around, 3, 1, azimuth), lit(share), rays=True, deep=up != 0.7)
+                       fuzzy(1, ball, up, around, 3, 1, azimuth), lit(share), deep=up != 0.7)
     for fuzz, around, radius in ((0.5, 0.3, 0.6), (0.1, 0.05, 0.2), (0.1, 0.15, 0.3), (1 / 64, 0.01, 0.03), (0.3, 0.2, 0.02)):
         for ball in (False, True):
             share = forms.fuzz_share(fuzz, ball, math.asin(radius / 3), around)
             yield Case(f"fuzz {fuzz:.3g} {'in a ball' if ball else 'on a sphere'}, lamp of {radius} at {around} from R",
                        fuzzy(fuzz, ball, 0.8, around, 3, radius, PI), lit(share),
-                       chance=found_by_chance(share), rays=True, deep=fuzz not in (0.5, 0.3))
+                       chance=found_by_chance(share), deep=fuzz not in (0.5, 0.3))
 
 
 def case_24(_):
@@ -419,7 +415,7 @@ def case_24(_):
     for fuzz, up, radius in ((0.3, 0.2, 2.0), (0.9, 0.5, 2.9), (1 / 64, 0.9, 0.6), (0.1, 0.05, 1.0)):
         for ball in (False, True):
             yield Case(f"fuzz {fuzz:.3g} {'in a ball' if ball else 'on a sphere'}, R at {up}",
-                       fuzzy(fuzz, ball, up, 0, 3, radius), lit(1 - forms.fuzz_absorbed(fuzz, ball, up)), rays=True,
+                       fuzzy(fuzz, ball, up, 0, 3, radius), lit(1 - forms.fuzz_absorbed(fuzz, ball, up)),
                        deep=fuzz not in (0.3, 1 / 64))
 
 
@@ -427,17 +423,17 @@ def case_25(_):
     """Mirrors, and fuzz below 1/64, are not sampled."""
     for fuzz in (0, 0.015):
         scene = fuzzy(fuzz, False, 0.8, 0.01, 3, 0.05)
-        yield Case(f"fuzz {fuzz} alone", scene, bits=True, rays=False, samples=64, deep=fuzz == 0)
+        yield Case(f"fuzz {fuzz} alone", scene, bits=True, samples=64, deep=fuzz == 0)
         beside = {**scene, "materials": {**scene["materials"], "matte": lambertian()},
                   "spheres": scene["spheres"] + [sphere(scale(-4, POINT_NORMAL), 1, "matte")]}
-        yield Case(f"fuzz {fuzz} beside something matte", beside, bits=True, rays=False, samples=64)
+        yield Case(f"fuzz {fuzz} beside something matte", beside, bits=True, samples=64)
 
 
 def case_26(_):
     """A mirror between floor and lamp, and one beside both."""
     materials = {"receiver": lambertian(), "lamp": lamp(), "mirror": metal(0, (0.9, 0.9, 0.9))}
     others = [lamp_at(0.2, 4, 1), lamp_at(0.1, 1.5, 0.3, material="mirror"), lamp_at(0.9, 1.5, 1, PI / 2, "mirror")]
-    yield Case("mirrors", on_unit_sphere(materials, others), rays=True, samples=4096)
+    yield Case("mirrors", on_unit_sphere(materials, others), samples=4096)
 
 
 def case_27(_):
@@ -445,8 +441,7 @@ def case_27(_):
     materials = {"receiver": lambertian(), "lamp": lamp((1e12, 0, 0)), "other": lamp((0, 1e-6, 0))}
     others = [lamp_at(0.5, 3, 1), lamp_at(0.6, 3, 1.2, PI / 2, "other")]
     first, second = forms.irradiance(math.asin(1 / 3), 0.5), forms.irradiance(math.asin(0.4), 0.6)
-    yield Case("1e12 and 1e-6", on_unit_sphere(materials, others), (ALBEDO[0] * 1e12 * first, ALBEDO[1] * 1e-6 * second, 0),
-               rays=True)
+    yield Case("1e12 and 1e-6", on_unit_sphere(materials, others), (ALBEDO[0] * 1e12 * first, ALBEDO[1] * 1e-6 * second, 0))
     # The dim one covers a narrow lobe and the bright one a part of it: densities and probabilities at both ends.
     for ball in (False, True):
         scene = fuzzy(1 / 64, ball, 0.8, 0, 30, 25)
@@ -455,7 +450,7 @@ def case_27(_):
         scene["spheres"].append({**bright, "material": "bright"})
         share = forms.fuzz_share(1 / 64, ball, math.asin(0.01), 0.01)
         yield Case(f"1e12 and 1e-6, narrow lobe {'in a ball' if ball else 'on a sphere'}", scene,
-                   (ALBEDO[0] * 1e12 * share, ALBEDO[1] * 1e-6 * (1 - share), 0), rays=True)
+                   (ALBEDO[0] * 1e12 * share, ALBEDO[1] * 1e-6 * (1 - share), 0))
 
 
 def points_on_shell(count, center, radius):
@@ -489,7 +484,7 @@ def case_28(folder):
         scene = on_unit_sphere({"receiver": lambertian(), "lamp": lamp(light)}, [],
                                clouds=[{"file": name, "radius": radius, "material": "lamp"}])
         share = count * (radius / 4) ** 2 * math.cos(0.6)
-        yield Case(f"{count} lamps on a shell", scene, lit(share, light), chance=False, rays=True, deep=deep,
+        yield Case(f"{count} lamps on a shell", scene, lit(share, light), chance=False, deep=deep,
                    files={name: lambda n=count, c=center: ply(points_on_shell(n, c, 1.5))})
     del folder
 
@@ -498,7 +493,7 @@ def case_29(_):
     """A material whose light is 0 is no lamp."""
     materials = {"receiver": lambertian(), "lamp": lambertian(emit=[0, 0, 0]), "off": lamp(BLACK)}
     yield Case("light of 0", on_unit_sphere(materials, [lamp_at(0.5, 3, 1), lamp_at(0.5, 3, 1, 2, "off")],
-                                            background=(0.3, 0.4, 0.5)), bits=True, rays=False, samples=64)
+                                            background=(0.3, 0.4, 0.5)), bits=True, samples=64)
 
 
 def case_30(_):
@@ -506,7 +501,7 @@ def case_30(_):
     for omega, distance, radius in ((0.7, 3, 1), (1.2, 2, 1.2)):
         sigma = math.asin(radius / distance)
         yield Case(f"plain numerics, lamp at {omega}", simple(omega, distance, radius), lit(forms.irradiance(sigma, omega)),
-                   options=("--numerics", "plain"), rays=True, deep=True)
+                   options=("--numerics", "plain"), deep=True)
 
 
 def case_31(_):
@@ -516,9 +511,9 @@ def case_31(_):
         spheres = [sphere(BLACK, radius, "shell"), sphere((0, radius + 1.001, 0), 1, "lamp"),
                    sphere((radius + 0.1, 0, 0), 0.09, "lamp"), sphere((0.3, 0.2, 0), 0.5, "receiver")]
         wall = document(materials, spheres, (0, 0.99 * radius, 0), (0.01 * radius, radius, 0))
-        yield Case(f"wall of {radius}", wall, BLACK, exact=True, rays=True, samples=256, deep=radius != 3)
+        yield Case(f"wall of {radius}", wall, BLACK, exact=True, samples=256, deep=radius != 3)
         inner = document(materials, spheres, (0.3, 2.2, 0), (0.4, 0.2, 0))
-        yield Case(f"receiver inside {radius}", inner, BLACK, exact=True, rays=True, samples=256, deep=True)
+        yield Case(f"receiver inside {radius}", inner, BLACK, exact=True, samples=256, deep=True)
 
 
 # ---- beyond those: the choice of a lamp, and what else shares the code ------------------------------------------
@@ -544,7 +539,7 @@ def case_32(_):
                                (8, "equal", lambda i: 5), (9, "unequal", lambda i: 2 ** (i % 5)),
                                (40, "equal", lambda i: 20), (150, "unequal", lambda i: 100 * 3 ** (i % 6))):
         scene, total = many_lamps(count, 1.3, power)
-        yield Case(f"{count} {name} lamps", scene, total, chance=False, rays=True, deep=count not in (3, 150))
+        yield Case(f"{count} {name} lamps", scene, total, chance=False, deep=count not in (3, 150))
 
 
 def case_33(_):
@@ -559,7 +554,7 @@ def case_33(_):
         expected += forms.irradiance(math.asin(0.05 / distance), omega)
     scene = on_unit_sphere({"receiver": lambertian(), "lamp": lamp(light)}, [],
                            clouds=[{"file": "around.ply", "radius": 0.05, "material": "lamp"}])
-    yield Case("600 lamps around the point", scene, lit(expected, light), rays=True, chance=False,
+    yield Case("600 lamps around the point", scene, lit(expected, light), chance=False,
                files={"around.ply": lambda: ply(array.array("f", numbers))})
 
 
@@ -567,7 +562,7 @@ def case_34(_):
     """The same light by other ways of the program."""
     share = forms.irradiance(math.asin(0.3), 0.7)
     for options in (("--sampler", "independent"), ("--precision", "double"), ("--kernel", "sample"), ("--math", "fast")):
-        yield Case(" ".join(options), simple(0.7, 2, 0.6), lit(share), options=options, rays=True, deep=True)
+        yield Case(" ".join(options), simple(0.7, 2, 0.6), lit(share), options=options, deep=True)
 
 
 def case_35(_):
@@ -575,8 +570,7 @@ def case_35(_):
     below a power of two; those that sampling makes brighter must still fit."""
     materials = {"ember": lambertian((0.5, 0.5, 0.5), emit=[0.4995, 0.2, 0.1])}
     spheres = [sphere(BLACK, 4, "ember"), sphere((1, 0, 0), 1, "ember"), sphere((-1, 0.5, 0), 1, "ember")]
-    yield Case("embers in an ember", document(materials, spheres, (0, 0.3, 2.4), (0.4, 0.2, 0), depth=60), (0.999, 0.4, 0.2),
-               rays=True, samples=256)
+    yield Case("embers in an ember", document(materials, spheres, (0, 0.3, 2.4), (0.4, 0.2, 0), depth=60), (0.999, 0.4, 0.2), samples=256)
 
 
 NUMBERED = {int(name[-2:]): function for name, function in sorted(globals().items()) if name.startswith("case_")}

@@ -73,9 +73,6 @@ def run_case(bench, case, on_alone=False):
     for name, make in case.files.items():
         (bench.folder / name).write_bytes(make())
     on_bytes, on, on_stats = bench.render(case.scene, "on", case.samples, case.options)
-    lamp_rays = on_stats["lamp_rays"]
-    if case.rays is not None and (lamp_rays > 0) != case.rays:
-        raise Trouble(f"{lamp_rays} lamp rays")
     said = []
     if case.like is not None:
         if bench.render(case.like, "on", case.samples, case.options)[0] != on_bytes:
@@ -99,8 +96,6 @@ def run_case(bench, case, on_alone=False):
     for member in ("rays", "cut_paths"):
         if on_stats[member] != off_stats[member]:
             raise Trouble(f"{member}: {on_stats[member]} with lamps on, {off_stats[member]} with lamps off")
-    if off_stats["lamp_rays"] != 0:
-        raise Trouble(f"{off_stats['lamp_rays']} lamp rays with lamps off")
     if case.bits:
         if on_bytes != off_bytes:
             raise Trouble("lamps on and off differ in their bits")
