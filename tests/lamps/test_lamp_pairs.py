@@ -172,7 +172,7 @@ def main():
                 count += 1
                 try:
                     on, off = (render(program, folder, path.resolve(), lamps, 8) for lamps in ("on", "off"))
-                    if on[0].body != off[0].body or on[1]["lamp_rays"] != 0:
+                    if on[0].body != off[0].body or on[1]["lamps"] != "off":
                         raise Trouble("lamps on and off differ, without a lamp")
                 except Trouble as trouble:
                     failures += 1
