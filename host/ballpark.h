@@ -68,7 +68,10 @@ extern "C" {
     X(BP_ERR_USAGE, 2, "bad command line")                                                                   \
     X(BP_ERR_SCENE, 2, "bad scene")                                                                          \
     X(BP_ERR_DISAGREE, 3, "kernel and reference disagree")                                                   \
-    X(BP_ERR_INTERRUPTED, 130, "interrupted")
+    X(BP_ERR_INTERRUPTED, 130, "interrupted")                                                                \
+    X(BP_ERR_INCONCLUSIVE, 4, "not enough evidence that kernel and reference agree")                         \
+    X(BP_ERR_NO_DEVICE, 5, "no such device")                                                                 \
+    X(BP_ERR_BROKEN_DEVICE, 6, "a device or its driver is broken")
 
 typedef enum BpStatus {
 #define BP_STATUS_ENUM(name, exit_code, text) name,
@@ -164,10 +167,11 @@ typedef struct BpDeviceInfo {
  * error: *count is 0. */
 BP_API BpStatus bp_devices_list(BpDeviceInfo **list, size_t *count, BpError *err);
 
-/* The device that `text` means: its number; "gpu" or "cpu" (the first); a part of its name, vendor, version
- * or platform (any case); or for NULL or "" the default: a GPU if there is one, else a CPU. A device that
- * cannot render is passed over; asked for by number, it is refused with what it lacks. BP_ERR_DEVICE: nothing
- * fits, or a text fits different devices; the error lists what there is, or what to install. */
+/* The device that `text` means: its number; "gpu" or "cpu" (the first); a part of its name, vendor, version,
+ * driver version or platform (any case); or for NULL or "" the default: a GPU if there is one, else a CPU. A
+ * device that cannot render is passed over; asked for by number, it is refused with what it lacks.
+ * BP_ERR_DEVICE: nothing fits, or a text fits different devices; the error lists what there is, or what to
+ * install. */
 BP_API BpStatus bp_device_find(const char *text, BpDeviceInfo *device, BpError *err);
 
 /* ---- rendering --------------------------------------------------------------------------------------- */

@@ -1,19 +1,16 @@
-/* device_find.c: which devices there are, what each lacks, and which one a text means; see device.h.
+/* device_find.c: which devices there are and what each lacks; see device.h.
  *
  * In:    what the OpenCL loader finds.   Out: BpDeviceInfo, or a message that says what to install.
  * Knows: OpenCL's platforms and devices.   Does not know: contexts, programs. */
 #include "device.h"
 
+#include "device_choose.h"
 #include "pocl.h"
 
 #include <ctype.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-
-#define NO_DEVICE_REMEDY                                                                                     \
-    "install an OpenCL driver: your GPU vendor's, or `apt install pocl-opencl-icd` to use the processor; "   \
-    "`clinfo` shows what is there"
 
 /* ---- asking OpenCL ---------------------------------------------------------------------------------------
  */
@@ -204,40 +201,6 @@ BpStatus bp_devices_list(BpDeviceInfo **list, size_t *count, BpError *err) {
     return bp_device_ids(list, NULL, count, err);
 }
 
-/* ---- choosing one ----------------------------------------------------------------------------------------
- */
-
-static bool contains(const char *text, const char *part) {
-    const size_t length = strlen(part);
-    for (; *text != '\0'; ++text) {
-        size_t i = 0;
-        while (i < length && tolower((unsigned char)text[i]) == tolower((unsigned char)part[i])) ++i;
-        if (i == length) return true;
-    }
-    return false;
-}
-
-static bool same(const char *a, const char *b) {
-    return strlen(a) == strlen(b) && contains(a, b);
-}
-
-static bool fits(const BpDeviceInfo *device, const char *text) {
-    return contains(device->name, text) || contains(device->platform, text) ||
-           contains(device->vendor, text) || contains(device->version, text);
-}
-
-/* Appends "; 0: name (platform)" for each device that `text` fits (all for NULL), as far as there is room. */
-static void append_devices(char *to, size_t size, const BpDeviceInfo *list, size_t count, const char *text) {
-    const char *separator = "";
-    for (size_t i = 0; i < count; ++i) {
-        if (text != NULL && !fits(&list[i], text)) continue;
-        const size_t used = strlen(to);
-        snprintf(to + used, size - used, "%s%u: %s (%s)%s%s", separator, list[i].number, list[i].name,
-                 list[i].platform, list[i].refusal[0] != '\0' ? ", cannot render: " : "", list[i].refusal);
-        separator = "; ";
-    }
-}
-
 /* No device at all: says which platforms there are, and what to install. */
 static BpStatus fail_without_devices(BpError *err) {
     cl_platform_id *platforms = NULL;
@@ -253,103 +216,21 @@ static BpStatus fail_without_devices(BpError *err) {
         snprintf(names + used, sizeof names - used, "%s%s", p == 0 ? "" : ", ", name);
     }
     free(platforms);
-    if (count == 0) return bp_fail(err, BP_ERR_DEVICE, "no OpenCL platform: " NO_DEVICE_REMEDY);
+    if (count == 0) return bp_fail(err, BP_ERR_DEVICE, "no OpenCL platform: " BP_NO_DEVICE_REMEDY);
     if (pocl && bp_pocl_cache_fails(fault)) return bp_fail(err, BP_ERR_DEVICE, "no OpenCL device: %s", fault);
-    return bp_fail(err, BP_ERR_DEVICE, "no OpenCL device (platforms without devices: %s): " NO_DEVICE_REMEDY,
-                   names);
-}
-
-/* The first device of `type` that can render, or NULL. */
-static const BpDeviceInfo *first_of_type(const BpDeviceInfo *list, size_t count, BpDeviceType type) {
-    for (size_t i = 0; i < count; ++i)
-        if (list[i].type == type && list[i].refusal[0] == '\0') return &list[i];
-    return NULL;
-}
-
-static const BpDeviceInfo *default_device(const BpDeviceInfo *list, size_t count) {
-    const BpDeviceInfo *device = first_of_type(list, count, BP_DEVICE_GPU);
-    if (device == NULL) device = first_of_type(list, count, BP_DEVICE_CPU);
-    if (device == NULL) device = first_of_type(list, count, BP_DEVICE_OTHER);
-    return device;
-}
-
-/* A text of one or two digits is a device's number and nothing else; "4090" may also be a part of a name. */
-static bool is_number(const char *text) {
-    const size_t digits = strspn(text, "0123456789");
-    return digits > 0 && digits <= 2 && text[digits] == '\0';
-}
-
-/* The device with the number that `text` is, or NULL where it is none of the list. */
-static const BpDeviceInfo *by_number(const BpDeviceInfo *list, size_t count, const char *text) {
-    char *end;
-    if (!isdigit((unsigned char)text[0])) return NULL;
-    const unsigned long long number = strtoull(text, &end, 10);
-    return *end == '\0' && number < count ? &list[number] : NULL;
-}
-
-/* The one kind of device among those that can render (or, where none can, among all) that `text` fits.
- * NULL where none fits, or (*ambiguous) where different ones do; equal ones are one kind: the first counts.
- */
-static const BpDeviceInfo *by_text(const BpDeviceInfo *list, size_t count, const char *text,
-                                   bool *ambiguous) {
-    const BpDeviceInfo *chosen = NULL;
-    *ambiguous = false;
-    for (size_t i = 0; i < count; ++i) {
-        if (!fits(&list[i], text)) continue;
-        if (chosen == NULL || (chosen->refusal[0] != '\0' && list[i].refusal[0] == '\0')) {
-            chosen = &list[i];
-            *ambiguous = false;
-        } else if (list[i].refusal[0] == '\0' || chosen->refusal[0] != '\0') {
-            /* A name given in full means that device, even where it is a part of another's. */
-            const bool chosen_whole = same(chosen->name, text), other_whole = same(list[i].name, text);
-            if (other_whole && !chosen_whole) {
-                chosen = &list[i];
-                *ambiguous = false;
-            } else if (!chosen_whole || other_whole) {
-                if (!same(list[i].name, chosen->name) || !same(list[i].platform, chosen->platform))
-                    *ambiguous = true;
-            }
-        }
-    }
-    return chosen;
+    return bp_fail(err, BP_ERR_DEVICE,
+                   "no OpenCL device (platforms without devices: %s): " BP_NO_DEVICE_REMEDY, names);
 }
 
 BpStatus bp_device_find(const char *text, BpDeviceInfo *device, BpError *err) {
-    BpStatus status;
     BpDeviceInfo *list = NULL;
     size_t count = 0;
-    const BpDeviceInfo *chosen = NULL;
-    bool ambiguous = false;
-    char there[800] = "";
-
-    BP_TRY_GOTO(status, bp_devices_list(&list, &count, err), cleanup);
-    if (count == 0) {
-        status = fail_without_devices(err);
-        goto cleanup;
-    }
-    if (text == NULL) text = "";
-    if (text[0] == '\0')
-        chosen = default_device(list, count);
-    else if ((chosen = by_number(list, count, text)) == NULL && !is_number(text)) {
-        if (same(text, "gpu")) chosen = first_of_type(list, count, BP_DEVICE_GPU);
-        if (same(text, "cpu")) chosen = first_of_type(list, count, BP_DEVICE_CPU);
-        if (chosen == NULL) chosen = by_text(list, count, text, &ambiguous);
-    }
-    append_devices(there, sizeof there, list, count, ambiguous ? text : NULL);
-    if (chosen == NULL && text[0] == '\0')
-        status =
-            bp_fail(err, BP_ERR_DEVICE, "no OpenCL device can render (found %s): " NO_DEVICE_REMEDY, there);
-    else if (chosen == NULL)
-        status = bp_fail(err, BP_ERR_DEVICE, "no device matches '%s'; available: %s", text, there);
-    else if (ambiguous)
-        status = bp_fail(err, BP_ERR_DEVICE, "'%s' matches several devices; give a number: %s", text, there);
-    else if (chosen->refusal[0] != '\0')
-        status = bp_fail(err, BP_ERR_DEVICE, "device %u (%s) cannot render: %s", chosen->number, chosen->name,
-                         chosen->refusal);
-    else
-        *device = *chosen;
-
-cleanup:
+    BP_TRY(bp_devices_list(&list, &count, err));
+    BpStatus status =
+        count > 0 ? bp_device_choose(list, count, text, device, err) : fail_without_devices(err);
     free(list);
+    /* Which of the two it was matters to `check` alone. */
+    if (status == BP_ERR_NO_DEVICE || status == BP_ERR_BROKEN_DEVICE) status = BP_ERR_DEVICE;
+    if (status != BP_OK && err != NULL) err->code = status;
     return status;
 }

@@ -1,7 +1,8 @@
 /* fake_icd.c: an OpenCL driver without hardware, for the tests of devices that no test machine has.
  *
  * In:    FAKE_DEVICES in the environment, read at every call: platforms parted by '|', devices by ','. A
- * device is a kind of the table below, optionally with a name: "gpu=Big Card,cpu|old". Out:   two platforms
+ * device is a kind of the table below, optionally with a name and a driver version: "gpu=Big
+ * Card@8.1,cpu|old". Out:   two platforms
  * ("Fake One", "Fake Two") through the ICD loader (OCL_ICD_VENDORS names the .icd file). A "build" succeeds
  * unless the source holds #error; its log is then the build options, so that tests see them. */
 #define CL_TARGET_OPENCL_VERSION 120
@@ -11,6 +12,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <unistd.h>
 
 #define PLATFORMS 2
 #define DEVICES 8
@@ -22,8 +24,10 @@ typedef struct Kind {
     const char *version, *profile, *extensions;
     cl_bool little_endian, compiler, available;
     cl_device_fp_config single, full; /* full: of double */
-    cl_int context_error;
+    cl_int context_error;             /* HANGS, CRASHES: what a context ends in */
 } Kind;
+
+enum { HANGS = 1, CRASHES = 2 };
 
 #define FLOAT_FULL (CL_FP_INF_NAN | CL_FP_ROUND_TO_NEAREST)
 static const Kind kinds[] = {
@@ -48,6 +52,8 @@ static const Kind kinds[] = {
     {"away", CL_DEVICE_TYPE_GPU, "OpenCL 1.2", "FULL_PROFILE", "", 1, 1, 0, FLOAT_FULL, 0, 0},
     {"full", CL_DEVICE_TYPE_GPU, "OpenCL 1.2", "FULL_PROFILE", "", 1, 1, 1, FLOAT_FULL, 0,
      CL_OUT_OF_RESOURCES},
+    {"hanging", CL_DEVICE_TYPE_GPU, "OpenCL 1.2", "FULL_PROFILE", "", 1, 1, 1, FLOAT_FULL, 0, HANGS},
+    {"crashing", CL_DEVICE_TYPE_GPU, "OpenCL 1.2", "FULL_PROFILE", "", 1, 1, 1, FLOAT_FULL, 0, CRASHES},
 };
 
 /* The loader finds our functions through the first member of every handle. */
@@ -136,12 +142,16 @@ static cl_int CL_API_CALL get_device_ids(cl_platform_id platform, cl_device_type
     return found > 0 ? CL_SUCCESS : CL_DEVICE_NOT_FOUND;
 }
 
-static const Kind *kind_of(cl_device_id device, char name[64]) {
+/* The kind of a device, its name and its driver's version; NULL: there is no such device. */
+static const Kind *kind_of(cl_device_id device, char name[64], char driver[64]) {
     char text[64];
     if (!find_device(device->platform, device->number, text)) return NULL;
     char *equals = strchr(text, '=');
     snprintf(name, 64, "%s", equals != NULL ? equals + 1 : text);
     if (equals != NULL) *equals = '\0';
+    char *at = strchr(name, '@');
+    snprintf(driver, 64, "%s", at != NULL ? at + 1 : "7.5");
+    if (at != NULL) *at = '\0';
     for (size_t k = 0; k < sizeof kinds / sizeof kinds[0]; ++k)
         if (strcmp(kinds[k].name, text) == 0) return &kinds[k];
     fprintf(stderr, "fake_icd: no kind of device '%s'\n", text);
@@ -150,8 +160,8 @@ static const Kind *kind_of(cl_device_id device, char name[64]) {
 
 static cl_int CL_API_CALL get_device_info(cl_device_id device, cl_device_info what, size_t size, void *to,
                                           size_t *size_ret) {
-    char name[64], padded[80];
-    const Kind *kind = kind_of(device, name);
+    char name[64], driver[64], padded[80];
+    const Kind *kind = kind_of(device, name, driver);
     if (kind == NULL) return CL_INVALID_DEVICE;
     switch (what) {
     case CL_DEVICE_NAME:
@@ -162,7 +172,7 @@ static cl_int CL_API_CALL get_device_info(cl_device_id device, cl_device_info wh
     case CL_DEVICE_VERSION:
         return answer_text(kind->version, size, to, size_ret);
     case CL_DRIVER_VERSION:
-        return answer_text("7.5", size, to, size_ret);
+        return answer_text(driver, size, to, size_ret);
     case CL_DEVICE_PROFILE:
         return answer_text(kind->profile, size, to, size_ret);
     case CL_DEVICE_EXTENSIONS:
@@ -197,9 +207,11 @@ static cl_int CL_API_CALL get_device_info(cl_device_id device, cl_device_info wh
 static cl_context CL_API_CALL create_context(
     const cl_context_properties *properties, cl_uint count, const cl_device_id *ids,
     void(CL_CALLBACK *notify)(const char *, const void *, size_t, void *), void *data, cl_int *code) {
-    char name[64];
-    const Kind *kind = count == 1 ? kind_of(ids[0], name) : NULL;
+    char name[64], driver[64];
+    const Kind *kind = count == 1 ? kind_of(ids[0], name, driver) : NULL;
     (void)properties, (void)notify, (void)data;
+    while (kind != NULL && kind->context_error == HANGS) sleep(1);
+    if (kind != NULL && kind->context_error == CRASHES) abort(); /* which no mask of signals holds off */
     *code = kind == NULL ? CL_INVALID_VALUE : kind->context_error;
     return *code == CL_SUCCESS ? &context : NULL;
 }

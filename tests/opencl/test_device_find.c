@@ -91,7 +91,7 @@ static void prefers_a_gpu_that_can_render(void **state) {
     expect("cpu,old|no-compiler", NULL, 0);
     expect("accelerator,cpu", NULL, 1);
     expect("accelerator", NULL, 0);
-    expect_error("old|away", NULL, "1: away (Fake Two), cannot render: it is not available now");
+    expect_error("old|away", NULL, "1: away (Fake Two, driver 7.5), cannot render: it is not available now");
 }
 
 static void numbers_come_first(void **state) {
@@ -99,8 +99,9 @@ static void numbers_come_first(void **state) {
     expect("cpu,gpu=Card 0", "0", 0);
     expect("cpu,gpu=Card 7", "1", 1);
     expect("cpu,gpu=Card 4090", "4090", 1);
-    expect_error("cpu,gpu=Card 7", "7",
-                 "no device matches '7'; available: 0: cpu (Fake One); 1: Card 7 (Fake One)");
+    expect_error(
+        "cpu,gpu=Card 7", "7",
+        "no device matches '7'; available: 0: cpu (Fake One, driver 7.5); 1: Card 7 (Fake One, driver 7.5)");
     expect_error("cpu", "-1", "no device matches '-1'");
 }
 
@@ -115,11 +116,22 @@ static void parts_of_names_in_any_case(void **state) {
     expect_error("cpu=Slow", "gpu", "no device matches 'gpu'");
 }
 
+static void versions_of_drivers(void **state) {
+    (void)state;
+    expect("gpu=Card@535.1,cpu=Slow@3.1+debian", "3.1+debian", 1);
+    expect("gpu=Card@535.1,cpu=Slow@3.1+debian", "535", 0);
+    expect_error("gpu=Card@535.1", "536", "0: Card (Fake One, driver 535.1)");
+    /* Equal devices of two drivers are not one kind. */
+    expect_error("gpu=Card@1.0,gpu=Card@2.0", "card",
+                 "give a number: 0: Card (Fake One, driver 1.0); 1: Card (Fake One, driver 2.0)");
+    expect("gpu=Card@1.0,gpu=Card@2.0", "2.0", 1);
+}
+
 static void one_text_for_several_devices(void **state) {
     (void)state;
     expect_error("gpu=Card A,gpu=Card B,cpu=Slow", "card",
-                 "matches several devices; give a number: 0: Card A (Fake One); "
-                 "1: Card B (Fake One)");
+                 "matches several devices; give a number: 0: Card A (Fake One, driver 7.5); "
+                 "1: Card B (Fake One, driver 7.5)");
     expect("gpu=Card,gpu=Card", "card", 0);               /* equal ones: the first */
     expect_error("gpu=Card|gpu=Card", "card", "several"); /* not equal: another driver */
     expect("gpu=Card XT,gpu=Card", "card", 1);            /* the whole name */
@@ -259,6 +271,7 @@ int main(void) {
         cmocka_unit_test(prefers_a_gpu_that_can_render),
         cmocka_unit_test(numbers_come_first),
         cmocka_unit_test(parts_of_names_in_any_case),
+        cmocka_unit_test(versions_of_drivers),
         cmocka_unit_test(one_text_for_several_devices),
         cmocka_unit_test(refuses_by_what_is_lacking),
         cmocka_unit_test(opening),

@@ -1,0 +1,124 @@
+/* device_choose.c: see device_choose.h. */
+#include "device_choose.h"
+
+#include <ctype.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+static bool contains(const char *text, const char *part) {
+    const size_t length = strlen(part);
+    for (; *text != '\0'; ++text) {
+        size_t i = 0;
+        while (i < length && tolower((unsigned char)text[i]) == tolower((unsigned char)part[i])) ++i;
+        if (i == length) return true;
+    }
+    return false;
+}
+
+static bool same(const char *a, const char *b) {
+    return strlen(a) == strlen(b) && contains(a, b);
+}
+
+static bool fits(const BpDeviceInfo *device, const char *text) {
+    return contains(device->name, text) || contains(device->platform, text) ||
+           contains(device->vendor, text) || contains(device->version, text) ||
+           contains(device->driver, text);
+}
+
+/* Appends "; 0: name (platform)" for each device that `text` fits (all for NULL), as far as there is room. */
+static void append_devices(char *to, size_t size, const BpDeviceInfo *list, size_t count, const char *text) {
+    const char *separator = "";
+    for (size_t i = 0; i < count; ++i) {
+        if (text != NULL && !fits(&list[i], text)) continue;
+        const size_t used = strlen(to);
+        snprintf(to + used, size - used, "%s%u: %s (%s, driver %s)%s%s", separator, list[i].number,
+                 list[i].name, list[i].platform, list[i].driver,
+                 list[i].refusal[0] != '\0' ? ", cannot render: " : "", list[i].refusal);
+        separator = "; ";
+    }
+}
+
+/* The first device of `type` that can render, or NULL. */
+static const BpDeviceInfo *first_of_type(const BpDeviceInfo *list, size_t count, BpDeviceType type) {
+    for (size_t i = 0; i < count; ++i)
+        if (list[i].type == type && list[i].refusal[0] == '\0') return &list[i];
+    return NULL;
+}
+
+static const BpDeviceInfo *default_device(const BpDeviceInfo *list, size_t count) {
+    const BpDeviceInfo *device = first_of_type(list, count, BP_DEVICE_GPU);
+    if (device == NULL) device = first_of_type(list, count, BP_DEVICE_CPU);
+    if (device == NULL) device = first_of_type(list, count, BP_DEVICE_OTHER);
+    return device;
+}
+
+/* A text of one or two digits is a device's number and nothing else; "4090" may also be a part of a name. */
+static bool is_number(const char *text) {
+    const size_t digits = strspn(text, "0123456789");
+    return digits > 0 && digits <= 2 && text[digits] == '\0';
+}
+
+/* The device with the number that `text` is, or NULL where it is none of the list. */
+static const BpDeviceInfo *by_number(const BpDeviceInfo *list, size_t count, const char *text) {
+    char *end;
+    if (!isdigit((unsigned char)text[0])) return NULL;
+    const unsigned long long number = strtoull(text, &end, 10);
+    return *end == '\0' && number < count ? &list[number] : NULL;
+}
+
+/* The one kind of device among those that can render (or, where none can, among all) that `text` fits.
+ * NULL where none fits, or (*ambiguous) where different ones do; equal ones are one kind: the first counts.
+ */
+static const BpDeviceInfo *by_text(const BpDeviceInfo *list, size_t count, const char *text,
+                                   bool *ambiguous) {
+    const BpDeviceInfo *chosen = NULL;
+    *ambiguous = false;
+    for (size_t i = 0; i < count; ++i) {
+        if (!fits(&list[i], text)) continue;
+        if (chosen == NULL || (chosen->refusal[0] != '\0' && list[i].refusal[0] == '\0')) {
+            chosen = &list[i];
+            *ambiguous = false;
+        } else if (list[i].refusal[0] == '\0' || chosen->refusal[0] != '\0') {
+            /* A name given in full means that device, even where it is a part of another's. */
+            const bool chosen_whole = same(chosen->name, text), other_whole = same(list[i].name, text);
+            if (other_whole && !chosen_whole) {
+                chosen = &list[i];
+                *ambiguous = false;
+            } else if (!chosen_whole || other_whole) {
+                if (!same(list[i].name, chosen->name) || !same(list[i].platform, chosen->platform) ||
+                    !same(list[i].driver, chosen->driver))
+                    *ambiguous = true;
+            }
+        }
+    }
+    return chosen;
+}
+
+BpStatus bp_device_choose(const BpDeviceInfo *list, size_t count, const char *text, BpDeviceInfo *device,
+                          BpError *err) {
+    const BpDeviceInfo *chosen = NULL;
+    bool ambiguous = false;
+    char there[800] = "";
+    if (text == NULL) text = "";
+    if (text[0] == '\0')
+        chosen = default_device(list, count);
+    else if ((chosen = by_number(list, count, text)) == NULL && !is_number(text)) {
+        if (same(text, "gpu")) chosen = first_of_type(list, count, BP_DEVICE_GPU);
+        if (same(text, "cpu")) chosen = first_of_type(list, count, BP_DEVICE_CPU);
+        if (chosen == NULL) chosen = by_text(list, count, text, &ambiguous);
+    }
+    append_devices(there, sizeof there, list, count, ambiguous ? text : NULL);
+    if (chosen == NULL && text[0] == '\0')
+        return bp_fail(err, BP_ERR_NO_DEVICE, "no OpenCL device can render (found %s): " BP_NO_DEVICE_REMEDY,
+                       there);
+    if (chosen == NULL)
+        return bp_fail(err, BP_ERR_NO_DEVICE, "no device matches '%s'; available: %s", text, there);
+    if (ambiguous)
+        return bp_fail(err, BP_ERR_NO_DEVICE, "'%s' matches several devices; give a number: %s", text, there);
+    if (chosen->refusal[0] != '\0')
+        return bp_fail(err, BP_ERR_BROKEN_DEVICE, "device %u (%s) cannot render: %s", chosen->number,
+                       chosen->name, chosen->refusal);
+    *device = *chosen;
+    return BP_OK;
+}

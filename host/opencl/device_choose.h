@@ -1,0 +1,20 @@
+/* device_choose.h: which device of a list a text means.
+ *
+ * In:    a list of devices, the text of --device.   Out: one of them, or a message that says what there is.
+ * Knows: what a device says of itself.   Does not know: OpenCL calls. */
+#ifndef BP_OPENCL_DEVICE_CHOOSE_H
+#define BP_OPENCL_DEVICE_CHOOSE_H
+
+#include "base/status.h"
+
+#define BP_NO_DEVICE_REMEDY                                                                                  \
+    "install an OpenCL driver: your GPU vendor's, or `apt install pocl-opencl-icd` to use the processor; "   \
+    "`clinfo` shows what is there"
+
+/* As bp_device_find() of ballpark.h, among the `count` devices of a list, which is not empty. `text`:
+ * Optional. BP_ERR_NO_DEVICE: it means none or several, or no device can render; BP_ERR_BROKEN_DEVICE: it
+ * means one that cannot render. */
+BpStatus bp_device_choose(const BpDeviceInfo *list, size_t count, const char *text, BpDeviceInfo *device,
+                          BpError *err);
+
+#endif
