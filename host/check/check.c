@@ -7,13 +7,26 @@
 
 #include <math.h>
 #include <stdlib.h>
+#include <string.h>
 
 #define STEP_SECONDS 0.3
+#define FIRST_ROUND 16u /* samples per pixel, where time is limited */
+
+/* What both sides had at the end of a round. */
+typedef struct Round {
+    uint64_t samples; /* per pixel; 0: no round is over */
+    BpSums kernel, reference;
+    uint64_t cut_kernel, cut_reference;
+    double picture_off;
+} Round;
 
 struct BpCheck {
     const BpScene *scene;
     BpCheckOptions options;
     BpRender *render;
+    double begun;
+    uint64_t target;            /* samples per pixel at the end of this round */
+    Round last;                 /* where time is limited */
     uint64_t reference_samples; /* done */
     uint64_t slice;             /* samples of the next step of the reference */
     bool kernel_done, finished;
@@ -32,12 +45,20 @@ BpStatus bp_check_create(const BpScene *scene, const BpCheckOptions *options, co
     check->scene = scene;
     check->options = *options;
     check->slice = 1;
+    check->begun = bp_clock_seconds();
+    check->target = options->render.samples_per_pixel;
+    if (options->seconds > 0 && check->target > FIRST_ROUND) check->target = FIRST_ROUND;
+    BpRenderOptions first = options->render;
+    first.samples_per_pixel = check->target;
     const uint32_t width = scene->camera.width, height = scene->camera.height;
     BpStatus status = bp_sums_init(&check->result.kernel, width, height, err);
     if (status == BP_OK) status = bp_sums_init(&check->result.reference, width, height, err);
+    if (status == BP_OK && options->seconds > 0)
+        status = bp_sums_init(&check->last.kernel, width, height, err);
+    if (status == BP_OK && options->seconds > 0)
+        status = bp_sums_init(&check->last.reference, width, height, err);
     if (status == BP_OK)
-        status =
-            bp_render_create(scene, &options->render, device, device != NULL ? 1 : 0, &check->render, err);
+        status = bp_render_create(scene, &first, device, device != NULL ? 1 : 0, &check->render, err);
     if (status != BP_OK) bp_check_destroy(&check);
     *check_out = check;
     return status;
@@ -48,6 +69,8 @@ void bp_check_destroy(BpCheck **check) {
     bp_render_destroy(&(*check)->render);
     bp_sums_clear(&(*check)->result.kernel);
     bp_sums_clear(&(*check)->result.reference);
+    bp_sums_clear(&(*check)->last.kernel);
+    bp_sums_clear(&(*check)->last.reference);
     free(*check);
     *check = NULL;
 }
@@ -86,7 +109,7 @@ BpStatus bp_check_render_kernel(BpRender *render, BpSums *sums, uint64_t *cut_pa
 /* A slice of the reference, and how long the next one should be. */
 static BpStatus step_reference(BpCheck *check, BpError *err) {
     const BpRenderOptions *render = &check->options.render;
-    const uint64_t rest = render->samples_per_pixel - check->reference_samples;
+    const uint64_t rest = check->target - check->reference_samples;
     const uint64_t samples = check->slice < rest ? check->slice : rest;
     /* Another generator, and for good measure another seed. */
     const BpReferenceOptions options = {.first_sample = render->first_sample + check->reference_samples,
@@ -132,44 +155,89 @@ static double picture_off(const BpSums *samples, const BpFilm *picture) {
     return off;
 }
 
-/* The verdict on the samples of both, and on what the kernel's picture makes of its own. */
-static BpStatus judge(BpCheck *check, BpError *err) {
+static void copy_sums(BpSums *to, const BpSums *from) {
+    memcpy(to->pixels, from->pixels, (size_t)from->width * from->height * sizeof *from->pixels);
+}
+
+/* The verdict on the samples of both, and on what the kernel's picture made of its own. */
+static BpStatus judge(BpCheck *check, uint64_t samples, double off, BpError *err) {
     BpCheckResult *result = &check->result;
-    const BpFilm *picture = NULL;
-    BP_TRY(bp_verdict(&result->kernel, &result->reference, check->options.level, &result->verdict, err));
-    BP_TRY(bp_render_read_film(check->render, &picture, err));
-    bp_verdict_add_picture(&result->verdict, picture_off(&result->kernel, picture));
+    BP_TRY(bp_verdict(&result->kernel, &result->reference, check->options.level, check->options.margin,
+                      &result->verdict, err));
+    bp_verdict_add_picture(&result->verdict, off);
+    result->samples_per_pixel = samples;
+    check->finished = true;
     return BP_OK;
+}
+
+/* Both sides have the samples of this round: the end, or the next one. */
+static BpStatus end_round(BpCheck *check, BpError *err) {
+    BpCheckResult *result = &check->result;
+    const uint64_t total = check->options.render.samples_per_pixel;
+    const BpFilm *film = NULL;
+    BP_TRY(bp_render_read_film(check->render, &film, err));
+    const double off = picture_off(&result->kernel, film);
+    if (check->target == total) return judge(check, total, off, err);
+    Round *last = &check->last;
+    copy_sums(&last->kernel, &result->kernel);
+    copy_sums(&last->reference, &result->reference);
+    last->samples = check->target;
+    last->cut_kernel = result->cut_kernel;
+    last->cut_reference = result->cut_reference;
+    last->picture_off = off;
+    check->target = check->target > total / 2 ? total : 2 * check->target;
+    check->kernel_done = false;
+    return bp_render_extend(check->render, check->target, err);
+}
+
+/* Time is up: what the last whole round says. */
+static BpStatus judge_last_round(BpCheck *check, BpError *err) {
+    BpCheckResult *result = &check->result;
+    const Round *last = &check->last;
+    if (last->samples == 0)
+        return bp_fail(err, BP_ERR_INCONCLUSIVE,
+                       "time was up after %.3g s, before both tracers had %llu samples per pixel",
+                       check->options.seconds, (unsigned long long)check->target);
+    copy_sums(&result->kernel, &last->kernel);
+    copy_sums(&result->reference, &last->reference);
+    result->cut_kernel = last->cut_kernel;
+    result->cut_reference = last->cut_reference;
+    result->timed_out = true;
+    return judge(check, last->samples, last->picture_off, err);
+}
+
+static void report_progress(const BpCheck *check, BpCheckProgress *progress) {
+    const BpCheckResult *result = &check->result;
+    const double pixels = (double)check->scene->camera.width * check->scene->camera.height;
+    const double total = (double)check->options.render.samples_per_pixel;
+    *progress =
+        (BpCheckProgress){.reference = check->kernel_done,
+                          .done = check->kernel_done ? (double)check->reference_samples / total
+                                                     : (double)result->report.samples / (pixels * total),
+                          .seconds = check->kernel_done ? result->reference_seconds : result->kernel_seconds,
+                          .finished = check->finished};
 }
 
 BpStatus bp_check_step(BpCheck *check, BpCheckProgress *progress, BpError *err) {
     BpCheckResult *result = &check->result;
-    const uint64_t total = check->options.render.samples_per_pixel;
     const double start = bp_clock_seconds();
-    if (!check->kernel_done) {
+    if (check->finished) {
+        /* nothing is left to do */
+    } else if (check->options.seconds > 0 && start - check->begun > check->options.seconds) {
+        BP_TRY(judge_last_round(check, err));
+    } else if (!check->kernel_done) {
         result->kernel.means_only = spreads_less(check->render);
         while (!check->kernel_done && bp_clock_seconds() - start < STEP_SECONDS)
             BP_TRY(
                 step_kernel(check->render, &result->kernel, &result->cut_kernel, &check->kernel_done, err));
         result->kernel_seconds += bp_clock_seconds() - start;
         bp_render_report(check->render, &result->report);
-    } else if (check->reference_samples < total) {
+    } else {
         BP_TRY(step_reference(check, err));
         result->reference_seconds += bp_clock_seconds() - start;
+        if (check->reference_samples == check->target) BP_TRY(end_round(check, err));
     }
-    if (check->reference_samples == total && !check->finished) {
-        BP_TRY(judge(check, err));
-        check->finished = true;
-    }
-    if (progress != NULL) {
-        const double pixels = (double)check->scene->camera.width * check->scene->camera.height;
-        *progress = (BpCheckProgress){
-            .reference = check->kernel_done,
-            .done = check->kernel_done ? (double)check->reference_samples / (double)total
-                                       : (double)result->report.samples / (pixels * (double)total),
-            .seconds = check->kernel_done ? result->reference_seconds : result->kernel_seconds,
-            .finished = check->finished};
-    }
+    if (progress != NULL) report_progress(check, progress);
     return BP_OK;
 }
 

@@ -3,7 +3,10 @@
  * In:    Scene, options, a device.   Out:   the sums of both, the verdict.
  * Knows: the render loop, the reference.   Does not know: OpenCL, the command line, files.
  *
- * The result depends on scene, samples, seed and device, not on chunks, threads or the machine's load. */
+ * The result depends on scene, samples, seed and device, not on chunks, threads or the machine's load. With a
+ * limit of time both sides proceed in rounds, each as long as all before it together, and when time is up the
+ * last whole round is judged: the clock then decides about the number of samples, which what they are does
+ * not depend on, so the verdict's error rate holds. */
 #ifndef BP_CHECK_CHECK_H
 #define BP_CHECK_CHECK_H
 
@@ -16,6 +19,8 @@
 typedef struct BpCheckOptions {
     BpRenderOptions render; /* samples, depth, seed, kernel; the sampler must be the independent one */
     double level;           /* probability of rejecting a right kernel */
+    double margin;          /* "agree" needs brightness shown to be equal within it; a fraction */
+    double seconds;         /* limit of time, from bp_check_create() on; 0: none */
     unsigned threads;       /* of the reference; 0: one a processor */
 } BpCheckOptions;
 
@@ -30,6 +35,8 @@ typedef struct BpCheckProgress {
 
 typedef struct BpCheckResult {
     BpVerdict verdict;
+    uint64_t samples_per_pixel; /* judged: those asked for, or fewer when time was up */
+    bool timed_out;
     BpSums kernel, reference; /* owned by the check */
     uint64_t cut_kernel, cut_reference;
     double kernel_seconds, reference_seconds;
@@ -40,7 +47,8 @@ typedef struct BpCheckResult {
  * kernel. BP_ERR_USAGE: fewer than 2 samples, or another sampler. */
 BpStatus bp_check_create(const BpScene *scene, const BpCheckOptions *options, const BpDeviceInfo *device,
                          BpCheck **check, BpError *err);
-/* Works for about 0.3 s (on a huge scene: one sample of every pixel). `progress`: Optional. */
+/* Works for about 0.3 s (on a huge scene: one sample of every pixel). `progress`: Optional.
+ * BP_ERR_INCONCLUSIVE: time was up before the first round was over. */
 BpStatus bp_check_step(BpCheck *check, BpCheckProgress *progress, BpError *err);
 /* After the last step; valid while the check lives. BP_ERR_USAGE before. */
 BpStatus bp_check_result(const BpCheck *check, const BpCheckResult **result, BpError *err);

@@ -160,10 +160,21 @@ static void test_families(const BpSums *kernel, const BpSums *reference, BpVerdi
     }
 }
 
-/* Ratio, interval, equivalence, power: how wrong the kernel could still be. */
+/* How far from 1 the ratio of one channel's means may be, by its 95 % interval. Infinite: it may be anything.
+ */
+static double ratio_off(const Mean *kernel, const Mean *reference, double *low, double *high) {
+    const double z_95 = bp_normal_upper_quantile(0.025);
+    if (!bp_ratio_interval(kernel->value, kernel->variance, reference->value, reference->variance, z_95, low,
+                           high)) {
+        *low = *high = NAN;
+        return INFINITY;
+    }
+    return fmax(fabs(*low - 1), fabs(*high - 1));
+}
+
+/* Ratio, interval, evidence, power: how wrong the kernel could still be. */
 static void state_accuracy(const BpSums *kernel, const BpSums *reference, BpVerdict *verdict) {
     const Region whole = {0, 0, kernel->width, kernel->height, 0, 0};
-    const double z_95 = bp_normal_upper_quantile(0.025);
     verdict->smallest_bias = NAN;
     const double shift = bp_z_detectable(verdict->worst[BP_FAMILY_PICTURE].limit, BP_VERDICT_POWER);
     for (int channel = 0; channel < BP_SUMS_CHANNELS; ++channel) {
@@ -171,18 +182,20 @@ static void state_accuracy(const BpSums *kernel, const BpSums *reference, BpVerd
                    r = region_mean(reference, &whole, channel, 1);
         verdict->mean_kernel[channel] = k.value;
         verdict->mean_reference[channel] = r.value;
+        /* A channel that is dark on both sides has nothing to show; luminance is dark where all are. */
+        const bool dark = k.lit == 0 && r.lit == 0 && channel != BP_SUMS_LUMINANCE;
+        double low, high;
+        const double off = ratio_off(&k, &r, &low, &high);
+        if (!dark) verdict->shown_within = fmax(verdict->shown_within, off);
         if (channel == BP_SUMS_LUMINANCE) {
             verdict->ratio = r.value > 0 ? k.value / r.value : NAN;
-            if (!bp_ratio_interval(k.value, k.variance, r.value, r.variance, z_95, &verdict->ratio_low,
-                                   &verdict->ratio_high))
-                verdict->ratio_low = verdict->ratio_high = NAN;
+            verdict->ratio_low = low;
+            verdict->ratio_high = high;
         } else if (r.value > 0) {
             const double found = shift * sqrt(k.variance + r.variance) + rounding(r.value, 1);
             verdict->smallest_bias = fmin(found / r.value, verdict->smallest_bias); /* fmin passes over NaN */
         }
     }
-    verdict->equivalent =
-        verdict->ratio_low > 1 - BP_VERDICT_MARGIN && verdict->ratio_high < 1 + BP_VERDICT_MARGIN;
 }
 
 static double count_segments(const BpSums *sums, uint64_t *samples, uint64_t *invalid) {
@@ -197,33 +210,45 @@ static double count_segments(const BpSums *sums, uint64_t *samples, uint64_t *in
     return count > 0 ? segments / (double)count : 0;
 }
 
-BpStatus bp_verdict(const BpSums *kernel, const BpSums *reference, double level, BpVerdict *verdict,
-                    BpError *err) {
+BpStatus bp_verdict(const BpSums *kernel, const BpSums *reference, double level, double margin,
+                    BpVerdict *verdict, BpError *err) {
     if (kernel->width != reference->width || kernel->height != reference->height)
         return bp_fail(err, BP_ERR_USAGE, "cannot compare a picture of %u x %u pixels with one of %u x %u",
                        kernel->width, kernel->height, reference->width, reference->height);
     if (!(level > 0 && level < 1))
         return bp_fail(err, BP_ERR_USAGE, "the level %g is not between 0 and 1", level);
+    if (!(margin > 0)) return bp_fail(err, BP_ERR_USAGE, "the margin %g is not above 0", margin);
     for (size_t p = 0; p < (size_t)kernel->width * kernel->height; ++p)
         if (kernel->pixels[p].count + kernel->pixels[p].invalid < 2 ||
             reference->pixels[p].count + reference->pixels[p].invalid < 2)
             return bp_fail(err, BP_ERR_USAGE, "a comparison needs at least 2 samples in every pixel");
 
-    *verdict = (BpVerdict){.level = level};
+    *verdict = (BpVerdict){.level = level, .margin = margin};
     verdict->means_only = kernel->means_only != reference->means_only;
     verdict->segments_kernel = count_segments(kernel, &verdict->samples, &verdict->invalid_kernel);
     verdict->segments_reference = count_segments(reference, &verdict->samples, &verdict->invalid_reference);
     test_families(kernel, reference, verdict);
     state_accuracy(kernel, reference, verdict);
-    verdict->agree = verdict->invalid_kernel == 0 && verdict->invalid_reference == 0;
+    /* Without evidence nothing passes: the evidence must be shown, and must not be undone by a fault. */
+    verdict->conclusion = verdict->shown_within <= margin ? BP_AGREE : BP_INCONCLUSIVE;
+    if (verdict->invalid_kernel > 0 || verdict->invalid_reference > 0) verdict->conclusion = BP_DISAGREE;
     for (int f = 0; f < BP_FAMILIES; ++f)
-        if (verdict->worst[f].z > verdict->worst[f].limit) verdict->agree = false;
+        if (verdict->worst[f].z > verdict->worst[f].limit) verdict->conclusion = BP_DISAGREE;
     return BP_OK;
 }
 
 void bp_verdict_add_picture(BpVerdict *verdict, double picture_off) {
     verdict->picture_off = picture_off;
-    if (!(picture_off <= BP_VERDICT_PICTURE_OFF)) verdict->agree = false;
+    if (!(picture_off <= BP_VERDICT_PICTURE_OFF)) verdict->conclusion = BP_DISAGREE;
+}
+
+uint64_t bp_verdict_samples_needed(const BpVerdict *verdict, uint64_t samples) {
+    if (!isfinite(verdict->shown_within)) return 0;
+    /* Intervals shrink with the root of the number of samples. Three times as many leave room for chance. */
+    const double needed = 3 * (double)samples * pow(fmax(1, verdict->shown_within / verdict->margin), 2);
+    uint64_t power = 1;
+    while ((double)power < needed && power < (uint64_t)1 << 62) power *= 2;
+    return power;
 }
 
 double bp_verdict_pixel_z(const BpPixelSums *kernel, const BpPixelSums *reference) {

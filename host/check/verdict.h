@@ -1,8 +1,8 @@
 /* verdict.h: do two sets of samples of one picture come from the same light?
  *
  * In:    power sums of two renderers (reference/sums.h), drawn independently of each other.
- * Out:   a verdict at a stated error rate, and how wrong the first could still be.
- * Knows: statistics.   Does not know: scenes, renderers, devices.
+ * Out:   a verdict at a stated error rate: agree, disagree or inconclusive; and how wrong the first could
+ * still be. Knows: statistics.   Does not know: scenes, renderers, devices.
  *
  * What is tested: the mean of each channel over the whole picture and over up to 8 x 8 blocks, and the same
  * for the mean of squares, which sees a wrong spread. Picture and blocks get 45 % of the level each, their
@@ -15,6 +15,12 @@
  * precision may cost (BP_VERDICT_ROUNDING). Where one side has fewer than 20 samples that are not black,
  * means follow no normal law: the numbers of such samples are compared instead, exactly (binomial).
  *
+ * A difference that is not found is no proof of equality: samples may have been too few to find it. So a
+ * verdict says "agree" only where nothing is rejected and the brightness of the picture is shown to be equal
+ * within a margin, in luminance and in each channel that has light: both ends of the 95 % interval of each
+ * ratio lie within 1 -+ margin (two one-sided tests, Schuirmann 1987, at 2.5 % each; all must pass, so none
+ * needs a smaller level). Otherwise it is inconclusive. A black picture shows nothing, so it is too.
+ *
  * Where one side sends rays to lamps and the other finds them by chance, spreads differ and so do numbers of
  * lit samples, though means do not: the means get the whole level, with variances three of their standard
  * errors larger than estimated, and what has too few lit samples is not compared. */
@@ -24,11 +30,20 @@
 #include "reference/sums.h"
 
 #define BP_VERDICT_LEVEL 1e-4    /* default: one right kernel in ten thousand is rejected */
-#define BP_VERDICT_MARGIN 0.005  /* "equivalent": brightness shown to be equal within 0.5 % */
+#define BP_VERDICT_MARGIN 0.005  /* default: "agree" needs brightness shown to be equal within 0.5 % */
 #define BP_VERDICT_POWER 0.9     /* of the smallest bias that would have been found */
 #define BP_VERDICT_ROUNDING 2e-5 /* relative; of squares twice that */
 #define BP_VERDICT_BLOCKS_SIDE 8u
 #define BP_VERDICT_PICTURE_OFF 1e-6 /* what adding the samples up may cost a pixel; see picture_off */
+
+typedef enum BpConclusion {
+    BP_INCONCLUSIVE, /* nothing is rejected, and too little is shown */
+    BP_AGREE,
+    BP_DISAGREE
+} BpConclusion;
+
+/* "agree", "disagree", "inconclusive"; static. */
+const char *bp_conclusion_name(BpConclusion conclusion);
 
 typedef enum BpVerdictFamily {
     BP_FAMILY_PICTURE,         /* 3 tests: channel means of the whole picture */
@@ -52,8 +67,8 @@ typedef struct BpVerdictTest {
 } BpVerdictTest;
 
 typedef struct BpVerdict {
-    bool agree;
-    double level;
+    BpConclusion conclusion;
+    double level, margin;
     bool means_only; /* one side alone has rays to lamps: the families of squares are not tested (0 tests) */
     BpVerdictTest worst[BP_FAMILIES];
     uint32_t block_columns, block_rows;
@@ -63,7 +78,9 @@ typedef struct BpVerdict {
     double segments_kernel, segments_reference; /* mean number of ray segments of a path; shown, not judged */
     /* Brightness (luminance) of kernel over reference, with its 95 % interval; NaN for a black picture. */
     double ratio, ratio_low, ratio_high;
-    bool equivalent; /* the interval lies within 1 -+ BP_VERDICT_MARGIN */
+    /* The smallest margin within which brightness is shown to be equal, in luminance and in each channel that
+     * has light; at most `margin` is the evidence that "agree" needs. Infinite: nothing is shown. */
+    double shown_within;
     /* How far the kernel's picture is from the samples that it is made of: the largest |picture - mean of the
      * samples| of a pixel's channel, over the sum of that mean and the channel's mean in the picture.
      * Infinite where a pixel counts other samples as valid. Above BP_VERDICT_PICTURE_OFF it is a
@@ -75,12 +92,16 @@ typedef struct BpVerdict {
 } BpVerdict;
 
 /* Judges. Both sums must be of the same size, with at least 2 samples in every pixel (a pixel without is left
- * out of both). BP_ERR_USAGE otherwise. `level` in (0, 1). */
-BpStatus bp_verdict(const BpSums *kernel, const BpSums *reference, double level, BpVerdict *verdict,
-                    BpError *err);
+ * out of both). BP_ERR_USAGE otherwise. `level` in (0, 1), `margin` above 0: a fraction. */
+BpStatus bp_verdict(const BpSums *kernel, const BpSums *reference, double level, double margin,
+                    BpVerdict *verdict, BpError *err);
 
 /* Takes `picture_off` into a verdict that bp_verdict() gave. */
 void bp_verdict_add_picture(BpVerdict *verdict, double picture_off);
+
+/* Samples per pixel that are likely to settle an inconclusive verdict which `samples` per pixel led to; 0
+ * where no number is, as nothing is seen. */
+uint64_t bp_verdict_samples_needed(const BpVerdict *verdict, uint64_t samples);
 
 /* Signed z of one pixel's luminance: for maps, not for judging. */
 double bp_verdict_pixel_z(const BpPixelSums *kernel, const BpPixelSums *reference);

@@ -21,9 +21,32 @@ const char *bp_verdict_family_name(BpVerdictFamily family) {
     return "";
 }
 
+const char *bp_conclusion_name(BpConclusion conclusion) {
+    return conclusion == BP_AGREE ? "agree" : conclusion == BP_DISAGREE ? "disagree" : "inconclusive";
+}
+
+static void print_brightness(FILE *out, const BpVerdict *v) {
+    if (isnan(v->ratio_low))
+        fprintf(out, "  brightness        no ratio: the picture is black or too noisy\n");
+    else
+        fprintf(out, "  brightness        kernel / reference %.6f, 95 %% interval %.6f to %.6f\n", v->ratio,
+                v->ratio_low, v->ratio_high);
+    const char *asked = v->shown_within <= v->margin ? "" : ", NOT ENOUGH";
+    if (isfinite(v->shown_within))
+        fprintf(out, "  evidence          every channel is as bright within %.3g %%, %.3g %% needed%s\n",
+                100 * v->shown_within, 100 * v->margin, asked);
+    else
+        fprintf(out, "  evidence          none that every channel is as bright within %.3g %%%s\n",
+                100 * v->margin, asked);
+}
+
 static void print_verdict(FILE *out, const BpVerdict *v) {
     static const char *channels[3] = {"red", "green", "blue"};
-    fprintf(out, "%s (at most 1 false alarm in %.0f)\n", v->agree ? "agree" : "DISAGREE", 1 / v->level);
+    fprintf(out, "%s (at most 1 false alarm in %.0f)\n",
+            v->conclusion == BP_AGREE      ? "agree"
+            : v->conclusion == BP_DISAGREE ? "DISAGREE"
+                                           : "INCONCLUSIVE",
+            1 / v->level);
     for (int f = 0; f < BP_FAMILIES; ++f) {
         const BpVerdictTest *test = &v->worst[f];
         if (test->tests == 0) continue;
@@ -40,14 +63,7 @@ static void print_verdict(FILE *out, const BpVerdict *v) {
                   : "\n",
               out);
     }
-    if (isnan(v->ratio_low))
-        fprintf(out, "  brightness        no ratio: the picture is black or too noisy\n");
-    else
-        fprintf(out,
-                "  brightness        kernel / reference %.6f, 95 %% interval %.6f to %.6f:\n                 "
-                "   %s within %.1f %%\n",
-                v->ratio, v->ratio_low, v->ratio_high, v->equivalent ? "equal" : "NOT SHOWN equal",
-                100 * BP_VERDICT_MARGIN);
+    print_brightness(out, v);
     if (!isnan(v->smallest_bias))
         fprintf(out, "  power             would detect a bias of %.3f %% with probability %.2g\n",
                 100 * v->smallest_bias, BP_VERDICT_POWER);

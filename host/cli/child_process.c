@@ -1,10 +1,12 @@
 /* child_process.c: see child_process.h. */
 #include "child_process.h"
 
+#include "base/clock.h"
 #include "interrupt.h"
 #include "opencl/pocl.h"
 
 #include <errno.h>
+#include <math.h>
 #include <poll.h>
 #include <signal.h>
 #include <stdlib.h>
@@ -45,21 +47,30 @@ static _Noreturn void be_child(bool (*work)(void *argument, FILE *out), void *ar
 }
 
 /* Waits until the child has written something or ended. A signal may have come to the parent alone: it is
- * handed on. A child that does not heed the first, in a driver's long call, ends at once by the second. */
-static void wait_for_child(int descriptor, pid_t child) {
+ * handed on. A child that does not heed the first, in a driver's long call, ends at once by the second.
+ * False: the time was up. */
+static bool wait_for_child(int descriptor, pid_t child, double deadline) {
     struct pollfd end = {.fd = descriptor, .events = POLLIN};
     for (unsigned looks = 0; poll(&end, 1, LOOK_MS) <= 0;) {
+        if (bp_clock_seconds() > deadline) return false;
         if (!bp_interrupted()) continue;
         if (looks % LOOKS_PER_SIGNAL == 0) kill(child, SIGTERM);
         ++looks;
     }
+    return true;
 }
 
-static BpStatus read_all(int descriptor, pid_t child, char **bytes, size_t *size, BpError *err) {
+/* *hung: the child was killed. */
+static BpStatus read_all(int descriptor, pid_t child, double deadline, BpChildReport *report, bool *hung,
+                         BpError *err) {
     size_t room = 4096, used = 0;
     char *text = malloc(room);
     while (text != NULL) {
-        wait_for_child(descriptor, child);
+        if (!wait_for_child(descriptor, child, deadline)) {
+            *hung = true;
+            kill(child, SIGKILL);
+            break;
+        }
         const ssize_t got = read(descriptor, text + used, room - used - 1);
         if (got < 0 && errno == EINTR) continue;
         if (got <= 0) break;
@@ -71,17 +82,40 @@ static BpStatus read_all(int descriptor, pid_t child, char **bytes, size_t *size
     }
     if (text == NULL) return bp_fail(err, BP_ERR_MEMORY, "out of memory for the output of a child process");
     text[used] = '\0';
-    *bytes = text;
-    *size = used;
+    report->bytes = text;
+    report->size = used;
     return BP_OK;
 }
 
-BpStatus bp_run_in_child(bool (*work)(void *argument, FILE *out), void *argument, char **bytes, size_t *size,
-                         char failure[256], BpError *err) {
-    int ends[2];
-    *bytes = NULL;
-    *size = 0;
+static void describe_end(int ended, bool hung, double seconds, BpChildReport *report) {
+    char *failure = report->failure;
+    const size_t size = sizeof report->failure;
+    report->end = BP_CHILD_DONE;
     failure[0] = '\0';
+    if (hung) {
+        report->end = BP_CHILD_HUNG;
+        snprintf(failure, size, "hung: there was no answer within %.3g s", seconds);
+    } else if (WIFSIGNALED(ended)) {
+        report->end = BP_CHILD_CRASHED;
+        snprintf(failure, size, "crashed: %s", strsignal(WTERMSIG(ended)));
+        if (WTERMSIG(ended) == SIGABRT && !bp_pocl_finds_linker())
+            snprintf(failure, size,
+                     "crashed: %s; PoCL, the driver for CPUs, needs the linker `ld`, which is not in PATH: "
+                     "install binutils, or add the folder of `ld` to PATH",
+                     strsignal(SIGABRT));
+    } else if (WEXITSTATUS(ended) > CHILD_FAILED) {
+        report->end = BP_CHILD_FAILED;
+        snprintf(failure, size, "its driver ended the process with exit code %d", WEXITSTATUS(ended));
+    } else if (WEXITSTATUS(ended) == CHILD_FAILED) {
+        report->end = BP_CHILD_FAILED;
+        snprintf(failure, size, "%s", report->size > 0 ? report->bytes : "failed without a message");
+    }
+}
+
+BpStatus bp_run_in_child(bool (*work)(void *argument, FILE *out), void *argument, double seconds,
+                         BpChildReport *report, BpError *err) {
+    int ends[2];
+    *report = (BpChildReport){.end = BP_CHILD_FAILED};
     if (pipe(ends) != 0) return bp_fail(err, BP_ERR_FILE, "cannot open a pipe: %s", strerror(errno));
     fflush(NULL); /* or the child would write it again */
     const pid_t parent = getpid(), child = fork();
@@ -94,21 +128,13 @@ BpStatus bp_run_in_child(bool (*work)(void *argument, FILE *out), void *argument
         close(ends[0]);
         return bp_fail(err, BP_ERR_MEMORY, "cannot start a process: %s", strerror(errno));
     }
-    const BpStatus status = read_all(ends[0], child, bytes, size, err);
+    bool hung = false;
+    const double deadline = seconds > 0 ? bp_clock_seconds() + seconds : INFINITY;
+    const BpStatus status = read_all(ends[0], child, deadline, report, &hung, err);
     close(ends[0]);
     int ended = 0;
     while (waitpid(child, &ended, 0) < 0 && errno == EINTR) {
     }
-    if (WIFSIGNALED(ended) && WTERMSIG(ended) == SIGABRT && !bp_pocl_finds_linker())
-        snprintf(failure, 256,
-                 "crashed: %s; PoCL, the driver for CPUs, needs the linker `ld`, which is not in PATH: "
-                 "install binutils, or add the folder of `ld` to PATH",
-                 strsignal(SIGABRT));
-    else if (WIFSIGNALED(ended))
-        snprintf(failure, 256, "crashed: %s", strsignal(WTERMSIG(ended)));
-    else if (WEXITSTATUS(ended) > CHILD_FAILED)
-        snprintf(failure, 256, "its driver ended the process with exit code %d", WEXITSTATUS(ended));
-    else if (WEXITSTATUS(ended) == CHILD_FAILED)
-        snprintf(failure, 256, "%s", status == BP_OK && *size > 0 ? *bytes : "failed without a message");
+    describe_end(ended, hung, seconds, report);
     return status;
 }

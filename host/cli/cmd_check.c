@@ -1,238 +1,159 @@
 /* cmd_check.c: `ballpark check`.
  *
- * In:    a scene, devices.   Out: whether kernel and reference agree; a table, a document, a picture.
- * Knows: the check, devices, child processes, JSON.   Does not know: statistics, OpenCL. */
+ * In:    a scene, or the agreement scenes; devices.   Out: whether kernel and reference agree, by table,
+ * documents, a picture, and an exit code.
+ * Knows: the order of things: scenes, devices, checks, documents.
+ * Does not know: statistics, OpenCL, how a device is asked without trusting it (device_survey.h,
+ * device_items.h), what documents look like (check_report.h, check_junit.h). */
 #include "commands.h"
 
-#include "base/format.h"
-#include "base/json_text.h"
-#include "base/names.h"
 #include "base/output_file.h"
 #include "base/plural.h"
 #include "base/shown.h"
-#include "check/check.h"
-#include "child_process.h"
+#include "check_against.h"
+#include "check_bits.h"
+#include "check_junit.h"
+#include "check_report.h"
+#include "check_run.h"
+#include "device_survey.h"
 #include "file_conflicts.h"
 #include "image/image.h"
 #include "interrupt.h"
 #include "json_file.h"
-#include "report_json.h"
+#include "junit_file.h"
+#include "option_table.h"
 #include "setup.h"
-#include "terminal.h"
+#include "suite.h"
 
-#include <jansson.h>
-#include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
-/* ---- the report -------------------------------------------------------------------------------------- */
+#define SUITE_NAME "agreement"
+#define SUITE_LEVEL 1e-3  /* of the whole suite; each scene gets an equal part */
+#define SUITE_MARGIN 0.01 /* which every scene of it reaches with the default number of samples */
+#define SURVEY_SECONDS_MIN 5.0
 
-/* JSON has no NaN: what is not known is null. */
-static json_t *number(double value) {
-    return isfinite(value) ? json_real(value) : json_null();
-}
-
-static json_t *three(const double *values) {
-    return json_pack("[o, o, o]", number(values[0]), number(values[1]), number(values[2]));
-}
-
-static json_t *device_json(const BpDeviceInfo *device) {
-    return json_pack("{s:i, s:o, s:o, s:o, s:o, s:s}", "number", (int)device->number, "platform",
-                     bp_json_text(device->platform), "name", bp_json_text(device->name), "version",
-                     bp_json_text(device->version), "driver", bp_json_text(device->driver), "type",
-                     bp_device_type_names[device->type]);
-}
-
-static json_t *test_json(BpVerdictFamily family, const BpVerdictTest *test) {
-    static const char *const channels[] = {"red", "green", "blue"};
-    return json_pack("{s:s, s:i, s:b, s:o, s:o, s:s, s:[i, i], s:o, s:o, s:b}", "family",
-                     bp_verdict_family_name(family), "tests", (int)test->tests, "rejected",
-                     test->z > test->limit, "z", number(test->z), "limit", number(test->limit), "channel",
-                     channels[test->channel], "block", (int)test->column, (int)test->row, "kernel",
-                     number(test->kernel), "reference", number(test->reference), "by_counts", test->counted);
-}
-
-/* One device's result; NULL when out of memory. */
-static json_t *result_json(const BpCheckResult *result) {
-    const BpVerdict *v = &result->verdict;
-    const BpRenderReport *report = &result->report;
-    json_t *tests = json_array();
-    for (int f = 0; f < BP_FAMILIES; ++f)
-        if (v->worst[f].tests > 0) json_array_append_new(tests, test_json((BpVerdictFamily)f, &v->worst[f]));
-    json_t *brightness = json_pack("{s:o, s:o, s:o, s:f, s:b, s:f}", "ratio", number(v->ratio), "low",
-                                   number(v->ratio_low), "high", number(v->ratio_high), "confidence", 0.95,
-                                   "equivalent", v->equivalent, "margin", BP_VERDICT_MARGIN);
-    return json_pack(
-        "{s:o, s:o, s:b, s:f, s:o, s:o, s:{s:o, s:f}, s:o, s:o, s:{s:I, s:I}, s:{s:f, s:f}, s:{s:I, s:I}, "
-        "s:{s:f, s:f}, s:{s:o, s:f}}",
-        "device", device_json(&report->device), "settings", bp_report_settings(report), "agree", v->agree,
-        "level", v->level, "tests", tests, "brightness", brightness, "smallest_bias", "value",
-        number(v->smallest_bias), "power", BP_VERDICT_POWER, "mean_kernel", three(v->mean_kernel),
-        "mean_reference", three(v->mean_reference), "invalid_samples", "kernel",
-        (json_int_t)v->invalid_kernel, "reference", (json_int_t)v->invalid_reference, "segments", "kernel",
-        v->segments_kernel, "reference", v->segments_reference, "cut_paths", "kernel",
-        (json_int_t)result->cut_kernel, "reference", (json_int_t)result->cut_reference, "seconds", "kernel",
-        result->kernel_seconds, "reference", result->reference_seconds, "picture", "off",
-        number(v->picture_off), "limit", BP_VERDICT_PICTURE_OFF);
-}
-
-/* One device that no result was returned: `message` says why. */
-static json_t *failure_json(const BpDeviceInfo *device, const char *message) {
-    return json_pack("{s:o, s:o}", "device", device_json(device), "error", bp_json_text(message));
-}
-
-/* The document: the scene, the settings and the results (an array, which it takes over). */
-static json_t *document_json(const BpScene *scene, const BpCheckOptions *options, json_t *results) {
-    return json_pack("{s:o, s:i, s:i, s:I, s:i, s:o, s:I, s:o}", "scene", bp_json_text(scene->path), "width",
-                     (int)scene->camera.width, "height", (int)scene->camera.height, "samples_per_pixel",
-                     (json_int_t)options->render.samples_per_pixel, "max_depth",
-                     (int)options->render.max_depth, "seed", bp_json_whole(options->render.seed), "spheres",
-                     (json_int_t)scene->sphere_count, "results", results);
-}
-
-static void table_row(const json_t *entry, FILE *out) {
-    const json_t *device = json_object_get(entry, "device");
-    fprintf(out, "%3d  %-9s  ", (int)json_integer_value(json_object_get(device, "number")),
-            json_object_get(entry, "error") != NULL         ? "FAILED"
-            : json_is_true(json_object_get(entry, "agree")) ? "agree"
-                                                            : "DISAGREE");
-    const json_t *ratio = json_object_get(json_object_get(entry, "brightness"), "ratio");
-    if (json_is_real(ratio))
-        fprintf(out, "%.6f  ", json_real_value(ratio));
-    else
-        fprintf(out, "%8s  ", "-");
-    double worst = 0;
-    size_t index;
-    json_t *test;
-    json_array_foreach(json_object_get(entry, "tests"), index, test) {
-        worst = fmax(worst, json_real_value(json_object_get(test, "z")) /
-                                json_real_value(json_object_get(test, "limit")));
-    }
-    if (json_object_get(entry, "tests") != NULL)
-        fprintf(out, "%6.2f  ", worst);
-    else
-        fprintf(out, "%6s  ", "-");
-    bp_show(json_string_value(json_object_get(device, "name")), false, out);
-    fputs(" (", out);
-    bp_show(json_string_value(json_object_get(device, "platform")), false, out);
-    fputs(")\n", out);
-    const char *error = json_string_value(json_object_get(entry, "error"));
-    if (error == NULL) return;
-    fputs("     ", out);
-    bp_show(error, false, out);
-    fputc('\n', out);
-}
-
-/* A table of all results, a line each. */
-static void print_table(const json_t *results, FILE *out) {
-    fprintf(out, "     verdict    ratio     |z|/limit  device\n");
-    size_t index;
-    json_t *entry;
-    json_array_foreach(results, index, entry) {
-        table_row(entry, out);
-    }
-}
-
-typedef struct CheckTask {
+/* One run of the command. */
+typedef struct Session {
     const BpCommandLine *line;
-    const BpScene *scene;
-    const BpCheckOptions *options;
-    const BpDeviceInfo *device;
-    const char *map; /* file, or NULL */
+    BpSuite suite;      /* of --suite and --bits */
+    BpScene *scene;     /* else the one of the command line */
+    BpCheckItem *items; /* what is checked */
+    size_t item_count;
+    json_t *earlier; /* Optional. The document of --against. */
+    BpDeviceSurvey survey;
+    BpDeviceInfo *devices; /* those that are checked */
+    size_t device_count;
     BpFormat map_format;
-} CheckTask;
+    json_t *scenes; /* check_report.h */
+    BpError error;  /* of the first item that failed by an error */
+    char *text;     /* the verdict for people, if there is one item and one device */
+    bool interrupted;
+} Session;
 
-static void show_progress(const BpCheckProgress *progress) {
-    char left[32], text[80] = "";
-    const char *part = progress->reference ? "reference" : "kernel";
-    if (!progress->finished) snprintf(text, sizeof text, "%s %3.0f %%", part, 100 * progress->done);
-    if (!progress->finished && progress->done > 0.02) /* before, the time left is a guess */
-        snprintf(text, sizeof text, "%s %3.0f %%  %s left", part, 100 * progress->done,
-                 bp_format_seconds(progress->seconds * (1 / progress->done - 1), left, sizeof left));
-    bp_terminal_show(text);
+static bool wants_all(const BpCommandLine *line) {
+    return line->device != NULL && strcmp(line->device, "all") == 0;
 }
 
-static BpStatus write_map(const CheckTask *task, const BpCheckResult *result, BpError *err) {
-    BpPicture picture;
-    BP_TRY(bp_check_map(result, task->scene->transfer, &picture, err));
-    const BpStatus status =
-        bp_picture_write(&picture, task->map, task->map_format, task->scene->transfer, err);
-    bp_picture_clear(&picture);
-    return status;
+static bool is_stdout(const char *path) {
+    return path != NULL && strcmp(path, "-") == 0;
 }
 
-/* Checks one device in this process. `shown`: prints the verdict for people there, unless NULL. */
-static BpStatus check_device(const CheckTask *task, FILE *shown, json_t **report, bool *agree, BpError *err) {
-    BpCheck *check = NULL;
-    BpCheckProgress progress = {0};
-    const BpCheckResult *result = NULL;
-    const bool live = bp_terminal_is_live(task->line->quiet);
-    BpStatus status = BP_OK;
-    BpWaiting *waiting =
-        bp_waiting_begin(task->line->quiet, "building the kernel for %s", task->device->name);
-    status = bp_check_create(task->scene, task->options, task->device, &check, err);
-    bp_waiting_end(waiting);
-    if (status != BP_OK) goto done;
-    while (!progress.finished) {
-        BP_TRY_GOTO(status, bp_check_step(check, &progress, err), done);
-        if (live) show_progress(&progress);
-        if (bp_interrupted()) {
-            status = bp_fail(err, BP_ERR_INTERRUPTED, "interrupted before a verdict was reached");
-            goto done;
-        }
-    }
-    BP_TRY_GOTO(status, bp_check_result(check, &result, err), done);
-    *agree = result->verdict.agree;
-    if (task->map != NULL) BP_TRY_GOTO(status, write_map(task, result, err), done);
-    *report = result_json(result);
-    char *text = bp_verdict_text(&result->verdict);
-    if (*report == NULL || text == NULL)
-        status = bp_fail(err, BP_ERR_MEMORY, "out of memory for a report");
-    else if (shown != NULL) {
-        bp_show(task->scene->path, false, shown);
-        fputs(" on ", shown);
-        bp_show(result->report.device.name, false, shown);
-        fputs(" (", shown);
-        bp_show(result->report.device.platform, false, shown);
-        fprintf(shown, ")\n%ux%u pixels, %llu sample%s each: %s", result->kernel.width, result->kernel.height,
-                (unsigned long long)task->options->render.samples_per_pixel,
-                bp_plural(task->options->render.samples_per_pixel), text);
-    }
-    free(text);
-done:
-    if (live) bp_terminal_show("");
-    bp_check_destroy(&check);
-    return status;
+/* ---- the command line ------------------------------------------------------------------------------------
+ */
+
+static BpStatus refuse(const BpCommandLine *line, const char *with, const BpOption *options, size_t count,
+                       const char *why, BpError *err) {
+    for (size_t i = 0; i < count; ++i)
+        if (bp_option_given(line, options[i]))
+            return bp_fail(err, BP_ERR_USAGE, "--%s does not go with %s: %s", bp_option_name(options[i]),
+                           with, why);
+    return BP_OK;
 }
 
-/* ---- every device, each in a process of its own ------------------------------------------------------ */
-
-static bool list_in_child(void *argument, FILE *out) {
-    BpDeviceInfo *list = NULL;
-    size_t count = 0;
-    BpError err = {0};
-    (void)argument;
-    const BpStatus status = bp_devices_list(&list, &count, &err);
-    if (status != BP_OK) fputs(err.message, out);
-    const bool good = status == BP_OK && fwrite(list, sizeof *list, count, out) == count;
-    free(list);
-    bp_error_clear(&err);
-    return good;
+static BpStatus check_line(const BpCommandLine *line, BpError *err) {
+    static const BpOption of_pictures[] = {BP_OPTION_SUITE, BP_OPTION_WIDTH,    BP_OPTION_SPP,
+                                           BP_OPTION_DEPTH, BP_OPTION_SEED,     BP_OPTION_MARGIN,
+                                           BP_OPTION_MATH,  BP_OPTION_NUMERICS, BP_OPTION_EFFECTS,
+                                           BP_OPTION_MAP,   BP_OPTION_AGAINST};
+    static const BpOption of_one[] = {BP_OPTION_MAP};
+    const char *own = line->bits ? "--bits" : "--suite";
+    if (line->bits)
+        BP_TRY(refuse(line, "--bits", of_pictures, sizeof of_pictures / sizeof *of_pictures,
+                      "the recorded pictures say what is rendered", err));
+    if (line->suite)
+        BP_TRY(
+            refuse(line, "--suite", of_one, 1, "it is a picture of one scene; check that scene alone", err));
+    if ((line->bits || line->suite) && line->operand_count > 0)
+        return bp_fail(err, BP_ERR_USAGE, "ballpark check: %s brings its own scenes; leave out \"%.200s\"",
+                       own, line->operands[0]);
+    if (!line->bits && !line->suite && line->operand_count == 0)
+        return bp_fail(err, BP_ERR_USAGE,
+                       "ballpark check: missing SCENE (or --suite); see `ballpark help check`");
+    if (!line->bits && line->samples_per_pixel == 1)
+        return bp_fail(err, BP_ERR_USAGE, "a check needs at least 2 samples per pixel to measure noise");
+    if (line->json != NULL) BP_TRY(bp_json_check(line->json, err));
+    if (line->junit != NULL) BP_TRY(bp_json_check(line->junit, err));
+    return BP_OK;
 }
 
-static bool check_in_child(void *argument, FILE *out) {
-    const CheckTask *task = argument;
-    json_t *report = NULL;
-    bool agree;
-    BpError err = {0};
-    const BpStatus status = check_device(task, NULL, &report, &agree, &err);
-    if (status != BP_OK) fputs(err.message, out);
-    const bool good = status == BP_OK && json_dumpf(report, out, JSON_REAL_PRECISION(17)) == 0;
-    json_decref(report);
-    bp_error_clear(&err);
-    return good;
+static BpStatus find_map_format(Session *session, BpError *err) {
+    const char *map = session->line->map;
+    if (map == NULL) return BP_OK;
+    if (!bp_format_from_path(map, &session->map_format) || session->map_format == BP_FORMAT_BPA)
+        return bp_fail(err, BP_ERR_USAGE, "--map %s: expected a name that ends in .png, .ppm, .pfm or .exr",
+                       map);
+    return bp_output_check(map, err);
 }
+
+/* ---- scenes ----------------------------------------------------------------------------------------------
+ */
+
+/* `index`: in the suite; every scene has a seed of its own, so that their errors are independent. */
+static BpStatus add_item(Session *session, const char *name, BpScene *scene, size_t index, double level,
+                         BpError *err) {
+    const BpCommandLine *line = session->line;
+    BpCheckItem *item = &session->items[session->item_count];
+    if (bp_option_given(line, BP_OPTION_WIDTH))
+        BP_TRY(bp_scene_set_width(scene, line->width, err));
+    else if (scene->camera.width > BP_CHECK_WIDTH_DEFAULT)
+        BP_TRY(bp_scene_set_width(scene, BP_CHECK_WIDTH_DEFAULT, err));
+    *item = (BpCheckItem){.name = name, .scene = scene, .options = {.level = level}};
+    item->options.margin = bp_option_given(line, BP_OPTION_MARGIN) ? line->margin_percent / 100
+                           : line->suite                           ? SUITE_MARGIN
+                                                                   : BP_VERDICT_MARGIN;
+    BpRenderOptions *options = &item->options.render;
+    BP_TRY(bp_setup_options(line, scene, options, err));
+    if (!bp_option_given(line, BP_OPTION_SPP)) options->samples_per_pixel = BP_CHECK_SAMPLES_DEFAULT;
+    options->sampler = BP_SAMPLER_INDEPENDENT;
+    options->seed += index;
+    ++session->item_count;
+    if (json_array_append_new(session->scenes, bp_check_scene_json(name, scene, options)) != 0)
+        return bp_fail(err, BP_ERR_MEMORY, "out of memory for a report");
+    return BP_OK;
+}
+
+static BpStatus load_items(Session *session, BpError *err) {
+    const BpCommandLine *line = session->line;
+    if (line->suite) BP_TRY(bp_suite_load(&session->suite, err));
+    const size_t count = line->suite ? session->suite.count : 1;
+    session->items = calloc(count, sizeof *session->items);
+    session->scenes = json_array();
+    if (session->items == NULL || session->scenes == NULL)
+        return bp_fail(err, BP_ERR_MEMORY, "out of memory for %zu scenes", count);
+    for (size_t i = 0; i < session->suite.count; ++i)
+        BP_TRY(add_item(session, session->suite.names[i], session->suite.scenes[i], i,
+                        SUITE_LEVEL / (double)count, err));
+    if (line->suite) return BP_OK;
+    BP_TRY(bp_setup_scene(line, line->operands[0], &session->scene, err));
+    BP_TRY(add_item(session, session->scene->path, session->scene, 0, BP_VERDICT_LEVEL, err));
+    bp_setup_warn(line, session->scene, session->items[0].options.render.precision);
+    return BP_OK;
+}
+
+/* ---- devices ---------------------------------------------------------------------------------------------
+ */
 
 /* "map.png" for device 2 becomes "map-2.png". */
 static void map_name(const char *map, unsigned device, char *name, size_t size) {
@@ -242,123 +163,322 @@ static void map_name(const char *map, unsigned device, char *name, size_t size) 
 }
 
 /* The devices' own maps must be told apart from the other files, like the map that the command line names. */
-static BpStatus check_map_names(const CheckTask *task, const BpDeviceInfo *devices, size_t count,
-                                BpError *err) {
-    BpCommandLine line = *task->line;
+static BpStatus check_map_names(const Session *session, BpError *err) {
+    BpCommandLine line = *session->line;
     char name[4096];
     line.map = name;
-    for (size_t d = 0; d < count && task->map != NULL; ++d) {
-        map_name(task->map, devices[d].number, name, sizeof name);
+    for (size_t d = 0; d < session->device_count && session->line->map != NULL; ++d) {
+        map_name(session->line->map, session->devices[d].number, name, sizeof name);
         BP_TRY(bp_file_conflicts_check(&line, NULL, err));
-        BP_TRY(bp_file_conflicts_check_scene(&line, NULL, task->scene, err));
+        BP_TRY(bp_file_conflicts_check_scene(&line, NULL, session->scene, err));
         BP_TRY(bp_output_check(name, err));
     }
     return BP_OK;
 }
 
-static BpStatus check_all(CheckTask *task, json_t *results, bool *agree, bool *broken, BpError *err) {
-    char *bytes = NULL, failure[256];
-    size_t size = 0;
-    const char *map = task->map;
-    BP_TRY(bp_run_in_child(list_in_child, NULL, &bytes, &size, failure, err));
-    if (failure[0] != '\0') {
-        free(bytes);
-        return bp_fail(err, BP_ERR_DEVICE, "listing the OpenCL devices failed: %s", failure);
+static BpStatus find_devices(Session *session, BpError *err) {
+    const BpCommandLine *line = session->line;
+    BpDeviceSurvey *survey = &session->survey;
+    /* Even where a check may take no time, drivers need some to start. */
+    double seconds = bp_option_given(line, BP_OPTION_TIMEOUT) ? line->timeout_seconds : BP_SURVEY_SECONDS;
+    if (seconds < SURVEY_SECONDS_MIN) seconds = SURVEY_SECONDS_MIN;
+    BP_TRY(bp_device_survey(seconds, line->quiet, survey, err));
+    session->devices = calloc(survey->count + 1, sizeof *session->devices);
+    if (session->devices == NULL) return bp_fail(err, BP_ERR_MEMORY, "out of memory for a list of devices");
+    if (wants_all(line) && survey->count > 0) {
+        memcpy(session->devices, survey->devices, survey->count * sizeof *survey->devices);
+        session->device_count = survey->count;
+        return BP_OK;
     }
-    BpDeviceInfo *devices = (BpDeviceInfo *)(void *)bytes;
-    const size_t count = size / sizeof *devices;
+    session->device_count = 1;
+    return bp_device_survey_find(survey, wants_all(line) ? NULL : line->device, session->devices, err);
+}
+
+/* ---- checking --------------------------------------------------------------------------------------------
+ */
+
+/* Adds the entries of one device, one of each scene in order, to the document's scenes. */
+static BpStatus add_entries(Session *session, BpItemOutcome *outcomes, BpError *err) {
+    for (size_t i = 0; i < session->item_count; ++i) {
+        BpItemOutcome *outcome = &outcomes[i];
+        json_t *results = json_object_get(json_array_get(session->scenes, i), "results");
+        if (json_array_append(results, json_object_get(outcome->result, "entry")) != 0)
+            return bp_fail(err, BP_ERR_MEMORY, "out of memory for a report");
+        if (outcome->error.code == BP_ERR_INTERRUPTED) session->interrupted = true;
+        if (outcome->error.code != BP_OK && session->error.code == BP_OK) {
+            session->error = outcome->error;
+            outcome->error = (BpError){0};
+        }
+    }
+    return BP_OK;
+}
+
+static BpStatus check_device(Session *session, const BpDeviceInfo *device, BpError *err) {
+    const BpCommandLine *line = session->line;
+    char name[4096];
+    BpCheckRun run = {.items = session->items,
+                      .count = session->item_count,
+                      .device = device,
+                      .seconds = line->timeout_seconds,
+                      .map = line->map,
+                      .map_format = session->map_format,
+                      .quiet = line->quiet};
+    if (line->map != NULL && wants_all(line)) {
+        map_name(line->map, device->number, name, sizeof name);
+        run.map = name;
+    }
+    if (!line->quiet && (wants_all(line) || line->suite)) {
+        fprintf(stderr, "checking device %u, ", device->number);
+        bp_show(device->name, false, stderr);
+        fputc('\n', stderr);
+    }
+    BpItemOutcome *outcomes = calloc(session->item_count, sizeof *outcomes);
+    if (outcomes == NULL) return bp_fail(err, BP_ERR_MEMORY, "out of memory for results");
     BpStatus status = BP_OK;
-    if (count == 0)
-        status = bp_fail(err, BP_ERR_DEVICE, "no OpenCL device; `ballpark devices` says what to install");
-    if (status == BP_OK) status = check_map_names(task, devices, count, err);
-    for (size_t d = 0; d < count && status == BP_OK && !bp_interrupted(); ++d) {
-        char *text = NULL, name[4096];
-        json_t *entry = NULL;
-        task->device = &devices[d];
-        map_name(map != NULL ? map : "", devices[d].number, name, sizeof name);
-        task->map = map != NULL ? name : NULL;
-        if (!task->line->quiet) {
-            fprintf(stderr, "checking device %u, ", devices[d].number);
-            bp_show(devices[d].name, false, stderr);
-            fputc('\n', stderr);
-        }
-        if (devices[d].refusal[0] != '\0') {
-            entry = failure_json(&devices[d], devices[d].refusal);
-        } else {
-            status = bp_run_in_child(check_in_child, task, &text, &size, failure, err);
-            if (status == BP_OK && failure[0] == '\0') entry = json_loads(text, 0, NULL);
-            if (status == BP_OK && entry == NULL)
-                entry = failure_json(&devices[d], failure[0] != '\0' ? failure : "no result was returned");
-        }
-        if (json_object_get(entry, "error") != NULL)
-            *broken = true;
-        else if (!json_is_true(json_object_get(entry, "agree")))
-            *agree = false;
-        if (json_array_append_new(results, entry) != 0 && status == BP_OK)
-            status = bp_fail(err, BP_ERR_MEMORY, "out of memory for a report");
-        free(text);
+    if (device->refusal[0] == '\0') {
+        status = bp_check_run(&run, outcomes, err);
+    } else {
+        for (size_t i = 0; i < session->item_count; ++i)
+            outcomes[i].result = json_pack("{s:o}", "entry", bp_check_entry_failed(device, device->refusal));
     }
-    if (bp_interrupted() && status == BP_OK) status = bp_fail(err, BP_ERR_INTERRUPTED, "interrupted");
-    free(bytes);
+    const char *text = bp_check_text(outcomes[0].result, "text");
+    if (status == BP_OK && session->item_count == 1 && !wants_all(line) && text[0] != '\0')
+        session->text = strdup(text);
+    if (status == BP_OK) status = add_entries(session, outcomes, err);
+    bp_item_outcomes_clear(outcomes, session->item_count);
+    free(outcomes);
     return status;
 }
 
-/* ---- the command --------------------------------------------------------------------------------------- */
+/* ---- what comes of it ------------------------------------------------------------------------------------
+ */
 
-static BpStatus find_map_format(const BpCommandLine *line, CheckTask *task, BpError *err) {
-    if (line->map == NULL) return BP_OK;
-    if (!bp_format_from_path(line->map, &task->map_format) || task->map_format == BP_FORMAT_BPA)
-        return bp_fail(err, BP_ERR_USAGE, "--map %s: expected a name that ends in .png, .ppm, .pfm or .exr",
-                       line->map);
-    task->map = line->map;
-    return bp_output_check(line->map, err);
+/* The verdict of one scene on one device. */
+static void print_verdict(const Session *session, FILE *out) {
+    const json_t *scene = json_array_get(session->scenes, 0);
+    const json_t *entry = json_array_get(json_object_get(scene, "results"), 0);
+    const json_int_t samples = json_integer_value(json_object_get(entry, "samples_per_pixel"));
+    char title[700];
+    bp_show(bp_check_text(scene, "scene"), false, out);
+    fprintf(out, " on %s\n", bp_check_device_title(entry, title, sizeof title));
+    fprintf(out, "%dx%d pixels, %" JSON_INTEGER_FORMAT " sample%s each%s: %s",
+            (int)json_integer_value(json_object_get(scene, "width")),
+            (int)json_integer_value(json_object_get(scene, "height")), samples, bp_plural((uint64_t)samples),
+            json_is_true(json_object_get(entry, "timed_out")) ? " when time was up" : "", session->text);
 }
 
-BpStatus bp_command_check(const BpCommandLine *line, BpError *err) {
-    BpScene *scene = NULL;
-    BpDeviceInfo device;
-    CheckTask task = {.line = line};
-    BpCheckOptions options = {.level = BP_VERDICT_LEVEL};
-    json_t *results = NULL, *report = NULL;
-    bool agree = true, broken = false;
-    const bool all = line->device != NULL && strcmp(line->device, "all") == 0;
-    const bool to_stdout = line->json != NULL && strcmp(line->json, "-") == 0;
+static BpStatus write_documents(Session *session, const json_t *against, BpError *err) {
+    const BpCommandLine *line = session->line;
+    json_t *broken = bp_device_survey_broken_json(&session->survey);
     BpStatus status = BP_OK;
+    if (line->junit != NULL)
+        status = bp_junit_write(bp_check_junit(session->scenes, broken), line->junit, err);
+    if (line->json != NULL && status == BP_OK) {
+        json_t *document = bp_check_document(json_incref(session->scenes), json_incref(broken),
+                                             line->suite ? SUITE_NAME : NULL, SUITE_LEVEL);
+        if (against != NULL && document != NULL)
+            json_object_set(document, "against", (json_t *)(uintptr_t)against);
+        status = bp_json_write(document, line->json, err);
+    }
+    json_decref(broken);
+    return status;
+}
 
-    if (line->json != NULL) BP_TRY(bp_json_check(line->json, err));
-    BP_TRY(find_map_format(line, &task, err));
-    BP_TRY_GOTO(status, bp_setup_scene(line, line->operands[0], &scene, err), done);
-    if (!bp_option_given(line, BP_OPTION_WIDTH) && scene->camera.width > BP_CHECK_WIDTH_DEFAULT)
-        BP_TRY_GOTO(status, bp_scene_set_width(scene, BP_CHECK_WIDTH_DEFAULT, err), done);
-    BP_TRY_GOTO(status, bp_setup_options(line, scene, &options.render, err), done);
-    if (!bp_option_given(line, BP_OPTION_SPP)) options.render.samples_per_pixel = BP_CHECK_SAMPLES_DEFAULT;
-    options.render.sampler = BP_SAMPLER_INDEPENDENT;
-    bp_setup_warn(line, scene, options.render.precision);
-    task.scene = scene;
-    task.options = &options;
-    results = json_array();
+/* The exit code, by the worst that has happened. */
+static BpStatus conclude(Session *session, const json_t *against, BpError *err) {
+    const BpCommandLine *line = session->line;
+    const char *name = line->suite ? "the suite" : session->items[0].name;
+    const BpError *error = &session->error;
+    const size_t entries = session->item_count * session->device_count;
+    BpCheckCounts counts = {0};
+    bp_check_count_all(session->scenes, &counts);
+    if (session->interrupted)
+        return bp_fail(err, BP_ERR_INTERRUPTED, "interrupted before a verdict was reached");
+    if (counts.disagree > 0 && entries == 1)
+        return bp_fail(err, BP_ERR_DISAGREE, "%s: kernel and reference disagree", name);
+    if (counts.disagree > 0)
+        return bp_fail(err, BP_ERR_DISAGREE, "%s: kernel and reference disagree in %u of %zu checks", name,
+                       counts.disagree, entries);
+    if (counts.failed > 0 && entries == 1 && error->code != BP_OK) {
+        const bool device = error->code == BP_ERR_DEVICE || error->code == BP_ERR_BUILD;
+        const BpStatus status =
+            bp_fail(err, device ? BP_ERR_BROKEN_DEVICE : error->code, "%s", error->message);
+        if (error->file[0] != '\0') bp_error_at(err, error->file, error->line, error->column);
+        bp_error_attach(err, error->attachment);
+        return status;
+    }
+    if (counts.failed > 0)
+        return bp_fail(err, BP_ERR_BROKEN_DEVICE, "%s: a device failed before it could be checked", name);
+    if (wants_all(line) && session->survey.broken_count > 0)
+        return bp_fail(err, BP_ERR_BROKEN_DEVICE, "the driver %s could not be checked: it %s",
+                       session->survey.broken[0].file, session->survey.broken[0].failure);
+    const size_t gone = against != NULL ? bp_check_against_gone(against) : 0;
+    if (gone > 0)
+        return bp_fail(err, BP_ERR_NO_DEVICE, "%zu device%s of the earlier check %s not there", gone,
+                       bp_plural(gone), gone == 1 ? "is" : "are");
+    if (counts.inconclusive > 0 && entries == 1)
+        return bp_fail(
+            err, BP_ERR_INCONCLUSIVE, "%s: inconclusive: %s", name,
+            bp_check_text(json_array_get(json_object_get(json_array_get(session->scenes, 0), "results"), 0),
+                          "reason"));
+    if (counts.inconclusive > 0)
+        return bp_fail(err, BP_ERR_INCONCLUSIVE, "%s: %u of %zu checks are inconclusive", name,
+                       counts.inconclusive, entries);
+    return BP_OK;
+}
+
+static BpStatus check_all(Session *session, BpError *err) {
+    const BpCommandLine *line = session->line;
+    json_t *against = NULL;
+    BpStatus status = BP_OK;
+    BP_TRY(find_map_format(session, err));
+    if (line->against != NULL) BP_TRY(bp_check_against_read(line->against, &session->earlier, err));
+    BP_TRY(load_items(session, err));
     bp_interrupt_catch();
+    BP_TRY(find_devices(session, err));
+    if (wants_all(line)) BP_TRY(check_map_names(session, err));
+    for (size_t d = 0; d < session->device_count && !session->interrupted; ++d)
+        BP_TRY(check_device(session, &session->devices[d], err));
+    if (session->interrupted && session->item_count * session->device_count == 1)
+        return conclude(session, NULL, err);
 
-    if (all) {
-        BP_TRY_GOTO(status, check_all(&task, results, &agree, &broken, err), done);
-        if (!to_stdout) print_table(results, stdout);
-    } else {
-        BP_TRY_GOTO(status, bp_setup_try_device(line->device, err), done);
-        BP_TRY_GOTO(status, bp_device_find(line->device, &device, err), done);
-        task.device = &device;
-        BP_TRY_GOTO(status, check_device(&task, to_stdout ? NULL : stdout, &report, &agree, err), done);
-        json_array_append_new(results, report);
+    if (session->earlier != NULL) {
+        against = bp_check_against(session->scenes, session->earlier, line->against, wants_all(line));
+        if (against == NULL) return bp_fail(err, BP_ERR_MEMORY, "out of memory for a comparison");
     }
-    if (line->json != NULL) {
-        status = bp_json_write(document_json(scene, &options, json_incref(results)), line->json, err);
-        if (status != BP_OK) goto done;
+    if (!is_stdout(line->json) && !is_stdout(line->junit)) {
+        if (session->text != NULL)
+            print_verdict(session, stdout);
+        else if (wants_all(line) || line->suite)
+            bp_check_print_table(session->scenes, line->quiet, stdout);
+        if (against != NULL) bp_check_against_print(against, stdout);
     }
-    if (!agree)
-        status = bp_fail(err, BP_ERR_DISAGREE, "%s: kernel and reference disagree", scene->path);
-    else if (broken)
-        status = bp_fail(err, BP_ERR_DEVICE, "%s: a device failed before it could be checked", scene->path);
-done:
+    status = write_documents(session, against, err);
+    if (status == BP_OK) status = conclude(session, against, err);
+    json_decref(against);
+    return status;
+}
+
+/* ---- --bits ----------------------------------------------------------------------------------------------
+ */
+
+static json_t *bits_case(const json_t *entry) {
+    char name[256];
+    const char *verdict = bp_check_text(entry, "verdict");
+    snprintf(name, sizeof name, "%s, %s, %s, %s", bp_check_text(entry, "scene"),
+             bp_check_text(entry, "kernel"), bp_check_text(entry, "acceleration"),
+             bp_check_text(entry, "precision"));
+    return json_pack("{s:s, s:s, s:f, s:s, s:s, s:s}", "name", name, "class", "ballpark.check.bits",
+                     "seconds", 0.0, "outcome",
+                     strcmp(verdict, "agree") == 0     ? "passed"
+                     : strcmp(verdict, "skipped") == 0 ? "skipped"
+                     : strcmp(verdict, "failed") == 0  ? "error"
+                                                       : "failure",
+                     "type", verdict, "reason", bp_check_text(entry, "reason"));
+}
+
+static json_t *bits_junit_suite(const json_t *entries) {
+    json_t *suite = bp_check_junit_suite(json_array_get(entries, 0)), *entry;
+    size_t index;
+    int failed = suite == NULL;
+    json_array_foreach(entries, index, entry) {
+        failed |= json_array_append_new(json_object_get(suite, "cases"), bits_case(entry));
+    }
+    if (!failed) return suite;
+    json_decref(suite);
+    return NULL;
+}
+
+static BpStatus write_bits(const Session *session, json_t *results, BpError *err) {
+    const BpCommandLine *line = session->line;
+    json_t *broken = bp_device_survey_broken_json(&session->survey);
+    json_t *suites = bp_check_junit(NULL, broken), *entries;
+    BpStatus status = BP_OK;
+    BpCheckCounts counts = {0};
+    json_t *all = json_array();
+    size_t index, e;
+    json_array_foreach(results, index, entries) {
+        json_t *entry;
+        if (json_array_append_new(suites, bits_junit_suite(entries)) != 0)
+            status = bp_fail(err, BP_ERR_MEMORY, "out of memory for a report");
+        json_array_foreach(entries, e, entry) {
+            bp_check_count(entry, &counts);
+            json_array_append(all, entry);
+        }
+    }
+    if (line->junit != NULL && status == BP_OK)
+        status = bp_junit_write(suites, line->junit, err);
+    else
+        json_decref(suites);
+    if (line->json != NULL && status == BP_OK)
+        status = bp_json_write(json_pack("{s:s, s:s, s:s, s:O, s:O}", "ballpark", bp_version(), "suite",
+                                         "bits", "verdict", bp_check_overall(&counts), "broken_drivers",
+                                         broken, "results", all),
+                               line->json, err);
+    json_decref(broken);
+    json_decref(all);
+    if (status != BP_OK) return status;
+    if (bp_interrupted()) return bp_fail(err, BP_ERR_INTERRUPTED, "interrupted");
+    if (counts.disagree > 0)
+        return bp_fail(err, BP_ERR_DISAGREE, "%u picture%s from the recorded one%s", counts.disagree,
+                       counts.disagree == 1 ? " differs" : "s differ", counts.disagree == 1 ? "" : "s");
+    if (counts.failed > 0)
+        return bp_fail(err, BP_ERR_BROKEN_DEVICE, "a device failed before all pictures were compared");
+    if (wants_all(line) && session->survey.broken_count > 0)
+        return bp_fail(err, BP_ERR_BROKEN_DEVICE, "the driver %s could not be checked: it %s",
+                       session->survey.broken[0].file, session->survey.broken[0].failure);
+    if (counts.inconclusive > 0 || counts.agree == 0)
+        return bp_fail(err, BP_ERR_INCONCLUSIVE, "%u pictures were compared and %u were not", counts.agree,
+                       counts.inconclusive + counts.skipped);
+    return BP_OK;
+}
+
+static BpStatus check_bits(Session *session, BpError *err) {
+    const BpCommandLine *line = session->line;
+    json_t *pictures = NULL, *results = NULL, *entries = NULL;
+    BpStatus status = bp_check_bits_read(&pictures, err);
+    if (status == BP_OK) status = bp_suite_load(&session->suite, err);
+    bp_interrupt_catch();
+    if (status == BP_OK) status = find_devices(session, err);
+    results = json_array();
+    for (size_t d = 0; d < session->device_count && status == BP_OK && !bp_interrupted(); ++d) {
+        const BpBitsRun run = {.pictures = pictures,
+                               .suite = &session->suite,
+                               .device = &session->devices[d],
+                               .seconds = line->timeout_seconds,
+                               .kernel = line->kernel,
+                               .one_precision = bp_option_given(line, BP_OPTION_PRECISION),
+                               .precision = line->precision,
+                               .quiet = line->quiet};
+        status = bp_check_bits_run(&run, &entries, err);
+        if (status != BP_OK) break;
+        if (!is_stdout(line->json) && !is_stdout(line->junit))
+            bp_check_bits_print(entries, line->quiet, stdout);
+        if (json_array_append_new(results, entries) != 0)
+            status = bp_fail(err, BP_ERR_MEMORY, "out of memory for a report");
+    }
+    if (status == BP_OK) status = write_bits(session, results, err);
     json_decref(results);
-    bp_scene_destroy(&scene);
+    json_decref(pictures);
+    return status;
+}
+
+/* ---- the command -----------------------------------------------------------------------------------------
+ */
+
+BpStatus bp_command_check(const BpCommandLine *line, BpError *err) {
+    Session session = {.line = line};
+    BpStatus status = check_line(line, err);
+    if (status == BP_OK) status = line->bits ? check_bits(&session, err) : check_all(&session, err);
+    /* The folder of the survey goes first, as it was made last (temporary_folder.h). */
+    bp_device_survey_clear(&session.survey);
+    bp_suite_clear(&session.suite);
+    bp_scene_destroy(&session.scene);
+    bp_error_clear(&session.error);
+    json_decref(session.scenes);
+    json_decref(session.earlier);
+    free(session.devices);
+    free(session.items);
+    free(session.text);
     return status;
 }

@@ -1,12 +1,14 @@
 /* cmd_devices.c: `ballpark devices`.
  *
- * In:    nothing.   Out: a table, or JSON, of every OpenCL device.
+ * In:    nothing.   Out: a table, or JSON, of every OpenCL device, and the drivers that crash or hang.
  * Knows: BpDeviceInfo, tables on a terminal.   Does not know: OpenCL. */
 #include "commands.h"
 
 #include "base/json_text.h"
 #include "base/names.h"
 #include "base/shown.h"
+#include "device_survey.h"
+#include "interrupt.h"
 #include "json_file.h"
 
 #include <errno.h>
@@ -71,11 +73,11 @@ static BpStatus print_table(const BpDeviceInfo *list, size_t count, unsigned def
     return BP_OK;
 }
 
-static BpStatus write_json(const char *path, const BpDeviceInfo *list, size_t count, unsigned default_number,
+static BpStatus write_json(const char *path, const BpDeviceSurvey *survey, unsigned default_number,
                            BpError *err) {
     json_t *devices = json_array();
-    for (size_t d = 0; d < count && devices != NULL; ++d) {
-        const BpDeviceInfo *info = &list[d];
+    for (size_t d = 0; d < survey->count && devices != NULL; ++d) {
+        const BpDeviceInfo *info = &survey->devices[d];
         json_t *entry =
             json_pack("{s:i, s:b, s:s, s:o, s:o, s:o, s:o, s:o, s:i, s:I, s:I, s:b, s:o}", "number",
                       (int)info->number, "default", info->number == default_number, "type",
@@ -90,26 +92,34 @@ static BpStatus write_json(const char *path, const BpDeviceInfo *list, size_t co
             devices = NULL;
         }
     }
-    json_t *root = devices != NULL ? json_pack("{s:o}", "devices", devices) : NULL;
+    json_t *root = devices != NULL ? json_pack("{s:o, s:o}", "devices", devices, "broken_drivers",
+                                               bp_device_survey_broken_json(survey))
+                                   : NULL;
     return bp_json_write(root, path, err);
 }
 
 BpStatus bp_command_devices(const BpCommandLine *line, BpError *err) {
-    BpDeviceInfo *list = NULL;
-    size_t count = 0;
+    BpDeviceSurvey survey = {0};
+    const double seconds =
+        bp_option_given(line, BP_OPTION_TIMEOUT) ? line->timeout_seconds : BP_SURVEY_SECONDS;
     if (line->json != NULL) BP_TRY(bp_json_check(line->json, err));
-    BP_TRY(bp_devices_list(&list, &count, err));
-    /* The default also tells whether anything here can render; if not, its error says what to do. */
-    BpDeviceInfo chosen;
-    BpStatus status = bp_device_find(NULL, &chosen, err);
-    const unsigned default_number = status == BP_OK ? chosen.number : UINT32_MAX;
-    BpStatus shown = BP_OK;
-    if (line->json != NULL)
-        shown = write_json(line->json, list, count, default_number, err);
-    else if (count > 0)
-        shown = print_table(list, count, default_number, err);
+    bp_interrupt_catch(); /* a signal ends the child that lists, too */
+    BpStatus status = bp_device_survey(seconds, false, &survey, err), shown = BP_OK;
+    if (status == BP_OK) {
+        /* The default also tells whether anything here can render; if not, its error says what to do. */
+        BpDeviceInfo chosen;
+        status = bp_device_survey_find(&survey, NULL, &chosen, err);
+        if (status == BP_ERR_NO_DEVICE || status == BP_ERR_BROKEN_DEVICE) status = BP_ERR_DEVICE;
+        const unsigned default_number = status == BP_OK ? chosen.number : UINT32_MAX;
+        if (line->json != NULL)
+            shown = write_json(line->json, &survey, default_number, err);
+        else if (survey.count > 0)
+            shown = print_table(survey.devices, survey.count, default_number, err);
+    } else if (status == BP_ERR_BROKEN_DEVICE) {
+        status = BP_ERR_DEVICE;
+    }
     if (shown == BP_OK && (fflush(stdout) != 0 || ferror(stdout)))
         shown = bp_fail(err, BP_ERR_FILE, "cannot write to standard output: %s", strerror(errno));
-    free(list);
+    bp_device_survey_clear(&survey);
     return shown != BP_OK ? shown : status;
 }

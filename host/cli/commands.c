@@ -45,8 +45,7 @@ const BpCommand bp_commands[] = {
     },
     {
         .name = "check",
-        .operands = "SCENE",
-        .operands_min = 1,
+        .operands = "[SCENE]",
         .operands_max = 1,
         .summary = "compare a device's picture with a reference",
         .description =
@@ -55,11 +54,25 @@ const BpCommand bp_commands[] = {
             "statistically. Reports whether they agree, the confidence interval of their ratio of "
             "brightness, and the smallest error it would have detected. Default: 64 pixels wide, 1024 "
             "samples per pixel. A correct kernel fails one check in 10,000.\n\n"
-            "--device all checks every device, each in its own process, so that a crashing driver does not "
-            "stop the others from being checked. Exit code: 0 agree, 3 disagree, 1 a device failed.",
+            "Nothing passes without evidence: if no difference is found, but the samples are too few to show "
+            "that brightness is equal within --margin, the verdict is inconclusive.\n\n"
+            "--suite checks the agreement scenes instead, which come with the program; a correct kernel "
+            "fails "
+            "one suite in 1,000. --device all checks every device. Each device is checked in its own "
+            "process, "
+            "and devices are listed in one, so a driver that crashes or hangs is reported by name and does "
+            "not "
+            "stop the others. With --timeout, each device is judged by what it has rendered by then.\n\n"
+            "--bits compares small pictures with recorded ones, bit for bit, in every form of the kernel. A "
+            "device that differs may still be right: --suite tells.\n\n"
+            "Exit code: 0 agree, 3 disagree (or other bits), 4 inconclusive, 5 no such device, 6 a device or "
+            "its driver failed; of several, the first of 3, 6, 5, 4.",
         .examples = "  ballpark check cover.json\n"
                     "  ballpark check cover.json --device all --json report.json\n"
-                    "  ballpark check cover.json --spp 16384 --map map.png    more sensitive\n",
+                    "  ballpark check cover.json --spp 16384 --map map.png    more sensitive\n"
+                    "  ballpark check --suite --device all --timeout 300 --junit new.xml\n"
+                    "  ballpark check --suite --against old.json       after a driver's update\n"
+                    "  ballpark check --bits                           the same bits as elsewhere?\n",
         .bit = BP_CHECK,
         .run = bp_command_check,
     },
@@ -147,7 +160,9 @@ const BpCommand bp_commands[] = {
         .operands = "",
         .summary = "list the OpenCL devices",
         .description = "Lists every device of every OpenCL platform and marks the one that is used by "
-                       "default: a GPU if there is one, otherwise a CPU.",
+                       "default: a GPU if there is one, otherwise a CPU. A driver that crashes or hangs when "
+                       "it is asked "
+                       "for its devices is named and left out.",
         .examples = "  ballpark devices\n"
                     "  ballpark devices --json -       the same as JSON\n",
         .bit = BP_DEVICES,

@@ -53,6 +53,8 @@ BpStatus bp_file_conflicts_check(const BpCommandLine *line, const char *picture,
              ++i)
             if (bp_output_same(result->path, line->operands[i], STDIN_FILENO))
                 return refuse(result, "its own input", err);
+        if (line->against != NULL && bp_output_same(result->path, line->against, STDIN_FILENO))
+            return refuse(result, "the earlier check that --against names", err);
     }
     return BP_OK;
 }

@@ -76,7 +76,8 @@ static void print_program_help(void) {
            "  ballpark generate cover -o cover.json   write the book's cover scene\n"
            "  ballpark render cover.json              render it to cover.png\n\n"
            "Exit codes: 0 success; 1 failure at run time (device, memory, file); 2 invalid\n"
-           "command line or scene; 3 check found a disagreement; 130 interrupted.\n");
+           "command line or scene; 130 interrupted. Of check also: 3 disagreement; 4 not\n"
+           "enough evidence; 5 no such device; 6 a device or its driver failed.\n");
 }
 
 BpStatus bp_help_print(const BpCommand *command, BpError *err) {

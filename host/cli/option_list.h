@@ -121,6 +121,23 @@ enum {
            BP_RESULT("FILE"))                                                                                \
     OPTION(MAP, "map", 0, BP_CHECK, "write a picture of where kernel and reference differ", const char *,    \
            map, BP_RESULT("FILE"))                                                                           \
+    OPTION(SUITE, "suite", 0, BP_CHECK,                                                                      \
+           "check all agreement scenes, small ones of one effect each, which come with the program", bool,   \
+           suite, BP_FLAG)                                                                                   \
+    OPTION(BITS, "bits", 0, BP_CHECK, "compare the device's pictures with recorded ones, bit for bit", bool, \
+           bits, BP_FLAG)                                                                                    \
+    OPTION(MARGIN, "margin", 0, BP_CHECK,                                                                    \
+           "agree only if brightness is shown to be equal within PERCENT (default: 0.5, suite 1)", double,   \
+           margin_percent, BP_REAL("PERCENT", 0, 100))                                                       \
+    OPTION(TIMEOUT, "timeout", 0, BP_CHECK | BP_DEVICES,                                                     \
+           "time per device; check judges what there is by then (default: no limit; 20 to list devices)",    \
+           double, timeout_seconds, BP_REAL("SECONDS", 0, 1e7))                                              \
+    OPTION(AGAINST, "against", 0, BP_CHECK,                                                                  \
+           "compare with an earlier check, the FILE of its --json: regressions, other drivers",              \
+           const char *, against, BP_TEXT("FILE"))                                                           \
+    OPTION(JUNIT, "junit", 0, BP_CHECK,                                                                      \
+           "write the results as JUnit's XML, for continuous integration; \"-\" is standard output",         \
+           const char *, junit, BP_RESULT("FILE"))                                                           \
     OPTION(GRID, "grid", 0, BP_GENERATE, "half the side of the square of small spheres (default: 11)",       \
            uint32_t, grid, BP_WHOLE("G", 0, 5000))                                                           \
     OPTION(COUNT, "count", 0, BP_GENERATE, "number of spheres in a field (default: 1000000)", uint64_t,      \

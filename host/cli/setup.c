@@ -115,14 +115,14 @@ static bool try_device(void *argument, FILE *out) {
 }
 
 BpStatus bp_setup_try_device(const char *name, BpError *err) {
-    char failure[256], copy[256], *bytes = NULL;
-    size_t size = 0;
+    char copy[256];
+    BpChildReport report;
     if (bp_pocl_finds_linker()) return BP_OK;
     snprintf(copy, sizeof copy, "%s", name != NULL ? name : "");
-    BP_TRY(bp_run_in_child(try_device, copy, &bytes, &size, failure, err));
-    free(bytes);
-    if (failure[0] == '\0') return BP_OK;
-    return bp_fail(err, BP_ERR_DEVICE, "the OpenCL driver %s", failure);
+    BP_TRY(bp_run_in_child(try_device, copy, 0, &report, err));
+    free(report.bytes);
+    if (report.end == BP_CHILD_DONE) return BP_OK;
+    return bp_fail(err, BP_ERR_DEVICE, "the OpenCL driver %s", report.failure);
 }
 
 BpStatus bp_setup_devices(const BpCommandLine *line, BpDeviceInfo **devices, size_t *count, BpError *err) {

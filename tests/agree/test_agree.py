@@ -3,7 +3,7 @@
 
 usage: test_agree.py PROGRAM RESULT.json SAMPLES [--seed N] [--device D] SCENE...
 
-Runs `ballpark check` on each scene and collects its report. The whole suite rejects a right kernel with probability
+Runs `ballpark check` on each scene and collects its report. An inconclusive scene fails. The whole suite rejects a right kernel with probability
 1e-3 at most: each scene gets an equal part of it, and each of its four families of tests the part that the
 check itself gives it, so the limits here are a little wider than those of a single check. Every scene has a seed of
 its own (N, N + 1, ...), so that their errors are independent.
@@ -25,7 +25,7 @@ def limit_of(level, tests):
 def check(program, scene, samples, more):
     command = [program, "check", scene, "--spp", str(samples), "--quiet", "--json", "-", *more]
     done = subprocess.run(command, capture_output=True, text=True)
-    if done.returncode not in (0, 3):
+    if done.returncode not in (0, 3, 4):
         return None, f"exit code {done.returncode}: {done.stderr.strip()}"
     return json.loads(done.stdout), ""
 
@@ -53,14 +53,14 @@ def main():
         level = SUITE_LEVEL / len(rest)
         worst = max(t["z"] / limit_of(level * SHARES[t["family"]], t["tests"]) for t in result["tests"])
         invalid = sum(result["invalid_samples"].values())
-        agree = worst <= 1 and invalid == 0
+        agree = worst <= 1 and invalid == 0 and result["verdict"] != "inconclusive"
         failures += not agree
         b = result["brightness"]
         interval = f"{b['low']:.5f} .. {b['high']:.5f}" if b["low"] is not None else "-"
         ratio = f"{b['ratio']:.5f}" if b["ratio"] is not None else "-"
         bias = result["smallest_bias"]["value"]
         print(f"{name:32} {worst:11.2f}  {ratio:>9} {interval:>20}  {100 * (bias or 0):8.3f} %"
-              + ("" if agree else "  DISAGREE") + (f"  {invalid} invalid samples" if invalid else ""), flush=True)
+              + ("" if agree else f"  {result['verdict'].upper()}") + (f"  {invalid} invalid samples" if invalid else ""), flush=True)
         rows.append({"scene": name, "agree": agree, "worst": worst, "width": report["width"],
                      "height": report["height"], "samples": report["samples_per_pixel"], "result": result})
     with open(result_path, "w", encoding="utf-8") as file:

@@ -17,7 +17,7 @@ static BpScene *scene_of(const char *name, uint32_t width) {
 }
 
 static BpCheckOptions options_for(const BpScene *scene) {
-    BpCheckOptions options = {.level = BP_VERDICT_LEVEL};
+    BpCheckOptions options = {.level = BP_VERDICT_LEVEL, .margin = 0.05};
     bp_render_defaults(scene, &options.render);
     options.render.samples_per_pixel = 50;
     options.render.sampler = BP_SAMPLER_INDEPENDENT;
@@ -54,7 +54,9 @@ static void chunks_and_threads_change_nothing(void **state) {
     BpScene *scene = scene_of("v4-18-glass-hollow.json", 40);
     BpCheckOptions options = options_for(scene);
     BpCheck *plain = check_with(scene, &options);
-    assert_true(result_of(plain)->verdict.agree);
+    assert_int_equal(result_of(plain)->verdict.conclusion, BP_AGREE);
+    assert_int_equal(result_of(plain)->samples_per_pixel, 50);
+    assert_false(result_of(plain)->timed_out);
     assert_int_equal(result_of(plain)->verdict.samples, 2u * 40u * scene->camera.height * 50u);
     const uint32_t chunks[3] = {999, 4096, 100000};
     for (unsigned i = 0; i < 3; ++i) {
@@ -75,6 +77,58 @@ static void chunks_and_threads_change_nothing(void **state) {
     assert_false(same_sums(&result_of(plain)->reference, &result_of(other)->reference));
     bp_check_destroy(&other);
     bp_check_destroy(&plain);
+    bp_scene_destroy(&scene);
+}
+
+/* Time that suffices changes nothing, though both sides proceed in rounds. Time that is up before the first
+ * round gives no verdict; and in between, the rounds that were whole are judged, as if they had been asked
+ * for. How far it gets until a limit is a matter of the machine: so limits are tried until one ends it in
+ * between. */
+static void limits_of_time(void **state) {
+    (void)state;
+    BpScene *scene = scene_of("v4-18-glass-hollow.json", 40);
+    BpCheckOptions options = options_for(scene);
+    BpCheck *plain = check_with(scene, &options);
+    options.seconds = 1e6;
+    BpCheck *limited = check_with(scene, &options);
+    const BpCheckResult *a = result_of(plain), *b = result_of(limited);
+    assert_true(same_sums(&a->kernel, &b->kernel) && same_sums(&a->reference, &b->reference));
+    assert_true(a->verdict.picture_off == b->verdict.picture_off && !b->timed_out);
+    bp_check_destroy(&limited);
+    bp_check_destroy(&plain);
+
+    options.seconds = 1e-9;
+    BpError err = {0};
+    assert_int_equal(bp_check_create(scene, &options, NULL, &limited, &err), BP_OK);
+    assert_int_equal(bp_check_step(limited, NULL, &err), BP_ERR_INCONCLUSIVE);
+    assert_non_null(strstr(err.message, "16 samples per pixel"));
+    bp_check_destroy(&limited);
+
+    options.render.samples_per_pixel = 1u << 20;
+    for (options.seconds = 0.2; options.seconds < 100; options.seconds *= 2) {
+        BpCheckProgress progress = {0};
+        BpStatus status = bp_check_create(scene, &options, NULL, &limited, &err);
+        while (status == BP_OK && !progress.finished) status = bp_check_step(limited, &progress, &err);
+        if (status == BP_OK) break;
+        assert_int_equal(status, BP_ERR_INCONCLUSIVE);
+        bp_check_destroy(&limited);
+    }
+    b = result_of(limited);
+    assert_true(b->timed_out);
+    const uint64_t samples = b->samples_per_pixel;
+    assert_true(samples >= 16 && samples < 1u << 20 && (samples & (samples - 1)) == 0);
+    assert_int_equal(b->verdict.samples, 2u * 40u * scene->camera.height * samples);
+    options.seconds = 0;
+    options.render.samples_per_pixel = samples;
+    plain = check_with(scene, &options);
+    a = result_of(plain);
+    assert_true(same_sums(&a->kernel, &b->kernel) && same_sums(&a->reference, &b->reference));
+    assert_true(a->cut_kernel == b->cut_kernel && a->cut_reference == b->cut_reference);
+    assert_true(a->verdict.picture_off == b->verdict.picture_off);
+    assert_int_equal(a->verdict.conclusion, b->verdict.conclusion);
+    bp_check_destroy(&plain);
+    bp_check_destroy(&limited);
+    bp_error_clear(&err);
     bp_scene_destroy(&scene);
 }
 
@@ -118,6 +172,7 @@ static void refusals(void **state) {
 
 int main(void) {
     const struct CMUnitTest tests[] = {cmocka_unit_test(chunks_and_threads_change_nothing),
-                                       cmocka_unit_test(map), cmocka_unit_test(refusals)};
+                                       cmocka_unit_test(limits_of_time), cmocka_unit_test(map),
+                                       cmocka_unit_test(refusals)};
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

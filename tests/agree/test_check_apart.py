@@ -22,7 +22,8 @@ def check(folder, *more, kernels=None):
     environment = dict(os.environ)
     if kernels:
         environment["BALLPARK_KERNELS"] = str(kernels)
-    return subprocess.run([program, "check", str(scene), "--device", "all", "--width", "16", "--spp", "64", *more],
+    return subprocess.run([program, "check", str(scene), "--device", "all", "--width", "16", "--spp", "64", "--margin", "2",
+                           *more],
                           env=environment, capture_output=True, text=True, cwd=folder)
 
 
@@ -52,13 +53,13 @@ with tempfile.TemporaryDirectory() as folder:
 
     # The address is computed, so that no compiler can see that nothing lies there.
     crash = patched(folder, "crash", "*(volatile __global float *)(size_t)(max_depth & 1u) = 1.0f; " + store)
-    expect("a kernel that crashes", check(folder, kernels=crash), 1, "FAILED", "crashed")
+    expect("a kernel that crashes", check(folder, kernels=crash), 6, "FAILED", "crashed")
     done = check(folder, "--json", "-", kernels=crash)
     assert "crashed" in json.loads(done.stdout)["results"][0]["error"], done.stdout
 
     wrong = patched(folder, "wrong", "path.radiance = scale3(splat(R(1.1)), path.radiance); " + store)
     expect("a kernel too bright by a tenth", check(folder, kernels=wrong), 3, "DISAGREE")
-    expect("a kernel that does not compile", check(folder, kernels=patched(folder, "broken", "this is no C;")), 1,
+    expect("a kernel that does not compile", check(folder, kernels=patched(folder, "broken", "this is no C;")), 6,
            "FAILED")
 
 

@@ -35,7 +35,7 @@ static BpVerdict check(const BpScene *scene, uint64_t samples, uint64_t seed, do
     BpVerdict verdict;
     draw_kernel(scene, samples, seed, &kernel);
     draw_reference(scene, samples, seed, &reference);
-    assert_int_equal(bp_verdict(&kernel, &reference, level, &verdict, NULL), BP_OK);
+    assert_int_equal(bp_verdict(&kernel, &reference, level, BP_VERDICT_MARGIN, &verdict, NULL), BP_OK);
     bp_sums_clear(&kernel);
     bp_sums_clear(&reference);
     return verdict;
@@ -48,7 +48,7 @@ static void control(void **state) {
     int rejected = 0, interval_missed = 0;
     for (uint64_t seed = 0; seed < 200; ++seed) {
         const BpVerdict verdict = check(&built.scene, 200, seed, 0.05);
-        rejected += !verdict.agree;
+        rejected += verdict.conclusion == BP_DISAGREE;
         interval_missed += verdict.ratio_low > 1 || verdict.ratio_high < 1;
     }
     printf("control: rejected %d of 200 at 0.05; the 95 %% interval missed 1 %d times\n", rejected,
@@ -98,7 +98,7 @@ static void calibrated(void **state) {
             const BpVerdict verdict =
                 check(&built.scene, (uint64_t)samples, 1000 * (uint64_t)(i + 1) + run, 1e-4);
             by_picture += verdict.worst[BP_FAMILY_PICTURE].z > limit;
-            rejected += !verdict.agree;
+            rejected += verdict.conclusion == BP_DISAGREE;
         }
         kernel_copy_close(&copy);
         const double p = bp_binomial_two_sided((uint64_t)by_picture, 100, powers[i]);
@@ -124,13 +124,14 @@ static void half_percent(void **state) {
     built.scene.camera.pixel_sampling = BP_PIXEL_SQUARE;
     int wrong = 0, right = 0;
     for (uint64_t seed = 0; seed < 10; ++seed)
-        right += !check(&built.scene, BP_CHECK_SAMPLES_DEFAULT, seed, BP_VERDICT_LEVEL).agree;
+        right += check(&built.scene, BP_CHECK_SAMPLES_DEFAULT, seed, BP_VERDICT_LEVEL).conclusion != BP_AGREE;
     KernelCopy copy;
     kernel_copy_open(
         &copy, "entry/trace_packet.cl", "(real4)(red[lane], green[lane], blue[lane], count[lane])",
         "(real4)(R(1.005) * red[lane], R(1.005) * green[lane], R(1.005) * blue[lane], count[lane])");
     for (uint64_t seed = 10; seed < 20; ++seed)
-        wrong += !check(&built.scene, BP_CHECK_SAMPLES_DEFAULT, seed, BP_VERDICT_LEVEL).agree;
+        wrong +=
+            check(&built.scene, BP_CHECK_SAMPLES_DEFAULT, seed, BP_VERDICT_LEVEL).conclusion == BP_DISAGREE;
     kernel_copy_close(&copy);
     printf("0.5 %% too bright: rejected %d of 10; the true kernel %d of 10\n", wrong, right);
     assert_true(wrong >= 9);

@@ -32,7 +32,7 @@ static void brighten(BpSums *sums, double factor) {
 
 static BpVerdict judge(const BpSums *kernel, const BpSums *reference, double level) {
     BpVerdict verdict;
-    assert_int_equal(bp_verdict(kernel, reference, level, &verdict, NULL), BP_OK);
+    assert_int_equal(bp_verdict(kernel, reference, level, BP_VERDICT_MARGIN, &verdict, NULL), BP_OK);
     return verdict;
 }
 
@@ -47,7 +47,7 @@ static void control(void **state) {
         draw(&built.scene, 200, 2 * i + 1, &a);
         draw(&built.scene, 200, 2 * i + 2, &b);
         const BpVerdict verdict = judge(&a, &b, 0.05);
-        rejected += !verdict.agree;
+        rejected += verdict.conclusion == BP_DISAGREE;
         for (int f = 0; f < BP_FAMILIES; ++f) by_family[f] += verdict.worst[f].z > verdict.worst[f].limit;
         ratio_missed += verdict.ratio_low > 1 || verdict.ratio_high < 1;
         bp_sums_clear(&a);
@@ -95,7 +95,7 @@ static void calibrated(void **state) {
             brighten(&a, 1 + bias);
             const BpVerdict verdict = judge(&a, &b, BP_VERDICT_LEVEL);
             by_picture += verdict.worst[BP_FAMILY_PICTURE].z > limit;
-            rejected += !verdict.agree;
+            rejected += verdict.conclusion == BP_DISAGREE;
             bp_sums_clear(&a);
             bp_sums_clear(&b);
         }
@@ -128,7 +128,7 @@ static void half_percent(void **state) {
     char *text = bp_verdict_text(&right);
     assert_non_null(text);
     fputs(text, stdout);
-    assert_true(right.agree && right.equivalent && right.smallest_bias < 0.005);
+    assert_true(right.conclusion == BP_AGREE && right.shown_within < 0.005 && right.smallest_bias < 0.005);
     assert_true(strncmp(text, "agree", 5) == 0);
     free(text);
     brighten(&a, 1.005);
@@ -136,7 +136,7 @@ static void half_percent(void **state) {
     text = bp_verdict_text(&wrong);
     assert_non_null(text);
     fputs(text, stdout);
-    assert_false(wrong.agree);
+    assert_int_equal(wrong.conclusion, BP_DISAGREE);
     assert_true(wrong.worst[BP_FAMILY_PICTURE].z > wrong.worst[BP_FAMILY_PICTURE].limit);
     assert_true(strncmp(text, "DISAGREE", 8) == 0);
     free(text);
@@ -158,11 +158,11 @@ static void without_noise(void **state) {
     BpSums a, b;
     constant_picture(&a, 3, 2, 10, 0.7);
     constant_picture(&b, 3, 2, 10, 0.7 * (1 + 1e-5)); /* what single precision may cost */
-    assert_true(judge(&a, &b, 1e-4).agree);
+    assert_int_equal(judge(&a, &b, 1e-4).conclusion, BP_AGREE);
     bp_sums_clear(&b);
     constant_picture(&b, 3, 2, 10, 0.7 * (1 + 1e-4));
     const BpVerdict verdict = judge(&a, &b, 1e-4);
-    assert_false(verdict.agree);
+    assert_int_equal(verdict.conclusion, BP_DISAGREE);
     assert_true(verdict.block_columns == 3 && verdict.block_rows == 2);
     bp_sums_clear(&a);
     bp_sums_clear(&b);
@@ -174,8 +174,11 @@ static void black_pictures(void **state) {
     constant_picture(&a, 4, 4, 100, 0);
     constant_picture(&b, 4, 4, 100, 0);
     BpVerdict verdict = judge(&a, &b, 1e-4);
-    assert_true(verdict.agree && isnan(verdict.ratio) && isnan(verdict.smallest_bias) && !verdict.equivalent);
+    assert_int_equal(verdict.conclusion, BP_INCONCLUSIVE); /* nothing was seen, so nothing is shown */
+    assert_true(isnan(verdict.ratio) && isnan(verdict.smallest_bias) && isinf(verdict.shown_within));
+    assert_int_equal(bp_verdict_samples_needed(&verdict, 100), 0);
     char *text = bp_verdict_text(&verdict);
+    assert_true(strncmp(text, "INCONCLUSIVE", 12) == 0);
     assert_non_null(strstr(text, "no ratio"));
     free(text);
     /* 30 bright fireflies on one side alone: too few for means, plain for their number. */
@@ -185,7 +188,7 @@ static void black_pictures(void **state) {
             bp_pixel_sums_add(&b.pixels[p], (double[3]){0, 0, 0}, 1);
         }
     verdict = judge(&a, &b, 1e-4);
-    assert_true(!verdict.agree && verdict.worst[BP_FAMILY_PICTURE].counted);
+    assert_true(verdict.conclusion == BP_DISAGREE && verdict.worst[BP_FAMILY_PICTURE].counted);
     bp_sums_clear(&a);
     bp_sums_clear(&b);
 }
@@ -204,7 +207,7 @@ static void one_wrong_block(void **state) {
         }
     }
     const BpVerdict verdict = judge(&a, &b, 1e-4);
-    assert_false(verdict.agree);
+    assert_int_equal(verdict.conclusion, BP_DISAGREE);
     assert_true(verdict.worst[BP_FAMILY_PICTURE].z < verdict.worst[BP_FAMILY_PICTURE].limit);
     const BpVerdictTest *block = &verdict.worst[BP_FAMILY_BLOCKS];
     assert_true(block->z > block->limit && block->column == 5 && block->row == 2);
@@ -225,7 +228,7 @@ static void wrong_spread(void **state) {
             bp_pixel_sums_add(&b.pixels[p], (double[3]){y, y, y}, 1);
         }
     const BpVerdict verdict = judge(&a, &b, 1e-4);
-    assert_false(verdict.agree);
+    assert_int_equal(verdict.conclusion, BP_DISAGREE);
     assert_true(verdict.worst[BP_FAMILY_PICTURE].z == 0);
     assert_true(verdict.worst[BP_FAMILY_PICTURE_SQUARES].z > 10);
     bp_sums_clear(&a);
@@ -237,11 +240,101 @@ static void invalid_samples(void **state) {
     BpSums a, b;
     constant_picture(&a, 2, 2, 10, 0.5);
     constant_picture(&b, 2, 2, 10, 0.5);
-    assert_true(judge(&a, &b, 1e-4).agree);
+    assert_int_equal(judge(&a, &b, 1e-4).conclusion, BP_AGREE);
     bp_pixel_sums_add(&a.pixels[3], (double[3]){0.5, NAN, 0.5}, 2);
     const BpVerdict verdict = judge(&a, &b, 1e-4);
-    assert_false(verdict.agree);
+    assert_int_equal(verdict.conclusion, BP_DISAGREE);
     assert_int_equal(verdict.invalid_kernel, 1);
+    bp_sums_clear(&a);
+    bp_sums_clear(&b);
+}
+
+/* Noise of `samples` fair coins a pixel, worth 0 or 1 in each channel, on both sides; `lights`: which
+ * channels. */
+static void coins(BpSums *sums, uint64_t samples, unsigned seed, const double lights[3]) {
+    uint64_t state = seed;
+    assert_int_equal(bp_sums_init(sums, 8, 8, NULL), BP_OK);
+    for (size_t p = 0; p < 64; ++p)
+        for (uint64_t s = 0; s < samples; ++s) {
+            state = state * 6364136223846793005u + 1442695040888963407u;
+            const double x = (double)(state >> 63);
+            bp_pixel_sums_add(&sums->pixels[p], (double[3]){x * lights[0], x * lights[1], x * lights[2]}, 1);
+        }
+}
+
+static BpVerdict judge_coins(uint64_t samples, double margin, const double lights[3]) {
+    BpSums a, b;
+    BpVerdict verdict;
+    coins(&a, samples, 1, lights);
+    coins(&b, samples, 2, lights);
+    assert_int_equal(bp_verdict(&a, &b, 1e-4, margin, &verdict, NULL), BP_OK);
+    bp_sums_clear(&a);
+    bp_sums_clear(&b);
+    return verdict;
+}
+
+/* What is not rejected agrees only where equality is shown within the margin; more samples settle it, as many
+ * as the verdict asks for. */
+static void nothing_passes_without_evidence(void **state) {
+    (void)state;
+    const double white[3] = {1, 1, 1};
+    const BpVerdict few = judge_coins(20, 0.01, white);
+    assert_int_equal(few.conclusion, BP_INCONCLUSIVE);
+    assert_true(few.shown_within > 0.01 && few.shown_within < 1);
+    const double low = 1 - few.ratio_low, high = few.ratio_high - 1; /* all channels are equal here */
+    assert_true(fabs(few.shown_within - (low > high ? low : high)) < 1e-9);
+    assert_int_equal(judge_coins(20, few.shown_within * 1.001, white).conclusion, BP_AGREE);
+    assert_int_equal(judge_coins(20, few.shown_within * 0.999, white).conclusion, BP_INCONCLUSIVE);
+    const uint64_t needed = bp_verdict_samples_needed(&few, 20);
+    assert_in_range(needed, 40, 20000);
+    assert_int_equal(judge_coins(needed, 0.01, white).conclusion, BP_AGREE);
+    char *text = bp_verdict_text(&few);
+    assert_true(strncmp(text, "INCONCLUSIVE", 12) == 0);
+    assert_non_null(strstr(text, "NOT ENOUGH"));
+    free(text);
+}
+
+/* A channel without light on either side has nothing to show; one that is lit on one side alone has. */
+static void dark_channels(void **state) {
+    (void)state;
+    const BpVerdict red = judge_coins(20000, 0.01, (const double[3]){1, 0, 0});
+    assert_int_equal(red.conclusion, BP_AGREE);
+    BpSums a, b;
+    constant_picture(&a, 2, 2, 10, 0.5);
+    constant_picture(&b, 2, 2, 10, 0.5);
+    for (int p = 0; p < 4; ++p) { /* one faint blue sample in ten: too little to be rejected by itself */
+        a.pixels[p].sum[BP_SUMS_BLUE] = b.pixels[p].sum[BP_SUMS_BLUE] = 0;
+        a.pixels[p].sum2[BP_SUMS_BLUE] = b.pixels[p].sum2[BP_SUMS_BLUE] = 0;
+        a.pixels[p].sum4[BP_SUMS_BLUE] = b.pixels[p].sum4[BP_SUMS_BLUE] = 0;
+        a.pixels[p].lit[BP_SUMS_BLUE] = b.pixels[p].lit[BP_SUMS_BLUE] = 0;
+    }
+    BpVerdict verdict = judge(&a, &b, 1e-4);
+    assert_int_equal(verdict.conclusion, BP_AGREE);
+    a.pixels[0].sum[BP_SUMS_BLUE] = 0.1;
+    a.pixels[0].sum2[BP_SUMS_BLUE] = 0.01;
+    a.pixels[0].lit[BP_SUMS_BLUE] = 1;
+    verdict = judge(&a, &b, 1e-4);
+    assert_int_equal(verdict.conclusion, BP_INCONCLUSIVE);
+    assert_true(isinf(verdict.shown_within));
+    bp_sums_clear(&a);
+    bp_sums_clear(&b);
+}
+
+/* Evidence never outweighs a fault. */
+static void faults_disagree(void **state) {
+    (void)state;
+    BpSums a, b;
+    constant_picture(&a, 2, 2, 10, 0.5);
+    constant_picture(&b, 2, 2, 10, 0.5);
+    BpVerdict verdict = judge(&a, &b, 1e-4);
+    bp_verdict_add_picture(&verdict, 0.5 * BP_VERDICT_PICTURE_OFF);
+    assert_int_equal(verdict.conclusion, BP_AGREE);
+    bp_verdict_add_picture(&verdict, 2 * BP_VERDICT_PICTURE_OFF);
+    assert_int_equal(verdict.conclusion, BP_DISAGREE);
+    bp_sums_clear(&a);
+    constant_picture(&a, 2, 2, 10, 0.51);
+    assert_int_equal(bp_verdict(&a, &b, 1e-4, 1, &verdict, NULL), BP_OK); /* a margin that all is within */
+    assert_int_equal(verdict.conclusion, BP_DISAGREE);
     bp_sums_clear(&a);
     bp_sums_clear(&b);
 }
@@ -253,12 +346,14 @@ static void refusals(void **state) {
     BpError err = {0};
     constant_picture(&a, 2, 2, 10, 0.5);
     constant_picture(&b, 2, 3, 10, 0.5);
-    assert_int_equal(bp_verdict(&a, &b, 1e-4, &verdict, &err), BP_ERR_USAGE);
+    assert_int_equal(bp_verdict(&a, &b, 1e-4, 0.01, &verdict, &err), BP_ERR_USAGE);
     assert_non_null(strstr(err.message, "2 x 3"));
-    assert_int_equal(bp_verdict(&a, &a, 0, &verdict, &err), BP_ERR_USAGE);
+    assert_int_equal(bp_verdict(&a, &a, 0, 0.01, &verdict, &err), BP_ERR_USAGE);
+    assert_int_equal(bp_verdict(&a, &a, 1e-4, 0, &verdict, &err), BP_ERR_USAGE);
+    assert_non_null(strstr(err.message, "margin"));
     bp_sums_clear(&b);
     constant_picture(&b, 2, 2, 1, 0.5);
-    assert_int_equal(bp_verdict(&a, &b, 1e-4, &verdict, &err), BP_ERR_USAGE);
+    assert_int_equal(bp_verdict(&a, &b, 1e-4, 0.01, &verdict, &err), BP_ERR_USAGE);
     bp_error_clear(&err);
     bp_sums_clear(&a);
     bp_sums_clear(&b);
@@ -266,9 +361,12 @@ static void refusals(void **state) {
 
 int main(void) {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(control),       cmocka_unit_test(calibrated),      cmocka_unit_test(half_percent),
-        cmocka_unit_test(without_noise), cmocka_unit_test(black_pictures),  cmocka_unit_test(one_wrong_block),
-        cmocka_unit_test(wrong_spread),  cmocka_unit_test(invalid_samples), cmocka_unit_test(refusals),
+        cmocka_unit_test(control),        cmocka_unit_test(calibrated),
+        cmocka_unit_test(half_percent),   cmocka_unit_test(without_noise),
+        cmocka_unit_test(black_pictures), cmocka_unit_test(one_wrong_block),
+        cmocka_unit_test(wrong_spread),   cmocka_unit_test(invalid_samples),
+        cmocka_unit_test(refusals),       cmocka_unit_test(nothing_passes_without_evidence),
+        cmocka_unit_test(dark_channels),  cmocka_unit_test(faults_disagree),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -1,28 +1,17 @@
 """`ballpark check`, `explain`, `bench` and `devices` as their user meets them: answers, documents, exit codes."""
 
 import json
-import os
 import re
-import shutil
 
-from cli import SOURCE, ProgramTest, main, scene
+from cli import ProgramTest, broken_kernels, main, scene
 
 
 class Check(ProgramTest):
-    SIZE = ("--width", "16", "--spp", "64")
+    SIZE = ("--width", "16", "--spp", "64", "--margin", "20")
 
     def setUp(self):
         super().setUp()
         self.write("s.json", scene())
-
-    def broken_kernels(self, find, replace):
-        """A copy of the kernels with a fault, as BALLPARK_KERNELS."""
-        shutil.copytree(os.path.join(SOURCE, "kernels"), self.path("kernels"))
-        with open(self.path("kernels/light/sky.cl")) as file:
-            text = file.read()
-        self.assertEqual(text.count(find), 1, "the place of the fault has moved")
-        self.write("kernels/light/sky.cl", text.replace(find, replace))
-        return {"BALLPARK_KERNELS": self.path("kernels")}
 
     def test_agree(self):
         result = self.succeed("check", "s.json", *self.SIZE, "--json", "r.json", "--map", "map.png", "--seed", "7")
@@ -44,14 +33,14 @@ class Check(ProgramTest):
 
     def test_disagree(self):
         """A sky whose gradient runs the wrong way must be noticed."""
-        fault = self.broken_kernels("madd3(fma(splat(R(0.5)), direction.y", "madd3(fma(splat(R(-0.5)), direction.y")
+        fault = broken_kernels(self, "light/sky.cl", "madd3(fma(splat(R(0.5)), direction.y", "madd3(fma(splat(R(-0.5)), direction.y")
         result = self.run_program("check", "s.json", *self.SIZE, environment=fault)
         self.assertEqual(result.returncode, 3, result.errors)
         self.assertRegex(result.errors, r"(?m)^ballpark: .*disagree")
 
     def test_wrong(self):
         self.fail_with(2, "check", "none.json", says="none.json")
-        self.fail_with(1, "check", "s.json", "--device", "none", says="none")
+        self.fail_with(5, "check", "s.json", "--device", "none", says="none")
         self.fail_with(1, "check", "s.json", *self.SIZE, "--json", "no/such.json", says="no/such.json")
         self.fail_with(1, "check", "s.json", *self.SIZE, "--map", "no/such.png", says="no/such.png")
 

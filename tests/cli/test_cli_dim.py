@@ -58,7 +58,7 @@ class DimTest(ProgramTest):
 
     def test_the_check_looks_at_the_sums(self):
         self.write("scene.json", self.document(0.01, 100, {"type": "dielectric", "refraction_index": 1.5}))
-        self.succeed("check", "scene.json", "--spp", "16", "--json", "c.json")
+        self.succeed("check", "scene.json", "--spp", "16", "--margin", "50", "--json", "c.json")
         picture = json.loads(self.read("c.json"))["results"][0]["picture"]
         self.assertLessEqual(picture["off"], picture["limit"])
         self.assertEqual(picture["limit"], 1e-6)

@@ -52,7 +52,7 @@ class StandardInput(ProgramTest):
         self.assert_same(self.read("file.pfm"), self.read("input.pfm"))
         self.with_input(document, "explain", "-")
         self.with_input(document, "explain", "-", "--pixel", "3,3")
-        self.with_input(document, "check", "-", "--width", "4", "--spp", "4")
+        self.with_input(document, "check", "-", "--width", "4", "--spp", "4", "--margin", "50")
 
     def test_clouds_are_sought_here(self):
         self.write("points.ply", "ply\nformat ascii 1.0\nelement vertex 1\nproperty float x\nproperty float y\n"

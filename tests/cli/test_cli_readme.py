@@ -8,7 +8,7 @@ import textwrap
 
 from cli import SOURCE, ProgramTest, main
 
-SMALL = {"render": ["--width", "8", "--spp", "32"], "check": ["--width", "4", "--spp", "4"],
+SMALL = {"render": ["--width", "8", "--spp", "32"], "check": ["--width", "8", "--spp", "64", "--margin", "50"],
          "cost": ["--time", "1", "--width", "16"]}
 
 

@@ -218,7 +218,8 @@ class OpenFiles(Safety):
             self.skipTest("there is no /dev/full")
         for command in ("--version", "--help", "help render", "devices", "devices --json -", "explain s.json",
                         "explain s.json --json -", "explain s.json --pixel 1,1", "generate cover -o -",
-                        "check s.json --width 4 --spp 4", "check s.json --width 4 --spp 4 --device all",
+                        "check s.json --width 4 --spp 4 --margin 50",
+                        "check s.json --width 4 --spp 4 --margin 50 --device all",
                         "render s.json -o - -q", "render s.json -o a.png --stats - -q",
                         "bench s.json --time 0.01 --rounds 1 -q"):
             self.assertIn("No space left", self.shell(f"\"$B\" {command} > /dev/full", 1).errors, command)
@@ -230,7 +231,7 @@ class Foreign(Safety):
         shown = "\\x1b]0;owned\\x07\\xc2\\x9b31m\\xe2\\x80\\xae"
         name = self.write("t" + evil + ".json", scene(8, title="T" + evil))
         runs = [self.succeed("explain", name), self.succeed("render", name, "-o", "p" + evil + ".png"),
-                self.succeed("check", name, "--width", "4", "--spp", "4"),
+                self.succeed("check", name, "--width", "4", "--spp", "4", "--margin", "50"),
                 self.run_program("render", name, "-o", "no" + evil + "/a.png"),
                 self.run_program("render", "none" + evil), self.run_program("what" + evil)]
         self.succeed("render", name, "-o", "a.bpa", "-q")
@@ -252,7 +253,7 @@ class Foreign(Safety):
             self.skipTest("this file system has no such names")
         for command in (("render", name, "-o", os.fsdecode(b"o\xfe.png"), "--stats", "t.json", "-q"),
                         ("explain", name, "--json", "t.json"),
-                        ("check", name, "--width", "4", "--spp", "4", "--json", "t.json"),
+                        ("check", name, "--width", "4", "--spp", "4", "--margin", "50", "--json", "t.json"),
                         ("bench", name, "--time", "0.01", "--rounds", "1", "--json", "t.json", "-q")):
             self.succeed(*command)
             self.assertIn("n\ufffd\ufffd.json", self.read("t.json").decode(), command)

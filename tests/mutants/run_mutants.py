@@ -116,7 +116,7 @@ class Bench:
         command = [program, "check", scene, "--spp", str(trial.samples), "--seed", "1", "--quiet", "--json", "-",
                    *trial.options]
         done = subprocess.run(command, env=environment, capture_output=True, text=True, timeout=300)
-        if done.returncode not in (0, 3):
+        if done.returncode not in (0, 3, 4):
             return ERROR, f"exit code {done.returncode}: {done.stderr.strip()[:300]}"
         result = json.loads(done.stdout)["results"][0]
         worst = max(result["tests"], key=lambda t: t["z"] / t["limit"])
@@ -125,7 +125,8 @@ class Bench:
         invalid = result["invalid_samples"]["kernel"]
         if invalid:
             said += f", {invalid} invalid samples"
-        return (SURVIVED if result["agree"] else KILLED), said
+        # Too few samples for evidence of equality are no kill: a verdict of disagreement is.
+        return (KILLED if result["verdict"] == "disagree" else SURVIVED), said
 
     def run_test(self, trial, environment, program):
         done = subprocess.run([program], env=environment, capture_output=True, text=True, timeout=300)

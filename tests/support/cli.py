@@ -91,6 +91,16 @@ class ProgramTest(unittest.TestCase):
         return result
 
 
+def broken_kernels(test, name, find, replace):
+    """A copy of the kernels with a fault in the file `name`, as BALLPARK_KERNELS."""
+    shutil.copytree(os.path.join(SOURCE, "kernels"), test.path("kernels"))
+    with open(test.path("kernels/" + name)) as file:
+        text = file.read()
+    test.assertEqual(text.count(find), 1, "the place of the fault has moved")
+    test.write("kernels/" + name, text.replace(find, replace))
+    return {"BALLPARK_KERNELS": test.path("kernels")}
+
+
 def main():
     if len(sys.argv) < 3:
         sys.exit(__doc__)

@@ -1,0 +1,101 @@
+"""The recorded pictures on other instruction sets and drivers, bit for bit (`ballpark check --bits`).
+
+Usage: test_bits.py BALLPARK SOURCE_DIR
+
+PoCL compiles for another processor when POCL_KERNELLIB_NAME names another library of built-in functions; that of SSE2
+has no fused multiply-add, that of AVX2 has eight lanes. Other drivers render a few pictures by the one-path form, in
+single precision, as their compilers are slow. A driver whose division is not correctly rounded, as OpenCL allows, has
+other last digits: then the differences are counted, and its own verdict is the agreement with the reference.
+"""
+
+import json
+import os
+import pathlib
+import shutil
+import subprocess
+import sys
+import tempfile
+
+program, source = sys.argv[1], pathlib.Path(sys.argv[2])
+recorded = json.loads((source / "host/check/bits.json").read_text())["pictures"]
+ran = 0
+
+
+def check(folder, environment, *more, wrapper=(), seconds=500):
+    report = pathlib.Path(folder, "report.json")
+    report.unlink(missing_ok=True)
+    done = subprocess.run([*wrapper, program, "check", "--bits", "--quiet", "--json", str(report), *more], text=True,
+                          capture_output=True, env={**os.environ, **environment}, timeout=seconds, check=False)
+    results = json.loads(report.read_text())["results"] if report.exists() else []
+    return done, results
+
+
+def count(results, verdict):
+    return sum(result["verdict"] == verdict for result in results)
+
+
+def pocl_libraries():
+    """The libraries for x86-64 that this processor can run."""
+    flags = pathlib.Path("/proc/cpuinfo").read_text().split() if os.path.exists("/proc/cpuinfo") else []
+    known = {"avx2": "avx2", "sse41": "sse4_1", "sse2": "sse2"}
+    found = [name for name, flag in known.items()
+             if flag in flags and list(pathlib.Path("/usr/share/pocl").glob(f"kernel-x86_64-*-{name}.bc"))]
+    for name in known.keys() - set(found):
+        print(f"skipped: PoCL's built-in functions for {name} are not installed, or the processor lacks it")
+    return found
+
+
+def other_instruction_sets(folder):
+    global ran
+    names = set()
+    for library in pocl_libraries():
+        done, results = check(folder, {"OCL_ICD_VENDORS": "pocl.icd", "POCL_KERNELLIB_NAME": library})
+        assert done.returncode == 0, f"{library}: exit code {done.returncode}\n{done.stdout}{done.stderr[-3000:]}\n" \
+            "If pictures were to change, record them anew: scripts/record-bits"
+        names.add(results[0]["device"]["name"])
+        print(f"PoCL, {library}: {count(results, 'agree')} pictures the same, {results[0]['device']['name']}")
+        assert count(results, "agree") >= 2 * len(recorded), "hardly anything was compared"
+        ran += 1
+    assert len(names) == ran or ran < 2, f"the libraries made no difference: {names}"
+
+
+def other_driver(folder, name, environment, wrapper=()):
+    global ran
+    small = [p for p in recorded if p["precision"] == "single" and p["scene"] in ("bubble", "normals", "tie")]
+    pathlib.Path(folder, "small.json").write_text(json.dumps({"pictures": small}))
+    environment = {**environment, "BALLPARK_BITS": str(pathlib.Path(folder, "small.json"))}
+    done, results = check(folder, environment, "--kernel", "sample", "--precision", "single", wrapper=wrapper)
+    if not results:
+        print(f"skipped: {name} cannot be used here: {(done.stderr.strip().splitlines() or ['no message'])[-1]}")
+        return
+    ran += 1
+    said = f"{name}: {count(results, 'agree')} pictures the same, {count(results, 'disagree')} different, " \
+        f"{results[0]['device']['name']}, driver {results[0]['device']['driver']}"
+    print(said)
+    assert done.returncode in (0, 3) and count(results, "failed") == 0, f"exit code {done.returncode}\n{done.stdout}{done.stderr}"
+    for result in results:
+        if result["verdict"] == "disagree":
+            print(f"  {result['scene']}, {result['acceleration']}: {result['reason']}")
+            assert result["difference"]["kind"] != "picture", "most pixels are others: that is not rounding"
+    if done.returncode == 3:
+        print(f"skipped: the same bits on {name}: its arithmetic is not correctly rounded (found {said})")
+
+
+with tempfile.TemporaryDirectory() as folder:
+    if os.path.exists("/etc/OpenCL/vendors/pocl.icd"):
+        other_instruction_sets(folder)
+    else:
+        print("skipped: no PoCL here")
+    if os.path.exists("/etc/OpenCL/vendors/rusticl.icd"):
+        other_driver(folder, "rusticl", {"OCL_ICD_VENDORS": "rusticl.icd", "RUSTICL_ENABLE": "llvmpipe"})
+    else:
+        print("skipped: no rusticl here (Debian: mesa-opencl-icd)")
+    if os.path.exists("/etc/OpenCL/vendors/intel64.icd"):
+        other_driver(folder, "Intel's CPU runtime", {"OCL_ICD_VENDORS": "intel64.icd"})
+    else:
+        print("skipped: no CPU runtime of Intel's here")
+    if shutil.which("oclgrind"):
+        other_driver(folder, "Oclgrind", {}, wrapper=("oclgrind", "--build-options", "-O0"))
+    else:
+        print("skipped: no oclgrind here")
+sys.exit(0 if ran else 77)
