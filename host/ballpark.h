@@ -203,7 +203,8 @@ typedef struct BpRenderOptions {
     bool features;          /* bp_render_aovs() will be asked */
     bool force;             /* render even on a device that fails its self-test */
     uint32_t replicates;    /* K of the error estimate; 0: the default; 1: no estimate */
-    /* For tests and tuning; 0 means: choose. None of these changes a picture. */
+    /* For tests and tuning; 0 means: choose. None of these changes a picture, but that force_float_refine may
+     * change last digits in single precision: its transforms are as accurate as double, and end otherwise. */
     uint32_t chunk_samples;  /* samples in one dispatch */
     uint32_t local_size;     /* work-items in a work-group; at most 64 in the sample form */
     uint32_t tree_width;     /* children of a tree node: 2, 4, 8 or 16 */

@@ -29,6 +29,7 @@ static bool whole(const json_t *picture) {
            json_is_integer(json_object_get(picture, "samples_per_pixel")) &&
            json_is_integer(json_object_get(picture, "seed")) &&
            json_is_string(json_object_get(picture, "precision")) &&
+           json_is_string(json_object_get(picture, "refinement")) &&
            json_is_string(json_object_get(picture, "hash")) &&
            json_is_string(json_object_get(picture, "radiance"));
 }
@@ -72,8 +73,12 @@ typedef struct Form {
     BpKernelForm kernel;
     BpAcceleration acceleration;
     BpPrecision precision;
+    bool float_refine;
     const char *skipped; /* Optional: why it is */
 } Form;
+
+/* Both kernels, tree and list, each in single precision with both refinements, and in double. */
+enum { FORMS = 2 * 2 * 3 };
 
 typedef struct Plan {
     const BpBitsRun *run;
@@ -81,12 +86,16 @@ typedef struct Plan {
     size_t count;
 } Plan;
 
-static const char *why_skip(const BpBitsRun *run, BpKernelForm kernel, BpPrecision precision) {
+static const char *why_skip(const BpBitsRun *run, BpKernelForm kernel, BpPrecision precision,
+                            bool float_refine) {
     const BpDeviceInfo *device = run->device;
     if (precision == BP_PRECISION_DOUBLE && !device->has_double) return "the device has no double precision";
     if (kernel == BP_KERNEL_PACKET && run->kernel == BP_KERNEL_AUTO &&
         (device->type != BP_DEVICE_CPU || device->float_lanes < 4))
         return "the packet form is for CPUs with vectors; --kernel packet tries it";
+    if (precision == BP_PRECISION_SINGLE && !float_refine &&
+        (device->type != BP_DEVICE_CPU || !device->has_double))
+        return "only CPUs with double precision refine hits in double";
     return NULL;
 }
 
@@ -94,32 +103,36 @@ static const char *why_skip(const BpBitsRun *run, BpKernelForm kernel, BpPrecisi
 static BpStatus make_plan(const BpBitsRun *run, Plan *plan, BpError *err) {
     static const BpKernelForm kernels[] = {BP_KERNEL_PACKET, BP_KERNEL_SAMPLE};
     const size_t pictures = json_array_size(run->pictures);
-    *plan = (Plan){.run = run, .forms = calloc(8 * pictures + 1, sizeof *plan->forms)};
+    *plan = (Plan){.run = run, .forms = calloc(FORMS * pictures + 1, sizeof *plan->forms)};
     if (plan->forms == NULL) return bp_fail(err, BP_ERR_MEMORY, "out of memory for a list of pictures");
-    for (size_t form = 0; form < 8; ++form) {
+    for (size_t form = 0; form < FORMS; ++form) {
         const BpKernelForm kernel = kernels[form / 2 % 2];
-        const BpPrecision precision = form < 4 ? BP_PRECISION_SINGLE : BP_PRECISION_DOUBLE;
+        const BpPrecision precision = form < 8 ? BP_PRECISION_SINGLE : BP_PRECISION_DOUBLE;
+        const bool float_refine = form >= 4 && form < 8;
         if (run->kernel != BP_KERNEL_AUTO && run->kernel != kernel) continue;
         if (run->one_precision && run->precision != precision) continue;
         for (size_t p = 0; p < pictures; ++p) {
             const json_t *picture = json_array_get(run->pictures, p);
             if (strcmp(bp_check_text(picture, "precision"), bp_precision_names[precision]) != 0) continue;
+            if ((strcmp(bp_check_text(picture, "refinement"), "float") == 0) != float_refine) continue;
             plan->forms[plan->count++] =
                 (Form){.picture = picture,
                        .kernel = kernel,
                        .acceleration = form % 2 == 0 ? BP_ACCELERATION_TREE : BP_ACCELERATION_LIST,
                        .precision = precision,
-                       .skipped = why_skip(run, kernel, precision)};
+                       .float_refine = float_refine,
+                       .skipped = why_skip(run, kernel, precision, float_refine)};
         }
     }
     return BP_OK;
 }
 
 static json_t *form_json(const Form *form, const BpDeviceInfo *device, const char *verdict) {
-    return json_pack("{s:o, s:s, s:s, s:s, s:s, s:s, s:b}", "device", bp_check_device_json(device), "scene",
-                     bp_check_text(form->picture, "scene"), "kernel", bp_kernel_names[form->kernel],
+    return json_pack("{s:o, s:s, s:s, s:s, s:s, s:s, s:s, s:b}", "device", bp_check_device_json(device),
+                     "scene", bp_check_text(form->picture, "scene"), "kernel", bp_kernel_names[form->kernel],
                      "acceleration", bp_acceleration_name(form->acceleration), "precision",
-                     bp_precision_names[form->precision], "verdict", verdict, "agree",
+                     bp_precision_names[form->precision], "refinement",
+                     bp_check_text(form->picture, "refinement"), "verdict", verdict, "agree",
                      strcmp(verdict, "agree") == 0);
 }
 
@@ -206,6 +219,7 @@ static BpStatus render_item(const BpDeviceItems *items, size_t number, double se
     options.kernel = form->kernel;
     options.force_tree = form->acceleration == BP_ACCELERATION_TREE;
     options.force_list = form->acceleration == BP_ACCELERATION_LIST;
+    options.force_float_refine = form->float_refine;
     options.all_effects = true; /* one kernel a form, whatever the scene */
     bp_item_doing(out, number, "building the kernel");
     BP_TRY(bp_render_create(scene, &options, device, 1, &render, err));
@@ -264,16 +278,21 @@ BpStatus bp_check_bits_run(const BpBitsRun *run, json_t **entries, BpError *err)
  */
 
 static const char advice[] =
-    "If kernels, sampling, summation or the agreement scenes were changed on purpose, and all tests pass,\n"
-    "record the pictures anew: scripts/record-bits. If nothing was, this device computes differently from "
-    "those\n"
-    "that the pictures were recorded on: `ballpark check --suite` tells whether its pictures are right all "
-    "the\n"
-    "same. They are then not to be merged with other devices' where bits matter; tell the driver's makers.\n";
+    "If kernels, sampling, sums or the agreement scenes were changed on purpose, and all tests pass, record\n"
+    "the pictures anew: scripts/record-bits. If not, this device computes differently from those that they\n"
+    "were recorded on: `ballpark check --suite` tells whether its pictures are right all the same. Do not\n"
+    "merge them with other devices' where bits matter, and tell the makers of the driver.\n";
+
+const char *bp_check_bits_label(const json_t *entry, char *text, size_t size) {
+    snprintf(text, size, "%s, %s, %s, %s%s", bp_check_text(entry, "scene"), bp_check_text(entry, "kernel"),
+             bp_check_text(entry, "acceleration"), bp_check_text(entry, "precision"),
+             strcmp(bp_check_text(entry, "refinement"), "float") == 0 ? " (refined in float)" : "");
+    return text;
+}
 
 void bp_check_bits_print(const json_t *entries, bool quiet, FILE *out) {
     BpCheckCounts counts = {0};
-    char title[700];
+    char title[700], label[256];
     const char *last = ""; /* a reason that holds for the rest of the list is said once */
     size_t index;
     json_t *entry;
@@ -288,16 +307,12 @@ void bp_check_bits_print(const json_t *entries, bool quiet, FILE *out) {
         bp_check_count(entry, &counts);
         last = reason;
         if (strcmp(verdict, "agree") == 0 || (said && !differs) || (skipped && quiet)) continue;
-        if (skipped)
-            fprintf(out, "  skipped: %s, %s: ", bp_check_text(entry, "kernel"),
-                    bp_check_text(entry, "precision"));
-        else
-            fprintf(out, "  %s: %s, %s, %s, %s: ",
-                    differs                                ? "DIFFERENT"
-                    : strcmp(verdict, "inconclusive") == 0 ? "NOT COMPARED"
-                                                           : "FAILED",
-                    bp_check_text(entry, "scene"), bp_check_text(entry, "kernel"),
-                    bp_check_text(entry, "acceleration"), bp_check_text(entry, "precision"));
+        fprintf(out, "  %s: %s: ",
+                skipped                                ? "skipped"
+                : differs                              ? "DIFFERENT"
+                : strcmp(verdict, "inconclusive") == 0 ? "NOT COMPARED"
+                                                       : "FAILED",
+                bp_check_bits_label(entry, label, sizeof label));
         bp_show(reason, false, out);
         fputc('\n', out);
     }

@@ -365,11 +365,8 @@ static BpStatus check_all(Session *session, BpError *err) {
 static json_t *bits_case(const json_t *entry) {
     char name[256];
     const char *verdict = bp_check_text(entry, "verdict");
-    snprintf(name, sizeof name, "%s, %s, %s, %s", bp_check_text(entry, "scene"),
-             bp_check_text(entry, "kernel"), bp_check_text(entry, "acceleration"),
-             bp_check_text(entry, "precision"));
-    return json_pack("{s:s, s:s, s:f, s:s, s:s, s:s}", "name", name, "class", "ballpark.check.bits",
-                     "seconds", 0.0, "outcome",
+    return json_pack("{s:s, s:s, s:f, s:s, s:s, s:s}", "name", bp_check_bits_label(entry, name, sizeof name),
+                     "class", "ballpark.check.bits", "seconds", 0.0, "outcome",
                      strcmp(verdict, "agree") == 0     ? "passed"
                      : strcmp(verdict, "skipped") == 0 ? "skipped"
                      : strcmp(verdict, "failed") == 0  ? "error"

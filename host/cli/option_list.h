@@ -75,8 +75,8 @@ enum {
                   "number of the first sample, for renders to be merged; explain: which sample to follow",   \
                   uint64_t, first_sample, BP_WHOLE("N", 0, BP_SAMPLE_NUMBERS - 1))                           \
     OPTION(DEVICE, "device", 0, BP_TRACERS,                                                                  \
-           "device number, part of its name, gpu, cpu or all (see `ballpark devices`)", const char *,        \
-           device, BP_TEXT("N|NAME|all"))                                                                    \
+           "device number, part of its name or driver version, gpu, cpu or all (see `ballpark devices`)",    \
+           const char *, device, BP_TEXT("N|NAME|all"))                                                      \
     RENDER_OPTION(PRECISION, "precision", 0, BP_TRACERS,                                                     \
                   "floating-point precision of the kernel (default: single)", BpPrecision, precision,        \
                   BP_CHOICE("", bp_precision_names, 0))                                                      \

@@ -15,8 +15,9 @@ with open(os.path.join(cli.SOURCE, "host/check/bits.json")) as file:
     RECORDED = json.load(file)["pictures"]
 
 
-def one(scene="glass-exact", precision="single"):
-    return dict(next(p for p in RECORDED if (p["scene"], p["precision"]) == (scene, precision)))
+def one(scene="glass-exact", precision="single", refinement="double"):
+    wanted = scene, precision, refinement
+    return dict(next(p for p in RECORDED if (p["scene"], p["precision"], p["refinement"]) == wanted))
 
 
 def changed(radiance, pixels, by):
@@ -53,9 +54,9 @@ class Bits(cli.ProgramTest):
         report = json.loads(self.read("r.json"))
         compared = [r for r in report["results"] if r["verdict"] == "agree"]
         self.assertEqual(len({r["scene"] for r in compared}), len({p["scene"] for p in RECORDED}))
-        forms = {(r["kernel"], r["acceleration"], r["precision"]) for r in compared}
-        self.assertLessEqual({("sample", a, "single") for a in ("tree", "list")}, forms)
-        self.assertEqual(len(forms) * len(RECORDED) // 2, len(compared))
+        forms = {(r["kernel"], r["acceleration"], r["precision"], r["refinement"]) for r in compared}
+        self.assertLessEqual({("sample", a, "single", "float") for a in ("tree", "list")}, forms)
+        self.assertEqual(len(forms) * len(RECORDED) // 3, len(compared))
         self.assertEqual(report["verdict"], "agree")
         self.assertIn(f"{len(compared)} the same, 0 different, 0 not compared, 0 failed", result.stdout.decode())
 

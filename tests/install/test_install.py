@@ -5,6 +5,7 @@ what they should; another language can call it.
 Usage: test_install.py BUILD_DIR SOURCE_DIR CC CXX; CXX may be "", and then C++ is left out.
 """
 
+import json
 import math
 import os
 import pathlib
@@ -139,6 +140,20 @@ def check_until_error(prefix, flags, environment):
     assert all(again[c] == layers[c] for c in "RGB"), "the sums are not those of the picture"
 
 
+def check_scenes_of_the_program(prefix):
+    """The agreement scenes and the recorded pictures are in the program, wherever it is. Pictures are tiny: what agrees
+    is not the matter here."""
+    done = subprocess.run([prefix / "bin/ballpark", "check", "--suite", "--effects", "all", "--width", "4", "--spp", "4",
+                           "--quiet", "--json", "-"], capture_output=True, text=True, cwd=prefix, check=False)
+    assert done.returncode == 4, f"exit code {done.returncode}: {done.stderr}"
+    found = [scene["scene"] for scene in json.loads(done.stdout)["scenes"]]
+    assert found == sorted(path.stem for path in (source / "tests/agree/scenes").glob("*.json")), found
+    done = subprocess.run([prefix / "bin/ballpark", "check", "--bits", "--timeout", "0.001", "--json", "-"],
+                          capture_output=True, text=True, cwd=prefix, check=False)
+    recorded = {picture["scene"] for picture in json.loads((source / "host/check/bits.json").read_text())["pictures"]}
+    assert {result["scene"] for result in json.loads(done.stdout)["results"]} == recorded, done.stderr
+
+
 with tempfile.TemporaryDirectory() as folder:
     first, prefix = pathlib.Path(folder, "first"), pathlib.Path(folder, "moved")
     run("cmake", "--install", build, "--prefix", first)
@@ -148,6 +163,8 @@ with tempfile.TemporaryDirectory() as folder:
     headers = [str(path.relative_to(prefix)) for path in prefix.rglob("*.h")]
     assert headers == ["include/ballpark.h"], f"one public header, found {headers}"
     assert (prefix / "share/ballpark/scenes/cover.json").is_file(), "the scenes are not installed"
+
+    check_scenes_of_the_program(prefix)
 
     (pkgconfig,) = prefix.rglob("pkgconfig")
     libraries = pkgconfig.parent
