@@ -35,7 +35,7 @@ static bool list_in_child(void *argument, FILE *out) {
     if (argument != NULL) setenv(VENDORS, argument, 1);
     const BpStatus status = bp_devices_list(&list, &count, &err);
     if (status != BP_OK) fputs(err.message, out);
-    const bool good = status == BP_OK && fwrite(list, sizeof *list, count, out) == count;
+    const bool good = status == BP_OK && (count == 0 || fwrite(list, sizeof *list, count, out) == count);
     free(list);
     bp_error_clear(&err);
     return good;

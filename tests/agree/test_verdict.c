@@ -285,6 +285,15 @@ static void nothing_passes_without_evidence(void **state) {
     assert_true(fabs(few.shown_within - (low > high ? low : high)) < 1e-9);
     assert_int_equal(judge_coins(20, few.shown_within * 1.001, white).conclusion, BP_AGREE);
     assert_int_equal(judge_coins(20, few.shown_within * 0.999, white).conclusion, BP_INCONCLUSIVE);
+    BpSums a, b; /* the same with the sides changed: then the other end of the interval is the farther one */
+    coins(&a, 20, 2, white);
+    coins(&b, 20, 1, white);
+    const BpVerdict changed = judge(&a, &b, 1e-4);
+    const double below = 1 - changed.ratio_low, above = changed.ratio_high - 1;
+    assert_true(fabs(changed.shown_within - (below > above ? below : above)) < 1e-9);
+    assert_true((low > high) != (below > above));
+    bp_sums_clear(&a);
+    bp_sums_clear(&b);
     const uint64_t needed = bp_verdict_samples_needed(&few, 20);
     assert_in_range(needed, 40, 20000);
     assert_int_equal(judge_coins(needed, 0.01, white).conclusion, BP_AGREE);

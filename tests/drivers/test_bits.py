@@ -44,18 +44,20 @@ def pocl_libraries():
     return found
 
 
-def other_instruction_sets(folder):
+def instruction_sets(folder):
+    """PoCL as it is, and as it would be on other processors, in all forms."""
     global ran
     names = set()
-    for library in pocl_libraries():
-        done, results = check(folder, {"OCL_ICD_VENDORS": "pocl.icd", "POCL_KERNELLIB_NAME": library})
+    for library in ["", *pocl_libraries()]:
+        more = {"POCL_KERNELLIB_NAME": library} if library else {}
+        done, results = check(folder, {"OCL_ICD_VENDORS": "pocl.icd", **more})
         assert done.returncode == 0, f"{library}: exit code {done.returncode}\n{done.stdout}{done.stderr[-3000:]}\n" \
             "If pictures were to change, record them anew: scripts/record-bits"
         names.add(results[0]["device"]["name"])
-        print(f"PoCL, {library}: {count(results, 'agree')} pictures the same, {results[0]['device']['name']}")
+        print(f"PoCL, {library or 'as it is'}: {count(results, 'agree')} pictures the same, {results[0]['device']['name']}")
         assert count(results, "agree") >= 2 * len(recorded), "hardly anything was compared"
         ran += 1
-    assert len(names) == ran or ran < 2, f"the libraries made no difference: {names}"
+    assert len(names) >= ran - 1, f"the libraries made no difference: {names}"
 
 
 def other_driver(folder, name, environment, wrapper=()):
@@ -77,7 +79,7 @@ def other_driver(folder, name, environment, wrapper=()):
 
 with tempfile.TemporaryDirectory() as folder:
     if os.path.exists("/etc/OpenCL/vendors/pocl.icd"):
-        other_instruction_sets(folder)
+        instruction_sets(folder)
     else:
         print("skipped: no PoCL here")
     if os.path.exists("/etc/OpenCL/vendors/rusticl.icd"):
