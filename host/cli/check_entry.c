@@ -78,7 +78,7 @@ json_t *bp_check_entry(const BpCheckResult *result, uint64_t samples) {
     char reason[400];
     json_t *tests = json_array();
     for (int f = 0; f < BP_FAMILIES; ++f)
-        json_array_append_new(tests, test_json((BpVerdictFamily)f, &v->worst[f]));
+        if (v->worst[f].tests > 0) json_array_append_new(tests, test_json((BpVerdictFamily)f, &v->worst[f]));
     json_t *brightness =
         json_pack("{s:o, s:o, s:o, s:f, s:o, s:f, s:b}", "ratio", number(v->ratio), "low",
                   number(v->ratio_low), "high", number(v->ratio_high), "confidence", 0.95, "shown_within",
