@@ -200,7 +200,7 @@ typedef struct BpRenderOptions {
     bool all_effects;       /* build the general kernel instead of the specialised one */
     uint32_t extra_effects; /* bit e: simulate effect e of bp_scene_effect() although nothing calls for it */
     bool adaptive;          /* samples_per_pixel is a mean: pixels get samples where the error is */
-    bool features;          /* bp_render_aovs() will be asked */
+    bool features;          /* depth, normal and albedo will be asked for, by bp_render_aovs() or in films */
     bool force;             /* render even on a device that fails its self-test */
     uint32_t replicates;    /* K of the error estimate; 0: the default; 1: no estimate */
     /* For tests and tuning; 0 means: choose. None of these changes a picture, but that force_float_refine may
@@ -219,6 +219,7 @@ typedef struct BpRenderOptions {
 BP_API void bp_render_defaults(const BpScene *scene, BpRenderOptions *options);
 
 typedef struct BpRender BpRender;
+typedef struct BpFilm BpFilm; /* see "films" below */
 
 typedef struct BpProgress {
     uint64_t samples_done, samples_total; /* of all pixels together */
@@ -243,6 +244,14 @@ BP_API BpStatus bp_render_step(BpRender *render, BpProgress *progress, BpError *
  * samples gives at once; only what an adaptive render does depends on the numbers on the way too.
  * BP_ERR_USAGE: a lower number, or past the last sample number; BP_ERR_LIMIT: more than the sums hold. */
 BP_API BpStatus bp_render_extend(BpRender *render, uint64_t samples_per_pixel, BpError *err);
+
+/* Goes on from the film of another render of the same scene and options, whether that had finished or was
+ * stopped at any moment: the sums are then those of one render, bit for bit, and so is what adaptive sampling
+ * and stop rules decide. Before the first step; options.samples_per_pixel becomes what the other was on its
+ * way to. The film is copied. BP_ERR_USAGE: it is of another scene or other options, which the error names,
+ * or merged of parts that are not one range of samples; BP_ERR_FILE: it contradicts itself. After a failure
+ * destroy the render. */
+BP_API BpStatus bp_render_resume(BpRender *render, const BpFilm *film, BpError *err);
 
 /* Samples that every pixel has so far (a pass in progress not counted); of an adaptive render, their mean. */
 BP_API uint64_t bp_render_samples_done(const BpRender *render);
@@ -329,9 +338,9 @@ typedef struct BpPicture {
  * before it is filled again. */
 BP_API BpStatus bp_render_read(BpRender *render, BpPicture *picture, BpError *err);
 /* Adds depth, normal and albedo to a picture that bp_render_read() filled, for a render that was created with
- * options.features: from the camera rays of the first 16 samples of each pixel (fewer in a shorter render),
- * by the first device. What the picture held of them is released. BP_ERR_USAGE: without options.features, or
- * for a picture of another size. */
+ * options.features: from the camera rays of samples 0 to 15 of each pixel, whichever samples the render is
+ * of, by the first device. What the picture held of them is released. BP_ERR_USAGE: without options.features,
+ * or for a picture of another size. */
 BP_API BpStatus bp_render_aovs(BpRender *render, BpPicture *picture, BpError *err);
 /* `picture`: Optional. */
 BP_API void bp_picture_clear(BpPicture *picture);
@@ -369,12 +378,12 @@ BP_API BpStatus bp_error_map_write(const BpPicture *picture, const char *path, B
 
 /* ---- films: the sums behind a picture ---------------------------------------------------------------- */
 
-/* The exact sums of a render's samples, which can be kept in a file (.bpa) and added to those of other
- * samples of the same picture. */
-typedef struct BpFilm BpFilm;
+/* A BpFilm holds the exact sums of a render's samples, which can be kept in a file (.bpa) and added to those
+ * of other samples of the same picture. */
 
 /* The sums of a render as they stand, during or after it: a film of the caller's own, which the render does
- * not change. */
+ * not change. With options.features it has depth, normal and albedo too; and unless the render has finished,
+ * it says how to go on (bp_render_resume()). */
 BP_API BpStatus bp_render_film(BpRender *render, BpFilm **film, BpError *err);
 
 /* Reads a .bpa file. BP_ERR_FILE: it cannot be read, or is damaged; the error says what is wrong. */
@@ -388,8 +397,8 @@ BP_API BpStatus bp_film_write(const BpFilm *film, const char *path, BpError *err
  * BP_ERR_LIMIT: more samples than the sums hold. `into` is unchanged on failure. */
 BP_API BpStatus bp_film_merge(BpFilm *into, const BpFilm *from, BpError *err);
 
-/* The picture of the sums, to be cleared by the caller, as bp_render_read() gives it; depth, normal and
- * albedo are not among them. */
+/* The picture of the sums, to be cleared by the caller, as bp_render_read() gives it, with depth, normal and
+ * albedo if the film has them. */
 BP_API BpStatus bp_film_picture(const BpFilm *film, BpPicture *picture, BpError *err);
 
 /* NRMSE = sqrt(mean over pixels of the squared standard error of luminance) / mean luminance, a fraction. NaN

@@ -1,7 +1,8 @@
 /* aov_list.h: the AOVs, in one list that both compilers read: what a pixel shows first, beside its radiance.
  *
  * From it come the places in the kernel's sums (entry/aovs.cl), their reading into the picture
- * (render/aovs.c), the release of its arrays (image/picture.c) and the channels of an EXR (image/exr.c). A
+ * (render/aovs.c), the release of its arrays (image/picture.c), the channels of an EXR (image/exr.c) and the
+ * arrays of films and their files (film/film_aovs.c, film_file.c). A
  * new AOV is a line here, its values in entry/aovs.cl, and an array of floats in BpPicture.
  *
  * X(place, member, floats, mean, channels): the kernel sums `floats` numbers from AOV_<place> on. BpPicture

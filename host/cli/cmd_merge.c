@@ -73,11 +73,10 @@ BpStatus bp_command_merge(const BpCommandLine *line, BpError *err) {
     BP_TRY_GOTO(status, bp_film_read(line->operands[0], &sum, err), done);
     for (size_t f = 1; f < line->operand_count; ++f) BP_TRY_GOTO(status, add_file(line, f, sum, err), done);
     BP_TRY_GOTO(status, bp_film_check_finite(sum, err), done);
-    BP_TRY_GOTO(status, bp_result_write(line, &result, sum, NULL, (BpTransfer)sum->transfer, NULL, err),
-                done);
-    if (!line->quiet && result.format == BP_FORMAT_EXR)
-        fprintf(stderr, "depth, normals and albedo omitted: .bpa files do not store the scene; `ballpark "
-                        "render -o FILE.exr` writes them\n");
+    BP_TRY_GOTO(status, bp_result_write(line, &result, sum, false, (BpTransfer)sum->transfer, NULL, err), done);
+    if (!line->quiet && result.format == BP_FORMAT_EXR && !bp_film_has_aovs(sum))
+        fprintf(stderr,
+                "depth, normals and albedo omitted: .bpa files of versions 1 and 2 do not hold them\n");
     if (!line->quiet) {
         char nrmse[32], ranges[120];
         bp_format_percent(bp_film_nrmse(sum), nrmse, sizeof nrmse);

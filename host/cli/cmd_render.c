@@ -15,6 +15,7 @@
 #include "film/adaptive.h"
 #include "interrupt.h"
 #include "json_file.h"
+#include "keep_sums.h"
 #include "progress.h"
 #include "render/render.h"
 #include "render/stop_rule.h"
@@ -269,7 +270,10 @@ static void print_summary(const RunResult *result, const BpStopRule *rule, const
 /* Picture, statistics and summary of a render that has stopped. */
 static BpStatus deliver(const BpCommandLine *line, const BpResultFile *file, const BpStopRule *rule,
                         const LoopEnd *end, BpRender *render, RunResult *result, BpError *err) {
-    BP_TRY(bp_render_read_film(render, &result->film, err));
+    BpStatus status = bp_render_read_whole_film(render, &result->film, err);
+    if (status != BP_OK && bp_render_read_film(render, &result->film, NULL) == BP_OK)
+        bp_keep_sums(result->film, file->path, err);
+    BP_TRY(status);
     bp_render_report(render, &result->report);
     result->samples_per_pixel = bp_render_samples_done(render);
     result->stopped_by = end->reason;
@@ -286,7 +290,7 @@ static BpStatus deliver(const BpCommandLine *line, const BpResultFile *file, con
                        result->options->precision == BP_PRECISION_DOUBLE ? "double" : "single",
                        result->options->precision == BP_PRECISION_DOUBLE ? "" : "use --precision double, ");
     const double write_start = bp_clock_seconds();
-    BP_TRY(bp_result_write(line, file, result->film, render, (BpTransfer)result->film->transfer,
+    BP_TRY(bp_result_write(line, file, result->film, true, (BpTransfer)result->film->transfer,
                            &result->scene->legend, err));
     result->times.write = bp_clock_seconds() - write_start;
     if (line->stats != NULL) BP_TRY(bp_json_write(stats_json(result), line->stats, err));
@@ -334,7 +338,7 @@ static BpStatus render_picture(const BpCommandLine *line, BpSeries *series, BpEr
     bp_setup_warn(line, scene, options.precision);
     /* Less noise in the same time on every scene that was measured: docs/ACCURACY.md. */
     if (!bp_option_given(line, BP_OPTION_SAMPLER)) options.sampler = BP_SAMPLER_SOBOL;
-    options.features = file.format == BP_FORMAT_EXR;
+    options.features = file.format == BP_FORMAT_EXR || file.format == BP_FORMAT_BPA;
     init_rule(line, scene, &options, &rule);
     BP_TRY_GOTO(status, check_adaptive(line, &rule, err), done);
     options.samples_per_pixel = bp_stop_first(&rule);

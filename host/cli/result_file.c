@@ -99,7 +99,7 @@ BpStatus bp_result_choose(const BpCommandLine *line, const char *default_path, B
 }
 
 BpStatus bp_result_write(const BpCommandLine *line, const BpResultFile *result, const BpFilm *film,
-                         BpRender *render, BpTransfer transfer, const BpLegend *legend, BpError *err) {
+                         bool rendered, BpTransfer transfer, const BpLegend *legend, BpError *err) {
     BpStatus status = BP_OK;
     BpPicture picture = {0};
     const bool to_stream = strcmp(result->path, "-") == 0;
@@ -107,7 +107,6 @@ BpStatus bp_result_write(const BpCommandLine *line, const BpResultFile *result, 
     if (bp_option_given(line, BP_OPTION_TRANSFER)) transfer = line->transfer;
     if (is_picture || line->error_map != NULL)
         BP_TRY_GOTO(status, bp_film_picture(film, &picture, err), done);
-    if (result->format == BP_FORMAT_EXR && render != NULL) status = bp_render_aovs(render, &picture, err);
     const bool bytes = result->format == BP_FORMAT_PNG || result->format == BP_FORMAT_PPM ||
                        result->format == BP_FORMAT_PPM_ASCII;
     if (status == BP_OK && legend != NULL && legend->shown && bytes)
@@ -123,7 +122,7 @@ BpStatus bp_result_write(const BpCommandLine *line, const BpResultFile *result, 
     else
         status = bp_film_write(film, result->path, err);
 done:
-    if (status != BP_OK && render != NULL) bp_keep_sums(film, result->path, err);
+    if (status != BP_OK && rendered) bp_keep_sums(film, result->path, err);
     if (status == BP_OK && line->error_map != NULL)
         status = bp_error_map_write(&picture, line->error_map, err);
     bp_picture_clear(&picture);

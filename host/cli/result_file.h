@@ -21,12 +21,11 @@ typedef struct BpResultFile {
 BpStatus bp_result_choose(const BpCommandLine *line, const char *default_path, BpResultFile *result,
                           BpError *err);
 
-/* Writes it, and the error map if there is to be one. `transfer`: unless --transfer says otherwise. `render`:
- * Optional, created with options.features for an EXR; it gives the layers that follow from the scene, which
- * are left out without it; and what it has rendered is kept if it cannot be written (keep_sums.h). `legend`:
+/* Writes it, and the error map if there is to be one. `transfer`: unless --transfer says otherwise.
+ * `rendered`: the film is in no file yet, and is kept if the result cannot be written (keep_sums.h). `legend`:
  * Optional; where it is shown, a colour bar is drawn into pictures of 8 bits. */
 BpStatus bp_result_write(const BpCommandLine *line, const BpResultFile *result, const BpFilm *film,
-                         BpRender *render, BpTransfer transfer, const BpLegend *legend, BpError *err);
+                         bool rendered, BpTransfer transfer, const BpLegend *legend, BpError *err);
 
 /* "cover.png", or "standard output". */
 const char *bp_result_name(const BpResultFile *result);

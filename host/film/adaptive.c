@@ -1,5 +1,5 @@
 /* adaptive.c: see adaptive.h. */
-#include "adaptive.h"
+#include "adaptive_state.h"
 
 #include "base/status.h"
 
@@ -7,7 +7,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum { TILE_SIDE = 8, LEVELS_MAX = 28 };
+enum { TILE_SIDE = 8 };
 
 /* Of a mean of n samples, every pixel gets n / PILOT_SHARE, and none more than REACH times that. */
 #define PILOT_SHARE 4u
@@ -15,21 +15,6 @@ enum { TILE_SIDE = 8, LEVELS_MAX = 28 };
 /* An error below this part of the mean one counts as that much: pixels whose samples agree have not
  * converged. */
 #define ERROR_FLOOR 1e-4
-
-/* A half of a tile: its pixels of one colour. Halves of a tile are neighbours: 2 * tile + colour. */
-struct BpAdaptive {
-    uint32_t width, height, tiles_x, tiles_y, halves;
-    uint32_t level_max;
-    uint32_t *half_pixels;   /* how many each has */
-    uint8_t *level, *wanted; /* of each half; level l: BP_ADAPTIVE_FIRST << l samples a pixel */
-    bool *passing;           /* halves of the pass under way */
-    /* Of each half at each level, means over its pixels: squared error, ray segments a sample. NULL: none
-     * yet. */
-    float *errors[LEVELS_MAX], *costs[LEVELS_MAX];
-    uint32_t *list;            /* pixels of the pass under way */
-    uint64_t pass_samples_max; /* that these will have */
-    uint64_t planned;          /* mean samples that `wanted` is for */
-};
 
 static uint64_t level_samples(uint32_t level) {
     return (uint64_t)BP_ADAPTIVE_FIRST << level;
@@ -55,7 +40,7 @@ BpStatus bp_adaptive_create(uint32_t width, uint32_t height, uint64_t samples_ma
     made->tiles_x = width < TILE_SIDE ? 1 : width / TILE_SIDE;
     made->tiles_y = height < TILE_SIDE ? 1 : height / TILE_SIDE;
     made->halves = 2 * made->tiles_x * made->tiles_y;
-    while (made->level_max + 1 < LEVELS_MAX && level_samples(made->level_max + 1) <= samples_max)
+    while (made->level_max + 1 < BP_ADAPTIVE_LEVELS_MAX && level_samples(made->level_max + 1) <= samples_max)
         ++made->level_max;
     made->half_pixels = calloc(made->halves, sizeof *made->half_pixels);
     made->level = calloc(made->halves, 1);
@@ -76,7 +61,7 @@ BpStatus bp_adaptive_create(uint32_t width, uint32_t height, uint64_t samples_ma
 
 void bp_adaptive_destroy(BpAdaptive **adaptive) {
     if (adaptive == NULL || *adaptive == NULL) return;
-    for (size_t l = 0; l < LEVELS_MAX; ++l) {
+    for (size_t l = 0; l < BP_ADAPTIVE_LEVELS_MAX; ++l) {
         free((*adaptive)->errors[l]);
         free((*adaptive)->costs[l]);
     }
@@ -221,21 +206,29 @@ static uint32_t pilot_level(const BpAdaptive *adaptive, uint64_t samples) {
     return level;
 }
 
-/* A pass over those halves of the lowest level that want more. */
-static bool begin_pass(BpAdaptive *adaptive, BpAdaptivePass *pass) {
-    uint32_t lowest = LEVELS_MAX, count = 0;
+bool bp_adaptive_pass(BpAdaptive *adaptive, BpAdaptivePass *pass) {
+    uint32_t count = 0, level = 0;
     for (uint32_t half = 0; half < adaptive->halves; ++half)
-        if (adaptive->level[half] < adaptive->wanted[half] && adaptive->level[half] < lowest)
-            lowest = adaptive->level[half];
-    if (lowest == LEVELS_MAX) return false;
-    for (uint32_t half = 0; half < adaptive->halves; ++half)
-        adaptive->passing[half] = adaptive->level[half] == lowest && lowest < adaptive->wanted[half];
+        if (adaptive->passing[half]) level = adaptive->level[half];
     for (uint32_t y = 0; y < adaptive->height; ++y)
         for (uint32_t x = 0; x < adaptive->width; ++x)
             if (adaptive->passing[half_of(adaptive, x, y)]) adaptive->list[count++] = y * adaptive->width + x;
-    *pass = (BpAdaptivePass){adaptive->list, count, level_samples(lowest), level_samples(lowest)};
-    adaptive->pass_samples_max = 2 * level_samples(lowest);
+    if (count == 0) return false;
+    *pass = (BpAdaptivePass){adaptive->list, count, level_samples(level), level_samples(level)};
+    adaptive->pass_samples_max = 2 * level_samples(level);
     return true;
+}
+
+/* A pass over those halves of the lowest level that want more. */
+static bool begin_pass(BpAdaptive *adaptive, BpAdaptivePass *pass) {
+    uint32_t lowest = BP_ADAPTIVE_LEVELS_MAX;
+    for (uint32_t half = 0; half < adaptive->halves; ++half)
+        if (adaptive->level[half] < adaptive->wanted[half] && adaptive->level[half] < lowest)
+            lowest = adaptive->level[half];
+    if (lowest == BP_ADAPTIVE_LEVELS_MAX) return false;
+    for (uint32_t half = 0; half < adaptive->halves; ++half)
+        adaptive->passing[half] = adaptive->level[half] == lowest && lowest < adaptive->wanted[half];
+    return bp_adaptive_pass(adaptive, pass);
 }
 
 /* The halves of the pass that is done go up a level, all to the same. */

@@ -46,8 +46,16 @@ void bp_film_destroy(BpFilm **film) {
     free((*film)->fine_sums);
     free((*film)->counts);
     free((*film)->pixel_segments);
+    bp_film_drop_aovs(*film);
+    bp_film_plan_destroy(&(*film)->plan);
     free(*film);
     *film = NULL;
+}
+
+void bp_film_plan_destroy(BpFilmPlan **plan) {
+    if (*plan != NULL) free((*plan)->decisions);
+    free(*plan);
+    *plan = NULL;
 }
 
 BpStatus bp_film_add_fine_sums(BpFilm *film, BpError *err) {
@@ -193,7 +201,7 @@ BpStatus bp_film_add_range(BpFilm *film, uint64_t first, uint64_t count, BpError
 
 /* ---- merging ---- */
 
-static BpStatus check_same_settings(const BpFilm *a, const BpFilm *b, BpError *err) {
+BpStatus bp_film_check_same(const BpFilm *a, const BpFilm *b, BpError *err) {
 #define BP_SAME(field, what, remedy)                                                                         \
     if (a->field != b->field)                                                                                \
     return bp_fail(err, BP_ERR_USAGE, what " differ" remedy, (int64_t)a->field, (int64_t)b->field)
@@ -236,8 +244,33 @@ static bool total_overflows(uint64_t a, uint64_t b) {
     return a > INT64_MAX || b > INT64_MAX - a;
 }
 
+BpStatus bp_film_add_sums(BpFilm *film, const BpFilm *from, BpError *err) {
+    const size_t cells = (size_t)film->width * film->height * film->replicates;
+    if (from->fine_sums != NULL) BP_TRY(bp_film_add_fine_sums(film, err));
+    for (size_t i = 0; i < cells; i++) film->counts[i] += from->counts[i];
+    for (size_t i = 0; i < 3 * cells; i++) film->sums[i] += from->sums[i];
+    for (size_t i = 0; from->fine_sums != NULL && i < 3 * cells; i++)
+        film->fine_sums[i] += from->fine_sums[i];
+    film->coarse = film->coarse || from->coarse;
+    film->segments += from->segments;
+    film->cut_paths += from->cut_paths;
+    film->invalid_samples += from->invalid_samples;
+    return BP_OK;
+}
+
+/* Whether the samples of `a` begin before those of `b`, which are others; a film without any comes last. */
+static bool begins_before(const BpFilm *a, const BpFilm *b) {
+    return a->range_count > 0 && (b->range_count == 0 || a->ranges[0].first < b->ranges[0].first);
+}
+
+/* Whether the film has all samples of the job of which it is a share. */
+static bool is_whole_job(const BpFilm *film) {
+    return film->range_count == 1 && film->ranges[0].first <= film->job.first &&
+           film->ranges[0].first + film->ranges[0].count >= film->job.first + film->job.count;
+}
+
 BpStatus bp_film_merge(BpFilm *into, const BpFilm *from, BpError *err) {
-    BP_TRY(check_same_settings(into, from, err));
+    BP_TRY(bp_film_check_same(into, from, err));
     const size_t cells = (size_t)into->width * into->height * into->replicates;
     for (size_t i = 0; i < cells; i++) BP_TRY(check_limit((uint64_t)into->counts[i] + from->counts[i], err));
     BP_TRY(check_sums(into, from, into->sums, from->sums, err));
@@ -253,25 +286,28 @@ BpStatus bp_film_merge(BpFilm *into, const BpFilm *from, BpError *err) {
     struct BpSampleRange *joined = NULL;
     size_t joined_count = 0;
     BP_TRY(join_ranges(into, from->ranges, from->range_count, &joined, &joined_count, err));
-    const BpStatus status = from->fine_sums != NULL ? bp_film_add_fine_sums(into, err) : BP_OK;
+    /* Films of one scene have the same AOVs, unless their devices round differently. Then those of the first
+     * samples stay, in whatever order films are merged. */
+    const bool takes_aovs = bp_film_has_aovs(from) && (!bp_film_has_aovs(into) || begins_before(from, into));
+    BpStatus status = from->fine_sums != NULL ? bp_film_add_fine_sums(into, err) : BP_OK;
+    if (status == BP_OK && takes_aovs) status = bp_film_add_aovs(into, err);
     if (status != BP_OK) {
         free(joined);
         return status;
     }
 
-    /* Nothing fails from here on. */
+    /* Nothing fails from here on: there is room for the fine sums. */
+    (void)bp_film_add_sums(into, from, NULL);
     free(into->ranges);
     into->ranges = joined;
     into->range_count = joined_count;
-    for (size_t i = 0; i < cells; i++) into->counts[i] += from->counts[i];
-    for (size_t i = 0; i < 3 * cells; i++) into->sums[i] += from->sums[i];
-    for (size_t i = 0; from->fine_sums != NULL && i < 3 * cells; i++)
-        into->fine_sums[i] += from->fine_sums[i];
+    if (takes_aovs) bp_film_copy_aovs(from, into);
     into->partial = into->partial || from->partial;
-    into->coarse = into->coarse || from->coarse;
     into->unverified = into->unverified || from->unverified;
-    into->segments += from->segments;
-    into->cut_paths += from->cut_paths;
-    into->invalid_samples += from->invalid_samples;
+    if (into->job.first != from->job.first || into->job.count != from->job.count || is_whole_job(into))
+        into->job = (struct BpSampleRange){0, 0};
+    free(into->pixel_segments);
+    into->pixel_segments = NULL;
+    bp_film_plan_destroy(&into->plan);
     return BP_OK;
 }

@@ -17,6 +17,8 @@
 #include "base/names.h"
 #include "scene/scene.h"
 
+#include "aov_list.h"
+
 #define BP_REPLICATES_DEFAULT 4u /* chosen by measurement: docs/ACCURACY.md */
 #define BP_REPLICATES_MAX 64u
 #define BP_REPLICATE_SAMPLES_MAX (1u << 24)
@@ -24,6 +26,26 @@
 #define BP_SAMPLE_RANGES_MAX 10000u
 /* What rounding to steps may cost a picture, relative to its mean; see bp_film_rounding(). */
 #define BP_ROUNDING_MAX 1e-6
+
+/* The samples [first, first + count). */
+struct BpSampleRange {
+    uint64_t first, count;
+};
+
+#define BP_FILM_AOV(place, member, floats, mean, channels) float *member;
+
+/* Where a render stood when its film was read, so that another can go on from there (render.h). */
+typedef struct BpFilmPlan {
+    bool adaptive;
+    uint64_t first_sample; /* of every pixel, absolute */
+    uint64_t target;       /* samples a pixel that the render is on its way to; adaptive: their mean */
+    uint64_t done;         /* samples a pixel of the passes that are done, as schedule.h counts them */
+    uint32_t pass_samples, next_pixel; /* of the pass under way; 0: none is */
+    uint64_t samples_max;              /* where it stops: at so many samples, or */
+    double error;                      /* at this NRMSE; 0: no such rule */
+    uint8_t *decisions;                /* Optional. Heap: what adaptive sampling has decided (adaptive.h) */
+    size_t decision_bytes;
+} BpFilmPlan;
 
 struct BpFilm {
     uint32_t width, height;
@@ -35,10 +57,8 @@ struct BpFilm {
     uint32_t max_depth;
     BP_SETTING_LIST(BP_SETTING_MEMBER)
     BpTransfer transfer; /* of the scene, for the picture made from a merged file */
-    /* Sample ranges [first, first + count) that every pixel was meant to get, sorted, disjoint. */
-    struct BpSampleRange {
-        uint64_t first, count;
-    } * ranges;
+    /* Those that every pixel was meant to get, sorted, disjoint. */
+    struct BpSampleRange *ranges;
     size_t range_count;
     bool partial;       /* interrupted: some pixels have fewer samples than the ranges say */
     bool coarse;        /* some sample was so dim that a fine step may be over a millionth of it */
@@ -48,8 +68,13 @@ struct BpFilm {
     int64_t *fine_sums; /* Optional. Of the same shape, in steps 2^38 times finer; NULL: all are 0 */
     uint32_t *counts;   /* width * height * K: valid samples */
     uint64_t segments, cut_paths, invalid_samples; /* totals over the picture */
-    uint64_t *pixel_segments; /* Optional. Of each pixel; in no file, and not merged: adaptive sampling asks
-                                 for it. */
+    uint64_t *pixel_segments; /* Optional. Of each pixel: adaptive sampling asks for it; not merged. */
+    /* Optional, all or none: what each pixel shows first, as in BpPicture. They follow from scene and
+     * seed and not from the samples of the film (render/aovs.h), so films of other samples have the same. */
+    AOV_LIST(BP_FILM_AOV)
+    /* The samples of the whole job of which this film is a share; a count of 0: it is none. */
+    struct BpSampleRange job;
+    BpFilmPlan *plan; /* Optional. Not merged: the sum of two films is of no one render */
 };
 
 /* ---- what of a scene the sums depend on (film_scene.c) ---- */
@@ -83,8 +108,31 @@ BpStatus bp_film_add_range(BpFilm *film, uint64_t first, uint64_t count, BpError
  * BP_SAMPLE_RANGES_MAX separate ranges would come of it. */
 BpStatus bp_film_add_ranges(BpFilm *film, const struct BpSampleRange *ranges, size_t count, BpError *err);
 
+/* BP_ERR_USAGE names what differs of scene, size and options, which two films must share to be merged. */
+BpStatus bp_film_check_same(const BpFilm *a, const BpFilm *b, BpError *err);
+
 /* Gives `film` fine sums, all 0, unless it has them. BP_ERR_MEMORY. */
 BpStatus bp_film_add_fine_sums(BpFilm *film, BpError *err);
+
+static inline bool bp_film_has_aovs(const BpFilm *film) {
+    return film->depth != NULL;
+}
+/* Gives `film` depth, normal and albedo, all 0, unless it has them. BP_ERR_MEMORY. */
+BpStatus bp_film_add_aovs(BpFilm *film, BpError *err);
+
+void bp_film_drop_aovs(BpFilm *film);
+/* Both have them, and the same size. */
+void bp_film_copy_aovs(const BpFilm *from, BpFilm *to);
+/* Copies them from or to a picture of the same size, in the place of what is there. BP_ERR_MEMORY. */
+BpStatus bp_film_take_aovs(BpFilm *film, const BpPicture *picture, BpError *err);
+BpStatus bp_film_give_aovs(const BpFilm *film, BpPicture *picture, BpError *err);
+
+/* Adds the sums, counts and totals of `from`, which has the same size, scale and number of replicates, and
+ * no more samples than the sums hold; not its ranges. BP_ERR_MEMORY, and the film is as it was. */
+BpStatus bp_film_add_sums(BpFilm *film, const BpFilm *from, BpError *err);
+
+/* Accepts NULL. */
+void bp_film_plan_destroy(BpFilmPlan **plan);
 
 /* The sum of radiance of one channel of one replicate; `index` as in `sums`. */
 double bp_film_sum(const BpFilm *film, size_t index);

@@ -8,6 +8,7 @@
 #include <inttypes.h>
 #include <math.h>
 #include <stdlib.h>
+#include <string.h>
 
 /* A sum in steps. */
 static double sum_steps(const BpFilm *film, size_t index) {
@@ -78,6 +79,10 @@ BpStatus bp_film_picture(const BpFilm *film, BpPicture *picture, BpError *err) {
     if (picture->rgb == NULL || picture->error == NULL || picture->samples == NULL) {
         bp_picture_clear(picture);
         return bp_fail(err, BP_ERR_MEMORY, "out of memory for a picture of %zu pixels", pixels);
+    }
+    if (bp_film_has_aovs(film) && bp_film_give_aovs(film, picture, err) != BP_OK) {
+        bp_picture_clear(picture);
+        return BP_ERR_MEMORY;
     }
     for (size_t pixel = 0; pixel < pixels; pixel++) {
         const PixelEstimate estimate = estimate_pixel(film, pixel);

@@ -5,89 +5,49 @@
 #include "base/output_file.h"
 #include "base/plural.h"
 #include "film_header.h"
+#include "film_stream.h"
 
 #include <errno.h>
 #include <inttypes.h>
+#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 #include <sys/types.h>
-#include <zlib.h>
 
 #define HEADER_SIZE_MAX (1u << 20)
-#define CHECKSUM_SIZE 4 /* zlib's CRC-32 */
 #define SUM_MAX                                                                                              \
     ((int64_t)3 << 61) /* 2^24 samples of at most 2^38 come to 2^62; half as much again for rounding */
-#define BLOCK 65536    /* numbers converted at a time */
 
 static size_t cell_count(const BpFilm *film) {
     return (size_t)film->width * film->height * film->replicates;
 }
 
-/* ---- numbers as little-endian bytes ---- */
-
-static void store_little(uint8_t *bytes, uint64_t value, size_t size) {
-    for (size_t i = 0; i < size; i++) bytes[i] = (uint8_t)(value >> (8 * i));
-}
-
-static uint64_t load_little(const uint8_t *bytes, size_t size) {
-    uint64_t value = 0;
-    for (size_t i = 0; i < size; i++) value |= (uint64_t)bytes[i] << (8 * i);
-    return value;
-}
-
 /* ---- saving ---- */
 
-/* A stream, and the checksum of what was written to it. */
-typedef struct Writer {
-    FILE *out;
-    uint8_t *buffer; /* of 8 * BLOCK bytes */
-    uLong checksum;
-} Writer;
-
-static void put(Writer *writer, const void *bytes, size_t size) {
-    writer->checksum = crc32_z(writer->checksum, bytes, size);
-    fwrite(bytes, 1, size, writer->out);
-}
-
-static void write_sums(Writer *writer, const int64_t *sums, size_t count) {
-    for (size_t done = 0; done < count && !ferror(writer->out); done += BLOCK) {
-        const size_t block = count - done < BLOCK ? count - done : BLOCK;
-        for (size_t i = 0; i < block; i++) store_little(writer->buffer + 8 * i, (uint64_t)sums[done + i], 8);
-        put(writer, writer->buffer, 8 * block);
-    }
-}
-
-static void write_counts(Writer *writer, const uint32_t *counts, size_t count) {
-    for (size_t done = 0; done < count && !ferror(writer->out); done += BLOCK) {
-        const size_t block = count - done < BLOCK ? count - done : BLOCK;
-        for (size_t i = 0; i < block; i++) store_little(writer->buffer + 4 * i, counts[done + i], 4);
-        put(writer, writer->buffer, 4 * block);
-    }
-}
-
 BpStatus bp_film_write_stream(const BpFilm *film, FILE *out, BpError *err) {
-    BpStatus status = BP_OK;
-    Writer writer = {out, malloc(8 * BLOCK), crc32_z(0, NULL, 0)};
-    char *header = bp_film_header_make(film);
-    if (writer.buffer == NULL || header == NULL ||
-        bp_json_memory_failed()) { /* or the header may lack a part */
+    BpFilmSink sink;
+    BpStatus status = bp_film_sink_init(out, &sink, err);
+    char *header = status == BP_OK ? bp_film_header_make(film) : NULL;
+    if (status == BP_OK && (header == NULL || bp_json_memory_failed())) /* or the header may lack a part */
         status = bp_fail(err, BP_ERR_MEMORY, "out of memory for writing the .bpa file");
-    } else {
-        const size_t cells = cell_count(film);
-        put(&writer, header, strlen(header));
-        put(&writer, "\n", 1);
-        write_sums(&writer, film->sums, 3 * cells);
-        if (film->fine_sums != NULL) write_sums(&writer, film->fine_sums, 3 * cells);
-        write_counts(&writer, film->counts, cells);
-        store_little(writer.buffer, writer.checksum, CHECKSUM_SIZE);
-        fwrite(writer.buffer, 1, CHECKSUM_SIZE, out);
-        const int failed_before = ferror(out) ? errno : 0;
-        if (fflush(out) != 0 || failed_before != 0)
-            status = bp_fail(err, BP_ERR_FILE, "writing the .bpa file failed: %s",
-                             strerror(failed_before != 0 ? failed_before : errno));
+    if (status == BP_OK) {
+        const size_t pixels = (size_t)film->width * film->height, cells = cell_count(film);
+        bp_film_sink_bytes(&sink, header, strlen(header));
+        bp_film_sink_bytes(&sink, "\n", 1);
+        bp_film_sink_numbers(&sink, film->sums, 8, 3 * cells);
+        if (film->fine_sums != NULL) bp_film_sink_numbers(&sink, film->fine_sums, 8, 3 * cells);
+        bp_film_sink_numbers(&sink, film->counts, 4, cells);
+#define WRITE(place, member, floats, mean, channels)                                                         \
+    if (film->member != NULL) bp_film_sink_numbers(&sink, film->member, 4, (floats)*pixels);
+        AOV_LIST(WRITE)
+#undef WRITE
+        if (film->pixel_segments != NULL) bp_film_sink_numbers(&sink, film->pixel_segments, 8, pixels);
+        if (film->plan != NULL)
+            bp_film_sink_numbers(&sink, film->plan->decisions, 1, film->plan->decision_bytes);
+        status = bp_film_sink_end(&sink, err);
     }
     free(header);
-    free(writer.buffer);
+    bp_film_sink_clear(&sink);
     return status;
 }
 
@@ -104,14 +64,14 @@ BpStatus bp_film_write(const BpFilm *film, const char *path, BpError *err) {
 
 /* ---- loading ---- */
 
-/* A file being read, and the checksum of what was read of it. */
+/* A file being read. */
 typedef struct Loader {
     FILE *in;
     const char *name;
-    uint8_t *buffer; /* of 8 * BLOCK bytes */
-    uLong checksum;
-    bool fine_sums;
+    BpFilmParts parts;
     size_t header_size;
+    uLong header_checksum;
+    uint64_t body_size; /* bytes between header and checksum */
 } Loader;
 
 /* Reads the header line, at most HEADER_SIZE_MAX bytes with its newline. */
@@ -134,14 +94,24 @@ static BpStatus read_header(Loader *loader, json_t **header, BpError *err) {
                            : bp_fail(err, BP_ERR_FILE,
                                      "%s is not a .bpa file: its first line is not JSON: %s (column %d)",
                                      loader->name, json_error.text, json_error.column);
-    loader->checksum =
+    loader->header_checksum =
         crc32_z(crc32_z(crc32_z(0, NULL, 0), (const uint8_t *)text, length), (const uint8_t *)"\n", 1);
     loader->header_size = length + 1;
     free(text);
     return status;
 }
 
-/* Whether the file is as long as sums and counts of `sizes` need; before anything is allocated. */
+static uint64_t body_bytes(const Loader *loader, const BpFilm *sizes) {
+    const BpFilmParts *parts = &loader->parts;
+    /* At most 2^16 * 2^16 * 2^6 * 52 bytes and a little: far below 2^64. */
+    const uint64_t pixels = (uint64_t)sizes->width * sizes->height;
+    const uint64_t cell_size = (parts->fine_sums ? 2 : 1) * 3 * 8 + 4;
+    return pixels * sizes->replicates * cell_size + pixels * (parts->aovs ? AOV_MET * sizeof(float) : 0) +
+           pixels * (parts->pixel_segments ? 8 : 0) + parts->decision_bytes;
+}
+
+/* Whether the file is as long as its numbers need, or, where they are packed, can be; before anything is
+ * allocated. */
 static BpStatus check_length(Loader *loader, const BpFilm *sizes, BpError *err) {
     FILE *in = loader->in;
     if (fseeko(in, 0, SEEK_END) != 0)
@@ -150,41 +120,29 @@ static BpStatus check_length(Loader *loader, const BpFilm *sizes, BpError *err) 
     const off_t length = ftello(in);
     if (length < 0 || fseeko(in, (off_t)loader->header_size, SEEK_SET) != 0)
         return bp_fail(err, BP_ERR_FILE, "reading %s failed: %s", loader->name, strerror(errno));
-    /* At most 2^16 * 2^16 * 2^6 * 52 bytes: far below 2^64. */
-    const uint64_t cell_size = (loader->fine_sums ? 2 : 1) * 3 * 8 + 4;
-    const uint64_t expected = loader->header_size + (uint64_t)cell_count(sizes) * cell_size +
-                              (sizes->unverified ? 0 : CHECKSUM_SIZE);
-    const uint64_t actual = (uint64_t)length;
-    if (actual == expected) return BP_OK;
+    const uint64_t around = loader->header_size + (sizes->unverified ? 0 : BP_FILM_CHECKSUM_BYTES);
+    const uint64_t numbers = body_bytes(loader, sizes), actual = (uint64_t)length;
+    loader->body_size = actual > around ? actual - around : 0;
+    const bool packed = loader->parts.version >= 3;
+    if (packed ? numbers <= bp_film_unpacked_max(loader->body_size) : actual == around + numbers)
+        return BP_OK;
     return bp_fail(err, BP_ERR_FILE,
                    "%s is %s: %" PRIu64 " byte%s, but its header (%" PRIu32 " x %" PRIu32 " pixels, %" PRIu32
-                   " replicate%s) says %" PRIu64,
-                   loader->name, actual < expected ? "truncated" : "too long", actual, bp_plural(actual),
-                   sizes->width, sizes->height, sizes->replicates, bp_plural(sizes->replicates), expected);
+                   " replicate%s) says %" PRIu64 "%s",
+                   loader->name, actual < around + numbers ? "truncated" : "too long", actual,
+                   bp_plural(actual), sizes->width, sizes->height, sizes->replicates,
+                   bp_plural(sizes->replicates), around + numbers,
+                   packed ? ", more than so few can be unpacked to" : "");
 }
 
-static BpStatus get(Loader *loader, size_t size, BpError *err) {
-    if (fread(loader->buffer, 1, size, loader->in) != size)
-        return bp_fail(err, BP_ERR_FILE, "reading %s failed: %s", loader->name,
-                       ferror(loader->in) ? strerror(errno) : "the file ends too early");
-    return BP_OK;
-}
-
-static BpStatus read_sums(Loader *loader, const BpFilm *film, int64_t *sums, BpError *err) {
+static BpStatus read_sums(BpFilmSource *source, const BpFilm *film, int64_t *sums, BpError *err) {
     const size_t count = 3 * cell_count(film);
-    for (size_t done = 0; done < count; done += BLOCK) {
-        const size_t block = count - done < BLOCK ? count - done : BLOCK;
-        BP_TRY(get(loader, 8 * block, err));
-        loader->checksum = crc32_z(loader->checksum, loader->buffer, 8 * block);
-        for (size_t i = 0; i < block; i++) {
-            const uint64_t sum = load_little(loader->buffer + 8 * i, 8);
-            if (sum > (uint64_t)SUM_MAX)
-                return bp_fail(err, BP_ERR_FILE, "%s is damaged: the sum of pixel %zu is %s", loader->name,
-                               (done + i) / 3 / film->replicates,
-                               sum >> 63 != 0 ? "negative" : "larger than a render can make it");
-            sums[done + i] = (int64_t)sum;
-        }
-    }
+    BP_TRY(bp_film_source_numbers(source, sums, 8, count, err));
+    for (size_t i = 0; i < count; i++)
+        if (sums[i] < 0 || sums[i] > SUM_MAX)
+            return bp_fail(err, BP_ERR_FILE, "%s is damaged: the sum of pixel %zu is %s", source->name,
+                           i / 3 / film->replicates,
+                           sums[i] < 0 ? "negative" : "larger than a render can make it");
     return BP_OK;
 }
 
@@ -194,15 +152,9 @@ static bool cell_is_empty(const BpFilm *film, size_t cell) {
     return true;
 }
 
-static BpStatus read_counts(Loader *loader, BpFilm *film, BpError *err) {
+static BpStatus read_counts(BpFilmSource *source, BpFilm *film, BpError *err) {
     const size_t count = cell_count(film);
-    for (size_t done = 0; done < count; done += BLOCK) {
-        const size_t block = count - done < BLOCK ? count - done : BLOCK;
-        BP_TRY(get(loader, 4 * block, err));
-        loader->checksum = crc32_z(loader->checksum, loader->buffer, 4 * block);
-        for (size_t i = 0; i < block; i++)
-            film->counts[done + i] = (uint32_t)load_little(loader->buffer + 4 * i, 4);
-    }
+    BP_TRY(bp_film_source_numbers(source, film->counts, 4, count, err));
     uint64_t expected[BP_REPLICATES_MAX];
     for (uint32_t k = 0; k < film->replicates; k++) expected[k] = bp_film_expected(film, k);
     for (size_t i = 0; i < count; i++) {
@@ -211,30 +163,73 @@ static BpStatus read_counts(Loader *loader, BpFilm *film, BpError *err) {
             return bp_fail(err, BP_ERR_FILE,
                            "%s is damaged: pixel %zu holds %" PRIu32
                            " samples in replicate %zu, which contradicts its %s",
-                           loader->name, i / film->replicates, samples, i % film->replicates,
+                           source->name, i / film->replicates, samples, i % film->replicates,
                            samples == 0 ? "sums" : "sample ranges");
     }
     return BP_OK;
 }
 
-static BpStatus check_checksum(Loader *loader, BpError *err) {
-    BP_TRY(get(loader, CHECKSUM_SIZE, err));
-    const uint64_t expected = load_little(loader->buffer, CHECKSUM_SIZE);
-    if (expected == loader->checksum) return BP_OK;
-    return bp_fail(err, BP_ERR_FILE,
-                   "%s is damaged: its checksum is %08" PRIx64 ", but its content has %08" PRIx64
-                   "; copy it again, or render its samples again",
-                   loader->name, expected, (uint64_t)loader->checksum);
+/* A mean over the rays that met something is infinite where none did. */
+#define IS_GOOD_MET(value) ((value) > -INFINITY)
+#define IS_GOOD_ALL(value) isfinite(value)
+
+static BpStatus read_aovs(BpFilmSource *source, BpFilm *film, BpError *err) {
+    const size_t pixels = (size_t)film->width * film->height;
+    BP_TRY(bp_film_add_aovs(film, err));
+#define READ(place, member, floats, mean, channels)                                                          \
+    BP_TRY(bp_film_source_numbers(source, film->member, 4, (floats)*pixels, err));                           \
+    for (size_t i = 0; i < (floats)*pixels; i++)                                                             \
+        if (!IS_GOOD_##mean(film->member[i]))                                                                \
+            return bp_fail(err, BP_ERR_FILE, "%s is damaged: the " #member " of pixel %zu is no number",     \
+                           source->name, i / (floats));
+    AOV_LIST(READ)
+#undef READ
+    return BP_OK;
 }
 
-/* Everything after the header, into a film of the right size. */
-static BpStatus read_body(Loader *loader, const json_t *header, BpFilm *film, BpError *err) {
-    BP_TRY(bp_film_header_settings(header, loader->name, film, err));
-    if (loader->fine_sums) BP_TRY(bp_film_add_fine_sums(film, err));
-    BP_TRY(read_sums(loader, film, film->sums, err));
-    if (loader->fine_sums) BP_TRY(read_sums(loader, film, film->fine_sums, err));
-    BP_TRY(read_counts(loader, film, err));
-    return film->unverified ? BP_OK : check_checksum(loader, err);
+static BpStatus read_pixel_segments(BpFilmSource *source, BpFilm *film, BpError *err) {
+    const size_t pixels = (size_t)film->width * film->height;
+    film->pixel_segments = calloc(pixels, sizeof *film->pixel_segments);
+    if (film->pixel_segments == NULL)
+        return bp_fail(err, BP_ERR_MEMORY, "out of memory for the path lengths of %zu pixels", pixels);
+    return bp_film_source_numbers(source, film->pixel_segments, 8, pixels, err);
+}
+
+static BpStatus read_decisions(BpFilmSource *source, BpFilm *film, BpError *err) {
+    const size_t size = film->plan->decision_bytes;
+    film->plan->decisions = malloc(size);
+    if (film->plan->decisions == NULL)
+        return bp_fail(err, BP_ERR_MEMORY, "out of memory for the decisions of adaptive sampling");
+    return bp_film_source_numbers(source, film->plan->decisions, 1, size, err);
+}
+
+/* Everything after the header. */
+static BpStatus read_numbers(const BpFilmParts *parts, BpFilmSource *source, BpFilm *film, BpError *err) {
+    if (parts->fine_sums) BP_TRY(bp_film_add_fine_sums(film, err));
+    BP_TRY(read_sums(source, film, film->sums, err));
+    if (parts->fine_sums) BP_TRY(read_sums(source, film, film->fine_sums, err));
+    BP_TRY(read_counts(source, film, err));
+    if (parts->aovs) BP_TRY(read_aovs(source, film, err));
+    if (parts->pixel_segments) BP_TRY(read_pixel_segments(source, film, err));
+    if (parts->decision_bytes > 0) BP_TRY(read_decisions(source, film, err));
+    return bp_film_source_end(source, err);
+}
+
+/* Numbers that make no sense come of damage, mostly: then the checksum, at the end of the file, is what is
+ * told. */
+static BpStatus read_body(const Loader *loader, BpFilm *film, BpError *err) {
+    BpFilmSource source;
+    BpStatus status = bp_film_source_init(loader->in, loader->name, loader->header_checksum,
+                                          loader->body_size, loader->parts.version < 3, &source, err);
+    if (status == BP_OK) status = read_numbers(&loader->parts, &source, film, err);
+    if (!film->unverified && (status == BP_OK || status == BP_ERR_FILE)) {
+        BpError damage = {0};
+        const BpStatus verified = bp_film_source_verify(&source, &damage);
+        if (verified != BP_OK) status = bp_fail(err, verified, "%s", damage.message);
+        bp_error_clear(&damage);
+    }
+    bp_film_source_clear(&source);
+    return status;
 }
 
 BpStatus bp_film_read_stream(FILE *in, const char *name, BpFilm **film, BpError *err) {
@@ -245,22 +240,17 @@ BpStatus bp_film_read_stream(FILE *in, const char *name, BpFilm **film, BpError 
     Loader loader = {.in = in, .name = name};
     BpStatus status = read_header(&loader, &header, err);
     if (status != BP_OK) goto done;
-    BP_TRY_GOTO(status, bp_film_header_sizes(header, name, &sizes, &loader.fine_sums, err), done);
+    BP_TRY_GOTO(status, bp_film_header_sizes(header, name, &sizes, &loader.parts, err), done);
     BP_TRY_GOTO(status, check_length(&loader, &sizes, err), done);
     BP_TRY_GOTO(status, bp_film_create(sizes.width, sizes.height, sizes.replicates, &made, err), done);
     made->unverified = sizes.unverified;
     made->coarse = sizes.coarse;
-    loader.buffer = malloc(8 * BLOCK);
-    if (loader.buffer == NULL) {
-        status = bp_fail(err, BP_ERR_MEMORY, "out of memory for reading %s", name);
-        goto done;
-    }
-    BP_TRY_GOTO(status, read_body(&loader, header, made, err), done);
+    BP_TRY_GOTO(status, bp_film_header_settings(header, name, made, err), done);
+    BP_TRY_GOTO(status, read_body(&loader, made, err), done);
     *film = made;
     made = NULL;
 done:
     if (status != BP_OK) bp_error_at(err, name, 0, 0);
-    free(loader.buffer);
     json_decref(header);
     bp_film_destroy(&made);
     return status;

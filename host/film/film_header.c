@@ -9,7 +9,8 @@
 #include <stdlib.h>
 #include <string.h>
 
-#define TITLE_BYTES_MAX 65536u /* in the file: a header is at most 1 MiB */
+#define SAMPLES_END INT64_C(4294967296) /* 2^32, one past the last sample number */
+#define TITLE_BYTES_MAX 65536u          /* in the file: a header is at most 1 MiB */
 
 /* ---- making ---- */
 
@@ -35,16 +36,34 @@ static size_t title_bytes(const char *title) {
     return length;
 }
 
+static json_t *plan_json(const BpFilmPlan *plan) {
+    return json_pack("{s:b,s:I,s:I,s:I,s:I,s:I,s:I,s:f,s:I}", "adaptive", (int)plan->adaptive, "first_sample",
+                     (json_int_t)plan->first_sample, "target", (json_int_t)plan->target, "done",
+                     (json_int_t)plan->done, "pass_samples", (json_int_t)plan->pass_samples, "next_pixel",
+                     (json_int_t)plan->next_pixel, "samples_max", (json_int_t)plan->samples_max, "error",
+                     plan->error, "decision_bytes", (json_int_t)plan->decision_bytes);
+}
+
+/* What not every film has; false when out of memory. */
+static bool add_optional(json_t *header, const BpFilm *film) {
+    if (film->job.count > 0 &&
+        json_object_set_new(
+            header, "job", json_pack("[I,I]", (json_int_t)film->job.first, (json_int_t)film->job.count)) != 0)
+        return false;
+    return film->plan == NULL || json_object_set_new(header, "plan", plan_json(film->plan)) == 0;
+}
+
 char *bp_film_header_make(const BpFilm *film) {
     char hash[32], seed[32];
     snprintf(hash, sizeof hash, "%016" PRIx64, film->scene_hash);
     snprintf(seed, sizeof seed, "%" PRIu64, film->seed);
     const char *title = film->title != NULL ? film->title : "";
     json_t *header = json_pack(
-        "{s:i,s:s,s:s%,s:I,s:I,s:I,s:i,s:b,s:b,s:s,s:s,s:I}", "ballpark_accumulator", BP_FILM_VERSION,
+        "{s:i,s:s,s:s%,s:I,s:I,s:I,s:i,s:b,s:b,s:b,s:b,s:s,s:s,s:I}", "ballpark_accumulator", BP_FILM_VERSION,
         "byte_order", "little", "title", title, title_bytes(title), "width", (json_int_t)film->width,
         "height", (json_int_t)film->height, "replicates", (json_int_t)film->replicates, "scale_log2",
         (int)film->scale_log2, "fine_sums", (int)(film->fine_sums != NULL), "coarse", (int)film->coarse,
+        "aovs", (int)bp_film_has_aovs(film), "pixel_segments", (int)(film->pixel_segments != NULL),
         "scene_hash", hash, "seed", seed, "max_depth", (json_int_t)film->max_depth);
     json_t *rest = json_pack("{s:s,s:o,s:b,s:I,s:I,s:I}", "transfer", bp_transfer_names[film->transfer],
                              "ranges", ranges_json(film), "partial", (int)film->partial, "segments",
@@ -56,7 +75,7 @@ char *bp_film_header_make(const BpFilm *film) {
         whole && json_object_set_new(header, #member, json_string(bp_##member##_names[film->member])) == 0;
     BP_SETTING_LIST(WRITE)
 #undef WRITE
-    whole = whole && json_object_update(header, rest) == 0;
+    whole = whole && json_object_update(header, rest) == 0 && add_optional(header, film);
     json_decref(rest);
     char *text = whole ? json_dumps(header, JSON_PRESERVE_ORDER) : NULL;
     json_decref(header);
@@ -159,7 +178,7 @@ static void read_ranges(Reader *reader, BpFilm *film) {
 }
 
 /* The part of the header that decides how long the file is. */
-static void read_sizes(Reader *reader, BpFilm *sizes, bool *fine_sums) {
+static void read_sizes(Reader *reader, BpFilm *sizes, BpFilmParts *parts) {
     const uint64_t version = read_integer(reader, "ballpark_accumulator", 1, INT64_MAX);
     if (version > BP_FILM_VERSION && reader->status == BP_OK)
         reader->status =
@@ -167,16 +186,76 @@ static void read_sizes(Reader *reader, BpFilm *sizes, bool *fine_sums) {
                     "%s has version %" PRIu64
                     " of the format, but this program reads versions 1 to %d: use a newer Ballpark",
                     reader->name, version, BP_FILM_VERSION);
+    parts->version = (uint32_t)version;
     sizes->unverified = version == 1;
     static const char *const byte_orders[] = {"little", NULL};
     read_name(reader, "byte_order", byte_orders);
     sizes->width = (uint32_t)read_integer(reader, "width", 1, BP_PICTURE_SIDE_MAX);
     sizes->height = (uint32_t)read_integer(reader, "height", 1, BP_PICTURE_SIDE_MAX);
     sizes->replicates = (uint32_t)read_integer(reader, "replicates", 1, BP_REPLICATES_MAX);
-    if (!sizes->unverified) {
-        *fine_sums = read_truth(reader, "fine_sums");
+    if (version >= 2) {
+        parts->fine_sums = read_truth(reader, "fine_sums");
         sizes->coarse = read_truth(reader, "coarse");
     }
+    if (version < 3) return;
+    parts->aovs = read_truth(reader, "aovs");
+    parts->pixel_segments = read_truth(reader, "pixel_segments");
+    const json_t *plan = json_object_get(reader->header, "plan");
+    Reader inner = {plan, reader->name, reader->status, reader->err};
+    if (plan != NULL) parts->decision_bytes = read_integer(&inner, "decision_bytes", 0, INT32_MAX);
+    reader->status = inner.status;
+}
+
+/* The samples of the whole job, if the film is a share of one. */
+static void read_job(Reader *reader, BpFilm *film) {
+    const json_t *job = json_object_get(reader->header, "job");
+    const json_t *first = json_array_get(job, 0), *count = json_array_get(job, 1);
+    if (job == NULL) return;
+    if (json_array_size(job) != 2 || !json_is_integer(first) || !json_is_integer(count) ||
+        json_integer_value(first) < 0 || json_integer_value(count) < 1 ||
+        json_integer_value(first) >= SAMPLES_END ||
+        json_integer_value(count) > SAMPLES_END - json_integer_value(first)) {
+        bad_member(reader, "job", "[first, count] of sample numbers below 2^32");
+        return;
+    }
+    film->job =
+        (struct BpSampleRange){(uint64_t)json_integer_value(first), (uint64_t)json_integer_value(count)};
+}
+
+/* Whether the plan goes with the rest of the film: a render that goes on from it then stays within bounds. */
+static bool plan_fits(const BpFilm *film, const BpFilmPlan *plan) {
+    const uint64_t pixels = (uint64_t)film->width * film->height;
+    if (plan->next_pixel >= pixels || (plan->pass_samples == 0 && plan->next_pixel != 0)) return false;
+    if (plan->first_sample + plan->target > SAMPLES_END) return false;
+    /* Of an adaptive render `done` is of a pass, whose length its decisions tell. */
+    return plan->decision_bytes > 0 || plan->done + plan->pass_samples <= plan->target;
+}
+
+static void read_plan(Reader *reader, BpFilm *film) {
+    const json_t *json = json_object_get(reader->header, "plan");
+    if (json == NULL || reader->status != BP_OK) return;
+    BpFilmPlan *plan = calloc(1, sizeof *plan);
+    if (plan == NULL) {
+        reader->status = bp_fail(reader->err, BP_ERR_MEMORY, "out of memory");
+        return;
+    }
+    film->plan = plan;
+    Reader inner = {json, reader->name, BP_OK, reader->err};
+    plan->adaptive = read_truth(&inner, "adaptive");
+    plan->first_sample = read_integer(&inner, "first_sample", 0, SAMPLES_END - 1);
+    plan->target = read_integer(&inner, "target", 1, SAMPLES_END);
+    plan->done = read_integer(&inner, "done", 0, SAMPLES_END);
+    plan->pass_samples = (uint32_t)read_integer(&inner, "pass_samples", 0, UINT32_MAX);
+    plan->next_pixel = (uint32_t)read_integer(&inner, "next_pixel", 0, UINT32_MAX);
+    plan->samples_max = read_integer(&inner, "samples_max", 0, SAMPLES_END);
+    plan->decision_bytes = (size_t)read_integer(&inner, "decision_bytes", 0, INT32_MAX);
+    const json_t *error = json_object_get(json, "error");
+    plan->error = json_number_value(error);
+    if (!json_is_number(error) || !(plan->error >= 0 && plan->error <= 1e9))
+        bad_member(&inner, "error", "a number from 0 to 10^9");
+    reader->status = inner.status;
+    if (inner.status == BP_OK && !plan_fits(film, plan))
+        bad_member(reader, "plan", "one that goes with the size of the picture and the samples");
 }
 
 static void read_settings(Reader *reader, BpFilm *film) {
@@ -204,18 +283,22 @@ static void read_settings(Reader *reader, BpFilm *film) {
     const char *title = json_string_value(json_object_get(reader->header, "title"));
     if (title == NULL) bad_member(reader, "title", "a string");
     read_ranges(reader, film);
+    if (json_integer_value(json_object_get(reader->header, "ballpark_accumulator")) >= 3) {
+        read_job(reader, film);
+        read_plan(reader, film);
+    }
     if (reader->status != BP_OK) return;
     film->title = strdup(title);
     if (film->title == NULL) reader->status = bp_fail(reader->err, BP_ERR_MEMORY, "out of memory");
 }
 
-BpStatus bp_film_header_sizes(const json_t *header, const char *name, BpFilm *sizes, bool *fine_sums,
+BpStatus bp_film_header_sizes(const json_t *header, const char *name, BpFilm *sizes, BpFilmParts *parts,
                               BpError *err) {
     if (json_object_get(header, "ballpark_accumulator") == NULL)
         return bp_fail(err, BP_ERR_FILE, "%s is not a .bpa file: \"ballpark_accumulator\" is missing", name);
     Reader reader = {header, name, BP_OK, err};
-    *fine_sums = false;
-    read_sizes(&reader, sizes, fine_sums);
+    *parts = (BpFilmParts){.version = 0};
+    read_sizes(&reader, sizes, parts);
     return reader.status;
 }
 

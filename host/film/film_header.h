@@ -10,18 +10,26 @@
 
 #include <jansson.h>
 
-#define BP_FILM_VERSION 2 /* of the files that are written */
+#define BP_FILM_VERSION 3 /* of the files that are written */
+
+/* Which numbers follow a header. */
+typedef struct BpFilmParts {
+    uint32_t version;
+    bool fine_sums, aovs, pixel_segments;
+    uint64_t decision_bytes; /* of the plan */
+} BpFilmParts;
 
 /* The header line without its newline; the caller frees it. NULL when out of memory. */
 char *bp_film_header_make(const BpFilm *film);
 
-/* Checks version and byte order, and reads what decides how long the file has to be: width, height,
- * replicates and whether the version is 1 (`unverified`) into `sizes`, and whether there are fine sums.
- * `name` is the file's, for messages; BP_ERR_FILE names the member that is wrong. */
-BpStatus bp_film_header_sizes(const json_t *header, const char *name, BpFilm *sizes, bool *fine_sums,
+/* Checks version and byte order, and reads what decides how many numbers follow: width, height, replicates
+ * and whether the version is 1 (`unverified`) into `sizes`, and which parts there are. `name` is the file's,
+ * for messages; BP_ERR_FILE names the member that is wrong. */
+BpStatus bp_film_header_sizes(const json_t *header, const char *name, BpFilm *sizes, BpFilmParts *parts,
                               BpError *err);
 
-/* Reads everything else into `film`, which has its sizes. BP_ERR_FILE or BP_ERR_MEMORY. */
+/* Reads everything else into `film`, which has its sizes; a plan without its decisions. BP_ERR_FILE or
+ * BP_ERR_MEMORY. */
 BpStatus bp_film_header_settings(const json_t *header, const char *name, BpFilm *film, BpError *err);
 
 #endif

@@ -31,11 +31,11 @@ static void view_direction(const BpCamera *camera, cl_float forward[3]) {
 }
 
 /* What a sum is divided by for its mean; an AOV over the rays that MET something is +Inf where none did. */
-#define MEAN_OVER_ALL(sum) ((sum) / (float)samples)
+#define MEAN_OVER_ALL(sum) ((sum) / (float)BP_AOV_SAMPLES)
 #define MEAN_OVER_MET(sum) (met > 0 ? (sum) / met : INFINITY)
 
-/* Sums over `samples` rays to the pixel's values. */
-static void store_pixel(const cl_float *sums, uint32_t samples, size_t pixel, BpPicture *picture) {
+/* Sums over a pixel's rays to its values. */
+static void store_pixel(const cl_float *sums, size_t pixel, BpPicture *picture) {
     const float met = sums[AOV_MET];
 #define STORE(place, member, floats, mean, channels)                                                         \
     for (size_t a = 0; a < (floats); ++a)                                                                    \
@@ -44,8 +44,9 @@ static void store_pixel(const cl_float *sums, uint32_t samples, size_t pixel, Bp
 #undef STORE
 }
 
-static BpStatus set_arguments(BpWorker *worker, cl_kernel kernel, const BpCamera *camera,
-                              uint32_t first_sample, uint32_t samples, cl_mem out, BpError *err) {
+static BpStatus set_arguments(BpWorker *worker, cl_kernel kernel, const BpCamera *camera, cl_mem out,
+                              BpError *err) {
+    const cl_uint first_sample = 0, samples = BP_AOV_SAMPLES;
     cl_float forward[3];
     view_direction(camera, forward);
     BP_TRY(bp_worker_bind_scene(worker, kernel, err));
@@ -91,8 +92,7 @@ static bool make_layers(BpPicture *picture, size_t pixels) {
     return made;
 }
 
-BpStatus bp_aovs_fill(BpWorker *worker, const BpCamera *camera, uint32_t first_sample, uint32_t samples,
-                      BpPicture *picture, BpError *err) {
+BpStatus bp_aovs_fill(BpWorker *worker, const BpCamera *camera, BpPicture *picture, BpError *err) {
     const uint32_t pixels = worker->pixels, batch = pixels < BATCH_PIXELS ? pixels : BATCH_PIXELS;
     BpStatus status = BP_OK;
     cl_int code = CL_SUCCESS;
@@ -119,12 +119,12 @@ BpStatus bp_aovs_fill(BpWorker *worker, const BpCamera *camera, uint32_t first_s
         goto cleanup;
     }
     if (local > most) local = most;
-    BP_TRY_GOTO(status, set_arguments(worker, kernel, camera, first_sample, samples, out, err), cleanup);
+    BP_TRY_GOTO(status, set_arguments(worker, kernel, camera, out, err), cleanup);
     for (uint32_t first = 0; first < pixels; first += batch) {
         const uint32_t count = pixels - first < batch ? pixels - first : batch;
         BP_TRY_GOTO(status, run_batch(worker, kernel, local, out, first, count, sums, err), cleanup);
         for (uint32_t i = 0; i < count; ++i)
-            store_pixel(sums + (size_t)i * AOV_FLOATS, samples, (size_t)first + i, picture);
+            store_pixel(sums + (size_t)i * AOV_FLOATS, (size_t)first + i, picture);
     }
 
 cleanup:

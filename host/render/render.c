@@ -144,6 +144,8 @@ void bp_render_destroy(BpRender **render) {
         bp_worker_destroy(&(*render)->workers[i]);
     free((*render)->workers);
     bp_film_destroy(&(*render)->film);
+    bp_film_destroy(&(*render)->base);
+    bp_picture_clear(&(*render)->aovs);
     bp_adaptive_destroy(&(*render)->adaptive);
     free(*render);
     *render = NULL;
@@ -172,7 +174,7 @@ static BpStatus free_worker(const BpRender *render, BpWorker **found, BpError *e
 }
 
 uint64_t bp_render_pixel_samples(const BpRender *render) {
-    uint64_t done = 0;
+    uint64_t done = render->base_samples;
     for (size_t i = 0; i < render->worker_count; ++i) done += render->workers[i]->samples_done;
     return done;
 }
@@ -240,19 +242,28 @@ static void report_progress(const BpRender *render, bool finished, BpProgress *p
     progress->finished = finished;
 }
 
-BpStatus bp_render_step(BpRender *render, BpProgress *progress, BpError *err) {
+/* Starts chunks until so much time has passed, one at least. */
+static BpStatus step(BpRender *render, double seconds, BpProgress *progress, BpError *err) {
     const double start = bp_clock_seconds();
     bp_film_destroy(&render->film);
     bool more = true;
     do {
         BP_TRY(start_chunk(render, &more, err));
-    } while (more && bp_clock_seconds() - start < STEP_SECONDS);
+    } while (more && bp_clock_seconds() - start < seconds);
     if (!more)
         for (size_t i = 0; i < render->worker_count; ++i)
             BP_TRY(bp_worker_wait_for_all(render->workers[i], err));
     render->trace_seconds += bp_clock_seconds() - start;
     report_progress(render, !more && !in_flight(render), progress);
     return BP_OK;
+}
+
+BpStatus bp_render_step(BpRender *render, BpProgress *progress, BpError *err) {
+    return step(render, STEP_SECONDS, progress, err);
+}
+
+BpStatus bp_render_step_chunk(BpRender *render, BpProgress *progress, BpError *err) {
+    return step(render, 0, progress, err);
 }
 
 BpStatus bp_render_step_samples(BpRender *render, BpSampleBlock *block, bool *finished, BpError *err) {
@@ -290,15 +301,25 @@ bool bp_render_has_begun(const BpRender *render) {
     return render->decides || render->schedule.done > 0 || render->schedule.pass_samples > 0;
 }
 
-BpStatus bp_render_extend(BpRender *render, uint64_t samples_per_pixel, BpError *err) {
+BpStatus bp_render_check_samples(const BpRender *render, uint64_t samples_per_pixel, BpError *err) {
     BpRenderOptions wanted = render->options;
     wanted.samples_per_pixel = samples_per_pixel;
-    BP_TRY(check_options(render->scene, &wanted, err));
-    if (samples_per_pixel < render->options.samples_per_pixel && bp_render_has_begun(render))
+    return check_options(render->scene, &wanted, err);
+}
+
+/* The least that the render can still end with. */
+static uint64_t samples_least(const BpRender *render) {
+    if (!bp_render_has_begun(render)) return 1;
+    if (render->adaptive != NULL) return render->options.samples_per_pixel;
+    return render->schedule.done + render->schedule.pass_samples;
+}
+
+BpStatus bp_render_extend(BpRender *render, uint64_t samples_per_pixel, BpError *err) {
+    BP_TRY(bp_render_check_samples(render, samples_per_pixel, err));
+    if (samples_per_pixel < samples_least(render))
         return bp_fail(err, BP_ERR_USAGE, "a render of %llu samples cannot be extended to %llu",
-                       (unsigned long long)render->options.samples_per_pixel,
-                       (unsigned long long)samples_per_pixel);
-    render->options = wanted;
+                       (unsigned long long)samples_least(render), (unsigned long long)samples_per_pixel);
+    render->options.samples_per_pixel = samples_per_pixel;
     if (render->adaptive == NULL)
         render->schedule.samples = samples_per_pixel;
     else if (!render->decides)
@@ -317,7 +338,7 @@ uint64_t bp_render_samples_done(const BpRender *render) {
     return (uint64_t)llround((double)bp_adaptive_samples(render->adaptive) / pixels);
 }
 
-static BpStatus describe(const BpRender *render, BpFilm *film, BpError *err) {
+BpStatus bp_render_describe(const BpRender *render, BpFilm *film, BpError *err) {
     const BpRenderOptions *options = &render->options;
     film->scale_log2 = bp_film_scale(render->scene, options->max_depth, options->lamps);
     film->scene_hash = bp_scene_hash(render->scene);
@@ -340,18 +361,28 @@ static BpStatus describe(const BpRender *render, BpFilm *film, BpError *err) {
     return BP_OK;
 }
 
+/* What a resumed render began with. */
+static BpStatus add_base(const BpFilm *base, BpFilm *film, BpError *err) {
+    const size_t pixels = (size_t)film->width * film->height;
+    BP_TRY(bp_film_add_sums(film, base, err));
+    if (film->pixel_segments != NULL && base->pixel_segments != NULL)
+        for (size_t i = 0; i < pixels; ++i) film->pixel_segments[i] += base->pixel_segments[i];
+    return BP_OK;
+}
+
 BpStatus bp_render_read_film(BpRender *render, const BpFilm **film, BpError *err) {
     if (render->film == NULL) {
         BpFilm *read = NULL;
         BpStatus status = bp_film_create(render->scene->camera.width, render->scene->camera.height,
                                          render->options.replicates, &read, err);
-        if (status == BP_OK) status = describe(render, read, err);
+        if (status == BP_OK) status = bp_render_describe(render, read, err);
         if (status == BP_OK && render->adaptive != NULL) {
             const size_t pixels = (size_t)read->width * read->height;
             read->pixel_segments = calloc(pixels, sizeof *read->pixel_segments);
             if (read->pixel_segments == NULL)
                 status = bp_fail(err, BP_ERR_MEMORY, "no memory for the path lengths of %zu pixels", pixels);
         }
+        if (status == BP_OK && render->base != NULL) status = add_base(render->base, read, err);
         for (size_t i = 0; status == BP_OK && i < render->worker_count; ++i)
             status = bp_worker_collect(render->workers[i], read, err);
         if (status != BP_OK) {
@@ -381,9 +412,7 @@ BpStatus bp_render_aovs(BpRender *render, BpPicture *picture, BpError *err) {
                        "depth, normals and albedo of %" PRIu32 " x %" PRIu32
                        " pixels for a picture of %" PRIu32 " x %" PRIu32 ": read the picture first",
                        camera->width, camera->height, picture->width, picture->height);
-    const uint64_t samples = options->samples_per_pixel;
-    return bp_aovs_fill(render->workers[0], camera, (uint32_t)options->first_sample,
-                        samples < BP_AOV_SAMPLES ? (uint32_t)samples : BP_AOV_SAMPLES, picture, err);
+    return bp_aovs_fill(render->workers[0], camera, picture, err);
 }
 
 void bp_render_report(const BpRender *render, BpRenderReport *report) {
@@ -417,6 +446,7 @@ void bp_render_report(const BpRender *render, BpRenderReport *report) {
                                 (uint64_t)worker->samples_capacity * 4 * worker->real_size;
     }
     report->samples = bp_render_pixel_samples(render);
+    report->resumed_samples = render->base_samples;
     if (render->film != NULL) {
         report->segments = render->film->segments;
         report->cut_paths = render->film->cut_paths;
@@ -424,9 +454,45 @@ void bp_render_report(const BpRender *render, BpRenderReport *report) {
     }
 }
 
+/* What another render needs to go on from here, unless everything that was asked for is there: then the film
+ * is all. */
+static BpStatus add_plan(const BpRender *render, BpFilm *film, BpError *err) {
+    const BpSchedule *schedule = &render->schedule;
+    const bool whole = schedule->pass_samples == 0 && schedule->done == schedule->samples;
+    if (film->plan != NULL || (whole && render->adaptive == NULL)) return BP_OK;
+    film->plan = calloc(1, sizeof *film->plan);
+    if (film->plan == NULL) return bp_fail(err, BP_ERR_MEMORY, "no memory for the plan of a render");
+    *film->plan = (BpFilmPlan){.adaptive = render->adaptive != NULL,
+                               .first_sample = render->options.first_sample,
+                               .target = render->options.samples_per_pixel,
+                               .done = schedule->done,
+                               .pass_samples = schedule->pass_samples,
+                               .next_pixel = schedule->pass_samples > 0 ? schedule->next_pixel : 0,
+                               .samples_max = render->goal_samples,
+                               .error = render->goal_error};
+    if (!render->decides) return BP_OK;
+    return bp_adaptive_save(render->adaptive, &film->plan->decisions, &film->plan->decision_bytes, err);
+}
+
+/* They depend on no sample of the render, so once is enough. */
+static BpStatus fill_aovs(BpRender *render, BpError *err) {
+    if (render->aovs.depth != NULL) return BP_OK;
+    render->aovs.width = render->scene->camera.width;
+    render->aovs.height = render->scene->camera.height;
+    return bp_aovs_fill(render->workers[0], &render->scene->camera, &render->aovs, err);
+}
+
+BpStatus bp_render_read_whole_film(BpRender *render, const BpFilm **film, BpError *err) {
+    BP_TRY(bp_render_read_film(render, film, err));
+    BP_TRY(add_plan(render, render->film, err));
+    if (!render->options.features) return BP_OK;
+    BP_TRY(fill_aovs(render, err));
+    return bp_film_take_aovs(render->film, &render->aovs, err);
+}
+
 BpStatus bp_render_film(BpRender *render, BpFilm **film, BpError *err) {
     const BpFilm *read = NULL;
-    BP_TRY(bp_render_read_film(render, &read, err));
+    BP_TRY(bp_render_read_whole_film(render, &read, err));
     *film = render->film;
     render->film = NULL; /* the render reads its sums anew when it is asked again */
     return BP_OK;

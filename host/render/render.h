@@ -26,6 +26,7 @@ typedef struct BpRenderReport {
     double accumulate_seconds;   /* the fold's share of device_seconds */
     uint64_t device_bytes;       /* allocated on the device: scene and picture */
     uint64_t scene_bytes;        /* of these, the scene */
+    uint64_t resumed_samples;    /* of `samples`, those that were there before */
     uint64_t samples, segments, cut_paths, invalid_samples;
 } BpRenderReport;
 
@@ -34,8 +35,15 @@ void bp_render_report(const BpRender *render, BpRenderReport *report);
 /* The film as it stands, read from the device; owned by the render, valid until the next step. */
 BpStatus bp_render_read_film(BpRender *render, const BpFilm **film, BpError *err);
 
+/* The same as it goes to a file: with what another render needs to go on from it, unless this one is
+ * finished, and with depth, normal and albedo if the options have `features`. */
+BpStatus bp_render_read_whole_film(BpRender *render, const BpFilm **film, BpError *err);
+
 /* Whether a sample has been handed out yet. */
 bool bp_render_has_begun(const BpRender *render);
+
+/* bp_render_step() with one chunk: for tests that stop amid a pass. */
+BpStatus bp_render_step_chunk(BpRender *render, BpProgress *progress, BpError *err);
 
 /* One chunk of raw samples. */
 typedef struct BpSampleBlock {

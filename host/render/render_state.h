@@ -1,5 +1,5 @@
-/* render_state.h: what a render knows while it runs; shared by render.c, which runs it, and stop.c, which
- * stops it.
+/* render_state.h: what a render knows while it runs; shared by render.c, which runs it, stop.c, which
+ * stops it, and resume.c, which takes it up again.
  *
  * Knows: workers, the schedule, the plan of adaptive sampling.   Does not know: files, stop rules. */
 #ifndef BP_RENDER_RENDER_STATE_H
@@ -16,16 +16,28 @@ struct BpRender {
     BpAcceleration acceleration;
     BpWorker **workers;
     size_t worker_count;
-    BpSchedule schedule;  /* adaptive: of the pass under way */
-    BpAdaptive *adaptive; /* NULL: every pixel gets the same samples */
-    bool decides;         /* adaptive: past the samples that every pixel gets */
-    BpFilm *film;         /* as last read; NULL before that */
+    BpSchedule schedule;   /* adaptive: of the pass under way */
+    BpAdaptive *adaptive;  /* NULL: every pixel gets the same samples */
+    bool decides;          /* adaptive: past the samples that every pixel gets */
+    BpFilm *film;          /* as last read; NULL before that */
+    BpFilm *base;          /* what a resumed render began with; NULL: nothing */
+    uint64_t base_samples; /* pixel samples in it */
+    uint64_t goal_samples; /* where a stop rule ends it; 0: none has said */
+    double goal_error;
+    BpPicture aovs; /* its depth, normal and albedo, once computed */
     BpChunk last_chunk;
     double tree_seconds, pack_seconds, trace_seconds;
     uint64_t samples_total;
 };
 
-/* Pixel samples of all chunks that are done. */
+/* Pixel samples of all chunks that are done, those of a resumed film included. */
 uint64_t bp_render_pixel_samples(const BpRender *render);
+
+/* The scene, the options and the ranges of samples of the render as it stands, into a film without any. */
+BpStatus bp_render_describe(const BpRender *render, BpFilm *film, BpError *err);
+
+/* Whether the render could be extended to so many samples: BP_ERR_USAGE or BP_ERR_LIMIT as
+ * bp_render_extend(). */
+BpStatus bp_render_check_samples(const BpRender *render, uint64_t samples_per_pixel, BpError *err);
 
 #endif

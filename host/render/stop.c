@@ -62,7 +62,7 @@ static uint64_t samples_limit(const BpRenderOptions *options) {
 }
 
 static BpStatus check_rule(const BpRender *render, const BpStopRule *rule, BpError *err) {
-    if (bp_render_has_begun(render))
+    if (bp_render_has_begun(render) && bp_render_pixel_samples(render) != render->base_samples)
         return bp_fail(err, BP_ERR_USAGE, "a stop rule must be given before the first step of a render");
     if (!isfinite(rule->error) || rule->error < 0.0 || !isfinite(rule->seconds) || rule->seconds < 0.0)
         return bp_fail(err, BP_ERR_USAGE,
@@ -79,6 +79,13 @@ static BpStatus check_rule(const BpRender *render, const BpStopRule *rule, BpErr
     return BP_OK;
 }
 
+/* A resumed render goes on to where it was going; other renders begin with what the rule says. */
+static uint64_t first_samples(const BpRender *render, const BpStopRule *rule) {
+    const uint64_t target = render->options.samples_per_pixel;
+    if (render->base == NULL) return bp_stop_first(rule);
+    return target < rule->samples_max ? target : rule->samples_max;
+}
+
 BpStatus bp_stop_create(BpRender *render, const BpStopRule *rule, BpStop **stop, BpError *err) {
     BP_TRY(check_rule(render, rule, err));
     BpStopRule checked = *rule;
@@ -88,11 +95,15 @@ BpStatus bp_stop_create(BpRender *render, const BpStopRule *rule, BpStop **stop,
     made->render = render;
     made->rule = checked;
     made->pixels = (uint64_t)render->scene->camera.width * render->scene->camera.height;
-    made->state = (BpStopState){.samples = bp_stop_first(&checked), .nrmse = NAN};
+    made->state = (BpStopState){.samples = first_samples(render, &checked),
+                                .samples_before = bp_render_samples_done(render),
+                                .nrmse = NAN};
     made->nrmse = NAN;
     /* The most that the rule may ask for is tried first, so that it cannot be refused on the way. */
-    BpStatus status = bp_render_extend(render, checked.samples_max, err);
+    BpStatus status = bp_render_check_samples(render, checked.samples_max, err);
     if (status == BP_OK) status = bp_render_extend(render, made->state.samples, err);
+    render->goal_samples = checked.samples_max;
+    render->goal_error = checked.error;
     made->start = bp_clock_seconds();
     if (status == BP_OK)
         *stop = made;
@@ -170,6 +181,8 @@ BpStatus bp_stop_estimate(BpStop *stop, const BpProgress *progress, BpStopEstima
     const BpStopRule *rule = &stop->rule;
     const double seconds = bp_clock_seconds() - stop->start;
     const double samples = (double)progress->samples_done / (double)stop->pixels;
+    const double before = (double)stop->render->base_samples / (double)stop->pixels; /* of no time of ours */
+    const double own = samples - before;
     BpRenderReport report;
     bp_render_report(stop->render, &report);
     /* The first launch, in which a driver may compile, says nothing about the rate. */
@@ -177,17 +190,20 @@ BpStatus bp_stop_estimate(BpStop *stop, const BpProgress *progress, BpStopEstima
     BP_TRY(refresh_error(stop, err));
     /* Between two looks it falls with the square root of the samples. */
     const double nrmse = samples > 0.0 ? stop->nrmse * sqrt(stop->nrmse_samples / samples) : NAN;
-    const BpStopState state = {.samples = (uint64_t)samples, .seconds = seconds, .nrmse = nrmse};
+    const BpStopState state = {.samples = (uint64_t)samples,
+                               .samples_before = stop->state.samples_before,
+                               .seconds = seconds,
+                               .nrmse = nrmse};
     const double expected = fmax(bp_stop_expected(rule, &state), samples);
     double fraction = samples / expected;
-    double left = samples > 0.0 ? tracing * (expected - samples) / samples : NAN;
+    double left = own > 0.0 ? tracing * (expected - samples) / own : NAN;
     if (rule->seconds > 0.0) {
         /* Until the first whole pass the clock is all there is to go by. */
         fraction = fmax(state.samples > 0 ? fraction : 0.0, fmin(1.0, seconds / rule->seconds));
         left = fmin(left, fmax(0.0, rule->seconds - seconds));
     }
     *estimate = (BpStopEstimate){.seconds = seconds,
-                                 .samples_per_second = (double)progress->samples_done / tracing,
+                                 .samples_per_second = own * (double)stop->pixels / tracing,
                                  .nrmse = nrmse,
                                  .fraction = fraction,
                                  .seconds_left = left};

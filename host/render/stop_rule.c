@@ -49,7 +49,10 @@ uint64_t bp_stop_first(const BpStopRule *rule) {
 
 /* More samples that the remaining time allows. */
 static double samples_in_time(const BpStopRule *rule, const BpStopState *state) {
-    return (rule->seconds - state->seconds) * (double)state->samples / fmax(state->seconds, 1.0e-6);
+    const uint64_t own = state->samples > state->samples_before ? state->samples - state->samples_before : 0;
+    /* A resumed render that has made none yet knows no rate: one more tells. */
+    if (own == 0 && state->samples_before > 0) return state->seconds < rule->seconds ? 1.0 : 0.0;
+    return (rule->seconds - state->seconds) * (double)own / fmax(state->seconds, 1.0e-6);
 }
 
 /* The count at which the error will probably have been reached, since it falls with the square root. */

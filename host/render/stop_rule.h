@@ -14,10 +14,11 @@
 
 /* How far a render is, all pixels having the same number of samples. */
 typedef struct BpStopState {
-    uint64_t samples; /* a pixel */
-    double seconds;   /* of rendering so far */
-    double nrmse;     /* NaN: unknown; looked at only for an error rule */
-    bool black;       /* the mean of the picture is 0 */
+    uint64_t samples;        /* a pixel */
+    uint64_t samples_before; /* of these, those that a resumed render began with: they took no time of it */
+    double seconds;          /* of rendering so far */
+    double nrmse;            /* NaN: unknown; looked at only for an error rule */
+    bool black;              /* the mean of the picture is 0 */
 } BpStopState;
 
 /* Fills all but `adaptive`, which becomes false; samples_min for a picture of `pixels`: enough samples of

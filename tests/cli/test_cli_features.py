@@ -2,6 +2,7 @@
 
 import math
 
+import bpa
 import cli
 import exr
 from pfm import read_pfm
@@ -140,14 +141,33 @@ class Features(cli.ProgramTest):
             rows = [channels[name][y * 24:(y + 1) * 24] for y in reversed(range(16))]
             self.assert_same(pfm[channel::3], [value for row in rows for value in row], name)
 
-    def test_merge_leaves_them_out_and_says_so(self):
+    def test_merged_pictures_have_them(self):
+        """Bit for bit those of one render, whichever samples the parts are of, and however few."""
         self.write("scene.json", cli.scene(12, 8))
-        self.succeed("render", "scene.json", "-o", "a.bpa", "--spp", 4)
-        self.succeed("render", "scene.json", "-o", "b.bpa", "--spp", 4, "--first-sample", 4)
-        result = self.succeed("merge", "a.bpa", "b.bpa", "-o", "sum.exr")
-        self.assertIn("omitted: .bpa files do not store the scene", result.errors)
-        self.assertEqual(sorted(exr.read(self.read("sum.exr"))[2]),
+        self.succeed("render", "scene.json", "-o", "whole.exr", "--spp", 22)
+        for name, first, count in (("a", 0, 3), ("b", 3, 17), ("c", 20, 2)):
+            self.succeed("render", "scene.json", "-o", name + ".bpa", "--spp", count, "--first-sample", first)
+        said = self.succeed("merge", "c.bpa", "a.bpa", "b.bpa", "-o", "sum.exr").errors
+        self.assertNotIn("omitted", said)
+        self.assertEqual(self.read("sum.exr"), self.read("whole.exr"))
+        self.succeed("merge", "c.bpa", "b.bpa", "-o", "bc.bpa")
+        self.succeed("merge", "a.bpa", "bc.bpa", "-o", "sum.exr")
+        self.assertEqual(self.read("sum.exr"), self.read("whole.exr"))
+
+    def test_files_of_version_2_do_not_hold_them(self):
+        self.write("scene.json", cli.scene(12, 8))
+        for name, first in (("a", 0), ("b", 4)):
+            self.succeed("render", "scene.json", "-o", name + ".bpa", "--spp", 4, "--first-sample", first)
+            self.write(name + "2.bpa", bpa.version_2(self.read(name + ".bpa")))
+        result = self.succeed("merge", "a2.bpa", "b2.bpa", "-o", "old.exr")
+        self.assertIn("omitted: .bpa files of versions 1 and 2 do not hold them", result.errors)
+        self.assertEqual(sorted(exr.read(self.read("old.exr"))[2]),
                          sorted(["R", "G", "B", "error.R", "error.G", "error.B", "samples"]))
+        self.succeed("merge", "a.bpa", "b.bpa", "-o", "new.exr")
+        self.succeed("merge", "a2.bpa", "b.bpa", "-o", "mixed.exr")  # one that has them is enough
+        self.assertEqual(self.read("mixed.exr"), self.read("new.exr"))
+        for name in ("a2.bpa", "b2.bpa"):
+            self.assertGreater(len(self.read(name)), 1.5 * len(self.read(name.replace("2", ""))))
 
 
 if __name__ == "__main__":

@@ -35,6 +35,27 @@ static BpFilm *make(void) {
             a->sums[3 * cell + c] = (int64_t)(data_bits(3 * cell + c) >> 2),
                                a->fine_sums[3 * cell + c] = (int64_t)(data_bits(1000 + 3 * cell + c) >> 2);
     }
+    a->job = (struct BpSampleRange){0, UINT64_C(1) << 32};
+    a->pixel_segments = calloc(15, sizeof *a->pixel_segments);
+    assert_int_equal(bp_film_add_aovs(a, NULL), BP_OK);
+    for (size_t i = 0; i < 45; i++) {
+        a->pixel_segments[i / 3] = data_bits(2000 + i);
+        a->depth[i / 3] = i % 5 == 0 ? INFINITY : (float)data_normal(3000 + i);
+        a->normal[i] = (float)data_normal(4000 + i);
+        a->albedo[i] = (float)data_uniform(5000 + i);
+    }
+    a->plan = calloc(1, sizeof *a->plan);
+    *a->plan = (BpFilmPlan){.adaptive = true,
+                            .first_sample = 2,
+                            .target = 1000,
+                            .done = 7,
+                            .pass_samples = 3,
+                            .next_pixel = 14,
+                            .samples_max = 5000,
+                            .error = 0.125,
+                            .decisions = malloc(50),
+                            .decision_bytes = 50};
+    for (size_t i = 0; i < 50; i++) a->plan->decisions[i] = (uint8_t)data_bits(6000 + i);
     return a;
 }
 

@@ -2,6 +2,8 @@
 #include "film/film_file.h"
 #include "film_sample.h"
 
+#include <zlib.h>
+
 typedef struct Files {
     char folder[64], good[512], bad[512];
     uint8_t *bytes; /* of the good file */
@@ -36,8 +38,15 @@ static void refuse(const Files *files, const char *reason) {
     assert_string_equal(err.file, files->bad);
 }
 
-/* The good file with `old` in its header replaced, its length otherwise right. */
-static void refuse_header(const Files *files, const char *old, const char *new, const char *reason) {
+/* The checksum of the first `size` - 4 bytes, into the last 4. */
+static void put_checksum(uint8_t *bytes, size_t size) {
+    const uLong crc = crc32_z(crc32_z(0, NULL, 0), bytes, size - 4);
+    for (size_t byte = 0; byte < 4; byte++) bytes[size - 4 + byte] = (uint8_t)(crc >> (8 * byte));
+}
+
+/* The good file with `old` in its header replaced; with a true checksum, if `sums_up`. */
+static void refuse_header(const Files *files, const char *old, const char *new, bool sums_up,
+                          const char *reason) {
     char header[4096];
     memcpy(header, files->bytes, files->header_size);
     header[files->header_size] = '\0';
@@ -51,6 +60,7 @@ static void refuse_header(const Files *files, const char *old, const char *new, 
     memcpy(bytes + before, new, strlen(new));
     memcpy(bytes + before + strlen(new), at + strlen(old), after);
     memcpy(bytes + size - payload, files->bytes + files->header_size, payload);
+    if (sums_up) put_checksum(bytes, size);
     temp_write(files->bad, bytes, size);
     free(bytes);
     refuse(files, reason);
@@ -61,26 +71,42 @@ static void wrong_members_are_named(void **state) {
     static const struct {
         const char *old, *new, *reason;
     } cases[] = {
-        {"\"ballpark_accumulator\": 2", "\"ballpark_accumulator\": 0", "should be a whole number from 1"},
-        {"\"ballpark_accumulator\": 2", "\"ballpark_accumulator\": 3",
-         "has version 3 of the format, but this program reads versions 1 to 2: use a newer Ballpark"},
-        {"\"fine_sums\": true", "\"fine_sums\": false", "too long"},
+        {"\"ballpark_accumulator\": 3", "\"ballpark_accumulator\": 0", "should be a whole number from 1"},
+        {"\"ballpark_accumulator\": 3", "\"ballpark_accumulator\": 4",
+         "has version 4 of the format, but this program reads versions 1 to 3: use a newer Ballpark"},
+        {"\"ballpark_accumulator\": 3", "\"ballpark_accumulator\": 2", "is too long: "},
+        {"\"aovs\": true", "\"aovs\": false", "too long"},
+        {"\"aovs\": true", "\"aovs\": 1", "\"aovs\""},
+        {"\"pixel_segments\": true", "\"pixel_segments\": false", "too long"},
+        {"\"pixel_segments\": true", "\"pixel_segments\": null", "\"pixel_segments\""},
+        {"\"decision_bytes\": 50", "\"decision_bytes\": 49", "too long"},
+        {"\"decision_bytes\": 50", "\"decision_bytes\": 51", "truncated"},
+        {"\"decision_bytes\": 50", "\"decision_bytes\": -1", "\"decision_bytes\""},
+        {"\"decision_bytes\": 50", "\"decision_bytes\": 2147483647", "more than so few can be unpacked to"},
+        {"\"adaptive\": true", "\"adaptive\": 1", "\"adaptive\""},
+        {"\"target\": 1000", "\"target\": 0", "\"target\""},
+        {"\"target\": 1000", "\"target\": 4294967295", "\"plan\""},
+        {"\"done\": 7", "\"done\": -7", "\"done\""},
+        {"\"next_pixel\": 14", "\"next_pixel\": 15", "\"plan\""},
+        {"\"pass_samples\": 3", "\"pass_samples\": 0", "\"plan\""},
+        {"\"samples_max\": 5000", "\"samples_max\": 4294967297", "\"samples_max\""},
+        {"\"error\": 0.125", "\"error\": -0.1", "\"error\""},
+        {"\"error\": 0.125", "\"error\": \"0.1\"", "\"error\""},
+        {"[0, 4294967296]", "[0, 4294967297]", "\"job\""},
+        {"[0, 4294967296]", "[0, 0]", "\"job\""},
+        {"[0, 4294967296]", "[0]", "\"job\""},
         {"\"fine_sums\": true", "\"fine_sums\": 1", "\"fine_sums\" in the header should be true or false"},
         {"\"coarse\": true, ", "", "\"coarse\""},
-        {"A \\\"title", "B \\\"title", "is damaged: its checksum is"},
-        {"\"segments\": 1", "\"segments\": 2", "is damaged: its checksum is"},
         {"\"ballpark_accumulator\"", "\"other\"", "is missing"},
         {"\"little\"", "\"big\"", "\"byte_order\" in the header should be \"little\""},
         {"\"width\": 5", "\"width\": 0", "\"width\" in the header should be a whole number from 1 to 65535"},
         {"\"width\": 5", "\"width\": 65536", "\"width\""},
         {"\"width\": 5", "\"width\": 5.0", "\"width\""},
         {"\"width\": 5", "\"width\": -5", "\"width\""},
-        {"\"width\": 5", "\"width\": 6", "truncated"},
-        {"\"width\": 5", "\"width\": 4", "too long"},
         {"\"width\": 5", "\"width\": 99999999999999999999", "not JSON"},
         {"\"width\": 5, \"height\": 3, \"replicates\": 4",
          "\"width\": 65535, \"height\": 65535, \"replicates\": 64",
-         "says 14293"}, /* without allocating 7 TiB first */
+         "says 14"}, /* without allocating 7 TiB first */
         {"\"replicates\": 4", "\"replicates\": 65", "\"replicates\""},
         {"\"replicates\": 4", "\"replicates\": null", "\"replicates\""},
         {"\"height\": 3, ", "", "\"height\""},
@@ -123,7 +149,13 @@ static void wrong_members_are_named(void **state) {
     Files files;
     files_make(&files);
     for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++)
-        refuse_header(&files, cases[i].old, cases[i].new, cases[i].reason);
+        refuse_header(&files, cases[i].old, cases[i].new, true, cases[i].reason);
+    static const char *const unsaid[][2] = {{"A \\\"title", "B \\\"title"},
+                                            {"\"segments\": 1", "\"segments\": 2"},
+                                            {"\"width\": 5", "\"width\": 6"},
+                                            {"\"error\": 0.125", "\"error\": 0.2"}};
+    for (size_t i = 0; i < sizeof unsaid / sizeof unsaid[0]; i++)
+        refuse_header(&files, unsaid[i][0], unsaid[i][1], false, "is truncated or damaged: its checksum is");
     files_clear(&files);
 }
 
@@ -137,7 +169,7 @@ static void wrong_lengths_are_refused(void **state) {
         refuse(&files, size < files.header_size ? "not a .bpa file" : "truncated");
     }
     temp_write(files.bad, files.bytes, files.size + 1); /* the 0 behind the bytes */
-    refuse(&files, "too long");
+    refuse(&files, "truncated or damaged");
     char *long_line = malloc(2000000);
     memset(long_line, ' ', 2000000);
     temp_write(files.bad, long_line, 2000000);
@@ -149,37 +181,91 @@ static void wrong_lengths_are_refused(void **state) {
     files_clear(&files);
 }
 
+/* A film with wrong numbers, in a file whose checksum is right. */
+static void refuse_film(const Files *files, const BpFilm *film, const char *reason) {
+    assert_int_equal(bp_film_write(film, files->bad, NULL), BP_OK);
+    refuse(files, reason);
+}
+
 static void wrong_numbers_are_refused(void **state) {
     (void)state;
     Files files;
     files_make(&files);
-    uint8_t *sums = files.bytes + files.header_size, *fine_sums = sums + 1440, *counts = fine_sums + 1440;
+    BpFilm *film = make();
     /* Pixel 8 has its replicates in cells 32 to 35; cell 35 has no samples. */
-    sums[8 * 3 * 33 + 7] = 0x80;
-    temp_write(files.bad, files.bytes, files.size);
-    refuse(&files, "the sum of pixel 8 is negative");
-    sums[8 * 3 * 33 + 7] = 0x61;
-    temp_write(files.bad, files.bytes, files.size);
-    refuse(&files, "the sum of pixel 8 is larger");
-    sums[8 * 3 * 33 + 7] = 0x3f;
-    sums[8 * 3 * 35] = 1;
-    temp_write(files.bad, files.bytes, files.size);
-    refuse(&files, "pixel 8 holds 0 samples in replicate 3, which contradicts its sums");
-    sums[8 * 3 * 35] = 0;
-    fine_sums[8 * 3 * 35] = 1;
-    temp_write(files.bad, files.bytes, files.size);
-    refuse(&files, "pixel 8 holds 0 samples in replicate 3, which contradicts its sums");
-    fine_sums[8 * 3 * 35] = 0;
-    fine_sums[8 * 3 * 33 + 7] ^= 0x80;
-    temp_write(files.bad, files.bytes, files.size);
-    refuse(&files, "the sum of pixel 8 is negative");
-    fine_sums[8 * 3 * 33 + 7] ^= 0x80;
-    counts[4 * 33] = 3;
-    temp_write(files.bad, files.bytes, files.size);
-    refuse(&files, "pixel 8 holds 3 samples in replicate 1, which contradicts its sample ranges");
-    counts[4 * 33] = 2;
-    temp_write(files.bad, files.bytes, files.size);
-    refuse(&files, "checksum"); /* the sum that was changed first */
+    int64_t *sum = &film->sums[3 * 33], *fine = &film->fine_sums[3 * 33], good = *sum;
+    *sum = -1;
+    refuse_film(&files, film, "the sum of pixel 8 is negative");
+    *sum = INT64_C(0x6100000000000000);
+    refuse_film(&files, film, "the sum of pixel 8 is larger");
+    *sum = good;
+    good = *fine;
+    *fine = INT64_MIN;
+    refuse_film(&files, film, "the sum of pixel 8 is negative");
+    *fine = good;
+    film->sums[3 * 35] = 1;
+    refuse_film(&files, film, "pixel 8 holds 0 samples in replicate 3, which contradicts its sums");
+    film->sums[3 * 35] = 0;
+    film->fine_sums[3 * 35] = 1;
+    refuse_film(&files, film, "pixel 8 holds 0 samples in replicate 3, which contradicts its sums");
+    film->fine_sums[3 * 35] = 0;
+    film->counts[33] = 4;
+    refuse_film(&files, film, "pixel 8 holds 4 samples in replicate 1, which contradicts its sample ranges");
+    film->counts[33] = 2;
+    film->depth[8] = NAN;
+    refuse_film(&files, film, "the depth of pixel 8 is no number");
+    film->depth[8] = INFINITY;
+    film->albedo[3 * 8 + 1] = INFINITY;
+    refuse_film(&files, film, "the albedo of pixel 8 is no number");
+    film->albedo[3 * 8 + 1] = 0;
+    assert_int_equal(bp_film_write(film, files.bad, NULL), BP_OK);
+    BpFilm *read = NULL;
+    assert_int_equal(bp_film_read(files.bad, &read, NULL), BP_OK);
+    bp_film_destroy(&read);
+    bp_film_destroy(&film);
+    files_clear(&files);
+}
+
+/* The numbers of a file packed by somebody else: shorter, longer, and none of zlib's, with a true checksum.
+ */
+static void wrong_packing_is_refused(void **state) {
+    (void)state;
+    Files files;
+    files_make(&files);
+    uint8_t numbers[10000], bytes[20000];
+    uLongf count = sizeof numbers - 1;
+    const size_t head = files.header_size;
+    assert_int_equal(uncompress(numbers, &count, files.bytes + head, (uLong)(files.size - 4 - head)), Z_OK);
+    numbers[count] = 0;
+    static const struct {
+        int more;
+        size_t behind;
+        const char *reason;
+    } cases[] = {
+        {-1, 0, "truncated"}, {1, 0, "too long"}, {0, 1, "too long"}, {0, 70000, "too long"}, {0, 0, NULL}};
+    memcpy(bytes, files.bytes, head);
+    for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++) {
+        uLongf packed = sizeof bytes - head;
+        assert_int_equal(compress(bytes + head, &packed, numbers, (uLong)((long)count + cases[i].more)),
+                         Z_OK);
+        const size_t size = head + packed + cases[i].behind + 4;
+        uint8_t *file = calloc(size, 1);
+        memcpy(file, bytes, head + packed);
+        put_checksum(file, size);
+        temp_write(files.bad, file, size);
+        free(file);
+        BpFilm *film = NULL;
+        if (cases[i].reason != NULL)
+            refuse(&files, cases[i].reason);
+        else
+            assert_int_equal(bp_film_read(files.bad, &film, NULL), BP_OK);
+        bp_film_destroy(&film);
+    }
+    memcpy(bytes, files.bytes, files.size);
+    bytes[head] ^= 0xff; /* no header of zlib's */
+    put_checksum(bytes, files.size);
+    temp_write(files.bad, bytes, files.size);
+    refuse(&files, "cannot be unpacked");
     files_clear(&files);
 }
 
@@ -207,9 +293,8 @@ static void every_flipped_bit_is_noticed(void **state) {
 
 int main(void) {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(wrong_members_are_named),
-        cmocka_unit_test(wrong_lengths_are_refused),
-        cmocka_unit_test(wrong_numbers_are_refused),
+        cmocka_unit_test(wrong_members_are_named),      cmocka_unit_test(wrong_lengths_are_refused),
+        cmocka_unit_test(wrong_numbers_are_refused),    cmocka_unit_test(wrong_packing_is_refused),
         cmocka_unit_test(every_flipped_bit_is_noticed),
     };
     return cmocka_run_group_tests_name("film_damaged", tests, NULL, NULL);

@@ -4,6 +4,7 @@
 
 #include <signal.h>
 #include <sys/resource.h>
+#include <zlib.h>
 
 static void assert_same(const BpFilm *a, const BpFilm *b) {
     assert_int_equal(a->width, b->width);
@@ -32,6 +33,28 @@ static void assert_same(const BpFilm *a, const BpFilm *b) {
     assert_int_equal(a->coarse, b->coarse);
     assert_int_equal(a->unverified, b->unverified);
     assert_memory_equal(a->counts, b->counts, cells * 4);
+    const size_t pixels = (size_t)a->width * a->height;
+    assert_memory_equal(&a->job, &b->job, sizeof a->job);
+    assert_int_equal(a->depth == NULL, b->depth == NULL);
+    if (a->depth != NULL) {
+        assert_memory_equal(a->depth, b->depth, pixels * 4);
+        assert_memory_equal(a->normal, b->normal, pixels * 12);
+        assert_memory_equal(a->albedo, b->albedo, pixels * 12);
+    }
+    assert_int_equal(a->pixel_segments == NULL, b->pixel_segments == NULL);
+    if (a->pixel_segments != NULL) assert_memory_equal(a->pixel_segments, b->pixel_segments, pixels * 8);
+    assert_int_equal(a->plan == NULL, b->plan == NULL);
+    if (a->plan == NULL) return;
+    assert_int_equal(a->plan->adaptive, b->plan->adaptive);
+    assert_int_equal(a->plan->first_sample, b->plan->first_sample);
+    assert_int_equal(a->plan->target, b->plan->target);
+    assert_int_equal(a->plan->done, b->plan->done);
+    assert_int_equal(a->plan->pass_samples, b->plan->pass_samples);
+    assert_int_equal(a->plan->next_pixel, b->plan->next_pixel);
+    assert_int_equal(a->plan->samples_max, b->plan->samples_max);
+    assert_true(a->plan->error == b->plan->error);
+    assert_int_equal(a->plan->decision_bytes, b->plan->decision_bytes);
+    assert_memory_equal(a->plan->decisions, b->plan->decisions, a->plan->decision_bytes);
 }
 
 static void what_is_saved_loads(void **state) {
@@ -88,6 +111,22 @@ static void an_empty_one_loads(void **state) {
     temp_remove(folder);
 }
 
+/* The numbers of a block, byte by byte: the lowest bytes of all first. */
+static const uint8_t *check_planes(const uint8_t *at, const void *numbers, size_t width, size_t count) {
+    for (size_t byte = 0; byte < width; byte++)
+        for (size_t i = 0; i < count; i++) {
+            uint64_t value = 0;
+            if (width == 8)
+                value = ((const uint64_t *)numbers)[i];
+            else if (width == 4)
+                value = ((const uint32_t *)numbers)[i];
+            else
+                value = ((const uint8_t *)numbers)[i];
+            assert_int_equal(at[byte * count + i], value >> (8 * byte) & 255);
+        }
+    return at + width * count;
+}
+
 /* The layout, byte by byte: what is documented is what is there. */
 static void the_layout_is_as_documented(void **state) {
     (void)state;
@@ -97,17 +136,23 @@ static void the_layout_is_as_documented(void **state) {
     FILE *out = open_memstream(&bytes, &size);
     assert_int_equal(bp_film_write_stream(a, out, NULL), BP_OK);
     fclose(out);
-    assert_memory_equal(bytes, "{\"ballpark_accumulator\": 2, ", 27);
+    assert_memory_equal(bytes, "{\"ballpark_accumulator\": 3, ", 27);
     const uint8_t *line_end = memchr(bytes, '\n', size);
     assert_non_null(line_end);
-    assert_int_equal((uint8_t *)bytes + size - (line_end + 1), 60 * 52 + 4);
-    for (size_t i = 0; i < 180; i++)
-        for (size_t byte = 0; byte < 8; byte++) {
-            assert_int_equal(line_end[1 + 8 * i + byte], (uint64_t)a->sums[i] >> (8 * byte) & 255);
-            assert_int_equal(line_end[1 + 1440 + 8 * i + byte],
-                             (uint64_t)a->fine_sums[i] >> (8 * byte) & 255);
-        }
-    for (size_t i = 0; i < 60; i++) assert_int_equal(line_end[1 + 2880 + 4 * i], a->counts[i]);
+    uint8_t numbers[10000];
+    uLongf count = sizeof numbers;
+    assert_int_equal(
+        uncompress(numbers, &count, line_end + 1, (uLong)((uint8_t *)bytes + size - 4 - (line_end + 1))),
+        Z_OK);
+    const uint8_t *at = check_planes(numbers, a->sums, 8, 180);
+    at = check_planes(at, a->fine_sums, 8, 180);
+    at = check_planes(at, a->counts, 4, 60);
+    at = check_planes(at, a->depth, 4, 15);
+    at = check_planes(at, a->normal, 4, 45);
+    at = check_planes(at, a->albedo, 4, 45);
+    at = check_planes(at, a->pixel_segments, 8, 15);
+    at = check_planes(at, a->plan->decisions, 1, 50);
+    assert_int_equal(at - numbers, count);
     /* The reflected CRC-32 with polynomial 0x04c11db7 (ISO 3309), bit by bit. */
     uint32_t crc = 0xffffffffu;
     for (size_t i = 0; i < 8 * (size - 4); i++) {
@@ -150,6 +195,52 @@ static void version_1_loads(void **state) {
     assert_int_equal(a->counts[0], 2);
     assert_int_equal(a->segments, 9);
     bp_film_destroy(&a);
+    temp_remove(folder);
+}
+
+/* A file of version 2, written by hand: numbers one after the other, fine sums, a checksum. */
+static void version_2_loads(void **state) {
+    (void)state;
+    char folder[64], path[512], bytes[1024];
+    temp_make(folder);
+    const size_t header = (size_t)snprintf(
+        bytes, sizeof bytes,
+        "{\"ballpark_accumulator\": 2, \"byte_order\": \"little\", \"title\": \"old\", \"width\": 1, "
+        "\"height\": 1, \"replicates\": 2, \"scale_log2\": 38, \"fine_sums\": true, \"coarse\": true, "
+        "\"scene_hash\": \"1f\", \"seed\": \"0\", \"max_depth\": 5, \"sampler\": \"sobol\", "
+        "\"precision\": \"single\", \"math\": \"strict\", \"numerics\": \"robust\", "
+        "\"transfer\": \"gamma2\", \"ranges\": [[0, 3]], \"partial\": false, \"segments\": 9, "
+        "\"cut_paths\": 0, \"invalid_samples\": 0}\n");
+    memset(bytes + header, 0, 104);
+    bytes[header + 8] = 78;     /* of the second sum */
+    bytes[header + 48 + 1] = 1; /* of the first fine sum: 256 */
+    bytes[header + 96] = 2;     /* samples of replicate 0 */
+    bytes[header + 100] = 1;    /* and of 1 */
+    const uLong crc = crc32(crc32(0, NULL, 0), (const Bytef *)bytes, (uInt)header + 104);
+    for (size_t byte = 0; byte < 4; byte++) bytes[header + 104 + byte] = (char)(crc >> (8 * byte));
+    temp_write(temp_path(path, folder, "old.bpa"), bytes, header + 108);
+    BpFilm *a = NULL;
+    BpError err = {0};
+    if (bp_film_read(path, &a, &err) != BP_OK) fail_msg("%s", err.message);
+    assert_false(a->unverified);
+    assert_true(a->coarse);
+    assert_int_equal(a->sums[1], 78);
+    assert_int_equal(a->fine_sums[0], 256);
+    assert_int_equal(a->counts[0], 2);
+    assert_int_equal(a->counts[1], 1);
+    assert_null(a->depth);
+    assert_null(a->plan);
+    bp_film_destroy(&a);
+    bytes[header] = 1;
+    temp_write(path, bytes, header + 108);
+    assert_int_equal(bp_film_read(path, &a, &err), BP_ERR_FILE);
+    assert_non_null(strstr(err.message, "checksum"));
+    temp_write(path, bytes, header + 107);
+    assert_int_equal(bp_film_read(path, &a, &err), BP_ERR_FILE);
+    assert_non_null(strstr(err.message, "truncated"));
+    temp_write(path, bytes, header + 109);
+    assert_int_equal(bp_film_read(path, &a, &err), BP_ERR_FILE);
+    assert_non_null(strstr(err.message, "too long"));
     temp_remove(folder);
 }
 
@@ -211,6 +302,7 @@ int main(void) {
         cmocka_unit_test(an_empty_one_loads),
         cmocka_unit_test(the_layout_is_as_documented),
         cmocka_unit_test(version_1_loads),
+        cmocka_unit_test(version_2_loads),
         cmocka_unit_test(what_is_written_can_be_read),
         cmocka_unit_test(what_cannot_be_read_or_written_is_said),
     };

@@ -10,6 +10,7 @@
 
 #define SUMS_BYTES 24u /* of a cell: three of 8 bytes */
 #define COUNT_BYTES 4u
+#define AOV_BYTES 28u /* of a pixel */
 #define CHECKSUM_BYTES 4u
 
 size_t LLVMFuzzerMutate(uint8_t *data, size_t size, size_t size_max); /* libFuzzer's own */
@@ -38,7 +39,7 @@ static void change_member(json_t *header, uint32_t *state) {
                                            {"numerics", "plain"},      {"transfer", "linear"},
                                            {"transfer", "srgb"},       {"seed", "18446744073709551615"},
                                            {"scene_hash", "ffffffff"}, {"title", "a\x1b[31m\n"}};
-    switch (next(state) % 5) {
+    switch (next(state) % 6) {
     case 0:
         json_object_set_new(header, sizes[next(state) % 3], json_integer(1 + next(state) % 6));
         break;
@@ -52,8 +53,25 @@ static void change_member(json_t *header, uint32_t *state) {
         break;
     }
     case 3: {
-        static const char *const switches[] = {"fine_sums", "coarse", "partial"};
-        json_object_set_new(header, switches[next(state) % 3], json_boolean(next(state) % 2 == 0));
+        static const char *const switches[] = {"fine_sums", "coarse", "partial", "aovs", "pixel_segments"};
+        json_object_set_new(header, switches[next(state) % 5], json_boolean(next(state) % 2 == 0));
+        break;
+    }
+    case 4: {
+        static const char *const members[] = {"first_sample", "target",      "done",          "pass_samples",
+                                              "next_pixel",   "samples_max", "decision_bytes"};
+        json_t *plan = json_object_get(header, "plan");
+        if (plan == NULL) {
+            plan = json_pack("{s:b,s:i,s:i,s:i,s:i,s:i,s:i,s:f,s:i}", "adaptive", (int)(next(state) % 2),
+                             "first_sample", 0, "target", 8, "done", 4, "pass_samples", 0, "next_pixel", 0,
+                             "samples_max", 8, "error", 0.5, "decision_bytes", 0);
+            json_object_set_new(header, "plan", plan);
+            break;
+        }
+        if (next(state) % 8 == 0)
+            json_object_del(header, "plan");
+        else
+            json_object_set_new(plan, members[next(state) % 7], json_integer(next(state) % 70));
         break;
     }
     default: {
@@ -69,22 +87,57 @@ static void change_member(json_t *header, uint32_t *state) {
     }
 }
 
-static bool has_checksum(const json_t *header) {
-    return json_integer_value(json_object_get(header, "ballpark_accumulator")) != 1;
+static json_int_t version_of(const json_t *header) {
+    return json_integer_value(json_object_get(header, "ballpark_accumulator"));
 }
 
-/* How long sums and counts should be; 0: the header does not say, or more than `room`. */
+static bool has_checksum(const json_t *header) {
+    return version_of(header) != 1;
+}
+
+static bool is_packed(const json_t *header) {
+    return version_of(header) >= 3;
+}
+
+static bool says(const json_t *header, const char *member) {
+    return json_is_true(json_object_get(header, member));
+}
+
+/* How many bytes of numbers there should be; 0: the header does not say, or more than `room`. */
 static size_t body_length(const json_t *header, size_t room) {
-    const bool fine = has_checksum(header) && json_is_true(json_object_get(header, "fine_sums"));
-    const size_t cell = (fine ? 2 : 1) * SUMS_BYTES + COUNT_BYTES;
-    uint64_t cells = 1;
+    const bool fine = has_checksum(header) && says(header, "fine_sums");
+    uint64_t pixels = 1;
     static const char *const sizes[] = {"width", "height", "replicates"};
+    json_int_t sides[3];
     for (size_t i = 0; i < 3; i++) {
-        const json_int_t side = json_integer_value(json_object_get(header, sizes[i]));
-        if (side < 1 || side > 65535) return 0;
-        cells *= (uint64_t)side;
+        sides[i] = json_integer_value(json_object_get(header, sizes[i]));
+        if (sides[i] < 1 || sides[i] > 65535) return 0;
     }
-    return cells <= room / cell ? (size_t)cells * cell : 0;
+    pixels = (uint64_t)sides[0] * (uint64_t)sides[1];
+    if (pixels > room || pixels * (uint64_t)sides[2] > room) return 0;
+    uint64_t bytes = pixels * (uint64_t)sides[2] * ((fine ? 2 : 1) * SUMS_BYTES + COUNT_BYTES);
+    if (is_packed(header)) {
+        const json_int_t decisions =
+            json_integer_value(json_object_get(json_object_get(header, "plan"), "decision_bytes"));
+        bytes += pixels * ((says(header, "aovs") ? AOV_BYTES : 0) + (says(header, "pixel_segments") ? 8 : 0));
+        if (decisions < 0 || decisions > 65535) return 0;
+        bytes += (uint64_t)decisions;
+    }
+    return bytes <= room ? (size_t)bytes : 0;
+}
+
+/* The numbers of a file's body, unpacked if they are packed, in new memory. */
+static uint8_t *take_numbers(const json_t *header, const uint8_t *body, size_t size, size_t *count) {
+    const uLong room = 1u << 20;
+    uint8_t *numbers = malloc(room > size ? room : size);
+    if (numbers == NULL) abort();
+    uLongf unpacked = room;
+    *count = size;
+    if (is_packed(header) && uncompress(numbers, &unpacked, body, (uLong)size) == Z_OK)
+        *count = unpacked;
+    else
+        memcpy(numbers, body, size);
+    return numbers;
 }
 
 /* Appends the checksum of all before it. */
@@ -102,10 +155,8 @@ size_t bpa_mutate(uint8_t *data, size_t size, size_t size_max, unsigned seed) {
         json_decref(header);
         return LLVMFuzzerMutate(data, size, size_max);
     }
-    const size_t body = size - head - (has_checksum(header) ? CHECKSUM_BYTES : 0);
-    uint8_t *old = malloc(body + 1);
-    if (old == NULL) abort();
-    memcpy(old, data + head, body);
+    size_t body = size - head - (has_checksum(header) ? CHECKSUM_BYTES : 0);
+    uint8_t *old = take_numbers(header, data + head, body, &body);
     if (next(&state) % 2 == 0 && body > 0)
         LLVMFuzzerMutate(old, body, body);
     else
@@ -114,17 +165,25 @@ size_t bpa_mutate(uint8_t *data, size_t size, size_t size_max, unsigned seed) {
     size_t result = size;
     char *text = json_dumps(header, JSON_PRESERVE_ORDER | JSON_COMPACT);
     const size_t text_length = text != NULL ? strlen(text) + 1 : 0;
-    const size_t wanted = text != NULL && text_length + CHECKSUM_BYTES < size_max
-                              ? body_length(header, size_max - text_length - CHECKSUM_BYTES)
-                              : 0;
-    if (wanted > 0) {
+    const size_t around = text_length + CHECKSUM_BYTES;
+    const size_t wanted = text != NULL && around < size_max ? body_length(header, size_max - around) : 0;
+    uint8_t *numbers = calloc(1, wanted + 1);
+    if (numbers == NULL) abort();
+    memcpy(numbers, old, body < wanted ? body : wanted);
+    uLongf packed = compressBound((uLong)wanted);
+    if (wanted > 0 && (!is_packed(header) || packed <= size_max - around)) {
         memcpy(data, text, text_length - 1);
         data[text_length - 1] = '\n';
-        memset(data + text_length, 0, wanted);
-        memcpy(data + text_length, old, body < wanted ? body : wanted);
-        result = text_length + wanted;
+        if (!is_packed(header)) {
+            memcpy(data + text_length, numbers, wanted);
+            packed = (uLongf)wanted;
+        } else if (compress2(data + text_length, &packed, numbers, (uLong)wanted, 0) != Z_OK) {
+            abort();
+        }
+        result = text_length + packed;
         if (has_checksum(header)) result = append_checksum(data, result);
     }
+    free(numbers);
     free(text);
     free(old);
     json_decref(header);

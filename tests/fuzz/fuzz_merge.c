@@ -124,6 +124,13 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size) {
         for (size_t i = 0; i < 3 * cells; i++) require(fine_sum(forth, i) == fine_sum(back, i));
         require(memcmp(forth->counts, back->counts, cells * sizeof *forth->counts) == 0);
         require(forth->range_count == back->range_count);
+        require(forth->plan == NULL && forth->pixel_segments == NULL &&
+                (forth->depth == NULL) == (back->depth == NULL));
+        const size_t pixels = (size_t)forth->width * forth->height;
+        require(forth->depth == NULL || (memcmp(forth->depth, back->depth, pixels * 4) == 0 &&
+                                         memcmp(forth->normal, back->normal, pixels * 12) == 0 &&
+                                         memcmp(forth->albedo, back->albedo, pixels * 12) == 0));
+        require(forth->job.first == back->job.first && forth->job.count == back->job.count);
         for (size_t i = 0; i < forth->range_count; i++)
             require(forth->ranges[i].first == back->ranges[i].first &&
                     forth->ranges[i].count == back->ranges[i].count);

@@ -159,9 +159,13 @@ static void film_of_a_render_under_way(void **state) {
 
     must(bp_render_aovs(render, &picture, &err));
     assert_true(picture.depth != NULL && picture.normal != NULL && picture.albedo != NULL);
+    /* A film holds them too. */
+    const size_t pixels = (size_t)picture.width * picture.height;
+    assert_memory_equal(picture.depth, other.depth, pixels * sizeof *picture.depth);
+    assert_memory_equal(picture.normal, other.normal, 3 * pixels * sizeof *picture.normal);
+    assert_memory_equal(picture.albedo, other.albedo, 3 * pixels * sizeof *picture.albedo);
     other.width++;
     assert_int_equal(bp_render_aovs(render, &other, &err), BP_ERR_USAGE);
-    assert_null(other.depth);
     bp_picture_clear(&picture);
     bp_picture_clear(&other);
     bp_film_destroy(&early);

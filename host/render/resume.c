@@ -1,0 +1,115 @@
+/* resume.c: takes up a render where another one left off; see bp_render_resume() in ballpark.h.
+ *
+ * In:    a render without a sample yet, a film.   Out: the render as it was when that film was read.
+ * Knows: plans, the schedule, adaptive sampling.   Does not know: files, stop rules. */
+#include "render.h"
+
+#include "base/status.h"
+#include "render_state.h"
+
+#include <inttypes.h>
+#include <stdlib.h>
+#include <string.h>
+
+static BpStatus not_one_render(const char *why, BpError *err) {
+    return bp_fail(err, BP_ERR_USAGE, "the film %s, so it does not say how its render would go on", why);
+}
+
+/* The plan of a film that has none: every pixel has all samples of one range. */
+static BpStatus plan_of_whole(const BpFilm *film, BpFilmPlan *plan, BpError *err) {
+    if (film->partial)
+        return not_one_render("lacks samples in some pixels, and has been merged or is old", err);
+    if (film->range_count != 1) return not_one_render("is not of one range of samples", err);
+    *plan = (BpFilmPlan){.first_sample = film->ranges[0].first,
+                         .target = film->ranges[0].count,
+                         .done = film->ranges[0].count};
+    return BP_OK;
+}
+
+static BpStatus check_settings(const BpRender *render, const BpFilm *film, const BpFilmPlan *plan,
+                               BpError *err) {
+    const BpRenderOptions *options = &render->options;
+    BpFilm own = {.width = render->scene->camera.width,
+                  .height = render->scene->camera.height,
+                  .replicates = options->replicates};
+    BpStatus status = bp_render_describe(render, &own, err);
+    if (status == BP_OK) status = bp_film_check_same(film, &own, err);
+    free(own.title);
+    free(own.ranges);
+    BP_TRY(status);
+    if (plan->adaptive != options->adaptive)
+        return bp_fail(err, BP_ERR_USAGE, "the film is%s of an adaptive render, but the render is%s adaptive",
+                       plan->adaptive ? "" : " not", options->adaptive ? "" : " not");
+    if (plan->first_sample != options->first_sample)
+        return bp_fail(err, BP_ERR_USAGE,
+                       "the film begins with sample %" PRIu64 ", but the render with sample %" PRIu64,
+                       plan->first_sample, options->first_sample);
+    return bp_render_check_samples(render, plan->target, err);
+}
+
+/* The pass under way, over a list of pixels. */
+static BpStatus restore_pass(BpRender *render, const BpFilmPlan *plan, BpError *err) {
+    BpAdaptivePass pass;
+    BP_TRY(bp_adaptive_restore(render->adaptive, plan->decisions, plan->decision_bytes, err));
+    render->decides = true;
+    render->schedule.samples = 0; /* all is handed out, unless a pass is under way */
+    if (!bp_adaptive_pass(render->adaptive, &pass)) return BP_OK;
+    for (size_t i = 0; i < render->worker_count; ++i)
+        BP_TRY(bp_worker_set_pixels(render->workers[i], pass.pixels, pass.pixel_count, err));
+    bp_schedule_init(&render->schedule, pass.pixel_count, render->options.first_sample + pass.first,
+                     pass.count);
+    render->schedule.before = pass.first;
+    return BP_OK;
+}
+
+/* Whether the render, as it stands now, has taken the samples that the film names. */
+static BpStatus check_samples(const BpRender *render, const BpFilm *film, BpError *err) {
+    const BpSchedule *schedule = &render->schedule;
+    BpFilm own = {.width = film->width, .height = film->height, .replicates = film->replicates};
+    BpStatus status = bp_render_describe(render, &own, err);
+    const bool fits =
+        schedule->done + schedule->pass_samples <= schedule->samples &&
+        schedule->next_pixel < schedule->pixels && own.partial == film->partial &&
+        own.range_count == film->range_count &&
+        (own.range_count == 0 || memcmp(own.ranges, film->ranges, own.range_count * sizeof *own.ranges) == 0);
+    if (status == BP_OK && !fits)
+        status = bp_fail(err, BP_ERR_FILE, "the film is damaged: its plan contradicts its samples");
+    free(own.title);
+    free(own.ranges);
+    return status;
+}
+
+static BpStatus copy_film(const BpFilm *film, BpFilm **copy, BpError *err) {
+    BP_TRY(bp_film_create(film->width, film->height, film->replicates, copy, err));
+    BP_TRY(bp_film_add_sums(*copy, film, err));
+    if (film->pixel_segments == NULL) return BP_OK;
+    const size_t bytes = (size_t)film->width * film->height * sizeof *film->pixel_segments;
+    (*copy)->pixel_segments = malloc(bytes);
+    if ((*copy)->pixel_segments == NULL)
+        return bp_fail(err, BP_ERR_MEMORY, "no memory for the path lengths of a picture");
+    memcpy((*copy)->pixel_segments, film->pixel_segments, bytes);
+    return BP_OK;
+}
+
+BpStatus bp_render_resume(BpRender *render, const BpFilm *film, BpError *err) {
+    BpFilmPlan plan = {.adaptive = false};
+    if (bp_render_has_begun(render) || render->base != NULL)
+        return bp_fail(err, BP_ERR_USAGE, "a render that has begun cannot go on from a film");
+    if (film->plan != NULL)
+        plan = *film->plan;
+    else
+        BP_TRY(plan_of_whole(film, &plan, err));
+    BP_TRY(check_settings(render, film, &plan, err));
+    BP_TRY(copy_film(film, &render->base, err));
+    const size_t cells = (size_t)film->width * film->height * film->replicates;
+    for (size_t i = 0; i < cells; ++i) render->base_samples += film->counts[i];
+    render->base_samples += film->invalid_samples;
+    BP_TRY(bp_render_extend(render, plan.target, err));
+    if (plan.decision_bytes > 0) BP_TRY(restore_pass(render, &plan, err));
+    render->schedule.done = plan.done;
+    render->schedule.pass_samples = plan.pass_samples;
+    render->schedule.next_pixel = plan.next_pixel;
+    if (render->schedule.samples < plan.done && plan.decision_bytes > 0 && plan.pass_samples == 0)
+        render->schedule.samples = plan.done; /* of the last pass, which is done */
+    return check_samples(render, film, err);
+}
