@@ -11,6 +11,7 @@
 #include "base/names.h"
 #include "base/plural.h"
 #include "base/shown.h"
+#include "checkpoint.h"
 #include "file_conflicts.h"
 #include "film/adaptive.h"
 #include "interrupt.h"
@@ -21,6 +22,7 @@
 #include "render/stop_rule.h"
 #include "report_json.h"
 #include "result_file.h"
+#include "resume_film.h"
 #include "series.h"
 #include "setup.h"
 #include "terminal.h"
@@ -149,8 +151,16 @@ static BpStatus draw(BpStop *stop, const BpProgress *progress, Bar *bar, BpError
     return BP_OK;
 }
 
+static BpStatus keep(BpRender *render, BpCheckpoint *checkpoint, BpError *err) {
+    const BpFilm *film = NULL;
+    BP_TRY(bp_render_read_whole_film(render, &film, err));
+    bp_checkpoint_write(checkpoint, film);
+    return BP_OK;
+}
+
 /* `render` has made no step yet. Catches Ctrl-C from here on. `quiet`: no progress bar. */
-static BpStatus run_render(BpRender *render, const BpStopRule *rule, bool quiet, LoopEnd *end, BpError *err) {
+static BpStatus run_render(BpRender *render, const BpStopRule *rule, bool quiet, BpCheckpoint *checkpoint,
+                           LoopEnd *end, BpError *err) {
     const double start = bp_clock_seconds();
     BpStatus status = BP_OK;
     BpStop *stop = NULL;
@@ -163,6 +173,9 @@ static BpStatus run_render(BpRender *render, const BpStopRule *rule, bool quiet,
         BP_TRY_GOTO(status, bp_render_step(render, &progress, err), done);
         if (!bp_interrupted()) BP_TRY_GOTO(status, draw(stop, &progress, &bar, err), done);
         BP_TRY_GOTO(status, bp_stop_check(stop, &progress, &end->reason, err), done);
+        if (end->reason == BP_STOP_NOT_YET && !bp_interrupted() &&
+            bp_checkpoint_is_due(checkpoint, bp_clock_seconds()))
+            BP_TRY_GOTO(status, keep(render, checkpoint, err), done);
         if (bp_interrupted()) break; /* after a regular stop it is not an interruption */
     }
 done:
@@ -189,8 +202,8 @@ static void init_rule(const BpCommandLine *line, const BpScene *scene, const BpR
     if (has_time) rule->seconds = line->time_seconds;
 }
 
-static BpStatus check_adaptive(const BpCommandLine *line, const BpStopRule *rule, BpError *err) {
-    if (!line->adaptive || rule->samples_max >= BP_ADAPTIVE_MEAN_MIN) return BP_OK;
+static BpStatus check_adaptive(const BpStopRule *rule, BpError *err) {
+    if (!rule->adaptive || rule->samples_max >= BP_ADAPTIVE_MEAN_MIN) return BP_OK;
     return bp_fail(
         err, BP_ERR_USAGE,
         "--adaptive with %" PRIu64 " sample%s per pixel: every pixel gets the first %u, so none are left for "
@@ -221,13 +234,16 @@ static void print_summary(const RunResult *result, const BpStopRule *rule, const
             more_samples, bp_format_percent(result->nrmse, text, sizeof text));
     /* The first launch, in which a driver may compile, says nothing about the rate. */
     const double tracing = fmax(end->seconds - report->first_launch_seconds, 1.0e-9);
+    const uint64_t own = report->samples - report->resumed_samples;
     fprintf(stderr, "%s sample%s traced in %s (%s/s), %s in total",
-            bp_format_count((double)report->samples, samples, sizeof samples), bp_plural(report->samples),
+            bp_format_count((double)own, samples, sizeof samples), bp_plural(own),
             bp_format_seconds(tracing, text, sizeof text),
-            bp_format_count((double)report->samples / tracing, rate, sizeof rate),
+            bp_format_count((double)own / tracing, rate, sizeof rate),
             bp_format_seconds(bp_clock_seconds() - result->times.start, all, sizeof all));
-    const double more = 3.0 * tracing; /* half the noise takes four times the samples */
-    if (result->nrmse > 0.0)
+    bp_format_count((double)report->samples, samples, sizeof samples);
+    /* Half the noise takes four times the samples. */
+    const double more = own > 0 ? 3.0 * tracing * (double)report->samples / (double)own : NAN;
+    if (result->nrmse > 0.0 && own > 0)
         fprintf(stderr, "\nhalving the noise: %s more", bp_format_seconds(more, text, sizeof text));
     else if (isnan(result->nrmse))
         fprintf(stderr, "\nestimating noise needs %s",
@@ -267,9 +283,29 @@ static void print_summary(const RunResult *result, const BpStopRule *rule, const
                 report->invalid_samples, report->invalid_samples == 1 ? " was" : "s were");
 }
 
+/* What to say of a render that was interrupted, and what can be done about it. */
+static BpStatus interrupted(const BpCommandLine *line, const BpStopRule *rule, const LoopEnd *end,
+                            const BpCheckpoint *checkpoint, const RunResult *result, BpError *err) {
+    char command[8192];
+    const bool kept = checkpoint->is_result || checkpoint->written > 0;
+    bp_fail(
+        err, BP_ERR_INTERRUPTED,
+        "interrupted after %" PRIu64 " of %" PRIu64 " sample%s per pixel%s; %s holds the picture so far%s",
+        result->samples_per_pixel, rule->samples_max, bp_plural(rule->samples_max),
+        result->samples_per_pixel == 0 ? " (pixels without a sample are black)" : "", result->output,
+        kept                          ? ", and this goes on from there:"
+        : checkpoint->path[0] != '\0' ? ""
+                                      : "; with --checkpoint SECONDS, another run could go on from there");
+    if (kept)
+        bp_error_attach(err, bp_checkpoint_command(line, checkpoint, rule->seconds - end->seconds, command,
+                                                   sizeof command));
+    return BP_ERR_INTERRUPTED;
+}
+
 /* Picture, statistics and summary of a render that has stopped. */
 static BpStatus deliver(const BpCommandLine *line, const BpResultFile *file, const BpStopRule *rule,
-                        const LoopEnd *end, BpRender *render, RunResult *result, BpError *err) {
+                        const LoopEnd *end, BpCheckpoint *checkpoint, BpRender *render, RunResult *result,
+                        BpError *err) {
     BpStatus status = bp_render_read_whole_film(render, &result->film, err);
     if (status != BP_OK && bp_render_read_film(render, &result->film, NULL) == BP_OK)
         bp_keep_sums(result->film, file->path, err);
@@ -290,6 +326,8 @@ static BpStatus deliver(const BpCommandLine *line, const BpResultFile *file, con
                        result->options->precision == BP_PRECISION_DOUBLE ? "double" : "single",
                        result->options->precision == BP_PRECISION_DOUBLE ? "" : "use --precision double, ");
     const double write_start = bp_clock_seconds();
+    const bool keeps = end->reason == BP_STOP_NOT_YET && checkpoint->path[0] != '\0';
+    if (keeps && !checkpoint->is_result) bp_checkpoint_write(checkpoint, result->film);
     BP_TRY(bp_result_write(line, file, result->film, true, (BpTransfer)result->film->transfer,
                            &result->scene->legend, err));
     result->times.write = bp_clock_seconds() - write_start;
@@ -300,12 +338,9 @@ static BpStatus deliver(const BpCommandLine *line, const BpResultFile *file, con
                        "--time %g ran out before every pixel had a sample, so parts of %s are black: allow "
                        "more time, or use a smaller --width or --depth",
                        rule->seconds, result->output);
-    if (end->reason != BP_STOP_NOT_YET) return BP_OK;
-    return bp_fail(
-        err, BP_ERR_INTERRUPTED,
-        "interrupted after %" PRIu64 " of %" PRIu64 " sample%s per pixel%s; %s holds the picture so far",
-        result->samples_per_pixel, rule->samples_max, bp_plural(rule->samples_max),
-        result->samples_per_pixel == 0 ? " (pixels without a sample are black)" : "", result->output);
+    if (end->reason == BP_STOP_NOT_YET) return interrupted(line, rule, end, checkpoint, result, err);
+    bp_checkpoint_end(line, checkpoint);
+    return BP_OK;
 }
 
 /* The next picture of the series. */
@@ -320,10 +355,13 @@ static BpStatus render_picture(const BpCommandLine *line, BpSeries *series, BpEr
     BpSceneInfo info;
     BpStopRule rule;
     LoopEnd end;
+    BpCheckpoint checkpoint;
+    BpFilm *resumed = NULL;
     RunResult result = {
         .scene_path = line->operands[0], .times.start = bp_clock_seconds(), .options = &options};
 
     BP_TRY(bp_result_choose(line, line->operands[0], &file, err));
+    BP_TRY(bp_checkpoint_choose(line, &file, &checkpoint, err));
     result.output = bp_result_name(&file);
 
     waiting = bp_waiting_begin(line->quiet, "reading %s", line->operands[0]);
@@ -331,16 +369,22 @@ static BpStatus render_picture(const BpCommandLine *line, BpSeries *series, BpEr
     bp_waiting_end(waiting);
     waiting = NULL;
     BP_TRY_GOTO(status, bp_file_conflicts_check_scene(line, file.path, scene, err), done);
+    BP_TRY_GOTO(status, bp_resume_load(line, &resumed, err), done);
+    if (resumed != NULL) BP_TRY_GOTO(status, bp_resume_scene(line, resumed, scene, err), done);
     result.scene = scene;
     result.times.load = bp_clock_seconds() - result.times.start;
     bp_scene_info(scene, &info);
     BP_TRY_GOTO(status, bp_setup_options(line, scene, &options, err), done);
+    BP_TRY_GOTO(status, bp_setup_share(line, &options, err), done);
     bp_setup_warn(line, scene, options.precision);
     /* Less noise in the same time on every scene that was measured: docs/ACCURACY.md. */
     if (!bp_option_given(line, BP_OPTION_SAMPLER)) options.sampler = BP_SAMPLER_SOBOL;
-    options.features = file.format == BP_FORMAT_EXR || file.format == BP_FORMAT_BPA;
+    options.features =
+        file.format == BP_FORMAT_EXR || file.format == BP_FORMAT_BPA || checkpoint.path[0] != '\0';
+    if (resumed != NULL) BP_TRY_GOTO(status, bp_resume_options(line, resumed, &options, err), done);
     init_rule(line, scene, &options, &rule);
-    BP_TRY_GOTO(status, check_adaptive(line, &rule, err), done);
+    if (resumed != NULL) BP_TRY_GOTO(status, bp_resume_rule(line, resumed, &rule, err), done);
+    BP_TRY_GOTO(status, check_adaptive(&rule, err), done);
     options.samples_per_pixel = bp_stop_first(&rule);
 
     BP_TRY_GOTO(status, bp_setup_devices(line, &devices, &result.device_count, err), done);
@@ -351,10 +395,14 @@ static BpStatus render_picture(const BpCommandLine *line, BpSeries *series, BpEr
     bp_waiting_end(waiting);
     waiting = NULL;
 
-    BP_TRY_GOTO(status, run_render(render, &rule, line->quiet, &end, err), done);
-    status = deliver(line, &file, &rule, &end, render, &result, err);
+    if (resumed != NULL) BP_TRY_GOTO(status, bp_render_resume(render, resumed, err), done);
+    bp_film_destroy(&resumed);
+
+    BP_TRY_GOTO(status, run_render(render, &rule, line->quiet, &checkpoint, &end, err), done);
+    status = deliver(line, &file, &rule, &end, &checkpoint, render, &result, err);
 done:
     bp_waiting_end(waiting);
+    bp_film_destroy(&resumed);
     bp_render_destroy(&render);
     free(devices);
     return status;

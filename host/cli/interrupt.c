@@ -42,6 +42,8 @@ static sigset_t watched_signals(void) {
     sigaddset(&set, SIGINT);
     sigaddset(&set, SIGTERM);
     sigaddset(&set, SIGXCPU);
+    sigaddset(&set, SIGUSR1);
+    sigaddset(&set, SIGUSR2);
     /* Respects nohup: a blocked signal becomes pending even if it is ignored, and sigwait would return it. */
     struct sigaction hangup;
     if (sigaction(SIGHUP, NULL, &hangup) != 0 || hangup.sa_handler != SIG_IGN) sigaddset(&set, SIGHUP);
@@ -74,6 +76,8 @@ void bp_interrupt_install(void) {
     signal(SIGINT, SIG_DFL);
     signal(SIGTERM, SIG_DFL);
     signal(SIGXCPU, SIG_DFL);
+    signal(SIGUSR1, SIG_DFL);
+    signal(SIGUSR2, SIG_DFL);
     pthread_sigmask(SIG_BLOCK, &held, NULL);
     sem_init(&began, 0, 0);
     if (pthread_create(&watcher, NULL, watch, &began) == 0) {

@@ -1,6 +1,6 @@
 /* interrupt.h: signals that ask the program to end are noted instead of ending it at once: Ctrl-C (SIGINT),
- * SIGTERM, SIGHUP (the terminal was closed; unless ignored, as nohup arranges) and SIGXCPU (the limit on
- * processor time).
+ * SIGTERM, SIGHUP (the terminal was closed; unless ignored, as nohup arranges), SIGXCPU (the limit on
+ * processor time), SIGUSR1 and SIGUSR2 (a batch system's notice that time is nearly over).
  *
  * In:    signals.   Out: whether there has been one.
  * Knows: signals, the thread that waits for them, that unfinished files must be removed.

@@ -35,6 +35,7 @@ enum {
  *   BP_PIXEL(shown, most)            BpPixel: two whole numbers up to `most`
  *   BP_SIGNED(shown)                 int64_t: a whole number that may be negative
  *   BP_SLICE(shown)                  BpSlice: A:B:S
+ *   BP_PART(shown)                   BpShare: I/N, one of N shares
  *   BP_CHOICE(shown, names, first)   an enumeration with its names (base/names.h), from its value `first` on
  *   BP_WORD(word, ...)               const char *: one of these words
  *   BP_TEXT(shown)                   const char *: any text that is not empty
@@ -112,6 +113,15 @@ enum {
            const char *, stats, BP_RESULT("FILE"))                                                           \
     RENDER_OPTION(FORCE, "force", 0, BP_RENDER | BP_EXPLAIN | BP_COST,                                       \
                   "render even if the device fails its self-test", bool, force, BP_FLAG)                     \
+    OPTION(CHECKPOINT, "checkpoint", 0, BP_RENDER,                                                           \
+           "keep the sums in a .bpa file every SECONDS, from which --resume goes on", double,                \
+           checkpoint_seconds, BP_REAL("SECONDS", 0, 1e7))                                                   \
+    OPTION(RESUME, "resume", 0, BP_RENDER,                                                                   \
+           "go on from the .bpa file of a render that was stopped, with its options", const char *, resume,  \
+           BP_TEXT("FILE"))                                                                                  \
+    OPTION(SHARE, "share", 0, BP_RENDER,                                                                     \
+           "take part I of N of the samples, from 1/N to N/N, for `ballpark merge`", BpShare, share,         \
+           BP_PART("I/N"))                                                                                   \
     OPTION(MEASURE, "measure", 0, BP_EXPLAIN, "measure what each effect costs", bool, measure, BP_FLAG)      \
     OPTION(PIXEL, "pixel", 0, BP_EXPLAIN, "follow one path of this pixel, step by step; 0,0 is top left",    \
            BpPixel, pixel, BP_PIXEL("X,Y", BP_PICTURE_SIDE_MAX - 1))                                         \

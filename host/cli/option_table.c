@@ -6,10 +6,11 @@
 #include "scene/scene.h"
 #include "values.h"
 
+#include <inttypes.h>
 #include <stdio.h>
 #include <string.h>
 
-typedef enum ValueKind { FLAG, WHOLE, REAL, PIXEL, CHOICE, WORD, TEXT, RESULT, SIGNED, SLICE } ValueKind;
+typedef enum ValueKind { FLAG, WHOLE, REAL, PIXEL, PART, CHOICE, WORD, TEXT, RESULT, SIGNED, SLICE } ValueKind;
 
 typedef struct OptionRow {
     const char *name, *help;
@@ -29,6 +30,7 @@ typedef struct OptionRow {
 #define BP_WHOLE(name, low, high) .kind = WHOLE, .shown = (name), .least = (low), .most = (high)
 #define BP_REAL(name, low, high) .kind = REAL, .shown = (name), .above = (low), .at_most = (high)
 #define BP_PIXEL(name, high) .kind = PIXEL, .shown = (name), .most = (high)
+#define BP_PART(name) .kind = PART, .shown = (name)
 #define BP_CHOICE(name, names, from)                                                                         \
     .kind = CHOICE, .shown = (name), .words = (names) + (from), .first = (from)
 #define BP_WORD(...)                                                                                         \
@@ -124,6 +126,11 @@ BpStatus bp_option_store(BpOption option, const char *text, BpCommandLine *line,
         BP_TRY(bp_value_slice(name, text, &slice->first, &slice->last, &slice->step, err));
         break;
     }
+    case PART: {
+        BpShare *share = member;
+        BP_TRY(bp_value_share(name, text, &share->number, &share->count, err));
+        break;
+    }
     case CHOICE:
         BP_TRY(bp_value_choice(name, text, row->words, word_count, &choice, err));
         store_whole(row->first + choice, row, member);
@@ -139,6 +146,53 @@ BpStatus bp_option_store(BpOption option, const char *text, BpCommandLine *line,
     }
     line->given[option] = true;
     return BP_OK;
+}
+
+/* The value as it was given, or one that is read as the same. */
+static void show_value(const OptionRow *row, const void *member, char *text, size_t size) {
+    uint64_t wide = 0;
+    uint32_t narrow = 0;
+    double real = 0;
+    const char *word = "";
+    if (row->size == sizeof wide)
+        memcpy(&wide, member, sizeof wide);
+    else if (row->size == sizeof narrow)
+        memcpy(&narrow, member, sizeof narrow), wide = narrow;
+    switch (row->kind) {
+    case FLAG:
+        text[0] = '\0';
+        break;
+    case WHOLE:
+        snprintf(text, size, "%" PRIu64, wide);
+        break;
+    case REAL:
+        memcpy(&real, member, sizeof real);
+        snprintf(text, size, "%.15g", real);
+        break;
+    case PIXEL: {
+        const BpPixel *pixel = member;
+        snprintf(text, size, "%" PRIu32 ",%" PRIu32, pixel->x, pixel->y);
+        break;
+    }
+    case PART: {
+        const BpShare *share = member;
+        snprintf(text, size, "%" PRIu32 "/%" PRIu32, share->number, share->count);
+        break;
+    }
+    case CHOICE:
+        snprintf(text, size, "%s", row->words[wide - row->first]);
+        break;
+    case WORD:
+    case TEXT:
+    case RESULT:
+        memcpy(&word, member, sizeof word);
+        snprintf(text, size, "%s", word);
+        break;
+    }
+}
+
+void bp_option_show(BpOption option, const BpCommandLine *line, char *text, size_t size) {
+    show_value(&rows[option], (const char *)line + rows[option].offset, text, size);
 }
 
 void bp_option_getopt_tables(struct option *long_options, char *letters) {

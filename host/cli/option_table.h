@@ -30,6 +30,9 @@ const char *bp_option_result(BpOption option, const BpCommandLine *line);
  * BP_ERR_USAGE names the option, what was found and what was expected. */
 BpStatus bp_option_store(BpOption option, const char *text, BpCommandLine *line, BpError *err);
 
+/* The value of an option that was given, as it may be given again; "" for a flag. */
+void bp_option_show(BpOption option, const BpCommandLine *line, char *text, size_t size);
+
 /* Fills getopt's tables: `letters` is appended to. Room: BP_OPTION_NUMBER + 1 options, 2 letters each. */
 void bp_option_getopt_tables(struct option *long_options, char *letters);
 BpOption bp_option_of_result(int getopt_result);

@@ -33,6 +33,11 @@ typedef struct BpSlice {
     uint64_t step;
 } BpSlice;
 
+/* The first of `count` shares is number 1. */
+typedef struct BpShare {
+    uint32_t number, count;
+} BpShare;
+
 /* What the command line says: a member for each option, as option_list.h declares it. Every member is
  * checked; one whose option was not given is 0, NULL or the enumeration's first value, and bp_option_given()
  * tells. Texts point into argv, or are static. */

@@ -5,6 +5,7 @@
 #include "base/shown.h"
 #include "child_process.h"
 #include "file_conflicts.h"
+#include "film/film.h"
 #include "formats/input_file.h"
 #include "formats/scene_parse.h"
 #include "opencl/pocl.h"
@@ -82,6 +83,36 @@ BpStatus bp_setup_options(const BpCommandLine *line, const BpScene *scene, BpRen
                    options->first_sample, samples_max, bp_plural(samples_max), BP_SAMPLE_NUMBERS - 1,
                    asked ? "--spp" : "the scene's \"samples_per_pixel\"", options->samples_per_pixel,
                    samples_max, BP_SAMPLE_NUMBERS - options->samples_per_pixel);
+}
+
+BpStatus bp_setup_share(const BpCommandLine *line, BpRenderOptions *options, BpError *err) {
+    if (!bp_option_given(line, BP_OPTION_SHARE)) return BP_OK;
+    if (bp_option_given(line, BP_OPTION_ERROR) || line->adaptive)
+        return bp_fail(
+            err, BP_ERR_USAGE,
+            "--share and --%s contradict: one share does not know the noise of the whole picture; leave "
+            "--%s out",
+            line->adaptive ? "adaptive" : "error", line->adaptive ? "adaptive" : "error");
+    if (line->output == NULL)
+        return bp_fail(err, BP_ERR_USAGE,
+                       "--share %" PRIu32 "/%" PRIu32
+                       " needs a file of its own: give one with --output FILE.bpa",
+                       line->share.number, line->share.count);
+    const uint64_t first = options->first_sample, samples = options->samples_per_pixel;
+    const uint64_t round = options->replicates != 0 ? options->replicates : BP_REPLICATES_DEFAULT;
+    const uint64_t rounds = (samples + round - 1) / round;
+    if (line->share.count > rounds)
+        return bp_fail(err, BP_ERR_USAGE,
+                       "--share %" PRIu32 "/%" PRIu32 ": %" PRIu64 " sample%s per pixel make at most %" PRIu64
+                       " shares, of %" PRIu64 " samples each",
+                       line->share.number, line->share.count, samples, bp_plural(samples), rounds, round);
+    const uint64_t begin = rounds * (line->share.number - 1) / line->share.count * round;
+    const uint64_t end = rounds * line->share.number / line->share.count * round;
+    options->first_sample = first + begin;
+    options->samples_per_pixel = (end < samples ? end : samples) - begin;
+    options->job_first = first;
+    options->job_samples = samples;
+    return BP_OK;
 }
 
 void bp_setup_warn(const BpCommandLine *line, const BpScene *scene, BpPrecision precision) {

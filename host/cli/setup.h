@@ -26,6 +26,11 @@ BpStatus bp_setup_scene(const BpCommandLine *line, const char *path, BpScene **s
 BpStatus bp_setup_options(const BpCommandLine *line, const BpScene *scene, BpRenderOptions *options,
                           BpError *err);
 
+/* Of --share I/N: turns the samples of the options into its part of them, whole rounds of a sample for each
+ * replicate, so that parts differ by one round at most. Nothing without --share. BP_ERR_USAGE: there are more
+ * shares than rounds, or the number of samples is not known from the beginning. */
+BpStatus bp_setup_share(const BpCommandLine *line, BpRenderOptions *options, BpError *err);
+
 /* Warns on standard error, unless --quiet, of what rounding the scene to `precision` does to it. */
 void bp_setup_warn(const BpCommandLine *line, const BpScene *scene, BpPrecision precision);
 

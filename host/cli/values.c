@@ -104,3 +104,24 @@ BpStatus bp_value_slice(const char *option, const char *text, int64_t *first, in
                    "found \"%.80s\"",
                    option, text);
 }
+
+BpStatus bp_value_share(const char *option, const char *text, uint32_t *number, uint32_t *count,
+                        BpError *err) {
+    const char *slash = strchr(text, '/');
+    char first[32];
+    uint64_t numbers[2];
+    if (slash == NULL || (size_t)(slash - text) >= sizeof first)
+        return bp_fail(err, BP_ERR_USAGE, "%s: expected I/N, as in 1/8 to 8/8, found \"%.80s\"", option,
+                       text);
+    memcpy(first, text, (size_t)(slash - text));
+    first[slash - text] = '\0';
+    BP_TRY(bp_value_whole(option, slash + 1, 1, BP_SHARES_MAX, &numbers[1], err));
+    BP_TRY(bp_value_whole(option, first, 0, BP_SHARES_MAX, &numbers[0], err));
+    if (numbers[0] < 1 || numbers[0] > numbers[1])
+        return bp_fail(err, BP_ERR_USAGE,
+                       "%s %.80s: shares are numbered from 1/%" PRIu64 " to %" PRIu64 "/%" PRIu64, option,
+                       text, numbers[1], numbers[1], numbers[1]);
+    *number = (uint32_t)numbers[0];
+    *count = (uint32_t)numbers[1];
+    return BP_OK;
+}

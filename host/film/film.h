@@ -43,6 +43,7 @@ typedef struct BpFilmPlan {
     uint32_t pass_samples, next_pixel; /* of the pass under way; 0: none is */
     uint64_t samples_max;              /* where it stops: at so many samples, or */
     double error;                      /* at this NRMSE; 0: no such rule */
+    bool ended;                        /* it has stopped there: only adaptive renders keep a plan then */
     uint8_t *decisions;                /* Optional. Heap: what adaptive sampling has decided (adaptive.h) */
     size_t decision_bytes;
 } BpFilmPlan;

@@ -256,14 +256,40 @@ done:
     return status;
 }
 
-BpStatus bp_film_read(const char *path, BpFilm **film, BpError *err) {
+static BpStatus open_file(const char *path, FILE **in, BpError *err) {
+    *in = fopen(path, "rb");
+    if (*in != NULL) return BP_OK;
+    bp_fail(err, BP_ERR_FILE, "cannot read %s: %s; check the path", path, strerror(errno));
+    bp_error_at(err, path, 0, 0);
+    return BP_ERR_FILE;
+}
+
+BpStatus bp_film_read_header(const char *path, BpFilm **film, BpError *err) {
     *film = NULL;
-    FILE *in = fopen(path, "rb");
-    if (in == NULL) {
-        bp_fail(err, BP_ERR_FILE, "cannot read %s: %s; check the path", path, strerror(errno));
-        bp_error_at(err, path, 0, 0);
-        return BP_ERR_FILE;
-    }
+    json_t *header = NULL;
+    BpFilmParts parts;
+    Loader loader = {.name = path};
+    BpStatus status = open_file(path, &loader.in, err);
+    if (status != BP_OK) return status;
+    BpFilm *made = calloc(1, sizeof *made);
+    if (made == NULL) status = bp_fail(err, BP_ERR_MEMORY, "out of memory for the header of %s", path);
+    if (status == BP_OK) status = read_header(&loader, &header, err);
+    if (status == BP_OK) status = bp_film_header_sizes(header, path, made, &parts, err);
+    if (status == BP_OK) status = bp_film_header_settings(header, path, made, err);
+    if (status != BP_OK) bp_error_at(err, path, 0, 0);
+    json_decref(header);
+    fclose(loader.in);
+    if (status == BP_OK)
+        *film = made;
+    else
+        bp_film_destroy(&made);
+    return status;
+}
+
+BpStatus bp_film_read(const char *path, BpFilm **film, BpError *err) {
+    FILE *in = NULL;
+    *film = NULL;
+    BP_TRY(open_file(path, &in, err));
     const BpStatus status = bp_film_read_stream(in, path, film, err);
     fclose(in);
     return status;

@@ -1,13 +1,15 @@
-/* film_file.h: films as files (.bpa): one line of JSON, then sums and counts, little endian.
+/* film_file.h: films as files (.bpa): one line of JSON, then packed numbers.
  *
- * In and out: BpFilm.   Knows: the file's layout.   Does not know: how the sums were made.
+ * In and out: BpFilm.   Knows: which numbers there are, and what they may be.   Does not know: how they are
+ * packed (film_stream.h), how the sums were made.
  *
- * Layout, version 2 (docs/FILES.md has it byte by byte): a JSON object on one line ended by a newline, then
- * width * height * replicates * 3 sums of 8 bytes (two's complement); as many fine sums, if the header says
- * so; width * height * replicates counts of 4 bytes, all in the order of BpFilm; and the CRC-32 of
- * everything before it, 4 bytes. Version 1 has no fine sums and no checksum; it is read and marked
- * `unverified`, and never written. Scene hash and seed are strings, since many readers of JSON keep 53 bits
- * of a number. */
+ * Layout, version 3 (docs/FILES.md has it byte by byte): a JSON object on one line ended by a newline, then,
+ * as film_stream.h packs them, width * height * replicates * 3 sums of 8 bytes (two's complement); as many
+ * fine sums, if the header says so; width * height * replicates counts of 4 bytes; depth, normal and albedo,
+ * path lengths of pixels, decisions of adaptive sampling, each if the header says so; all in the order of
+ * BpFilm; and the CRC-32 of everything before it, 4 bytes. Version 2 has no more than counts, and does not
+ * pack them. Version 1 has no fine sums and no checksum either; it is read and marked `unverified`. Scene
+ * hash and seed are strings, since many readers of JSON keep 53 bits of a number. */
 #ifndef BP_FILM_FILM_FILE_H
 #define BP_FILM_FILM_FILE_H
 
@@ -24,5 +26,9 @@ BpStatus bp_film_write_stream(const BpFilm *film, FILE *out, BpError *err);
  * without risk of overflow. */
 /* bp_film_read() of ballpark.h from a stream that can seek; `name` stands in messages where a path would. */
 BpStatus bp_film_read_stream(FILE *in, const char *name, BpFilm **film, BpError *err);
+
+/* The header of the .bpa file at `path`: a film without sums and counts, and a plan without its decisions.
+ * Fails as bp_film_read() does; damage behind the header goes unnoticed. */
+BpStatus bp_film_read_header(const char *path, BpFilm **film, BpError *err);
 
 #endif

@@ -37,11 +37,12 @@ static size_t title_bytes(const char *title) {
 }
 
 static json_t *plan_json(const BpFilmPlan *plan) {
-    return json_pack("{s:b,s:I,s:I,s:I,s:I,s:I,s:I,s:f,s:I}", "adaptive", (int)plan->adaptive, "first_sample",
-                     (json_int_t)plan->first_sample, "target", (json_int_t)plan->target, "done",
-                     (json_int_t)plan->done, "pass_samples", (json_int_t)plan->pass_samples, "next_pixel",
-                     (json_int_t)plan->next_pixel, "samples_max", (json_int_t)plan->samples_max, "error",
-                     plan->error, "decision_bytes", (json_int_t)plan->decision_bytes);
+    return json_pack("{s:b,s:b,s:I,s:I,s:I,s:I,s:I,s:I,s:f,s:I}", "adaptive", (int)plan->adaptive, "ended",
+                     (int)plan->ended, "first_sample", (json_int_t)plan->first_sample, "target",
+                     (json_int_t)plan->target, "done", (json_int_t)plan->done, "pass_samples",
+                     (json_int_t)plan->pass_samples, "next_pixel", (json_int_t)plan->next_pixel,
+                     "samples_max", (json_int_t)plan->samples_max, "error", plan->error, "decision_bytes",
+                     (json_int_t)plan->decision_bytes);
 }
 
 /* What not every film has; false when out of memory. */
@@ -242,6 +243,7 @@ static void read_plan(Reader *reader, BpFilm *film) {
     film->plan = plan;
     Reader inner = {json, reader->name, BP_OK, reader->err};
     plan->adaptive = read_truth(&inner, "adaptive");
+    plan->ended = read_truth(&inner, "ended");
     plan->first_sample = read_integer(&inner, "first_sample", 0, SAMPLES_END - 1);
     plan->target = read_integer(&inner, "target", 1, SAMPLES_END);
     plan->done = read_integer(&inner, "done", 0, SAMPLES_END);

@@ -348,6 +348,7 @@ BpStatus bp_render_describe(const BpRender *render, BpFilm *film, BpError *err) 
     BP_SETTING_LIST(SETTING)
 #undef SETTING
     film->transfer = render->scene->transfer;
+    film->job = (struct BpSampleRange){options->job_first, options->job_samples};
     if (render->scene->title != NULL) film->title = strdup(render->scene->title);
     /* A pass in progress counts as begun: its samples are taken, though not yet by every pixel. */
     uint64_t begun = render->schedule.done + render->schedule.pass_samples;
@@ -469,7 +470,8 @@ static BpStatus add_plan(const BpRender *render, BpFilm *film, BpError *err) {
                                .pass_samples = schedule->pass_samples,
                                .next_pixel = schedule->pass_samples > 0 ? schedule->next_pixel : 0,
                                .samples_max = render->goal_samples,
-                               .error = render->goal_error};
+                               .error = render->goal_error,
+                               .ended = render->ended};
     if (!render->decides) return BP_OK;
     return bp_adaptive_save(render->adaptive, &film->plan->decisions, &film->plan->decision_bytes, err);
 }

@@ -24,6 +24,7 @@ struct BpRender {
     uint64_t base_samples; /* pixel samples in it */
     uint64_t goal_samples; /* where a stop rule ends it; 0: none has said */
     double goal_error;
+    bool ended;     /* it has reached that */
     BpPicture aovs; /* its depth, normal and albedo, once computed */
     BpChunk last_chunk;
     double tree_seconds, pack_seconds, trace_seconds;

@@ -105,6 +105,8 @@ BpStatus bp_render_resume(BpRender *render, const BpFilm *film, BpError *err) {
     for (size_t i = 0; i < cells; ++i) render->base_samples += film->counts[i];
     render->base_samples += film->invalid_samples;
     BP_TRY(bp_render_extend(render, plan.target, err));
+    render->goal_samples = plan.samples_max;
+    render->goal_error = plan.error;
     if (plan.decision_bytes > 0) BP_TRY(restore_pass(render, &plan, err));
     render->schedule.done = plan.done;
     render->schedule.pass_samples = plan.pass_samples;

@@ -155,6 +155,7 @@ BpStatus bp_stop_check(BpStop *stop, const BpProgress *progress, BpStopReason *r
         stop->reason = BP_STOP_TIME;
     }
     *reason = stop->reason;
+    stop->render->ended = stop->reason != BP_STOP_NOT_YET && stop->reason != BP_STOP_TIME;
     if (next > stop->state.samples) BP_TRY(bp_render_extend(stop->render, next, err));
     stop->state.samples = next;
     return BP_OK;

@@ -2,9 +2,12 @@
 
 import os
 import struct
+import subprocess
+import sys
 import zlib
 
-from cli import ProgramTest, main, scene
+import bpa
+from cli import PROGRAM, ProgramTest, main, scene
 
 
 class Merge(ProgramTest):
@@ -36,13 +39,83 @@ class Merge(ProgramTest):
         self.part("b.bpa", 100, 4)
         said = self.succeed("merge", "a.bpa", "b.bpa", "-o", "sum.png").errors
         self.assertIn("8 samples per pixel (0 to 3, 100 to 103)", said)
+        self.assertIn("96 samples per pixel are missing: 4 to 99", said)
+        self.part("c.bpa", 4, 95)
+        self.assertIn("1 sample per pixel is missing: 99 to 99", self.succeed("merge", "c.bpa", "b.bpa", "a.bpa", "-o", "sum.png").errors)
+        self.part("d.bpa", 99, 1)
+        self.assertNotIn("missing", self.succeed("merge", "c.bpa", "b.bpa", "d.bpa", "a.bpa", "-o", "sum.png").errors)
+
+    def test_shares(self):
+        """Every sample is in one share; sizes differ by one round of the replicates at most."""
+        for spp, shares in ((30, 3), (30, 8), (64, 5), (7, 2)):
+            self.part("whole.bpa", 5, spp)
+            sizes, names = [], []
+            for share in range(1, shares + 1):
+                names.append(f"{share}.bpa")
+                self.succeed("render", "s.json", "--first-sample", 5, "--spp", spp, "--share", f"{share}/{shares}", "-o", names[-1], "-q")
+                header, _ = bpa.read(self.read(names[-1]))
+                self.assertEqual(header["job"], [5, spp])
+                sizes += [count for _, count in header["ranges"]]
+            self.assertEqual((sum(sizes), len(sizes)), (spp, shares))
+            self.assertLessEqual(max(sizes[:-1]) - min(sizes[:-1]), 4, sizes)
+            self.assertTrue(0 <= max(sizes) - sizes[-1] <= 7, sizes)  # the last round may have less
+            names.reverse()
+            said = self.succeed("merge", *names, "-o", "sum.bpa").errors
+            self.assertNotIn("missing", said)
+            self.assert_same(self.read("sum.bpa"), self.read("whole.bpa"), (spp, shares))
+            # In two steps it is the same, and what is missing meanwhile is said.
+            said = self.succeed("merge", *names[1:], "-o", "part.bpa").errors
+            self.assertIn(f"missing: {5 + spp - sizes[-1]} to {4 + spp}", said)
+            self.succeed("merge", "part.bpa", names[0], "-o", "sum.bpa")
+            self.assert_same(self.read("sum.bpa"), self.read("whole.bpa"), (spp, shares))
+
+    def test_shares_that_cannot_be(self):
+        for share, says in (("0/4", "shares are numbered from 1/4 to 4/4"), ("5/4", "shares are numbered from 1/4 to 4/4"),
+                            ("3", "expected I/N"), ("1/", "whole number"), ("1/4", None), ("1/9", "at most 8 shares, of 4 samples each")):
+            arguments = ("render", "s.json", "--spp", 30, "--share", share, "-o", "x.bpa")
+            if says is None:
+                self.succeed(*arguments)
+            else:
+                self.fail_with(2, *arguments, says=["--share", says])
+        self.fail_with(2, "render", "s.json", "--share", "1/2", says="--share 1/2 needs a file of its own")
+        self.fail_with(2, "render", "s.json", "--share", "1/2", "--error", "1", "-o", "y.bpa", says="--share and --error contradict")
+        self.fail_with(2, "render", "s.json", "--share", "1/2", "--adaptive", "-o", "y.bpa", says="--share and --adaptive contradict")
+
+    def test_many_files(self):
+        """As many as there are, in any order, and in no more memory than a few need: names like those of a job array."""
+        self.write("s.json", scene(640, 360, camera={"samples_per_pixel": 1, "max_depth": 1}))
+        names = []
+        for number in range(40):
+            names.append(self.part(f"part-{number}.bpa", number, 1))
+        names.sort()
+        peaks = []
+        for count in (4, 40):
+            code = ("import resource, subprocess, sys; subprocess.run(sys.argv[1:], check=True); "
+                    "print(resource.getrusage(resource.RUSAGE_CHILDREN).ru_maxrss)")
+            done = subprocess.run([sys.executable, "-c", code, PROGRAM, "merge", *names[:count], "-o", f"{count}.bpa", "-q"],
+                                  cwd=self.folder, env=self.environment, stdout=subprocess.PIPE, check=True)
+            peaks.append(int(done.stdout))
+        self.assertLess(peaks[1], 1.1 * peaks[0] + 8000, peaks)  # KiB
+        self.part("whole.bpa", 0, 40)
+        self.assert_same(self.read("40.bpa"), self.read("whole.bpa"))
+
+    def test_unfinished(self):
+        """A part that was stopped amid its samples is named, with what finishes it."""
+        self.part("a.bpa", 0, 8)
+        self.part("b.bpa", 8, 8)
+        header, body = self.read("b.bpa").split(b"\n", 1)
+        data = header.replace(b"\"partial\": false", b"\"partial\": true") + b"\n" + body[:-4]
+        self.write("b.bpa", data + struct.pack("<I", zlib.crc32(data)))
+        said = self.succeed("merge", "a.bpa", "b.bpa", "-o", "sum.png").errors
+        self.assertIn("some pixels lack samples in b.bpa: ballpark render SCENE --resume FILE finishes it", said)
 
     def test_overlap(self):
         self.part("a.bpa", 0, 10)
         self.part("b.bpa", 20, 10)
         self.part("c.bpa", 25, 10)
-        self.fail_with(2, "merge", "a.bpa", "b.bpa", "c.bpa", "-o", "x.png", says=["b.bpa", "c.bpa", "25 to 34"])
-        self.fail_with(2, "merge", "a.bpa", "a.bpa", "-o", "x.png", says="a.bpa")
+        self.fail_with(2, "merge", "a.bpa", "b.bpa", "c.bpa", "-o", "x.png", says=["b.bpa (samples 20 to 29) and c.bpa (25 to 34)", "twice"])
+        self.fail_with(2, "merge", "a.bpa", "a.bpa", "-o", "x.png", says="a.bpa (samples 0 to 9) and a.bpa (0 to 9)")
+        self.fail_with(2, "merge", *["a.bpa"] * 8, "-o", "x.png", says="and 3 more pairs")
         self.assertEqual(self.files(), ["a.bpa", "b.bpa", "c.bpa", "s.json"])
 
     def test_what_does_not_belong_together(self):
@@ -68,7 +141,7 @@ class Merge(ProgramTest):
 
     def test_bad_files(self):
         self.part("a.bpa", 0, 10)
-        data = self.read("a.bpa")
+        data = self.read(self.part("b.bpa", 10, 10))
         self.write("short.bpa", data[:-1])
         self.write("long.bpa", data + b"x")
         self.write("empty.bpa", b"")

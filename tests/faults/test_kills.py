@@ -109,6 +109,48 @@ class Kills(cli.ProgramTest):
         size = len(b"PF\n64 64\n-1.0\n") + 64 * 64 * 12
         self.kill_often(("render", "s.json", "-o", "a.pfm", "-q"), "a.pfm", lambda content: len(content) == size)
 
+    def test_checkpoints(self):
+        """A render that is killed again and again, at any moment, and goes on each time from what there is: no file is
+        ever broken, no sample counts twice, and in the end it is the picture of a render without a break."""
+        self.write("s.json", cli.scene(96, 64, spheres=4, camera={"samples_per_pixel": 4000}))
+        begin = time.monotonic()
+        self.succeed("render", "s.json", "-o", "whole.exr", "-q")
+        chance, span, unnamed = random.Random(9), 1.1 * (time.monotonic() - begin), self.has_unnamed_files()
+        whole, kinds = self.read("whole.exr"), (signal.SIGKILL, signal.SIGKILL, signal.SIGUSR1, signal.SIGTERM)
+        kills = resumed = finished = 0
+        while kills < KILLS:
+            going_on = "a.bpa" in self.files()
+            arguments = ["render", "s.json", "--checkpoint", "0.02", "-o", "a.exr"] + (["--resume", "a.bpa"] if going_on else [])
+            process = self.start(arguments)
+            time.sleep(chance.uniform(0, span))
+            kind = kinds[kills % len(kinds)]
+            process.send_signal(kind)
+            said = process.communicate(timeout=cli.LIMIT_SECONDS)[1].decode(errors="replace")
+            where = f"{kills}, {kind.name}: {process.returncode}, {said}"
+            kills += 1
+            resumed += going_on
+            if process.returncode == 1 and "does not compile" in said:  # an earlier SIGKILL has met the driver amid its cache
+                self.forget_kernels()
+                self.succeed("render", "s.json", "--spp", "1", "-o", os.devnull, "--format", "exr", "-q")
+            elif process.returncode == 0:
+                finished += 1
+                self.assert_same(self.read("a.exr"), whole, where)
+                self.assertNotIn("a.bpa", self.files(), where)
+                os.remove(self.path("a.exr"))
+            else:
+                self.assertIn(process.returncode, (130, -kind), where)
+            for name in set(self.files()) - {"s.json", "whole.exr", "a.exr", "a.bpa"}:
+                self.assertTrue(kind == signal.SIGKILL and (not unnamed or name.startswith("a.")), f"{where}: {name}")
+                os.remove(self.path(name))  # see kill_often()
+            if "a.bpa" in self.files():
+                self.succeed("merge", "a.bpa", "-o", os.devnull, "--format", "pfm", "-q")  # it is whole
+        self.assertGreater(resumed, 0)
+        while "a.bpa" in self.files():
+            self.succeed("render", "s.json", "--checkpoint", "5", "-o", "a.exr", "--resume", "a.bpa", "-q")
+            self.assert_same(self.read("a.exr"), whole, "the last one")
+            finished += 1
+        self.assertGreater(finished, 0)
+
     def test_hangup_and_processor_time(self):
         """A terminal that goes away and a limit on processor time end a render as Ctrl-C does: it keeps what there is."""
         self.write("s.json", cli.scene(64, 64, camera={"samples_per_pixel": 3000}))

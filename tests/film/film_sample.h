@@ -46,6 +46,7 @@ static BpFilm *make(void) {
     }
     a->plan = calloc(1, sizeof *a->plan);
     *a->plan = (BpFilmPlan){.adaptive = true,
+                            .ended = true,
                             .first_sample = 2,
                             .target = 1000,
                             .done = 7,

@@ -46,6 +46,7 @@ static void assert_same(const BpFilm *a, const BpFilm *b) {
     assert_int_equal(a->plan == NULL, b->plan == NULL);
     if (a->plan == NULL) return;
     assert_int_equal(a->plan->adaptive, b->plan->adaptive);
+    assert_int_equal(a->plan->ended, b->plan->ended);
     assert_int_equal(a->plan->first_sample, b->plan->first_sample);
     assert_int_equal(a->plan->target, b->plan->target);
     assert_int_equal(a->plan->done, b->plan->done);

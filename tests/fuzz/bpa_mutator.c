@@ -62,9 +62,9 @@ static void change_member(json_t *header, uint32_t *state) {
                                               "next_pixel",   "samples_max", "decision_bytes"};
         json_t *plan = json_object_get(header, "plan");
         if (plan == NULL) {
-            plan = json_pack("{s:b,s:i,s:i,s:i,s:i,s:i,s:i,s:f,s:i}", "adaptive", (int)(next(state) % 2),
-                             "first_sample", 0, "target", 8, "done", 4, "pass_samples", 0, "next_pixel", 0,
-                             "samples_max", 8, "error", 0.5, "decision_bytes", 0);
+            plan = json_pack("{s:b,s:b,s:i,s:i,s:i,s:i,s:i,s:i,s:f,s:i}", "adaptive", (int)(next(state) % 2),
+                             "ended", 0, "first_sample", 0, "target", 8, "done", 4, "pass_samples", 0,
+                             "next_pixel", 0, "samples_max", 8, "error", 0.5, "decision_bytes", 0);
             json_object_set_new(header, "plan", plan);
             break;
         }

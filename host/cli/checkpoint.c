@@ -1,0 +1,143 @@
+/* checkpoint.c: see checkpoint.h. */
+#include "checkpoint.h"
+
+#include "base/clock.h"
+#include "base/output_file.h"
+#include "base/shown.h"
+#include "film/film_file.h"
+#include "option_table.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+/* The picture's name with .bpa in place of its ending. */
+static bool name_beside(const char *picture, char *path, size_t size) {
+    const char *base = strrchr(picture, '/');
+    base = base == NULL ? picture : base + 1;
+    const char *dot = strrchr(base, '.');
+    const int stem = (int)(dot == NULL || dot == base ? strlen(picture) : (size_t)(dot - picture));
+    return (size_t)snprintf(path, size, "%.*s.bpa", stem, picture) < size;
+}
+
+/* A file at the place of the checkpoint is somebody's: of a render that was killed, mostly. */
+static BpStatus check_free(const BpCheckpoint *checkpoint, BpError *err) {
+    BpFilm *film = NULL;
+    if (access(checkpoint->path, F_OK) != 0) return BP_OK;
+    const bool readable = bp_film_read_header(checkpoint->path, &film, NULL) == BP_OK;
+    const bool unfinished = readable && film->plan != NULL && !film->plan->ended;
+    bp_film_destroy(&film);
+    if (unfinished)
+        return bp_fail(err, BP_ERR_USAGE,
+                       "--checkpoint would replace %.400s, an unfinished render: go on from it with --resume "
+                       "%.400s, or remove it",
+                       checkpoint->path, checkpoint->path);
+    if (checkpoint->is_result) return BP_OK; /* a result is replaced, as ever */
+    return bp_fail(
+        err, BP_ERR_USAGE,
+        "--checkpoint would replace %.400s, which is beside the picture already: move it, or choose "
+        "another --output",
+        checkpoint->path);
+}
+
+BpStatus bp_checkpoint_choose(const BpCommandLine *line, const BpResultFile *result, BpCheckpoint *checkpoint,
+                              BpError *err) {
+    const bool asked = bp_option_given(line, BP_OPTION_CHECKPOINT);
+    struct stat info;
+    const bool to_stream =
+        strcmp(result->path, "-") == 0 || (stat(result->path, &info) == 0 && !S_ISREG(info.st_mode));
+    bool fits = true;
+    *checkpoint = (BpCheckpoint){.every = line->checkpoint_seconds, .last = bp_clock_seconds()};
+    checkpoint->is_result = result->format == BP_FORMAT_BPA && !to_stream;
+    if (checkpoint->is_result)
+        fits = (size_t)snprintf(checkpoint->path, sizeof checkpoint->path, "%s", result->path) <
+               sizeof checkpoint->path;
+    else if (line->resume != NULL)
+        fits = (size_t)snprintf(checkpoint->path, sizeof checkpoint->path, "%s", line->resume) <
+               sizeof checkpoint->path;
+    else if (!asked)
+        return BP_OK;
+    else if (to_stream)
+        return bp_fail(err, BP_ERR_USAGE,
+                       "--checkpoint has no place beside %.400s: give the name of a file with --output",
+                       bp_result_name(result));
+    else
+        fits = name_beside(result->path, checkpoint->path, sizeof checkpoint->path);
+    if (!fits)
+        return bp_fail(err, BP_ERR_FILE, "the path of the checkpoint beside %.200s is too long",
+                       result->path);
+    if (!asked) return BP_OK;
+    if (line->resume == NULL) BP_TRY(check_free(checkpoint, err));
+    return bp_output_check(checkpoint->path, err);
+}
+
+bool bp_checkpoint_is_due(const BpCheckpoint *checkpoint, double now) {
+    return checkpoint->every > 0 && now - checkpoint->last >= checkpoint->every;
+}
+
+void bp_checkpoint_write(BpCheckpoint *checkpoint, const BpFilm *film) {
+    BpError fault = {0};
+    if (bp_film_write(film, checkpoint->path, &fault) == BP_OK) {
+        ++checkpoint->written;
+    } else {
+        fputs("ballpark: warning: the checkpoint was not written, and rendering goes on: ", stderr);
+        bp_show(fault.message, false, stderr);
+        fputc('\n', stderr);
+    }
+    bp_error_clear(&fault);
+    checkpoint->last = bp_clock_seconds();
+}
+
+void bp_checkpoint_end(const BpCommandLine *line, const BpCheckpoint *checkpoint) {
+    if (!bp_option_given(line, BP_OPTION_CHECKPOINT) || checkpoint->is_result) return;
+    if (checkpoint->written > 0 || line->resume != NULL) unlink(checkpoint->path);
+}
+
+/* Appends a word as a shell reads it; false when it does not fit. */
+static bool append_word(char *text, size_t size, const char *word) {
+    static const char plain[] = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789_./,:=+@%-";
+    size_t used = strlen(text);
+    const bool quotes = word[0] == '\0' || word[strspn(word, plain)] != '\0';
+    if (used + 2 * strlen(word) * 2 + 5 > size) return false;
+    if (used > 0) text[used++] = ' ';
+    if (quotes) text[used++] = '\'';
+    for (; *word != '\0'; ++word) {
+        if (*word == '\'') { /* ends the quotes, escapes it, begins them again */
+            memcpy(text + used, "'\\''", 4);
+            used += 4;
+        } else {
+            text[used++] = *word;
+        }
+    }
+    if (quotes) text[used++] = '\'';
+    text[used] = '\0';
+    return true;
+}
+
+const char *bp_checkpoint_command(const BpCommandLine *line, const BpCheckpoint *checkpoint,
+                                  double seconds_left, char *text, size_t size) {
+    char value[4200], name[40];
+    bool fits = true;
+    text[0] = '\0';
+    fits = append_word(text, size, "ballpark") && append_word(text, size, "render");
+    /* A name that begins with a dash is no option. */
+    if (line->operands[0][0] == '-' && line->operands[0][1] != '\0')
+        snprintf(value, sizeof value, "./%s", line->operands[0]);
+    else
+        snprintf(value, sizeof value, "%s", line->operands[0]);
+    fits = fits && append_word(text, size, value) && append_word(text, size, "--resume") &&
+           append_word(text, size, checkpoint->path);
+    for (int o = 0; o < BP_OPTION_NUMBER && fits; ++o) {
+        const BpOption option = (BpOption)o;
+        if (!bp_option_given(line, option) || option == BP_OPTION_RESUME) continue;
+        snprintf(name, sizeof name, "--%s", bp_option_name(option));
+        fits = append_word(text, size, name);
+        bp_option_show(option, line, value, sizeof value);
+        if (option == BP_OPTION_TIME) snprintf(value, sizeof value, "%.0f", fmax(1, ceil(seconds_left)));
+        if (value[0] != '\0') fits = fits && append_word(text, size, value);
+    }
+    if (!fits) text[0] = '\0';
+    return text;
+}

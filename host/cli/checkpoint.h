@@ -1,0 +1,41 @@
+/* checkpoint.h: where a render keeps its sums so that another can go on from them, and the command that does.
+ *
+ * In:    the command line, films.   Out: a .bpa file, written as a whole each time; a command line.
+ * Knows: --checkpoint, --resume, when it is time.   Does not know: how the render goes on (resume_film.h). */
+#ifndef BP_CLI_CHECKPOINT_H
+#define BP_CLI_CHECKPOINT_H
+
+#include "film/film.h"
+#include "result_file.h"
+
+typedef struct BpCheckpoint {
+    char path[4096];  /* "": nothing is kept */
+    bool is_result;   /* the file is the result itself (-o FILE.bpa) */
+    double every;     /* seconds; 0: only when the render is interrupted */
+    double last;      /* bp_clock_seconds() of the latest try */
+    uint64_t written; /* how often */
+} BpCheckpoint;
+
+/* With -o FILE.bpa the sums are kept there; else with --resume in that file; else with --checkpoint beside
+ * the picture, as its name with .bpa. BP_ERR_USAGE: --checkpoint has no place, or would replace a file that a
+ * render left there unfinished, or that is no checkpoint of this render's. */
+BpStatus bp_checkpoint_choose(const BpCommandLine *line, const BpResultFile *result, BpCheckpoint *checkpoint,
+                              BpError *err);
+
+/* Whether it is time, by bp_clock_seconds(). */
+bool bp_checkpoint_is_due(const BpCheckpoint *checkpoint, double now);
+
+/* Writes the film. A failure is warned about on standard error, and the file before stays: the render goes
+ * on. */
+void bp_checkpoint_write(BpCheckpoint *checkpoint, const BpFilm *film);
+
+/* The picture is there: removes the checkpoint, if --checkpoint asked for it and it is not the result. */
+void bp_checkpoint_end(const BpCommandLine *line, const BpCheckpoint *checkpoint);
+
+/* The command that goes on from the checkpoint: the options as they were given, with `seconds_left` of
+ * --time.
+ * "" when it does not fit. Returns `text`. */
+const char *bp_checkpoint_command(const BpCommandLine *line, const BpCheckpoint *checkpoint,
+                                  double seconds_left, char *text, size_t size);
+
+#endif

@@ -1,0 +1,193 @@
+"""A render that is stopped keeps what it has, says how to go on, and goes on to the picture that it would have made."""
+
+import os
+import shlex
+import shutil
+import signal
+import subprocess
+import time
+
+import bpa
+import cli
+
+
+class Resume(cli.ProgramTest):
+    def setUp(self):
+        super().setUp()
+        self.write("s.json", cli.scene(64, 48, spheres=4, camera={"samples_per_pixel": 6000}))
+        self.succeed("render", "s.json", "--spp", 1, "-o", "first.exr", "-q")  # builds the kernels, once
+        self.succeed("render", "s.json", "--spp", 32, "--adaptive", "-o", "first.exr", "-q")
+        os.remove(self.path("first.exr"))
+
+    def start(self, *arguments):
+        return subprocess.Popen([cli.PROGRAM, "render", "s.json", *map(str, arguments)], cwd=self.folder,
+                                env=self.environment, stdin=subprocess.DEVNULL, stderr=subprocess.PIPE)
+
+    def stop_at(self, file, number, *arguments):
+        """Starts a render and sends the signal as soon as `file` is there; what it said. More samples where it was done
+        before."""
+        process = self.start(*arguments)
+        while file not in self.files() and process.poll() is None:
+            time.sleep(0.01)
+        process.send_signal(number)
+        said = process.communicate(timeout=cli.LIMIT_SECONDS)[1].decode()
+        return process.returncode, said
+
+    def command_in(self, said):
+        lines = [line for line in said.splitlines() if line.startswith("ballpark render ")]
+        self.assertEqual(len(lines), 1, said)
+        return shlex.split(lines[0])
+
+    def go_on(self, said, *more):
+        command = self.command_in(said)
+        return self.succeed(*command[1:], *more)
+
+    def test_every_signal(self):
+        """What there is is kept and can be gone on from, and the message has the command."""
+        for kind in (signal.SIGINT, signal.SIGTERM, signal.SIGHUP, signal.SIGUSR1, signal.SIGUSR2, signal.SIGXCPU):
+            code, said = self.stop_at("a.bpa", kind, "--spp", 60000000, "--checkpoint", 0.05, "-o", "a.pfm")
+            self.assertEqual(code, 130, f"{kind.name}: {said}")
+            self.assertIn("a.pfm holds the picture so far, and this goes on from there", said)
+            self.assertEqual(self.command_in(said), ["ballpark", "render", "s.json", "--resume", "a.bpa", "--output", "a.pfm",
+                                                     "--spp", "60000000", "--checkpoint", "0.05"])
+            self.assertEqual(self.files(), ["a.bpa", "a.pfm", "s.json"])
+            header, _ = bpa.read(self.read("a.bpa"))
+            self.assertEqual(header["plan"]["samples_max"], 60000000)
+            self.succeed("merge", "a.bpa", "-o", "b.pfm", "-q")  # the same samples in both
+            self.assert_same(self.read("a.pfm"), self.read("b.pfm"), kind.name)
+            for name in ("a.bpa", "a.pfm", "b.pfm"):
+                os.remove(self.path(name))
+
+    def interrupted_and_whole(self, suffix, *options):
+        """The file of one render, and that of one which was stopped and went on, three times."""
+        name = "a" + suffix
+        self.succeed("render", "s.json", *options, "-o", "whole" + suffix, "-q")
+        code, said = self.stop_at("a.bpa", signal.SIGTERM, *options, "--checkpoint", 0.02, "-o", name)
+        stops = 0
+        while code == 130 and stops < 3:
+            stops += 1
+            process = subprocess.Popen([cli.PROGRAM, *self.command_in(said)[1:]], cwd=self.folder, env=self.environment,
+                                       stdin=subprocess.DEVNULL, stderr=subprocess.PIPE)
+            time.sleep(0.5)
+            process.send_signal(signal.SIGUSR1)
+            new = process.communicate(timeout=cli.LIMIT_SECONDS)[1].decode()
+            code, said = process.returncode, new if "ballpark render " in new else said
+            self.assertIn(code, (0, 130), new)
+        if code == 130:
+            self.go_on(said)
+        self.assert_same(self.read(name), self.read("whole" + suffix), options)
+        self.assertNotIn("a.bpa" if suffix != ".bpa" else "a.exr", self.files())
+        os.remove(self.path(name))
+        return stops
+
+    def test_the_same_bits(self):
+        stops = self.interrupted_and_whole(".exr")
+        stops += self.interrupted_and_whole(".bpa", "--spp", 5000, "--first-sample", 77)
+        stops += self.interrupted_and_whole(".bpa", "--spp", 3000, "--adaptive", "--sampler", "independent")
+        stops += self.interrupted_and_whole(".exr", "--error", 0.15, "--adaptive")
+        stops += self.interrupted_and_whole(".bpa", "--spp", 12000, "--share", "2/3", "--seed", 2**64 - 1)
+        self.assertGreater(stops, 0)  # else every render was faster than its signal
+
+    def test_more_samples_than_before(self):
+        """A finished file goes on, too; also one of version 2, and one that was merged of neighbours."""
+        self.succeed("render", "s.json", "--spp", 20, "-o", "whole.bpa", "-q")
+        self.succeed("render", "s.json", "--spp", 9, "-o", "a.bpa", "-q")
+        self.write("old.bpa", bpa.version_2(self.read("a.bpa")))
+        self.succeed("render", "s.json", "--spp", 3, "--first-sample", 9, "-o", "b.bpa", "-q")
+        self.succeed("merge", "a.bpa", "b.bpa", "-o", "ab.bpa", "-q")
+        for name in ("a.bpa", "old.bpa", "ab.bpa"):
+            self.succeed("render", "s.json", "--resume", name, "--spp", 20, "-o", "more.bpa", "-q")
+            self.assert_same(self.read("more.bpa"), self.read("whole.bpa"), name)
+        # Nothing is left to do where it had finished.
+        before = self.read("whole.bpa")
+        said = self.succeed("render", "s.json", "--resume", "whole.bpa", "-o", "again.bpa").errors
+        self.assert_same(self.read("again.bpa"), before)
+        self.assertIn("0 samples traced", said)
+
+    def test_options_that_contradict(self):
+        self.succeed("render", "s.json", "--spp", 8, "--first-sample", 4, "-o", "a.bpa", "-q")
+        before = self.read("a.bpa")
+        for options, says in ((["--seed", 1], "--seed 1 contradicts --resume a.bpa, which has --seed 0"),
+                              (["--depth", 3], "--depth 3 contradicts --resume a.bpa, which has --depth 10"),
+                              (["--width", 65], "--width 65 contradicts --resume a.bpa, which is 64 pixels wide"),
+                              (["--first-sample", 5], "--first-sample 5 contradicts --resume a.bpa, which begins with sample 4"),
+                              (["--sampler", "independent"], "--sampler independent contradicts --resume a.bpa, which has --sampler sobol"),
+                              (["--precision", "double"], "--precision double contradicts"),
+                              (["--math", "fast"], "--math fast contradicts"),
+                              (["--numerics", "plain"], "--numerics plain contradicts"),
+                              (["--adaptive"], "--adaptive contradicts --resume a.bpa, which is of a render without it"),
+                              (["--share", "1/2"], "--share 1/2 contradicts"),
+                              (["--spp", 7], "--spp 7 contradicts --resume a.bpa, which is on its way to 8 samples per pixel")):
+            self.fail_with(2, "render", "s.json", "--resume", "a.bpa", "-o", "b.bpa", *options, says=says)
+        self.succeed("render", "s.json", "--resume", "a.bpa", "--seed", 0, "--depth", 10, "--width", 64, "--first-sample", 4,
+                     "--sampler", "sobol", "--precision", "single", "--spp", 8, "-o", "b.bpa", "-q")
+        self.assert_same(self.read("b.bpa"), before)
+        self.write("t.json", cli.scene(64, 48, spheres=5))
+        self.fail_with(2, "render", "t.json", "--resume", "a.bpa", "-o", "b.bpa", says=["a.bpa", "t.json", "not a render of"])
+        self.fail_with(1, "render", "s.json", "--resume", "none.bpa", "-o", "b.bpa", says="none.bpa")
+        self.fail_with(1, "render", "s.json", "--resume", "s.json", "-o", "b.bpa", says="not a .bpa file")
+        self.succeed("render", "s.json", "--spp", 2, "--first-sample", 90, "-o", "c.bpa", "-q")
+        self.succeed("merge", "a.bpa", "c.bpa", "-o", "gap.bpa", "-q")
+        self.fail_with(2, "render", "s.json", "--resume", "gap.bpa", "-o", "b.bpa", says="not of one range of samples")
+
+    def test_files_that_are_there(self):
+        """A checkpoint replaces nothing that it did not make."""
+        self.succeed("render", "s.json", "--spp", 4, "-o", "a.bpa", "-q")
+        before = self.read("a.bpa")
+        self.fail_with(2, "render", "s.json", "--spp", 4, "--checkpoint", 1, "-o", "a.png",
+                       says=["--checkpoint would replace a.bpa", "beside the picture already"])
+        self.assert_same(self.read("a.bpa"), before)
+        self.succeed("render", "s.json", "--spp", 5, "--checkpoint", 1, "-o", "a.bpa", "-q")  # a result is replaced, as ever
+        code, said = self.stop_at("b.bpa", signal.SIGINT, "--spp", 60000000, "--checkpoint", 0.05, "-o", "b.bpa")
+        self.assertEqual(code, 130, said)
+        for output in ("b.bpa", "b.png"):
+            self.fail_with(2, "render", "s.json", "--spp", 4, "--checkpoint", 1, "-o", output,
+                           says=["would replace b.bpa, an unfinished render", "--resume b.bpa"])
+        for output in ("-", "/dev/null"):
+            self.fail_with(2, "render", "s.json", "--checkpoint", 1, "-o", output, "--format", "pfm", says="--checkpoint has no place")
+
+    def test_a_finished_render_leaves_no_checkpoint(self):
+        self.succeed("render", "s.json", "--checkpoint", 0.01, "-o", "a.exr", "-q")
+        self.assertEqual(self.files(), ["a.exr", "s.json"])
+
+    def test_a_time_that_is_over(self):
+        """--time of the command that goes on is what was left; without any end the render is refused."""
+        code, said = self.stop_at("a.bpa", signal.SIGTERM, "--time", 300, "--checkpoint", 0.05, "-o", "a.pfm")
+        self.assertEqual(code, 130, said)
+        command = self.command_in(said)
+        left = int(command[command.index("--time") + 1])
+        self.assertTrue(0 < left <= 300, left)
+        self.fail_with(2, "render", "s.json", "--resume", "a.bpa", "-o", "a.pfm", says=["to end at a time", "--time"])
+        self.succeed("render", "s.json", "--resume", "a.bpa", "--time", 0.2, "-o", "a.pfm", "-q")
+
+    def test_odd_names(self):
+        self.write("it's a.json", cli.scene(64, 48, spheres=4))
+        process = subprocess.Popen([cli.PROGRAM, "render", "it's a.json", "--spp", "60000000", "--checkpoint", "0.05"],
+                                   cwd=self.folder, env=self.environment, stderr=subprocess.PIPE)
+        while "it's a.bpa" not in self.files() and process.poll() is None:
+            time.sleep(0.01)
+        process.send_signal(signal.SIGTERM)
+        said = process.communicate(timeout=cli.LIMIT_SECONDS)[1].decode()
+        self.assertEqual(self.command_in(said)[:5], ["ballpark", "render", "it's a.json", "--resume", "it's a.bpa"])
+
+    def test_a_checkpoint_that_cannot_be_written(self):
+        """It is warned about, the render goes on, and what it has is not lost: here the folder goes away."""
+        os.mkdir(self.path("d"))
+        os.mkdir(self.path("tmp"))
+        self.environment["TMPDIR"] = self.path("tmp")
+        process = self.start("--spp", 20000, "--checkpoint", 0.05, "-o", "d/a.pfm")
+        while process.poll() is None and not os.path.exists(self.path("d/a.bpa")):
+            time.sleep(0.01)
+        shutil.rmtree(self.path("d"))
+        said = process.communicate(timeout=cli.LIMIT_SECONDS)[1].decode()
+        self.assertEqual(process.returncode, 1, said)
+        self.assertIn("warning: the checkpoint was not written, and rendering goes on: ", said)
+        kept = os.listdir(self.path("tmp"))
+        self.assertEqual(len(kept), 1, said)
+        self.succeed("merge", os.path.join("tmp", kept[0]), "-o", "a.pfm", "-q")
+        self.succeed("render", "s.json", "--spp", 20000, "-o", "whole.pfm", "-q")
+        self.assert_same(self.read("a.pfm"), self.read("whole.pfm"))
+
+
+if __name__ == "__main__":
+    cli.main()
