@@ -8,7 +8,10 @@
 #include "option_table.h"
 
 #include <math.h>
+#include <pthread.h>
+#include <stdatomic.h>
 #include <stdio.h>
+#include <stdlib.h>
 #include <string.h>
 #include <sys/stat.h>
 #include <unistd.h>
@@ -77,17 +80,72 @@ bool bp_checkpoint_is_due(const BpCheckpoint *checkpoint, double now) {
     return checkpoint->every > 0 && now - checkpoint->last >= checkpoint->every;
 }
 
-void bp_checkpoint_write(BpCheckpoint *checkpoint, const BpFilm *film) {
-    BpError fault = {0};
-    if (bp_film_write(film, checkpoint->path, &fault) == BP_OK) {
+/* A film on its way to the file. */
+typedef struct BpCheckpointWriter {
+    pthread_t thread;
+    bool threaded; /* else it is done already: there was no thread to be had */
+    atomic_bool done;
+    const char *path;
+    BpFilm *film; /* owned */
+    BpStatus status;
+    BpError err;
+} Writer;
+
+static void report(BpCheckpoint *checkpoint, BpStatus status, BpError *fault) {
+    if (status == BP_OK) {
         ++checkpoint->written;
     } else {
         fputs("ballpark: warning: the checkpoint was not written, and rendering goes on: ", stderr);
-        bp_show(fault.message, false, stderr);
+        bp_show(fault->message, false, stderr);
         fputc('\n', stderr);
     }
-    bp_error_clear(&fault);
+    bp_error_clear(fault);
+}
+
+void bp_checkpoint_write(BpCheckpoint *checkpoint, const BpFilm *film) {
+    BpError fault = {0};
+    bp_checkpoint_wait(checkpoint);
+    const BpStatus status = bp_film_write(film, checkpoint->path, &fault);
+    report(checkpoint, status, &fault);
+}
+
+static void *write_film(void *argument) {
+    Writer *writer = argument;
+    writer->status = bp_film_write(writer->film, writer->path, &writer->err);
+    bp_film_destroy(&writer->film);
+    atomic_store(&writer->done, true);
+    return NULL;
+}
+
+BpStatus bp_checkpoint_begin(BpCheckpoint *checkpoint, BpRender *render, BpError *err) {
+    const double start = bp_clock_seconds();
+    if (checkpoint->writer != NULL && !atomic_load(&checkpoint->writer->done)) return BP_OK;
+    bp_checkpoint_wait(checkpoint);
+    Writer *writer = calloc(1, sizeof *writer);
+    if (writer == NULL) return bp_fail(err, BP_ERR_MEMORY, "out of memory for a checkpoint");
+    writer->path = checkpoint->path;
+    const BpStatus status = bp_render_film(render, &writer->film, err);
+    if (status != BP_OK) {
+        free(writer);
+        return status;
+    }
+    checkpoint->writer = writer;
+    writer->threaded = pthread_create(&writer->thread, NULL, write_film, writer) == 0;
+    if (!writer->threaded) write_film(writer);
     checkpoint->last = bp_clock_seconds();
+    checkpoint->seconds += checkpoint->last - start;
+    return BP_OK;
+}
+
+void bp_checkpoint_wait(BpCheckpoint *checkpoint) {
+    Writer *writer = checkpoint->writer;
+    if (writer == NULL) return;
+    const double start = bp_clock_seconds();
+    if (writer->threaded) pthread_join(writer->thread, NULL);
+    report(checkpoint, writer->status, &writer->err);
+    free(writer);
+    checkpoint->writer = NULL;
+    checkpoint->seconds += bp_clock_seconds() - start;
 }
 
 void bp_checkpoint_end(const BpCommandLine *line, const BpCheckpoint *checkpoint) {

@@ -9,11 +9,13 @@
 #include "result_file.h"
 
 typedef struct BpCheckpoint {
-    char path[4096];  /* "": nothing is kept */
-    bool is_result;   /* the file is the result itself (-o FILE.bpa) */
-    double every;     /* seconds; 0: only when the render is interrupted */
-    double last;      /* bp_clock_seconds() of the latest try */
-    uint64_t written; /* how often */
+    char path[4096];                   /* "": nothing is kept */
+    bool is_result;                    /* the file is the result itself (-o FILE.bpa) */
+    double every;                      /* seconds; 0: only when the render is interrupted */
+    double last;                       /* bp_clock_seconds() of the latest try */
+    uint64_t written;                  /* how often */
+    double seconds;                    /* that the render stood still for it */
+    struct BpCheckpointWriter *writer; /* NULL: none is at work */
 } BpCheckpoint;
 
 /* With -o FILE.bpa the sums are kept there; else with --resume in that file; else with --checkpoint beside
@@ -28,6 +30,14 @@ bool bp_checkpoint_is_due(const BpCheckpoint *checkpoint, double now);
 /* Writes the film. A failure is warned about on standard error, and the file before stays: the render goes
  * on. */
 void bp_checkpoint_write(BpCheckpoint *checkpoint, const BpFilm *film);
+
+/* Takes the film of the render as it stands, and writes it in a thread of its own, since packing takes longer
+ * than reading: a render on a GPU does not wait for it, one on a CPU lends it a core. Does nothing while the
+ * file before is still being written. BP_ERR_DEVICE or BP_ERR_MEMORY. */
+BpStatus bp_checkpoint_begin(BpCheckpoint *checkpoint, BpRender *render, BpError *err);
+
+/* Waits for what bp_checkpoint_begin() began. Always before the checkpoint goes out of scope. */
+void bp_checkpoint_wait(BpCheckpoint *checkpoint);
 
 /* The picture is there: removes the checkpoint, if --checkpoint asked for it and it is not the result. */
 void bp_checkpoint_end(const BpCommandLine *line, const BpCheckpoint *checkpoint);

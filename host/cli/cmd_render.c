@@ -48,6 +48,7 @@ typedef struct RunResult {
     BpRenderReport report;
     RunTimes times;
     size_t device_count;
+    const BpCheckpoint *checkpoint;
     uint64_t samples_per_pixel; /* of every pixel */
     double nrmse;               /* NaN: unknown */
     BpStopReason stopped_by;    /* BP_STOP_NOT_YET: interrupted */
@@ -75,11 +76,11 @@ static json_t *effects_json(const BpEffects *effects) {
 static json_t *seconds_json(const RunResult *result) {
     const BpRenderReport *report = &result->report;
     const RunTimes *times = &result->times;
-    return json_pack("{s:f, s:f, s:f, s:f, s:f, s:f, s:f, s:f, s:f}", "total",
+    return json_pack("{s:f, s:f, s:f, s:f, s:f, s:f, s:f, s:f, s:f, s:f}", "total",
                      bp_clock_seconds() - times->start, "load", times->load, "tree", report->tree_seconds,
                      "kernel_build", report->kernel_build_seconds, "trace", report->trace_seconds, "write",
                      times->write, "pack", report->pack_seconds, "first_launch", report->first_launch_seconds,
-                     "device", report->device_seconds);
+                     "device", report->device_seconds, "checkpoints", result->checkpoint->seconds);
 }
 
 /* The document, or NULL when memory ran out. */
@@ -101,14 +102,14 @@ static json_t *stats_json(const RunResult *result) {
                   (json_int_t)report->samples, "rays", (json_int_t)report->segments, "mean_radiance", mean[0],
                   mean[1], mean[2], "nrmse", json_number(result->nrmse), "invalid_samples",
                   (json_int_t)report->invalid_samples, "cut_paths", (json_int_t)report->cut_paths);
-    json_t *run = json_pack("{s:s, s:o, s:I, s:i, s:b, s:o, s:s, s:i, s:I, s:I, s:s}", "acceleration",
-                            bp_acceleration_name(report->acceleration), "output",
-                            bp_json_text(result->output), "first_sample", (json_int_t)options->first_sample,
-                            "replicates", (int)result->film->replicates, "partial", result->film->partial,
-                            "rounding", json_number(bp_film_rounding(result->film)), "stopped_by",
-                            bp_stop_reason_name(result->stopped_by), "devices", (int)result->device_count,
-                            "device_bytes", (json_int_t)report->device_bytes, "scene_bytes",
-                            (json_int_t)report->scene_bytes, "version", bp_version());
+    json_t *run = json_pack(
+        "{s:s, s:o, s:I, s:i, s:b, s:o, s:s, s:i, s:I, s:I, s:I, s:s}", "acceleration",
+        bp_acceleration_name(report->acceleration), "output", bp_json_text(result->output), "first_sample",
+        (json_int_t)options->first_sample, "replicates", (int)result->film->replicates, "partial",
+        result->film->partial, "rounding", json_number(bp_film_rounding(result->film)), "stopped_by",
+        bp_stop_reason_name(result->stopped_by), "devices", (int)result->device_count, "device_bytes",
+        (json_int_t)report->device_bytes, "scene_bytes", (json_int_t)report->scene_bytes, "checkpoints",
+        (json_int_t)result->checkpoint->written, "version", bp_version());
     uint64_t least, most;
     double mean_samples;
     bp_film_sample_counts(result->film, &least, &most, &mean_samples);
@@ -151,13 +152,6 @@ static BpStatus draw(BpStop *stop, const BpProgress *progress, Bar *bar, BpError
     return BP_OK;
 }
 
-static BpStatus keep(BpRender *render, BpCheckpoint *checkpoint, BpError *err) {
-    const BpFilm *film = NULL;
-    BP_TRY(bp_render_read_whole_film(render, &film, err));
-    bp_checkpoint_write(checkpoint, film);
-    return BP_OK;
-}
-
 /* `render` has made no step yet. Catches Ctrl-C from here on. `quiet`: no progress bar. */
 static BpStatus run_render(BpRender *render, const BpStopRule *rule, bool quiet, BpCheckpoint *checkpoint,
                            LoopEnd *end, BpError *err) {
@@ -175,10 +169,11 @@ static BpStatus run_render(BpRender *render, const BpStopRule *rule, bool quiet,
         BP_TRY_GOTO(status, bp_stop_check(stop, &progress, &end->reason, err), done);
         if (end->reason == BP_STOP_NOT_YET && !bp_interrupted() &&
             bp_checkpoint_is_due(checkpoint, bp_clock_seconds()))
-            BP_TRY_GOTO(status, keep(render, checkpoint, err), done);
+            BP_TRY_GOTO(status, bp_checkpoint_begin(checkpoint, render, err), done);
         if (bp_interrupted()) break; /* after a regular stop it is not an interruption */
     }
 done:
+    bp_checkpoint_wait(checkpoint);
     bp_stop_destroy(&stop);
     end->seconds = bp_clock_seconds() - start;
     if (bar.drawn > start) bp_terminal_show("");
@@ -357,8 +352,10 @@ static BpStatus render_picture(const BpCommandLine *line, BpSeries *series, BpEr
     LoopEnd end;
     BpCheckpoint checkpoint;
     BpFilm *resumed = NULL;
-    RunResult result = {
-        .scene_path = line->operands[0], .times.start = bp_clock_seconds(), .options = &options};
+    RunResult result = {.scene_path = line->operands[0],
+                        .times.start = bp_clock_seconds(),
+                        .options = &options,
+                        .checkpoint = &checkpoint};
 
     BP_TRY(bp_result_choose(line, line->operands[0], &file, err));
     BP_TRY(bp_checkpoint_choose(line, &file, &checkpoint, err));

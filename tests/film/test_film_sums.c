@@ -101,6 +101,47 @@ static void the_order_of_merges_does_not_matter(void **state) {
 }
 
 /* A merge that must fail, saying `reason`, and leave `into` as it was. */
+/* What is no sum: depth, normal and albedo are those of the film with the first samples, whichever comes
+ * first; a plan and path lengths belong to one render; a job stays until it is whole. */
+static void what_is_no_sum(void **state) {
+    (void)state;
+    for (int turned = 0; turned < 2; turned++) {
+        BpFilm *early = render(10, 4), *late = render(20, 4), *none = render(14, 6);
+        BpFilm *films[2] = {turned ? late : early, turned ? early : late};
+        for (int f = 0; f < 2; f++) {
+            assert_int_equal(bp_film_add_aovs(films[f], NULL), BP_OK);
+            films[f]->depth[3] = films[f] == early ? 1.5f : 2.5f;
+            films[f]->normal[104] = films[f] == early ? 0.25f : 0.5f;
+            films[f]->albedo[0] = films[f] == early ? 0.125f : 0.75f;
+            films[f]->plan = calloc(1, sizeof *films[f]->plan);
+            films[f]->plan->decisions = malloc(1);
+            films[f]->pixel_segments = calloc(35, sizeof *films[f]->pixel_segments);
+            films[f]->job = (struct BpSampleRange){10, 14};
+        }
+        none->job = films[0]->job;
+        assert_int_equal(bp_film_merge(films[0], films[1], NULL), BP_OK);
+        assert_true(films[0]->depth[3] == 1.5f && films[0]->normal[104] == 0.25f &&
+                    films[0]->albedo[0] == 0.125f);
+        assert_null(films[0]->plan);
+        assert_null(films[0]->pixel_segments);
+        assert_int_equal(films[0]->job.count, 14);
+        /* A film without them takes them over. */
+        assert_int_equal(bp_film_merge(none, films[0], NULL), BP_OK);
+        assert_true(bp_film_has_aovs(none) && none->depth[3] == 1.5f);
+        assert_int_equal(none->job.count, 0); /* all of it is there now */
+        bp_film_destroy(&early);
+        bp_film_destroy(&late);
+        bp_film_destroy(&none);
+    }
+    BpFilm *one = render(0, 2), *other = render(2, 2);
+    one->job = (struct BpSampleRange){0, 8};
+    other->job = (struct BpSampleRange){0, 9};
+    assert_int_equal(bp_film_merge(one, other, NULL), BP_OK);
+    assert_int_equal(one->job.count, 0);
+    bp_film_destroy(&one);
+    bp_film_destroy(&other);
+}
+
 static void refuse_merge(BpFilm *into, const BpFilm *from, BpStatus expected, const char *reason) {
     const BpFilm before = *into;
     const int64_t sum = into->sums[0];
@@ -223,6 +264,7 @@ int main(void) {
         cmocka_unit_test(a_million_samples_do_not_drift),
         cmocka_unit_test(two_halves_are_the_whole),
         cmocka_unit_test(the_order_of_merges_does_not_matter),
+        cmocka_unit_test(what_is_no_sum),
         cmocka_unit_test(what_differs_is_named),
         cmocka_unit_test(ranges_join_and_overlaps_are_refused),
         cmocka_unit_test(overflow_is_out_of_reach),

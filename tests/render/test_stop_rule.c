@@ -137,6 +137,24 @@ static void time_is_used_and_kept(void **unused) {
     }
 }
 
+/* Samples that were there before took no time: the rate is that of the samples since. */
+static void a_resumed_render_knows_its_rate(void **unused) {
+    (void)unused;
+    BpStopRule rule;
+    uint64_t next = 0;
+    bp_stop_rule_init(&rule, 0.0, 100.0, (uint64_t)1 << 26, 100);
+    BpStopState state = {.samples = 1000, .samples_before = 1000, .seconds = 0.001};
+    assert_int_equal(bp_stop_decide(&rule, &state, &next), BP_STOP_NOT_YET);
+    assert_int_equal(next, 1001); /* one tells */
+    state = (BpStopState){.samples = 1010, .samples_before = 1000, .seconds = 50};
+    assert_int_equal(bp_stop_decide(&rule, &state, &next), BP_STOP_NOT_YET);
+    assert_in_range(next, 1011, 1020);
+    state.seconds = 99;
+    assert_int_equal(bp_stop_decide(&rule, &state, &next), BP_STOP_TIME);
+    state = (BpStopState){.samples = 1000, .samples_before = 1000, .seconds = 101};
+    assert_int_equal(bp_stop_decide(&rule, &state, &next), BP_STOP_TIME);
+}
+
 static void the_first_rule_counts(void **unused) {
     (void)unused;
     BpStopRule rule;
@@ -186,6 +204,7 @@ int main(void) {
         cmocka_unit_test(adaptive_goes_in_smaller_steps),
         cmocka_unit_test(the_clock_does_not_move_an_error_rule),
         cmocka_unit_test(time_is_used_and_kept),
+        cmocka_unit_test(a_resumed_render_knows_its_rate),
         cmocka_unit_test(the_first_rule_counts),
         cmocka_unit_test(black_constant_and_unknown_end),
         cmocka_unit_test(expectation),
