@@ -1,0 +1,94 @@
+"""What docs/CLUSTERS.md shows is what works: its job scripts, with stand-ins for the two commands of Slurm."""
+
+import os
+import re
+import signal
+import subprocess
+import time
+
+from cli import PROGRAM, SOURCE, ProgramTest, main, scene
+
+# srun runs the program at hand; scontrol notes what is handed in again.
+STAND_INS = {"srun": "#!/bin/sh\nshift\nexec \"$BALLPARK\" \"$@\"\n", "scontrol": "#!/bin/sh\necho \"$@\" >>requeued\n"}
+
+
+class Clusters(ProgramTest):
+    def setUp(self):
+        super().setUp()
+        os.mkdir(self.path("bin"))
+        for name, text in STAND_INS.items():
+            self.write(os.path.join("bin", name), text)
+            os.chmod(self.path(os.path.join("bin", name)), 0o755)
+        self.environment.update(PATH=self.path("bin") + ":" + os.environ["PATH"], BALLPARK=PROGRAM, TMPDIR=self.folder)
+        self.write("cover.json", scene(64, 48, spheres=4))
+        with open(os.path.join(SOURCE, "docs/CLUSTERS.md"), encoding="utf-8") as file:
+            self.text = file.read()
+
+    def script(self, number, *changes):
+        text = re.findall(r"(?ms)^```bash\n(.*?)^```", self.text)[number]
+        for old, new in changes:
+            self.assertIn(old, text)
+            text = text.replace(old, new)
+        return text
+
+    def start(self, text, **environment):
+        return subprocess.Popen(["bash", "-c", text], cwd=self.folder, env=dict(self.environment, **environment),
+                                stderr=subprocess.PIPE)
+
+    def finish(self, process):
+        said = process.communicate(timeout=300)[1].decode()
+        return process.returncode, said
+
+    def child_of(self, process, name):
+        """The program that the script has begun; it is stopped as Slurm would stop the step."""
+        while process.poll() is None:
+            if name in self.files():
+                found = subprocess.run(["ps", "-o", "pid=,args=", "--ppid", str(process.pid)], stdout=subprocess.PIPE, text=True)
+                lines = [line for line in found.stdout.splitlines() if " render " in line]
+                if lines:
+                    return int(lines[0].split()[0])
+            time.sleep(0.01)
+        return None
+
+    def test_array(self):
+        samples = 40000
+        text = self.script(0, ("--spp 65536", f"--spp {samples}"), ("--checkpoint 600", "--checkpoint 0.05"))
+        names = [f"cover-{part}.bpa" for part in (1, 2, 3)]
+        for part, name in enumerate(names, 1):
+            task = dict(SLURM_ARRAY_TASK_ID=str(part), SLURM_ARRAY_TASK_COUNT="3", SLURM_ARRAY_JOB_ID="77")
+            process = self.start(text, **task)
+            child = self.child_of(process, name) if part == 2 else None
+            if child is not None:
+                os.kill(child, signal.SIGUSR1)
+            code, said = self.finish(process)
+            while code == 130:
+                self.assertEqual(self.read("requeued").decode(), "requeue 77_2\n")
+                os.remove(self.path("requeued"))
+                code, said = self.finish(self.start(text, **task))
+            self.assertEqual(code, 0, said)
+        merged = re.search(r"(?m)^    ballpark (merge cover-\*\.bpa -o cover\.exr)$", self.text)[1]
+        said = self.succeed("merge", *names, "-o", "cover.exr").errors
+        self.assertEqual(merged, "merge cover-*.bpa -o cover.exr")
+        self.assertNotIn("missing", said)
+        self.succeed("render", "cover.json", "--spp", samples, "-o", "whole.exr", "-q")
+        self.assert_same(self.read("cover.exr"), self.read("whole.exr"))
+
+    def test_one_long_render(self):
+        text = self.script(1, ("--error 0.1", "--error 0.2"), ("--checkpoint 600", "--checkpoint 0.05"))
+        process = self.start(text, SLURM_JOB_ID="5")
+        child = self.child_of(process, "cover.bpa")
+        if child is not None:
+            os.kill(child, signal.SIGUSR1)
+        code, said = self.finish(process)
+        while code == 130:
+            self.assertEqual(self.read("requeued").decode(), "requeue 5\n")
+            os.remove(self.path("requeued"))
+            code, said = self.finish(self.start(text, SLURM_JOB_ID="5"))
+        self.assertEqual(code, 0, said)
+        self.succeed("render", "cover.json", "--error", 0.2, "--adaptive", "-o", "whole.exr", "-q")
+        self.assert_same(self.read("cover.exr"), self.read("whole.exr"))
+        self.assertNotIn("cover.bpa", self.files())
+
+
+if __name__ == "__main__":
+    main()
