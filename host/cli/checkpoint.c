@@ -72,7 +72,8 @@ BpStatus bp_checkpoint_choose(const BpCommandLine *line, const BpResultFile *res
         return bp_fail(err, BP_ERR_FILE, "the path of the checkpoint beside %.200s is too long",
                        result->path);
     if (!asked) return BP_OK;
-    if (line->resume == NULL) BP_TRY(check_free(checkpoint, err));
+    const bool own = line->resume != NULL && bp_output_same(checkpoint->path, line->resume, STDIN_FILENO);
+    if (!own) BP_TRY(check_free(checkpoint, err));
     return bp_output_check(checkpoint->path, err);
 }
 

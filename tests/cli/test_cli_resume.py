@@ -143,6 +143,10 @@ class Resume(cli.ProgramTest):
         for output in ("b.bpa", "b.png"):
             self.fail_with(2, "render", "s.json", "--spp", 4, "--checkpoint", 1, "-o", output,
                            says=["would replace b.bpa, an unfinished render", "--resume b.bpa"])
+        before = self.read("b.bpa")
+        self.fail_with(2, "render", "s.json", "--resume", "a.bpa", "--checkpoint", 1, "-o", "b.bpa",
+                       says=["would replace b.bpa, an unfinished render"])
+        self.assert_same(self.read("b.bpa"), before)
         for output in ("-", "/dev/null"):
             self.fail_with(2, "render", "s.json", "--checkpoint", 1, "-o", output, "--format", "pfm", says="--checkpoint has no place")
 
