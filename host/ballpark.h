@@ -204,7 +204,7 @@ typedef struct BpRenderOptions {
     bool force;             /* render even on a device that fails its self-test */
     uint64_t job_first,
         job_samples; /* the samples of a job of which this render is a share; 0, 0: of none. Films say so */
-    uint32_t replicates;    /* K of the error estimate; 0: the default; 1: no estimate */
+    uint32_t replicates; /* K of the error estimate; 0: the default; 1: no estimate */
     /* For tests and tuning; 0 means: choose. None of these changes a picture, but that force_float_refine may
      * change last digits in single precision: its transforms are as accurate as double, and end otherwise. */
     uint32_t chunk_samples;  /* samples in one dispatch */

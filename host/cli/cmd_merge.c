@@ -212,7 +212,8 @@ BpStatus bp_command_merge(const BpCommandLine *line, BpError *err) {
     BP_TRY_GOTO(status, read_headers(line, &parts, err), done);
     BP_TRY_GOTO(status, add_files(line, &parts, &sum, err), done);
     BP_TRY_GOTO(status, bp_film_check_finite(sum, err), done);
-    BP_TRY_GOTO(status, bp_result_write(line, &result, sum, false, (BpTransfer)sum->transfer, NULL, err), done);
+    BP_TRY_GOTO(status, bp_result_write(line, &result, sum, false, (BpTransfer)sum->transfer, NULL, err),
+                done);
     if (!line->quiet && result.format == BP_FORMAT_EXR && !bp_film_has_aovs(sum))
         fprintf(stderr,
                 "depth, normals and albedo omitted: .bpa files of versions 1 and 2 do not hold them\n");

@@ -19,6 +19,7 @@
 #include "keep_sums.h"
 #include "progress.h"
 #include "render/render.h"
+#include "render/render_plan.h"
 #include "render/stop_rule.h"
 #include "report_json.h"
 #include "result_file.h"
@@ -367,7 +368,7 @@ static BpStatus render_picture(const BpCommandLine *line, BpSeries *series, BpEr
     waiting = NULL;
     BP_TRY_GOTO(status, bp_file_conflicts_check_scene(line, file.path, scene, err), done);
     BP_TRY_GOTO(status, bp_resume_load(line, &resumed, err), done);
-    if (resumed != NULL) BP_TRY_GOTO(status, bp_resume_scene(line, resumed, scene, err), done);
+    if (resumed != NULL) BP_TRY_GOTO(status, bp_resume_scene(line, resumed, series->scene, err), done);
     result.scene = scene;
     result.times.load = bp_clock_seconds() - result.times.start;
     bp_scene_info(scene, &info);
@@ -378,6 +379,7 @@ static BpStatus render_picture(const BpCommandLine *line, BpSeries *series, BpEr
     if (!bp_option_given(line, BP_OPTION_SAMPLER)) options.sampler = BP_SAMPLER_SOBOL;
     options.features =
         file.format == BP_FORMAT_EXR || file.format == BP_FORMAT_BPA || checkpoint.path[0] != '\0';
+    options.lamps = bp_render_lamps(scene, &options); /* as films have it */
     if (resumed != NULL) BP_TRY_GOTO(status, bp_resume_options(line, resumed, &options, err), done);
     init_rule(line, scene, &options, &rule);
     if (resumed != NULL) BP_TRY_GOTO(status, bp_resume_rule(line, resumed, &rule, err), done);
@@ -408,6 +410,12 @@ done:
 BpStatus bp_command_render(const BpCommandLine *line, BpError *err) {
     BpSeries series;
     BpStatus status = bp_series_begin(line, &series, err);
+    if (status == BP_OK && line->resume != NULL && series.count > 1)
+        status = bp_fail(
+            err, BP_ERR_USAGE,
+            "--resume goes on with one picture, and this command makes %llu; render the frame that was "
+            "begun alone, with --frame",
+            (unsigned long long)series.count);
     while (status == BP_OK && series.next < series.count) {
         BpCommandLine one;
         status = bp_series_line(&series, &one, err);

@@ -10,7 +10,19 @@
 #include <stdio.h>
 #include <string.h>
 
-typedef enum ValueKind { FLAG, WHOLE, REAL, PIXEL, PART, CHOICE, WORD, TEXT, RESULT, SIGNED, SLICE } ValueKind;
+typedef enum ValueKind {
+    FLAG,
+    WHOLE,
+    REAL,
+    PIXEL,
+    PART,
+    CHOICE,
+    WORD,
+    TEXT,
+    RESULT,
+    SIGNED,
+    SLICE
+} ValueKind;
 
 typedef struct OptionRow {
     const char *name, *help;
@@ -169,6 +181,20 @@ static void show_value(const OptionRow *row, const void *member, char *text, siz
         memcpy(&real, member, sizeof real);
         snprintf(text, size, "%.15g", real);
         break;
+    case SIGNED: {
+        int64_t number;
+        memcpy(&number, member, sizeof number);
+        snprintf(text, size, "%" PRId64, number);
+        break;
+    }
+    case SLICE: {
+        const BpSlice *slice = member;
+        if (slice->last == INT64_MAX)
+            snprintf(text, size, "%" PRId64 "::%" PRIu64, slice->first, slice->step);
+        else
+            snprintf(text, size, "%" PRId64 ":%" PRId64 ":%" PRIu64, slice->first, slice->last, slice->step);
+        break;
+    }
     case PIXEL: {
         const BpPixel *pixel = member;
         snprintf(text, size, "%" PRIu32 ",%" PRIu32, pixel->x, pixel->y);

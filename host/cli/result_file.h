@@ -22,8 +22,8 @@ BpStatus bp_result_choose(const BpCommandLine *line, const char *default_path, B
                           BpError *err);
 
 /* Writes it, and the error map if there is to be one. `transfer`: unless --transfer says otherwise.
- * `rendered`: the film is in no file yet, and is kept if the result cannot be written (keep_sums.h). `legend`:
- * Optional; where it is shown, a colour bar is drawn into pictures of 8 bits. */
+ * `rendered`: the film is in no file yet, and is kept if the result cannot be written (keep_sums.h).
+ * `legend`: Optional; where it is shown, a colour bar is drawn into pictures of 8 bits. */
 BpStatus bp_result_write(const BpCommandLine *line, const BpResultFile *result, const BpFilm *film,
                          bool rendered, BpTransfer transfer, const BpLegend *legend, BpError *err);
 

@@ -25,7 +25,7 @@ BpStatus bp_value_signed(const char *option, const char *text, int64_t *value, B
 /* "A:B:S" as Python writes slices: each may be left out, A and B may be negative, S is at least 1. *last is
  * INT64_MAX where B is left out. */
 BpStatus bp_value_slice(const char *option, const char *text, int64_t *first, int64_t *last, uint64_t *step,
-                         BpError *err);
+                        BpError *err);
 
 /* "I/N": number I of N shares, 1 <= I <= N <= BP_SHARES_MAX. */
 #define BP_SHARES_MAX 1000000u
