@@ -316,7 +316,7 @@ class Scenes(ProgramTest):
     def test_every_command_takes_particles(self):
         self.write("a.xyz", ATOMS)
         self.succeed("explain", "a.xyz")
-        self.succeed("check", "a.xyz", "--width", 16, "--spp", 64)
+        self.succeed("check", "a.xyz", "--width", 16, "--spp", 64, "--margin", 50)
 
 
 if __name__ == "__main__":
