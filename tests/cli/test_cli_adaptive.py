@@ -74,7 +74,7 @@ class Adaptive(ProgramTest):
         self.assertEqual((min(counts), max(counts)), (stats["samples_min"] + 16, stats["samples_max"] + 16))
         refused = self.run_program("merge", "a.bpa", "c.bpa", "-o", "ac.exr")
         self.assertEqual(refused.returncode, 2)
-        self.assertIn("overlap", refused.errors)
+        self.assertIn("would count twice", refused.errors)
 
     def test_refusals(self):
         for options, says in ((["--spp", 31], "--spp 32"), ([], "8 samples"), (["--spp", 31, "--error", 1], "--spp 32")):
