@@ -235,6 +235,10 @@ __kernel void probe_paths(SCENE_PARAMETERS uint count, __global const real *rays
     const Scene scene = scene_init(SCENE_ARGUMENTS);
     __global const real *in = rays + (size_t)item * PROBE_RAY_REALS;
     Path path;
+    path_none(&path);
+#if SAMPLES_LAMPS
+    path.lobe.kind = LOBE_NONE;
+#endif
     path.origin.high = vec3(in[0], in[1], in[2]);
     path.origin.low = vec3(in[3], in[4], in[5]);
     path.origin.error = in[9];
@@ -250,6 +254,9 @@ __kernel void probe_paths(SCENE_PARAMETERS uint count, __global const real *rays
     for (uint segment = 0; segment < PROBE_PATH_SEGMENTS; ++segment) {
         const int alive = path.alive;
         if (alive) trace_bounce(&scene, &path);
+#if SAMPLES_LAMPS
+        path.wants_lamps = vbool_none;
+#endif
         row[2 * segment] = alive && path.met ? (refined)slot_sphere[path.own_slot] : -1;
         row[2 * segment + 1] = alive && path.met ? path.distance : 0;
     }

@@ -22,6 +22,7 @@ import subprocess
 import sys
 import tempfile
 
+import bpa
 import lamp_scenes
 
 Z_MAX = 5.2
@@ -43,16 +44,14 @@ class Sums:
     """A .bpa file: its header, and what stands behind it."""
 
     def __init__(self, path):
-        data = path.read_bytes()
-        line, self.body = data.split(b"\n", 1)
-        self.header = json.loads(line)
-        cells = self.header["width"] * self.header["height"] * self.header["replicates"]
-        numbers = array.array("q", self.body[:24 * cells])
+        self.header, arrays = bpa.read(path.read_bytes())
+        self.body = [arrays[name] for name in ("sums", "fine_sums", "counts") if name in arrays]
+        numbers = array.array("q", arrays["sums"])
         if sys.byteorder == "big":
             numbers.byteswap()
         unit = 2.0 ** -self.header["scale_log2"]
-        if self.header["fine_sums"]:
-            fine = array.array("q", self.body[24 * cells:48 * cells])
+        if "fine_sums" in arrays:
+            fine = array.array("q", arrays["fine_sums"])
             if sys.byteorder == "big":
                 fine.byteswap()
             self.values = [(a + b * 2.0 ** -38) * unit for a, b in zip(numbers, fine)]
