@@ -127,6 +127,8 @@ static BpStatus add_item(Session *session, const char *name, BpScene *scene, siz
     BP_TRY(bp_setup_options(line, scene, options, err));
     if (!bp_option_given(line, BP_OPTION_SPP)) options->samples_per_pixel = BP_CHECK_SAMPLES_DEFAULT;
     options->sampler = BP_SAMPLER_INDEPENDENT;
+    /* As the reference does: only then spreads are the same, and all tests hold. */
+    if (!bp_option_given(line, BP_OPTION_LAMPS)) options->lamps = BP_LAMPS_OFF;
     options->seed += index;
     ++session->item_count;
     if (json_array_append_new(session->scenes, bp_check_scene_json(name, scene, options)) != 0)

@@ -90,7 +90,8 @@ enum {
                   "sample sequence (default: sobol, less noise; bench: independent)", BpSampler, sampler,    \
                   BP_CHOICE("", bp_sampler_names, 0))                                                        \
     RENDER_OPTION(LAMPS, "lamps", 0, BP_TRACERS,                                                             \
-                  "off: paths find lamps by chance only, for comparison (default: on where it helps)",       \
+                  "off: paths find lamps by chance only, for comparison (default: on where it helps; "       \
+                  "check: off, as in the reference)",                                                        \
                   BpLamps, lamps, BP_CHOICE("", bp_lamps_names, 0))                                          \
     RENDER_OPTION(ADAPTIVE, "adaptive", 0, BP_RENDER,                                                        \
                   "give noisy pixels more samples and the others fewer; --spp is then the mean", bool,       \

@@ -23,7 +23,7 @@ def limit_of(level, tests):
 
 
 def check(program, scene, samples, more):
-    command = [program, "check", scene, "--spp", str(samples), "--quiet", "--json", "-", *more]
+    command = [program, "check", scene, "--spp", str(samples), "--margin", "1", "--quiet", "--json", "-", *more]
     done = subprocess.run(command, capture_output=True, text=True)
     if done.returncode not in (0, 3, 4):
         return None, f"exit code {done.returncode}: {done.stderr.strip()}"

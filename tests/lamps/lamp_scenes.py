@@ -145,6 +145,7 @@ def sun(draw):
 def resized(factor):
     def make(draw):
         scene = crowd(draw)
+        scene["spheres"] = [dict(each) for each in scene["spheres"]]  # the floor is that of all scenes
         for each in scene["spheres"]:
             each["center"], each["radius"] = [factor * x for x in each["center"]], factor * each["radius"]
         for name in ("lookfrom", "lookat"):
