@@ -93,37 +93,6 @@ static BpStatus store(Reader *r, uint64_t number, const double value[PLY_ROLE_CO
 /* ---- binary ---------------------------------------------------------------------------------------------
  */
 
-static double decode(const unsigned char *bytes, PlyType type, bool swap) {
-    const size_t size = ply_type_size(type);
-    unsigned char raw[8] = {0};
-    if (swap) {
-        for (size_t i = 0; i < size; i++) raw[i] = bytes[size - 1 - i];
-        bytes = raw;
-    }
-    switch (type) {
-    case PLY_NONE:
-        return 0;
-    case PLY_INT8:
-        return *(const signed char *)bytes;
-    case PLY_UINT8:
-        return *bytes;
-#define DECODE(name, c_type)                                                                                 \
-    case name: {                                                                                             \
-        c_type value;                                                                                        \
-        memcpy(&value, bytes, sizeof value);                                                                 \
-        return (double)value;                                                                                \
-    }
-        DECODE(PLY_INT16, int16_t)
-        DECODE(PLY_UINT16, uint16_t)
-        DECODE(PLY_INT32, int32_t)
-        DECODE(PLY_UINT32, uint32_t)
-        DECODE(PLY_FLOAT32, float)
-        DECODE(PLY_FLOAT64, double)
-#undef DECODE
-    }
-    return 0;
-}
-
 static BpStatus fail_end(const Reader *r, uint64_t row, BpError *err) {
     return ply_fail(&r->input, false, err,
                     "found the end of the file in row %" PRIu64 " of an element, expected all its "
@@ -147,7 +116,7 @@ static BpStatus take_row(Reader *r, const PlyElement *element, uint64_t row, dou
         const PlyType type = p->count_type != PLY_NONE ? p->count_type : p->type;
         const size_t size = ply_type_size(type);
         if (!ply_input_fill(&r->input, size)) return fail_end(r, row, err);
-        const double number = decode(r->input.buffer + r->input.begin, type, r->swap);
+        const double number = ply_decode(r->input.buffer + r->input.begin, type, r->swap);
         ply_input_take(&r->input, size);
         if (p->count_type == PLY_NONE) {
             if (value != NULL && p->role != PLY_NO_ROLE) value[p->role] = number;
@@ -202,7 +171,7 @@ static BpStatus read_binary(Reader *r, const PlyElement *element, BpError *err) 
             return fail_end(r, row, err);
         const unsigned char *bytes = r->input.buffer + r->input.begin;
         for (size_t f = 0; f < field_count; f++)
-            value[fields[f].role] = decode(bytes + fields[f].offset, fields[f].type, r->swap);
+            value[fields[f].role] = ply_decode(bytes + fields[f].offset, fields[f].type, r->swap);
         ply_input_take(&r->input, row_size);
         BP_TRY(store(r, row, value, err));
     }

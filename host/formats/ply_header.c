@@ -10,37 +10,8 @@ enum { WORDS_MAX = 6 };
 static const char *const role_names[PLY_ROLE_COUNT] = {"x",   "y",     "z",    "radius",
                                                        "red", "green", "blue", "material"};
 
-static const struct {
-    const char *name;
-    PlyType type;
-} type_names[] = {
-    {"char", PLY_INT8},     {"int8", PLY_INT8},       {"uchar", PLY_UINT8},    {"uint8", PLY_UINT8},
-    {"short", PLY_INT16},   {"int16", PLY_INT16},     {"ushort", PLY_UINT16},  {"uint16", PLY_UINT16},
-    {"int", PLY_INT32},     {"int32", PLY_INT32},     {"uint", PLY_UINT32},    {"uint32", PLY_UINT32},
-    {"float", PLY_FLOAT32}, {"float32", PLY_FLOAT32}, {"double", PLY_FLOAT64}, {"float64", PLY_FLOAT64}};
-
 const char *ply_role_name(PlyRole role) {
     return role_names[role];
-}
-
-size_t ply_type_size(PlyType type) {
-    switch (type) {
-    case PLY_NONE:
-        return 0;
-    case PLY_INT8:
-    case PLY_UINT8:
-        return 1;
-    case PLY_INT16:
-    case PLY_UINT16:
-        return 2;
-    case PLY_INT32:
-    case PLY_UINT32:
-    case PLY_FLOAT32:
-        return 4;
-    case PLY_FLOAT64:
-        return 8;
-    }
-    return 0;
 }
 
 size_t ply_row_size(const PlyHeader *header, const PlyElement *element) {
@@ -71,14 +42,10 @@ static size_t split(char *line, char *words[WORDS_MAX]) {
 }
 
 static BpStatus parse_type(const PlyInput *input, const char *word, PlyType *type, BpError *err) {
-    const char *names[BP_COUNT(type_names)];
     char shown[48];
-    for (size_t i = 0; i < BP_COUNT(type_names); i++) {
-        names[i] = type_names[i].name;
-        *type = type_names[i].type;
-        if (strcmp(word, type_names[i].name) == 0) return BP_OK;
-    }
-    const char *nearest = bp_nearest_name(word, names, BP_COUNT(names));
+    *type = ply_type_named(word);
+    if (*type != PLY_NONE) return BP_OK;
+    const char *nearest = bp_nearest_name(word, ply_type_names, PLY_TYPE_NAMES);
     bp_printable(word, shown, sizeof shown);
     return ply_fail(input, true, err,
                     "found the type \"%s\", expected a PLY type such as float, uchar or int%s%s%s", shown,

@@ -6,6 +6,7 @@
 #define BP_FORMATS_PLY_PARTS_H
 
 #include "base/status.h"
+#include "particles/ply_type.h"
 
 #include <stdio.h>
 
@@ -47,18 +48,6 @@ bool ply_parse_number(char **cursor, double *value);
 
 typedef enum PlyFormat { PLY_ASCII, PLY_LITTLE_ENDIAN, PLY_BIG_ENDIAN } PlyFormat;
 
-typedef enum PlyType {
-    PLY_NONE,
-    PLY_INT8,
-    PLY_UINT8,
-    PLY_INT16,
-    PLY_UINT16,
-    PLY_INT32,
-    PLY_UINT32,
-    PLY_FLOAT32,
-    PLY_FLOAT64
-} PlyType;
-
 /* What a property of a vertex means. */
 typedef enum PlyRole {
     PLY_X,
@@ -97,7 +86,6 @@ typedef struct PlyHeader {
 
 BpStatus ply_read_header(PlyInput *input, PlyHeader *header, BpError *err);
 const char *ply_role_name(PlyRole role);
-size_t ply_type_size(PlyType type);
 /* Bytes of one row, lists taken as empty. */
 size_t ply_row_size(const PlyHeader *header, const PlyElement *element);
 

@@ -209,25 +209,11 @@ static BpStatus add_row(BpParticleFile *file, State *state, BpError *err) {
         if (!word_number(state->row[X + i], &particle.position[i]))
             return input_wrong(&file->input, state->row[X + i], "a coordinate in _atom_site.Cartn_x, y and z",
                                err);
-    bool dummy = false;
     particle.name = text_of(state, AUTH_NAME, LABEL_NAME);
     particle.residue = text_of(state, AUTH_RESIDUE, LABEL_RESIDUE);
     particle.chain = text_of(state, AUTH_CHAIN, LABEL_CHAIN);
-    particle.element = bp_element_of_symbol(text_of(state, SYMBOL, FIELD_COUNT));
-    const uint8_t by_name = bp_element_of_name(particle.name, particle.residue, false, &dummy);
-    if (particle.element == 0) {
-        particle.element = by_name;
-        if (by_name != 0) particle.flags |= BP_PARTICLE_ELEMENT_GUESSED;
-    }
-    if (dummy) {
-        particle.flags = BP_PARTICLE_DUMMY;
-        particle.element = 0;
-    }
-    const char place = text_of(state, ALTERNATIVE, FIELD_COUNT)[0];
-    if (place != '\0') {
-        if (state->first_alternative == '\0') state->first_alternative = place;
-        if (place != state->first_alternative && place != 'A') particle.flags |= BP_PARTICLE_ALTERNATIVE;
-    }
+    atom_identify(&particle, text_of(state, SYMBOL, FIELD_COUNT), particle.name, false);
+    atom_mark_place(&particle, text_of(state, ALTERNATIVE, FIELD_COUNT)[0], &state->first_alternative);
     static const Field numbers[3] = {OCCUPANCY, B_FACTOR, SEQUENCE};
     for (int i = 0; i < 3; i++)
         if (!word_number(text_of(state, numbers[i], FIELD_COUNT), &values[i])) values[i] = NAN;

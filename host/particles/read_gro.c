@@ -34,12 +34,9 @@ static BpStatus take_atom(BpParticleFile *file, const char *line, size_t width, 
     double number = 0;
     char text[8];
     if (word_number(fixed_text(line, length, 1, 5, text, sizeof text), &number)) values[3] = number;
-    bool dummy = false;
     particle.residue = fixed_text(line, length, 6, 10, residue, sizeof residue);
     particle.name = fixed_text(line, length, 11, 15, name, sizeof name);
-    particle.element = bp_element_of_name(name, residue, false, &dummy);
-    if (particle.element != 0) particle.flags = BP_PARTICLE_ELEMENT_GUESSED;
-    if (dummy) particle.flags = BP_PARTICLE_DUMMY;
+    atom_identify(&particle, "", name, false);
     particle.values = values;
     return frame_add(file, &particle, true, err);
 }

@@ -45,23 +45,9 @@ static BpStatus take_atom(BpParticleFile *file, const char *line, char *alternat
     particle.chain = fixed_text(line, length, 22, 22, chain, sizeof chain);
     if (chain[0] == '\0') particle.chain = fixed_text(line, length, 73, 76, chain, sizeof chain);
     fixed_text(line, length, 77, 78, symbol, sizeof symbol);
-    bool dummy = false;
-    const uint8_t by_name = bp_element_of_name(padded, residue, true, &dummy);
-    particle.element = bp_element_of_symbol(symbol);
-    if (particle.element == 0) {
-        particle.element = by_name;
-        if (by_name != 0) particle.flags |= BP_PARTICLE_ELEMENT_GUESSED;
-    }
-    if (dummy) {
-        particle.flags = BP_PARTICLE_DUMMY;
-        particle.element = 0;
-    }
+    atom_identify(&particle, symbol, padded, true);
     const char place = length > 16 ? line[16] : ' ';
-    if (place != ' ') {
-        if (*alternative == '\0') *alternative = place;
-        /* Of the places of an atom the first of its file is shown, A mostly. */
-        if (place != *alternative && place != 'A') particle.flags |= BP_PARTICLE_ALTERNATIVE;
-    }
+    atom_mark_place(&particle, place == ' ' ? '\0' : place, alternative);
     if (!fixed_number(line, length, 55, 60, &values[0])) values[0] = NAN;
     if (!fixed_number(line, length, 61, 66, &values[1])) values[1] = NAN;
     if (fixed_number(line, length, 23, 26, &whole)) values[2] = whole;

@@ -5,6 +5,7 @@
 #include "reader.h"
 
 #include "base/color.h"
+#include "ply_type.h"
 
 #include <inttypes.h>
 #include <stdlib.h>
@@ -12,11 +13,9 @@
 
 enum { WORDS_MAX = 6, ELEMENTS_MAX = 32 };
 
-typedef enum Type { NONE, INT8, UINT8, INT16, UINT16, INT32, UINT32, FLOAT32, FLOAT64 } Type;
-
 typedef struct Property {
     char name[32];
-    Type type, count_type; /* count_type: of a list's length; NONE: one number */
+    PlyType type, count_type; /* count_type: of a list's length; PLY_NONE: one number */
 } Property;
 
 typedef struct Element {
@@ -37,21 +36,6 @@ typedef struct Ply {
     int x, y, z, radius, red, green, blue; /* among the vertices' properties */
 } Ply;
 
-static const struct {
-    const char *name;
-    Type type;
-} type_names[] = {{"char", INT8},     {"int8", INT8},       {"uchar", UINT8},    {"uint8", UINT8},
-                  {"short", INT16},   {"int16", INT16},     {"ushort", UINT16},  {"uint16", UINT16},
-                  {"int", INT32},     {"int32", INT32},     {"uint", UINT32},    {"uint32", UINT32},
-                  {"float", FLOAT32}, {"float32", FLOAT32}, {"double", FLOAT64}, {"float64", FLOAT64}};
-static const size_t type_sizes[] = {0, 1, 1, 2, 2, 4, 4, 4, 8};
-
-static Type type_of(const char *name) {
-    for (size_t i = 0; i < sizeof type_names / sizeof *type_names; i++)
-        if (strcmp(name, type_names[i].name) == 0) return type_names[i].type;
-    return NONE;
-}
-
 static BpStatus take_property(const Input *input, char **words, size_t count, Ply *ply, BpError *err) {
     const bool list = count == 5 && strcmp(words[1], "list") == 0;
     if ((!list && count != 3) || ply->element_count == 0)
@@ -63,9 +47,10 @@ static BpStatus take_property(const Input *input, char **words, size_t count, Pl
         return input_fail(input, true, err, "found more than %d properties, expected fewer",
                           BP_PARTICLE_COLUMNS_MAX);
     Property *const property = &ply->properties[ply->property_count];
-    *property = (Property){.type = type_of(words[list ? 3 : 1])};
-    if (list) property->count_type = type_of(words[2]);
-    if (property->type == NONE || (list && (property->count_type == NONE || property->count_type >= FLOAT32)))
+    *property = (Property){.type = ply_type_named(words[list ? 3 : 1])};
+    if (list) property->count_type = ply_type_named(words[2]);
+    if (property->type == PLY_NONE ||
+        (list && (property->count_type == PLY_NONE || property->count_type >= PLY_FLOAT32)))
         return input_wrong(input, words[list ? 2 : 1], "a PLY type such as float, uchar or int", err);
     snprintf(property->name, sizeof property->name, "%s", words[count - 1]);
     ply->property_count++;
@@ -125,37 +110,9 @@ static BpStatus take_header(Input *input, Ply *ply, BpError *err) {
 static int property_named(const Ply *ply, const Element *element, const char *name) {
     for (size_t i = 0; i < element->property_count; i++) {
         const Property *const p = &ply->properties[element->first + i];
-        if (strcmp(p->name, name) == 0 && p->count_type == NONE) return (int)i;
+        if (strcmp(p->name, name) == 0 && p->count_type == PLY_NONE) return (int)i;
     }
     return -1;
-}
-
-static double decode(const unsigned char *bytes, Type type, bool swap) {
-    const size_t size = type_sizes[type];
-    unsigned char raw[8] = {0};
-    for (size_t i = 0; i < size; i++) raw[i] = bytes[swap ? size - 1 - i : i];
-    switch (type) {
-    case NONE:
-        return 0;
-    case INT8:
-        return (signed char)raw[0];
-    case UINT8:
-        return raw[0];
-#define DECODE(name, c_type)                                                                                 \
-    case name: {                                                                                             \
-        c_type value;                                                                                        \
-        memcpy(&value, raw, sizeof value);                                                                   \
-        return (double)value;                                                                                \
-    }
-        DECODE(INT16, int16_t)
-        DECODE(UINT16, uint16_t)
-        DECODE(INT32, int32_t)
-        DECODE(UINT32, uint32_t)
-        DECODE(FLOAT32, float)
-        DECODE(FLOAT64, double)
-#undef DECODE
-    }
-    return 0;
 }
 
 /* One row, binary or ASCII, its single numbers into `values`, by property. */
@@ -172,14 +129,14 @@ static BpStatus take_row(Input *input, const Ply *ply, const Element *element, u
     }
     for (size_t i = 0; i < element->property_count; i++) {
         const Property *const p = &ply->properties[element->first + i];
-        const Type type = p->count_type != NONE ? p->count_type : p->type;
-        const size_t size = type_sizes[type];
+        const PlyType type = p->count_type != PLY_NONE ? p->count_type : p->type;
+        const size_t size = ply_type_size(type);
         double number = 0;
         if (ply->form == ASCII) {
             word = strtok_r(i == 0 ? line : NULL, " \t\r", &rest);
             if (word == NULL)
                 return input_fail(input, true, err, "found too few numbers, expected one for each property");
-            if (!word_number(word, &number) && p->count_type != NONE)
+            if (!word_number(word, &number) && p->count_type != PLY_NONE)
                 return input_wrong(input, word, "the length of a list", err);
             if (!word_number(word, &number)) number = NAN;
         } else {
@@ -188,17 +145,17 @@ static BpStatus take_row(Input *input, const Ply *ply, const Element *element, u
                                   "found the end of the file in row %" PRIu64 " of %" PRIu64
                                   ", expected all rows",
                                   row, element->count);
-            number = decode(input->buffer + input->begin, type, ply->swap);
+            number = ply_decode(input->buffer + input->begin, type, ply->swap);
             input_take(input, size);
         }
         values[i] = number;
-        if (p->count_type == NONE) continue;
+        if (p->count_type == PLY_NONE) continue;
         if (!(number >= 0 && number == floor(number)))
             return input_fail(
                 input, ply->form == ASCII, err,
                 "found another length of a list in row %" PRIu64 ", expected a whole number from 0", row);
         if (ply->form != ASCII) {
-            if (!input_skip(input, (uint64_t)number * type_sizes[p->type]))
+            if (!input_skip(input, (uint64_t)number * ply_type_size(p->type)))
                 return input_fail(input, false, err, "found the end of the file in a list of row %" PRIu64,
                                   row);
             continue;
@@ -219,7 +176,7 @@ static BpStatus add_vertex(BpParticleFile *file, const Ply *ply, const Element *
         particle.position[i] = values[places[i]];
         if (colors[i] < 0) continue;
         const double value = values[colors[i]];
-        const bool bytes = ply->properties[element->first + (size_t)colors[i]].type == UINT8;
+        const bool bytes = ply->properties[element->first + (size_t)colors[i]].type == PLY_UINT8;
         particle.color[i] = bytes ? bp_linear_from_srgb(value / 255) : value;
         if (!(particle.color[i] >= 0 && particle.color[i] <= 1))
             return input_fail(

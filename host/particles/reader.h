@@ -48,6 +48,14 @@ BpStatus frame_begin(BpParticleFile *file, const char *const *columns, size_t co
  * names the line last taken. */
 BpStatus frame_add(BpParticleFile *file, const Particle *particle, bool with_line, BpError *err);
 BpStatus frame_add_bond(BpParticleFile *file, uint32_t a, uint32_t b, BpError *err);
+/* An atom whose name and residue are set (atom.c): its element, from `symbol` where the file has one ("":
+ * none), else from its name, and then it is a guess; or no element, for a site of a model. `name`, `fixed`:
+ * as bp_element_of_name() has them. */
+void atom_identify(Particle *atom, const char *symbol, const char *name, bool fixed);
+/* One of the places that an atom may be at: `place` is a letter, or 0 where there is one place only. Of the
+ * places the first of its file is shown, A mostly. *first: that letter, 0 at the beginning of a file. */
+void atom_mark_place(Particle *atom, char place, char *first);
+
 /* A cell from its lengths and angles in degrees (crystallography's convention: a along x, b in the plane of x
  * and y), its origin at 0. Cells that are none (lengths of 0 or 1, as placeholders) are passed over. */
 void frame_cell_angles(BpParticleFile *file, const double lengths[3], const double angles[3]);

@@ -1,0 +1,26 @@
+/* atom.c: what the formats of molecules say of an atom in the same way; see reader.h.
+ *
+ * In:    names and letters as a file has them.   Out: a particle's element and flags.
+ * Knows: elements.h.   Does not know: how a format is written. */
+#include "elements.h"
+#include "reader.h"
+
+void atom_identify(Particle *atom, const char *symbol, const char *name, bool fixed) {
+    bool dummy = false;
+    const uint8_t by_name = bp_element_of_name(name, atom->residue, fixed, &dummy);
+    atom->element = bp_element_of_symbol(symbol);
+    if (atom->element == 0) {
+        atom->element = by_name;
+        if (by_name != 0) atom->flags |= BP_PARTICLE_ELEMENT_GUESSED;
+    }
+    if (dummy) {
+        atom->flags = BP_PARTICLE_DUMMY;
+        atom->element = 0;
+    }
+}
+
+void atom_mark_place(Particle *atom, char place, char *first) {
+    if (place == '\0') return;
+    if (*first == '\0') *first = place;
+    if (place != *first && place != 'A') atom->flags |= BP_PARTICLE_ALTERNATIVE;
+}
