@@ -78,6 +78,19 @@ static BpStatus fail_size(const char *path, BpError *err) {
     return status;
 }
 
+BpStatus bp_node_open_file(const BpNode *node, const char *path, const char *expected, FILE **stream,
+                           uint64_t *size, BpError *err) {
+    BpError inner = {0};
+    BpStatus status = bp_file_open(path, false, expected, stream, size, &inner);
+    if (status != BP_OK) { /* the fault lies with the document, so the error stands there */
+        char shown[256];
+        bp_printable(path, shown, sizeof shown);
+        status = bp_node_fail(node, BP_PART_VALUE, err, "\"%s\": %s", shown, inner.message);
+        bp_error_clear(&inner);
+    }
+    return status;
+}
+
 BpStatus bp_stream_read(FILE *stream, uint64_t size, const char *path, char **bytes, size_t *length,
                         BpError *err) {
     BpStatus status = BP_OK;

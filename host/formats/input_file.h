@@ -2,7 +2,7 @@
 #ifndef BP_FORMATS_INPUT_FILE_H
 #define BP_FORMATS_INPUT_FILE_H
 
-#include "base/status.h"
+#include "document.h"
 
 #include <stdio.h>
 
@@ -20,6 +20,10 @@ char *bp_path_beside(const char *document, const char *file);
  * error what should have been there. *size is in bytes, 0 for a pipe. The caller closes the stream. */
 BpStatus bp_file_open(const char *path, bool accept_pipe, const char *expected, FILE **stream, uint64_t *size,
                       BpError *err);
+/* The same for a file that a document names at `node`, `path` being its path; no pipe. An error stands in the
+ * document. */
+BpStatus bp_node_open_file(const BpNode *node, const char *path, const char *expected, FILE **stream,
+                           uint64_t *size, BpError *err);
 /* Reads an open stream to its end, BP_TEXT_BYTES_MAX at most; `size`: how much that is, 0 when not known;
  * `path` names it in errors. Free *bytes with free(). */
 BpStatus bp_stream_read(FILE *stream, uint64_t size, const char *path, char **bytes, size_t *length,

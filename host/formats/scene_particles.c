@@ -226,19 +226,12 @@ static BpStatus open_file(const BpNode *file_node, const char *path, const Entry
     FILE *stream = NULL;
     uint64_t size = 0;
     const char *columns[BP_PARTICLE_WANTED_MAX];
-    BpError inner = {0};
     if (place < cache->count) {
         *file = cache->entry[place].file;
         return BP_OK;
     }
-    BpStatus status = bp_file_open(path, false, "a file of particles", &stream, &size, &inner);
-    if (status != BP_OK) { /* the fault lies with the document, so the error stands there */
-        char shown[256];
-        bp_printable(path, shown, sizeof shown);
-        status = bp_node_fail(file_node, BP_PART_VALUE, err, "\"%s\": %s", shown, inner.message);
-        bp_error_clear(&inner);
-        return status;
-    }
+    BP_TRY(bp_node_open_file(file_node, path, "a file of particles", &stream, &size, err));
+    BpStatus status = BP_OK;
     const BpParticleFormat format = bp_particle_format_find(path, stream);
     if (format == BP_PARTICLES_NONE)
         status = bp_node_fail(

@@ -35,15 +35,8 @@ static BpStatus read_file(const BpNode *file_node, const char *file, const BpPly
     uint64_t size = 0;
     char *path = bp_path_beside(file_node->document->name, file);
     if (path == NULL) return bp_fail(err, BP_ERR_MEMORY, "out of memory for a path");
-    BpError inner = {0};
-    BpStatus status = bp_file_open(path, false, "a PLY file", &stream, &size, &inner);
-    if (status != BP_OK) { /* the fault lies with the document, so the error stands there */
-        char shown[256];
-        bp_printable(path, shown, sizeof shown);
-        status = bp_node_fail(file_node, BP_PART_VALUE, err, "\"%s\": %s", shown, inner.message);
-        bp_error_clear(&inner);
-        goto done;
-    }
+    BpStatus status = bp_node_open_file(file_node, path, "a PLY file", &stream, &size, err);
+    if (status != BP_OK) goto done;
     if (size > BP_PLY_BYTES_MAX) {
         status =
             bp_node_fail(file_node, BP_PART_VALUE, err,
