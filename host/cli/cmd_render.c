@@ -379,8 +379,10 @@ static BpStatus render_picture(const BpCommandLine *line, BpSeries *series, BpEr
     if (!bp_option_given(line, BP_OPTION_SAMPLER)) options.sampler = BP_SAMPLER_SOBOL;
     options.features =
         file.format == BP_FORMAT_EXR || file.format == BP_FORMAT_BPA || checkpoint.path[0] != '\0';
-    options.lamps = bp_render_lamps(scene, &options); /* as films have it */
-    if (resumed != NULL) BP_TRY_GOTO(status, bp_resume_options(line, resumed, &options, err), done);
+    if (resumed != NULL) {
+        options.lamps = bp_render_lamps(scene, &options); /* as films have it */
+        BP_TRY_GOTO(status, bp_resume_options(line, resumed, &options, err), done);
+    }
     init_rule(line, scene, &options, &rule);
     if (resumed != NULL) BP_TRY_GOTO(status, bp_resume_rule(line, resumed, &rule, err), done);
     BP_TRY_GOTO(status, check_adaptive(&rule, err), done);

@@ -106,6 +106,8 @@ static bool count_uses(const BpScene *scene, Use uses[BP_EFFECT_COUNT], Use *all
     return true;
 }
 
+#define NO_LAMP_REASON "no sphere gives light"
+
 /* Whether rays are sent to lamps: if there is a lamp, and another sphere that it can light. */
 static bool explain_lamps(const BpScene *scene, size_t size, char *reason) {
     const size_t enclosing = bp_enclosing_lamp(scene);
@@ -120,7 +122,7 @@ static bool explain_lamps(const BpScene *scene, size_t size, char *reason) {
     if (lamps == 0)
         snprintf(reason, size,
                  enclosing != SIZE_MAX ? "the one lamp is around everything: every path finds it"
-                                       : "no sphere gives light");
+                                       : NO_LAMP_REASON);
     else if (lit == 0)
         snprintf(reason, size, "%zu lamp%s, but no matte surface and no metal with a fuzz of 1/64 or more",
                  lamps, bp_plural(lamps));
@@ -159,7 +161,11 @@ void bp_effects_analyse(const BpScene *scene, BpEffects *effects) {
     } else {
         snprintf(effects->reason[BP_EFFECT_LENS], size, "defocus_angle 0: the lens is a pinhole");
     }
-    if (explain_lamps(scene, size, effects->reason[BP_EFFECT_LAMPS])) effects->bits |= 1u << BP_EFFECT_LAMPS;
+    if (!bp_effects_has(effects->bits, BP_EFFECT_EMISSION))
+        snprintf(effects->reason[BP_EFFECT_LAMPS], size,
+                 NO_LAMP_REASON); /* without another look at all spheres */
+    else if (explain_lamps(scene, size, effects->reason[BP_EFFECT_LAMPS]))
+        effects->bits |= 1u << BP_EFFECT_LAMPS;
 }
 
 size_t bp_effect_count(void) {

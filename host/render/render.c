@@ -120,10 +120,10 @@ BpStatus bp_render_create(const BpScene *scene, const BpRenderOptions *options, 
     }
     made->scene = scene;
     made->options = *options;
-    made->options.lamps = bp_render_lamps(scene, options);
     if (made->options.replicates == 0) made->options.replicates = BP_REPLICATES_DEFAULT;
     made->worker_count = device_count;
     bp_effects_analyse(scene, &made->effects);
+    made->options.lamps = bp_render_lamps_of(&made->effects, options);
     for (size_t i = 0; i < device_count; ++i)
         BP_TRY_GOTO(status, open_worker(made, &devices[i], i, err), failed);
     const uint32_t pixels = scene->camera.width * scene->camera.height;
@@ -185,6 +185,15 @@ static bool in_flight(const BpRender *render) {
     return false;
 }
 
+BpStatus bp_render_begin_pass(BpRender *render, const BpAdaptivePass *pass, BpError *err) {
+    for (size_t i = 0; i < render->worker_count; ++i)
+        BP_TRY(bp_worker_set_pixels(render->workers[i], pass->pixels, pass->pixel_count, err));
+    bp_schedule_init(&render->schedule, pass->pixel_count, render->options.first_sample + pass->first,
+                     pass->count);
+    render->schedule.before = pass->first;
+    return BP_OK;
+}
+
 /* Adaptive sampling, when a pass has been handed out whole: waits for it and schedules the next, if there is
  * one. */
 static BpStatus begin_next_pass(BpRender *render, bool *begun, BpError *err) {
@@ -198,12 +207,7 @@ static BpStatus begin_next_pass(BpRender *render, bool *begun, BpError *err) {
     BP_TRY(bp_adaptive_next(render->adaptive, film, render->options.samples_per_pixel, begun, &pass, err));
     bp_film_destroy(&render->film);
     if (!*begun) return BP_OK;
-    for (size_t i = 0; i < render->worker_count; ++i)
-        BP_TRY(bp_worker_set_pixels(render->workers[i], pass.pixels, pass.pixel_count, err));
-    bp_schedule_init(&render->schedule, pass.pixel_count, render->options.first_sample + pass.first,
-                     pass.count);
-    render->schedule.before = pass.first;
-    return BP_OK;
+    return bp_render_begin_pass(render, &pass, err);
 }
 
 /* Of all devices, since each meets only some parts of the picture. */

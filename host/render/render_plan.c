@@ -26,17 +26,19 @@ static void choose_form(const BpDeviceInfo *device, const BpRenderOptions *optio
     program->double_refine = cpu && device->has_double && !options->force_float_refine;
 }
 
+BpLamps bp_render_lamps_of(const BpEffects *effects, const BpRenderOptions *options) {
+    return bp_effects_has(effects->bits, BP_EFFECT_LAMPS) ? options->lamps : BP_LAMPS_OFF;
+}
+
 BpLamps bp_render_lamps(const BpScene *scene, const BpRenderOptions *options) {
     BpEffects effects;
     bp_effects_analyse(scene, &effects);
-    return bp_effects_has(effects.bits, BP_EFFECT_LAMPS) ? options->lamps : BP_LAMPS_OFF;
+    return bp_render_lamps_of(&effects, options);
 }
 
-static uint32_t choose_effects(const BpScene *scene, const BpRenderOptions *options) {
-    BpEffects effects;
-    bp_effects_analyse(scene, &effects);
+static uint32_t choose_effects(const BpEffects *effects, const BpRenderOptions *options) {
     const uint32_t wanted =
-        options->all_effects ? BP_EFFECTS_ALL : effects.bits | (options->extra_effects & BP_EFFECTS_ALL);
+        options->all_effects ? BP_EFFECTS_ALL : effects->bits | (options->extra_effects & BP_EFFECTS_ALL);
     return options->lamps == BP_LAMPS_OFF ? wanted & ~(1u << BP_EFFECT_LAMPS) : wanted;
 }
 
@@ -52,7 +54,9 @@ BpStatus bp_render_plan(const BpScene *scene, const BpRenderOptions *options, co
                        "%s has no double precision; leave --precision double out, or use another --device",
                        device->name);
     memset(setup, 0, sizeof *setup);
-    setup->program.effects = choose_effects(scene, options);
+    BpEffects effects;
+    bp_effects_analyse(scene, &effects);
+    setup->program.effects = choose_effects(&effects, options);
     setup->program.tree = choose_tree(scene, options);
 #define SETTING(type, member, plural) setup->program.member = options->member;
     BP_SETTING_LIST(SETTING)
@@ -62,7 +66,7 @@ BpStatus bp_render_plan(const BpScene *scene, const BpRenderOptions *options, co
     setup->width = scene->camera.width;
     setup->height = scene->camera.height;
     setup->replicates = options->replicates != 0 ? options->replicates : BP_REPLICATES_DEFAULT;
-    setup->scale_log2 = bp_film_scale(scene, options->max_depth, bp_render_lamps(scene, options));
+    setup->scale_log2 = bp_film_scale(scene, options->max_depth, bp_render_lamps_of(&effects, options));
     setup->max_depth = options->max_depth;
     setup->seed = options->seed;
     setup->pixel_center = scene->camera.pixel_sampling == BP_PIXEL_CENTER;

@@ -9,6 +9,8 @@
 
 /* Whether lamps are sampled: BP_LAMPS_OFF too where the scene does not call for it. */
 BpLamps bp_render_lamps(const BpScene *scene, const BpRenderOptions *options);
+/* The same where the scene's effects are known, so that nobody looks through its spheres again. */
+BpLamps bp_render_lamps_of(const BpEffects *effects, const BpRenderOptions *options);
 
 /* Packs the scene for `device` and says how to run it there; the caller clears `packed`. BP_ERR_DEVICE: the
  * device lacks what the options ask for. `setup` keeps no pointer into anything. */

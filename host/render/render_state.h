@@ -37,6 +37,9 @@ uint64_t bp_render_pixel_samples(const BpRender *render);
 /* The scene, the options and the ranges of samples of the render as it stands, into a film without any. */
 BpStatus bp_render_describe(const BpRender *render, BpFilm *film, BpError *err);
 
+/* Hands the pixels of an adaptive pass to all workers, and begins to hand out its samples. */
+BpStatus bp_render_begin_pass(BpRender *render, const BpAdaptivePass *pass, BpError *err);
+
 /* Whether the render could be extended to so many samples: BP_ERR_USAGE or BP_ERR_LIMIT as
  * bp_render_extend(). */
 BpStatus bp_render_check_samples(const BpRender *render, uint64_t samples_per_pixel, BpError *err);

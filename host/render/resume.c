@@ -54,12 +54,7 @@ static BpStatus restore_pass(BpRender *render, const BpFilmPlan *plan, BpError *
     render->decides = true;
     render->schedule.samples = 0; /* all is handed out, unless a pass is under way */
     if (!bp_adaptive_pass(render->adaptive, &pass)) return BP_OK;
-    for (size_t i = 0; i < render->worker_count; ++i)
-        BP_TRY(bp_worker_set_pixels(render->workers[i], pass.pixels, pass.pixel_count, err));
-    bp_schedule_init(&render->schedule, pass.pixel_count, render->options.first_sample + pass.first,
-                     pass.count);
-    render->schedule.before = pass.first;
-    return BP_OK;
+    return bp_render_begin_pass(render, &pass, err);
 }
 
 /* Whether the render, as it stands now, has taken the samples that the film names. */
