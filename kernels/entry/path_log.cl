@@ -2,7 +2,7 @@
  *
  * Appended to a program of one lane when someone asks (host/render/path_log.c).
  * In:    the packed scene, a pixel, a sample.   Out: for each segment LOG_REALS numbers, in the order of the enum.
- * Knows: path.cl, bounce.cl.   Does not know: how a person wants to read it. */
+ * Knows: path.cl, bounce.cl, lamps_direct.cl.   Does not know: how a person wants to read it. */
 enum {
     LOG_ORIGIN,                        /* of the segment, relative to the camera */
     LOG_DIRECTION = LOG_ORIGIN + 3,    /* of the segment */

@@ -3,9 +3,9 @@
  * A path finds a lamp by chance, or is led to one: a lamp is chosen and a ray sent to it (next-event estimation). Both
  * are weighted by the power heuristic (E. Veach, "Robust Monte Carlo Methods for Light Transport Simulation", 1997,
  * 9.2.4), so that for each length of a path the weights of its two ways add up to 1. Since a lobe is
- * sampled perfectly, a ray to a lamp brings its radiance times the ratio of the two densities.
+ * sampled perfectly, both weights follow from the ratio of the two densities, and so does what a ray to a lamp brings.
  *
- * In:    a surface where a path stands, or a lamp that it has hit.   Out: radiance to add, or the weight of a hit.
+ * In:    paths that wait to be lit, or a lamp that a path has hit.   Out: paths with that light, or the weight of the hit.
  * Knows: lamps.cl, scatter.cl, the closest hit.   Does not know: how a path goes on. */
 #if SAMPLES_LAMPS
 #define RATIO_MAX R(1e15) /* its square is a float, and one more or less is none */
