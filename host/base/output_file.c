@@ -37,20 +37,21 @@ static bool can_copy_into(const BpOutputTarget *target) {
     return descriptor >= 0;
 }
 
-BpStatus bp_output_open(const char *path, BpOutputFile *file, BpError *err) {
+static BpStatus open_file(const char *path, bool new_only, BpOutputFile *file, BpError *err) {
     memset(file, 0, sizeof *file);
     BpStatus status = bp_output_target_find(path, &file->target, err);
     if (status != BP_OK) return status;
     int descriptor, of_stream = -1, problem = 0;
-    const bool exists = file->target.exists;
+    const bool exists = file->target.exists && !new_only;
     file->direct = !bp_output_target_is_replaced(&file->target);
+    file->new_only = new_only;
     if (file->direct) {
         descriptor = open_direct(&file->target);
     } else {
         const mode_t mode = exists ? 0600 : 0666; /* until the permissions of the replaced file are there */
         descriptor = bp_temporary_create(file->target.path, mode, &file->unnamed, &file->temporary);
         problem = errno;
-        if (descriptor < 0 && can_copy_into(&file->target)) {
+        if (descriptor < 0 && exists && can_copy_into(&file->target)) {
             descriptor = bp_temporary_create_elsewhere(file->target.path, mode, &file->temporary);
             file->unnamed = false;
         }
@@ -74,6 +75,14 @@ fail:
     return status;
 }
 
+BpStatus bp_output_open(const char *path, BpOutputFile *file, BpError *err) {
+    return open_file(path, false, file, err);
+}
+
+BpStatus bp_output_open_new(const char *path, BpOutputFile *file, BpError *err) {
+    return open_file(path, true, file, err);
+}
+
 /* Makes the new name itself last through a power cut. Not every file system can, so nothing is said if not.
  */
 static void sync_folder(const char *target) {
@@ -90,7 +99,7 @@ static void sync_folder(const char *target) {
  * *left: its name, if it lies beside its place now. */
 static int put_in_place(BpOutputFile *file, int descriptor, char **left) {
     const char *target = file->target.path;
-    int problem = bp_temporary_place(&file->unnamed, &file->temporary, descriptor, target);
+    int problem = bp_temporary_place(&file->unnamed, &file->temporary, descriptor, target, !file->new_only);
     if (problem == 0) {
         sync_folder(target);
         return 0;
@@ -100,6 +109,7 @@ static int put_in_place(BpOutputFile *file, int descriptor, char **left) {
         file->unnamed = false;
     *left = bp_temporary_keep(&file->temporary);
     struct stat now;
+    if (file->new_only) return problem;
     if (stat(target, &now) != 0 || !S_ISREG(now.st_mode)) return problem;
     const int copied = bp_temporary_copy(descriptor, target);
     if (copied != 0) return copied;
@@ -143,16 +153,33 @@ void bp_output_discard(BpOutputFile *file) {
     memset(file, 0, sizeof *file);
 }
 
-BpStatus bp_output_check(const char *path, BpError *err) {
+static BpStatus check(const char *path, bool new_only, BpError *err) {
     BpOutputTarget target;
     BP_TRY(bp_output_target_find(path, &target, err));
-    const bool replaced = bp_output_target_is_replaced(&target);
+    const bool replaced = bp_output_target_is_replaced(&target), exists = target.exists;
     bp_output_target_clear(&target);
+    if (replaced && exists && new_only) return bp_output_fail(err, "write", path, EEXIST);
     if (!replaced) return BP_OK; /* a pipe is not opened: that would wait for its reader */
     BpOutputFile file;
-    BP_TRY(bp_output_open(path, &file, err));
+    BP_TRY(open_file(path, new_only, &file, err));
     bp_output_discard(&file);
     return BP_OK;
+}
+
+BpStatus bp_output_check(const char *path, BpError *err) {
+    return check(path, false, err);
+}
+
+BpStatus bp_output_check_new(const char *path, BpError *err) {
+    return check(path, true, err);
+}
+
+bool bp_output_replaces(const char *path) {
+    BpOutputTarget target;
+    if (bp_output_target_find(path, &target, NULL) != BP_OK) return false;
+    const bool replaces = target.exists && bp_output_target_is_replaced(&target);
+    bp_output_target_clear(&target);
+    return replaces;
 }
 
 void bp_output_abandon(void) {

@@ -37,12 +37,17 @@ typedef struct BpOutputFile {
     BpOutputTarget target;
     bool direct;     /* written through, without a temporary */
     bool unnamed;    /* the temporary has no name yet */
+    bool new_only;   /* a file that is there by the time of the commit is not replaced */
     char *temporary; /* its name; NULL when it has none */
 } BpOutputFile;
 
 /* On failure `file` is zeroed. BP_ERR_FILE or BP_ERR_MEMORY. `file` must stay where it is until it is
  * committed or discarded. */
 BpStatus bp_output_open(const char *path, BpOutputFile *file, BpError *err);
+/* The same for a file that must not be there when it is committed. The commit claims the name in one step, so
+ * of two programs that write it one fails, and its result stays where its error says. Devices, pipes and open
+ * files are written through as ever. */
+BpStatus bp_output_open_new(const char *path, BpOutputFile *file, BpError *err);
 
 /* Closes in any case. On failure an earlier file at the target is untouched, unless the error says that it
  * was being copied into; what could not be finished is gone, what was finished stays where the error says. */
@@ -54,6 +59,10 @@ void bp_output_discard(BpOutputFile *file);
 /* Whether `path` could be written, found out without leaving anything behind: for use before a long render.
  */
 BpStatus bp_output_check(const char *path, BpError *err);
+/* The same for bp_output_open_new(); a file that is there already is refused. */
+BpStatus bp_output_check_new(const char *path, BpError *err);
+/* Whether a file is at `path` that bp_output_open() would replace. */
+bool bp_output_replaces(const char *path);
 
 /* For the end of the program at a signal, from any thread: waits for a commit that is just putting a file in
  * its place, removes the temporaries that are not finished, and lets no other thread go on writing files. */

@@ -32,6 +32,8 @@ const char *bp_output_remedy(int error_number) {
         return "; name a file in it";
     case ENAMETOOLONG:
         return "; choose a shorter name";
+    case EEXIST:
+        return "; choose another name, or write without --no-clobber";
     case EBADF:
         return "; no file is open for writing there";
     default:

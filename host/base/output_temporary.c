@@ -233,7 +233,18 @@ static int name_beside(bool *unnamed, char **name, int descriptor, const char *t
     return problem;
 }
 
-int bp_temporary_place(bool *unnamed, char **name, int descriptor, const char *target) {
+/* Claims `target`, which must not be there, for the temporary `name`: 0, or an errno. By a link; where the
+ * file system has none, by creating an empty file there, which the rename that follows replaces. */
+static int claim(const char *name, const char *target) {
+    if (link(name, target) == 0) return 0;
+    if (errno == EEXIST) return EEXIST;
+    const int made = open(target, O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0600);
+    if (made < 0) return errno;
+    close(made);
+    return 0;
+}
+
+int bp_temporary_place(bool *unnamed, char **name, int descriptor, const char *target, bool replace) {
     struct stat info;
     if (*unnamed && lstat(target, &info) != 0 && link_descriptor(descriptor, target) == 0) {
         *unnamed = false;
@@ -245,8 +256,12 @@ int bp_temporary_place(bool *unnamed, char **name, int descriptor, const char *t
     }
     /* From the name on, the file is finished: a signal waits until it is in its place. */
     pthread_mutex_lock(&names_lock);
-    const int problem = rename(*name, target) == 0 ? 0 : errno;
-    if (problem == 0) forget_name(*name);
+    int problem = replace ? 0 : claim(*name, target);
+    if (problem == 0 && rename(*name, target) != 0) problem = errno;
+    if (problem == 0) {
+        unlink(*name); /* a rename of two links to one file does nothing */
+        forget_name(*name);
+    }
     pthread_mutex_unlock(&names_lock);
     if (problem != 0) return problem;
     free(*name);

@@ -21,9 +21,10 @@ int bp_temporary_create_in(const char *folder, const char *target, mode_t mode, 
 /* In $TMPDIR or /tmp. */
 int bp_temporary_create_elsewhere(const char *target, mode_t mode, char **name);
 
-/* Puts the finished temporary at `target`, in the place of what is there; 0, or an errno. After a failure it
- * still exists, as it was or with a name. */
-int bp_temporary_place(bool *unnamed, char **name, int descriptor, const char *target);
+/* Puts the finished temporary at `target`; 0, or an errno. After a failure it still exists, as it was or with
+ * a name. `replace`: in the place of what is there; otherwise EEXIST when anything is there, whoever made it
+ * and however late. */
+int bp_temporary_place(bool *unnamed, char **name, int descriptor, const char *target, bool replace);
 
 /* Gives a finished temporary without a name one in $TMPDIR or /tmp, by copying it; 0, or an errno. */
 int bp_temporary_name_elsewhere(int descriptor, const char *target, char **name);

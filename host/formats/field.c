@@ -51,11 +51,20 @@ static BpStatus put_all(uint64_t count, uint64_t seed, FILE *stream, BpError *er
     return BP_OK;
 }
 
+static BpStatus check_count(uint64_t count, BpError *err) {
+    if (count >= 1 && count <= BP_SPHERES_MAX) return BP_OK;
+    return bp_fail(err, BP_ERR_USAGE, "count: found %" PRIu64 ", expected 1 to %u spheres", count,
+                   BP_SPHERES_MAX);
+}
+
+BpStatus bp_field_print_ply(uint64_t count, uint64_t seed, FILE *out, BpError *err) {
+    BP_TRY(check_count(count, err));
+    return put_all(count, seed, out, err);
+}
+
 BpStatus bp_field_write_ply(uint64_t count, uint64_t seed, const char *path, BpError *err) {
-    if (count < 1 || count > BP_SPHERES_MAX)
-        return bp_fail(err, BP_ERR_USAGE, "count: found %" PRIu64 ", expected 1 to %u spheres", count,
-                       BP_SPHERES_MAX);
     BpOutputFile file;
+    BP_TRY(check_count(count, err));
     BP_TRY(bp_output_open(path, &file, err));
     const BpStatus status = put_all(count, seed, file.stream, err);
     if (status != BP_OK) {

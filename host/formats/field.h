@@ -7,6 +7,8 @@
 
 #include "base/status.h"
 
+#include <stdio.h>
+
 #define BP_FIELD_HALF_SIDE 10.0 /* the cube is [-10, 10]^3, however many spheres it holds */
 
 /* Writes `count` spheres (1 to BP_SPHERES_MAX), spread evenly over the cube, to `path` as a binary
@@ -14,5 +16,7 @@
  * of (volume / count)^(1/3), so that a field of any size looks alike from afar and its spheres cover a like
  * share of space. The order of the draws: x, y, z, radius, red, green, blue, sphere by sphere. */
 BpStatus bp_field_write_ply(uint64_t count, uint64_t seed, const char *path, BpError *err);
+/* The same to an open stream, which need not be able to seek and which the caller closes. */
+BpStatus bp_field_print_ply(uint64_t count, uint64_t seed, FILE *out, BpError *err);
 
 #endif

@@ -166,11 +166,11 @@ static void draw_legend(const MapPlan *plan, double median, BpCanvas *canvas) {
     format_percent(median, percent);
     snprintf(text, sizeof text, "median %s", percent);
     const uint32_t y = plan->legend + 31 * s;
-    bp_canvas_text(canvas, left, y, s, "relative error", faint);
+    bp_canvas_text(canvas, left, y, s, "relative noise", faint);
     const uint32_t key = left + bar - bp_text_width("unknown", s);
     bp_canvas_text(canvas, key, y, s, "unknown", faint);
     bp_canvas_fill(canvas, key - 11 * s, y, 8 * s, 8 * s, unknown);
-    const uint32_t first_end = left + bp_text_width("relative error", s), second_start = key - 11 * s;
+    const uint32_t first_end = left + bp_text_width("relative noise", s), second_start = key - 11 * s;
     const uint32_t middle = (first_end + second_start - bp_text_width(text, s)) / 2;
     bp_canvas_text(canvas, middle, y, s, text, ink);
 }
@@ -190,21 +190,23 @@ BpStatus bp_error_map_draw(const BpPicture *picture, BpCanvas *canvas, BpError *
     return BP_OK;
 }
 
-BpStatus bp_error_map_write(const BpPicture *picture, const char *path, BpError *err) {
+BpStatus bp_error_map_print(const BpPicture *picture, FILE *out, BpError *err) {
     BpCanvas canvas;
-    BpOutputFile file;
     BP_TRY(bp_error_map_draw(picture, &canvas, err));
-    BpStatus status = bp_output_open(path, &file, err);
-    if (status == BP_OK) {
-        status = bp_png_write_bytes(canvas.rgb, canvas.width, canvas.height, file.stream, err);
-        if (status == BP_OK) {
-            status = bp_output_commit(&file, err);
-        } else {
-            bp_output_discard(&file);
-            if (err != NULL) bp_fail(err, status, "cannot write %s: %s", path, err->message);
-            bp_error_at(err, path, 0, 0);
-        }
-    }
+    const BpStatus status = bp_png_write_bytes(canvas.rgb, canvas.width, canvas.height, out, err);
     free(canvas.rgb);
+    return status;
+}
+
+BpStatus bp_error_map_write(const BpPicture *picture, const char *path, BpError *err) {
+    BpOutputFile file;
+    BP_TRY(bp_output_open(path, &file, err));
+    const BpStatus status = bp_error_map_print(picture, file.stream, err);
+    if (status == BP_OK) return bp_output_commit(&file, err);
+    bp_output_discard(&file);
+    if (status == BP_ERR_FILE) {
+        if (err != NULL) bp_fail(err, status, "cannot write %s: %s", path, err->message);
+        bp_error_at(err, path, 0, 0);
+    }
     return status;
 }

@@ -15,10 +15,15 @@
 
 #include "ballpark.h"
 
+#include <stdio.h>
+
 #define BP_ERROR_MAP_LEAST 0.001 /* relative errors at the ends of the scale */
 #define BP_ERROR_MAP_MOST 1.0
 
 /* Draws the map; free canvas->rgb with free(). BP_ERR_USAGE when the picture has no errors, BP_ERR_MEMORY. */
 BpStatus bp_error_map_draw(const BpPicture *picture, BpCanvas *canvas, BpError *err);
+
+/* Draws it and writes it to an open stream, as a PNG. */
+BpStatus bp_error_map_print(const BpPicture *picture, FILE *out, BpError *err);
 
 #endif

@@ -28,7 +28,7 @@ BpStatus bp_pfm_write(const BpPicture *picture, FILE *out,
  * them; 32-bit, ZIP compressed. */
 BpStatus bp_exr_write(const BpPicture *picture, FILE *out, BpError *err);
 
-/* 8-bit RGB, 3 bytes a pixel, top row first, as an sRGB PNG: for pictures that are drawn, not rendered. */
+/* 8-bit RGB, 3 bytes per pixel, top row first, as an sRGB PNG: for pictures that are drawn, not rendered. */
 BpStatus bp_png_write_bytes(const uint8_t *rgb, uint32_t width, uint32_t height, FILE *out, BpError *err);
 
 /* Writes to an already opened stream ("-o -"); BPA is refused there. */
