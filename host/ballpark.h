@@ -205,6 +205,7 @@ typedef struct BpRenderOptions {
     uint64_t job_first,
         job_samples; /* the samples of a job of which this render is a share; 0, 0: of none. Films say so */
     uint32_t replicates; /* K of the error estimate; 0: the default; 1: no estimate */
+    uint32_t threads;    /* that a processor may use, as far as its driver can divide it; 0: all */
     /* For tests and tuning; 0 means: choose. None of these changes a picture, but that force_float_refine may
      * change last digits in single precision: its transforms are as accurate as double, and end otherwise. */
     uint32_t chunk_samples;  /* samples in one dispatch */
@@ -285,7 +286,7 @@ typedef enum BpStopReason {
 BP_API const char *bp_stop_reason_name(BpStopReason reason);
 
 /* No error, no time, the options' samples as the limit, and a minimum that suits the picture's size: 16
- * samples a pixel, and 65536 in all. */
+ * samples per pixel, and 65536 in all. */
 BP_API void bp_stop_rule_defaults(const BpScene *scene, const BpRenderOptions *options, BpStopRule *rule);
 
 /* A render followed by a rule. */
@@ -320,8 +321,8 @@ BP_API void bp_stop_destroy(BpStop **stop);
 
 /* ---- pictures ---------------------------------------------------------------------------------------- */
 
-/* Linear radiance, row 0 at the top, 3 floats a pixel. The arrays may be read and changed in place; they are
- * released by bp_picture_clear() alone. */
+/* Linear radiance, row 0 at the top, 3 floats per pixel. The arrays may be read and changed in place; they
+ * are released by bp_picture_clear() alone. */
 typedef struct BpPicture {
     uint32_t width, height;
     float *rgb;        /* width * height * 3 */

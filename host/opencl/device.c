@@ -7,7 +7,26 @@
 #include <stdlib.h>
 #include <string.h>
 
+/* Replaces the device by a part of it with `units` compute units (OpenCL 1.2, 4.3). Leaves it whole where the
+ * driver refuses. */
+static void take_part(BpDevice *device, uint32_t units) {
+    const cl_device_partition_property by_counts[] = {CL_DEVICE_PARTITION_BY_COUNTS,
+                                                      (cl_device_partition_property)units,
+                                                      CL_DEVICE_PARTITION_BY_COUNTS_LIST_END, 0};
+    cl_device_id part = NULL;
+    cl_uint count = 0;
+    if (device->info.type != BP_DEVICE_CPU || units >= device->info.compute_units) return;
+    if (clCreateSubDevices(device->id, by_counts, 1, &part, &count) != CL_SUCCESS || count != 1) return;
+    device->id = part;
+    device->is_part = true;
+    device->info.compute_units = units;
+}
+
 BpStatus bp_device_open(const BpDeviceInfo *info, BpDevice **device, BpError *err) {
+    return bp_device_open_part(info, 0, device, err);
+}
+
+BpStatus bp_device_open_part(const BpDeviceInfo *info, uint32_t threads, BpDevice **device, BpError *err) {
     BpStatus status;
     BpDeviceInfo *list = NULL;
     cl_device_id *ids = NULL;
@@ -36,6 +55,7 @@ BpStatus bp_device_open(const BpDeviceInfo *info, BpDevice **device, BpError *er
     }
     opened->info = list[info->number];
     opened->id = ids[info->number];
+    if (threads > 0) take_part(opened, threads);
 
     cl_platform_id platform = NULL;
     cl_int code = clGetDeviceInfo(opened->id, CL_DEVICE_PLATFORM, sizeof platform, &platform, NULL);
@@ -71,7 +91,13 @@ void bp_device_close(BpDevice **device) {
         clFinish((*device)->queue);
         clReleaseCommandQueue((*device)->queue);
     }
+    for (size_t i = 0; i < (*device)->built_count; ++i) {
+        clReleaseProgram((*device)->built[i].program);
+        free((*device)->built[i].log);
+    }
+    free((*device)->built);
     if ((*device)->context != NULL) clReleaseContext((*device)->context);
+    if ((*device)->is_part) clReleaseDevice((*device)->id);
     free(*device);
     *device = NULL;
 }

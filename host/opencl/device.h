@@ -12,9 +12,19 @@
 #define CL_TARGET_OPENCL_VERSION 120
 #include <CL/cl.h>
 
+/* A program that an open device has built. */
+typedef struct BpBuilt {
+    uint64_t key; /* hash of source and build options */
+    cl_program program;
+    char *log; /* "" when the driver said nothing */
+} BpBuilt;
+
 typedef struct BpDevice {
-    BpDeviceInfo info;
+    BpDeviceInfo info; /* compute_units: those that may be used */
     cl_device_id id;
+    bool is_part;   /* `id` is a sub-device, to be released */
+    BpBuilt *built; /* kept while the device is open, so that equal programs are built once */
+    size_t built_count;
     cl_context context;
     cl_command_queue queue; /* in order, with profiling */
 } BpDevice;
@@ -25,6 +35,9 @@ BpStatus bp_device_ids(BpDeviceInfo **list, cl_device_id **ids, size_t *count, B
 /* Opens the device that bp_devices_list or bp_device_find described. BP_ERR_DEVICE: it is gone, it lacks
  * something (info.refusal), or its driver failed. Close with bp_device_close(). */
 BpStatus bp_device_open(const BpDeviceInfo *info, BpDevice **device, BpError *err);
+/* The same for a part of a processor: at most `threads` of its compute units; 0: all. Where the driver cannot
+ * divide the device, all of it; device->info.compute_units tells. */
+BpStatus bp_device_open_part(const BpDeviceInfo *info, uint32_t threads, BpDevice **device, BpError *err);
 void bp_device_close(BpDevice **device);
 
 /* "CL_OUT_OF_RESOURCES" for -5, and so on; never NULL. */

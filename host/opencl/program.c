@@ -220,6 +220,35 @@ static uint64_t hash_text(uint64_t hash, const char *text) {
     return hash;
 }
 
+/* A program that this device has built before. False: there is none. */
+static bool find_built(const BpDevice *device, BpProgram *program) {
+    for (size_t i = 0; i < device->built_count; ++i) {
+        const BpBuilt *built = &device->built[i];
+        if (built->key != program->key) continue;
+        program->log = strdup(built->log);
+        if (program->log == NULL || clRetainProgram(built->program) != CL_SUCCESS) return false;
+        program->program = built->program;
+        return true;
+    }
+    return false;
+}
+
+/* Without memory it is built again the next time. */
+static void keep_built(BpDevice *device, const BpProgram *program) {
+    BpBuilt *grown = realloc(device->built, (device->built_count + 1) * sizeof *grown);
+    if (grown == NULL) return;
+    device->built = grown;
+    BpBuilt *slot = &grown[device->built_count];
+    slot->key = program->key;
+    slot->program = program->program;
+    slot->log = strdup(program->log != NULL ? program->log : "");
+    if (slot->log == NULL) return;
+    if (clRetainProgram(slot->program) == CL_SUCCESS)
+        ++device->built_count;
+    else
+        free(slot->log);
+}
+
 BpStatus bp_program_build(BpDevice *device, const BpProgramOptions *options, const char *extra_name,
                           const char *extra_text, BpProgram **program, BpError *err) {
     char *source = NULL;
@@ -229,10 +258,15 @@ BpStatus bp_program_build(BpDevice *device, const BpProgramOptions *options, con
     BpStatus status = bp_program_source(options, extra_name, extra_text, &source, err);
     if (status != BP_OK) goto failed;
     built->key = hash_text(hash_text(14695981039346656037u, source), flags);
-    const double start = bp_clock_seconds();
-    status = bp_device_build(device, source, flags, &built->program, &built->log, err);
-    built->build_seconds = bp_clock_seconds() - start;
-    if (status != BP_OK) goto failed;
+    if (!find_built(device, built)) {
+        free(built->log);
+        built->log = NULL;
+        const double start = bp_clock_seconds();
+        status = bp_device_build(device, source, flags, &built->program, &built->log, err);
+        built->build_seconds = bp_clock_seconds() - start;
+        if (status != BP_OK) goto failed;
+        keep_built(device, built);
+    }
     free(source);
     *program = built;
     return BP_OK;

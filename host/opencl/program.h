@@ -47,7 +47,8 @@ BpStatus bp_program_source(const BpProgramOptions *options, const char *extra_na
 typedef struct BpProgram {
     cl_program program;
     uint64_t key;         /* hash of source and build options: equal keys, equal programs */
-    double build_seconds; /* clBuildProgram; the first launch compiles more on some drivers */
+    double build_seconds; /* clBuildProgram; the first launch compiles more on some drivers; 0: the device had
+                             built the same program before */
     char *log;            /* build log, "" when the driver said nothing */
 } BpProgram;
 

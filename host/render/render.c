@@ -53,7 +53,9 @@ static BpStatus check_options(const BpScene *scene, const BpRenderOptions *optio
     return BP_OK;
 }
 
-static BpStatus open_worker(BpRender *render, const BpDeviceInfo *device, size_t index, BpError *err) {
+/* `open`: the device, if it is open already; NULL: it is to be opened. */
+static BpStatus open_worker(BpRender *render, const BpDeviceInfo *device, BpDevice *open, size_t index,
+                            BpError *err) {
     BpWorkerSetup setup;
     BpPacked packed;
     const double start = bp_clock_seconds();
@@ -64,6 +66,7 @@ static BpStatus open_worker(BpRender *render, const BpDeviceInfo *device, size_t
     render->tree_seconds += packed.tree.build_seconds;
     render->pack_seconds += bp_clock_seconds() - start - packed.tree.build_seconds;
     BpStatus status = BP_OK;
+    setup.device = open;
     if (render->options.features) {
         setup.extra_name = "entry/aovs.cl";
         status = bp_kernel_text(setup.extra_name, &features, err);
@@ -99,8 +102,9 @@ static BpStatus begin_adaptive(BpRender *render, BpError *err) {
     return status;
 }
 
-BpStatus bp_render_create(const BpScene *scene, const BpRenderOptions *options, const BpDeviceInfo *devices,
-                          size_t device_count, BpRender **render, BpError *err) {
+/* `open`: NULL, or the devices, open already. */
+static BpStatus create(const BpScene *scene, const BpRenderOptions *options, const BpDeviceInfo *devices,
+                       BpDevice *const *open, size_t device_count, BpRender **render, BpError *err) {
     BpRenderOptions defaults;
     bp_render_defaults(scene, &defaults);
     if (options == NULL) options = &defaults;
@@ -125,7 +129,10 @@ BpStatus bp_render_create(const BpScene *scene, const BpRenderOptions *options, 
     bp_effects_analyse(scene, &made->effects);
     made->options.lamps = bp_render_lamps_of(&made->effects, options);
     for (size_t i = 0; i < device_count; ++i)
-        BP_TRY_GOTO(status, open_worker(made, &devices[i], i, err), failed);
+        BP_TRY_GOTO(status,
+                    open_worker(made, open != NULL ? &open[i]->info : &devices[i],
+                                open != NULL ? open[i] : NULL, i, err),
+                    failed);
     const uint32_t pixels = scene->camera.width * scene->camera.height;
     bp_schedule_init(&made->schedule, pixels, options->first_sample, options->samples_per_pixel);
     if (options->adaptive) BP_TRY_GOTO(status, begin_adaptive(made, err), failed);
@@ -136,6 +143,16 @@ BpStatus bp_render_create(const BpScene *scene, const BpRenderOptions *options, 
 failed:
     bp_render_destroy(&made);
     return status;
+}
+
+BpStatus bp_render_create(const BpScene *scene, const BpRenderOptions *options, const BpDeviceInfo *devices,
+                          size_t device_count, BpRender **render, BpError *err) {
+    return create(scene, options, devices, NULL, device_count, render, err);
+}
+
+BpStatus bp_render_create_on(const BpScene *scene, const BpRenderOptions *options, BpDevice *const *devices,
+                             size_t device_count, BpRender **render, BpError *err) {
+    return create(scene, options, NULL, devices, device_count, render, err);
 }
 
 void bp_render_destroy(BpRender **render) {

@@ -32,6 +32,13 @@ typedef struct BpRenderReport {
 
 void bp_render_report(const BpRender *render, BpRenderReport *report);
 
+/* bp_render_create() on devices that are open already (opencl/device.h) and stay open: what one render has
+ * built, the next need not build again. They must outlive the render. device_count >= 1. */
+struct BpDevice;
+BpStatus bp_render_create_on(const BpScene *scene, const BpRenderOptions *options,
+                             struct BpDevice *const *devices, size_t device_count, BpRender **render,
+                             BpError *err);
+
 /* The film as it stands, read from the device; owned by the render, valid until the next step. */
 BpStatus bp_render_read_film(BpRender *render, const BpFilm **film, BpError *err);
 

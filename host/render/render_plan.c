@@ -73,10 +73,12 @@ BpStatus bp_render_plan(const BpScene *scene, const BpRenderOptions *options, co
     setup->local_size = options->local_size;
     setup->untested = options->force;
     setup->build_mark = options->build_mark;
+    setup->threads = options->threads;
     const BpTreeOptions tree_options = {
         .width = setup->program.tree_width,
         .single_precision = options->precision == BP_PRECISION_SINGLE,
         .list = !setup->program.tree,
+        .threads = options->threads,
     };
     return bp_scene_pack(scene, &tree_options, bp_effects_has(setup->program.effects, BP_EFFECT_LAMPS),
                          packed, err);

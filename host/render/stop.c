@@ -25,7 +25,7 @@ struct BpStop {
     uint64_t pixels;
     double start;
     double error_next;           /* when an estimate may look at the error again */
-    double nrmse, nrmse_samples; /* as an estimate last saw it, and with how many samples a pixel */
+    double nrmse, nrmse_samples; /* as an estimate last saw it, and with how many samples per pixel */
 };
 
 const char *bp_stop_reason_name(BpStopReason reason) {
@@ -54,7 +54,7 @@ void bp_stop_rule_defaults(const BpScene *scene, const BpRenderOptions *options,
     rule->adaptive = options->adaptive;
 }
 
-/* As many samples a pixel as sums and sample numbers allow. */
+/* As many samples per pixel as sums and sample numbers allow. */
 static uint64_t samples_limit(const BpRenderOptions *options) {
     const uint64_t exact = (uint64_t)BP_REPLICATE_SAMPLES_MAX * options->replicates;
     const uint64_t numbers = (uint64_t)UINT32_MAX + 1 - options->first_sample;

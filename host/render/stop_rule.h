@@ -35,7 +35,7 @@ uint64_t bp_stop_first(const BpStopRule *rule);
 /* Whether to stop; if not (BP_STOP_NOT_YET), *next is the count to go to, above state->samples. */
 BpStopReason bp_stop_decide(const BpStopRule *rule, const BpStopState *state, uint64_t *next);
 
-/* Samples a pixel at which the render will probably end, for a progress bar; never above samples_max. */
+/* Samples per pixel at which the render will probably end, for a progress bar; never above samples_max. */
 double bp_stop_expected(const BpStopRule *rule, const BpStopState *state);
 
 #endif

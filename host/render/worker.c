@@ -109,8 +109,12 @@ BpStatus bp_worker_create(const BpDeviceInfo *info, const BpPacked *packed, cons
     made->seed_high = (uint32_t)(setup->seed >> 32);
     made->first_leaves = packed->tree.first_leaves;
     made->leaf_count = packed->tree.leaf_count;
-    BpStatus status = bp_device_open(info, &made->device, err);
+    BpStatus status = BP_OK;
+    made->device = setup->device;
+    made->owns_device = setup->device == NULL;
+    if (made->owns_device) status = bp_device_open_part(info, setup->threads, &made->device, err);
     if (status != BP_OK) goto failed;
+    info = &made->device->info;
     if (!setup->untested) {
         const double start = bp_clock_seconds();
         bool ran = false;
@@ -166,7 +170,7 @@ void bp_worker_destroy(BpWorker **worker) {
     if (w->trace != NULL) clReleaseKernel(w->trace);
     if (w->fold != NULL) clReleaseKernel(w->fold);
     bp_program_destroy(&w->program);
-    bp_device_close(&w->device);
+    if (w->owns_device) bp_device_close(&w->device);
     free(w);
     *worker = NULL;
 }

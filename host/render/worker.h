@@ -25,6 +25,8 @@ typedef struct BpWorkerSetup {
     const char *extra_name, *extra_text; /* Optional. A file appended to the program. */
     bool untested;                       /* do without the device's self-test */
     uint64_t build_mark;                 /* 0, or a number that makes the source a new one */
+    uint32_t threads;                    /* of a processor that may be used; 0: all */
+    BpDevice *device;                    /* Optional. Open already, to be used and not to be closed. */
 } BpWorkerSetup;
 
 /* Work-items in a work-group, where nobody wants another number. */
@@ -45,6 +47,7 @@ enum {
 
 typedef struct BpWorker {
     BpDevice *device;
+    bool owns_device;
     BpProgram *program;
     cl_kernel trace, fold;
     cl_mem scene_arrays[BP_SCENE_ARRAYS]; /* in the order of the lists in scene_types.h */
