@@ -7,6 +7,7 @@
 #include <math.h>
 #include <stdarg.h>
 #include <stdio.h>
+#include <stdlib.h>
 #include <string.h>
 
 enum { DEPTH_MAX = 16, FOUND_SIZE = 80 };
@@ -139,7 +140,11 @@ BpStatus bp_document_open(const char *text, size_t length, const char *name, BpD
 
 void bp_document_close(BpDocument *document) {
     json_decref(document->root);
-    document->root = NULL;
+    json_decref(document->written);
+    free(document->changes);
+    document->root = document->written = NULL;
+    document->changes = NULL;
+    document->change_count = 0;
 }
 
 /* ---- nodes --------------------------------------------------------------------------------------------- */
@@ -162,25 +167,49 @@ BpNode bp_node_element(const BpNode *list, size_t index) {
                     .value = json_array_get(list->value, index)};
 }
 
-/* The members' order in jansson's object is that of the text, so a member is found again by its number. */
-static size_t member_number(const BpNode *node) {
+/* The place of `name` among the members of `object`, or SIZE_MAX. The members' order in jansson's object is
+ * that of the text, so a member is found again by its number. */
+static size_t member_number(json_t *object, const char *wanted) {
     size_t number = 0;
     const char *name;
     json_t *value;
-    json_object_foreach(node->parent->value, name, value) {
-        if (strcmp(name, node->member) == 0) break;
+    json_object_foreach(object, name, value) {
+        if (strcmp(name, wanted) == 0) return number;
         number++;
     }
-    return number;
+    return SIZE_MAX;
 }
 
+/* Whether the text has the node, be it with another value. */
+static bool is_written(const BpNode *node) {
+    if (node->parent == NULL || node->document->written == NULL) return true;
+    const BpNode *way[DEPTH_MAX];
+    size_t depth = 0;
+    for (const BpNode *n = node; n->parent != NULL && depth < DEPTH_MAX; n = n->parent) way[depth++] = n;
+    const json_t *at = node->document->written;
+    while (depth > 0 && at != NULL) {
+        const BpNode *n = way[--depth];
+        at = n->member != NULL ? json_object_get(at, n->member) : json_array_get(at, n->index);
+    }
+    return at != NULL;
+}
+
+/* The place of the node in the text; of the nearest node around it where the text does not have it. */
 static size_t node_offset(const BpNode *node, BpPart part) {
-    size_t steps[DEPTH_MAX], depth = 0;
-    for (const BpNode *n = node; n->parent != NULL && depth < DEPTH_MAX; n = n->parent) depth++;
-    size_t level = depth;
-    for (const BpNode *n = node; n->parent != NULL && level > 0; n = n->parent)
-        steps[--level] = n->member != NULL ? member_number(n) : n->index;
-    return bp_json_locate(node->document->text, node->document->length, steps, depth, part);
+    const BpDocument *document = node->document;
+    const BpNode *way[DEPTH_MAX];
+    size_t steps[DEPTH_MAX], depth = 0, found = 0;
+    for (const BpNode *n = node; n->parent != NULL && depth < DEPTH_MAX; n = n->parent) way[depth++] = n;
+    json_t *at = document->written != NULL ? document->written : document->root;
+    while (found < depth && at != NULL) {
+        const BpNode *n = way[depth - 1 - found];
+        json_t *next = n->member != NULL ? json_object_get(at, n->member) : json_array_get(at, n->index);
+        if (next == NULL) break;
+        steps[found++] = n->member != NULL ? member_number(at, n->member) : n->index;
+        at = next;
+    }
+    return bp_json_locate(document->text, document->length, steps, found,
+                          found == depth ? part : BP_PART_VALUE);
 }
 
 static void node_path(const BpNode *node, char *out, size_t size) {
@@ -197,6 +226,24 @@ static void node_path(const BpNode *node, char *out, size_t size) {
     }
 }
 
+/* Whether `longer` is the path `path`, or one of something in it. */
+static bool lies_in(const char *longer, const char *path) {
+    const size_t length = strlen(path);
+    return strncmp(longer, path, length) == 0 && strchr(".[", longer[length]) != NULL;
+}
+
+/* The last change of the node, of one around it or, where the text does not have the node at all, of one in
+ * it; NULL: it is what the text says. */
+static const BpChange *find_change(const BpNode *node, const char *path) {
+    const BpDocument *document = node->document;
+    const bool written = is_written(node);
+    for (size_t i = document->change_count; i > 0; i--) {
+        const BpChange *change = &document->changes[i - 1];
+        if (lies_in(path, change->path) || (!written && lies_in(change->path, path))) return change;
+    }
+    return NULL;
+}
+
 BpStatus bp_node_fail(const BpNode *node, BpPart part, BpError *err, const char *format, ...) {
     char path[256], text[768];
     va_list arguments;
@@ -205,13 +252,21 @@ BpStatus bp_node_fail(const BpNode *node, BpPart part, BpError *err, const char 
     va_end(arguments);
     node_path(node, path, sizeof path);
     int line = 0, column = 0;
+    const BpChange *change = find_change(node, path);
+    if (change != NULL) {
+        char shown[FOUND_SIZE + 1];
+        bp_printable(change->origin, shown, sizeof shown);
+        const BpStatus status = bp_fail(err, BP_ERR_SCENE, "%s: %s (by --set %s)", path, text, shown);
+        bp_error_at(err, node->document->name, 0, 0);
+        return status;
+    }
     bp_text_position(node->document->text, node->document->length, node_offset(node, part), &line, &column);
     const BpStatus status = bp_fail(err, BP_ERR_SCENE, "%s%s%s", path, path[0] != '\0' ? ": " : "", text);
     bp_error_at(err, node->document->name, line, column);
     return status;
 }
 
-static void describe(const json_t *value, char *out, size_t size) {
+void bp_json_describe(const json_t *value, char *out, size_t size) {
     char text[FOUND_SIZE];
     switch (json_typeof(value)) {
     case JSON_OBJECT:
@@ -244,7 +299,7 @@ static void describe(const json_t *value, char *out, size_t size) {
 
 BpStatus bp_node_wrong(const BpNode *node, const char *expected, BpError *err) {
     char found[FOUND_SIZE + 16];
-    describe(node->value, found, sizeof found);
+    bp_json_describe(node->value, found, sizeof found);
     return bp_node_fail(node, BP_PART_VALUE, err, "found %s, expected %s", found, expected);
 }
 

@@ -18,7 +18,17 @@ typedef struct BpDocument {
     const char *text; /* the caller's; without a byte order mark */
     size_t length;
     json_t *root; /* an object */
+    /* When members were changed since (scene_changes.h): */
+    json_t *written; /* what the text says; NULL: the same as `root` */
+    struct BpChange *changes;
+    size_t change_count;
 } BpDocument;
+
+/* A member that does not come from the text. */
+typedef struct BpChange {
+    char path[256];     /* as messages write it: "spheres[3].radius" */
+    const char *origin; /* what changed it, "camera.vfov=30"; the caller's */
+} BpChange;
 
 /* One value of the document. Lives on the stack of its reader, and its parents below it. */
 typedef struct BpNode {
@@ -45,6 +55,9 @@ BpNode bp_node_element(const BpNode *list, size_t index);
 /* Fails with BP_ERR_SCENE at the node's place; the message opens with its path, as "spheres[3].radius: ". */
 BpStatus bp_node_fail(const BpNode *node, BpPart part, BpError *err, const char *format, ...)
     BP_PRINTF_LIKE(4, 5);
+/* What a value is, for a message: "an object", "the text \"sky\"", "20". */
+void bp_json_describe(const json_t *value, char *out, size_t size);
+
 /* Fails with "found X, expected `expected`". */
 BpStatus bp_node_wrong(const BpNode *node, const char *expected, BpError *err);
 /* Fails unless `object` has the member. `expected` says what it should be. */

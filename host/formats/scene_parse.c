@@ -6,11 +6,13 @@
 
 #include "input_file.h"
 #include "particle_document.h"
+#include "scene_changes.h"
 
 #include "base/names.h"
 #include "particles/particles.h"
 
 #include "scene/fit.h"
+#include "scene/material.h"
 #include "scene/scene_fault.h"
 
 #include <math.h>
@@ -288,6 +290,28 @@ static BpStatus fit_camera(const BpNode *node, const BpSceneChanges *changes, Bp
     return status;
 }
 
+/* One choice for all materials that have it, whatever each says itself. */
+static BpStatus choose_fresnel(const BpSceneChanges *changes, BpScene *scene, BpError *err) {
+    const BpMemberInfo *member = &bp_members[BP_MEMBER_FRESNEL];
+    unsigned choice = 0;
+    size_t found = 0, changed = 0;
+    while (choice < member->name_count && strcmp(member->names[choice], changes->fresnel) != 0) choice++;
+    if (choice == member->name_count)
+        return bp_fail(err, BP_ERR_USAGE, "no such Fresnel formula: %.80s", changes->fresnel);
+    for (size_t m = 0; m < scene->material_count; m++) {
+        BpMaterial *material = &scene->materials[m];
+        if (!bp_material_has(material->kind, BP_MEMBER_FRESNEL)) continue;
+        found++;
+        if ((unsigned)material->fresnel != choice) changed++;
+        bp_member_choose(material, BP_MEMBER_FRESNEL, choice);
+    }
+    if (changes->fresnel_counts != NULL) {
+        changes->fresnel_counts[0] = changed;
+        changes->fresnel_counts[1] = found;
+    }
+    return BP_OK;
+}
+
 static BpStatus parse_body(const BpNode *root, const BpSceneChanges *changes, BpScene *scene, BpError *err) {
     static const char *const names[] = {"format",     "title",     "source",    "camera",
                                         "background", "transfer",  "materials", "spheres",
@@ -311,6 +335,7 @@ static BpStatus parse_body(const BpNode *root, const BpSceneChanges *changes, Bp
     if (status == BP_OK) status = bp_parse_particles(&particles, &index, changes, scene, err);
     free(index.by_name);
     BP_TRY(status);
+    if (changes->fresnel != NULL) BP_TRY(choose_fresnel(changes, scene, err));
     if (changes->fit && scene->camera.fit == BP_FIT_NONE) {
         scene->camera.fit = scene->has_particles ? BP_FIT_PARTICLES : BP_FIT_SCENE;
         scene->camera.view = BP_VIEW_THREE_QUARTER;
@@ -328,6 +353,7 @@ BpStatus bp_scene_parse_changed(const char *text, size_t length, const char *nam
     *scene = NULL;
     BpStatus status;
     BP_TRY_GOTO(status, bp_document_open(text, length, name, &document, err), done);
+    BP_TRY_GOTO(status, bp_document_change(&document, changes->set, changes->set_count, err), done);
     BP_TRY_GOTO(status, bp_scene_create_empty(name, &result, err), done);
     const BpNode root = bp_node_root(&document);
     BP_TRY_GOTO(status, parse_body(&root, changes, result, err), done);

@@ -37,6 +37,10 @@ typedef struct BpSceneChanges {
     uint64_t *frame_count;  /* Optional: counts frames instead of reading any; of several files, the least */
     bool has_range;         /* of the column that gives colours, where the document has none */
     double range[2];
+    const char *const *set; /* Optional: members of the document, see scene_changes.h */
+    size_t set_count;
+    const char *fresnel;    /* Optional. "schlick" or "exact", for all materials that have such a member */
+    size_t *fresnel_counts; /* Optional: in how many it was different, and how many have it */
 } BpSceneChanges;
 
 BpStatus bp_scene_parse_changed(const char *text, size_t length, const char *name,

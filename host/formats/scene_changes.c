@@ -1,0 +1,191 @@
+/* scene_changes.c: see scene_changes.h. */
+#include "scene_changes.h"
+
+#include "base/json_memory.h"
+
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+enum { SHOWN_SIZE = 96 };
+
+static BpStatus fail(const char *set, BpError *err, const char *text) {
+    char shown[SHOWN_SIZE];
+    bp_printable(set, shown, sizeof shown);
+    return bp_fail(err, BP_ERR_USAGE, "--set %s: %s", shown, text);
+}
+
+/* ---- the value ----------------------------------------------------------------------------------------- */
+
+/* A word that nobody would take for JSON: a letter, then letters, digits and "-_.". */
+static bool is_word(const char *text) {
+    static const char letters[] = "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ";
+    static const char others[] = "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789-_.";
+    return strchr(letters, text[0]) != NULL && text[strspn(text, others)] == '\0';
+}
+
+static BpStatus read_value(const char *set, const char *text, json_t **value, BpError *err) {
+    json_error_t error;
+    bool no_memory = false;
+    if (text[0] == '\0') return fail(set, err, "found no value, expected one behind the \"=\"");
+    *value = bp_json_load(text, strlen(text), JSON_DECODE_ANY | JSON_REJECT_DUPLICATES, &error, &no_memory);
+    if (*value == NULL && !no_memory && json_error_code(&error) == json_error_numeric_overflow)
+        *value = bp_json_load(text, strlen(text),
+                              JSON_DECODE_ANY | JSON_REJECT_DUPLICATES | JSON_DECODE_INT_AS_REAL, &error,
+                              &no_memory);
+    if (*value == NULL && !no_memory && is_word(text)) *value = json_string(text);
+    if (*value != NULL) return BP_OK;
+    if (no_memory) return bp_fail(err, BP_ERR_MEMORY, "out of memory while changing the scene");
+    return fail(set, err,
+                "the value is not JSON; expected a number, a word, a list such as [0,1,0], or a text in "
+                "double quotes");
+}
+
+/* ---- the member ---------------------------------------------------------------------------------------- */
+
+/* A place in the document: a member of an object, or an element of a list. */
+typedef struct Place {
+    json_t *parent;
+    char name[128]; /* of the member */
+    size_t index;   /* of the element */
+    bool element;
+    json_t *value; /* borrowed; NULL: absent */
+} Place;
+
+/* The members of a material have any name, also one with a dot in it: the longest name that is there and
+ * stands at `text` is meant, else all up to the next "." or "[". */
+static size_t name_length(json_t *object, const char *text) {
+    size_t longest = 0;
+    const char *name;
+    json_t *value;
+    json_object_foreach(object, name, value) {
+        const size_t length = strlen(name);
+        if (length > longest && strncmp(text, name, length) == 0 && strchr(".[=", text[length]) != NULL)
+            longest = length;
+    }
+    return longest > 0 ? longest : strcspn(text, ".[=");
+}
+
+/* Appends to the path that messages write. */
+static void note_step(const Place *place, BpChange *change) {
+    const size_t used = strlen(change->path);
+    char name[48];
+    bp_printable(place->name, name, sizeof name);
+    if (place->element)
+        snprintf(change->path + used, sizeof change->path - used, "[%zu]", place->index);
+    else
+        snprintf(change->path + used, sizeof change->path - used, "%s%s", used > 0 ? "." : "", name);
+}
+
+static BpStatus read_index(const char *set, json_t *list, const char **at, const BpChange *change,
+                           Place *place, BpError *err) {
+    char text[400], *end = NULL, found[SHOWN_SIZE];
+    const char *digits = *at + 1;
+    const unsigned long long index = strtoull(digits, &end, 10);
+    if (digits[0] < '0' || digits[0] > '9' || *end != ']')
+        return fail(set, err, "found \"[\" without a number and \"]\", expected an element such as [0]");
+    if (!json_is_array(list)) {
+        bp_json_describe(list, found, sizeof found);
+        snprintf(text, sizeof text, "%s is %s, expected a list before \"[\"", change->path, found);
+        return fail(set, err, text);
+    }
+    const size_t size = json_array_size(list);
+    if (index >= size) {
+        snprintf(text, sizeof text, "%s has %zu element%s, expected a number below that", change->path, size,
+                 size == 1 ? "" : "s");
+        return fail(set, err, text);
+    }
+    *place = (Place){.parent = list,
+                     .index = (size_t)index,
+                     .element = true,
+                     .value = json_array_get(list, (size_t)index)};
+    *at = end + 1;
+    return BP_OK;
+}
+
+static BpStatus read_name(const char *set, json_t *object, const char **at, const BpChange *change,
+                          Place *place, BpError *err) {
+    char text[400], found[SHOWN_SIZE];
+    if (!json_is_object(object)) {
+        bp_json_describe(object, found, sizeof found);
+        snprintf(text, sizeof text, "%s is %s, which has no members", change->path, found);
+        return fail(set, err, text);
+    }
+    const size_t length = name_length(object, *at);
+    *place = (Place){.parent = object};
+    if (length == 0 || length >= sizeof place->name)
+        return fail(set, err, "expected the name of a member, such as camera.vfov");
+    memcpy(place->name, *at, length);
+    place->name[length] = '\0';
+    place->value = json_object_get(object, place->name);
+    *at += length;
+    return BP_OK;
+}
+
+/* Follows the path before "=", and adds the objects on its way. */
+static BpStatus find_place(const char *set, json_t *root, Place *place, const char **value, BpChange *change,
+                           BpError *err) {
+    const char *at = set;
+    json_t *within = root;
+    change->path[0] = '\0';
+    for (;;) {
+        if (*at == '[' && at > set)
+            BP_TRY(read_index(set, within, &at, change, place, err));
+        else
+            BP_TRY(read_name(set, within, &at, change, place, err));
+        note_step(place, change);
+        if (*at == '=') {
+            *value = at + 1;
+            return BP_OK;
+        }
+        if (*at == '\0') return fail(set, err, "found no value, expected MEMBER=VALUE");
+        if (*at == '.')
+            ++at;
+        else if (*at != '[')
+            return fail(set, err, "expected \".\", \"[\" or \"=\" behind an element");
+        if (place->value == NULL) {
+            place->value = json_object();
+            if (json_object_set_new(place->parent, place->name, place->value) != 0)
+                return bp_fail(err, BP_ERR_SCENE, "--set: names are UTF-8, or memory ran out");
+        }
+        within = place->value;
+    }
+}
+
+static BpStatus put(const Place *place, const char *set, json_t *value, BpError *err) {
+    bool done;
+    if (json_is_null(value) && place->element) {
+        json_decref(value);
+        return fail(set, err, "null removes members of objects only, not elements of lists");
+    }
+    if (json_is_null(value)) {
+        json_decref(value);
+        if (place->value != NULL) json_object_del(place->parent, place->name);
+        return BP_OK;
+    }
+    if (place->element)
+        done = json_array_set_new(place->parent, place->index, value) == 0;
+    else
+        done = json_object_set_new(place->parent, place->name, value) == 0;
+    return done ? BP_OK : fail(set, err, "expected the member's name in UTF-8, or memory for it");
+}
+
+BpStatus bp_document_change(BpDocument *document, const char *const *set, size_t count, BpError *err) {
+    if (count == 0) return BP_OK;
+    document->written = json_deep_copy(document->root);
+    document->changes = calloc(count, sizeof *document->changes);
+    if (document->written == NULL || document->changes == NULL)
+        return bp_fail(err, BP_ERR_MEMORY, "out of memory while changing the scene");
+    for (size_t i = 0; i < count; i++) {
+        Place place;
+        const char *text = NULL;
+        json_t *value = NULL;
+        BpChange *change = &document->changes[i];
+        change->origin = set[i];
+        BP_TRY(find_place(set[i], document->root, &place, &text, change, err));
+        document->change_count = i + 1;
+        BP_TRY(read_value(set[i], text, &value, err));
+        BP_TRY(put(&place, set[i], value, err));
+    }
+    return BP_OK;
+}
