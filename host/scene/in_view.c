@@ -1,0 +1,77 @@
+/* in_view.c: see in_view.h. */
+#include "in_view.h"
+
+#include <math.h>
+
+typedef double Vec[3];
+
+static double dot(const double *a, const double *b) {
+    return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
+}
+
+static void unit_cross(const double *a, const double *b, double *out) {
+    const Vec c = {a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]};
+    const double length = sqrt(dot(c, c));
+    for (int i = 0; i < 3; i++) out[i] = c[i] / length;
+}
+
+typedef struct View {
+    Vec from, ahead, right, up;
+    double half_width, half_height; /* at distance 1 */
+    double lens, focus;
+} View;
+
+static View find_view(const BpCamera *camera) {
+    View view;
+    Vec back;
+    const double pi = 3.14159265358979323846;
+    for (int i = 0; i < 3; i++) {
+        view.from[i] = camera->lookfrom[i];
+        back[i] = camera->lookfrom[i] - camera->lookat[i];
+    }
+    const double length = sqrt(dot(back, back));
+    for (int i = 0; i < 3; i++) back[i] /= length;
+    for (int i = 0; i < 3; i++) view.ahead[i] = -back[i];
+    unit_cross(camera->vup, back, view.right);
+    unit_cross(back, view.right, view.up);
+    /* A pixel's samples lie up to half a pixel around its centre. */
+    view.half_height = tan(camera->vfov_degrees * pi / 360);
+    view.half_width = view.half_height * camera->width / camera->height;
+    view.lens = camera->lens_radius;
+    view.focus = camera->focus_dist;
+    return view;
+}
+
+/* Rays leave the lens and spread around those of a pinhole: at distance d by lens * |d / focus - 1|, and by
+ * `lens` before the plane in focus. */
+static bool reaches_view(const View *view, const BpSphere *sphere) {
+    Vec to;
+    for (int i = 0; i < 3; i++) to[i] = sphere->center[i] - view->from[i];
+    const double radius = fabs(sphere->radius), ahead = dot(to, view->ahead);
+    if (ahead + radius < 0) return false;
+    const double room = radius + view->lens * fmax(1, (ahead + radius) / view->focus - 1);
+    const double aside = fabs(dot(to, view->right)), above = fabs(dot(to, view->up));
+    return (aside - ahead * view->half_width) / sqrt(1 + view->half_width * view->half_width) <= room &&
+           (above - ahead * view->half_height) / sqrt(1 + view->half_height * view->half_height) <= room;
+}
+
+bool bp_scene_has_sphere_in_view(const BpScene *scene) {
+    const View view = find_view(&scene->camera);
+    for (size_t i = 0; i < scene->sphere_count; i++)
+        if (reaches_view(&view, &scene->spheres[i])) return true;
+    return false;
+}
+
+bool bp_scene_always_scatters(const BpScene *scene) {
+    if (scene->albedo_count > 0) return false; /* some may be black */
+    for (size_t m = 0; m < scene->material_count; m++) {
+        const BpMaterial *material = &scene->materials[m];
+        if (!bp_material_is(material->kind, BP_SCATTERS) || material->fuzz > 0 ||
+            material->total_reflection == BP_TOTAL_ABSORB)
+            return false;
+        if (bp_material_has(material->kind, BP_MEMBER_ALBEDO) &&
+            fmax(material->albedo[0], fmax(material->albedo[1], material->albedo[2])) <= 0)
+            return false;
+    }
+    return true;
+}

@@ -1,0 +1,18 @@
+/* in_view.h: whether a picture can show a sphere at all.
+ *
+ * In:    a scene.   Out: whether nothing is before its camera.
+ * Knows: the camera's field of view.   Does not know: what hides what, samples, pictures. */
+#ifndef BP_SCENE_IN_VIEW_H
+#define BP_SCENE_IN_VIEW_H
+
+#include "scene.h"
+
+/* Whether some sphere reaches into the field of view, as far as planes along its edges tell: false is
+ * certain. */
+bool bp_scene_has_sphere_in_view(const BpScene *scene);
+
+/* Whether a path goes on from every material of the scene, sooner or later: then a picture of which every
+ * path ended at once shows no sphere. */
+bool bp_scene_always_scatters(const BpScene *scene);
+
+#endif
