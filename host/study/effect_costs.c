@@ -43,8 +43,8 @@ typedef struct Start {
     double wall, processor;
 } Start;
 
-/* Opens the kernel's render and traces two samples a pixel. *start is the time from opening the device to the
- * first sample: building, uploading and launching, without the scene's tree. */
+/* Opens the kernel's render and traces two samples per pixel. *start is the time from opening the device to
+ * the first sample: building, uploading and launching, without the scene's tree. */
 static BpStatus open_render(const BpScene *scene, const BpRenderOptions *options, const BpDeviceInfo *device,
                             BpRender **render, Start *start, BpError *err) {
     BpStatus status;
@@ -119,7 +119,7 @@ static void list_kernels(const BpScene *scene, const BpRenderOptions *options, b
             costs->kernels[k].warm_seconds = costs->kernels[k].warm_processor_seconds = NAN;
 }
 
-/* One round: every kernel traces `spp` more samples a pixel. The order turns from round to round, so that
+/* One round: every kernel traces `spp` more samples per pixel. The order turns from round to round, so that
  * none always follows the same one. */
 static BpStatus run_round(BpRender **renders, size_t count, unsigned round, uint64_t samples_before,
                           uint64_t spp, double *seconds, BpError *err) {

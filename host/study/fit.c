@@ -97,7 +97,7 @@ static double noise_square(const BpStudyPoint *point) {
     return point->claimed * point->claimed;
 }
 
-/* Samples a pixel at which the noise comes down to `square`: along a line in logarithms between the counts
+/* Samples per pixel at which the noise comes down to `square`: along a line in logarithms between the counts
  * measured, for low-discrepancy samples gain from being many; outside them by V / N. */
 static double samples_at(const BpStudySeries *series, double square) {
     const BpStudyPoint *points = series->points;
@@ -112,7 +112,7 @@ static double samples_at(const BpStudySeries *series, double square) {
     return after > 0 ? n * pow(m / n, log(before / square) / log(before / after)) : m;
 }
 
-/* Samples a pixel that reach `mse`, noise and bias together. 0: no number does. */
+/* Samples per pixel that reach `mse`, noise and bias together. 0: no number does. */
 static double samples_for(const BpStudySeries *series, double mse) {
     const double floor = floor_of(series);
     if (!(mse > floor) || !isfinite(series->points[series->count - 1].claimed)) return 0;

@@ -16,7 +16,7 @@
 #include <string.h>
 
 #define REFERENCE_SHARE 0.4 /* of the time */
-#define LEVEL_FIRST 4u      /* samples a pixel: one a replicate */
+#define LEVEL_FIRST 4u      /* samples per pixel: one a replicate */
 #define LEVEL_FACTOR 4u
 #define ROUND_SECONDS 0.005
 
@@ -46,10 +46,10 @@ struct BpStudy {
     BpReferences references;
     BpStudyRunner runners[BP_STUDY_CONFIGURATIONS_MAX];
     size_t turn;               /* the configuration at work */
-    uint64_t level;            /* samples a pixel that everyone is given now */
+    uint64_t level;            /* samples per pixel that everyone is given now */
     size_t round, round_count; /* of the present level */
     bool last_level;           /* the present one is */
-    BpPicture first;           /* of the base, one sample a pixel */
+    BpPicture first;           /* of the base, one sample per pixel */
     double *interest;          /* of every pixel: how much there is to see */
     uint32_t crop_left, crop_top;
 };
@@ -162,13 +162,13 @@ static BpStatus step_references(BpStudy *study, BpError *err) {
 
 /* ---- rounds of a level ---- */
 
-/* Samples a pixel when the level began: those of the last point, or at first the warm-up's one. */
+/* Samples per pixel when the level began: those of the last point, or at first the warm-up's one. */
 static uint64_t samples_before(const BpStudy *study) {
     const BpStudySeries *base = &study->result.series[0];
     return base->count > 0 ? base->points[base->count - 1].samples : 1;
 }
 
-/* Samples a pixel after so many rounds of the level. */
+/* Samples per pixel after so many rounds of the level. */
 static uint64_t samples_after(const BpStudy *study, size_t rounds) {
     const uint64_t before = samples_before(study);
     return before + (study->level - before) * rounds / study->round_count;
@@ -194,7 +194,8 @@ static BpStatus begin_round(BpStudy *study, BpError *err) {
     return BP_OK;
 }
 
-/* To `level` samples a pixel, in as many rounds as last long enough for launches and clocks not to matter. */
+/* To `level` samples per pixel, in as many rounds as last long enough for launches and clocks not to matter.
+ */
 static BpStatus begin_level(BpStudy *study, uint64_t level, BpError *err) {
     const uint64_t before = samples_before(study), samples = level - before;
     const double seconds =
@@ -226,7 +227,7 @@ static void add_seconds(BpStudy *study) {
 
 /* ---- points ------------------------------------------------------------------------------------------- */
 
-/* Configuration s has one sample a pixel: notes where it differs. */
+/* Configuration s has one sample per pixel: notes where it differs. */
 static BpStatus note_first(BpStudy *study, size_t s, BpError *err) {
     BpPicture picture;
     const BpFilm *film = NULL;

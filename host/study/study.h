@@ -126,7 +126,8 @@ double bp_study_time_scatter(const BpStudyResult *result);
 /* One line: what to do for this error and what it costs; no line end. */
 const char *bp_study_advice_text(const BpStudyResult *result, const BpStudyAdvice *advice, char *text,
                                  size_t size);
-/* The table for a terminal; CSV; the page. False when the stream failed or memory ran out; errno says. */
+/* The table for people, with the marks of base/fold.h; CSV; the page. False when the stream failed or memory
+ * ran out; errno says. */
 bool bp_study_print(const BpStudyResult *result, FILE *out);
 bool bp_study_print_csv(const BpStudyResult *result, FILE *out);
 bool bp_study_print_page(const BpStudyResult *result, FILE *out);

@@ -2,6 +2,7 @@
  *
  * In:    a study that has ended.   Out: table, JSON, CSV or page.
  * Knows: which function prints which.   Does not know: what they print, files. */
+#include "base/fold.h"
 #include "base/json_memory.h"
 #include "base/status.h"
 #include "study.h"
@@ -9,6 +10,20 @@
 #include <errno.h>
 #include <stdlib.h>
 #include <string.h>
+
+enum { TEXT_COLUMNS = 80 };
+
+static bool print_table(const BpStudyResult *result, FILE *out) {
+    char *text = NULL;
+    size_t size = 0;
+    FILE *unfolded = open_memstream(&text, &size);
+    if (unfolded == NULL) return false;
+    bool done = bp_study_print(result, unfolded);
+    if (fclose(unfolded) != 0) done = false;
+    if (done) bp_fold(text, TEXT_COLUMNS, out);
+    free(text);
+    return done;
+}
 
 static bool print_json(const BpStudyResult *result, FILE *out) {
     json_t *root = bp_study_json(result);
@@ -20,7 +35,7 @@ static bool print_json(const BpStudyResult *result, FILE *out) {
 }
 
 BpStatus bp_study_text(const BpStudy *study, BpStudyFormat format, char **text, BpError *err) {
-    static bool (*const print[])(const BpStudyResult *, FILE *) = {[BP_STUDY_TABLE] = bp_study_print,
+    static bool (*const print[])(const BpStudyResult *, FILE *) = {[BP_STUDY_TABLE] = print_table,
                                                                    [BP_STUDY_JSON] = print_json,
                                                                    [BP_STUDY_CSV] = bp_study_print_csv,
                                                                    [BP_STUDY_PAGE] = bp_study_print_page};

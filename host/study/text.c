@@ -1,6 +1,7 @@
 /* text.c: the study as a table for a terminal, as CSV, and the advice; see study.h. */
 #include "study.h"
 
+#include "base/fold.h"
 #include "base/format.h"
 #include "base/shown.h"
 
@@ -20,27 +21,32 @@ static void print_head(const BpStudyResult *result, FILE *out) {
     bp_show(result->report.device.name, false, out);
     fputc('\n', out);
     fprintf(out,
-            "reference: exact Fresnel, depth %u, %s,\n           two pictures with %" PRIu64
+            "reference: " BP_HANG "exact Fresnel, depth %u, %s, two pictures with %" PRIu64
             " samples per pixel each (noise of their mean: %s)\n\n",
             BP_STUDY_DEPTH, result->reference_is_kernel ? "double precision" : "the reference tracer",
             result->reference_samples, bp_format_percent_cell(result->reference_error, error, sizeof error));
 }
 
+/* In two tables, so that each fits a terminal of 80 columns. */
 static void print_configurations(const BpStudyResult *result, FILE *out) {
     char time[32], noise[32], error[32], factor[32], change[48], bias[48];
     const BpStudySeries *base = &result->series[0];
     fprintf(out, "Configurations, at %" PRIu64 " samples per pixel:\n",
             base->points[base->count - 1].samples);
-    fprintf(out, "  %-21s %9s %9s %9s %11s %24s %24s\n", "", "time", "noise", "error", "efficiency",
-            "changes brightness by", "bias of brightness");
+    fprintf(out, "  %-21s %9s %9s %9s %11s\n", "", "time", "noise", "error", "efficiency");
     for (size_t s = 0; s < result->count; s++) {
         const BpStudySeries *series = &result->series[s];
         const BpStudyPoint *last = &series->points[series->count - 1];
-        fprintf(out, "  %-21s %9s %9s %9s %11s %24s %24s\n", series->configuration.name,
+        fprintf(out, "  %-21s %9s %9s %9s %11s\n", series->configuration.name,
                 bp_format_seconds(last->seconds, time, sizeof time),
                 bp_format_percent_cell(last->claimed, noise, sizeof noise),
                 bp_format_percent_cell(last->nrmse, error, sizeof error),
-                bp_format_ratio(series->efficiency, factor, sizeof factor),
+                bp_format_ratio(series->efficiency, factor, sizeof factor));
+    }
+    fprintf(out, "\nBrightness:\n  %-21s %26s %26s\n", "", "change by the choice", "bias");
+    for (size_t s = 0; s < result->count; s++) {
+        const BpStudySeries *series = &result->series[s];
+        fprintf(out, "  %-21s %26s %26s\n", series->configuration.name,
                 s == 0 ? "" : interval(&series->change, change, sizeof change),
                 interval(&series->bias, bias, sizeof bias));
     }
@@ -65,9 +71,12 @@ bool bp_study_print(const BpStudyResult *result, FILE *out) {
     print_head(result, out);
     print_configurations(result, out);
     print_counts(result, out);
-    fprintf(out, "\nnoise: removed by more samples. error: noise and bias together, relative to the\n       "
-                 "reference; a dash where the reference is too noisy to tell.\nefficiency: 1 / (noise^2 x "
-                 "time), relative to the first line.\n");
+    fprintf(out, "\nnoise: " BP_HANG "removed by more samples\n"
+                 "error: " BP_HANG "noise and bias together, relative to the reference; a dash where the "
+                 "reference is too noisy to tell\n"
+                 "efficiency: " BP_HANG "1 / (noise^2 x time), relative to the first line\n"
+                 "change, bias: " BP_HANG "of the mean brightness, against the first line and against the "
+                 "reference\n");
     const double scatter = bp_study_time_scatter(result);
     if (isfinite(scatter))
         fprintf(out, "time: ratios are accurate to +- %.2g %% (95 %% interval), less so for adaptive.\n",
@@ -80,7 +89,7 @@ bool bp_study_print(const BpStudyResult *result, FILE *out) {
         if (command == NULL)
             fprintf(out, "  %s\n", line);
         else
-            fprintf(out, "  %.*s:\n      %s\n", (int)(command - line), line, command + 2);
+            fprintf(out, "  %.*s:\n      " BP_PASTE "%s\n", (int)(command - line), line, command + 2);
     }
     return fflush(out) == 0 && !ferror(out);
 }
@@ -98,16 +107,17 @@ const char *bp_study_advice_text(const BpStudyResult *result, const BpStudyAdvic
     const bool plain = strpbrk(path, " \"'\\$`;&|<>()*?[]#~!{}") == NULL &&
                        strcmp(bp_shown(path, clean, sizeof clean), path) == 0;
     char seconds[32];
-    snprintf(
-        text, size, "%g %%: %s, %.0f %s per pixel, %s %s at %ux%u: ballpark render %.300s --spp %.0f%s%s%s",
-        100 * advice->target, configuration->name, advice->samples,
-        advice->samples > 1 ? "samples" : "sample", advice->extrapolated ? "extrapolated" : "estimated",
-        bp_format_seconds(advice->seconds, seconds, sizeof seconds), result->full_width, result->full_height,
-        plain ? path : "SCENE", advice->samples, configuration->command[0] != '\0' ? " " : "",
-        configuration->command,
-        configuration->fresnel == BP_STUDY_FRESNEL_EXACT     ? ", with \"fresnel\": \"exact\" in the scene"
-        : configuration->fresnel == BP_STUDY_FRESNEL_SCHLICK ? ", with \"fresnel\": \"schlick\" in the scene"
-                                                             : "");
+    snprintf(text, size,
+             "%g %%: %s, %.0f %s per pixel, about %s at %ux%u%s: ballpark render %.300s --spp %.0f%s%s%s",
+             100 * advice->target, configuration->name, advice->samples,
+             advice->samples > 1 ? "samples" : "sample",
+             bp_format_seconds(advice->seconds, seconds, sizeof seconds), result->full_width,
+             result->full_height, advice->extrapolated ? " (samples and time extrapolated)" : "",
+             plain ? path : "SCENE", advice->samples, configuration->command[0] != '\0' ? " " : "",
+             configuration->command,
+             configuration->fresnel == BP_STUDY_FRESNEL_EXACT     ? " --fresnel exact"
+             : configuration->fresnel == BP_STUDY_FRESNEL_SCHLICK ? " --fresnel schlick"
+                                                                  : "");
     return text;
 }
 
