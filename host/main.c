@@ -3,12 +3,14 @@
  * In:    argc, argv.   Out: an exit code (BP_STATUS_LIST).
  * Knows: how an error is shown.   Does not know: what any command does. */
 #include "base/json_memory.h"
+#include "base/output_file.h"
 #include "base/shown.h"
 #include "cli/commands.h"
 #include "cli/interrupt.h"
 
 #include <errno.h>
 #include <fcntl.h>
+#include <poll.h>
 #include <signal.h>
 #include <stdio.h>
 #include <string.h>
@@ -54,22 +56,43 @@ static void open_standard_streams(void) {
     }
 }
 
-/* BP_ERR_FILE unless everything that was written to standard output has arrived. */
-static BpStatus finish_standard_output(BpError *err) {
+/* BP_ERR_FILE unless everything that was written to standard output has arrived. `flush_problem`: 0, or the
+ * errno of a flush that has failed already. */
+static BpStatus finish_standard_output(int flush_problem, BpError *err) {
     /* A write that failed earlier has left its mark, but its reason may be forgotten. */
     const bool failed_before = ferror(stdout) != 0;
     const bool closed = fclose(stdout) == 0;
     if (closed && !failed_before) return BP_OK;
+    const int problem = flush_problem != 0 ? flush_problem : closed ? 0 : errno;
     return bp_fail(err, BP_ERR_FILE, "cannot write to standard output: %s",
-                   closed ? "not all of it was taken" : strerror(errno));
+                   problem == 0 ? "not all of it was taken" : strerror(problem));
+}
+
+/* Whether standard output is a pipe whose reader has left, and something was to be written to it. */
+static bool reader_has_left(void) {
+    struct pollfd output = {.fd = STDOUT_FILENO};
+    return ferror(stdout) != 0 && poll(&output, 1, 0) == 1 && (output.revents & POLLERR) != 0;
+}
+
+/* Ends as programs do that write to a pipe without a reader, so that shells and scripts see what they know:
+ * killed by SIGPIPE, without a word. */
+static void end_by_signal(void) {
+    sigset_t set;
+    bp_output_abandon();
+    sigemptyset(&set);
+    sigaddset(&set, SIGPIPE);
+    signal(SIGPIPE, SIG_DFL);
+    sigprocmask(SIG_UNBLOCK, &set, NULL);
+    raise(SIGPIPE);
 }
 
 int main(int argc, char **argv) {
     BpCommandLine line;
     BpError err = {0};
     open_standard_streams();
-    /* A reader that goes away, and a limit on the size of files, are failed writes like any other: reported,
-     * and nothing is left half done. */
+    /* A reader that goes away, and a limit on the size of files, are failed writes like any other, and
+     * nothing is left half done. Once all files are written, the former ends the program as it ends others.
+     */
     signal(SIGPIPE, SIG_IGN);
     signal(SIGXFSZ, SIG_IGN);
     bp_interrupt_install();
@@ -84,9 +107,14 @@ int main(int argc, char **argv) {
         else
             status = line.command->run(&line, &err);
     }
+    const int flush_problem = fflush(stdout) == 0 ? 0 : errno;
+    const bool left = reader_has_left();
+    /* What else went wrong is still to be told. */
+    const bool about_output = status == BP_ERR_FILE && err.file[0] == '\0';
+    if (left && (status == BP_OK || about_output)) end_by_signal();
     if (status != BP_OK) print_error(&err, status);
     bp_error_clear(&err);
-    const BpStatus finished = finish_standard_output(&err);
+    const BpStatus finished = finish_standard_output(flush_problem, &err);
     if (status == BP_OK && finished != BP_OK) print_error(&err, finished);
     if (status == BP_OK) status = finished;
     bp_error_clear(&err);

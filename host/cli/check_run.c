@@ -5,6 +5,7 @@
 #include "check_entry.h"
 #include "image/image.h"
 #include "interrupt.h"
+#include "output.h"
 #include "terminal.h"
 
 #include <stdlib.h>
@@ -23,11 +24,23 @@ static void show_progress(const char *name, const BpCheckProgress *progress) {
     bp_terminal_show(text);
 }
 
+typedef struct Map {
+    const BpPicture *picture;
+    BpFormat format;
+    BpTransfer transfer;
+} Map;
+
+static BpStatus print_map(const void *what, FILE *out, BpError *err) {
+    const Map *map = what;
+    return bp_picture_write_stream(map->picture, out, map->format, map->transfer, err);
+}
+
 static BpStatus write_map(const BpCheckRun *run, const BpCheckItem *item, const BpCheckResult *result,
                           BpError *err) {
     BpPicture picture;
     BP_TRY(bp_check_map(result, item->scene->transfer, &picture, err));
-    const BpStatus status = bp_picture_write(&picture, run->map, run->map_format, item->scene->transfer, err);
+    const Map map = {&picture, run->map_format, item->scene->transfer};
+    const BpStatus status = bp_line_write(run->line, run->map, print_map, &map, err);
     bp_picture_clear(&picture);
     return status;
 }

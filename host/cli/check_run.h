@@ -7,6 +7,7 @@
 
 #include "check/check.h"
 #include "device_items.h"
+#include "options.h"
 
 typedef struct BpCheckItem {
     const char *name; /* in messages */
@@ -22,6 +23,7 @@ typedef struct BpCheckRun {
     const char *map; /* Optional. Picture file; of one item alone. */
     BpFormat map_format;
     bool quiet;
+    const BpCommandLine *line; /* says how the picture is written */
 } BpCheckRun;
 
 /* Fills an outcome for each item: its result is {"entry", "text": the verdict for people}. An item without a

@@ -11,7 +11,6 @@
 #include "base/format.h"
 #include "base/json_text.h"
 #include "base/names.h"
-#include "base/output_file.h"
 #include "base/plural.h"
 #include "base/quantile.h"
 #include "base/shown.h"
@@ -21,10 +20,13 @@
 #include "interrupt.h"
 #include "json_file.h"
 #include "options.h"
+#include "output.h"
+#include "page.h"
 #include "render/render.h"
 #include "report_json.h"
 #include "scene/scene.h"
 #include "setup.h"
+#include "table.h"
 #include "temporary_folder.h"
 
 #include <errno.h>
@@ -93,8 +95,13 @@ static void make_glass(BpMaterial *material) {
     material->total_reflection = BP_TOTAL_REFLECT;
 }
 
-static BpStatus write_cover(const char *name, const char *path, BpError *err) {
+static BpStatus print_scene(const void *scene, FILE *out, BpError *err) {
+    return bp_scene_print(scene, out, err);
+}
+
+static BpStatus write_cover(const BpCommandLine *line, const char *name, const char *path, BpError *err) {
     BpScene *scene = NULL;
+    BP_TRY(bp_line_check_output(line, path, err));
     BP_TRY(bp_scene_generate_cover("4", GRID, SEED, &scene, err));
     BpStatus status = bp_scene_set_width(scene, WIDTH, err);
     if (status != BP_OK) goto done;
@@ -104,33 +111,39 @@ static BpStatus write_cover(const char *name, const char *path, BpError *err) {
         if (strcmp(name, "diffuse") == 0) make_matte(&scene->materials[m]);
         if (strcmp(name, "glass") == 0 && m != ground) make_glass(&scene->materials[m]);
     }
-    status = bp_scene_write(scene, path, err);
+    status = bp_line_write(line, path, print_scene, scene, err);
 done:
     bp_scene_destroy(&scene);
     return status;
 }
 
-static BpStatus write_field(const char *name, const char *folder, const char *path, BpError *err) {
+static BpStatus print_field(const void *name, FILE *out, BpError *err) {
+    return bp_field_print_ply(field_count(name), SEED, out, err);
+}
+
+static BpStatus print_field_document(const void *name, FILE *out, BpError *err) {
+    if (fprintf(out, field_document, (const char *)name, (const char *)name) > 0) return BP_OK;
+    return bp_fail(err, BP_ERR_FILE, "%s", strerror(errno));
+}
+
+static BpStatus write_field(const BpCommandLine *line, const char *name, const char *folder, const char *path,
+                            BpError *err) {
     char cloud[4096];
     BP_TRY(join(folder, name, ".ply", cloud, sizeof cloud, err));
     if (access(cloud, R_OK) == 0 && access(path, R_OK) == 0) return BP_OK;
-    BP_TRY(bp_field_write_ply(field_count(name), SEED, cloud, err));
-    BpOutputFile file;
-    BP_TRY(bp_output_open(path, &file, err));
-    if (fprintf(file.stream, field_document, name, name) < 0) {
-        const BpStatus status = bp_output_fail(err, "write", path, errno);
-        bp_output_discard(&file);
-        return status;
-    }
-    return bp_output_commit(&file, err);
+    BP_TRY(bp_line_check_output(line, cloud, err));
+    BP_TRY(bp_line_check_output(line, path, err));
+    BP_TRY(bp_line_write(line, cloud, print_field, name, err));
+    return bp_line_write(line, path, print_field_document, name, err);
 }
 
 /* Writes the scene called `name` into `folder`, as NAME.json (a field: NAME.ply as well), and its path to
  * `path`. A field whose two files are already there is left as it is, since it takes long. */
-static BpStatus write_fixed_scene(const char *name, const char *folder, char *path, size_t path_size,
-                                  BpError *err) {
+static BpStatus write_fixed_scene(const BpCommandLine *line, const char *name, const char *folder, char *path,
+                                  size_t path_size, BpError *err) {
     BP_TRY(join(folder, name, ".json", path, path_size, err));
-    return field_count(name) != 0 ? write_field(name, folder, path, err) : write_cover(name, path, err);
+    return field_count(name) != 0 ? write_field(line, name, folder, path, err)
+                                  : write_cover(line, name, path, err);
 }
 
 /* ---- one timed run ----------------------------------------------------------------------------------- */
@@ -324,35 +337,52 @@ static const char *short_time(double seconds, char *text, size_t size) {
     return text;
 }
 
-static void print_row(const Bench *bench, const Entry *entry) {
-    char load[32], tree[32], kernel[32], spheres[32], name[256];
+enum { COLUMNS = 11 };
+
+static void fill_row(const Bench *bench, const Entry *entry, const BpTable *table, size_t row) {
     const Figure segments = figure(bench, entry, segments_rate);
-    printf("%-12s %11s %9s %9s %9s %10.2f %11.2f %9.1f %9.1f %7.0f %% %8.0f\n",
-           bp_shown(entry->name, name, sizeof name),
-           bp_format_whole(entry->runs[0].spheres, spheres, sizeof spheres),
-           short_time(figure(bench, entry, load_seconds).median, load, sizeof load),
-           short_time(figure(bench, entry, tree_seconds).median, tree, sizeof tree),
-           short_time(figure(bench, entry, kernel_seconds).median, kernel, sizeof kernel),
-           1e-6 * figure(bench, entry, samples_rate).median, 1e-6 * segments.median,
-           figure(bench, entry, segment_nanoseconds).median,
-           figure(bench, entry, segment_cpu_nanoseconds).median,
-           100.0 * (segments.high - segments.low) / segments.median, bytes_per_sphere(entry));
+    const size_t size = BP_CELL_SIZE;
+    bp_shown(entry->name, bp_table_cell(table, row, 0), size);
+    bp_format_whole(entry->runs[0].spheres, bp_table_cell(table, row, 1), size);
+    short_time(figure(bench, entry, load_seconds).median, bp_table_cell(table, row, 2), size);
+    short_time(figure(bench, entry, tree_seconds).median, bp_table_cell(table, row, 3), size);
+    short_time(figure(bench, entry, kernel_seconds).median, bp_table_cell(table, row, 4), size);
+    snprintf(bp_table_cell(table, row, 5), size, "%.2f", 1e-6 * figure(bench, entry, samples_rate).median);
+    snprintf(bp_table_cell(table, row, 6), size, "%.2f", 1e-6 * segments.median);
+    snprintf(bp_table_cell(table, row, 7), size, "%.1f", figure(bench, entry, segment_nanoseconds).median);
+    snprintf(bp_table_cell(table, row, 8), size, "%.1f",
+             figure(bench, entry, segment_cpu_nanoseconds).median);
+    snprintf(bp_table_cell(table, row, 9), size, "%.0f %%",
+             100.0 * (segments.high - segments.low) / segments.median);
+    snprintf(bp_table_cell(table, row, 10), size, "%.0f", bytes_per_sphere(entry));
 }
 
-static BpStatus print_table(const Bench *bench, BpError *err) {
+static BpStatus print_table(const BpCommandLine *line, const Bench *bench, BpError *err) {
+    static const char *const head[COLUMNS] = {"scene",  "spheres",    "load",        "tree",
+                                              "kernel", "Msamples/s", "Msegments/s", "ns/segm.",
+                                              "CPU ns", "spread",     "B/sphere"};
+    static const bool right[COLUMNS] = {false, true, true, true, true, true, true, true, true, true, true};
     const BpRenderReport *report = &bench->entries[0].runs[0].report;
-    bp_show(report->device.name, false, stdout);
-    fputs(", ", stdout);
-    bp_show(report->device.platform, false, stdout);
-    printf("; %s kernel, %s, %s numerics, %s math\n", bp_kernel_names[report->kernel],
-           bp_precision_names[report->precision], bp_numerics_names[report->numerics],
-           bp_math_names[report->math]);
-    printf("%-12s %11s %9s %9s %9s %10s %11s %9s %9s %9s %8s\n", "scene", "spheres", "load", "tree", "kernel",
-           "Msamples/s", "Msegments/s", "ns/segm.", "CPU ns", "spread", "B/sphere");
-    for (size_t i = 0; i < bench->count; ++i) print_row(bench, &bench->entries[i]);
-    printf("medians of %u round%s; spread: between the quartiles; CPU ns: processor time per segment, all "
-           "threads\n",
-           bench->rounds, bp_plural(bench->rounds));
+    BpTable table;
+    BpPage page;
+    if (!bp_table_make(&table, COLUMNS, bench->count + 1, right))
+        return bp_fail(err, BP_ERR_MEMORY, "out of memory for a table of %zu scenes", bench->count);
+    for (size_t c = 0; c < COLUMNS; ++c) snprintf(bp_table_cell(&table, 0, c), BP_CELL_SIZE, "%s", head[c]);
+    for (size_t i = 0; i < bench->count; ++i) fill_row(bench, &bench->entries[i], &table, i + 1);
+    bp_page_begin(&page, stdout);
+    bp_show(report->device.name, false, page.text);
+    fputs(", ", page.text);
+    bp_show(report->device.platform, false, page.text);
+    fprintf(page.text, "; %s kernel, %s, %s numerics, %s math\n", bp_kernel_names[report->kernel],
+            bp_precision_names[report->precision], bp_numerics_names[report->numerics],
+            bp_math_names[report->math]);
+    bp_table_print(&table, bp_page_columns(line, stdout), page.text);
+    fprintf(page.text,
+            "medians of %u round%s; spread: between the quartiles; CPU ns: processor time per segment, all "
+            "threads\n",
+            bench->rounds, bp_plural(bench->rounds));
+    bp_page_end(&page, line, stdout);
+    free(table.cells);
     if (fflush(stdout) != 0 || ferror(stdout))
         return bp_fail(err, BP_ERR_FILE, "cannot write to standard output: %s", strerror(errno));
     return BP_OK;
@@ -395,13 +425,13 @@ static json_t *entry_json(const Bench *bench, const Entry *entry) {
         run->mean[2], "nrmse", nrmse, "invalid_samples", (json_int_t)run->report.invalid_samples);
 }
 
-static BpStatus write_json(const Bench *bench, const char *path, BpError *err) {
+static BpStatus write_json(const BpCommandLine *line, const Bench *bench, BpError *err) {
     const BpRenderReport *report = &bench->entries[0].runs[0].report;
     json_t *scenes = json_array();
     for (size_t i = 0; i < bench->count; ++i) {
         if (json_array_append_new(scenes, entry_json(bench, &bench->entries[i])) == 0) continue;
         json_decref(scenes);
-        return bp_json_write(NULL, path, err);
+        return bp_json_write(line, NULL, line->json, err);
     }
     json_t *root =
         json_pack("{s:s, s:{s:o, s:o, s:o, s:s}}", "version", bp_version(), "device", "platform",
@@ -409,7 +439,7 @@ static BpStatus write_json(const Bench *bench, const char *path, BpError *err) {
                   bp_json_text(report->device.driver), "type", bp_device_type_names[report->device.type]);
     root = bp_json_join(root, bp_report_settings(report));
     root = bp_json_join(root, json_pack("{s:i, s:o}", "rounds", (int)bench->rounds, "scenes", scenes));
-    return bp_json_write(root, path, err);
+    return bp_json_write(line, root, line->json, err);
 }
 
 /* ---- the command ---- */
@@ -447,7 +477,7 @@ static BpStatus prepare(const BpCommandLine *line, Bench *bench, BpError *err) {
         if (bench->folder == NULL) BP_TRY(open_folder(line, bench, err));
         if (bp_interrupted())
             return bp_fail(err, BP_ERR_INTERRUPTED, "interrupted before a scene was traced");
-        BP_TRY(write_fixed_scene(entry->name, bench->folder, entry->path, sizeof entry->path, err));
+        BP_TRY(write_fixed_scene(line, entry->name, bench->folder, entry->path, sizeof entry->path, err));
     }
     return BP_OK;
 }
@@ -460,10 +490,7 @@ static BpStatus run_rounds(const BpCommandLine *line, Bench *bench, BpError *err
     for (size_t r = 0; r < bench->rounds && status == BP_OK; ++r) {
         for (size_t i = 0; i < bench->count && status == BP_OK; ++i) {
             Entry *entry = &bench->entries[i];
-            char name[256];
-            if (!line->quiet)
-                fprintf(stderr, "round %zu of %u: %s\n", r + 1, bench->rounds,
-                        bp_shown(entry->name, name, sizeof name));
+            bp_say(line, "round %zu of %u: %s", r + 1, bench->rounds, entry->name);
             status = run_once(line, entry->path, devices, device_count, seconds / bench->rounds,
                               &entry->runs[r], err);
         }
@@ -481,14 +508,13 @@ static void clear(Bench *bench) {
 BpStatus bp_command_bench(const BpCommandLine *line, BpError *err) {
     Bench bench = {0};
     BpStatus status = BP_OK;
-    if (line->json != NULL) BP_TRY(bp_json_check(line->json, err));
+    if (line->json != NULL) BP_TRY(bp_line_check_output(line, line->json, err));
     bp_interrupt_catch();
     BP_TRY_GOTO(status, prepare(line, &bench, err), done);
     if (line->output != NULL) goto done; /* the scenes were wanted, not figures */
     BP_TRY_GOTO(status, run_rounds(line, &bench, err), done);
-    if (line->json == NULL || strcmp(line->json, "-") != 0)
-        BP_TRY_GOTO(status, print_table(&bench, err), done);
-    if (line->json != NULL) status = write_json(&bench, line->json, err);
+    if (line->json != NULL) BP_TRY_GOTO(status, write_json(line, &bench, err), done);
+    if (line->json == NULL || strcmp(line->json, "-") != 0) status = print_table(line, &bench, err);
 done:
     clear(&bench);
     return status;

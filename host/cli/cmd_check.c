@@ -7,7 +7,6 @@
  * device_items.h), what documents look like (check_report.h, check_junit.h). */
 #include "commands.h"
 
-#include "base/output_file.h"
 #include "base/plural.h"
 #include "base/shown.h"
 #include "check_against.h"
@@ -22,6 +21,8 @@
 #include "json_file.h"
 #include "junit_file.h"
 #include "option_table.h"
+#include "output.h"
+#include "page.h"
 #include "setup.h"
 #include "suite.h"
 
@@ -93,8 +94,8 @@ static BpStatus check_line(const BpCommandLine *line, BpError *err) {
                        "ballpark check: missing SCENE (or --suite); see `ballpark help check`");
     if (!line->bits && line->samples_per_pixel == 1)
         return bp_fail(err, BP_ERR_USAGE, "a check needs at least 2 samples per pixel to measure noise");
-    if (line->json != NULL) BP_TRY(bp_json_check(line->json, err));
-    if (line->junit != NULL) BP_TRY(bp_json_check(line->junit, err));
+    if (line->json != NULL) BP_TRY(bp_line_check_output(line, line->json, err));
+    if (line->junit != NULL) BP_TRY(bp_line_check_output(line, line->junit, err));
     return BP_OK;
 }
 
@@ -104,7 +105,7 @@ static BpStatus find_map_format(Session *session, BpError *err) {
     if (!bp_format_from_path(map, &session->map_format) || session->map_format == BP_FORMAT_BPA)
         return bp_fail(err, BP_ERR_USAGE, "--map %s: expected a name that ends in .png, .ppm, .pfm or .exr",
                        map);
-    return bp_output_check(map, err);
+    return bp_line_check_output(session->line, map, err);
 }
 
 /* ---- scenes ----------------------------------------------------------------------------------------------
@@ -120,6 +121,7 @@ static BpStatus add_item(Session *session, const char *name, BpScene *scene, siz
     else if (scene->camera.width > BP_CHECK_WIDTH_DEFAULT)
         BP_TRY(bp_scene_set_width(scene, BP_CHECK_WIDTH_DEFAULT, err));
     *item = (BpCheckItem){.name = name, .scene = scene, .options = {.level = level}};
+    item->options.threads = line->threads;
     item->options.margin = bp_option_given(line, BP_OPTION_MARGIN) ? line->margin_percent / 100
                            : line->suite                           ? SUITE_MARGIN
                                                                    : BP_VERDICT_MARGIN;
@@ -173,7 +175,7 @@ static BpStatus check_map_names(const Session *session, BpError *err) {
         map_name(session->line->map, session->devices[d].number, name, sizeof name);
         BP_TRY(bp_file_conflicts_check(&line, NULL, err));
         BP_TRY(bp_file_conflicts_check_scene(&line, NULL, session->scene, err));
-        BP_TRY(bp_output_check(name, err));
+        BP_TRY(bp_line_check_output(&line, name, err));
     }
     return BP_OK;
 }
@@ -224,16 +226,13 @@ static BpStatus check_device(Session *session, const BpDeviceInfo *device, BpErr
                       .seconds = line->timeout_seconds,
                       .map = line->map,
                       .map_format = session->map_format,
-                      .quiet = line->quiet};
+                      .quiet = line->quiet,
+                      .line = line};
     if (line->map != NULL && wants_all(line)) {
         map_name(line->map, device->number, name, sizeof name);
         run.map = name;
     }
-    if (!line->quiet && (wants_all(line) || line->suite)) {
-        fprintf(stderr, "checking device %u, ", device->number);
-        bp_show(device->name, false, stderr);
-        fputc('\n', stderr);
-    }
+    if (wants_all(line) || line->suite) bp_say(line, "checking device %u, %s", device->number, device->name);
     BpItemOutcome *outcomes = calloc(session->item_count, sizeof *outcomes);
     if (outcomes == NULL) return bp_fail(err, BP_ERR_MEMORY, "out of memory for results");
     BpStatus status = BP_OK;
@@ -274,13 +273,13 @@ static BpStatus write_documents(Session *session, const json_t *against, BpError
     json_t *broken = bp_device_survey_broken_json(&session->survey);
     BpStatus status = BP_OK;
     if (line->junit != NULL)
-        status = bp_junit_write(bp_check_junit(session->scenes, broken), line->junit, err);
+        status = bp_junit_write(line, bp_check_junit(session->scenes, broken), line->junit, err);
     if (line->json != NULL && status == BP_OK) {
         json_t *document = bp_check_document(json_incref(session->scenes), json_incref(broken),
                                              line->suite ? SUITE_NAME : NULL, SUITE_LEVEL);
         if (against != NULL && document != NULL)
             json_object_set(document, "against", (json_t *)(uintptr_t)against);
-        status = bp_json_write(document, line->json, err);
+        status = bp_json_write(line, document, line->json, err);
     }
     json_decref(broken);
     return status;
@@ -349,11 +348,16 @@ static BpStatus check_all(Session *session, BpError *err) {
         if (against == NULL) return bp_fail(err, BP_ERR_MEMORY, "out of memory for a comparison");
     }
     if (!is_stdout(line->json) && !is_stdout(line->junit)) {
+        BpPage page;
+        BpCommandLine loud = *line; /* with --quiet, the rows that remain are errors */
+        loud.quiet = line->quiet && session->text != NULL;
+        bp_page_begin(&page, stdout);
         if (session->text != NULL)
-            print_verdict(session, stdout);
+            print_verdict(session, page.text);
         else if (wants_all(line) || line->suite)
-            bp_check_print_table(session->scenes, line->quiet, stdout);
-        if (against != NULL) bp_check_against_print(against, stdout);
+            bp_check_print_table(session->scenes, line->quiet, page.text);
+        if (against != NULL) bp_check_against_print(against, page.text);
+        bp_page_end(&page, &loud, stdout);
     }
     status = write_documents(session, against, err);
     if (status == BP_OK) status = conclude(session, against, err);
@@ -406,11 +410,12 @@ static BpStatus write_bits(const Session *session, json_t *results, BpError *err
         }
     }
     if (line->junit != NULL && status == BP_OK)
-        status = bp_junit_write(suites, line->junit, err);
+        status = bp_junit_write(line, suites, line->junit, err);
     else
         json_decref(suites);
     if (line->json != NULL && status == BP_OK)
-        status = bp_json_write(json_pack("{s:s, s:s, s:s, s:O, s:O}", "ballpark", bp_version(), "suite",
+        status = bp_json_write(line,
+                               json_pack("{s:s, s:s, s:s, s:O, s:O}", "ballpark", bp_version(), "suite",
                                          "bits", "verdict", bp_check_overall(&counts), "broken_drivers",
                                          broken, "results", all),
                                line->json, err);
@@ -451,8 +456,14 @@ static BpStatus check_bits(Session *session, BpError *err) {
                                .quiet = line->quiet};
         status = bp_check_bits_run(&run, &entries, err);
         if (status != BP_OK) break;
-        if (!is_stdout(line->json) && !is_stdout(line->junit))
-            bp_check_bits_print(entries, line->quiet, stdout);
+        if (!is_stdout(line->json) && !is_stdout(line->junit)) {
+            BpPage page;
+            BpCommandLine loud = *line; /* with --quiet, the rows that remain are errors */
+            loud.quiet = false;
+            bp_page_begin(&page, stdout);
+            bp_check_bits_print(entries, line->quiet, page.text);
+            bp_page_end(&page, &loud, stdout);
+        }
         if (json_array_append_new(results, entries) != 0)
             status = bp_fail(err, BP_ERR_MEMORY, "out of memory for a report");
     }

@@ -6,9 +6,11 @@
 
 #include "base/format.h"
 #include "base/json_memory.h"
-#include "base/output_file.h"
+#include "base/output_target.h"
 #include "interrupt.h"
 #include "json_file.h"
+#include "output.h"
+#include "page.h"
 #include "setup.h"
 #include "study/study.h"
 #include "terminal.h"
@@ -40,28 +42,24 @@ static BpStatus run_study(const BpCommandLine *line, BpStudy *study, BpError *er
 
 typedef bool Print(const BpStudyResult *result, FILE *out);
 
-/* Writes by `print` to the file, whole or not at all; "-" is standard output. */
-static BpStatus write_file(const BpStudyResult *result, const char *path, Print *print, BpError *err) {
-    if (strcmp(path, "-") == 0) {
-        if (print(result, stdout)) return BP_OK;
-        if (bp_json_memory_failed()) return bp_fail(err, BP_ERR_MEMORY, "out of memory for the results");
-        return bp_fail(err, BP_ERR_FILE, "cannot write to standard output: %s", strerror(errno));
-    }
-    BpOutputFile file = {0};
-    BP_TRY(bp_output_open(path, &file, err));
-    if (print(result, file.stream)) return bp_output_commit(&file, err);
-    const BpStatus status = bp_json_memory_failed()
-                                ? bp_fail(err, BP_ERR_MEMORY, "out of memory for %s", path)
-                                : bp_output_fail(err, "write", path, errno);
-    bp_output_discard(&file);
-    return status;
+typedef struct Printed {
+    const BpStudyResult *result;
+    Print *print;
+} Printed;
+
+static BpStatus print_part(const void *what, FILE *out, BpError *err) {
+    const Printed *printed = what;
+    if (printed->print(printed->result, out)) return BP_OK;
+    if (bp_json_memory_failed()) return bp_fail(err, BP_ERR_MEMORY, "out of memory for the results");
+    return bp_fail(err, BP_ERR_FILE, "%s%s%s", out == stdout ? "cannot write to standard output: " : "",
+                   strerror(errno), bp_output_remedy(errno));
 }
 
 static BpStatus check_outputs(const BpCommandLine *line, BpError *err) {
-    const char *const files[] = {line->output, line->csv};
+    const char *const files[] = {line->output, line->csv, line->json};
     for (size_t f = 0; f < sizeof files / sizeof files[0]; ++f)
-        if (files[f] != NULL && strcmp(files[f], "-") != 0) BP_TRY(bp_output_check(files[f], err));
-    return line->json != NULL ? bp_json_check(line->json, err) : BP_OK;
+        if (files[f] != NULL) BP_TRY(bp_line_check_output(line, files[f], err));
+    return BP_OK;
 }
 
 static BpStatus deliver(const BpCommandLine *line, const BpStudyResult *result, BpError *err) {
@@ -69,10 +67,16 @@ static BpStatus deliver(const BpCommandLine *line, const BpStudyResult *result, 
     bool to_stdout = false;
     for (size_t f = 0; f < sizeof files / sizeof files[0]; ++f)
         if (files[f] != NULL && strcmp(files[f], "-") == 0) to_stdout = true;
-    if (line->output != NULL) BP_TRY(write_file(result, line->output, bp_study_print_page, err));
-    if (line->csv != NULL) BP_TRY(write_file(result, line->csv, bp_study_print_csv, err));
-    if (line->json != NULL) BP_TRY(bp_json_write(bp_study_json(result), line->json, err));
-    if (!to_stdout) BP_TRY(write_file(result, "-", bp_study_print, err));
+    const Printed whole = {result, bp_study_print_page}, points = {result, bp_study_print_csv};
+    if (line->output != NULL) BP_TRY(bp_line_write(line, line->output, print_part, &whole, err));
+    if (line->csv != NULL) BP_TRY(bp_line_write(line, line->csv, print_part, &points, err));
+    if (line->json != NULL) BP_TRY(bp_json_write(line, bp_study_json(result), line->json, err));
+    if (!to_stdout) {
+        BpPage page;
+        bp_page_begin(&page, stdout);
+        bp_study_print(result, page.text);
+        bp_page_end(&page, line, stdout);
+    }
     if (result->cut_short)
         return bp_fail(err, BP_ERR_INTERRUPTED, "interrupted; these results are from the first %.0f seconds",
                        result->seconds);

@@ -4,12 +4,16 @@
  * Knows: BpDeviceInfo, tables on a terminal.   Does not know: OpenCL. */
 #include "commands.h"
 
+#include "base/fold.h"
 #include "base/json_text.h"
 #include "base/names.h"
 #include "base/shown.h"
 #include "device_survey.h"
 #include "interrupt.h"
 #include "json_file.h"
+#include "output.h"
+#include "page.h"
+#include "table.h"
 
 #include <errno.h>
 #include <inttypes.h>
@@ -18,9 +22,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum { COLUMNS = 8, CELL_SIZE = 280 };
-
-typedef char Cells[COLUMNS][CELL_SIZE];
+enum { COLUMNS = 8 };
 
 static const char *type_text(BpDeviceType type) {
     return type == BP_DEVICE_CPU ? "CPU" : type == BP_DEVICE_GPU ? "GPU" : "other";
@@ -29,51 +31,50 @@ static const char *type_text(BpDeviceType type) {
 static void format_bytes(uint64_t bytes, char *text) {
     const double gib = (double)bytes / (1024.0 * 1024.0 * 1024.0);
     if (gib >= 0.95)
-        snprintf(text, CELL_SIZE, "%.1f GiB", gib);
+        snprintf(text, BP_CELL_SIZE, "%.1f GiB", gib);
     else
-        snprintf(text, CELL_SIZE, "%.0f MiB", gib * 1024.0);
+        snprintf(text, BP_CELL_SIZE, "%.0f MiB", gib * 1024.0);
 }
 
-static void fill_row(const BpDeviceInfo *info, bool is_default, Cells cells) {
-    snprintf(cells[0], CELL_SIZE, "%u%s", info->number, is_default ? "*" : " ");
-    snprintf(cells[1], CELL_SIZE, "%s", type_text(info->type));
-    bp_shown(info->name, cells[2], CELL_SIZE);
-    snprintf(cells[3], CELL_SIZE, "%u", info->compute_units);
-    format_bytes(info->memory_bytes, cells[4]);
-    format_bytes(info->largest_allocation_bytes, cells[5]);
-    snprintf(cells[6], CELL_SIZE, "%s", info->has_double ? "yes" : "no");
-    char text[2 * CELL_SIZE];
+static void fill_row(const BpDeviceInfo *info, bool is_default, const BpTable *table, size_t row) {
+    snprintf(bp_table_cell(table, row, 0), BP_CELL_SIZE, "%u%s", info->number, is_default ? "*" : " ");
+    snprintf(bp_table_cell(table, row, 1), BP_CELL_SIZE, "%s", type_text(info->type));
+    bp_shown(info->name, bp_table_cell(table, row, 2), BP_CELL_SIZE);
+    snprintf(bp_table_cell(table, row, 3), BP_CELL_SIZE, "%u", info->compute_units);
+    format_bytes(info->memory_bytes, bp_table_cell(table, row, 4));
+    format_bytes(info->largest_allocation_bytes, bp_table_cell(table, row, 5));
+    snprintf(bp_table_cell(table, row, 6), BP_CELL_SIZE, "%s", info->has_double ? "yes" : "no");
+    char text[2 * BP_CELL_SIZE];
     snprintf(text, sizeof text, "%s, driver %s", info->platform, info->driver);
-    bp_shown(text, cells[7], CELL_SIZE);
+    bp_shown(text, bp_table_cell(table, row, 7), BP_CELL_SIZE);
 }
 
-static BpStatus print_table(const BpDeviceInfo *list, size_t count, unsigned default_number, BpError *err) {
-    static const Cells head = {"",       "type",           "name",   "units",
-                               "memory", "largest buffer", "double", "platform and driver"};
+static BpStatus print_table(const BpCommandLine *line, const BpDeviceInfo *list, size_t count,
+                            unsigned default_number, BpError *err) {
+    static const char *const head[COLUMNS] = {"",       "type",           "name",   "units",
+                                              "memory", "largest buffer", "double", "platform and driver"};
     static const bool right[COLUMNS] = {true, false, false, true, true, true, false, false};
-    Cells *rows = malloc((count + 1) * sizeof *rows);
-    if (rows == NULL) return bp_fail(err, BP_ERR_MEMORY, "out of memory for a table of %zu devices", count);
-    memcpy(rows[0], head, sizeof head);
-    for (size_t d = 0; d < count; ++d) fill_row(&list[d], list[d].number == default_number, rows[d + 1]);
-    int widths[COLUMNS] = {0};
-    for (size_t r = 0; r <= count; ++r)
-        for (int c = 0; c < COLUMNS; ++c)
-            if ((int)strlen(rows[r][c]) > widths[c]) widths[c] = (int)strlen(rows[r][c]);
-    for (size_t r = 0; r <= count; ++r) {
-        for (int c = 0; c < COLUMNS - 1; ++c) printf(right[c] ? "%*s  " : "%-*s  ", widths[c], rows[r][c]);
-        printf("%s\n", rows[r][COLUMNS - 1]);
-        if (r > 0 && list[r - 1].refusal[0] != '\0') {
-            printf("%*s  cannot render: ", widths[0], "");
-            bp_show(list[r - 1].refusal, false, stdout);
-            putchar('\n');
-        }
+    BpTable table;
+    BpPage page;
+    if (!bp_table_make(&table, COLUMNS, count + 1, right))
+        return bp_fail(err, BP_ERR_MEMORY, "out of memory for a table of %zu devices", count);
+    for (size_t c = 0; c < COLUMNS; ++c) snprintf(bp_table_cell(&table, 0, c), BP_CELL_SIZE, "%s", head[c]);
+    for (size_t d = 0; d < count; ++d) fill_row(&list[d], list[d].number == default_number, &table, d + 1);
+    bp_page_begin(&page, stdout);
+    bp_table_print(&table, bp_page_columns(line, stdout), page.text);
+    for (size_t d = 0; d < count; ++d) {
+        if (list[d].refusal[0] == '\0') continue;
+        fprintf(page.text, "%u  " BP_HANG "cannot render: ", list[d].number);
+        bp_show(list[d].refusal, false, page.text);
+        fputc('\n', page.text);
     }
-    free(rows);
-    if (default_number != UINT32_MAX) printf("* default device\n");
+    if (default_number != UINT32_MAX) fprintf(page.text, "* default device\n");
+    bp_page_end(&page, line, stdout);
+    free(table.cells);
     return BP_OK;
 }
 
-static BpStatus write_json(const char *path, const BpDeviceSurvey *survey, unsigned default_number,
+static BpStatus write_json(const BpCommandLine *line, const BpDeviceSurvey *survey, unsigned default_number,
                            BpError *err) {
     json_t *devices = json_array();
     for (size_t d = 0; d < survey->count && devices != NULL; ++d) {
@@ -95,16 +96,16 @@ static BpStatus write_json(const char *path, const BpDeviceSurvey *survey, unsig
     json_t *root = devices != NULL ? json_pack("{s:o, s:o}", "devices", devices, "broken_drivers",
                                                bp_device_survey_broken_json(survey))
                                    : NULL;
-    return bp_json_write(root, path, err);
+    return bp_json_write(line, root, line->json, err);
 }
 
 BpStatus bp_command_devices(const BpCommandLine *line, BpError *err) {
     BpDeviceSurvey survey = {0};
     const double seconds =
         bp_option_given(line, BP_OPTION_TIMEOUT) ? line->timeout_seconds : BP_SURVEY_SECONDS;
-    if (line->json != NULL) BP_TRY(bp_json_check(line->json, err));
+    if (line->json != NULL) BP_TRY(bp_line_check_output(line, line->json, err));
     bp_interrupt_catch(); /* a signal ends the child that lists, too */
-    BpStatus status = bp_device_survey(seconds, false, &survey, err), shown = BP_OK;
+    BpStatus status = bp_device_survey(seconds, line->quiet, &survey, err), shown = BP_OK;
     if (status == BP_OK) {
         /* The default also tells whether anything here can render; if not, its error says what to do. */
         BpDeviceInfo chosen;
@@ -112,9 +113,9 @@ BpStatus bp_command_devices(const BpCommandLine *line, BpError *err) {
         if (status == BP_ERR_NO_DEVICE || status == BP_ERR_BROKEN_DEVICE) status = BP_ERR_DEVICE;
         const unsigned default_number = status == BP_OK ? chosen.number : UINT32_MAX;
         if (line->json != NULL)
-            shown = write_json(line->json, &survey, default_number, err);
+            shown = write_json(line, &survey, default_number, err);
         else if (survey.count > 0)
-            shown = print_table(survey.devices, survey.count, default_number, err);
+            shown = print_table(line, survey.devices, survey.count, default_number, err);
     } else if (status == BP_ERR_BROKEN_DEVICE) {
         status = BP_ERR_DEVICE;
     }

@@ -5,11 +5,14 @@
  * Knows: the analysis of effects, cost measurements, path logs, tables.   Does not know: OpenCL. */
 #include "commands.h"
 
+#include "base/fold.h"
 #include "base/format.h"
 #include "base/json_text.h"
 #include "base/names.h"
 #include "base/shown.h"
 #include "json_file.h"
+#include "output.h"
+#include "page.h"
 #include "render/path_log.h"
 #include "scene/material.h"
 #include "setup.h"
@@ -45,48 +48,48 @@ static const char *outcome(const BpPathStep *step, BpMaterialKind kind) {
     return bp_material_types[kind].outcome;
 }
 
-static void print_lamp_ray(const BpPathStep *step) {
-    printf("       a ray to lamp %" PRIu32, step->lamp);
+static void print_lamp_ray(const BpPathStep *step, FILE *out) {
+    fprintf(out, "       a ray to lamp %" PRIu32, step->lamp);
     if (step->seen == step->lamp)
-        printf(" brings (%.4g, %.4g, %.4g)\n", step->lit[0], step->lit[1], step->lit[2]);
+        fprintf(out, " brings (%.4g, %.4g, %.4g)\n", step->lit[0], step->lit[1], step->lit[2]);
     else
-        printf(" is stopped by sphere %" PRIu32 "\n", step->seen);
+        fprintf(out, " is stopped by sphere %" PRIu32 "\n", step->seen);
 }
 
 static void print_path(const BpScene *scene, const BpPathLog *path, uint32_t x, uint32_t y, uint64_t sample,
-                       uint64_t seed) {
-    printf("  pixel (%" PRIu32 ", %" PRIu32 "), sample %" PRIu64 ", seed %" PRIu64 ", on ", x, y, sample,
-           seed);
-    bp_show(path->device.name, false, stdout);
-    putchar('\n');
+                       uint64_t seed, FILE *out) {
+    fprintf(out, "  pixel (%" PRIu32 ", %" PRIu32 "), sample %" PRIu64 ", seed %" PRIu64 ", on ", x, y,
+            sample, seed);
+    bp_show(path->device.name, false, out);
+    fputc('\n', out);
     const double nothing[3] = {0};
     const double *radiance = nothing;
     for (size_t i = 0; i < path->count; ++i) {
         const BpPathStep *step = &path->steps[i];
-        printf("  %3zu  from (%.6g, %.6g, %.6g) along (%.4f, %.4f, %.4f)\n", i + 1, step->origin[0],
-               step->origin[1], step->origin[2], step->direction[0], step->direction[1], step->direction[2]);
+        fprintf(out, "  %3zu  from (%.6g, %.6g, %.6g) along (%.4f, %.4f, %.4f)\n", i + 1, step->origin[0],
+                step->origin[1], step->origin[2], step->direction[0], step->direction[1], step->direction[2]);
         if (step->met) {
             const BpMaterial *material = &scene->materials[step->material];
-            printf("       after %.6g hits sphere %" PRIu32 " from %s at (%.6g, %.6g, %.6g)\n",
-                   step->distance, step->sphere, step->enters ? "outside" : "inside", step->point[0],
-                   step->point[1], step->point[2]);
-            fputs("       ", stdout);
-            bp_show(material->name, false, stdout);
-            printf(" (%s) %s", bp_material_types[material->kind].name, outcome(step, material->kind));
+            fprintf(out, "       after %.6g hits sphere %" PRIu32 " from %s at (%.6g, %.6g, %.6g)\n",
+                    step->distance, step->sphere, step->enters ? "outside" : "inside", step->point[0],
+                    step->point[1], step->point[2]);
+            fputs("       ", out);
+            bp_show(material->name, false, out);
+            fprintf(out, " (%s) %s", bp_material_types[material->kind].name, outcome(step, material->kind));
             if (step->goes_on)
-                printf(", throughput (%.4g, %.4g, %.4g)", step->throughput[0], step->throughput[1],
-                       step->throughput[2]);
-            printf("\n");
-            if (step->to_lamp) print_lamp_ray(step);
+                fprintf(out, ", throughput (%.4g, %.4g, %.4g)", step->throughput[0], step->throughput[1],
+                        step->throughput[2]);
+            fprintf(out, "\n");
+            if (step->to_lamp) print_lamp_ray(step, out);
         } else {
-            printf("       hits nothing: the sky\n");
+            fprintf(out, "       hits nothing: the sky\n");
         }
         radiance = step->radiance;
     }
-    if (path->cut) printf("       the depth limit cuts the path here\n");
-    if (path->count == 0) printf("       no segments: the depth limit is 0\n");
-    printf("  radiance of the sample: (%.6g, %.6g, %.6g)%s\n", radiance[0], radiance[1], radiance[2],
-           is_black(radiance) ? ", black" : "");
+    if (path->cut) fprintf(out, "       the depth limit cuts the path here\n");
+    if (path->count == 0) fprintf(out, "       no segments: the depth limit is 0\n");
+    fprintf(out, "  radiance of the sample: (%.6g, %.6g, %.6g)%s\n", radiance[0], radiance[1], radiance[2],
+            is_black(radiance) ? ", black" : "");
 }
 
 static json_t *triple(const double v[3]) {
@@ -132,71 +135,73 @@ static json_t *path_json(const BpScene *scene, const BpPathLog *path, uint32_t x
 /* ---- the table of effects -------------------------------------------------------------------------------
  */
 
-static void print_heading(const char *path, const BpScene *scene) {
+static void print_heading(const char *path, const BpScene *scene, FILE *out) {
     BpSceneInfo info;
     bp_scene_info(scene, &info);
-    bp_show(path, false, stdout);
-    fputs(": ", stdout);
-    bp_show(info.title, false, stdout);
-    printf("%s%zu sphere%s, %zu material%s, %ux%u\n", info.title[0] != '\0' ? "; " : "", info.spheres,
-           info.spheres == 1 ? "" : "s", info.materials, info.materials == 1 ? "" : "s", info.width,
-           info.height);
+    bp_show(path, false, out);
+    fputs(": ", out);
+    bp_show(info.title, false, out);
+    fprintf(out, "%s%zu sphere%s, %zu material%s, %ux%u\n", info.title[0] != '\0' ? "; " : "", info.spheres,
+            info.spheres == 1 ? "" : "s", info.materials, info.materials == 1 ? "" : "s", info.width,
+            info.height);
 }
 
-static void print_effects(const BpScene *scene, const BpEffectInfo *effects, size_t count) {
+static void print_effects(const BpScene *scene, const BpEffectInfo *effects, size_t count, FILE *out) {
     char reason[BP_ACCELERATION_REASON_SIZE];
     size_t in = 0;
     for (size_t e = 0; e < count; ++e) in += effects[e].simulated ? 1 : 0;
     for (size_t e = 0; e < count; ++e)
-        printf("  %-12s %-4s %s\n", effects[e].name, effects[e].simulated ? "in" : "out", effects[e].reason);
-    printf("  %zu of %zu effects %s in the kernel\n", in, count, in == 1 ? "is" : "are");
+        fprintf(out, "  %-12s %-4s " BP_HANG "%s\n", effects[e].name, effects[e].simulated ? "in" : "out",
+                effects[e].reason);
+    fprintf(out, "  %zu of %zu effects %s in the kernel\n", in, count, in == 1 ? "is" : "are");
     const BpAcceleration chosen = bp_acceleration_choose(scene, reason);
-    printf("  %-12s %-4s %s\n", "acceleration", bp_acceleration_name(chosen), reason);
+    fprintf(out, "  %-12s %-4s " BP_HANG "%s\n", "acceleration", bp_acceleration_name(chosen), reason);
 }
 
 /* ---- what they cost --------------------------------------------------------------------------------------
  */
 
 /* A bar of one sign for each percent over 1, at most `columns`. */
-static void print_bar(double ratio, unsigned columns, bool utf8) {
+static void print_bar(double ratio, unsigned columns, bool utf8, FILE *out) {
     const double percent = 100.0 * (ratio - 1.0);
     const unsigned signs = percent > 0.5 ? (unsigned)(percent + 0.5) : 0;
-    for (unsigned i = 0; i < signs && i < columns; ++i) fputs(utf8 ? "\xe2\x96\x88" : "#", stdout);
-    if (signs > columns) fputs("...", stdout);
+    for (unsigned i = 0; i < signs && i < columns; ++i) fputs(utf8 ? "\xe2\x96\x88" : "#", out);
+    if (signs > columns) fputs("...", out);
 }
 
-static void print_costs(const BpCosts *costs) {
+static void print_costs(const BpCosts *costs, FILE *out) {
     const bool utf8 = bp_terminal_has_utf8();
-    const unsigned terminal = bp_terminal_columns();
+    const unsigned terminal = bp_terminal_width(fileno(stdout));
     const unsigned columns = terminal > 60 ? terminal - 56 : 8;
     char rate[32];
-    fputs("  ", stdout);
-    bp_show(costs->device.name, false, stdout);
-    printf(", %s kernel, %ux%u, %u rounds of %s samples%s\n", bp_kernel_names[costs->form], costs->width,
-           costs->height, costs->rounds, bp_format_count((double)costs->samples, rate, sizeof rate),
-           costs->device.type == BP_DEVICE_CPU ? ", processor time" : "");
-    printf("  %-18s %6s %15s\n", "kernel", "time", "quartiles");
+    fputs("  ", out);
+    bp_show(costs->device.name, false, out);
+    fprintf(out, ", %s kernel, %ux%u, %u rounds of %s samples%s\n", bp_kernel_names[costs->form],
+            costs->width, costs->height, costs->rounds,
+            bp_format_count((double)costs->samples, rate, sizeof rate),
+            costs->device.type == BP_DEVICE_CPU ? ", processor time" : "");
+    fprintf(out, "  %-18s %6s %15s\n", "kernel", "time", "quartiles");
     for (size_t k = 0; k < costs->kernel_count; ++k) {
         const BpKernelCost *kernel = &costs->kernels[k];
-        printf("  %-18s %6.3f", kernel->name, kernel->ratio);
+        fprintf(out, "  %-18s %6.3f", kernel->name, kernel->ratio);
         if (k == 0)
-            printf("  %s samples/s%s\n", bp_format_count(kernel->samples_per_second, rate, sizeof rate),
-                   costs->device.type == BP_DEVICE_CPU ? " per core" : "");
+            fprintf(out, "  %s samples/s%s\n", bp_format_count(kernel->samples_per_second, rate, sizeof rate),
+                    costs->device.type == BP_DEVICE_CPU ? " per core" : "");
         else {
-            printf(" %6.3f .. %5.3f  ", kernel->low, kernel->high);
-            print_bar(kernel->ratio, columns, utf8);
-            printf("\n");
+            fprintf(out, " %6.3f .. %5.3f  ", kernel->low, kernel->high);
+            print_bar(kernel->ratio, columns, utf8, out);
+            fprintf(out, "\n");
         }
     }
     for (size_t k = 0; k < costs->kernel_count; ++k) {
         const BpKernelCost *kernel = &costs->kernels[k];
         if (isnan(kernel->cold_seconds)) continue;
-        printf("  %s: ready to trace in %.2f s, in %.2f s from the driver's cache", kernel->name,
-               kernel->cold_seconds, kernel->warm_seconds);
-        if (kernel->registers > 0) printf("; %llu registers", (unsigned long long)kernel->registers);
+        fprintf(out, "  %s: ready to trace in %.2f s, in %.2f s from the driver's cache", kernel->name,
+                kernel->cold_seconds, kernel->warm_seconds);
+        if (kernel->registers > 0) fprintf(out, "; %llu registers", (unsigned long long)kernel->registers);
         if (kernel->private_bytes > 0)
-            printf("; %llu bytes of private memory", (unsigned long long)kernel->private_bytes);
-        printf("\n");
+            fprintf(out, "; %llu bytes of private memory", (unsigned long long)kernel->private_bytes);
+        fprintf(out, "\n");
     }
 }
 
@@ -333,24 +338,35 @@ static BpStatus explain(const BpCommandLine *line, const char *path, const BpDev
     BpStatus status = BP_OK;
     BpScene *scene = NULL;
     Findings found;
+    BpPage page;
     memset(&found, 0, sizeof found);
     const bool pixel = bp_option_given(line, BP_OPTION_PIXEL);
     BP_TRY(bp_setup_scene(line, path, &scene, err));
     while (found.count < BP_EFFECT_COUNT && bp_scene_effect(scene, found.count, &found.effects[found.count]))
         ++found.count;
     if (list == NULL) {
-        print_heading(path, scene);
-        if (!pixel || line->measure) print_effects(scene, found.effects, found.count);
+        bp_page_begin(&page, stdout);
+        print_heading(path, scene, page.text);
+        if (!pixel || line->measure) print_effects(scene, found.effects, found.count, page.text);
+        bp_page_end(&page, line, stdout);
         fflush(stdout); /* what follows can take a while */
     }
     if (pixel) {
         BP_TRY_GOTO(status, follow(line, scene, device, &found.path, err), done);
-        if (list == NULL)
-            print_path(scene, &found.path, line->pixel.x, line->pixel.y, line->first_sample, line->seed);
+        if (list == NULL) {
+            bp_page_begin(&page, stdout);
+            print_path(scene, &found.path, line->pixel.x, line->pixel.y, line->first_sample, line->seed,
+                       page.text);
+            bp_page_end(&page, line, stdout);
+        }
     }
     if (line->measure) {
         BP_TRY_GOTO(status, measure(line, scene, device, &found.costs, err), done);
-        if (list == NULL) print_costs(&found.costs);
+        if (list == NULL) {
+            bp_page_begin(&page, stdout);
+            print_costs(&found.costs, page.text);
+            bp_page_end(&page, line, stdout);
+        }
     }
     if (list != NULL) status = append_json(line, path, scene, &found, list, err);
 
@@ -365,7 +381,7 @@ BpStatus bp_command_explain(const BpCommandLine *line, BpError *err) {
     BpDeviceInfo *devices = NULL;
     size_t device_count = 0;
     json_t *list = NULL;
-    if (line->json != NULL) BP_TRY(bp_json_check(line->json, err));
+    if (line->json != NULL) BP_TRY(bp_line_check_output(line, line->json, err));
     if (line->measure || bp_option_given(line, BP_OPTION_PIXEL)) {
         BP_TRY(bp_setup_devices(line, &devices, &device_count, err));
         if (device_count > 1) {
@@ -380,12 +396,12 @@ BpStatus bp_command_explain(const BpCommandLine *line, BpError *err) {
         goto done;
     }
     for (size_t i = 0; i < line->operand_count; ++i) {
-        if (list == NULL && i > 0) printf("\n");
+        if (list == NULL && i > 0 && !line->quiet) printf("\n");
         BP_TRY_GOTO(status, explain(line, line->operands[i], devices, list, err), done);
     }
     if (list != NULL) {
         json_t *root = json_pack("{s:O}", "scenes", list);
-        status = bp_json_write(root, line->json, err);
+        status = bp_json_write(line, root, line->json, err);
     } else if (fflush(stdout) != 0 || ferror(stdout)) {
         status = bp_fail(err, BP_ERR_FILE, "cannot write to standard output: %s", strerror(errno));
     }

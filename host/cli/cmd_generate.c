@@ -4,15 +4,18 @@
  * Knows: the generators' names.       Does not know: the order of their draws. */
 #include "commands.h"
 
-#include "base/output_file.h"
 #include "base/plural.h"
-#include "base/shown.h"
 #include "formats/field.h"
+#include "output.h"
+#include "page.h"
 #include "scene/scene.h"
 
 #include <inttypes.h>
 #include <stdio.h>
 #include <string.h>
+#include <strings.h>
+#include <sys/stat.h>
+#include <unistd.h>
 
 enum { GRID_DEFAULT = 11, FIELD_COUNT_DEFAULT = 1000000, SEED_DEFAULT = 1 };
 
@@ -21,37 +24,73 @@ static BpStatus refuse(const BpCommandLine *line, BpOption option, const char *n
     return bp_fail(err, BP_ERR_USAGE, "ballpark generate: %s does not take %s", line->operands[0], name);
 }
 
+/* Where the result goes: --output, otherwise standard output if that is a pipe or a file, otherwise a file of
+ * this name in the current folder. */
+static const char *choose_path(const BpCommandLine *line, const char *name) {
+    struct stat info;
+    if (line->output != NULL) return line->output;
+    const bool taken = fstat(STDOUT_FILENO, &info) == 0 && (S_ISFIFO(info.st_mode) || S_ISREG(info.st_mode));
+    return taken ? "-" : name;
+}
+
+static BpStatus check_path(const BpCommandLine *line, const char *path, const char *ending, const char *what,
+                           BpError *err) {
+    struct stat info;
+    const size_t length = strlen(path), end = strlen(ending);
+    /* Devices and pipes have names of their own: /dev/stdout. */
+    const bool named = strcmp(path, "-") != 0 && (stat(path, &info) != 0 || S_ISREG(info.st_mode));
+    if (named && strncmp(path, "/dev/", 5) != 0 && strncmp(path, "/proc/", 6) != 0 &&
+        (length <= end || strcasecmp(path + length - end, ending) != 0))
+        return bp_fail(err, BP_ERR_USAGE, "--output %.400s: %s is written as %s; use a name that ends in %s",
+                       path, line->operands[0], what, ending);
+    return bp_line_check_output(line, path, err);
+}
+
+static BpStatus print_scene(const void *scene, FILE *out, BpError *err) {
+    return bp_scene_print(scene, out, err);
+}
+
+static const char *shown_name(const char *path) {
+    return strcmp(path, "-") == 0 ? "standard output" : path;
+}
+
 static BpStatus generate_cover(const BpCommandLine *line, uint64_t seed, BpError *err) {
-    const char *path = line->output != NULL ? line->output : "cover.json";
+    const char *path = choose_path(line, "cover.json");
     const unsigned grid = bp_option_given(line, BP_OPTION_GRID) ? line->grid : GRID_DEFAULT;
-    const bool to_stream = strcmp(path, "-") == 0;
     BpScene *scene = NULL;
-    BpStatus status = BP_OK;
-    if (!to_stream) BP_TRY(bp_output_check(path, err));
+    BP_TRY(check_path(line, path, ".json", "a scene document", err));
     BP_TRY(bp_scene_generate_cover(line->edition != NULL ? line->edition : "4", grid, seed, &scene, err));
-    status = to_stream ? bp_scene_print(scene, stdout, err) : bp_scene_write(scene, path, err);
-    if (status == BP_OK && !line->quiet) {
+    const BpStatus status = bp_line_write(line, path, print_scene, scene, err);
+    if (status == BP_OK) {
         BpSceneInfo info;
         bp_scene_info(scene, &info);
-        bp_show(to_stream ? "standard output" : path, false, stderr);
-        fprintf(stderr, ": %zu sphere%s, %s\n", info.spheres, bp_plural(info.spheres), info.title);
+        bp_say(line, "%s: %zu sphere%s, %s", shown_name(path), info.spheres, bp_plural(info.spheres),
+               info.title);
     }
     bp_scene_destroy(&scene);
     return status;
 }
 
+typedef struct Field {
+    uint64_t count, seed;
+} Field;
+
+static BpStatus print_field(const void *what, FILE *out, BpError *err) {
+    const Field *field = what;
+    return bp_field_print_ply(field->count, field->seed, out, err);
+}
+
 static BpStatus generate_field(const BpCommandLine *line, uint64_t seed, BpError *err) {
-    const char *path = line->output != NULL ? line->output : "field.ply";
-    const uint64_t count = bp_option_given(line, BP_OPTION_COUNT) ? line->count : FIELD_COUNT_DEFAULT;
-    if (strcmp(path, "-") == 0)
-        return bp_fail(
-            err, BP_ERR_USAGE,
-            "--output -: a field cannot be written to standard output; give a file that ends in .ply");
-    BP_TRY(bp_output_check(path, err));
-    BP_TRY(bp_field_write_ply(count, seed, path, err));
-    if (line->quiet) return BP_OK;
-    bp_show(path, false, stderr);
-    fprintf(stderr, ": %" PRIu64 " sphere%s in the cube from -10 to 10\n", count, bp_plural(count));
+    const char *path = choose_path(line, "field.ply");
+    const Field field = {bp_option_given(line, BP_OPTION_COUNT) ? line->count : FIELD_COUNT_DEFAULT, seed};
+    if (strcmp(path, "-") == 0 && isatty(STDOUT_FILENO))
+        return bp_fail(err, BP_ERR_USAGE,
+                       "--output -: refusing to write a binary PLY file to the terminal; redirect standard "
+                       "output to a file or a pipe");
+    BP_TRY(check_path(line, path, ".ply", "a PLY file", err));
+    BP_TRY(bp_line_write(line, path, print_field, &field, err));
+    bp_say(line, "%s: %" PRIu64 " sphere%s in the cube from -10 to 10", shown_name(path), field.count,
+           bp_plural(field.count));
     return BP_OK;
 }
 

@@ -7,8 +7,8 @@
 
 #include "base/format.h"
 #include "base/plural.h"
-#include "base/shown.h"
 #include "film/film_file.h"
+#include "page.h"
 #include "result_file.h"
 
 #include <inttypes.h>
@@ -214,23 +214,20 @@ BpStatus bp_command_merge(const BpCommandLine *line, BpError *err) {
     BP_TRY_GOTO(status, bp_film_check_finite(sum, err), done);
     BP_TRY_GOTO(status, bp_result_write(line, &result, sum, false, (BpTransfer)sum->transfer, NULL, err),
                 done);
-    if (!line->quiet && result.format == BP_FORMAT_EXR && !bp_film_has_aovs(sum))
-        fprintf(stderr,
-                "depth, normals and albedo omitted: .bpa files of versions 1 and 2 do not hold them\n");
-    if (!line->quiet) {
-        char nrmse[32], ranges[120];
-        bp_format_percent(bp_film_nrmse(sum), nrmse, sizeof nrmse);
-        describe_ranges(sum, ranges, sizeof ranges);
-        bp_show(bp_result_name(&result), false, stderr);
-        fprintf(stderr, ": %" PRIu32 "x%" PRIu32 ", %" PRIu64 " sample%s per pixel (%s%s), noise %s\n",
-                sum->width, sum->height, bp_film_range_total(sum), bp_plural(bp_film_range_total(sum)),
-                ranges, sum->partial ? ", incomplete in some pixels" : "", nrmse);
-    }
+    if (result.format == BP_FORMAT_EXR && !bp_film_has_aovs(sum))
+        bp_say(line, "depth, normals and albedo omitted: .bpa files of versions 1 and 2 do not hold them");
+    char nrmse[32], ranges[120];
+    bp_format_percent(bp_film_nrmse(sum), nrmse, sizeof nrmse);
+    describe_ranges(sum, ranges, sizeof ranges);
+    bp_say(line, "%s: %" PRIu32 "x%" PRIu32 ", %" PRIu64 " sample%s per pixel (%s%s), noise %s",
+           bp_result_name(&result), sum->width, sum->height, bp_film_range_total(sum),
+           bp_plural(bp_film_range_total(sum)), ranges, sum->partial ? ", incomplete in some pixels" : "",
+           nrmse);
     if (!line->quiet) warn_missing(line, &parts);
-    if (!line->quiet) bp_result_warn(sum);
-    if (!line->quiet && sum->invalid_samples > 0)
-        fprintf(stderr, "warning: %" PRIu64 " sample%s not finite; left out of the picture\n",
-                sum->invalid_samples, sum->invalid_samples == 1 ? " was" : "s were");
+    bp_result_warn(line, sum);
+    if (sum->invalid_samples > 0)
+        bp_say(line, "warning: %" PRIu64 " sample%s not finite; left out of the picture",
+               sum->invalid_samples, sum->invalid_samples == 1 ? " was" : "s were");
 done:
     free(parts.list);
     bp_film_destroy(&sum);

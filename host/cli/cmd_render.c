@@ -1,6 +1,6 @@
 /* cmd_render.c: `ballpark render`.
  *
- * In:    a scene file, options.   Out: its picture, statistics (--stats), a summary.
+ * In:    scene files, options.   Out: their pictures, statistics (--stats), summaries.
  * Knows: the order of the steps, the members of --stats, Ctrl-C, the progress bar.
  * Does not know: how to trace, when a stop rule is met, picture formats. */
 #include "commands.h"
@@ -9,6 +9,7 @@
 #include "base/format.h"
 #include "base/json_text.h"
 #include "base/names.h"
+#include "base/output_file.h"
 #include "base/plural.h"
 #include "base/shown.h"
 #include "checkpoint.h"
@@ -17,6 +18,9 @@
 #include "interrupt.h"
 #include "json_file.h"
 #include "keep_sums.h"
+#include "opencl/device.h"
+#include "output.h"
+#include "page.h"
 #include "progress.h"
 #include "render/render.h"
 #include "render/render_plan.h"
@@ -24,6 +28,7 @@
 #include "report_json.h"
 #include "result_file.h"
 #include "resume_film.h"
+#include "scene/in_view.h"
 #include "series.h"
 #include "setup.h"
 #include "terminal.h"
@@ -33,6 +38,8 @@
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
+#include <string.h>
+#include <unistd.h>
 
 /* ---- --stats ----------------------------------------------------------------------------------------- */
 
@@ -207,7 +214,53 @@ static BpStatus check_adaptive(const BpStopRule *rule, BpError *err) {
         rule->samples_max, rule->samples_max == 1 ? "" : "s", BP_ADAPTIVE_FIRST, BP_ADAPTIVE_MEAN_MIN);
 }
 
-static void print_summary(const RunResult *result, const BpStopRule *rule, const LoopEnd *end) {
+/* Why the render stopped, where that is not what was asked for. */
+static void say_stop(const BpCommandLine *line, const RunResult *result, const BpStopRule *rule,
+                     const LoopEnd *end) {
+    const uint64_t traced = result->report.samples;
+    char samples[32];
+    bp_format_count((double)traced, samples, sizeof samples);
+    if (rule->error > 0.0 && end->reason == BP_STOP_SAMPLES)
+        bp_say(line,
+               "noise is still above --error: the limit of %" PRIu64 " sample%s per pixel was reached first",
+               rule->samples_max, bp_plural(rule->samples_max));
+    if (end->reason == BP_STOP_INVALID)
+        bp_say(line, "almost no sample of some pixel is finite, so noise cannot be estimated and --error "
+                     "cannot be reached");
+    if (rule->error > 0.0 && end->reason == BP_STOP_TIME)
+        bp_say(line, "noise is still above --error: time ran out");
+    /* Nothing seen in n independent samples: below 3/n with 95 % confidence (Hanley, Lippman-Hand 1983). */
+    if (end->reason == BP_STOP_BLACK)
+        bp_say(
+            line,
+            "the picture is black, so noise cannot be estimated: none of %s sample%s found light, so fewer "
+            "than 1 in %.0f do",
+            samples, bp_plural(traced), (double)traced / 3.0);
+    if (end->reason == BP_STOP_CONSTANT)
+        bp_say(line,
+               "all samples of each pixel are equal, so there is no noise to reduce: none of %s sample%s "
+               "differs, so fewer than 1 in %.0f do",
+               samples, bp_plural(traced), (double)traced / 3.0);
+}
+
+/* A picture of the background alone is rarely what was meant. Paths of one segment met nothing, or ended
+ * where they met something. */
+static void say_emptiness(const BpCommandLine *line, const RunResult *result) {
+    const BpRenderReport *report = &result->report;
+    const BpScene *scene = result->scene;
+    char samples[32];
+    if (report->samples == 0 || report->segments != report->samples || report->cut_paths > 0) return;
+    if (scene->sphere_count == 0)
+        bp_say(line, "the scene has no spheres: the picture shows the background alone");
+    else if (!bp_scene_has_sphere_in_view(scene) || bp_scene_always_scatters(scene))
+        bp_say(line,
+               "the picture shows no sphere: %s sample%s saw the background alone; check \"lookfrom\", "
+               "\"lookat\" and \"vfov\" of the camera",
+               bp_format_count((double)report->samples, samples, sizeof samples), bp_plural(report->samples));
+}
+
+static void print_summary(const BpCommandLine *line, const RunResult *result, const BpStopRule *rule,
+                          const LoopEnd *end) {
     const BpRenderReport *report = &result->report;
     char samples[32], text[32], all[32], rate[32], count[64];
     BpSceneInfo info;
@@ -225,58 +278,35 @@ static void print_summary(const RunResult *result, const BpStopRule *rule, const
     } else if (result->film->partial && result->samples_per_pixel > 0) {
         more_samples = " and part of the next";
     }
-    bp_show(result->output, false, stderr);
-    fprintf(stderr, ": %" PRIu32 "x%" PRIu32 ", %s%s, noise %s\n", info.width, info.height, count,
-            more_samples, bp_format_percent(result->nrmse, text, sizeof text));
+    bp_say(line, "%s: %" PRIu32 "x%" PRIu32 ", %s%s, noise %s", result->output, info.width, info.height,
+           count, more_samples, bp_format_percent(result->nrmse, text, sizeof text));
     /* The first launch, in which a driver may compile, says nothing about the rate. */
     const double tracing = fmax(end->seconds - report->first_launch_seconds, 1.0e-9);
     const uint64_t own = report->samples - report->resumed_samples;
-    fprintf(stderr, "%s sample%s traced in %s (%s/s), %s in total",
-            bp_format_count((double)own, samples, sizeof samples), bp_plural(own),
-            bp_format_seconds(tracing, text, sizeof text),
-            bp_format_count((double)own / tracing, rate, sizeof rate),
-            bp_format_seconds(bp_clock_seconds() - result->times.start, all, sizeof all));
-    bp_format_count((double)report->samples, samples, sizeof samples);
+    bp_say(line, "%s sample%s traced in %s (%s/s), %s in total",
+           bp_format_count((double)own, samples, sizeof samples), bp_plural(own),
+           bp_format_seconds(tracing, text, sizeof text),
+           bp_format_count((double)own / tracing, rate, sizeof rate),
+           bp_format_seconds(bp_clock_seconds() - result->times.start, all, sizeof all));
     /* Half the noise takes four times the samples. */
     const double more = own > 0 ? 3.0 * tracing * (double)report->samples / (double)own : NAN;
     if (result->nrmse > 0.0 && own > 0)
-        fprintf(stderr, "\nhalving the noise: %s more", bp_format_seconds(more, text, sizeof text));
+        bp_say(line, "halving the noise: %s more", bp_format_seconds(more, text, sizeof text));
     else if (isnan(result->nrmse))
-        fprintf(stderr, "\nestimating noise needs %s",
-                result->samples_per_pixel < 2 ? "at least two samples per pixel"
-                : report->invalid_samples > 0 ? "finite samples in every pixel"
-                                              : "a picture that is not black");
-    fprintf(stderr, "\n");
-    if (rule->error > 0.0 && end->reason == BP_STOP_SAMPLES)
-        fprintf(stderr,
-                "noise is still above --error: the limit of %" PRIu64
-                " sample%s per pixel was reached first\n",
-                rule->samples_max, bp_plural(rule->samples_max));
-    if (end->reason == BP_STOP_INVALID)
-        fprintf(stderr, "almost no sample of some pixel is finite, so noise cannot be estimated and --error "
-                        "cannot be reached\n");
-    if (rule->error > 0.0 && end->reason == BP_STOP_TIME)
-        fprintf(stderr, "noise is still above --error: time ran out\n");
-    /* Nothing seen in n independent samples: below 3/n with 95 % confidence (Hanley, Lippman-Hand 1983). */
-    if (end->reason == BP_STOP_BLACK)
-        fprintf(stderr,
-                "the picture is black, so noise cannot be estimated: none of %s sample%s found light, so "
-                "fewer than 1 in %.0f do\n",
-                samples, bp_plural(report->samples), (double)report->samples / 3.0);
-    if (end->reason == BP_STOP_CONSTANT)
-        fprintf(stderr,
-                "all samples of each pixel are equal, so there is no noise to reduce: none of %s sample%s "
-                "differs, so fewer than 1 in %.0f do\n",
-                samples, bp_plural(report->samples), (double)report->samples / 3.0);
+        bp_say(line, "estimating noise needs %s",
+               result->samples_per_pixel < 2 ? "at least two samples per pixel"
+               : report->invalid_samples > 0 ? "finite samples in every pixel"
+                                             : "a picture that is not black");
+    say_stop(line, result, rule, end);
+    say_emptiness(line, result);
     if (report->cut_paths > 0)
-        fprintf(stderr,
-                "%s of the paths were cut off at %" PRIu32 " segment%s (--depth) and counted as black\n",
-                bp_format_percent((double)report->cut_paths / (double)report->samples, text, sizeof text),
-                result->options->max_depth, bp_plural(result->options->max_depth));
-    bp_result_warn(result->film);
+        bp_say(line, "%s of the paths were cut off at %" PRIu32 " segment%s (--depth) and counted as black",
+               bp_format_percent((double)report->cut_paths / (double)report->samples, text, sizeof text),
+               result->options->max_depth, bp_plural(result->options->max_depth));
+    bp_result_warn(line, result->film);
     if (report->invalid_samples > 0)
-        fprintf(stderr, "warning: %" PRIu64 " sample%s not finite and left out of the picture\n",
-                report->invalid_samples, report->invalid_samples == 1 ? " was" : "s were");
+        bp_say(line, "warning: %" PRIu64 " sample%s not finite and left out of the picture",
+               report->invalid_samples, report->invalid_samples == 1 ? " was" : "s were");
 }
 
 /* What to say of a render that was interrupted, and what can be done about it. */
@@ -298,10 +328,10 @@ static BpStatus interrupted(const BpCommandLine *line, const BpStopRule *rule, c
     return BP_ERR_INTERRUPTED;
 }
 
-/* Picture, statistics and summary of a render that has stopped. */
+/* Picture, statistics (appended to `stats` unless it is NULL) and summary of a render that has stopped. */
 static BpStatus deliver(const BpCommandLine *line, const BpResultFile *file, const BpStopRule *rule,
                         const LoopEnd *end, BpCheckpoint *checkpoint, BpRender *render, RunResult *result,
-                        BpError *err) {
+                        json_t *stats, BpError *err) {
     BpStatus status = bp_render_read_whole_film(render, &result->film, err);
     if (status != BP_OK && bp_render_read_film(render, &result->film, NULL) == BP_OK)
         bp_keep_sums(result->film, file->path, err);
@@ -324,11 +354,15 @@ static BpStatus deliver(const BpCommandLine *line, const BpResultFile *file, con
     const double write_start = bp_clock_seconds();
     const bool keeps = end->reason == BP_STOP_NOT_YET && checkpoint->path[0] != '\0';
     if (keeps && !checkpoint->is_result) bp_checkpoint_write(checkpoint, result->film);
-    BP_TRY(bp_result_write(line, file, result->film, true, (BpTransfer)result->film->transfer,
-                           &result->scene->legend, err));
+    const BpStatus written = bp_result_write(line, file, result->film, true, (BpTransfer)result->film->transfer,
+                                             &result->scene->legend, err);
     result->times.write = bp_clock_seconds() - write_start;
-    if (line->stats != NULL) BP_TRY(bp_json_write(stats_json(result), line->stats, err));
-    if (!line->quiet) print_summary(result, rule, end);
+    /* A reader that has left takes the picture with it, but not the statistics. */
+    if (written != BP_OK && strcmp(file->path, "-") != 0) return written;
+    if (stats != NULL && json_array_append_new(stats, stats_json(result)) != 0)
+        return bp_fail(err, BP_ERR_MEMORY, "out of memory for the document %s", line->stats);
+    if (written != BP_OK) return written;
+    print_summary(line, result, rule, end);
     if (end->reason == BP_STOP_TIME && result->samples_per_pixel == 0)
         return bp_fail(err, BP_ERR_LIMIT,
                        "--time %g ran out before every pixel had a sample, so parts of %s are black: allow "
@@ -339,90 +373,208 @@ static BpStatus deliver(const BpCommandLine *line, const BpResultFile *file, con
     return BP_OK;
 }
 
-/* The next picture of the series. */
-static BpStatus render_picture(const BpCommandLine *line, BpSeries *series, BpError *err) {
-    BpStatus status = BP_OK;
-    const BpScene *scene = NULL;
-    BpRender *render = NULL;
-    BpDeviceInfo *devices = NULL;
-    BpWaiting *waiting = NULL;
+/* One scene of the run. */
+typedef struct Job {
+    const char *path; /* of the scene */
     BpResultFile file;
+    BpScene *own;   /* read for this job */
+    BpScene *scene; /* the same, or one of a series */
+    double load_seconds;
+} Job;
+
+/* What all scenes share. */
+typedef struct Run {
+    const BpCommandLine *line;
+    Job *jobs;
+    size_t count;
+    BpDeviceInfo *devices;
+    BpDevice **open; /* the same, open: kernels are built once where programs are equal */
+    size_t device_count;
+    json_t *stats; /* a list; NULL: none are wanted */
+    double start;  /* of the scene at hand, or of the command for the first one */
+} Run;
+
+/* Two scenes may have the same name in different folders. */
+static BpStatus check_names_differ(const Run *run, size_t job, BpError *err) {
+    const Job *own = &run->jobs[job];
+    const bool exists = bp_output_replaces(own->file.path);
+    for (size_t o = 0; o < job; ++o) {
+        const Job *other = &run->jobs[o];
+        if (strcmp(own->file.path, other->file.path) == 0 ||
+            (exists && bp_output_same(own->file.path, other->file.path, STDOUT_FILENO)))
+            return bp_fail(err, BP_ERR_USAGE,
+                           "%.300s and %.300s would both become %.300s; render one of them "
+                           "on its own, with another --output",
+                           other->path, own->path, own->file.path);
+    }
+    return BP_OK;
+}
+
+/* All scenes are read before the first is rendered, so that a mistake in the last is found at once. */
+static BpStatus load(Run *run, size_t number, BpError *err) {
+    Job *job = &run->jobs[number];
+    const double start = number == 0 ? run->start : bp_clock_seconds();
+    job->path = run->line->operands[number];
+    BP_TRY(bp_result_choose(run->line, job->path, &job->file, err));
+    BP_TRY(check_names_differ(run, number, err));
+    BpWaiting *waiting = bp_waiting_begin(run->line->quiet, "reading %s", job->path);
+    BpStatus status = bp_setup_scene(run->line, job->path, &job->own, err);
+    bp_waiting_end(waiting);
+    if (status != BP_OK) return status;
+    job->scene = job->own;
+    const BpCommandLine own = bp_result_line(run->line, &job->file);
+    status = bp_file_conflicts_check_scene(&own, NULL, job->scene, err);
+    job->load_seconds = bp_clock_seconds() - start;
+    return status;
+}
+
+static BpStatus open_devices(Run *run, BpError *err) {
+    run->open = calloc(run->device_count, sizeof *run->open);
+    if (run->open == NULL) return bp_fail(err, BP_ERR_MEMORY, "out of memory for a list of devices");
+    for (size_t d = 0; d < run->device_count; ++d)
+        BP_TRY(bp_device_open_part(&run->devices[d], run->line->threads, &run->open[d], err));
+    return BP_OK;
+}
+
+/* `resumed`: Optional. The film that the render goes on from, which decides what makes samples. */
+static BpStatus plan(const BpCommandLine *line, const Job *job, const BpCheckpoint *checkpoint, const BpFilm *resumed,
+                     BpRenderOptions *options, BpStopRule *rule, BpError *err) {
+    BP_TRY(bp_setup_options(line, job->scene, options, err));
+    BP_TRY(bp_setup_share(line, options, err));
+    bp_setup_warn(line, job->scene, options->precision);
+    /* Less noise in the same time on every scene that was measured: docs/ACCURACY.md. */
+    if (!bp_option_given(line, BP_OPTION_SAMPLER)) options->sampler = BP_SAMPLER_SOBOL;
+    options->features = job->file.format == BP_FORMAT_EXR || job->file.format == BP_FORMAT_BPA ||
+                        checkpoint->path[0] != '\0';
+    if (resumed != NULL) {
+        options->lamps = bp_render_lamps(job->scene, options); /* as films have it */
+        BP_TRY(bp_resume_options(line, resumed, options, err));
+    }
+    init_rule(line, job->scene, options, rule);
+    if (resumed != NULL) BP_TRY(bp_resume_rule(line, resumed, rule, err));
+    BP_TRY(check_adaptive(rule, err));
+    options->samples_per_pixel = bp_stop_first(rule);
+    return BP_OK;
+}
+
+static BpStatus render_one(Run *run, const BpCommandLine *line, const Job *job, BpError *err) {
+    BpStatus status = BP_OK;
+    BpRender *render = NULL;
+    BpWaiting *waiting = NULL;
     BpRenderOptions options;
-    BpSceneInfo info;
     BpStopRule rule;
     LoopEnd end;
     BpCheckpoint checkpoint;
     BpFilm *resumed = NULL;
-    RunResult result = {.scene_path = line->operands[0],
-                        .times.start = bp_clock_seconds(),
+    RunResult result = {.scene_path = job->path,
+                        .output = bp_result_name(&job->file),
+                        .scene = job->scene,
                         .options = &options,
+                        .times = {.start = run->start, .load = job->load_seconds},
                         .checkpoint = &checkpoint};
-
-    BP_TRY(bp_result_choose(line, line->operands[0], &file, err));
-    BP_TRY(bp_checkpoint_choose(line, &file, &checkpoint, err));
-    result.output = bp_result_name(&file);
-
-    waiting = bp_waiting_begin(line->quiet, "reading %s", line->operands[0]);
-    BP_TRY_GOTO(status, bp_series_scene(series, &scene, err), done);
-    bp_waiting_end(waiting);
-    waiting = NULL;
-    BP_TRY_GOTO(status, bp_file_conflicts_check_scene(line, file.path, scene, err), done);
+    BP_TRY(bp_checkpoint_choose(line, &job->file, &checkpoint, err));
     BP_TRY_GOTO(status, bp_resume_load(line, &resumed, err), done);
-    if (resumed != NULL) BP_TRY_GOTO(status, bp_resume_scene(line, resumed, series->scene, err), done);
-    result.scene = scene;
-    result.times.load = bp_clock_seconds() - result.times.start;
-    bp_scene_info(scene, &info);
-    BP_TRY_GOTO(status, bp_setup_options(line, scene, &options, err), done);
-    BP_TRY_GOTO(status, bp_setup_share(line, &options, err), done);
-    bp_setup_warn(line, scene, options.precision);
-    /* Less noise in the same time on every scene that was measured: docs/ACCURACY.md. */
-    if (!bp_option_given(line, BP_OPTION_SAMPLER)) options.sampler = BP_SAMPLER_SOBOL;
-    options.features =
-        file.format == BP_FORMAT_EXR || file.format == BP_FORMAT_BPA || checkpoint.path[0] != '\0';
-    if (resumed != NULL) {
-        options.lamps = bp_render_lamps(scene, &options); /* as films have it */
-        BP_TRY_GOTO(status, bp_resume_options(line, resumed, &options, err), done);
+    if (resumed != NULL) BP_TRY_GOTO(status, bp_resume_scene(line, resumed, job->scene, err), done);
+    BP_TRY_GOTO(status, plan(line, job, &checkpoint, resumed, &options, &rule, err), done);
+    if (run->devices == NULL)
+        BP_TRY_GOTO(status, bp_setup_devices(line, &run->devices, &run->device_count, err), done);
+    result.device_count = run->device_count;
+    waiting =
+        bp_waiting_begin(line->quiet, "preparing %zu sphere%s and the kernel for %s",
+                         job->scene->sphere_count, bp_plural(job->scene->sphere_count), run->devices[0].name);
+    if (run->open == NULL) {
+        BP_TRY_GOTO(status, bp_setup_self_test(line, run->devices, run->device_count, err), done);
+        BP_TRY_GOTO(status, open_devices(run, err), done);
     }
-    init_rule(line, scene, &options, &rule);
-    if (resumed != NULL) BP_TRY_GOTO(status, bp_resume_rule(line, resumed, &rule, err), done);
-    BP_TRY_GOTO(status, check_adaptive(&rule, err), done);
-    options.samples_per_pixel = bp_stop_first(&rule);
-
-    BP_TRY_GOTO(status, bp_setup_devices(line, &devices, &result.device_count, err), done);
-    waiting = bp_waiting_begin(line->quiet, "preparing %zu sphere%s and the kernel for %s", info.spheres,
-                               bp_plural(info.spheres), devices[0].name);
-    BP_TRY_GOTO(status, bp_setup_self_test(line, devices, result.device_count, err), done);
-    BP_TRY_GOTO(status, bp_render_create(scene, &options, devices, result.device_count, &render, err), done);
+    BP_TRY_GOTO(status, bp_render_create_on(job->scene, &options, run->open, run->device_count, &render, err),
+                done);
     bp_waiting_end(waiting);
     waiting = NULL;
-
     if (resumed != NULL) BP_TRY_GOTO(status, bp_render_resume(render, resumed, err), done);
     bp_film_destroy(&resumed);
-
     BP_TRY_GOTO(status, run_render(render, &rule, line->quiet, &checkpoint, &end, err), done);
-    status = deliver(line, &file, &rule, &end, &checkpoint, render, &result, err);
+    status = deliver(line, &job->file, &rule, &end, &checkpoint, render, &result, run->stats, err);
 done:
     bp_waiting_end(waiting);
     bp_film_destroy(&resumed);
     bp_render_destroy(&render);
-    free(devices);
+    return status;
+}
+
+/* {"renders": [...]} of several scenes, the document itself of one. */
+static BpStatus write_stats(const Run *run, BpError *err) {
+    json_t *root = run->count == 1 ? json_incref(json_array_get(run->stats, 0))
+                                   : json_pack("{s:O}", "renders", run->stats);
+    return bp_json_write(run->line, root, run->line->stats, err);
+}
+
+static void clear(Run *run) {
+    for (size_t j = 0; j < run->count && run->jobs != NULL; ++j) bp_scene_destroy(&run->jobs[j].own);
+    for (size_t d = 0; d < run->device_count && run->open != NULL; ++d)
+        if (run->open[d] != NULL) bp_device_close(&run->open[d]);
+    free(run->open);
+    free(run->devices);
+    free(run->jobs);
+    json_decref(run->stats);
+}
+
+/* One picture for each frame or each step of a turntable. */
+static BpStatus render_series(Run *run, BpError *err) {
+    BpSeries series = {0};
+    if (run->count > 1)
+        return bp_fail(err, BP_ERR_USAGE, "--frames and --turntable take one file, found %zu", run->count);
+    BpStatus status = bp_series_begin(run->line, &series, err);
+    while (status == BP_OK && series.next < series.count) {
+        BpCommandLine one;
+        Job job = {.path = run->line->operands[0]};
+        run->start = bp_clock_seconds();
+        BP_TRY_GOTO(status, bp_series_line(&series, &one, err), done);
+        BP_TRY_GOTO(status, bp_result_choose(&one, job.path, &job.file, err), done);
+        const BpScene *shown = NULL;
+        BP_TRY_GOTO(status, bp_series_scene(&series, &shown, err), done);
+        job.scene = series.scene;
+        const BpCommandLine own = bp_result_line(&one, &job.file);
+        BP_TRY_GOTO(status, bp_file_conflicts_check_scene(&own, NULL, job.scene, err), done);
+        job.load_seconds = bp_clock_seconds() - run->start;
+        status = render_one(run, &one, &job, err);
+    }
+done:
+    bp_series_end(&series);
     return status;
 }
 
 BpStatus bp_command_render(const BpCommandLine *line, BpError *err) {
-    BpSeries series;
-    BpStatus status = bp_series_begin(line, &series, err);
-    if (status == BP_OK && line->resume != NULL && series.count > 1)
-        status = bp_fail(
-            err, BP_ERR_USAGE,
-            "--resume goes on with one picture, and this command makes %llu; render the frame that was "
-            "begun alone, with --frame",
-            (unsigned long long)series.count);
-    while (status == BP_OK && series.next < series.count) {
-        BpCommandLine one;
-        status = bp_series_line(&series, &one, err);
-        if (status == BP_OK) status = render_picture(&one, &series, err);
+    BpStatus status = BP_OK;
+    Run run = {.line = line, .count = line->operand_count, .start = bp_clock_seconds()};
+    run.jobs = calloc(run.count, sizeof *run.jobs);
+    if (line->stats != NULL) run.stats = json_array();
+    if (run.jobs == NULL || (line->stats != NULL && run.stats == NULL)) {
+        status = bp_fail(err, BP_ERR_MEMORY, "out of memory for a list of scenes");
+        goto done;
     }
-    bp_series_end(&series);
+    if (line->resume != NULL && (run.count > 1 || bp_option_given(line, BP_OPTION_FRAMES) ||
+                                 bp_option_given(line, BP_OPTION_TURNTABLE))) {
+        status = bp_fail(err, BP_ERR_USAGE,
+                         "--resume goes on with one picture, and this command makes several; render the one that was "
+                         "begun alone, a frame with --frame");
+        goto done;
+    }
+    if (bp_option_given(line, BP_OPTION_FRAMES) || bp_option_given(line, BP_OPTION_TURNTABLE)) {
+        status = render_series(&run, err);
+        goto done;
+    }
+    if (line->stats != NULL) BP_TRY_GOTO(status, bp_line_check_output(line, line->stats, err), done);
+    for (size_t j = 0; j < run.count; ++j) BP_TRY_GOTO(status, load(&run, j, err), done);
+    for (size_t j = 0; j < run.count && status == BP_OK; ++j) {
+        status = render_one(&run, line, &run.jobs[j], err);
+        bp_scene_destroy(&run.jobs[j].own);
+        run.start = bp_clock_seconds();
+    }
+    if (json_array_size(run.stats) > 0) {
+        const BpStatus written = write_stats(&run, status == BP_OK ? err : NULL);
+        if (status == BP_OK) status = written;
+    }
+done:
+    clear(&run);
     return status;
 }

@@ -4,8 +4,8 @@
  * Knows: where relative paths begin in what is written.   Does not know: the grammar. */
 #include "commands.h"
 
-#include "base/output_file.h"
 #include "formats/scene_parse.h"
+#include "output.h"
 #include "scene/scene.h"
 #include "setup.h"
 
@@ -34,17 +34,20 @@ static BpStatus move_files(BpScene *scene, const char *from, const char *to, BpE
     return BP_OK;
 }
 
+static BpStatus print_scene(const void *scene, FILE *out, BpError *err) {
+    return bp_scene_print(scene, out, err);
+}
+
 BpStatus bp_command_scene(const BpCommandLine *line, BpError *err) {
     const char *const path = line->operands[0];
-    const bool to_stream = line->output == NULL || strcmp(line->output, "-") == 0;
+    const char *const to = line->output != NULL ? line->output : "-";
     BpScene *scene = NULL;
-    if (!to_stream) BP_TRY(bp_output_check(line->output, err));
+    BP_TRY(bp_line_check_output(line, to, err));
     BP_TRY(bp_setup_load(line, path, &scene, err));
     /* What goes to standard output is read again as seen from the current folder. */
     BpStatus status =
-        move_files(scene, strcmp(path, "-") == 0 ? "" : path, to_stream ? "" : line->output, err);
-    if (status == BP_OK)
-        status = to_stream ? bp_scene_print(scene, stdout, err) : bp_scene_write(scene, line->output, err);
+        move_files(scene, strcmp(path, "-") == 0 ? "" : path, strcmp(to, "-") == 0 ? "" : to, err);
+    if (status == BP_OK) status = bp_line_write(line, to, print_scene, scene, err);
     bp_scene_destroy(&scene);
     return status;
 }

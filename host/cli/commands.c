@@ -9,18 +9,20 @@
 const BpCommand bp_commands[] = {
     {
         .name = "render",
-        .operands = "SCENE",
+        .operands = "SCENE...",
         .operands_min = 1,
-        .operands_max = 1,
-        .summary = "render a scene to a picture",
+        .operands_max = SIZE_MAX,
+        .summary = "render scenes to pictures",
         .description =
-            "Renders SCENE, a JSON document (see scenes/README.md; \"-\" is standard input, for "
+            "Renders each SCENE, a JSON document (see scenes/README.md; \"-\" is standard input, for "
             "every command that takes a scene), or a file of particles (.xyz, .pdb, .cif, .gro, .dump, "
             ".lammpstrj, .data, .gsd, .csv, .ply, and .gz of each; see docs/PARTICLES.md). The picture is "
             "named after the scene and written "
-            "to the current folder, unless --output names another file. The ending selects the "
-            "format: .png, .ppm, .pfm, .exr (with layers for error, samples, depth, normal and "
-            "albedo), or .bpa, which keeps the sums of the samples for `ballpark merge`.\n"
+            "to the current folder, unless --output names another file or folder. The ending "
+            "selects the format: .png, .ppm, .pfm, .exr (with layers for noise, samples, depth, "
+            "normal and albedo), or .bpa, which keeps the sums of the samples for `ballpark "
+            "merge`. All scenes are read before the first is rendered; a kernel that several of "
+            "them share is built once.\n"
             "\n"
             "The first line reports noise relative to mean brightness (NRMSE). Halving the noise "
             "takes four times as long. With --error or --time, rendering stops at that noise or "
@@ -35,9 +37,11 @@ const BpCommand bp_commands[] = {
             "scene, seed and number of samples give the same picture bit for bit.",
         .examples = "  ballpark render cover.json                          to cover.png\n"
                     "  ballpark render cover.json --width 300 --spp 20     a quick look\n"
-                    "  ballpark render cover.json --error 1                until noise is 1 %\n"
-                    "  ballpark render cover.json --error 1 --adaptive     faster on most scenes\n"
-                    "  ballpark render cover.json --time 30 -o half.exr    for 30 seconds\n"
+                    "  ballpark render cover.json --error 1%               until noise is 1 %\n"
+                    "  ballpark render cover.json --error 1% --adaptive    faster on most scenes\n"
+                    "  ballpark render cover.json --time 2m -o two.exr     for two minutes\n"
+                    "  ballpark render cover.json --set camera.vfov=30     another field of view\n"
+                    "  ballpark render scenes/*.json -o pictures/          many scenes at once\n"
                     "  ballpark render cover.json --checkpoint 60 -o a.exr keeps its sums in a.bpa\n"
                     "  ballpark render cover.json --resume a.bpa -o a.exr  goes on from there\n"
                     "  ballpark render cover.json --share 1/8 -o 1.bpa     one of eight parts\n"
@@ -45,7 +49,7 @@ const BpCommand bp_commands[] = {
                     "  ballpark render protein.pdb                         a molecule, well placed and lit\n"
                     "  ballpark render run.gsd --frames ::10 -o run.png    run-0000.png, run-0010.png, ...\n"
                     "  ballpark render protein.pdb --turntable 36          ten degrees from one to the next\n"
-                    "  ballpark generate cover -o - | ballpark render - -o cover.png\n",
+                    "  ballpark generate cover | ballpark render - -o cover.png\n",
         .bit = BP_RENDER,
         .run = bp_command_render,
     },
@@ -118,11 +122,11 @@ const BpCommand bp_commands[] = {
             "what it changes. The last lines recommend a configuration for errors of 5 %, 1 % and 0.2 %, "
             "with the time at the scene's full size. -o writes all of it, with plots and pictures, as one "
             "self-contained HTML page.\n\n"
-            "--time is the time budget (default: 60 seconds); results are less precise with a small one. "
+            "Results are less precise with a small --time. "
             "--depth, --sampler, --precision, --math and --numerics set the configuration that the others "
             "are compared with. Ctrl-C stops early and prints the results so far.",
         .examples = "  ballpark cost cover.json\n"
-                    "  ballpark cost cover.json -o cost.html --time 300     more precise, as a page\n"
+                    "  ballpark cost cover.json -o cost.html --time 5m      more precise, as a page\n"
                     "  ballpark cost cover.json --csv - --width 300\n",
         .bit = BP_COST,
         .run = bp_command_cost,
@@ -180,10 +184,13 @@ const BpCommand bp_commands[] = {
         .operands_min = 1,
         .operands_max = 1,
         .summary = "write a scene: the book's cover, or a field of spheres",
-        .description = "cover: the cover of the book as a scene file; the same seed gives the same spheres "
-                       "on every machine. field: spheres with random positions, sizes and colours as a PLY "
-                       "file, for the \"clouds\" of a scene.",
-        .examples = "  ballpark generate cover -o cover.json\n"
+        .description =
+            "cover: the cover of the book as a scene file; the same seed gives the same spheres "
+            "on every machine. field: spheres with random positions, sizes and colours as a PLY "
+            "file, for the \"clouds\" of a scene. Both go to standard output if that is a pipe or a "
+            "file.",
+        .examples = "  ballpark generate cover                                     to cover.json\n"
+                    "  ballpark generate cover | ballpark render - -o cover.png\n"
                     "  ballpark generate cover --grid 50 --seed 7 -o wide.json     10,000 spheres\n"
                     "  ballpark generate field --count 10000000 -o field.ply\n",
         .bit = BP_GENERATE,

@@ -7,6 +7,8 @@
 #include "interrupt.h"
 #include "opencl/device_choose.h"
 
+#include "page.h"
+
 #include <dirent.h>
 #include <errno.h>
 #include <stdio.h>
@@ -124,13 +126,9 @@ static void leave(const char *folder, size_t number) {
  */
 
 static void name_broken(const BpBrokenDriver *driver) {
-    fputs("warning: the OpenCL driver ", stderr);
-    bp_show(driver->file, false, stderr);
-    fputs(" (", stderr);
-    bp_show(driver->library, false, stderr);
-    fputs(") is left out, as it ", stderr);
-    bp_show(driver->failure, false, stderr);
-    fputc('\n', stderr);
+    const BpCommandLine plain = {0};
+    bp_say(&plain, "warning: the OpenCL driver %s (%s) is left out, as it %s", driver->file, driver->library,
+           driver->failure);
 }
 
 /* Asks the drivers one by one; those that answer end up in the survey's folder, the others in its list. */

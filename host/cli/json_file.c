@@ -2,39 +2,29 @@
 #include "json_file.h"
 
 #include "base/json_memory.h"
-#include "base/output_file.h"
+#include "base/output_target.h"
+#include "output.h"
 
 #include <errno.h>
 #include <inttypes.h>
 #include <stdio.h>
 #include <string.h>
 
-static bool dump(const json_t *root, FILE *stream) {
-    return json_dumpf(root, stream, JSON_INDENT(2) | JSON_REAL_PRECISION(12)) == 0 &&
-           fputc('\n', stream) != EOF && fflush(stream) == 0;
+static BpStatus dump(const void *what, FILE *stream, BpError *err) {
+    const json_t *root = what;
+    errno = 0;
+    if (json_dumpf(root, stream, JSON_INDENT(2) | JSON_REAL_PRECISION(12)) == 0 &&
+        fputc('\n', stream) != EOF && fflush(stream) == 0)
+        return BP_OK;
+    return bp_fail(err, BP_ERR_FILE, "%s%s%s", stream == stdout ? "cannot write to standard output: " : "",
+                   strerror(errno), bp_output_remedy(errno));
 }
 
-BpStatus bp_json_write(json_t *root, const char *path, BpError *err) {
-    BpStatus status = BP_OK;
-    BpOutputFile file = {0};
+BpStatus bp_json_write(const BpCommandLine *line, json_t *root, const char *path, BpError *err) {
     /* An allocation may also have failed without an error, leaving a list incomplete. */
-    if (root == NULL || bp_json_memory_failed()) {
-        json_decref(root);
-        return bp_fail(err, BP_ERR_MEMORY, "out of memory for the document %s", path);
-    }
-    if (strcmp(path, "-") == 0) {
-        if (!dump(root, stdout))
-            status = bp_fail(err, BP_ERR_FILE, "cannot write to standard output: %s", strerror(errno));
-        goto done;
-    }
-    BP_TRY_GOTO(status, bp_output_open(path, &file, err), done);
-    if (!dump(root, file.stream)) {
-        status = bp_output_fail(err, "write", path, errno);
-        bp_output_discard(&file);
-        goto done;
-    }
-    status = bp_output_commit(&file, err);
-done:
+    const BpStatus status = root == NULL || bp_json_memory_failed()
+                                ? bp_fail(err, BP_ERR_MEMORY, "out of memory for the document %s", path)
+                                : bp_line_write(line, path, dump, root, err);
     json_decref(root);
     return status;
 }
@@ -44,10 +34,6 @@ json_t *bp_json_whole(uint64_t number) {
     if (number <= INT64_MAX) return json_integer((json_int_t)number);
     snprintf(text, sizeof text, "%" PRIu64, number);
     return json_string(text);
-}
-
-BpStatus bp_json_check(const char *path, BpError *err) {
-    return strcmp(path, "-") == 0 ? BP_OK : bp_output_check(path, err);
 }
 
 json_t *bp_json_join(json_t *root, json_t *part) {

@@ -5,13 +5,13 @@
 #ifndef BP_CLI_JSON_FILE_H
 #define BP_CLI_JSON_FILE_H
 
-#include "base/status.h"
+#include "options.h"
 
 #include <jansson.h>
 
 /* Writes `root`, indented, and releases it. "-": standard output. A NULL root is memory that ran out
  * (BP_ERR_MEMORY), so that the result of json_pack() can be passed on unchecked. */
-BpStatus bp_json_write(json_t *root, const char *path, BpError *err);
+BpStatus bp_json_write(const BpCommandLine *line, json_t *root, const char *path, BpError *err);
 
 /* A number of 64 bits, exact: jansson's integers have a sign, so from 2^63 on it is a text of decimal digits.
  */
@@ -20,8 +20,5 @@ json_t *bp_json_whole(uint64_t number);
 /* `root` with the members of `part` behind its own. Takes both over. NULL, when either is or memory ran out.
  */
 json_t *bp_json_join(json_t *root, json_t *part);
-
-/* Whether `path` can be written; before work begins. */
-BpStatus bp_json_check(const char *path, BpError *err);
 
 #endif

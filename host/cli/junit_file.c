@@ -2,8 +2,9 @@
 #include "junit_file.h"
 
 #include "base/json_memory.h"
-#include "base/output_file.h"
+#include "base/output_target.h"
 #include "base/shown.h"
+#include "output.h"
 
 #include <errno.h>
 #include <stdio.h>
@@ -99,7 +100,8 @@ static void print_suite(const json_t *suite, FILE *out) {
     fputs("  </testsuite>\n", out);
 }
 
-static bool print_suites(const json_t *suites, FILE *out) {
+static BpStatus print_suites(const void *what, FILE *out, BpError *err) {
+    const json_t *suites = what;
     size_t index;
     json_t *suite;
     fputs("<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n<testsuites>\n", out);
@@ -107,25 +109,15 @@ static bool print_suites(const json_t *suites, FILE *out) {
         print_suite(suite, out);
     }
     fputs("</testsuites>\n", out);
-    return fflush(out) == 0 && ferror(out) == 0;
+    if (fflush(out) == 0 && ferror(out) == 0) return BP_OK;
+    return bp_fail(err, BP_ERR_FILE, "%s%s%s", out == stdout ? "cannot write to standard output: " : "",
+                   strerror(errno), bp_output_remedy(errno));
 }
 
-BpStatus bp_junit_write(json_t *suites, const char *path, BpError *err) {
-    BpStatus status = BP_OK;
-    BpOutputFile file = {0};
-    if (suites == NULL || bp_json_memory_failed()) {
-        status = bp_fail(err, BP_ERR_MEMORY, "out of memory for the document %s", path);
-    } else if (strcmp(path, "-") == 0) {
-        if (!print_suites(suites, stdout))
-            status = bp_fail(err, BP_ERR_FILE, "cannot write to standard output: %s", strerror(errno));
-    } else if ((status = bp_output_open(path, &file, err)) == BP_OK) {
-        if (print_suites(suites, file.stream))
-            status = bp_output_commit(&file, err);
-        else {
-            status = bp_output_fail(err, "write", path, errno);
-            bp_output_discard(&file);
-        }
-    }
+BpStatus bp_junit_write(const BpCommandLine *line, json_t *suites, const char *path, BpError *err) {
+    const BpStatus status = suites == NULL || bp_json_memory_failed()
+                                ? bp_fail(err, BP_ERR_MEMORY, "out of memory for the document %s", path)
+                                : bp_line_write(line, path, print_suites, suites, err);
     json_decref(suites);
     return status;
 }

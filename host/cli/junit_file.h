@@ -9,11 +9,11 @@
 #ifndef BP_CLI_JUNIT_FILE_H
 #define BP_CLI_JUNIT_FILE_H
 
-#include "base/status.h"
+#include "options.h"
 
 #include <jansson.h>
 
 /* Writes the array `suites`, and releases it; NULL is memory that ran out. "-": standard output. */
-BpStatus bp_junit_write(json_t *suites, const char *path, BpError *err);
+BpStatus bp_junit_write(const BpCommandLine *line, json_t *suites, const char *path, BpError *err);
 
 #endif

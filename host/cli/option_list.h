@@ -21,8 +21,7 @@ enum {
     BP_SCENE = 1 << 8,
     /* All that trace paths. */
     BP_TRACERS = BP_RENDER | BP_CHECK | BP_EXPLAIN | BP_COST | BP_BENCH,
-    /* All that have something to say beside their result. */
-    BP_TALKERS = BP_TRACERS | BP_MERGE | BP_GENERATE | BP_SCENE,
+    BP_COMMANDS = BP_TRACERS | BP_MERGE | BP_DEVICES | BP_GENERATE | BP_SCENE, /* all that take options */
 };
 
 /* OPTION(number, name, letter or 0, commands, help, type, member of BpCommandLine, value). RENDER_OPTION is
@@ -32,6 +31,8 @@ enum {
  *   BP_FLAG                          bool: the option takes no value
  *   BP_WHOLE(shown, least, most)     uint32_t or uint64_t: a whole number
  *   BP_REAL(shown, above, most)      double: above the one, up to the other
+ *   BP_PERCENT(above, most)          double: the same, in percent; "1" and "1%" are the same
+ *   BP_TIME(above, most)             double: seconds; "90", "90s", "1.5m", "1h30m"
  *   BP_PIXEL(shown, most)            BpPixel: two whole numbers up to `most`
  *   BP_SIGNED(shown)                 int64_t: a whole number that may be negative
  *   BP_SLICE(shown)                  BpSlice: A:B:S
@@ -39,24 +40,23 @@ enum {
  *   BP_CHOICE(shown, names, first)   an enumeration with its names (base/names.h), from its value `first` on
  *   BP_WORD(word, ...)               const char *: one of these words
  *   BP_TEXT(shown)                   const char *: any text that is not empty
+ *   BP_TEXTS(shown)                  BpTexts: the same, and the option may be given several times
  *   BP_RESULT(shown)                 const char *: a file to write, which no other file of the run may be
- * A choice without a name to show ("") and a word are shown as all their words: robust|plain. */
+ * A choice without a name to show ("") and a word are shown as all their words: robust|plain. The help does
+ * not speak of single commands and of defaults: BP_OPTION_NOTES, below, does. */
 #define BP_OPTION_LIST(OPTION, RENDER_OPTION)                                                                \
     OPTION(OUTPUT, "output", 'o', BP_RENDER | BP_COST | BP_MERGE | BP_BENCH | BP_GENERATE | BP_SCENE,        \
            "where the result goes; \"-\" is standard output", const char *, output, BP_RESULT("FILE"))       \
-    RENDER_OPTION(SPP, "spp", 0, BP_RENDER | BP_CHECK,                                                       \
-                  "samples per pixel (default: render: the scene's number, check: 1024)", uint64_t,          \
-                  samples_per_pixel, BP_WHOLE("N", 1, BP_SPP_MAX))                                           \
+    RENDER_OPTION(SPP, "spp", 0, BP_RENDER | BP_CHECK, "samples per pixel", uint64_t, samples_per_pixel,     \
+                  BP_WHOLE("N", 1, BP_SPP_MAX))                                                              \
     OPTION(ERROR, "error", 0, BP_RENDER, "stop when the noise of the picture (NRMSE) is below PERCENT",      \
-           double, error_percent, BP_REAL("PERCENT", 0, 100))                                                \
-    OPTION(TIME, "time", 0, BP_RENDER | BP_COST | BP_BENCH,                                                  \
-           "time budget: stop after SECONDS (default: cost 60, bench 5 per scene)", double, time_seconds,    \
-           BP_REAL("SECONDS", 0, 1e7))                                                                       \
+           double, error_percent, BP_PERCENT(0, 100))                                                        \
+    OPTION(TIME, "time", 0, BP_RENDER | BP_COST | BP_BENCH, "time budget, such as 90, 90s, 2m or 1h30m",     \
+           double, time_seconds, BP_TIME(0, 1e7))                                                            \
     OPTION(WIDTH, "width", 0, BP_TRACERS, "width of the picture in pixels; the aspect ratio stays",          \
            uint32_t, width, BP_WHOLE("N", 1, BP_PICTURE_SIDE_MAX))                                           \
     OPTION(FRAME, "frame", 0, BP_TRACERS | BP_SCENE,                                                         \
-           "which frame of a file of particles; 0: the first (default), -1: the last", int64_t, frame,       \
-           BP_SIGNED("N"))                                                                                   \
+           "which frame of a file of particles; 0: the first, -1: the last", int64_t, frame, BP_SIGNED("N")) \
     OPTION(FRAMES, "frames", 0, BP_RENDER,                                                                   \
            "a numbered picture of each of these frames, by one camera and one range of colours; as in "      \
            "Python, from A up to but without B, every S-th",                                                 \
@@ -70,28 +70,34 @@ enum {
     RENDER_OPTION(DEPTH, "depth", 0, BP_TRACERS,                                                             \
                   "maximum number of ray segments per path; 0: black, 1: only sky and lamps", uint32_t,      \
                   max_depth, BP_WHOLE("N", 0, BP_DEPTH_MAX))                                                 \
+    OPTION(SET, "set", 0, BP_TRACERS | BP_SCENE,                                                             \
+           "override a member of the scene, such as camera.vfov=30 or spheres[0].radius=2; the value is "    \
+           "JSON, null removes the member; may be repeated",                                                 \
+           BpTexts, set, BP_TEXTS("MEMBER=VALUE"))                                                           \
+    OPTION(FRESNEL, "fresnel", 0, BP_RENDER | BP_CHECK | BP_EXPLAIN | BP_BENCH,                              \
+           "reflection of glass: the book's approximation, or Fresnel's equations", const char *, fresnel,   \
+           BP_WORD("schlick", "exact"))                                                                      \
     RENDER_OPTION(SEED, "seed", 0, BP_TRACERS | BP_GENERATE, "random seed, 64 bits, decimal or 0x...",       \
                   uint64_t, seed, BP_WHOLE("N", 0, UINT64_MAX))                                              \
     RENDER_OPTION(FIRST_SAMPLE, "first-sample", 0, BP_RENDER | BP_EXPLAIN,                                   \
-                  "number of the first sample, for renders to be merged; explain: which sample to follow",   \
-                  uint64_t, first_sample, BP_WHOLE("N", 0, BP_SAMPLE_NUMBERS - 1))                           \
+                  "number of the first sample, for renders to be merged", uint64_t, first_sample,            \
+                  BP_WHOLE("N", 0, BP_SAMPLE_NUMBERS - 1))                                                   \
     OPTION(DEVICE, "device", 0, BP_TRACERS,                                                                  \
            "device number, part of its name or driver version, gpu, cpu or all (see `ballpark devices`)",    \
            const char *, device, BP_TEXT("N|NAME|all"))                                                      \
-    RENDER_OPTION(PRECISION, "precision", 0, BP_TRACERS,                                                     \
-                  "floating-point precision of the kernel (default: single)", BpPrecision, precision,        \
-                  BP_CHOICE("", bp_precision_names, 0))                                                      \
-    RENDER_OPTION(MATH, "math", 0, BP_TRACERS, "fast: the compiler may round differently (default: strict)", \
-                  BpMath, math, BP_CHOICE("", bp_math_names, 0))                                             \
-    RENDER_OPTION(NUMERICS, "numerics", 0, BP_TRACERS,                                                       \
-                  "plain: faster, wrong at extreme scales (default: robust)", BpNumerics, numerics,          \
-                  BP_CHOICE("", bp_numerics_names, 0))                                                       \
+    RENDER_OPTION(THREADS, "threads", 0, BP_TRACERS,                                                         \
+                  "how many threads of a processor to use at most, as far as its driver can divide it",      \
+                  uint32_t, threads, BP_WHOLE("N", 1, 65536))                                                \
+    RENDER_OPTION(PRECISION, "precision", 0, BP_TRACERS, "floating-point precision of the kernel",           \
+                  BpPrecision, precision, BP_CHOICE("", bp_precision_names, 0))                              \
+    RENDER_OPTION(MATH, "math", 0, BP_TRACERS, "fast: the compiler may round differently", BpMath, math,     \
+                  BP_CHOICE("", bp_math_names, 0))                                                           \
+    RENDER_OPTION(NUMERICS, "numerics", 0, BP_TRACERS, "plain: faster, wrong at extreme scales", BpNumerics, \
+                  numerics, BP_CHOICE("", bp_numerics_names, 0))                                             \
     RENDER_OPTION(SAMPLER, "sampler", 0, BP_RENDER | BP_EXPLAIN | BP_COST | BP_BENCH,                        \
-                  "sample sequence (default: sobol, less noise; bench: independent)", BpSampler, sampler,    \
+                  "sample sequence; sobol has less noise", BpSampler, sampler,                               \
                   BP_CHOICE("", bp_sampler_names, 0))                                                        \
-    RENDER_OPTION(LAMPS, "lamps", 0, BP_TRACERS,                                                             \
-                  "off: paths find lamps by chance only, for comparison (default: on where it helps; "       \
-                  "check: off, as in the reference)",                                                        \
+    RENDER_OPTION(LAMPS, "lamps", 0, BP_TRACERS, "off: paths find lamps by chance only, for comparison",     \
                   BpLamps, lamps, BP_CHOICE("", bp_lamps_names, 0))                                          \
     RENDER_OPTION(ADAPTIVE, "adaptive", 0, BP_RENDER,                                                        \
                   "give noisy pixels more samples and the others fewer; --spp is then the mean", bool,       \
@@ -100,13 +106,11 @@ enum {
            const char *, effects, BP_WORD("all"))                                                            \
     RENDER_OPTION(KERNEL, "kernel", 0, BP_TRACERS, "kernel variant; does not change the picture",            \
                   BpKernelForm, kernel, BP_CHOICE("", bp_kernel_names, BP_KERNEL_SAMPLE))                    \
-    OPTION(TRANSFER, "transfer", 0, BP_RENDER | BP_MERGE,                                                    \
-           "tone curve of 8-bit output (default: the scene's)", BpTransfer, transfer,                        \
-           BP_CHOICE("", bp_transfer_names, 0))                                                              \
-    OPTION(FORMAT, "format", 0, BP_RENDER | BP_MERGE,                                                        \
-           "png, ppm, ppm-ascii, pfm, exr or bpa (default: by the ending of FILE)", BpFormat, format,        \
-           BP_CHOICE("FORMAT", bp_format_names, 0))                                                          \
-    OPTION(ERROR_MAP, "error-map", 0, BP_RENDER | BP_MERGE, "write a heat map of each pixel's error",        \
+    OPTION(TRANSFER, "transfer", 0, BP_RENDER | BP_MERGE, "tone curve of 8-bit output", BpTransfer,          \
+           transfer, BP_CHOICE("", bp_transfer_names, 0))                                                    \
+    OPTION(FORMAT, "format", 0, BP_RENDER | BP_MERGE, "png, ppm, ppm-ascii, pfm, exr or bpa", BpFormat,      \
+           format, BP_CHOICE("FORMAT", bp_format_names, 0))                                                  \
+    OPTION(ERROR_MAP, "error-map", 0, BP_RENDER | BP_MERGE, "write a heat map of each pixel's noise",        \
            const char *, error_map, BP_RESULT("FILE.png"))                                                   \
     OPTION(STATS, "stats", 0, BP_RENDER,                                                                     \
            "write times, counts and noise as JSON; \"-\" is standard output; a seed of 2^63 or more is a "   \
@@ -137,29 +141,85 @@ enum {
            suite, BP_FLAG)                                                                                   \
     OPTION(BITS, "bits", 0, BP_CHECK, "compare the device's pictures with recorded ones, bit for bit", bool, \
            bits, BP_FLAG)                                                                                    \
-    OPTION(MARGIN, "margin", 0, BP_CHECK,                                                                    \
-           "agree only if brightness is shown to be equal within PERCENT (default: 0.5, suite 1)", double,   \
-           margin_percent, BP_REAL("PERCENT", 0, 100))                                                       \
+    OPTION(MARGIN, "margin", 0, BP_CHECK, "agree only if brightness is shown to be equal within PERCENT",    \
+           double, margin_percent, BP_PERCENT(0, 100))                                                       \
     OPTION(TIMEOUT, "timeout", 0, BP_CHECK | BP_DEVICES,                                                     \
-           "time per device; check judges what there is by then (default: no limit; 20 to list devices)",    \
-           double, timeout_seconds, BP_REAL("SECONDS", 0, 1e7))                                              \
+           "time per device, such as 90, 90s or 2m; check judges what there is by then", double,             \
+           timeout_seconds, BP_TIME(0, 1e7))                                                                 \
     OPTION(AGAINST, "against", 0, BP_CHECK,                                                                  \
            "compare with an earlier check, the FILE of its --json: regressions, other drivers",              \
            const char *, against, BP_TEXT("FILE"))                                                           \
     OPTION(JUNIT, "junit", 0, BP_CHECK,                                                                      \
            "write the results as JUnit's XML, for continuous integration; \"-\" is standard output",         \
            const char *, junit, BP_RESULT("FILE"))                                                           \
-    OPTION(GRID, "grid", 0, BP_GENERATE, "half the side of the square of small spheres (default: 11)",       \
-           uint32_t, grid, BP_WHOLE("G", 0, 5000))                                                           \
-    OPTION(COUNT, "count", 0, BP_GENERATE, "number of spheres in a field (default: 1000000)", uint64_t,      \
-           count, BP_WHOLE("N", 1, BP_SPHERES_MAX))                                                          \
-    OPTION(EDITION, "edition", 0, BP_GENERATE, "edition of the book (default: 4)", const char *, edition,    \
+    OPTION(GRID, "grid", 0, BP_GENERATE, "half the side of the square of small spheres", uint32_t, grid,     \
+           BP_WHOLE("G", 0, 5000))                                                                           \
+    OPTION(COUNT, "count", 0, BP_GENERATE, "number of spheres in a field", uint64_t, count,                  \
+           BP_WHOLE("N", 1, BP_SPHERES_MAX))                                                                 \
+    OPTION(EDITION, "edition", 0, BP_GENERATE, "edition of the book", const char *, edition,                 \
            BP_WORD("1", "3", "3rust", "4"))                                                                  \
-    OPTION(ROUNDS, "rounds", 0, BP_BENCH, "how often each scene is measured (default: 5)", uint32_t, rounds, \
+    OPTION(ROUNDS, "rounds", 0, BP_BENCH, "how often each scene is measured", uint32_t, rounds,              \
            BP_WHOLE("N", 1, 1000))                                                                           \
-    OPTION(QUIET, "quiet", 'q', BP_TALKERS, "print errors only", bool, quiet, BP_FLAG)                       \
+    OPTION(NO_CLOBBER, "no-clobber", 0, BP_COMMANDS, "refuse to overwrite files", bool, no_clobber, BP_FLAG) \
+    OPTION(WIDE, "wide", 0, BP_COMMANDS, "do not fold long lines to the width of the terminal", bool, wide,  \
+           BP_FLAG)                                                                                          \
+    OPTION(QUIET, "quiet", 'q', BP_COMMANDS, "print errors only", bool, quiet, BP_FLAG)                      \
     /* Not of commands: bp_command_line_parse() knows where these two may stand. */                          \
     OPTION(HELP, "help", 'h', 0, "print this help", bool, help, BP_FLAG)                                     \
     OPTION(VERSION, "version", 'V', 0, "print version and commit", bool, version, BP_FLAG)
+
+/* What the help of some commands says of an option: NOTE(number, commands, help, default). `help` takes the
+ * place of the text above unless it is NULL; `default` is NULL where there is none to tell. Every pair of a
+ * command and an option stands in one row at most. */
+#define BP_OPTION_NOTES(NOTE)                                                                                \
+    NOTE(OUTPUT, BP_RENDER,                                                                                  \
+         "where the picture goes: a file, a folder for pictures that are named after their scenes, or "      \
+         "\"-\" for standard output",                                                                        \
+         "the scene's name, in the current folder")                                                          \
+    NOTE(OUTPUT, BP_COST, "write the whole study as an HTML page; \"-\" is standard output", NULL)           \
+    NOTE(OUTPUT, BP_BENCH, "write the fixed scenes to this folder, and measure nothing", NULL)               \
+    NOTE(OUTPUT, BP_GENERATE, NULL, "cover.json or field.ply; standard output if that is a pipe or a file")  \
+    NOTE(OUTPUT, BP_SCENE, "where the document goes", "standard output")                                     \
+    NOTE(FRAME, BP_TRACERS | BP_SCENE, NULL, "0")                                                            \
+    NOTE(LAMPS, BP_TRACERS & ~BP_CHECK, NULL, "on where it helps")                                            \
+    NOTE(LAMPS, BP_CHECK, NULL, "off, as in the reference")                                                  \
+    NOTE(SPP, BP_RENDER, NULL, "the scene's number")                                                         \
+    NOTE(SPP, BP_CHECK, NULL, "1024")                                                                        \
+    NOTE(ERROR, BP_RENDER, NULL, "no such limit")                                                            \
+    NOTE(TIME, BP_RENDER, "stop after this time, such as 90, 90s, 2m or 1h30m", "no such limit")             \
+    NOTE(TIME, BP_COST, NULL, "1m")                                                                          \
+    NOTE(TIME, BP_BENCH, "tracing time per scene, over all rounds, such as 90, 90s or 2m", "5s")             \
+    NOTE(WIDTH, BP_RENDER | BP_BENCH, NULL, "the scene's width")                                             \
+    NOTE(WIDTH, BP_CHECK, NULL, "64, or the scene's width if that is less")                                  \
+    NOTE(WIDTH, BP_COST, NULL, "240, or the scene's width if that is less")                                  \
+    NOTE(WIDTH, BP_EXPLAIN, NULL,                                                                            \
+         "the scene's width; with --measure 400, or the scene's width if that is less")                      \
+    NOTE(DEPTH, BP_TRACERS, NULL, "the scene's depth")                                                       \
+    NOTE(FRESNEL, BP_RENDER | BP_CHECK | BP_EXPLAIN | BP_BENCH | BP_SCENE, NULL, "each material's own")      \
+    NOTE(SEED, BP_TRACERS, NULL, "0")                                                                        \
+    NOTE(SEED, BP_GENERATE, NULL, "1")                                                                       \
+    NOTE(FIRST_SAMPLE, BP_RENDER, NULL, "0")                                                                 \
+    NOTE(FIRST_SAMPLE, BP_EXPLAIN, "which sample to follow", "0")                                            \
+    NOTE(DEVICE, BP_RENDER | BP_CHECK | BP_BENCH, NULL, "a GPU if there is one, otherwise a CPU")            \
+    NOTE(DEVICE, BP_EXPLAIN | BP_COST,                                                                       \
+         "device number, part of its name or driver version, gpu or cpu (see `ballpark devices`)",           \
+         "a GPU if there is one, otherwise a CPU")                                                           \
+    NOTE(THREADS, BP_TRACERS, NULL, "all")                                                                   \
+    NOTE(PRECISION, BP_TRACERS, NULL, "single")                                                              \
+    NOTE(MATH, BP_TRACERS, NULL, "strict")                                                                   \
+    NOTE(NUMERICS, BP_TRACERS, NULL, "robust")                                                               \
+    NOTE(SAMPLER, BP_RENDER | BP_EXPLAIN | BP_COST, NULL, "sobol")                                           \
+    NOTE(SAMPLER, BP_BENCH, NULL, "independent")                                                             \
+    NOTE(KERNEL, BP_TRACERS, NULL, "packet on a CPU, sample elsewhere")                                      \
+    NOTE(TRANSFER, BP_RENDER, NULL, "the scene's")                                                           \
+    NOTE(TRANSFER, BP_MERGE, NULL, "that of the first file's scene")                                         \
+    NOTE(FORMAT, BP_RENDER | BP_MERGE, NULL, "by the ending of FILE, otherwise png")                         \
+    NOTE(MARGIN, BP_CHECK, NULL, "0.5%, with --suite 1%")                                                    \
+    NOTE(TIMEOUT, BP_CHECK, NULL, "no limit; 20s to list devices")                                           \
+    NOTE(TIMEOUT, BP_DEVICES, "time for the drivers to answer, such as 20 or 20s", "20s")                    \
+    NOTE(GRID, BP_GENERATE, NULL, "11")                                                                      \
+    NOTE(COUNT, BP_GENERATE, NULL, "1000000")                                                                \
+    NOTE(EDITION, BP_GENERATE, NULL, "4")                                                                    \
+    NOTE(ROUNDS, BP_BENCH, NULL, "5")
 
 #endif

@@ -14,11 +14,14 @@ typedef enum ValueKind {
     FLAG,
     WHOLE,
     REAL,
+    PERCENT,
+    TIME,
     PIXEL,
     PART,
     CHOICE,
     WORD,
     TEXT,
+    TEXTS,
     RESULT,
     SIGNED,
     SLICE
@@ -41,6 +44,8 @@ typedef struct OptionRow {
 #define BP_FLAG .kind = FLAG, .shown = ""
 #define BP_WHOLE(name, low, high) .kind = WHOLE, .shown = (name), .least = (low), .most = (high)
 #define BP_REAL(name, low, high) .kind = REAL, .shown = (name), .above = (low), .at_most = (high)
+#define BP_PERCENT(low, high) .kind = PERCENT, .shown = "PERCENT", .above = (low), .at_most = (high)
+#define BP_TIME(low, high) .kind = TIME, .shown = "TIME", .above = (low), .at_most = (high)
 #define BP_PIXEL(name, high) .kind = PIXEL, .shown = (name), .most = (high)
 #define BP_PART(name) .kind = PART, .shown = (name)
 #define BP_CHOICE(name, names, from)                                                                         \
@@ -52,6 +57,7 @@ typedef struct OptionRow {
 #define BP_SIGNED(name) .kind = SIGNED, .shown = (name)
 #define BP_SLICE(name) .kind = SLICE, .shown = (name)
 #define BP_TEXT(name) .kind = TEXT, .shown = (name)
+#define BP_TEXTS(name) .kind = TEXTS, .shown = (name)
 #define BP_RESULT(name) .kind = RESULT, .shown = (name)
 
 static const OptionRow rows[BP_OPTION_NUMBER] = {
@@ -70,8 +76,27 @@ static const OptionRow rows[BP_OPTION_NUMBER] = {
 const char *bp_option_name(BpOption option) {
     return rows[option].name;
 }
-const char *bp_option_help(BpOption option) {
-    return rows[option].help;
+const char *bp_option_help(BpOption option, const BpCommand *command, char *text, size_t size) {
+    static const struct {
+        BpOption option;
+        unsigned commands;
+        const char *help, *usual;
+    } notes[] = {
+#define NOTE(number, takers, help, usual) {BP_OPTION_##number, (takers), (help), (usual)},
+        BP_OPTION_NOTES(NOTE)
+#undef NOTE
+    };
+    const char *help = rows[option].help, *usual = NULL;
+    for (size_t n = 0; n < sizeof notes / sizeof notes[0]; ++n) {
+        if (notes[n].option != option || (notes[n].commands & command->bit) == 0) continue;
+        if (notes[n].help != NULL) help = notes[n].help;
+        usual = notes[n].usual;
+    }
+    if (usual != NULL)
+        snprintf(text, size, "%s (default: %s)", help, usual);
+    else
+        snprintf(text, size, "%s", help);
+    return text;
 }
 char bp_option_letter(BpOption option) {
     return rows[option].letter;
@@ -125,6 +150,12 @@ BpStatus bp_option_store(BpOption option, const char *text, BpCommandLine *line,
     case REAL:
         BP_TRY(bp_value_real(name, text, row->above, row->at_most, member, err));
         break;
+    case PERCENT:
+        BP_TRY(bp_value_percent(name, text, row->above, row->at_most, member, err));
+        break;
+    case TIME:
+        BP_TRY(bp_value_time(name, text, row->above, row->at_most, member, err));
+        break;
     case PIXEL: {
         BpPixel *pixel = member;
         BP_TRY(bp_value_pair(name, text, row->most, &pixel->x, &pixel->y, err));
@@ -151,6 +182,14 @@ BpStatus bp_option_store(BpOption option, const char *text, BpCommandLine *line,
         BP_TRY(bp_value_choice(name, text, row->words, word_count, &choice, err));
         memcpy(member, &row->words[choice], sizeof(const char *));
         break;
+    case TEXTS: {
+        BpTexts *texts = member;
+        if (texts->count == BP_TEXTS_MAX)
+            return bp_fail(err, BP_ERR_USAGE, "%s: found more than %d of them, expected fewer", name,
+                           BP_TEXTS_MAX);
+        texts->list[texts->count++] = text;
+        break;
+    }
     case TEXT:
     case RESULT:
         memcpy(member, &text, sizeof text);

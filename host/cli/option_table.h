@@ -14,8 +14,9 @@
 enum { BP_OPTION_LONG = 256 };
 
 const char *bp_option_name(BpOption option); /* "spp" */
-const char *bp_option_help(BpOption option); /* a line or two */
-char bp_option_letter(BpOption option);      /* 'o', or 0 */
+/* A line or two for the help of `command`, with its default, in `text`, which it returns. */
+const char *bp_option_help(BpOption option, const BpCommand *command, char *text, size_t size);
+char bp_option_letter(BpOption option); /* 'o', or 0 */
 
 /* What the help calls the value, in `text`, which it returns: "N", "robust|plain"; "" for a flag. */
 const char *bp_option_metavar(BpOption option, char *text, size_t size);

@@ -53,9 +53,12 @@ static BpStatus check_taken(const BpCommandLine *line, BpOption option, const ch
 
 static BpStatus check_operands(const BpCommandLine *line, BpError *err) {
     const BpCommand *command = line->command;
+    /* One of "SCENE..." is a SCENE. */
+    const char *dots = strstr(command->operands, "...");
+    const int length = dots != NULL ? (int)(dots - command->operands) : (int)strlen(command->operands);
     if (line->operand_count < command->operands_min)
-        return bp_fail(err, BP_ERR_USAGE, "ballpark %s: missing %s; see `ballpark help %s`", command->name,
-                       command->operands, command->name);
+        return bp_fail(err, BP_ERR_USAGE, "ballpark %s: missing %.*s; see `ballpark help %s`", command->name,
+                       length, command->operands, command->name);
     if (line->operand_count > command->operands_max) {
         const char *extra = line->operands[command->operands_max];
         if (command->operands_max == 0)
@@ -68,8 +71,8 @@ static BpStatus check_operands(const BpCommandLine *line, BpError *err) {
     size_t from_input = 0;
     for (size_t i = 0; i < line->operand_count; ++i) {
         if (line->operands[i][0] == '\0')
-            return bp_fail(err, BP_ERR_USAGE, "ballpark %s: expected %s, found an empty name", command->name,
-                           command->operands);
+            return bp_fail(err, BP_ERR_USAGE, "ballpark %s: expected %.*s, found an empty name",
+                           command->name, length, command->operands);
         from_input += strcmp(line->operands[i], "-") == 0;
     }
     if (from_input > 1)

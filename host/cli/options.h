@@ -38,6 +38,13 @@ typedef struct BpShare {
     uint32_t number, count;
 } BpShare;
 
+/* What an option that may be repeated was given, in order. */
+enum { BP_TEXTS_MAX = 256 };
+typedef struct BpTexts {
+    const char *list[BP_TEXTS_MAX];
+    size_t count;
+} BpTexts;
+
 /* What the command line says: a member for each option, as option_list.h declares it. Every member is
  * checked; one whose option was not given is 0, NULL or the enumeration's first value, and bp_option_given()
  * tells. Texts point into argv, or are static. */

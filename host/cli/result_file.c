@@ -1,20 +1,22 @@
 /* result_file.c: see result_file.h. */
 #include "result_file.h"
 
+#include "commands.h"
 #include "file_conflicts.h"
 
 #include "base/format.h"
-#include "base/output_file.h"
 #include "film/film_file.h"
 #include "image/color_bar.h"
 #include "image/error_map.h"
 #include "image/image.h"
-#include "json_file.h"
 #include "keep_sums.h"
+#include "output.h"
+#include "page.h"
 
 #include <math.h>
 #include <stdio.h>
 #include <string.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
 static const char *format_ending(BpFormat format) {
@@ -34,10 +36,12 @@ static const char *format_ending(BpFormat format) {
     return "";
 }
 
-/* The last part of `path` with another ending, in the current folder. */
-static BpStatus default_name(const char *path, BpFormat format, BpResultFile *result, BpError *err) {
-    const char *base = strrchr(path, '/');
-    base = base == NULL ? path : base + 1;
+/* The last part of `source`, without its ending, and `ending`: in `folder`, or in the current one ("").
+ */
+static BpStatus name_after(const char *source, const char *folder, const char *ending, char path[4096],
+                           BpError *err) {
+    const char *base = strrchr(source, '/');
+    base = base == NULL ? source : base + 1;
     int stem = (int)strlen(base);
     if (stem > 3 && strcmp(base + stem - 3, ".gz") == 0) stem -= 3; /* protein.pdb.gz becomes protein.png */
     for (int i = stem - 1; i > 0; i--) {
@@ -45,26 +49,47 @@ static BpStatus default_name(const char *path, BpFormat format, BpResultFile *re
         stem = i;
         break;
     }
-    const int length =
-        snprintf(result->path, sizeof result->path, "%.*s%s", stem, base, format_ending(format));
-    if (length >= (int)sizeof result->path)
-        return bp_fail(err, BP_ERR_FILE, "the name %.200s... is too long", base);
+    const size_t end = strlen(folder);
+    const char *slash = end == 0 || folder[end - 1] == '/' ? "" : "/";
+    const int length = snprintf(path, 4096, "%s%s%.*s%s", folder, slash, stem, base, ending);
+    if (length >= 4096) return bp_fail(err, BP_ERR_FILE, "the name %.200s... is too long", base);
     return BP_OK;
 }
 
-static BpStatus choose_output(const BpCommandLine *line, const char *default_path, BpResultFile *result,
+static bool renders(const BpCommandLine *line) {
+    return line->command->bit == BP_RENDER;
+}
+
+static bool is_folder(const char *path) {
+    struct stat info;
+    const size_t length = strlen(path);
+    return (length > 0 && path[length - 1] == '/') || (stat(path, &info) == 0 && S_ISDIR(info.st_mode));
+}
+
+/* Whether the option names a folder for files that are named after their scenes; one file would not do for
+ * several. */
+static BpStatus find_folder(const BpCommandLine *line, const char *option, const char *path, bool *folder,
+                            BpError *err) {
+    *folder = renders(line) && is_folder(path);
+    if (*folder || !renders(line) || line->operand_count < 2) return BP_OK;
+    return bp_fail(err, BP_ERR_USAGE,
+                   "%s %.400s: %zu scenes need a file each; name a folder that exists, or leave %s out",
+                   option, path, line->operand_count, option);
+}
+
+static BpStatus choose_output(const BpCommandLine *line, const char *source, BpResultFile *result,
                               BpError *err) {
     const bool has_format = bp_option_given(line, BP_OPTION_FORMAT);
+    bool folder = false;
     result->format = has_format ? line->format : BP_FORMAT_PNG;
-    if (line->output == NULL && strcmp(default_path, "-") == 0)
+    if (line->output != NULL) BP_TRY(find_folder(line, "--output", line->output, &folder, err));
+    if ((line->output == NULL || folder) && strcmp(source, "-") == 0)
         return bp_fail(
             err, BP_ERR_USAGE,
             "a scene from standard input has no name for the picture; give one with --output FILE");
-    if (line->output == NULL) {
-        BP_TRY(default_name(default_path, result->format, result, err));
-        BP_TRY(bp_file_conflicts_check(line, result->path, err));
-        return bp_output_check(result->path, err);
-    }
+    if (line->output == NULL || folder)
+        return name_after(source, folder ? line->output : "", format_ending(result->format), result->path,
+                          err);
     const size_t length = strlen(line->output);
     if (length >= sizeof result->path)
         return bp_fail(err, BP_ERR_FILE, "the path after --output is too long");
@@ -81,50 +106,94 @@ static BpStatus choose_output(const BpCommandLine *line, const char *default_pat
             err, BP_ERR_USAGE,
             "--output %.400s: unknown ending; use .png, .ppm, .pfm, .exr or .bpa, or give --format",
             line->output);
-    return bp_output_check(result->path, err);
+    return BP_OK;
 }
 
-BpStatus bp_result_choose(const BpCommandLine *line, const char *default_path, BpResultFile *result,
-                          BpError *err) {
-    BP_TRY(choose_output(line, default_path, result, err));
-    if (line->stats != NULL) BP_TRY(bp_json_check(line->stats, err));
-    if (line->error_map != NULL) {
-        BpFormat format;
-        if (!bp_format_from_path(line->error_map, &format) || format != BP_FORMAT_PNG)
-            return bp_fail(err, BP_ERR_USAGE, "--error-map %.400s: expected a name that ends in .png",
-                           line->error_map);
-        BP_TRY(bp_output_check(line->error_map, err));
+static BpStatus choose_error_map(const BpCommandLine *line, const char *source, BpResultFile *result,
+                                 BpError *err) {
+    BpFormat format;
+    bool folder = false;
+    result->error_map[0] = '\0';
+    if (line->error_map == NULL) return BP_OK;
+    BP_TRY(find_folder(line, "--error-map", line->error_map, &folder, err));
+    if (folder) return name_after(source, line->error_map, "-error.png", result->error_map, err);
+    if (!bp_format_from_path(line->error_map, &format) || format != BP_FORMAT_PNG)
+        return bp_fail(err, BP_ERR_USAGE, "--error-map %.400s: expected a name that ends in .png",
+                       line->error_map);
+    const int length = snprintf(result->error_map, sizeof result->error_map, "%s", line->error_map);
+    if (length < (int)sizeof result->error_map) return BP_OK;
+    return bp_fail(err, BP_ERR_FILE, "the path after --error-map is too long");
+}
+
+BpCommandLine bp_result_line(const BpCommandLine *line, const BpResultFile *result) {
+    BpCommandLine own = *line;
+    own.output = result->path;
+    own.error_map = result->error_map[0] != '\0' ? result->error_map : NULL;
+    return own;
+}
+
+BpStatus bp_result_choose(const BpCommandLine *line, const char *source, BpResultFile *result, BpError *err) {
+    BP_TRY(choose_output(line, source, result, err));
+    BP_TRY(choose_error_map(line, source, result, err));
+    const BpCommandLine own = bp_result_line(line, result);
+    /* What the command line names itself has been compared already, and its messages name the options. */
+    if (line->output == NULL) {
+        BpCommandLine unnamed = own;
+        unnamed.output = NULL;
+        BP_TRY(bp_file_conflicts_check(&unnamed, result->path, err));
+    } else {
+        BP_TRY(bp_file_conflicts_check(&own, NULL, err));
     }
-    return BP_OK;
+    BP_TRY(bp_line_check_output(line, result->path, err));
+    return own.error_map != NULL ? bp_line_check_output(line, own.error_map, err) : BP_OK;
+}
+
+typedef struct Printed {
+    const BpPicture *picture;
+    BpFormat format;
+    BpTransfer transfer;
+} Printed;
+
+static BpStatus print_picture(const void *what, FILE *out, BpError *err) {
+    const Printed *printed = what;
+    return bp_picture_write_stream(printed->picture, out, printed->format, printed->transfer, err);
+}
+
+static BpStatus print_film(const void *film, FILE *out, BpError *err) {
+    return bp_film_write_stream(film, out, err);
+}
+
+static BpStatus print_error_map(const void *picture, FILE *out, BpError *err) {
+    return bp_error_map_print(picture, out, err);
 }
 
 BpStatus bp_result_write(const BpCommandLine *line, const BpResultFile *result, const BpFilm *film,
                          bool rendered, BpTransfer transfer, const BpLegend *legend, BpError *err) {
     BpStatus status = BP_OK;
     BpPicture picture = {0};
-    const bool to_stream = strcmp(result->path, "-") == 0;
-    const bool is_picture = result->format != BP_FORMAT_BPA;
+    const bool is_picture = result->format != BP_FORMAT_BPA, has_map = result->error_map[0] != '\0';
     if (bp_option_given(line, BP_OPTION_TRANSFER)) transfer = line->transfer;
-    if (is_picture || line->error_map != NULL)
-        BP_TRY_GOTO(status, bp_film_picture(film, &picture, err), done);
+    const Printed printed = {&picture, result->format, transfer};
+    if (is_picture || has_map) BP_TRY_GOTO(status, bp_film_picture(film, &picture, err), done);
     const bool bytes = result->format == BP_FORMAT_PNG || result->format == BP_FORMAT_PPM ||
                        result->format == BP_FORMAT_PPM_ASCII;
     if (status == BP_OK && legend != NULL && legend->shown && bytes)
         status = bp_color_bar_draw(&picture, transfer, (const float(*)[3])legend->colors, legend->range,
                                    legend->title, err);
     if (status != BP_OK) goto done;
-    if (is_picture && to_stream)
-        status = bp_picture_write_stream(&picture, stdout, result->format, transfer, err);
-    else if (is_picture)
-        status = bp_picture_write(&picture, result->path, result->format, transfer, err);
-    else if (to_stream)
-        status = bp_film_write_stream(film, stdout, err);
-    else
-        status = bp_film_write(film, result->path, err);
+    status = is_picture ? bp_line_write(line, result->path, print_picture, &printed, err)
+                        : bp_line_write(line, result->path, print_film, film, err);
+    /* Who closes a pipe wants no more of the picture, but the map is a file of its own. */
+    if (has_map && (status == BP_OK || strcmp(result->path, "-") == 0)) {
+        const BpStatus mapped =
+            bp_line_write(line, result->error_map, print_error_map, &picture, status == BP_OK ? err : NULL);
+        if (status == BP_OK) {
+            bp_picture_clear(&picture);
+            return mapped;
+        }
+    }
 done:
     if (status != BP_OK && rendered) bp_keep_sums(film, result->path, err);
-    if (status == BP_OK && line->error_map != NULL)
-        status = bp_error_map_write(&picture, line->error_map, err);
     bp_picture_clear(&picture);
     return status;
 }
@@ -133,19 +202,19 @@ const char *bp_result_name(const BpResultFile *result) {
     return strcmp(result->path, "-") == 0 ? "standard output" : result->path;
 }
 
-void bp_result_warn(const BpFilm *film) {
+void bp_result_warn(const BpCommandLine *line, const BpFilm *film) {
     const double off = bp_film_rounding(film);
     char text[32];
     if (isinf(off))
-        fprintf(stderr,
-                "warning: the picture is black because its light is more than 10^17 times dimmer than the "
-                "brightest path, too dim for the sums to hold; dim or remove the brightest lamp\n");
+        bp_say(line,
+               "warning: the picture is black because its light is more than 10^17 times dimmer than the "
+               "brightest path, too dim for the sums to hold; dim or remove the brightest lamp");
     else if (off > BP_ROUNDING_MAX)
-        fprintf(stderr,
-                "warning: rounding may have changed the picture by %s, because its light is so much dimmer "
-                "than the brightest path; dim or remove the brightest lamp\n",
-                bp_format_percent(off, text, sizeof text));
+        bp_say(line,
+               "warning: rounding may have changed the picture by %s, because its light is so much dimmer "
+               "than the brightest path; dim or remove the brightest lamp",
+               bp_format_percent(off, text, sizeof text));
     if (film->unverified)
-        fprintf(stderr, "warning: a .bpa file of version 1 has no checksum, so damage cannot be detected; "
-                        "render its samples again if in doubt\n");
+        bp_say(line, "warning: a .bpa file of version 1 has no checksum, so damage cannot be detected; "
+                     "render its samples again if in doubt");
 }

@@ -10,16 +10,17 @@
 #include "scene/scene.h"
 
 typedef struct BpResultFile {
-    char path[4096]; /* "-": standard output */
+    char path[4096];      /* "-": standard output */
+    char error_map[4096]; /* "": none */
     BpFormat format;
 } BpResultFile;
 
-/* Where the result goes (and that --error-map and --stats can be written too, to files of their own): -o, or
- * `default_path` with its ending replaced by that of the format, in the current folder; in which format:
- * --format, else by the ending, else PNG. Finds out that it can be written, before any work is done.
- * BP_ERR_USAGE (no format has that ending; binary data to a terminal) or BP_ERR_FILE. */
-BpStatus bp_result_choose(const BpCommandLine *line, const char *default_path, BpResultFile *result,
-                          BpError *err);
+/* Where the result goes: -o, or `source` with its ending replaced by that of the format, in the current
+ * folder, or for `render` in the folder that -o names; in which format: --format, else by the ending, else
+ * PNG. Likewise the error map, NAME-error.png in a folder. With several scenes both must be folders. Finds
+ * out that they can be written, before any work is done. BP_ERR_USAGE (no format has that ending; binary data
+ * to a terminal; one file for several pictures, or for two things) or BP_ERR_FILE. */
+BpStatus bp_result_choose(const BpCommandLine *line, const char *source, BpResultFile *result, BpError *err);
 
 /* Writes it, and the error map if there is to be one. `transfer`: unless --transfer says otherwise.
  * `rendered`: the film is in no file yet, and is kept if the result cannot be written (keep_sums.h).
@@ -27,11 +28,15 @@ BpStatus bp_result_choose(const BpCommandLine *line, const char *default_path, B
 BpStatus bp_result_write(const BpCommandLine *line, const BpResultFile *result, const BpFilm *film,
                          bool rendered, BpTransfer transfer, const BpLegend *legend, BpError *err);
 
+/* The command line as it would be if it named this result's files itself. */
+BpCommandLine bp_result_line(const BpCommandLine *line, const BpResultFile *result);
+
 /* "cover.png", or "standard output". */
 const char *bp_result_name(const BpResultFile *result);
 
-/* Warns on standard error of what may be wrong with sums that look right: rounding that shows, since the
- * picture is that dim beside the brightest lamp of its scene, and sums from a file without a checksum. */
-void bp_result_warn(const BpFilm *film);
+/* Warns on standard error, unless --quiet, of what may be wrong with sums that look right: rounding that
+ * shows, since the picture is that dim beside the brightest lamp of its scene, and sums from a file without a
+ * checksum. */
+void bp_result_warn(const BpCommandLine *line, const BpFilm *film);
 
 #endif

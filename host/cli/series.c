@@ -2,7 +2,6 @@
 #include "series.h"
 
 #include "base/plural.h"
-#include "base/shown.h"
 #include "scene/fit.h"
 #include "setup.h"
 
@@ -110,7 +109,7 @@ BpStatus bp_series_begin(const BpCommandLine *line, BpSeries *series, BpError *e
         BP_TRY(bp_setup_load_changed(line, line->operands[0], &changes, &series->scene, err));
         series->count = line->turntable;
         series->camera = series->scene->camera;
-        if (!line->quiet) bp_show(series->scene->notes, true, stderr);
+        bp_setup_notes(line, series->scene);
     }
     if (!bp_option_given(line, BP_OPTION_FRAMES)) return BP_OK;
     uint64_t count = UINT64_MAX;
@@ -179,7 +178,7 @@ BpStatus bp_series_scene(BpSeries *series, const BpScene **scene, BpError *err) 
         changes.cache = bp_option_given(line, BP_OPTION_FRAMES) ? &series->cache : NULL;
         bp_scene_destroy(&series->scene);
         BP_TRY(bp_setup_load_changed(line, line->operands[0], &changes, &series->scene, err));
-        if (!line->quiet && number == 0) bp_show(series->scene->notes, true, stderr);
+        if (number == 0) bp_setup_notes(line, series->scene);
     }
     if (bp_option_given(line, BP_OPTION_WIDTH)) BP_TRY(bp_scene_set_width(series->scene, line->width, err));
     *scene = series->scene;

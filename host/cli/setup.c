@@ -11,6 +11,7 @@
 #include "opencl/pocl.h"
 #include "opencl/self_test.h"
 #include "packed/rounding.h"
+#include "page.h"
 
 #include <inttypes.h>
 #include <stdio.h>
@@ -26,26 +27,51 @@ static BpStatus load(const char *path, const BpSceneChanges *changes, BpScene **
     if (isatty(STDIN_FILENO))
         return bp_fail(err, BP_ERR_USAGE,
                        "the scene \"-\" is standard input, which is the terminal; pipe a scene into it: "
-                       "ballpark generate cover -o - | ballpark render - -o cover.png");
+                       "ballpark generate cover | ballpark render - -o cover.png");
     BP_TRY(bp_stream_read(stdin, 0, name, &text, &length, err));
     const BpStatus status = bp_scene_parse_changed(text, length, name, changes, scene, err);
     free(text);
     return status;
 }
 
+static void say_fresnel(const BpCommandLine *line, const size_t counts[2]) {
+    if (counts[1] == 0)
+        bp_say(line, "--fresnel %s changes nothing: the scene has no dielectric material", line->fresnel);
+    else if (counts[0] == 0)
+        bp_say(line, "--fresnel %s changes nothing: the scene says the same", line->fresnel);
+    else
+        bp_say(line, "--fresnel %s overrides the scene in %zu of %zu dielectric material%s", line->fresnel,
+               counts[0], counts[1], bp_plural(counts[1]));
+}
+
+void bp_setup_notes(const BpCommandLine *line, const BpScene *scene) {
+    BpPage page;
+    bp_page_begin(&page, stderr);
+    bp_show(scene->notes, true, page.text);
+    bp_page_end(&page, line, stderr);
+}
+
 BpStatus bp_setup_load_changed(const BpCommandLine *line, const char *path, const BpSceneChanges *changes,
                                BpScene **scene, BpError *err) {
-    BP_TRY(load(path, changes, scene, err));
+    BpSceneChanges all = *changes;
+    all.set = line->set.list;
+    all.set_count = line->set.count;
+    all.fresnel = line->fresnel;
+    BP_TRY(load(path, &all, scene, err));
     const BpStatus status = bp_file_conflicts_check_scene(line, NULL, *scene, err);
     if (status != BP_OK) bp_scene_destroy(scene);
     return status;
 }
 
 BpStatus bp_setup_load(const BpCommandLine *line, const char *path, BpScene **scene, BpError *err) {
-    BpSceneChanges changes = {
-        .has_frame = bp_option_given(line, BP_OPTION_FRAME), .frame = line->frame, .fit = line->fit};
+    size_t counts[2] = {0, 0};
+    const BpSceneChanges changes = {.has_frame = bp_option_given(line, BP_OPTION_FRAME),
+                                    .frame = line->frame,
+                                    .fit = line->fit,
+                                    .fresnel_counts = counts};
     BP_TRY(bp_setup_load_changed(line, path, &changes, scene, err));
-    if (!line->quiet) bp_show((*scene)->notes, true, stderr);
+    if (line->fresnel != NULL) say_fresnel(line, counts);
+    bp_setup_notes(line, *scene);
     return BP_OK;
 }
 
@@ -119,7 +145,7 @@ void bp_setup_warn(const BpCommandLine *line, const BpScene *scene, BpPrecision 
     BpRoundingWarnings limits;
     if (line->quiet) return;
     bp_rounding_warnings(scene, precision, &limits);
-    for (unsigned i = 0; i < limits.count; ++i) fprintf(stderr, "warning: %s\n", limits.text[i]);
+    for (unsigned i = 0; i < limits.count; ++i) bp_say(line, "warning: %s", limits.text[i]);
 }
 
 static BpStatus all_devices(BpDeviceInfo **devices, size_t *count, BpError *err) {
@@ -171,20 +197,32 @@ BpStatus bp_setup_devices(const BpCommandLine *line, BpDeviceInfo **devices, siz
     return status;
 }
 
+/* --threads is a wish: a GPU has no threads to be counted, and not every driver divides its device. */
+static void say_threads(const BpCommandLine *line, const BpDeviceInfo *device, uint32_t used) {
+    if (line->threads == 0 || used == line->threads) return;
+    if (device->type != BP_DEVICE_CPU)
+        bp_say(line, "--threads changes nothing on %s, which is no processor", device->name);
+    else if (line->threads > used)
+        bp_say(line, "--threads %" PRIu32 ": %s has %" PRIu32 ", and all of them are used", line->threads,
+               device->name, used);
+    else
+        bp_say(line, "--threads %" PRIu32 ": the driver of %s cannot divide it, so all %" PRIu32 " are used",
+               line->threads, device->name, used);
+}
+
 BpStatus bp_setup_self_test(const BpCommandLine *line, const BpDeviceInfo *devices, size_t count,
                             BpError *err) {
     for (size_t d = 0; d < count; ++d) {
         BpDevice *device = NULL;
         BpError fault = {0};
-        BP_TRY(bp_device_open(&devices[d], &device, err));
+        BP_TRY(bp_device_open_part(&devices[d], line->threads, &device, err));
+        say_threads(line, &devices[d], device->info.compute_units);
         const BpStatus status = bp_self_test_once(device, NULL, &fault);
         bp_device_close(&device);
         /* A test that could not be run says nothing about the device. */
         const bool failed = status == BP_ERR_DEVICE || status == BP_ERR_BUILD;
         if (failed && line->force) {
-            fputs("ballpark: warning: ", stderr);
-            bp_show(fault.message, false, stderr);
-            fputc('\n', stderr);
+            bp_say(line, "ballpark: warning: %s", fault.message);
         } else if (status != BP_OK) {
             bp_fail(err, status, "%s%s", fault.message, failed ? "; --force renders anyway" : "");
             bp_error_attach(err, fault.attachment);

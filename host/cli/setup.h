@@ -18,6 +18,9 @@ BpStatus bp_setup_load(const BpCommandLine *line, const char *path, BpScene **sc
 BpStatus bp_setup_load_changed(const BpCommandLine *line, const char *path, const BpSceneChanges *changes,
                                BpScene **scene, BpError *err);
 
+/* Shows what was guessed about the scene on standard error, unless --quiet. */
+void bp_setup_notes(const BpCommandLine *line, const BpScene *scene);
+
 /* The first, and applies --width. */
 BpStatus bp_setup_scene(const BpCommandLine *line, const char *path, BpScene **scene, BpError *err);
 

@@ -33,10 +33,16 @@ bool bp_terminal_is_live(bool quiet) {
     return !quiet && isatty(STDERR_FILENO) && !(kind != NULL && strcmp(kind, "dumb") == 0);
 }
 
-unsigned bp_terminal_columns(void) {
+unsigned bp_terminal_width(int descriptor) {
     struct winsize size;
-    if (ioctl(STDERR_FILENO, TIOCGWINSZ, &size) != 0 || size.ws_col == 0) return COLUMNS_DEFAULT;
-    return size.ws_col;
+    if (ioctl(descriptor, TIOCGWINSZ, &size) == 0 && size.ws_col > 0) return size.ws_col;
+    const char *told = getenv("COLUMNS");
+    const long columns = told != NULL ? strtol(told, NULL, 10) : 0;
+    return columns > 0 && columns < 1000000 ? (unsigned)columns : COLUMNS_DEFAULT;
+}
+
+unsigned bp_terminal_columns(void) {
+    return bp_terminal_width(STDERR_FILENO);
 }
 
 bool bp_terminal_has_utf8(void) {

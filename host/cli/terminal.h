@@ -12,7 +12,10 @@
 /* Whether a status line is wanted: standard error is a terminal that can move its cursor, and not `quiet`. */
 bool bp_terminal_is_live(bool quiet);
 
-/* Columns of the terminal now, 80 if it does not say; at least 1. */
+/* Columns of the terminal at `descriptor` now; if there is none or it does not say, what COLUMNS in the
+ * environment says, else 80; at least 1. */
+unsigned bp_terminal_width(int descriptor);
+/* Those of standard error. */
 unsigned bp_terminal_columns(void);
 
 /* Whether characters outside ASCII are shown (by LC_ALL, LC_CTYPE, LANG). */

@@ -24,15 +24,74 @@ BpStatus bp_value_whole(const char *option, const char *text, uint64_t min, uint
     return BP_OK;
 }
 
+/* The number that `text` begins with, in C's spelling without hexadecimal, infinity and NaN, and where it
+ * ends; false: none. */
+static bool read_number(const char *text, double *number, const char **end) {
+    char digits[64];
+    const size_t length = strspn(text, "+-.0123456789eE");
+    if (length == 0 || length >= sizeof digits) return false;
+    memcpy(digits, text, length);
+    digits[length] = '\0';
+    char *stop = NULL;
+    *number = strtod(digits, &stop);
+    *end = text + (stop - digits);
+    return stop != digits;
+}
+
 BpStatus bp_value_real(const char *option, const char *text, double min, double max, double *value,
                        BpError *err) {
-    char *end = NULL;
-    const bool plain = text[0] != '\0' && text[strspn(text, "+-.0123456789eE")] == '\0';
-    const double number = plain ? strtod(text, &end) : 0.0;
-    if (!plain || *end != '\0' || !(number > min) || !(number <= max))
+    const char *end = NULL;
+    double number = 0;
+    if (!read_number(text, &number, &end) || *end != '\0' || !(number > min) || !(number <= max))
         return bp_fail(err, BP_ERR_USAGE, "%s: expected a number above %g, up to %g, found \"%.80s\"", option,
                        min, max, text);
     *value = number;
+    return BP_OK;
+}
+
+BpStatus bp_value_percent(const char *option, const char *text, double min, double max, double *value,
+                          BpError *err) {
+    const char *end = NULL;
+    double number = 0;
+    if (!read_number(text, &number, &end) ||
+        (*end != '\0' && strcmp(end, "%") != 0 && strcmp(end, " %") != 0) || !(number > min) ||
+        !(number <= max))
+        return bp_fail(err, BP_ERR_USAGE,
+                       "%s: expected a percentage above %g, up to %g, such as 1%%, found \"%.80s\"", option,
+                       min, max, text);
+    *value = number;
+    return BP_OK;
+}
+
+BpStatus bp_value_time(const char *option, const char *text, double min, double max, double *value,
+                       BpError *err) {
+    static const struct {
+        const char *name;
+        double seconds;
+    } units[] = {{"d", 86400}, {"h", 3600}, {"min", 60}, {"m", 60}, {"s", 1}};
+    enum { UNITS = sizeof units / sizeof units[0] };
+    double sum = 0, number = 0, last = 1e9;
+    const char *end = NULL, *at = text;
+    bool good = *at != '\0';
+    while (good && *at != '\0') {
+        size_t u = 0;
+        good = read_number(at, &number, &end) && number >= 0;
+        while (good && u < UNITS && strncmp(end, units[u].name, strlen(units[u].name)) != 0) ++u;
+        /* Without a unit only as the whole of it: "1h30" could be minutes or seconds. */
+        const bool bare = good && u == UNITS;
+        if (bare) good = at == text && *end == '\0';
+        const double unit = u < UNITS ? units[u].seconds : 1;
+        if (good && !bare) good = unit < last;
+        last = unit;
+        sum += number * unit;
+        if (good) at = end + (u < UNITS ? strlen(units[u].name) : 0);
+    }
+    if (!good || !(sum > min) || !(sum <= max))
+        return bp_fail(err, BP_ERR_USAGE,
+                       "%s: expected a time above %g, up to %g seconds, such as 90, 90s, 2m or 1h30m, found "
+                       "\"%.80s\"",
+                       option, min, max, text);
+    *value = sum;
     return BP_OK;
 }
 

@@ -15,6 +15,15 @@ BpStatus bp_value_whole(const char *option, const char *text, uint64_t min, uint
 BpStatus bp_value_real(const char *option, const char *text, double min, double max, double *value,
                        BpError *err);
 
+/* The same in percent: "1", "1%" and "1 %" are the same number. */
+BpStatus bp_value_percent(const char *option, const char *text, double min, double max, double *value,
+                          BpError *err);
+
+/* The same in seconds: "90", "90s", "1.5m", "2h", "1d", or several of these, "1h30m", the larger units first.
+ */
+BpStatus bp_value_time(const char *option, const char *text, double min, double max, double *value,
+                       BpError *err);
+
 /* One of `count` words; *index is its place. The error lists them. */
 BpStatus bp_value_choice(const char *option, const char *text, const char *const *words, size_t count,
                          unsigned *index, BpError *err);

@@ -70,8 +70,8 @@ class Explain(ProgramTest):
 class Bench(ProgramTest):
     def test_table_and_document(self):
         self.write("s.json", scene(32))
-        result = self.succeed("bench", "s.json", "--rounds", "1", "--time", "0.2", "--json", "b.json", "-q")
-        self.assertIn(b"s", result.stdout)
+        result = self.succeed("bench", "s.json", "--rounds", "1", "--time", "0.2", "--json", "b.json")
+        self.assertIn(b"s.json", result.stdout)
         report = json.loads(self.read("b.json"))
         self.assertEqual(len(report["scenes"]), 1)
         self.assertGreater(report["scenes"][0]["samples_per_second"]["median"], 0)
@@ -126,7 +126,7 @@ class OneOfEach(ProgramTest):
                       ["render", "s.json", "--spp", "1", "--error", "0.001"],
                       ["render", "s.json", "--spp", "2", "--first-sample", str(2**32 - 1)],
                       ["merge", "a.bpa", "-o", "a.png"], ["explain", "s.json"], ["explain", "s.json", "--pixel", "0,0"],
-                      ["check", "s.json", "--width", "1", "--spp", "1"], ["generate", "field", "--count", "1"],
+                      ["check", "s.json", "--width", "1", "--spp", "1"], ["generate", "field", "--count", "1", "-o", "f.ply"],
                       ["generate", "cover", "--grid", "0"],
                       ["bench", "s.json", "--rounds", "1", "--time", "0.01", "--spp", "1"],
                       ["bench", "s.json", "--rounds", "1", "--time", "0.01"]):

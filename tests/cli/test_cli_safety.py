@@ -104,8 +104,7 @@ class Replacing(Safety):
         os.mkdir(self.path("tmp"))
         self.write("large.json", scene(200))
         errors = self.shell("TMPDIR=tmp \"$B\" render large.json -o - --format pfm -q | head -c 9 > start").errors
-        self.assertIn("Broken pipe", errors)
-        self.assertNotIn("kept", errors)
+        self.assertEqual(errors, "")
         self.assertEqual(os.listdir(self.path("tmp")), [])
 
     def test_limit_on_the_size_of_files(self):
@@ -166,8 +165,11 @@ class TwoNames(Safety):
             self.fail_with(2, "render", "-", "-o", "s.json", "--format", "png", stdin=sent, says="would overwrite")
 
     def test_names_of_what_is_made(self):
+        """The operand of `generate` is no file, even if there is one of that name."""
         self.write("cover", "old")
-        self.succeed("generate", "cover", "-o", "cover", "-q")
+        os.symlink("cover", self.path("cover.json"))
+        self.succeed("generate", "cover", "-o", "cover.json", "-q")
+        self.assertIn(b"camera", self.read("cover"))
 
 
 class OpenFiles(Safety):
@@ -221,7 +223,7 @@ class OpenFiles(Safety):
                         "check s.json --width 4 --spp 4 --margin 50",
                         "check s.json --width 4 --spp 4 --margin 50 --device all",
                         "render s.json -o - -q", "render s.json -o a.png --stats - -q",
-                        "bench s.json --time 0.01 --rounds 1 -q"):
+                        "bench s.json --time 0.01 --rounds 1"):
             self.assertIn("No space left", self.shell(f"\"$B\" {command} > /dev/full", 1).errors, command)
 
 

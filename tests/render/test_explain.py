@@ -22,7 +22,7 @@ def run(*arguments, code=0):
 
 
 # A table: every effect once, in or out, with a reason.
-table = run("explain", scenes / "v4-13-metal.json").stdout.splitlines()
+table = run("explain", scenes / "v4-13-metal.json", "--wide").stdout.splitlines()
 rows = {line.split()[0]: line.split(maxsplit=2)[1:] for line in table[1:8]}
 assert list(rows) == ALL, table
 assert [name for name in ALL if rows[name][0] == "in"] == ["lambertian", "metal"], table
@@ -68,7 +68,7 @@ with tempfile.TemporaryDirectory() as folder:
             assert before["met"] and before["goes_on"] and before["point"] == after["origin"], path
         assert all(abs(a - b) <= 1e-6 for a, b in zip(steps[-1]["radiance"], pixel)), (pixel, path)
         lengths.add(len(steps))
-        text = run("explain", scene, "--pixel", f"{x},{y}", "--width", 48, "--seed", 7).stdout
+        text = run("explain", scene, "--pixel", f"{x},{y}", "--width", 48, "--seed", 7, "--wide").stdout
         assert text.count("from (") == len(steps) and "hits nothing: the sky" in text, text
     assert len(lengths) > 1, "every path is as long as the others"
     run("explain", scene, "--pixel", "48,0", "--width", 48, code=2)

@@ -1,0 +1,24 @@
+/* output.h: the files that a command writes.
+ *
+ * In:    the command line, a path, what prints the content.   Out: the file, whole or not at all.
+ * Knows: "-", --no-clobber, that overwriting is said.   Does not know: what is printed. */
+#ifndef BP_CLI_OUTPUT_H
+#define BP_CLI_OUTPUT_H
+
+#include "options.h"
+
+#include <stdio.h>
+
+/* Prints `what` to `out`, which need not be able to seek; BP_ERR_FILE with the system's reason. */
+typedef BpStatus BpPrint(const void *what, FILE *out, BpError *err);
+
+/* Whether `path` can be written, found out before work begins: "-" can. Says on standard error that a file
+ * which is there will be overwritten; with --no-clobber that is an error. */
+BpStatus bp_line_check_output(const BpCommandLine *line, const char *path, BpError *err);
+
+/* Writes `path` by `print`; "-" is standard output. With --no-clobber the name is claimed when the content is
+ * complete: what has come to stand there in the meantime is not replaced. */
+BpStatus bp_line_write(const BpCommandLine *line, const char *path, BpPrint *print, const void *what,
+                       BpError *err);
+
+#endif
