@@ -191,6 +191,11 @@ const char *bp_checkpoint_command(const BpCommandLine *line, const BpCheckpoint 
     for (int o = 0; o < BP_OPTION_NUMBER && fits; ++o) {
         const BpOption option = (BpOption)o;
         if (!bp_option_given(line, option) || option == BP_OPTION_RESUME) continue;
+        if (option == BP_OPTION_SET) {
+            for (size_t t = 0; t < line->set.count && fits; ++t)
+                fits = append_word(text, size, "--set") && append_word(text, size, line->set.list[t]);
+            continue;
+        }
         snprintf(name, sizeof name, "--%s", bp_option_name(option));
         fits = append_word(text, size, name);
         bp_option_show(option, line, value, sizeof value);

@@ -157,14 +157,16 @@ static void warn_missing(const BpCommandLine *line, const Parts *parts) {
         begun = true;
     }
     if (found > 0)
-        fprintf(stderr, "warning: %" PRIu64 " sample%s per pixel %s missing: %s%s\n", missing,
-                bp_plural(missing), missing == 1 ? "is" : "are", text, found > NAMED_MAX ? ", ..." : "");
+        bp_say(line, "warning: %" PRIu64 " sample%s per pixel %s missing: %s%s", missing, bp_plural(missing),
+               missing == 1 ? "is" : "are", text, found > NAMED_MAX ? ", ..." : "");
     if (parts->unfinished > 0) {
-        fputs("warning: some pixels lack samples in ", stderr);
-        bp_show(line->operands[parts->an_unfinished], false, stderr);
+        char others[64] = "";
         if (parts->unfinished > 1)
-            fprintf(stderr, " and %zu other file%s", parts->unfinished - 1, bp_plural(parts->unfinished - 1));
-        fputs(": ballpark render SCENE --resume FILE finishes it\n", stderr);
+            snprintf(others, sizeof others, " and %zu other file%s", parts->unfinished - 1,
+                     bp_plural(parts->unfinished - 1));
+        bp_say(line,
+               "warning: some pixels lack samples in %s%s: ballpark render SCENE --resume FILE finishes it",
+               line->operands[parts->an_unfinished], others);
     }
 }
 
@@ -223,7 +225,7 @@ BpStatus bp_command_merge(const BpCommandLine *line, BpError *err) {
            bp_result_name(&result), sum->width, sum->height, bp_film_range_total(sum),
            bp_plural(bp_film_range_total(sum)), ranges, sum->partial ? ", incomplete in some pixels" : "",
            nrmse);
-    if (!line->quiet) warn_missing(line, &parts);
+    warn_missing(line, &parts);
     bp_result_warn(line, sum);
     if (sum->invalid_samples > 0)
         bp_say(line, "warning: %" PRIu64 " sample%s not finite; left out of the picture",

@@ -354,8 +354,8 @@ static BpStatus deliver(const BpCommandLine *line, const BpResultFile *file, con
     const double write_start = bp_clock_seconds();
     const bool keeps = end->reason == BP_STOP_NOT_YET && checkpoint->path[0] != '\0';
     if (keeps && !checkpoint->is_result) bp_checkpoint_write(checkpoint, result->film);
-    const BpStatus written = bp_result_write(line, file, result->film, true, (BpTransfer)result->film->transfer,
-                                             &result->scene->legend, err);
+    const BpStatus written = bp_result_write(line, file, result->film, true,
+                                             (BpTransfer)result->film->transfer, &result->scene->legend, err);
     result->times.write = bp_clock_seconds() - write_start;
     /* A reader that has left takes the picture with it, but not the statistics. */
     if (written != BP_OK && strcmp(file->path, "-") != 0) return written;
@@ -437,15 +437,15 @@ static BpStatus open_devices(Run *run, BpError *err) {
 }
 
 /* `resumed`: Optional. The film that the render goes on from, which decides what makes samples. */
-static BpStatus plan(const BpCommandLine *line, const Job *job, const BpCheckpoint *checkpoint, const BpFilm *resumed,
-                     BpRenderOptions *options, BpStopRule *rule, BpError *err) {
+static BpStatus plan(const BpCommandLine *line, const Job *job, const BpCheckpoint *checkpoint,
+                     const BpFilm *resumed, BpRenderOptions *options, BpStopRule *rule, BpError *err) {
     BP_TRY(bp_setup_options(line, job->scene, options, err));
     BP_TRY(bp_setup_share(line, options, err));
     bp_setup_warn(line, job->scene, options->precision);
     /* Less noise in the same time on every scene that was measured: docs/ACCURACY.md. */
     if (!bp_option_given(line, BP_OPTION_SAMPLER)) options->sampler = BP_SAMPLER_SOBOL;
-    options->features = job->file.format == BP_FORMAT_EXR || job->file.format == BP_FORMAT_BPA ||
-                        checkpoint->path[0] != '\0';
+    options->features =
+        job->file.format == BP_FORMAT_EXR || job->file.format == BP_FORMAT_BPA || checkpoint->path[0] != '\0';
     if (resumed != NULL) {
         options->lamps = bp_render_lamps(job->scene, options); /* as films have it */
         BP_TRY(bp_resume_options(line, resumed, options, err));
@@ -554,9 +554,10 @@ BpStatus bp_command_render(const BpCommandLine *line, BpError *err) {
     }
     if (line->resume != NULL && (run.count > 1 || bp_option_given(line, BP_OPTION_FRAMES) ||
                                  bp_option_given(line, BP_OPTION_TURNTABLE))) {
-        status = bp_fail(err, BP_ERR_USAGE,
-                         "--resume goes on with one picture, and this command makes several; render the one that was "
-                         "begun alone, a frame with --frame");
+        status = bp_fail(
+            err, BP_ERR_USAGE,
+            "--resume goes on with one picture, and this command makes several; render the one that was "
+            "begun alone, a frame with --frame");
         goto done;
     }
     if (bp_option_given(line, BP_OPTION_FRAMES) || bp_option_given(line, BP_OPTION_TURNTABLE)) {
@@ -566,7 +567,10 @@ BpStatus bp_command_render(const BpCommandLine *line, BpError *err) {
     if (line->stats != NULL) BP_TRY_GOTO(status, bp_line_check_output(line, line->stats, err), done);
     for (size_t j = 0; j < run.count; ++j) BP_TRY_GOTO(status, load(&run, j, err), done);
     for (size_t j = 0; j < run.count && status == BP_OK; ++j) {
-        status = render_one(&run, line, &run.jobs[j], err);
+        BpCommandLine one = *line; /* of this scene alone, for the command that goes on with it */
+        one.operands += j;
+        one.operand_count = 1;
+        status = render_one(&run, &one, &run.jobs[j], err);
         bp_scene_destroy(&run.jobs[j].own);
         run.start = bp_clock_seconds();
     }

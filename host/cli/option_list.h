@@ -181,7 +181,7 @@ enum {
     NOTE(OUTPUT, BP_GENERATE, NULL, "cover.json or field.ply; standard output if that is a pipe or a file")  \
     NOTE(OUTPUT, BP_SCENE, "where the document goes", "standard output")                                     \
     NOTE(FRAME, BP_TRACERS | BP_SCENE, NULL, "0")                                                            \
-    NOTE(LAMPS, BP_TRACERS & ~BP_CHECK, NULL, "on where it helps")                                            \
+    NOTE(LAMPS, BP_TRACERS & ~BP_CHECK, NULL, "on where it helps")                                           \
     NOTE(LAMPS, BP_CHECK, NULL, "off, as in the reference")                                                  \
     NOTE(SPP, BP_RENDER, NULL, "the scene's number")                                                         \
     NOTE(SPP, BP_CHECK, NULL, "1024")                                                                        \

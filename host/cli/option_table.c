@@ -217,6 +217,8 @@ static void show_value(const OptionRow *row, const void *member, char *text, siz
         snprintf(text, size, "%" PRIu64, wide);
         break;
     case REAL:
+    case PERCENT:
+    case TIME:
         memcpy(&real, member, sizeof real);
         snprintf(text, size, "%.15g", real);
         break;
@@ -246,6 +248,9 @@ static void show_value(const OptionRow *row, const void *member, char *text, siz
     }
     case CHOICE:
         snprintf(text, size, "%s", row->words[wide - row->first]);
+        break;
+    case TEXTS: /* one after the other, by who asks */
+        text[0] = '\0';
         break;
     case WORD:
     case TEXT:
