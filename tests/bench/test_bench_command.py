@@ -62,9 +62,11 @@ for scene in report["scenes"]:
 assert report["scenes"][1]["spheres"] == 500
 assert os.listdir(folder) == ["scenes"], "the temporary folder must be gone"
 
-# The table.
-lines = run("field-500", "--width", "20", "--time", "0.02", "--rounds", "1", "-q").stdout.splitlines()
+# The table; --quiet leaves it out.
+options = ["field-500", "--width", "20", "--time", "0.02", "--rounds", "1"]
+lines = run(*options).stdout.splitlines()
 assert any(line.startswith("field-500") and " 500 " in line for line in lines), lines
+assert run(*options, "-q").stdout == ""
 
 # What cannot be measured is refused by name.
 assert "nowhere.json" in run("nowhere.json", code=2).stderr

@@ -68,7 +68,7 @@ static void test_advice(void **state) {
 
     char text[512];
     assert_non_null(strstr(bp_study_advice_text(&result, &result.advice[0], text, sizeof text),
-                           "445 samples per pixel, extrapolated 8.9 s at 20x20"));
+                           "445 samples per pixel, about 8.9 s at 20x20 (samples and time extrapolated)"));
     /* No way there. */
     for (size_t s = 0; s < 4; s++) result.series[s].bias_square = (BpStudyEstimate){1e-5, 0.9e-5, 1.1e-5};
     bp_study_advise(&result);
