@@ -30,3 +30,16 @@ json_t *bp_json_load(const char *text, size_t length, size_t flags, json_error_t
     json_decref(root);
     return NULL;
 }
+
+char *bp_json_quote(const char *text, bool *no_memory) {
+    const int before = errno; /* may say why a stream has failed */
+    errno = 0;
+    json_t *value = json_string(text);
+    char *quoted = value != NULL ? json_dumps(value, JSON_ENCODE_ANY) : NULL;
+    *no_memory = bp_json_memory_failed() || (quoted == NULL && errno == ENOMEM);
+    json_decref(value);
+    errno = before;
+    if (!*no_memory) return quoted;
+    free(quoted);
+    return NULL;
+}

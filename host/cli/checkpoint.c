@@ -4,8 +4,10 @@
 #include "base/clock.h"
 #include "base/output_file.h"
 #include "base/shown.h"
+#include "file_conflicts.h"
 #include "film/film_file.h"
 #include "option_table.h"
+#include "output.h"
 
 #include <math.h>
 #include <pthread.h>
@@ -52,7 +54,7 @@ BpStatus bp_checkpoint_choose(const BpCommandLine *line, const BpResultFile *res
     const bool to_stream =
         strcmp(result->path, "-") == 0 || (stat(result->path, &info) == 0 && !S_ISREG(info.st_mode));
     bool fits = true;
-    *checkpoint = (BpCheckpoint){.every = line->checkpoint_seconds, .last = bp_clock_seconds()};
+    *checkpoint = (BpCheckpoint){.every = line->checkpoint_seconds};
     checkpoint->is_result = result->format == BP_FORMAT_BPA && !to_stream;
     if (checkpoint->is_result)
         fits = (size_t)snprintf(checkpoint->path, sizeof checkpoint->path, "%s", result->path) <
@@ -71,10 +73,21 @@ BpStatus bp_checkpoint_choose(const BpCommandLine *line, const BpResultFile *res
     if (!fits)
         return bp_fail(err, BP_ERR_FILE, "the path of the checkpoint beside %.200s is too long",
                        result->path);
+    const BpCommandLine outputs = bp_result_line(line, result);
+    if (line->resume != NULL)
+        BP_TRY(bp_file_conflicts_check_film(&outputs, line->resume, "the film that --resume names",
+                                            checkpoint->is_result, err));
     if (!asked) return BP_OK;
+    BP_TRY(bp_file_conflicts_check_film(&outputs, checkpoint->path, "the sums that --checkpoint keeps",
+                                        checkpoint->is_result, err));
+    checkpoint->new_only = checkpoint->is_result && line->no_clobber;
     const bool own = line->resume != NULL && bp_output_same(checkpoint->path, line->resume, STDIN_FILENO);
     if (!own) BP_TRY(check_free(checkpoint, err));
     return bp_output_check(checkpoint->path, err);
+}
+
+void bp_checkpoint_start(BpCheckpoint *checkpoint) {
+    checkpoint->last = bp_clock_seconds();
 }
 
 bool bp_checkpoint_is_due(const BpCheckpoint *checkpoint, double now) {
@@ -87,6 +100,7 @@ typedef struct BpCheckpointWriter {
     bool threaded; /* else it is done already: there was no thread to be had */
     atomic_bool done;
     const char *path;
+    bool new_only;
     BpFilm *film; /* owned */
     BpStatus status;
     BpError err;
@@ -95,7 +109,10 @@ typedef struct BpCheckpointWriter {
 static void report(BpCheckpoint *checkpoint, BpStatus status, BpError *fault) {
     if (status == BP_OK) {
         ++checkpoint->written;
+        checkpoint->new_only = false; /* from now on the file is this render's own */
     } else {
+        /* Somebody else's file has taken the place: every further try would leave a file beside it. */
+        if (checkpoint->new_only) checkpoint->every = 0;
         fputs("ballpark: warning: the checkpoint was not written, and rendering goes on: ", stderr);
         bp_show(fault->message, false, stderr);
         fputc('\n', stderr);
@@ -103,39 +120,66 @@ static void report(BpCheckpoint *checkpoint, BpStatus status, BpError *fault) {
     bp_error_clear(fault);
 }
 
+static BpStatus print_film(const void *film, FILE *out, BpError *err) {
+    return bp_film_write_stream(film, out, err);
+}
+
+static BpStatus write_to(const char *path, bool new_only, const BpFilm *film, BpError *err) {
+    const BpCommandLine line = {.no_clobber = new_only};
+    return bp_line_write(&line, path, print_film, film, err);
+}
+
 void bp_checkpoint_write(BpCheckpoint *checkpoint, const BpFilm *film) {
     BpError fault = {0};
     bp_checkpoint_wait(checkpoint);
-    const BpStatus status = bp_film_write(film, checkpoint->path, &fault);
+    const BpStatus status = write_to(checkpoint->path, checkpoint->new_only, film, &fault);
     report(checkpoint, status, &fault);
 }
 
 static void *write_film(void *argument) {
     Writer *writer = argument;
-    writer->status = bp_film_write(writer->film, writer->path, &writer->err);
+    writer->status = write_to(writer->path, writer->new_only, writer->film, &writer->err);
     bp_film_destroy(&writer->film);
     atomic_store(&writer->done, true);
     return NULL;
+}
+
+/* The film of the render as it stands, and a writer for it. */
+static BpStatus take_film(const BpCheckpoint *checkpoint, BpRender *render, Writer **taken, BpError *err) {
+    Writer *writer = calloc(1, sizeof *writer);
+    if (writer == NULL) return bp_fail(err, BP_ERR_MEMORY, "out of memory for a checkpoint");
+    writer->path = checkpoint->path;
+    writer->new_only = checkpoint->new_only;
+    const BpStatus status = bp_render_film(render, &writer->film, err);
+    if (status != BP_OK) {
+        free(writer);
+        return status;
+    }
+    *taken = writer;
+    return BP_OK;
 }
 
 BpStatus bp_checkpoint_begin(BpCheckpoint *checkpoint, BpRender *render, BpError *err) {
     const double start = bp_clock_seconds();
     if (checkpoint->writer != NULL && !atomic_load(&checkpoint->writer->done)) return BP_OK;
     bp_checkpoint_wait(checkpoint);
-    Writer *writer = calloc(1, sizeof *writer);
-    if (writer == NULL) return bp_fail(err, BP_ERR_MEMORY, "out of memory for a checkpoint");
-    writer->path = checkpoint->path;
-    const BpStatus status = bp_render_film(render, &writer->film, err);
-    if (status != BP_OK) {
-        free(writer);
-        return status;
+    if (checkpoint->every == 0) return BP_OK; /* the last one has found its place taken */
+    BpError fault = {0};
+    const BpStatus status = take_film(checkpoint, render, &checkpoint->writer, &fault);
+    if (status == BP_OK) {
+        Writer *writer = checkpoint->writer;
+        writer->threaded = pthread_create(&writer->thread, NULL, write_film, writer) == 0;
+        if (!writer->threaded) write_film(writer);
+    } else if (status == BP_ERR_MEMORY) {
+        report(checkpoint, status, &fault); /* the render has the memory that it needs */
+    } else if (err != NULL) {
+        *err = fault;
+    } else {
+        bp_error_clear(&fault);
     }
-    checkpoint->writer = writer;
-    writer->threaded = pthread_create(&writer->thread, NULL, write_film, writer) == 0;
-    if (!writer->threaded) write_film(writer);
     checkpoint->last = bp_clock_seconds();
     checkpoint->seconds += checkpoint->last - start;
-    return BP_OK;
+    return status == BP_ERR_MEMORY ? BP_OK : status;
 }
 
 void bp_checkpoint_wait(BpCheckpoint *checkpoint) {
@@ -191,6 +235,7 @@ const char *bp_checkpoint_command(const BpCommandLine *line, const BpCheckpoint 
     for (int o = 0; o < BP_OPTION_NUMBER && fits; ++o) {
         const BpOption option = (BpOption)o;
         if (!bp_option_given(line, option) || option == BP_OPTION_RESUME) continue;
+        if (option == BP_OPTION_NO_CLOBBER) continue; /* the results so far are there to be replaced */
         if (option == BP_OPTION_SET) {
             for (size_t t = 0; t < line->set.count && fits; ++t)
                 fits = append_word(text, size, "--set") && append_word(text, size, line->set.list[t]);

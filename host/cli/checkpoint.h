@@ -11,6 +11,7 @@
 typedef struct BpCheckpoint {
     char path[4096];                   /* "": nothing is kept */
     bool is_result;                    /* the file is the result itself (-o FILE.bpa) */
+    bool new_only;                     /* --no-clobber: no file may be there when the first one is written */
     double every;                      /* seconds; 0: only when the render is interrupted */
     double last;                       /* bp_clock_seconds() of the latest try */
     uint64_t written;                  /* how often */
@@ -20,9 +21,13 @@ typedef struct BpCheckpoint {
 
 /* With -o FILE.bpa the sums are kept there; else with --resume in that file; else with --checkpoint beside
  * the picture, as its name with .bpa. BP_ERR_USAGE: --checkpoint has no place, or would replace a file that a
- * render left there unfinished, or that is no checkpoint of this render's. */
+ * render left there unfinished, or that is no checkpoint of this render's; or another result would replace
+ * the checkpoint or the film that --resume names. */
 BpStatus bp_checkpoint_choose(const BpCommandLine *line, const BpResultFile *result, BpCheckpoint *checkpoint,
                               BpError *err);
+
+/* The render begins: the first checkpoint is due `every` seconds from now. */
+void bp_checkpoint_start(BpCheckpoint *checkpoint);
 
 /* Whether it is time, by bp_clock_seconds(). */
 bool bp_checkpoint_is_due(const BpCheckpoint *checkpoint, double now);
@@ -33,7 +38,8 @@ void bp_checkpoint_write(BpCheckpoint *checkpoint, const BpFilm *film);
 
 /* Takes the film of the render as it stands, and writes it in a thread of its own, since packing takes longer
  * than reading: a render on a GPU does not wait for it, one on a CPU lends it a core. Does nothing while the
- * file before is still being written. BP_ERR_DEVICE or BP_ERR_MEMORY. */
+ * file before is still being written. Without the memory for it, there is a warning and no checkpoint.
+ * BP_ERR_DEVICE. */
 BpStatus bp_checkpoint_begin(BpCheckpoint *checkpoint, BpRender *render, BpError *err);
 
 /* Waits for what bp_checkpoint_begin() began. Always before the checkpoint goes out of scope. */

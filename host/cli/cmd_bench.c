@@ -513,8 +513,12 @@ BpStatus bp_command_bench(const BpCommandLine *line, BpError *err) {
     BP_TRY_GOTO(status, prepare(line, &bench, err), done);
     if (line->output != NULL) goto done; /* the scenes were wanted, not figures */
     BP_TRY_GOTO(status, run_rounds(line, &bench, err), done);
-    if (line->json != NULL) BP_TRY_GOTO(status, write_json(line, &bench, err), done);
-    if (line->json == NULL || strcmp(line->json, "-") != 0) status = print_table(line, &bench, err);
+    if (line->json != NULL) status = write_json(line, &bench, err);
+    /* The figures are not lost with the document. */
+    if (line->json == NULL || strcmp(line->json, "-") != 0) {
+        const BpStatus printed = print_table(line, &bench, status == BP_OK ? err : NULL);
+        if (status == BP_OK) status = printed;
+    }
 done:
     clear(&bench);
     return status;

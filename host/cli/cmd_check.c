@@ -274,12 +274,13 @@ static BpStatus write_documents(Session *session, const json_t *against, BpError
     BpStatus status = BP_OK;
     if (line->junit != NULL)
         status = bp_junit_write(line, bp_check_junit(session->scenes, broken), line->junit, err);
-    if (line->json != NULL && status == BP_OK) {
+    if (line->json != NULL) { /* also when the other document failed: a check takes minutes */
         json_t *document = bp_check_document(json_incref(session->scenes), json_incref(broken),
                                              line->suite ? SUITE_NAME : NULL, SUITE_LEVEL);
         if (against != NULL && document != NULL)
             json_object_set(document, "against", (json_t *)(uintptr_t)against);
-        status = bp_json_write(line, document, line->json, err);
+        const BpStatus written = bp_json_write(line, document, line->json, status == BP_OK ? err : NULL);
+        if (status == BP_OK) status = written;
     }
     json_decref(broken);
     return status;

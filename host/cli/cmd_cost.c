@@ -68,15 +68,27 @@ static BpStatus deliver(const BpCommandLine *line, const BpStudyResult *result, 
     for (size_t f = 0; f < sizeof files / sizeof files[0]; ++f)
         if (files[f] != NULL && strcmp(files[f], "-") == 0) to_stdout = true;
     const Printed whole = {result, bp_study_print_page}, points = {result, bp_study_print_csv};
-    if (line->output != NULL) BP_TRY(bp_line_write(line, line->output, print_part, &whole, err));
-    if (line->csv != NULL) BP_TRY(bp_line_write(line, line->csv, print_part, &points, err));
-    if (line->json != NULL) BP_TRY(bp_json_write(line, bp_study_json(result), line->json, err));
+    BpStatus status = BP_OK;
+    /* A study takes minutes: a file that cannot be written keeps none of the others, nor the table, from
+     * being written. What is told is the first failure. */
+    if (line->output != NULL) status = bp_line_write(line, line->output, print_part, &whole, err);
+    if (line->csv != NULL) {
+        const BpStatus written =
+            bp_line_write(line, line->csv, print_part, &points, status == BP_OK ? err : NULL);
+        if (status == BP_OK) status = written;
+    }
+    if (line->json != NULL) {
+        const BpStatus written =
+            bp_json_write(line, bp_study_json(result), line->json, status == BP_OK ? err : NULL);
+        if (status == BP_OK) status = written;
+    }
     if (!to_stdout) {
         BpPage page;
         bp_page_begin(&page, stdout);
         bp_study_print(result, page.text);
         bp_page_end(&page, line, stdout);
     }
+    if (status != BP_OK) return status;
     if (result->cut_short)
         return bp_fail(err, BP_ERR_INTERRUPTED, "interrupted; these results are from the first %.0f seconds",
                        result->seconds);

@@ -169,6 +169,7 @@ static BpStatus run_render(BpRender *render, const BpStopRule *rule, bool quiet,
     Bar bar = {.live = bp_terminal_is_live(quiet), .drawn = start};
     end->reason = BP_STOP_NOT_YET;
     bp_interrupt_catch();
+    bp_checkpoint_start(checkpoint);
     BP_TRY_GOTO(status, bp_stop_create(render, rule, &stop, err), done);
     while (end->reason == BP_STOP_NOT_YET) {
         BpProgress progress;
@@ -329,7 +330,7 @@ static BpStatus interrupted(const BpCommandLine *line, const BpStopRule *rule, c
 }
 
 /* Picture, statistics (appended to `stats` unless it is NULL) and summary of a render that has stopped. */
-static BpStatus deliver(const BpCommandLine *line, const BpResultFile *file, const BpStopRule *rule,
+static BpStatus deliver(const BpCommandLine *line, BpResultFile *file, const BpStopRule *rule,
                         const LoopEnd *end, BpCheckpoint *checkpoint, BpRender *render, RunResult *result,
                         json_t *stats, BpError *err) {
     BpStatus status = bp_render_read_whole_film(render, &result->film, err);
@@ -354,6 +355,7 @@ static BpStatus deliver(const BpCommandLine *line, const BpResultFile *file, con
     const double write_start = bp_clock_seconds();
     const bool keeps = end->reason == BP_STOP_NOT_YET && checkpoint->path[0] != '\0';
     if (keeps && !checkpoint->is_result) bp_checkpoint_write(checkpoint, result->film);
+    file->is_own = checkpoint->is_result && checkpoint->written > 0;
     const BpStatus written = bp_result_write(line, file, result->film, true,
                                              (BpTransfer)result->film->transfer, &result->scene->legend, err);
     result->times.write = bp_clock_seconds() - write_start;
@@ -377,6 +379,7 @@ static BpStatus deliver(const BpCommandLine *line, const BpResultFile *file, con
 typedef struct Job {
     const char *path; /* of the scene */
     BpResultFile file;
+    BpCheckpoint checkpoint;
     BpScene *own;   /* read for this job */
     BpScene *scene; /* the same, or one of a series */
     double load_seconds;
@@ -423,9 +426,10 @@ static BpStatus load(Run *run, size_t number, BpError *err) {
     if (status != BP_OK) return status;
     job->scene = job->own;
     const BpCommandLine own = bp_result_line(run->line, &job->file);
-    status = bp_file_conflicts_check_scene(&own, NULL, job->scene, err);
+    BP_TRY(bp_file_conflicts_check_scene(&own, NULL, job->scene, err));
+    BP_TRY(bp_checkpoint_choose(run->line, &job->file, &job->checkpoint, err));
     job->load_seconds = bp_clock_seconds() - start;
-    return status;
+    return BP_OK;
 }
 
 static BpStatus open_devices(Run *run, BpError *err) {
@@ -457,25 +461,24 @@ static BpStatus plan(const BpCommandLine *line, const Job *job, const BpCheckpoi
     return BP_OK;
 }
 
-static BpStatus render_one(Run *run, const BpCommandLine *line, const Job *job, BpError *err) {
+static BpStatus render_one(Run *run, const BpCommandLine *line, Job *job, BpError *err) {
     BpStatus status = BP_OK;
     BpRender *render = NULL;
     BpWaiting *waiting = NULL;
     BpRenderOptions options;
     BpStopRule rule;
     LoopEnd end;
-    BpCheckpoint checkpoint;
+    BpCheckpoint *checkpoint = &job->checkpoint;
     BpFilm *resumed = NULL;
     RunResult result = {.scene_path = job->path,
                         .output = bp_result_name(&job->file),
                         .scene = job->scene,
                         .options = &options,
                         .times = {.start = run->start, .load = job->load_seconds},
-                        .checkpoint = &checkpoint};
-    BP_TRY(bp_checkpoint_choose(line, &job->file, &checkpoint, err));
+                        .checkpoint = checkpoint};
     BP_TRY_GOTO(status, bp_resume_load(line, &resumed, err), done);
     if (resumed != NULL) BP_TRY_GOTO(status, bp_resume_scene(line, resumed, job->scene, err), done);
-    BP_TRY_GOTO(status, plan(line, job, &checkpoint, resumed, &options, &rule, err), done);
+    BP_TRY_GOTO(status, plan(line, job, checkpoint, resumed, &options, &rule, err), done);
     if (run->devices == NULL)
         BP_TRY_GOTO(status, bp_setup_devices(line, &run->devices, &run->device_count, err), done);
     result.device_count = run->device_count;
@@ -492,8 +495,8 @@ static BpStatus render_one(Run *run, const BpCommandLine *line, const Job *job, 
     waiting = NULL;
     if (resumed != NULL) BP_TRY_GOTO(status, bp_render_resume(render, resumed, err), done);
     bp_film_destroy(&resumed);
-    BP_TRY_GOTO(status, run_render(render, &rule, line->quiet, &checkpoint, &end, err), done);
-    status = deliver(line, &job->file, &rule, &end, &checkpoint, render, &result, run->stats, err);
+    BP_TRY_GOTO(status, run_render(render, &rule, line->quiet, checkpoint, &end, err), done);
+    status = deliver(line, &job->file, &rule, &end, checkpoint, render, &result, run->stats, err);
 done:
     bp_waiting_end(waiting);
     bp_film_destroy(&resumed);
@@ -535,6 +538,7 @@ static BpStatus render_series(Run *run, BpError *err) {
         job.scene = series.scene;
         const BpCommandLine own = bp_result_line(&one, &job.file);
         BP_TRY_GOTO(status, bp_file_conflicts_check_scene(&own, NULL, job.scene, err), done);
+        BP_TRY_GOTO(status, bp_checkpoint_choose(&one, &job.file, &job.checkpoint, err), done);
         job.load_seconds = bp_clock_seconds() - run->start;
         status = render_one(run, &one, &job, err);
     }

@@ -74,3 +74,14 @@ BpStatus bp_file_conflicts_check_scene(const BpCommandLine *line, const char *pi
     }
     return status;
 }
+
+BpStatus bp_file_conflicts_check_film(const BpCommandLine *line, const char *film, const char *what,
+                                      bool is_output, BpError *err) {
+    Result results[RESULTS];
+    list_results(line, NULL, results);
+    for (size_t r = 0; r < RESULTS; ++r)
+        if (results[r].path != NULL && !(is_output && r == BP_OPTION_OUTPUT) &&
+            bp_output_same(results[r].path, film, STDIN_FILENO))
+            return refuse(&results[r], what, err);
+    return BP_OK;
+}

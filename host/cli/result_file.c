@@ -81,6 +81,7 @@ static BpStatus choose_output(const BpCommandLine *line, const char *source, BpR
                               BpError *err) {
     const bool has_format = bp_option_given(line, BP_OPTION_FORMAT);
     bool folder = false;
+    result->is_own = false;
     result->format = has_format ? line->format : BP_FORMAT_PNG;
     if (line->output != NULL) BP_TRY(find_folder(line, "--output", line->output, &folder, err));
     if ((line->output == NULL || folder) && strcmp(source, "-") == 0)
@@ -181,8 +182,10 @@ BpStatus bp_result_write(const BpCommandLine *line, const BpResultFile *result, 
         status = bp_color_bar_draw(&picture, transfer, (const float(*)[3])legend->colors, legend->range,
                                    legend->title, err);
     if (status != BP_OK) goto done;
-    status = is_picture ? bp_line_write(line, result->path, print_picture, &printed, err)
-                        : bp_line_write(line, result->path, print_film, film, err);
+    BpCommandLine of_result = *line;
+    if (result->is_own) of_result.no_clobber = false;
+    status = is_picture ? bp_line_write(&of_result, result->path, print_picture, &printed, err)
+                        : bp_line_write(&of_result, result->path, print_film, film, err);
     /* Who closes a pipe wants no more of the picture, but the map is a file of its own. */
     if (has_map && (status == BP_OK || strcmp(result->path, "-") == 0)) {
         const BpStatus mapped =

@@ -13,6 +13,7 @@ typedef struct BpResultFile {
     char path[4096];      /* "-": standard output */
     char error_map[4096]; /* "": none */
     BpFormat format;
+    bool is_own; /* what is there is a checkpoint of this run, so --no-clobber does not speak of it */
 } BpResultFile;
 
 /* Where the result goes: -o, or `source` with its ending replaced by that of the format, in the current

@@ -28,10 +28,10 @@ static const char form[] =
 
 BpStatus bp_particle_document(const char *path, char **text, BpError *err) {
     const char *const slash = strrchr(path, '/');
-    json_t *const name = json_string(slash != NULL ? slash + 1 : path);
-    char *const quoted = name != NULL ? json_dumps(name, JSON_ENCODE_ANY) : NULL;
-    json_decref(name);
+    bool no_memory = false;
+    char *const quoted = bp_json_quote(slash != NULL ? slash + 1 : path, &no_memory);
     *text = NULL;
+    if (no_memory) return bp_fail(err, BP_ERR_MEMORY, "out of memory for a document");
     if (quoted == NULL) {
         const BpStatus status =
             bp_fail(err, BP_ERR_SCENE,

@@ -146,7 +146,9 @@ static BpStatus find_place(const char *set, json_t *root, Place *place, const ch
         if (place->value == NULL) {
             place->value = json_object();
             if (json_object_set_new(place->parent, place->name, place->value) != 0)
-                return bp_fail(err, BP_ERR_SCENE, "--set: names are UTF-8, or memory ran out");
+                return bp_json_memory_failed()
+                           ? bp_fail(err, BP_ERR_MEMORY, "out of memory while changing the scene")
+                           : bp_fail(err, BP_ERR_SCENE, "--set: expected names in UTF-8");
         }
         within = place->value;
     }
@@ -167,14 +169,18 @@ static BpStatus put(const Place *place, const char *set, json_t *value, BpError 
         done = json_array_set_new(place->parent, place->index, value) == 0;
     else
         done = json_object_set_new(place->parent, place->name, value) == 0;
-    return done ? BP_OK : fail(set, err, "expected the member's name in UTF-8, or memory for it");
+    if (!done && bp_json_memory_failed())
+        return bp_fail(err, BP_ERR_MEMORY, "out of memory while changing the scene");
+    return done ? BP_OK : fail(set, err, "expected the member's name in UTF-8");
 }
 
 BpStatus bp_document_change(BpDocument *document, const char *const *set, size_t count, BpError *err) {
     if (count == 0) return BP_OK;
     document->written = json_deep_copy(document->root);
     document->changes = calloc(count, sizeof *document->changes);
-    if (document->written == NULL || document->changes == NULL)
+    /* Without memory for a member, jansson leaves it out of the copy and says nothing. */
+    if (document->written == NULL || document->changes == NULL ||
+        !json_equal(document->written, document->root))
         return bp_fail(err, BP_ERR_MEMORY, "out of memory while changing the scene");
     for (size_t i = 0; i < count; i++) {
         Place place;

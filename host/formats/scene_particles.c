@@ -336,7 +336,9 @@ BpStatus bp_point_file_make_absolute(const char *document, BpPointFile *file, Bp
     char *text = NULL;
     if (absolute != NULL && entry != NULL && json_object_set_new(entry, "file", json_string(absolute)) == 0)
         text = json_dumps(entry, JSON_PRESERVE_ORDER);
-    if (text == NULL) {
+    if (text == NULL && (path == NULL || bp_json_memory_failed())) {
+        status = bp_fail(err, BP_ERR_MEMORY, "out of memory for the path of %.200s", file->file);
+    } else if (text == NULL) {
         status = bp_fail(err, BP_ERR_SCENE,
                          "cannot name %.200s by an absolute path in UTF-8; write the document beside it",
                          file->file);
@@ -396,8 +398,11 @@ static BpStatus parse_entry(const BpNode *node, size_t place, const BpMaterialIn
         goto done;
     }
     json_t *const copy = json_copy(node->value);
-    if (copy != NULL && changes->has_frame) json_object_set_new(copy, "frame", json_integer(changes->frame));
-    entry->text = copy != NULL ? json_dumps(copy, JSON_PRESERVE_ORDER) : NULL;
+    /* Without memory for a member, jansson leaves it out of the copy and says nothing. */
+    bool whole = copy != NULL && json_object_size(copy) == json_object_size(node->value);
+    if (whole && changes->has_frame)
+        whole = json_object_set_new(copy, "frame", json_integer(changes->frame)) == 0;
+    entry->text = whole ? json_dumps(copy, JSON_PRESERVE_ORDER) : NULL;
     json_decref(copy);
     if (entry->text == NULL) {
         status = bp_fail(err, BP_ERR_MEMORY, "out of memory for an entry of \"particles\"");

@@ -2,6 +2,7 @@
  *
  * In:    a scene.   Out: JSON text that reads back to the same scene, bit for bit.
  * Knows: the grammar.  Does not know: how the file comes to stand at its place (output_file.h). */
+#include "base/json_memory.h"
 #include "base/output_file.h"
 
 #include "base/names.h"
@@ -31,12 +32,11 @@ static void put_vector(FILE *out, const double value[3]) {
 }
 
 static BpStatus put_text(FILE *out, const char *text, BpError *err) {
-    json_t *value = json_string(text);
-    char *quoted = value != NULL ? json_dumps(value, JSON_ENCODE_ANY) : NULL;
-    json_decref(value);
+    bool no_memory = false;
+    char *quoted = bp_json_quote(text, &no_memory);
+    if (no_memory) return bp_fail(err, BP_ERR_MEMORY, "out of memory for writing the scene");
     if (quoted == NULL)
-        return bp_fail(err, BP_ERR_SCENE, "cannot write the text \"%.60s\": expected UTF-8, or memory for it",
-                       text);
+        return bp_fail(err, BP_ERR_SCENE, "cannot write the text \"%.60s\": expected UTF-8", text);
     fputs(quoted, out);
     free(quoted);
     return BP_OK;

@@ -64,6 +64,7 @@ bool input_fill(Input *input, size_t count) {
         const char *const text = gzerror(input->gz, &code);
         if (got < 0 || code == Z_BUF_ERROR) { /* the latter: cut off amid packed data */
             input->failed = true;
+            input->fault = code == Z_MEM_ERROR ? BP_ERR_MEMORY : code == Z_ERRNO ? BP_ERR_FILE : BP_ERR_SCENE;
             const char *const what = code == Z_ERRNO       ? strerror(errno)
                                      : code == Z_BUF_ERROR ? "its gzip data is cut off"
                                                            : text;
@@ -73,6 +74,7 @@ bool input_fill(Input *input, size_t count) {
         if (got <= 0 || input->failed) break;
         if (input->taken + input->end > BP_INPUT_BYTES_MAX) {
             input->failed = true;
+            input->fault = BP_ERR_SCENE;
             snprintf(input->failure, sizeof input->failure,
                      "it unpacks to more than %" PRIu64 " GiB, expected less", BP_INPUT_BYTES_MAX >> 30);
         }
@@ -102,8 +104,14 @@ BpStatus input_fail(const Input *input, bool with_line, BpError *err, const char
     va_start(arguments, format);
     vsnprintf(text, sizeof text, format, arguments);
     va_end(arguments);
-    if (input->failed) snprintf(text, sizeof text, "found damage, expected a whole file: %s", input->failure);
-    const BpStatus status = bp_fail(err, BP_ERR_SCENE, "%s", text);
+    const BpStatus status = input->failed ? input->fault : BP_ERR_SCENE;
+    if (status == BP_ERR_MEMORY && input->failed)
+        snprintf(text, sizeof text, "out of memory for reading it");
+    else if (status == BP_ERR_FILE && input->failed)
+        snprintf(text, sizeof text, "cannot read it: %s", input->failure);
+    else if (input->failed)
+        snprintf(text, sizeof text, "found damage, expected a whole file: %s", input->failure);
+    bp_fail(err, status, "%s", text);
     bp_error_at(err, input->name, !with_line ? 0 : input->line < INT_MAX ? (int)input->line : INT_MAX, 0);
     return status;
 }

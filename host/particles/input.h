@@ -22,6 +22,7 @@ typedef struct Input {
     uint64_t line;  /* of the line last taken, from 1 */
     char *held;     /* a line that was given back */
     bool failed;    /* reading failed; `failure` says how */
+    BpStatus fault; /* BP_ERR_SCENE: the file is damaged; BP_ERR_FILE: it cannot be read; BP_ERR_MEMORY */
     char failure[128];
 } Input;
 

@@ -8,6 +8,7 @@
 
 #include "base/message_text.h"
 
+#include <errno.h>
 #include <inttypes.h>
 #include <stdlib.h>
 #include <string.h>
@@ -89,10 +90,15 @@ static BpStatus read_at(const Input *input, const State *s, uint64_t at, void *b
                           "found a place beyond the end of the file (%zu bytes at %" PRIu64 " of %" PRIu64
                           "), expected a whole GSD file; it is cut off or damaged",
                           count, at, s->size);
-    if (fseeko(s->stream, (off_t)at, SEEK_SET) != 0 || fread(bytes, 1, count, s->stream) != count)
-        return input_fail(input, false, err,
-                          "found no more data at byte %" PRIu64 ", expected a whole GSD file", at);
-    return BP_OK;
+    const bool found = fseeko(s->stream, (off_t)at, SEEK_SET) == 0;
+    if (found && fread(bytes, 1, count, s->stream) == count) return BP_OK;
+    if (!found || ferror(s->stream)) {
+        const BpStatus status = bp_fail(err, BP_ERR_FILE, "cannot read it: %s", strerror(errno));
+        bp_error_at(err, input->name, 0, 0);
+        return status;
+    }
+    return input_fail(input, false, err, "found no more data at byte %" PRIu64 ", expected a whole GSD file",
+                      at);
 }
 
 /* A packed file into a temporary one, which has no name. */
@@ -115,7 +121,9 @@ static BpStatus unpack(Input *input, State *s, BpError *err) {
         input_take(input, here);
     }
     if (input->failed) return input_fail(input, false, err, "%s", "");
-    fflush(s->unpacked);
+    if (fflush(s->unpacked) != 0)
+        return bp_fail(err, BP_ERR_FILE, "cannot write a temporary file to unpack %s: is the disk full?",
+                       input->name);
     s->stream = s->unpacked;
     return BP_OK;
 }

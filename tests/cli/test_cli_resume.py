@@ -150,6 +150,49 @@ class Resume(cli.ProgramTest):
         for output in ("-", "/dev/null"):
             self.fail_with(2, "render", "s.json", "--checkpoint", 1, "-o", output, "--format", "pfm", says="--checkpoint has no place")
 
+    def test_no_result_replaces_the_sums(self):
+        """Neither those that a render goes on from, nor those that it keeps: whatever names lead to them."""
+        self.succeed("render", "s.json", "--spp", 4, "-o", "a.bpa", "-q")
+        before = self.read("a.bpa")
+        os.symlink("a.bpa", self.path("link.json"))
+        os.link(self.path("a.bpa"), self.path("same.png"))
+        for options in (["-o", "b.png", "--stats", "a.bpa"], ["-o", "b.png", "--stats", "link.json"],
+                        ["-o", "b.png", "--error-map", "same.png"], ["-o", "same.png"], ["-o", "a.bpa", "--stats", "./a.bpa"]):
+            self.fail_with(2, "render", "s.json", "--resume", "a.bpa", "--spp", 8, *options)
+            self.assert_same(self.read("a.bpa"), before, options)
+        self.fail_with(2, "render", "s.json", "--resume", "a.bpa", "--spp", 8, "-o", "b.png", "--stats", "link.json",
+                       says="--stats link.json would overwrite the film that --resume names")
+        self.fail_with(2, "render", "s.json", "--checkpoint", 1, "-o", "c.png", "--stats", "c.bpa",
+                       says="--stats c.bpa would overwrite the sums that --checkpoint keeps")
+        self.succeed("render", "s.json", "--resume", "a.bpa", "--spp", 8, "-o", "a.bpa", "-q")  # more sums take their place
+
+    def test_no_clobber(self):
+        """A render's own checkpoints are not in its way, nor is its unfinished picture in that of the command that goes
+        on; somebody else's file is."""
+        self.succeed("render", "s.json", "--checkpoint", 0.01, "--no-clobber", "-o", "a.bpa", "-q")
+        self.assertEqual(self.files(), ["a.bpa", "s.json"])
+        self.fail_with(1, "render", "s.json", "--checkpoint", 0.01, "--no-clobber", "-o", "a.bpa", says="File exists")
+        code, said = self.stop_at("b.bpa", signal.SIGTERM, "--checkpoint", 0.02, "--no-clobber", "-o", "b.exr", "--spp", 20000)
+        self.assertEqual(code, 130, said)
+        self.go_on(said, "-q")
+        self.assertEqual(self.files(), ["a.bpa", "b.exr", "s.json"])
+        process = self.start("--checkpoint", 1, "--time", 3, "--no-clobber", "-o", "c.bpa", "-q")
+        time.sleep(0.5)
+        self.write("c.bpa", "theirs")
+        said = process.communicate(timeout=cli.LIMIT_SECONDS)[1].decode()
+        self.assertEqual(process.returncode, 1, said)
+        self.assertEqual(self.read("c.bpa"), b"theirs")
+        # On a slow machine the file is there before the render is. No further try leaves a further file.
+        self.assertLessEqual(said.count("the checkpoint was not written"), 1, said)
+
+    def test_several_scenes(self):
+        """What is in the way of the last one's checkpoint is found before the first one is rendered."""
+        self.write("a.json", cli.scene())
+        self.write("b.json", cli.scene())
+        self.succeed("render", "b.json", "-o", "b.bpa", "-q")
+        self.fail_with(2, "render", "a.json", "b.json", "--checkpoint", 1, says="--checkpoint would replace b.bpa")
+        self.assertEqual(self.files(), ["a.json", "b.bpa", "b.json", "s.json"])
+
     def test_a_finished_render_leaves_no_checkpoint(self):
         self.succeed("render", "s.json", "--checkpoint", 0.01, "-o", "a.exr", "-q")
         self.assertEqual(self.files(), ["a.exr", "s.json"])

@@ -227,6 +227,33 @@ class OpenFiles(Safety):
             self.assertIn("No space left", self.shell(f"\"$B\" {command} > /dev/full", 1).errors, command)
 
 
+class OneOfSeveral(Safety):
+    """A document that cannot be written takes no other result of minutes of work with it."""
+
+    def test_study(self):
+        self.write("s.json", scene(4, 4))
+        result = self.fail_with(1, "cost", "s.json", "--time", "0.1", "-o", "/dev/full", "--csv", "c.csv", "--json", "c.json",
+                                stdout=subprocess.DEVNULL, says=["/dev/full", "No space left"])
+        self.assertTrue(self.read("c.csv").endswith(b"\n"))
+        self.assertIn("series", json.loads(self.read("c.json")))
+        table = self.run_program("cost", "s.json", "--time", "0.1", "-o", "/dev/full")
+        self.assertEqual(table.returncode, 1, result.errors)
+        self.assertIn(b"Configurations", table.stdout)
+
+    def test_check(self):
+        self.write("s.json", scene(4, 4))
+        result = self.run_program("check", "s.json", "--junit", "/dev/full", "--json", "j.json")
+        self.assertEqual(result.returncode, 1, result.errors)
+        self.assertIn("No space left", result.errors)
+        self.assertIn("verdict", json.loads(self.read("j.json")))
+
+    def test_bench(self):
+        self.write("s.json", scene(4, 4))
+        result = self.run_program("bench", "s.json", "--rounds", "1", "--time", "0.05", "--json", "/dev/full")
+        self.assertEqual(result.returncode, 1, result.errors)
+        self.assertIn(b"Msamples/s", result.stdout)
+
+
 class Foreign(Safety):
     def test_escapes(self):
         evil = "\x1b]0;owned\x07\u009b31m\u202e"

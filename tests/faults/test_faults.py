@@ -2,60 +2,91 @@
 
 Whatever fails, the program neither crashes nor hangs. With exit code 0 its results are those of an undisturbed run;
 with exit code 1 there is a message, which says "memory" where memory was refused, every result is the old file or
-the new one, whole, and nothing else is left behind but what the message names.
+the new one, whole, and nothing else is left behind but what the message names, and checkpoints.
 
-Run as: python3 test_faults.py PROGRAM SOURCE_DIR SHIM COMMAND STEP [unittest's arguments]
-COMMAND: render, merge or cost. STEP: of the refused allocations of a render, only every STEP-th is tried."""
+Run as: python3 test_faults.py PROGRAM SOURCE_DIR SHIM COMMANDS STEP [unittest's arguments]
+COMMANDS: names of COMMANDS below, with commas between. STEP: of the refused allocations, only every STEP-th is tried;
+12+5: every 12th from the 6th on."""
 
+import gzip
 import os
 import re
 import sys
 
-SHIM, COMMAND, STEP = os.path.abspath(sys.argv[3]), sys.argv[4], int(sys.argv[5])
+SHIM, CHOSEN = os.path.abspath(sys.argv[3]), sys.argv[4].split(",")
+STEP, OFFSET = map(int, (sys.argv[5] + "+0").split("+")[:2])
 sys.argv[3:6] = []
 
 import cli
 
-KINDS = ("open", "unnamed", "stream", "write", "sync", "close", "rename", "link")
+FILE_KINDS = ("open", "unnamed", "stream", "read", "write", "sync", "close", "rename", "link")
+MEMORY_KINDS = ("alloc", "json", "library")
 OLD = b"what was there before"
+XYZ = "2\nfirst\nC 0 0 0\nO 1 0 0\n2\nsecond\nC 0 0 0\nO 1.2 0 0\n"
 
 
-class Faults(cli.ProgramTest):
+class Command:
+    """One run of the program: what it writes, which of that differs from run to run (`varies`), what may be left
+    unfinished by a run that fails (`checkpoint`), the commands that make what it reads. A study makes one long document
+    and many small pictures by the same few calls of jansson and libpng: `often` is how many times fewer of those are tried."""
+
+    def __init__(self, line, results, varies=(), checkpoint=None, inputs=(), often=1):
+        self.line, self.results, self.varies, self.checkpoint = line.split(), results, varies, checkpoint
+        self.inputs, self.often = inputs, often
+
+
+PARTS = ("render s.json --spp 4 -o 0.bpa", "render s.json --spp 4 --first-sample 4 -o 1.bpa")
+COMMANDS = {
+    "render": Command("render s.json -o a.pfm --error-map e.png --stats t.json", ("a.pfm", "e.png", "t.json"), ("t.json",)),
+    "merge": Command("merge 0.bpa 1.bpa -o m.bpa --error-map e.png", ("m.bpa", "e.png"), inputs=PARTS),
+    "cost": Command("cost s.json --width 4 --time 0.1 -o c.html --csv c.csv --json c.json", ("c.html", "c.csv", "c.json"),
+                    ("c.html", "c.csv", "c.json"), often=12),
+    "checkpoint": Command("render s.json --spp 300 --checkpoint 0.000001 -o a.pfm", ("a.pfm",), checkpoint="a.bpa"),
+    "resume": Command("render s.json --resume 0.bpa --spp 8 -o a.pfm", ("a.pfm",), inputs=PARTS),
+    "share": Command("render s.json --spp 64 --share 1/2 --adaptive -o a.bpa", ("a.bpa",)),
+    "frames": Command("render p.xyz.gz --frames 0:2 --width 16 --spp 1 --format pfm", ("p-0000.pfm", "p-0001.pfm")),
+    "several": Command("render s.json p.xyz --spp 1 --format ppm --stats t.json", ("s.ppm", "p.ppm", "t.json"), ("t.json",)),
+    "check": Command("check s.json --width 8 --json j.json --junit j.xml --map m.png", ("j.json", "j.xml", "m.png"),
+                     ("j.json", "j.xml")),
+    "against": Command("check s.json --width 8 --against old.json --json j.json", ("j.json",), ("j.json",),
+                       inputs=("check s.json --width 8 --json old.json",)),
+    "scene": Command("scene p.xyz -o p.json", ("p.json",)),
+    "cover": Command("generate cover --grid 0 -o c.json", ("c.json",)),
+    "field": Command("generate field --count 5 -o f.ply", ("f.ply",)),
+}
+
+
+class Faults:
     """The results stand in self.results; whatever else appears in the folder is a leftover."""
 
     def setUp(self):
         super().setUp()
+        self.command = COMMANDS[self.NAME]
+        self.results, self.varies = self.command.results, self.command.varies
         os.mkdir(self.path("elsewhere"))  # $TMPDIR
         self.write("s.json", cli.scene(16, 9, camera={"samples_per_pixel": 1}))
-        if COMMAND == "render":
-            self.arguments = ("render", "s.json", "-o", "a.pfm", "--error-map", "e.png", "--stats", "t.json", "-q")
-            self.results, self.varies = ("a.pfm", "e.png", "t.json"), ("t.json",)
-        elif COMMAND == "merge":
-            for number in (0, 1):
-                self.succeed("render", "s.json", "--first-sample", number, "-o", f"{number}.bpa", "-q")
-            self.arguments = ("merge", "0.bpa", "1.bpa", "-o", "m.bpa", "--error-map", "e.png", "-q")
-            self.results, self.varies = ("m.bpa", "e.png"), ()
-        else:
-            self.arguments = ("cost", "s.json", "--time", "0.1", "-o", "c.html", "--csv", "c.csv", "--json", "c.json", "-q")
-            self.results = self.varies = ("c.html", "c.csv", "c.json")
+        self.write("p.xyz", XYZ)
+        self.write("p.xyz.gz", gzip.compress(XYZ.encode()))
+        for line in self.command.inputs:
+            self.succeed(*line.split(), "-q")
         self.inputs = set(os.listdir(self.folder))
         self.run_with("none", 0)  # a device's self-test is remembered from here on, its kernels are built
         self.right = {name: self.read(name) for name in self.results}
 
     def run_with(self, kind, at):
-        """One run with one fault; its result and how many calls of the kind there were."""
+        """One run with one fault; its result and how many calls of each kind there were."""
         log = os.path.join(self.path("elsewhere"), "log")
-        result = self.run_program(*self.arguments, environment={
+        result = self.run_program(*self.command.line, "-q", environment={
             "LD_PRELOAD": SHIM, "FAULT_KIND": kind, "FAULT_AT": str(at), "FAULT_LOG": log,
             "TMPDIR": self.path("elsewhere")})
         with open(log, encoding="ascii") as file:
-            calls = int(file.read())
+            calls = {name: int(number) for name, number in map(str.split, file)}
         os.remove(log)
         return result, calls
 
-    def picture_of(self, sums):
-        """What the sums of a render that could not be written make."""
-        picture = self.path("kept.pfm")
+    def picture_of(self, sums, like):
+        """What the sums of a render that could not be written make, in the format of the file `like`."""
+        picture = self.path("kept" + os.path.splitext(like)[1])
         self.succeed("merge", sums, "-o", picture, "-q")
         with open(picture, "rb") as file:
             content = file.read()
@@ -66,7 +97,7 @@ class Faults(cli.ProgramTest):
         """Whether that is what an undisturbed run writes; of what differs from run to run, whether it is whole."""
         if name not in self.varies:
             return content == self.right[name]
-        return content.rstrip()[-7:] == self.right[name].rstrip()[-7:] if name.endswith(("json", "html")) \
+        return content.rstrip()[-7:] == self.right[name].rstrip()[-7:] if name.endswith(("json", "html", "xml")) \
             else content.endswith(b"\n") and content.count(b"\n") == self.right[name].count(b"\n")
 
     def try_one(self, kind, at, existing, where):
@@ -81,7 +112,7 @@ class Faults(cli.ProgramTest):
         self.assertIn(result.returncode, (0, 1), f"{where}: {result.errors}")
         if result.returncode == 1:
             self.assertRegex(result.errors, r"(?m)^ballpark: .*\w", where)
-        if result.returncode == 1 and kind == "alloc":
+        if result.returncode == 1 and kind in MEMORY_KINDS:
             self.assertIn("memory", result.errors.lower(), where)
         named = re.findall(r"the complete result is in (\S+)", result.errors)
         for name in self.results:
@@ -90,10 +121,14 @@ class Faults(cli.ProgramTest):
             if result.returncode == 1 and there == (OLD if existing else None):
                 good = True
             self.assertTrue(good, f"{where}: {name} is {there and there[:60]}, {result.errors}")
+        pictures = [self.right[name] for name in self.results if name not in self.varies]
         for path in re.findall(r"ballpark merge (\S+) -o FILE makes the picture", result.errors):
             path = os.path.join(self.folder, path)
-            self.assertEqual(self.picture_of(path), self.right["a.pfm"], where)
+            self.assertIn(self.picture_of(path, self.results[0]), pictures, where)
             os.remove(path)
+        if result.returncode == 1 and self.command.checkpoint in os.listdir(self.folder):
+            self.succeed("merge", self.command.checkpoint, "-o", "/dev/null", "--format", "pfm", "-q")  # it is whole
+            os.remove(self.path(self.command.checkpoint))
         for folder in (self.folder, self.path("elsewhere")):
             for name in set(os.listdir(folder)) - self.inputs - set(self.results):
                 path = os.path.join(folder, name)
@@ -102,39 +137,44 @@ class Faults(cli.ProgramTest):
                     self.assertTrue(self.is_right(name.rsplit(".", 1)[0], file.read()), f"{where}: {name} is not whole")
         return result
 
-    def every(self, kind, step=1):
-        _, calls = self.run_with(kind, 0)
+    def every(self, kind, calls, step=1, offset=0):
+        """How many of the runs failed; the moments of the checkpoints differ from run to run, and so do numbers."""
         failed = 0
-        for at in range(1, calls + 1, step):
+        for at in range(1 + offset, calls + 1, step):
             existing = at % 2 == 0 or kind == "rename"
-            where = f"{COMMAND}, {kind} {at} of {calls}"
+            where = f"{self.NAME}, {kind} {at} of {calls}"
             with self.subTest(where):
                 failed += self.try_one(kind, at, existing, where).returncode
-        return calls, failed
+        return failed
 
     def test_files(self):
-        for kind in KINDS:
-            for name in self.results:
-                self.write(name, OLD)  # so that there is something to rename over
-            calls, failed = self.every(kind)
-            self.assertGreater(calls, 0, f"{kind}: nothing was tried")
-            if kind == "write":
-                self.assertEqual(failed, calls, "a write failed and the program did not")
+        for name in self.results:
+            self.write(name, OLD)  # so that there is something to rename over
+        _, calls = self.run_with("none", 0)
+        self.assertGreater(min(calls[kind] for kind in FILE_KINDS if kind != "read"), 0, f"nothing was tried: {calls}")
+        for kind in FILE_KINDS:
+            failed = self.every(kind, calls[kind])
+            if kind == "write" and self.command.checkpoint is None:
+                self.assertEqual(failed, calls[kind], "a write failed and the program did not")
 
     def test_files_always(self):
         """The same call fails every time: no unnamed files here, no rename, no link."""
         for kind in ("unnamed", "rename", "link"):
             for existing in (False, True):
-                result = self.try_one(kind, "all", existing, f"{COMMAND}, every {kind}, existing: {existing}")
+                result = self.try_one(kind, "all", existing, f"{self.NAME}, every {kind}, existing: {existing}")
                 if kind == "unnamed" or existing:
                     self.assertEqual(result.returncode, 0, f"every {kind}: {result.errors}")
 
     def test_memory(self):
-        if COMMAND == "cost":
-            self.skipTest("of a study's allocations, thousands, those of a render are tried with the render")
-        calls, failed = self.every("alloc", STEP)
-        self.assertGreater(calls, 50)
-        self.assertGreater(failed, 0)
+        _, calls = self.run_with("none", 0)
+        self.assertGreater(sum(calls[kind] for kind in MEMORY_KINDS), 10)
+        self.assertGreater(self.every("alloc", calls["alloc"], STEP, OFFSET), 0)
+        for kind in ("json", "library"):
+            self.every(kind, calls[kind], STEP * self.command.often, OFFSET)
+
+
+for chosen in CHOSEN:
+    globals()[chosen] = type(chosen, (Faults, cli.ProgramTest), {"NAME": chosen})
 
 
 if __name__ == "__main__":
