@@ -1,9 +1,11 @@
 /* check_against.c: see check_against.h. */
 #include "check_against.h"
 
+#include "base/json_memory.h"
 #include "base/json_text.h"
 #include "base/shown.h"
 #include "check_report.h"
+#include "formats/input_file.h"
 
 #include <errno.h>
 #include <stdlib.h>
@@ -18,8 +20,15 @@ BpStatus bp_check_against_read(const char *path, json_t **document, BpError *err
             bp_fail(err, BP_ERR_FILE, "--against %s: cannot open it: %s", path, strerror(errno));
         return status;
     }
-    json_t *found = json_loadf(in, JSON_REJECT_DUPLICATES, &fault);
+    char *text = NULL;
+    size_t length = 0;
+    bool no_memory = false;
+    const BpStatus read = bp_stream_read(in, 0, path, &text, &length, err);
     fclose(in);
+    if (read != BP_OK) return read;
+    json_t *found = bp_json_load(text, length, JSON_REJECT_DUPLICATES, &fault, &no_memory);
+    free(text);
+    if (no_memory) return bp_fail(err, BP_ERR_MEMORY, "out of memory for the document of --against");
     if (found == NULL) {
         const BpStatus status = bp_fail(err, BP_ERR_USAGE, "--against: no JSON: %s", fault.text);
         bp_error_at(err, path, fault.line, fault.column);

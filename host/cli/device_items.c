@@ -5,6 +5,7 @@
 #include "device_items.h"
 
 #include "base/clock.h"
+#include "base/json_memory.h"
 #include "base/json_text.h"
 #include "child_process.h"
 #include "interrupt.h"
@@ -20,10 +21,22 @@
 /* ---- in the child ---------------------------------------------------------------------------------------
  */
 
-static void write_line(json_t *line, FILE *out) {
-    if (line != NULL && json_dumpf(line, out, JSON_REAL_PRECISION(17) | JSON_COMPACT) == 0) fputc('\n', out);
+/* Whether there was memory for the line, and for all that is in it: jansson can lose a part without a word.
+ */
+static bool write_line(json_t *line, FILE *out) {
+    char *text = line != NULL ? json_dumps(line, JSON_REAL_PRECISION(17) | JSON_COMPACT) : NULL;
+    const bool whole = text != NULL && !bp_json_memory_failed();
+    if (whole) fprintf(out, "%s\n", text);
     fflush(out);
+    free(text);
     json_decref(line);
+    return whole;
+}
+
+static void write_lack_of_memory(size_t item, FILE *out) {
+    fprintf(out, "{\"item\": %zu, \"code\": %d, \"error\": \"out of memory for a result\"}\n", item,
+            (int)BP_ERR_MEMORY);
+    fflush(out);
 }
 
 void bp_item_doing(FILE *out, size_t number, const char *doing) {
@@ -35,7 +48,7 @@ static void write_error(size_t item, const BpError *error, FILE *out) {
                              (int)error->code, "error", bp_json_text(error->message), "file",
                              bp_json_text(error->file), "line", error->line, "column", error->column);
     if (error->attachment != NULL) json_object_set_new(line, "attachment", bp_json_text(error->attachment));
-    write_line(line, out);
+    if (!write_line(line, out)) write_lack_of_memory(item, out);
 }
 
 static bool work_in_child(void *argument, FILE *out) {
@@ -52,10 +65,10 @@ static bool work_in_child(void *argument, FILE *out) {
         else
             status = items->work(items, i, items->seconds > 0 ? left / (double)(items->count - i) : 0, out,
                                  &result, &error);
-        if (status == BP_OK)
-            write_line(json_pack("{s:I, s:o}", "item", (json_int_t)i, "result", result), out);
-        else
+        if (status != BP_OK)
             write_error(i, &error, out);
+        else if (!write_line(json_pack("{s:I, s:o}", "item", (json_int_t)i, "result", result), out))
+            write_lack_of_memory(i, out);
         bp_error_clear(&error);
         if (status == BP_ERR_INTERRUPTED) break;
     }
@@ -133,6 +146,11 @@ BpStatus bp_device_items_run(const BpDeviceItems *items, BpItemOutcome *outcomes
     /* A child that a second signal ended is no broken device. */
     fill_gaps(items, &report, bp_interrupted(), doing, outcomes);
     free(report.bytes);
+    if (bp_json_memory_failed()) { /* what was read may lack something */
+        bp_item_outcomes_clear(outcomes, items->count);
+        memset(outcomes, 0, items->count * sizeof *outcomes);
+        return bp_fail(err, BP_ERR_MEMORY, "out of memory for the results of a device");
+    }
     return BP_OK;
 }
 
