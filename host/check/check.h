@@ -58,9 +58,12 @@ void bp_check_destroy(BpCheck **check);
  * scene's size). `cut_paths`: Optional, added to. */
 BpStatus bp_check_render_kernel(BpRender *render, BpSums *sums, uint64_t *cut_paths, BpError *err);
 
-/* Three pictures side by side, scaled up to a visible size: kernel, reference, and the z of each pixel, blue
- * where the kernel is darker, red where it is brighter, white at 0, full colour from 4 on. Encoded so that
- * `transfer` shows them as meant. The caller clears the picture. */
+#define BP_CHECK_MAP_MOST 4
+
+/* Three pictures side by side, scaled up to a visible size: kernel, reference, and their difference in each
+ * pixel in standard errors, blue where the kernel is darker, red where it is brighter, white at 0, full
+ * colour from BP_CHECK_MAP_MOST on. A legend stands below. Encoded so that `transfer` shows them as meant.
+ * The caller clears the picture. */
 BpStatus bp_check_map(const BpCheckResult *result, BpTransfer transfer, BpPicture *picture, BpError *err);
 
 #endif

@@ -448,8 +448,9 @@ static BpStatus plan(const BpCommandLine *line, const Job *job, const BpCheckpoi
     bp_setup_warn(line, job->scene, options->precision);
     /* Less noise in the same time on every scene that was measured: docs/ACCURACY.md. */
     if (!bp_option_given(line, BP_OPTION_SAMPLER)) options->sampler = BP_SAMPLER_SOBOL;
-    options->features =
-        job->file.format == BP_FORMAT_EXR || job->file.format == BP_FORMAT_BPA || checkpoint->path[0] != '\0';
+    /* An error map tells spheres from sky by their depth. */
+    options->features = job->file.format == BP_FORMAT_EXR || job->file.format == BP_FORMAT_BPA ||
+                        job->file.error_map[0] != '\0' || checkpoint->path[0] != '\0';
     if (resumed != NULL) {
         options->lamps = bp_render_lamps(job->scene, options); /* as films have it */
         BP_TRY(bp_resume_options(line, resumed, options, err));

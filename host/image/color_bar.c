@@ -42,13 +42,6 @@ static int choose_ticks(const double range[2], Tick ticks[TICKS_MAX]) {
     return count;
 }
 
-/* The radiance that becomes this byte (bp_transfer_byte). */
-static float radiance_of(uint8_t byte, BpTransfer transfer) {
-    const double encoded = (byte + 0.5) / 256;
-    if (transfer == BP_TRANSFER_GAMMA2) return (float)(encoded * encoded);
-    return (float)(transfer == BP_TRANSFER_SRGB ? bp_linear_from_srgb(encoded) : encoded);
-}
-
 /* Dark on a light picture, light on a dark one. */
 static bool is_light(const BpPicture *picture, BpTransfer transfer, uint32_t left) {
     double sum = 0;
@@ -108,11 +101,7 @@ BpStatus bp_color_bar_draw(BpPicture *picture, BpTransfer transfer, const float 
     bp_canvas_fill(&canvas, 0, 0, canvas.width, canvas.height, untouched);
     draw(&canvas, transfer, colors, ticks, count, small, scale, right,
          is_light(picture, transfer, picture->width - right) ? dark : light);
-    for (size_t i = 0; i < pixels; i++) {
-        const uint8_t *const bytes = canvas.rgb + 3 * i;
-        if (memcmp(bytes, untouched, 3) == 0) continue;
-        for (size_t c = 0; c < 3; c++) picture->rgb[3 * i + c] = radiance_of(bytes[c], transfer);
-    }
+    bp_canvas_copy(&canvas, untouched, picture, 0, transfer);
     free(canvas.rgb);
     return BP_OK;
 }

@@ -12,7 +12,7 @@
 
 #define SHADES 512
 #define SMALL_WIDTH 360u  /* narrower pictures are enlarged up to about this */
-#define LEGEND_WIDTH 250u /* pixels that the legend needs at scale 1 */
+#define LEGEND_WIDTH 312u /* pixels that the legend needs at scale 1 */
 
 static const uint8_t paper[3] = {22, 22, 26}, ink[3] = {225, 225, 225}, faint[3] = {160, 160, 166},
                      unknown[3] = {128, 128, 128};
@@ -116,15 +116,24 @@ static void draw_pixels(const BpPicture *picture, const MapPlan *plan, BpCanvas 
         }
 }
 
-/* The middle one of the known relative errors; NaN when none is known. */
-static BpStatus median_error(const BpPicture *picture, double *median, BpError *err) {
+/* Some pixel shows something. */
+static bool has_depth(const BpPicture *picture) {
+    const size_t pixels = (size_t)picture->width * picture->height;
+    for (size_t i = 0; picture->depth != NULL && i < pixels; i++)
+        if (isfinite(picture->depth[i])) return true;
+    return false;
+}
+
+/* The middle one of the known relative errors; NaN when none is known. `of_spheres`: of the pixels that show
+ * some sphere, since the sky has no noise and would hide that of the rest. */
+static BpStatus median_error(const BpPicture *picture, bool of_spheres, double *median, BpError *err) {
     const size_t pixels = (size_t)picture->width * picture->height;
     double *errors = malloc(pixels * sizeof *errors);
     if (errors == NULL) return bp_fail(err, BP_ERR_MEMORY, "out of memory for the error map");
     size_t count = 0;
     for (size_t i = 0; i < pixels; i++) {
         const double error = bp_pixel_relative_error(picture, i);
-        if (!isnan(error)) errors[count++] = error;
+        if (!isnan(error) && (!of_spheres || isfinite(picture->depth[i]))) errors[count++] = error;
     }
     bp_sort_doubles(errors, count);
     *median = count == 0 ? (double)NAN : errors[count / 2];
@@ -144,7 +153,7 @@ static void format_percent(double fraction, char text[32]) {
 }
 
 /* The colour bar with its ticks and, below, what it shows and the median. */
-static void draw_legend(const MapPlan *plan, double median, BpCanvas *canvas) {
+static void draw_legend(const MapPlan *plan, const char *of_what, double median, BpCanvas *canvas) {
     const uint32_t s = plan->scale, left = plan->margin, bar = canvas->width - 2 * plan->margin;
     for (uint32_t x = 0; x < bar; x++) {
         uint8_t color[3];
@@ -164,7 +173,7 @@ static void draw_legend(const MapPlan *plan, double median, BpCanvas *canvas) {
     }
     char percent[32], text[64];
     format_percent(median, percent);
-    snprintf(text, sizeof text, "median %s", percent);
+    snprintf(text, sizeof text, "median%s %s", of_what, percent);
     const uint32_t y = plan->legend + 31 * s;
     bp_canvas_text(canvas, left, y, s, "relative noise", faint);
     const uint32_t key = left + bar - bp_text_width("unknown", s);
@@ -180,13 +189,14 @@ BpStatus bp_error_map_draw(const BpPicture *picture, BpCanvas *canvas, BpError *
     if (picture->width == 0 || picture->height == 0 || picture->rgb == NULL || picture->error == NULL)
         return bp_fail(err, BP_ERR_USAGE, "the picture has no standard errors to make an error map from");
     double median = 0;
-    BP_TRY(median_error(picture, &median, err));
+    const bool of_spheres = has_depth(picture);
+    BP_TRY(median_error(picture, of_spheres, &median, err));
     const MapPlan plan = plan_canvas(picture, canvas);
     canvas->rgb = malloc((size_t)canvas->width * canvas->height * 3);
     if (canvas->rgb == NULL) return bp_fail(err, BP_ERR_MEMORY, "out of memory for the error map");
     bp_canvas_fill(canvas, 0, 0, canvas->width, canvas->height, paper);
     draw_pixels(picture, &plan, canvas);
-    draw_legend(&plan, median, canvas);
+    draw_legend(&plan, of_spheres ? " on spheres" : "", median, canvas);
     return BP_OK;
 }
 

@@ -7,7 +7,8 @@
  * by logarithm, so that two maps can be compared: dark is certain, bright is uncertain. Lightness rises
  * evenly along the scale, so the order survives grey prints and colour-blind eyes. A pixel whose error is not
  * known, or that is black without any error (it may simply not have met the light yet), is grey, which the
- * scale has not. Small pictures are enlarged by a whole factor; a legend stands below. */
+ * scale has not. Small pictures are enlarged by a whole factor; a legend stands below, with the median of the
+ * pixels that show a sphere, where the picture has depths, else of all. */
 #ifndef BP_IMAGE_ERROR_MAP_H
 #define BP_IMAGE_ERROR_MAP_H
 

@@ -12,6 +12,8 @@
 /* The book's writer: encode by the transfer curve (gamma2: square root of positive values, else 0), clamp to
  * [0, 0.999], times 256, floor. NaN becomes 0; +Inf 255. */
 uint8_t bp_transfer_byte(double linear, BpTransfer transfer);
+/* The radiance that `transfer` encodes as `value`, 0 to 1. */
+double bp_transfer_inverse(double value, BpTransfer transfer);
 
 /* The format that `path`'s ending names (.png .ppm .pfm .exr .bpa, in any case); false when it names none. */
 bool bp_format_from_path(const char *path, BpFormat *format);

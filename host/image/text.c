@@ -1,6 +1,8 @@
 /* text.c: see text.h. */
 #include "text.h"
 
+#include "image.h"
+
 #include <stddef.h>
 #include <string.h>
 
@@ -81,4 +83,15 @@ void bp_canvas_text(BpCanvas *canvas, uint32_t x, uint32_t y, uint32_t scale, co
 uint32_t bp_text_width(const char *text, uint32_t scale) {
     const size_t length = strlen(text);
     return length == 0 ? 0 : ((uint32_t)length * BP_TEXT_ADVANCE - 1) * scale;
+}
+
+void bp_canvas_copy(const BpCanvas *canvas, const uint8_t untouched[3], BpPicture *picture, uint32_t top,
+                    BpTransfer transfer) {
+    float *rgb = picture->rgb + (size_t)top * picture->width * 3;
+    for (size_t i = 0; i < (size_t)canvas->width * canvas->height; i++) {
+        const uint8_t *bytes = canvas->rgb + 3 * i;
+        if (untouched != NULL && memcmp(bytes, untouched, 3) == 0) continue;
+        for (size_t c = 0; c < 3; c++)
+            rgb[3 * i + c] = (float)bp_transfer_inverse((bytes[c] + 0.5) / 256, transfer);
+    }
 }

@@ -1,11 +1,11 @@
 /* text.h: small letters drawn into an 8-bit picture, for legends.
  *
- * In:    a canvas, a string.   Out: pixels.
+ * In:    a canvas, a string.   Out: pixels; a picture with them.
  * Knows: the shapes of digits, small letters and + - . _ % < >.   Does not know: what is written. */
 #ifndef BP_IMAGE_TEXT_H
 #define BP_IMAGE_TEXT_H
 
-#include <stdint.h>
+#include "ballpark.h"
 
 /* 8-bit RGB, top row first; the pixels are the caller's. */
 typedef struct BpCanvas {
@@ -24,6 +24,12 @@ void bp_canvas_fill(BpCanvas *canvas, uint32_t x, uint32_t y, uint32_t width, ui
  * gap. */
 void bp_canvas_text(BpCanvas *canvas, uint32_t x, uint32_t y, uint32_t scale, const char *text,
                     const uint8_t color[3]);
+
+/* Copies what was drawn to the picture's radiance, so that a file of 8 bits by `transfer` shows it right: all
+ * of the canvas, which is as wide as the picture, to the rows from `top` on, but for pixels of the colour
+ * `untouched` (Optional). */
+void bp_canvas_copy(const BpCanvas *canvas, const uint8_t untouched[3], BpPicture *picture, uint32_t top,
+                    BpTransfer transfer);
 
 /* Pixels that `text` is wide, without the gap after its last letter. */
 uint32_t bp_text_width(const char *text, uint32_t scale);

@@ -20,3 +20,15 @@ uint8_t bp_transfer_byte(double linear, BpTransfer transfer) {
     if (!(encoded > 0)) return 0; /* NaN too */
     return (uint8_t)(256 * fmin(encoded, 0.999));
 }
+
+double bp_transfer_inverse(double value, BpTransfer transfer) {
+    switch (transfer) {
+    case BP_TRANSFER_GAMMA2:
+        return value * value;
+    case BP_TRANSFER_SRGB:
+        return bp_linear_from_srgb(value);
+    case BP_TRANSFER_LINEAR:
+        break;
+    }
+    return value;
+}

@@ -132,7 +132,7 @@ static void limits_of_time(void **state) {
     bp_scene_destroy(&scene);
 }
 
-/* Three panels with gaps; the third is white where the z is 0. */
+/* Three panels with gaps and a legend below; the third is white where the z is 0. */
 static void map(void **state) {
     (void)state;
     BpScene *scene = scene_of("v4-red-sphere.json", 40); /* no noise: every z is 0 */
@@ -140,14 +140,22 @@ static void map(void **state) {
     BpCheck *check = check_with(scene, &options);
     BpPicture picture;
     assert_int_equal(bp_check_map(result_of(check), BP_TRANSFER_GAMMA2, &picture, NULL), BP_OK);
-    const uint32_t zoom = picture.height / scene->camera.height;
-    assert_int_equal(picture.height, scene->camera.height * zoom);
+    const uint32_t zoom = (picture.width - 16) / 120, shown = scene->camera.height * zoom;
     assert_int_equal(picture.width, 3 * 40 * zoom + 16);
-    const float *last = picture.rgb + ((size_t)picture.width * picture.height - 1) * 3;
+    assert_true(picture.height > shown);
+    const float *last = picture.rgb + ((size_t)picture.width * shown - 1) * 3;
     assert_true(last[0] == 1 && last[1] == 1 && last[2] == 1);
     const float *first = picture.rgb, *reference = picture.rgb + (size_t)(40 * zoom + 8) * 3;
     for (int c = 0; c < 3; ++c)
         assert_true(first[c] - reference[c] < 1e-5f && reference[c] - first[c] < 1e-5f);
+    /* The legend has the colours of the darkest kernel and the brightest. */
+    bool blue = false, red = false;
+    for (size_t i = (size_t)picture.width * shown; i < (size_t)picture.width * picture.height; ++i) {
+        const float *color = picture.rgb + 3 * i;
+        blue = blue || (color[2] > 0.9f && color[0] < 0.01f);
+        red = red || (color[0] > 0.9f && color[2] < 0.01f);
+    }
+    assert_true(blue && red);
     bp_picture_clear(&picture);
     bp_check_destroy(&check);
     bp_scene_destroy(&scene);

@@ -126,6 +126,37 @@ static void the_legend_shows_the_scale(void **state) {
     bp_picture_clear(&picture);
 }
 
+/* Where the picture tells the sky by its depth, the sky does not lower the median. */
+static void the_median_is_of_spheres(void **state) {
+    (void)state;
+    BpPicture picture = make_picture(320, 10), even = make_picture(320, 10);
+    BpCanvas all, spheres, expected;
+    picture.depth = malloc(3200 * sizeof *picture.depth);
+    even.depth = calloc(3200, sizeof *even.depth);
+    for (size_t i = 0; i < 3200; i++) {
+        const bool sky = i % 320 >= 100;
+        picture.depth[i] = sky ? (float)INFINITY : 3;
+        for (size_t c = 0; c < 3; c++) {
+            picture.error[3 * i + c] = sky ? 0.005f : 0.05f;
+            even.error[3 * i + c] = 0.05f;
+        }
+    }
+    assert_int_equal(bp_error_map_draw(&picture, &spheres, NULL), BP_OK);
+    free(picture.depth);
+    picture.depth = NULL;
+    assert_int_equal(bp_error_map_draw(&picture, &all, NULL), BP_OK);
+    assert_int_equal(bp_error_map_draw(&even, &expected, NULL), BP_OK);
+    /* The last line of the legend. */
+    const size_t end = (size_t)3 * spheres.width * spheres.height, line = (size_t)3 * spheres.width * 14;
+    assert_memory_equal(spheres.rgb + end - line, expected.rgb + end - line, line);
+    assert_memory_not_equal(all.rgb + end - line, expected.rgb + end - line, line);
+    free(all.rgb);
+    free(spheres.rgb);
+    free(expected.rgb);
+    bp_picture_clear(&picture);
+    bp_picture_clear(&even);
+}
+
 static void every_letter_has_its_own_shape(void **state) {
     (void)state;
     static const char letters[] = "0123456789.%<>abcdefghijklmnopqrstuvwxyz";
@@ -184,6 +215,7 @@ int main(void) {
         cmocka_unit_test(relative_errors),
         cmocka_unit_test(pixels_stand_in_their_place),
         cmocka_unit_test(the_legend_shows_the_scale),
+        cmocka_unit_test(the_median_is_of_spheres),
         cmocka_unit_test(every_letter_has_its_own_shape),
         cmocka_unit_test(drawing_stays_on_the_canvas),
         cmocka_unit_test(files),

@@ -18,7 +18,7 @@ MAY_INCLUDE = {
     "image": set(),
     "render": {"scene", "packed", "opencl", "film"},
     "reference": {"scene"},
-    "check": {"scene", "film", "render", "reference"},
+    "check": {"scene", "film", "image", "render", "reference"},
     "study": {"scene", "film", "image", "render", "reference"},
     "cli": {"scene", "formats", "packed", "opencl", "film", "image", "render", "check", "study"},
 }
