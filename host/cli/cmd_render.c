@@ -21,6 +21,7 @@
 #include "opencl/device.h"
 #include "output.h"
 #include "page.h"
+#include "preview.h"
 #include "progress.h"
 #include "render/render.h"
 #include "render/render_plan.h"
@@ -162,7 +163,7 @@ static BpStatus draw(BpStop *stop, const BpProgress *progress, Bar *bar, BpError
 
 /* `render` has made no step yet. Catches Ctrl-C from here on. `quiet`: no progress bar. */
 static BpStatus run_render(BpRender *render, const BpStopRule *rule, bool quiet, BpCheckpoint *checkpoint,
-                           LoopEnd *end, BpError *err) {
+                           BpPreview *preview, LoopEnd *end, BpError *err) {
     const double start = bp_clock_seconds();
     BpStatus status = BP_OK;
     BpStop *stop = NULL;
@@ -179,6 +180,9 @@ static BpStatus run_render(BpRender *render, const BpStopRule *rule, bool quiet,
         if (end->reason == BP_STOP_NOT_YET && !bp_interrupted() &&
             bp_checkpoint_is_due(checkpoint, bp_clock_seconds()))
             BP_TRY_GOTO(status, bp_checkpoint_begin(checkpoint, render, err), done);
+        if (end->reason == BP_STOP_NOT_YET && !bp_interrupted() &&
+            bp_preview_is_due(preview, bp_clock_seconds()))
+            BP_TRY_GOTO(status, bp_preview_update(preview, render, err), done);
         if (bp_interrupted()) break; /* after a regular stop it is not an interruption */
     }
 done:
@@ -331,8 +335,8 @@ static BpStatus interrupted(const BpCommandLine *line, const BpStopRule *rule, c
 
 /* Picture, statistics (appended to `stats` unless it is NULL) and summary of a render that has stopped. */
 static BpStatus deliver(const BpCommandLine *line, BpResultFile *file, const BpStopRule *rule,
-                        const LoopEnd *end, BpCheckpoint *checkpoint, BpRender *render, RunResult *result,
-                        json_t *stats, BpError *err) {
+                        const LoopEnd *end, BpCheckpoint *checkpoint, BpPreview *preview, BpRender *render,
+                        RunResult *result, json_t *stats, BpError *err) {
     BpStatus status = bp_render_read_whole_film(render, &result->film, err);
     if (status != BP_OK && bp_render_read_film(render, &result->film, NULL) == BP_OK)
         bp_keep_sums(result->film, file->path, err);
@@ -364,6 +368,7 @@ static BpStatus deliver(const BpCommandLine *line, BpResultFile *file, const BpS
     if (stats != NULL && json_array_append_new(stats, stats_json(result)) != 0)
         return bp_fail(err, BP_ERR_MEMORY, "out of memory for the document %s", line->stats);
     if (written != BP_OK) return written;
+    BP_TRY(bp_preview_end(preview, result->film, err));
     print_summary(line, result, rule, end);
     if (end->reason == BP_STOP_TIME && result->samples_per_pixel == 0)
         return bp_fail(err, BP_ERR_LIMIT,
@@ -470,6 +475,7 @@ static BpStatus render_one(Run *run, const BpCommandLine *line, Job *job, BpErro
     BpStopRule rule;
     LoopEnd end;
     BpCheckpoint *checkpoint = &job->checkpoint;
+    BpPreview preview;
     BpFilm *resumed = NULL;
     RunResult result = {.scene_path = job->path,
                         .output = bp_result_name(&job->file),
@@ -477,6 +483,7 @@ static BpStatus render_one(Run *run, const BpCommandLine *line, Job *job, BpErro
                         .options = &options,
                         .times = {.start = run->start, .load = job->load_seconds},
                         .checkpoint = checkpoint};
+    BP_TRY(bp_preview_choose(line, job->scene, &job->file, &preview, err));
     BP_TRY_GOTO(status, bp_resume_load(line, &resumed, err), done);
     if (resumed != NULL) BP_TRY_GOTO(status, bp_resume_scene(line, resumed, job->scene, err), done);
     BP_TRY_GOTO(status, plan(line, job, checkpoint, resumed, &options, &rule, err), done);
@@ -496,8 +503,8 @@ static BpStatus render_one(Run *run, const BpCommandLine *line, Job *job, BpErro
     waiting = NULL;
     if (resumed != NULL) BP_TRY_GOTO(status, bp_render_resume(render, resumed, err), done);
     bp_film_destroy(&resumed);
-    BP_TRY_GOTO(status, run_render(render, &rule, line->quiet, checkpoint, &end, err), done);
-    status = deliver(line, &job->file, &rule, &end, checkpoint, render, &result, run->stats, err);
+    BP_TRY_GOTO(status, run_render(render, &rule, line->quiet, checkpoint, &preview, &end, err), done);
+    status = deliver(line, &job->file, &rule, &end, checkpoint, &preview, render, &result, run->stats, err);
 done:
     bp_waiting_end(waiting);
     bp_film_destroy(&resumed);

@@ -54,6 +54,29 @@ const BpCommand bp_commands[] = {
         .run = bp_command_render,
     },
     {
+        .name = "view",
+        .operands = "SCENE",
+        .operands_min = 1,
+        .operands_max = 1,
+        .summary = "look at a scene in a window, and move the camera",
+        .description =
+            "Opens a window, if this program was built with SDL 2, and renders SCENE in it until noise is "
+            "where --error wants it; the title tells how far it is. While the camera moves, the picture is "
+            "smaller or noisier, so that it follows.\n"
+            "\n"
+            "Left drag orbits around the point that the camera looks at, right drag moves along the picture, "
+            "the wheel goes nearer and farther, and a click focuses on what is there. [ and ] change the "
+            "aperture, - and + the exposure, 0 resets it, r goes back to the first camera. s saves the "
+            "picture as "
+            "SCENE-view-1.png, with the first number that is free, in the current folder, and prints the "
+            "command that "
+            "renders it with the camera as it is. q or Escape quits.",
+        .examples = "  ballpark view scenes/cover.json --width 640\n"
+                    "  ballpark view protein.pdb --error 0.5%\n",
+        .bit = BP_VIEW,
+        .run = bp_command_view,
+    },
+    {
         .name = "check",
         .operands = "[SCENE]",
         .operands_max = 1,

@@ -40,6 +40,7 @@ BpCommandRun bp_command_bench;    /* cmd_bench.c */
 BpCommandRun bp_command_devices;  /* cmd_devices.c */
 BpCommandRun bp_command_generate; /* cmd_generate.c */
 BpCommandRun bp_command_scene;    /* cmd_scene.c */
+BpCommandRun bp_command_view;     /* cmd_view.c */
 BpCommandRun bp_command_help;     /* help.c */
 
 #endif

@@ -19,8 +19,9 @@ enum {
     BP_DEVICES = 1 << 6,
     BP_GENERATE = 1 << 7,
     BP_SCENE = 1 << 8,
+    BP_VIEW = 1 << 9,
     /* All that trace paths. */
-    BP_TRACERS = BP_RENDER | BP_CHECK | BP_EXPLAIN | BP_COST | BP_BENCH,
+    BP_TRACERS = BP_RENDER | BP_CHECK | BP_EXPLAIN | BP_COST | BP_BENCH | BP_VIEW,
     BP_COMMANDS = BP_TRACERS | BP_MERGE | BP_DEVICES | BP_GENERATE | BP_SCENE, /* all that take options */
 };
 
@@ -49,8 +50,9 @@ enum {
            "where the result goes; \"-\" is standard output", const char *, output, BP_RESULT("FILE"))       \
     RENDER_OPTION(SPP, "spp", 0, BP_RENDER | BP_CHECK, "samples per pixel", uint64_t, samples_per_pixel,     \
                   BP_WHOLE("N", 1, BP_SPP_MAX))                                                              \
-    OPTION(ERROR, "error", 0, BP_RENDER, "stop when the noise of the picture (NRMSE) is below PERCENT",      \
-           double, error_percent, BP_PERCENT(0, 100))                                                        \
+    OPTION(ERROR, "error", 0, BP_RENDER | BP_VIEW,                                                           \
+           "stop when the noise of the picture (NRMSE) is below PERCENT", double, error_percent,             \
+           BP_PERCENT(0, 100))                                                                               \
     OPTION(TIME, "time", 0, BP_RENDER | BP_COST | BP_BENCH, "time budget, such as 90, 90s, 2m or 1h30m",     \
            double, time_seconds, BP_TIME(0, 1e7))                                                            \
     OPTION(WIDTH, "width", 0, BP_TRACERS, "width of the picture in pixels; the aspect ratio stays",          \
@@ -74,7 +76,7 @@ enum {
            "override a member of the scene, such as camera.vfov=30 or spheres[0].radius=2; the value is "    \
            "JSON, null removes the member; may be repeated",                                                 \
            BpTexts, set, BP_TEXTS("MEMBER=VALUE"))                                                           \
-    OPTION(FRESNEL, "fresnel", 0, BP_RENDER | BP_CHECK | BP_EXPLAIN | BP_BENCH,                              \
+    OPTION(FRESNEL, "fresnel", 0, BP_RENDER | BP_CHECK | BP_EXPLAIN | BP_BENCH | BP_VIEW,                    \
            "reflection of glass: the book's approximation, or Fresnel's equations", const char *, fresnel,   \
            BP_WORD("schlick", "exact"))                                                                      \
     RENDER_OPTION(SEED, "seed", 0, BP_TRACERS | BP_GENERATE, "random seed, 64 bits, decimal or 0x...",       \
@@ -94,7 +96,7 @@ enum {
                   BP_CHOICE("", bp_math_names, 0))                                                           \
     RENDER_OPTION(NUMERICS, "numerics", 0, BP_TRACERS, "plain: faster, wrong at extreme scales", BpNumerics, \
                   numerics, BP_CHOICE("", bp_numerics_names, 0))                                             \
-    RENDER_OPTION(SAMPLER, "sampler", 0, BP_RENDER | BP_EXPLAIN | BP_COST | BP_BENCH,                        \
+    RENDER_OPTION(SAMPLER, "sampler", 0, BP_RENDER | BP_EXPLAIN | BP_COST | BP_BENCH | BP_VIEW,              \
                   "sample sequence; sobol has less noise", BpSampler, sampler,                               \
                   BP_CHOICE("", bp_sampler_names, 0))                                                        \
     RENDER_OPTION(LAMPS, "lamps", 0, BP_TRACERS, "off: paths find lamps by chance only, for comparison",     \
@@ -106,8 +108,8 @@ enum {
            const char *, effects, BP_WORD("all"))                                                            \
     RENDER_OPTION(KERNEL, "kernel", 0, BP_TRACERS, "kernel variant; does not change the picture",            \
                   BpKernelForm, kernel, BP_CHOICE("", bp_kernel_names, BP_KERNEL_SAMPLE))                    \
-    OPTION(TRANSFER, "transfer", 0, BP_RENDER | BP_MERGE, "tone curve of 8-bit output", BpTransfer,          \
-           transfer, BP_CHOICE("", bp_transfer_names, 0))                                                    \
+    OPTION(TRANSFER, "transfer", 0, BP_RENDER | BP_MERGE | BP_VIEW, "tone curve of 8-bit output",            \
+           BpTransfer, transfer, BP_CHOICE("", bp_transfer_names, 0))                                        \
     OPTION(FORMAT, "format", 0, BP_RENDER | BP_MERGE, "png, ppm, ppm-ascii, pfm, exr or bpa", BpFormat,      \
            format, BP_CHOICE("FORMAT", bp_format_names, 0))                                                  \
     OPTION(ERROR_MAP, "error-map", 0, BP_RENDER | BP_MERGE, "write a heat map of each pixel's noise",        \
@@ -116,8 +118,14 @@ enum {
            "write times, counts and noise as JSON; \"-\" is standard output; a seed of 2^63 or more is a "   \
            "string",                                                                                         \
            const char *, stats, BP_RESULT("FILE"))                                                           \
-    RENDER_OPTION(FORCE, "force", 0, BP_RENDER | BP_EXPLAIN | BP_COST,                                       \
+    RENDER_OPTION(FORCE, "force", 0, BP_RENDER | BP_EXPLAIN | BP_COST | BP_VIEW,                             \
                   "render even if the device fails its self-test", bool, force, BP_FLAG)                     \
+    OPTION(PREVIEW, "preview", 0, BP_RENDER,                                                                 \
+           "rewrite the picture, as far as it is, every SECONDS while rendering", double, preview_seconds,   \
+           BP_REAL("SECONDS", 0, 1e7))                                                                       \
+    OPTION(SHOW, "show", 0, BP_RENDER,                                                                       \
+           "draw the picture in the terminal while rendering, every second or as --preview says", bool,      \
+           show, BP_FLAG)                                                                                    \
     OPTION(CHECKPOINT, "checkpoint", 0, BP_RENDER,                                                           \
            "keep the sums in a .bpa file every SECONDS, from which --resume goes on", double,                \
            checkpoint_seconds, BP_REAL("SECONDS", 0, 1e7))                                                   \
@@ -185,22 +193,24 @@ enum {
     NOTE(LAMPS, BP_CHECK, NULL, "off, as in the reference")                                                  \
     NOTE(SPP, BP_RENDER, NULL, "the scene's number")                                                         \
     NOTE(SPP, BP_CHECK, NULL, "1024")                                                                        \
+    NOTE(ERROR, BP_VIEW, "go on until the noise of the picture (NRMSE) is below PERCENT", "1%")              \
     NOTE(ERROR, BP_RENDER, NULL, "no such limit")                                                            \
     NOTE(TIME, BP_RENDER, "stop after this time, such as 90, 90s, 2m or 1h30m", "no such limit")             \
     NOTE(TIME, BP_COST, NULL, "1m")                                                                          \
     NOTE(TIME, BP_BENCH, "tracing time per scene, over all rounds, such as 90, 90s or 2m", "5s")             \
-    NOTE(WIDTH, BP_RENDER | BP_BENCH, NULL, "the scene's width")                                             \
+    NOTE(WIDTH, BP_RENDER | BP_BENCH | BP_VIEW, NULL, "the scene's width")                                   \
     NOTE(WIDTH, BP_CHECK, NULL, "64, or the scene's width if that is less")                                  \
     NOTE(WIDTH, BP_COST, NULL, "240, or the scene's width if that is less")                                  \
     NOTE(WIDTH, BP_EXPLAIN, NULL,                                                                            \
          "the scene's width; with --measure 400, or the scene's width if that is less")                      \
     NOTE(DEPTH, BP_TRACERS, NULL, "the scene's depth")                                                       \
-    NOTE(FRESNEL, BP_RENDER | BP_CHECK | BP_EXPLAIN | BP_BENCH | BP_SCENE, NULL, "each material's own")      \
+    NOTE(FRESNEL, BP_RENDER | BP_CHECK | BP_EXPLAIN | BP_BENCH | BP_SCENE | BP_VIEW, NULL,                   \
+         "each material's own")                                                                              \
     NOTE(SEED, BP_TRACERS, NULL, "0")                                                                        \
     NOTE(SEED, BP_GENERATE, NULL, "1")                                                                       \
     NOTE(FIRST_SAMPLE, BP_RENDER, NULL, "0")                                                                 \
     NOTE(FIRST_SAMPLE, BP_EXPLAIN, "which sample to follow", "0")                                            \
-    NOTE(DEVICE, BP_RENDER | BP_CHECK | BP_BENCH, NULL, "a GPU if there is one, otherwise a CPU")            \
+    NOTE(DEVICE, BP_RENDER | BP_CHECK | BP_BENCH | BP_VIEW, NULL, "a GPU if there is one, otherwise a CPU")  \
     NOTE(DEVICE, BP_EXPLAIN | BP_COST,                                                                       \
          "device number, part of its name or driver version, gpu or cpu (see `ballpark devices`)",           \
          "a GPU if there is one, otherwise a CPU")                                                           \
@@ -208,10 +218,10 @@ enum {
     NOTE(PRECISION, BP_TRACERS, NULL, "single")                                                              \
     NOTE(MATH, BP_TRACERS, NULL, "strict")                                                                   \
     NOTE(NUMERICS, BP_TRACERS, NULL, "robust")                                                               \
-    NOTE(SAMPLER, BP_RENDER | BP_EXPLAIN | BP_COST, NULL, "sobol")                                           \
+    NOTE(SAMPLER, BP_RENDER | BP_EXPLAIN | BP_COST | BP_VIEW, NULL, "sobol")                                 \
     NOTE(SAMPLER, BP_BENCH, NULL, "independent")                                                             \
     NOTE(KERNEL, BP_TRACERS, NULL, "packet on a CPU, sample elsewhere")                                      \
-    NOTE(TRANSFER, BP_RENDER, NULL, "the scene's")                                                           \
+    NOTE(TRANSFER, BP_RENDER | BP_VIEW, NULL, "the scene's")                                                 \
     NOTE(TRANSFER, BP_MERGE, NULL, "that of the first file's scene")                                         \
     NOTE(FORMAT, BP_RENDER | BP_MERGE, NULL, "by the ending of FILE, otherwise png")                         \
     NOTE(MARGIN, BP_CHECK, NULL, "0.5%, with --suite 1%")                                                    \

@@ -101,7 +101,7 @@ static void put_fit(FILE *out, const BpCamera *camera) {
     fputs("\n  }", out);
 }
 
-static void put_camera(FILE *out, const BpCamera *camera) {
+void bp_scene_print_camera(const BpCamera *camera, FILE *out) {
     fprintf(out, "  \"camera\": {\n    \"image_width\": %u, ", (unsigned)camera->width);
     if (bp_camera_height(camera->width, camera->aspect_ratio) == camera->height) {
         fputs("\"aspect_ratio\": ", out);
@@ -227,7 +227,7 @@ BpStatus bp_scene_print(const BpScene *scene, FILE *out, BpError *err) {
     fputs(",\n  \"source\": ", out);
     BP_TRY(put_text(out, scene->source, err));
     fputs(",\n", out);
-    put_camera(out, &scene->camera);
+    bp_scene_print_camera(&scene->camera, out);
     fputs(",\n  \"background\": { \"bottom\": ", out);
     put_vector(out, scene->background_bottom);
     fputs(", \"top\": ", out);

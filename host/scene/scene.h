@@ -152,6 +152,8 @@ BpStatus bp_scene_validate(const BpScene *scene, BpError *err);
 BpStatus bp_scene_write(const BpScene *scene, const char *path, BpError *err);
 /* The same to an open stream, which the caller closes. */
 BpStatus bp_scene_print(const BpScene *scene, FILE *stream, BpError *err);
+/* Its member "camera" alone. */
+void bp_scene_print_camera(const BpCamera *camera, FILE *stream);
 
 /* The book's cover. edition: "1", "3", "3rust" or "4"; grid: half side, 11 in the book (cells -grid ..
  * grid-1; 3rust: -grid .. grid). The draw order is fixed: see cover.c. */

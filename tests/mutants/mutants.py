@@ -49,6 +49,10 @@ MUTANTS = [
     Mutant("the slowest samples forgotten", "a chunk sized by the sky goes to the mirrors",
            [patch("host/render/pace.c", "if (samples > bearable) samples = bearable;", "(void)bearable;")],
            [test("test_pace", "1 exact")]),
+    # ---- cameras that are moved ----------------------------------------------------------------------------
+    Mutant("what was sharp is left behind", "the wheel moves the camera, and not the plane in focus",
+           [patch("host/view/camera_moves.c", "if (focus > 0.01 * wanted) bp_camera_focus(camera, focus);", "(void)focus;")],
+           [test("test_camera_moves", "1 exact")]),
     # ---- fitted cameras --------------------------------------------------------------------------------------
     Mutant("the bounding box for the silhouette", "a camera fitted to centres and radii in the picture plane",
            [patch("host/scene/fit.c", "cosine) * place[axis] - sine * place[2] - radius;",

@@ -20,7 +20,9 @@ MAY_INCLUDE = {
     "reference": {"scene"},
     "check": {"scene", "film", "image", "render", "reference"},
     "study": {"scene", "film", "image", "render", "reference"},
-    "cli": {"scene", "formats", "packed", "opencl", "film", "image", "render", "check", "study"},
+    "view": {"scene", "film", "image", "render", "reference"},
+    "cli": {"scene", "formats", "packed", "opencl", "film", "image", "render", "check", "study",
+            "view"},
 }
 
 

@@ -14,9 +14,10 @@ from cli import LIMIT_SECONDS, PROGRAM
 
 
 class Terminal:
-    """The program with its standard error (and output, unless told) on a terminal of `columns`."""
+    """The program with its standard error (and output, unless told) on a terminal of `columns`. `controls`: it is the
+    terminal that the program finds as /dev/tty."""
 
-    def __init__(self, test, *arguments, columns=80, stdout=None, environment=None):
+    def __init__(self, test, *arguments, columns=80, stdout=None, environment=None, controls=False):
         try:
             self.master, slave = pty.openpty()
         except OSError as error:
@@ -25,7 +26,8 @@ class Terminal:
         values = {**test.environment, "TERM": "xterm", **(environment or {})}
         self.process = subprocess.Popen([PROGRAM, *arguments], cwd=test.folder, stdin=slave, stderr=slave,
                                         stdout=slave if stdout is None else stdout, env=values,
-                                        start_new_session=True)
+                                        start_new_session=True,
+                                        preexec_fn=(lambda: fcntl.ioctl(0, termios.TIOCSCTTY, 0)) if controls else None)
         os.close(slave)
         self.seen = b""
         self.deadline = time.monotonic() + LIMIT_SECONDS

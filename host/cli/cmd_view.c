@@ -1,0 +1,187 @@
+/* cmd_view.c: `ballpark view`.
+ *
+ * In:    a scene, the module that opens windows.   Out: a window; pictures that the person at it saves.
+ * Knows: where the module is, how saved pictures are named.   Does not know: SDL, what the window shows. */
+#include "commands.h"
+
+#include "base/plural.h"
+#include "formats/scene_parse.h"
+#include "image/image.h"
+#include "interrupt.h"
+#include "opencl/device.h"
+#include "output.h"
+#include "page.h"
+#include "setup.h"
+#include "terminal.h"
+#include "view/viewer.h"
+
+#include <dlfcn.h>
+#include <stdlib.h>
+#include <string.h>
+#include <unistd.h>
+
+#define TARGET 0.01 /* noise at which it rests, unless --error says otherwise */
+
+/* ---- the module ---------------------------------------------------------------------------------------- */
+
+/* Beside the program, as it is built, or in the library folder, as it is installed; or what the environment
+ * names. */
+static void find_module(char *path, size_t size) {
+    static const char *const places[] = {"ballpark_window.so", BALLPARK_MODULE_FOLDER "/ballpark_window.so"};
+    const char *named = getenv("BALLPARK_WINDOW");
+    char program[3500];
+    snprintf(path, size, "ballpark_window.so");
+    if (named != NULL && named[0] != '\0') {
+        snprintf(path, size, "%s", named);
+        return;
+    }
+    const ssize_t length = readlink("/proc/self/exe", program, sizeof program - 1);
+    if (length < 0) return;
+    program[length] = '\0';
+    char *slash = strrchr(program, '/');
+    if (slash != NULL) slash[1] = '\0';
+    for (size_t p = 0; p < sizeof places / sizeof places[0]; ++p) {
+        char candidate[4096];
+        snprintf(candidate, sizeof candidate, "%s%s", program, places[p]);
+        if (access(candidate, R_OK) != 0) continue;
+        snprintf(path, size, "%s", candidate);
+        return;
+    }
+}
+
+/* The module stays loaded until the program ends: libraries for windows do not like to go. */
+static BpStatus load_window(const BpWindow **window, BpError *err) {
+    char path[4096];
+    find_module(path, sizeof path);
+    void *module = dlopen(path, RTLD_NOW | RTLD_LOCAL);
+    if (module == NULL)
+        return bp_fail(err, BP_ERR_USAGE,
+                       "no window can be opened, since %s cannot be loaded: %s; build Ballpark with SDL 2 "
+                       "(libsdl2-dev), or "
+                       "use `ballpark render --show`, which draws in the terminal",
+                       path, dlerror());
+    *window = dlsym(module, BP_WINDOW_SYMBOL);
+    if (*window != NULL && (*window)->version == BP_WINDOW_VERSION) return BP_OK;
+    return bp_fail(err, BP_ERR_USAGE, "%s is not a module of this version of Ballpark; build it again", path);
+}
+
+/* ---- saving ---------------------------------------------------------------------------------------------
+ */
+
+typedef struct Saving {
+    const BpCommandLine *line;
+    BpTransfer transfer;
+    unsigned number; /* of the latest */
+} Saving;
+
+typedef struct Printed {
+    const BpPicture *picture;
+    BpTransfer transfer;
+} Printed;
+
+static BpStatus print_picture(const void *what, FILE *out, BpError *err) {
+    const Printed *printed = what;
+    return bp_png_write(printed->picture, out, printed->transfer, err);
+}
+
+/* The scene's name without folder and ending, "scene" for standard input, then the first number that is free.
+ */
+static BpStatus choose_name(Saving *saving, char *name, size_t size, BpError *err) {
+    const char *scene = saving->line->operands[0];
+    const char *slash = strrchr(scene, '/'), *base = slash != NULL ? slash + 1 : scene;
+    if (strcmp(scene, "-") == 0) base = "scene";
+    const char *dot = strrchr(base, '.');
+    const int stem = (int)(dot != NULL && dot != base ? (size_t)(dot - base) : strlen(base));
+    do {
+        if (++saving->number > 99999)
+            return bp_fail(err, BP_ERR_FILE, "there are pictures of all numbers up to 99999 in this folder");
+        if ((size_t)snprintf(name, size, "%.*s-view-%u.png", stem, base, saving->number) >= size)
+            return bp_fail(err, BP_ERR_FILE, "the name of the scene is too long for that of a picture");
+    } while (access(name, F_OK) == 0);
+    return BP_OK;
+}
+
+/* On one line, for a shell. */
+static void print_command(const BpCommandLine *line, const BpScene *scene) {
+    char *text = NULL;
+    size_t length = 0;
+    FILE *out = open_memstream(&text, &length);
+    if (out == NULL) return;
+    bp_scene_print_camera(&scene->camera, out);
+    if (fclose(out) == 0) {
+        const char *object = strchr(text, '{');
+        printf("ballpark render %s --set 'camera=",
+               strcmp(line->operands[0], "-") == 0 ? "SCENE" : line->operands[0]);
+        for (const char *c = object; c != NULL && *c != '\0'; ++c) {
+            const bool space = *c == ' ' || *c == '\n';
+            if (!space) putchar(*c);
+            if (space && c[1] != ' ' && c[1] != '\n' && c[1] != '\0') putchar(' ');
+        }
+        puts("'");
+        fflush(stdout);
+    }
+    free(text);
+}
+
+static BpStatus save(void *context, const BpScene *scene, const BpPicture *picture, BpError *err) {
+    Saving *saving = context;
+    char name[1024];
+    const Printed printed = {picture, saving->transfer};
+    BpCommandLine careful = *saving->line;
+    careful.no_clobber = true;
+    BP_TRY(choose_name(saving, name, sizeof name, err));
+    BP_TRY(bp_line_write(&careful, name, print_picture, &printed, err));
+    bp_say(saving->line, "saved %s; the command renders it with less noise", name);
+    print_command(saving->line, scene);
+    return BP_OK;
+}
+
+/* ---- the command ----------------------------------------------------------------------------------------
+ */
+
+static BpStatus open_devices(const BpCommandLine *line, BpDeviceInfo **infos, BpDevice ***devices,
+                             size_t *count, BpError *err) {
+    BP_TRY(bp_setup_devices(line, infos, count, err));
+    BP_TRY(bp_setup_self_test(line, *infos, *count, err));
+    *devices = calloc(*count, sizeof **devices);
+    if (*devices == NULL) return bp_fail(err, BP_ERR_MEMORY, "out of memory for a list of devices");
+    for (size_t d = 0; d < *count; ++d)
+        BP_TRY(bp_device_open_part(&(*infos)[d], line->threads, &(*devices)[d], err));
+    return BP_OK;
+}
+
+BpStatus bp_command_view(const BpCommandLine *line, BpError *err) {
+    BpScene *scene = NULL;
+    BpDeviceInfo *infos = NULL;
+    BpDevice **devices = NULL;
+    BpViewPlan plan = {.name = line->operands[0], .save = save, .interrupted = bp_interrupted};
+    BpStatus status = BP_OK;
+    BpWaiting *waiting = NULL;
+    BP_TRY(load_window(&plan.window, err));
+    BP_TRY_GOTO(status, bp_setup_scene(line, line->operands[0], &scene, err), done);
+    BP_TRY_GOTO(status, bp_setup_options(line, scene, &plan.options, err), done);
+    bp_setup_warn(line, scene, plan.options.precision);
+    if (!bp_option_given(line, BP_OPTION_SAMPLER)) plan.options.sampler = BP_SAMPLER_SOBOL;
+    plan.options.samples_per_pixel = BP_SPP_MAX;
+    plan.target = bp_option_given(line, BP_OPTION_ERROR) ? line->error_percent / 100 : TARGET;
+    plan.transfer = bp_option_given(line, BP_OPTION_TRANSFER) ? line->transfer : scene->transfer;
+    Saving saving = {.line = line, .transfer = plan.transfer};
+    plan.context = &saving;
+    waiting = bp_waiting_begin(line->quiet, "preparing %zu sphere%s and the kernel", scene->sphere_count,
+                               bp_plural(scene->sphere_count));
+    BP_TRY_GOTO(status, open_devices(line, &infos, &devices, &plan.device_count, err), done);
+    plan.devices = devices;
+    bp_waiting_end(waiting);
+    waiting = NULL;
+    if (!line->quiet) fputs(bp_view_keys, stderr);
+    bp_interrupt_catch();
+    status = bp_view(&plan, scene, err);
+done:
+    bp_waiting_end(waiting);
+    for (size_t d = 0; d < plan.device_count && devices != NULL; ++d)
+        if (devices[d] != NULL) bp_device_close(&devices[d]);
+    free(devices);
+    free(infos);
+    bp_scene_destroy(&scene);
+    return status;
+}

@@ -1,0 +1,343 @@
+/* viewer.c: see viewer.h.
+ *
+ * While the camera moves, each picture has one sample per pixel and as few pixels as it takes to show several
+ * a second. When it has rested for a moment, the picture is rendered at its full size, and its samples double
+ * from pass to pass until noise is where the person wants it. */
+#include "viewer.h"
+
+#include "base/clock.h"
+#include "base/format.h"
+#include "base/status.h"
+#include "camera_moves.h"
+#include "film/film.h"
+#include "image/image.h"
+#include "reference/trace.h"
+#include "render/render.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#define REST_SECONDS 0.3  /* until a camera that has moved counts as resting */
+#define SHOW_SECONDS 0.1  /* between two pictures of the same camera */
+#define TITLE_SECONDS 0.5 /* between two titles */
+#define FRAME_MOST 0.12   /* seconds that a picture of a moving camera may take */
+#define FRAME_LEAST 0.05
+#define SHRINK_MOST 8.0
+#define DEGREES_A_WINDOW 180.0 /* a drag across the whole height */
+
+const char bp_view_keys[] = "left drag    orbit around the point that the camera looks at\n"
+                            "right drag   move along the picture (also: Shift and left drag)\n"
+                            "wheel        nearer, farther\n"
+                            "left click   focus on what is there\n"
+                            "[ ]          smaller, larger aperture\n"
+                            "- +          darker, brighter; 0: as the scene has it\n"
+                            "s            save the picture, and print the command that renders it\n"
+                            "r            the camera as it was at the beginning\n"
+                            "q, Escape    quit\n";
+
+typedef struct Viewer {
+    const BpViewPlan *plan;
+    const BpWindow *window;
+    BpScene *scene;
+    BpCamera first; /* at the beginning */
+    BpRender *render;
+    uint32_t width;         /* of the picture when the camera rests */
+    double window_height;   /* for drags, in pixels */
+    double shrink;          /* of pictures while it moves; at least 1 */
+    double exposure;        /* in stops */
+    bool moved, quit, save; /* since the last step */
+    bool shown;             /* the newest samples have been */
+    double moved_at, restarted_at, shown_at, titled_at;
+    uint64_t samples; /* per pixel, of the pass at hand */
+    double nrmse;     /* of what has been shown */
+    bool rests;       /* nothing is left to do */
+    uint8_t *bytes;
+    size_t byte_count;
+} Viewer;
+
+static BpStatus window_failed(const char *reason, BpError *err) {
+    return bp_fail(err, BP_ERR_DEVICE, "the window: %s", reason);
+}
+
+/* ---- what the person does ------------------------------------------------------------------------------ */
+
+/* Focuses on what the pixel at (x, y), shares of the picture, shows first; on the sky not at all. */
+static void focus_at(Viewer *viewer, double x, double y) {
+    BpCamera sharp = viewer->scene->camera;
+    if (!(x >= 0 && x < 1 && y >= 0 && y < 1)) return;
+    sharp.lens_radius = 0; /* the ray through the lens's centre */
+    sharp.pixel_sampling = BP_PIXEL_CENTER;
+    const Camera camera = bp_ref_camera(&sharp);
+    Random random = {0};
+    Hit hit;
+    const Ray ray =
+        bp_ref_camera_ray(&camera, (uint32_t)(x * sharp.width), (uint32_t)(y * sharp.height), &random);
+    if (!bp_ref_hit(viewer->scene, &ray, &hit)) return;
+    double view[3], length = 0, depth = 0;
+    const double point[3] = {hit.point.x, hit.point.y, hit.point.z};
+    for (int i = 0; i < 3; ++i) {
+        view[i] = sharp.lookat[i] - sharp.lookfrom[i];
+        length += view[i] * view[i];
+    }
+    for (int i = 0; i < 3; ++i) depth += (point[i] - sharp.lookfrom[i]) * view[i] / sqrt(length);
+    bp_camera_focus(&viewer->scene->camera, depth);
+    viewer->moved = viewer->scene->camera.lens_radius > 0 || viewer->moved;
+}
+
+static void press(Viewer *viewer, char key) {
+    BpCamera *camera = &viewer->scene->camera;
+    switch (key) {
+    case 'q':
+    case '\033':
+        viewer->quit = true;
+        break;
+    case 's':
+        viewer->save = true;
+        break;
+    case '+':
+    case '=':
+    case '-':
+    case '0':
+        viewer->exposure = key == '0' ? 0 : viewer->exposure + (key == '-' ? -1.0 : 1.0) / 3;
+        viewer->shown = false;
+        viewer->shown_at = 0;
+        break;
+    case '[':
+    case ']':
+        bp_camera_widen(camera, key == '[' ? 1 / 1.25 : 1.25);
+        viewer->moved = true;
+        break;
+    case 'r':
+        *camera = viewer->first;
+        viewer->moved = true;
+        break;
+    default:
+        break;
+    }
+}
+
+static void drag(Viewer *viewer, const BpWindowEvent *event) {
+    const double right = event->dx / viewer->window_height, down = event->dy / viewer->window_height;
+    if (event->button == BP_BUTTON_RIGHT || event->button == BP_BUTTON_MIDDLE || event->shift)
+        bp_camera_pan(&viewer->scene->camera, right, down);
+    else
+        bp_camera_orbit(&viewer->scene->camera, -DEGREES_A_WINDOW * right, DEGREES_A_WINDOW * down);
+    viewer->moved = true;
+}
+
+static void resize(Viewer *viewer, uint32_t width, uint32_t height) {
+    const double aspect = (double)viewer->scene->camera.width / viewer->scene->camera.height;
+    const double fits = fmin(width, height * aspect);
+    viewer->width = (uint32_t)fmax(1, fmin(BP_PICTURE_SIDE_MAX, floor(fits + 0.5)));
+    viewer->window_height = fmax(1, fits / aspect);
+    viewer->moved = true;
+}
+
+static void obey(Viewer *viewer, const BpWindowEvent *event) {
+    switch (event->action) {
+    case BP_WINDOW_QUIT:
+        viewer->quit = true;
+        break;
+    case BP_WINDOW_RESIZE:
+        resize(viewer, event->width, event->height);
+        break;
+    case BP_WINDOW_DRAG:
+        drag(viewer, event);
+        break;
+    case BP_WINDOW_CLICK:
+        if (event->button == BP_BUTTON_LEFT) focus_at(viewer, event->x, event->y);
+        break;
+    case BP_WINDOW_WHEEL:
+        bp_camera_approach(&viewer->scene->camera, pow(0.9, event->dy));
+        viewer->moved = true;
+        break;
+    case BP_WINDOW_KEY:
+        press(viewer, event->key);
+        break;
+    case BP_WINDOW_NOTHING:
+        break;
+    }
+}
+
+/* All that has happened; waits for it if there is nothing to render. */
+static void listen(Viewer *viewer) {
+    BpWindowEvent event;
+    const bool idle = viewer->rests && viewer->shown;
+    viewer->window->next(idle ? 200 : 0, &event);
+    while (event.action != BP_WINDOW_NOTHING && !viewer->quit) {
+        obey(viewer, &event);
+        viewer->window->next(0, &event);
+    }
+}
+
+/* ---- rendering ------------------------------------------------------------------------------------------
+ */
+
+static BpStatus restart(Viewer *viewer, uint32_t width, BpError *err) {
+    BpRenderOptions options = viewer->plan->options;
+    options.samples_per_pixel = 1;
+    bp_render_destroy(&viewer->render);
+    BP_TRY(bp_scene_set_width(viewer->scene, width, err));
+    viewer->restarted_at = bp_clock_seconds();
+    viewer->samples = 1;
+    viewer->rests = viewer->shown = false;
+    viewer->nrmse = (double)NAN;
+    return bp_render_create_on(viewer->scene, &options, viewer->plan->devices, viewer->plan->device_count,
+                               &viewer->render, err);
+}
+
+static uint32_t moving_width(const Viewer *viewer) {
+    return (uint32_t)fmax(1, floor(viewer->width / viewer->shrink + 0.5));
+}
+
+/* The size of pictures while the camera moves, by how long this one took. */
+static void adapt_size(Viewer *viewer, double seconds) {
+    if (seconds > FRAME_MOST)
+        viewer->shrink = fmin(SHRINK_MOST, viewer->shrink * fmin(2, sqrt(seconds / FRAME_MOST)));
+    else if (seconds < FRAME_LEAST)
+        viewer->shrink = fmax(1, viewer->shrink / 1.25);
+}
+
+/* The picture as the window shows it. The caller clears it. */
+static BpStatus read_picture(Viewer *viewer, BpPicture *picture, BpError *err) {
+    const BpFilm *film = NULL;
+    BP_TRY(bp_render_read_film(viewer->render, &film, err));
+    viewer->nrmse = bp_film_nrmse(film);
+    BP_TRY(bp_film_picture(film, picture, err));
+    const float factor = (float)exp2(viewer->exposure);
+    const size_t count = (size_t)picture->width * picture->height * 3;
+    for (size_t i = 0; i < count && factor != 1; ++i) picture->rgb[i] *= factor;
+    return BP_OK;
+}
+
+static BpStatus show(Viewer *viewer, BpError *err) {
+    BpPicture picture = {0};
+    BpStatus status = read_picture(viewer, &picture, err);
+    const size_t count = (size_t)picture.width * picture.height * 3;
+    if (status == BP_OK && count > viewer->byte_count) {
+        free(viewer->bytes);
+        viewer->bytes = malloc(count);
+        viewer->byte_count = viewer->bytes != NULL ? count : 0;
+        if (viewer->bytes == NULL)
+            status = bp_fail(err, BP_ERR_MEMORY, "out of memory for the window's picture");
+    }
+    if (status == BP_OK) {
+        for (size_t i = 0; i < count; ++i)
+            viewer->bytes[i] = bp_transfer_byte((double)picture.rgb[i], viewer->plan->transfer);
+        const char *fault = viewer->window->show(viewer->bytes, picture.width, picture.height);
+        if (fault != NULL) status = window_failed(fault, err);
+        viewer->shown = true;
+        viewer->shown_at = bp_clock_seconds();
+    }
+    bp_picture_clear(&picture);
+    return status;
+}
+
+/* "cover.json: 640x360, 64 samples, noise 2.1 %, 1 % in 12 s, +0.33 stops" */
+static void set_title(Viewer *viewer) {
+    char text[512], noise[32], left[32];
+    const BpCamera *camera = &viewer->scene->camera;
+    const double spent = bp_clock_seconds() - viewer->restarted_at;
+    int used = snprintf(text, sizeof text, "%.200s: %ux%u, %llu sample%s", viewer->plan->name,
+                        (unsigned)camera->width, (unsigned)camera->height,
+                        (unsigned long long)viewer->samples, viewer->samples == 1 ? "" : "s");
+    if (viewer->nrmse > 0) {
+        used += snprintf(text + used, sizeof text - (size_t)used, ", noise %s",
+                         bp_format_percent(viewer->nrmse, noise, sizeof noise));
+        const double ratio = viewer->nrmse / viewer->plan->target;
+        if (ratio > 1) /* noise falls with the square root of time */
+            used +=
+                snprintf(text + used, sizeof text - (size_t)used, ", %g %% in %s", 100 * viewer->plan->target,
+                         bp_format_seconds(spent * (ratio * ratio - 1), left, sizeof left));
+    }
+    if (viewer->exposure != 0)
+        snprintf(text + used, sizeof text - (size_t)used, ", %+.2f stops", viewer->exposure);
+    viewer->window->title(text);
+    viewer->titled_at = bp_clock_seconds();
+}
+
+static BpStatus save(Viewer *viewer, BpError *err) {
+    BpPicture picture = {0};
+    BpStatus status = read_picture(viewer, &picture, err);
+    if (status == BP_OK) status = viewer->plan->save(viewer->plan->context, viewer->scene, &picture, err);
+    bp_picture_clear(&picture);
+    return status;
+}
+
+/* A pass is finished: shows it if it is time, and begins the next. */
+static BpStatus finish_pass(Viewer *viewer, BpError *err) {
+    const double now = bp_clock_seconds();
+    const bool small = viewer->scene->camera.width < viewer->width;
+    if (viewer->samples == 1) adapt_size(viewer, now - viewer->restarted_at);
+    if (viewer->samples == 1 || now - viewer->shown_at >= SHOW_SECONDS) BP_TRY(show(viewer, err));
+    const uint64_t most = viewer->plan->options.samples_per_pixel;
+    if (small && viewer->samples >= 8) { /* the picture in full size is to come */
+        viewer->rests = true;
+        return BP_OK;
+    }
+    if (viewer->samples >= most || viewer->nrmse <= viewer->plan->target) {
+        viewer->rests = true;
+        return viewer->shown ? BP_OK : show(viewer, err);
+    }
+    viewer->samples = viewer->samples > most / 2 ? most : 2 * viewer->samples;
+    viewer->shown = false;
+    return bp_render_extend(viewer->render, viewer->samples, err);
+}
+
+static BpStatus work(Viewer *viewer, BpError *err) {
+    const double now = bp_clock_seconds();
+    BpProgress progress = {0};
+    if (viewer->moved) {
+        viewer->moved = false;
+        viewer->moved_at = now;
+        BP_TRY(restart(viewer, moving_width(viewer), err));
+    } else if (viewer->scene->camera.width != viewer->width && now - viewer->moved_at > REST_SECONDS) {
+        BP_TRY(restart(viewer, viewer->width, err));
+    }
+    if (!viewer->rests) {
+        BP_TRY(bp_render_step(viewer->render, &progress, err));
+        if (progress.finished) BP_TRY(finish_pass(viewer, err));
+    }
+    /* A long pass is shown as it grows; the first is not, since it has pixels without a sample. */
+    const double later = bp_clock_seconds();
+    if (!viewer->shown && (viewer->samples > 1 || viewer->rests) && later - viewer->shown_at >= SHOW_SECONDS)
+        BP_TRY(show(viewer, err));
+    if (later - viewer->titled_at >= TITLE_SECONDS) set_title(viewer);
+    return BP_OK;
+}
+
+BpStatus bp_view(const BpViewPlan *plan, BpScene *scene, BpError *err) {
+    Viewer viewer = {.plan = plan,
+                     .window = plan->window,
+                     .scene = scene,
+                     .first = scene->camera,
+                     .width = scene->camera.width,
+                     .window_height = scene->camera.height,
+                     .shrink = 1,
+                     .nrmse = (double)NAN};
+    BpStatus status = BP_OK;
+    const char *fault = plan->window->open(plan->name, scene->camera.width, scene->camera.height);
+    if (fault != NULL) {
+        status = window_failed(fault, err);
+        goto done;
+    }
+    BP_TRY_GOTO(status, restart(&viewer, viewer.width, err), done);
+    while (!viewer.quit) {
+        listen(&viewer);
+        if (viewer.quit) break;
+        if (plan->interrupted()) {
+            status = bp_fail(err, BP_ERR_INTERRUPTED, "interrupted: the window was closed");
+            break;
+        }
+        BP_TRY_GOTO(status, work(&viewer, err), done);
+        if (viewer.save) BP_TRY_GOTO(status, save(&viewer, err), done);
+        viewer.save = false;
+    }
+done:
+    plan->window->close();
+    bp_render_destroy(&viewer.render);
+    free(viewer.bytes);
+    return status;
+}

@@ -1,0 +1,37 @@
+/* viewer.h: a picture that is rendered anew whenever the person at the window moves the camera.
+ *
+ * In:    a scene, a window.   Out: pictures on it, files that the person asks for.
+ * Knows: what mouse and keys mean, when to render how large.   Does not know: SDL, the command line. */
+#ifndef BP_VIEW_VIEWER_H
+#define BP_VIEW_VIEWER_H
+
+#include "window.h"
+
+#include "scene/scene.h"
+
+struct BpDevice;
+
+typedef struct BpViewPlan {
+    const char *name; /* of the scene, for the title */
+    const BpWindow *window;
+    struct BpDevice *const *devices; /* open, and outlive the view */
+    size_t device_count;
+    BpRenderOptions options; /* samples_per_pixel: the most */
+    double target;           /* noise at which it rests, a fraction */
+    BpTransfer transfer;     /* of the window */
+    /* The person wants the picture kept: as it is shown, with the scene's camera as it is. A failure ends the
+     * view. */
+    BpStatus (*save)(void *context, const BpScene *scene, const BpPicture *picture, BpError *err);
+    bool (*interrupted)(void); /* Ctrl-C, asked between steps */
+    void *context;
+} BpViewPlan;
+
+/* What keys and mouse do, a line each. */
+extern const char bp_view_keys[];
+
+/* Opens the window, and returns when the person closes it, or with BP_ERR_INTERRUPTED. Changes the camera of
+ * `scene`. BP_ERR_DEVICE: no window can be opened, or the device failed; BP_ERR_MEMORY; what save() returns.
+ */
+BpStatus bp_view(const BpViewPlan *plan, BpScene *scene, BpError *err);
+
+#endif
