@@ -25,6 +25,7 @@
 #define FRAME_MOST 0.12   /* seconds that a picture of a moving camera may take */
 #define FRAME_LEAST 0.05
 #define SHRINK_MOST 8.0
+#define BLACK_SAMPLES 1024     /* per pixel, after which a picture without light counts as black */
 #define DEGREES_A_WINDOW 180.0 /* a drag across the whole height */
 
 const char bp_view_keys[] = "left drag    orbit around the point that the camera looks at\n"
@@ -277,7 +278,8 @@ static BpStatus finish_pass(Viewer *viewer, BpError *err) {
         viewer->rests = true;
         return BP_OK;
     }
-    if (viewer->samples >= most || viewer->nrmse <= viewer->plan->target) {
+    const bool black = isnan(viewer->nrmse) && viewer->samples >= BLACK_SAMPLES;
+    if (viewer->samples >= most || viewer->nrmse <= viewer->plan->target || black) {
         viewer->rests = true;
         return viewer->shown ? BP_OK : show(viewer, err);
     }

@@ -5,8 +5,8 @@
  * Knows: host/view/window.h.   Does not know: what events mean.
  *
  * Events: "drag BUTTON DX DY", "click X Y", "wheel N", "key C", "resize W H", "quit"; "frames N" waits for N
- * more pictures, "rest" until no picture has come for half a second, "times N" repeats the rest of the line's
- * following event N times, each after a picture. */
+ * more pictures, "rest" until the view has waited for events for half a second, "times N" repeats the rest of
+ * the line's following event N times, each after a picture. */
 #include "view/window.h"
 
 #include <stdio.h>
@@ -14,9 +14,11 @@
 #include <string.h>
 #include <time.h>
 
+enum { PAUSE_NANOSECONDS = 10000000, IDLE_CALLS = 60 };
+
 static FILE *script, *notes;
-static uint64_t frames, wanted; /* shown; to wait for */
-static double last_frame, rest_until;
+static uint64_t frames, wanted;          /* shown; to wait for */
+static unsigned idle_calls, idle_wanted; /* of next(), in a row; to wait for */
 static char repeated[128];
 static long repetitions;
 
@@ -41,9 +43,8 @@ static const char *show(const uint8_t *rgb, uint32_t width, uint32_t height) {
     for (size_t i = 0; i < (size_t)width * height; ++i)
         for (size_t c = 0; c < 3; ++c) sum[c] += rgb[3 * i + c];
     const double count = (double)width * height;
-    last_frame = now();
     fprintf(notes, "show %u %u %.3f %.3f %.3f %.4f\n", (unsigned)width, (unsigned)height,
-            (double)sum[0] / count, (double)sum[1] / count, (double)sum[2] / count, last_frame);
+            (double)sum[0] / count, (double)sum[1] / count, (double)sum[2] / count, now());
     fflush(notes);
     ++frames;
     return NULL;
@@ -86,10 +87,9 @@ static bool play(BpWindowEvent *event) {
     unsigned long long count;
     long times;
     if (frames < wanted) return false;
-    if (rest_until > 0) {
-        if (now() - last_frame < 0.5) return false;
-        rest_until = 0;
-    }
+    if (idle_calls < idle_wanted) return false;
+    if (idle_wanted > 0) fputs("rested\n", notes);
+    idle_wanted = 0;
     if (repetitions > 0) {
         --repetitions;
         wanted = frames + 1;
@@ -101,8 +101,8 @@ static bool play(BpWindowEvent *event) {
         return false;
     }
     if (strncmp(line, "rest", 4) == 0) {
-        rest_until = 1;
-        last_frame = now();
+        idle_calls = 0;
+        idle_wanted = IDLE_CALLS;
         return false;
     }
     if (sscanf(line, "times %ld %127[^\n]", &times, repeated) == 2) {
@@ -114,8 +114,9 @@ static bool play(BpWindowEvent *event) {
 
 static void next(uint32_t milliseconds, BpWindowEvent *event) {
     *event = (BpWindowEvent){.action = BP_WINDOW_NOTHING};
+    idle_calls = milliseconds == 0 ? 0 : idle_calls + 1;
     if (play(event) || milliseconds == 0) return;
-    const struct timespec pause = {0, 10000000};
+    const struct timespec pause = {0, PAUSE_NANOSECONDS};
     nanosleep(&pause, NULL);
 }
 

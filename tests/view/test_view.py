@@ -79,20 +79,15 @@ class Scripted(ProgramTest):
         stops = self.stops(lines)
         red = [color[0] - color[1] for _, _, color in stops]
         self.assertEqual(len(red), 5)
-        self.assertLess(red[1], 1)  # moved out of the picture
+        self.assertLess(red[1], 1)  # into the matte sphere, where it is black and yet comes to rest
         self.assertLess(abs(red[2] - red[0]), 3)  # back again
         self.assertGreater(red[3], 2 * red[0])  # nearer
         self.assertLess(red[4], red[0])  # farther
 
     def stops(self, lines):
-        """The last picture before each pause of half a second."""
-        pictures, stops, last = self.shown(lines), [], None
-        times = [float(line[6]) for line in lines if line[0] == "show"]
-        for picture, at, then in zip(pictures, times, times[1:] + [times[-1] + 9]):
-            last = picture
-            if then - at >= 0.5:
-                stops.append(last)
-        return stops
+        """The last picture before each rest."""
+        rests = [number for number, line in enumerate(lines) if line[0] == "rested"]
+        return [self.shown(lines[:number])[-1] for number in rests]
 
     def test_resizing(self):
         lines = self.view("rest", "resize 200 60", "rest", "quit", options=("--error", "5%"))
@@ -111,7 +106,7 @@ class Scripted(ProgramTest):
                   options=("--error", "3%"))
         self.assertEqual(self.read("s-view-1.png"), b"somebody's")
         self.assertTrue(self.read("s-view-2.png").startswith(b"\x89PNG"))
-        self.assert_same(self.read("s-view-2.png"), self.read("s-view-3.png"))
+        self.assertTrue(self.read("s-view-3.png").startswith(b"\x89PNG"))
         commands = self.result.stdout.decode().splitlines()
         self.assertEqual(len(commands), 2)
         match = re.fullmatch(r"ballpark render s\.json --set '(camera=.*)'", commands[0])
