@@ -8,7 +8,8 @@ usage: run_mutants.py SOURCE_DIR BUILD_DIR RESULT.json [NAME...]
 Kernel text is patched in a copy that the program reads through BALLPARK_KERNELS. Host text is patched in a copy,
 compiled with the command that built the product, and linked before the library. A build that fails, a crash, or a
 text that no longer stands where a patch looks for it is an error, not a kill. First every trial is run on the product
-unpatched: there it must pass.
+unpatched: there it must pass. A mutant is then tried with a copy of the kernel cache that this run left, so that only
+the kernels that its patch changes are compiled.
 """
 import concurrent.futures
 import json
@@ -31,9 +32,9 @@ class Bench:
     def __init__(self, source, build, folder):
         self.source, self.build, self.scratch = source, build, os.path.join(folder, "mutant")
         os.mkdir(self.scratch)
-        cache = os.path.join(folder, "cache")
-        os.mkdir(cache)
-        self.environment = {**os.environ, "POCL_CACHE_DIR": cache, "MESA_SHADER_CACHE_DIR": cache}
+        self.cache = os.path.join(folder, "cache")
+        os.mkdir(self.cache)
+        self.environment = {**os.environ, "POCL_CACHE_DIR": self.cache, "MESA_SHADER_CACHE_DIR": self.cache}
         with open(os.path.join(build, "compile_commands.json"), encoding="utf-8") as file:
             self.compile = {os.path.realpath(e["file"]): e for e in json.load(file)}
 
@@ -163,17 +164,19 @@ def name_of(trial):
     return f"{os.path.basename(trial.path)} {' '.join(trial.arguments)}" if isinstance(trial, Script) else trial.program
 
 
-def try_product(bench, trial):
-    """A trial on the product itself."""
+def try_product(bench, trial, caches):
+    """A trial on the product itself; its kernel cache is kept in caches[trial]."""
     outcome, said = bench.run(trial, bench.environment, [])
+    shutil.move(bench.cache, caches[trial])
     return {"trial": name_of(trial), "outcome": outcome, "said": said}
 
 
-def try_mutant(bench, mutant):
+def try_mutant(bench, mutant, caches):
     outcome, said, trial = ERROR, "", None
     try:
         environment, objects = bench.make(mutant)
         for trial in mutant.trials:
+            shutil.copytree(caches[trial], bench.cache, dirs_exist_ok=True)
             outcome, said = bench.run(trial, environment, objects)
             if outcome != SURVIVED:
                 break
@@ -202,12 +205,12 @@ def fit(source, build):
     return 1 if wrong else 0
 
 
-def in_parallel(source, build, work, items):
-    """[work(bench, item)], each with a bench of its own, a few at a time; in order."""
+def in_parallel(source, build, work, items, caches):
+    """[work(bench, item, caches)], each with a bench of its own, a few at a time; in order."""
 
     def one(item):
         with tempfile.TemporaryDirectory() as folder:
-            return work(Bench(source, build, folder), item)
+            return work(Bench(source, build, folder), item, caches)
 
     with concurrent.futures.ThreadPoolExecutor(max_workers=min(4, os.cpu_count() or 1)) as pool:
         yield from pool.map(one, items)
@@ -219,15 +222,20 @@ def main():
     source, build, result_path, *names = sys.argv[1:]
     source, build = os.path.realpath(source), os.path.realpath(build)
     mutants = [m for m in MUTANTS if not names or m.name in names]
+    if unknown := set(names) - {m.name for m in mutants}:
+        sys.exit(f"no such mutant: {', '.join(sorted(unknown))}")
+    trials = list(dict.fromkeys(trial for mutant in mutants for trial in mutant.trials))
     start = time.monotonic()
     wrong, rows = 0, []
-    for row in in_parallel(source, build, try_product, list(dict.fromkeys(t for m in mutants for t in m.trials))):
-        if row["outcome"] != SURVIVED:
-            wrong += 1
-            print(f"CONTROL {row['outcome']}: {row['trial']}: {row['said']}", flush=True)
-    for row in in_parallel(source, build, try_mutant, mutants):
-        rows.append(row)
-        print(f"{row['outcome']:8} {row['name']:46} {row['layer']:12} {row['trial']}: {row['said']}", flush=True)
+    with tempfile.TemporaryDirectory() as kept:
+        caches = {trial: os.path.join(kept, str(number)) for number, trial in enumerate(trials)}
+        for row in in_parallel(source, build, try_product, trials, caches):
+            if row["outcome"] != SURVIVED:
+                wrong += 1
+                print(f"CONTROL {row['outcome']}: {row['trial']}: {row['said']}", flush=True)
+        for row in in_parallel(source, build, try_mutant, mutants, caches):
+            rows.append(row)
+            print(f"{row['outcome']:8} {row['name']:46} {row['layer']:12} {row['trial']}: {row['said']}", flush=True)
     killed = sum(row["outcome"] == KILLED for row in rows)
     with open(result_path, "w", encoding="utf-8") as file:
         json.dump({"mutants": rows, "control_failures": wrong}, file, indent=1)

@@ -5,8 +5,8 @@ usage: summary.py RESULTS
 
 In:   the folder RESULTS: `stages`, with a line "NAME EXIT_CODE" for each stage; NAME.log, what the stage said; for a
       stage that ran ctest also NAME.xml, its report in JUnit's form.
-Out:  lines "test: failed: ..." and "test: skipped: ...", then "test: N passed, N failed, N skipped". Exit code 1 if
-      anything failed, or nothing passed.
+Out:  a line "test: longest: ..." with the tests that took most of the time, lines "test: failed: ..." and
+      "test: skipped: ...", then "test: N passed, N failed, N skipped". Exit code 1 if anything failed, or nothing passed.
 
 Each test of ctest counts as one, and so does each stage without a report: 77 is its exit code when it is skipped. A
 line "skipped: REASON" of a test that passed says that a part of it was skipped: the test counts as passed, and the
@@ -19,11 +19,13 @@ import xml.etree.ElementTree
 
 REASON = re.compile(r"^(?:\w+: )?skipped: (.+)$", re.MULTILINE)
 LEFT_OUT = re.compile(r"^lint: (.+) left out: (.+)$", re.MULTILINE)
+LONGEST = 5  # tests, that whoever makes the suite slower sees it
 
 
 class Summary:
     def __init__(self):
         self.passed, self.failed, self.skipped = 0, [], []  # the lists: (name, why)
+        self.seconds = []  # (seconds, name)
         self.reports, self.cases = 0, 0
 
     def add_passed(self, name, text):
@@ -42,6 +44,7 @@ class Summary:
             self.cases += 1
             name = f"{case.get('name')} ({stage})"
             text = case.findtext("system-out") or ""
+            self.seconds.append((float(case.get("time", 0)), name))
             skipped = case.find("skipped")
             why = skipped.get("message", "") if skipped is not None else ""
             if case.get("status") == "run":
@@ -71,6 +74,9 @@ class Summary:
         self.skipped += [(f"{what} ({stage})", why) for what, why in LEFT_OUT.findall(text)]
 
     def lines(self):
+        longest = [f"{name} {seconds:.0f} s" for seconds, name in sorted(self.seconds, reverse=True)[:LONGEST] if seconds >= 1]
+        if longest:
+            yield "test: longest: " + ", ".join(longest)
         yield from (f"test: skipped: {name}: {why}" for name, why in self.skipped)
         yield from (f"test: failed: {name}: {why}" for name, why in self.failed)
         yield f"test: {self.passed} passed, {len(self.failed)} failed, {len(self.skipped)} skipped"

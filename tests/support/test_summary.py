@@ -77,6 +77,14 @@ class Summary(unittest.TestCase):
         self.assertEqual(self.lines(), ["test: skipped: shellcheck (lint): not installed",
                                         "test: 1 passed, 0 failed, 1 skipped"])
 
+    def test_the_longest(self):
+        cases = [case(f"t{n}").replace("<testcase", f'<testcase time="{n}.2"') for n in range(8)]
+        self.stage("tests", 0, cases=cases[:4])
+        self.stage("sanitizers", 0, cases=cases[:2] + cases[4:])
+        self.assertEqual(self.lines()[0], "test: longest: t7 (sanitizers) 7 s, t6 (sanitizers) 6 s, t5 (sanitizers) 5 s, "
+                                          "t4 (sanitizers) 4 s, t3 (tests) 3 s")
+        self.assertEqual(len(self.lines()), 2)
+
     def test_nothing_at_all(self):
         self.assertEqual(self.lines(), ["test: 0 passed, 0 failed, 0 skipped"])
 
