@@ -1,6 +1,8 @@
 """`ballpark explain` end to end: the tables and JSON of scenes whose effects are known, and a measurement's shape.
 
-Usage: test_explain.py BALLPARK SCENES
+Usage: test_explain.py BALLPARK SCENES [--measure]
+
+--measure measures a scene without any effect, and does nothing else.
 """
 
 import json
@@ -20,6 +22,32 @@ def run(*arguments, code=0):
     assert done.returncode == code, f"{arguments}: exit {done.returncode}\n{done.stdout}\n{done.stderr}"
     return done
 
+
+def check_measured(scene, effects, target):
+    """One kernel for each effect that is out, between the specialised and the general one; returns {name: kernel}."""
+    run("explain", scene, "--measure", "--width", 64, "--json", target)
+    costs = json.loads(target.read_text())["scenes"][0]["costs"]
+    names = [kernel["name"] for kernel in costs["kernels"]]
+    assert names == ["specialised"] + [f"with {name}" for name in ALL if name not in effects] + ["general"], names
+    first, last = costs["kernels"][0], costs["kernels"][-1]
+    assert first["effects"] == effects and last["effects"] == ALL
+    assert first["ratio"] == first["low"] == first["high"] == 1
+    for kernel in costs["kernels"]:
+        assert 0 < kernel["low"] <= kernel["ratio"] <= kernel["high"], kernel
+        assert kernel["samples_per_second"] > 0
+        assert (kernel["cold_seconds"] is not None) == (kernel["forced"] is None), kernel
+    # What the driver keeps is not built again.
+    assert first["warm_seconds"] < first["cold_seconds"] and last["warm_seconds"] < last["cold_seconds"], costs
+    return dict(zip(names, costs["kernels"]))
+
+
+if "--measure" in sys.argv:
+    with tempfile.TemporaryDirectory() as folder:
+        kernels = check_measured(scenes / "v4-sky.json", [], pathlib.Path(folder, "effects.json"))
+    # A lens of no size is really sampled when it is forced in: the same sky takes longer.
+    assert kernels["with lens"]["ratio"] > 1, kernels["with lens"]
+    print(f"{len(kernels)} kernels measured")
+    sys.exit(0)
 
 # A table: every effect once, in or out, with a reason.
 table = run("explain", scenes / "v4-13-metal.json", "--wide").stdout.splitlines()
@@ -73,21 +101,12 @@ with tempfile.TemporaryDirectory() as folder:
     assert len(lengths) > 1, "every path is as long as the others"
     run("explain", scene, "--pixel", "48,0", "--width", 48, code=2)
 
-    # Measured: one kernel for each effect that is out, between the specialised and the general one.
-    run("explain", scenes / "v4-sky.json", "--measure", "--width", 64, "--json", target)
-    costs = json.loads(target.read_text())["scenes"][0]["costs"]
-    names = [kernel["name"] for kernel in costs["kernels"]]
-    assert names == ["specialised"] + [f"with {name}" for name in ALL] + ["general"], names
-    first, last = costs["kernels"][0], costs["kernels"][-1]
-    assert first["effects"] == [] and last["effects"] == ALL
-    assert first["ratio"] == first["low"] == first["high"] == 1
-    for kernel in costs["kernels"]:
-        assert 0 < kernel["low"] <= kernel["ratio"] <= kernel["high"], kernel
-        assert kernel["samples_per_second"] > 0
-        assert (kernel["cold_seconds"] is not None) == (kernel["forced"] is None), kernel
-    # What the driver keeps is not built again.
-    assert first["warm_seconds"] < first["cold_seconds"] and last["warm_seconds"] < last["cold_seconds"], costs
-    # A lens of no size is really sampled when it is forced in: the same sky takes longer.
-    lens = costs["kernels"][names.index("with lens")]
-    assert lens["ratio"] > 1, lens
+    # Measured. Few effects are out of this scene, so few kernels are compiled; the deep test has them all out.
+    every_kind = {"m": {"type": "lambertian", "albedo": [0.5] * 3}, "n": {"type": "metal", "albedo": [0.5] * 3},
+                  "g": {"type": "dielectric", "refraction_index": 1.5}, "l": {"type": "diffuse_light", "emit": [4] * 3},
+                  "c": {"type": "normals"}}
+    spheres = [{"center": [0.5 * i - 1, 0, -2], "radius": 0.2, "material": name} for i, name in enumerate(every_kind)]
+    scene = pathlib.Path(folder, "all.json")
+    scene.write_text(json.dumps({"camera": {"image_width": 64}, "materials": every_kind, "spheres": spheres}))
+    check_measured(scene, [name for name in ALL if name != "lens"], target)
 print(f"{len(document)} scenes explained")
