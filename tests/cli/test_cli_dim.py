@@ -2,7 +2,7 @@
 import json
 import struct
 
-from cli import ProgramTest, main, scene
+from cli import ProgramTest, deep, main, scene
 from pfm import read_pfm
 
 HIDDEN = [1e3, 1e6, 1e9, 1e12]  # times the radiance that is seen
@@ -40,6 +40,7 @@ class DimTest(ProgramTest):
                         self.assertEqual(statistics["invalid_samples"], 0)
                         self.assertLessEqual(statistics["rounding"], 1e-6)
 
+    @deep
     def test_shaded_spheres_look_the_same(self):
         """Light of many bounces, dimmer at each: pixel by pixel, in both precisions and forms. The hidden lamp is too small
         to be found by chance; rays to it would find the little light that it brings."""

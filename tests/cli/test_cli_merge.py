@@ -83,7 +83,7 @@ class Merge(ProgramTest):
 
     def test_many_files(self):
         """As many as there are, in any order, and in no more memory than a few need: names like those of a job array."""
-        self.write("s.json", scene(640, 360, camera={"samples_per_pixel": 1, "max_depth": 1}))
+        self.write("s.json", scene(320, 180, camera={"samples_per_pixel": 1, "max_depth": 1}))
         names = []
         for number in range(16):
             names.append(self.part(f"part-{number}.bpa", number, 1))

@@ -195,7 +195,7 @@ class Threads(ProgramTest):
         if self.device["type"] != "cpu" or self.device["compute_units"] < 2 or "Portable" not in self.device["platform"]:
             self.skipTest("no processor that its driver divides")
         os.symlink(os.path.join(SOURCE, "scenes/cover.json"), self.path("cover.json"))
-        words = ("bench", "cover.json", "--width", "200", "--rounds", "3", "--time", "1.5", "--json", "-", "-q")
+        words = ("bench", "cover.json", "--width", "200", "--rounds", "3", "--time", "0.5", "--json", "-", "-q")
         def share(*options):
             run = json.loads(self.succeed(*words, *options).stdout)["scenes"][0]
             return [cpu / wall for cpu, wall in zip(run["cpu_nanoseconds_per_segment"]["rounds"], run["nanoseconds_per_segment"]["rounds"])]

@@ -6,10 +6,10 @@ import re
 import shlex
 import textwrap
 
-from cli import SOURCE, ProgramTest, main
+from cli import SOURCE, ProgramTest, deep, main
 
 SMALL = {"render": ["--width", "8", "--spp", "32"], "check": ["--width", "8", "--spp", "64", "--margin", "50"],
-         "cost": ["--time", "1", "--width", "16"]}
+         "cost": ["--time", "0.2", "--width", "16"]}
 
 
 class Readme(ProgramTest):
@@ -36,18 +36,26 @@ class Readme(ProgramTest):
         self.write("scene.json", self.scene().replace('"lookfrom"', '"lookform"'))
         self.fail_with(2, "explain", "scene.json", says=quoted + "\n")
 
-    def test_commands(self):
-        """Every command of the page, the large ones at a small size; those for a terminal or a screen have tests of
+    def run_commands(self, wanted):
+        """The commands of the page, the large ones at a small size; those for a terminal or a screen have tests of
         their own (test_cli_preview, test_view)."""
         lines = re.findall(r"(?m)^    build/release/ballpark (.*?)(?: +#.*)?$", self.text)
         self.assertGreater(len(lines), 8)
-        for line in lines:
-            words = shlex.split(line)
-            if words[0] == "view" or "--show" in words:
-                continue
+        chosen = [words for words in map(shlex.split, lines)
+                  if wanted(words) and words[0] != "view" and "--show" not in words]
+        self.assertTrue(chosen)
+        for words in chosen:
             if "--pixel" not in words:
                 words += SMALL.get(words[0], [])
             self.succeed(*words)
+
+    def test_commands(self):
+        self.run_commands(lambda words: words[0] != "cost")
+
+    @deep
+    def test_cost(self):
+        """It compiles a dozen kernels."""
+        self.run_commands(lambda words: words[0] == "cost")
 
     def test_camera_members_are_those_of_the_grammar(self):
         with open(os.path.join(SOURCE, "scenes/scene.schema.json"), encoding="utf-8") as file:

@@ -6,7 +6,7 @@ import json
 import math
 import signal
 
-from cli import ProgramTest, main, scene
+from cli import ProgramTest, deep, main, scene
 from terminal import Terminal
 
 GLASS = {"m": {"type": "dielectric", "refraction_index": 1.5},
@@ -104,6 +104,7 @@ class Cost(ProgramTest):
         width = {n: s["change"]["high"] - s["change"]["low"] for n, s in self.series.items() if n != base["name"]}
         self.assertLess(10 * width["depth 1000"], width["independent samples"])
 
+    @deep
     def test_bias_that_is_known(self):
         result = self.study(FURNACE, "--time", "1")
         self.assertAlmostEqual(result["brightness"], 2, delta=1e-6)
@@ -129,6 +130,7 @@ class Cost(ProgramTest):
         self.assertEqual(stats["samples_per_pixel"], advice["samples_per_pixel"])
         self.assertLess(stats["nrmse"], 0.05 * 1.15)
 
+    @deep
     def test_what_it_is_compared_with_can_be_chosen(self):
         result = self.study(GLASS_SCENE, "--time", "1", "--sampler", "independent", "--precision", "double",
                             "--width", "16", "--depth", "20")
@@ -140,14 +142,15 @@ class Cost(ProgramTest):
 
     def test_standard_output(self):
         self.write("s.json", GLASS_SCENE)
-        done = self.succeed("cost", "s.json", "--time", "1", "--json", "-", "-q")
+        done = self.succeed("cost", "s.json", "--time", "0.2", "--json", "-", "-q")
         self.assertEqual(json.loads(done.stdout)["width"], 32)
-        done = self.succeed("cost", "s.json", "--time", "1", "--csv", "-", "-q")
+        done = self.succeed("cost", "s.json", "--time", "0.2", "--csv", "-", "-q")
         self.assertTrue(done.stdout.startswith(b"configuration,axis,"))
-        done = self.succeed("cost", "s.json", "--time", "1", "-o", "-", "-q")
+        done = self.succeed("cost", "s.json", "--time", "0.2", "-o", "-", "-q")
         self.assertTrue(done.stdout.startswith(b"<!DOCTYPE html>") and done.stdout.endswith(b"</html>\n"))
         self.assertEqual(self.files(), ["s.json"])
 
+    @deep
     def test_noise_free(self):
         result = self.study(scene(8, spheres=0, camera={"pixel_sampling": "center"}), "--time", "1")
         for series in result["series"]:

@@ -1,6 +1,8 @@
 """What the tests of the program share: running it in a folder of its own, and small scenes.
 
-Each test file is run as: PYTHONPATH=tests/support python3 test_X.py PROGRAM SOURCE_DIR [unittest's arguments]
+Each test file is run as: PYTHONPATH=tests/support python3 test_X.py PROGRAM SOURCE_DIR [--deep] [unittest's arguments]
+
+Without --deep it leaves out the tests that are marked @deep, and with --deep it runs them alone.
 """
 
 import json
@@ -14,6 +16,24 @@ import unittest
 PROGRAM = os.path.abspath(sys.argv[1]) if len(sys.argv) > 1 else ""
 SOURCE = os.path.abspath(sys.argv[2]) if len(sys.argv) > 2 else ""
 LIMIT_SECONDS = 300  # only so that a hang is a failure
+
+
+def deep(test):
+    """Marks a test that takes long and finds what is rare."""
+    test.is_deep = True
+    return test
+
+
+class Loader(unittest.TestLoader):
+    """Finds the tests that are marked @deep, or all but those."""
+
+    def __init__(self, wants_deep):
+        super().__init__()
+        self.wants_deep = wants_deep
+
+    def getTestCaseNames(self, testCaseClass):
+        return [name for name in super().getTestCaseNames(testCaseClass)
+                if getattr(getattr(testCaseClass, name), "is_deep", False) == self.wants_deep]
 
 
 def scene(width=16, height=None, spheres=1, materials=None, **members):
@@ -105,7 +125,9 @@ def broken_kernels(test, name, find, replace):
 def main():
     if len(sys.argv) < 3:
         sys.exit(__doc__)
-    result = unittest.main(argv=[sys.argv[0]] + sys.argv[3:], verbosity=1, exit=False).result
+    words = [word for word in sys.argv[3:] if word != "--deep"]
+    loader = Loader("--deep" in sys.argv)
+    result = unittest.main(argv=[sys.argv[0]] + words, testLoader=loader, verbosity=1, exit=False).result
     # The reasons, for the summary of scripts/test.
     for reason in dict.fromkeys(reason for _, reason in result.skipped):
         print(f"skipped: {reason}")
@@ -113,4 +135,6 @@ def main():
         sys.exit(1)
     # A class that is skipped as a whole is in the list, but none of its tests was begun.
     ran = result.testsRun - sum(isinstance(test, unittest.TestCase) for test, _ in result.skipped)
-    sys.exit(77 if result.skipped and ran == 0 else 0)
+    if ran == 0 and not result.skipped:
+        sys.exit("no test was chosen")
+    sys.exit(77 if ran == 0 else 0)
