@@ -35,10 +35,23 @@ typedef struct PackedCamera {
                          its high 16 bits; NO_SLOT: none; how far off the surface; 0 */
 } PackedCamera;
 
-/* Radiance of a ray that meets nothing: bottom at y = -1, top at y = +1, linear in the unit direction's y. */
+/* Radiance of a ray that meets nothing: bottom at y = -1, top at y = +1, linear in the unit direction's y;
+ * top[3] says how many discs stand in front. */
 typedef struct PackedSky {
     real bottom[4], top[4];
 } PackedSky;
+
+/* A disc in the sky, a lamp at infinity: its radiance is added to the sky's in a cone of directions. */
+typedef struct PackedDisc {
+    real direction[3]; /* unit, to its middle */
+    real cap;          /* 1 - cos of its half angle; 2 pi times this is its solid angle */
+    real radiance[3];
+    real power;  /* luminance times squared sine, in the unit of the lamps' power (below) */
+    real sine;   /* of the half angle, which is 90 degrees at most */
+    real chord2; /* squared distance of its rim from `direction` */
+    real seen;   /* 1: by camera rays too, 0: not by them */
+    real reserved;
+} PackedDisc;
 
 /* The numbers of a material. What it scatters stands with each sphere. */
 typedef struct PackedMaterial {
@@ -64,6 +77,13 @@ typedef struct PackedMaterialKind {
 #define MATERIAL_LOBE 1u /* of PackedMaterialKind, like the next two */
 #define MATERIAL_VARIANT 2u
 #define MATERIAL_TOTAL_REFLECTION 3u
+#define DISC_DIRECTION 0u
+#define DISC_CAP 3u
+#define DISC_RADIANCE 4u
+#define DISC_POWER 7u
+#define DISC_SINE 8u
+#define DISC_CHORD2 9u
+#define DISC_SEEN 10u
 
 /* A leaf is `width` spheres as structure of arrays: width reals each of center x, y, z and radius (> 0).
  * An empty lane has radius -1. Lane l of leaf f is slot f * width + l. What a path needs of a sphere that it
@@ -77,11 +97,13 @@ typedef struct PackedMaterialKind {
 #define CHILD_LEAF 0x80000000u /* set: the rest is a leaf number; clear: a node number */
 #define NO_SPHERE 0xffffffffu
 #define NO_SLOT 0xffffffffu
+#define DISC_SLOT 0xffffff00u /* and its number: a disc, where others stand for the sphere in a slot */
+#define DISCS_MAX 32u
 /* The tree of lamps (light/lamps.cl). A node is LAMP_WIDTH children as structure of arrays, LAMP_WIDTH reals
  * each of centre x, y, z, radius and power. A child of positive radius is a lamp, and its word is CHILD_LEAF
  * and the lamp's slot; one of negative radius is a node, whose lamps lie in a ball of the radius without its
  * sign, and its word is the node's number. Power: the sum of radiance (its luminance) times squared radius,
- * in a unit in which no lamp's radiance exceeds 1; an empty child has none. Node 0 is the root. The width and
+ * in a unit in which the radiance of no lamp and no disc exceeds 1; an empty child has none. Node 0 is the root. The width and
  * the order are the same for every device, since a picture depends on which lamp is chosen. `slot_lamp`:
  * where the lamp in a slot stands, LAMP_CHILD_BITS bits for each level, the root's in the lowest, or NO_LAMP.
  */
@@ -100,16 +122,18 @@ typedef struct PackedMaterialKind {
  *
  * X(numbers, element, name, count, what): `numbers` is REALS or UINTS, what `element` is made of; `count`
  * says how many elements there are, in terms of `width` (of the tree), `nodes`, `leaf_count`, `slots`,
- * `material_count`, `lamp_nodes` and `lamp_slots`; `what` is how a message calls it. Arrays of the first list
+ * `material_count`, `disc_count`, `lamp_nodes` and `lamp_slots`; `what` is how a message calls it. Arrays of the first list
  * are pack.c's, of the second the tree of lamps', of the third the tree's. Materials are arrays of numbers
  * here, since Mesa's rusticl (22.3) gathers wrong ones through a pointer to structs that is cast inside a
  * loop. */
 #define MATERIAL_REALS ((packed_uint)(sizeof(PackedMaterial) / sizeof(real)))
 #define MATERIAL_UINTS ((packed_uint)(sizeof(PackedMaterialKind) / sizeof(packed_uint)))
+#define DISC_REALS ((packed_uint)(sizeof(PackedDisc) / sizeof(real)))
 /* clang-format off */
 #define SCENE_ARRAYS_OF_PACK(X)                                                                              \
     X(REALS, PackedCamera, camera, 1, "the camera")                                                          \
     X(REALS, PackedSky, sky, 1, "the background")                                                            \
+    X(REALS, real, discs, disc_count * DISC_REALS, "the discs of the background")                            \
     X(REALS, real, materials, material_count * MATERIAL_REALS, "the table of materials")                     \
     X(UINTS, packed_uint, material_kinds, material_count * MATERIAL_UINTS, "the table of materials")         \
     X(UINTS, packed_uint, slot_material, slots, "the table of sphere materials")                             \
@@ -137,10 +161,18 @@ enum { TOTAL_REFLECT, TOTAL_ABSORB, TOTAL_REFRACT };
 _Static_assert(sizeof(real) == 8, "the host packs in double");
 _Static_assert(sizeof(PackedCamera) == 28 * sizeof(real), "PackedCamera has padding");
 _Static_assert(sizeof(PackedSky) == 8 * sizeof(real), "PackedSky has padding");
+_Static_assert(sizeof(PackedDisc) == 12 * sizeof(real), "PackedDisc has padding");
 _Static_assert(sizeof(PackedMaterial) == 8 * sizeof(real), "PackedMaterial has padding");
 _Static_assert(sizeof(PackedMaterialKind) == 16, "PackedMaterialKind has padding");
 #define BP_PLACE(place, type, member, element)                                                               \
     _Static_assert(offsetof(type, member) == (place) * sizeof(element), "the place of " #member)
+BP_PLACE(DISC_DIRECTION, PackedDisc, direction, real);
+BP_PLACE(DISC_CAP, PackedDisc, cap, real);
+BP_PLACE(DISC_RADIANCE, PackedDisc, radiance, real);
+BP_PLACE(DISC_POWER, PackedDisc, power, real);
+BP_PLACE(DISC_SINE, PackedDisc, sine, real);
+BP_PLACE(DISC_CHORD2, PackedDisc, chord2, real);
+BP_PLACE(DISC_SEEN, PackedDisc, seen, real);
 BP_PLACE(MATERIAL_EMIT, PackedMaterial, emit, real);
 BP_PLACE(MATERIAL_FUZZ, PackedMaterial, fuzz, real);
 BP_PLACE(MATERIAL_INDEX, PackedMaterial, refraction_index, real);

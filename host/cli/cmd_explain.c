@@ -49,8 +49,8 @@ static const char *outcome(const BpPathStep *step, BpMaterialKind kind) {
 }
 
 static void print_lamp_ray(const BpPathStep *step, FILE *out) {
-    fprintf(out, "       a ray to lamp %" PRIu32, step->lamp);
-    if (step->seen == step->lamp)
+    fprintf(out, "       a ray to %s %" PRIu32, step->to_disc ? "disc" : "lamp", step->lamp);
+    if (!step->stopped)
         fprintf(out, " brings (%.4g, %.4g, %.4g)\n", step->lit[0], step->lit[1], step->lit[2]);
     else
         fprintf(out, " is stopped by sphere %" PRIu32 "\n", step->seen);
@@ -82,7 +82,10 @@ static void print_path(const BpScene *scene, const BpPathLog *path, uint32_t x, 
             fprintf(out, "\n");
             if (step->to_lamp) print_lamp_ray(step, out);
         } else {
-            fprintf(out, "       hits nothing: the sky\n");
+            fprintf(out, "       hits nothing: the sky");
+            for (uint32_t disc = 0; disc < 32; ++disc)
+                if ((step->discs >> disc & 1u) != 0) fprintf(out, " and disc %" PRIu32, disc);
+            fputc('\n', out);
         }
         radiance = step->radiance;
     }
@@ -96,11 +99,34 @@ static json_t *triple(const double v[3]) {
     return json_pack("[f,f,f]", v[0], v[1], v[2]);
 }
 
+/* What the ray meets is a sphere, or for a disc that nothing hides null. */
+static json_t *lamp_ray_json(const BpPathStep *step) {
+    json_t *const meets = step->stopped   ? json_integer(step->seen)
+                          : step->to_disc ? json_null()
+                                          : json_integer(step->lamp);
+    return json_pack("{s:I, s:o, s:o}", step->to_disc ? "disc" : "lamp", (json_int_t)step->lamp, "meets", meets,
+                     "brings", triple(step->lit));
+}
+
+/* Adds the numbers of the discs that a segment ends in, where there are any; takes `root` over. */
+static json_t *with_discs(json_t *root, uint32_t discs) {
+    json_t *list = json_array();
+    bool whole = list != NULL;
+    for (uint32_t disc = 0; disc < 32 && whole; ++disc)
+        if ((discs >> disc & 1u) != 0) whole = json_array_append_new(list, json_integer(disc)) == 0;
+    if (whole && discs != 0) whole = json_object_set(root, "discs", list) == 0;
+    json_decref(list);
+    if (whole) return root;
+    json_decref(root);
+    return NULL;
+}
+
 static json_t *step_json(const BpScene *scene, const BpPathStep *step) {
     json_t *root = json_pack("{s:o, s:o, s:o, s:o, s:b}", "origin", triple(step->origin), "direction",
                              triple(step->direction), "throughput", triple(step->throughput), "radiance",
                              triple(step->radiance), "met", step->met);
-    if (root == NULL || !step->met) return root;
+    if (root == NULL) return root;
+    if (!step->met) return with_discs(root, step->discs);
     const BpMaterial *material = &scene->materials[step->material];
     json_t *meeting = json_pack("{s:f, s:o, s:I, s:s, s:s, s:b, s:b, s:b}", "distance", step->distance,
                                 "point", triple(step->point), "sphere", (json_int_t)step->sphere, "material",
@@ -111,8 +137,7 @@ static json_t *step_json(const BpScene *scene, const BpPathStep *step) {
     if (step->to_lamp)
         whole =
             whole && json_object_set_new(root, "lamp_ray",
-                                         json_pack("{s:I, s:I, s:o}", "lamp", (json_int_t)step->lamp, "meets",
-                                                   (json_int_t)step->seen, "brings", triple(step->lit))) == 0;
+                                         lamp_ray_json(step)) == 0;
     if (whole) return root;
     json_decref(root);
     return NULL;

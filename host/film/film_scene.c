@@ -9,6 +9,7 @@
 #include <string.h>
 
 #define SAMPLE_BITS 38 /* a sample is at most 2^38 steps; 2^24 of them reach 2^62 */
+#define PI 3.14159265358979323846
 #define SCALE_MAX 126  /* 2^scale and its inverse are normal floats */
 
 static double largest(const double rgb[3]) {
@@ -29,9 +30,37 @@ static double geometric(double a, double terms) {
     return a < 1 ? fmin(1 / (1 - a), terms) : terms;
 }
 
+static double angle_between(const double a[3], const double b[3]) {
+    const double across =
+        hypot(hypot(a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2]), a[0] * b[1] - a[1] * b[0]);
+    return atan2(across, a[0] * b[0] + a[1] * b[1] + a[2] * b[2]);
+}
+
+/* The radiance of discs that share a direction adds up. In any direction, every two of the discs there overlap,
+ * so it is at most that of a disc and all that overlap it. */
+static double discs_together(const BpScene *scene) {
+    double most = 0;
+    for (size_t i = 0; i < scene->disc_count; i++) {
+        const BpDisc *a = &scene->discs[i];
+        double sum[3] = {0};
+        for (size_t j = 0; j < scene->disc_count; j++) {
+            const BpDisc *b = &scene->discs[j];
+            const double apart = angle_between(a->direction, b->direction) * (180 / PI);
+            const double slack = 1e-4; /* degrees: what single precision makes of directions */
+            if (apart > a->half_angle_degrees + b->half_angle_degrees + slack) continue;
+            for (int c = 0; c < 3; c++) sum[c] += b->radiance[c];
+        }
+        most = fmax(most, largest(sum));
+    }
+    return most;
+}
+
 double bp_scene_radiance_bound(const BpScene *scene, uint32_t max_depth, BpLamps lamps) {
     double brightest = fmax(largest(scene->background_bottom), largest(scene->background_top));
     double brightest_lamp = 0, passed_on = 0, scattered = 0;
+    brightest += discs_together(scene);
+    for (size_t i = 0; i < scene->disc_count; i++)
+        brightest_lamp = fmax(brightest_lamp, largest(scene->discs[i].radiance));
     for (size_t i = 0; i < scene->sphere_count; i++) {
         const BpMaterial *material = &scene->materials[scene->spheres[i].material];
         const double emitted = largest(material->emit);
@@ -124,6 +153,13 @@ uint64_t bp_scene_hash(const BpScene *scene) {
     uint64_t hash = mix_camera(0xcbf29ce484222325u, &scene->camera);
     hash = mix_reals(hash, scene->background_bottom, 3);
     hash = mix_reals(hash, scene->background_top, 3);
+    for (size_t i = 0; i < scene->disc_count; i++) {
+        const BpDisc *disc = &scene->discs[i];
+        hash = mix_reals(hash, disc->direction, 3);
+        hash = mix_real(hash, disc->half_angle_degrees);
+        hash = mix_reals(hash, disc->radiance, 3);
+        hash = mix(hash, disc->visible_to_camera);
+    }
     hash = mix(hash, scene->sphere_count);
     /* Most scenes use a material many times in a row. */
     uint32_t known = UINT32_MAX;

@@ -355,6 +355,13 @@ BpStatus bp_node_integer(const BpNode *node, uint32_t low, uint32_t high, uint32
     return bp_node_wrong(node, expected, err);
 }
 
+BpStatus bp_node_boolean(const BpNode *node, bool *value, BpError *err) {
+    if (node->value == NULL) return BP_OK;
+    if (!json_is_boolean(node->value)) return bp_node_wrong(node, "true or false", err);
+    *value = json_is_true(node->value);
+    return BP_OK;
+}
+
 BpStatus bp_node_vector(const BpNode *node, double value[3], BpError *err) {
     if (node->value == NULL) return BP_OK;
     if (json_array_size(node->value) != 3) return bp_node_wrong(node, "three numbers: [x, y, z]", err);

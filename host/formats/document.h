@@ -68,6 +68,7 @@ BpStatus bp_node_object(const BpNode *node, const char *const *names, size_t nam
 BpStatus bp_node_list(const BpNode *node, const char *expected, BpError *err);
 BpStatus bp_node_number(const BpNode *node, double *value, BpError *err);
 BpStatus bp_node_integer(const BpNode *node, uint32_t low, uint32_t high, uint32_t *value, BpError *err);
+BpStatus bp_node_boolean(const BpNode *node, bool *value, BpError *err);
 BpStatus bp_node_vector(const BpNode *node, double value[3], BpError *err);
 BpStatus bp_node_string(const BpNode *node, const char **value, BpError *err);
 /* One of `names`; the error names the nearest. */

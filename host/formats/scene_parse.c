@@ -1,7 +1,7 @@
 /* scene_parse.c: from the text of a scene document to a BpScene; see scene_parse.h.
  *
- * Knows: the grammar's top level, materials by name, spheres. The rest: scene_camera.c, scene_material.c,
- * scene_points.c; ranges: scene_validate.c, whose faults are given their place in the text here. */
+ * Knows: the grammar's top level, materials by name, spheres. The rest: scene_camera.c,
+ * scene_background.c, scene_material.c, scene_points.c; ranges: scene_validate.c, whose faults are given their place in the text here. */
 #include "scene_parse.h"
 
 #include "input_file.h"
@@ -20,23 +20,6 @@
 #include <stdlib.h>
 #include <string.h>
 #include <sys/stat.h>
-
-static BpStatus parse_background(const BpNode *node, BpScene *scene, BpError *err) {
-    static const char *const names[] = {"bottom", "top"};
-    if (json_is_array(node->value)) {
-        BP_TRY(bp_node_vector(node, scene->background_bottom, err));
-        memcpy(scene->background_top, scene->background_bottom, sizeof scene->background_top);
-        return BP_OK;
-    }
-    if (node->value != NULL && !json_is_object(node->value))
-        return bp_node_wrong(node, "{ \"bottom\": [r, g, b], \"top\": [r, g, b] }, or one colour [r, g, b]",
-                             err);
-    BP_TRY(bp_node_object(node, names, BP_COUNT(names), err));
-    const BpNode bottom = bp_node_member(node, "bottom");
-    const BpNode top = bp_node_member(node, "top");
-    BP_TRY(bp_node_vector(&bottom, scene->background_bottom, err));
-    return bp_node_vector(&top, scene->background_top, err);
-}
 
 static BpStatus parse_materials(const BpNode *node, BpScene *scene, BpError *err) {
     if (node->value != NULL && !json_is_object(node->value))
@@ -191,6 +174,11 @@ static BpStatus refuse_faults(const BpNode *root, const BpScene *scene, BpError 
         if (json_is_array(background.value))
             return bp_node_fail(&background, BP_PART_VALUE, err, "%s", fault.text);
         return fail_member(&background, fault.member, fault.text, err);
+    case BP_FAULT_DISC: {
+        const BpNode discs = bp_node_member(&background, "discs");
+        const BpNode disc = bp_node_element(&discs, fault.index);
+        return fail_member(&disc, fault.member, fault.text, err);
+    }
     case BP_FAULT_MATERIAL: {
         const BpNode material = bp_node_member(&materials, scene->materials[fault.index].name);
         return fail_member(&material, fault.member, fault.text, err);
@@ -326,7 +314,7 @@ static BpStatus parse_body(const BpNode *root, const BpSceneChanges *changes, Bp
     const BpNode clouds = bp_node_member(root, "clouds");
     const BpNode particles = bp_node_member(root, "particles");
     BP_TRY(bp_parse_camera(&camera, &scene->camera, err));
-    BP_TRY(parse_background(&background, scene, err));
+    BP_TRY(bp_parse_background(&background, scene, err));
     BP_TRY(parse_materials(&materials, scene, err));
     BpMaterialIndex index = {0};
     BpStatus status = index_materials(scene, &index, err);

@@ -56,6 +56,7 @@ BpStatus bp_scene_parse_with(const char *text, size_t length, const char *name, 
                              BpScene **scene, BpError *err);
 
 BpStatus bp_parse_camera(const BpNode *node, BpCamera *camera, BpError *err);
+BpStatus bp_parse_background(const BpNode *node, BpScene *scene, BpError *err);
 /* `material` is zeroed; its name is the caller's to set. */
 BpStatus bp_parse_material(const BpNode *node, BpMaterial *material, BpError *err);
 

@@ -15,13 +15,6 @@
 /* ---- the style ------------------------------------------------------------------------------------------
  */
 
-static BpStatus read_flag(const BpNode *node, bool *value, BpError *err) {
-    if (node->value == NULL) return BP_OK;
-    if (!json_is_boolean(node->value)) return bp_node_wrong(node, "true or false", err);
-    *value = json_is_true(node->value);
-    return BP_OK;
-}
-
 static BpStatus read_above_zero(const BpNode *node, double *value, BpError *err) {
     BP_TRY(bp_node_number(node, value, err));
     if (node->value != NULL && !(*value > 0 && *value <= BP_COORDINATE_MAX))
@@ -165,7 +158,7 @@ static BpStatus read_colors(const BpNode *node, BpParticleStyle *style, BpError 
     BP_TRY(bp_node_choice(&map, bp_colormap_names, BP_MAP_COUNT, &choice, err));
     style->map = (BpColormap)choice;
     BP_TRY(read_range(&range, style, err));
-    BP_TRY(read_flag(&bar, &style->bar, err));
+    BP_TRY(bp_node_boolean(&bar, &style->bar, err));
     return read_named(&types, true, style->colors, &style->color_count, err);
 }
 
@@ -179,7 +172,7 @@ static BpStatus read_bonds(const BpNode *node, BpParticleStyle *style, BpError *
     }
     if (node->value != NULL && !json_is_boolean(node->value))
         return bp_node_wrong(node, "true, false or { \"radius\": 0.1 }", err);
-    return read_flag(node, &style->bonds, err);
+    return bp_node_boolean(node, &style->bonds, err);
 }
 
 static BpStatus read_style(const BpNode *node, BpParticleStyle *style, BpError *err) {
@@ -195,9 +188,9 @@ static BpStatus read_style(const BpNode *node, BpParticleStyle *style, BpError *
     BP_TRY(read_radius(&radius, style, err));
     BP_TRY(read_colors(&color, style, err));
     BP_TRY(read_bonds(&bonds, style, err));
-    BP_TRY(read_flag(&box, &style->box, err));
-    BP_TRY(read_flag(&solvent, &style->solvent, err));
-    return read_flag(&whole, &style->whole, err);
+    BP_TRY(bp_node_boolean(&box, &style->box, err));
+    BP_TRY(bp_node_boolean(&solvent, &style->solvent, err));
+    return bp_node_boolean(&whole, &style->whole, err);
 }
 
 /* ---- the files ------------------------------------------------------------------------------------------

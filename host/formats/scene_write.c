@@ -130,6 +130,25 @@ void bp_scene_print_camera(const BpCamera *camera, FILE *out) {
     fputs("\n  }", out);
 }
 
+static void put_background(FILE *out, const BpScene *scene) {
+    fputs(",\n  \"background\": { \"bottom\": ", out);
+    put_vector(out, scene->background_bottom);
+    fputs(", \"top\": ", out);
+    put_vector(out, scene->background_top);
+    for (size_t i = 0; i < scene->disc_count; i++) {
+        const BpDisc *disc = &scene->discs[i];
+        fprintf(out, "%s\n      { \"direction\": ", i == 0 ? ",\n    \"discs\": [" : ",");
+        put_vector(out, disc->direction);
+        fputs(", \"half_angle\": ", out);
+        put_number(out, disc->half_angle_degrees);
+        fputs(", \"radiance\": ", out);
+        put_vector(out, disc->radiance);
+        if (!disc->visible_to_camera) fputs(", \"visible_to_camera\": false", out);
+        fputs(" }", out);
+    }
+    fputs(scene->disc_count > 0 ? "\n    ]\n  }" : " }", out);
+}
+
 /* ---- materials and spheres ------------------------------------------------------------------------------
  */
 
@@ -228,11 +247,8 @@ BpStatus bp_scene_print(const BpScene *scene, FILE *out, BpError *err) {
     BP_TRY(put_text(out, scene->source, err));
     fputs(",\n", out);
     bp_scene_print_camera(&scene->camera, out);
-    fputs(",\n  \"background\": { \"bottom\": ", out);
-    put_vector(out, scene->background_bottom);
-    fputs(", \"top\": ", out);
-    put_vector(out, scene->background_top);
-    fprintf(out, " },\n  \"transfer\": \"%s\"", bp_transfer_names[scene->transfer]);
+    put_background(out, scene);
+    fprintf(out, ",\n  \"transfer\": \"%s\"", bp_transfer_names[scene->transfer]);
     if (written_materials(scene) > 0) BP_TRY(put_materials(out, scene, err));
     if (written_spheres(scene) > 0) BP_TRY(put_spheres(out, scene, err));
     if (scene->has_particles) put_particles(out, scene);

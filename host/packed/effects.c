@@ -35,6 +35,10 @@ typedef struct Use {
     size_t materials, spheres, unused; /* unused: materials that would, but that no sphere has */
 } Use;
 
+static bool is_bright(const double radiance[3]) {
+    return radiance[0] > 0 || radiance[1] > 0 || radiance[2] > 0;
+}
+
 /* The effects that a material brings in where a sphere has it. A lamp is always EMISSION, even one of
  * radiance 0: it is the code that ends the path there. */
 static uint32_t material_bits(const BpMaterial *material) {
@@ -45,7 +49,7 @@ static uint32_t material_bits(const BpMaterial *material) {
 #undef EFFECT_OF
     };
     uint32_t bits = 1u << of_kind[material->kind];
-    if (material->emit[0] > 0 || material->emit[1] > 0 || material->emit[2] > 0)
+    if (is_bright(material->emit))
         bits |= 1u << BP_EFFECT_EMISSION;
     return bits;
 }
@@ -106,10 +110,39 @@ static bool count_uses(const BpScene *scene, Use uses[BP_EFFECT_COUNT], Use *all
     return true;
 }
 
-#define NO_LAMP_REASON "no sphere gives light"
+#define NO_LAMP_REASON "no sphere gives light, and no disc of the sky"
 
-/* Whether rays are sent to lamps: if there is a lamp, and another sphere that it can light. */
+static size_t bright_discs(const BpScene *scene) {
+    size_t bright = 0;
+    for (size_t i = 0; i < scene->disc_count; ++i) bright += is_bright(scene->discs[i].radiance);
+    return bright;
+}
+
+static bool explain_discs(const BpScene *scene, size_t size, char *reason) {
+    const size_t count = scene->disc_count;
+    if (bright_discs(scene) > 0)
+        snprintf(reason, size, "%zu disc%s in the background", count, bp_plural(count));
+    else if (count > 0)
+        snprintf(reason, size, "%zu disc%s in the background, but without light", count, bp_plural(count));
+    else
+        snprintf(reason, size, "the background has no discs");
+    return bright_discs(scene) > 0;
+}
+
+/* "3 lamps", "a disc and 3 lamps". */
+static void name_lamps(size_t lamps, size_t discs, size_t size, char *text) {
+    if (discs == 0)
+        snprintf(text, size, "%zu lamp%s", lamps, bp_plural(lamps));
+    else if (lamps == 0)
+        snprintf(text, size, "%zu disc%s", discs, bp_plural(discs));
+    else
+        snprintf(text, size, "%zu lamp%s and %zu disc%s", lamps, bp_plural(lamps), discs, bp_plural(discs));
+}
+
+/* Whether rays are sent to lamps: if there is a disc, or a lamp and another sphere that it can light. */
 static bool explain_lamps(const BpScene *scene, size_t size, char *reason) {
+    const size_t discs = bright_discs(scene);
+    char all[96];
     const size_t enclosing = bp_enclosing_lamp(scene);
     size_t lamps = 0, lit = 0, both = 0;
     for (size_t i = 0; i < scene->sphere_count; ++i) {
@@ -119,18 +152,17 @@ static bool explain_lamps(const BpScene *scene, size_t size, char *reason) {
         lit += is_lit;
         both += is_lamp && is_lit;
     }
-    if (lamps == 0)
+    name_lamps(lamps, discs, sizeof all, all);
+    if (lamps + discs == 0)
         snprintf(reason, size,
                  enclosing != SIZE_MAX ? "the one lamp is around everything: every path finds it"
                                        : NO_LAMP_REASON);
     else if (lit == 0)
-        snprintf(reason, size, "%zu lamp%s, but no matte surface and no metal with a fuzz of 1/64 or more",
-                 lamps, bp_plural(lamps));
-    else if (lamps == 1 && lit == 1 && both == 1)
+        snprintf(reason, size, "%s, but no matte surface and no metal with a fuzz of 1/64 or more", all);
+    else if (discs == 0 && lamps == 1 && lit == 1 && both == 1)
         snprintf(reason, size, "the one lamp is the one surface that could be lit");
     else {
-        snprintf(reason, size, "%zu lamp%s, and %zu sphere%s to be lit", lamps, bp_plural(lamps), lit,
-                 bp_plural(lit));
+        snprintf(reason, size, "%s, and %zu sphere%s to be lit", all, lit, bp_plural(lit));
         return true;
     }
     return false;
@@ -161,7 +193,9 @@ void bp_effects_analyse(const BpScene *scene, BpEffects *effects) {
     } else {
         snprintf(effects->reason[BP_EFFECT_LENS], size, "defocus_angle 0: the lens is a pinhole");
     }
-    if (!bp_effects_has(effects->bits, BP_EFFECT_EMISSION))
+    if (explain_discs(scene, size, effects->reason[BP_EFFECT_DISCS]))
+        effects->bits |= 1u << BP_EFFECT_DISCS;
+    if ((effects->bits & (1u << BP_EFFECT_EMISSION | 1u << BP_EFFECT_DISCS)) == 0)
         snprintf(effects->reason[BP_EFFECT_LAMPS], size,
                  NO_LAMP_REASON); /* without another look at all spheres */
     else if (explain_lamps(scene, size, effects->reason[BP_EFFECT_LAMPS]))

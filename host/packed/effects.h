@@ -23,7 +23,8 @@
     X(NORMALS, "normals", "surfaces that show their normal as colour", "normals as colours are left out",    \
       "nothing shows normals")                                                                               \
     X(LENS, "lens", "a lens with an aperture: defocus blur", "", "")                                         \
-    X(LAMPS, "lamps", "rays to lamps, from surfaces that scatter into many directions", "", "")
+    X(LAMPS, "lamps", "rays to lamps, from surfaces that scatter into many directions", "", "")              \
+    X(DISCS, "discs", "lamps at infinity: discs in the sky", "", "")
 
 typedef enum BpEffect {
 #define BP_EFFECT_ENUM(identifier, name, text, left_out, absent) BP_EFFECT_##identifier,

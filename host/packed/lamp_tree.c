@@ -33,7 +33,6 @@ typedef struct Builder {
     BpLampTree *tree;
     uint32_t capacity; /* nodes for which there is room */
     bool single;
-    double unit; /* of power */
 } Builder;
 
 /* A run of lamps. */
@@ -233,7 +232,7 @@ static bool write_node(Builder *builder, const Run *run, uint32_t level, uint32_
         }
         for (uint32_t a = 0; a < 3; ++a) store(builder, node, a, p, center[a]);
         store(builder, node, 3, p, radius);
-        store(builder, node, 4, p, parts[p].power * builder->unit);
+        store(builder, node, 4, p, parts[p].power * builder->tree->unit);
         builder->tree->lamp_children[(size_t)node * LAMP_WIDTH + p] = word;
     }
     return true;
@@ -241,10 +240,15 @@ static bool write_node(Builder *builder, const Run *run, uint32_t level, uint32_
 
 /* ---- the whole ---- */
 
+static double luminance_of(const double radiance[3]) {
+    double luminance = 0;
+    for (int c = 0; c < 3; ++c) luminance += bp_luminance_weights[c] * radiance[c];
+    return luminance;
+}
+
 /* In order of the spheres' numbers, as the device has them. */
 static void collect_lamps(const BpScene *scene, const BpTree *tree, const uint32_t *slot_of, size_t enclosing,
                           Builder *builder) {
-    double brightest = 0;
     uint32_t count = 0;
     for (size_t i = 0; i < scene->sphere_count; ++i) {
         if (i == enclosing || !bp_sphere_emits(scene, i)) continue;
@@ -256,12 +260,19 @@ static void collect_lamps(const BpScene *scene, const BpTree *tree, const uint32
             lamp->center[a] = bp_reals_load(tree->leaves, tree->single_precision, place + a * tree->width);
         lamp->radius = bp_reals_load(tree->leaves, tree->single_precision, place + 3 * tree->width);
         const double *emit = scene->materials[scene->spheres[i].material].emit;
-        double luminance = 0;
-        for (int c = 0; c < 3; ++c) luminance += bp_luminance_weights[c] * emit[c];
-        brightest = fmax(brightest, luminance);
-        lamp->power = luminance * lamp->radius * lamp->radius;
+        lamp->power = luminance_of(emit) * lamp->radius * lamp->radius;
     }
-    builder->unit = brightest > 0 ? 1 / brightest : 0;
+}
+
+/* So that powers and their sums are floats however bright the lamps. */
+static double unit_of_power(const BpScene *scene, size_t enclosing) {
+    double brightest = 0;
+    for (size_t i = 0; i < scene->sphere_count; ++i)
+        if (i != enclosing)
+            brightest = fmax(brightest, luminance_of(scene->materials[scene->spheres[i].material].emit));
+    for (size_t i = 0; i < scene->disc_count; ++i)
+        brightest = fmax(brightest, luminance_of(scene->discs[i].radiance));
+    return brightest > 0 ? 1 / brightest : 0;
 }
 
 BpStatus bp_lamp_tree_build(const BpScene *scene, const BpTree *tree, BpLampTree *lamps, BpError *err) {
@@ -274,6 +285,7 @@ BpStatus bp_lamp_tree_build(const BpScene *scene, const BpTree *tree, BpLampTree
     for (size_t i = 0; i < scene->sphere_count; ++i)
         if (i != enclosing && bp_sphere_emits(scene, i)) ++lamps->lamp_count;
     const uint32_t count = lamps->lamp_count;
+    lamps->unit = unit_of_power(scene, enclosing);
     bool enough = true;
     if (count > 0) {
         slot_of = malloc(scene->sphere_count * sizeof *slot_of);

@@ -1,6 +1,7 @@
 /* pack.c: see pack.h. Everything is packed in double; narrow() is the last step. */
 #include "pack.h"
 
+#include "base/color.h"
 #include "base/status.h"
 #include "reals.h"
 #include "scene/material.h"
@@ -105,10 +106,37 @@ static BpStatus pack_view(const BpScene *scene, BpPacked *packed, BpError *err) 
         sky.bottom[a] = scene->background_bottom[a];
         sky.top[a] = scene->background_top[a];
     }
+    sky.top[3] = (double)scene->disc_count;
     const size_t camera_reals = sizeof camera / sizeof(double), sky_reals = sizeof sky / sizeof(double);
     packed->camera = narrow((const double *)&camera, camera_reals, 1, packed->single_precision);
     packed->sky = narrow((const double *)&sky, sky_reals, 1, packed->single_precision);
     return packed->camera != NULL && packed->sky != NULL ? BP_OK : out_of_memory(scene, err);
+}
+
+#define PI 3.14159265358979323846
+_Static_assert(BP_DISCS_MAX <= DISCS_MAX && BP_SPHERES_MAX < DISC_SLOT, "places of discs and of spheres");
+
+/* `unit`: of the power of lamps. */
+static BpStatus pack_discs(const BpScene *scene, double unit, BpPacked *packed, BpError *err) {
+    PackedDisc discs[BP_DISCS_MAX] = {{{0}, 0, {0}, 0, 0, 0, 0, 0}};
+    for (size_t i = 0; i < scene->disc_count; ++i) {
+        const BpDisc *disc = &scene->discs[i];
+        const double half = disc->half_angle_degrees * (PI / 180), s = sin(half / 2);
+        double direction[3] = {disc->direction[0], disc->direction[1], disc->direction[2]}, luminance = 0;
+        normalize(direction);
+        for (int c = 0; c < 3; ++c) luminance += bp_luminance_weights[c] * disc->radiance[c];
+        discs[i] = (PackedDisc){.cap = 2 * s * s,
+                                .power = luminance * unit * sin(half) * sin(half),
+                                .sine = sin(half),
+                                .chord2 = 4 * s * s,
+                                .seen = disc->visible_to_camera ? 1 : 0};
+        memcpy(discs[i].direction, direction, sizeof direction);
+        memcpy(discs[i].radiance, disc->radiance, sizeof disc->radiance);
+    }
+    packed->disc_count = (uint32_t)scene->disc_count;
+    packed->discs =
+        narrow((const double *)discs, packed->disc_count * DISC_REALS, DISC_REALS, packed->single_precision);
+    return packed->discs != NULL ? BP_OK : out_of_memory(scene, err);
 }
 
 /* ---- materials ------------------------------------------------------------------------------------- */
@@ -223,6 +251,7 @@ BpStatus bp_scene_pack(const BpScene *scene, const BpTreeOptions *options, bool 
     BP_TRY_GOTO(status, pack_slots(scene, second, packed, err), cleanup);
     if (sample_lamps)
         BP_TRY_GOTO(status, bp_lamp_tree_build(scene, &packed->tree, &packed->lamps, err), cleanup);
+    BP_TRY_GOTO(status, pack_discs(scene, packed->lamps.unit, packed, err), cleanup);
 cleanup:
     free(second);
     if (status != BP_OK) bp_packed_clear(packed);

@@ -63,9 +63,22 @@ bool bp_ref_hit(const BpScene *scene, const Ray *ray, Hit *hit) {
     return true;
 }
 
-static Vec background(const BpScene *scene, Vec direction) {
-    const double a = 0.5 * (unit(direction).y + 1);
-    return add(scale(1 - a, vec(scene->background_bottom)), scale(a, vec(scene->background_top)));
+static bool in_disc(const BpDisc *disc, Vec direction) {
+    const Vec middle = vec(disc->direction);
+    const double angle = atan2(sqrt(length2(cross(middle, direction))), dot(middle, direction));
+    return angle * (180 / 3.14159265358979323846) <= disc->half_angle_degrees;
+}
+
+static Vec background(const BpScene *scene, const Ray *ray) {
+    const double a = 0.5 * (unit(ray->direction).y + 1);
+    Vec color = add(scale(1 - a, vec(scene->background_bottom)), scale(a, vec(scene->background_top)));
+    for (size_t i = 0; i < scene->disc_count; ++i) {
+        const BpDisc *disc = &scene->discs[i];
+        const bool from_camera = ray->leaves == NULL;
+        if ((disc->visible_to_camera || !from_camera) && in_disc(disc, ray->direction))
+            color = add(color, vec(disc->radiance));
+    }
+    return color;
 }
 
 Vec bp_ref_color(const BpScene *scene, const Ray *ray, uint32_t depth, Random *random, Path *path) {
@@ -76,7 +89,7 @@ Vec bp_ref_color(const BpScene *scene, const Ray *ray, uint32_t depth, Random *r
     }
     ++path->segments;
     Hit hit;
-    if (!bp_ref_hit(scene, ray, &hit)) return background(scene, ray->direction);
+    if (!bp_ref_hit(scene, ray, &hit)) return background(scene, ray);
 
     Vec emitted = vec(hit.material->emit);
     if (hit.material->kind == BP_MATERIAL_NORMALS)

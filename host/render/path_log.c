@@ -31,7 +31,7 @@ const char *bp_kernel_file(const char *name);
 /* What comes back from the device. */
 typedef struct Records {
     void *numbers;    /* steps * FOLLOW_REALS reals */
-    cl_uint *spheres; /* steps * 3 */
+    cl_uint *spheres; /* steps * 4 */
     cl_uint count;
 } Records;
 
@@ -39,7 +39,7 @@ static BpStatus run(BpWorker *worker, uint32_t pixel, uint32_t sample, uint32_t 
                     BpError *err) {
     const BpDevice *device = worker->device;
     const size_t numbers_size = (size_t)capacity * FOLLOW_REALS * worker->real_size;
-    const size_t spheres_size = (size_t)capacity * 3 * sizeof(cl_uint);
+    const size_t spheres_size = (size_t)capacity * 4 * sizeof(cl_uint);
     BpStatus status = BP_OK;
     cl_int code = CL_SUCCESS;
     cl_mem buffers[3] = {NULL, NULL, NULL};
@@ -97,10 +97,14 @@ static void read_step(const BpScene *scene, const Records *records, bool single,
     step->enters = record[FOLLOW_ENTERS] != 0;
     step->goes_on = record[FOLLOW_GOES_ON] != 0;
     step->inward = record[FOLLOW_INWARD] != 0;
-    step->sphere = records->spheres[3 * number];
-    step->lamp = records->spheres[3 * number + 1];
-    step->seen = records->spheres[3 * number + 2];
-    step->to_lamp = step->lamp != NO_SPHERE;
+    const cl_uint *spheres = records->spheres + 4 * number;
+    step->sphere = spheres[0];
+    step->to_lamp = spheres[1] != NO_SPHERE;
+    step->stopped = spheres[2] != spheres[1];
+    step->seen = spheres[2];
+    step->to_disc = step->to_lamp && spheres[1] >= DISC_SLOT;
+    step->lamp = step->to_disc ? spheres[1] - DISC_SLOT : spheres[1];
+    step->discs = spheres[3];
     step->material = step->met ? scene->spheres[step->sphere].material : 0;
 }
 
@@ -131,7 +135,7 @@ BpStatus bp_path_log(const BpScene *scene, const BpRenderOptions *options, const
                               : wanted.max_depth < STEPS_MAX ? wanted.max_depth
                                                              : STEPS_MAX;
     records.numbers = calloc((size_t)capacity * FOLLOW_REALS, worker->real_size);
-    records.spheres = calloc((size_t)capacity * 3, sizeof *records.spheres);
+    records.spheres = calloc((size_t)capacity * 4, sizeof *records.spheres);
     path->steps = calloc(capacity, sizeof *path->steps);
     if (records.numbers == NULL || records.spheres == NULL || path->steps == NULL) {
         status = bp_fail(err, BP_ERR_MEMORY, "no memory for a path of %u steps", capacity);

@@ -19,9 +19,13 @@ typedef struct BpPathStep {
     bool inward;               /* into (or staying in) the inside of the sphere */
     double throughput[3];      /* product of weights after the meeting */
     double radiance[3];        /* collected so far; that of the last step is the sample's */
+    uint32_t discs;            /* where it did not: bit i: disc i of the sky stands there */
     bool to_lamp;              /* a ray was sent to a lamp from here */
-    uint32_t lamp, seen; /* then: that lamp, and what the ray meets first, which may be the lamp itself */
-    double lit[3];       /* radiance that it brought */
+    bool to_disc;              /* then: the lamp is a disc of the sky, else a sphere */
+    uint32_t lamp;             /* the number of that disc or sphere */
+    bool stopped;              /* the ray meets another sphere first */
+    uint32_t seen;             /* that sphere */
+    double lit[3];             /* radiance that it brought */
 } BpPathStep;
 
 typedef struct BpPathLog {

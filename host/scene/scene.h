@@ -5,7 +5,7 @@
  *
  * Invariants of every BpScene that reaches another module (bp_scene_validate proves them): all numbers are
  * finite; radius != 0 (negative: inside out); material indices in range; albedo in [0,1]; emit >= 0;
- * 0 <= fuzz <= 1; refraction_index > 0; 0 < vfov < 180, and the size of the plane in focus fits a float;
+ * 0 <= fuzz <= 1; refraction_index > 0; of discs a direction, and half angles from 1e-4 to 90 degrees; 0 < vfov < 180, and the size of the plane in focus fits a float;
  * lookfrom != lookat; vup not parallel to the view;
  * 1 <= width, height <= BP_PICTURE_SIDE_MAX; no two coincident dielectrics; a pinhole camera on the
  * surface of at most one sphere. */
@@ -25,6 +25,8 @@
 #define BP_REFRACTION_INDEX_MAX 1.0e6 /* and at least its reciprocal */
 #define BP_FOCUS_DIST_MIN 1.0e-15     /* rays begin as vectors of this length: squares stay normal in float */
 #define BP_HALF_HEIGHT_MAX 1.0e14     /* of the plane in focus; it is up to 65,535 times as wide */
+#define BP_DISCS_MAX 32u
+#define BP_HALF_ANGLE_MIN 1.0e-4 /* degrees: directions in float are 3e-6 degrees apart */
 #define BP_NO_ALBEDO UINT32_MAX
 
 typedef enum BpScatter { BP_SCATTER_LAMBERTIAN, BP_SCATTER_COSINE_CUBED, BP_SCATTER_HEMISPHERE } BpScatter;
@@ -86,6 +88,14 @@ typedef struct BpCamera {
     double fit_vup[3];        /* as asked for; 0: by the particles' format */
 } BpCamera;
 
+/* A disc in the sky, a lamp at infinity: adds its radiance to that of the background in a cone of directions. */
+typedef struct BpDisc {
+    double direction[3];       /* to its middle, of any length */
+    double half_angle_degrees; /* from there to its rim */
+    double radiance[3];
+    bool visible_to_camera; /* camera rays see it; scattered ones always do */
+} BpDisc;
+
 /* A file of points: spheres from `first` on, up to the next file's or the end, one a vertex; of particles,
  * those that are shown, then the beads of bonds and cell. */
 typedef struct BpPointFile {
@@ -107,6 +117,8 @@ struct BpScene {
     char *title, *source;
     BpCamera camera;
     double background_bottom[3], background_top[3]; /* by the unit direction's y: -1 bottom, +1 top */
+    BpDisc discs[BP_DISCS_MAX]; /* where they overlap, they add up */
+    size_t disc_count;
     BpTransfer transfer;
     BpMaterial *materials;
     size_t material_count;

@@ -137,6 +137,18 @@ bool bp_sphere_find_fault(const BpSphere *sphere, BpFault *fault) {
                    "a radius from 1.2e-38 to 1e12 (or its negative); choose another unit of length");
 }
 
+static bool disc_fault(const BpDisc *disc, BpFault *fault) {
+    const double low = BP_HALF_ANGLE_MIN;
+    return coordinates_outside(fault, BP_FAULT_DISC, "direction", disc->direction) ||
+           (!(length(disc->direction) >= LENGTH_MIN) &&
+            set_fault(fault, BP_FAULT_DISC, "direction",
+                      "found no direction, expected the one in which the disc stands, such as [1, 2, 0]")) ||
+           outside(fault, BP_FAULT_DISC, "half_angle", disc->half_angle_degrees, low, 90,
+                   "degrees from 0.0001 to 90, from the middle of the disc to its rim") ||
+           any_outside(fault, BP_FAULT_DISC, "radiance", disc->radiance, 0, BP_RADIANCE_MAX,
+                       "radiances from 0 to 1e12");
+}
+
 /* A pinhole may stand on one sphere; on two at once, rays would have to leave both. */
 static bool standpoint_fault(const BpScene *scene, BpFault *fault) {
     char a[BP_SPHERE_NAME_SIZE], b[BP_SPHERE_NAME_SIZE];
@@ -162,6 +174,10 @@ BpStatus bp_scene_find_fault(const BpScene *scene, BpFault *fault, BpError *err)
         any_outside(fault, BP_FAULT_BACKGROUND, "top", scene->background_top, 0, BP_RADIANCE_MAX,
                     "radiances from 0 to 1e12"))
         return BP_OK;
+    for (size_t i = 0; i < scene->disc_count; i++) {
+        fault->index = i;
+        if (disc_fault(&scene->discs[i], fault)) return BP_OK;
+    }
     for (size_t i = 0; i < scene->material_count; i++) {
         fault->index = i;
         if (material_fault(&scene->materials[i], fault)) return BP_OK;
@@ -199,6 +215,9 @@ BpStatus bp_scene_validate(const BpScene *scene, BpError *err) {
     if (scene->sphere_count > BP_SPHERES_MAX)
         return bp_fail(err, BP_ERR_LIMIT, "found %zu spheres, expected at most %u", scene->sphere_count,
                        BP_SPHERES_MAX);
+    if (scene->disc_count > BP_DISCS_MAX)
+        return bp_fail(err, BP_ERR_LIMIT, "background.discs: found %zu discs, expected at most %u",
+                       scene->disc_count, BP_DISCS_MAX);
     BP_TRY(bp_scene_find_fault(scene, &fault, err));
     switch (fault.subject) {
     case BP_FAULT_NONE:
@@ -207,6 +226,9 @@ BpStatus bp_scene_validate(const BpScene *scene, BpError *err) {
         return bp_fail(err, BP_ERR_SCENE, "camera.%s: %s", fault.member, fault.text);
     case BP_FAULT_BACKGROUND:
         return bp_fail(err, BP_ERR_SCENE, "background.%s: %s", fault.member, fault.text);
+    case BP_FAULT_DISC:
+        return bp_fail(err, BP_ERR_SCENE, "background.discs[%zu].%s: %s", fault.index, fault.member,
+                       fault.text);
     case BP_FAULT_MATERIAL:
         bp_printable(scene->materials[fault.index].name, name, sizeof name);
         return bp_fail(err, BP_ERR_SCENE, "materials.%s.%s: %s", name, fault.member, fault.text);

@@ -50,8 +50,11 @@ typedef JOIN(REAL, 4) real4;
 #endif
 typedef REFINED refined;
 
-/* Lamps are sampled where the scene has any, and at surfaces that scatter into many directions. */
-#define SAMPLES_LAMPS (EFFECT_LAMPS && EFFECT_EMISSION && (EFFECT_LAMBERTIAN || EFFECT_METAL))
+/* Lamps are sampled where the scene has any, and at surfaces that scatter into many directions. They are spheres, in a
+ * tree, and discs in the sky. */
+#define SAMPLES_LAMP_TREE (EFFECT_LAMPS && EFFECT_EMISSION && (EFFECT_LAMBERTIAN || EFFECT_METAL))
+#define SAMPLES_DISCS (EFFECT_LAMPS && EFFECT_DISCS && (EFFECT_LAMBERTIAN || EFFECT_METAL))
+#define SAMPLES_LAMPS (SAMPLES_LAMP_TREE || SAMPLES_DISCS)
 
 /* Some compilers leave parts of a ray's search functions of their own, and pass the ray, or two dozen vectors, through
  * memory. Where nothing is optimised, nothing is inlined either: Oclgrind cannot run what the inliner leaves behind. */

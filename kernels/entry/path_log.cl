@@ -19,8 +19,19 @@ enum {
 };
 
 /* `spheres`: for each segment s the numbers of three spheres, or NO_SPHERE: what it met; the lamp that the vertex there
- * was to be lit by; what stands first on the way to that lamp, which may be itself. `steps`: how many segments there
- * were. */
+ * was to be lit by, or DISC_SLOT and the number of a disc; what stands first on the way to that lamp, which may be
+ * itself; and where it met nothing the set of discs that it saw, one bit each. `steps`: how many segments there were. */
+#if EFFECT_DISCS
+static uint discs_seen(const Scene *scene, const Path *path) {
+    uint seen = 0;
+    for (uint i = 0; i < disc_count(scene); ++i) {
+        __global const real *disc = scene->discs + i * DISC_REALS;
+        if ((disc[DISC_SEEN] > 0 || path->depth > 1) && disc_contains(disc, path->direction)) seen |= 1u << i;
+    }
+    return seen;
+}
+#endif
+
 __kernel void path_log(SCENE_PARAMETERS uint pixel, uint sample, uint capacity, __global real *records,
                        __global uint *spheres, __global uint *steps) {
     const Scene scene = scene_init(SCENE_ARGUMENTS);
@@ -44,8 +55,8 @@ __kernel void path_log(SCENE_PARAMETERS uint pixel, uint sample, uint capacity, 
         path.lamp_slot = NO_SLOT;
         if (path.wants_lamps) light_vertices(&scene, &path);
         if (path.lamp_slot != NO_SLOT) {
-            lamp = slot_sphere[path.lamp_slot];
-            seen = slot_sphere[path.seen_slot];
+            lamp = path.lamp_slot >= DISC_SLOT ? path.lamp_slot : slot_sphere[path.lamp_slot];
+            seen = path.seen_slot >= DISC_SLOT ? path.seen_slot : slot_sphere[path.seen_slot];
         }
 #endif
         record[LOG_DISTANCE] = (real)path.distance;
@@ -65,9 +76,14 @@ __kernel void path_log(SCENE_PARAMETERS uint pixel, uint sample, uint capacity, 
         record[LOG_LIT] = path.radiance.x - before.x;
         record[LOG_LIT + 1] = path.radiance.y - before.y;
         record[LOG_LIT + 2] = path.radiance.z - before.z;
-        spheres[3 * step] = path.met ? slot_sphere[path.own_slot] : NO_SPHERE;
-        spheres[3 * step + 1] = lamp;
-        spheres[3 * step + 2] = seen;
+        uint discs = 0;
+#if EFFECT_DISCS
+        if (!path.met) discs = discs_seen(&scene, &path);
+#endif
+        spheres[4 * step] = path.met ? slot_sphere[path.own_slot] : NO_SPHERE;
+        spheres[4 * step + 1] = lamp;
+        spheres[4 * step + 2] = seen;
+        spheres[4 * step + 3] = discs;
         ++step;
     }
     *steps = step;

@@ -16,7 +16,11 @@ static void trace_bounce(const Scene *scene, Path *path) {
 
     const vbool escaped = moving & vbool_not(met);
     if (any_lane(escaped)) {
-        const Vec3 light = multiply3(path->throughput, sky_radiance(scene->sky, path->direction));
+        Vec3 sky = sky_radiance(scene->sky, path->direction);
+#if EFFECT_DISCS
+        sky = add3(sky, discs_radiance(scene, path, escaped));
+#endif
+        const Vec3 light = multiply3(path->throughput, sky);
         path->radiance = choose3(escaped, add3(path->radiance, light), path->radiance);
         path->alive = path->alive & vbool_not(escaped);
     }
@@ -31,7 +35,7 @@ static void trace_bounce(const Scene *scene, Path *path) {
     surface.incoming = path->direction;
     surface.enters = hit.enters;
     surface.normal = choose3(hit.enters, outward, scale3(splat(-1), outward));
-#if SAMPLES_LAMPS
+#if SAMPLES_LAMP_TREE
     const vbool lit = met & hit.enters & (emitted.x + emitted.y + emitted.z > splat(0));
     if (any_lane(lit)) emitted = scale3(lamp_hit_weight(scene, path, hit.slot, &sphere, lit), emitted);
 #endif

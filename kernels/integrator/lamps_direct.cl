@@ -16,6 +16,7 @@ static vreal density_ratio(const Lobe *lobe, Vec3 direction, int drawn, vreal ca
     return at_most(scatter_pdf(lobe, direction, drawn) * solid_angle / probability, splat(RATIO_MAX));
 }
 
+#if SAMPLES_LAMP_TREE
 /* The weight of the radiance of a lamp in `slot` that the path has hit; `hit`: these lanes have, from outside. */
 static vreal lamp_hit_weight(const Scene *scene, const Path *path, vuint slot, const Sphere *sphere, vbool hit) {
     vbool shared = hit & vbool_of_uint(path->lobe.kind != splat_uint(LOBE_NONE)) & vbool_of_uint(path->own_slot != slot);
@@ -35,6 +36,7 @@ static Vec3 radiance_of_slot(const Scene *scene, vuint slot) {
                 gather_real(scene->materials, numbers + (MATERIAL_EMIT + 1u)),
                 gather_real(scene->materials, numbers + (MATERIAL_EMIT + 2u)));
 }
+#endif
 
 /* The slot of what a ray to the lamp meets first. No point of the lamp that can be seen is nearer than distance - radius, nor
  * farther than where a tangent touches: what is met before the one hides the lamp, what is not met before the other
@@ -64,6 +66,51 @@ static vuint first_seen(const Scene *scene, const Ray *ray, const LampChoice *ch
     return first.slot;
 }
 
+/* Of a sphere in a slot, or of a disc. */
+static Vec3 radiance_of_lamp(const Scene *scene, vuint slot) {
+#if !SAMPLES_DISCS
+    return radiance_of_slot(scene, slot);
+#else
+    const vbool disc = vbool_of_uint(slot >= splat_uint(DISC_SLOT));
+    Vec3 radiance = zero3();
+#if SAMPLES_LAMP_TREE
+    radiance = radiance_of_slot(scene, choose_uint(disc, splat_uint(0), slot));
+#endif
+    if (!any_lane(disc)) return radiance;
+    const vuint place = choose_uint(disc, slot - splat_uint(DISC_SLOT), splat_uint(0)) * DISC_REALS + DISC_RADIANCE;
+    return choose3(disc,
+                   vec3(gather_real(scene->discs, place), gather_real(scene->discs, place + 1u),
+                        gather_real(scene->discs, place + 2u)),
+                   radiance);
+#endif
+}
+
+/* A lamp for the vertex of each `active` path, by the number `u`, and its cone. */
+static LampChoice choose_light(const Scene *scene, const Path *path, vuint bounce, vreal u, vbool active,
+                               LampCone *cone) {
+    const Point *point = &path->origin;
+    const Lobe *lobe = &path->lobe;
+    LampChoice choice;
+#if SAMPLES_DISCS
+    const DiscChoice disc = choose_disc(scene, point, lobe, path->key, bounce, u);
+    active = active & vbool_not(disc.chosen);
+    u = disc.rest;
+#endif
+#if SAMPLES_LAMP_TREE
+    choice = choose_lamp(scene, point, lobe, path->key, bounce, u, active);
+#else
+    choice.slot = splat_uint(0);
+    choice.sphere.centre = zero3();
+    choice.sphere.radius = splat(1);
+    choice.probability = choice.sum = choice.rest = splat(0);
+#endif
+    *cone = lamp_cone(point, &choice.sphere);
+#if SAMPLES_DISCS
+    take_disc(&disc, &choice, cone);
+#endif
+    return choice;
+}
+
 /* Lights the vertices that want it: a ray to a lamp for each. A lobe's weight is its albedo whatever the direction, so
  * the throughput is already that of the light that comes from the lamp, and a ray to it leaves as the path does. */
 static void light_vertices(const Scene *scene, Path *path) {
@@ -73,9 +120,9 @@ static void light_vertices(const Scene *scene, Path *path) {
     path->wants_lamps = vbool_none;
     vreal u, v;
     sample_2d(path->key, bounce + BOUNCE_LAMP, &u, &v);
-    const LampChoice choice = choose_lamp(scene, &path->origin, lobe, path->key, bounce, u, active);
+    LampCone cone;
+    const LampChoice choice = choose_light(scene, path, bounce, u, active, &cone);
     path->lamp_sum = choose(active, choice.sum, path->lamp_sum);
-    const LampCone cone = lamp_cone(&path->origin, &choice.sphere);
     active = active & (choice.probability > splat(0)) & cone.outside & vbool_of_uint(choice.slot != path->own_slot);
     Ray ray = path_ray(path);
     ray.direction = sample_cone(&cone, choice.rest, v);
@@ -89,7 +136,7 @@ static void light_vertices(const Scene *scene, Path *path) {
     const vbool visible = active & vbool_of_uint(path->seen_slot == choice.slot);
     if (!any_lane(visible)) return;
     const vreal weight = ratio / fma(ratio, ratio, splat(1));
-    const Vec3 light = multiply3(path->throughput, scale3(weight, radiance_of_slot(scene, choice.slot)));
+    const Vec3 light = multiply3(path->throughput, scale3(weight, radiance_of_lamp(scene, choice.slot)));
     path->radiance = choose3(visible, add3(path->radiance, light), path->radiance);
 }
 #endif

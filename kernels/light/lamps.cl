@@ -13,6 +13,7 @@
 /* A lamp below this share of the squared distance may as well be around the point. */
 #define LAMP_POWER_MIN R(0x1p-20)
 
+#if SAMPLES_LAMP_TREE
 /* A child of a node: a lamp, or the ball around some. */
 typedef struct LampChild {
     Vec3 centre;
@@ -40,6 +41,8 @@ static LampChild load_child(const Scene *scene, vuint node, vuint k) {
     return child;
 }
 
+#endif
+
 #if EFFECT_METAL
 /* The cosine of the angle of which this is the sine, or a little less, without a root. */
 static vreal cosine_below(vreal sine) {
@@ -48,6 +51,7 @@ static vreal cosine_below(vreal sine) {
 }
 #endif
 
+#if SAMPLES_LAMP_TREE
 /* What a child may bring to a lobe at a point. */
 FORCE_INLINE static vreal lamp_importance(const LampChild *child, const Point *point, const Lobe *lobe, vbool fuzzy) {
     const Vec3 to_centre = subtract3(child->centre, point->high);
@@ -102,6 +106,8 @@ FORCE_INLINE static vreal lamp_importances(const Scene *scene, vuint node, int r
     return sum;
 }
 
+#endif
+
 /* A lamp, chosen for a point. */
 typedef struct LampChoice {
     vuint slot;
@@ -111,6 +117,7 @@ typedef struct LampChoice {
     vreal rest;        /* what is left of the number that chose: uniform in [0, 1) again */
 } LampChoice;
 
+#if SAMPLES_LAMP_TREE
 /* Takes a child of `node` in the lanes that are `active`, by the number choice->rest; returns its word. `refill` brings
  * new low bits to what is left of that number. */
 FORCE_INLINE static vuint choose_child(const Scene *scene, vuint node, int root, const Point *point, const Lobe *lobe,
@@ -205,6 +212,8 @@ static vreal lamp_probability(const Scene *scene, const Point *point, const Lobe
     }
     return probability;
 }
+
+#endif
 
 /* The cone that a lamp fills, seen from a point. */
 typedef struct LampCone {

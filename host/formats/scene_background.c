@@ -1,0 +1,62 @@
+/* scene_background.c: the background of a scene document: the sky and the discs in it.
+ *
+ * In:    the node of "background".   Out: the scene's background.
+ * Knows: its members.                Does not know: ranges (scene_validate.c). */
+#include "scene_parse.h"
+
+#include <string.h>
+
+static BpStatus parse_disc(const BpNode *node, BpDisc *disc, BpError *err) {
+    static const char *const names[] = {"direction", "half_angle", "radiance", "visible_to_camera"};
+    if (!json_is_object(node->value))
+        return bp_node_wrong(
+            node, "an object: { \"direction\": [x, y, z], \"half_angle\": ..., \"radiance\": [r, g, b] }", err);
+    BP_TRY(bp_node_object(node, names, BP_COUNT(names), err));
+    BP_TRY(bp_node_require(node, "direction", "\"direction\": [x, y, z], where the disc stands", err));
+    BP_TRY(bp_node_require(node, "half_angle", "degrees such as \"half_angle\": 0.25", err));
+    BP_TRY(bp_node_require(node, "radiance", "\"radiance\": [r, g, b]", err));
+    const BpNode direction = bp_node_member(node, "direction");
+    const BpNode half_angle = bp_node_member(node, "half_angle");
+    const BpNode radiance = bp_node_member(node, "radiance");
+    const BpNode visible = bp_node_member(node, "visible_to_camera");
+    *disc = (BpDisc){.visible_to_camera = true};
+    BP_TRY(bp_node_vector(&direction, disc->direction, err));
+    BP_TRY(bp_node_number(&half_angle, &disc->half_angle_degrees, err));
+    BP_TRY(bp_node_vector(&radiance, disc->radiance, err));
+    return bp_node_boolean(&visible, &disc->visible_to_camera, err);
+}
+
+static BpStatus parse_discs(const BpNode *node, BpScene *scene, BpError *err) {
+    BP_TRY(bp_node_list(
+        node,
+        "a list of discs: [ { \"direction\": [1, 2, 0], \"half_angle\": 0.25, \"radiance\": [9, 9, 8] } ]", err));
+    const size_t count = json_array_size(node->value);
+    if (count > BP_DISCS_MAX)
+        return bp_node_fail(node, BP_PART_VALUE, err, "found %zu discs, expected at most %u", count,
+                            BP_DISCS_MAX);
+    for (size_t i = 0; i < count; i++) {
+        const BpNode element = bp_node_element(node, i);
+        BP_TRY(parse_disc(&element, &scene->discs[i], err));
+    }
+    scene->disc_count = count;
+    return BP_OK;
+}
+
+BpStatus bp_parse_background(const BpNode *node, BpScene *scene, BpError *err) {
+    static const char *const names[] = {"bottom", "top", "discs"};
+    if (json_is_array(node->value)) {
+        BP_TRY(bp_node_vector(node, scene->background_bottom, err));
+        memcpy(scene->background_top, scene->background_bottom, sizeof scene->background_top);
+        return BP_OK;
+    }
+    if (node->value != NULL && !json_is_object(node->value))
+        return bp_node_wrong(node, "{ \"bottom\": [r, g, b], \"top\": [r, g, b] }, or one colour [r, g, b]",
+                             err);
+    BP_TRY(bp_node_object(node, names, BP_COUNT(names), err));
+    const BpNode bottom = bp_node_member(node, "bottom");
+    const BpNode top = bp_node_member(node, "top");
+    const BpNode discs = bp_node_member(node, "discs");
+    BP_TRY(bp_node_vector(&bottom, scene->background_bottom, err));
+    BP_TRY(bp_node_vector(&top, scene->background_top, err));
+    return parse_discs(&discs, scene, err);
+}

@@ -1,0 +1,38 @@
+/* discs_direct.cl: what the discs of the sky add to a path that meets nothing.
+ *
+ * In:    paths that escape.   Out: the radiance of the discs in their direction, weighted where rays are sent to them too.
+ * Knows: discs.cl, lamps_direct.cl, path.cl.   Does not know: the rest of the sky. */
+#if EFFECT_DISCS
+#if SAMPLES_DISCS
+/* As lamp_hit_weight. Discs that overlap are lamps of their own: each weighs by what would have chosen it. */
+static vreal disc_hit_weight(const Path *path, __global const real *disc, vbool hit) {
+    vbool shared = hit & vbool_of_uint(path->lobe.kind != splat_uint(LOBE_NONE));
+    if (!any_lane(shared)) return splat(1);
+    const vreal probability = disc_probability(disc, &path->lobe, path->lamp_sum);
+    shared = shared & (probability > splat(0));
+    const vreal ratio = density_ratio(&path->lobe, path->direction, 1, splat(disc[DISC_CAP]),
+                                      choose(shared, probability, splat(1)));
+    const vreal square = ratio * ratio;
+    return choose(shared, square / (splat(1) + square), splat(1));
+}
+#endif
+
+/* Of the lanes that have `escaped`. */
+static Vec3 discs_radiance(const Scene *scene, const Path *path, vbool escaped) {
+    const uint count = disc_count(scene);
+    const vbool scattered = vbool_of_uint(path->depth > splat_uint(1));
+    Vec3 sum = zero3();
+    for (uint i = 0; i < count; ++i) {
+        __global const real *disc = scene->discs + i * DISC_REALS;
+        const vbool seen = disc[DISC_SEEN] > 0 ? escaped : escaped & scattered;
+        const vbool hit = seen & disc_contains(disc, path->direction);
+        if (!any_lane(hit)) continue;
+        Vec3 radiance = splat3(disc + DISC_RADIANCE);
+#if SAMPLES_DISCS
+        radiance = scale3(disc_hit_weight(path, disc, hit), radiance);
+#endif
+        sum = choose3(hit, add3(sum, radiance), sum);
+    }
+    return sum;
+}
+#endif
