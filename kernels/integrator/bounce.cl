@@ -16,11 +16,10 @@ static void trace_bounce(const Scene *scene, Path *path) {
 
     const vbool escaped = moving & vbool_not(met);
     if (any_lane(escaped)) {
-        Vec3 sky = sky_radiance(scene->sky, path->direction);
+        Vec3 light = multiply3(path->throughput, sky_radiance(scene->sky, path->direction));
 #if EFFECT_DISCS
-        sky = add3(sky, discs_radiance(scene, path, escaped));
+        light = add3(light, multiply3(path->throughput, discs_radiance(scene, path, escaped)));
 #endif
-        const Vec3 light = multiply3(path->throughput, sky);
         path->radiance = choose3(escaped, add3(path->radiance, light), path->radiance);
         path->alive = path->alive & vbool_not(escaped);
     }

@@ -12,8 +12,7 @@ static vreal disc_hit_weight(const Path *path, __global const real *disc, vbool 
     shared = shared & (probability > splat(0));
     const vreal ratio = density_ratio(&path->lobe, path->direction, 1, splat(disc[DISC_CAP]),
                                       choose(shared, probability, splat(1)));
-    const vreal square = ratio * ratio;
-    return choose(shared, square / (splat(1) + square), splat(1));
+    return weight_of_hit(shared, ratio);
 }
 #endif
 

@@ -16,6 +16,12 @@ static vreal density_ratio(const Lobe *lobe, Vec3 direction, int drawn, vreal ca
     return at_most(scatter_pdf(lobe, direction, drawn) * solid_angle / probability, splat(RATIO_MAX));
 }
 
+/* The weight of the radiance of a lamp that a path has hit, where rays are sent to it too. */
+static vreal weight_of_hit(vbool shared, vreal ratio) {
+    const vreal square = ratio * ratio;
+    return choose(shared, square / (splat(1) + square), splat(1));
+}
+
 #if SAMPLES_LAMP_TREE
 /* The weight of the radiance of a lamp in `slot` that the path has hit; `hit`: these lanes have, from outside. */
 static vreal lamp_hit_weight(const Scene *scene, const Path *path, vuint slot, const Sphere *sphere, vbool hit) {
@@ -26,11 +32,10 @@ static vreal lamp_hit_weight(const Scene *scene, const Path *path, vuint slot, c
     const vreal probability = lamp_probability(scene, &path->origin, &path->lobe, path->lamp_sum, slot, shared);
     shared = shared & (probability > splat(0));
     const vreal ratio = density_ratio(&path->lobe, path->direction, 1, cone.cap, choose(shared, probability, splat(1)));
-    const vreal square = ratio * ratio;
-    return choose(shared, square / (splat(1) + square), splat(1));
+    return weight_of_hit(shared, ratio);
 }
 
-static Vec3 radiance_of_slot(const Scene *scene, vuint slot) {
+static Vec3 radiance_of_sphere(const Scene *scene, vuint slot) {
     const vuint numbers = gather_uint(scene->slot_material, slot) * MATERIAL_REALS;
     return vec3(gather_real(scene->materials, numbers + MATERIAL_EMIT),
                 gather_real(scene->materials, numbers + (MATERIAL_EMIT + 1u)),
@@ -67,14 +72,14 @@ static vuint first_seen(const Scene *scene, const Ray *ray, const LampChoice *ch
 }
 
 /* Of a sphere in a slot, or of a disc. */
-static Vec3 radiance_of_lamp(const Scene *scene, vuint slot) {
+static Vec3 radiance_of_slot(const Scene *scene, vuint slot) {
 #if !SAMPLES_DISCS
-    return radiance_of_slot(scene, slot);
+    return radiance_of_sphere(scene, slot);
 #else
     const vbool disc = vbool_of_uint(slot >= splat_uint(DISC_SLOT));
     Vec3 radiance = zero3();
 #if SAMPLES_LAMP_TREE
-    radiance = radiance_of_slot(scene, choose_uint(disc, splat_uint(0), slot));
+    radiance = radiance_of_sphere(scene, choose_uint(disc, splat_uint(0), slot));
 #endif
     if (!any_lane(disc)) return radiance;
     const vuint place = choose_uint(disc, slot - splat_uint(DISC_SLOT), splat_uint(0)) * DISC_REALS + DISC_RADIANCE;
@@ -136,7 +141,7 @@ static void light_vertices(const Scene *scene, Path *path) {
     const vbool visible = active & vbool_of_uint(path->seen_slot == choice.slot);
     if (!any_lane(visible)) return;
     const vreal weight = ratio / fma(ratio, ratio, splat(1));
-    const Vec3 light = multiply3(path->throughput, scale3(weight, radiance_of_lamp(scene, choice.slot)));
+    const Vec3 light = multiply3(path->throughput, scale3(weight, radiance_of_slot(scene, choice.slot)));
     path->radiance = choose3(visible, add3(path->radiance, light), path->radiance);
 }
 #endif

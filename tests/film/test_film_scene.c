@@ -70,6 +70,43 @@ static void bound_and_scale(void **state) {
     free_scene(&scene);
 }
 
+static BpDisc disc(double x, double y, double half_angle, double radiance) {
+    return (BpDisc){.direction = {x, y, 0},
+                    .half_angle_degrees = half_angle,
+                    .radiance = {radiance, radiance / 2, 0},
+                    .visible_to_camera = true};
+}
+
+static double bound_of(const BpScene *scene, BpLamps lamps) {
+    return bp_scene_radiance_bound(scene, 50, lamps);
+}
+
+/* Discs that share a direction add up, with the sky behind them; others do not. */
+static void discs_add_up(void **state) {
+    (void)state;
+    BpScene scene = make_scene();
+    scene.discs[0] = disc(1, 0, 10, 100);
+    scene.discs[1] = disc(1, 0.2, 10, 1000);
+    scene.discs[2] = disc(-3, 0, 10, 500);
+    scene.disc_count = 1;
+    assert_true(fabs(bound_of(&scene, BP_LAMPS_OFF) - 101) <= 1e-9);
+    scene.disc_count = 3;
+    assert_true(fabs(bound_of(&scene, BP_LAMPS_OFF) - 1101) <= 1e-9);
+    scene.discs[2].half_angle_degrees = 90;
+    assert_true(fabs(bound_of(&scene, BP_LAMPS_OFF) - 1101) <= 1e-9);
+    scene.discs[1].half_angle_degrees = 90;
+    assert_true(fabs(bound_of(&scene, BP_LAMPS_OFF) - 1601) <= 1e-9);
+    scene.discs[0].direction[0] = 1e12; /* of any length */
+    assert_true(fabs(bound_of(&scene, BP_LAMPS_OFF) - 1601) <= 1e-9);
+    /* A ray to a disc brings half of its radiance at most, dimmed by the albedo, again at each vertex. */
+    const double albedo = 0.75; /* the largest of what is lit */
+    double most = 1601, through = albedo;
+    for (int vertex = 1; vertex < 50; vertex++, through *= albedo) most += 0.5 * 1000 * through;
+    assert_true(bound_of(&scene, BP_LAMPS_ON) >= most && bound_of(&scene, BP_LAMPS_ON) <= 1.5 * most);
+    assert_true(ldexp(most, bp_film_scale(&scene, 50, BP_LAMPS_ON)) <= 0x1p38);
+    free_scene(&scene);
+}
+
 /* Where a surface both emits and scatters, light can come again at every bounce. */
 static void emitters_that_scatter_add_up(void **state) {
     (void)state;
@@ -149,6 +186,7 @@ static void the_hash_keeps_to_the_meaning(void **state) {
     SAME(again.spheres[0].radius = -0.5);          /* matt, inside out */
     SAME(again.materials[3].refraction_index = 2); /* of a lamp */
     SAME(again.albedos[0][0] = 0.5f);              /* nobody's colour */
+    SAME(again.discs[0].half_angle_degrees = 3);   /* there is no disc */
     /* The same material under another number. */
     SAME((again.materials[5] = again.materials[1], again.spheres[1].material = 5));
     /* A colour of the sphere's own that is the material's. */
@@ -191,6 +229,13 @@ static void the_hash_sees_every_change(void **state) {
     SEEN(scene.camera.pixel_sampling = BP_PIXEL_CENTER);
     SEEN(scene.background_bottom[1] = 0.5);
     SEEN(scene.background_top[1] = 0.5);
+    SEEN((scene.discs[0] = disc(1, 0, 10, 100), scene.disc_count = 1));
+    SEEN((scene.discs[0] = disc(1, 1, 10, 100), scene.disc_count = 1));
+    SEEN((scene.discs[0] = disc(1, 0, 11, 100), scene.disc_count = 1));
+    SEEN((scene.discs[0] = disc(1, 0, 10, 101), scene.disc_count = 1));
+    SEEN((scene.discs[0] = disc(1, 0, 10, 100), scene.disc_count = 1,
+          scene.discs[0].visible_to_camera = false));
+    SEEN((scene.discs[0] = disc(1, 0, 10, 100), scene.discs[1] = scene.discs[0], scene.disc_count = 2));
     SEEN(scene.sphere_count = 5);
     SEEN(scene.spheres[0].center[1] = 5e-324);
     SEEN(scene.spheres[0].radius = 0.25);
@@ -216,6 +261,7 @@ static void the_hash_sees_every_change(void **state) {
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(bound_and_scale),
+        cmocka_unit_test(discs_add_up),
         cmocka_unit_test(emitters_that_scatter_add_up),
         cmocka_unit_test(no_path_is_brighter),
         cmocka_unit_test(extreme_scales_stay_floats),

@@ -574,7 +574,3 @@ def case_35(_):
 
 
 NUMBERED = {int(name[-2:]): function for name, function in sorted(globals().items()) if name.startswith("case_")}
-
-
-def of_number(number, folder):
-    return list(NUMBERED[number](pathlib.Path(folder)))

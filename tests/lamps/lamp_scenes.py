@@ -185,9 +185,34 @@ def walls(draw):
                     sphere((2.4, 1.2, -3), 0.7, "x"), sphere((1, 0.6, 1.5), 0.1, "x")])
 
 
+def disc(direction, half_angle, radiance, **more):
+    return {"direction": list(direction), "half_angle": half_angle, "radiance": list(radiance), **more}
+
+
+def discs(draw):
+    """A sun, a soft box and a wide glow, which overlap, over every lobe; and a lamp."""
+    scene = lobes(draw)
+    scene["spheres"] = scene["spheres"][:5] + [sphere((0.9, 0.3, 1.8), 0.25, "steel"), sphere((-0.9, 0.3, 1.8), 0.3, "glass")]
+    scene["materials"].update(steel=metal(0.2, (0.9, 0.8, 0.7)), glass=glass())
+    scene["background"] = {"bottom": [0.1, 0.05, 0.02], "top": [0.02, 0.05, 0.2],
+                           "discs": [disc((1, 2, 1), 5, (60, 50, 40)), disc((-2, 1, 1), 20, (1, 2, 4), visible_to_camera=False),
+                                     disc((1, 1.5, 1), 40, (0.3, 0.6, 0.3)), disc((0, 0.1, -1), 30, (0.5, 0.2, 0.1))]}
+    return scene
+
+
+def many_discs(draw):
+    """As many discs as there may be, and a crowd of spheres with lamps among them."""
+    scene = crowd(draw)
+    scene["background"] = {"bottom": [0, 0, 0], "top": [0.1, 0.1, 0.1], "discs": [
+        disc([draw.gauss(0, 1) for _ in range(3)], 10 ** draw.uniform(0.3, 1.6), [10 ** draw.uniform(-1.5, 1) for _ in range(3)],
+             visible_to_camera=i % 3 > 0) for i in range(32)]}
+    return scene
+
+
 GENERATED = {"lobes": lobes, "metals": metals, "caustics": caustics, "sunken": sunken, "embers": embers, "crowd-of-lamps": crowd,
              "sparks": sparks, "shallow": shallow, "room": room, "twins": twins, "inside": inside, "sun": sun,
-             "crowd-x1e6": resized(1e6), "crowd-x1e-6": resized(1e-6), "lens": lens, "spread": spread, "walls": walls}
+             "crowd-x1e6": resized(1e6), "crowd-x1e-6": resized(1e-6), "lens": lens, "spread": spread, "walls": walls,
+             "discs": discs, "many-discs": many_discs}
 
 
 def generated(name):
@@ -203,8 +228,10 @@ def has_lamp(scene):
     def holds(shell, other):
         return math.dist(shell["center"], other["center"]) + abs(other["radius"]) <= abs(shell["radius"])
 
+    background = scene.get("background", {})
+    discs = background.get("discs", []) if isinstance(background, dict) else []
     lamps = [each for each in lamps if len(spheres) < 2 or not all(each is other or holds(each, other) for other in spheres)]
-    return bool(lamps) and any(each["type"] == "lambertian" or each.get("fuzz", 0) >= 1 / 64 for each in used)
+    return bool(lamps or discs) and any(each["type"] == "lambertian" or each.get("fuzz", 0) >= 1 / 64 for each in used)
 
 
 def in_files(source):

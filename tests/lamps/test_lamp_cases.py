@@ -1,4 +1,5 @@
-"""Hard cases of light sampling through the real program, with sampling and without (cases.py has the scenes).
+"""Hard cases of light sampling through the real program, with sampling and without (cases.py and
+disc_cases.py have the scenes).
 
     test_lamp_cases.py PROGRAM SOURCE_DIR [--deep] [--on] [NUMBER...]
 
@@ -22,6 +23,7 @@ import sys
 import tempfile
 
 import cases
+import disc_cases
 from pfm import read_pfm
 
 Z_MAX = 5.2
@@ -117,13 +119,14 @@ def run_case(bench, case, on_alone=False):
 
 def main():
     program, _, *rest = sys.argv[1:]
+    numbered = {**cases.NUMBERED, **disc_cases.NUMBERED}
     deep, on_alone = "--deep" in rest, "--on" in rest
-    numbers = [int(word) for word in rest if not word.startswith("--")] or sorted(cases.NUMBERED)
+    numbers = [int(word) for word in rest if not word.startswith("--")] or sorted(numbered)
     failures = count = 0
     with tempfile.TemporaryDirectory(prefix="ballpark-lamps-") as folder:
         bench = Bench(program, pathlib.Path(folder))
         for number in numbers:
-            for case in cases.of_number(number, folder):
+            for case in list(numbered[number](pathlib.Path(folder))):
                 if case.deep != deep or on_alone and case.expected is None:
                     continue
                 count += 1

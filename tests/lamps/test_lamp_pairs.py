@@ -28,7 +28,7 @@ import lamp_scenes
 Z_MAX = 5.2
 ROUNDING = 2e-5
 BLOCKS = (3, 2)
-QUICK = ["lamps", "metals", "crowd-of-lamps", "twins"]
+QUICK = ["lamps", "metals", "crowd-of-lamps", "twins", "discs"]
 QUICK_DARK = ["v4-10-lambertian", "v1-red-sphere"]
 # Where chance varies in fewer pixels than these, it found too little to say how much it missed.
 LIVELY = 30

@@ -122,7 +122,13 @@ static void lamps_in_a_crowd(void **state) {
     check_scene("tests/agree/scenes/crowd.json", sizeof variations / sizeof variations[0]);
 }
 
+static void discs_of_the_sky(void **state) {
+    (void)state;
+    check_scene("tests/agree/scenes/discs.json", sizeof variations / sizeof variations[0]);
+}
+
 int main(void) {
-    const struct CMUnitTest tests[] = {cmocka_unit_test(a_few_lamps), cmocka_unit_test(lamps_in_a_crowd)};
+    const struct CMUnitTest tests[] = {cmocka_unit_test(a_few_lamps), cmocka_unit_test(lamps_in_a_crowd),
+                                       cmocka_unit_test(discs_of_the_sky)};
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

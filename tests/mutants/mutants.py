@@ -25,7 +25,7 @@ def test(program, layer):
 
 
 def lamp_cases(*numbers):
-    """Cases of tests/lamps/cases.py, by their numbers, with lamps on."""
+    """Cases of tests/lamps/cases.py and disc_cases.py, by their numbers, with lamps on."""
     return Script("tests/lamps/test_lamp_cases.py", ("--on", *map(str, numbers)), "9 lamps")
 
 
@@ -396,6 +396,39 @@ MUTANTS = [
     Mutant("the sums do not expect lamp rays", "a path may be brighter than by chance: the scale's bit forgotten",
            [patch("host/film/film_scene.c", "if (lamps == BP_LAMPS_OFF || max_depth < 2) return by_chance;",
                   "if (lamps != BP_LAMPS_OFF || max_depth < 2) return by_chance;")], [test("test_lamp_bound", "1 exact")]),
+    # ---- discs in the sky ------------------------------------------------------------------------------------
+    Mutant("discs hit count whole", "no weight at hits: sampled and hit, twice the light",
+           [patch(KERNEL, "radiance = scale3(disc_hit_weight(path, disc, hit), radiance);", "(void)0;")], [lamp_cases(51)]),
+    Mutant("a disc's probability without the tree", "choosing among discs and tree, asking among discs",
+           [patch(KERNEL, "choice.sum = tree + discs;", "choice.sum = discs;")], [lamp_cases(58)]),
+    Mutant("the number that chose a disc is used again as it is", "no remapping to [0, 1)",
+           [patch(KERNEL, "const vreal rest = fma(refill, choice.sum, target - chosen_below) / choose(some, chosen, splat(1));",
+                  "const vreal rest = number + splat(0) * refill * chosen_below;")], [lamp_cases(57)]),
+    Mutant("a disc's cone by 1 - cos", "bits lost for narrow cones",
+           [patch(PACK, ".cap = 2 * s * s,", ".cap = 1 - cos(half),")], [test("test_pack_layout", "1 exact")]),
+    Mutant("a disc's rim by the sine", "the distance of directions taken for the distance from the axis",
+           [patch(PACK, ".chord2 = 4 * s * s,", ".chord2 = sin(half) * sin(half),")], [lamp_cases(52)]),
+    Mutant("the camera sees hidden discs", "a member that says nothing",
+           [patch(KERNEL, "disc[DISC_SEEN] > 0 ? escaped : escaped & scattered;", "disc[DISC_SEEN] >= 0 ? escaped : scattered;")],
+           [lamp_cases(54)]),
+    Mutant("mirrors do not show hidden discs", "hidden from all for hidden from the camera",
+           [patch(KERNEL, "path->depth > splat_uint(1));", "path->depth > splat_uint(2));")], [lamp_cases(60)]),
+    Mutant("what stands far before a disc hides nothing", "a ray to infinity that ends",
+           [patch(KERNEL, "cone->tangent = choose(chosen, splat(REAL_LARGE), cone->tangent);",
+                  "cone->tangent = choose(chosen, splat(1), cone->tangent);")], [lamp_cases(56)]),
+    Mutant("the last of overlapping discs alone", "discs in front of each other, not added",
+           [patch(KERNEL, "sum = choose3(hit, add3(sum, radiance), sum);", "sum = choose3(hit, radiance, sum);")], [lamp_cases(57)]),
+    Mutant("the radiance of the first disc for all", "an index forgotten",
+           [patch(KERNEL, "slot - splat_uint(DISC_SLOT), splat_uint(0)) * DISC_REALS", "splat_uint(0), splat_uint(0)) * DISC_REALS")],
+           [lamp_cases(57)]),
+    Mutant("discs without the way there", "light from a disc without the throughput",
+           [patch(KERNEL, "multiply3(path->throughput, discs_radiance(scene, path, escaped))", "discs_radiance(scene, path, escaped)")],
+           [lamp_cases(52)]),
+    Mutant("the sums do not expect discs that overlap", "the brightest disc alone sets the scale",
+           [patch("host/film/film_scene.c", "brightest += discs_together(scene);", "brightest = fmax(brightest, discs_together(scene));")],
+           [test("test_film_scene", "1 exact")]),
+    Mutant("the film's hash forgets discs", "samples of another sky are merged",
+           [patch("host/film/film_scene.c", "hash = mix_real(hash, disc->half_angle_degrees);", "")], [test("test_film_scene", "1 exact")]),
     # ---- verdicts ------------------------------------------------------------------------------------------
     Mutant("what is not rejected agrees", "classic: no evidence of a difference taken for equality",
            [patch("host/check/verdict.c", "verdict->shown_within <= margin ? BP_AGREE : BP_INCONCLUSIVE;", "BP_AGREE;")],

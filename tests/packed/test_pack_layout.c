@@ -61,6 +61,36 @@ static void camera_along_minus_z(void **state) {
     bp_packed_clear(&packed);
 }
 
+/* A disc: a unit direction, and what its half angle means, without the bits that 1 - cos loses. */
+static void discs(void **state) {
+    (void)state;
+    for (int single = 0; single < 2; ++single) {
+        BpScene scene = empty_scene();
+        BpPacked packed;
+        scene.disc_count = 3;
+        scene.discs[0] = (BpDisc){{0, 3e10, 4e10}, 1e-4, {8, 4, 2}, true};
+        scene.discs[1] = (BpDisc){{0, 0, -1e-20}, 90, {1, 1, 1}, false};
+        scene.discs[2] = (BpDisc){{1, 0, 0}, 30, {0, 0, 0}, true};
+        pack(&scene, single, &packed);
+        double v[36];
+        for (size_t i = 0; i < 36; ++i) v[i] = bp_reals_load(packed.discs, single, i);
+        const double e = single ? 1e-7 : 1e-15, small = 1e-4 * 3.14159265358979323846 / 180;
+        const double brightest = 0.2126 * 8 + 0.7152 * 4 + 0.0722 * 2;
+        assert_int_equal(packed.disc_count, 3);
+        assert_int_equal((int)bp_reals_load(packed.sky, single, 7), 3);
+        assert_true(fabs(v[0]) <= e && fabs(v[1] - 0.6) <= e && fabs(v[2] - 0.8) <= e);
+        assert_true(fabs(v[3] / (small * small / 2) - 1) <= 1e-11 + 2 * e);
+        assert_true(v[4] >= 8 && v[4] <= 8 && v[5] >= 4 && v[5] <= 4 && v[6] >= 2 && v[6] <= 2);
+        assert_true(fabs(v[7] / (small * small) - 1) <= 1e-11 + 2 * e); /* its luminance is the unit */
+        assert_true(fabs(v[8] / small - 1) <= 1e-11 + 2 * e && v[10] > 0);
+        assert_true(fabs(v[9] / (small * small) - 1) <= 1e-11 + 2 * e);
+        assert_true(fabs(v[12 + 2] + 1) <= e && fabs(v[12 + 3] - 1) <= e && fabs(v[12 + 9] - 2) <= 2 * e);
+        assert_true(fabs(v[12 + 7] - 1 / brightest) <= e && !(v[12 + 10] > 0));
+        assert_true(fabs(v[24 + 8] - 0.5) <= e && !(fabs(v[24 + 7]) > 0));
+        bp_packed_clear(&packed);
+    }
+}
+
 /* From (-2,2,1) at the point (0,0,-1), as the book looks at its spheres; far from the origin nothing changes.
  */
 static void camera_anywhere(void **state) {
@@ -263,6 +293,7 @@ static void nothing_at_all(void **state) {
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(camera_along_minus_z), cmocka_unit_test(camera_anywhere),
+        cmocka_unit_test(discs),
         cmocka_unit_test(extreme_vup),          cmocka_unit_test(materials_and_looks),
         cmocka_unit_test(camera_on_a_sphere),   cmocka_unit_test(nothing_at_all),
     };

@@ -22,14 +22,18 @@ typedef struct EffectsScene {
     BpSphere spheres[48];
 } EffectsScene;
 
-/* Lamps are sampled where something emits and something is lit, unless an option says no. */
+/* Lamps are sampled where something emits, or discs do, and something is lit, unless an option says no. */
 static inline bool effects_light(uint32_t bits) {
-    return bp_effects_has(bits, BP_EFFECT_EMISSION) &&
+    return (bits & (EFFECT_BIT(EMISSION) | EFFECT_BIT(DISCS))) != 0 &&
            (bits & (EFFECT_BIT(LAMBERTIAN) | EFFECT_BIT(METAL))) != 0;
 }
 
-/* A tree needs spheres, and spheres need a material. With a tree, lamps are sampled where they can be. */
+/* A tree needs spheres, and spheres need a material. With a tree, lamps are sampled where they can be. Discs
+ * have no code in common with lens and normals, so with them both occur, or neither. */
 static inline bool effects_can_occur(uint32_t bits, bool tree) {
+    if (bp_effects_has(bits, BP_EFFECT_DISCS) &&
+        bp_effects_has(bits, BP_EFFECT_LENS) != bp_effects_has(bits, BP_EFFECT_NORMALS))
+        return false;
     if (bp_effects_has(bits, BP_EFFECT_LAMPS) ? !effects_light(bits) : tree && effects_light(bits))
         return false;
     return (bits & MATERIAL_EFFECTS) != 0 || !tree;
@@ -126,6 +130,11 @@ static inline void effects_scene(EffectsScene *made, uint32_t bits, bool tree) {
         scene->background_top[c] =
             scene->background_bottom[c] - (bits % 3 != 0 ? 0.4 : 0); /* most are gradients */
     }
+    /* They overlap, and the camera sees the second, or would. */
+    scene->disc_count = bp_effects_has(bits, BP_EFFECT_DISCS) ? 3 : 0;
+    scene->discs[0] = (BpDisc){{1, 2, 0.5}, 3, {40, 30, 20}, true};
+    scene->discs[1] = (BpDisc){{0.1, 0.2, -1}, 12, {0.5, 1, 2}, bits % 2 == 0};
+    scene->discs[2] = (BpDisc){{0, 1, -0.5}, 60, {0.1, 0.3, 0.2}, true};
     effects_materials(made, bits);
     effects_spheres(made, tree);
 }

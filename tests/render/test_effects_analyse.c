@@ -78,8 +78,9 @@ static void material_effects(void **state) {
     const BpMaterial pair[] = {brushed, lamp};
     assert_int_equal(analyse(pair, 2, 2, 2, 0, 1).bits, BIT(METAL) | BIT(EMISSION) | BIT(LAMPS));
     const BpMaterial all[] = {grey, steel, glass, ember, debug};
-    assert_int_equal(analyse(all, 5, 5, BP_LIST_SPHERES_MAX + 1, 0.1, 0.5).bits, BP_EFFECTS_ALL);
-    assert_int_equal(analyse(all, 5, 5, 5, 0, 1).bits, BP_EFFECTS_ALL & ~BIT(LENS));
+    assert_int_equal(analyse(all, 5, 5, BP_LIST_SPHERES_MAX + 1, 0.1, 0.5).bits,
+                     BP_EFFECTS_ALL & ~BIT(DISCS));
+    assert_int_equal(analyse(all, 5, 5, 5, 0, 1).bits, BP_EFFECTS_ALL & ~BIT(LENS) & ~BIT(DISCS));
 }
 
 static void only_materials_in_use_count(void **state) {
@@ -155,6 +156,47 @@ static void reasons_a_person_understands(void **state) {
     assert_string_equal(effects.reason[BP_EFFECT_LAMBERTIAN], "no spheres: the picture is the sky");
 }
 
+/* A scene of one sphere, and discs in the sky, of which the first `dark` bring nothing. */
+static BpEffects analyse_discs(const BpMaterial *material, size_t discs, size_t dark) {
+    BpMaterial copy = *material;
+    BpSphere sphere = {.radius = 1, .albedo = BP_NO_ALBEDO};
+    BpEffects effects;
+    BpScene scene = {.camera = {.focus_dist = 10},
+                     .materials = &copy,
+                     .material_count = 1,
+                     .spheres = &sphere,
+                     .sphere_count = 1,
+                     .disc_count = discs};
+    for (size_t i = 0; i < discs; ++i)
+        scene.discs[i] = (BpDisc){{0, 1, 0}, 1, {0, 0, i < dark ? 0 : 1}, true};
+    bp_effects_analyse(&scene, &effects);
+    return effects;
+}
+
+static void discs(void **state) {
+    (void)state;
+    BpEffects effects = analyse_discs(&grey, 0, 0);
+    assert_int_equal(effects.bits, BIT(LAMBERTIAN));
+    assert_string_equal(effects.reason[BP_EFFECT_DISCS], "the background has no discs");
+    assert_string_equal(effects.reason[BP_EFFECT_LAMPS], "no sphere gives light, and no disc of the sky");
+    effects = analyse_discs(&grey, 2, 1);
+    assert_int_equal(effects.bits, BIT(LAMBERTIAN) | BIT(LAMPS) | BIT(DISCS));
+    assert_string_equal(effects.reason[BP_EFFECT_DISCS], "2 discs in the background");
+    assert_string_equal(effects.reason[BP_EFFECT_LAMPS], "1 disc, and 1 sphere to be lit");
+    effects = analyse_discs(&grey, 1, 1);
+    assert_int_equal(effects.bits, BIT(LAMBERTIAN));
+    assert_string_equal(effects.reason[BP_EFFECT_DISCS], "1 disc in the background, but without light");
+    /* Mirrors and glass show it, but send no rays there. */
+    effects = analyse_discs(&glass, 1, 0);
+    assert_int_equal(effects.bits, BIT(DIELECTRIC) | BIT(DISCS));
+    assert_string_equal(effects.reason[BP_EFFECT_LAMPS],
+                        "1 disc, but no matte surface and no metal with a fuzz of 1/64 or more");
+    /* The one lamp cannot light itself, but the disc can light it. */
+    effects = analyse_discs(&ember, 3, 0);
+    assert_int_equal(effects.bits, BIT(LAMBERTIAN) | BIT(EMISSION) | BIT(LAMPS) | BIT(DISCS));
+    assert_string_equal(effects.reason[BP_EFFECT_LAMPS], "1 lamp and 3 discs, and 1 sphere to be lit");
+}
+
 static void one_list_names_them(void **state) {
     (void)state;
     assert_string_equal(bp_effect_name(BP_EFFECT_DIELECTRIC), "dielectric");
@@ -173,6 +215,7 @@ int main(void) {
         cmocka_unit_test(camera_and_sky),
         cmocka_unit_test(a_tree_above_32_spheres),
         cmocka_unit_test(reasons_a_person_understands),
+        cmocka_unit_test(discs),
         cmocka_unit_test(one_list_names_them),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

@@ -113,6 +113,18 @@ static void without_metal(EffectsScene *made, BpRenderOptions *options) {
             made->spheres[i].material = 0;
 }
 
+static void without_discs(EffectsScene *made, BpRenderOptions *options) {
+    (void)options;
+    made->scene.disc_count = 0;
+}
+static void other_discs(EffectsScene *made, BpRenderOptions *options) {
+    (void)options;
+    made->scene.disc_count = 1;
+    made->scene.discs[0].direction[0] = -1;
+    made->scene.discs[0].half_angle_degrees = 45;
+    made->scene.discs[0].visible_to_camera = false;
+}
+
 static void a_list(EffectsScene *made, BpRenderOptions *options) {
     (void)made;
     options->force_list = true;
@@ -136,10 +148,12 @@ static void only_other_effects_build(void **state) {
         {"without lens", without_lens, true},
         {"without metal", without_metal, true},
         {"a list", a_list, true},
+        {"other discs", other_discs, false},
+        {"without discs", without_discs, true},
     };
     const bool pocl = strcmp(device->platform, "Portable Computing Language") == 0;
     const uint32_t bits = EFFECT_BIT(LAMBERTIAN) | EFFECT_BIT(METAL) | EFFECT_BIT(DIELECTRIC) |
-                          EFFECT_BIT(EMISSION) | EFFECT_BIT(LENS);
+                          EFFECT_BIT(EMISSION) | EFFECT_BIT(LENS) | EFFECT_BIT(DISCS);
     static EffectsScene made;
     BpRenderOptions options;
     effects_scene(&made, bits, true);

@@ -34,6 +34,7 @@ MARKS = {
     "NORMALS": ["shows_normal"],
     "LENS": ["lens_x", "->lens_up", "sample_disk(u"],
     "LAMPS": [],  # NEEDING_OTHERS
+    "DISCS": ["disc_contains", "discs_radiance"],
     "TREE": ["BoxRay", "leaf_children"],  # no effect, but looked for in the same way
 }
 # Code that several effects share.
@@ -42,10 +43,11 @@ SHARED = {
     "surface->variant = ": {"METAL", "DIELECTRIC"},
     "throughput, emitted": {"EMISSION", "NORMALS"},
 }
-# Code that needs all of the effects named, and one of the set.
+# Code that needs LAMPS, something to be lit, and one of the effects named.
+LIT = {"LAMBERTIAN", "METAL"}
 NEEDING_OTHERS = {
-    mark: ("LAMPS", "EMISSION", {"LAMBERTIAN", "METAL"})
-    for mark in ("choose_lamp", "lamp_hit_weight", "wants_lamps", "first_seen")
+    "choose_lamp": {"EMISSION"}, "lamp_hit_weight": {"EMISSION"}, "choose_disc": {"DISCS"}, "disc_hit_weight": {"DISCS"},
+    "wants_lamps": {"EMISSION", "DISCS"}, "first_seen": {"EMISSION", "DISCS"},
 }
 
 
@@ -71,8 +73,8 @@ def complaints(path):
                   for mark in marks if (mark in text) != (name in effects)]
     found += [f"{path.name}: {mark!r} of {sorted(names)} {'is missing' if names & effects else 'is there'}"
               for mark, names in SHARED.items() if (mark in text) != bool(names & effects)]
-    for mark, (*all_of, any_of) in NEEDING_OTHERS.items():
-        needed = set(all_of) <= effects and bool(any_of & effects)
+    for mark, sources in NEEDING_OTHERS.items():
+        needed = "LAMPS" in effects and bool(LIT & effects) and bool(sources & effects)
         if (mark in text) != needed:
             found.append(f"{path.name}: {mark!r} {'is missing' if needed else 'is there'}")
     return found, bits, len(text)

@@ -14,7 +14,7 @@ import tempfile
 from pfm import read_pfm
 
 program, scenes = sys.argv[1], pathlib.Path(sys.argv[2])
-ALL = ["lambertian", "metal", "dielectric", "emission", "normals", "lens", "lamps"]
+ALL = ["lambertian", "metal", "dielectric", "emission", "normals", "lens", "lamps", "discs"]
 
 
 def run(*arguments, code=0):
@@ -51,13 +51,13 @@ if "--measure" in sys.argv:
 
 # A table: every effect once, in or out, with a reason.
 table = run("explain", scenes / "v4-13-metal.json", "--wide").stdout.splitlines()
-rows = {line.split()[0]: line.split(maxsplit=2)[1:] for line in table[1:8]}
+rows = {line.split()[0]: line.split(maxsplit=2)[1:] for line in table[1:9]}
 assert list(rows) == ALL, table
 assert [name for name in ALL if rows[name][0] == "in"] == ["lambertian", "metal"], table
 assert all(rows[name][0] in ("in", "out") and len(rows[name][1]) > 10 for name in ALL), table
 assert "no dielectric among the 4 materials in use" in rows["dielectric"][1]
-assert "2 of 7 effects" in table[8]
-assert table[9].split(maxsplit=2) == ["acceleration", "list", "4 spheres: a list, no tree"], table
+assert "2 of 8 effects" in table[9]
+assert table[10].split(maxsplit=2) == ["acceleration", "list", "4 spheres: a list, no tree"], table
 
 # JSON of all scenes says what the tables say, one entry a scene, in the order given.
 paths = sorted(scenes.glob("*.json"))

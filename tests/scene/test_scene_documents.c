@@ -50,6 +50,14 @@ static void assert_same_scene(const BpScene *a, const BpScene *b) {
     assert_memory_equal(p->vup, q->vup, sizeof p->vup);
     assert_memory_equal(a->background_bottom, b->background_bottom, sizeof a->background_bottom);
     assert_memory_equal(a->background_top, b->background_top, sizeof a->background_top);
+    assert_int_equal(a->disc_count, b->disc_count);
+    for (size_t i = 0; i < a->disc_count; i++) {
+        const BpDisc *d = &a->discs[i], *e = &b->discs[i];
+        assert_memory_equal(d->direction, e->direction, sizeof d->direction);
+        assert_number(d->half_angle_degrees, e->half_angle_degrees);
+        assert_memory_equal(d->radiance, e->radiance, sizeof d->radiance);
+        assert_int_equal(d->visible_to_camera, e->visible_to_camera);
+    }
     assert_int_equal(a->transfer, b->transfer);
     assert_int_equal(a->material_count, b->material_count);
     for (size_t i = 0; i < a->material_count; i++) {
@@ -87,6 +95,7 @@ static void defaults(void **state) {
     assert_int_equal(c->pixel_sampling, BP_PIXEL_SQUARE);
     assert_vector(scene->background_bottom, 1, 1, 1);
     assert_vector(scene->background_top, 0.5, 0.7, 1.0);
+    assert_int_equal(scene->disc_count, 0);
     assert_int_equal(scene->transfer, BP_TRANSFER_GAMMA2);
     BpSceneInfo info;
     bp_scene_info(scene, &info);
@@ -259,6 +268,36 @@ static void every_file(void **state) {
     assert_true(count >= 65);
 }
 
+static void discs_of_the_sky(void **state) {
+    (void)state;
+    BpScene *scene = parse("{ \"camera\": {}, \"background\": { \"bottom\": [0, 0, 0], \"discs\": [\n"
+                           "{ \"direction\": [1, 2, -3], \"half_angle\": 0.25, \"radiance\": [9, 8, 7] },\n"
+                           "{ \"visible_to_camera\": false, \"radiance\": [0.1, 0, 1e12], \"half_angle\": 90, "
+                           "\"direction\": [0, 1e-20, 0] } ] } }");
+    assert_vector(scene->background_bottom, 0, 0, 0);
+    assert_vector(scene->background_top, 0.5, 0.7, 1.0);
+    assert_int_equal(scene->disc_count, 2);
+    const BpDisc *d = scene->discs;
+    assert_vector(d[0].direction, 1, 2, -3);
+    assert_number(d[0].half_angle_degrees, 0.25);
+    assert_vector(d[0].radiance, 9, 8, 7);
+    assert_true(d[0].visible_to_camera);
+    assert_vector(d[1].direction, 0, 1e-20, 0);
+    assert_number(d[1].half_angle_degrees, 90);
+    assert_vector(d[1].radiance, 0.1, 0, 1e12);
+    assert_false(d[1].visible_to_camera);
+    assert_written_reads_back(scene, "discs");
+    /* A scene that was not read is held to the same rules. */
+    BpError err = {0};
+    scene->discs[1].direction[1] = 0;
+    assert_int_equal(bp_scene_validate(scene, &err), BP_ERR_SCENE);
+    assert_non_null(strstr(err.message, "background.discs[1].direction: found no direction"));
+    bp_error_clear(&err);
+    scene->disc_count = BP_DISCS_MAX + 1;
+    assert_int_equal(bp_scene_validate(scene, NULL), BP_ERR_LIMIT);
+    bp_scene_destroy(&scene);
+}
+
 static void every_member_is_written(void **state) {
     (void)state;
     BpScene *scene =
@@ -343,6 +382,7 @@ int main(void) {
         cmocka_unit_test(overlapping_dielectrics),
         cmocka_unit_test(covers),
         cmocka_unit_test(many_spheres),
+        cmocka_unit_test(discs_of_the_sky),
         cmocka_unit_test(every_member_is_written),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

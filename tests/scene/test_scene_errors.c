@@ -224,6 +224,57 @@ static void bad_cameras(void **state) {
     REFUSE_ALL(cases);
 }
 
+#define DISC(members) "{ \"camera\": {}, \"background\": { \"discs\": [ {" members "} ] } }"
+#define ANY_DISC "{ \"direction\": [0, 1, 0], \"half_angle\": 1, \"radiance\": [1, 1, 1] }"
+#define EIGHT_DISCS                                                                                          \
+    ANY_DISC "," ANY_DISC "," ANY_DISC "," ANY_DISC "," ANY_DISC "," ANY_DISC "," ANY_DISC "," ANY_DISC
+
+static void bad_discs(void **state) {
+    (void)state;
+    static const Case cases[] = {
+        {"{ \"camera\": {}, \"background\": { \"discs\": {} } }", 1, 42, {"background.discs: found an object", "a list"}},
+        {"{ \"camera\": {}, \"background\": { \"disks\": [] } }", 1, 33, {"background.disks", "\"discs\""}},
+        {"{ \"camera\": {}, \"background\": { \"discs\": [ 1 ] } }", 1, 44, {"discs[0]: found 1", "half_angle"}},
+        {DISC(""), 1, 44, {"background.discs[0]: found no \"direction\""}},
+        {DISC("\"direction\": [1, 2, 0]"), 1, 44, {"discs[0]: found no \"half_angle\"", "degrees"}},
+        {DISC("\"direction\": [1, 2, 0], \"half_angle\": 1"), 1, 44, {"found no \"radiance\""}},
+        {DISC("\"direction\": [0, 0, 0], \"half_angle\": 1, \"radiance\": [1, 1, 1]"),
+         1,
+         58,
+         {"background.discs[0].direction: found no direction", "such as"}},
+        {DISC("\"direction\": [0, 2e12, 0], \"half_angle\": 1, \"radiance\": [1, 1, 1]"),
+         1,
+         58,
+         {"discs[0].direction: found 2000000000000", "1e12"}},
+        {DISC("\"direction\": [0, NaN, 0], \"half_angle\": 1, \"radiance\": [1, 1, 1]"), 1, 62, {"not JSON"}},
+        {DISC("\"direction\": [0, 1, 0], \"half_angle\": 0, \"radiance\": [1, 1, 1]"),
+         1,
+         83,
+         {"background.discs[0].half_angle: found 0", "from 0.0001 to 90"}},
+        {DISC("\"direction\": [0, 1, 0], \"half_angle\": -1, \"radiance\": [1, 1, 1]"), 1, 83, {"found -1"}},
+        {DISC("\"direction\": [0, 1, 0], \"half_angle\": 90.1, \"radiance\": [1, 1, 1]"), 1, 83, {"found 90.1"}},
+        {DISC("\"direction\": [0, 1, 0], \"half_angle\": 1, \"radiance\": [1, -1, 1]"),
+         1,
+         98,
+         {"discs[0].radiance: found -1", "from 0"}},
+        {DISC("\"direction\": [0, 1, 0], \"half_angle\": 1, \"radiance\": [1, 1, 1], \"visible_to_camera\": 1"),
+         1,
+         130,
+         {"visible_to_camera: found 1", "true or false"}},
+        {"{ \"camera\": {}, \"background\": { \"discs\": [" ANY_DISC ",\n{ \"direction\": [0, 1, 0],\n\"half_angle\": "
+         "91, \"radiance\": [1, 1, 1] } ] } }",
+         3,
+         15,
+         {"background.discs[1].half_angle: found 91"}},
+        {"{ \"camera\": {}, \"background\": { \"discs\": [" EIGHT_DISCS "," EIGHT_DISCS "," EIGHT_DISCS
+         "," EIGHT_DISCS "," ANY_DISC "] } }",
+         1,
+         42,
+         {"background.discs: found 33 discs", "at most 32"}},
+    };
+    REFUSE_ALL(cases);
+}
+
 #define MATERIAL(members) "{ \"camera\": {}, \"materials\": { \"m\": { " members " } } }"
 
 static void bad_materials(void **state) {
@@ -394,6 +445,7 @@ int main(void) {
         cmocka_unit_test(bad_materials),    cmocka_unit_test(bad_spheres),
         cmocka_unit_test(bad_clouds),       cmocka_unit_test(deep_nesting),
         cmocka_unit_test(long_names),       cmocka_unit_test(not_a_file),
+        cmocka_unit_test(bad_discs),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
