@@ -103,9 +103,10 @@ typedef struct PackedMaterialKind {
  * each of centre x, y, z, radius and power. A child of positive radius is a lamp, and its word is CHILD_LEAF
  * and the lamp's slot; one of negative radius is a node, whose lamps lie in a ball of the radius without its
  * sign, and its word is the node's number. Power: the sum of radiance (its luminance) times squared radius,
- * in a unit in which the radiance of no lamp and no disc exceeds 1; an empty child has none. Node 0 is the root. The width and
- * the order are the same for every device, since a picture depends on which lamp is chosen. `slot_lamp`:
- * where the lamp in a slot stands, LAMP_CHILD_BITS bits for each level, the root's in the lowest, or NO_LAMP.
+ * in a unit in which the radiance of no lamp and no disc exceeds 1; an empty child has none. Node 0 is the
+ * root. The width and the order are the same for every device, since a picture depends on which lamp is
+ * chosen. `slot_lamp`: where the lamp in a slot stands, LAMP_CHILD_BITS bits for each level, the root's in
+ * the lowest, or NO_LAMP.
  */
 #define LAMP_WIDTH 8u
 #define LAMP_NODE_REALS (5u * LAMP_WIDTH)
@@ -122,10 +123,10 @@ typedef struct PackedMaterialKind {
  *
  * X(numbers, element, name, count, what): `numbers` is REALS or UINTS, what `element` is made of; `count`
  * says how many elements there are, in terms of `width` (of the tree), `nodes`, `leaf_count`, `slots`,
- * `material_count`, `disc_count`, `lamp_nodes` and `lamp_slots`; `what` is how a message calls it. Arrays of the first list
- * are pack.c's, of the second the tree of lamps', of the third the tree's. Materials are arrays of numbers
- * here, since Mesa's rusticl (22.3) gathers wrong ones through a pointer to structs that is cast inside a
- * loop. */
+ * `material_count`, `disc_count`, `lamp_nodes` and `lamp_slots`; `what` is how a message calls it. Arrays of
+ * the first list are pack.c's, of the second the tree of lamps', of the third the tree's. Materials are
+ * arrays of numbers here, since Mesa's rusticl (22.3) gathers wrong ones through a pointer to structs that is
+ * cast inside a loop. */
 #define MATERIAL_REALS ((packed_uint)(sizeof(PackedMaterial) / sizeof(real)))
 #define MATERIAL_UINTS ((packed_uint)(sizeof(PackedMaterialKind) / sizeof(packed_uint)))
 #define DISC_REALS ((packed_uint)(sizeof(PackedDisc) / sizeof(real)))

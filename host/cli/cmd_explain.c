@@ -104,8 +104,8 @@ static json_t *lamp_ray_json(const BpPathStep *step) {
     json_t *const meets = step->stopped   ? json_integer(step->seen)
                           : step->to_disc ? json_null()
                                           : json_integer(step->lamp);
-    return json_pack("{s:I, s:o, s:o}", step->to_disc ? "disc" : "lamp", (json_int_t)step->lamp, "meets", meets,
-                     "brings", triple(step->lit));
+    return json_pack("{s:I, s:o, s:o}", step->to_disc ? "disc" : "lamp", (json_int_t)step->lamp, "meets",
+                     meets, "brings", triple(step->lit));
 }
 
 /* Adds the numbers of the discs that a segment ends in, where there are any; takes `root` over. */
@@ -134,10 +134,7 @@ static json_t *step_json(const BpScene *scene, const BpPathStep *step) {
                                 step->enters, "goes_on", step->goes_on, "inward", step->inward);
     bool whole = meeting != NULL && json_object_update(root, meeting) == 0;
     json_decref(meeting);
-    if (step->to_lamp)
-        whole =
-            whole && json_object_set_new(root, "lamp_ray",
-                                         lamp_ray_json(step)) == 0;
+    if (step->to_lamp) whole = whole && json_object_set_new(root, "lamp_ray", lamp_ray_json(step)) == 0;
     if (whole) return root;
     json_decref(root);
     return NULL;

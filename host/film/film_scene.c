@@ -10,7 +10,7 @@
 
 #define SAMPLE_BITS 38 /* a sample is at most 2^38 steps; 2^24 of them reach 2^62 */
 #define PI 3.14159265358979323846
-#define SCALE_MAX 126  /* 2^scale and its inverse are normal floats */
+#define SCALE_MAX 126 /* 2^scale and its inverse are normal floats */
 
 static double largest(const double rgb[3]) {
     return fmax(rgb[0], fmax(rgb[1], rgb[2]));
@@ -36,8 +36,8 @@ static double angle_between(const double a[3], const double b[3]) {
     return atan2(across, a[0] * b[0] + a[1] * b[1] + a[2] * b[2]);
 }
 
-/* The radiance of discs that share a direction adds up. In any direction, every two of the discs there overlap,
- * so it is at most that of a disc and all that overlap it. */
+/* The radiance of discs that share a direction adds up. In any direction, every two of the discs there
+ * overlap, so it is at most that of a disc and all that overlap it. */
 static double discs_together(const BpScene *scene) {
     double most = 0;
     for (size_t i = 0; i < scene->disc_count; i++) {

@@ -10,7 +10,8 @@ static BpStatus parse_disc(const BpNode *node, BpDisc *disc, BpError *err) {
     static const char *const names[] = {"direction", "half_angle", "radiance", "visible_to_camera"};
     if (!json_is_object(node->value))
         return bp_node_wrong(
-            node, "an object: { \"direction\": [x, y, z], \"half_angle\": ..., \"radiance\": [r, g, b] }", err);
+            node, "an object: { \"direction\": [x, y, z], \"half_angle\": ..., \"radiance\": [r, g, b] }",
+            err);
     BP_TRY(bp_node_object(node, names, BP_COUNT(names), err));
     BP_TRY(bp_node_require(node, "direction", "\"direction\": [x, y, z], where the disc stands", err));
     BP_TRY(bp_node_require(node, "half_angle", "degrees such as \"half_angle\": 0.25", err));
@@ -29,7 +30,8 @@ static BpStatus parse_disc(const BpNode *node, BpDisc *disc, BpError *err) {
 static BpStatus parse_discs(const BpNode *node, BpScene *scene, BpError *err) {
     BP_TRY(bp_node_list(
         node,
-        "a list of discs: [ { \"direction\": [1, 2, 0], \"half_angle\": 0.25, \"radiance\": [9, 9, 8] } ]", err));
+        "a list of discs: [ { \"direction\": [1, 2, 0], \"half_angle\": 0.25, \"radiance\": [9, 9, 8] } ]",
+        err));
     const size_t count = json_array_size(node->value);
     if (count > BP_DISCS_MAX)
         return bp_node_fail(node, BP_PART_VALUE, err, "found %zu discs, expected at most %u", count,

@@ -1,7 +1,8 @@
 /* scene_parse.c: from the text of a scene document to a BpScene; see scene_parse.h.
  *
  * Knows: the grammar's top level, materials by name, spheres. The rest: scene_camera.c,
- * scene_background.c, scene_material.c, scene_points.c; ranges: scene_validate.c, whose faults are given their place in the text here. */
+ * scene_background.c, scene_material.c, scene_points.c; ranges: scene_validate.c, whose faults are given
+ * their place in the text here. */
 #include "scene_parse.h"
 
 #include "input_file.h"

@@ -49,8 +49,7 @@ static uint32_t material_bits(const BpMaterial *material) {
 #undef EFFECT_OF
     };
     uint32_t bits = 1u << of_kind[material->kind];
-    if (is_bright(material->emit))
-        bits |= 1u << BP_EFFECT_EMISSION;
+    if (is_bright(material->emit)) bits |= 1u << BP_EFFECT_EMISSION;
     return bits;
 }
 
@@ -193,8 +192,7 @@ void bp_effects_analyse(const BpScene *scene, BpEffects *effects) {
     } else {
         snprintf(effects->reason[BP_EFFECT_LENS], size, "defocus_angle 0: the lens is a pinhole");
     }
-    if (explain_discs(scene, size, effects->reason[BP_EFFECT_DISCS]))
-        effects->bits |= 1u << BP_EFFECT_DISCS;
+    if (explain_discs(scene, size, effects->reason[BP_EFFECT_DISCS])) effects->bits |= 1u << BP_EFFECT_DISCS;
     if ((effects->bits & (1u << BP_EFFECT_EMISSION | 1u << BP_EFFECT_DISCS)) == 0)
         snprintf(effects->reason[BP_EFFECT_LAMPS], size,
                  NO_LAMP_REASON); /* without another look at all spheres */

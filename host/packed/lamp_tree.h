@@ -14,10 +14,10 @@
 
 typedef struct BpLampTree {
     uint32_t lamp_count;
-    double unit;             /* of power: of the brightest lamp or disc, 1 over its luminance; 0: all is dark */
-    uint32_t node_count;     /* at least one: the root, without children where there is no lamp */
-    uint32_t slot_count;     /* of the spheres, or 0 where there is no lamp */
-    void *lamps;             /* node_count * LAMP_NODE_REALS reals, in the precision of the spheres' tree */
+    double unit;         /* of power: of the brightest lamp or disc, 1 over its luminance; 0: all is dark */
+    uint32_t node_count; /* at least one: the root, without children where there is no lamp */
+    uint32_t slot_count; /* of the spheres, or 0 where there is no lamp */
+    void *lamps;         /* node_count * LAMP_NODE_REALS reals, in the precision of the spheres' tree */
     uint32_t *lamp_children; /* node_count * LAMP_WIDTH */
     uint32_t *slot_lamp;     /* slot_count */
 } BpLampTree;

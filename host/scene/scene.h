@@ -5,9 +5,9 @@
  *
  * Invariants of every BpScene that reaches another module (bp_scene_validate proves them): all numbers are
  * finite; radius != 0 (negative: inside out); material indices in range; albedo in [0,1]; emit >= 0;
- * 0 <= fuzz <= 1; refraction_index > 0; of discs a direction, and half angles from 1e-4 to 90 degrees; 0 < vfov < 180, and the size of the plane in focus fits a float;
- * lookfrom != lookat; vup not parallel to the view;
- * 1 <= width, height <= BP_PICTURE_SIDE_MAX; no two coincident dielectrics; a pinhole camera on the
+ * 0 <= fuzz <= 1; refraction_index > 0; of discs a direction, and half angles from 1e-4 to 90 degrees; 0 <
+ * vfov < 180, and the size of the plane in focus fits a float; lookfrom != lookat; vup not parallel to the
+ * view; 1 <= width, height <= BP_PICTURE_SIDE_MAX; no two coincident dielectrics; a pinhole camera on the
  * surface of at most one sphere. */
 #ifndef BP_SCENE_SCENE_H
 #define BP_SCENE_SCENE_H
@@ -88,7 +88,8 @@ typedef struct BpCamera {
     double fit_vup[3];        /* as asked for; 0: by the particles' format */
 } BpCamera;
 
-/* A disc in the sky, a lamp at infinity: adds its radiance to that of the background in a cone of directions. */
+/* A disc in the sky, a lamp at infinity: adds its radiance to that of the background in a cone of directions.
+ */
 typedef struct BpDisc {
     double direction[3];       /* to its middle, of any length */
     double half_angle_degrees; /* from there to its rim */
@@ -117,7 +118,7 @@ struct BpScene {
     char *title, *source;
     BpCamera camera;
     double background_bottom[3], background_top[3]; /* by the unit direction's y: -1 bottom, +1 top */
-    BpDisc discs[BP_DISCS_MAX]; /* where they overlap, they add up */
+    BpDisc discs[BP_DISCS_MAX];                     /* where they overlap, they add up */
     size_t disc_count;
     BpTransfer transfer;
     BpMaterial *materials;

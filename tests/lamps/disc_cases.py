@@ -91,7 +91,7 @@ def case_56(_):
     yield Case("a ball in the middle of the disc", under(disc(0.5, 30), materials=black, others=[lamp_at(0.5, 5, 1, material="ball")]),
                lit(whole - hidden))
     yield Case("a ball far away", under(disc(0.5, 30), materials=black, others=[lamp_at(0.5, 5e6, 1e6, material="ball")]),
-               lit(whole - hidden), deep=True)
+               lit(whole - hidden))
     yield Case("a ball that hides the disc", under(disc(0.5, 5), materials=black, others=[lamp_at(0.5, 5, 1, material="ball")]), BLACK,
                exact=True, samples=64)
     yield Case("a ball before its rim", under(disc(0.5, 30), materials=black, others=[lamp_at(0.9, 3, 0.8, material="ball")]), samples=4096)

@@ -292,10 +292,13 @@ static void nothing_at_all(void **state) {
 
 int main(void) {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(camera_along_minus_z), cmocka_unit_test(camera_anywhere),
+        cmocka_unit_test(camera_along_minus_z),
+        cmocka_unit_test(camera_anywhere),
         cmocka_unit_test(discs),
-        cmocka_unit_test(extreme_vup),          cmocka_unit_test(materials_and_looks),
-        cmocka_unit_test(camera_on_a_sphere),   cmocka_unit_test(nothing_at_all),
+        cmocka_unit_test(extreme_vup),
+        cmocka_unit_test(materials_and_looks),
+        cmocka_unit_test(camera_on_a_sphere),
+        cmocka_unit_test(nothing_at_all),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

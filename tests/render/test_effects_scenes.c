@@ -33,6 +33,7 @@ static const struct {
     {"v1-normals-antialiased", "normals"},
     {"v1-normals-ground", "normals"},
     {"lamps", "lambertian metal dielectric emission lamps"},
+    {"studio", "lambertian metal lamps discs"},
     {"v1-red-sphere", "emission"},
     {"v1-sky", ""},
     {"v1-view-distant", "lambertian metal dielectric"},

@@ -270,10 +270,11 @@ static void every_file(void **state) {
 
 static void discs_of_the_sky(void **state) {
     (void)state;
-    BpScene *scene = parse("{ \"camera\": {}, \"background\": { \"bottom\": [0, 0, 0], \"discs\": [\n"
-                           "{ \"direction\": [1, 2, -3], \"half_angle\": 0.25, \"radiance\": [9, 8, 7] },\n"
-                           "{ \"visible_to_camera\": false, \"radiance\": [0.1, 0, 1e12], \"half_angle\": 90, "
-                           "\"direction\": [0, 1e-20, 0] } ] } }");
+    BpScene *scene =
+        parse("{ \"camera\": {}, \"background\": { \"bottom\": [0, 0, 0], \"discs\": [\n"
+              "{ \"direction\": [1, 2, -3], \"half_angle\": 0.25, \"radiance\": [9, 8, 7] },\n"
+              "{ \"visible_to_camera\": false, \"radiance\": [0.1, 0, 1e12], \"half_angle\": 90, "
+              "\"direction\": [0, 1e-20, 0] } ] } }");
     assert_vector(scene->background_bottom, 0, 0, 0);
     assert_vector(scene->background_top, 0.5, 0.7, 1.0);
     assert_int_equal(scene->disc_count, 2);
@@ -374,16 +375,11 @@ static void many_spheres(void **state) {
 
 int main(void) {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(defaults),
-        cmocka_unit_test(every_member),
-        cmocka_unit_test(heights),
-        cmocka_unit_test(every_file),
-        cmocka_unit_test(nearest_names),
-        cmocka_unit_test(overlapping_dielectrics),
-        cmocka_unit_test(covers),
-        cmocka_unit_test(many_spheres),
-        cmocka_unit_test(discs_of_the_sky),
-        cmocka_unit_test(every_member_is_written),
+        cmocka_unit_test(defaults),         cmocka_unit_test(every_member),
+        cmocka_unit_test(heights),          cmocka_unit_test(every_file),
+        cmocka_unit_test(nearest_names),    cmocka_unit_test(overlapping_dielectrics),
+        cmocka_unit_test(covers),           cmocka_unit_test(many_spheres),
+        cmocka_unit_test(discs_of_the_sky), cmocka_unit_test(every_member_is_written),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -232,9 +232,15 @@ static void bad_cameras(void **state) {
 static void bad_discs(void **state) {
     (void)state;
     static const Case cases[] = {
-        {"{ \"camera\": {}, \"background\": { \"discs\": {} } }", 1, 42, {"background.discs: found an object", "a list"}},
+        {"{ \"camera\": {}, \"background\": { \"discs\": {} } }",
+         1,
+         42,
+         {"background.discs: found an object", "a list"}},
         {"{ \"camera\": {}, \"background\": { \"disks\": [] } }", 1, 33, {"background.disks", "\"discs\""}},
-        {"{ \"camera\": {}, \"background\": { \"discs\": [ 1 ] } }", 1, 44, {"discs[0]: found 1", "half_angle"}},
+        {"{ \"camera\": {}, \"background\": { \"discs\": [ 1 ] } }",
+         1,
+         44,
+         {"discs[0]: found 1", "half_angle"}},
         {DISC(""), 1, 44, {"background.discs[0]: found no \"direction\""}},
         {DISC("\"direction\": [1, 2, 0]"), 1, 44, {"discs[0]: found no \"half_angle\"", "degrees"}},
         {DISC("\"direction\": [1, 2, 0], \"half_angle\": 1"), 1, 44, {"found no \"radiance\""}},
@@ -252,16 +258,21 @@ static void bad_discs(void **state) {
          83,
          {"background.discs[0].half_angle: found 0", "from 0.0001 to 90"}},
         {DISC("\"direction\": [0, 1, 0], \"half_angle\": -1, \"radiance\": [1, 1, 1]"), 1, 83, {"found -1"}},
-        {DISC("\"direction\": [0, 1, 0], \"half_angle\": 90.1, \"radiance\": [1, 1, 1]"), 1, 83, {"found 90.1"}},
+        {DISC("\"direction\": [0, 1, 0], \"half_angle\": 90.1, \"radiance\": [1, 1, 1]"),
+         1,
+         83,
+         {"found 90.1"}},
         {DISC("\"direction\": [0, 1, 0], \"half_angle\": 1, \"radiance\": [1, -1, 1]"),
          1,
          98,
          {"discs[0].radiance: found -1", "from 0"}},
-        {DISC("\"direction\": [0, 1, 0], \"half_angle\": 1, \"radiance\": [1, 1, 1], \"visible_to_camera\": 1"),
+        {DISC("\"direction\": [0, 1, 0], \"half_angle\": 1, \"radiance\": [1, 1, 1], \"visible_to_camera\": "
+              "1"),
          1,
          130,
          {"visible_to_camera: found 1", "true or false"}},
-        {"{ \"camera\": {}, \"background\": { \"discs\": [" ANY_DISC ",\n{ \"direction\": [0, 1, 0],\n\"half_angle\": "
+        {"{ \"camera\": {}, \"background\": { \"discs\": [" ANY_DISC
+         ",\n{ \"direction\": [0, 1, 0],\n\"half_angle\": "
          "91, \"radiance\": [1, 1, 1] } ] } }",
          3,
          15,
