@@ -6,7 +6,7 @@
  * sampled perfectly, both weights follow from the ratio of the two densities, and so does what a ray to a lamp brings.
  *
  * In:    paths that wait to be lit, or a lamp that a path has hit.   Out: paths with that light, or the weight of the hit.
- * Knows: lamps.cl, scatter.cl, the closest hit.   Does not know: how a path goes on. */
+ * Knows: lamps.cl, discs.cl, scatter.cl, the closest hit.   Does not know: how a path goes on. */
 #if SAMPLES_LAMPS
 #define RATIO_MAX R(1e15) /* its square is a float, and one more or less is none */
 

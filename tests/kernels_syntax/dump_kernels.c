@@ -3,7 +3,7 @@
  * In:    a folder.   Out: one .cl file a variant; its name ends in _fp64.cl where the program needs double.
  * Knows: program.h.  Does not know: any device; what checks the files (test_kernels_syntax.py).
  *
- * All combinations of all choices would be 128 * 256 programs. Written are: every combination of the other
+ * All combinations of all choices would be 256 * 256 programs. Written are: every combination of the other
  * choices with every effect, and every set of effects, with a list and with a tree, with one of those
  * combinations, a different one in turn: so each set of effects and each combination is there. */
 #include "opencl/program.h"
