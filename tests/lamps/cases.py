@@ -8,7 +8,6 @@ the same point. So the pixels are 256 independent estimates of one number, whose
 """
 import array
 import math
-import pathlib
 import sys
 from dataclasses import dataclass, field
 

@@ -9,7 +9,7 @@ import math
 
 import forms
 from cases import (ALBEDO, BLACK, LIGHT, PI, POINT_NORMAL, Case, add, document, fuzzy, glass, lamp, lamp_at, lambertian, lit,
-                   many_lamps, metal, on_unit_sphere, scale, sphere, towards, found_by_chance)
+                   many_lamps, on_unit_sphere, scale, sphere, towards, found_by_chance)
 
 
 def disc(omega, degrees, radiance=LIGHT, azimuth=0.0, **more):
