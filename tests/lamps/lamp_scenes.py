@@ -189,7 +189,7 @@ def disc(direction, half_angle, radiance, **more):
     return {"direction": list(direction), "half_angle": half_angle, "radiance": list(radiance), **more}
 
 
-def discs(draw):
+def soft_boxes(draw):
     """A sun, a soft box and a wide glow, which overlap, over every lobe; and a lamp."""
     scene = lobes(draw)
     scene["spheres"] = scene["spheres"][:5] + [sphere((0.9, 0.3, 1.8), 0.25, "steel"), sphere((-0.9, 0.3, 1.8), 0.3, "glass")]
@@ -212,7 +212,7 @@ def many_discs(draw):
 GENERATED = {"lobes": lobes, "metals": metals, "caustics": caustics, "sunken": sunken, "embers": embers, "crowd-of-lamps": crowd,
              "sparks": sparks, "shallow": shallow, "room": room, "twins": twins, "inside": inside, "sun": sun,
              "crowd-x1e6": resized(1e6), "crowd-x1e-6": resized(1e-6), "lens": lens, "spread": spread, "walls": walls,
-             "discs": discs, "many-discs": many_discs}
+             "soft-boxes": soft_boxes, "many-discs": many_discs}
 
 
 def generated(name):
