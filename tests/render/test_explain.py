@@ -107,6 +107,7 @@ with tempfile.TemporaryDirectory() as folder:
                   "c": {"type": "normals"}}
     spheres = [{"center": [0.5 * i - 1, 0, -2], "radius": 0.2, "material": name} for i, name in enumerate(every_kind)]
     scene = pathlib.Path(folder, "all.json")
-    scene.write_text(json.dumps({"camera": {"image_width": 64}, "materials": every_kind, "spheres": spheres}))
+    scene.write_text(json.dumps({"camera": {"image_width": 64}, "materials": every_kind, "spheres": spheres,
+                                 "background": {"discs": [{"direction": [0, 1, 0], "half_angle": 5, "radiance": [1] * 3}]}}))
     check_measured(scene, [name for name in ALL if name != "lens"], target)
 print(f"{len(document)} scenes explained")
