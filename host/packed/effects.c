@@ -1,10 +1,12 @@
 /* effects.c: see effects.h. */
 #include "effects.h"
 
+#include "base/color.h"
 #include "base/plural.h"
 #include "lamp_tree.h"
 #include "scene/material.h"
 
+#include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -138,7 +140,30 @@ static void name_lamps(size_t lamps, size_t discs, size_t size, char *text) {
         snprintf(text, size, "%zu lamp%s and %zu disc%s", lamps, bp_plural(lamps), discs, bp_plural(discs));
 }
 
-/* Whether rays are sent to lamps: if there is a disc, or a lamp and another sphere that it can light. */
+static double luminance(const double radiance[3]) {
+    double sum = 0;
+    for (int c = 0; c < 3; ++c) sum += bp_luminance_weights[c] * radiance[c];
+    return sum;
+}
+
+/* Whether the sky is nowhere darker than any lamp, and the camera stands in no sphere that could hide it. A
+ * path that misses such a lamp finds as much light in the sky, so rays to lamps cost more than the noise that
+ * they take away. */
+static bool sky_outshines_lamps(const BpScene *scene) {
+    const double sky = fmin(luminance(scene->background_bottom), luminance(scene->background_top));
+    for (size_t i = 0; i < scene->sphere_count; ++i) {
+        const BpSphere *sphere = &scene->spheres[i];
+        if (luminance(scene->materials[sphere->material].emit) > sky) return false;
+        const double *from = scene->camera.lookfrom;
+        const double x = from[0] - sphere->center[0], y = from[1] - sphere->center[1],
+                     z = from[2] - sphere->center[2];
+        if (hypot(hypot(x, y), z) < fabs(sphere->radius)) return false;
+    }
+    return true;
+}
+
+/* Whether rays are sent to lamps: if there is a disc, or a lamp and another sphere that it can light, and no
+ * sky as bright as all lamps. */
 static bool explain_lamps(const BpScene *scene, size_t size, char *reason) {
     const size_t discs = bright_discs(scene);
     char all[96];
@@ -160,6 +185,9 @@ static bool explain_lamps(const BpScene *scene, size_t size, char *reason) {
         snprintf(reason, size, "%s, but no matte surface and no metal with a fuzz of 1/64 or more", all);
     else if (discs == 0 && lamps == 1 && lit == 1 && both == 1)
         snprintf(reason, size, "the one lamp is the one surface that could be lit");
+    else if (discs == 0 && sky_outshines_lamps(scene))
+        snprintf(reason, size, "%zu lamp%s, %s brighter than the sky", lamps, bp_plural(lamps),
+                 lamps == 1 ? "not" : "none of them");
     else {
         snprintf(reason, size, "%s, and %zu sphere%s to be lit", all, lit, bp_plural(lit));
         return true;

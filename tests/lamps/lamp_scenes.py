@@ -219,8 +219,20 @@ def generated(name):
     return GENERATED[name](random.Random(name))
 
 
+def outshone(scene, used):
+    def luminance(colour):
+        return sum(w * x for w, x in zip((0.2126, 0.7152, 0.0722), colour))
+
+    sky = scene.get("background", {})
+    ends = [sky.get("bottom", [1, 1, 1]), sky.get("top", [0.5, 0.7, 1.0])] if isinstance(sky, dict) else [sky]
+    camera = scene["camera"].get("lookfrom", [0, 0, 0])
+    return (max(luminance(each.get("emit", BLACK)) for each in used) <= min(map(luminance, ends))
+            and all(math.dist(camera, each["center"]) >= abs(each["radius"]) for each in scene["spheres"]))
+
+
 def has_lamp(scene):
-    """Something emits that does not hold all other spheres, and something matte or fuzzy is there to be lit."""
+    """Something emits that does not hold all other spheres, something matte or fuzzy is there to be lit, and the sky is
+    not as bright as every lamp, as far as the camera stands in no sphere that may hide it."""
     spheres = scene.get("spheres", [])
     used = [scene["materials"][each["material"]] for each in spheres]
     lamps = [each for each, material in zip(spheres, used) if sum(material.get("emit", (0,))) > 0]
@@ -231,7 +243,8 @@ def has_lamp(scene):
     background = scene.get("background", {})
     discs = background.get("discs", []) if isinstance(background, dict) else []
     lamps = [each for each in lamps if len(spheres) < 2 or not all(each is other or holds(each, other) for other in spheres)]
-    return bool(lamps or discs) and any(each["type"] == "lambertian" or each.get("fuzz", 0) >= 1 / 64 for each in used)
+    lit = any(each["type"] == "lambertian" or each.get("fuzz", 0) >= 1 / 64 for each in used)
+    return bool(lamps or discs) and lit and (bool(discs) or not outshone(scene, used))
 
 
 def in_files(source):

@@ -98,6 +98,33 @@ static void camera_and_sky(void **state) {
     assert_int_equal(analyse(&grey, 1, 1, 1, 0, 0.999).bits, BIT(LAMBERTIAN)); /* a sky is a value */
 }
 
+/* A matte floor and a lamp, under a sky whose top is the darker end. */
+static bool samples_lamps(double emit, double top, double camera_x, BpEffects *effects) {
+    BpMaterial materials[] = {grey, lamp};
+    for (int c = 0; c < 3; ++c) materials[1].emit[c] = emit;
+    BpSphere spheres[] = {{.center = {0, -10, 0}, .radius = -10, .material = 0, .albedo = BP_NO_ALBEDO},
+                          {.center = {0, 2, 0}, .radius = 1, .material = 1, .albedo = BP_NO_ALBEDO}};
+    const BpScene scene = {.camera = {.lookfrom = {camera_x, -5, 0}},
+                           .background_bottom = {1, 1, 1},
+                           .background_top = {top, top, top},
+                           .materials = materials,
+                           .material_count = 2,
+                           .spheres = spheres,
+                           .sphere_count = 2};
+    bp_effects_analyse(&scene, effects);
+    return bp_effects_has(effects->bits, BP_EFFECT_LAMPS);
+}
+
+static void no_rays_to_lamps_that_the_sky_outshines(void **state) {
+    (void)state;
+    BpEffects effects;
+    assert_false(samples_lamps(0.5, 0.5, 12, &effects));
+    assert_string_equal(effects.reason[BP_EFFECT_LAMPS], "1 lamp, not brighter than the sky");
+    assert_true(samples_lamps(0.501, 0.5, 12, &effects));
+    /* Inside a sphere the sky may be hidden, whatever the sign of the radius. */
+    assert_true(samples_lamps(0.5, 0.5, 8, &effects));
+}
+
 static void a_tree_above_32_spheres(void **state) {
     (void)state;
     static const struct {
@@ -216,6 +243,7 @@ int main(void) {
         cmocka_unit_test(a_tree_above_32_spheres),
         cmocka_unit_test(reasons_a_person_understands),
         cmocka_unit_test(discs),
+        cmocka_unit_test(no_rays_to_lamps_that_the_sky_outshines),
         cmocka_unit_test(one_list_names_them),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
