@@ -328,6 +328,8 @@ typedef struct BpPicture {
     float *rgb;        /* width * height * 3 */
     float *error;      /* standard error of each channel's mean, same shape; NaN where unknown */
     uint64_t *samples; /* valid samples of each pixel */
+    float *alpha; /* Optional: share of camera rays that met something, of a scene without a backdrop; rgb is
+                     then premultiplied by it */
     /* Optional, see bp_render_aovs(): of what each pixel shows first, averaged over camera rays. */
     float *depth; /* along the view direction from the camera, mean of the rays that met something; +Inf: none
                      did */
@@ -353,7 +355,7 @@ typedef enum BpFormat {
     BP_FORMAT_PPM,
     BP_FORMAT_PPM_ASCII,
     BP_FORMAT_PFM,
-    BP_FORMAT_EXR, /* with what there is of error, samples, depth, normal and albedo as layers */
+    BP_FORMAT_EXR, /* with what there is of alpha, error, samples, depth, normal and albedo as layers */
     BP_FORMAT_BPA  /* sums, not a picture: bp_film_write() */
 } BpFormat;
 

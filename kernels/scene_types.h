@@ -35,10 +35,17 @@ typedef struct PackedCamera {
                          its high 16 bits; NO_SLOT: none; how far off the surface; 0 */
 } PackedCamera;
 
-/* Radiance of a ray that meets nothing: bottom at y = -1, top at y = +1, linear in the unit direction's y;
- * top[3] says how many discs stand in front. */
+/* Radiance of a ray that meets nothing: bottom against `up`, top along it, linear in the cosine between;
+ * top[3] says how many discs stand in front.
+ *
+ * A camera ray shows the backdrop instead, where there is one: `backdrop_bottom[3]` is 1, or 0. It is linear
+ * over the picture's height, so a ray's place there is asked for: where it crosses the plane in focus, whose
+ * points have a scalar product of 1 with `view_ahead`, and with `view_up` 1 at the upper edge of the picture,
+ * -1 at the lower. */
 typedef struct PackedSky {
-    real bottom[4], top[4];
+    real bottom[4], top[4], up[4];
+    real backdrop_bottom[4], backdrop_top[4];
+    real view_ahead[4], view_up[4];
 } PackedSky;
 
 /* A disc in the sky, a lamp at infinity: its radiance is added to the sky's in a cone of directions. */
@@ -161,7 +168,7 @@ enum { TOTAL_REFLECT, TOTAL_ABSORB, TOTAL_REFRACT };
 #ifdef BP_HOST
 _Static_assert(sizeof(real) == 8, "the host packs in double");
 _Static_assert(sizeof(PackedCamera) == 28 * sizeof(real), "PackedCamera has padding");
-_Static_assert(sizeof(PackedSky) == 8 * sizeof(real), "PackedSky has padding");
+_Static_assert(sizeof(PackedSky) == 28 * sizeof(real), "PackedSky has padding");
 _Static_assert(sizeof(PackedDisc) == 12 * sizeof(real), "PackedDisc has padding");
 _Static_assert(sizeof(PackedMaterial) == 8 * sizeof(real), "PackedMaterial has padding");
 _Static_assert(sizeof(PackedMaterialKind) == 16, "PackedMaterialKind has padding");
@@ -188,6 +195,14 @@ BP_PLACE(MATERIAL_TOTAL_REFLECTION, PackedMaterialKind, total_reflection, packed
 #define COUNT_SAMPLES 0x1ffffffu
 #define COUNT_HAS_FINE 0x80000000u /* its fine sums have begun; before that they are not even zeroed */
 #define COUNT_COARSE 0x40000000u   /* a sample was so dim that a fine step is more than a millionth of it */
+
+/* What a pixel counts beside its sums: ray segments, paths cut by the depth cap, invalid samples, and valid
+ * ones whose camera ray met nothing. */
+enum { TALLY_SEGMENTS, TALLY_CUT, TALLY_INVALID, TALLY_MISSED, TALLIES };
+/* Added to the number of segments of a path whose camera ray met nothing; no path has as many, and twice both
+ * together, and one more, is exact in float. */
+#define MISSED_MARK 0x200000u
+#define MISSED_BITS 21
 
 #define FINE_BITS 38 /* a fine step is 2^-FINE_BITS steps */
 

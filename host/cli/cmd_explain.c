@@ -82,8 +82,9 @@ static void print_path(const BpScene *scene, const BpPathLog *path, uint32_t x, 
             fprintf(out, "\n");
             if (step->to_lamp) print_lamp_ray(step, out);
         } else {
-            fprintf(out, "       hits nothing: the sky");
-            for (uint32_t disc = 0; disc < 32; ++disc)
+            const bool backdrop = i == 0 && scene->backdrop != BP_BACKDROP_SKY;
+            fprintf(out, "       hits nothing: the %s", backdrop ? "backdrop" : "sky");
+            for (uint32_t disc = 0; disc < 32 && !backdrop; ++disc)
                 if ((step->discs >> disc & 1u) != 0) fprintf(out, " and disc %" PRIu32, disc);
             fputc('\n', out);
         }

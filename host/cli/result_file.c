@@ -182,6 +182,10 @@ BpStatus bp_result_write(const BpCommandLine *line, const BpResultFile *result, 
         status = bp_color_bar_draw(&picture, transfer, (const float(*)[3])legend->colors, legend->range,
                                    legend->title, err);
     if (status != BP_OK) goto done;
+    if (rendered && picture.alpha != NULL && is_picture && result->format != BP_FORMAT_PNG &&
+        result->format != BP_FORMAT_EXR)
+        bp_say(line, "%s has no alpha: what the scene leaves open is black; .png and .exr keep it",
+               bp_result_name(result));
     BpCommandLine of_result = *line;
     if (result->is_own) of_result.no_clobber = false;
     status = is_picture ? bp_line_write(&of_result, result->path, print_picture, &printed, err)

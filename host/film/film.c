@@ -46,6 +46,7 @@ void bp_film_destroy(BpFilm **film) {
     free((*film)->fine_sums);
     free((*film)->counts);
     free((*film)->pixel_segments);
+    free((*film)->met);
     bp_film_drop_aovs(*film);
     bp_film_plan_destroy(&(*film)->plan);
     free(*film);
@@ -65,6 +66,14 @@ BpStatus bp_film_add_fine_sums(BpFilm *film, BpError *err) {
     if (film->fine_sums != NULL) return BP_OK;
     return bp_fail(err, BP_ERR_MEMORY, "out of memory for the fine sums of %zu pixels (%zu MiB)",
                    cells / film->replicates, cells * 24 >> 20);
+}
+
+BpStatus bp_film_add_met(BpFilm *film, BpError *err) {
+    const size_t pixels = (size_t)film->width * film->height;
+    if (film->met == NULL) film->met = calloc(pixels, sizeof *film->met);
+    return film->met != NULL
+               ? BP_OK
+               : bp_fail(err, BP_ERR_MEMORY, "out of memory for the alpha of %zu pixels", pixels);
 }
 
 void bp_film_info(const BpFilm *film, BpFilmInfo *info) {
@@ -247,6 +256,8 @@ static bool total_overflows(uint64_t a, uint64_t b) {
 BpStatus bp_film_add_sums(BpFilm *film, const BpFilm *from, BpError *err) {
     const size_t cells = (size_t)film->width * film->height * film->replicates;
     if (from->fine_sums != NULL) BP_TRY(bp_film_add_fine_sums(film, err));
+    if (from->met != NULL) BP_TRY(bp_film_add_met(film, err));
+    for (size_t i = 0; from->met != NULL && i < cells / film->replicates; i++) film->met[i] += from->met[i];
     for (size_t i = 0; i < cells; i++) film->counts[i] += from->counts[i];
     for (size_t i = 0; i < 3 * cells; i++) film->sums[i] += from->sums[i];
     for (size_t i = 0; from->fine_sums != NULL && i < 3 * cells; i++)
@@ -271,6 +282,8 @@ static bool is_whole_job(const BpFilm *film) {
 
 BpStatus bp_film_merge(BpFilm *into, const BpFilm *from, BpError *err) {
     BP_TRY(bp_film_check_same(into, from, err));
+    if ((into->met != NULL) != (from->met != NULL))
+        return bp_fail(err, BP_ERR_USAGE, "one has an alpha and the other has none: a file is damaged");
     const size_t cells = (size_t)into->width * into->height * into->replicates;
     for (size_t i = 0; i < cells; i++) BP_TRY(check_limit((uint64_t)into->counts[i] + from->counts[i], err));
     BP_TRY(check_sums(into, from, into->sums, from->sums, err));

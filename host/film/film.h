@@ -70,6 +70,8 @@ struct BpFilm {
     uint32_t *counts;   /* width * height * K: valid samples */
     uint64_t segments, cut_paths, invalid_samples; /* totals over the picture */
     uint64_t *pixel_segments; /* Optional. Of each pixel: adaptive sampling asks for it; not merged. */
+    uint64_t *met; /* Optional. Of each pixel: valid samples whose camera ray met something; a scene without a
+                      backdrop asks for it, and the picture's alpha is its share of all */
     /* Optional, all or none: what each pixel shows first, as in BpPicture. They follow from scene and
      * seed and not from the samples of the film (render/aovs.h), so films of other samples have the same. */
     AOV_LIST(BP_FILM_AOV)
@@ -114,6 +116,9 @@ BpStatus bp_film_check_same(const BpFilm *a, const BpFilm *b, BpError *err);
 
 /* Gives `film` fine sums, all 0, unless it has them. BP_ERR_MEMORY. */
 BpStatus bp_film_add_fine_sums(BpFilm *film, BpError *err);
+
+/* Gives `film` counts of the rays that met something, all 0, unless it has them. BP_ERR_MEMORY. */
+BpStatus bp_film_add_met(BpFilm *film, BpError *err);
 
 static inline bool bp_film_has_aovs(const BpFilm *film) {
     return film->depth != NULL;

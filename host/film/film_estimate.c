@@ -75,8 +75,10 @@ BpStatus bp_film_picture(const BpFilm *film, BpPicture *picture, BpError *err) {
         .rgb = malloc(pixels * 3 * sizeof *picture->rgb),
         .error = malloc(pixels * 3 * sizeof *picture->error),
         .samples = malloc(pixels * sizeof *picture->samples),
+        .alpha = film->met != NULL ? malloc(pixels * sizeof *picture->alpha) : NULL,
     };
-    if (picture->rgb == NULL || picture->error == NULL || picture->samples == NULL) {
+    if ((film->met != NULL && picture->alpha == NULL) || picture->rgb == NULL || picture->error == NULL ||
+        picture->samples == NULL) {
         bp_picture_clear(picture);
         return bp_fail(err, BP_ERR_MEMORY, "out of memory for a picture of %zu pixels", pixels);
     }
@@ -91,6 +93,9 @@ BpStatus bp_film_picture(const BpFilm *film, BpPicture *picture, BpError *err) {
             picture->error[3 * pixel + c] = (float)sqrt(estimate.squared_error[c]);
         }
         picture->samples[pixel] = estimate.samples;
+        if (film->met != NULL)
+            picture->alpha[pixel] =
+                estimate.samples > 0 ? (float)((double)film->met[pixel] / (double)estimate.samples) : 0;
     }
     return BP_OK;
 }

@@ -42,6 +42,7 @@ BpStatus bp_film_write_stream(const BpFilm *film, FILE *out, BpError *err) {
         AOV_LIST(WRITE)
 #undef WRITE
         if (film->pixel_segments != NULL) bp_film_sink_numbers(&sink, film->pixel_segments, 8, pixels);
+        if (film->met != NULL) bp_film_sink_numbers(&sink, film->met, 8, pixels);
         if (film->plan != NULL)
             bp_film_sink_numbers(&sink, film->plan->decisions, 1, film->plan->decision_bytes);
         status = bp_film_sink_end(&sink, err);
@@ -107,7 +108,7 @@ static uint64_t body_bytes(const Loader *loader, const BpFilm *sizes) {
     const uint64_t pixels = (uint64_t)sizes->width * sizes->height;
     const uint64_t cell_size = (parts->fine_sums ? 2 : 1) * 3 * 8 + 4;
     return pixels * sizes->replicates * cell_size + pixels * (parts->aovs ? AOV_MET * sizeof(float) : 0) +
-           pixels * (parts->pixel_segments ? 8 : 0) + parts->decision_bytes;
+           pixels * (parts->pixel_segments ? 8 : 0) + pixels * (parts->alpha ? 8 : 0) + parts->decision_bytes;
 }
 
 /* Whether the file is as long as its numbers need, or, where they are packed, can be; before anything is
@@ -195,6 +196,20 @@ static BpStatus read_pixel_segments(BpFilmSource *source, BpFilm *film, BpError 
     return bp_film_source_numbers(source, film->pixel_segments, 8, pixels, err);
 }
 
+static BpStatus read_met(BpFilmSource *source, BpFilm *film, BpError *err) {
+    const size_t pixels = (size_t)film->width * film->height;
+    BP_TRY(bp_film_add_met(film, err));
+    BP_TRY(bp_film_source_numbers(source, film->met, 8, pixels, err));
+    for (size_t i = 0; i < pixels; i++) {
+        uint64_t samples = 0;
+        for (size_t k = 0; k < film->replicates; k++) samples += film->counts[i * film->replicates + k];
+        if (film->met[i] > samples)
+            return bp_fail(err, BP_ERR_FILE, "%s is damaged: the alpha of pixel %zu is above 1", source->name,
+                           i);
+    }
+    return BP_OK;
+}
+
 static BpStatus read_decisions(BpFilmSource *source, BpFilm *film, BpError *err) {
     const size_t size = film->plan->decision_bytes;
     film->plan->decisions = malloc(size);
@@ -211,6 +226,7 @@ static BpStatus read_numbers(const BpFilmParts *parts, BpFilmSource *source, BpF
     BP_TRY(read_counts(source, film, err));
     if (parts->aovs) BP_TRY(read_aovs(source, film, err));
     if (parts->pixel_segments) BP_TRY(read_pixel_segments(source, film, err));
+    if (parts->alpha) BP_TRY(read_met(source, film, err));
     if (parts->decision_bytes > 0) BP_TRY(read_decisions(source, film, err));
     return bp_film_source_end(source, err);
 }

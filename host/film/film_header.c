@@ -51,6 +51,7 @@ static bool add_optional(json_t *header, const BpFilm *film) {
         json_object_set_new(
             header, "job", json_pack("[I,I]", (json_int_t)film->job.first, (json_int_t)film->job.count)) != 0)
         return false;
+    if (film->met != NULL && json_object_set_new(header, "alpha", json_true()) != 0) return false;
     return film->plan == NULL || json_object_set_new(header, "plan", plan_json(film->plan)) == 0;
 }
 
@@ -60,12 +61,13 @@ char *bp_film_header_make(const BpFilm *film) {
     snprintf(seed, sizeof seed, "%" PRIu64, film->seed);
     const char *title = film->title != NULL ? film->title : "";
     json_t *header = json_pack(
-        "{s:i,s:s,s:s%,s:I,s:I,s:I,s:i,s:b,s:b,s:b,s:b,s:s,s:s,s:I}", "ballpark_accumulator", BP_FILM_VERSION,
-        "byte_order", "little", "title", title, title_bytes(title), "width", (json_int_t)film->width,
-        "height", (json_int_t)film->height, "replicates", (json_int_t)film->replicates, "scale_log2",
-        (int)film->scale_log2, "fine_sums", (int)(film->fine_sums != NULL), "coarse", (int)film->coarse,
-        "aovs", (int)bp_film_has_aovs(film), "pixel_segments", (int)(film->pixel_segments != NULL),
-        "scene_hash", hash, "seed", seed, "max_depth", (json_int_t)film->max_depth);
+        "{s:i,s:s,s:s%,s:I,s:I,s:I,s:i,s:b,s:b,s:b,s:b,s:s,s:s,s:I}", "ballpark_accumulator",
+        film->met != NULL ? BP_FILM_VERSION : BP_FILM_VERSION - 1, "byte_order", "little", "title", title,
+        title_bytes(title), "width", (json_int_t)film->width, "height", (json_int_t)film->height,
+        "replicates", (json_int_t)film->replicates, "scale_log2", (int)film->scale_log2, "fine_sums",
+        (int)(film->fine_sums != NULL), "coarse", (int)film->coarse, "aovs", (int)bp_film_has_aovs(film),
+        "pixel_segments", (int)(film->pixel_segments != NULL), "scene_hash", hash, "seed", seed, "max_depth",
+        (json_int_t)film->max_depth);
     json_t *rest = json_pack("{s:s,s:o,s:b,s:I,s:I,s:I}", "transfer", bp_transfer_names[film->transfer],
                              "ranges", ranges_json(film), "partial", (int)film->partial, "segments",
                              (json_int_t)film->segments, "cut_paths", (json_int_t)film->cut_paths,
@@ -201,6 +203,7 @@ static void read_sizes(Reader *reader, BpFilm *sizes, BpFilmParts *parts) {
     if (version < 3) return;
     parts->aovs = read_truth(reader, "aovs");
     parts->pixel_segments = read_truth(reader, "pixel_segments");
+    parts->alpha = version >= 4 && read_truth(reader, "alpha");
     const json_t *plan = json_object_get(reader->header, "plan");
     Reader inner = {plan, reader->name, reader->status, reader->err};
     if (plan != NULL) parts->decision_bytes = read_integer(&inner, "decision_bytes", 0, INT32_MAX);

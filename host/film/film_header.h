@@ -10,12 +10,13 @@
 
 #include <jansson.h>
 
-#define BP_FILM_VERSION 3 /* of the files that are written */
+/* Of the files that are written; of those without an alpha it is 3, which older programs read. */
+#define BP_FILM_VERSION 4
 
 /* Which numbers follow a header. */
 typedef struct BpFilmParts {
     uint32_t version;
-    bool fine_sums, aovs, pixel_segments;
+    bool fine_sums, aovs, pixel_segments, alpha;
     uint64_t decision_bytes; /* of the plan */
 } BpFilmParts;
 

@@ -72,9 +72,11 @@ double bp_scene_radiance_bound(const BpScene *scene, uint32_t max_depth, BpLamps
         if (bp_material_is_lit(material)) scattered = fmax(scattered, albedo);
         if (emitted > 0) passed_on = fmax(passed_on, albedo);
     }
-    const double by_chance = brightest * geometric(passed_on, max_depth);
-    if (lamps == BP_LAMPS_OFF || max_depth < 2) return by_chance;
-    return by_chance + 0.5 * brightest_lamp * scattered * geometric(scattered, max_depth - 1);
+    double bound = brightest * geometric(passed_on, max_depth);
+    if (lamps != BP_LAMPS_OFF && max_depth >= 2)
+        bound += 0.5 * brightest_lamp * scattered * geometric(scattered, max_depth - 1);
+    if (scene->backdrop != BP_BACKDROP_COLORS) return bound;
+    return fmax(bound, fmax(largest(scene->backdrop_bottom), largest(scene->backdrop_top)));
 }
 
 int32_t bp_film_scale(const BpScene *scene, uint32_t max_depth, BpLamps lamps) {
@@ -149,6 +151,20 @@ static uint64_t mix_sphere(uint64_t hash, const BpScene *scene, const BpSphere *
     return hash;
 }
 
+/* Members that came later: a scene without them keeps the hash that it had before. */
+static uint64_t mix_surroundings(uint64_t hash, const BpScene *scene) {
+    double up[3];
+    bp_background_up(scene, up);
+    if (memcmp(scene->background_bottom, scene->background_top, sizeof scene->background_top) != 0 &&
+        !(up[0] == 0 && up[1] == 1 && up[2] == 0))
+        hash = mix_reals(mix(hash, 0x7570u), up, 3);
+    if (scene->backdrop == BP_BACKDROP_SKY) return hash;
+    hash = mix(hash, 0x6264u + (uint64_t)scene->backdrop);
+    if (scene->backdrop == BP_BACKDROP_NONE) return hash;
+    hash = mix_reals(hash, scene->backdrop_bottom, 3);
+    return mix_reals(hash, scene->backdrop_top, 3);
+}
+
 uint64_t bp_scene_hash(const BpScene *scene) {
     uint64_t hash = mix_camera(0xcbf29ce484222325u, &scene->camera);
     hash = mix_reals(hash, scene->background_bottom, 3);
@@ -160,6 +176,7 @@ uint64_t bp_scene_hash(const BpScene *scene) {
         hash = mix_reals(hash, disc->radiance, 3);
         hash = mix(hash, disc->visible_to_camera);
     }
+    hash = mix_surroundings(hash, scene);
     hash = mix(hash, scene->sphere_count);
     /* Most scenes use a material many times in a row. */
     uint32_t known = UINT32_MAX;

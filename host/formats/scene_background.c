@@ -1,7 +1,7 @@
-/* scene_background.c: the background of a scene document: the sky and the discs in it.
+/* scene_background.c: what rays see that meet nothing, of a scene document.
  *
- * In:    the node of "background".   Out: the scene's background.
- * Knows: its members.                Does not know: ranges (scene_validate.c). */
+ * In:    the nodes of "background" and "backdrop".   Out: these parts of a BpScene; ranges are checked by
+ * scene_validate.c.   Knows: the grammar.   Does not know: the camera. */
 #include "scene_parse.h"
 
 #include <string.h>
@@ -45,7 +45,7 @@ static BpStatus parse_discs(const BpNode *node, BpScene *scene, BpError *err) {
 }
 
 BpStatus bp_parse_background(const BpNode *node, BpScene *scene, BpError *err) {
-    static const char *const names[] = {"bottom", "top", "discs"};
+    static const char *const names[] = {"bottom", "top", "up", "discs"};
     if (json_is_array(node->value)) {
         BP_TRY(bp_node_vector(node, scene->background_bottom, err));
         memcpy(scene->background_top, scene->background_bottom, sizeof scene->background_top);
@@ -58,7 +58,38 @@ BpStatus bp_parse_background(const BpNode *node, BpScene *scene, BpError *err) {
     const BpNode bottom = bp_node_member(node, "bottom");
     const BpNode top = bp_node_member(node, "top");
     const BpNode discs = bp_node_member(node, "discs");
+    const BpNode up = bp_node_member(node, "up");
     BP_TRY(bp_node_vector(&bottom, scene->background_bottom, err));
     BP_TRY(bp_node_vector(&top, scene->background_top, err));
+    BP_TRY(bp_node_vector(&up, scene->background_up, err));
+    const double *const u = scene->background_up;
+    if (up.value != NULL && u[0] == 0 && u[1] == 0 && u[2] == 0)
+        return bp_node_wrong(&up, "the direction that is up, such as [0, 0, 1]", err);
     return parse_discs(&discs, scene, err);
+}
+
+BpStatus bp_parse_backdrop(const BpNode *node, BpScene *scene, BpError *err) {
+    static const char *const names[] = {"bottom", "top"};
+    static const char expected[] =
+        "\"none\", one colour [r, g, b], or { \"bottom\": [r, g, b], \"top\": [r, g, b] }";
+    if (node->value == NULL) return BP_OK;
+    if (json_is_string(node->value)) {
+        if (strcmp(json_string_value(node->value), "none") != 0) return bp_node_wrong(node, expected, err);
+        scene->backdrop = BP_BACKDROP_NONE;
+        return BP_OK;
+    }
+    scene->backdrop = BP_BACKDROP_COLORS;
+    if (json_is_array(node->value)) {
+        BP_TRY(bp_node_vector(node, scene->backdrop_bottom, err));
+        memcpy(scene->backdrop_top, scene->backdrop_bottom, sizeof scene->backdrop_top);
+        return BP_OK;
+    }
+    if (!json_is_object(node->value)) return bp_node_wrong(node, expected, err);
+    BP_TRY(bp_node_object(node, names, BP_COUNT(names), err));
+    BP_TRY(bp_node_require(node, "bottom", "a colour, such as \"bottom\": [1, 1, 1]", err));
+    BP_TRY(bp_node_require(node, "top", "a colour, such as \"top\": [1, 1, 1]", err));
+    const BpNode bottom = bp_node_member(node, "bottom");
+    const BpNode top = bp_node_member(node, "top");
+    BP_TRY(bp_node_vector(&bottom, scene->backdrop_bottom, err));
+    return bp_node_vector(&top, scene->backdrop_top, err);
 }

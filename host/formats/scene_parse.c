@@ -1,8 +1,8 @@
 /* scene_parse.c: from the text of a scene document to a BpScene; see scene_parse.h.
  *
- * Knows: the grammar's top level, materials by name, spheres. The rest: scene_camera.c,
- * scene_background.c, scene_material.c, scene_points.c; ranges: scene_validate.c, whose faults are given
- * their place in the text here. */
+ * Knows: the grammar's top level, materials by name, spheres. The rest: scene_camera.c, scene_background.c,
+ * scene_material.c, scene_points.c; ranges: scene_validate.c, whose faults are given their place in the text
+ * here. */
 #include "scene_parse.h"
 
 #include "input_file.h"
@@ -155,6 +155,7 @@ static BpStatus refuse_faults(const BpNode *root, const BpScene *scene, BpError 
     BP_TRY(bp_scene_find_fault(scene, &fault, err));
     const BpNode camera = bp_node_member(root, "camera");
     const BpNode background = bp_node_member(root, "background");
+    const BpNode backdrop = bp_node_member(root, "backdrop");
     const BpNode materials = bp_node_member(root, "materials");
     const BpNode spheres = bp_node_member(root, "spheres");
     const BpNode clouds = bp_node_member(root, "clouds");
@@ -171,6 +172,10 @@ static BpStatus refuse_faults(const BpNode *root, const BpScene *scene, BpError 
         }
         return fail_member(&camera, member, fault.text, err);
     }
+    case BP_FAULT_BACKDROP:
+        if (json_is_array(backdrop.value))
+            return bp_node_fail(&backdrop, BP_PART_VALUE, err, "%s", fault.text);
+        return fail_member(&backdrop, fault.member, fault.text, err);
     case BP_FAULT_BACKGROUND:
         if (json_is_array(background.value))
             return bp_node_fail(&background, BP_PART_VALUE, err, "%s", fault.text);
@@ -302,20 +307,22 @@ static BpStatus choose_fresnel(const BpSceneChanges *changes, BpScene *scene, Bp
 }
 
 static BpStatus parse_body(const BpNode *root, const BpSceneChanges *changes, BpScene *scene, BpError *err) {
-    static const char *const names[] = {"format",     "title",     "source",    "camera",
-                                        "background", "transfer",  "materials", "spheres",
-                                        "clouds",     "particles", "$schema"};
+    static const char *const names[] = {"format",     "title",    "source",    "camera",
+                                        "background", "backdrop", "transfer",  "materials",
+                                        "spheres",    "clouds",   "particles", "$schema"};
     BP_TRY(bp_node_object(root, names, BP_COUNT(names), err));
     BP_TRY(bp_node_require(root, "camera", "one, such as \"camera\": { \"image_width\": 400 }", err));
     BP_TRY(parse_head(root, scene, err));
     const BpNode camera = bp_node_member(root, "camera");
     const BpNode background = bp_node_member(root, "background");
+    const BpNode backdrop = bp_node_member(root, "backdrop");
     const BpNode materials = bp_node_member(root, "materials");
     const BpNode spheres = bp_node_member(root, "spheres");
     const BpNode clouds = bp_node_member(root, "clouds");
     const BpNode particles = bp_node_member(root, "particles");
     BP_TRY(bp_parse_camera(&camera, &scene->camera, err));
     BP_TRY(bp_parse_background(&background, scene, err));
+    BP_TRY(bp_parse_backdrop(&backdrop, scene, err));
     BP_TRY(parse_materials(&materials, scene, err));
     BpMaterialIndex index = {0};
     BpStatus status = index_materials(scene, &index, err);

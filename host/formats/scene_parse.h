@@ -55,6 +55,10 @@ BpStatus bp_scene_load_changed(const char *path, const BpSceneChanges *changes, 
 BpStatus bp_scene_parse_with(const char *text, size_t length, const char *name, unsigned flags,
                              BpScene **scene, BpError *err);
 
+/* What rays see that meet nothing (scene_background.c). */
+BpStatus bp_parse_background(const BpNode *node, BpScene *scene, BpError *err);
+BpStatus bp_parse_backdrop(const BpNode *node, BpScene *scene, BpError *err);
+
 BpStatus bp_parse_camera(const BpNode *node, BpCamera *camera, BpError *err);
 BpStatus bp_parse_background(const BpNode *node, BpScene *scene, BpError *err);
 /* `material` is zeroed; its name is the caller's to set. */

@@ -135,6 +135,10 @@ static void put_background(FILE *out, const BpScene *scene) {
     put_vector(out, scene->background_bottom);
     fputs(", \"top\": ", out);
     put_vector(out, scene->background_top);
+    if (!is_dark(scene->background_up)) {
+        fputs(", \"up\": ", out);
+        put_vector(out, scene->background_up);
+    }
     for (size_t i = 0; i < scene->disc_count; i++) {
         const BpDisc *disc = &scene->discs[i];
         fprintf(out, "%s\n      { \"direction\": ", i == 0 ? ",\n    \"discs\": [" : ",");
@@ -147,6 +151,20 @@ static void put_background(FILE *out, const BpScene *scene) {
         fputs(" }", out);
     }
     fputs(scene->disc_count > 0 ? "\n    ]\n  }" : " }", out);
+}
+
+/* What camera rays see that meet nothing, where that is not the background. */
+static void put_backdrop(FILE *out, const BpScene *scene) {
+    if (scene->backdrop == BP_BACKDROP_SKY) return;
+    if (scene->backdrop == BP_BACKDROP_NONE) {
+        fputs(",\n  \"backdrop\": \"none\"", out);
+        return;
+    }
+    fputs(",\n  \"backdrop\": { \"bottom\": ", out);
+    put_vector(out, scene->backdrop_bottom);
+    fputs(", \"top\": ", out);
+    put_vector(out, scene->backdrop_top);
+    fputs(" }", out);
 }
 
 /* ---- materials and spheres ------------------------------------------------------------------------------
@@ -248,6 +266,7 @@ BpStatus bp_scene_print(const BpScene *scene, FILE *out, BpError *err) {
     fputs(",\n", out);
     bp_scene_print_camera(&scene->camera, out);
     put_background(out, scene);
+    put_backdrop(out, scene);
     fprintf(out, ",\n  \"transfer\": \"%s\"", bp_transfer_names[scene->transfer]);
     if (written_materials(scene) > 0) BP_TRY(put_materials(out, scene, err));
     if (written_spheres(scene) > 0) BP_TRY(put_spheres(out, scene, err));

@@ -16,7 +16,7 @@
 
 /* The name is for the library's messages, and for it to unlink after a failure: no file can have it. */
 #define NO_FILE "/dev/null/picture.exr"
-#define LAYERS_MAX (3 + 3 + 1 + AOV_FLOATS) /* radiance, error, samples, AOVs */
+#define LAYERS_MAX (3 + 1 + 3 + 1 + AOV_FLOATS) /* radiance, alpha, error, samples, AOVs */
 
 /* One channel of the file: where its first value lies and how far it is to the next pixel's. */
 typedef struct Layer {
@@ -79,6 +79,7 @@ static void list_floats(const char *before, const char *letters, const float *va
 static size_t list_layers(const BpPicture *picture, const uint32_t *samples, Layer layers[LAYERS_MAX]) {
     size_t count = 0;
     list_floats("", "RGB", picture->rgb, 3, layers, &count);
+    list_floats("", "A", picture->alpha, 1, layers, &count); /* radiance is premultiplied, as EXR has it */
     list_floats("error.", "RGB", picture->error, 3, layers, &count);
     if (samples != NULL) layers[count++] = (Layer){"samples", samples, sizeof *samples, EXR_PIXEL_UINT};
 #define LIST(place, member, floats, mean, channels)                                                          \

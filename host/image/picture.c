@@ -80,6 +80,7 @@ void bp_picture_clear(BpPicture *picture) {
     free(picture->rgb);
     free(picture->error);
     free(picture->samples);
+    free(picture->alpha);
 #define FREE(place, member, floats, mean, channels) free(picture->member);
     AOV_LIST(FREE)
 #undef FREE

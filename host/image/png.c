@@ -1,4 +1,5 @@
-/* png.c: 8-bit RGB PNG by libpng, tagged with the transfer curve; see image.h.
+/* png.c: 8-bit RGB PNG by libpng, tagged with the transfer curve; see image.h. A picture with an alpha
+ * becomes RGBA, in which colours are straight, as the standard has it: not yet multiplied by the alpha.
  *
  * Tags. sRGB pictures carry an sRGB chunk (libpng adds the gAMA and cHRM that the standard recommends beside
  * it), which every viewer shows alike. Gamma 2 and linear pictures carry gAMA (0.5 or 1) and the primaries of
@@ -50,44 +51,63 @@ static void put_tags(png_structp png, png_infop info, BpTransfer transfer) {
     png_set_text(png, info, &software, 1);
 }
 
-/* Everything that can jump. `linear`, or else `bytes`, is the picture; `row` a buffer for one row. Of what
+/* What is written: a picture, or else 8-bit colours. */
+typedef struct Image {
+    uint32_t width, height;
+    const BpPicture *picture;
+    const uint8_t *bytes;
+    BpTransfer transfer;
+    size_t channels; /* 3, or 4 with alpha */
+} Image;
+
+static void encode_row(const Image *image, uint32_t y, uint8_t *row) {
+    const size_t first = (size_t)y * image->width;
+    if (image->picture == NULL) {
+        memcpy(row, image->bytes + 3 * first, (size_t)image->width * 3);
+        return;
+    }
+    for (size_t x = 0; x < image->width; x++) {
+        const float *const rgb = image->picture->rgb + 3 * (first + x);
+        const double alpha = image->channels == 4 ? (double)image->picture->alpha[first + x] : 1;
+        uint8_t *const out = row + image->channels * x;
+        for (size_t c = 0; c < 3; c++)
+            out[c] = alpha > 0 ? bp_transfer_byte((double)rgb[c] / alpha, image->transfer) : 0;
+        if (image->channels == 4) out[3] = (uint8_t)(alpha * 255 + 0.5);
+    }
+}
+
+/* Everything that can jump. `row` is a buffer for one row. Of what
  * the filtered rows of a noisy picture hold, hardly anything comes again but runs: zlib's strategy for those
  * takes half the time, and the file is 1 or 2 % larger. */
-static bool write_all(png_structp png, png_infop info, FILE *out, uint32_t width, uint32_t height,
-                      const float *linear, const uint8_t *bytes, BpTransfer transfer, uint8_t *row) {
+static bool write_all(png_structp png, png_infop info, FILE *out, const Image *image, uint8_t *row) {
     if (setjmp(png_jmpbuf(png))) return false;
-    const size_t row_size = (size_t)width * 3;
     png_set_user_limits(png, 0x7fffffff, 0x7fffffff);
     png_init_io(png, out);
-    png_set_IHDR(png, info, width, height, 8, PNG_COLOR_TYPE_RGB, PNG_INTERLACE_NONE,
+    png_set_IHDR(png, info, image->width, image->height, 8,
+                 image->channels == 4 ? PNG_COLOR_TYPE_RGB_ALPHA : PNG_COLOR_TYPE_RGB, PNG_INTERLACE_NONE,
                  PNG_COMPRESSION_TYPE_DEFAULT, PNG_FILTER_TYPE_DEFAULT);
-    put_tags(png, info, transfer);
+    put_tags(png, info, image->transfer);
     png_set_compression_strategy(png, Z_RLE);
     png_write_info(png, info);
-    for (uint32_t y = 0; y < height; y++) {
-        if (linear != NULL)
-            for (size_t i = 0; i < row_size; i++)
-                row[i] = bp_transfer_byte((double)linear[y * row_size + i], transfer);
-        else
-            memcpy(row, bytes + y * row_size, row_size);
+    for (uint32_t y = 0; y < image->height; y++) {
+        encode_row(image, y, row);
         png_write_row(png, row);
     }
     png_write_end(png, info);
     return true;
 }
 
-static BpStatus write_png(FILE *out, uint32_t width, uint32_t height, const float *linear,
-                          const uint8_t *bytes, BpTransfer transfer, BpError *err) {
+static BpStatus write_png(FILE *out, const Image *image, BpError *err) {
     BpStatus status = BP_OK;
     PngFailure failure = {.text = ""};
     png_infop info = NULL;
-    uint8_t *row = malloc((size_t)width * 3);
+    uint8_t *row = malloc((size_t)image->width * image->channels);
     png_structp png = png_create_write_struct(PNG_LIBPNG_VER_STRING, &failure, on_error, on_warning);
     if (png != NULL) info = png_create_info_struct(png);
     errno = 0;
     if (row == NULL || info == NULL) {
         status = bp_fail(err, BP_ERR_MEMORY, "out of memory for the PNG encoder");
-    } else if (write_all(png, info, out, width, height, linear, bytes, transfer, row)) {
+    } else if (write_all(png, info, out, image, row)) {
         status = bp_image_finish(out, "PNG", err);
     } else {
         const char *reason = ferror(out) ? strerror(failure.error_number) : failure.text;
@@ -104,9 +124,16 @@ static BpStatus write_png(FILE *out, uint32_t width, uint32_t height, const floa
 }
 
 BpStatus bp_png_write(const BpPicture *picture, FILE *out, BpTransfer transfer, BpError *err) {
-    return write_png(out, picture->width, picture->height, picture->rgb, NULL, transfer, err);
+    const Image image = {.width = picture->width,
+                         .height = picture->height,
+                         .picture = picture,
+                         .transfer = transfer,
+                         .channels = picture->alpha != NULL ? 4 : 3};
+    return write_png(out, &image, err);
 }
 
 BpStatus bp_png_write_bytes(const uint8_t *rgb, uint32_t width, uint32_t height, FILE *out, BpError *err) {
-    return write_png(out, width, height, NULL, rgb, BP_TRANSFER_SRGB, err);
+    const Image image = {
+        .width = width, .height = height, .bytes = rgb, .transfer = BP_TRANSFER_SRGB, .channels = 3};
+    return write_png(out, &image, err);
 }

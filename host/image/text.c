@@ -93,5 +93,6 @@ void bp_canvas_copy(const BpCanvas *canvas, const uint8_t untouched[3], BpPictur
         if (untouched != NULL && memcmp(bytes, untouched, 3) == 0) continue;
         for (size_t c = 0; c < 3; c++)
             rgb[3 * i + c] = (float)bp_transfer_inverse((bytes[c] + 0.5) / 256, transfer);
+        if (picture->alpha != NULL) picture->alpha[(size_t)top * picture->width + i] = 1;
     }
 }

@@ -55,19 +55,36 @@ static void cross(const double a[3], const double b[3], double out[3]) {
     out[2] = a[0] * b[1] - a[1] * b[0];
 }
 
-static void pack_camera(const BpCamera *camera, PackedCamera *packed) {
-    double back[3], right[3], up[3], vup[3];
+/* Unit vectors; the picture lies across `back`. */
+typedef struct Axes {
+    double right[3], up[3], back[3];
+} Axes;
+
+static Axes camera_axes(const BpCamera *camera) {
+    Axes axes;
+    double vup[3];
     for (int a = 0; a < 3; ++a) {
-        back[a] = camera->lookfrom[a] - camera->lookat[a];
+        axes.back[a] = camera->lookfrom[a] - camera->lookat[a];
         vup[a] = camera->vup[a];
     }
-    normalize(back);
+    normalize(axes.back);
     normalize(vup);
-    cross(vup, back, right);
-    normalize(right);
-    cross(back, right, up);
+    cross(vup, axes.back, axes.right);
+    normalize(axes.right);
+    cross(axes.back, axes.right, axes.up);
+    return axes;
+}
+
+/* Of the part of the plane in focus that the picture shows. */
+static double plane_height(const BpCamera *camera) {
     const double pi = 3.14159265358979323846;
-    const double height = 2.0 * camera->focus_dist * tan(camera->vfov_degrees * (pi / 360.0));
+    return 2.0 * camera->focus_dist * tan(camera->vfov_degrees * (pi / 360.0));
+}
+
+static void pack_camera(const BpCamera *camera, PackedCamera *packed) {
+    const Axes axes = camera_axes(camera);
+    const double *const back = axes.back, *const right = axes.right, *const up = axes.up;
+    const double height = plane_height(camera);
     const double pixel = height / camera->height; /* pixels are square */
     const double width = pixel * camera->width;
     *packed = (PackedCamera){0};
@@ -97,16 +114,30 @@ static void pack_standpoint(const BpScene *scene, const BpTree *tree, PackedCame
     packed->own_slot[2] = 0x1p-49 * size + (tree->single_precision ? 0x1p-22 * fabs(sphere->radius) : 0);
 }
 
+static void pack_sky(const BpScene *scene, PackedSky *sky) {
+    const Axes axes = camera_axes(&scene->camera);
+    const double half = plane_height(&scene->camera) / 2;
+    *sky = (PackedSky){0};
+    bp_background_up(scene, sky->up);
+    for (int a = 0; a < 3; ++a) {
+        sky->bottom[a] = scene->background_bottom[a];
+        sky->top[a] = scene->background_top[a];
+        sky->view_ahead[a] = -axes.back[a] / scene->camera.focus_dist;
+        sky->view_up[a] = axes.up[a] / half;
+        if (scene->backdrop != BP_BACKDROP_COLORS) continue; /* black, or not there */
+        sky->backdrop_bottom[a] = scene->backdrop_bottom[a];
+        sky->backdrop_top[a] = scene->backdrop_top[a];
+    }
+    sky->top[3] = (double)scene->disc_count;
+    sky->backdrop_bottom[3] = scene->backdrop != BP_BACKDROP_SKY;
+}
+
 static BpStatus pack_view(const BpScene *scene, BpPacked *packed, BpError *err) {
     PackedCamera camera;
-    PackedSky sky = {0};
+    PackedSky sky;
     pack_camera(&scene->camera, &camera);
     pack_standpoint(scene, &packed->tree, &camera);
-    for (int a = 0; a < 3; ++a) {
-        sky.bottom[a] = scene->background_bottom[a];
-        sky.top[a] = scene->background_top[a];
-    }
-    sky.top[3] = (double)scene->disc_count;
+    pack_sky(scene, &sky);
     const size_t camera_reals = sizeof camera / sizeof(double), sky_reals = sizeof sky / sizeof(double);
     packed->camera = narrow((const double *)&camera, camera_reals, 1, packed->single_precision);
     packed->sky = narrow((const double *)&sky, sky_reals, 1, packed->single_precision);

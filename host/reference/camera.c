@@ -10,7 +10,9 @@ Camera bp_ref_camera(const BpCamera *scene_camera) {
     const Vec u = unit(cross(vec(scene_camera->vup), w)), v = cross(w, u);
     const Vec across = scale(viewport_width, u), down = scale(-viewport_height, v);
 
-    Camera camera = {.origin = from, .center = scene_camera->pixel_sampling == BP_PIXEL_CENTER};
+    Camera camera = {.origin = from,
+                     .rows = scene_camera->height,
+                     .center = scene_camera->pixel_sampling == BP_PIXEL_CENTER};
     camera.pixel_right = scale(1.0 / scene_camera->width, across);
     camera.pixel_down = scale(1.0 / scene_camera->height, down);
     const Vec corner =
@@ -22,9 +24,10 @@ Camera bp_ref_camera(const BpCamera *scene_camera) {
     return camera;
 }
 
-Ray bp_ref_camera_ray(const Camera *camera, uint32_t column, uint32_t row, Random *random) {
+Ray bp_ref_camera_ray(const Camera *camera, uint32_t column, uint32_t row, Random *random, double *height) {
     const double x = column + (camera->center ? 0 : random_between(random, -0.5, 0.5));
     const double y = row + (camera->center ? 0 : random_between(random, -0.5, 0.5));
+    *height = 1 - (y + 0.5) / camera->rows;
     const Vec target =
         add(add(camera->first_pixel, scale(x, camera->pixel_right)), scale(y, camera->pixel_down));
     Vec origin = camera->origin;

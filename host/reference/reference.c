@@ -27,9 +27,10 @@ static void render_pixel(Job *job, uint32_t column, uint32_t row) {
     const uint64_t pixel = (uint64_t)row * job->sums->width + column;
     for (uint64_t s = 0; s < options->samples; ++s) {
         Random random = random_stream(options->seed, pixel, options->first_sample + s);
-        const Ray ray = bp_ref_camera_ray(&job->camera, column, row, &random);
+        double height;
+        const Ray ray = bp_ref_camera_ray(&job->camera, column, row, &random, &height);
         Path path = {0};
-        const Vec color = bp_ref_color(job->scene, &ray, options->max_depth, &random, &path);
+        const Vec color = bp_ref_camera_color(job->scene, &ray, height, options->max_depth, &random, &path);
         bp_pixel_sums_add(&job->sums->pixels[pixel], (double[3]){color.x, color.y, color.z}, path.segments);
         if (path.cut) atomic_fetch_add(&job->cut_paths, 1);
     }

@@ -63,6 +63,10 @@ bool bp_ref_hit(const BpScene *scene, const Ray *ray, Hit *hit) {
     return true;
 }
 
+static Vec mixed(const double bottom[3], const double top[3], double a) {
+    return add(scale(1 - a, vec(bottom)), scale(a, vec(top)));
+}
+
 static bool in_disc(const BpDisc *disc, Vec direction) {
     const Vec middle = vec(disc->direction);
     const double angle = atan2(sqrt(length2(cross(middle, direction))), dot(middle, direction));
@@ -70,8 +74,10 @@ static bool in_disc(const BpDisc *disc, Vec direction) {
 }
 
 static Vec background(const BpScene *scene, const Ray *ray) {
-    const double a = 0.5 * (unit(ray->direction).y + 1);
-    Vec color = add(scale(1 - a, vec(scene->background_bottom)), scale(a, vec(scene->background_top)));
+    const Vec own = vec(scene->background_up);
+    const Vec up = length2(own) > 0 ? unit(own) : (Vec){0, 1, 0};
+    const double a = 0.5 * (dot(unit(ray->direction), up) + 1);
+    Vec color = mixed(scene->background_bottom, scene->background_top, a);
     for (size_t i = 0; i < scene->disc_count; ++i) {
         const BpDisc *disc = &scene->discs[i];
         const bool from_camera = ray->leaves == NULL;
@@ -79,6 +85,19 @@ static Vec background(const BpScene *scene, const Ray *ray) {
             color = add(color, vec(disc->radiance));
     }
     return color;
+}
+
+Vec bp_ref_camera_color(const BpScene *scene, const Ray *ray, double height, uint32_t depth, Random *random,
+                        Path *path) {
+    const Vec black = {0, 0, 0};
+    Hit hit;
+    if (scene->backdrop != BP_BACKDROP_SKY && depth > 0 && !bp_ref_hit(scene, ray, &hit)) {
+        ++path->segments;
+        return scene->backdrop == BP_BACKDROP_NONE
+                   ? black
+                   : mixed(scene->backdrop_bottom, scene->backdrop_top, height);
+    }
+    return bp_ref_color(scene, ray, depth, random, path);
 }
 
 Vec bp_ref_color(const BpScene *scene, const Ray *ray, uint32_t depth, Random *random, Path *path) {

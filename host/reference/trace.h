@@ -30,10 +30,12 @@ typedef struct Path {
 /* The camera of the fourth edition, prepared for a scene. */
 typedef struct Camera {
     Vec origin, first_pixel, pixel_right, pixel_down, lens_right, lens_up;
+    uint32_t rows;
     bool lens, center;
 } Camera;
 Camera bp_ref_camera(const BpCamera *camera);
-Ray bp_ref_camera_ray(const Camera *camera, uint32_t column, uint32_t row, Random *random);
+/* `height`: where the ray stands in the picture, from 0 at its lower edge to 1 at the upper. */
+Ray bp_ref_camera_ray(const Camera *camera, uint32_t column, uint32_t row, Random *random, double *height);
 
 /* The nearest hit with t > 0; of equal ones the sphere that stands first. */
 bool bp_ref_hit(const BpScene *scene, const Ray *ray, Hit *hit);
@@ -41,6 +43,10 @@ bool bp_ref_hit(const BpScene *scene, const Ray *ray, Hit *hit);
 /* The direction a material sends the ray on to, and what it leaves of the light; false: absorbed. */
 bool bp_ref_scatter(const BpScene *scene, const Ray *ray, const Hit *hit, Random *random, Vec *direction,
                     Vec *attenuation);
+
+/* Radiance along a camera ray: the backdrop at that height of the picture where it meets nothing. */
+Vec bp_ref_camera_color(const BpScene *scene, const Ray *ray, double height, uint32_t depth, Random *random,
+                        Path *path);
 
 /* Radiance along the ray. `depth`: segments still allowed; 0 is black. */
 Vec bp_ref_color(const BpScene *scene, const Ray *ray, uint32_t depth, Random *random, Path *path);

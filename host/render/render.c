@@ -305,6 +305,10 @@ BpStatus bp_render_step_samples(BpRender *render, BpSampleBlock *block, bool *fi
         free(values);
         return status;
     }
+    for (uint32_t i = 0; i < count; ++i) { /* whether the camera ray met anything stands with the segments */
+        float *const segments = &values[4 * (size_t)i + 3];
+        if (*segments >= MISSED_MARK) *segments -= MISSED_MARK;
+    }
     *block = (BpSampleBlock){.first_pixel = chunk->first_pixel,
                              .pixel_count = chunk->pixel_count,
                              .first_sample = chunk->first_sample,
@@ -404,6 +408,8 @@ BpStatus bp_render_read_film(BpRender *render, const BpFilm **film, BpError *err
             if (read->pixel_segments == NULL)
                 status = bp_fail(err, BP_ERR_MEMORY, "no memory for the path lengths of %zu pixels", pixels);
         }
+        if (status == BP_OK && render->scene->backdrop == BP_BACKDROP_NONE)
+            status = bp_film_add_met(read, err);
         if (status == BP_OK && render->base != NULL) status = add_base(render->base, read, err);
         for (size_t i = 0; status == BP_OK && i < render->worker_count; ++i)
             status = bp_worker_collect(render->workers[i], read, err);

@@ -95,6 +95,9 @@ BpStatus bp_render_resume(BpRender *render, const BpFilm *film, BpError *err) {
     else
         BP_TRY(plan_of_whole(film, &plan, err));
     BP_TRY(check_settings(render, film, &plan, err));
+    if ((film->met != NULL) != (render->scene->backdrop == BP_BACKDROP_NONE))
+        return bp_fail(err, BP_ERR_FILE, "the film is damaged: it %s an alpha, unlike its scene",
+                       film->met != NULL ? "has" : "lacks");
     BP_TRY(copy_film(film, &render->base, err));
     const size_t cells = (size_t)film->width * film->height * film->replicates;
     for (size_t i = 0; i < cells; ++i) render->base_samples += film->counts[i];

@@ -55,7 +55,7 @@ BpStatus bp_worker_create_picture(BpWorker *worker, BpError *err) {
     const uint64_t pixels = worker->pixels;
     const uint64_t sums = pixels * worker->replicates * 3 * sizeof(cl_long);
     const uint64_t counts = pixels * worker->replicates * sizeof(cl_uint);
-    const uint64_t tallies = pixels * 3 * sizeof(cl_ulong);
+    const uint64_t tallies = pixels * TALLIES * sizeof(cl_ulong);
     worker->picture_bytes = 2 * sums + counts + tallies;
     const BpDeviceInfo *info = &worker->device->info;
     if (worker->picture_bytes + worker->scene_bytes > info->memory_bytes)
@@ -139,15 +139,19 @@ static BpStatus collect_block(BpWorker *worker, size_t first, size_t count, cl_l
     const size_t k_count = worker->replicates, cell = first * k_count, cells = count * k_count;
     BP_TRY(read_buffer(worker, worker->sums, 3 * cell * sizeof *sums, 3 * cells * sizeof *sums, sums, err));
     BP_TRY(read_buffer(worker, worker->counts, cell * sizeof *counts, cells * sizeof *counts, counts, err));
-    BP_TRY(read_buffer(worker, worker->tallies, 3 * first * sizeof *tallies, 3 * count * sizeof *tallies,
-                       tallies, err));
+    BP_TRY(read_buffer(worker, worker->tallies, TALLIES * first * sizeof *tallies,
+                       TALLIES * count * sizeof *tallies, tallies, err));
     for (size_t i = 0; i < 3 * cells; ++i) film->sums[3 * cell + i] += sums[i];
     for (size_t i = 0; i < cells; ++i) film->counts[cell + i] += counts[i] & COUNT_SAMPLES;
     for (size_t i = 0; i < count; ++i) {
-        film->segments += tallies[i * 3];
-        if (film->pixel_segments != NULL) film->pixel_segments[first + i] += tallies[i * 3];
-        film->cut_paths += tallies[i * 3 + 1];
-        film->invalid_samples += tallies[i * 3 + 2];
+        const cl_ulong *const tally = tallies + TALLIES * i;
+        film->segments += tally[TALLY_SEGMENTS];
+        if (film->pixel_segments != NULL) film->pixel_segments[first + i] += tally[TALLY_SEGMENTS];
+        film->cut_paths += tally[TALLY_CUT];
+        film->invalid_samples += tally[TALLY_INVALID];
+        if (film->met == NULL) continue;
+        for (size_t k = 0; k < k_count; ++k) film->met[first + i] += counts[i * k_count + k] & COUNT_SAMPLES;
+        film->met[first + i] -= tally[TALLY_MISSED];
     }
     return collect_fine_sums(worker, cell, cells, counts, sums, film, err);
 }
@@ -159,7 +163,7 @@ BpStatus bp_worker_collect(BpWorker *worker, BpFilm *film, BpError *err) {
     if (block > worker->pixels) block = worker->pixels;
     cl_long *sums = malloc(block * worker->replicates * 3 * sizeof *sums);
     cl_uint *counts = malloc(block * worker->replicates * sizeof *counts);
-    cl_ulong *tallies = malloc(block * 3 * sizeof *tallies);
+    cl_ulong *tallies = malloc(block * TALLIES * sizeof *tallies);
     BpStatus status = BP_OK;
     if (sums == NULL || counts == NULL || tallies == NULL)
         status = bp_fail(err, BP_ERR_MEMORY, "no memory to read a picture of %u pixels back", worker->pixels);

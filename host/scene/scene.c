@@ -16,6 +16,16 @@ uint32_t bp_camera_height(uint32_t width, double aspect_ratio) {
     return height >= UINT32_MAX ? UINT32_MAX : (uint32_t)height;
 }
 
+void bp_background_up(const BpScene *scene, double up[3]) {
+    static const double y[3] = {0, 1, 0};
+    const double *const own = scene->background_up;
+    const double largest = fmax(fabs(own[0]), fmax(fabs(own[1]), fabs(own[2])));
+    double length = 0;
+    for (int i = 0; i < 3; i++) up[i] = largest > 0 ? own[i] / largest : y[i];
+    for (int i = 0; i < 3; i++) length += up[i] * up[i];
+    for (int i = 0; i < 3; i++) up[i] /= sqrt(length);
+}
+
 double bp_lens_radius(double defocus_degrees, double focus_dist) {
     return focus_dist * tan(defocus_degrees * (PI / 180) / 2);
 }

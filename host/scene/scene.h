@@ -97,6 +97,13 @@ typedef struct BpDisc {
     bool visible_to_camera; /* camera rays see it; scattered ones always do */
 } BpDisc;
 
+/* What camera rays that meet nothing show. All other rays that meet nothing show the background. */
+typedef enum BpBackdrop {
+    BP_BACKDROP_SKY,    /* the background too */
+    BP_BACKDROP_COLORS, /* a colour, or a gradient over the picture's height */
+    BP_BACKDROP_NONE    /* nothing: black, and the picture has an alpha */
+} BpBackdrop;
+
 /* A file of points: spheres from `first` on, up to the next file's or the end, one a vertex; of particles,
  * those that are shown, then the beads of bonds and cell. */
 typedef struct BpPointFile {
@@ -117,9 +124,13 @@ struct BpScene {
     char *path; /* where it came from, for messages */
     char *title, *source;
     BpCamera camera;
-    double background_bottom[3], background_top[3]; /* by the unit direction's y: -1 bottom, +1 top */
+    double background_bottom[3], background_top[3]; /* down and up; linear in between */
+    double background_up[3];                        /* which way up is, of any length; 0: the y axis */
     BpDisc discs[BP_DISCS_MAX];                     /* where they overlap, they add up */
     size_t disc_count;
+    BpBackdrop backdrop;
+    double backdrop_bottom[3],
+        backdrop_top[3]; /* of BP_BACKDROP_COLORS: at the picture's lower and upper edge */
     BpTransfer transfer;
     BpMaterial *materials;
     size_t material_count;
@@ -139,6 +150,9 @@ struct BpScene {
     bool flat;             /* the particles lie in a plane: two dimensions */
     char *notes;           /* lines for a person about what was guessed; "" */
 };
+
+/* The unit vector along which the background rises from bottom to top. */
+void bp_background_up(const BpScene *scene, double up[3]);
 
 /* height = max(1, floor(width / aspect + 1e-6)) */
 uint32_t bp_camera_height(uint32_t width, double aspect_ratio);

@@ -172,6 +172,11 @@ BpStatus bp_scene_find_fault(const BpScene *scene, BpFault *fault, BpError *err)
     if (any_outside(fault, BP_FAULT_BACKGROUND, "bottom", scene->background_bottom, 0, BP_RADIANCE_MAX,
                     "radiances from 0 to 1e12") ||
         any_outside(fault, BP_FAULT_BACKGROUND, "top", scene->background_top, 0, BP_RADIANCE_MAX,
+                    "radiances from 0 to 1e12") ||
+        coordinates_outside(fault, BP_FAULT_BACKGROUND, "up", scene->background_up) ||
+        any_outside(fault, BP_FAULT_BACKDROP, "bottom", scene->backdrop_bottom, 0, BP_RADIANCE_MAX,
+                    "radiances from 0 to 1e12") ||
+        any_outside(fault, BP_FAULT_BACKDROP, "top", scene->backdrop_top, 0, BP_RADIANCE_MAX,
                     "radiances from 0 to 1e12"))
         return BP_OK;
     for (size_t i = 0; i < scene->disc_count; i++) {
@@ -229,6 +234,8 @@ BpStatus bp_scene_validate(const BpScene *scene, BpError *err) {
     case BP_FAULT_DISC:
         return bp_fail(err, BP_ERR_SCENE, "background.discs[%zu].%s: %s", fault.index, fault.member,
                        fault.text);
+    case BP_FAULT_BACKDROP:
+        return bp_fail(err, BP_ERR_SCENE, "backdrop.%s: %s", fault.member, fault.text);
     case BP_FAULT_MATERIAL:
         bp_printable(scene->materials[fault.index].name, name, sizeof name);
         return bp_fail(err, BP_ERR_SCENE, "materials.%s.%s: %s", name, fault.member, fault.text);

@@ -2,7 +2,7 @@
  *
  * In:    samples as pixels.cl describes them.
  * Out:   sums and fine_sums[(pixel * K + k) * 3 + channel], counts[pixel * K + k] with their flags,
- *        tallies[pixel * 3 + ...]: ray segments, paths cut by the depth cap, invalid samples.
+ *        tallies[pixel * TALLIES + TALLY_...].
  * Knows: fixed point, replicates.   Does not know: what a sample shows, the picture's estimates (the host does).
  *
  * Sums of integers do not depend on their order: chunks, merged runs and several devices agree to the bit. A sample
@@ -52,13 +52,13 @@ static int any_below(BITS4 least, BITS limit) { return least.x < limit || least.
 /* What the samples of one replicate of one pixel come to. */
 typedef struct ReplicateSum {
     long4 sum, fine;
-    uint count, coarse;
+    uint count, coarse, missed;
 } ReplicateSum;
 
 /* The sum of the valid samples `begin`, `begin` + `stride`, ...: fractions of steps count in those samples of which a
  * channel is below 2^21 steps, the others are right to 2^-21 without. */
 static ReplicateSum sum_split(__global const real *samples, uint begin, uint end, uint stride, real4 scales) {
-    ReplicateSum total = {0, 0, 0, 0};
+    ReplicateSum total = {0, 0, 0, 0, 0};
     for (uint s = begin; s < end; s += stride) {
         const real4 scaled = vload4(s, samples) * scales;
         const BITS4 order = order_of(scaled);
@@ -66,6 +66,7 @@ static ReplicateSum sum_split(__global const real *samples, uint begin, uint end
         ++total.count;
         const long4 whole = convert_long4(scaled);
         total.sum += whole;
+        total.missed += (uint)(whole.w >> (MISSED_BITS + 1)) & 1;
         if (!any_below(order - 1, BITS_SPLIT - 1)) continue;
         const real4 rest = (scaled - to_real4(whole)) * (real4)(1l << FINE_BITS);
         total.fine += convert_long4(rest);
@@ -95,11 +96,13 @@ __kernel void accumulate(__global const real *samples, uint pixel_count, uint sa
     const size_t pixel = first_pixel + item;
 #endif
     __global const real *mine = samples + (size_t)item * samples_per_pixel * 4;
-    const real4 scales = (real4)(scale, scale, scale, 2); /* the fourth number: twice the segments, plus 1 for a cut */
-    ulong twice_segments = 0, cut = 0, invalid = 0;
+    /* The fourth number becomes twice the segments, plus 1 for a cut, with the mark of a path that missed everything. */
+    const real4 scales = (real4)(scale, scale, scale, 2);
+    ulong twice_segments = 0, cut = 0, invalid = 0, missed = 0;
     for (uint k = 0; k < replicates; ++k) {
         const uint begin = (k + replicates - first_sample % replicates) % replicates;
-        long4 sum = 0, odd = 0;
+        long4 sum = 0;
+        ulong2 flags = 0; /* how many were cut, how many missed everything */
         BITS4 largest = 0, least = ~(BITS4)0;
         uint count = 0;
         for (uint s = begin; s < samples_per_pixel; s += replicates) {
@@ -109,17 +112,18 @@ __kernel void accumulate(__global const real *samples, uint pixel_count, uint sa
             largest = max(largest, order);
             least = min(least, order - 1);
             sum += fixed;
-            odd += fixed & 1;
+            flags += as_ulong2(fixed.ww) >> (ulong2)(0, MISSED_BITS + 1) & 1;
             ++count;
         }
-        twice_segments += (ulong)sum.w;
-        cut += (ulong)odd.w;
+        twice_segments += (ulong)sum.w - (flags.y << (MISSED_BITS + 1));
+        cut += flags.x;
         const size_t cell = pixel * replicates + k;
         uint known = counts[cell];
         if (!is_valid(largest) || any_below(least, BITS_SPLIT - 1)) { /* hardly ever: once more, with more care */
             const ReplicateSum careful = sum_split(mine, begin, samples_per_pixel, replicates, scales);
             invalid += count - careful.count;
             count = careful.count;
+            flags.y = careful.missed;
             sum = careful.sum;
             if ((careful.fine.x | careful.fine.y | careful.fine.z) != 0) {
                 add_fine(fine_sums + cell * 3, careful.fine, known);
@@ -131,9 +135,12 @@ __kernel void accumulate(__global const real *samples, uint pixel_count, uint sa
         total[0] += sum.x;
         total[1] += sum.y;
         total[2] += sum.z;
+        missed += flags.y;
         counts[cell] = known + count;
     }
-    tallies[pixel * 3] += (twice_segments - cut) / 2;
-    tallies[pixel * 3 + 1] += cut;
-    tallies[pixel * 3 + 2] += invalid;
+    __global ulong *tally = tallies + pixel * TALLIES;
+    tally[TALLY_SEGMENTS] += (twice_segments - cut) / 2;
+    tally[TALLY_CUT] += cut;
+    tally[TALLY_INVALID] += invalid;
+    tally[TALLY_MISSED] += missed;
 }

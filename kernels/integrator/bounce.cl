@@ -20,7 +20,12 @@ static void trace_bounce(const Scene *scene, Path *path) {
 #if EFFECT_DISCS
         light = add3(light, multiply3(path->throughput, discs_radiance(scene, path, escaped)));
 #endif
+        /* A camera ray, which carries all of what it shows. */
+        const vbool at_once = escaped & vbool_of_uint(path->depth == splat_uint(1));
+        if (has_backdrop(scene->sky))
+            light = choose3(at_once, backdrop_radiance(scene->sky, path->origin.high, path->direction), light);
         path->radiance = choose3(escaped, add3(path->radiance, light), path->radiance);
+        path->depth = choose_uint(at_once, splat_uint(1u + MISSED_MARK), path->depth);
         path->alive = path->alive & vbool_not(escaped);
     }
     if (!any_lane(met)) return;

@@ -7,7 +7,7 @@ typedef struct Path {
     Vec3 direction;
     Vec3 throughput, radiance;
     SampleKey key;
-    vuint depth;    /* ray segments traced */
+    vuint depth;    /* ray segments traced; of a path that its camera ray ended in the open, with MISSED_MARK */
     vuint own_slot; /* of the sphere being left */
     vbool inward;   /* it is left into its inside */
     vbool alive;

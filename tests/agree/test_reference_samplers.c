@@ -100,16 +100,17 @@ static void camera(void **state) {
     scene_camera->pixel_sampling = BP_PIXEL_SQUARE;
     scene_camera->lens_radius = 0.25;
     const Camera prepared = bp_ref_camera(scene_camera);
+    double height;
     Random random = random_stream(12, 0, 0);
     for (size_t i = 0; i < COUNT; ++i) {
-        const Vec o = bp_ref_camera_ray(&prepared, 1, 2, &random).origin;
+        const Vec o = bp_ref_camera_ray(&prepared, 1, 2, &random, &height).origin;
         assert_true(o.z == 0);
         points[2 * i] = (o.x * o.x + o.y * o.y) / (0.25 * 0.25);
         points[2 * i + 1] = turn(o.y, o.x);
     }
     assert_uniform("lens", 2);
     for (size_t i = 0; i < COUNT; ++i) {
-        const Ray ray = bp_ref_camera_ray(&prepared, 1, 2, &random);
+        const Ray ray = bp_ref_camera_ray(&prepared, 1, 2, &random, &height);
         const Vec target = add(ray.origin, ray.direction); /* on the plane in focus */
         points[2 * i] = target.x + 1;                      /* pixel column 1 spans -1 .. 0 */
         points[2 * i + 1] = -target.y;                     /* row 2 spans 0 .. -1 */

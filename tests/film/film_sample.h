@@ -36,6 +36,8 @@ static BpFilm *make(void) {
                                a->fine_sums[3 * cell + c] = (int64_t)(data_bits(1000 + 3 * cell + c) >> 2);
     }
     a->job = (struct BpSampleRange){0, UINT64_C(1) << 32};
+    assert_int_equal(bp_film_add_met(a, NULL), BP_OK);
+    for (size_t i = 0; i < 15; i++) a->met[i] = i % 3 + 1; /* no pixel has fewer samples than 3 */
     a->pixel_segments = calloc(15, sizeof *a->pixel_segments);
     assert_int_equal(bp_film_add_aovs(a, NULL), BP_OK);
     for (size_t i = 0; i < 45; i++) {

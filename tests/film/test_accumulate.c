@@ -57,7 +57,7 @@ static int close_folder(void **state) {
 typedef struct Pixel {
     cl_long sums[REPLICATES * 3], fine_sums[REPLICATES * 3];
     cl_uint counts[REPLICATES];
-    cl_ulong tallies[3];
+    cl_ulong tallies[TALLIES];
 } Pixel;
 
 /* Folds `count` samples of one pixel, starting at absolute number `first`, into the pixel, which keeps what
@@ -101,7 +101,7 @@ static void fold_scaled(const Folder *folder, const float *samples, cl_uint coun
 
 /* The same at SCALE, for samples that need no fine sums. */
 static void fold(const Folder *folder, const float *samples, cl_uint count, cl_uint first,
-                 cl_long sums[REPLICATES * 3], cl_uint counts[REPLICATES], cl_ulong tallies[3]) {
+                 cl_long sums[REPLICATES * 3], cl_uint counts[REPLICATES], cl_ulong tallies[TALLIES]) {
     Pixel pixel = {{0}, {0}, {0}, {0}};
     memcpy(pixel.sums, sums, sizeof pixel.sums);
     memcpy(pixel.counts, counts, sizeof pixel.counts);
@@ -110,6 +110,27 @@ static void fold(const Folder *folder, const float *samples, cl_uint count, cl_u
     memcpy(sums, pixel.sums, sizeof pixel.sums);
     memcpy(counts, pixel.counts, sizeof pixel.counts);
     memcpy(tallies, pixel.tallies, sizeof pixel.tallies);
+}
+
+/* A path whose camera ray met nothing has one segment and a mark; only valid samples count as such. */
+static void what_met_nothing_is_counted(void **state) {
+    float samples[12][4];
+    for (int i = 0; i < 12; ++i) {
+        for (int c = 0; c < 3; ++c) samples[i][c] = 0.25f;
+        samples[i][3] = 1000000.5f; /* as long as a path can be, and cut */
+        if (i % 3 == 0) samples[i][3] = 1.0f + (float)MISSED_MARK;
+    }
+    for (int careful = 0; careful < 2; ++careful) { /* 0, 3, 6, 9, and of these 3 and 9 are left out */
+        if (careful) samples[3][0] = NAN, samples[9][2] = -1, samples[4][1] = INFINITY;
+        cl_long sums[REPLICATES * 3] = {0};
+        cl_uint counts[REPLICATES] = {0};
+        cl_ulong tallies[TALLIES] = {0};
+        fold(*state, &samples[0][0], 12, 0, sums, counts, tallies);
+        assert_int_equal(tallies[TALLY_SEGMENTS], 8 * 1000000 + 4);
+        assert_int_equal(tallies[TALLY_CUT], 8);
+        assert_int_equal(tallies[TALLY_INVALID], careful ? 3 : 0);
+        assert_int_equal(tallies[TALLY_MISSED], careful ? 2 : 4);
+    }
 }
 
 static void invalid_samples_are_left_out(void **state) {
@@ -128,7 +149,7 @@ static void invalid_samples_are_left_out(void **state) {
     samples[7][3] = 50.5f; /* cut by the depth cap: valid */
     cl_long sums[REPLICATES * 3] = {0};
     cl_uint counts[REPLICATES] = {0};
-    cl_ulong tallies[3] = {0};
+    cl_ulong tallies[TALLIES] = {0};
     fold(*state, &samples[0][0], 12, 0, sums, counts, tallies);
     assert_int_equal(tallies[0], 11 * 3 + 50);
     assert_int_equal(tallies[1], 1);
@@ -149,7 +170,7 @@ static void replicate_is_sample_modulo(void **state) {
     float samples[3][4] = {{0.5f, 0, 0, 1}, {0, 0.5f, 0, 1}, {0, 0, 0.5f, 1}};
     cl_long sums[REPLICATES * 3] = {0};
     cl_uint counts[REPLICATES] = {0};
-    cl_ulong tallies[3] = {0};
+    cl_ulong tallies[TALLIES] = {0};
     fold(*state, &samples[0][0], 3, 6, sums, counts, tallies); /* numbers 6, 7, 8 */
     const cl_uint expected[REPLICATES] = {1, 0, 1, 1};
     for (cl_uint k = 0; k < REPLICATES; ++k) assert_int_equal(counts[k], expected[k]);
@@ -166,7 +187,7 @@ static void a_million_equal_samples_keep_their_mean(void **state) {
     for (cl_uint i = 0; i < count * 4; ++i) samples[i] = i % 4 == 3u ? 1.0f : 0.1f;
     cl_long sums[REPLICATES * 3] = {0};
     cl_uint counts[REPLICATES] = {0};
-    cl_ulong tallies[3] = {0};
+    cl_ulong tallies[TALLIES] = {0};
     fold(*state, samples, count, 0, sums, counts, tallies);
     double total = 0;
     for (cl_uint k = 0; k < REPLICATES; ++k) total += (double)sums[k * 3];
@@ -180,7 +201,7 @@ static void a_million_equal_samples_keep_their_mean(void **state) {
     const cl_uint part = 333333;
     cl_long parts[REPLICATES * 3] = {0};
     cl_uint part_counts[REPLICATES] = {0};
-    cl_ulong part_tallies[3] = {0};
+    cl_ulong part_tallies[TALLIES] = {0};
     fold(*state, samples + (size_t)part * 4, count - part, part, parts, part_counts, part_tallies);
     fold(*state, samples, part, 0, parts, part_counts, part_tallies);
     assert_memory_equal(sums, parts, sizeof sums);
@@ -254,6 +275,7 @@ static void samples_too_dim_are_marked(void **state) {
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(invalid_samples_are_left_out),
+        cmocka_unit_test(what_met_nothing_is_counted),
         cmocka_unit_test(replicate_is_sample_modulo),
         cmocka_unit_test(a_million_equal_samples_keep_their_mean),
         cmocka_unit_test(dim_samples_are_kept),

@@ -71,13 +71,16 @@ static void wrong_members_are_named(void **state) {
     static const struct {
         const char *old, *new, *reason;
     } cases[] = {
-        {"\"ballpark_accumulator\": 3", "\"ballpark_accumulator\": 0", "should be a whole number from 1"},
-        {"\"ballpark_accumulator\": 3", "\"ballpark_accumulator\": 4",
-         "has version 4 of the format, but this program reads versions 1 to 3: use a newer Ballpark"},
-        {"\"ballpark_accumulator\": 3", "\"ballpark_accumulator\": 2", "is too long: "},
-        {"\"aovs\": true", "\"aovs\": false", "too long"},
+        {"\"ballpark_accumulator\": 4", "\"ballpark_accumulator\": 0", "should be a whole number from 1"},
+        {"\"ballpark_accumulator\": 4", "\"ballpark_accumulator\": 5",
+         "has version 5 of the format, but this program reads versions 1 to 4: use a newer Ballpark"},
+        {"\"ballpark_accumulator\": 4", "\"ballpark_accumulator\": 2", "is too long: "},
+        {"\"ballpark_accumulator\": 4", "\"ballpark_accumulator\": 3", "too long"},
+        {"\"alpha\": true", "\"alpha\": false", "too long"},
+        {"\"alpha\": true", "\"alpha\": 1", "\"alpha\""},
+        {"\"aovs\": true", "\"aovs\": false", "the alpha of pixel 0 is above 1"},
         {"\"aovs\": true", "\"aovs\": 1", "\"aovs\""},
-        {"\"pixel_segments\": true", "\"pixel_segments\": false", "too long"},
+        {"\"pixel_segments\": true", "\"pixel_segments\": false", "the alpha of pixel 0 is above 1"},
         {"\"pixel_segments\": true", "\"pixel_segments\": null", "\"pixel_segments\""},
         {"\"decision_bytes\": 50", "\"decision_bytes\": 49", "too long"},
         {"\"decision_bytes\": 50", "\"decision_bytes\": 51", "truncated"},
@@ -218,6 +221,9 @@ static void wrong_numbers_are_refused(void **state) {
     film->albedo[3 * 8 + 1] = INFINITY;
     refuse_film(&files, film, "the albedo of pixel 8 is no number");
     film->albedo[3 * 8 + 1] = 0;
+    film->met[8] = 5; /* of 4 samples */
+    refuse_film(&files, film, "the alpha of pixel 8 is above 1");
+    film->met[8] = 4;
     assert_int_equal(bp_film_write(film, files.bad, NULL), BP_OK);
     BpFilm *read = NULL;
     assert_int_equal(bp_film_read(files.bad, &read, NULL), BP_OK);

@@ -43,6 +43,8 @@ static void assert_same(const BpFilm *a, const BpFilm *b) {
     }
     assert_int_equal(a->pixel_segments == NULL, b->pixel_segments == NULL);
     if (a->pixel_segments != NULL) assert_memory_equal(a->pixel_segments, b->pixel_segments, pixels * 8);
+    assert_int_equal(a->met == NULL, b->met == NULL);
+    if (a->met != NULL) assert_memory_equal(a->met, b->met, pixels * 8);
     assert_int_equal(a->plan == NULL, b->plan == NULL);
     if (a->plan == NULL) return;
     assert_int_equal(a->plan->adaptive, b->plan->adaptive);
@@ -87,6 +89,10 @@ static void a_large_one_loads(void **state) {
         for (size_t c = 0; c < 3; c++) a->sums[3 * cell + c] = (int64_t)(data_bits(3 * cell + c) >> 3);
     }
     assert_int_equal(bp_film_write(a, temp_path(path, folder, "a.bpa"), &err), BP_OK);
+    size_t size = 0;
+    char *bytes = (char *)temp_read(path, &size);
+    assert_memory_equal(bytes, "{\"ballpark_accumulator\": 3, ", 27); /* what older programs read too */
+    free(bytes);
     if (bp_film_read(path, &b, &err) != BP_OK) fail_msg("%s", err.message);
     free(a->title);
     a->title = strdup("");
@@ -137,7 +143,7 @@ static void the_layout_is_as_documented(void **state) {
     FILE *out = open_memstream(&bytes, &size);
     assert_int_equal(bp_film_write_stream(a, out, NULL), BP_OK);
     fclose(out);
-    assert_memory_equal(bytes, "{\"ballpark_accumulator\": 3, ", 27);
+    assert_memory_equal(bytes, "{\"ballpark_accumulator\": 4, ", 27);
     const uint8_t *line_end = memchr(bytes, '\n', size);
     assert_non_null(line_end);
     uint8_t numbers[10000];
@@ -152,6 +158,7 @@ static void the_layout_is_as_documented(void **state) {
     at = check_planes(at, a->normal, 4, 45);
     at = check_planes(at, a->albedo, 4, 45);
     at = check_planes(at, a->pixel_segments, 8, 15);
+    at = check_planes(at, a->met, 8, 15);
     at = check_planes(at, a->plan->decisions, 1, 50);
     assert_int_equal(at - numbers, count);
     /* The reflected CRC-32 with polynomial 0x04c11db7 (ISO 3309), bit by bit. */

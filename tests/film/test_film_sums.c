@@ -156,6 +156,36 @@ static void refuse_merge(BpFilm *into, const BpFilm *from, BpStatus expected, co
     assert_int_equal(into->counts[0], count);
 }
 
+/* The rays that met something are counted, and the picture's alpha is their share of all; a film that has no
+ * such counts is of another scene. */
+static void alpha_is_added(void **state) {
+    (void)state;
+    BpFilm *one = render(0, 4), *other = render(4, 8), *none = render(12, 2);
+    assert_int_equal(bp_film_add_met(one, NULL), BP_OK);
+    assert_int_equal(bp_film_add_met(other, NULL), BP_OK);
+    for (size_t pixel = 0; pixel < 35; pixel++) {
+        one->met[pixel] = pixel % 5;
+        other->met[pixel] = pixel % 9;
+    }
+    refuse_merge(one, none, BP_ERR_USAGE, "one has an alpha and the other has none");
+    refuse_merge(none, one, BP_ERR_USAGE, "one has an alpha and the other has none");
+    assert_int_equal(bp_film_merge(one, other, NULL), BP_OK);
+    BpPicture picture;
+    assert_int_equal(bp_film_picture(one, &picture, NULL), BP_OK);
+    for (size_t pixel = 0; pixel < 35; pixel++) {
+        assert_int_equal(one->met[pixel], pixel % 5 + pixel % 9);
+        assert_true(picture.samples[pixel] == 12);
+        assert_true(picture.alpha[pixel] == (float)((double)one->met[pixel] / 12));
+    }
+    bp_picture_clear(&picture);
+    assert_int_equal(bp_film_picture(none, &picture, NULL), BP_OK);
+    assert_null(picture.alpha);
+    bp_picture_clear(&picture);
+    bp_film_destroy(&one);
+    bp_film_destroy(&other);
+    bp_film_destroy(&none);
+}
+
 static void what_differs_is_named(void **state) {
     (void)state;
     BpFilm *a = render(0, 8), *b = render(8, 8);
@@ -265,6 +295,7 @@ int main(void) {
         cmocka_unit_test(two_halves_are_the_whole),
         cmocka_unit_test(the_order_of_merges_does_not_matter),
         cmocka_unit_test(what_is_no_sum),
+        cmocka_unit_test(alpha_is_added),
         cmocka_unit_test(what_differs_is_named),
         cmocka_unit_test(ranges_join_and_overlaps_are_refused),
         cmocka_unit_test(overflow_is_out_of_reach),

@@ -53,8 +53,9 @@ static void change_member(json_t *header, uint32_t *state) {
         break;
     }
     case 3: {
-        static const char *const switches[] = {"fine_sums", "coarse", "partial", "aovs", "pixel_segments"};
-        json_object_set_new(header, switches[next(state) % 5], json_boolean(next(state) % 2 == 0));
+        static const char *const switches[] = {"fine_sums", "coarse",         "partial",
+                                               "aovs",      "pixel_segments", "alpha"};
+        json_object_set_new(header, switches[next(state) % 6], json_boolean(next(state) % 2 == 0));
         break;
     }
     case 4: {
@@ -120,6 +121,7 @@ static size_t body_length(const json_t *header, size_t room) {
         const json_int_t decisions =
             json_integer_value(json_object_get(json_object_get(header, "plan"), "decision_bytes"));
         bytes += pixels * ((says(header, "aovs") ? AOV_BYTES : 0) + (says(header, "pixel_segments") ? 8 : 0));
+        if (version_of(header) >= 4 && says(header, "alpha")) bytes += pixels * 8;
         if (decisions < 0 || decisions > 65535) return 0;
         bytes += (uint64_t)decisions;
     }

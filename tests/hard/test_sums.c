@@ -13,7 +13,7 @@
 typedef struct Folded {
     int64_t sums[4 * 3], fine_sums[4 * 3];
     uint32_t counts[4];
-    uint64_t tallies[3];
+    uint64_t tallies[TALLIES];
 } Folded;
 
 /* The product's kernel `accumulate` on `count` samples of one pixel, `parts` chunks, 4 replicates. */

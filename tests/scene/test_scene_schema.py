@@ -17,8 +17,9 @@ except ImportError:
 GOOD = {
     "format": 1, "title": "t", "source": "s",
     "camera": {"image_width": 400, "aspect_ratio": [16, 9], "vfov": 20, "lookfrom": [13, 2, 3], "aperture": 0.1},
-    "background": {"bottom": [0, 0, 0], "discs": [{"direction": [1, 2, 0], "half_angle": 0.25, "radiance": [9, 9, 8]},
+    "background": {"bottom": [0, 0, 0], "up": [0, 0, 1], "discs": [{"direction": [1, 2, 0], "half_angle": 0.25, "radiance": [9, 9, 8]},
                                                   {"direction": [0, 1, 0], "half_angle": 90, "radiance": [1, 1, 1], "visible_to_camera": False}]},
+    "backdrop": {"bottom": [0, 0, 0], "top": [1, 1, 1]},
     "transfer": "srgb",
     "materials": {
         "a": {"type": "lambertian", "albedo": [0, 0.5, 1], "scatter": "hemisphere", "emit": [1, 1, 1]},
@@ -40,12 +41,13 @@ GOOD = {
 BAD = [
     (["camera"], None), (["camera"], []), (["sphere"], []), (["format"], 2), (["title"], 1),
     (["transfer"], "gamma"), (["background"], [0, 0]), (["background"], {"bottom": [0, 0, -1]}),
-    (["background"], {"botom": [0, 0, 1]}),
+    (["background"], {"botom": [0, 0, 1]}), (["background", "up"], [0, 1]), (["background", "up"], "z"),
     (["background", "discs"], {}), (["background", "discs", 0, "direction"], [0, 0, 0]), (["background", "discs", 0, "direction"], None),
     (["background", "discs", 0, "half_angle"], 0), (["background", "discs", 0, "half_angle"], 90.5),
     (["background", "discs", 0, "half_angle"], None), (["background", "discs", 0, "radiance"], [1, -1, 1]),
     (["background", "discs", 0, "radiance"], None), (["background", "discs", 0, "visible_to_camera"], 1),
     (["background", "discs", 0, "angle"], 1), (["background", "discs"], [{"direction": [0, 1, 0], "half_angle": 1, "radiance": [1, 1, 1]}] * 33),
+    (["backdrop"], "nothing"), (["backdrop"], {"bottom": [0, 0, 0]}), (["backdrop", "top"], [0, 0, -1]), (["backdrop", "up"], [0, 1, 0]),
     (["camera", "image_width"], 0), (["camera", "image_width"], 1e9), (["camera", "image_width"], 1.5),
     (["camera", "image_width"], "400"), (["camera", "image_height"], 100), (["camera", "aspect_ratio"], 0),
     (["camera", "aspect_ratio"], [16, 9, 1]), (["camera", "vfov"], 0), (["camera", "vfov"], 180),
