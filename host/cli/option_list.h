@@ -69,6 +69,9 @@ enum {
     OPTION(FIT, "fit", 0, BP_TRACERS | BP_SCENE,                                                             \
            "move the camera so that particles, or all spheres where there are none, fill the picture", bool, \
            fit, BP_FLAG)                                                                                     \
+    OPTION(LIGHT, "light", 0, BP_TRACERS | BP_SCENE,                                                         \
+           "light that stands in the camera's frame, instead of the scene's; sky: the scene's background",   \
+           const char *, light, BP_WORD("soft", "studio", "rembrandt", "overhead", "sky"))                   \
     RENDER_OPTION(DEPTH, "depth", 0, BP_TRACERS,                                                             \
                   "maximum number of ray segments per path; 0: black, 1: only sky and lamps", uint32_t,      \
                   max_depth, BP_WHOLE("N", 0, BP_DEPTH_MAX))                                                 \

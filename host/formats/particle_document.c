@@ -8,8 +8,6 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* A dome of one radiance: light from everywhere, which shows depth as shade in every hollow (ambient
- * occlusion), has the least noise, and does not depend on what is up. */
 static const char form[] =
     "{\n"
     "  \"format\": 1,\n"
@@ -19,7 +17,7 @@ static const char form[] =
     "    \"image_width\": 800, \"aspect_ratio\": [4, 3], \"samples_per_pixel\": 32, \"max_depth\": 20,\n"
     "    \"vfov\": 30, \"fit\": \"particles\", \"view\": \"three-quarter\", \"margin\": 0.05\n"
     "  },\n"
-    "  \"background\": [1, 1, 1],\n"
+    "  \"light\": \"soft\",\n"
     "  \"transfer\": \"srgb\",\n"
     "  \"particles\": [\n"
     "    { \"file\": %s }\n"

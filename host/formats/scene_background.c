@@ -1,8 +1,10 @@
 /* scene_background.c: what rays see that meet nothing, of a scene document.
  *
- * In:    the nodes of "background" and "backdrop".   Out: these parts of a BpScene; ranges are checked by
- * scene_validate.c.   Knows: the grammar.   Does not know: the camera. */
+ * In:    the nodes of "background", "backdrop" and "light".   Out: these parts of a BpScene; ranges are
+ * checked by scene_validate.c.   Knows: the grammar.   Does not know: the camera. */
 #include "scene_parse.h"
+
+#include "scene/light.h"
 
 #include <string.h>
 
@@ -92,4 +94,23 @@ BpStatus bp_parse_backdrop(const BpNode *node, BpScene *scene, BpError *err) {
     const BpNode top = bp_node_member(node, "top");
     BP_TRY(bp_node_vector(&bottom, scene->backdrop_bottom, err));
     return bp_node_vector(&top, scene->backdrop_top, err);
+}
+
+BpStatus bp_parse_light(const BpNode *root, const char *name, BpScene *scene, BpError *err) {
+    const BpNode node = bp_node_member(root, "light");
+    const BpNode background = bp_node_member(root, "background");
+    const BpNode backdrop = bp_node_member(root, "backdrop");
+    int choice = BP_LIGHT_SKY;
+    BP_TRY(bp_node_choice(&node, bp_light_names, BP_LIGHT_COUNT, &choice, err));
+    if (choice != BP_LIGHT_SKY && background.value != NULL && name == NULL)
+        return bp_node_fail(
+            &node, BP_PART_NAME, err,
+            "found beside \"background\", which is light too; expected one of the two: remove one");
+    for (int i = 0; i < BP_LIGHT_COUNT && name != NULL; i++)
+        if (strcmp(name, bp_light_names[i]) == 0) choice = i;
+    scene->light = (BpLight)choice;
+    if (scene->light == BP_LIGHT_SKY || backdrop.value != NULL) return BP_OK;
+    scene->backdrop = BP_BACKDROP_COLORS;
+    for (int c = 0; c < 3; c++) scene->backdrop_bottom[c] = scene->backdrop_top[c] = 1;
+    return BP_OK;
 }

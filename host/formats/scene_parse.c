@@ -13,6 +13,7 @@
 #include "particles/particles.h"
 
 #include "scene/fit.h"
+#include "scene/light.h"
 #include "scene/material.h"
 #include "scene/scene_fault.h"
 
@@ -307,9 +308,9 @@ static BpStatus choose_fresnel(const BpSceneChanges *changes, BpScene *scene, Bp
 }
 
 static BpStatus parse_body(const BpNode *root, const BpSceneChanges *changes, BpScene *scene, BpError *err) {
-    static const char *const names[] = {"format",     "title",    "source",    "camera",
-                                        "background", "backdrop", "transfer",  "materials",
-                                        "spheres",    "clouds",   "particles", "$schema"};
+    static const char *const names[] = {"format",   "title",     "source",   "camera",    "background",
+                                        "backdrop", "light",     "transfer", "materials", "spheres",
+                                        "clouds",   "particles", "$schema"};
     BP_TRY(bp_node_object(root, names, BP_COUNT(names), err));
     BP_TRY(bp_node_require(root, "camera", "one, such as \"camera\": { \"image_width\": 400 }", err));
     BP_TRY(parse_head(root, scene, err));
@@ -323,6 +324,7 @@ static BpStatus parse_body(const BpNode *root, const BpSceneChanges *changes, Bp
     BP_TRY(bp_parse_camera(&camera, &scene->camera, err));
     BP_TRY(bp_parse_background(&background, scene, err));
     BP_TRY(bp_parse_backdrop(&backdrop, scene, err));
+    BP_TRY(bp_parse_light(root, changes->light, scene, err));
     BP_TRY(parse_materials(&materials, scene, err));
     BpMaterialIndex index = {0};
     BpStatus status = index_materials(scene, &index, err);
@@ -339,6 +341,9 @@ static BpStatus parse_body(const BpNode *root, const BpSceneChanges *changes, Bp
     }
     if (changes->frame_count != NULL) return BP_OK;
     if ((changes->flags & BP_PARSE_NO_CLOUDS) == 0) BP_TRY(fit_camera(&camera, changes, scene, err));
+    if ((changes->flags & BP_PARSE_MADE) != 0 && scene->light == BP_LIGHT_SKY)
+        scene->background_up[scene->up] = 1; /* the world's */
+    bp_light_place(scene);
     return refuse_faults(root, scene, err);
 }
 

@@ -39,6 +39,7 @@ typedef struct BpSceneChanges {
     double range[2];
     const char *const *set; /* Optional: members of the document, see scene_changes.h */
     size_t set_count;
+    const char *light;      /* Optional. A name of light.h, instead of the document's light or background */
     const char *fresnel;    /* Optional. "schlick" or "exact", for all materials that have such a member */
     size_t *fresnel_counts; /* Optional: in how many it was different, and how many have it */
 } BpSceneChanges;
@@ -58,6 +59,8 @@ BpStatus bp_scene_parse_with(const char *text, size_t length, const char *name, 
 /* What rays see that meet nothing (scene_background.c). */
 BpStatus bp_parse_background(const BpNode *node, BpScene *scene, BpError *err);
 BpStatus bp_parse_backdrop(const BpNode *node, BpScene *scene, BpError *err);
+/* `name`: Optional, stands for the node. After the backdrop, which is white where a light has none. */
+BpStatus bp_parse_light(const BpNode *root, const char *name, BpScene *scene, BpError *err);
 
 BpStatus bp_parse_camera(const BpNode *node, BpCamera *camera, BpError *err);
 BpStatus bp_parse_background(const BpNode *node, BpScene *scene, BpError *err);

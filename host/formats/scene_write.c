@@ -7,6 +7,7 @@
 
 #include "base/names.h"
 #include "scene/fit.h"
+#include "scene/light.h"
 #include "scene/material.h"
 #include "scene_parse.h"
 
@@ -265,7 +266,10 @@ BpStatus bp_scene_print(const BpScene *scene, FILE *out, BpError *err) {
     BP_TRY(put_text(out, scene->source, err));
     fputs(",\n", out);
     bp_scene_print_camera(&scene->camera, out);
-    put_background(out, scene);
+    if (scene->light == BP_LIGHT_SKY)
+        put_background(out, scene);
+    else
+        fprintf(out, ",\n  \"light\": \"%s\"", bp_light_names[scene->light]);
     put_backdrop(out, scene);
     fprintf(out, ",\n  \"transfer\": \"%s\"", bp_transfer_names[scene->transfer]);
     if (written_materials(scene) > 0) BP_TRY(put_materials(out, scene, err));

@@ -104,6 +104,16 @@ typedef enum BpBackdrop {
     BP_BACKDROP_NONE    /* nothing: black, and the picture has an alpha */
 } BpBackdrop;
 
+/* Light by its name, which stands in the camera's frame (light.h). */
+typedef enum BpLight {
+    BP_LIGHT_SKY, /* none: the background as the scene has it */
+    BP_LIGHT_SOFT,
+    BP_LIGHT_STUDIO,
+    BP_LIGHT_REMBRANDT,
+    BP_LIGHT_OVERHEAD,
+    BP_LIGHT_COUNT
+} BpLight;
+
 /* A file of points: spheres from `first` on, up to the next file's or the end, one a vertex; of particles,
  * those that are shown, then the beads of bonds and cell. */
 typedef struct BpPointFile {
@@ -124,6 +134,7 @@ struct BpScene {
     char *path; /* where it came from, for messages */
     char *title, *source;
     BpCamera camera;
+    BpLight light;                                  /* that the background was made by */
     double background_bottom[3], background_top[3]; /* down and up; linear in between */
     double background_up[3];                        /* which way up is, of any length; 0: the y axis */
     BpDisc discs[BP_DISCS_MAX];                     /* where they overlap, they add up */

@@ -19,6 +19,7 @@ GOOD = {
     "camera": {"image_width": 400, "aspect_ratio": [16, 9], "vfov": 20, "lookfrom": [13, 2, 3], "aperture": 0.1},
     "background": {"bottom": [0, 0, 0], "up": [0, 0, 1], "discs": [{"direction": [1, 2, 0], "half_angle": 0.25, "radiance": [9, 9, 8]},
                                                   {"direction": [0, 1, 0], "half_angle": 90, "radiance": [1, 1, 1], "visible_to_camera": False}]},
+    "light": "sky",
     "backdrop": {"bottom": [0, 0, 0], "top": [1, 1, 1]},
     "transfer": "srgb",
     "materials": {
@@ -47,7 +48,7 @@ BAD = [
     (["background", "discs", 0, "half_angle"], None), (["background", "discs", 0, "radiance"], [1, -1, 1]),
     (["background", "discs", 0, "radiance"], None), (["background", "discs", 0, "visible_to_camera"], 1),
     (["background", "discs", 0, "angle"], 1), (["background", "discs"], [{"direction": [0, 1, 0], "half_angle": 1, "radiance": [1, 1, 1]}] * 33),
-    (["backdrop"], "nothing"), (["backdrop"], {"bottom": [0, 0, 0]}), (["backdrop", "top"], [0, 0, -1]), (["backdrop", "up"], [0, 1, 0]),
+    (["light"], "sun"), (["backdrop"], "nothing"), (["backdrop"], {"bottom": [0, 0, 0]}), (["backdrop", "top"], [0, 0, -1]), (["backdrop", "up"], [0, 1, 0]),
     (["camera", "image_width"], 0), (["camera", "image_width"], 1e9), (["camera", "image_width"], 1.5),
     (["camera", "image_width"], "400"), (["camera", "image_height"], 100), (["camera", "aspect_ratio"], 0),
     (["camera", "aspect_ratio"], [16, 9, 1]), (["camera", "vfov"], 0), (["camera", "vfov"], 180),
