@@ -8,7 +8,8 @@
  * --precision double. Packed structs hold reals only or uints only, so that narrowing a whole buffer is one
  * loop (pack.c) and no padding can appear. All sizes are multiples of 16 bytes.
  *
- * All points are relative to the camera's position (lookfrom), subtracted in double before narrowing. */
+ * All points are relative to the camera's position (bp_camera_origin), subtracted in double before narrowing.
+ */
 #ifndef BP_SCENE_TYPES_H
 #define BP_SCENE_TYPES_H
 
@@ -24,11 +25,16 @@ typedef uint packed_uint;
 #endif
 
 /* The pinhole or thin-lens camera. A ray leaves `lens_right * x + lens_up * y`, (x, y) in the unit disk,
- * towards `corner + right * column + down * row`, a point of the plane in focus. Rows run downwards. */
+ * towards `corner + right * column + down * row`, a point of the plane in focus. Rows run downwards.
+ *
+ * With ahead[3] = 1 it is orthographic: each ray has a lens of its own, and `ahead` leads from there to the
+ * plane in focus. Rays begin nearer to the spheres (bp_camera_origin), on a plane for which `corner` and so on
+ * give the middle of what comes through a lens; it has shrunk to the share corner[3] by there. */
 typedef struct PackedCamera {
     real corner[4];                 /* upper left corner of pixel (0, 0) */
     real right[4];                  /* one pixel to the right */
     real down[4];                   /* one pixel down */
+    real ahead[4];                  /* straight to the plane in focus; whether the camera is orthographic */
     real lens_right[4], lens_up[4]; /* scaled by the lens radius */
     real inward[4];   /* unit vector to the centre of the sphere that a pinhole stands on, or 0 */
     real own_slot[4]; /* the slot of that sphere, in two halves (a float counts to 2^24): its low 16 bits,
@@ -40,7 +46,7 @@ typedef struct PackedCamera {
  *
  * A camera ray shows the backdrop instead, where there is one: `backdrop_bottom[3]` is 1, or 0. It is linear
  * over the picture's height, so a ray's place there is asked for: where it crosses the plane in focus, whose
- * points have a scalar product of 1 with `view_ahead`, and with `view_up` 1 at the upper edge of the picture,
+ * points have a scalar product of view_ahead[3] with `view_ahead`, and with `view_up` 1 at the upper edge of the picture,
  * -1 at the lower. */
 typedef struct PackedSky {
     real bottom[4], top[4], up[4];
@@ -167,7 +173,7 @@ enum { TOTAL_REFLECT, TOTAL_ABSORB, TOTAL_REFRACT };
 
 #ifdef BP_HOST
 _Static_assert(sizeof(real) == 8, "the host packs in double");
-_Static_assert(sizeof(PackedCamera) == 28 * sizeof(real), "PackedCamera has padding");
+_Static_assert(sizeof(PackedCamera) == 32 * sizeof(real), "PackedCamera has padding");
 _Static_assert(sizeof(PackedSky) == 28 * sizeof(real), "PackedSky has padding");
 _Static_assert(sizeof(PackedDisc) == 12 * sizeof(real), "PackedDisc has padding");
 _Static_assert(sizeof(PackedMaterial) == 8 * sizeof(real), "PackedMaterial has padding");

@@ -69,6 +69,9 @@ enum {
     OPTION(FIT, "fit", 0, BP_TRACERS | BP_SCENE,                                                             \
            "move the camera so that particles, or all spheres where there are none, fill the picture", bool, \
            fit, BP_FLAG)                                                                                     \
+    OPTION(PROJECTION, "projection", 0, BP_TRACERS | BP_SCENE,                                               \
+           "parallel rays, by which nothing looks smaller for being far, or those of an eye", const char *,  \
+           projection, BP_WORD("perspective", "orthographic"))                                               \
     OPTION(LIGHT, "light", 0, BP_TRACERS | BP_SCENE,                                                         \
            "light that stands in the camera's frame, instead of the scene's; sky: the scene's background",   \
            const char *, light, BP_WORD("soft", "studio", "rembrandt", "overhead", "sky"))                   \

@@ -119,6 +119,8 @@ static uint64_t mix_camera(uint64_t hash, const BpCamera *camera) {
     hash = mix_reals(hash, camera->vup, 3);
     hash = mix_real(hash, camera->lens_radius);
     if (camera->lens_radius > 0) hash = mix_real(hash, camera->focus_dist);
+    if (camera->projection == BP_ORTHOGRAPHIC)
+        hash = mix_real(mix(hash, 0x6f7274686fu), bp_camera_plane_height(camera));
     return mix(hash, (uint64_t)camera->pixel_sampling);
 }
 

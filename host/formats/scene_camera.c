@@ -98,11 +98,27 @@ static BpStatus read_view(const BpNode *node, BpCamera *camera, BpError *err) {
     return bp_node_wrong(node, "a direction to the camera, such as [1, 1, 1]", err);
 }
 
+static BpStatus read_projection(const BpNode *node, BpCamera *camera, BpError *err) {
+    const BpNode projection = bp_node_member(node, "projection");
+    const BpNode height = bp_node_member(node, "view_height");
+    int choice = BP_PERSPECTIVE;
+    BP_TRY(bp_node_choice(&projection, bp_projection_names, 2, &choice, err));
+    camera->projection = (BpProjection)choice;
+    BP_TRY(bp_node_number(&height, &camera->view_height, err));
+    if (height.value == NULL) return BP_OK;
+    if (camera->projection == BP_PERSPECTIVE)
+        return bp_node_fail(&height, BP_PART_NAME, err,
+                            "found without \"projection\": \"orthographic\", expected \"vfov\" instead");
+    if (!(camera->view_height >= BP_FOCUS_DIST_MIN && camera->view_height <= 2 * BP_HALF_HEIGHT_MAX))
+        return bp_node_wrong(&height, "how much the picture's height shows, above 0 and up to 2e14", err);
+    return BP_OK;
+}
+
 /* "fit" and what belongs to it. */
 static BpStatus read_fit(const BpNode *node, BpCamera *camera, BpError *err) {
     static const char *const fit_names[] = {"scene", "particles"};
     static const char *const without[] = {"view", "margin"}, *const beside[] = {"lookfrom", "lookat",
-                                                                                "focus_dist"};
+                                                                                "focus_dist", "view_height"};
     const BpNode fit = bp_node_member(node, "fit");
     const BpNode view = bp_node_member(node, "view");
     const BpNode margin = bp_node_member(node, "margin");
@@ -156,7 +172,9 @@ BpStatus bp_parse_camera(const BpNode *node, BpCamera *camera, BpError *err) {
                                         "pixel_sampling",
                                         "fit",
                                         "view",
-                                        "margin"};
+                                        "margin",
+                                        "projection",
+                                        "view_height"};
     static const char *const sampling_names[] = {[BP_PIXEL_SQUARE] = "square", [BP_PIXEL_CENTER] = "center"};
     bp_camera_defaults(camera);
     BP_TRY(bp_node_object(node, names, BP_COUNT(names), err));
@@ -177,6 +195,7 @@ BpStatus bp_parse_camera(const BpNode *node, BpCamera *camera, BpError *err) {
     BP_TRY(bp_node_vector(&vup, camera->vup, err));
     BP_TRY(bp_node_choice(&sampling, sampling_names, BP_COUNT(sampling_names), &choice, err));
     camera->pixel_sampling = (BpPixelSampling)choice;
+    BP_TRY(read_projection(node, camera, err));
     BP_TRY(read_fit(node, camera, err));
     return read_lens(node, camera, err);
 }

@@ -262,6 +262,7 @@ static BpStatus fit_camera(const BpNode *node, const BpSceneChanges *changes, Bp
         memcpy(camera->lookat, changes->camera->lookat, sizeof camera->lookat);
         memcpy(camera->vup, changes->camera->vup, sizeof camera->vup);
         camera->focus_dist = changes->camera->focus_dist;
+        camera->view_height = changes->camera->view_height;
         return BP_OK;
     }
     if (camera->fit == BP_FIT_NONE) return BP_OK;
@@ -322,6 +323,11 @@ static BpStatus parse_body(const BpNode *root, const BpSceneChanges *changes, Bp
     const BpNode clouds = bp_node_member(root, "clouds");
     const BpNode particles = bp_node_member(root, "particles");
     BP_TRY(bp_parse_camera(&camera, &scene->camera, err));
+    if (changes->projection != NULL)
+        scene->camera.projection = strcmp(changes->projection, bp_projection_names[BP_PERSPECTIVE]) == 0
+                                       ? BP_PERSPECTIVE
+                                       : BP_ORTHOGRAPHIC;
+    if (scene->camera.projection == BP_PERSPECTIVE) scene->camera.view_height = 0;
     BP_TRY(bp_parse_background(&background, scene, err));
     BP_TRY(bp_parse_backdrop(&backdrop, scene, err));
     BP_TRY(bp_parse_light(root, changes->light, scene, err));

@@ -39,6 +39,7 @@ typedef struct BpSceneChanges {
     double range[2];
     const char *const *set; /* Optional: members of the document, see scene_changes.h */
     size_t set_count;
+    const char *projection; /* Optional. "perspective" or "orthographic", instead of the document's */
     const char *light;      /* Optional. A name of light.h, instead of the document's light or background */
     const char *fresnel;    /* Optional. "schlick" or "exact", for all materials that have such a member */
     size_t *fresnel_counts; /* Optional: in how many it was different, and how many have it */

@@ -113,6 +113,13 @@ void bp_scene_print_camera(const BpCamera *camera, FILE *out) {
     fprintf(out, ", \"samples_per_pixel\": %u, \"max_depth\": %u,\n    \"vfov\": ",
             (unsigned)camera->samples_per_pixel, (unsigned)camera->max_depth);
     put_number(out, camera->vfov_degrees);
+    if (camera->projection == BP_ORTHOGRAPHIC) {
+        fputs(", \"projection\": \"orthographic\"", out);
+        if (camera->view_height > 0 && camera->fit == BP_FIT_NONE) {
+            fputs(", \"view_height\": ", out);
+            put_number(out, camera->view_height);
+        }
+    }
     if (camera->fit != BP_FIT_NONE) {
         put_fit(out, camera);
         return;

@@ -75,32 +75,33 @@ static Axes camera_axes(const BpCamera *camera) {
     return axes;
 }
 
-/* Of the part of the plane in focus that the picture shows. */
-static double plane_height(const BpCamera *camera) {
-    const double pi = 3.14159265358979323846;
-    return 2.0 * camera->focus_dist * tan(camera->vfov_degrees * (pi / 360.0));
-}
-
-static void pack_camera(const BpCamera *camera, PackedCamera *packed) {
+/* `moved`: see bp_camera_origin. */
+static void pack_camera(const BpCamera *camera, double moved, PackedCamera *packed) {
+    const bool orthographic = camera->projection == BP_ORTHOGRAPHIC;
     const Axes axes = camera_axes(camera);
     const double *const back = axes.back, *const right = axes.right, *const up = axes.up;
-    const double height = plane_height(camera);
+    const double height = bp_camera_plane_height(camera);
     const double pixel = height / camera->height; /* pixels are square */
     const double width = pixel * camera->width;
     *packed = (PackedCamera){0};
     for (int a = 0; a < 3; ++a) {
-        packed->corner[a] = 0.5 * (height * up[a] - width * right[a]) - camera->focus_dist * back[a];
+        packed->corner[a] =
+            0.5 * (height * up[a] - width * right[a]) - (orthographic ? 0 : camera->focus_dist) * back[a];
+        packed->ahead[a] = -camera->focus_dist * back[a];
         packed->right[a] = pixel * right[a];
         packed->down[a] = -pixel * up[a];
         packed->lens_right[a] = camera->lens_radius * right[a];
         packed->lens_up[a] = camera->lens_radius * up[a];
     }
+    packed->ahead[3] = orthographic;
+    packed->corner[3] = 1 - moved / camera->focus_dist;
 }
 
 /* Where a pinhole stands on a sphere: rays that leave the camera leave that sphere. From the points of a
  * lens, only a few of them on the surface, every sphere is met like any other. */
 static void pack_standpoint(const BpScene *scene, const BpTree *tree, PackedCamera *packed) {
-    const uint32_t slot = scene->camera.lens_radius > 0 ? NO_SLOT : tree->own_slot;
+    const bool one_place = scene->camera.lens_radius == 0 && scene->camera.projection == BP_PERSPECTIVE;
+    const uint32_t slot = one_place ? tree->own_slot : NO_SLOT;
     packed->own_slot[0] = slot & 0xffffu;
     packed->own_slot[1] = slot >> 16;
     if (slot == NO_SLOT) return;
@@ -114,30 +115,34 @@ static void pack_standpoint(const BpScene *scene, const BpTree *tree, PackedCame
     packed->own_slot[2] = 0x1p-49 * size + (tree->single_precision ? 0x1p-22 * fabs(sphere->radius) : 0);
 }
 
-static void pack_sky(const BpScene *scene, PackedSky *sky) {
+static void pack_sky(const BpScene *scene, double moved, PackedSky *sky) {
     const Axes axes = camera_axes(&scene->camera);
-    const double half = plane_height(&scene->camera) / 2;
+    const double half = bp_camera_plane_height(&scene->camera) / 2;
+    /* Numbers near 1; of parallel rays a plane that may lie anywhere. */
+    const bool orthographic = scene->camera.projection == BP_ORTHOGRAPHIC;
+    const double unit = orthographic ? 1 : scene->camera.focus_dist;
     *sky = (PackedSky){0};
     bp_background_up(scene, sky->up);
     for (int a = 0; a < 3; ++a) {
         sky->bottom[a] = scene->background_bottom[a];
         sky->top[a] = scene->background_top[a];
-        sky->view_ahead[a] = -axes.back[a] / scene->camera.focus_dist;
+        sky->view_ahead[a] = -axes.back[a] / unit;
         sky->view_up[a] = axes.up[a] / half;
         if (scene->backdrop != BP_BACKDROP_COLORS) continue; /* black, or not there */
         sky->backdrop_bottom[a] = scene->backdrop_bottom[a];
         sky->backdrop_top[a] = scene->backdrop_top[a];
     }
+    sky->view_ahead[3] = orthographic ? scene->camera.focus_dist - moved : 1;
     sky->top[3] = (double)scene->disc_count;
     sky->backdrop_bottom[3] = scene->backdrop != BP_BACKDROP_SKY;
 }
 
-static BpStatus pack_view(const BpScene *scene, BpPacked *packed, BpError *err) {
+static BpStatus pack_view(const BpScene *scene, double moved, BpPacked *packed, BpError *err) {
     PackedCamera camera;
     PackedSky sky;
-    pack_camera(&scene->camera, &camera);
+    pack_camera(&scene->camera, moved, &camera);
     pack_standpoint(scene, &packed->tree, &camera);
-    pack_sky(scene, &sky);
+    pack_sky(scene, moved, &sky);
     const size_t camera_reals = sizeof camera / sizeof(double), sky_reals = sizeof sky / sizeof(double);
     packed->camera = narrow((const double *)&camera, camera_reals, 1, packed->single_precision);
     packed->sky = narrow((const double *)&sky, sky_reals, 1, packed->single_precision);
@@ -271,8 +276,10 @@ BpStatus bp_scene_pack(const BpScene *scene, const BpTreeOptions *options, bool 
     *packed = (BpPacked){.single_precision = options->single_precision};
     BpStatus status = BP_OK;
     uint32_t *second = NULL;
-    BP_TRY_GOTO(status, bp_tree_build(scene, scene->camera.lookfrom, options, &packed->tree, err), cleanup);
-    BP_TRY_GOTO(status, pack_view(scene, packed, err), cleanup);
+    double origin[3];
+    const double moved = bp_camera_origin(scene, origin);
+    BP_TRY_GOTO(status, bp_tree_build(scene, origin, options, &packed->tree, err), cleanup);
+    BP_TRY_GOTO(status, pack_view(scene, moved, packed, err), cleanup);
     second = calloc(scene->material_count + 1, sizeof *second);
     if (second == NULL) {
         status = out_of_memory(scene, err);

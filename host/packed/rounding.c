@@ -15,10 +15,10 @@ static double as_float(double x) {
 }
 
 /* How far rounding may move the sphere's surface, in the scene's unit: by the centre and by the radius. */
-static double surface_shift(const BpScene *scene, const BpSphere *sphere) {
+static double surface_shift(const double origin[3], const BpSphere *sphere) {
     double square = 0;
     for (int a = 0; a < 3; ++a) {
-        const double c = sphere->center[a] - scene->camera.lookfrom[a], off = as_float(c) - c;
+        const double c = sphere->center[a] - origin[a], off = as_float(c) - c;
         square += off * off;
     }
     const double r = fabs(sphere->radius);
@@ -67,7 +67,7 @@ static int compare_shells(const void *a_pointer, const void *b_pointer) {
 }
 
 /* A warning is not worth a failure: without memory there is none. */
-static void find_walls(const BpScene *scene, Worst *worst, double *wall) {
+static void find_walls(const BpScene *scene, const double origin[3], Worst *worst, double *wall) {
     Shell *shells = malloc((scene->sphere_count + 1) * sizeof *shells);
     size_t count = 0;
     if (shells == NULL) return;
@@ -75,7 +75,7 @@ static void find_walls(const BpScene *scene, Worst *worst, double *wall) {
         const BpSphere *sphere = &scene->spheres[i];
         if (!bp_material_is(scene->materials[sphere->material].kind, BP_HAS_INSIDE)) continue;
         Shell *shell = &shells[count++];
-        for (int a = 0; a < 3; ++a) shell->center[a] = (float)(sphere->center[a] - scene->camera.lookfrom[a]);
+        for (int a = 0; a < 3; ++a) shell->center[a] = (float)(sphere->center[a] - origin[a]);
         shell->radius = fabs(sphere->radius);
         shell->sphere = i;
     }
@@ -95,8 +95,7 @@ static void find_walls(const BpScene *scene, Worst *worst, double *wall) {
 
 /* A ray begins at a point of the lens, whose rounding moves where it meets the plane in focus. */
 static void add_lens(const BpCamera *camera, BpRoundingWarnings *limits) {
-    const double degree = 3.14159265358979323846 / 180;
-    const double pixel = 2 * camera->focus_dist * tan(camera->vfov_degrees * degree / 2) / camera->height;
+    const double pixel = bp_camera_plane_height(camera) / camera->height;
     const double shift = camera->lens_radius * 0x1p-24;
     if (!(shift > BP_ROUNDING_LENS * pixel)) return;
     snprintf(limits->text[limits->count++], sizeof limits->text[0],
@@ -113,6 +112,8 @@ void bp_rounding_warnings(const BpScene *scene, BpPrecision precision, BpRoundin
     double smallest = INFINITY, wall = 0;
     size_t smallest_sphere = 0;
     char more[48], name[BP_SPHERE_NAME_SIZE], other[BP_SPHERE_NAME_SIZE];
+    double origin[3];
+    bp_camera_origin(scene, origin);
     for (size_t i = 0; i < scene->sphere_count; ++i)
         if (fabs(scene->spheres[i].radius) < smallest) {
             smallest = fabs(scene->spheres[i].radius);
@@ -120,11 +121,11 @@ void bp_rounding_warnings(const BpScene *scene, BpPrecision precision, BpRoundin
         }
     for (size_t i = 0; i < scene->sphere_count; ++i) {
         const BpSphere *sphere = &scene->spheres[i];
-        const double shift = surface_shift(scene, sphere), radius = fabs(sphere->radius);
+        const double shift = surface_shift(origin, sphere), radius = fabs(sphere->radius);
         note(&off_place, i, shift / radius, BP_ROUNDING_SHIFT);
         if (radius > 100 * smallest) note(&contact, i, shift / smallest, BP_ROUNDING_CONTACT);
     }
-    find_walls(scene, &thin, &wall);
+    find_walls(scene, origin, &thin, &wall);
     if (off_place.count > 0)
         snprintf(limits->text[limits->count++], sizeof limits->text[0],
                  "%s (radius %g)%s is displaced by %.2g of its radius in single precision; use --precision "

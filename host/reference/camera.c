@@ -3,7 +3,12 @@
 
 Camera bp_ref_camera(const BpCamera *scene_camera) {
     const double pi = 3.14159265358979323846;
-    const double viewport_height = 2 * tan(scene_camera->vfov_degrees * pi / 360) * scene_camera->focus_dist;
+    const bool orthographic = scene_camera->projection == BP_ORTHOGRAPHIC;
+    const double distance = orthographic
+                                ? sqrt(length2(sub(vec(scene_camera->lookat), vec(scene_camera->lookfrom))))
+                                : scene_camera->focus_dist;
+    double viewport_height = 2 * tan(scene_camera->vfov_degrees * pi / 360) * distance;
+    if (orthographic && scene_camera->view_height > 0) viewport_height = scene_camera->view_height;
     const double viewport_width = viewport_height * scene_camera->width / scene_camera->height;
     const Vec from = vec(scene_camera->lookfrom);
     const Vec w = unit(sub(from, vec(scene_camera->lookat)));
@@ -18,6 +23,8 @@ Camera bp_ref_camera(const BpCamera *scene_camera) {
     const Vec corner =
         sub(sub(sub(from, scale(scene_camera->focus_dist, w)), scale(0.5, across)), scale(0.5, down));
     camera.first_pixel = add(corner, scale(0.5, add(camera.pixel_right, camera.pixel_down)));
+    camera.orthographic = orthographic;
+    camera.ahead = scale(-scene_camera->focus_dist, w);
     camera.lens = scene_camera->lens_radius > 0;
     camera.lens_right = scale(scene_camera->lens_radius, u);
     camera.lens_up = scale(scene_camera->lens_radius, v);
@@ -30,7 +37,7 @@ Ray bp_ref_camera_ray(const Camera *camera, uint32_t column, uint32_t row, Rando
     *height = 1 - (y + 0.5) / camera->rows;
     const Vec target =
         add(add(camera->first_pixel, scale(x, camera->pixel_right)), scale(y, camera->pixel_down));
-    Vec origin = camera->origin;
+    Vec origin = camera->orthographic ? sub(target, camera->ahead) : camera->origin;
     if (camera->lens) {
         const Vec p = random_in_disk(random);
         origin = add(add(origin, scale(p.x, camera->lens_right)), scale(p.y, camera->lens_up));

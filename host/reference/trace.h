@@ -31,7 +31,8 @@ typedef struct Path {
 typedef struct Camera {
     Vec origin, first_pixel, pixel_right, pixel_down, lens_right, lens_up;
     uint32_t rows;
-    bool lens, center;
+    Vec ahead; /* to the plane in focus */
+    bool lens, center, orthographic;
 } Camera;
 Camera bp_ref_camera(const BpCamera *camera);
 /* `height`: where the ray stands in the picture, from 0 at its lower edge to 1 at the upper. */

@@ -92,7 +92,9 @@ static bool make_layers(BpPicture *picture, size_t pixels) {
     return made;
 }
 
-BpStatus bp_aovs_fill(BpWorker *worker, const BpCamera *camera, BpPicture *picture, BpError *err) {
+BpStatus bp_aovs_fill(BpWorker *worker, const BpScene *scene, BpPicture *picture, BpError *err) {
+    double origin[3];
+    const double moved = bp_camera_origin(scene, origin); /* depths count from lookfrom */
     const uint32_t pixels = worker->pixels, batch = pixels < BATCH_PIXELS ? pixels : BATCH_PIXELS;
     BpStatus status = BP_OK;
     cl_int code = CL_SUCCESS;
@@ -119,12 +121,14 @@ BpStatus bp_aovs_fill(BpWorker *worker, const BpCamera *camera, BpPicture *pictu
         goto cleanup;
     }
     if (local > most) local = most;
-    BP_TRY_GOTO(status, set_arguments(worker, kernel, camera, out, err), cleanup);
+    BP_TRY_GOTO(status, set_arguments(worker, kernel, &scene->camera, out, err), cleanup);
     for (uint32_t first = 0; first < pixels; first += batch) {
         const uint32_t count = pixels - first < batch ? pixels - first : batch;
         BP_TRY_GOTO(status, run_batch(worker, kernel, local, out, first, count, sums, err), cleanup);
         for (uint32_t i = 0; i < count; ++i)
             store_pixel(sums + (size_t)i * AOV_FLOATS, (size_t)first + i, picture);
+        for (uint32_t i = 0; i < count && moved > 0; ++i)
+            picture->depth[first + i] = (float)((double)picture->depth[first + i] + moved);
     }
 
 cleanup:

@@ -17,6 +17,6 @@
 
 /* Fills depth, normal and albedo of `picture` (see BpPicture), which has the size of the render.
  * BP_ERR_MEMORY or BP_ERR_DEVICE; the picture then has none of the three. */
-BpStatus bp_aovs_fill(BpWorker *worker, const BpCamera *camera, BpPicture *picture, BpError *err);
+BpStatus bp_aovs_fill(BpWorker *worker, const BpScene *scene, BpPicture *picture, BpError *err);
 
 #endif

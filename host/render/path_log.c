@@ -76,8 +76,8 @@ cleanup:
     return status;
 }
 
-static void read_step(const BpScene *scene, const Records *records, bool single, size_t number,
-                      BpPathStep *step) {
+static void read_step(const BpScene *scene, const double space[3], const Records *records, bool single,
+                      size_t number, BpPathStep *step) {
     double record[FOLLOW_REALS];
     for (size_t i = 0; i < FOLLOW_REALS; ++i) {
         const size_t place = number * FOLLOW_REALS + i;
@@ -85,9 +85,9 @@ static void read_step(const BpScene *scene, const Records *records, bool single,
                            : ((const double *)records->numbers)[place];
     }
     for (int axis = 0; axis < 3; ++axis) {
-        step->origin[axis] = record[FOLLOW_ORIGIN + axis] + scene->camera.lookfrom[axis];
+        step->origin[axis] = record[FOLLOW_ORIGIN + axis] + space[axis];
         step->direction[axis] = record[FOLLOW_DIRECTION + axis];
-        step->point[axis] = record[FOLLOW_POINT + axis] + scene->camera.lookfrom[axis];
+        step->point[axis] = record[FOLLOW_POINT + axis] + space[axis];
         step->throughput[axis] = record[FOLLOW_THROUGHPUT + axis];
         step->radiance[axis] = record[FOLLOW_RADIANCE + axis];
         step->lit[axis] = record[FOLLOW_LIT + axis];
@@ -142,8 +142,10 @@ BpStatus bp_path_log(const BpScene *scene, const BpRenderOptions *options, const
         goto cleanup;
     }
     BP_TRY_GOTO(status, run(worker, y * scene->camera.width + x, sample, capacity, &records, err), cleanup);
+    double space[3];
+    bp_camera_origin(scene, space);
     for (size_t i = 0; i < records.count; ++i)
-        read_step(scene, &records, packed.single_precision, i, &path->steps[i]);
+        read_step(scene, space, &records, packed.single_precision, i, &path->steps[i]);
     path->count = records.count;
     path->cut = path->count == 0 || path->steps[path->count - 1].goes_on;
     path->device = chosen;

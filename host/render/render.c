@@ -440,7 +440,7 @@ BpStatus bp_render_aovs(BpRender *render, BpPicture *picture, BpError *err) {
                        "depth, normals and albedo of %" PRIu32 " x %" PRIu32
                        " pixels for a picture of %" PRIu32 " x %" PRIu32 ": read the picture first",
                        camera->width, camera->height, picture->width, picture->height);
-    return bp_aovs_fill(render->workers[0], camera, picture, err);
+    return bp_aovs_fill(render->workers[0], render->scene, picture, err);
 }
 
 void bp_render_report(const BpRender *render, BpRenderReport *report) {
@@ -508,7 +508,7 @@ static BpStatus fill_aovs(BpRender *render, BpError *err) {
     if (render->aovs.depth != NULL) return BP_OK;
     render->aovs.width = render->scene->camera.width;
     render->aovs.height = render->scene->camera.height;
-    return bp_aovs_fill(render->workers[0], &render->scene->camera, &render->aovs, err);
+    return bp_aovs_fill(render->workers[0], render->scene, &render->aovs, err);
 }
 
 BpStatus bp_render_read_whole_film(BpRender *render, const BpFilm **film, BpError *err) {

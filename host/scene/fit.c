@@ -6,6 +6,8 @@
 
 #define PI 3.14159265358979323846
 
+const char *const bp_projection_names[2] = {"perspective", "orthographic"};
+
 const char *const bp_view_names[BP_VIEW_COUNT] = {"",     "three-quarter", "front", "back",
                                                   "left", "right",         "top",   "bottom"};
 
@@ -83,7 +85,11 @@ BpStatus bp_fitting_begin(const BpCamera *camera, const double direction[3], dou
     memcpy(fitting->vup, camera->vup, sizeof fitting->vup);
     if (!basis(direction, fitting->vup, fitting->axes))
         return bp_fail(err, BP_ERR_SCENE, "found no direction, expected one such as [1, 1, 1]");
-    const double half = tan(camera->vfov_degrees * (PI / 360)) * (1 - 2 * margin);
+    fitting->orthographic = camera->projection == BP_ORTHOGRAPHIC;
+    fitting->aspect = (double)camera->width / camera->height;
+    fitting->room = 1 - 2 * margin;
+    /* Parallel rays leave no angle between the sides; their distance is found at the end. */
+    const double half = fitting->orthographic ? 0 : tan(camera->vfov_degrees * (PI / 360)) * (1 - 2 * margin);
     fitting->tangents[0] = half * camera->width / camera->height;
     fitting->tangents[1] = half;
     for (int a = 0; a < 2; a++) fitting->least[a][0] = fitting->least[a][1] = INFINITY;
@@ -128,7 +134,12 @@ BpStatus bp_fitting_end(const BpFitting *f, BpCamera *camera, BpError *err) {
     for (int a = 0; a < 2; a++) {
         const double cosine = 1 / sqrt(1 + f->tangents[a] * f->tangents[a]), sine = f->tangents[a] * cosine;
         eye[a] = (f->least[a][1] - f->least[a][0]) / (2 * cosine);
-        eye[2] = fmax(eye[2], -(f->least[a][0] + f->least[a][1]) / (2 * sine));
+        if (!f->orthographic) eye[2] = fmax(eye[2], -(f->least[a][0] + f->least[a][1]) / (2 * sine));
+    }
+    if (f->orthographic) {
+        const double width = -(f->least[0][0] + f->least[0][1]), height = -(f->least[1][0] + f->least[1][1]);
+        camera->view_height = fmax(height, width / f->aspect) / f->room;
+        eye[2] = f->nearest + camera->view_height;
     }
     for (int k = 0; k < 3; k++)
         place[k] = f->origin[k] + eye[0] * f->axes[0][k] + eye[1] * f->axes[1][k] + eye[2] * f->axes[2][k];
@@ -147,7 +158,7 @@ BpStatus bp_camera_fit_turning(const BpSphere *spheres, size_t count, const doub
                                double margin, uint32_t steps, BpCamera *camera, BpError *err) {
     double low[3] = {INFINITY, INFINITY, INFINITY}, high[3] = {-INFINITY, -INFINITY, -INFINITY}, middle[3],
            eye[3];
-    double distance = 0;
+    double distance = 0, height = 0, nearest = 0;
     BpFitting first = {0};
     if (count == 0)
         return bp_fail(err, BP_ERR_SCENE, "found no sphere to fit the camera to, expected one at least");
@@ -170,8 +181,17 @@ BpStatus bp_camera_fit_turning(const BpSphere *spheres, size_t count, const doub
         for (int a = 0; a < 2; a++) {
             const double sine = f.tangents[a] / sqrt(1 + f.tangents[a] * f.tangents[a]);
             for (int side = 0; side < 2; side++)
-                distance = fmax(distance, (plane_value(&f, place, 0, a, side) - f.least[a][side]) / sine);
+                if (f.orthographic)
+                    height = fmax(height, 2 * (plane_value(&f, place, 0, a, side) - f.least[a][side]) /
+                                              (f.room * (a == 0 ? f.aspect : 1)));
+                else
+                    distance = fmax(distance, (plane_value(&f, place, 0, a, side) - f.least[a][side]) / sine);
         }
+        nearest = fmax(nearest, f.nearest - place[2]);
+    }
+    if (first.orthographic) {
+        camera->view_height = height;
+        distance = nearest + height;
     }
     for (int k = 0; k < 3; k++) eye[k] = middle[k] + distance * first.axes[2][k];
     return stand(eye, first.axes[2], distance, first.vup, camera, err);

@@ -1,13 +1,14 @@
 /* fit.h: a camera that shows certain spheres, as large as the picture allows.
  *
  * In:    spheres, a direction.   Out: lookfrom, lookat, focus_dist.
- * Knows: the pinhole camera.   Does not know: where the direction comes from. */
+ * Knows: the pinhole camera and parallel rays.   Does not know: where the direction comes from. */
 #ifndef BP_SCENE_FIT_H
 #define BP_SCENE_FIT_H
 
 #include "base/status.h"
 #include "scene.h"
 
+extern const char *const bp_projection_names[2];
 /* "three-quarter", "front", ...; "" for BP_VIEW_NONE. */
 extern const char *const bp_view_names[BP_VIEW_COUNT];
 
@@ -23,7 +24,8 @@ void bp_turn_around(const double axis[3], double degrees, double direction[3]);
 /* What spheres demand of a camera, gathered from one set after the other. */
 typedef struct BpFitting {
     double axes[3][3], vup[3], origin[3], tangents[2], least[2][2], nearest, farthest;
-    bool begun;
+    double aspect, room; /* width over height; the share that the margins leave */
+    bool begun, orthographic;
 } BpFitting;
 
 /* `direction` points from the spheres to the camera, whose vfov, vup and size of picture are taken; where vup
@@ -32,8 +34,9 @@ typedef struct BpFitting {
 BpStatus bp_fitting_begin(const BpCamera *camera, const double direction[3], double margin,
                           BpFitting *fitting, BpError *err);
 void bp_fitting_add(BpFitting *fitting, const BpSphere *spheres, size_t count);
-/* Sets lookfrom, lookat, vup and focus_dist so that the silhouettes of all spheres lie inside the margins,
- * and touch them at two opposite sides. Fails without spheres, and where the numbers are too large. */
+/* Sets lookfrom, lookat, vup, focus_dist and, of an orthographic camera, view_height so that the silhouettes
+ * of all spheres lie inside the margins, and touch them at two opposite sides. Fails without spheres, and
+ * where the numbers are too large. */
 BpStatus bp_fitting_end(const BpFitting *fitting, BpCamera *camera, BpError *err);
 
 /* All three for one set. */

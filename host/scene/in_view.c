@@ -17,8 +17,9 @@ static void unit_cross(const double *a, const double *b, double *out) {
 
 typedef struct View {
     Vec from, ahead, right, up;
-    double half_width, half_height; /* at distance 1 */
+    double half_width, half_height; /* at distance 1, or with parallel rays everywhere */
     double lens, focus;
+    bool orthographic;
 } View;
 
 static View find_view(const BpCamera *camera) {
@@ -35,7 +36,9 @@ static View find_view(const BpCamera *camera) {
     unit_cross(camera->vup, back, view.right);
     unit_cross(back, view.right, view.up);
     /* A pixel's samples lie up to half a pixel around its centre. */
-    view.half_height = tan(camera->vfov_degrees * pi / 360);
+    view.orthographic = camera->projection == BP_ORTHOGRAPHIC;
+    view.half_height =
+        view.orthographic ? bp_camera_plane_height(camera) / 2 : tan(camera->vfov_degrees * pi / 360);
     view.half_width = view.half_height * camera->width / camera->height;
     view.lens = camera->lens_radius;
     view.focus = camera->focus_dist;
@@ -51,6 +54,7 @@ static bool reaches_view(const View *view, const BpSphere *sphere) {
     if (ahead + radius < 0) return false;
     const double room = radius + view->lens * fmax(1, (ahead + radius) / view->focus - 1);
     const double aside = fabs(dot(to, view->right)), above = fabs(dot(to, view->up));
+    if (view->orthographic) return aside - view->half_width <= room && above - view->half_height <= room;
     return (aside - ahead * view->half_width) / sqrt(1 + view->half_width * view->half_width) <= room &&
            (above - ahead * view->half_height) / sqrt(1 + view->half_height * view->half_height) <= room;
 }

@@ -26,6 +26,36 @@ void bp_background_up(const BpScene *scene, double up[3]) {
     for (int i = 0; i < 3; i++) up[i] /= sqrt(length);
 }
 
+double bp_camera_plane_height(const BpCamera *camera) {
+    const double tangent = tan(camera->vfov_degrees * (PI / 360));
+    double distance = 0;
+    if (camera->projection == BP_PERSPECTIVE) return 2 * camera->focus_dist * tangent;
+    if (camera->view_height > 0) return camera->view_height;
+    for (int i = 0; i < 3; i++) distance = hypot(distance, camera->lookat[i] - camera->lookfrom[i]);
+    return 2 * distance * tangent;
+}
+
+double bp_camera_origin(const BpScene *scene, double origin[3]) {
+    const BpCamera *const camera = &scene->camera;
+    double ahead[3], length = 0, nearest = INFINITY;
+    memcpy(origin, camera->lookfrom, sizeof camera->lookfrom);
+    if (camera->projection == BP_PERSPECTIVE) return 0;
+    for (int i = 0; i < 3; i++) {
+        ahead[i] = camera->lookat[i] - camera->lookfrom[i];
+        length = hypot(length, ahead[i]);
+    }
+    for (int i = 0; i < 3; i++) ahead[i] /= length;
+    for (size_t s = 0; s < scene->sphere_count; s++) {
+        double distance = -fabs(scene->spheres[s].radius);
+        for (int i = 0; i < 3; i++) distance += ahead[i] * (scene->spheres[s].center[i] - origin[i]);
+        nearest = fmin(nearest, distance);
+    }
+    const double moved = isfinite(nearest) ? nearest - bp_camera_plane_height(camera) : 0;
+    if (!(moved > 0)) return 0;
+    for (int i = 0; i < 3; i++) origin[i] += moved * ahead[i];
+    return moved;
+}
+
 double bp_lens_radius(double defocus_degrees, double focus_dist) {
     return focus_dist * tan(defocus_degrees * (PI / 180) / 2);
 }

@@ -71,11 +71,16 @@ typedef enum BpView {
     BP_VIEW_COUNT
 } BpView;
 
+typedef enum BpProjection { BP_PERSPECTIVE, BP_ORTHOGRAPHIC } BpProjection;
+
 typedef struct BpCamera {
     uint32_t width, height;
     double aspect_ratio; /* as asked for; height follows from width by it */
     uint32_t samples_per_pixel, max_depth;
+    BpProjection projection;
     double vfov_degrees; /* of the full picture height */
+    double view_height;  /* of BP_ORTHOGRAPHIC: how much the picture's height shows; 0: as much as vfov shows
+                            at lookat */
     double lookfrom[3], lookat[3], vup[3];
     double lens_radius; /* aperture / 2, or focus_dist * tan(defocus_angle / 2); 0: pinhole */
     double focus_dist;  /* along the view, from lookfrom to the plane in focus; > 0 */
@@ -164,6 +169,14 @@ struct BpScene {
 
 /* The unit vector along which the background rises from bottom to top. */
 void bp_background_up(const BpScene *scene, double up[3]);
+
+/* How high a part of the plane in focus the picture shows, in the scene's unit. */
+double bp_camera_plane_height(const BpCamera *camera);
+/* Where the space begins in which rays are traced: where a perspective camera stands. Orthographic rays begin
+ * on a plane, and no longer way than needed lies before them: the plane through lookfrom is moved ahead, to
+ * within the height of the picture before the first sphere. Returns how far it is moved; looks at all
+ * spheres. */
+double bp_camera_origin(const BpScene *scene, double origin[3]);
 
 /* height = max(1, floor(width / aspect + 1e-6)) */
 uint32_t bp_camera_height(uint32_t width, double aspect_ratio);

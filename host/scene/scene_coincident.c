@@ -13,7 +13,7 @@
 #define SAME_RADIUS 1.0e-12 /* relative */
 
 typedef struct Shell {
-    float center[3]; /* relative to lookfrom */
+    float center[3]; /* relative to where the camera stands */
     double radius;   /* without its sign */
     size_t sphere;
 } Shell;
@@ -40,6 +40,8 @@ BpStatus bp_scene_find_coincident(const BpScene *scene, BpFault *fault, BpError 
         count += bp_material_is(scene->materials[scene->spheres[i].material].kind, BP_HAS_INSIDE);
     if (count < 2) return BP_OK;
     Shell *shells = malloc(count * sizeof *shells);
+    double origin[3];
+    bp_camera_origin(scene, origin);
     if (shells == NULL)
         return bp_fail(err, BP_ERR_MEMORY, "out of memory while comparing %zu dielectrics", count);
     count = 0;
@@ -47,7 +49,7 @@ BpStatus bp_scene_find_coincident(const BpScene *scene, BpFault *fault, BpError 
         const BpSphere *sphere = &scene->spheres[i];
         if (!bp_material_is(scene->materials[sphere->material].kind, BP_HAS_INSIDE)) continue;
         Shell *shell = &shells[count++];
-        for (int k = 0; k < 3; k++) shell->center[k] = (float)(sphere->center[k] - scene->camera.lookfrom[k]);
+        for (int k = 0; k < 3; k++) shell->center[k] = (float)(sphere->center[k] - origin[k]);
         shell->radius = fabs(sphere->radius);
         shell->sphere = i;
     }

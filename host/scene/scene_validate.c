@@ -79,7 +79,7 @@ static bool camera_basis_fault(const BpCamera *camera, BpFault *fault) {
 /* Whether the plane in focus is too large for rays to be aimed at it in float. */
 static bool plane_fault(const BpCamera *camera, BpFault *fault) {
     char vfov[BP_NUMBER_TEXT_SIZE], focus[BP_NUMBER_TEXT_SIZE];
-    const double half_height = camera->focus_dist * tan(camera->vfov_degrees * (PI / 360));
+    const double half_height = bp_camera_plane_height(camera) / 2;
     if (half_height <= BP_HALF_HEIGHT_MAX) return false;
     return set_fault(
         fault, BP_FAULT_CAMERA, "vfov",
@@ -153,7 +153,7 @@ static bool disc_fault(const BpDisc *disc, BpFault *fault) {
 static bool standpoint_fault(const BpScene *scene, BpFault *fault) {
     char a[BP_SPHERE_NAME_SIZE], b[BP_SPHERE_NAME_SIZE];
     size_t found = 0, first = 0;
-    if (scene->camera.lens_radius > 0) return false;
+    if (scene->camera.lens_radius > 0 || scene->camera.projection == BP_ORTHOGRAPHIC) return false;
     for (size_t i = 0; i < scene->sphere_count; i++) {
         if (bp_sphere_side(&scene->spheres[i], scene->camera.lookfrom) != BP_SIDE_ON) continue;
         if (found++ > 0)

@@ -16,14 +16,17 @@ static void camera_ray(__global const PackedCamera *camera, uint center, SampleK
     const Vec3 right = splat3(camera->right), down = splat3(camera->down);
     const Vec3 corner = madd3(row, down, madd3(column, right, splat3(camera->corner)));
     const Vec3 target = madd3(y, down, madd3(x, right, corner));
+    const int orthographic = camera->ahead[3] != 0;
+    const Vec3 ahead = splat3(camera->ahead);
 #if EFFECT_LENS
     vreal u, v, lens_x, lens_y;
     sample_2d(key, splat_uint(DIMENSION_LENS), &u, &v);
     sample_disk(u, v, &lens_x, &lens_y);
-    *origin = madd3(lens_y, splat3(camera->lens_up), scale3(lens_x, splat3(camera->lens_right)));
-    *direction = normalise3(subtract3(target, *origin));
+    const Vec3 aside = madd3(lens_y, splat3(camera->lens_up), scale3(lens_x, splat3(camera->lens_right)));
+    *origin = orthographic ? madd3(splat(camera->corner[3]), aside, target) : aside;
+    *direction = normalise3(subtract3(orthographic ? ahead : target, aside));
 #else
-    *origin = zero3();
-    *direction = normalise3(target);
+    *origin = orthographic ? target : zero3();
+    *direction = normalise3(orthographic ? ahead : target);
 #endif
 }

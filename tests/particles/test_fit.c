@@ -42,6 +42,16 @@ static void silhouette(const BpCamera *camera, const BpSphere *spheres, size_t c
         double c[3];
         for (int k = 0; k < 3; k++) c[k] = spheres[i].center[k] - camera->lookfrom[k];
         const double places[2] = {dot(c, right), dot(c, up)}, depth = dot(c, forward);
+        const double radius = fabs(spheres[i].radius);
+        if (camera->projection == BP_ORTHOGRAPHIC) {
+            assert_true(depth > radius); /* ahead of the plane on which rays begin */
+            for (int a = 0; a < 2; a++) {
+                const double half = camera->view_height / 2 * (a == 0 ? halves[0] / halves[1] : 1);
+                low[a] = fmin(low[a], (places[a] - radius) / half);
+                high[a] = fmax(high[a], (places[a] + radius) / half);
+            }
+            continue;
+        }
         for (int a = 0; a < 2; a++) {
             const double distance = hypot(places[a], depth);
             assert_true(distance > fabs(spheres[i].radius));
@@ -70,6 +80,7 @@ static void random_camera(BpRandom *random, BpCamera *camera, double direction[3
     camera->width = 100 + (uint32_t)(bp_random_next(random) * 900);
     camera->height = 100 + (uint32_t)(bp_random_next(random) * 900);
     camera->vfov_degrees = 1 + 110 * bp_random_next(random);
+    if (bp_random_next(random) < 0.4) camera->projection = BP_ORTHOGRAPHIC;
     for (int c = 0; c < 3; c++) {
         direction[c] = 2 * bp_random_next(random) - 1;
         camera->vup[c] = 2 * bp_random_next(random) - 1;

@@ -61,7 +61,7 @@ BAD = [
     (["materials", "c", "albedo"], [1, 1, 1]), (["materials", "d", "emit"], None),
     (["spheres", 0, "radius"], 0), (["spheres", 0, "radius"], None), (["spheres", 0, "center"], [0, 0]),
     (["spheres", 0, "material"], 1), (["spheres", 0, "centre"], [0, 0, 0]), (["spheres"], {}),
-    (["camera", "fit"], "scene"), (["camera", "view"], "front"), (["camera", "margin"], 0.1),
+    (["camera", "projection"], "parallel"), (["camera", "view_height"], 1), (["camera", "fit"], "scene"), (["camera", "view"], "front"), (["camera", "margin"], 0.1),
     (["particles", 0, "file"], None), (["particles", 0, "frame"], 0.5), (["particles", 0, "style"], "sticks"),
     (["particles", 0, "radius"], 0), (["particles", 0, "radius"], "big"), (["particles", 0, "radius", "column"], "mass"),
     (["particles", 0, "radius", "scale"], -1), (["particles", 0, "color"], [1, 1, 2]), (["particles", 0, "color"], "elements"),
