@@ -1,6 +1,8 @@
 /* checkpoint.c: see checkpoint.h. */
 #include "checkpoint.h"
 
+#include "command_text.h"
+
 #include "base/clock.h"
 #include "base/output_file.h"
 #include "base/shown.h"
@@ -198,55 +200,7 @@ void bp_checkpoint_end(const BpCommandLine *line, const BpCheckpoint *checkpoint
     if (checkpoint->written > 0 || line->resume != NULL) unlink(checkpoint->path);
 }
 
-/* Appends a word as a shell reads it; false when it does not fit. */
-static bool append_word(char *text, size_t size, const char *word) {
-    static const char plain[] = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789_./,:=+@%-";
-    size_t used = strlen(text);
-    const bool quotes = word[0] == '\0' || word[strspn(word, plain)] != '\0';
-    if (used + 2 * strlen(word) * 2 + 5 > size) return false;
-    if (used > 0) text[used++] = ' ';
-    if (quotes) text[used++] = '\'';
-    for (; *word != '\0'; ++word) {
-        if (*word == '\'') { /* ends the quotes, escapes it, begins them again */
-            memcpy(text + used, "'\\''", 4);
-            used += 4;
-        } else {
-            text[used++] = *word;
-        }
-    }
-    if (quotes) text[used++] = '\'';
-    text[used] = '\0';
-    return true;
-}
-
 const char *bp_checkpoint_command(const BpCommandLine *line, const BpCheckpoint *checkpoint,
                                   double seconds_left, char *text, size_t size) {
-    char value[4200], name[40];
-    bool fits = true;
-    text[0] = '\0';
-    fits = append_word(text, size, "ballpark") && append_word(text, size, "render");
-    /* A name that begins with a dash is no option. */
-    if (line->operands[0][0] == '-' && line->operands[0][1] != '\0')
-        snprintf(value, sizeof value, "./%s", line->operands[0]);
-    else
-        snprintf(value, sizeof value, "%s", line->operands[0]);
-    fits = fits && append_word(text, size, value) && append_word(text, size, "--resume") &&
-           append_word(text, size, checkpoint->path);
-    for (int o = 0; o < BP_OPTION_NUMBER && fits; ++o) {
-        const BpOption option = (BpOption)o;
-        if (!bp_option_given(line, option) || option == BP_OPTION_RESUME) continue;
-        if (option == BP_OPTION_NO_CLOBBER) continue; /* the results so far are there to be replaced */
-        if (option == BP_OPTION_SET) {
-            for (size_t t = 0; t < line->set.count && fits; ++t)
-                fits = append_word(text, size, "--set") && append_word(text, size, line->set.list[t]);
-            continue;
-        }
-        snprintf(name, sizeof name, "--%s", bp_option_name(option));
-        fits = append_word(text, size, name);
-        bp_option_show(option, line, value, sizeof value);
-        if (option == BP_OPTION_TIME) snprintf(value, sizeof value, "%.0f", fmax(1, ceil(seconds_left)));
-        if (value[0] != '\0') fits = fits && append_word(text, size, value);
-    }
-    if (!fits) text[0] = '\0';
-    return text;
+    return bp_command_text(line, checkpoint->path, fmax(1, ceil(seconds_left)), text, size);
 }

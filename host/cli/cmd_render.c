@@ -555,8 +555,11 @@ done:
     return status;
 }
 
-BpStatus bp_command_render(const BpCommandLine *line, BpError *err) {
+BpStatus bp_command_render(const BpCommandLine *given, BpError *err) {
     BpStatus status = BP_OK;
+    BpCommandLine own = *given;
+    BP_TRY(bp_result_take_width(&own, err));
+    const BpCommandLine *const line = &own;
     Run run = {.line = line, .count = line->operand_count, .start = bp_clock_seconds()};
     run.jobs = calloc(run.count, sizeof *run.jobs);
     if (line->stats != NULL) run.stats = json_array();

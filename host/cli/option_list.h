@@ -75,6 +75,15 @@ enum {
     OPTION(LIGHT, "light", 0, BP_TRACERS | BP_SCENE,                                                         \
            "light that stands in the camera's frame, instead of the scene's; sky: the scene's background",   \
            const char *, light, BP_WORD("soft", "studio", "rembrandt", "overhead", "sky"))                   \
+    OPTION(DPI, "dpi", 0, BP_RENDER | BP_MERGE, "dots per inch, written into PNG and EXR", double, dpi,      \
+           BP_REAL("N", 0, 100000))                                                                          \
+    OPTION(WIDTH_MM, "width-mm", 0, BP_RENDER, "width in print: with --dpi, it gives the width in pixels",   \
+           double, width_mm, BP_REAL("N", 0, 100000))                                                        \
+    OPTION(BIT_DEPTH, "bit-depth", 0, BP_RENDER | BP_MERGE, "bits of each colour of a PNG", const char *,    \
+           bit_depth, BP_WORD("8", "16"))                                                                    \
+    OPTION(METADATA, "metadata", 0, BP_RENDER | BP_MERGE,                                                    \
+           "write the command, the version, the seed and the scene's hash into PNG and EXR", bool, metadata, \
+           BP_FLAG)                                                                                          \
     RENDER_OPTION(DEPTH, "depth", 0, BP_TRACERS,                                                             \
                   "maximum number of ray segments per path; 0: black, 1: only sky and lamps", uint32_t,      \
                   max_depth, BP_WHOLE("N", 0, BP_DEPTH_MAX))                                                 \
@@ -229,6 +238,9 @@ enum {
     NOTE(KERNEL, BP_TRACERS, NULL, "packet on a CPU, sample elsewhere")                                      \
     NOTE(TRANSFER, BP_RENDER | BP_VIEW, NULL, "the scene's")                                                 \
     NOTE(TRANSFER, BP_MERGE, NULL, "that of the first file's scene")                                         \
+    NOTE(BIT_DEPTH, BP_RENDER | BP_MERGE, NULL, "8")                                                         \
+    NOTE(PROJECTION, BP_TRACERS | BP_SCENE, NULL, "the scene's")                                             \
+    NOTE(LIGHT, BP_TRACERS | BP_SCENE, NULL, "the scene's; of a file of particles soft")                     \
     NOTE(FORMAT, BP_RENDER | BP_MERGE, NULL, "by the ending of FILE, otherwise png")                         \
     NOTE(MARGIN, BP_CHECK, NULL, "0.5%, with --suite 1%")                                                    \
     NOTE(TIMEOUT, BP_CHECK, NULL, "no limit; 20s to list devices")                                           \

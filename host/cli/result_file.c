@@ -1,10 +1,12 @@
 /* result_file.c: see result_file.h. */
 #include "result_file.h"
 
+#include "command_text.h"
 #include "commands.h"
 #include "file_conflicts.h"
 
 #include "base/format.h"
+#include "base/json_text.h"
 #include "film/film_file.h"
 #include "image/color_bar.h"
 #include "image/error_map.h"
@@ -13,6 +15,8 @@
 #include "output.h"
 #include "page.h"
 
+#include <inttypes.h>
+#include <jansson.h>
 #include <math.h>
 #include <stdio.h>
 #include <string.h>
@@ -126,6 +130,21 @@ static BpStatus choose_error_map(const BpCommandLine *line, const char *source, 
     return bp_fail(err, BP_ERR_FILE, "the path after --error-map is too long");
 }
 
+/* What has no place in the format that is asked for. */
+static BpStatus check_figure(const BpCommandLine *line, BpFormat format, BpError *err) {
+    const bool png = format == BP_FORMAT_PNG, noted = png || format == BP_FORMAT_EXR;
+    if (!noted && bp_option_given(line, BP_OPTION_DPI))
+        return bp_fail(err, BP_ERR_USAGE, "--dpi: PNG and EXR tell a resolution, %s does not",
+                       bp_format_names[format]);
+    if (!noted && line->metadata)
+        return bp_fail(err, BP_ERR_USAGE, "--metadata: PNG and EXR have a place for it, %s has none",
+                       bp_format_names[format]);
+    if (!png && line->bit_depth != NULL)
+        return bp_fail(err, BP_ERR_USAGE, "--bit-depth is of PNG pictures, and this one is %s",
+                       bp_format_names[format]);
+    return BP_OK;
+}
+
 BpCommandLine bp_result_line(const BpCommandLine *line, const BpResultFile *result) {
     BpCommandLine own = *line;
     own.output = result->path;
@@ -135,6 +154,7 @@ BpCommandLine bp_result_line(const BpCommandLine *line, const BpResultFile *resu
 
 BpStatus bp_result_choose(const BpCommandLine *line, const char *source, BpResultFile *result, BpError *err) {
     BP_TRY(choose_output(line, source, result, err));
+    BP_TRY(check_figure(line, result->format, err));
     BP_TRY(choose_error_map(line, source, result, err));
     const BpCommandLine own = bp_result_line(line, result);
     /* What the command line names itself has been compared already, and its messages name the options. */
@@ -153,11 +173,13 @@ typedef struct Printed {
     const BpPicture *picture;
     BpFormat format;
     BpTransfer transfer;
+    const BpImageExtra *extra;
 } Printed;
 
 static BpStatus print_picture(const void *what, FILE *out, BpError *err) {
     const Printed *printed = what;
-    return bp_picture_write_stream(printed->picture, out, printed->format, printed->transfer, err);
+    return bp_picture_write_extra(printed->picture, out, printed->format, printed->transfer, printed->extra,
+                                  err);
 }
 
 static BpStatus print_film(const void *film, FILE *out, BpError *err) {
@@ -168,13 +190,56 @@ static BpStatus print_error_map(const void *picture, FILE *out, BpError *err) {
     return bp_error_map_print(picture, out, err);
 }
 
+/* What --metadata writes. */
+typedef struct Metadata {
+    char software[64], command[BP_COMMAND_TEXT_SIZE], seed[32], hash[32];
+    json_t *command_text; /* the command as UTF-8 */
+} Metadata;
+
+static BpStatus make_metadata(const BpCommandLine *line, const BpFilm *film, Metadata *metadata,
+                              BpImageExtra *extra, BpError *err) {
+    snprintf(metadata->software, sizeof metadata->software, "Ballpark %s", bp_version());
+    snprintf(metadata->seed, sizeof metadata->seed, "%" PRIu64, film->seed);
+    snprintf(metadata->hash, sizeof metadata->hash, "%016" PRIx64, film->scene_hash);
+    metadata->command_text =
+        bp_json_text(bp_command_text(line, line->resume, 0, metadata->command, sizeof metadata->command));
+    if (metadata->command_text == NULL) return bp_fail(err, BP_ERR_MEMORY, "out of memory for the metadata");
+    extra->software = metadata->software;
+    extra->notes[0] = (BpImageNote){"Command", "command", json_string_value(metadata->command_text)};
+    extra->notes[1] = (BpImageNote){"Seed", "seed", metadata->seed};
+    extra->notes[2] = (BpImageNote){"Scene hash", "sceneHash", metadata->hash};
+    extra->note_count = 3;
+    return BP_OK;
+}
+
+BpStatus bp_result_take_width(BpCommandLine *line, BpError *err) {
+    if (!bp_option_given(line, BP_OPTION_WIDTH_MM)) return BP_OK;
+    if (!bp_option_given(line, BP_OPTION_DPI))
+        return bp_fail(err, BP_ERR_USAGE,
+                       "--width-mm needs --dpi, to tell how many pixels that is; add --dpi 300");
+    if (bp_option_given(line, BP_OPTION_WIDTH))
+        return bp_fail(err, BP_ERR_USAGE, "--width-mm and --width do not go together; give one of them");
+    const double pixels = floor(line->width_mm / 25.4 * line->dpi + 0.5);
+    if (!(pixels >= 1 && pixels <= BP_PICTURE_SIDE_MAX))
+        return bp_fail(err, BP_ERR_USAGE, "--width-mm %g at --dpi %g is %.0f pixels, expected 1 to %u",
+                       line->width_mm, line->dpi, pixels, BP_PICTURE_SIDE_MAX);
+    line->width = (uint32_t)pixels;
+    line->given[BP_OPTION_WIDTH] = true;
+    line->given[BP_OPTION_WIDTH_MM] = false; /* what goes on from here needs no second look */
+    return BP_OK;
+}
+
 BpStatus bp_result_write(const BpCommandLine *line, const BpResultFile *result, const BpFilm *film,
                          bool rendered, BpTransfer transfer, const BpLegend *legend, BpError *err) {
     BpStatus status = BP_OK;
     BpPicture picture = {0};
     const bool is_picture = result->format != BP_FORMAT_BPA, has_map = result->error_map[0] != '\0';
     if (bp_option_given(line, BP_OPTION_TRANSFER)) transfer = line->transfer;
-    const Printed printed = {&picture, result->format, transfer};
+    BpImageExtra extra = {.dots_per_inch = bp_option_given(line, BP_OPTION_DPI) ? line->dpi : 0,
+                          .deep = line->bit_depth != NULL && strcmp(line->bit_depth, "16") == 0};
+    Metadata metadata = {.command_text = NULL};
+    const Printed printed = {&picture, result->format, transfer, &extra};
+    if (line->metadata) BP_TRY_GOTO(status, make_metadata(line, film, &metadata, &extra, err), done);
     if (is_picture || has_map) BP_TRY_GOTO(status, bp_film_picture(film, &picture, err), done);
     const bool bytes = result->format == BP_FORMAT_PNG || result->format == BP_FORMAT_PPM ||
                        result->format == BP_FORMAT_PPM_ASCII;
@@ -196,10 +261,12 @@ BpStatus bp_result_write(const BpCommandLine *line, const BpResultFile *result, 
             bp_line_write(line, result->error_map, print_error_map, &picture, status == BP_OK ? err : NULL);
         if (status == BP_OK) {
             bp_picture_clear(&picture);
+            json_decref(metadata.command_text);
             return mapped;
         }
     }
 done:
+    json_decref(metadata.command_text);
     if (status != BP_OK && rendered) bp_keep_sums(film, result->path, err);
     bp_picture_clear(&picture);
     return status;

@@ -23,6 +23,9 @@ typedef struct BpResultFile {
  * to a terminal; one file for several pictures, or for two things) or BP_ERR_FILE. */
 BpStatus bp_result_choose(const BpCommandLine *line, const char *source, BpResultFile *result, BpError *err);
 
+/* Turns --width-mm and --dpi into --width. BP_ERR_USAGE: they do not go together, or give no picture. */
+BpStatus bp_result_take_width(BpCommandLine *line, BpError *err);
+
 /* Writes it, and the error map if there is to be one. `transfer`: unless --transfer says otherwise.
  * `rendered`: the film is in no file yet, and is kept if the result cannot be written (keep_sums.h).
  * `legend`: Optional; where it is shown, a colour bar is drawn into pictures of 8 bits. */

@@ -89,8 +89,18 @@ static size_t list_layers(const BpPicture *picture, const uint32_t *samples, Lay
     return count;
 }
 
-static exr_result_t write_head(exr_context_t exr, const BpPicture *picture, const Layer *layers,
-                               size_t count) {
+static exr_result_t write_extra(exr_context_t exr, int part, const BpImageExtra *extra) {
+    exr_result_t result =
+        exr_attr_set_string(exr, part, "software", extra->software != NULL ? extra->software : "Ballpark");
+    if (result == EXR_ERR_SUCCESS && extra->dots_per_inch > 0)
+        result = exr_attr_set_float(exr, part, "xDensity", (float)extra->dots_per_inch);
+    for (size_t i = 0; i < extra->note_count && result == EXR_ERR_SUCCESS; i++)
+        result = exr_attr_set_string(exr, part, extra->notes[i].exr_key, extra->notes[i].text);
+    return result;
+}
+
+static exr_result_t write_head(exr_context_t exr, const BpPicture *picture, const Layer *layers, size_t count,
+                               const BpImageExtra *extra) {
     int part = 0;
     exr_result_t result = exr_add_part(exr, NULL, EXR_STORAGE_SCANLINE, &part);
     if (result != EXR_ERR_SUCCESS) return result;
@@ -104,7 +114,7 @@ static exr_result_t write_head(exr_context_t exr, const BpPicture *picture, cons
     const exr_attr_chromaticities_t rec709 = {0.64f, 0.33f, 0.30f, 0.60f, 0.15f, 0.06f, 0.3127f, 0.3290f};
     result = exr_attr_set_chromaticities(exr, part, "chromaticities", &rec709);
     if (result != EXR_ERR_SUCCESS) return result;
-    result = exr_attr_set_string(exr, part, "software", "Ballpark");
+    result = write_extra(exr, part, extra);
     return result != EXR_ERR_SUCCESS ? result : exr_write_header(exr);
 }
 
@@ -163,7 +173,7 @@ static exr_result_t write_rows(exr_context_t exr, const BpPicture *picture, cons
     return result;
 }
 
-BpStatus bp_exr_write(const BpPicture *picture, FILE *out, BpError *err) {
+BpStatus bp_exr_write(const BpPicture *picture, FILE *out, const BpImageExtra *extra, BpError *err) {
     BpStatus status = BP_OK;
     Memory memory = {.bytes = NULL};
     exr_context_t exr = NULL;
@@ -183,7 +193,7 @@ BpStatus bp_exr_write(const BpPicture *picture, FILE *out, BpError *err) {
     setup.write_fn = write_memory;
     setup.error_handler_fn = keep_quiet;
     exr_result_t result = exr_start_write(&exr, NO_FILE, EXR_WRITE_FILE_DIRECTLY, &setup);
-    if (result == EXR_ERR_SUCCESS) result = write_head(exr, picture, layers, count);
+    if (result == EXR_ERR_SUCCESS) result = write_head(exr, picture, layers, count, extra);
     if (result == EXR_ERR_SUCCESS) result = write_rows(exr, picture, layers, count);
     /* Also writes the table of chunks. */
     const exr_result_t finished = exr != NULL ? exr_finish(&exr) : EXR_ERR_SUCCESS;

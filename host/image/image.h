@@ -20,15 +20,36 @@ bool bp_format_from_path(const char *path, BpFormat *format);
 /* The format by its name on the command line: png ppm ppm-ascii pfm exr bpa. */
 bool bp_format_from_name(const char *name, BpFormat *format);
 
+/* What a file of a picture holds beside its pixels, in PNG and EXR. Zeros: nothing, and 8 bits. */
+typedef struct BpImageNote {
+    const char *png_key, *exr_key, *text; /* UTF-8 */
+} BpImageNote;
+enum { BP_IMAGE_NOTES_MAX = 8 };
+typedef struct BpImageExtra {
+    double dots_per_inch; /* 0: unknown */
+    bool deep;            /* PNG: 16 bits a channel */
+    const char *software; /* Optional: instead of "Ballpark" */
+    BpImageNote notes[BP_IMAGE_NOTES_MAX];
+    size_t note_count;
+} BpImageExtra;
+
+/* bp_transfer_byte for 16 bits: encoded, clamped to [0, 1], times 65535, rounded. */
+uint16_t bp_transfer_word(double linear, BpTransfer transfer);
+
+/* bp_picture_write_stream with more than pixels. */
+BpStatus bp_picture_write_extra(const BpPicture *picture, FILE *out, BpFormat format, BpTransfer transfer,
+                                const BpImageExtra *extra, BpError *err);
+
 /* Writers to an open stream, which need not be able to seek; each ends with a flush and fails with
  * BP_ERR_FILE (or BP_ERR_MEMORY), leaving half a file on the stream. */
-BpStatus bp_png_write(const BpPicture *picture, FILE *out, BpTransfer transfer, BpError *err);
+BpStatus bp_png_write(const BpPicture *picture, FILE *out, BpTransfer transfer, const BpImageExtra *extra,
+                      BpError *err);
 BpStatus bp_ppm_write(const BpPicture *picture, FILE *out, BpTransfer transfer, bool ascii, BpError *err);
 BpStatus bp_pfm_write(const BpPicture *picture, FILE *out,
                       BpError *err); /* little endian, bottom row first */
 /* Layers: R G B, error.R/G/B, samples, depth.Z, normal.X/Y/Z and albedo.R/G/B, as far as the picture carries
  * them; 32-bit, ZIP compressed. */
-BpStatus bp_exr_write(const BpPicture *picture, FILE *out, BpError *err);
+BpStatus bp_exr_write(const BpPicture *picture, FILE *out, const BpImageExtra *extra, BpError *err);
 
 /* 8-bit RGB, 3 bytes per pixel, top row first, as an sRGB PNG: for pictures that are drawn, not rendered. */
 BpStatus bp_png_write_bytes(const uint8_t *rgb, uint32_t width, uint32_t height, FILE *out, BpError *err);

@@ -40,11 +40,17 @@ BpStatus bp_image_finish(FILE *out, const char *what, BpError *err) {
 
 BpStatus bp_picture_write_stream(const BpPicture *picture, FILE *out, BpFormat format, BpTransfer transfer,
                                  BpError *err) {
+    const BpImageExtra none = {.note_count = 0};
+    return bp_picture_write_extra(picture, out, format, transfer, &none, err);
+}
+
+BpStatus bp_picture_write_extra(const BpPicture *picture, FILE *out, BpFormat format, BpTransfer transfer,
+                                const BpImageExtra *extra, BpError *err) {
     if (picture->width == 0 || picture->height == 0 || picture->rgb == NULL)
         return bp_fail(err, BP_ERR_USAGE, "an empty picture cannot be written");
     switch (format) {
     case BP_FORMAT_PNG:
-        return bp_png_write(picture, out, transfer, err);
+        return bp_png_write(picture, out, transfer, extra, err);
     case BP_FORMAT_PPM:
         return bp_ppm_write(picture, out, transfer, false, err);
     case BP_FORMAT_PPM_ASCII:
@@ -52,7 +58,7 @@ BpStatus bp_picture_write_stream(const BpPicture *picture, FILE *out, BpFormat f
     case BP_FORMAT_PFM:
         return bp_pfm_write(picture, out, err);
     case BP_FORMAT_EXR:
-        return bp_exr_write(picture, out, err);
+        return bp_exr_write(picture, out, extra, err);
     case BP_FORMAT_BPA:
         break;
     }

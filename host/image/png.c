@@ -1,5 +1,5 @@
-/* png.c: 8-bit RGB PNG by libpng, tagged with the transfer curve; see image.h. A picture with an alpha
- * becomes RGBA, in which colours are straight, as the standard has it: not yet multiplied by the alpha.
+/* png.c: RGB PNG of 8 or 16 bits by libpng, tagged with the transfer curve; see image.h. A picture with an
+ * alpha becomes RGBA, in which colours are straight, as the standard has it: not yet multiplied by the alpha.
  *
  * Tags. sRGB pictures carry an sRGB chunk (libpng adds the gAMA and cHRM that the standard recommends beside
  * it), which every viewer shows alike. Gamma 2 and linear pictures carry gAMA (0.5 or 1) and the primaries of
@@ -38,17 +38,37 @@ static void on_warning(png_structp png, png_const_charp message) {
     (void)message;
 }
 
-static void put_tags(png_structp png, png_infop info, BpTransfer transfer) {
+/* No date, and no version unless it is asked for: the same picture is the same file. */
+static void put_texts(png_structp png, png_infop info, const BpImageExtra *extra) {
+    png_text texts[1 + BP_IMAGE_NOTES_MAX] = {{.compression = PNG_TEXT_COMPRESSION_NONE}};
+    char names[1 + BP_IMAGE_NOTES_MAX][24] = {"Software"};
+    static char none[] = "", ballpark[] = "Ballpark";
+    texts[0].key = names[0];
+    texts[0].text = extra->software != NULL ? (char *)(uintptr_t)extra->software : ballpark;
+    for (size_t i = 0; i < extra->note_count; i++) {
+        png_text *const text = &texts[1 + i];
+        snprintf(names[1 + i], sizeof names[1 + i], "%s", extra->notes[i].png_key);
+        *text = (png_text){.compression = PNG_ITXT_COMPRESSION_NONE, /* UTF-8 */
+                           .key = names[1 + i],
+                           .text = (char *)(uintptr_t)extra->notes[i].text,
+                           .lang = none,
+                           .lang_key = none};
+    }
+    png_set_text(png, info, texts, 1 + (int)extra->note_count);
+}
+
+static void put_tags(png_structp png, png_infop info, BpTransfer transfer, const BpImageExtra *extra) {
     if (transfer == BP_TRANSFER_SRGB) {
         png_set_sRGB_gAMA_and_cHRM(png, info, PNG_sRGB_INTENT_RELATIVE);
     } else {
         png_set_gAMA(png, info, transfer == BP_TRANSFER_LINEAR ? 1.0 : 0.5);
         png_set_cHRM(png, info, 0.3127, 0.3290, 0.64, 0.33, 0.30, 0.60, 0.15, 0.06);
     }
-    /* No version and no date: the same picture is the same file. */
-    char key[] = "Software", text[] = "Ballpark";
-    png_text software = {.compression = PNG_TEXT_COMPRESSION_NONE, .key = key, .text = text};
-    png_set_text(png, info, &software, 1);
+    put_texts(png, info, extra);
+    if (extra->dots_per_inch > 0) {
+        const png_uint_32 per_meter = (png_uint_32)(extra->dots_per_inch / 0.0254 + 0.5);
+        png_set_pHYs(png, info, per_meter, per_meter, PNG_RESOLUTION_METER);
+    }
 }
 
 /* What is written: a picture, or else 8-bit colours. */
@@ -58,7 +78,21 @@ typedef struct Image {
     const uint8_t *bytes;
     BpTransfer transfer;
     size_t channels; /* 3, or 4 with alpha */
+    const BpImageExtra *extra;
 } Image;
+
+/* A sample of 8 bits, or of 16 with the higher byte first. */
+static uint8_t *put_sample(const Image *image, double value, bool is_alpha, uint8_t *out) {
+    if (!image->extra->deep) {
+        *out = is_alpha ? (uint8_t)(value * 255 + 0.5) : bp_transfer_byte(value, image->transfer);
+        return out + 1;
+    }
+    const uint16_t word =
+        is_alpha ? (uint16_t)(value * 65535 + 0.5) : bp_transfer_word(value, image->transfer);
+    out[0] = (uint8_t)(word >> 8);
+    out[1] = (uint8_t)word;
+    return out + 2;
+}
 
 static void encode_row(const Image *image, uint32_t y, uint8_t *row) {
     const size_t first = (size_t)y * image->width;
@@ -69,10 +103,9 @@ static void encode_row(const Image *image, uint32_t y, uint8_t *row) {
     for (size_t x = 0; x < image->width; x++) {
         const float *const rgb = image->picture->rgb + 3 * (first + x);
         const double alpha = image->channels == 4 ? (double)image->picture->alpha[first + x] : 1;
-        uint8_t *const out = row + image->channels * x;
         for (size_t c = 0; c < 3; c++)
-            out[c] = alpha > 0 ? bp_transfer_byte((double)rgb[c] / alpha, image->transfer) : 0;
-        if (image->channels == 4) out[3] = (uint8_t)(alpha * 255 + 0.5);
+            row = put_sample(image, alpha > 0 ? (double)rgb[c] / alpha : 0, false, row);
+        if (image->channels == 4) row = put_sample(image, alpha, true, row);
     }
 }
 
@@ -83,10 +116,10 @@ static bool write_all(png_structp png, png_infop info, FILE *out, const Image *i
     if (setjmp(png_jmpbuf(png))) return false;
     png_set_user_limits(png, 0x7fffffff, 0x7fffffff);
     png_init_io(png, out);
-    png_set_IHDR(png, info, image->width, image->height, 8,
+    png_set_IHDR(png, info, image->width, image->height, image->extra->deep ? 16 : 8,
                  image->channels == 4 ? PNG_COLOR_TYPE_RGB_ALPHA : PNG_COLOR_TYPE_RGB, PNG_INTERLACE_NONE,
                  PNG_COMPRESSION_TYPE_DEFAULT, PNG_FILTER_TYPE_DEFAULT);
-    put_tags(png, info, image->transfer);
+    put_tags(png, info, image->transfer, image->extra);
     png_set_compression_strategy(png, Z_RLE);
     png_write_info(png, info);
     for (uint32_t y = 0; y < image->height; y++) {
@@ -101,7 +134,7 @@ static BpStatus write_png(FILE *out, const Image *image, BpError *err) {
     BpStatus status = BP_OK;
     PngFailure failure = {.text = ""};
     png_infop info = NULL;
-    uint8_t *row = malloc((size_t)image->width * image->channels);
+    uint8_t *row = malloc((size_t)image->width * image->channels * 2);
     png_structp png = png_create_write_struct(PNG_LIBPNG_VER_STRING, &failure, on_error, on_warning);
     if (png != NULL) info = png_create_info_struct(png);
     errno = 0;
@@ -123,17 +156,24 @@ static BpStatus write_png(FILE *out, const Image *image, BpError *err) {
     return status;
 }
 
-BpStatus bp_png_write(const BpPicture *picture, FILE *out, BpTransfer transfer, BpError *err) {
+BpStatus bp_png_write(const BpPicture *picture, FILE *out, BpTransfer transfer, const BpImageExtra *extra,
+                      BpError *err) {
     const Image image = {.width = picture->width,
                          .height = picture->height,
                          .picture = picture,
                          .transfer = transfer,
-                         .channels = picture->alpha != NULL ? 4 : 3};
+                         .channels = picture->alpha != NULL ? 4 : 3,
+                         .extra = extra};
     return write_png(out, &image, err);
 }
 
 BpStatus bp_png_write_bytes(const uint8_t *rgb, uint32_t width, uint32_t height, FILE *out, BpError *err) {
-    const Image image = {
-        .width = width, .height = height, .bytes = rgb, .transfer = BP_TRANSFER_SRGB, .channels = 3};
+    const BpImageExtra none = {.note_count = 0};
+    const Image image = {.width = width,
+                         .height = height,
+                         .bytes = rgb,
+                         .transfer = BP_TRANSFER_SRGB,
+                         .channels = 3,
+                         .extra = &none};
     return write_png(out, &image, err);
 }

@@ -5,7 +5,7 @@
 
 #include <math.h>
 
-uint8_t bp_transfer_byte(double linear, BpTransfer transfer) {
+static double encode(double linear, BpTransfer transfer) {
     double encoded = linear;
     switch (transfer) {
     case BP_TRANSFER_GAMMA2:
@@ -17,8 +17,15 @@ uint8_t bp_transfer_byte(double linear, BpTransfer transfer) {
     case BP_TRANSFER_LINEAR:
         break;
     }
-    if (!(encoded > 0)) return 0; /* NaN too */
-    return (uint8_t)(256 * fmin(encoded, 0.999));
+    return encoded > 0 ? encoded : 0; /* NaN too */
+}
+
+uint8_t bp_transfer_byte(double linear, BpTransfer transfer) {
+    return (uint8_t)(256 * fmin(encode(linear, transfer), 0.999));
+}
+
+uint16_t bp_transfer_word(double linear, BpTransfer transfer) {
+    return (uint16_t)(65535 * fmin(encode(linear, transfer), 1) + 0.5);
 }
 
 double bp_transfer_inverse(double value, BpTransfer transfer) {

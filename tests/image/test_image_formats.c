@@ -367,7 +367,7 @@ static void what_the_exr_library_refuses_is_an_error(void **state) {
         size_t size = 0;
         FILE *out = open_memstream(&bytes, &size);
         BpError err = {0};
-        assert_int_equal(bp_exr_write(&picture, out, &err), BP_ERR_FILE);
+        assert_int_equal(bp_exr_write(&picture, out, &(BpImageExtra){.note_count = 0}, &err), BP_ERR_FILE);
         assert_non_null(strstr(err.message, "encoding the EXR"));
         assert_non_null(strstr(err.message, "Invalid attribute"));
         fclose(out);

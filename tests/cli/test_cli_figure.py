@@ -1,0 +1,105 @@
+"""Pictures for print: resolution, width in millimetres, 16 bits, and what tells where a picture comes from."""
+
+import json
+import struct
+
+import cli
+import exr
+from pfm import read_pfm
+from png import read_png
+
+
+def texts(chunks):
+    """{key: text} of the uncompressed tEXt and iTXt chunks."""
+    found = {}
+    for name, body in chunks:
+        key, _, rest = body.partition(b"\0")
+        if name == "tEXt":
+            found[key.decode("latin-1")] = rest.decode("latin-1")
+        if name == "iTXt":
+            assert rest[:2] == b"\0\0", "compressed"
+            found[key.decode("latin-1")] = rest[2:].split(b"\0", 2)[2].decode()
+    return found
+
+
+class Figure(cli.ProgramTest):
+    def setUp(self):
+        super().setUp()
+        self.write("scene.json", cli.scene(16, 8, spheres=2))
+
+    def render(self, name, *options):
+        self.succeed("render", "scene.json", "-o", name, "--quiet", *options)
+        return self.read(name)
+
+    def test_resolution(self):
+        chunks = dict(read_png(self.render("a.png", "--dpi", 300))[5])
+        self.assertEqual(struct.unpack(">IIB", chunks["pHYs"]), (11811, 11811, 1))  # a metre has 39.37 inches
+        self.assertNotIn("pHYs", dict(read_png(self.render("b.png"))[5]))
+        header, _ = exr.attributes(self.render("a.exr", "--dpi", 299.5))
+        self.assertEqual(struct.unpack("<f", header["xDensity"]), (299.5,))
+        self.assertNotIn("xDensity", exr.attributes(self.render("b.exr"))[0])
+
+    def test_width_in_millimetres(self):
+        self.assertEqual(read_png(self.render("a.png", "--dpi", 127, "--width-mm", 5))[:2], (25, 12))
+        self.assert_same(self.render("a.png", "--dpi", 127, "--width-mm", 5), self.render("b.png", "--dpi", 127, "--width", 25))
+        self.fail_with(2, "render", "scene.json", "--width-mm", 5, says=("--width-mm needs --dpi", "--dpi 300"))
+        self.fail_with(2, "render", "scene.json", "--dpi", 100, "--width-mm", 5, "--width", 7, says="do not go together")
+        self.fail_with(2, "render", "scene.json", "--dpi", 50000, "--width-mm", 5000, says=("9842520 pixels", "1 to 65535"))
+        self.fail_with(2, "render", "scene.json", "--dpi", 1, "--width-mm", 1, says="0 pixels")
+
+    def test_16_bits(self):
+        for transfer in ("linear", "gamma2"):
+            width, height, bits, channels, rows, _ = read_png(self.render("a.png", "--bit-depth", 16, "--transfer", transfer))
+            self.assertEqual((width, height, bits, channels), (16, 8, 16, 3))
+            values = list(read_pfm(self.render("a.pfm"))[2])
+            for y, row in enumerate(rows):
+                for i, word in enumerate(row):
+                    linear = values[(height - 1 - y) * 3 * width + i]
+                    encoded = min(linear if transfer == "linear" else linear ** 0.5, 1)
+                    self.assertAlmostEqual(word, 65535 * encoded, delta=0.6)
+        self.assert_same(self.render("a.png", "--bit-depth", 8), self.render("b.png"))
+
+    def test_16_bits_with_alpha(self):
+        self.write("scene.json", cli.scene(16, 8, spheres=1, backdrop="none", transfer="linear"))
+        width, height, bits, channels, rows, _ = read_png(self.render("a.png", "--bit-depth", 16))
+        self.assertEqual((bits, channels), (16, 4))
+        layers = exr.read(self.render("a.exr"))[2]
+        for pixel, (alpha, red) in enumerate(zip(layers["A"], layers["R"])):
+            shown = rows[pixel // width][4 * (pixel % width):][:4]
+            self.assertAlmostEqual(shown[3], 65535 * alpha, delta=0.6)
+            self.assertAlmostEqual(shown[0], 65535 * min(red / alpha, 1) if alpha > 0 else 0, delta=0.7)
+
+    def test_metadata(self):
+        version = self.succeed("--version").stdout.decode().strip().removeprefix("ballpark ")
+        name = "pic ture's \u03b1.png"
+        found = texts(read_png(self.render(name, "--metadata", "--seed", 7, "--spp", 2))[5])
+        self.succeed("render", "scene.json", "-o", "a.bpa", "--seed", 7, "--spp", 2, "--quiet")
+        scene_hash = json.loads(self.read("a.bpa").split(b"\n", 1)[0])["scene_hash"]
+        self.assertEqual(found, {
+            "Software": f"Ballpark {version}", "Seed": "7", "Scene hash": scene_hash,
+            "Command": "ballpark render scene.json --output 'pic ture'\\''s \u03b1.png' --spp 2 --metadata --seed 7 --quiet"})
+        header, _ = exr.attributes(self.render("a.exr", "--metadata", "--seed", 7))
+        self.assertEqual(header["seed"], b"7")
+        self.assertEqual(header["sceneHash"].decode(), scene_hash)
+        self.assertEqual(header["software"].decode(), f"Ballpark {version}")
+        self.assertIn(b"ballpark render scene.json --output a.exr", header["command"])
+        merged = self.succeed("merge", "a.bpa", "-o", "m.png", "--metadata", "--quiet") and self.read("m.png")
+        found = texts(read_png(merged)[5])
+        self.assertEqual((found["Command"], found["Scene hash"]), ("ballpark merge a.bpa --output m.png --metadata --quiet", scene_hash))
+
+    def test_the_same_command_makes_the_same_file(self):
+        options = ("--metadata", "--dpi", 300, "--bit-depth", 16)
+        self.assert_same(self.render("a.png", *options), self.render("a.png", *options))
+        self.assert_same(self.render("a.exr", "--metadata"), self.render("a.exr", "--metadata"))
+        self.assertEqual(texts(read_png(self.render("a.png"))[5]), {"Software": "Ballpark"})  # unless it is asked for
+
+    def test_what_has_no_place(self):
+        for name, options, words in (("a.ppm", ("--dpi", 300), "--dpi: PNG and EXR tell a resolution, ppm does not"),
+                                     ("a.bpa", ("--metadata",), "--metadata: PNG and EXR have a place for it, bpa has none"),
+                                     ("a.exr", ("--bit-depth", 16), "--bit-depth is of PNG pictures, and this one is exr"),
+                                     ("a.png", ("--bit-depth", 12), "8 or 16")):
+            self.fail_with(2, "render", "scene.json", "-o", name, *options, says=words)
+        self.assertEqual(self.files(), ["scene.json"])
+
+
+cli.main()
