@@ -34,11 +34,11 @@ typedef struct PackedCamera {
     real corner[4];                 /* upper left corner of pixel (0, 0) */
     real right[4];                  /* one pixel to the right */
     real down[4];                   /* one pixel down */
-    real ahead[4];                  /* straight to the plane in focus; whether the camera is orthographic */
     real lens_right[4], lens_up[4]; /* scaled by the lens radius */
     real inward[4];   /* unit vector to the centre of the sphere that a pinhole stands on, or 0 */
     real own_slot[4]; /* the slot of that sphere, in two halves (a float counts to 2^24): its low 16 bits,
                          its high 16 bits; NO_SLOT: none; how far off the surface; 0 */
+    real ahead[4]; /* straight to the plane in focus; whether the camera is orthographic */
 } PackedCamera;
 
 /* Radiance of a ray that meets nothing: bottom against `up`, top along it, linear in the cosine between;

@@ -20,7 +20,7 @@ BpStatus bp_layout_check(BpDevice *device, cl_program program, bool single_preci
         const char *name;
         cl_uint size, offset;
     } expected[STRUCTS] = {
-        OF_REALS(PackedCamera, lens_up),
+        OF_REALS(PackedCamera, ahead),
         OF_REALS(PackedSky, view_up),
         OF_REALS(PackedMaterial, refraction_index),
         OF_UINTS(PackedMaterialKind, total_reflection),

@@ -94,7 +94,7 @@ static void pack_camera(const BpCamera *camera, double moved, PackedCamera *pack
         packed->lens_up[a] = camera->lens_radius * up[a];
     }
     packed->ahead[3] = orthographic;
-    packed->corner[3] = 1 - moved / camera->focus_dist;
+    packed->corner[3] = orthographic ? 1 - moved / camera->focus_dist : 0;
 }
 
 /* Where a pinhole stands on a sphere: rays that leave the camera leave that sphere. From the points of a

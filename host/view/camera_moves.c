@@ -61,7 +61,9 @@ void bp_camera_orbit(BpCamera *camera, double degrees_right, double degrees_up) 
 void bp_camera_pan(BpCamera *camera, double right_share, double down_share) {
     double back[3], right[3], up[3];
     const double distance = frame(camera, back, right, up);
-    const double height = 2 * distance * tan(camera->vfov_degrees * PI / 360);
+    const double height = camera->projection == BP_PROJECTION_ORTHOGRAPHIC
+                              ? camera->view_height
+                              : 2 * distance * tan(camera->vfov_degrees * PI / 360);
     for (int i = 0; i < 3; ++i) {
         const double by = height * (down_share * up[i] - right_share * right[i]);
         camera->lookfrom[i] += by;
@@ -75,6 +77,7 @@ void bp_camera_approach(BpCamera *camera, double factor) {
     const double distance = frame(camera, back, right, up), wanted = distance * factor;
     if (!(wanted > 1e-9 && wanted < 1e12)) return;
     for (int i = 0; i < 3; ++i) camera->lookfrom[i] = camera->lookat[i] + wanted * back[i];
+    camera->view_height *= factor; /* of parallel rays, which come no nearer */
     const double focus = camera->focus_dist + wanted - distance;
     if (focus > 0.01 * wanted) bp_camera_focus(camera, focus);
     forget_fit(camera);

@@ -17,7 +17,8 @@ void bp_camera_orbit(BpCamera *camera, double degrees_right, double degrees_up);
  * to the right and down. */
 void bp_camera_pan(BpCamera *camera, double right, double down);
 
-/* Multiplies the distance from lookat. focus_dist and the lens follow, so that what is sharp stays so. */
+/* Multiplies the distance from lookat, and the height of a view by parallel rays. focus_dist and the lens
+ * follow, so that what is sharp stays so. */
 void bp_camera_approach(BpCamera *camera, double factor);
 
 /* Sets focus_dist; the angle of the lens's cone stays. */

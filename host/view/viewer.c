@@ -13,6 +13,7 @@
 #include "image/image.h"
 #include "reference/trace.h"
 #include "render/render.h"
+#include "scene/light.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -181,6 +182,7 @@ static BpStatus restart(Viewer *viewer, uint32_t width, BpError *err) {
     options.samples_per_pixel = 1;
     bp_render_destroy(&viewer->render);
     BP_TRY(bp_scene_set_width(viewer->scene, width, err));
+    bp_light_place(viewer->scene); /* light by name is the camera's */
     viewer->restarted_at = bp_clock_seconds();
     viewer->samples = 1;
     viewer->rests = viewer->shown = false;

@@ -54,13 +54,20 @@ static void pans(void **state) {
     const double height = 20 * tan(20 * atan(1) * 4 / 180);
     near(camera.lookat, 1 - 0.5 * height, 2 + 0.25 * height, 3);
     near(camera.lookfrom, 1 - 0.5 * height, 2 + 0.25 * height, 13);
+    camera = camera_at(1, 2, 13);
+    camera.projection = BP_PROJECTION_ORTHOGRAPHIC;
+    camera.view_height = 8;
+    bp_camera_pan(&camera, 0.5, 0.25);
+    near(camera.lookat, -3, 4, 3);
 }
 
 static void approaches(void **state) {
     (void)state;
     BpCamera camera = camera_at(1, 2, 13);
+    camera.view_height = 3;
     bp_camera_approach(&camera, 0.8);
     near(camera.lookfrom, 1, 2, 11);
+    assert_true(fabs(camera.view_height - 2.4) < 1e-12);
     assert_true(fabs(camera.focus_dist - 3) < 1e-12);     /* the same plane is sharp */
     assert_true(fabs(camera.lens_radius - 0.15) < 1e-12); /* the cone keeps its angle */
     bp_camera_approach(&camera, 0.5);                     /* the plane in focus would lie behind the camera */
