@@ -28,8 +28,8 @@ typedef uint packed_uint;
  * towards `corner + right * column + down * row`, a point of the plane in focus. Rows run downwards.
  *
  * With ahead[3] = 1 it is orthographic: each ray has a lens of its own, and `ahead` leads from there to the
- * plane in focus. Rays begin nearer to the spheres (bp_camera_origin), on a plane for which `corner` and so on
- * give the middle of what comes through a lens; it has shrunk to the share corner[3] by there. */
+ * plane in focus. Rays begin nearer to the spheres (bp_camera_origin), on a plane for which `corner` and so
+ * on give the middle of what comes through a lens; it has shrunk to the share corner[3] by there. */
 typedef struct PackedCamera {
     real corner[4];                 /* upper left corner of pixel (0, 0) */
     real right[4];                  /* one pixel to the right */
@@ -38,7 +38,7 @@ typedef struct PackedCamera {
     real inward[4];   /* unit vector to the centre of the sphere that a pinhole stands on, or 0 */
     real own_slot[4]; /* the slot of that sphere, in two halves (a float counts to 2^24): its low 16 bits,
                          its high 16 bits; NO_SLOT: none; how far off the surface; 0 */
-    real ahead[4]; /* straight to the plane in focus; whether the camera is orthographic */
+    real ahead[4];    /* straight to the plane in focus; whether the camera is orthographic */
 } PackedCamera;
 
 /* Radiance of a ray that meets nothing: bottom against `up`, top along it, linear in the cosine between;
@@ -46,8 +46,8 @@ typedef struct PackedCamera {
  *
  * A camera ray shows the backdrop instead, where there is one: `backdrop_bottom[3]` is 1, or 0. It is linear
  * over the picture's height, so a ray's place there is asked for: where it crosses the plane in focus, whose
- * points have a scalar product of view_ahead[3] with `view_ahead`, and with `view_up` 1 at the upper edge of the picture,
- * -1 at the lower. */
+ * points have a scalar product of view_ahead[3] with `view_ahead`, and with `view_up` 1 at the upper edge of
+ * the picture, -1 at the lower. */
 typedef struct PackedSky {
     real bottom[4], top[4], up[4];
     real backdrop_bottom[4], backdrop_top[4];

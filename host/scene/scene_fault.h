@@ -15,7 +15,7 @@ typedef enum BpFaultSubject {
     BP_FAULT_NONE,
     BP_FAULT_CAMERA,
     BP_FAULT_BACKGROUND,
-    BP_FAULT_DISC,      /* index: into discs[] */
+    BP_FAULT_DISC, /* index: into discs[] */
     BP_FAULT_BACKDROP,
     BP_FAULT_MATERIAL,  /* index: into materials[] */
     BP_FAULT_SPHERE,    /* index: into spheres[] */

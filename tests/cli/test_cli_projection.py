@@ -5,7 +5,6 @@ import math
 
 import cli
 import exr
-from pfm import read_pfm
 
 LAMP = {"m": {"type": "diffuse_light", "emit": [1, 1, 1]}}
 SIZE = ("--width", 40, "--spp", 16, "--quiet")
