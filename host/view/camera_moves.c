@@ -61,7 +61,7 @@ void bp_camera_orbit(BpCamera *camera, double degrees_right, double degrees_up) 
 void bp_camera_pan(BpCamera *camera, double right_share, double down_share) {
     double back[3], right[3], up[3];
     const double distance = frame(camera, back, right, up);
-    const double height = camera->projection == BP_PROJECTION_ORTHOGRAPHIC
+    const double height = camera->projection == BP_ORTHOGRAPHIC && camera->view_height > 0
                               ? camera->view_height
                               : 2 * distance * tan(camera->vfov_degrees * PI / 360);
     for (int i = 0; i < 3; ++i) {

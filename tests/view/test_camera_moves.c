@@ -55,7 +55,7 @@ static void pans(void **state) {
     near(camera.lookat, 1 - 0.5 * height, 2 + 0.25 * height, 3);
     near(camera.lookfrom, 1 - 0.5 * height, 2 + 0.25 * height, 13);
     camera = camera_at(1, 2, 13);
-    camera.projection = BP_PROJECTION_ORTHOGRAPHIC;
+    camera.projection = BP_ORTHOGRAPHIC;
     camera.view_height = 8;
     bp_camera_pan(&camera, 0.5, 0.25);
     near(camera.lookat, -3, 4, 3);
