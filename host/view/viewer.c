@@ -74,8 +74,9 @@ static void focus_at(Viewer *viewer, double x, double y) {
     const Camera camera = bp_ref_camera(&sharp);
     Random random = {0};
     Hit hit;
-    const Ray ray =
-        bp_ref_camera_ray(&camera, (uint32_t)(x * sharp.width), (uint32_t)(y * sharp.height), &random);
+    double height;
+    const Ray ray = bp_ref_camera_ray(&camera, (uint32_t)(x * sharp.width), (uint32_t)(y * sharp.height),
+                                      &random, &height);
     if (!bp_ref_hit(viewer->scene, &ray, &hit)) return;
     double view[3], length = 0, depth = 0;
     const double point[3] = {hit.point.x, hit.point.y, hit.point.z};
