@@ -81,7 +81,7 @@ typedef struct Printed {
 
 static BpStatus print_picture(const void *what, FILE *out, BpError *err) {
     const Printed *printed = what;
-    return bp_png_write(printed->picture, out, printed->transfer, NULL, err);
+    return bp_picture_write_stream(printed->picture, out, BP_FORMAT_PNG, printed->transfer, err);
 }
 
 /* The scene's name without folder and ending, "scene" for standard input, then the first number that is free.

@@ -215,7 +215,7 @@ static void print_base64(FILE *out, const uint8_t *bytes, size_t size) {
 static bool make_png(const BpPicture *picture, BpTransfer transfer, char **bytes, size_t *size) {
     FILE *memory = open_memstream(bytes, size);
     if (memory == NULL) return false;
-    const bool made = bp_png_write(picture, memory, transfer, NULL, NULL) == BP_OK;
+    const bool made = bp_picture_write_stream(picture, memory, BP_FORMAT_PNG, transfer, NULL) == BP_OK;
     if (fclose(memory) == 0 && made) return true;
     free(*bytes);
     *bytes = NULL;
