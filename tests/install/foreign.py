@@ -51,8 +51,8 @@ class StopRule(c.Structure):
 
 class Picture(c.Structure):
     _fields_ = [("width", c.c_uint32), ("height", c.c_uint32), ("rgb", c.POINTER(c.c_float)),
-                ("error", c.POINTER(c.c_float)), ("samples", c.POINTER(c.c_uint64)), ("depth", c.POINTER(c.c_float)),
-                ("normal", c.POINTER(c.c_float)), ("albedo", c.POINTER(c.c_float))]
+                ("error", c.POINTER(c.c_float)), ("samples", c.POINTER(c.c_uint64)), ("alpha", c.POINTER(c.c_float)),
+                ("depth", c.POINTER(c.c_float)), ("normal", c.POINTER(c.c_float)), ("albedo", c.POINTER(c.c_float))]
 
 
 error = Error()
