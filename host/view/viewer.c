@@ -8,11 +8,11 @@
 #include "base/clock.h"
 #include "base/format.h"
 #include "base/status.h"
-#include "camera_moves.h"
 #include "film/film.h"
 #include "image/image.h"
 #include "reference/trace.h"
 #include "render/render.h"
+#include "scene/camera_moves.h"
 #include "scene/light.h"
 
 #include <math.h>

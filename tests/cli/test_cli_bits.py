@@ -88,8 +88,8 @@ class Bits(cli.ProgramTest):
         self.assertAlmostEqual(results[0]["difference"]["largest"], 0.4, delta=0.3)
 
     def test_a_wrong_kernel(self):
-        fault = cli.broken_kernels(self, "light/sky.cl", "madd3(fma(splat(R(0.5)), direction.y",
-                                   "madd3(fma(splat(R(-0.5)), direction.y")
+        fault = cli.broken_kernels(self, "light/sky.cl", "madd3(fma(splat(R(0.5)), height",
+                                   "madd3(fma(splat(R(-0.5)), height")
         _, results = self.check(3, [one()], says="another picture", **fault)
         self.assertEqual({r["difference"]["kind"] for r in results if r["verdict"] != "skipped"}, {"picture"})
 

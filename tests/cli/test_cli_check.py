@@ -28,8 +28,8 @@ class Check(cli.ProgramTest):
 
     def broken_kernels(self):
         """A sky whose gradient runs the wrong way, as BALLPARK_KERNELS."""
-        return cli.broken_kernels(self, "light/sky.cl", "madd3(fma(splat(R(0.5)), direction.y",
-                                  "madd3(fma(splat(R(-0.5)), direction.y")
+        return cli.broken_kernels(self, "light/sky.cl", "madd3(fma(splat(R(0.5)), height",
+                                  "madd3(fma(splat(R(-0.5)), height")
 
     def report(self, name="r.json"):
         return json.loads(self.read(name))

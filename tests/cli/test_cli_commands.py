@@ -33,7 +33,7 @@ class Check(ProgramTest):
 
     def test_disagree(self):
         """A sky whose gradient runs the wrong way must be noticed."""
-        fault = broken_kernels(self, "light/sky.cl", "madd3(fma(splat(R(0.5)), direction.y", "madd3(fma(splat(R(-0.5)), direction.y")
+        fault = broken_kernels(self, "light/sky.cl", "madd3(fma(splat(R(0.5)), height", "madd3(fma(splat(R(-0.5)), height")
         result = self.run_program("check", "s.json", *self.SIZE, environment=fault)
         self.assertEqual(result.returncode, 3, result.errors)
         self.assertRegex(result.errors, r"(?m)^ballpark: .*disagree")

@@ -147,7 +147,7 @@ class Fresnel(ProgramTest):
 
     def test_wrong(self):
         self.fail_with(2, "render", "exact.json", "--fresnel", "none", says="--fresnel: expected schlick or exact")
-        self.fail_with(2, "cost", "exact.json", "--fresnel", "exact", says="it belongs to render, check, explain, bench")
+        self.fail_with(2, "cost", "exact.json", "--fresnel", "exact", says="it belongs to render, view, check, explain, bench")
 
 
 class Units(ProgramTest):

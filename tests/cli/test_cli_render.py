@@ -172,7 +172,7 @@ class Statistics(Render):
         self.assertEqual(self.stats("--kernel", "sample")["kernel"], "sample")
         self.assertEqual(self.stats("--kernel", "packet")["kernel"], "packet")
         self.assertEqual(self.stats("--math", "fast")["math"], "fast")
-        self.assertEqual(len(self.stats("--effects", "all")["effects"]), 6)
+        self.assertEqual(len(self.stats("--effects", "all")["effects"]), 7)
 
     def test_no_error_known(self):
         self.assertIsNone(self.stats("--spp", "1")["nrmse"], "one replicate")
@@ -237,7 +237,7 @@ class StopRules(Render):
         shutil.copytree(os.path.join(SOURCE, "kernels"), self.path("kernels"))
         with open(self.path("kernels/light/sky.cl")) as file:
             text = file.read()
-        at = text.rindex("return ")
+        at = text.index("return ", text.index("Vec3 sky_radiance("))
         end = text.index(";", at)
         broken = f"Vec3 light = {text[at + len('return '):end]}; light.x = {red}; return light"
         with open(self.path("kernels/light/sky.cl"), "w") as file:

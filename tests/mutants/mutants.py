@@ -51,7 +51,7 @@ MUTANTS = [
            [test("test_pace", "1 exact")]),
     # ---- cameras that are moved ----------------------------------------------------------------------------
     Mutant("what was sharp is left behind", "the wheel moves the camera, and not the plane in focus",
-           [patch("host/view/camera_moves.c", "if (focus > 0.01 * wanted) bp_camera_focus(camera, focus);", "(void)focus;")],
+           [patch("host/scene/camera_moves.c", "if (focus > 0.01 * wanted) bp_camera_focus(camera, focus);", "(void)focus;")],
            [test("test_camera_moves", "1 exact")]),
     # ---- fitted cameras --------------------------------------------------------------------------------------
     Mutant("the bounding box for the silhouette", "a camera fitted to centres and radii in the picture plane",

@@ -5,10 +5,10 @@
  * Knows: the scene's camera.   Does not know: mice, windows.
  *
  * What would make the camera invalid (a distance of 0, a view along vup) is not done. */
-#ifndef BP_VIEW_CAMERA_MOVES_H
-#define BP_VIEW_CAMERA_MOVES_H
+#ifndef BP_SCENE_CAMERA_MOVES_H
+#define BP_SCENE_CAMERA_MOVES_H
 
-#include "scene/scene.h"
+#include "scene.h"
 
 /* Turns the camera around lookat: to the right around vup, and up, to 1 degree before vup at most. */
 void bp_camera_orbit(BpCamera *camera, double degrees_right, double degrees_up);

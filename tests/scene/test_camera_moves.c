@@ -1,7 +1,7 @@
-/* test_camera_moves.c: cameras that a person moves (host/view/camera_moves.h). */
+/* test_camera_moves.c: cameras that a person moves (host/scene/camera_moves.h). */
 #include "support/unit_test.h"
 
-#include "view/camera_moves.h"
+#include "scene/camera_moves.h"
 
 #include <math.h>
 
