@@ -7,7 +7,7 @@ import xml.etree.ElementTree as xml
 
 import cli
 
-SCENES = sorted(name[:-5] for name in os.listdir(os.path.join(cli.SOURCE, "tests/agree/scenes")) if name.endswith(".json"))
+SCENES = [name[:-5] for name in sorted(os.listdir(os.path.join(cli.SOURCE, "tests/agree/scenes"))) if name.endswith(".json")]
 # Small pictures by one kernel: what agrees is not the matter here.
 SMALL_SUITE = ("check", "--suite", "--effects", "all", "--width", "6", "--spp", "16", "--margin", "90")
 

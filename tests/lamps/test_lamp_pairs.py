@@ -34,6 +34,8 @@ QUICK_DARK = ["v4-10-lambertian", "v1-red-sphere"]
 LIVELY = 30
 # With so little found by chance, differences are no news: the largest bias that must be found in a picture, deep.
 FOUND_MAX = 0.10
+# A disc that chance finds too seldom for that; tests/lamps/disc_cases.py compares such with closed forms.
+TOO_SMALL = {"studio"}
 
 
 class Trouble(Exception):
@@ -129,7 +131,7 @@ def run_scene(program, folder, scene, samples, deep):
     z, found, where = compare(on, off, samples)
     if not z <= Z_MAX:
         raise Trouble(f"on minus off: z = {z:.1f} ({where})")
-    if deep and found > FOUND_MAX:
+    if deep and found > FOUND_MAX and scene.stem not in TOO_SMALL:
         raise Trouble(f"a bias below {found:.1%} would not be found")
     said = ""
     if deep and scene.parent == folder:
