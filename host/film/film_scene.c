@@ -157,9 +157,10 @@ static uint64_t mix_sphere(uint64_t hash, const BpScene *scene, const BpSphere *
 static uint64_t mix_surroundings(uint64_t hash, const BpScene *scene) {
     double up[3];
     bp_background_up(scene, up);
-    if (memcmp(scene->background_bottom, scene->background_top, sizeof scene->background_top) != 0 &&
-        !(up[0] == 0 && up[1] == 1 && up[2] == 0))
-        hash = mix_reals(mix(hash, 0x7570u), up, 3);
+    bool is_gradient = false;
+    for (int c = 0; c < 3; c++)
+        is_gradient = is_gradient || scene->background_bottom[c] != scene->background_top[c];
+    if (is_gradient && !(up[0] == 0 && up[1] == 1 && up[2] == 0)) hash = mix_reals(mix(hash, 0x7570u), up, 3);
     if (scene->backdrop == BP_BACKDROP_SKY) return hash;
     hash = mix(hash, 0x6264u + (uint64_t)scene->backdrop);
     if (scene->backdrop == BP_BACKDROP_NONE) return hash;

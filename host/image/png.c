@@ -14,6 +14,7 @@
 #include "base/status.h"
 
 #include <errno.h>
+#include <math.h>
 #include <png.h>
 #include <setjmp.h>
 #include <stdlib.h>
@@ -84,11 +85,11 @@ typedef struct Image {
 /* A sample of 8 bits, or of 16 with the higher byte first. */
 static uint8_t *put_sample(const Image *image, double value, bool is_alpha, uint8_t *out) {
     if (!image->extra->deep) {
-        *out = is_alpha ? (uint8_t)(value * 255 + 0.5) : bp_transfer_byte(value, image->transfer);
+        *out = is_alpha ? (uint8_t)lround(value * 255) : bp_transfer_byte(value, image->transfer);
         return out + 1;
     }
     const uint16_t word =
-        is_alpha ? (uint16_t)(value * 65535 + 0.5) : bp_transfer_word(value, image->transfer);
+        is_alpha ? (uint16_t)lround(value * 65535) : bp_transfer_word(value, image->transfer);
     out[0] = (uint8_t)(word >> 8);
     out[1] = (uint8_t)word;
     return out + 2;

@@ -1,5 +1,5 @@
-/* count_builds.c: loaded before the program (LD_PRELOAD), notes each kernel build: a byte more in the file that
- * BUILD_LOG names.
+/* count_builds.c: loaded before the program (LD_PRELOAD), notes each kernel build: a byte more in the file
+ * that BUILD_LOG names.
  *
  * Knows: clBuildProgram.   Does not know: what is built. */
 #define _GNU_SOURCE
