@@ -1,24 +1,16 @@
 /* camera_moves.c: see camera_moves.h. */
 #include "camera_moves.h"
 
+#include "vector.h"
+
 #include <math.h>
 #include <string.h>
 
 #define PI 3.14159265358979323846
 #define LEAST_POLE_DEGREES 1.0
 
-static double dot(const double a[3], const double b[3]) {
-    return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
-}
-
-static void cross(const double a[3], const double b[3], double out[3]) {
-    const double result[3] = {a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2],
-                              a[0] * b[1] - a[1] * b[0]};
-    memcpy(out, result, sizeof result);
-}
-
 static double normalize(double v[3]) {
-    const double length = sqrt(dot(v, v));
+    const double length = sqrt(bp_dot(v, v));
     for (int i = 0; i < 3; ++i) v[i] /= length;
     return length;
 }
@@ -27,9 +19,9 @@ static double normalize(double v[3]) {
 static double frame(const BpCamera *camera, double back[3], double right[3], double up[3]) {
     for (int i = 0; i < 3; ++i) back[i] = camera->lookfrom[i] - camera->lookat[i];
     const double distance = normalize(back);
-    cross(camera->vup, back, right);
+    bp_cross(camera->vup, back, right);
     normalize(right);
-    cross(back, right, up);
+    bp_cross(back, right, up);
     return distance;
 }
 
@@ -44,11 +36,11 @@ void bp_camera_orbit(BpCamera *camera, double degrees_right, double degrees_up) 
     memcpy(pole, camera->vup, sizeof pole);
     normalize(pole);
     /* In degrees from the pole and around it. */
-    const double from_pole = acos(fmax(-1, fmin(1, dot(back, pole)))) * 180 / PI;
+    const double from_pole = acos(fmax(-1, fmin(1, bp_dot(back, pole)))) * 180 / PI;
     const double wanted = fmax(LEAST_POLE_DEGREES, fmin(180 - LEAST_POLE_DEGREES, from_pole - degrees_up));
     const double along = wanted * PI / 180, around = degrees_right * PI / 180;
     double level[3]; /* away from lookat, at a right angle to the pole */
-    cross(right, pole, level);
+    bp_cross(right, pole, level);
     normalize(level);
     /* The right of the camera turns with it: level and right span the plane around the pole. */
     for (int i = 0; i < 3; ++i) {

@@ -1,6 +1,8 @@
 /* fit.c: see fit.h. */
 #include "fit.h"
 
+#include "vector.h"
+
 #include <math.h>
 #include <string.h>
 
@@ -23,16 +25,6 @@ void bp_view_direction(BpView view, int up, double direction[3]) {
     memcpy(direction, up == 2 ? z_up : up == 1 ? y_up : x_up, sizeof y_up);
 }
 
-static double dot(const double a[3], const double b[3]) {
-    return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
-}
-
-static void cross(const double a[3], const double b[3], double out[3]) {
-    const double result[3] = {a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2],
-                              a[0] * b[1] - a[1] * b[0]};
-    memcpy(out, result, sizeof result);
-}
-
 static bool normalize(double v[3]) {
     const double length = hypot(hypot(v[0], v[1]), v[2]);
     for (int i = 0; i < 3; i++) v[i] /= length;
@@ -43,8 +35,8 @@ void bp_turn_around(const double axis[3], double degrees, double direction[3]) {
     double along[3] = {axis[0], axis[1], axis[2]}, across[3];
     if (degrees == 0 || !normalize(along)) return;
     /* O. Rodrigues 1840 */
-    const double angle = degrees * (PI / 180), share = dot(along, direction) * (1 - cos(angle));
-    cross(along, direction, across);
+    const double angle = degrees * (PI / 180), share = bp_dot(along, direction) * (1 - cos(angle));
+    bp_cross(along, direction, across);
     for (int i = 0; i < 3; i++)
         direction[i] = direction[i] * cos(angle) + across[i] * sin(angle) + along[i] * share;
 }
@@ -53,18 +45,18 @@ void bp_turn_around(const double axis[3], double degrees, double direction[3]) {
 static bool basis(const double direction[3], double vup[3], double axes[3][3]) {
     memcpy(axes[2], direction, sizeof axes[2]);
     if (!normalize(axes[2])) return false;
-    cross(vup, axes[2], axes[0]);
+    bp_cross(vup, axes[2], axes[0]);
     const double sine = hypot(hypot(axes[0][0], axes[0][1]), axes[0][2]);
     if (!(sine > 1e-6 * hypot(hypot(vup[0], vup[1]), vup[2]))) {
         /* From above, what lies behind is up in the picture; from below, what lies before. */
         const double against = vup[2] != 0 ? 1 : -1;
         const double instead[3] = {0, vup[2] != 0 ? 1 : 0, vup[2] != 0 ? 0 : 1};
-        const double sign = against * (dot(vup, axes[2]) > 0 ? 1 : -1);
+        const double sign = against * (bp_dot(vup, axes[2]) > 0 ? 1 : -1);
         for (int i = 0; i < 3; i++) vup[i] = sign * instead[i];
-        cross(vup, axes[2], axes[0]);
+        bp_cross(vup, axes[2], axes[0]);
     }
     if (!normalize(axes[0])) return false;
-    cross(axes[2], axes[0], axes[1]);
+    bp_cross(axes[2], axes[0], axes[1]);
     return true;
 }
 
@@ -104,7 +96,7 @@ void bp_fitting_add(BpFitting *f, const BpSphere *spheres, size_t count) {
         double c[3], place[3];
         const double radius = fabs(spheres[i].radius);
         for (int k = 0; k < 3; k++) c[k] = spheres[i].center[k] - f->origin[k];
-        for (int k = 0; k < 3; k++) place[k] = dot(f->axes[k], c);
+        for (int k = 0; k < 3; k++) place[k] = bp_dot(f->axes[k], c);
         f->nearest = fmax(f->nearest, place[2] + radius);
         f->farthest = fmin(f->farthest, place[2] - radius);
         for (int a = 0; a < 2; a++)
@@ -177,7 +169,7 @@ BpStatus bp_camera_fit_turning(const BpSphere *spheres, size_t count, const doub
         bp_fitting_add(&f, spheres, count);
         if (s == 0) first = f;
         for (int k = 0; k < 3; k++) from_origin[k] = middle[k] - f.origin[k];
-        for (int k = 0; k < 3; k++) place[k] = dot(f.axes[k], from_origin);
+        for (int k = 0; k < 3; k++) place[k] = bp_dot(f.axes[k], from_origin);
         for (int a = 0; a < 2; a++) {
             const double sine = f.tangents[a] / sqrt(1 + f.tangents[a] * f.tangents[a]);
             for (int side = 0; side < 2; side++)

@@ -1,6 +1,8 @@
 /* light.c: see light.h. */
 #include "light.h"
 
+#include "vector.h"
+
 #include <math.h>
 #include <string.h>
 
@@ -40,12 +42,6 @@ static const Arrangement arrangements[BP_LIGHT_COUNT] = {
         {.up = {0, 1, 0}, .bottom = 0.2, .top = 0.35, .lamps = 1, .lamp = {{{0, 1, 0.25}, 30, 2.6}}},
 };
 
-static void cross(const double a[3], const double b[3], double out[3]) {
-    const double result[3] = {a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2],
-                              a[0] * b[1] - a[1] * b[0]};
-    memcpy(out, result, sizeof result);
-}
-
 /* What has no length stays as it is: such a camera is refused elsewhere. */
 static void normalize(double v[3]) {
     const double length = hypot(hypot(v[0], v[1]), v[2]);
@@ -64,9 +60,9 @@ void bp_light_place(BpScene *scene) {
     if (scene->light == BP_LIGHT_SKY) return;
     for (int i = 0; i < 3; i++) axes[2][i] = camera->lookfrom[i] - camera->lookat[i];
     normalize(axes[2]);
-    cross(camera->vup, axes[2], axes[0]);
+    bp_cross(camera->vup, axes[2], axes[0]);
     normalize(axes[0]);
-    cross(axes[2], axes[0], axes[1]);
+    bp_cross(axes[2], axes[0], axes[1]);
     into_scene(axes, light->up, scene->background_up);
     for (int c = 0; c < 3; c++) {
         scene->background_bottom[c] = light->bottom;
