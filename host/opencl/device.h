@@ -22,7 +22,6 @@ typedef struct BpBuilt {
 typedef struct BpDevice {
     BpDeviceInfo info; /* compute_units: those that may be used */
     cl_device_id id;
-    bool is_part;   /* `id` is a sub-device, to be released */
     BpBuilt *built; /* kept while the device is open, so that equal programs are built once */
     size_t built_count;
     cl_context context;

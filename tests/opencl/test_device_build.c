@@ -1,8 +1,10 @@
 /* test_device_build.c: opening and building on whatever real device is there; skipped without one. */
 #include "support/device.h"
 
+#include <pthread.h>
 #include <setjmp.h>
 #include <stdarg.h>
+#include <stdatomic.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -35,6 +37,60 @@ static void builds_and_runs(void **state) {
     clReleaseKernel(kernel);
     clReleaseProgram(program);
     free(log);
+}
+
+/* What a driver's thread still reads when the device is closed must be there: freed memory is overwritten at
+ * once, so that a read of it crashes. The kernel takes a millisecond: a thread that has worked for long is
+ * the one that the system interrupts in the middle of its clean-up when another wakes; threads that keep the
+ * cores busy make that likely. */
+static void *keep_busy(void *stop) {
+    while (!atomic_load((atomic_bool *)stop)) {
+    }
+    return NULL;
+}
+
+static void part_is_closed_safely(void **state) {
+    BpDevice *whole = *state;
+    static const char source[] = "#line 1 \"long.cl\"\n__kernel void work(__global uint *out) {\n"
+                                 "    uint x = out[0];\n"
+                                 "    for (uint i = 0u; i < 300000u; ++i) x = x * 1664525u + (x >> 16);\n"
+                                 "    out[0] = x;\n}\n";
+    if (whole->info.type != BP_DEVICE_CPU || whole->info.compute_units < 2) {
+        printf("skipped: no processor that can be divided\n");
+        skip();
+    }
+    pthread_t busy[4];
+    atomic_bool stop = false;
+    for (size_t b = 0; b < 4; ++b) assert_int_equal(pthread_create(&busy[b], NULL, keep_busy, &stop), 0);
+    for (int i = 0; i < 100; ++i) {
+        BpDevice *device = NULL;
+        cl_program program = NULL;
+        cl_int code;
+        const size_t one = 1;
+        void *memory[512];
+        assert_int_equal(bp_device_open_part(&whole->info, 1, &device, NULL), BP_OK);
+        assert_int_equal(bp_device_build(device, source, NULL, &program, NULL, NULL), BP_OK);
+        cl_kernel kernel = clCreateKernel(program, "work", &code);
+        assert_int_equal(code, CL_SUCCESS);
+        cl_mem out = clCreateBuffer(device->context, CL_MEM_READ_WRITE, sizeof(cl_uint), NULL, &code);
+        assert_int_equal(code, CL_SUCCESS);
+        assert_int_equal(clSetKernelArg(kernel, 0, sizeof out, &out), CL_SUCCESS);
+        assert_int_equal(clEnqueueNDRangeKernel(device->queue, kernel, 1, NULL, &one, NULL, 0, NULL, NULL),
+                         CL_SUCCESS);
+        assert_int_equal(clFinish(device->queue), CL_SUCCESS);
+        clReleaseMemObject(out);
+        clReleaseKernel(kernel);
+        clReleaseProgram(program);
+        bp_device_close(&device);
+        for (size_t m = 0; m < 512; ++m) {
+            memory[m] = malloc(8 * m + 8);
+            assert_non_null(memory[m]);
+            memset(memory[m], 0x11, 8 * m + 8);
+        }
+        for (size_t m = 0; m < 512; ++m) free(memory[m]);
+    }
+    atomic_store(&stop, true);
+    for (size_t b = 0; b < 4; ++b) pthread_join(busy[b], NULL);
 }
 
 static void names_the_place_of_an_error(void **state) {
@@ -81,6 +137,7 @@ int main(void) {
     if (missing != 0) return missing;
     const struct CMUnitTest tests[] = {
         cmocka_unit_test_prestate(builds_and_runs, device),
+        cmocka_unit_test_prestate(part_is_closed_safely, device),
         cmocka_unit_test_prestate(names_the_place_of_an_error, device),
         cmocka_unit_test_prestate(bad_options_are_a_build_error, device),
     };
