@@ -120,6 +120,33 @@ BP_API BpStatus bp_scene_load(const char *path, BpScene **scene, BpError *err);
 BP_API BpStatus bp_scene_parse(const char *text, size_t length, const char *name, BpScene **scene,
                                BpError *err);
 
+/* Numbers in the caller's memory, a row for every sphere, wherever they lie: number `column` of row `row` is
+ * at data + row * row_stride + column * column_stride, in bytes. A row_stride of 0 gives every sphere the
+ * same row. */
+typedef enum BpNumberType { BP_NUMBER_FLOAT, BP_NUMBER_DOUBLE } BpNumberType;
+typedef struct BpRows {
+    const void *data;
+    ptrdiff_t row_stride, column_stride;
+    BpNumberType type;
+} BpRows;
+
+/* Spheres of one material, as arrays. Zero it, then set what there is. */
+typedef struct BpSphereSet {
+    size_t count;
+    BpRows center; /* 3 columns */
+    BpRows radius; /* 1 column; not 0, negative: inside out */
+    BpRows color;  /* 3 columns, linear, from 0 to 1: replaces the material's albedo. data NULL: none */
+    const char *material; /* Optional. A name from the scene's "materials"; NULL: matte */
+    const char *name;     /* Optional. What messages call the set; NULL: "the spheres" */
+} BpSphereSet;
+
+/* The same as bp_scene_parse(), with `set_count` sets of spheres after those that the document names, in the
+ * order of `sets`. A camera that is fitted to the particles or the scene is fitted to them too. The arrays
+ * are copied, and read once. BP_ERR_SCENE names the sphere, counted from 0 in its set. */
+BP_API BpStatus bp_scene_parse_with_spheres(const char *text, size_t length, const char *name,
+                                            const BpSphereSet *sets, size_t set_count, BpScene **scene,
+                                            BpError *err);
+
 BP_API void bp_scene_destroy(BpScene **scene);
 
 /* Overrides the picture's width in pixels; the height follows from the scene's aspect ratio. BP_ERR_USAGE: a
@@ -135,6 +162,15 @@ typedef struct BpSceneInfo {
 } BpSceneInfo;
 BP_API void bp_scene_info(const BpScene *scene, BpSceneInfo *info);
 
+/* The camera as it stands, after it was fitted to the spheres if the scene asks for that. */
+typedef struct BpCameraInfo {
+    double vfov; /* of the picture's height */
+    double lookfrom[3], lookat[3], vup[3];
+    double aperture;   /* diameter of the lens; 0: all in focus */
+    double focus_dist; /* along the view, from lookfrom to the plane in focus */
+} BpCameraInfo;
+BP_API void bp_scene_camera(const BpScene *scene, BpCameraInfo *info);
+
 /* An effect that the kernel can simulate, and whether a scene calls for it. */
 typedef struct BpEffectInfo {
     const char *name, *description; /* static: "lens", "a lens with an aperture: defocus blur" */
@@ -147,6 +183,28 @@ BP_API size_t bp_effect_count(void);
 /* Fills `info` with effect `index`, from 0, and returns true; false where there is none of that number. Looks
  * through all spheres each time. */
 BP_API bool bp_scene_effect(const BpScene *scene, size_t index, BpEffectInfo *info);
+
+/* ---- how particles look ------------------------------------------------------------------------------ */
+
+/* What files of particles are shown with, for spheres that come from elsewhere. */
+typedef struct BpElementInfo {
+    char symbol[4];                 /* "" for the unknown element */
+    double mass;                    /* standard atomic weight */
+    double van_der_waals, covalent; /* radii in angstrom */
+    double color[3];                /* linear */
+} BpElementInfo;
+
+/* Fills `info` with the element of that number, from 0 (an unknown one) to 118; false beyond. */
+BP_API bool bp_element_info(unsigned atomic_number, BpElementInfo *info);
+/* The atomic number of an atom from its name and its residue's, as in PDB files: "CA" is calcium in the
+ * residue "CA", and a carbon in "ALA". 0: unknown. `residue`: Optional. */
+BP_API unsigned bp_element_of_atom(const char *name, const char *residue);
+/* The linear colour of a type that has none of its own; ten soft colours take turns. */
+BP_API void bp_type_color(size_t type, double color[3]);
+/* The names of the colour maps, "viridis" first; NULL where there is none of that number. Static. */
+BP_API const char *bp_color_map_name(size_t index);
+/* The linear colour at `share`, 0 to 1, of a map; false where no map is called so. */
+BP_API bool bp_color_map(const char *name, double share, double color[3]);
 
 /* ---- devices ----------------------------------------------------------------------------------------- */
 
@@ -363,6 +421,14 @@ typedef enum BpFormat {
  * PNG and PPM. BP_ERR_FILE: it cannot be written; BP_ERR_USAGE: an empty picture, or BP_FORMAT_BPA. */
 BP_API BpStatus bp_picture_write(const BpPicture *picture, const char *path, BpFormat format,
                                  BpTransfer transfer, BpError *err);
+
+/* The same file in memory: *bytes, of *size, to be released with bp_free(). *bytes is NULL before, and stays
+ * so on failure. */
+BP_API BpStatus bp_picture_encode(const BpPicture *picture, BpFormat format, BpTransfer transfer,
+                                  void **bytes, size_t *size, BpError *err);
+
+/* The bytes of an 8-bit file: width * height * 3 of them, in `rgb`, row 0 at the top. */
+BP_API void bp_picture_bytes(const BpPicture *picture, BpTransfer transfer, uint8_t *rgb);
 
 /* ---- error maps -------------------------------------------------------------------------------------- */
 

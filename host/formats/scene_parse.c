@@ -81,24 +81,28 @@ static BpStatus fail_missing_material(const BpNode *node, const BpMaterialIndex 
                         shown, near_shown);
 }
 
-BpStatus bp_parse_material_name(const BpNode *node, const BpMaterialIndex *index, uint32_t *material,
-                                BpError *err) {
-    const char *name = NULL;
-    BP_TRY(bp_node_string(node, &name, err));
+uint32_t bp_material_find(const BpMaterialIndex *index, const char *name) {
     size_t low = 0, high = index->count;
     while (low < high) {
         const size_t middle = low + (high - low) / 2;
         const int order = strcmp(name, index->by_name[middle]->name);
-        if (order == 0) {
-            *material = (uint32_t)(index->by_name[middle] - index->first);
-            return BP_OK;
-        }
+        if (order == 0) return (uint32_t)(index->by_name[middle] - index->first);
         if (order < 0)
             high = middle;
         else
             low = middle + 1;
     }
-    return fail_missing_material(node, index, name, err);
+    return UINT32_MAX;
+}
+
+BpStatus bp_parse_material_name(const BpNode *node, const BpMaterialIndex *index, uint32_t *material,
+                                BpError *err) {
+    const char *name = NULL;
+    BP_TRY(bp_node_string(node, &name, err));
+    const uint32_t found = bp_material_find(index, name);
+    if (found == UINT32_MAX) return fail_missing_material(node, index, name, err);
+    *material = found;
+    return BP_OK;
 }
 
 /* ---- spheres ------------------------------------------------------------------------------------------- */
@@ -202,6 +206,7 @@ static BpStatus refuse_faults(const BpNode *root, const BpScene *scene, BpError 
         size_t cloud = scene->point_file_count;
         while (cloud > 0 && scene->point_files[cloud - 1].first > fault.index) --cloud;
         const BpNode sphere = bp_node_element(&spheres, written);
+        if (written >= listed && scene->point_files[cloud - 1].in_memory) break; /* stands in no document */
         const BpNode particles = bp_node_member(root, "particles");
         const size_t place = cloud - (cloud > 0), cloud_count = json_array_size(clouds.value);
         const BpNode entry = place < cloud_count ? bp_node_element(&clouds, place)
@@ -337,6 +342,7 @@ static BpStatus parse_body(const BpNode *root, const BpSceneChanges *changes, Bp
     if (status == BP_OK) status = parse_spheres(&spheres, &index, scene, err);
     if (status == BP_OK) status = bp_parse_clouds(&clouds, &index, changes->flags, scene, err);
     if (status == BP_OK) status = bp_parse_particles(&particles, &index, changes, scene, err);
+    if (status == BP_OK) status = bp_add_sphere_sets(&index, changes, scene, err);
     free(index.by_name);
     BP_TRY(status);
     if (changes->fresnel != NULL) BP_TRY(choose_fresnel(changes, scene, err));
@@ -380,6 +386,13 @@ BpStatus bp_scene_parse_with(const char *text, size_t length, const char *name, 
 
 BpStatus bp_scene_parse(const char *text, size_t length, const char *name, BpScene **scene, BpError *err) {
     return bp_scene_parse_with(text, length, name, 0, scene, err);
+}
+
+BpStatus bp_scene_parse_with_spheres(const char *text, size_t length, const char *name,
+                                     const BpSphereSet *sets, size_t set_count, BpScene **scene,
+                                     BpError *err) {
+    const BpSceneChanges changes = {.spheres = sets, .sphere_set_count = set_count};
+    return bp_scene_parse_changed(text, length, name, &changes, scene, err);
 }
 
 /* A document for a file of particles; *text is NULL for other files. */

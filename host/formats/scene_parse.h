@@ -43,6 +43,8 @@ typedef struct BpSceneChanges {
     const char *light;      /* Optional. A name of light.h, instead of the document's light or background */
     const char *fresnel;    /* Optional. "schlick" or "exact", for all materials that have such a member */
     size_t *fresnel_counts; /* Optional: in how many it was different, and how many have it */
+    const BpSphereSet *spheres; /* Optional: spheres after all others */
+    size_t sphere_set_count;
 } BpSceneChanges;
 
 BpStatus bp_scene_parse_changed(const char *text, size_t length, const char *name,
@@ -81,6 +83,14 @@ BpStatus bp_parse_material_name(const BpNode *node, const BpMaterialIndex *index
 /* Adds the particles of the files of "particles" to the scene, whose materials have room for one more. */
 BpStatus bp_parse_particles(const BpNode *node, const BpMaterialIndex *index, const BpSceneChanges *changes,
                             BpScene *scene, BpError *err);
+/* Adds the changes' sets of spheres to the scene, whose materials have room for one more. */
+BpStatus bp_add_sphere_sets(const BpMaterialIndex *index, const BpSceneChanges *changes, BpScene *scene,
+                            BpError *err);
+/* The place of a name among the scene's materials, or UINT32_MAX. */
+uint32_t bp_material_find(const BpMaterialIndex *index, const char *name);
+/* The material of spheres that name none: matte. It is made when it is first asked for. UINT32_MAX: out of
+ * memory, which `err` says. */
+uint32_t bp_implicit_material(BpScene *scene, BpError *err);
 /* Adds to an error that stands in the file of points where the scene asks for that file. */
 void bp_name_document(const BpNode *file_node, const char *what, BpError *err);
 /* Keeps the name of a file of points, whose spheres begin at `first`. `particles`: see BpPointFile, copied.

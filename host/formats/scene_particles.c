@@ -346,8 +346,8 @@ BpStatus bp_point_file_make_absolute(const char *document, BpPointFile *file, Bp
     return status;
 }
 
-/* The material of particles that name none: plain matte, whose colour each particle brings. */
-static uint32_t implicit_material(BpScene *scene, BpError *err) {
+/* Plain matte, whose colour each particle brings. */
+uint32_t bp_implicit_material(BpScene *scene, BpError *err) {
     if (scene->implicit_material != SIZE_MAX) return (uint32_t)scene->implicit_material;
     BpMaterial *const material = &scene->materials[scene->material_count];
     *material = (BpMaterial){.kind = BP_MATERIAL_LAMBERTIAN, .albedo = {0.8, 0.8, 0.8}};
@@ -385,7 +385,7 @@ static BpStatus parse_entry(const BpNode *node, size_t place, const BpMaterialIn
     if (material.value != NULL)
         BP_TRY_GOTO(status, bp_parse_material_name(&material, index, &entry->material, err), done);
     else
-        entry->material = implicit_material(scene, err);
+        entry->material = bp_implicit_material(scene, err);
     if (entry->material == UINT32_MAX) {
         status = BP_ERR_MEMORY;
         goto done;

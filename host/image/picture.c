@@ -81,6 +81,27 @@ BpStatus bp_picture_write(const BpPicture *picture, const char *path, BpFormat f
     return status;
 }
 
+BpStatus bp_picture_encode(const BpPicture *picture, BpFormat format, BpTransfer transfer, void **bytes,
+                           size_t *size, BpError *err) {
+    char *memory = NULL;
+    FILE *const stream = open_memstream(&memory, size);
+    *bytes = NULL;
+    if (stream == NULL) return bp_fail(err, BP_ERR_MEMORY, "out of memory for a picture");
+    BpStatus status = bp_picture_write_stream(picture, stream, format, transfer, err);
+    if (fclose(stream) != 0 && status == BP_OK)
+        status = bp_fail(err, BP_ERR_MEMORY, "out of memory for a picture");
+    if (status == BP_OK)
+        *bytes = memory;
+    else
+        free(memory);
+    return status;
+}
+
+void bp_picture_bytes(const BpPicture *picture, BpTransfer transfer, uint8_t *rgb) {
+    const size_t count = (size_t)picture->width * picture->height * 3;
+    for (size_t i = 0; i < count; i++) rgb[i] = bp_transfer_byte((double)picture->rgb[i], transfer);
+}
+
 void bp_picture_clear(BpPicture *picture) {
     if (picture == NULL) return;
     free(picture->rgb);

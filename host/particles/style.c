@@ -34,6 +34,44 @@ size_t bp_particle_style_columns(const BpParticleStyle *style, const char *colum
     return count;
 }
 
+static void from_bytes(const unsigned char bytes[3], double color[3]) {
+    for (int c = 0; c < 3; c++) color[c] = bp_linear_from_srgb(bytes[c] / 255.0);
+}
+
+void bp_type_color(size_t type, double color[3]) {
+    from_bytes(palette[type % PALETTE_COUNT], color);
+}
+
+bool bp_element_info(unsigned atomic_number, BpElementInfo *info) {
+    if (atomic_number > BP_ELEMENT_MAX) return false;
+    const BpElement *const element = &bp_elements[atomic_number];
+    *info = (BpElementInfo){.mass = (double)element->mass,
+                            .van_der_waals = (double)element->van_der_waals,
+                            .covalent = (double)element->covalent};
+    memcpy(info->symbol, element->symbol, sizeof element->symbol);
+    from_bytes(element->color, info->color);
+    return true;
+}
+
+unsigned bp_element_of_atom(const char *name, const char *residue) {
+    bool dummy;
+    return bp_element_of_name(name, residue != NULL ? residue : "", false, &dummy);
+}
+
+const char *bp_color_map_name(size_t index) {
+    return index < BP_MAP_COUNT ? bp_colormap_names[index] : NULL;
+}
+
+bool bp_color_map(const char *name, double share, double color[3]) {
+    for (int map = 0; map < BP_MAP_COUNT; map++) {
+        if (strcmp(name, bp_colormap_names[map]) != 0) continue;
+        const BpParticleStyle style = {.map = (BpColormap)map};
+        bp_particle_style_map(&style, share, color);
+        return true;
+    }
+    return false;
+}
+
 void bp_particle_style_map(const BpParticleStyle *style, double share, double color[3]) {
     bp_colormap_color(style->map, share, color);
     for (int c = 0; c < 3; c++) color[c] *= 0.9; /* albedos near 1 glare */
@@ -274,10 +312,6 @@ static BpStatus choose_colors(Job *job, BpError *err) {
     return BP_OK;
 }
 
-static void from_bytes(const unsigned char bytes[3], double color[3]) {
-    for (int c = 0; c < 3; c++) color[c] = bp_linear_from_srgb(bytes[c] / 255.0);
-}
-
 static void color_of(const Job *job, size_t i, double color[3]) {
     const BpParticles *const p = job->p;
     const BpParticleStyle *const style = job->style;
@@ -320,7 +354,7 @@ static void color_of(const Job *job, size_t i, double color[3]) {
         place = (size_t)job->rank[kind_of(job, i)] - 1;
         break;
     }
-    from_bytes(palette[place % PALETTE_COUNT], color);
+    bp_type_color(place, color);
 }
 
 /* ---- spheres --------------------------------------------------------------------------------------------

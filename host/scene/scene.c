@@ -137,7 +137,8 @@ const char *bp_sphere_name(const BpScene *scene, size_t sphere, char text[BP_SPH
     } else {
         bp_printable(cloud->file, file, sizeof file);
         snprintf(text, BP_SPHERE_NAME_SIZE, "%s %zu (from 0) of %s",
-                 cloud->particles != NULL ? "sphere" : "vertex", sphere - cloud->first, file);
+                 cloud->particles != NULL || cloud->in_memory ? "sphere" : "vertex", sphere - cloud->first,
+                 file);
     }
     return text;
 }
@@ -166,4 +167,13 @@ void bp_scene_info(const BpScene *scene, BpSceneInfo *info) {
                           .spheres = scene->sphere_count,
                           .materials = scene->material_count,
                           .transfer = scene->transfer};
+}
+
+void bp_scene_camera(const BpScene *scene, BpCameraInfo *info) {
+    const BpCamera *const camera = &scene->camera;
+    *info = (BpCameraInfo){
+        .vfov = camera->vfov_degrees, .aperture = 2 * camera->lens_radius, .focus_dist = camera->focus_dist};
+    memcpy(info->lookfrom, camera->lookfrom, sizeof info->lookfrom);
+    memcpy(info->lookat, camera->lookat, sizeof info->lookat);
+    memcpy(info->vup, camera->vup, sizeof info->vup);
 }

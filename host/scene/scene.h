@@ -125,6 +125,7 @@ typedef struct BpPointFile {
     char *file; /* as the scene names it */
     size_t first;
     char *particles; /* NULL for a cloud; else the entry of "particles", as JSON */
+    bool in_memory;  /* no file: a set of spheres that the caller handed over, whose name `file` is */
 } BpPointFile;
 
 /* The legend of particles that are coloured by a column. */

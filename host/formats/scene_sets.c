@@ -1,0 +1,135 @@
+/* scene_sets.c: spheres that a caller hands over as arrays.
+ *
+ * In:    sets of arrays.   Out: their spheres and colours, behind all others of a scene.
+ * Knows: how arrays lie in memory.   Does not know: who made them, files. */
+#include "scene_parse.h"
+
+#include "scene/scene_fault.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+static double number(const BpRows *rows, size_t row, ptrdiff_t column) {
+    const char *const place =
+        (const char *)rows->data + (ptrdiff_t)row * rows->row_stride + column * rows->column_stride;
+    if (rows->type == BP_NUMBER_DOUBLE) {
+        double value;
+        memcpy(&value, place, sizeof value);
+        return value;
+    }
+    float value;
+    memcpy(&value, place, sizeof value);
+    return (double)value;
+}
+
+static const char *name_of(const BpSphereSet *set) {
+    return set->name != NULL ? set->name : "the spheres";
+}
+
+static BpStatus check_set(const BpSphereSet *set, BpError *err) {
+    const BpRows *const all[] = {&set->center, &set->radius, &set->color};
+    static const char *const what[] = {"center", "radius", "color"};
+    for (size_t i = 0; i < BP_COUNT(all); i++) {
+        const bool missing = all[i]->data == NULL && set->count > 0 && all[i] != &set->color;
+        if (missing || (all[i]->type != BP_NUMBER_FLOAT && all[i]->type != BP_NUMBER_DOUBLE))
+            return bp_fail(err, BP_ERR_USAGE, "%s: %s: found %s, expected numbers", name_of(set), what[i],
+                           missing ? "nothing" : "an unknown type of number");
+    }
+    return BP_OK;
+}
+
+static BpStatus find_material(const BpSphereSet *set, const BpMaterialIndex *index, BpScene *scene,
+                              uint32_t *material, BpError *err) {
+    if (set->material == NULL) {
+        *material = bp_implicit_material(scene, err);
+        return *material == UINT32_MAX ? BP_ERR_MEMORY : BP_OK;
+    }
+    *material = bp_material_find(index, set->material);
+    if (*material != UINT32_MAX) return BP_OK;
+    char shown[64], near_shown[64];
+    bp_printable(set->material, shown, sizeof shown);
+    if (index->count == 0)
+        return bp_fail(err, BP_ERR_SCENE,
+                       "%s: found the material \"%s\", expected a name from \"materials\", which is empty or "
+                       "absent; add it there",
+                       name_of(set), shown);
+    const char **names = malloc(index->count * sizeof *names);
+    if (names == NULL) return bp_fail(err, BP_ERR_MEMORY, "out of memory");
+    for (size_t i = 0; i < index->count; i++) names[i] = index->by_name[i]->name;
+    const char *nearest = bp_nearest_name(set->material, names, index->count);
+    bp_printable(nearest != NULL ? nearest : names[0], near_shown, sizeof near_shown);
+    free(names);
+    return bp_fail(err, BP_ERR_SCENE,
+                   "%s: found the material \"%s\", expected a name from \"materials\"; did you mean \"%s\"?",
+                   name_of(set), shown, near_shown);
+}
+
+static BpStatus read_color(const BpSphereSet *set, size_t i, float albedo[3], BpError *err) {
+    for (ptrdiff_t c = 0; c < 3; c++) {
+        const double share = number(&set->color, i, c);
+        if (!(share >= 0 && share <= 1))
+            return bp_fail(err, BP_ERR_SCENE,
+                           "sphere %zu (from 0) of %s: color: found %g, expected shares of light from 0 to 1",
+                           i, name_of(set), share);
+        albedo[c] = (float)share;
+    }
+    return BP_OK;
+}
+
+static BpStatus read_spheres(const BpSphereSet *set, uint32_t material, bool colored, BpScene *scene,
+                             BpError *err) {
+    for (size_t i = 0; i < set->count; i++) {
+        BpSphere *const sphere = &scene->spheres[scene->sphere_count];
+        BpFault fault;
+        for (int c = 0; c < 3; c++) sphere->center[c] = number(&set->center, i, c);
+        sphere->radius = number(&set->radius, i, 0);
+        sphere->material = material;
+        sphere->albedo = colored ? (uint32_t)scene->albedo_count : BP_NO_ALBEDO;
+        if (bp_sphere_find_fault(sphere, &fault))
+            return bp_fail(err, BP_ERR_SCENE, "sphere %zu (from 0) of %s: %s: %s", i, name_of(set),
+                           fault.member, fault.text);
+        if (colored) BP_TRY(read_color(set, i, scene->albedos[scene->albedo_count++], err));
+        scene->sphere_count++;
+    }
+    return BP_OK;
+}
+
+/* Room for all of them at once. */
+static BpStatus make_room(const BpSceneChanges *changes, BpScene *scene, BpError *err) {
+    size_t count = scene->sphere_count, colors = scene->albedo_count;
+    for (size_t s = 0; s < changes->sphere_set_count; s++) {
+        const BpSphereSet *const set = &changes->spheres[s];
+        BP_TRY(check_set(set, err));
+        if (set->count > BP_SPHERES_MAX || count > BP_SPHERES_MAX - set->count)
+            return bp_fail(err, BP_ERR_SCENE, "%s: found more than %u spheres, expected fewer", name_of(set),
+                           BP_SPHERES_MAX);
+        count += set->count;
+        if (set->color.data != NULL) colors += set->count;
+    }
+    BpSphere *const spheres = realloc(scene->spheres, (count + 1) * sizeof *spheres);
+    if (spheres != NULL) scene->spheres = spheres;
+    float(*const albedos)[3] = realloc(scene->albedos, (colors + 1) * sizeof *albedos);
+    if (albedos != NULL) scene->albedos = albedos;
+    if (spheres == NULL || albedos == NULL)
+        return bp_fail(err, BP_ERR_MEMORY, "out of memory for %zu spheres", count);
+    return BP_OK;
+}
+
+BpStatus bp_add_sphere_sets(const BpMaterialIndex *index, const BpSceneChanges *changes, BpScene *scene,
+                            BpError *err) {
+    if (changes->sphere_set_count == 0) return BP_OK;
+    BP_TRY(make_room(changes, scene, err));
+    for (size_t s = 0; s < changes->sphere_set_count; s++) {
+        const BpSphereSet *const set = &changes->spheres[s];
+        uint32_t material = 0;
+        BP_TRY(find_material(set, index, scene, &material, err));
+        const bool colored =
+            set->color.data != NULL && bp_material_has(scene->materials[material].kind, BP_MEMBER_ALBEDO);
+        BP_TRY(bp_keep_point_file(name_of(set), scene->sphere_count, NULL, scene, err));
+        scene->point_files[scene->point_file_count - 1].in_memory = true;
+        BP_TRY(read_spheres(set, material, colored, scene, err));
+    }
+    scene->has_particles = true;
+    return BP_OK;
+}
