@@ -116,9 +116,17 @@ static BpStatus make_room(const BpSceneChanges *changes, BpScene *scene, BpError
     return BP_OK;
 }
 
+/* In two dimensions, as files of particles are: those in one plane are seen from the front. */
+static bool is_flat(const BpSphere *spheres, size_t count) {
+    for (size_t i = 1; i < count; i++)
+        if (spheres[i].center[2] != spheres[0].center[2]) return false;
+    return count > 2;
+}
+
 BpStatus bp_add_sphere_sets(const BpMaterialIndex *index, const BpSceneChanges *changes, BpScene *scene,
                             BpError *err) {
     if (changes->sphere_set_count == 0) return BP_OK;
+    const size_t first = scene->sphere_count;
     BP_TRY(make_room(changes, scene, err));
     for (size_t s = 0; s < changes->sphere_set_count; s++) {
         const BpSphereSet *const set = &changes->spheres[s];
@@ -131,5 +139,6 @@ BpStatus bp_add_sphere_sets(const BpMaterialIndex *index, const BpSceneChanges *
         BP_TRY(read_spheres(set, material, colored, scene, err));
     }
     scene->has_particles = true;
+    scene->flat |= is_flat(scene->spheres + first, scene->sphere_count - first);
     return BP_OK;
 }

@@ -53,6 +53,14 @@ MUTANTS = [
     Mutant("what was sharp is left behind", "the wheel moves the camera, and not the plane in focus",
            [patch("host/scene/camera_moves.c", "if (focus > 0.01 * wanted) bp_camera_focus(camera, focus);", "(void)focus;")],
            [test("test_camera_moves", "1 exact")]),
+    # ---- spheres from arrays ---------------------------------------------------------------------------------
+    Mutant("arrays read across", "an array in the other order, as C and Fortran have them",
+           [patch("host/formats/scene_sets.c", "(ptrdiff_t)row * rows->row_stride + column * rows->column_stride;",
+                  "(ptrdiff_t)row * rows->column_stride + column * rows->row_stride;")],
+           [test("test_library_arrays", "1 exact")]),
+    Mutant("a camera that does not see arrays", "the camera was fitted to the document's particles alone",
+           [patch("host/formats/scene_sets.c", "    scene->has_particles = true;", "")],
+           [test("test_library_arrays", "1 exact")]),
     # ---- fitted cameras --------------------------------------------------------------------------------------
     Mutant("the bounding box for the silhouette", "a camera fitted to centres and radii in the picture plane",
            [patch("host/scene/fit.c", "cosine) * place[axis] - sine * place[2] - radius;",

@@ -132,7 +132,20 @@ static void test_fit(void **state) {
     for (int i = 0; i < 3; i++) distance += pow(camera.lookfrom[i] - camera.lookat[i], 2);
     assert_true(sqrt(distance) > 0.75 && sqrt(distance) < 10);
     assert_true(camera.vfov == 90 && camera.aperture == 0 && camera.focus_dist > 0);
+    assert_true(fabs(camera.lookfrom[0] - camera.lookat[0]) > 0.1);
     bp_scene_destroy(&scene);
+
+    /* Spheres in one plane are seen from the front, as files of particles are. */
+    static const float plane[4][3] = {{0, 0, 2}, {1, 0, 2}, {0, 1, 2}, {1, 1, 3}};
+    matte.center = (BpRows){plane, sizeof plane[0], sizeof(float), BP_NUMBER_FLOAT};
+    matte.radius.row_stride = 0;
+    for (size_t count = 3; count <= 4; count++) {
+        matte.count = count;
+        scene = parse(fitted, &matte, 1);
+        bp_scene_camera(scene, &camera);
+        assert_int_equal(fabs(camera.lookfrom[0] - camera.lookat[0]) < 1e-9, count == 3);
+        bp_scene_destroy(&scene);
+    }
 }
 
 /* Every refusal names the set, the sphere and the remedy. */

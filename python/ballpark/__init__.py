@@ -1,0 +1,23 @@
+"""Ballpark: a path tracer for spheres on any OpenCL device, with the noise of every picture.
+
+    import numpy as np, ballpark
+    picture = ballpark.render(np.random.rand(1000, 3), radius=0.02, color="#4477aa")
+    picture.save("cloud.png")
+"""
+
+from . import _library
+from ._library import DeviceError, Error, SceneError
+from ._particles import from_ase, from_gsd, from_mdanalysis
+from ._picture import Picture
+from ._render import Device, Interrupted, Progress, Render, devices, make_scene, render
+from ._scene import Camera, Scene, Spheres
+
+__all__ = ["Camera", "Device", "DeviceError", "Error", "Interrupted", "Picture", "Progress", "Render", "Scene",
+           "SceneError", "Spheres", "devices", "from_ase", "from_gsd", "from_mdanalysis", "library_version",
+           "make_scene", "render"]
+
+
+def library_version() -> str:
+    """The version and commit of the library, such as "0.1.0 (commit abcdef1)"."""
+    text: bytes = _library.library().bp_version()
+    return text.decode()

@@ -1,0 +1,121 @@
+"""Spheres from the objects of other packages, which are not imported here.
+
+In:    ASE's Atoms, MDAnalysis' AtomGroup and Universe, frames of gsd.   Out: Spheres.
+Knows: where those keep positions, elements and types.   Does not know: scenes, rendering.
+"""
+
+import ctypes as c
+import functools
+import typing
+
+import numpy as np
+import numpy.typing as npt
+
+from . import _library as lib
+from ._scene import Color, Document, Spheres
+
+RADII = {"vdw": "van_der_waals", "covalent": "covalent"}
+
+
+@functools.lru_cache(maxsize=None)
+def _elements() -> typing.Tuple[npt.NDArray[np.float64], npt.NDArray[np.float64], npt.NDArray[np.float32],
+                                typing.Dict[str, int]]:
+    """Radii (van der Waals, covalent) and colours by atomic number, and numbers by symbol."""
+    vdw: typing.List[float] = []
+    covalent: typing.List[float] = []
+    colors: typing.List[typing.List[float]] = []
+    numbers: typing.Dict[str, int] = {}
+    info = lib.BpElementInfo()
+    while lib.library().bp_element_info(len(vdw), c.byref(info)):
+        numbers[info.symbol.decode().upper()] = len(vdw)
+        vdw.append(info.van_der_waals)
+        covalent.append(info.covalent)
+        colors.append(info.color[:])
+    return np.array(vdw), np.array(covalent), np.array(colors, np.float32), numbers
+
+
+def _of_elements(numbers: npt.NDArray[typing.Any], radius: typing.Union[str, npt.ArrayLike], scale: float,
+                 color: typing.Optional[Color]) -> typing.Tuple[npt.ArrayLike, typing.Optional[Color]]:
+    vdw, covalent, colors, _ = _elements()
+    known = np.where((numbers >= 0) & (numbers < len(vdw)), numbers, 0).astype(np.intp)
+    if isinstance(radius, str):
+        if radius not in RADII:
+            raise lib.SceneError(f'radius: found "{radius}", expected "vdw", "covalent", a number or an array')
+        radii: npt.ArrayLike = scale * (vdw if radius == "vdw" else covalent)[known]
+    else:
+        radii = scale * np.asarray(radius)
+    return radii, colors[known] if color is None else color
+
+
+def from_ase(atoms: typing.Any, *, radius: typing.Union[str, npt.ArrayLike] = "vdw", scale: float = 1.0,
+             color: typing.Optional[Color] = None,
+             material: typing.Union[None, str, Document] = None) -> Spheres:
+    """The atoms of an ase.Atoms, by default with radii of van der Waals and colours by element.
+
+    radius: "vdw", "covalent", or in angstrom; scale multiplies it. color: as in Spheres.
+    """
+    numbers = np.asarray(atoms.get_atomic_numbers())
+    radii, colors = _of_elements(numbers, radius, scale, color)
+    return Spheres(np.asarray(atoms.get_positions()), radii, colors, material, name="atoms")
+
+
+def _numbers_of(symbols: npt.NDArray[typing.Any]) -> npt.NDArray[np.int64]:
+    """Atomic numbers of symbols in any case; 0 where there is none."""
+    table = _elements()[3]
+    distinct, places = np.unique(symbols.astype(str), return_inverse=True)
+    return np.array([table.get(symbol.strip().upper(), 0) for symbol in distinct], np.int64)[places.reshape(-1)]
+
+
+def _guess(names: npt.NDArray[typing.Any], residues: npt.NDArray[typing.Any]) -> npt.NDArray[np.int64]:
+    """Atomic numbers by the names of atoms and residues, as the readers of PDB and GRO files guess them."""
+    pairs = np.char.add(np.char.add(names.astype(str), "\n"), residues.astype(str))
+    distinct, places = np.unique(pairs, return_inverse=True)
+    guessed = [lib.library().bp_element_of_atom(*(part.encode() for part in pair.split("\n"))) for pair in distinct]
+    return np.array(guessed, np.int64)[places.reshape(-1)]
+
+
+def from_mdanalysis(atoms: typing.Any, *, radius: typing.Union[str, npt.ArrayLike] = "vdw", scale: float = 1.0,
+                    color: typing.Optional[Color] = None,
+                    material: typing.Union[None, str, Document] = None) -> Spheres:
+    """The atoms of an MDAnalysis AtomGroup or Universe in its current frame, water included.
+
+    Elements are the topology's; where it has none, they follow from the names of atoms and residues, and where it has
+    no names, atoms look alike. Arguments: see from_ase().
+    """
+    atoms = getattr(atoms, "atoms", atoms)
+    positions = np.asarray(atoms.positions)
+    numbers = np.zeros(len(positions), np.int64)
+    if hasattr(atoms, "elements"):
+        numbers = _numbers_of(np.asarray(atoms.elements))
+    unknown = numbers == 0
+    if unknown.any() and hasattr(atoms, "names"):
+        names = np.asarray(atoms.names)
+        residues = np.asarray(atoms.resnames) if hasattr(atoms, "resnames") else np.full(len(names), "")
+        numbers[unknown] = _guess(names[unknown], residues[unknown])
+    radii, colors = _of_elements(numbers, radius, scale, color)
+    return Spheres(positions, radii, colors, material, name="atoms")
+
+
+def from_gsd(frame: typing.Any, *, radius: typing.Optional[npt.ArrayLike] = None, scale: float = 1.0,
+             color: typing.Optional[Color] = None,
+             material: typing.Union[None, str, Document] = None) -> Spheres:
+    """The particles of a frame of gsd.hoomd: radii are half the diameters, colours go by type, z is up.
+
+    radius: instead of the diameters; scale multiplies it. color: as in Spheres. Two dimensions are seen from the front.
+    """
+    particles = frame.particles
+    positions = np.asarray(particles.position)
+    if radius is None:
+        diameter = particles.diameter
+        radius = 0.5 if diameter is None else np.asarray(diameter) / 2
+    if color is None:
+        types = particles.typeid
+        count = 1 if types is None or len(types) == 0 else int(np.max(types)) + 1
+        table, rgb = np.empty((count, 3), np.float32), (c.c_double * 3)()
+        for number in range(count):
+            lib.library().bp_type_color(number, rgb)
+            table[number] = rgb[:]
+        color = table[0] if types is None else table[np.asarray(types)]
+    flat = getattr(frame.configuration, "dimensions", 3) == 2
+    return Spheres(positions, scale * np.asarray(radius), color, material, up="y" if flat else "z",
+                   view="front" if flat else "three-quarter", name="particles")

@@ -1,0 +1,378 @@
+"""Renders: from a scene to a picture, step by step.
+
+In:    a scene, options.   Out: pictures, progress.
+Knows: stop rules, interruption.   Does not know: where scenes come from.
+"""
+
+import collections.abc
+import ctypes as c
+import dataclasses
+import math
+import os
+import signal
+import sys
+import threading
+import time
+import types
+import typing
+
+import numpy.typing as npt
+
+from . import _library as lib
+from ._picture import Picture
+from ._scene import Color, Document, Scene, Spheres, _whole, particle_document
+
+T = typing.TypeVar("T")
+
+
+class Interrupted(KeyboardInterrupt):
+    """Ctrl-C ended a render. `picture` is what it has rendered so far, or None if no pixel has a sample yet."""
+
+    def __init__(self, picture: typing.Optional[Picture]):
+        super().__init__("interrupted")
+        self.picture = picture
+
+
+@dataclasses.dataclass(frozen=True)
+class Progress:
+    """How far a render is. `noise` and `seconds_left` are NaN while they are unknown."""
+
+    fraction: float
+    seconds: float
+    seconds_left: float
+    noise: float
+    samples: int
+    samples_per_second: float
+
+
+@dataclasses.dataclass(frozen=True)
+class Device:
+    """An OpenCL device, as `ballpark devices` lists it."""
+
+    number: int
+    type: str
+    name: str
+    platform: str
+    driver: str
+    compute_units: int
+    memory_bytes: int
+    has_double: bool
+    refusal: str
+
+
+def _device(info: lib.BpDeviceInfo) -> Device:
+    return Device(info.number, lib.DEVICE_TYPES[info.type], info.name.decode(errors="replace"),
+                  info.platform.decode(errors="replace"), info.driver.decode(errors="replace"), info.compute_units,
+                  info.memory_bytes, info.has_double, info.refusal.decode(errors="replace"))
+
+
+def devices() -> typing.List[Device]:
+    """Every OpenCL device; those with a `refusal` cannot render."""
+    found, count = c.POINTER(lib.BpDeviceInfo)(), c.c_size_t()
+    lib.call("bp_devices_list", c.byref(found), c.byref(count))
+    try:
+        return [_device(found[i]) for i in range(count.value)]
+    finally:
+        lib.library().bp_free(c.cast(found, c.c_void_p))
+
+
+class _CtrlC:
+    """While entered, Ctrl-C is noted and does not raise, so that it never comes between two steps of the bookkeeping.
+
+    Only where it would raise otherwise: in the main thread, and where nobody has installed a handler of his own.
+    """
+
+    def __init__(self) -> None:
+        self.pressed_at: typing.Optional[float] = None
+        self._ours = False
+
+    def _note(self, number: int, frame: typing.Optional[types.FrameType]) -> None:
+        if self.pressed_at is None:
+            self.pressed_at = time.monotonic()
+
+    def __enter__(self) -> "_CtrlC":
+        self._ours = (threading.current_thread() is threading.main_thread()
+                      and signal.getsignal(signal.SIGINT) is signal.default_int_handler)
+        if self._ours:
+            signal.signal(signal.SIGINT, self._note)
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        if self._ours:
+            signal.signal(signal.SIGINT, signal.default_int_handler)
+
+
+POLL_SECONDS = 0.1
+
+
+class _Job:
+    """A call into the library, which Python cannot interrupt: it runs in a thread of its own, and can be left alone."""
+
+    def __init__(self, function: typing.Callable[[], typing.Any]):
+        self.function = function
+        self.result: typing.Any = None
+        self.problem: typing.Optional[BaseException] = None
+        self.done = threading.Event()
+        threading.Thread(target=self._run, name="ballpark").start()
+
+    def _run(self) -> None:
+        try:
+            self.result = self.function()
+        except BaseException as problem:  # raised again where it is waited for
+            self.problem = problem
+        self.done.set()
+
+    def wait(self, ctrl_c: _CtrlC, patience: float) -> bool:
+        """Until it is done; False: Ctrl-C was pressed, and it is not done within `patience` seconds of that."""
+        while not self.done.wait(POLL_SECONDS):
+            if ctrl_c.pressed_at is not None and time.monotonic() - ctrl_c.pressed_at > patience:
+                return False
+        if self.problem is not None:
+            raise self.problem
+        return True
+
+
+def _interruptible(function: typing.Callable[[], T]) -> T:
+    """Calls it. Ctrl-C raises KeyboardInterrupt soon, and leaves the call to its end."""
+    with _CtrlC() as ctrl_c:
+        job = _Job(function)
+        if not job.wait(ctrl_c, 0) or ctrl_c.pressed_at is not None:
+            raise KeyboardInterrupt
+    result: T = job.result
+    return result
+
+
+class Render:
+    """A render of a scene, for pictures on the way: step() until it returns a reason, picture() at any time.
+
+    spp: samples per pixel; error: noise to reach, a fraction such as 0.01; time: seconds. The first that is reached
+    ends it; without any, the scene's samples per pixel do. With error or time and without spp, samples have no limit.
+    device: as `ballpark --device` takes it. The other options are those of `ballpark render` with the same names;
+    aovs=True adds depth, normal and albedo.
+    """
+
+    def __init__(self, scene: Scene, *, spp: typing.Optional[int] = None, error: typing.Optional[float] = None,
+                 time: typing.Optional[float] = None, seed: int = 0, depth: typing.Optional[int] = None,
+                 first_sample: int = 0, device: typing.Union[None, int, str] = None, sampler: str = "sobol",
+                 precision: str = "single", math: str = "strict", numerics: str = "robust", lamps: str = "on",
+                 kernel: str = "auto", adaptive: bool = False, aovs: bool = False, threads: int = 0,
+                 force: bool = False):
+        self.scene = scene
+        self._render, self._stop = lib.Handle("render"), lib.Handle("stop")
+        self._progress, self._reason = lib.BpProgress(), c.c_int(0)
+        self._lock, self._busy, self._closing = threading.Lock(), False, False
+        options = lib.BpRenderOptions()
+        lib.library().bp_render_defaults(scene._handle.pointer, c.byref(options))
+        words = {"sampler": sampler, "precision": precision, "math": math, "numerics": numerics, "lamps": lamps,
+                 "kernel": kernel}
+        for name, word in words.items():
+            if word not in lib.CHOICES[name]:
+                raise lib.SceneError(f'{name}: found "{word}", expected one of {", ".join(lib.CHOICES[name])}')
+            setattr(options, name, lib.CHOICES[name].index(word))
+        if spp is not None:
+            options.samples_per_pixel = _whole("spp", spp, 1, 1 << 32)
+        options.seed = _whole("seed", seed, 0, (1 << 64) - 1)
+        options.first_sample = _whole("first_sample", first_sample, 0, (1 << 32) - 1)
+        if depth is not None:
+            options.max_depth = _whole("depth", depth, 0, 1000000)
+        options.threads = _whole("threads", threads, 0, 65536)
+        options.adaptive, options.features, options.force = bool(adaptive), bool(aovs), bool(force)
+        rule = lib.BpStopRule()
+        lib.library().bp_stop_rule_defaults(scene._handle.pointer, c.byref(options), c.byref(rule))
+        rule.error, rule.seconds = _positive("error", error), _positive("time", time)
+        if spp is None and (error is not None or time is not None):
+            rule.samples_max = 0
+        chosen = lib.BpDeviceInfo()
+        _interruptible(lambda: self._create(options, rule, device, chosen))
+        self.device = _device(chosen)
+
+    def _create(self, options: lib.BpRenderOptions, rule: lib.BpStopRule, device: typing.Union[None, int, str],
+                chosen: lib.BpDeviceInfo) -> None:
+        name = None if device is None else str(device).encode()
+        lib.call("bp_device_find", name, c.byref(chosen))
+        lib.call("bp_render_create", self.scene._handle.pointer, c.byref(options), c.byref(chosen), 1,
+                 self._render.address)
+        lib.call("bp_stop_create", self._render.pointer, c.byref(rule), self._stop.address)
+
+    def step(self) -> typing.Optional[str]:
+        """Renders for about 0.2 s. Returns why the render has ended ("samples", "error", ...), or None: go on."""
+        if self._reason.value == 0:
+            with _CtrlC() as ctrl_c:
+                if not self._start_step().wait(ctrl_c, INTERRUPT_SECONDS) or ctrl_c.pressed_at is not None:
+                    raise KeyboardInterrupt
+        return self.stopped
+
+    def _start_step(self) -> _Job:
+        with self._lock:
+            if self._busy or not self._render:
+                raise lib.Error("the render is closed" if not self._busy else "a step of the render is under way")
+            self._busy = True
+        return _Job(self._step)
+
+    def _step(self) -> None:
+        try:
+            lib.call("bp_render_step", self._render.pointer, c.byref(self._progress))
+            lib.call("bp_stop_check", self._stop.pointer, c.byref(self._progress), c.byref(self._reason))
+        finally:
+            with self._lock:
+                self._busy = False
+                if self._closing:
+                    self._destroy()
+
+    @property
+    def stopped(self) -> typing.Optional[str]:
+        """Why the render has ended; None: it has not."""
+        if self._reason.value == 0:
+            return None
+        name: bytes = lib.library().bp_stop_reason_name(self._reason)
+        return name.decode()
+
+    def progress(self) -> Progress:
+        """How far it is; as often as wanted."""
+        estimate = lib.BpStopEstimate()
+        lib.call("bp_stop_estimate", self._stop.pointer, c.byref(self._progress), c.byref(estimate))
+        return Progress(estimate.fraction, estimate.seconds, estimate.seconds_left, estimate.nrmse,
+                        self._progress.samples_done, estimate.samples_per_second)
+
+    def picture(self) -> Picture:
+        """The picture as it stands, of its own: later steps do not change it."""
+        film = lib.Handle("film")
+        lib.call("bp_render_film", self._render.pointer, film.address)
+        return Picture(film, self.scene.transfer, self.stopped or "interrupt", self._progress.trace_seconds)
+
+    def close(self) -> None:
+        """Releases the device's memory now instead of when the object is gone, or once a step under way has ended."""
+        with self._lock:
+            self._closing = True
+            if not self._busy:
+                self._destroy()
+
+    def _destroy(self) -> None:  # a stop rule goes before its render
+        self._stop.destroy()
+        self._render.destroy()
+
+    def __enter__(self) -> "Render":
+        return self
+
+    def __exit__(self, kind: typing.Optional[typing.Type[BaseException]], problem: typing.Optional[BaseException],
+                 trace: typing.Optional[types.TracebackType]) -> None:
+        self.close()
+
+    def __del__(self) -> None:
+        if lib._loaded is not None and hasattr(self, "_closing"):
+            self._destroy()
+
+
+def _positive(name: str, value: typing.Optional[float]) -> float:
+    if value is None:
+        return 0.0
+    if not (isinstance(value, (int, float)) or hasattr(value, "__float__")) or not 0 < float(value) < math.inf:
+        raise lib.SceneError(f"{name}: found {value!r}, expected a number above 0")
+    return float(value)
+
+
+INTERRUPT_SECONDS = 0.7  # how long Ctrl-C waits for a step in progress, so that its samples are kept
+
+
+def _partial(render: Render) -> typing.Optional[Picture]:
+    return render.picture() if render._progress.samples_done > 0 else None
+
+
+def _run(render: Render, report: typing.Optional[typing.Callable[[Progress], object]]) -> Picture:
+    """Steps to the end; Ctrl-C hands over what there is."""
+    while render.stopped is None:
+        with _CtrlC() as ctrl_c:
+            # A step ends soon, unless a driver compiles in it: then nothing is rendered yet, and it is left to its end.
+            if not render._start_step().wait(ctrl_c, INTERRUPT_SECONDS):
+                raise Interrupted(None)
+            if ctrl_c.pressed_at is not None:
+                raise Interrupted(_partial(render))
+        try:
+            if report is not None and report(render.progress()) is False:
+                break
+        except Interrupted:
+            raise  # of another render, in the report
+        except KeyboardInterrupt:
+            raise Interrupted(_partial(render)) from None
+    return render.picture()
+
+
+def _bar(progress: Progress) -> None:
+    noise = "" if math.isnan(progress.noise) else f"  noise {100 * progress.noise:.2g} %"
+    left = "" if math.isnan(progress.seconds_left) else f"  {progress.seconds_left:.0f} s left"
+    print(f"\rballpark: {100 * progress.fraction:3.0f} %{noise}{left}    ", end="", file=sys.stderr, flush=True)
+
+
+Subject = typing.Union[Scene, Spheres, typing.Sequence[Spheres], Document, str, "os.PathLike[str]", npt.ArrayLike]
+
+
+def _is_spheres(subject: typing.Any) -> bool:
+    return isinstance(subject, (list, tuple)) and len(subject) > 0 and all(isinstance(s, Spheres) for s in subject)
+
+
+def make_scene(subject: Subject, *, radius: typing.Optional[npt.ArrayLike] = None,
+               color: typing.Optional[Color] = None, material: typing.Union[None, str, Document] = None,
+               cmap: typing.Optional[str] = None, color_range: typing.Optional[typing.Tuple[float, float]] = None,
+               up: typing.Optional[str] = None, camera: typing.Optional[Document] = None,
+               width: typing.Optional[int] = None, height: typing.Optional[int] = None,
+               materials: typing.Optional[Document] = None, background: typing.Any = None) -> Scene:
+    """The scene that render() would render of the same arguments; its camera can be used for other pictures."""
+    looks: typing.Dict[str, typing.Any] = {"radius": radius, "color": color, "material": material, "cmap": cmap,
+                                           "color_range": color_range,
+                                           "up": up}
+    given = {name: value for name, value in looks.items() if value is not None}
+    scene_members = {name: value for name, value in (("materials", materials), ("background", background))
+                     if value is not None}
+    if isinstance(subject, (Scene, str, os.PathLike, collections.abc.Mapping)):
+        extra = list(given) + list(scene_members) + [name for name, value in (("camera", camera), ("height", height))
+                                                     if value is not None]
+        if extra:
+            raise lib.SceneError(f"{extra[0]}: found beside a whole scene, expected it in the scene itself")
+        if isinstance(subject, Scene):
+            scene = subject
+        elif isinstance(subject, collections.abc.Mapping):
+            scene = _interruptible(lambda: Scene(subject))
+        else:
+            scene = _interruptible(lambda: Scene.load(subject))
+        if width is not None and width != scene.width:
+            scene.set_width(width)
+        return scene
+    if isinstance(subject, Spheres) or _is_spheres(subject):
+        sets = [subject] if isinstance(subject, Spheres) else list(typing.cast(typing.Sequence[Spheres], subject))
+        sets = [dataclasses.replace(one, **given) for one in sets]
+    else:
+        sets = [Spheres(typing.cast(npt.ArrayLike, subject), **given)]
+    document = particle_document(sets, camera, width, height, scene_members)
+    return _interruptible(lambda: Scene(document, sets))
+
+
+def render(subject: Subject, *, radius: typing.Optional[npt.ArrayLike] = None, color: typing.Optional[Color] = None,
+           material: typing.Union[None, str, Document] = None, cmap: typing.Optional[str] = None,
+           color_range: typing.Optional[typing.Tuple[float, float]] = None, up: typing.Optional[str] = None,
+           camera: typing.Optional[Document] = None, width: typing.Optional[int] = None,
+           height: typing.Optional[int] = None, materials: typing.Optional[Document] = None,
+           background: typing.Any = None,
+           progress: typing.Union[None, bool, typing.Callable[[Progress], object]] = None,
+           **options: typing.Any) -> Picture:
+    """Renders a picture.
+
+    subject: positions (N, 3); Spheres, or a list of them; a scene as a dict, a Scene, or the path of a scene or of a
+    file of particles.
+    For positions and Spheres: radius, color, material, cmap, color_range and up as in Spheres; camera: members of the
+    scene's "camera" (without lookfrom, lookat or focus_dist it is fitted to the spheres); width, height: of the picture;
+    materials, background: as in a scene. The light is a white dome unless background says otherwise.
+    progress: True for a line on standard error, or a function that is called with a Progress about five times a second;
+    when it returns False, the render ends with what it has.
+    options: those of Render (spp, error, time, seed, device, adaptive, aovs, ...).
+
+    Ctrl-C raises Interrupted, a KeyboardInterrupt, whose `picture` is what was rendered so far.
+    """
+    scene = make_scene(subject, radius=radius, color=color, material=material, cmap=cmap, color_range=color_range,
+                       up=up, camera=camera, width=width, height=height, materials=materials, background=background)
+    report = _bar if progress is True else progress if callable(progress) else None
+    with Render(scene, **options) as running:
+        try:
+            return _run(running, report)
+        finally:
+            if progress is True:
+                print(file=sys.stderr)

@@ -1,0 +1,75 @@
+"""Ctrl-C: a render that would take days ends with the picture so far; one whose kernel is being built ends without; the
+program that called it goes on.
+
+Usage: test_python_interrupt.py SOURCE_DIR BUILD_DIR
+"""
+
+import os
+import signal
+import subprocess
+import sys
+import tempfile
+
+import package
+
+source, build = sys.argv[1:]
+ballpark, _ = package.load(source, build)
+
+# Says READY, waits for Ctrl-C in what follows, and then renders again in the same process.
+RENDERING = """
+import sys
+import numpy as np, ballpark
+positions = np.random.default_rng(1).random((100, 3))
+def report(now):
+    if now.samples > 0: print("READY", flush=True)
+try:
+    ballpark.render(positions, radius=0.05, width=64, spp=2**26, progress=report)
+except ballpark.Interrupted as stop:
+    assert isinstance(stop, KeyboardInterrupt)
+    picture = stop.picture
+    assert picture.stopped == "interrupt" and picture.samples.max() > 0 and picture.radiance.mean() > 0.1
+    picture.save("partial.png")
+    assert ballpark.render(positions, radius=0.05, width=64, spp=2).stopped == "samples"
+    print("STOPPED", flush=True)
+"""
+# No kernel is in this cache, so that it is built; Ctrl-C comes somewhere between the start and the first samples.
+BUILDING = """
+import numpy as np, ballpark
+positions = np.random.default_rng(1).random((100, 3))
+ballpark.devices()
+try:
+    print("READY", flush=True)
+    ballpark.render(positions, radius=0.05, width=64, spp=2**26)
+except KeyboardInterrupt as stop:
+    print("STOPPED", getattr(stop, "picture", None), flush=True)
+"""
+LEFT_ALONE = """
+import numpy as np, ballpark
+print("READY", flush=True)
+ballpark.render(np.zeros((1, 3)), width=64, spp=2**26)
+"""
+
+
+def interrupted(program, folder, **variables):
+    with subprocess.Popen([sys.executable, "-c", program], cwd=folder, stdout=subprocess.PIPE, stderr=subprocess.PIPE,
+                          text=True, env=dict(os.environ, PYTHONPATH=f"{source}/python", **variables)) as process:
+        for line in process.stdout:
+            if line.startswith("READY"):
+                break
+        process.send_signal(signal.SIGINT)
+        output, errors = process.communicate(timeout=300)
+        return process.returncode, output, errors
+
+
+with tempfile.TemporaryDirectory() as folder:
+    code, output, errors = interrupted(RENDERING, folder)
+    assert code == 0 and "STOPPED" in output, (code, output, errors)
+    assert os.path.getsize(f"{folder}/partial.png") > 100
+
+    code, output, errors = interrupted(BUILDING, folder, POCL_CACHE_DIR=folder, XDG_CACHE_HOME=folder)
+    assert code == 0 and "STOPPED" in output, (code, output, errors)
+
+    # Nobody catches it: Python ends as it does on every Ctrl-C.
+    code, output, errors = interrupted(LEFT_ALONE, folder)
+    assert code in (1, -signal.SIGINT, 130) and "Interrupt" in errors, (code, output, errors)
+print("ok")
