@@ -1,13 +1,16 @@
 /* ballpark.h: the public interface of libballpark, a path tracer for spheres on any OpenCL device.
  *
  * The straight line: load a scene, open a render of it on a list of devices, step until it is finished, read
- * the picture, destroy.
+ * the picture, destroy. Every call but the last line's can fail: look at what it returns.
  *
  *     BpScene *scene = NULL; BpRender *render = NULL; BpError err = {0};
+ *     BpProgress progress = {0}; BpPicture picture = {0};
  *     bp_scene_load("cover.json", &scene, &err);
  *     bp_render_create(scene, NULL, NULL, 0, &render, &err);
  *     do bp_render_step(render, &progress, &err); while (!progress.finished);
  *     bp_render_read(render, &picture, &err);
+ *     bp_picture_write(&picture, "cover.png", BP_FORMAT_PNG, BP_TRANSFER_GAMMA2, &err);
+ *     bp_picture_clear(&picture); bp_render_destroy(&render); bp_scene_destroy(&scene);
  *
  * General rules, stated once:
  * - Errors. A function that can fail returns BpStatus and takes `BpError *err` last; `err` may be NULL. Begin

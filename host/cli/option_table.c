@@ -111,6 +111,10 @@ const char *bp_option_metavar(BpOption option, char *text, size_t size) {
     return text;
 }
 
+const char *const *bp_option_words(BpOption option) {
+    return rows[option].words;
+}
+
 bool bp_option_taken(BpOption option, const BpCommand *command) {
     return (rows[option].commands & command->bit) != 0;
 }

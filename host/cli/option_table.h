@@ -21,6 +21,9 @@ char bp_option_letter(BpOption option); /* 'o', or 0 */
 /* What the help calls the value, in `text`, which it returns: "N", "robust|plain"; "" for a flag. */
 const char *bp_option_metavar(BpOption option, char *text, size_t size);
 
+/* The words that the value is one of, ending with NULL; NULL: it is something else. */
+const char *const *bp_option_words(BpOption option);
+
 /* Whether the option belongs to the command. --help and --version belong to none. */
 bool bp_option_taken(BpOption option, const BpCommand *command);
 

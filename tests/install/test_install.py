@@ -96,6 +96,48 @@ def check_header(prefix):
         run(cxx_compiler, "-x", "c++", "-std=c++17", *flags, file)
 
 
+def check_synopsis(prefix, flags, environment):
+    """The program that the header's comment begins with compiles without a warning, and makes its picture."""
+    header = (prefix / "include/ballpark.h").read_text()
+    comment = header[: header.index("*/")]
+    lines = re.findall(r"^ \*     (\S.*)$", comment, re.MULTILINE)
+    assert len(lines) > 5 and "bp_render_step" in " ".join(lines), lines
+    file = prefix / "synopsis.c"
+    file.write_text("#include <ballpark.h>\nint main(void) {\n" + "\n".join(lines) + "\nreturn (int)err.code;\n}\n")
+    run(compiler, "-std=c11", *WARNINGS, file, *flags, "-o", prefix / "synopsis")
+    scene = json.loads((prefix / "share/ballpark/scenes/v4-22-defocus.json").read_text())
+    scene["camera"].update(image_width=32, samples_per_pixel=1)
+    (prefix / "cover.json").write_text(json.dumps(scene))
+    run(prefix / "synopsis", env=environment, cwd=prefix)
+    size, _ = read_png(prefix / "cover.png")
+    assert size[0] == 32, size
+
+
+def check_documents(prefix):
+    """Manual pages, completions and documents are where systems look for them."""
+    for name in ("man/man1/ballpark.1", "man/man1/ballpark-render.1", "bash-completion/completions/ballpark",
+                 "zsh/site-functions/_ballpark", "fish/vendor_completions.d/ballpark.fish", "doc/ballpark/README.md",
+                 "doc/ballpark/LICENSE", "doc/ballpark/docs/FILES.md", "doc/ballpark/docs/cover.png",
+                 "doc/ballpark/scenes/README.md"):
+        assert (prefix / "share" / name).is_file(), f"{name} is not installed"
+
+
+def check_uninstall(folder):
+    """Everything that was installed is removed, and nothing else."""
+    prefix = folder / "removed"
+    run("cmake", "--install", build, "--prefix", prefix)
+    other = prefix / "share/man/man1/other.1"
+    other.write_text("of another program")
+    run("cmake", "--build", build, "--target", "uninstall")
+    left = [path for path in prefix.rglob("*") if not path.is_dir()]
+    assert left == [other], left
+    folders = [path for path in prefix.rglob("ballpark*")]
+    assert not folders, f"folders are left: {folders}"
+    failed = subprocess.run(["cmake", "--build", build, "--target", "uninstall"], capture_output=True, text=True,
+                            check=False)
+    assert failed.returncode != 0 and "nothing to remove" in failed.stdout + failed.stderr, failed.stdout
+
+
 def check_example(prefix, flags, environment):
     """The first example: a PNG."""
     example, picture = prefix / "example", prefix / "cover.png"
@@ -176,8 +218,11 @@ with tempfile.TemporaryDirectory() as folder:
     check_names(prefix, library)
     check_version(prefix, library, environment)
     check_header(prefix)
+    check_documents(prefix)
+    check_uninstall(pathlib.Path(folder))
     shared = run("pkg-config", "--cflags", "--libs", "ballpark", env=environment).split()
     assert not [flag for flag in shared if "jansson" in flag or "OpenCL" in flag], f"the shared form needs {shared}"
+    check_synopsis(prefix, shared, with_library)
     check_example(prefix, shared, with_library)
     check_until_error(prefix, shared, with_library)
     assert f"[{library.name.rsplit('.', 1)[0]}]" in run("readelf", "-d", prefix / "example"), "not linked shared"

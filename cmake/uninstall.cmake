@@ -1,0 +1,22 @@
+# Removes what the last `cmake --install` wrote, by its list, and the folders that only Ballpark uses once they are empty.
+# In: MANIFEST, and DESTDIR of the environment, as for the installation.
+if(NOT EXISTS ${MANIFEST})
+  message(FATAL_ERROR "nothing to remove: ${MANIFEST} does not exist; `cmake --install` writes it")
+endif()
+file(STRINGS ${MANIFEST} files)
+foreach(file IN LISTS files)
+  set(path "$ENV{DESTDIR}${file}")
+  if(EXISTS "${path}" OR IS_SYMLINK "${path}")
+    file(REMOVE "${path}")
+    message(STATUS "removed ${path}")
+  endif()
+  get_filename_component(folder "${path}" DIRECTORY)
+  while(folder MATCHES "/ballpark(/|$)")
+    execute_process(COMMAND rmdir "${folder}" RESULT_VARIABLE kept ERROR_QUIET) # which keeps what is not empty
+    if(kept)
+      break()
+    endif()
+    get_filename_component(folder "${folder}" DIRECTORY)
+  endwhile()
+endforeach()
+file(REMOVE ${MANIFEST})
