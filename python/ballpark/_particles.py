@@ -63,7 +63,9 @@ def _numbers_of(symbols: npt.NDArray[typing.Any]) -> npt.NDArray[np.int64]:
     """Atomic numbers of symbols in any case; 0 where there is none."""
     table = _elements()[3]
     distinct, places = np.unique(symbols.astype(str), return_inverse=True)
-    return np.array([table.get(symbol.strip().upper(), 0) for symbol in distinct], np.int64)[places.reshape(-1)]
+    numbers = np.array([table.get(symbol.strip().upper(), 0) for symbol in distinct], np.int64)
+    taken: npt.NDArray[np.int64] = np.take(numbers, places.reshape(-1))
+    return taken
 
 
 def _guess(names: npt.NDArray[typing.Any], residues: npt.NDArray[typing.Any]) -> npt.NDArray[np.int64]:
@@ -71,7 +73,8 @@ def _guess(names: npt.NDArray[typing.Any], residues: npt.NDArray[typing.Any]) ->
     pairs = np.char.add(np.char.add(names.astype(str), "\n"), residues.astype(str))
     distinct, places = np.unique(pairs, return_inverse=True)
     guessed = [lib.library().bp_element_of_atom(*(part.encode() for part in pair.split("\n"))) for pair in distinct]
-    return np.array(guessed, np.int64)[places.reshape(-1)]
+    taken: npt.NDArray[np.int64] = np.take(np.array(guessed, np.int64), places.reshape(-1))
+    return taken
 
 
 def from_mdanalysis(atoms: typing.Any, *, radius: typing.Union[str, npt.ArrayLike] = "vdw", scale: float = 1.0,

@@ -331,9 +331,11 @@ def make_scene(subject: Subject, *, radius: typing.Optional[npt.ArrayLike] = Non
         if isinstance(subject, Scene):
             scene = subject
         elif isinstance(subject, collections.abc.Mapping):
-            scene = _interruptible(lambda: Scene(subject))
+            document: Document = subject
+            scene = _interruptible(lambda: Scene(document))
         else:
-            scene = _interruptible(lambda: Scene.load(subject))
+            path: typing.Union[str, "os.PathLike[str]"] = subject
+            scene = _interruptible(lambda: Scene.load(path))
         if width is not None and width != scene.width:
             scene.set_width(width)
         return scene
@@ -342,8 +344,8 @@ def make_scene(subject: Subject, *, radius: typing.Optional[npt.ArrayLike] = Non
         sets = [dataclasses.replace(one, **given) for one in sets]
     else:
         sets = [Spheres(typing.cast(npt.ArrayLike, subject), **given)]
-    document = particle_document(sets, camera, width, height, scene_members)
-    return _interruptible(lambda: Scene(document, sets))
+    made = particle_document(sets, camera, width, height, scene_members)
+    return _interruptible(lambda: Scene(made, sets))
 
 
 def render(subject: Subject, *, radius: typing.Optional[npt.ArrayLike] = None, color: typing.Optional[Color] = None,

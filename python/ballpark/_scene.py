@@ -228,7 +228,7 @@ class Scene:
         self.max_depth: int = info.max_depth
         self.spheres: int = info.spheres
         self.transfer: str = lib.TRANSFERS[info.transfer]
-        self.camera = Camera(tuple(camera.lookfrom), tuple(camera.lookat), tuple(camera.vup), camera.vfov,
+        self.camera = Camera(_triple(camera.lookfrom), _triple(camera.lookat), _triple(camera.vup), camera.vfov,
                              camera.focus_dist, camera.aperture)
 
     def set_width(self, width: int) -> None:
@@ -239,6 +239,10 @@ class Scene:
     def __repr__(self) -> str:
         title = f" {self.title!r}" if self.title else ""
         return f"<ballpark.Scene{title}: {self.spheres:,} spheres, {self.width} x {self.height} pixels>"
+
+
+def _triple(vector: typing.Any) -> typing.Tuple[float, float, float]:
+    return vector[0], vector[1], vector[2]
 
 
 def _whole(name: str, value: typing.Any, least: int, most: int) -> int:
