@@ -101,7 +101,8 @@ class BpStopEstimate(c.Structure):
 
 class BpPicture(c.Structure):
     _fields_ = [("width", c.c_uint32), ("height", c.c_uint32), ("rgb", c.c_void_p), ("error", c.c_void_p),
-                ("samples", c.c_void_p), ("depth", c.c_void_p), ("normal", c.c_void_p), ("albedo", c.c_void_p)]
+                ("samples", c.c_void_p), ("alpha", c.c_void_p), ("depth", c.c_void_p), ("normal", c.c_void_p),
+                ("albedo", c.c_void_p)]
 
 
 # Their C names are those of the classes.

@@ -40,6 +40,8 @@ class Picture:
     radiance: (height, width, 3) float32, linear.
     standard_error: the same shape, of each channel's mean; NaN where unknown.
     samples: (height, width) uint64, valid samples of each pixel.
+    alpha: (height, width), the share of camera rays that met something, where the scene's backdrop is "none", else None;
+        the radiance is premultiplied by it.
     depth (height, width), normal and albedo (height, width, 3): with aovs=True, else None.
     noise: the picture's noise over its mean brightness (NRMSE), a fraction; NaN where unknown.
     stopped: why the render ended: "samples", "error", "time", "constant", "black", "invalid", "interrupt".
@@ -58,6 +60,7 @@ class Picture:
         self.radiance: npt.NDArray[np.float32] = self._array("rgb", 3)
         self.standard_error: npt.NDArray[np.float32] = self._array("error", 3)
         self.samples: npt.NDArray[np.uint64] = self._array("samples", 1, "<u8")
+        self.alpha: typing.Optional[npt.NDArray[np.float32]] = self._optional("alpha", 1)
         self.depth: typing.Optional[npt.NDArray[np.float32]] = self._optional("depth", 1)
         self.normal: typing.Optional[npt.NDArray[np.float32]] = self._optional("normal", 3)
         self.albedo: typing.Optional[npt.NDArray[np.float32]] = self._optional("albedo", 3)
