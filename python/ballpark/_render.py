@@ -315,13 +315,15 @@ def make_scene(subject: Subject, *, radius: typing.Optional[npt.ArrayLike] = Non
                cmap: typing.Optional[str] = None, color_range: typing.Optional[typing.Tuple[float, float]] = None,
                up: typing.Optional[str] = None, camera: typing.Optional[Document] = None,
                width: typing.Optional[int] = None, height: typing.Optional[int] = None,
-               materials: typing.Optional[Document] = None, background: typing.Any = None) -> Scene:
+               materials: typing.Optional[Document] = None, background: typing.Any = None,
+               light: typing.Optional[str] = None, backdrop: typing.Any = None) -> Scene:
     """The scene that render() would render of the same arguments; its camera can be used for other pictures."""
     looks: typing.Dict[str, typing.Any] = {"radius": radius, "color": color, "material": material, "cmap": cmap,
                                            "color_range": color_range,
                                            "up": up}
     given = {name: value for name, value in looks.items() if value is not None}
-    scene_members = {name: value for name, value in (("materials", materials), ("background", background))
+    scene_members = {name: value for name, value in (("materials", materials), ("background", background),
+                                                         ("light", light), ("backdrop", backdrop))
                      if value is not None}
     if isinstance(subject, (Scene, str, os.PathLike, collections.abc.Mapping)):
         extra = list(given) + list(scene_members) + [name for name, value in (("camera", camera), ("height", height))
@@ -353,7 +355,7 @@ def render(subject: Subject, *, radius: typing.Optional[npt.ArrayLike] = None, c
            color_range: typing.Optional[typing.Tuple[float, float]] = None, up: typing.Optional[str] = None,
            camera: typing.Optional[Document] = None, width: typing.Optional[int] = None,
            height: typing.Optional[int] = None, materials: typing.Optional[Document] = None,
-           background: typing.Any = None,
+           background: typing.Any = None, light: typing.Optional[str] = None, backdrop: typing.Any = None,
            progress: typing.Union[None, bool, typing.Callable[[Progress], object]] = None,
            **options: typing.Any) -> Picture:
     """Renders a picture.
@@ -362,7 +364,7 @@ def render(subject: Subject, *, radius: typing.Optional[npt.ArrayLike] = None, c
     file of particles.
     For positions and Spheres: radius, color, material, cmap, color_range and up as in Spheres; camera: members of the
     scene's "camera" (without lookfrom, lookat or focus_dist it is fitted to the spheres); width, height: of the picture;
-    materials, background: as in a scene. The light is a white dome unless background says otherwise.
+    materials, background, light, backdrop: as in a scene. Without background and light, the light is "soft" on white.
     progress: True for a line on standard error, or a function that is called with a Progress about five times a second;
     when it returns False, the render ends with what it has.
     options: those of Render (spp, error, time, seed, device, adaptive, aovs, ...).
@@ -370,7 +372,8 @@ def render(subject: Subject, *, radius: typing.Optional[npt.ArrayLike] = None, c
     Ctrl-C raises Interrupted, a KeyboardInterrupt, whose `picture` is what was rendered so far.
     """
     scene = make_scene(subject, radius=radius, color=color, material=material, cmap=cmap, color_range=color_range,
-                       up=up, camera=camera, width=width, height=height, materials=materials, background=background)
+                       up=up, camera=camera, width=width, height=height, materials=materials, background=background,
+                       light=light, backdrop=backdrop)
     report = _bar if progress is True else progress if callable(progress) else None
     with Render(scene, **options) as running:
         try:

@@ -21,7 +21,7 @@ Color = typing.Union[str, npt.ArrayLike]
 # What a render of bare positions looks like: as files of particles do.
 PARTICLE_CAMERA: typing.Dict[str, typing.Any] = {
     "image_width": 800, "aspect_ratio": [4, 3], "samples_per_pixel": 32, "max_depth": 20, "vfov": 30}
-PARTICLE_SCENE: typing.Dict[str, typing.Any] = {"background": [1, 1, 1], "transfer": "srgb"}
+PARTICLE_SCENE: typing.Dict[str, typing.Any] = {"light": "soft", "transfer": "srgb"}
 
 
 def _srgb_to_linear(share: npt.NDArray[np.float64]) -> npt.NDArray[typing.Any]:
@@ -257,7 +257,8 @@ def _whole(name: str, value: typing.Any, least: int, most: int) -> int:
 
 def particle_document(sets: typing.Sequence[Spheres], camera: typing.Optional[Document], width: typing.Optional[int],
                       height: typing.Optional[int], members: Document) -> typing.Dict[str, typing.Any]:
-    """The document for bare spheres: a fitted camera, unless `camera` says where it stands, and a white dome."""
+    """The document for bare spheres: a fitted camera, unless `camera` says where it stands, and soft light, unless `members`
+    has a background."""
     own = dict(camera or {})
     placed = {"lookfrom", "lookat", "focus_dist", "defocus_angle"} & set(own)
     whole = dict(PARTICLE_CAMERA)
@@ -277,4 +278,7 @@ def particle_document(sets: typing.Sequence[Spheres], camera: typing.Optional[Do
     if height is not None:
         whole.pop("aspect_ratio", None)
         whole["image_height"] = height
-    return {**PARTICLE_SCENE, **members, "camera": whole}
+    scene = {**PARTICLE_SCENE, **members, "camera": whole}
+    if "background" in members and "light" not in members:
+        del scene["light"]
+    return scene
