@@ -163,7 +163,7 @@ class PageInBrowser(PageTest):
         self.check_dots(dom)
         self.check_images(dom, json.loads(embedded(source, "crops")))
         self.check_schemes()
-        self.check_curves(dom)
+        self.check_curves(dom, result["series"])
         self.check_the_checks(drawn, result)
 
     def check_dots(self, dom):
@@ -185,10 +185,21 @@ class PageInBrowser(PageTest):
         self.assertTrue([data for _, _, data in shown] == order, "other pictures than those embedded")
         self.assertEqual({(i["width"], i["height"]) for i in dom.images}, {(str(crops["width"]), str(crops["height"]))})
 
-    def check_curves(self, dom):
-        """No two curves have the same colour and the same dashes; each has a label."""
+    def check_curves(self, dom, series):
+        """Each curve has a label, and no two have the same colour and the same dashes. Those that would hide the base
+        configuration's are named instead."""
         groups = [e for e in dom.elements if "curve" in e["data"]]
-        self.assertGreater(len(groups), 8)
+        drawn = [group["data"]["curve"] for group in groups]
+        note = next(e["text"] for e in dom.elements if e["attributes"].get("id") == "front-same")
+        named = note.partition("Not drawn: ")[2].partition(". Their")[0].split(", ")
+        base = series[0]
+        for one in series:
+            same = (one is not base and one["time_ratio"]["value"] is not None
+                    and abs(one["time_ratio"]["value"] - 1) < 0.05
+                    and all(p["nrmse"] and q["nrmse"] and abs(p["nrmse"] / q["nrmse"] - 1) < 0.03
+                            for p, q in zip(one["points"], base["points"])))
+            self.assertEqual((one["name"] in drawn, one["name"] in named), (not same, same), one["name"])
+        self.assertGreater(len(groups), 4)
         looks = []
         for group in groups:
             lines = [e["attributes"]["stroke-dasharray"] for e in dom.elements
