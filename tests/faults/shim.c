@@ -298,7 +298,7 @@ static FILE *open_reader(int descriptor) {
 
 int fileno(FILE *stream) {
     for (size_t i = 0; i < sizeof readers / sizeof readers[0]; i++)
-        if (stream != NULL && readers[i].stream == stream) return readers[i].descriptor;
+        if (readers[i].stream == stream) return readers[i].descriptor;
     int (*const next)(FILE *) = (int (*)(FILE *))real("fileno");
     return next(stream);
 }
