@@ -202,6 +202,19 @@ static BpStatus add_files(const BpCommandLine *line, const Parts *parts, BpFilm 
     return status;
 }
 
+/* Sums do not tell the backdrop's colours. */
+static BpStatus check_cues(const BpCommandLine *line, const BpFilm *sum, BpError *err) {
+    if (bp_result_has_cues(line) && !bp_film_has_aovs(sum))
+        return bp_fail(
+            err, BP_ERR_USAGE,
+            "--outlines and --depth-fog need the depth, which .bpa files of versions 1 and 2 do not hold");
+    if (line->depth_fog > 0 && sum->met == NULL)
+        return bp_fail(
+            err, BP_ERR_USAGE,
+            "--depth-fog of sums needs an alpha: render their samples with --set 'backdrop=\"none\"'");
+    return BP_OK;
+}
+
 BpStatus bp_command_merge(const BpCommandLine *line, BpError *err) {
     BpStatus status = BP_OK;
     BpFilm *sum = NULL;
@@ -214,6 +227,7 @@ BpStatus bp_command_merge(const BpCommandLine *line, BpError *err) {
     BP_TRY_GOTO(status, read_headers(line, &parts, err), done);
     BP_TRY_GOTO(status, add_files(line, &parts, &sum, err), done);
     BP_TRY_GOTO(status, bp_film_check_finite(sum, err), done);
+    BP_TRY_GOTO(status, check_cues(line, sum, err), done);
     BP_TRY_GOTO(status, bp_result_write(line, &result, sum, false, (BpTransfer)sum->transfer, NULL, err),
                 done);
     if (result.format == BP_FORMAT_EXR && !bp_film_has_aovs(sum))

@@ -361,7 +361,7 @@ static BpStatus deliver(const BpCommandLine *line, BpResultFile *file, const BpS
     if (keeps && !checkpoint->is_result) bp_checkpoint_write(checkpoint, result->film);
     file->is_own = checkpoint->is_result && checkpoint->written > 0;
     const BpStatus written = bp_result_write(line, file, result->film, true,
-                                             (BpTransfer)result->film->transfer, &result->scene->legend, err);
+                                             (BpTransfer)result->film->transfer, result->scene, err);
     result->times.write = bp_clock_seconds() - write_start;
     /* A reader that has left takes the picture with it, but not the statistics. */
     if (written != BP_OK && strcmp(file->path, "-") != 0) return written;
@@ -455,7 +455,14 @@ static BpStatus plan(const BpCommandLine *line, const Job *job, const BpCheckpoi
     if (!bp_option_given(line, BP_OPTION_SAMPLER)) options->sampler = BP_SAMPLER_SOBOL;
     /* An error map tells spheres from sky by their depth. */
     options->features = job->file.format == BP_FORMAT_EXR || job->file.format == BP_FORMAT_BPA ||
-                        job->file.error_map[0] != '\0' || checkpoint->path[0] != '\0';
+                        job->file.error_map[0] != '\0' || checkpoint->path[0] != '\0' ||
+                        bp_result_has_cues(line);
+    if (bp_option_given(line, BP_OPTION_DEPTH_FOG) && job->scene->backdrop == BP_BACKDROP_SKY)
+        return bp_fail(
+            err, BP_ERR_USAGE,
+            "--depth-fog fades into the backdrop, and %.400s has none; add --set backdrop=[1,1,1], or "
+            "--set 'backdrop=\"none\"' for a picture with alpha",
+            job->path);
     if (resumed != NULL) {
         options->lamps = bp_render_lamps(job->scene, options); /* as films have it */
         BP_TRY(bp_resume_options(line, resumed, options, err));

@@ -81,6 +81,12 @@ enum {
            double, width_mm, BP_REAL("N", 0, 100000))                                                        \
     OPTION(BIT_DEPTH, "bit-depth", 0, BP_RENDER | BP_MERGE, "bits of each colour of a PNG", const char *,    \
            bit_depth, BP_WORD("8", "16"))                                                                    \
+    OPTION(OUTLINES, "outlines", 0, BP_RENDER | BP_MERGE,                                                    \
+           "draw lines of that width where the depth jumps; noise is that of the picture without them",      \
+           double, outlines, BP_REAL("PIXELS", 0, 100))                                                      \
+    OPTION(DEPTH_FOG, "depth-fog", 0, BP_RENDER | BP_MERGE,                                                  \
+           "fade what is far into the backdrop, the farthest by PERCENT; noise is that without it", double,  \
+           depth_fog, BP_PERCENT(0, 100))                                                                    \
     OPTION(METADATA, "metadata", 0, BP_RENDER | BP_MERGE,                                                    \
            "write the command, the version, the seed and the scene's hash into PNG and EXR", bool, metadata, \
            BP_FLAG)                                                                                          \

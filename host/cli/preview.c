@@ -68,7 +68,7 @@ BpStatus bp_preview_update(BpPreview *preview, BpRender *render, BpError *err) {
     if (preview->writes) {
         BpError fault = {0};
         if (bp_result_write(preview->line, preview->file, film, false, (BpTransfer)film->transfer,
-                            &preview->scene->legend, &fault) != BP_OK)
+                            preview->scene, &fault) != BP_OK)
             warn(preview, &fault);
         bp_error_clear(&fault);
     }

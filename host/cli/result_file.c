@@ -9,6 +9,7 @@
 #include "base/json_text.h"
 #include "film/film_file.h"
 #include "image/color_bar.h"
+#include "image/depth_cues.h"
 #include "image/error_map.h"
 #include "image/image.h"
 #include "keep_sums.h"
@@ -139,6 +140,11 @@ static BpStatus check_figure(const BpCommandLine *line, BpFormat format, BpError
     if (!noted && line->metadata)
         return bp_fail(err, BP_ERR_USAGE, "--metadata: PNG and EXR have a place for it, %s has none",
                        bp_format_names[format]);
+    if (format == BP_FORMAT_BPA && bp_result_has_cues(line))
+        return bp_fail(
+            err, BP_ERR_USAGE,
+            "--outlines and --depth-fog are drawn into pictures, and a .bpa file holds sums; give them to "
+            "`ballpark merge`, which makes the picture");
     if (!png && line->bit_depth != NULL)
         return bp_fail(err, BP_ERR_USAGE, "--bit-depth is of PNG pictures, and this one is %s",
                        bp_format_names[format]);
@@ -229,10 +235,24 @@ BpStatus bp_result_take_width(BpCommandLine *line, BpError *err) {
     return BP_OK;
 }
 
+bool bp_result_has_cues(const BpCommandLine *line) {
+    return line->outlines > 0 || line->depth_fog > 0;
+}
+
+static BpStatus draw_cues(const BpCommandLine *line, const BpScene *scene, BpPicture *picture, BpError *err) {
+    BpDepthCues cues = {.outlines = line->outlines, .fog = line->depth_fog / 100};
+    if (!bp_result_has_cues(line) || picture->depth == NULL) return BP_OK;
+    for (int c = 0; c < 3 && scene != NULL; c++) {
+        cues.bottom[c] = scene->backdrop_bottom[c];
+        cues.top[c] = scene->backdrop_top[c];
+    }
+    return bp_depth_cues_draw(picture, &cues, err);
+}
+
 BpStatus bp_result_write(const BpCommandLine *line, const BpResultFile *result, const BpFilm *film,
-                         bool rendered, BpTransfer transfer, const BpLegend *legend, BpError *err) {
+                         bool rendered, BpTransfer transfer, const BpScene *scene, BpError *err) {
     BpStatus status = BP_OK;
-    BpPicture picture = {0};
+    BpPicture picture = {0}, undrawn = {0};
     const bool is_picture = result->format != BP_FORMAT_BPA, has_map = result->error_map[0] != '\0';
     if (bp_option_given(line, BP_OPTION_TRANSFER)) transfer = line->transfer;
     BpImageExtra extra = {.dots_per_inch = bp_option_given(line, BP_OPTION_DPI) ? line->dpi : 0,
@@ -240,13 +260,19 @@ BpStatus bp_result_write(const BpCommandLine *line, const BpResultFile *result, 
     Metadata metadata = {.command_text = NULL};
     const Printed printed = {&picture, result->format, transfer, &extra};
     if (line->metadata) BP_TRY_GOTO(status, make_metadata(line, film, &metadata, &extra, err), done);
-    if (is_picture || has_map) BP_TRY_GOTO(status, bp_film_picture(film, &picture, err), done);
     const bool bytes = result->format == BP_FORMAT_PNG || result->format == BP_FORMAT_PPM ||
                        result->format == BP_FORMAT_PPM_ASCII;
-    if (status == BP_OK && legend != NULL && legend->shown && bytes)
-        status = bp_color_bar_draw(&picture, transfer, (const float(*)[3])legend->colors, legend->range,
-                                   legend->title, err);
-    if (status != BP_OK) goto done;
+    const BpLegend *const legend = scene != NULL && scene->legend.shown && bytes ? &scene->legend : NULL;
+    /* The map shows the errors of what was rendered, not of what is drawn over it. */
+    const bool apart = legend != NULL || bp_result_has_cues(line);
+    if (is_picture || has_map) BP_TRY_GOTO(status, bp_film_picture(film, &picture, err), done);
+    if (has_map && apart) BP_TRY_GOTO(status, bp_film_picture(film, &undrawn, err), done);
+    BP_TRY_GOTO(status, draw_cues(line, scene, &picture, err), done);
+    if (legend != NULL)
+        BP_TRY_GOTO(status,
+                    bp_color_bar_draw(&picture, transfer, (const float(*)[3])legend->colors, legend->range,
+                                      legend->title, err),
+                    done);
     if (rendered && picture.alpha != NULL && is_picture && result->format != BP_FORMAT_PNG &&
         result->format != BP_FORMAT_EXR)
         bp_say(line, "%s has no alpha: what the scene leaves open is black; .png and .exr keep it",
@@ -257,18 +283,18 @@ BpStatus bp_result_write(const BpCommandLine *line, const BpResultFile *result, 
                         : bp_line_write(&of_result, result->path, print_film, film, err);
     /* Who closes a pipe wants no more of the picture, but the map is a file of its own. */
     if (has_map && (status == BP_OK || strcmp(result->path, "-") == 0)) {
-        const BpStatus mapped =
-            bp_line_write(line, result->error_map, print_error_map, &picture, status == BP_OK ? err : NULL);
+        const BpStatus mapped = bp_line_write(line, result->error_map, print_error_map,
+                                              apart ? &undrawn : &picture, status == BP_OK ? err : NULL);
         if (status == BP_OK) {
-            bp_picture_clear(&picture);
-            json_decref(metadata.command_text);
-            return mapped;
+            status = mapped;
+            rendered = false; /* the picture is written */
         }
     }
 done:
     json_decref(metadata.command_text);
     if (status != BP_OK && rendered) bp_keep_sums(film, result->path, err);
     bp_picture_clear(&picture);
+    bp_picture_clear(&undrawn);
     return status;
 }
 

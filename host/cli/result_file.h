@@ -28,9 +28,14 @@ BpStatus bp_result_take_width(BpCommandLine *line, BpError *err);
 
 /* Writes it, and the error map if there is to be one. `transfer`: unless --transfer says otherwise.
  * `rendered`: the film is in no file yet, and is kept if the result cannot be written (keep_sums.h).
- * `legend`: Optional; where it is shown, a colour bar is drawn into pictures of 8 bits. */
+ * `scene`: Optional; where it shows a legend, a colour bar is drawn into pictures of 8 bits, and --depth-fog
+ * fades into its backdrop. A film of a render that has not ended may lack what outlines and fog need; then
+ * they are left out. */
 BpStatus bp_result_write(const BpCommandLine *line, const BpResultFile *result, const BpFilm *film,
-                         bool rendered, BpTransfer transfer, const BpLegend *legend, BpError *err);
+                         bool rendered, BpTransfer transfer, const BpScene *scene, BpError *err);
+
+/* Whether depth decides how the picture looks: --outlines or --depth-fog. */
+bool bp_result_has_cues(const BpCommandLine *line);
 
 /* The command line as it would be if it named this result's files itself. */
 BpCommandLine bp_result_line(const BpCommandLine *line, const BpResultFile *result);

@@ -1,6 +1,7 @@
 """Pictures for print: resolution, width in millimetres, 16 bits, and what tells where a picture comes from."""
 
 import json
+import math
 import struct
 
 import cli
@@ -68,6 +69,63 @@ class Figure(cli.ProgramTest):
             shown = rows[pixel // width][4 * (pixel % width):][:4]
             self.assertAlmostEqual(shown[3], 65535 * alpha, delta=0.6)
             self.assertAlmostEqual(shown[0], 65535 * min(red / alpha, 1) if alpha > 0 else 0, delta=0.7)
+
+    def test_outlines_and_fog(self):
+        """Both change the picture as its depth says, and neither its errors nor its layers."""
+        self.write("scene.json", cli.scene(32, 16, spheres=2, backdrop={"bottom": [1, 1, 1], "top": [1, 1, 1]}))
+        cues = ("--outlines", 1, "--depth-fog", "50%")
+        plain, drawn = (exr.read(self.render(name, *options))[2] for name, options in (("a.exr", ()), ("b.exr", cues)))
+        self.assertEqual(set(plain), set(drawn))
+        for layer in plain:
+            same = list(plain[layer]) == list(drawn[layer])
+            self.assertEqual(same, layer not in "RGB", layer)
+        seen = [i for i, depth in enumerate(plain["depth.Z"]) if math.isfinite(depth)]
+        nearest, farthest = (choose(plain["depth.Z"][i] for i in seen) for choose in (min, max))
+        faded = exr.read(self.render("c.exr", "--depth-fog", 50))[2]
+        for i, depth in enumerate(plain["depth.Z"]):
+            share = 0.5 * (depth - nearest) / (farthest - nearest) if i in seen else 0
+            self.assertAlmostEqual(faded["G"][i], plain["G"][i] + share * (1 - plain["G"][i]), delta=1e-6)
+        lined = exr.read(self.render("d.exr", "--outlines", 1))[2]
+        black = [i for i in range(32 * 16) if lined["G"][i] == 0 != plain["G"][i]]
+        self.assertGreater(len(black), 5)
+        # A pixel across is no further than a picture's row, and what a line lies around is nearer.
+        for i in black:
+            around = [plain["depth.Z"][j] for dx in (-1, 0, 1) for dy in (-1, 0, 1)
+                      if 0 <= i % 32 + dx < 32 and 0 <= (j := i + dx + 32 * dy) < 32 * 16]
+            self.assertLess(min(around), plain["depth.Z"][i])
+
+    def test_outlines_of_merged_sums(self):
+        self.write("scene.json", cli.scene(32, 16, spheres=2, backdrop="none"))
+        cues = ("--outlines", 1.5, "--depth-fog", 60)
+        self.render("whole.bpa")
+        whole = self.render("whole.png", *cues)
+        self.succeed("merge", "whole.bpa", "-o", "merged.png", "-q", *cues)
+        self.assert_same(self.read("merged.png"), whole)
+        self.assertNotEqual(self.render("plain.png"), whole)
+        self.assertEqual(read_png(whole)[3], 4)
+
+    def test_error_map_of_a_drawn_picture(self):
+        self.write("scene.json", cli.scene(32, 16, spheres=2, backdrop=[1, 1, 1]))
+        self.render("a.png", "--error-map", "a-error.png")
+        self.render("b.png", "--error-map", "b-error.png", "--outlines", 2, "--depth-fog", 90)
+        self.assertNotEqual(self.read("a.png"), self.read("b.png"))
+        self.assert_same(self.read("a-error.png"), self.read("b-error.png"))
+
+    def test_cues_that_cannot_be(self):
+        self.fail_with(2, "render", "scene.json", "--depth-fog", 50, says=("backdrop", "--set backdrop=[1,1,1]"))
+        self.succeed("render", "scene.json", "--depth-fog", 50, "--set", "backdrop=[1,1,1]", "-q", "-o", "a.png")
+        self.fail_with(2, "render", "scene.json", "--outlines", 1, "-o", "a.bpa", says=("holds sums", "ballpark merge"))
+        self.render("sums.bpa")
+        self.fail_with(2, "merge", "sums.bpa", "--depth-fog", 50, "-o", "b.png", says=("alpha", "none"))
+        self.succeed("merge", "sums.bpa", "--outlines", 1, "-o", "b.png")
+        for option, value in (("--outlines", 0), ("--outlines", 101), ("--depth-fog", "101%"), ("--depth-fog", -1)):
+            self.fail_with(2, "render", "scene.json", option, value, says=option)
+
+    def test_cues_of_a_preview(self):
+        """A preview has no depth yet, and does without."""
+        self.write("scene.json", cli.scene(16, 8, spheres=2, backdrop=[1, 1, 1]))
+        self.render("a.png", "--outlines", 1, "--preview", 0.001)
+        self.assert_same(self.read("a.png"), self.render("b.png", "--outlines", 1))
 
     def test_metadata(self):
         version = self.succeed("--version").stdout.decode().strip().removeprefix("ballpark ")

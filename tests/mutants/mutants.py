@@ -53,6 +53,19 @@ MUTANTS = [
     Mutant("what was sharp is left behind", "the wheel moves the camera, and not the plane in focus",
            [patch("host/scene/camera_moves.c", "if (focus > 0.01 * wanted) bp_camera_focus(camera, focus);", "(void)focus;")],
            [test("test_camera_moves", "1 exact")]),
+    # ---- outlines and fog -----------------------------------------------------------------------------------
+    Mutant("lines inside things", "a line on the nearer side of an edge", [
+        patch("host/image/depth_cues.c", "if (!isfinite(there) || !(here > there)) return 0;",
+              "if (!isfinite(here) || !(there > here)) return 0;")], [test("test_depth_cues", "1 exact")]),
+    Mutant("limbs taken for edges", "a jump of the depth alone, as in the simplest edge filters", [
+        patch("host/image/depth_cues.c", " || !(ahead - here <= here - there)", "")],
+           [test("test_depth_cues", "1 exact")]),
+    Mutant("a seam beside the line", "a pixel that is covered in part keeps its background", [
+        patch("host/image/depth_cues.c", "if (is_beside_background(depths, x, y))", "if (false)")],
+           [test("test_depth_cues", "1 exact")]),
+    Mutant("fog upside down", "row 0 taken for the lower edge", [
+        patch("host/image/depth_cues.c", "const double up = 1 - (", "const double up = (")],
+           [test("test_depth_cues", "1 exact")]),
     # ---- spheres from arrays ---------------------------------------------------------------------------------
     Mutant("arrays read across", "an array in the other order, as C and Fortran have them",
            [patch("host/formats/scene_sets.c", "(ptrdiff_t)row * rows->row_stride + column * rows->column_stride;",

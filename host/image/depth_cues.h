@@ -1,0 +1,22 @@
+/* depth_cues.h: lines where the depth jumps, and fading by depth, drawn over a picture.
+ *
+ * In:    a picture with depth and normals.   Out: the picture, changed; its errors stay those of the render.
+ * Knows: pixels.   Does not know: scenes, where the depth comes from. */
+#ifndef BP_IMAGE_DEPTH_CUES_H
+#define BP_IMAGE_DEPTH_CUES_H
+
+#include "base/status.h"
+
+typedef struct BpDepthCues {
+    double outlines; /* width of the lines in pixels; 0: none */
+    double fog;      /* share by which the farthest thing fades, 0 to 1; what is nearest does not */
+    /* What things fade to, at the picture's lower and upper edge. A picture with alpha fades to none instead.
+     */
+    double bottom[3], top[3];
+} BpDepthCues;
+
+/* Draws over rgb and alpha. Lines are black, lie around what is nearer, and fade with it. BP_ERR_USAGE: the
+ * picture has no depth; BP_ERR_MEMORY: it is unchanged. */
+BpStatus bp_depth_cues_draw(BpPicture *picture, const BpDepthCues *cues, BpError *err);
+
+#endif
