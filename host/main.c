@@ -1,12 +1,14 @@
 /* main.c: the program: read the command line, run the command, say what went wrong.
  *
  * In:    argc, argv.   Out: an exit code (BP_STATUS_LIST).
- * Knows: how an error is shown.   Does not know: what any command does. */
+ * Knows: how an error is shown, and by which of several processes.  Does not know: what any command does. */
 #include "base/json_memory.h"
 #include "base/output_file.h"
 #include "base/shown.h"
 #include "cli/commands.h"
 #include "cli/interrupt.h"
+#include "cluster/comm.h"
+#include "cluster/launch.h"
 
 #include <errno.h>
 #include <fcntl.h>
@@ -86,6 +88,24 @@ static void end_by_signal(void) {
     raise(SIGPIPE);
 }
 
+/* Joins the other processes of the job, if there are any. `status` is how the command line was read: where
+ * that failed, it did on all ranks, and one of them tells. */
+static BpStatus join_ranks(char **argv, BpCommandLine *line, BpStatus status, BpError *err) {
+    if (line->command == NULL || !line->command->is_shared || line->help) return status;
+    const BpStatus joined = bp_comm_begin(argv, &line->comm, status == BP_OK ? err : NULL);
+    return status != BP_OK ? status : joined;
+}
+
+/* How it went on all ranks. Does not return when this one failed amid common work. */
+static BpStatus leave_ranks(const BpCommandLine *line, BpStatus status, BpError *err) {
+    if (!bp_comm_is_at_work(line->comm)) return bp_comm_agree(line->comm, status, err);
+    bp_comm_sign(line->comm, err);
+    print_error(err, status);
+    bp_output_abandon();
+    bp_comm_abort(line->comm, bp_status_exit_code(status));
+    return status;
+}
+
 int main(int argc, char **argv) {
     BpCommandLine line;
     BpError err = {0};
@@ -98,7 +118,10 @@ int main(int argc, char **argv) {
     bp_interrupt_install();
     bp_json_memory_watch();
 
-    BpStatus status = bp_command_line_parse(argc, argv, &line, &err);
+    BpStatus status = join_ranks(argv, &line, bp_command_line_parse(argc, argv, &line, &err), &err);
+    /* Of several processes one tells what all of them met with. */
+    const bool tells =
+        line.comm != NULL ? bp_comm_leads(line.comm) : status == BP_OK || bp_launch_find().rank == 0;
     if (status == BP_OK) {
         if (line.version)
             printf("ballpark %s\n", bp_version());
@@ -107,16 +130,18 @@ int main(int argc, char **argv) {
         else
             status = line.command->run(&line, &err);
     }
+    if (line.comm != NULL) status = leave_ranks(&line, status, &err);
     const int flush_problem = fflush(stdout) == 0 ? 0 : errno;
     const bool left = reader_has_left();
     /* What else went wrong is still to be told. */
     const bool about_output = status == BP_ERR_FILE && err.file[0] == '\0';
     if (left && (status == BP_OK || about_output)) end_by_signal();
-    if (status != BP_OK) print_error(&err, status);
+    if (status != BP_OK && tells) print_error(&err, status);
     bp_error_clear(&err);
     const BpStatus finished = finish_standard_output(flush_problem, &err);
     if (status == BP_OK && finished != BP_OK) print_error(&err, finished);
     if (status == BP_OK) status = finished;
     bp_error_clear(&err);
+    bp_comm_end(&line.comm);
     return bp_status_exit_code(status);
 }

@@ -92,10 +92,6 @@ void bp_checkpoint_start(BpCheckpoint *checkpoint) {
     checkpoint->last = bp_clock_seconds();
 }
 
-bool bp_checkpoint_is_due(const BpCheckpoint *checkpoint, double now) {
-    return checkpoint->every > 0 && now - checkpoint->last >= checkpoint->every;
-}
-
 /* A film on its way to the file. */
 typedef struct BpCheckpointWriter {
     pthread_t thread;
@@ -161,18 +157,30 @@ static BpStatus take_film(const BpCheckpoint *checkpoint, BpRender *render, Writ
     return BP_OK;
 }
 
+bool bp_checkpoint_is_due(BpCheckpoint *checkpoint, double now) {
+    if (checkpoint->writer != NULL && !atomic_load(&checkpoint->writer->done)) return false;
+    bp_checkpoint_wait(checkpoint); /* if that failed, there may be no next one */
+    return checkpoint->every > 0 && !checkpoint->is_elsewhere && now - checkpoint->last >= checkpoint->every;
+}
+
 BpStatus bp_checkpoint_begin(BpCheckpoint *checkpoint, BpRender *render, BpError *err) {
     const double start = bp_clock_seconds();
-    if (checkpoint->writer != NULL && !atomic_load(&checkpoint->writer->done)) return BP_OK;
     bp_checkpoint_wait(checkpoint);
-    if (checkpoint->every == 0) return BP_OK; /* the last one has found its place taken */
+    if (checkpoint->is_elsewhere) {
+        BpFilm *own = NULL;
+        BP_TRY(bp_render_film(render, &own, err));
+        bp_film_destroy(&own);
+        return BP_OK;
+    }
     BpError fault = {0};
     const BpStatus status = take_film(checkpoint, render, &checkpoint->writer, &fault);
+    /* Other ranks have begun to send what this one cannot take. */
+    const bool bearable = status == BP_ERR_MEMORY && !checkpoint->is_shared;
     if (status == BP_OK) {
         Writer *writer = checkpoint->writer;
         writer->threaded = pthread_create(&writer->thread, NULL, write_film, writer) == 0;
         if (!writer->threaded) write_film(writer);
-    } else if (status == BP_ERR_MEMORY) {
+    } else if (bearable) {
         report(checkpoint, status, &fault); /* the render has the memory that it needs */
     } else if (err != NULL) {
         *err = fault;
@@ -181,7 +189,7 @@ BpStatus bp_checkpoint_begin(BpCheckpoint *checkpoint, BpRender *render, BpError
     }
     checkpoint->last = bp_clock_seconds();
     checkpoint->seconds += checkpoint->last - start;
-    return status == BP_ERR_MEMORY ? BP_OK : status;
+    return bearable ? BP_OK : status;
 }
 
 void bp_checkpoint_wait(BpCheckpoint *checkpoint) {
@@ -193,6 +201,10 @@ void bp_checkpoint_wait(BpCheckpoint *checkpoint) {
     free(writer);
     checkpoint->writer = NULL;
     checkpoint->seconds += bp_clock_seconds() - start;
+}
+
+bool bp_checkpoint_has_begun(const BpCheckpoint *checkpoint) {
+    return checkpoint->written > 0 || checkpoint->writer != NULL;
 }
 
 void bp_checkpoint_end(const BpCommandLine *line, const BpCheckpoint *checkpoint) {

@@ -12,6 +12,8 @@ typedef struct BpCheckpoint {
     char path[4096];                   /* "": nothing is kept */
     bool is_result;                    /* the file is the result itself (-o FILE.bpa) */
     bool new_only;                     /* --no-clobber: no file may be there when the first one is written */
+    bool is_shared;                    /* several ranks share the render */
+    bool is_elsewhere;                 /* another of them writes the file */
     double every;                      /* seconds; 0: only when the render is interrupted */
     double last;                       /* bp_clock_seconds() of the latest try */
     uint64_t written;                  /* how often */
@@ -29,17 +31,20 @@ BpStatus bp_checkpoint_choose(const BpCommandLine *line, const BpResultFile *res
 /* The render begins: the first checkpoint is due `every` seconds from now. */
 void bp_checkpoint_start(BpCheckpoint *checkpoint);
 
-/* Whether it is time, by bp_clock_seconds(). */
-bool bp_checkpoint_is_due(const BpCheckpoint *checkpoint, double now);
+/* Whether a file has been written from which the render can go on, or is being written. */
+bool bp_checkpoint_has_begun(const BpCheckpoint *checkpoint);
+
+/* Whether it is time, by bp_clock_seconds(), and the file before has been written. */
+bool bp_checkpoint_is_due(BpCheckpoint *checkpoint, double now);
 
 /* Writes the film. A failure is warned about on standard error, and the file before stays: the render goes
  * on. */
 void bp_checkpoint_write(BpCheckpoint *checkpoint, const BpFilm *film);
 
 /* Takes the film of the render as it stands, and writes it in a thread of its own, since packing takes longer
- * than reading: a render on a GPU does not wait for it, one on a CPU lends it a core. Does nothing while the
- * file before is still being written. Without the memory for it, there is a warning and no checkpoint.
- * BP_ERR_DEVICE. */
+ * than reading: a render on a GPU does not wait for it, one on a CPU lends it a core. When it is due; by all
+ * ranks of a render that several share. Without the memory for it, there is a warning and no checkpoint; but
+ * BP_ERR_MEMORY where ranks share the render. BP_ERR_DEVICE. */
 BpStatus bp_checkpoint_begin(BpCheckpoint *checkpoint, BpRender *render, BpError *err);
 
 /* Waits for what bp_checkpoint_begin() began. Always before the checkpoint goes out of scope. */

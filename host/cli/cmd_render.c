@@ -13,6 +13,7 @@
 #include "base/plural.h"
 #include "base/shown.h"
 #include "checkpoint.h"
+#include "cluster/comm.h"
 #include "file_conflicts.h"
 #include "film/adaptive.h"
 #include "interrupt.h"
@@ -23,6 +24,7 @@
 #include "page.h"
 #include "preview.h"
 #include "progress.h"
+#include "ranks.h"
 #include "render/render.h"
 #include "render/render_plan.h"
 #include "render/stop_rule.h"
@@ -57,6 +59,7 @@ typedef struct RunResult {
     BpRenderReport report;
     RunTimes times;
     size_t device_count;
+    BpComm *comm; /* the ranks that share the picture; NULL: none */
     const BpCheckpoint *checkpoint;
     uint64_t samples_per_pixel; /* of every pixel */
     double nrmse;               /* NaN: unknown */
@@ -85,11 +88,14 @@ static json_t *effects_json(const BpEffects *effects) {
 static json_t *seconds_json(const RunResult *result) {
     const BpRenderReport *report = &result->report;
     const RunTimes *times = &result->times;
-    return json_pack("{s:f, s:f, s:f, s:f, s:f, s:f, s:f, s:f, s:f, s:f}", "total",
+    double waiting, adding;
+    bp_comm_times(result->comm, &waiting, &adding);
+    return json_pack("{s:f, s:f, s:f, s:f, s:f, s:f, s:f, s:f, s:f, s:f, s:f, s:f}", "total",
                      bp_clock_seconds() - times->start, "load", times->load, "tree", report->tree_seconds,
                      "kernel_build", report->kernel_build_seconds, "trace", report->trace_seconds, "write",
                      times->write, "pack", report->pack_seconds, "first_launch", report->first_launch_seconds,
-                     "device", report->device_seconds, "checkpoints", result->checkpoint->seconds);
+                     "device", report->device_seconds, "checkpoints", result->checkpoint->seconds,
+                     "ranks_waiting", waiting, "ranks_adding", adding);
 }
 
 /* The document, or NULL when memory ran out. */
@@ -111,14 +117,15 @@ static json_t *stats_json(const RunResult *result) {
                   (json_int_t)report->samples, "rays", (json_int_t)report->segments, "mean_radiance", mean[0],
                   mean[1], mean[2], "nrmse", json_number(result->nrmse), "invalid_samples",
                   (json_int_t)report->invalid_samples, "cut_paths", (json_int_t)report->cut_paths);
-    json_t *run = json_pack(
-        "{s:s, s:o, s:I, s:i, s:b, s:o, s:s, s:i, s:I, s:I, s:I, s:s}", "acceleration",
-        bp_acceleration_name(report->acceleration), "output", bp_json_text(result->output), "first_sample",
-        (json_int_t)options->first_sample, "replicates", (int)result->film->replicates, "partial",
-        result->film->partial, "rounding", json_number(bp_film_rounding(result->film)), "stopped_by",
-        bp_stop_reason_name(result->stopped_by), "devices", (int)result->device_count, "device_bytes",
-        (json_int_t)report->device_bytes, "scene_bytes", (json_int_t)report->scene_bytes, "checkpoints",
-        (json_int_t)result->checkpoint->written, "version", bp_version());
+    json_t *run = json_pack("{s:s, s:o, s:I, s:i, s:b, s:o, s:s, s:i, s:i, s:I, s:I, s:I, s:s}",
+                            "acceleration", bp_acceleration_name(report->acceleration), "output",
+                            bp_json_text(result->output), "first_sample", (json_int_t)options->first_sample,
+                            "replicates", (int)result->film->replicates, "partial", result->film->partial,
+                            "rounding", json_number(bp_film_rounding(result->film)), "stopped_by",
+                            bp_stop_reason_name(result->stopped_by), "devices", (int)result->device_count,
+                            "ranks", (int)bp_comm_size(result->comm), "device_bytes",
+                            (json_int_t)report->device_bytes, "scene_bytes", (json_int_t)report->scene_bytes,
+                            "checkpoints", (json_int_t)result->checkpoint->written, "version", bp_version());
     uint64_t least, most;
     double mean_samples;
     bp_film_sample_counts(result->film, &least, &most, &mean_samples);
@@ -161,31 +168,65 @@ static BpStatus draw(BpStop *stop, const BpProgress *progress, Bar *bar, BpError
     return BP_OK;
 }
 
-/* `render` has made no step yet. Catches Ctrl-C from here on. `quiet`: no progress bar. */
-static BpStatus run_render(BpRender *render, const BpStopRule *rule, bool quiet, BpCheckpoint *checkpoint,
-                           BpPreview *preview, LoopEnd *end, BpError *err) {
+/* Prepares for ranks that never answer: then there is no other time to say how the job goes on. */
+static void prepare_explanation(const BpCommandLine *line, const BpStopRule *rule, double start,
+                                const BpCheckpoint *checkpoint) {
+    char text[9000], command[8192];
+    if (bp_checkpoint_has_begun(checkpoint) || line->resume != NULL)
+        snprintf(text, sizeof text,
+                 "ballpark: told to end, but the other ranks do not answer and may be lost; this goes on "
+                 "from the last checkpoint:\n\n%s\n",
+                 bp_checkpoint_command(line, checkpoint, rule->seconds - (bp_clock_seconds() - start),
+                                       command, sizeof command));
+    else
+        snprintf(text, sizeof text,
+                 "ballpark: told to end, but the other ranks do not answer and may be lost, and there is no "
+                 "checkpoint; with --checkpoint SECONDS, another run could go on from there\n");
+    bp_interrupt_explain(text);
+}
+
+/* Whether the render is to end, as the signals of this process say, or of others that work on their own. */
+static bool is_interrupted(BpComm *shared, BpComm *all) {
+    const bool own = bp_interrupted();
+    if (shared != NULL || all == NULL) return own;
+    if (own) bp_comm_call(all);
+    return own || bp_comm_called(all);
+}
+
+/* `render` has made no step yet. Catches Ctrl-C from here on. `shared`: the ranks that share it; NULL: none.
+ */
+static BpStatus run_render(const BpCommandLine *line, BpComm *shared, BpRender *render,
+                           const BpStopRule *rule, BpCheckpoint *checkpoint, BpPreview *preview, LoopEnd *end,
+                           BpError *err) {
+    enum { INTERRUPT = 1, CHECKPOINT = 2, PREVIEW = 4 };
+    const bool explains = shared != NULL && bp_comm_leads(shared);
     const double start = bp_clock_seconds();
     BpStatus status = BP_OK;
     BpStop *stop = NULL;
-    Bar bar = {.live = bp_terminal_is_live(quiet), .drawn = start};
+    uint32_t wishes = 0;
+    Bar bar = {.live = bp_terminal_is_live(line->quiet), .drawn = start};
     end->reason = BP_STOP_NOT_YET;
     bp_interrupt_catch();
     bp_checkpoint_start(checkpoint);
     BP_TRY_GOTO(status, bp_stop_create(render, rule, &stop, err), done);
     while (end->reason == BP_STOP_NOT_YET) {
         BpProgress progress;
+        if (explains) prepare_explanation(line, rule, start, checkpoint);
         BP_TRY_GOTO(status, bp_render_step(render, &progress, err), done);
         if (!bp_interrupted()) BP_TRY_GOTO(status, draw(stop, &progress, &bar, err), done);
         BP_TRY_GOTO(status, bp_stop_check(stop, &progress, &end->reason, err), done);
-        if (end->reason == BP_STOP_NOT_YET && !bp_interrupted() &&
-            bp_checkpoint_is_due(checkpoint, bp_clock_seconds()))
+        wishes = is_interrupted(shared, line->comm) ? INTERRUPT : 0;
+        if (bp_checkpoint_is_due(checkpoint, bp_clock_seconds())) wishes |= CHECKPOINT;
+        if (bp_preview_is_due(preview, bp_clock_seconds())) wishes |= PREVIEW;
+        BP_TRY_GOTO(status, bp_comm_unite(shared, &wishes, err), done); /* all do what any wants */
+        if (end->reason == BP_STOP_NOT_YET && (wishes & (INTERRUPT | CHECKPOINT)) == CHECKPOINT)
             BP_TRY_GOTO(status, bp_checkpoint_begin(checkpoint, render, err), done);
-        if (end->reason == BP_STOP_NOT_YET && !bp_interrupted() &&
-            bp_preview_is_due(preview, bp_clock_seconds()))
+        if (end->reason == BP_STOP_NOT_YET && (wishes & (INTERRUPT | PREVIEW)) == PREVIEW)
             BP_TRY_GOTO(status, bp_preview_update(preview, render, err), done);
-        if (bp_interrupted()) break; /* after a regular stop it is not an interruption */
+        if (wishes & INTERRUPT) break; /* after a regular stop it is not an interruption */
     }
 done:
+    if (explains && status == BP_OK) bp_interrupt_explain("");
     bp_checkpoint_wait(checkpoint);
     bp_stop_destroy(&stop);
     end->seconds = bp_clock_seconds() - start;
@@ -338,9 +379,11 @@ static BpStatus deliver(const BpCommandLine *line, BpResultFile *file, const BpS
                         const LoopEnd *end, BpCheckpoint *checkpoint, BpPreview *preview, BpRender *render,
                         RunResult *result, json_t *stats, BpError *err) {
     BpStatus status = bp_render_read_whole_film(render, &result->film, err);
-    if (status != BP_OK && bp_render_read_film(render, &result->film, NULL) == BP_OK)
+    if (status != BP_OK && result->comm == NULL && bp_render_read_film(render, &result->film, NULL) == BP_OK)
         bp_keep_sums(result->film, file->path, err);
     BP_TRY(status);
+    bp_comm_end_work(result->comm); /* the others have done their part */
+    if (!bp_comm_leads(result->comm)) return BP_OK;
     bp_render_report(render, &result->report);
     result->samples_per_pixel = bp_render_samples_done(render);
     result->stopped_by = end->reason;
@@ -392,13 +435,14 @@ typedef struct Job {
 
 /* What all scenes share. */
 typedef struct Run {
-    const BpCommandLine *line;
+    BpCommandLine line;
+    BpComm *comm; /* the ranks that share the picture at hand; NULL: none */
     Job *jobs;
     size_t count;
     BpDeviceInfo *devices;
     BpDevice **open; /* the same, open: kernels are built once where programs are equal */
     size_t device_count;
-    json_t *stats; /* a list; NULL: none are wanted */
+    json_t *stats; /* a list, by the number of the job; NULL: none are wanted */
     double start;  /* of the scene at hand, or of the command for the first one */
 } Run;
 
@@ -422,26 +466,40 @@ static BpStatus check_names_differ(const Run *run, size_t job, BpError *err) {
 static BpStatus load(Run *run, size_t number, BpError *err) {
     Job *job = &run->jobs[number];
     const double start = number == 0 ? run->start : bp_clock_seconds();
-    job->path = run->line->operands[number];
-    BP_TRY(bp_result_choose(run->line, job->path, &job->file, err));
+    job->path = run->line.operands[number];
+    if (run->line.comm != NULL && strcmp(job->path, "-") == 0)
+        return bp_fail(err, BP_ERR_USAGE,
+                       "a scene from standard input reaches one of %" PRIu32
+                       " ranks only; save it in a file that all of them can read",
+                       bp_comm_size(run->line.comm));
+    BP_TRY(bp_result_choose(&run->line, job->path, &job->file, err));
     BP_TRY(check_names_differ(run, number, err));
-    BpWaiting *waiting = bp_waiting_begin(run->line->quiet, "reading %s", job->path);
-    BpStatus status = bp_setup_scene(run->line, job->path, &job->own, err);
+    BpWaiting *waiting = bp_waiting_begin(run->line.quiet, "reading %s", job->path);
+    BpStatus status = bp_setup_scene(&run->line, job->path, &job->own, err);
     bp_waiting_end(waiting);
     if (status != BP_OK) return status;
     job->scene = job->own;
-    const BpCommandLine own = bp_result_line(run->line, &job->file);
+    const BpCommandLine own = bp_result_line(&run->line, &job->file);
     BP_TRY(bp_file_conflicts_check_scene(&own, NULL, job->scene, err));
-    BP_TRY(bp_checkpoint_choose(run->line, &job->file, &job->checkpoint, err));
+    BP_TRY(bp_checkpoint_choose(&run->line, &job->file, &job->checkpoint, err));
     job->load_seconds = bp_clock_seconds() - start;
     return BP_OK;
 }
 
+/* The devices that are meant, tested and open. */
+static BpStatus find_devices(Run *run, BpError *err) {
+    BP_TRY(bp_setup_devices(&run->line, &run->devices, &run->device_count, err));
+    BP_TRY(bp_ranks_choose_device(&run->line, &run->devices[0], err));
+    run->line.threads = bp_ranks_threads(&run->line, &run->devices[0]);
+    return BP_OK;
+}
+
 static BpStatus open_devices(Run *run, BpError *err) {
+    BP_TRY(bp_setup_self_test(&run->line, run->devices, run->device_count, err));
     run->open = calloc(run->device_count, sizeof *run->open);
     if (run->open == NULL) return bp_fail(err, BP_ERR_MEMORY, "out of memory for a list of devices");
     for (size_t d = 0; d < run->device_count; ++d)
-        BP_TRY(bp_device_open_part(&run->devices[d], run->line->threads, &run->open[d], err));
+        BP_TRY(bp_device_open_part(&run->devices[d], run->line.threads, &run->open[d], err));
     return BP_OK;
 }
 
@@ -474,48 +532,71 @@ static BpStatus plan(const BpCommandLine *line, const Job *job, const BpCheckpoi
     return BP_OK;
 }
 
-static BpStatus render_one(Run *run, const BpCommandLine *line, Job *job, BpError *err) {
-    BpStatus status = BP_OK;
-    BpRender *render = NULL;
-    BpWaiting *waiting = NULL;
+/* A picture on its way. */
+typedef struct Work {
+    BpRender *render;
     BpRenderOptions options;
     BpStopRule rule;
-    LoopEnd end;
-    BpCheckpoint *checkpoint = &job->checkpoint;
     BpPreview preview;
-    BpFilm *resumed = NULL;
-    RunResult result = {.scene_path = job->path,
-                        .output = bp_result_name(&job->file),
-                        .scene = job->scene,
-                        .options = &options,
-                        .times = {.start = run->start, .load = job->load_seconds},
-                        .checkpoint = checkpoint};
-    BP_TRY(bp_preview_choose(line, job->scene, &job->file, &preview, err));
-    BP_TRY_GOTO(status, bp_resume_load(line, &resumed, err), done);
-    if (resumed != NULL) BP_TRY_GOTO(status, bp_resume_scene(line, resumed, job->scene, err), done);
-    BP_TRY_GOTO(status, plan(line, job, checkpoint, resumed, &options, &rule, err), done);
-    if (run->devices == NULL)
-        BP_TRY_GOTO(status, bp_setup_devices(line, &run->devices, &run->device_count, err), done);
-    result.device_count = run->device_count;
+    BpFilm *resumed; /* NULL: the picture is a new one */
+    RunResult result;
+} Work;
+
+/* Everything before the first sample; each rank does it for itself. */
+static BpStatus prepare(Run *run, const BpCommandLine *line, Job *job, Work *work, BpError *err) {
+    BpStatus status = BP_OK;
+    BpWaiting *waiting = NULL;
+    job->checkpoint.is_shared = run->comm != NULL;
+    job->checkpoint.is_elsewhere = !bp_comm_leads(run->comm);
+    BP_TRY(bp_preview_choose(line, run->comm, job->scene, &job->file, &work->preview, err));
+    BP_TRY_GOTO(status, bp_resume_load(line, run->comm, &work->resumed, err), done);
+    if (work->resumed != NULL)
+        BP_TRY_GOTO(status, bp_resume_scene(line, work->resumed, job->scene, err), done);
+    BP_TRY_GOTO(status, plan(line, job, &job->checkpoint, work->resumed, &work->options, &work->rule, err),
+                done);
+    if (run->devices == NULL) BP_TRY_GOTO(status, find_devices(run, err), done);
+    work->result.device_count = run->device_count;
     waiting =
         bp_waiting_begin(line->quiet, "preparing %zu sphere%s and the kernel for %s",
                          job->scene->sphere_count, bp_plural(job->scene->sphere_count), run->devices[0].name);
-    if (run->open == NULL) {
-        BP_TRY_GOTO(status, bp_setup_self_test(line, run->devices, run->device_count, err), done);
-        BP_TRY_GOTO(status, open_devices(run, err), done);
-    }
-    BP_TRY_GOTO(status, bp_render_create_on(job->scene, &options, run->open, run->device_count, &render, err),
-                done);
-    bp_waiting_end(waiting);
-    waiting = NULL;
-    if (resumed != NULL) BP_TRY_GOTO(status, bp_render_resume(render, resumed, err), done);
-    bp_film_destroy(&resumed);
-    BP_TRY_GOTO(status, run_render(render, &rule, line->quiet, checkpoint, &preview, &end, err), done);
-    status = deliver(line, &job->file, &rule, &end, checkpoint, &preview, render, &result, run->stats, err);
+    if (run->open == NULL) BP_TRY_GOTO(status, open_devices(run, err), done);
+    BP_TRY_GOTO(
+        status,
+        bp_render_create_on(job->scene, &work->options, run->open, run->device_count, &work->render, err),
+        done);
+    bp_render_join(work->render, run->comm);
 done:
     bp_waiting_end(waiting);
-    bp_film_destroy(&resumed);
-    bp_render_destroy(&render);
+    return status;
+}
+
+static BpStatus render_one(Run *run, const BpCommandLine *line, Job *job, BpError *err) {
+    LoopEnd end;
+    Work work = {.render = NULL};
+    work.result = (RunResult){.scene_path = job->path,
+                              .output = bp_result_name(&job->file),
+                              .scene = job->scene,
+                              .options = &work.options,
+                              .times = {.start = run->start, .load = job->load_seconds},
+                              .comm = run->comm,
+                              .checkpoint = &job->checkpoint};
+    BpStatus status = bp_comm_agree(run->comm, prepare(run, line, job, &work, err), err);
+    if (status == BP_OK && work.resumed != NULL) {
+        status = bp_render_resume(work.render, work.resumed, err);
+        if (!bp_comm_is_at_work(run->comm)) status = bp_comm_agree(run->comm, status, err);
+    }
+    bp_film_destroy(&work.resumed);
+    if (status == BP_OK) {
+        bp_comm_begin_work(run->comm);
+        status =
+            run_render(line, run->comm, work.render, &work.rule, &job->checkpoint, &work.preview, &end, err);
+    }
+    if (status == BP_OK)
+        status = deliver(line, &job->file, &work.rule, &end, &job->checkpoint, &work.preview, work.render,
+                         &work.result, run->stats, err);
+    /* A rank that failed at work cannot agree with the others, who wait for something else. */
+    if (!bp_comm_is_at_work(run->comm)) status = bp_comm_agree(run->comm, status, err);
+    bp_render_destroy(&work.render);
     return status;
 }
 
@@ -523,7 +604,7 @@ done:
 static BpStatus write_stats(const Run *run, BpError *err) {
     json_t *root = run->count == 1 ? json_incref(json_array_get(run->stats, 0))
                                    : json_pack("{s:O}", "renders", run->stats);
-    return bp_json_write(run->line, root, run->line->stats, err);
+    return bp_json_write(&run->line, root, run->line.stats, err);
 }
 
 static void clear(Run *run) {
@@ -536,29 +617,99 @@ static void clear(Run *run) {
     json_decref(run->stats);
 }
 
+/* ---- several pictures -------------------------------------------------------------------------------- */
+
+/* Pictures that were dealt to the ranks are all there: what went wrong on any of them, and what they have to
+ * tell. The statistics of all go to rank 0, in the order of the scenes. */
+static BpStatus meet(Run *run, size_t dealt, BpStatus status, BpError *err) {
+    BpComm *comm = run->line.comm;
+    char **texts = NULL;
+    if (dealt == 0) return status;
+    status = bp_comm_agree(comm, status, err);
+    if (status == BP_OK)
+        bp_say(&run->line, "%zu picture%s rendered by %" PRIu32 " ranks, each by one", dealt,
+               bp_plural(dealt), bp_comm_size(comm));
+    if (status != BP_OK || run->line.stats == NULL) return status;
+    char *own = json_dumps(run->stats, JSON_COMPACT);
+    status = bp_comm_agree(
+        comm, own != NULL ? BP_OK : bp_fail(err, BP_ERR_MEMORY, "out of memory for statistics"), err);
+    if (status == BP_OK) status = bp_comm_collect(comm, own, &texts, err);
+    free(own);
+    if (texts == NULL) return status;
+    json_t *all = json_array(), *lists = json_array();
+    for (uint32_t r = 0; r < bp_comm_size(comm); ++r)
+        json_array_append_new(lists, json_loads(texts[r], 0, NULL));
+    for (size_t p = 0; p < dealt; ++p)
+        json_array_append(
+            all, json_array_get(json_array_get(lists, p % bp_comm_size(comm)), p / bp_comm_size(comm)));
+    json_decref(lists);
+    json_decref(run->stats);
+    run->stats = all;
+    free(texts);
+    return json_array_size(all) == dealt ? BP_OK
+                                         : bp_fail(err, BP_ERR_MEMORY, "out of memory for statistics");
+}
+
 /* One picture for each frame or each step of a turntable. */
 static BpStatus render_series(Run *run, BpError *err) {
     BpSeries series = {0};
+    const BpCommandLine *line = &run->line;
     if (run->count > 1)
         return bp_fail(err, BP_ERR_USAGE, "--frames and --turntable take one file, found %zu", run->count);
-    BpStatus status = bp_series_begin(run->line, &series, err);
+    BpStatus status = bp_series_begin(line, &series, err);
+    const size_t dealt = status == BP_OK ? bp_ranks_dealt(line->comm, (size_t)series.count) : 0;
     while (status == BP_OK && series.next < series.count) {
         BpCommandLine one;
-        Job job = {.path = run->line->operands[0]};
+        Job job = {.path = line->operands[0]};
+        if (series.next < dealt && !bp_ranks_is_mine(line->comm, (size_t)series.next)) {
+            ++series.next;
+            if (series.next == dealt) status = meet(run, dealt, status, err);
+            continue;
+        }
         run->start = bp_clock_seconds();
-        BP_TRY_GOTO(status, bp_series_line(&series, &one, err), done);
-        BP_TRY_GOTO(status, bp_result_choose(&one, job.path, &job.file, err), done);
+        run->comm = series.next < dealt ? NULL : line->comm;
         const BpScene *shown = NULL;
-        BP_TRY_GOTO(status, bp_series_scene(&series, &shown, err), done);
+        status = bp_series_line(&series, &one, err);
+        if (status == BP_OK) status = bp_result_choose(&one, job.path, &job.file, err);
+        if (status == BP_OK) status = bp_series_scene(&series, &shown, err);
         job.scene = series.scene;
-        const BpCommandLine own = bp_result_line(&one, &job.file);
-        BP_TRY_GOTO(status, bp_file_conflicts_check_scene(&own, NULL, job.scene, err), done);
-        BP_TRY_GOTO(status, bp_checkpoint_choose(&one, &job.file, &job.checkpoint, err), done);
+        if (status == BP_OK) {
+            const BpCommandLine own = bp_result_line(&one, &job.file);
+            status = bp_file_conflicts_check_scene(&own, NULL, job.scene, err);
+        }
+        if (status == BP_OK) status = bp_checkpoint_choose(&one, &job.file, &job.checkpoint, err);
         job.load_seconds = bp_clock_seconds() - run->start;
-        status = render_one(run, &one, &job, err);
+        if (status == BP_OK) status = render_one(run, &one, &job, err);
+        if (series.next == dealt) status = meet(run, dealt, status, err);
     }
-done:
     bp_series_end(&series);
+    return status;
+}
+
+static BpStatus render_scenes(Run *run, BpError *err) {
+    BpComm *comm = run->line.comm;
+    const size_t dealt = bp_ranks_dealt(comm, run->count);
+    BpStatus status = BP_OK;
+    if (run->line.stats != NULL) BP_TRY(bp_line_check_output(&run->line, run->line.stats, err));
+    for (size_t j = 0; j < run->count && status == BP_OK; ++j) status = load(run, j, err);
+    status = bp_comm_agree(comm, status, err); /* all have looked before the first file is written */
+    for (size_t j = 0; j < run->count && status == BP_OK; ++j) {
+        const bool alone = j < dealt;
+        if (!alone || bp_ranks_is_mine(comm, j)) {
+            BpCommandLine one = run->line; /* of this scene alone, for the command that goes on with it */
+            one.operands += j;
+            one.operand_count = 1;
+            run->comm = alone ? NULL : comm;
+            status = render_one(run, &one, &run->jobs[j], err);
+            bp_scene_destroy(&run->jobs[j].own);
+            run->start = bp_clock_seconds();
+        }
+        if (j + 1 == dealt) status = meet(run, dealt, status, err);
+    }
+    if (json_array_size(run->stats) > 0 && bp_comm_leads(comm)) {
+        const BpStatus written = write_stats(run, status == BP_OK ? err : NULL);
+        if (status == BP_OK) status = written;
+    }
     return status;
 }
 
@@ -567,40 +718,26 @@ BpStatus bp_command_render(const BpCommandLine *given, BpError *err) {
     BpCommandLine own = *given;
     BP_TRY(bp_result_take_width(&own, err));
     const BpCommandLine *const line = &own;
-    Run run = {.line = line, .count = line->operand_count, .start = bp_clock_seconds()};
+    Run run = {.line = *line, .count = line->operand_count, .start = bp_clock_seconds()};
+    const bool is_series =
+        bp_option_given(line, BP_OPTION_FRAMES) || bp_option_given(line, BP_OPTION_TURNTABLE);
+    run.line.quiet = line->quiet || !bp_comm_leads(line->comm); /* errors alone come from other ranks */
     run.jobs = calloc(run.count, sizeof *run.jobs);
     if (line->stats != NULL) run.stats = json_array();
-    if (run.jobs == NULL || (line->stats != NULL && run.stats == NULL)) {
+    const bool to_output = line->output != NULL && strcmp(line->output, "-") == 0;
+    if (line->comm != NULL && to_output) /* launchers pass it on as text, from all ranks together */
+        status = bp_fail(err, BP_ERR_USAGE,
+                         "--output -: the standard output of several ranks goes through what started "
+                         "them, which may change it; give the name of a file");
+    else if (run.jobs == NULL || (line->stats != NULL && run.stats == NULL))
         status = bp_fail(err, BP_ERR_MEMORY, "out of memory for a list of scenes");
-        goto done;
-    }
-    if (line->resume != NULL && (run.count > 1 || bp_option_given(line, BP_OPTION_FRAMES) ||
-                                 bp_option_given(line, BP_OPTION_TURNTABLE))) {
+    else if (line->resume != NULL && (run.count > 1 || is_series))
         status = bp_fail(
             err, BP_ERR_USAGE,
             "--resume goes on with one picture, and this command makes several; render the one that was "
             "begun alone, a frame with --frame");
-        goto done;
-    }
-    if (bp_option_given(line, BP_OPTION_FRAMES) || bp_option_given(line, BP_OPTION_TURNTABLE)) {
-        status = render_series(&run, err);
-        goto done;
-    }
-    if (line->stats != NULL) BP_TRY_GOTO(status, bp_line_check_output(line, line->stats, err), done);
-    for (size_t j = 0; j < run.count; ++j) BP_TRY_GOTO(status, load(&run, j, err), done);
-    for (size_t j = 0; j < run.count && status == BP_OK; ++j) {
-        BpCommandLine one = *line; /* of this scene alone, for the command that goes on with it */
-        one.operands += j;
-        one.operand_count = 1;
-        status = render_one(&run, &one, &run.jobs[j], err);
-        bp_scene_destroy(&run.jobs[j].own);
-        run.start = bp_clock_seconds();
-    }
-    if (json_array_size(run.stats) > 0) {
-        const BpStatus written = write_stats(&run, status == BP_OK ? err : NULL);
-        if (status == BP_OK) status = written;
-    }
-done:
+    else
+        status = is_series ? render_series(&run, err) : render_scenes(&run, err);
     clear(&run);
     return status;
 }

@@ -1,9 +1,10 @@
 /* cmd_view.c: `ballpark view`.
  *
  * In:    a scene, the module that opens windows.   Out: a window; pictures that the person at it saves.
- * Knows: where the module is, how saved pictures are named.   Does not know: SDL, what the window shows. */
+ * Knows: which module that is, how saved pictures are named.   Does not know: SDL, what the window shows. */
 #include "commands.h"
 
+#include "base/module.h"
 #include "base/plural.h"
 #include "formats/scene_parse.h"
 #include "image/image.h"
@@ -15,7 +16,6 @@
 #include "terminal.h"
 #include "view/viewer.h"
 
-#include <dlfcn.h>
 #include <stdlib.h>
 #include <string.h>
 #include <unistd.h>
@@ -24,45 +24,18 @@
 
 /* ---- the module ---------------------------------------------------------------------------------------- */
 
-/* Beside the program, as it is built, or in the library folder, as it is installed; or what the environment
- * names. */
-static void find_module(char *path, size_t size) {
-    static const char *const places[] = {"ballpark_window.so", BALLPARK_MODULE_FOLDER "/ballpark_window.so"};
-    const char *named = getenv("BALLPARK_WINDOW");
-    char program[3500];
-    snprintf(path, size, "ballpark_window.so");
-    if (named != NULL && named[0] != '\0') {
-        snprintf(path, size, "%s", named);
-        return;
-    }
-    const ssize_t length = readlink("/proc/self/exe", program, sizeof program - 1);
-    if (length < 0) return;
-    program[length] = '\0';
-    char *slash = strrchr(program, '/');
-    if (slash != NULL) slash[1] = '\0';
-    for (size_t p = 0; p < sizeof places / sizeof places[0]; ++p) {
-        char candidate[4096];
-        snprintf(candidate, sizeof candidate, "%s%s", program, places[p]);
-        if (access(candidate, R_OK) != 0) continue;
-        snprintf(path, size, "%s", candidate);
-        return;
-    }
-}
-
-/* The module stays loaded until the program ends: libraries for windows do not like to go. */
 static BpStatus load_window(const BpWindow **window, BpError *err) {
-    char path[4096];
-    find_module(path, sizeof path);
-    void *module = dlopen(path, RTLD_NOW | RTLD_LOCAL);
-    if (module == NULL)
+    static const BpModuleName name = {"ballpark_window.so", "BALLPARK_WINDOW", BP_WINDOW_SYMBOL,
+                                      BP_WINDOW_VERSION, false};
+    const void *loaded = NULL;
+    BpError fault = {0};
+    if (bp_module_load(&name, &loaded, &fault) != BP_OK)
         return bp_fail(err, BP_ERR_USAGE,
-                       "no window can be opened, since %s cannot be loaded: %s; build Ballpark with SDL 2 "
-                       "(libsdl2-dev), or "
+                       "no window can be opened, since %.750s; build Ballpark with SDL 2 (libsdl2-dev), or "
                        "use `ballpark render --show`, which draws in the terminal",
-                       path, dlerror());
-    *window = dlsym(module, BP_WINDOW_SYMBOL);
-    if (*window != NULL && (*window)->version == BP_WINDOW_VERSION) return BP_OK;
-    return bp_fail(err, BP_ERR_USAGE, "%s is not a module of this version of Ballpark; build it again", path);
+                       fault.message);
+    *window = loaded;
+    return BP_OK;
 }
 
 /* ---- saving ---------------------------------------------------------------------------------------------

@@ -33,7 +33,8 @@ const BpCommand bp_commands[] = {
             "Ctrl-C stops the render and writes the picture as it is. --checkpoint keeps the sums "
             "in a .bpa file meanwhile, and --resume goes on from it, after a kill as well, to the "
             "same picture bit for bit. --share I/N renders one of N parts for `ballpark merge`. "
-            "On one device, the same "
+            "Processes that mpirun or srun starts together share the work: each renders a part of "
+            "the picture, or one of several pictures (see docs/CLUSTERS.md). On one device, the same "
             "scene, seed and number of samples give the same picture bit for bit.",
         .examples = "  ballpark render cover.json                          to cover.png\n"
                     "  ballpark render cover.json --width 300 --spp 20     a quick look\n"
@@ -45,12 +46,14 @@ const BpCommand bp_commands[] = {
                     "  ballpark render cover.json --checkpoint 60 -o a.exr keeps its sums in a.bpa\n"
                     "  ballpark render cover.json --resume a.bpa -o a.exr  goes on from there\n"
                     "  ballpark render cover.json --share 1/8 -o 1.bpa     one of eight parts\n"
+                    "  mpirun -n 64 ballpark render cover.json --error 1%  on many machines\n"
                     "  ballpark render cover.json -o - | display           into another program\n"
                     "  ballpark render protein.pdb                         a molecule, well placed and lit\n"
                     "  ballpark render run.gsd --frames ::10 -o run.png    run-0000.png, run-0010.png, ...\n"
                     "  ballpark render protein.pdb --turntable 36          ten degrees from one to the next\n"
                     "  ballpark generate cover | ballpark render - -o cover.png\n",
         .bit = BP_RENDER,
+        .is_shared = true,
         .run = bp_command_render,
     },
     {

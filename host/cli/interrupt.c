@@ -9,13 +9,18 @@
 #include <stdatomic.h>
 #include <stdbool.h>
 #include <stddef.h>
+#include <stdio.h>
+#include <string.h>
 #include <time.h>
 #include <unistd.h>
 
 enum { NOTHING_TO_SAVE = -1, SAME_KEY_MS = 250, EXIT_INTERRUPTED = 130 };
+#define PATIENCE_NS 700000000 /* Open MPI's mpirun kills after a second */
 
 /* NOTHING_TO_SAVE; or 0: no signal yet; or the time of the first one, in milliseconds, with bit 0 set. */
 static atomic_int interrupted_ms = NOTHING_TO_SAVE;
+static pthread_mutex_t explanation_lock = PTHREAD_MUTEX_INITIALIZER;
+static char explanation[9000];
 
 /* Whether a second signal of this kind means "end at once". The limit on processor time sends SIGXCPU every
  * second, and a terminal that is closed can send SIGHUP twice: from the shell and from the kernel. */
@@ -50,12 +55,23 @@ static sigset_t watched_signals(void) {
     return set;
 }
 
+static void explain(void) {
+    pthread_mutex_lock(&explanation_lock);
+    fputs(explanation, stderr);
+    pthread_mutex_unlock(&explanation_lock);
+}
+
 static void *watch(void *began) {
     const sigset_t set = watched_signals();
+    const struct timespec patience = {.tv_nsec = PATIENCE_NS};
     int number;
     sem_post(began);
-    for (;;)
-        if (sigwait(&set, &number) == 0) note_signal(number);
+    for (;;) {
+        if (sigwait(&set, &number) != 0) continue;
+        note_signal(number);
+        while ((number = sigtimedwait(&set, NULL, &patience)) > 0) note_signal(number);
+        explain();
+    }
     return NULL;
 }
 
@@ -99,4 +115,10 @@ void bp_interrupt_catch(void) {
 
 bool bp_interrupted(void) {
     return interrupted_ms > 0;
+}
+
+void bp_interrupt_explain(const char *text) {
+    pthread_mutex_lock(&explanation_lock);
+    snprintf(explanation, sizeof explanation, "%s", text);
+    pthread_mutex_unlock(&explanation_lock);
 }

@@ -2,7 +2,7 @@
  * SIGTERM, SIGHUP (the terminal was closed; unless ignored, as nohup arranges), SIGXCPU (the limit on
  * processor time), SIGUSR1 and SIGUSR2 (a batch system's notice that time is nearly over).
  *
- * In:    signals.   Out: whether there has been one.
+ * In:    signals.   Out: whether there has been one; a text, if it is not answered.
  * Knows: signals, the thread that waits for them, that unfinished files must be removed.
  * Does not know: what is interrupted.
  *
@@ -22,5 +22,10 @@ void bp_interrupt_install(void);
  * within a quarter of a second of the first are the same Ctrl-C, delivered twice.) */
 void bp_interrupt_catch(void);
 bool bp_interrupted(void);
+
+/* What to say on standard error when a signal has come and the text is still there most of a second later:
+ * what the process waits for may never come, and whoever sent the signal ends it then. Copied; "": nothing.
+ */
+void bp_interrupt_explain(const char *text);
 
 #endif

@@ -52,6 +52,7 @@ typedef struct BpCommandLine {
     const struct BpCommand *command; /* NULL: `ballpark`, `ballpark --help`, `ballpark --version` */
     char **operands;                 /* the arguments that are not options: scenes, files, names */
     size_t operand_count;
+    struct BpComm *comm; /* the processes that carry out the command together; NULL: this one alone */
     bool given[BP_OPTION_NUMBER];
 #define BP_OPTION_MEMBER(number, name, letter, commands, help, type, member, ...) type member;
     BP_OPTION_LIST(BP_OPTION_MEMBER, BP_OPTION_MEMBER)

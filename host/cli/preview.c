@@ -5,14 +5,15 @@
 #include "base/shown.h"
 #include "render/render.h"
 
+#include <inttypes.h>
 #include <stdio.h>
 #include <string.h>
 #include <sys/stat.h>
 
 #define SHOW_SECONDS 1.0
 
-BpStatus bp_preview_choose(const BpCommandLine *line, const BpScene *scene, const BpResultFile *file,
-                           BpPreview *preview, BpError *err) {
+BpStatus bp_preview_choose(const BpCommandLine *line, const BpComm *shared, const BpScene *scene,
+                           const BpResultFile *file, BpPreview *preview, BpError *err) {
     struct stat info;
     const bool asked = bp_option_given(line, BP_OPTION_PREVIEW);
     *preview = (BpPreview){.line = line,
@@ -22,6 +23,15 @@ BpStatus bp_preview_choose(const BpCommandLine *line, const BpScene *scene, cons
                            .shows = line->show,
                            .every = asked ? line->preview_seconds : SHOW_SECONDS,
                            .last = bp_clock_seconds()};
+    if (!bp_comm_leads(shared)) {
+        preview->writes = preview->shows = false;
+        return BP_OK;
+    }
+    if (preview->shows && line->comm != NULL && shared == NULL)
+        return bp_fail(err, BP_ERR_USAGE,
+                       "--show draws one picture at a time, and %" PRIu32
+                       " ranks render several at once; --preview rewrites each one's file",
+                       bp_comm_size(line->comm));
     if (preview->writes && file->format == BP_FORMAT_BPA)
         return bp_fail(err, BP_ERR_USAGE,
                        "--preview rewrites a picture, and %.400s holds sums; --checkpoint keeps those",
@@ -64,7 +74,7 @@ static void warn(BpPreview *preview, const BpError *fault) {
 BpStatus bp_preview_update(BpPreview *preview, BpRender *render, BpError *err) {
     const BpFilm *film = NULL;
     BpStatus status = BP_OK;
-    BP_TRY(bp_render_read_film(render, &film, err));
+    BP_TRY(bp_render_read_film(render, &film, err)); /* on one of several ranks alone it is whole */
     if (preview->writes) {
         BpError fault = {0};
         if (bp_result_write(preview->line, preview->file, film, false, (BpTransfer)film->transfer,

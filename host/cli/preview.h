@@ -6,6 +6,7 @@
 #ifndef BP_CLI_PREVIEW_H
 #define BP_CLI_PREVIEW_H
 
+#include "cluster/comm.h"
 #include "result_file.h"
 #include "terminal_picture.h"
 
@@ -20,15 +21,15 @@ typedef struct BpPreview {
 } BpPreview;
 
 /* BP_ERR_USAGE: there is no file to rewrite, or no terminal to draw in. `scene` and `file` outlive the
- * preview. */
-BpStatus bp_preview_choose(const BpCommandLine *line, const BpScene *scene, const BpResultFile *file,
-                           BpPreview *preview, BpError *err);
+ * preview. `shared`: Optional. The ranks that share the picture, of which one writes and draws. */
+BpStatus bp_preview_choose(const BpCommandLine *line, const BpComm *shared, const BpScene *scene,
+                           const BpResultFile *file, BpPreview *preview, BpError *err);
 
-/* Whether it is time, by bp_clock_seconds(). */
+/* Whether it is time, by bp_clock_seconds(); on the rank that writes and draws. */
 bool bp_preview_is_due(const BpPreview *preview, double now);
 
-/* Writes and draws the picture as it stands. A file that cannot be written is warned about once, and
- * rendering goes on. BP_ERR_DEVICE or BP_ERR_MEMORY: the sums could not be read. */
+/* Writes and draws the picture as it stands, by all ranks that share it. A file that cannot be written is
+ * warned about once, and rendering goes on. BP_ERR_DEVICE or BP_ERR_MEMORY: the sums could not be read. */
 BpStatus bp_preview_update(BpPreview *preview, BpRender *render, BpError *err);
 
 /* Draws the finished picture, which somebody else writes. */

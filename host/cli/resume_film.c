@@ -10,9 +10,11 @@
 #include <inttypes.h>
 #include <stdio.h>
 
-BpStatus bp_resume_load(const BpCommandLine *line, BpFilm **film, BpError *err) {
+BpStatus bp_resume_load(const BpCommandLine *line, const BpComm *shared, BpFilm **film, BpError *err) {
     *film = NULL;
-    return line->resume != NULL ? bp_film_read(line->resume, film, err) : BP_OK;
+    if (line->resume == NULL) return BP_OK;
+    return bp_comm_leads(shared) ? bp_film_read(line->resume, film, err)
+                                 : bp_film_read_header(line->resume, film, err);
 }
 
 /* `option` was given, but the film says `has`, as the option would be written. */

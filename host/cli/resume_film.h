@@ -5,11 +5,13 @@
 #ifndef BP_CLI_RESUME_FILM_H
 #define BP_CLI_RESUME_FILM_H
 
+#include "cluster/comm.h"
 #include "film/film.h"
 #include "options.h"
 
-/* Reads the film that --resume names; *film stays NULL without it. BP_ERR_FILE. */
-BpStatus bp_resume_load(const BpCommandLine *line, BpFilm **film, BpError *err);
+/* Reads the film that --resume names; *film stays NULL without it. Of the ranks that share a picture, one
+ * reads all of it and the others no more than its header. `shared`: Optional. BP_ERR_FILE. */
+BpStatus bp_resume_load(const BpCommandLine *line, const BpComm *shared, BpFilm **film, BpError *err);
 
 /* Gives the scene the film's width. BP_ERR_USAGE: --width says another one, or it is another scene. */
 BpStatus bp_resume_scene(const BpCommandLine *line, const BpFilm *film, BpScene *scene, BpError *err);

@@ -3,12 +3,16 @@
 
 #include <errno.h>
 #include <inttypes.h>
+#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
 #define BLOCK 65536u        /* numbers of a block */
 #define PACKED_BYTES 65536u /* at a time */
 #define WIDTH_MAX 8u
+/* Bytes of more bits each than this are stored as they are: packing them would take most of the time, and
+ * gain little. */
+#define PACKED_BITS_MAX 6.0
 
 /* ---- numbers as little-endian bytes, in planes or one after the other ---- */
 
@@ -31,10 +35,21 @@ static void store_native(uint8_t *at, uint64_t value, size_t width) {
         *at = (uint8_t)value;
 }
 
+/* One plane after the other, and a width that the compiler knows: then it does many numbers at a time. */
+static inline void to_plane(const uint8_t *numbers, size_t width, size_t count, size_t byte, uint8_t *plane) {
+    for (size_t i = 0; i < count; i++)
+        plane[i] = (uint8_t)(load_native(numbers + width * i, width) >> (8 * byte));
+}
+
 static void to_planes(const uint8_t *numbers, size_t width, size_t count, uint8_t *planes) {
-    for (size_t i = 0; i < count; i++) {
-        const uint64_t value = load_native(numbers + width * i, width);
-        for (size_t byte = 0; byte < width; byte++) planes[byte * count + i] = (uint8_t)(value >> (8 * byte));
+    for (size_t byte = 0; byte < width; byte++) {
+        uint8_t *plane = planes + byte * count;
+        if (width == 8)
+            to_plane(numbers, 8, count, byte, plane);
+        else if (width == 4)
+            to_plane(numbers, 4, count, byte, plane);
+        else
+            to_plane(numbers, 1, count, byte, plane);
     }
 }
 
@@ -73,9 +88,9 @@ void bp_film_sink_bytes(BpFilmSink *sink, const void *bytes, size_t size) {
     fwrite(bytes, 1, size, sink->out);
 }
 
-/* Packs what is in `planes`; `flush` as for deflate(). */
-static void pack(BpFilmSink *sink, size_t size, int flush) {
-    sink->zip.next_in = sink->planes;
+/* Packs bytes; `flush` as for deflate(). */
+static void pack(BpFilmSink *sink, uint8_t *bytes, size_t size, int flush) {
+    sink->zip.next_in = bytes;
     sink->zip.avail_in = (uInt)size;
     do {
         sink->zip.next_out = sink->packed;
@@ -85,17 +100,45 @@ static void pack(BpFilmSink *sink, size_t size, int flush) {
     } while (sink->zip.avail_out == 0);
 }
 
+/* Bits a byte (Shannon, A Mathematical Theory of Communication, 1948, section 6), of bytes without an order.
+ */
+static double entropy(const uint8_t *bytes, size_t count) {
+    uint32_t counts[4][256] = {{0}}; /* four: a byte that equals the one before need not wait for it */
+    double sum = 0;
+    for (size_t i = 0; i < count; i++) ++counts[i & 3][bytes[i]];
+    for (size_t value = 0; value < 256; value++) {
+        const uint32_t number = counts[0][value] + counts[1][value] + counts[2][value] + counts[3][value];
+        if (number > 0) sum += number * log2((double)count / number);
+    }
+    return sum / (double)count;
+}
+
+/* Packs one plane, or stores it. */
+static void pack_plane(BpFilmSink *sink, uint8_t *plane, size_t count) {
+    const int level = entropy(plane, count) > PACKED_BITS_MAX ? 0 : 1;
+    int code = Z_OK;
+    sink->zip.next_in = plane;
+    sink->zip.avail_in = 0;
+    do { /* what was given before is packed as it was meant to be, as far as there is room for it */
+        sink->zip.next_out = sink->packed;
+        sink->zip.avail_out = PACKED_BYTES;
+        code = deflateParams(&sink->zip, level, Z_RLE);
+        bp_film_sink_bytes(sink, sink->packed, PACKED_BYTES - sink->zip.avail_out);
+    } while (code == Z_BUF_ERROR);
+    pack(sink, plane, count, Z_NO_FLUSH);
+}
+
 void bp_film_sink_numbers(BpFilmSink *sink, const void *numbers, size_t width, size_t count) {
     for (size_t done = 0; done < count && !ferror(sink->out); done += BLOCK) {
         const size_t block = count - done < BLOCK ? count - done : BLOCK;
         to_planes((const uint8_t *)numbers + width * done, width, block, sink->planes);
-        pack(sink, width * block, Z_NO_FLUSH);
+        for (size_t byte = 0; byte < width; byte++) pack_plane(sink, sink->planes + byte * block, block);
     }
 }
 
 BpStatus bp_film_sink_end(BpFilmSink *sink, BpError *err) {
     uint8_t checksum[BP_FILM_CHECKSUM_BYTES];
-    pack(sink, 0, Z_FINISH);
+    pack(sink, sink->planes, 0, Z_FINISH);
     for (size_t i = 0; i < sizeof checksum; i++) checksum[i] = (uint8_t)(sink->checksum >> (8 * i));
     fwrite(checksum, 1, sizeof checksum, sink->out);
     const int failed_before = ferror(sink->out) ? errno : 0;

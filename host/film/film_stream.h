@@ -7,7 +7,8 @@
  * numbers, the last one shorter, and each block byte by byte: first the lowest byte of every number, then the
  * next. The high bytes of neighbours are alike and the lowest are often 0, so that a block shrinks to a third
  * or less. zlib looks for runs alone: more than that costs several times the time and gains next to nothing.
- * Before version 3 numbers stand one after the other, little endian. */
+ * Planes that are almost noise are stored as they are, in the same stream. Before version 3 numbers stand one
+ * after the other, little endian. */
 #ifndef BP_FILM_FILM_STREAM_H
 #define BP_FILM_FILM_STREAM_H
 

@@ -6,6 +6,7 @@
 #include "base/status.h"
 #include "render_plan.h"
 #include "render_state.h"
+#include "round.h"
 
 #include <inttypes.h>
 #include <math.h>
@@ -83,14 +84,18 @@ static uint64_t samples_for_all(uint64_t samples) {
     return samples < BP_ADAPTIVE_FIRST ? samples : BP_ADAPTIVE_FIRST;
 }
 
-/* The first samples go to all pixels: a list that names every one. */
-static BpStatus begin_adaptive(BpRender *render, BpError *err) {
+BpStatus bp_render_create_adaptive(BpRender *render, BpError *err) {
     const BpCamera *camera = &render->scene->camera;
-    const uint32_t pixels = camera->width * camera->height;
     const uint64_t exact = (uint64_t)BP_REPLICATE_SAMPLES_MAX * render->options.replicates;
     const uint64_t numbers = (uint64_t)UINT32_MAX + 1 - render->options.first_sample;
-    BP_TRY(bp_adaptive_create(camera->width, camera->height, exact < numbers ? exact : numbers,
-                              &render->adaptive, err));
+    return bp_adaptive_create(camera->width, camera->height, exact < numbers ? exact : numbers,
+                              &render->adaptive, err);
+}
+
+/* The first samples go to all pixels: a list that names every one. */
+static BpStatus begin_adaptive(BpRender *render, BpError *err) {
+    const uint32_t pixels = render->scene->camera.width * render->scene->camera.height;
+    BP_TRY(bp_render_create_adaptive(render, err));
     uint32_t *list = malloc(pixels * sizeof *list);
     if (list == NULL) return bp_fail(err, BP_ERR_MEMORY, "no memory for a list of %u pixels", pixels);
     for (uint32_t i = 0; i < pixels; ++i) list[i] = i;
@@ -170,7 +175,7 @@ void bp_render_destroy(BpRender **render) {
 
 /* A worker with room for a chunk. When all are full, the one whose oldest chunk is done first: devices differ
  * in speed, and waiting for a slow one would keep a fast one idle. */
-static BpStatus free_worker(const BpRender *render, BpWorker **found, BpError *err) {
+BpStatus bp_render_free_worker(const BpRender *render, BpWorker **found, BpError *err) {
     BpWorker *best = render->workers[0];
     for (size_t i = 1; i < render->worker_count; ++i)
         if (render->workers[i]->flight_count < best->flight_count) best = render->workers[i];
@@ -190,8 +195,13 @@ static BpStatus free_worker(const BpRender *render, BpWorker **found, BpError *e
     return bp_worker_make_room(best, err);
 }
 
+void bp_render_join(BpRender *render, BpComm *comm) {
+    render->comm = comm;
+}
+
 uint64_t bp_render_pixel_samples(const BpRender *render) {
     uint64_t done = render->base_samples;
+    if (render->comm != NULL) return done + render->round.pixel_samples;
     for (size_t i = 0; i < render->worker_count; ++i) done += render->workers[i]->samples_done;
     return done;
 }
@@ -221,7 +231,10 @@ static BpStatus begin_next_pass(BpRender *render, bool *begun, BpError *err) {
     bp_film_destroy(&render->film); /* what was read before the latest chunks */
     BP_TRY(bp_render_read_film(render, &film, err));
     render->decides = true;
-    BP_TRY(bp_adaptive_next(render->adaptive, film, render->options.samples_per_pixel, begun, &pass, err));
+    if (bp_comm_leads(render->comm))
+        BP_TRY(
+            bp_adaptive_next(render->adaptive, film, render->options.samples_per_pixel, begun, &pass, err));
+    BP_TRY(bp_round_share_pass(render, begun, &pass, err));
     bp_film_destroy(&render->film);
     if (!*begun) return BP_OK;
     return bp_render_begin_pass(render, &pass, err);
@@ -237,18 +250,25 @@ static double slowest_samples(const BpRender *render) {
     return slowest;
 }
 
+uint32_t bp_render_chunk_samples(const BpRender *render, const BpWorker *worker) {
+    if (render->options.chunk_samples != 0) return render->options.chunk_samples;
+    return bp_worker_chunk_samples(worker, CHUNK_SECONDS, slowest_samples(render));
+}
+
+BpStatus bp_render_take(BpRender *render, uint64_t wanted, BpChunk *chunk, bool *more, BpError *err) {
+    *more = bp_schedule_take(&render->schedule, wanted, chunk);
+    if (*more) return BP_OK;
+    BP_TRY(begin_next_pass(render, more, err));
+    if (*more) *more = bp_schedule_take(&render->schedule, wanted, chunk);
+    return BP_OK;
+}
+
 /* Starts one chunk; *started is false when all has been handed out. */
 static BpStatus start_chunk(BpRender *render, bool *started, BpError *err) {
     BpWorker *worker = NULL;
-    BP_TRY(free_worker(render, &worker, err));
-    const uint32_t wanted = render->options.chunk_samples != 0
-                                ? render->options.chunk_samples
-                                : bp_worker_chunk_samples(worker, CHUNK_SECONDS, slowest_samples(render));
-    *started = bp_schedule_take(&render->schedule, wanted, &render->last_chunk);
-    if (!*started) {
-        BP_TRY(begin_next_pass(render, started, err));
-        if (*started) *started = bp_schedule_take(&render->schedule, wanted, &render->last_chunk);
-    }
+    BP_TRY(bp_render_free_worker(render, &worker, err));
+    BP_TRY(
+        bp_render_take(render, bp_render_chunk_samples(render, worker), &render->last_chunk, started, err));
     if (!*started) return BP_OK;
     if (render->last_chunk.first_pixel == 0)
         for (size_t i = 0; i < render->worker_count; ++i) bp_pace_begin_pass(&render->workers[i]->pace);
@@ -268,9 +288,13 @@ static BpStatus step(BpRender *render, double seconds, BpProgress *progress, BpE
     const double start = bp_clock_seconds();
     bp_film_destroy(&render->film);
     bool more = true;
-    do {
-        BP_TRY(start_chunk(render, &more, err));
-    } while (more && bp_clock_seconds() - start < seconds);
+    if (render->comm != NULL) {
+        BP_TRY(bp_round_trace(render, &more, err));
+    } else {
+        do {
+            BP_TRY(start_chunk(render, &more, err));
+        } while (more && bp_clock_seconds() - start < seconds);
+    }
     if (!more)
         for (size_t i = 0; i < render->worker_count; ++i)
             BP_TRY(bp_worker_wait_for_all(render->workers[i], err));
@@ -396,23 +420,41 @@ static BpStatus add_base(const BpFilm *base, BpFilm *film, BpError *err) {
     return BP_OK;
 }
 
+/* What the devices of this process have added up, in a film that says what the render is. */
+static BpStatus read_own(BpRender *render, BpFilm **film, BpError *err) {
+    BpFilm *read = NULL;
+    BpStatus status = bp_film_create(render->scene->camera.width, render->scene->camera.height,
+                                     render->options.replicates, &read, err);
+    if (status == BP_OK) status = bp_render_describe(render, read, err);
+    if (status == BP_OK && render->adaptive != NULL) {
+        const size_t pixels = (size_t)read->width * read->height;
+        read->pixel_segments = calloc(pixels, sizeof *read->pixel_segments);
+        if (read->pixel_segments == NULL)
+            status = bp_fail(err, BP_ERR_MEMORY, "no memory for the path lengths of %zu pixels", pixels);
+    }
+    if (status == BP_OK && render->scene->backdrop == BP_BACKDROP_NONE) status = bp_film_add_met(read, err);
+    for (size_t i = 0; status == BP_OK && i < render->worker_count; ++i)
+        status = bp_worker_collect(render->workers[i], read, err);
+    if (status == BP_OK)
+        *film = read;
+    else
+        bp_film_destroy(&read);
+    return status;
+}
+
+BpStatus bp_render_read_own_film(BpRender *render, BpFilm **film, uint64_t *pixel_samples, BpError *err) {
+    BP_TRY(read_own(render, film, err));
+    *pixel_samples = 0;
+    for (size_t i = 0; i < render->worker_count; ++i) *pixel_samples += render->workers[i]->samples_done;
+    return BP_OK;
+}
+
 BpStatus bp_render_read_film(BpRender *render, const BpFilm **film, BpError *err) {
     if (render->film == NULL) {
         BpFilm *read = NULL;
-        BpStatus status = bp_film_create(render->scene->camera.width, render->scene->camera.height,
-                                         render->options.replicates, &read, err);
-        if (status == BP_OK) status = bp_render_describe(render, read, err);
-        if (status == BP_OK && render->adaptive != NULL) {
-            const size_t pixels = (size_t)read->width * read->height;
-            read->pixel_segments = calloc(pixels, sizeof *read->pixel_segments);
-            if (read->pixel_segments == NULL)
-                status = bp_fail(err, BP_ERR_MEMORY, "no memory for the path lengths of %zu pixels", pixels);
-        }
-        if (status == BP_OK && render->scene->backdrop == BP_BACKDROP_NONE)
-            status = bp_film_add_met(read, err);
-        if (status == BP_OK && render->base != NULL) status = add_base(render->base, read, err);
-        for (size_t i = 0; status == BP_OK && i < render->worker_count; ++i)
-            status = bp_worker_collect(render->workers[i], read, err);
+        BP_TRY(read_own(render, &read, err));
+        BpStatus status = render->base != NULL ? add_base(render->base, read, err) : BP_OK;
+        if (status == BP_OK) status = bp_round_add_films(render->comm, read, err);
         if (status != BP_OK) {
             bp_film_destroy(&read);
             return status;
@@ -513,6 +555,7 @@ static BpStatus fill_aovs(BpRender *render, BpError *err) {
 
 BpStatus bp_render_read_whole_film(BpRender *render, const BpFilm **film, BpError *err) {
     BP_TRY(bp_render_read_film(render, film, err));
+    if (!bp_comm_leads(render->comm)) return BP_OK; /* whose film is no use */
     BP_TRY(add_plan(render, render->film, err));
     if (!render->options.features) return BP_OK;
     BP_TRY(fill_aovs(render, err));

@@ -39,12 +39,23 @@ BpStatus bp_render_create_on(const BpScene *scene, const BpRenderOptions *option
                              struct BpDevice *const *devices, size_t device_count, BpRender **render,
                              BpError *err);
 
+/* Makes the render one of several, by the processes of the communicator, all of the same scene and options.
+ * From then on all of them make the same calls: a step is a round of samples of which each traces a part, and
+ * the film that is read is the sum of all of them on rank 0, and no film of use elsewhere. Before the first
+ * step and before bp_render_resume(). The communicator must outlive the render. */
+struct BpComm;
+void bp_render_join(BpRender *render, struct BpComm *comm);
+
 /* The film as it stands, read from the device; owned by the render, valid until the next step. */
 BpStatus bp_render_read_film(BpRender *render, const BpFilm **film, BpError *err);
 
 /* The same as it goes to a file: with what another render needs to go on from it, unless this one is
  * finished, and with depth, normal and albedo if the options have `features`. */
 BpStatus bp_render_read_whole_film(BpRender *render, const BpFilm **film, BpError *err);
+
+/* The sums of this process alone, whatever others have, to be destroyed by the caller; and the pixel samples
+ * in it. */
+BpStatus bp_render_read_own_film(BpRender *render, BpFilm **film, uint64_t *pixel_samples, BpError *err);
 
 /* Whether a sample has been handed out yet. */
 bool bp_render_has_begun(const BpRender *render);

@@ -5,9 +5,16 @@
 #ifndef BP_RENDER_RENDER_STATE_H
 #define BP_RENDER_RENDER_STATE_H
 
+#include "cluster/comm.h"
 #include "film/adaptive.h"
 #include "render.h"
 #include "worker.h"
+
+/* What a rank knows of the rounds that it shares with others. */
+typedef struct BpRounds {
+    double samples, seconds; /* its own, of late: how fast it is */
+    uint64_t pixel_samples;  /* of all ranks together, in the rounds that are done */
+} BpRounds;
 
 struct BpRender {
     const BpScene *scene;
@@ -16,11 +23,14 @@ struct BpRender {
     BpAcceleration acceleration;
     BpWorker **workers;
     size_t worker_count;
-    BpSchedule schedule;   /* adaptive: of the pass under way */
-    BpAdaptive *adaptive;  /* NULL: every pixel gets the same samples */
-    bool decides;          /* adaptive: past the samples that every pixel gets */
-    BpFilm *film;          /* as last read; NULL before that */
-    BpFilm *base;          /* what a resumed render began with; NULL: nothing */
+    BpSchedule schedule;  /* adaptive: of the pass under way */
+    BpAdaptive *adaptive; /* NULL: every pixel gets the same samples */
+    bool decides;         /* adaptive: past the samples that every pixel gets */
+    BpFilm *film;         /* as last read; NULL before that */
+    BpComm *comm;         /* NULL: no other process works on it */
+    BpRounds round;
+    bool resumed;          /* it goes on from a film */
+    BpFilm *base;          /* which is this; NULL: nothing, or another rank has it */
     uint64_t base_samples; /* pixel samples in it */
     uint64_t goal_samples; /* where a stop rule ends it; 0: none has said */
     double goal_error;
@@ -39,6 +49,15 @@ BpStatus bp_render_describe(const BpRender *render, BpFilm *film, BpError *err);
 
 /* Hands the pixels of an adaptive pass to all workers, and begins to hand out its samples. */
 BpStatus bp_render_begin_pass(BpRender *render, const BpAdaptivePass *pass, BpError *err);
+
+/* A worker with room for a chunk; and how many samples a chunk of its should have. */
+BpStatus bp_render_free_worker(const BpRender *render, BpWorker **found, BpError *err);
+uint32_t bp_render_chunk_samples(const BpRender *render, const BpWorker *worker);
+/* The next chunk of the schedule, after a decision of adaptive sampling where that is due; *more is false
+ * when all has been handed out. */
+BpStatus bp_render_take(BpRender *render, uint64_t wanted, BpChunk *chunk, bool *more, BpError *err);
+/* render->adaptive, new. */
+BpStatus bp_render_create_adaptive(BpRender *render, BpError *err);
 
 /* Whether the render could be extended to so many samples: BP_ERR_USAGE or BP_ERR_LIMIT as
  * bp_render_extend(). */

@@ -6,6 +6,7 @@
 
 #include "base/status.h"
 #include "render_state.h"
+#include "round.h"
 
 #include <inttypes.h>
 #include <stdlib.h>
@@ -86,22 +87,21 @@ static BpStatus copy_film(const BpFilm *film, BpFilm **copy, BpError *err) {
     return BP_OK;
 }
 
-BpStatus bp_render_resume(BpRender *render, const BpFilm *film, BpError *err) {
+/* `decisions`: those of adaptive sampling, which a film that is a header alone lacks; NULL: there are none.
+ */
+static BpStatus take_up(BpRender *render, const BpFilm *film, uint8_t *decisions, BpError *err) {
     BpFilmPlan plan = {.adaptive = false};
-    if (bp_render_has_begun(render) || render->base != NULL)
-        return bp_fail(err, BP_ERR_USAGE, "a render that has begun cannot go on from a film");
     if (film->plan != NULL)
         plan = *film->plan;
     else
         BP_TRY(plan_of_whole(film, &plan, err));
+    plan.decisions = decisions;
     BP_TRY(check_settings(render, film, &plan, err));
-    if ((film->met != NULL) != (render->scene->backdrop == BP_BACKDROP_NONE))
+    if (bp_comm_leads(render->comm) && (film->met != NULL) != (render->scene->backdrop == BP_BACKDROP_NONE))
         return bp_fail(err, BP_ERR_FILE, "the film is damaged: it %s an alpha, unlike its scene",
                        film->met != NULL ? "has" : "lacks");
-    BP_TRY(copy_film(film, &render->base, err));
-    const size_t cells = (size_t)film->width * film->height * film->replicates;
-    for (size_t i = 0; i < cells; ++i) render->base_samples += film->counts[i];
-    render->base_samples += film->invalid_samples;
+    render->resumed = true;
+    if (bp_comm_leads(render->comm)) BP_TRY(copy_film(film, &render->base, err)); /* once among all ranks */
     BP_TRY(bp_render_extend(render, plan.target, err));
     render->goal_samples = plan.samples_max;
     render->goal_error = plan.error;
@@ -112,4 +112,27 @@ BpStatus bp_render_resume(BpRender *render, const BpFilm *film, BpError *err) {
     if (render->schedule.samples < plan.done && plan.decision_bytes > 0 && plan.pass_samples == 0)
         render->schedule.samples = plan.done; /* of the last pass, which is done */
     return check_samples(render, film, err);
+}
+
+/* Pixel samples in the film. */
+static uint64_t count_samples(const BpFilm *film) {
+    const size_t cells = (size_t)film->width * film->height * film->replicates;
+    uint64_t samples = film->invalid_samples;
+    for (size_t i = 0; i < cells; ++i) samples += film->counts[i];
+    return samples;
+}
+
+BpStatus bp_render_resume(BpRender *render, const BpFilm *film, BpError *err) {
+    const bool leads = bp_comm_leads(render->comm), plans = film->plan != NULL;
+    if (bp_render_has_begun(render) || render->resumed)
+        return bp_fail(err, BP_ERR_USAGE, "a render that has begun cannot go on from a film");
+    uint64_t samples = leads ? count_samples(film) : 0;
+    uint8_t *received = NULL;
+    BP_TRY(bp_round_share_resumed(render->comm, &samples, plans ? film->plan->decisions : NULL,
+                                  plans ? film->plan->decision_bytes : 0, &received, err));
+    render->base_samples = samples;
+    const BpStatus status =
+        take_up(render, film, received != NULL || !plans ? received : film->plan->decisions, err);
+    free(received);
+    return status;
 }

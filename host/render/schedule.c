@@ -16,14 +16,15 @@ static uint64_t at_least(uint64_t a, uint64_t b) {
     return a > b ? a : b;
 }
 
-bool bp_schedule_take(BpSchedule *schedule, uint32_t wanted, BpChunk *chunk) {
+bool bp_schedule_take(BpSchedule *schedule, uint64_t wanted, BpChunk *chunk) {
     if (schedule->pass_samples == 0) {
         const uint64_t left = schedule->samples - schedule->done;
         if (left == 0 || schedule->pixels == 0) return false;
         const uint64_t most = at_least(PASS_SAMPLES_MAX, wanted / schedule->pixels);
-        /* As many again as there are: 1, 1, 2, 4, 8, ... */
-        const uint64_t pass =
-            at_most(at_most(at_least(schedule->before + schedule->done, 1), most), at_most(left, wanted));
+        /* As many again as there are: 1, 1, 2, 4, 8, ... And as many as a chunk has for a whole picture. */
+        const uint64_t more =
+            at_least(at_least(schedule->before + schedule->done, 1), wanted / schedule->pixels);
+        const uint64_t pass = at_most(at_most(more, most), at_most(left, at_most(wanted, UINT32_MAX)));
         schedule->pass_samples = (uint32_t)at_least(pass, 1);
         schedule->next_pixel = 0;
     }

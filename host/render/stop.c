@@ -82,7 +82,7 @@ static BpStatus check_rule(const BpRender *render, const BpStopRule *rule, BpErr
 /* A resumed render goes on to where it was going; other renders begin with what the rule says. */
 static uint64_t first_samples(const BpRender *render, const BpStopRule *rule) {
     const uint64_t target = render->options.samples_per_pixel;
-    if (render->base == NULL) return bp_stop_first(rule);
+    if (!render->resumed) return bp_stop_first(rule);
     return target < rule->samples_max ? target : rule->samples_max;
 }
 
@@ -136,6 +136,7 @@ static BpStatus look(BpStop *stop, BpError *err) {
     if (stop->rule.error <= 0.0) return BP_OK;
     const BpFilm *film = NULL;
     BP_TRY(bp_render_read_film(stop->render, &film, err));
+    if (!bp_comm_leads(stop->render->comm)) return BP_OK;
     double mean[3];
     bp_film_mean(film, mean);
     stop->state.nrmse = bp_film_nrmse(film);
@@ -143,17 +144,30 @@ static BpStatus look(BpStop *stop, BpError *err) {
     return BP_OK;
 }
 
-BpStatus bp_stop_check(BpStop *stop, const BpProgress *progress, BpStopReason *reason, BpError *err) {
-    *reason = stop->reason;
-    if (stop->reason != BP_STOP_NOT_YET) return BP_OK;
+static BpStatus decide(BpStop *stop, const BpProgress *progress, uint64_t *next, BpError *err) {
     stop->state.seconds = bp_clock_seconds() - stop->start;
-    uint64_t next = stop->state.samples;
     if (progress->finished) {
         BP_TRY(look(stop, err));
-        stop->reason = bp_stop_decide(&stop->rule, &stop->state, &next);
+        stop->reason = bp_stop_decide(&stop->rule, &stop->state, next);
     } else if (is_overtime(stop)) {
         stop->reason = BP_STOP_TIME;
     }
+    /* Ranks may see other clocks, and rank 0 alone the whole film. */
+    struct Decision {
+        uint64_t next;
+        int32_t reason;
+    } decision = {*next, (int32_t)stop->reason};
+    BP_TRY(bp_comm_broadcast(stop->render->comm, &decision, sizeof decision, err));
+    *next = decision.next;
+    stop->reason = (BpStopReason)decision.reason;
+    return BP_OK;
+}
+
+BpStatus bp_stop_check(BpStop *stop, const BpProgress *progress, BpStopReason *reason, BpError *err) {
+    *reason = stop->reason;
+    if (stop->reason != BP_STOP_NOT_YET) return BP_OK;
+    uint64_t next = stop->state.samples;
+    BP_TRY(decide(stop, progress, &next, err));
     *reason = stop->reason;
     stop->render->ended = stop->reason != BP_STOP_NOT_YET && stop->reason != BP_STOP_TIME;
     if (next > stop->state.samples) BP_TRY(bp_render_extend(stop->render, next, err));
@@ -168,11 +182,19 @@ static BpStatus refresh_error(BpStop *stop, BpError *err) {
     const double start = bp_clock_seconds();
     if (start < stop->error_next || bp_render_samples_done(stop->render) < BP_REPLICATES_DEFAULT)
         return BP_OK;
+    /* Of several ranks only this one looks, at what it has traced itself. */
+    BpFilm *own = NULL;
     const BpFilm *film = NULL;
-    BP_TRY(bp_render_read_film(stop->render, &film, err));
-    stop->nrmse = bp_film_nrmse(film);
+    uint64_t samples = 0;
+    if (stop->render->comm != NULL)
+        BP_TRY(bp_render_read_own_film(stop->render, &own, &samples, err));
+    else
+        BP_TRY(bp_render_read_film(stop->render, &film, err));
+    stop->nrmse = bp_film_nrmse(own != NULL ? own : film);
+    bp_film_destroy(&own);
     /* Reading has waited for chunks of which the step did not know. */
-    stop->nrmse_samples = (double)bp_render_pixel_samples(stop->render) / (double)stop->pixels;
+    if (stop->render->comm == NULL) samples = bp_render_pixel_samples(stop->render);
+    stop->nrmse_samples = (double)samples / (double)stop->pixels;
     const double end = bp_clock_seconds();
     stop->error_next = end + fmax(ERROR_SECONDS_MIN, (end - start) / ERROR_SHARE);
     return BP_OK;

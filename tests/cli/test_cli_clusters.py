@@ -60,7 +60,7 @@ class Clusters(ProgramTest):
 
     def test_array(self):
         samples = 40000
-        text = self.script(0, ("--spp 65536", f"--spp {samples}"), ("--checkpoint 600", "--checkpoint 0.05"))
+        text = self.script(1, ("--spp 65536", f"--spp {samples}"), ("--checkpoint 600", "--checkpoint 0.05"))
         names = [f"cover-{part}.bpa" for part in (1, 2, 3)]
         for part, name in enumerate(names, 1):
             task = dict(SLURM_ARRAY_TASK_ID=str(part), SLURM_ARRAY_TASK_COUNT="3", SLURM_ARRAY_JOB_ID="77")
@@ -81,7 +81,7 @@ class Clusters(ProgramTest):
         self.assert_same(self.read("cover.exr"), self.read("whole.exr"))
 
     def test_one_long_render(self):
-        text = self.script(1, ("--error 0.1", "--error 0.2"), ("--checkpoint 600", "--checkpoint 0.05"))
+        text = self.script(2, ("--error 0.1", "--error 0.2"), ("--checkpoint 600", "--checkpoint 0.05"))
         process = self.start(text, SLURM_JOB_ID="5")
         child = self.child_of(process, "cover.bpa")
         self.stop_step(child)

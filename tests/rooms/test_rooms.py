@@ -16,12 +16,13 @@ MAY_INCLUDE = {
     "opencl": {"packed"},
     "film": {"scene"},
     "image": set(),
-    "render": {"scene", "packed", "opencl", "film"},
+    "cluster": set(),
+    "render": {"scene", "packed", "opencl", "film", "cluster"},
     "reference": {"scene"},
     "check": {"scene", "film", "image", "render", "reference"},
     "study": {"scene", "film", "image", "render", "reference"},
     "view": {"scene", "film", "image", "render", "reference"},
-    "cli": {"scene", "formats", "packed", "opencl", "film", "image", "render", "check", "study",
+    "cli": {"scene", "formats", "packed", "opencl", "film", "image", "cluster", "render", "check", "study",
             "view"},
 }
 

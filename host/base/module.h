@@ -1,0 +1,25 @@
+/* module.h: a part of the program that is loaded only when it is needed, since it stands on a library that
+ * not every machine has.
+ *
+ * In:    its file's name, the environment.   Out: the struct of functions that it exports.
+ * Knows: where modules lie, that their versions must fit.   Does not know: what any of them does. */
+#ifndef BP_BASE_MODULE_H
+#define BP_BASE_MODULE_H
+
+#include "status.h"
+
+/* What bp_module_load() is told. */
+typedef struct BpModuleName {
+    const char *file;     /* "ballpark_mpi.so" */
+    const char *variable; /* of the environment, which may name another file */
+    const char *symbol;   /* the struct, which begins with its version as a uint32_t */
+    uint32_t version;
+    bool is_global; /* its symbols are for libraries that it loads itself */
+} BpModuleName;
+
+/* The module lies beside the program, as it is built, or in the program's library folder, as it is installed;
+ * or where the environment says. It stays loaded until the program ends, since libraries leave threads and
+ * handlers behind. BP_ERR_USAGE: the message begins with the file's name, and says what is wrong with it. */
+BpStatus bp_module_load(const BpModuleName *name, const void **interface, BpError *err);
+
+#endif

@@ -1,0 +1,195 @@
+/* round.c: see round.h. */
+#include "round.h"
+
+#include "base/clock.h"
+#include "base/status.h"
+#include "portion.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+/* Long against the messages of a round, short for whoever waits for Ctrl-C. */
+#define ROUND_SECONDS 0.5
+/* What an earlier round counts for the speed of a rank, against the next one. */
+#define EARLIER_SHARE 0.5
+
+/* What a rank says before a round. */
+typedef struct Pace {
+    double speed;   /* pixel samples a second; 0: not known yet */
+    double guess;   /* of that, while it is not known: compute units */
+    double samples; /* that it can take without keeping others waiting (pace.h) */
+} Pace;
+
+/* What rank 0 answers; the fractions of all ranks follow. */
+typedef struct Plan {
+    uint64_t wanted; /* pixel samples of all ranks together */
+} Plan;
+
+static Pace own_pace(const BpRender *render) {
+    Pace pace = {.speed = render->round.seconds > 0 ? render->round.samples / render->round.seconds : 0};
+    double slowest = 0;
+    for (size_t i = 0; i < render->worker_count; ++i)
+        slowest = fmax(slowest, bp_pace_slowest(&render->workers[i]->pace));
+    for (size_t i = 0; i < render->worker_count; ++i) {
+        const BpWorker *worker = render->workers[i];
+        pace.guess += worker->device->info.compute_units > 0 ? worker->device->info.compute_units : 1;
+        pace.samples += bp_pace_samples(&worker->pace, ROUND_SECONDS, slowest);
+    }
+    return pace;
+}
+
+/* By rank 0: how many samples the round has, and which part of them each rank gets. */
+static void divide(const Pace *paces, uint32_t ranks, double *weights, Plan *plan, uint64_t *fractions) {
+    double samples = 0, speed = 0;
+    bool known = true;
+    for (uint32_t r = 0; r < ranks; ++r) {
+        known = known && paces[r].speed > 0;
+        samples += paces[r].samples;
+        speed += paces[r].speed;
+    }
+    if (known) samples = fmin(samples, speed * ROUND_SECONDS);
+    for (uint32_t r = 0; r < ranks; ++r) weights[r] = known ? paces[r].speed : paces[r].guess;
+    plan->wanted = samples < 1 ? 1 : samples < 1e18 ? (uint64_t)samples : (uint64_t)1000000000 * 1000000000;
+    bp_portion_divide(weights, ranks, fractions);
+}
+
+/* Agrees on the next round: fills *plan and the fractions. */
+static BpStatus plan_round(BpRender *render, Plan *plan, uint64_t fractions[], BpError *err) {
+    BpComm *comm = render->comm;
+    const uint32_t ranks = bp_comm_size(comm);
+    const Pace own = own_pace(render);
+    Pace *paces = NULL;
+    double *weights = NULL;
+    BpStatus status = BP_OK;
+    if (bp_comm_leads(comm)) {
+        paces = malloc(ranks * sizeof *paces);
+        weights = malloc(ranks * sizeof *weights);
+        if (paces == NULL || weights == NULL)
+            status = bp_fail(err, BP_ERR_MEMORY, "no memory for the paces of ranks");
+    }
+    if (status == BP_OK) status = bp_comm_gather(comm, &own, sizeof own, paces, err);
+    if (status == BP_OK && bp_comm_leads(comm)) divide(paces, ranks, weights, plan, fractions);
+    if (status == BP_OK) status = bp_comm_broadcast(comm, plan, sizeof *plan, err);
+    if (status == BP_OK) status = bp_comm_broadcast(comm, fractions, (ranks + 1) * sizeof *fractions, err);
+    free(paces);
+    free(weights);
+    return status;
+}
+
+/* The worker with fewest chunks under way, once it has room. */
+static BpStatus trace_portion(BpRender *render, BpPortion *portion, BpError *err) {
+    const double start = bp_clock_seconds();
+    double launches = 0;
+    uint64_t before = 0, after = 0;
+    BpChunk chunk;
+    for (size_t i = 0; i < render->worker_count; ++i) {
+        before += render->workers[i]->samples_done;
+        launches -= render->workers[i]->first_launch_seconds;
+    }
+    for (;;) {
+        BpWorker *worker = NULL;
+        BP_TRY(bp_render_free_worker(render, &worker, err));
+        if (!bp_portion_take(portion, bp_render_chunk_samples(render, worker), &chunk)) break;
+        BP_TRY(bp_worker_start(worker, &chunk, err));
+    }
+    for (size_t i = 0; i < render->worker_count; ++i) {
+        BP_TRY(bp_worker_wait_for_all(render->workers[i], err));
+        after += render->workers[i]->samples_done;
+        launches += render->workers[i]->first_launch_seconds;
+    }
+    if (after == before) return BP_OK;
+    BpRounds *round = &render->round;
+    round->samples = EARLIER_SHARE * round->samples + (double)(after - before);
+    round->seconds = EARLIER_SHARE * round->seconds + fmax(bp_clock_seconds() - start - launches, 1e-9);
+    return BP_OK;
+}
+
+BpStatus bp_round_trace(BpRender *render, bool *more, BpError *err) {
+    const uint32_t ranks = bp_comm_size(render->comm), rank = bp_comm_rank(render->comm);
+    Plan plan = {.wanted = 0};
+    BpChunk block;
+    BpPortion portion;
+    uint64_t *fractions = calloc(ranks + 1, sizeof *fractions);
+    if (fractions == NULL) return bp_fail(err, BP_ERR_MEMORY, "no memory for the shares of %u ranks", ranks);
+    const BpStatus status = plan_round(render, &plan, fractions, err);
+    const uint64_t low = fractions[rank], high = fractions[rank + 1];
+    free(fractions);
+    BP_TRY(status);
+    BP_TRY(bp_render_take(render, plan.wanted, &block, more, err));
+    if (!*more) return BP_OK;
+    if (block.first_pixel == 0)
+        for (size_t i = 0; i < render->worker_count; ++i) bp_pace_begin_pass(&render->workers[i]->pace);
+    bp_portion_init(&portion, &block, bp_portion_strips(&block, ranks), low, high);
+    BP_TRY(trace_portion(render, &portion, err));
+    render->round.pixel_samples += (uint64_t)block.pixel_count * block.samples;
+    return BP_OK;
+}
+
+BpStatus bp_round_add_films(BpComm *comm, BpFilm *film, BpError *err) {
+    enum { FINE = 1, COARSE = 2 };
+    const size_t pixels = (size_t)film->width * film->height, cells = pixels * film->replicates;
+    uint32_t has = (film->fine_sums != NULL ? FINE : 0) | (film->coarse ? COARSE : 0);
+    uint64_t totals[] = {film->segments, film->cut_paths, film->invalid_samples};
+    if (comm == NULL) return BP_OK;
+    BP_TRY(bp_comm_unite(comm, &has, err));
+    if (has & FINE) BP_TRY(bp_film_add_fine_sums(film, err));
+    BP_TRY(bp_comm_add_64(comm, film->sums, 3 * cells, err));
+    if (has & FINE) BP_TRY(bp_comm_add_64(comm, film->fine_sums, 3 * cells, err));
+    BP_TRY(bp_comm_add_32(comm, film->counts, cells, err));
+    if (film->pixel_segments != NULL) BP_TRY(bp_comm_add_64(comm, film->pixel_segments, pixels, err));
+    if (film->met != NULL) BP_TRY(bp_comm_add_64(comm, film->met, pixels, err));
+    BP_TRY(bp_comm_add_64(comm, totals, sizeof totals / sizeof totals[0], err));
+    film->coarse = (has & COARSE) != 0;
+    film->segments = totals[0];
+    film->cut_paths = totals[1];
+    film->invalid_samples = totals[2];
+    return BP_OK;
+}
+
+BpStatus bp_round_share_pass(BpRender *render, bool *more, BpAdaptivePass *pass, BpError *err) {
+    BpComm *comm = render->comm;
+    const bool leads = bp_comm_leads(comm);
+    struct Decisions {
+        uint64_t bytes;
+        uint32_t more;
+    } decisions = {.more = *more};
+    uint8_t *bytes = NULL;
+    size_t size = 0;
+    if (comm == NULL) return BP_OK;
+    if (leads) BP_TRY(bp_adaptive_save(render->adaptive, &bytes, &size, err));
+    decisions.bytes = size;
+    BpStatus status = bp_comm_broadcast(comm, &decisions, sizeof decisions, err);
+    if (status == BP_OK && !leads) {
+        bytes = malloc(decisions.bytes);
+        if (bytes == NULL)
+            status = bp_fail(err, BP_ERR_MEMORY, "no memory for decisions of adaptive sampling");
+    }
+    if (status == BP_OK) status = bp_comm_broadcast(comm, bytes, decisions.bytes, err);
+    if (status == BP_OK && !leads) {
+        bp_adaptive_destroy(&render->adaptive);
+        status = bp_render_create_adaptive(render, err);
+        if (status == BP_OK) status = bp_adaptive_restore(render->adaptive, bytes, decisions.bytes, err);
+        *more = decisions.more != 0;
+        if (status == BP_OK && *more && !bp_adaptive_pass(render->adaptive, pass))
+            status = bp_fail(err, BP_ERR_FILE, "the decisions of adaptive sampling have no pass");
+    }
+    free(bytes);
+    return status;
+}
+
+BpStatus bp_round_share_resumed(BpComm *comm, uint64_t *samples, uint8_t *decisions, size_t bytes,
+                                uint8_t **received, BpError *err) {
+    if (comm == NULL) return BP_OK;
+    bp_comm_begin_work(comm);
+    BP_TRY(bp_comm_broadcast(comm, samples, sizeof *samples, err));
+    if (bytes > 0 && !bp_comm_leads(comm)) {
+        *received = malloc(bytes);
+        if (*received == NULL)
+            return bp_fail(err, BP_ERR_MEMORY, "no memory for decisions of adaptive sampling");
+        decisions = *received;
+    }
+    BP_TRY(bp_comm_broadcast(comm, decisions, bytes, err)); /* if it fails, the process ends */
+    bp_comm_end_work(comm);
+    return BP_OK;
+}
