@@ -80,6 +80,12 @@ MUTANTS = [
                   "const uint64_t length = step;")], [test("test_portion", "1 exact")]),
     Mutant("a row without an end", "part of a sample goes on past the last pixel",
            [patch("host/render/portion.c", "row = pixels - pixel;", "row = pixels;")], [test("test_portion", "1 exact")]),
+    Mutant("the alpha of one rank", "this program: films that are added gained an alpha, which was not",
+           [patch("host/render/round.c", "if (film->met != NULL) BP_TRY(bp_comm_add_64(comm, film->met, pixels, err));", "")],
+           [test("test_ranks", "1 exact")]),
+    Mutant("fine sums of some ranks", "a rank whose samples were all bright has no fine sums to add to",
+           [patch("host/render/round.c", "BP_TRY(bp_comm_unite(comm, &has, err));",
+                  "uint32_t all = has; BP_TRY(bp_comm_unite(comm, &all, err));")], [test("test_ranks", "1 exact")]),
     # ---- fitted cameras --------------------------------------------------------------------------------------
     Mutant("the bounding box for the silhouette", "a camera fitted to centres and radii in the picture plane",
            [patch("host/scene/fit.c", "cosine) * place[axis] - sine * place[2] - radius;",
