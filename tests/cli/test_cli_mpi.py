@@ -265,6 +265,24 @@ class Ranks(cli.ProgramTest):
         self.assertNotEqual(process.returncode, 0, said)
         self.assertIn("may be lost, and there is no checkpoint; with --checkpoint SECONDS", said)
 
+    def test_folder_that_goes(self):
+        """Neither checkpoint nor picture can be written, and what was rendered is kept elsewhere, by one rank."""
+        for folder in ("d", "tmp"):
+            os.mkdir(self.path(folder))
+        self.environment["TMPDIR"] = self.path("tmp")
+        process = self.start(2, "s.json", "--spp", 20000, "--checkpoint", 0.05, "-o", "d/a.pfm")
+        while process.poll() is None and not os.path.exists(self.path("d/a.bpa")):
+            time.sleep(0.01)
+        shutil.rmtree(self.path("d"))
+        said = process.communicate(timeout=cli.LIMIT_SECONDS)[1].decode()
+        self.assertEqual(process.returncode, 1, said)
+        self.assertIn("warning: the checkpoint was not written, and rendering goes on: ", said)
+        kept = [name for name in os.listdir(self.path("tmp")) if name.startswith("ballpark")]
+        self.assertEqual(len(kept), 1, said)
+        self.succeed("merge", os.path.join("tmp", kept[0]), "-o", "a.pfm", "-q")
+        self.succeed("render", "s.json", "--spp", 20000, "-o", "whole.pfm", "-q")
+        self.assert_same(self.read("a.pfm"), self.read("whole.pfm"))
+
     def test_faults_are_told_once(self):
         self.write("bad.json", '{"camera": {"image_width": 0}}')
         for arguments, text in ((("bad.json",), "bad.json"), (("s.json", "--bogus"), "unknown option --bogus"),

@@ -1,10 +1,14 @@
 """No file is lost: targets that cannot be replaced, two names of one file, inputs, open files, full devices, limits."""
 
+import contextlib
 import json
 import os
 import re
+import select
+import signal
 import stat
 import subprocess
+import time
 
 import cli
 from cli import ProgramTest, main, scene
@@ -116,6 +120,77 @@ class Replacing(Safety):
             self.assertIn(text, result.errors)
         self.assertEqual(self.read("a.pfm"), b"old")
         self.assertEqual(self.files(), ["a.bpa", "a.pfm", "large.json", "s.json"])
+
+
+class SmallDisk(Safety):
+    """A disk that fills up, or can no longer be written, while a render goes on: what was written stays, what was rendered
+    since is kept elsewhere, and both are told."""
+
+    def setUp(self):
+        super().setUp()
+        self.write("s.json", scene(40, 30, spheres=3))
+        for folder in ("disk", "tmp"):
+            os.mkdir(self.path(folder))
+        self.environment["TMPDIR"] = self.path("tmp")
+        done = subprocess.run(["mount", "-t", "tmpfs", "-o", "size=1m", "none", self.path("disk")], check=False,
+                              stderr=subprocess.DEVNULL)
+        if done.returncode != 0:
+            self.skipTest("nothing can be mounted here")
+        self.addCleanup(subprocess.run, ["umount", "-l", self.path("disk")], check=True)
+
+    def begin(self):
+        process = subprocess.Popen([cli.PROGRAM, "render", "s.json", "--spp", "60000000", "--checkpoint", "0.05", "-o", "disk/a.pfm",
+                                    "-q"], cwd=self.folder, env=self.environment, stderr=subprocess.PIPE)
+        self.addCleanup(process.stderr.close)
+        self.addCleanup(lambda: process.poll() is None and (process.kill(), process.wait()))
+        while "a.bpa" not in os.listdir(self.path("disk")) and process.poll() is None:
+            time.sleep(0.01)
+        return process
+
+    def end(self, process, fault):
+        """After the first warning."""
+        said = process.stderr.readline().decode()
+        self.assertIn("warning: the checkpoint was not written, and rendering goes on: ", said)
+        self.assertIn(fault, said)
+        process.send_signal(signal.SIGTERM)
+        said = process.stderr.read().decode()
+        self.assertEqual(process.wait(timeout=cli.LIMIT_SECONDS), 1, said)
+        self.assertIn(fault, said)
+        kept = os.listdir(self.path("tmp"))
+        self.assertEqual(len(kept), 1, said)
+        self.assertIn(f"tmp/{kept[0]}", said)
+        self.compare(os.path.join("tmp", kept[0]))
+        self.compare("disk/a.bpa")
+
+    def compare(self, film):
+        """The picture of the film that goes on is that of a render without a break."""
+        samples = str(json.loads(self.read(film).split(b"\n", 1)[0])["plan"]["done"] + 64)
+        self.succeed("render", "s.json", "--resume", film, "--spp", samples, "-o", "resumed.pfm", "-q")
+        self.succeed("render", "s.json", "--spp", samples, "-o", "whole.pfm", "-q")
+        self.assert_same(self.read("resumed.pfm"), self.read("whole.pfm"))
+
+    def test_disk_that_fills_up(self):
+        process = self.begin()
+        with open(self.path("disk/filler"), "wb", buffering=0) as filler:
+            while process.poll() is None and not select.select([process.stderr], [], [], 0.01)[0]:
+                with contextlib.suppress(OSError):
+                    while filler.write(bytes(4096)) > 0:
+                        pass
+            self.end(process, "No space left")
+        self.assertEqual(sorted(os.listdir(self.path("disk"))), ["a.bpa", "filler"])
+
+    def test_disk_that_becomes_read_only(self):
+        process = self.begin()
+        while subprocess.run(["mount", "-o", "remount,ro", self.path("disk")], check=False,
+                             stderr=subprocess.DEVNULL).returncode != 0:  # a checkpoint is being written
+            self.assertIsNone(process.poll())
+            time.sleep(0.01)
+        self.end(process, "Read-only file system")
+        self.assertEqual(os.listdir(self.path("disk")), ["a.bpa"])
+        for command in (("render", "s.json", "-o", "disk/b.png"), ("render", "s.json", "-o", "b.png", "--checkpoint", "1", "--resume", "disk/a.bpa"),
+                        ("merge", "disk/a.bpa", "-o", "disk/b.png"), ("render", "s.json", "-o", "b.png", "--stats", "disk/b.json")):
+            self.fail_with(1, *command, says=["disk/", "Read-only file system"])
+            self.assertEqual(os.listdir(self.path("disk")), ["a.bpa"])
 
 
 class TwoNames(Safety):

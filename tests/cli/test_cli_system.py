@@ -70,6 +70,19 @@ class System(cli.ProgramTest):
                 self.assertIn(text, result.errors)
             self.assertNotIn("apt install", result.errors)
 
+    @cli.deep
+    def test_cache_that_eight_share(self):
+        """All compile at once into a cache that is empty."""
+        cache = {"POCL_CACHE_DIR": self.path("cache"), "MESA_SHADER_CACHE_DIR": self.path("cache")}
+        started = [subprocess.Popen([cli.PROGRAM, "render", "x.json", "-o", f"{number}.pfm", "--threads", "1", "-q"], cwd=self.folder,
+                                    env={**self.environment, **cache}, stderr=subprocess.PIPE) for number in range(8)]
+        for process in started:
+            said = process.communicate(timeout=cli.LIMIT_SECONDS)[1]
+            self.assertEqual(process.returncode, 0, said)
+        self.succeed("render", "x.json", "-o", "alone.pfm", "-q", environment=cache)
+        for number in range(8):
+            self.assert_same(self.read(f"{number}.pfm"), self.read("alone.pfm"), number)
+
     def test_cache_that_can_be_made(self):
         cache = self.path("a/b/c")
         self.succeed("render", "x.json", "--device", "portable", "--quiet", environment={"POCL_CACHE_DIR": cache})
