@@ -8,9 +8,11 @@ import subprocess
 import time
 
 from cli import PROGRAM, SOURCE, ProgramTest, main, scene
+from mpi import FLAGS, MPIRUN, reason_to_skip
 
 # srun runs the program at hand; scontrol notes what is handed in again.
-STAND_INS = {"srun": "#!/bin/sh\nshift\nexec \"$BALLPARK\" \"$@\"\n", "scontrol": "#!/bin/sh\necho \"$@\" >>requeued\n"}
+STAND_INS = {"srun": "#!/bin/sh\nwhile [ \"${1#-}\" != \"$1\" ]; do shift; done\nshift\nexec $LAUNCHER \"$BALLPARK\" \"$@\"\n",
+             "scontrol": "#!/bin/sh\necho \"$@\" >>requeued\n"}
 
 
 class Clusters(ProgramTest):
@@ -57,6 +59,27 @@ class Clusters(ProgramTest):
         if child is not None:
             with contextlib.suppress(ProcessLookupError):
                 os.kill(child, signal.SIGUSR1)
+
+    def test_ranks(self):
+        """By mpirun as srun; Slurm signals all ranks."""
+        if reason := reason_to_skip():
+            self.skipTest(reason)
+        self.environment["LAUNCHER"] = " ".join([MPIRUN, *FLAGS, "-n", "2"])
+        text = self.script(0, ("--error 0.1", "--error 0.2"), ("--checkpoint 600", "--checkpoint 0.05"))
+        process = self.start(text, SLURM_JOB_ID="5")
+        launcher = self.child_of(process, "cover.bpa")
+        listed = subprocess.run(["ps", "-o", "pid=", "--ppid", str(launcher)], check=False, stdout=subprocess.PIPE, text=True).stdout
+        for rank in listed.split():
+            self.stop_step(int(rank))
+        code, said = self.finish(process)
+        while code == 130:
+            self.assertEqual(self.read("requeued").decode(), "requeue 5\n")
+            os.remove(self.path("requeued"))
+            code, said = self.finish(self.start(text, SLURM_JOB_ID="5"))
+        self.assertEqual(code, 0, said)
+        self.succeed("render", "cover.json", "--error", 0.2, "--adaptive", "-o", "whole.exr", "-q")
+        self.assert_same(self.read("cover.exr"), self.read("whole.exr"))
+        self.assertNotIn("cover.bpa", self.files())
 
     def test_array(self):
         samples = 40000

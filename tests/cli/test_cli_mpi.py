@@ -13,25 +13,9 @@ import unittest
 
 import bpa
 import cli
+from mpi import FLAGS, MPIRUN, reason_to_skip
 from pfm import read_pfm
 
-MPIRUN = shutil.which("mpirun")
-MODULE = os.path.join(os.path.dirname(cli.PROGRAM), "ballpark_mpi.so")
-SPEAKS_OPEN_MPI = MPIRUN is not None and b"Open MPI" in subprocess.run([MPIRUN, "--version"], stdout=subprocess.PIPE,
-                                                                       stderr=subprocess.STDOUT).stdout
-
-
-def reason_to_skip():
-    if not SPEAKS_OPEN_MPI:
-        return "there is no mpirun of Open MPI"
-    if not os.path.exists(MODULE):
-        return "Ballpark was built without MPI"
-    tried = subprocess.run([MPIRUN, *FLAGS, "-n", "2", "true"], stdout=subprocess.PIPE, stderr=subprocess.STDOUT)
-    return None if tried.returncode == 0 else "mpirun cannot start two processes here"
-
-
-FLAGS = ["--oversubscribe", *(["--allow-run-as-root"] if os.getuid() == 0 else []),
-         "--mca", "btl", "self,vader", "--mca", "orte_base_help_aggregate", "0"]
 REASON = reason_to_skip()
 
 

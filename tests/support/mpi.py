@@ -1,0 +1,22 @@
+"""What tests need that start ranks: the launcher, and why there is none."""
+
+import os
+import shutil
+import subprocess
+
+import cli
+
+MPIRUN = shutil.which("mpirun")
+MODULE = os.path.join(os.path.dirname(cli.PROGRAM), "ballpark_mpi.so")
+FLAGS = ["--oversubscribe", *(["--allow-run-as-root"] if os.getuid() == 0 else []),
+         "--mca", "btl", "self,vader", "--mca", "orte_base_help_aggregate", "0"]
+
+
+def reason_to_skip():
+    if MPIRUN is None or b"Open MPI" not in subprocess.run([MPIRUN, "--version"], check=False, stdout=subprocess.PIPE,
+                                                           stderr=subprocess.STDOUT).stdout:
+        return "there is no mpirun of Open MPI"
+    if not os.path.exists(MODULE):
+        return "Ballpark was built without MPI"
+    tried = subprocess.run([MPIRUN, *FLAGS, "-n", "2", "true"], check=False, stdout=subprocess.PIPE, stderr=subprocess.STDOUT)
+    return None if tried.returncode == 0 else "mpirun cannot start two processes here"
