@@ -53,10 +53,11 @@ def mark(kind, x, y, colour):
     return f'<polygon points="{points}" class="f{colour}"/>'
 
 
-def plot(path, lines, x_label, y_label, title):
+def plot(path, lines, x_label, y_label, title, x_ticks=None, joined=None):
     """Light on dark paper where the reader's screen is. `title`: what is to be seen, as a sentence.
 
-    `lines`: name -> [(x, y), ...], all above 0. Where y spans less than a factor of 5, its axis is linear, from 0."""
+    `lines`: name -> [(x, y), ...], all above 0. Where y spans less than a factor of 5, its axis is linear, from 0. `x_ticks`: where the
+    grid's lines stand; every point has one if that is None. `joined`: the names of lines, where others are points alone."""
     points = [p for line in lines.values() for p in line]
     x_low, x_high = min(p[0] for p in points), max(p[0] for p in points)
     y_low, y_high = min(p[1] for p in points) / 1.15, max(p[1] for p in points) * 1.15
@@ -77,7 +78,7 @@ def plot(path, lines, x_label, y_label, title):
         at = place_y(y)
         out.append(f'<line x1="{LEFT}" x2="{WIDTH - RIGHT}" y1="{at:.1f}" y2="{at:.1f}" class="grid"/>')
         out.append(f'<text x="{LEFT - 8}" y="{at + 4:.1f}" text-anchor="end">{label(y)}</text>')
-    for x in sorted({p[0] for p in points}):
+    for x in sorted({p[0] for p in points}) if x_ticks is None else [x for x in x_ticks if x_low <= x <= x_high]:
         at = place_x(x)
         out.append(f'<line x1="{at:.1f}" x2="{at:.1f}" y1="{TOP}" y2="{HEIGHT - BOTTOM}" class="grid" opacity="0.5"/>')
         out.append(f'<text x="{at:.1f}" y="{HEIGHT - BOTTOM + 18}" text-anchor="middle">{label(x)}</text>')
@@ -90,8 +91,9 @@ def plot(path, lines, x_label, y_label, title):
         number = KNOWN.index(name) if name in KNOWN else number
         colour, kind = number % len(COLOURS), MARKS[number % len(MARKS)]
         spots = [(place_x(x), place_y(y)) for x, y in line]
-        out.append(f'<polyline fill="none" class="l{colour}" stroke-width="2" points="'
-                   + " ".join(f"{x:.1f},{y:.1f}" for x, y in spots) + '"/>')
+        if joined is None or name in joined:
+            out.append(f'<polyline fill="none" class="l{colour}" stroke-width="2" points="'
+                       + " ".join(f"{x:.1f},{y:.1f}" for x, y in spots) + '"/>')
         out += [mark(kind, x, y, colour) for x, y in spots]
         ends.append([spots[-1][1], name, colour, spots[-1][0]])
     # names at the lines' ends, pushed apart
