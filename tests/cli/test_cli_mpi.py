@@ -231,6 +231,7 @@ class Ranks(cli.ProgramTest):
         header, _ = bpa.read(self.read("a.bpa"))
         self.check_resumed(said, header["plan"]["done"] + 64)
 
+    @cli.deep
     def test_killed_leader(self):
         """The rank that writes is killed: the launcher says which, nobody hangs, and the checkpoint is whole."""
         process = self.start(3, "s.json", "--spp", 60000000, "--checkpoint", 0.2, "-o", "a.pfm")
@@ -243,28 +244,35 @@ class Ranks(cli.ProgramTest):
         self.succeed("render", "s.json", "--spp", header["plan"]["done"] + 64, "-o", "whole.pfm", "-q")
         self.assert_same(self.read("a.pfm"), self.read("whole.pfm"))
 
+    @cli.deep
     def test_killed_without_checkpoint(self):
         process = self.start(2, "s.json", "--spp", 60000000, "-o", "a.pfm", "--preview", 0.1)
         said = self.send_when_there(process, "a.pfm", 1, signal.SIGKILL)
         self.assertNotEqual(process.returncode, 0, said)
         self.assertIn("may be lost, and there is no checkpoint; with --checkpoint SECONDS", said)
 
+    @cli.deep
     def test_folder_that_goes(self):
         """Neither checkpoint nor picture can be written, and what was rendered is kept elsewhere, by one rank."""
         for folder in ("d", "tmp"):
             os.mkdir(self.path(folder))
         self.environment["TMPDIR"] = self.path("tmp")
-        process = self.start(2, "s.json", "--spp", 20000, "--checkpoint", 0.05, "-o", "d/a.pfm")
+        process = self.start(2, "s.json", "--spp", 60000000, "--checkpoint", 0.05, "-o", "d/a.pfm")
         while process.poll() is None and not os.path.exists(self.path("d/a.bpa")):
             time.sleep(0.01)
         shutil.rmtree(self.path("d"))
+        warning = "warning: the checkpoint was not written, and rendering goes on: "
+        self.assertTrue(any(warning in line.decode() for line in iter(process.stderr.readline, b"")), "there was no warning")
+        os.kill(self.rank_processes(process)[0], signal.SIGTERM)
         said = process.communicate(timeout=cli.LIMIT_SECONDS)[1].decode()
         self.assertEqual(process.returncode, 1, said)
-        self.assertIn("warning: the checkpoint was not written, and rendering goes on: ", said)
         kept = [name for name in os.listdir(self.path("tmp")) if name.startswith("ballpark")]
         self.assertEqual(len(kept), 1, said)
-        self.succeed("merge", os.path.join("tmp", kept[0]), "-o", "a.pfm", "-q")
-        self.succeed("render", "s.json", "--spp", 20000, "-o", "whole.pfm", "-q")
+        self.assertIn(f"ballpark merge {self.path('tmp')}/{kept[0]}", said)
+        film = os.path.join("tmp", kept[0])
+        samples = bpa.read(self.read(film))[0]["plan"]["done"] + 64
+        self.succeed("render", "s.json", "--resume", film, "--spp", samples, "-o", "a.pfm", "-q")
+        self.succeed("render", "s.json", "--spp", samples, "-o", "whole.pfm", "-q")
         self.assert_same(self.read("a.pfm"), self.read("whole.pfm"))
 
     def test_faults_are_told_once(self):

@@ -122,6 +122,24 @@ def check_documents(prefix):
         assert (prefix / "share" / name).is_file(), f"{name} is not installed"
 
 
+def check_modules(prefix, library):
+    """Neither program nor library needs what a module stands on, and the program finds its module in the library folder."""
+    for file in (prefix / "bin/ballpark", library):
+        needed = re.findall(r"NEEDED.*\[(.*)\]", run("readelf", "-d", file))
+        assert needed and not [name for name in needed if re.match(r"lib(mpi|open-|mpich|SDL)", name)], f"{file} needs {needed}"
+    if not (build / "ballpark_mpi.so").exists():
+        return print("skipped: built without MPI, so its module is not looked for")
+    assert (library.parent / "ballpark/ballpark_mpi.so").is_file(), "the module for MPI is not installed"
+    # Of a launcher that it does not know, MPI says that this process is alone: so the module was there.
+    environment = {**{key: value for key, value in os.environ.items() if key != "BALLPARK_MPI"}, "PMI_SIZE": "4", "PMI_RANK": "0"}
+    for present in (True, False):
+        done = subprocess.run([prefix / "bin/ballpark", "render", prefix / "share/ballpark/scenes/cover.json"], capture_output=True,
+                              text=True, env=environment, check=False)
+        told = "knows of 1" if present else "ballpark_mpi.so cannot be loaded"
+        assert done.returncode == 2 and told in " ".join(done.stderr.split()), done.stderr
+        (library.parent / "ballpark/ballpark_mpi.so").unlink(missing_ok=True)
+
+
 def check_uninstall(folder):
     """Everything that was installed is removed, and nothing else."""
     prefix = folder / "removed"
@@ -219,6 +237,7 @@ with tempfile.TemporaryDirectory() as folder:
     check_version(prefix, library, environment)
     check_header(prefix)
     check_documents(prefix)
+    check_modules(prefix, library)
     check_uninstall(pathlib.Path(folder))
     shared = run("pkg-config", "--cflags", "--libs", "ballpark", env=environment).split()
     assert not [flag for flag in shared if "jansson" in flag or "OpenCL" in flag], f"the shared form needs {shared}"
