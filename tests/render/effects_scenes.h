@@ -28,14 +28,10 @@ static inline bool effects_light(uint32_t bits) {
            (bits & (EFFECT_BIT(LAMBERTIAN) | EFFECT_BIT(METAL))) != 0;
 }
 
-/* A tree needs spheres, and spheres need a material. With a tree, lamps are sampled where they can be. Discs
- * have no code in common with lens and normals, so with them both occur, or neither. */
+/* A tree needs spheres, and spheres need a material. Rays to lamps need lamps, and something that they light.
+ */
 static inline bool effects_can_occur(uint32_t bits, bool tree) {
-    if (bp_effects_has(bits, BP_EFFECT_DISCS) &&
-        bp_effects_has(bits, BP_EFFECT_LENS) != bp_effects_has(bits, BP_EFFECT_NORMALS))
-        return false;
-    if (bp_effects_has(bits, BP_EFFECT_LAMPS) ? !effects_light(bits) : tree && effects_light(bits))
-        return false;
+    if (bp_effects_has(bits, BP_EFFECT_LAMPS) && !effects_light(bits)) return false;
     return (bits & MATERIAL_EFFECTS) != 0 || !tree;
 }
 

@@ -1,5 +1,8 @@
-/* test_effects_equality.c: for every set of effects that can occur, with a list and with a tree, the
- * specialised kernel computes what the general one does.
+/* test_effects_equality.c: a kernel specialised to a set of effects computes what the general one does.
+ *
+ * Tried are the sets of all scenes of scenes/ and tests/agree/scenes, in both forms of the kernel, and a
+ * covering array (effects_covering.h): whatever two or three effects do to each other, with a list or with a
+ * tree, in one form or the other, some case shows. `every` tries all sets that can occur.
  *
  * On PoCL, bit for bit: radiance, segments and cut of every single pixel sample, as the trace kernel writes
  * them. What sums them (accumulate.cl) has no effects in it (effects_source), so equal samples make equal
@@ -9,25 +12,25 @@
  * Nearly all of the time is the compiler's, so nothing but the trace kernels is compiled, and the general
  * ones once.
  *
- * effects_equality FORM [PART OF]: FORM is sample, packet, or one of two halves of both: mixed (packet for
- * an even number of effects, a tree counted as one, sample for odd) and other (the other way round). PART of
- * OF shares, which can run side by side if each has a kernel cache of its own. */
-#include "effects_scenes.h"
+ * test_effects_equality [every [PART OF]]: PART of OF shares, which can run side by side if each has a kernel
+ * cache of its own. */
+#include "effects_covering.h"
 #include "render/render_plan.h"
 #include "render/worker_buffers.h"
 
+#include <dirent.h>
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
-enum { FORMS = 2, SAMPLERS = 2, ACCELERATIONS = 2, LAMPS = 2 };
+enum { FORMS = 2, ACCELERATIONS = 2, LAMPS = 2 };
 
 typedef struct Lab {
     BpDevice *device;
     bool exact;
-    BpProgram *general[FORMS][SAMPLERS][ACCELERATIONS][LAMPS]; /* each built when first needed */
-    unsigned dark; /* pictures without light, which would prove nothing */
+    BpProgram *general[FORMS][ACCELERATIONS][LAMPS]; /* each built when first needed */
+    unsigned dark;                                   /* pictures without light, which would prove nothing */
     unsigned inexact;
 } Lab;
 
@@ -162,8 +165,10 @@ static bool compare(Lab *lab, uint32_t bits, const Samples *special, const Sampl
     return light && (lab->exact ? different == 0 : agree(special, general));
 }
 
-/* True when set `bits` is all right. */
-static bool check_set(Lab *lab, BpKernelForm form, uint32_t bits, bool tree) {
+/* True when the case is all right. */
+static bool check_case(Lab *lab, uint32_t word) {
+    const uint32_t bits = effects_case_bits(word);
+    const bool tree = (word & EFFECTS_CASE_TREE) != 0, packet = (word & EFFECTS_CASE_PACKET) != 0;
     static EffectsScene made;
     BpEffects effects;
     BpError err = {0};
@@ -183,12 +188,11 @@ static bool check_set(Lab *lab, BpKernelForm form, uint32_t bits, bool tree) {
         return false;
     }
     bp_render_defaults(&made.scene, &options);
-    options.kernel = form;
+    options.kernel = packet ? BP_KERNEL_PACKET : BP_KERNEL_SAMPLE;
     options.lamps = lamps_off ? BP_LAMPS_OFF : BP_LAMPS_ON;
     options.seed = 20 + bits + (tree ? BP_EFFECTS_ALL + 1 : 0);
-    options.sampler = (bits ^ bits >> 3) & 1 ? BP_SAMPLER_SOBOL : BP_SAMPLER_INDEPENDENT;
-    BpProgram **all =
-        &lab->general[form == BP_KERNEL_PACKET][options.sampler == BP_SAMPLER_SOBOL][tree][lamps_off];
+    options.sampler = packet != tree ? BP_SAMPLER_SOBOL : BP_SAMPLER_INDEPENDENT; /* both in either form */
+    BpProgram **all = &lab->general[packet][tree][lamps_off];
     if (trace(lab, &made.scene, &options, &program, &special, &err) != BP_OK) {
         failed(&err, "its own kernel", bits);
         goto done;
@@ -212,56 +216,77 @@ done:
     return right;
 }
 
-/* The kernel form for a set, by FORM; false for a word that is none. */
-static bool choose_form(const char *word, uint32_t bits, bool tree, BpKernelForm *form) {
-    bool odd = tree;
-    for (int e = 0; e < BP_EFFECT_COUNT; ++e) odd ^= bp_effects_has(bits, (BpEffect)e);
-    if (strcmp(word, "sample") == 0)
-        *form = BP_KERNEL_SAMPLE;
-    else if (strcmp(word, "packet") == 0)
-        *form = BP_KERNEL_PACKET;
-    else if (strcmp(word, "mixed") == 0)
-        *form = odd ? BP_KERNEL_SAMPLE : BP_KERNEL_PACKET;
-    else if (strcmp(word, "other") == 0)
-        *form = odd ? BP_KERNEL_PACKET : BP_KERNEL_SAMPLE;
-    else
+/* Appends the sets of the scenes of a folder, in both forms, each once. False: one cannot be read. */
+static bool add_scenes(const char *folder, uint32_t cases[EFFECTS_CASES], size_t *count) {
+    DIR *opened = opendir(folder);
+    if (opened == NULL) {
+        fprintf(stderr, "cannot open %s\n", folder);
         return false;
-    return true;
+    }
+    bool right = true;
+    for (const struct dirent *entry; right && (entry = readdir(opened)) != NULL;) {
+        const char *end = strstr(entry->d_name, ".json");
+        char path[512];
+        BpScene *scene = NULL;
+        BpError err = {0};
+        BpEffects effects;
+        if (end == NULL || strcmp(end, ".json") != 0 || strcmp(entry->d_name, "scene.schema.json") == 0)
+            continue;
+        snprintf(path, sizeof path, "%s/%s", folder, entry->d_name);
+        right = bp_scene_load(path, &scene, &err) == BP_OK || failed(&err, path, 0);
+        if (!right) break;
+        bp_effects_analyse(scene, &effects);
+        const bool tree = bp_acceleration_choose(scene, NULL) == BP_ACCELERATION_TREE;
+        bp_scene_destroy(&scene);
+        const uint32_t word = effects.bits | (tree ? EFFECTS_CASE_TREE : 0);
+        size_t i = 0;
+        while (i < *count && cases[i] != word) ++i;
+        if (i < *count) continue;
+        cases[(*count)++] = word;
+        cases[(*count)++] = word | EFFECTS_CASE_PACKET;
+    }
+    closedir(opened);
+    return right;
 }
 
 int main(int argc, char **argv) {
+    static uint32_t cases[EFFECTS_CASES];
+    size_t count = 0;
     BpDeviceInfo device;
     BpError err = {0};
+    const bool every = argc > 1 && strcmp(argv[1], "every") == 0;
     const unsigned part = argc > 3 ? (unsigned)atoi(argv[2]) : 0, of = argc > 3 ? (unsigned)atoi(argv[3]) : 1;
-    BpKernelForm form;
-    if (argc < 2 || !choose_form(argv[1], 0, false, &form) || of == 0 || part >= of) {
-        fprintf(stderr, "usage: effects_equality sample|packet|mixed|other [PART OF]\n");
+    if ((argc > 1 && !every) || of == 0 || part >= of) {
+        fprintf(stderr, "usage: test_effects_equality [every [PART OF]]\n");
         return 2;
     }
     if (bp_device_find(getenv("BALLPARK_TEST_DEVICE"), &device, &err) != BP_OK) {
         fprintf(stderr, "skipped: %s\n", err.message);
         return 77;
     }
+    if (every) {
+        for (uint32_t word = 0; word < EFFECTS_CASES; ++word)
+            if (word % of == part && effects_case_can_occur(word)) cases[count++] = word;
+    } else {
+        if (!add_scenes(SOURCE_DIR "/scenes", cases, &count) ||
+            !add_scenes(SOURCE_DIR "/tests/agree/scenes", cases, &count))
+            return 1;
+        const size_t scenes = count;
+        count = effects_covering(cases, count);
+        printf("%zu cases of scenes, %zu more for all triples\n", scenes, count - scenes);
+    }
     Lab lab = {.exact = strcmp(device.platform, "Portable Computing Language") == 0};
     if (bp_device_open(&device, &lab.device, &err) != BP_OK) {
         fprintf(stderr, "%s\n", err.message);
         return 1;
     }
-    unsigned sets = 0, wrong = 0;
-    for (uint32_t bits = 0; bits <= BP_EFFECTS_ALL; ++bits) {
-        for (int tree = 0; tree < ACCELERATIONS; ++tree) {
-            if (bits % of != part || !effects_can_occur(bits, tree)) continue;
-            ++sets;
-            choose_form(argv[1], bits, tree, &form);
-            if (!check_set(&lab, form, bits, tree)) ++wrong;
-        }
-    }
-    printf("%s, %s: %u sets with a list or a tree, %u wrong, %u not bit for bit, %u without light\n",
-           device.name, argv[1], sets, wrong, lab.inexact, lab.dark);
+    unsigned wrong = 0;
+    for (size_t i = 0; i < count; ++i) wrong += !check_case(&lab, cases[i]);
+    printf("%s: %zu cases, %u wrong, %u not bit for bit, %u without light\n", device.name, count, wrong,
+           lab.inexact, lab.dark);
     for (int f = 0; f < FORMS; ++f)
-        for (int k = 0; k < SAMPLERS; ++k)
-            for (int a = 0; a < ACCELERATIONS; ++a)
-                for (int l = 0; l < LAMPS; ++l) bp_program_destroy(&lab.general[f][k][a][l]);
+        for (int a = 0; a < ACCELERATIONS; ++a)
+            for (int l = 0; l < LAMPS; ++l) bp_program_destroy(&lab.general[f][a][l]);
     bp_device_close(&lab.device);
-    return sets > 0 && wrong == 0 && lab.dark == 0 ? 0 : 1;
+    return count > 0 && wrong == 0 && lab.dark == 0 ? 0 : 1;
 }

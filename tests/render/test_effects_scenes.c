@@ -1,7 +1,9 @@
-/* test_effects_scenes.c: the effects of every scene of scenes/, against sets written by hand.
+/* test_effects_scenes.c: the effects of every scene of scenes/, against sets written by hand; and that the
+ * cases of test_effects_equality cover all triples.
  *
  * A scene that has no line here fails the test: read it, and write down what its picture shows. */
 #include "ballpark.h"
+#include "effects_covering.h"
 #include "packed/acceleration.h"
 #include "packed/effects.h"
 
@@ -142,7 +144,40 @@ static void each_scene_has_the_effects_written_by_hand(void **state) {
     assert_int_equal(seen, expected_count);
 }
 
+static bool makes(uint32_t word, const int choices[3], uint32_t values) {
+    for (int i = 0; i < 3; ++i)
+        if ((word >> choices[i] & 1u) != (values >> i & 1u)) return false;
+    return true;
+}
+
+static bool some_makes(const uint32_t *cases, size_t count, const int choices[3], uint32_t values) {
+    for (size_t i = 0; i < count; ++i)
+        if (effects_case_can_occur(cases[i]) && makes(cases[i], choices, values)) return true;
+    return false;
+}
+
+/* Any three choices that occur together in some set occur together in a case, and the cases are few. */
+static void few_cases_cover_all_triples(void **state) {
+    (void)state;
+    static uint32_t every[EFFECTS_CASES], cases[EFFECTS_CASES];
+    for (uint32_t word = 0; word < EFFECTS_CASES; ++word) every[word] = word;
+    const size_t count = effects_covering(cases, 0);
+    unsigned triples = 0, all = 0;
+    for (int a = 0; a < EFFECTS_CHOICES; ++a)
+        for (int b = a + 1; b < EFFECTS_CHOICES; ++b)
+            for (int c = b + 1; c < EFFECTS_CHOICES; ++c)
+                for (uint32_t values = 0; values < 8; ++values, ++all) {
+                    if (!some_makes(every, EFFECTS_CASES, (int[]){a, b, c}, values)) continue;
+                    ++triples;
+                    assert_true(some_makes(cases, count, (int[]){a, b, c}, values));
+                }
+    assert_in_range(triples, 9 * all / 10, all - 1); /* some cannot occur: lamps that light nothing */
+    assert_in_range(count, 8, 40);
+    assert_int_equal(effects_covering(cases, count), count); /* nothing is left to add */
+}
+
 int main(void) {
-    const struct CMUnitTest tests[] = {cmocka_unit_test(each_scene_has_the_effects_written_by_hand)};
+    const struct CMUnitTest tests[] = {cmocka_unit_test(each_scene_has_the_effects_written_by_hand),
+                                       cmocka_unit_test(few_cases_cover_all_triples)};
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
