@@ -48,7 +48,7 @@ class Bits(cli.ProgramTest):
         return result, json.loads(self.read("r.json"))["results"] if os.path.exists(self.path("r.json")) else None
 
     def test_the_recorded_pictures(self):
-        """By the form that CPUs use, in single precision; tests/drivers/test_bits.py goes through all."""
+        """By the form that CPUs use, in single precision."""
         result = self.run_program("check", "--bits", "--kernel", "packet", "--precision", "single", "--json", "r.json")
         self.assertEqual(result.returncode, 0, result.stdout.decode() + result.errors
                          + "\nIf pictures were to change, record them anew: scripts/record-bits")
@@ -60,6 +60,15 @@ class Bits(cli.ProgramTest):
         self.assertEqual(len(forms) * len(RECORDED) // 3, len(compared))
         self.assertEqual(report["verdict"], "agree")
         self.assertIn(f"{len(compared)} the same, 0 different, 0 not compared, 0 failed", result.stdout.decode())
+
+    @cli.deep
+    def test_the_recorded_pictures_by_all_forms(self):
+        result = self.run_program("check", "--bits", "--json", "r.json")
+        self.assertEqual(result.returncode, 0, result.stdout.decode() + result.errors)
+        compared = [r for r in json.loads(self.read("r.json"))["results"] if r["verdict"] == "agree"]
+        forms = {(r["kernel"], r["acceleration"], r["precision"], r["refinement"]) for r in compared}
+        self.assertEqual(len(forms), 12)
+        self.assertEqual(len(compared), 4 * len(RECORDED))
 
     def test_another_hash(self):
         """Sums that differ by less than a float shows."""
