@@ -11,7 +11,8 @@ right program one fails by chance with a probability of 1e-4, and a deviation of
 1.3 % and 0.05 % in the middle of the cases, is found with 90 %.
 
 Without numbers: all cases but those that repeat others with other values; --deep: those alone. --on: only what sampling
-alone shows, as the mutants want it: no picture is drawn without, and what needs one is left out.
+alone shows, as the mutants want it: no picture is drawn without, what needs one is left out, and the first case that
+fails is the last.
 """
 import json
 import math
@@ -135,6 +136,8 @@ def main():
                 except Trouble as trouble:
                     failures += 1
                     print(f"{number:2} {case.name:58} FAILED: {trouble}", flush=True)
+                    if on_alone:
+                        return 1
         print(f"{count} cases in {bench.runs} renders, {failures} failed")
     return 1 if failures else 0
 

@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """The gate against lost speed: ballpark over the book's algorithm in scalar C, in the same run.
 
-usage: gate.py PROGRAM BOOK_PEER [--record] [--demand FACTOR]
+usage: test_gate.py PROGRAM BOOK_PEER [--record] [--demand FACTOR]
 
 Both take turns; rates are ray segments for a second of processor time, so that other work on the machine hardly
 shows, and the figure judged is the median of the rounds' ratios. It fails when a ratio lies below its bound, twice.
@@ -125,7 +125,7 @@ def main():
             bounds = {name: (1 - LOSS) * ratio for name, ratio in records[device].items()}
         else:
             bounds = records[FUSED if has_fused_multiply_add() else UNFUSED]
-            print("this processor is not recorded (gate.py --record does it): judged by what holds anywhere")
+            print("this processor is not recorded (test_gate.py --record does it): judged by what holds anywhere")
         for attempt in (1, 2):
             for name, ratio in ratios.items():
                 print(f"{name}: {ratio:.2f} times the book's tree, at least {bounds[name]:.2f} is asked")

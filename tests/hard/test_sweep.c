@@ -1,5 +1,5 @@
-/* sweep.c: spheres of radius 1e-3 to 1e6, from a hundredth to a million radii away, moved by up to a million,
- * at every impact and most of all near the rim: what docs/NUMERICS.md promises of each ray.
+/* test_sweep.c: spheres of radius 1e-3 to 1e6, from a hundredth to a million radii away, moved by up to a
+ * million, at every impact and most of all near the rim: what docs/NUMERICS.md promises of each ray.
  *
  *     hard_sweep double|float RAYS
  *

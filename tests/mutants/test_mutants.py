@@ -2,14 +2,14 @@
 """Every known bug must be found: applies each mutant to a copy of the product's text, builds what is needed, runs its
 trials, and fails when one survives.
 
-usage: run_mutants.py SOURCE_DIR BUILD_DIR RESULT.json [NAME...]
-       run_mutants.py --fit SOURCE_DIR BUILD_DIR      only whether every patch still finds its place
+usage: test_mutants.py SOURCE_DIR BUILD_DIR RESULT.json [NAME...]
+       test_mutants.py --fit SOURCE_DIR BUILD_DIR      only whether every patch still finds its place
 
 Kernel text is patched in a copy that the program reads through BALLPARK_KERNELS. Host text is patched in a copy,
 compiled with the command that built the product, and linked before the library. A build that fails, a crash, or a
-text that no longer stands where a patch looks for it is an error, not a kill. First every trial is run on the product
-unpatched: there it must pass. A mutant is then tried with a copy of the kernel cache that this run left, so that only
-the kernels that its patch changes are compiled.
+text that no longer stands where a patch looks for it is an error, not a kill. Before the first mutant of a trial, the
+trial is run on the product unpatched: there it must pass. A mutant is then tried with a copy of the kernel cache that
+this run left, so that only the kernels that its patch changes are compiled.
 """
 import concurrent.futures
 import json
@@ -19,6 +19,7 @@ import shutil
 import subprocess
 import sys
 import tempfile
+import threading
 import time
 
 from mutants import MUTANTS, Check, Script
@@ -164,19 +165,46 @@ def name_of(trial):
     return f"{os.path.basename(trial.path)} {' '.join(trial.arguments)}" if isinstance(trial, Script) else trial.program
 
 
-def try_product(bench, trial, caches):
-    """A trial on the product itself; its kernel cache is kept in caches[trial]."""
-    outcome, said = bench.run(trial, bench.environment, [])
-    shutil.move(bench.cache, caches[trial])
-    return {"trial": name_of(trial), "outcome": outcome, "said": said}
+class Controls:
+    """Trials on the product itself, each run once, when a mutant first asks for it; what it compiled is kept."""
+
+    def __init__(self, source, build, folder):
+        self.source, self.build, self.folder = source, build, folder
+        self.lock = threading.Lock()
+        self.locks, self.results = {}, {}  # trial: lock of its own; (outcome, what was said, kernel cache)
+
+    def of(self, trial):
+        with self.lock:
+            lock = self.locks.setdefault(trial, threading.Lock())
+            kept = os.path.join(self.folder, str(list(self.locks).index(trial)))
+        with lock:
+            if trial not in self.results:
+                with tempfile.TemporaryDirectory() as folder:
+                    bench = Bench(self.source, self.build, folder)
+                    try:
+                        outcome, said = bench.run(trial, bench.environment, [])
+                    except subprocess.TimeoutExpired:
+                        outcome, said = ERROR, "it did not end"
+                    shutil.move(bench.cache, kept)
+                self.results[trial] = outcome, said, kept
+                if outcome != SURVIVED:
+                    print(f"CONTROL {outcome}: {name_of(trial)}: {said}", flush=True)
+            return self.results[trial]
+
+    def failures(self):
+        return sum(outcome != SURVIVED for outcome, _, _ in self.results.values())
 
 
-def try_mutant(bench, mutant, caches):
+def try_mutant(bench, mutant, controls):
     outcome, said, trial = ERROR, "", None
     try:
         environment, objects = bench.make(mutant)
         for trial in mutant.trials:
-            shutil.copytree(caches[trial], bench.cache, dirs_exist_ok=True)
+            outcome, said, cache = controls.of(trial)
+            if outcome != SURVIVED:  # a trial that fails on the product kills nothing
+                outcome, said = ERROR, "the trial fails on the product itself"
+                break
+            shutil.copytree(cache, bench.cache, dirs_exist_ok=True)
             outcome, said = bench.run(trial, environment, objects)
             if outcome != SURVIVED:
                 break
@@ -205,15 +233,15 @@ def fit(source, build):
     return 1 if wrong else 0
 
 
-def in_parallel(source, build, work, items, caches):
-    """[work(bench, item, caches)], each with a bench of its own, a few at a time; in order."""
+def try_all(source, build, mutants, controls):
+    """Their results, in order; a few are tried at a time, each with a bench of its own."""
 
-    def one(item):
+    def one(mutant):
         with tempfile.TemporaryDirectory() as folder:
-            return work(Bench(source, build, folder), item, caches)
+            return try_mutant(Bench(source, build, folder), mutant, controls)
 
     with concurrent.futures.ThreadPoolExecutor(max_workers=min(4, os.cpu_count() or 1)) as pool:
-        yield from pool.map(one, items)
+        yield from pool.map(one, mutants)
 
 
 def main():
@@ -224,18 +252,14 @@ def main():
     mutants = [m for m in MUTANTS if not names or m.name in names]
     if unknown := set(names) - {m.name for m in mutants}:
         sys.exit(f"no such mutant: {', '.join(sorted(unknown))}")
-    trials = list(dict.fromkeys(trial for mutant in mutants for trial in mutant.trials))
     start = time.monotonic()
-    wrong, rows = 0, []
+    rows = []
     with tempfile.TemporaryDirectory() as kept:
-        caches = {trial: os.path.join(kept, str(number)) for number, trial in enumerate(trials)}
-        for row in in_parallel(source, build, try_product, trials, caches):
-            if row["outcome"] != SURVIVED:
-                wrong += 1
-                print(f"CONTROL {row['outcome']}: {row['trial']}: {row['said']}", flush=True)
-        for row in in_parallel(source, build, try_mutant, mutants, caches):
+        controls = Controls(source, build, kept)
+        for row in try_all(source, build, mutants, controls):
             rows.append(row)
             print(f"{row['outcome']:8} {row['name']:46} {row['layer']:12} {row['trial']}: {row['said']}", flush=True)
+        wrong = controls.failures()
     killed = sum(row["outcome"] == KILLED for row in rows)
     with open(result_path, "w", encoding="utf-8") as file:
         json.dump({"mutants": rows, "control_failures": wrong}, file, indent=1)

@@ -2,7 +2,7 @@
 """Hard scenes through the real program: kernel against reference; the packet kernel equals the sample kernel; the cover
 moved by a million, in double, makes the picture of the cover at home.
 
-    hard_scenes.py BALLPARK SOURCE_DIR
+    test_hard_scenes.py BALLPARK SOURCE_DIR
 """
 import array
 import json
