@@ -153,6 +153,23 @@ void bp_output_discard(BpOutputFile *file) {
     memset(file, 0, sizeof *file);
 }
 
+BpStatus bp_output_write(const char *path, bool new_only, BpPrint *print, const void *what, BpError *err) {
+    BpOutputFile file;
+    BpError fault = {0};
+    BP_TRY(new_only ? bp_output_open_new(path, &file, err) : bp_output_open(path, &file, err));
+    const BpStatus status = print(what, file.stream, &fault);
+    if (status == BP_OK) return bp_output_commit(&file, err);
+    bp_output_discard(&file);
+    if (status == BP_ERR_FILE) {
+        bp_fail(err, status, "cannot write %s: %s", path, fault.message);
+        bp_error_at(err, path, 0, 0);
+    } else {
+        bp_fail(err, status, "%s", fault.message);
+    }
+    bp_error_clear(&fault);
+    return status;
+}
+
 static BpStatus check(const char *path, bool new_only, BpError *err) {
     BpOutputTarget target;
     BP_TRY(bp_output_target_find(path, &target, err));

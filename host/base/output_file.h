@@ -56,6 +56,12 @@ BpStatus bp_output_commit(BpOutputFile *file, BpError *err);
 /* Removes what was written. Accepts a zeroed or committed file. */
 void bp_output_discard(BpOutputFile *file);
 
+/* Prints `what` to `out`, which need not be able to seek. BP_ERR_FILE with the system's reason. */
+typedef BpStatus BpPrint(const void *what, FILE *out, BpError *err);
+/* Opens `path`, with `new_only` by bp_output_open_new(), prints to it, and commits it, or discards it when
+ * `print` fails. An error of BP_ERR_FILE names `path`. */
+BpStatus bp_output_write(const char *path, bool new_only, BpPrint *print, const void *what, BpError *err);
+
 /* Whether `path` could be written, found out without leaving anything behind: for use before a long render.
  */
 BpStatus bp_output_check(const char *path, BpError *err);

@@ -2,22 +2,17 @@
 #include "json_file.h"
 
 #include "base/json_memory.h"
-#include "base/output_target.h"
 #include "output.h"
 
 #include <errno.h>
 #include <inttypes.h>
 #include <stdio.h>
-#include <string.h>
 
 static BpStatus dump(const void *what, FILE *stream, BpError *err) {
     const json_t *root = what;
     errno = 0;
-    if (json_dumpf(root, stream, JSON_INDENT(2) | JSON_REAL_PRECISION(12)) == 0 &&
-        fputc('\n', stream) != EOF && fflush(stream) == 0)
-        return BP_OK;
-    return bp_fail(err, BP_ERR_FILE, "%s%s%s", stream == stdout ? "cannot write to standard output: " : "",
-                   strerror(errno), bp_output_remedy(errno));
+    const bool written = json_dumpf(root, stream, JSON_INDENT(2) | JSON_REAL_PRECISION(12)) == 0;
+    return bp_print_end(stream, written && fputc('\n', stream) != EOF, err);
 }
 
 BpStatus bp_json_write(const BpCommandLine *line, json_t *root, const char *path, BpError *err) {

@@ -2,11 +2,9 @@
 #include "junit_file.h"
 
 #include "base/json_memory.h"
-#include "base/output_target.h"
 #include "base/shown.h"
 #include "output.h"
 
-#include <errno.h>
 #include <stdio.h>
 #include <string.h>
 
@@ -109,9 +107,7 @@ static BpStatus print_suites(const void *what, FILE *out, BpError *err) {
         print_suite(suite, out);
     }
     fputs("</testsuites>\n", out);
-    if (fflush(out) == 0 && ferror(out) == 0) return BP_OK;
-    return bp_fail(err, BP_ERR_FILE, "%s%s%s", out == stdout ? "cannot write to standard output: " : "",
-                   strerror(errno), bp_output_remedy(errno));
+    return bp_print_end(out, true, err);
 }
 
 BpStatus bp_junit_write(const BpCommandLine *line, json_t *suites, const char *path, BpError *err) {

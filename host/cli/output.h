@@ -5,12 +5,8 @@
 #ifndef BP_CLI_OUTPUT_H
 #define BP_CLI_OUTPUT_H
 
+#include "base/output_file.h"
 #include "options.h"
-
-#include <stdio.h>
-
-/* Prints `what` to `out`, which need not be able to seek; BP_ERR_FILE with the system's reason. */
-typedef BpStatus BpPrint(const void *what, FILE *out, BpError *err);
 
 /* Whether `path` can be written, found out before work begins: "-" can. Says on standard error that a file
  * which is there will be overwritten; with --no-clobber that is an error. */
@@ -20,5 +16,9 @@ BpStatus bp_line_check_output(const BpCommandLine *line, const char *path, BpErr
  * complete: what has come to stand there in the meantime is not replaced. */
 BpStatus bp_line_write(const BpCommandLine *line, const char *path, BpPrint *print, const void *what,
                        BpError *err);
+
+/* The end of a BpPrint whose content may be long: BP_OK if all of it was `written` and left the buffer, else
+ * BP_ERR_FILE with the reason in errno and its remedy. */
+BpStatus bp_print_end(FILE *out, bool written, BpError *err);
 
 #endif

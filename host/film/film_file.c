@@ -52,15 +52,12 @@ BpStatus bp_film_write_stream(const BpFilm *film, FILE *out, BpError *err) {
     return status;
 }
 
+static BpStatus print_film(const void *film, FILE *out, BpError *err) {
+    return bp_film_write_stream(film, out, err);
+}
+
 BpStatus bp_film_write(const BpFilm *film, const char *path, BpError *err) {
-    BpOutputFile file;
-    BP_TRY(bp_output_open(path, &file, err));
-    const BpStatus status = bp_film_write_stream(film, file.stream, err);
-    if (status == BP_OK) return bp_output_commit(&file, err);
-    bp_output_discard(&file);
-    if (err != NULL) bp_fail(err, status, "cannot write %s: %s", path, err->message);
-    bp_error_at(err, path, 0, 0);
-    return status;
+    return bp_output_write(path, false, print_film, film, err);
 }
 
 /* ---- loading ---- */

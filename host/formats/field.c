@@ -62,14 +62,17 @@ BpStatus bp_field_print_ply(uint64_t count, uint64_t seed, FILE *out, BpError *e
     return put_all(count, seed, out, err);
 }
 
+typedef struct Field {
+    uint64_t count, seed;
+} Field;
+
+static BpStatus print_field(const void *what, FILE *out, BpError *err) {
+    const Field *field = what;
+    return put_all(field->count, field->seed, out, err);
+}
+
 BpStatus bp_field_write_ply(uint64_t count, uint64_t seed, const char *path, BpError *err) {
-    BpOutputFile file;
+    const Field field = {count, seed};
     BP_TRY(check_count(count, err));
-    BP_TRY(bp_output_open(path, &file, err));
-    const BpStatus status = put_all(count, seed, file.stream, err);
-    if (status != BP_OK) {
-        bp_output_discard(&file);
-        return status;
-    }
-    return bp_output_commit(&file, err);
+    return bp_output_write(path, false, print_field, &field, err);
 }

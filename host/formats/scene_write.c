@@ -287,13 +287,10 @@ BpStatus bp_scene_print(const BpScene *scene, FILE *out, BpError *err) {
     return BP_OK;
 }
 
+static BpStatus print_scene(const void *scene, FILE *out, BpError *err) {
+    return bp_scene_print(scene, out, err);
+}
+
 BpStatus bp_scene_write(const BpScene *scene, const char *path, BpError *err) {
-    BpOutputFile file;
-    BP_TRY(bp_output_open(path, &file, err));
-    const BpStatus status = bp_scene_print(scene, file.stream, err);
-    if (status != BP_OK) {
-        bp_output_discard(&file);
-        return status;
-    }
-    return bp_output_commit(&file, err);
+    return bp_output_write(path, false, print_scene, scene, err);
 }

@@ -208,15 +208,10 @@ BpStatus bp_error_map_print(const BpPicture *picture, FILE *out, BpError *err) {
     return status;
 }
 
+static BpStatus print_map(const void *picture, FILE *out, BpError *err) {
+    return bp_error_map_print(picture, out, err);
+}
+
 BpStatus bp_error_map_write(const BpPicture *picture, const char *path, BpError *err) {
-    BpOutputFile file;
-    BP_TRY(bp_output_open(path, &file, err));
-    const BpStatus status = bp_error_map_print(picture, file.stream, err);
-    if (status == BP_OK) return bp_output_commit(&file, err);
-    bp_output_discard(&file);
-    if (status == BP_ERR_FILE) {
-        if (err != NULL) bp_fail(err, status, "cannot write %s: %s", path, err->message);
-        bp_error_at(err, path, 0, 0);
-    }
-    return status;
+    return bp_output_write(path, false, print_map, picture, err);
 }

@@ -67,18 +67,21 @@ BpStatus bp_picture_write_extra(const BpPicture *picture, FILE *out, BpFormat fo
                    "merge write it");
 }
 
+typedef struct Printed {
+    const BpPicture *picture;
+    BpFormat format;
+    BpTransfer transfer;
+} Printed;
+
+static BpStatus print_picture(const void *what, FILE *out, BpError *err) {
+    const Printed *printed = what;
+    return bp_picture_write_stream(printed->picture, out, printed->format, printed->transfer, err);
+}
+
 BpStatus bp_picture_write(const BpPicture *picture, const char *path, BpFormat format, BpTransfer transfer,
                           BpError *err) {
-    BpOutputFile file;
-    BP_TRY(bp_output_open(path, &file, err));
-    const BpStatus status = bp_picture_write_stream(picture, file.stream, format, transfer, err);
-    if (status == BP_OK) return bp_output_commit(&file, err);
-    bp_output_discard(&file);
-    if (status == BP_ERR_FILE) {
-        if (err != NULL) bp_fail(err, status, "cannot write %s: %s", path, err->message);
-        bp_error_at(err, path, 0, 0);
-    }
-    return status;
+    const Printed printed = {picture, format, transfer};
+    return bp_output_write(path, false, print_picture, &printed, err);
 }
 
 BpStatus bp_picture_encode(const BpPicture *picture, BpFormat format, BpTransfer transfer, void **bytes,

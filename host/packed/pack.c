@@ -41,7 +41,8 @@ static void *narrow(const double *values, size_t count, size_t least, bool singl
 
 /* ---- camera and sky -------------------------------------------------------------------------------- */
 
-/* Scaled by the largest component first, so that no square leaves the range of double. */
+/* Scaled by the largest component first, so that no square leaves the range of double. Pictures depend on how
+ * this is rounded, so it is not bp_normalize(). */
 static void normalize(double v[3]) {
     const double largest = fmax(fabs(v[0]), fmax(fabs(v[1]), fabs(v[2])));
     for (int a = 0; a < 3; ++a) v[a] /= largest;

@@ -9,18 +9,12 @@
 #define PI 3.14159265358979323846
 #define LEAST_POLE_DEGREES 1.0
 
-static double normalize(double v[3]) {
-    const double length = sqrt(bp_dot(v, v));
-    for (int i = 0; i < 3; ++i) v[i] /= length;
-    return length;
-}
-
 /* Unit vectors: backwards from lookat to lookfrom, right, up; the distance. */
 static double frame(const BpCamera *camera, double back[3], double right[3], double up[3]) {
     for (int i = 0; i < 3; ++i) back[i] = camera->lookfrom[i] - camera->lookat[i];
-    const double distance = normalize(back);
+    const double distance = bp_normalize(back);
     bp_cross(camera->vup, back, right);
-    normalize(right);
+    bp_normalize(right);
     bp_cross(back, right, up);
     return distance;
 }
@@ -34,14 +28,14 @@ void bp_camera_orbit(BpCamera *camera, double degrees_right, double degrees_up) 
     double back[3], right[3], up[3], pole[3];
     const double distance = frame(camera, back, right, up);
     memcpy(pole, camera->vup, sizeof pole);
-    normalize(pole);
+    bp_normalize(pole);
     /* In degrees from the pole and around it. */
     const double from_pole = acos(fmax(-1, fmin(1, bp_dot(back, pole)))) * 180 / PI;
     const double wanted = fmax(LEAST_POLE_DEGREES, fmin(180 - LEAST_POLE_DEGREES, from_pole - degrees_up));
     const double along = wanted * PI / 180, around = degrees_right * PI / 180;
     double level[3]; /* away from lookat, at a right angle to the pole */
     bp_cross(right, pole, level);
-    normalize(level);
+    bp_normalize(level);
     /* The right of the camera turns with it: level and right span the plane around the pole. */
     for (int i = 0; i < 3; ++i) {
         const double turned = cos(around) * level[i] + sin(around) * right[i];

@@ -25,9 +25,9 @@ void bp_view_direction(BpView view, int up, double direction[3]) {
     memcpy(direction, up == 2 ? z_up : up == 1 ? y_up : x_up, sizeof y_up);
 }
 
+/* False: `v` has no direction to speak of. */
 static bool normalize(double v[3]) {
-    const double length = hypot(hypot(v[0], v[1]), v[2]);
-    for (int i = 0; i < 3; i++) v[i] /= length;
+    const double length = bp_normalize(v);
     return length > 1e-30 && isfinite(length);
 }
 

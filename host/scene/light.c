@@ -42,12 +42,6 @@ static const Arrangement arrangements[BP_LIGHT_COUNT] = {
         {.up = {0, 1, 0}, .bottom = 0.2, .top = 0.35, .lamps = 1, .lamp = {{{0, 1, 0.25}, 30, 2.6}}},
 };
 
-/* What has no length stays as it is: such a camera is refused elsewhere. */
-static void normalize(double v[3]) {
-    const double length = hypot(hypot(v[0], v[1]), v[2]);
-    for (int i = 0; i < 3 && length > 0; i++) v[i] /= length;
-}
-
 static void into_scene(double axes[3][3], const double direction[3], double out[3]) {
     for (int i = 0; i < 3; i++)
         out[i] = direction[0] * axes[0][i] + direction[1] * axes[1][i] + direction[2] * axes[2][i];
@@ -59,9 +53,9 @@ void bp_light_place(BpScene *scene) {
     double axes[3][3]; /* right, up, towards the viewer */
     if (scene->light == BP_LIGHT_SKY) return;
     for (int i = 0; i < 3; i++) axes[2][i] = camera->lookfrom[i] - camera->lookat[i];
-    normalize(axes[2]);
+    bp_normalize(axes[2]);
     bp_cross(camera->vup, axes[2], axes[0]);
-    normalize(axes[0]);
+    bp_normalize(axes[0]);
     bp_cross(axes[2], axes[0], axes[1]);
     into_scene(axes, light->up, scene->background_up);
     for (int c = 0; c < 3; c++) {

@@ -1,9 +1,10 @@
-/* vector.h: products of three doubles.
+/* vector.h: products and lengths of three doubles.
  *
  * In and out: vectors as arrays.   Knows: nothing.   Does not know: what they stand for. */
 #ifndef BP_SCENE_VECTOR_H
 #define BP_SCENE_VECTOR_H
 
+#include <math.h>
 #include <string.h>
 
 static inline double bp_dot(const double a[3], const double b[3]) {
@@ -15,6 +16,13 @@ static inline void bp_cross(const double a[3], const double b[3], double out[3])
     const double result[3] = {a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2],
                               a[0] * b[1] - a[1] * b[0]};
     memcpy(out, result, sizeof result);
+}
+
+/* Makes `v` a unit vector and returns the length that it had. Without a length it stays as it is. */
+static inline double bp_normalize(double v[3]) {
+    const double length = hypot(hypot(v[0], v[1]), v[2]);
+    for (int i = 0; i < 3 && length > 0; ++i) v[i] /= length;
+    return length;
 }
 
 #endif
