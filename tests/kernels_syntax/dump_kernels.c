@@ -3,35 +3,55 @@
  * In:    a folder.   Out: one .cl file a variant; its name ends in _fp64.cl where the program needs double.
  * Knows: program.h.  Does not know: any device; what checks the files (test_kernels_syntax.py).
  *
- * All combinations of all choices would be 256 * 256 programs. Written are: every combination of the other
- * choices with every effect, and every set of effects, with a list and with a tree, with one of those
- * combinations, a different one in turn: so each set of effects and each combination is there. */
+ * All combinations of all choices would be 256 * 1024 programs. Written are: with every effect, a covering
+ * array of the other choices, so that any three of them come together in some program; and of the sets of
+ * effects, with a list and with a tree, a covering array too, and every set that has or lacks one effect at
+ * most. These have the other choices of one program of the first kind each, in turn. */
 #include "opencl/program.h"
 #include "packed/effects.h"
+#include "support/covering.h"
 
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
-enum { COMBINATIONS = 4 * 2 * 2 * 2 * 2 * 2 * 2 };
+enum { CHOICES = 11, COMBINATIONS = 1 << CHOICES, SETS = 2 << BP_EFFECT_COUNT };
 
-/* Combination number `c` in mixed radix; effects are left 0. */
-static BpProgramOptions combination(unsigned c) {
-    static const uint32_t widths[4] = {2, 4, 8, 16};
+static bool allow_any(uint32_t word) {
+    (void)word;
+    return true;
+}
+
+/* Each bit of `c` is a choice; effects are left 0. */
+static BpProgramOptions combination(uint32_t c) {
     BpProgramOptions options = {0};
-    options.tree_width = widths[c % 4];
-    c /= 4;
-    options.precision = c & 1 ? BP_PRECISION_DOUBLE : BP_PRECISION_SINGLE;
-    options.math = c & 2 ? BP_MATH_FAST : BP_MATH_STRICT;
-    options.numerics = c & 4 ? BP_NUMERICS_PLAIN : BP_NUMERICS_ROBUST;
-    options.sampler = c & 8 ? BP_SAMPLER_SOBOL : BP_SAMPLER_INDEPENDENT;
-    options.form = c & 16 ? BP_KERNEL_PACKET : BP_KERNEL_SAMPLE;
-    options.double_refine = (c & 32) != 0;
-    /* No combinations of their own: they go with no other choice, and half of all have each. */
-    options.pixel_list = (c & 1) != ((c >> 3 & 1) != (c >> 4 & 1));
-    options.tree = (c >> 2 & 1) != (c >> 5 & 1);
-    options.packet_lanes = (c >> 1 & 1) != (c >> 5 & 1) ? 16 : 8;
+    options.tree_width = 2u << (c & 3u);
+    options.precision = c & 4u ? BP_PRECISION_DOUBLE : BP_PRECISION_SINGLE;
+    options.math = c & 8u ? BP_MATH_FAST : BP_MATH_STRICT;
+    options.numerics = c & 16u ? BP_NUMERICS_PLAIN : BP_NUMERICS_ROBUST;
+    options.sampler = c & 32u ? BP_SAMPLER_SOBOL : BP_SAMPLER_INDEPENDENT;
+    options.form = c & 64u ? BP_KERNEL_PACKET : BP_KERNEL_SAMPLE;
+    options.double_refine = (c & 128u) != 0;
+    options.pixel_list = (c & 256u) != 0;
+    options.tree = (c & 512u) != 0;
+    options.packet_lanes = c & 1024u ? 16 : 8;
     return options;
+}
+
+/* Effects, and above them the tree: a covering array, and the sets that have or lack one effect at most. */
+static size_t list_sets(uint32_t sets[SETS]) {
+    size_t count = covering(BP_EFFECT_COUNT + 1, allow_any, sets, 0);
+    for (uint32_t tree = 0; tree < 2; ++tree)
+        for (int e = -1; e < BP_EFFECT_COUNT; ++e) {
+            const uint32_t one = (e >= 0 ? 1u << e : 0) | tree << BP_EFFECT_COUNT;
+            const uint32_t both[2] = {one, one ^ BP_EFFECTS_ALL};
+            for (int b = 0; b < 2; ++b) {
+                size_t i = 0;
+                while (i < count && sets[i] != both[b]) ++i;
+                if (i == count) sets[count++] = both[b];
+            }
+        }
+    return count;
 }
 
 static BpStatus dump(const char *folder, const BpProgramOptions *options, BpError *err) {
@@ -40,11 +60,11 @@ static BpStatus dump(const char *folder, const BpProgramOptions *options, BpErro
     char path[4096];
     FILE *file = NULL;
     BpStatus status = BP_OK;
-    snprintf(path, sizeof path, "%s/e%02x_t%d_w%u_l%u_p%d_m%d_n%d_s%d_k%d_r%d%s.cl", folder,
+    snprintf(path, sizeof path, "%s/e%02x_t%d_w%u_l%u_p%d_m%d_n%d_s%d_k%d_r%d_x%d%s.cl", folder,
              (unsigned)options->effects, (int)options->tree, (unsigned)options->tree_width,
              (unsigned)options->packet_lanes, (int)options->precision, (int)options->math,
              (int)options->numerics, (int)options->sampler, (int)options->form, (int)options->double_refine,
-             needs_double ? "_fp64" : "");
+             (int)options->pixel_list, needs_double ? "_fp64" : "");
     BP_TRY_GOTO(status,
                 bp_program_source(options, "entry/aovs.cl", bp_kernel_file("entry/aovs.cl"), &source, err),
                 done);
@@ -60,19 +80,20 @@ done:
 }
 
 int main(int argc, char **argv) {
+    static uint32_t combinations[COMBINATIONS], sets[SETS];
     BpError err = {0};
     BpStatus status = BP_OK;
     if (argc != 2) return fprintf(stderr, "usage: dump_kernels FOLDER\n"), 2;
-    for (unsigned c = 0; status == BP_OK && c < COMBINATIONS; ++c) {
-        BpProgramOptions options = combination(c);
+    const size_t count = covering(CHOICES, allow_any, combinations, 0), set_count = list_sets(sets);
+    for (size_t c = 0; status == BP_OK && c < count; ++c) {
+        BpProgramOptions options = combination(combinations[c]);
         options.effects = BP_EFFECTS_ALL;
         status = dump(argv[1], &options, &err);
     }
-    for (uint32_t set = 0; status == BP_OK && set < 2 * BP_EFFECTS_ALL; ++set) {
-        /* 35 and 256 have no common divisor: neighbours differ in most choices, and all of them turn up. */
-        BpProgramOptions options = combination(set * 35u % COMBINATIONS);
-        options.effects = set / 2;
-        options.tree = set % 2 == 1;
+    for (size_t i = 0; status == BP_OK && i < set_count; ++i) {
+        BpProgramOptions options = combination(combinations[i % count]);
+        options.effects = sets[i] & BP_EFFECTS_ALL;
+        options.tree = sets[i] >> BP_EFFECT_COUNT != 0;
         status = dump(argv[1], &options, &err);
     }
     if (status != BP_OK) fprintf(stderr, "dump_kernels: %s\n", err.message);

@@ -1,12 +1,11 @@
-"""With an effect's bit off, its code is not in the kernel: looked up in the preprocessed source of all sets,
-with a list and with a tree.
+"""With an effect's bit off, its code is not in the kernel: looked up in the preprocessed source of many sets, with a list
+and with a tree: those that have, or lack, one effect at most, and a covering array (dump_kernels.c).
 
-Usage: test_effects_source.py DUMP_KERNELS [--some]
-
---some looks at the sets that have, or lack, one effect at most, in one program each.
+Usage: test_effects_source.py DUMP_KERNELS
 """
 
 import concurrent.futures
+import itertools
 import os
 import pathlib
 import re
@@ -88,16 +87,17 @@ assert "__kernel" in accumulate and "EFFECT_" not in accumulate and "LANE" not i
 with tempfile.TemporaryDirectory() as folder:
     subprocess.run([sys.argv[1], folder], check=True)
     paths = sorted(pathlib.Path(folder).glob("e*.cl"))
-    one_each = {part_of(path): path for path in paths}
-    written = set(one_each)
-    if "--some" in sys.argv:
-        paths = [path for (bits, _), path in one_each.items() if bits.bit_count() not in range(2, len(BITS) - 1)]
     with concurrent.futures.ThreadPoolExecutor(os.cpu_count()) as pool:
         results = list(pool.map(complaints, paths))
 found = [line for lines, _, _ in results for line in lines]
 print(f"{len(paths)} programs, {len({bits for _, bits, _ in results})} sets of effects; "
       f"{min(size for _, _, size in results)} to {max(size for _, _, size in results)} characters")
-assert written == {(bits, tree) for bits in range(1 << len(BITS)) for tree in (False, True)}, "not every set was written"
+words = {bits | tree << len(BITS) for bits, tree in map(part_of, paths)}
+everything = (1 << len(BITS)) - 1
+for word in [0, everything, *(1 << e for e in range(len(BITS))), *(everything ^ 1 << e for e in range(len(BITS)))]:
+    assert {word, word | everything + 1} <= words, f"set {word:x} was not written with a list and with a tree"
+for triple in itertools.combinations(range(len(BITS) + 1), 3):
+    assert len({tuple(word >> i & 1 for i in triple) for word in words}) == 8, f"some values of {triple} never meet"
 if found:
     print("\n".join(found[:40]))
     sys.exit(f"{len(found)} marks are wrong")
