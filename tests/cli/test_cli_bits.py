@@ -48,24 +48,25 @@ class Bits(cli.ProgramTest):
         return result, json.loads(self.read("r.json"))["results"] if os.path.exists(self.path("r.json")) else None
 
     def test_the_recorded_pictures(self):
-        """By the form that CPUs use, in single precision."""
-        result = self.run_program("check", "--bits", "--kernel", "packet", "--precision", "single", "--json", "r.json")
-        self.assertEqual(result.returncode, 0, result.stdout.decode() + result.errors
-                         + "\nIf pictures were to change, record them anew: scripts/record-bits")
-        report = json.loads(self.read("r.json"))
-        compared = [r for r in report["results"] if r["verdict"] == "agree"]
-        self.assertEqual(len({r["scene"] for r in compared}), len({p["scene"] for p in RECORDED}))
+        """By the form that CPUs use; "emission" has kernels of its own, and is left to the deep part."""
+        pictures = [p for p in RECORDED
+                    if (p["precision"], p["refinement"]) == ("single", "double") and p["scene"] != "emission"]
+        result, results = self.check(0, pictures, "--kernel", "packet")
+        compared = [r for r in results if r["verdict"] == "agree"]
+        self.assertEqual({r["scene"] for r in compared}, {p["scene"] for p in pictures})
         forms = {(r["kernel"], r["acceleration"], r["precision"], r["refinement"]) for r in compared}
-        self.assertEqual(forms, {("packet", a, "single", r) for a in ("tree", "list") for r in ("float", "double")})
-        self.assertEqual(len(forms) * len(RECORDED) // 3, len(compared))
-        self.assertEqual(report["verdict"], "agree")
+        self.assertEqual(forms, {("packet", a, "single", "double") for a in ("tree", "list")})
+        self.assertEqual(len(compared), 2 * len(RECORDED) // 3 - 2)
         self.assertIn(f"{len(compared)} the same, 0 different, 0 not compared, 0 failed", result.stdout.decode())
 
     @cli.deep
     def test_the_recorded_pictures_by_all_forms(self):
         result = self.run_program("check", "--bits", "--json", "r.json")
-        self.assertEqual(result.returncode, 0, result.stdout.decode() + result.errors)
-        compared = [r for r in json.loads(self.read("r.json"))["results"] if r["verdict"] == "agree"]
+        self.assertEqual(result.returncode, 0, result.stdout.decode() + result.errors
+                         + "\nIf pictures were to change, record them anew: scripts/record-bits")
+        report = json.loads(self.read("r.json"))
+        self.assertEqual(report["verdict"], "agree")
+        compared = [r for r in report["results"] if r["verdict"] == "agree"]
         forms = {(r["kernel"], r["acceleration"], r["precision"], r["refinement"]) for r in compared}
         self.assertEqual(len(forms), 12)
         self.assertEqual(len(compared), 4 * len(RECORDED))

@@ -124,7 +124,8 @@ static void lamps_in_a_crowd(void **state) {
 
 static void discs_of_the_sky(void **state) {
     (void)state;
-    check_scene("tests/agree/scenes/discs.json", sizeof variations / sizeof variations[0]);
+    check_scene("tests/agree/scenes/discs.json",
+                4); /* widths are the tree's business, which knows no discs */
 }
 
 int main(void) {

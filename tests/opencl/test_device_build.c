@@ -1,4 +1,6 @@
-/* test_device_build.c: opening and building on whatever real device is there; skipped without one. */
+/* test_device_build.c: opening and building on whatever real device is there; skipped without one.
+ *
+ * test_device_build [TIMES]: how often a part of a processor is opened, used and closed, for what is rare. */
 #include "support/device.h"
 
 #include <pthread.h>
@@ -49,6 +51,8 @@ static void *keep_busy(void *stop) {
     return NULL;
 }
 
+static int times = 10;
+
 static void part_is_closed_safely(void **state) {
     BpDevice *whole = *state;
     static const char source[] = "#line 1 \"long.cl\"\n__kernel void work(__global uint *out) {\n"
@@ -62,7 +66,7 @@ static void part_is_closed_safely(void **state) {
     pthread_t busy[4];
     atomic_bool stop = false;
     for (size_t b = 0; b < 4; ++b) assert_int_equal(pthread_create(&busy[b], NULL, keep_busy, &stop), 0);
-    for (int i = 0; i < 100; ++i) {
+    for (int i = 0; i < times; ++i) {
         BpDevice *device = NULL;
         cl_program program = NULL;
         cl_int code;
@@ -131,8 +135,9 @@ static void bad_options_are_a_build_error(void **state) {
     bp_error_clear(&err);
 }
 
-int main(void) {
+int main(int argc, char **argv) {
     BpDevice *device = NULL;
+    if (argc > 1) times = atoi(argv[1]);
     const int missing = test_device_open(&device);
     if (missing != 0) return missing;
     const struct CMUnitTest tests[] = {
