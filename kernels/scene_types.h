@@ -197,7 +197,7 @@ BP_PLACE(MATERIAL_TOTAL_REFLECTION, PackedMaterialKind, total_reflection, packed
 #undef BP_PLACE
 #endif
 
-/* A count of a replicate's samples, at most 2^24, and what its sums hold beside it (see accumulator.h). */
+/* A count of a replicate's samples, at most 2^24, and what its sums hold beside it (host/film/film.h). */
 #define COUNT_SAMPLES 0x1ffffffu
 #define COUNT_HAS_FINE 0x80000000u /* its fine sums have begun; before that they are not even zeroed */
 #define COUNT_COARSE 0x40000000u   /* a sample was so dim that a fine step is more than a millionth of it */

@@ -28,8 +28,8 @@ static size_t word_length(const char *line, size_t length) {
     return end;
 }
 
-/* Where the text of a line begins that has a name before it: behind the first two blanks or more; 0: it has
- * none. */
+/* Where the text behind the name in a line begins: after the first run of two blanks or more. 0: the line has
+ * no name. */
 static size_t text_column(const char *line, size_t length, size_t indent) {
     for (size_t i = indent; i + 2 < length; ++i) {
         if (line[i] != ' ' || line[i + 1] != ' ') continue;

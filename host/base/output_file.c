@@ -10,12 +10,13 @@
 #include <string.h>
 #include <unistd.h>
 
-/* Gives the new file what it may have of the owner, the group and the permissions of the one it replaces. */
+/* Gives the new file the owner, the group and the permissions of the file that it replaces, as far as it may
+ * have them. */
 static int copy_permissions(int descriptor, const struct stat *replaced) {
     struct stat own;
     mode_t mode = replaced->st_mode & 0777;
-    /* Only root can keep another owner; the group can be one of the user's own. A failure of either is none.
-     */
+    /* Only root can keep another owner; the group can be one of the user's own. It is no failure if either
+     * cannot be kept. */
     if (fchown(descriptor, replaced->st_uid, replaced->st_gid) != 0)
         (void)!fchown(descriptor, (uid_t)-1, replaced->st_gid);
     if (fstat(descriptor, &own) != 0) return -1;
@@ -23,8 +24,8 @@ static int copy_permissions(int descriptor, const struct stat *replaced) {
     return fchmod(descriptor, mode);
 }
 
-/* Opens what is written through; the descriptor, or -1 and errno. Appending: what another process has in its
- * file stays there. */
+/* Opens a target that is written through. Returns the descriptor, or -1 and errno. It appends, so what
+ * another process has written to the file stays there. */
 static int open_direct(const BpOutputTarget *target) {
     if (target->descriptor >= 0) return fcntl(target->descriptor, F_DUPFD_CLOEXEC, 3);
     return open(target->path, O_WRONLY | O_CLOEXEC | O_NOCTTY | (target->through ? O_APPEND : 0));
@@ -59,8 +60,8 @@ static BpStatus open_file(const char *path, bool new_only, BpOutputFile *file, B
     }
     if (descriptor < 0) goto fail;
     if (!file->direct && exists && copy_permissions(descriptor, &file->target.info) != 0) goto fail;
-    /* The stream has a descriptor of its own: closing it tells what some file systems tell only then, and the
-     * finished file can still be linked and copied. */
+    /* The stream has a descriptor of its own. Some file systems report a failure only when a file is closed,
+     * and after that the other descriptor can still be linked and copied. */
     of_stream = fcntl(descriptor, F_DUPFD_CLOEXEC, 3);
     if (of_stream < 0) goto fail;
     file->stream = fdopen(of_stream, "wb");

@@ -71,8 +71,8 @@ static bool holds_descriptors(const char *folder) {
     return strncmp(folder, own, (size_t)length) == 0 && end > 3 && strcmp(folder + end - 3, "/fd") == 0;
 }
 
-/* The number of the open file that `path` is, when nothing of its last part is followed any more; -1: none.
- * *system: it is another of the links that only the system can follow (of /proc). */
+/* The number of the open file that `path` names, when no link in its last part is left to be followed; -1: it
+ * names none. *system: it is another of the links in /proc that only the system can follow. */
 static int own_descriptor(const char *path, bool *system) {
     const char *name = path + bp_folder_length(path);
     int descriptor = -1;
@@ -89,7 +89,7 @@ static int own_descriptor(const char *path, bool *system) {
     return descriptor;
 }
 
-/* What the link `path` with this text means, as a path; heap, NULL when out of memory. */
+/* The path that the link `path` with this text leads to; heap, NULL when out of memory. */
 static char *join_link(const char *path, const char *text, size_t length) {
     const size_t folder = text[0] == '/' ? 0 : bp_folder_length(path);
     char *next = malloc(folder + length + 1);
@@ -127,7 +127,7 @@ static int follow_links(const char *path, BpOutputTarget *target) {
     return current == NULL ? ENOMEM : problem;
 }
 
-/* Why the target that has been followed cannot be written; 0 when nothing speaks against it. */
+/* Why the target cannot be written after its links have been followed, as an errno; 0: it can be. */
 static int find_problem(BpOutputTarget *target) {
     if (target->descriptor >= 0) {
         const int flags = fcntl(target->descriptor, F_GETFL);

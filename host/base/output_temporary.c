@@ -26,7 +26,7 @@
  * ends the program then must know what to remove. */
 
 static pthread_mutex_t names_lock = PTHREAD_MUTEX_INITIALIZER;
-static char *names[16]; /* more at once are not opened; they would only not be removed at a signal */
+static char *names[16]; /* never more at once; any more would stay behind after a signal */
 
 static void note_name(char *name) {
     for (size_t i = 0; i < sizeof names / sizeof names[0]; i++) {
@@ -106,9 +106,10 @@ static int link_descriptor(int descriptor, const char *path) {
     return linkat(AT_FDCWD, own, AT_FDCWD, path, AT_SYMLINK_FOLLOW) == 0 ? 0 : errno;
 }
 
-/* Creates a file STEM.XXXXXX or, where `descriptor` is one without a name, names that. The descriptor, or -1
- * and errno. Not mkstemp(), which would set mode 0600: this way the system itself applies umask and default
- * access lists. Noted as soon as it is there: no signal can come between. */
+/* Creates a file STEM.XXXXXX; if `descriptor` is a file without a name, gives it that name instead. Returns
+ * the descriptor, or -1 and errno. mkstemp() would set mode 0600; this way the system itself applies umask
+ * and default access lists. The name is noted before the lock is released, so a signal's clean-up knows it.
+ */
 static int make_name(const char *folder, size_t folder_length, const char *target, mode_t mode,
                      int descriptor, char **name) {
     size_t length = 0;
@@ -254,7 +255,7 @@ int bp_temporary_place(bool *unnamed, char **name, int descriptor, const char *t
         const int problem = name_beside(unnamed, name, descriptor, target);
         if (problem != 0) return problem;
     }
-    /* From the name on, the file is finished: a signal waits until it is in its place. */
+    /* Once the file has a name it is finished, so a signal waits until it is in its place. */
     pthread_mutex_lock(&names_lock);
     int problem = replace ? 0 : claim(*name, target);
     if (problem == 0 && rename(*name, target) != 0) problem = errno;

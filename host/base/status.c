@@ -33,8 +33,8 @@ static bool is_continuation(char c) {
     return ((unsigned char)c & 0xc0u) == 0x80u;
 }
 
-/* What is too long is mostly so by a path in it. What went wrong stands before the path, why and what to do
- * after it; so what is left out is the middle. */
+/* A message that is too long mostly contains a long path. What went wrong stands before the path, and the
+ * reason and the remedy behind it, so the middle is left out. */
 static void shorten(const char *text, char *out, size_t size) {
     static const char gap[] = "[...]";
     const size_t length = strlen(text);

@@ -75,7 +75,7 @@ void bp_check_destroy(BpCheck **check) {
     *check = NULL;
 }
 
-/* Where rays go to lamps, the samples of the kernel have the means of the reference's and less spread. */
+/* If rays are sent to lamps, the kernel's samples have the same means as the reference's and less spread. */
 static bool spreads_less(const BpRender *render) {
     BpRenderReport report;
     bp_render_report(render, &report);
@@ -159,7 +159,7 @@ static void copy_sums(BpSums *to, const BpSums *from) {
     memcpy(to->pixels, from->pixels, (size_t)from->width * from->height * sizeof *from->pixels);
 }
 
-/* The verdict on the samples of both, and on what the kernel's picture made of its own. */
+/* The verdict on the samples of both, and on the picture that the kernel made of its samples. */
 static BpStatus judge(BpCheck *check, uint64_t samples, double off, BpError *err) {
     BpCheckResult *result = &check->result;
     BP_TRY(bp_verdict(&result->kernel, &result->reference, check->options.level, check->options.margin,

@@ -55,9 +55,9 @@ static double rounding(double reference, int moment) {
     return moment * (BP_VERDICT_ROUNDING * fabs(reference) + 1e-7);
 }
 
-/* How far above its estimate the variance of a region's mean of x may well be: three standard errors. The
- * spread of samples of which few are bright is mostly too small where their mean is. Where both sides have
- * them that evens out; where one side has rays to lamps it does not. */
+/* By how much the variance of a region's mean may well lie above its estimate: three standard errors. If few
+ * samples are bright, a mean that is too small mostly comes with a spread that is too small. That evens out
+ * if both sides find light in the same way, but not if one side sends rays to lamps. */
 static double variance_margin(const BpSums *sums, const Region *region, int channel) {
     const double area = (double)(region->right - region->left) * (region->bottom - region->top);
     double variance = 0;
@@ -160,8 +160,8 @@ static void test_families(const BpSums *kernel, const BpSums *reference, BpVerdi
     }
 }
 
-/* How far from 1 the ratio of one channel's means may be, by its 95 % interval. Infinite: it may be anything.
- */
+/* How far the ratio of one channel's means may be from 1, by its 95 % interval. Infinite: nothing is known
+ * about it. */
 static double ratio_off(const Mean *kernel, const Mean *reference, double *low, double *high) {
     const double z_95 = bp_normal_upper_quantile(0.025);
     if (!bp_ratio_interval(kernel->value, kernel->variance, reference->value, reference->variance, z_95, low,
@@ -229,7 +229,7 @@ BpStatus bp_verdict(const BpSums *kernel, const BpSums *reference, double level,
     verdict->segments_reference = count_segments(reference, &verdict->samples, &verdict->invalid_reference);
     test_families(kernel, reference, verdict);
     state_accuracy(kernel, reference, verdict);
-    /* Without evidence nothing passes: the evidence must be shown, and must not be undone by a fault. */
+    /* Nothing passes without evidence: the evidence must be shown, and no fault may undo it. */
     verdict->conclusion = verdict->shown_within <= margin ? BP_AGREE : BP_INCONCLUSIVE;
     if (verdict->invalid_kernel > 0 || verdict->invalid_reference > 0) verdict->conclusion = BP_DISAGREE;
     for (int f = 0; f < BP_FAMILIES; ++f)

@@ -12,8 +12,8 @@ enum { TILE_SIDE = 8 };
 /* Of a mean of n samples, every pixel gets n / PILOT_SHARE, and none more than REACH times that. */
 #define PILOT_SHARE 4u
 #define REACH_LEVELS 6u /* 2^6 */
-/* An error below this part of the mean one counts as that much: pixels whose samples agree have not
- * converged. */
+/* An error below this part of the mean error counts as that part: if the few samples of a pixel agree, it
+ * need not have converged. */
 #define ERROR_FLOOR 1e-4
 
 static uint64_t level_samples(uint32_t level) {
@@ -76,8 +76,8 @@ void bp_adaptive_destroy(BpAdaptive **adaptive) {
 
 /* ---- errors ---- */
 
-/* Keeps the errors and costs of the halves that have just come to `level`: those of the pass, or at first
- * all. */
+/* Keeps the errors and costs of the halves that have just reached `level`: the halves of this pass, or all of
+ * them at first. */
 static BpStatus record(BpAdaptive *adaptive, const BpFilm *film, uint32_t level, BpError *err) {
     if (adaptive->errors[level] == NULL) {
         adaptive->errors[level] = calloc(adaptive->halves, sizeof *adaptive->errors[level]);
@@ -101,8 +101,8 @@ static BpStatus record(BpAdaptive *adaptive, const BpFilm *film, uint32_t level,
     return BP_OK;
 }
 
-/* What decides about `half`: the value of the tile's other half, and with half the weight the mean of those
- * of the same colour in the tiles around. All had the level of `values` at some time. */
+/* The value that decides about `half`: that of the tile's other half, and with half the weight the mean of
+ * the halves of the same colour in the tiles around. All of them had the level of `values` at some time. */
 static double deciding(const BpAdaptive *adaptive, uint32_t half, const float *values) {
     const uint32_t tile = half / 2, colour = 1 - half % 2;
     const uint32_t x = tile % adaptive->tiles_x, y = tile / adaptive->tiles_x;
@@ -231,7 +231,7 @@ static bool begin_pass(BpAdaptive *adaptive, BpAdaptivePass *pass) {
     return bp_adaptive_pass(adaptive, pass);
 }
 
-/* The halves of the pass that is done go up a level, all to the same. */
+/* All halves of the finished pass go up to the same level. */
 static BpStatus end_pass(BpAdaptive *adaptive, const BpFilm *film, BpError *err) {
     uint32_t level = 0;
     for (uint32_t half = 0; half < adaptive->halves; ++half)

@@ -238,7 +238,7 @@ BpStatus bp_film_check_same(const BpFilm *a, const BpFilm *b, BpError *err) {
     return BP_OK;
 }
 
-/* Whether the two sums of every cell can be added: those of any render can. */
+/* Whether the two sums of every cell can be added. Those of any real render can. */
 static BpStatus check_sums(const BpFilm *into, const BpFilm *from, const int64_t *a, const int64_t *b,
                            BpError *err) {
     const size_t channels = (size_t)into->width * into->height * into->replicates * 3;
@@ -269,7 +269,8 @@ BpStatus bp_film_add_sums(BpFilm *film, const BpFilm *from, BpError *err) {
     return BP_OK;
 }
 
-/* Whether the samples of `a` begin before those of `b`, which are others; a film without any comes last. */
+/* Whether the samples of `a` begin before those of `b`. They have none in common; a film without samples
+ * comes last. */
 static bool begins_before(const BpFilm *a, const BpFilm *b) {
     return a->range_count > 0 && (b->range_count == 0 || a->ranges[0].first < b->ranges[0].first);
 }

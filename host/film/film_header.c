@@ -87,7 +87,7 @@ char *bp_film_header_make(const BpFilm *film) {
 
 /* ---- reading ---- */
 
-/* Reads members of the header one after the other; the first fault stays. */
+/* Reads members of the header one after the other, and keeps the first fault. */
 typedef struct Reader {
     const json_t *header;
     const char *name; /* of the file */
@@ -231,7 +231,7 @@ static bool plan_fits(const BpFilm *film, const BpFilmPlan *plan) {
     const uint64_t pixels = (uint64_t)film->width * film->height;
     if (plan->next_pixel >= pixels || (plan->pass_samples == 0 && plan->next_pixel != 0)) return false;
     if (plan->first_sample + plan->target > SAMPLES_END) return false;
-    /* Of an adaptive render `done` is of a pass, whose length its decisions tell. */
+    /* In an adaptive render, `done` counts within a pass, whose length follows from its decisions. */
     return plan->decision_bytes > 0 || plan->done + plan->pass_samples <= plan->target;
 }
 

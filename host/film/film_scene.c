@@ -111,7 +111,7 @@ static uint64_t mix_reals(uint64_t hash, const double *values, size_t count) {
 }
 
 static uint64_t mix_camera(uint64_t hash, const BpCamera *camera) {
-    /* The picture's proportions are those of its pixels, so aspect_ratio has no say. */
+    /* The picture's proportions follow from its pixels, so aspect_ratio does not matter. */
     hash = mix(hash, ((uint64_t)camera->width << 32) | camera->height);
     hash = mix_real(hash, camera->vfov_degrees);
     hash = mix_reals(hash, camera->lookfrom, 3);
@@ -144,7 +144,7 @@ static uint64_t hash_material(const BpMaterial *material) {
 static uint64_t mix_sphere(uint64_t hash, const BpScene *scene, const BpSphere *sphere) {
     const BpMaterial *material = &scene->materials[sphere->material];
     hash = mix_reals(hash, sphere->center, 3);
-    /* Other materials than those with an inside turn the normal to the ray. */
+    /* Materials without an inside turn the normal towards the ray. */
     const bool inside = bp_material_is(material->kind, BP_HAS_INSIDE);
     hash = mix_real(hash, inside ? sphere->radius : fabs(sphere->radius));
     if (!bp_material_has(material->kind, BP_MEMBER_ALBEDO)) return hash;

@@ -14,7 +14,7 @@ enum { DEPTH_MAX = 16, FOUND_SIZE = 80 };
 
 /* ---- syntax -------------------------------------------------------------------------------------------- */
 
-/* Where the token begins that jansson says it stumbled over; it reports where the token ends. */
+/* Where the token begins at which jansson reports an error; it tells where the token ends. */
 static size_t token_start(const BpDocument *document, const json_error_t *error) {
     size_t end = error->position < 0 ? 0 : (size_t)error->position;
     if (end > document->length) end = document->length;
@@ -124,7 +124,8 @@ BpStatus bp_document_open(const char *text, size_t length, const char *name, BpD
     json_error_t error;
     bool no_memory = false;
     document->root = bp_json_load(text, length, JSON_REJECT_DUPLICATES, &error, &no_memory);
-    /* An integer of over 64 bits is a number like any other, for its member to refuse by its own limits. */
+    /* An integer of more than 64 bits is read as a number like any other; its member refuses it by its own
+     * limits. */
     if (document->root == NULL && !no_memory && json_error_code(&error) == json_error_numeric_overflow)
         document->root =
             bp_json_load(text, length, JSON_REJECT_DUPLICATES | JSON_DECODE_INT_AS_REAL, &error, &no_memory);
@@ -232,8 +233,8 @@ static bool lies_in(const char *longer, const char *path) {
     return strncmp(longer, path, length) == 0 && strchr(".[", longer[length]) != NULL;
 }
 
-/* The last change of the node, of one around it or, where the text does not have the node at all, of one in
- * it; NULL: it is what the text says. */
+/* The last change of the node, or of a node around it. If the text does not have the node at all, a change of
+ * a node within it counts too. NULL: the node is as the text has it. */
 static const BpChange *find_change(const BpNode *node, const char *path) {
     const BpDocument *document = node->document;
     const bool written = is_written(node);

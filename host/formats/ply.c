@@ -232,7 +232,7 @@ static BpStatus read_ascii(Reader *r, const PlyElement *element, BpError *err) {
 /* ---- the whole ------------------------------------------------------------------------------------------
  */
 
-/* Room for all vertices, after their number was held against what is left of the file. */
+/* Room for all vertices, once their number has been compared with what is left of the file. */
 static BpStatus make_room(Reader *r, uint64_t count, BpError *err) {
     BpScene *scene = r->scene;
     const PlyElement *vertex = &r->header.elements[r->header.vertex];

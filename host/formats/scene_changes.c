@@ -52,8 +52,8 @@ typedef struct Place {
     json_t *value; /* borrowed; NULL: absent */
 } Place;
 
-/* The members of a material have any name, also one with a dot in it: the longest name that is there and
- * stands at `text` is meant, else all up to the next "." or "[". */
+/* Members of "materials" can have any name, even one with a dot in it. The longest existing name that stands
+ * at `text` is meant; if there is none, everything up to the next "." or "[". */
 static size_t name_length(json_t *object, const char *text) {
     size_t longest = 0;
     const char *name;

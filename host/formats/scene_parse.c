@@ -200,7 +200,8 @@ static BpStatus refuse_faults(const BpNode *root, const BpScene *scene, BpError 
         return fail_member(&sphere, fault.member, fault.text, err);
     }
     case BP_FAULT_COINCIDENT: {
-        /* At the later one that stands in the document itself, or at the cloud that brought the later one. */
+        /* The place of the error: the later of the two spheres that stands in the document itself, or else
+         * the cloud that the later one comes from. */
         const size_t written = fault.index < listed ? fault.index : fault.other;
         char a[BP_SPHERE_NAME_SIZE], b[BP_SPHERE_NAME_SIZE];
         size_t cloud = scene->point_file_count;
@@ -291,7 +292,7 @@ static BpStatus fit_camera(const BpNode *node, const BpSceneChanges *changes, Bp
     return status;
 }
 
-/* One choice for all materials that have it, whatever each says itself. */
+/* Sets one choice in all materials that have it, whatever each of them says. */
 static BpStatus choose_fresnel(const BpSceneChanges *changes, BpScene *scene, BpError *err) {
     const BpMemberInfo *member = &bp_members[BP_MEMBER_FRESNEL];
     unsigned choice = 0;

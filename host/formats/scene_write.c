@@ -50,7 +50,8 @@ static bool is_dark(const double emit[3]) {
 /* ---- the camera -----------------------------------------------------------------------------------------
  */
 
-/* As [w, h] of small whole numbers where that is the same number, since that is how people say it. */
+/* Writes the ratio as [w, h] of small whole numbers if they give the same number, since people write it so.
+ */
 static void put_aspect(FILE *out, double aspect) {
     for (int h = 1; h <= 16; h++) {
         const double w = floor(aspect * h + 0.5);
@@ -161,7 +162,7 @@ static void put_background(FILE *out, const BpScene *scene) {
     fputs(scene->disc_count > 0 ? "\n    ]\n  }" : " }", out);
 }
 
-/* What camera rays see that meet nothing, where that is not the background. */
+/* Writes what camera rays that meet nothing see, if that is not the background. */
 static void put_backdrop(FILE *out, const BpScene *scene) {
     if (scene->backdrop == BP_BACKDROP_SKY) return;
     if (scene->backdrop == BP_BACKDROP_NONE) {

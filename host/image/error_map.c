@@ -44,9 +44,9 @@ static void lab_to_linear(double lightness, double a, double b, double rgb[3]) {
         rgb[i] = matrix[i][0] * xyz[0] + matrix[i][1] * xyz[1] + matrix[i][2] * xyz[2];
 }
 
-/* The scale's colour at `position`, 0 to 1: lightness rises evenly, the hue goes from violet through red to
- * yellow. The chroma stays within what sRGB can show on the whole way, so that nothing is cut and the scale
- * has no edges that the data do not have. */
+/* The scale's colour at `position`, 0 to 1: lightness rises evenly, and the hue goes from violet through red
+ * to yellow. The chroma is what sRGB can show everywhere on that way, so no colour is clipped and the scale
+ * has no edges of its own. */
 static void scale_color(double position, uint8_t rgb[3]) {
     static const double pi = 3.14159265358979324;
     const double lightness = 10 + 85 * position;
@@ -124,8 +124,8 @@ static bool has_depth(const BpPicture *picture) {
     return false;
 }
 
-/* The middle one of the known relative errors; NaN when none is known. `of_spheres`: of the pixels that show
- * some sphere, since the sky has no noise and would hide that of the rest. */
+/* The median of the known relative errors; NaN if none is known. `of_spheres`: only over pixels that show
+ * some sphere, since the sky has no noise and would hide that of the spheres. */
 static BpStatus median_error(const BpPicture *picture, bool of_spheres, double *median, BpError *err) {
     const size_t pixels = (size_t)picture->width * picture->height;
     double *errors = malloc(pixels * sizeof *errors);

@@ -55,8 +55,8 @@ static int64_t write_memory(exr_const_context_t context, void *user_data, const 
     return (int64_t)size;
 }
 
-/* The library calls this while it holds the context's lock, which is not recursive: to ask the context for
- * anything here, its user data included, waits for ever. The code that the failed call returns says enough.
+/* The library calls this while it holds the context's lock, which is not recursive. Anything asked of the
+ * context here, even its user data, would wait for ever. The code that the failed call returns says enough.
  */
 static void keep_quiet(exr_const_context_t context, exr_result_t code, const char *message) {
     (void)context;
@@ -135,9 +135,9 @@ static void aim_channels(exr_encode_pipeline_t *encoder, uint32_t width, uint32_
 
 typedef exr_result_t Compress(exr_encode_pipeline_t *);
 
-/* Readers take a block as long as its pixels for one that is not compressed. OpenEXRCore 3.1 stores pixels as
- * they are when compressing makes them longer, but not when it leaves them as long: then they are read as
- * noise. */
+/* Readers take a block that is as long as its pixels for an uncompressed one. OpenEXRCore 3.1 stores pixels
+ * uncompressed if compressing makes them longer, but not if the length stays the same: such a block would be
+ * read as noise. */
 static exr_result_t compress_or_keep(exr_encode_pipeline_t *encoder) {
     Compress *const *const compress = encoder->encoding_user_data;
     const exr_result_t result = (*compress)(encoder);

@@ -29,7 +29,8 @@ bool bp_format_from_path(const char *path, BpFormat *format) {
 }
 
 BpStatus bp_image_finish(FILE *out, const char *what, BpError *err) {
-    /* A full buffer fails to go out in the middle of the picture, an empty one would then flush well. */
+    /* A write can fail when a full buffer goes out in the middle of the picture; a flush of the empty buffer
+     * would then succeed. */
     const bool failed_before = ferror(out) != 0;
     const int error_before = errno;
     if (fflush(out) == 0 && !failed_before) return BP_OK;

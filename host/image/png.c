@@ -110,9 +110,9 @@ static void encode_row(const Image *image, uint32_t y, uint8_t *row) {
     }
 }
 
-/* Everything that can jump. `row` is a buffer for one row. Of what
- * the filtered rows of a noisy picture hold, hardly anything comes again but runs: zlib's strategy for those
- * takes half the time, and the file is 1 or 2 % larger. */
+/* All calls that can jump. `row` is a buffer for one row. The filtered rows of a noisy picture hardly repeat
+ * anything but runs of bytes. zlib's strategy for such data takes half the time, and the file is 1 or 2 %
+ * larger. */
 static bool write_all(png_structp png, png_infop info, FILE *out, const Image *image, uint8_t *row) {
     if (setjmp(png_jmpbuf(png))) return false;
     png_set_user_limits(png, 0x7fffffff, 0x7fffffff);

@@ -78,7 +78,7 @@ const char *bp_cl_error_name(cl_int code) {
     }
 }
 
-/* The status that `code` amounts to, and in *remedy what a person can do ("" where nothing is known). */
+/* The status for `code`; *remedy is what a person can do about it ("" if nothing is known). */
 static BpStatus classify(cl_int code, const char **remedy) {
     switch (code) {
     case CL_MEM_OBJECT_ALLOCATION_FAILURE:

@@ -7,10 +7,10 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* Replaces the device by a part of it with `units` compute units (OpenCL 1.2, 4.3). Leaves it whole where the
- * driver refuses. The part is never released, which costs about a kilobyte each time a device is opened so: a
- * thread of PoCL's still reads it after clFinish, while it lets go of the last event (pocl/pocl#1229), and a
- * quarter of the runs ended in a segmentation fault when it was gone by then. */
+/* Replaces the device by a part of it with `units` compute units (OpenCL 1.2, 4.3). Leaves it whole if the
+ * driver refuses. The part is never released, which costs about a kilobyte each time a device is opened in
+ * this way: a thread of PoCL still reads it after clFinish, while it releases the last event
+ * (pocl/pocl#1229). When the part was released, a quarter of the runs ended in a segmentation fault. */
 static void take_part(BpDevice *device, uint32_t units) {
     const cl_device_partition_property by_counts[] = {CL_DEVICE_PARTITION_BY_COUNTS,
                                                       (cl_device_partition_property)units,
@@ -36,7 +36,7 @@ BpStatus bp_device_open_part(const BpDeviceInfo *info, uint32_t threads, BpDevic
     *device = NULL;
 
     BP_TRY_GOTO(status, bp_device_ids(&list, &ids, &count, err), cleanup);
-    /* The number alone could mean another device by now: a driver installed, a card unplugged. */
+    /* The number alone could mean another device by now, if a driver was installed or a card removed. */
     if (info->number >= count || strcmp(list[info->number].name, info->name) != 0 ||
         strcmp(list[info->number].platform, info->platform) != 0) {
         status =

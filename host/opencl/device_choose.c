@@ -59,7 +59,7 @@ static bool is_number(const char *text) {
     return digits > 0 && digits <= 2 && text[digits] == '\0';
 }
 
-/* The device with the number that `text` is, or NULL where it is none of the list. */
+/* The device whose number is `text`, or NULL if no device of the list has it. */
 static const BpDeviceInfo *by_number(const BpDeviceInfo *list, size_t count, const char *text) {
     char *end;
     if (!isdigit((unsigned char)text[0])) return NULL;

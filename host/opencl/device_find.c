@@ -79,8 +79,8 @@ bool bp_device_has_extension(cl_device_id id, const char *name) {
     return found;
 }
 
-/* What the device lacks of what every kernel needs, as a whole phrase; "" when nothing. false: out of memory.
- */
+/* Names what every kernel needs and this device lacks, as a whole phrase; "" if it lacks nothing. False: out
+ * of memory. */
 static bool find_lack(cl_device_id id, const BpDeviceInfo *info, char refusal[128]) {
     unsigned major = 0, minor = 0;
     char profile[64];

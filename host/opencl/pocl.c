@@ -11,8 +11,8 @@
 
 #define FOLDER_MAX 1024
 
-/* The folder that PoCL takes (its manual, "Environment variables"): POCL_CACHE_DIR, else below
- * XDG_CACHE_HOME, else below HOME. False: none is known. */
+/* The folder that PoCL uses (its manual, "Environment variables"): POCL_CACHE_DIR, else one below
+ * XDG_CACHE_HOME, else one below HOME. False: none of them is set. */
 static bool cache_folder(char folder[FOLDER_MAX]) {
     const char *own = getenv("POCL_CACHE_DIR"), *cache = getenv("XDG_CACHE_HOME"), *home = getenv("HOME");
     if (own != NULL && own[0] != '\0')

@@ -10,11 +10,11 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* Which programs a file stands in: those of one form or one kind of numerics, or all. */
+/* Which programs contain a file: those of one form, those of one kind of numerics, or all. */
 enum { IN_SAMPLE = 1, IN_PACKET = 2, IN_ROBUST = 4, IN_PLAIN = 8, IN_ALL = 0 };
 
-/* The order in which the files of kernels/ stand in a program. A lanes_... file says for how many lanes what
- * follows is meant (dialect/lanes.cl); some files are read again for another number of lanes. */
+/* The order in which a program contains the files of kernels/. A lanes_... file says for how many lanes the
+ * files behind it are compiled (dialect/lanes.cl); some files are read again for another number of lanes. */
 static const struct {
     const char *name;
     unsigned only_in;

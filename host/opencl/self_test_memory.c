@@ -77,7 +77,7 @@ char *bp_self_test_memory_path(const BpDeviceInfo *device) {
     return memory_path(identity, false);
 }
 
-/* Whether the file can be used: anything but a regular file may keep whoever opens it waiting. */
+/* Whether the file can be used: opening anything but a regular file may block. */
 static bool is_regular_or_absent(const char *path) {
     struct stat state;
     return stat(path, &state) == 0 ? S_ISREG(state.st_mode) : errno == ENOENT;

@@ -41,8 +41,8 @@ static bool is_bright(const double radiance[3]) {
     return radiance[0] > 0 || radiance[1] > 0 || radiance[2] > 0;
 }
 
-/* The effects that a material brings in where a sphere has it. A lamp is always EMISSION, even one of
- * radiance 0: it is the code that ends the path there. */
+/* The effects that a material needs if a sphere has it. A lamp always needs EMISSION, even with radiance 0,
+ * since that code ends the path there. */
 static uint32_t material_bits(const BpMaterial *material) {
     static const BpEffect of_kind[] = {
 #define EFFECT_OF(identifier, name, kernel_kind, effect, traits, members, needed, outcome)                   \
@@ -146,9 +146,9 @@ static double luminance(const double radiance[3]) {
     return sum;
 }
 
-/* Whether the sky is nowhere darker than any lamp, and the camera stands in no sphere that could hide it. A
- * path that misses such a lamp finds as much light in the sky, so rays to lamps cost more than the noise that
- * they take away. */
+/* Whether no part of the sky is darker than any lamp, and the camera stands in no sphere that could hide the
+ * sky. A path that misses such a lamp finds as much light in the sky, so rays to lamps cost more than the
+ * noise that they take away. */
 static bool sky_outshines_lamps(const BpScene *scene) {
     const double sky = fmin(luminance(scene->background_bottom), luminance(scene->background_top));
     for (size_t i = 0; i < scene->sphere_count; ++i) {

@@ -264,7 +264,7 @@ static void collect_lamps(const BpScene *scene, const BpTree *tree, const uint32
     }
 }
 
-/* So that powers and their sums are floats however bright the lamps. */
+/* Keeps powers and their sums within the range of float, however bright the lamps are. */
 static double unit_of_power(const BpScene *scene, size_t enclosing) {
     double brightest = 0;
     for (size_t i = 0; i < scene->sphere_count; ++i)

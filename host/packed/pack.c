@@ -98,8 +98,8 @@ static void pack_camera(const BpCamera *camera, double moved, PackedCamera *pack
     packed->corner[3] = orthographic ? 1 - moved / camera->focus_dist : 0;
 }
 
-/* Where a pinhole stands on a sphere: rays that leave the camera leave that sphere. From the points of a
- * lens, only a few of them on the surface, every sphere is met like any other. */
+/* If a pinhole stands on a sphere, rays that leave the camera leave that sphere. A lens has only a few points
+ * on the surface, so for its rays every sphere is like any other. */
 static void pack_standpoint(const BpScene *scene, const BpTree *tree, PackedCamera *packed) {
     const bool one_place = scene->camera.lens_radius == 0 && scene->camera.projection == BP_PERSPECTIVE;
     const uint32_t slot = one_place ? tree->own_slot : NO_SLOT;
@@ -178,8 +178,8 @@ static BpStatus pack_discs(const BpScene *scene, double unit, BpPacked *packed, 
 
 /* ---- materials ------------------------------------------------------------------------------------- */
 
-/* Where a member stands: numbers and colours in PackedMaterial, choices in PackedMaterialKind. The albedo
- * stands with each sphere. */
+/* Where a member is stored: numbers and colours in PackedMaterial, choices in PackedMaterialKind. The albedo
+ * is stored with each sphere. */
 #define MATERIAL_NOWHERE 0xffu
 #define COLOUR_PLACE(identifier, name, field, low, high, range, needed, place) MATERIAL_##place,
 #define NUMBER_PLACE(identifier, name, field, low, high, range, needed, place, cap) MATERIAL_##place,
@@ -207,9 +207,10 @@ static bool is_inside_out(const BpScene *scene, const BpSphere *sphere) {
     return sphere->radius < 0 && bp_material_is(scene->materials[sphere->material].kind, BP_HAS_INSIDE);
 }
 
-/* The materials. A dielectric that a sphere of negative radius uses gets a second entry, with the reciprocal
- * index: seen from inside out is the same as inside and outside exchanged. Normals face the ray, so no other
- * kind can tell a negative radius. `second[m]`: the number of that entry of material m. */
+/* The materials. A dielectric that a sphere of negative radius uses gets a second entry with the reciprocal
+ * index: turning a surface inside out is the same as exchanging inside and outside. Normals face the ray, so
+ * a negative radius makes no difference to any other kind. `second[m]`: the number of that entry of material
+ * m. */
 static BpStatus pack_materials(const BpScene *scene, uint32_t *second, BpPacked *packed, BpError *err) {
     const size_t count = scene->material_count;
     if (count > UINT32_MAX / 4)
@@ -242,7 +243,8 @@ cleanup:
     return status;
 }
 
-/* What a sphere scatters of a primary colour: glass all, a lamp nothing, whatever colour a cloud gives. */
+/* The share of a primary colour that a sphere scatters: 1 for glass, 0 for a lamp, whatever colour a cloud
+ * gives. */
 static double scattered(const BpScene *scene, const BpSphere *sphere, size_t channel) {
     const BpMaterial *material = &scene->materials[sphere->material];
     if (!bp_material_is(material->kind, BP_SCATTERS)) return 0;

@@ -8,7 +8,8 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* x as the kernel has it. Through memory: compilers have dropped a conversion to float and back. */
+/* x as the kernel has it. It is stored in memory, since compilers have dropped a conversion to float and
+ * back. */
 static double as_float(double x) {
     volatile float rounded = (float)x;
     return (double)rounded;
@@ -93,7 +94,8 @@ static void find_walls(const BpScene *scene, const double origin[3], Worst *wors
     free(shells);
 }
 
-/* A ray begins at a point of the lens, whose rounding moves where it meets the plane in focus. */
+/* A ray begins at a point of the lens. The rounding of that point moves the place where the ray meets the
+ * plane in focus. */
 static void add_lens(const BpCamera *camera, BpRoundingWarnings *limits) {
     const double pixel = bp_camera_plane_height(camera) / camera->height;
     const double shift = camera->lens_radius * 0x1p-24;

@@ -169,7 +169,7 @@ BpStatus bp_tree_build(const BpScene *scene, const double origin[3], const BpTre
     *tree = (BpTree){.width = width, .single_precision = options->single_precision, .own_slot = NO_SLOT};
     if (width != 2 && width != 4 && width != 8 && width != 16)
         return bp_fail(err, BP_ERR_LIMIT, "a tree is 2, 4, 8 or 16 wide, not %u", width);
-    /* A list has no depth to run out of; nor has, within BP_SPHERES_MAX, a wider tree. */
+    /* A list cannot run out of depth, and neither can a wider tree of up to BP_SPHERES_MAX spheres. */
     const uint64_t limit = width == 2 && !options->list ? (uint64_t)width << TREE_DEPTH_MAX : BP_SPHERES_MAX;
     if (scene->sphere_count > limit)
         return bp_fail(err, BP_ERR_LIMIT, "%zu spheres; a tree %u wide holds at most %llu",

@@ -261,7 +261,7 @@ cleanup:
 
 /* ---- leaves ---- */
 
-/* So near to a surface, in its radius, that rounding to float might carry a point across. */
+/* Within this part of the radius from a surface, rounding to float might move a point to the other side. */
 #define NEAR_SURFACE 0x1p-18
 
 static double square_of(const float v[3]) {
@@ -269,15 +269,15 @@ static double square_of(const float v[3]) {
     return x * x + y * y + z * z;
 }
 
-/* Whether the sphere's surface may pass through the origin: all but surely not, at the price of few
- * operations. */
+/* Whether the sphere's surface may pass through the origin. It costs few operations, and is sometimes true
+ * for a surface that is only near. */
 static bool near_origin(const BpTreeItem *item) {
     const double square = (double)item->radius * (double)item->radius;
     return fabs(square_of(item->center) - square) <= 2 * NEAR_SURFACE * square;
 }
 
-/* The radius in float that leaves the origin where it is in the scene: on the surface, as nearly as float
- * can, or clearly on its side of it. A few units in the last place from the radius that was rounded. */
+/* The radius in float that leaves the origin where it is in the scene: as nearly on the surface as float
+ * allows, or clearly on its side of it. It is a few units in the last place from the rounded radius. */
 static float radius_beside_origin(const BpTreeItem *item, BpSide side) {
     const double distance = sqrt(square_of(item->center));
     float radius = item->radius;

@@ -34,7 +34,7 @@ static void cell_of(const Grid *grid, const double place[3], int32_t cell[3]) {
     }
 }
 
-/* From a to b, the shortest way that the periodic cell allows (for ways shorter than half the cell). */
+/* The shortest way from a to b in the periodic cell (if it is shorter than half the cell). */
 static void way(const Grid *grid, const double a[3], const double b[3], double out[3]) {
     for (int i = 0; i < 3; i++) out[i] = b[i] - a[i];
     if (!grid->periodic) return;
@@ -156,8 +156,8 @@ static BpStatus add_bond(BpBonds *bonds, uint32_t a, uint32_t b, BpError *err) {
     return BP_OK;
 }
 
-/* Bonds of one particle with those of higher numbers. Alternative places of an atom have none with each
- * other; an atom has at most 12. */
+/* Finds the bonds of one particle with those of higher numbers. Alternative places of an atom are not bonded
+ * to each other; an atom has at most 12 bonds. */
 static BpStatus bond_one(const Grid *grid, uint32_t i, BpBonds *bonds, BpError *err) {
     enum { MOST = 12 };
     const BpParticles *const p = grid->particles;
@@ -340,7 +340,8 @@ BpStatus bp_particles_spacing(const BpParticles *particles, const bool *shown, d
     }
     if (dimensions == 0) return BP_OK;
     Grid grid;
-    /* About eight particles a cell; where the nearest lies further away, what is found is near enough. */
+    /* About eight particles a cell. If the nearest neighbour is further away than that, what is found is near
+     * enough. */
     const double reach = 2 * pow(volume / (double)count, 1.0 / dimensions);
     BP_TRY(grid_init(&grid, particles, shown, reach, err));
     const size_t step = particles->count / MOST + 1;

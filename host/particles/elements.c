@@ -140,7 +140,7 @@ uint8_t bp_element_of_name(const char *name, const char *residue, bool fixed, bo
     const uint8_t one = bp_element_of_symbol(symbol);
     symbol[1] = letters[1];
     const uint8_t two = letters[1] != '\0' ? bp_element_of_symbol(symbol) : 0;
-    /* Where the residue has the atom's own name, it is an ion or a metal: CA in CA, ZN in ZN. */
+    /* A residue with the atom's own name is an ion or a metal: CA in CA, ZN in ZN. */
     if (two != 0 && (strncasecmp(residue, symbol, 2) == 0 && strlen(residue) <= 3) &&
         (strlen(residue) == 2 || residue[2] < 'A') && strlen(text) <= 3)
         return two;

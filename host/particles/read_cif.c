@@ -36,7 +36,7 @@ static const char *const field_names[FIELD_COUNT] = {
     "label_comp_id",      "auth_asym_id",   "label_asym_id", "Cartn_x",       "Cartn_y",      "Cartn_z",
     "occupancy",          "B_iso_or_equiv", "auth_seq_id"};
 
-/* What lasts from frame to frame: the table goes on where the last model ended. */
+/* What is kept from frame to frame: the table goes on where the last model ended. */
 typedef struct State {
     char *cursor; /* in the line that is being read; NULL: at the next line */
     size_t column_count;

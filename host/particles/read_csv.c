@@ -165,7 +165,7 @@ static BpStatus take_table(BpParticleFile *file, Table *table, BpError *err) {
     Input *const input = &file->input;
     char *line = NULL, *after = NULL;
     bool named = false;
-    /* The names stand in the first line that is no remark, or in a remark right before it. */
+    /* The names are in the first line that is not a remark, or in a remark just before it. */
     char *const remark = malloc(sizeof table->names_text);
     if (remark == NULL) return bp_fail(err, BP_ERR_MEMORY, "out of memory");
     remark[0] = '\0';

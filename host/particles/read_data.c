@@ -58,7 +58,7 @@ typedef struct Data {
     size_t id_count, id_capacity;
 } Data;
 
-/* Sections that are read; of the others, those that the format has are passed over without a word. */
+/* The sections that are read. Other sections of the format are passed over silently. */
 enum { ATOMS, MASSES, BONDS };
 static const char *const sections[] = {
     [ATOMS] = "Atoms", [MASSES] = "Masses", [BONDS] = "Bonds", "Velocities", "Angles", "Dihedrals",
@@ -124,8 +124,8 @@ static bool looks_whole(const char *word) {
     return word_whole(word, &value);
 }
 
-/* The style that the section's comment names (Atoms # full), else, and where that is no style known here, the
- * one that the first line fits. */
+/* The style that the section's comment names (Atoms # full). If it names no style known here, the style that
+ * the first line fits. */
 static BpStatus choose_style(BpParticleFile *file, const char *named, char **words, size_t count, Data *data,
                              BpError *err) {
     for (size_t i = 0; i < STYLE_COUNT; i++)

@@ -115,7 +115,7 @@ static int property_named(const Ply *ply, const Element *element, const char *na
     return -1;
 }
 
-/* One row, binary or ASCII, its single numbers into `values`, by property. */
+/* Reads one row, binary or ASCII; `values` gets its single numbers, by property. */
 static BpStatus take_row(Input *input, const Ply *ply, const Element *element, uint64_t row, double *values,
                          BpError *err) {
     char *line = NULL, *word = NULL, *rest = NULL;

@@ -46,7 +46,7 @@ static bool find_key(const char *comment, const char *key, char *value) {
     return false;
 }
 
-/* Up to `max` numbers; returns how many there were before something else came. */
+/* Reads up to `max` numbers; returns how many there were before anything else. */
 static int numbers_of(const char *text, double *numbers, int max) {
     int count = 0;
     for (;;) {
@@ -148,7 +148,7 @@ static void parse_cell(BpParticleFile *file, const char *comment) {
     free(value);
 }
 
-/* A symbol, perhaps with digits behind it. A number alone is a type: so LAMMPS and others write it. */
+/* A symbol may have digits behind it. A number alone is a type: LAMMPS and others write it so. */
 static uint8_t element_of(const char *species) {
     char symbol[4] = "";
     for (int i = 0; i < 3 && ((species[i] | 32) >= 'a' && (species[i] | 32) <= 'z'); i++)

@@ -12,7 +12,7 @@
 #include <strings.h>
 
 #define BALL_SHARE 0.28     /* of the van der Waals radius, in ball-and-stick */
-#define COARSE_ANGSTROM 2.3 /* nearest neighbours further apart than that are no atoms of molecules */
+#define COARSE_ANGSTROM 2.3 /* atoms of molecules have a neighbour nearer than this */
 #define STICK_ANGSTROM 0.14 /* half the width of a bond */
 #define EDGE_SHARE 0.002    /* half the width of the cell's edges, of its longest */
 #define BEADS_MAX 4000      /* in one bond or edge */

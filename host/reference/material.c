@@ -17,8 +17,8 @@ static Vec scatter_lambertian(BpScatter lobe, Vec normal, Random *random) {
     for (;;) {
         const Vec p = lobe == BP_SCATTER_COSINE_CUBED ? random_in_ball(random) : random_on_sphere(random);
         const Vec direction = add(normal, p);
-        /* Opposite to the normal there is no direction. The book then takes the normal; a new point has the
-         * exact distribution, and either happens once in 1e16. */
+        /* A point opposite to the normal gives no direction. The book then takes the normal. Drawing a new
+         * point gives the exact distribution, and either happens once in 1e16. */
         if (length2(direction) > 1e-16) return direction;
     }
 }
@@ -52,9 +52,9 @@ double bp_ref_fresnel(double cosine, double ratio) {
     return 0.5 * (perpendicular * perpendicular + parallel * parallel);
 }
 
-/* Reflection is chosen with the probability of the reflectance, else the ray goes through, so neither carries
- * a weight. Where nothing can go through, the material's total_reflection decides alone; "refract" then keeps
- * the book's fabs under the root. */
+/* Reflection is chosen with the probability of the reflectance, otherwise the ray is refracted, so neither
+ * has a weight. If no refraction is possible, the material's total_reflection alone decides; "refract" then
+ * keeps the book's fabs under the root. */
 static bool scatter_dielectric(const BpMaterial *glass, Vec direction, const Hit *hit, Random *random,
                                Vec *scattered) {
     if (glass->refraction_index ==

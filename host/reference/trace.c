@@ -54,7 +54,7 @@ bool bp_ref_hit(const BpScene *scene, const Ray *ray, Hit *hit) {
     hit->sphere = sphere;
     hit->material = &scene->materials[sphere->material];
     const Vec point = add(ray->origin, scale(closest, ray->direction)), center = vec(sphere->center);
-    /* unit() takes off what rounding left of the radius, so that the point lies on the sphere. */
+    /* unit() removes the error that rounding left in the radius, so that the point lies on the sphere. */
     const Vec radial = unit(sub(point, center));
     hit->point = add(center, scale(fabs(sphere->radius), radial));
     const Vec outward = sphere->radius < 0 ? scale(-1, radial) : radial;

@@ -30,7 +30,8 @@ static void view_direction(const BpCamera *camera, cl_float forward[3]) {
     for (int a = 0; a < 3; ++a) forward[a] = (cl_float)(direction[a] / length);
 }
 
-/* What a sum is divided by for its mean; an AOV over the rays that MET something is +Inf where none did. */
+/* The number by which a sum is divided for its mean. An AOV over the rays that MET something is +Inf if none
+ * did. */
 #define MEAN_OVER_ALL(sum) ((sum) / (float)BP_AOV_SAMPLES)
 #define MEAN_OVER_MET(sum) (met > 0 ? (sum) / met : INFINITY)
 

@@ -1,8 +1,8 @@
 /* pace.c: see pace.h. */
 #include "pace.h"
 
-/* The second pass begins while the last chunks of the first are under way, so it goes into the unknown as
- * well. */
+/* The second pass begins while the last chunks of the first are under way, so its chunks are not measured yet
+ * either. */
 #define UNKNOWN_PASSES 2u
 
 void bp_pace_init(BpPace *pace, uint32_t max_depth, uint32_t together) {
@@ -23,7 +23,8 @@ static uint32_t first_samples(const BpPace *pace) {
 void bp_pace_measure(BpPace *pace, uint64_t samples, double seconds) {
     if (samples == 0) return;
     pace->latest = seconds / (double)samples;
-    /* The last chunk of a pass can be a pixel, and its time that of some other program's turn. */
+    /* The last chunk of a pass can be a single pixel, and its time may be that of another program's turn on
+     * the processor. */
     pace->gathered_samples += samples;
     pace->gathered_seconds += seconds;
     if (pace->gathered_samples < first_samples(pace)) return;

@@ -23,7 +23,7 @@ enum {
     FOLLOW_REALS = FOLLOW_LIT + 3
 };
 
-/* Nobody reads more steps than this; a longer path is shown up to here. */
+/* Nobody reads more steps than this; of a longer path, these are shown. */
 #define STEPS_MAX 10000u
 
 const char *bp_kernel_file(const char *name);

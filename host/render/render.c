@@ -14,7 +14,7 @@
 #include <string.h>
 #include <time.h>
 
-#define CHUNK_SECONDS 0.1 /* of one dispatch: short of every watchdog, long against its overhead */
+#define CHUNK_SECONDS 0.1 /* per dispatch: below the limit of every watchdog, long against its overhead */
 #define STEP_SECONDS 0.15 /* a step starts no chunk after this */
 
 void bp_render_defaults(const BpScene *scene, BpRenderOptions *options) {
@@ -524,8 +524,8 @@ void bp_render_report(const BpRender *render, BpRenderReport *report) {
     }
 }
 
-/* What another render needs to go on from here, unless everything that was asked for is there: then the film
- * is all. */
+/* What another render needs to go on from here. If everything that was asked for is there, the film alone is
+ * enough. */
 static BpStatus add_plan(const BpRender *render, BpFilm *film, BpError *err) {
     const BpSchedule *schedule = &render->schedule;
     const bool whole = schedule->pass_samples == 0 && schedule->done == schedule->samples;

@@ -6,12 +6,12 @@
 
 #include <string.h>
 
-/* CPUs whose driver knows vectors spread explicit ones over their lanes, so they follow as many paths at a
- * time as the widest vectors have lanes, eight at least, through sixteen-wide nodes (docs/BENCHMARKS.md,
- * "Tuning log"), and double costs them little. A CPU driver that takes vectors apart (it says one lane)
- * gets nothing from many, and has been seen to compile that form for ever. GPUs spread work-items, and many
- * have next to no double: one lane, narrower nodes, error-free float transforms. The options can force each
- * choice, so every arrangement can be tested on every device. */
+/* Drivers of CPUs that know vectors spread explicit vectors over their lanes. There, a kernel follows as many
+ * paths at a time as the widest vectors have lanes, at least eight, through sixteen-wide nodes
+ * (docs/BENCHMARKS.md, "Tuning log"), and double costs little. A CPU driver that splits vectors up (it
+ * reports one lane) gains nothing from many lanes, and one was seen to compile that form for ever. GPUs
+ * spread work-items, and many have hardly any double: one lane, narrower nodes, error-free float transforms.
+ * The options can force each choice, so every arrangement can be tested on every device. */
 static void choose_form(const BpDeviceInfo *device, const BpRenderOptions *options,
                         BpProgramOptions *program) {
     const bool cpu = device->type == BP_DEVICE_CPU;

@@ -11,10 +11,11 @@
 #include <math.h>
 #include <stdlib.h>
 
-/* A look at the error between two decisions costs a read of all sums: at most this share of the time. */
+/* A look at the error between two decisions reads all sums. Such looks take at most this share of the time.
+ */
 #define ERROR_SHARE 0.02
 #define ERROR_SECONDS_MIN 1.0
-/* Beyond the time that a rule allows, for the first sample of every pixel. */
+/* How long the first sample of every pixel is waited for after the time that a rule allows. */
 #define FIRST_SAMPLE_SECONDS 1.0
 
 struct BpStop {
@@ -120,9 +121,9 @@ void bp_stop_destroy(BpStop **stop) {
 
 /* ---- deciding ---- */
 
-/* Whether the time is over although the stretch of samples under way is not: the rate fell. The first sample
- * of every pixel is waited for a little longer, since half a picture is none; a driver's compiling in the
- * first launch does not count there. */
+/* Whether the time is over before the stretch of samples under way is finished, because the rate fell. The
+ * first sample of every pixel is waited for a little longer, since half a picture is of no use; the time in
+ * which a driver compiles at the first launch does not count. */
 static bool is_overtime(const BpStop *stop) {
     const double limit = stop->rule.seconds, seconds = stop->state.seconds;
     if (limit <= 0.0) return false;

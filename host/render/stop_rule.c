@@ -50,7 +50,7 @@ uint64_t bp_stop_first(const BpStopRule *rule) {
 /* More samples that the remaining time allows. */
 static double samples_in_time(const BpStopRule *rule, const BpStopState *state) {
     const uint64_t own = state->samples > state->samples_before ? state->samples - state->samples_before : 0;
-    /* A resumed render that has made none yet knows no rate: one more tells. */
+    /* A resumed render that has made no samples yet knows no rate, so it makes one more. */
     if (own == 0 && state->samples_before > 0) return state->seconds < rule->seconds ? 1.0 : 0.0;
     return (rule->seconds - state->seconds) * (double)own / fmax(state->seconds, 1.0e-6);
 }
@@ -65,8 +65,8 @@ static BpStopReason decide_error(const BpStopRule *rule, const BpStopState *stat
     if (rule->error <= 0.0 || state->samples < rule->samples_min) return BP_STOP_NOT_YET;
     if (state->black) return BP_STOP_BLACK;
     if (state->nrmse == 0.0) return BP_STOP_CONSTANT;
-    /* By now only samples that were left out can have kept a pixel from having an error, and more would too.
-     */
+    /* By now a pixel can lack an error only because samples were left out, and more samples would be left out
+     * too. */
     if (isnan(state->nrmse)) return BP_STOP_INVALID;
     /* Between fixed counts, where --time may have stopped for a look, no decision is made. */
     if (state->samples != bp_stop_checkpoint(rule, (double)state->samples)) return BP_STOP_NOT_YET;

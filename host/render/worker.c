@@ -79,7 +79,7 @@ static BpStatus create_kernels(BpWorker *worker, const BpWorkerSetup *setup, BpE
     return BP_OK;
 }
 
-/* Samples that take as long as one: the lanes of a packet, or one work-group on each unit of a GPU. */
+/* How many samples take as long as one: the lanes of a packet, or one work-group on each unit of a GPU. */
 static uint32_t samples_together(const BpWorker *worker, const BpDeviceInfo *info,
                                  const BpWorkerSetup *setup) {
     if (setup->program.form == BP_KERNEL_PACKET) return setup->program.packet_lanes;
@@ -87,8 +87,9 @@ static uint32_t samples_together(const BpWorker *worker, const BpDeviceInfo *inf
     return info->compute_units * (uint32_t)worker->local_size;
 }
 
-/* A processor's caches hold a few MiB a core: the raw samples of a larger chunk go to memory and back, and
- * new memory at that (a scene of few spheres took 1.25 times as long with 2^22 samples on two cores). */
+/* A processor's caches hold a few MiB a core. The raw samples of a larger chunk go to memory and back, and
+ * the memory is new to the process (a scene of few spheres took 1.25 times as long with 2^22 samples on two
+ * cores). */
 static uint64_t chunk_samples_max(const BpDeviceInfo *info) {
     if (info->type != BP_DEVICE_CPU) return 1u << 26;
     const uint64_t units = info->compute_units;

@@ -106,7 +106,7 @@ BpStatus bp_worker_reserve_samples(BpWorker *worker, uint32_t count, BpError *er
 
 _Static_assert(FINE_BITS == BP_FINE_BITS, "the device's fine steps are the film's");
 
-/* Replicates of pixels that are read back at a time; no less than one pixel has. */
+/* How many replicates of pixels are read back at a time; at least those of one pixel. */
 #define COLLECT_CELLS 65536u
 
 static BpStatus read_buffer(BpWorker *worker, cl_mem buffer, size_t offset, size_t bytes, void *out,

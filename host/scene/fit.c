@@ -48,7 +48,7 @@ static bool basis(const double direction[3], double vup[3], double axes[3][3]) {
     bp_cross(vup, axes[2], axes[0]);
     const double sine = hypot(hypot(axes[0][0], axes[0][1]), axes[0][2]);
     if (!(sine > 1e-6 * hypot(hypot(vup[0], vup[1]), vup[2]))) {
-        /* From above, what lies behind is up in the picture; from below, what lies before. */
+        /* Seen from above, what lies further back is up in the picture; seen from below, what lies nearer. */
         const double against = vup[2] != 0 ? 1 : -1;
         const double instead[3] = {0, vup[2] != 0 ? 1 : 0, vup[2] != 0 ? 0 : 1};
         const double sign = against * (bp_dot(vup, axes[2]) > 0 ? 1 : -1);

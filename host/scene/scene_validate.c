@@ -149,7 +149,7 @@ static bool disc_fault(const BpDisc *disc, BpFault *fault) {
                        "radiances from 0 to 1e12");
 }
 
-/* A pinhole may stand on one sphere; on two at once, rays would have to leave both. */
+/* A pinhole may stand on one sphere. If it stood on two, its rays would have to leave both. */
 static bool standpoint_fault(const BpScene *scene, BpFault *fault) {
     char a[BP_SPHERE_NAME_SIZE], b[BP_SPHERE_NAME_SIZE];
     size_t found = 0, first = 0;

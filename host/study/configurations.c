@@ -64,7 +64,7 @@ const char *bp_study_fresnel_name(BpStudyFresnel fresnel) {
     return names[fresnel];
 }
 
-/* Whether a dielectric that some sphere wears would look otherwise with this Fresnel. */
+/* Whether a dielectric in use would look different with this Fresnel. */
 static bool fresnel_matters(const BpScene *scene, BpStudyFresnel fresnel) {
     const BpFresnel wanted = fresnel == BP_STUDY_FRESNEL_EXACT ? BP_FRESNEL_EXACT : BP_FRESNEL_SCHLICK;
     for (size_t s = 0; s < scene->sphere_count && fresnel != BP_STUDY_FRESNEL_SCENE; s++) {
@@ -76,10 +76,10 @@ static bool fresnel_matters(const BpScene *scene, BpStudyFresnel fresnel) {
     return false;
 }
 
-/* What `ballpark render` is set to where it is told nothing. */
+/* The options of `ballpark render` when none is given. */
 static const BpRenderOptions usual = {.sampler = BP_SAMPLER_SOBOL};
 
-/* What `ballpark render` is told beside the scene, which has a depth of its own. */
+/* The options that `ballpark render` needs beside the scene, which has a depth of its own. */
 static void write_command(const BpScene *scene, BpStudyConfiguration *configuration) {
     const BpRenderOptions *options = &configuration->options;
     char *command = configuration->command;

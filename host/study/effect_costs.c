@@ -14,7 +14,7 @@
 
 #define ROUNDS_MAX 101u
 
-/* "Used 96 registers" of the trace kernel in NVIDIA's log; 0 where it does not stand. */
+/* "Used 96 registers" of the trace kernel in NVIDIA's log; 0 if the log does not say it. */
 static uint64_t find_registers(const char *log) {
     unsigned long long registers = 0;
     const char *at = log != NULL ? strstr(log, "'trace'") : NULL;
@@ -22,8 +22,9 @@ static uint64_t find_registers(const char *log) {
     return at != NULL && sscanf(at, "Used %llu registers", &registers) == 1 ? registers : 0;
 }
 
-/* Finishes what has been ordered; *seconds is the time that the device spent on it: of a CPU the processor
- * time of this process, which other programs hardly disturb, of other devices their own clock's. */
+/* Waits for everything that was started. *seconds is the time that the device spent on it: for a CPU the
+ * processor time of this process, which other programs hardly disturb; for other devices the time by their
+ * own clock. */
 static BpStatus finish(BpRender *render, double *seconds, BpError *err) {
     BpProgress progress = {0};
     BpRenderReport before, after;
@@ -60,8 +61,8 @@ static BpStatus open_render(const BpScene *scene, const BpRenderOptions *options
     bp_render_report(*render, &report);
     start->wall += report.first_launch_seconds - report.tree_seconds - report.pack_seconds;
     start->processor -= report.tree_seconds + report.pack_seconds;
-    /* On a CPU the processor time up to here held the tracing of the first sample, too: as much as the
-     * second's. */
+    /* On a CPU, the processor time up to here includes tracing the first sample, which takes as long as the
+     * second. */
     if (report.device.type == BP_DEVICE_CPU) start->processor -= second;
     return BP_OK;
 

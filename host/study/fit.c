@@ -87,7 +87,8 @@ double bp_study_time_scatter(const BpStudyResult *result) {
     return widest;
 }
 
-/* What no number of samples takes away: where it is shown to be there, its interval lying above 0. */
+/* The error that no number of samples takes away. It counts only if it is shown to exist: its interval lies
+ * above 0. */
 static double floor_of(const BpStudySeries *series) {
     if (isnan(series->bias_square.value)) return isfinite(series->fit_floor) ? series->fit_floor : 0;
     return series->bias_square.low > 0 ? series->bias_square.value : 0;
@@ -130,7 +131,7 @@ void bp_study_advise(BpStudyResult *result) {
             const double samples = samples_for(series, targets[t] * targets[t]);
             const double seconds = samples * pixels * series->seconds_per_sample;
             if (!(samples > 0) || !(seconds < least)) continue;
-            /* So few make the same picture as without, and render refuses them. */
+            /* So few samples make the same picture as without it, and `render` refuses them. */
             if (series->configuration.options.adaptive && samples < BP_ADAPTIVE_MEAN_MIN) continue;
             const bool extrapolated = samples < (double)series->points[0].samples ||
                                       samples > (double)series->points[series->count - 1].samples;

@@ -78,7 +78,7 @@ BpStudyEstimate bp_study_unpaired(const BpPicture *x, const BpPicture *r1, const
     double sum = 0, variance = 0;
     for (size_t p = 0; p < pixels; p++) {
         const double a = bp_luminance(r1->rgb + 3 * p), b = bp_luminance(r2->rgb + 3 * p);
-        double error = 0; /* of luminance: as if the channels erred together, which is never too small */
+        double error = 0; /* of luminance, as if the channels erred together: never too small */
         for (size_t c = 0; c < 3; c++) error += bp_luminance_weights[c] * (double)x->error[3 * p + c];
         sum += bp_luminance(x->rgb + 3 * p) - 0.5 * (a + b);
         variance += error * error + 0.25 * (a - b) * (a - b);

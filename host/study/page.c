@@ -12,7 +12,7 @@
 
 const char *bp_study_file(const char *name); /* embedded by the build */
 
-/* Nothing in a script element ends it, or begins another, without a "<". */
+/* Without a "<", nothing in a script element can end it or begin another. */
 static void print_json(const char *json, FILE *out) {
     for (; *json != '\0'; json++)
         if (*json == '<')
@@ -63,7 +63,7 @@ static void print_scale(FILE *out) {
     }
 }
 
-/* Of the truth, of every count of the base, and of every other configuration at the largest count. */
+/* Crops of the truth, of every count of the base, and of every other configuration at the largest count. */
 static void print_crops(const BpStudyResult *result, FILE *out) {
     const BpStudySeries *base = &result->series[0];
     fprintf(out, "{\"width\": %" PRIu32 ", \"height\": %" PRIu32 ", \"scale\": [", result->crop_width,

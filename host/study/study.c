@@ -162,7 +162,7 @@ static BpStatus step_references(BpStudy *study, BpError *err) {
 
 /* ---- rounds of a level ---- */
 
-/* Samples per pixel when the level began: those of the last point, or at first the warm-up's one. */
+/* Samples per pixel when the level began: those of the last point, or, at first, the one of the warm-up. */
 static uint64_t samples_before(const BpStudy *study) {
     const BpStudySeries *base = &study->result.series[0];
     return base->count > 0 ? base->points[base->count - 1].samples : 1;
@@ -174,7 +174,7 @@ static uint64_t samples_after(const BpStudy *study, size_t rounds) {
     return before + (study->level - before) * rounds / study->round_count;
 }
 
-/* Adaptive samples go where earlier ones say: such a configuration is given a level at once, not round by
+/* Earlier samples decide where adaptive ones go, so such a configuration gets a level at once, not round by
  * round. */
 static bool goes_at_once(const BpStudy *study, size_t s) {
     return study->result.series[s].configuration.options.adaptive;
@@ -194,8 +194,8 @@ static BpStatus begin_round(BpStudy *study, BpError *err) {
     return BP_OK;
 }
 
-/* To `level` samples per pixel, in as many rounds as last long enough for launches and clocks not to matter.
- */
+/* Goes up to `level` samples per pixel, in rounds that last long enough for launches and clocks not to
+ * matter. */
 static BpStatus begin_level(BpStudy *study, uint64_t level, BpError *err) {
     const uint64_t before = samples_before(study), samples = level - before;
     const double seconds =
@@ -207,7 +207,7 @@ static BpStatus begin_level(BpStudy *study, uint64_t level, BpError *err) {
     return begin_round(study, err);
 }
 
-/* Adds the seconds of the level that has ended, and says what everyone's were over the base's. */
+/* Adds the seconds of the level that has ended, and notes the ratios of all configurations to the base. */
 static void add_seconds(BpStudy *study) {
     double samples[BP_STUDY_ROUNDS_MAX];
     const double *base = study->runners[0].rounds;
@@ -260,7 +260,7 @@ static bool is_truth(const BpStudyResult *result, size_t s) {
     return s == 1 && result->reference_is_kernel;
 }
 
-/* Against the base and the truth, which have the same counts: in each round the base comes first. */
+/* Compares with the base and the truth, which have the same counts: the base comes first in each round. */
 static BpStatus note_differences(BpStudy *study, size_t s, const BpFilm *sums, const BpPicture *picture,
                                  BpError *err) {
     const BpStudyEstimate unknown = {(double)NAN, (double)NAN, (double)NAN};
@@ -404,7 +404,7 @@ static BpStatus next_level(BpStudy *study, BpError *err) {
     const size_t count = study->result.series[0].count;
     uint64_t next = LEVEL_FACTOR * study->level;
     if (study->last_level || count == BP_STUDY_LEVELS_MAX) return conclude(study, err);
-    /* Two counts there are in any case. Where four times the samples do not fit, twice may, once. */
+    /* There are two counts in any case. Once, if four times the samples do not fit, twice as many may. */
     if (count > 1 && foretold(study, next) > left) {
         next = 2 * study->level;
         if (foretold(study, next) > left) return conclude(study, err);

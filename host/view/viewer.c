@@ -65,7 +65,8 @@ static BpStatus window_failed(const char *reason, BpError *err) {
 
 /* ---- what the person does ------------------------------------------------------------------------------ */
 
-/* Focuses on what the pixel at (x, y), shares of the picture, shows first; on the sky not at all. */
+/* Focuses on what the pixel at (x, y) shows first, x and y being shares of the picture. A click on the sky
+ * does nothing. */
 static void focus_at(Viewer *viewer, double x, double y) {
     BpCamera sharp = viewer->scene->camera;
     if (!(x >= 0 && x < 1 && y >= 0 && y < 1)) return;
@@ -164,7 +165,7 @@ static void obey(Viewer *viewer, const BpWindowEvent *event) {
     }
 }
 
-/* All that has happened; waits for it if there is nothing to render. */
+/* Handles all events that have come; waits for one if there is nothing to render. */
 static void listen(Viewer *viewer) {
     BpWindowEvent event;
     const bool idle = viewer->rests && viewer->shown;

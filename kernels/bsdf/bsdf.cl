@@ -28,10 +28,10 @@ typedef struct Lobe {
     vuint kind; /* LOBE_... */
 } Lobe;
 
-/* Those that scene_types.h does not name; LOBE_NONE is no density, but a few directions. */
+/* Lobes that scene_types.h does not name. LOBE_NONE has no density: it scatters into a few directions only. */
 enum { LOBE_FUZZ_SPHERE = LOBE_HEMISPHERE + 1, LOBE_FUZZ_BALL, LOBE_NONE };
 
-#define LOBE_FUZZ_MIN R(0x1p-6) /* smaller fuzz has no use for lamps, and densities that float does not hold well */
+#define LOBE_FUZZ_MIN R(0x1p-6) /* with less fuzz, rays to lamps gain nothing, and float does not hold the densities well */
 #define PI_INVERSE R(0.3183098861837907)
 #endif
 

@@ -4,7 +4,7 @@
  *        that it is drawn from, and the lobe's density.
  * Knows: every lobe by its one function.   Does not know: how lobes draw. */
 
-/* With one kind of material in the scene there is nothing to ask. */
+/* If the scene has one kind of material only, there is nothing to choose. */
 #define KIND_COUNT (EFFECT_LAMBERTIAN + EFFECT_METAL + EFFECT_DIELECTRIC + EFFECT_NORMALS + EFFECT_EMISSION)
 #if KIND_COUNT == 1
 #define has_kind(surface, wanted) vbool_all

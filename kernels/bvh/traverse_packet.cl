@@ -61,7 +61,7 @@ static void intersect_leaves(const Geometry *geometry, const Visit *visits, uint
         const uint lane = visits[i].lane, first = visits[i].what * TREE_WIDTH;
         const Ray_one ray = ray_of_lane(rays, lane);
         child_mask candidates = leaf_candidates(geometry, &ray, visits[i].what, rays->bound[lane], rays->slot[lane]);
-        /* One candidate or none is the rule: noted without asking which. */
+        /* Mostly there is one candidate or none, so it is noted without asking which. */
         found[found_count].lane = lane;
         found[found_count].what = first + lowest_bit(candidates);
         found_count += candidates != 0;

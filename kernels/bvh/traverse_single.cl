@@ -25,7 +25,7 @@ FORCE_INLINE static void traverse_tree(const Geometry *geometry, const Ray *ray,
         vreal_node entry;
         child_mask met = test_node(geometry, &box, node, best->bound, &entry);
         JOIN(vstore, TREE_WIDTH)(entry, 0, entries);
-        /* Leaves at once, in any order: to sort them costs more than it spares. */
+        /* Leaves are visited at once, in any order: sorting them costs more than it saves. */
         const child_mask leaves = leaf_children(geometry, node);
         for (child_mask now = met & leaves; now != 0; now = without_lowest_bit(now)) {
             const uint child = geometry->children[node * TREE_WIDTH + lowest_bit(now)];
