@@ -6,7 +6,7 @@ import os
 import re
 import shutil
 
-from cli import SOURCE, ProgramTest, main, scene
+from cli import ProgramTest, SOURCE, deep, main, scene
 from pfm import read_pfm
 
 
@@ -42,6 +42,7 @@ class Picture(Render):
             with self.subTest(options):
                 self.assert_same(whole, self.pfm(*options), options)
 
+    @deep
     def test_choices_of_computing(self):
         """Fast mathematics and plain numerics give about the same picture."""
         _, _, right = read_pfm(self.pfm("--spp", "256"))

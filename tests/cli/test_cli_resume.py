@@ -80,6 +80,7 @@ class Resume(cli.ProgramTest):
         os.remove(self.path(name))
         return stops
 
+    @cli.deep
     def test_the_same_bits(self):
         stops = self.interrupted_and_whole(".exr")
         stops += self.interrupted_and_whole(".bpa", "--spp", 5000, "--first-sample", 77)
@@ -217,6 +218,7 @@ class Resume(cli.ProgramTest):
         said = process.communicate(timeout=cli.LIMIT_SECONDS)[1].decode()
         self.assertEqual(self.command_in(said)[:5], ["ballpark", "render", "it's a.json", "--resume", "it's a.bpa"])
 
+    @cli.deep
     def test_a_checkpoint_that_cannot_be_written(self):
         """It is warned about, the render goes on, and what it has is not lost: here the folder goes away."""
         os.mkdir(self.path("d"))

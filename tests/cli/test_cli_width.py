@@ -4,7 +4,7 @@ nothing but errors."""
 import os
 import re
 
-from cli import SOURCE, ProgramTest, main, scene
+from cli import ProgramTest, SOURCE, deep, main, scene
 from terminal import Terminal
 
 UNKNOWN = {"COLUMNS": ""}
@@ -81,6 +81,7 @@ class Width(ProgramTest):
             self.assertGreater(max(map(len, lines)), 80, arguments)
             self.assertNotIn("", lines)
 
+    @deep
     def test_pasted_commands(self):
         """Advice is a command to be pasted, also where it is folded."""
         self.write("s" * 60 + ".json", scene())

@@ -11,7 +11,7 @@ right program one fails by chance with a probability of 1e-4, and a deviation of
 1.3 % and 0.05 % in the middle of the cases, is found with 90 %.
 
 Without numbers: all cases but those that repeat others with other values; --deep: those alone. --on: only what sampling
-alone shows, as the mutants want it: no picture is drawn without, what needs one is left out, and the first case that
+alone shows, for the quick part and the mutants: no picture is drawn without, what needs one is left out, and the first case that
 fails is the last.
 """
 import json
