@@ -8,7 +8,6 @@
 
 #include <math.h>
 #include <stdio.h>
-#include <stdlib.h>
 #include <string.h>
 
 static const struct {
@@ -85,30 +84,37 @@ static void explain_material(BpEffect effect, const Use *use, const Use *all, bo
                  texts[effect].left_out);
 }
 
-/* Fills `uses` (one an effect) and `all`, and returns the bits; false without memory. */
-static bool count_uses(const BpScene *scene, Use uses[BP_EFFECT_COUNT], Use *all, uint32_t *bits) {
-    size_t *spheres_with = calloc(scene->material_count + 1, sizeof *spheres_with);
-    if (spheres_with == NULL) return false;
-    for (size_t i = 0; i < scene->sphere_count; ++i) ++spheres_with[scene->spheres[i].material];
-    *bits = 0;
+/* Materials whose spheres are counted in one pass over the spheres: on the stack, since what is found here
+ * decides about the picture, and so must not depend on whether there is memory. */
+#define MATERIALS_AT_ONCE 8192u
+
+/* Fills `uses` (one an effect) and `all`, and returns the bits. */
+static uint32_t count_uses(const BpScene *scene, Use uses[BP_EFFECT_COUNT], Use *all) {
+    uint32_t spheres_with[MATERIALS_AT_ONCE], bits = 0;
     memset(uses, 0, BP_EFFECT_COUNT * sizeof *uses);
     *all = (Use){.spheres = scene->sphere_count};
-    for (size_t m = 0; m < scene->material_count; ++m) {
-        const uint32_t called_for = material_bits(&scene->materials[m]);
-        const bool used = spheres_with[m] > 0;
-        if (used) {
-            *bits |= called_for;
-            ++all->materials;
+    for (size_t first = 0; first < scene->material_count; first += MATERIALS_AT_ONCE) {
+        memset(spheres_with, 0, sizeof spheres_with);
+        for (size_t i = 0; i < scene->sphere_count; ++i) {
+            const size_t place = (size_t)scene->spheres[i].material - first; /* huge for those before */
+            if (place < MATERIALS_AT_ONCE) ++spheres_with[place];
         }
-        for (int e = 0; e < BP_EFFECT_COUNT; ++e) {
-            if (!bp_effects_has(called_for, (BpEffect)e)) continue;
-            uses[e].materials += used ? 1 : 0;
-            uses[e].unused += used ? 0 : 1;
-            uses[e].spheres += spheres_with[m];
+        for (size_t m = first; m < scene->material_count && m - first < MATERIALS_AT_ONCE; ++m) {
+            const uint32_t called_for = material_bits(&scene->materials[m]);
+            const uint32_t spheres = spheres_with[m - first];
+            if (spheres > 0) {
+                bits |= called_for;
+                ++all->materials;
+            }
+            for (int e = 0; e < BP_EFFECT_COUNT; ++e) {
+                if (!bp_effects_has(called_for, (BpEffect)e)) continue;
+                uses[e].materials += spheres > 0 ? 1 : 0;
+                uses[e].unused += spheres > 0 ? 0 : 1;
+                uses[e].spheres += spheres;
+            }
         }
     }
-    free(spheres_with);
-    return true;
+    return bits;
 }
 
 #define NO_LAMP_REASON "no sphere gives light, and no disc of the sky"
@@ -199,14 +205,7 @@ void bp_effects_analyse(const BpScene *scene, BpEffects *effects) {
     const size_t size = sizeof effects->reason[0];
     Use uses[BP_EFFECT_COUNT], all;
     memset(effects, 0, sizeof *effects);
-    if (!count_uses(scene, uses, &all, &effects->bits)) {
-        /* The general kernel renders every scene right. */
-        effects->bits = BP_EFFECTS_ALL;
-        for (int e = 0; e < BP_EFFECT_COUNT; ++e)
-            snprintf(effects->reason[e], size, "no memory to look at the scene: everything is simulated");
-        return;
-    }
-
+    effects->bits = count_uses(scene, uses, &all);
     const bool one_kind = effects->bits != 0 && (effects->bits & (effects->bits - 1)) == 0;
     for (int e = 0; e < BP_EFFECT_COUNT; ++e)
         if (texts[e].left_out[0] != '\0')

@@ -92,6 +92,30 @@ static void only_materials_in_use_count(void **state) {
     assert_int_equal(analyse(NULL, 0, 1, 0, 0, 1).bits, 0);
 }
 
+/* More materials than are counted at a time, three of them in use: the first, one amid them and the last. */
+static void twenty_thousand_materials(void **state) {
+    (void)state;
+    enum { COUNT = 20000 };
+    BpMaterial *materials = malloc(COUNT * sizeof *materials);
+    assert_non_null(materials);
+    for (size_t m = 0; m < COUNT; ++m) materials[m] = debug;
+    materials[0] = grey;
+    materials[9000] = steel;
+    materials[COUNT - 1] = ember;
+    BpSphere spheres[] = {{.center = {4, 0, 0}, .radius = 1, .material = COUNT - 1, .albedo = BP_NO_ALBEDO},
+                          {.center = {8, 0, 0}, .radius = 1, .material = 9000, .albedo = BP_NO_ALBEDO},
+                          {.center = {12, 0, 0}, .radius = 1, .material = 0, .albedo = BP_NO_ALBEDO},
+                          {.center = {16, 0, 0}, .radius = 1, .material = 9000, .albedo = BP_NO_ALBEDO}};
+    const BpScene scene = {
+        .materials = materials, .material_count = COUNT, .spheres = spheres, .sphere_count = 4};
+    BpEffects effects;
+    bp_effects_analyse(&scene, &effects);
+    assert_int_equal(effects.bits, BIT(LAMBERTIAN) | BIT(METAL) | BIT(EMISSION) | BIT(LAMPS));
+    assert_string_equal(effects.reason[BP_EFFECT_METAL], "1 of the 3 materials in use, on 2 of 4 spheres");
+    assert_non_null(strstr(effects.reason[BP_EFFECT_NORMALS], "19997 materials would"));
+    free(materials);
+}
+
 static void camera_and_sky(void **state) {
     (void)state;
     assert_int_equal(analyse(&grey, 1, 1, 1, 1e-9, 1).bits, BIT(LAMBERTIAN) | BIT(LENS));
@@ -239,6 +263,7 @@ int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(material_effects),
         cmocka_unit_test(only_materials_in_use_count),
+        cmocka_unit_test(twenty_thousand_materials),
         cmocka_unit_test(camera_and_sky),
         cmocka_unit_test(a_tree_above_32_spheres),
         cmocka_unit_test(reasons_a_person_understands),
