@@ -40,6 +40,42 @@ class DimTest(ProgramTest):
                         self.assertEqual(statistics["invalid_samples"], 0)
                         self.assertLessEqual(statistics["rounding"], 1e-6)
 
+    def lit(self, seen, ratio, emitter):
+        """A matte surface that fills the picture, so nearly flat and so near the axis that its normal is the direction of the
+        lamp behind the camera; the document, and what every path brings back: of the sky and of the ray to the lamp."""
+        albedo, distance = [0.5, 0.4, 0.3], 1e4
+        sine = min(1e-3, ratio ** -0.5)  # so small that the cosine is the same for every point of the lamp
+        spheres = [{"center": [0, 0, -1001], "radius": 1000, "material": "m"},
+                   {"center": [0, 0, distance - 1], "radius": distance * sine, "material": "lamp"}]
+        materials = {"m": {"type": "lambertian", "albedo": albedo}, "lamp": dict(emitter, emit=[seen * ratio] * 3)}
+        document = scene(width=8, height=8, spheres=spheres, materials=materials, background=[seen] * 3,
+                         camera={"max_depth": 50, "vfov": 0.01})
+        return document, [a * seen * (1 + ratio * sine ** 2) for a in albedo]
+
+    def assert_lit(self, seen, ratio, emitter, *options):
+        document, exact = self.lit(seen, ratio, emitter)
+        self.write("scene.json", document)
+        statistics = self.statistics("scene.json", "--spp", "4", "--lamps", "on", *options)
+        for channel, right in zip(statistics["mean_radiance"], exact):
+            self.assertLessEqual(abs(channel / right - 1), 1e-6)
+        self.assertEqual(statistics["invalid_samples"], 0)
+        self.assertLessEqual(statistics["rounding"], 1e-6)
+
+    def test_a_surface_lit_by_a_hidden_lamp(self):
+        for seen, ratio in ((1e-6, 1e6), (1e-6, 1e12), (1e-2, 1e9), (1, 1e3), (1, 1e12), (1e6, 1e6)):
+            with self.subTest(seen=seen, ratio=ratio):
+                self.assert_lit(seen, ratio, {"type": "diffuse_light"})
+
+    @deep
+    def test_every_surface_lit_by_a_hidden_lamp(self):
+        for emitter in ({"type": "diffuse_light"}, {"type": "dielectric", "refraction_index": 1.5}):
+            for options in ([], ["--precision", "double"], ["--kernel", "sample"]):
+                for seen in SEEN:
+                    for ratio in HIDDEN:
+                        if seen * ratio <= RADIANCE_MAX:
+                            with self.subTest(seen=seen, ratio=ratio, emitter=emitter["type"], options=options):
+                                self.assert_lit(seen, ratio, emitter, *options)
+
     @deep
     def test_shaded_spheres_look_the_same(self):
         """Light of many bounces, dimmer at each: pixel by pixel, in both precisions and forms. The hidden lamp is too small
