@@ -43,6 +43,8 @@ BpStatus bp_check_against_read(const char *path, json_t **document, BpError *err
         return BP_OK;
     }
     json_decref(found);
+    if (bp_json_memory_failed())
+        return bp_fail(err, BP_ERR_MEMORY, "out of memory for the document of --against");
     return bp_fail(err, BP_ERR_USAGE,
                    "--against %s: expected the JSON document of an earlier `ballpark check`", path);
 }
@@ -197,7 +199,8 @@ json_t *bp_check_against(const json_t *scenes, const json_t *earlier, const char
     json_t *against = json_pack("{s:o, s:s, s:i, s:o}", "file", bp_json_text(path), "ballpark",
                                 bp_check_text(earlier, "ballpark"), "regressions", (int)changes.regressions,
                                 "changes", changes.list);
-    if (!changes.failed) return against;
+    /* Without memory, scenes may lack in the list of the earlier ones. */
+    if (!changes.failed && !bp_json_memory_failed()) return against;
     json_decref(against);
     return NULL;
 }

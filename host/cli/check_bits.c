@@ -1,17 +1,20 @@
 /* check_bits.c: see check_bits.h. */
 #include "check_bits.h"
 
+#include "base/json_memory.h"
 #include "base/json_text.h"
 #include "base/names.h"
 #include "base/shown.h"
 #include "check/bits.h"
 #include "check_entry.h"
 #include "device_items.h"
+#include "formats/input_file.h"
 #include "interrupt.h"
 #include "packed/acceleration.h"
 #include "render/render.h"
 #include "terminal.h"
 
+#include <errno.h>
 #include <inttypes.h>
 #include <math.h>
 #include <stdlib.h>
@@ -34,13 +37,27 @@ static bool whole(const json_t *picture) {
            json_is_string(json_object_get(picture, "radiance"));
 }
 
+static BpStatus read_text(const char *path, char **text, size_t *length, BpError *err) {
+    FILE *in = fopen(path, "rb");
+    if (in == NULL)
+        return bp_fail(err, BP_ERR_FILE, "the recorded pictures: cannot open %s: %s", path, strerror(errno));
+    const BpStatus status = bp_stream_read(in, 0, path, text, length, err);
+    fclose(in);
+    return status;
+}
+
 BpStatus bp_check_bits_read(json_t **pictures, BpError *err) {
-    const char *path = getenv("BALLPARK_BITS");
+    const char *path = getenv("BALLPARK_BITS"), *embedded = bp_recorded_bits_file("bits.json");
     json_error_t fault;
-    json_t *document = path != NULL
-                           ? json_load_file(path, JSON_REJECT_DUPLICATES, &fault)
-                           : json_loads(bp_recorded_bits_file("bits.json"), JSON_REJECT_DUPLICATES, &fault);
+    char *text = NULL;
+    size_t length = strlen(embedded);
+    bool no_memory = false;
     *pictures = NULL;
+    if (path != NULL) BP_TRY(read_text(path, &text, &length, err));
+    json_t *document =
+        bp_json_load(text != NULL ? text : embedded, length, JSON_REJECT_DUPLICATES, &fault, &no_memory);
+    free(text);
+    if (no_memory) return bp_fail(err, BP_ERR_MEMORY, "out of memory for the recorded pictures");
     if (document == NULL) {
         const BpStatus status = bp_fail(err, BP_ERR_FILE, "the recorded pictures: %s", fault.text);
         if (path != NULL)

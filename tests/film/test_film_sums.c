@@ -272,6 +272,14 @@ static void overflow_is_out_of_reach(void **state) {
     b->sums[11] = -1;
     refuse_merge(a, b, BP_ERR_LIMIT, "overflow");
     b->sums[11] = 1;
+    /* Nor totals, which a file holds in 63 bits. */
+    uint64_t *const totals[] = {&a->segments, &a->cut_paths, &a->invalid_samples};
+    b->segments = b->cut_paths = b->invalid_samples = 1;
+    for (size_t i = 0; i < sizeof totals / sizeof totals[0]; i++) {
+        *totals[i] = INT64_MAX;
+        refuse_merge(a, b, BP_ERR_LIMIT, "overflow 63 bits");
+        *totals[i] = INT64_MAX - 1;
+    }
     assert_int_equal(bp_film_merge(a, b, &err), BP_OK);
     bp_film_destroy(&a);
     bp_film_destroy(&b);

@@ -43,9 +43,9 @@ static void off_its_place(void **state) {
 static void large_lens(void **state) {
     (void)state;
     const char *ball = "{\"center\":[0,0,-10],\"radius\":3,\"material\":\"m\"}";
-    const char *large = "\"focus_dist\":10,\"aperture\":672000",
-               *fine = "\"focus_dist\":10,\"aperture\":671000", *huge = "\"focus_dist\":10,\"aperture\":1e10",
-               *far = "\"focus_dist\":1e10,\"aperture\":1e10";
+    const char *large = "\"image_width\":300,\"image_height\":100,\"focus_dist\":10,\"aperture\":672000",
+               *fine = "\"image_width\":300,\"image_height\":100,\"focus_dist\":10,\"aperture\":671000",
+               *huge = "\"focus_dist\":10,\"aperture\":1e10", *far = "\"focus_dist\":1e10,\"aperture\":1e10";
     const BpRoundingWarnings warned = limits_of(large, ball, BP_PRECISION_SINGLE);
     assert_int_equal(warned.count, 1);
     assert_non_null(strstr(warned.text[0], "the lens (radius 336000)"));
