@@ -265,6 +265,9 @@ class StopRules(Render):
                         ("cost", "n.json", "--time", "0.1", "--json", "n.out"),
                         ("cost", "n.json", "--time", "0.1", "--precision", "double", "--csv", "n.out")):
             self.fail_with(1, *command, environment=here, says=["samples are not finite", "ballpark check"])
+        shutil.rmtree(self.path("kernels"))
+        here = self.broken_sky("sizeof(R(1.0)) == 4 ? splat(NAN) : light.x")  # the truth is of double precision, and right
+        self.fail_with(1, "cost", "n.json", "--time", "0.1", "--json", "n.out", environment=here, says="samples are not finite")
         self.assertEqual(self.files(), ["kernels", "n.json", "s.json"])
 
     def test_a_pixel_that_is_never_light(self):

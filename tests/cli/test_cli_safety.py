@@ -261,6 +261,10 @@ class OpenFiles(Safety):
             piped = self.shell(f"\"$B\" render s.json --format ppm -q -o {name} | cat").stdout
             self.assert_same(piped, picture, name)
         self.shell("\"$B\" render s.json --format ppm -q -o /dev/fd/3 3> third")
+        if os.path.isdir("/proc/self/fd"):  # another process's open file
+            self.write("out", "before\n")
+            self.shell("exec 3>> out; \"$B\" render s.json --format ppm -q -o /proc/$$/fd/3 || exit; echo after >&3")
+            self.assert_same(self.read("out"), b"before\n" + picture + b"after\n")
         self.assert_same(self.read("third"), picture, "3")
         self.assertIn("no file is open", self.shell("\"$B\" render s.json --format ppm -o /dev/fd/9 9>&-", 1).errors)
         self.assertIn("no file is open", self.shell("\"$B\" render s.json --format ppm -o /dev/fd/0 < /dev/null", 1).errors)
