@@ -137,10 +137,12 @@ typedef exr_result_t Compress(exr_encode_pipeline_t *);
 
 /* Readers take a block that is as long as its pixels for an uncompressed one. OpenEXRCore 3.1 stores pixels
  * uncompressed if compressing makes them longer, but not if the length stays the same: such a block would be
- * read as noise. */
+ * read as noise. Where zlib lacks the memory to compress, it calls the pixels corrupt, as if it had read
+ * them. */
 static exr_result_t compress_or_keep(exr_encode_pipeline_t *encoder) {
     Compress *const *const compress = encoder->encoding_user_data;
     const exr_result_t result = (*compress)(encoder);
+    if (result == EXR_ERR_CORRUPT_CHUNK) return EXR_ERR_OUT_OF_MEMORY;
     if (result == EXR_ERR_SUCCESS && encoder->compressed_bytes == encoder->packed_bytes)
         memcpy(encoder->compressed_buffer, encoder->packed_buffer, (size_t)encoder->packed_bytes);
     return result;
