@@ -6,10 +6,11 @@
  *        kind.
  * Knows: the C library and where the program's code lies.   Does not know: what the program does.
  *
- * Only calls from the program's own code (libballpark is in it), jansson, libpng and zlib count: a driver
- * that is refused memory may crash, and that is not what is looked for. Reads and writes cannot be seen from
- * outside the C library, so streams that the program opens, and standard output, get their functions from
- * here. */
+ * Only calls from the program's own code (libballpark is in it), jansson, libpng, zlib and OpenEXR count: a
+ * driver that is refused memory may crash, and that is not what is looked for. Reads and writes cannot be
+ * seen from outside the C library, so streams that the program opens, and standard output, get their
+ * functions from here. A child process counts on from where its parent was, and the log has the largest
+ * number of any. */
 #define _GNU_SOURCE
 #include <dlfcn.h>
 #include <errno.h>
@@ -37,7 +38,7 @@ typedef struct Range {
 typedef enum Kind {
     ALLOC,   /* memory for the program's own code */
     JSON,    /* for jansson */
-    LIBRARY, /* for libpng and zlib */
+    LIBRARY, /* for libpng, zlib and OpenEXR */
     OPEN,
     UNNAMED,
     STREAM,
@@ -64,7 +65,7 @@ static _Thread_local bool in_json;
 static int note_code(struct dl_phdr_info *info, size_t size, void *unused) {
     (void)size;
     (void)unused;
-    static const char *const counted[] = {"libjansson", "libpng", "libz."};
+    static const char *const counted[] = {"libjansson", "libpng", "libz.", "libOpenEXRCore"};
     const bool own = info->dlpi_name[0] == '\0'; /* it is the first to be told */
     bool counts = own;
     for (size_t i = 0; i < sizeof counted / sizeof counted[0]; i++)
@@ -235,6 +236,13 @@ int linkat(int from_folder, const char *from, int to_folder, const char *to, int
     return next(from_folder, from, to_folder, to, flags);
 }
 
+/* Where a file is given its name only if nobody has it. */
+int link(const char *from, const char *to) {
+    REFUSE(LINK, EPERM);
+    int (*const next)(const char *, const char *) = (int (*)(const char *, const char *))real("link");
+    return next(from, to);
+}
+
 /* ---- streams
  * ----------------------------------------------------------------------------------------------- */
 
@@ -359,11 +367,36 @@ __attribute__((constructor)) static void begin(void) {
     unsetenv("LD_PRELOAD");
 }
 
+/* What the log, open as `descriptor`, says so far. */
+static void recall(int descriptor, long before[KINDS]) {
+    char text[1024] = "", name[16];
+    long number;
+    ssize_t (*const next)(int, void *, size_t) = (ssize_t(*)(int, void *, size_t))real("read");
+    const ssize_t length = next(descriptor, text, sizeof text - 1);
+    int taken = 0;
+    if (length <= 0) return;
+    for (const char *at = text; sscanf(at, "%15s %ld%n", name, &number, &taken) == 2; at += taken)
+        for (int k = 0; k < KINDS; k++)
+            if (strcmp(name, kinds[k]) == 0) before[k] = number;
+}
+
 __attribute__((destructor)) static void tell(void) {
     const char *path = getenv("FAULT_LOG");
     if (path == NULL) return;
+    long before[KINDS] = {0};
     int (*const next)(const char *, int, ...) = (int (*)(const char *, int, ...))real("open");
-    const int descriptor = next(path, O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0600);
-    for (int k = 0; k < KINDS && descriptor >= 0; k++)
-        dprintf(descriptor, "%s %ld\n", kinds[k], (long)calls[k]);
+    const int descriptor = next(path, O_RDWR | O_CREAT | O_CLOEXEC, 0600);
+    if (descriptor < 0) return;
+    recall(descriptor, before);
+    lseek(descriptor, 0, SEEK_SET);
+    for (int k = 0; k < KINDS; k++) /* numbers only grow, so nothing of the old text is left */
+        dprintf(descriptor, "%s %ld\n", kinds[k], before[k] > calls[k] ? before[k] : (long)calls[k]);
+}
+
+/* How a child process ends. */
+_Noreturn void _exit(int code) {
+    void (*const next)(int) = (void (*)(int))real("_exit");
+    tell();
+    next(code);
+    __builtin_unreachable();
 }

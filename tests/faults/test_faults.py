@@ -4,9 +4,9 @@ Whatever fails, the program neither crashes nor hangs. With exit code 0 its resu
 with exit code 1 there is a message, which says "memory" where memory was refused, every result is the old file or
 the new one, whole, and nothing else is left behind but what the message names, and checkpoints.
 
-Run as: python3 test_faults.py PROGRAM SOURCE_DIR SHIM COMMANDS STEP [unittest's arguments]
-COMMANDS: names of COMMANDS below, with commas between. STEP: of the refused allocations, only every STEP-th is tried;
-12+5: every 12th from the 6th on."""
+Run as: python3 test_faults.py PROGRAM SOURCE_DIR SHIM COMMANDS TRIES [unittest's arguments]
+COMMANDS: names of COMMANDS below, with commas between; "every": all of them. TRIES: how many calls of each kind are let fail, one
+at a time, spread evenly over all that there are; "all": all of them."""
 
 import gzip
 import os
@@ -14,7 +14,7 @@ import re
 import sys
 
 SHIM, CHOSEN = os.path.abspath(sys.argv[3]), sys.argv[4].split(",")
-STEP, OFFSET = map(int, (sys.argv[5] + "+0").split("+")[:2])
+TRIES = None if sys.argv[5] == "all" else int(sys.argv[5])
 sys.argv[3:6] = []
 
 import cli
@@ -22,19 +22,25 @@ import cli
 FILE_KINDS = ("open", "unnamed", "stream", "read", "write", "sync", "close", "rename", "link")
 MEMORY_KINDS = ("alloc", "json", "library")
 OLD = b"what was there before"
+# The sky outshines the lamp, so no rays are sent to it: a program that were to find so only with enough memory would make
+# another picture without.
+SCENE = cli.scene(16, 9, camera={"samples_per_pixel": 1}, materials={
+    "m": {"type": "lambertian", "albedo": [0.5, 0.4, 0.3]}, "l": {"type": "diffuse_light", "emit": [0.3, 0.3, 0.3]}},
+    spheres=[{"center": [0.3 * i - 0.1, 0, -1 - 0.01 * i], "radius": 0.5, "material": "ml"[i]} for i in range(2)])
 XYZ = "2\nfirst\nC 0 0 0\nO 1 0 0\n2\nsecond\nC 0 0 0\nO 1.2 0 0\n"
 
 
 class Command:
     """One run of the program: what it writes, which of that differs from run to run (`varies`), what may be left
     unfinished by a run that fails (`checkpoint`), the commands that make what it reads. A study makes one long document
-    and many small pictures by the same few calls of jansson and libpng: `often` is how many times fewer of those are tried.
+    and many small pictures by the same few calls of jansson and libpng, a suite checks many scenes alike: of "all" calls
+    of a kind in `often`, only so many times fewer are tried.
     `codes`: the exit codes of what a failing file may lead to. A child of `check` that cannot say anything counts as a
-    driver that crashed (6)."""
+    driver that crashed (6). `new_only`: it replaces no file."""
 
-    def __init__(self, line, results, varies=(), checkpoint=None, inputs=(), often=1, codes=(0, 1)):
+    def __init__(self, line, results, varies=(), checkpoint=None, inputs=(), often=None, codes=(0, 1), new_only=False):
         self.line, self.results, self.varies, self.checkpoint = line.split(), results, varies, checkpoint
-        self.inputs, self.often, self.codes = inputs, often, codes
+        self.inputs, self.often, self.codes, self.new_only = inputs, often or {}, codes, new_only
 
 
 PARTS = ("render s.json --spp 4 -o 0.bpa", "render s.json --spp 4 --first-sample 4 -o 1.bpa")
@@ -42,20 +48,33 @@ COMMANDS = {
     "render": Command("render s.json -o a.pfm --error-map e.png --stats t.json", ("a.pfm", "e.png", "t.json"), ("t.json",)),
     "merge": Command("merge 0.bpa 1.bpa -o m.bpa --error-map e.png", ("m.bpa", "e.png"), inputs=PARTS),
     "cost": Command("cost s.json --width 4 --time 0.1 -o c.html --csv c.csv --json c.json", ("c.html", "c.csv", "c.json"),
-                    ("c.html", "c.csv", "c.json"), often=12),
+                    ("c.html", "c.csv", "c.json"), often={"json": 12, "library": 12}),
     "checkpoint": Command("render s.json --spp 300 --checkpoint 0.000001 -o a.pfm", ("a.pfm",), checkpoint="a.bpa"),
     "resume": Command("render s.json --resume 0.bpa --spp 8 -o a.pfm", ("a.pfm",), inputs=PARTS),
     "share": Command("render s.json --spp 64 --share 1/2 -o a.bpa", ("a.bpa",)),
     "frames": Command("render p.xyz.gz --frames 0:2 --width 16 --spp 1 --format pfm", ("p-0000.pfm", "p-0001.pfm")),
-    "several": Command("render s.json p.xyz --spp 1 --format ppm --stats t.json", ("s.ppm", "p.ppm", "t.json"), ("t.json",)),
+    "several": Command("render s.json p.xyz --width 16 --spp 1 --format ppm --stats t.json", ("s.ppm", "p.ppm", "t.json"), ("t.json",)),
     "check": Command("check s.json --width 8 --json j.json --junit j.xml --map m.png", ("j.json", "j.xml", "m.png"),
                      ("j.json", "j.xml"), codes=(0, 1, 6)),
     "against": Command("check s.json --width 8 --against old.json --json j.json", ("j.json",), ("j.json",),
                        inputs=("check s.json --width 8 --json old.json",), codes=(0, 1, 6)),
+    "clobber": Command("render s.json --no-clobber -o a.pfm --error-map e.png", ("a.pfm", "e.png"), new_only=True),
+    "exr": Command("merge 0.bpa 1.bpa -o m.exr", ("m.exr",), inputs=PARTS),
+    "suite": Command("check --suite --width 4 --spp 16 --margin 100 --json j.json --junit j.xml", ("j.json", "j.xml"),
+                     ("j.json", "j.xml"), often={"alloc": 20, "json": 200, "write": 10}, codes=(0, 1, 6)),
     "scene": Command("scene p.xyz -o p.json", ("p.json",)),
     "cover": Command("generate cover --grid 0 -o c.json", ("c.json",)),
     "field": Command("generate field --count 5 -o f.ply", ("f.ply",)),
 }
+
+
+def chosen_calls(calls, often):
+    """The numbers of those of `calls` calls that are let fail: in the middle of TRIES equal parts."""
+    if TRIES is None:
+        return range(1, calls + 1, often)
+    if TRIES >= calls:
+        return range(1, calls + 1)
+    return [1 + (2 * part + 1) * calls // (2 * TRIES) for part in range(TRIES)]
 
 
 class Faults:
@@ -66,7 +85,7 @@ class Faults:
         self.command = COMMANDS[self.NAME]
         self.results, self.varies = self.command.results, self.command.varies
         os.mkdir(self.path("elsewhere"))  # $TMPDIR
-        self.write("s.json", cli.scene(16, 9, camera={"samples_per_pixel": 1}))
+        self.write("s.json", SCENE)
         self.write("p.xyz", XYZ)
         self.write("p.xyz.gz", gzip.compress(XYZ.encode()))
         for line in self.command.inputs:
@@ -151,45 +170,53 @@ class Faults:
                     self.assertTrue(self.is_right(name.rsplit(".", 1)[0], file.read()), f"{where}: {name} is not whole")
         return result
 
-    def every(self, kind, calls, step=1, offset=0):
-        """How many of the runs failed; the moments of the checkpoints differ from run to run, and so do numbers."""
-        failed = 0
-        for at in range(1 + offset, calls + 1, step):
-            existing = at % 2 == 0 or kind == "rename"
+    def count_calls(self):
+        """How many calls of each kind there are where each result replaces a file, if it may."""
+        for name in self.results:
+            if self.command.new_only:
+                os.remove(self.path(name))
+            else:
+                self.write(name, OLD)
+        result, calls = self.run_with("none", 0)
+        self.assertEqual(result.returncode, 0, result.errors)
+        return calls
+
+    def fail_each(self, kind, calls):
+        """How many runs there were, and how many of them failed; the moments of the checkpoints differ from run to run, and so
+        do numbers of calls."""
+        failed, chosen = 0, chosen_calls(calls, self.command.often.get(kind, 1))
+        for number, at in enumerate(chosen):
+            existing = not self.command.new_only and (number % 2 == 1 or kind == "rename")
             where = f"{self.NAME}, {kind} {at} of {calls}"
             with self.subTest(where):
                 failed += self.try_one(kind, at, existing, where).returncode != 0
-        return failed
+        return len(chosen), failed
 
     def test_files(self):
-        for name in self.results:
-            self.write(name, OLD)  # so that there is something to rename over
-        _, calls = self.run_with("none", 0)
-        self.assertGreater(min(calls[kind] for kind in FILE_KINDS if kind != "read"), 0, f"nothing was tried: {calls}")
+        calls = self.count_calls()
+        rare = ("read", "rename") if self.command.new_only else ("read",)
+        self.assertGreater(min(calls[kind] for kind in FILE_KINDS if kind not in rare), 0, f"nothing was tried: {calls}")
         for kind in FILE_KINDS:
-            failed = self.every(kind, calls[kind])
+            tried, failed = self.fail_each(kind, calls[kind])
             if kind == "write" and self.command.checkpoint is None and len(self.command.codes) == 2:
-                self.assertEqual(failed, calls[kind], "a write failed and the program did not")
+                self.assertEqual(failed, tried, "a write failed and the program did not")
 
     def test_files_always(self):
         """The same call fails every time: no unnamed files here, no rename, no link."""
         for kind in ("unnamed", "rename", "link"):
-            for existing in (False, True):
+            for existing in (False,) if self.command.new_only else (False, True):
                 result = self.try_one(kind, "all", existing, f"{self.NAME}, every {kind}, existing: {existing}")
                 if kind == "unnamed" or existing:
                     self.assertEqual(result.returncode, 0, f"every {kind}: {result.errors}")
 
     def test_memory(self):
-        _, calls = self.run_with("none", 0)
+        calls = self.count_calls()
         self.assertGreater(sum(calls[kind] for kind in MEMORY_KINDS), 10)
-        failed = self.every("alloc", calls["alloc"], STEP, OFFSET)
-        for kind in ("json", "library"):
-            failed += self.every(kind, calls[kind], STEP * self.command.often, OFFSET)
-        self.assertGreater(failed, 0)
+        self.assertGreater(sum(self.fail_each(kind, calls[kind])[1] for kind in MEMORY_KINDS), 0)
 
 
-for chosen in CHOSEN:
-    globals()[chosen] = type(chosen, (Faults, cli.ProgramTest), {"NAME": chosen})
+for command in COMMANDS if CHOSEN == ["every"] else CHOSEN:
+    globals()[command] = type(command, (Faults, cli.ProgramTest), {"NAME": command})
 
 
 if __name__ == "__main__":
