@@ -309,6 +309,8 @@ static BpStatus conclude(Session *session, const json_t *against, BpError *err) 
         bp_error_attach(err, error->attachment);
         return status;
     }
+    if (counts.failed > 0 && error->code == BP_ERR_MEMORY) /* which says nothing about a device */
+        return bp_fail(err, BP_ERR_MEMORY, "%s: not every check could be made: %s", name, error->message);
     if (counts.failed > 0)
         return bp_fail(err, BP_ERR_BROKEN_DEVICE, "%s: a device failed before it could be checked", name);
     if (wants_all(line) && session->survey.broken_count > 0)
