@@ -66,12 +66,35 @@ typedef struct PackedDisc {
     real reserved;
 } PackedDisc;
 
+/* A texture: a checker of two colours. Its kind, and what else is a whole number, stands in
+ * PackedTextureKind.
+ *
+ * Solid, a point's place in the lattice is scale * point + offset, in cells; `scale` is the unevaluated sum
+ * scale + scale_low, and the offset, which moves the camera back to where the scene has it, a whole number of
+ * cells modulo LATTICE_PERIOD and a rest in [0, 1). Over a surface, `axes` are unit vectors: to longitude 0,
+ * to a quarter, to the north pole; fields[0] stand around, fields[1] from pole to pole. */
+typedef struct PackedTexture {
+    real first[3]; /* of even cells */
+    real scale;
+    real second[3]; /* of odd ones */
+    real scale_low;
+    real rest[3]; /* of the offset */
+    real fields[2];
+    real axes[9];
+    real reserved[2];
+} PackedTexture;
+
+typedef struct PackedTextureKind {
+    packed_uint mapping;
+    packed_uint cell[3]; /* of the offset */
+} PackedTextureKind;
+
 /* The numbers of a material. What it scatters stands with each sphere. */
 typedef struct PackedMaterial {
     real emit[4];
     real fuzz;             /* in [0, 1] */
     real refraction_index; /* inside over outside; for a negative radius already its reciprocal */
-    real reserved[2];      /* room for a texture */
+    real reserved[2];
 } PackedMaterial;
 
 /* The kinds of a material, values of the enums below. */
@@ -82,6 +105,11 @@ typedef struct PackedMaterialKind {
     packed_uint total_reflection;
 } PackedMaterialKind;
 
+/* Which textures the members of a material have that vary, counted from 1; 0: none. */
+typedef struct PackedVariation {
+    packed_uint albedo, fuzz, emit, reserved;
+} PackedVariation;
+
 /* The kernel gathers members for several lanes at once, from the structs as arrays of their only type. Places
  * of members in them: */
 #define MATERIAL_EMIT 0u
@@ -90,6 +118,19 @@ typedef struct PackedMaterialKind {
 #define MATERIAL_LOBE 1u /* of PackedMaterialKind, like the next two */
 #define MATERIAL_VARIANT 2u
 #define MATERIAL_TOTAL_REFLECTION 3u
+#define VARIATION_ALBEDO 0u
+#define VARIATION_FUZZ 1u
+#define VARIATION_EMIT 2u
+#define VARIATIONS 3u
+#define TEXTURE_FIRST 0u
+#define TEXTURE_SCALE 3u
+#define TEXTURE_SECOND 4u
+#define TEXTURE_SCALE_LOW 7u
+#define TEXTURE_REST 8u
+#define TEXTURE_FIELDS 11u
+#define TEXTURE_AXES 13u
+#define TEXTURE_MAPPING 0u /* of PackedTextureKind, like the next one */
+#define TEXTURE_CELL 1u
 #define DISC_DIRECTION 0u
 #define DISC_CAP 3u
 #define DISC_RADIANCE 4u
@@ -136,13 +177,16 @@ typedef struct PackedMaterialKind {
  *
  * X(numbers, element, name, count, what): `numbers` is REALS or UINTS, what `element` is made of; `count`
  * says how many elements there are, in terms of `width` (of the tree), `nodes`, `leaf_count`, `slots`,
- * `material_count`, `disc_count`, `lamp_nodes` and `lamp_slots`; `what` is how a message calls it. Arrays of
- * the first list are pack.c's, of the second the tree of lamps', of the third the tree's. Materials are
- * arrays of numbers here, since Mesa's rusticl (22.3) gathers wrong ones through a pointer to structs that is
- * cast inside a loop. */
+ * `material_count`, `texture_count`, `disc_count`, `lamp_nodes` and `lamp_slots`; `what` is how a message
+ * calls it. Arrays of the first list are pack.c's, of the second the tree of lamps', of the third the tree's.
+ * Materials are arrays of numbers here, since Mesa's rusticl (22.3) gathers wrong ones through a pointer to
+ * structs that is cast inside a loop. */
 #define MATERIAL_REALS ((packed_uint)(sizeof(PackedMaterial) / sizeof(real)))
 #define MATERIAL_UINTS ((packed_uint)(sizeof(PackedMaterialKind) / sizeof(packed_uint)))
 #define DISC_REALS ((packed_uint)(sizeof(PackedDisc) / sizeof(real)))
+#define VARIATION_UINTS ((packed_uint)(sizeof(PackedVariation) / sizeof(packed_uint)))
+#define TEXTURE_REALS ((packed_uint)(sizeof(PackedTexture) / sizeof(real)))
+#define TEXTURE_UINTS ((packed_uint)(sizeof(PackedTextureKind) / sizeof(packed_uint)))
 /* clang-format off */
 #define SCENE_ARRAYS_OF_PACK(X)                                                                              \
     X(REALS, PackedCamera, camera, 1, "the camera")                                                          \
@@ -150,6 +194,9 @@ typedef struct PackedMaterialKind {
     X(REALS, real, discs, disc_count * DISC_REALS, "the discs of the background")                            \
     X(REALS, real, materials, material_count * MATERIAL_REALS, "the table of materials")                     \
     X(UINTS, packed_uint, material_kinds, material_count * MATERIAL_UINTS, "the table of materials")         \
+    X(UINTS, packed_uint, variations, material_count * VARIATION_UINTS, "the table of materials")            \
+    X(REALS, real, textures, texture_count * TEXTURE_REALS, "the textures")                                  \
+    X(UINTS, packed_uint, texture_kinds, texture_count * TEXTURE_UINTS, "the textures")                      \
     X(UINTS, packed_uint, slot_material, slots, "the table of sphere materials")                             \
     X(REALS, real, slot_albedo, slots * ALBEDO_REALS, "the table of sphere colours")
 #define SCENE_ARRAYS_OF_LAMPS(X)                                                                             \
@@ -170,6 +217,8 @@ enum { LOBE_LAMBERTIAN, LOBE_COSINE_CUBED, LOBE_HEMISPHERE };
 enum { FUZZ_SPHERE, FUZZ_BALL };
 enum { FRESNEL_SCHLICK, FRESNEL_EXACT, FRESNEL_NONE };
 enum { TOTAL_REFLECT, TOTAL_ABSORB, TOTAL_REFRACT };
+enum { MAPPING_SOLID, MAPPING_SURFACE };
+#define LATTICE_PERIOD 0x400000u /* cells are counted modulo this: whole numbers that a float holds */
 
 #ifdef BP_HOST
 _Static_assert(sizeof(real) == 8, "the host packs in double");
@@ -178,6 +227,9 @@ _Static_assert(sizeof(PackedSky) == 28 * sizeof(real), "PackedSky has padding");
 _Static_assert(sizeof(PackedDisc) == 12 * sizeof(real), "PackedDisc has padding");
 _Static_assert(sizeof(PackedMaterial) == 8 * sizeof(real), "PackedMaterial has padding");
 _Static_assert(sizeof(PackedMaterialKind) == 16, "PackedMaterialKind has padding");
+_Static_assert(sizeof(PackedTexture) == 24 * sizeof(real), "PackedTexture has padding");
+_Static_assert(sizeof(PackedTextureKind) == 16, "PackedTextureKind has padding");
+_Static_assert(sizeof(PackedVariation) == 16, "PackedVariation has padding");
 #define BP_PLACE(place, type, member, element)                                                               \
     _Static_assert(offsetof(type, member) == (place) * sizeof(element), "the place of " #member)
 BP_PLACE(DISC_DIRECTION, PackedDisc, direction, real);
@@ -187,6 +239,18 @@ BP_PLACE(DISC_POWER, PackedDisc, power, real);
 BP_PLACE(DISC_SINE, PackedDisc, sine, real);
 BP_PLACE(DISC_CHORD2, PackedDisc, chord2, real);
 BP_PLACE(DISC_SEEN, PackedDisc, seen, real);
+BP_PLACE(VARIATION_ALBEDO, PackedVariation, albedo, packed_uint);
+BP_PLACE(VARIATION_FUZZ, PackedVariation, fuzz, packed_uint);
+BP_PLACE(VARIATION_EMIT, PackedVariation, emit, packed_uint);
+BP_PLACE(TEXTURE_FIRST, PackedTexture, first, real);
+BP_PLACE(TEXTURE_SCALE, PackedTexture, scale, real);
+BP_PLACE(TEXTURE_SECOND, PackedTexture, second, real);
+BP_PLACE(TEXTURE_SCALE_LOW, PackedTexture, scale_low, real);
+BP_PLACE(TEXTURE_REST, PackedTexture, rest, real);
+BP_PLACE(TEXTURE_FIELDS, PackedTexture, fields, real);
+BP_PLACE(TEXTURE_AXES, PackedTexture, axes, real);
+BP_PLACE(TEXTURE_MAPPING, PackedTextureKind, mapping, packed_uint);
+BP_PLACE(TEXTURE_CELL, PackedTextureKind, cell, packed_uint);
 BP_PLACE(MATERIAL_EMIT, PackedMaterial, emit, real);
 BP_PLACE(MATERIAL_FUZZ, PackedMaterial, fuzz, real);
 BP_PLACE(MATERIAL_INDEX, PackedMaterial, refraction_index, real);

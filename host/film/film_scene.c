@@ -124,6 +124,26 @@ static uint64_t mix_camera(uint64_t hash, const BpCamera *camera) {
     return mix(hash, (uint64_t)camera->pixel_sampling);
 }
 
+/* A member that varies: what by. `sphere_colour`: the sphere has a colour of its own instead of the albedo.
+ */
+static uint64_t mix_textures(uint64_t hash, const BpScene *scene, const BpMaterial *material,
+                             bool sphere_colour) {
+    for (int m = 0; m < BP_MEMBER_COUNT; m++) {
+        if (material->texture[m] == 0 || (m == BP_MEMBER_ALBEDO && sphere_colour)) continue;
+        const BpTexture *texture = &scene->textures[material->texture[m] - 1];
+        hash = mix(hash, 0x7465787475726530u + (uint64_t)m);
+        hash = mix(hash, (uint64_t)texture->type << 8 | (uint64_t)texture->mapping);
+        for (int i = 0; i < 2; i++) hash = mix_reals(hash, texture->colors[i], 3);
+        if (texture->mapping == BP_MAPPING_SOLID) {
+            hash = mix_real(hash, texture->size);
+            continue;
+        }
+        hash = mix_real(mix_reals(hash, texture->up, 3), texture->turn_degrees);
+        hash = mix(hash, (uint64_t)texture->repeat[0] << 32 | texture->repeat[1]);
+    }
+    return hash;
+}
+
 /* All but the albedo, which a sphere may bring itself. */
 static uint64_t hash_material(const BpMaterial *material) {
     uint64_t hash = mix(0xcbf29ce484222325u, (uint64_t)material->kind);
@@ -147,6 +167,8 @@ static uint64_t mix_sphere(uint64_t hash, const BpScene *scene, const BpSphere *
     /* Materials without an inside turn the normal towards the ray. */
     const bool inside = bp_material_is(material->kind, BP_HAS_INSIDE);
     hash = mix_real(hash, inside ? sphere->radius : fabs(sphere->radius));
+    if (bp_material_varies(material))
+        hash = mix_textures(hash, scene, material, sphere->albedo != BP_NO_ALBEDO);
     if (!bp_material_has(material->kind, BP_MEMBER_ALBEDO)) return hash;
     if (sphere->albedo == BP_NO_ALBEDO) return mix_reals(hash, material->albedo, 3);
     for (size_t c = 0; c < 3; c++) hash = mix_real(hash, (double)scene->albedos[sphere->albedo][c]);

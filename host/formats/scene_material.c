@@ -1,6 +1,6 @@
 /* scene_material.c: one material of a scene document.
  *
- * In:    its node.   Out: a BpMaterial.
+ * In:    its node, the scene's textures.   Out: a BpMaterial.
  * Knows: the lists of material.h, and how a document has them. Ranges are checked by scene_validate.c. */
 #include "scene_parse.h"
 
@@ -50,10 +50,17 @@ static BpStatus refuse_foreign_members(const BpNode *node, BpMaterialKind kind, 
     return BP_OK;
 }
 
-static BpStatus read_member(const BpNode *object, BpMember m, BpMaterial *material, BpError *err) {
+static BpStatus read_member(const BpNode *object, BpMember m, const BpScene *scene, BpMaterial *material,
+                            BpError *err) {
     const BpMemberInfo *member = &bp_members[m];
     const BpNode node = bp_node_member(object, member->name);
     int choice = 0;
+    if (bp_member_can_vary(m) && json_is_object(node.value)) {
+        uint32_t number = 0;
+        BP_TRY(bp_parse_texture_name(&node, scene, &number, err));
+        bp_member_vary(material, m, number, &scene->textures[number - 1]);
+        return BP_OK;
+    }
     switch (member->form) {
     case BP_FORM_COLOUR:
         return bp_node_vector(&node, bp_member_values(material, m), err);
@@ -69,7 +76,7 @@ static BpStatus read_member(const BpNode *object, BpMember m, BpMaterial *materi
     return BP_OK;
 }
 
-BpStatus bp_parse_material(const BpNode *node, BpMaterial *material, BpError *err) {
+BpStatus bp_parse_material(const BpNode *node, const BpScene *scene, BpMaterial *material, BpError *err) {
     char text[256] = "one of ";
     const size_t used = strlen(text);
     int type = 0;
@@ -84,6 +91,6 @@ BpStatus bp_parse_material(const BpNode *node, BpMaterial *material, BpError *er
         if ((bp_material_types[type].needed >> m & 1u) != 0)
             BP_TRY(bp_node_require(node, bp_members[m].name, bp_members[m].needed, err));
     material->refraction_index = 1;
-    for (int m = 0; m < BP_MEMBER_COUNT; m++) BP_TRY(read_member(node, (BpMember)m, material, err));
+    for (int m = 0; m < BP_MEMBER_COUNT; m++) BP_TRY(read_member(node, (BpMember)m, scene, material, err));
     return BP_OK;
 }

@@ -1,8 +1,8 @@
 /* scene_parse.c: from the text of a scene document to a BpScene; see scene_parse.h.
  *
  * Knows: the grammar's top level, materials by name, spheres. The rest: scene_camera.c, scene_background.c,
- * scene_material.c, scene_points.c; ranges: scene_validate.c, whose faults are given their place in the text
- * here. */
+ * scene_texture.c, scene_material.c, scene_points.c; ranges: scene_validate.c, whose faults are given their
+ * place in the text here. */
 #include "scene_parse.h"
 
 #include "input_file.h"
@@ -37,7 +37,7 @@ static BpStatus parse_materials(const BpNode *node, BpScene *scene, BpError *err
         const BpNode child = bp_node_member(node, name);
         BpMaterial *material = &scene->materials[scene->material_count++];
         BP_TRY(bp_copy_text(name, &material->name, err));
-        BP_TRY(bp_parse_material(&child, material, err));
+        BP_TRY(bp_parse_material(&child, scene, material, err));
     }
     return BP_OK;
 }
@@ -161,6 +161,7 @@ static BpStatus refuse_faults(const BpNode *root, const BpScene *scene, BpError 
     const BpNode camera = bp_node_member(root, "camera");
     const BpNode background = bp_node_member(root, "background");
     const BpNode backdrop = bp_node_member(root, "backdrop");
+    const BpNode textures = bp_node_member(root, "textures");
     const BpNode materials = bp_node_member(root, "materials");
     const BpNode spheres = bp_node_member(root, "spheres");
     const BpNode clouds = bp_node_member(root, "clouds");
@@ -189,6 +190,10 @@ static BpStatus refuse_faults(const BpNode *root, const BpScene *scene, BpError 
         const BpNode discs = bp_node_member(&background, "discs");
         const BpNode disc = bp_node_element(&discs, fault.index);
         return fail_member(&disc, fault.member, fault.text, err);
+    }
+    case BP_FAULT_TEXTURE: {
+        const BpNode texture = bp_node_member(&textures, scene->textures[fault.index].name);
+        return fail_member(&texture, fault.member, fault.text, err);
     }
     case BP_FAULT_MATERIAL: {
         const BpNode material = bp_node_member(&materials, scene->materials[fault.index].name);
@@ -315,15 +320,16 @@ static BpStatus choose_fresnel(const BpSceneChanges *changes, BpScene *scene, Bp
 }
 
 static BpStatus parse_body(const BpNode *root, const BpSceneChanges *changes, BpScene *scene, BpError *err) {
-    static const char *const names[] = {"format",   "title",     "source",   "camera",    "background",
-                                        "backdrop", "light",     "transfer", "materials", "spheres",
-                                        "clouds",   "particles", "$schema"};
+    static const char *const names[] = {"format",   "title",  "source",    "camera",   "background",
+                                        "backdrop", "light",  "transfer",  "textures", "materials",
+                                        "spheres",  "clouds", "particles", "$schema"};
     BP_TRY(bp_node_object(root, names, BP_COUNT(names), err));
     BP_TRY(bp_node_require(root, "camera", "one, such as \"camera\": { \"image_width\": 400 }", err));
     BP_TRY(parse_head(root, scene, err));
     const BpNode camera = bp_node_member(root, "camera");
     const BpNode background = bp_node_member(root, "background");
     const BpNode backdrop = bp_node_member(root, "backdrop");
+    const BpNode textures = bp_node_member(root, "textures");
     const BpNode materials = bp_node_member(root, "materials");
     const BpNode spheres = bp_node_member(root, "spheres");
     const BpNode clouds = bp_node_member(root, "clouds");
@@ -337,6 +343,7 @@ static BpStatus parse_body(const BpNode *root, const BpSceneChanges *changes, Bp
     BP_TRY(bp_parse_background(&background, scene, err));
     BP_TRY(bp_parse_backdrop(&backdrop, scene, err));
     BP_TRY(bp_parse_light(root, changes->light, scene, err));
+    BP_TRY(bp_parse_textures(&textures, scene, err));
     BP_TRY(parse_materials(&materials, scene, err));
     BpMaterialIndex index = {0};
     BpStatus status = index_materials(scene, &index, err);

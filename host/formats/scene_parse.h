@@ -67,8 +67,12 @@ BpStatus bp_parse_light(const BpNode *root, const char *name, BpScene *scene, Bp
 
 BpStatus bp_parse_camera(const BpNode *node, BpCamera *camera, BpError *err);
 BpStatus bp_parse_background(const BpNode *node, BpScene *scene, BpError *err);
-/* `material` is zeroed; its name is the caller's to set. */
-BpStatus bp_parse_material(const BpNode *node, BpMaterial *material, BpError *err);
+/* The scene's textures (scene_texture.c). */
+BpStatus bp_parse_textures(const BpNode *node, BpScene *scene, BpError *err);
+/* Finds the texture that the node, { "texture": name }, names; *number counts from 1. */
+BpStatus bp_parse_texture_name(const BpNode *node, const BpScene *scene, uint32_t *number, BpError *err);
+/* `material` is zeroed; its name is the caller's to set. The scene has its textures. */
+BpStatus bp_parse_material(const BpNode *node, const BpScene *scene, BpMaterial *material, BpError *err);
 
 /* The materials of a scene in the order of their names. */
 typedef struct BpMaterialIndex {

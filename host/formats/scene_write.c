@@ -176,17 +176,25 @@ static void put_backdrop(FILE *out, const BpScene *scene) {
     fputs(" }", out);
 }
 
-/* ---- materials and spheres ------------------------------------------------------------------------------
+/* ---- textures, materials and spheres
+ * ------------------------------------------------------------------------------
  */
 
 /* A member that the document may leave out is left out: a choice that is the first of its names, a colour of
  * zeros. */
-static void put_member(FILE *out, const BpMaterial *material, BpMember m) {
+static BpStatus put_member(FILE *out, const BpScene *scene, const BpMaterial *material, BpMember m,
+                           BpError *err) {
     const BpMemberInfo *member = &bp_members[m];
+    if (material->texture[m] != 0) {
+        fprintf(out, ", \"%s\": { \"texture\": ", member->name);
+        BP_TRY(put_text(out, scene->textures[material->texture[m] - 1].name, err));
+        fputs(" }", out);
+        return BP_OK;
+    }
     const bool needed = (bp_material_types[material->kind].needed >> m & 1u) != 0;
     const unsigned choice = member->form == BP_FORM_CHOICE ? bp_member_choice(material, m) : 0;
-    if (member->form == BP_FORM_CHOICE && choice == 0) return;
-    if (member->form == BP_FORM_COLOUR && !needed && is_dark(bp_member_values_of(material, m))) return;
+    if (member->form == BP_FORM_CHOICE && choice == 0) return BP_OK;
+    if (member->form == BP_FORM_COLOUR && !needed && is_dark(bp_member_values_of(material, m))) return BP_OK;
     fprintf(out, ", \"%s\": ", member->name);
     switch (member->form) {
     case BP_FORM_COLOUR:
@@ -199,15 +207,58 @@ static void put_member(FILE *out, const BpMaterial *material, BpMember m) {
         fprintf(out, "\"%s\"", member->names[choice]);
         break;
     }
+    return BP_OK;
 }
 
-static BpStatus put_material(FILE *out, const BpMaterial *material, BpError *err) {
+static BpStatus put_material(FILE *out, const BpScene *scene, const BpMaterial *material, BpError *err) {
     fputs("    ", out);
     BP_TRY(put_text(out, material->name, err));
     fprintf(out, ": { \"type\": \"%s\"", bp_material_types[material->kind].name);
     for (int m = 0; m < BP_MEMBER_COUNT; m++)
-        if (bp_material_has(material->kind, (BpMember)m)) put_member(out, material, (BpMember)m);
+        if (bp_material_has(material->kind, (BpMember)m))
+            BP_TRY(put_member(out, scene, material, (BpMember)m, err));
     fputs(" }", out);
+    return BP_OK;
+}
+
+/* A colour, or the number that it stands for. */
+static void put_value(FILE *out, const double value[3]) {
+    if (value[0] == value[1] && value[0] == value[2])
+        put_number(out, value[0]);
+    else
+        put_vector(out, value);
+}
+
+static BpStatus put_texture(FILE *out, const BpTexture *texture, BpError *err) {
+    fputs("    ", out);
+    BP_TRY(put_text(out, texture->name, err));
+    fprintf(out, ": { \"type\": \"%s\", \"mapping\": \"%s\", \"colors\": [",
+            bp_texture_type_names[texture->type], bp_mapping_names[texture->mapping]);
+    put_value(out, texture->colors[0]);
+    fputs(", ", out);
+    put_value(out, texture->colors[1]);
+    fputs("]", out);
+    if (texture->mapping == BP_MAPPING_SOLID) {
+        fputs(", \"size\": ", out);
+        put_number(out, texture->size);
+    } else {
+        fputs(", \"up\": ", out);
+        put_vector(out, texture->up);
+        fputs(", \"turn\": ", out);
+        put_number(out, texture->turn_degrees);
+        fprintf(out, ", \"repeat\": [%u, %u]", (unsigned)texture->repeat[0], (unsigned)texture->repeat[1]);
+    }
+    fputs(" }", out);
+    return BP_OK;
+}
+
+static BpStatus put_textures(FILE *out, const BpScene *scene, BpError *err) {
+    fputs(",\n  \"textures\": {", out);
+    for (size_t i = 0; i < scene->texture_count; i++) {
+        fputs(i > 0 ? ",\n" : "\n", out);
+        BP_TRY(put_texture(out, &scene->textures[i], err));
+    }
+    fputs("\n  }", out);
     return BP_OK;
 }
 
@@ -220,7 +271,7 @@ static BpStatus put_materials(FILE *out, const BpScene *scene, BpError *err) {
     fputs(",\n  \"materials\": {", out);
     for (size_t i = 0; i < written_materials(scene); i++) {
         fputs(i > 0 ? ",\n" : "\n", out);
-        BP_TRY(put_material(out, &scene->materials[i], err));
+        BP_TRY(put_material(out, scene, &scene->materials[i], err));
     }
     fputs("\n  }", out);
     return BP_OK;
@@ -280,6 +331,7 @@ BpStatus bp_scene_print(const BpScene *scene, FILE *out, BpError *err) {
         fprintf(out, ",\n  \"light\": \"%s\"", bp_light_names[scene->light]);
     put_backdrop(out, scene);
     fprintf(out, ",\n  \"transfer\": \"%s\"", bp_transfer_names[scene->transfer]);
+    if (scene->texture_count > 0) BP_TRY(put_textures(out, scene, err));
     if (written_materials(scene) > 0) BP_TRY(put_materials(out, scene, err));
     if (written_spheres(scene) > 0) BP_TRY(put_spheres(out, scene, err));
     if (scene->has_particles) put_particles(out, scene);

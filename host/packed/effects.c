@@ -201,6 +201,24 @@ static bool explain_lamps(const BpScene *scene, size_t size, char *reason) {
     return false;
 }
 
+/* Whether a sphere has a material of which a member varies. A colour of the sphere's own replaces the
+ * albedo's texture. */
+static bool explain_textures(const BpScene *scene, size_t size, char *reason) {
+    size_t spheres = 0, materials = 0;
+    for (size_t m = 0; m < scene->material_count; ++m) materials += bp_material_varies(&scene->materials[m]);
+    for (size_t i = 0; i < scene->sphere_count && materials > 0; ++i)
+        spheres += bp_material_varies(&scene->materials[scene->spheres[i].material]);
+    if (spheres > 0)
+        snprintf(reason, size, "%zu material%s with textures, on %zu of %zu sphere%s", materials,
+                 bp_plural(materials), spheres, scene->sphere_count, bp_plural(scene->sphere_count));
+    else if (materials > 0)
+        snprintf(reason, size, "%zu material%s %s textures, but no sphere has %s", materials,
+                 bp_plural(materials), materials == 1 ? "has" : "have", materials == 1 ? "it" : "them");
+    else
+        snprintf(reason, size, "no material has a texture");
+    return spheres > 0;
+}
+
 void bp_effects_analyse(const BpScene *scene, BpEffects *effects) {
     const size_t size = sizeof effects->reason[0];
     Use uses[BP_EFFECT_COUNT], all;
@@ -220,6 +238,8 @@ void bp_effects_analyse(const BpScene *scene, BpEffects *effects) {
         snprintf(effects->reason[BP_EFFECT_LENS], size, "defocus_angle 0: the lens is a pinhole");
     }
     if (explain_discs(scene, size, effects->reason[BP_EFFECT_DISCS])) effects->bits |= 1u << BP_EFFECT_DISCS;
+    if (explain_textures(scene, size, effects->reason[BP_EFFECT_TEXTURES]))
+        effects->bits |= 1u << BP_EFFECT_TEXTURES;
     if ((effects->bits & (1u << BP_EFFECT_EMISSION | 1u << BP_EFFECT_DISCS)) == 0)
         snprintf(effects->reason[BP_EFFECT_LAMPS], size,
                  NO_LAMP_REASON); /* without another look at all spheres */

@@ -24,7 +24,8 @@
       "nothing shows normals")                                                                               \
     X(LENS, "lens", "a lens with an aperture: defocus blur", "", "")                                         \
     X(LAMPS, "lamps", "rays to lamps, from surfaces that scatter into many directions", "", "")              \
-    X(DISCS, "discs", "lamps at infinity: discs in the sky", "", "")
+    X(DISCS, "discs", "lamps at infinity: discs in the sky", "", "")                                         \
+    X(TEXTURES, "textures", "colours, fuzz and light that vary over surfaces: checkers", "", "")
 
 typedef enum BpEffect {
 #define BP_EFFECT_ENUM(identifier, name, text, left_out, absent) BP_EFFECT_##identifier,

@@ -203,14 +203,73 @@ static void pack_material(const BpMaterial *material, bool inside_out, PackedMat
     if (inside_out) numbers->refraction_index = 1 / numbers->refraction_index;
 }
 
+_Static_assert((int)BP_MAPPING_SOLID == MAPPING_SOLID && (int)BP_MAPPING_SURFACE == MAPPING_SURFACE,
+               "mappings differ between host and kernel");
+
+/* The lattice of cells, seen from where the camera stands. */
+static void pack_lattice(const BpTexture *texture, const double origin[3], bool single, PackedTexture *packed,
+                         PackedTextureKind *kind) {
+    const double scale = 1 / texture->size;
+    packed->scale = single ? (double)(float)scale : scale;
+    packed->scale_low = single ? scale - packed->scale : fma(-scale, texture->size, 1) / texture->size;
+    for (int a = 0; a < 3; ++a) {
+        const double place = origin[a] / texture->size, whole = floor(place), period = LATTICE_PERIOD;
+        packed->rest[a] = place - whole;
+        kind->cell[a] = (packed_uint)(whole - floor(whole / period) * period);
+    }
+}
+
+static void pack_texture(const BpTexture *texture, const double origin[3], bool single, PackedTexture *packed,
+                         PackedTextureKind *kind) {
+    *packed = (PackedTexture){.scale = 0};
+    *kind = (PackedTextureKind){.mapping = (packed_uint)texture->mapping};
+    memcpy(packed->first, texture->colors[0], sizeof packed->first);
+    memcpy(packed->second, texture->colors[1], sizeof packed->second);
+    if (texture->mapping == BP_MAPPING_SOLID) {
+        pack_lattice(texture, origin, single, packed, kind);
+        return;
+    }
+    bp_texture_frame(texture, packed->axes, packed->axes + 3, packed->axes + 6);
+    for (int i = 0; i < 2; ++i) packed->fields[i] = 2.0 * texture->repeat[i];
+}
+
+/* `origin`: of the space that is packed, in the scene. */
+static BpStatus pack_textures(const BpScene *scene, const double origin[3], BpPacked *packed, BpError *err) {
+    const size_t count = scene->texture_count;
+    PackedTexture *textures = calloc(count + 1, sizeof *textures);
+    PackedTextureKind *kinds = calloc(count + 1, sizeof *kinds);
+    packed->texture_kinds = (uint32_t *)kinds;
+    packed->texture_count = (uint32_t)count;
+    if (textures != NULL && kinds != NULL) {
+        for (size_t i = 0; i < count; ++i)
+            pack_texture(&scene->textures[i], origin, packed->single_precision, &textures[i], &kinds[i]);
+        packed->textures =
+            narrow((const double *)textures, count * TEXTURE_REALS, TEXTURE_REALS, packed->single_precision);
+    }
+    free(textures);
+    return packed->textures != NULL ? BP_OK : out_of_memory(scene, err);
+}
+
 static bool is_inside_out(const BpScene *scene, const BpSphere *sphere) {
     return sphere->radius < 0 && bp_material_is(scene->materials[sphere->material].kind, BP_HAS_INSIDE);
 }
 
-/* The materials. A dielectric that a sphere of negative radius uses gets a second entry with the reciprocal
- * index: turning a surface inside out is the same as exchanging inside and outside. Normals face the ray, so
- * a negative radius makes no difference to any other kind. `second[m]`: the number of that entry of material
- * m. */
+/* Colours of its own, as points of clouds have them, that stand in place of its material's texture. */
+static bool replaces_texture(const BpScene *scene, const BpSphere *sphere) {
+    return sphere->albedo != BP_NO_ALBEDO &&
+           scene->materials[sphere->material].texture[BP_MEMBER_ALBEDO] != 0;
+}
+
+/* Whether the sphere has the second entry of its material. */
+static bool is_second(const BpScene *scene, const BpSphere *sphere) {
+    return is_inside_out(scene, sphere) || replaces_texture(scene, sphere);
+}
+
+/* The materials. Some get a second entry, and no material has both reasons for it. A dielectric that a sphere
+ * of negative radius uses: with the reciprocal index, since seen from inside out is the same as inside and
+ * outside exchanged; normals face the ray, so no other kind can tell a negative radius. And one whose albedo
+ * varies, for spheres that have a colour of their own. `second[m]`: the number of that entry of material m.
+ */
 static BpStatus pack_materials(const BpScene *scene, uint32_t *second, BpPacked *packed, BpError *err) {
     const size_t count = scene->material_count;
     if (count > UINT32_MAX / 4)
@@ -218,16 +277,27 @@ static BpStatus pack_materials(const BpScene *scene, uint32_t *second, BpPacked 
     BpStatus status = BP_OK;
     PackedMaterialKind *kinds = calloc(2 * count + 1, sizeof *kinds);
     PackedMaterial *numbers = calloc(2 * count + 1, sizeof *numbers);
-    if (kinds == NULL || numbers == NULL) {
+    PackedVariation *variations = calloc(2 * count + 1, sizeof *variations);
+    packed->variations = (uint32_t *)variations;
+    if (kinds == NULL || numbers == NULL || variations == NULL) {
         status = out_of_memory(scene, err);
         goto cleanup;
     }
     uint32_t used = (uint32_t)count;
-    for (size_t m = 0; m < count; ++m) pack_material(&scene->materials[m], false, &numbers[m], &kinds[m]);
+    for (size_t m = 0; m < count; ++m) {
+        const uint32_t *texture = scene->materials[m].texture;
+        pack_material(&scene->materials[m], false, &numbers[m], &kinds[m]);
+        variations[m] = (PackedVariation){.albedo = texture[BP_MEMBER_ALBEDO],
+                                          .fuzz = texture[BP_MEMBER_FUZZ],
+                                          .emit = texture[BP_MEMBER_EMIT]};
+    }
     for (size_t i = 0; i < scene->sphere_count; ++i) {
-        const uint32_t m = scene->spheres[i].material;
-        if (!is_inside_out(scene, &scene->spheres[i]) || second[m] != 0) continue;
-        pack_material(&scene->materials[m], true, &numbers[used], &kinds[used]);
+        const BpSphere *sphere = &scene->spheres[i];
+        const uint32_t m = sphere->material;
+        if (!is_second(scene, sphere) || second[m] != 0) continue;
+        pack_material(&scene->materials[m], is_inside_out(scene, sphere), &numbers[used], &kinds[used]);
+        variations[used] = variations[m];
+        variations[used].albedo = 0;
         second[m] = used++;
     }
     packed->material_count = used > 0 ? used : 1; /* at least one, unused */
@@ -263,8 +333,7 @@ static BpStatus pack_slots(const BpScene *scene, const uint32_t *second, BpPacke
     for (size_t slot = 0; slot < slots; ++slot) {
         if (tree->slot_sphere[slot] == NO_SPHERE) continue;
         const BpSphere *sphere = &scene->spheres[tree->slot_sphere[slot]];
-        packed->slot_material[slot] =
-            is_inside_out(scene, sphere) ? second[sphere->material] : sphere->material;
+        packed->slot_material[slot] = is_second(scene, sphere) ? second[sphere->material] : sphere->material;
         for (size_t a = 0; a < ALBEDO_REALS; ++a)
             bp_reals_store(packed->slot_albedo, packed->single_precision, ALBEDO_REALS * slot + a,
                            scattered(scene, sphere, a));
@@ -289,6 +358,7 @@ BpStatus bp_scene_pack(const BpScene *scene, const BpTreeOptions *options, bool 
         goto cleanup;
     }
     BP_TRY_GOTO(status, pack_materials(scene, second, packed, err), cleanup);
+    BP_TRY_GOTO(status, pack_textures(scene, origin, packed, err), cleanup);
     BP_TRY_GOTO(status, pack_slots(scene, second, packed, err), cleanup);
     if (sample_lamps)
         BP_TRY_GOTO(status, bp_lamp_tree_build(scene, &packed->tree, &packed->lamps, err), cleanup);

@@ -28,6 +28,7 @@ typedef struct BpPacked {
     SCENE_ARRAYS_OF_PACK(BP_HOLD)
 #undef BP_HOLD
     uint32_t material_count; /* at least one */
+    uint32_t texture_count;
     uint32_t disc_count;
 } BpPacked;
 

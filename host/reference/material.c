@@ -2,7 +2,8 @@
 #include "trace.h"
 
 static Vec albedo_of(const BpScene *scene, const Hit *hit) {
-    if (hit->sphere->albedo == BP_NO_ALBEDO) return vec(hit->material->albedo);
+    if (hit->sphere->albedo == BP_NO_ALBEDO)
+        return bp_ref_varied(scene, hit, BP_MEMBER_ALBEDO, hit->material->albedo);
     const float *albedo = scene->albedos[hit->sphere->albedo];
     return (Vec){albedo[0], albedo[1], albedo[2]};
 }
@@ -27,12 +28,16 @@ static Vec reflect(Vec direction, Vec normal) {
     return sub(direction, scale(2 * dot(direction, normal), normal));
 }
 
-static bool scatter_metal(const BpMaterial *metal, Vec direction, Vec normal, Random *random,
+static bool scatter_metal(const BpScene *scene, const Hit *hit, Vec direction, Random *random,
                           Vec *scattered) {
+    const BpMaterial *metal = hit->material;
+    const Vec normal = hit->normal;
+    const double same[3] = {metal->fuzz, metal->fuzz, metal->fuzz};
+    const double fuzz = fmin(bp_ref_varied(scene, hit, BP_MEMBER_FUZZ, same).x, 1);
     *scattered = unit(reflect(direction, normal));
-    if (metal->fuzz > 0) {
+    if (fuzz > 0) {
         const Vec p = metal->fuzz_shape == BP_FUZZ_BALL ? random_in_ball(random) : random_on_sphere(random);
-        *scattered = add(*scattered, scale(metal->fuzz, p));
+        *scattered = add(*scattered, scale(fuzz, p));
     }
     return dot(*scattered, normal) > 0;
 }
@@ -95,7 +100,7 @@ bool bp_ref_scatter(const BpScene *scene, const Ray *ray, const Hit *hit, Random
         return true;
     case BP_MATERIAL_METAL:
         *attenuation = albedo_of(scene, hit);
-        return scatter_metal(hit->material, incoming, hit->normal, random, direction);
+        return scatter_metal(scene, hit, incoming, random, direction);
     case BP_MATERIAL_DIELECTRIC:
         *attenuation = (Vec){1, 1, 1};
         return scatter_dielectric(hit->material, incoming, hit, random, direction);

@@ -59,6 +59,7 @@ bool bp_ref_hit(const BpScene *scene, const Ray *ray, Hit *hit) {
     hit->point = add(center, scale(fabs(sphere->radius), radial));
     const Vec outward = sphere->radius < 0 ? scale(-1, radial) : radial;
     hit->front_face = dot(ray->direction, outward) < 0;
+    hit->radial = radial;
     hit->normal = hit->front_face ? outward : scale(-1, outward);
     return true;
 }
@@ -110,7 +111,7 @@ Vec bp_ref_color(const BpScene *scene, const Ray *ray, uint32_t depth, Random *r
     Hit hit;
     if (!bp_ref_hit(scene, ray, &hit)) return background(scene, ray);
 
-    Vec emitted = vec(hit.material->emit);
+    Vec emitted = bp_ref_varied(scene, &hit, BP_MEMBER_EMIT, hit.material->emit);
     if (hit.material->kind == BP_MATERIAL_NORMALS)
         emitted = add(emitted, scale(0.5, add(hit.normal, (Vec){1, 1, 1})));
     Vec direction, attenuation;

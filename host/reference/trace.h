@@ -16,6 +16,7 @@ typedef struct Ray {
 typedef struct Hit {
     double t; /* in lengths of the ray's direction */
     Vec point;
+    Vec radial;      /* unit length, away from the centre */
     Vec normal;      /* unit length, faces the ray */
     bool front_face; /* the ray comes from the side that the outward normal points to */
     const BpSphere *sphere;
@@ -51,6 +52,9 @@ Vec bp_ref_camera_color(const BpScene *scene, const Ray *ray, double height, uin
 
 /* Radiance along the ray. `depth`: segments still allowed; 0 is black. */
 Vec bp_ref_color(const BpScene *scene, const Ray *ray, uint32_t depth, Random *random, Path *path);
+
+/* What a member of the material at a hit is there: its texture's value, or `constant` where it has none. */
+Vec bp_ref_varied(const BpScene *scene, const Hit *hit, BpMember member, const double constant[3]);
 
 /* Reflectance, `ratio` = index on the ray's side over index beyond, `cosine` of the incident angle. Schlick's
  * form (1994, eq. 15) as the third and fourth editions use it; exact, unpolarised (Fresnel's equations). */

@@ -73,6 +73,8 @@ bool bp_scene_always_scatters(const BpScene *scene) {
         if (!bp_material_is(material->kind, BP_SCATTERS) || material->fuzz > 0 ||
             material->total_reflection == BP_TOTAL_ABSORB)
             return false;
+        if (bp_material_has(material->kind, BP_MEMBER_ALBEDO) && material->texture[BP_MEMBER_ALBEDO] != 0)
+            return false; /* it may be black in places */
         if (bp_material_has(material->kind, BP_MEMBER_ALBEDO) &&
             fmax(material->albedo[0], fmax(material->albedo[1], material->albedo[2])) <= 0)
             return false;

@@ -76,6 +76,22 @@ void bp_member_choose(BpMaterial *material, BpMember member, unsigned choice) {
     memcpy((char *)material + bp_members[member].offset, &choice, sizeof choice);
 }
 
+void bp_member_vary(BpMaterial *material, BpMember member, uint32_t number, const BpTexture *texture) {
+    double bound[3], *values = bp_member_values(material, member);
+    bp_texture_bound(texture, bound);
+    material->texture[member] = number;
+    if (bp_members[member].form == BP_FORM_COLOUR)
+        memcpy(values, bound, sizeof bound);
+    else
+        *values = fmin(bound[0], bp_members[member].cap);
+}
+
+bool bp_material_varies(const BpMaterial *material) {
+    for (int m = 0; m < BP_MEMBER_COUNT; m++)
+        if (material->texture[m] != 0) return true;
+    return false;
+}
+
 bool bp_material_is_lit(const BpMaterial *material) {
     return material->kind == BP_MATERIAL_LAMBERTIAN ||
            (material->kind == BP_MATERIAL_METAL && material->fuzz >= BP_LIT_FUZZ_MIN);

@@ -12,8 +12,10 @@
 
 #include <stdbool.h>
 #include <stddef.h>
+#include <stdint.h>
 
 typedef struct BpMaterial BpMaterial; /* scene.h */
+struct BpTexture;                     /* texture.h */
 
 /* Metal of less fuzz than this is not lit by rays to lamps (kernels/bsdf/bsdf.cl, LOBE_FUZZ_MIN). */
 #define BP_LIT_FUZZ_MIN (1.0 / 64)
@@ -128,6 +130,14 @@ const double *bp_member_values_of(const BpMaterial *material, BpMember member);
 /* Of a choice: its place among the names. */
 unsigned bp_member_choice(const BpMaterial *material, BpMember member);
 void bp_member_choose(BpMaterial *material, BpMember member, unsigned choice);
+
+/* Whether it may have a texture instead of one value everywhere. */
+static inline bool bp_member_can_vary(BpMember member) {
+    return bp_members[member].form == BP_FORM_COLOUR || member == BP_MEMBER_FUZZ;
+}
+/* Gives a member the texture textures[number - 1], `texture`, and the largest value that it has. */
+void bp_member_vary(BpMaterial *material, BpMember member, uint32_t number, const struct BpTexture *texture);
+bool bp_material_varies(const BpMaterial *material);
 
 /* Rays to lamps light it: it scatters into many directions. */
 bool bp_material_is_lit(const BpMaterial *material);

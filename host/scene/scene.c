@@ -112,6 +112,8 @@ void bp_scene_destroy(BpScene **scene) {
     BpScene *s = *scene;
     for (size_t i = 0; i < s->material_count; i++) free(s->materials[i].name);
     free(s->materials);
+    for (size_t i = 0; i < s->texture_count; i++) free(s->textures[i].name);
+    free(s->textures);
     free(s->spheres);
     free(s->albedos);
     for (size_t i = 0; i < s->point_file_count; i++) {

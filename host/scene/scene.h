@@ -4,16 +4,17 @@
  * Knows: the grammar's terms.                Does not know: JSON, OpenCL, float, buffers.
  *
  * Invariants of every BpScene that reaches another module (bp_scene_validate proves them): all numbers are
- * finite; radius != 0 (negative: inside out); material indices in range; albedo in [0,1]; emit >= 0;
- * 0 <= fuzz <= 1; refraction_index > 0; of discs a direction, and half angles from 1e-4 to 90 degrees; 0 <
- * vfov < 180, and the size of the plane in focus fits a float; lookfrom != lookat; vup not parallel to the
- * view; 1 <= width, height <= BP_PICTURE_SIDE_MAX; no two coincident dielectrics; a pinhole camera on the
- * surface of at most one sphere. */
+ * finite; radius != 0 (negative: inside out); indices of materials and textures in range; albedo in [0,1];
+ * emit >= 0; 0 <= fuzz <= 1; refraction_index > 0; of discs a direction, and half angles from 1e-4 to 90
+ * degrees; 0 < vfov < 180, and the size of the plane in focus fits a float; lookfrom != lookat; vup not
+ * parallel to the view; 1 <= width, height <= BP_PICTURE_SIDE_MAX; no two coincident dielectrics; a pinhole
+ * camera on the surface of at most one sphere. */
 #ifndef BP_SCENE_SCENE_H
 #define BP_SCENE_SCENE_H
 
 #include "ballpark.h"
 #include "material.h"
+#include "texture.h"
 
 #include <stdio.h>
 
@@ -38,8 +39,10 @@ typedef enum BpPixelSampling { BP_PIXEL_SQUARE, BP_PIXEL_CENTER } BpPixelSamplin
 struct BpMaterial {
     char *name;
     BpMaterialKind kind;
-    double albedo[3]; /* lambertian, metal */
-    double emit[3];   /* any kind; (0,0,0): does not emit */
+    uint32_t texture[BP_MEMBER_COUNT]; /* of a member that varies, into textures[], counted from 1; 0: none.
+                                          The member itself is then the largest value that its texture has */
+    double albedo[3];                  /* lambertian, metal */
+    double emit[3];                    /* any kind; (0,0,0): does not emit */
     BpScatter scatter;
     double fuzz;
     BpFuzzShape fuzz_shape;
@@ -149,6 +152,8 @@ struct BpScene {
     double backdrop_bottom[3],
         backdrop_top[3]; /* of BP_BACKDROP_COLORS: at the picture's lower and upper edge */
     BpTransfer transfer;
+    BpTexture *textures;
+    size_t texture_count;
     BpMaterial *materials;
     size_t material_count;
     BpSphere *spheres;

@@ -114,10 +114,45 @@ static bool camera_fault(const BpCamera *camera, BpFault *fault) {
            camera_basis_fault(camera, fault);
 }
 
-static bool material_fault(const BpMaterial *material, BpFault *fault) {
+static bool texture_fault(const BpTexture *texture, BpFault *fault) {
+    for (int i = 0; i < 2; i++)
+        if (any_outside(fault, BP_FAULT_TEXTURE, "colors", texture->colors[i], 0, BP_RADIANCE_MAX,
+                        "colours from 0 to 1, of light to 1e12"))
+            return true;
+    if (texture->mapping == BP_MAPPING_SOLID)
+        return outside(fault, BP_FAULT_TEXTURE, "size", texture->size, BP_TEXTURE_SIZE_MIN, BP_COORDINATE_MAX,
+                       "the length of a cell, from 1e-12 to 1e12");
+    if (coordinates_outside(fault, BP_FAULT_TEXTURE, "up", texture->up)) return true;
+    if (!(length(texture->up) >= LENGTH_MIN))
+        return set_fault(fault, BP_FAULT_TEXTURE, "up",
+                         "found no direction, expected that of the north pole, such as [0, 1, 0]");
+    return outside(fault, BP_FAULT_TEXTURE, "turn", texture->turn_degrees, -BP_TEXTURE_TURN_MAX,
+                   BP_TEXTURE_TURN_MAX, "degrees from -1e6 to 1e6") ||
+           outside(fault, BP_FAULT_TEXTURE, "repeat", texture->repeat[0], 1, BP_TEXTURE_REPEAT_MAX,
+                   "1 to 65536 times") ||
+           outside(fault, BP_FAULT_TEXTURE, "repeat", texture->repeat[1], 1, BP_TEXTURE_REPEAT_MAX,
+                   "1 to 65536 times");
+}
+
+/* Whether a member names no texture that there is, or one of colours where a number stands. */
+static bool variation_fault(const BpScene *scene, const BpMaterial *material, BpMember m, BpFault *fault) {
+    const uint32_t number = material->texture[m];
+    if (number == 0) return false;
+    if (number > scene->texture_count)
+        return set_fault(fault, BP_FAULT_MATERIAL, bp_members[m].name,
+                         "found texture number %u, expected one of %zu textures", (unsigned)number,
+                         scene->texture_count);
+    if (bp_members[m].form == BP_FORM_COLOUR || bp_texture_is_number(&scene->textures[number - 1]))
+        return false;
+    return set_fault(fault, BP_FAULT_MATERIAL, bp_members[m].name,
+                     "found a texture of colours, expected one of numbers, such as \"colors\": [0, 0.3]");
+}
+
+static bool material_fault(const BpScene *scene, const BpMaterial *material, BpFault *fault) {
     for (int m = 0; m < BP_MEMBER_COUNT; m++) {
         const BpMemberInfo *member = &bp_members[m];
         if (!bp_material_has(material->kind, (BpMember)m) || member->form == BP_FORM_CHOICE) continue;
+        if (variation_fault(scene, material, (BpMember)m, fault)) return true;
         const double *values = bp_member_values_of(material, (BpMember)m);
         if (member->form == BP_FORM_COLOUR ? any_outside(fault, BP_FAULT_MATERIAL, member->name, values,
                                                          member->low, member->high, member->range)
@@ -183,9 +218,13 @@ BpStatus bp_scene_find_fault(const BpScene *scene, BpFault *fault, BpError *err)
         fault->index = i;
         if (disc_fault(&scene->discs[i], fault)) return BP_OK;
     }
+    for (size_t i = 0; i < scene->texture_count; i++) {
+        fault->index = i;
+        if (texture_fault(&scene->textures[i], fault)) return BP_OK;
+    }
     for (size_t i = 0; i < scene->material_count; i++) {
         fault->index = i;
-        if (material_fault(&scene->materials[i], fault)) return BP_OK;
+        if (material_fault(scene, &scene->materials[i], fault)) return BP_OK;
     }
     for (size_t i = 0; i < scene->sphere_count; i++) {
         const BpSphere *sphere = &scene->spheres[i];
@@ -236,6 +275,9 @@ BpStatus bp_scene_validate(const BpScene *scene, BpError *err) {
                        fault.text);
     case BP_FAULT_BACKDROP:
         return bp_fail(err, BP_ERR_SCENE, "backdrop.%s: %s", fault.member, fault.text);
+    case BP_FAULT_TEXTURE:
+        bp_printable(scene->textures[fault.index].name, name, sizeof name);
+        return bp_fail(err, BP_ERR_SCENE, "textures.%s.%s: %s", name, fault.member, fault.text);
     case BP_FAULT_MATERIAL:
         bp_printable(scene->materials[fault.index].name, name, sizeof name);
         return bp_fail(err, BP_ERR_SCENE, "materials.%s.%s: %s", name, fault.member, fault.text);

@@ -39,6 +39,9 @@ __kernel void aovs(SCENE_PARAMETERS uint first_pixel, uint pixel_count, uint fir
         Point point;
         fetch_surface(&scene, &hit, &sphere, &surface, &emitted);
         sphere_surface(&ray, &sphere, hit.slot, hit.t, hit.enters, &point, &outward);
+#if EFFECT_TEXTURES
+        vary_surface(&scene, met, hit.slot, &point, outward, &surface, &emitted);
+#endif
         const Vec3 normal = choose3(hit.enters, outward, scale3(splat(-1), outward));
         const vreal values[AOV_FLOATS] = {
             /* along `forward_x, forward_y, forward_z`, from the camera */

@@ -1,7 +1,7 @@
 /* bounce.cl: how a path goes on by one segment, in lane code.
  *
  * In:    paths and the scene.   Out: the same paths, one segment longer.
- * Knows: the tree, the shape, the sky, the lamps and the materials, each by one function.   Does not know: pixels. */
+ * Knows: the tree, the shape, the sky, the lamps, the materials and their textures, each by one function.   Does not know: pixels. */
 
 /* One segment of every living path that waits for nothing: intersect, collect radiance, scatter. */
 static void trace_bounce(const Scene *scene, Path *path) {
@@ -39,6 +39,9 @@ static void trace_bounce(const Scene *scene, Path *path) {
     surface.incoming = path->direction;
     surface.enters = hit.enters;
     surface.normal = choose3(hit.enters, outward, scale3(splat(-1), outward));
+#if EFFECT_TEXTURES
+    vary_surface(scene, met, hit.slot, &point, outward, &surface, &emitted);
+#endif
 #if SAMPLES_LAMP_TREE
     const vbool lit = met & hit.enters & (emitted.x + emitted.y + emitted.z > splat(0));
     if (any_lane(lit)) emitted = scale3(lamp_hit_weight(scene, path, hit.slot, &sphere, lit), emitted);

@@ -6,7 +6,7 @@
  * sampled perfectly, both weights follow from the ratio of the two densities, and so does what a ray to a lamp brings.
  *
  * In:    paths that wait to be lit, or a lamp that a path has hit.   Out: paths with that light, or the weight of the hit.
- * Knows: lamps.cl, discs.cl, scatter.cl, the closest hit.   Does not know: how a path goes on. */
+ * Knows: lamps.cl, discs.cl, scatter.cl, vary_surface.cl, the closest hit.   Does not know: how a path goes on. */
 #if SAMPLES_LAMPS
 #define RATIO_MAX R(1e15) /* its square is a float, and one more or less is none */
 
@@ -71,15 +71,33 @@ static vuint first_seen(const Scene *scene, const Ray *ray, const LampChoice *ch
     return first.slot;
 }
 
-/* Of a sphere in a slot, or of a disc. */
-static Vec3 radiance_of_slot(const Scene *scene, vuint slot) {
+#if SAMPLES_LAMP_TREE && EFFECT_TEXTURES
+/* What the lamp in a slot sends along the ray that was sent to it, in the lanes `visible`: light that varies depends on where the
+ * ray meets the lamp, or passes it where rounding has put it past a tiny one. */
+static Vec3 radiance_along(const Scene *scene, const Ray *ray, const Sphere *sphere, vuint slot, vbool visible) {
+    vrefined t;
+    vbool enters;
+    Point point;
+    Vec3 outward;
+    sphere_intersect(ray, sphere, &t, &enters);
+    sphere_surface(ray, sphere, slot, t, vbool_all, &point, &outward);
+    return vary_radiance(scene, slot, &point, outward, visible, radiance_of_sphere(scene, slot));
+}
+#elif SAMPLES_LAMP_TREE
+#define radiance_along(scene, ray, sphere, slot, visible) radiance_of_sphere(scene, slot)
+#endif
+
+/* Of a sphere in a slot, or of a disc, along the ray to it, in the lanes `visible`. */
+static Vec3 radiance_of_lamp(const Scene *scene, const Ray *ray, const LampChoice *choice, vbool visible) {
+    const vuint slot = choice->slot;
 #if !SAMPLES_DISCS
-    return radiance_of_sphere(scene, slot);
+    return radiance_along(scene, ray, &choice->sphere, slot, visible);
 #else
     const vbool disc = vbool_of_uint(slot >= splat_uint(DISC_SLOT));
     Vec3 radiance = zero3();
 #if SAMPLES_LAMP_TREE
-    radiance = radiance_of_sphere(scene, choose_uint(disc, splat_uint(0), slot));
+    radiance = radiance_along(scene, ray, &choice->sphere, choose_uint(disc, splat_uint(0), slot),
+                              visible & vbool_not(disc));
 #endif
     if (!any_lane(disc)) return radiance;
     const vuint place = choose_uint(disc, slot - splat_uint(DISC_SLOT), splat_uint(0)) * DISC_REALS + DISC_RADIANCE;
@@ -141,7 +159,7 @@ static void light_vertices(const Scene *scene, Path *path) {
     const vbool visible = active & vbool_of_uint(path->seen_slot == choice.slot);
     if (!any_lane(visible)) return;
     const vreal weight = ratio / fma(ratio, ratio, splat(1));
-    const Vec3 light = multiply3(path->throughput, scale3(weight, radiance_of_slot(scene, choice.slot)));
+    const Vec3 light = multiply3(path->throughput, scale3(weight, radiance_of_lamp(scene, &ray, &choice, visible)));
     path->radiance = choose3(visible, add3(path->radiance, light), path->radiance);
 }
 #endif

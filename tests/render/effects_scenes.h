@@ -20,6 +20,7 @@ typedef struct EffectsScene {
     BpScene scene; /* points into the arrays below: pass it on by address, do not copy it */
     BpMaterial materials[16];
     BpSphere spheres[48];
+    BpTexture textures[3];
 } EffectsScene;
 
 /* Lamps are sampled where something emits, or discs do, and something is lit, unless an option says no. */
@@ -29,9 +30,10 @@ static inline bool effects_light(uint32_t bits) {
 }
 
 /* A tree needs spheres, and spheres need a material. Rays to lamps need lamps, and something that they light.
- */
+ * Textures are of spheres, and noise is a texture. */
 static inline bool effects_can_occur(uint32_t bits, bool tree) {
     if (bp_effects_has(bits, BP_EFFECT_LAMPS) && !effects_light(bits)) return false;
+    if (bp_effects_has(bits, BP_EFFECT_TEXTURES) && (bits & MATERIAL_EFFECTS) == 0) return false;
     return (bits & MATERIAL_EFFECTS) != 0 || !tree;
 }
 
@@ -73,6 +75,38 @@ static inline void effects_materials(EffectsScene *made, uint32_t bits) {
         effects_material(made, BP_MATERIAL_DIFFUSE_LIGHT, 0, 0, 0); /* black */
     }
     if (bp_effects_has(bits, BP_EFFECT_NORMALS)) effects_material(made, BP_MATERIAL_NORMALS, 0, 0, 0);
+}
+
+/* A member varies where there is one that does; without light there is always one that is black. */
+static inline void effects_vary(EffectsScene *made, size_t material, BpMember member, uint32_t number) {
+    BpMaterial *varied = &made->materials[material];
+    if (bp_material_has(varied->kind, member))
+        bp_member_vary(varied, member, number, &made->textures[number - 1]);
+}
+
+static inline void effects_textures(EffectsScene *made, uint32_t bits) {
+    const bool emits = bp_effects_has(bits, BP_EFFECT_EMISSION);
+    const double light = emits ? 3 : 0;
+    for (int i = 0; i < 3; ++i) bp_texture_defaults(&made->textures[i]);
+    made->textures[0].colors[0][0] = 0.9, made->textures[0].colors[1][2] = 0.7;
+    made->textures[0].size = 0.17;
+    made->textures[1].colors[1][0] = made->textures[1].colors[1][1] = made->textures[1].colors[1][2] = 0.6;
+    made->textures[1].mapping = BP_MAPPING_SURFACE;
+    made->textures[1].up[0] = 1;
+    made->textures[1].repeat[0] = 9;
+    made->textures[2].colors[0][1] = light;
+    made->textures[2].mapping = BP_MAPPING_SURFACE;
+    made->textures[2].repeat[1] = 2;
+    made->scene.textures = made->textures;
+    made->scene.texture_count = 3;
+    for (size_t m = 0; m < made->scene.material_count; ++m) {
+        effects_vary(made, m, BP_MEMBER_ALBEDO, 1 + (uint32_t)(m % 2));
+        if (m % 2 == 1) effects_vary(made, m, BP_MEMBER_FUZZ, 2);
+        /* Of glass, of what shows its normal, of black lamps and, if nothing emits, without light. */
+        const BpMaterialKind kind = made->materials[m].kind;
+        if (kind != BP_MATERIAL_LAMBERTIAN && kind != BP_MATERIAL_METAL)
+            effects_vary(made, m, BP_MEMBER_EMIT, 3);
+    }
 }
 
 /* A ground, a row of spheres that overlap and repeat (of equal ones the first must be met), bubbles, and with
@@ -132,6 +166,7 @@ static inline void effects_scene(EffectsScene *made, uint32_t bits, bool tree) {
     scene->discs[1] = (BpDisc){{0.1, 0.2, -1}, 12, {0.5, 1, 2}, bits % 2 == 0};
     scene->discs[2] = (BpDisc){{0, 1, -0.5}, 60, {0.1, 0.3, 0.2}, true};
     effects_materials(made, bits);
+    if (bp_effects_has(bits, BP_EFFECT_TEXTURES)) effects_textures(made, bits);
     effects_spheres(made, tree);
 }
 

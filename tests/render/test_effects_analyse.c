@@ -79,8 +79,9 @@ static void material_effects(void **state) {
     assert_int_equal(analyse(pair, 2, 2, 2, 0, 1).bits, BIT(METAL) | BIT(EMISSION) | BIT(LAMPS));
     const BpMaterial all[] = {grey, steel, glass, ember, debug};
     assert_int_equal(analyse(all, 5, 5, BP_LIST_SPHERES_MAX + 1, 0.1, 0.5).bits,
-                     BP_EFFECTS_ALL & ~BIT(DISCS));
-    assert_int_equal(analyse(all, 5, 5, 5, 0, 1).bits, BP_EFFECTS_ALL & ~BIT(LENS) & ~BIT(DISCS));
+                     BP_EFFECTS_ALL & ~BIT(DISCS) & ~BIT(TEXTURES));
+    assert_int_equal(analyse(all, 5, 5, 5, 0, 1).bits,
+                     BP_EFFECTS_ALL & ~BIT(LENS) & ~BIT(DISCS) & ~BIT(TEXTURES));
 }
 
 static void only_materials_in_use_count(void **state) {
@@ -248,6 +249,32 @@ static void discs(void **state) {
     assert_string_equal(effects.reason[BP_EFFECT_LAMPS], "1 lamp and 3 discs, and 1 sphere to be lit");
 }
 
+static void textures(void **state) {
+    (void)state;
+    BpTexture checker = {.colors = {{0, 0, 0}, {2, 2, 2}}};
+    BpMaterial materials[3] = {grey, lamp, steel};
+    BpEffects effects = analyse(materials, 3, 3, 4, 0, 1);
+    assert_int_equal(effects.bits & BIT(TEXTURES), 0);
+    assert_string_equal(effects.reason[BP_EFFECT_TEXTURES], "no material has a texture");
+    bp_member_vary(&materials[2], BP_MEMBER_FUZZ, 1, &checker);
+    effects = analyse(materials, 3, 2, 4, 0, 1);
+    assert_int_equal(effects.bits & BIT(TEXTURES), 0);
+    assert_string_equal(effects.reason[BP_EFFECT_TEXTURES], "1 material has textures, but no sphere has it");
+    effects = analyse(materials, 3, 3, 4, 0, 1);
+    assert_int_equal(effects.bits & BIT(TEXTURES), BIT(TEXTURES));
+    assert_string_equal(effects.reason[BP_EFFECT_TEXTURES], "1 material with textures, on 1 of 4 spheres");
+    bp_member_vary(&materials[0], BP_MEMBER_EMIT, 1, &checker);
+    effects = analyse(materials, 1, 1, 4, 0, 1);
+    assert_string_equal(effects.reason[BP_EFFECT_TEXTURES], "1 material with textures, on 4 of 4 spheres");
+    /* Whatever it gives light anywhere is a lamp. */
+    assert_int_equal(effects.bits, BIT(TEXTURES) | BIT(LAMBERTIAN) | BIT(EMISSION) | BIT(LAMPS));
+    /* Nowhere: it is none. */
+    checker.colors[1][0] = checker.colors[1][1] = checker.colors[1][2] = 0;
+    bp_member_vary(&materials[0], BP_MEMBER_EMIT, 1, &checker);
+    effects = analyse(materials, 1, 1, 4, 0, 1);
+    assert_int_equal(effects.bits, BIT(TEXTURES) | BIT(LAMBERTIAN));
+}
+
 static void one_list_names_them(void **state) {
     (void)state;
     assert_string_equal(bp_effect_name(BP_EFFECT_DIELECTRIC), "dielectric");
@@ -268,6 +295,7 @@ int main(void) {
         cmocka_unit_test(a_tree_above_32_spheres),
         cmocka_unit_test(reasons_a_person_understands),
         cmocka_unit_test(discs),
+        cmocka_unit_test(textures),
         cmocka_unit_test(no_rays_to_lamps_that_the_sky_outshines),
         cmocka_unit_test(one_list_names_them),
     };

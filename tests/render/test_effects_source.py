@@ -34,6 +34,7 @@ MARKS = {
     "LENS": ["lens_x", "->lens_up", "sample_disk(u"],
     "LAMPS": [],  # NEEDING_OTHERS
     "DISCS": ["disc_contains", "discs_radiance"],
+    "TEXTURES": ["turn_of", "lattice_axis", "checker_colour", "vary_surface"],
     "TREE": ["BoxRay", "leaf_children"],  # no effect, but looked for in the same way
 }
 # Code that several effects share.

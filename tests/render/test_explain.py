@@ -14,7 +14,7 @@ import tempfile
 from pfm import read_pfm
 
 program, scenes = sys.argv[1], pathlib.Path(sys.argv[2])
-ALL = ["lambertian", "metal", "dielectric", "emission", "normals", "lens", "lamps", "discs"]
+ALL = ["lambertian", "metal", "dielectric", "emission", "normals", "lens", "lamps", "discs", "textures"]
 
 
 def run(*arguments, code=0):
@@ -51,13 +51,13 @@ if "--measure" in sys.argv:
 
 # A table: every effect once, in or out, with a reason.
 table = run("explain", scenes / "v4-13-metal.json", "--wide").stdout.splitlines()
-rows = {line.split()[0]: line.split(maxsplit=2)[1:] for line in table[1:9]}
+rows = {line.split()[0]: line.split(maxsplit=2)[1:] for line in table[1:len(ALL) + 1]}
 assert list(rows) == ALL, table
 assert [name for name in ALL if rows[name][0] == "in"] == ["lambertian", "metal"], table
 assert all(rows[name][0] in ("in", "out") and len(rows[name][1]) > 10 for name in ALL), table
 assert "no dielectric among the 4 materials in use" in rows["dielectric"][1]
-assert "2 of 8 effects" in table[9]
-assert table[10].split(maxsplit=2) == ["acceleration", "list", "4 spheres: a list, no tree"], table
+assert f"2 of {len(ALL)} effects" in table[len(ALL) + 1]
+assert table[len(ALL) + 2].split(maxsplit=2) == ["acceleration", "list", "4 spheres: a list, no tree"], table
 
 # JSON of all scenes says what the tables say, one entry a scene, in the order given.
 paths = sorted(scenes.glob("*.json"))
@@ -102,12 +102,12 @@ with tempfile.TemporaryDirectory() as folder:
     run("explain", scene, "--pixel", "48,0", "--width", 48, code=2)
 
     # Measured. Few effects are out of this scene, so few kernels are compiled; the deep test has them all out.
-    every_kind = {"m": {"type": "lambertian", "albedo": [0.5] * 3}, "n": {"type": "metal", "albedo": [0.5] * 3},
+    every_kind = {"m": {"type": "lambertian", "albedo": {"texture": "t"}}, "n": {"type": "metal", "albedo": [0.5] * 3},
                   "g": {"type": "dielectric", "refraction_index": 1.5}, "l": {"type": "diffuse_light", "emit": [4] * 3},
                   "c": {"type": "normals"}}
     spheres = [{"center": [0.5 * i - 1, 0, -2], "radius": 0.2, "material": name} for i, name in enumerate(every_kind)]
     scene = pathlib.Path(folder, "all.json")
-    scene.write_text(json.dumps({"camera": {"image_width": 64}, "materials": every_kind, "spheres": spheres,
+    scene.write_text(json.dumps({"camera": {"image_width": 64}, "textures": {"t": {"type": "checker", "colors": [0.5, 1]}}, "materials": every_kind, "spheres": spheres,
                                  "background": {"discs": [{"direction": [0, 1, 0], "half_angle": 5, "radiance": [1] * 3}]}}))
     check_measured(scene, [name for name in ALL if name != "lens"], target)
 print(f"{len(document)} scenes explained")

@@ -22,7 +22,13 @@ GOOD = {
     "light": "sky",
     "backdrop": {"bottom": [0, 0, 0], "top": [1, 1, 1]},
     "transfer": "srgb",
+    "textures": {
+        "s": {"type": "checker", "colors": [[0, 0.5, 1], 3], "size": 0.1},
+        "g": {"type": "checker", "mapping": "surface", "colors": [0, 1e12], "up": [0, 0, 1], "turn": -1e6, "repeat": [1, 65536]},
+    },
     "materials": {
+        "t": {"type": "metal", "albedo": {"texture": "s"}, "fuzz": {"texture": "g"}, "emit": {"texture": "g"}},
+        "u": {"type": "lambertian", "albedo": {"texture": "s"}},
         "a": {"type": "lambertian", "albedo": [0, 0.5, 1], "scatter": "hemisphere", "emit": [1, 1, 1]},
         "b": {"type": "metal", "albedo": [1, 1, 1], "fuzz": 3, "fuzz_shape": "ball"},
         "c": {"type": "dielectric", "refraction_index": 1.5, "fresnel": "exact", "total_reflection": "absorb"},
@@ -59,6 +65,13 @@ BAD = [
     (["materials", "a", "emit"], [-1, 0, 0]), (["materials", "b", "fuzz"], -1), (["materials", "b", "fresnel"], "none"),
     (["materials", "c", "refraction_index"], -1.5), (["materials", "c", "refraction_index"], None),
     (["materials", "c", "albedo"], [1, 1, 1]), (["materials", "d", "emit"], None),
+    (["textures"], []), (["textures", "s", "type"], None), (["textures", "s", "type"], "chequer"), (["textures", "s", "colors"], None),
+    (["textures", "s", "colors"], [1]), (["textures", "s", "colors", 0], [1, 1]), (["textures", "s", "colors", 1], -1),
+    (["textures", "s", "size"], 0), (["textures", "s", "up"], [0, 1, 0]), (["textures", "s", "turn"], 0), (["textures", "s", "repeat"], [1, 1]),
+    (["textures", "s", "mapping"], "uv"), (["textures", "s", "colour"], 1), (["textures", "g", "size"], 1), (["textures", "g", "up"], [0, 0, 0]),
+    (["textures", "g", "turn"], 1e7), (["textures", "g", "repeat"], [0, 1]), (["textures", "g", "repeat"], [1, 1.5]), (["textures", "g", "repeat"], 1),
+    (["materials", "t", "albedo"], {}), (["materials", "t", "albedo"], {"texture": 1}), (["materials", "t", "fuzz"], {"textur": "g"}),
+    (["materials", "c", "refraction_index"], {"texture": "g"}), (["background"], {"texture": "g"}),
     (["spheres", 0, "radius"], 0), (["spheres", 0, "radius"], None), (["spheres", 0, "center"], [0, 0]),
     (["spheres", 0, "material"], 1), (["spheres", 0, "centre"], [0, 0, 0]), (["spheres"], {}),
     (["camera", "projection"], "parallel"), (["camera", "view_height"], 1), (["camera", "fit"], "scene"), (["camera", "view"], "front"), (["camera", "margin"], 0.1),
@@ -94,8 +107,8 @@ def main():
     for path in scenes:
         for error in validator.iter_errors(json.loads(path.read_text())):
             failures.append(f"{path.name}: {error.json_path}: {error.message}")
-    if len(scenes) < 66:
-        failures.append(f"found {len(scenes)} scenes, expected 66 or more")
+    if len(scenes) < 68:
+        failures.append(f"found {len(scenes)} scenes, expected 68 or more")
     failures += [f"a good scene: {error.json_path}: {error.message}" for error in validator.iter_errors(GOOD)]
     for place, value in BAD:
         if validator.is_valid(changed(place, value)):

@@ -1,0 +1,145 @@
+/* scene_texture.c: the textures of a scene document, and where a material asks for one.
+ *
+ * In:    the nodes of "textures", and of members that name one.   Out: BpTextures; which of them a member
+ * has. Knows: the grammar.   Does not know: materials. Ranges are checked by scene_validate.c. */
+#include "scene_parse.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+/* A colour, or a number for all three of its parts. */
+static BpStatus parse_value(const BpNode *node, double value[3], BpError *err) {
+    if (!json_is_number(node->value) && json_array_size(node->value) != 3)
+        return bp_node_wrong(node, "a colour [r, g, b], or a number", err);
+    if (json_is_array(node->value)) return bp_node_vector(node, value, err);
+    BP_TRY(bp_node_number(node, &value[0], err));
+    value[1] = value[2] = value[0];
+    return BP_OK;
+}
+
+static BpStatus parse_colors(const BpNode *node, double colors[2][3], BpError *err) {
+    if (json_array_size(node->value) != 2)
+        return bp_node_wrong(node, "two colours, or two numbers: [[0.2, 0.3, 0.1], [0.9, 0.9, 0.9]]", err);
+    for (size_t i = 0; i < 2; i++) {
+        const BpNode element = bp_node_element(node, i);
+        BP_TRY(parse_value(&element, colors[i], err));
+    }
+    return BP_OK;
+}
+
+static BpStatus parse_repeat(const BpNode *node, uint32_t repeat[2], BpError *err) {
+    if (node->value == NULL) return BP_OK;
+    if (json_array_size(node->value) != 2)
+        return bp_node_wrong(node, "two whole numbers: [times around, times from pole to pole]", err);
+    for (size_t i = 0; i < 2; i++) {
+        const BpNode element = bp_node_element(node, i);
+        BP_TRY(bp_node_integer(&element, 1, BP_TEXTURE_REPEAT_MAX, &repeat[i], err));
+    }
+    return BP_OK;
+}
+
+static BpStatus refuse_foreign_members(const BpNode *node, BpMapping mapping, BpError *err) {
+    static const struct {
+        const char *name;
+        BpMapping mapping;
+    } members[] = {{"size", BP_MAPPING_SOLID},
+                   {"up", BP_MAPPING_SURFACE},
+                   {"turn", BP_MAPPING_SURFACE},
+                   {"repeat", BP_MAPPING_SURFACE}};
+    for (size_t i = 0; i < BP_COUNT(members); i++) {
+        const BpNode member = bp_node_member(node, members[i].name);
+        if (member.value == NULL || members[i].mapping == mapping) continue;
+        return bp_node_fail(
+            &member, BP_PART_NAME, err,
+            "found with the mapping \"%s\", expected only with \"%s\"; remove it or change the mapping",
+            bp_mapping_names[mapping], bp_mapping_names[members[i].mapping]);
+    }
+    return BP_OK;
+}
+
+static BpStatus parse_texture(const BpNode *node, BpTexture *texture, BpError *err) {
+    static const char *const names[] = {"type", "mapping", "colors", "size", "up", "turn", "repeat"};
+    int type = 0, mapping = 0;
+    if (!json_is_object(node->value))
+        return bp_node_wrong(node, "an object: { \"type\": \"checker\", \"colors\": ... }", err);
+    BP_TRY(bp_node_object(node, names, BP_COUNT(names), err));
+    BP_TRY(bp_node_require(node, "type", "\"type\": \"checker\"", err));
+    BP_TRY(
+        bp_node_require(node, "colors", "two, such as \"colors\": [[0.2, 0.3, 0.1], [0.9, 0.9, 0.9]]", err));
+    const BpNode type_node = bp_node_member(node, "type");
+    const BpNode mapping_node = bp_node_member(node, "mapping");
+    const BpNode colors = bp_node_member(node, "colors");
+    const BpNode size = bp_node_member(node, "size");
+    const BpNode up = bp_node_member(node, "up");
+    const BpNode turn = bp_node_member(node, "turn");
+    const BpNode repeat = bp_node_member(node, "repeat");
+    BP_TRY(bp_node_choice(&type_node, bp_texture_type_names, bp_texture_type_count, &type, err));
+    BP_TRY(bp_node_choice(&mapping_node, bp_mapping_names, bp_mapping_count, &mapping, err));
+    texture->type = (BpTextureType)type;
+    texture->mapping = (BpMapping)mapping;
+    BP_TRY(refuse_foreign_members(node, texture->mapping, err));
+    BP_TRY(parse_colors(&colors, texture->colors, err));
+    BP_TRY(bp_node_number(&size, &texture->size, err));
+    BP_TRY(bp_node_vector(&up, texture->up, err));
+    BP_TRY(bp_node_number(&turn, &texture->turn_degrees, err));
+    return parse_repeat(&repeat, texture->repeat, err);
+}
+
+BpStatus bp_parse_textures(const BpNode *node, BpScene *scene, BpError *err) {
+    if (node->value != NULL && !json_is_object(node->value))
+        return bp_node_wrong(
+            node, "an object of named textures: { \"squares\": { \"type\": \"checker\", ... } }", err);
+    const size_t count = json_object_size(node->value);
+    if (count == 0) return BP_OK;
+    if (count > BP_TEXTURES_MAX)
+        return bp_node_fail(node, BP_PART_VALUE, err, "found %zu textures, expected at most %u", count,
+                            BP_TEXTURES_MAX);
+    scene->textures = calloc(count, sizeof *scene->textures);
+    if (scene->textures == NULL) return bp_fail(err, BP_ERR_MEMORY, "out of memory for %zu textures", count);
+    const char *name;
+    json_t *value;
+    json_object_foreach(node->value, name, value) {
+        const BpNode child = bp_node_member(node, name);
+        BpTexture *texture = &scene->textures[scene->texture_count++];
+        bp_texture_defaults(texture);
+        BP_TRY(bp_copy_text(name, &texture->name, err));
+        BP_TRY(parse_texture(&child, texture, err));
+    }
+    return BP_OK;
+}
+
+static BpStatus fail_missing_texture(const BpNode *node, const BpScene *scene, const char *name,
+                                     BpError *err) {
+    char shown[64], near_shown[64];
+    bp_printable(name, shown, sizeof shown);
+    if (scene->texture_count == 0)
+        return bp_node_fail(node, BP_PART_VALUE, err,
+                            "found the texture \"%s\", expected a name from \"textures\", which is empty or "
+                            "absent; add it there",
+                            shown);
+    const char **names = malloc(scene->texture_count * sizeof *names);
+    if (names == NULL) return bp_fail(err, BP_ERR_MEMORY, "out of memory");
+    for (size_t i = 0; i < scene->texture_count; i++) names[i] = scene->textures[i].name;
+    const char *nearest = bp_nearest_name(name, names, scene->texture_count);
+    if (nearest == NULL) nearest = names[0];
+    free(names);
+    bp_printable(nearest, near_shown, sizeof near_shown);
+    return bp_node_fail(node, BP_PART_VALUE, err,
+                        "found the texture \"%s\", expected a name from \"textures\"; did you mean \"%s\"?",
+                        shown, near_shown);
+}
+
+BpStatus bp_parse_texture_name(const BpNode *node, const BpScene *scene, uint32_t *number, BpError *err) {
+    static const char *const names[] = {"texture"};
+    const char *name = NULL;
+    BP_TRY(bp_node_object(node, names, BP_COUNT(names), err));
+    BP_TRY(bp_node_require(node, "texture", "a name from \"textures\"", err));
+    const BpNode texture = bp_node_member(node, "texture");
+    BP_TRY(bp_node_string(&texture, &name, err));
+    for (size_t i = 0; i < scene->texture_count; i++) {
+        if (strcmp(scene->textures[i].name, name) != 0) continue;
+        *number = (uint32_t)i + 1;
+        return BP_OK;
+    }
+    return fail_missing_texture(&texture, scene, name, err);
+}

@@ -1,0 +1,58 @@
+/* texture.c: see texture.h. */
+#include "texture.h"
+
+#include "vector.h"
+
+#include <math.h>
+
+#define PI 3.14159265358979323846
+
+const char *const bp_texture_type_names[] = {[BP_TEXTURE_CHECKER] = "checker"};
+const size_t bp_texture_type_count = sizeof bp_texture_type_names / sizeof bp_texture_type_names[0];
+const char *const bp_mapping_names[] = {[BP_MAPPING_SOLID] = "solid", [BP_MAPPING_SURFACE] = "surface"};
+const size_t bp_mapping_count = sizeof bp_mapping_names / sizeof bp_mapping_names[0];
+
+void bp_texture_defaults(BpTexture *texture) {
+    *texture = (BpTexture){.size = 1, .up = {0, 1, 0}, .repeat = {1, 1}};
+}
+
+/* `v` turned about the unit vector `axis` by the angle of which these are the cosine and the sine (O.
+ * Rodrigues, 1840). */
+static void rotate(double v[3], const double axis[3], double cosine, double sine) {
+    double across[3];
+    bp_cross(axis, v, across);
+    const double along = bp_dot(axis, v) * (1 - cosine);
+    for (int i = 0; i < 3; i++) v[i] = v[i] * cosine + across[i] * sine + axis[i] * along;
+}
+
+void bp_texture_frame(const BpTexture *texture, double seam[3], double east[3], double pole[3]) {
+    static const double minus_x[3] = {-1, 0, 0}, y[3] = {0, 1, 0}, z[3] = {0, 0, 1};
+    double axis[3], length = 0;
+    memcpy(seam, minus_x, sizeof minus_x);
+    memcpy(east, z, sizeof z);
+    for (int i = 0; i < 3; i++) length = hypot(length, texture->up[i]);
+    for (int i = 0; i < 3; i++) pole[i] = texture->up[i] / length;
+    bp_cross(y, pole, axis);
+    const double sine = hypot(axis[0], axis[2]);
+    if (sine > 0) {
+        for (int i = 0; i < 3; i++) axis[i] /= sine;
+        rotate(seam, axis, pole[1], sine);
+        rotate(east, axis, pole[1], sine);
+    } else if (pole[1] < 0) { /* half a turn about x */
+        east[2] = -1;
+    }
+    const double turn = texture->turn_degrees * (PI / 180);
+    rotate(seam, pole, cos(turn), sin(turn));
+    rotate(east, pole, cos(turn), sin(turn));
+}
+
+void bp_texture_bound(const BpTexture *texture, double bound[3]) {
+    for (int c = 0; c < 3; c++) bound[c] = fmax(texture->colors[0][c], texture->colors[1][c]);
+}
+
+bool bp_texture_is_number(const BpTexture *texture) {
+    bool equal = true;
+    for (int i = 0; i < 2; i++)
+        for (int c = 1; c < 3; c++) equal = equal && texture->colors[i][c] == texture->colors[i][0];
+    return equal;
+}

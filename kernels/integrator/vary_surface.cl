@@ -1,0 +1,37 @@
+/* vary_surface.cl: gives the members of a surface that vary the values that they have at its point.
+ *
+ * In:    surfaces as fetch_surface leaves them, their points and outward normals.   Out: the same, with their textures.
+ * Knows: PackedVariation (scene_types.h), each texture by its one function.   Does not know: paths. */
+#if EFFECT_TEXTURES
+/* Of the texture with this number, counted from 1, in the `active` lanes. */
+static Vec3 texture_value(const Scene *scene, vuint number, const Point *point, Vec3 outward, vbool active) {
+    const vuint index = choose_uint(active, number - splat_uint(1), splat_uint(0));
+    return checker_colour(scene, index * TEXTURE_REALS, index * TEXTURE_UINTS, point, outward, active);
+}
+
+/* What the sphere in `slot` emits at a point, in the `active` lanes: `radiance`, but for materials whose light varies. */
+static Vec3 vary_radiance(const Scene *scene, vuint slot, const Point *point, Vec3 outward, vbool active, Vec3 radiance) {
+    const vuint material = gather_uint(scene->slot_material, slot);
+    const vuint number = gather_uint(scene->variations, material * VARIATION_UINTS + VARIATION_EMIT);
+    const vbool varies = active & vbool_of_uint(number != splat_uint(0));
+    if (!any_lane(varies)) return radiance;
+    return choose3(varies, texture_value(scene, number, point, outward, varies), radiance);
+}
+
+/* For the lanes `met`, each in a slot. One member after the other, in a loop, so that the code of textures is there once. */
+static void vary_surface(const Scene *scene, vbool met, vuint slot, const Point *point, Vec3 outward, Surface *surface,
+                         Vec3 *emitted) {
+    const vuint material = gather_uint(scene->slot_material, choose_uint(met, slot, splat_uint(0)));
+    for (uint member = 0; member < VARIATIONS; ++member) {
+        const vuint number = gather_uint(scene->variations, material * VARIATION_UINTS + member);
+        const vbool varies = met & vbool_of_uint(number != splat_uint(0));
+        if (!any_lane(varies)) continue;
+        const Vec3 value = texture_value(scene, number, point, outward, varies);
+        if (member == VARIATION_ALBEDO) surface->albedo = choose3(varies, value, surface->albedo);
+#if EFFECT_METAL
+        if (member == VARIATION_FUZZ) surface->fuzz = choose(varies, at_most(value.x, splat(1)), surface->fuzz);
+#endif
+        if (member == VARIATION_EMIT) *emitted = choose3(varies, value, *emitted);
+    }
+}
+#endif

@@ -1,0 +1,167 @@
+#!/usr/bin/env python3
+"""Where each cell of a texture lies, pixel by pixel, and what a lamp of cells brings, against closed forms.
+
+usage: test_texture_cells.py PROGRAM SOURCE_DIR
+
+A sphere that glows is seen by parallel rays through the centres of pixels, so the point that each pixel shows, and the
+cell that it lies in, follow from the definitions of scenes/README.md; here they are computed with fractions and 50
+digits, from the scene's own coordinates. Pixels whose point lies close to the edge of a cell are left out.
+"""
+import json
+import math
+import os
+import subprocess
+import sys
+import tempfile
+from fractions import Fraction
+
+sys.path.insert(0, os.path.join(os.path.dirname(__file__), "..", "support"))
+from pfm import read_pfm  # noqa: E402
+
+PROGRAM = sys.argv[1]
+SIDE = 48
+EVEN, ODD = [1, 2, 0.25], [0.5, 0, 4]
+
+
+def scene(texture, center, radius, view, vup, span):
+    """Looks along -view at the centre, from twice the radius away; `span` high."""
+    lookfrom = [c + 2 * abs(radius) * d for c, d in zip(center, view)]
+    return {"camera": {"image_width": SIDE, "pixel_sampling": "center", "max_depth": 1, "projection": "orthographic",
+                       "view_height": span, "lookfrom": lookfrom, "lookat": center, "vup": vup},
+            "background": [0, 0, 0], "textures": {"t": {"type": "checker", "colors": [EVEN, ODD], **texture}},
+            "materials": {"m": {"type": "diffuse_light", "emit": {"texture": "t"}}},
+            "spheres": [{"center": center, "radius": radius, "material": "m"}]}
+
+
+def render(document, options):
+    with tempfile.TemporaryDirectory() as folder:
+        path = os.path.join(folder, "x.json")
+        with open(path, "w", encoding="utf-8") as file:
+            json.dump(document, file)
+        done = subprocess.run([PROGRAM, "render", path, "-o", "-", "--format", "pfm", "--quiet", *options],
+                              capture_output=True, check=False)
+        if done.returncode != 0:
+            sys.exit(f"{' '.join(options)}: exit code {done.returncode}: {done.stderr.decode()}")
+        width, height, numbers = read_pfm(done.stdout)
+        pixels = [numbers[i:i + 3].tolist() for i in range(0, len(numbers), 3)]
+        rows = [pixels[row * width:(row + 1) * width] for row in range(height)]
+        return width, height, rows[::-1]  # the top row first
+
+
+def cross(a, b):
+    return [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]]
+
+
+def unit(a):
+    length = math.sqrt(sum(x * x for x in a))
+    return [x / length for x in a]
+
+
+def rotate(v, axis, angle):
+    along = sum(a * b for a, b in zip(axis, v))
+    across = cross(axis, v)
+    return [v[i] * math.cos(angle) + across[i] * math.sin(angle) + axis[i] * along * (1 - math.cos(angle)) for i in range(3)]
+
+
+def on_globe(texture, normal):
+    """Longitude and latitude, from 0 to 1."""
+    up = unit(texture.get("up", [0, 1, 0]))
+    axis, tilt = cross([0, 1, 0], up), math.acos(max(-1, min(1, up[1])))
+    axis = unit(axis) if math.hypot(*axis) > 0 else [1, 0, 0]
+    n = rotate(rotate(normal, up, -math.radians(texture.get("turn", 0))), axis, -tilt)
+    return (math.atan2(-n[2], n[0]) + math.pi) / (2 * math.pi), math.atan2(math.hypot(n[0], n[2]), -n[1]) / math.pi
+
+
+def cell(texture, center, radius, normal):
+    """The parity of the cell, and how far the nearest edge is, in cells."""
+    if texture.get("mapping") == "surface":
+        repeat = texture.get("repeat", [1, 1])
+        places = [2 * r * x for r, x in zip(repeat, on_globe(texture, normal))]
+    else:
+        size = Fraction(texture.get("size", 1))
+        places = [(Fraction(c) + Fraction(abs(radius)) * Fraction(n)) / size for c, n in zip(center, normal)]
+    numbers = [math.floor(p) for p in places]
+    edge = min(min(float(p - n), float(n + 1 - p)) for p, n in zip(places, numbers))
+    return sum(numbers) % 2, edge
+
+
+def check_cells(name, texture, center=(0, 0, 0), radius=1.0, view=(0, 0, 1), vup=(0, 1, 0), slack=1e-4, span=None,
+                options=()):
+    center, view = list(center), unit(view)
+    right, span = unit(cross(vup, view)), span or 2.2 * abs(radius)
+    above = cross(view, right)
+    width, height, rows = render(scene(texture, center, radius, view, list(vup), span), ["--spp", "4", *options])
+    wrong = compared = odd_ones = 0
+    for row in range(height):
+        for column in range(width):
+            x = ((column + 0.5) / width - 0.5) * span / abs(radius)
+            y = (0.5 - (row + 0.5) / height) * span / abs(radius)
+            if x * x + y * y > 0.98:
+                continue
+            z = math.sqrt(1 - x * x - y * y)
+            normal = [x * r + y * a + z * v for r, a, v in zip(right, above, view)]
+            odd, edge = cell(texture, center, radius, normal)
+            if edge < slack:
+                continue
+            compared += 1
+            odd_ones += odd
+            wrong += rows[row][column] != (ODD if odd else EVEN)
+    fine = wrong == 0 and compared > 500 and 0.1 < odd_ones / compared < 0.9
+    print(f"{name:44} {compared} pixels, {odd_ones} odd, {wrong} wrong" + ("" if fine else "  FAILED"))
+    return fine
+
+
+def check_lamp(options):
+    """A lamp of meridians' fields, its pole towards a matte point: half of each parallel shines, so it brings half of
+    what a plain lamp does, albedo (R / d)^2, wholly above the horizon."""
+    texture = {"mapping": "surface", "up": [0, -1, 0], "turn": 20, "repeat": [3, 1]}
+    document = scene(texture, [0, 3, 0], 0.9, [0, 0, 1], [0, 1, 0], 1)
+    document["textures"]["t"]["colors"] = [[8, 2, 0], [0, 4, 0]]
+    document["camera"] = {"image_width": 1, "pixel_sampling": "center", "max_depth": 5, "vfov": 1, "lookfrom": [-2, 1, 0],
+                          "lookat": [0, 0, 0]}
+    document["materials"]["matte"] = {"type": "lambertian", "albedo": [0.5, 0.5, 0.5]}
+    document["spheres"].append({"center": [0, -1, 0], "radius": 1, "material": "matte"})
+    samples = 1 << 18
+    _, _, rows = render(document, ["--spp", str(samples), "--sampler", "independent", *options])
+    fine = True
+    for channel, mean in enumerate([4, 3, 0]):
+        expected = 0.5 * mean * 0.09
+        # A sample is at most a few times what the lamp gives; its share of directions is 0.09.
+        deviation = math.sqrt(0.25 * [64, 20, 0][channel] / 2 * 0.09 / samples)
+        fine = fine and abs(rows[0][0][channel] - expected) <= 4.5 * deviation
+    print(f"{'lamp of fields ' + ' '.join(options):44} {[round(v, 5) for v in rows[0][0]]}" + ("" if fine else "  FAILED"))
+    return fine
+
+
+SURFACE = {"mapping": "surface"}
+TILTED = {**SURFACE, "up": [2, 1, -3], "turn": 77, "repeat": [4, 5]}
+results = [
+    check_cells("solid", {"size": 0.3}),
+    check_cells("solid, inside out", {"size": 0.3}, radius=-1.0),
+    check_cells("solid, 1e6 from the origin", {"size": 0.3}, center=(1e6, -2e6, 1e6), view=(1, 2, 3)),
+    check_cells("solid, 1e6 away, one path", {"size": 0.07}, center=(1e6, -2e6, 1e6), slack=1e-3,
+                options=["--kernel", "sample"]),
+    check_cells("solid, 1e6 away, in double", {"size": 0.003}, center=(1e6, -2e6, 1e6), slack=1e-3,
+                options=["--precision", "double"]),
+    check_cells("solid, a sphere of 1e6", {"size": 1e5}, radius=1e6, view=(3, 1, 2)),
+    check_cells("solid, a planet's pebbles", {"size": 0.2}, center=(0, -6.4e6 + 0.05, 0), radius=6.4e6, view=(0, 1, 0),
+                vup=(0, 0, -1), span=2.0, slack=0.02),
+    check_cells("surface", {**SURFACE, "repeat": [5, 3]}),
+    check_cells("surface, inside out", {**SURFACE, "repeat": [5, 3]}, radius=-1.0),
+    check_cells("surface, from behind the seam", {**SURFACE, "repeat": [6, 4]}, view=(-1, 0, 0)),
+    check_cells("surface, the north pole", {**SURFACE, "repeat": [3, 6]}, view=(0, 1, 0), vup=(0, 0, -1)),
+    check_cells("surface, the south pole, in double", {**SURFACE, "repeat": [3, 6]}, view=(0, -1, 0), vup=(0, 0, 1),
+                options=["--precision", "double"]),
+    check_cells("surface, tilted and turned", TILTED, view=(1, 1, 0)),
+    check_cells("surface, tilted, all effects, one path", TILTED, view=(-1, 0, 2),
+                options=["--kernel", "sample", "--effects", "all"]),
+    check_cells("surface, upside down", {**SURFACE, "up": [0, -3, 0], "turn": -30, "repeat": [4, 4]}),
+    check_cells("surface, nearly upside down", {**SURFACE, "up": [1e-3, -1, 0], "turn": -30, "repeat": [4, 4]}),
+    check_cells("surface, z up, 1e6 from the origin", {**SURFACE, "up": [0, 0, 1], "repeat": [8, 4]},
+                center=(1e6, 1e6, 0), view=(1, 0, 1)),
+    check_lamp(["--lamps", "on"]),
+    check_lamp(["--lamps", "off"]),
+    check_lamp(["--lamps", "on", "--kernel", "sample", "--precision", "double"]),
+]
+print(f"{len(results)} cases, {results.count(False)} wrong")
+sys.exit(results.count(False) > 0)
