@@ -66,27 +66,32 @@ typedef struct PackedDisc {
     real reserved;
 } PackedDisc;
 
-/* A texture: a checker of two colours. Its kind, and what else is a whole number, stands in
+/* A texture: a checker of two colours, or noise that mixes them. What is a whole number stands in
  * PackedTextureKind.
  *
  * Solid, a point's place in the lattice is scale * point + offset, in cells; `scale` is the unevaluated sum
  * scale + scale_low, and the offset, which moves the camera back to where the scene has it, a whole number of
  * cells modulo LATTICE_PERIOD and a rest in [0, 1). Over a surface, `axes` are unit vectors: to longitude 0,
- * to a quarter, to the north pole; fields[0] stand around, fields[1] from pole to pole. */
+ * to a quarter, to the north pole; fields[0] stand around, fields[1] from pole to pole. Waves of marble are a
+ * lattice of their own along one axis; those of wood stand around `centre`, again a sum of two. */
 typedef struct PackedTexture {
-    real first[3]; /* of even cells */
+    real first[3]; /* of even cells, of noise at 0 */
     real scale;
-    real second[3]; /* of odd ones */
+    real second[3]; /* of odd ones, of noise at 1 */
     real scale_low;
     real rest[3]; /* of the offset */
     real fields[2];
     real axes[9];
-    real reserved[2];
+    real centre[3], centre_low[3];
+    real wave, wave_low, wave_rest; /* of marble and wood: waves a unit of length; of the offset */
+    real distortion;
 } PackedTexture;
 
 typedef struct PackedTextureKind {
     packed_uint mapping;
     packed_uint cell[3]; /* of the offset */
+    packed_uint pattern; /* PATTERN_... */
+    packed_uint octaves, seed, axis;
 } PackedTextureKind;
 
 /* The numbers of a material. What it scatters stands with each sphere. */
@@ -129,8 +134,18 @@ typedef struct PackedVariation {
 #define TEXTURE_REST 8u
 #define TEXTURE_FIELDS 11u
 #define TEXTURE_AXES 13u
-#define TEXTURE_MAPPING 0u /* of PackedTextureKind, like the next one */
+#define TEXTURE_CENTRE 22u
+#define TEXTURE_CENTRE_LOW 25u
+#define TEXTURE_WAVE 28u
+#define TEXTURE_WAVE_LOW 29u
+#define TEXTURE_WAVE_REST 30u
+#define TEXTURE_DISTORTION 31u
+#define TEXTURE_MAPPING 0u /* of PackedTextureKind, like those that follow */
 #define TEXTURE_CELL 1u
+#define TEXTURE_PATTERN 4u
+#define TEXTURE_OCTAVES 5u
+#define TEXTURE_SEED 6u
+#define TEXTURE_AXIS 7u
 #define DISC_DIRECTION 0u
 #define DISC_CAP 3u
 #define DISC_RADIANCE 4u
@@ -218,6 +233,7 @@ enum { FUZZ_SPHERE, FUZZ_BALL };
 enum { FRESNEL_SCHLICK, FRESNEL_EXACT, FRESNEL_NONE };
 enum { TOTAL_REFLECT, TOTAL_ABSORB, TOTAL_REFRACT };
 enum { MAPPING_SOLID, MAPPING_SURFACE };
+enum { PATTERN_CHECKER, PATTERN_PERLIN, PATTERN_TURBULENCE, PATTERN_MARBLE, PATTERN_WOOD };
 #define LATTICE_PERIOD 0x400000u /* cells are counted modulo this: whole numbers that a float holds */
 
 #ifdef BP_HOST
@@ -227,8 +243,8 @@ _Static_assert(sizeof(PackedSky) == 28 * sizeof(real), "PackedSky has padding");
 _Static_assert(sizeof(PackedDisc) == 12 * sizeof(real), "PackedDisc has padding");
 _Static_assert(sizeof(PackedMaterial) == 8 * sizeof(real), "PackedMaterial has padding");
 _Static_assert(sizeof(PackedMaterialKind) == 16, "PackedMaterialKind has padding");
-_Static_assert(sizeof(PackedTexture) == 24 * sizeof(real), "PackedTexture has padding");
-_Static_assert(sizeof(PackedTextureKind) == 16, "PackedTextureKind has padding");
+_Static_assert(sizeof(PackedTexture) == 32 * sizeof(real), "PackedTexture has padding");
+_Static_assert(sizeof(PackedTextureKind) == 32, "PackedTextureKind has padding");
 _Static_assert(sizeof(PackedVariation) == 16, "PackedVariation has padding");
 #define BP_PLACE(place, type, member, element)                                                               \
     _Static_assert(offsetof(type, member) == (place) * sizeof(element), "the place of " #member)
@@ -249,6 +265,16 @@ BP_PLACE(TEXTURE_SCALE_LOW, PackedTexture, scale_low, real);
 BP_PLACE(TEXTURE_REST, PackedTexture, rest, real);
 BP_PLACE(TEXTURE_FIELDS, PackedTexture, fields, real);
 BP_PLACE(TEXTURE_AXES, PackedTexture, axes, real);
+BP_PLACE(TEXTURE_CENTRE, PackedTexture, centre, real);
+BP_PLACE(TEXTURE_CENTRE_LOW, PackedTexture, centre_low, real);
+BP_PLACE(TEXTURE_WAVE, PackedTexture, wave, real);
+BP_PLACE(TEXTURE_WAVE_LOW, PackedTexture, wave_low, real);
+BP_PLACE(TEXTURE_WAVE_REST, PackedTexture, wave_rest, real);
+BP_PLACE(TEXTURE_DISTORTION, PackedTexture, distortion, real);
+BP_PLACE(TEXTURE_PATTERN, PackedTextureKind, pattern, packed_uint);
+BP_PLACE(TEXTURE_OCTAVES, PackedTextureKind, octaves, packed_uint);
+BP_PLACE(TEXTURE_SEED, PackedTextureKind, seed, packed_uint);
+BP_PLACE(TEXTURE_AXIS, PackedTextureKind, axis, packed_uint);
 BP_PLACE(TEXTURE_MAPPING, PackedTextureKind, mapping, packed_uint);
 BP_PLACE(TEXTURE_CELL, PackedTextureKind, cell, packed_uint);
 BP_PLACE(MATERIAL_EMIT, PackedMaterial, emit, real);

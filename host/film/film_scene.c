@@ -124,6 +124,12 @@ static uint64_t mix_camera(uint64_t hash, const BpCamera *camera) {
     return mix(hash, (uint64_t)camera->pixel_sampling);
 }
 
+static uint64_t mix_noise(uint64_t hash, const BpTexture *texture) {
+    hash = mix(mix(hash, (uint64_t)texture->octaves << 32 | texture->seed), (uint64_t)texture->pattern);
+    if (!bp_texture_has_waves(texture)) return hash;
+    return mix_real(mix_real(mix(hash, (uint64_t)texture->axis), texture->period), texture->distortion);
+}
+
 /* A member that varies: what by. `sphere_colour`: the sphere has a colour of its own instead of the albedo.
  */
 static uint64_t mix_textures(uint64_t hash, const BpScene *scene, const BpMaterial *material,
@@ -135,7 +141,8 @@ static uint64_t mix_textures(uint64_t hash, const BpScene *scene, const BpMateri
         hash = mix(hash, (uint64_t)texture->type << 8 | (uint64_t)texture->mapping);
         for (int i = 0; i < 2; i++) hash = mix_reals(hash, texture->colors[i], 3);
         if (texture->mapping == BP_MAPPING_SOLID) {
-            hash = mix_real(hash, texture->size);
+            hash = mix_reals(mix_real(hash, texture->size), texture->origin, 3);
+            if (texture->type == BP_TEXTURE_NOISE) hash = mix_noise(hash, texture);
             continue;
         }
         hash = mix_real(mix_reals(hash, texture->up, 3), texture->turn_degrees);

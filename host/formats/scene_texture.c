@@ -38,48 +38,88 @@ static BpStatus parse_repeat(const BpNode *node, uint32_t repeat[2], BpError *er
     return BP_OK;
 }
 
-static BpStatus refuse_foreign_members(const BpNode *node, BpMapping mapping, BpError *err) {
+/* Which textures have a member. */
+enum { OF_SOLID = 1, OF_SURFACE = 2, OF_NOISE = 4, OF_WAVES = 8, OF_CHECKER = 16 };
+
+static unsigned sorts_of(const BpTexture *texture) {
+    unsigned sorts = texture->mapping == BP_MAPPING_SOLID ? OF_SOLID : OF_SURFACE;
+    sorts |= texture->type == BP_TEXTURE_NOISE ? OF_NOISE : OF_CHECKER;
+    return sorts | (bp_texture_has_waves(texture) ? OF_WAVES : 0);
+}
+
+static BpStatus refuse_foreign_members(const BpNode *node, const BpTexture *texture, BpError *err) {
     static const struct {
         const char *name;
-        BpMapping mapping;
-    } members[] = {{"size", BP_MAPPING_SOLID},
-                   {"up", BP_MAPPING_SURFACE},
-                   {"turn", BP_MAPPING_SURFACE},
-                   {"repeat", BP_MAPPING_SURFACE}};
+        unsigned sort;
+        const char *owners;
+    } members[] = {{"mapping", OF_CHECKER, "a checker, since noise is solid"},
+                   {"size", OF_SOLID, "one with \"mapping\": \"solid\""},
+                   {"origin", OF_SOLID, "one with \"mapping\": \"solid\""},
+                   {"up", OF_SURFACE, "a checker with \"mapping\": \"surface\""},
+                   {"turn", OF_SURFACE, "a checker with \"mapping\": \"surface\""},
+                   {"repeat", OF_SURFACE, "a checker with \"mapping\": \"surface\""},
+                   {"pattern", OF_NOISE, "noise"},
+                   {"octaves", OF_NOISE, "noise"},
+                   {"seed", OF_NOISE, "noise"},
+                   {"axis", OF_WAVES, "noise of the pattern \"marble\" or \"wood\""},
+                   {"period", OF_WAVES, "noise of the pattern \"marble\" or \"wood\""},
+                   {"distortion", OF_WAVES, "noise of the pattern \"marble\" or \"wood\""}};
+    const unsigned sorts = sorts_of(texture);
     for (size_t i = 0; i < BP_COUNT(members); i++) {
         const BpNode member = bp_node_member(node, members[i].name);
-        if (member.value == NULL || members[i].mapping == mapping) continue;
-        return bp_node_fail(
-            &member, BP_PART_NAME, err,
-            "found with the mapping \"%s\", expected only with \"%s\"; remove it or change the mapping",
-            bp_mapping_names[mapping], bp_mapping_names[members[i].mapping]);
+        if (member.value == NULL || (members[i].sort & sorts) != 0) continue;
+        return bp_node_fail(&member, BP_PART_NAME, err,
+                            "found in a texture that has no use for it, expected only in %s; remove it",
+                            members[i].owners);
     }
     return BP_OK;
 }
 
+static BpStatus parse_noise(const BpNode *node, BpTexture *texture, BpError *err) {
+    const BpNode octaves = bp_node_member(node, "octaves");
+    const BpNode seed = bp_node_member(node, "seed");
+    const BpNode axis = bp_node_member(node, "axis");
+    const BpNode period = bp_node_member(node, "period");
+    const BpNode distortion = bp_node_member(node, "distortion");
+    bp_texture_pattern_defaults(texture);
+    BP_TRY(bp_node_integer(&octaves, 1, BP_OCTAVES_MAX, &texture->octaves, err));
+    BP_TRY(bp_node_integer(&seed, 0, UINT32_MAX, &texture->seed, err));
+    BP_TRY(bp_node_choice(&axis, bp_axis_names, bp_axis_count, &texture->axis, err));
+    BP_TRY(bp_node_number(&period, &texture->period, err));
+    return bp_node_number(&distortion, &texture->distortion, err);
+}
+
 static BpStatus parse_texture(const BpNode *node, BpTexture *texture, BpError *err) {
-    static const char *const names[] = {"type", "mapping", "colors", "size", "up", "turn", "repeat"};
-    int type = 0, mapping = 0;
+    static const char *const names[] = {"type", "mapping", "colors", "size",      "origin",
+                                        "up",   "turn",    "repeat", "pattern",   "octaves",
+                                        "seed", "axis",    "period", "distortion"};
+    int type = 0, mapping = 0, pattern = 0;
     if (!json_is_object(node->value))
         return bp_node_wrong(node, "an object: { \"type\": \"checker\", \"colors\": ... }", err);
     BP_TRY(bp_node_object(node, names, BP_COUNT(names), err));
-    BP_TRY(bp_node_require(node, "type", "\"type\": \"checker\"", err));
+    BP_TRY(bp_node_require(node, "type", "\"checker\" or \"noise\"", err));
     BP_TRY(
         bp_node_require(node, "colors", "two, such as \"colors\": [[0.2, 0.3, 0.1], [0.9, 0.9, 0.9]]", err));
     const BpNode type_node = bp_node_member(node, "type");
     const BpNode mapping_node = bp_node_member(node, "mapping");
+    const BpNode pattern_node = bp_node_member(node, "pattern");
     const BpNode colors = bp_node_member(node, "colors");
     const BpNode size = bp_node_member(node, "size");
+    const BpNode origin = bp_node_member(node, "origin");
     const BpNode up = bp_node_member(node, "up");
     const BpNode turn = bp_node_member(node, "turn");
     const BpNode repeat = bp_node_member(node, "repeat");
     BP_TRY(bp_node_choice(&type_node, bp_texture_type_names, bp_texture_type_count, &type, err));
     BP_TRY(bp_node_choice(&mapping_node, bp_mapping_names, bp_mapping_count, &mapping, err));
+    BP_TRY(bp_node_choice(&pattern_node, bp_pattern_names, bp_pattern_count, &pattern, err));
     texture->type = (BpTextureType)type;
     texture->mapping = (BpMapping)mapping;
-    BP_TRY(refuse_foreign_members(node, texture->mapping, err));
+    texture->pattern = (BpPattern)pattern;
+    BP_TRY(refuse_foreign_members(node, texture, err));
     BP_TRY(parse_colors(&colors, texture->colors, err));
     BP_TRY(bp_node_number(&size, &texture->size, err));
+    BP_TRY(bp_node_vector(&origin, texture->origin, err));
+    if (texture->type == BP_TEXTURE_NOISE) return parse_noise(node, texture, err);
     BP_TRY(bp_node_vector(&up, texture->up, err));
     BP_TRY(bp_node_number(&turn, &texture->turn_degrees, err));
     return parse_repeat(&repeat, texture->repeat, err);

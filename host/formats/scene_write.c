@@ -229,19 +229,39 @@ static void put_value(FILE *out, const double value[3]) {
         put_vector(out, value);
 }
 
+static void put_solid(FILE *out, const BpTexture *texture) {
+    fputs(", \"size\": ", out);
+    put_number(out, texture->size);
+    if (!is_dark(texture->origin)) {
+        fputs(", \"origin\": ", out);
+        put_vector(out, texture->origin);
+    }
+    if (texture->type != BP_TEXTURE_NOISE) return;
+    fprintf(out, ", \"octaves\": %u", (unsigned)texture->octaves);
+    if (texture->seed != 0) fprintf(out, ", \"seed\": %u", (unsigned)texture->seed);
+    if (!bp_texture_has_waves(texture)) return;
+    fprintf(out, ", \"axis\": \"%s\", \"period\": ", bp_axis_names[texture->axis]);
+    put_number(out, texture->period);
+    fputs(", \"distortion\": ", out);
+    put_number(out, texture->distortion);
+}
+
 static BpStatus put_texture(FILE *out, const BpTexture *texture, BpError *err) {
     fputs("    ", out);
     BP_TRY(put_text(out, texture->name, err));
-    fprintf(out, ": { \"type\": \"%s\", \"mapping\": \"%s\", \"colors\": [",
-            bp_texture_type_names[texture->type], bp_mapping_names[texture->mapping]);
+    fprintf(out, ": { \"type\": \"%s\"", bp_texture_type_names[texture->type]);
+    if (texture->type == BP_TEXTURE_NOISE)
+        fprintf(out, ", \"pattern\": \"%s\"", bp_pattern_names[texture->pattern]);
+    else
+        fprintf(out, ", \"mapping\": \"%s\"", bp_mapping_names[texture->mapping]);
+    fputs(", \"colors\": [", out);
     put_value(out, texture->colors[0]);
     fputs(", ", out);
     put_value(out, texture->colors[1]);
     fputs("]", out);
-    if (texture->mapping == BP_MAPPING_SOLID) {
-        fputs(", \"size\": ", out);
-        put_number(out, texture->size);
-    } else {
+    if (texture->mapping == BP_MAPPING_SOLID)
+        put_solid(out, texture);
+    else {
         fputs(", \"up\": ", out);
         put_vector(out, texture->up);
         fputs(", \"turn\": ", out);

@@ -72,6 +72,8 @@ static const struct {
     {"texture/sphere_map.cl", IN_ALL},
     {"texture/lattice.cl", IN_ALL},
     {"texture/checker.cl", IN_ALL},
+    {"texture/noise.cl", IN_ALL},
+    {"texture/patterns.cl", IN_ALL},
     {"integrator/vary_surface.cl", IN_ALL},
     {"integrator/pixels.cl", IN_ALL},
     {"integrator/lamps_direct.cl", IN_ALL},

@@ -201,21 +201,35 @@ static bool explain_lamps(const BpScene *scene, size_t size, char *reason) {
     return false;
 }
 
-/* Whether a sphere has a material of which a member varies. A colour of the sphere's own replaces the
- * albedo's texture. */
-static bool explain_textures(const BpScene *scene, size_t size, char *reason) {
+static bool has_noise(const BpScene *scene, const BpMaterial *material) {
+    for (int m = 0; m < BP_MEMBER_COUNT; ++m) {
+        const uint32_t number = material->texture[m];
+        if (number != 0 && scene->textures[number - 1].type == BP_TEXTURE_NOISE) return true;
+    }
+    return false;
+}
+
+/* Whether a sphere has a material of which a member varies, or one that does by noise. A colour of the
+ * sphere's own replaces the albedo's texture, but that is not looked at. */
+static bool explain_textures(const BpScene *scene, bool noise, size_t size, char *reason) {
+    const char *what = noise ? "noise" : "textures";
     size_t spheres = 0, materials = 0;
-    for (size_t m = 0; m < scene->material_count; ++m) materials += bp_material_varies(&scene->materials[m]);
-    for (size_t i = 0; i < scene->sphere_count && materials > 0; ++i)
-        spheres += bp_material_varies(&scene->materials[scene->spheres[i].material]);
+    for (size_t m = 0; m < scene->material_count; ++m) {
+        const BpMaterial *material = &scene->materials[m];
+        materials += noise ? has_noise(scene, material) : bp_material_varies(material);
+    }
+    for (size_t i = 0; i < scene->sphere_count && materials > 0; ++i) {
+        const BpMaterial *material = &scene->materials[scene->spheres[i].material];
+        spheres += noise ? has_noise(scene, material) : bp_material_varies(material);
+    }
     if (spheres > 0)
-        snprintf(reason, size, "%zu material%s with textures, on %zu of %zu sphere%s", materials,
-                 bp_plural(materials), spheres, scene->sphere_count, bp_plural(scene->sphere_count));
+        snprintf(reason, size, "%zu material%s with %s, on %zu of %zu sphere%s", materials,
+                 bp_plural(materials), what, spheres, scene->sphere_count, bp_plural(scene->sphere_count));
     else if (materials > 0)
-        snprintf(reason, size, "%zu material%s %s textures, but no sphere has %s", materials,
-                 bp_plural(materials), materials == 1 ? "has" : "have", materials == 1 ? "it" : "them");
+        snprintf(reason, size, "%zu material%s %s %s, but no sphere has %s", materials, bp_plural(materials),
+                 materials == 1 ? "has" : "have", what, materials == 1 ? "it" : "them");
     else
-        snprintf(reason, size, "no material has a texture");
+        snprintf(reason, size, "no material has %s", noise ? "a texture of noise" : "a texture");
     return spheres > 0;
 }
 
@@ -238,8 +252,8 @@ void bp_effects_analyse(const BpScene *scene, BpEffects *effects) {
         snprintf(effects->reason[BP_EFFECT_LENS], size, "defocus_angle 0: the lens is a pinhole");
     }
     if (explain_discs(scene, size, effects->reason[BP_EFFECT_DISCS])) effects->bits |= 1u << BP_EFFECT_DISCS;
-    if (explain_textures(scene, size, effects->reason[BP_EFFECT_TEXTURES]))
-        effects->bits |= 1u << BP_EFFECT_TEXTURES;
+    for (int e = BP_EFFECT_TEXTURES; e <= BP_EFFECT_NOISE; ++e)
+        if (explain_textures(scene, e == BP_EFFECT_NOISE, size, effects->reason[e])) effects->bits |= 1u << e;
     if ((effects->bits & (1u << BP_EFFECT_EMISSION | 1u << BP_EFFECT_DISCS)) == 0)
         snprintf(effects->reason[BP_EFFECT_LAMPS], size,
                  NO_LAMP_REASON); /* without another look at all spheres */

@@ -205,32 +205,61 @@ static void pack_material(const BpMaterial *material, bool inside_out, PackedMat
 
 _Static_assert((int)BP_MAPPING_SOLID == MAPPING_SOLID && (int)BP_MAPPING_SURFACE == MAPPING_SURFACE,
                "mappings differ between host and kernel");
+_Static_assert(BP_PATTERN_PERLIN + 1 == PATTERN_PERLIN && BP_PATTERN_TURBULENCE + 1 == PATTERN_TURBULENCE &&
+                   BP_PATTERN_MARBLE + 1 == PATTERN_MARBLE && BP_PATTERN_WOOD + 1 == PATTERN_WOOD,
+               "patterns differ between host and kernel");
+_Static_assert(BP_LATTICE_PERIOD == LATTICE_PERIOD, "lattices differ between host and kernel");
 
-/* The lattice of cells, seen from where the camera stands. */
-static void pack_lattice(const BpTexture *texture, const double origin[3], bool single, PackedTexture *packed,
+/* 1 / length as a real, and what that lacks. */
+static void pack_inverse(double length, bool single, real *inverse, real *low) {
+    const double exact = 1 / length;
+    *inverse = single ? (double)(float)exact : exact;
+    *low = single ? exact - *inverse : fma(-exact, length, 1) / length;
+}
+
+/* The lattice of cells, seen from where the camera stands, `from` the texture's own origin. */
+static void pack_lattice(const BpTexture *texture, const double from[3], bool single, PackedTexture *packed,
                          PackedTextureKind *kind) {
-    const double scale = 1 / texture->size;
-    packed->scale = single ? (double)(float)scale : scale;
-    packed->scale_low = single ? scale - packed->scale : fma(-scale, texture->size, 1) / texture->size;
+    pack_inverse(texture->size, single, &packed->scale, &packed->scale_low);
     for (int a = 0; a < 3; ++a) {
-        const double place = origin[a] / texture->size, whole = floor(place), period = LATTICE_PERIOD;
+        const double place = from[a] / texture->size, whole = floor(place), period = LATTICE_PERIOD;
         packed->rest[a] = place - whole;
         kind->cell[a] = (packed_uint)(whole - floor(whole / period) * period);
     }
 }
 
+static void pack_waves(const BpTexture *texture, const double from[3], bool single, PackedTexture *packed) {
+    pack_inverse(texture->period, single, &packed->wave, &packed->wave_low);
+    const double waves = from[texture->axis] / texture->period;
+    packed->wave_rest = waves - floor(waves);
+    packed->distortion = texture->distortion;
+    for (int a = 0; a < 3; ++a) {
+        packed->centre[a] = single ? (double)(float)-from[a] : -from[a];
+        packed->centre_low[a] = -from[a] - packed->centre[a];
+    }
+}
+
+/* `origin`: of the space that is packed, in the scene. */
 static void pack_texture(const BpTexture *texture, const double origin[3], bool single, PackedTexture *packed,
                          PackedTextureKind *kind) {
     *packed = (PackedTexture){.scale = 0};
     *kind = (PackedTextureKind){.mapping = (packed_uint)texture->mapping};
     memcpy(packed->first, texture->colors[0], sizeof packed->first);
     memcpy(packed->second, texture->colors[1], sizeof packed->second);
-    if (texture->mapping == BP_MAPPING_SOLID) {
-        pack_lattice(texture, origin, single, packed, kind);
+    if (texture->mapping == BP_MAPPING_SURFACE) {
+        bp_texture_frame(texture, packed->axes, packed->axes + 3, packed->axes + 6);
+        for (int i = 0; i < 2; ++i) packed->fields[i] = 2.0 * texture->repeat[i];
         return;
     }
-    bp_texture_frame(texture, packed->axes, packed->axes + 3, packed->axes + 6);
-    for (int i = 0; i < 2; ++i) packed->fields[i] = 2.0 * texture->repeat[i];
+    double from[3];
+    for (int a = 0; a < 3; ++a) from[a] = origin[a] - texture->origin[a];
+    pack_lattice(texture, from, single, packed, kind);
+    if (texture->type != BP_TEXTURE_NOISE) return;
+    kind->pattern = (packed_uint)texture->pattern + 1;
+    kind->octaves = texture->octaves;
+    kind->seed = texture->seed;
+    kind->axis = (packed_uint)texture->axis;
+    if (bp_texture_has_waves(texture)) pack_waves(texture, from, single, packed);
 }
 
 /* `origin`: of the space that is packed, in the scene. */

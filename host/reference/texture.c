@@ -33,6 +33,11 @@ static bool is_odd(double number) {
     return fmod(number, 2) != 0;
 }
 
+/* In cells, from the texture's origin. */
+static Vec in_lattice(const BpTexture *texture, Vec point) {
+    return scale(1 / texture->size, sub(point, vec(texture->origin)));
+}
+
 static Vec checker(const BpTexture *texture, Vec point, Vec radial) {
     bool odd;
     if (texture->mapping == BP_MAPPING_SURFACE) {
@@ -41,14 +46,87 @@ static Vec checker(const BpTexture *texture, Vec point, Vec radial) {
         odd = is_odd(floor(u * 2 * texture->repeat[0])) !=
               is_odd(fmin(floor(v * 2 * texture->repeat[1]), 2.0 * texture->repeat[1] - 1));
     } else {
-        odd = is_odd(floor(point.x / texture->size)) != is_odd(floor(point.y / texture->size));
-        odd = odd != is_odd(floor(point.z / texture->size));
+        const Vec place = in_lattice(texture, point);
+        odd = is_odd(floor(place.x)) != is_odd(floor(place.y));
+        odd = odd != is_odd(floor(place.z));
     }
     return vec(texture->colors[odd]);
+}
+
+/* ---- noise: host/scene/texture.h defines it ---- */
+
+/* A whole number modulo the lattice's period. */
+static uint32_t wrapped(double whole) {
+    const double rest = fmod(whole, BP_LATTICE_PERIOD);
+    return (uint32_t)(rest < 0 ? rest + BP_LATTICE_PERIOD : rest);
+}
+
+static Vec gradient(double x, double y, double z, uint32_t octave, uint32_t seed) {
+    static const Vec edges[16] = {{1, 1, 0},  {-1, 1, 0},  {1, -1, 0}, {-1, -1, 0}, {1, 0, 1},  {-1, 0, 1},
+                                  {1, 0, -1}, {-1, 0, -1}, {0, 1, 1},  {0, -1, 1},  {0, 1, -1}, {0, -1, -1},
+                                  {1, 1, 0},  {0, -1, 1},  {-1, 1, 0}, {0, -1, -1}};
+    uint32_t v[3] = {wrapped(x) + (octave << 22), wrapped(y), wrapped(z) + seed * 0x9e3779b9u};
+    for (int i = 0; i < 3; ++i) v[i] = v[i] * 1664525u + 1013904223u;
+    for (int i = 0; i < 3; ++i) v[i] += v[(i + 1) % 3] * v[(i + 2) % 3];
+    for (int i = 0; i < 3; ++i) v[i] ^= v[i] >> 16;
+    return edges[(v[0] + v[1] * v[2]) >> 28];
+}
+
+static double between(double a, double b, double t) {
+    const double s = ((6 * t - 15) * t + 10) * t * t * t;
+    return (1 - s) * a + s * b;
+}
+
+static double noise(Vec p, uint32_t octave, uint32_t seed) {
+    const Vec low = {floor(p.x), floor(p.y), floor(p.z)}, t = sub(p, low);
+    double slope[2][2][2];
+    for (int i = 0; i < 2; ++i)
+        for (int j = 0; j < 2; ++j)
+            for (int k = 0; k < 2; ++k)
+                slope[i][j][k] = dot(gradient(low.x + i, low.y + j, low.z + k, octave, seed),
+                                     (Vec){t.x - i, t.y - j, t.z - k});
+    double along_z[2];
+    for (int k = 0; k < 2; ++k)
+        along_z[k] = between(between(slope[0][0][k], slope[1][0][k], t.x),
+                             between(slope[0][1][k], slope[1][1][k], t.x), t.y);
+    return between(along_z[0], along_z[1], t.z);
+}
+
+/* From the plane through the origin along the axis, or from the axis, in waves. */
+static double waves(const BpTexture *texture, Vec from) {
+    const double v[3] = {from.x, from.y, from.z};
+    const int axis = texture->axis, b = (axis + 1) % 3, c = (axis + 2) % 3;
+    return (texture->pattern == BP_PATTERN_MARBLE ? v[axis] : hypot(v[b], v[c])) / texture->period;
+}
+
+static Vec noisy(const BpTexture *texture, Vec point) {
+    const Vec place = in_lattice(texture, point);
+    double s = 0, share = 0;
+    for (uint32_t k = 0; k < texture->octaves; ++k)
+        s += ldexp(noise(scale(ldexp(1, (int)k), place), k, texture->seed), -(int)k);
+    const double moved = waves(texture, sub(point, vec(texture->origin)));
+    switch (texture->pattern) {
+    case BP_PATTERN_PERLIN:
+        share = (1 + s) / 2;
+        break;
+    case BP_PATTERN_TURBULENCE:
+        share = fabs(s);
+        break;
+    case BP_PATTERN_MARBLE:
+        share = (1 + sin(2 * PI * (moved + texture->distortion * fabs(s)))) / 2;
+        break;
+    case BP_PATTERN_WOOD:
+        share = (1 + sin(2 * PI * (moved + texture->distortion * s))) / 2;
+        break;
+    }
+    share = fmin(fmax(share, 0), 1);
+    return add(scale(1 - share, vec(texture->colors[0])), scale(share, vec(texture->colors[1])));
 }
 
 Vec bp_ref_varied(const BpScene *scene, const Hit *hit, BpMember member, const double constant[3]) {
     const uint32_t number = hit->material->texture[member];
     if (number == 0) return vec(constant);
-    return checker(&scene->textures[number - 1], hit->point, hit->radial);
+    const BpTexture *texture = &scene->textures[number - 1];
+    return texture->type == BP_TEXTURE_NOISE ? noisy(texture, hit->point)
+                                             : checker(texture, hit->point, hit->radial);
 }

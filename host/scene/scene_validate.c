@@ -114,6 +114,16 @@ static bool camera_fault(const BpCamera *camera, BpFault *fault) {
            camera_basis_fault(camera, fault);
 }
 
+static bool noise_fault(const BpTexture *texture, BpFault *fault) {
+    return outside(fault, BP_FAULT_TEXTURE, "octaves", texture->octaves, 1, BP_OCTAVES_MAX,
+                   "1 to 12 octaves") ||
+           (bp_texture_has_waves(texture) &&
+            (outside(fault, BP_FAULT_TEXTURE, "period", texture->period, BP_TEXTURE_SIZE_MIN,
+                     BP_COORDINATE_MAX, "the length of a wave, from 1e-12 to 1e12") ||
+             outside(fault, BP_FAULT_TEXTURE, "distortion", texture->distortion, 0, BP_DISTORTION_MAX,
+                     "0 to 1000 waves")));
+}
+
 static bool texture_fault(const BpTexture *texture, BpFault *fault) {
     for (int i = 0; i < 2; i++)
         if (any_outside(fault, BP_FAULT_TEXTURE, "colors", texture->colors[i], 0, BP_RADIANCE_MAX,
@@ -121,7 +131,9 @@ static bool texture_fault(const BpTexture *texture, BpFault *fault) {
             return true;
     if (texture->mapping == BP_MAPPING_SOLID)
         return outside(fault, BP_FAULT_TEXTURE, "size", texture->size, BP_TEXTURE_SIZE_MIN, BP_COORDINATE_MAX,
-                       "the length of a cell, from 1e-12 to 1e12");
+                       "the length of a cell, from 1e-12 to 1e12") ||
+               coordinates_outside(fault, BP_FAULT_TEXTURE, "origin", texture->origin) ||
+               (texture->type == BP_TEXTURE_NOISE && noise_fault(texture, fault));
     if (coordinates_outside(fault, BP_FAULT_TEXTURE, "up", texture->up)) return true;
     if (!(length(texture->up) >= LENGTH_MIN))
         return set_fault(fault, BP_FAULT_TEXTURE, "up",

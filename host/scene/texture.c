@@ -7,13 +7,39 @@
 
 #define PI 3.14159265358979323846
 
-const char *const bp_texture_type_names[] = {[BP_TEXTURE_CHECKER] = "checker"};
+const char *const bp_texture_type_names[] = {[BP_TEXTURE_CHECKER] = "checker", [BP_TEXTURE_NOISE] = "noise"};
 const size_t bp_texture_type_count = sizeof bp_texture_type_names / sizeof bp_texture_type_names[0];
 const char *const bp_mapping_names[] = {[BP_MAPPING_SOLID] = "solid", [BP_MAPPING_SURFACE] = "surface"};
 const size_t bp_mapping_count = sizeof bp_mapping_names / sizeof bp_mapping_names[0];
+const char *const bp_pattern_names[] = {[BP_PATTERN_PERLIN] = "perlin",
+                                        [BP_PATTERN_TURBULENCE] = "turbulence",
+                                        [BP_PATTERN_MARBLE] = "marble",
+                                        [BP_PATTERN_WOOD] = "wood"};
+const size_t bp_pattern_count = sizeof bp_pattern_names / sizeof bp_pattern_names[0];
+const char *const bp_axis_names[] = {"x", "y", "z"};
+const size_t bp_axis_count = sizeof bp_axis_names / sizeof bp_axis_names[0];
 
 void bp_texture_defaults(BpTexture *texture) {
-    *texture = (BpTexture){.size = 1, .up = {0, 1, 0}, .repeat = {1, 1}};
+    *texture =
+        (BpTexture){.size = 1, .up = {0, 1, 0}, .repeat = {1, 1}, .octaves = 1, .axis = 2, .period = 1};
+}
+
+void bp_texture_pattern_defaults(BpTexture *texture) {
+    static const struct {
+        uint32_t octaves;
+        double distortion;
+    } defaults[] = {[BP_PATTERN_PERLIN] = {1, 0},
+                    [BP_PATTERN_TURBULENCE] = {7, 0},
+                    [BP_PATTERN_MARBLE] = {7, 1.6},
+                    [BP_PATTERN_WOOD] = {2, 0.3}};
+    texture->octaves = defaults[texture->pattern].octaves;
+    texture->distortion = defaults[texture->pattern].distortion;
+    texture->period = texture->size;
+}
+
+bool bp_texture_has_waves(const BpTexture *texture) {
+    return texture->type == BP_TEXTURE_NOISE &&
+           (texture->pattern == BP_PATTERN_MARBLE || texture->pattern == BP_PATTERN_WOOD);
 }
 
 /* `v` turned about the unit vector `axis` by the angle of which these are the cosine and the sine (O.

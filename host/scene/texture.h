@@ -4,9 +4,23 @@
  * values. Knows: the grammar's terms.   Does not know: which material has it, how a kernel or the reference
  * looks it up.
  *
- * A checker has cells of two colours in turn. Solid, they are cubes of space, and the corner of one is the
- * origin. Over a surface, they are fields between meridians and parallels of each sphere: the pattern, two
- * fields each way, repeats `repeat[0]` times around and `repeat[1]` times from pole to pole. */
+ * A checker has cells of two colours in turn. Solid, they are cubes of space, and the corner of one is
+ * `origin`. Over a surface, they are fields between meridians and parallels of each sphere: the pattern, two
+ * fields each way, repeats `repeat[0]` times around and `repeat[1]` times from pole to pole.
+ *
+ * Noise is gradient noise (K. Perlin, "Improving Noise", 2002) in the same cubes: n(p), between -1 and 1 and
+ * 0 at their corners. Its gradients come from a hash of the corner instead of a table, so it has no period
+ * but that of the count of cells, BP_LATTICE_PERIOD. Octave k is n(2^k p) / 2^k, with gradients of its own;
+ * s(p) is the sum of all octaves. From a pattern comes a share, which mixes colors[0] and colors[1] and is
+ * kept within 0 and 1: perlin      (1 + s) / 2 turbulence  |s| marble      (1 + sin(2 pi (a / period +
+ * distortion |s|))) / 2, a: along the axis, from the origin wood        (1 + sin(2 pi (r / period +
+ * distortion s))) / 2, r: from the axis through the origin
+ *
+ * The gradient at a corner: x, y, z are its whole numbers modulo BP_LATTICE_PERIOD, as 32 bits; to x is added
+ * 2^22 times the octave, to z 0x9e3779b9 times the seed. They are mixed by pcg3d (M. Jarzynski and M. Olano,
+ * "Hash Functions for GPU Rendering", 2020), and the upper four bits of the first word, h, choose among the
+ * twelve directions to the edges of a cube as Perlin has it: a + b, where a is x for h < 8 and y above, b is
+ * y for h < 4, x for 12 and 14, and z for others; a is negative where bit 0 is set, b where bit 1 is. */
 #ifndef BP_SCENE_TEXTURE_H
 #define BP_SCENE_TEXTURE_H
 
@@ -16,31 +30,58 @@
 
 #define BP_TEXTURES_MAX 65536u
 #define BP_TEXTURE_REPEAT_MAX 65536u
-#define BP_TEXTURE_SIZE_MIN 1.0e-12 /* of a cell; its inverse is a float too */
+#define BP_TEXTURE_SIZE_MIN 1.0e-12 /* of a cell, and of a wave; their inverses are floats too */
 #define BP_TEXTURE_TURN_MAX 1.0e6   /* degrees */
+#define BP_OCTAVES_MAX 12u
+#define BP_DISTORTION_MAX 1000.0
+#define BP_LATTICE_PERIOD 4194304u /* 2^22 */
 
-typedef enum BpTextureType { BP_TEXTURE_CHECKER } BpTextureType;
+typedef enum BpTextureType { BP_TEXTURE_CHECKER, BP_TEXTURE_NOISE } BpTextureType;
 typedef enum BpMapping { BP_MAPPING_SOLID, BP_MAPPING_SURFACE } BpMapping;
+typedef enum BpPattern {
+    BP_PATTERN_PERLIN,
+    BP_PATTERN_TURBULENCE,
+    BP_PATTERN_MARBLE,
+    BP_PATTERN_WOOD
+} BpPattern;
 
 typedef struct BpTexture {
     char *name;
     BpTextureType type;
-    BpMapping mapping;
-    double colors[2][3]; /* of even cells, and of odd ones; numbers are colours of three equal parts */
-    double size;         /* solid: of a cell, in the scene's unit */
+    BpMapping mapping;   /* noise is solid */
+    double colors[2][3]; /* of even cells, and of odd ones; of noise at 0 and at 1; numbers are colours of
+                            three equal parts */
+    /* Solid: */
+    double size;      /* of a cell, in the scene's unit */
+    double origin[3]; /* a corner of the cells */
     /* Over a surface: */
     double up[3];        /* from the south to the north pole, of any length */
     double turn_degrees; /* about `up`, counter-clockwise seen from its tip */
     uint32_t repeat[2];
+    /* Noise: */
+    BpPattern pattern;
+    uint32_t octaves, seed;
+    /* Marble and wood: */
+    int axis;          /* 0 x, 1 y, 2 z */
+    double period;     /* the length of a wave */
+    double distortion; /* by how many waves noise of 1 moves them */
 } BpTexture;
 
 extern const char *const bp_texture_type_names[];
 extern const size_t bp_texture_type_count;
 extern const char *const bp_mapping_names[];
 extern const size_t bp_mapping_count;
+extern const char *const bp_pattern_names[];
+extern const size_t bp_pattern_count;
+extern const char *const bp_axis_names[];
+extern const size_t bp_axis_count;
 
 /* All that the grammar leaves to choose by default; no name. */
 void bp_texture_defaults(BpTexture *texture);
+/* Of a pattern: its octaves and its distortion, and a wave as long as a cell. */
+void bp_texture_pattern_defaults(BpTexture *texture);
+/* Whether the texture has waves. */
+bool bp_texture_has_waves(const BpTexture *texture);
 
 /* Unit vectors of a sphere's map: longitude is 0 at `seam`, a quarter at `east`; the north pole is `pole`.
  * With `up` [0, 1, 0] and no turn, the seam is at -x and the quarter at z, as in the second book. Another

@@ -6,7 +6,19 @@
 /* Of the texture with this number, counted from 1, in the `active` lanes. */
 static Vec3 texture_value(const Scene *scene, vuint number, const Point *point, Vec3 outward, vbool active) {
     const vuint index = choose_uint(active, number - splat_uint(1), splat_uint(0));
-    return checker_colour(scene, index * TEXTURE_REALS, index * TEXTURE_UINTS, point, outward, active);
+    const vuint numbers = index * TEXTURE_REALS, kinds = index * TEXTURE_UINTS;
+#if EFFECT_NOISE
+    const vuint pattern = gather_uint(scene->texture_kinds, kinds + TEXTURE_PATTERN);
+    const vbool noisy = active & vbool_of_uint(pattern != splat_uint(PATTERN_CHECKER));
+    Vec3 value = zero3();
+    if (any_lane(active & vbool_not(noisy)))
+        value = checker_colour(scene, numbers, kinds, point, outward, active & vbool_not(noisy));
+    if (any_lane(noisy))
+        value = choose3(noisy, pattern_colour(scene, numbers, kinds, point, pattern, noisy), value);
+    return value;
+#else
+    return checker_colour(scene, numbers, kinds, point, outward, active);
+#endif
 }
 
 /* What the sphere in `slot` emits at a point, in the `active` lanes: `radiance`, but for materials whose light varies. */

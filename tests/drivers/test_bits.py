@@ -82,7 +82,7 @@ def instruction_sets(folder):
 def other_driver(folder, name, environment, wrapper=()):
     global ran
     small = [p for p in recorded if (p["precision"], p["refinement"]) == ("single", "float")
-             and p["scene"] in ("bubble", "normals", "tie")]
+             and p["scene"] in ("bubble", "checker-surface", "noise", "normals", "tie")]
     pathlib.Path(folder, "small.json").write_text(json.dumps({"pictures": small}))
     environment = {**environment, "BALLPARK_BITS": str(pathlib.Path(folder, "small.json"))}
     done, results = check(folder, environment, "--kernel", "sample", "--precision", "single", wrapper=wrapper)

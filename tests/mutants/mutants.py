@@ -34,6 +34,11 @@ def lamp_pairs(*names):
     return Script("tests/lamps/test_lamp_pairs.py", names, "9 lamps")
 
 
+def texture_cells(*names):
+    """Cases of tests/textures/test_texture_cells.py."""
+    return Script("tests/textures/test_texture_cells.py", names, "9 textures")
+
+
 def patch(path, find, replace):
     return (path, find, replace)
 
@@ -593,11 +598,36 @@ MUTANTS = [
     Mutant("a texture over a point's own colour", "this program: textures for points of clouds",
            [patch(PACK, "variations[used].albedo = 0;", "(void)used;")], [test("test_texture_documents", "1 exact")]),
     Mutant("films of other cells", "this program: a merge of two pictures",
-           [patch("host/film/film_scene.c", "hash = mix_real(hash, texture->size);", "(void)texture->size;")],
+           [patch("host/film/film_scene.c", "mix_reals(mix_real(hash, texture->size), texture->origin, 3)", "mix_reals(hash, texture->origin, 3)")],
            [test("test_texture_documents", "1 exact")]),
     Mutant("colours as fuzz", "this program: one of three numbers taken, and nothing said",
            [patch("host/scene/scene_validate.c", "bp_texture_is_number(&scene->textures[number - 1]))", "true)")],
            [test("test_texture_documents", "1 exact")]),
+    Mutant("linear between gradients", "before 2002, and the second book's first tries: creases at cells",
+           [patch(KERNEL, "static vreal fade(vreal t) { return t * t * t * fma(t, fma(t, splat(6), splat(-15)), splat(10)); }",
+                  "static vreal fade(vreal t) { return t; }")], [check("noise")]),
+    Mutant("Hermite's cubic between gradients", "Perlin 1985: the second derivative jumps",
+           [patch(KERNEL, "return t * t * t * fma(t, fma(t, splat(6), splat(-15)), splat(10));", "return t * t * (splat(3) - t - t);")],
+           [check("noise", 1024)]),
+    Mutant("octaves of the same gradients", "second book: all of them vanish together",
+           [patch(KERNEL, "+ octave * LATTICE_PERIOD", "")], [check("noise")]),
+    Mutant("every octave as high as the first", "classic: turbulence without its weights",
+           [patch(KERNEL, "height *= R(0.5);", "")], [check("noise")]),
+    Mutant("a carry lost between octaves", "this program: half of the cells of all but the first",
+           [patch(KERNEL, "*cell = *cell + *cell + choose_uint(carry, splat_uint(1), splat_uint(0));", "*cell = *cell + *cell;")],
+           [check("noise")]),
+    Mutant("the seed forgotten", "this program: every noise the same",
+           [patch(KERNEL, "+ seed * 0x9e3779b9u", "")], [check("noise")]),
+    Mutant("marble without its folds", "classic: the sum's sign kept",
+           [patch(KERNEL, "const vreal height = choose(rough, fabs(noise), noise);", "const vreal height = noise;")], [check("noise")]),
+    Mutant("rings of a cone", "classic: distance from the origin instead of the axis",
+           [patch(KERNEL, "x = choose_refined(vbool_of_uint(axis == splat_uint(0)), splat_refined(0), x);", ""),
+            patch(KERNEL, "y = choose_refined(vbool_of_uint(axis == splat_uint(1)), splat_refined(0), y);", "")], [check("noise")]),
+    Mutant("waves counted from the camera", "this program: marble that moves with it",
+           [patch(PACK, "packed->wave_rest = waves - floor(waves);", "packed->wave_rest = 0;")], [check("noise-far")]),
+    Mutant("the axis of the rings rounded", "classic: a difference of floats, far away",
+           [patch(PACK, "packed->centre_low[a] = -from[a] - packed->centre[a];", "packed->centre_low[a] = 0;")],
+           [texture_cells("wood, its axis 2e6 away")]),
     # ---- files ---------------------------------------------------------------------------------------------
     Mutant("set-ID bits handed on", "classic: the mode of a replaced file, all of it",
            [patch("host/base/output_file.c", "replaced->st_mode & 0777;", "replaced->st_mode & 07777;")],

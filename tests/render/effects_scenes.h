@@ -20,7 +20,7 @@ typedef struct EffectsScene {
     BpScene scene; /* points into the arrays below: pass it on by address, do not copy it */
     BpMaterial materials[16];
     BpSphere spheres[48];
-    BpTexture textures[3];
+    BpTexture textures[8];
 } EffectsScene;
 
 /* Lamps are sampled where something emits, or discs do, and something is lit, unless an option says no. */
@@ -34,6 +34,7 @@ static inline bool effects_light(uint32_t bits) {
 static inline bool effects_can_occur(uint32_t bits, bool tree) {
     if (bp_effects_has(bits, BP_EFFECT_LAMPS) && !effects_light(bits)) return false;
     if (bp_effects_has(bits, BP_EFFECT_TEXTURES) && (bits & MATERIAL_EFFECTS) == 0) return false;
+    if (bp_effects_has(bits, BP_EFFECT_NOISE) && !bp_effects_has(bits, BP_EFFECT_TEXTURES)) return false;
     return (bits & MATERIAL_EFFECTS) != 0 || !tree;
 }
 
@@ -84,8 +85,25 @@ static inline void effects_vary(EffectsScene *made, size_t material, BpMember me
         bp_member_vary(varied, member, number, &made->textures[number - 1]);
 }
 
+/* One of each pattern, and one of light. */
+static inline void effects_noise(EffectsScene *made, double light) {
+    for (int i = 0; i < 5; ++i) {
+        BpTexture *noise = &made->textures[3 + i];
+        bp_texture_defaults(noise);
+        noise->type = BP_TEXTURE_NOISE;
+        noise->pattern = i < 4 ? (BpPattern)i : BP_PATTERN_PERLIN;
+        noise->size = 0.2;
+        bp_texture_pattern_defaults(noise);
+        noise->octaves = 1 + (uint32_t)i;
+        noise->axis = i % 3;
+        noise->colors[1][i % 3] = i < 4 ? 0.9 : light;
+        noise->colors[0][2] = i < 4 ? 0.4 : 0;
+    }
+}
+
 static inline void effects_textures(EffectsScene *made, uint32_t bits) {
-    const bool emits = bp_effects_has(bits, BP_EFFECT_EMISSION);
+    const bool emits = bp_effects_has(bits, BP_EFFECT_EMISSION),
+               noise = bp_effects_has(bits, BP_EFFECT_NOISE);
     const double light = emits ? 3 : 0;
     for (int i = 0; i < 3; ++i) bp_texture_defaults(&made->textures[i]);
     made->textures[0].colors[0][0] = 0.9, made->textures[0].colors[1][2] = 0.7;
@@ -98,14 +116,16 @@ static inline void effects_textures(EffectsScene *made, uint32_t bits) {
     made->textures[2].mapping = BP_MAPPING_SURFACE;
     made->textures[2].repeat[1] = 2;
     made->scene.textures = made->textures;
-    made->scene.texture_count = 3;
+    effects_noise(made, light);
+    made->scene.texture_count = 8;
     for (size_t m = 0; m < made->scene.material_count; ++m) {
-        effects_vary(made, m, BP_MEMBER_ALBEDO, 1 + (uint32_t)(m % 2));
+        effects_vary(made, m, BP_MEMBER_ALBEDO,
+                     noise && m % 2 == 0 ? 4 + (uint32_t)(m / 2 % 4) : 1 + (uint32_t)(m % 2));
         if (m % 2 == 1) effects_vary(made, m, BP_MEMBER_FUZZ, 2);
         /* Of glass, of what shows its normal, of black lamps and, if nothing emits, without light. */
         const BpMaterialKind kind = made->materials[m].kind;
         if (kind != BP_MATERIAL_LAMBERTIAN && kind != BP_MATERIAL_METAL)
-            effects_vary(made, m, BP_MEMBER_EMIT, 3);
+            effects_vary(made, m, BP_MEMBER_EMIT, noise ? 8 : 3);
     }
 }
 

@@ -23,6 +23,10 @@ static const BpMaterial ember = {
     .name = (char *)"ember", .kind = BP_MATERIAL_LAMBERTIAN, GREY, .emit = {0, 0, 0.1}};
 static const BpMaterial debug = {.name = (char *)"debug", .kind = BP_MATERIAL_NORMALS};
 
+/* What materials name as textures 1 and 2. */
+static BpTexture both[2] = {{.type = BP_TEXTURE_CHECKER, .colors = {{0, 0, 0}, {2, 2, 2}}},
+                            {.type = BP_TEXTURE_NOISE, .colors = {{0, 0, 0}, {2, 2, 2}}}};
+
 /* The effects of a scene under a constant sky and a pinhole, with `spheres` spheres that have the first
  * `used` of the materials in turn. */
 static BpEffects analyse(const BpMaterial *materials, size_t count, size_t used, size_t spheres, double lens,
@@ -38,6 +42,8 @@ static BpEffects analyse(const BpMaterial *materials, size_t count, size_t used,
     const BpScene scene = {.camera = {.lens_radius = lens, .focus_dist = 10},
                            .background_bottom = {1, 1, 1},
                            .background_top = {1, 1, top_blue},
+                           .textures = both,
+                           .texture_count = 2,
                            .materials = copy,
                            .material_count = count,
                            .spheres = list,
@@ -79,9 +85,9 @@ static void material_effects(void **state) {
     assert_int_equal(analyse(pair, 2, 2, 2, 0, 1).bits, BIT(METAL) | BIT(EMISSION) | BIT(LAMPS));
     const BpMaterial all[] = {grey, steel, glass, ember, debug};
     assert_int_equal(analyse(all, 5, 5, BP_LIST_SPHERES_MAX + 1, 0.1, 0.5).bits,
-                     BP_EFFECTS_ALL & ~BIT(DISCS) & ~BIT(TEXTURES));
+                     BP_EFFECTS_ALL & ~BIT(DISCS) & ~BIT(TEXTURES) & ~BIT(NOISE));
     assert_int_equal(analyse(all, 5, 5, 5, 0, 1).bits,
-                     BP_EFFECTS_ALL & ~BIT(LENS) & ~BIT(DISCS) & ~BIT(TEXTURES));
+                     BP_EFFECTS_ALL & ~BIT(LENS) & ~BIT(DISCS) & ~BIT(TEXTURES) & ~BIT(NOISE));
 }
 
 static void only_materials_in_use_count(void **state) {
@@ -251,7 +257,7 @@ static void discs(void **state) {
 
 static void textures(void **state) {
     (void)state;
-    BpTexture checker = {.colors = {{0, 0, 0}, {2, 2, 2}}};
+    BpTexture checker = both[0];
     BpMaterial materials[3] = {grey, lamp, steel};
     BpEffects effects = analyse(materials, 3, 3, 4, 0, 1);
     assert_int_equal(effects.bits & BIT(TEXTURES), 0);
@@ -266,8 +272,18 @@ static void textures(void **state) {
     bp_member_vary(&materials[0], BP_MEMBER_EMIT, 1, &checker);
     effects = analyse(materials, 1, 1, 4, 0, 1);
     assert_string_equal(effects.reason[BP_EFFECT_TEXTURES], "1 material with textures, on 4 of 4 spheres");
+    assert_int_equal(effects.bits & BIT(NOISE), 0);
+    assert_string_equal(effects.reason[BP_EFFECT_NOISE], "no material has a texture of noise");
     /* Whatever it gives light anywhere is a lamp. */
     assert_int_equal(effects.bits, BIT(TEXTURES) | BIT(LAMBERTIAN) | BIT(EMISSION) | BIT(LAMPS));
+    bp_member_vary(&materials[2], BP_MEMBER_FUZZ, 2, &both[1]);
+    effects = analyse(materials, 3, 3, 4, 0, 1);
+    assert_int_equal(effects.bits & (BIT(TEXTURES) | BIT(NOISE)), BIT(TEXTURES) | BIT(NOISE));
+    assert_string_equal(effects.reason[BP_EFFECT_TEXTURES], "2 materials with textures, on 3 of 4 spheres");
+    assert_string_equal(effects.reason[BP_EFFECT_NOISE], "1 material with noise, on 1 of 4 spheres");
+    effects = analyse(materials, 3, 2, 4, 0, 1);
+    assert_int_equal(effects.bits & BIT(NOISE), 0);
+    assert_string_equal(effects.reason[BP_EFFECT_NOISE], "1 material has noise, but no sphere has it");
     /* Nowhere: it is none. */
     checker.colors[1][0] = checker.colors[1][1] = checker.colors[1][2] = 0;
     bp_member_vary(&materials[0], BP_MEMBER_EMIT, 1, &checker);

@@ -35,6 +35,7 @@ MARKS = {
     "LAMPS": [],  # NEEDING_OTHERS
     "DISCS": ["disc_contains", "discs_radiance"],
     "TEXTURES": ["turn_of", "lattice_axis", "checker_colour", "vary_surface"],
+    "NOISE": [],  # TOGETHER
     "TREE": ["BoxRay", "leaf_children"],  # no effect, but looked for in the same way
 }
 # Code that several effects share.
@@ -43,6 +44,8 @@ SHARED = {
     "surface->variant = ": {"METAL", "DIELECTRIC"},
     "throughput, emitted": {"EMISSION", "NORMALS"},
 }
+# Code that needs all of these.
+TOGETHER = {"gradient_noise": {"TEXTURES", "NOISE"}, "pattern_colour": {"TEXTURES", "NOISE"}}
 # Code that needs LAMPS, something to be lit, and one of the effects named.
 LIT = {"LAMBERTIAN", "METAL"}
 NEEDING_OTHERS = {
@@ -73,6 +76,8 @@ def complaints(path):
                   for mark in marks if (mark in text) != (name in effects)]
     found += [f"{path.name}: {mark!r} of {sorted(names)} {'is missing' if names & effects else 'is there'}"
               for mark, names in SHARED.items() if (mark in text) != bool(names & effects)]
+    found += [f"{path.name}: {mark!r} of {sorted(names)} {'is missing' if names <= effects else 'is there'}"
+              for mark, names in TOGETHER.items() if (mark in text) != (names <= effects)]
     for mark, sources in NEEDING_OTHERS.items():
         needed = "LAMPS" in effects and bool(LIT & effects) and bool(sources & effects)
         if (mark in text) != needed:

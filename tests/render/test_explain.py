@@ -14,7 +14,7 @@ import tempfile
 from pfm import read_pfm
 
 program, scenes = sys.argv[1], pathlib.Path(sys.argv[2])
-ALL = ["lambertian", "metal", "dielectric", "emission", "normals", "lens", "lamps", "discs", "textures"]
+ALL = ["lambertian", "metal", "dielectric", "emission", "normals", "lens", "lamps", "discs", "textures", "noise"]
 
 
 def run(*arguments, code=0):
@@ -107,7 +107,7 @@ with tempfile.TemporaryDirectory() as folder:
                   "c": {"type": "normals"}}
     spheres = [{"center": [0.5 * i - 1, 0, -2], "radius": 0.2, "material": name} for i, name in enumerate(every_kind)]
     scene = pathlib.Path(folder, "all.json")
-    scene.write_text(json.dumps({"camera": {"image_width": 64}, "textures": {"t": {"type": "checker", "colors": [0.5, 1]}}, "materials": every_kind, "spheres": spheres,
+    scene.write_text(json.dumps({"camera": {"image_width": 64}, "textures": {"t": {"type": "noise", "colors": [0.5, 1]}}, "materials": every_kind, "spheres": spheres,
                                  "background": {"discs": [{"direction": [0, 1, 0], "half_angle": 5, "radiance": [1] * 3}]}}))
     check_measured(scene, [name for name in ALL if name != "lens"], target)
 print(f"{len(document)} scenes explained")

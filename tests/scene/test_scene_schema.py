@@ -24,6 +24,9 @@ GOOD = {
     "transfer": "srgb",
     "textures": {
         "s": {"type": "checker", "colors": [[0, 0.5, 1], 3], "size": 0.1},
+        "n": {"type": "noise", "pattern": "wood", "colors": [0, 1], "size": 2, "origin": [1, 2, 3], "octaves": 12, "seed": 4294967295, "axis": "y",
+              "period": 0.1, "distortion": 0},
+        "p": {"type": "noise", "colors": [0, 1], "octaves": 1},
         "g": {"type": "checker", "mapping": "surface", "colors": [0, 1e12], "up": [0, 0, 1], "turn": -1e6, "repeat": [1, 65536]},
     },
     "materials": {
@@ -68,6 +71,10 @@ BAD = [
     (["textures"], []), (["textures", "s", "type"], None), (["textures", "s", "type"], "chequer"), (["textures", "s", "colors"], None),
     (["textures", "s", "colors"], [1]), (["textures", "s", "colors", 0], [1, 1]), (["textures", "s", "colors", 1], -1),
     (["textures", "s", "size"], 0), (["textures", "s", "up"], [0, 1, 0]), (["textures", "s", "turn"], 0), (["textures", "s", "repeat"], [1, 1]),
+    (["textures", "n", "pattern"], "marbles"), (["textures", "n", "octaves"], 13), (["textures", "n", "octaves"], 0), (["textures", "n", "seed"], -1),
+    (["textures", "n", "axis"], "w"), (["textures", "n", "period"], 0), (["textures", "n", "distortion"], -1), (["textures", "n", "mapping"], "solid"),
+    (["textures", "p", "axis"], "x"), (["textures", "p", "period"], 1), (["textures", "p", "distortion"], 1), (["textures", "p", "turn"], 1),
+    (["textures", "s", "octaves"], 1), (["textures", "s", "pattern"], "wood"), (["textures", "s", "seed"], 1), (["textures", "g", "origin"], [0, 0, 0]),
     (["textures", "s", "mapping"], "uv"), (["textures", "s", "colour"], 1), (["textures", "g", "size"], 1), (["textures", "g", "up"], [0, 0, 0]),
     (["textures", "g", "turn"], 1e7), (["textures", "g", "repeat"], [0, 1]), (["textures", "g", "repeat"], [1, 1.5]), (["textures", "g", "repeat"], 1),
     (["materials", "t", "albedo"], {}), (["materials", "t", "albedo"], {"texture": 1}), (["materials", "t", "fuzz"], {"textur": "g"}),
@@ -107,8 +114,8 @@ def main():
     for path in scenes:
         for error in validator.iter_errors(json.loads(path.read_text())):
             failures.append(f"{path.name}: {error.json_path}: {error.message}")
-    if len(scenes) < 68:
-        failures.append(f"found {len(scenes)} scenes, expected 68 or more")
+    if len(scenes) < 69:
+        failures.append(f"found {len(scenes)} scenes, expected 69 or more")
     failures += [f"a good scene: {error.json_path}: {error.message}" for error in validator.iter_errors(GOOD)]
     for place, value in BAD:
         if validator.is_valid(changed(place, value)):

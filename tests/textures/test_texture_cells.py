@@ -1,11 +1,12 @@
 #!/usr/bin/env python3
-"""Where each cell of a texture lies, pixel by pixel, and what a lamp of cells brings, against closed forms.
+"""What a texture is at each point, pixel by pixel, and what a lamp of cells brings, against closed forms.
 
-usage: test_texture_cells.py PROGRAM SOURCE_DIR
+usage: test_texture_cells.py PROGRAM SOURCE_DIR [CASE...]
 
 A sphere that glows is seen by parallel rays through the centres of pixels, so the point that each pixel shows, and the
-cell that it lies in, follow from the definitions of scenes/README.md; here they are computed with fractions and 50
-digits, from the scene's own coordinates. Pixels whose point lies close to the edge of a cell are left out.
+cell that it lies in, follow from the definitions of scenes/README.md and host/scene/texture.h; here they are computed
+with fractions, from the scene's own coordinates. Pixels whose point lies close to the edge of a checker's cell are left
+out.
 """
 import json
 import math
@@ -18,7 +19,7 @@ from fractions import Fraction
 sys.path.insert(0, os.path.join(os.path.dirname(__file__), "..", "support"))
 from pfm import read_pfm  # noqa: E402
 
-PROGRAM = sys.argv[1]
+PROGRAM, ONLY = sys.argv[1], sys.argv[3:]
 SIDE = 48
 EVEN, ODD = [1, 2, 0.25], [0.5, 0, 4]
 
@@ -85,35 +86,112 @@ def cell(texture, center, radius, normal):
     return sum(numbers) % 2, edge
 
 
-def check_cells(name, texture, center=(0, 0, 0), radius=1.0, view=(0, 0, 1), vup=(0, 1, 0), slack=1e-4, span=None,
-                options=()):
+def pixels_of(texture, center, radius, view, vup, span, options):
+    """(the normal there, what was found) of each pixel that shows the sphere."""
     center, view = list(center), unit(view)
     right, span = unit(cross(vup, view)), span or 2.2 * abs(radius)
     above = cross(view, right)
     width, height, rows = render(scene(texture, center, radius, view, list(vup), span), ["--spp", "4", *options])
-    wrong = compared = odd_ones = 0
     for row in range(height):
         for column in range(width):
             x = ((column + 0.5) / width - 0.5) * span / abs(radius)
             y = (0.5 - (row + 0.5) / height) * span / abs(radius)
-            if x * x + y * y > 0.98:
-                continue
-            z = math.sqrt(1 - x * x - y * y)
-            normal = [x * r + y * a + z * v for r, a, v in zip(right, above, view)]
-            odd, edge = cell(texture, center, radius, normal)
-            if edge < slack:
-                continue
-            compared += 1
-            odd_ones += odd
-            wrong += rows[row][column] != (ODD if odd else EVEN)
+            if x * x + y * y <= 0.98:
+                z = math.sqrt(1 - x * x - y * y)
+                yield [x * r + y * a + z * v for r, a, v in zip(right, above, view)], rows[row][column]
+
+
+def check_cells(name, texture, center=(0, 0, 0), radius=1.0, view=(0, 0, 1), vup=(0, 1, 0), slack=1e-4, span=None,
+                options=()):
+    if ONLY and name not in ONLY:
+        return None
+    wrong = compared = odd_ones = 0
+    for normal, found in pixels_of(texture, center, radius, view, vup, span, options):
+        odd, edge = cell(texture, center, radius, normal)
+        if edge < slack:
+            continue
+        compared += 1
+        odd_ones += odd
+        wrong += found != (ODD if odd else EVEN)
     fine = wrong == 0 and compared > 500 and 0.1 < odd_ones / compared < 0.9
     print(f"{name:44} {compared} pixels, {odd_ones} odd, {wrong} wrong" + ("" if fine else "  FAILED"))
+    return fine
+
+
+def hash3(x, y, z):
+    """pcg3d (Jarzynski and Olano 2020), its first word."""
+    v, low = [x, y, z], 0xffffffff
+    v = [(a * 1664525 + 1013904223) & low for a in v]
+    for _ in range(2):
+        v[0] = (v[0] + v[1] * v[2]) & low
+        v[1] = (v[1] + v[2] * v[0]) & low
+        v[2] = (v[2] + v[0] * v[1]) & low
+        first = v[0]
+        v = [a ^ a >> 16 for a in v]
+    return first
+
+
+EDGES = [(1, 1, 0), (-1, 1, 0), (1, -1, 0), (-1, -1, 0), (1, 0, 1), (-1, 0, 1), (1, 0, -1), (-1, 0, -1), (0, 1, 1), (0, -1, 1),
+         (0, 1, -1), (0, -1, -1), (1, 1, 0), (0, -1, 1), (-1, 1, 0), (0, -1, -1)]
+
+
+def noise(p, octave, seed):
+    """`p`: fractions."""
+    low = [math.floor(a) for a in p]
+    t = [float(a - b) for a, b in zip(p, low)]
+    s = [a ** 3 * (a * (6 * a - 15) + 10) for a in t]
+    total = 0
+    for i in (0, 1):
+        for j in (0, 1):
+            for k in (0, 1):
+                x, y, z = ((a + b) % 4194304 for a, b in zip(low, (i, j, k)))
+                edge = EDGES[hash3(x + (octave << 22), y, (z + seed * 0x9e3779b9) & 0xffffffff) >> 28]
+                slope = edge[0] * (t[0] - i) + edge[1] * (t[1] - j) + edge[2] * (t[2] - k)
+                total += slope * (s[0] if i else 1 - s[0]) * (s[1] if j else 1 - s[1]) * (s[2] if k else 1 - s[2])
+    return total
+
+
+def share(texture, point):
+    pattern = texture.get("pattern", "perlin")
+    octaves = texture.get("octaves", {"perlin": 1, "wood": 2}.get(pattern, 7))
+    size = Fraction(texture.get("size", 1))
+    from_origin = [a - Fraction(b) for a, b in zip(point, texture.get("origin", [0, 0, 0]))]
+    s = sum(noise([a / size * 2 ** k for a in from_origin], k, texture.get("seed", 0)) / 2 ** k for k in range(octaves))
+    period, axis = Fraction(texture.get("period", size)), "xyz".index(texture.get("axis", "z"))
+    if pattern == "perlin":
+        value = (1 + s) / 2
+    elif pattern == "turbulence":
+        value = abs(s)
+    elif pattern == "marble":
+        waves = float(from_origin[axis] / period % 1) + texture.get("distortion", 1.6) * abs(s)
+        value = (1 + math.sin(2 * math.pi * waves)) / 2
+    else:
+        others = [float(a) for k, a in enumerate(from_origin) if k != axis]
+        value = (1 + math.sin(2 * math.pi * (math.hypot(*others) / float(period) + texture.get("distortion", 0.3) * s))) / 2
+    return max(0, min(1, value))
+
+
+def check_noise(name, texture, center=(0, 0, 0), radius=1.0, view=(0, 0, 1), options=(), slack=1e-4):
+    if ONLY and name not in ONLY:
+        return None
+    worst = compared = 0
+    shares = []
+    for normal, found in pixels_of({"type": "noise", **texture}, center, radius, view, (0, 1, 0), None, options):
+        point = [Fraction(c) + Fraction(abs(radius)) * Fraction(n) for c, n in zip(center, normal)]
+        a = share(texture, point)
+        shares.append(a)
+        compared += 1
+        worst = max(worst, *(abs(f - (e + a * (o - e))) for f, e, o in zip(found, EVEN, ODD)))
+    fine = compared > 500 and worst <= slack and max(shares) - min(shares) > 0.5
+    print(f"{name:44} {compared} pixels, off by {worst:.2g}, shares {min(shares):.3f} to {max(shares):.3f}" + ("" if fine else "  FAILED"))
     return fine
 
 
 def check_lamp(options):
     """A lamp of meridians' fields, its pole towards a matte point: half of each parallel shines, so it brings half of
     what a plain lamp does, albedo (R / d)^2, wholly above the horizon."""
+    if ONLY:
+        return None
     texture = {"mapping": "surface", "up": [0, -1, 0], "turn": 20, "repeat": [3, 1]}
     document = scene(texture, [0, 3, 0], 0.9, [0, 0, 1], [0, 1, 0], 1)
     document["textures"]["t"]["colors"] = [[8, 2, 0], [0, 4, 0]]
@@ -159,9 +237,22 @@ results = [
     check_cells("surface, nearly upside down", {**SURFACE, "up": [1e-3, -1, 0], "turn": -30, "repeat": [4, 4]}),
     check_cells("surface, z up, 1e6 from the origin", {**SURFACE, "up": [0, 0, 1], "repeat": [8, 4]},
                 center=(1e6, 1e6, 0), view=(1, 0, 1)),
+    check_noise("perlin", {"size": 0.3}),
+    check_noise("perlin, 1e6 from the origin", {"size": 0.3, "octaves": 5, "seed": 3}, center=(1e6, -2e6, 1e6)),
+    check_noise("perlin, 12 octaves, in double", {"size": 0.5, "octaves": 12}, center=(-1e6, -2e6, 3e5), slack=1e-6,
+                options=["--precision", "double"]),
+    check_noise("perlin, beyond the lattice's period", {"size": 0.2}, center=(-3e6, 5, 1e6), radius=-1.0),
+    check_noise("turbulence", {"pattern": "turbulence", "size": 0.4, "origin": [0.2, 0.1, 0]}, view=(1, 1, 1)),
+    check_noise("marble", {"pattern": "marble", "size": 0.5, "axis": "x", "period": 0.4}),
+    check_noise("marble, 1e6 away, one path", {"pattern": "marble", "size": 0.5, "axis": "y", "seed": 4294967295},
+                center=(1e6, -2e6, 1e6), options=["--kernel", "sample"]),
+    check_noise("wood", {"pattern": "wood", "size": 0.5, "axis": "y", "period": 0.2, "origin": [0.3, 0, -0.2]}),
+    check_noise("wood, its axis 2e6 away", {"pattern": "wood", "size": 0.5, "period": 0.3}, center=(1e6, -2e6, 1e6),
+                options=["--effects", "all"]),
     check_lamp(["--lamps", "on"]),
     check_lamp(["--lamps", "off"]),
     check_lamp(["--lamps", "on", "--kernel", "sample", "--precision", "double"]),
 ]
-print(f"{len(results)} cases, {results.count(False)} wrong")
-sys.exit(results.count(False) > 0)
+done = [result for result in results if result is not None]
+print(f"{len(done)} cases, {done.count(False)} wrong")
+sys.exit(not done or False in done)

@@ -49,6 +49,42 @@ static BpScene *read_back(const BpScene *scene, char **text) {
           "\"texture\": \"rough\" },"                                                                        \
           " \"emit\": { \"texture\": \"globe\" } }")
 
+#define NOISES                                                                                               \
+    "\"p\": { \"type\": \"noise\", \"colors\": [0, 1] },"                                                    \
+    "\"t\": { \"type\": \"noise\", \"pattern\": \"turbulence\", \"colors\": [1, 0], \"octaves\": 12, "       \
+    "\"seed\": 4294967295 },"                                                                                \
+    "\"w\": { \"type\": \"noise\", \"pattern\": \"wood\", \"colors\": [0, [1, 0.5, 0]], \"size\": 0.25 },"   \
+    "\"m\": { \"type\": \"noise\", \"pattern\": \"marble\", \"colors\": [0, 1], \"size\": 3, \"origin\": "   \
+    "[1, -2, 0.1],"                                                                                          \
+    "  \"axis\": \"x\", \"period\": 0.7, \"distortion\": 0 }"
+
+static void noise(void **state) {
+    (void)state;
+    BpScene *scene =
+        parse(SCENE(NOISES, "\"m\": { \"type\": \"lambertian\", \"albedo\": { \"texture\": \"w\" } }"));
+    char *text = NULL;
+    BpScene *again = read_back(scene, &text);
+    for (int pass = 0; pass < 2; pass++) {
+        const BpScene *s = pass == 0 ? scene : again;
+        const BpTexture *t = s->textures;
+        assert_int_equal(s->texture_count, 4);
+        for (int i = 0; i < 4; i++)
+            assert_true(t[i].type == BP_TEXTURE_NOISE && t[i].mapping == BP_MAPPING_SOLID);
+        assert_true(t[0].pattern == BP_PATTERN_PERLIN && t[0].octaves == 1 && t[0].seed == 0);
+        assert_true(t[1].pattern == BP_PATTERN_TURBULENCE && t[1].octaves == 12 && t[1].seed == UINT32_MAX);
+        assert_true(t[2].pattern == BP_PATTERN_WOOD && t[2].octaves == 2 && t[2].axis == 2);
+        assert_true(t[2].period >= 0.25 && t[2].period <= 0.25); /* as long as a cell */
+        assert_true(t[3].pattern == BP_PATTERN_MARBLE && t[3].octaves == 7 && t[3].axis == 0);
+        assert_true(t[3].period >= 0.7 && t[3].period <= 0.7 && t[3].distortion <= 0 && t[3].distortion >= 0);
+        assert_memory_equal(t[3].origin, ((double[3]){1, -2, 0.1}), sizeof t[3].origin);
+        assert_memory_equal(s->materials->albedo, ((double[3]){1, 0.5, 0}), sizeof s->materials->albedo);
+    }
+    assert_true(bp_scene_hash(scene) == bp_scene_hash(again));
+    free(text);
+    bp_scene_destroy(&again);
+    bp_scene_destroy(&scene);
+}
+
 static void every_member(void **state) {
     (void)state;
     BpScene *scene = parse(FULL);
@@ -93,11 +129,12 @@ static void refused_with_place_and_remedy(void **state) {
     (void)state;
 #define ONE(members) SCENE("\"squares\": { " members " }", MATTE)
 #define CHECKER "\"type\": \"checker\", \"colors\": [0, 1]"
+#define NOISE "\"type\": \"noise\", \"colors\": [0, 1]"
 #define OVER CHECKER ", \"mapping\": \"surface\""
     static const Case cases[] = {
         {"{ \"camera\": {}, \"textures\": [] }", {"textures: found a list", "\"squares\""}},
         {SCENE("\"squares\": 3", MATTE), {"textures.squares: found 3", "an object"}},
-        {ONE(""), {"textures.squares: found no \"type\"", "checker"}},
+        {ONE(""), {"textures.squares: found no \"type\"", "\"checker\" or \"noise\""}},
         {ONE("\"type\": \"cheker\", \"colors\": [0, 1]"),
          {"textures.squares.type", "did you mean \"checker\""}},
         {ONE("\"type\": \"checker\""), {"textures.squares: found no \"colors\"", "two"}},
@@ -113,17 +150,37 @@ static void refused_with_place_and_remedy(void **state) {
         {ONE(CHECKER ", \"size\": 0"), {"textures.squares.size: found 0", "1e-12"}},
         {ONE(CHECKER ", \"size\": -1"), {"textures.squares.size: found -1", "1e-12"}},
         {ONE(CHECKER ", \"repeat\": [1, 1]"),
-         {"textures.squares.repeat: found with the mapping \"solid\"", "\"surface\""}},
-        {ONE(CHECKER ", \"up\": [0, 1, 0]"), {"textures.squares.up: found with", "change the mapping"}},
-        {ONE(CHECKER ", \"turn\": 3"), {"textures.squares.turn: found with", "change the mapping"}},
+         {"textures.squares.repeat: found in a texture that has no use for it", "\"surface\""}},
+        {ONE(CHECKER ", \"up\": [0, 1, 0]"),
+         {"textures.squares.up: found in a texture", "\"surface\"; remove it"}},
+        {ONE(CHECKER ", \"turn\": 3"),
+         {"textures.squares.turn: found in a texture", "\"surface\"; remove it"}},
         {ONE(OVER ", \"size\": 1"),
-         {"textures.squares.size: found with the mapping \"surface\"", "\"solid\""}},
+         {"textures.squares.size: found in a texture that has no use for it", "\"solid\""}},
         {ONE(OVER ", \"up\": [0, 0, 0]"), {"textures.squares.up: found no direction", "[0, 1, 0]"}},
         {ONE(OVER ", \"up\": [0, 2e12, 0]"), {"textures.squares.up: found 2000000000000", "1e12"}},
         {ONE(OVER ", \"turn\": 1e7"), {"textures.squares.turn: found 10000000", "1e6"}},
         {ONE(OVER ", \"repeat\": 3"), {"textures.squares.repeat: found 3", "two whole numbers"}},
         {ONE(OVER ", \"repeat\": [0, 1]"), {"textures.squares.repeat[0]: found 0", "from 1 to 65536"}},
         {ONE(OVER ", \"repeat\": [1, 1.5]"), {"textures.squares.repeat[1]: found 1.5", "whole number"}},
+        {ONE(CHECKER ", \"origin\": [0, 0, 2e12]"), {"textures.squares.origin: found 2000000000000", "1e12"}},
+        {ONE(CHECKER ", \"octaves\": 2"), {"textures.squares.octaves: found in a texture", "only in noise"}},
+        {ONE(NOISE ", \"mapping\": \"solid\""),
+         {"textures.squares.mapping: found in a texture", "noise is solid"}},
+        {ONE(NOISE ", \"repeat\": [1, 1]"), {"textures.squares.repeat: found in a texture", "a checker"}},
+        {ONE(NOISE ", \"period\": 1"),
+         {"textures.squares.period: found in a texture", "\"marble\" or \"wood\""}},
+        {ONE(NOISE ", \"octaves\": 0"), {"textures.squares.octaves: found 0", "from 1 to 12"}},
+        {ONE(NOISE ", \"octaves\": 13"), {"textures.squares.octaves: found 13", "from 1 to 12"}},
+        {ONE(NOISE ", \"seed\": -1"), {"textures.squares.seed: found -1", "from 0 to 4294967295"}},
+        {ONE(NOISE ", \"size\": 0"), {"textures.squares.size: found 0", "1e-12"}},
+        {ONE(NOISE ", \"pattern\": \"marbel\""), {"textures.squares.pattern", "did you mean \"marble\""}},
+        {ONE(NOISE ", \"pattern\": \"wood\", \"axis\": \"w\""),
+         {"textures.squares.axis", "\"x\", \"y\" or \"z\""}},
+        {ONE(NOISE ", \"pattern\": \"wood\", \"period\": 0"),
+         {"textures.squares.period: found 0", "length of a wave"}},
+        {ONE(NOISE ", \"pattern\": \"marble\", \"distortion\": -1"),
+         {"textures.squares.distortion: found -1", "0 to 1000"}},
         {SCENE(SQUARES, "\"m\": { \"type\": \"lambertian\", \"albedo\": { \"texture\": \"square\" } }"),
          {"materials.m.albedo.texture: found the texture \"square\"", "did you mean \"squares\""}},
         {SCENE("", MATTE), {"materials.m.albedo.texture: found the texture \"squares\"", "add it there"}},
@@ -179,7 +236,7 @@ static void validated_without_a_document(void **state) {
 static void films_tell_textures_apart(void **state) {
     (void)state;
     BpScene *scene = parse(FULL);
-    uint64_t seen[16];
+    uint64_t seen[32];
     size_t count = 0;
     seen[count++] = bp_scene_hash(scene);
 #define SEEN(field, other)                                                                                   \
@@ -197,6 +254,20 @@ static void films_tell_textures_apart(void **state) {
     SEEN(scene->textures[1].repeat[0], 2);
     SEEN(scene->textures[1].repeat[1], 2);
     SEEN(scene->textures[2].mapping, BP_MAPPING_SURFACE);
+    SEEN(scene->textures[0].origin[1], 2);
+    scene->textures[0].type = BP_TEXTURE_NOISE;
+    seen[count++] = bp_scene_hash(scene);
+    SEEN(scene->textures[0].octaves, 3);
+    SEEN(scene->textures[0].seed, 3);
+    SEEN(scene->textures[0].pattern, BP_PATTERN_TURBULENCE);
+    scene->textures[0].pattern = BP_PATTERN_WOOD;
+    seen[count++] = bp_scene_hash(scene);
+    SEEN(scene->textures[0].pattern, BP_PATTERN_MARBLE);
+    SEEN(scene->textures[0].axis, 0);
+    SEEN(scene->textures[0].period, 3);
+    SEEN(scene->textures[0].distortion, 3);
+    scene->textures[0].type = BP_TEXTURE_CHECKER;
+    scene->textures[0].pattern = BP_PATTERN_PERLIN;
     SEEN(scene->materials[0].texture[BP_MEMBER_FUZZ], 0);
     SEEN(scene->materials[0].texture[BP_MEMBER_ALBEDO], 0);
     for (size_t a = 0; a < count; a++)
@@ -290,6 +361,7 @@ static void own_colours_replace_the_texture(void **state) {
 
 int main(void) {
     const struct CMUnitTest tests[] = {
+        cmocka_unit_test(noise),
         cmocka_unit_test(every_member),
         cmocka_unit_test(refused_with_place_and_remedy),
         cmocka_unit_test(validated_without_a_document),
