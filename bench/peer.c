@@ -107,6 +107,12 @@ BpScene *peer_load(const PeerOptions *options, PeerRun *run) {
         fprintf(stderr, "%s:%d:%d: %s\n", err.file, err.line, err.column, err.message);
         exit(bp_status_exit_code(status));
     }
+    for (size_t m = 0; m < scene->material_count; m++) {
+        if (!bp_material_varies(&scene->materials[m])) continue;
+        fprintf(stderr, "%s: found textures, expected none: peers draw the same colour everywhere\n",
+                options->scene_path);
+        exit(2);
+    }
     if (options->samples != 0) scene->camera.samples_per_pixel = options->samples;
     if (options->depth != 0) scene->camera.max_depth = options->depth;
     *run = (PeerRun){.load_seconds = bp_clock_seconds() - start};

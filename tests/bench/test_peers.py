@@ -37,6 +37,10 @@ with tempfile.TemporaryDirectory() as folder:
     paths += [os.path.join(scenes, name + ".json") for name in
               ("v4-09-hemisphere", "v1-metal-fuzz", "v4-14-metal-fuzz", "v4-16-glass-always", "v4-17-air-bubble",
                "v3-18-view-distant", "v1-glass-hollow")]
+    # what a peer cannot draw it refuses
+    refused = subprocess.run([os.path.join(peers, "book_scalar"), os.path.join(scenes, "checkers.json"), "--method", "list"],
+                             capture_output=True, text=True, check=False)
+    assert refused.returncode == 2 and "found textures, expected none" in refused.stderr, refused
     embree = os.path.exists(os.path.join(peers, "embree_peer"))
     for path in paths:
         means, rays = ours(path, folder)

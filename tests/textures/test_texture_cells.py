@@ -20,7 +20,7 @@ sys.path.insert(0, os.path.join(os.path.dirname(__file__), "..", "support"))
 from pfm import read_pfm  # noqa: E402
 
 PROGRAM, ONLY = sys.argv[1], sys.argv[3:]
-SIDE = 48
+SIDE = 32
 EVEN, ODD = [1, 2, 0.25], [0.5, 0, 4]
 
 
