@@ -1,6 +1,8 @@
-/* fuzz_scene.c: any text as a scene document. What is accepted is valid, and survives being written and read.
+/* fuzz_scene.c: any text as a scene document. What is accepted is valid, and the same scene after it was
+ * written and read.
  *
  * Files of clouds are not opened; fuzz_cloud.c does that. */
+#include "film/film.h"
 #include "formats/scene_parse.h"
 #include "fuzz.h"
 
@@ -27,6 +29,7 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size) {
     size_t length = 0, length_again = 0;
     char *text = print(scene, &length);
     require(bp_scene_parse_with(text, length, "x.json", BP_PARSE_NO_CLOUDS, &again, NULL) == BP_OK);
+    require(bp_scene_hash(scene) == bp_scene_hash(again));
     char *text_again = print(again, &length_again);
     require(length == length_again && memcmp(text, text_again, length) == 0);
     free(text);
