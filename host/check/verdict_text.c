@@ -33,10 +33,10 @@ static void print_brightness(FILE *out, const BpVerdict *v) {
                 v->ratio_low, v->ratio_high);
     const char *asked = v->shown_within <= v->margin ? "" : ", NOT ENOUGH";
     if (isfinite(v->shown_within))
-        fprintf(out, "  evidence          every channel is as bright within %.3g %%, %.3g %% needed%s\n",
+        fprintf(out, "  evidence          every channel is equally bright within %.3g %%, %.3g %% needed%s\n",
                 100 * v->shown_within, 100 * v->margin, asked);
     else
-        fprintf(out, "  evidence          none that every channel is as bright within %.3g %%%s\n",
+        fprintf(out, "  evidence          none that every channel is equally bright within %.3g %%%s\n",
                 100 * v->margin, asked);
 }
 

@@ -297,8 +297,9 @@ BpStatus bp_check_bits_run(const BpBitsRun *run, json_t **entries, BpError *err)
 static const char advice[] =
     "If kernels, sampling, sums or the agreement scenes were changed on purpose, and all tests pass, record\n"
     "the pictures anew: scripts/record-bits. If not, this device computes differently from those that they\n"
-    "were recorded on: `ballpark check --suite` tells whether its pictures are right all the same. Do not\n"
-    "merge them with other devices' where bits matter, and tell the makers of the driver.\n";
+    "were recorded on: `ballpark check --suite` shows whether its pictures are nevertheless right. Do not\n"
+    "merge its renders with those of other devices where exact bits matter, and tell the maker of the "
+    "driver.\n";
 
 const char *bp_check_bits_label(const json_t *entry, char *text, size_t size) {
     snprintf(text, size, "%s, %s, %s, %s%s", bp_check_text(entry, "scene"), bp_check_text(entry, "kernel"),

@@ -38,13 +38,13 @@ static BpStatus check_free(const BpCheckpoint *checkpoint, BpError *err) {
     bp_film_destroy(&film);
     if (unfinished)
         return bp_fail(err, BP_ERR_USAGE,
-                       "--checkpoint would replace %.400s, an unfinished render: go on from it with --resume "
+                       "--checkpoint would replace %.400s, an unfinished render: continue it with --resume "
                        "%.400s, or remove it",
                        checkpoint->path, checkpoint->path);
     if (checkpoint->is_result) return BP_OK; /* a result is replaced, as ever */
     return bp_fail(
         err, BP_ERR_USAGE,
-        "--checkpoint would replace %.400s, which is beside the picture already: move it, or choose "
+        "--checkpoint would replace %.400s, which already exists beside the picture: move it, or choose "
         "another --output",
         checkpoint->path);
 }
@@ -111,7 +111,7 @@ static void report(BpCheckpoint *checkpoint, BpStatus status, BpError *fault) {
     } else {
         /* Somebody else's file has taken the place: every further try would leave a file beside it. */
         if (checkpoint->new_only) checkpoint->every = 0;
-        fputs("ballpark: warning: the checkpoint was not written, and rendering goes on: ", stderr);
+        fputs("ballpark: warning: the checkpoint was not written, and rendering continues: ", stderr);
         bp_show(fault->message, false, stderr);
         fputc('\n', stderr);
     }

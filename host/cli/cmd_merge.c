@@ -209,9 +209,8 @@ static BpStatus check_cues(const BpCommandLine *line, const BpFilm *sum, BpError
             err, BP_ERR_USAGE,
             "--outlines and --depth-fog need the depth, which .bpa files of versions 1 and 2 do not hold");
     if (line->depth_fog > 0 && sum->met == NULL)
-        return bp_fail(
-            err, BP_ERR_USAGE,
-            "--depth-fog of sums needs an alpha: render their samples with --set 'backdrop=\"none\"'");
+        return bp_fail(err, BP_ERR_USAGE,
+                       "--depth-fog of sums needs an alpha: render their samples with --set backdrop=none");
     return BP_OK;
 }
 

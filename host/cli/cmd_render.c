@@ -339,10 +339,12 @@ static void print_summary(const BpCommandLine *line, const RunResult *result, co
     if (result->nrmse > 0.0 && own > 0)
         bp_say(line, "halving the noise: %s more", bp_format_seconds(more, text, sizeof text));
     else if (isnan(result->nrmse))
-        bp_say(line, "estimating noise needs %s",
-               result->samples_per_pixel < 2 ? "at least two samples per pixel"
-               : report->invalid_samples > 0 ? "finite samples in every pixel"
-                                             : "a picture that is not black");
+        bp_say(line, "%s",
+               result->samples_per_pixel < 2 ? "estimating noise needs at least two samples per pixel"
+               : report->invalid_samples > 0
+                   ? "estimating noise needs finite samples in every pixel"
+                   : "the picture is black, so its noise is unknown: nothing that the camera sees is lit; "
+                     "check \"background\", and \"emit\" of the materials");
     say_stop(line, result, rule, end);
     say_emptiness(line, result);
     if (report->cut_paths > 0)
@@ -360,14 +362,14 @@ static BpStatus interrupted(const BpCommandLine *line, const BpStopRule *rule, c
                             const BpCheckpoint *checkpoint, const RunResult *result, BpError *err) {
     char command[8192];
     const bool kept = checkpoint->is_result || checkpoint->written > 0;
-    bp_fail(
-        err, BP_ERR_INTERRUPTED,
-        "interrupted after %" PRIu64 " of %" PRIu64 " sample%s per pixel%s; %s holds the picture so far%s",
-        result->samples_per_pixel, rule->samples_max, bp_plural(rule->samples_max),
-        result->samples_per_pixel == 0 ? " (pixels without a sample are black)" : "", result->output,
-        kept                          ? ", and this goes on from there:"
-        : checkpoint->path[0] != '\0' ? ""
-                                      : "; with --checkpoint SECONDS, another run could go on from there");
+    bp_fail(err, BP_ERR_INTERRUPTED,
+            "interrupted after %" PRIu64 " of %" PRIu64
+            " sample%s per pixel%s; %s holds the picture so far%s",
+            result->samples_per_pixel, rule->samples_max, bp_plural(rule->samples_max),
+            result->samples_per_pixel == 0 ? " (pixels without a sample are black)" : "", result->output,
+            kept                          ? "; this command continues it:"
+            : checkpoint->path[0] != '\0' ? ""
+                                          : "; with --checkpoint SECONDS, another run could continue it");
     if (kept)
         bp_error_attach(err, bp_checkpoint_command(line, checkpoint, rule->seconds - end->seconds, command,
                                                    sizeof command));
@@ -516,11 +518,10 @@ static BpStatus plan(const BpCommandLine *line, const Job *job, const BpCheckpoi
                         job->file.error_map[0] != '\0' || checkpoint->path[0] != '\0' ||
                         bp_result_has_cues(line);
     if (bp_option_given(line, BP_OPTION_DEPTH_FOG) && job->scene->backdrop == BP_BACKDROP_SKY)
-        return bp_fail(
-            err, BP_ERR_USAGE,
-            "--depth-fog fades into the backdrop, and %.400s has none; add --set backdrop=[1,1,1], or "
-            "--set 'backdrop=\"none\"' for a picture with alpha",
-            job->path);
+        return bp_fail(err, BP_ERR_USAGE,
+                       "--depth-fog fades into the backdrop, and %.400s has none; add --set "
+                       "'backdrop=[1,1,1]', or --set backdrop=none for a picture with alpha",
+                       job->path);
     if (resumed != NULL) {
         options->lamps = bp_render_lamps(job->scene, options); /* as films have it */
         BP_TRY(bp_resume_options(line, resumed, options, err));
@@ -732,10 +733,9 @@ BpStatus bp_command_render(const BpCommandLine *given, BpError *err) {
     else if (run.jobs == NULL || (line->stats != NULL && run.stats == NULL))
         status = bp_fail(err, BP_ERR_MEMORY, "out of memory for a list of scenes");
     else if (line->resume != NULL && (run.count > 1 || is_series))
-        status = bp_fail(
-            err, BP_ERR_USAGE,
-            "--resume goes on with one picture, and this command makes several; render the one that was "
-            "begun alone, a frame with --frame");
+        status = bp_fail(err, BP_ERR_USAGE,
+                         "--resume continues one picture, and this command makes several; render the "
+                         "unfinished one alone (a single frame with --frame)");
     else
         status = is_series ? render_series(&run, err) : render_scenes(&run, err);
     clear(&run);

@@ -30,9 +30,9 @@ const BpCommand bp_commands[] = {
             "and --spp, it stops at whichever comes first. --adaptive gives noisy pixels more "
             "samples and the others fewer; --spp is then the mean.\n"
             "\n"
-            "Ctrl-C stops the render and writes the picture as it is. --checkpoint keeps the sums "
-            "in a .bpa file meanwhile, and --resume goes on from it, after a kill as well, to the "
-            "same picture bit for bit. --share I/N renders one of N parts for `ballpark merge`. "
+            "Ctrl-C stops the render and writes the picture so far. --checkpoint saves the sums to "
+            "a .bpa file while rendering, and --resume continues from it, even after a kill, to the same "
+            "picture bit for bit. --share I/N renders one of N parts for `ballpark merge`. "
             "Processes that mpirun or srun starts together share the work: each renders a part of "
             "the picture, or one of several pictures (see docs/CLUSTERS.md). On one device, the same "
             "scene, seed and number of samples give the same picture bit for bit.",
@@ -43,14 +43,15 @@ const BpCommand bp_commands[] = {
                     "  ballpark render cover.json --time 2m -o two.exr     for two minutes\n"
                     "  ballpark render cover.json --set camera.vfov=30     another field of view\n"
                     "  ballpark render scenes/*.json -o pictures/          many scenes at once\n"
-                    "  ballpark render cover.json --checkpoint 60 -o a.exr keeps its sums in a.bpa\n"
-                    "  ballpark render cover.json --resume a.bpa -o a.exr  goes on from there\n"
+                    "  ballpark render cover.json --checkpoint 60 -o a.exr saves its sums to a.bpa\n"
+                    "  ballpark render cover.json --resume a.bpa -o a.exr  continues from there\n"
                     "  ballpark render cover.json --share 1/8 -o 1.bpa     one of eight parts\n"
                     "  mpirun -n 64 ballpark render cover.json --error 1%  on many machines\n"
                     "  ballpark render cover.json -o - | display           into another program\n"
-                    "  ballpark render protein.pdb                         a molecule, well placed and lit\n"
+                    "  ballpark render protein.pdb                         a molecule, framed and "
+                    "lit\n"
                     "  ballpark render run.gsd --frames ::10 -o run.png    run-0000.png, run-0010.png, ...\n"
-                    "  ballpark render protein.pdb --turntable 36          ten degrees from one to the next\n"
+                    "  ballpark render protein.pdb --turntable 36          one every ten degrees\n"
                     "  ballpark generate cover | ballpark render - -o cover.png\n",
         .bit = BP_RENDER,
         .is_shared = true,
@@ -63,17 +64,16 @@ const BpCommand bp_commands[] = {
         .operands_max = 1,
         .summary = "look at a scene in a window, and move the camera",
         .description =
-            "Opens a window, if this program was built with SDL 2, and renders SCENE in it until noise is "
-            "where --error wants it; the title tells how far it is. While the camera moves, the picture is "
-            "smaller or noisier, so that it follows.\n"
+            "Opens a window, if this program was built with SDL 2, and renders SCENE in it until "
+            "the noise is below --error; the title shows the progress. While the camera moves, the "
+            "picture is coarser or noisier, so that it keeps up.\n"
             "\n"
-            "Left drag orbits around the point that the camera looks at, right drag moves along the picture, "
-            "the wheel goes nearer and farther, and a click focuses on what is there. [ and ] change the "
-            "aperture, - and + the exposure, 0 resets it, r goes back to the first camera. s saves the "
-            "picture as "
-            "SCENE-view-1.png, with the first number that is free, in the current folder, and prints the "
-            "command that "
-            "renders it with the camera as it is. q or Escape quits.",
+            "Dragging with the left button orbits around the point that the camera looks at, "
+            "dragging with the right button pans, the wheel zooms, and a click focuses on what is under "
+            "the pointer. [ and ] change the aperture, - and + the exposure; 0 resets the exposure, and "
+            "r the camera. s saves the picture in the current folder as SCENE-view-1.png, with the first "
+            "free number, and prints the command that renders it from the same camera. q or Escape "
+            "quits.",
         .examples = "  ballpark view scenes/cover.json --width 640\n"
                     "  ballpark view protein.pdb --error 0.5%\n",
         .bit = BP_VIEW,
@@ -86,29 +86,28 @@ const BpCommand bp_commands[] = {
         .summary = "compare a device's picture with a reference",
         .description =
             "Renders the scene on the device, and again with a reference tracer in plain C that shares no "
-            "code with the kernel, using equally many samples but other random numbers, and compares the two "
-            "statistically. Reports whether they agree, the confidence interval of their ratio of "
-            "brightness, and the smallest error it would have detected. Default: 64 pixels wide, 1024 "
+            "code with the kernel, using equally many samples but other random numbers, and "
+            "compares the two statistically. It reports whether they agree, the confidence interval of "
+            "their brightness ratio, and the smallest error that it would have detected. Default: 64 pixels "
+            "wide, 1024 "
             "samples per pixel. A correct kernel fails one check in 10,000.\n\n"
             "Nothing passes without evidence: if no difference is found, but the samples are too few to show "
             "that brightness is equal within --margin, the verdict is inconclusive.\n\n"
-            "--suite checks the agreement scenes instead, which come with the program; a correct kernel "
-            "fails "
-            "one suite in 1,000. --device all checks every device. Each device is checked in its own "
-            "process, "
-            "and devices are listed in one, so a driver that crashes or hangs is reported by name and does "
-            "not "
-            "stop the others. With --timeout, each device is judged by what it has rendered by then.\n\n"
+            "--suite checks the agreement scenes that come with the program instead; a correct "
+            "kernel fails one suite in 1,000. --device all checks every device. Devices are listed in a "
+            "separate process, and each is checked in one of its own, so a driver that crashes or hangs "
+            "is reported by name and does not stop the others. With --timeout, each device is judged by "
+            "what it has rendered by then.\n\n"
             "--bits compares small pictures with recorded ones, bit for bit, in every form of the kernel. A "
-            "device that differs may still be right: --suite tells.\n\n"
-            "Exit code: 0 agree, 3 disagree (or other bits), 4 inconclusive, 5 no such device, 6 a device or "
-            "its driver failed; of several, the first of 3, 6, 5, 4.",
+            "device that differs may still be correct: --suite finds out.\n\n"
+            "Exit code: 0 agree, 3 disagree (or different bits), 4 inconclusive, 5 no such device, "
+            "6 a device or its driver failed; if several apply, the first of 3, 6, 5, 4.",
         .examples = "  ballpark check cover.json\n"
                     "  ballpark check cover.json --device all --json report.json\n"
                     "  ballpark check cover.json --spp 16384 --map map.png    more sensitive\n"
                     "  ballpark check --suite --device all --timeout 300 --junit new.xml\n"
-                    "  ballpark check --suite --against old.json       after a driver's update\n"
-                    "  ballpark check --bits                           the same bits as elsewhere?\n",
+                    "  ballpark check --suite --against old.json       after a driver update\n"
+                    "  ballpark check --bits                           are the bits as recorded?\n",
         .bit = BP_CHECK,
         .run = bp_command_check,
     },
@@ -120,8 +119,9 @@ const BpCommand bp_commands[] = {
         .summary = "show which effects a scene uses, why, and what each costs",
         .description =
             "For each SCENE, lists the effects that the kernel can simulate: which are compiled into its "
-            "kernel, which are left out, and why. With --measure, compares the speed of the scene's kernel "
-            "with kernels that simulate one more effect, and with one that simulates all of them. They take "
+            "kernel, which are left out, and why. With --measure, compares the speed of the scene's "
+            "kernel with that of kernels that simulate one more effect, and of one that simulates all of "
+            "them. They take "
             "turns tracing the same samples; the table shows the ratio of their times and the range between "
             "the quartiles.\n"
             "\n"
@@ -195,10 +195,10 @@ const BpCommand bp_commands[] = {
         .name = "devices",
         .operands = "",
         .summary = "list the OpenCL devices",
-        .description = "Lists every device of every OpenCL platform and marks the one that is used by "
-                       "default: a GPU if there is one, otherwise a CPU. A driver that crashes or hangs when "
-                       "it is asked "
-                       "for its devices is named and left out.",
+        .description =
+            "Lists every device of every OpenCL platform and marks the default: a GPU if "
+            "there is one, otherwise a CPU. A driver that crashes or hangs when asked for its devices is "
+            "named and left out.",
         .examples = "  ballpark devices\n"
                     "  ballpark devices --json -       the same as JSON\n",
         .bit = BP_DEVICES,
@@ -227,14 +227,13 @@ const BpCommand bp_commands[] = {
         .operands = "FILE",
         .operands_min = 1,
         .operands_max = 1,
-        .summary = "print the scene that a file stands for, to edit and cite",
-        .description = "Prints the scene that `ballpark render FILE` would render as a JSON document, to "
-                       "standard output or with -o "
-                       "to a file. For a file of particles (XYZ, PDB, mmCIF, GRO, LAMMPS dump and data, GSD, "
-                       "CSV, PLY; each also "
-                       "packed by gzip), that is a document with all choices in it: camera, light, style. "
-                       "The particles stay in "
-                       "their file, which the document names. docs/PARTICLES.md describes its members.",
+        .summary = "print the scene that a file becomes, to edit and cite",
+        .description =
+            "Prints, as a JSON document, the scene that `ballpark render FILE` would "
+            "render, to standard output or with -o to a file. For a file of particles (XYZ, PDB, mmCIF, "
+            "GRO, LAMMPS dump and data, GSD, CSV, PLY; each also packed by gzip), the document contains "
+            "all choices: camera, light, style. The particles stay in their file, which the document "
+            "names. docs/PARTICLES.md describes its members.",
         .examples = "  ballpark scene protein.pdb -o protein.json\n"
                     "  ballpark scene run.gsd --frame -1 | ballpark render - -o last.png\n",
         .bit = BP_SCENE,

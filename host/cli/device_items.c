@@ -122,7 +122,7 @@ static void fill_gaps(const BpDeviceItems *items, const BpChildReport *report, b
         if (interrupted)
             bp_fail(error, BP_ERR_INTERRUPTED, "interrupted before a verdict was reached");
         else if (!first)
-            bp_fail(error, BP_ERR_BROKEN_DEVICE, "not reached: before it the device %s",
+            bp_fail(error, BP_ERR_BROKEN_DEVICE, "not reached, since the device failed earlier (%s)",
                     hung ? "hung" : report->failure);
         else if (hung)
             bp_fail(error, BP_ERR_BROKEN_DEVICE, "hung while %s: its driver did not return within %.3g s",

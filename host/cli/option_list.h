@@ -58,44 +58,45 @@ enum {
     OPTION(WIDTH, "width", 0, BP_TRACERS, "width of the picture in pixels; the aspect ratio stays",          \
            uint32_t, width, BP_WHOLE("N", 1, BP_PICTURE_SIDE_MAX))                                           \
     OPTION(FRAME, "frame", 0, BP_TRACERS | BP_SCENE,                                                         \
-           "which frame of a file of particles; 0: the first, -1: the last", int64_t, frame, BP_SIGNED("N")) \
+           "frame of a file of particles; 0: the first, -1: the last", int64_t, frame, BP_SIGNED("N"))       \
     OPTION(FRAMES, "frames", 0, BP_RENDER,                                                                   \
-           "a numbered picture of each of these frames, by one camera and one range of colours; as in "      \
-           "Python, from A up to but without B, every S-th",                                                 \
+           "one numbered picture per frame, with one camera and one range of colours; a slice as in "        \
+           "Python: from A up to, but not including, B, every S-th",                                         \
            BpSlice, frames, BP_SLICE("A:B:S"))                                                               \
     OPTION(TURNTABLE, "turntable", 0, BP_RENDER,                                                             \
-           "N numbered pictures on a circle around the axis that is up", uint32_t, turntable,                \
+           "N numbered pictures from a circle around the vertical axis", uint32_t, turntable,                \
            BP_WHOLE("N", 2, 100000))                                                                         \
     OPTION(FIT, "fit", 0, BP_TRACERS | BP_SCENE,                                                             \
-           "move the camera so that particles, or all spheres where there are none, fill the picture", bool, \
-           fit, BP_FLAG)                                                                                     \
+           "place the camera so that the particles, or all spheres if there are none, fill the picture",     \
+           bool, fit, BP_FLAG)                                                                               \
     OPTION(PROJECTION, "projection", 0, BP_TRACERS | BP_SCENE,                                               \
-           "parallel rays, by which nothing looks smaller for being far, or those of an eye", const char *,  \
-           projection, BP_WORD("perspective", "orthographic"))                                               \
+           "orthographic: parallel rays, so distant things do not look smaller", const char *, projection,   \
+           BP_WORD("perspective", "orthographic"))                                                           \
     OPTION(LIGHT, "light", 0, BP_TRACERS | BP_SCENE,                                                         \
-           "light that stands in the camera's frame, instead of the scene's; sky: the scene's background",   \
+           "light that moves with the camera, instead of the scene's; sky: the scene's background",          \
            const char *, light, BP_WORD("soft", "studio", "rembrandt", "overhead", "sky"))                   \
-    OPTION(DPI, "dpi", 0, BP_RENDER | BP_MERGE, "dots per inch, written into PNG and EXR", double, dpi,      \
+    OPTION(DPI, "dpi", 0, BP_RENDER | BP_MERGE, "dots per inch, recorded in PNG and EXR", double, dpi,       \
            BP_REAL("N", 0, 100000))                                                                          \
-    OPTION(WIDTH_MM, "width-mm", 0, BP_RENDER, "width in print: with --dpi, it gives the width in pixels",   \
-           double, width_mm, BP_REAL("N", 0, 100000))                                                        \
-    OPTION(BIT_DEPTH, "bit-depth", 0, BP_RENDER | BP_MERGE, "bits of each colour of a PNG", const char *,    \
+    OPTION(WIDTH_MM, "width-mm", 0, BP_RENDER,                                                               \
+           "printed width; together with --dpi, sets the width in pixels", double, width_mm,                 \
+           BP_REAL("N", 0, 100000))                                                                          \
+    OPTION(BIT_DEPTH, "bit-depth", 0, BP_RENDER | BP_MERGE, "bits per channel of a PNG", const char *,       \
            bit_depth, BP_WORD("8", "16"))                                                                    \
     OPTION(OUTLINES, "outlines", 0, BP_RENDER | BP_MERGE,                                                    \
-           "draw lines of that width where the depth jumps; noise is that of the picture without them",      \
-           double, outlines, BP_REAL("PIXELS", 0, 100))                                                      \
-    OPTION(DEPTH_FOG, "depth-fog", 0, BP_RENDER | BP_MERGE,                                                  \
-           "fade what is far into the backdrop, the farthest by PERCENT; noise is that without it", double,  \
-           depth_fog, BP_PERCENT(0, 100))                                                                    \
+           "draw lines of this width where the depth jumps; reported noise is that without them", double,    \
+           outlines, BP_REAL("PIXELS", 0, 100))                                                              \
+    OPTION(                                                                                                  \
+        DEPTH_FOG, "depth-fog", 0, BP_RENDER | BP_MERGE,                                                     \
+        "fade distant parts into the backdrop, the farthest by PERCENT; reported noise is that without it",  \
+        double, depth_fog, BP_PERCENT(0, 100))                                                               \
     OPTION(METADATA, "metadata", 0, BP_RENDER | BP_MERGE,                                                    \
-           "write the command, the version, the seed and the scene's hash into PNG and EXR", bool, metadata, \
-           BP_FLAG)                                                                                          \
+           "record the command, version, seed and scene hash in PNG and EXR", bool, metadata, BP_FLAG)       \
     RENDER_OPTION(DEPTH, "depth", 0, BP_TRACERS,                                                             \
                   "maximum number of ray segments per path; 0: black, 1: only sky and lamps", uint32_t,      \
                   max_depth, BP_WHOLE("N", 0, BP_DEPTH_MAX))                                                 \
     OPTION(SET, "set", 0, BP_TRACERS | BP_SCENE,                                                             \
            "override a member of the scene, such as camera.vfov=30 or spheres[0].radius=2; the value is "    \
-           "JSON, null removes the member; may be repeated",                                                 \
+           "JSON or a word, null removes the member; may be repeated",                                       \
            BpTexts, set, BP_TEXTS("MEMBER=VALUE"))                                                           \
     OPTION(FRESNEL, "fresnel", 0, BP_RENDER | BP_CHECK | BP_EXPLAIN | BP_BENCH | BP_VIEW,                    \
            "reflection of glass: the book's approximation, or Fresnel's equations", const char *, fresnel,   \
@@ -109,8 +110,8 @@ enum {
            "device number, part of its name or driver version, gpu, cpu or all (see `ballpark devices`)",    \
            const char *, device, BP_TEXT("N|NAME|all"))                                                      \
     RENDER_OPTION(THREADS, "threads", 0, BP_TRACERS,                                                         \
-                  "how many threads of a processor to use at most, as far as its driver can divide it",      \
-                  uint32_t, threads, BP_WHOLE("N", 1, 65536))                                                \
+                  "largest number of threads to use on a CPU, as far as its driver can divide it", uint32_t, \
+                  threads, BP_WHOLE("N", 1, 65536))                                                          \
     RENDER_OPTION(PRECISION, "precision", 0, BP_TRACERS, "floating-point precision of the kernel",           \
                   BpPrecision, precision, BP_CHOICE("", bp_precision_names, 0))                              \
     RENDER_OPTION(MATH, "math", 0, BP_TRACERS, "fast: the compiler may round differently", BpMath, math,     \
@@ -120,7 +121,7 @@ enum {
     RENDER_OPTION(SAMPLER, "sampler", 0, BP_RENDER | BP_EXPLAIN | BP_COST | BP_BENCH | BP_VIEW,              \
                   "sample sequence; sobol has less noise", BpSampler, sampler,                               \
                   BP_CHOICE("", bp_sampler_names, 0))                                                        \
-    RENDER_OPTION(LAMPS, "lamps", 0, BP_TRACERS, "off: paths find lamps by chance only, for comparison",     \
+    RENDER_OPTION(LAMPS, "lamps", 0, BP_TRACERS, "off: paths find lamps only by chance, for comparison",     \
                   BpLamps, lamps, BP_CHOICE("", bp_lamps_names, 0))                                          \
     RENDER_OPTION(ADAPTIVE, "adaptive", 0, BP_RENDER,                                                        \
                   "give noisy pixels more samples and the others fewer; --spp is then the mean", bool,       \
@@ -142,19 +143,18 @@ enum {
     RENDER_OPTION(FORCE, "force", 0, BP_RENDER | BP_EXPLAIN | BP_COST | BP_VIEW,                             \
                   "render even if the device fails its self-test", bool, force, BP_FLAG)                     \
     OPTION(PREVIEW, "preview", 0, BP_RENDER,                                                                 \
-           "rewrite the picture, as far as it is, every SECONDS while rendering", double, preview_seconds,   \
-           BP_REAL("SECONDS", 0, 1e7))                                                                       \
+           "rewrite the picture with the samples so far every SECONDS while rendering", double,              \
+           preview_seconds, BP_REAL("SECONDS", 0, 1e7))                                                      \
     OPTION(SHOW, "show", 0, BP_RENDER,                                                                       \
-           "draw the picture in the terminal while rendering, every second or as --preview says", bool,      \
+           "draw the picture in the terminal while rendering, every second or as often as --preview", bool,  \
            show, BP_FLAG)                                                                                    \
     OPTION(CHECKPOINT, "checkpoint", 0, BP_RENDER,                                                           \
-           "keep the sums in a .bpa file every SECONDS, from which --resume goes on", double,                \
+           "save the sums to a .bpa file every SECONDS, from which --resume continues", double,              \
            checkpoint_seconds, BP_REAL("SECONDS", 0, 1e7))                                                   \
-    OPTION(RESUME, "resume", 0, BP_RENDER,                                                                   \
-           "go on from the .bpa file of a render that was stopped, with its options", const char *, resume,  \
-           BP_TEXT("FILE"))                                                                                  \
+    OPTION(RESUME, "resume", 0, BP_RENDER, "continue a stopped render from its .bpa file, with its options", \
+           const char *, resume, BP_TEXT("FILE"))                                                            \
     OPTION(SHARE, "share", 0, BP_RENDER,                                                                     \
-           "take part I of N of the samples, from 1/N to N/N, for `ballpark merge`", BpShare, share,         \
+           "render part I of N of the samples, from 1/N to N/N, for `ballpark merge`", BpShare, share,       \
            BP_PART("I/N"))                                                                                   \
     OPTION(MEASURE, "measure", 0, BP_EXPLAIN, "measure what each effect costs", bool, measure, BP_FLAG)      \
     OPTION(PIXEL, "pixel", 0, BP_EXPLAIN, "follow one path of this pixel, step by step; 0,0 is top left",    \
@@ -165,21 +165,22 @@ enum {
            BP_RESULT("FILE"))                                                                                \
     OPTION(MAP, "map", 0, BP_CHECK, "write a picture of where kernel and reference differ", const char *,    \
            map, BP_RESULT("FILE"))                                                                           \
-    OPTION(SUITE, "suite", 0, BP_CHECK,                                                                      \
-           "check all agreement scenes, small ones of one effect each, which come with the program", bool,   \
-           suite, BP_FLAG)                                                                                   \
+    OPTION(                                                                                                  \
+        SUITE, "suite", 0, BP_CHECK,                                                                         \
+        "check all agreement scenes: small scenes, mostly of one effect each, that come with the program",   \
+        bool, suite, BP_FLAG)                                                                                \
     OPTION(BITS, "bits", 0, BP_CHECK, "compare the device's pictures with recorded ones, bit for bit", bool, \
            bits, BP_FLAG)                                                                                    \
     OPTION(MARGIN, "margin", 0, BP_CHECK, "agree only if brightness is shown to be equal within PERCENT",    \
            double, margin_percent, BP_PERCENT(0, 100))                                                       \
     OPTION(TIMEOUT, "timeout", 0, BP_CHECK | BP_DEVICES,                                                     \
-           "time per device, such as 90, 90s or 2m; check judges what there is by then", double,             \
+           "time limit per device, such as 90, 90s or 2m; what is rendered by then is judged", double,       \
            timeout_seconds, BP_TIME(0, 1e7))                                                                 \
     OPTION(AGAINST, "against", 0, BP_CHECK,                                                                  \
-           "compare with an earlier check, the FILE of its --json: regressions, other drivers",              \
+           "compare with an earlier check, whose --json wrote FILE: regressions, other drivers",             \
            const char *, against, BP_TEXT("FILE"))                                                           \
     OPTION(JUNIT, "junit", 0, BP_CHECK,                                                                      \
-           "write the results as JUnit's XML, for continuous integration; \"-\" is standard output",         \
+           "write the results as JUnit XML, for continuous integration; \"-\" is standard output",           \
            const char *, junit, BP_RESULT("FILE"))                                                           \
     OPTION(GRID, "grid", 0, BP_GENERATE, "half the side of the square of small spheres", uint32_t, grid,     \
            BP_WHOLE("G", 0, 5000))                                                                           \
@@ -187,7 +188,7 @@ enum {
            BP_WHOLE("N", 1, BP_SPHERES_MAX))                                                                 \
     OPTION(EDITION, "edition", 0, BP_GENERATE, "edition of the book", const char *, edition,                 \
            BP_WORD("1", "3", "3rust", "4"))                                                                  \
-    OPTION(ROUNDS, "rounds", 0, BP_BENCH, "how often each scene is measured", uint32_t, rounds,              \
+    OPTION(ROUNDS, "rounds", 0, BP_BENCH, "how many times each scene is measured", uint32_t, rounds,         \
            BP_WHOLE("N", 1, 1000))                                                                           \
     OPTION(NO_CLOBBER, "no-clobber", 0, BP_COMMANDS, "refuse to overwrite files", bool, no_clobber, BP_FLAG) \
     OPTION(WIDE, "wide", 0, BP_COMMANDS, "do not fold long lines to the width of the terminal", bool, wide,  \
@@ -202,11 +203,11 @@ enum {
  * command and an option stands in one row at most. */
 #define BP_OPTION_NOTES(NOTE)                                                                                \
     NOTE(OUTPUT, BP_RENDER,                                                                                  \
-         "where the picture goes: a file, a folder for pictures that are named after their scenes, or "      \
-         "\"-\" for standard output",                                                                        \
+         "where the picture goes: a file, a folder for pictures named after their scenes, or \"-\" for "     \
+         "standard output",                                                                                  \
          "the scene's name, in the current folder")                                                          \
     NOTE(OUTPUT, BP_COST, "write the whole study as an HTML page; \"-\" is standard output", NULL)           \
-    NOTE(OUTPUT, BP_BENCH, "write the fixed scenes to this folder, and measure nothing", NULL)               \
+    NOTE(OUTPUT, BP_BENCH, "write the fixed scenes to this folder, without measuring", NULL)                 \
     NOTE(OUTPUT, BP_GENERATE, NULL, "cover.json or field.ply; standard output if that is a pipe or a file")  \
     NOTE(OUTPUT, BP_SCENE, "where the document goes", "standard output")                                     \
     NOTE(FRAME, BP_TRACERS | BP_SCENE, NULL, "0")                                                            \
@@ -214,9 +215,9 @@ enum {
     NOTE(LAMPS, BP_CHECK, NULL, "off, as in the reference")                                                  \
     NOTE(SPP, BP_RENDER, NULL, "the scene's number")                                                         \
     NOTE(SPP, BP_CHECK, NULL, "1024")                                                                        \
-    NOTE(ERROR, BP_VIEW, "go on until the noise of the picture (NRMSE) is below PERCENT", "1%")              \
-    NOTE(ERROR, BP_RENDER, NULL, "no such limit")                                                            \
-    NOTE(TIME, BP_RENDER, "stop after this time, such as 90, 90s, 2m or 1h30m", "no such limit")             \
+    NOTE(ERROR, BP_VIEW, "render until the noise of the picture (NRMSE) is below PERCENT", "1%")             \
+    NOTE(ERROR, BP_RENDER, NULL, "no limit")                                                                 \
+    NOTE(TIME, BP_RENDER, "stop after this time, such as 90, 90s, 2m or 1h30m", "no limit")                  \
     NOTE(TIME, BP_COST, NULL, "1m")                                                                          \
     NOTE(TIME, BP_BENCH, "tracing time per scene, over all rounds, such as 90, 90s or 2m", "5s")             \
     NOTE(WIDTH, BP_RENDER | BP_BENCH | BP_VIEW, NULL, "the scene's width")                                   \
@@ -246,11 +247,11 @@ enum {
     NOTE(TRANSFER, BP_MERGE, NULL, "that of the first file's scene")                                         \
     NOTE(BIT_DEPTH, BP_RENDER | BP_MERGE, NULL, "8")                                                         \
     NOTE(PROJECTION, BP_TRACERS | BP_SCENE, NULL, "the scene's")                                             \
-    NOTE(LIGHT, BP_TRACERS | BP_SCENE, NULL, "the scene's; of a file of particles soft")                     \
+    NOTE(LIGHT, BP_TRACERS | BP_SCENE, NULL, "the scene's; soft for a file of particles")                    \
     NOTE(FORMAT, BP_RENDER | BP_MERGE, NULL, "by the ending of FILE, otherwise png")                         \
     NOTE(MARGIN, BP_CHECK, NULL, "0.5%, with --suite 1%")                                                    \
     NOTE(TIMEOUT, BP_CHECK, NULL, "no limit; 20s to list devices")                                           \
-    NOTE(TIMEOUT, BP_DEVICES, "time for the drivers to answer, such as 20 or 20s", "20s")                    \
+    NOTE(TIMEOUT, BP_DEVICES, "time limit for the drivers to answer, such as 20 or 20s", "20s")              \
     NOTE(GRID, BP_GENERATE, NULL, "11")                                                                      \
     NOTE(COUNT, BP_GENERATE, NULL, "1000000")                                                                \
     NOTE(EDITION, BP_GENERATE, NULL, "4")                                                                    \

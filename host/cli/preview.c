@@ -66,7 +66,7 @@ static BpStatus show(BpPreview *preview, const BpFilm *film, BpError *err) {
 static void warn(BpPreview *preview, const BpError *fault) {
     if (preview->warned) return;
     preview->warned = true;
-    fputs("ballpark: warning: the preview was not written, and rendering goes on: ", stderr);
+    fputs("ballpark: warning: the preview was not written, and rendering continues: ", stderr);
     bp_show(fault->message, false, stderr);
     fputc('\n', stderr);
 }

@@ -135,10 +135,10 @@ static BpStatus choose_error_map(const BpCommandLine *line, const char *source, 
 static BpStatus check_figure(const BpCommandLine *line, BpFormat format, BpError *err) {
     const bool png = format == BP_FORMAT_PNG, noted = png || format == BP_FORMAT_EXR;
     if (!noted && bp_option_given(line, BP_OPTION_DPI))
-        return bp_fail(err, BP_ERR_USAGE, "--dpi: PNG and EXR tell a resolution, %s does not",
+        return bp_fail(err, BP_ERR_USAGE, "--dpi: PNG and EXR can record a resolution, %s cannot",
                        bp_format_names[format]);
     if (!noted && line->metadata)
-        return bp_fail(err, BP_ERR_USAGE, "--metadata: PNG and EXR have a place for it, %s has none",
+        return bp_fail(err, BP_ERR_USAGE, "--metadata can be recorded in PNG and EXR pictures, not in %s",
                        bp_format_names[format]);
     if (format == BP_FORMAT_BPA && bp_result_has_cues(line))
         return bp_fail(
@@ -146,7 +146,7 @@ static BpStatus check_figure(const BpCommandLine *line, BpFormat format, BpError
             "--outlines and --depth-fog are drawn into pictures, and a .bpa file holds sums; give them to "
             "`ballpark merge`, which makes the picture");
     if (!png && line->bit_depth != NULL)
-        return bp_fail(err, BP_ERR_USAGE, "--bit-depth is of PNG pictures, and this one is %s",
+        return bp_fail(err, BP_ERR_USAGE, "--bit-depth applies to PNG pictures, and this one is %s",
                        bp_format_names[format]);
     return BP_OK;
 }
@@ -275,7 +275,7 @@ BpStatus bp_result_write(const BpCommandLine *line, const BpResultFile *result, 
                     done);
     if (rendered && picture.alpha != NULL && is_picture && result->format != BP_FORMAT_PNG &&
         result->format != BP_FORMAT_EXR)
-        bp_say(line, "%s has no alpha: what the scene leaves open is black; .png and .exr keep it",
+        bp_say(line, "%s has no alpha: what would be transparent is black; .png and .exr keep it",
                bp_result_name(result));
     BpCommandLine of_result = *line;
     if (result->is_own) of_result.no_clobber = false;

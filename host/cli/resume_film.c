@@ -32,11 +32,10 @@ BpStatus bp_resume_scene(const BpCommandLine *line, const BpFilm *film, BpScene 
         return contradicts(line, BP_OPTION_WIDTH, has, err);
     BP_TRY(bp_scene_set_width(scene, film->width, err));
     if (bp_scene_hash(scene) == film->scene_hash && scene->camera.height == film->height) return BP_OK;
-    return bp_fail(
-        err, BP_ERR_USAGE,
-        "--resume %.400s: it is not a render of %.400s as that is now; give it the scene that it was "
-        "rendered from",
-        line->resume, line->operands[0]);
+    return bp_fail(err, BP_ERR_USAGE,
+                   "--resume %.400s: it was rendered from another scene than %.400s, or that has changed "
+                   "since; give the scene that it was rendered from",
+                   line->resume, line->operands[0]);
 }
 
 static uint64_t first_sample(const BpFilm *film) {
@@ -106,15 +105,14 @@ BpStatus bp_resume_rule(const BpCommandLine *line, const BpFilm *film, BpStopRul
     const uint64_t least = rule->adaptive ? plan->target : there;
     if (rule->samples_max < least)
         return bp_fail(err, BP_ERR_USAGE,
-                       "--spp %" PRIu64 " contradicts --resume %.400s, which is on its way to %" PRIu64
-                       " sample%s per pixel already; ask for as many, or leave it out",
+                       "--spp %" PRIu64 " contradicts --resume %.400s, which is to have %" PRIu64
+                       " sample%s per pixel; ask for at least as many, or leave it out",
                        rule->samples_max, line->resume, least, bp_plural(least));
     /* The render was to end at a time, which only the command line knows. */
     if (rule->error <= 0 && rule->seconds <= 0 && rule->samples_max >= BP_SPP_MAX && !has_spp)
-        return bp_fail(
-            err, BP_ERR_USAGE,
-            "--resume %.400s: its render was to end at a time; say with --time, --spp or --error when "
-            "this one ends",
-            line->resume);
+        return bp_fail(err, BP_ERR_USAGE,
+                       "--resume %.400s: its render had only a time limit; say with --time, --spp or --error "
+                       "when this one is to end",
+                       line->resume);
     return BP_OK;
 }

@@ -203,7 +203,7 @@ BpStatus bp_setup_devices(const BpCommandLine *line, BpDeviceInfo **devices, siz
 static void say_threads(const BpCommandLine *line, const BpDeviceInfo *device, uint32_t used) {
     if (line->threads == 0 || used == line->threads) return;
     if (device->type != BP_DEVICE_CPU)
-        bp_say(line, "--threads changes nothing on %s, which is no processor", device->name);
+        bp_say(line, "--threads changes nothing on %s, which is not a CPU", device->name);
     else if (line->threads > used)
         bp_say(line, "--threads %" PRIu32 ": %s has %" PRIu32 ", and all of them are used", line->threads,
                device->name, used);

@@ -91,8 +91,8 @@ BpStatus bp_terminal_picture_begin(BpTerminalPicture *shown, BpError *err) {
     *shown = (BpTerminalPicture){0};
     if (!bp_terminal_is_live(false))
         return bp_fail(err, BP_ERR_USAGE,
-                       "--show draws in a terminal, and standard error is none that can; "
-                       "--preview SECONDS writes the picture as it grows");
+                       "--show needs standard error to be a terminal that can draw; "
+                       "elsewhere, --preview SECONDS writes the picture as it grows");
     if (wanted == NULL || wanted[0] == '\0') {
         shown->graphics = detect();
         return BP_OK;

@@ -93,10 +93,61 @@ static BpStatus fail_syntax(const BpDocument *document, const json_error_t *erro
             hint = "; is there a comma too many before it?";
         else if (rest_length > 0 && rest[0] == '-')
             hint = "; JSON has no -Infinity or -NaN: expected a finite number";
+        else if (strspn(document->text, " \t\r\n") == at)
+            hint =
+                "; expected a scene, which begins with \"{\", or a file of particles with the ending of its "
+                "format (`ballpark help render` lists them)";
         break;
     }
     snprintf(text, sizeof text, "not JSON: %s%s", found, hint);
     return fail_at_offset(document, at, err, text);
+}
+
+/* What packed a file that begins like this, or NULL. */
+static const char *packed_by(const char *text, size_t length) {
+    static const struct {
+        const char *beginning, *program;
+    } known[] = {{"\x1f\x8b", "gzip"},
+                 {"BZh", "bzip2"},
+                 {"\xfd"
+                  "7zXZ",
+                  "xz"},
+                 {"\x28\xb5\x2f\xfd", "zstd"},
+                 {"PK\x03\x04", "zip"}};
+    for (size_t i = 0; i < sizeof known / sizeof *known; i++) {
+        const size_t size = strlen(known[i].beginning);
+        if (length >= size && memcmp(text, known[i].beginning, size) == 0) return known[i].program;
+    }
+    return NULL;
+}
+
+/* Whether a file begins with bytes that no text has, trajectories in binary formats for example. */
+static bool is_binary(const char *text, size_t length) {
+    for (size_t i = 0; i < length && i < 64; i++) {
+        const unsigned char byte = (unsigned char)text[i];
+        if ((byte < ' ' && strchr("\t\n\v\f\r\x1b", byte) == NULL) || byte == '\0') return true;
+    }
+    return false;
+}
+
+/* Names the remedy for files that are no JSON document at all. */
+static BpStatus refuse_other_files(const BpDocument *document, size_t start, BpError *err) {
+    const char *const program = packed_by(document->text, document->length);
+    char text[160];
+    if (document->text[start] == '{' || document->text[start] == '[') return BP_OK;
+    if (program != NULL) {
+        snprintf(text, sizeof text,
+                 "found a file packed by %s, expected a scene; unpack it first (only files of particles may "
+                 "be packed, by gzip)",
+                 program);
+        return fail_at_offset(document, 0, err, text);
+    }
+    if (is_binary(document->text, document->length))
+        return fail_at_offset(
+            document, 0, err,
+            "found bytes that are not text, expected a scene (JSON), or a file of particles "
+            "in a format of docs/PARTICLES.md; MDAnalysis and ASE convert other formats");
+    return BP_OK;
 }
 
 BpStatus bp_document_open(const char *text, size_t length, const char *name, BpDocument *document,
@@ -116,6 +167,7 @@ BpStatus bp_document_open(const char *text, size_t length, const char *name, BpD
         return fail_at_offset(document, 0, err,
                               "found more than 2 GiB of text, expected less: keep many spheres in a PLY file "
                               "and name it in \"clouds\"");
+    BP_TRY(refuse_other_files(document, start, err));
     const char *const nul = memchr(text, '\0', length); /* jansson takes it for the end */
     if (nul != NULL)
         return fail_at_offset(document, (size_t)(nul - text), err,

@@ -102,8 +102,9 @@ void bp_name_document(const BpNode *file_node, const char *what, BpError *err);
 BpStatus bp_keep_point_file(const char *file, size_t first, const char *particles, BpScene *scene,
                             BpError *err);
 
-/* Names the file of an entry of "particles" by its absolute path; `document`: the path of what named it. */
-BpStatus bp_point_file_make_absolute(const char *document, BpPointFile *file, BpError *err);
+/* Names the file of an entry of "particles" as a document at the path `to` must: by its path below the folder
+ * of `to` where it lies there, otherwise by its absolute path. `document`: the path of what named it. */
+BpStatus bp_point_file_move(const char *document, const char *to, BpPointFile *file, BpError *err);
 
 /* Adds the points of the clouds' files to the scene's spheres; `flags` as in bp_scene_parse_with. */
 BpStatus bp_parse_clouds(const BpNode *node, const BpMaterialIndex *index, unsigned flags, BpScene *scene,

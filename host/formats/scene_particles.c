@@ -316,32 +316,42 @@ static BpStatus read_file(const BpNode *file_node, const Entry *entry, size_t pl
     return status;
 }
 
-BpStatus bp_point_file_make_absolute(const char *document, BpPointFile *file, BpError *err) {
+/* The part of `path` below the folder of `to`, or NULL. */
+static const char *path_below(const char *path, const char *to) {
+    const char *const slash = strrchr(to, '/');
+    const size_t length = slash != NULL ? (size_t)(slash - to) + 1 : 0;
+    if (length == 0) return path[0] != '/' ? path : NULL;
+    return strncmp(path, to, length) == 0 && path[length] != '/' ? path + length : NULL;
+}
+
+BpStatus bp_point_file_move(const char *document, const char *to, BpPointFile *file, BpError *err) {
     BpStatus status = BP_OK;
     char folder[4096] = "/";
     char *const path = bp_path_beside(document, file->file);
-    char *absolute = NULL;
-    if (path != NULL && (path[0] == '/' || getcwd(folder, sizeof folder - 2) != NULL)) {
+    const char *const below = path != NULL ? path_below(path, to) : NULL;
+    char *moved = NULL;
+    if (below != NULL) {
+        moved = strdup(below);
+    } else if (path != NULL && (path[0] == '/' || getcwd(folder, sizeof folder - 2) != NULL)) {
         strcat(folder, folder[1] != '\0' ? "/" : "");
-        absolute = bp_path_beside(folder, path);
+        moved = bp_path_beside(folder, path);
     }
     json_t *const entry = json_loads(file->particles, 0, NULL);
     char *text = NULL;
-    if (absolute != NULL && entry != NULL && json_object_set_new(entry, "file", json_string(absolute)) == 0)
+    if (moved != NULL && entry != NULL && json_object_set_new(entry, "file", json_string(moved)) == 0)
         text = json_dumps(entry, JSON_PRESERVE_ORDER);
-    if (text == NULL && (path == NULL || bp_json_memory_failed())) {
+    if (text == NULL && (path == NULL || (below != NULL && moved == NULL) || bp_json_memory_failed())) {
         status = bp_fail(err, BP_ERR_MEMORY, "out of memory for the path of %.200s", file->file);
     } else if (text == NULL) {
-        status = bp_fail(err, BP_ERR_SCENE,
-                         "cannot name %.200s by an absolute path in UTF-8; write the document beside it",
+        status = bp_fail(err, BP_ERR_SCENE, "cannot name %.200s in UTF-8; write the document beside it",
                          file->file);
     } else {
         free(file->particles);
         file->particles = text;
-        status = bp_copy_text(absolute, &file->file, err);
+        status = bp_copy_text(moved, &file->file, err);
     }
     json_decref(entry);
-    free(absolute);
+    free(moved);
     free(path);
     return status;
 }

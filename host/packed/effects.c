@@ -59,12 +59,12 @@ static void explain_material(BpEffect effect, const Use *use, const Use *all, bo
     const char *name = bp_effect_name(effect);
     char in_use[64];
     snprintf(in_use, sizeof in_use, "none of the %zu materials in use", all->materials);
-    char kinds[64] = "";
+    char kinds[64] = "", spheres[48] = "the only sphere";
+    if (all->spheres > 1) snprintf(spheres, sizeof spheres, "all %zu spheres", all->spheres);
     if (all->materials > 1) snprintf(kinds, sizeof kinds, " (%zu of it)", all->materials);
     if (use->materials > 0 && one_kind)
-        snprintf(reason, size,
-                 "the one kind of material in use%s, on all %zu sphere%s: no switch between kinds", kinds,
-                 all->spheres, bp_plural(all->spheres));
+        snprintf(reason, size, "the only kind of material in use%s, on %s: no switch between kinds", kinds,
+                 spheres);
     else if (use->materials > 0)
         snprintf(reason, size, "%zu of the %zu material%s in use, on %zu of %zu sphere%s", use->materials,
                  all->materials, bp_plural(all->materials), use->spheres, all->spheres,
@@ -76,9 +76,9 @@ static void explain_material(BpEffect effect, const Use *use, const Use *all, bo
                  bp_plural(use->unused), use->unused == 1 ? "it" : "them", texts[effect].left_out);
     else if (texts[effect].absent[0] != '\0')
         snprintf(reason, size, "%s: %s", texts[effect].absent,
-                 all->materials == 1 ? "not the one material in use" : in_use);
+                 all->materials == 1 ? "the only material in use does not" : in_use);
     else if (all->materials == 1)
-        snprintf(reason, size, "the one material in use is not %s: %s", name, texts[effect].left_out);
+        snprintf(reason, size, "the only material in use is not %s: %s", name, texts[effect].left_out);
     else
         snprintf(reason, size, "no %s among the %zu materials in use: %s", name, all->materials,
                  texts[effect].left_out);
@@ -185,17 +185,17 @@ static bool explain_lamps(const BpScene *scene, size_t size, char *reason) {
     name_lamps(lamps, discs, sizeof all, all);
     if (lamps + discs == 0)
         snprintf(reason, size,
-                 enclosing != SIZE_MAX ? "the one lamp is around everything: every path finds it"
+                 enclosing != SIZE_MAX ? "the only lamp surrounds everything: every path finds it"
                                        : NO_LAMP_REASON);
     else if (lit == 0)
         snprintf(reason, size, "%s, but no matte surface and no metal with a fuzz of 1/64 or more", all);
     else if (discs == 0 && lamps == 1 && lit == 1 && both == 1)
-        snprintf(reason, size, "the one lamp is the one surface that could be lit");
+        snprintf(reason, size, "the only lamp is also the only surface that could be lit");
     else if (discs == 0 && sky_outshines_lamps(scene))
         snprintf(reason, size, "%zu lamp%s, %s brighter than the sky", lamps, bp_plural(lamps),
                  lamps == 1 ? "not" : "none of them");
     else {
-        snprintf(reason, size, "%s, and %zu sphere%s to be lit", all, lit, bp_plural(lit));
+        snprintf(reason, size, "%s that can light %zu sphere%s", all, lit, bp_plural(lit));
         return true;
     }
     return false;

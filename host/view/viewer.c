@@ -30,13 +30,13 @@
 #define DEGREES_A_WINDOW 180.0 /* a drag across the whole height */
 
 const char bp_view_keys[] = "left drag    orbit around the point that the camera looks at\n"
-                            "right drag   move along the picture (also: Shift and left drag)\n"
-                            "wheel        nearer, farther\n"
-                            "left click   focus on what is there\n"
+                            "right drag   pan (also: Shift and left drag)\n"
+                            "wheel        zoom in and out\n"
+                            "left click   focus on what is under the pointer\n"
                             "[ ]          smaller, larger aperture\n"
                             "- +          darker, brighter; 0: as the scene has it\n"
                             "s            save the picture, and print the command that renders it\n"
-                            "r            the camera as it was at the beginning\n"
+                            "r            go back to the first camera\n"
                             "q, Escape    quit\n";
 
 typedef struct Viewer {

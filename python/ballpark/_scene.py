@@ -60,7 +60,7 @@ def _colors(color: Color, count: int, cmap: str,
     if isinstance(color, str):
         digits = color[1:]
         if not color.startswith("#") or len(digits) not in (3, 6) or set(digits.lower()) - set("0123456789abcdef"):
-            raise lib.SceneError(f'color: found "{color}", expected "#rrggbb", three shares of light, or an array')
+            raise lib.SceneError(f'color: found "{color}", expected "#rrggbb", (r, g, b) or an array')
         if len(digits) == 3:
             digits = "".join(digit * 2 for digit in digits)
         return _srgb_to_linear(np.array([int(digits[i:i + 2], 16) for i in (0, 2, 4)]) / 255)

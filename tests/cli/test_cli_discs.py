@@ -72,7 +72,7 @@ class Discs(ProgramTest):
     def test_explain(self):
         self.write("s.json", document(SUN, BEHIND, width=32))
         table = self.succeed("explain", "s.json").stdout.decode()
-        self.assertRegex(table, r"lamps +in +2 discs, and 1 sphere to be lit")
+        self.assertRegex(table, r"lamps +in +2 discs that can light 1 sphere")
         self.assertRegex(table, r"discs +in +2 discs in the background")
         rays, stopped, seen = [], 0, 0
         for x in range(8, 28, 3):

@@ -130,7 +130,7 @@ class Drivers(cli.ProgramTest):
         self.assertEqual({r["verdict"] for r in results}, {"failed", "skipped"})
         reasons = [r["reason"] for r in results if r["verdict"] == "failed"]
         self.assertRegex(reasons[0], "^crashed: ")
-        self.assertRegex(reasons[1], "^not reached: before it the device crashed: ")
+        self.assertRegex(reasons[1], "^not reached, since the device failed earlier \\(crashed: ")
 
     def test_a_broken_driver_costs_others_nothing(self):
         """A device that was asked for by name is judged by itself."""

@@ -98,7 +98,7 @@ class Preview(ProgramTest):
         shutil.rmtree(self.path("gone"))
         errors = process.communicate(timeout=LIMIT_SECONDS)[1]
         self.assertEqual(process.returncode, 1, errors)
-        self.assertEqual(errors.count("the preview was not written, and rendering goes on"), 1, errors)
+        self.assertEqual(errors.count("the preview was not written, and rendering continues"), 1, errors)
         kept = re.search(r"ballpark merge (\S+) -o", errors)
         self.assertTrue(kept and os.path.exists(kept[1]), errors)  # the sums are kept, as for any render
 
@@ -107,7 +107,7 @@ class Preview(ProgramTest):
                                (("--preview", "1", "-o", "-"), "rewrites a file"),
                                (("--preview", "1", "--no-clobber"), "--no-clobber refuses"),
                                (("--preview", "0"), "--preview"),
-                               (("--show",), "--preview SECONDS writes"),
+                               (("--show",), "needs standard error to be a terminal"),
                                (("--show", "-q"), "wants errors only")):
             result = self.run_program("render", "s.json", *options)
             self.assertEqual(result.returncode, 2, result.errors)

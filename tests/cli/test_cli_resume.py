@@ -47,7 +47,7 @@ class Resume(cli.ProgramTest):
         for kind in (signal.SIGINT, signal.SIGTERM, signal.SIGHUP, signal.SIGUSR1, signal.SIGUSR2, signal.SIGXCPU):
             code, said = self.stop_at("a.bpa", kind, "--spp", 60000000, "--checkpoint", 0.05, "-o", "a.pfm")
             self.assertEqual(code, 130, f"{kind.name}: {said}")
-            self.assertIn("a.pfm holds the picture so far, and this goes on from there", said)
+            self.assertIn("a.pfm holds the picture so far; this command continues it", said)
             self.assertEqual(self.command_in(said), ["ballpark", "render", "s.json", "--resume", "a.bpa", "--output", "a.pfm",
                                                      "--spp", "60000000", "--checkpoint", "0.05"])
             self.assertEqual(self.files(), ["a.bpa", "a.pfm", "s.json"])
@@ -118,13 +118,13 @@ class Resume(cli.ProgramTest):
                               (["--numerics", "plain"], "--numerics plain contradicts"),
                               (["--adaptive"], "--adaptive contradicts --resume a.bpa, which is of a render without it"),
                               (["--share", "1/2"], "--share 1/2 contradicts"),
-                              (["--spp", 7], "--spp 7 contradicts --resume a.bpa, which is on its way to 8 samples per pixel")):
+                              (["--spp", 7], "--spp 7 contradicts --resume a.bpa, which is to have 8 samples per pixel")):
             self.fail_with(2, "render", "s.json", "--resume", "a.bpa", "-o", "b.bpa", *options, says=says)
         self.succeed("render", "s.json", "--resume", "a.bpa", "--seed", 0, "--depth", 10, "--width", 64, "--first-sample", 4,
                      "--sampler", "sobol", "--precision", "single", "--spp", 8, "-o", "b.bpa", "-q")
         self.assert_same(self.read("b.bpa"), before)
         self.write("t.json", cli.scene(64, 48, spheres=5))
-        self.fail_with(2, "render", "t.json", "--resume", "a.bpa", "-o", "b.bpa", says=["a.bpa", "t.json", "not a render of"])
+        self.fail_with(2, "render", "t.json", "--resume", "a.bpa", "-o", "b.bpa", says=["a.bpa", "t.json", "rendered from another scene than"])
         self.fail_with(1, "render", "s.json", "--resume", "none.bpa", "-o", "b.bpa", says="none.bpa")
         self.fail_with(1, "render", "s.json", "--resume", "s.json", "-o", "b.bpa", says="not a .bpa file")
         self.succeed("render", "s.json", "--spp", 2, "--first-sample", 90, "-o", "c.bpa", "-q")
@@ -136,7 +136,7 @@ class Resume(cli.ProgramTest):
         self.succeed("render", "s.json", "--spp", 4, "-o", "a.bpa", "-q")
         before = self.read("a.bpa")
         self.fail_with(2, "render", "s.json", "--spp", 4, "--checkpoint", 1, "-o", "a.png",
-                       says=["--checkpoint would replace a.bpa", "beside the picture already"])
+                       says=["--checkpoint would replace a.bpa", "already exists beside the picture"])
         self.assert_same(self.read("a.bpa"), before)
         self.succeed("render", "s.json", "--spp", 5, "--checkpoint", 1, "-o", "a.bpa", "-q")  # a result is replaced, as ever
         code, said = self.stop_at("b.bpa", signal.SIGINT, "--spp", 60000000, "--checkpoint", 0.05, "-o", "b.bpa")
@@ -205,7 +205,7 @@ class Resume(cli.ProgramTest):
         command = self.command_in(said)
         left = int(command[command.index("--time") + 1])
         self.assertTrue(0 < left <= 300, left)
-        self.fail_with(2, "render", "s.json", "--resume", "a.bpa", "-o", "a.pfm", says=["to end at a time", "--time"])
+        self.fail_with(2, "render", "s.json", "--resume", "a.bpa", "-o", "a.pfm", says=["had only a time limit", "--time"])
         self.succeed("render", "s.json", "--resume", "a.bpa", "--time", 0.2, "-o", "a.pfm", "-q")
 
     def test_odd_names(self):
@@ -230,7 +230,7 @@ class Resume(cli.ProgramTest):
         shutil.rmtree(self.path("d"))
         said = process.communicate(timeout=cli.LIMIT_SECONDS)[1].decode()
         self.assertEqual(process.returncode, 1, said)
-        self.assertIn("warning: the checkpoint was not written, and rendering goes on: ", said)
+        self.assertIn("warning: the checkpoint was not written, and rendering continues: ", said)
         kept = os.listdir(self.path("tmp"))
         self.assertEqual(len(kept), 1, said)
         self.succeed("merge", os.path.join("tmp", kept[0]), "-o", "a.pfm", "-q")

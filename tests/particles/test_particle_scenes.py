@@ -64,6 +64,12 @@ class Scenes(ProgramTest):
         self.assertEqual(json.loads(self.read("data/a.json"))["particles"], [{"file": "a.xyz"}])
         self.succeed("scene", "data/a.xyz", "-o", "out/a.json", "-q")
         self.assert_same(self.picture("out/a.json"), direct, "in another folder")
+        self.assertEqual(json.loads(self.read("out/a.json"))["particles"], [{"file": self.path("data/a.xyz")}])
+        self.succeed("scene", "data/a.xyz", "-o", "above.json", "-q")
+        self.assertEqual(json.loads(self.read("above.json"))["particles"], [{"file": "data/a.xyz"}])
+        self.assert_same(self.picture("above.json"), direct, "in a folder above")
+        self.succeed("scene", self.path("data/a.xyz"), "-o", self.path("above.json"), "-q")
+        self.assertEqual(json.loads(self.read("above.json"))["particles"], [{"file": "data/a.xyz"}])
         self.write("piped.json", self.succeed("scene", "data/a.xyz").stdout)
         self.assert_same(self.picture("piped.json"), direct, "by standard output")
         # Written and read again, a document stays the same.

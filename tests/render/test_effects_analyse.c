@@ -204,12 +204,13 @@ static void reasons_a_person_understands(void **state) {
 
     effects = analyse(three, 1, 1, 2, 0, 1);
     assert_string_equal(effects.reason[BP_EFFECT_LAMBERTIAN],
-                        "the one kind of material in use, on all 2 spheres: no switch between kinds");
+                        "the only kind of material in use, on all 2 spheres: no switch between kinds");
     assert_string_equal(effects.reason[BP_EFFECT_METAL],
-                        "the one material in use is not metal: mirror reflection and fuzz are left out");
-    assert_string_equal(effects.reason[BP_EFFECT_EMISSION], "nothing emits: not the one material in use");
+                        "the only material in use is not metal: mirror reflection and fuzz are left out");
+    assert_string_equal(effects.reason[BP_EFFECT_EMISSION],
+                        "nothing emits: the only material in use does not");
     assert_string_equal(effects.reason[BP_EFFECT_NORMALS],
-                        "nothing shows normals: not the one material in use");
+                        "nothing shows normals: the only material in use does not");
     effects = analyse(three, 1, 1, 0, 0, 1);
     assert_string_equal(effects.reason[BP_EFFECT_LAMBERTIAN], "no spheres: the picture is the sky");
 }
@@ -240,7 +241,7 @@ static void discs(void **state) {
     effects = analyse_discs(&grey, 2, 1);
     assert_int_equal(effects.bits, BIT(LAMBERTIAN) | BIT(LAMPS) | BIT(DISCS));
     assert_string_equal(effects.reason[BP_EFFECT_DISCS], "2 discs in the background");
-    assert_string_equal(effects.reason[BP_EFFECT_LAMPS], "1 disc, and 1 sphere to be lit");
+    assert_string_equal(effects.reason[BP_EFFECT_LAMPS], "1 disc that can light 1 sphere");
     effects = analyse_discs(&grey, 1, 1);
     assert_int_equal(effects.bits, BIT(LAMBERTIAN));
     assert_string_equal(effects.reason[BP_EFFECT_DISCS], "1 disc in the background, but without light");
@@ -252,7 +253,7 @@ static void discs(void **state) {
     /* The one lamp cannot light itself, but the disc can light it. */
     effects = analyse_discs(&ember, 3, 0);
     assert_int_equal(effects.bits, BIT(LAMBERTIAN) | BIT(EMISSION) | BIT(LAMPS) | BIT(DISCS));
-    assert_string_equal(effects.reason[BP_EFFECT_LAMPS], "1 lamp and 3 discs, and 1 sphere to be lit");
+    assert_string_equal(effects.reason[BP_EFFECT_LAMPS], "1 lamp and 3 discs that can light 1 sphere");
 }
 
 static void textures(void **state) {

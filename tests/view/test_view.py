@@ -168,6 +168,18 @@ class Scripted(ProgramTest):
 
 
 MODULE = os.path.join(os.path.dirname(PROGRAM), "ballpark_window.so")
+class NoScreen(ProgramTest):
+    def test_without_a_display(self):
+        """SDL opens a window that nobody sees, so nobody could close it."""
+        self.write("s.json", BALLS)
+        for driver in ("dummy", "offscreen"):
+            result = self.run_program("view", "s.json", environment={"SDL_VIDEODRIVER": driver})
+            if "cannot be loaded" in result.errors:
+                self.skipTest("built without SDL 2")
+            self.assertEqual(result.returncode, 1, result.errors)
+            self.assertRegex(result.errors, r"the window: .*(display|not available)")
+
+
 LACKS = [name for name in ("Xvfb", "xdotool") if shutil.which(name) is None]
 
 

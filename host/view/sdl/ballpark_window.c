@@ -9,12 +9,22 @@ static SDL_Texture *texture;
 static uint32_t texture_width, texture_height;
 static bool moved; /* since a button went down */
 
+/* Where there is no display, SDL falls back on drivers whose windows nobody sees or closes. */
+static bool is_invisible(const char *driver) {
+    return driver == NULL || SDL_strcmp(driver, "offscreen") == 0 || SDL_strcmp(driver, "dummy") == 0 ||
+           SDL_strcmp(driver, "evdev") == 0;
+}
+
 static const char *open_window(const char *title, uint32_t width, uint32_t height) {
     /* The terminal stays in charge of Ctrl-C. */
     SDL_SetHint(SDL_HINT_NO_SIGNAL_HANDLERS, "1");
     SDL_SetHint(SDL_HINT_RENDER_SCALE_QUALITY, "linear");
     SDL_SetHint(SDL_HINT_VIDEO_X11_NET_WM_BYPASS_COMPOSITOR, "0");
     if (SDL_Init(SDL_INIT_VIDEO) != 0) return SDL_GetError();
+    if (is_invisible(SDL_GetCurrentVideoDriver()))
+        return "there is no display (check DISPLAY or WAYLAND_DISPLAY); without one, `ballpark render "
+               "--show` "
+               "draws in the terminal";
     SDL_Rect room;
     if (SDL_GetDisplayUsableBounds(0, &room) == 0 && room.w > 0 && room.h > 0 &&
         (width > (uint32_t)room.w || height > (uint32_t)room.h)) {
