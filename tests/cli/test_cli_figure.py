@@ -112,7 +112,7 @@ class Figure(cli.ProgramTest):
         self.assert_same(self.read("a-error.png"), self.read("b-error.png"))
 
     def test_cues_that_cannot_be(self):
-        self.fail_with(2, "render", "scene.json", "--depth-fog", 50, says=("backdrop", "--set backdrop=[1,1,1]"))
+        self.fail_with(2, "render", "scene.json", "--depth-fog", 50, says=("backdrop", "--set 'backdrop=[1,1,1]'"))
         self.succeed("render", "scene.json", "--depth-fog", 50, "--set", "backdrop=[1,1,1]", "-q", "-o", "a.png")
         self.fail_with(2, "render", "scene.json", "--outlines", 1, "-o", "a.bpa", says=("holds sums", "ballpark merge"))
         self.render("sums.bpa")
