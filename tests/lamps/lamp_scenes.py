@@ -219,6 +219,15 @@ def generated(name):
     return GENERATED[name](random.Random(name))
 
 
+def emission(scene, material):
+    """Of a texture, the brightest of each channel: between its colours it mixes."""
+    emit = material.get("emit", BLACK)
+    if isinstance(emit, dict):
+        colors = [[c] * 3 if isinstance(c, (int, float)) else c for c in scene["textures"][emit["texture"]]["colors"]]
+        return [max(channel) for channel in zip(*colors)]
+    return emit
+
+
 def outshone(scene, used):
     def luminance(colour):
         return sum(w * x for w, x in zip((0.2126, 0.7152, 0.0722), colour))
@@ -226,8 +235,12 @@ def outshone(scene, used):
     sky = scene.get("background", {})
     ends = [sky.get("bottom", [1, 1, 1]), sky.get("top", [0.5, 0.7, 1.0])] if isinstance(sky, dict) else [sky]
     camera = scene["camera"].get("lookfrom", [0, 0, 0])
-    return (max(luminance(each.get("emit", BLACK)) for each in used) <= min(map(luminance, ends))
+    return (max(luminance(emission(scene, each)) for each in used) <= min(map(luminance, ends))
             and all(math.dist(camera, each["center"]) >= abs(each["radius"]) for each in scene["spheres"]))
+
+
+def fuzzy(fuzz):
+    return isinstance(fuzz, dict) or fuzz >= 1 / 64
 
 
 def has_lamp(scene):
@@ -235,7 +248,7 @@ def has_lamp(scene):
     not as bright as every lamp, as far as the camera stands in no sphere that may hide it."""
     spheres = scene.get("spheres", [])
     used = [scene["materials"][each["material"]] for each in spheres]
-    lamps = [each for each, material in zip(spheres, used) if sum(material.get("emit", (0,))) > 0]
+    lamps = [each for each, material in zip(spheres, used) if sum(emission(scene, material)) > 0]
 
     def holds(shell, other):
         return math.dist(shell["center"], other["center"]) + abs(other["radius"]) <= abs(shell["radius"])
@@ -243,7 +256,7 @@ def has_lamp(scene):
     background = scene.get("background", {})
     discs = background.get("discs", []) if isinstance(background, dict) else []
     lamps = [each for each in lamps if len(spheres) < 2 or not all(each is other or holds(each, other) for other in spheres)]
-    lit = any(each["type"] == "lambertian" or each.get("fuzz", 0) >= 1 / 64 for each in used)
+    lit = any(each["type"] == "lambertian" or fuzzy(each.get("fuzz", 0)) for each in used)
     return bool(lamps or discs) and lit and (bool(discs) or not outshone(scene, used))
 
 
