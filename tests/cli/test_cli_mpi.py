@@ -216,7 +216,7 @@ class Ranks(cli.ProgramTest):
         process = self.start(2, "s.json", "--spp", 60000000, "--checkpoint", 0.2, "-o", "a.pfm")
         said = self.send_when_there(process, "a.bpa", 1, signal.SIGTERM)
         self.assertEqual(process.returncode, 130, said)
-        self.assertIn("a.pfm holds the picture so far, and this goes on from there", said)
+        self.assertIn("a.pfm holds the picture so far; this command continues it", said)
         self.assertEqual(self.files(), ["a.bpa", "a.pfm", "s.json"])
         header, _ = bpa.read(self.read("a.bpa"))
         self.check_resumed(said, header["plan"]["done"] + 64, ranks=3)
@@ -261,7 +261,7 @@ class Ranks(cli.ProgramTest):
         while process.poll() is None and not os.path.exists(self.path("d/a.bpa")):
             time.sleep(0.01)
         shutil.rmtree(self.path("d"))
-        warning = "warning: the checkpoint was not written, and rendering goes on: "
+        warning = "warning: the checkpoint was not written, and rendering continues: "
         self.assertTrue(any(warning in line.decode() for line in iter(process.stderr.readline, b"")), "there was no warning")
         os.kill(self.rank_processes(process)[0], signal.SIGTERM)
         said = process.communicate(timeout=cli.LIMIT_SECONDS)[1].decode()

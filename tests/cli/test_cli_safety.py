@@ -150,7 +150,7 @@ class SmallDisk(Safety):
     def end(self, process, fault):
         """After the first warning."""
         said = process.stderr.readline().decode()
-        self.assertIn("warning: the checkpoint was not written, and rendering goes on: ", said)
+        self.assertIn("warning: the checkpoint was not written, and rendering continues: ", said)
         self.assertIn(fault, said)
         process.send_signal(signal.SIGTERM)
         said = process.stderr.read().decode()
