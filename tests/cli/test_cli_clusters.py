@@ -60,6 +60,15 @@ class Clusters(ProgramTest):
             with contextlib.suppress(ProcessLookupError):
                 os.kill(child, signal.SIGUSR1)
 
+    def finish_job(self, process, text, job, **slurm):
+        """Starts the script again, as Slurm does, for as long as it hands its job in again."""
+        code, said = self.finish(process)
+        while code == 130:
+            self.assertEqual(self.read("requeued").decode(), f"requeue {job}\n")
+            os.remove(self.path("requeued"))
+            code, said = self.finish(self.start(text, **slurm))
+        self.assertEqual(code, 0, said)
+
     def test_ranks(self):
         """By mpirun as srun; Slurm signals all ranks."""
         if reason := reason_to_skip():
@@ -71,12 +80,7 @@ class Clusters(ProgramTest):
         listed = subprocess.run(["ps", "-o", "pid=", "--ppid", str(launcher)], check=False, stdout=subprocess.PIPE, text=True).stdout
         for rank in listed.split():
             self.stop_step(int(rank))
-        code, said = self.finish(process)
-        while code == 130:
-            self.assertEqual(self.read("requeued").decode(), "requeue 5\n")
-            os.remove(self.path("requeued"))
-            code, said = self.finish(self.start(text, SLURM_JOB_ID="5"))
-        self.assertEqual(code, 0, said)
+        self.finish_job(process, text, "5", SLURM_JOB_ID="5")
         self.succeed("render", "cover.json", "--error", 0.2, "--adaptive", "-o", "whole.exr", "-q")
         self.assert_same(self.read("cover.exr"), self.read("whole.exr"))
         self.assertNotIn("cover.bpa", self.files())
@@ -90,12 +94,7 @@ class Clusters(ProgramTest):
             process = self.start(text, **task)
             child = self.child_of(process, name) if part == 2 else None
             self.stop_step(child)
-            code, said = self.finish(process)
-            while code == 130:
-                self.assertEqual(self.read("requeued").decode(), "requeue 77_2\n")
-                os.remove(self.path("requeued"))
-                code, said = self.finish(self.start(text, **task))
-            self.assertEqual(code, 0, said)
+            self.finish_job(process, text, "77_2", **task)
         merged = re.search(r"(?m)^    ballpark (merge cover-\*\.bpa -o cover\.exr)$", self.text)[1]
         said = self.succeed("merge", *names, "-o", "cover.exr").errors
         self.assertEqual(merged, "merge cover-*.bpa -o cover.exr")
@@ -108,12 +107,7 @@ class Clusters(ProgramTest):
         process = self.start(text, SLURM_JOB_ID="5")
         child = self.child_of(process, "cover.bpa")
         self.stop_step(child)
-        code, said = self.finish(process)
-        while code == 130:
-            self.assertEqual(self.read("requeued").decode(), "requeue 5\n")
-            os.remove(self.path("requeued"))
-            code, said = self.finish(self.start(text, SLURM_JOB_ID="5"))
-        self.assertEqual(code, 0, said)
+        self.finish_job(process, text, "5", SLURM_JOB_ID="5")
         self.succeed("render", "cover.json", "--error", 0.2, "--adaptive", "-o", "whole.exr", "-q")
         self.assert_same(self.read("cover.exr"), self.read("whole.exr"))
         self.assertNotIn("cover.bpa", self.files())
