@@ -56,6 +56,13 @@ static BpStatus fail_duplicate(const BpDocument *document, const json_error_t *e
     return fail_at_offset(document, start, err, text);
 }
 
+/* The text has no terminator, so functions of the C library for strings would read past its end. */
+static bool only_space_before(const char *text, size_t end) {
+    for (size_t i = 0; i < end; i++)
+        if (memchr(" \t\r\n", text[i], 4) == NULL) return false;
+    return true;
+}
+
 static BpStatus fail_syntax(const BpDocument *document, const json_error_t *error, BpError *err) {
     const size_t at = token_start(document, error);
     const char *const rest = document->text + at;
@@ -93,7 +100,7 @@ static BpStatus fail_syntax(const BpDocument *document, const json_error_t *erro
             hint = "; is there a comma too many before it?";
         else if (rest_length > 0 && rest[0] == '-')
             hint = "; JSON has no -Infinity or -NaN: expected a finite number";
-        else if (strspn(document->text, " \t\r\n") == at)
+        else if (only_space_before(document->text, at))
             hint =
                 "; expected a scene, which begins with \"{\", or a file of particles with the ending of its "
                 "format (`ballpark help render` lists them)";
