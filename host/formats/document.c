@@ -59,7 +59,7 @@ static BpStatus fail_duplicate(const BpDocument *document, const json_error_t *e
 /* The text has no terminator, so functions of the C library for strings would read past its end. */
 static bool only_space_before(const char *text, size_t end) {
     for (size_t i = 0; i < end; i++)
-        if (memchr(" \t\r\n", text[i], 4) == NULL) return false;
+        if (text[i] != ' ' && text[i] != '\t' && text[i] != '\r' && text[i] != '\n') return false;
     return true;
 }
 
