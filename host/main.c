@@ -126,7 +126,7 @@ int main(int argc, char **argv) {
         if (line.version)
             printf("ballpark %s\n", bp_version());
         else if (line.help)
-            status = bp_help_print(line.command, &err);
+            status = bp_help_print(&line, line.command, &err);
         else
             status = line.command->run(&line, &err);
     }

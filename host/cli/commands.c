@@ -246,6 +246,7 @@ const BpCommand bp_commands[] = {
         .summary = "explain a command",
         .description = "Prints help about the program, or about one command with its options and examples.",
         .examples = "  ballpark help render\n",
+        .bit = BP_HELP,
         .run = bp_command_help,
     },
 };

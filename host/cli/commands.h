@@ -20,7 +20,7 @@ typedef struct BpCommand {
     const char *summary;     /* one line */
     const char *description; /* paragraphs, for `ballpark help NAME` */
     const char *examples;    /* complete command lines, each with a remark */
-    unsigned bit;            /* of the sets of commands in option_list.h; 0: takes no options */
+    unsigned bit;            /* of the sets of commands in option_list.h */
     bool is_shared;          /* several processes that a launcher starts carry it out together */
     BpCommandRun *run;
 } BpCommand;

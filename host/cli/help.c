@@ -29,14 +29,14 @@ static void print_option(BpOption option, const BpCommand *command, FILE *out) {
 
 /* Examples are lines to be pasted, each with a remark, that are laid out already. */
 static void print_command_help(const BpCommand *command, FILE *out) {
-    fprintf(out, "Usage: ballpark %s%s%s%s\n\n", command->name, command->operands[0] != '\0' ? " " : "",
-            command->operands, command->bit != 0 ? " [OPTION]..." : "");
+    fprintf(out, "Usage: ballpark %s%s%s [OPTION]...\n\n", command->name,
+            command->operands[0] != '\0' ? " " : "", command->operands);
     for (const char *at = command->description; *at != '\0'; at += *at == '\n') {
         const size_t length = strcspn(at, "\n");
         fprintf(out, BP_HANG "%.*s\n", (int)length, at);
         at += length;
     }
-    if (command->bit != 0) fprintf(out, "\nOptions:\n");
+    fprintf(out, "\nOptions:\n");
     for (int o = 0; o < BP_OPTION_NUMBER; ++o)
         if (bp_option_taken((BpOption)o, command)) print_option((BpOption)o, command, out);
     if (command->examples[0] != '\0') fprintf(out, "\nExamples:\n%s", command->examples);
@@ -61,8 +61,14 @@ static void print_program_help(FILE *out) {
                  "enough evidence; 5 no such device; 6 a device or its driver failed.\n");
 }
 
-BpStatus bp_help_print(const BpCommand *command, BpError *err) {
+/* Whole sentences are easiest to read in 80 columns, also on a wide terminal, unless --wide is given. */
+static size_t page_columns(const BpCommandLine *line) {
+    if (line->wide) return 0;
     const size_t columns = bp_terminal_width(fileno(stdout));
+    return columns < COLUMNS_MAX ? columns : COLUMNS_MAX;
+}
+
+BpStatus bp_help_print(const BpCommandLine *line, const BpCommand *command, BpError *err) {
     char *text = NULL;
     size_t size = 0;
     FILE *out = open_memstream(&text, &size);
@@ -71,7 +77,7 @@ BpStatus bp_help_print(const BpCommand *command, BpError *err) {
         print_command_help(command, out);
     else
         print_program_help(out);
-    if (fclose(out) == 0) bp_fold(text, columns < COLUMNS_MAX ? columns : COLUMNS_MAX, stdout);
+    if (fclose(out) == 0) bp_fold(text, page_columns(line), stdout);
     free(text);
     if (fflush(stdout) != 0 || ferror(stdout))
         return bp_fail(err, BP_ERR_FILE, "cannot write to standard output: %s", strerror(errno));
@@ -81,5 +87,5 @@ BpStatus bp_help_print(const BpCommand *command, BpError *err) {
 BpStatus bp_command_help(const BpCommandLine *line, BpError *err) {
     const BpCommand *command = NULL;
     if (line->operand_count == 1) BP_TRY(bp_command_find(line->operands[0], &command, err));
-    return bp_help_print(command, err);
+    return bp_help_print(line, command, err);
 }

@@ -20,9 +20,10 @@ enum {
     BP_GENERATE = 1 << 7,
     BP_SCENE = 1 << 8,
     BP_VIEW = 1 << 9,
+    BP_HELP = 1 << 10,
     /* All that trace paths. */
     BP_TRACERS = BP_RENDER | BP_CHECK | BP_EXPLAIN | BP_COST | BP_BENCH | BP_VIEW,
-    BP_COMMANDS = BP_TRACERS | BP_MERGE | BP_DEVICES | BP_GENERATE | BP_SCENE, /* all that take options */
+    BP_COMMANDS = BP_TRACERS | BP_MERGE | BP_DEVICES | BP_GENERATE | BP_SCENE, /* all that do work */
 };
 
 /* OPTION(number, name, letter or 0, commands, help, type, member of BpCommandLine, value). RENDER_OPTION is
@@ -191,8 +192,8 @@ enum {
     OPTION(ROUNDS, "rounds", 0, BP_BENCH, "how many times each scene is measured", uint32_t, rounds,         \
            BP_WHOLE("N", 1, 1000))                                                                           \
     OPTION(NO_CLOBBER, "no-clobber", 0, BP_COMMANDS, "refuse to overwrite files", bool, no_clobber, BP_FLAG) \
-    OPTION(WIDE, "wide", 0, BP_COMMANDS, "do not fold long lines to the width of the terminal", bool, wide,  \
-           BP_FLAG)                                                                                          \
+    OPTION(WIDE, "wide", 0, BP_COMMANDS | BP_HELP, "do not fold long lines to the width of the terminal",    \
+           bool, wide, BP_FLAG)                                                                              \
     OPTION(QUIET, "quiet", 'q', BP_COMMANDS, "print errors only", bool, quiet, BP_FLAG)                      \
     /* Not of commands: bp_command_line_parse() knows where these two may stand. */                          \
     OPTION(HELP, "help", 'h', 0, "print this help", bool, help, BP_FLAG)                                     \

@@ -68,8 +68,8 @@ static inline bool bp_option_given(const BpCommandLine *line, BpOption option) {
  * Nothing to release. `argv` is reordered: operands come last, and the result points into it. */
 BpStatus bp_command_line_parse(int argc, char **argv, BpCommandLine *line, BpError *err);
 
-/* The help of the whole program (`command` NULL) or of one command, on standard output. BP_ERR_FILE if that
- * cannot be written. */
-BpStatus bp_help_print(const struct BpCommand *command, BpError *err);
+/* The help of the whole program (`command` NULL) or of one command, on standard output, in lines that fit
+ * unless `line` has --wide. BP_ERR_FILE if that cannot be written. */
+BpStatus bp_help_print(const BpCommandLine *line, const struct BpCommand *command, BpError *err);
 
 #endif

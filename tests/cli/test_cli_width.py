@@ -68,7 +68,7 @@ class Width(ProgramTest):
 
     def test_words_stay_whole(self):
         """Folding loses nothing and adds nothing but line ends and indentation."""
-        for arguments in ("explain", "s.json", "lamps.json"), ("explain", "s.json", "--pixel", "8,8"):
+        for arguments in ("explain", "s.json", "lamps.json"), ("explain", "s.json", "--pixel", "8,8"), ("help", "devices"), ("devices", "--help"):
             narrow = self.succeed(*arguments, environment={"COLUMNS": "40"}).stdout.decode()
             wide = self.succeed(*arguments, "--wide", environment={"COLUMNS": "40"}).stdout.decode()
             self.assertEqual(narrow.split(), wide.split())
