@@ -147,23 +147,31 @@ typedef struct LoopEnd {
 
 #define REDRAW_SECONDS 0.1
 
+/* A bar on a terminal. The ranks of a job have none, so one of them writes lines, which stay in its log. */
 typedef struct Bar {
-    bool live;
-    double drawn; /* when */
+    bool live, logs;
+    double start, drawn; /* when the render began, and when the bar was drawn last */
     char text[512];
 } Bar;
 
-static BpStatus draw(BpStop *stop, const BpProgress *progress, Bar *bar, BpError *err) {
+static BpStatus draw(const BpCommandLine *line, BpStop *stop, const BpProgress *progress, Bar *bar,
+                     BpError *err) {
     const double now = bp_clock_seconds();
-    if (!bar->live || now - bar->drawn < REDRAW_SECONDS) return BP_OK;
+    if (!bar->live && !bar->logs) return BP_OK;
+    if (now <
+        (bar->live ? bar->drawn + REDRAW_SECONDS : bar->start + bp_progress_next(bar->drawn - bar->start)))
+        return BP_OK;
     BpStopEstimate estimate;
     BP_TRY(bp_stop_estimate(stop, progress, &estimate, err));
     const BpProgressView view = {.fraction = estimate.fraction,
                                  .samples_per_second = estimate.samples_per_second,
                                  .nrmse = estimate.nrmse,
                                  .seconds_left = estimate.seconds_left};
-    bp_terminal_show(bp_progress_format(&view, bp_terminal_columns(), bp_terminal_has_utf8(), bar->text,
-                                        sizeof bar->text));
+    if (bar->live)
+        bp_terminal_show(bp_progress_format(&view, bp_terminal_columns(), bp_terminal_has_utf8(), bar->text,
+                                            sizeof bar->text));
+    else
+        bp_say(line, "%s", bp_progress_sentence(&view, bar->text, sizeof bar->text));
     bar->drawn = now;
     return BP_OK;
 }
@@ -204,7 +212,8 @@ static BpStatus run_render(const BpCommandLine *line, BpComm *shared, BpRender *
     BpStatus status = BP_OK;
     BpStop *stop = NULL;
     uint32_t wishes = 0;
-    Bar bar = {.live = bp_terminal_is_live(line->quiet), .drawn = start};
+    Bar bar = {.live = bp_terminal_is_live(line->quiet), .start = start, .drawn = start};
+    bar.logs = !bar.live && explains;
     end->reason = BP_STOP_NOT_YET;
     bp_interrupt_catch();
     bp_checkpoint_start(checkpoint);
@@ -213,7 +222,7 @@ static BpStatus run_render(const BpCommandLine *line, BpComm *shared, BpRender *
         BpProgress progress;
         if (explains) prepare_explanation(line, rule, start, checkpoint);
         BP_TRY_GOTO(status, bp_render_step(render, &progress, err), done);
-        if (!bp_interrupted()) BP_TRY_GOTO(status, draw(stop, &progress, &bar, err), done);
+        if (!bp_interrupted()) BP_TRY_GOTO(status, draw(line, stop, &progress, &bar, err), done);
         BP_TRY_GOTO(status, bp_stop_check(stop, &progress, &end->reason, err), done);
         wishes = is_interrupted(shared, line->comm) ? INTERRUPT : 0;
         if (bp_checkpoint_is_due(checkpoint, bp_clock_seconds())) wishes |= CHECKPOINT;
@@ -230,7 +239,7 @@ done:
     bp_checkpoint_wait(checkpoint);
     bp_stop_destroy(&stop);
     end->seconds = bp_clock_seconds() - start;
-    if (bar.drawn > start) bp_terminal_show("");
+    if (bar.live && bar.drawn > start) bp_terminal_show("");
     return status;
 }
 

@@ -59,6 +59,13 @@ class Ranks(cli.ProgramTest):
                 if ranks != 1 or "--spp" in options:  # one is alone
                     self.compare(ranks, *options)
 
+    def test_progress(self):
+        """There is no terminal, so lines tell how far the job is: at 3 s, then twice as late each time."""
+        said = self.by_ranks(2, "s.json", "--time", 4, "-o", "a.png").stderr.decode()
+        self.assertEqual(len(re.findall(r"(?m)^\d+ %, \d+ s left, noise [0-9.]+ %, [0-9.]+ (?:million|thousand)? ?samples/s$", said)), 1, said)
+        self.assertNotIn("\r", said)
+        self.assertEqual(self.by_ranks(2, "s.json", "--time", 4, "-o", "a.png", "-q").stderr, b"")
+
     def test_alpha(self):
         """A picture without a backdrop: what rays have met is added as well, and goes on from a checkpoint."""
         self.write("s.json", cli.scene(24, 18, spheres=2, backdrop="none"))

@@ -89,10 +89,26 @@ static void bars(void **unused) {
     assert_string_equal(bp_progress_format(&view, 70, false, text, sizeof text),
                         "#######--------  50 %  12 s left  noise 2.1 %  5.20 million samples/s");
     assert_string_equal(bp_progress_format(&view, 20, false, text, sizeof text), "######-------  50 %");
+    assert_string_equal(bp_progress_sentence(&view, text, sizeof text),
+                        "50 %, 12 s left, noise 2.1 %, 5.20 million samples/s");
     view.nrmse = view.seconds_left = NAN;
     bp_progress_format(&view, 60, true, text, sizeof text);
     assert_non_null(strstr(text, "? left"));
     assert_null(strstr(text, "error"));
+    assert_string_equal(bp_progress_sentence(&view, text, sizeof text), "50 %, 5.20 million samples/s");
+}
+
+/* Lines of a log: soon at first, rare at last. Each is due after the one before, however late that one was.
+ */
+static void log_lines(void **unused) {
+    (void)unused;
+    const double due[] = {3, 6, 12, 24, 48, 96, 192, 384, 768, 1368, 1968};
+    double before = 0;
+    for (size_t i = 0; i < sizeof due / sizeof *due; ++i) {
+        assert_true(bp_progress_next(before) == due[i]);
+        before = due[i] + 0.25;
+    }
+    assert_true(bp_progress_next(50) == 96);
 }
 
 static void pairs(void **unused) {
@@ -122,8 +138,8 @@ static void pairs(void **unused) {
 
 int main(void) {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(percents), cmocka_unit_test(seconds), cmocka_unit_test(counts),
-        cmocka_unit_test(bars),     cmocka_unit_test(pairs),
+        cmocka_unit_test(percents), cmocka_unit_test(seconds),   cmocka_unit_test(counts),
+        cmocka_unit_test(bars),     cmocka_unit_test(log_lines), cmocka_unit_test(pairs),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
