@@ -1,8 +1,7 @@
 /* write_documents.c: a program of the build: what --help says as manual pages and as completions for shells.
  *
- * In:    the tables of commands and options.   Out: ballpark.1, ballpark-COMMAND.1, and files for bash, zsh
- * and fish, in a folder. Knows: how man(7) and the three shells write things.   Does not know: which options
- * there are. */
+ * In:    the tables of commands and options.   Out: a folder with manual pages, and files for three shells.
+ * Knows: how man(7), bash, zsh and fish write things.   Does not know: which options there are. */
 #include "cli/commands.h"
 #include "cli/option_table.h"
 

@@ -1,8 +1,7 @@
 /* cmd_bench.c: `ballpark bench`.
  *
- * In:    scenes, or the names of fixed ones, or nothing.   Out: a table of throughput, and JSON; or the fixed
- * scenes as files. Knows: the fixed scenes, timed runs, rounds, medians, tables.
- * Does not know: how a picture is traced.
+ * In:    scenes, or names of fixed ones.   Out: a table of throughput, JSON; or the fixed scenes as files.
+ * Knows: the fixed scenes, rounds, medians, tables.   Does not know: how a picture is traced.
  *
  * The scenes take turns, round after round, so that disturbances on the machine affect all of them alike. */
 #include "commands.h"

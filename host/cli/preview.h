@@ -1,8 +1,7 @@
 /* preview.h: the picture while it is rendered.
  *
- * In:    the command line, a render between two steps.   Out: the result's file, rewritten; a drawing in the
- * terminal. Knows: --preview, --show, when it is time.   Does not know: how pictures are written and drawn.
- */
+ * In:    the command line, a render between two steps.   Out: the result's file, anew; a drawing to look at.
+ * Knows: --preview, --show, when it is time.   Does not know: how pictures are written and drawn. */
 #ifndef BP_CLI_PREVIEW_H
 #define BP_CLI_PREVIEW_H
 

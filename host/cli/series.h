@@ -2,7 +2,7 @@
  * turntable.
  *
  * In:    the command line.   Out: one scene after the other, and the names of their pictures.
- * Knows: --frame, --frames, --turntable, --fit. Does not know: how a picture is made. */
+ * Knows: --frame, --frames, --turntable, --fit.   Does not know: how a picture is made. */
 #ifndef BP_CLI_SERIES_H
 #define BP_CLI_SERIES_H
 

@@ -1,6 +1,6 @@
 /* names.h: texts that repeat, each kept once.
  *
- * In:    texts.   Out: their numbers. Knows: nothing of what they name. */
+ * In:    texts.   Out: their numbers.   Does not know: what they name. */
 #ifndef BP_PARTICLES_NAMES_H
 #define BP_PARTICLES_NAMES_H
 

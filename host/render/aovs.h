@@ -1,7 +1,7 @@
 /* aovs.h: depth, normal and albedo of what each pixel shows first.
  *
- * In:    a device at work on a render whose program holds kernels/entry/aovs.cl.   Out: the layers of a
- * picture. Knows: aov_list.h, aovs.cl, worker.h.   Does not know: how the picture is written.
+ * In:    a device at work on a render whose program holds kernels/entry/aovs.cl.   Out: a picture's layers.
+ * Knows: aov_list.h, aovs.cl, worker.h.   Does not know: how the picture is written.
  *
  * They follow from the scene, the seed and the camera rays of samples 0 to 15 of each pixel, whichever
  * samples the render is of. So they cost nothing while it runs and need nothing from other devices; and all

@@ -1,8 +1,8 @@
 /* round.h: a render that several ranks share: rounds of samples, and the sum of their films.
  *
- * In:    a render, its communicator, measured speeds.   Out: this rank's part of a round traced; rank 0's
- * film whole. Knows: who traces what, and when ranks speak to each other.   Does not know: how
- * (cluster/comm.h does), files.
+ * In:    a render, its communicator, measured speeds.
+ * Out:   this rank's part of a round, traced; in rank 0, the whole film.
+ * Knows: who traces what, and when ranks speak to each other.   Does not know: how (cluster/comm.h), files.
  *
  * All ranks have the same schedule and take the same block of it in each round, of about ROUND_SECONDS; each
  * traces its portion. So between rounds the samples that are there are those of a render alone, and films say

@@ -1,8 +1,7 @@
 /* texture.h: a colour, or a number, that varies over surfaces.
  *
- * In:    a texture as its author wrote it.   Out: what others ask of it: its frame on a sphere, its largest
- * values. Knows: the grammar's terms.   Does not know: which material has it, how a kernel or the reference
- * looks it up.
+ * In:    a texture as its author wrote it.   Out: its frame on a sphere, its largest values.
+ * Knows: the grammar's terms.   Does not know: which material has it, how a kernel looks it up.
  *
  * A checker has cells of two colours in turn. Solid, they are cubes of space, and the corner of one is
  * `origin`. Over a surface, they are fields between meridians and parallels of each sphere: the pattern, two
@@ -12,9 +11,14 @@
  * 0 at their corners. Its gradients come from a hash of the corner instead of a table, so it has no period
  * but that of the count of cells, BP_LATTICE_PERIOD. Octave k is n(2^k p) / 2^k, with gradients of its own;
  * s(p) is the sum of all octaves. From a pattern comes a share, which mixes colors[0] and colors[1] and is
- * kept within 0 and 1: perlin      (1 + s) / 2 turbulence  |s| marble      (1 + sin(2 pi (a / period +
- * distortion |s|))) / 2, a: along the axis, from the origin wood        (1 + sin(2 pi (r / period +
- * distortion s))) / 2, r: from the axis through the origin
+ * kept within 0 and 1:
+ *
+ * - perlin: (1 + s) / 2
+ * - turbulence: |s|
+ * - marble: (1 + sin(2 pi (a / period + distortion |s|))) / 2, where a is measured along the axis, from the
+ *   origin
+ * - wood: (1 + sin(2 pi (r / period + distortion s))) / 2, where r is measured from the axis through the
+ *   origin
  *
  * The gradient at a corner: x, y, z are its whole numbers modulo BP_LATTICE_PERIOD, as 32 bits; to x is added
  * 2^22 times the octave, to z 0x9e3779b9 times the seed. They are mixed by pcg3d (M. Jarzynski and M. Olano,

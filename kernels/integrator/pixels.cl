@@ -2,8 +2,8 @@
  *
  * A chunk is a range of pixels, or of places in a list of pixels for adaptive sampling, times a range of samples. The
  * kernels trace_sample.cl and trace_packet.cl write for each pixel sample of it the radiance, and in a fourth number
- * the ray segments traced, plus 1/2 for a path that the depth cap cut, plus MISSED_MARK where the camera ray met nothing. What is computed for a pixel sample depends on
- * neither of them.
+ * the ray segments traced, plus 1/2 for a path that the depth cap cut, plus MISSED_MARK where the camera ray met
+ * nothing. What is computed for a pixel sample depends on neither of them.
  *
  * Pixels are counted along, since division is slow, in lanes above all.
  * Knows: lanes.cl.   Does not know: what is traced. */
