@@ -7,7 +7,7 @@ import sys
 import zlib
 
 import bpa
-from cli import PROGRAM, ProgramTest, main, scene
+from cli import PROGRAM, ProgramTest, deep, main, scene
 
 
 class Merge(ProgramTest):
@@ -125,22 +125,40 @@ class Merge(ProgramTest):
         self.part("a.bpa", 0, 10)
         for options, says in ((["--seed", "1"], ["seeds differ (0 and 1)", "--first-sample"]),
                               (["--depth", "3"], ["depths differ (--depth 10 and 3)"]),
-                              (["--width", "13"], ["widths differ (12 and 13 pixels: --width)"]),
-                              (["--precision", "double"], ["(--precision single and --precision double)"]),
-                              (["--math", "fast"], ["(--math strict and --math fast)"]),
-                              (["--numerics", "plain"], ["(--numerics robust and --numerics plain)"]),
-                              (["--sampler", "independent"], ["(--sampler sobol and --sampler independent)"])):
+                              (["--width", "13"], ["widths differ (12 and 13 pixels: --width)"])):
             self.part("other.bpa", 10, 10, *options)
             self.fail_with(2, "merge", "a.bpa", "other.bpa", "-o", "x.png",
                            says=["cannot merge other.bpa and a.bpa: ", *says])
+        # Kernels of their own are compiled by the deep part alone; here files say that they were made by them.
+        header, body = self.read(self.part("b.bpa", 10, 10)).split(b"\n", 1)
+        for name, value, other in self.KERNELS:
+            changed = header.replace(f'"{name}": "{value}"'.encode(), f'"{name}": "{other}"'.encode())
+            self.assertNotEqual(changed, header)
+            data = changed + b"\n" + body[:-4]
+            self.write("other.bpa", data + struct.pack("<I", zlib.crc32(data)))
+            self.fail_with(2, "merge", "a.bpa", "other.bpa", "-o", "x.png",
+                           says=["cannot merge other.bpa and a.bpa: ", f"(--{name} {value} and --{name} {other})"])
         # What changes no sample is no difference.
-        for options in (["--kernel", "sample"], ["--effects", "all"], ["--transfer", "srgb"]):
-            self.part("other.bpa", 10, 10, *options)
-            self.succeed("merge", "a.bpa", "other.bpa", "-o", "y.png")
+        self.part("other.bpa", 10, 10, "--transfer", "srgb")
+        self.succeed("merge", "a.bpa", "other.bpa", "-o", "y.png")
         self.write("s.json", scene(12, materials={"m": {"type": "lambertian", "albedo": [0.5, 0.4, 0.31]}}))
         self.part("colour.bpa", 10, 10)
         self.fail_with(2, "merge", "a.bpa", "colour.bpa", "-o", "x.png", says=["colour.bpa", "scenes differ"])
         self.assertNotIn("x.png", self.files())
+
+    KERNELS = (("precision", "single", "double"), ("math", "strict", "fast"), ("numerics", "robust", "plain"),
+               ("sampler", "sobol", "independent"))
+
+    @deep
+    def test_kernels_that_do_not_belong_together(self):
+        self.part("a.bpa", 0, 10)
+        for name, value, other in self.KERNELS:
+            self.part("other.bpa", 10, 10, f"--{name}", other)
+            self.fail_with(2, "merge", "a.bpa", "other.bpa", "-o", "x.png",
+                           says=["cannot merge other.bpa and a.bpa: ", f"(--{name} {value} and --{name} {other})"])
+        for options in (["--kernel", "sample"], ["--effects", "all"]):  # these change no sample
+            self.part("other.bpa", 10, 10, *options)
+            self.succeed("merge", "a.bpa", "other.bpa", "-o", "y.png")
 
     def test_bad_files(self):
         self.part("a.bpa", 0, 10)
