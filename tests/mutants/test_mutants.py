@@ -8,8 +8,9 @@ usage: test_mutants.py SOURCE_DIR BUILD_DIR RESULT.json [NAME...]
 Kernel text is patched in a copy that the program reads through BALLPARK_KERNELS. Host text is patched in a copy,
 compiled with the command that built the product, and linked before the library. A build that fails, a crash, or a
 text that no longer stands where a patch looks for it is an error, not a kill. Before the first mutant of a trial, the
-trial is run on the product unpatched: there it must pass. A mutant is then tried with a copy of the kernel cache that
-this run left, so that only the kernels that its patch changes are compiled.
+trial is run on the product unpatched: there it must pass. These runs share a kernel cache, one at a time, so that they
+compile each kernel once. A mutant is tried with a copy of that cache, so that only the kernels that its patch changes
+are compiled.
 """
 import concurrent.futures
 import json
@@ -27,6 +28,24 @@ from mutants import MUTANTS, Check, Script
 SURVIVED, KILLED, ERROR = "SURVIVED", "killed", "ERROR"
 
 
+def environment_of(cache):
+    """Names the folder of a kernel cache to drivers."""
+    return {"POCL_CACHE_DIR": cache, "MESA_SHADER_CACHE_DIR": cache}
+
+
+def copy_cache(source, target):
+    """What is compiled by links, which cost next to nothing: it is written once. The rest is small."""
+    for folder, _, names in os.walk(source):
+        there = os.path.join(target, os.path.relpath(folder, source))
+        os.makedirs(there, exist_ok=True)
+        for name in names:
+            one, other = os.path.join(folder, name), os.path.join(there, name)
+            if name.endswith((".bc", ".so")) and not os.path.lexists(other):
+                os.link(one, other)
+            elif not name.endswith((".bc", ".so")):
+                shutil.copyfile(one, other)
+
+
 class Bench:
     """Where one mutant, or the product itself, is made and tried: a scratch folder and a kernel cache of its own."""
 
@@ -35,7 +54,7 @@ class Bench:
         os.mkdir(self.scratch)
         self.cache = os.path.join(folder, "cache")
         os.mkdir(self.cache)
-        self.environment = {**os.environ, "POCL_CACHE_DIR": self.cache, "MESA_SHADER_CACHE_DIR": self.cache}
+        self.environment = {**os.environ, **environment_of(self.cache)}
         with open(os.path.join(build, "compile_commands.json"), encoding="utf-8") as file:
             self.compile = {os.path.realpath(e["file"]): e for e in json.load(file)}
 
@@ -166,33 +185,33 @@ def name_of(trial):
 
 
 class Controls:
-    """Trials on the product itself, each run once, when a mutant first asks for it; what it compiled is kept."""
+    """Trials on the product itself, each run once, when a mutant first asks for it, in a cache of kernels that all share."""
 
     def __init__(self, source, build, folder):
-        self.source, self.build, self.folder = source, build, folder
+        self.source, self.build, self.cache = source, build, os.path.join(folder, "cache")
+        os.mkdir(self.cache)
         self.lock = threading.Lock()
-        self.locks, self.results = {}, {}  # trial: lock of its own; (outcome, what was said, kernel cache)
+        self.results = {}  # trial: (outcome, what was said)
 
-    def of(self, trial):
+    def of(self, trial, cache):
+        """What the trial says of the product; copies the kernels that are compiled by then into the folder `cache`."""
         with self.lock:
-            lock = self.locks.setdefault(trial, threading.Lock())
-            kept = os.path.join(self.folder, str(list(self.locks).index(trial)))
-        with lock:
             if trial not in self.results:
                 with tempfile.TemporaryDirectory() as folder:
                     bench = Bench(self.source, self.build, folder)
+                    environment = {**bench.environment, **environment_of(self.cache)}
                     try:
-                        outcome, said = bench.run(trial, bench.environment, [])
+                        outcome, said = bench.run(trial, environment, [])
                     except subprocess.TimeoutExpired:
                         outcome, said = ERROR, "it did not end"
-                    shutil.move(bench.cache, kept)
-                self.results[trial] = outcome, said, kept
+                self.results[trial] = outcome, said
                 if outcome != SURVIVED:
                     print(f"CONTROL {outcome}: {name_of(trial)}: {said}", flush=True)
+            copy_cache(self.cache, cache)
             return self.results[trial]
 
     def failures(self):
-        return sum(outcome != SURVIVED for outcome, _, _ in self.results.values())
+        return sum(outcome != SURVIVED for outcome, _ in self.results.values())
 
 
 def try_mutant(bench, mutant, controls):
@@ -200,11 +219,10 @@ def try_mutant(bench, mutant, controls):
     try:
         environment, objects = bench.make(mutant)
         for trial in mutant.trials:
-            outcome, said, cache = controls.of(trial)
+            outcome, said = controls.of(trial, bench.cache)
             if outcome != SURVIVED:  # a trial that fails on the product kills nothing
                 outcome, said = ERROR, "the trial fails on the product itself"
                 break
-            shutil.copytree(cache, bench.cache, dirs_exist_ok=True)
             outcome, said = bench.run(trial, environment, objects)
             if outcome != SURVIVED:
                 break
