@@ -85,6 +85,7 @@ mirror = {"camera": {"image_width": 64, "samples_per_pixel": 1000, "max_depth": 
 
 with tempfile.TemporaryDirectory() as folder:
     (pathlib.Path(folder) / "mirror.json").write_text(json.dumps(mirror))
+    signal.signal(signal.SIGHUP, signal.SIG_DFL)  # nohup's way would be handed on
     for kind in (signal.SIGINT, signal.SIGTERM, signal.SIGHUP, signal.SIGKILL):
         process = subprocess.Popen([program, "check", "mirror.json", "--device", "all"], cwd=folder,
                                    stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, text=True)

@@ -12,6 +12,8 @@ import tempfile
 
 import package
 
+# A shell starts what runs in the background with Ctrl-C ignored, and that would be handed on.
+signal.signal(signal.SIGINT, signal.default_int_handler)
 source, build = sys.argv[1:]
 ballpark, _ = package.load(source, build)
 

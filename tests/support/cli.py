@@ -8,6 +8,7 @@ Without --deep it leaves out the tests that are marked @deep, and with --deep it
 import json
 import os
 import shutil
+import signal
 import subprocess
 import sys
 import tempfile
@@ -125,6 +126,7 @@ def broken_kernels(test, name, find, replace):
 def main():
     if len(sys.argv) < 3:
         sys.exit(__doc__)
+    signal.signal(signal.SIGHUP, signal.SIG_DFL)  # nohup's way would be handed on to the programs that are to get it
     words = [word for word in sys.argv[3:] if word != "--deep"]
     loader = Loader("--deep" in sys.argv)
     result = unittest.main(argv=[sys.argv[0]] + words, testLoader=loader, verbosity=1, exit=False).result
