@@ -1,0 +1,15 @@
+"""Which agreement scenes have kernels of their own where all effects are in: those whose lamps are sampled."""
+
+import json
+import os
+import subprocess
+
+
+def with_lamps(program, source, names):
+    """Those of the scenes in tests/agree/scenes for which the program sends rays to lamps."""
+    paths = [os.path.join(source, "tests/agree/scenes", name + ".json") for name in names]
+    said = subprocess.run([program, "explain", *paths, "--json", "-"], check=True, stdout=subprocess.PIPE).stdout
+    found = {os.path.basename(one["scene"])[:-len(".json")] for one in json.loads(said)["scenes"]
+             if any(effect["name"] == "lamps" and effect["simulated"] for effect in one["effects"])}
+    assert found and found < set(names), f"either all scenes have lamps or none: {found}"
+    return found
