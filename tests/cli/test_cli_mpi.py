@@ -49,15 +49,15 @@ class Ranks(cli.ProgramTest):
             self.assertEqual(stats[name], self.alone[name], name)
 
     def test_same_bits(self):
-        """Any number of ranks, with every rule: sums, depth, normal and albedo, and where the render stopped."""
-        for options in (("--spp", 13), ("--error", "3%"), ("--spp", 96, "--adaptive"), ("--error", "2.5%", "--adaptive"),
-                        ("--spp", 2, "--first-sample", 5)):
+        """Any number of ranks, and every rule: sums, depth, normal and albedo, and where the render stopped. How a block is
+        divided among how many is a test of test_portion."""
+        for options, numbers in ((("--spp", 13), (1, 2, 3, 5)), (("--error", "3%"), (3,)), (("--spp", 96, "--adaptive"), (2, 3)),
+                                 (("--error", "2.5%", "--adaptive"), (5,)), (("--spp", 2, "--first-sample", 5), (3,))):
             self.succeed("render", "s.json", *options, "-o", "alone.bpa", "-q", "--stats", "alone.json")
             self.alone = json.loads(self.read("alone.json"))
             self.assertEqual(self.alone["ranks"], 1)
-            for ranks in (1, 2, 3, 5):
-                if ranks != 1 or "--spp" in options:  # one is alone
-                    self.compare(ranks, *options)
+            for ranks in numbers:
+                self.compare(ranks, *options)
 
     def test_progress(self):
         """There is no terminal, so lines tell how far the job is: at 3 s, then twice as late each time."""

@@ -257,6 +257,7 @@ class StopRules(Render):
             self.assertEqual(self.read(output), b"precious")
         self.assertEqual(self.files(), ["kernels", "n.json", "s.json", "x.bpa", "x.exr", "x.png"])
 
+    @deep
     def test_no_figure_of_samples_that_are_no_light(self):
         """bench would tell the speed of broken paths, cost the errors of pictures of nothing."""
         here = self.broken_sky("splat(NAN)")

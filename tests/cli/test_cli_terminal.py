@@ -11,7 +11,8 @@ import unicodedata
 from cli import LIMIT_SECONDS, PROGRAM, ProgramTest, main, scene
 from terminal import Terminal
 
-FOREVER = ("--spp", "60000000")
+# What renders for as long as a test looks leaves the other cores to other tests.
+FOREVER = ("--threads", "1", "--spp", "60000000")
 
 
 class Bar(ProgramTest):
@@ -20,7 +21,7 @@ class Bar(ProgramTest):
         self.write("s.json", scene(64))
 
     def draw(self, *options, seconds="0.7", **terminal):
-        screen = Terminal(self, "render", "s.json", "--time", seconds, *options, **terminal)
+        screen = Terminal(self, "render", "s.json", "--threads", "1", "--time", seconds, *options, **terminal)
         self.assertEqual(screen.finish(), 0, screen.seen)
         return screen
 

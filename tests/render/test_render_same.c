@@ -200,7 +200,7 @@ static void halves_add_up(void **state) {
 /* A render that is extended equals one that asked for all samples at once. */
 static void extension_adds_up(void **state) {
     (void)state;
-    BpScene *scene = scene_of("v3-12-metal-fuzz.json", 24);
+    BpScene *scene = scene_of("cover.json", 24);
     BpRenderOptions options;
     bp_render_defaults(scene, &options);
     options.samples_per_pixel = 9;
@@ -249,7 +249,7 @@ static void several_devices_are_the_same(void **state) {
 /* Paths that the cap cuts are black for what they miss, and counted. */
 static void depth_cap_is_black_and_counted(void **state) {
     (void)state;
-    BpScene *scene = scene_of("v4-12-reflectance-90.json", 16);
+    BpScene *scene = scene_of("v4-18-glass-hollow.json", 24);
     BpRenderOptions options;
     bp_render_defaults(scene, &options);
     options.samples_per_pixel = 8;
