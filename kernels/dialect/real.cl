@@ -1,6 +1,6 @@
 /* real.cl: the numbers that every other kernel file is written in.
  *
- * Out:   real, refined, their constants, JOIN, FORCE_INLINE.   Does not know: lanes (lanes.cl).
+ * Out:   real, refined, their constants, JOIN, FORCE_INLINE, VECTORS_WRITTEN.   Does not know: lanes (lanes.cl).
  *
  * The program's first lines (host/opencl/program.c) define:
  *   REAL_IS_DOUBLE    0 or 1: what `real` is
@@ -63,3 +63,7 @@ typedef REFINED refined;
 #else
 #define FORCE_INLINE
 #endif
+
+/* Says of a kernel that its vectors are as wide as they are meant to be. Intel's driver for processors otherwise spreads
+ * work-items over lanes as well, which takes its compiler ten times as long and makes no kernel of ours faster. */
+#define VECTORS_WRITTEN __attribute__((vec_type_hint(float16)))

@@ -7,8 +7,9 @@
  * Knows: aov_list.h, path.cl, fetch_surface.cl.   Does not know: how paths go on. */
 
 /* One work-item a pixel; as many of its samples at a time as there are lanes. */
-__kernel void aovs(SCENE_PARAMETERS uint first_pixel, uint pixel_count, uint first_sample, uint samples,
-                   float forward_x, float forward_y, float forward_z, __global float *out) {
+__kernel VECTORS_WRITTEN void aovs(SCENE_PARAMETERS uint first_pixel, uint pixel_count, uint first_sample,
+                                   uint samples, float forward_x, float forward_y, float forward_z,
+                                   __global float *out) {
     const uint item = get_global_id(0);
     if (item >= pixel_count) return;
     const Scene scene = scene_init(SCENE_ARGUMENTS);

@@ -32,8 +32,8 @@ static uint discs_seen(const Scene *scene, const Path *path) {
 }
 #endif
 
-__kernel void path_log(SCENE_PARAMETERS uint pixel, uint sample, uint capacity, __global real *records,
-                       __global uint *spheres, __global uint *steps) {
+__kernel VECTORS_WRITTEN void path_log(SCENE_PARAMETERS uint pixel, uint sample, uint capacity, __global real *records,
+                                       __global uint *spheres, __global uint *steps) {
     const Scene scene = scene_init(SCENE_ARGUMENTS);
     Path path;
     path_none(&path);

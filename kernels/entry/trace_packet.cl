@@ -3,7 +3,7 @@
  *
  * In:    the packed scene, a chunk.   Out: the samples of the chunk, as pixels.cl says.
  * Knows: path.cl, bounce.cl, lamps_direct.cl, pixels.cl.   Does not know: what a bounce does. */
-__kernel void trace(TRACE_PARAMETERS) {
+__kernel VECTORS_WRITTEN void trace(TRACE_PARAMETERS) {
     const Scene scene = scene_init(SCENE_ARGUMENTS);
     const uint item = get_global_id(0);
     uint next = item * SAMPLES_PER_ITEM;

@@ -44,7 +44,7 @@ static void take_start(const __local Starts *starts, uint place, SampleKey *key,
 #endif
 }
 
-__kernel void trace(TRACE_PARAMETERS) {
+__kernel VECTORS_WRITTEN void trace(TRACE_PARAMETERS) {
     __local Starts starts;
     const uint item = get_global_id(0), place = get_local_id(0);
     {
