@@ -1,6 +1,8 @@
 /* device.c: opening a device and building programs for it; see device.h. */
 #include "device.h"
 
+#include "base/clock.h"
+#include "kernel_cache.h"
 #include "pocl.h"
 
 #include <stdio.h>
@@ -180,9 +182,11 @@ BpStatus bp_device_build(BpDevice *device, const char *source, const char *optio
     BpStatus status = BP_OK;
     cl_program built = NULL;
     char *all_options = NULL, *text = NULL;
+    BpKernelCacheMode cache = BP_KERNEL_CACHE_OFF;
     *program = NULL;
     if (log != NULL) *log = NULL;
     if (options == NULL) options = "";
+    BP_TRY(bp_kernel_cache_mode(&cache, err));
 
     /* -cl-nv-verbose makes NVIDIA's compiler put register and stack sizes into the log. */
     const char *verbose =
@@ -195,14 +199,20 @@ BpStatus bp_device_build(BpDevice *device, const char *source, const char *optio
     }
     snprintf(all_options, size, "-cl-std=CL1.2%s%s%s", verbose, options[0] != '\0' ? " " : "", options);
 
+    if (cache != BP_KERNEL_CACHE_OFF) built = bp_kernel_cache_load(device, source, all_options, &text);
+    if (built != NULL) goto done;
+
     cl_int code;
+    double seconds;
     for (int attempt = 1;; attempt++) {
         built = clCreateProgramWithSource(device->context, 1, &source, NULL, &code);
         if (code != CL_SUCCESS) {
             status = bp_cl_fail(err, code, "clCreateProgramWithSource", device);
             goto cleanup;
         }
+        const double start = bp_processor_seconds();
         code = clBuildProgram(built, 1, &device->id, all_options, NULL, NULL);
+        seconds = bp_processor_seconds() - start;
         text = fetch_log(device, built);
         if (code == CL_SUCCESS || attempt == POCL_ATTEMPTS || !may_pass(device, code, text)) break;
         clReleaseProgram(built);
@@ -213,6 +223,10 @@ BpStatus bp_device_build(BpDevice *device, const char *source, const char *optio
         status = build_failure(device, code, text, err);
         goto cleanup;
     }
+    if (bp_kernel_cache_wants(device, cache, seconds))
+        bp_kernel_cache_store(device, source, all_options, built, text, BP_KERNEL_CACHE_BYTES_MAX);
+
+done:
     *program = built;
     built = NULL;
     if (log != NULL) {

@@ -51,7 +51,8 @@ bool bp_device_has_extension(cl_device_id id, const char *name);
 /* Builds `source` with `options` (always -cl-std=CL1.2 first; NVIDIA's compiler is asked for its register
  * counts). `options`: Optional. The log, also of a successful build, is written to *log when `log` is not
  * NULL; the caller frees it. On failure the error carries the place of the first complaint, and the whole log
- * as its attachment. Release *program with clReleaseProgram(). */
+ * as its attachment. Release *program with clReleaseProgram(). What the kernel cache holds (kernel_cache.h)
+ * is not compiled again. */
 BpStatus bp_device_build(BpDevice *device, const char *source, const char *options, cl_program *program,
                          char **log, BpError *err);
 

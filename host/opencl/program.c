@@ -2,6 +2,7 @@
 #include "program.h"
 
 #include "base/clock.h"
+#include "base/hash.h"
 #include "packed/effects.h"
 
 #include <errno.h>
@@ -222,12 +223,6 @@ BpStatus bp_program_source(const BpProgramOptions *options, const char *extra_na
     return BP_OK;
 }
 
-/* FNV-1a, 64 bit. */
-static uint64_t hash_text(uint64_t hash, const char *text) {
-    for (; *text != '\0'; ++text) hash = (hash ^ (unsigned char)*text) * 1099511628211u;
-    return hash;
-}
-
 /* A program that this device has built before. False: there is none. */
 static bool find_built(const BpDevice *device, BpProgram *program) {
     for (size_t i = 0; i < device->built_count; ++i) {
@@ -265,7 +260,7 @@ BpStatus bp_program_build(BpDevice *device, const BpProgramOptions *options, con
     const char *flags = options->math == BP_MATH_FAST ? "-cl-fast-relaxed-math" : "";
     BpStatus status = bp_program_source(options, extra_name, extra_text, &source, err);
     if (status != BP_OK) goto failed;
-    built->key = hash_text(hash_text(14695981039346656037u, source), flags);
+    built->key = bp_hash_text(bp_hash_text(BP_HASH_START, source), flags);
     if (!find_built(device, built)) {
         free(built->log);
         built->log = NULL;

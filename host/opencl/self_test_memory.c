@@ -1,11 +1,13 @@
 /* self_test_memory.c: which devices have passed; see self_test.h.
  *
  * In:    a device's description.   Out: a small text file in the user's cache.
- * Knows: where caches live (XDG Base Directory Specification).   Does not know: what is tested.
+ * Knows: what an outcome depends on.   Does not know: where caches live, what is tested.
  *
  * The file's name is a hash of everything that could change the outcome, and its text is all of that in
  * words: a file that holds other words, for whatever reason, is no memory. */
+#include "base/hash.h"
 #include "base/output_file.h"
+#include "cache_folder.h"
 #include "program.h"
 #include "self_test.h"
 
@@ -17,20 +19,13 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
-/* FNV-1a, 64 bits (G. Fowler, L. C. Noll, K.-P. Vo). */
-static uint64_t hash_text(uint64_t hash, const char *text) {
-    for (; *text != '\0'; ++text) hash = (hash ^ (unsigned char)*text) * 0x100000001b3u;
-    return hash;
-}
-#define HASH_START 0xcbf29ce484222325u
-
 /* Everything that the outcome depends on. */
 static void identify(const BpDeviceInfo *device, char *to, size_t size) {
     static const char *const files[] = {"dialect/real.cl", "scene_types.h", "entry/self_test.cl"};
-    uint64_t sources = HASH_START;
+    uint64_t sources = BP_HASH_START;
     for (int f = 0; f < 3; ++f) {
         char *text = NULL;
-        if (bp_kernel_text(files[f], &text, NULL) == BP_OK) sources = hash_text(sources, text);
+        if (bp_kernel_text(files[f], &text, NULL) == BP_OK) sources = bp_hash_text(sources, text);
         free(text);
     }
     snprintf(to, size,
@@ -40,33 +35,14 @@ static void identify(const BpDeviceInfo *device, char *to, size_t size) {
              device->has_double ? "yes" : "no", bp_version(), (unsigned long long)sources);
 }
 
-/* $XDG_CACHE_HOME/ballpark or ~/.cache/ballpark, heap, made if `make`; NULL without either. */
-static char *cache_folder(bool make) {
-    const char *base = getenv("XDG_CACHE_HOME"), *below = "";
-    /* The specification has relative paths ignored. */
-    if (base == NULL || base[0] != '/') {
-        base = getenv("HOME");
-        below = "/.cache";
-    }
-    if (base == NULL || base[0] != '/') return NULL;
-    const size_t size = strlen(base) + strlen(below) + strlen("/ballpark") + 1;
-    char *folder = malloc(size);
-    if (folder == NULL) return NULL;
-    snprintf(folder, size, "%s%s", base, below);
-    if (make) mkdir(folder, 0700); /* where it fails, writing into it fails too, and that is tolerated */
-    snprintf(folder, size, "%s%s/ballpark", base, below);
-    if (make) mkdir(folder, 0700);
-    return folder;
-}
-
 static char *memory_path(const char *identity, bool make) {
-    char *folder = cache_folder(make);
+    char *folder = bp_cache_folder("", make);
     if (folder == NULL) return NULL;
     const size_t size = strlen(folder) + 64;
     char *path = malloc(size);
     if (path != NULL)
         snprintf(path, size, "%s/self-test-%016llx.txt", folder,
-                 (unsigned long long)hash_text(HASH_START, identity));
+                 (unsigned long long)bp_hash_text(BP_HASH_START, identity));
     free(folder);
     return path;
 }

@@ -47,6 +47,24 @@ def patch(path, find, replace):
 KERNEL, PACK, TRANSFER = "kernels", "host/packed/pack.c", "host/image/transfer.c"
 
 MUTANTS = [
+    # ---- the cache of compiled kernels -----------------------------------------------------------------------
+    Mutant("a damaged kernel is used", "caches without a checksum",
+           [patch("host/opencl/kernel_cache.c",
+                  "head.checksum != bp_hash_bytes(BP_HASH_START, bytes + behind, size - behind))", "size < behind)")],
+           [test("test_kernel_cache", "1 exact")]),
+    Mutant("a hash decides alone", "another program of the same hash",
+           [patch("host/opencl/kernel_cache.c", "memcmp(parts[PART_SOURCE].bytes, source, strlen(source)) == 0",
+                  "parts[PART_SOURCE].bytes != NULL")], [test("test_kernel_cache", "1 exact")]),
+    Mutant("a kernel outlives its driver", "caches keyed by source alone",
+           [patch("host/opencl/kernel_cache.c", "info->platform, info->name, info->version, info->driver, info->float_lanes,",
+                  "info->platform, info->name, info->version, info->name, info->float_lanes,")],
+           [test("test_kernel_cache", "1 exact")]),
+    Mutant("the youngest kernel goes", "an order the wrong way round",
+           [patch("host/opencl/kernel_cache.c", "return x->tv_sec < y->tv_sec ? -1 : 1;", "return x->tv_sec < y->tv_sec ? 1 : -1;")],
+           [test("test_kernel_cache", "1 exact")]),
+    Mutant("a kernel that anybody wrote", "caches in shared folders",
+           [patch("host/opencl/kernel_cache.c", "(state.st_mode & (S_IWGRP | S_IWOTH)) == 0 &&", "state.st_mode != 0 &&")],
+           [test("test_kernel_cache", "1 exact")]),
     # ---- chunks ----------------------------------------------------------------------------------------------
     Mutant("first chunk of any depth", "16,384 samples, whatever a path costs",
            [patch("host/render/pace.c", "return samples < BP_PACE_FIRST_SAMPLES ? samples : BP_PACE_FIRST_SAMPLES;",

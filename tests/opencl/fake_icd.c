@@ -2,9 +2,11 @@
  *
  * In:    FAKE_DEVICES in the environment, read at every call: platforms parted by '|', devices by ','. A
  * device is a kind of the table below, optionally with a name and a driver version: "gpu=Big
- * Card@8.1,cpu|old". Out:   two platforms
- * ("Fake One", "Fake Two") through the ICD loader (OCL_ICD_VENDORS names the .icd file). A "build" succeeds
- * unless the source holds #error; its log is then the build options, so that tests see them. */
+ * Card@8.1,cpu|old". FAKE_COMPILE: milliseconds of the processor that a build takes, a tenth of them for a
+ * kernel called `trial`. FAKE_KEEPS: a source that was built before takes none.
+ * Out:   two platforms ("Fake One", "Fake Two") through the ICD loader (OCL_ICD_VENDORS names the .icd file).
+ * A "build" succeeds unless the source holds #error; its log is then the build options, so that tests see
+ * them. A program's binary is its source. */
 #define CL_TARGET_OPENCL_VERSION 120
 #include <CL/cl.h>
 #include <CL/cl_icd.h>
@@ -12,6 +14,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <time.h>
 #include <unistd.h>
 
 #define PLATFORMS 2
@@ -74,7 +77,8 @@ struct _cl_command_queue {
 } queue;
 struct _cl_program {
     struct _cl_icd_dispatch *dispatch;
-    char source[256], log[512];
+    char source[512], log[512];
+    int compiled; /* it was made from a binary */
 } program;
 
 /* The text of device `number` on `platform`, in to[64]; 0 when there is none. */
@@ -227,14 +231,60 @@ static cl_program CL_API_CALL create_program(cl_context of, cl_uint count, const
                                              const size_t *lengths, cl_int *code) {
     (void)of, (void)count, (void)lengths;
     snprintf(program.source, sizeof program.source, "%s", texts[0]);
+    program.compiled = 0;
     *code = CL_SUCCESS;
     return &program;
+}
+
+static cl_program CL_API_CALL create_from_binary(cl_context of, cl_uint count, const cl_device_id *ids,
+                                                 const size_t *lengths, const unsigned char **binaries,
+                                                 cl_int *taken, cl_int *code) {
+    (void)of, (void)count, (void)ids;
+    snprintf(program.source, sizeof program.source, "%.*s", (int)lengths[0], (const char *)binaries[0]);
+    program.compiled = 1;
+    *taken = *code = CL_SUCCESS;
+    return &program;
+}
+
+static cl_int CL_API_CALL get_program_info(cl_program of, cl_program_info what, size_t size, void *to,
+                                           size_t *size_ret) {
+    const size_t length = strlen(of->source);
+    switch (what) {
+    case CL_PROGRAM_NUM_DEVICES:
+        return answer_uint(1, size, to, size_ret);
+    case CL_PROGRAM_KERNEL_NAMES:
+        return answer_text("trace;accumulate", size, to, size_ret);
+    case CL_PROGRAM_BINARY_SIZES:
+        return answer(&length, sizeof length, size, to, size_ret);
+    case CL_PROGRAM_BINARIES:
+        memcpy(*(unsigned char **)to, of->source, length);
+        return CL_SUCCESS;
+    default:
+        return CL_INVALID_VALUE;
+    }
+}
+
+/* Keeps the processor busy, as long as this source takes. */
+static void compile(const char *source) {
+    static char seen[32][512];
+    static int count;
+    const char *text = getenv("FAKE_COMPILE");
+    struct timespec start, now;
+    long wanted = text != NULL ? atol(text) * 1000000 : 0;
+    if (strstr(source, "void trial") != NULL) wanted /= 10;
+    for (int i = 0; i < count && i < 32 && getenv("FAKE_KEEPS") != NULL; ++i)
+        if (strcmp(seen[i], source) == 0) return;
+    strcpy(seen[count++ % 32], source);
+    clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &start);
+    do clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &now);
+    while ((now.tv_sec - start.tv_sec) * 1000000000 + now.tv_nsec - start.tv_nsec < wanted);
 }
 
 static cl_int CL_API_CALL build_program(cl_program built, cl_uint count, const cl_device_id *ids,
                                         const char *options, void(CL_CALLBACK *notify)(cl_program, void *),
                                         void *data) {
     (void)count, (void)ids, (void)notify, (void)data;
+    if (!built->compiled) compile(built->source);
     if (strstr(built->source, "#error") == NULL) {
         snprintf(built->log, sizeof built->log, "options: %s", options);
         return CL_SUCCESS;
@@ -271,6 +321,8 @@ static void connect(void) {
     dispatch.clCreateContext = create_context;
     dispatch.clCreateCommandQueue = create_queue;
     dispatch.clCreateProgramWithSource = create_program;
+    dispatch.clCreateProgramWithBinary = create_from_binary;
+    dispatch.clGetProgramInfo = get_program_info;
     dispatch.clBuildProgram = build_program;
     dispatch.clGetProgramBuildInfo = get_build_info;
     dispatch.clReleaseProgram = release_program;

@@ -3,11 +3,14 @@
  */
 #include "opencl/device.h"
 
+#include "base/clock.h"
+
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <unistd.h>
 
 #include <cmocka.h>
 
@@ -219,6 +222,58 @@ static void build_options(void **state) {
     }
 }
 
+/* Builds `source` on the fake CPU, whose driver takes `milliseconds`; whether it was compiled for that, and
+ * not taken from the cache. */
+static bool compiles(const char *source, const char *milliseconds) {
+    BpDeviceInfo info;
+    BpDevice *device = NULL;
+    cl_program program = NULL;
+    setenv("FAKE_COMPILE", milliseconds, 1);
+    assert_int_equal(bp_device_find("0", &info, NULL), BP_OK);
+    assert_int_equal(bp_device_open(&info, &device, NULL), BP_OK);
+    const double start = bp_processor_seconds();
+    assert_int_equal(bp_device_build(device, source, NULL, &program, NULL, NULL), BP_OK);
+    const double seconds = bp_processor_seconds() - start;
+    clReleaseProgram(program);
+    bp_device_close(&device);
+    setenv("FAKE_COMPILE", "0", 1);
+    return seconds >= 0.001 * atof(milliseconds);
+}
+
+/* Programs are kept for drivers that keep none themselves, which is measured once. */
+static void programs_are_kept_where_the_driver_keeps_none(void **state) {
+    (void)state;
+    char folder[] = "/tmp/ballpark-test-XXXXXX", kernels[64], command[128];
+    assert_non_null(mkdtemp(folder));
+    setenv("XDG_CACHE_HOME", folder, 1);
+    snprintf(kernels, sizeof kernels, "%s/ballpark/kernels", folder);
+    with("cpu");
+    assert_true(compiles("quick", "60"));
+    assert_true(compiles("quick", "60")); /* not worth a file */
+    assert_int_not_equal(access(kernels, F_OK), 0);
+    assert_true(compiles("slow", "300"));
+    assert_false(compiles("slow", "300"));
+    assert_true(compiles("other", "300"));
+    assert_false(compiles("other", "300"));
+    with("cpu=cpu@8.1"); /* another driver, another measurement */
+    setenv("FAKE_KEEPS", "1", 1);
+    assert_true(compiles("kept by the driver", "300"));
+    unsetenv("FAKE_KEEPS"); /* as if it did not: nobody asks again */
+    assert_true(compiles("kept by the driver", "300"));
+    assert_true(compiles("slow", "300"));
+    assert_true(compiles("slow", "300"));
+    with("cpu");
+    assert_false(compiles("slow", "300"));
+    /* What was measured is not believed where it is another's word: it is measured again. */
+    snprintf(command, sizeof command, "for f in %s/driver-*; do echo x > $f; done", kernels);
+    assert_int_equal(system(command), 0);
+    assert_true(compiles("a third", "300"));
+    assert_false(compiles("a third", "300"));
+    snprintf(command, sizeof command, "rm -r %s", folder);
+    assert_int_equal(system(command), 0);
+    unsetenv("XDG_CACHE_HOME");
+}
+
 static void build_failure_names_the_first_place(void **state) {
     (void)state;
     BpDeviceInfo info;
@@ -276,6 +331,7 @@ int main(void) {
         cmocka_unit_test(refuses_by_what_is_lacking),
         cmocka_unit_test(opening),
         cmocka_unit_test(build_options),
+        cmocka_unit_test(programs_are_kept_where_the_driver_keeps_none),
         cmocka_unit_test(build_failure_names_the_first_place),
         cmocka_unit_test(errors_have_names_and_remedies),
     };

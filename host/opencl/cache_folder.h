@@ -1,0 +1,15 @@
+/* cache_folder.h: where Ballpark keeps what it can make again.
+ *
+ * In:    the environment.   Out: a path.
+ * Knows: the XDG Base Directory Specification.   Does not know: what is kept. */
+#ifndef BP_OPENCL_CACHE_FOLDER_H
+#define BP_OPENCL_CACHE_FOLDER_H
+
+#include <stdbool.h>
+
+/* $XDG_CACHE_HOME/ballpark or ~/.cache/ballpark, with `below` ("" or "/name") behind it; heap. NULL: the
+ * environment names neither as an absolute path, or out of memory. `make`: creates the folder for this user
+ * alone; that this failed shows when something is written there. */
+char *bp_cache_folder(const char *below, bool make);
+
+#endif

@@ -1,0 +1,418 @@
+/* kernel_cache.c: see kernel_cache.h. */
+#include "kernel_cache.h"
+
+#include "base/clock.h"
+#include "base/hash.h"
+#include "base/output_temporary.h"
+#include "cache_folder.h"
+#include "pocl.h"
+
+#include <dirent.h>
+#include <errno.h>
+#include <fcntl.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#define FOLDER "/kernels"
+#define PROGRAM_PREFIX "program-"
+#define ENTRY_BYTES_MAX (64u << 20) /* a file that is larger is none of ours */
+#define SLOW_SECONDS 0.1            /* builds that take less are not worth a file */
+
+extern char **environ;
+
+/* A file's bytes: this head, then the parts one after the other. */
+enum { PART_IDENTITY, PART_SOURCE, PART_KERNELS, PART_LOG, PART_BINARY, PARTS };
+typedef struct Head {
+    char magic[16];
+    uint64_t checksum; /* of everything behind it */
+    uint64_t sizes[PARTS];
+} Head;
+static const char magic[16] = "Ballpark kernel1";
+
+typedef struct Part {
+    const void *bytes;
+    size_t size;
+} Part;
+
+BpStatus bp_kernel_cache_mode(BpKernelCacheMode *mode, BpError *err) {
+    const char *wanted = getenv("BALLPARK_KERNEL_CACHE");
+    *mode = BP_KERNEL_CACHE_AUTO;
+    if (wanted == NULL || wanted[0] == '\0') return BP_OK;
+    if (strcmp(wanted, "on") == 0)
+        *mode = BP_KERNEL_CACHE_ON;
+    else if (strcmp(wanted, "off") == 0)
+        *mode = BP_KERNEL_CACHE_OFF;
+    else
+        return bp_fail(err, BP_ERR_USAGE,
+                       "BALLPARK_KERNEL_CACHE is \"%.40s\"; expected on or off, or leave it unset", wanted);
+    return BP_OK;
+}
+
+/* ---- what a program depends on ------------------------------------------------------------------------ */
+
+/* Of the lines that describe the first processor: a home folder may be shared by machines whose devices have
+ * the same name. */
+static uint64_t hash_processor(void) {
+    static const char *const telling[] = {"model name",      "flags",    "Features",
+                                          "CPU implementer", "CPU part", "CPU variant"};
+    uint64_t hash = BP_HASH_START;
+    char line[8192];
+    FILE *file = fopen("/proc/cpuinfo", "r");
+    if (file == NULL) return hash;
+    while (fgets(line, sizeof line, file) != NULL && line[0] != '\n')
+        for (size_t i = 0; i < sizeof telling / sizeof telling[0]; ++i)
+            if (strncmp(line, telling[i], strlen(telling[i])) == 0) hash = bp_hash_text(hash, line);
+    fclose(file);
+    return hash;
+}
+
+/* Of the variables by which Intel's CPU runtime is told what to compile for. The sum does not depend on their
+ * order. */
+static uint64_t hash_settings(void) {
+    uint64_t hash = 0;
+    for (char **variable = environ; variable != NULL && *variable != NULL; ++variable)
+        if (strncmp(*variable, "CL_CONFIG_", strlen("CL_CONFIG_")) == 0)
+            hash += bp_hash_text(BP_HASH_START, *variable);
+    return hash;
+}
+
+/* Heap; NULL: out of memory. `options`: Optional, as they do not matter for what the driver is. */
+static char *identify(const BpDevice *device, const char *options) {
+    const BpDeviceInfo *info = &device->info;
+    const size_t size = 2048 + (options != NULL ? strlen(options) : 0);
+    char *text = malloc(size);
+    if (text == NULL) return NULL;
+    snprintf(text, size,
+             "platform: %s\ndevice: %s\nversion: %s\ndriver: %s\nlanes: %u\nprocessor: %016llx\n"
+             "settings: %016llx\noptions: %s\n",
+             info->platform, info->name, info->version, info->driver, info->float_lanes,
+             info->type == BP_DEVICE_CPU ? (unsigned long long)hash_processor() : 0,
+             (unsigned long long)hash_settings(), options != NULL ? options : "");
+    return text;
+}
+
+/* FOLDER/PREFIX-hash.END, heap; NULL without a home for caches. */
+static char *name_file(const char *prefix, uint64_t hash, const char *end, bool make) {
+    char *folder = bp_cache_folder(FOLDER, make);
+    if (folder == NULL) return NULL;
+    const size_t size = strlen(folder) + 64;
+    char *path = malloc(size);
+    if (path != NULL) snprintf(path, size, "%s/%s%016llx%s", folder, prefix, (unsigned long long)hash, end);
+    free(folder);
+    return path;
+}
+
+static char *name_program(const char *identity, const char *source, bool make) {
+    return name_file(PROGRAM_PREFIX, bp_hash_text(bp_hash_text(BP_HASH_START, identity), source), ".bin",
+                     make);
+}
+
+char *bp_kernel_cache_path(const BpDevice *device, const char *source, const char *options) {
+    char *identity = identify(device, options);
+    char *path = identity != NULL ? name_program(identity, source, false) : NULL;
+    free(identity);
+    return path;
+}
+
+/* ---- files -------------------------------------------------------------------------------------------- */
+
+/* All of a file that is ours and that nobody else can write, heap, a zero byte behind it; NULL: there is no
+ * such file. Its time says then that it was of use. */
+static char *read_own(const char *path, size_t *size) {
+    struct stat state;
+    char *bytes = NULL;
+    size_t done = 0;
+    const int file = open(path, O_RDONLY | O_CLOEXEC | O_NOCTTY | O_NONBLOCK | O_NOFOLLOW);
+    if (file < 0) return NULL;
+    if (fstat(file, &state) == 0 && S_ISREG(state.st_mode) && state.st_uid == geteuid() &&
+        (state.st_mode & (S_IWGRP | S_IWOTH)) == 0 && state.st_size >= 0 && state.st_size <= ENTRY_BYTES_MAX)
+        bytes = malloc((size_t)state.st_size + 1);
+    while (bytes != NULL && done < (size_t)state.st_size) {
+        const ssize_t got = read(file, bytes + done, (size_t)state.st_size - done);
+        if (got < 0 && errno == EINTR) continue;
+        if (got <= 0) break;
+        done += (size_t)got;
+    }
+    if (bytes != NULL) {
+        bytes[done] = '\0';
+        futimens(file, NULL);
+    }
+    close(file);
+    *size = done;
+    return bytes;
+}
+
+static bool write_all(int file, const void *bytes, size_t size) {
+    const char *at = bytes;
+    while (size > 0) {
+        const ssize_t put = write(file, at, size);
+        if (put < 0 && errno == EINTR) continue;
+        if (put <= 0) return false;
+        at += put;
+        size -= (size_t)put;
+    }
+    return true;
+}
+
+/* The file appears whole or not at all. Not synced: a file that a loss of power cut short is known by its
+ * checksum. */
+static void write_own(const char *path, const Part *parts, size_t count) {
+    bool unnamed = false;
+    char *name = NULL;
+    const int file = bp_temporary_create(path, 0600, &unnamed, &name);
+    if (file < 0) return;
+    bool good = true;
+    for (size_t p = 0; p < count && good; ++p) good = write_all(file, parts[p].bytes, parts[p].size);
+    if (good) good = bp_temporary_place(&unnamed, &name, file, path, true) == 0;
+    if (!good) bp_temporary_remove(&name);
+    close(file);
+}
+
+typedef struct Kept {
+    char name[64];
+    uint64_t size;
+    struct timespec used;
+} Kept;
+
+static int by_use(const void *a, const void *b) {
+    const struct timespec *x = &((const Kept *)a)->used, *y = &((const Kept *)b)->used;
+    if (x->tv_sec != y->tv_sec) return x->tv_sec < y->tv_sec ? -1 : 1;
+    return (x->tv_nsec > y->tv_nsec) - (x->tv_nsec < y->tv_nsec);
+}
+
+/* Removes the programs that were not used for the longest time, until the rest has at most `bytes_max`. What
+ * a killed process left half-written counts as one. Another process may be at it too: then more goes. */
+static void make_room(uint64_t bytes_max) {
+    char *folder = bp_cache_folder(FOLDER, false);
+    DIR *open = folder != NULL ? opendir(folder) : NULL;
+    Kept *kept = NULL;
+    size_t count = 0, room = 0;
+    uint64_t total = 0;
+    for (const struct dirent *entry; open != NULL && (entry = readdir(open)) != NULL;) {
+        struct stat state;
+        if (strncmp(entry->d_name, PROGRAM_PREFIX, strlen(PROGRAM_PREFIX)) != 0 ||
+            strlen(entry->d_name) >= sizeof kept->name ||
+            fstatat(dirfd(open), entry->d_name, &state, AT_SYMLINK_NOFOLLOW) != 0 || !S_ISREG(state.st_mode))
+            continue;
+        if (count == room) {
+            Kept *grown = realloc(kept, (2 * room + 64) * sizeof *kept);
+            if (grown == NULL) break;
+            kept = grown;
+            room = 2 * room + 64;
+        }
+        Kept *one = &kept[count++];
+        snprintf(one->name, sizeof one->name, "%s", entry->d_name);
+        one->size = (uint64_t)state.st_size;
+        one->used = state.st_mtim;
+        total += one->size;
+    }
+    if (total > bytes_max) qsort(kept, count, sizeof *kept, by_use);
+    for (size_t i = 0; i < count && total > bytes_max; ++i) {
+        unlinkat(dirfd(open), kept[i].name, 0);
+        total -= kept[i].size;
+    }
+    if (open != NULL) closedir(open);
+    free(kept);
+    free(folder);
+}
+
+/* ---- programs ----------------------------------------------------------------------------------------- */
+
+/* The names of the program's kernels, heap, "" where the driver does not tell; NULL: out of memory. */
+static char *kernel_names(cl_program program) {
+    size_t size = 0;
+    if (clGetProgramInfo(program, CL_PROGRAM_KERNEL_NAMES, 0, NULL, &size) != CL_SUCCESS) size = 0;
+    char *names = calloc(1, size + 1);
+    if (names != NULL && size > 0 &&
+        clGetProgramInfo(program, CL_PROGRAM_KERNEL_NAMES, size, names, NULL) != CL_SUCCESS)
+        names[0] = '\0';
+    return names;
+}
+
+/* The parts of a file that is whole and stands for this identity and source. */
+static bool take_apart(const char *bytes, size_t size, const char *identity, const char *source,
+                       Part parts[PARTS]) {
+    Head head;
+    if (size < sizeof head) return false;
+    memcpy(&head, bytes, sizeof head);
+    const size_t behind = offsetof(Head, sizes);
+    if (memcmp(head.magic, magic, sizeof magic) != 0 ||
+        head.checksum != bp_hash_bytes(BP_HASH_START, bytes + behind, size - behind))
+        return false;
+    size_t at = sizeof head;
+    for (int p = 0; p < PARTS; ++p) {
+        if (head.sizes[p] > size - at) return false;
+        parts[p].bytes = bytes + at;
+        parts[p].size = (size_t)head.sizes[p];
+        at += parts[p].size;
+    }
+    return at == size && parts[PART_IDENTITY].size == strlen(identity) &&
+           memcmp(parts[PART_IDENTITY].bytes, identity, strlen(identity)) == 0 &&
+           parts[PART_SOURCE].size == strlen(source) &&
+           memcmp(parts[PART_SOURCE].bytes, source, strlen(source)) == 0;
+}
+
+static char *copy_part(Part part) {
+    char *text = malloc(part.size + 1);
+    if (text == NULL) return NULL;
+    memcpy(text, part.bytes, part.size);
+    text[part.size] = '\0';
+    return text;
+}
+
+/* NULL: the driver does not take it, or makes something else of it. */
+static cl_program revive(const BpDevice *device, const char *options, const Part parts[PARTS]) {
+    cl_int code = CL_SUCCESS, taken = CL_SUCCESS;
+    const unsigned char *binary = parts[PART_BINARY].bytes;
+    cl_program program = clCreateProgramWithBinary(device->context, 1, &device->id, &parts[PART_BINARY].size,
+                                                   &binary, &taken, &code);
+    if (code != CL_SUCCESS || program == NULL) return NULL;
+    char *names = NULL;
+    bool good = taken == CL_SUCCESS &&
+                clBuildProgram(program, 1, &device->id, options, NULL, NULL) == CL_SUCCESS &&
+                (names = kernel_names(program)) != NULL && strlen(names) == parts[PART_KERNELS].size &&
+                memcmp(names, parts[PART_KERNELS].bytes, parts[PART_KERNELS].size) == 0;
+    free(names);
+    if (good) return program;
+    clReleaseProgram(program);
+    return NULL;
+}
+
+cl_program bp_kernel_cache_load(const BpDevice *device, const char *source, const char *options, char **log) {
+    Part parts[PARTS];
+    size_t size = 0;
+    cl_program program = NULL;
+    char *identity = identify(device, options);
+    char *path = identity != NULL ? name_program(identity, source, false) : NULL;
+    char *bytes = path != NULL ? read_own(path, &size) : NULL;
+    if (bytes != NULL) {
+        if (take_apart(bytes, size, identity, source, parts)) program = revive(device, options, parts);
+        if (program != NULL && log != NULL && (*log = copy_part(parts[PART_LOG])) == NULL) {
+            clReleaseProgram(program);
+            program = NULL;
+        }
+        if (program == NULL) unlink(path);
+    }
+    free(bytes);
+    free(path);
+    free(identity);
+    return program;
+}
+
+/* The program's binary for its one device, heap; NULL where the driver has none to give. */
+static unsigned char *fetch_binary(cl_program program, size_t *size) {
+    cl_uint devices = 0;
+    *size = 0;
+    if (clGetProgramInfo(program, CL_PROGRAM_NUM_DEVICES, sizeof devices, &devices, NULL) != CL_SUCCESS ||
+        devices != 1 ||
+        clGetProgramInfo(program, CL_PROGRAM_BINARY_SIZES, sizeof *size, size, NULL) != CL_SUCCESS ||
+        *size == 0 || *size > ENTRY_BYTES_MAX)
+        return NULL;
+    unsigned char *binary = malloc(*size);
+    if (binary != NULL &&
+        clGetProgramInfo(program, CL_PROGRAM_BINARIES, sizeof binary, (void *)&binary, NULL) != CL_SUCCESS) {
+        free(binary);
+        binary = NULL;
+    }
+    return binary;
+}
+
+void bp_kernel_cache_store(const BpDevice *device, const char *source, const char *options,
+                           cl_program program, const char *log, uint64_t bytes_max) {
+    Head head = {{0}, BP_HASH_START, {0}};
+    size_t binary_size = 0;
+    uint64_t size = sizeof head;
+    char *identity = identify(device, options), *names = kernel_names(program);
+    char *path = identity != NULL ? name_program(identity, source, true) : NULL;
+    unsigned char *binary = path != NULL && names != NULL ? fetch_binary(program, &binary_size) : NULL;
+    if (binary != NULL) {
+        if (log == NULL) log = "";
+        const Part parts[PARTS + 1] = {{&head, sizeof head},     {identity, strlen(identity)},
+                                       {source, strlen(source)}, {names, strlen(names)},
+                                       {log, strlen(log)},       {binary, binary_size}};
+        memcpy(head.magic, magic, sizeof magic);
+        for (int p = 0; p < PARTS; ++p) {
+            head.sizes[p] = parts[p + 1].size;
+            size += parts[p + 1].size;
+        }
+        head.checksum = bp_hash_bytes(BP_HASH_START, head.sizes, sizeof head.sizes);
+        for (int p = 0; p < PARTS; ++p)
+            head.checksum = bp_hash_bytes(head.checksum, parts[p + 1].bytes, parts[p + 1].size);
+        if (size <= ENTRY_BYTES_MAX && size <= bytes_max) {
+            write_own(path, parts, PARTS + 1);
+            make_room(bytes_max);
+        }
+    }
+    free(binary);
+    free(path);
+    free(names);
+    free(identity);
+}
+
+/* ---- drivers ------------------------------------------------------------------------------------------ */
+
+/* Seconds of the processor that a build of this source takes; negative: it fails. */
+static double time_build(const BpDevice *device, const char *source) {
+    cl_int code;
+    const double start = bp_processor_seconds();
+    cl_program program = clCreateProgramWithSource(device->context, 1, &source, NULL, &code);
+    if (code != CL_SUCCESS) return -1;
+    code = clBuildProgram(program, 1, &device->id, "-cl-std=CL1.2", NULL, NULL);
+    clReleaseProgram(program);
+    return code == CL_SUCCESS ? bp_processor_seconds() - start : -1;
+}
+
+/* Whether the driver builds a program that it has seen in much less time than one that it has not. The first
+ * time that a driver compiles, it may load its compiler: it has done so before this. */
+static bool keeps_programs(const BpDevice *device) {
+    double first = 0, again = 0;
+    for (int trial = 0; trial < 2; ++trial) {
+        char source[512];
+        snprintf(source, sizeof source,
+                 "__kernel void trial(__global float4 *x) { /* %ld %.9f %d */\n"
+                 "    float4 sum = (float4)(0);\n"
+                 "    for (uint i = 0u; i < 99u; ++i) sum = fma(sum, x[i], sqrt(x[i + 1u]) / x[i + 2u]);\n"
+                 "    x[get_global_id(0)] = sum;\n}\n",
+                 (long)getpid(), bp_clock_seconds(), trial);
+        const double fresh = time_build(device, source), seen = time_build(device, source);
+        if (fresh < 0 || seen < 0) return true; /* a driver in trouble: leave it alone */
+        if (trial == 0 || fresh < first) first = fresh;
+        if (trial == 0 || seen < again) again = seen;
+    }
+    return again < 0.5 * first;
+}
+
+bool bp_kernel_cache_wants(const BpDevice *device, BpKernelCacheMode mode, double build_seconds) {
+    static const char *const answers[] = {"keeps programs: no\n", "keeps programs: yes\n"};
+    if (mode != BP_KERNEL_CACHE_AUTO) return mode == BP_KERNEL_CACHE_ON;
+    /* PoCL compiles most of a program when it is run, after its binary was asked for. */
+    if (build_seconds < SLOW_SECONDS || strcmp(device->info.platform, BP_POCL_PLATFORM) == 0) return false;
+    char *identity = identify(device, NULL);
+    char *path =
+        identity != NULL ? name_file("driver-", bp_hash_text(BP_HASH_START, identity), ".txt", true) : NULL;
+    bool keeps = true;
+    if (path != NULL) {
+        size_t size = 0;
+        char *text = read_own(path, &size);
+        const size_t length = strlen(identity);
+        bool known = false;
+        for (int answer = 0; answer < 2 && text != NULL && !known; ++answer)
+            if (size == length + strlen(answers[answer]) && memcmp(text, identity, length) == 0 &&
+                memcmp(text + length, answers[answer], strlen(answers[answer])) == 0) {
+                keeps = answer == 1;
+                known = true;
+            }
+        if (!known) {
+            keeps = keeps_programs(device);
+            const Part parts[2] = {{identity, length}, {answers[keeps], strlen(answers[keeps])}};
+            write_own(path, parts, 2);
+        }
+        free(text);
+    }
+    free(path);
+    free(identity);
+    return !keeps;
+}

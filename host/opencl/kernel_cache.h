@@ -1,0 +1,48 @@
+/* kernel_cache.h: compiled programs, kept in the user's cache for drivers that keep none themselves.
+ *
+ * In:    a device, a source and its options; the program that they became.   Out: the same program, in
+ * another process. Knows: OpenCL's program binaries, files.   Does not know: what a program computes.
+ *
+ * Programs lie in $XDG_CACHE_HOME/ballpark/kernels or ~/.cache/ballpark/kernels, a file each, which no other
+ * user can write. A file holds the source, the options, and in words the device, its driver and what of the
+ * processor and the environment a compiler looks at: it is used only where all of that is the same, and a
+ * checksum covers it. So a file that is damaged or not the right one costs a build and nothing else, and so
+ * does a folder that cannot be read or written. Files appear whole, so processes need not wait for each
+ * other. The folder has a limit, beyond which the program that was not used for the longest time goes.
+ *
+ * Whether a driver keeps programs itself is measured, once for each version of it: the time to build a small
+ * program that nobody has seen is compared with the time to build it again. BALLPARK_KERNEL_CACHE=on keeps
+ * programs in any case, =off never. */
+#ifndef BP_OPENCL_KERNEL_CACHE_H
+#define BP_OPENCL_KERNEL_CACHE_H
+
+#include "device.h"
+
+#define BP_KERNEL_CACHE_BYTES_MAX (256u << 20)
+
+typedef enum BpKernelCacheMode {
+    BP_KERNEL_CACHE_AUTO, /* where the driver keeps nothing itself, and for programs that took long */
+    BP_KERNEL_CACHE_ON,
+    BP_KERNEL_CACHE_OFF
+} BpKernelCacheMode;
+
+/* What BALLPARK_KERNEL_CACHE says: "on", "off" or, without it, automatic. BP_ERR_USAGE: something else. */
+BpStatus bp_kernel_cache_mode(BpKernelCacheMode *mode, BpError *err);
+
+/* The program, built for `device`, with its build log in *log, heap; NULL where the cache has none that can
+ * be used. `options` are all that clBuildProgram gets. `log`: Optional. */
+cl_program bp_kernel_cache_load(const BpDevice *device, const char *source, const char *options, char **log);
+
+/* Keeps a program that clBuildProgram has just made. Where that fails, it is not kept. The folder's programs
+ * are then brought below `bytes_max`. */
+void bp_kernel_cache_store(const BpDevice *device, const char *source, const char *options,
+                           cl_program program, const char *log, uint64_t bytes_max);
+
+/* Whether programs that took `build_seconds` of the processor are to be kept, in this mode. The first time it
+ * matters, this measures the driver, which takes four builds of a small kernel. */
+bool bp_kernel_cache_wants(const BpDevice *device, BpKernelCacheMode mode, double build_seconds);
+
+/* The path of the program's file, heap; NULL without a home for caches. For tests. */
+char *bp_kernel_cache_path(const BpDevice *device, const char *source, const char *options);
+
+#endif
