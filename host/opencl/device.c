@@ -191,13 +191,18 @@ BpStatus bp_device_build(BpDevice *device, const char *source, const char *optio
     /* -cl-nv-verbose makes NVIDIA's compiler put register and stack sizes into the log. */
     const char *verbose =
         bp_device_has_extension(device->id, "cl_nv_compiler_options") ? " -cl-nv-verbose" : "";
-    const size_t size = strlen("-cl-std=CL1.2 ") + strlen(options) + strlen(verbose) + 1;
+    const char *rounded =
+        bp_device_rounds_quotients(device->id) && strstr(options, "-cl-fast-relaxed-math") == NULL
+            ? " -cl-fp32-correctly-rounded-divide-sqrt"
+            : "";
+    const size_t size = strlen("-cl-std=CL1.2 ") + strlen(options) + strlen(rounded) + strlen(verbose) + 1;
     all_options = malloc(size);
     if (all_options == NULL) {
         status = bp_fail(err, BP_ERR_MEMORY, "no memory to build a kernel");
         goto cleanup;
     }
-    snprintf(all_options, size, "-cl-std=CL1.2%s%s%s", verbose, options[0] != '\0' ? " " : "", options);
+    snprintf(all_options, size, "-cl-std=CL1.2%s%s%s%s", rounded, verbose, options[0] != '\0' ? " " : "",
+             options);
 
     if (cache != BP_KERNEL_CACHE_OFF) built = bp_kernel_cache_load(device, source, all_options, &text);
     if (built != NULL) goto done;

@@ -48,11 +48,16 @@ BpStatus bp_cl_fail(BpError *err, cl_int code, const char *call, const BpDevice 
 /* True when `name` stands in the device's list of extensions. */
 bool bp_device_has_extension(cl_device_id id, const char *name);
 
-/* Builds `source` with `options` (always -cl-std=CL1.2 first; NVIDIA's compiler is asked for its register
- * counts). `options`: Optional. The log, also of a successful build, is written to *log when `log` is not
- * NULL; the caller frees it. On failure the error carries the place of the first complaint, and the whole log
- * as its attachment. Release *program with clReleaseProgram(). What the kernel cache holds (kernel_cache.h)
- * is not compiled again. */
+/* Whether the device offers quotients and square roots of floats that are rounded as the real numbers are
+ * (IEEE 754). Every program but those of -cl-fast-relaxed-math then asks for them, so that pictures have the
+ * same bits. */
+bool bp_device_rounds_quotients(cl_device_id id);
+
+/* Builds `source` with `options` (always -cl-std=CL1.2 first; correctly rounded quotients and roots where the
+ * device has them; NVIDIA's compiler is asked for its register counts). `options`: Optional. The log, also of
+ * a successful build, is written to *log when `log` is not NULL; the caller frees it. On failure the error
+ * carries the place of the first complaint, and the whole log as its attachment. Release *program with
+ * clReleaseProgram(). What the kernel cache holds (kernel_cache.h) is not compiled again. */
 BpStatus bp_device_build(BpDevice *device, const char *source, const char *options, cl_program *program,
                          char **log, BpError *err);
 

@@ -79,6 +79,10 @@ bool bp_device_has_extension(cl_device_id id, const char *name) {
     return found;
 }
 
+bool bp_device_rounds_quotients(cl_device_id id) {
+    return (device_ulong(id, CL_DEVICE_SINGLE_FP_CONFIG) & CL_FP_CORRECTLY_ROUNDED_DIVIDE_SQRT) != 0;
+}
+
 /* Names what every kernel needs and this device lacks, as a whole phrase; "" if it lacks nothing. False: out
  * of memory. */
 static bool find_lack(cl_device_id id, const BpDeviceInfo *info, char refusal[128]) {

@@ -1,12 +1,12 @@
 /* self_test.h: known answers that a device must give before it renders.
  *
  * In:    an open device.   Out: nothing, or a message that names what it computes wrongly.
- * Knows: OpenCL, kernels/entry/self_test.cl, where caches live.   Does not know: scenes, pictures.
+ * Knows: OpenCL, kernels/entry/self_test.cl.   Does not know: scenes, pictures.
  *
  * Integers (random numbers and fixed-point sums rest on them), rounding, fused and unfused products,
- * quotients and square roots within OpenCL's bounds, NaN and infinities, vector lanes, loops with private
- * arrays, and the layout of every packed struct. It takes a fraction of a second, most of it the compiler's,
- * and is remembered. */
+ * quotients and square roots within OpenCL's bounds, or exact where the driver promises that, NaN and
+ * infinities, vector lanes, loops with private arrays, and the layout of every packed struct. It takes a
+ * fraction of a second, most of it the compiler's, and is remembered. */
 #ifndef BP_OPENCL_SELF_TEST_H
 #define BP_OPENCL_SELF_TEST_H
 

@@ -47,6 +47,9 @@ def patch(path, find, replace):
 KERNEL, PACK, TRANSFER = "kernels", "host/packed/pack.c", "host/image/transfer.c"
 
 MUTANTS = [
+    Mutant("quotients as the driver likes them", "GPUs whose division is within 2.5 ulp",
+           [patch("host/opencl/device_find.c", "& CL_FP_CORRECTLY_ROUNDED_DIVIDE_SQRT) != 0", "& 0) != 0")],
+           [test("test_device_find", "1 exact")]),
     # ---- the cache of compiled kernels -----------------------------------------------------------------------
     Mutant("a damaged kernel is used", "caches without a checksum",
            [patch("host/opencl/kernel_cache.c",

@@ -39,6 +39,8 @@ static const Kind kinds[] = {
     {"accelerator", CL_DEVICE_TYPE_ACCELERATOR, "OpenCL 2.0", "FULL_PROFILE", "", 1, 1, 1, FLOAT_FULL, 0, 0},
     {"nvidia", CL_DEVICE_TYPE_GPU, "OpenCL 3.0 CUDA", "FULL_PROFILE",
      "cl_khr_fp64 cl_nv_compiler_options cl_nv_x", 1, 1, 1, FLOAT_FULL, CL_FP_FMA, 0},
+    {"rounding", CL_DEVICE_TYPE_GPU, "OpenCL 1.2", "FULL_PROFILE", "cl_nv_compiler_options", 1, 1, 1,
+     FLOAT_FULL | CL_FP_CORRECTLY_ROUNDED_DIVIDE_SQRT, 0, 0},
     {"almost-nvidia", CL_DEVICE_TYPE_GPU, "OpenCL 3.0", "FULL_PROFILE",
      "x_cl_nv_compiler_options cl_nv_compiler_options2", 1, 1, 1, FLOAT_FULL, 0, 0},
     {"old", CL_DEVICE_TYPE_GPU, "OpenCL 1.1 fake", "FULL_PROFILE", "", 1, 1, 1, FLOAT_FULL, 0, 0},

@@ -214,6 +214,8 @@ static void build_options(void **state) {
         {"gpu", "-w", "options: -cl-std=CL1.2 -w"},
         {"nvidia", "-w", "options: -cl-std=CL1.2 -cl-nv-verbose -w"},
         {"almost-nvidia", "-w", "options: -cl-std=CL1.2 -w"},
+        {"rounding", "-w", "options: -cl-std=CL1.2 -cl-fp32-correctly-rounded-divide-sqrt -cl-nv-verbose -w"},
+        {"rounding", "-cl-fast-relaxed-math", "options: -cl-std=CL1.2 -cl-nv-verbose -cl-fast-relaxed-math"},
     };
     for (size_t i = 0; i < sizeof cases / sizeof cases[0]; ++i) {
         char *log = build_on(cases[i].kind, cases[i].options);

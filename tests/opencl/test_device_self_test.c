@@ -92,6 +92,27 @@ static void every_fault_is_named(void **state) {
     }
 }
 
+/* A driver that promises correct rounding must keep to it; the kernels' bits rest on that. */
+static void a_promise_of_rounding_is_kept(void **state) {
+    BpDevice *device = *state;
+    static const char *const faults[][2] = {
+        {"as_uint(a / b)", "as_uint(a / b) + (item == 77u)"},
+        {"as_uint(a / b)", "as_uint(a * (1.0f / b))"},
+        {"as_uint(sqrt(fabs(a)))", "as_uint(sqrt(fabs(a))) - (item == 3u)"},
+        {"as_uint(sqrt(fabs(a)))", "as_uint(fabs(a) / sqrt(fabs(a)))"}};
+    const bool promised = bp_device_rounds_quotients(device->id);
+    for (size_t i = 0; i < sizeof faults / sizeof faults[0]; ++i) {
+        BpError err = {0};
+        char *broken = replace(bp_kernel_file("entry/self_test.cl"), faults[i][0], faults[i][1]);
+        const BpStatus status = bp_self_test_run(device, broken, &err);
+        if (status != (promised ? BP_ERR_DEVICE : BP_OK)) fail_msg("'%s': %s", faults[i][1], err.message);
+        if (promised && strstr(err.message, "rounded as the driver promises") == NULL)
+            fail_msg("'%s' does not tell what was promised", err.message);
+        bp_error_clear(&err);
+        free(broken);
+    }
+}
+
 static void what_cannot_be_built_is_a_build_error(void **state) {
     BpError err = {0};
     assert_int_equal(bp_self_test_run(*state, "__kernel void self_test(__global int *x) { x = y; }", &err),
@@ -216,6 +237,7 @@ int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test_prestate(a_right_device_passes, device),
         cmocka_unit_test_prestate(every_fault_is_named, device),
+        cmocka_unit_test_prestate(a_promise_of_rounding_is_kept, device),
         cmocka_unit_test_prestate(what_cannot_be_built_is_a_build_error, device),
         cmocka_unit_test_prestate(silence_is_a_failure, device),
         cmocka_unit_test_prestate(a_pass_is_remembered, device),
