@@ -8,7 +8,7 @@ test_cli_bits. Here each library has the form that CPUs use and others, with a t
 libraries have every form. What takes long is compiling, so scenes with kernels of their own are drawn by the first alone.
 
 Other drivers render a few pictures, by the one-path form and with hits refined in float, as GPUs do, since their
-compilers are slow.
+compilers are slow. Intel's has a test of its own.
 """
 
 import json
@@ -106,10 +106,6 @@ with tempfile.TemporaryDirectory() as folder:
         other_driver(folder, "rusticl", {"OCL_ICD_VENDORS": "rusticl.icd", "RUSTICL_ENABLE": "llvmpipe"})
     else:
         print("skipped: no rusticl here (Debian: mesa-opencl-icd)")
-    if os.path.exists("/etc/OpenCL/vendors/intel64.icd"):
-        other_driver(folder, "Intel's CPU runtime", {"OCL_ICD_VENDORS": "intel64.icd"})
-    else:
-        print("skipped: no CPU runtime of Intel's here")
     if shutil.which("oclgrind"):
         other_driver(folder, "Oclgrind", {}, wrapper=("oclgrind", "--build-options", "-O0"))
     else:
