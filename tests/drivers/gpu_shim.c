@@ -1,0 +1,23 @@
+/* gpu_shim.c: loaded before the program (LD_PRELOAD), makes every device a GPU: it says that it is one, that
+ * its registers hold one number, and that it has no double. So the program uses what it uses on GPUs.
+ *
+ * Knows: clGetDeviceInfo.   Does not know: what the answers are for. */
+#define _GNU_SOURCE
+#define CL_TARGET_OPENCL_VERSION 120
+#include <CL/cl.h>
+#include <dlfcn.h>
+#include <stddef.h>
+
+typedef cl_int Ask(cl_device_id, cl_device_info, size_t, void *, size_t *);
+
+cl_int clGetDeviceInfo(cl_device_id device, cl_device_info what, size_t size, void *to, size_t *size_ret) {
+    void *const next = dlsym(RTLD_NEXT, "clGetDeviceInfo");
+    Ask *ask;
+    *(void **)&ask = next;
+    const cl_int code = ask(device, what, size, to, size_ret);
+    if (code != CL_SUCCESS || to == NULL) return code;
+    if (what == CL_DEVICE_TYPE) *(cl_device_type *)to = CL_DEVICE_TYPE_GPU;
+    if (what == CL_DEVICE_NATIVE_VECTOR_WIDTH_FLOAT) *(cl_uint *)to = 1;
+    if (what == CL_DEVICE_DOUBLE_FP_CONFIG) *(cl_device_fp_config *)to = 0;
+    return code;
+}

@@ -1,0 +1,76 @@
+"""What the program does on a GPU, where there is none: a processor's driver that says it is one (gpu_shim.c).
+
+Usage: test_pretended_gpu.py BALLPARK SOURCE_DIR GPU_SHIM [--deep]
+
+One work-item a sample, narrow nodes, hits refined in float, no double anywhere: the recorded pictures come out, bit for
+bit, and so does a whole render. --deep compares all recorded pictures, also with Mesa's driver.
+"""
+
+import json
+import os
+import pathlib
+import subprocess
+import sys
+import tempfile
+
+program, source, shim = sys.argv[1], pathlib.Path(sys.argv[2]), os.path.abspath(sys.argv[3])
+deep = "--deep" in sys.argv
+DRIVERS = {"pocl.icd": {}}
+if deep:
+    DRIVERS["rusticl.icd"] = {"RUSTICL_ENABLE": "llvmpipe"}
+SCENES = ("bubble", "checker-surface", "noise", "normals", "tie") if deep else ("bubble", "tie")
+recorded = [p for p in json.loads((source / "host/check/bits.json").read_text())["pictures"]
+            if (p["precision"], p["refinement"]) == ("single", "float")]
+ran = 0
+
+
+def run(environment, *arguments, code=0):
+    done = subprocess.run([program, *map(str, arguments)], capture_output=True, text=True, timeout=900, check=False,
+                          env={**os.environ, **environment})
+    assert done.returncode == code, f"{arguments}: exit code {done.returncode}\n{done.stdout}{done.stderr[-3000:]}"
+    return done
+
+
+def pretend(folder, driver, environment):
+    gpu = {**environment, "OCL_ICD_VENDORS": driver, "LD_PRELOAD": shim, "BALLPARK_BITS": str(folder / "bits.json")}
+    listed = json.loads(run(gpu, "devices", "--json", "-").stdout)["devices"]
+    assert [(d["type"], d["double"]) for d in listed] == [("gpu", False)] * len(listed), listed
+
+    pictures = [p for p in recorded if driver == "pocl.icd" and deep or p["scene"] in SCENES]
+    assert len(pictures) >= len(SCENES), "a scene is not recorded"
+    (folder / "bits.json").write_text(json.dumps({"pictures": pictures}))
+    run(gpu, "check", "--bits", "--kernel", "sample", "--quiet", "--json", folder / "report.json")
+    results = json.loads((folder / "report.json").read_text())["results"]
+    same = sum(r["verdict"] == "agree" for r in results)
+    assert same == len(results) == 2 * len(pictures), f"{same} of {len(results)}"
+    assert {(r["kernel"], r["refinement"]) for r in results} == {("sample", "float")}
+    assert {r["device"]["type"] for r in results} == {"gpu"}
+    print(f"{driver}: {same} pictures the same on a pretended GPU")
+
+    # What a user gets without any option, to the file; chunks of other sizes and an interruption change nothing.
+    scene, stats = source / "tests/agree/scenes/bubble.json", folder / "stats.json"
+    size = ("--width", 24, "--quiet", "--force", "--stats", stats)
+    run(gpu, "render", scene, "--spp", 8, *size, "-o", folder / "a.pfm")
+    said = json.loads(stats.read_text())
+    assert (said["device"]["type"], said["kernel"], said["invalid_samples"]) == ("gpu", "sample", 0), said
+    for first, part in ((0, "b.bpa"), (4, "c.bpa")):
+        run(gpu, "render", scene, "--spp", 4, "--first-sample", first, *size, "-o", folder / part)
+    run(gpu, "merge", folder / "b.bpa", folder / "c.bpa", "--quiet", "-o", folder / "d.pfm")
+    assert (folder / "a.pfm").read_bytes() == (folder / "d.pfm").read_bytes(), "parts make another picture"
+    failed = run(gpu, "render", scene, "--precision", "double", *size, "-o", folder / "e.pfm", code=1)
+    assert "has no double precision" in failed.stderr, failed.stderr
+
+
+for icd, settings in DRIVERS.items():
+    if not os.path.exists(f"/etc/OpenCL/vendors/{icd}"):
+        print(f"skipped: no {icd} here")
+        continue
+    with tempfile.TemporaryDirectory() as name:
+        listed = subprocess.run([program, "devices"], capture_output=True, timeout=120, check=False,
+                                env={**os.environ, **settings, "OCL_ICD_VENDORS": icd})
+        if listed.returncode != 0:
+            print(f"skipped: {icd} has no device here")
+            continue
+        pretend(pathlib.Path(name), icd, settings)
+    ran += 1
+sys.exit(0 if ran else 77)
