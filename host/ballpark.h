@@ -221,18 +221,21 @@ typedef struct BpDeviceInfo {
     unsigned float_lanes; /* of its vector instructions, as the driver says; 1: it has none, or hides them */
     uint64_t memory_bytes, largest_allocation_bytes;
     bool has_double, has_compiler, available;
-    char refusal[128]; /* what the device lacks, so that it cannot render; "": nothing */
+    char refusal[128];      /* what the device lacks, so that it cannot render; "": nothing */
+    unsigned clock_mhz;     /* the highest, as the driver says; 0: it does not */
+    bool has_shared_memory; /* its memory is the host's, as that of GPUs inside a processor */
 } BpDeviceInfo;
 
 /* Every device of every platform. Release *list with bp_free(). No platform or no device at all is not an
  * error: *count is 0. */
 BP_API BpStatus bp_devices_list(BpDeviceInfo **list, size_t *count, BpError *err);
 
-/* The device that `text` means: its number; "gpu" or "cpu" (the first); a part of its name, vendor, version,
- * driver version or platform (any case); or for NULL or "" the default: a GPU if there is one, else a CPU. A
- * device that cannot render is passed over; asked for by number, it is refused with what it lacks.
- * BP_ERR_DEVICE: nothing fits, or a text fits different devices; the error lists what there is, or what to
- * install. */
+/* The device that `text` means: its number; "gpu" (the most capable) or "cpu" (the first); a part of its
+ * name, vendor, version, driver version or platform (any case); or for NULL or "" the default: the most
+ * capable GPU if there is one, else a CPU. A GPU with memory of its own is more capable than one without; of
+ * one platform, that with more compute units times its clock; of several, that with more memory. A device
+ * that cannot render is passed over; asked for by number, it is refused with what it lacks. BP_ERR_DEVICE:
+ * nothing fits, or a text fits different devices; the error lists what there is, or what to install. */
 BP_API BpStatus bp_device_find(const char *text, BpDeviceInfo *device, BpError *err);
 
 /* ---- rendering --------------------------------------------------------------------------------------- */

@@ -234,10 +234,11 @@ enum {
     NOTE(SEED, BP_GENERATE, NULL, "1")                                                                       \
     NOTE(FIRST_SAMPLE, BP_RENDER, NULL, "0")                                                                 \
     NOTE(FIRST_SAMPLE, BP_EXPLAIN, "which sample to follow", "0")                                            \
-    NOTE(DEVICE, BP_RENDER | BP_CHECK | BP_BENCH | BP_VIEW, NULL, "a GPU if there is one, otherwise a CPU")  \
+    NOTE(DEVICE, BP_RENDER | BP_CHECK | BP_BENCH | BP_VIEW, NULL,                                            \
+         "the most capable GPU if there is one, otherwise a CPU")                                            \
     NOTE(DEVICE, BP_EXPLAIN | BP_COST,                                                                       \
          "device number, part of its name or driver version, gpu or cpu (see `ballpark devices`)",           \
-         "a GPU if there is one, otherwise a CPU")                                                           \
+         "the most capable GPU if there is one, otherwise a CPU")                                            \
     NOTE(THREADS, BP_TRACERS, NULL, "all")                                                                   \
     NOTE(PRECISION, BP_TRACERS, NULL, "single")                                                              \
     NOTE(MATH, BP_TRACERS, NULL, "strict")                                                                   \

@@ -46,8 +46,44 @@ static const BpDeviceInfo *first_of_type(const BpDeviceInfo *list, size_t count,
     return NULL;
 }
 
+/* Above 0 if a > b, below 0 if a < b. */
+static int order(uint64_t a, uint64_t b) {
+    return (a > b) - (a < b);
+}
+
+/* Above 0: of two GPUs, `a` is the more capable one. Compute units are as wide as a maker likes: they are
+ * compared within a platform only (`one_platform`), and between platforms if nothing else tells. */
+static int compare_gpus(const BpDeviceInfo *a, const BpDeviceInfo *b, bool one_platform) {
+    const int own_memory = order(b->has_shared_memory, a->has_shared_memory);
+    const int memory = order(a->memory_bytes, b->memory_bytes);
+    const int work = order((uint64_t)a->compute_units * (a->clock_mhz > 0 ? a->clock_mhz : 1),
+                           (uint64_t)b->compute_units * (b->clock_mhz > 0 ? b->clock_mhz : 1));
+    if (own_memory != 0) return own_memory;
+    const int first = one_platform ? work : memory;
+    return first != 0 ? first : one_platform ? memory : work;
+}
+
+/* The most capable GPU that can render, or NULL; of equal ones the first. It is the best of those that are
+ * the best of their platforms, so the order of devices decides between equal ones alone. */
+static const BpDeviceInfo *best_gpu(const BpDeviceInfo *list, size_t count) {
+    const BpDeviceInfo *best = NULL;
+    for (size_t i = 0; i < count; ++i) {
+        const BpDeviceInfo *gpu = &list[i];
+        bool leads = gpu->type == BP_DEVICE_GPU && gpu->refusal[0] == '\0';
+        for (size_t j = 0; j < count && leads; ++j) {
+            const BpDeviceInfo *other = &list[j];
+            if (other->type != BP_DEVICE_GPU || other->refusal[0] != '\0' ||
+                strcmp(other->platform, gpu->platform) != 0)
+                continue;
+            leads = compare_gpus(other, gpu, true) <= 0;
+        }
+        if (leads && (best == NULL || compare_gpus(gpu, best, false) > 0)) best = gpu;
+    }
+    return best;
+}
+
 static const BpDeviceInfo *default_device(const BpDeviceInfo *list, size_t count) {
-    const BpDeviceInfo *device = first_of_type(list, count, BP_DEVICE_GPU);
+    const BpDeviceInfo *device = best_gpu(list, count);
     if (device == NULL) device = first_of_type(list, count, BP_DEVICE_CPU);
     if (device == NULL) device = first_of_type(list, count, BP_DEVICE_OTHER);
     return device;
@@ -104,7 +140,7 @@ BpStatus bp_device_choose(const BpDeviceInfo *list, size_t count, const char *te
     if (text[0] == '\0')
         chosen = default_device(list, count);
     else if ((chosen = by_number(list, count, text)) == NULL && !is_number(text)) {
-        if (same(text, "gpu")) chosen = first_of_type(list, count, BP_DEVICE_GPU);
+        if (same(text, "gpu")) chosen = best_gpu(list, count);
         if (same(text, "cpu")) chosen = first_of_type(list, count, BP_DEVICE_CPU);
         if (chosen == NULL) chosen = by_text(list, count, text, &ambiguous);
     }

@@ -131,6 +131,8 @@ static bool describe(cl_device_id id, cl_platform_id platform, unsigned number, 
     info->has_double = device_ulong(id, CL_DEVICE_DOUBLE_FP_CONFIG) != 0;
     info->has_compiler = device_flag(id, CL_DEVICE_COMPILER_AVAILABLE);
     info->available = device_flag(id, CL_DEVICE_AVAILABLE);
+    info->clock_mhz = device_uint(id, CL_DEVICE_MAX_CLOCK_FREQUENCY);
+    info->has_shared_memory = device_flag(id, CL_DEVICE_HOST_UNIFIED_MEMORY);
     return find_lack(id, info, info->refusal);
 }
 

@@ -70,7 +70,8 @@ class BpDeviceInfo(c.Structure):
                 ("vendor", c.c_char * 128), ("version", c.c_char * 128), ("driver", c.c_char * 128),
                 ("compute_units", c.c_uint), ("float_lanes", c.c_uint), ("memory_bytes", c.c_uint64),
                 ("largest_allocation_bytes", c.c_uint64), ("has_double", c.c_bool), ("has_compiler", c.c_bool),
-                ("available", c.c_bool), ("refusal", c.c_char * 128)]
+                ("available", c.c_bool), ("refusal", c.c_char * 128), ("clock_mhz", c.c_uint),
+                ("has_shared_memory", c.c_bool)]
 
 
 class BpRenderOptions(c.Structure):

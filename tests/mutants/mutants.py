@@ -50,6 +50,9 @@ MUTANTS = [
     Mutant("quotients as the driver likes them", "GPUs whose division is within 2.5 ulp",
            [patch("host/opencl/device_find.c", "& CL_FP_CORRECTLY_ROUNDED_DIVIDE_SQRT) != 0", "& 0) != 0")],
            [test("test_device_find", "1 exact")]),
+    Mutant("the GPU inside the processor", "it has more compute units than a graphics card",
+           [patch("host/opencl/device_choose.c", "if (own_memory != 0) return own_memory;", "(void)own_memory;")],
+           [test("test_device_find", "1 exact")]),
     # ---- the cache of compiled kernels -----------------------------------------------------------------------
     Mutant("a damaged kernel is used", "caches without a checksum",
            [patch("host/opencl/kernel_cache.c",

@@ -39,6 +39,10 @@ static const Kind kinds[] = {
     {"accelerator", CL_DEVICE_TYPE_ACCELERATOR, "OpenCL 2.0", "FULL_PROFILE", "", 1, 1, 1, FLOAT_FULL, 0, 0},
     {"nvidia", CL_DEVICE_TYPE_GPU, "OpenCL 3.0 CUDA", "FULL_PROFILE",
      "cl_khr_fp64 cl_nv_compiler_options cl_nv_x", 1, 1, 1, FLOAT_FULL, CL_FP_FMA, 0},
+    {"integrated", CL_DEVICE_TYPE_GPU, "OpenCL 3.0", "FULL_PROFILE", "", 1, 1, 1, FLOAT_FULL, 0, 0},
+    {"small", CL_DEVICE_TYPE_GPU, "OpenCL 3.0", "FULL_PROFILE", "", 1, 1, 1, FLOAT_FULL, 0, 0},
+    {"large", CL_DEVICE_TYPE_GPU, "OpenCL 3.0", "FULL_PROFILE", "", 1, 1, 1, FLOAT_FULL, 0, 0},
+    {"roomy", CL_DEVICE_TYPE_GPU, "OpenCL 3.0", "FULL_PROFILE", "", 1, 1, 1, FLOAT_FULL, 0, 0},
     {"rounding", CL_DEVICE_TYPE_GPU, "OpenCL 1.2", "FULL_PROFILE", "cl_nv_compiler_options", 1, 1, 1,
      FLOAT_FULL | CL_FP_CORRECTLY_ROUNDED_DIVIDE_SQRT, 0, 0},
     {"almost-nvidia", CL_DEVICE_TYPE_GPU, "OpenCL 3.0", "FULL_PROFILE",
@@ -59,6 +63,17 @@ static const Kind kinds[] = {
      CL_OUT_OF_RESOURCES},
     {"hanging", CL_DEVICE_TYPE_GPU, "OpenCL 1.2", "FULL_PROFILE", "", 1, 1, 1, FLOAT_FULL, 0, HANGS},
     {"crashing", CL_DEVICE_TYPE_GPU, "OpenCL 1.2", "FULL_PROFILE", "", 1, 1, 1, FLOAT_FULL, 0, CRASHES},
+};
+
+/* What some kinds have of each; the first is everybody else's. */
+static const struct Capability {
+    const char *name;
+    cl_bool shared_memory;
+    cl_uint units, mhz;
+    cl_ulong gigabytes;
+} capabilities[] = {
+    {"", 0, 6, 1000, 1},       {"integrated", 1, 96, 2200, 64}, {"small", 0, 24, 2500, 8},
+    {"large", 0, 76, 2200, 8}, {"roomy", 0, 60, 1800, 24},
 };
 
 /* The loader finds our functions through the first member of every handle. */
@@ -164,6 +179,12 @@ static const Kind *kind_of(cl_device_id device, char name[64], char driver[64]) 
     exit(2);
 }
 
+static const struct Capability *capability_of(const Kind *kind) {
+    for (size_t c = 1; c < sizeof capabilities / sizeof capabilities[0]; ++c)
+        if (strcmp(capabilities[c].name, kind->name) == 0) return &capabilities[c];
+    return &capabilities[0];
+}
+
 static cl_int CL_API_CALL get_device_info(cl_device_id device, cl_device_info what, size_t size, void *to,
                                           size_t *size_ret) {
     char name[64], driver[64], padded[80];
@@ -190,11 +211,15 @@ static cl_int CL_API_CALL get_device_info(cl_device_id device, cl_device_info wh
     case CL_DEVICE_DOUBLE_FP_CONFIG:
         return kind->full == 0 ? CL_INVALID_VALUE : answer_ulong(kind->full, size, to, size_ret);
     case CL_DEVICE_GLOBAL_MEM_SIZE:
-        return answer_ulong(1u << 30, size, to, size_ret);
+        return answer_ulong(capability_of(kind)->gigabytes << 30, size, to, size_ret);
     case CL_DEVICE_MAX_MEM_ALLOC_SIZE:
         return answer_ulong(1u << 28, size, to, size_ret);
     case CL_DEVICE_MAX_COMPUTE_UNITS:
-        return answer_uint(6, size, to, size_ret);
+        return answer_uint(capability_of(kind)->units, size, to, size_ret);
+    case CL_DEVICE_MAX_CLOCK_FREQUENCY:
+        return answer_uint(capability_of(kind)->mhz, size, to, size_ret);
+    case CL_DEVICE_HOST_UNIFIED_MEMORY:
+        return answer_uint(capability_of(kind)->shared_memory, size, to, size_ret);
     case CL_DEVICE_COMPILER_AVAILABLE:
         return answer_uint(kind->compiler, size, to, size_ret);
     case CL_DEVICE_ENDIAN_LITTLE:

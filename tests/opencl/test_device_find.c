@@ -97,6 +97,27 @@ static void prefers_a_gpu_that_can_render(void **state) {
     expect_error("old|away", NULL, "1: away (Fake Two, driver 7.5), cannot render: it is not available now");
 }
 
+static void prefers_the_most_capable_gpu(void **state) {
+    (void)state;
+    expect("integrated,small", NULL, 1); /* fewer units, less memory, but its own */
+    expect("integrated|small", NULL, 1);
+    expect("small|integrated", NULL, 0);
+    expect("integrated,cpu", NULL, 0);
+    expect("small,large", NULL, 1);
+    expect("large,small", NULL, 0);
+    expect("roomy,large", NULL, 1); /* of one platform by units and clock */
+    expect("roomy|large", NULL, 0); /* of two by memory */
+    expect("large|roomy", NULL, 1);
+    expect("small,roomy|large", NULL, 1);
+    expect("large|roomy,small", NULL, 1);
+    expect("small|large", NULL, 1); /* as much memory */
+    expect("large,large", NULL, 0);
+    expect("large=A|large=B", NULL, 0);
+    expect("cpu,integrated,small|large,roomy", "gpu", 3);
+    expect("old=Large,small", NULL, 1);
+    expect("integrated,large", "integrated", 0); /* who asks for one gets it */
+}
+
 static void numbers_come_first(void **state) {
     (void)state;
     expect("cpu,gpu=Card 0", "0", 0);
@@ -326,6 +347,7 @@ int main(void) {
         cmocka_unit_test(lists_every_platform),
         cmocka_unit_test(tolerates_platforms_without_devices),
         cmocka_unit_test(prefers_a_gpu_that_can_render),
+        cmocka_unit_test(prefers_the_most_capable_gpu),
         cmocka_unit_test(numbers_come_first),
         cmocka_unit_test(parts_of_names_in_any_case),
         cmocka_unit_test(versions_of_drivers),
