@@ -492,6 +492,7 @@ typedef struct BpFilmInfo {
     bool partial;                                  /* of an interrupted or an adaptive render */
     uint64_t segments, cut_paths, invalid_samples; /* in all: ray segments; paths that the depth ended;
                                                       samples that were not finite and are left out */
+    uint64_t lamp_rays;                            /* sent to lamps, in all; they are no segments */
     /* What two films must have in common to be merged. */
     uint64_t scene_hash; /* of all in a scene that can change radiance */
     uint64_t seed;

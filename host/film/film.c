@@ -87,6 +87,7 @@ void bp_film_info(const BpFilm *film, BpFilmInfo *info) {
         .segments = film->segments,
         .cut_paths = film->cut_paths,
         .invalid_samples = film->invalid_samples,
+        .lamp_rays = film->lamp_rays,
         .scene_hash = film->scene_hash,
         .seed = film->seed,
         .max_depth = film->max_depth,
@@ -266,6 +267,7 @@ BpStatus bp_film_add_sums(BpFilm *film, const BpFilm *from, BpError *err) {
     film->segments += from->segments;
     film->cut_paths += from->cut_paths;
     film->invalid_samples += from->invalid_samples;
+    film->lamp_rays += from->lamp_rays;
     return BP_OK;
 }
 
@@ -293,10 +295,11 @@ BpStatus bp_film_merge(BpFilm *into, const BpFilm *from, BpError *err) {
     /* A .bpa file holds totals up to 2^63 - 1; no sum of real renders comes near. */
     if (total_overflows(into->segments, from->segments) ||
         total_overflows(into->cut_paths, from->cut_paths) ||
-        total_overflows(into->invalid_samples, from->invalid_samples))
-        return bp_fail(
-            err, BP_ERR_LIMIT,
-            "the numbers of ray segments, cut paths or invalid samples overflow 63 bits: a file is damaged");
+        total_overflows(into->invalid_samples, from->invalid_samples) ||
+        total_overflows(into->lamp_rays, from->lamp_rays))
+        return bp_fail(err, BP_ERR_LIMIT,
+                       "the numbers of ray segments, cut paths, invalid samples or rays to lamps overflow 63 "
+                       "bits: a file is damaged");
     struct BpSampleRange *joined = NULL;
     size_t joined_count = 0;
     BP_TRY(join_ranges(into, from->ranges, from->range_count, &joined, &joined_count, err));

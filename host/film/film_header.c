@@ -52,6 +52,9 @@ static bool add_optional(json_t *header, const BpFilm *film) {
             header, "job", json_pack("[I,I]", (json_int_t)film->job.first, (json_int_t)film->job.count)) != 0)
         return false;
     if (film->met != NULL && json_object_set_new(header, "alpha", json_true()) != 0) return false;
+    if (film->lamp_rays > 0 &&
+        json_object_set_new(header, "lamp_rays", json_integer((json_int_t)film->lamp_rays)) != 0)
+        return false;
     return film->plan == NULL || json_object_set_new(header, "plan", plan_json(film->plan)) == 0;
 }
 
@@ -284,6 +287,8 @@ static void read_settings(Reader *reader, BpFilm *film) {
     film->segments = read_integer(reader, "segments", 0, INT64_MAX);
     film->cut_paths = read_integer(reader, "cut_paths", 0, INT64_MAX);
     film->invalid_samples = read_integer(reader, "invalid_samples", 0, INT64_MAX);
+    if (json_object_get(reader->header, "lamp_rays") != NULL)
+        film->lamp_rays = read_integer(reader, "lamp_rays", 0, INT64_MAX);
     film->partial = read_truth(reader, "partial");
     const char *title = json_string_value(json_object_get(reader->header, "title"));
     if (title == NULL) bad_member(reader, "title", "a string");

@@ -521,6 +521,7 @@ void bp_render_report(const BpRender *render, BpRenderReport *report) {
         report->segments = render->film->segments;
         report->cut_paths = render->film->cut_paths;
         report->invalid_samples = render->film->invalid_samples;
+        report->lamp_rays = render->film->lamp_rays;
     }
 }
 

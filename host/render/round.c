@@ -130,7 +130,7 @@ BpStatus bp_round_add_films(BpComm *comm, BpFilm *film, BpError *err) {
     enum { FINE = 1, COARSE = 2 };
     const size_t pixels = (size_t)film->width * film->height, cells = pixels * film->replicates;
     uint32_t has = (film->fine_sums != NULL ? FINE : 0) | (film->coarse ? COARSE : 0);
-    uint64_t totals[] = {film->segments, film->cut_paths, film->invalid_samples};
+    uint64_t totals[] = {film->segments, film->cut_paths, film->invalid_samples, film->lamp_rays};
     if (comm == NULL) return BP_OK;
     BP_TRY(bp_comm_unite(comm, &has, err));
     if (has & FINE) BP_TRY(bp_film_add_fine_sums(film, err));
@@ -144,6 +144,7 @@ BpStatus bp_round_add_films(BpComm *comm, BpFilm *film, BpError *err) {
     film->segments = totals[0];
     film->cut_paths = totals[1];
     film->invalid_samples = totals[2];
+    film->lamp_rays = totals[3];
     return BP_OK;
 }
 

@@ -29,9 +29,20 @@ enum {
     TRACE_SAMPLES,
     TRACE_COUNT,
     TRACE_OUT,
+    TRACE_LAMP_RAYS,
     TRACE_LIST
 };
-enum { FOLD_IN, FOLD_PIXELS, FOLD_SAMPLES, FOLD_FIRST_PIXEL, FOLD_FIRST_SAMPLE, FOLD_CONSTANTS };
+enum {
+    FOLD_IN,
+    FOLD_PIXELS,
+    FOLD_SAMPLES,
+    FOLD_FIRST_PIXEL,
+    FOLD_FIRST_SAMPLE,
+    FOLD_CONSTANTS,
+    FOLD_LAMP_RAYS = FOLD_CONSTANTS + 6,
+    FOLD_ITEMS,
+    FOLD_LIST
+};
 
 BpStatus bp_worker_bind_scene(BpWorker *worker, cl_kernel kernel, BpError *err) {
     cl_uint index = 0;
@@ -60,7 +71,7 @@ static BpStatus create_kernels(BpWorker *worker, const BpWorkerSetup *setup, BpE
         BP_TRY(set_argument(worker, worker->fold, index++, sizeof(cl_mem), &sums[i], err));
     if (setup->program.pixel_list) {
         BP_TRY(bp_worker_create_pixel_list(worker, err));
-        BP_TRY(set_argument(worker, worker->fold, index, sizeof(cl_mem), &worker->pixel_list, err));
+        BP_TRY(set_argument(worker, worker->fold, FOLD_LIST, sizeof(cl_mem), &worker->pixel_list, err));
         BP_TRY(set_argument(worker, worker->trace, TRACE_LIST, sizeof(cl_mem), &worker->pixel_list, err));
     }
 
@@ -110,6 +121,7 @@ BpStatus bp_worker_create(const BpDeviceInfo *info, const BpPacked *packed, cons
     made->seed_high = (uint32_t)(setup->seed >> 32);
     made->first_leaves = packed->tree.first_leaves;
     made->leaf_count = packed->tree.leaf_count;
+    made->has_lamps = bp_effects_has(setup->program.effects, BP_EFFECT_LAMPS);
     BpStatus status = BP_OK;
     made->device = setup->device;
     made->owns_device = setup->device == NULL;
@@ -165,7 +177,8 @@ void bp_worker_destroy(BpWorker **worker) {
     for (int i = 0; i < w->flight_count; ++i) release_flight(&w->flights[i]);
     for (size_t i = 0; i < BP_SCENE_ARRAYS; ++i)
         if (w->scene_arrays[i] != NULL) clReleaseMemObject(w->scene_arrays[i]);
-    const cl_mem buffers[] = {w->sums, w->fine_sums, w->counts, w->tallies, w->samples, w->pixel_list};
+    const cl_mem buffers[] = {w->sums,    w->fine_sums, w->counts,    w->tallies,
+                              w->samples, w->lamp_rays, w->pixel_list};
     for (size_t i = 0; i < sizeof buffers / sizeof buffers[0]; ++i)
         if (buffers[i] != NULL) clReleaseMemObject(buffers[i]);
     if (w->trace != NULL) clReleaseKernel(w->trace);
@@ -245,6 +258,8 @@ BpStatus bp_worker_start(BpWorker *worker, const BpChunk *chunk, BpError *err) {
         BP_TRY(bp_worker_reserve_samples(worker, count, err));
     }
     const cl_uint first_sample = (cl_uint)chunk->first_sample;
+    const size_t items = (count + worker->samples_per_item - 1) / worker->samples_per_item;
+    const cl_uint lamp_items = worker->has_lamps ? (cl_uint)items : 0;
     const struct {
         cl_kernel kernel;
         cl_uint index;
@@ -256,11 +271,14 @@ BpStatus bp_worker_start(BpWorker *worker, const BpChunk *chunk, BpError *err) {
         {worker->trace, TRACE_SAMPLES, sizeof(cl_uint), &chunk->samples},
         {worker->trace, TRACE_COUNT, sizeof(cl_uint), &count},
         {worker->trace, TRACE_OUT, sizeof(cl_mem), &worker->samples},
+        {worker->trace, TRACE_LAMP_RAYS, sizeof(cl_mem), &worker->lamp_rays},
         {worker->fold, FOLD_IN, sizeof(cl_mem), &worker->samples},
         {worker->fold, FOLD_PIXELS, sizeof(cl_uint), &chunk->pixel_count},
         {worker->fold, FOLD_SAMPLES, sizeof(cl_uint), &chunk->samples},
         {worker->fold, FOLD_FIRST_PIXEL, sizeof(cl_uint), &chunk->first_pixel},
         {worker->fold, FOLD_FIRST_SAMPLE, sizeof(cl_uint), &first_sample},
+        {worker->fold, FOLD_LAMP_RAYS, sizeof(cl_mem), &worker->lamp_rays},
+        {worker->fold, FOLD_ITEMS, sizeof(cl_uint), &lamp_items},
     };
     for (size_t i = 0; i < sizeof arguments / sizeof arguments[0]; ++i)
         BP_TRY(set_argument(worker, arguments[i].kernel, arguments[i].index, arguments[i].size,
@@ -269,7 +287,6 @@ BpStatus bp_worker_start(BpWorker *worker, const BpChunk *chunk, BpError *err) {
     struct BpFlight *flight = &worker->flights[worker->flight_count++];
     *flight = (struct BpFlight){.samples = count};
     const double start = bp_clock_seconds();
-    const size_t items = (count + worker->samples_per_item - 1) / worker->samples_per_item;
     BP_TRY(enqueue(worker, worker->trace, items, worker->local_size, &flight->trace_start,
                    "clEnqueueNDRangeKernel(trace)", err));
     BP_TRY(enqueue(worker, worker->fold, chunk->pixel_count, BP_LOCAL_SIZE_SAMPLE, &flight->fold_end,

@@ -52,6 +52,8 @@ typedef struct BpWorker {
     cl_kernel trace, fold;
     cl_mem scene_arrays[BP_SCENE_ARRAYS]; /* in the order of the lists in scene_types.h */
     cl_mem sums, fine_sums, counts, tallies, samples;
+    cl_mem lamp_rays; /* of each work-item of a chunk; used only if the scene `has_lamps` */
+    bool has_lamps;
     cl_mem pixel_list; /* NULL: chunks are ranges of pixels */
     size_t real_size;
     uint32_t SCENE_NUMBERS(BP_SCENE_NUMBER_MEMBER) pixels;

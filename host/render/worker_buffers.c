@@ -89,13 +89,17 @@ BpStatus bp_worker_create_pixel_list(BpWorker *worker, BpError *err) {
     return create_buffer(worker, &worker->pixel_list, bytes, NULL, "the list of pixels", err);
 }
 
-/* Room for the raw samples of `count` pixel samples. Only called with nothing under way that uses the old
- * room. */
+/* Room for the raw samples of `count` pixel samples, and for what the work-items that trace them count. Only
+ * called with nothing under way that uses the old room. */
 BpStatus bp_worker_reserve_samples(BpWorker *worker, uint32_t count, BpError *err) {
     if (count <= worker->samples_capacity) return BP_OK;
     if (worker->samples != NULL) clReleaseMemObject(worker->samples);
-    worker->samples = NULL;
+    if (worker->lamp_rays != NULL) clReleaseMemObject(worker->lamp_rays);
+    worker->samples = worker->lamp_rays = NULL;
     worker->samples_capacity = 0;
+    const uint64_t items = ((uint64_t)count + worker->samples_per_item - 1) / worker->samples_per_item;
+    BP_TRY(create_buffer(worker, &worker->lamp_rays, worker->has_lamps ? items * sizeof(cl_uint) : 0, NULL,
+                         "the chunk's rays to lamps", err));
     BP_TRY(create_buffer(worker, &worker->samples, (uint64_t)count * 4 * worker->real_size, NULL,
                          "the chunk's samples", err));
     worker->samples_capacity = count;
@@ -149,6 +153,7 @@ static BpStatus collect_block(BpWorker *worker, size_t first, size_t count, cl_l
         if (film->pixel_segments != NULL) film->pixel_segments[first + i] += tally[TALLY_SEGMENTS];
         film->cut_paths += tally[TALLY_CUT];
         film->invalid_samples += tally[TALLY_INVALID];
+        film->lamp_rays += tally[TALLY_LAMP_RAYS];
         if (film->met == NULL) continue;
         for (size_t k = 0; k < k_count; ++k) film->met[first + i] += counts[i * k_count + k] & COUNT_SAMPLES;
         film->met[first + i] -= tally[TALLY_MISSED];

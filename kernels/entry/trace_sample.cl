@@ -76,4 +76,7 @@ __kernel VECTORS_WRITTEN void trace(TRACE_PARAMETERS) {
     }
     const real cut = path.alive ? R(0.5) : R(0.0);
     vstore4((real4)(path.radiance.x, path.radiance.y, path.radiance.z, (real)path.depth + cut), item, samples);
+#if EFFECT_LAMPS
+    lamp_rays[item] = lamp_rays_of(&path);
+#endif
 }

@@ -1,6 +1,6 @@
 /* accumulate.cl: adds the samples of a chunk to the replicate sums of their pixels, in 64-bit fixed point.
  *
- * In:    samples as pixels.cl describes them.
+ * In:    samples as pixels.cl describes them, and the numbers of rays to lamps, of all work-items that traced them.
  * Out:   sums and fine_sums[(pixel * K + k) * 3 + channel], counts[pixel * K + k] with their flags,
  *        tallies[pixel * TALLIES + TALLY_...].
  * Knows: fixed point, replicates.   Does not know: what a sample shows, the picture's estimates (the host does).
@@ -83,10 +83,21 @@ static void add_fine(__global long *fine_sums, long4 fine, uint known) {
     fine_sums[2] = (begun ? fine_sums[2] : 0) + fine.z;
 }
 
-/* One work-item a pixel of the chunk. */
+/* The share that falls to pixel `pixel` of `pixel_count` when the work-items that traced are dealt out evenly: it need
+ * not be of the pixel's own rays, since only the sum over the picture is asked for. */
+static ulong share_of_lamp_rays(__global const uint *lamp_rays, uint item_count, uint pixel, uint pixel_count) {
+    const uint each = (item_count + pixel_count - 1) / pixel_count;
+    const ulong end = min((ulong)item_count, ((ulong)pixel + 1) * each);
+    ulong sum = 0;
+    for (ulong i = (ulong)pixel * each; i < end; ++i) sum += lamp_rays[i];
+    return sum;
+}
+
+/* One work-item a pixel of the chunk. `item_count`: of lamp_rays; 0 in scenes without lamps. */
 __kernel void accumulate(__global const real *samples, uint pixel_count, uint samples_per_pixel, uint first_pixel,
                    uint first_sample, uint replicates, int scale_log2, __global long *sums, __global long *fine_sums,
-                   __global uint *counts, __global ulong *tallies PIXEL_LIST_PARAMETER) {
+                   __global uint *counts, __global ulong *tallies, __global const uint *lamp_rays,
+                   uint item_count PIXEL_LIST_PARAMETER) {
     const uint item = get_global_id(0);
     if (item >= pixel_count) return;
     const real scale = power_of_two(scale_log2);
@@ -143,4 +154,5 @@ __kernel void accumulate(__global const real *samples, uint pixel_count, uint sa
     tally[TALLY_CUT] += cut;
     tally[TALLY_INVALID] += invalid;
     tally[TALLY_MISSED] += missed;
+    if (item_count > 0) tally[TALLY_LAMP_RAYS] += share_of_lamp_rays(lamp_rays, item_count, item, pixel_count);
 }

@@ -155,6 +155,7 @@ static void light_vertices(const Scene *scene, Path *path) {
     path->lamp_slot = choose_uint(active, choice.slot, splat_uint(NO_SLOT));
     if (!any_lane(active)) return;
 
+    path->lamp_rays += popcount(lane_bits(active));
     path->seen_slot = first_seen(scene, &ray, &choice, &cone, active);
     const vbool visible = active & vbool_of_uint(path->seen_slot == choice.slot);
     if (!any_lane(visible)) return;

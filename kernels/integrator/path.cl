@@ -21,6 +21,7 @@ typedef struct Path {
     vrefined distance;
 #if SAMPLES_LAMPS
     vuint lamp_slot, seen_slot; /* the lamp that the vertex was to be lit by, or NO_SLOT, and what stands in front */
+    uint lamp_rays; /* sent by all lanes, since path_none */
 #endif
 } Path;
 
@@ -31,6 +32,7 @@ static void path_none(Path *path) {
     path->radiance = zero3();
 #if SAMPLES_LAMPS
     path->wants_lamps = vbool_none;
+    path->lamp_rays = 0;
 #endif
 }
 
@@ -112,6 +114,15 @@ static void path_scatter(Path *path, vbool met, const Point *point, vuint slot, 
     path->inward = IN_MET(, inward, path->inward);
     path->alive = path->alive & (bsdf_sample->scattered | vbool_not(met));
 #undef IN_MET
+}
+
+/* How many rays the paths of a work-item have sent to lamps. */
+static uint lamp_rays_of(const Path *path) {
+#if SAMPLES_LAMPS
+    return path->lamp_rays;
+#else
+    return 0;
+#endif
 }
 
 #if SAMPLES_LAMPS

@@ -3,7 +3,8 @@
  * A chunk is a range of pixels, or of places in a list of pixels for adaptive sampling, times a range of samples. The
  * kernels trace_sample.cl and trace_packet.cl write for each pixel sample of it the radiance, and in a fourth number
  * the ray segments traced, plus 1/2 for a path that the depth cap cut, plus MISSED_MARK where the camera ray met
- * nothing. What is computed for a pixel sample depends on neither of them.
+ * nothing. What is computed for a pixel sample depends on neither of them. If the scene has lamps, each work-item also
+ * writes how many rays it sent to them, in all.
  *
  * Pixels are counted along, since division is slow, in lanes above all.
  * Knows: lanes.cl.   Does not know: what is traced. */
@@ -94,4 +95,4 @@ static Pixels pixels_ahead(const Pixel *pixel, vuint ahead, uint width) {
 /* What a kernel is told that traces a chunk. */
 #define TRACE_PARAMETERS                                                                                               \
     SCENE_PARAMETERS uint first_pixel, uint first_sample, uint samples_per_pixel, uint sample_count,                  \
-        __global real *samples PIXEL_LIST_PARAMETER
+        __global real *samples, __global uint *lamp_rays PIXEL_LIST_PARAMETER

@@ -101,6 +101,7 @@ static BpFilm *own_film(uint32_t rank) {
     film->segments = 1000 + rank;
     film->cut_paths = 2000 + rank;
     film->invalid_samples = 3000 + rank;
+    film->lamp_rays = 4000 + rank;
     return film;
 }
 
@@ -126,7 +127,8 @@ static bool add_films(BpComm *comm) {
                holds(met, "alpha") && holds(segments, "path lengths") && holds(film->coarse, "coarse") &&
                holds(film->segments == 1000 * RANKS + sum_of_ranks, "segments") &&
                holds(film->cut_paths == 2000 * RANKS + sum_of_ranks, "cut paths") &&
-               holds(film->invalid_samples == 3000 * RANKS + sum_of_ranks, "invalid samples");
+               holds(film->invalid_samples == 3000 * RANKS + sum_of_ranks, "invalid samples") &&
+               holds(film->lamp_rays == 4000 * RANKS + sum_of_ranks, "rays to lamps");
     }
     bp_film_destroy(&film);
     return fine;

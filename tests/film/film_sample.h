@@ -23,6 +23,7 @@ static BpFilm *make(void) {
     a->segments = UINT64_C(1) << 60;
     a->cut_paths = 3;
     a->invalid_samples = 1;
+    a->lamp_rays = (UINT64_C(1) << 59) + 1;
     a->title = strdup("A \"title\",\nwith Gr\xc3\xbc\xc3\x9f"
                       "en");
     assert_int_equal(bp_film_add_range(a, 0, 9, NULL), BP_OK);

@@ -21,6 +21,7 @@
 
 #define REPLICATES 4u
 #define SCALE 37
+#define LAMP_ITEMS 3 /* work-items that traced the samples, of which each has counted its rays to lamps */
 
 static BpError err;
 
@@ -66,26 +67,40 @@ static void fold_scaled(const Folder *folder, const float *samples, cl_uint coun
                         cl_int scale, Pixel *pixel) {
     cl_context context = folder->device->context;
     const cl_mem_flags flags = CL_MEM_READ_WRITE | CL_MEM_COPY_HOST_PTR;
-    const size_t sizes[5] = {(size_t)count * 4 * sizeof(float), sizeof pixel->sums, sizeof pixel->fine_sums,
-                             sizeof pixel->counts, sizeof pixel->tallies};
-    void *const data[5] = {(void *)(uintptr_t)samples, pixel->sums, pixel->fine_sums, pixel->counts,
-                           pixel->tallies};
-    cl_mem buffers[5];
-    for (int i = 0; i < 5; ++i) {
+    /* The rays to lamps belong to the first part, so that parts add up. */
+    const cl_uint lamp_rays[LAMP_ITEMS] = {first == 0 ? UINT32_MAX : 0, 0, first == 0 ? 1 : 0};
+    const size_t sizes[6] = {(size_t)count * 4 * sizeof(float),
+                             sizeof pixel->sums,
+                             sizeof pixel->fine_sums,
+                             sizeof pixel->counts,
+                             sizeof pixel->tallies,
+                             sizeof lamp_rays};
+    void *const data[6] = {
+        (void *)(uintptr_t)samples,  pixel->sums, pixel->fine_sums, pixel->counts, pixel->tallies,
+        (void *)(uintptr_t)lamp_rays};
+    cl_mem buffers[6];
+    for (int i = 0; i < 6; ++i) {
         cl_int code = CL_SUCCESS;
         buffers[i] = clCreateBuffer(context, flags, sizes[i], data[i], &code);
         assert_int_equal(code, CL_SUCCESS);
     }
-    const cl_uint zero = 0, one = 1, replicates = REPLICATES;
+    const cl_uint zero = 0, one = 1, replicates = REPLICATES, items_traced = LAMP_ITEMS;
     const struct {
         size_t size;
         const void *value;
-    } arguments[] = {{sizeof(cl_mem), &buffers[0]}, {sizeof one, &one},
-                     {sizeof count, &count},        {sizeof zero, &zero},
-                     {sizeof first, &first},        {sizeof replicates, &replicates},
-                     {sizeof scale, &scale},        {sizeof(cl_mem), &buffers[1]},
-                     {sizeof(cl_mem), &buffers[2]}, {sizeof(cl_mem), &buffers[3]},
-                     {sizeof(cl_mem), &buffers[4]}};
+    } arguments[] = {{sizeof(cl_mem), &buffers[0]},
+                     {sizeof one, &one},
+                     {sizeof count, &count},
+                     {sizeof zero, &zero},
+                     {sizeof first, &first},
+                     {sizeof replicates, &replicates},
+                     {sizeof scale, &scale},
+                     {sizeof(cl_mem), &buffers[1]},
+                     {sizeof(cl_mem), &buffers[2]},
+                     {sizeof(cl_mem), &buffers[3]},
+                     {sizeof(cl_mem), &buffers[4]},
+                     {sizeof(cl_mem), &buffers[5]},
+                     {sizeof items_traced, &items_traced}};
     for (cl_uint i = 0; i < sizeof arguments / sizeof arguments[0]; ++i)
         assert_int_equal(clSetKernelArg(folder->kernel, i, arguments[i].size, arguments[i].value),
                          CL_SUCCESS);
@@ -96,7 +111,7 @@ static void fold_scaled(const Folder *folder, const float *samples, cl_uint coun
     for (int i = 1; i < 5; ++i)
         assert_int_equal(clEnqueueReadBuffer(queue, buffers[i], CL_TRUE, 0, sizes[i], data[i], 0, NULL, NULL),
                          CL_SUCCESS);
-    for (int i = 0; i < 5; ++i) clReleaseMemObject(buffers[i]);
+    for (int i = 0; i < 6; ++i) clReleaseMemObject(buffers[i]);
 }
 
 /* The same at SCALE, for samples that need no fine sums. */
@@ -130,6 +145,7 @@ static void what_met_nothing_is_counted(void **state) {
         assert_int_equal(tallies[TALLY_CUT], 8);
         assert_int_equal(tallies[TALLY_INVALID], careful ? 3 : 0);
         assert_int_equal(tallies[TALLY_MISSED], careful ? 2 : 4);
+        assert_true(tallies[TALLY_LAMP_RAYS] == (UINT64_C(1) << 32)); /* more than 32 bits hold */
     }
 }
 

@@ -133,6 +133,7 @@ static void wrong_members_are_named(void **state) {
         {"\"segments\": 1", "\"segments\": -1", "\"segments\""},
         {"\"cut_paths\": 3", "\"cut_paths\": \"3\"", "\"cut_paths\""},
         {"\"invalid_samples\": 1", "\"other\": 1", "\"invalid_samples\""},
+        {"\"lamp_rays\": 5", "\"lamp_rays\": -5", "\"lamp_rays\""},
         {"\"title\"", "\"name\"", "\"title\""},
         {"[0, 9]", "[0, 0]", "\"ranges\""},
         {"[0, 9]", "[-1, 9]", "\"ranges\""},

@@ -29,8 +29,9 @@ static uint32_t next(uint32_t *state) { /* Numerical Recipes' quick generator: o
 /* Gives one member of the header a value near what is allowed. */
 static void change_member(json_t *header, uint32_t *state) {
     static const char *const sizes[] = {"width", "height", "replicates"};
-    static const char *const numbers[] = {"scale_log2", "max_depth",       "segments",
-                                          "cut_paths",  "invalid_samples", "ballpark_accumulator"};
+    static const char *const numbers[] = {"scale_log2",          "max_depth",       "segments",
+                                          "cut_paths",           "invalid_samples", "lamp_rays",
+                                          "ballpark_accumulator"};
     static const json_int_t values[] = {0,    1,   2,       3,       -1,        126,
                                         -126, 127, 1000000, 1000001, INT64_MAX, INT64_MIN};
     static const char *const words[][2] = {{"sampler", "sobol"},       {"sampler", "independent"},

@@ -35,6 +35,7 @@ static BpFilm *make_accumulator(Bytes *bytes) {
     made->segments = take_bits(bytes, 8) >> 1;
     made->cut_paths = take_bits(bytes, 8) >> 1;
     made->invalid_samples = take_bits(bytes, 8) >> 1;
+    made->lamp_rays = made->segments ^ made->cut_paths;
     made->title = make_title(bytes);
     for (unsigned i = take_byte(bytes) % 6; i > 0; i--) {
         const uint64_t first = take_bits(bytes, 4), count = 1 + take_bits(bytes, i % 2 == 0 ? 1 : 3);
@@ -69,6 +70,7 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size) {
     require(read->transfer == made->transfer && read->partial == made->partial &&
             read->coarse == made->coarse);
     require(read->segments == made->segments && read->cut_paths == made->cut_paths);
+    require(read->lamp_rays == made->lamp_rays);
     require(read->invalid_samples == made->invalid_samples && strcmp(read->title, made->title) == 0);
     require(read->range_count == made->range_count);
     for (size_t i = 0; i < made->range_count; i++)

@@ -56,6 +56,7 @@ def towards(omega, azimuth=0.0, axis=POINT_NORMAL, tangent=TANGENT):
 class Case:
     """`expected`: radiance of each channel, None where only chance knows it. `exact`: to the bit, in every pixel.
     `chance`: without sampling the same comes out, and is held to the same value. `bits`: sampling changes no bit.
+    `sent`: how many rays to lamps each sample sends, where all send as many.
     `like`: another document that must give the same bits. `rounding`: relative, what single precision and the sums may cost."""
     name: str
     scene: dict
@@ -63,6 +64,7 @@ class Case:
     exact: bool = False
     chance: bool = True
     bits: bool = False
+    sent: int = None
     like: dict = None
     samples: int = 1024
     rounding: float = 2e-5
@@ -129,7 +131,7 @@ def case_01(_):
     """A lone convex receiver under a black sky."""
     for omega, distance, radius in ((0.0, 3, 1), (0.3, 2, 1.9), (0.7, 3, 1), (1.0, 2, 0.2), (0.5, 50, 1), (0.5, 50, 20)):
         share = forms.irradiance(math.asin(radius / distance), omega)
-        yield Case(f"lamp at {omega}, radius {radius} at {distance}", simple(omega, distance, radius), lit(share),
+        yield Case(f"lamp at {omega}, radius {radius} at {distance}", simple(omega, distance, radius), lit(share), sent=1,
                    chance=found_by_chance(share), deep=omega not in (0.3, 0.7))
 
 
@@ -368,7 +370,7 @@ def case_20(_):
 
 def case_21(_):
     """A lamp below the horizon."""
-    yield Case("below the horizon", simple(2.2, 4, 1), BLACK, exact=True, samples=64)
+    yield Case("below the horizon", simple(2.2, 4, 1), BLACK, exact=True, sent=0, samples=64)
 
 
 def case_22(_):

@@ -121,6 +121,10 @@ def run_scene(program, folder, scene, samples, deep):
         one, other = (on, on_stats), render(program, folder, scene, "on", samples, "--kernel", "sample")
     if on_stats["lamps"] != "on" or off_stats["lamps"] != "off":
         raise Trouble(f"lamps {on_stats['lamps']} and {off_stats['lamps']}")
+    if off_stats["lamp_rays"] != 0 or on_stats["lamp_rays"] == 0:
+        raise Trouble(f"{on_stats['lamp_rays']} rays to lamps with lamps on, {off_stats['lamp_rays']} with lamps off")
+    if one[1]["lamp_rays"] != other[1]["lamp_rays"]:
+        raise Trouble("the numbers of rays to lamps differ between the forms of the kernel")
     for member in ("rays", "cut_paths"):
         if on_stats[member] != off_stats[member]:
             raise Trouble(f"{member}: {on_stats[member]} with lamps on, {off_stats[member]} with lamps off")

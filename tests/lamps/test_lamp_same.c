@@ -1,8 +1,8 @@
 /* test_lamp_same.c: with lamps sampled, a picture still depends on scene, seed and samples alone.
  *
  * The tree of lamps has a width and an order of its own, whatever the tree of spheres looks like. So list or
- * tree, the widths of trees and packets, work-groups and chunks change no bit of the film, and no ray
- * segment. */
+ * tree, the widths of trees and packets, work-groups and chunks change no bit of the film, no ray segment,
+ * and no ray to a lamp. */
 #include "render/render.h"
 #include "support/unit_test.h"
 
@@ -12,8 +12,9 @@
 
 static BpError err;
 
-/* The film's sums, fine sums and counts, in one block of memory that the caller frees. */
-static char *render(const BpScene *scene, const BpRenderOptions *options, size_t *size, uint64_t *segments) {
+/* The film's sums, fine sums and counts, in one block of memory that the caller frees; how many ray segments
+ * there were, and rays to lamps. */
+static char *render(const BpScene *scene, const BpRenderOptions *options, size_t *size, uint64_t rays[2]) {
     BpRender *made = NULL;
     BpProgress progress = {0};
     const BpFilm *film = NULL;
@@ -25,7 +26,8 @@ static char *render(const BpScene *scene, const BpRenderOptions *options, size_t
     const size_t cells = (size_t)film->width * film->height * film->replicates;
     const size_t sums = cells * 3 * sizeof *film->sums;
     *size = sums + (film->fine_sums != NULL ? sums : 0) + cells * sizeof *film->counts;
-    *segments = film->segments;
+    rays[0] = film->segments;
+    rays[1] = film->lamp_rays;
     char *copy = malloc(*size), *end = copy;
     assert_non_null(copy);
     memcpy(end, film->sums, sums);
@@ -79,8 +81,9 @@ static void check_scene(const char *name, size_t count) {
     options.samples_per_pixel = 6;
     options.sampler = BP_SAMPLER_SOBOL;
     size_t size, other_size;
-    uint64_t segments, other_segments;
-    char *expected = render(scene, &options, &size, &segments);
+    uint64_t rays[2], other_rays[2];
+    char *expected = render(scene, &options, &size, rays);
+    assert_true(rays[1] > 0);
     for (size_t i = 0; i < count; ++i) {
         const Variation *v = &variations[i];
         BpRenderOptions varied = options;
@@ -91,22 +94,23 @@ static void check_scene(const char *name, size_t count) {
         varied.packet_lanes = v->packet_lanes;
         varied.local_size = v->local_size;
         varied.chunk_samples = v->chunk_samples;
-        char *found = render(scene, &varied, &other_size, &other_segments);
+        char *found = render(scene, &varied, &other_size, other_rays);
         if (size != other_size || memcmp(expected, found, size) != 0)
             fail_msg("%s: another picture with %s", name, v->what);
-        if (segments != other_segments) fail_msg("%s: other ray segments with %s", name, v->what);
+        if (memcmp(rays, other_rays, sizeof rays) != 0) fail_msg("%s: other rays with %s", name, v->what);
         free(found);
     }
     /* The seed, and leaving the lamps to chance, do change it. */
     options.seed = 1;
-    char *found = render(scene, &options, &other_size, &other_segments);
+    char *found = render(scene, &options, &other_size, other_rays);
     assert_true(size != other_size || memcmp(expected, found, size) != 0);
     free(found);
     options.seed = 0;
     options.lamps = BP_LAMPS_OFF;
-    found = render(scene, &options, &other_size, &other_segments);
+    found = render(scene, &options, &other_size, other_rays);
     assert_true(size != other_size || memcmp(expected, found, size) != 0);
-    assert_int_equal(segments, other_segments);
+    assert_int_equal(rays[0], other_rays[0]);
+    assert_int_equal(other_rays[1], 0);
     free(found);
     free(expected);
     bp_scene_destroy(&scene);

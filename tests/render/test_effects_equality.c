@@ -51,7 +51,10 @@ static BpStatus bind_chunk(BpWorker *worker, const Samples *samples, uint32_t pe
     for (size_t i = 0; i < sizeof numbers / sizeof numbers[0]; ++i)
         CL_TRY(worker, clSetKernelArg(worker->trace, index++, sizeof(cl_uint), &numbers[i]),
                "clSetKernelArg");
-    CL_TRY(worker, clSetKernelArg(worker->trace, index, sizeof(cl_mem), &worker->samples), "clSetKernelArg");
+    CL_TRY(worker, clSetKernelArg(worker->trace, index++, sizeof(cl_mem), &worker->samples),
+           "clSetKernelArg");
+    CL_TRY(worker, clSetKernelArg(worker->trace, index, sizeof(cl_mem), &worker->lamp_rays),
+           "clSetKernelArg");
     return BP_OK;
 }
 
@@ -96,6 +99,7 @@ static BpStatus trace(const Lab *lab, const BpScene *scene, const BpRenderOption
     worker->device = lab->device;
     worker->program = *program;
     worker->real_size = sizeof(float);
+    worker->has_lamps = true; /* the program may count rays to them */
     worker->width = setup.width;
     worker->pixels = setup.width * setup.height;
     worker->replicates = setup.replicates;
