@@ -1,7 +1,7 @@
 /* kernel_cache.h: compiled programs, kept in the user's cache for drivers that keep none themselves.
  *
- * In:    a device, a source and its options; the program that they became.   Out: the same program, in
- * another process. Knows: OpenCL's program binaries, files.   Does not know: what a program computes.
+ * In:    a device, a source and its options; the program they became.   Out: it again, in another process.
+ * Knows: OpenCL's program binaries, files.   Does not know: what a program computes.
  *
  * Programs lie in $XDG_CACHE_HOME/ballpark/kernels or ~/.cache/ballpark/kernels, a file each, which no other
  * user can write. A file holds the source, the options, and in words the device, its driver and what of the

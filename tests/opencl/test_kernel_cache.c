@@ -20,11 +20,11 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
-#define OPTIONS "-cl-std=CL1.2"
 /* Where the sizes of the parts begin in a file's head, behind the mark and the checksum. */
 #define SIZES_AT 24u
 
 static const char *own_path; /* of this test's program */
+static const char *options;  /* that every build on this device has */
 
 typedef struct Lab {
     BpDevice *device;
@@ -78,9 +78,9 @@ static void expect_number(BpDevice *device, unsigned number) {
     clReleaseProgram(program);
 }
 
-static bool loads(const BpDevice *device, const char *source, const char *options) {
+static bool loads(const BpDevice *device, const char *source, const char *with) {
     char *log = NULL;
-    cl_program program = bp_kernel_cache_load(device, source, options, &log);
+    cl_program program = bp_kernel_cache_load(device, source, with, &log);
     assert_int_equal(program != NULL, log != NULL);
     if (program != NULL) clReleaseProgram(program);
     free(log);
@@ -114,7 +114,7 @@ static int lab_make(void **state) {
     assert_int_equal(setenv("BALLPARK_KERNEL_CACHE", "on", 1), 0);
     write_source(7, lab->source);
     expect_number(lab->device, 7);
-    char *path = bp_kernel_cache_path(lab->device, lab->source, OPTIONS);
+    char *path = bp_kernel_cache_path(lab->device, lab->source, options);
     assert_non_null(path);
     snprintf(lab->path, sizeof lab->path, "%s", path);
     free(path);
@@ -132,7 +132,7 @@ static int lab_clear(void **state) {
 static void is_found_again(void **state) {
     Lab *lab = *state;
     char *log = NULL;
-    cl_program program = bp_kernel_cache_load(lab->device, lab->source, OPTIONS, &log);
+    cl_program program = bp_kernel_cache_load(lab->device, lab->source, options, &log);
     assert_non_null(program);
     assert_non_null(log);
     assert_int_equal(run(lab->device, program), 7);
@@ -148,14 +148,14 @@ static void another_is_not_found(void **state) {
     Lab *lab = *state;
     char other[256];
     write_source(9, other);
-    assert_false(loads(lab->device, other, OPTIONS));
-    assert_false(loads(lab->device, lab->source, OPTIONS " -w"));
+    assert_false(loads(lab->device, other, options));
+    assert_false(loads(lab->device, lab->source, "-w"));
     BpDevice device = *lab->device;
 #define WITH(change)                                                                                         \
     do {                                                                                                     \
         device = *lab->device;                                                                               \
         change;                                                                                              \
-        assert_false(loads(&device, lab->source, OPTIONS));                                                  \
+        assert_false(loads(&device, lab->source, options));                                                  \
     } while (0)
     WITH(strcat(device.info.driver, "1"));
     WITH(strcat(device.info.name, "1"));
@@ -165,14 +165,14 @@ static void another_is_not_found(void **state) {
     WITH(device.info.type = BP_DEVICE_GPU); /* of which this processor says nothing */
 #undef WITH
     setenv("CL_CONFIG_CPU_TARGET_ARCH", "corei7-avx", 1);
-    assert_false(loads(lab->device, lab->source, OPTIONS));
+    assert_false(loads(lab->device, lab->source, options));
     unsetenv("CL_CONFIG_CPU_TARGET_ARCH");
-    assert_true(loads(lab->device, lab->source, OPTIONS));
+    assert_true(loads(lab->device, lab->source, options));
 
     /* A file under the name of another program, as after a collision of hashes. */
-    char *path = bp_kernel_cache_path(lab->device, other, OPTIONS);
+    char *path = bp_kernel_cache_path(lab->device, other, options);
     write_file(path, lab->bytes, lab->size);
-    assert_false(loads(lab->device, other, OPTIONS));
+    assert_false(loads(lab->device, other, options));
     write_file(path, lab->bytes, lab->size);
     expect_number(lab->device, 9);
     free(path);
@@ -181,7 +181,7 @@ static void another_is_not_found(void **state) {
 /* What lies in the place of the file is not used, and the program is right all the same. */
 static void expect_refused(Lab *lab, const uint8_t *bytes, size_t size, const char *what, size_t at) {
     write_file(lab->path, bytes, size);
-    if (loads(lab->device, lab->source, OPTIONS)) fail_msg("%s %zu: the file is used", what, at);
+    if (loads(lab->device, lab->source, options)) fail_msg("%s %zu: the file is used", what, at);
     assert_int_not_equal(access(lab->path, F_OK), 0);
 }
 
@@ -205,7 +205,7 @@ static void a_damaged_one_is_not_used(void **state) {
     memset(bad, 0, lab->size);
     expect_refused(lab, bad, lab->size, "zeros", lab->size);
     expect_number(lab->device, 7); /* which writes it anew */
-    assert_true(loads(lab->device, lab->source, OPTIONS));
+    assert_true(loads(lab->device, lab->source, options));
     free(bad);
 }
 
@@ -241,18 +241,18 @@ static void what_others_could_have_written_is_not_used(void **state) {
     Lab *lab = *state;
     char moved[600];
     assert_int_equal(chmod(lab->path, 0620), 0);
-    assert_false(loads(lab->device, lab->source, OPTIONS));
+    assert_false(loads(lab->device, lab->source, options));
     assert_int_equal(chmod(lab->path, 0602), 0);
-    assert_false(loads(lab->device, lab->source, OPTIONS));
+    assert_false(loads(lab->device, lab->source, options));
     assert_int_equal(chmod(lab->path, 0444), 0);
-    assert_true(loads(lab->device, lab->source, OPTIONS));
+    assert_true(loads(lab->device, lab->source, options));
     snprintf(moved, sizeof moved, "%s.moved", lab->path);
     assert_int_equal(rename(lab->path, moved), 0);
     assert_int_equal(symlink(moved, lab->path), 0);
-    assert_false(loads(lab->device, lab->source, OPTIONS));
+    assert_false(loads(lab->device, lab->source, options));
     assert_int_equal(unlink(lab->path), 0);
     assert_int_equal(mkfifo(lab->path, 0600), 0); /* on which reading would wait */
-    assert_false(loads(lab->device, lab->source, OPTIONS));
+    assert_false(loads(lab->device, lab->source, options));
     assert_int_equal(unlink(lab->path), 0);
     assert_int_equal(mkdir(lab->path, 0700), 0);
     expect_number(lab->device, 7);
@@ -260,7 +260,7 @@ static void what_others_could_have_written_is_not_used(void **state) {
     if (geteuid() == 0) {
         write_file(lab->path, lab->bytes, lab->size);
         assert_int_equal(chown(lab->path, 1, 1), 0);
-        assert_false(loads(lab->device, lab->source, OPTIONS));
+        assert_false(loads(lab->device, lab->source, options));
     }
 }
 
@@ -275,13 +275,13 @@ static void nothing_can_be_written(void **state) {
         setenv("XDG_CACHE_HOME", homes[h], 1);
         setenv("HOME", "/proc/self", 1);
         expect_number(lab->device, 7);
-        assert_false(loads(lab->device, lab->source, OPTIONS));
+        assert_false(loads(lab->device, lab->source, options));
     }
     /* What is kept is still of use in a folder that cannot be written (as root, it can). */
     setenv("XDG_CACHE_HOME", lab->folder, 1);
     snprintf(path, sizeof path, "%s/ballpark/kernels", lab->folder);
     assert_int_equal(chmod(path, 0500), 0);
-    assert_true(loads(lab->device, lab->source, OPTIONS));
+    assert_true(loads(lab->device, lab->source, options));
     expect_number(lab->device, 8);
     assert_int_equal(chmod(path, 0700), 0);
 }
@@ -296,24 +296,24 @@ static void the_disk_is_full(void **state) {
     const char *text = source;
     cl_program program = clCreateProgramWithSource(lab->device->context, 1, &text, NULL, &code);
     assert_int_equal(code, CL_SUCCESS);
-    assert_int_equal(clBuildProgram(program, 1, &lab->device->id, OPTIONS, NULL, NULL), CL_SUCCESS);
+    assert_int_equal(clBuildProgram(program, 1, &lab->device->id, options, NULL, NULL), CL_SUCCESS);
     /* So that only our own file meets the limit. */
-    bp_kernel_cache_store(lab->device, source, OPTIONS, program, "", BP_KERNEL_CACHE_BYTES_MAX);
-    char *path = bp_kernel_cache_path(lab->device, source, OPTIONS);
+    bp_kernel_cache_store(lab->device, source, options, program, "", BP_KERNEL_CACHE_BYTES_MAX);
+    char *path = bp_kernel_cache_path(lab->device, source, options);
     assert_int_equal(unlink(path), 0);
     assert_int_equal(getrlimit(RLIMIT_FSIZE, &before), 0);
     void (*handler)(int) = signal(SIGXFSZ, SIG_IGN);
     for (rlim_t room = 0; room < lab->size; room += lab->size / 5) {
         const struct rlimit limit = {room, before.rlim_max};
         setrlimit(RLIMIT_FSIZE, &limit);
-        bp_kernel_cache_store(lab->device, source, OPTIONS, program, "", BP_KERNEL_CACHE_BYTES_MAX);
+        bp_kernel_cache_store(lab->device, source, options, program, "", BP_KERNEL_CACHE_BYTES_MAX);
         setrlimit(RLIMIT_FSIZE, &before);
         assert_int_equal(count_programs(lab->folder), 1);
-        assert_false(loads(lab->device, source, OPTIONS));
+        assert_false(loads(lab->device, source, options));
     }
     signal(SIGXFSZ, handler);
-    bp_kernel_cache_store(lab->device, source, OPTIONS, program, "", BP_KERNEL_CACHE_BYTES_MAX);
-    assert_true(loads(lab->device, source, OPTIONS));
+    bp_kernel_cache_store(lab->device, source, options, program, "", BP_KERNEL_CACHE_BYTES_MAX);
+    assert_true(loads(lab->device, source, options));
     clReleaseProgram(program);
     free(path);
 }
@@ -337,34 +337,34 @@ static void the_oldest_goes(void **state) {
     for (unsigned i = 0; i < 4; ++i) {
         write_source(i + 7, sources[i]);
         expect_number(lab->device, i + 7);
-        paths[i] = bp_kernel_cache_path(lab->device, sources[i], OPTIONS);
+        paths[i] = bp_kernel_cache_path(lab->device, sources[i], options);
         sizes[i] = size_of(paths[i]);
         set_age(paths[i], (time_t)i);
     }
     assert_int_equal(count_programs(lab->folder), 4);
-    assert_true(loads(lab->device, sources[0], OPTIONS)); /* so it is the youngest now, and 1 the oldest */
+    assert_true(loads(lab->device, sources[0], options)); /* so it is the youngest now, and 1 the oldest */
     snprintf(half, sizeof half, "%s.abc123", paths[1]);   /* what a killed process leaves */
     write_file(half, lab->bytes, 1000);
     set_age(half, -1);
 
     const char *text = sources[3];
     cl_program program = clCreateProgramWithSource(lab->device->context, 1, &text, NULL, NULL);
-    assert_int_equal(clBuildProgram(program, 1, &lab->device->id, OPTIONS, NULL, NULL), CL_SUCCESS);
-    bp_kernel_cache_store(lab->device, text, OPTIONS, program, "", BP_KERNEL_CACHE_BYTES_MAX);
+    assert_int_equal(clBuildProgram(program, 1, &lab->device->id, options, NULL, NULL), CL_SUCCESS);
+    bp_kernel_cache_store(lab->device, text, options, program, "", BP_KERNEL_CACHE_BYTES_MAX);
     sizes[3] = size_of(paths[3]);
     assert_int_equal(count_programs(lab->folder), 5);
-    bp_kernel_cache_store(lab->device, text, OPTIONS, program, "", sizes[0] + sizes[1] + sizes[2] + sizes[3]);
+    bp_kernel_cache_store(lab->device, text, options, program, "", sizes[0] + sizes[1] + sizes[2] + sizes[3]);
     assert_int_equal(count_programs(lab->folder), 4); /* without the half one */
     assert_int_not_equal(access(half, F_OK), 0);
-    bp_kernel_cache_store(lab->device, text, OPTIONS, program, "",
+    bp_kernel_cache_store(lab->device, text, options, program, "",
                           sizes[0] + sizes[1] + sizes[2] + sizes[3] - 1);
     assert_int_not_equal(access(paths[1], F_OK), 0);
     assert_int_equal(count_programs(lab->folder), 3);
-    bp_kernel_cache_store(lab->device, text, OPTIONS, program, "", sizes[0] + sizes[3]);
-    assert_false(loads(lab->device, sources[2], OPTIONS));
-    assert_true(loads(lab->device, sources[0], OPTIONS));
-    assert_true(loads(lab->device, sources[3], OPTIONS));
-    bp_kernel_cache_store(lab->device, text, OPTIONS, program, "", 100); /* it would not fit alone */
+    bp_kernel_cache_store(lab->device, text, options, program, "", sizes[0] + sizes[3]);
+    assert_false(loads(lab->device, sources[2], options));
+    assert_true(loads(lab->device, sources[0], options));
+    assert_true(loads(lab->device, sources[3], options));
+    bp_kernel_cache_store(lab->device, text, options, program, "", 100); /* it would not fit alone */
     assert_int_equal(count_programs(lab->folder), 2);
     clReleaseProgram(program);
     for (int i = 0; i < 4; ++i) free(paths[i]);
@@ -418,7 +418,7 @@ static void processes_share_it(void **state) {
     assert_int_equal(unlink(lab->path), 0);
     for (unsigned i = 0; i < PROGRAMS; ++i) {
         write_source(7 + i, source);
-        paths[i] = bp_kernel_cache_path(lab->device, source, OPTIONS);
+        paths[i] = bp_kernel_cache_path(lab->device, source, options);
     }
     snprintf(rounds, sizeof rounds, "%d", rounds_wanted);
     for (int i = 0; i < PROCESSES; ++i) {
@@ -452,7 +452,7 @@ static void processes_share_it(void **state) {
     }
     assert_int_equal(count_programs(lab->folder), 0); /* nor anything unfinished */
     expect_number(lab->device, 7);
-    assert_true(loads(lab->device, lab->source, OPTIONS));
+    assert_true(loads(lab->device, lab->source, options));
 }
 
 int main(int argc, char **argv) {
@@ -462,6 +462,9 @@ int main(int argc, char **argv) {
     own_path = argv[0];
     const int missing = test_device_open(&lab.device);
     if (missing != 0) return missing;
+    options = bp_device_rounds_quotients(lab.device->id)
+                  ? "-cl-std=CL1.2 -cl-fp32-correctly-rounded-divide-sqrt"
+                  : "-cl-std=CL1.2";
 #define TEST(name) cmocka_unit_test_prestate_setup_teardown(name, lab_make, lab_clear, &lab)
     const struct CMUnitTest tests[] =
         {
