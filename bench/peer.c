@@ -113,6 +113,11 @@ BpScene *peer_load(const PeerOptions *options, PeerRun *run) {
                 options->scene_path);
         exit(2);
     }
+    if (scene->environment != NULL) {
+        fprintf(stderr, "%s: found an image as background, expected none: peers draw gradients\n",
+                options->scene_path);
+        exit(2);
+    }
     if (options->samples != 0) scene->camera.samples_per_pixel = options->samples;
     if (options->depth != 0) scene->camera.max_depth = options->depth;
     *run = (PeerRun){.load_seconds = bp_clock_seconds() - start};

@@ -47,11 +47,19 @@ typedef struct PackedCamera {
  * A camera ray shows the backdrop instead, where there is one: `backdrop_bottom[3]` is 1, or 0. It is linear
  * over the picture's height, so a ray's place there is asked for: where it crosses the plane in focus, whose
  * points have a scalar product of view_ahead[3] with `view_ahead`, and with `view_up` 1 at the upper edge of
- * the picture, -1 at the lower. */
+ * the picture, -1 at the lower.
+ *
+ * Where `columns` is not 0, the first of the images is shown instead, with as many texels around and `rows`
+ * from top to bottom. `axes` are unit vectors: to its left and right edge, a quarter to the right of it, and
+ * downwards. `image_power`: its mean luminance, in the unit of the lamps' power (below), or 0 where no rays
+ * are sent to it. */
 typedef struct PackedSky {
     real bottom[4], top[4], up[4];
     real backdrop_bottom[4], backdrop_top[4];
     real view_ahead[4], view_up[4];
+    real axes[9];
+    real columns, rows;
+    real image_power;
 } PackedSky;
 
 /* A disc in the sky, a lamp at infinity: its radiance is added to the sky's in a cone of directions. */
@@ -66,13 +74,14 @@ typedef struct PackedDisc {
     real reserved;
 } PackedDisc;
 
-/* A texture: a checker of two colours, or noise that mixes them. What is a whole number stands in
+/* A texture: a checker of two colours, noise that mixes them, or an image. What is a whole number stands in
  * PackedTextureKind.
  *
  * Solid, a point's place in the lattice is scale * point + offset, in cells; `scale` is the unevaluated sum
  * scale + scale_low, and the offset, which moves the camera back to where the scene has it, a whole number of
  * cells modulo LATTICE_PERIOD and a rest in [0, 1). Over a surface, `axes` are unit vectors: to longitude 0,
- * to a quarter, to the north pole; fields[0] stand around, fields[1] from pole to pole. Waves of marble are a
+ * to a quarter, to the north pole; fields[0] stand around, fields[1] from pole to pole; of an image those are
+ * its texels with all repetitions. Waves of marble are a
  * lattice of their own along one axis; those of wood stand around `centre`, again a sum of two. */
 typedef struct PackedTexture {
     real first[3]; /* of even cells, of noise at 0 */
@@ -92,6 +101,8 @@ typedef struct PackedTextureKind {
     packed_uint cell[3]; /* of the offset */
     packed_uint pattern; /* PATTERN_... */
     packed_uint octaves, seed, axis;
+    packed_uint image, width, height; /* the number of its first texel, and its sides */
+    packed_uint clamped;              /* 1: it does not repeat */
 } PackedTextureKind;
 
 /* The numbers of a material. What it scatters stands with each sphere. */
@@ -146,6 +157,10 @@ typedef struct PackedVariation {
 #define TEXTURE_OCTAVES 5u
 #define TEXTURE_SEED 6u
 #define TEXTURE_AXIS 7u
+#define TEXTURE_IMAGE 8u
+#define TEXTURE_WIDTH 9u
+#define TEXTURE_HEIGHT 10u
+#define TEXTURE_CLAMPED 11u
 #define DISC_DIRECTION 0u
 #define DISC_CAP 3u
 #define DISC_RADIANCE 4u
@@ -168,6 +183,13 @@ typedef struct PackedVariation {
 #define NO_SLOT 0xffffffffu
 #define DISC_SLOT 0xffffff00u /* and its number: a disc, where others stand for the sphere in a slot */
 #define DISCS_MAX 32u
+#define IMAGE_SLOT (DISC_SLOT + DISCS_MAX) /* the image around the scene */
+/* A texel is TEXEL_UINTS floats in all precisions, as their bits; images follow each other. The image around
+ * the scene is chosen from by two tables of lower bounds in units of 2^-SHARE_BITS: `sky_rows`, of its rows,
+ * and `sky_columns`, of the texels of each row; both end with 1. `sky_heights`: of the parallels between rows
+ * from the top to the middle, the squared sine of half the angle to the top. */
+#define TEXEL_UINTS 3u
+#define SHARE_BITS 24
 /* The tree of lamps (light/lamps.cl). A node is LAMP_WIDTH children as structure of arrays, LAMP_WIDTH reals
  * each of centre x, y, z, radius and power. A child of positive radius is a lamp, and its word is CHILD_LEAF
  * and the lamp's slot; one of negative radius is a node, whose lamps lie in a ball of the radius without its
@@ -192,7 +214,8 @@ typedef struct PackedVariation {
  *
  * X(numbers, element, name, count, what): `numbers` is REALS or UINTS, what `element` is made of; `count`
  * says how many elements there are, in terms of `width` (of the tree), `nodes`, `leaf_count`, `slots`,
- * `material_count`, `texture_count`, `disc_count`, `lamp_nodes` and `lamp_slots`; `what` is how a message
+ * `material_count`, `texture_count`, `texel_count`, `sky_row_count` and so on, `disc_count`, `lamp_nodes` and
+ * `lamp_slots`; `what` is how a message
  * calls it. Arrays of the first list are pack.c's, of the second the tree of lamps', of the third the tree's.
  * Materials are arrays of numbers here, since Mesa's rusticl (22.3) gathers wrong ones through a pointer to
  * structs that is cast inside a loop. */
@@ -212,6 +235,10 @@ typedef struct PackedVariation {
     X(UINTS, packed_uint, variations, material_count * VARIATION_UINTS, "the table of materials")            \
     X(REALS, real, textures, texture_count * TEXTURE_REALS, "the textures")                                  \
     X(UINTS, packed_uint, texture_kinds, texture_count * TEXTURE_UINTS, "the textures")                      \
+    X(UINTS, packed_uint, texels, texel_count * TEXEL_UINTS, "the images")                                   \
+    X(UINTS, packed_uint, sky_rows, sky_row_count, "the table of the background")                            \
+    X(UINTS, packed_uint, sky_columns, sky_column_count, "the table of the background")                      \
+    X(REALS, real, sky_heights, sky_height_count, "the table of the background")                             \
     X(UINTS, packed_uint, slot_material, slots, "the table of sphere materials")                             \
     X(REALS, real, slot_albedo, slots * ALBEDO_REALS, "the table of sphere colours")
 #define SCENE_ARRAYS_OF_LAMPS(X)                                                                             \
@@ -233,18 +260,18 @@ enum { FUZZ_SPHERE, FUZZ_BALL };
 enum { FRESNEL_SCHLICK, FRESNEL_EXACT, FRESNEL_NONE };
 enum { TOTAL_REFLECT, TOTAL_ABSORB, TOTAL_REFRACT };
 enum { MAPPING_SOLID, MAPPING_SURFACE };
-enum { PATTERN_CHECKER, PATTERN_PERLIN, PATTERN_TURBULENCE, PATTERN_MARBLE, PATTERN_WOOD };
+enum { PATTERN_CHECKER, PATTERN_PERLIN, PATTERN_TURBULENCE, PATTERN_MARBLE, PATTERN_WOOD, PATTERN_IMAGE };
 #define LATTICE_PERIOD 0x400000u /* cells are counted modulo this: whole numbers that a float holds */
 
 #ifdef BP_HOST
 _Static_assert(sizeof(real) == 8, "the host packs in double");
 _Static_assert(sizeof(PackedCamera) == 32 * sizeof(real), "PackedCamera has padding");
-_Static_assert(sizeof(PackedSky) == 28 * sizeof(real), "PackedSky has padding");
+_Static_assert(sizeof(PackedSky) == 40 * sizeof(real), "PackedSky has padding");
 _Static_assert(sizeof(PackedDisc) == 12 * sizeof(real), "PackedDisc has padding");
 _Static_assert(sizeof(PackedMaterial) == 8 * sizeof(real), "PackedMaterial has padding");
 _Static_assert(sizeof(PackedMaterialKind) == 16, "PackedMaterialKind has padding");
 _Static_assert(sizeof(PackedTexture) == 32 * sizeof(real), "PackedTexture has padding");
-_Static_assert(sizeof(PackedTextureKind) == 32, "PackedTextureKind has padding");
+_Static_assert(sizeof(PackedTextureKind) == 48, "PackedTextureKind has padding");
 _Static_assert(sizeof(PackedVariation) == 16, "PackedVariation has padding");
 #define BP_PLACE(place, type, member, element)                                                               \
     _Static_assert(offsetof(type, member) == (place) * sizeof(element), "the place of " #member)
@@ -275,6 +302,10 @@ BP_PLACE(TEXTURE_PATTERN, PackedTextureKind, pattern, packed_uint);
 BP_PLACE(TEXTURE_OCTAVES, PackedTextureKind, octaves, packed_uint);
 BP_PLACE(TEXTURE_SEED, PackedTextureKind, seed, packed_uint);
 BP_PLACE(TEXTURE_AXIS, PackedTextureKind, axis, packed_uint);
+BP_PLACE(TEXTURE_IMAGE, PackedTextureKind, image, packed_uint);
+BP_PLACE(TEXTURE_WIDTH, PackedTextureKind, width, packed_uint);
+BP_PLACE(TEXTURE_HEIGHT, PackedTextureKind, height, packed_uint);
+BP_PLACE(TEXTURE_CLAMPED, PackedTextureKind, clamped, packed_uint);
 BP_PLACE(TEXTURE_MAPPING, PackedTextureKind, mapping, packed_uint);
 BP_PLACE(TEXTURE_CELL, PackedTextureKind, cell, packed_uint);
 BP_PLACE(MATERIAL_EMIT, PackedMaterial, emit, real);

@@ -49,7 +49,10 @@ static const char *outcome(const BpPathStep *step, BpMaterialKind kind) {
 }
 
 static void print_lamp_ray(const BpPathStep *step, FILE *out) {
-    fprintf(out, "       a ray to %s %" PRIu32, step->to_disc ? "disc" : "lamp", step->lamp);
+    if (step->to_image)
+        fputs("       a ray to the image around", out);
+    else
+        fprintf(out, "       a ray to %s %" PRIu32, step->to_disc ? "disc" : "lamp", step->lamp);
     if (!step->stopped)
         fprintf(out, " brings (%.4g, %.4g, %.4g)\n", step->lit[0], step->lit[1], step->lit[2]);
     else
@@ -100,11 +103,13 @@ static json_t *triple(const double v[3]) {
     return json_pack("[f,f,f]", v[0], v[1], v[2]);
 }
 
-/* What the ray meets is a sphere, or for a disc that nothing hides null. */
+/* What the ray meets is a sphere, or for a disc or an image that nothing hides null. */
 static json_t *lamp_ray_json(const BpPathStep *step) {
-    json_t *const meets = step->stopped   ? json_integer(step->seen)
-                          : step->to_disc ? json_null()
-                                          : json_integer(step->lamp);
+    json_t *const meets = step->stopped                     ? json_integer(step->seen)
+                          : step->to_disc || step->to_image ? json_null()
+                                                            : json_integer(step->lamp);
+    if (step->to_image)
+        return json_pack("{s:b, s:o, s:o}", "image", 1, "meets", meets, "brings", triple(step->lit));
     return json_pack("{s:I, s:o, s:o}", step->to_disc ? "disc" : "lamp", (json_int_t)step->lamp, "meets",
                      meets, "brings", triple(step->lit));
 }

@@ -24,10 +24,12 @@ static bool same_folder(const char *from, const char *to) {
     return length == folder_length(to) && strncmp(from, to, length) == 0;
 }
 
-/* The names of files of particles as seen from the folder of `to`: unchanged, below that folder, or absolute.
+/* The names of images and of files of particles as seen from the folder of `to`: unchanged, below that
+ * folder, or absolute.
  */
 static BpStatus move_files(BpScene *scene, const char *from, const char *to, BpError *err) {
     if (same_folder(from, to)) return BP_OK;
+    for (size_t i = 0; i < scene->image_count; i++) BP_TRY(bp_image_move(from, to, scene->images[i], err));
     for (size_t i = 0; i < scene->point_file_count; i++) {
         if (scene->point_files[i].particles == NULL) continue;
         BP_TRY(bp_point_file_move(from, to, &scene->point_files[i], err));

@@ -58,6 +58,7 @@ static double discs_together(const BpScene *scene) {
 double bp_scene_radiance_bound(const BpScene *scene, uint32_t max_depth, BpLamps lamps) {
     double brightest = fmax(largest(scene->background_bottom), largest(scene->background_top));
     double brightest_lamp = 0, passed_on = 0, scattered = 0;
+    if (scene->environment != NULL) brightest = brightest_lamp = largest(scene->environment->bound);
     brightest += discs_together(scene);
     for (size_t i = 0; i < scene->disc_count; i++)
         brightest_lamp = fmax(brightest_lamp, largest(scene->discs[i].radiance));
@@ -139,7 +140,10 @@ static uint64_t mix_textures(uint64_t hash, const BpScene *scene, const BpMateri
         const BpTexture *texture = &scene->textures[material->texture[m] - 1];
         hash = mix(hash, 0x7465787475726530u + (uint64_t)m);
         hash = mix(hash, (uint64_t)texture->type << 8 | (uint64_t)texture->mapping);
-        for (int i = 0; i < 2; i++) hash = mix_reals(hash, texture->colors[i], 3);
+        if (texture->type == BP_TEXTURE_IMAGE)
+            hash = mix(mix(hash, texture->image->hash), (uint64_t)texture->wrap);
+        else
+            for (int i = 0; i < 2; i++) hash = mix_reals(hash, texture->colors[i], 3);
         if (texture->mapping == BP_MAPPING_SOLID) {
             hash = mix_reals(mix_real(hash, texture->size), texture->origin, 3);
             if (texture->type == BP_TEXTURE_NOISE) hash = mix_noise(hash, texture);
@@ -186,7 +190,9 @@ static uint64_t mix_sphere(uint64_t hash, const BpScene *scene, const BpSphere *
 static uint64_t mix_surroundings(uint64_t hash, const BpScene *scene) {
     double up[3];
     bp_background_up(scene, up);
-    bool is_gradient = false;
+    bool is_gradient = scene->environment != NULL;
+    if (scene->environment != NULL)
+        hash = mix_real(mix(mix(hash, 0x656e7669726fu), scene->environment->hash), scene->environment_turn);
     for (int c = 0; c < 3; c++)
         is_gradient = is_gradient || scene->background_bottom[c] != scene->background_top[c];
     if (is_gradient && !(up[0] == 0 && up[1] == 1 && up[2] == 0)) hash = mix_reals(mix(hash, 0x7570u), up, 3);

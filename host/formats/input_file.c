@@ -43,6 +43,30 @@ char *bp_path_beside(const char *document, const char *file) {
     return path;
 }
 
+/* The part of `path` below the folder of `to`, or NULL. */
+static const char *path_below(const char *path, const char *to) {
+    const char *const slash = strrchr(to, '/');
+    const size_t length = slash != NULL ? (size_t)(slash - to) + 1 : 0;
+    if (length == 0) return path[0] != '/' ? path : NULL;
+    return strncmp(path, to, length) == 0 && path[length] != '/' ? path + length : NULL;
+}
+
+char *bp_path_moved(const char *document, const char *to, const char *file, bool *no_memory) {
+    char folder[4096] = "/";
+    char *const path = bp_path_beside(document, file);
+    const char *const below = path != NULL ? path_below(path, to) : NULL;
+    char *moved = NULL;
+    if (below != NULL) {
+        moved = strdup(below);
+    } else if (path != NULL && (path[0] == '/' || getcwd(folder, sizeof folder - 2) != NULL)) {
+        strcat(folder, folder[1] != '\0' ? "/" : "");
+        moved = bp_path_beside(folder, path);
+    }
+    *no_memory = path == NULL || (below != NULL && moved == NULL);
+    free(path);
+    return moved;
+}
+
 BpStatus bp_file_open(const char *path, bool accept_pipe, const char *expected, FILE **stream, uint64_t *size,
                       BpError *err) {
     struct stat state;

@@ -9,6 +9,11 @@
 /* `file` as seen from the folder of `document`, both paths; the caller frees it. NULL: out of memory. */
 char *bp_path_beside(const char *document, const char *file);
 
+/* How a document at the path `to` must name the file that `document` names as `file`: by its path below the
+ * folder of `to` where it lies there, otherwise by its absolute path. The caller frees it. NULL: out of
+ * memory, which *no_memory says, or no current folder. */
+char *bp_path_moved(const char *document, const char *to, const char *file, bool *no_memory);
+
 /* A scene's document of more bytes is refused: the program would need twenty times as much memory for it, and
  * spheres in such numbers belong into a PLY file. It also ends the reading of what has no end. */
 #define BP_TEXT_BYTES_MAX ((uint64_t)512 << 20)

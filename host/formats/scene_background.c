@@ -46,16 +46,45 @@ static BpStatus parse_discs(const BpNode *node, BpScene *scene, BpError *err) {
     return BP_OK;
 }
 
-BpStatus bp_parse_background(const BpNode *node, BpScene *scene, BpError *err) {
-    static const char *const names[] = {"bottom", "top", "up", "discs"};
+/* An image in place of a gradient. */
+static BpStatus parse_environment(const BpNode *node, unsigned flags, BpScene *scene, BpError *err) {
+    static const char *const either[] = {"bottom", "top"}, *const only[] = {"turn", "scale", "encoding"};
+    const BpNode image = bp_node_member(node, "image");
+    for (size_t i = 0; i < BP_COUNT(only) && image.value == NULL; i++) {
+        const BpNode member = bp_node_member(node, only[i]);
+        if (member.value != NULL)
+            return bp_node_fail(&member, BP_PART_NAME, err,
+                                "found in a background that is no image, expected only beside \"image\"; "
+                                "remove it");
+    }
+    if (image.value == NULL) return BP_OK;
+    for (size_t i = 0; i < BP_COUNT(either); i++) {
+        const BpNode member = bp_node_member(node, either[i]);
+        if (member.value != NULL)
+            return bp_node_fail(&member, BP_PART_NAME, err,
+                                "found beside \"image\", expected one of the two: remove one");
+    }
+    const BpNode turn = bp_node_member(node, "turn");
+    const BpNode encoding = bp_node_member(node, "encoding");
+    const BpNode scale = bp_node_member(node, "scale");
+    for (int c = 0; c < 3; c++) scene->background_bottom[c] = scene->background_top[c] = 0;
+    BP_TRY(bp_node_number(&turn, &scene->environment_turn, err));
+    return bp_parse_image(&image, &encoding, &scale, flags, scene, &scene->environment, err);
+}
+
+BpStatus bp_parse_background(const BpNode *node, unsigned flags, BpScene *scene, BpError *err) {
+    static const char *const names[] = {"bottom", "top", "up", "discs", "image", "turn", "scale", "encoding"};
     if (json_is_array(node->value)) {
         BP_TRY(bp_node_vector(node, scene->background_bottom, err));
         memcpy(scene->background_top, scene->background_bottom, sizeof scene->background_top);
         return BP_OK;
     }
     if (node->value != NULL && !json_is_object(node->value))
-        return bp_node_wrong(node, "{ \"bottom\": [r, g, b], \"top\": [r, g, b] }, or one colour [r, g, b]",
-                             err);
+        return bp_node_wrong(
+            node,
+            "{ \"bottom\": [r, g, b], \"top\": [r, g, b] }, { \"image\": \"sky.exr\" }, or one colour "
+            "[r, g, b]",
+            err);
     BP_TRY(bp_node_object(node, names, BP_COUNT(names), err));
     const BpNode bottom = bp_node_member(node, "bottom");
     const BpNode top = bp_node_member(node, "top");
@@ -67,6 +96,7 @@ BpStatus bp_parse_background(const BpNode *node, BpScene *scene, BpError *err) {
     const double *const u = scene->background_up;
     if (up.value != NULL && u[0] == 0 && u[1] == 0 && u[2] == 0)
         return bp_node_wrong(&up, "the direction that is up, such as [0, 0, 1]", err);
+    BP_TRY(parse_environment(node, flags, scene, err));
     return parse_discs(&discs, scene, err);
 }
 

@@ -340,10 +340,10 @@ static BpStatus parse_body(const BpNode *root, const BpSceneChanges *changes, Bp
                                        ? BP_PERSPECTIVE
                                        : BP_ORTHOGRAPHIC;
     if (scene->camera.projection == BP_PERSPECTIVE) scene->camera.view_height = 0;
-    BP_TRY(bp_parse_background(&background, scene, err));
+    BP_TRY(bp_parse_background(&background, changes->flags, scene, err));
     BP_TRY(bp_parse_backdrop(&backdrop, scene, err));
     BP_TRY(bp_parse_light(root, changes->light, scene, err));
-    BP_TRY(bp_parse_textures(&textures, scene, err));
+    BP_TRY(bp_parse_textures(&textures, changes->flags, scene, err));
     BP_TRY(parse_materials(&materials, scene, err));
     BpMaterialIndex index = {0};
     BpStatus status = index_materials(scene, &index, err);

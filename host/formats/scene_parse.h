@@ -9,7 +9,7 @@
 #include "scene/scene.h"
 
 enum {
-    BP_PARSE_NO_CLOUDS = 1, /* check the members of "clouds" and "particles", but open none of their files */
+    BP_PARSE_NO_CLOUDS = 1, /* check the members, but open no file of points; an image is one grey texel */
     BP_PARSE_MADE = 2 /* the document was made for one file: errors in that need not name the document */
 };
 
@@ -59,16 +59,19 @@ BpStatus bp_scene_load_changed(const char *path, const BpSceneChanges *changes, 
 BpStatus bp_scene_parse_with(const char *text, size_t length, const char *name, unsigned flags,
                              BpScene **scene, BpError *err);
 
-/* What rays see that meet nothing (scene_background.c). */
-BpStatus bp_parse_background(const BpNode *node, BpScene *scene, BpError *err);
+/* What rays see that meet nothing (scene_background.c); `flags` as in bp_scene_parse_with. */
+BpStatus bp_parse_background(const BpNode *node, unsigned flags, BpScene *scene, BpError *err);
 BpStatus bp_parse_backdrop(const BpNode *node, BpScene *scene, BpError *err);
 /* `name`: Optional, stands for the node. After the backdrop, which is white where a light has none. */
 BpStatus bp_parse_light(const BpNode *root, const char *name, BpScene *scene, BpError *err);
 
 BpStatus bp_parse_camera(const BpNode *node, BpCamera *camera, BpError *err);
-BpStatus bp_parse_background(const BpNode *node, BpScene *scene, BpError *err);
 /* The scene's textures (scene_texture.c). */
-BpStatus bp_parse_textures(const BpNode *node, BpScene *scene, BpError *err);
+BpStatus bp_parse_textures(const BpNode *node, unsigned flags, BpScene *scene, BpError *err);
+/* The image that the node names, as `encoding` and `scale`, nodes too, say (scene_image.c); it is the
+ * scene's, which has each file once. */
+BpStatus bp_parse_image(const BpNode *file, const BpNode *encoding, const BpNode *scale, unsigned flags,
+                        BpScene *scene, BpImage **image, BpError *err);
 /* Finds the texture that the node, { "texture": name }, names; *number counts from 1. */
 BpStatus bp_parse_texture_name(const BpNode *node, const BpScene *scene, uint32_t *number, BpError *err);
 /* `material` is zeroed; its name is the caller's to set. The scene has its textures. */
@@ -105,6 +108,8 @@ BpStatus bp_keep_point_file(const char *file, size_t first, const char *particle
 /* Names the file of an entry of "particles" as a document at the path `to` must: by its path below the folder
  * of `to` where it lies there, otherwise by its absolute path. `document`: the path of what named it. */
 BpStatus bp_point_file_move(const char *document, const char *to, BpPointFile *file, BpError *err);
+/* The same for an image. */
+BpStatus bp_image_move(const char *document, const char *to, BpImage *image, BpError *err);
 
 /* Adds the points of the clouds' files to the scene's spheres; `flags` as in bp_scene_parse_with. */
 BpStatus bp_parse_clouds(const BpNode *node, const BpMaterialIndex *index, unsigned flags, BpScene *scene,

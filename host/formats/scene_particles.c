@@ -316,31 +316,15 @@ static BpStatus read_file(const BpNode *file_node, const Entry *entry, size_t pl
     return status;
 }
 
-/* The part of `path` below the folder of `to`, or NULL. */
-static const char *path_below(const char *path, const char *to) {
-    const char *const slash = strrchr(to, '/');
-    const size_t length = slash != NULL ? (size_t)(slash - to) + 1 : 0;
-    if (length == 0) return path[0] != '/' ? path : NULL;
-    return strncmp(path, to, length) == 0 && path[length] != '/' ? path + length : NULL;
-}
-
 BpStatus bp_point_file_move(const char *document, const char *to, BpPointFile *file, BpError *err) {
     BpStatus status = BP_OK;
-    char folder[4096] = "/";
-    char *const path = bp_path_beside(document, file->file);
-    const char *const below = path != NULL ? path_below(path, to) : NULL;
-    char *moved = NULL;
-    if (below != NULL) {
-        moved = strdup(below);
-    } else if (path != NULL && (path[0] == '/' || getcwd(folder, sizeof folder - 2) != NULL)) {
-        strcat(folder, folder[1] != '\0' ? "/" : "");
-        moved = bp_path_beside(folder, path);
-    }
+    bool no_memory = false;
+    char *const moved = bp_path_moved(document, to, file->file, &no_memory);
     json_t *const entry = json_loads(file->particles, 0, NULL);
     char *text = NULL;
     if (moved != NULL && entry != NULL && json_object_set_new(entry, "file", json_string(moved)) == 0)
         text = json_dumps(entry, JSON_PRESERVE_ORDER);
-    if (text == NULL && (path == NULL || (below != NULL && moved == NULL) || bp_json_memory_failed())) {
+    if (text == NULL && (no_memory || bp_json_memory_failed())) {
         status = bp_fail(err, BP_ERR_MEMORY, "out of memory for the path of %.200s", file->file);
     } else if (text == NULL) {
         status = bp_fail(err, BP_ERR_SCENE, "cannot name %.200s in UTF-8; write the document beside it",
@@ -352,7 +336,6 @@ BpStatus bp_point_file_move(const char *document, const char *to, BpPointFile *f
     }
     json_decref(entry);
     free(moved);
-    free(path);
     return status;
 }
 

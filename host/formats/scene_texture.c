@@ -39,11 +39,13 @@ static BpStatus parse_repeat(const BpNode *node, uint32_t repeat[2], BpError *er
 }
 
 /* Which textures have a member. */
-enum { OF_SOLID = 1, OF_SURFACE = 2, OF_NOISE = 4, OF_WAVES = 8, OF_CHECKER = 16 };
+enum { OF_SOLID = 1, OF_SURFACE = 2, OF_NOISE = 4, OF_WAVES = 8, OF_CHECKER = 16, OF_IMAGE = 32 };
 
 static unsigned sorts_of(const BpTexture *texture) {
     unsigned sorts = texture->mapping == BP_MAPPING_SOLID ? OF_SOLID : OF_SURFACE;
-    sorts |= texture->type == BP_TEXTURE_NOISE ? OF_NOISE : OF_CHECKER;
+    static const unsigned of_type[] = {
+        [BP_TEXTURE_CHECKER] = OF_CHECKER, [BP_TEXTURE_NOISE] = OF_NOISE, [BP_TEXTURE_IMAGE] = OF_IMAGE};
+    sorts |= of_type[texture->type];
     return sorts | (bp_texture_has_waves(texture) ? OF_WAVES : 0);
 }
 
@@ -52,12 +54,17 @@ static BpStatus refuse_foreign_members(const BpNode *node, const BpTexture *text
         const char *name;
         unsigned sort;
         const char *owners;
-    } members[] = {{"mapping", OF_CHECKER, "a checker, since noise is solid"},
+    } members[] = {{"mapping", OF_CHECKER, "a checker: noise is solid, and an image on the surface"},
+                   {"colors", OF_CHECKER | OF_NOISE, "a checker or noise"},
                    {"size", OF_SOLID, "one with \"mapping\": \"solid\""},
                    {"origin", OF_SOLID, "one with \"mapping\": \"solid\""},
-                   {"up", OF_SURFACE, "a checker with \"mapping\": \"surface\""},
-                   {"turn", OF_SURFACE, "a checker with \"mapping\": \"surface\""},
-                   {"repeat", OF_SURFACE, "a checker with \"mapping\": \"surface\""},
+                   {"up", OF_SURFACE, "an image, or a checker with \"mapping\": \"surface\""},
+                   {"turn", OF_SURFACE, "an image, or a checker with \"mapping\": \"surface\""},
+                   {"repeat", OF_SURFACE, "an image, or a checker with \"mapping\": \"surface\""},
+                   {"file", OF_IMAGE, "an image"},
+                   {"encoding", OF_IMAGE, "an image"},
+                   {"scale", OF_IMAGE, "an image"},
+                   {"wrap", OF_IMAGE, "an image"},
                    {"pattern", OF_NOISE, "noise"},
                    {"octaves", OF_NOISE, "noise"},
                    {"seed", OF_NOISE, "noise"},
@@ -89,17 +96,29 @@ static BpStatus parse_noise(const BpNode *node, BpTexture *texture, BpError *err
     return bp_node_number(&distortion, &texture->distortion, err);
 }
 
-static BpStatus parse_texture(const BpNode *node, BpTexture *texture, BpError *err) {
-    static const char *const names[] = {"type", "mapping", "colors", "size",      "origin",
-                                        "up",   "turn",    "repeat", "pattern",   "octaves",
-                                        "seed", "axis",    "period", "distortion"};
+static BpStatus parse_image(const BpNode *node, unsigned flags, BpScene *scene, BpTexture *texture,
+                            BpError *err) {
+    const BpNode file = bp_node_member(node, "file");
+    const BpNode encoding = bp_node_member(node, "encoding");
+    const BpNode scale = bp_node_member(node, "scale");
+    const BpNode wrap = bp_node_member(node, "wrap");
+    int choice = BP_WRAP_REPEAT;
+    BP_TRY(bp_node_require(node, "file", "the path of a PNG, EXR or PFM file, relative to the scene", err));
+    BP_TRY(bp_node_choice(&wrap, bp_wrap_names, bp_wrap_count, &choice, err));
+    texture->wrap = (BpWrap)choice;
+    return bp_parse_image(&file, &encoding, &scale, flags, scene, &texture->image, err);
+}
+
+static BpStatus parse_texture(const BpNode *node, unsigned flags, BpScene *scene, BpTexture *texture,
+                              BpError *err) {
+    static const char *const names[] = {"type",   "mapping",    "colors",  "size",     "origin", "up",
+                                        "turn",   "repeat",     "pattern", "octaves",  "seed",   "axis",
+                                        "period", "distortion", "file",    "encoding", "scale",  "wrap"};
     int type = 0, mapping = 0, pattern = 0;
     if (!json_is_object(node->value))
         return bp_node_wrong(node, "an object: { \"type\": \"checker\", \"colors\": ... }", err);
     BP_TRY(bp_node_object(node, names, BP_COUNT(names), err));
-    BP_TRY(bp_node_require(node, "type", "\"checker\" or \"noise\"", err));
-    BP_TRY(
-        bp_node_require(node, "colors", "two, such as \"colors\": [[0.2, 0.3, 0.1], [0.9, 0.9, 0.9]]", err));
+    BP_TRY(bp_node_require(node, "type", "\"checker\", \"noise\" or \"image\"", err));
     const BpNode type_node = bp_node_member(node, "type");
     const BpNode mapping_node = bp_node_member(node, "mapping");
     const BpNode pattern_node = bp_node_member(node, "pattern");
@@ -113,19 +132,24 @@ static BpStatus parse_texture(const BpNode *node, BpTexture *texture, BpError *e
     BP_TRY(bp_node_choice(&mapping_node, bp_mapping_names, bp_mapping_count, &mapping, err));
     BP_TRY(bp_node_choice(&pattern_node, bp_pattern_names, bp_pattern_count, &pattern, err));
     texture->type = (BpTextureType)type;
-    texture->mapping = (BpMapping)mapping;
+    texture->mapping = texture->type == BP_TEXTURE_IMAGE ? BP_MAPPING_SURFACE : (BpMapping)mapping;
     texture->pattern = (BpPattern)pattern;
     BP_TRY(refuse_foreign_members(node, texture, err));
-    BP_TRY(parse_colors(&colors, texture->colors, err));
+    if (texture->type != BP_TEXTURE_IMAGE) {
+        BP_TRY(bp_node_require(node, "colors", "two, such as \"colors\": [[0.2, 0.3, 0.1], [0.9, 0.9, 0.9]]",
+                               err));
+        BP_TRY(parse_colors(&colors, texture->colors, err));
+    }
     BP_TRY(bp_node_number(&size, &texture->size, err));
     BP_TRY(bp_node_vector(&origin, texture->origin, err));
     if (texture->type == BP_TEXTURE_NOISE) return parse_noise(node, texture, err);
     BP_TRY(bp_node_vector(&up, texture->up, err));
     BP_TRY(bp_node_number(&turn, &texture->turn_degrees, err));
-    return parse_repeat(&repeat, texture->repeat, err);
+    BP_TRY(parse_repeat(&repeat, texture->repeat, err));
+    return texture->type == BP_TEXTURE_IMAGE ? parse_image(node, flags, scene, texture, err) : BP_OK;
 }
 
-BpStatus bp_parse_textures(const BpNode *node, BpScene *scene, BpError *err) {
+BpStatus bp_parse_textures(const BpNode *node, unsigned flags, BpScene *scene, BpError *err) {
     if (node->value != NULL && !json_is_object(node->value))
         return bp_node_wrong(
             node, "an object of named textures: { \"squares\": { \"type\": \"checker\", ... } }", err);
@@ -143,7 +167,7 @@ BpStatus bp_parse_textures(const BpNode *node, BpScene *scene, BpError *err) {
         BpTexture *texture = &scene->textures[scene->texture_count++];
         bp_texture_defaults(texture);
         BP_TRY(bp_copy_text(name, &texture->name, err));
-        BP_TRY(parse_texture(&child, texture, err));
+        BP_TRY(parse_texture(&child, flags, scene, texture, err));
     }
     return BP_OK;
 }

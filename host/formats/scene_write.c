@@ -139,11 +139,30 @@ void bp_scene_print_camera(const BpCamera *camera, FILE *out) {
     fputs("\n  }", out);
 }
 
-static void put_background(FILE *out, const BpScene *scene) {
-    fputs(",\n  \"background\": { \"bottom\": ", out);
-    put_vector(out, scene->background_bottom);
-    fputs(", \"top\": ", out);
-    put_vector(out, scene->background_top);
+/* What follows the member that names it. */
+static BpStatus put_image(FILE *out, const BpImage *image, BpError *err) {
+    BP_TRY(put_text(out, image->file, err));
+    if (image->encoding != BP_ENCODING_OF_FORMAT)
+        fprintf(out, ", \"encoding\": \"%s\"", image->encoding == BP_ENCODING_SRGB ? "srgb" : "linear");
+    if (image->scale < 1 || image->scale > 1) {
+        fputs(", \"scale\": ", out);
+        put_number(out, image->scale);
+    }
+    return BP_OK;
+}
+
+static BpStatus put_background(FILE *out, const BpScene *scene, BpError *err) {
+    if (scene->environment != NULL) {
+        fputs(",\n  \"background\": { \"image\": ", out);
+        BP_TRY(put_image(out, scene->environment, err));
+        fputs(", \"turn\": ", out);
+        put_number(out, scene->environment_turn);
+    } else {
+        fputs(",\n  \"background\": { \"bottom\": ", out);
+        put_vector(out, scene->background_bottom);
+        fputs(", \"top\": ", out);
+        put_vector(out, scene->background_top);
+    }
     if (!is_dark(scene->background_up)) {
         fputs(", \"up\": ", out);
         put_vector(out, scene->background_up);
@@ -160,6 +179,7 @@ static void put_background(FILE *out, const BpScene *scene) {
         fputs(" }", out);
     }
     fputs(scene->disc_count > 0 ? "\n    ]\n  }" : " }", out);
+    return BP_OK;
 }
 
 /* Writes what camera rays that meet nothing see, if that is not the background. */
@@ -252,13 +272,19 @@ static BpStatus put_texture(FILE *out, const BpTexture *texture, BpError *err) {
     fprintf(out, ": { \"type\": \"%s\"", bp_texture_type_names[texture->type]);
     if (texture->type == BP_TEXTURE_NOISE)
         fprintf(out, ", \"pattern\": \"%s\"", bp_pattern_names[texture->pattern]);
-    else
+    else if (texture->type == BP_TEXTURE_CHECKER)
         fprintf(out, ", \"mapping\": \"%s\"", bp_mapping_names[texture->mapping]);
-    fputs(", \"colors\": [", out);
-    put_value(out, texture->colors[0]);
-    fputs(", ", out);
-    put_value(out, texture->colors[1]);
-    fputs("]", out);
+    if (texture->type == BP_TEXTURE_IMAGE) {
+        fputs(", \"file\": ", out);
+        BP_TRY(put_image(out, texture->image, err));
+        if (texture->wrap == BP_WRAP_CLAMP) fputs(", \"wrap\": \"clamp\"", out);
+    } else {
+        fputs(", \"colors\": [", out);
+        put_value(out, texture->colors[0]);
+        fputs(", ", out);
+        put_value(out, texture->colors[1]);
+        fputs("]", out);
+    }
     if (texture->mapping == BP_MAPPING_SOLID)
         put_solid(out, texture);
     else {
@@ -346,7 +372,7 @@ BpStatus bp_scene_print(const BpScene *scene, FILE *out, BpError *err) {
     fputs(",\n", out);
     bp_scene_print_camera(&scene->camera, out);
     if (scene->light == BP_LIGHT_SKY)
-        put_background(out, scene);
+        BP_TRY(put_background(out, scene, err));
     else
         fprintf(out, ",\n  \"light\": \"%s\"", bp_light_names[scene->light]);
     put_backdrop(out, scene);

@@ -3,6 +3,7 @@
 
 #include "base/color.h"
 #include "base/plural.h"
+#include "environment_table.h"
 #include "lamp_tree.h"
 #include "scene/material.h"
 
@@ -136,14 +137,24 @@ static bool explain_discs(const BpScene *scene, size_t size, char *reason) {
     return bright_discs(scene) > 0;
 }
 
-/* "3 lamps", "a disc and 3 lamps". */
-static void name_lamps(size_t lamps, size_t discs, size_t size, char *text) {
-    if (discs == 0)
-        snprintf(text, size, "%zu lamp%s", lamps, bp_plural(lamps));
+/* Whether there is an image around the scene that rays are sent to, if to any lamps. */
+static bool sampled_image(const BpScene *scene) {
+    return scene->environment != NULL && bp_environment_varies(scene->environment);
+}
+
+/* "3 lamps", "a disc and 3 lamps", "the image around and 3 lamps". */
+static void name_lamps(size_t lamps, size_t discs, bool image, size_t size, char *text) {
+    const char *first = image ? "the image around" : "";
+    const char *join = image && lamps + discs > 0 ? lamps > 0 && discs > 0 ? ", " : " and " : "";
+    if (lamps + discs == 0)
+        snprintf(text, size, "%s", first);
+    else if (discs == 0)
+        snprintf(text, size, "%s%s%zu lamp%s", first, join, lamps, bp_plural(lamps));
     else if (lamps == 0)
-        snprintf(text, size, "%zu disc%s", discs, bp_plural(discs));
+        snprintf(text, size, "%s%s%zu disc%s", first, join, discs, bp_plural(discs));
     else
-        snprintf(text, size, "%zu lamp%s and %zu disc%s", lamps, bp_plural(lamps), discs, bp_plural(discs));
+        snprintf(text, size, "%s%s%zu lamp%s and %zu disc%s", first, join, lamps, bp_plural(lamps), discs,
+                 bp_plural(discs));
 }
 
 static double luminance(const double radiance[3]) {
@@ -168,10 +179,11 @@ static bool sky_outshines_lamps(const BpScene *scene) {
     return true;
 }
 
-/* Whether rays are sent to lamps: if there is a disc, or a lamp and another sphere that it can light, and no
- * sky as bright as all lamps. */
+/* Whether rays are sent to lamps: if there is a disc, an image around whose light varies, or a lamp and
+ * another sphere that it can light, and no sky as bright as all lamps. */
 static bool explain_lamps(const BpScene *scene, size_t size, char *reason) {
     const size_t discs = bright_discs(scene);
+    const bool image = sampled_image(scene), sky = discs > 0 || image;
     char all[96];
     const size_t enclosing = bp_enclosing_lamp(scene);
     size_t lamps = 0, lit = 0, both = 0;
@@ -182,16 +194,16 @@ static bool explain_lamps(const BpScene *scene, size_t size, char *reason) {
         lit += is_lit;
         both += is_lamp && is_lit;
     }
-    name_lamps(lamps, discs, sizeof all, all);
-    if (lamps + discs == 0)
+    name_lamps(lamps, discs, image, sizeof all, all);
+    if (lamps == 0 && !sky)
         snprintf(reason, size,
                  enclosing != SIZE_MAX ? "the only lamp surrounds everything: every path finds it"
                                        : NO_LAMP_REASON);
     else if (lit == 0)
         snprintf(reason, size, "%s, but no matte surface and no metal with a fuzz of 1/64 or more", all);
-    else if (discs == 0 && lamps == 1 && lit == 1 && both == 1)
+    else if (!sky && lamps == 1 && lit == 1 && both == 1)
         snprintf(reason, size, "the only lamp is also the only surface that could be lit");
-    else if (discs == 0 && sky_outshines_lamps(scene))
+    else if (!sky && sky_outshines_lamps(scene))
         snprintf(reason, size, "%zu lamp%s, %s brighter than the sky", lamps, bp_plural(lamps),
                  lamps == 1 ? "not" : "none of them");
     else {
@@ -201,27 +213,26 @@ static bool explain_lamps(const BpScene *scene, size_t size, char *reason) {
     return false;
 }
 
-static bool has_noise(const BpScene *scene, const BpMaterial *material) {
-    for (int m = 0; m < BP_MEMBER_COUNT; ++m) {
+/* Whether a member varies by a texture that calls for the effect. */
+static bool varies_by(const BpScene *scene, const BpMaterial *material, BpEffect effect) {
+    if (effect == BP_EFFECT_TEXTURES) return bp_material_varies(material);
+    const BpTextureType type = effect == BP_EFFECT_NOISE ? BP_TEXTURE_NOISE : BP_TEXTURE_IMAGE;
+    for (int m = 0; m < BP_MEMBER_COUNT; m++) {
         const uint32_t number = material->texture[m];
-        if (number != 0 && scene->textures[number - 1].type == BP_TEXTURE_NOISE) return true;
+        if (number != 0 && scene->textures[number - 1].type == type) return true;
     }
     return false;
 }
 
-/* Whether a sphere has a material of which a member varies, or one that does by noise. A colour of the
- * sphere's own replaces the albedo's texture, but that is not looked at. */
-static bool explain_textures(const BpScene *scene, bool noise, size_t size, char *reason) {
-    const char *what = noise ? "noise" : "textures";
+/* Whether a sphere has a material of which a member varies, or one that does by noise or by images. A colour
+ * of the sphere's own replaces the albedo's texture, but that is not looked at. */
+static bool explain_textures(const BpScene *scene, BpEffect effect, size_t size, char *reason) {
+    const char *what = bp_effect_name(effect);
     size_t spheres = 0, materials = 0;
-    for (size_t m = 0; m < scene->material_count; ++m) {
-        const BpMaterial *material = &scene->materials[m];
-        materials += noise ? has_noise(scene, material) : bp_material_varies(material);
-    }
-    for (size_t i = 0; i < scene->sphere_count && materials > 0; ++i) {
-        const BpMaterial *material = &scene->materials[scene->spheres[i].material];
-        spheres += noise ? has_noise(scene, material) : bp_material_varies(material);
-    }
+    for (size_t m = 0; m < scene->material_count; ++m)
+        materials += varies_by(scene, &scene->materials[m], effect);
+    for (size_t i = 0; i < scene->sphere_count && materials > 0; ++i)
+        spheres += varies_by(scene, &scene->materials[scene->spheres[i].material], effect);
     if (spheres > 0)
         snprintf(reason, size, "%zu material%s with %s, on %zu of %zu sphere%s", materials,
                  bp_plural(materials), what, spheres, scene->sphere_count, bp_plural(scene->sphere_count));
@@ -229,8 +240,21 @@ static bool explain_textures(const BpScene *scene, bool noise, size_t size, char
         snprintf(reason, size, "%zu material%s %s %s, but no sphere has %s", materials, bp_plural(materials),
                  materials == 1 ? "has" : "have", what, materials == 1 ? "it" : "them");
     else
-        snprintf(reason, size, "no material has %s", noise ? "a texture of noise" : "a texture");
+        snprintf(reason, size, "no material has a texture%s",
+                 effect == BP_EFFECT_NOISE    ? " of noise"
+                 : effect == BP_EFFECT_IMAGES ? " from an image"
+                                              : "");
     return spheres > 0;
+}
+
+static bool explain_environment(const BpScene *scene, size_t size, char *reason) {
+    const BpImage *image = scene->environment;
+    if (image == NULL)
+        snprintf(reason, size, "the background is no image");
+    else
+        snprintf(reason, size, "an image of %u by %u texels", (unsigned)image->width,
+                 (unsigned)image->height);
+    return image != NULL;
 }
 
 void bp_effects_analyse(const BpScene *scene, BpEffects *effects) {
@@ -252,9 +276,11 @@ void bp_effects_analyse(const BpScene *scene, BpEffects *effects) {
         snprintf(effects->reason[BP_EFFECT_LENS], size, "defocus_angle 0: the lens is a pinhole");
     }
     if (explain_discs(scene, size, effects->reason[BP_EFFECT_DISCS])) effects->bits |= 1u << BP_EFFECT_DISCS;
-    for (int e = BP_EFFECT_TEXTURES; e <= BP_EFFECT_NOISE; ++e)
-        if (explain_textures(scene, e == BP_EFFECT_NOISE, size, effects->reason[e])) effects->bits |= 1u << e;
-    if ((effects->bits & (1u << BP_EFFECT_EMISSION | 1u << BP_EFFECT_DISCS)) == 0)
+    for (int e = BP_EFFECT_TEXTURES; e <= BP_EFFECT_IMAGES; ++e)
+        if (explain_textures(scene, (BpEffect)e, size, effects->reason[e])) effects->bits |= 1u << e;
+    if (explain_environment(scene, size, effects->reason[BP_EFFECT_ENVIRONMENT]))
+        effects->bits |= 1u << BP_EFFECT_ENVIRONMENT;
+    if ((effects->bits & (1u << BP_EFFECT_EMISSION | 1u << BP_EFFECT_DISCS)) == 0 && !sampled_image(scene))
         snprintf(effects->reason[BP_EFFECT_LAMPS], size,
                  NO_LAMP_REASON); /* without another look at all spheres */
     else if (explain_lamps(scene, size, effects->reason[BP_EFFECT_LAMPS]))

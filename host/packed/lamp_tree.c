@@ -272,6 +272,7 @@ static double unit_of_power(const BpScene *scene, size_t enclosing) {
             brightest = fmax(brightest, luminance_of(scene->materials[scene->spheres[i].material].emit));
     for (size_t i = 0; i < scene->disc_count; ++i)
         brightest = fmax(brightest, luminance_of(scene->discs[i].radiance));
+    if (scene->environment != NULL) brightest = fmax(brightest, scene->environment->mean);
     return brightest > 0 ? 1 / brightest : 0;
 }
 

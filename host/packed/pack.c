@@ -3,6 +3,7 @@
 
 #include "base/color.h"
 #include "base/status.h"
+#include "environment_table.h"
 #include "reals.h"
 #include "scene/material.h"
 
@@ -116,7 +117,7 @@ static void pack_standpoint(const BpScene *scene, const BpTree *tree, PackedCame
     packed->own_slot[2] = 0x1p-49 * size + (tree->single_precision ? 0x1p-22 * fabs(sphere->radius) : 0);
 }
 
-static void pack_sky(const BpScene *scene, double moved, PackedSky *sky) {
+static void pack_sky(const BpScene *scene, double moved, double image_power, PackedSky *sky) {
     const Axes axes = camera_axes(&scene->camera);
     const double half = bp_camera_plane_height(&scene->camera) / 2;
     /* Numbers near 1; of parallel rays a plane that may lie anywhere. */
@@ -135,15 +136,23 @@ static void pack_sky(const BpScene *scene, double moved, PackedSky *sky) {
     }
     sky->view_ahead[3] = orthographic ? scene->camera.focus_dist - moved : 1;
     sky->top[3] = (double)scene->disc_count;
+    if (scene->environment != NULL) {
+        bp_environment_frame(scene, sky->axes, sky->axes + 3, sky->axes + 6);
+        for (int a = 6; a < 9; ++a) sky->axes[a] = -sky->axes[a];
+        sky->columns = scene->environment->width;
+        sky->rows = scene->environment->height;
+    }
     sky->backdrop_bottom[3] = scene->backdrop != BP_BACKDROP_SKY;
+    sky->image_power = image_power;
 }
 
-static BpStatus pack_view(const BpScene *scene, double moved, BpPacked *packed, BpError *err) {
+static BpStatus pack_view(const BpScene *scene, double moved, double image_power, BpPacked *packed,
+                          BpError *err) {
     PackedCamera camera;
     PackedSky sky;
     pack_camera(&scene->camera, moved, &camera);
     pack_standpoint(scene, &packed->tree, &camera);
-    pack_sky(scene, moved, &sky);
+    pack_sky(scene, moved, image_power, &sky);
     const size_t camera_reals = sizeof camera / sizeof(double), sky_reals = sizeof sky / sizeof(double);
     packed->camera = narrow((const double *)&camera, camera_reals, 1, packed->single_precision);
     packed->sky = narrow((const double *)&sky, sky_reals, 1, packed->single_precision);
@@ -176,6 +185,47 @@ static BpStatus pack_discs(const BpScene *scene, double unit, BpPacked *packed, 
     return packed->discs != NULL ? BP_OK : out_of_memory(scene, err);
 }
 
+/* ---- images ---- */
+
+/* The first texel of an image: that around the scene stands first, the others follow in the scene's order. */
+static uint64_t first_texel(const BpScene *scene, const BpImage *image) {
+    uint64_t place = 0;
+    if (image == scene->environment) return 0;
+    if (scene->environment != NULL) place = (uint64_t)scene->environment->width * scene->environment->height;
+    for (size_t i = 0; i < scene->image_count && scene->images[i] != image; ++i)
+        if (scene->images[i] != scene->environment)
+            place += (uint64_t)scene->images[i]->width * scene->images[i]->height;
+    return place;
+}
+
+static BpStatus pack_images(const BpScene *scene, BpPacked *packed, BpError *err) {
+    packed->texel_count = 0;
+    for (size_t i = 0; i < scene->image_count; ++i)
+        packed->texel_count += (uint64_t)scene->images[i]->width * scene->images[i]->height;
+    packed->texels = malloc((size_t)(packed->texel_count + 1) * TEXEL_UINTS * sizeof *packed->texels);
+    if (packed->texels == NULL) return out_of_memory(scene, err);
+    for (size_t i = 0; i < scene->image_count; ++i) {
+        const BpImage *image = scene->images[i];
+        memcpy(packed->texels + first_texel(scene, image) * TEXEL_UINTS, image->texels,
+               (size_t)image->width * image->height * TEXEL_UINTS * sizeof(float));
+    }
+    return BP_OK;
+}
+
+/* The tables by which rays are sent to the image around the scene, where they are. */
+static BpStatus pack_environment(const BpScene *scene, bool sample, BpPacked *packed, BpError *err) {
+    BpEnvironmentTable table = {0};
+    if (sample) BP_TRY(bp_environment_table_build(scene->environment, &table, err));
+    packed->sky_rows = table.rows;
+    packed->sky_columns = table.columns;
+    packed->sky_row_count = (uint32_t)table.row_count;
+    packed->sky_column_count = (uint32_t)table.column_count;
+    packed->sky_height_count = (uint32_t)table.height_count;
+    packed->sky_heights = narrow(table.heights, table.height_count, 1, packed->single_precision);
+    free(table.heights);
+    return packed->sky_heights != NULL ? BP_OK : out_of_memory(scene, err);
+}
+
 /* ---- materials ------------------------------------------------------------------------------------- */
 
 /* Where a member is stored: numbers and colours in PackedMaterial, choices in PackedMaterialKind. The albedo
@@ -206,7 +256,8 @@ static void pack_material(const BpMaterial *material, bool inside_out, PackedMat
 _Static_assert((int)BP_MAPPING_SOLID == MAPPING_SOLID && (int)BP_MAPPING_SURFACE == MAPPING_SURFACE,
                "mappings differ between host and kernel");
 _Static_assert(BP_PATTERN_PERLIN + 1 == PATTERN_PERLIN && BP_PATTERN_TURBULENCE + 1 == PATTERN_TURBULENCE &&
-                   BP_PATTERN_MARBLE + 1 == PATTERN_MARBLE && BP_PATTERN_WOOD + 1 == PATTERN_WOOD,
+                   BP_PATTERN_MARBLE + 1 == PATTERN_MARBLE && BP_PATTERN_WOOD + 1 == PATTERN_WOOD &&
+                   PATTERN_WOOD < PATTERN_IMAGE,
                "patterns differ between host and kernel");
 _Static_assert(BP_LATTICE_PERIOD == LATTICE_PERIOD, "lattices differ between host and kernel");
 
@@ -239,9 +290,21 @@ static void pack_waves(const BpTexture *texture, const double from[3], bool sing
     }
 }
 
-/* `origin`: of the space that is packed, in the scene. */
-static void pack_texture(const BpTexture *texture, const double origin[3], bool single, PackedTexture *packed,
-                         PackedTextureKind *kind) {
+static void pack_image_texture(const BpTexture *texture, uint64_t first, PackedTexture *packed,
+                               PackedTextureKind *kind) {
+    const BpImage *image = texture->image;
+    packed->fields[0] = (double)image->width * texture->repeat[0];
+    packed->fields[1] = (double)image->height * texture->repeat[1];
+    kind->pattern = PATTERN_IMAGE;
+    kind->image = (packed_uint)first;
+    kind->width = image->width;
+    kind->height = image->height;
+    kind->clamped = texture->wrap == BP_WRAP_CLAMP;
+}
+
+/* `origin`: of the space that is packed, in the scene; `first`: the number of an image's first texel. */
+static void pack_texture(const BpTexture *texture, const double origin[3], bool single, uint64_t first,
+                         PackedTexture *packed, PackedTextureKind *kind) {
     *packed = (PackedTexture){.scale = 0};
     *kind = (PackedTextureKind){.mapping = (packed_uint)texture->mapping};
     memcpy(packed->first, texture->colors[0], sizeof packed->first);
@@ -249,6 +312,7 @@ static void pack_texture(const BpTexture *texture, const double origin[3], bool 
     if (texture->mapping == BP_MAPPING_SURFACE) {
         bp_texture_frame(texture, packed->axes, packed->axes + 3, packed->axes + 6);
         for (int i = 0; i < 2; ++i) packed->fields[i] = 2.0 * texture->repeat[i];
+        if (texture->type == BP_TEXTURE_IMAGE) pack_image_texture(texture, first, packed, kind);
         return;
     }
     double from[3];
@@ -271,7 +335,8 @@ static BpStatus pack_textures(const BpScene *scene, const double origin[3], BpPa
     packed->texture_count = (uint32_t)count;
     if (textures != NULL && kinds != NULL) {
         for (size_t i = 0; i < count; ++i)
-            pack_texture(&scene->textures[i], origin, packed->single_precision, &textures[i], &kinds[i]);
+            pack_texture(&scene->textures[i], origin, packed->single_precision,
+                         first_texel(scene, scene->textures[i].image), &textures[i], &kinds[i]);
         packed->textures =
             narrow((const double *)textures, count * TEXTURE_REALS, TEXTURE_REALS, packed->single_precision);
     }
@@ -379,8 +444,9 @@ BpStatus bp_scene_pack(const BpScene *scene, const BpTreeOptions *options, bool 
     uint32_t *second = NULL;
     double origin[3];
     const double moved = bp_camera_origin(scene, origin);
+    const bool sample_image =
+        sample_lamps && scene->environment != NULL && bp_environment_varies(scene->environment);
     BP_TRY_GOTO(status, bp_tree_build(scene, origin, options, &packed->tree, err), cleanup);
-    BP_TRY_GOTO(status, pack_view(scene, moved, packed, err), cleanup);
     second = calloc(scene->material_count + 1, sizeof *second);
     if (second == NULL) {
         status = out_of_memory(scene, err);
@@ -392,6 +458,12 @@ BpStatus bp_scene_pack(const BpScene *scene, const BpTreeOptions *options, bool 
     if (sample_lamps)
         BP_TRY_GOTO(status, bp_lamp_tree_build(scene, &packed->tree, &packed->lamps, err), cleanup);
     BP_TRY_GOTO(status, pack_discs(scene, packed->lamps.unit, packed, err), cleanup);
+    BP_TRY_GOTO(status, pack_images(scene, packed, err), cleanup);
+    BP_TRY_GOTO(status, pack_environment(scene, sample_image, packed, err), cleanup);
+    BP_TRY_GOTO(status,
+                pack_view(scene, moved, sample_image ? scene->environment->mean * packed->lamps.unit : 0,
+                          packed, err),
+                cleanup);
 cleanup:
     free(second);
     if (status != BP_OK) bp_packed_clear(packed);

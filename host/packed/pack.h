@@ -29,6 +29,8 @@ typedef struct BpPacked {
 #undef BP_HOLD
     uint32_t material_count; /* at least one */
     uint32_t texture_count;
+    uint64_t texel_count; /* of all images */
+    uint32_t sky_row_count, sky_column_count, sky_height_count;
     uint32_t disc_count;
 } BpPacked;
 

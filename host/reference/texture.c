@@ -14,9 +14,9 @@ static Vec turned(Vec v, Vec about, double angle) {
 
 /* The direction of `radial` on a globe that stands upright and is not turned: what was done to the globe is
  * undone in the opposite order, the turn about its axis, then the tilt of that axis away from y. */
-static Vec upright(const BpTexture *texture, Vec radial) {
-    const Vec y = {0, 1, 0}, pole = unit(vec(texture->up));
-    const Vec unturned = turned(radial, pole, -texture->turn_degrees * (PI / 180));
+static Vec upright(const double up[3], double turn_degrees, Vec radial) {
+    const Vec y = {0, 1, 0}, pole = unit(vec(up));
+    const Vec unturned = turned(radial, pole, -turn_degrees * (PI / 180));
     const Vec axis = cross(y, pole);
     if (!(length2(axis) > 0)) return pole.y > 0 ? unturned : turned(unturned, (Vec){1, 0, 0}, PI);
     return turned(unturned, unit(axis), -atan2(sqrt(length2(axis)), pole.y));
@@ -24,13 +24,62 @@ static Vec upright(const BpTexture *texture, Vec radial) {
 
 /* The second book's coordinates: longitude over a turn, latitude over half of one, from the south pole. */
 static void map_of(const BpTexture *texture, Vec radial, double *u, double *v) {
-    const Vec p = upright(texture, radial);
+    const Vec p = upright(texture->up, texture->turn_degrees, radial);
     *u = (atan2(-p.z, p.x) + PI) / (2 * PI);
     *v = acos(fmax(-1, fmin(1, -p.y))) / PI;
 }
 
 static bool is_odd(double number) {
     return fmod(number, 2) != 0;
+}
+
+/* ---- images: host/scene/texture.h says what lies between texels ---- */
+
+/* `number` modulo `count`, from 0 up. */
+static size_t wrapped_around(double number, uint32_t count) {
+    const double rest = fmod(number, count);
+    return (size_t)(rest < 0 ? rest + count : rest);
+}
+
+/* The texel at a column and a row, whole numbers that may lie outside; `rows`: of all repetitions. */
+static Vec texel(const BpImage *image, double column, double row, double rows, bool clamped) {
+    const size_t x =
+        clamped ? (size_t)fmin(fmax(column, 0), image->width - 1.0) : wrapped_around(column, image->width);
+    const size_t y = wrapped_around(fmin(fmax(row, 0), (clamped ? image->height : rows) - 1), image->height);
+    const float *rgb = image->texels + 3 * (y * image->width + x);
+    return (Vec){(double)rgb[0], (double)rgb[1], (double)rgb[2]};
+}
+
+/* Each of the four texels around a place counts by how near its middle is. `x`, `y`: in texels from the upper
+ * left corner. */
+static Vec bilinear(const BpImage *image, double x, double y, double rows, bool clamped) {
+    const double left = floor(x - 0.5), top = floor(y - 0.5);
+    Vec sum = {0, 0, 0};
+    for (int i = 0; i < 2; ++i)
+        for (int j = 0; j < 2; ++j) {
+            const double near = (1 - fabs(left + i + 0.5 - x)) * (1 - fabs(top + j + 0.5 - y));
+            sum = add(sum, scale(near, texel(image, left + i, top + j, rows, clamped)));
+        }
+    return sum;
+}
+
+static Vec pictured(const BpTexture *texture, Vec radial) {
+    const BpImage *image = texture->image;
+    const double rows = (double)image->height * texture->repeat[1];
+    double u, v;
+    map_of(texture, radial, &u, &v);
+    return bilinear(image, u * texture->repeat[0] * image->width, (1 - v) * rows, rows,
+                    texture->wrap == BP_WRAP_CLAMP);
+}
+
+/* The image is seen from inside, its middle at -z and its right half towards x. */
+Vec bp_ref_environment(const BpScene *scene, Vec direction) {
+    static const double y[3] = {0, 1, 0};
+    const BpImage *image = scene->environment;
+    const bool tilted = length2(vec(scene->background_up)) > 0;
+    const Vec p = unit(upright(tilted ? scene->background_up : y, scene->environment_turn, direction));
+    const double u = 0.5 + atan2(p.x, -p.z) / (2 * PI), v = acos(fmax(-1, fmin(1, p.y))) / PI;
+    return bilinear(image, u * image->width, v * image->height, image->height, false);
 }
 
 /* In cells, from the texture's origin. */
@@ -127,6 +176,7 @@ Vec bp_ref_varied(const BpScene *scene, const Hit *hit, BpMember member, const d
     const uint32_t number = hit->material->texture[member];
     if (number == 0) return vec(constant);
     const BpTexture *texture = &scene->textures[number - 1];
+    if (texture->type == BP_TEXTURE_IMAGE) return pictured(texture, hit->radial);
     return texture->type == BP_TEXTURE_NOISE ? noisy(texture, hit->point)
                                              : checker(texture, hit->point, hit->radial);
 }

@@ -79,6 +79,7 @@ static Vec background(const BpScene *scene, const Ray *ray) {
     const Vec up = length2(own) > 0 ? unit(own) : (Vec){0, 1, 0};
     const double a = 0.5 * (dot(unit(ray->direction), up) + 1);
     Vec color = mixed(scene->background_bottom, scene->background_top, a);
+    if (scene->environment != NULL) color = bp_ref_environment(scene, ray->direction);
     for (size_t i = 0; i < scene->disc_count; ++i) {
         const BpDisc *disc = &scene->discs[i];
         const bool from_camera = ray->leaves == NULL;

@@ -56,6 +56,9 @@ Vec bp_ref_color(const BpScene *scene, const Ray *ray, uint32_t depth, Random *r
 /* What a member of the material at a hit is there: its texture's value, or `constant` where it has none. */
 Vec bp_ref_varied(const BpScene *scene, const Hit *hit, BpMember member, const double constant[3]);
 
+/* What an image around the scene shows in a direction of any length. */
+Vec bp_ref_environment(const BpScene *scene, Vec direction);
+
 /* Reflectance, `ratio` = index on the ray's side over index beyond, `cosine` of the incident angle. Schlick's
  * form (1994, eq. 15) as the third and fourth editions use it; exact, unpolarised (Fresnel's equations). */
 double bp_ref_schlick(double cosine, double ratio);

@@ -102,7 +102,8 @@ static void read_step(const BpScene *scene, const double space[3], const Records
     step->to_lamp = spheres[1] != NO_SPHERE;
     step->stopped = spheres[2] != spheres[1];
     step->seen = spheres[2];
-    step->to_disc = step->to_lamp && spheres[1] >= DISC_SLOT;
+    step->to_image = spheres[1] == IMAGE_SLOT;
+    step->to_disc = step->to_lamp && spheres[1] >= DISC_SLOT && !step->to_image;
     step->lamp = step->to_disc ? spheres[1] - DISC_SLOT : spheres[1];
     step->discs = spheres[3];
     step->material = step->met ? scene->spheres[step->sphere].material : 0;

@@ -22,6 +22,7 @@ typedef struct BpPathStep {
     uint32_t discs;            /* where it did not: bit i: disc i of the sky stands there */
     bool to_lamp;              /* a ray was sent to a lamp from here */
     bool to_disc;              /* then: the lamp is a disc of the sky, else a sphere */
+    bool to_image;             /* or: it is the image around, which has no number */
     uint32_t lamp;             /* the number of that disc or sphere */
     bool stopped;              /* the ray meets another sphere first */
     uint32_t seen;             /* that sphere */

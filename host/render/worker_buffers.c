@@ -29,6 +29,8 @@ BpStatus bp_worker_upload_scene(BpWorker *worker, const BpPacked *packed, BpErro
     const uint64_t slots = leaf_count * width;
     const uint64_t lamp_nodes = packed->lamps.node_count, lamp_slots = packed->lamps.slot_count;
     const uint64_t disc_count = packed->disc_count, texture_count = packed->texture_count;
+    const uint64_t texel_count = packed->texel_count, sky_row_count = packed->sky_row_count;
+    const uint64_t sky_column_count = packed->sky_column_count, sky_height_count = packed->sky_height_count;
     const uint64_t material_count = packed->material_count > 0 ? packed->material_count : 1;
     /* Elements of reals shrink with the real. */
 #define BYTES_REALS(element) (sizeof(element) / sizeof(real) * worker->real_size)

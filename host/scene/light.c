@@ -57,6 +57,7 @@ void bp_light_place(BpScene *scene) {
     bp_cross(camera->vup, axes[2], axes[0]);
     bp_normalize(axes[0]);
     bp_cross(axes[2], axes[0], axes[1]);
+    scene->environment = NULL;
     into_scene(axes, light->up, scene->background_up);
     for (int c = 0; c < 3; c++) {
         scene->background_bottom[c] = light->bottom;

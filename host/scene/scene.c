@@ -26,6 +26,12 @@ void bp_background_up(const BpScene *scene, double up[3]) {
     for (int i = 0; i < 3; i++) up[i] /= sqrt(length);
 }
 
+void bp_environment_frame(const BpScene *scene, double seam[3], double east[3], double pole[3]) {
+    BpTexture frame = {.turn_degrees = scene->environment_turn};
+    bp_background_up(scene, frame.up);
+    bp_texture_frame(&frame, east, seam, pole); /* exchanged, since it is seen from inside */
+}
+
 double bp_camera_plane_height(const BpCamera *camera) {
     const double tangent = tan(camera->vfov_degrees * (PI / 360));
     double distance = 0;
@@ -114,6 +120,8 @@ void bp_scene_destroy(BpScene **scene) {
     free(s->materials);
     for (size_t i = 0; i < s->texture_count; i++) free(s->textures[i].name);
     free(s->textures);
+    for (size_t i = 0; i < s->image_count; i++) bp_texels_destroy(&s->images[i]);
+    free(s->images);
     free(s->spheres);
     free(s->albedos);
     for (size_t i = 0; i < s->point_file_count; i++) {

@@ -14,6 +14,7 @@
 
 #include "ballpark.h"
 #include "material.h"
+#include "texels.h"
 #include "texture.h"
 
 #include <stdio.h>
@@ -146,12 +147,16 @@ struct BpScene {
     BpLight light;                                  /* that the background was made by */
     double background_bottom[3], background_top[3]; /* down and up; linear in between */
     double background_up[3];                        /* which way up is, of any length; 0: the y axis */
-    BpDisc discs[BP_DISCS_MAX];                     /* where they overlap, they add up */
+    BpImage *environment;    /* in place of bottom and top, which are then black: one of images[], or NULL */
+    double environment_turn; /* degrees about `up`, counter-clockwise seen from its tip */
+    BpDisc discs[BP_DISCS_MAX]; /* where they overlap, they add up */
     size_t disc_count;
     BpBackdrop backdrop;
     double backdrop_bottom[3],
         backdrop_top[3]; /* of BP_BACKDROP_COLORS: at the picture's lower and upper edge */
     BpTransfer transfer;
+    BpImage **images; /* of textures and the background, each file once */
+    size_t image_count;
     BpTexture *textures;
     size_t texture_count;
     BpMaterial *materials;
@@ -175,6 +180,10 @@ struct BpScene {
 
 /* The unit vector along which the background rises from bottom to top. */
 void bp_background_up(const BpScene *scene, double up[3]);
+/* The map by which an environment surrounds the scene, unit vectors: to its left and right edge, `seam`; a
+ * quarter of its width to the right of the left edge, `east`; to its top, `pole`. With `up` [0, 1, 0] and no
+ * turn its middle is at -z, and its right half at x. Another `up` tilts that the shortest way. */
+void bp_environment_frame(const BpScene *scene, double seam[3], double east[3], double pole[3]);
 
 /* How high a part of the plane in focus the picture shows, in the scene's unit. */
 double bp_camera_plane_height(const BpCamera *camera);

@@ -124,8 +124,21 @@ static bool noise_fault(const BpTexture *texture, BpFault *fault) {
                      "0 to 1000 waves")));
 }
 
+/* Whether columns or rows of all repetitions together are too many. */
+static bool repeat_fault(const BpTexture *texture, BpFault *fault) {
+    for (int i = 0; i < 2 && texture->type == BP_TEXTURE_IMAGE; i++) {
+        const uint32_t side = i == 0 ? texture->image->width : texture->image->height;
+        const uint64_t all = (uint64_t)side * texture->repeat[i];
+        if (all > BP_COLUMNS_MAX)
+            return set_fault(fault, BP_FAULT_TEXTURE, "repeat",
+                             "found %u times %u texels, expected at most %u together; repeat it less often",
+                             (unsigned)texture->repeat[i], (unsigned)side, BP_COLUMNS_MAX);
+    }
+    return false;
+}
+
 static bool texture_fault(const BpTexture *texture, BpFault *fault) {
-    for (int i = 0; i < 2; i++)
+    for (int i = 0; i < 2 && texture->type != BP_TEXTURE_IMAGE; i++)
         if (any_outside(fault, BP_FAULT_TEXTURE, "colors", texture->colors[i], 0, BP_RADIANCE_MAX,
                         "colours from 0 to 1, of light to 1e12"))
             return true;
@@ -143,13 +156,18 @@ static bool texture_fault(const BpTexture *texture, BpFault *fault) {
            outside(fault, BP_FAULT_TEXTURE, "repeat", texture->repeat[0], 1, BP_TEXTURE_REPEAT_MAX,
                    "1 to 65536 times") ||
            outside(fault, BP_FAULT_TEXTURE, "repeat", texture->repeat[1], 1, BP_TEXTURE_REPEAT_MAX,
-                   "1 to 65536 times");
+                   "1 to 65536 times") ||
+           repeat_fault(texture, fault);
 }
 
 /* Whether a member names no texture that there is, or one of colours where a number stands. */
 static bool variation_fault(const BpScene *scene, const BpMaterial *material, BpMember m, BpFault *fault) {
     const uint32_t number = material->texture[m];
     if (number == 0) return false;
+    if (number <= scene->texture_count && scene->textures[number - 1].type == BP_TEXTURE_IMAGE &&
+        bp_members[m].form != BP_FORM_COLOUR && !scene->textures[number - 1].image->is_gray)
+        return set_fault(fault, BP_FAULT_MATERIAL, bp_members[m].name,
+                         "found an image with colours, expected a grey one, whose texels are numbers");
     if (number > scene->texture_count)
         return set_fault(fault, BP_FAULT_MATERIAL, bp_members[m].name,
                          "found texture number %u, expected one of %zu textures", (unsigned)number,
@@ -221,6 +239,8 @@ BpStatus bp_scene_find_fault(const BpScene *scene, BpFault *fault, BpError *err)
         any_outside(fault, BP_FAULT_BACKGROUND, "top", scene->background_top, 0, BP_RADIANCE_MAX,
                     "radiances from 0 to 1e12") ||
         coordinates_outside(fault, BP_FAULT_BACKGROUND, "up", scene->background_up) ||
+        outside(fault, BP_FAULT_BACKGROUND, "turn", scene->environment_turn, -BP_TEXTURE_TURN_MAX,
+                BP_TEXTURE_TURN_MAX, "degrees from -1e6 to 1e6") ||
         any_outside(fault, BP_FAULT_BACKDROP, "bottom", scene->backdrop_bottom, 0, BP_RADIANCE_MAX,
                     "radiances from 0 to 1e12") ||
         any_outside(fault, BP_FAULT_BACKDROP, "top", scene->backdrop_top, 0, BP_RADIANCE_MAX,

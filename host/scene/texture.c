@@ -1,13 +1,15 @@
 /* texture.c: see texture.h. */
 #include "texture.h"
 
+#include "texels.h"
 #include "vector.h"
 
 #include <math.h>
 
 #define PI 3.14159265358979323846
 
-const char *const bp_texture_type_names[] = {[BP_TEXTURE_CHECKER] = "checker", [BP_TEXTURE_NOISE] = "noise"};
+const char *const bp_texture_type_names[] = {
+    [BP_TEXTURE_CHECKER] = "checker", [BP_TEXTURE_NOISE] = "noise", [BP_TEXTURE_IMAGE] = "image"};
 const size_t bp_texture_type_count = sizeof bp_texture_type_names / sizeof bp_texture_type_names[0];
 const char *const bp_mapping_names[] = {[BP_MAPPING_SOLID] = "solid", [BP_MAPPING_SURFACE] = "surface"};
 const size_t bp_mapping_count = sizeof bp_mapping_names / sizeof bp_mapping_names[0];
@@ -16,6 +18,8 @@ const char *const bp_pattern_names[] = {[BP_PATTERN_PERLIN] = "perlin",
                                         [BP_PATTERN_MARBLE] = "marble",
                                         [BP_PATTERN_WOOD] = "wood"};
 const size_t bp_pattern_count = sizeof bp_pattern_names / sizeof bp_pattern_names[0];
+const char *const bp_wrap_names[] = {[BP_WRAP_REPEAT] = "repeat", [BP_WRAP_CLAMP] = "clamp"};
+const size_t bp_wrap_count = sizeof bp_wrap_names / sizeof bp_wrap_names[0];
 const char *const bp_axis_names[] = {"x", "y", "z"};
 const size_t bp_axis_count = sizeof bp_axis_names / sizeof bp_axis_names[0];
 
@@ -73,11 +77,16 @@ void bp_texture_frame(const BpTexture *texture, double seam[3], double east[3], 
 }
 
 void bp_texture_bound(const BpTexture *texture, double bound[3]) {
+    if (texture->type == BP_TEXTURE_IMAGE) {
+        memcpy(bound, texture->image->bound, sizeof texture->image->bound);
+        return;
+    }
     for (int c = 0; c < 3; c++) bound[c] = fmax(texture->colors[0][c], texture->colors[1][c]);
 }
 
 bool bp_texture_is_number(const BpTexture *texture) {
     bool equal = true;
+    if (texture->type == BP_TEXTURE_IMAGE) return texture->image->is_gray;
     for (int i = 0; i < 2; i++)
         for (int c = 1; c < 3; c++) equal = equal && texture->colors[i][c] == texture->colors[i][0];
     return equal;

@@ -24,13 +24,21 @@
  * 2^22 times the octave, to z 0x9e3779b9 times the seed. They are mixed by pcg3d (M. Jarzynski and M. Olano,
  * "Hash Functions for GPU Rendering", 2020), and the upper four bits of the first word, h, choose among the
  * twelve directions to the edges of a cube as Perlin has it: a + b, where a is x for h < 8 and y above, b is
- * y for h < 4, x for 12 and 14, and z for others; a is negative where bit 0 is set, b where bit 1 is. */
+ * y for h < 4, x for 12 and 14, and z for others; a is negative where bit 0 is set, b where bit 1 is.
+ *
+ * An image covers each sphere by longitude, from its left to its right edge, and latitude, its top at the
+ * north pole. It stands there repeat[0] times around and repeat[1] times from pole to pole, or, clamped,
+ * once, in the first of these places, and what lies to the right of it and below has the colours of its
+ * edges. The middle of a texel has its colour; between the middles of four the colour is bilinear. Beyond the
+ * poles and, clamped, beyond the image the nearest texel counts; around, the image is a ring. */
 #ifndef BP_SCENE_TEXTURE_H
 #define BP_SCENE_TEXTURE_H
 
 #include <stdbool.h>
 #include <stddef.h>
 #include <stdint.h>
+
+struct BpImage; /* texels.h */
 
 #define BP_TEXTURES_MAX 65536u
 #define BP_TEXTURE_REPEAT_MAX 65536u
@@ -39,9 +47,11 @@
 #define BP_OCTAVES_MAX 12u
 #define BP_DISTORTION_MAX 1000.0
 #define BP_LATTICE_PERIOD 4194304u /* 2^22 */
+#define BP_COLUMNS_MAX 16777216u   /* 2^24: of an image's texels times its repeats, either way */
 
-typedef enum BpTextureType { BP_TEXTURE_CHECKER, BP_TEXTURE_NOISE } BpTextureType;
+typedef enum BpTextureType { BP_TEXTURE_CHECKER, BP_TEXTURE_NOISE, BP_TEXTURE_IMAGE } BpTextureType;
 typedef enum BpMapping { BP_MAPPING_SOLID, BP_MAPPING_SURFACE } BpMapping;
+typedef enum BpWrap { BP_WRAP_REPEAT, BP_WRAP_CLAMP } BpWrap;
 typedef enum BpPattern {
     BP_PATTERN_PERLIN,
     BP_PATTERN_TURBULENCE,
@@ -52,7 +62,7 @@ typedef enum BpPattern {
 typedef struct BpTexture {
     char *name;
     BpTextureType type;
-    BpMapping mapping;   /* noise is solid */
+    BpMapping mapping;   /* noise is solid, an image over the surface */
     double colors[2][3]; /* of even cells, and of odd ones; of noise at 0 and at 1; numbers are colours of
                             three equal parts */
     /* Solid: */
@@ -62,6 +72,9 @@ typedef struct BpTexture {
     double up[3];        /* from the south to the north pole, of any length */
     double turn_degrees; /* about `up`, counter-clockwise seen from its tip */
     uint32_t repeat[2];
+    /* Image: */
+    struct BpImage *image; /* one of the scene's */
+    BpWrap wrap;
     /* Noise: */
     BpPattern pattern;
     uint32_t octaves, seed;
@@ -77,6 +90,8 @@ extern const char *const bp_mapping_names[];
 extern const size_t bp_mapping_count;
 extern const char *const bp_pattern_names[];
 extern const size_t bp_pattern_count;
+extern const char *const bp_wrap_names[];
+extern const size_t bp_wrap_count;
 extern const char *const bp_axis_names[];
 extern const size_t bp_axis_count;
 

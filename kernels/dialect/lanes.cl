@@ -37,6 +37,7 @@
 #undef store_lanes
 #undef uint_to_real
 #undef to_uint
+#undef real_of_bits
 #undef gather_real
 #undef gather_uint
 
@@ -68,6 +69,7 @@
 #define store_lanes(x, array) ((array)[0] = (x))
 #define uint_to_real(x) ((real)(x))
 #define to_uint(x) ((uint)(int)(x))
+#define real_of_bits(x) ((real)as_float(x))
 #define gather_real(base, index) ((base)[index])
 #define gather_uint(base, index) ((base)[index])
 #else
@@ -93,6 +95,7 @@
 #define store_lanes(x, array) JOIN(vstore, LANE_COUNT)(x, 0, array)
 #define to_uint(x) JOIN(convert_uint, LANE_COUNT)(JOIN(convert_int, LANE_COUNT)(x))
 #define uint_to_real(x) JOIN(JOIN(convert_, REAL), LANE_COUNT)(x)
+#define real_of_bits(x) JOIN(JOIN(convert_, REAL), LANE_COUNT)(JOIN(as_float, LANE_COUNT)(x))
 /* Tables have fewer than 2^31 entries, and some processors gather faster with signed offsets. */
 #define gather_2(base, index) (base)[(int)(index).x], (base)[(int)(index).y]
 #define gather_4(base, index) gather_2(base, (index).lo), gather_2(base, (index).hi)

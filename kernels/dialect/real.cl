@@ -51,10 +51,12 @@ typedef JOIN(REAL, 4) real4;
 typedef REFINED refined;
 
 /* Lamps are sampled where the scene has any, and at surfaces that scatter into many directions. They are spheres, in a
- * tree, and discs in the sky. */
+ * tree, discs in the sky, and an image around the scene. */
 #define SAMPLES_LAMP_TREE (EFFECT_LAMPS && EFFECT_EMISSION && (EFFECT_LAMBERTIAN || EFFECT_METAL))
 #define SAMPLES_DISCS (EFFECT_LAMPS && EFFECT_DISCS && (EFFECT_LAMBERTIAN || EFFECT_METAL))
-#define SAMPLES_LAMPS (SAMPLES_LAMP_TREE || SAMPLES_DISCS)
+#define SAMPLES_ENVIRONMENT (EFFECT_LAMPS && EFFECT_ENVIRONMENT && (EFFECT_LAMBERTIAN || EFFECT_METAL))
+#define SAMPLES_SKY (SAMPLES_DISCS || SAMPLES_ENVIRONMENT)
+#define SAMPLES_LAMPS (SAMPLES_LAMP_TREE || SAMPLES_SKY)
 
 /* Some compilers leave parts of a ray's search functions of their own, and pass the ray, or two dozen vectors, through
  * memory. Where nothing is optimised, nothing is inlined either: Oclgrind cannot run what the inliner leaves behind. */

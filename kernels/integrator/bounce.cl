@@ -17,6 +17,9 @@ static void trace_bounce(const Scene *scene, Path *path) {
     const vbool escaped = moving & vbool_not(met);
     if (any_lane(escaped)) {
         Vec3 light = multiply3(path->throughput, sky_radiance(scene->sky, path->direction));
+#if EFFECT_ENVIRONMENT
+        if (has_environment(scene->sky)) light = multiply3(path->throughput, environment_light(scene, path, escaped));
+#endif
 #if EFFECT_DISCS
         light = add3(light, multiply3(path->throughput, discs_radiance(scene, path, escaped)));
 #endif

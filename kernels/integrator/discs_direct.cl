@@ -1,7 +1,7 @@
-/* discs_direct.cl: what the discs of the sky add to a path that meets nothing.
+/* discs_direct.cl: what discs and an image around the scene show a path that meets nothing.
  *
- * In:    paths that escape.   Out: the radiance of the discs in their direction, weighted where rays are sent to them too.
- * Knows: discs.cl, lamps_direct.cl, path.cl.   Does not know: the rest of the sky. */
+ * In:    paths that escape.   Out: radiance in their direction, weighted where rays are sent there too.
+ * Knows: discs.cl, environment.cl, lamps_direct.cl, path.cl.   Does not know: the rest of the sky. */
 #if EFFECT_DISCS
 #if SAMPLES_DISCS
 /* As lamp_hit_weight. Discs that overlap are lamps of their own: each weighs by what would have chosen it. */
@@ -33,5 +33,32 @@ static Vec3 discs_radiance(const Scene *scene, const Path *path, vbool escaped) 
         sum = choose3(hit, add3(sum, radiance), sum);
     }
     return sum;
+}
+#endif
+
+#if EFFECT_ENVIRONMENT
+#if SAMPLES_ENVIRONMENT
+/* As disc_hit_weight; the lanes `hit` have met nothing. */
+static vreal environment_hit_weight(const Scene *scene, const Path *path, vbool hit) {
+    const vreal importance = environment_importance(scene);
+    vbool shared = hit & vbool_of_uint(path->lobe.kind != splat_uint(LOBE_NONE)) & (importance > splat(0));
+    if (!any_lane(shared)) return splat(1);
+    const EnvironmentCell cell = environment_cell(scene, path->direction);
+    const vreal probability = choose(shared, importance / path->lamp_sum, splat(1)) * cell.probability;
+    shared = shared & (probability > splat(0));
+    const vreal ratio =
+        density_ratio(&path->lobe, path->direction, 1, cell.cap, choose(shared, probability, splat(1)));
+    return weight_of_hit(shared, ratio);
+}
+#endif
+
+/* What the image shows the lanes that have `escaped`. */
+static Vec3 environment_light(const Scene *scene, const Path *path, vbool escaped) {
+    const Vec3 radiance = environment_radiance(scene, path->direction);
+#if SAMPLES_ENVIRONMENT
+    return scale3(environment_hit_weight(scene, path, escaped), radiance);
+#else
+    return radiance;
+#endif
 }
 #endif

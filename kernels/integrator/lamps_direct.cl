@@ -87,35 +87,47 @@ static Vec3 radiance_along(const Scene *scene, const Ray *ray, const Sphere *sph
 #define radiance_along(scene, ray, sphere, slot, visible) radiance_of_sphere(scene, slot)
 #endif
 
-/* Of a sphere in a slot, or of a disc, along the ray to it, in the lanes `visible`. */
+/* Of a sphere in a slot, of a disc or of the image around, along the ray to it, in the lanes `visible`. */
 static Vec3 radiance_of_lamp(const Scene *scene, const Ray *ray, const LampChoice *choice, vbool visible) {
     const vuint slot = choice->slot;
-#if !SAMPLES_DISCS
+#if !SAMPLES_SKY
     return radiance_along(scene, ray, &choice->sphere, slot, visible);
 #else
-    const vbool disc = vbool_of_uint(slot >= splat_uint(DISC_SLOT));
+    vbool disc = vbool_of_uint(slot >= splat_uint(DISC_SLOT));
     Vec3 radiance = zero3();
 #if SAMPLES_LAMP_TREE
     radiance = radiance_along(scene, ray, &choice->sphere, choose_uint(disc, splat_uint(0), slot),
                               visible & vbool_not(disc));
 #endif
     if (!any_lane(disc)) return radiance;
+#if SAMPLES_ENVIRONMENT
+    const vbool around = disc & vbool_of_uint(slot == splat_uint(IMAGE_SLOT));
+    if (any_lane(around)) radiance = choose3(around, environment_radiance(scene, ray->direction), radiance);
+    disc = disc & vbool_not(around);
+#endif
+#if SAMPLES_DISCS
     const vuint place = choose_uint(disc, slot - splat_uint(DISC_SLOT), splat_uint(0)) * DISC_REALS + DISC_RADIANCE;
     return choose3(disc,
                    vec3(gather_real(scene->discs, place), gather_real(scene->discs, place + 1u),
                         gather_real(scene->discs, place + 2u)),
                    radiance);
+#else
+    return radiance;
+#endif
 #endif
 }
 
-/* A lamp for the vertex of each `active` path, by the number `u`, and its cone. */
-static LampChoice choose_light(const Scene *scene, const Path *path, vuint bounce, vreal u, vbool active,
+/* A lamp for the vertex of each `active` path, by the number `u`, and its cone; `v` leads on to a texel of an image. */
+static LampChoice choose_light(const Scene *scene, const Path *path, vuint bounce, vreal u, vreal v, vbool active,
                                LampCone *cone) {
     const Point *point = &path->origin;
     const Lobe *lobe = &path->lobe;
     LampChoice choice;
-#if SAMPLES_DISCS
-    const DiscChoice disc = choose_disc(scene, point, lobe, path->key, bounce, u);
+#if SAMPLES_SKY
+    DiscChoice disc = choose_disc(scene, point, lobe, path->key, bounce, u);
+#if SAMPLES_ENVIRONMENT
+    choose_texel(scene, path->key, bounce, v, active, &disc);
+#endif
     active = active & vbool_not(disc.chosen);
     u = disc.rest;
 #endif
@@ -128,7 +140,7 @@ static LampChoice choose_light(const Scene *scene, const Path *path, vuint bounc
     choice.probability = choice.sum = choice.rest = splat(0);
 #endif
     *cone = lamp_cone(point, &choice.sphere);
-#if SAMPLES_DISCS
+#if SAMPLES_SKY
     take_disc(&disc, &choice, cone);
 #endif
     return choice;
@@ -152,7 +164,7 @@ LIGHT_STEP void light_vertices(const Scene *scene, Path *path) {
     vreal u, v;
     sample_2d(path->key, bounce + BOUNCE_LAMP, &u, &v);
     LampCone cone;
-    const LampChoice choice = choose_light(scene, path, bounce, u, active, &cone);
+    const LampChoice choice = choose_light(scene, path, bounce, u, v, active, &cone);
     path->lamp_sum = choose(active, choice.sum, path->lamp_sum);
     active = active & (choice.probability > splat(0)) & cone.outside & vbool_of_uint(choice.slot != path->own_slot);
     Ray ray = path_ray(path);

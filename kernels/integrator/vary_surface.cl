@@ -7,14 +7,23 @@
 static Vec3 texture_value(const Scene *scene, vuint number, const Point *point, Vec3 outward, vbool active) {
     const vuint index = choose_uint(active, number - splat_uint(1), splat_uint(0));
     const vuint numbers = index * TEXTURE_REALS, kinds = index * TEXTURE_UINTS;
-#if EFFECT_NOISE
+#if EFFECT_NOISE || EFFECT_IMAGES
     const vuint pattern = gather_uint(scene->texture_kinds, kinds + TEXTURE_PATTERN);
-    const vbool noisy = active & vbool_of_uint(pattern != splat_uint(PATTERN_CHECKER));
     Vec3 value = zero3();
-    if (any_lane(active & vbool_not(noisy)))
-        value = checker_colour(scene, numbers, kinds, point, outward, active & vbool_not(noisy));
+    vbool rest = active;
+#if EFFECT_IMAGES
+    const vbool image = rest & vbool_of_uint(pattern == splat_uint(PATTERN_IMAGE));
+    if (any_lane(image)) value = image_texture(scene, numbers, kinds, outward, image);
+    rest = rest & vbool_not(image);
+#endif
+#if EFFECT_NOISE
+    const vbool noisy = rest & vbool_of_uint(pattern != splat_uint(PATTERN_CHECKER));
     if (any_lane(noisy))
         value = choose3(noisy, pattern_colour(scene, numbers, kinds, point, pattern, noisy), value);
+    rest = rest & vbool_not(noisy);
+#endif
+    if (any_lane(rest))
+        value = choose3(rest, checker_colour(scene, numbers, kinds, point, outward, rest), value);
     return value;
 #else
     return checker_colour(scene, numbers, kinds, point, outward, active);

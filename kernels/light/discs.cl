@@ -6,7 +6,8 @@
  *
  * A disc's importance is that of a lamp that fills the same cone, from any point: radiance times sin^2 of the half
  * angle times the clipped cosine, its irradiance over pi where it stands above the horizon. The tree of lamps as a whole
- * has the importance of its root's children, so one number chooses among the tree and every disc, each by its share. */
+ * has the importance of its root's children, so one number chooses among the tree and every disc, each by its share. An image
+ * around the scene is one more in that choice. */
 #if EFFECT_DISCS
 static uint disc_count(const Scene *scene) { return (uint)scene->sky->top[3]; }
 
@@ -15,6 +16,7 @@ static vbool disc_contains(__global const real *disc, Vec3 direction) {
     const Vec3 off = subtract3(direction, splat3(disc + DISC_DIRECTION));
     return dot3(off, off) <= splat(disc[DISC_CHORD2]);
 }
+#endif
 
 #if SAMPLES_DISCS
 static vreal disc_importance(__global const real *disc, const Lobe *lobe) {
@@ -29,7 +31,9 @@ static vreal disc_importance(__global const real *disc, const Lobe *lobe) {
 #endif
     return cosine * disc[DISC_POWER];
 }
+#endif
 
+#if SAMPLES_SKY
 /* Of the tree of lamps, seen from a point. */
 static vreal tree_importance(const Scene *scene, const Point *point, const Lobe *lobe) {
 #if SAMPLES_LAMP_TREE
@@ -42,10 +46,10 @@ static vreal tree_importance(const Scene *scene, const Point *point, const Lobe 
 #endif
 }
 
-/* A choice among the discs and the tree of lamps. */
+/* A choice among the discs, the image around and the tree of lamps. */
 typedef struct DiscChoice {
-    vbool chosen;      /* a disc; else the tree */
-    vuint slot;        /* of the disc: DISC_SLOT and its number */
+    vbool chosen;      /* a disc, or the image; else the tree */
+    vuint slot;        /* of the disc: DISC_SLOT and its number; or IMAGE_SLOT */
     vreal probability; /* of what has been chosen */
     vreal sum;         /* of the importance of all */
     vreal rest;        /* what is left of the number that chose: uniform in [0, 1) again */
@@ -56,10 +60,15 @@ typedef struct DiscChoice {
 /* Chooses by `number`, in [0, 1). Where no disc has anything to bring, the tree gets the number as it is. */
 static DiscChoice choose_disc(const Scene *scene, const Point *point, const Lobe *lobe, SampleKey key, vuint bounce,
                               vreal number) {
-    const uint count = disc_count(scene);
     const vreal tree = tree_importance(scene, point, lobe);
     vreal discs = splat(0);
+#if SAMPLES_DISCS
+    const uint count = disc_count(scene);
     for (uint i = 0; i < count; ++i) discs += disc_importance(scene->discs + i * DISC_REALS, lobe);
+#endif
+#if SAMPLES_ENVIRONMENT
+    discs += environment_importance(scene);
+#endif
     DiscChoice choice;
     choice.sum = tree + discs;
     const vreal target = number * choice.sum;
@@ -68,6 +77,7 @@ static DiscChoice choose_disc(const Scene *scene, const Point *point, const Lobe
     choice.direction = zero3();
     choice.cap = splat(1);
     vreal below = tree, chosen_below = splat(0), chosen = tree;
+#if SAMPLES_DISCS
     for (uint i = 0; i < count; ++i) {
         __global const real *disc = scene->discs + i * DISC_REALS;
         const vreal importance = disc_importance(disc, lobe);
@@ -79,6 +89,14 @@ static DiscChoice choose_disc(const Scene *scene, const Point *point, const Lobe
         chosen_below = choose(reached, below, chosen_below);
         below += importance;
     }
+#endif
+#if SAMPLES_ENVIRONMENT
+    const vreal image = environment_importance(scene);
+    const vbool around = choice.chosen & (below <= target) & (image > splat(0));
+    choice.slot = choose_uint(around, splat_uint(IMAGE_SLOT), choice.slot);
+    chosen = choose(around, image, chosen);
+    chosen_below = choose(around, below, chosen_below);
+#endif
     const vbool some = chosen > splat(0);
     const vreal refill = uniform(key, bounce + BOUNCE_DISC_REFILL) * R(0x1p-24);
     const vreal rest = fma(refill, choice.sum, target - chosen_below) / choose(some, chosen, splat(1));
@@ -87,11 +105,28 @@ static DiscChoice choose_disc(const Scene *scene, const Point *point, const Lobe
     return choice;
 }
 
+#if SAMPLES_ENVIRONMENT
+/* Gives the choice a direction where it is the image, by the number that is left and `v`, in the `active` lanes. Its texel
+ * is a cone of that direction alone. */
+static void choose_texel(const Scene *scene, SampleKey key, vuint bounce, vreal v, vbool active, DiscChoice *choice) {
+    const vbool around = active & choice->chosen & vbool_of_uint(choice->slot == splat_uint(IMAGE_SLOT));
+    if (!any_lane(around)) return;
+    Vec3 direction;
+    const EnvironmentCell cell = sample_environment(scene, key, bounce, choice->rest, v, &direction);
+    choice->direction = choose3(around, direction, choice->direction);
+    choice->probability = choose(around, choice->probability * cell.probability, choice->probability);
+    choice->cap = choose(around, cell.cap, choice->cap);
+    choice->rest = choose(around, splat(0), choice->rest);
+}
+#endif
+
+#if SAMPLES_DISCS
 /* The probability with which choose_disc chooses this disc, when it has found the sum `sum`. */
 static vreal disc_probability(__global const real *disc, const Lobe *lobe, vreal sum) {
     const vreal importance = disc_importance(disc, lobe);
     return choose(importance > splat(0), importance / sum, splat(0));
 }
+#endif
 
 /* Takes a choice among the tree of lamps, made with the number choice.rest, together with that of a disc: where a disc
  * has been chosen, it is the lamp, at a distance that no sphere has. */
@@ -109,5 +144,4 @@ static void take_disc(const DiscChoice *disc, LampChoice *lamp, LampCone *cone) 
     cone->cap = choose(chosen, disc->cap, cone->cap);
     cone->outside = cone->outside | chosen;
 }
-#endif
 #endif

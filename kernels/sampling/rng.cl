@@ -14,8 +14,9 @@
  *     k = 6        roulette (kept)
  *     k = 7        the low bits of a lamp's choice; for level l of the tree of lamps, 2^24 l further on
  *     k = 8, 9     which lamp, and the direction to it
- *     k = 10       the low bits of the choice among the discs of the sky and the tree of lamps
- *     11..15       kept */
+ *     k = 10       the low bits of the choice among the discs of the sky, the image around and the tree of lamps
+ *     k = 11, 12   the low bits of the choice of a row of that image, and of a texel in the row
+ *     13..15       kept */
 #define DIMENSION_PIXEL 0u
 #define DIMENSION_LENS 2u
 #define DIMENSION_BOUNCE 16u
@@ -27,6 +28,8 @@
 #define LAMP_REFILL_STRIDE 0x1000000u
 #define BOUNCE_LAMP 8u
 #define BOUNCE_DISC_REFILL 10u
+#define BOUNCE_SKY_ROW 11u
+#define BOUNCE_SKY_COLUMN 12u
 
 /* Of bounce b, counted from 0. */
 static vuint first_dimension(vuint b) { return b * DIMENSIONS_PER_BOUNCE + DIMENSION_BOUNCE; }

@@ -5,7 +5,7 @@
  *
  * Plain arithmetic, so all forms give the same bits on every device. Both are right to 2 ROUNDOFF and what the dot products
  * lose, another 4 ROUNDOFF; tests/textures measures it. */
-#if EFFECT_TEXTURES
+#if EFFECT_TEXTURES || EFFECT_ENVIRONMENT
 /* atan(r) / (2 pi r) as a polynomial of r^2, |r| <= 1/4 (Chebyshev interpolation: float to 1.5e-10, double to 6.4e-20 of
  * its value, before rounding). */
 static vreal turn_over_tangent(vreal z) {

@@ -20,21 +20,25 @@ typedef struct EffectsScene {
     BpScene scene; /* points into the arrays below: pass it on by address, do not copy it */
     BpMaterial materials[16];
     BpSphere spheres[48];
-    BpTexture textures[8];
+    BpTexture textures[10];
+    BpImage image, sky, light, *images[3];
+    float image_texels[5 * 3 * 3], sky_texels[8 * 4 * 3], light_texels[2 * 3];
 } EffectsScene;
 
-/* Lamps are sampled where something emits, or discs do, and something is lit, unless an option says no. */
+/* Lamps are sampled where something emits, discs do, or an image, and something is lit, unless an option says
+ * no. */
 static inline bool effects_light(uint32_t bits) {
-    return (bits & (EFFECT_BIT(EMISSION) | EFFECT_BIT(DISCS))) != 0 &&
+    return (bits & (EFFECT_BIT(EMISSION) | EFFECT_BIT(DISCS) | EFFECT_BIT(ENVIRONMENT))) != 0 &&
            (bits & (EFFECT_BIT(LAMBERTIAN) | EFFECT_BIT(METAL))) != 0;
 }
 
 /* A tree needs spheres, and spheres need a material. Rays to lamps need lamps, and something that they light.
- * Textures are of spheres, and noise is a texture. */
+ * Textures are of spheres, and noise and images are textures. */
 static inline bool effects_can_occur(uint32_t bits, bool tree) {
     if (bp_effects_has(bits, BP_EFFECT_LAMPS) && !effects_light(bits)) return false;
     if (bp_effects_has(bits, BP_EFFECT_TEXTURES) && (bits & MATERIAL_EFFECTS) == 0) return false;
     if (bp_effects_has(bits, BP_EFFECT_NOISE) && !bp_effects_has(bits, BP_EFFECT_TEXTURES)) return false;
+    if (bp_effects_has(bits, BP_EFFECT_IMAGES) && !bp_effects_has(bits, BP_EFFECT_TEXTURES)) return false;
     return (bits & MATERIAL_EFFECTS) != 0 || !tree;
 }
 
@@ -75,7 +79,9 @@ static inline void effects_materials(EffectsScene *made, uint32_t bits) {
         lamp->emit[0] = 4, lamp->emit[1] = 3, lamp->emit[2] = 0.5;
         effects_material(made, BP_MATERIAL_DIFFUSE_LIGHT, 0, 0, 0); /* black */
     }
-    if (bp_effects_has(bits, BP_EFFECT_NORMALS)) effects_material(made, BP_MATERIAL_NORMALS, 0, 0, 0);
+    const int shown = bp_effects_has(bits, BP_EFFECT_IMAGES) ? 2 : 1;
+    for (int i = 0; i < shown && bp_effects_has(bits, BP_EFFECT_NORMALS); ++i)
+        effects_material(made, BP_MATERIAL_NORMALS, 0, 0, 0);
 }
 
 /* A member varies where there is one that does; without light there is always one that is black. */
@@ -101,6 +107,41 @@ static inline void effects_noise(EffectsScene *made, double light) {
     }
 }
 
+/* An image of colours, one of a sky with a sun, and one of light. A failure shows in the pictures: they have
+ * no texels. */
+static inline void effects_images(EffectsScene *made, float light) {
+    for (int i = 0; i < 5 * 3 * 3; ++i) made->image_texels[i] = (float)(i * 7 % 11) / 10;
+    for (int i = 0; i < 8 * 4 * 3; ++i) made->sky_texels[i] = 0.1f + (float)(i * 5 % 7) / 20;
+    for (int c = 0; c < 3; ++c) made->sky_texels[3 * 13 + c] = (float)(60 - 10 * c);
+    made->light_texels[1] = made->light_texels[3] = light;
+    made->image = (BpImage){.width = 5, .height = 3, .texels = made->image_texels};
+    made->sky = (BpImage){.width = 8, .height = 4, .texels = made->sky_texels};
+    made->light = (BpImage){.width = 2, .height = 1, .texels = made->light_texels};
+    made->images[0] = &made->image;
+    made->images[1] = &made->sky;
+    made->images[2] = &made->light;
+    made->scene.images = made->images;
+    if (bp_texels_finish(&made->image, 1, "", NULL) == BP_OK &&
+        bp_texels_finish(&made->sky, 1, "", NULL) == BP_OK &&
+        bp_texels_finish(&made->light, 1, "", NULL) == BP_OK)
+        made->scene.image_count = 3;
+}
+
+/* Colours, repeated, and light, clamped, as textures 9 and 10. */
+static inline void effects_image_textures(EffectsScene *made) {
+    for (int i = 8; i < 10; ++i) {
+        BpTexture *texture = &made->textures[i];
+        bp_texture_defaults(texture);
+        texture->type = BP_TEXTURE_IMAGE;
+        texture->mapping = BP_MAPPING_SURFACE;
+        texture->image = i == 8 ? &made->image : &made->light;
+        texture->repeat[0] = 2;
+        texture->wrap = i == 8 ? BP_WRAP_REPEAT : BP_WRAP_CLAMP;
+        texture->up[2] = i;
+    }
+    made->scene.texture_count = 10;
+}
+
 static inline void effects_textures(EffectsScene *made, uint32_t bits) {
     const bool emits = bp_effects_has(bits, BP_EFFECT_EMISSION),
                noise = bp_effects_has(bits, BP_EFFECT_NOISE);
@@ -118,14 +159,18 @@ static inline void effects_textures(EffectsScene *made, uint32_t bits) {
     made->scene.textures = made->textures;
     effects_noise(made, light);
     made->scene.texture_count = 8;
+    const bool images = bp_effects_has(bits, BP_EFFECT_IMAGES);
+    if (images) effects_image_textures(made);
     for (size_t m = 0; m < made->scene.material_count; ++m) {
         effects_vary(made, m, BP_MEMBER_ALBEDO,
-                     noise && m % 2 == 0 ? 4 + (uint32_t)(m / 2 % 4) : 1 + (uint32_t)(m % 2));
+                     images && m % 2 == 1  ? 9
+                     : noise && m % 2 == 0 ? 4 + (uint32_t)(m / 2 % 4)
+                                           : 1 + (uint32_t)(m % 2));
         if (m % 2 == 1) effects_vary(made, m, BP_MEMBER_FUZZ, 2);
         /* Of glass, of what shows its normal, of black lamps and, if nothing emits, without light. */
         const BpMaterialKind kind = made->materials[m].kind;
         if (kind != BP_MATERIAL_LAMBERTIAN && kind != BP_MATERIAL_METAL)
-            effects_vary(made, m, BP_MEMBER_EMIT, noise ? 8 : 3);
+            effects_vary(made, m, BP_MEMBER_EMIT, images && m % 2 == 1 ? 10 : noise ? 8 : 3);
     }
 }
 
@@ -185,6 +230,11 @@ static inline void effects_scene(EffectsScene *made, uint32_t bits, bool tree) {
     scene->discs[0] = (BpDisc){{1, 2, 0.5}, 3, {40, 30, 20}, true};
     scene->discs[1] = (BpDisc){{0.1, 0.2, -1}, 12, {0.5, 1, 2}, bits % 2 == 0};
     scene->discs[2] = (BpDisc){{0, 1, -0.5}, 60, {0.1, 0.3, 0.2}, true};
+    effects_images(made, bp_effects_has(bits, BP_EFFECT_EMISSION) ? 3 : 0);
+    if (bp_effects_has(bits, BP_EFFECT_ENVIRONMENT)) {
+        scene->environment = &made->sky;
+        scene->environment_turn = 20;
+    }
     effects_materials(made, bits);
     if (bp_effects_has(bits, BP_EFFECT_TEXTURES)) effects_textures(made, bits);
     effects_spheres(made, tree);

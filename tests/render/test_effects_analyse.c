@@ -2,6 +2,7 @@
 #include "packed/acceleration.h"
 #include "packed/effects.h"
 
+#include <math.h>
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stdio.h>
@@ -22,6 +23,11 @@ static const BpMaterial black = {.name = (char *)"black", .kind = BP_MATERIAL_DI
 static const BpMaterial ember = {
     .name = (char *)"ember", .kind = BP_MATERIAL_LAMBERTIAN, GREY, .emit = {0, 0, 0.1}};
 static const BpMaterial debug = {.name = (char *)"debug", .kind = BP_MATERIAL_NORMALS};
+
+#define NO_LAMP "no sphere gives light, and no disc of the sky"
+
+/* Effects that the materials of these tests never call for. */
+#define OF_SCENES (BIT(DISCS) | BIT(TEXTURES) | BIT(NOISE) | BIT(IMAGES) | BIT(ENVIRONMENT))
 
 /* What materials name as textures 1 and 2. */
 static BpTexture both[2] = {{.type = BP_TEXTURE_CHECKER, .colors = {{0, 0, 0}, {2, 2, 2}}},
@@ -84,10 +90,8 @@ static void material_effects(void **state) {
     const BpMaterial pair[] = {brushed, lamp};
     assert_int_equal(analyse(pair, 2, 2, 2, 0, 1).bits, BIT(METAL) | BIT(EMISSION) | BIT(LAMPS));
     const BpMaterial all[] = {grey, steel, glass, ember, debug};
-    assert_int_equal(analyse(all, 5, 5, BP_LIST_SPHERES_MAX + 1, 0.1, 0.5).bits,
-                     BP_EFFECTS_ALL & ~BIT(DISCS) & ~BIT(TEXTURES) & ~BIT(NOISE));
-    assert_int_equal(analyse(all, 5, 5, 5, 0, 1).bits,
-                     BP_EFFECTS_ALL & ~BIT(LENS) & ~BIT(DISCS) & ~BIT(TEXTURES) & ~BIT(NOISE));
+    assert_int_equal(analyse(all, 5, 5, BP_LIST_SPHERES_MAX + 1, 0.1, 0.5).bits, BP_EFFECTS_ALL & ~OF_SCENES);
+    assert_int_equal(analyse(all, 5, 5, 5, 0, 1).bits, BP_EFFECTS_ALL & ~BIT(LENS) & ~OF_SCENES);
 }
 
 static void only_materials_in_use_count(void **state) {
@@ -237,7 +241,7 @@ static void discs(void **state) {
     BpEffects effects = analyse_discs(&grey, 0, 0);
     assert_int_equal(effects.bits, BIT(LAMBERTIAN));
     assert_string_equal(effects.reason[BP_EFFECT_DISCS], "the background has no discs");
-    assert_string_equal(effects.reason[BP_EFFECT_LAMPS], "no sphere gives light, and no disc of the sky");
+    assert_string_equal(effects.reason[BP_EFFECT_LAMPS], NO_LAMP);
     effects = analyse_discs(&grey, 2, 1);
     assert_int_equal(effects.bits, BIT(LAMBERTIAN) | BIT(LAMPS) | BIT(DISCS));
     assert_string_equal(effects.reason[BP_EFFECT_DISCS], "2 discs in the background");
@@ -254,6 +258,47 @@ static void discs(void **state) {
     effects = analyse_discs(&ember, 3, 0);
     assert_int_equal(effects.bits, BIT(LAMBERTIAN) | BIT(EMISSION) | BIT(LAMPS) | BIT(DISCS));
     assert_string_equal(effects.reason[BP_EFFECT_LAMPS], "1 lamp and 3 discs that can light 1 sphere");
+}
+
+/* A sky of so many texels, 8 at most, one of them this bright and the others 1. */
+static BpEffects analyse_image(const BpMaterial *material, uint32_t count, float bright) {
+    float texels[24];
+    for (int i = 0; i < 24; ++i) texels[i] = i < 3 ? bright : 1;
+    BpImage sky = {.width = count, .height = 1, .texels = texels}, *images[1] = {&sky};
+    BpMaterial copy = *material;
+    BpSphere sphere = {.radius = 1, .albedo = BP_NO_ALBEDO};
+    BpEffects effects;
+    BpScene scene = {.camera = {.focus_dist = 10},
+                     .images = images,
+                     .image_count = 1,
+                     .environment = &sky,
+                     .materials = &copy,
+                     .material_count = 1,
+                     .spheres = &sphere,
+                     .sphere_count = 1};
+    assert_int_equal(bp_texels_finish(&sky, 1, "", NULL), BP_OK);
+    assert_true(fabs(sky.mean - ((double)bright + count - 1) / count) < 1e-6 * sky.mean);
+    bp_effects_analyse(&scene, &effects);
+    return effects;
+}
+
+/* An image as background is sampled where its light varies by more than its mean. */
+static void an_image_around(void **state) {
+    (void)state;
+    BpEffects effects = analyse_image(&grey, 2, 1000);
+    assert_int_equal(effects.bits, BIT(LAMBERTIAN) | BIT(ENVIRONMENT));
+    assert_string_equal(effects.reason[BP_EFFECT_ENVIRONMENT], "an image of 2 by 1 texels");
+    assert_string_equal(effects.reason[BP_EFFECT_LAMPS], NO_LAMP);
+    effects = analyse_image(&grey, 8, 1000);
+    assert_int_equal(effects.bits, BIT(LAMBERTIAN) | BIT(ENVIRONMENT) | BIT(LAMPS));
+    assert_string_equal(effects.reason[BP_EFFECT_LAMPS], "the image around that can light 1 sphere");
+    effects = analyse_image(&ember, 8, 1000);
+    assert_string_equal(effects.reason[BP_EFFECT_LAMPS],
+                        "the image around and 1 lamp that can light 1 sphere");
+    effects = analyse_image(&glass, 8, 1000);
+    assert_int_equal(effects.bits, BIT(DIELECTRIC) | BIT(ENVIRONMENT));
+    effects = analyse_image(&grey, 8, 1);
+    assert_int_equal(effects.bits, BIT(LAMBERTIAN) | BIT(ENVIRONMENT));
 }
 
 static void textures(void **state) {
@@ -312,6 +357,7 @@ int main(void) {
         cmocka_unit_test(a_tree_above_32_spheres),
         cmocka_unit_test(reasons_a_person_understands),
         cmocka_unit_test(discs),
+        cmocka_unit_test(an_image_around),
         cmocka_unit_test(textures),
         cmocka_unit_test(no_rays_to_lamps_that_the_sky_outshines),
         cmocka_unit_test(one_list_names_them),

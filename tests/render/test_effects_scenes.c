@@ -37,6 +37,7 @@ static const struct {
     {"checkers", "lambertian metal dielectric emission lamps textures"},
     {"lamps", "lambertian metal dielectric emission lamps"},
     {"next-checkered-spheres", "lambertian textures"},
+    {"next-earth", "lambertian textures images"},
     {"next-perlin-spheres", "lambertian textures noise"},
     {"studio", "lambertian metal lamps discs"},
     {"v1-red-sphere", "emission"},

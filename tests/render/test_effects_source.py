@@ -34,8 +34,10 @@ MARKS = {
     "LENS": ["lens_x", "->lens_up", "sample_disk(u"],
     "LAMPS": [],  # NEEDING_OTHERS
     "DISCS": ["disc_contains", "discs_radiance"],
-    "TEXTURES": ["turn_of", "lattice_axis", "checker_colour", "vary_surface"],
+    "TEXTURES": ["lattice_axis", "checker_colour", "vary_surface"],
     "NOISE": [],  # TOGETHER
+    "IMAGES": [],  # TOGETHER
+    "ENVIRONMENT": ["environment_radiance", "has_environment"],
     "TREE": ["BoxRay", "leaf_children"],  # no effect, but looked for in the same way
 }
 # Code that several effects share.
@@ -43,14 +45,17 @@ SHARED = {
     "random_ball_radius": {"LAMBERTIAN", "METAL"},
     "surface->variant = ": {"METAL", "DIELECTRIC"},
     "throughput, emitted": {"EMISSION", "NORMALS"},
+    "turn_of": {"TEXTURES", "ENVIRONMENT"},
 }
 # Code that needs all of these.
-TOGETHER = {"gradient_noise": {"TEXTURES", "NOISE"}, "pattern_colour": {"TEXTURES", "NOISE"}}
+TOGETHER = {"gradient_noise": {"TEXTURES", "NOISE"}, "pattern_colour": {"TEXTURES", "NOISE"},
+            "image_texture": {"TEXTURES", "IMAGES"}}
 # Code that needs LAMPS, something to be lit, and one of the effects named.
 LIT = {"LAMBERTIAN", "METAL"}
 NEEDING_OTHERS = {
-    "choose_lamp": {"EMISSION"}, "lamp_hit_weight": {"EMISSION"}, "choose_disc": {"DISCS"}, "disc_hit_weight": {"DISCS"},
-    "wants_lamps": {"EMISSION", "DISCS"}, "first_seen": {"EMISSION", "DISCS"},
+    "choose_lamp": {"EMISSION"}, "lamp_hit_weight": {"EMISSION"}, "disc_importance": {"DISCS"}, "disc_hit_weight": {"DISCS"},
+    "choose_disc": {"DISCS", "ENVIRONMENT"}, "sample_environment": {"ENVIRONMENT"}, "environment_hit_weight": {"ENVIRONMENT"},
+    "wants_lamps": {"EMISSION", "DISCS", "ENVIRONMENT"}, "first_seen": {"EMISSION", "DISCS", "ENVIRONMENT"},
 }
 
 

@@ -1,6 +1,7 @@
 /* test_scene_documents.c: good scene documents: defaults, every member, every file of scenes/, what is
  * written and made. */
 #include "formats/document.h"
+#include "formats/scene_parse.h"
 #include "scene/scene.h"
 
 #include <glob.h>
@@ -260,6 +261,8 @@ static void every_file(void **state) {
         if (bp_scene_load(path, &scene, &err) != BP_OK)
             fail_msg("%s:%d:%d: %s", path, err.line, err.column, err.message);
         assert_true(scene->title[0] != '\0' && scene->source[0] != '\0'); /* the gallery shows them */
+        for (size_t k = 0; k < scene->image_count; k++)                   /* since it is written elsewhere */
+            assert_int_equal(bp_image_move(path, "/elsewhere/x.json", scene->images[k], &err), BP_OK);
         assert_written_reads_back(scene, path);
         bp_scene_destroy(&scene);
         count++;

@@ -130,11 +130,12 @@ static void refused_with_place_and_remedy(void **state) {
 #define ONE(members) SCENE("\"squares\": { " members " }", MATTE)
 #define CHECKER "\"type\": \"checker\", \"colors\": [0, 1]"
 #define NOISE "\"type\": \"noise\", \"colors\": [0, 1]"
+#define IMAGE "\"type\": \"image\""
 #define OVER CHECKER ", \"mapping\": \"surface\""
     static const Case cases[] = {
         {"{ \"camera\": {}, \"textures\": [] }", {"textures: found a list", "\"squares\""}},
         {SCENE("\"squares\": 3", MATTE), {"textures.squares: found 3", "an object"}},
-        {ONE(""), {"textures.squares: found no \"type\"", "\"checker\" or \"noise\""}},
+        {ONE(""), {"textures.squares: found no \"type\"", "\"checker\", \"noise\" or \"image\""}},
         {ONE("\"type\": \"cheker\", \"colors\": [0, 1]"),
          {"textures.squares.type", "did you mean \"checker\""}},
         {ONE("\"type\": \"checker\""), {"textures.squares: found no \"colors\"", "two"}},
@@ -181,6 +182,26 @@ static void refused_with_place_and_remedy(void **state) {
          {"textures.squares.period: found 0", "length of a wave"}},
         {ONE(NOISE ", \"pattern\": \"marble\", \"distortion\": -1"),
          {"textures.squares.distortion: found -1", "0 to 1000"}},
+        {ONE(IMAGE), {"textures.squares: found no \"file\"", "PNG, EXR or PFM"}},
+        {ONE(IMAGE ", \"file\": 1"), {"textures.squares.file: found 1", "text"}},
+        {ONE(IMAGE ", \"file\": \"none.png\""), {"textures.squares.file: \"none.png\"", "cannot open"}},
+        {ONE(IMAGE ", \"file\": \".\""), {"textures.squares.file: \".\"", "found a directory"}},
+        {ONE(IMAGE ", \"file\": \"a\", \"colors\": [0, 1]"),
+         {"textures.squares.colors: found in a texture", "a checker or noise"}},
+        {ONE(IMAGE ", \"file\": \"a\", \"mapping\": \"surface\""),
+         {"textures.squares.mapping: found in a texture", "an image on the surface"}},
+        {ONE(IMAGE ", \"file\": \"a\", \"encoding\": \"rgb\""),
+         {"textures.squares.encoding: found the text \"rgb\"", "\"srgb\" or \"linear\""}},
+        {ONE(IMAGE ", \"file\": \"a\", \"scale\": -1"), {"textures.squares.scale: found -1", "0 to 1e12"}},
+        {ONE(IMAGE ", \"file\": \"a\", \"wrap\": \"mirror\""),
+         {"textures.squares.wrap: found the text \"mirror\"", "\"repeat\" or \"clamp\""}},
+        {ONE(OVER ", \"file\": \"a\""), {"textures.squares.file: found in a texture", "an image"}},
+        {"{ \"camera\": {}, \"background\": { \"turn\": 1 } }",
+         {"background.turn: found in a background that is no image", "\"image\""}},
+        {"{ \"camera\": {}, \"background\": { \"image\": \"a\", \"top\": [1, 1, 1] } }",
+         {"background.top: found beside \"image\"", "remove one"}},
+        {"{ \"camera\": {}, \"background\": { \"image\": \"none.exr\" } }",
+         {"background.image: \"none.exr\"", "cannot open"}},
         {SCENE(SQUARES, "\"m\": { \"type\": \"lambertian\", \"albedo\": { \"texture\": \"square\" } }"),
          {"materials.m.albedo.texture: found the texture \"square\"", "did you mean \"squares\""}},
         {SCENE("", MATTE), {"materials.m.albedo.texture: found the texture \"squares\"", "add it there"}},

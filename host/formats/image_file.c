@@ -1,0 +1,66 @@
+/* image_file.c: see image_file.h. */
+#include "image_file.h"
+
+#include <inttypes.h>
+#include <stdarg.h>
+#include <string.h>
+
+BpStatus bp_image_fail(const BpImageInput *input, BpError *err, const char *format, ...) {
+    char text[512];
+    va_list arguments;
+    va_start(arguments, format);
+    vsnprintf(text, sizeof text, format, arguments);
+    va_end(arguments);
+    const BpStatus status = bp_fail(err, ferror(input->stream) ? BP_ERR_FILE : BP_ERR_SCENE, "%s%s",
+                                    ferror(input->stream) ? "reading failed: " : "", text);
+    bp_error_at(err, input->path, 0, 0);
+    return status;
+}
+
+BpStatus bp_image_allocate(const BpImageInput *input, uint64_t width, uint64_t height, BpImage **image,
+                           BpError *err) {
+    if (width < 1 || height < 1 || width > BP_IMAGE_SIDE_MAX || height > BP_IMAGE_SIDE_MAX)
+        return bp_image_fail(input, err,
+                             "found an image of %" PRIu64 " by %" PRIu64 " texels, expected sides of 1 to %u",
+                             width, height, BP_IMAGE_SIDE_MAX);
+    if (width * height > input->texels_max)
+        return bp_image_fail(input, err,
+                             "found an image of %" PRIu64 " by %" PRIu64 " texels, expected at most %" PRIu64
+                             " texels in all images of a scene, of which "
+                             "%" PRIu64 " are left; use a smaller image",
+                             width, height, BP_IMAGE_TEXELS_MAX, input->texels_max);
+    return bp_texels_create((uint32_t)width, (uint32_t)height, image, err);
+}
+
+BpStatus bp_image_read(FILE *stream, uint64_t size, const char *path, BpEncoding encoding, double scale,
+                       uint64_t texels_max, BpImage **image, BpError *err) {
+    static const struct {
+        unsigned char first[4];
+        size_t count;
+        BpStatus (*read)(const BpImageInput *input, BpImage **image, BpError *err);
+    } formats[] = {{{0x89, 'P', 'N', 'G'}, 4, bp_image_read_png},
+                   {{0x76, 0x2f, 0x31, 0x01}, 4, bp_image_read_exr},
+                   {{'P', 'F'}, 2, bp_image_read_pfm},
+                   {{'P', 'f'}, 2, bp_image_read_pfm}};
+    const BpImageInput input = {stream, size, path, encoding != BP_ENCODING_LINEAR, texels_max};
+    unsigned char first[4] = {0};
+    *image = NULL;
+    const size_t count = fread(first, 1, sizeof first, stream);
+    rewind(stream);
+    for (size_t i = 0; i < sizeof formats / sizeof formats[0]; i++) {
+        if (count < formats[i].count || memcmp(first, formats[i].first, formats[i].count) != 0) continue;
+        if (encoding == BP_ENCODING_SRGB && formats[i].read != bp_image_read_png)
+            return bp_image_fail(&input, err,
+                                 "found an EXR or PFM file, whose numbers are linear, expected no "
+                                 "\"encoding\": \"srgb\"; remove it");
+        BpStatus status = formats[i].read(&input, image, err);
+        if (status == BP_OK) status = bp_texels_finish(*image, scale, path, err);
+        if (status == BP_OK)
+            (*image)->encoding = encoding;
+        else
+            bp_texels_destroy(image);
+        return status;
+    }
+    return bp_image_fail(&input, err, "found %s, expected an image: PNG, OpenEXR or PFM",
+                         count == 0 ? "an empty file" : "another kind of file");
+}

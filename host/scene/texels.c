@@ -1,0 +1,95 @@
+/* texels.c: see texels.h. */
+#include "texels.h"
+
+#include "base/color.h"
+#include "scene.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#define PI 3.14159265358979323846
+
+BpStatus bp_texels_create(uint32_t width, uint32_t height, BpImage **image, BpError *err) {
+    *image = calloc(1, sizeof **image);
+    /* Zeroed by the system: what a damaged file never fills takes no memory. */
+    float *texels = calloc((size_t)width * height, 3 * sizeof *texels);
+    if (*image == NULL || texels == NULL) {
+        free(texels);
+        free(*image);
+        *image = NULL;
+        return bp_fail(err, BP_ERR_MEMORY, "out of memory for an image of %u by %u texels", (unsigned)width,
+                       (unsigned)height);
+    }
+    (*image)->width = width;
+    (*image)->height = height;
+    (*image)->texels = texels;
+    (*image)->scale = 1;
+    return BP_OK;
+}
+
+void bp_texels_destroy(BpImage **image) {
+    if (image == NULL || *image == NULL) return;
+    free((*image)->file);
+    free((*image)->texels);
+    free(*image);
+    *image = NULL;
+}
+
+static BpStatus refuse_texel(const BpImage *image, size_t place, double scale, const char *path,
+                             BpError *err) {
+    static const char *const channels[] = {"red", "green", "blue"};
+    const size_t texel = place / 3;
+    char found[32];
+    snprintf(found, sizeof found, "%.6g", (double)image->texels[place]);
+    if (isnan(image->texels[place])) memcpy(found, "NaN", sizeof "NaN");
+    const BpStatus status =
+        bp_fail(err, BP_ERR_SCENE,
+                "found %s as the %s of the texel in column %zu of row %zu (from 0, row 0 on top), expected 0 "
+                "to %g%s; correct the image",
+                found, channels[place % 3], texel % image->width, texel / image->width,
+                BP_RADIANCE_MAX / fmax(scale, 1), scale > 1 ? ", which the scale then multiplies" : "");
+    bp_error_at(err, path, 0, 0);
+    return status;
+}
+
+/* FNV-1a with 32-bit words, as film_scene.c hashes. */
+static uint64_t mix(uint64_t hash, uint32_t word) {
+    hash = (hash ^ word) * 0x100000001b3u;
+    return hash ^ hash >> 32;
+}
+
+BpStatus bp_texels_finish(BpImage *image, double scale, const char *path, BpError *err) {
+    const size_t width = image->width, height = image->height;
+    double sum = 0, squares = 0;
+    image->scale = scale;
+    image->is_gray = true;
+    image->hash = mix(mix(0xcbf29ce484222325u, image->width), image->height);
+    for (size_t row = 0; row < height; row++) {
+        double row_sum = 0, row_squares = 0;
+        for (size_t i = 3 * row * width; i < 3 * (row + 1) * width; i += 3) {
+            float *const texel = image->texels + i;
+            for (size_t c = 0; c < 3; c++) {
+                const double value = (double)texel[c] * scale;
+                if (!(value >= 0 && value <= BP_RADIANCE_MAX))
+                    return refuse_texel(image, i + c, scale, path, err);
+                texel[c] = (float)value + 0.0f; /* -0 becomes 0 */
+                image->bound[c] = fmax(image->bound[c], (double)texel[c]);
+                uint32_t bits;
+                memcpy(&bits, &texel[c], sizeof bits);
+                image->hash = mix(image->hash, bits);
+            }
+            image->is_gray = image->is_gray && texel[0] == texel[1] && texel[0] == texel[2];
+            const double luminance = bp_luminance(texel);
+            row_sum += luminance;
+            row_squares += luminance * luminance;
+        }
+        /* The share of the sphere that a row covers is a difference of cosines, by this product. */
+        const double share = sin(PI * ((double)row + 0.5) / (double)height) * sin(PI / (2 * (double)height));
+        sum += row_sum / (double)width * share;
+        squares += row_squares / (double)width * share;
+    }
+    image->mean = sum;
+    image->spread = sum > 0 ? sqrt(fmax(squares / (sum * sum) - 1, 0)) : 0;
+    return BP_OK;
+}
