@@ -39,6 +39,11 @@ def texture_cells(*names):
     return Script("tests/textures/test_texture_cells.py", names, "9 textures")
 
 
+def images(*names):
+    """Tests of tests/textures/test_images.py."""
+    return Script("tests/textures/test_images.py", tuple(f"Images.test_{name}" for name in names), "9 textures")
+
+
 def patch(path, find, replace):
     return (path, find, replace)
 
@@ -664,6 +669,44 @@ MUTANTS = [
     Mutant("the axis of the rings rounded", "classic: a difference of floats, far away",
            [patch(PACK, "packed->centre_low[a] = -from[a] - packed->centre[a];", "packed->centre_low[a] = 0;")],
            [texture_cells("wood, its axis 2e6 away")]),
+    # ---- images --------------------------------------------------------------------------------------------
+    Mutant("a seam between the edges", "classic: an image that is clamped where it is a ring",
+           [patch(KERNEL, "const vreal beyond_left = choose(image->ring, last_column, splat(0));", "const vreal beyond_left = splat(0);")],
+           [images("poles_and_seam")]),
+    Mutant("the nearest texel", "classic: no filter", [patch(KERNEL, "share_right = across - column,", "share_right = splat(0) * (across - column),")],
+           [check("image-globe")]),
+    Mutant("half a texel off", "classic: texels at their corners",
+           [patch(KERNEL, "const vreal across = x - splat(R(0.5)), down", "const vreal across = x, down")], [check("image-globe")]),
+    Mutant("images upside down", "second book: v without the flip", [patch(KERNEL, "(splat(1) - v) * downwards", "v * downwards")],
+           [check("image-globe")]),
+    Mutant("an image around in a mirror", "classic: seen from outside",
+           [patch("host/scene/scene.c", "bp_texture_frame(&frame, east, seam, pole);", "bp_texture_frame(&frame, seam, east, pole);")],
+           [check("environment")]),
+    Mutant("an image around hits count whole", "no weight at hits: sampled and hit, twice the light",
+           [patch(KERNEL, "return scale3(environment_hit_weight(scene, path, escaped), radiance);", "return radiance;")], [lamp_cases(71)]),
+    Mutant("a texel's probability in its row alone", "the row forgotten",
+           [patch(KERNEL, "cell.probability = share_of(row_low, row_high) * share_of(low, high);", "cell.probability = share_of(low, high);")],
+           [lamp_cases(71)]),
+    Mutant("rows of equal height", "classic: latitude drawn as if the sphere were a cylinder",
+           [patch("host/packed/environment_table.c", "table->heights[i] = sine * sine;", "table->heights[i] = sine;")], [lamp_cases(71)]),
+    Mutant("an image chosen without a share in the sum", "sampling that hits do not know of",
+           [patch(KERNEL, "discs += environment_importance(scene);", "discs += splat(R(0.5)) * environment_importance(scene);")],
+           [lamp_cases(73)]),
+    Mutant("a texel as wide as its cone", "the number that chose used for a cone too",
+           [patch(KERNEL, "choice->rest = choose(around, splat(0), choice->rest);", "(void)0;")], [lamp_cases(71)]),
+    Mutant("the sums do not expect an image around", "the brightest sphere alone sets the scale",
+           [patch("host/film/film_scene.c", "brightest = brightest_lamp = largest(scene->environment->bound);", "(void)0;")], [lamp_cases(74)]),
+    Mutant("sRGB taken for light", "classic: textures too bright",
+           [patch("host/formats/image_png.c", "srgb ? bp_linear_from_srgb(share) : share", "srgb ? share : share")], [images("srgb_and_scale")]),
+    Mutant("a PFM from the top", "classic: its rows upside down",
+           [patch("host/formats/image_pfm.c", "image->texels[3 * width * row + i]", "image->texels[3 * width * (image->height - 1 - row) + i]")],
+           [images("formats")]),
+    Mutant("NaN texels pass", "classic: comparisons that NaN escapes",
+           [patch("host/scene/texels.c", "if (!(value >= 0 && value <= BP_RADIANCE_MAX))", "if (value < 0 || value > BP_RADIANCE_MAX)")],
+           [images("texels_have_their_place")]),
+    Mutant("films of other images", "this program: a merge of two pictures",
+           [patch("host/film/film_scene.c", "mix(mix(hash, texture->image->hash), (uint64_t)texture->wrap)", "mix(hash, (uint64_t)texture->wrap)")],
+           [images("films_of_other_images_do_not_merge")]),
     # ---- files ---------------------------------------------------------------------------------------------
     Mutant("set-ID bits handed on", "classic: the mode of a replaced file, all of it",
            [patch("host/base/output_file.c", "replaced->st_mode & 0777;", "replaced->st_mode & 07777;")],

@@ -133,6 +133,8 @@ def main():
     # The reasons, for the summary of scripts/test.
     for reason in dict.fromkeys(reason for _, reason in result.skipped):
         print(f"skipped: {reason}")
+    for test, text in result.failures + result.errors:
+        print(f"{test.id()} FAILED: {text.strip().splitlines()[-1]}")  # for what runs single tests, as the mutants do
     if not result.wasSuccessful():
         sys.exit(1)
     # A class that is skipped as a whole is in the list, but none of its tests was begun.
