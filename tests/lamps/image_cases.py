@@ -10,7 +10,7 @@ its right half towards x; the colour is bilinear, and at the poles that of the n
 import math
 import struct
 
-from cases import (ALBEDO, BLACK, LIGHT, PI, POINT_NORMAL, Case, add, dot, lambertian, lamp, lamp_at, lit, metal, on_unit_sphere, scale,
+from cases import (BLACK, LIGHT, PI, POINT_NORMAL, Case, add, dot, lambertian, lamp, lamp_at, lit, metal, on_unit_sphere, scale,
                    sphere, towards)
 from disc_cases import disc
 import forms

@@ -295,7 +295,9 @@ class Images(ProgramTest):
         self.write("a.png", b"\x89PNG\r\n\x1a\n" + images.chunk(b"IHDR", head) + images.chunk(b"IDAT", b"".join(data)) +
                    images.chunk(b"IEND", b""))
         background = {"image": "a.png", "scale": 1e5}
-        self.write("s.json", scene(background=background))
+        # One sphere that fills the picture, under light from one side: no shadows, no edges.
+        self.write("s.json", scene(background=background, spheres=[{"center": [0, -100, 0], "radius": 100, "material": "m"}],
+                                   camera={"lookfrom": [0, 3, 3], "lookat": [0, 0, 0], "vfov": 20}))
         self.succeed("render", "s.json", "-q", "-o", "x.pfm", "--spp", 256, "--stats", "x.json")
         stats = json.loads(self.read("x.json"))
         self.assertTrue(stats["nrmse"] < 0.05 and stats["mean_radiance"][0] > 0, stats)
