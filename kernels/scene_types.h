@@ -160,6 +160,9 @@ typedef struct PackedVariation {
  * in the scene (NO_SPHERE when empty); `slot_material`; `slot_albedo`, ALBEDO_REALS each. Sizes in reals: */
 #define LEAF_REALS(width) (4 * (width))
 #define ALBEDO_REALS 3
+/* How far a leaf's spheres move while the shutter is open: width reals each of x, y, z; -0 where they do not,
+ * which leaves every centre as it is. Empty where no sphere of the scene moves and no kernel asks. */
+#define MOTION_REALS(width) (3 * (width))
 /* A node is `width` child boxes as structure of arrays: low x, y, z, high x, y, z, width reals each. Empty
  * lanes have low > high. Its `width` child words stand in a buffer of their own. */
 #define NODE_REALS(width) (6 * (width))
@@ -191,11 +194,11 @@ typedef struct PackedVariation {
  * release (render/worker_buffers.c). Only what fills an array knows more of it.
  *
  * X(numbers, element, name, count, what): `numbers` is REALS or UINTS, what `element` is made of; `count`
- * says how many elements there are, in terms of `width` (of the tree), `nodes`, `leaf_count`, `slots`,
- * `material_count`, `texture_count`, `disc_count`, `lamp_nodes` and `lamp_slots`; `what` is how a message
- * calls it. Arrays of the first list are pack.c's, of the second the tree of lamps', of the third the tree's.
- * Materials are arrays of numbers here, since Mesa's rusticl (22.3) gathers wrong ones through a pointer to
- * structs that is cast inside a loop. */
+ * says how many elements there are, in terms of `width` (of the tree), `nodes`, `leaf_count`,
+ * `motion_leaves`, `slots`, `material_count`, `texture_count`, `disc_count`, `lamp_nodes` and `lamp_slots`;
+ * `what` is how a message calls it. Arrays of the first list are pack.c's, of the second the tree of lamps',
+ * of the third the tree's. Materials are arrays of numbers here, since Mesa's rusticl (22.3) gathers wrong
+ * ones through a pointer to structs that is cast inside a loop. */
 #define MATERIAL_REALS ((packed_uint)(sizeof(PackedMaterial) / sizeof(real)))
 #define MATERIAL_UINTS ((packed_uint)(sizeof(PackedMaterialKind) / sizeof(packed_uint)))
 #define DISC_REALS ((packed_uint)(sizeof(PackedDisc) / sizeof(real)))
@@ -222,6 +225,7 @@ typedef struct PackedVariation {
     X(REALS, real, node_boxes, nodes * NODE_REALS(width), "the tree's boxes")                                \
     X(UINTS, packed_uint, children, nodes * width, "the tree's nodes")                                       \
     X(REALS, real, leaves, leaf_count * LEAF_REALS(width), "the spheres")                                    \
+    X(REALS, real, leaf_motions, motion_leaves * MOTION_REALS(width), "the spheres' motions")                 \
     X(UINTS, packed_uint, slot_sphere, slots, "the spheres' numbers")
 #define SCENE_NUMBERS(X)                                                                                     \
     X(first_leaves) X(leaf_count) X(pixel_center) X(max_depth) X(seed_low) X(seed_high) X(replicates) X(width)

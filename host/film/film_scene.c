@@ -218,6 +218,8 @@ uint64_t bp_scene_hash(const BpScene *scene) {
         if (sphere->material != known) material_hash = hash_material(&scene->materials[sphere->material]);
         known = sphere->material;
         hash = mix_sphere(mix(hash, material_hash), scene, sphere);
+        if (bp_sphere_moves(scene, i))
+            hash = mix_reals(mix(hash, 0x6d6f76657321u), bp_sphere_end(scene, i), 3);
     }
     return hash;
 }

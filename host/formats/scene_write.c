@@ -322,6 +322,10 @@ static BpStatus put_spheres(FILE *out, const BpScene *scene, BpError *err) {
         put_number(out, sphere->radius);
         fputs(", \"material\": ", out);
         BP_TRY(put_text(out, scene->materials[sphere->material].name, err));
+        if (bp_sphere_moves(scene, i)) {
+            fputs(", \"center_end\": ", out);
+            put_vector(out, bp_sphere_end(scene, i));
+        }
         fputs(" }", out);
     }
     fputs("\n  ]", out);

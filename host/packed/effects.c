@@ -117,6 +117,18 @@ static uint32_t count_uses(const BpScene *scene, Use uses[BP_EFFECT_COUNT], Use 
     return bits;
 }
 
+/* Whether a sphere moves. */
+static bool explain_motion(const BpScene *scene, size_t size, char *reason) {
+    size_t moving = 0;
+    for (size_t i = 0; i < scene->moving_count; ++i) moving += bp_sphere_moves(scene, i);
+    if (moving > 0)
+        snprintf(reason, size, "%zu of %zu sphere%s move%s", moving, scene->sphere_count,
+                 bp_plural(scene->sphere_count), moving == 1 ? "s" : "");
+    else
+        snprintf(reason, size, "no sphere moves");
+    return moving > 0;
+}
+
 #define NO_LAMP_REASON "no sphere gives light, and no disc of the sky"
 
 static size_t bright_discs(const BpScene *scene) {
@@ -163,7 +175,7 @@ static bool sky_outshines_lamps(const BpScene *scene) {
         const double *from = scene->camera.lookfrom;
         const double x = from[0] - sphere->center[0], y = from[1] - sphere->center[1],
                      z = from[2] - sphere->center[2];
-        if (hypot(hypot(x, y), z) < fabs(sphere->radius)) return false;
+        if (hypot(hypot(x, y), z) < fabs(sphere->radius) || bp_sphere_moves(scene, i)) return false;
     }
     return true;
 }
@@ -174,16 +186,20 @@ static bool explain_lamps(const BpScene *scene, size_t size, char *reason) {
     const size_t discs = bright_discs(scene);
     char all[96];
     const size_t enclosing = bp_enclosing_lamp(scene);
-    size_t lamps = 0, lit = 0, both = 0;
+    size_t lamps = 0, lit = 0, both = 0, moving = 0;
     for (size_t i = 0; i < scene->sphere_count; ++i) {
-        const bool is_lamp = i != enclosing && bp_sphere_emits(scene, i);
+        const bool is_lamp = bp_sphere_is_sampled(scene, i, enclosing);
+        moving += bp_sphere_emits(scene, i) && bp_sphere_moves(scene, i);
         const bool is_lit = bp_material_is_lit(&scene->materials[scene->spheres[i].material]);
         lamps += is_lamp;
         lit += is_lit;
         both += is_lamp && is_lit;
     }
     name_lamps(lamps, discs, sizeof all, all);
-    if (lamps + discs == 0)
+    if (lamps + discs == 0 && moving > 0)
+        snprintf(reason, size, "the only lamp%s move%s: paths find %s by chance", bp_plural(moving),
+                 moving == 1 ? "s" : "", moving == 1 ? "it" : "them");
+    else if (lamps + discs == 0)
         snprintf(reason, size,
                  enclosing != SIZE_MAX ? "the only lamp surrounds everything: every path finds it"
                                        : NO_LAMP_REASON);
@@ -195,7 +211,10 @@ static bool explain_lamps(const BpScene *scene, size_t size, char *reason) {
         snprintf(reason, size, "%zu lamp%s, %s brighter than the sky", lamps, bp_plural(lamps),
                  lamps == 1 ? "not" : "none of them");
     else {
-        snprintf(reason, size, "%s that can light %zu sphere%s", all, lit, bp_plural(lit));
+        const int used = snprintf(reason, size, "%s that can light %zu sphere%s", all, lit, bp_plural(lit));
+        if (moving > 0)
+            snprintf(reason + used, size - (size_t)used, "; %zu that move%s %s found by chance", moving,
+                     moving == 1 ? "s" : "", moving == 1 ? "is" : "are");
         return true;
     }
     return false;
@@ -254,6 +273,8 @@ void bp_effects_analyse(const BpScene *scene, BpEffects *effects) {
     if (explain_discs(scene, size, effects->reason[BP_EFFECT_DISCS])) effects->bits |= 1u << BP_EFFECT_DISCS;
     for (int e = BP_EFFECT_TEXTURES; e <= BP_EFFECT_NOISE; ++e)
         if (explain_textures(scene, e == BP_EFFECT_NOISE, size, effects->reason[e])) effects->bits |= 1u << e;
+    if (explain_motion(scene, size, effects->reason[BP_EFFECT_MOTION]))
+        effects->bits |= 1u << BP_EFFECT_MOTION;
     if ((effects->bits & (1u << BP_EFFECT_EMISSION | 1u << BP_EFFECT_DISCS)) == 0)
         snprintf(effects->reason[BP_EFFECT_LAMPS], size,
                  NO_LAMP_REASON); /* without another look at all spheres */

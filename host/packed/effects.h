@@ -26,7 +26,8 @@
     X(LAMPS, "lamps", "rays to lamps, from surfaces that scatter into many directions", "", "")              \
     X(DISCS, "discs", "lamps at infinity: discs in the sky", "", "")                                         \
     X(TEXTURES, "textures", "colours, fuzz and light that vary over surfaces: checkers", "", "")             \
-    X(NOISE, "noise", "textures of gradient noise: turbulence, marble, wood", "", "")
+    X(NOISE, "noise", "textures of gradient noise: turbulence, marble, wood", "", "")                        \
+    X(MOTION, "motion", "spheres that move while the shutter is open", "", "")
 
 typedef enum BpEffect {
 #define BP_EFFECT_ENUM(identifier, name, text, left_out, absent) BP_EFFECT_##identifier,

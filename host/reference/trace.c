@@ -3,19 +3,27 @@
 
 #include <float.h>
 
+/* Where the sphere is at the ray's time. */
+static Vec center_of(const BpScene *scene, const Ray *ray, const BpSphere *sphere) {
+    const size_t i = (size_t)(sphere - scene->spheres);
+    const Vec first = vec(sphere->center);
+    if (i >= scene->moving_count) return first;
+    return add(scale(1 - ray->time, first), scale(ray->time, vec(scene->center_ends[i])));
+}
+
 /* A ray that starts on a sphere starts also on every other one of the same place and size. A camera may stand
  * on a sphere too: within the rounding of the numbers that place both. */
-static bool starts_on(const Ray *ray, const BpSphere *sphere) {
+static bool starts_on(const BpScene *scene, const Ray *ray, const BpSphere *sphere) {
     const BpSphere *from = ray->leaves;
     if (from == sphere) return true;
     if (from == NULL) {
-        const Vec center = vec(sphere->center);
+        const Vec center = center_of(scene, ray, sphere);
         const double radius = fabs(sphere->radius), distance = sqrt(length2(sub(center, ray->origin)));
         const double size = sqrt(length2(center)) + sqrt(length2(ray->origin)) + radius;
         return fabs(distance - radius) <= 4 * DBL_EPSILON * size;
     }
-    return fabs(from->radius) == fabs(sphere->radius) && from->center[0] == sphere->center[0] &&
-           from->center[1] == sphere->center[1] && from->center[2] == sphere->center[2];
+    const Vec a = center_of(scene, ray, from), b = center_of(scene, ray, sphere);
+    return fabs(from->radius) == fabs(sphere->radius) && a.x == b.x && a.y == b.y && a.z == b.z;
 }
 
 /* The book's quadratic a t^2 - 2 h t + c = 0, two ways of it:
@@ -24,11 +32,12 @@ static bool starts_on(const Ray *ray, const BpSphere *sphere) {
  * - Else the discriminant comes from the perpendicular distance to the centre (Haines et al., "Precision
  *   improvements for ray/sphere intersection", Ray Tracing Gems, 2019): h^2 - a c would cancel for a small
  *   sphere far away. */
-static bool hit_sphere(const BpSphere *sphere, const Ray *ray, double t_max, double *t) {
-    const Vec oc = sub(vec(sphere->center), ray->origin);
+static bool hit_sphere(const BpScene *scene, const BpSphere *sphere, const Ray *ray, double t_max,
+                       double *t) {
+    const Vec oc = sub(center_of(scene, ray, sphere), ray->origin);
     const double a = length2(ray->direction), h = dot(ray->direction, oc);
     double root;
-    if (starts_on(ray, sphere)) {
+    if (starts_on(scene, ray, sphere)) {
         root = 2 * h / a;
     } else {
         const double r = sphere->radius;
@@ -47,13 +56,14 @@ bool bp_ref_hit(const BpScene *scene, const Ray *ray, Hit *hit) {
     double closest = INFINITY;
     const BpSphere *sphere = NULL;
     for (size_t i = 0; i < scene->sphere_count; ++i)
-        if (hit_sphere(&scene->spheres[i], ray, closest, &closest)) sphere = &scene->spheres[i];
+        if (hit_sphere(scene, &scene->spheres[i], ray, closest, &closest)) sphere = &scene->spheres[i];
     if (sphere == NULL) return false;
 
     hit->t = closest;
     hit->sphere = sphere;
     hit->material = &scene->materials[sphere->material];
-    const Vec point = add(ray->origin, scale(closest, ray->direction)), center = vec(sphere->center);
+    const Vec point = add(ray->origin, scale(closest, ray->direction)),
+              center = center_of(scene, ray, sphere);
     /* unit() removes the error that rounding left in the radius, so that the point lies on the sphere. */
     const Vec radial = unit(sub(point, center));
     hit->point = add(center, scale(fabs(sphere->radius), radial));
@@ -116,6 +126,6 @@ Vec bp_ref_color(const BpScene *scene, const Ray *ray, uint32_t depth, Random *r
         emitted = add(emitted, scale(0.5, add(hit.normal, (Vec){1, 1, 1})));
     Vec direction, attenuation;
     if (!bp_ref_scatter(scene, ray, &hit, random, &direction, &attenuation)) return emitted;
-    const Ray scattered = {hit.point, direction, hit.sphere};
+    const Ray scattered = {hit.point, direction, hit.sphere, ray->time};
     return add(emitted, mul(attenuation, bp_ref_color(scene, &scattered, depth - 1, random, path)));
 }

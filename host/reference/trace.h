@@ -11,6 +11,7 @@
 typedef struct Ray {
     Vec origin, direction;  /* the direction need not be of unit length */
     const BpSphere *leaves; /* the sphere whose surface the origin lies on, or NULL */
+    double time;            /* 0 when the shutter opens, 1 when it closes */
 } Ray;
 
 typedef struct Hit {

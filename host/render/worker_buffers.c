@@ -26,7 +26,7 @@ static BpStatus create_buffer(BpWorker *worker, cl_mem *buffer, uint64_t bytes, 
 BpStatus bp_worker_upload_scene(BpWorker *worker, const BpPacked *packed, BpError *err) {
     const BpTree *tree = &packed->tree;
     const uint64_t width = tree->width, nodes = tree->node_count, leaf_count = tree->leaf_count;
-    const uint64_t slots = leaf_count * width;
+    const uint64_t slots = leaf_count * width, motion_leaves = tree->motion_leaves;
     const uint64_t lamp_nodes = packed->lamps.node_count, lamp_slots = packed->lamps.slot_count;
     const uint64_t disc_count = packed->disc_count, texture_count = packed->texture_count;
     const uint64_t material_count = packed->material_count > 0 ? packed->material_count : 1;

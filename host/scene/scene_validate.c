@@ -196,13 +196,16 @@ static bool disc_fault(const BpDisc *disc, BpFault *fault) {
                        "radiances from 0 to 1e12");
 }
 
-/* A pinhole may stand on one sphere. If it stood on two, its rays would have to leave both. */
+/* A pinhole may stand on one sphere. If it stood on two, its rays would have to leave both. One that moves is
+ * there for no time at all. */
 static bool standpoint_fault(const BpScene *scene, BpFault *fault) {
     char a[BP_SPHERE_NAME_SIZE], b[BP_SPHERE_NAME_SIZE];
     size_t found = 0, first = 0;
     if (scene->camera.lens_radius > 0 || scene->camera.projection == BP_ORTHOGRAPHIC) return false;
     for (size_t i = 0; i < scene->sphere_count; i++) {
-        if (bp_sphere_side(&scene->spheres[i], scene->camera.lookfrom) != BP_SIDE_ON) continue;
+        if (bp_sphere_side(&scene->spheres[i], scene->camera.lookfrom) != BP_SIDE_ON ||
+            bp_sphere_moves(scene, i))
+            continue;
         if (found++ > 0)
             return set_fault(fault, BP_FAULT_CAMERA, "lookfrom",
                              "found a point on the surfaces of both %s and %s, expected at most one surface: "
@@ -242,6 +245,9 @@ BpStatus bp_scene_find_fault(const BpScene *scene, BpFault *fault, BpError *err)
         const BpSphere *sphere = &scene->spheres[i];
         fault->index = i;
         if (bp_sphere_find_fault(sphere, fault)) return BP_OK;
+        if (i < scene->moving_count &&
+            coordinates_outside(fault, BP_FAULT_SPHERE, "center_end", scene->center_ends[i]))
+            return BP_OK;
         if (sphere->material >= scene->material_count) {
             set_fault(fault, BP_FAULT_SPHERE, "material", "found number %u, expected one of %zu materials",
                       (unsigned)sphere->material, scene->material_count);

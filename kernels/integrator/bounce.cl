@@ -34,7 +34,7 @@ static void trace_bounce(const Scene *scene, Path *path) {
     Surface surface;
     Vec3 outward, emitted;
     Point point;
-    fetch_surface(scene, &hit, &sphere, &surface, &emitted);
+    fetch_surface(scene, &ray, &hit, &sphere, &surface, &emitted);
     sphere_surface(&ray, &sphere, hit.slot, hit.t, hit.enters, &point, &outward);
     surface.incoming = path->direction;
     surface.enters = hit.enters;

@@ -11,6 +11,9 @@ typedef struct Path {
     vuint own_slot; /* of the sphere being left */
     vbool inward;   /* it is left into its inside */
     vbool alive;
+#if EFFECT_MOTION
+    vreal time;
+#endif
 #if SAMPLES_LAMPS
     Lobe lobe;          /* that `direction` was drawn from; of LOBE_NONE where no lamp is sampled */
     vreal lamp_sum;    /* of importance, seen from the latest vertex: lamps.cl */
@@ -44,6 +47,9 @@ static Ray path_ray(const Path *path) {
     ray.cull_margin = cull_margin_of(&path->origin);
     ray.own_slot = path->own_slot;
     ray.inward = path->inward;
+#if EFFECT_MOTION
+    ray.time = path->time;
+#endif
     return ray;
 }
 
@@ -70,6 +76,9 @@ static void path_init(__global const PackedCamera *camera, SampleKey key, Vec3 o
     path->own_slot = choose_uint(fresh, splat_uint(own_slot), path->own_slot);
     path->inward = (fresh & inward) | (vbool_not(fresh) & path->inward);
     path->alive = path->alive | fresh;
+#if EFFECT_MOTION
+    path->time = choose(fresh, sample_1d(key, splat_uint(DIMENSION_TIME)), path->time);
+#endif
 #if SAMPLES_LAMPS
     path->lobe.kind = choose_uint(fresh, splat_uint(LOBE_NONE), path->lobe.kind);
     path->wants_lamps = path->wants_lamps & vbool_not(fresh);

@@ -6,7 +6,7 @@
  * Nothing is carried along, so neither chunks, nor devices, nor effects that are absent shift a number.
  *
  * Dimensions, by purpose. An effect that is absent leaves its places unused:
- *   0, 1  position in the pixel        2, 3  position on the lens        4  time (kept)       5..15  kept
+ *   0, 1  position in the pixel        2, 3  position on the lens        4  time              5..15  kept
  *   16 + 16 b + k, for bounce b:
  *     k = 0, 1     direction of scattering
  *     k = 2, 3, 4  radius in a ball (fuzz and the cosine-cubed lobe)
@@ -18,6 +18,7 @@
  *     11..15       kept */
 #define DIMENSION_PIXEL 0u
 #define DIMENSION_LENS 2u
+#define DIMENSION_TIME 4u
 #define DIMENSION_BOUNCE 16u
 #define DIMENSIONS_PER_BOUNCE 16u
 #define BOUNCE_DIRECTION 0u

@@ -39,6 +39,11 @@ def texture_cells(*names):
     return Script("tests/textures/test_texture_cells.py", names, "9 textures")
 
 
+def motion_cases(*names):
+    """Cases of tests/motion/test_motion.py."""
+    return Script("tests/motion/test_motion.py", names, "9 motion")
+
+
 def patch(path, find, replace):
     return (path, find, replace)
 
@@ -664,6 +669,28 @@ MUTANTS = [
     Mutant("the axis of the rings rounded", "classic: a difference of floats, far away",
            [patch(PACK, "packed->centre_low[a] = -from[a] - packed->centre[a];", "packed->centre_low[a] = 0;")],
            [texture_cells("wood, its axis 2e6 away")]),
+    # ---- spheres that move ---------------------------------------------------------------------------------
+    Mutant("boxes of the first moment", "second book: a bounding box of center0 alone",
+           [patch("host/packed/tree_write.c", "high = fmax(center[a], center[a] + motion);", "high = center[a];")], [motion_cases("order")]),
+    Mutant("a time for every ray", "classic: scattered rays of another moment",
+           [patch(KERNEL, "    ray.time = path->time;", "    ray.time = uniform(path->key, path->depth + 7u);")], [check("motion")]),
+    Mutant("seen at rest, hit in motion", "this program: candidates by where a leaf's spheres are at first",
+           [patch(KERNEL, "sphere.centre.x = fma(ray.time, JOIN(vload, LANE_COUNT)(0, motion), sphere.centre.x);", "")],
+           [check("motion", 256, "--kernel", "sample")]),
+    Mutant("a chord of another moment", "this program: a sphere left where it was when the shutter opened",
+           [patch(KERNEL, "const Sphere sphere = sphere_for_ray(geometry, ray, slot);\n    vrefined t;\n    const vbool found = sphere_exit",
+                  "const Sphere sphere = load_sphere(geometry, slot);\n    vrefined t;\n    const vbool found = sphere_exit")], [check("motion")]),
+    Mutant("normals of another moment", "classic: the normal from the first centre",
+           [patch(KERNEL, "*sphere = sphere_for_ray(&scene->geometry, ray, slot);", "*sphere = load_sphere(&scene->geometry, slot);")],
+           [check("motion")]),
+    Mutant("rays to where a lamp was", "this program: a lamp of the tree that moves",
+           [patch("host/packed/lamp_tree.c", "bp_sphere_emits(scene, i) && !bp_sphere_moves(scene, i);", "bp_sphere_emits(scene, i);")],
+           [check("motion-lamp", 1024, "--lamps", "on")]),
+    Mutant("films of other motions", "this program: a merge of two pictures",
+           [patch("host/film/film_scene.c", "if (bp_sphere_moves(scene, i))", "if (false)")], [motion_cases("films")]),
+    Mutant("parallel rays begin behind what moves", "this program: the plane moved ahead by the first centres alone",
+           [patch("host/scene/scene.c", "distance += ahead[i] * (end[i] - scene->spheres[s].center[i]);", "distance += 0 * end[i];")],
+           [motion_cases("far", "coverage")]),
     # ---- files ---------------------------------------------------------------------------------------------
     Mutant("set-ID bits handed on", "classic: the mode of a replaced file, all of it",
            [patch("host/base/output_file.c", "replaced->st_mode & 0777;", "replaced->st_mode & 07777;")],

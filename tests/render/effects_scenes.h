@@ -21,6 +21,7 @@ typedef struct EffectsScene {
     BpMaterial materials[16];
     BpSphere spheres[48];
     BpTexture textures[8];
+    double ends[48][3];
 } EffectsScene;
 
 /* Lamps are sampled where something emits, or discs do, and something is lit, unless an option says no. */
@@ -30,10 +31,11 @@ static inline bool effects_light(uint32_t bits) {
 }
 
 /* A tree needs spheres, and spheres need a material. Rays to lamps need lamps, and something that they light.
- * Textures are of spheres, and noise is a texture. */
+ * Textures are of spheres, noise is a texture, and spheres move. */
 static inline bool effects_can_occur(uint32_t bits, bool tree) {
     if (bp_effects_has(bits, BP_EFFECT_LAMPS) && !effects_light(bits)) return false;
     if (bp_effects_has(bits, BP_EFFECT_TEXTURES) && (bits & MATERIAL_EFFECTS) == 0) return false;
+    if (bp_effects_has(bits, BP_EFFECT_MOTION) && (bits & MATERIAL_EFFECTS) == 0) return false;
     if (bp_effects_has(bits, BP_EFFECT_NOISE) && !bp_effects_has(bits, BP_EFFECT_TEXTURES)) return false;
     return (bits & MATERIAL_EFFECTS) != 0 || !tree;
 }
@@ -155,6 +157,16 @@ static inline void effects_spheres(EffectsScene *made, bool tree) {
     made->scene.sphere_count = count;
 }
 
+/* Every third sphere moves, if it is not the ground; those that share a place with one at rest leave it. */
+static inline void effects_motion(EffectsScene *made) {
+    made->scene.center_ends = made->ends;
+    made->scene.moving_count = made->scene.sphere_count;
+    for (size_t i = 0; i < made->scene.sphere_count; ++i) {
+        memcpy(made->ends[i], made->spheres[i].center, sizeof made->ends[i]);
+        if (i % 3 == 1) made->ends[i][i % 2] += 0.3;
+    }
+}
+
 /* Odd sides, so that a pixel's centre can lie exactly on the axis; sets with an even number of effects are
  * sampled in the centre only. */
 static inline void effects_scene(EffectsScene *made, uint32_t bits, bool tree) {
@@ -188,6 +200,7 @@ static inline void effects_scene(EffectsScene *made, uint32_t bits, bool tree) {
     effects_materials(made, bits);
     if (bp_effects_has(bits, BP_EFFECT_TEXTURES)) effects_textures(made, bits);
     effects_spheres(made, tree);
+    if (bp_effects_has(bits, BP_EFFECT_MOTION)) effects_motion(made);
 }
 
 #endif

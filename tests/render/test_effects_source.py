@@ -36,6 +36,7 @@ MARKS = {
     "DISCS": ["disc_contains", "discs_radiance"],
     "TEXTURES": ["turn_of", "lattice_axis", "checker_colour", "vary_surface"],
     "NOISE": [],  # TOGETHER
+    "MOTION": ["path->time", "ray->time"],
     "TREE": ["BoxRay", "leaf_children"],  # no effect, but looked for in the same way
 }
 # Code that several effects share.

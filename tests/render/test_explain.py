@@ -14,7 +14,7 @@ import tempfile
 from pfm import read_pfm
 
 program, scenes = sys.argv[1], pathlib.Path(sys.argv[2])
-ALL = ["lambertian", "metal", "dielectric", "emission", "normals", "lens", "lamps", "discs", "textures", "noise"]
+ALL = ["lambertian", "metal", "dielectric", "emission", "normals", "lens", "lamps", "discs", "textures", "noise", "motion"]
 
 
 def run(*arguments, code=0):
@@ -106,6 +106,7 @@ with tempfile.TemporaryDirectory() as folder:
                   "g": {"type": "dielectric", "refraction_index": 1.5}, "l": {"type": "diffuse_light", "emit": [4] * 3},
                   "c": {"type": "normals"}}
     spheres = [{"center": [0.5 * i - 1, 0, -2], "radius": 0.2, "material": name} for i, name in enumerate(every_kind)]
+    spheres[0]["center_end"] = [-1, 0.1, -2]
     scene = pathlib.Path(folder, "all.json")
     scene.write_text(json.dumps({"camera": {"image_width": 64}, "textures": {"t": {"type": "noise", "colors": [0.5, 1]}}, "materials": every_kind, "spheres": spheres,
                                  "background": {"discs": [{"direction": [0, 1, 0], "half_angle": 5, "radiance": [1] * 3}]}}))

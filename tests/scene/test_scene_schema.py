@@ -79,6 +79,7 @@ BAD = [
     (["textures", "g", "turn"], 1e7), (["textures", "g", "repeat"], [0, 1]), (["textures", "g", "repeat"], [1, 1.5]), (["textures", "g", "repeat"], 1),
     (["materials", "t", "albedo"], {}), (["materials", "t", "albedo"], {"texture": 1}), (["materials", "t", "fuzz"], {"textur": "g"}),
     (["materials", "c", "refraction_index"], {"texture": "g"}), (["background"], {"texture": "g"}),
+    (["spheres", 0, "center_end"], [0, 0]), (["spheres", 0, "center_end"], [0, 0, 2e12]),
     (["spheres", 0, "radius"], 0), (["spheres", 0, "radius"], None), (["spheres", 0, "center"], [0, 0]),
     (["spheres", 0, "material"], 1), (["spheres", 0, "centre"], [0, 0, 0]), (["spheres"], {}),
     (["camera", "projection"], "parallel"), (["camera", "view_height"], 1), (["camera", "fit"], "scene"), (["camera", "view"], "front"), (["camera", "margin"], 0.1),
