@@ -110,6 +110,14 @@ typedef struct PackedMaterialKind {
     packed_uint total_reflection;
 } PackedMaterialKind;
 
+/* A medium, per unit of length. Number 0 is clear. */
+typedef struct PackedMedium {
+    real scattering[3];
+    real anisotropy; /* Henyey and Greenstein's g: the mean cosine */
+    real absorption[3];
+    real reserved;
+} PackedMedium;
+
 /* Which textures the members of a material have that vary, counted from 1; 0: none. */
 typedef struct PackedVariation {
     packed_uint albedo, fuzz, emit, reserved;
@@ -146,6 +154,9 @@ typedef struct PackedVariation {
 #define TEXTURE_OCTAVES 5u
 #define TEXTURE_SEED 6u
 #define TEXTURE_AXIS 7u
+#define MEDIUM_SCATTERING 0u
+#define MEDIUM_ANISOTROPY 3u
+#define MEDIUM_ABSORPTION 4u
 #define DISC_DIRECTION 0u
 #define DISC_CAP 3u
 #define DISC_RADIANCE 4u
@@ -171,6 +182,10 @@ typedef struct PackedVariation {
 #define NO_SLOT 0xffffffffu
 #define DISC_SLOT 0xffffff00u /* and its number: a disc, where others stand for the sphere in a slot */
 #define DISCS_MAX 32u
+/* Spheres that light passes through, each as its slot and the number of the medium inside, the smallest
+ * first: a point lies in the medium of the first that it is inside. The last entry is NO_SLOT and the medium
+ * outside of all. */
+#define BOUNDARY_UINTS 2u
 /* The tree of lamps (light/lamps.cl). A node is LAMP_WIDTH children as structure of arrays, LAMP_WIDTH reals
  * each of centre x, y, z, radius and power. A child of positive radius is a lamp, and its word is CHILD_LEAF
  * and the lamp's slot; one of negative radius is a node, whose lamps lie in a ball of the radius without its
@@ -203,6 +218,7 @@ typedef struct PackedVariation {
 #define MATERIAL_UINTS ((packed_uint)(sizeof(PackedMaterialKind) / sizeof(packed_uint)))
 #define DISC_REALS ((packed_uint)(sizeof(PackedDisc) / sizeof(real)))
 #define VARIATION_UINTS ((packed_uint)(sizeof(PackedVariation) / sizeof(packed_uint)))
+#define MEDIUM_REALS ((packed_uint)(sizeof(PackedMedium) / sizeof(real)))
 #define TEXTURE_REALS ((packed_uint)(sizeof(PackedTexture) / sizeof(real)))
 #define TEXTURE_UINTS ((packed_uint)(sizeof(PackedTextureKind) / sizeof(packed_uint)))
 /* clang-format off */
@@ -215,6 +231,8 @@ typedef struct PackedVariation {
     X(UINTS, packed_uint, variations, material_count * VARIATION_UINTS, "the table of materials")            \
     X(REALS, real, textures, texture_count * TEXTURE_REALS, "the textures")                                  \
     X(UINTS, packed_uint, texture_kinds, texture_count * TEXTURE_UINTS, "the textures")                      \
+    X(REALS, real, media, medium_count * MEDIUM_REALS, "the media")                                          \
+    X(UINTS, packed_uint, boundaries, boundary_count * BOUNDARY_UINTS, "the boundaries of media")            \
     X(UINTS, packed_uint, slot_material, slots, "the table of sphere materials")                             \
     X(REALS, real, slot_albedo, slots * ALBEDO_REALS, "the table of sphere colours")
 #define SCENE_ARRAYS_OF_LAMPS(X)                                                                             \
@@ -231,7 +249,7 @@ typedef struct PackedVariation {
     X(first_leaves) X(leaf_count) X(pixel_center) X(max_depth) X(seed_low) X(seed_high) X(replicates) X(width)
 /* clang-format on */
 
-enum { KIND_LAMBERTIAN, KIND_METAL, KIND_DIELECTRIC, KIND_LIGHT, KIND_NORMALS };
+enum { KIND_LAMBERTIAN, KIND_METAL, KIND_DIELECTRIC, KIND_LIGHT, KIND_NORMALS, KIND_INTERFACE };
 enum { LOBE_LAMBERTIAN, LOBE_COSINE_CUBED, LOBE_HEMISPHERE };
 enum { FUZZ_SPHERE, FUZZ_BALL };
 enum { FRESNEL_SCHLICK, FRESNEL_EXACT, FRESNEL_NONE };
@@ -249,6 +267,7 @@ _Static_assert(sizeof(PackedMaterial) == 8 * sizeof(real), "PackedMaterial has p
 _Static_assert(sizeof(PackedMaterialKind) == 16, "PackedMaterialKind has padding");
 _Static_assert(sizeof(PackedTexture) == 32 * sizeof(real), "PackedTexture has padding");
 _Static_assert(sizeof(PackedTextureKind) == 32, "PackedTextureKind has padding");
+_Static_assert(sizeof(PackedMedium) == 8 * sizeof(real), "PackedMedium has padding");
 _Static_assert(sizeof(PackedVariation) == 16, "PackedVariation has padding");
 #define BP_PLACE(place, type, member, element)                                                               \
     _Static_assert(offsetof(type, member) == (place) * sizeof(element), "the place of " #member)
@@ -259,6 +278,9 @@ BP_PLACE(DISC_POWER, PackedDisc, power, real);
 BP_PLACE(DISC_SINE, PackedDisc, sine, real);
 BP_PLACE(DISC_CHORD2, PackedDisc, chord2, real);
 BP_PLACE(DISC_SEEN, PackedDisc, seen, real);
+BP_PLACE(MEDIUM_SCATTERING, PackedMedium, scattering, real);
+BP_PLACE(MEDIUM_ANISOTROPY, PackedMedium, anisotropy, real);
+BP_PLACE(MEDIUM_ABSORPTION, PackedMedium, absorption, real);
 BP_PLACE(VARIATION_ALBEDO, PackedVariation, albedo, packed_uint);
 BP_PLACE(VARIATION_FUZZ, PackedVariation, fuzz, packed_uint);
 BP_PLACE(VARIATION_EMIT, PackedVariation, emit, packed_uint);

@@ -109,7 +109,7 @@ BpStatus bp_parse_material_name(const BpNode *node, const BpMaterialIndex *index
 
 static BpStatus parse_sphere(const BpNode *node, const BpMaterialIndex *index, BpSphere *sphere,
                              BpError *err) {
-    static const char *const names[] = {"center", "radius", "material", "center_end"};
+    static const char *const names[] = {"center", "radius", "material", "center_end", "interior"};
     BP_TRY(bp_node_object(node, names, BP_COUNT(names), err));
     BP_TRY(bp_node_require(node, "center", "\"center\": [x, y, z]", err));
     BP_TRY(bp_node_require(node, "radius", "a number such as \"radius\": 0.5", err));
@@ -138,6 +138,18 @@ static BpStatus parse_motion(const BpNode *node, size_t index, size_t count, BpS
     return bp_node_vector(&end, scene->center_ends[index], err);
 }
 
+/* What fills the sphere `index`, of `count` that are listed. */
+static BpStatus parse_interior(const BpNode *node, size_t index, size_t count, BpScene *scene, BpError *err) {
+    const BpNode interior = bp_node_member(node, "interior");
+    if (interior.value == NULL) return BP_OK;
+    if (scene->interiors == NULL) {
+        scene->interiors = calloc(count, sizeof *scene->interiors);
+        if (scene->interiors == NULL)
+            return bp_fail(err, BP_ERR_MEMORY, "out of memory for %zu interiors", count);
+    }
+    return bp_parse_medium_name(&interior, scene, &scene->interiors[index], err);
+}
+
 static BpStatus parse_spheres(const BpNode *node, const BpMaterialIndex *index, BpScene *scene,
                               BpError *err) {
     BP_TRY(bp_node_list(
@@ -156,9 +168,11 @@ static BpStatus parse_spheres(const BpNode *node, const BpMaterialIndex *index, 
                                  "an object: { \"center\": ..., \"radius\": ..., \"material\": ... }", err);
         BP_TRY(parse_sphere(&element, index, &scene->spheres[i], err));
         BP_TRY(parse_motion(&element, i, count, scene, err));
+        BP_TRY(parse_interior(&element, i, count, scene, err));
     }
     scene->sphere_count = count;
     if (scene->center_ends != NULL) scene->moving_count = count;
+    if (scene->interiors != NULL) scene->interior_count = count;
     return BP_OK;
 }
 
@@ -211,6 +225,11 @@ static BpStatus refuse_faults(const BpNode *root, const BpScene *scene, BpError 
     case BP_FAULT_TEXTURE: {
         const BpNode texture = bp_node_member(&textures, scene->textures[fault.index].name);
         return fail_member(&texture, fault.member, fault.text, err);
+    }
+    case BP_FAULT_MEDIUM: {
+        const BpNode media = bp_node_member(root, "media");
+        const BpNode medium = bp_node_member(&media, scene->media[fault.index].name);
+        return fail_member(&medium, fault.member, fault.text, err);
     }
     case BP_FAULT_MATERIAL: {
         const BpNode material = bp_node_member(&materials, scene->materials[fault.index].name);
@@ -357,9 +376,9 @@ static BpStatus choose_fresnel(const BpSceneChanges *changes, BpScene *scene, Bp
 }
 
 static BpStatus parse_body(const BpNode *root, const BpSceneChanges *changes, BpScene *scene, BpError *err) {
-    static const char *const names[] = {"format",   "title",  "source",    "camera",   "background",
-                                        "backdrop", "light",  "transfer",  "textures", "materials",
-                                        "spheres",  "clouds", "particles", "$schema"};
+    static const char *const names[] = {
+        "format",   "title",     "source",  "camera", "background", "backdrop", "light", "transfer",
+        "textures", "materials", "spheres", "clouds", "particles",  "$schema",  "media", "medium"};
     BP_TRY(bp_node_object(root, names, BP_COUNT(names), err));
     BP_TRY(bp_node_require(root, "camera", "one, such as \"camera\": { \"image_width\": 400 }", err));
     BP_TRY(parse_head(root, scene, err));
@@ -371,6 +390,8 @@ static BpStatus parse_body(const BpNode *root, const BpSceneChanges *changes, Bp
     const BpNode spheres = bp_node_member(root, "spheres");
     const BpNode clouds = bp_node_member(root, "clouds");
     const BpNode particles = bp_node_member(root, "particles");
+    const BpNode media = bp_node_member(root, "media");
+    const BpNode medium = bp_node_member(root, "medium");
     BP_TRY(bp_parse_camera(&camera, &scene->camera, err));
     if (changes->projection != NULL)
         scene->camera.projection = strcmp(changes->projection, bp_projection_names[BP_PERSPECTIVE]) == 0
@@ -381,6 +402,8 @@ static BpStatus parse_body(const BpNode *root, const BpSceneChanges *changes, Bp
     BP_TRY(bp_parse_backdrop(&backdrop, scene, err));
     BP_TRY(bp_parse_light(root, changes->light, scene, err));
     BP_TRY(bp_parse_textures(&textures, scene, err));
+    BP_TRY(bp_parse_media(&media, scene, err));
+    BP_TRY(bp_parse_medium_name(&medium, scene, &scene->medium, err));
     BP_TRY(parse_materials(&materials, scene, err));
     BpMaterialIndex index = {0};
     BpStatus status = index_materials(scene, &index, err);

@@ -129,6 +129,28 @@ static bool explain_motion(const BpScene *scene, size_t size, char *reason) {
     return moving > 0;
 }
 
+/* Whether a medium does anything to light, or a boundary lets it through. */
+static bool explain_media(const BpScene *scene, size_t size, char *reason) {
+    const bool around = bp_scene_medium(scene) != 0;
+    size_t filled = 0, interfaces = 0;
+    for (size_t i = 0; i < scene->interior_count; ++i) filled += bp_sphere_interior(scene, i) != 0;
+    for (size_t m = 0, any = 0; m < scene->material_count && any == 0; ++m) {
+        any = scene->materials[m].kind == BP_MATERIAL_INTERFACE;
+        for (size_t i = 0; i < scene->sphere_count && any > 0; ++i)
+            interfaces += scene->materials[scene->spheres[i].material].kind == BP_MATERIAL_INTERFACE;
+    }
+    if (filled > 0)
+        snprintf(reason, size, "%zu sphere%s with a medium inside%s", filled, bp_plural(filled),
+                 around ? ", and the scene lies in one" : "");
+    else if (around)
+        snprintf(reason, size, "the scene lies in a medium");
+    else if (interfaces > 0)
+        snprintf(reason, size, "%zu interface%s, but all media are clear", interfaces, bp_plural(interfaces));
+    else
+        snprintf(reason, size, "all is clear: no medium inside a sphere or around");
+    return around || filled > 0 || interfaces > 0;
+}
+
 #define NO_LAMP_REASON "no sphere gives light, and no disc of the sky"
 
 static size_t bright_discs(const BpScene *scene) {
@@ -273,6 +295,7 @@ void bp_effects_analyse(const BpScene *scene, BpEffects *effects) {
     if (explain_discs(scene, size, effects->reason[BP_EFFECT_DISCS])) effects->bits |= 1u << BP_EFFECT_DISCS;
     for (int e = BP_EFFECT_TEXTURES; e <= BP_EFFECT_NOISE; ++e)
         if (explain_textures(scene, e == BP_EFFECT_NOISE, size, effects->reason[e])) effects->bits |= 1u << e;
+    if (explain_media(scene, size, effects->reason[BP_EFFECT_MEDIA])) effects->bits |= 1u << BP_EFFECT_MEDIA;
     if (explain_motion(scene, size, effects->reason[BP_EFFECT_MOTION]))
         effects->bits |= 1u << BP_EFFECT_MOTION;
     if ((effects->bits & (1u << BP_EFFECT_EMISSION | 1u << BP_EFFECT_DISCS)) == 0)

@@ -30,6 +30,7 @@ typedef struct BpPacked {
     uint32_t material_count; /* at least one */
     uint32_t texture_count;
     uint32_t disc_count;
+    uint32_t medium_count, boundary_count; /* at least one */
 } BpPacked;
 
 /* `sample_lamps`: the kernel is built to. */

@@ -29,6 +29,7 @@ BpStatus bp_worker_upload_scene(BpWorker *worker, const BpPacked *packed, BpErro
     const uint64_t slots = leaf_count * width, motion_leaves = tree->motion_leaves;
     const uint64_t lamp_nodes = packed->lamps.node_count, lamp_slots = packed->lamps.slot_count;
     const uint64_t disc_count = packed->disc_count, texture_count = packed->texture_count;
+    const uint64_t medium_count = packed->medium_count, boundary_count = packed->boundary_count;
     const uint64_t material_count = packed->material_count > 0 ? packed->material_count : 1;
     /* Elements of reals shrink with the real. */
 #define BYTES_REALS(element) (sizeof(element) / sizeof(real) * worker->real_size)

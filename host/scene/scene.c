@@ -120,6 +120,9 @@ void bp_scene_destroy(BpScene **scene) {
     free(s->textures);
     free(s->spheres);
     free(s->center_ends);
+    free(s->interiors);
+    for (size_t i = 0; i < s->medium_count; i++) free(s->media[i].name);
+    free(s->media);
     free(s->albedos);
     for (size_t i = 0; i < s->point_file_count; i++) {
         free(s->point_files[i].file);

@@ -15,6 +15,7 @@
 
 #include "ballpark.h"
 #include "material.h"
+#include "medium.h"
 #include "texture.h"
 
 #include <stdio.h>
@@ -155,13 +156,18 @@ struct BpScene {
     BpTransfer transfer;
     BpTexture *textures;
     size_t texture_count;
+    BpMedium *media;
+    size_t medium_count;
+    uint32_t medium; /* the whole scene lies in it: into media[], counted from 1; 0: none */
     BpMaterial *materials;
     size_t material_count;
     BpSphere *spheres;
     size_t sphere_count;
     double (*center_ends)[3]; /* of the first moving_count spheres: the centre when the shutter closes */
     size_t moving_count;      /* 0: no sphere moves */
-    float (*albedos)[3];      /* linear, in [0,1]; of cloud points that bring their own colour */
+    uint32_t *interiors; /* of the first interior_count spheres: what fills them, counted as `medium` is */
+    size_t interior_count;
+    float (*albedos)[3]; /* linear, in [0,1]; of cloud points that bring their own colour */
     size_t albedo_count;
     BpPointFile *point_files; /* in the order of their spheres, which follow all others */
     size_t point_file_count;

@@ -5,7 +5,7 @@
  * Knows: every lobe by its one function.   Does not know: how lobes draw. */
 
 /* If the scene has one kind of material only, there is nothing to choose. */
-#define KIND_COUNT (EFFECT_LAMBERTIAN + EFFECT_METAL + EFFECT_DIELECTRIC + EFFECT_NORMALS + EFFECT_EMISSION)
+#define KIND_COUNT (EFFECT_LAMBERTIAN + EFFECT_METAL + EFFECT_DIELECTRIC + EFFECT_NORMALS + EFFECT_EMISSION + EFFECT_MEDIA)
 #if KIND_COUNT == 1
 #define has_kind(surface, wanted) vbool_all
 #else
@@ -56,6 +56,9 @@ static BsdfSample scatter(const Surface *surface, SampleKey key, vuint bounce) {
 #endif
 #if EFFECT_DIELECTRIC
     SCATTER_BY(KIND_DIELECTRIC, dielectric_sample)
+#endif
+#if EFFECT_MEDIA
+    SCATTER_BY(KIND_INTERFACE, interface_sample)
 #endif
     return sample;
 }

@@ -6,7 +6,8 @@
  * Nothing is carried along, so neither chunks, nor devices, nor effects that are absent shift a number.
  *
  * Dimensions, by purpose. An effect that is absent leaves its places unused:
- *   0, 1  position in the pixel        2, 3  position on the lens        4  time              5..15  kept
+ *   0, 1  position in the pixel        2, 3  position on the lens        4  time
+ *   5     the colour by which a path flies through media                                    6..15  kept
  *   16 + 16 b + k, for bounce b:
  *     k = 0, 1     direction of scattering
  *     k = 2, 3, 4  radius in a ball (fuzz and the cosine-cubed lobe)
@@ -15,10 +16,12 @@
  *     k = 7        the low bits of a lamp's choice; for level l of the tree of lamps, 2^24 l further on
  *     k = 8, 9     which lamp, and the direction to it
  *     k = 10       the low bits of the choice among the discs of the sky and the tree of lamps
- *     11..15       kept */
+ *     k = 11, 12   a flight through a medium, and its low bits
+ *     13..15       kept */
 #define DIMENSION_PIXEL 0u
 #define DIMENSION_LENS 2u
 #define DIMENSION_TIME 4u
+#define DIMENSION_FLIGHT_COLOUR 5u
 #define DIMENSION_BOUNCE 16u
 #define DIMENSIONS_PER_BOUNCE 16u
 #define BOUNCE_DIRECTION 0u
@@ -28,6 +31,8 @@
 #define LAMP_REFILL_STRIDE 0x1000000u
 #define BOUNCE_LAMP 8u
 #define BOUNCE_DISC_REFILL 10u
+#define BOUNCE_FLIGHT 11u
+#define BOUNCE_FLIGHT_REFILL 12u
 
 /* Of bounce b, counted from 0. */
 static vuint first_dimension(vuint b) { return b * DIMENSIONS_PER_BOUNCE + DIMENSION_BOUNCE; }

@@ -44,6 +44,11 @@ def motion_cases(*names):
     return Script("tests/motion/test_motion.py", names, "9 motion")
 
 
+def media_cases(*names):
+    """Cases of tests/media/test_media.py."""
+    return Script("tests/media/test_media.py", names, "9 media")
+
+
 def patch(path, find, replace):
     return (path, find, replace)
 
@@ -669,6 +674,37 @@ MUTANTS = [
     Mutant("the axis of the rings rounded", "classic: a difference of floats, far away",
            [patch(PACK, "packed->centre_low[a] = -from[a] - packed->centre[a];", "packed->centre_low[a] = 0;")],
            [texture_cells("wood, its axis 2e6 away")]),
+    # ---- media ---------------------------------------------------------------------------------------------
+    Mutant("the largest sphere decides", "this program: bubbles in tinted glass are tinted",
+           [patch(PACK, "if (a->radius != b->radius) return a->radius < b->radius ? -1 : 1;\n    return a->sphere", "if (a->radius != b->radius) return a->radius > b->radius ? -1 : 1;\n    return a->sphere")],
+           [check("media-tinted-glass")]),
+    Mutant("a clear sphere left out", "this program: only what has an interior is a boundary",
+           [patch(PACK, "packed->boundaries[BOUNDARY_UINTS * i + 1] = bp_sphere_interior(scene, boundaries[i].sphere);",
+                  "{ const uint32_t inside = bp_sphere_interior(scene, boundaries[i].sphere);"
+                  " packed->boundaries[BOUNDARY_UINTS * i + 1] = inside != 0 ? inside : bp_scene_medium(scene); }")],
+           [media_cases("nested_and_overlapping")]),
+    Mutant("once inside, always inside", "classic: the medium of the first sphere that was entered",
+           [patch(KERNEL, "path->unsure = path->unsure | (met & bsdf_sample->transmitted);", "")], [check("media-smoke")]),
+    Mutant("reflected into the other medium", "classic: entering and leaving told by the normal alone",
+           [patch(KERNEL, "(own & ray->inward)", "(own & vbool_not(ray->inward))")], [check("media-tinted-glass")]),
+    Mutant("scattering counted as absorption too", "classic: extinction for absorption",
+           [patch(KERNEL, "const Vec3 left = vec3(exp_minus(absorption.x * *length)", "const Vec3 left = vec3(exp_minus((absorption.x + scattering.x) * *length)")],
+           [check("media-smoke")]),
+    Mutant("colours fly together", "second book: one density for all, its colour where it scatters",
+           [patch(KERNEL, "const Vec3 likelihood = multiply3(path->likelihood, density);", "const Vec3 likelihood = path->likelihood;")], [check("media-smoke")]),
+    Mutant("a flight's density without its end", "classic: the ratio of the densities left out where it scatters",
+           [patch(KERNEL, "density = choose3(scattered, multiply3(density, ratio), density);", "(void)ratio;")], [check("media-smoke")]),
+    Mutant("scattered evenly", "second book: isotropic, whatever the anisotropy",
+           [patch(KERNEL, "phase_cosine(g, u, &one_plus, &one_minus);", "phase_cosine(splat(0), u, &one_plus, &one_minus);")], [check("media-fog", 1024), media_cases("single_scattering")]),
+    Mutant("forwards is backwards", "classic: the sign of the phase function's direction",
+           [patch(KERNEL, "phase_cosine(g, u, &one_plus, &one_minus);", "phase_cosine(g, u, &one_minus, &one_plus);")], [check("media-smoke")]),
+    Mutant("flights of 24 bits", "classic: log of a float, which thin media notice",
+           [patch(KERNEL, "const vreal z = fma(refill, splat(R(0x1p-24)), u);", "const vreal z = u + splat(R(0x1p-10)) * refill * splat(R(0));"),
+            patch(KERNEL, "vreal left = fma(refill, splat(R(-0x1p-24)), splat(1) - u);", "vreal left = splat(1) - at_most(u, splat(R(0.99)));")], [test("test_exponentials", "1 exact")]),
+    Mutant("rays to lamps through clear air", "classic: shadow rays know no fog",
+           [patch(KERNEL, "light = multiply3(light, transmittance(scene, medium, length));", "(void)length;")], [media_cases("lamps")]),
+    Mutant("films of other media", "this program: a merge of two pictures",
+           [patch("host/film/film_scene.c", "    hash = mix_reals(hash, medium->scattering, 3);\n", "")], [media_cases("films")]),
     # ---- spheres that move ---------------------------------------------------------------------------------
     Mutant("boxes of the first moment", "second book: a bounding box of center0 alone",
            [patch("host/packed/tree_write.c", "high = fmax(center[a], center[a] + motion);", "high = center[a];")], [motion_cases("order")]),

@@ -85,9 +85,11 @@ static void material_effects(void **state) {
     assert_int_equal(analyse(pair, 2, 2, 2, 0, 1).bits, BIT(METAL) | BIT(EMISSION) | BIT(LAMPS));
     const BpMaterial all[] = {grey, steel, glass, ember, debug};
     assert_int_equal(analyse(all, 5, 5, BP_LIST_SPHERES_MAX + 1, 0.1, 0.5).bits,
-                     BP_EFFECTS_ALL & ~BIT(DISCS) & ~BIT(TEXTURES) & ~BIT(NOISE) & ~BIT(MOTION));
-    assert_int_equal(analyse(all, 5, 5, 5, 0, 1).bits,
-                     BP_EFFECTS_ALL & ~BIT(LENS) & ~BIT(DISCS) & ~BIT(TEXTURES) & ~BIT(NOISE) & ~BIT(MOTION));
+                     BP_EFFECTS_ALL & ~BIT(DISCS) & ~BIT(TEXTURES) & ~BIT(NOISE) & ~BIT(MOTION) &
+                         ~BIT(MEDIA));
+    assert_int_equal(analyse(all, 5, 5, 5, 0, 1).bits, BP_EFFECTS_ALL & ~BIT(LENS) & ~BIT(DISCS) &
+                                                           ~BIT(TEXTURES) & ~BIT(NOISE) & ~BIT(MOTION) &
+                                                           ~BIT(MEDIA));
 }
 
 static void only_materials_in_use_count(void **state) {

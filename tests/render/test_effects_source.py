@@ -37,6 +37,7 @@ MARKS = {
     "TEXTURES": ["turn_of", "lattice_axis", "checker_colour", "vary_surface"],
     "NOISE": [],  # TOGETHER
     "MOTION": ["path->time", "ray->time"],
+    "MEDIA": ["medium_around", "exp_minus", "interface_sample"],
     "TREE": ["BoxRay", "leaf_children"],  # no effect, but looked for in the same way
 }
 # Code that several effects share.
