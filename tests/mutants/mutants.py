@@ -702,7 +702,7 @@ MUTANTS = [
            [patch(KERNEL, "const vreal z = fma(refill, splat(R(0x1p-24)), u);", "const vreal z = u + splat(R(0x1p-10)) * refill * splat(R(0));"),
             patch(KERNEL, "vreal left = fma(refill, splat(R(-0x1p-24)), splat(1) - u);", "vreal left = splat(1) - at_most(u, splat(R(0.99)));")], [test("test_exponentials", "1 exact")]),
     Mutant("rays to lamps through clear air", "classic: shadow rays know no fog",
-           [patch(KERNEL, "light = multiply3(light, transmittance(scene, medium, length));", "(void)length;")], [media_cases("lamps")]),
+           [patch(KERNEL, "light = multiply3(light, transmittance(scene, medium, length));", "(void)length;")], [check("media-fog", 512, "--lamps", "on")]),
     Mutant("films of other media", "this program: a merge of two pictures",
            [patch("host/film/film_scene.c", "    hash = mix_reals(hash, medium->scattering, 3);\n", "")], [media_cases("films")]),
     # ---- spheres that move ---------------------------------------------------------------------------------
