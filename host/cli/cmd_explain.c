@@ -74,6 +74,7 @@ static void print_path(const BpScene *scene, const BpPathLog *path, uint32_t x, 
                     "%.4g)\n",
                     step->distance, step->point[0], step->point[1], step->point[2], step->throughput[0],
                     step->throughput[1], step->throughput[2]);
+            if (step->to_lamp) print_lamp_ray(step, out);
         } else if (step->met) {
             const BpMaterial *material = &scene->materials[step->material];
             fprintf(out, "       after %.6g hits sphere %" PRIu32 " from %s at (%.6g, %.6g, %.6g)\n",

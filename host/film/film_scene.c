@@ -79,6 +79,8 @@ double bp_scene_radiance_bound(const BpScene *scene, uint32_t max_depth, BpLamps
         if (bp_material_is_lit(material)) scattered = fmax(scattered, albedo);
         if (emitted > 0) passed_on = fmax(passed_on, albedo);
     }
+    for (size_t i = 0; i < scene->medium_count; i++)
+        if (bp_medium_scatters(&scene->media[i])) scattered = 1; /* rays go to lamps from there too */
     double bound = flight_weight(scene) * brightest * geometric(passed_on, max_depth);
     if (lamps != BP_LAMPS_OFF && max_depth >= 2)
         bound +=

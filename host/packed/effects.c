@@ -202,10 +202,22 @@ static bool sky_outshines_lamps(const BpScene *scene) {
     return true;
 }
 
+/* Whether a medium scatters, so that lamps light it. */
+static bool scatters_in_media(const BpScene *scene) {
+    const uint32_t around = bp_scene_medium(scene);
+    if (around != 0 && bp_medium_scatters(&scene->media[around - 1])) return true;
+    for (size_t i = 0; i < scene->interior_count; ++i) {
+        const uint32_t inside = bp_sphere_interior(scene, i);
+        if (inside != 0 && bp_medium_scatters(&scene->media[inside - 1])) return true;
+    }
+    return false;
+}
+
 /* Whether rays are sent to lamps: if there is a disc, or a lamp and another sphere that it can light, and no
  * sky as bright as all lamps. */
 static bool explain_lamps(const BpScene *scene, size_t size, char *reason) {
     const size_t discs = bright_discs(scene);
+    const bool media = scatters_in_media(scene);
     char all[96];
     const size_t enclosing = bp_enclosing_lamp(scene);
     size_t lamps = 0, lit = 0, both = 0, moving = 0;
@@ -225,15 +237,16 @@ static bool explain_lamps(const BpScene *scene, size_t size, char *reason) {
         snprintf(reason, size,
                  enclosing != SIZE_MAX ? "the only lamp surrounds everything: every path finds it"
                                        : NO_LAMP_REASON);
-    else if (lit == 0)
+    else if (lit == 0 && !media)
         snprintf(reason, size, "%s, but no matte surface and no metal with a fuzz of 1/64 or more", all);
-    else if (discs == 0 && lamps == 1 && lit == 1 && both == 1)
+    else if (discs == 0 && lamps == 1 && lit == 1 && both == 1 && !media)
         snprintf(reason, size, "the only lamp is also the only surface that could be lit");
     else if (discs == 0 && sky_outshines_lamps(scene))
         snprintf(reason, size, "%zu lamp%s, %s brighter than the sky", lamps, bp_plural(lamps),
                  lamps == 1 ? "not" : "none of them");
     else {
-        const int used = snprintf(reason, size, "%s that can light %zu sphere%s", all, lit, bp_plural(lit));
+        const int used = snprintf(reason, size, "%s that can light %zu sphere%s%s", all, lit, bp_plural(lit),
+                                  media ? " and media" : "");
         if (moving > 0)
             snprintf(reason + used, size - (size_t)used, "; %zu that move%s %s found by chance", moving,
                      moving == 1 ? "s" : "", moving == 1 ? "is" : "are");

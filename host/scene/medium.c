@@ -7,6 +7,10 @@ bool bp_medium_is_clear(const BpMedium *medium) {
     return true;
 }
 
+bool bp_medium_scatters(const BpMedium *medium) {
+    return medium->scattering[0] > 0 || medium->scattering[1] > 0 || medium->scattering[2] > 0;
+}
+
 bool bp_medium_is_coloured(const BpMedium *medium) {
     return medium->scattering[0] != medium->scattering[1] || medium->scattering[0] != medium->scattering[2];
 }

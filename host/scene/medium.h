@@ -32,6 +32,7 @@ typedef struct BpMedium {
 
 /* It leaves light as it is. */
 bool bp_medium_is_clear(const BpMedium *medium);
+bool bp_medium_scatters(const BpMedium *medium);
 /* Colours scatter differently. */
 bool bp_medium_is_coloured(const BpMedium *medium);
 

@@ -69,6 +69,10 @@ static vbool is_fuzzy(const Lobe *lobe) {
            vbool_of_uint(lobe->kind == splat_uint(LOBE_FUZZ_BALL));
 }
 
+#if EFFECT_MEDIA
+static vbool is_phase(const Lobe *lobe) { return vbool_of_uint(lobe->kind == splat_uint(LOBE_PHASE)); }
+#endif
+
 /* Per steradian; 0 for LOBE_NONE. `drawn`: `direction` was drawn from the lobe. */
 static vreal scatter_pdf(const Lobe *lobe, Vec3 direction, int drawn) {
     vreal density = splat(0);
@@ -78,6 +82,10 @@ static vreal scatter_pdf(const Lobe *lobe, Vec3 direction, int drawn) {
 #if EFFECT_METAL
     const vbool fuzzy = is_fuzzy(lobe);
     if (any_lane(fuzzy)) density = choose(fuzzy, metal_pdf(lobe, direction, drawn), density);
+#endif
+#if EFFECT_MEDIA
+    const vbool phase = is_phase(lobe);
+    if (any_lane(phase)) density = choose(phase, phase_pdf(lobe->fuzz, lobe->axis, direction), density);
 #endif
     return choose(vbool_of_uint(lobe->kind == splat_uint(LOBE_NONE)), splat(0), density);
 }

@@ -50,10 +50,11 @@ typedef JOIN(REAL, 4) real4;
 #endif
 typedef REFINED refined;
 
-/* Lamps are sampled where the scene has any, and at surfaces that scatter into many directions. They are spheres, in a
- * tree, and discs in the sky. */
-#define SAMPLES_LAMP_TREE (EFFECT_LAMPS && EFFECT_EMISSION && (EFFECT_LAMBERTIAN || EFFECT_METAL))
-#define SAMPLES_DISCS (EFFECT_LAMPS && EFFECT_DISCS && (EFFECT_LAMBERTIAN || EFFECT_METAL))
+/* Lamps are sampled where the scene has any, at surfaces that scatter into many directions and in media. They are
+ * spheres, in a tree, and discs in the sky. */
+#define IS_LIT (EFFECT_LAMBERTIAN || EFFECT_METAL || EFFECT_MEDIA)
+#define SAMPLES_LAMP_TREE (EFFECT_LAMPS && EFFECT_EMISSION && IS_LIT)
+#define SAMPLES_DISCS (EFFECT_LAMPS && EFFECT_DISCS && IS_LIT)
 #define SAMPLES_LAMPS (SAMPLES_LAMP_TREE || SAMPLES_DISCS)
 
 /* Some compilers leave parts of a ray's search functions of their own, and pass the ray, or two dozen vectors, through

@@ -162,7 +162,7 @@ static void light_vertices(const Scene *scene, Path *path) {
     const vreal weight = ratio / fma(ratio, ratio, splat(1));
     Vec3 light = multiply3(path->throughput, scale3(weight, radiance_of_lamp(scene, &ray, &choice, visible)));
 #if EFFECT_MEDIA
-    /* A vertex on a surface that reflects lies in the medium that the path has come through. */
+    /* A vertex in a medium, or on a surface that reflects, lies in the medium that the path has come through. */
     const vuint medium = choose_uint(visible, path->medium, splat_uint(0));
     if (any_lane(vbool_of_uint(medium != splat_uint(0)))) {
         const vbool far = vbool_of_uint(choice.slot >= splat_uint(DISC_SLOT));

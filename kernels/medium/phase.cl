@@ -17,6 +17,16 @@ static void phase_cosine(vreal g, vreal u, vreal *one_plus, vreal *one_minus) {
     *one_minus = choose(forwards, far, near);
 }
 
+/* The density of a direction after, per steradian. 1 + g^2 - 2 g c is (1 - |g|)^2 plus |g| times the squared
+ * distance of the direction from that of the peak, so that narrow peaks keep their height. */
+static vreal phase_pdf(vreal g, Vec3 before, Vec3 after) {
+    const vreal size = fabs(g), rest = splat(1) - size;
+    const Vec3 peak = scale3(choose(g >= splat(0), splat(1), splat(-1)), before);
+    const Vec3 off = subtract3(after, peak);
+    const vreal square = fma(size, dot3(off, off), rest * rest);
+    return R(0.07957747154594767) * rest * (splat(1) + size) / (square * sqrt(square));
+}
+
 static Vec3 phase_direction(Vec3 before, vreal g, vreal u, vreal v) {
     vreal one_plus, one_minus;
     phase_cosine(g, u, &one_plus, &one_minus);

@@ -703,6 +703,11 @@ MUTANTS = [
             patch(KERNEL, "vreal left = fma(refill, splat(R(-0x1p-24)), splat(1) - u);", "vreal left = splat(1) - at_most(u, splat(R(0.99)));")], [test("test_exponentials", "1 exact")]),
     Mutant("rays to lamps through clear air", "classic: shadow rays know no fog",
            [patch(KERNEL, "light = multiply3(light, transmittance(scene, medium, length));", "(void)length;")], [check("media-fog", 512, "--lamps", "on")]),
+    Mutant("a phase function that looks back", "classic: g for -g where its density is asked for",
+           [patch(KERNEL, "choose(g >= splat(0), splat(1), splat(-1)), before)", "choose(g >= splat(0), splat(-1), splat(1)), before)")],
+           [check("media-lamp", 512, "--lamps", "on")]),
+    Mutant("a phase function over half the sphere", "classic: 2 pi for 4 pi",
+           [patch(KERNEL, "R(0.07957747154594767)", "R(0.15915494309189535)")], [check("media-lamp", 512, "--lamps", "on")]),
     Mutant("films of other media", "this program: a merge of two pictures",
            [patch("host/film/film_scene.c", "    hash = mix_reals(hash, medium->scattering, 3);\n", "")], [media_cases("films")]),
     # ---- spheres that move ---------------------------------------------------------------------------------

@@ -29,7 +29,7 @@ typedef struct EffectsScene {
 /* Lamps are sampled where something emits, or discs do, and something is lit, unless an option says no. */
 static inline bool effects_light(uint32_t bits) {
     return (bits & (EFFECT_BIT(EMISSION) | EFFECT_BIT(DISCS))) != 0 &&
-           (bits & (EFFECT_BIT(LAMBERTIAN) | EFFECT_BIT(METAL))) != 0;
+           (bits & (EFFECT_BIT(LAMBERTIAN) | EFFECT_BIT(METAL) | EFFECT_BIT(MEDIA))) != 0;
 }
 
 /* A tree needs spheres, and spheres need a material. Rays to lamps need lamps, and something that they light.

@@ -49,7 +49,7 @@ SHARED = {
 # Code that needs all of these.
 TOGETHER = {"gradient_noise": {"TEXTURES", "NOISE"}, "pattern_colour": {"TEXTURES", "NOISE"}}
 # Code that needs LAMPS, something to be lit, and one of the effects named.
-LIT = {"LAMBERTIAN", "METAL"}
+LIT = {"LAMBERTIAN", "METAL", "MEDIA"}
 NEEDING_OTHERS = {
     "choose_lamp": {"EMISSION"}, "lamp_hit_weight": {"EMISSION"}, "choose_disc": {"DISCS"}, "disc_hit_weight": {"DISCS"},
     "wants_lamps": {"EMISSION", "DISCS"}, "first_seen": {"EMISSION", "DISCS"},
