@@ -227,6 +227,7 @@ static bool scatter(Walk *walk, const BpMaterial *material, const Ray *ray, cons
     }
     case BP_MATERIAL_DIFFUSE_LIGHT:
     case BP_MATERIAL_NORMALS:
+    case BP_MATERIAL_INTERFACE:
         break;
     }
     return false;

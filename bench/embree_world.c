@@ -23,6 +23,7 @@ static uint32_t material_flags(const BpMaterial *material) {
         break;
     case BP_MATERIAL_DIFFUSE_LIGHT:
     case BP_MATERIAL_NORMALS:
+    case BP_MATERIAL_INTERFACE:
         break;
     }
     return flags;

@@ -107,6 +107,11 @@ BpScene *peer_load(const PeerOptions *options, PeerRun *run) {
         fprintf(stderr, "%s:%d:%d: %s\n", err.file, err.line, err.column, err.message);
         exit(bp_status_exit_code(status));
     }
+    if (scene->moving_count > 0 || scene->medium_count > 0) {
+        fprintf(stderr, "%s: found media or spheres that move, expected none: peers have neither\n",
+                options->scene_path);
+        exit(2);
+    }
     for (size_t m = 0; m < scene->material_count; m++) {
         if (!bp_material_varies(&scene->materials[m])) continue;
         fprintf(stderr, "%s: found textures, expected none: peers draw the same colour everywhere\n",

@@ -121,6 +121,14 @@ typedef struct PackedMaterialKind {
     packed_uint total_reflection;
 } PackedMaterialKind;
 
+/* A medium, per unit of length. Number 0 is clear. */
+typedef struct PackedMedium {
+    real scattering[3];
+    real anisotropy; /* Henyey and Greenstein's g: the mean cosine */
+    real absorption[3];
+    real reserved;
+} PackedMedium;
+
 /* Which textures the members of a material have that vary, counted from 1; 0: none. */
 typedef struct PackedVariation {
     packed_uint albedo, fuzz, emit, reserved;
@@ -161,6 +169,9 @@ typedef struct PackedVariation {
 #define TEXTURE_WIDTH 9u
 #define TEXTURE_HEIGHT 10u
 #define TEXTURE_CLAMPED 11u
+#define MEDIUM_SCATTERING 0u
+#define MEDIUM_ANISOTROPY 3u
+#define MEDIUM_ABSORPTION 4u
 #define DISC_DIRECTION 0u
 #define DISC_CAP 3u
 #define DISC_RADIANCE 4u
@@ -175,6 +186,9 @@ typedef struct PackedVariation {
  * in the scene (NO_SPHERE when empty); `slot_material`; `slot_albedo`, ALBEDO_REALS each. Sizes in reals: */
 #define LEAF_REALS(width) (4 * (width))
 #define ALBEDO_REALS 3
+/* How far a leaf's spheres move while the shutter is open: width reals each of x, y, z; -0 where they do not,
+ * which leaves every centre as it is. Empty where no sphere of the scene moves and no kernel asks. */
+#define MOTION_REALS(width) (3 * (width))
 /* A node is `width` child boxes as structure of arrays: low x, y, z, high x, y, z, width reals each. Empty
  * lanes have low > high. Its `width` child words stand in a buffer of their own. */
 #define NODE_REALS(width) (6 * (width))
@@ -190,6 +204,10 @@ typedef struct PackedVariation {
  * from the top to the middle, the squared sine of half the angle to the top. */
 #define TEXEL_UINTS 3u
 #define SHARE_BITS 24
+/* Spheres that light passes through, each as its slot and the number of the medium inside, the smallest
+ * first: a point lies in the medium of the first that it is inside. The last entry is NO_SLOT and the medium
+ * outside of all. */
+#define BOUNDARY_UINTS 2u
 /* The tree of lamps (light/lamps.cl). A node is LAMP_WIDTH children as structure of arrays, LAMP_WIDTH reals
  * each of centre x, y, z, radius and power. A child of positive radius is a lamp, and its word is CHILD_LEAF
  * and the lamp's slot; one of negative radius is a node, whose lamps lie in a ball of the radius without its
@@ -213,16 +231,16 @@ typedef struct PackedVariation {
  * release (render/worker_buffers.c). Only what fills an array knows more of it.
  *
  * X(numbers, element, name, count, what): `numbers` is REALS or UINTS, what `element` is made of; `count`
- * says how many elements there are, in terms of `width` (of the tree), `nodes`, `leaf_count`, `slots`,
- * `material_count`, `texture_count`, `texel_count`, `sky_row_count` and so on, `disc_count`, `lamp_nodes` and
- * `lamp_slots`; `what` is how a message
- * calls it. Arrays of the first list are pack.c's, of the second the tree of lamps', of the third the tree's.
- * Materials are arrays of numbers here, since Mesa's rusticl (22.3) gathers wrong ones through a pointer to
- * structs that is cast inside a loop. */
+ * says how many elements there are, in terms of `width` (of the tree), `nodes`, `leaf_count`,
+ * `motion_leaves`, `slots`, `material_count`, `texture_count`, `texel_count`, `sky_row_count` and so on,
+ * `disc_count`, `lamp_nodes` and `lamp_slots`; `what` is how a message calls it. Arrays of the first list are
+ * pack.c's, of the second the tree of lamps', of the third the tree's. Materials are arrays of numbers here,
+ * since Mesa's rusticl (22.3) gathers wrong ones through a pointer to structs that is cast inside a loop. */
 #define MATERIAL_REALS ((packed_uint)(sizeof(PackedMaterial) / sizeof(real)))
 #define MATERIAL_UINTS ((packed_uint)(sizeof(PackedMaterialKind) / sizeof(packed_uint)))
 #define DISC_REALS ((packed_uint)(sizeof(PackedDisc) / sizeof(real)))
 #define VARIATION_UINTS ((packed_uint)(sizeof(PackedVariation) / sizeof(packed_uint)))
+#define MEDIUM_REALS ((packed_uint)(sizeof(PackedMedium) / sizeof(real)))
 #define TEXTURE_REALS ((packed_uint)(sizeof(PackedTexture) / sizeof(real)))
 #define TEXTURE_UINTS ((packed_uint)(sizeof(PackedTextureKind) / sizeof(packed_uint)))
 /* clang-format off */
@@ -239,6 +257,8 @@ typedef struct PackedVariation {
     X(UINTS, packed_uint, sky_rows, sky_row_count, "the table of the background")                            \
     X(UINTS, packed_uint, sky_columns, sky_column_count, "the table of the background")                      \
     X(REALS, real, sky_heights, sky_height_count, "the table of the background")                             \
+    X(REALS, real, media, medium_count * MEDIUM_REALS, "the media")                                          \
+    X(UINTS, packed_uint, boundaries, boundary_count * BOUNDARY_UINTS, "the boundaries of media")            \
     X(UINTS, packed_uint, slot_material, slots, "the table of sphere materials")                             \
     X(REALS, real, slot_albedo, slots * ALBEDO_REALS, "the table of sphere colours")
 #define SCENE_ARRAYS_OF_LAMPS(X)                                                                             \
@@ -249,12 +269,13 @@ typedef struct PackedVariation {
     X(REALS, real, node_boxes, nodes * NODE_REALS(width), "the tree's boxes")                                \
     X(UINTS, packed_uint, children, nodes * width, "the tree's nodes")                                       \
     X(REALS, real, leaves, leaf_count * LEAF_REALS(width), "the spheres")                                    \
+    X(REALS, real, leaf_motions, motion_leaves * MOTION_REALS(width), "the spheres' motions")                 \
     X(UINTS, packed_uint, slot_sphere, slots, "the spheres' numbers")
 #define SCENE_NUMBERS(X)                                                                                     \
     X(first_leaves) X(leaf_count) X(pixel_center) X(max_depth) X(seed_low) X(seed_high) X(replicates) X(width)
 /* clang-format on */
 
-enum { KIND_LAMBERTIAN, KIND_METAL, KIND_DIELECTRIC, KIND_LIGHT, KIND_NORMALS };
+enum { KIND_LAMBERTIAN, KIND_METAL, KIND_DIELECTRIC, KIND_LIGHT, KIND_NORMALS, KIND_INTERFACE };
 enum { LOBE_LAMBERTIAN, LOBE_COSINE_CUBED, LOBE_HEMISPHERE };
 enum { FUZZ_SPHERE, FUZZ_BALL };
 enum { FRESNEL_SCHLICK, FRESNEL_EXACT, FRESNEL_NONE };
@@ -272,6 +293,7 @@ _Static_assert(sizeof(PackedMaterial) == 8 * sizeof(real), "PackedMaterial has p
 _Static_assert(sizeof(PackedMaterialKind) == 16, "PackedMaterialKind has padding");
 _Static_assert(sizeof(PackedTexture) == 32 * sizeof(real), "PackedTexture has padding");
 _Static_assert(sizeof(PackedTextureKind) == 48, "PackedTextureKind has padding");
+_Static_assert(sizeof(PackedMedium) == 8 * sizeof(real), "PackedMedium has padding");
 _Static_assert(sizeof(PackedVariation) == 16, "PackedVariation has padding");
 #define BP_PLACE(place, type, member, element)                                                               \
     _Static_assert(offsetof(type, member) == (place) * sizeof(element), "the place of " #member)
@@ -282,6 +304,9 @@ BP_PLACE(DISC_POWER, PackedDisc, power, real);
 BP_PLACE(DISC_SINE, PackedDisc, sine, real);
 BP_PLACE(DISC_CHORD2, PackedDisc, chord2, real);
 BP_PLACE(DISC_SEEN, PackedDisc, seen, real);
+BP_PLACE(MEDIUM_SCATTERING, PackedMedium, scattering, real);
+BP_PLACE(MEDIUM_ANISOTROPY, PackedMedium, anisotropy, real);
+BP_PLACE(MEDIUM_ABSORPTION, PackedMedium, absorption, real);
 BP_PLACE(VARIATION_ALBEDO, PackedVariation, albedo, packed_uint);
 BP_PLACE(VARIATION_FUZZ, PackedVariation, fuzz, packed_uint);
 BP_PLACE(VARIATION_EMIT, PackedVariation, emit, packed_uint);

@@ -41,7 +41,7 @@ static bool is_black(const double colour[3]) {
 /* What the surface did with the path. */
 static const char *outcome(const BpPathStep *step, BpMaterialKind kind) {
     if (!step->goes_on && bp_material_is(kind, BP_SCATTERS)) return "absorbs it";
-    if (step->goes_on && bp_material_is(kind, BP_HAS_INSIDE)) {
+    if (step->goes_on && bp_material_is(kind, BP_HAS_INSIDE) && kind != BP_MATERIAL_INTERFACE) {
         if (step->enters) return step->inward ? "refracts it into the sphere" : "reflects it";
         return step->inward ? "reflects it back inside" : "refracts it out of the sphere";
     }
@@ -71,7 +71,14 @@ static void print_path(const BpScene *scene, const BpPathLog *path, uint32_t x, 
         const BpPathStep *step = &path->steps[i];
         fprintf(out, "  %3zu  from (%.6g, %.6g, %.6g) along (%.4f, %.4f, %.4f)\n", i + 1, step->origin[0],
                 step->origin[1], step->origin[2], step->direction[0], step->direction[1], step->direction[2]);
-        if (step->met) {
+        if (step->scattered) {
+            fprintf(out,
+                    "       after %.6g a medium scatters it at (%.6g, %.6g, %.6g), throughput (%.4g, %.4g, "
+                    "%.4g)\n",
+                    step->distance, step->point[0], step->point[1], step->point[2], step->throughput[0],
+                    step->throughput[1], step->throughput[2]);
+            if (step->to_lamp) print_lamp_ray(step, out);
+        } else if (step->met) {
             const BpMaterial *material = &scene->materials[step->material];
             fprintf(out, "       after %.6g hits sphere %" PRIu32 " from %s at (%.6g, %.6g, %.6g)\n",
                     step->distance, step->sphere, step->enters ? "outside" : "inside", step->point[0],
@@ -132,6 +139,14 @@ static json_t *step_json(const BpScene *scene, const BpPathStep *step) {
                              triple(step->direction), "throughput", triple(step->throughput), "radiance",
                              triple(step->radiance), "met", step->met);
     if (root == NULL) return root;
+    if (step->scattered) {
+        if (json_object_set_new(root, "scattered", json_true()) == 0 &&
+            json_object_set_new(root, "distance", json_real(step->distance)) == 0 &&
+            json_object_set_new(root, "point", triple(step->point)) == 0)
+            return root;
+        json_decref(root);
+        return NULL;
+    }
     if (!step->met) return with_discs(root, step->discs);
     const BpMaterial *material = &scene->materials[step->material];
     json_t *meeting = json_pack("{s:f, s:o, s:I, s:s, s:s, s:b, s:b, s:b}", "distance", step->distance,

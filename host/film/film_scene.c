@@ -55,6 +55,13 @@ static double discs_together(const BpScene *scene) {
     return most;
 }
 
+/* The most that a path may weigh for the colour that it flies by (kernels/medium/flight.cl). */
+static double flight_weight(const BpScene *scene) {
+    for (size_t i = 0; i < scene->medium_count; i++)
+        if (bp_medium_is_coloured(&scene->media[i])) return 3;
+    return 1;
+}
+
 double bp_scene_radiance_bound(const BpScene *scene, uint32_t max_depth, BpLamps lamps) {
     double brightest = fmax(largest(scene->background_bottom), largest(scene->background_top));
     double brightest_lamp = 0, passed_on = 0, scattered = 0;
@@ -73,9 +80,12 @@ double bp_scene_radiance_bound(const BpScene *scene, uint32_t max_depth, BpLamps
         if (bp_material_is_lit(material)) scattered = fmax(scattered, albedo);
         if (emitted > 0) passed_on = fmax(passed_on, albedo);
     }
-    double bound = brightest * geometric(passed_on, max_depth);
+    for (size_t i = 0; i < scene->medium_count; i++)
+        if (bp_medium_scatters(&scene->media[i])) scattered = 1; /* rays go to lamps from there too */
+    double bound = flight_weight(scene) * brightest * geometric(passed_on, max_depth);
     if (lamps != BP_LAMPS_OFF && max_depth >= 2)
-        bound += 0.5 * brightest_lamp * scattered * geometric(scattered, max_depth - 1);
+        bound +=
+            flight_weight(scene) * 0.5 * brightest_lamp * scattered * geometric(scattered, max_depth - 1);
     if (scene->backdrop != BP_BACKDROP_COLORS) return bound;
     return fmax(bound, fmax(largest(scene->backdrop_bottom), largest(scene->backdrop_top)));
 }
@@ -172,6 +182,13 @@ static uint64_t hash_material(const BpMaterial *material) {
     return hash;
 }
 
+static uint64_t mix_medium(uint64_t hash, const BpScene *scene, uint32_t number) {
+    const BpMedium *medium = &scene->media[number - 1];
+    hash = mix_reals(mix(hash, 0x6d656469756du), medium->absorption, 3);
+    hash = mix_reals(hash, medium->scattering, 3);
+    return mix_real(hash, medium->anisotropy);
+}
+
 static uint64_t mix_sphere(uint64_t hash, const BpScene *scene, const BpSphere *sphere) {
     const BpMaterial *material = &scene->materials[sphere->material];
     hash = mix_reals(hash, sphere->center, 3);
@@ -215,6 +232,7 @@ uint64_t bp_scene_hash(const BpScene *scene) {
         hash = mix(hash, disc->visible_to_camera);
     }
     hash = mix_surroundings(hash, scene);
+    if (bp_scene_medium(scene) != 0) hash = mix_medium(hash, scene, bp_scene_medium(scene));
     hash = mix(hash, scene->sphere_count);
     /* Most scenes use a material many times in a row. */
     uint32_t known = UINT32_MAX;
@@ -224,6 +242,9 @@ uint64_t bp_scene_hash(const BpScene *scene) {
         if (sphere->material != known) material_hash = hash_material(&scene->materials[sphere->material]);
         known = sphere->material;
         hash = mix_sphere(mix(hash, material_hash), scene, sphere);
+        if (bp_sphere_interior(scene, i) != 0) hash = mix_medium(hash, scene, bp_sphere_interior(scene, i));
+        if (bp_sphere_moves(scene, i))
+            hash = mix_reals(mix(hash, 0x6d6f76657321u), bp_sphere_end(scene, i), 3);
     }
     return hash;
 }

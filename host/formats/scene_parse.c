@@ -109,7 +109,7 @@ BpStatus bp_parse_material_name(const BpNode *node, const BpMaterialIndex *index
 
 static BpStatus parse_sphere(const BpNode *node, const BpMaterialIndex *index, BpSphere *sphere,
                              BpError *err) {
-    static const char *const names[] = {"center", "radius", "material"};
+    static const char *const names[] = {"center", "radius", "material", "center_end", "interior"};
     BP_TRY(bp_node_object(node, names, BP_COUNT(names), err));
     BP_TRY(bp_node_require(node, "center", "\"center\": [x, y, z]", err));
     BP_TRY(bp_node_require(node, "radius", "a number such as \"radius\": 0.5", err));
@@ -121,6 +121,33 @@ static BpStatus parse_sphere(const BpNode *node, const BpMaterialIndex *index, B
     BP_TRY(bp_node_number(&radius, &sphere->radius, err));
     sphere->albedo = BP_NO_ALBEDO;
     return bp_parse_material_name(&material, index, &sphere->material, err);
+}
+
+/* Where the sphere `index`, of `count` that are listed, is when the shutter closes. */
+static BpStatus parse_motion(const BpNode *node, size_t index, size_t count, BpScene *scene, BpError *err) {
+    const BpNode end = bp_node_member(node, "center_end");
+    if (end.value == NULL && scene->center_ends == NULL) return BP_OK;
+    if (scene->center_ends == NULL) {
+        scene->center_ends = malloc(count * sizeof *scene->center_ends);
+        if (scene->center_ends == NULL)
+            return bp_fail(err, BP_ERR_MEMORY, "out of memory for %zu motions", count);
+        for (size_t i = 0; i < index; i++)
+            memcpy(scene->center_ends[i], scene->spheres[i].center, sizeof scene->center_ends[i]);
+    }
+    memcpy(scene->center_ends[index], scene->spheres[index].center, sizeof scene->center_ends[index]);
+    return bp_node_vector(&end, scene->center_ends[index], err);
+}
+
+/* What fills the sphere `index`, of `count` that are listed. */
+static BpStatus parse_interior(const BpNode *node, size_t index, size_t count, BpScene *scene, BpError *err) {
+    const BpNode interior = bp_node_member(node, "interior");
+    if (interior.value == NULL) return BP_OK;
+    if (scene->interiors == NULL) {
+        scene->interiors = calloc(count, sizeof *scene->interiors);
+        if (scene->interiors == NULL)
+            return bp_fail(err, BP_ERR_MEMORY, "out of memory for %zu interiors", count);
+    }
+    return bp_parse_medium_name(&interior, scene, &scene->interiors[index], err);
 }
 
 static BpStatus parse_spheres(const BpNode *node, const BpMaterialIndex *index, BpScene *scene,
@@ -140,8 +167,12 @@ static BpStatus parse_spheres(const BpNode *node, const BpMaterialIndex *index, 
             return bp_node_wrong(&element,
                                  "an object: { \"center\": ..., \"radius\": ..., \"material\": ... }", err);
         BP_TRY(parse_sphere(&element, index, &scene->spheres[i], err));
+        BP_TRY(parse_motion(&element, i, count, scene, err));
+        BP_TRY(parse_interior(&element, i, count, scene, err));
     }
     scene->sphere_count = count;
+    if (scene->center_ends != NULL) scene->moving_count = count;
+    if (scene->interiors != NULL) scene->interior_count = count;
     return BP_OK;
 }
 
@@ -194,6 +225,11 @@ static BpStatus refuse_faults(const BpNode *root, const BpScene *scene, BpError 
     case BP_FAULT_TEXTURE: {
         const BpNode texture = bp_node_member(&textures, scene->textures[fault.index].name);
         return fail_member(&texture, fault.member, fault.text, err);
+    }
+    case BP_FAULT_MEDIUM: {
+        const BpNode media = bp_node_member(root, "media");
+        const BpNode medium = bp_node_member(&media, scene->media[fault.index].name);
+        return fail_member(&medium, fault.member, fault.text, err);
     }
     case BP_FAULT_MATERIAL: {
         const BpNode material = bp_node_member(&materials, scene->materials[fault.index].name);
@@ -265,6 +301,20 @@ void bp_scene_view(BpScene *scene, double direction[3]) {
         bp_view_direction(camera->view, up, direction);
 }
 
+/* All spheres, and those that move once more, where they end. The caller frees them. */
+static BpStatus spheres_at_both_ends(const BpScene *scene, BpSphere **spheres, size_t *count, BpError *err) {
+    *count = scene->sphere_count + scene->moving_count;
+    *spheres = malloc(*count * sizeof **spheres);
+    if (*spheres == NULL) return bp_fail(err, BP_ERR_MEMORY, "out of memory for %zu spheres", *count);
+    memcpy(*spheres, scene->spheres, scene->sphere_count * sizeof **spheres);
+    for (size_t i = 0; i < scene->moving_count; i++) {
+        BpSphere *const end = *spheres + scene->sphere_count + i;
+        *end = scene->spheres[i];
+        memcpy(end->center, scene->center_ends[i], sizeof end->center);
+    }
+    return BP_OK;
+}
+
 static BpStatus fit_camera(const BpNode *node, const BpSceneChanges *changes, BpScene *scene, BpError *err) {
     BpCamera *const camera = &scene->camera;
     const BpNode fit = bp_node_member(node, "fit");
@@ -284,13 +334,19 @@ static BpStatus fit_camera(const BpNode *node, const BpSceneChanges *changes, Bp
         return bp_node_fail(&fit, BP_PART_VALUE, err,
                             "found \"particles\", but the scene has none; expected \"scene\", or particles");
     bp_scene_view(scene, direction);
-    const BpSphere *const spheres = scene->spheres + first;
-    const size_t count = scene->sphere_count - first;
+    const BpSphere *spheres = scene->spheres + first;
+    size_t count = scene->sphere_count - first;
+    BpSphere *both = NULL;
+    if (first < scene->moving_count) {
+        BP_TRY(spheres_at_both_ends(scene, &both, &count, err));
+        spheres = both;
+    }
     BpError inner = {0};
     const BpStatus status = changes->turning > 0
                                 ? bp_camera_fit_turning(spheres, count, direction, camera->margin,
                                                         changes->turning, camera, &inner)
                                 : bp_camera_fit(spheres, count, direction, camera->margin, camera, &inner);
+    free(both);
     if (status == BP_OK) return BP_OK;
     bp_node_fail(fit.value != NULL ? &fit : node, BP_PART_VALUE, err, "%s", inner.message);
     bp_error_clear(&inner);
@@ -320,9 +376,9 @@ static BpStatus choose_fresnel(const BpSceneChanges *changes, BpScene *scene, Bp
 }
 
 static BpStatus parse_body(const BpNode *root, const BpSceneChanges *changes, BpScene *scene, BpError *err) {
-    static const char *const names[] = {"format",   "title",  "source",    "camera",   "background",
-                                        "backdrop", "light",  "transfer",  "textures", "materials",
-                                        "spheres",  "clouds", "particles", "$schema"};
+    static const char *const names[] = {
+        "format",   "title",     "source",  "camera", "background", "backdrop", "light", "transfer",
+        "textures", "materials", "spheres", "clouds", "particles",  "$schema",  "media", "medium"};
     BP_TRY(bp_node_object(root, names, BP_COUNT(names), err));
     BP_TRY(bp_node_require(root, "camera", "one, such as \"camera\": { \"image_width\": 400 }", err));
     BP_TRY(parse_head(root, scene, err));
@@ -334,6 +390,8 @@ static BpStatus parse_body(const BpNode *root, const BpSceneChanges *changes, Bp
     const BpNode spheres = bp_node_member(root, "spheres");
     const BpNode clouds = bp_node_member(root, "clouds");
     const BpNode particles = bp_node_member(root, "particles");
+    const BpNode media = bp_node_member(root, "media");
+    const BpNode medium = bp_node_member(root, "medium");
     BP_TRY(bp_parse_camera(&camera, &scene->camera, err));
     if (changes->projection != NULL)
         scene->camera.projection = strcmp(changes->projection, bp_projection_names[BP_PERSPECTIVE]) == 0
@@ -344,6 +402,8 @@ static BpStatus parse_body(const BpNode *root, const BpSceneChanges *changes, Bp
     BP_TRY(bp_parse_backdrop(&backdrop, scene, err));
     BP_TRY(bp_parse_light(root, changes->light, scene, err));
     BP_TRY(bp_parse_textures(&textures, changes->flags, scene, err));
+    BP_TRY(bp_parse_media(&media, scene, err));
+    BP_TRY(bp_parse_medium_name(&medium, scene, &scene->medium, err));
     BP_TRY(parse_materials(&materials, scene, err));
     BpMaterialIndex index = {0};
     BpStatus status = index_materials(scene, &index, err);

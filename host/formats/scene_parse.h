@@ -74,6 +74,11 @@ BpStatus bp_parse_image(const BpNode *file, const BpNode *encoding, const BpNode
                         BpScene *scene, BpImage **image, BpError *err);
 /* Finds the texture that the node, { "texture": name }, names; *number counts from 1. */
 BpStatus bp_parse_texture_name(const BpNode *node, const BpScene *scene, uint32_t *number, BpError *err);
+/* The scene's media (scene_medium.c). */
+BpStatus bp_parse_media(const BpNode *node, BpScene *scene, BpError *err);
+/* Finds the medium that the node, a string, names; *number counts from 1, and stays where there is no node.
+ */
+BpStatus bp_parse_medium_name(const BpNode *node, const BpScene *scene, uint32_t *number, BpError *err);
 /* `material` is zeroed; its name is the caller's to set. The scene has its textures. */
 BpStatus bp_parse_material(const BpNode *node, const BpScene *scene, BpMaterial *material, BpError *err);
 

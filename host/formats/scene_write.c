@@ -308,6 +308,26 @@ static BpStatus put_textures(FILE *out, const BpScene *scene, BpError *err) {
     return BP_OK;
 }
 
+static BpStatus put_media(FILE *out, const BpScene *scene, BpError *err) {
+    fputs(",\n  \"media\": {", out);
+    for (size_t i = 0; i < scene->medium_count; i++) {
+        const BpMedium *medium = &scene->media[i];
+        fputs(i > 0 ? ",\n    " : "\n    ", out);
+        BP_TRY(put_text(out, medium->name, err));
+        fputs(": { \"absorption\": ", out);
+        put_value(out, medium->absorption);
+        fputs(", \"scattering\": ", out);
+        put_value(out, medium->scattering);
+        fputs(", \"anisotropy\": ", out);
+        put_number(out, medium->anisotropy);
+        fputs(" }", out);
+    }
+    fputs("\n  }", out);
+    if (scene->medium == 0) return BP_OK;
+    fputs(",\n  \"medium\": ", out);
+    return put_text(out, scene->media[scene->medium - 1].name, err);
+}
+
 /* Without that of particles that name none, which is the last. */
 static size_t written_materials(const BpScene *scene) {
     return scene->material_count - (scene->implicit_material != SIZE_MAX);
@@ -348,6 +368,14 @@ static BpStatus put_spheres(FILE *out, const BpScene *scene, BpError *err) {
         put_number(out, sphere->radius);
         fputs(", \"material\": ", out);
         BP_TRY(put_text(out, scene->materials[sphere->material].name, err));
+        if (bp_sphere_moves(scene, i)) {
+            fputs(", \"center_end\": ", out);
+            put_vector(out, bp_sphere_end(scene, i));
+        }
+        if (i < scene->interior_count && scene->interiors[i] != 0) {
+            fputs(", \"interior\": ", out);
+            BP_TRY(put_text(out, scene->media[scene->interiors[i] - 1].name, err));
+        }
         fputs(" }", out);
     }
     fputs("\n  ]", out);
@@ -378,6 +406,7 @@ BpStatus bp_scene_print(const BpScene *scene, FILE *out, BpError *err) {
     put_backdrop(out, scene);
     fprintf(out, ",\n  \"transfer\": \"%s\"", bp_transfer_names[scene->transfer]);
     if (scene->texture_count > 0) BP_TRY(put_textures(out, scene, err));
+    if (scene->medium_count > 0) BP_TRY(put_media(out, scene, err));
     if (written_materials(scene) > 0) BP_TRY(put_materials(out, scene, err));
     if (written_spheres(scene) > 0) BP_TRY(put_spheres(out, scene, err));
     if (scene->has_particles) put_particles(out, scene);

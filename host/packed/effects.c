@@ -118,6 +118,40 @@ static uint32_t count_uses(const BpScene *scene, Use uses[BP_EFFECT_COUNT], Use 
     return bits;
 }
 
+/* Whether a sphere moves. */
+static bool explain_motion(const BpScene *scene, size_t size, char *reason) {
+    size_t moving = 0;
+    for (size_t i = 0; i < scene->moving_count; ++i) moving += bp_sphere_moves(scene, i);
+    if (moving > 0)
+        snprintf(reason, size, "%zu of %zu sphere%s move%s", moving, scene->sphere_count,
+                 bp_plural(scene->sphere_count), moving == 1 ? "s" : "");
+    else
+        snprintf(reason, size, "no sphere moves");
+    return moving > 0;
+}
+
+/* Whether a medium does anything to light, or a boundary lets it through. */
+static bool explain_media(const BpScene *scene, size_t size, char *reason) {
+    const bool around = bp_scene_medium(scene) != 0;
+    size_t filled = 0, interfaces = 0;
+    for (size_t i = 0; i < scene->interior_count; ++i) filled += bp_sphere_interior(scene, i) != 0;
+    for (size_t m = 0, any = 0; m < scene->material_count && any == 0; ++m) {
+        any = scene->materials[m].kind == BP_MATERIAL_INTERFACE;
+        for (size_t i = 0; i < scene->sphere_count && any > 0; ++i)
+            interfaces += scene->materials[scene->spheres[i].material].kind == BP_MATERIAL_INTERFACE;
+    }
+    if (filled > 0)
+        snprintf(reason, size, "%zu sphere%s with a medium inside%s", filled, bp_plural(filled),
+                 around ? ", and the scene lies in one" : "");
+    else if (around)
+        snprintf(reason, size, "the scene lies in a medium");
+    else if (interfaces > 0)
+        snprintf(reason, size, "%zu interface%s, but all media are clear", interfaces, bp_plural(interfaces));
+    else
+        snprintf(reason, size, "all is clear: no medium inside a sphere or around");
+    return around || filled > 0 || interfaces > 0;
+}
+
 #define NO_LAMP_REASON "no sphere gives light, and no disc of the sky"
 
 static size_t bright_discs(const BpScene *scene) {
@@ -174,9 +208,20 @@ static bool sky_outshines_lamps(const BpScene *scene) {
         const double *from = scene->camera.lookfrom;
         const double x = from[0] - sphere->center[0], y = from[1] - sphere->center[1],
                      z = from[2] - sphere->center[2];
-        if (hypot(hypot(x, y), z) < fabs(sphere->radius)) return false;
+        if (hypot(hypot(x, y), z) < fabs(sphere->radius) || bp_sphere_moves(scene, i)) return false;
     }
     return true;
+}
+
+/* Whether a medium scatters, so that lamps light it. */
+static bool scatters_in_media(const BpScene *scene) {
+    const uint32_t around = bp_scene_medium(scene);
+    if (around != 0 && bp_medium_scatters(&scene->media[around - 1])) return true;
+    for (size_t i = 0; i < scene->interior_count; ++i) {
+        const uint32_t inside = bp_sphere_interior(scene, i);
+        if (inside != 0 && bp_medium_scatters(&scene->media[inside - 1])) return true;
+    }
+    return false;
 }
 
 /* Whether rays are sent to lamps: if there is a disc, an image around whose light varies, or a lamp and
@@ -184,30 +229,39 @@ static bool sky_outshines_lamps(const BpScene *scene) {
 static bool explain_lamps(const BpScene *scene, size_t size, char *reason) {
     const size_t discs = bright_discs(scene);
     const bool image = sampled_image(scene), sky = discs > 0 || image;
+    const bool media = scatters_in_media(scene);
     char all[96];
     const size_t enclosing = bp_enclosing_lamp(scene);
-    size_t lamps = 0, lit = 0, both = 0;
+    size_t lamps = 0, lit = 0, both = 0, moving = 0;
     for (size_t i = 0; i < scene->sphere_count; ++i) {
-        const bool is_lamp = i != enclosing && bp_sphere_emits(scene, i);
+        const bool is_lamp = bp_sphere_is_sampled(scene, i, enclosing);
+        moving += bp_sphere_emits(scene, i) && bp_sphere_moves(scene, i);
         const bool is_lit = bp_material_is_lit(&scene->materials[scene->spheres[i].material]);
         lamps += is_lamp;
         lit += is_lit;
         both += is_lamp && is_lit;
     }
     name_lamps(lamps, discs, image, sizeof all, all);
-    if (lamps == 0 && !sky)
+    if (lamps == 0 && !sky && moving > 0)
+        snprintf(reason, size, "the only lamp%s move%s: paths find %s by chance", bp_plural(moving),
+                 moving == 1 ? "s" : "", moving == 1 ? "it" : "them");
+    else if (lamps == 0 && !sky)
         snprintf(reason, size,
                  enclosing != SIZE_MAX ? "the only lamp surrounds everything: every path finds it"
                                        : NO_LAMP_REASON);
-    else if (lit == 0)
+    else if (lit == 0 && !media)
         snprintf(reason, size, "%s, but no matte surface and no metal with a fuzz of 1/64 or more", all);
-    else if (!sky && lamps == 1 && lit == 1 && both == 1)
+    else if (!sky && lamps == 1 && lit == 1 && both == 1 && !media)
         snprintf(reason, size, "the only lamp is also the only surface that could be lit");
     else if (!sky && sky_outshines_lamps(scene))
         snprintf(reason, size, "%zu lamp%s, %s brighter than the sky", lamps, bp_plural(lamps),
                  lamps == 1 ? "not" : "none of them");
     else {
-        snprintf(reason, size, "%s that can light %zu sphere%s", all, lit, bp_plural(lit));
+        const int used = snprintf(reason, size, "%s that can light %zu sphere%s%s", all, lit, bp_plural(lit),
+                                  media ? " and media" : "");
+        if (moving > 0)
+            snprintf(reason + used, size - (size_t)used, "; %zu that move%s %s found by chance", moving,
+                     moving == 1 ? "s" : "", moving == 1 ? "is" : "are");
         return true;
     }
     return false;
@@ -280,6 +334,9 @@ void bp_effects_analyse(const BpScene *scene, BpEffects *effects) {
         if (explain_textures(scene, (BpEffect)e, size, effects->reason[e])) effects->bits |= 1u << e;
     if (explain_environment(scene, size, effects->reason[BP_EFFECT_ENVIRONMENT]))
         effects->bits |= 1u << BP_EFFECT_ENVIRONMENT;
+    if (explain_media(scene, size, effects->reason[BP_EFFECT_MEDIA])) effects->bits |= 1u << BP_EFFECT_MEDIA;
+    if (explain_motion(scene, size, effects->reason[BP_EFFECT_MOTION]))
+        effects->bits |= 1u << BP_EFFECT_MOTION;
     if ((effects->bits & (1u << BP_EFFECT_EMISSION | 1u << BP_EFFECT_DISCS)) == 0 && !sampled_image(scene))
         snprintf(effects->reason[BP_EFFECT_LAMPS], size,
                  NO_LAMP_REASON); /* without another look at all spheres */

@@ -28,7 +28,9 @@
     X(TEXTURES, "textures", "colours, fuzz and light that vary over surfaces: checkers", "", "")             \
     X(NOISE, "noise", "textures of gradient noise: turbulence, marble, wood", "", "")                        \
     X(IMAGES, "images", "textures from image files", "", "")                                                 \
-    X(ENVIRONMENT, "environment", "an image all around as background", "", "")
+    X(ENVIRONMENT, "environment", "an image all around as background", "", "")                               \
+    X(MOTION, "motion", "spheres that move while the shutter is open", "", "")                               \
+    X(MEDIA, "media", "fog, smoke and tinted glass: what fills spheres or the whole scene", "", "")
 
 typedef enum BpEffect {
 #define BP_EFFECT_ENUM(identifier, name, text, left_out, absent) BP_EFFECT_##identifier,

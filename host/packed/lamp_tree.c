@@ -56,12 +56,19 @@ size_t bp_enclosing_lamp(const BpScene *scene) {
     const BpSphere *shell = &scene->spheres[largest];
     for (size_t i = 0; i < scene->sphere_count; ++i) {
         const BpSphere *sphere = &scene->spheres[i];
+        /* Of two that move, the distance is largest when the shutter opens or closes. */
+        const double *a = bp_sphere_end(scene, i), *b = bp_sphere_end(scene, largest);
         const double distance =
-            hypot(hypot(sphere->center[0] - shell->center[0], sphere->center[1] - shell->center[1]),
-                  sphere->center[2] - shell->center[2]);
+            fmax(hypot(hypot(sphere->center[0] - shell->center[0], sphere->center[1] - shell->center[1]),
+                       sphere->center[2] - shell->center[2]),
+                 hypot(hypot(a[0] - b[0], a[1] - b[1]), a[2] - b[2]));
         if (i != largest && !(distance + fabs(sphere->radius) <= fabs(shell->radius))) return SIZE_MAX;
     }
     return largest;
+}
+
+bool bp_sphere_is_sampled(const BpScene *scene, size_t i, size_t enclosing) {
+    return i != enclosing && bp_sphere_emits(scene, i) && !bp_sphere_moves(scene, i);
 }
 
 /* ---- runs ---- */
@@ -251,7 +258,7 @@ static void collect_lamps(const BpScene *scene, const BpTree *tree, const uint32
                           Builder *builder) {
     uint32_t count = 0;
     for (size_t i = 0; i < scene->sphere_count; ++i) {
-        if (i == enclosing || !bp_sphere_emits(scene, i)) continue;
+        if (!bp_sphere_is_sampled(scene, i, enclosing)) continue;
         Lamp *lamp = &builder->lamps[count++];
         lamp->slot = slot_of[i];
         const uint32_t lane = lamp->slot % tree->width;
@@ -283,18 +290,22 @@ BpStatus bp_lamp_tree_build(const BpScene *scene, const BpTree *tree, BpLampTree
     const size_t slots = (size_t)tree->leaf_count * tree->width;
     BpStatus status = BP_OK;
     uint32_t *slot_of = NULL;
+    bool others = false; /* lamps that a path may meet, and that are in no tree */
     for (size_t i = 0; i < scene->sphere_count; ++i)
-        if (i != enclosing && bp_sphere_emits(scene, i)) ++lamps->lamp_count;
+        if (bp_sphere_is_sampled(scene, i, enclosing))
+            ++lamps->lamp_count;
+        else
+            others = others || (i != enclosing && bp_sphere_emits(scene, i));
     const uint32_t count = lamps->lamp_count;
     lamps->unit = unit_of_power(scene, enclosing);
     bool enough = true;
-    if (count > 0) {
+    if (count > 0 || others) {
         slot_of = malloc(scene->sphere_count * sizeof *slot_of);
-        builder.lamps = malloc(count * sizeof *builder.lamps);
+        builder.lamps = malloc((count + 1) * sizeof *builder.lamps);
         lamps->slot_lamp = malloc(slots * sizeof *lamps->slot_lamp);
         enough = slot_of != NULL && builder.lamps != NULL && lamps->slot_lamp != NULL;
     }
-    if (enough && count > 0) {
+    if (enough && slot_of != NULL) {
         for (size_t slot = 0; slot < slots; ++slot) {
             lamps->slot_lamp[slot] = NO_LAMP;
             if (tree->slot_sphere[slot] != NO_SPHERE) slot_of[tree->slot_sphere[slot]] = (uint32_t)slot;

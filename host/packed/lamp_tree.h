@@ -5,8 +5,9 @@
  * Knows: what counts as a lamp, the packed layout.   Does not know: materials but for what they emit, OpenCL.
  *
  * A lamp is a sphere that emits, unless it encloses every other sphere: then no point is outside it, and it
- * is the sky. The tree depends on the spheres' centres and radii as packed, their radiance and their order in
- * the scene, and not on how the spheres themselves are arranged, since the picture depends on it. */
+ * is the sky. One that moves is in no tree, since its place is another for each path: paths find it by
+ * chance. The tree depends on the spheres' centres and radii as packed, their radiance and their order in the
+ * scene, and not on how the spheres themselves are arranged, since the picture depends on it. */
 #ifndef BP_PACKED_LAMP_TREE_H
 #define BP_PACKED_LAMP_TREE_H
 
@@ -16,7 +17,7 @@ typedef struct BpLampTree {
     uint32_t lamp_count;
     double unit;         /* of power: of the brightest lamp or disc, 1 over its luminance; 0: all is dark */
     uint32_t node_count; /* at least one: the root, without children where there is no lamp */
-    uint32_t slot_count; /* of the spheres, or 0 where there is no lamp */
+    uint32_t slot_count; /* of the spheres, or 0 where there is no lamp that a path may meet */
     void *lamps;         /* node_count * LAMP_NODE_REALS reals, in the precision of the spheres' tree */
     uint32_t *lamp_children; /* node_count * LAMP_WIDTH */
     uint32_t *slot_lamp;     /* slot_count */
@@ -27,6 +28,9 @@ bool bp_sphere_emits(const BpScene *scene, size_t i);
 
 /* The sphere that emits and encloses every other sphere, or SIZE_MAX. A scene of one sphere has none. */
 size_t bp_enclosing_lamp(const BpScene *scene);
+
+/* Sphere `i` is a lamp of the tree. `enclosing`: see above. */
+bool bp_sphere_is_sampled(const BpScene *scene, size_t i, size_t enclosing);
 
 /* BP_ERR_MEMORY. On failure `lamps` is empty. Free with bp_lamp_tree_clear(). */
 BpStatus bp_lamp_tree_build(const BpScene *scene, const BpTree *tree, BpLampTree *lamps, BpError *err);

@@ -435,6 +435,69 @@ static BpStatus pack_slots(const BpScene *scene, const uint32_t *second, BpPacke
     return BP_OK;
 }
 
+/* ---- media ----------------------------------------------------------------------------------------- */
+
+static BpStatus pack_media(const BpScene *scene, BpPacked *packed, BpError *err) {
+    const size_t count = scene->medium_count + 1;
+    PackedMedium *media = calloc(count, sizeof *media);
+    if (media == NULL) return out_of_memory(scene, err);
+    for (size_t i = 1; i < count; ++i) {
+        const BpMedium *medium = &scene->media[i - 1];
+        memcpy(media[i].scattering, medium->scattering, sizeof media[i].scattering);
+        memcpy(media[i].absorption, medium->absorption, sizeof media[i].absorption);
+        media[i].anisotropy = medium->anisotropy;
+    }
+    packed->medium_count = (uint32_t)count;
+    packed->media = narrow((const double *)media, count * MEDIUM_REALS, 1, packed->single_precision);
+    free(media);
+    return packed->media != NULL ? BP_OK : out_of_memory(scene, err);
+}
+
+typedef struct Boundary {
+    double radius;
+    uint32_t sphere, slot;
+} Boundary;
+
+static int compare_boundaries(const void *a_pointer, const void *b_pointer) {
+    const Boundary *a = a_pointer, *b = b_pointer;
+    if (a->radius != b->radius) return a->radius < b->radius ? -1 : 1;
+    return a->sphere < b->sphere ? -1 : a->sphere > b->sphere;
+}
+
+/* The spheres that light passes through, the smallest first; none where no medium does anything. */
+static BpStatus pack_boundaries(const BpScene *scene, BpPacked *packed, BpError *err) {
+    const BpTree *tree = &packed->tree;
+    const size_t slots = (size_t)tree->leaf_count * tree->width;
+    size_t count = 0, filled = bp_scene_medium(scene) != 0;
+    for (size_t i = 0; i < scene->interior_count; ++i) filled += bp_sphere_interior(scene, i) != 0;
+    for (size_t i = 0; i < scene->sphere_count && filled > 0; ++i)
+        count += bp_material_is(scene->materials[scene->spheres[i].material].kind, BP_HAS_INSIDE);
+    Boundary *boundaries = malloc((count + 1) * sizeof *boundaries);
+    packed->boundaries = malloc((count + 1) * BOUNDARY_UINTS * sizeof *packed->boundaries);
+    packed->boundary_count = (uint32_t)count + 1;
+    if (boundaries == NULL || packed->boundaries == NULL) {
+        free(boundaries);
+        return out_of_memory(scene, err);
+    }
+    size_t found = 0;
+    for (size_t slot = 0; slot < slots && count > 0; ++slot) {
+        const uint32_t i = tree->slot_sphere[slot];
+        if (i == NO_SPHERE ||
+            !bp_material_is(scene->materials[scene->spheres[i].material].kind, BP_HAS_INSIDE))
+            continue;
+        boundaries[found++] = (Boundary){fabs(scene->spheres[i].radius), i, (uint32_t)slot};
+    }
+    qsort(boundaries, found, sizeof *boundaries, compare_boundaries);
+    for (size_t i = 0; i < found; ++i) {
+        packed->boundaries[BOUNDARY_UINTS * i] = boundaries[i].slot;
+        packed->boundaries[BOUNDARY_UINTS * i + 1] = bp_sphere_interior(scene, boundaries[i].sphere);
+    }
+    packed->boundaries[BOUNDARY_UINTS * found] = NO_SLOT;
+    packed->boundaries[BOUNDARY_UINTS * found + 1] = bp_scene_medium(scene);
+    free(boundaries);
+    return BP_OK;
+}
+
 /* ---- the whole ------------------------------------------------------------------------------------- */
 
 BpStatus bp_scene_pack(const BpScene *scene, const BpTreeOptions *options, bool sample_lamps,
@@ -455,6 +518,8 @@ BpStatus bp_scene_pack(const BpScene *scene, const BpTreeOptions *options, bool 
     BP_TRY_GOTO(status, pack_materials(scene, second, packed, err), cleanup);
     BP_TRY_GOTO(status, pack_textures(scene, origin, packed, err), cleanup);
     BP_TRY_GOTO(status, pack_slots(scene, second, packed, err), cleanup);
+    BP_TRY_GOTO(status, pack_media(scene, packed, err), cleanup);
+    BP_TRY_GOTO(status, pack_boundaries(scene, packed, err), cleanup);
     if (sample_lamps)
         BP_TRY_GOTO(status, bp_lamp_tree_build(scene, &packed->tree, &packed->lamps, err), cleanup);
     BP_TRY_GOTO(status, pack_discs(scene, packed->lamps.unit, packed, err), cleanup);

@@ -32,6 +32,7 @@ typedef struct BpPacked {
     uint64_t texel_count; /* of all images */
     uint32_t sky_row_count, sky_column_count, sky_height_count;
     uint32_t disc_count;
+    uint32_t medium_count, boundary_count; /* at least one */
 } BpPacked;
 
 /* `sample_lamps`: the kernel is built to. */

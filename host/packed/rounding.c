@@ -15,11 +15,12 @@ static double as_float(double x) {
     return (double)rounded;
 }
 
-/* How far rounding may move the sphere's surface, in the scene's unit: by the centre and by the radius. */
-static double surface_shift(const double origin[3], const BpSphere *sphere) {
+/* How far rounding may move the surface of a sphere around `center`, in the scene's unit: by the centre and
+ * by the radius. */
+static double surface_shift(const double origin[3], const BpSphere *sphere, const double center[3]) {
     double square = 0;
     for (int a = 0; a < 3; ++a) {
-        const double c = sphere->center[a] - origin[a], off = as_float(c) - c;
+        const double c = center[a] - origin[a], off = as_float(c) - c;
         square += off * off;
     }
     const double r = fabs(sphere->radius);
@@ -48,13 +49,13 @@ static const char *others(const Worst *worst, char text[48]) {
 /* A shell's wall: two dielectrics around one centre, found by sorting on the rounded centre and the radius.
  */
 typedef struct Shell {
-    float center[3];
+    float center[6]; /* when the shutter opens and when it closes */
     double radius;
     size_t sphere;
 } Shell;
 
 static int compare_centers(const Shell *a, const Shell *b) {
-    for (int i = 0; i < 3; ++i)
+    for (int i = 0; i < 6; ++i)
         if (a->center[i] != b->center[i]) return a->center[i] < b->center[i] ? -1 : 1;
     return 0;
 }
@@ -77,6 +78,7 @@ static void find_walls(const BpScene *scene, const double origin[3], Worst *wors
         if (!bp_material_is(scene->materials[sphere->material].kind, BP_HAS_INSIDE)) continue;
         Shell *shell = &shells[count++];
         for (int a = 0; a < 3; ++a) shell->center[a] = (float)(sphere->center[a] - origin[a]);
+        for (int a = 0; a < 3; ++a) shell->center[3 + a] = (float)(bp_sphere_end(scene, i)[a] - origin[a]);
         shell->radius = fabs(sphere->radius);
         shell->sphere = i;
     }
@@ -123,7 +125,9 @@ void bp_rounding_warnings(const BpScene *scene, BpPrecision precision, BpRoundin
         }
     for (size_t i = 0; i < scene->sphere_count; ++i) {
         const BpSphere *sphere = &scene->spheres[i];
-        const double shift = surface_shift(origin, sphere), radius = fabs(sphere->radius);
+        const double radius = fabs(sphere->radius);
+        const double shift = fmax(surface_shift(origin, sphere, sphere->center),
+                                  surface_shift(origin, sphere, bp_sphere_end(scene, i)));
         note(&off_place, i, shift / radius, BP_ROUNDING_SHIFT);
         if (radius > 100 * smallest) note(&contact, i, shift / smallest, BP_ROUNDING_CONTACT);
     }

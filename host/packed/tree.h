@@ -16,6 +16,7 @@ typedef struct BpTreeOptions {
     bool single_precision; /* store float, else double */
     bool list;             /* leaves only, in order of index; no nodes */
     unsigned threads;      /* 0: all cores */
+    bool motions;          /* the kernel asks for motions, even if no sphere moves */
 } BpTreeOptions;
 
 typedef struct BpTree {
@@ -33,14 +34,17 @@ typedef struct BpTree {
     uint32_t *children;    /* node_count * width */
     void *leaves;          /* leaf_count * LEAF_REALS(width) reals */
     uint32_t *slot_sphere; /* leaf_count * width */
-    uint32_t own_slot;     /* of the sphere whose surface `origin` lies on, or NO_SLOT */
+    bool has_motions;
+    uint32_t motion_leaves; /* leaf_count, or 0 where there are no motions */
+    void *leaf_motions;     /* motion_leaves * MOTION_REALS(width) reals */
+    uint32_t own_slot;      /* of the sphere at rest whose surface `origin` lies on, or NO_SLOT */
     double build_seconds;
 } BpTree;
 
 /* Builds a tree over the scene's spheres with `origin` (the camera's position) subtracted. Every sphere
- * stands in exactly one slot. `origin` stays on its side of every surface, rounded as the spheres may be, and
- * lies on one at most. The result does not depend on the number of threads. On failure `tree` is empty.
- * BP_ERR_MEMORY or BP_ERR_LIMIT. Free with bp_tree_clear(). */
+ * stands in exactly one slot; boxes hold spheres on all of their way. `origin` stays on its side of every
+ * surface at rest, rounded as the spheres may be, and lies on one at most. The result does not depend on the
+ * number of threads. On failure `tree` is empty. BP_ERR_MEMORY or BP_ERR_LIMIT. Free with bp_tree_clear(). */
 BpStatus bp_tree_build(const BpScene *scene, const double origin[3], const BpTreeOptions *options,
                        BpTree *tree, BpError *err);
 void bp_tree_clear(BpTree *tree);

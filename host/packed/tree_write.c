@@ -296,7 +296,16 @@ BpTreeItem bp_tree_item(const BpScene *scene, uint32_t sphere, const double orig
     const float radius = (float)fabs(s->radius);
     BpTreeItem item = {.radius = radius, .sphere = sphere};
     for (int a = 0; a < 3; ++a) item.center[a] = (float)(s->center[a] - origin[a]);
-    if (near_origin(&item)) item.radius = radius_beside_origin(&item, bp_sphere_side(s, origin));
+    if (bp_sphere_moves(scene, sphere)) {
+        const double *end = bp_sphere_end(scene, sphere);
+        double way = 0;
+        for (int a = 0; a < 3; ++a) {
+            way = hypot(way, end[a] - s->center[a]);
+            item.center[a] = (float)((s->center[a] + end[a]) / 2 - origin[a]);
+        }
+        item.radius = (float)(fabs(s->radius) + way / 2);
+    } else if (near_origin(&item))
+        item.radius = radius_beside_origin(&item, bp_sphere_side(s, origin));
     if (!(item.radius > FLT_MIN)) item.radius = FLT_MIN;
     return item;
 }
@@ -331,6 +340,30 @@ static BpBounds sphere_bounds(const double center[3], double radius) {
     return bounds;
 }
 
+/* Writes the numbers of a sphere that moves, and returns a box around all of its way. The kernel adds the
+ * time's share of the motion to where the sphere is at first, all of them rounded, and rounds once more. */
+static BpBounds write_moving(const BpTreeWriter *writer, uint32_t sphere, uint32_t leaf, uint32_t lane,
+                             double center[3], double *radius) {
+    BpTree *tree = writer->tree;
+    const BpSphere *s = &writer->scene->spheres[sphere];
+    const bool single = tree->single_precision;
+    const double unit = single ? 0x1p-24 : 0x1p-53, *end = bp_sphere_end(writer->scene, sphere);
+    BpBounds bounds;
+    *radius = fmax(fabs(s->radius), (double)FLT_MIN);
+    for (uint32_t a = 0; a < 3; ++a) {
+        const double motion = end[a] - s->center[a];
+        center[a] = s->center[a] - writer->origin[a];
+        const double low = fmin(center[a], center[a] + motion), high = fmax(center[a], center[a] + motion);
+        const double margin = 8 * unit * (fabs(center[a]) + fabs(motion) + 2 * *radius) + (double)FLT_MIN;
+        bounds.low[a] = low - *radius - margin;
+        bounds.high[a] = high + *radius + margin;
+        bp_reals_store(tree->leaf_motions, single,
+                       (size_t)leaf * MOTION_REALS(tree->width) + a * tree->width + lane,
+                       motion != 0 ? motion : -0.0);
+    }
+    return bounds;
+}
+
 BpBounds bp_tree_write_leaf(const BpTreeWriter *writer, uint32_t leaf, const BpTreeItem *items,
                             uint32_t count) {
     BpTree *tree = writer->tree;
@@ -341,7 +374,15 @@ BpBounds bp_tree_write_leaf(const BpTreeWriter *writer, uint32_t leaf, const BpT
     for (uint32_t lane = 0; lane < width; ++lane) {
         uint32_t index = NO_SPHERE;
         double center[3] = {0, 0, 0}, radius = -1;
-        if (lane < count && single) {
+        const bool moves = lane < count && bp_sphere_moves(writer->scene, items[lane].sphere);
+        for (uint32_t a = 0; a < 3 && tree->has_motions; ++a)
+            bp_reals_store(tree->leaf_motions, single, (size_t)leaf * MOTION_REALS(width) + a * width + lane,
+                           -0.0);
+        if (moves) {
+            const BpBounds bounds = write_moving(writer, items[lane].sphere, leaf, lane, center, &radius);
+            bp_bounds_add(&box, &bounds);
+            index = items[lane].sphere;
+        } else if (lane < count && single) {
             for (int a = 0; a < 3; ++a) center[a] = (double)items[lane].center[a];
             radius = (double)items[lane].radius;
         } else if (lane < count) {
@@ -349,7 +390,7 @@ BpBounds bp_tree_write_leaf(const BpTreeWriter *writer, uint32_t leaf, const BpT
             for (int a = 0; a < 3; ++a) center[a] = sphere->center[a] - writer->origin[a];
             radius = fabs(sphere->radius);
         }
-        if (lane < count) {
+        if (lane < count && !moves) {
             const BpBounds bounds =
                 single ? bp_tree_item_bounds(&items[lane]) : sphere_bounds(center, radius);
             bp_bounds_add(&box, &bounds);
@@ -386,8 +427,12 @@ BpStatus bp_tree_allocate(BpTree *tree, uint32_t nodes, uint32_t leaves, BpError
     tree->children = calloc(n * width, sizeof *tree->children);
     tree->leaves = calloc(l * LEAF_REALS(width), real_size);
     tree->slot_sphere = calloc(l * width, sizeof *tree->slot_sphere);
+    if (tree->has_motions) {
+        tree->motion_leaves = leaves;
+        tree->leaf_motions = calloc(l * MOTION_REALS(width), real_size);
+    }
     if (tree->node_boxes != NULL && tree->children != NULL && tree->leaves != NULL &&
-        tree->slot_sphere != NULL)
+        tree->slot_sphere != NULL && (tree->leaf_motions != NULL || !tree->has_motions))
         return BP_OK;
     return bp_fail(err, BP_ERR_MEMORY, "out of memory for a tree of %u leaves and %u nodes", leaves, nodes);
 }

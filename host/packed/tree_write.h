@@ -34,7 +34,8 @@ typedef struct BpTreeWriter {
     BpTree *tree;
 } BpTreeWriter;
 
-/* The sphere as the splits see it and as a tree in single precision stores it, relative to `origin`. */
+/* The sphere as the splits see it and as a tree in single precision stores it, relative to `origin`. Of one
+ * that moves the splits see the ball around its way. */
 BpTreeItem bp_tree_item(const BpScene *scene, uint32_t sphere, const double origin[3]);
 
 /* A box that contains the sphere of an item, the one that was rounded to it as well. */

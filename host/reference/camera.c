@@ -42,5 +42,5 @@ Ray bp_ref_camera_ray(const Camera *camera, uint32_t column, uint32_t row, Rando
         const Vec p = random_in_disk(random);
         origin = add(add(origin, scale(p.x, camera->lens_right)), scale(p.y, camera->lens_up));
     }
-    return (Ray){origin, sub(target, origin), NULL};
+    return (Ray){.origin = origin, .direction = sub(target, origin)};
 }

@@ -28,7 +28,8 @@ static void render_pixel(Job *job, uint32_t column, uint32_t row) {
     for (uint64_t s = 0; s < options->samples; ++s) {
         Random random = random_stream(options->seed, pixel, options->first_sample + s);
         double height;
-        const Ray ray = bp_ref_camera_ray(&job->camera, column, row, &random, &height);
+        Ray ray = bp_ref_camera_ray(&job->camera, column, row, &random, &height);
+        if (job->scene->moving_count > 0) ray.time = random_real(&random);
         Path path = {0};
         const Vec color = bp_ref_camera_color(job->scene, &ray, height, options->max_depth, &random, &path);
         bp_pixel_sums_add(&job->sums->pixels[pixel], (double[3]){color.x, color.y, color.z}, path.segments);

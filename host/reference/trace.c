@@ -3,19 +3,27 @@
 
 #include <float.h>
 
+Vec bp_ref_center(const BpScene *scene, const Ray *ray, const BpSphere *sphere) {
+    const size_t i = (size_t)(sphere - scene->spheres);
+    const Vec first = vec(sphere->center);
+    if (i >= scene->moving_count) return first;
+    return add(scale(1 - ray->time, first), scale(ray->time, vec(scene->center_ends[i])));
+}
+
 /* A ray that starts on a sphere starts also on every other one of the same place and size. A camera may stand
  * on a sphere too: within the rounding of the numbers that place both. */
-static bool starts_on(const Ray *ray, const BpSphere *sphere) {
+static bool starts_on(const BpScene *scene, const Ray *ray, const BpSphere *sphere) {
     const BpSphere *from = ray->leaves;
     if (from == sphere) return true;
+    if (from == NULL && ray->scattered) return false;
     if (from == NULL) {
-        const Vec center = vec(sphere->center);
+        const Vec center = bp_ref_center(scene, ray, sphere);
         const double radius = fabs(sphere->radius), distance = sqrt(length2(sub(center, ray->origin)));
         const double size = sqrt(length2(center)) + sqrt(length2(ray->origin)) + radius;
         return fabs(distance - radius) <= 4 * DBL_EPSILON * size;
     }
-    return fabs(from->radius) == fabs(sphere->radius) && from->center[0] == sphere->center[0] &&
-           from->center[1] == sphere->center[1] && from->center[2] == sphere->center[2];
+    const Vec a = bp_ref_center(scene, ray, from), b = bp_ref_center(scene, ray, sphere);
+    return fabs(from->radius) == fabs(sphere->radius) && a.x == b.x && a.y == b.y && a.z == b.z;
 }
 
 /* The book's quadratic a t^2 - 2 h t + c = 0, two ways of it:
@@ -24,11 +32,12 @@ static bool starts_on(const Ray *ray, const BpSphere *sphere) {
  * - Else the discriminant comes from the perpendicular distance to the centre (Haines et al., "Precision
  *   improvements for ray/sphere intersection", Ray Tracing Gems, 2019): h^2 - a c would cancel for a small
  *   sphere far away. */
-static bool hit_sphere(const BpSphere *sphere, const Ray *ray, double t_max, double *t) {
-    const Vec oc = sub(vec(sphere->center), ray->origin);
+static bool hit_sphere(const BpScene *scene, const BpSphere *sphere, const Ray *ray, double t_max,
+                       double *t) {
+    const Vec oc = sub(bp_ref_center(scene, ray, sphere), ray->origin);
     const double a = length2(ray->direction), h = dot(ray->direction, oc);
     double root;
-    if (starts_on(ray, sphere)) {
+    if (starts_on(scene, ray, sphere)) {
         root = 2 * h / a;
     } else {
         const double r = sphere->radius;
@@ -47,13 +56,14 @@ bool bp_ref_hit(const BpScene *scene, const Ray *ray, Hit *hit) {
     double closest = INFINITY;
     const BpSphere *sphere = NULL;
     for (size_t i = 0; i < scene->sphere_count; ++i)
-        if (hit_sphere(&scene->spheres[i], ray, closest, &closest)) sphere = &scene->spheres[i];
+        if (hit_sphere(scene, &scene->spheres[i], ray, closest, &closest)) sphere = &scene->spheres[i];
     if (sphere == NULL) return false;
 
     hit->t = closest;
     hit->sphere = sphere;
     hit->material = &scene->materials[sphere->material];
-    const Vec point = add(ray->origin, scale(closest, ray->direction)), center = vec(sphere->center);
+    const Vec point = add(ray->origin, scale(closest, ray->direction)),
+              center = bp_ref_center(scene, ray, sphere);
     /* unit() removes the error that rounding left in the radius, so that the point lies on the sphere. */
     const Vec radial = unit(sub(point, center));
     hit->point = add(center, scale(fabs(sphere->radius), radial));
@@ -82,7 +92,7 @@ static Vec background(const BpScene *scene, const Ray *ray) {
     if (scene->environment != NULL) color = bp_ref_environment(scene, ray->direction);
     for (size_t i = 0; i < scene->disc_count; ++i) {
         const BpDisc *disc = &scene->discs[i];
-        const bool from_camera = ray->leaves == NULL;
+        const bool from_camera = ray->leaves == NULL && !ray->scattered;
         if ((disc->visible_to_camera || !from_camera) && in_disc(disc, ray->direction))
             color = add(color, vec(disc->radiance));
     }
@@ -94,10 +104,14 @@ Vec bp_ref_camera_color(const BpScene *scene, const Ray *ray, double height, uin
     const Vec black = {0, 0, 0};
     Hit hit;
     if (scene->backdrop != BP_BACKDROP_SKY && depth > 0 && !bp_ref_hit(scene, ray, &hit)) {
+        Ray scattered;
+        Vec left;
         ++path->segments;
+        if (bp_ref_fly(scene, ray, INFINITY, random, path, &scattered, &left))
+            return mul(left, bp_ref_color(scene, &scattered, depth - 1, random, path));
         return scene->backdrop == BP_BACKDROP_NONE
                    ? black
-                   : mixed(scene->backdrop_bottom, scene->backdrop_top, height);
+                   : mul(left, mixed(scene->backdrop_bottom, scene->backdrop_top, height));
     }
     return bp_ref_color(scene, ray, depth, random, path);
 }
@@ -110,13 +124,19 @@ Vec bp_ref_color(const BpScene *scene, const Ray *ray, uint32_t depth, Random *r
     }
     ++path->segments;
     Hit hit;
-    if (!bp_ref_hit(scene, ray, &hit)) return background(scene, ray);
+    Ray flown;
+    Vec left;
+    const bool meets = bp_ref_hit(scene, ray, &hit);
+    if (bp_ref_fly(scene, ray, meets ? hit.t : INFINITY, random, path, &flown, &left))
+        return mul(left, bp_ref_color(scene, &flown, depth - 1, random, path));
+    if (!meets) return mul(left, background(scene, ray));
 
     Vec emitted = bp_ref_varied(scene, &hit, BP_MEMBER_EMIT, hit.material->emit);
     if (hit.material->kind == BP_MATERIAL_NORMALS)
         emitted = add(emitted, scale(0.5, add(hit.normal, (Vec){1, 1, 1})));
     Vec direction, attenuation;
-    if (!bp_ref_scatter(scene, ray, &hit, random, &direction, &attenuation)) return emitted;
-    const Ray scattered = {hit.point, direction, hit.sphere};
-    return add(emitted, mul(attenuation, bp_ref_color(scene, &scattered, depth - 1, random, path)));
+    if (!bp_ref_scatter(scene, ray, &hit, random, &direction, &attenuation)) return mul(left, emitted);
+    const Ray scattered = {hit.point, direction, hit.sphere, ray->time, false};
+    const Vec onward = mul(attenuation, bp_ref_color(scene, &scattered, depth - 1, random, path));
+    return mul(left, add(emitted, onward));
 }

@@ -11,6 +11,8 @@
 typedef struct Ray {
     Vec origin, direction;  /* the direction need not be of unit length */
     const BpSphere *leaves; /* the sphere whose surface the origin lies on, or NULL */
+    double time;            /* 0 when the shutter opens, 1 when it closes */
+    bool scattered;         /* it begins where a medium scattered it */
 } Ray;
 
 typedef struct Hit {
@@ -26,6 +28,9 @@ typedef struct Hit {
 typedef struct Path {
     uint64_t segments; /* ray segments traced */
     bool cut;          /* the depth limit ended it */
+    bool flies; /* through a medium, by a colour; likelihood: of its flights by each, over their mean */
+    int color;
+    double likelihood[3];
 } Path;
 
 /* The camera of the fourth edition, prepared for a scene. */
@@ -49,6 +54,15 @@ bool bp_ref_scatter(const BpScene *scene, const Ray *ray, const Hit *hit, Random
 /* Radiance along a camera ray: the backdrop at that height of the picture where it meets nothing. */
 Vec bp_ref_camera_color(const BpScene *scene, const Ray *ray, double height, uint32_t depth, Random *random,
                         Path *path);
+
+/* A flight through the medium around the ray's origin, `distance` (in lengths of the direction, INFINITY for
+ * no end) to the next surface: true if the medium scatters it before, into *scattered. *weight: what is left.
+ */
+bool bp_ref_fly(const BpScene *scene, const Ray *ray, double distance, Random *random, Path *path,
+                Ray *scattered, Vec *weight);
+
+/* Where the sphere is at the ray's time. */
+Vec bp_ref_center(const BpScene *scene, const Ray *ray, const BpSphere *sphere);
 
 /* Radiance along the ray. `depth`: segments still allowed; 0 is black. */
 Vec bp_ref_color(const BpScene *scene, const Ray *ray, uint32_t depth, Random *random, Path *path);

@@ -79,6 +79,7 @@ BpStatus bp_render_plan(const BpScene *scene, const BpRenderOptions *options, co
         .single_precision = options->precision == BP_PRECISION_SINGLE,
         .list = !setup->program.tree,
         .threads = options->threads,
+        .motions = bp_effects_has(setup->program.effects, BP_EFFECT_MOTION),
     };
     return bp_scene_pack(scene, &tree_options, bp_effects_has(setup->program.effects, BP_EFFECT_LAMPS),
                          packed, err);

@@ -26,11 +26,12 @@ static BpStatus create_buffer(BpWorker *worker, cl_mem *buffer, uint64_t bytes, 
 BpStatus bp_worker_upload_scene(BpWorker *worker, const BpPacked *packed, BpError *err) {
     const BpTree *tree = &packed->tree;
     const uint64_t width = tree->width, nodes = tree->node_count, leaf_count = tree->leaf_count;
-    const uint64_t slots = leaf_count * width;
+    const uint64_t slots = leaf_count * width, motion_leaves = tree->motion_leaves;
     const uint64_t lamp_nodes = packed->lamps.node_count, lamp_slots = packed->lamps.slot_count;
     const uint64_t disc_count = packed->disc_count, texture_count = packed->texture_count;
     const uint64_t texel_count = packed->texel_count, sky_row_count = packed->sky_row_count;
     const uint64_t sky_column_count = packed->sky_column_count, sky_height_count = packed->sky_height_count;
+    const uint64_t medium_count = packed->medium_count, boundary_count = packed->boundary_count;
     const uint64_t material_count = packed->material_count > 0 ? packed->material_count : 1;
     /* Elements of reals shrink with the real. */
 #define BYTES_REALS(element) (sizeof(element) / sizeof(real) * worker->real_size)

@@ -46,11 +46,15 @@ static View find_view(const BpCamera *camera) {
 }
 
 /* Rays leave the lens and spread around those of a pinhole: at distance d by lens * |d / focus - 1|, and by
- * `lens` before the plane in focus. */
-static bool reaches_view(const View *view, const BpSphere *sphere) {
+ * `lens` before the plane in focus. A sphere that moves is taken for the ball around its way. */
+static bool reaches_view(const View *view, const BpSphere *sphere, const double end[3]) {
     Vec to;
-    for (int i = 0; i < 3; i++) to[i] = sphere->center[i] - view->from[i];
-    const double radius = fabs(sphere->radius), ahead = dot(to, view->ahead);
+    double way = 0;
+    for (int i = 0; i < 3; i++) {
+        to[i] = (sphere->center[i] + end[i]) / 2 - view->from[i];
+        way = hypot(way, end[i] - sphere->center[i]);
+    }
+    const double radius = fabs(sphere->radius) + way / 2, ahead = dot(to, view->ahead);
     if (ahead + radius < 0) return false;
     const double room = radius + view->lens * fmax(1, (ahead + radius) / view->focus - 1);
     const double aside = fabs(dot(to, view->right)), above = fabs(dot(to, view->up));
@@ -62,7 +66,7 @@ static bool reaches_view(const View *view, const BpSphere *sphere) {
 bool bp_scene_has_sphere_in_view(const BpScene *scene) {
     const View view = find_view(&scene->camera);
     for (size_t i = 0; i < scene->sphere_count; i++)
-        if (reaches_view(&view, &scene->spheres[i])) return true;
+        if (reaches_view(&view, &scene->spheres[i], bp_sphere_end(scene, i))) return true;
     return false;
 }
 

@@ -41,7 +41,8 @@ enum {
       BP_HAS(REFRACTION_INDEX) | BP_HAS(FRESNEL) | BP_HAS(TOTAL_REFLECTION), BP_HAS(REFRACTION_INDEX),       \
       "refracts it")                                                                                         \
     X(DIFFUSE_LIGHT, "diffuse_light", LIGHT, EMISSION, 0, 0, BP_HAS(EMIT), "a lamp: the path ends")          \
-    X(NORMALS, "normals", NORMALS, NORMALS, BP_SHOWS_COLOUR, 0, 0, "shows its normal: the path ends")
+    X(NORMALS, "normals", NORMALS, NORMALS, BP_SHOWS_COLOUR, 0, 0, "shows its normal: the path ends")        \
+    X(INTERFACE, "interface", INTERFACE, MEDIA, BP_SCATTERS | BP_HAS_INSIDE, 0, 0, "lets it through")
 
 typedef enum BpMaterialKind {
 #define BP_MATERIAL_ENUM(identifier, name, kernel_kind, effect, traits, members, needed, outcome)            \

@@ -55,6 +55,10 @@ double bp_camera_origin(const BpScene *scene, double origin[3]) {
         double distance = -fabs(scene->spheres[s].radius);
         for (int i = 0; i < 3; i++) distance += ahead[i] * (scene->spheres[s].center[i] - origin[i]);
         nearest = fmin(nearest, distance);
+        if (!bp_sphere_moves(scene, s)) continue;
+        const double *end = bp_sphere_end(scene, s);
+        for (int i = 0; i < 3; i++) distance += ahead[i] * (end[i] - scene->spheres[s].center[i]);
+        nearest = fmin(nearest, distance);
     }
     const double moved = isfinite(nearest) ? nearest - bp_camera_plane_height(camera) : 0;
     if (!(moved > 0)) return 0;
@@ -123,6 +127,10 @@ void bp_scene_destroy(BpScene **scene) {
     for (size_t i = 0; i < s->image_count; i++) bp_texels_destroy(&s->images[i]);
     free(s->images);
     free(s->spheres);
+    free(s->center_ends);
+    free(s->interiors);
+    for (size_t i = 0; i < s->medium_count; i++) free(s->media[i].name);
+    free(s->media);
     free(s->albedos);
     for (size_t i = 0; i < s->point_file_count; i++) {
         free(s->point_files[i].file);
@@ -135,6 +143,11 @@ void bp_scene_destroy(BpScene **scene) {
     free(s->notes);
     free(s);
     *scene = NULL;
+}
+
+bool bp_sphere_moves(const BpScene *scene, size_t sphere) {
+    const double *const from = scene->spheres[sphere].center, *const to = bp_sphere_end(scene, sphere);
+    return from[0] != to[0] || from[1] != to[1] || from[2] != to[2];
 }
 
 const char *bp_sphere_name(const BpScene *scene, size_t sphere, char text[BP_SPHERE_NAME_SIZE]) {

@@ -6,14 +6,16 @@
  * Invariants of every BpScene that reaches another module (bp_scene_validate proves them): all numbers are
  * finite; radius != 0 (negative: inside out); indices of materials and textures in range; albedo in [0,1];
  * emit >= 0; 0 <= fuzz <= 1; refraction_index > 0; of discs a direction, and half angles from 1e-4 to 90
- * degrees; 0 < vfov < 180, and the size of the plane in focus fits a float; lookfrom != lookat; vup not
- * parallel to the view; 1 <= width, height <= BP_PICTURE_SIDE_MAX; no two coincident dielectrics; a pinhole
- * camera on the surface of at most one sphere. */
+ * degrees; centers when the shutter closes like those when it opens; 0 < vfov < 180, and the size of the
+ * plane in focus fits a float; lookfrom != lookat; vup not parallel to the view; 1 <= width, height <=
+ * BP_PICTURE_SIDE_MAX; no two coincident dielectrics; a pinhole camera on the surface of at most one sphere.
+ */
 #ifndef BP_SCENE_SCENE_H
 #define BP_SCENE_SCENE_H
 
 #include "ballpark.h"
 #include "material.h"
+#include "medium.h"
 #include "texels.h"
 #include "texture.h"
 
@@ -159,10 +161,17 @@ struct BpScene {
     size_t image_count;
     BpTexture *textures;
     size_t texture_count;
+    BpMedium *media;
+    size_t medium_count;
+    uint32_t medium; /* the whole scene lies in it: into media[], counted from 1; 0: none */
     BpMaterial *materials;
     size_t material_count;
     BpSphere *spheres;
     size_t sphere_count;
+    double (*center_ends)[3]; /* of the first moving_count spheres: the centre when the shutter closes */
+    size_t moving_count;      /* 0: no sphere moves */
+    uint32_t *interiors; /* of the first interior_count spheres: what fills them, counted as `medium` is */
+    size_t interior_count;
     float (*albedos)[3]; /* linear, in [0,1]; of cloud points that bring their own colour */
     size_t albedo_count;
     BpPointFile *point_files; /* in the order of their spheres, which follow all others */
@@ -209,6 +218,12 @@ BpStatus bp_scene_create_empty(const char *path, BpScene **scene, BpError *err);
 #define BP_SPHERE_NAME_SIZE 128
 /* How a message names a sphere: "spheres[3]", or "vertex 12 (from 0) of points.ply". Returns `text`. */
 const char *bp_sphere_name(const BpScene *scene, size_t sphere, char text[BP_SPHERE_NAME_SIZE]);
+
+/* Where a sphere's centre is when the shutter closes; it moves there in a straight line, at one speed. */
+static inline const double *bp_sphere_end(const BpScene *scene, size_t sphere) {
+    return sphere < scene->moving_count ? scene->center_ends[sphere] : scene->spheres[sphere].center;
+}
+bool bp_sphere_moves(const BpScene *scene, size_t sphere);
 
 /* Checks the invariants above; the message names the sphere, material or member by its index or name. */
 BpStatus bp_scene_validate(const BpScene *scene, BpError *err);

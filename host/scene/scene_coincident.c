@@ -13,14 +13,14 @@
 #define SAME_RADIUS 1.0e-12 /* relative */
 
 typedef struct Shell {
-    float center[3]; /* relative to where the camera stands */
+    float center[6]; /* when the shutter opens and when it closes, relative to where the camera stands */
     double radius;   /* without its sign */
     size_t sphere;
 } Shell;
 
 static int compare_shells(const void *a_pointer, const void *b_pointer) {
     const Shell *a = a_pointer, *b = b_pointer;
-    for (int i = 0; i < 3; i++) {
+    for (int i = 0; i < 6; i++) {
         if (a->center[i] != b->center[i]) return a->center[i] < b->center[i] ? -1 : 1;
     }
     if (a->radius != b->radius) return a->radius < b->radius ? -1 : 1;
@@ -28,7 +28,7 @@ static int compare_shells(const void *a_pointer, const void *b_pointer) {
 }
 
 static bool same_surface(const Shell *a, const Shell *b) {
-    for (int i = 0; i < 3; i++) {
+    for (int i = 0; i < 6; i++) {
         if (a->center[i] != b->center[i]) return false;
     }
     return (float)a->radius == (float)b->radius || b->radius - a->radius <= SAME_RADIUS * b->radius;
@@ -50,6 +50,7 @@ BpStatus bp_scene_find_coincident(const BpScene *scene, BpFault *fault, BpError 
         if (!bp_material_is(scene->materials[sphere->material].kind, BP_HAS_INSIDE)) continue;
         Shell *shell = &shells[count++];
         for (int k = 0; k < 3; k++) shell->center[k] = (float)(sphere->center[k] - origin[k]);
+        for (int k = 0; k < 3; k++) shell->center[3 + k] = (float)(bp_sphere_end(scene, i)[k] - origin[k]);
         shell->radius = fabs(sphere->radius);
         shell->sphere = i;
     }

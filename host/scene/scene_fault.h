@@ -18,6 +18,7 @@ typedef enum BpFaultSubject {
     BP_FAULT_DISC, /* index: into discs[] */
     BP_FAULT_BACKDROP,
     BP_FAULT_TEXTURE,   /* index: into textures[] */
+    BP_FAULT_MEDIUM,    /* index: into media[] */
     BP_FAULT_MATERIAL,  /* index: into materials[] */
     BP_FAULT_SPHERE,    /* index: into spheres[] */
     BP_FAULT_ALBEDO,    /* index: into albedos[] */

@@ -160,6 +160,35 @@ static bool texture_fault(const BpTexture *texture, BpFault *fault) {
            repeat_fault(texture, fault);
 }
 
+static bool density_fault(const double density[3], const char *member, BpFault *fault) {
+    for (int c = 0; c < 3; c++)
+        if (density[c] != 0 && outside(fault, BP_FAULT_MEDIUM, member, density[c], BP_DENSITY_MIN,
+                                       BP_DENSITY_MAX, "0, or from 1e-12 to 1e12 per unit of length"))
+            return true;
+    return false;
+}
+
+static bool medium_fault(const BpMedium *medium, BpFault *fault) {
+    return density_fault(medium->absorption, "absorption", fault) ||
+           density_fault(medium->scattering, "scattering", fault) ||
+           outside(fault, BP_FAULT_MEDIUM, "anisotropy", medium->anisotropy, -BP_ANISOTROPY_MAX,
+                   BP_ANISOTROPY_MAX, "a mean cosine from -0.999 to 0.999; 0 scatters evenly");
+}
+
+/* The material of the sphere is in range. */
+static bool interior_fault(const BpScene *scene, size_t i, BpFault *fault) {
+    if (i >= scene->interior_count || scene->interiors[i] == 0) return false;
+    if (scene->interiors[i] > scene->medium_count)
+        return set_fault(fault, BP_FAULT_SPHERE, "interior", "found number %u, expected one of %zu media",
+                         (unsigned)scene->interiors[i], scene->medium_count);
+    const BpMaterialKind kind = scene->materials[scene->spheres[i].material].kind;
+    if (bp_material_is(kind, BP_HAS_INSIDE)) return false;
+    return set_fault(fault, BP_FAULT_SPHERE, "interior",
+                     "found in a sphere whose material is of type \"%s\", expected only where light passes "
+                     "through: change the type to \"interface\" or \"dielectric\", or remove it",
+                     bp_material_types[kind].name);
+}
+
 /* Whether a member names no texture that there is, or one of colours where a number stands. */
 static bool variation_fault(const BpScene *scene, const BpMaterial *material, BpMember m, BpFault *fault) {
     const uint32_t number = material->texture[m];
@@ -214,13 +243,16 @@ static bool disc_fault(const BpDisc *disc, BpFault *fault) {
                        "radiances from 0 to 1e12");
 }
 
-/* A pinhole may stand on one sphere. If it stood on two, its rays would have to leave both. */
+/* A pinhole may stand on one sphere. If it stood on two, its rays would have to leave both. One that moves is
+ * there for no time at all. */
 static bool standpoint_fault(const BpScene *scene, BpFault *fault) {
     char a[BP_SPHERE_NAME_SIZE], b[BP_SPHERE_NAME_SIZE];
     size_t found = 0, first = 0;
     if (scene->camera.lens_radius > 0 || scene->camera.projection == BP_ORTHOGRAPHIC) return false;
     for (size_t i = 0; i < scene->sphere_count; i++) {
-        if (bp_sphere_side(&scene->spheres[i], scene->camera.lookfrom) != BP_SIDE_ON) continue;
+        if (bp_sphere_side(&scene->spheres[i], scene->camera.lookfrom) != BP_SIDE_ON ||
+            bp_sphere_moves(scene, i))
+            continue;
         if (found++ > 0)
             return set_fault(fault, BP_FAULT_CAMERA, "lookfrom",
                              "found a point on the surfaces of both %s and %s, expected at most one surface: "
@@ -254,6 +286,10 @@ BpStatus bp_scene_find_fault(const BpScene *scene, BpFault *fault, BpError *err)
         fault->index = i;
         if (texture_fault(&scene->textures[i], fault)) return BP_OK;
     }
+    for (size_t i = 0; i < scene->medium_count; i++) {
+        fault->index = i;
+        if (medium_fault(&scene->media[i], fault)) return BP_OK;
+    }
     for (size_t i = 0; i < scene->material_count; i++) {
         fault->index = i;
         if (material_fault(scene, &scene->materials[i], fault)) return BP_OK;
@@ -262,11 +298,15 @@ BpStatus bp_scene_find_fault(const BpScene *scene, BpFault *fault, BpError *err)
         const BpSphere *sphere = &scene->spheres[i];
         fault->index = i;
         if (bp_sphere_find_fault(sphere, fault)) return BP_OK;
+        if (i < scene->moving_count &&
+            coordinates_outside(fault, BP_FAULT_SPHERE, "center_end", scene->center_ends[i]))
+            return BP_OK;
         if (sphere->material >= scene->material_count) {
             set_fault(fault, BP_FAULT_SPHERE, "material", "found number %u, expected one of %zu materials",
                       (unsigned)sphere->material, scene->material_count);
             return BP_OK;
         }
+        if (interior_fault(scene, i, fault)) return BP_OK;
         if (sphere->albedo != BP_NO_ALBEDO && sphere->albedo >= scene->albedo_count) {
             set_fault(fault, BP_FAULT_SPHERE, "albedo", "found number %u, expected one of %zu albedos",
                       (unsigned)sphere->albedo, scene->albedo_count);
@@ -310,6 +350,9 @@ BpStatus bp_scene_validate(const BpScene *scene, BpError *err) {
     case BP_FAULT_TEXTURE:
         bp_printable(scene->textures[fault.index].name, name, sizeof name);
         return bp_fail(err, BP_ERR_SCENE, "textures.%s.%s: %s", name, fault.member, fault.text);
+    case BP_FAULT_MEDIUM:
+        bp_printable(scene->media[fault.index].name, name, sizeof name);
+        return bp_fail(err, BP_ERR_SCENE, "media.%s.%s: %s", name, fault.member, fault.text);
     case BP_FAULT_MATERIAL:
         bp_printable(scene->materials[fault.index].name, name, sizeof name);
         return bp_fail(err, BP_ERR_SCENE, "materials.%s.%s: %s", name, fault.member, fault.text);

@@ -5,7 +5,7 @@
  * Knows: every lobe by its one function.   Does not know: how lobes draw. */
 
 /* If the scene has one kind of material only, there is nothing to choose. */
-#define KIND_COUNT (EFFECT_LAMBERTIAN + EFFECT_METAL + EFFECT_DIELECTRIC + EFFECT_NORMALS + EFFECT_EMISSION)
+#define KIND_COUNT (EFFECT_LAMBERTIAN + EFFECT_METAL + EFFECT_DIELECTRIC + EFFECT_NORMALS + EFFECT_EMISSION + EFFECT_MEDIA)
 #if KIND_COUNT == 1
 #define has_kind(surface, wanted) vbool_all
 #else
@@ -57,6 +57,9 @@ static BsdfSample scatter(const Surface *surface, SampleKey key, vuint bounce) {
 #if EFFECT_DIELECTRIC
     SCATTER_BY(KIND_DIELECTRIC, dielectric_sample)
 #endif
+#if EFFECT_MEDIA
+    SCATTER_BY(KIND_INTERFACE, interface_sample)
+#endif
     return sample;
 }
 
@@ -65,6 +68,10 @@ static vbool is_fuzzy(const Lobe *lobe) {
     return vbool_of_uint(lobe->kind == splat_uint(LOBE_FUZZ_SPHERE)) |
            vbool_of_uint(lobe->kind == splat_uint(LOBE_FUZZ_BALL));
 }
+
+#if EFFECT_MEDIA
+static vbool is_phase(const Lobe *lobe) { return vbool_of_uint(lobe->kind == splat_uint(LOBE_PHASE)); }
+#endif
 
 /* Per steradian; 0 for LOBE_NONE. `drawn`: `direction` was drawn from the lobe. */
 static vreal scatter_pdf(const Lobe *lobe, Vec3 direction, int drawn) {
@@ -75,6 +82,10 @@ static vreal scatter_pdf(const Lobe *lobe, Vec3 direction, int drawn) {
 #if EFFECT_METAL
     const vbool fuzzy = is_fuzzy(lobe);
     if (any_lane(fuzzy)) density = choose(fuzzy, metal_pdf(lobe, direction, drawn), density);
+#endif
+#if EFFECT_MEDIA
+    const vbool phase = is_phase(lobe);
+    if (any_lane(phase)) density = choose(phase, phase_pdf(lobe->fuzz, lobe->axis, direction), density);
 #endif
     return choose(vbool_of_uint(lobe->kind == splat_uint(LOBE_NONE)), splat(0), density);
 }

@@ -9,6 +9,7 @@
 #define upper_bound LANED(upper_bound)
 #define keep_closer LANED(keep_closer)
 #define load_sphere LANED(load_sphere)
+#define sphere_for_ray LANED(sphere_for_ray)
 #define intersect_sphere LANED(intersect_sphere)
 #define intersect_own_sphere LANED(intersect_own_sphere)
 
@@ -60,6 +61,20 @@ static Sphere load_sphere(const Geometry *geometry, vuint slot) {
     return sphere;
 }
 
+/* The sphere in a slot where a ray meets it: one that moves stands where it is at the ray's time. */
+static Sphere sphere_for_ray(const Geometry *geometry, const Ray *ray, vuint slot) {
+    Sphere sphere = load_sphere(geometry, slot);
+#if EFFECT_MOTION
+    const vuint lane = slot % TREE_WIDTH;
+    const vuint place = (slot - lane) * 3u + lane;
+    const Vec3 motion = vec3(gather_real(geometry->leaf_motions, place),
+                             gather_real(geometry->leaf_motions, place + (uint)TREE_WIDTH),
+                             gather_real(geometry->leaf_motions, place + (uint)(2 * TREE_WIDTH)));
+    sphere.centre = madd3(ray->time, motion, sphere.centre);
+#endif
+    return sphere;
+}
+
 /* Decides about a candidate. */
 FORCE_INLINE static void intersect_sphere(const Geometry *geometry, const Ray *ray, vbool active, const Sphere *sphere,
                                           vuint slot, Hit *hit) {
@@ -74,7 +89,7 @@ FORCE_INLINE static void intersect_own_sphere(const Geometry *geometry, const Ra
     const vbool inward = active & ray->inward;
     if (!any_lane(inward)) return;
     const vuint slot = choose_uint(inward, ray->own_slot, splat_uint(0));
-    const Sphere sphere = load_sphere(geometry, slot);
+    const Sphere sphere = sphere_for_ray(geometry, ray, slot);
     vrefined t;
     const vbool found = sphere_exit(ray, &sphere, &t) & inward;
     keep_closer(geometry, found, t, slot, vbool_none, hit);

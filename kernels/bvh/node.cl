@@ -18,6 +18,9 @@ static Ray ray_for_all(const Ray_one *one) {
     ray.cull_margin = splat(one->cull_margin);
     ray.own_slot = splat_uint(one->own_slot);
     ray.inward = one->inward ? vbool_all : vbool_none;
+#if EFFECT_MOTION
+    ray.time = splat(one->time);
+#endif
     return ray;
 }
 
@@ -32,6 +35,12 @@ FORCE_INLINE static child_mask leaf_candidates(const Geometry *geometry, const R
     sphere.centre.y = JOIN(vload, LANE_COUNT)(1, leaf);
     sphere.centre.z = JOIN(vload, LANE_COUNT)(2, leaf);
     sphere.radius = JOIN(vload, LANE_COUNT)(3, leaf);
+#if EFFECT_MOTION
+    __global const real *motion = geometry->leaf_motions + leaf_number * (3 * TREE_WIDTH);
+    sphere.centre.x = fma(ray.time, JOIN(vload, LANE_COUNT)(0, motion), sphere.centre.x);
+    sphere.centre.y = fma(ray.time, JOIN(vload, LANE_COUNT)(1, motion), sphere.centre.y);
+    sphere.centre.z = fma(ray.time, JOIN(vload, LANE_COUNT)(2, motion), sphere.centre.z);
+#endif
     const vuint slot = leaf_number * TREE_WIDTH + LANE_NUMBERS;
     const vbool candidates = sphere_is_candidate(&ray, splat(bound), &sphere, slot);
     const child_mask mask = lane_bits(candidates & (sphere.radius > splat(0))); /* an empty lane has radius -1 */

@@ -21,6 +21,9 @@ typedef struct LaneRays {
     real high[3][LANE_COUNT], low[3][LANE_COUNT], direction[3][LANE_COUNT];
     real origin_error[LANE_COUNT], cull_margin[LANE_COUNT];
     uint own_slot[LANE_COUNT];
+#if EFFECT_MOTION
+    real time[LANE_COUNT];
+#endif
     refined t[LANE_COUNT];
     uint slot[LANE_COUNT], enters[LANE_COUNT];
     real bound[LANE_COUNT];
@@ -35,12 +38,15 @@ static Ray_one ray_of_lane(const LaneRays *rays, uint lane) {
     ray.cull_margin = rays->cull_margin[lane];
     ray.own_slot = rays->own_slot[lane];
     ray.inward = 0; /* intersect_own_sphere has seen to that */
+#if EFFECT_MOTION
+    ray.time = rays->time[lane];
+#endif
     return ray;
 }
 
 static void intersect_slot_of_lane(const Geometry *geometry, LaneRays *rays, uint lane, uint slot) {
     const Ray_one ray = ray_of_lane(rays, lane);
-    const Sphere_one sphere = load_sphere_one(geometry, slot);
+    const Sphere_one sphere = sphere_for_ray_one(geometry, &ray, slot);
     Hit_one hit;
     hit.t = rays->t[lane];
     hit.slot = rays->slot[lane];
@@ -223,6 +229,9 @@ static void traverse_packet(const Geometry *geometry, const Ray *ray, vbool acti
     store_lanes(ray->origin.error, rays.origin_error);
     store_lanes(ray->cull_margin, rays.cull_margin);
     store_lanes(ray->own_slot, rays.own_slot);
+#if EFFECT_MOTION
+    store_lanes(ray->time, rays.time);
+#endif
     store_lanes(hit->t, rays.t);
     store_lanes(hit->slot, rays.slot);
     store_lanes(choose_uint(hit->enters, splat_uint(1), splat_uint(0)), rays.enters);
@@ -255,6 +264,11 @@ static void intersect_leaf(const Geometry *geometry, const Ray *ray, vbool activ
         Sphere sphere;
         sphere.centre = vec3(splat(leaf[lane]), splat(leaf[TREE_WIDTH + lane]), splat(leaf[2 * TREE_WIDTH + lane]));
         sphere.radius = splat(leaf[3 * TREE_WIDTH + lane]);
+#if EFFECT_MOTION
+        __global const real *motion = geometry->leaf_motions + leaf_number * (3 * TREE_WIDTH) + lane;
+        sphere.centre = madd3(ray->time, vec3(splat(motion[0]), splat(motion[TREE_WIDTH]), splat(motion[2 * TREE_WIDTH])),
+                              sphere.centre);
+#endif
 #if SAMPLES_LAMPS
         const vbool wanted = active & vbool_of_uint(hit->slot != slot);
 #else

@@ -6,7 +6,7 @@ FORCE_INLINE static void intersect_leaf(const Geometry *geometry, const Ray *ray
     for (child_mask candidates = leaf_candidates(geometry, ray, leaf_number, best->bound, best->slot); candidates != 0;
          candidates = without_lowest_bit(candidates)) {
         const uint slot = leaf_number * TREE_WIDTH + lowest_bit(candidates);
-        const Sphere sphere = load_sphere(geometry, slot);
+        const Sphere sphere = sphere_for_ray(geometry, ray, slot);
         intersect_sphere(geometry, ray, vbool_all, &sphere, slot, best);
     }
 }

@@ -50,11 +50,12 @@ typedef JOIN(REAL, 4) real4;
 #endif
 typedef REFINED refined;
 
-/* Lamps are sampled where the scene has any, and at surfaces that scatter into many directions. They are spheres, in a
- * tree, discs in the sky, and an image around the scene. */
-#define SAMPLES_LAMP_TREE (EFFECT_LAMPS && EFFECT_EMISSION && (EFFECT_LAMBERTIAN || EFFECT_METAL))
-#define SAMPLES_DISCS (EFFECT_LAMPS && EFFECT_DISCS && (EFFECT_LAMBERTIAN || EFFECT_METAL))
-#define SAMPLES_ENVIRONMENT (EFFECT_LAMPS && EFFECT_ENVIRONMENT && (EFFECT_LAMBERTIAN || EFFECT_METAL))
+/* Lamps are sampled where the scene has any, at surfaces that scatter into many directions and in media. They are
+ * spheres, in a tree, discs in the sky, and an image around the scene. */
+#define IS_LIT (EFFECT_LAMBERTIAN || EFFECT_METAL || EFFECT_MEDIA)
+#define SAMPLES_LAMP_TREE (EFFECT_LAMPS && EFFECT_EMISSION && IS_LIT)
+#define SAMPLES_DISCS (EFFECT_LAMPS && EFFECT_DISCS && IS_LIT)
+#define SAMPLES_ENVIRONMENT (EFFECT_LAMPS && EFFECT_ENVIRONMENT && IS_LIT)
 #define SAMPLES_SKY (SAMPLES_DISCS || SAMPLES_ENVIRONMENT)
 #define SAMPLES_LAMPS (SAMPLES_LAMP_TREE || SAMPLES_SKY)
 

@@ -38,7 +38,7 @@ __kernel VECTORS_WRITTEN void aovs(SCENE_PARAMETERS uint first_pixel, uint pixel
         Surface surface;
         Vec3 outward, emitted;
         Point point;
-        fetch_surface(&scene, &hit, &sphere, &surface, &emitted);
+        fetch_surface(&scene, &ray, &hit, &sphere, &surface, &emitted);
         sphere_surface(&ray, &sphere, hit.slot, hit.t, hit.enters, &point, &outward);
 #if EFFECT_TEXTURES
         vary_surface(&scene, met, hit.slot, &point, outward, &surface, &emitted);

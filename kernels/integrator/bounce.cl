@@ -1,20 +1,40 @@
 /* bounce.cl: how a path goes on by one segment, in lane code.
  *
  * In:    paths and the scene.   Out: the same paths, one segment longer.
- * Knows: the tree, the shape, the sky, the lamps, the materials and their textures, each by one function.   Does not know: pixels. */
+ * Knows: the tree, the shape, the sky, the media, the lamps, the materials and their textures, each by one function.   Does not know: pixels. */
+
+#if EFFECT_MEDIA
+#define seen_through(path, radiance) multiply3((path)->throughput, radiance)
+#else
+#define seen_through(path, radiance) (radiance)
+#endif
 
 /* One segment of every living path that waits for nothing: intersect, collect radiance, scatter. */
 static void trace_bounce(const Scene *scene, Path *path) {
     const vbool moving = path_moves(path);
     const Ray ray = path_ray(path);
     const Hit hit = intersect_closest(&scene->geometry, &ray, moving);
-    const vbool met = moving & is_hit(&hit);
+#if EFFECT_MEDIA
+    path->depth = choose_uint(moving, path->depth + 1u, path->depth);
+    vreal flown;
+    find_media(scene, &ray, moving, path);
+    const vbool scattered = fly(scene, moving, to_real(hit.t), path, &flown);
+    const vbool arrived = moving & vbool_not(scattered);
+    path->scattered = scattered;
+#else
+    const vbool arrived = moving;
+#endif
+    const vbool met = arrived & is_hit(&hit);
     path->met = met;
     path->entered = hit.enters;
     path->distance = hit.t;
+#if EFFECT_MEDIA
+    path->distance = choose_refined(scattered, to_refined(flown), hit.t);
+#else
     path->depth = choose_uint(moving, path->depth + 1u, path->depth);
+#endif
 
-    const vbool escaped = moving & vbool_not(met);
+    const vbool escaped = arrived & vbool_not(met);
     if (any_lane(escaped)) {
         Vec3 light = multiply3(path->throughput, sky_radiance(scene->sky, path->direction));
 #if EFFECT_ENVIRONMENT
@@ -23,21 +43,24 @@ static void trace_bounce(const Scene *scene, Path *path) {
 #if EFFECT_DISCS
         light = add3(light, multiply3(path->throughput, discs_radiance(scene, path, escaped)));
 #endif
-        /* A camera ray, which carries all of what it shows. */
+        /* A camera ray, which carries all of what it shows, or what a medium leaves of that. */
         const vbool at_once = escaped & vbool_of_uint(path->depth == splat_uint(1));
         if (has_backdrop(scene->sky))
-            light = choose3(at_once, backdrop_radiance(scene->sky, path->origin.high, path->direction), light);
+            light = choose3(at_once, seen_through(path, backdrop_radiance(scene->sky, path->origin.high, path->direction)), light);
         path->radiance = choose3(escaped, add3(path->radiance, light), path->radiance);
         path->depth = choose_uint(at_once, splat_uint(1u + MISSED_MARK), path->depth);
         path->alive = path->alive & vbool_not(escaped);
     }
+#if EFFECT_MEDIA
+    if (any_lane(scattered)) scatter_in_medium(scene, scattered, flown, path);
+#endif
     if (!any_lane(met)) return;
 
     Sphere sphere;
     Surface surface;
     Vec3 outward, emitted;
     Point point;
-    fetch_surface(scene, &hit, &sphere, &surface, &emitted);
+    fetch_surface(scene, &ray, &hit, &sphere, &surface, &emitted);
     sphere_surface(&ray, &sphere, hit.slot, hit.t, hit.enters, &point, &outward);
     surface.incoming = path->direction;
     surface.enters = hit.enters;

@@ -180,7 +180,16 @@ LIGHT_STEP void light_vertices(const Scene *scene, Path *path) {
     const vbool visible = active & vbool_of_uint(path->seen_slot == choice.slot);
     if (!any_lane(visible)) return;
     const vreal weight = ratio / fma(ratio, ratio, splat(1));
-    const Vec3 light = multiply3(path->throughput, scale3(weight, radiance_of_lamp(scene, &ray, &choice, visible)));
+    Vec3 light = multiply3(path->throughput, scale3(weight, radiance_of_lamp(scene, &ray, &choice, visible)));
+#if EFFECT_MEDIA
+    /* A vertex in a medium, or on a surface that reflects, lies in the medium that the path has come through. */
+    const vuint medium = choose_uint(visible, path->medium, splat_uint(0));
+    if (any_lane(vbool_of_uint(medium != splat_uint(0)))) {
+        const vbool far = vbool_of_uint(choice.slot >= splat_uint(DISC_SLOT));
+        const vreal length = choose(far, splat(REAL_LARGE), cone_distance(&cone, choice.sphere.radius, choice.rest));
+        light = multiply3(light, transmittance(scene, medium, length));
+    }
+#endif
     path->radiance = choose3(visible, add3(path->radiance, light), path->radiance);
 }
 #endif

@@ -11,6 +11,15 @@ typedef struct Path {
     vuint own_slot; /* of the sphere being left */
     vbool inward;   /* it is left into its inside */
     vbool alive;
+#if EFFECT_MOTION
+    vreal time;
+#endif
+#if EFFECT_MEDIA
+    vuint medium;    /* that it flies through */
+    vbool unsure;    /* it may be another now */
+    Vec3 likelihood; /* flight.cl */
+    vbool scattered; /* its latest segment ended in a medium */
+#endif
 #if SAMPLES_LAMPS
     Lobe lobe;          /* that `direction` was drawn from; of LOBE_NONE where no lamp is sampled */
     vreal lamp_sum;    /* of importance, seen from the latest vertex: lamps.cl */
@@ -30,6 +39,10 @@ static void path_none(Path *path) {
     path->alive = path->inward = vbool_none;
     path->depth = splat_uint(0);
     path->radiance = zero3();
+#if EFFECT_MEDIA
+    path->unsure = vbool_none;
+    path->medium = splat_uint(0);
+#endif
 #if SAMPLES_LAMPS
     path->wants_lamps = vbool_none;
     path->lamp_rays = 0;
@@ -44,6 +57,9 @@ static Ray path_ray(const Path *path) {
     ray.cull_margin = cull_margin_of(&path->origin);
     ray.own_slot = path->own_slot;
     ray.inward = path->inward;
+#if EFFECT_MOTION
+    ray.time = path->time;
+#endif
     return ray;
 }
 
@@ -70,6 +86,13 @@ static void path_init(__global const PackedCamera *camera, SampleKey key, Vec3 o
     path->own_slot = choose_uint(fresh, splat_uint(own_slot), path->own_slot);
     path->inward = (fresh & inward) | (vbool_not(fresh) & path->inward);
     path->alive = path->alive | fresh;
+#if EFFECT_MOTION
+    path->time = choose(fresh, sample_1d(key, splat_uint(DIMENSION_TIME)), path->time);
+#endif
+#if EFFECT_MEDIA
+    path->unsure = path->unsure | fresh;
+    path->likelihood = choose3(fresh, vec3(splat(1), splat(1), splat(1)), path->likelihood);
+#endif
 #if SAMPLES_LAMPS
     path->lobe.kind = choose_uint(fresh, splat_uint(LOBE_NONE), path->lobe.kind);
     path->wants_lamps = path->wants_lamps & vbool_not(fresh);
@@ -94,10 +117,10 @@ static vbool path_moves(const Path *path) {
 }
 
 /* The lanes `met` go on from `point`, of the sphere in `slot`, which they have met from outside where `enters`. Without
- * lamps, no path that lives waits, and what becomes of those that do not live is no matter. */
+ * lamps and media, no path that lives waits, and what becomes of those that do not live is no matter. */
 static void path_scatter(Path *path, vbool met, const Point *point, vuint slot, vbool enters,
                          const BsdfSample *bsdf_sample) {
-#if SAMPLES_LAMPS && LANE_COUNT > 1
+#if (SAMPLES_LAMPS || EFFECT_MEDIA) && LANE_COUNT > 1
 #define IN_MET(type, a, b) choose##type(met, a, b)
 #else
 #define IN_MET(type, a, b) (a)
@@ -113,6 +136,9 @@ static void path_scatter(Path *path, vbool met, const Point *point, vuint slot, 
     path->own_slot = IN_MET(_uint, slot, path->own_slot);
     path->inward = IN_MET(, inward, path->inward);
     path->alive = path->alive & (bsdf_sample->scattered | vbool_not(met));
+#if EFFECT_MEDIA
+    path->unsure = path->unsure | (met & bsdf_sample->transmitted);
+#endif
 #undef IN_MET
 }
 

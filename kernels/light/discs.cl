@@ -29,6 +29,9 @@ static vreal disc_importance(__global const real *disc, const Lobe *lobe) {
     const vreal touching = fma(cosine_below(lobe->fuzz), cosine_below(sine), -lobe->fuzz * sine);
     cosine = choose(is_fuzzy(lobe), choose(z >= touching, splat(1), splat(0)), cosine);
 #endif
+#if EFFECT_MEDIA
+    cosine = choose(is_phase(lobe), splat(1), cosine);
+#endif
     return cosine * disc[DISC_POWER];
 }
 #endif

@@ -85,6 +85,9 @@ FORCE_INLINE static vreal lamp_importance(const LampChild *child, const Point *p
         cosine = choose(fuzzy, choose(touches, splat(1), splat(0)), cosine);
     }
 #endif
+#if EFFECT_MEDIA
+    cosine = choose(is_phase(lobe), splat(1), cosine); /* media have no horizon */
+#endif
     return choose(lamp & around, splat(0), child->power * cosine * spread_inverse);
 }
 

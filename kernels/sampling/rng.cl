@@ -6,7 +6,8 @@
  * Nothing is carried along, so neither chunks, nor devices, nor effects that are absent shift a number.
  *
  * Dimensions, by purpose. An effect that is absent leaves its places unused:
- *   0, 1  position in the pixel        2, 3  position on the lens        4  time (kept)       5..15  kept
+ *   0, 1  position in the pixel        2, 3  position on the lens        4  time
+ *   5     the colour by which a path flies through media                                    6..15  kept
  *   16 + 16 b + k, for bounce b:
  *     k = 0, 1     direction of scattering
  *     k = 2, 3, 4  radius in a ball (fuzz and the cosine-cubed lobe)
@@ -16,9 +17,12 @@
  *     k = 8, 9     which lamp, and the direction to it
  *     k = 10       the low bits of the choice among the discs of the sky, the image around and the tree of lamps
  *     k = 11, 12   the low bits of the choice of a row of that image, and of a texel in the row
- *     13..15       kept */
+ *     k = 13, 14   a flight through a medium, and its low bits
+ *     15           kept */
 #define DIMENSION_PIXEL 0u
 #define DIMENSION_LENS 2u
+#define DIMENSION_TIME 4u
+#define DIMENSION_FLIGHT_COLOUR 5u
 #define DIMENSION_BOUNCE 16u
 #define DIMENSIONS_PER_BOUNCE 16u
 #define BOUNCE_DIRECTION 0u
@@ -30,6 +34,8 @@
 #define BOUNCE_DISC_REFILL 10u
 #define BOUNCE_SKY_ROW 11u
 #define BOUNCE_SKY_COLUMN 12u
+#define BOUNCE_FLIGHT 13u
+#define BOUNCE_FLIGHT_REFILL 14u
 
 /* Of bounce b, counted from 0. */
 static vuint first_dimension(vuint b) { return b * DIMENSIONS_PER_BOUNCE + DIMENSION_BOUNCE; }

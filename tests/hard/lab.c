@@ -61,7 +61,8 @@ bool lab_open(Lab *lab, const char *variant) {
         return false;
     }
     lab->options = (BpProgramOptions){
-        .effects = BP_EFFECTS_ALL,
+        .effects = BP_EFFECTS_ALL & ~(1u << BP_EFFECT_MOTION), /* probes make rays and leaves of their own */
+
         .tree = true,
         .precision = lab->real_double ? BP_PRECISION_DOUBLE : BP_PRECISION_SINGLE,
         .math = strcmp(variant, "fast") == 0 ? BP_MATH_FAST : BP_MATH_STRICT,

@@ -30,7 +30,7 @@ __kernel void probe_leaf(uint count, __global const real *rays, __global const u
     __global const real *leaf = leaves + (size_t)item * 4 * TREE_WIDTH;
     const uint lane = item % TREE_WIDTH;
     Geometry geometry;
-    geometry_init(boxes, children, leaf, slot_sphere, 1, 1, &geometry);
+    geometry_init(boxes, children, leaf, leaf, slot_sphere, 1, 1, &geometry);
     const Ray ray = probe_ray(rays + (size_t)item * PROBE_RAY_REALS, own[item], lane);
     const Hit hit = intersect_closest(&geometry, &ray, 1);
     __global refined *row = out + (size_t)item * PROBE_HIT_REALS;
@@ -171,7 +171,7 @@ __kernel void probe_normalise(uint count, __global const real *in, __global refi
 __kernel void probe_boxes(uint count, __global const real *rays, __global const real *boxes, __global uint *out) {
     PROBE_ITEM
     Geometry geometry;
-    geometry_init(boxes, 0, 0, 0, 0, 0, &geometry);
+    geometry_init(boxes, 0, 0, 0, 0, 0, 0, &geometry);
     const Ray ray = probe_ray(rays + (size_t)item * PROBE_RAY_REALS, 0, 0);
     const BoxRay box = box_ray(&ray);
     vreal_node entry;
@@ -192,7 +192,7 @@ __kernel void probe_tree(uint count, __global const real *rays, __global const r
                          uint first_leaves, uint leaf_count, __global refined *out) {
     PROBE_ITEM
     Geometry geometry;
-    geometry_init(boxes, children, leaves, slot_sphere, first_leaves, leaf_count, &geometry);
+    geometry_init(boxes, children, leaves, leaves, slot_sphere, first_leaves, leaf_count, &geometry);
     const Ray ray = probe_ray(rays + (size_t)item * PROBE_RAY_REALS, 0, 0);
     const Hit tree = intersect_closest(&geometry, &ray, 1);
     Hit list = no_hit(REAL_LARGE);

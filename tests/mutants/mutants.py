@@ -44,6 +44,16 @@ def images(*names):
     return Script("tests/textures/test_images.py", tuple(f"Images.test_{name}" for name in names), "9 textures")
 
 
+def motion_cases(*names):
+    """Cases of tests/motion/test_motion.py."""
+    return Script("tests/motion/test_motion.py", names, "9 motion")
+
+
+def media_cases(*names):
+    """Cases of tests/media/test_media.py."""
+    return Script("tests/media/test_media.py", names, "9 media")
+
+
 def patch(path, find, replace):
     return (path, find, replace)
 
@@ -707,6 +717,64 @@ MUTANTS = [
     Mutant("films of other images", "this program: a merge of two pictures",
            [patch("host/film/film_scene.c", "mix(mix(hash, texture->image->hash), (uint64_t)texture->wrap)", "mix(hash, (uint64_t)texture->wrap)")],
            [images("films_of_other_images_do_not_merge")]),
+    # ---- media ---------------------------------------------------------------------------------------------
+    Mutant("the largest sphere decides", "this program: bubbles in tinted glass are tinted",
+           [patch(PACK, "if (a->radius != b->radius) return a->radius < b->radius ? -1 : 1;\n    return a->sphere", "if (a->radius != b->radius) return a->radius > b->radius ? -1 : 1;\n    return a->sphere")],
+           [check("media-tinted-glass")]),
+    Mutant("a clear sphere left out", "this program: only what has an interior is a boundary",
+           [patch(PACK, "packed->boundaries[BOUNDARY_UINTS * i + 1] = bp_sphere_interior(scene, boundaries[i].sphere);",
+                  "{ const uint32_t inside = bp_sphere_interior(scene, boundaries[i].sphere);"
+                  " packed->boundaries[BOUNDARY_UINTS * i + 1] = inside != 0 ? inside : bp_scene_medium(scene); }")],
+           [media_cases("nested_and_overlapping")]),
+    Mutant("once inside, always inside", "classic: the medium of the first sphere that was entered",
+           [patch(KERNEL, "path->unsure = path->unsure | (met & bsdf_sample->transmitted);", "")], [check("media-smoke")]),
+    Mutant("reflected into the other medium", "classic: entering and leaving told by the normal alone",
+           [patch(KERNEL, "(own & ray->inward)", "(own & vbool_not(ray->inward))")], [check("media-tinted-glass")]),
+    Mutant("scattering counted as absorption too", "classic: extinction for absorption",
+           [patch(KERNEL, "const Vec3 left = vec3(exp_minus(absorption.x * *length)", "const Vec3 left = vec3(exp_minus((absorption.x + scattering.x) * *length)")],
+           [check("media-smoke")]),
+    Mutant("colours fly together", "second book: one density for all, its colour where it scatters",
+           [patch(KERNEL, "const Vec3 likelihood = multiply3(path->likelihood, density);", "const Vec3 likelihood = path->likelihood;")], [check("media-smoke")]),
+    Mutant("a flight's density without its end", "classic: the ratio of the densities left out where it scatters",
+           [patch(KERNEL, "density = choose3(scattered, multiply3(density, ratio), density);", "(void)ratio;")], [check("media-smoke")]),
+    Mutant("scattered evenly", "second book: isotropic, whatever the anisotropy",
+           [patch(KERNEL, "phase_cosine(g, u, &one_plus, &one_minus);", "phase_cosine(splat(0), u, &one_plus, &one_minus);")], [check("media-fog", 1024), media_cases("single_scattering")]),
+    Mutant("forwards is backwards", "classic: the sign of the phase function's direction",
+           [patch(KERNEL, "phase_cosine(g, u, &one_plus, &one_minus);", "phase_cosine(g, u, &one_minus, &one_plus);")], [check("media-smoke")]),
+    Mutant("flights of 24 bits", "classic: log of a float, which thin media notice",
+           [patch(KERNEL, "const vreal z = fma(refill, splat(R(0x1p-24)), u);", "const vreal z = u + splat(R(0x1p-10)) * refill * splat(R(0));"),
+            patch(KERNEL, "vreal left = fma(refill, splat(R(-0x1p-24)), splat(1) - u);", "vreal left = splat(1) - at_most(u, splat(R(0.99)));")], [test("test_exponentials", "1 exact")]),
+    Mutant("rays to lamps through clear air", "classic: shadow rays know no fog",
+           [patch(KERNEL, "light = multiply3(light, transmittance(scene, medium, length));", "(void)length;")], [check("media-fog", 512, "--lamps", "on")]),
+    Mutant("a phase function that looks back", "classic: g for -g where its density is asked for",
+           [patch(KERNEL, "choose(g >= splat(0), splat(1), splat(-1)), before)", "choose(g >= splat(0), splat(-1), splat(1)), before)")],
+           [check("media-lamp", 512, "--lamps", "on")]),
+    Mutant("a phase function over half the sphere", "classic: 2 pi for 4 pi",
+           [patch(KERNEL, "R(0.07957747154594767)", "R(0.15915494309189535)")], [check("media-lamp", 512, "--lamps", "on")]),
+    Mutant("films of other media", "this program: a merge of two pictures",
+           [patch("host/film/film_scene.c", "    hash = mix_reals(hash, medium->scattering, 3);\n", "")], [media_cases("films")]),
+    # ---- spheres that move ---------------------------------------------------------------------------------
+    Mutant("boxes of the first moment", "second book: a bounding box of center0 alone",
+           [patch("host/packed/tree_write.c", "high = fmax(center[a], center[a] + motion);", "high = center[a];")], [motion_cases("order")]),
+    Mutant("a time for every ray", "classic: scattered rays of another moment",
+           [patch(KERNEL, "    ray.time = path->time;", "    ray.time = uniform(path->key, path->depth + 7u);")], [check("motion")]),
+    Mutant("seen at rest, hit in motion", "this program: candidates by where a leaf's spheres are at first",
+           [patch(KERNEL, "sphere.centre.x = fma(ray.time, JOIN(vload, LANE_COUNT)(0, motion), sphere.centre.x);", "")],
+           [check("motion", 256, "--kernel", "sample")]),
+    Mutant("a chord of another moment", "this program: a sphere left where it was when the shutter opened",
+           [patch(KERNEL, "const Sphere sphere = sphere_for_ray(geometry, ray, slot);\n    vrefined t;\n    const vbool found = sphere_exit",
+                  "const Sphere sphere = load_sphere(geometry, slot);\n    vrefined t;\n    const vbool found = sphere_exit")], [check("motion")]),
+    Mutant("normals of another moment", "classic: the normal from the first centre",
+           [patch(KERNEL, "*sphere = sphere_for_ray(&scene->geometry, ray, slot);", "*sphere = load_sphere(&scene->geometry, slot);")],
+           [check("motion")]),
+    Mutant("rays to where a lamp was", "this program: a lamp of the tree that moves",
+           [patch("host/packed/lamp_tree.c", "bp_sphere_emits(scene, i) && !bp_sphere_moves(scene, i);", "bp_sphere_emits(scene, i);")],
+           [check("motion-lamp", 1024, "--lamps", "on")]),
+    Mutant("films of other motions", "this program: a merge of two pictures",
+           [patch("host/film/film_scene.c", "if (bp_sphere_moves(scene, i))", "if (false)")], [motion_cases("films")]),
+    Mutant("parallel rays begin behind what moves", "this program: the plane moved ahead by the first centres alone",
+           [patch("host/scene/scene.c", "distance += ahead[i] * (end[i] - scene->spheres[s].center[i]);", "distance += 0 * end[i];")],
+           [motion_cases("far", "coverage")]),
     # ---- files ---------------------------------------------------------------------------------------------
     Mutant("set-ID bits handed on", "classic: the mode of a replaced file, all of it",
            [patch("host/base/output_file.c", "replaced->st_mode & 0777;", "replaced->st_mode & 07777;")],

@@ -142,7 +142,7 @@ static void every_shape_and_size(void **state) {
                 for (int single = 0; single < 2; ++single)
                     for (int o = 0; o < 2; ++o) {
                         BpScene scene = make_spheres(shape, counts[c], 1);
-                        const BpTreeOptions options = {widths[w], single, false, 1};
+                        const BpTreeOptions options = {widths[w], single, false, 1, false};
                         BpTree tree;
                         BpError err = {0};
                         assert_int_equal(bp_tree_build(&scene, origins[o], &options, &tree, &err), BP_OK);
@@ -164,7 +164,7 @@ static void large_and_degenerate(void **state) {
     const double origin[3] = {3, 2, 1};
     for (size_t i = 0; i < sizeof cases / sizeof cases[0]; ++i) {
         BpScene scene = make_spheres(cases[i].shape, cases[i].count, 2);
-        const BpTreeOptions options = {cases[i].width, true, false, 0};
+        const BpTreeOptions options = {cases[i].width, true, false, 0, false};
         BpTree tree;
         assert_int_equal(bp_tree_build(&scene, origin, &options, &tree, NULL), BP_OK);
         check_tree(&scene, origin, &tree);
@@ -183,7 +183,7 @@ static void same_for_any_number_of_threads(void **state) {
             BpScene scene = make_spheres(shape, counts[c], 3);
             BpTree first = {0};
             for (int t = 0; t < 3; ++t) {
-                const BpTreeOptions options = {8, true, false, threads[t]};
+                const BpTreeOptions options = {8, true, false, threads[t], false};
                 BpTree tree;
                 assert_int_equal(bp_tree_build(&scene, origin, &options, &tree, NULL), BP_OK);
                 if (t == 0) {
@@ -213,7 +213,7 @@ static void lists_keep_the_order(void **state) {
     for (uint32_t width = 2; width <= 8; width *= 2)
         for (int c = 0; c < 6; ++c) {
             BpScene scene = make_spheres(SHAPE_WILD, counts[c], 4);
-            const BpTreeOptions options = {width, c % 2 == 0, true, 1};
+            const BpTreeOptions options = {width, c % 2 == 0, true, 1, false};
             BpTree tree;
             assert_int_equal(bp_tree_build(&scene, origin, &options, &tree, NULL), BP_OK);
             assert_int_equal(tree.node_count, 0);
@@ -234,7 +234,7 @@ static void lists_keep_the_order(void **state) {
 static void huge_spheres_come_first(void **state) {
     (void)state;
     const double origin[3] = {0, 0, 0};
-    const BpTreeOptions options = {8, true, false, 1};
+    const BpTreeOptions options = {8, true, false, 1, false};
     for (int huge = 0; huge < 12; ++huge) {
         BpScene scene = make_spheres(SHAPE_FIELD, 5000, 5);
         for (int i = 0; i < huge; ++i) scene.spheres[17 * i + 3].radius = (i % 2 ? -100.0 : 100.0) - i;
@@ -262,7 +262,7 @@ static void leaves_are_full_and_memory_small(void **state) {
     for (uint32_t width = 4; width <= 8; width *= 2)
         for (int i = 0; i < 4; ++i) {
             BpScene scene = make_spheres(shapes[i], 100000, 9);
-            const BpTreeOptions options = {width, true, false, 0};
+            const BpTreeOptions options = {width, true, false, 0, false};
             BpTree tree;
             assert_int_equal(bp_tree_build(&scene, origin, &options, &tree, NULL), BP_OK);
             const double slots = (double)tree.leaf_count * width;
@@ -282,16 +282,16 @@ static void refusals(void **state) {
     BpScene scene = make_spheres(SHAPE_FIELD, 10, 6);
     BpTree tree;
     BpError err = {0};
-    const BpTreeOptions three = {3, true, false, 1};
+    const BpTreeOptions three = {3, true, false, 1, false};
     assert_int_equal(bp_tree_build(&scene, origin, &three, &tree, &err), BP_ERR_LIMIT);
     assert_null(tree.leaves);
     /* Refused by the count alone: the spheres are not looked at. */
-    const BpTreeOptions two = {2, true, false, 1};
+    const BpTreeOptions two = {2, true, false, 1, false};
     scene.sphere_count = (1u << 25) + 1;
     assert_int_equal(bp_tree_build(&scene, origin, &two, &tree, &err), BP_ERR_LIMIT);
     assert_non_null(strstr(err.message, "33554433"));
     scene.sphere_count = BP_SPHERES_MAX + 1ull;
-    const BpTreeOptions eight = {8, true, true, 1};
+    const BpTreeOptions eight = {8, true, true, 1, false};
     assert_int_equal(bp_tree_build(&scene, origin, &eight, &tree, &err), BP_ERR_LIMIT);
     bp_error_clear(&err);
     free(scene.spheres);

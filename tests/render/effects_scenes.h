@@ -14,7 +14,7 @@
 #define EFFECT_BIT(effect) (1u << BP_EFFECT_##effect)
 #define MATERIAL_EFFECTS                                                                                     \
     (EFFECT_BIT(LAMBERTIAN) | EFFECT_BIT(METAL) | EFFECT_BIT(DIELECTRIC) | EFFECT_BIT(EMISSION) |            \
-     EFFECT_BIT(NORMALS))
+     EFFECT_BIT(NORMALS) | EFFECT_BIT(MEDIA))
 
 typedef struct EffectsScene {
     BpScene scene; /* points into the arrays below: pass it on by address, do not copy it */
@@ -23,20 +23,24 @@ typedef struct EffectsScene {
     BpTexture textures[10];
     BpImage image, sky, light, *images[3];
     float image_texels[5 * 3 * 3], sky_texels[8 * 4 * 3], light_texels[2 * 3];
+    double ends[48][3];
+    BpMedium media[2];
+    uint32_t interiors[48];
 } EffectsScene;
 
 /* Lamps are sampled where something emits, discs do, or an image, and something is lit, unless an option says
  * no. */
 static inline bool effects_light(uint32_t bits) {
     return (bits & (EFFECT_BIT(EMISSION) | EFFECT_BIT(DISCS) | EFFECT_BIT(ENVIRONMENT))) != 0 &&
-           (bits & (EFFECT_BIT(LAMBERTIAN) | EFFECT_BIT(METAL))) != 0;
+           (bits & (EFFECT_BIT(LAMBERTIAN) | EFFECT_BIT(METAL) | EFFECT_BIT(MEDIA))) != 0;
 }
 
 /* A tree needs spheres, and spheres need a material. Rays to lamps need lamps, and something that they light.
- * Textures are of spheres, and noise and images are textures. */
+ * Textures are of spheres, noise and images are textures, and spheres move. */
 static inline bool effects_can_occur(uint32_t bits, bool tree) {
     if (bp_effects_has(bits, BP_EFFECT_LAMPS) && !effects_light(bits)) return false;
     if (bp_effects_has(bits, BP_EFFECT_TEXTURES) && (bits & MATERIAL_EFFECTS) == 0) return false;
+    if (bp_effects_has(bits, BP_EFFECT_MOTION) && (bits & MATERIAL_EFFECTS) == 0) return false;
     if (bp_effects_has(bits, BP_EFFECT_NOISE) && !bp_effects_has(bits, BP_EFFECT_TEXTURES)) return false;
     if (bp_effects_has(bits, BP_EFFECT_IMAGES) && !bp_effects_has(bits, BP_EFFECT_TEXTURES)) return false;
     return (bits & MATERIAL_EFFECTS) != 0 || !tree;
@@ -82,6 +86,7 @@ static inline void effects_materials(EffectsScene *made, uint32_t bits) {
     const int shown = bp_effects_has(bits, BP_EFFECT_IMAGES) ? 2 : 1;
     for (int i = 0; i < shown && bp_effects_has(bits, BP_EFFECT_NORMALS); ++i)
         effects_material(made, BP_MATERIAL_NORMALS, 0, 0, 0);
+    if (bp_effects_has(bits, BP_EFFECT_MEDIA)) effects_material(made, BP_MATERIAL_INTERFACE, 1, 1, 1);
 }
 
 /* A member varies where there is one that does; without light there is always one that is black. */
@@ -187,17 +192,42 @@ static inline void effects_spheres(EffectsScene *made, bool tree) {
                              .radius = 0.5,
                              .material = (uint32_t)(i % materials),
                              .albedo = BP_NO_ALBEDO};
-        const bool glass = made->materials[sphere->material].kind == BP_MATERIAL_DIELECTRIC;
+        const bool glass = bp_material_is(made->materials[sphere->material].kind, BP_HAS_INSIDE);
         if (glass && i % 3 == 0) sphere->radius = -0.4; /* inside out */
         if (!glass && i % 5 == 4) {                     /* again where one stands, in another material */
             const BpSphere *before = &made->spheres[i - 1];
             memcpy(sphere->center, before->center, sizeof sphere->center);
-            if (made->materials[before->material].kind != BP_MATERIAL_DIELECTRIC)
+            if (!bp_material_is(made->materials[before->material].kind, BP_HAS_INSIDE))
                 sphere->radius = before->radius;
         }
     }
     made->spheres[0] = (BpSphere){.center = {0, -100.5, -2}, .radius = 100, .albedo = BP_NO_ALBEDO};
     made->scene.sphere_count = count;
+}
+
+/* Media in most of what light passes through, and around all in every fifth set. */
+static inline void effects_media(EffectsScene *made, uint32_t bits) {
+    made->media[0] = (BpMedium){
+        .name = (char *)"grey", .absorption = {0.5, 0.5, 0.5}, .scattering = {2, 2, 2}, .anisotropy = 0.4};
+    made->media[1] = (BpMedium){.name = (char *)"ink", .absorption = {0, 1, 2}, .scattering = {0.5, 0, 3}};
+    made->scene.media = made->media;
+    made->scene.medium_count = 2;
+    made->scene.medium = bits % 5 == 0 ? 1 : 0;
+    made->scene.interiors = made->interiors;
+    made->scene.interior_count = made->scene.sphere_count;
+    for (size_t i = 0; i < made->scene.sphere_count; ++i)
+        if (bp_material_is(made->materials[made->spheres[i].material].kind, BP_HAS_INSIDE))
+            made->interiors[i] = (uint32_t)(i / 2 % 3);
+}
+
+/* Every third sphere moves, if it is not the ground; those that share a place with one at rest leave it. */
+static inline void effects_motion(EffectsScene *made) {
+    made->scene.center_ends = made->ends;
+    made->scene.moving_count = made->scene.sphere_count;
+    for (size_t i = 0; i < made->scene.sphere_count; ++i) {
+        memcpy(made->ends[i], made->spheres[i].center, sizeof made->ends[i]);
+        if (i % 3 == 1) made->ends[i][i % 2] += 0.3;
+    }
 }
 
 /* Odd sides, so that a pixel's centre can lie exactly on the axis; sets with an even number of effects are
@@ -238,6 +268,8 @@ static inline void effects_scene(EffectsScene *made, uint32_t bits, bool tree) {
     effects_materials(made, bits);
     if (bp_effects_has(bits, BP_EFFECT_TEXTURES)) effects_textures(made, bits);
     effects_spheres(made, tree);
+    if (bp_effects_has(bits, BP_EFFECT_MOTION)) effects_motion(made);
+    if (bp_effects_has(bits, BP_EFFECT_MEDIA)) effects_media(made, bits);
 }
 
 #endif

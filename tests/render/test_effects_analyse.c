@@ -27,7 +27,8 @@ static const BpMaterial debug = {.name = (char *)"debug", .kind = BP_MATERIAL_NO
 #define NO_LAMP "no sphere gives light, and no disc of the sky"
 
 /* Effects that the materials of these tests never call for. */
-#define OF_SCENES (BIT(DISCS) | BIT(TEXTURES) | BIT(NOISE) | BIT(IMAGES) | BIT(ENVIRONMENT))
+#define OF_SCENES                                                                                            \
+    (BIT(DISCS) | BIT(TEXTURES) | BIT(NOISE) | BIT(IMAGES) | BIT(ENVIRONMENT) | BIT(MOTION) | BIT(MEDIA))
 
 /* What materials name as textures 1 and 2. */
 static BpTexture both[2] = {{.type = BP_TEXTURE_CHECKER, .colors = {{0, 0, 0}, {2, 2, 2}}},

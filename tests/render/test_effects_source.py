@@ -38,6 +38,8 @@ MARKS = {
     "NOISE": [],  # TOGETHER
     "IMAGES": [],  # TOGETHER
     "ENVIRONMENT": ["environment_radiance", "has_environment"],
+    "MOTION": ["path->time", "ray->time"],
+    "MEDIA": ["medium_around", "exp_minus", "interface_sample"],
     "TREE": ["BoxRay", "leaf_children"],  # no effect, but looked for in the same way
 }
 # Code that several effects share.
@@ -51,7 +53,7 @@ SHARED = {
 TOGETHER = {"gradient_noise": {"TEXTURES", "NOISE"}, "pattern_colour": {"TEXTURES", "NOISE"},
             "image_texture": {"TEXTURES", "IMAGES"}}
 # Code that needs LAMPS, something to be lit, and one of the effects named.
-LIT = {"LAMBERTIAN", "METAL"}
+LIT = {"LAMBERTIAN", "METAL", "MEDIA"}
 NEEDING_OTHERS = {
     "choose_lamp": {"EMISSION"}, "lamp_hit_weight": {"EMISSION"}, "disc_importance": {"DISCS"}, "disc_hit_weight": {"DISCS"},
     "choose_disc": {"DISCS", "ENVIRONMENT"}, "sample_environment": {"ENVIRONMENT"}, "environment_hit_weight": {"ENVIRONMENT"},

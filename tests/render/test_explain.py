@@ -14,7 +14,8 @@ import tempfile
 from pfm import read_pfm
 
 program, scenes = sys.argv[1], pathlib.Path(sys.argv[2])
-ALL = ["lambertian", "metal", "dielectric", "emission", "normals", "lens", "lamps", "discs", "textures", "noise", "images", "environment"]
+ALL = ["lambertian", "metal", "dielectric", "emission", "normals", "lens", "lamps", "discs", "textures", "noise", "images", "environment",
+       "motion", "media"]
 
 
 def run(*arguments, code=0):
@@ -104,8 +105,9 @@ with tempfile.TemporaryDirectory() as folder:
     # Measured. Few effects are out of this scene, so few kernels are compiled; the deep test has them all out.
     every_kind = {"m": {"type": "lambertian", "albedo": {"texture": "t"}}, "n": {"type": "metal", "albedo": [0.5] * 3},
                   "g": {"type": "dielectric", "refraction_index": 1.5}, "l": {"type": "diffuse_light", "emit": [4] * 3},
-                  "c": {"type": "normals"}}
+                  "c": {"type": "normals"}, "i": {"type": "interface"}}
     spheres = [{"center": [0.5 * i - 1, 0, -2], "radius": 0.2, "material": name} for i, name in enumerate(every_kind)]
+    spheres[0]["center_end"] = [-1, 0.1, -2]
     scene = pathlib.Path(folder, "all.json")
     scene.write_text(json.dumps({"camera": {"image_width": 64}, "textures": {"t": {"type": "noise", "colors": [0.5, 1]}}, "materials": every_kind, "spheres": spheres,
                                  "background": {"discs": [{"direction": [0, 1, 0], "half_angle": 5, "radiance": [1] * 3}]}}))

@@ -19,7 +19,10 @@ static inline void probe_open(Probe *probe, const char *text) {
     BpDeviceInfo info;
     BpError err = {0};
     const BpProgramOptions options = {
-        .effects = BP_EFFECTS_ALL, .tree = true, .form = BP_KERNEL_SAMPLE, .tree_width = 8};
+        .effects = BP_EFFECTS_ALL & ~(1u << BP_EFFECT_MOTION), /* probes make rays and leaves of their own */
+        .tree = true,
+        .form = BP_KERNEL_SAMPLE,
+        .tree_width = 8};
     *probe = (Probe){0};
     BpStatus status = bp_device_find(NULL, &info, &err);
     if (status == BP_OK) status = bp_device_open(&info, &probe->device, &err);

@@ -311,7 +311,7 @@ static void films_tell_textures_apart(void **state) {
 }
 
 static void pack(const BpScene *scene, bool single, BpPacked *packed) {
-    const BpTreeOptions options = {8, single, false, 1};
+    const BpTreeOptions options = {8, single, false, 1, false};
     BpError err = {0};
     if (bp_scene_pack(scene, &options, true, packed, &err) != BP_OK) fail_msg("%s", err.message);
 }

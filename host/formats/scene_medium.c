@@ -1,0 +1,88 @@
+/* scene_medium.c: the media of a scene document, and where a sphere or the scene asks for one.
+ *
+ * In:    the nodes of "media", "medium" and "interior".   Out: BpMedia; the number of a medium.
+ * Knows: the grammar.   Does not know: spheres. Ranges are checked by scene_validate.c. */
+#include "scene_parse.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+/* A number for each colour, or one for all three. */
+static BpStatus parse_density(const BpNode *node, double density[3], BpError *err) {
+    if (node->value == NULL) return BP_OK;
+    if (!json_is_number(node->value) && json_array_size(node->value) != 3)
+        return bp_node_wrong(node, "three densities [r, g, b] per unit of length, or one number for all",
+                             err);
+    if (json_is_array(node->value)) return bp_node_vector(node, density, err);
+    BP_TRY(bp_node_number(node, &density[0], err));
+    density[1] = density[2] = density[0];
+    return BP_OK;
+}
+
+static BpStatus parse_medium(const BpNode *node, BpMedium *medium, BpError *err) {
+    static const char *const names[] = {"absorption", "scattering", "anisotropy"};
+    if (!json_is_object(node->value))
+        return bp_node_wrong(node, "an object: { \"absorption\": [0, 0, 0], \"scattering\": [1, 1, 1] }",
+                             err);
+    BP_TRY(bp_node_object(node, names, BP_COUNT(names), err));
+    const BpNode absorption = bp_node_member(node, "absorption");
+    const BpNode scattering = bp_node_member(node, "scattering");
+    const BpNode anisotropy = bp_node_member(node, "anisotropy");
+    BP_TRY(parse_density(&absorption, medium->absorption, err));
+    BP_TRY(parse_density(&scattering, medium->scattering, err));
+    return bp_node_number(&anisotropy, &medium->anisotropy, err);
+}
+
+BpStatus bp_parse_media(const BpNode *node, BpScene *scene, BpError *err) {
+    if (node->value != NULL && !json_is_object(node->value))
+        return bp_node_wrong(node, "an object of named media: { \"fog\": { \"scattering\": 0.1 } }", err);
+    const size_t count = json_object_size(node->value);
+    if (count == 0) return BP_OK;
+    if (count > BP_MEDIA_MAX)
+        return bp_node_fail(node, BP_PART_VALUE, err, "found %zu media, expected at most %u", count,
+                            BP_MEDIA_MAX);
+    scene->media = calloc(count, sizeof *scene->media);
+    if (scene->media == NULL) return bp_fail(err, BP_ERR_MEMORY, "out of memory for %zu media", count);
+    const char *name;
+    json_t *value;
+    json_object_foreach(node->value, name, value) {
+        const BpNode child = bp_node_member(node, name);
+        BpMedium *medium = &scene->media[scene->medium_count++];
+        BP_TRY(bp_copy_text(name, &medium->name, err));
+        BP_TRY(parse_medium(&child, medium, err));
+    }
+    return BP_OK;
+}
+
+static BpStatus fail_missing_medium(const BpNode *node, const BpScene *scene, const char *name,
+                                    BpError *err) {
+    char shown[64], near_shown[64];
+    bp_printable(name, shown, sizeof shown);
+    if (scene->medium_count == 0)
+        return bp_node_fail(node, BP_PART_VALUE, err,
+                            "found the medium \"%s\", expected a name from \"media\", which is empty or "
+                            "absent; add it there",
+                            shown);
+    const char **names = malloc(scene->medium_count * sizeof *names);
+    if (names == NULL) return bp_fail(err, BP_ERR_MEMORY, "out of memory");
+    for (size_t i = 0; i < scene->medium_count; i++) names[i] = scene->media[i].name;
+    const char *nearest = bp_nearest_name(name, names, scene->medium_count);
+    if (nearest == NULL) nearest = names[0];
+    free(names);
+    bp_printable(nearest, near_shown, sizeof near_shown);
+    return bp_node_fail(node, BP_PART_VALUE, err,
+                        "found the medium \"%s\", expected a name from \"media\"; did you mean \"%s\"?",
+                        shown, near_shown);
+}
+
+BpStatus bp_parse_medium_name(const BpNode *node, const BpScene *scene, uint32_t *number, BpError *err) {
+    const char *name = NULL;
+    if (node->value == NULL) return BP_OK;
+    BP_TRY(bp_node_string(node, &name, err));
+    for (size_t i = 0; i < scene->medium_count; i++) {
+        if (strcmp(scene->media[i].name, name) != 0) continue;
+        *number = (uint32_t)i + 1;
+        return BP_OK;
+    }
+    return fail_missing_medium(node, scene, name, err);
+}

@@ -1,0 +1,123 @@
+/* flight.cl: paths that fly through media: where they are scattered, and what is left of them.
+ *
+ * In:    paths, and how far it is to the next surface.   Out: paths that have arrived, or that a medium has scattered.
+ * Knows: path.cl, exponential.cl, phase.cl, the boundaries of media (scene_types.h).   Does not know: surfaces, the sky.
+ *
+ * A point lies in one medium: that of the smallest sphere around it that light passes through. Between two surfaces the
+ * medium is one and the same, since every boundary is a surface.
+ *
+ * Flights are sampled by scattering alone, and absorption is a weight, exp(-absorption * length): so a medium that only
+ * absorbs has no noise, and no weight exceeds 1. Where colours scatter differently, a path flies by one of the
+ * three, chosen once, and is weighted by the balance heuristic against the other two (A. Wilkie et al., "Hero Wavelength
+ * Spectral Sampling", 2014): `likelihood` is the density of all its flights by each colour, over the mean of the three.
+ * No weight exceeds 3, and media of one colour have none. */
+#if EFFECT_MEDIA
+/* The number of the medium around the origins of rays. */
+static vuint medium_around(const Scene *scene, const Ray *ray, vbool asked) {
+    vuint medium = splat_uint(0);
+    for (uint entry = 0;; entry += BOUNDARY_UINTS) {
+        const uint slot = scene->boundaries[entry], inside_medium = scene->boundaries[entry + 1u];
+        if (slot == NO_SLOT) return choose_uint(asked, splat_uint(inside_medium), medium);
+        const Sphere sphere = sphere_for_ray(&scene->geometry, ray, splat_uint(slot));
+        Vec3 to_centre;
+        const vreal power = sphere_power(&ray->origin, &sphere, &to_centre);
+        const vbool own = vbool_of_uint(ray->own_slot == splat_uint(slot));
+        const vbool inside = asked & ((own & ray->inward) | (vbool_not(own) & (power < splat(0))));
+        medium = choose_uint(inside, splat_uint(inside_medium), medium);
+        asked = asked & vbool_not(inside);
+        if (!any_lane(asked)) return medium;
+    }
+}
+
+/* Finds out the media of the paths that may have come into another. */
+static void find_media(const Scene *scene, const Ray *ray, vbool moving, Path *path) {
+    const vbool asked = moving & path->unsure;
+    if (!any_lane(asked)) return;
+    path->medium = choose_uint(asked, medium_around(scene, ray, asked), path->medium);
+    path->unsure = path->unsure & vbool_not(asked);
+}
+
+static Vec3 medium_colour(const Scene *scene, vuint medium, uint member) {
+    const vuint place = medium * MEDIUM_REALS + member;
+    return vec3(gather_real(scene->media, place), gather_real(scene->media, place + 1u),
+                gather_real(scene->media, place + 2u));
+}
+
+/* exp(x) for x that is below 40. */
+static vreal exp_below_40(vreal x) {
+    const vreal e = exp_minus(fabs(x));
+    return choose(x > splat(0), splat(1) / choose(x > splat(0), e, splat(1)), e);
+}
+
+/* What a medium leaves of light along a straight way. */
+static Vec3 transmittance(const Scene *scene, vuint medium, vreal length) {
+    const Vec3 extinction =
+        add3(medium_colour(scene, medium, MEDIUM_SCATTERING), medium_colour(scene, medium, MEDIUM_ABSORPTION));
+    return vec3(exp_minus(extinction.x * length), exp_minus(extinction.y * length), exp_minus(extinction.z * length));
+}
+
+/* The lanes `moving` fly to the next surface, `distance` ahead; returns those that are scattered before, at `length`. */
+static vbool fly(const Scene *scene, vbool moving, vreal distance, Path *path, vreal *length) {
+    const vuint medium = choose_uint(moving, path->medium, splat_uint(0));
+    *length = distance;
+    if (!any_lane(vbool_of_uint(medium != splat_uint(0)))) return vbool_none;
+    const Vec3 scattering = medium_colour(scene, medium, MEDIUM_SCATTERING);
+    const Vec3 absorption = medium_colour(scene, medium, MEDIUM_ABSORPTION);
+    const vreal colour = uniform(path->key, splat_uint(DIMENSION_FLIGHT_COLOUR)) * R(3.0);
+    const vreal by = choose(colour < splat(1), scattering.x, choose(colour < splat(2), scattering.y, scattering.z));
+    const vuint first = first_dimension(path->depth - 1u);
+    const vbool scatters_ever = by > splat(0);
+    const vreal free =
+        exponential_length(sample_1d(path->key, first + BOUNCE_FLIGHT), uniform(path->key, first + BOUNCE_FLIGHT_REFILL));
+    const vreal until = free / choose(scatters_ever, by, splat(1));
+    const vbool scattered = moving & scatters_ever & (until < distance);
+    *length = choose(scattered, until, distance);
+    /* The density of this flight by each colour, over that by the path's own. */
+    Vec3 density = vec3(exp_below_40((by - scattering.x) * *length), exp_below_40((by - scattering.y) * *length),
+                        exp_below_40((by - scattering.z) * *length));
+    const Vec3 ratio = scale3(splat(1) / choose(scatters_ever, by, splat(1)), scattering);
+    density = choose3(scattered, multiply3(density, ratio), density);
+    const Vec3 likelihood = multiply3(path->likelihood, density);
+    const vreal mean = (likelihood.x + likelihood.y + likelihood.z) / splat(3);
+    const vreal inverse = splat(1) / mean;
+    const Vec3 left = vec3(exp_minus(absorption.x * *length), exp_minus(absorption.y * *length),
+                           exp_minus(absorption.z * *length));
+    path->likelihood = choose3(moving, scale3(inverse, likelihood), path->likelihood);
+    path->throughput =
+        choose3(moving, multiply3(path->throughput, multiply3(scale3(inverse, density), left)), path->throughput);
+    return scattered;
+}
+
+/* The lanes `scattered` go on from where the medium has scattered them, `length` ahead. Which medium that is will be asked
+ * again, since it costs little, and rounding may have put the point past a boundary. */
+static void scatter_in_medium(const Scene *scene, vbool scattered, vreal length, Path *path) {
+    const vuint first = first_dimension(path->depth - 1u);
+    const vreal g = gather_real(scene->media, choose_uint(scattered, path->medium, splat_uint(0)) * MEDIUM_REALS + MEDIUM_ANISOTROPY);
+    vreal u, v;
+    sample_2d(path->key, first + BOUNCE_DIRECTION, &u, &v);
+    const vrefined t = to_refined(length);
+    const Vec3 high = path->origin.high, low = path->origin.low;
+    const vrefined x = fma(t, to_refined(path->direction.x), to_refined(high.x) + to_refined(low.x));
+    const vrefined y = fma(t, to_refined(path->direction.y), to_refined(high.y) + to_refined(low.y));
+    const vrefined z = fma(t, to_refined(path->direction.z), to_refined(high.z) + to_refined(low.z));
+    const Vec3 place = vec3(to_real(x), to_real(y), to_real(z));
+    const Vec3 rest = vec3(to_real(x - to_refined(place.x)), to_real(y - to_refined(place.y)), to_real(z - to_refined(place.z)));
+    path->origin.high = choose3(scattered, place, path->origin.high);
+    path->origin.low = choose3(scattered, rest, path->origin.low);
+    path->origin.error = choose(scattered, splat(0), path->origin.error);
+#if SAMPLES_LAMPS
+    Lobe lobe;
+    lobe.axis = path->direction;
+#if EFFECT_METAL
+    lobe.normal = path->direction;
+#endif
+    lobe.fuzz = g;
+    lobe.kind = splat_uint(LOBE_PHASE);
+    path_light(path, scattered, &lobe, vbool_of_uint(path->depth + 1u <= splat_uint(scene->max_depth)));
+#endif
+    path->direction = choose3(scattered, phase_direction(path->direction, g, u, v), path->direction);
+    path->own_slot = choose_uint(scattered, splat_uint(NO_SLOT), path->own_slot);
+    path->inward = path->inward & vbool_not(scattered);
+    path->unsure = path->unsure | scattered;
+}
+#endif
