@@ -58,9 +58,11 @@ static Vec3 transmittance(const Scene *scene, vuint medium, vreal length) {
 
 /* The lanes `moving` fly to the next surface, `distance` ahead; returns those that are scattered before, at `length`. */
 static vbool fly(const Scene *scene, vbool moving, vreal distance, Path *path, vreal *length) {
+    /* In clear space nothing is touched: even a weight of 1 is rounded, and lanes must not depend on what others pass. */
     const vuint medium = choose_uint(moving, path->medium, splat_uint(0));
+    const vbool inside = moving & vbool_of_uint(medium != splat_uint(0));
     *length = distance;
-    if (!any_lane(vbool_of_uint(medium != splat_uint(0)))) return vbool_none;
+    if (!any_lane(inside)) return vbool_none;
     const Vec3 scattering = medium_colour(scene, medium, MEDIUM_SCATTERING);
     const Vec3 absorption = medium_colour(scene, medium, MEDIUM_ABSORPTION);
     const vreal colour = uniform(path->key, splat_uint(DIMENSION_FLIGHT_COLOUR)) * R(3.0);
@@ -70,7 +72,7 @@ static vbool fly(const Scene *scene, vbool moving, vreal distance, Path *path, v
     const vreal free =
         exponential_length(sample_1d(path->key, first + BOUNCE_FLIGHT), uniform(path->key, first + BOUNCE_FLIGHT_REFILL));
     const vreal until = free / choose(scatters_ever, by, splat(1));
-    const vbool scattered = moving & scatters_ever & (until < distance);
+    const vbool scattered = inside & scatters_ever & (until < distance);
     *length = choose(scattered, until, distance);
     /* The density of this flight by each colour, over that by the path's own. */
     Vec3 density = vec3(exp_below_40((by - scattering.x) * *length), exp_below_40((by - scattering.y) * *length),
@@ -82,9 +84,9 @@ static vbool fly(const Scene *scene, vbool moving, vreal distance, Path *path, v
     const vreal inverse = splat(1) / mean;
     const Vec3 left = vec3(exp_minus(absorption.x * *length), exp_minus(absorption.y * *length),
                            exp_minus(absorption.z * *length));
-    path->likelihood = choose3(moving, scale3(inverse, likelihood), path->likelihood);
+    path->likelihood = choose3(inside, scale3(inverse, likelihood), path->likelihood);
     path->throughput =
-        choose3(moving, multiply3(path->throughput, multiply3(scale3(inverse, density), left)), path->throughput);
+        choose3(inside, multiply3(path->throughput, multiply3(scale3(inverse, density), left)), path->throughput);
     return scattered;
 }
 
