@@ -112,12 +112,11 @@ static json_t *stats_json(const RunResult *result) {
                   (json_int_t)result->samples_per_pixel, "max_depth", (json_int_t)options->max_depth, "seed",
                   bp_json_whole(options->seed), "spheres", (json_int_t)info.spheres, "device",
                   device_json(&report->device), "effects", effects_json(&report->effects));
-    json_t *counts =
-        json_pack("{s:o, s:I, s:I, s:I, s:[f,f,f], s:o, s:I, s:I}", "seconds", seconds_json(result),
-                  "samples", (json_int_t)report->samples, "rays", (json_int_t)report->segments, "lamp_rays",
-                  (json_int_t)report->lamp_rays, "mean_radiance", mean[0], mean[1], mean[2], "nrmse",
-                  json_number(result->nrmse), "invalid_samples", (json_int_t)report->invalid_samples,
-                  "cut_paths", (json_int_t)report->cut_paths);
+    json_t *counts = json_pack(
+        "{s:o, s:I, s:I, s:[f,f,f], s:o, s:I, s:I, s:I}", "seconds", seconds_json(result), "samples",
+        (json_int_t)report->samples, "rays", (json_int_t)report->segments, "mean_radiance", mean[0], mean[1],
+        mean[2], "nrmse", json_number(result->nrmse), "invalid_samples", (json_int_t)report->invalid_samples,
+        "cut_paths", (json_int_t)report->cut_paths, "lamp_rays", (json_int_t)report->lamp_rays);
     json_t *run = json_pack("{s:s, s:o, s:I, s:i, s:b, s:o, s:s, s:i, s:i, s:I, s:I, s:I, s:s}",
                             "acceleration", bp_acceleration_name(report->acceleration), "output",
                             bp_json_text(result->output), "first_sample", (json_int_t)options->first_sample,
