@@ -4,6 +4,7 @@
  * or Y alone as grey. The image is the data window, whatever the display window is. */
 #include "image_file.h"
 
+#include <errno.h>
 #include <openexr.h>
 #include <stdlib.h>
 #include <string.h>
@@ -42,8 +43,10 @@ static void keep_quiet(exr_const_context_t context, exr_result_t code, const cha
     (void)message;
 }
 
+/* Where zlib lacks the memory to unpack, the library calls the pixels corrupt; errno was 0 at the beginning.
+ */
 static BpStatus fail_code(const ExrReader *reader, const char *what, exr_result_t code, BpError *err) {
-    if (code == EXR_ERR_OUT_OF_MEMORY)
+    if (code == EXR_ERR_OUT_OF_MEMORY || errno == ENOMEM)
         return bp_fail(err, BP_ERR_MEMORY, "out of memory for reading an OpenEXR file");
     return bp_image_fail(reader->input, err, "found a damaged OpenEXR file: %s: %s", what,
                          exr_get_default_error_message(code));
@@ -77,6 +80,7 @@ static BpStatus check_channels(ExrReader *reader, BpError *err) {
 
 static BpStatus read_header(ExrReader *reader, exr_storage_t *storage, BpError *err) {
     exr_context_initializer_t init = EXR_DEFAULT_CONTEXT_INITIALIZER;
+    errno = 0;
     init.error_handler_fn = keep_quiet;
     init.user_data = (void *)(uintptr_t)reader->input;
     init.read_fn = read_at;

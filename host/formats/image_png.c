@@ -23,8 +23,20 @@ typedef struct PngReader {
     BpImage *image;
     uint32_t row;    /* that is being read */
     char fault[128]; /* as libpng has it */
-    bool no_memory;
+    bool no_memory;  /* libpng was refused memory, which it reports like any damage */
 } PngReader;
+
+static png_voidp take_memory(png_structp png, png_alloc_size_t size) {
+    PngReader *reader = png_get_mem_ptr(png);
+    void *memory = malloc(size);
+    reader->no_memory = reader->no_memory || memory == NULL;
+    return memory;
+}
+
+static void give_memory(png_structp png, png_voidp memory) {
+    (void)png;
+    free(memory);
+}
 
 static void on_error(png_structp png, png_const_charp message) {
     PngReader *reader = png_get_error_ptr(png);
@@ -107,19 +119,22 @@ static BpStatus read_image(PngReader *reader, BpError *err) {
 }
 
 static BpStatus read_guarded(PngReader *reader, BpError *err) {
-    if (setjmp(png_jmpbuf(reader->png)) != 0)
+    if (setjmp(png_jmpbuf(reader->png)) != 0) {
+        if (reader->no_memory) return bp_fail(err, BP_ERR_MEMORY, "out of memory for reading a PNG file");
         return reader->image == NULL
                    ? bp_image_fail(reader->input, err, "found a damaged PNG file: %s", reader->fault)
                    : bp_image_fail(reader->input, err,
                                    "found a damaged PNG file: %s; %u of %u rows could be read", reader->fault,
                                    (unsigned)reader->row, (unsigned)reader->image->height);
+    }
     return read_image(reader, err);
 }
 
 BpStatus bp_image_read_png(const BpImageInput *input, BpImage **image, BpError *err) {
     PngReader reader = {.input = input};
     BpStatus status = BP_OK;
-    reader.png = png_create_read_struct(PNG_LIBPNG_VER_STRING, &reader, on_error, on_warning);
+    reader.png = png_create_read_struct_2(PNG_LIBPNG_VER_STRING, &reader, on_error, on_warning, &reader,
+                                          take_memory, give_memory);
     if (reader.png != NULL) reader.info = png_create_info_struct(reader.png);
     if (reader.info == NULL)
         status = bp_fail(err, BP_ERR_MEMORY, "out of memory for reading a PNG file");

@@ -43,7 +43,7 @@ static void fold(const Lab *lab, const double *samples, uint32_t count, uint32_t
         }
         cl_mem buffer = clCreateBuffer(context, copy, numbers * size, narrow, &code);
         assert_int_equal(code, CL_SUCCESS);
-        const cl_uint words[] = {1, end - first, 0, first, 4};
+        const cl_uint words[] = {1, end - first, 0, first, 4}, no_items = 0;
         const cl_int scale = SCALE;
         cl_uint index = 0;
         clSetKernelArg(kernel, index++, sizeof buffer, &buffer);
@@ -53,6 +53,8 @@ static void fold(const Lab *lab, const double *samples, uint32_t count, uint32_t
         clSetKernelArg(kernel, index++, sizeof fine_sums, &fine_sums);
         clSetKernelArg(kernel, index++, sizeof counts, &counts);
         clSetKernelArg(kernel, index++, sizeof tallies, &tallies);
+        clSetKernelArg(kernel, index++, sizeof counts, &counts); /* no rays to lamps: not read */
+        clSetKernelArg(kernel, index++, sizeof no_items, &no_items);
         const size_t one = 1;
         assert_int_equal(
             clEnqueueNDRangeKernel(lab->device->queue, kernel, 1, NULL, &one, &one, 0, NULL, NULL),
