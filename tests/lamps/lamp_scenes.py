@@ -209,6 +209,9 @@ def many_discs(draw):
     return scene
 
 
+# Images around scenes whose light varies so much that rays are sent to where it is bright.
+VARIED_SKIES = ("street.exr", "sun.pfm", "texel.pfm")
+
 GENERATED = {"lobes": lobes, "metals": metals, "caustics": caustics, "sunken": sunken, "embers": embers, "crowd-of-lamps": crowd,
              "sparks": sparks, "shallow": shallow, "room": room, "twins": twins, "inside": inside, "sun": sun,
              "crowd-x1e6": resized(1e6), "crowd-x1e-6": resized(1e-6), "lens": lens, "spread": spread, "walls": walls,
@@ -220,9 +223,11 @@ def generated(name):
 
 
 def emission(scene, material):
-    """Of a texture, the brightest of each channel: between its colours it mixes."""
+    """Of a texture, the brightest of each channel: between its colours it mixes. Images of light are brighter than a sky."""
     emit = material.get("emit", BLACK)
     if isinstance(emit, dict):
+        if scene["textures"][emit["texture"]]["type"] == "image":
+            return [math.inf] * 3
         colors = [[c] * 3 if isinstance(c, (int, float)) else c for c in scene["textures"][emit["texture"]]["colors"]]
         return [max(channel) for channel in zip(*colors)]
     return emit
@@ -243,20 +248,29 @@ def fuzzy(fuzz):
     return isinstance(fuzz, dict) or fuzz >= 1 / 64
 
 
+def scatters(scene, name):
+    density = scene["media"][name].get("scattering", 0) if name else 0
+    return max(density) > 0 if isinstance(density, list) else density > 0
+
+
 def has_lamp(scene):
-    """Something emits that does not hold all other spheres, something matte or fuzzy is there to be lit, and the sky is
-    not as bright as every lamp, as far as the camera stands in no sphere that may hide it."""
+    """Something emits that neither moves nor holds all other spheres, something matte or fuzzy or a medium is there to be
+    lit, and the sky is not as bright as every lamp, as far as the camera stands in no sphere that may hide it."""
     spheres = scene.get("spheres", [])
     used = [scene["materials"][each["material"]] for each in spheres]
-    lamps = [each for each, material in zip(spheres, used) if sum(emission(scene, material)) > 0]
+    lamps = [each for each, material in zip(spheres, used)
+             if sum(emission(scene, material)) > 0 and each.get("center_end", each["center"]) == each["center"]]
 
     def holds(shell, other):
         return math.dist(shell["center"], other["center"]) + abs(other["radius"]) <= abs(shell["radius"])
 
     background = scene.get("background", {})
+    around = background.get("image") if isinstance(background, dict) else None
     discs = background.get("discs", []) if isinstance(background, dict) else []
+    discs = discs + [image for image in VARIED_SKIES if image == around]
     lamps = [each for each in lamps if len(spheres) < 2 or not all(each is other or holds(each, other) for other in spheres)]
-    lit = any(each["type"] == "lambertian" or fuzzy(each.get("fuzz", 0)) for each in used)
+    lit = (any(each["type"] == "lambertian" or fuzzy(each.get("fuzz", 0)) for each in used)
+           or any(scatters(scene, name) for name in [scene.get("medium"), *(each.get("interior") for each in spheres)]))
     return bool(lamps or discs) and lit and (bool(discs) or not outshone(scene, used))
 
 
