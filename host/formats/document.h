@@ -60,6 +60,11 @@ void bp_json_describe(const json_t *value, char *out, size_t size);
 
 /* Fails with "found X, expected `expected`". */
 BpStatus bp_node_wrong(const BpNode *node, const char *expected, BpError *err);
+/* At a node that names a thing which `list` of the document lacks; the nearest of `names`, all that are
+ * there, is proposed. `kind`: what the thing is called. */
+BpStatus bp_node_fail_name(const BpNode *node, const char *kind, const char *list, const char *const *names,
+                           size_t count, const char *name, BpError *err);
+
 /* Fails unless `object` has the member. `expected` says what it should be. */
 BpStatus bp_node_require(const BpNode *object, const char *name, const char *expected, BpError *err);
 

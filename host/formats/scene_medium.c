@@ -56,23 +56,12 @@ BpStatus bp_parse_media(const BpNode *node, BpScene *scene, BpError *err) {
 
 static BpStatus fail_missing_medium(const BpNode *node, const BpScene *scene, const char *name,
                                     BpError *err) {
-    char shown[64], near_shown[64];
-    bp_printable(name, shown, sizeof shown);
-    if (scene->medium_count == 0)
-        return bp_node_fail(node, BP_PART_VALUE, err,
-                            "found the medium \"%s\", expected a name from \"media\", which is empty or "
-                            "absent; add it there",
-                            shown);
-    const char **names = malloc(scene->medium_count * sizeof *names);
+    const char **names = malloc((scene->medium_count + 1) * sizeof *names);
     if (names == NULL) return bp_fail(err, BP_ERR_MEMORY, "out of memory");
     for (size_t i = 0; i < scene->medium_count; i++) names[i] = scene->media[i].name;
-    const char *nearest = bp_nearest_name(name, names, scene->medium_count);
-    if (nearest == NULL) nearest = names[0];
+    const BpStatus status = bp_node_fail_name(node, "medium", "media", names, scene->medium_count, name, err);
     free(names);
-    bp_printable(nearest, near_shown, sizeof near_shown);
-    return bp_node_fail(node, BP_PART_VALUE, err,
-                        "found the medium \"%s\", expected a name from \"media\"; did you mean \"%s\"?",
-                        shown, near_shown);
+    return status;
 }
 
 BpStatus bp_parse_medium_name(const BpNode *node, const BpScene *scene, uint32_t *number, BpError *err) {

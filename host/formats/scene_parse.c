@@ -61,24 +61,12 @@ static BpStatus index_materials(const BpScene *scene, BpMaterialIndex *index, Bp
 
 static BpStatus fail_missing_material(const BpNode *node, const BpMaterialIndex *index, const char *name,
                                       BpError *err) {
-    char shown[64], near_shown[64];
-    bp_printable(name, shown, sizeof shown);
-    const char **names = malloc((index->count > 0 ? index->count : 1) * sizeof *names);
+    const char **names = malloc((index->count + 1) * sizeof *names);
     if (names == NULL) return bp_fail(err, BP_ERR_MEMORY, "out of memory");
     for (size_t i = 0; i < index->count; i++) names[i] = index->by_name[i]->name;
-    const char *nearest = bp_nearest_name(name, names, index->count);
-    if (nearest == NULL && index->count > 0) nearest = names[0];
+    const BpStatus status = bp_node_fail_name(node, "material", "materials", names, index->count, name, err);
     free(names);
-    if (nearest == NULL)
-        return bp_node_fail(
-            node, BP_PART_VALUE, err,
-            "found the material \"%s\", expected a name from \"materials\", which is empty or absent; "
-            "add it there",
-            shown);
-    bp_printable(nearest, near_shown, sizeof near_shown);
-    return bp_node_fail(node, BP_PART_VALUE, err,
-                        "found the material \"%s\", expected a name from \"materials\"; did you mean \"%s\"?",
-                        shown, near_shown);
+    return status;
 }
 
 uint32_t bp_material_find(const BpMaterialIndex *index, const char *name) {

@@ -174,23 +174,13 @@ BpStatus bp_parse_textures(const BpNode *node, unsigned flags, BpScene *scene, B
 
 static BpStatus fail_missing_texture(const BpNode *node, const BpScene *scene, const char *name,
                                      BpError *err) {
-    char shown[64], near_shown[64];
-    bp_printable(name, shown, sizeof shown);
-    if (scene->texture_count == 0)
-        return bp_node_fail(node, BP_PART_VALUE, err,
-                            "found the texture \"%s\", expected a name from \"textures\", which is empty or "
-                            "absent; add it there",
-                            shown);
-    const char **names = malloc(scene->texture_count * sizeof *names);
+    const char **names = malloc((scene->texture_count + 1) * sizeof *names);
     if (names == NULL) return bp_fail(err, BP_ERR_MEMORY, "out of memory");
     for (size_t i = 0; i < scene->texture_count; i++) names[i] = scene->textures[i].name;
-    const char *nearest = bp_nearest_name(name, names, scene->texture_count);
-    if (nearest == NULL) nearest = names[0];
+    const BpStatus status =
+        bp_node_fail_name(node, "texture", "textures", names, scene->texture_count, name, err);
     free(names);
-    bp_printable(nearest, near_shown, sizeof near_shown);
-    return bp_node_fail(node, BP_PART_VALUE, err,
-                        "found the texture \"%s\", expected a name from \"textures\"; did you mean \"%s\"?",
-                        shown, near_shown);
+    return status;
 }
 
 BpStatus bp_parse_texture_name(const BpNode *node, const BpScene *scene, uint32_t *number, BpError *err) {
