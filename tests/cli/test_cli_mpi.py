@@ -13,7 +13,7 @@ import unittest
 
 import bpa
 import cli
-from mpi import FLAGS, MPIRUN, reason_to_skip
+from mpi import FLAGS, MPIRUN, rank_processes, reason_to_skip
 from pfm import read_pfm
 
 REASON = reason_to_skip()
@@ -92,7 +92,7 @@ class Ranks(cli.ProgramTest):
                 seen.append(self.read("some.pfm"))
             time.sleep(0.02)
         self.assertEqual(len(seen), 3, "the file was not rewritten")
-        os.kill(self.rank_processes(process)[0], signal.SIGTERM)
+        os.kill(rank_processes(process)[0], signal.SIGTERM)
         said = process.communicate(timeout=cli.LIMIT_SECONDS)[1].decode()
         self.assertEqual(process.returncode, 130, said)
         width, height, values = read_pfm(seen[-1])
@@ -179,26 +179,11 @@ class Ranks(cli.ProgramTest):
         self.addCleanup(process.stderr.close)
         return process
 
-    def rank_processes(self, launcher):
-        """Process ids of the ranks, by rank."""
-        ranks = {}
-        for entry in os.listdir("/proc"):
-            try:
-                with open(f"/proc/{entry}/environ", "rb") as file:
-                    found = re.search(rb"(?:^|\0)OMPI_COMM_WORLD_RANK=(\d+)", file.read())
-                with open(f"/proc/{entry}/stat") as file:
-                    parent = int(file.read().rpartition(")")[2].split()[1])
-            except (OSError, ValueError, IndexError):
-                continue
-            if found and parent == launcher.pid:
-                ranks[int(found[1])] = int(entry)
-        return ranks
-
     def send_when_there(self, process, file, rank, number):
         while file not in self.files() and process.poll() is None:
             time.sleep(0.02)
         self.assertIsNone(process.poll(), "it ended before")
-        os.kill(self.rank_processes(process)[rank], number)
+        os.kill(rank_processes(process)[rank], number)
         said = process.communicate(timeout=cli.LIMIT_SECONDS)[1].decode()
         return said
 
@@ -270,7 +255,7 @@ class Ranks(cli.ProgramTest):
         shutil.rmtree(self.path("d"))
         warning = "warning: the checkpoint was not written, and rendering continues: "
         self.assertTrue(any(warning in line.decode() for line in iter(process.stderr.readline, b"")), "there was no warning")
-        os.kill(self.rank_processes(process)[0], signal.SIGTERM)
+        os.kill(rank_processes(process)[0], signal.SIGTERM)
         said = process.communicate(timeout=cli.LIMIT_SECONDS)[1].decode()
         self.assertEqual(process.returncode, 1, said)
         kept = [name for name in os.listdir(self.path("tmp")) if name.startswith("ballpark")]
@@ -281,6 +266,30 @@ class Ranks(cli.ProgramTest):
         self.succeed("render", "s.json", "--resume", film, "--spp", samples, "-o", "a.pfm", "-q")
         self.succeed("render", "s.json", "--spp", samples, "-o", "whole.pfm", "-q")
         self.assert_same(self.read("a.pfm"), self.read("whole.pfm"))
+
+    @cli.deep
+    def test_read_only_folder(self):
+        """One rank says that the picture cannot be written, before anything is rendered; where a link leads to a picture there,
+        nothing is lost either."""
+        os.mkdir(self.path("d"))
+        self.write("d/a.png", b"what was there before")
+        self.write("d/begun.bpa", b"")
+        self.succeed("render", "s.json", "--spp", 2, "-o", "d/begun.bpa", "-q")
+        before = self.read("d/begun.bpa")
+        alone = ["unshare", *([] if os.getuid() == 0 else ["--user", "--map-root-user"]), "--mount", "sh", "-c",
+                 'mount --bind d d && mount -o remount,bind,ro d && exec "$@"', "sh"]
+        if subprocess.run([*alone, "true"], cwd=self.folder, check=False, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL).returncode:
+            self.skipTest("no folder can be made read-only here")
+        for options in (("-o", "d/a.png"), ("-o", "d/new.exr", "--checkpoint", "0.01"), ("--resume", "d/begun.bpa", "-o", "d/begun.bpa"),
+                        ("-o", "a.png", "--error-map", "d/map.png")):
+            done = subprocess.run([*alone, *self.command(2, "s.json", "--spp", 8, *options)], cwd=self.folder, env=self.environment,
+                                  stdin=subprocess.DEVNULL, stdout=subprocess.PIPE, stderr=subprocess.PIPE, timeout=cli.LIMIT_SECONDS)
+            errors = [line for line in done.stderr.decode().splitlines() if line.startswith("ballpark: ")]
+            self.assertEqual((done.returncode, len(errors)), (1, 1), done.stderr)
+            self.assertIn("Read-only file system", errors[0])
+            self.assertEqual(sorted(os.listdir(self.path("d"))), ["a.png", "begun.bpa"])
+            self.assertEqual(self.read("d/a.png"), b"what was there before")
+            self.assert_same(self.read("d/begun.bpa"), before)
 
     def test_faults_are_told_once(self):
         self.write("bad.json", '{"camera": {"image_width": 0}}')

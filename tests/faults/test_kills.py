@@ -1,9 +1,10 @@
-"""A render or a merge that is stopped at any moment leaves the old file or the new one, whole, and nothing else.
+"""A render, a merge or a job of ranks that is stopped at any moment leaves the old file or the new one, whole, and nothing else.
 
 Run as: python3 test_kills.py PROGRAM SOURCE_DIR KILLS [unittest's arguments]
 KILLS: how many tries of each command, at moments spread over a run's time by a fixed seed; by SIGINT, SIGTERM, SIGHUP
 and SIGKILL in turns."""
 
+import contextlib
 import os
 import random
 import shutil
@@ -17,6 +18,7 @@ KILLS = int(sys.argv[3])
 sys.argv[3:4] = []
 
 import cli
+from mpi import FLAGS, MPIRUN, rank_processes, reason_to_skip
 
 OLD = b"what was there before"
 SIGNALS = (signal.SIGINT, signal.SIGTERM, signal.SIGHUP, signal.SIGKILL)
@@ -150,6 +152,62 @@ class Kills(cli.ProgramTest):
             self.assert_same(self.read("a.exr"), whole, "the last one")
             finished += 1
         self.assertGreater(finished, 0)
+
+    def test_ranks(self):
+        """One rank of a job is killed, any of them at any moment, again and again; as many ranks as chance has it, or a process
+        alone, go on each time from what there is. The job always ends, and the last one makes the picture of a render without a break."""
+        if reason := reason_to_skip():
+            self.skipTest(reason)
+        self.write("s.json", cli.scene(96, 64, spheres=4, camera={"samples_per_pixel": 2000}))
+        self.succeed("render", "s.json", "-o", "whole.exr", "-q")
+        chance, whole = random.Random(11), self.read("whole.exr")
+        begin = time.monotonic()
+        self.assertTrue(self.check_job(*self.job(2, None, 0), whole))
+        span = 1.1 * (time.monotonic() - begin)
+        kills = resumed = finished = 0
+        while kills < max(KILLS // 2, 4) or (resumed == 0 and kills < 40):
+            resumed += "a.bpa" in self.files()
+            kills += 1
+            finished += self.check_job(*self.job(chance.choice((2, 2, 3)), chance, span), whole)
+        self.assertGreater(resumed, 0)
+        while "a.bpa" in self.files():
+            finished += self.check_job(*self.job(2, None, 0), whole)
+        self.assertGreater(finished, 0)
+
+    def job(self, ranks, chance, span):
+        """Renders, from the checkpoint if there is one; `chance` kills a rank within `span`. The exit code, and what was said."""
+        resume = ["--resume", "a.bpa"] if "a.bpa" in self.files() else []
+        process = subprocess.Popen(
+            [MPIRUN, *FLAGS, "-n", str(ranks), cli.PROGRAM, "render", "s.json", "--checkpoint", "0.02", "-o", "a.exr", *resume],
+            cwd=self.folder, env=self.environment, stdin=subprocess.DEVNULL, stdout=subprocess.PIPE, stderr=subprocess.STDOUT)
+        while chance is not None and process.poll() is None and len(rank_processes(process)) < ranks:
+            time.sleep(0.005)
+        if chance is not None:
+            time.sleep(chance.uniform(0, span))
+            with contextlib.suppress(KeyError, ProcessLookupError):  # when the job is done before
+                os.kill(rank_processes(process)[chance.randrange(ranks)], signal.SIGKILL)
+        said = process.communicate(timeout=cli.LIMIT_SECONDS)[0].decode(errors="replace")
+        return process.returncode, f"{ranks} ranks{', resumed' * bool(resume)}: {process.returncode}, {said}"
+
+    def check_job(self, code, where, whole):
+        """What a job of ranks has left behind; whether it made its picture, which is taken away then."""
+        if code != 0 and "does not compile" in where:  # an earlier SIGKILL has met the driver amid its cache
+            self.forget_kernels()
+            self.succeed("render", "s.json", "--spp", "1", "-o", os.devnull, "--format", "exr", "-q")
+        for name in set(self.files()) - {"s.json", "whole.exr", "a.exr", "a.bpa"}:
+            self.assertTrue(not self.has_unnamed_files() or name.startswith("a."), f"{where}: {name}")  # see kill_often()
+            os.remove(self.path(name))
+        if "a.bpa" in self.files():
+            self.succeed("merge", "a.bpa", "-o", os.devnull, "--format", "pfm", "-q")  # it is whole
+        if "a.exr" not in self.files():
+            self.assertNotEqual(code, 0, where)
+            return False
+        # A rank that is killed when its work is done leaves a picture, and a job that counts as failed.
+        self.assert_same(self.read("a.exr"), whole, where)
+        os.remove(self.path("a.exr"))
+        if code == 0:
+            self.assertNotIn("a.bpa", self.files(), where)
+        return True
 
     def test_hangup_and_processor_time(self):
         """A terminal that goes away and a limit on processor time end a render as Ctrl-C does: it keeps what there is."""

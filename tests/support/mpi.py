@@ -1,6 +1,7 @@
-"""What tests need that start ranks: the launcher, and why there is none."""
+"""What tests need that start ranks: the launcher, why there is none, and the ranks that it has started."""
 
 import os
+import re
 import shutil
 import subprocess
 
@@ -23,3 +24,19 @@ def reason_to_skip():
         return "Ballpark was built without MPI"
     tried = subprocess.run([MPIRUN, *FLAGS, "-n", "2", "true"], check=False, stdout=subprocess.PIPE, stderr=subprocess.STDOUT)
     return None if tried.returncode == 0 else "mpirun cannot start two processes here"
+
+
+def rank_processes(launcher):
+    """Process ids of the ranks that the process `launcher` has started, by rank."""
+    ranks = {}
+    for entry in os.listdir("/proc"):
+        try:
+            with open(f"/proc/{entry}/environ", "rb") as file:
+                found = re.search(rb"(?:^|\0)OMPI_COMM_WORLD_RANK=(\d+)", file.read())
+            with open(f"/proc/{entry}/stat", encoding="utf-8") as file:
+                parent = int(file.read().rpartition(")")[2].split()[1])
+        except (OSError, ValueError, IndexError):
+            continue
+        if found and parent == launcher.pid:
+            ranks[int(found[1])] = int(entry)
+    return ranks
