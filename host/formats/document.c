@@ -357,20 +357,28 @@ void bp_json_describe(const json_t *value, char *out, size_t size) {
     }
 }
 
-BpStatus bp_node_fail_name(const BpNode *node, const char *kind, const char *list, const char *const *names,
-                           size_t count, const char *name, BpError *err) {
+void bp_missing_name_text(const char *kind, const char *list, const char *const *names, size_t count,
+                          const char *name, char out[BP_MISSING_NAME_SIZE]) {
     char shown[64], near_shown[64];
     bp_printable(name, shown, sizeof shown);
-    if (count == 0)
-        return bp_node_fail(
-            node, BP_PART_VALUE, err,
-            "found the %s \"%s\", expected a name from \"%s\", which is empty or absent; add it there", kind,
-            shown, list);
+    if (count == 0) {
+        snprintf(out, BP_MISSING_NAME_SIZE,
+                 "found the %s \"%s\", expected a name from \"%s\", which is empty or absent; add it there",
+                 kind, shown, list);
+        return;
+    }
     const char *nearest = bp_nearest_name(name, names, count);
     bp_printable(nearest != NULL ? nearest : names[0], near_shown, sizeof near_shown);
-    return bp_node_fail(node, BP_PART_VALUE, err,
-                        "found the %s \"%s\", expected a name from \"%s\"; did you mean \"%s\"?", kind, shown,
-                        list, near_shown);
+    snprintf(out, BP_MISSING_NAME_SIZE,
+             "found the %s \"%s\", expected a name from \"%s\"; did you mean \"%s\"?", kind, shown, list,
+             near_shown);
+}
+
+BpStatus bp_node_fail_name(const BpNode *node, const char *kind, const char *list, const char *const *names,
+                           size_t count, const char *name, BpError *err) {
+    char text[BP_MISSING_NAME_SIZE];
+    bp_missing_name_text(kind, list, names, count, name, text);
+    return bp_node_fail(node, BP_PART_VALUE, err, "%s", text);
 }
 
 BpStatus bp_node_wrong(const BpNode *node, const char *expected, BpError *err) {

@@ -60,8 +60,12 @@ void bp_json_describe(const json_t *value, char *out, size_t size);
 
 /* Fails with "found X, expected `expected`". */
 BpStatus bp_node_wrong(const BpNode *node, const char *expected, BpError *err);
-/* At a node that names a thing which `list` of the document lacks; the nearest of `names`, all that are
- * there, is proposed. `kind`: what the thing is called. */
+/* What is wrong with the name of a thing that `list` of the document lacks; the nearest of `names`, all that
+ * are there, is proposed. `kind`: what the thing is called. */
+enum { BP_MISSING_NAME_SIZE = 256 };
+void bp_missing_name_text(const char *kind, const char *list, const char *const *names, size_t count,
+                          const char *name, char out[BP_MISSING_NAME_SIZE]);
+/* Fails with that text at the node that names it. */
 BpStatus bp_node_fail_name(const BpNode *node, const char *kind, const char *list, const char *const *names,
                            size_t count, const char *name, BpError *err);
 

@@ -1,19 +1,16 @@
 /* image_file.c: see image_file.h. */
 #include "image_file.h"
 
+#include "input_file.h"
+
 #include <inttypes.h>
-#include <stdarg.h>
 #include <string.h>
 
 BpStatus bp_image_fail(const BpImageInput *input, BpError *err, const char *format, ...) {
-    char text[512];
     va_list arguments;
     va_start(arguments, format);
-    vsnprintf(text, sizeof text, format, arguments);
+    const BpStatus status = bp_stream_fail(input->stream, input->path, 0, err, format, arguments);
     va_end(arguments);
-    const BpStatus status = bp_fail(err, ferror(input->stream) ? BP_ERR_FILE : BP_ERR_SCENE, "%s%s",
-                                    ferror(input->stream) ? "reading failed: " : "", text);
-    bp_error_at(err, input->path, 0, 0);
     return status;
 }
 

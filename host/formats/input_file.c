@@ -149,6 +149,16 @@ done:
     return status;
 }
 
+BpStatus bp_stream_fail(FILE *stream, const char *path, int line, BpError *err, const char *format,
+                        va_list arguments) {
+    char text[768];
+    vsnprintf(text, sizeof text, format, arguments);
+    const BpStatus status = ferror(stream) ? bp_fail(err, BP_ERR_FILE, "reading failed: %s", text)
+                                           : bp_fail(err, BP_ERR_SCENE, "%s", text);
+    bp_error_at(err, path, line, 0);
+    return status;
+}
+
 BpStatus bp_file_read(const char *path, const char *expected, char **bytes, size_t *length, BpError *err) {
     FILE *stream = NULL;
     uint64_t size = 0;

@@ -4,6 +4,7 @@
 
 #include "document.h"
 
+#include <stdarg.h>
 #include <stdio.h>
 
 /* `file` as seen from the folder of `document`, both paths; the caller frees it. NULL: out of memory. */
@@ -33,6 +34,10 @@ BpStatus bp_node_open_file(const BpNode *node, const char *path, const char *exp
  * `path` names it in errors. Free *bytes with free(). */
 BpStatus bp_stream_read(FILE *stream, uint64_t size, const char *path, char **bytes, size_t *length,
                         BpError *err);
+/* Fails on what an open file holds, or, if the stream has met an error, on reading it. `path` and `line`, 0
+ * when unknown, are the place. */
+BpStatus bp_stream_fail(FILE *stream, const char *path, int line, BpError *err, const char *format,
+                        va_list arguments) BP_PRINTF_LIKE(5, 0);
 /* Reads a file or pipe whole. Free *bytes with free(). */
 BpStatus bp_file_read(const char *path, const char *expected, char **bytes, size_t *length, BpError *err);
 

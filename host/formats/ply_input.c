@@ -1,11 +1,12 @@
 /* ply_input.c: see ply_parts.h. */
 #include "ply_parts.h"
 
+#include "input_file.h"
+
 #include "base/decimal.h"
 #include "base/plural.h"
 
 #include <inttypes.h>
-#include <stdarg.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -50,14 +51,11 @@ bool ply_input_skip(PlyInput *input, uint64_t count) {
 }
 
 BpStatus ply_fail(const PlyInput *input, bool with_line, BpError *err, const char *format, ...) {
-    char text[768];
     va_list arguments;
     va_start(arguments, format);
-    vsnprintf(text, sizeof text, format, arguments);
+    const BpStatus status =
+        bp_stream_fail(input->stream, input->name, with_line ? input->line : 0, err, format, arguments);
     va_end(arguments);
-    const BpStatus status = bp_fail(err, ferror(input->stream) ? BP_ERR_FILE : BP_ERR_SCENE, "%s%s",
-                                    ferror(input->stream) ? "reading failed: " : "", text);
-    bp_error_at(err, input->name, with_line ? input->line : 0, 0);
     return status;
 }
 

@@ -59,14 +59,14 @@ static BpStatus index_materials(const BpScene *scene, BpMaterialIndex *index, Bp
     return BP_OK;
 }
 
-static BpStatus fail_missing_material(const BpNode *node, const BpMaterialIndex *index, const char *name,
-                                      BpError *err) {
+BpStatus bp_missing_material_text(const BpMaterialIndex *index, const char *name,
+                                  char out[BP_MISSING_NAME_SIZE], BpError *err) {
     const char **names = malloc((index->count + 1) * sizeof *names);
     if (names == NULL) return bp_fail(err, BP_ERR_MEMORY, "out of memory");
     for (size_t i = 0; i < index->count; i++) names[i] = index->by_name[i]->name;
-    const BpStatus status = bp_node_fail_name(node, "material", "materials", names, index->count, name, err);
+    bp_missing_name_text("material", "materials", names, index->count, name, out);
     free(names);
-    return status;
+    return BP_OK;
 }
 
 uint32_t bp_material_find(const BpMaterialIndex *index, const char *name) {
@@ -88,7 +88,11 @@ BpStatus bp_parse_material_name(const BpNode *node, const BpMaterialIndex *index
     const char *name = NULL;
     BP_TRY(bp_node_string(node, &name, err));
     const uint32_t found = bp_material_find(index, name);
-    if (found == UINT32_MAX) return fail_missing_material(node, index, name, err);
+    if (found == UINT32_MAX) {
+        char text[BP_MISSING_NAME_SIZE];
+        BP_TRY(bp_missing_material_text(index, name, text, err));
+        return bp_node_fail(node, BP_PART_VALUE, err, "%s", text);
+    }
     *material = found;
     return BP_OK;
 }

@@ -100,6 +100,9 @@ BpStatus bp_add_sphere_sets(const BpMaterialIndex *index, const BpSceneChanges *
                             BpError *err);
 /* The place of a name among the scene's materials, or UINT32_MAX. */
 uint32_t bp_material_find(const BpMaterialIndex *index, const char *name);
+/* What is wrong with a name that is not among them. Fails without memory. */
+BpStatus bp_missing_material_text(const BpMaterialIndex *index, const char *name,
+                                  char out[BP_MISSING_NAME_SIZE], BpError *err);
 /* The material of spheres that name none: matte. It is made when it is first asked for. UINT32_MAX: out of
  * memory, which `err` says. */
 uint32_t bp_implicit_material(BpScene *scene, BpError *err);

@@ -7,7 +7,6 @@
 #include "scene/scene_fault.h"
 
 #include <math.h>
-#include <stdlib.h>
 #include <string.h>
 
 static double number(const BpRows *rows, size_t row, ptrdiff_t column) {
@@ -47,22 +46,9 @@ static BpStatus find_material(const BpSphereSet *set, const BpMaterialIndex *ind
     }
     *material = bp_material_find(index, set->material);
     if (*material != UINT32_MAX) return BP_OK;
-    char shown[64], near_shown[64];
-    bp_printable(set->material, shown, sizeof shown);
-    if (index->count == 0)
-        return bp_fail(err, BP_ERR_SCENE,
-                       "%s: found the material \"%s\", expected a name from \"materials\", which is empty or "
-                       "absent; add it there",
-                       name_of(set), shown);
-    const char **names = malloc(index->count * sizeof *names);
-    if (names == NULL) return bp_fail(err, BP_ERR_MEMORY, "out of memory");
-    for (size_t i = 0; i < index->count; i++) names[i] = index->by_name[i]->name;
-    const char *nearest = bp_nearest_name(set->material, names, index->count);
-    bp_printable(nearest != NULL ? nearest : names[0], near_shown, sizeof near_shown);
-    free(names);
-    return bp_fail(err, BP_ERR_SCENE,
-                   "%s: found the material \"%s\", expected a name from \"materials\"; did you mean \"%s\"?",
-                   name_of(set), shown, near_shown);
+    char text[BP_MISSING_NAME_SIZE];
+    BP_TRY(bp_missing_material_text(index, set->material, text, err));
+    return bp_fail(err, BP_ERR_SCENE, "%s: %s", name_of(set), text);
 }
 
 static BpStatus read_color(const BpSphereSet *set, size_t i, float albedo[3], BpError *err) {
