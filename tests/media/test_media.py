@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """Media, through the program: closed forms, the rule for nested ones, forms of the kernel, documents, explain.
 
-usage: test_media.py PROGRAM SOURCE_DIR [CASE...]
+usage: test_media.py PROGRAM SOURCE_DIR [--deep | CASE...]
 
 Parallel rays go through the centres of pixels, so the chord of a sphere that a pixel shows is known. Before a white sky, an
 absorbing medium leaves exp(-density * chord) of it, without noise. Of a medium that scatters, a low depth shows only
@@ -14,10 +14,9 @@ import subprocess
 import sys
 import tempfile
 
-sys.path.insert(0, os.path.join(os.path.dirname(__file__), "..", "support"))
-from pfm import read_pfm  # noqa: E402
+from program_cases import PROGRAM, picture, run, run_cases, with_file
+from pfm import read_pfm
 
-PROGRAM, ONLY = sys.argv[1], sys.argv[3:]
 SIDE = 16
 EDGE = {"type": "interface"}
 GLASS = {"type": "dielectric", "refraction_index": 1.5, "fresnel": "none"}
@@ -27,9 +26,11 @@ LAMP = {"type": "diffuse_light", "emit": [9, 8, 7]}
 
 
 def scene(spheres, media, span=1.0, depth=8, camera=None, **members):
-    return {"camera": {"image_width": SIDE, "max_depth": depth, "pixel_sampling": "center", "projection": "orthographic",
-                       "view_height": span, "lookfrom": [0, 0, 10], "lookat": [0, 0, 0], **(camera or {})},
-            "background": [1, 1, 1], "media": media,
+    camera = {"image_width": SIDE, "max_depth": depth, "pixel_sampling": "center", "projection": "orthographic",
+              "view_height": span, "lookfrom": [0, 0, 10], "lookat": [0, 0, 0], **(camera or {})}
+    if camera["projection"] == "perspective":
+        del camera["view_height"]
+    return {"camera": camera, "background": [1, 1, 1], "media": media,
             "materials": {"edge": EDGE, "glass": GLASS, "matched": MATCHED, "matte": MATTE, "lamp": LAMP}, "spheres": spheres, **members}
 
 
@@ -39,27 +40,6 @@ def ball(center, radius, interior=None, material="edge", **members):
 
 def pinhole(**members):
     return {"projection": "perspective", "vfov": 0.01, **members}
-
-
-def run(*arguments, code=0):
-    done = subprocess.run([PROGRAM, *arguments], capture_output=True, check=False)
-    if done.returncode != code:
-        sys.exit(f"{' '.join(arguments)}: exit code {done.returncode}, not {code}: {done.stderr.decode()}")
-    return done
-
-
-def with_file(document, use):
-    if isinstance(document, dict) and document["camera"]["projection"] == "perspective":
-        document = {**document, "camera": {k: v for k, v in document["camera"].items() if k != "view_height"}}
-    with tempfile.TemporaryDirectory() as folder:
-        path = os.path.join(folder, "x.json")
-        with open(path, "w", encoding="utf-8") as file:
-            file.write(document if isinstance(document, str) else json.dumps(document))
-        return use(path)
-
-
-def picture(document, *options):
-    return with_file(document, lambda path: run("render", path, "-o", "-", "--format", "pfm", "--quiet", *options).stdout)
 
 
 def pixels(document, *options):
@@ -308,15 +288,6 @@ def explained():
     return "in and out, and step by step"
 
 
-CASES = [chords, scattered_light_is_lost, furnace, beer_in_glass, nested_and_overlapping, camera_inside, single_scattering, nothing_and_all,
-         moving, forms, lamps, documents, films, explained]
-failed = False
-for case in CASES:
-    if ONLY and case.__name__ not in ONLY:
-        continue
-    try:
-        print(f"{case.__name__}: {case()}", flush=True)
-    except AssertionError as found:
-        failed = True
-        print(f"FAILED: {case.__name__}: {found}", flush=True)
-sys.exit(failed)
+CASES = [chords, nested_and_overlapping, camera_inside, nothing_and_all, documents, films, explained]
+DEEP_CASES = [scattered_light_is_lost, furnace, beer_in_glass, single_scattering, moving, forms, lamps]
+sys.exit(run_cases(CASES, DEEP_CASES))
