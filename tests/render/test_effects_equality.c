@@ -1,8 +1,9 @@
 /* test_effects_equality.c: a kernel specialised to a set of effects computes what the general one does.
  *
- * Tried are the sets of all scenes of scenes/ and tests/agree/scenes, in both forms of the kernel, and a
- * covering array (effects_covering.h): whatever two or three effects do to each other, with a list or with a
- * tree, in one form or the other, some case shows. `every` tries all sets that can occur.
+ * Tried are all scenes of scenes/ and tests/agree/scenes, small, and scenes made for their sets, in both
+ * forms of the kernel, and a covering array (effects_covering.h): whatever two or three effects do to each
+ * other, with a list or with a tree, in one form or the other, some case shows. `every` tries all sets that
+ * can occur.
  *
  * On PoCL, bit for bit: radiance, segments and cut of every single pixel sample, as the trace kernel writes
  * them. What sums them (accumulate.cl) has no effects in it (effects_source), so equal samples make equal
@@ -24,7 +25,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum { FORMS = 2, ACCELERATIONS = 2, LAMPS = 2 };
+enum { FORMS = 2, ACCELERATIONS = 2, LAMPS = 2, WIDTH = 16, SAMPLES_MAX = 8 }; /* of real scenes */
 
 typedef struct Lab {
     BpDevice *device;
@@ -169,43 +170,37 @@ static bool compare(Lab *lab, uint32_t bits, const Samples *special, const Sampl
     return light && (lab->exact ? different == 0 : agree(special, general));
 }
 
-/* True when the case is all right. */
-static bool check_case(Lab *lab, uint32_t word) {
-    const uint32_t bits = effects_case_bits(word);
-    const bool tree = (word & EFFECTS_CASE_TREE) != 0, packet = (word & EFFECTS_CASE_PACKET) != 0;
-    static EffectsScene made;
-    BpEffects effects;
+/* Whether what could be sampled as a lamp is not: an option says so, or it does not pay. */
+static bool has_idle_lamps(uint32_t bits) {
+    return effects_light(bits) && !bp_effects_has(bits, BP_EFFECT_LAMPS);
+}
+
+/* True when the kernel of its own makes of the scene what the general one makes. `bits`: what it calls for;
+ * `lamps_off`: although it has lamps, no rays are sent to them. */
+static bool check_scene(Lab *lab, const BpScene *scene, uint32_t bits, bool tree, bool packet,
+                        bool lamps_off) {
     BpError err = {0};
     BpRenderOptions options;
     BpProgram *program = NULL;
     Samples special = {0}, general = {0};
     bool right = false;
-    effects_scene(&made, bits, tree);
-    if (bp_scene_validate(&made.scene, &err) != BP_OK) return failed(&err, "scene", bits);
-    bp_effects_analyse(&made.scene, &effects);
-    const bool lamps_off = effects_light(bits) && !bp_effects_has(bits, BP_EFFECT_LAMPS);
-    const uint32_t left_out = lamps_off ? EFFECT_BIT(LAMPS) : 0;
-    if ((effects.bits & ~left_out) != bits ||
-        (bp_acceleration_choose(&made.scene, NULL) == BP_ACCELERATION_TREE) != tree) {
-        fprintf(stderr, "set 0x%02x: the scene made for it calls for 0x%02x, or not for a %s\n",
-                (unsigned)bits, (unsigned)effects.bits, tree ? "tree" : "list");
-        return false;
-    }
-    bp_render_defaults(&made.scene, &options);
+    bp_render_defaults(scene, &options);
+    if (options.samples_per_pixel > SAMPLES_MAX) options.samples_per_pixel = SAMPLES_MAX;
     options.kernel = packet ? BP_KERNEL_PACKET : BP_KERNEL_SAMPLE;
     options.lamps = lamps_off ? BP_LAMPS_OFF : BP_LAMPS_ON;
     options.seed = 20 + bits + (tree ? BP_EFFECTS_ALL + 1 : 0);
     options.sampler = packet != tree ? BP_SAMPLER_SOBOL : BP_SAMPLER_INDEPENDENT; /* both in either form */
     BpProgram **all = &lab->general[packet][tree][lamps_off];
-    if (trace(lab, &made.scene, &options, &program, &special, &err) != BP_OK) {
+    if (trace(lab, scene, &options, &program, &special, &err) != BP_OK) {
         failed(&err, "its own kernel", bits);
         goto done;
     }
     options.all_effects = true;
-    if (trace(lab, &made.scene, &options, all, &general, &err) != BP_OK) {
+    if (trace(lab, scene, &options, all, &general, &err) != BP_OK) {
         failed(&err, "the general kernel", bits);
         goto done;
     }
+    const uint32_t left_out = lamps_off ? EFFECT_BIT(LAMPS) : 0;
     if ((program->key == (*all)->key) != (bits == (BP_EFFECTS_ALL & ~left_out))) {
         fprintf(stderr, "set 0x%02x: specialised and general kernel are the same program\n", (unsigned)bits);
         goto done;
@@ -220,15 +215,37 @@ done:
     return right;
 }
 
-/* Appends the sets of the scenes of a folder, in both forms, each once. False: one cannot be read. */
-static bool add_scenes(const char *folder, uint32_t cases[EFFECTS_CASES], size_t *count) {
-    DIR *opened = opendir(folder);
-    if (opened == NULL) {
-        fprintf(stderr, "cannot open %s\n", folder);
+/* True when the case is all right. */
+static bool check_case(Lab *lab, uint32_t word) {
+    const uint32_t bits = effects_case_bits(word);
+    const bool tree = (word & EFFECTS_CASE_TREE) != 0, packet = (word & EFFECTS_CASE_PACKET) != 0;
+    static EffectsScene made;
+    BpEffects effects;
+    BpError err = {0};
+    effects_scene(&made, bits, tree);
+    if (bp_scene_validate(&made.scene, &err) != BP_OK) return failed(&err, "scene", bits);
+    bp_effects_analyse(&made.scene, &effects);
+    const bool lamps_off = has_idle_lamps(bits);
+    const uint32_t left_out = lamps_off ? EFFECT_BIT(LAMPS) : 0;
+    if ((effects.bits & ~left_out) != bits ||
+        (bp_acceleration_choose(&made.scene, NULL) == BP_ACCELERATION_TREE) != tree) {
+        fprintf(stderr, "set 0x%02x: the scene made for it calls for 0x%02x, or not for a %s\n",
+                (unsigned)bits, (unsigned)effects.bits, tree ? "tree" : "list");
         return false;
     }
-    bool right = true;
-    for (const struct dirent *entry; right && (entry = readdir(opened)) != NULL;) {
+    return check_scene(lab, &made.scene, bits, tree, packet, lamps_off);
+}
+
+/* Tries the scenes of a folder, and appends their sets, each in both forms and once. Returns how many are
+ * wrong. */
+static unsigned try_scenes(Lab *lab, const char *folder, uint32_t cases[EFFECTS_CASES], size_t *count) {
+    DIR *opened = opendir(folder);
+    unsigned wrong = 0;
+    if (opened == NULL) {
+        fprintf(stderr, "cannot open %s\n", folder);
+        return 1;
+    }
+    for (const struct dirent *entry; (entry = readdir(opened)) != NULL;) {
         const char *end = strstr(entry->d_name, ".json");
         char path[512];
         BpScene *scene = NULL;
@@ -237,10 +254,20 @@ static bool add_scenes(const char *folder, uint32_t cases[EFFECTS_CASES], size_t
         if (end == NULL || strcmp(end, ".json") != 0 || strcmp(entry->d_name, "scene.schema.json") == 0)
             continue;
         snprintf(path, sizeof path, "%s/%s", folder, entry->d_name);
-        right = bp_scene_load(path, &scene, &err) == BP_OK || failed(&err, path, 0);
-        if (!right) break;
+        if (bp_scene_load(path, &scene, &err) != BP_OK || bp_scene_set_width(scene, WIDTH, &err) != BP_OK) {
+            failed(&err, path, 0);
+            bp_scene_destroy(&scene);
+            ++wrong;
+            continue;
+        }
         bp_effects_analyse(scene, &effects);
         const bool tree = bp_acceleration_choose(scene, NULL) == BP_ACCELERATION_TREE;
+        for (int packet = 0; packet < FORMS; ++packet)
+            if (!check_scene(lab, scene, effects.bits, tree, packet, has_idle_lamps(effects.bits))) {
+                fprintf(stderr, "%s, %s: wrong\n", entry->d_name,
+                        bp_kernel_names[packet ? BP_KERNEL_PACKET : BP_KERNEL_SAMPLE]);
+                ++wrong;
+            }
         bp_scene_destroy(&scene);
         const uint32_t word = effects.bits | (tree ? EFFECTS_CASE_TREE : 0);
         size_t i = 0;
@@ -250,7 +277,7 @@ static bool add_scenes(const char *folder, uint32_t cases[EFFECTS_CASES], size_t
         cases[(*count)++] = word | EFFECTS_CASE_PACKET;
     }
     closedir(opened);
-    return right;
+    return wrong;
 }
 
 int main(int argc, char **argv) {
@@ -268,23 +295,22 @@ int main(int argc, char **argv) {
         fprintf(stderr, "skipped: %s\n", err.message);
         return 77;
     }
-    if (every) {
-        for (uint32_t word = 0; word < EFFECTS_CASES; ++word)
-            if (word % of == part && effects_case_can_occur(word)) cases[count++] = word;
-    } else {
-        if (!add_scenes(SOURCE_DIR "/scenes", cases, &count) ||
-            !add_scenes(SOURCE_DIR "/tests/agree/scenes", cases, &count))
-            return 1;
-        const size_t scenes = count;
-        count = effects_covering(cases, count);
-        printf("%zu cases of scenes, %zu more for all triples\n", scenes, count - scenes);
-    }
     Lab lab = {.exact = strcmp(device.platform, "Portable Computing Language") == 0};
     if (bp_device_open(&device, &lab.device, &err) != BP_OK) {
         fprintf(stderr, "%s\n", err.message);
         return 1;
     }
     unsigned wrong = 0;
+    if (every) {
+        for (uint32_t word = 0; word < EFFECTS_CASES; ++word)
+            if (word % of == part && effects_case_can_occur(word)) cases[count++] = word;
+    } else {
+        wrong += try_scenes(&lab, SOURCE_DIR "/scenes", cases, &count);
+        wrong += try_scenes(&lab, SOURCE_DIR "/tests/agree/scenes", cases, &count);
+        const size_t scenes = count;
+        count = effects_covering(cases, count);
+        printf("%zu cases of scenes, %zu more for all triples\n", scenes, count - scenes);
+    }
     for (size_t i = 0; i < count; ++i) wrong += !check_case(&lab, cases[i]);
     printf("%s: %zu cases, %u wrong, %u not bit for bit, %u without light\n", device.name, count, wrong,
            lab.inexact, lab.dark);
