@@ -238,6 +238,7 @@ class Against(Check):
         self.assertEqual(self.kinds(), [("settings", "samples_per_pixel 64", "samples_per_pixel 128"),
                                         ("settings", "seed 0", "seed 3")])
 
+    @cli.deep
     def test_a_suite(self):
         self.succeed(*SMALL_SUITE, "--json", "old.json")
         document = self.report("old.json")
