@@ -1,5 +1,5 @@
-/* fuzz_particles.c: any bytes as a file of particles: the first byte says which format (and from 128 on, that
- * the column "x" is wanted), the rest is the file.
+/* fuzz_particles.c: any bytes as a file of particles of one format, FORMAT, for which it is built: one target
+ * for each reader. The first byte says, from 128 on, that the column "x" is wanted; the rest is the file.
  *
  * What is accepted is whole: arrays of one length, finite places, names and bonds that exist. Frames are read
  * one after the other, passed over, and asked for by number, and each way finds as many. */
@@ -43,9 +43,8 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size) {
     require(file != NULL && ftruncate(fileno(file), 0) == 0);
     rewind(file);
     require(fwrite(data + 1, 1, size - 1, file) == size - 1 && fflush(file) == 0);
-    const BpParticleFormat format = (BpParticleFormat)(1 + (data[0] & 127) % (BP_PARTICLES_FORMAT_COUNT - 1));
     (void)bp_particle_format_find("x.gz", file);
-    require(bp_particle_file_open(file, "x", format, wanted, data[0] < 128 ? 0 : 1, &particles_file, &err) ==
+    require(bp_particle_file_open(file, "x", FORMAT, wanted, data[0] < 128 ? 0 : 1, &particles_file, &err) ==
             BP_OK);
     BpStatus status = BP_OK;
     while (status == BP_OK && !end && found < FRAMES_MAX) {

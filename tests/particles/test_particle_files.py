@@ -159,6 +159,13 @@ end_header
 """
 
 
+def binary_ply(order):
+    """PLY as binary numbers: "<" has the lowest byte first, ">" the highest."""
+    head = PLY.split("end_header\n", 1)[0].replace("ascii", f"binary_{'little' if order == '<' else 'big'}_endian") + "end_header\n"
+    return head.encode() + struct.pack(order + "Bii", 2, 8, 9) + struct.pack(order + "2fdf3Bf", 1, 2, 3, 0.5, 255, 0, 0, 10) + \
+        struct.pack(order + "2fdf3Bf", 4, 5, 6, 0.25, 0, 255, 0, 20)
+
+
 def gsd_file(frames, version=2, schema=b"hoomd"):
     """A GSD file: each frame is a dict from a chunk's name to (type, columns, rows, bytes)."""
     names, body, index = [], b"", []
@@ -341,12 +348,8 @@ class Formats(FileTest):
         s = self.of("a.ply", PLY, 0, "heat")
         self.assertEqual((s["format"], s["count"], s["radius"], s["color"]), ("PLY", 2, 0.5, [1, 0, 0]))
         self.assertEqual((s["low"], s["high"], s["column_sum"]), ([1, 2, 3], [4, 5, 6], 30))
-        for order, name in (("<", "little"), (">", "big")):
-            head = PLY.split("end_header\n", 1)[0].replace("ascii", f"binary_{name}_endian") + "end_header\n"
-            rows = struct.pack(order + "Bii", 2, 8, 9) + struct.pack(order + "2fdf3Bf", 1, 2, 3, 0.5, 255, 0, 0, 10) + \
-                struct.pack(order + "2fdf3Bf", 4, 5, 6, 0.25, 0, 255, 0, 20)
-            binary = self.of("b.ply", head.encode() + rows, 0, "heat")
-            self.assertEqual(binary, s)
+        for order in "<>":
+            self.assertEqual(self.of("b.ply", binary_ply(order), 0, "heat"), s, order)
 
     def test_packed_and_line_ends(self):
         """gzip, CR LF, and no line end at the last line change nothing."""
@@ -387,6 +390,8 @@ class Hostile(FileTest):
         self.refuse("a.gro", GRO.replace("    3\n", "134217728\n"), ":6:", "expected a coordinate")
         self.refuse("a.gro", GRO.replace("    3\n", "1000000000\n"), ":2:")
         self.refuse("a.dump", DUMP.replace("ATOMS\n2\n", "ATOMS\n100000000\n"), ":12:", "expected 6")
+        self.refuse("a.dump", DUMP.replace("ATOMS\n2\n", "ATOMS\n1000000000\n"), ":4:", "at most 134217728")
+        self.refuse("a.data", DATA.replace("3 atoms", "1000000000 atoms"), ":3:", "at most 134217728")
         self.refuse("a.data", DATA.replace("3 atoms", "100000000 atoms"), "found 3 lines", "expected 100000000")
         self.refuse("a.data", DATA.replace("2 bonds", "100000000 bonds"), "bond 3 of 100000000")
         self.refuse("a.ply", PLY.replace("vertex 2", "vertex 100000000"), ":18:", "row 2 of 100000000")
@@ -425,6 +430,10 @@ class Hostile(FileTest):
             self.refuse("a.cif", CIF.replace("6.071", bad), ":31:")
             self.refuse("a.ply", PLY.replace("1 2 3 0.5", f"1 {bad} 3 0.5"), ":16: ")
         self.refuse("a.pdb", PDB.replace("   6.071", "     nan"), ":4:")
+        for order in "<>":
+            place = struct.pack(order + "2fd", 1, 2, 3)
+            self.refuse("a.ply", binary_ply(order).replace(place, struct.pack(order + "2fd", 1, float("nan"), 3)), "nan")
+            self.refuse("a.ply", binary_ply(order).replace(place, struct.pack(order + "2fd", 1, 2, float("inf"))), "inf")
         self.refuse("a.gro", GRO.replace("1.624", "  inf"), ":3:")
         bad = dict(GSD_FRAMES[0], **{"particles/position": floats(3, 1, float("nan"), 3, 4, 5, 6)})
         self.refuse("a.gsd", gsd_file([bad]), "particle 0")
@@ -436,6 +445,8 @@ class Hostile(FileTest):
         self.refuse("a.xyz", EXTENDED.replace("pos:R:3", "pos:R:99999999999"), ":2:")
         self.refuse("a.xyz", "", "empty")
         self.refuse("a.pdb", "REMARK nothing\n", "ATOM or HETATM")
+        self.refuse("a.pdb", PDB.replace("   6.071  -5.147  0.60 11.00", "   6.071"), ":4:")
+        self.refuse("a.gro", GRO.replace("1.661   1.747  0.8085  0.3191 -0.7791", "1.661"), ":4:")
         self.refuse("a.cif", CIF.replace("_atom_site.Cartn_y\n", ""), "Cartn_y")
         self.refuse("a.cif", CIF.replace(" 20 1", " 20"), "a value is missing")
         self.refuse("a.cif", CIF[:CIF.index(";A") + 20], "end of the file")
@@ -466,8 +477,12 @@ class Hostile(FileTest):
         """A kilobyte of packed blanks, digits or zeros for each megabyte: refused at once or read in bounded memory."""
         for name, start, block in [("a.xyz.gz", b"1\n", b" " * (1 << 20)), ("a.xyz.gz", b"", b"\n" * (1 << 20)),
                                    ("a.pdb.gz", b"", b"REMARK\n" * 150000), ("a.gsd.gz", b"", bytes(1 << 20)),
-                                   ("a.cif.gz", b"data_x\n", b"# x\n" * 250000), ("a.csv.gz", b"x,y\n", b"1" * (1 << 20))]:
-            self.refuse(name, gzip.compress(start + block * 64, 6))
+                                   ("a.cif.gz", b"data_x\n", b"# x\n" * 250000), ("a.csv.gz", b"x,y\n", b"1" * (1 << 20)),
+                                   ("a.gro.gz", b"t\n1\n", b" " * (1 << 20)), ("a.lmp.gz", b"t\n", b"\n" * (1 << 20)),
+                                   ("a.dump.gz", b"ITEM: TIMESTEP\n", b"0" * (1 << 20)),
+                                   ("a.ply.gz", b"ply\nformat ascii 1.0\n", b"comment\n" * (1 << 17)),
+                                   ("a.ply.gz", binary_ply("<").replace(b"vertex 2", b"vertex 100000000"), bytes(1 << 20))]:
+            self.refuse(name, gzip.compress(start + block * 64, 1))
 
     def test_many_names(self):
         text = "70000\n\n" + "".join(f"n{i} 0 0 {i}\n" for i in range(70000))
