@@ -110,6 +110,7 @@ static BpStatus write_cover(const BpCommandLine *line, const char *name, const c
         if (strcmp(name, "diffuse") == 0) make_matte(&scene->materials[m]);
         if (strcmp(name, "glass") == 0 && m != ground) make_glass(&scene->materials[m]);
     }
+    bp_line_say_overwritten(line, path);
     status = bp_line_write(line, path, print_scene, scene, err);
 done:
     bp_scene_destroy(&scene);
@@ -132,6 +133,8 @@ static BpStatus write_field(const BpCommandLine *line, const char *name, const c
     if (access(cloud, R_OK) == 0 && access(path, R_OK) == 0) return BP_OK;
     BP_TRY(bp_line_check_output(line, cloud, err));
     BP_TRY(bp_line_check_output(line, path, err));
+    bp_line_say_overwritten(line, cloud);
+    bp_line_say_overwritten(line, path);
     BP_TRY(bp_line_write(line, cloud, print_field, name, err));
     return bp_line_write(line, path, print_field_document, name, err);
 }
@@ -493,6 +496,7 @@ static BpStatus run_rounds(const BpCommandLine *line, Bench *bench, BpError *err
             status = run_once(line, entry->path, devices, device_count, seconds / bench->rounds,
                               &entry->runs[r], err);
         }
+        if (r == 0 && status == BP_OK) bp_line_say_overwritten(line, line->json); /* all can be measured */
     }
     free(devices);
     return status;

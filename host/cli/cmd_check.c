@@ -180,6 +180,18 @@ static BpStatus check_map_names(const Session *session, BpError *err) {
     return BP_OK;
 }
 
+static void say_overwritten(const Session *session) {
+    const BpCommandLine *line = session->line;
+    char name[4096];
+    bp_line_say_overwritten(line, line->json);
+    bp_line_say_overwritten(line, line->junit);
+    if (!wants_all(line)) bp_line_say_overwritten(line, line->map);
+    for (size_t d = 0; d < session->device_count && line->map != NULL && wants_all(line); ++d) {
+        map_name(line->map, session->devices[d].number, name, sizeof name);
+        bp_line_say_overwritten(line, name);
+    }
+}
+
 static BpStatus find_devices(Session *session, BpError *err) {
     const BpCommandLine *line = session->line;
     BpDeviceSurvey *survey = &session->survey;
@@ -341,6 +353,7 @@ static BpStatus check_all(Session *session, BpError *err) {
     bp_interrupt_catch();
     BP_TRY(find_devices(session, err));
     if (wants_all(line)) BP_TRY(check_map_names(session, err));
+    say_overwritten(session);
     for (size_t d = 0; d < session->device_count && !session->interrupted; ++d)
         BP_TRY(check_device(session, &session->devices[d], err));
     if (session->interrupted && session->item_count * session->device_count == 1)
@@ -447,6 +460,7 @@ static BpStatus check_bits(Session *session, BpError *err) {
     if (status == BP_OK) status = bp_suite_load(&session->suite, err);
     bp_interrupt_catch();
     if (status == BP_OK) status = find_devices(session, err);
+    if (status == BP_OK) say_overwritten(session);
     results = json_array();
     for (size_t d = 0; d < session->device_count && status == BP_OK && !bp_interrupted(); ++d) {
         const BpBitsRun run = {.pictures = pictures,

@@ -135,6 +135,9 @@ BpStatus bp_command_cost(const BpCommandLine *line, BpError *err) {
     BP_TRY_GOTO(status,
                 bp_study_create(scene, &options, &device, full.width, full.height, seconds, &study, err),
                 done);
+    bp_line_say_overwritten(line, line->output);
+    bp_line_say_overwritten(line, line->csv);
+    bp_line_say_overwritten(line, line->json);
     BP_TRY_GOTO(status, run_study(line, study, err), done);
     status = deliver(line, bp_study_result(study), err);
 done:

@@ -112,9 +112,10 @@ BpStatus bp_command_devices(const BpCommandLine *line, BpError *err) {
         status = bp_device_survey_find(&survey, NULL, &chosen, err);
         if (status == BP_ERR_NO_DEVICE || status == BP_ERR_BROKEN_DEVICE) status = BP_ERR_DEVICE;
         const unsigned default_number = status == BP_OK ? chosen.number : UINT32_MAX;
-        if (line->json != NULL)
+        if (line->json != NULL) {
+            bp_line_say_overwritten(line, line->json);
             shown = write_json(line, &survey, default_number, err);
-        else if (survey.count > 0)
+        } else if (survey.count > 0)
             shown = print_table(line, survey.devices, survey.count, default_number, err);
     } else if (status == BP_ERR_BROKEN_DEVICE) {
         status = BP_ERR_DEVICE;

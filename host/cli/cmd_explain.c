@@ -404,6 +404,7 @@ static BpStatus explain(const BpCommandLine *line, const char *path, const BpDev
         }
     }
     if (line->measure) {
+        if (list != NULL && json_array_size(list) == 0) bp_line_say_overwritten(line, line->json);
         BP_TRY_GOTO(status, measure(line, scene, device, &found.costs, err), done);
         if (list == NULL) {
             bp_page_begin(&page, stdout);
@@ -444,6 +445,7 @@ BpStatus bp_command_explain(const BpCommandLine *line, BpError *err) {
     }
     if (list != NULL) {
         json_t *root = json_pack("{s:O}", "scenes", list);
+        if (!line->measure) bp_line_say_overwritten(line, line->json); /* else said before it took long */
         status = bp_json_write(line, root, line->json, err);
     } else if (fflush(stdout) != 0 || ferror(stdout)) {
         status = bp_fail(err, BP_ERR_FILE, "cannot write to standard output: %s", strerror(errno));

@@ -60,6 +60,7 @@ static BpStatus generate_cover(const BpCommandLine *line, uint64_t seed, BpError
     BpScene *scene = NULL;
     BP_TRY(check_path(line, path, ".json", "a scene document", err));
     BP_TRY(bp_scene_generate_cover(line->edition != NULL ? line->edition : "4", grid, seed, &scene, err));
+    bp_line_say_overwritten(line, path);
     const BpStatus status = bp_line_write(line, path, print_scene, scene, err);
     if (status == BP_OK) {
         BpSceneInfo info;
@@ -88,6 +89,7 @@ static BpStatus generate_field(const BpCommandLine *line, uint64_t seed, BpError
                        "--output -: refusing to write a binary PLY file to the terminal; redirect standard "
                        "output to a file or a pipe");
     BP_TRY(check_path(line, path, ".ply", "a PLY file", err));
+    bp_line_say_overwritten(line, path);
     BP_TRY(bp_line_write(line, path, print_field, &field, err));
     bp_say(line, "%s: %" PRIu64 " sphere%s in the cube from -10 to 10", shown_name(path), field.count,
            bp_plural(field.count));

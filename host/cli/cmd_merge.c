@@ -227,6 +227,7 @@ BpStatus bp_command_merge(const BpCommandLine *line, BpError *err) {
     BP_TRY_GOTO(status, add_files(line, &parts, &sum, err), done);
     BP_TRY_GOTO(status, bp_film_check_finite(sum, err), done);
     BP_TRY_GOTO(status, check_cues(line, sum, err), done);
+    bp_result_say_overwritten(line, &result);
     BP_TRY_GOTO(status, bp_result_write(line, &result, sum, false, (BpTransfer)sum->transfer, NULL, err),
                 done);
     if (result.format == BP_FORMAT_EXR && !bp_film_has_aovs(sum))

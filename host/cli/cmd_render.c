@@ -455,6 +455,7 @@ typedef struct Run {
     size_t device_count;
     json_t *stats; /* a list, by the number of the job; NULL: none are wanted */
     double start;  /* of the scene at hand, or of the command for the first one */
+    bool has_begun;
 } Run;
 
 /* Two scenes may have the same name in different folders. */
@@ -597,6 +598,9 @@ static BpStatus render_one(Run *run, const BpCommandLine *line, Job *job, BpErro
     }
     bp_film_destroy(&work.resumed);
     if (status == BP_OK) {
+        if (!run->has_begun) bp_line_say_overwritten(line, line->stats);
+        run->has_begun = true;
+        bp_result_say_overwritten(line, &job->file);
         bp_comm_begin_work(run->comm);
         status =
             run_render(line, run->comm, work.render, &work.rule, &job->checkpoint, &work.preview, &end, err);

@@ -50,7 +50,10 @@ BpStatus bp_command_scene(const BpCommandLine *line, BpError *err) {
     /* What goes to standard output is read again as seen from the current folder. */
     BpStatus status =
         move_files(scene, strcmp(path, "-") == 0 ? "" : path, strcmp(to, "-") == 0 ? "" : to, err);
-    if (status == BP_OK) status = bp_line_write(line, to, print_scene, scene, err);
+    if (status == BP_OK) {
+        bp_line_say_overwritten(line, to);
+        status = bp_line_write(line, to, print_scene, scene, err);
+    }
     bp_scene_destroy(&scene);
     return status;
 }

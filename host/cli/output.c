@@ -9,9 +9,12 @@
 BpStatus bp_line_check_output(const BpCommandLine *line, const char *path, BpError *err) {
     if (strcmp(path, "-") == 0) return BP_OK;
     if (line->no_clobber) return bp_output_check_new(path, err);
-    BP_TRY(bp_output_check(path, err));
+    return bp_output_check(path, err);
+}
+
+void bp_line_say_overwritten(const BpCommandLine *line, const char *path) {
+    if (path == NULL || strcmp(path, "-") == 0 || line->no_clobber) return;
     if (bp_output_replaces(path)) bp_say(line, "%s exists and will be overwritten", path);
-    return BP_OK;
 }
 
 BpStatus bp_print_end(FILE *out, bool written, BpError *err) {

@@ -8,9 +8,13 @@
 #include "base/output_file.h"
 #include "options.h"
 
-/* Whether `path` can be written, found out before work begins: "-" can. Says on standard error that a file
- * which is there will be overwritten; with --no-clobber that is an error. */
+/* Whether `path` can be written, found out before work begins: "-" can. With --no-clobber, a file that exists
+ * is an error. */
 BpStatus bp_line_check_output(const BpCommandLine *line, const char *path, BpError *err);
+
+/* Says on standard error that the file `path` (NULL: none) will be overwritten, if it exists. To be called when
+ * work begins, after everything that can be refused has been checked: a refused command overwrites nothing. */
+void bp_line_say_overwritten(const BpCommandLine *line, const char *path);
 
 /* Writes `path` by `print`; "-" is standard output. With --no-clobber the name is claimed when the content is
  * complete: what has come to stand there in the meantime is not replaced. */

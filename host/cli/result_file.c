@@ -175,6 +175,11 @@ BpStatus bp_result_choose(const BpCommandLine *line, const char *source, BpResul
     return own.error_map != NULL ? bp_line_check_output(line, own.error_map, err) : BP_OK;
 }
 
+void bp_result_say_overwritten(const BpCommandLine *line, const BpResultFile *result) {
+    bp_line_say_overwritten(line, result->path);
+    if (result->error_map[0] != '\0') bp_line_say_overwritten(line, result->error_map);
+}
+
 typedef struct Printed {
     const BpPicture *picture;
     BpFormat format;

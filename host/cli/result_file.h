@@ -23,6 +23,9 @@ typedef struct BpResultFile {
  * to a terminal; one file for several pictures, or for two things) or BP_ERR_FILE. */
 BpStatus bp_result_choose(const BpCommandLine *line, const char *source, BpResultFile *result, BpError *err);
 
+/* Says of both files, when work begins, that they will be overwritten (output.h). */
+void bp_result_say_overwritten(const BpCommandLine *line, const BpResultFile *result);
+
 /* Turns --width-mm and --dpi into --width. BP_ERR_USAGE: they do not go together, or give no picture. */
 BpStatus bp_result_take_width(BpCommandLine *line, BpError *err);
 

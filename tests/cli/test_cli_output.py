@@ -90,6 +90,36 @@ class Clobber(ProgramTest):
             said = self.succeed(*command, "--no-clobber").errors
             self.assertNotIn("overwritten", said)
 
+    def test_a_refused_command_overwrites_nothing(self):
+        """What is refused, even late, says nothing of files that it leaves alone."""
+        self.write("bad.json", "{}")
+        self.succeed("render", "s.json", "-o", "f.bpa", "-q")
+        refused = [
+            ("render", "s.json", "-o", "a.png", "--error", "1%", "--share", "1/2"),
+            ("render", "s.json", "-o", "a.png", "--device", "none such"),
+            ("render", "s.json", "-o", "a.png", "--depth-fog", "50"),
+            ("render", "s.json", "-o", "a.png", "--stats", "a.json", "--set", "camera.vfow=3"),
+            ("render", "bad.json", "-o", "a.png", "--error-map", "b.png"),
+            ("merge", "f.bpa", "-o", "a.png", "--depth-fog", "50"),
+            ("check", "s.json", "--json", "a.json", "--map", "a.png", "--device", "none such"),
+            ("check", "bad.json", "--json", "a.json", "--junit", "b.png"),
+            ("cost", "bad.json", "-o", "a.html", "--json", "a.json"),
+            ("bench", "bad.json", "--rounds", "1", "--json", "a.json"),
+            ("explain", "bad.json", "--json", "a.json"),
+            ("explain", "s.json", "--pixel", "9999,9999", "--json", "a.json"),
+            ("scene", "bad.json", "-o", "a.json"),
+            ("generate", "cover", "--grid", "5", "--count", "5", "-o", "a.json"),
+        ]
+        for name in ("a.png", "b.png", "a.json", "a.html"):
+            self.write(name, "precious")
+        for command in refused:
+            with self.subTest(command=command):
+                done = self.run_program(*command)
+                self.assertNotEqual(done.returncode, 0)
+                self.assertNotIn("overwritten", done.errors)
+        for name in ("a.png", "b.png", "a.json", "a.html"):
+            self.assertEqual(self.read(name), b"precious")
+
     def test_not_said(self):
         self.write("a.png", "old")
         self.assertEqual(self.succeed("render", "s.json", "-o", "a.png", "-q").errors, "")
