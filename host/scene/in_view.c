@@ -18,6 +18,7 @@ static void unit_cross(const double *a, const double *b, double *out) {
 typedef struct View {
     Vec from, ahead, right, up;
     double half_width, half_height; /* at distance 1, or with parallel rays everywhere */
+    double cone; /* radians: half the opening of a cone around all rays of a perspective camera */
     double lens, focus;
     bool orthographic;
 } View;
@@ -42,12 +43,14 @@ static View find_view(const BpCamera *camera) {
     view.half_width = view.half_height * camera->width / camera->height;
     view.lens = camera->lens_radius;
     view.focus = camera->focus_dist;
+    /* A ray of a lens meets that of the pinhole in the plane in focus, at `focus` or farther. */
+    view.cone = atan(hypot(view.half_width, view.half_height)) + atan(view.lens / view.focus);
     return view;
 }
 
 /* Rays leave the lens and spread around those of a pinhole: at distance d by lens * |d / focus - 1|, and by
  * `lens` before the plane in focus. A sphere that moves is taken for the ball around its way. */
-static bool reaches_view(const View *view, const BpSphere *sphere, const double end[3]) {
+static bool reaches_planes(const View *view, const BpSphere *sphere, const double end[3]) {
     Vec to;
     double way = 0;
     for (int i = 0; i < 3; i++) {
@@ -61,6 +64,26 @@ static bool reaches_view(const View *view, const BpSphere *sphere, const double 
     if (view->orthographic) return aside - view->half_width <= room && above - view->half_height <= room;
     return (aside - ahead * view->half_width) / sqrt(1 + view->half_width * view->half_width) <= room &&
            (above - ahead * view->half_height) / sqrt(1 + view->half_height * view->half_height) <= room;
+}
+
+/* All planes of the edges cut a huge sphere under the camera; a cone around the view need not. */
+static bool reaches_cone(const View *view, const BpSphere *sphere, const double end[3]) {
+    Vec to;
+    double way = 0;
+    for (int i = 0; i < 3; i++) {
+        to[i] = (sphere->center[i] + end[i]) / 2 - view->from[i];
+        way = hypot(way, end[i] - sphere->center[i]);
+    }
+    const double radius = fabs(sphere->radius) + way / 2, distance = sqrt(dot(to, to));
+    if (view->orthographic || distance - view->lens <= radius) return true;
+    const double angle = acos(fmin(1, fmax(-1, dot(to, view->ahead) / distance)));
+    /* From another point of the lens, the centre lies in another direction, too. */
+    return angle - asin(fmin(1, view->lens / distance)) - view->cone <=
+           asin(radius / (distance - view->lens));
+}
+
+static bool reaches_view(const View *view, const BpSphere *sphere, const double end[3]) {
+    return reaches_planes(view, sphere, end) && reaches_cone(view, sphere, end);
 }
 
 bool bp_scene_has_sphere_in_view(const BpScene *scene) {

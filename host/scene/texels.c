@@ -48,7 +48,7 @@ static BpStatus refuse_texel(const BpImage *image, size_t place, double scale, c
                 "found %s as the %s of the texel in column %zu of row %zu (from 0, row 0 on top), expected 0 "
                 "to %g%s; correct the image",
                 found, channels[place % 3], texel % image->width, texel / image->width,
-                BP_RADIANCE_MAX / fmax(scale, 1), scale > 1 ? ", which the scale then multiplies" : "");
+                BP_RADIANCE_MAX / fmax(scale, 1), scale > 1 ? ", since \"scale\" multiplies it" : "");
     bp_error_at(err, path, 0, 0);
     return status;
 }

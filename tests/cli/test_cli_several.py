@@ -101,6 +101,15 @@ class Empty(ProgramTest):
         ball = [{"center": [0, 0, -1000], "radius": 1e-6, "material": "m"}]
         self.assertIn(self.NOTHING, self.said(spheres=ball))
 
+    def test_huge_ground_under_the_camera(self):
+        """All planes along the edges of the view cut it, though the camera looks up; and fuzzy metal may end a path at once."""
+        ground = [{"center": [0, -1001, 0], "radius": 1000, "material": "m"}]
+        metal = {"m": {"type": "metal", "albedo": [1, 1, 1], "fuzz": 1}}
+        for camera in ({}, {"aperture": 0.1, "focus_dist": 3}):
+            self.assertIn(self.NOTHING, self.said(spheres=ground, materials=metal, camera={"lookat": [0, 9, -9], "vfov": 40, **camera}))
+            for seen in {"lookat": [0, -1, -9], "vfov": 40}, {"lookat": [0, 2, -9], "vfov": 40}:
+                self.assertNotIn(self.NOTHING, self.said(spheres=ground, materials=metal, camera={**seen, **camera}))
+
     def test_quiet(self):
         self.write("s.json", scene(camera={"lookat": [0, 9, -1]}))
         self.assertEqual(self.succeed("render", "s.json", "-q").errors, "")
