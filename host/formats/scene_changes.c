@@ -108,7 +108,11 @@ static BpStatus read_name(const char *set, json_t *object, const char **at, cons
     char text[400], found[SHOWN_SIZE];
     if (!json_is_object(object)) {
         bp_json_describe(object, found, sizeof found);
-        snprintf(text, sizeof text, "%s is %s, which has no members", change->path, found);
+        if (json_is_array(object) && json_array_size(object) > 0)
+            snprintf(text, sizeof text, "%s is %s, expected an element before the member, such as %s[0]",
+                     change->path, found, change->path);
+        else
+            snprintf(text, sizeof text, "%s is %s, which has no members", change->path, found);
         return fail(set, err, text);
     }
     const size_t length = name_length(object, *at);

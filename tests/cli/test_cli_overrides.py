@@ -82,6 +82,7 @@ class Set(ProgramTest):
             ("=3", ["expected the name of a member"]),
             ("camera..vfov=3", ["expected the name of a member"]),
             ("spheres[2].radius=3", ["spheres has 2 elements"]),
+            ("spheres.radius=3", ["spheres is a list of 2", "such as spheres[0]"]),
             ("spheres[x].radius=3", ["an element such as [0]"]),
             ("spheres[0]radius=3", ["behind an element"]),
             ("spheres[0]=null", ["null removes members of objects only"]),
