@@ -118,6 +118,13 @@ static void put_option(BpOption option, const BpCommand *command, FILE *out) {
     fputc('\n', out);
 }
 
+/* Pages name documents as the sources do, docs/PARTICLES.md for example. */
+static void put_documents(FILE *out) {
+    fputs(".PP\nThe documents that the manual pages name (README.md, docs, scenes) are installed in\n"
+          ".IR share/doc/ballpark ,\nusually\n.IR /usr/share/doc/ballpark .\n",
+          out);
+}
+
 static int write_command_page(const BpCommand *command, const char *folder, const Edition *edition) {
     char name[96], title[80];
     snprintf(title, sizeof title, "ballpark-%s", command->name);
@@ -152,6 +159,7 @@ static int write_command_page(const BpCommand *command, const char *folder, cons
         fputs(".fi\n", out);
     }
     fputs(".SH SEE ALSO\n.BR ballpark (1)\n", out);
+    put_documents(out);
     return close_file(out);
 }
 
@@ -175,7 +183,8 @@ static int write_main_page(const char *folder, const Edition *edition) {
         fputc('\n', out);
     }
     fputs(
-        ".SH OPTIONS\n.TP\n\\fB\\-h\\fR, \\fB\\-\\-help\\fR\nprint help; after a command, about that\n"
+        ".SH OPTIONS\n.TP\n\\fB\\-h\\fR, \\fB\\-\\-help\\fR\nprint help; after a command, about that "
+        "command\n"
         ".TP\n\\fB\\-V\\fR, \\fB\\-\\-version\\fR\nprint version and commit\n"
         ".SH EXIT STATUS\n"
         "0: success. 1: failure at run time (device, memory, file). 2: invalid command line or scene. 130:\n"
@@ -187,7 +196,11 @@ static int write_main_page(const char *folder, const Edition *edition) {
         ".TP\n\\fBPOCL_CACHE_DIR\\fR\nwhere PoCL, the driver for processors, keeps compiled kernels\n"
         ".TP\n\\fBBALLPARK_KERNEL_CACHE\\fR\n\\fBon\\fR or \\fBoff\\fR: whether Ballpark keeps compiled "
         "kernels, in\n\\fI$XDG_CACHE_HOME/ballpark/kernels\\fR or \\fI~/.cache/ballpark/kernels\\fR; "
-        "without it,\nwhere the driver keeps none itself\n"
+        "by default\nonly for drivers that keep none themselves\n"
+        ".TP\n\\fBBALLPARK_SHOW\\fR\n\\fBkitty\\fR, \\fBiterm2\\fR, \\fBsixel\\fR or \\fBblocks\\fR: how "
+        "\\fBballpark render \\-\\-show\\fR draws,\ninstead of what it detects of the terminal\n"
+        ".TP\n\\fBBALLPARK_MPI\\fR\nthe module for MPI to load instead of the installed one, or "
+        "\\fBoff\\fR:\neach copy that mpirun starts renders on its own\n"
         ".SH EXAMPLES\n.nf\n"
         "ballpark devices                        list the devices of this computer\n"
         "ballpark generate cover \\-o cover.json   write the book's cover scene\n"
@@ -199,6 +212,7 @@ static int write_main_page(const char *folder, const Edition *edition) {
         put_text(bp_commands[c].name, out);
         fprintf(out, " (1)%s\n", c + 1 < bp_command_count ? "," : "");
     }
+    put_documents(out);
     return close_file(out);
 }
 
