@@ -50,7 +50,7 @@ static void print_verdict(FILE *out, const BpVerdict *v) {
     for (int f = 0; f < BP_FAMILIES; ++f) {
         const BpVerdictTest *test = &v->worst[f];
         if (test->tests == 0) continue;
-        fprintf(out, "  %-17s |z| %.2f of %.2f allowed%s: %s, %.4g vs. %.4g",
+        fprintf(out, "  %-17s |z| %.2f of %.2f allowed%s: %s, kernel %.4g, reference %.4g",
                 bp_verdict_family_name((BpVerdictFamily)f), test->z, test->limit,
                 test->z > test->limit ? ", EXCEEDED" : "", channels[test->channel], test->kernel,
                 test->reference);
@@ -67,13 +67,14 @@ static void print_verdict(FILE *out, const BpVerdict *v) {
     if (!isnan(v->smallest_bias))
         fprintf(out, "  power             would detect a bias of %.3f %% with probability %.2g\n",
                 100 * v->smallest_bias, BP_VERDICT_POWER);
-    fprintf(out, "  sums              differs by %.1g from its samples' means, %.1g allowed%s\n",
+    fprintf(out, "  sums              the picture differs by %.1g from its samples' means, %.1g allowed%s\n",
             v->picture_off, BP_VERDICT_PICTURE_OFF,
             v->picture_off <= BP_VERDICT_PICTURE_OFF ? "" : ", EXCEEDED");
     fprintf(out, "  invalid samples   %llu in the kernel, %llu in the reference, of %llu samples\n",
             (unsigned long long)v->invalid_kernel, (unsigned long long)v->invalid_reference,
             (unsigned long long)v->samples);
-    fprintf(out, "  path length       %.4f and %.4f segments\n", v->segments_kernel, v->segments_reference);
+    fprintf(out, "  path length       kernel %.4f, reference %.4f segments\n", v->segments_kernel,
+            v->segments_reference);
 }
 
 char *bp_verdict_text(const BpVerdict *verdict) {

@@ -481,8 +481,8 @@ static BpStatus load(Run *run, size_t number, BpError *err) {
     job->path = run->line.operands[number];
     if (run->line.comm != NULL && strcmp(job->path, "-") == 0)
         return bp_fail(err, BP_ERR_USAGE,
-                       "a scene from standard input reaches one of %" PRIu32
-                       " ranks only; save it in a file that all of them can read",
+                       "a scene from standard input reaches only one of %" PRIu32
+                       " ranks; save it in a file that all of them can read",
                        bp_comm_size(run->line.comm));
     BP_TRY(bp_result_choose(&run->line, job->path, &job->file, err));
     BP_TRY(check_names_differ(run, number, err));
@@ -641,7 +641,7 @@ static BpStatus meet(Run *run, size_t dealt, BpStatus status, BpError *err) {
     if (dealt == 0) return status;
     status = bp_comm_agree(comm, status, err);
     if (status == BP_OK)
-        bp_say(&run->line, "%zu picture%s rendered by %" PRIu32 " ranks, each by one", dealt,
+        bp_say(&run->line, "%zu picture%s rendered by %" PRIu32 " ranks, each picture by one rank", dealt,
                bp_plural(dealt), bp_comm_size(comm));
     if (status != BP_OK || run->line.stats == NULL) return status;
     char *own = json_dumps(run->stats, JSON_COMPACT);
@@ -741,8 +741,8 @@ BpStatus bp_command_render(const BpCommandLine *given, BpError *err) {
     const bool to_output = line->output != NULL && strcmp(line->output, "-") == 0;
     if (line->comm != NULL && to_output) /* launchers pass it on as text, from all ranks together */
         status = bp_fail(err, BP_ERR_USAGE,
-                         "--output -: the standard output of several ranks goes through what started "
-                         "them, which may change it; give the name of a file");
+                         "--output -: the launcher of several ranks passes on their standard output and may "
+                         "change it; give the name of a file");
     else if (run.jobs == NULL || (line->stats != NULL && run.stats == NULL))
         status = bp_fail(err, BP_ERR_MEMORY, "out of memory for a list of scenes");
     else if (line->resume != NULL && (run.count > 1 || is_series))

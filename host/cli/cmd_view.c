@@ -104,7 +104,7 @@ static BpStatus save(void *context, const BpScene *scene, const BpPicture *pictu
     careful.no_clobber = true;
     BP_TRY(choose_name(saving, name, sizeof name, err));
     BP_TRY(bp_line_write(&careful, name, print_picture, &printed, err));
-    bp_say(saving->line, "saved %s; the command renders it with less noise", name);
+    bp_say(saving->line, "saved %s; this command renders it with less noise:", name);
     print_command(saving->line, scene);
     return BP_OK;
 }

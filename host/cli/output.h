@@ -12,8 +12,9 @@
  * is an error. */
 BpStatus bp_line_check_output(const BpCommandLine *line, const char *path, BpError *err);
 
-/* Says on standard error that the file `path` (NULL: none) will be overwritten, if it exists. To be called when
- * work begins, after everything that can be refused has been checked: a refused command overwrites nothing. */
+/* Says on standard error that the file `path` (NULL: none) will be overwritten, if it exists. To be called
+ * when work begins, after everything that can be refused has been checked: a refused command overwrites
+ * nothing. */
 void bp_line_say_overwritten(const BpCommandLine *line, const char *path);
 
 /* Writes `path` by `print`; "-" is standard output. With --no-clobber the name is claimed when the content is

@@ -39,12 +39,12 @@ BpStatus bp_preview_choose(const BpCommandLine *line, const BpComm *shared, cons
     if (preview->writes &&
         (strcmp(file->path, "-") == 0 || (stat(file->path, &info) == 0 && !S_ISREG(info.st_mode))))
         return bp_fail(err, BP_ERR_USAGE,
-                       "--preview rewrites a file, and %.400s is none: name one with --output",
+                       "--preview rewrites a file, and %.400s is not one: name one with --output",
                        bp_result_name(file));
     if (preview->writes && line->no_clobber)
         return bp_fail(err, BP_ERR_USAGE, "--preview overwrites its own picture, which --no-clobber refuses");
     if (preview->shows && line->quiet)
-        return bp_fail(err, BP_ERR_USAGE, "--show draws in the terminal, where --quiet wants errors only");
+        return bp_fail(err, BP_ERR_USAGE, "--show draws in the terminal, where --quiet allows only errors");
     return preview->shows ? bp_terminal_picture_begin(&preview->terminal, err) : BP_OK;
 }
 

@@ -324,7 +324,7 @@ static BpStatus start(BpComm *comm, const BpLaunch *launch, char *const *argumen
         return bp_fail(
             err, BP_ERR_USAGE,
             "%s started %" PRIu32 " copies of this program, but its MPI knows of %" PRIu32
-            ": it is another MPI than the launcher's; use the launcher of the one that Ballpark was built "
+            ": it is not the launcher's MPI; use the launcher of the one that Ballpark was built "
             "with (with srun: --mpi=pmix, or what `srun --mpi=list` names), or set BALLPARK_MPI=off if each "
             "is "
             "to render on its own",

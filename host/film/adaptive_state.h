@@ -14,7 +14,7 @@ struct BpAdaptive {
     uint32_t width, height, tiles_x, tiles_y, halves;
     uint32_t level_max;
     uint32_t *half_pixels;   /* how many each has */
-    uint8_t *level, *wanted; /* of each half; level l: BP_ADAPTIVE_FIRST << l samples a pixel */
+    uint8_t *level, *wanted; /* of each half; level l: BP_ADAPTIVE_FIRST << l samples per pixel */
     bool *passing;           /* halves of the pass under way */
     /* Of each half at each level, means over its pixels: squared error, ray segments a sample. NULL: none
      * yet. */

@@ -38,8 +38,8 @@ struct BpSampleRange {
 typedef struct BpFilmPlan {
     bool adaptive;
     uint64_t first_sample; /* of every pixel, absolute */
-    uint64_t target;       /* samples a pixel that the render is on its way to; adaptive: their mean */
-    uint64_t done;         /* samples a pixel of the passes that are done, as schedule.h counts them */
+    uint64_t target;       /* samples per pixel that the render is on its way to; adaptive: their mean */
+    uint64_t done;         /* samples per pixel of the passes that are done, as schedule.h counts them */
     uint32_t pass_samples, next_pixel; /* of the pass under way; 0: none is */
     uint64_t samples_max;              /* where it stops: at so many samples, or */
     double error;                      /* at this NRMSE; 0: no such rule */

@@ -130,7 +130,7 @@ static BpStatus check_length(Loader *loader, const BpFilm *sizes, BpError *err) 
                    loader->name, actual < around + numbers ? "truncated" : "too long", actual,
                    bp_plural(actual), sizes->width, sizes->height, sizes->replicates,
                    bp_plural(sizes->replicates), around + numbers,
-                   packed ? ", more than so few can be unpacked to" : "");
+                   packed ? ", more than these bytes can be unpacked to" : "");
 }
 
 static BpStatus read_sums(BpFilmSource *source, const BpFilm *film, int64_t *sums, BpError *err) {
@@ -178,7 +178,7 @@ static BpStatus read_aovs(BpFilmSource *source, BpFilm *film, BpError *err) {
     BP_TRY(bp_film_source_numbers(source, film->member, 4, (floats)*pixels, err));                           \
     for (size_t i = 0; i < (floats)*pixels; i++)                                                             \
         if (!IS_GOOD_##mean(film->member[i]))                                                                \
-            return bp_fail(err, BP_ERR_FILE, "%s is damaged: the " #member " of pixel %zu is no number",     \
+            return bp_fail(err, BP_ERR_FILE, "%s is damaged: the " #member " of pixel %zu is not a number",  \
                            source->name, i / (floats));
     AOV_LIST(READ)
 #undef READ

@@ -176,7 +176,7 @@ void bp_film_source_clear(BpFilmSource *source) {
 }
 
 static BpStatus truncated(const BpFilmSource *source, BpError *err) {
-    return bp_fail(err, BP_ERR_FILE, "%s is truncated: its numbers end before those that its header names",
+    return bp_fail(err, BP_ERR_FILE, "%s is truncated: it ends before the numbers that its header announces",
                    source->name);
 }
 
@@ -241,7 +241,7 @@ BpStatus bp_film_source_numbers(BpFilmSource *source, void *numbers, size_t widt
 }
 
 static BpStatus too_long(const BpFilmSource *source, BpError *err) {
-    return bp_fail(err, BP_ERR_FILE, "%s is too long: it holds more numbers than its header names",
+    return bp_fail(err, BP_ERR_FILE, "%s is too long: it holds more numbers than its header announces",
                    source->name);
 }
 

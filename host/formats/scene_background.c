@@ -54,7 +54,7 @@ static BpStatus parse_environment(const BpNode *node, unsigned flags, BpScene *s
         const BpNode member = bp_node_member(node, only[i]);
         if (member.value != NULL)
             return bp_node_fail(&member, BP_PART_NAME, err,
-                                "found in a background that is no image, expected only beside \"image\"; "
+                                "found in a background without an image, expected only beside \"image\"; "
                                 "remove it");
     }
     if (image.value == NULL) return BP_OK;

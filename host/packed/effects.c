@@ -148,7 +148,7 @@ static bool explain_media(const BpScene *scene, size_t size, char *reason) {
     else if (interfaces > 0)
         snprintf(reason, size, "%zu interface%s, but all media are clear", interfaces, bp_plural(interfaces));
     else
-        snprintf(reason, size, "all is clear: no medium inside a sphere or around");
+        snprintf(reason, size, "no sphere has a medium inside, and the scene has none around");
     return around || filled > 0 || interfaces > 0;
 }
 
@@ -304,7 +304,7 @@ static bool explain_textures(const BpScene *scene, BpEffect effect, size_t size,
 static bool explain_environment(const BpScene *scene, size_t size, char *reason) {
     const BpImage *image = scene->environment;
     if (image == NULL)
-        snprintf(reason, size, "the background is no image");
+        snprintf(reason, size, "the background is not an image");
     else
         snprintf(reason, size, "an image of %u by %u texels", (unsigned)image->width,
                  (unsigned)image->height);

@@ -25,12 +25,12 @@
     X(LENS, "lens", "a lens with an aperture: defocus blur", "", "")                                         \
     X(LAMPS, "lamps", "rays to lamps, from surfaces that scatter into many directions", "", "")              \
     X(DISCS, "discs", "lamps at infinity: discs in the sky", "", "")                                         \
-    X(TEXTURES, "textures", "colours, fuzz and light that vary over surfaces: checkers", "", "")             \
+    X(TEXTURES, "textures", "albedo, fuzz and emission from textures, such as checkers", "", "")             \
     X(NOISE, "noise", "textures of gradient noise: turbulence, marble, wood", "", "")                        \
     X(IMAGES, "images", "textures from image files", "", "")                                                 \
-    X(ENVIRONMENT, "environment", "an image all around as background", "", "")                               \
+    X(ENVIRONMENT, "environment", "an image that surrounds the scene as background", "", "")                 \
     X(MOTION, "motion", "spheres that move while the shutter is open", "", "")                               \
-    X(MEDIA, "media", "fog, smoke and tinted glass: what fills spheres or the whole scene", "", "")
+    X(MEDIA, "media", "fog, smoke and tinted glass, in spheres or in the whole scene", "", "")
 
 typedef enum BpEffect {
 #define BP_EFFECT_ENUM(identifier, name, text, left_out, absent) BP_EFFECT_##identifier,

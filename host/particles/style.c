@@ -3,6 +3,7 @@
 
 #include "base/color.h"
 #include "base/format.h"
+#include "base/plural.h"
 #include "bonds.h"
 #include "elements.h"
 
@@ -307,7 +308,7 @@ static BpStatus choose_colors(Job *job, BpError *err) {
     if (!(job->range[0] <= job->range[1]))
         return bp_fail(err, BP_ERR_SCENE, "found no number in column \"%s\", expected some to colour by",
                        style->color_column);
-    say(job, "%s from %.4g to %.4g by %s", style->color_column, job->range[0], job->range[1],
+    say(job, "coloured by %s from %.4g to %.4g (%s)", style->color_column, job->range[0], job->range[1],
         bp_colormap_names[style->map]);
     return BP_OK;
 }
@@ -544,8 +545,12 @@ static BpStatus run(Job *job, BpError *err) {
         snprintf(rest, sizeof rest, "%s", job->summary);
         bp_format_whole(p->count, all, sizeof all);
         bp_format_whole(job->shown_count, shown, sizeof shown);
-        snprintf(job->summary, job->size, "%s of %s particles%s%s", shown, all, rest[0] != '\0' ? "; " : "",
-                 rest);
+        if (job->shown_count == p->count)
+            snprintf(job->summary, job->size, "%s particle%s%s%s", all, bp_plural(p->count),
+                     rest[0] != '\0' ? "; " : "", rest);
+        else
+            snprintf(job->summary, job->size, "%s of %s particles%s%s", shown, all,
+                     rest[0] != '\0' ? "; " : "", rest);
     }
     return BP_OK;
 }

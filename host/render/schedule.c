@@ -1,7 +1,7 @@
 /* schedule.c: see schedule.h. */
 #include "schedule.h"
 
-/* A pass has at most this many samples a pixel, unless the picture is so small that a chunk would not be
+/* A pass has at most this many samples per pixel, unless the picture is so small that a chunk would not be
  * filled. */
 #define PASS_SAMPLES_MAX 64u
 

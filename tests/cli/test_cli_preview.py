@@ -108,7 +108,7 @@ class Preview(ProgramTest):
                                (("--preview", "1", "--no-clobber"), "--no-clobber refuses"),
                                (("--preview", "0"), "--preview"),
                                (("--show",), "needs standard error to be a terminal"),
-                               (("--show", "-q"), "wants errors only")):
+                               (("--show", "-q"), "allows only errors")):
             result = self.run_program("render", "s.json", *options)
             self.assertEqual(result.returncode, 2, result.errors)
             self.assertIn(words, result.errors)

@@ -85,7 +85,8 @@ static void wrong_members_are_named(void **state) {
         {"\"decision_bytes\": 50", "\"decision_bytes\": 49", "too long"},
         {"\"decision_bytes\": 50", "\"decision_bytes\": 51", "truncated"},
         {"\"decision_bytes\": 50", "\"decision_bytes\": -1", "\"decision_bytes\""},
-        {"\"decision_bytes\": 50", "\"decision_bytes\": 2147483647", "more than so few can be unpacked to"},
+        {"\"decision_bytes\": 50", "\"decision_bytes\": 2147483647",
+         "more than these bytes can be unpacked to"},
         {"\"adaptive\": true", "\"adaptive\": 1", "\"adaptive\""},
         {"\"target\": 1000", "\"target\": 0", "\"target\""},
         {"\"target\": 1000", "\"target\": 4294967295", "\"plan\""},
@@ -217,10 +218,10 @@ static void wrong_numbers_are_refused(void **state) {
     refuse_film(&files, film, "pixel 8 holds 4 samples in replicate 1, which contradicts its sample ranges");
     film->counts[33] = 2;
     film->depth[8] = NAN;
-    refuse_film(&files, film, "the depth of pixel 8 is no number");
+    refuse_film(&files, film, "the depth of pixel 8 is not a number");
     film->depth[8] = INFINITY;
     film->albedo[3 * 8 + 1] = INFINITY;
-    refuse_film(&files, film, "the albedo of pixel 8 is no number");
+    refuse_film(&files, film, "the albedo of pixel 8 is not a number");
     film->albedo[3 * 8 + 1] = 0;
     film->met[8] = 5; /* of 4 samples */
     refuse_film(&files, film, "the alpha of pixel 8 is above 1");

@@ -49,7 +49,7 @@ static BpStatus write_results(BpRender *render, const char *picture_path, const 
         status = bp_picture_write(&picture, picture_path, BP_FORMAT_EXR, BP_TRANSFER_LINEAR, err);
     if (status == BP_OK) {
         bp_film_info(film, &info);
-        printf("stopped by %s: error %.6f after %llu samples a pixel\n", bp_stop_reason_name(reason),
+        printf("stopped by %s: error %.6f after %llu samples per pixel\n", bp_stop_reason_name(reason),
                bp_film_nrmse(film), (unsigned long long)info.samples_per_pixel);
     }
     bp_picture_clear(&picture);

@@ -49,7 +49,7 @@ class Scenes(ProgramTest):
         self.write("a.xyz", ATOMS)
         result = self.succeed("render", "a.xyz", "--width", 16, "--spp", 2)
         self.assertEqual(self.files(), ["a.png", "a.xyz"])
-        self.assertIn("a.xyz: 4 of 4 particles; van der Waals radii", result.errors)
+        self.assertIn("a.xyz: 4 particles; van der Waals radii", result.errors)
         self.write("b.xyz.gz", gzip.compress(ATOMS.encode()))
         self.succeed("render", "b.xyz.gz", *SIZE)
         self.assertIn("b.png", self.files())

@@ -9,7 +9,7 @@
 
 #include <cmocka.h>
 
-/* A render whose error is `one_sample` / sqrt(samples) and which traces `rate` samples a pixel a second. */
+/* A render whose error is `one_sample` / sqrt(samples) and which traces `rate` samples per pixel a second. */
 static BpStopReason run(const BpStopRule *rule, double one_sample, double rate, BpStopState *state,
                         int *looks) {
     BpStopReason reason = BP_STOP_NOT_YET;

@@ -91,8 +91,9 @@ static void honest_and_better(void **state) {
         all_square += variance;
     }
     print_message(
-        SCENE ", %u samples a pixel: actual over claimed error %.3f; variance of even sampling over that of "
-              "adaptive %.2f; bias of the picture %.1f standard errors, of the worst of %u blocks %.1f\n",
+        SCENE
+        ", %u samples per pixel: actual over claimed error %.3f; variance of even sampling over that of "
+        "adaptive %.2f; bias of the picture %.1f standard errors, of the worst of %u blocks %.1f\n",
         SAMPLES, sqrt(adaptive.actual / adaptive.claimed), even.actual / adaptive.actual,
         all / sqrt(all_square), blocks, worst);
     assert_true(fabs(sqrt(adaptive.actual / adaptive.claimed) - 1) < 0.1);

@@ -87,7 +87,7 @@ static void test_advice(void **state) {
     assert_true(result.series[3].points[1].front);
 }
 
-/* What render would refuse is no advice: adaptive sampling begins at 32 samples a pixel. */
+/* What render would refuse is no advice: adaptive sampling begins at 32 samples per pixel. */
 static void test_advice_can_be_followed(void **state) {
     (void)state;
     static BpStudyResult result;

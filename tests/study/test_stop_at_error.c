@@ -101,7 +101,7 @@ static void check_sampler(const Case *test, BpSampler sampler, bool adaptive) {
     const double nrmse = sqrt(square), standard = sqrt((mean_square - mean * mean) / (SEEDS - 1));
     const double z = (mean - truth) / standard;
     print_message(
-        "%s, %s: told %.1f %%, true RMS %.3f %%, after %.0f samples a pixel on average, %d of %d at the "
+        "%s, %s: told %.1f %%, true RMS %.3f %%, after %.0f samples per pixel on average, %d of %d at the "
         "minimum; foretold within %.0f %% (%d looks); brightness off by %.1f standard errors of %.4f %%\n",
         SCENE,
         adaptive                      ? "adaptive"

@@ -197,7 +197,7 @@ static void refused_with_place_and_remedy(void **state) {
          {"textures.squares.wrap: found the text \"mirror\"", "\"repeat\" or \"clamp\""}},
         {ONE(OVER ", \"file\": \"a\""), {"textures.squares.file: found in a texture", "an image"}},
         {"{ \"camera\": {}, \"background\": { \"turn\": 1 } }",
-         {"background.turn: found in a background that is no image", "\"image\""}},
+         {"background.turn: found in a background without an image", "\"image\""}},
         {"{ \"camera\": {}, \"background\": { \"image\": \"a\", \"top\": [1, 1, 1] } }",
          {"background.top: found beside \"image\"", "remove one"}},
         {"{ \"camera\": {}, \"background\": { \"image\": \"none.exr\" } }",
