@@ -480,6 +480,7 @@ static BpStatus prepare(const BpCommandLine *line, Bench *bench, BpError *err) {
         if (bp_interrupted())
             return bp_fail(err, BP_ERR_INTERRUPTED, "interrupted before a scene was traced");
         BP_TRY(write_fixed_scene(line, entry->name, bench->folder, entry->path, sizeof entry->path, err));
+        if (line->output != NULL) bp_say(line, "%s: the scene %s", entry->path, entry->name);
     }
     return BP_OK;
 }

@@ -125,6 +125,11 @@ class Clobber(ProgramTest):
         self.assertEqual(self.succeed("render", "s.json", "-o", "a.png", "-q").errors, "")
         self.assertNotIn("overwritten", self.succeed("render", "s.json", "-o", "/dev/null", "--format", "png").errors)
 
+    def test_written_scenes_are_named(self):
+        os.mkdir(self.path("folder"))
+        said = self.succeed("bench", "cover", "field-10", "-o", "folder").errors
+        self.assertEqual(said, "folder/cover.json: the scene cover\nfolder/field-10.json: the scene field-10\n")
+
     def test_devices_and_pipes_are_no_files(self):
         self.succeed("render", "s.json", "-o", "/dev/null", "--format", "png", "--no-clobber")
         self.succeed("render", "s.json", "-o", "-", "--no-clobber")
