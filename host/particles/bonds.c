@@ -156,6 +156,38 @@ static BpStatus add_bond(BpBonds *bonds, uint32_t a, uint32_t b, BpError *err) {
     return BP_OK;
 }
 
+static int compare_bonds(const void *a, const void *b) {
+    const uint32_t *const one = a, *const other = b;
+    if (one[0] != other[0]) return one[0] < other[0] ? -1 : 1;
+    return one[1] < other[1] ? -1 : one[1] > other[1];
+}
+
+/* Whether the file gives the bond, i < k. */
+static bool is_given(const BpBonds *bonds, uint32_t i, uint32_t k) {
+    const uint32_t pair[2] = {i, k};
+    return bonds->given > 0 &&
+           bsearch(pair, bonds->pair, bonds->given, sizeof *bonds->pair, compare_bonds) != NULL;
+}
+
+/* The bonds of the file among the particles shown. PDB files list them from both sides, and double bonds
+ * twice: these are brought into order, each once. */
+static BpStatus take_given(const BpParticles *p, const bool *shown, BpBonds *bonds, BpError *err) {
+    for (size_t i = 0; i < p->bond_count; i++) {
+        const uint32_t a = p->bonds[i][0], b = p->bonds[i][1];
+        const bool turn = p->bonds_partial && a > b;
+        if (shown[a] && shown[b] && a != b) BP_TRY(add_bond(bonds, turn ? b : a, turn ? a : b, err));
+    }
+    bonds->given = bonds->count;
+    if (!p->bonds_partial || bonds->count == 0) return BP_OK;
+    bonds->given = 0;
+    qsort(bonds->pair, bonds->count, sizeof *bonds->pair, compare_bonds);
+    for (size_t i = 0; i < bonds->count; i++)
+        if (i == 0 || compare_bonds(bonds->pair[i], bonds->pair[bonds->given - 1]) != 0)
+            memmove(bonds->pair[bonds->given++], bonds->pair[i], sizeof *bonds->pair);
+    bonds->count = bonds->given;
+    return BP_OK;
+}
+
 /* Finds the bonds of one particle with those of higher numbers. Alternative places of an atom are not bonded
  * to each other; an atom has at most 12 bonds. */
 static BpStatus bond_one(const Grid *grid, uint32_t i, BpBonds *bonds, BpError *err) {
@@ -180,6 +212,7 @@ static BpStatus bond_one(const Grid *grid, uint32_t i, BpBonds *bonds, BpError *
             const double least = 0.4 * p->angstrom;
             if (squared > reach * reach || squared < least * least || found == MOST) continue;
             found++;
+            if (is_given(bonds, i, k)) continue;
             BP_TRY(add_bond(bonds, i, k, err));
         }
     }
@@ -188,20 +221,19 @@ static BpStatus bond_one(const Grid *grid, uint32_t i, BpBonds *bonds, BpError *
 
 BpStatus bp_bonds_find(const BpParticles *particles, const bool *shown, BpBonds *bonds, BpError *err) {
     *bonds = (BpBonds){0};
-    BpStatus status = BP_OK;
-    for (size_t i = 0; i < particles->bond_count && status == BP_OK; i++) {
-        const uint32_t a = particles->bonds[i][0], b = particles->bonds[i][1];
-        if (shown[a] && shown[b] && a != b) status = add_bond(bonds, a, b, err);
-    }
-    if (particles->bond_count == 0 && particles->has_element && particles->angstrom > 0) {
+    BpStatus status = take_given(particles, shown, bonds, err);
+    const bool find = particles->bond_count == 0 || particles->bonds_partial;
+    if (status == BP_OK && find && particles->has_element && particles->angstrom > 0) {
         Grid grid;
         double largest = 0;
         for (size_t i = 0; i < particles->count; i++)
             largest = fmax(largest, (double)bp_elements[particles->tag[i].element].covalent);
-        BP_TRY(grid_init(&grid, particles, shown, (2 * largest + 0.4) * particles->angstrom, err));
-        for (size_t i = 0; i < particles->count && status == BP_OK; i++)
-            if (shown[i]) status = bond_one(&grid, (uint32_t)i, bonds, err);
-        grid_clear(&grid);
+        status = grid_init(&grid, particles, shown, (2 * largest + 0.4) * particles->angstrom, err);
+        if (status == BP_OK) {
+            for (size_t i = 0; i < particles->count && status == BP_OK; i++)
+                if (shown[i]) status = bond_one(&grid, (uint32_t)i, bonds, err);
+            grid_clear(&grid);
+        }
     }
     if (status != BP_OK) {
         free(bonds->pair);

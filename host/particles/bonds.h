@@ -10,11 +10,12 @@
 typedef struct BpBonds {
     uint32_t (*pair)[2];
     size_t count, capacity;
+    size_t given; /* the first ones: those of the file */
 } BpBonds;
 
-/* The bonds among the particles of which shown[i] holds: those that the file gives, else those of atoms
- * nearer than the sum of their covalent radii and 0.4 angstrom (E. Meng, R. Lewis 1991), also across a
- * periodic cell. Release bonds->pair with free(). */
+/* The bonds among the particles of which shown[i] holds: those that the file gives. Where it gives
+ * none, or its format gives only some, also those of atoms nearer than the sum of their covalent radii and
+ * 0.4 angstrom (E. Meng, R. Lewis 1991), also across a periodic cell. Release bonds->pair with free(). */
 BpStatus bp_bonds_find(const BpParticles *particles, const bool *shown, BpBonds *bonds, BpError *err);
 
 /* Moves the particles of each molecule next to each other, where the cell's sides part them; a molecule that

@@ -110,6 +110,8 @@ BpStatus bp_particle_file_open(FILE *stream, const char *name, BpParticleFormat 
 static void drop_state(BpParticleFile *file) {
     if (file->format == BP_PARTICLES_GSD)
         gsd_state_destroy(file->state);
+    else if (file->format == BP_PARTICLES_PDB)
+        pdb_state_destroy(file->state);
     else
         free(file->state);
     file->state = NULL;

@@ -75,9 +75,11 @@ typedef struct BpParticles {
     double cell_origin[3], cell[3][3]; /* the cell's edges as rows */
     uint32_t (*bonds)[2];              /* Optional: given in the file */
     size_t bond_count;
-    double angstrom;                    /* in the file's unit of length; 0: the file's unit is unknown */
-    int up;                             /* the axis that the format's world has up: 1 y, 2 z */
-    bool flat;                          /* two dimensions */
+    bool bonds_partial;    /* the format gives some bonds only (PDB): others are found by distance */
+    size_t bonds_left_out; /* given, but between no two atoms of the frame */
+    double angstrom;       /* in the file's unit of length; 0: the file's unit is unknown */
+    int up;                /* the axis that the format's world has up: 1 y, 2 z */
+    bool flat;             /* two dimensions */
     char notes[BP_PARTICLE_NOTES_SIZE]; /* what was guessed: "elements from atom names; ..." */
     size_t capacity, bond_capacity;     /* the arrays' */
 } BpParticles;

@@ -1,15 +1,29 @@
 /* read_pdb.c: PDB, the format of fixed columns (wwPDB, version 3.3), as programs of all ages write it; see
  * reader.h. */
 #include "elements.h"
+#include "pdb_connect.h"
 #include "reader.h"
 
 #include <stdlib.h>
 #include <string.h>
 
-enum { CELL_LINE_SIZE = 64 };
+/* How far connections are looked for behind a model. */
+#define TAIL_BYTES_MAX ((uint64_t)1 << 30)
+
+/* What is kept from frame to frame. */
+typedef struct State {
+    char cell[64];        /* the line that says it, or "" */
+    PdbLinks links, tail; /* of this frame; behind the last of several models, for each of them */
+    PdbSerials serials;   /* of this frame */
+    bool tail_read;
+} State;
 
 static bool is_record(const char *line, const char *name) {
     return strncmp(line, name, strlen(name)) == 0;
+}
+
+static bool is_atom(const char *line) {
+    return is_record(line, "ATOM  ") || is_record(line, "HETATM");
 }
 
 /* A number in fixed columns; false when there is none. */
@@ -55,37 +69,73 @@ static BpStatus take_atom(BpParticleFile *file, const char *line, char *alternat
     return frame_add(file, &particle, true, err);
 }
 
+void pdb_state_destroy(void *state) {
+    State *const pdb = state;
+    if (pdb == NULL) return;
+    free(pdb->links.pair);
+    free(pdb->tail.pair);
+    free(pdb->serials.key);
+    free(pdb);
+}
+
+/* Files of several models list the connections once, after the last of them. Reads on to there, and then
+ * returns to where it was. What is wrong in later models is no fault of this one. */
+static BpStatus read_tail(Input *input, State *state, BpError *err) {
+    const uint64_t taken = input->taken, number = input->line;
+    BpStatus status = BP_OK;
+    char *line = NULL;
+    while (status == BP_OK && input->taken - taken < TAIL_BYTES_MAX &&
+           input_line(input, &line, NULL) == BP_OK) {
+        if (line == NULL) break;
+        if (is_atom(line)) state->tail.count = state->tail.unreadable = 0; /* those of a model are its own */
+        if (is_record(line, "CONECT")) status = pdb_take_links(&state->tail, line, err);
+    }
+    BP_TRY(status);
+    state->tail_read = true;
+    BP_TRY(input_rewind(input, err));
+    if (!input_skip(input, taken))
+        return input_fail(input, false, err, "found a shorter file than before, expected it unchanged");
+    input->line = number;
+    return BP_OK;
+}
+
 BpStatus read_pdb(BpParticleFile *file, bool *end, BpError *err) {
     static const char *const columns[] = {"occupancy", "bfactor", "residue_number"};
     Input *const input = &file->input;
-    bool begun = false, has_atoms = false;
+    bool begun = false, has_atoms = false, model = false;
     char *line = NULL, alternative = '\0';
+    if (file->state == NULL) file->state = calloc(1, sizeof(State));
+    State *const state = file->state;
+    if (state == NULL) return bp_fail(err, BP_ERR_MEMORY, "out of memory");
+    state->links.count = state->links.unreadable = state->serials.count = 0;
     for (;;) {
         BP_TRY(input_line(input, &line, err));
         if (line == NULL) break;
-        if (is_record(line, "CRYST1")) {
-            /* Kept for the frames that follow, since many files say it once. */
-            if (file->state == NULL) file->state = calloc(1, CELL_LINE_SIZE);
-            if (file->state == NULL) return bp_fail(err, BP_ERR_MEMORY, "out of memory");
-            snprintf(file->state, CELL_LINE_SIZE, "%.60s", line);
-        }
-        if (has_atoms && (is_record(line, "ENDMDL") || strcmp(line, "END") == 0 || is_record(line, "END ")))
-            break;
+        /* Kept for the frames that follow, since many files say it once. */
+        if (is_record(line, "CRYST1")) snprintf(state->cell, sizeof state->cell, "%.60s", line);
+        model = is_record(line, "ENDMDL");
+        if (has_atoms && (model || strcmp(line, "END") == 0 || is_record(line, "END "))) break;
         if (has_atoms && is_record(line, "MODEL ")) {
             input_hold(input, line);
             break;
         }
-        const bool atom = is_record(line, "ATOM  ") || is_record(line, "HETATM");
-        if (!atom) continue;
+        if (has_atoms && file->out != NULL && is_record(line, "CONECT"))
+            BP_TRY(pdb_take_links(&state->links, line, err));
+        if (!is_atom(line)) continue;
         if (!begun) BP_TRY(frame_begin(file, columns, 3, err));
         begun = has_atoms = true;
         BP_TRY(take_atom(file, line, &alternative, err));
+        if (file->out != NULL) BP_TRY(pdb_take_serial(&state->serials, line, err));
     }
     *end = !has_atoms && file->frame > 0;
     if (*end) return BP_OK;
     if (!has_atoms)
         return input_fail(input, false, err, "found no line of ATOM or HETATM, expected a PDB file's atoms");
-    if (file->out != NULL) file->out->angstrom = 1;
-    if (file->state != NULL) take_cell(file, file->state, strlen(file->state));
-    return BP_OK;
+    if (file->out == NULL) return BP_OK;
+    file->out->angstrom = 1;
+    if (state->cell[0] != '\0') take_cell(file, state->cell, strlen(state->cell));
+    if (model && !state->tail_read) BP_TRY(read_tail(input, state, err));
+    file->out->bonds_partial = true;
+    BP_TRY(pdb_add_bonds(file, &state->links, &state->serials, err));
+    return pdb_add_bonds(file, &state->tail, &state->serials, err);
 }

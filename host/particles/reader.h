@@ -66,6 +66,8 @@ ReadFrame read_xyz, read_pdb, read_cif, read_gro, read_dump, read_data, read_gsd
 
 /* Releases what a GSD file's index takes. */
 void gsd_state_destroy(void *state);
+/* Releases what a PDB file's reader keeps from frame to frame. */
+void pdb_state_destroy(void *state);
 BpStatus gsd_frame_count(BpParticleFile *file, uint64_t *count, BpError *err);
 
 #endif

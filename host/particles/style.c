@@ -446,7 +446,7 @@ static BpStatus put_beads(Job *job, const double a[3], const double b[3], double
 static BpStatus put_bonds(Job *job, BpError *err) {
     const BpParticles *const p = job->p;
     const bool molecules = p->angstrom > 0 && p->has_element;
-    size_t drawn = 0;
+    size_t drawn = 0, given = 0;
     for (size_t i = 0; i < job->bonds.count; i++) {
         const uint32_t a = job->bonds.pair[i][0], b = job->bonds.pair[i][1];
         double middle[3], color[3], length = 0;
@@ -471,10 +471,20 @@ static BpStatus put_bonds(Job *job, BpError *err) {
         color_of(job, b, color);
         BP_TRY(put_beads(job, middle, p->position[b], radius, color, err));
         drawn++;
+        given += i < job->bonds.given;
     }
-    char number[32];
-    say(job, "%s bonds%s", bp_format_whole(drawn, number, sizeof number),
-        p->bond_count == 0 ? " by distance" : "");
+    char number[32], given_number[32];
+    bp_format_whole(drawn, number, sizeof number);
+    if (given == drawn && p->bond_count > 0)
+        say(job, "%s bonds", number);
+    else if (given == 0)
+        say(job, "%s bonds by distance", number);
+    else
+        say(job, "%s bonds, %s of them given by the file, the others by distance", number,
+            bp_format_whole(given, given_number, sizeof given_number));
+    if (p->bonds_left_out > 0)
+        say(job, "left out: %s connections to atoms that are missing or share their number",
+            bp_format_whole(p->bonds_left_out, number, sizeof number));
     return BP_OK;
 }
 

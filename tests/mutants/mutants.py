@@ -34,6 +34,11 @@ def lamp_pairs(*names):
     return Script("tests/lamps/test_lamp_pairs.py", names, "9 lamps")
 
 
+def particle_scenes(*names):
+    """Tests of tests/particles/test_particle_scenes.py."""
+    return Script("tests/particles/test_particle_scenes.py", tuple(f"Scenes.test_{name}" for name in names), "1 exact")
+
+
 def texture_cells(*names):
     """Cases of tests/textures/test_texture_cells.py."""
     return Script("tests/textures/test_texture_cells.py", names, "9 textures")
@@ -121,6 +126,13 @@ MUTANTS = [
     Mutant("a camera that does not see arrays", "the camera was fitted to the document's particles alone",
            [patch("host/formats/scene_sets.c", "    scene->has_particles = true;", "")],
            [test("test_library_arrays", "1 exact")]),
+    # ---- bonds ----------------------------------------------------------------------------------------------
+    Mutant("a ligand's bonds for a protein's", "PDB files list the bonds of ligands, which stood for all", [
+        patch("host/particles/bonds.c", "particles->bond_count == 0 || particles->bonds_partial;", "particles->bond_count == 0;")],
+           [particle_scenes("connections_of_pdb")]),
+    Mutant("a bond drawn twice", "once as the file's, once by distance", [
+        patch("host/particles/bonds.c", "            if (is_given(bonds, i, k)) continue;\n", "")],
+           [particle_scenes("connections_of_pdb")]),
     # ---- ranks that share a render ---------------------------------------------------------------------------
     Mutant("the end of a block", "strips of equal length, and nobody has what is left over",
            [patch("host/render/portion.c", "const uint64_t length = portion->strip + 1 == portion->strips ? all - first : step;",

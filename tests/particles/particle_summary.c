@@ -29,10 +29,11 @@ static void print_summary(const BpParticles *p) {
         alternatives += (p->tag[i].flags & BP_PARTICLE_ALTERNATIVE) != 0;
         dummies += (p->tag[i].flags & BP_PARTICLE_DUMMY) != 0;
     }
-    printf("\"count\": %zu, \"bonds\": %zu, \"angstrom\": %g, \"up\": %d, \"flat\": %s, \"notes\": \"%s\", "
+    printf("\"count\": %zu, \"bonds\": %zu, \"left_out\": %zu, \"angstrom\": %g, \"up\": %d, \"flat\": %s, "
+           "\"notes\": \"%s\", "
            "\"alternatives\": %zu, \"dummies\": %zu",
-           p->count, p->bond_count, p->angstrom, p->up, p->flat ? "true" : "false", p->notes, alternatives,
-           dummies);
+           p->count, p->bond_count, p->bonds_left_out, p->angstrom, p->up, p->flat ? "true" : "false",
+           p->notes, alternatives, dummies);
     if (p->count > 0)
         printf(", \"low\": [%.9g, %.9g, %.9g], \"high\": [%.9g, %.9g, %.9g], \"mean\": [%.9g, %.9g, %.9g]",
                low[0], low[1], low[2], high[0], high[1], high[2], sum[0] / (double)p->count,

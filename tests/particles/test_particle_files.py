@@ -283,6 +283,42 @@ class Formats(FileTest):
         second = self.of("a.pdb", PDB, 1)
         self.assertEqual((second["count"], second["cell"]), (1, s["cell"]))
 
+    def test_connections_of_pdb(self):
+        """CONECT: as given, by the serial numbers of the frame; what cannot be a bond is counted and is no error."""
+        def atoms(*serials):
+            return "".join(f"HETATM{serial:>5s}  C   LIG A   1    {2.0 * i:8.3f}   0.000   0.000\n"
+                           for i, serial in enumerate(serials))
+
+        def found(text, frame=0):
+            s = self.of("a.pdb", text, frame)
+            return s["bonds"], s["left_out"]
+        four = atoms("11", "12", "13", "00014")
+        for lines, expected in [
+                ("", (0, 0)),
+                ("CONECT   11   12\n", (1, 0)),
+                ("CONECT   11   12   13   14   12\n", (4, 0)),  # a double bond
+                ("CONECT   11   12" + 15 * " " + "   13   14\n", (1, 0)),  # a hydrogen bond, in older files
+                ("CONECT   1100012   14\r\n", (2, 0)),  # fields that touch
+                ("CONECT   11   12   99\nCONECT   98   11\n", (1, 2)),  # atoms that are missing
+                ("CONECT   11   11\n", (0, 1)),
+                ("CONECT\nCONECT    \nCONECT   11\n", (0, 2)),
+                ("CONECT 11 12 13\nCONECT   11  1.5   12\n", (1, 2)),  # not in columns; no whole number
+                ("CONECT\x80\xff\x01    11\n", (0, 1)),
+                ("CONECT   11" + 5000 * " 9999" + "\n", (0, 4))]:
+            self.assertEqual(found(four + lines + "END\n"), expected, lines[:60])
+        # Numbers above 99,999 are letters; of those that begin again nobody knows who is meant.
+        self.assertEqual(found(atoms("A0000", "A0001", "186a0", "*****") + "CONECTA0000A0001186a0*****\n"), (2, 1))
+        self.assertEqual(found(atoms("1", "2", "1", "") + "CONECT    1    2\nCONECT    2\n"), (0, 1))
+        # Each frame has its own ...
+        own = four + "CONECT   11   12\nEND\n" + atoms("12", "11", "7") + "CONECT    7   11   12\nEND\n" + four + "END\n"
+        self.assertEqual([found(own, frame) for frame in range(3)], [(1, 0), (2, 0), (0, 0)])
+        # ... or they stand once, after all models; also where frames are passed over.
+        models = "".join(f"MODEL {i}\n{four}" + ("CONECT   12   13\n" if i == 1 else "") + "ENDMDL\n" for i in range(3))
+        models += "CONECT   11   12   99\nCONECT   13   14\nMASTER\nEND\n"
+        self.assertEqual([found(models, frame) for frame in (0, 1, 2, -1, -3)], [(2, 1), (3, 1), (2, 1), (2, 1), (2, 1)])
+        path = self.write("a.pdb.gz", gzip.compress(models.encode()))
+        self.assertEqual((self.summary(path, 1)["bonds"], self.summary(path)["frames"]), (3, 3))
+
     def test_cif(self):
         s, pdb = self.of("a.cif", CIF, 0, "bfactor"), self.of("a.pdb", PDB)
         self.assertEqual((s["format"], s["frames"], s["count"], s["column_sum"]), ("mmCIF", 2, 5, 82.5))

@@ -178,6 +178,35 @@ class Scenes(ProgramTest):
         self.document_with({"file": "a.xyz", "box": True})
         self.assertGreater(self.spheres("x.json"), 1000)
 
+    def test_connections_of_pdb(self):
+        """PDB files list some bonds only: the others are found by distance, and each is drawn once."""
+        chain = [pdb_line(i, " C  ", "ALA", (1.4 * i, 0, 0), " C") for i in range(1, 6)]
+        metal = pdb_line(9, "ZN  ", " ZN", (1.4, 4, 0), "ZN", record="HETATM")
+        connections = "CONECT    1    9\nCONECT    9    1\nCONECT    2    1    1    3\nCONECT   50    1\n"
+        self.document_with({"file": "a.pdb", "style": "ball-and-stick"})
+        for text, says in [("", "4 bonds by distance\n"),
+                           (connections, "5 bonds, 3 of them given by the file, the others by distance; "
+                                         "left out: 1 connections to atoms that are missing or share their number\n"),
+                           ("CONECT    1    9\nCONECT    3    1    2    4    5\nCONECT    2    1\nCONECT    4    5\n", "7 bonds"),
+                           ("CONECT   50   51\n", "4 bonds by distance; left out: 1 connections")]:
+            self.write("a.pdb", "".join(chain) + metal + text + "END\n")
+            self.assertIn(says, self.notes("x.json"))
+        self.assertNotIn("bonds", self.notes("a.pdb"))  # as spheres
+        # The file's bond and the one by distance are one, from whichever side it is listed.
+        self.write("a.pdb", "".join(chain) + "END\n")
+        plain = self.spheres("x.json")
+        self.write("a.pdb", "".join(chain) + "CONECT    3    2    2    4\nCONECT    2    3\nEND\n")
+        self.assertEqual(self.spheres("x.json"), plain)
+        # Beads of a coarse-grained model, which no distance joins.
+        beads = [pdb_line(i, " C1 ", "DPP", (4.7 * i, 0, 0)) for i in range(1, 4)]
+        self.write("a.pdb", "".join(beads) + "CONECT    1    2\nCONECT    2    3\n")
+        self.assertRegex(self.notes("x.json"), r"2 bonds$")
+        # What is wrong in a later model is the error of that model.
+        self.write("a.pdb", "".join(beads) + "ENDMDL\n" + beads[0] + "\0\nENDMDL\nCONECT    1    2\n")
+        self.assertIn("0 bonds by distance", self.notes("x.json"))
+        self.document_with({"file": "a.pdb", "style": "ball-and-stick", "frame": 1})
+        self.fail_with(2, "scene", "x.json", says=["a.pdb:6:", "value 0"])
+
     def test_radii_and_colours(self):
         """Two points that fill a picture each: the albedo is read off an EXR's place, here by the mean of a white dome."""
         def mean(entry):
