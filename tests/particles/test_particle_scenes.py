@@ -171,9 +171,14 @@ class Scenes(ProgramTest):
     def test_bonds_and_box(self):
         self.write("a.xyz", '2\nLattice="9 0 0 0 9 0 0 0 9" Properties=species:S:1:pos:R:3\nC 1 1 1\nO 2.2 1 1\n')
         self.assertEqual(self.spheres("a.xyz"), 2)
+        self.document_with({"file": "a.xyz", "style": "ball-and-stick"})
+        bonds = self.spheres("x.json") - 2  # of 70 beads, an eighth of their radius apart, those outside of the balls
+        self.assertTrue(30 <= bonds <= 36, bonds)
+        glass = {"glass": {"type": "dielectric", "refraction_index": 1.5}}
+        self.document_with({"file": "a.xyz", "style": "ball-and-stick", "material": "glass"}, materials=glass)
+        self.assertEqual(self.spheres("x.json") - 2, 70)  # they are seen through the balls
         self.document_with({"file": "a.xyz", "bonds": True})
-        bonds = self.spheres("x.json") - 2
-        self.assertTrue(20 <= bonds <= 60, bonds)
+        self.assertEqual(self.spheres("x.json"), 2)  # the balls hide all of it
         self.assertIn("1 bonds by distance", self.notes("x.json"))
         self.document_with({"file": "a.xyz", "box": True})
         self.assertGreater(self.spheres("x.json"), 1000)
