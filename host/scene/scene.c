@@ -46,6 +46,7 @@ double bp_camera_origin(const BpScene *scene, double origin[3]) {
     double ahead[3], length = 0, nearest = INFINITY;
     memcpy(origin, camera->lookfrom, sizeof camera->lookfrom);
     if (camera->projection == BP_PERSPECTIVE) return 0;
+    if (bp_scene_medium(scene) != 0) return 0; /* rays fly through it from the camera on */
     for (int i = 0; i < 3; i++) {
         ahead[i] = camera->lookat[i] - camera->lookfrom[i];
         length = hypot(length, ahead[i]);
