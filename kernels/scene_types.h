@@ -52,7 +52,13 @@ typedef struct PackedCamera {
  * Where `columns` is not 0, the first of the images is shown instead, with as many texels around and `rows`
  * from top to bottom. `axes` are unit vectors: to its left and right edge, a quarter to the right of it, and
  * downwards. `image_power`: its mean luminance, in the unit of the lamps' power (below), or 0 where no rays
- * are sent to it. */
+ * are sent to it.
+ *
+ * The shadow catcher is a plane: its unit normal `catcher`, and in catcher[3] the scalar product of its
+ * points with it. Light that reaches it comes in parts: the share catcher_light[2] from the gradient, if it
+ * were everywhere as bright as at its brightest, `catcher_share` of a disc from that, if it stood in the
+ * zenith. Over the brightest luminance, that of the gradient is catcher_light[0] at the bottom and
+ * catcher_light[1] more at the top. catcher_light[3]: how far rays begin ahead of the camera. */
 typedef struct PackedSky {
     real bottom[4], top[4], up[4];
     real backdrop_bottom[4], backdrop_top[4];
@@ -60,6 +66,7 @@ typedef struct PackedSky {
     real axes[9];
     real columns, rows;
     real image_power;
+    real catcher[4], catcher_light[4];
 } PackedSky;
 
 /* A disc in the sky, a lamp at infinity: its radiance is added to the sky's in a cone of directions. */
@@ -71,7 +78,7 @@ typedef struct PackedDisc {
     real sine;   /* of the half angle, which is 90 degrees at most */
     real chord2; /* squared distance of its rim from `direction` */
     real seen;   /* 1: by camera rays too, 0: not by them */
-    real reserved;
+    real catcher_share;
 } PackedDisc;
 
 /* A texture: a checker of two colours, noise that mixes them, or an image. What is a whole number stands in
@@ -179,6 +186,7 @@ typedef struct PackedVariation {
 #define DISC_SINE 8u
 #define DISC_CHORD2 9u
 #define DISC_SEEN 10u
+#define DISC_CATCHER 11u
 
 /* A leaf is `width` spheres as structure of arrays: width reals each of center x, y, z and radius (> 0).
  * An empty lane has radius -1. Lane l of leaf f is slot f * width + l. What a path needs of a sphere that it
@@ -287,7 +295,7 @@ enum { PATTERN_CHECKER, PATTERN_PERLIN, PATTERN_TURBULENCE, PATTERN_MARBLE, PATT
 #ifdef BP_HOST
 _Static_assert(sizeof(real) == 8, "the host packs in double");
 _Static_assert(sizeof(PackedCamera) == 32 * sizeof(real), "PackedCamera has padding");
-_Static_assert(sizeof(PackedSky) == 40 * sizeof(real), "PackedSky has padding");
+_Static_assert(sizeof(PackedSky) == 48 * sizeof(real), "PackedSky has padding");
 _Static_assert(sizeof(PackedDisc) == 12 * sizeof(real), "PackedDisc has padding");
 _Static_assert(sizeof(PackedMaterial) == 8 * sizeof(real), "PackedMaterial has padding");
 _Static_assert(sizeof(PackedMaterialKind) == 16, "PackedMaterialKind has padding");

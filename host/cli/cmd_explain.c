@@ -93,7 +93,16 @@ static void print_path(const BpScene *scene, const BpPathLog *path, uint32_t x, 
             if (step->to_lamp) print_lamp_ray(step, out);
         } else {
             const bool backdrop = i == 0 && scene->backdrop != BP_BACKDROP_SKY;
-            fprintf(out, "       hits nothing: the %s", backdrop ? "backdrop" : "sky");
+            if (step->caught)
+                fprintf(out, "       after %.6g the shadow catcher, %s", step->distance,
+                        step->dark ? "in shadow\n" : "lit: ");
+            else
+                fprintf(out, "       hits nothing: ");
+            if (step->dark) {
+                radiance = step->radiance;
+                continue;
+            }
+            fprintf(out, "the %s", backdrop ? "backdrop" : "sky");
             for (uint32_t disc = 0; disc < 32 && !backdrop; ++disc)
                 if ((step->discs >> disc & 1u) != 0) fprintf(out, " and disc %" PRIu32, disc);
             fputc('\n', out);

@@ -213,6 +213,9 @@ static uint64_t mix_surroundings(uint64_t hash, const BpScene *scene) {
     for (int c = 0; c < 3; c++)
         is_gradient = is_gradient || scene->background_bottom[c] != scene->background_top[c];
     if (is_gradient && !(up[0] == 0 && up[1] == 1 && up[2] == 0)) hash = mix_reals(mix(hash, 0x7570u), up, 3);
+    if (scene->shadow_catcher.present)
+        hash = mix_real(mix_reals(mix(hash, 0x7363u), scene->shadow_catcher.normal, 3),
+                        scene->shadow_catcher.distance);
     if (scene->backdrop == BP_BACKDROP_SKY) return hash;
     hash = mix(hash, 0x6264u + (uint64_t)scene->backdrop);
     if (scene->backdrop == BP_BACKDROP_NONE) return hash;

@@ -1,11 +1,12 @@
 /* scene_background.c: what rays see that meet nothing, of a scene document.
  *
- * In:    the nodes of "background", "backdrop" and "light".   Out: these parts of a BpScene; ranges are
- * checked by scene_validate.c.   Knows: the grammar.   Does not know: the camera. */
+ * In:    the nodes of "background", "backdrop", "shadow_catcher" and "light".   Out: these parts of a
+ * BpScene; ranges are checked by scene_validate.c.   Knows: the grammar.   Does not know: the camera. */
 #include "scene_parse.h"
 
 #include "scene/light.h"
 
+#include <math.h>
 #include <string.h>
 
 static BpStatus parse_disc(const BpNode *node, BpDisc *disc, BpError *err) {
@@ -124,6 +125,35 @@ BpStatus bp_parse_backdrop(const BpNode *node, BpScene *scene, BpError *err) {
     const BpNode top = bp_node_member(node, "top");
     BP_TRY(bp_node_vector(&bottom, scene->backdrop_bottom, err));
     return bp_node_vector(&top, scene->backdrop_top, err);
+}
+
+BpStatus bp_parse_shadow_catcher(const BpNode *node, BpScene *scene, BpError *err) {
+    static const char *const names[] = {"up", "height"};
+    BpShadowCatcher *const catcher = &scene->shadow_catcher;
+    if (node->value == NULL) return BP_OK;
+    if (json_is_boolean(node->value)) {
+        BP_TRY(bp_node_boolean(node, &catcher->present, err));
+    } else if (json_is_object(node->value)) {
+        catcher->present = true;
+        BP_TRY(bp_node_object(node, names, BP_COUNT(names), err));
+    } else {
+        return bp_node_wrong(node, "true, false or { \"height\": 0, \"up\": [0, 1, 0] }", err);
+    }
+    const BpNode up = bp_node_member(node, "up"), height = bp_node_member(node, "height");
+    BP_TRY(bp_node_vector(&up, catcher->up, err));
+    BP_TRY(bp_node_number(&height, &catcher->height, err));
+    catcher->has_height = height.value != NULL;
+    double longest = 0;
+    for (int c = 0; c < 3; c++) longest = fmax(longest, fabs(catcher->up[c]));
+    if (up.value != NULL && !(longest >= 1e-12 && longest <= BP_COORDINATE_MAX))
+        return bp_node_wrong(&up, "the direction that is up, such as [0, 0, 1]", err);
+    if (!(fabs(catcher->height) <= BP_COORDINATE_MAX))
+        return bp_node_wrong(&height, "a coordinate from -1e12 to 1e12", err);
+    if (catcher->present && scene->environment != NULL)
+        return bp_node_fail(node, BP_PART_NAME, err,
+                            "found beside an image as background, expected colours and discs, whose light a "
+                            "shadow catcher knows; remove one");
+    return BP_OK;
 }
 
 BpStatus bp_parse_light(const BpNode *root, const char *name, BpScene *scene, BpError *err) {

@@ -16,6 +16,7 @@
 #include "scene/light.h"
 #include "scene/material.h"
 #include "scene/scene_fault.h"
+#include "scene/shadow_catcher.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -368,9 +369,10 @@ static BpStatus choose_fresnel(const BpSceneChanges *changes, BpScene *scene, Bp
 }
 
 static BpStatus parse_body(const BpNode *root, const BpSceneChanges *changes, BpScene *scene, BpError *err) {
-    static const char *const names[] = {
-        "format",   "title",     "source",  "camera", "background", "backdrop", "light", "transfer",
-        "textures", "materials", "spheres", "clouds", "particles",  "$schema",  "media", "medium"};
+    static const char *const names[] = {"format",   "title",         "source",    "camera",   "background",
+                                        "backdrop", "light",         "transfer",  "textures", "materials",
+                                        "spheres",  "clouds",        "particles", "$schema",  "media",
+                                        "medium",   "shadow_catcher"};
     BP_TRY(bp_node_object(root, names, BP_COUNT(names), err));
     BP_TRY(bp_node_require(root, "camera", "one, such as \"camera\": { \"image_width\": 400 }", err));
     BP_TRY(parse_head(root, scene, err));
@@ -392,6 +394,8 @@ static BpStatus parse_body(const BpNode *root, const BpSceneChanges *changes, Bp
     if (scene->camera.projection == BP_PERSPECTIVE) scene->camera.view_height = 0;
     BP_TRY(bp_parse_background(&background, changes->flags, scene, err));
     BP_TRY(bp_parse_backdrop(&backdrop, scene, err));
+    const BpNode catcher = bp_node_member(root, "shadow_catcher");
+    BP_TRY(bp_parse_shadow_catcher(&catcher, scene, err));
     BP_TRY(bp_parse_light(root, changes->light, scene, err));
     BP_TRY(bp_parse_textures(&textures, changes->flags, scene, err));
     BP_TRY(bp_parse_media(&media, scene, err));
@@ -415,6 +419,7 @@ static BpStatus parse_body(const BpNode *root, const BpSceneChanges *changes, Bp
     if ((changes->flags & BP_PARSE_NO_CLOUDS) == 0) BP_TRY(fit_camera(&camera, changes, scene, err));
     if ((changes->flags & BP_PARSE_MADE) != 0 && scene->light == BP_LIGHT_SKY)
         scene->background_up[scene->up] = 1; /* the world's */
+    bp_shadow_catcher_place(scene);
     bp_light_place(scene);
     return refuse_faults(root, scene, err);
 }

@@ -62,6 +62,8 @@ BpStatus bp_scene_parse_with(const char *text, size_t length, const char *name, 
 /* What rays see that meet nothing (scene_background.c); `flags` as in bp_scene_parse_with. */
 BpStatus bp_parse_background(const BpNode *node, unsigned flags, BpScene *scene, BpError *err);
 BpStatus bp_parse_backdrop(const BpNode *node, BpScene *scene, BpError *err);
+/* After the background, since an image there is refused. */
+BpStatus bp_parse_shadow_catcher(const BpNode *node, BpScene *scene, BpError *err);
 /* `name`: Optional, stands for the node. After the backdrop, which is white where a light has none. */
 BpStatus bp_parse_light(const BpNode *root, const char *name, BpScene *scene, BpError *err);
 

@@ -183,6 +183,25 @@ static BpStatus put_background(FILE *out, const BpScene *scene, BpError *err) {
 }
 
 /* Writes what camera rays that meet nothing see, if that is not the background. */
+static void put_shadow_catcher(FILE *out, const BpShadowCatcher *catcher) {
+    const bool has_up = catcher->up[0] != 0 || catcher->up[1] != 0 || catcher->up[2] != 0;
+    if (!catcher->present) return;
+    if (!has_up && !catcher->has_height) {
+        fputs(",\n  \"shadow_catcher\": true", out);
+        return;
+    }
+    fputs(",\n  \"shadow_catcher\": { ", out);
+    if (catcher->has_height) {
+        fputs("\"height\": ", out);
+        put_number(out, catcher->height);
+    }
+    if (has_up) {
+        fputs(catcher->has_height ? ", \"up\": " : "\"up\": ", out);
+        put_vector(out, catcher->up);
+    }
+    fputs(" }", out);
+}
+
 static void put_backdrop(FILE *out, const BpScene *scene) {
     if (scene->backdrop == BP_BACKDROP_SKY) return;
     if (scene->backdrop == BP_BACKDROP_NONE) {
@@ -404,6 +423,7 @@ BpStatus bp_scene_print(const BpScene *scene, FILE *out, BpError *err) {
     else
         fprintf(out, ",\n  \"light\": \"%s\"", bp_light_names[scene->light]);
     put_backdrop(out, scene);
+    put_shadow_catcher(out, &scene->shadow_catcher);
     fprintf(out, ",\n  \"transfer\": \"%s\"", bp_transfer_names[scene->transfer]);
     if (scene->texture_count > 0) BP_TRY(put_textures(out, scene, err));
     if (scene->medium_count > 0) BP_TRY(put_media(out, scene, err));

@@ -21,7 +21,7 @@ BpStatus bp_layout_check(BpDevice *device, cl_program program, bool single_preci
         cl_uint size, offset;
     } expected[STRUCTS] = {
         OF_REALS(PackedCamera, ahead),
-        OF_REALS(PackedSky, image_power),
+        OF_REALS(PackedSky, catcher_light),
         OF_REALS(PackedMaterial, refraction_index),
         OF_UINTS(PackedMaterialKind, total_reflection),
     };

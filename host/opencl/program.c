@@ -85,6 +85,7 @@ static const struct {
     {"integrator/pixels.cl", IN_ALL},
     {"integrator/lamps_direct.cl", IN_ALL},
     {"integrator/discs_direct.cl", IN_ALL},
+    {"integrator/shadow_catcher.cl", IN_ALL},
     {"integrator/bounce.cl", IN_ALL},
     {"entry/trace_sample.cl", IN_SAMPLE},
     {"entry/trace_packet.cl", IN_PACKET},

@@ -335,6 +335,9 @@ void bp_effects_analyse(const BpScene *scene, BpEffects *effects) {
     if (explain_environment(scene, size, effects->reason[BP_EFFECT_ENVIRONMENT]))
         effects->bits |= 1u << BP_EFFECT_ENVIRONMENT;
     if (explain_media(scene, size, effects->reason[BP_EFFECT_MEDIA])) effects->bits |= 1u << BP_EFFECT_MEDIA;
+    snprintf(effects->reason[BP_EFFECT_SHADOW_CATCHER], size,
+             scene->shadow_catcher.present ? "the scene has a shadow catcher" : "no shadow catcher");
+    if (scene->shadow_catcher.present) effects->bits |= 1u << BP_EFFECT_SHADOW_CATCHER;
     if (explain_motion(scene, size, effects->reason[BP_EFFECT_MOTION]))
         effects->bits |= 1u << BP_EFFECT_MOTION;
     if ((effects->bits & (1u << BP_EFFECT_EMISSION | 1u << BP_EFFECT_DISCS)) == 0 && !sampled_image(scene))

@@ -30,7 +30,8 @@
     X(IMAGES, "images", "textures from image files", "", "")                                                 \
     X(ENVIRONMENT, "environment", "an image that surrounds the scene as background", "", "")                 \
     X(MOTION, "motion", "spheres that move while the shutter is open", "", "")                               \
-    X(MEDIA, "media", "fog, smoke and tinted glass, in spheres or in the whole scene", "", "")
+    X(MEDIA, "media", "fog, smoke and tinted glass, in spheres or in the whole scene", "", "")               \
+    X(SHADOW_CATCHER, "shadow_catcher", "a plane that shows nothing but the shadow on it", "", "")
 
 typedef enum BpEffect {
 #define BP_EFFECT_ENUM(identifier, name, text, left_out, absent) BP_EFFECT_##identifier,

@@ -10,6 +10,8 @@
 #include <stdlib.h>
 #include <string.h>
 
+#define PI 3.14159265358979323846
+
 #define SAME_KIND(identifier, name, kernel_kind, effect, traits, members, needed, outcome)                   \
     _Static_assert((int)BP_MATERIAL_##identifier == KIND_##kernel_kind,                                      \
                    name " differs between host and kernel");
@@ -117,6 +119,47 @@ static void pack_standpoint(const BpScene *scene, const BpTree *tree, PackedCame
     packed->own_slot[2] = 0x1p-49 * size + (tree->single_precision ? 0x1p-22 * fabs(sphere->radius) : 0);
 }
 
+static double luminance_of(const double radiance[3]) {
+    double sum = 0;
+    for (int c = 0; c < 3; ++c) sum += bp_luminance_weights[c] * radiance[c];
+    return sum;
+}
+
+/* The most that the gradient can bring to a plane: pi times its brightest luminance. */
+static double most_of_gradient(const BpScene *scene) {
+    return PI * fmax(luminance_of(scene->background_bottom), luminance_of(scene->background_top));
+}
+
+/* The most that a disc can: its luminance times its solid angle. */
+static double most_of_disc(const BpDisc *disc) {
+    const double s = sin(disc->half_angle_degrees * (PI / 360));
+    return 4 * PI * s * s * luminance_of(disc->radiance);
+}
+
+/* Of both, all that could reach the shadow catcher; 1 where there is none, so that shares of it are 0. */
+static double most_for_catcher(const BpScene *scene) {
+    double sum = most_of_gradient(scene);
+    for (size_t i = 0; i < scene->disc_count; ++i) sum += most_of_disc(&scene->discs[i]);
+    return sum > 0 ? sum : 1;
+}
+
+static void pack_catcher(const BpScene *scene, const double origin[3], double moved, PackedSky *sky) {
+    if (!scene->shadow_catcher.present) return;
+    const double *const normal = scene->shadow_catcher.normal;
+    const double bottom = luminance_of(scene->background_bottom), top = luminance_of(scene->background_top);
+    const double brightest = fmax(bottom, top);
+    sky->catcher[3] = scene->shadow_catcher.distance;
+    for (int a = 0; a < 3; ++a) {
+        sky->catcher[a] = normal[a];
+        sky->catcher[3] -= normal[a] * origin[a];
+    }
+    sky->catcher_light[3] = moved;
+    sky->catcher_light[2] = most_of_gradient(scene) / most_for_catcher(scene);
+    if (!(brightest > 0)) return;
+    sky->catcher_light[0] = bottom / brightest;
+    sky->catcher_light[1] = (top - bottom) / brightest;
+}
+
 static void pack_sky(const BpScene *scene, double moved, double image_power, PackedSky *sky) {
     const Axes axes = camera_axes(&scene->camera);
     const double half = bp_camera_plane_height(&scene->camera) / 2;
@@ -144,6 +187,9 @@ static void pack_sky(const BpScene *scene, double moved, double image_power, Pac
     }
     sky->backdrop_bottom[3] = scene->backdrop != BP_BACKDROP_SKY;
     sky->image_power = image_power;
+    double origin[3];
+    bp_camera_origin(scene, origin);
+    pack_catcher(scene, origin, moved, sky);
 }
 
 static BpStatus pack_view(const BpScene *scene, double moved, double image_power, BpPacked *packed,
@@ -159,7 +205,6 @@ static BpStatus pack_view(const BpScene *scene, double moved, double image_power
     return packed->camera != NULL && packed->sky != NULL ? BP_OK : out_of_memory(scene, err);
 }
 
-#define PI 3.14159265358979323846
 _Static_assert(BP_DISCS_MAX <= DISCS_MAX && BP_SPHERES_MAX < DISC_SLOT, "places of discs and of spheres");
 
 /* `unit`: of the power of lamps. */
@@ -168,14 +213,15 @@ static BpStatus pack_discs(const BpScene *scene, double unit, BpPacked *packed, 
     for (size_t i = 0; i < scene->disc_count; ++i) {
         const BpDisc *disc = &scene->discs[i];
         const double half = disc->half_angle_degrees * (PI / 180), s = sin(half / 2);
-        double direction[3] = {disc->direction[0], disc->direction[1], disc->direction[2]}, luminance = 0;
+        double direction[3] = {disc->direction[0], disc->direction[1], disc->direction[2]};
+        const double luminance = luminance_of(disc->radiance);
         normalize(direction);
-        for (int c = 0; c < 3; ++c) luminance += bp_luminance_weights[c] * disc->radiance[c];
         discs[i] = (PackedDisc){.cap = 2 * s * s,
                                 .power = luminance * unit * sin(half) * sin(half),
                                 .sine = sin(half),
                                 .chord2 = 4 * s * s,
-                                .seen = disc->visible_to_camera ? 1 : 0};
+                                .seen = disc->visible_to_camera ? 1 : 0,
+                                .catcher_share = most_of_disc(disc) / most_for_catcher(scene)};
         memcpy(discs[i].direction, direction, sizeof direction);
         memcpy(discs[i].radiance, disc->radiance, sizeof disc->radiance);
     }

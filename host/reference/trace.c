@@ -1,7 +1,11 @@
 /* trace.c: intersection and the recursion; see trace.h. */
 #include "trace.h"
 
+#include "base/color.h"
+
 #include <float.h>
+
+#define PI 3.14159265358979323846
 
 Vec bp_ref_center(const BpScene *scene, const Ray *ray, const BpSphere *sphere) {
     const size_t i = (size_t)(sphere - scene->spheres);
@@ -81,14 +85,18 @@ static Vec mixed(const double bottom[3], const double top[3], double a) {
 static bool in_disc(const BpDisc *disc, Vec direction) {
     const Vec middle = vec(disc->direction);
     const double angle = atan2(sqrt(length2(cross(middle, direction))), dot(middle, direction));
-    return angle * (180 / 3.14159265358979323846) <= disc->half_angle_degrees;
+    return angle * (180 / PI) <= disc->half_angle_degrees;
+}
+
+static Vec gradient(const BpScene *scene, Vec direction) {
+    const Vec own = vec(scene->background_up);
+    const Vec up = length2(own) > 0 ? unit(own) : (Vec){0, 1, 0};
+    const double a = 0.5 * (dot(unit(direction), up) + 1);
+    return mixed(scene->background_bottom, scene->background_top, a);
 }
 
 static Vec background(const BpScene *scene, const Ray *ray) {
-    const Vec own = vec(scene->background_up);
-    const Vec up = length2(own) > 0 ? unit(own) : (Vec){0, 1, 0};
-    const double a = 0.5 * (dot(unit(ray->direction), up) + 1);
-    Vec color = mixed(scene->background_bottom, scene->background_top, a);
+    Vec color = gradient(scene, ray->direction);
     if (scene->environment != NULL) color = bp_ref_environment(scene, ray->direction);
     for (size_t i = 0; i < scene->disc_count; ++i) {
         const BpDisc *disc = &scene->discs[i];
@@ -99,10 +107,86 @@ static Vec background(const BpScene *scene, const Ray *ray) {
     return color;
 }
 
+static double luminance(Vec color) {
+    return bp_luminance_weights[0] * color.x + bp_luminance_weights[1] * color.y +
+           bp_luminance_weights[2] * color.z;
+}
+
+/* A unit direction at `cosine` from a unit axis. */
+static Vec around(Vec axis, double cosine, double turn) {
+    const Vec aside = fabs(axis.x) < 0.5 ? (Vec){1, 0, 0} : (Vec){0, 1, 0};
+    const Vec one = unit(cross(axis, aside)), other = cross(axis, one);
+    const double sine = sqrt(fmax(0, 1 - cosine * cosine));
+    return add(scale(cosine, axis), scale(sine, add(scale(cos(turn), one), scale(sin(turn), other))));
+}
+
+/* Whether light is kept from a point of the shadow catcher: a direction of the hemisphere above it, drawn
+ * with a density proportional to the light that would come from there times the cosine. First a part of the
+ * light, the gradient or a disc, by the most that it could bring; then a direction, uniform over that part;
+ * by its share of that most it is taken, else all begins anew. */
+static bool is_dark(const BpScene *scene, Vec point, double time, Random *random) {
+    enum { TRIES = 10000 };
+    const Vec normal = vec(scene->shadow_catcher.normal);
+    const double brightest =
+        fmax(luminance(vec(scene->background_bottom)), luminance(vec(scene->background_top)));
+    double most[BP_DISCS_MAX + 1] = {2 * PI * brightest}, sum = most[0];
+    for (size_t i = 0; i < scene->disc_count; ++i) {
+        const BpDisc *disc = &scene->discs[i];
+        const double half = disc->half_angle_degrees * (PI / 180);
+        const bool rises = dot(unit(vec(disc->direction)), normal) > -sin(half);
+        most[i + 1] = rises ? 2 * PI * (1 - cos(half)) * luminance(vec(disc->radiance)) : 0;
+        sum += most[i + 1];
+    }
+    Ray ray = {.origin = point, .time = time, .scattered = true};
+    for (int i = 0; i < TRIES && sum > 0; ++i) {
+        double part = random_real(random) * sum, share = 0;
+        size_t disc = 0; /* 0: the gradient */
+        while (disc < scene->disc_count && part >= most[disc]) part -= most[disc++];
+        const double turn = 2 * PI * random_real(random), u = random_real(random);
+        if (disc == 0) {
+            ray.direction = around(normal, u, turn);
+            share = luminance(gradient(scene, ray.direction)) / brightest;
+        } else {
+            const BpDisc *chosen = &scene->discs[disc - 1];
+            const double cap = 1 - cos(chosen->half_angle_degrees * (PI / 180));
+            ray.direction = around(unit(vec(chosen->direction)), 1 - u * cap, turn);
+            share = 1;
+        }
+        Hit hit;
+        if (random_real(random) < share * dot(ray.direction, normal)) return bp_ref_hit(scene, &ray, &hit);
+    }
+    return false;
+}
+
+/* Whether the ray meets the upper side of the shadow catcher before any sphere. */
+static bool meets_catcher(const BpScene *scene, const Ray *ray, double *t) {
+    if (!scene->shadow_catcher.present) return false;
+    const Vec normal = vec(scene->shadow_catcher.normal);
+    const double above = dot(normal, ray->origin) - scene->shadow_catcher.distance;
+    const double down = -dot(normal, ray->direction);
+    Hit hit;
+    if (!(above > 0 && down > 0)) return false;
+    *t = above / down;
+    return !bp_ref_hit(scene, ray, &hit) || *t <= hit.t;
+}
+
 Vec bp_ref_camera_color(const BpScene *scene, const Ray *ray, double height, uint32_t depth, Random *random,
                         Path *path) {
     const Vec black = {0, 0, 0};
     Hit hit;
+    double t;
+    if (depth > 0 && meets_catcher(scene, ray, &t)) {
+        Ray scattered;
+        Vec left;
+        ++path->segments;
+        if (bp_ref_fly(scene, ray, t, random, path, &scattered, &left))
+            return mul(left, bp_ref_color(scene, &scattered, depth - 1, random, path));
+        if (is_dark(scene, add(ray->origin, scale(t, ray->direction)), ray->time, random)) return black;
+        if (scene->backdrop == BP_BACKDROP_SKY) return mul(left, background(scene, ray));
+        return scene->backdrop == BP_BACKDROP_NONE
+                   ? black
+                   : mul(left, mixed(scene->backdrop_bottom, scene->backdrop_top, height));
+    }
     if (scene->backdrop != BP_BACKDROP_SKY && depth > 0 && !bp_ref_hit(scene, ray, &hit)) {
         Ray scattered;
         Vec left;

@@ -92,8 +92,10 @@ static void read_step(const BpScene *scene, const double space[3], const Records
         step->radiance[axis] = record[FOLLOW_RADIANCE + axis];
         step->lit[axis] = record[FOLLOW_LIT + axis];
     }
-    step->scattered = record[FOLLOW_MET] >= 2;
-    step->met = record[FOLLOW_MET] != 0 && !step->scattered;
+    step->scattered = record[FOLLOW_MET] == 2;
+    step->caught = record[FOLLOW_MET] > 2;
+    step->dark = record[FOLLOW_MET] == 3;
+    step->met = record[FOLLOW_MET] == 1;
     step->distance = record[FOLLOW_DISTANCE];
     step->enters = record[FOLLOW_ENTERS] != 0;
     step->goes_on = record[FOLLOW_GOES_ON] != 0;

@@ -115,6 +115,14 @@ typedef enum BpBackdrop {
     BP_BACKDROP_NONE    /* nothing: black, and the picture has an alpha */
 } BpBackdrop;
 
+/* A plane that only camera rays meet, from above, and that shows nothing but the shadow on it. */
+typedef struct BpShadowCatcher {
+    bool present, has_height;
+    double up[3];               /* of any length; 0: the scene's */
+    double height;              /* along `up`, of length 1; else it lies under the lowest sphere */
+    double normal[3], distance; /* what follows: of length 1; of its points along the normal */
+} BpShadowCatcher;
+
 /* Light by its name, which stands in the camera's frame (light.h). */
 typedef enum BpLight {
     BP_LIGHT_SKY, /* none: the background as the scene has it */
@@ -156,6 +164,7 @@ struct BpScene {
     BpBackdrop backdrop;
     double backdrop_bottom[3],
         backdrop_top[3]; /* of BP_BACKDROP_COLORS: at the picture's lower and upper edge */
+    BpShadowCatcher shadow_catcher;
     BpTransfer transfer;
     BpImage **images; /* of textures and the background, each file once */
     size_t image_count;

@@ -10,7 +10,8 @@ enum {
     LOG_POINT,                         /* where it meets it */
     LOG_THROUGHPUT = LOG_POINT + 3,    /* after the hit */
     LOG_RADIANCE = LOG_THROUGHPUT + 3, /* collected so far */
-    LOG_MET = LOG_RADIANCE + 3,        /* 0: the sky, 2: it was scattered by a medium */
+    LOG_MET = LOG_RADIANCE + 3,        /* 0: the sky, 2: it was scattered by a medium, 3: a shadow on the shadow catcher,
+                                          4: the shadow catcher where there is none */
     LOG_ENTERS,                        /* from outside to inside */
     LOG_GOES_ON,
     LOG_INWARD, /* goes on inside */
@@ -72,6 +73,9 @@ __kernel VECTORS_WRITTEN void path_log(SCENE_PARAMETERS uint pixel, uint sample,
         record[LOG_MET] = path.met;
 #if EFFECT_MEDIA
         if (path.scattered) record[LOG_MET] = 2;
+#endif
+#if EFFECT_SHADOW_CATCHER
+        if (path.caught) record[LOG_MET] = path.dark ? 3 : 4;
 #endif
         record[LOG_ENTERS] = path.entered;
         record[LOG_GOES_ON] = path.alive;

@@ -11,7 +11,7 @@
 
 __kernel void probe_layout(__global uint *out) {
     SIZE_AND_OFFSET(PackedCamera, ahead)
-    SIZE_AND_OFFSET(PackedSky, image_power)
+    SIZE_AND_OFFSET(PackedSky, catcher_light)
     SIZE_AND_OFFSET(PackedMaterial, refraction_index)
     SIZE_AND_OFFSET(PackedMaterialKind, total_reflection)
     *out++ = (uint)sizeof(real);

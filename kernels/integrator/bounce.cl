@@ -1,7 +1,7 @@
 /* bounce.cl: how a path goes on by one segment, in lane code.
  *
  * In:    paths and the scene.   Out: the same paths, one segment longer.
- * Knows: the tree, the shape, the sky, the media, the lamps, the materials and their textures, each by one function.   Does not know: pixels. */
+ * Knows: the tree, the shape, the sky, the shadow catcher, the media, the lamps, the materials and their textures, each by one function.   Does not know: pixels. */
 
 #if EFFECT_MEDIA
 #define seen_through(path, radiance) multiply3((path)->throughput, radiance)
@@ -14,22 +14,42 @@ static void trace_bounce(const Scene *scene, Path *path) {
     const vbool moving = path_moves(path);
     const Ray ray = path_ray(path);
     const Hit hit = intersect_closest(&scene->geometry, &ray, moving);
+#if EFFECT_SHADOW_CATCHER
+    vreal to_catcher;
+    const vbool at_catcher = meets_catcher(scene, path, &hit, moving, &to_catcher);
+#define reach choose(at_catcher, to_catcher, to_real(hit.t))
+#else
+#define reach to_real(hit.t)
+#endif
 #if EFFECT_MEDIA
     path->depth = choose_uint(moving, path->depth + 1u, path->depth);
     vreal flown;
     find_media(scene, &ray, moving, path);
-    const vbool scattered = fly(scene, moving, to_real(hit.t), path, &flown);
+    const vbool scattered = fly(scene, moving, reach, path, &flown);
     const vbool arrived = moving & vbool_not(scattered);
     path->scattered = scattered;
 #else
     const vbool arrived = moving;
 #endif
+#undef reach
+#if EFFECT_SHADOW_CATCHER
+    const vbool caught = arrived & at_catcher;
+    const vbool met = arrived & is_hit(&hit) & vbool_not(caught);
+    vbool dark = vbool_none;
+    if (any_lane(caught)) dark = lies_in_shadow(scene, path, caught, to_catcher);
+    path->caught = caught;
+    path->dark = dark;
+#else
     const vbool met = arrived & is_hit(&hit);
+#endif
     path->met = met;
     path->entered = hit.enters;
     path->distance = hit.t;
+#if EFFECT_SHADOW_CATCHER
+    path->distance = choose_refined(caught, to_refined(to_catcher), path->distance);
+#endif
 #if EFFECT_MEDIA
-    path->distance = choose_refined(scattered, to_refined(flown), hit.t);
+    path->distance = choose_refined(scattered, to_refined(flown), path->distance);
 #else
     path->depth = choose_uint(moving, path->depth + 1u, path->depth);
 #endif
@@ -47,8 +67,16 @@ static void trace_bounce(const Scene *scene, Path *path) {
         const vbool at_once = escaped & vbool_of_uint(path->depth == splat_uint(1));
         if (has_backdrop(scene->sky))
             light = choose3(at_once, seen_through(path, backdrop_radiance(scene->sky, path->origin.high, path->direction)), light);
+#if EFFECT_SHADOW_CATCHER
+        /* A shadow is black, and covers what lies behind. */
+        light = choose3(dark, zero3(), light);
+#define uncovered (at_once & vbool_not(dark))
+#else
+#define uncovered at_once
+#endif
         path->radiance = choose3(escaped, add3(path->radiance, light), path->radiance);
-        path->depth = choose_uint(at_once, splat_uint(1u + MISSED_MARK), path->depth);
+        path->depth = choose_uint(uncovered, splat_uint(1u + MISSED_MARK), path->depth);
+#undef uncovered
         path->alive = path->alive & vbool_not(escaped);
     }
 #if EFFECT_MEDIA

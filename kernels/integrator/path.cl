@@ -26,6 +26,9 @@ typedef struct Path {
     vbool wants_lamps; /* its latest vertex is still to be lit; a path that is not alive may want that too */
 #endif
     /* Of the latest segment, for path_log.cl. */
+#if EFFECT_SHADOW_CATCHER
+    vbool caught, dark; /* it ended at the shadow catcher, and in shadow */
+#endif
     vbool met, entered;
     vrefined distance;
 #if SAMPLES_LAMPS

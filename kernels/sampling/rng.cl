@@ -18,7 +18,9 @@
  *     k = 10       the low bits of the choice among the discs of the sky, the image around and the tree of lamps
  *     k = 11, 12   the low bits of the choice of a row of that image, and of a texel in the row
  *     k = 13, 14   a flight through a medium, and its low bits
- *     15           kept */
+ *     15           kept
+ *   A camera ray that meets the shadow catcher ends there, and the places of bounce b are those of try b to find light:
+ *   k = 0, 1 the direction, 2 whether it is taken, 5 the gradient or which disc */
 #define DIMENSION_PIXEL 0u
 #define DIMENSION_LENS 2u
 #define DIMENSION_TIME 4u

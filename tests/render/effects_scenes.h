@@ -43,6 +43,9 @@ static inline bool effects_can_occur(uint32_t bits, bool tree) {
     if (bp_effects_has(bits, BP_EFFECT_MOTION) && (bits & MATERIAL_EFFECTS) == 0) return false;
     if (bp_effects_has(bits, BP_EFFECT_NOISE) && !bp_effects_has(bits, BP_EFFECT_TEXTURES)) return false;
     if (bp_effects_has(bits, BP_EFFECT_IMAGES) && !bp_effects_has(bits, BP_EFFECT_TEXTURES)) return false;
+    /* Of an image around it knows no light. */
+    if (bp_effects_has(bits, BP_EFFECT_SHADOW_CATCHER) && bp_effects_has(bits, BP_EFFECT_ENVIRONMENT))
+        return false;
     return (bits & MATERIAL_EFFECTS) != 0 || !tree;
 }
 
@@ -265,6 +268,9 @@ static inline void effects_scene(EffectsScene *made, uint32_t bits, bool tree) {
         scene->environment = &made->sky;
         scene->environment_turn = 20;
     }
+    if (bp_effects_has(bits, BP_EFFECT_SHADOW_CATCHER))
+        scene->shadow_catcher =
+            (BpShadowCatcher){.present = true, .normal = {0.28, 0.96, 0}, .distance = -0.25};
     effects_materials(made, bits);
     if (bp_effects_has(bits, BP_EFFECT_TEXTURES)) effects_textures(made, bits);
     effects_spheres(made, tree);

@@ -22,7 +22,7 @@ if clang is None:
 
 # The order of the bits, from the one list of effects.
 header = pathlib.Path(__file__).parents[2] / "host/packed/effects.h"
-BITS = re.findall(r"^ +X\(([A-Z]+), \"", header.read_text(), re.MULTILINE)
+BITS = re.findall(r"^ +X\(([A-Z_]+), \"", header.read_text(), re.MULTILINE)
 
 # Words that stand in the code of one effect and nowhere else.
 MARKS = {
@@ -40,6 +40,7 @@ MARKS = {
     "ENVIRONMENT": ["environment_radiance", "has_environment"],
     "MOTION": ["path->time", "ray->time"],
     "MEDIA": ["medium_around", "exp_minus", "interface_sample"],
+    "SHADOW_CATCHER": ["meets_catcher", "light_of_catcher", "lies_in_shadow"],
     "TREE": ["BoxRay", "leaf_children"],  # no effect, but looked for in the same way
 }
 # Code that several effects share.

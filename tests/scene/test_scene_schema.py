@@ -21,6 +21,7 @@ GOOD = {
                                                   {"direction": [0, 1, 0], "half_angle": 90, "radiance": [1, 1, 1], "visible_to_camera": False}]},
     "light": "sky",
     "backdrop": {"bottom": [0, 0, 0], "top": [1, 1, 1]},
+    "shadow_catcher": {"height": -1.5, "up": [0, 0, 2]},
     "transfer": "srgb",
     "textures": {
         "s": {"type": "checker", "colors": [[0, 0.5, 1], 3], "size": 0.1},
@@ -62,6 +63,7 @@ BAD = [
     (["background", "discs", 0, "half_angle"], None), (["background", "discs", 0, "radiance"], [1, -1, 1]),
     (["background", "discs", 0, "radiance"], None), (["background", "discs", 0, "visible_to_camera"], 1),
     (["background", "discs", 0, "angle"], 1), (["background", "discs"], [{"direction": [0, 1, 0], "half_angle": 1, "radiance": [1, 1, 1]}] * 33),
+    (["shadow_catcher"], "yes"), (["shadow_catcher", "height"], 2e12), (["shadow_catcher", "up"], [0, 0, 0]), (["shadow_catcher", "down"], 1),
     (["light"], "sun"), (["backdrop"], "nothing"), (["backdrop"], {"bottom": [0, 0, 0]}), (["backdrop", "top"], [0, 0, -1]), (["backdrop", "up"], [0, 1, 0]),
     (["camera", "image_width"], 0), (["camera", "image_width"], 1e9), (["camera", "image_width"], 1.5),
     (["camera", "image_width"], "400"), (["camera", "image_height"], 100), (["camera", "aspect_ratio"], 0),
