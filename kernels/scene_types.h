@@ -217,13 +217,13 @@ typedef struct PackedVariation {
  * outside of all. */
 #define BOUNDARY_UINTS 2u
 /* The tree of lamps (light/lamps.cl). A node is LAMP_WIDTH children as structure of arrays, LAMP_WIDTH reals
- * each of centre x, y, z, radius and power. A child of positive radius is a lamp, and its word is CHILD_LEAF
- * and the lamp's slot; one of negative radius is a node, whose lamps lie in a ball of the radius without its
- * sign, and its word is the node's number. Power: the sum of radiance (its luminance) times squared radius,
- * in a unit in which the radiance of no lamp and no disc exceeds 1; an empty child has none. Node 0 is the
- * root. The width and the order are the same for every device, since a picture depends on which lamp is
- * chosen. `slot_lamp`: where the lamp in a slot stands, LAMP_CHILD_BITS bits for each level, the root's in
- * the lowest, or NO_LAMP.
+ * each of centre x, y, z, radius and power. A child of positive radius is a lamp where the shutter opens, and
+ * its word is CHILD_LEAF and the lamp's slot; one of negative radius is a node, whose lamps stay in a ball of
+ * the radius without its sign, and its word is the node's number. Power: the sum of radiance (its luminance)
+ * times squared radius, in a unit in which the radiance of no lamp and no disc exceeds 1; an empty child has
+ * none. Node 0 is the root. The width and the order are the same for every device, since a picture depends on
+ * which lamp is chosen. `slot_lamp`: where the lamp in a slot stands, LAMP_CHILD_BITS bits for each level,
+ * the root's in the lowest, or NO_LAMP.
  */
 #define LAMP_WIDTH 8u
 #define LAMP_NODE_REALS (5u * LAMP_WIDTH)

@@ -232,20 +232,16 @@ static bool explain_lamps(const BpScene *scene, size_t size, char *reason) {
     const bool media = scatters_in_media(scene);
     char all[96];
     const size_t enclosing = bp_enclosing_lamp(scene);
-    size_t lamps = 0, lit = 0, both = 0, moving = 0;
+    size_t lamps = 0, lit = 0, both = 0;
     for (size_t i = 0; i < scene->sphere_count; ++i) {
         const bool is_lamp = bp_sphere_is_sampled(scene, i, enclosing);
-        moving += bp_sphere_emits(scene, i) && bp_sphere_moves(scene, i);
         const bool is_lit = bp_material_is_lit(&scene->materials[scene->spheres[i].material]);
         lamps += is_lamp;
         lit += is_lit;
         both += is_lamp && is_lit;
     }
     name_lamps(lamps, discs, image, sizeof all, all);
-    if (lamps == 0 && !sky && moving > 0)
-        snprintf(reason, size, "the only lamp%s move%s: paths find %s by chance", bp_plural(moving),
-                 moving == 1 ? "s" : "", moving == 1 ? "it" : "them");
-    else if (lamps == 0 && !sky)
+    if (lamps == 0 && !sky)
         snprintf(reason, size,
                  enclosing != SIZE_MAX ? "the only lamp surrounds everything: every path finds it"
                                        : NO_LAMP_REASON);
@@ -257,11 +253,8 @@ static bool explain_lamps(const BpScene *scene, size_t size, char *reason) {
         snprintf(reason, size, "%zu lamp%s, %s brighter than the sky", lamps, bp_plural(lamps),
                  lamps == 1 ? "not" : "none of them");
     else {
-        const int used = snprintf(reason, size, "%s that can light %zu sphere%s%s", all, lit, bp_plural(lit),
-                                  media ? " and media" : "");
-        if (moving > 0)
-            snprintf(reason + used, size - (size_t)used, "; %zu that move%s %s found by chance", moving,
-                     moving == 1 ? "s" : "", moving == 1 ? "is" : "are");
+        snprintf(reason, size, "%s that can light %zu sphere%s%s", all, lit, bp_plural(lit),
+                 media ? " and media" : "");
         return true;
     }
     return false;

@@ -20,7 +20,7 @@
 #define BINS 16
 
 typedef struct Lamp {
-    double center[3], radius, power;
+    double center[3], motion[3], radius, power; /* center: when the shutter opens */
     uint32_t slot;
 } Lamp;
 
@@ -39,7 +39,7 @@ typedef struct Builder {
 typedef struct Run {
     uint32_t first, count;
     double power;
-    Box box; /* around the spheres */
+    Box box; /* around the spheres and their ways */
 } Run;
 
 bool bp_sphere_emits(const BpScene *scene, size_t i) {
@@ -68,7 +68,7 @@ size_t bp_enclosing_lamp(const BpScene *scene) {
 }
 
 bool bp_sphere_is_sampled(const BpScene *scene, size_t i, size_t enclosing) {
-    return i != enclosing && bp_sphere_emits(scene, i) && !bp_sphere_moves(scene, i);
+    return i != enclosing && bp_sphere_emits(scene, i);
 }
 
 /* ---- runs ---- */
@@ -77,8 +77,9 @@ static void add_to_run(Run *run, const Lamp *lamp) {
     ++run->count;
     run->power += lamp->power;
     for (int a = 0; a < 3; ++a) {
-        run->box.low[a] = fmin(run->box.low[a], lamp->center[a] - lamp->radius);
-        run->box.high[a] = fmax(run->box.high[a], lamp->center[a] + lamp->radius);
+        const double end = lamp->center[a] + lamp->motion[a];
+        run->box.low[a] = fmin(run->box.low[a], fmin(lamp->center[a], end) - lamp->radius);
+        run->box.high[a] = fmax(run->box.high[a], fmax(lamp->center[a], end) + lamp->radius);
     }
 }
 
@@ -114,14 +115,19 @@ static uint32_t bin_of(double at, double low, double high) {
     return place >= BINS - 1 ? BINS - 1 : place > 0 ? (uint32_t)place : 0;
 }
 
+/* Where a lamp is halfway through its motion. */
+static double middle_of(const Lamp *lamp, int axis) {
+    return lamp->center[axis] + 0.5 * lamp->motion[axis];
+}
+
 /* Cuts a run of two lamps or more in two that are not empty, where the sum of their spreads is least. */
 static void cut_run(Builder *builder, const Run *run, bool halves, Run *left, Run *right) {
     Lamp *lamps = builder->lamps + run->first;
     double low[3] = {INFINITY, INFINITY, INFINITY}, high[3] = {-INFINITY, -INFINITY, -INFINITY};
     for (uint32_t i = 0; i < run->count; ++i)
         for (int a = 0; a < 3; ++a) {
-            low[a] = fmin(low[a], lamps[i].center[a]);
-            high[a] = fmax(high[a], lamps[i].center[a]);
+            low[a] = fmin(low[a], middle_of(&lamps[i], a));
+            high[a] = fmax(high[a], middle_of(&lamps[i], a));
         }
     int axis = 0;
     for (int a = 1; a < 3; ++a)
@@ -131,7 +137,7 @@ static void cut_run(Builder *builder, const Run *run, bool halves, Run *left, Ru
         Run bins[BINS], above[BINS];
         for (int b = 0; b < BINS; ++b) bins[b] = empty_run(0);
         for (uint32_t i = 0; i < run->count; ++i)
-            add_to_run(&bins[bin_of(lamps[i].center[axis], low[axis], high[axis])], &lamps[i]);
+            add_to_run(&bins[bin_of(middle_of(&lamps[i], axis), low[axis], high[axis])], &lamps[i]);
         above[BINS - 1] = bins[BINS - 1];
         for (int b = BINS - 2; b >= 0; --b) {
             above[b] = above[b + 1];
@@ -151,7 +157,7 @@ static void cut_run(Builder *builder, const Run *run, bool halves, Run *left, Ru
         }
         middle = 0;
         for (uint32_t i = 0; i < run->count; ++i) {
-            if (bin_of(lamps[i].center[axis], low[axis], high[axis]) >= first_above) continue;
+            if (bin_of(middle_of(&lamps[i], axis), low[axis], high[axis]) >= first_above) continue;
             const Lamp lamp = lamps[i];
             lamps[i] = lamps[middle];
             lamps[middle++] = lamp;
@@ -168,15 +174,19 @@ static void store(const Builder *builder, uint32_t node, uint32_t row, uint32_t 
                    (size_t)node * LAMP_NODE_REALS + row * LAMP_WIDTH + child, value);
 }
 
-/* The ball around a run: its centre is that of the box. */
+/* The ball around a run: its centre is that of the box. Of a lamp's way, one of the ends is farthest from it.
+ */
 static double ball_around(const Builder *builder, const Run *run, double center[3]) {
     double radius = 0;
     for (int a = 0; a < 3; ++a) center[a] = 0.5 * (run->box.low[a] + run->box.high[a]);
     for (uint32_t i = 0; i < run->count; ++i) {
         const Lamp *lamp = &builder->lamps[run->first + i];
-        const double x = lamp->center[0] - center[0], y = lamp->center[1] - center[1],
-                     z = lamp->center[2] - center[2];
-        radius = fmax(radius, sqrt(x * x + y * y + z * z) + lamp->radius);
+        for (int share = 0; share <= 1; ++share) {
+            const double x = lamp->center[0] + share * lamp->motion[0] - center[0],
+                         y = lamp->center[1] + share * lamp->motion[1] - center[1],
+                         z = lamp->center[2] + share * lamp->motion[2] - center[2];
+            radius = fmax(radius, sqrt(x * x + y * y + z * z) + lamp->radius);
+        }
     }
     return radius;
 }
@@ -262,9 +272,14 @@ static void collect_lamps(const BpScene *scene, const BpTree *tree, const uint32
         Lamp *lamp = &builder->lamps[count++];
         lamp->slot = slot_of[i];
         const uint32_t lane = lamp->slot % tree->width;
-        const size_t place = (size_t)(lamp->slot - lane) * 4 + lane;
-        for (uint32_t a = 0; a < 3; ++a)
+        const size_t place = (size_t)(lamp->slot - lane) * 4 + lane,
+                     motion = (size_t)(lamp->slot - lane) * 3 + lane;
+        for (uint32_t a = 0; a < 3; ++a) {
             lamp->center[a] = bp_reals_load(tree->leaves, tree->single_precision, place + a * tree->width);
+            lamp->motion[a] = tree->has_motions ? bp_reals_load(tree->leaf_motions, tree->single_precision,
+                                                                motion + a * tree->width)
+                                                : 0;
+        }
         lamp->radius = bp_reals_load(tree->leaves, tree->single_precision, place + 3 * tree->width);
         const double *emit = scene->materials[scene->spheres[i].material].emit;
         lamp->power = luminance_of(emit) * lamp->radius * lamp->radius;
@@ -290,16 +305,12 @@ BpStatus bp_lamp_tree_build(const BpScene *scene, const BpTree *tree, BpLampTree
     const size_t slots = (size_t)tree->leaf_count * tree->width;
     BpStatus status = BP_OK;
     uint32_t *slot_of = NULL;
-    bool others = false; /* lamps that a path may meet, and that are in no tree */
     for (size_t i = 0; i < scene->sphere_count; ++i)
-        if (bp_sphere_is_sampled(scene, i, enclosing))
-            ++lamps->lamp_count;
-        else
-            others = others || (i != enclosing && bp_sphere_emits(scene, i));
+        lamps->lamp_count += bp_sphere_is_sampled(scene, i, enclosing);
     const uint32_t count = lamps->lamp_count;
     lamps->unit = unit_of_power(scene, enclosing);
     bool enough = true;
-    if (count > 0 || others) {
+    if (count > 0) {
         slot_of = malloc(scene->sphere_count * sizeof *slot_of);
         builder.lamps = malloc((count + 1) * sizeof *builder.lamps);
         lamps->slot_lamp = malloc(slots * sizeof *lamps->slot_lamp);

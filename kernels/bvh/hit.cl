@@ -9,6 +9,7 @@
 #define upper_bound LANED(upper_bound)
 #define keep_closer LANED(keep_closer)
 #define load_sphere LANED(load_sphere)
+#define centre_at LANED(centre_at)
 #define sphere_for_ray LANED(sphere_for_ray)
 #define intersect_sphere LANED(intersect_sphere)
 #define intersect_own_sphere LANED(intersect_own_sphere)
@@ -61,16 +62,23 @@ static Sphere load_sphere(const Geometry *geometry, vuint slot) {
     return sphere;
 }
 
-/* The sphere in a slot where a ray meets it: one that moves stands where it is at the ray's time. */
-static Sphere sphere_for_ray(const Geometry *geometry, const Ray *ray, vuint slot) {
-    Sphere sphere = load_sphere(geometry, slot);
 #if EFFECT_MOTION
+/* Where the centre of the sphere in a slot is at a time, from where it is when the shutter opens. */
+static Vec3 centre_at(const Geometry *geometry, vuint slot, vreal time, Vec3 first) {
     const vuint lane = slot % TREE_WIDTH;
     const vuint place = (slot - lane) * 3u + lane;
     const Vec3 motion = vec3(gather_real(geometry->leaf_motions, place),
                              gather_real(geometry->leaf_motions, place + (uint)TREE_WIDTH),
                              gather_real(geometry->leaf_motions, place + (uint)(2 * TREE_WIDTH)));
-    sphere.centre = madd3(ray->time, motion, sphere.centre);
+    return madd3(time, motion, first);
+}
+#endif
+
+/* The sphere in a slot where a ray meets it: one that moves stands where it is at the ray's time. */
+static Sphere sphere_for_ray(const Geometry *geometry, const Ray *ray, vuint slot) {
+    Sphere sphere = load_sphere(geometry, slot);
+#if EFFECT_MOTION
+    sphere.centre = centre_at(geometry, slot, ray->time, sphere.centre);
 #endif
     return sphere;
 }

@@ -29,7 +29,8 @@ static vreal lamp_hit_weight(const Scene *scene, const Path *path, vuint slot, c
     if (!any_lane(shared)) return splat(1);
     const LampCone cone = lamp_cone(&path->origin, sphere);
     shared = shared & cone.outside;
-    const vreal probability = lamp_probability(scene, &path->origin, &path->lobe, path->lamp_sum, slot, shared);
+    const vreal probability =
+        lamp_probability(scene, &path->origin, &path->lobe, path_time(path), path->lamp_sum, slot, shared);
     shared = shared & (probability > splat(0));
     const vreal ratio = density_ratio(&path->lobe, path->direction, 1, cone.cap, choose(shared, probability, splat(1)));
     return weight_of_hit(shared, ratio);
@@ -124,7 +125,7 @@ static LampChoice choose_light(const Scene *scene, const Path *path, vuint bounc
     const Lobe *lobe = &path->lobe;
     LampChoice choice;
 #if SAMPLES_SKY
-    DiscChoice disc = choose_disc(scene, point, lobe, path->key, bounce, u);
+    DiscChoice disc = choose_disc(scene, point, lobe, path_time(path), path->key, bounce, u);
 #if SAMPLES_ENVIRONMENT
     choose_texel(scene, path->key, bounce, v, active, &disc);
 #endif
@@ -132,7 +133,7 @@ static LampChoice choose_light(const Scene *scene, const Path *path, vuint bounc
     u = disc.rest;
 #endif
 #if SAMPLES_LAMP_TREE
-    choice = choose_lamp(scene, point, lobe, path->key, bounce, u, active);
+    choice = choose_lamp(scene, point, lobe, path_time(path), path->key, bounce, u, active);
 #else
     choice.slot = splat_uint(0);
     choice.sphere.centre = zero3();

@@ -37,6 +37,15 @@ typedef struct Path {
 #endif
 } Path;
 
+/* When the path is, from 0 where the shutter opens to 1: where nothing moves, always 0. */
+static vreal path_time(const Path *path) {
+#if EFFECT_MOTION
+    return path->time;
+#else
+    return splat(0);
+#endif
+}
+
 /* No path in any lane. */
 static void path_none(Path *path) {
     path->alive = path->inward = vbool_none;

@@ -38,12 +38,12 @@ static vreal disc_importance(__global const real *disc, const Lobe *lobe) {
 
 #if SAMPLES_SKY
 /* Of the tree of lamps, seen from a point. */
-static vreal tree_importance(const Scene *scene, const Point *point, const Lobe *lobe) {
+static vreal tree_importance(const Scene *scene, const Point *point, const Lobe *lobe, vreal time) {
 #if SAMPLES_LAMP_TREE
     vreal importance[LAMP_WIDTH];
     LampChild children[LAMP_WIDTH];
     uint count;
-    return lamp_importances(scene, splat_uint(0), 1, point, lobe, importance, children, &count);
+    return lamp_importances(scene, splat_uint(0), 1, point, lobe, time, importance, children, &count);
 #else
     return splat(0);
 #endif
@@ -61,9 +61,9 @@ typedef struct DiscChoice {
 } DiscChoice;
 
 /* Chooses by `number`, in [0, 1). Where no disc has anything to bring, the tree gets the number as it is. */
-static DiscChoice choose_disc(const Scene *scene, const Point *point, const Lobe *lobe, SampleKey key, vuint bounce,
-                              vreal number) {
-    const vreal tree = tree_importance(scene, point, lobe);
+static DiscChoice choose_disc(const Scene *scene, const Point *point, const Lobe *lobe, vreal time, SampleKey key,
+                              vuint bounce, vreal number) {
+    const vreal tree = tree_importance(scene, point, lobe, time);
     vreal discs = splat(0);
 #if SAMPLES_DISCS
     const uint count = disc_count(scene);

@@ -1,14 +1,16 @@
 /* lamps.cl: one lamp for a point, chosen by what it may bring there, and a direction to it.
  *
- * In:    a point, the lobe there, random numbers.   Out: a lamp, the probability of choosing it, the cone it fills.
+ * In:    a point, the lobe there, the path's time, random numbers.   Out: a lamp, the probability of choosing it, the cone it
+ *        fills.
  * Knows: the tree of lamps (scene_types.h), the interface of shape/, bsdf.cl.   Does not know: paths, shadows.
  *
  * The importance of a lamp is what its whole sphere would bring to a surface that scatters as a lobe does: for a matte
  * one its irradiance over pi, which is radiance times sin^2(sigma) cos(omega), exactly, as long as the lamp stands
  * above the horizon (sigma: half the angle that it fills; omega: from the normal to its centre). A node of the tree
  * stands for its lamps with the ball around them. From the root down, a child is chosen by its share of the
- * importance. Any probability is right, even 0, as long as choosing and asking for it compute the same bits: both go
- * through lamp_importances. */
+ * importance. A lamp that moves stands where it is at the path's time, and a ball around some is around all of their ways.
+ * Any probability is right, even 0, as long as choosing and asking for it compute the same bits: both go through
+ * lamp_importances. */
 #if SAMPLES_LAMPS
 /* A lamp below this share of the squared distance may as well be around the point. */
 #define LAMP_POWER_MIN R(0x1p-20)
@@ -21,23 +23,36 @@ typedef struct LampChild {
     vreal power;  /* 0: there is no such child, nor any after it */
 } LampChild;
 
+#if EFFECT_MOTION
+/* Brings a child to where it is at a time; `word`: its word. */
+static void move_child(const Scene *scene, vuint word, vreal time, LampChild *child) {
+    const vbool lamp = child->radius > splat(0);
+    const vuint slot = choose_uint(lamp, word & ~splat_uint(CHILD_LEAF), splat_uint(0));
+    child->centre = choose3(lamp, centre_at(&scene->geometry, slot, time, child->centre), child->centre);
+}
+#else
+#define move_child(scene, word, time, child)
+#endif
+
 /* The same child of the root for all lanes, and one for each lane. */
-static LampChild load_root_child(const Scene *scene, uint k) {
+static LampChild load_root_child(const Scene *scene, uint k, vreal time) {
     __global const real *row = scene->lamps + k;
     LampChild child;
     child.centre = vec3(splat(row[0]), splat(row[LAMP_WIDTH]), splat(row[2 * LAMP_WIDTH]));
     child.radius = splat(row[3 * LAMP_WIDTH]);
     child.power = splat(row[4 * LAMP_WIDTH]);
+    move_child(scene, splat_uint(scene->lamp_children[k]), time, &child);
     return child;
 }
 
-static LampChild load_child(const Scene *scene, vuint node, vuint k) {
+static LampChild load_child(const Scene *scene, vuint node, vuint k, vreal time) {
     const vuint place = node * LAMP_NODE_REALS + k;
     LampChild child;
     child.centre = vec3(gather_real(scene->lamps, place), gather_real(scene->lamps, place + LAMP_WIDTH),
                         gather_real(scene->lamps, place + 2 * LAMP_WIDTH));
     child.radius = gather_real(scene->lamps, place + 3 * LAMP_WIDTH);
     child.power = gather_real(scene->lamps, place + 4 * LAMP_WIDTH);
+    move_child(scene, gather_uint(scene->lamp_children, node * LAMP_WIDTH + k), time, &child);
     return child;
 }
 
@@ -94,13 +109,13 @@ FORCE_INLINE static vreal lamp_importance(const LampChild *child, const Point *p
 /* The importance of each child of a node, and their sum, always in the same order. `count`: of the children that some
  * lane has. `root`: every lane asks the root. */
 FORCE_INLINE static vreal lamp_importances(const Scene *scene, vuint node, int root, const Point *point,
-                                           const Lobe *lobe, vreal importance[LAMP_WIDTH], LampChild children[LAMP_WIDTH],
+                                           const Lobe *lobe, vreal time, vreal importance[LAMP_WIDTH], LampChild children[LAMP_WIDTH],
                                            uint *count) {
     const vbool fuzzy = is_fuzzy(lobe);
     vreal sum = splat(0);
     uint k = 0;
     for (; k < LAMP_WIDTH; ++k) {
-        children[k] = root ? load_root_child(scene, k) : load_child(scene, node, splat_uint(k));
+        children[k] = root ? load_root_child(scene, k, time) : load_child(scene, node, splat_uint(k), time);
         if (!any_lane(children[k].power > splat(0))) break;
         importance[k] = lamp_importance(&children[k], point, lobe, fuzzy);
         sum += importance[k];
@@ -124,11 +139,11 @@ typedef struct LampChoice {
 /* Takes a child of `node` in the lanes that are `active`, by the number choice->rest; returns its word. `refill` brings
  * new low bits to what is left of that number. */
 FORCE_INLINE static vuint choose_child(const Scene *scene, vuint node, int root, const Point *point, const Lobe *lobe,
-                                       vreal refill, vbool active, LampChoice *choice) {
+                                       vreal time, vreal refill, vbool active, LampChoice *choice) {
     vreal importance[LAMP_WIDTH];
     LampChild children[LAMP_WIDTH];
     uint count;
-    const vreal sum = lamp_importances(scene, node, root, point, lobe, importance, children, &count);
+    const vreal sum = lamp_importances(scene, node, root, point, lobe, time, importance, children, &count);
     const vreal target = choice->rest * sum;
     vreal below = splat(0), chosen_below = splat(0), chosen = splat(0);
     vuint child = splat_uint(0);
@@ -159,21 +174,21 @@ static vbool goes_deeper(vbool active, vreal probability, vuint word) {
 }
 
 /* Chooses by `number`, in [0, 1). */
-static LampChoice choose_lamp(const Scene *scene, const Point *point, const Lobe *lobe, SampleKey key, vuint bounce,
-                              vreal number, vbool active) {
+static LampChoice choose_lamp(const Scene *scene, const Point *point, const Lobe *lobe, vreal time, SampleKey key,
+                              vuint bounce, vreal number, vbool active) {
     LampChoice choice;
     choice.rest = number;
     choice.sphere.centre = zero3();
     choice.sphere.radius = splat(1);
     choice.probability = choose(active, splat(1), splat(0));
     vuint refill = bounce + BOUNCE_LAMP_REFILL;
-    vuint word = choose_child(scene, splat_uint(0), 1, point, lobe, uniform(key, refill), active, &choice);
+    vuint word = choose_child(scene, splat_uint(0), 1, point, lobe, time, uniform(key, refill), active, &choice);
     for (;;) {
         const vbool deeper = goes_deeper(active, choice.probability, word);
         if (!any_lane(deeper)) break;
         refill += splat_uint(LAMP_REFILL_STRIDE);
         const vuint node = choose_uint(deeper, word, splat_uint(0));
-        const vuint below = choose_child(scene, node, 0, point, lobe, uniform(key, refill), deeper, &choice);
+        const vuint below = choose_child(scene, node, 0, point, lobe, time, uniform(key, refill), deeper, &choice);
         word = choose_uint(deeper, below, word);
     }
     choice.slot = choose_uint(choice.probability > splat(0), word & ~splat_uint(CHILD_LEAF), splat_uint(0));
@@ -181,11 +196,11 @@ static LampChoice choose_lamp(const Scene *scene, const Point *point, const Lobe
 }
 
 /* The share that choose_child gives to child `k` of a node. */
-static vreal share_of_child(const Scene *scene, vuint node, const Point *point, const Lobe *lobe, vuint k) {
+static vreal share_of_child(const Scene *scene, vuint node, const Point *point, const Lobe *lobe, vreal time, vuint k) {
     vreal importance[LAMP_WIDTH];
     LampChild children[LAMP_WIDTH];
     uint count;
-    const vreal sum = lamp_importances(scene, node, 0, point, lobe, importance, children, &count);
+    const vreal sum = lamp_importances(scene, node, 0, point, lobe, time, importance, children, &count);
     vreal chosen = splat(0);
     for (uint i = 0; i < count; ++i) chosen = choose(vbool_of_uint(k == splat_uint(i)), importance[i], chosen);
     return choose(chosen > splat(0), chosen / sum, splat(0));
@@ -193,13 +208,13 @@ static vreal share_of_child(const Scene *scene, vuint node, const Point *point, 
 
 /* The probability with which choose_lamp chooses the sphere in `slot`, when it has found the sum `sum`; 0 if the sphere
  * is not in the tree. */
-static vreal lamp_probability(const Scene *scene, const Point *point, const Lobe *lobe, vreal sum, vuint slot,
+static vreal lamp_probability(const Scene *scene, const Point *point, const Lobe *lobe, vreal time, vreal sum, vuint slot,
                               vbool active) {
     const uint mask = LAMP_WIDTH - 1u;
     vuint trail = gather_uint(scene->slot_lamp, choose_uint(active, slot, splat_uint(0)));
     const vbool known = active & vbool_of_uint(trail != splat_uint(NO_LAMP));
     vuint k = trail & mask;
-    const LampChild child = load_child(scene, splat_uint(0), k);
+    const LampChild child = load_child(scene, splat_uint(0), k, time);
     const vreal importance = lamp_importance(&child, point, lobe, is_fuzzy(lobe));
     vreal probability = choose(known & (importance > splat(0)), importance / sum, splat(0));
     vuint word = gather_uint(scene->lamp_children, k);
@@ -209,7 +224,7 @@ static vreal lamp_probability(const Scene *scene, const Point *point, const Lobe
         trail >>= LAMP_CHILD_BITS;
         k = trail & mask;
         const vuint node = choose_uint(deeper, word, splat_uint(0));
-        const vreal share = share_of_child(scene, node, point, lobe, k);
+        const vreal share = share_of_child(scene, node, point, lobe, time, k);
         probability = choose(deeper, probability * share, probability);
         word = choose_uint(deeper, gather_uint(scene->lamp_children, node * LAMP_WIDTH + k), word);
     }

@@ -209,13 +209,58 @@ def many_discs(draw):
     return scene
 
 
+def moving(draw):
+    """A crowd of which half moves, lamps and others, some far."""
+    scene = crowd(draw)
+    scene["spheres"] = [FLOOR] + [dict(each) for each in scene["spheres"][1:]]
+    for i, each in enumerate(scene["spheres"][1:]):
+        if i % 4 < 2 or each["material"] == "y":
+            each["center_end"] = [x + draw.gauss(0, 1) * draw.choice((0.1, 1)) for x in each["center"]]
+    return scene
+
+
+def swift(draw):
+    """Lamps that rush past, and one that falls through the floor."""
+    scene = lobes(draw)
+    ends = [(3, 1, 1.5), (-3, 2.4, -1), (0.9, -0.6, 1.8)]
+    scene["spheres"] = scene["spheres"][:4] + [{**each, "center_end": list(end)} for each, end in zip(scene["spheres"][4:], ends)]
+    scene["spheres"].append({**sphere((2, 3, -1), 0.5, "b"), "center_end": [-2, 3, 0]})
+    return scene
+
+
+def smoke(draw):
+    """Boundaries that are nested, touch and overlap, lamps inside, outside and between, a boundary that moves, glass with ink."""
+    scene = lobes(draw)
+    scene["materials"].update(edge={"type": "interface"}, glass=glass(1.3))
+    scene["media"] = {"smoke": {"scattering": [1.5, 1, 0.5], "absorption": 0.2, "anisotropy": 0.5}, "ink": {"absorption": [0, 1, 2]},
+                      "mist": {"scattering": 0.2, "anisotropy": -0.3}}
+
+    def filled(center, radius, interior, material="edge", **more):
+        return {**sphere(center, radius, material), **({"interior": interior} if interior else {}), **more}
+
+    scene["spheres"] += [filled((0, 0.8, 1.6), 0.8, "smoke"), filled((0.2, 0.8, 1.6), 0.4, None), filled((-1, 3, 1.5), 0.9, "mist"),
+                         filled((-1, 2.6, 1.5), 0.5, "ink"), filled((1.5, 2, 0), 0.5, "ink"), filled((1.5, 1.7, 0.6), 0.4, "smoke"),
+                         filled((2.4, 2.4, -1), 0.4, "mist"), filled((-2.2, 0.6, 1.5), 0.4, "ink", "glass"),
+                         filled((-0.6, 0.5, 2.6), 0.3, "smoke", center_end=[0.6, 0.9, 2.6])]
+    return scene
+
+
+def misty(draw):
+    """All of it, camera too, in a ball of mist, under a disc; few segments, of which boundaries take some."""
+    scene = smoke(draw)
+    scene["camera"]["max_depth"] = 7
+    scene["spheres"].append({**sphere((0, 1, 2), 9, "edge"), "interior": "mist"})
+    scene["background"] = {"bottom": [0.05, 0.05, 0.05], "top": [0.05, 0.1, 0.2], "discs": [disc((1, 2, 1), 12, (5, 4, 3))]}
+    return scene
+
+
 # Images around scenes whose light varies so much that rays are sent to where it is bright.
 VARIED_SKIES = ("street.exr", "sun.pfm", "texel.pfm")
 
 GENERATED = {"lobes": lobes, "metals": metals, "caustics": caustics, "sunken": sunken, "embers": embers, "crowd-of-lamps": crowd,
              "sparks": sparks, "shallow": shallow, "room": room, "twins": twins, "inside": inside, "sun": sun,
              "crowd-x1e6": resized(1e6), "crowd-x1e-6": resized(1e-6), "lens": lens, "spread": spread, "walls": walls,
-             "soft-boxes": soft_boxes, "many-discs": many_discs}
+             "soft-boxes": soft_boxes, "many-discs": many_discs, "moving": moving, "swift": swift, "smoke": smoke, "misty": misty}
 
 
 def generated(name):
@@ -254,12 +299,11 @@ def scatters(scene, name):
 
 
 def has_lamp(scene):
-    """Something emits that neither moves nor holds all other spheres, something matte or fuzzy or a medium is there to be
+    """Something emits that does not hold all other spheres, something matte or fuzzy or a medium is there to be
     lit, and the sky is not as bright as every lamp, as far as the camera stands in no sphere that may hide it."""
     spheres = scene.get("spheres", [])
     used = [scene["materials"][each["material"]] for each in spheres]
-    lamps = [each for each, material in zip(spheres, used)
-             if sum(emission(scene, material)) > 0 and each.get("center_end", each["center"]) == each["center"]]
+    lamps = [each for each, material in zip(spheres, used) if sum(emission(scene, material)) > 0]
 
     def holds(shell, other):
         return math.dist(shell["center"], other["center"]) + abs(other["radius"]) <= abs(shell["radius"])

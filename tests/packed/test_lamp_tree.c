@@ -1,0 +1,104 @@
+/* test_lamp_tree.c: the balls of the tree of lamps are around their lamps, all of the time. */
+#define BP_HOST
+#include "base/random.h"
+#include "base/status.h"
+#include "packed/pack.h"
+#include "packed/reals.h"
+#include "scene_types.h"
+
+#include <math.h>
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stdint.h>
+#include <stdlib.h>
+
+#include <cmocka.h>
+
+#define LAMPS 100
+
+static double lamp_number(const BpPacked *packed, uint32_t node, uint32_t row, uint32_t child) {
+    return bp_reals_load(packed->lamps.lamps, packed->single_precision,
+                         (size_t)node * LAMP_NODE_REALS + row * LAMP_WIDTH + child);
+}
+
+/* How many lamps stand below a node; all stay in the ball (centre, radius) from when the shutter opens to
+ * when it closes. */
+static int lamps_in_ball(const BpPacked *packed, uint32_t node, const double ball[4]) {
+    const BpTree *tree = &packed->tree;
+    int count = 0;
+    for (uint32_t child = 0; child < LAMP_WIDTH && lamp_number(packed, node, 4, child) > 0; ++child) {
+        const uint32_t word = packed->lamps.lamp_children[(size_t)node * LAMP_WIDTH + child];
+        if ((word & CHILD_LEAF) == 0) {
+            count += lamps_in_ball(packed, word, ball);
+            continue;
+        }
+        const uint32_t slot = word & ~CHILD_LEAF, lane = slot % tree->width;
+        for (int half = 0; half <= 2; ++half) {
+            double squares = 0;
+            for (uint32_t a = 0; a < 3; ++a) {
+                const double motion = bp_reals_load(tree->leaf_motions, packed->single_precision,
+                                                    (size_t)(slot - lane) * 3 + a * tree->width + lane);
+                const double away = lamp_number(packed, node, a, child) + 0.5 * half * motion - ball[a];
+                squares += away * away;
+            }
+            assert_true(sqrt(squares) + lamp_number(packed, node, 3, child) <= ball[3] * (1 + 1e-6));
+        }
+        ++count;
+    }
+    return count;
+}
+
+static void balls_hold_lamps_that_move(void **state) {
+    (void)state;
+    static BpSphere spheres[LAMPS];
+    static double ends[LAMPS][3];
+    BpMaterial lamp = {.name = (char *)"lamp", .kind = BP_MATERIAL_DIFFUSE_LIGHT, .emit = {1, 1, 1}};
+    BpRandom random = {7};
+    for (int i = 0; i < LAMPS; ++i) {
+        spheres[i] = (BpSphere){.radius = 0.1, .albedo = BP_NO_ALBEDO};
+        for (int a = 0; a < 3; ++a) {
+            spheres[i].center[a] = 10 * bp_random_next(&random);
+            ends[i][a] = spheres[i].center[a] + (i % 3 == 0 ? 0 : i % 3 * bp_random_next(&random));
+        }
+    }
+    BpScene scene = {.materials = &lamp,
+                     .material_count = 1,
+                     .spheres = spheres,
+                     .sphere_count = LAMPS,
+                     .center_ends = ends,
+                     .moving_count = LAMPS};
+    scene.camera = (BpCamera){.width = 4,
+                              .height = 4,
+                              .aspect_ratio = 1,
+                              .vfov_degrees = 90,
+                              .lookat = {0, 0, -1},
+                              .vup = {0, 1, 0},
+                              .focus_dist = 10};
+    for (int single = 0; single < 2; ++single) {
+        const BpTreeOptions options = {8, single, false, 1, false};
+        const double everywhere[] = {0, 0, 0, 1000};
+        BpPacked packed;
+        BpError err = {0};
+        assert_int_equal(bp_scene_pack(&scene, &options, true, &packed, &err), BP_OK);
+        assert_int_equal(lamps_in_ball(&packed, 0, everywhere), LAMPS);
+        int balls = 0;
+        for (uint32_t node = 0; node < packed.lamps.node_count; ++node)
+            for (uint32_t child = 0; child < LAMP_WIDTH; ++child) {
+                const uint32_t word = packed.lamps.lamp_children[(size_t)node * LAMP_WIDTH + child];
+                double ball[4];
+                for (uint32_t row = 0; row < 4; ++row) ball[row] = lamp_number(&packed, node, row, child);
+                if (lamp_number(&packed, node, 4, child) <= 0 || (word & CHILD_LEAF) != 0) continue;
+                assert_true(ball[3] < 0);
+                ball[3] = -ball[3];
+                assert_true(lamps_in_ball(&packed, word, ball) >= 2);
+                ++balls;
+            }
+        assert_true(balls >= 8);
+        bp_packed_clear(&packed);
+    }
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {cmocka_unit_test(balls_hold_lamps_that_move)};
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
