@@ -58,6 +58,8 @@ typedef REFINED refined;
 #define SAMPLES_ENVIRONMENT (EFFECT_LAMPS && EFFECT_ENVIRONMENT && IS_LIT)
 #define SAMPLES_SKY (SAMPLES_DISCS || SAMPLES_ENVIRONMENT)
 #define SAMPLES_LAMPS (SAMPLES_LAMP_TREE || SAMPLES_SKY)
+/* Rays to lamps pass the boundaries of media, and so do the paths that are weighted against them. */
+#define LAMPS_THROUGH_MEDIA (SAMPLES_LAMPS && EFFECT_MEDIA)
 
 /* Some compilers leave parts of a ray's search functions of their own, and pass the ray, or two dozen vectors, through
  * memory. Where nothing is optimised, nothing is inlined either: Oclgrind cannot run what the inliner leaves behind. */

@@ -115,6 +115,11 @@ static void trace_bounce(const Scene *scene, Path *path) {
 #if SAMPLES_LAMPS
     /* The ray to a lamp stands for the next segment of the path, so where the path ends there is none. */
     const vbool follows = vbool_of_uint(path->depth < splat_uint(scene->max_depth));
+#if LAMPS_THROUGH_MEDIA
+    /* Past the boundary of a medium a path is still on its way from the vertex before. */
+    path_light(path, met & vbool_not(has_kind(&surface, KIND_INTERFACE)), &bsdf_sample.lobe, follows);
+#else
     path_light(path, met, &bsdf_sample.lobe, follows);
+#endif
 #endif
 }

@@ -6,7 +6,10 @@
  * sampled perfectly, both weights follow from the ratio of the two densities, and so does what a ray to a lamp brings.
  *
  * In:    paths that wait to be lit, or a lamp that a path has hit.   Out: paths with that light, or the weight of the hit.
- * Knows: lamps.cl, discs.cl, scatter.cl, vary_surface.cl, the closest hit.   Does not know: how a path goes on. */
+ * Knows: lamps.cl, discs.cl, scatter.cl, vary_surface.cl, flight.cl, the closest hit.   Does not know: how a path goes on.
+ *
+ * A ray to a lamp passes the boundaries of media as a path does: each begins another of its segments, of which it has no more
+ * than the path. So both ways still have the same lengths. */
 #if SAMPLES_LAMPS
 #define RATIO_MAX R(1e15) /* its square is a float, and one more or less is none */
 
@@ -25,12 +28,12 @@ static vreal weight_of_hit(vbool shared, vreal ratio) {
 #if SAMPLES_LAMP_TREE
 /* The weight of the radiance of a lamp in `slot` that the path has hit; `hit`: these lanes have, from outside. */
 static vreal lamp_hit_weight(const Scene *scene, const Path *path, vuint slot, const Sphere *sphere, vbool hit) {
-    vbool shared = hit & vbool_of_uint(path->lobe.kind != splat_uint(LOBE_NONE)) & vbool_of_uint(path->own_slot != slot);
+    vbool shared = hit & vbool_of_uint(path->lobe.kind != splat_uint(LOBE_NONE)) & vbool_of_uint(vertex_slot_of(path) != slot);
     if (!any_lane(shared)) return splat(1);
-    const LampCone cone = lamp_cone(&path->origin, sphere);
+    const LampCone cone = lamp_cone(vertex_of(path), sphere);
     shared = shared & cone.outside;
     const vreal probability =
-        lamp_probability(scene, &path->origin, &path->lobe, path_time(path), path->lamp_sum, slot, shared);
+        lamp_probability(scene, vertex_of(path), &path->lobe, path_time(path), path->lamp_sum, slot, shared);
     shared = shared & (probability > splat(0));
     const vreal ratio = density_ratio(&path->lobe, path->direction, 1, cone.cap, choose(shared, probability, splat(1)));
     return weight_of_hit(shared, ratio);
@@ -44,13 +47,19 @@ static Vec3 radiance_of_sphere(const Scene *scene, vuint slot) {
 }
 #endif
 
-/* The slot of what a ray to the lamp meets first. No point of the lamp that can be seen is nearer than distance - radius, nor
+/* How far along its ray a lamp is. A direction that rounding has put past a tiny one stands for one that meets it. */
+static vrefined distance_to_lamp(const Ray *ray, const LampChoice *choice, const LampCone *cone) {
+    vrefined t;
+    vbool enters;
+    const vbool met = sphere_intersect(ray, &choice->sphere, &t, &enters);
+    return choose_refined(met, t, to_refined(cone_distance(cone, choice->sphere.radius, choice->rest)));
+}
+
+/* What a ray to the lamp meets first. No point of the lamp that can be seen is nearer than distance - radius, nor
  * farther than where a tangent touches: what is met before the one hides the lamp, what is not met before the other
- * does not, and only in between the lamp's own root along the rounded direction has to tell, by the rule for ties. A
- * direction that rounding has put past a tiny lamp stands for one that meets it. */
-static vuint first_seen(const Scene *scene, const Ray *ray, const LampChoice *choice, const LampCone *cone,
-                       vbool active) {
-    const Sphere *sphere = &choice->sphere;
+ * does not, and only in between the lamp's own root along the rounded direction has to tell, by the rule for ties. */
+static Hit first_seen(const Scene *scene, const Ray *ray, const LampChoice *choice, const LampCone *cone,
+                      vbool active) {
     const Geometry *geometry = &scene->geometry;
     Hit lamp;
     const vreal slack = cone->distance * R(0x1p-18);
@@ -61,16 +70,73 @@ static vuint first_seen(const Scene *scene, const Ray *ray, const LampChoice *ch
     const Hit hit = intersect_closer(geometry, ray, active, lamp);
     const vbool other = active & vbool_of_uint(hit.slot != choice->slot);
     const vbool close =
-        other & vbool_of_refined(hit.t >= to_refined(cone->distance - sphere->radius - slack));
-    if (!any_lane(close)) return hit.slot;
-    vrefined t;
-    vbool enters;
-    const vbool met = sphere_intersect(ray, sphere, &t, &enters);
-    t = choose_refined(met, t, to_refined(cone_distance(cone, sphere->radius, choice->rest)));
+        other & vbool_of_refined(hit.t >= to_refined(cone->distance - choice->sphere.radius - slack));
     Hit first = hit;
-    keep_closer(geometry, close, t, choice->slot, enters, &first);
-    return first.slot;
+    if (any_lane(close))
+        keep_closer(geometry, close, distance_to_lamp(ray, choice, cone), choice->slot, vbool_all, &first);
+    return first;
 }
+
+#if LAMPS_THROUGH_MEDIA
+/* The lanes whose ray to a lamp has met the boundary of a medium. */
+static vbool meets_boundary(const Scene *scene, const Hit *hit, vuint lamp, vbool active) {
+    const vbool other = active & vbool_of_uint(hit->slot != lamp);
+    if (!any_lane(other)) return vbool_none;
+    const vuint material = gather_uint(scene->slot_material, choose_uint(other, hit->slot, splat_uint(0)));
+    return other & vbool_of_uint(gather_uint(scene->material_kinds, material * MATERIAL_UINTS) == splat_uint(KIND_INTERFACE));
+}
+
+/* A ray to a lamp behind the boundaries that it has passed. */
+typedef struct LampWay {
+    vbool passed; /* one or more */
+    vuint medium; /* behind them */
+    Vec3 left;    /* of light, by the media up to there */
+} LampWay;
+
+/* Takes rays that have met a boundary on to what they meet next, and so on. Where a ray begins anew, the lamp is sought from
+ * there, as it is for a path: `cone` is what it fills there, of the direction alone, so choice->rest is that of a tangent. */
+static LampWay pass_boundaries(const Scene *scene, const Path *path, vbool active, LampChoice *choice, LampCone *cone, Ray *ray,
+                               Hit *hit) {
+    LampWay way;
+    way.passed = vbool_none;
+    way.medium = path->medium; /* a surface that reflects lies in the medium that the path has come through */
+    way.left = vec3(splat(1), splat(1), splat(1));
+    if (scene->boundaries[0] == NO_SLOT) return way;
+    const vbool far = vbool_of_uint(choice->slot >= splat_uint(DISC_SLOT));
+    vuint segments = path->depth + 1u;
+    for (;;) {
+        active = meets_boundary(scene, hit, choice->slot, active) & vbool_of_uint(segments < splat_uint(scene->max_depth));
+        if (!any_lane(active)) return way;
+        segments += splat_uint(1);
+        way.passed = way.passed | active;
+        const vuint slot = choose_uint(active, hit->slot, splat_uint(0));
+        const Vec3 left = transmittance(scene, choose_uint(active, way.medium, splat_uint(0)), to_real(hit->t));
+        way.left = choose3(active, multiply3(way.left, left), way.left);
+        const Sphere boundary = sphere_for_ray(&scene->geometry, ray, slot);
+        Point point;
+        Vec3 outward;
+        sphere_surface(ray, &boundary, slot, hit->t, hit->enters, &point, &outward);
+        ray->origin.high = choose3(active, point.high, ray->origin.high);
+        ray->origin.low = choose3(active, point.low, ray->origin.low);
+        ray->origin.error = choose(active, point.error, ray->origin.error);
+        ray->cull_margin = cull_margin_of(&ray->origin);
+        ray->own_slot = choose_uint(active, slot, ray->own_slot);
+        ray->inward = (active & hit->enters) | (vbool_not(active) & ray->inward);
+        way.medium = choose_uint(active, medium_around(scene, ray, active), way.medium);
+        const LampCone from_here = lamp_cone(&ray->origin, &choice->sphere);
+        const vbool near = active & vbool_not(far);
+        cone->distance = choose(near, from_here.distance, cone->distance);
+        cone->power = choose(near, from_here.power, cone->power);
+        cone->tangent = choose(near, from_here.tangent, cone->tangent);
+        cone->cap = choose(near, from_here.cap, cone->cap);
+        choice->rest = choose(near, splat(1), choice->rest);
+        const Hit next = first_seen(scene, ray, choice, cone, active);
+        hit->t = choose_refined(active, next.t, hit->t);
+        hit->slot = choose_uint(active, next.slot, hit->slot);
+        hit->enters = (active & next.enters) | (vbool_not(active) & hit->enters);
+    }
+}
+#endif
 
 #if SAMPLES_LAMP_TREE && EFFECT_TEXTURES
 /* What the lamp in a slot sends along the ray that was sent to it, in the lanes `visible`: light that varies depends on where the
@@ -165,7 +231,7 @@ LIGHT_STEP void light_vertices(const Scene *scene, Path *path) {
     vreal u, v;
     sample_2d(path->key, bounce + BOUNCE_LAMP, &u, &v);
     LampCone cone;
-    const LampChoice choice = choose_light(scene, path, bounce, u, v, active, &cone);
+    LampChoice choice = choose_light(scene, path, bounce, u, v, active, &cone);
     path->lamp_sum = choose(active, choice.sum, path->lamp_sum);
     active = active & (choice.probability > splat(0)) & cone.outside & vbool_of_uint(choice.slot != path->own_slot);
     Ray ray = path_ray(path);
@@ -177,19 +243,24 @@ LIGHT_STEP void light_vertices(const Scene *scene, Path *path) {
     if (!any_lane(active)) return;
 
     path->lamp_rays += popcount(lane_bits(active));
-    path->seen_slot = first_seen(scene, &ray, &choice, &cone, active);
-    const vbool visible = active & vbool_of_uint(path->seen_slot == choice.slot);
+    Hit hit = first_seen(scene, &ray, &choice, &cone, active);
+#if LAMPS_THROUGH_MEDIA
+    const LampWay way = pass_boundaries(scene, path, active, &choice, &cone, &ray, &hit);
+#endif
+    path->seen_slot = hit.slot;
+    const vbool visible = active & vbool_of_uint(hit.slot == choice.slot);
     if (!any_lane(visible)) return;
     const vreal weight = ratio / fma(ratio, ratio, splat(1));
     Vec3 light = multiply3(path->throughput, scale3(weight, radiance_of_lamp(scene, &ray, &choice, visible)));
-#if EFFECT_MEDIA
-    /* A vertex in a medium, or on a surface that reflects, lies in the medium that the path has come through. */
-    const vuint medium = choose_uint(visible, path->medium, splat_uint(0));
+#if LAMPS_THROUGH_MEDIA
+    const vuint medium = choose_uint(visible, way.medium, splat_uint(0));
     if (any_lane(vbool_of_uint(medium != splat_uint(0)))) {
+        vreal length = cone_distance(&cone, choice.sphere.radius, choice.rest);
+        if (any_lane(way.passed)) length = choose(way.passed, to_real(distance_to_lamp(&ray, &choice, &cone)), length);
         const vbool far = vbool_of_uint(choice.slot >= splat_uint(DISC_SLOT));
-        const vreal length = choose(far, splat(REAL_LARGE), cone_distance(&cone, choice.sphere.radius, choice.rest));
-        light = multiply3(light, transmittance(scene, medium, length));
+        light = multiply3(light, transmittance(scene, medium, choose(far, splat(REAL_LARGE), length)));
     }
+    if (any_lane(way.passed)) light = multiply3(light, way.left);
 #endif
     path->radiance = choose3(visible, add3(path->radiance, light), path->radiance);
 }

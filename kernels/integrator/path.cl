@@ -23,6 +23,10 @@ typedef struct Path {
 #if SAMPLES_LAMPS
     Lobe lobe;          /* that `direction` was drawn from; of LOBE_NONE where no lamp is sampled */
     vreal lamp_sum;    /* of importance, seen from the latest vertex: lamps.cl */
+#if LAMPS_THROUGH_MEDIA
+    Point vertex;      /* the latest, where `lobe` is: the boundaries of media that the path passes are none */
+    vuint vertex_slot; /* of the sphere that was left there */
+#endif
     vbool wants_lamps; /* its latest vertex is still to be lit; a path that is not alive may want that too */
 #endif
     /* Of the latest segment, for path_log.cl. */
@@ -36,6 +40,14 @@ typedef struct Path {
     uint lamp_rays; /* sent by all lanes, since path_none */
 #endif
 } Path;
+
+#if LAMPS_THROUGH_MEDIA
+#define vertex_of(path) (&(path)->vertex)
+#define vertex_slot_of(path) ((path)->vertex_slot)
+#else
+#define vertex_of(path) (&(path)->origin)
+#define vertex_slot_of(path) ((path)->own_slot)
+#endif
 
 /* When the path is, from 0 where the shutter opens to 1: where nothing moves, always 0. */
 static vreal path_time(const Path *path) {
@@ -164,9 +176,15 @@ static uint lamp_rays_of(const Path *path) {
 }
 
 #if SAMPLES_LAMPS
-/* The lanes `met` stand at a surface with this lobe, to be lit where a segment `follows`. */
+/* The lanes `met` stand at a vertex with this lobe, to be lit where a segment `follows`. */
 static void path_light(Path *path, vbool met, const Lobe *lobe, vbool follows) {
     path->lobe = choose_lobe(met, lobe, &path->lobe);
+#if LAMPS_THROUGH_MEDIA
+    path->vertex.high = choose3(met, path->origin.high, path->vertex.high);
+    path->vertex.low = choose3(met, path->origin.low, path->vertex.low);
+    path->vertex.error = choose(met, path->origin.error, path->vertex.error);
+    path->vertex_slot = choose_uint(met, path->own_slot, path->vertex_slot);
+#endif
     path->wants_lamps =
         path->wants_lamps | (met & follows & vbool_of_uint(lobe->kind != splat_uint(LOBE_NONE)));
 }

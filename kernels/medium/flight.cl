@@ -107,6 +107,8 @@ static void scatter_in_medium(const Scene *scene, vbool scattered, vreal length,
     path->origin.high = choose3(scattered, place, path->origin.high);
     path->origin.low = choose3(scattered, rest, path->origin.low);
     path->origin.error = choose(scattered, splat(0), path->origin.error);
+    path->own_slot = choose_uint(scattered, splat_uint(NO_SLOT), path->own_slot);
+    path->inward = path->inward & vbool_not(scattered);
 #if SAMPLES_LAMPS
     Lobe lobe;
     lobe.axis = path->direction;
@@ -118,8 +120,6 @@ static void scatter_in_medium(const Scene *scene, vbool scattered, vreal length,
     path_light(path, scattered, &lobe, vbool_of_uint(path->depth + 1u <= splat_uint(scene->max_depth)));
 #endif
     path->direction = choose3(scattered, phase_direction(path->direction, g, u, v), path->direction);
-    path->own_slot = choose_uint(scattered, splat_uint(NO_SLOT), path->own_slot);
-    path->inward = path->inward & vbool_not(scattered);
     path->unsure = path->unsure | scattered;
 }
 #endif

@@ -1,5 +1,5 @@
 """Hard cases of light sampling through the real program, with sampling and without (cases.py,
-disc_cases.py, image_cases.py and motion_cases.py have the scenes).
+disc_cases.py, image_cases.py, motion_cases.py and boundary_cases.py have the scenes).
 
     test_lamp_cases.py PROGRAM SOURCE_DIR [--deep] [--on] [NUMBER...]
 
@@ -23,6 +23,7 @@ import subprocess
 import sys
 import tempfile
 
+import boundary_cases
 import cases
 import disc_cases
 import image_cases
@@ -126,7 +127,7 @@ def run_case(bench, case, on_alone=False):
 
 def main():
     program, _, *rest = sys.argv[1:]
-    numbered = {**cases.NUMBERED, **disc_cases.NUMBERED, **image_cases.NUMBERED, **motion_cases.NUMBERED}
+    numbered = {**cases.NUMBERED, **disc_cases.NUMBERED, **image_cases.NUMBERED, **motion_cases.NUMBERED, **boundary_cases.NUMBERED}
     deep, on_alone = "--deep" in rest, "--on" in rest
     numbers = [int(word) for word in rest if not word.startswith("--")] or sorted(numbered)
     failures = count = 0
