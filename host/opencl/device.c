@@ -177,17 +177,8 @@ static bool may_pass(const BpDevice *device, cl_int code, const char *log) {
            (log == NULL || !first_complaint(log, file, &line, &column, text));
 }
 
-BpStatus bp_device_build(BpDevice *device, const char *source, const char *options, cl_program *program,
-                         char **log, BpError *err) {
-    BpStatus status = BP_OK;
-    cl_program built = NULL;
-    char *all_options = NULL, *text = NULL;
-    BpKernelCacheMode cache = BP_KERNEL_CACHE_OFF;
-    *program = NULL;
-    if (log != NULL) *log = NULL;
+char *bp_device_build_options(const BpDevice *device, const char *options) {
     if (options == NULL) options = "";
-    BP_TRY(bp_kernel_cache_mode(&cache, err));
-
     /* -cl-nv-verbose makes NVIDIA's compiler put register and stack sizes into the log. */
     const char *verbose =
         bp_device_has_extension(device->id, "cl_nv_compiler_options") ? " -cl-nv-verbose" : "";
@@ -196,14 +187,28 @@ BpStatus bp_device_build(BpDevice *device, const char *source, const char *optio
             ? " -cl-fp32-correctly-rounded-divide-sqrt"
             : "";
     const size_t size = strlen("-cl-std=CL1.2 ") + strlen(options) + strlen(rounded) + strlen(verbose) + 1;
-    all_options = malloc(size);
+    char *all = malloc(size);
+    if (all != NULL)
+        snprintf(all, size, "-cl-std=CL1.2%s%s%s%s", rounded, verbose, options[0] != '\0' ? " " : "",
+                 options);
+    return all;
+}
+
+BpStatus bp_device_build(BpDevice *device, const char *source, const char *options, cl_program *program,
+                         char **log, BpError *err) {
+    BpStatus status = BP_OK;
+    cl_program built = NULL;
+    char *all_options = NULL, *text = NULL;
+    BpKernelCacheMode cache = BP_KERNEL_CACHE_OFF;
+    *program = NULL;
+    if (log != NULL) *log = NULL;
+    BP_TRY(bp_kernel_cache_mode(&cache, err));
+
+    all_options = bp_device_build_options(device, options);
     if (all_options == NULL) {
         status = bp_fail(err, BP_ERR_MEMORY, "no memory to build a kernel");
         goto cleanup;
     }
-    snprintf(all_options, size, "-cl-std=CL1.2%s%s%s%s", rounded, verbose, options[0] != '\0' ? " " : "",
-             options);
-
     if (cache != BP_KERNEL_CACHE_OFF) built = bp_kernel_cache_load(device, source, all_options, &text);
     if (built != NULL) goto done;
 

@@ -48,10 +48,14 @@ BpStatus bp_cl_fail(BpError *err, cl_int code, const char *call, const BpDevice 
 /* True when `name` stands in the device's list of extensions. */
 bool bp_device_has_extension(cl_device_id id, const char *name);
 
-/* Whether the device offers quotients and square roots of floats that are rounded as the real numbers are
+/* Whether the device offers quotients and square roots of floats that are rounded as the exact ones are
  * (IEEE 754). Every program but those of -cl-fast-relaxed-math then asks for them, so that pictures have the
- * same bits. */
+ * same bits; on other devices kernels round themselves (kernels/dialect/divide.cl). */
 bool bp_device_rounds_quotients(cl_device_id id);
+
+/* All that clBuildProgram is told of this device's programs, where a program asks for `options` (Optional).
+ * Heap; NULL: out of memory. */
+char *bp_device_build_options(const BpDevice *device, const char *options);
 
 /* Builds `source` with `options` (always -cl-std=CL1.2 first; correctly rounded quotients and roots where the
  * device has them; NVIDIA's compiler is asked for its register counts). `options`: Optional. The log, also of

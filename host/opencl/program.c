@@ -26,6 +26,7 @@ static const struct {
     /* for one lane */
     {"dialect/lanes_one.cl", IN_ALL},
     {"dialect/lanes.cl", IN_ALL},
+    {"dialect/divide.cl", IN_ALL},
     {"dialect/vector.cl", IN_ALL},
     {"shape/ray.cl", IN_ALL},
     {"shape/sphere_robust.cl", IN_ROBUST},
@@ -37,6 +38,7 @@ static const struct {
     /* for the children of a node */
     {"dialect/lanes_node.cl", IN_ALL},
     {"dialect/lanes.cl", IN_ALL},
+    {"dialect/divide.cl", IN_ALL},
     {"dialect/vector.cl", IN_ALL},
     {"shape/ray.cl", IN_ALL},
     {"shape/sphere_robust.cl", IN_ROBUST},
@@ -47,6 +49,7 @@ static const struct {
     {"dialect/lanes_one.cl", IN_SAMPLE},
     {"dialect/lanes_packet.cl", IN_PACKET},
     {"dialect/lanes.cl", IN_ALL},
+    {"dialect/divide.cl", IN_PACKET},
     {"dialect/vector.cl", IN_PACKET},
     {"shape/ray.cl", IN_PACKET},
     {"shape/sphere_robust.cl", IN_PACKET | IN_ROBUST},
@@ -190,6 +193,7 @@ BpStatus bp_program_source(const BpProgramOptions *options, const char *extra_na
     const bool all_double = options->precision == BP_PRECISION_DOUBLE;
     text_print(&text, "#define REAL_IS_DOUBLE %d\n", all_double);
     text_print(&text, "#define REFINE_IS_DOUBLE %d\n", all_double || (options->double_refine && !plain));
+    text_print(&text, "#define OWN_ROUNDING %d\n", options->own_rounding && !all_double);
     text_print(&text, "#define TREE_WIDTH %u\n", options->tree_width);
     if (options->form == BP_KERNEL_PACKET) {
         text_print(&text, "#define PACKET_LANES %u\n", options->packet_lanes);
@@ -264,8 +268,11 @@ BpStatus bp_program_build(BpDevice *device, const BpProgramOptions *options, con
     char *source = NULL;
     BpProgram *built = calloc(1, sizeof *built);
     if (built == NULL) return bp_fail(err, BP_ERR_MEMORY, "no memory for a program");
-    const char *flags = options->math == BP_MATH_FAST ? "-cl-fast-relaxed-math" : "";
-    BpStatus status = bp_program_source(options, extra_name, extra_text, &source, err);
+    const bool fast = options->math == BP_MATH_FAST;
+    const char *flags = fast ? "-cl-fast-relaxed-math" : "";
+    BpProgramOptions chosen = *options;
+    chosen.own_rounding = !fast && (options->own_rounding || !bp_device_rounds_quotients(device->id));
+    BpStatus status = bp_program_source(&chosen, extra_name, extra_text, &source, err);
     if (status != BP_OK) goto failed;
     built->key = bp_hash_text(bp_hash_text(BP_HASH_START, source), flags);
     if (!find_built(device, built)) {

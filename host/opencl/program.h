@@ -37,6 +37,8 @@ typedef struct BpProgramOptions {
     uint32_t packet_lanes; /* 8 or 16; of the packet form alone */
     bool pixel_list;       /* chunks take their pixels from a list */
     bool double_refine;    /* refine intersections in double; else error-free float transforms */
+    bool own_rounding;     /* round quotients and roots of floats by fma; bp_program_build sets it where the
+                              device does not round them correctly, unless rounding does not matter */
 } BpProgramOptions;
 
 /* The whole source. `extra_name`, `extra_text`: Optional, a file appended at the end (probe kernels of

@@ -4,7 +4,7 @@
  * Knows: OpenCL, kernels/entry/self_test.cl.   Does not know: scenes, pictures.
  *
  * Integers (random numbers and fixed-point sums rest on them), rounding, fused and unfused products,
- * quotients and square roots within OpenCL's bounds, or exact where the driver promises that, NaN and
+ * quotients and square roots within OpenCL's bounds, and rounded correctly where kernels use them, NaN and
  * infinities, vector lanes, loops with private arrays, and the layout of every packed struct. It takes a
  * fraction of a second, most of it the compiler's, and is remembered. */
 #ifndef BP_OPENCL_SELF_TEST_H
@@ -12,17 +12,22 @@
 
 #include "device.h"
 
+/* The kernel files that the test's program is made of, in their order. */
+#define BP_SELF_TEST_FILES 6
+extern const char *const bp_self_test_files[BP_SELF_TEST_FILES];
+
 /* Runs the self-test. BP_ERR_DEVICE: the message names the device, its driver and the first thing that is
  * wrong, and how many more are. BP_ERR_BUILD, BP_ERR_MEMORY: it could not run. `kernel_text`: Optional, takes
  * the place of kernels/entry/self_test.cl (tests break it). */
 BpStatus bp_self_test_run(BpDevice *device, const char *kernel_text, BpError *err);
 
-/* Runs the self-test unless this device, driver, program version and test passed before. What passed is
- * remembered in $XDG_CACHE_HOME/ballpark or ~/.cache/ballpark; where that cannot be written, the test runs
- * every time. A failure is never remembered. *ran tells whether it ran now; `ran`: Optional. */
+/* Runs the self-test unless this device, driver, program version and test passed before, built with the same
+ * options. What passed is remembered in $XDG_CACHE_HOME/ballpark or ~/.cache/ballpark; where that cannot be
+ * written, the test runs every time. A failure is never remembered. *ran tells whether it ran now; `ran`:
+ * Optional. */
 BpStatus bp_self_test_once(BpDevice *device, bool *ran, BpError *err);
 
 /* The file that remembers this device's pass, heap, or NULL where there is no home for caches. */
-char *bp_self_test_memory_path(const BpDeviceInfo *device);
+char *bp_self_test_memory_path(const BpDevice *device);
 
 #endif

@@ -20,19 +20,23 @@
 #include <unistd.h>
 
 /* Everything that the outcome depends on. */
-static void identify(const BpDeviceInfo *device, char *to, size_t size) {
-    static const char *const files[] = {"dialect/real.cl", "scene_types.h", "entry/self_test.cl"};
+static void identify(const BpDevice *opened, char *to, size_t size) {
+    const BpDeviceInfo *device = &opened->info;
     uint64_t sources = BP_HASH_START;
-    for (int f = 0; f < 3; ++f) {
+    for (int f = 0; f < BP_SELF_TEST_FILES; ++f) {
         char *text = NULL;
-        if (bp_kernel_text(files[f], &text, NULL) == BP_OK) sources = bp_hash_text(sources, text);
+        if (bp_kernel_text(bp_self_test_files[f], &text, NULL) == BP_OK)
+            sources = bp_hash_text(sources, text);
         free(text);
     }
+    char *options = bp_device_build_options(opened, NULL);
     snprintf(to, size,
              "This device passed Ballpark's self-test.\nplatform: %s\ndevice: %s\nversion: %s\ndriver: %s\n"
-             "double: %s\nballpark: %s\ntest: %016llx\n",
+             "double: %s\noptions: %s\nballpark: %s\ntest: %016llx\n",
              device->platform, device->name, device->version, device->driver,
-             device->has_double ? "yes" : "no", bp_version(), (unsigned long long)sources);
+             device->has_double ? "yes" : "no", options != NULL ? options : "", bp_version(),
+             (unsigned long long)sources);
+    free(options);
 }
 
 static char *memory_path(const char *identity, bool make) {
@@ -47,7 +51,7 @@ static char *memory_path(const char *identity, bool make) {
     return path;
 }
 
-char *bp_self_test_memory_path(const BpDeviceInfo *device) {
+char *bp_self_test_memory_path(const BpDevice *device) {
     char identity[1024];
     identify(device, identity, sizeof identity);
     return memory_path(identity, false);
@@ -73,7 +77,7 @@ static bool remembered(const char *path, const char *identity) {
 BpStatus bp_self_test_once(BpDevice *device, bool *ran, BpError *err) {
     BpStatus status = BP_OK;
     char identity[1024];
-    identify(&device->info, identity, sizeof identity);
+    identify(device, identity, sizeof identity);
     char *path = memory_path(identity, true);
     if (path != NULL && !is_regular_or_absent(path)) {
         free(path);

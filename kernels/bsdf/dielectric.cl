@@ -5,15 +5,15 @@
 /* Reflectance of unpolarised light. c: cosine of incidence, in [0, 1]; n: index of the far over the near side;
  * t: cosine of refraction. Fresnel's equations (M. Born and E. Wolf, Principles of Optics, 1.5.2). */
 static vreal fresnel_exact(vreal c, vreal n, vreal t) {
-    const vreal across = (c - n * t) / (c + n * t);
-    const vreal along = (n * c - t) / (n * c + t);
+    const vreal across = divide(c - n * t, c + n * t);
+    const vreal along = divide(n * c - t, n * c + t);
     return R(0.5) * fma(across, across, along * along);
 }
 
 /* C. Schlick, "An Inexpensive BRDF Model for Physically-based Rendering", 1994, as the book uses it: always the
  * cosine of incidence, from inside too. */
 static vreal fresnel_schlick(vreal c, vreal n) {
-    const vreal root = (R(1.0) - n) / (R(1.0) + n);
+    const vreal root = divide(R(1.0) - n, R(1.0) + n);
     const vreal r0 = root * root;
     const vreal m = R(1.0) - c;
     const vreal m2 = m * m;
@@ -24,13 +24,13 @@ static vreal fresnel_schlick(vreal c, vreal n) {
  * the scene wants total reflection to absorb, it ends the path. */
 static BsdfSample dielectric_sample(const Surface *surface, SampleKey key, vuint bounce) {
     /* index of the far side over the near side */
-    const vreal n = choose(surface->enters, surface->refraction_index, splat(1) / surface->refraction_index);
+    const vreal n = choose(surface->enters, surface->refraction_index, divide(splat(1), surface->refraction_index));
     const vreal c = at_most(at_least(-dot3(surface->incoming, surface->normal), splat(0)), splat(1));
-    const vreal ratio = splat(1) / n;
+    const vreal ratio = divide(splat(1), n);
     /* (1-c)(1+c) keeps the bits that 1 - c c loses near normal incidence */
     const vreal transmitted2 = fma(-ratio * ratio, (R(1.0) - c) * (R(1.0) + c), splat(1));
     const vbool total = transmitted2 < splat(0);
-    const vreal t = sqrt(fabs(transmitted2));
+    const vreal t = square_root(fabs(transmitted2));
     const vbool exact = vbool_of_uint(surface->variant == splat_uint(FRESNEL_EXACT));
     const vbool none = vbool_of_uint(surface->variant == splat_uint(FRESNEL_NONE));
     vreal reflectance = fresnel_schlick(c, ratio);

@@ -38,15 +38,15 @@ static vreal metal_pdf(const Lobe *lobe, Vec3 direction, int drawn) {
     const Vec3 off = subtract3(direction, lobe->axis);
     const vreal f = lobe->fuzz;
     const vreal delta = dot3(off, off);
-    const vreal sine = sqrt(at_least(delta * fma(splat(R(-0.25)), delta, splat(1)), splat(0)));
+    const vreal sine = square_root(at_least(delta * fma(splat(R(-0.25)), delta, splat(1)), splat(0)));
     const vreal c = fma(splat(R(-0.5)), delta, splat(1));
     const vreal h2 = at_least((f - sine) * (f + sine), drawn ? f * f * R(0x1p-24) : splat(0));
-    const vreal h = sqrt(h2);
+    const vreal h = square_root(h2);
     const vbool inside = (h2 > splat(0)) & (c > splat(0)) & (dot3(direction, lobe->normal) > splat(0));
-    vreal density = fma(c, c, h2) * (R(0.5) * PI_INVERSE) / (f * h);
+    vreal density = divide(fma(c, c, h2) * (R(0.5) * PI_INVERSE), f * h);
     const vbool ball = vbool_of_uint(lobe->kind == splat_uint(LOBE_FUZZ_BALL));
     if (any_lane(ball)) {
-        const vreal in_ball = h * fma(c * c, splat(3), h2) * (R(0.5) * PI_INVERSE) / (f * f * f);
+        const vreal in_ball = divide(h * fma(c * c, splat(3), h2) * (R(0.5) * PI_INVERSE), f * f * f);
         density = choose(ball, in_ball, density);
     }
     return choose(inside, density, splat(0));

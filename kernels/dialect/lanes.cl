@@ -38,6 +38,7 @@
 #undef uint_to_real
 #undef to_uint
 #undef real_of_bits
+#undef bits_of_real
 #undef gather_real
 #undef gather_uint
 
@@ -70,6 +71,7 @@
 #define uint_to_real(x) ((real)(x))
 #define to_uint(x) ((uint)(int)(x))
 #define real_of_bits(x) ((real)as_float(x))
+#define bits_of_real(x) as_uint(x) /* of a float */
 #define gather_real(base, index) ((base)[index])
 #define gather_uint(base, index) ((base)[index])
 #else
@@ -96,6 +98,7 @@
 #define to_uint(x) JOIN(convert_uint, LANE_COUNT)(JOIN(convert_int, LANE_COUNT)(x))
 #define uint_to_real(x) JOIN(JOIN(convert_, REAL), LANE_COUNT)(x)
 #define real_of_bits(x) JOIN(JOIN(convert_, REAL), LANE_COUNT)(JOIN(as_float, LANE_COUNT)(x))
+#define bits_of_real(x) JOIN(as_uint, LANE_COUNT)(x)
 /* Tables have fewer than 2^31 entries, and some processors gather faster with signed offsets. */
 #define gather_2(base, index) (base)[(int)(index).x], (base)[(int)(index).y]
 #define gather_4(base, index) gather_2(base, (index).lo), gather_2(base, (index).hi)

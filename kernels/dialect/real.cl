@@ -5,6 +5,7 @@
  * The program's first lines (host/opencl/program.c) define:
  *   REAL_IS_DOUBLE    0 or 1: what `real` is
  *   REFINE_IS_DOUBLE  0 or 1: whether intersections are refined in double (always 1 with REAL_IS_DOUBLE)
+ *   OWN_ROUNDING      0 or 1: quotients and roots of floats are rounded by divide.cl, not by the device
  *   TREE_WIDTH        2, 4, 8 or 16: lanes of a tree node and of a leaf
  *   PACKET_LANES      8 or 16: paths that a work-item of the packet form follows at a time
  *   SAMPLES_PER_ITEM  pixel samples that it traces in all

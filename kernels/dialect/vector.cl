@@ -42,7 +42,7 @@ static Vec3 choose3(vbool mask, Vec3 a, Vec3 b) {
     return vec3(choose(mask, a.x, b.x), choose(mask, a.y, b.y), choose(mask, a.z, b.z));
 }
 /* Of unit length to within 4 ROUNDOFF. `a` must not be zero. */
-static Vec3 normalise3(Vec3 a) { return scale3(splat(1) / sqrt(dot3(a, a)), a); }
+static Vec3 normalise3(Vec3 a) { return scale3(divide(splat(1), square_root(dot3(a, a))), a); }
 /* Ternaries rather than fmax: a NaN in `a` passes through and is found, and it is faster. */
 static vreal at_least(vreal a, vreal floor_value) { return choose(a < floor_value, floor_value, a); }
 static vreal at_most(vreal a, vreal ceiling) { return choose(a > ceiling, ceiling, a); }

@@ -4,6 +4,7 @@
  * Out:   one row of bits for each work-item; host/opencl/self_test.c knows what stands in each column and
  *        defines COLUMN_... and ROW_COLUMNS for both sides.
  *
+ * Knows: the dialect.   Does not know: the answers.
  * Each column is something that the kernels rely on; together they find drivers that contract a*b+c, reassociate,
  * flush what they should not, forget NaN, or pack structs in their own way. */
 
@@ -51,6 +52,14 @@ static uint vector_lanes(__global const float *values, float limit) {
     return bits ^ as_uint(chosen.s0) ^ (as_uint(chosen.s7) >> 1);
 }
 
+/* The same as COLUMN_CONTRACTION in vectors: which lanes differ from 0. */
+static uint fused_lanes(float8 v, float8 w, float zero) {
+    const float8 rounded = as_float8(as_uint8(v * w) ^ (uint8)(as_uint(zero)));
+    const int8 fused = ((v * w - rounded) != (float8)(0.0f)) | ((rounded - v * w) != (float8)(0.0f));
+    return (uint)(as_ulong(convert_char8(fused)) & 0x8040201008040201UL) |
+           (uint)((as_ulong(convert_char8(fused)) & 0x8040201008040201UL) >> 32);
+}
+
 /* Size of each packed struct and the offset of its last member, in bytes, folded into one number each. */
 static void layout(__global uint *out) {
     PackedCamera camera;
@@ -86,11 +95,14 @@ __kernel void self_test(__global const uint *uints_in, __global const float *flo
     row[COLUMN_PRODUCT] = as_uint(a * b);
     /* 0 where a * b is rounded before c is taken away, the product's rounding error where the two are fused. */
     const float rounded = as_float(as_uint(a * b) ^ as_uint(zero));
-    row[COLUMN_CONTRACTION] = as_uint(a * b - rounded) << 1;
+    row[COLUMN_CONTRACTION] = (as_uint(a * b - rounded) | as_uint(rounded - a * b)) << 1;
+    row[COLUMN_CONTRACTION_LANES] = fused_lanes((float8)(a, b, c, a, b, c, a, b), (float8)(b, c, a, a, b, c, b, c), zero);
     row[COLUMN_FMA] = as_uint(fma(a, b, c));
     row[COLUMN_FMA_RESIDUE] = as_uint(fma(a, b, -rounded));
     row[COLUMN_DIVIDE] = as_uint(a / b);
     row[COLUMN_SQRT] = as_uint(sqrt(fabs(a)));
+    row[COLUMN_ROUNDED_DIVIDE] = as_uint(divide(a, b));
+    row[COLUMN_ROUNDED_SQRT] = as_uint(square_root(fabs(a)));
     /* What a + b loses to rounding (D. Knuth, The Art of Computer Programming 2, 4.2.2). */
     const float sum = a + b, b_part = sum - a, a_part = sum - b_part;
     row[COLUMN_SUM_RESIDUE] = as_uint((a - a_part) + (b - b_part));

@@ -44,7 +44,7 @@ static vreal environment_hit_weight(const Scene *scene, const Path *path, vbool 
     vbool shared = hit & vbool_of_uint(path->lobe.kind != splat_uint(LOBE_NONE)) & (importance > splat(0));
     if (!any_lane(shared)) return splat(1);
     const EnvironmentCell cell = environment_cell(scene, path->direction);
-    const vreal probability = choose(shared, importance / path->lamp_sum, splat(1)) * cell.probability;
+    const vreal probability = choose(shared, divide(importance, path->lamp_sum), splat(1)) * cell.probability;
     shared = shared & (probability > splat(0));
     const vreal ratio =
         density_ratio(&path->lobe, path->direction, 1, cell.cap, choose(shared, probability, splat(1)));

@@ -15,14 +15,14 @@
 
 /* The density of `direction` in the lobe over that with which it is drawn as one to the lamp. */
 static vreal density_ratio(const Lobe *lobe, Vec3 direction, int drawn, vreal cap, vreal probability) {
-    const vreal solid_angle = (splat(2) / splat(PI_INVERSE)) * cap;
-    return at_most(scatter_pdf(lobe, direction, drawn) * solid_angle / probability, splat(RATIO_MAX));
+    const vreal solid_angle = divide(splat(2), splat(PI_INVERSE)) * cap;
+    return at_most(divide(scatter_pdf(lobe, direction, drawn) * solid_angle, probability), splat(RATIO_MAX));
 }
 
 /* The weight of the radiance of a lamp that a path has hit, where rays are sent to it too. */
 static vreal weight_of_hit(vbool shared, vreal ratio) {
     const vreal square = ratio * ratio;
-    return choose(shared, square / (splat(1) + square), splat(1));
+    return choose(shared, divide(square, splat(1) + square), splat(1));
 }
 
 #if SAMPLES_LAMP_TREE
@@ -250,7 +250,7 @@ LIGHT_STEP void light_vertices(const Scene *scene, Path *path) {
     path->seen_slot = hit.slot;
     const vbool visible = active & vbool_of_uint(hit.slot == choice.slot);
     if (!any_lane(visible)) return;
-    const vreal weight = ratio / fma(ratio, ratio, splat(1));
+    const vreal weight = divide(ratio, fma(ratio, ratio, splat(1)));
     Vec3 light = multiply3(path->throughput, scale3(weight, radiance_of_lamp(scene, &ray, &choice, visible)));
 #if LAMPS_THROUGH_MEDIA
     const vuint medium = choose_uint(visible, way.medium, splat_uint(0));

@@ -23,7 +23,7 @@ static vreal disc_importance(__global const real *disc, const Lobe *lobe) {
     const vreal z = dot3(splat3(disc + DISC_DIRECTION), lobe->axis);
     const vreal sine = splat(disc[DISC_SINE]);
     const vreal above = z + sine;
-    vreal cosine = choose(fabs(z) < sine, above * above / (splat(4) * sine), at_least(z, splat(0)));
+    vreal cosine = choose(fabs(z) < sine, divide(above * above, splat(4) * sine), at_least(z, splat(0)));
 #if EFFECT_METAL
     /* Metal sees what its cone touches. */
     const vreal touching = fma(cosine_below(lobe->fuzz), cosine_below(sine), -lobe->fuzz * sine);
@@ -102,8 +102,8 @@ static DiscChoice choose_disc(const Scene *scene, const Point *point, const Lobe
 #endif
     const vbool some = chosen > splat(0);
     const vreal refill = uniform(key, bounce + BOUNCE_DISC_REFILL) * R(0x1p-24);
-    const vreal rest = fma(refill, choice.sum, target - chosen_below) / choose(some, chosen, splat(1));
-    choice.probability = choose(some, chosen / choice.sum, splat(0));
+    const vreal rest = divide(fma(refill, choice.sum, target - chosen_below), choose(some, chosen, splat(1)));
+    choice.probability = choose(some, divide(chosen, choice.sum), splat(0));
     choice.rest = choose(discs > splat(0), at_most(at_least(rest, splat(0)), splat(R(1.0) - ROUNDOFF)), number);
     return choice;
 }
@@ -127,7 +127,7 @@ static void choose_texel(const Scene *scene, SampleKey key, vuint bounce, vreal 
 /* The probability with which choose_disc chooses this disc, when it has found the sum `sum`. */
 static vreal disc_probability(__global const real *disc, const Lobe *lobe, vreal sum) {
     const vreal importance = disc_importance(disc, lobe);
-    return choose(importance > splat(0), importance / sum, splat(0));
+    return choose(importance > splat(0), divide(importance, sum), splat(0));
 }
 #endif
 

@@ -75,7 +75,7 @@ static EnvironmentCell environment_cell(const Scene *scene, Vec3 direction) {
     cell.probability = share_of(gather_uint(scene->sky_rows, row), gather_uint(scene->sky_rows, row + 1u)) *
                        share_of(gather_uint(scene->sky_columns, place), gather_uint(scene->sky_columns, place + 1u));
     row_height(scene, row, &upper, &more);
-    cell.cap = splat(2) * more / splat(sky->columns);
+    cell.cap = divide(splat(2) * more, splat(sky->columns));
     return cell;
 }
 
@@ -94,16 +94,18 @@ static EnvironmentCell sample_environment(const Scene *scene, SampleKey key, vui
     const vuint high = gather_uint(scene->sky_columns, begin + column + 1u);
     EnvironmentCell cell;
     cell.probability = share_of(row_low, row_high) * share_of(low, high);
-    const vreal below = (uint_to_real(down - row_low) + uniform(key, bounce + BOUNCE_SKY_ROW)) / uint_to_real(row_high - row_low);
-    const vreal right = (uint_to_real(across - low) + uniform(key, bounce + BOUNCE_SKY_COLUMN)) / uint_to_real(high - low);
+    const vreal below =
+        divide(uint_to_real(down - row_low) + uniform(key, bounce + BOUNCE_SKY_ROW), uint_to_real(row_high - row_low));
+    const vreal right =
+        divide(uint_to_real(across - low) + uniform(key, bounce + BOUNCE_SKY_COLUMN), uint_to_real(high - low));
     vbool upper;
     vreal more, sine, cosine;
     const vreal height = row_height(scene, row, &upper, &more);
-    cell.cap = splat(2) * more / splat(sky->columns);
+    cell.cap = divide(splat(2) * more, splat(sky->columns));
     const vreal away = choose(upper, below, splat(1) - below); /* from the pole */
     const vreal half2 = fma(at_most(at_least(away, splat(0)), splat(1)), more, height);
-    const vreal along = fma(splat(-2), half2, splat(1)), aside = splat(2) * sqrt(half2 * (splat(1) - half2));
-    sin_cos_turn(at_most((uint_to_real(column) + right) / splat(sky->columns), splat(1)), &sine, &cosine);
+    const vreal along = fma(splat(-2), half2, splat(1)), aside = splat(2) * square_root(half2 * (splat(1) - half2));
+    sin_cos_turn(at_most(divide(uint_to_real(column) + right, splat(sky->columns)), splat(1)), &sine, &cosine);
     const Vec3 out = madd3(cosine * aside, splat3(sky->axes), scale3(sine * aside, splat3(sky->axes + 3)));
     const Vec3 sampled = madd3(choose(upper, -along, along), splat3(sky->axes + 6), out);
     *direction = scale3(fma(dot3(sampled, sampled), splat(R(-0.5)), splat(R(1.5))), sampled);

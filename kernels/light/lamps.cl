@@ -73,7 +73,7 @@ FORCE_INLINE static vreal lamp_importance(const LampChild *child, const Point *p
     const vreal radius = fabs(child->radius);
     const vbool lamp = child->radius > splat(0);
     const vreal distance2 = at_least(dot3(to_centre, to_centre), splat(R(1e-30)));
-    const vreal inverse = splat(1) / sqrt(distance2);
+    const vreal inverse = divide(splat(1), square_root(distance2));
     const vreal z = dot3(to_centre, lobe->axis) * inverse;
     const vreal sine = at_most(radius * inverse, splat(1));
     const vbool around = distance2 <= radius * radius;
@@ -82,14 +82,14 @@ FORCE_INLINE static vreal lamp_importance(const LampChild *child, const Point *p
     const vbool clipped = fabs(z) < sine;
     if (any_lane(clipped)) {
         const vreal above = z + sine;
-        cosine = choose(clipped, above * above / (splat(4) * sine), cosine);
+        cosine = choose(clipped, divide(above * above, splat(4) * sine), cosine);
     }
     vreal spread_inverse = inverse * inverse;
     if (any_lane(vbool_not(lamp))) {
         const vreal half_turn = z + splat(1);
         const vreal from_inside = at_least(half_turn * half_turn * R(0.25), splat(R(0.25)));
         cosine = choose(around, from_inside, cosine);
-        const vreal ball = splat(1) / fma(radius * radius, splat(R(0.5)), distance2);
+        const vreal ball = divide(splat(1), fma(radius * radius, splat(R(0.5)), distance2));
         spread_inverse = choose(lamp, spread_inverse, ball);
     }
 #if EFFECT_METAL
@@ -158,8 +158,8 @@ FORCE_INLINE static vuint choose_child(const Scene *scene, vuint node, int root,
         below += importance[k];
     }
     const vbool some = chosen > splat(0);
-    const vreal rest = fma(refill * R(0x1p-24), sum, target - chosen_below) / choose(some, chosen, splat(1));
-    const vreal share = choose(some, chosen / sum, splat(0));
+    const vreal rest = divide(fma(refill * R(0x1p-24), sum, target - chosen_below), choose(some, chosen, splat(1)));
+    const vreal share = choose(some, divide(chosen, sum), splat(0));
     choice->rest = choose(active, at_most(at_least(rest, splat(0)), splat(R(1.0) - ROUNDOFF)), choice->rest);
     choice->probability = choose(active, choice->probability * share, choice->probability);
     choice->sphere.centre = choose3(active, sphere.centre, choice->sphere.centre);
@@ -203,7 +203,7 @@ static vreal share_of_child(const Scene *scene, vuint node, const Point *point, 
     const vreal sum = lamp_importances(scene, node, 0, point, lobe, time, importance, children, &count);
     vreal chosen = splat(0);
     for (uint i = 0; i < count; ++i) chosen = choose(vbool_of_uint(k == splat_uint(i)), importance[i], chosen);
-    return choose(chosen > splat(0), chosen / sum, splat(0));
+    return choose(chosen > splat(0), divide(chosen, sum), splat(0));
 }
 
 /* The probability with which choose_lamp chooses the sphere in `slot`, when it has found the sum `sum`; 0 if the sphere
@@ -216,7 +216,7 @@ static vreal lamp_probability(const Scene *scene, const Point *point, const Lobe
     vuint k = trail & mask;
     const LampChild child = load_child(scene, splat_uint(0), k, time);
     const vreal importance = lamp_importance(&child, point, lobe, is_fuzzy(lobe));
-    vreal probability = choose(known & (importance > splat(0)), importance / sum, splat(0));
+    vreal probability = choose(known & (importance > splat(0)), divide(importance, sum), splat(0));
     vuint word = gather_uint(scene->lamp_children, k);
     for (;;) {
         const vbool deeper = goes_deeper(known, probability, word);
@@ -250,22 +250,22 @@ FORCE_INLINE static LampCone lamp_cone(const Point *point, const Sphere *lamp) {
     Vec3 to_centre;
     cone.power = sphere_power(point, lamp, &to_centre);
     const vreal distance2 = dot3(to_centre, to_centre);
-    cone.distance = sqrt(distance2);
-    const vreal inverse = splat(1) / cone.distance;
+    cone.distance = square_root(distance2);
+    const vreal inverse = divide(splat(1), cone.distance);
     const vreal sine = lamp->radius * inverse;
     const vreal share = cone.power * inverse * inverse;
     cone.outside = share > splat(LAMP_POWER_MIN);
     cone.axis = scale3(inverse, to_centre);
-    const vreal cosine = sqrt(choose(cone.outside, share, splat(1)));
+    const vreal cosine = square_root(choose(cone.outside, share, splat(1)));
     cone.tangent = cone.distance * cosine;
-    cone.cap = sine * sine / (splat(1) + cosine);
+    cone.cap = divide(sine * sine, splat(1) + cosine);
     return cone;
 }
 
 /* A unit direction, uniform in the cone for u and v uniform in [0, 1). */
 static Vec3 sample_cone(const LampCone *cone, vreal u, vreal v) {
     const vreal m = u * cone->cap;
-    const vreal cosine = splat(1) - m, sine = sqrt(m * (splat(2) - m));
+    const vreal cosine = splat(1) - m, sine = square_root(m * (splat(2) - m));
     vreal along, across;
     sin_cos_turn(v, &across, &along);
     along = along * sine;
@@ -273,7 +273,7 @@ static Vec3 sample_cone(const LampCone *cone, vreal u, vreal v) {
     /* Two unit vectors across the axis (T. Duff et al., "Building an Orthonormal Basis, Revisited", JCGT 6(1), 2017). */
     const Vec3 w = cone->axis;
     const vreal sign = copysign(splat(1), w.z);
-    const vreal a = splat(-1) / (sign + w.z);
+    const vreal a = divide(splat(-1), sign + w.z);
     const vreal b = w.x * w.y * a;
     const Vec3 s = vec3(fma(sign * w.x * w.x, a, splat(1)), sign * b, -sign * w.x);
     const Vec3 t = vec3(b, fma(w.y * w.y, a, sign), -w.y);
@@ -287,7 +287,7 @@ static Vec3 sample_cone(const LampCone *cone, vreal u, vreal v) {
 static vreal cone_distance(const LampCone *cone, vreal radius, vreal u) {
     const vreal k = cone->cap;
     const vreal half_chord =
-        radius * sqrt(at_least((splat(1) - u) * (splat(2) - k * (splat(1) + u)) / (splat(2) - k), splat(0)));
-    return cone->power / fma(cone->distance, splat(1) - u * k, half_chord);
+        radius * square_root(at_least(divide((splat(1) - u) * (splat(2) - k * (splat(1) + u)), splat(2) - k), splat(0)));
+    return divide(cone->power, fma(cone->distance, splat(1) - u * k, half_chord));
 }
 #endif

@@ -15,7 +15,7 @@ static int has_backdrop(__global const PackedSky *sky) { return sky->backdrop_bo
 static Vec3 backdrop_radiance(__global const PackedSky *sky, Vec3 origin, Vec3 direction) {
     const Vec3 bottom = splat3(sky->backdrop_bottom), top = splat3(sky->backdrop_top);
     const Vec3 ahead = splat3(sky->view_ahead), up = splat3(sky->view_up);
-    const vreal distance = (splat(sky->view_ahead[3]) - dot3(origin, ahead)) / dot3(direction, ahead);
+    const vreal distance = divide(splat(sky->view_ahead[3]) - dot3(origin, ahead), dot3(direction, ahead));
     const vreal height = fma(distance, dot3(direction, up), dot3(origin, up));
     const vreal share = at_most(at_least(fma(splat(R(0.5)), height, splat(R(0.5))), splat(0)), splat(1));
     return madd3(share, subtract3(top, bottom), bottom);

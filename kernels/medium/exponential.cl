@@ -53,7 +53,7 @@ static vreal exp_minus(vreal x) {
 
 /* -log(1 - z) for z in [0, 1/2], as 2 atanh(z / (2 - z)). */
 static vreal minus_log_1_minus(vreal z) {
-    const vreal s = z / (splat(2) - z);
+    const vreal s = divide(z, splat(2) - z);
     const vreal square = s * s;
 #if REAL_IS_DOUBLE
     vreal p = splat(1.0 / 37.0);

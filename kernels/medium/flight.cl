@@ -46,7 +46,7 @@ static Vec3 medium_colour(const Scene *scene, vuint medium, uint member) {
 /* exp(x) for x that is below 40. */
 static vreal exp_below_40(vreal x) {
     const vreal e = exp_minus(fabs(x));
-    return choose(x > splat(0), splat(1) / choose(x > splat(0), e, splat(1)), e);
+    return choose(x > splat(0), divide(splat(1), choose(x > splat(0), e, splat(1))), e);
 }
 
 /* What a medium leaves of light along a straight way. */
@@ -71,17 +71,17 @@ static vbool fly(const Scene *scene, vbool moving, vreal distance, Path *path, v
     const vbool scatters_ever = by > splat(0);
     const vreal free =
         exponential_length(sample_1d(path->key, first + BOUNCE_FLIGHT), uniform(path->key, first + BOUNCE_FLIGHT_REFILL));
-    const vreal until = free / choose(scatters_ever, by, splat(1));
+    const vreal until = divide(free, choose(scatters_ever, by, splat(1)));
     const vbool scattered = inside & scatters_ever & (until < distance);
     *length = choose(scattered, until, distance);
     /* The density of this flight by each colour, over that by the path's own. */
     Vec3 density = vec3(exp_below_40((by - scattering.x) * *length), exp_below_40((by - scattering.y) * *length),
                         exp_below_40((by - scattering.z) * *length));
-    const Vec3 ratio = scale3(splat(1) / choose(scatters_ever, by, splat(1)), scattering);
+    const Vec3 ratio = scale3(divide(splat(1), choose(scatters_ever, by, splat(1))), scattering);
     density = choose3(scattered, multiply3(density, ratio), density);
     const Vec3 likelihood = multiply3(path->likelihood, density);
-    const vreal mean = (likelihood.x + likelihood.y + likelihood.z) / splat(3);
-    const vreal inverse = splat(1) / mean;
+    const vreal mean = divide(likelihood.x + likelihood.y + likelihood.z, splat(3));
+    const vreal inverse = divide(splat(1), mean);
     const Vec3 left = vec3(exp_minus(absorption.x * *length), exp_minus(absorption.y * *length),
                            exp_minus(absorption.z * *length));
     path->likelihood = choose3(inside, scale3(inverse, likelihood), path->likelihood);

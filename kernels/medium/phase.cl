@@ -10,7 +10,7 @@ static void phase_cosine(vreal g, vreal u, vreal *one_plus, vreal *one_minus) {
     const vreal size = fabs(g), rest = splat(1) - size, all = splat(1) + size;
     const vreal a = splat(2) * choose(forwards, u, splat(1) - u), b = splat(2) - a;
     const vreal root = fma(size, a, rest);
-    const vreal scale = splat(R(0.5)) / (root * root);
+    const vreal scale = divide(splat(R(0.5)), root * root);
     const vreal near = a * all * all * fma(size, a, rest + rest) * scale;
     const vreal far = b * rest * rest * fma(-size, b, all + all) * scale;
     *one_plus = choose(forwards, near, far);
@@ -24,21 +24,21 @@ static vreal phase_pdf(vreal g, Vec3 before, Vec3 after) {
     const Vec3 peak = scale3(choose(g >= splat(0), splat(1), splat(-1)), before);
     const Vec3 off = subtract3(after, peak);
     const vreal square = fma(size, dot3(off, off), rest * rest);
-    return R(0.07957747154594767) * rest * (splat(1) + size) / (square * sqrt(square));
+    return divide(R(0.07957747154594767) * rest * (splat(1) + size), square * square_root(square));
 }
 
 static Vec3 phase_direction(Vec3 before, vreal g, vreal u, vreal v) {
     vreal one_plus, one_minus;
     phase_cosine(g, u, &one_plus, &one_minus);
     const vreal cosine = (one_plus - one_minus) * R(0.5);
-    const vreal sine = sqrt(one_plus * one_minus);
+    const vreal sine = square_root(one_plus * one_minus);
     vreal along, across;
     sin_cos_turn(v, &across, &along);
     along = along * sine;
     across = across * sine;
     /* As in lamps.cl: T. Duff et al., 2017. */
     const vreal sign = copysign(splat(1), before.z);
-    const vreal a = splat(-1) / (sign + before.z);
+    const vreal a = divide(splat(-1), sign + before.z);
     const vreal b = before.x * before.y * a;
     const Vec3 s = vec3(fma(sign * before.x * before.x, a, splat(1)), sign * b, -sign * before.x);
     const Vec3 t = vec3(b, fma(before.y * before.y, a, sign), -before.y);

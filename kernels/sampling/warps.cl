@@ -57,7 +57,7 @@ static void sin_cos_turn(vreal u, vreal *sine, vreal *cosine) {
 
 /* Uniform on the unit disk. */
 static void sample_disk(vreal u, vreal v, vreal *x, vreal *y) {
-    const vreal radius = sqrt(u);
+    const vreal radius = square_root(u);
     vreal sine, cosine;
     sin_cos_turn(v, &sine, &cosine);
     *x = radius * cosine;
@@ -67,7 +67,7 @@ static void sample_disk(vreal u, vreal v, vreal *x, vreal *y) {
 /* Uniform on the unit sphere (Archimedes: the height is uniform). */
 static Vec3 sample_sphere(vreal u, vreal v) {
     const vreal z = R(1.0) - R(2.0) * u;
-    const vreal radius = sqrt(at_least((R(1.0) - z) * (R(1.0) + z), splat(0)));
+    const vreal radius = square_root(at_least((R(1.0) - z) * (R(1.0) + z), splat(0)));
     vreal sine, cosine;
     sin_cos_turn(v, &sine, &cosine);
     return vec3(radius * cosine, radius * sine, z);

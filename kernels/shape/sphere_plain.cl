@@ -27,7 +27,7 @@ FORCE_INLINE static vbool sphere_roots(const Ray *ray, const Sphere *sphere, vre
     const vreal p = dot3(oc, ray->direction);
     const Vec3 l = madd3(-p, ray->direction, oc);
     const vreal discriminant = fma(sphere->radius, sphere->radius, -dot3(l, l));
-    const vreal half_chord = sqrt(larger(discriminant, splat(0)));
+    const vreal half_chord = square_root(larger(discriminant, splat(0)));
     *near = p - half_chord;
     *far = p + half_chord;
     return discriminant >= splat(0);

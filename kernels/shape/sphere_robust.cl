@@ -74,7 +74,7 @@ FORCE_INLINE static Roots sphere_roots(const Ray *ray, const Sphere *sphere) {
     const vrefined discriminant = fma(r, r, -fma(lx, lx, fma(ly, ly, lz * lz)));
     Roots roots;
     roots.meets = vbool_of_refined(discriminant >= splat_refined(0));
-    const vrefined s = sqrt(choose_refined(roots.meets, discriminant, splat_refined(0)) * inverse);
+    const vrefined s = square_root_refined(choose_refined(roots.meets, discriminant, splat_refined(0)) * inverse);
     roots.near = p - s;
     roots.far = p + s;
     roots.middle = p;
@@ -116,17 +116,17 @@ FORCE_INLINE static Roots sphere_roots(const Ray *ray, const Sphere *sphere) {
     Vec3 l = add3(madd3(-p1, d, oc), vec3(ex, ey, ez));
     const vreal p2 = dot3(l, d) * inverse;
     l = madd3(-p2, d, l);
-    const vreal impact = sqrt(dot3(l, l));
+    const vreal impact = square_root(dot3(l, l));
     const vreal discriminant = (radius - impact) * (radius + impact);
     Roots roots;
     roots.meets = discriminant >= splat(0);
-    const vreal s = sqrt(choose(roots.meets, discriminant, splat(0)) * inverse);
+    const vreal s = square_root(choose(roots.meets, discriminant, splat(0)) * inverse);
     const vreal p = p1 + p2;
     /* The root away from zero adds up; the other one is (oc.oc - r^2) / d.d over it. */
     const vbool ahead = p >= splat(0);
     const vreal outer = p1 + (p2 + choose(ahead, s, -s));
     const vreal power = compensated_power(oc, vec3(ex, ey, ez), radius);
-    const vreal quotient = choose(outer != splat(0), power * inverse / outer, splat(0));
+    const vreal quotient = choose(outer != splat(0), divide(power * inverse, outer), splat(0));
     const vreal difference = p1 + (p2 - choose(ahead, s, -s));
     const vreal inner = choose(fabs(difference) < R(0.5) * fabs(p), quotient, difference);
     roots.near = choose(ahead, inner, outer);
@@ -193,7 +193,7 @@ FORCE_INLINE static void sphere_surface(const Ray *ray, const Sphere *sphere, vu
     const vrefined x = fma(t, to_refined(direction.x), to_refined(origin->high.x) + to_refined(origin->low.x));
     const vrefined y = fma(t, to_refined(direction.y), to_refined(origin->high.y) + to_refined(origin->low.y));
     const vrefined z = fma(t, to_refined(direction.z), to_refined(origin->high.z) + to_refined(origin->low.z));
-    const vrefined inverse = splat_refined(1) / to_refined(sphere->radius);
+    const vrefined inverse = divide_refined(splat_refined(1), to_refined(sphere->radius));
     normal->x = to_real((x - to_refined(centre.x)) * inverse);
     normal->y = to_real((y - to_refined(centre.y)) * inverse);
     normal->z = to_real((z - to_refined(centre.z)) * inverse);

@@ -38,7 +38,7 @@ static vreal waves_around(const Scene *scene, vuint numbers, vuint axis, const P
     z = choose_refined(vbool_of_uint(axis == splat_uint(2)), splat_refined(0), z);
     const vrefined wave = to_refined(gather_real(scene->textures, numbers + TEXTURE_WAVE)) +
                           to_refined(gather_real(scene->textures, numbers + TEXTURE_WAVE_LOW));
-    const vrefined waves = sqrt(fma(x, x, fma(y, y, z * z))) * wave;
+    const vrefined waves = square_root_refined(fma(x, x, fma(y, y, z * z))) * wave;
     return to_real(waves - floor(waves));
 }
 

@@ -41,7 +41,7 @@ static vreal turn_of(vreal x, vreal y) {
     const vreal tangent = choose(near_one, splat(1), choose(near_half, splat(R(0.5)), splat(0)));
     const vreal known = choose(near_one, splat(R(0.125)), choose(near_half, splat(R(0.073791808825216637)), splat(0)));
     const vreal below = choose(some, fma(tangent, smaller_one, larger_one), splat(1));
-    const vreal r = fma(-tangent, larger_one, smaller_one) / below;
+    const vreal r = divide(fma(-tangent, larger_one, smaller_one), below);
     vreal turn = fma(r, turn_over_tangent(r * r), known);
     turn = choose(steep, R(0.25) - turn, turn);
     turn = choose(x < splat(0), R(0.5) - turn, turn);
@@ -53,6 +53,6 @@ static vreal turn_of(vreal x, vreal y) {
 static void sphere_map(Vec3 normal, Vec3 seam, Vec3 east, Vec3 pole, vreal *u, vreal *v) {
     const vreal x = dot3(normal, seam), y = dot3(normal, east), height = dot3(normal, pole);
     *u = turn_of(x, y);
-    *v = at_most(splat(2) * turn_of(-height, sqrt(fma(x, x, y * y))), splat(1));
+    *v = at_most(splat(2) * turn_of(-height, square_root(fma(x, x, y * y))), splat(1));
 }
 #endif

@@ -15,7 +15,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum { CHOICES = 11, COMBINATIONS = 1 << CHOICES, SETS = 2 << BP_EFFECT_COUNT };
+enum { CHOICES = 12, COMBINATIONS = 1 << CHOICES, SETS = 2 << BP_EFFECT_COUNT };
 
 static bool allow_any(uint32_t word) {
     (void)word;
@@ -35,6 +35,7 @@ static BpProgramOptions combination(uint32_t c) {
     options.pixel_list = (c & 256u) != 0;
     options.tree = (c & 512u) != 0;
     options.packet_lanes = c & 1024u ? 16 : 8;
+    options.own_rounding = (c & 2048u) != 0;
     return options;
 }
 
@@ -60,11 +61,11 @@ static BpStatus dump(const char *folder, const BpProgramOptions *options, BpErro
     char path[4096];
     FILE *file = NULL;
     BpStatus status = BP_OK;
-    snprintf(path, sizeof path, "%s/e%02x_t%d_w%u_l%u_p%d_m%d_n%d_s%d_k%d_r%d_x%d%s.cl", folder,
+    snprintf(path, sizeof path, "%s/e%02x_t%d_w%u_l%u_p%d_m%d_n%d_s%d_k%d_r%d_x%d_o%d%s.cl", folder,
              (unsigned)options->effects, (int)options->tree, (unsigned)options->tree_width,
              (unsigned)options->packet_lanes, (int)options->precision, (int)options->math,
              (int)options->numerics, (int)options->sampler, (int)options->form, (int)options->double_refine,
-             (int)options->pixel_list, needs_double ? "_fp64" : "");
+             (int)options->pixel_list, (int)options->own_rounding, needs_double ? "_fp64" : "");
     BP_TRY_GOTO(status,
                 bp_program_source(options, "entry/aovs.cl", bp_kernel_file("entry/aovs.cl"), &source, err),
                 done);

@@ -328,6 +328,9 @@ static cl_int CL_API_CALL get_build_info(cl_program of, cl_device_id id, cl_prog
     return what == CL_PROGRAM_BUILD_LOG ? answer_text(of->log, size, to, size_ret) : CL_INVALID_VALUE;
 }
 
+static cl_int CL_API_CALL retain_program(cl_program retained) {
+    return (void)retained, CL_SUCCESS;
+}
 static cl_int CL_API_CALL release_program(cl_program released) {
     return (void)released, CL_SUCCESS;
 }
@@ -352,6 +355,7 @@ static void connect(void) {
     dispatch.clGetProgramInfo = get_program_info;
     dispatch.clBuildProgram = build_program;
     dispatch.clGetProgramBuildInfo = get_build_info;
+    dispatch.clRetainProgram = retain_program;
     dispatch.clReleaseProgram = release_program;
     dispatch.clReleaseCommandQueue = release_queue;
     dispatch.clReleaseContext = release_context;

@@ -4,6 +4,9 @@
 #include "opencl/device.h"
 
 #include "base/clock.h"
+#include "base/hash.h"
+#include "opencl/program.h"
+#include "opencl/self_test.h"
 
 #include <setjmp.h>
 #include <stdarg.h>
@@ -245,6 +248,69 @@ static void build_options(void **state) {
     }
 }
 
+static BpDevice *opened(const char *kind) {
+    BpDeviceInfo info;
+    BpDevice *device = NULL;
+    with(kind);
+    assert_int_equal(bp_device_find("0", &info, NULL), BP_OK);
+    assert_int_equal(bp_device_open(&info, &device, NULL), BP_OK);
+    return device;
+}
+
+/* Quotients and roots are rounded by the kernel where the device does not, and rounding matters. */
+static void who_rounds(void **state) {
+    (void)state;
+    static const struct {
+        const char *kind;
+        BpMath math;
+        BpPrecision precision;
+        bool own;
+    } cases[] = {{"gpu", BP_MATH_STRICT, BP_PRECISION_SINGLE, true},
+                 {"gpu", BP_MATH_FAST, BP_PRECISION_SINGLE, false},
+                 {"rounding", BP_MATH_STRICT, BP_PRECISION_SINGLE, false}};
+    for (size_t i = 0; i < sizeof cases / sizeof cases[0]; ++i) {
+        BpProgramOptions options = {.tree_width = 4, .math = cases[i].math, .precision = cases[i].precision};
+        BpProgram *program = NULL;
+        char *source = NULL;
+        BpDevice *device = opened(cases[i].kind);
+        assert_int_equal(bp_program_build(device, &options, NULL, NULL, &program, NULL), BP_OK);
+        options.own_rounding = cases[i].own;
+        assert_int_equal(bp_program_source(&options, NULL, NULL, &source, NULL), BP_OK);
+        const char *flags = cases[i].math == BP_MATH_FAST ? "-cl-fast-relaxed-math" : "";
+        if (program->key != bp_hash_text(bp_hash_text(BP_HASH_START, source), flags))
+            fail_msg("%s: another source than with own_rounding = %d", cases[i].kind, cases[i].own);
+        assert_contains(source, cases[i].own ? "#define OWN_ROUNDING 1\n" : "#define OWN_ROUNDING 0\n");
+        free(source);
+        bp_program_destroy(&program);
+        bp_device_close(&device);
+    }
+}
+
+/* Devices that differ in nothing but what their programs are built with have passes of their own. */
+static void a_pass_is_of_its_options(void **state) {
+    (void)state;
+    BpDevice *one = opened("gpu"), *other = opened("rounding");
+    setenv("XDG_CACHE_HOME", "/tmp/of-nobody", 1);
+    other->info = one->info;
+    with("gpu");
+    char *options = bp_device_build_options(one, NULL), *path = bp_self_test_memory_path(one);
+    assert_string_equal(options, "-cl-std=CL1.2");
+    with("rounding");
+    char *other_options = bp_device_build_options(other, NULL), *other_path = bp_self_test_memory_path(other);
+    assert_string_equal(other_options, "-cl-std=CL1.2 -cl-fp32-correctly-rounded-divide-sqrt -cl-nv-verbose");
+    assert_string_not_equal(path, other_path);
+    with("gpu");
+    char *again = bp_self_test_memory_path(one);
+    assert_string_equal(path, again);
+    free(again);
+    free(options);
+    free(other_options);
+    free(path);
+    free(other_path);
+    bp_device_close(&one);
+    bp_device_close(&other);
+}
+
 /* Builds `source` on the fake CPU, whose driver takes `milliseconds`; whether it was compiled for that, and
  * not taken from the cache. */
 static bool compiles(const char *source, const char *milliseconds) {
@@ -355,6 +421,8 @@ int main(void) {
         cmocka_unit_test(refuses_by_what_is_lacking),
         cmocka_unit_test(opening),
         cmocka_unit_test(build_options),
+        cmocka_unit_test(who_rounds),
+        cmocka_unit_test(a_pass_is_of_its_options),
         cmocka_unit_test(programs_are_kept_where_the_driver_keeps_none),
         cmocka_unit_test(build_failure_names_the_first_place),
         cmocka_unit_test(errors_have_names_and_remedies),
