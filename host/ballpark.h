@@ -244,7 +244,13 @@ typedef enum BpPrecision { BP_PRECISION_SINGLE, BP_PRECISION_DOUBLE } BpPrecisio
 typedef enum BpMath { BP_MATH_STRICT, BP_MATH_FAST } BpMath;
 typedef enum BpNumerics { BP_NUMERICS_ROBUST, BP_NUMERICS_PLAIN } BpNumerics;
 typedef enum BpSampler { BP_SAMPLER_INDEPENDENT, BP_SAMPLER_SOBOL } BpSampler;
-typedef enum BpKernelForm { BP_KERNEL_AUTO, BP_KERNEL_SAMPLE, BP_KERNEL_PACKET } BpKernelForm;
+/* How a kernel shares out the samples; pictures are the same. */
+typedef enum BpKernelForm {
+    BP_KERNEL_AUTO,   /* packets on processors with vectors, samples elsewhere */
+    BP_KERNEL_SAMPLE, /* a work-item traces one pixel sample */
+    BP_KERNEL_PACKET, /* a work-item follows as many paths at a time as there are lanes */
+    BP_KERNEL_POOL    /* a work-item whose path has ended takes the next sample of its work-group */
+} BpKernelForm;
 
 /* Whether rays are sent to lamps; without, paths find them by chance. Both converge to the same picture. */
 typedef enum BpLamps { BP_LAMPS_ON, BP_LAMPS_OFF } BpLamps;

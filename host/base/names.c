@@ -16,8 +16,11 @@ const char *const bp_numerics_names[] = {
     [BP_NUMERICS_ROBUST] = "robust", [BP_NUMERICS_PLAIN] = "plain", NULL};
 const char *const bp_sampler_names[] = {
     [BP_SAMPLER_INDEPENDENT] = "independent", [BP_SAMPLER_SOBOL] = "sobol", NULL};
-const char *const bp_kernel_names[] = {
-    [BP_KERNEL_AUTO] = "auto", [BP_KERNEL_SAMPLE] = "sample", [BP_KERNEL_PACKET] = "packet", NULL};
+const char *const bp_kernel_names[] = {[BP_KERNEL_AUTO] = "auto",
+                                       [BP_KERNEL_SAMPLE] = "sample",
+                                       [BP_KERNEL_PACKET] = "packet",
+                                       [BP_KERNEL_POOL] = "pool",
+                                       NULL};
 const char *const bp_transfer_names[] = {
     [BP_TRANSFER_GAMMA2] = "gamma2", [BP_TRANSFER_SRGB] = "srgb", [BP_TRANSFER_LINEAR] = "linear", NULL};
 const char *const bp_format_names[] = {[BP_FORMAT_PNG] = "png",

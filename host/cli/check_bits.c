@@ -94,8 +94,8 @@ typedef struct Form {
     const char *skipped; /* Optional: why it is */
 } Form;
 
-/* Both kernels, tree and list, each in single precision with both refinements, and in double. */
-enum { FORMS = 2 * 2 * 3 };
+/* All kernels, tree and list, each in single precision with both refinements, and in double. */
+enum { KERNELS = 3, FORMS = KERNELS * 2 * 3 };
 
 typedef struct Plan {
     const BpBitsRun *run;
@@ -118,15 +118,19 @@ static const char *why_skip(const BpBitsRun *run, BpKernelForm kernel, BpPrecisi
 
 /* Form by form, so that a driver that keeps the last kernel builds few. */
 static BpStatus make_plan(const BpBitsRun *run, Plan *plan, BpError *err) {
-    static const BpKernelForm kernels[] = {BP_KERNEL_PACKET, BP_KERNEL_SAMPLE};
+    static const BpKernelForm kernels[KERNELS] = {BP_KERNEL_PACKET, BP_KERNEL_SAMPLE, BP_KERNEL_POOL};
     const size_t pictures = json_array_size(run->pictures);
     *plan = (Plan){.run = run, .forms = calloc(FORMS * pictures + 1, sizeof *plan->forms)};
     if (plan->forms == NULL) return bp_fail(err, BP_ERR_MEMORY, "out of memory for a list of pictures");
     for (size_t form = 0; form < FORMS; ++form) {
-        const BpKernelForm kernel = kernels[form / 2 % 2];
-        const BpPrecision precision = form < 8 ? BP_PRECISION_SINGLE : BP_PRECISION_DOUBLE;
-        const bool float_refine = form >= 4 && form < 8;
+        const BpKernelForm kernel = kernels[form / 2 % KERNELS];
+        const size_t numbers = form / (2 * KERNELS);
+        const BpPrecision precision = numbers < 2 ? BP_PRECISION_SINGLE : BP_PRECISION_DOUBLE;
+        const bool float_refine = numbers == 1;
         if (run->kernel != BP_KERNEL_AUTO && run->kernel != kernel) continue;
+        /* Nobody gets the pool form on a processor who does not ask for it. */
+        if (kernel == BP_KERNEL_POOL && run->kernel == BP_KERNEL_AUTO && run->device->type == BP_DEVICE_CPU)
+            continue;
         if (run->one_precision && run->precision != precision) continue;
         for (size_t p = 0; p < pictures; ++p) {
             const json_t *picture = json_array_get(run->pictures, p);

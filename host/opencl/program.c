@@ -11,8 +11,9 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* Which programs contain a file: those of one form, those of one kind of numerics, or all. */
-enum { IN_SAMPLE = 1, IN_PACKET = 2, IN_ROBUST = 4, IN_PLAIN = 8, IN_ALL = 0 };
+/* Which programs contain a file: those of one form, those of one kind of numerics, or all. IN_SINGLE: the
+ * forms whose work-items follow one path at a time. */
+enum { IN_SAMPLE = 1, IN_PACKET = 2, IN_ROBUST = 4, IN_PLAIN = 8, IN_POOL = 16, IN_SINGLE = 32, IN_ALL = 0 };
 
 /* The order in which a program contains the files of kernels/. A lanes_... file says for how many lanes the
  * files behind it are compiled (dialect/lanes.cl); some files are read again for another number of lanes. */
@@ -46,7 +47,7 @@ static const struct {
     {"bvh/child_mask.cl", IN_ALL},
     {"bvh/node.cl", IN_ALL},
     /* for one path, or for the paths of a packet */
-    {"dialect/lanes_one.cl", IN_SAMPLE},
+    {"dialect/lanes_one.cl", IN_SINGLE},
     {"dialect/lanes_packet.cl", IN_PACKET},
     {"dialect/lanes.cl", IN_ALL},
     {"dialect/divide.cl", IN_PACKET},
@@ -56,7 +57,7 @@ static const struct {
     {"shape/sphere_plain.cl", IN_PACKET | IN_PLAIN},
     {"bvh/hit.cl", IN_PACKET},
     {"bvh/box_ray.cl", IN_PACKET},
-    {"bvh/traverse_single.cl", IN_SAMPLE},
+    {"bvh/traverse_single.cl", IN_SINGLE},
     {"bvh/traverse_packet.cl", IN_PACKET},
     {"sampling/rng.cl", IN_ALL},
     {"sampling/sampler.cl", IN_ALL},
@@ -90,7 +91,9 @@ static const struct {
     {"integrator/discs_direct.cl", IN_ALL},
     {"integrator/shadow_catcher.cl", IN_ALL},
     {"integrator/bounce.cl", IN_ALL},
+    {"integrator/one_path.cl", IN_SINGLE},
     {"entry/trace_sample.cl", IN_SAMPLE},
+    {"entry/trace_pool.cl", IN_POOL},
     {"entry/trace_packet.cl", IN_PACKET},
     {"film/accumulate.cl", IN_ALL},
     {"entry/probe_layout.cl", IN_ALL},
@@ -198,7 +201,7 @@ BpStatus bp_program_source(const BpProgramOptions *options, const char *extra_na
     if (options->form == BP_KERNEL_PACKET) {
         text_print(&text, "#define PACKET_LANES %u\n", options->packet_lanes);
         text_print(&text, "#define SAMPLES_PER_ITEM %uu\n", BP_PACKET_SAMPLES_PER_ITEM);
-    } else {
+    } else if (options->form == BP_KERNEL_SAMPLE) {
         text_print(&text, "#define GROUP_MAX %uu\n", BP_SAMPLE_GROUP_MAX);
     }
     text_print(&text, "#define SAMPLER_SOBOL %d\n", options->sampler == BP_SAMPLER_SOBOL);
@@ -207,8 +210,10 @@ BpStatus bp_program_source(const BpProgramOptions *options, const char *extra_na
         text_print(&text, "#define EFFECT_%s %d\n", bp_effect_identifier((BpEffect)e),
                    bp_effects_has(options->effects, (BpEffect)e));
     text_print(&text, "#define ACCELERATION_TREE %d\n", options->tree);
-    const unsigned kind =
-        (options->form == BP_KERNEL_PACKET ? IN_PACKET : IN_SAMPLE) | (plain ? IN_PLAIN : IN_ROBUST);
+    const unsigned form = options->form == BP_KERNEL_PACKET ? IN_PACKET
+                          : options->form == BP_KERNEL_POOL ? IN_SINGLE | IN_POOL
+                                                            : IN_SINGLE | IN_SAMPLE;
+    const unsigned kind = form | (plain ? IN_PLAIN : IN_ROBUST);
     for (size_t i = 0; i < sizeof files / sizeof files[0]; ++i) {
         const char *name = files[i].name;
         if ((files[i].only_in & ~kind) != 0) continue;

@@ -25,6 +25,12 @@ BpStatus bp_kernel_text(const char *name, char **text, BpError *err);
  * that the last, partly filled round weighs little, few enough that a small chunk still keeps all cores busy.
  */
 #define BP_PACKET_SAMPLES_PER_ITEM 512u
+/* A work-item of the pool form has this many pixel samples to trace on average, fewer where there would not
+ * be BP_POOL_ITEMS_PER_UNIT work-items for each compute unit: enough that long paths are among others, few
+ * enough that no group works alone for long at the end. In a model of lock-step, warps of 32 gained 1.5
+ * with 16. */
+#define BP_POOL_SAMPLES_PER_ITEM 16u
+#define BP_POOL_ITEMS_PER_UNIT 1024u
 /* Work-items in a work-group of the sample form, at most: they share an array of this length. */
 #define BP_SAMPLE_GROUP_MAX 64u
 
@@ -32,7 +38,7 @@ typedef struct BpProgramOptions {
     uint32_t effects; /* bits of effects.h */
     bool tree;        /* spheres are found through a tree; else they are a list */
     BP_SETTING_LIST(BP_SETTING_MEMBER)
-    BpKernelForm form;     /* BP_KERNEL_SAMPLE or BP_KERNEL_PACKET */
+    BpKernelForm form;     /* not BP_KERNEL_AUTO */
     uint32_t tree_width;   /* 2, 4, 8 or 16 */
     uint32_t packet_lanes; /* 8 or 16; of the packet form alone */
     bool pixel_list;       /* chunks take their pixels from a list */

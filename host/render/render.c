@@ -492,7 +492,7 @@ void bp_render_report(const BpRender *render, BpRenderReport *report) {
     report->effects = render->effects;
     report->acceleration = render->acceleration;
     report->self_test_seconds = first->self_test_seconds;
-    report->kernel = first->samples_per_item > 1 ? BP_KERNEL_PACKET : BP_KERNEL_SAMPLE;
+    report->kernel = first->form;
 #define SETTING(type, member, plural) report->member = render->options.member;
     BP_SETTING_LIST(SETTING)
 #undef SETTING

@@ -75,13 +75,17 @@ static BpStatus create_kernels(BpWorker *worker, const BpWorkerSetup *setup, BpE
         BP_TRY(set_argument(worker, worker->trace, TRACE_LIST, sizeof(cl_mem), &worker->pixel_list, err));
     }
 
-    const bool packet = setup->program.form == BP_KERNEL_PACKET;
-    worker->samples_per_item = packet ? BP_PACKET_SAMPLES_PER_ITEM : 1;
+    worker->form = setup->program.form;
+    const bool packet = worker->form == BP_KERNEL_PACKET;
+    worker->samples_per_item = packet                           ? BP_PACKET_SAMPLES_PER_ITEM
+                               : worker->form == BP_KERNEL_POOL ? BP_POOL_SAMPLES_PER_ITEM
+                                                                : 1;
     worker->local_size = setup->local_size != 0 ? setup->local_size
                          : packet               ? BP_LOCAL_SIZE_PACKET
                                                 : BP_LOCAL_SIZE_SAMPLE;
     size_t most = 0;
-    if (!packet && worker->local_size > BP_SAMPLE_GROUP_MAX) worker->local_size = BP_SAMPLE_GROUP_MAX;
+    if (worker->form == BP_KERNEL_SAMPLE && worker->local_size > BP_SAMPLE_GROUP_MAX)
+        worker->local_size = BP_SAMPLE_GROUP_MAX;
     CL_TRY(worker,
            clGetKernelWorkGroupInfo(worker->trace, worker->device->id, CL_KERNEL_WORK_GROUP_SIZE, sizeof most,
                                     &most, NULL),
@@ -249,6 +253,15 @@ static BpStatus enqueue(BpWorker *worker, cl_kernel kernel, size_t items, size_t
     return BP_OK;
 }
 
+uint32_t bp_worker_items(const BpWorker *worker, uint32_t count) {
+    const uint64_t items = ((uint64_t)count + worker->samples_per_item - 1) / worker->samples_per_item;
+    if (worker->form != BP_KERNEL_POOL) return (uint32_t)items;
+    const uint64_t wanted = (uint64_t)worker->device->info.compute_units * BP_POOL_ITEMS_PER_UNIT;
+    const uint64_t enough = wanted < count ? wanted : count;
+    /* Whole groups, since any work-item of a group may take samples and count rays to lamps. */
+    return (uint32_t)round_up(items > enough ? items : enough, worker->local_size);
+}
+
 BpStatus bp_worker_start(BpWorker *worker, const BpChunk *chunk, BpError *err) {
     const uint32_t count = chunk->pixel_count * chunk->samples;
     const bool first = worker->samples_done == 0 && worker->flight_count == 0;
@@ -258,7 +271,7 @@ BpStatus bp_worker_start(BpWorker *worker, const BpChunk *chunk, BpError *err) {
         BP_TRY(bp_worker_reserve_samples(worker, count, err));
     }
     const cl_uint first_sample = (cl_uint)chunk->first_sample;
-    const size_t items = (count + worker->samples_per_item - 1) / worker->samples_per_item;
+    const size_t items = bp_worker_items(worker, count);
     const cl_uint lamp_items = worker->has_lamps ? (cl_uint)items : 0;
     const struct {
         cl_kernel kernel;

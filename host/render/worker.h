@@ -57,7 +57,8 @@ typedef struct BpWorker {
     cl_mem pixel_list; /* NULL: chunks are ranges of pixels */
     size_t real_size;
     uint32_t SCENE_NUMBERS(BP_SCENE_NUMBER_MEMBER) pixels;
-    uint32_t samples_per_item; /* pixel samples of a work-item */
+    BpKernelForm form;
+    uint32_t samples_per_item; /* pixel samples of a work-item, on average in the pool form */
     size_t local_size;
     uint32_t samples_capacity,
         samples_limit; /* of the buffer of raw samples; limit: the most it may grow to */
@@ -84,6 +85,9 @@ void bp_worker_destroy(BpWorker **worker);
 /* Sets the arguments that every tracing kernel begins with (SCENE_PARAMETERS of kernels/integrator/scene.cl):
  * BP_WORKER_SCENE_ARGUMENTS of them. */
 BpStatus bp_worker_bind_scene(BpWorker *worker, cl_kernel kernel, BpError *err);
+
+/* How many work-items trace a chunk of `count` pixel samples. */
+uint32_t bp_worker_items(const BpWorker *worker, uint32_t count);
 
 /* Queues a chunk and returns; waits for the oldest first when BP_WORKER_FLIGHT are under way. */
 BpStatus bp_worker_start(BpWorker *worker, const BpChunk *chunk, BpError *err);

@@ -100,7 +100,7 @@ BpStatus bp_worker_reserve_samples(BpWorker *worker, uint32_t count, BpError *er
     if (worker->lamp_rays != NULL) clReleaseMemObject(worker->lamp_rays);
     worker->samples = worker->lamp_rays = NULL;
     worker->samples_capacity = 0;
-    const uint64_t items = ((uint64_t)count + worker->samples_per_item - 1) / worker->samples_per_item;
+    const uint64_t items = bp_worker_items(worker, count);
     BP_TRY(create_buffer(worker, &worker->lamp_rays, worker->has_lamps ? items * sizeof(cl_uint) : 0, NULL,
                          "the chunk's rays to lamps", err));
     BP_TRY(create_buffer(worker, &worker->samples, (uint64_t)count * 4 * worker->real_size, NULL,

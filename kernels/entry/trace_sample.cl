@@ -1,7 +1,7 @@
 /* trace_sample.cl: the kernel of the one-path form: a work-item traces one pixel sample.
  *
  * In:    the packed scene, a chunk.   Out: the samples of the chunk, as pixels.cl says.
- * Knows: path.cl, bounce.cl, lamps_direct.cl, pixels.cl.   Does not know: what a bounce does.
+ * Knows: one_path.cl.   Does not know: what a bounce does.
  *
  * The paths of a work-group begin together, then each goes its way. A camera ray is made without a branch, so compilers
  * for processors can make those of a group in vector lanes, if nothing else stands between: hence the barrier, and the
@@ -49,14 +49,8 @@ __kernel VECTORS_WRITTEN void trace(TRACE_PARAMETERS) {
     const uint item = get_global_id(0), place = get_local_id(0);
     {
         /* Work-items beyond the chunk begin its last path once more, and leave it there. */
-        const uint number = min(item, sample_count - 1);
-        const uint ahead = number / samples_per_pixel;
-        const Pixel pixel =
-            pixel_of_chunk(first_pixel, ahead, sample_count / samples_per_pixel, width PIXEL_LIST_ARGUMENT);
-        const SampleKey key = sample_key(seed_low, seed_high, pixel.row * width + pixel.column,
-                                         first_sample + number - ahead * samples_per_pixel, replicates);
         Vec3 origin, direction;
-        camera_ray(camera, pixel_center, key, (real)pixel.column, (real)pixel.row, &origin, &direction);
+        const SampleKey key = sample_of_chunk(TRACE_ARGUMENTS, min(item, sample_count - 1), &origin, &direction);
         put_start(key, origin, direction, place, &starts);
     }
     barrier(CLK_LOCAL_MEM_FENCE);
@@ -68,14 +62,8 @@ __kernel VECTORS_WRITTEN void trace(TRACE_PARAMETERS) {
     Path path;
     path_none(&path);
     path_init(camera, key, origin, direction, vbool_all, &path);
-    while (path.alive && path.depth < max_depth) {
-        trace_bounce(&scene, &path);
-#if SAMPLES_LAMPS
-        if (path.wants_lamps) light_vertices(&scene, &path);
-#endif
-    }
-    const real cut = path.alive ? R(0.5) : R(0.0);
-    vstore4((real4)(path.radiance.x, path.radiance.y, path.radiance.z, (real)path.depth + cut), item, samples);
+    while (path_goes_on(&path, max_depth)) path_go_on(&scene, &path);
+    store_sample(&path, item, samples);
 #if EFFECT_LAMPS
     lamp_rays[item] = lamp_rays_of(&path);
 #endif

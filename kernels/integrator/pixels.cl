@@ -1,7 +1,7 @@
 /* pixels.cl: the pixels of a chunk, one after the other, in lane code.
  *
  * A chunk is a range of pixels, or of places in a list of pixels for adaptive sampling, times a range of samples. The
- * kernels trace_sample.cl and trace_packet.cl write for each pixel sample of it the radiance, and in a fourth number
+ * kernels trace_sample.cl, trace_pool.cl and trace_packet.cl write for each pixel sample of it the radiance, and in a fourth number
  * the ray segments traced, plus 1/2 for a path that the depth cap cut, plus MISSED_MARK where the camera ray met
  * nothing. What is computed for a pixel sample depends on neither of them. If the scene has lamps, each work-item also
  * writes how many rays it sent to them, in all.
@@ -96,3 +96,5 @@ static Pixels pixels_ahead(const Pixel *pixel, vuint ahead, uint width) {
 #define TRACE_PARAMETERS                                                                                               \
     SCENE_PARAMETERS uint first_pixel, uint first_sample, uint samples_per_pixel, uint sample_count,                  \
         __global real *samples, __global uint *lamp_rays PIXEL_LIST_PARAMETER
+#define TRACE_ARGUMENTS                                                                                                \
+    SCENE_NAMES first_pixel, first_sample, samples_per_pixel, sample_count, samples, lamp_rays PIXEL_LIST_ARGUMENT

@@ -15,6 +15,11 @@ typedef struct Scene {
 #define SCENE_PARAMETERS                                                                                               \
     SCENE_ARRAYS_OF_PACK(ARRAY_PARAMETER) SCENE_ARRAYS_OF_LAMPS(ARRAY_PARAMETER)                                       \
     SCENE_ARRAYS_OF_TREE(ARRAY_PARAMETER) SCENE_NUMBERS(NUMBER_PARAMETER)
+#define NUMBER_ARGUMENT(name) name,
+/* All of them, for a function that takes the same. */
+#define SCENE_NAMES                                                                                                    \
+    SCENE_ARRAYS_OF_PACK(ARRAY_ARGUMENT) SCENE_ARRAYS_OF_LAMPS(ARRAY_ARGUMENT)                                         \
+    SCENE_ARRAYS_OF_TREE(ARRAY_ARGUMENT) SCENE_NUMBERS(NUMBER_ARGUMENT)
 #define SCENE_ARGUMENTS                                                                                                \
     SCENE_ARRAYS_OF_PACK(ARRAY_ARGUMENT) SCENE_ARRAYS_OF_LAMPS(ARRAY_ARGUMENT)                                         \
     SCENE_ARRAYS_OF_TREE(ARRAY_ARGUMENT) first_leaves, leaf_count, max_depth

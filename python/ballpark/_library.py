@@ -116,7 +116,7 @@ TRANSFERS = ["gamma2", "srgb", "linear"]
 FORMATS = ["png", "ppm", "ppm-ascii", "pfm", "exr", "bpa"]
 DEVICE_TYPES = ["cpu", "gpu", "other"]
 CHOICES = {"precision": ["single", "double"], "math": ["strict", "fast"], "numerics": ["robust", "plain"],
-           "sampler": ["independent", "sobol"], "lamps": ["on", "off"], "kernel": ["auto", "sample", "packet"]}
+           "sampler": ["independent", "sobol"], "lamps": ["on", "off"], "kernel": ["auto", "sample", "packet", "pool"]}
 
 _HANDLE = c.POINTER(c.c_void_p)
 _ERR = c.POINTER(BpError)

@@ -33,6 +33,14 @@ class Adaptive(ProgramTest):
         self.render("--spp", 100)
         self.assert_same(again, self.read("out.bpa"))
 
+    def test_other_forms(self):
+        """Chunks that are lists of pixels, by every form of the kernel."""
+        self.render("--spp", 40)
+        packets = self.read("out.bpa")
+        for form in ("sample", "pool"):
+            self.assertEqual(self.render("--spp", 40, "--kernel", form)["kernel"], form)
+            self.assert_same(packets, self.read("out.bpa"), form)
+
     def test_error(self):
         stats = self.render("--error", 2)
         self.assertEqual(stats["stopped_by"], "error")

@@ -78,6 +78,15 @@ class Bits(cli.ProgramTest):
         self.assertEqual({r["scene"] for r in compared}, {p["scene"] for p in RECORDED})
         self.assertEqual(len(compared), 4 * len(RECORDED) - 4 * len(lamps))
 
+    @cli.deep
+    def test_the_recorded_pictures_by_the_pool(self):
+        """Processors get this form only where somebody asks for it."""
+        result = self.run_program("check", "--bits", "--kernel", "pool", "--json", "r.json")
+        self.assertEqual(result.returncode, 0, result.stdout.decode() + result.errors)
+        results = json.loads(self.read("r.json"))["results"]
+        self.assertEqual({(r["kernel"], r["verdict"]) for r in results}, {("pool", "agree")})
+        self.assertEqual(len(results), 2 * len(RECORDED))
+
     def test_another_hash(self):
         """Sums that differ by less than a float shows."""
         picture = one()

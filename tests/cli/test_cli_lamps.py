@@ -29,7 +29,7 @@ class LampRays(ProgramTest):
         """Where no path meets a second surface, each sample sends one ray. Its length counts: a ray that would be one segment
         more than --depth is not sent."""
         self.write("s.json", json.dumps(ground(2)))
-        for form in ("packet", "sample"):
+        for form in ("packet", "sample", "pool"):
             for depth, each in ((0, 0), (1, 0), (2, 1), (5, 1)):
                 found = self.stats("s.json", "--kernel", form, "--spp", SAMPLES, "--depth", depth, "-o", "s.png")
                 self.assertEqual(found["samples"], SIDE * SIDE * SAMPLES)

@@ -36,7 +36,7 @@ class Picture(Render):
     def test_options_that_do_not(self):
         whole = self.pfm()
         for options in (["--seed", "0"], ["--first-sample", "0"], ["--spp", "8"], ["--depth", "10"],
-                        ["--kernel", "sample"], ["--kernel", "packet"], ["--effects", "all"], ["--device", "0"],
+                        ["--kernel", "sample"], ["--kernel", "packet"], ["--kernel", "pool"], ["--effects", "all"], ["--device", "0"],
                         ["--precision", "single"], ["--math", "strict"], ["--sampler", "sobol"],
                         ["--numerics", "robust"], ["--force"], ["--transfer", "srgb"]):
             with self.subTest(options):
@@ -172,6 +172,7 @@ class Statistics(Render):
             self.assertAlmostEqual(stats["mean_radiance"][channel], mean, delta=1e-6)
         self.assertEqual(self.stats("--kernel", "sample")["kernel"], "sample")
         self.assertEqual(self.stats("--kernel", "packet")["kernel"], "packet")
+        self.assertEqual(self.stats("--kernel", "pool")["kernel"], "pool")
         self.assertEqual(self.stats("--math", "fast")["math"], "fast")
         self.assertEqual(len(self.stats("--effects", "all")["effects"]), 13)  # all but rays to lamps
 

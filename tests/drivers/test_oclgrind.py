@@ -22,14 +22,14 @@ if shutil.which("oclgrind") is None:
 
 # A kernel that does read what nobody wrote: the check must see it.
 PLACE = "    const real cut ="
-PLANTED = "    uint unwritten[1];\n    if (unwritten[0] == 0xffffffffu) path.alive = !path.alive;\n" + PLACE
+PLANTED = "    uint unwritten[1];\n    if (unwritten[0] == 0xffffffffu) number += 1u;\n" + PLACE
 
-def reports(scene, folder, environment=None, check="--uninitialized"):
+def reports(scene, folder, environment=None, check="--uninitialized", form="sample"):
     """(kernel, report) of every report; the run itself must succeed."""
     picture, log = pathlib.Path(folder, "picture.pfm"), pathlib.Path(folder, "log")
     # Oclgrind cannot run what LLVM's inliner leaves behind, so nothing is optimised.
     command = ["oclgrind", "--build-options", "-O0", check, "--max-errors", "1000000", "--log", str(log)]
-    command += [program, "render", str(scenes / scene), "--width", "16", "--spp", "2", "--kernel", "sample"]
+    command += [program, "render", str(scenes / scene), "--width", "16", "--spp", "2", "--kernel", form]
     command += ["--device", "oclgrind", "--force", "-o", str(picture)]
     done = subprocess.run(command, capture_output=True, text=True, timeout=300, env=environment)
     print(done.stdout, done.stderr, sep="", end="", flush=True)
@@ -42,9 +42,9 @@ def reports(scene, folder, environment=None, check="--uninitialized"):
 with tempfile.TemporaryDirectory() as folder:
     kernels = pathlib.Path(folder, "kernels")
     shutil.copytree(scenes.parent / "kernels", kernels)
-    trace = (kernels / "entry/trace_sample.cl").read_text()
-    assert trace.count(PLACE) == 1, "the place for the planted fault is gone from trace_sample.cl"
-    (kernels / "entry/trace_sample.cl").write_text(trace.replace(PLACE, PLANTED))
+    trace = (kernels / "integrator/one_path.cl").read_text()
+    assert trace.count(PLACE) == 1, "the place for the planted fault is gone from one_path.cl"
+    (kernels / "integrator/one_path.cl").write_text(trace.replace(PLACE, PLANTED))
 
     found = reports("v4-21-view-zoom.json", folder, dict(os.environ, BALLPARK_KERNELS=str(kernels)))
     assert any(kernel == "trace" for kernel, _ in found), "a planted fault was not reported"
@@ -53,7 +53,9 @@ with tempfile.TemporaryDirectory() as folder:
     # A list of spheres with glass, metal and diffuse ones; a tree and a lens; normals as colours.
     for scene in ("v4-21-view-zoom.json", "cover.json", "v4-normals-ground.json"):
         ours += [block for kernel, block in reports(scene, folder) if kernel != "accumulate"]
-    ours += [block for _, block in reports("v4-21-view-zoom.json", folder, check="--data-races")]
+    ours += [block for kernel, block in reports("cover.json", folder, form="pool") if kernel != "accumulate"]
+    for form in ("sample", "pool"):
+        ours += [block for _, block in reports("v4-21-view-zoom.json", folder, check="--data-races", form=form)]
 
 for block in ours[:5]:
     print(block, end="\n\n")

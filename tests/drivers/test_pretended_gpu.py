@@ -2,9 +2,10 @@
 
 Usage: test_pretended_gpu.py BALLPARK SOURCE_DIR GPU_SHIM [--deep [--nightly]]
 
-One work-item a sample, narrow nodes, hits refined in float, no double anywhere: the recorded pictures come out, bit for
-bit, and so does a whole render. --deep compares all recorded pictures, and whole renders with those of Mesa's driver, which
-takes minutes to compile a kernel with all effects: its recorded pictures are left to --nightly.
+One work-item a sample, or a pool of samples for each work-group, narrow nodes, hits refined in float, no double anywhere:
+the recorded pictures come out, bit for bit, and so does a whole render. --deep compares all recorded pictures, and whole
+renders with those of Mesa's driver, which takes minutes to compile a kernel with all effects: its recorded pictures are left
+to --nightly.
 """
 
 import json
@@ -37,13 +38,14 @@ def compare_recorded(folder, driver, gpu):
     pictures = [p for p in recorded if driver == "pocl.icd" and deep or p["scene"] in SCENES]
     assert len(pictures) >= len(SCENES), "a scene is not recorded"
     (folder / "bits.json").write_text(json.dumps({"pictures": pictures}))
-    run(gpu, "check", "--bits", "--kernel", "sample", "--quiet", "--json", folder / "report.json")
-    results = json.loads((folder / "report.json").read_text())["results"]
-    same = sum(r["verdict"] == "agree" for r in results)
-    assert same == len(results) == 2 * len(pictures), f"{same} of {len(results)}"
-    assert {(r["kernel"], r["refinement"]) for r in results} == {("sample", "float")}
-    assert {r["device"]["type"] for r in results} == {"gpu"}
-    print(f"{driver}: {same} pictures the same on a pretended GPU")
+    for kernel in ("sample", "pool"):
+        run(gpu, "check", "--bits", "--kernel", kernel, "--quiet", "--json", folder / "report.json")
+        results = json.loads((folder / "report.json").read_text())["results"]
+        same = sum(r["verdict"] == "agree" for r in results)
+        assert same == len(results) == 2 * len(pictures), f"{same} of {len(results)}"
+        assert {(r["kernel"], r["refinement"]) for r in results} == {(kernel, "float")}
+        assert {r["device"]["type"] for r in results} == {"gpu"}
+        print(f"{driver}: {same} pictures the same on a pretended GPU, --kernel {kernel}")
 
 
 def pretend(folder, driver, environment):
@@ -68,6 +70,10 @@ def pretend(folder, driver, environment):
         run(gpu, "render", scene, "--spp", 4, "--first-sample", begin, *size, "-o", folder / part)
     run(gpu, "merge", folder / "b.bpa", folder / "c.bpa", "--quiet", "-o", folder / "d.pfm")
     assert (folder / "a.pfm").read_bytes() == (folder / "d.pfm").read_bytes(), "parts make another picture"
+    run(gpu, "render", scene, "--spp", 8, *size, "--kernel", "pool", "-o", folder / "p.pfm")
+    said = json.loads(stats.read_text())
+    assert (said["kernel"], said["invalid_samples"]) == ("pool", 0), said
+    assert (folder / "a.pfm").read_bytes() == (folder / "p.pfm").read_bytes(), "the pool form makes another picture"
     failed = run(gpu, "render", scene, "--precision", "double", *size, "-o", folder / "e.pfm", code=1)
     assert "has no double precision" in failed.stderr, failed.stderr
 

@@ -15,7 +15,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum { CHOICES = 12, COMBINATIONS = 1 << CHOICES, SETS = 2 << BP_EFFECT_COUNT };
+enum { CHOICES = 13, COMBINATIONS = 1 << CHOICES, SETS = 2 << BP_EFFECT_COUNT };
 
 static bool allow_any(uint32_t word) {
     (void)word;
@@ -30,7 +30,7 @@ static BpProgramOptions combination(uint32_t c) {
     options.math = c & 8u ? BP_MATH_FAST : BP_MATH_STRICT;
     options.numerics = c & 16u ? BP_NUMERICS_PLAIN : BP_NUMERICS_ROBUST;
     options.sampler = c & 32u ? BP_SAMPLER_SOBOL : BP_SAMPLER_INDEPENDENT;
-    options.form = c & 64u ? BP_KERNEL_PACKET : BP_KERNEL_SAMPLE;
+    options.form = c & 64u ? BP_KERNEL_PACKET : c & 4096u ? BP_KERNEL_POOL : BP_KERNEL_SAMPLE;
     options.double_refine = (c & 128u) != 0;
     options.pixel_list = (c & 256u) != 0;
     options.tree = (c & 512u) != 0;

@@ -65,6 +65,8 @@ static const Variation variations[] = {
      .tree = true,
      .tree_width = 16,
      .packet_lanes = 16},
+    {.what = "a pool, a tree", .kernel = BP_KERNEL_POOL, .tree = true},
+    {.what = "a pool, chunks of 7 samples", .kernel = BP_KERNEL_POOL, .chunk_samples = 7},
     {.what = "work-groups of 8", .kernel = BP_KERNEL_SAMPLE, .local_size = 8},
     {.what = "chunks of 7 samples", .kernel = BP_KERNEL_PACKET, .chunk_samples = 7},
 };

@@ -60,12 +60,14 @@ static BpStatus bind_chunk(BpWorker *worker, const Samples *samples, uint32_t pe
 }
 
 /* All samples of the picture in one launch, of the size that a render would choose. */
-static BpStatus launch(BpWorker *worker, const BpPacked *packed, bool packet, uint32_t per_pixel,
+static BpStatus launch(BpWorker *worker, const BpPacked *packed, BpKernelForm form, uint32_t per_pixel,
                        Samples *samples, BpError *err) {
     cl_int code = CL_SUCCESS;
+    const bool packet = form == BP_KERNEL_PACKET;
+    worker->form = form;
     worker->samples_per_item = packet ? BP_PACKET_SAMPLES_PER_ITEM : 1;
     const size_t local = packet ? BP_LOCAL_SIZE_PACKET : BP_LOCAL_SIZE_SAMPLE;
-    const size_t items = (samples->count + worker->samples_per_item - 1) / worker->samples_per_item;
+    const size_t items = bp_worker_items(worker, samples->count);
     const size_t global = (items + local - 1) / local * local;
     BP_TRY(bp_worker_upload_scene(worker, packed, err));
     BP_TRY(bp_worker_reserve_samples(worker, samples->count, err));
@@ -111,8 +113,7 @@ static BpStatus trace(const Lab *lab, const BpScene *scene, const BpRenderOption
     worker->first_leaves = packed.tree.first_leaves;
     worker->leaf_count = packed.tree.leaf_count;
     worker->samples_limit = samples->count;
-    status = launch(worker, &packed, setup.program.form == BP_KERNEL_PACKET,
-                    (uint32_t)options->samples_per_pixel, samples, err);
+    status = launch(worker, &packed, setup.program.form, (uint32_t)options->samples_per_pixel, samples, err);
     worker->device = NULL; /* the lab's */
     worker->program = NULL;
     bp_worker_destroy(&worker);

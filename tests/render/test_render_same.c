@@ -82,9 +82,9 @@ static void check_variations(const char *name, uint32_t width, BpSampler sampler
     assert_true(segments >= (uint64_t)expected->width * expected->height * 6);
 
     check_same(scene, &options, expected, segments, "a second run");
-    const BpKernelForm forms[] = {BP_KERNEL_SAMPLE, BP_KERNEL_PACKET};
+    const BpKernelForm forms[] = {BP_KERNEL_SAMPLE, BP_KERNEL_PACKET, BP_KERNEL_POOL};
     const uint32_t chunks[] = {1, 7, 4096};
-    for (size_t f = 0; f < 2; ++f) {
+    for (size_t f = 0; f < sizeof forms / sizeof forms[0]; ++f) {
         BpRenderOptions varied = options;
         varied.kernel = forms[f];
         check_same(scene, &varied, expected, segments, "another form of the kernel");
@@ -94,6 +94,16 @@ static void check_variations(const char *name, uint32_t width, BpSampler sampler
         }
     }
     BpRenderOptions varied = options;
+    varied.max_depth = 0;
+    uint64_t none = 1;
+    BpFilm *black = render(scene, &varied, &none);
+    assert_int_equal(none, 0);
+    for (size_t f = 1; f < sizeof forms / sizeof forms[0]; ++f) {
+        varied.kernel = forms[f];
+        check_same(scene, &varied, black, 0, "no segment at all");
+    }
+    bp_film_destroy(&black);
+    varied = options;
     varied.force_list = true;
     check_same(scene, &varied, expected, segments, "a list");
     varied.force_list = false;
@@ -133,6 +143,9 @@ static void work_groups_and_widths_are_the_same(void **state) {
     } variations[] = {{BP_KERNEL_SAMPLE, 1, 0, 0, "work-groups of 1", false},
                       {BP_KERNEL_SAMPLE, 8, 0, 0, "work-groups of 8", true},
                       {BP_KERNEL_SAMPLE, 64, 0, 0, "work-groups of 64", false},
+                      {BP_KERNEL_POOL, 1, 0, 0, "pools of one work-item", false},
+                      {BP_KERNEL_POOL, 8, 2, 0, "pools of 8, two-wide nodes", true},
+                      {BP_KERNEL_POOL, 256, 0, 0, "pools of 256", false},
                       {BP_KERNEL_PACKET, 8, 0, 0, "packets in groups of 8", false},
                       {BP_KERNEL_PACKET, 64, 0, 0, "packets in groups of 64", true},
                       {BP_KERNEL_SAMPLE, 0, 2, 0, "two-wide nodes", true},
