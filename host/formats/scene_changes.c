@@ -105,7 +105,7 @@ static BpStatus read_index(const char *set, json_t *list, const char **at, const
 
 static BpStatus read_name(const char *set, json_t *object, const char **at, const BpChange *change,
                           Place *place, BpError *err) {
-    char text[400], found[SHOWN_SIZE];
+    char text[700], found[SHOWN_SIZE];
     if (!json_is_object(object)) {
         bp_json_describe(object, found, sizeof found);
         if (json_is_array(object) && json_array_size(object) > 0)

@@ -23,7 +23,7 @@ static vbool meets_catcher(const Scene *scene, const Path *path, const Hit *hit,
     const vbool ahead = moving & vbool_of_uint(path->depth == splat_uint(0)) & (down > splat(0)) &
                         (fma(splat(scene->sky->catcher_light[3]), down, above) > splat(0)) &
                         (down * splat(R(0x1p80)) > fabs(above));
-    *distance = above / choose(ahead, down, splat(1));
+    *distance = divide(above, choose(ahead, down, splat(1)));
     const vbool behind = vbool_of_refined(hit->t < to_refined(*distance)) & is_hit(hit);
     return ahead & vbool_not(behind);
 }
@@ -31,12 +31,12 @@ static vbool meets_catcher(const Scene *scene, const Path *path, const Hit *hit,
 /* A unit direction, uniform over the cap of a disc. */
 static Vec3 direction_in_cap(Vec3 axis, vreal cap, vreal u, vreal v) {
     const vreal m = u * cap;
-    const vreal cosine = splat(1) - m, radius = sqrt(m * (splat(2) - m));
+    const vreal cosine = splat(1) - m, radius = square_root(m * (splat(2) - m));
     vreal sine_turn, cosine_turn;
     sin_cos_turn(v, &sine_turn, &cosine_turn);
     /* Two unit vectors across the axis (T. Duff et al., "Building an Orthonormal Basis, Revisited", JCGT 6(1), 2017). */
     const vreal sign = copysign(splat(1), axis.z);
-    const vreal a = splat(-1) / (sign + axis.z);
+    const vreal a = divide(splat(-1), sign + axis.z);
     const vreal b = axis.x * axis.y * a;
     const Vec3 s = vec3(fma(sign * axis.x * axis.x, a, splat(1)), sign * b, -sign * axis.x);
     const Vec3 t = vec3(b, fma(axis.y * axis.y, a, sign), -axis.y);

@@ -65,5 +65,5 @@ FORCE_INLINE static void sphere_surface(const Ray *ray, const Sphere *sphere, vu
     point->high = madd3(t, ray->direction, ray->origin.high);
     point->low = zero3();
     point->error = splat(0);
-    *normal = scale3(splat(1) / sphere->radius, subtract3(point->high, sphere->centre));
+    *normal = scale3(divide(splat(1), sphere->radius), subtract3(point->high, sphere->centre));
 }

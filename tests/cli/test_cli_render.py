@@ -174,7 +174,7 @@ class Statistics(Render):
         self.assertEqual(self.stats("--kernel", "packet")["kernel"], "packet")
         self.assertEqual(self.stats("--kernel", "pool")["kernel"], "pool")
         self.assertEqual(self.stats("--math", "fast")["math"], "fast")
-        self.assertEqual(len(self.stats("--effects", "all")["effects"]), 13)  # all but rays to lamps
+        self.assertEqual(len(self.stats("--effects", "all")["effects"]), 14)  # all but rays to lamps
 
     def test_no_error_known(self):
         self.assertIsNone(self.stats("--spp", "1")["nrmse"], "one replicate")
