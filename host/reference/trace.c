@@ -1,7 +1,6 @@
 /* trace.c: intersection and the recursion; see trace.h. */
 #include "trace.h"
 
-
 #include <float.h>
 
 #define PI 3.14159265358979323846
@@ -106,7 +105,9 @@ static Vec background(const BpScene *scene, const Ray *ray) {
     return color;
 }
 
-static double luminance(Vec color) { return 0.2126 * color.x + 0.7152 * color.y + 0.0722 * color.z; }
+static double luminance(Vec color) {
+    return 0.2126 * color.x + 0.7152 * color.y + 0.0722 * color.z;
+}
 
 /* A unit direction at `cosine` from a unit axis. */
 static Vec around(Vec axis, double cosine, double turn) {
