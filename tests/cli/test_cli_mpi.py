@@ -297,7 +297,7 @@ class Ranks(cli.ProgramTest):
                                 (("s.json", "-o", "nowhere/a.png"), "nowhere"),
                                 (("s.json", "-o", "/dev/full", "--format", "pfm", "--spp", "1"), "No space left on device"),
                                 (("s.json", "-o", "-", "--format", "pfm"), "give the name of a file"),
-                                (("-", "-o", "a.png"), "reaches one of 3 ranks only")):
+                                (("-", "-o", "a.png"), "reaches only one of 3 ranks")):
             done = self.by_ranks(3, *arguments, code=1 if text in ("nowhere", "No space left on device") else 2)
             self.assertEqual(len(done.errors), 1, done.stderr.decode())
             self.assertIn(text, done.errors[0])
