@@ -510,12 +510,15 @@ static int compare_boundaries(const void *a_pointer, const void *b_pointer) {
     return a->sphere < b->sphere ? -1 : a->sphere > b->sphere;
 }
 
-/* The spheres that light passes through, the smallest first; none where no medium does anything. */
+/* The spheres that light passes through, the smallest first; none where there is neither a medium nor an
+ * interface. Rays to lamps pass an interface that has no medium, too. */
 static BpStatus pack_boundaries(const BpScene *scene, BpPacked *packed, BpError *err) {
     const BpTree *tree = &packed->tree;
     const size_t slots = (size_t)tree->leaf_count * tree->width;
     size_t count = 0, filled = bp_scene_medium(scene) != 0;
     for (size_t i = 0; i < scene->interior_count; ++i) filled += bp_sphere_interior(scene, i) != 0;
+    for (size_t i = 0; i < scene->sphere_count; ++i)
+        filled += scene->materials[scene->spheres[i].material].kind == BP_MATERIAL_INTERFACE;
     for (size_t i = 0; i < scene->sphere_count && filled > 0; ++i)
         count += bp_material_is(scene->materials[scene->spheres[i].material].kind, BP_HAS_INSIDE);
     Boundary *boundaries = malloc((count + 1) * sizeof *boundaries);
