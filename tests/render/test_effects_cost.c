@@ -18,8 +18,11 @@
 
 enum { WIDTH = 160, SETS_MAX = 1 << BP_EFFECT_COUNT };
 #define SLOWER_MAX 1.02
-/* Cold build of a trace program over that of the yardstick, in processor time. 2.1 to 3.0 were measured. */
+/* Cold build of a trace program over that of the yardstick, in processor time. Of the kernels that scenes get
+ * 2.1 to 3.1 were measured; of the general one, which has the code of all fifteen effects and is built only
+ * where it is asked for, 5.0. */
 #define BUILD_RATIO_MAX 5.0
+#define GENERAL_BUILD_RATIO_MAX 8.0
 
 /* Its building exercises the same parts of a driver: parser, optimiser, code generator. */
 static const char yardstick[] =
@@ -115,7 +118,7 @@ static bool time_yardstick(const BpDeviceInfo *device, uint64_t mark, double *se
     return true;
 }
 
-/* Whether both kernels of a scene build within BUILD_RATIO_MAX yardsticks. */
+/* Whether both kernels of a scene build within as many yardsticks as they may. */
 static bool builds_fast(const BpScene *scene, const BpDeviceInfo *device, uint64_t mark) {
     BpError err = {0};
     BpCosts costs;
@@ -129,8 +132,9 @@ static bool builds_fast(const BpScene *scene, const BpDeviceInfo *device, uint64
         const double ratio = kernel->cold_processor_seconds / small;
         printf("%-12s builds in %.2f s of processor time (%.1f yardsticks of %.2f s), again in %.2f s\n",
                kernel->name, kernel->cold_processor_seconds, ratio, small, kernel->warm_processor_seconds);
-        if (!(ratio <= BUILD_RATIO_MAX)) {
-            fprintf(stderr, "%s: %.1f yardsticks, more than %.1f\n", kernel->name, ratio, BUILD_RATIO_MAX);
+        const double most = strcmp(kernel->name, "general") == 0 ? GENERAL_BUILD_RATIO_MAX : BUILD_RATIO_MAX;
+        if (!(ratio <= most)) {
+            fprintf(stderr, "%s: %.1f yardsticks, more than %.1f\n", kernel->name, ratio, most);
             right = false;
         }
     }
