@@ -1,6 +1,6 @@
 /* path.cl: the state of the paths that a work-item follows, one a lane.
  *
- * In:    camera rays.   Out: paths that begin; the ray of a path's next segment.
+ * In:    camera rays.   Out: paths that begin; the ray of a path's next segment, and points on it.
  * Knows: ray.cl, sampler.cl, camera.cl, bsdf.cl.   Does not know: what the paths meet. */
 typedef struct Path {
     Point origin;
@@ -86,6 +86,24 @@ static Ray path_ray(const Path *path) {
 #endif
     return ray;
 }
+
+#if EFFECT_MEDIA || EFFECT_SHADOW_CATCHER
+/* The point in the open, `length` ahead of the path, where `moving`; in the other lanes its origin. */
+static Point point_ahead(const Path *path, vbool moving, vreal length) {
+    const vrefined t = to_refined(length);
+    const Vec3 high = path->origin.high, low = path->origin.low;
+    const vrefined x = fma(t, to_refined(path->direction.x), to_refined(high.x) + to_refined(low.x));
+    const vrefined y = fma(t, to_refined(path->direction.y), to_refined(high.y) + to_refined(low.y));
+    const vrefined z = fma(t, to_refined(path->direction.z), to_refined(high.z) + to_refined(low.z));
+    const Vec3 place = vec3(to_real(x), to_real(y), to_real(z));
+    const Vec3 rest = vec3(to_real(x - to_refined(place.x)), to_real(y - to_refined(place.y)), to_real(z - to_refined(place.z)));
+    Point point;
+    point.high = choose3(moving, place, high);
+    point.low = choose3(moving, rest, low);
+    point.error = choose(moving, splat(0), path->origin.error);
+    return point;
+}
+#endif
 
 /* Sets the lanes of `fresh` to the beginning of a path: a camera ray, and the key of its pixel sample. */
 static void path_init(__global const PackedCamera *camera, SampleKey key, Vec3 origin, Vec3 direction, vbool fresh,

@@ -84,16 +84,7 @@ static vbool lies_in_shadow(const Scene *scene, const Path *path, vbool caught, 
     Ray ray = path_ray(path);
     const vbool lit = light_of_catcher(scene, path->key, caught, &ray.direction);
     if (!any_lane(lit)) return vbool_none;
-    const vrefined t = to_refined(distance);
-    const Vec3 high = path->origin.high, low = path->origin.low;
-    const vrefined x = fma(t, to_refined(path->direction.x), to_refined(high.x) + to_refined(low.x));
-    const vrefined y = fma(t, to_refined(path->direction.y), to_refined(high.y) + to_refined(low.y));
-    const vrefined z = fma(t, to_refined(path->direction.z), to_refined(high.z) + to_refined(low.z));
-    const Vec3 place = vec3(to_real(x), to_real(y), to_real(z));
-    const Vec3 rest = vec3(to_real(x - to_refined(place.x)), to_real(y - to_refined(place.y)), to_real(z - to_refined(place.z)));
-    ray.origin.high = choose3(lit, place, high);
-    ray.origin.low = choose3(lit, rest, low);
-    ray.origin.error = choose(lit, splat(0), path->origin.error);
+    ray.origin = point_ahead(path, lit, distance);
     ray.cull_margin = cull_margin_of(&ray.origin);
     ray.own_slot = choose_uint(lit, splat_uint(NO_SLOT), path->own_slot);
     ray.inward = path->inward & vbool_not(lit);

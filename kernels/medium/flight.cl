@@ -97,16 +97,7 @@ static void scatter_in_medium(const Scene *scene, vbool scattered, vreal length,
     const vreal g = gather_real(scene->media, choose_uint(scattered, path->medium, splat_uint(0)) * MEDIUM_REALS + MEDIUM_ANISOTROPY);
     vreal u, v;
     sample_2d(path->key, first + BOUNCE_DIRECTION, &u, &v);
-    const vrefined t = to_refined(length);
-    const Vec3 high = path->origin.high, low = path->origin.low;
-    const vrefined x = fma(t, to_refined(path->direction.x), to_refined(high.x) + to_refined(low.x));
-    const vrefined y = fma(t, to_refined(path->direction.y), to_refined(high.y) + to_refined(low.y));
-    const vrefined z = fma(t, to_refined(path->direction.z), to_refined(high.z) + to_refined(low.z));
-    const Vec3 place = vec3(to_real(x), to_real(y), to_real(z));
-    const Vec3 rest = vec3(to_real(x - to_refined(place.x)), to_real(y - to_refined(place.y)), to_real(z - to_refined(place.z)));
-    path->origin.high = choose3(scattered, place, path->origin.high);
-    path->origin.low = choose3(scattered, rest, path->origin.low);
-    path->origin.error = choose(scattered, splat(0), path->origin.error);
+    path->origin = point_ahead(path, scattered, length);
     path->own_slot = choose_uint(scattered, splat_uint(NO_SLOT), path->own_slot);
     path->inward = path->inward & vbool_not(scattered);
 #if SAMPLES_LAMPS
