@@ -1,6 +1,7 @@
 /* self_test.c: the known answers, and the comparison; see self_test.h. */
 #include "self_test.h"
 
+#include "base/float_bits.h"
 #include "base/random.h"
 #include "program.h"
 
@@ -64,16 +65,6 @@ typedef struct Inputs {
     float floats[ITEMS * 5 + 8]; /* a, b, c, 0, a NaN; eight more for the last vector load */
 } Inputs;
 
-static uint32_t float_bits(float x) {
-    uint32_t bits;
-    memcpy(&bits, &x, sizeof bits);
-    return bits;
-}
-static float bits_float(uint32_t bits) {
-    float x;
-    memcpy(&x, &bits, sizeof x);
-    return x;
-}
 static uint32_t folded_double_bits(double x) {
     uint64_t bits;
     memcpy(&bits, &x, sizeof bits);
@@ -97,11 +88,11 @@ static void make_inputs(Inputs *in) {
         } else {
             const uint32_t j = i - ITEMS * 2;
             const uint32_t exponent = 111u + (bits >> 23 & 31u);
-            in->floats[j / 3 * 5 + j % 3] = bits_float((bits & 0x807fffffu) | exponent << 23);
+            in->floats[j / 3 * 5 + j % 3] = bp_bits_float((bits & 0x807fffffu) | exponent << 23);
         }
     }
     for (uint32_t item = 0; item < ITEMS; ++item)
-        in->floats[item * 5 + 4] = bits_float(nan_bits(in->uints[item]));
+        in->floats[item * 5 + 4] = bp_bits_float(nan_bits(in->uints[item]));
 }
 
 static uint32_t walk(uint32_t seed) {
@@ -121,8 +112,8 @@ static uint32_t vector_lanes(const float *values, float limit) {
     uint32_t bits = 0;
     for (uint32_t lane = 0; lane < 8; ++lane)
         if (values[lane] < limit) bits |= 1u << lane;
-    const uint32_t first = values[0] < limit ? float_bits(values[0]) : 0u;
-    const uint32_t last = values[7] < limit ? float_bits(values[7]) : 0u;
+    const uint32_t first = values[0] < limit ? bp_float_bits(values[0]) : 0u;
+    const uint32_t last = values[7] < limit ? bp_float_bits(values[7]) : 0u;
     return bits ^ first ^ (last >> 1);
 }
 
@@ -143,21 +134,21 @@ static void expect(const Inputs *in, uint32_t item, uint32_t row[COLUMN_COUNT], 
     row[COLUMN_FIXED_POINT] = (uint32_t)(uint64_t)llrint((double)(a * 65536.0f)) ^
                               (uint32_t)((uint64_t)(int64_t)(c * 16777216.0f) >> 32);
     row[COLUMN_WALK] = walk(m);
-    row[COLUMN_UNIT] = float_bits((float)(m >> 8) * 0x1p-24f);
-    row[COLUMN_SUM] = float_bits(a + b);
-    row[COLUMN_PRODUCT] = float_bits(a * b);
+    row[COLUMN_UNIT] = bp_float_bits((float)(m >> 8) * 0x1p-24f);
+    row[COLUMN_SUM] = bp_float_bits(a + b);
+    row[COLUMN_PRODUCT] = bp_float_bits(a * b);
     row[COLUMN_CONTRACTION] = 0;
     row[COLUMN_CONTRACTION_LANES] = 0;
-    row[COLUMN_FMA] = float_bits(fmaf(a, b, c));
-    row[COLUMN_FMA_RESIDUE] = float_bits((float)((double)a * (double)b - (double)(a * b)));
+    row[COLUMN_FMA] = bp_float_bits(fmaf(a, b, c));
+    row[COLUMN_FMA_RESIDUE] = bp_float_bits((float)((double)a * (double)b - (double)(a * b)));
     exact[COLUMN_DIVIDE] = (double)a / (double)b;
     exact[COLUMN_SQRT] = sqrt(fabs((double)a));
     /* Rounding the double quotient or root once more gives the float's own (S. Figueroa, "When is double
      * rounding innocuous?", SIGNUM Newsletter 30(3), 1995). */
-    row[COLUMN_ROUNDED_DIVIDE] = float_bits((float)exact[COLUMN_DIVIDE]);
-    row[COLUMN_ROUNDED_SQRT] = float_bits((float)exact[COLUMN_SQRT]);
+    row[COLUMN_ROUNDED_DIVIDE] = bp_float_bits((float)exact[COLUMN_DIVIDE]);
+    row[COLUMN_ROUNDED_SQRT] = bp_float_bits((float)exact[COLUMN_SQRT]);
     const float sum = a + b, b_part = sum - a, a_part = sum - b_part;
-    row[COLUMN_SUM_RESIDUE] = float_bits((a - a_part) + (b - b_part));
+    row[COLUMN_SUM_RESIDUE] = bp_float_bits((a - a_part) + (b - b_part));
     row[COLUMN_SPECIAL] = 0x7f;
     row[COLUMN_NAN_BITS] = nan_bits(in->uints[item]);
     row[COLUMN_LANES] = vector_lanes(floats, c);
@@ -206,9 +197,9 @@ static void compare(const Inputs *in, const uint32_t *rows, const uint32_t *layo
         for (int column = 0; column < COLUMN_COUNT; ++column) {
             if (wrong[column] || (columns[column].needs_double && !has_double)) continue;
             const uint32_t got = rows[item * COLUMN_COUNT + (uint32_t)column];
-            if (columns[column].ulps > 0) row[column] = float_bits((float)exact[column]);
+            if (columns[column].ulps > 0) row[column] = bp_float_bits((float)exact[column]);
             const bool right = columns[column].ulps > 0
-                                   ? within(bits_float(got), exact[column], columns[column].ulps)
+                                   ? within(bp_bits_float(got), exact[column], columns[column].ulps)
                                    : got == row[column];
             if (right) continue;
             wrong[column] = true;

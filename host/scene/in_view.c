@@ -48,16 +48,21 @@ static View find_view(const BpCamera *camera) {
     return view;
 }
 
+/* The ball around a sphere on all of its way: where its centre is from the camera. Returns its radius. */
+static double ball_around(const View *view, const BpSphere *sphere, const double end[3], Vec *to) {
+    double way = 0;
+    for (int i = 0; i < 3; i++) {
+        (*to)[i] = (sphere->center[i] + end[i]) / 2 - view->from[i];
+        way = hypot(way, end[i] - sphere->center[i]);
+    }
+    return fabs(sphere->radius) + way / 2;
+}
+
 /* Rays leave the lens and spread around those of a pinhole: at distance d by lens * |d / focus - 1|, and by
  * `lens` before the plane in focus. A sphere that moves is taken for the ball around its way. */
 static bool reaches_planes(const View *view, const BpSphere *sphere, const double end[3]) {
     Vec to;
-    double way = 0;
-    for (int i = 0; i < 3; i++) {
-        to[i] = (sphere->center[i] + end[i]) / 2 - view->from[i];
-        way = hypot(way, end[i] - sphere->center[i]);
-    }
-    const double radius = fabs(sphere->radius) + way / 2, ahead = dot(to, view->ahead);
+    const double radius = ball_around(view, sphere, end, &to), ahead = dot(to, view->ahead);
     if (ahead + radius < 0) return false;
     const double room = radius + view->lens * fmax(1, (ahead + radius) / view->focus - 1);
     const double aside = fabs(dot(to, view->right)), above = fabs(dot(to, view->up));
@@ -69,12 +74,7 @@ static bool reaches_planes(const View *view, const BpSphere *sphere, const doubl
 /* All planes of the edges cut a huge sphere under the camera; a cone around the view need not. */
 static bool reaches_cone(const View *view, const BpSphere *sphere, const double end[3]) {
     Vec to;
-    double way = 0;
-    for (int i = 0; i < 3; i++) {
-        to[i] = (sphere->center[i] + end[i]) / 2 - view->from[i];
-        way = hypot(way, end[i] - sphere->center[i]);
-    }
-    const double radius = fabs(sphere->radius) + way / 2, distance = sqrt(dot(to, to));
+    const double radius = ball_around(view, sphere, end, &to), distance = sqrt(dot(to, to));
     if (view->orthographic || distance - view->lens <= radius) return true;
     const double angle = acos(fmin(1, fmax(-1, dot(to, view->ahead) / distance)));
     /* From another point of the lens, the centre lies in another direction, too. */

@@ -6,24 +6,17 @@
 #ifndef TESTS_OPENCL_DIVIDE_IN_C_H
 #define TESTS_OPENCL_DIVIDE_IN_C_H
 
+#include "base/float_bits.h"
+
 #include <float.h>
 #include <math.h>
 #include <stdint.h>
-#include <string.h>
 
 typedef uint32_t uint;
 typedef uint64_t ulong;
 
-static inline uint32_t as_uint(float x) {
-    uint32_t bits;
-    memcpy(&bits, &x, sizeof bits);
-    return bits;
-}
-static inline float as_float(uint32_t bits) {
-    float x;
-    memcpy(&x, &bits, sizeof x);
-    return x;
-}
+#define as_uint(x) bp_float_bits(x)
+#define as_float(bits) bp_bits_float(bits)
 
 static int quotient_error, root_error;
 static inline float off_by(float x, int ulps) {

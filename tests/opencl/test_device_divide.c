@@ -6,6 +6,7 @@
  * vectors could treat differently. */
 #include "opencl/program.h"
 
+#include "base/float_bits.h"
 #include "base/random.h"
 #include "support/device.h"
 #include "support/unit_test.h"
@@ -38,17 +39,6 @@ static const char probe[] =
     "    vstore16(square_root_packet(vload16(0, a + first)), 0, roots + 2 * count + first);\n"
     "}\n";
 
-static uint32_t bits_of(float x) {
-    uint32_t bits;
-    memcpy(&bits, &x, sizeof bits);
-    return bits;
-}
-static float float_of(uint32_t bits) {
-    float x;
-    memcpy(&x, &bits, sizeof x);
-    return x;
-}
-
 /* Mantissas that round badly, at random exponents; any bits; quotients around the least normal number, with
  * ties; lanes that are all usual, and such among others. */
 static void make_pairs(float *a, float *b) {
@@ -60,21 +50,22 @@ static void make_pairs(float *a, float *b) {
         const uint32_t low = (uint32_t)word, high = (uint32_t)(word >> 32);
         switch (i / 64 % 4) {
         case 0:
-            a[i] = float_of((low & 0x807fffffu) | (90u + (low >> 23 & 63u)) << 23);
-            b[i] = float_of((high & 0x80000000u) | (90u + (high >> 23 & 63u)) << 23 | mantissas[high & 7u]);
+            a[i] = bp_bits_float((low & 0x807fffffu) | (90u + (low >> 23 & 63u)) << 23);
+            b[i] =
+                bp_bits_float((high & 0x80000000u) | (90u + (high >> 23 & 63u)) << 23 | mantissas[high & 7u]);
             break;
         case 1:
-            a[i] = float_of(low);
-            b[i] = float_of(high);
+            a[i] = bp_bits_float(low);
+            b[i] = bp_bits_float(high);
             break;
         case 2:
-            a[i] = float_of((low & 0x80000000u) | (low >> 8 & 31u) << 23 | mantissas[low & 7u]);
-            b[i] = float_of((high & 0x80000000u) | (110u + (high >> 8 & 31u)) << 23 |
-                            (high % 3 ? 0 : mantissas[high & 7u]));
+            a[i] = bp_bits_float((low & 0x80000000u) | (low >> 8 & 31u) << 23 | mantissas[low & 7u]);
+            b[i] = bp_bits_float((high & 0x80000000u) | (110u + (high >> 8 & 31u)) << 23 |
+                                 (high % 3 ? 0 : mantissas[high & 7u]));
             break;
         default:
-            a[i] = float_of((low & 0x007fffffu) | (126u + (low >> 30)) << 23);
-            b[i] = float_of((high & 0x007fffffu) | 127u << 23);
+            a[i] = bp_bits_float((low & 0x007fffffu) | (126u + (low >> 30)) << 23);
+            b[i] = bp_bits_float((high & 0x007fffffu) | 127u << 23);
         }
     }
 }
@@ -114,7 +105,7 @@ static void compare(const char *what, const float *a, const float *b, const floa
     static const char *const kinds[KINDS] = {"one lane", "a node", "a packet"};
     for (size_t i = 0; i < (size_t)KINDS * COUNT; ++i) {
         const float x = a[i % COUNT], right = b != NULL ? x / b[i % COUNT] : sqrtf(x);
-        if (bits_of(found[i]) == bits_of(right) || (isnan(found[i]) && isnan(right))) continue;
+        if (bp_float_bits(found[i]) == bp_float_bits(right) || (isnan(found[i]) && isnan(right))) continue;
         fail_msg("%s in %s: of %a and %a it is %a, not %a", what, kinds[i / COUNT], (double)x,
                  b != NULL ? (double)b[i % COUNT] : 0.0, (double)right, (double)found[i]);
     }
