@@ -10,6 +10,7 @@
 
 #include <errno.h>
 #include <inttypes.h>
+#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -444,8 +445,9 @@ BpStatus read_gsd(BpParticleFile *file, bool *end, BpError *err) {
     BP_TRY_GOTO(status, take_box(file, err), done);
     BP_TRY_GOTO(status, column_open(file, "particles/N", 1, 1, &number, err), done);
     BP_TRY_GOTO(status, column_row(file, &number, 0, &count, err), done);
-    if (count > BP_PARTICLES_MAX) {
-        status = input_fail(&file->input, false, err, "found %.0f particles, expected at most %u", count,
+    if (!(count >= 0 && count <= BP_PARTICLES_MAX && count == floor(count))) {
+        status = input_fail(&file->input, false, err,
+                            "found %.10g particles in particles/N, expected a whole number up to %u", count,
                             BP_PARTICLES_MAX);
         goto done;
     }

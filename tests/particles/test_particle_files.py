@@ -6,6 +6,7 @@ with them are skipped where they are missing.
 """
 import gzip
 import json
+import math
 import os
 import resource
 import shutil
@@ -447,6 +448,10 @@ class Hostile(FileTest):
         self.refuse("a.gsd", GSD[:100], "beyond the end")
         many = dict(GSD_FRAMES[0], **{"particles/N": whole(1, 1 << 31)})
         self.refuse("a.gsd", gsd_file([many]), "2147483648 particles")
+        for kind, data, found in [(8, struct.pack("<q", -510), "-510"), (9, struct.pack("<f", 1.5), "1.5"),
+                                  (10, struct.pack("<d", math.nan), "nan"), (10, struct.pack("<d", -math.inf), "-inf")]:
+            wrong = dict(GSD_FRAMES[0], **{"particles/N": (kind, 1, 1, data)})
+            self.refuse("a.gsd", gsd_file([wrong]), f"found {found} particles", "whole number")
         many = dict(GSD_FRAMES[0], **{"particles/N": whole(1, 100000000)})
         self.refuse("a.gsd", gsd_file([many]), "particles/position", "expected 100000000 rows of 3")
         wide = dict(GSD_FRAMES[0], **{"particles/position": (9, 3, 1 << 40, b"")})
