@@ -67,13 +67,14 @@ static Hit first_seen(const Scene *scene, const Ray *ray, const LampChoice *choi
     lamp.slot = choice->slot;
     lamp.enters = vbool_all;
     lamp.bound = upper_bound(lamp.t);
-    const Hit hit = intersect_closer(geometry, ray, active, lamp);
-    const vbool other = active & vbool_of_uint(hit.slot != choice->slot);
+    Hit first = intersect_closer(geometry, ray, active, lamp);
+#if SAMPLES_LAMP_TREE /* nothing is close to a lamp at infinity */
+    const vbool other = active & vbool_of_uint(first.slot != choice->slot);
     const vbool close =
-        other & vbool_of_refined(hit.t >= to_refined(cone->distance - choice->sphere.radius - slack));
-    Hit first = hit;
+        other & vbool_of_refined(first.t >= to_refined(cone->distance - choice->sphere.radius - slack));
     if (any_lane(close))
         keep_closer(geometry, close, distance_to_lamp(ray, choice, cone), choice->slot, vbool_all, &first);
+#endif
     return first;
 }
 
@@ -200,13 +201,17 @@ static LampChoice choose_light(const Scene *scene, const Path *path, vuint bounc
 #endif
 #if SAMPLES_LAMP_TREE
     choice = choose_lamp(scene, point, lobe, path_time(path), path->key, bounce, u, active);
+    *cone = lamp_cone(point, &choice.sphere);
 #else
     choice.slot = splat_uint(0);
     choice.sphere.centre = zero3();
-    choice.sphere.radius = splat(1);
-    choice.probability = choice.sum = choice.rest = splat(0);
+    choice.sphere.radius = splat(0);
+    choice.probability = choice.rest = splat(0);
+    cone->axis = disc.direction;
+    cone->distance = cone->power = cone->tangent = splat(REAL_LARGE);
+    cone->cap = splat(0);
+    cone->outside = vbool_none;
 #endif
-    *cone = lamp_cone(point, &choice.sphere);
 #if SAMPLES_SKY
     take_disc(&disc, &choice, cone);
 #endif
