@@ -33,7 +33,7 @@ struct BpCheck {
     BpCheckResult result;
 };
 
-BpStatus bp_check_create(const BpScene *scene, const BpCheckOptions *options, const BpDeviceInfo *device,
+BpStatus bp_check_create(const BpScene *scene, const BpCheckOptions *options, struct BpDevice *device,
                          BpCheck **check_out, BpError *err) {
     *check_out = NULL;
     if (options->render.samples_per_pixel < 2)
@@ -58,7 +58,8 @@ BpStatus bp_check_create(const BpScene *scene, const BpCheckOptions *options, co
     if (status == BP_OK && options->seconds > 0)
         status = bp_sums_init(&check->last.reference, width, height, err);
     if (status == BP_OK)
-        status = bp_render_create(scene, &first, device, device != NULL ? 1 : 0, &check->render, err);
+        status = device != NULL ? bp_render_create_on(scene, &first, &device, 1, &check->render, err)
+                                : bp_render_create(scene, &first, NULL, 0, &check->render, err);
     if (status != BP_OK) bp_check_destroy(&check);
     *check_out = check;
     return status;

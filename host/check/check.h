@@ -43,9 +43,11 @@ typedef struct BpCheckResult {
     BpRenderReport report;
 } BpCheckResult;
 
-/* The scene must outlive the check. `device`: Optional, the default one. Opens the device and builds the
- * kernel. BP_ERR_USAGE: fewer than 2 samples, or another sampler. */
-BpStatus bp_check_create(const BpScene *scene, const BpCheckOptions *options, const BpDeviceInfo *device,
+/* The scene must outlive the check, and so must `device`: one that is open already (opencl/device.h). NULL:
+ * the default one, which the check opens. Builds the kernel, unless the device has it. BP_ERR_USAGE: fewer
+ * than 2 samples, or another sampler. */
+struct BpDevice;
+BpStatus bp_check_create(const BpScene *scene, const BpCheckOptions *options, struct BpDevice *device,
                          BpCheck **check, BpError *err);
 /* Works for about 0.3 s (on a huge scene: one sample of every pixel). `progress`: Optional.
  * BP_ERR_INCONCLUSIVE: time was up before the first round was over. */

@@ -10,6 +10,7 @@
 #include "device_items.h"
 #include "formats/input_file.h"
 #include "interrupt.h"
+#include "item_device.h"
 #include "packed/acceleration.h"
 #include "render/render.h"
 #include "terminal.h"
@@ -99,6 +100,7 @@ enum { KERNELS = 3, FORMS = KERNELS * 2 * 3 };
 
 typedef struct Plan {
     const BpBitsRun *run;
+    BpItemDevice *device; /* the child's */
     Form *forms;
     size_t count;
 } Plan;
@@ -243,8 +245,9 @@ static BpStatus render_item(const BpDeviceItems *items, size_t number, double se
     options.force_float_refine = form->float_refine;
     options.all_effects = true; /* one kernel a form, whatever the scene */
     bp_item_doing(out, number, "building the kernel");
-    BP_TRY(bp_render_create(scene, &options, device, 1, &render, err));
-    bp_item_doing(out, number, "rendering");
+    status = bp_item_device_open(plan->device, err);
+    if (status == BP_OK) status = bp_render_create_on(scene, &options, &plan->device->open, 1, &render, err);
+    if (status == BP_OK) bp_item_doing(out, number, "rendering");
     while (!progress.finished && status == BP_OK) {
         status = bp_render_step(render, &progress, err);
         if (status == BP_OK && bp_interrupted()) status = bp_fail(err, BP_ERR_INTERRUPTED, "interrupted");
@@ -253,6 +256,7 @@ static BpStatus render_item(const BpDeviceItems *items, size_t number, double se
     if (status == BP_OK && (*result = compare(form, device, film, err)) == NULL)
         status = err->code != BP_OK ? err->code : bp_fail(err, BP_ERR_MEMORY, "out of memory for a report");
     bp_render_destroy(&render);
+    bp_item_device_done(plan->device, status);
     if (number + 1 == items->count && bp_terminal_is_live(items->quiet)) bp_terminal_show("");
     return status;
 }
@@ -260,9 +264,11 @@ static BpStatus render_item(const BpDeviceItems *items, size_t number, double se
 BpStatus bp_check_bits_run(const BpBitsRun *run, json_t **entries, BpError *err) {
     Plan plan;
     BpItemOutcome *outcomes = NULL;
+    BpItemDevice device = {.info = run->device};
     BpStatus status = make_plan(run, &plan, err);
     *entries = NULL;
     if (status != BP_OK) return status;
+    plan.device = &device;
     const BpDeviceItems items = {.work = render_item,
                                  .argument = &plan,
                                  .count = plan.count,

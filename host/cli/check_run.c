@@ -5,6 +5,7 @@
 #include "check_entry.h"
 #include "image/image.h"
 #include "interrupt.h"
+#include "item_device.h"
 #include "output.h"
 #include "terminal.h"
 
@@ -35,6 +36,12 @@ static BpStatus print_map(const void *what, FILE *out, BpError *err) {
     return bp_picture_write_stream(map->picture, out, map->format, map->transfer, err);
 }
 
+/* What the child has beside the run. */
+typedef struct Child {
+    const BpCheckRun *run;
+    BpItemDevice *device;
+} Child;
+
 static BpStatus write_map(const BpCheckRun *run, const BpCheckItem *item, const BpCheckResult *result,
                           BpError *err) {
     BpPicture picture;
@@ -48,7 +55,8 @@ static BpStatus write_map(const BpCheckRun *run, const BpCheckItem *item, const 
 /* In the child. */
 static BpStatus check_item(const BpDeviceItems *items, size_t number, double seconds, FILE *out,
                            json_t **item_result, BpError *err) {
-    const BpCheckRun *run = items->argument;
+    const Child *child = items->argument;
+    const BpCheckRun *run = child->run;
     const BpCheckItem *item = &run->items[number];
     BpCheckOptions options = item->options;
     BpCheck *check = NULL;
@@ -60,7 +68,8 @@ static BpStatus check_item(const BpDeviceItems *items, size_t number, double sec
     options.seconds = seconds;
     bp_item_doing(out, number, "building the kernel");
     BpWaiting *waiting = bp_waiting_begin(run->quiet, "building the kernel for %s", run->device->name);
-    status = bp_check_create(item->scene, &options, run->device, &check, err);
+    status = bp_item_device_open(child->device, err);
+    if (status == BP_OK) status = bp_check_create(item->scene, &options, child->device->open, &check, err);
     bp_waiting_end(waiting);
     if (status != BP_OK) goto done;
     bp_item_doing(out, number, "rendering");
@@ -84,12 +93,15 @@ done:
     if (live) bp_terminal_show("");
     free(text);
     bp_check_destroy(&check);
+    bp_item_device_done(child->device, status);
     return status;
 }
 
 BpStatus bp_check_run(const BpCheckRun *run, BpItemOutcome *outcomes, BpError *err) {
+    BpItemDevice device = {.info = run->device, .threads = run->items[0].options.render.threads};
+    const Child child = {.run = run, .device = &device};
     const BpDeviceItems items = {.work = check_item,
-                                 .argument = run,
+                                 .argument = &child,
                                  .count = run->count,
                                  .seconds = run->seconds,
                                  .quiet = run->quiet};

@@ -1,7 +1,8 @@
-"""How often kernels are built: once for a series of pictures, and again where the driver was disturbed.
+"""How often kernels are built: once for a series of pictures or checks, and again where the driver was disturbed.
 
 Run as: PYTHONPATH=tests/support python3 test_kernel_builds.py PROGRAM SOURCE_DIR BUILD_SHIM
 """
+import json
 import os
 import sys
 
@@ -34,6 +35,17 @@ class Builds(cli.ProgramTest):
         self.assertEqual(len([name for name in self.files() if name.startswith(("f-", "t-", "s-"))]), 4 + 5 + 2)
         # With layers there is a kernel for them in the same program.
         self.assertEqual(self.builds("render", "run.xyz", "--frames", ":3", "-o", "e.exr", *SIZE), one)
+
+    def test_once_for_a_suite(self):
+        """Whatever the number of scenes and recorded pictures, a form of the kernel is built once."""
+        suite = ("check", "--suite", "--effects", "all", "--width", 4, "--spp", 16, "--margin", 100, "--quiet")
+        self.succeed(*suite)  # the self-test is behind us
+        self.assertEqual(self.builds(*suite), (2, ""))  # of trees and of lists
+        with open(os.path.join(cli.SOURCE, "host/check/bits.json"), encoding="utf-8") as file:
+            pictures = [p for p in json.load(file)["pictures"] if p["scene"] in ("tie", "bubble", "noise")]
+        self.write("bits.json", {"pictures": pictures})
+        bits = ("check", "--bits", "--kernel", "sample", "--precision", "single", "--quiet")
+        self.assertEqual(self.builds(*bits, BALLPARK_BITS=self.path("bits.json"))[0], 4)  # and of hits refined in float
 
     def test_again_after_a_disturbance(self):
         """Without a complaint about the source, PoCL's next attempt may succeed; there is an end to attempts."""

@@ -1,0 +1,11 @@
+/* item_device.c: see item_device.h. */
+#include "item_device.h"
+
+BpStatus bp_item_device_open(BpItemDevice *device, BpError *err) {
+    if (device->open != NULL) return BP_OK;
+    return bp_device_open_part(device->info, device->threads, &device->open, err);
+}
+
+void bp_item_device_done(BpItemDevice *device, BpStatus status) {
+    if (device->open != NULL && status != BP_OK) bp_device_close(&device->open);
+}
