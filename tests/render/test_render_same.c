@@ -3,6 +3,7 @@
  * On the default device: chunks, work-group sizes, kernel forms, list or tree, tree widths, first samples and
  * repetition change no bit of the film; the seed changes it. With the argument `every`: nothing but every
  * work-group size, tree width and number of lanes, of which the rest has a few. */
+#include "opencl/device.h"
 #include "render/render.h"
 
 #include <setjmp.h>
@@ -15,6 +16,7 @@
 #include <cmocka.h>
 
 static BpError err;
+static BpDevice *opened; /* the default device: what one render has built, the next need not build */
 
 static BpScene *scene_of(const char *name, uint32_t width) {
     char path[512];
@@ -25,15 +27,18 @@ static BpScene *scene_of(const char *name, uint32_t width) {
     return scene;
 }
 
-/* Renders and copies the film's sums and counts into a new one that the caller destroys. */
+/* Renders and copies the film's sums and counts into a new one that the caller destroys. Without devices, on
+ * the one that is open. */
 static BpFilm *render_on(const BpScene *scene, const BpRenderOptions *options, const BpDeviceInfo *devices,
                          size_t device_count, uint64_t *segments) {
     BpRender *made = NULL;
     BpProgress progress = {0};
     const BpFilm *read = NULL;
     BpFilm *copy = NULL;
-    if (bp_render_create(scene, options, devices, device_count, &made, &err) != BP_OK)
-        fail_msg("%s", err.message);
+    const BpStatus created = device_count == 0
+                                 ? bp_render_create_on(scene, options, &opened, 1, &made, &err)
+                                 : bp_render_create(scene, options, devices, device_count, &made, &err);
+    if (created != BP_OK) fail_msg("%s", err.message);
     do {
         if (bp_render_step(made, &progress, &err) != BP_OK) fail_msg("%s", err.message);
     } while (!progress.finished);
@@ -82,6 +87,11 @@ static void check_variations(const char *name, uint32_t width, BpSampler sampler
     assert_true(segments >= (uint64_t)expected->width * expected->height * 6);
 
     check_same(scene, &options, expected, segments, "a second run");
+    uint64_t anew_segments = 0;
+    BpFilm *anew = render_on(scene, &options, &opened->info, 1, &anew_segments);
+    if (!same(expected, anew) || anew_segments != segments)
+        fail_msg("another picture on a device opened anew");
+    bp_film_destroy(&anew);
     const BpKernelForm forms[] = {BP_KERNEL_SAMPLE, BP_KERNEL_PACKET, BP_KERNEL_POOL};
     const uint32_t chunks[] = {1, 7, 4096};
     for (size_t f = 0; f < sizeof forms / sizeof forms[0]; ++f) {
@@ -297,8 +307,12 @@ static void depth_cap_is_black_and_counted(void **state) {
 
 int main(int argc, char **argv) {
     bool every = true;
+    BpDeviceInfo device;
+    if (bp_device_find(NULL, &device, &err) != BP_OK || bp_device_open(&device, &opened, &err) != BP_OK) {
+        fprintf(stderr, "%s\n", err.message);
+        return 1;
+    }
     const struct CMUnitTest all[] = {cmocka_unit_test_prestate(work_groups_and_widths_are_the_same, &every)};
-    if (argc > 1 && strcmp(argv[1], "every") == 0) return cmocka_run_group_tests(all, NULL, NULL);
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(cover_is_the_same),
         cmocka_unit_test(hollow_glass_is_the_same),
@@ -309,5 +323,8 @@ int main(int argc, char **argv) {
         cmocka_unit_test(extension_adds_up),
         cmocka_unit_test(depth_cap_is_black_and_counted),
     };
-    return cmocka_run_group_tests(tests, NULL, NULL);
+    const int failed = argc > 1 && strcmp(argv[1], "every") == 0 ? cmocka_run_group_tests(all, NULL, NULL)
+                                                                 : cmocka_run_group_tests(tests, NULL, NULL);
+    bp_device_close(&opened);
+    return failed;
 }
