@@ -1,7 +1,7 @@
 """Hard cases of light sampling through the real program, with sampling and without (cases.py,
 disc_cases.py, image_cases.py, motion_cases.py and boundary_cases.py have the scenes).
 
-    test_lamp_cases.py PROGRAM SOURCE_DIR [--deep] [--on] [NUMBER...]
+    test_lamp_cases.py PROGRAM SOURCE_DIR [--deep] [--on] [--own] [NUMBER[.PLACE]...]
 
 Each case is a point whose radiance is known in closed form, or by chance alone, or to the bit. A closed form is held
 with sampling on, to a standard error of at most 0.2 %; and, where chance finds the lamp, with sampling off too. Where
@@ -10,9 +10,11 @@ lies more than Z_MAX standard errors and a rounding (2e-5, as a rule) from what 
 right program one fails by chance with a probability of 1e-4, and a deviation of 6.5 standard errors, which is at most
 1.3 % and 0.05 % in the middle of the cases, is found with 90 %.
 
-Without numbers: all cases but those that repeat others with other values; --deep: those alone. --on: only what sampling
-alone shows, for the quick part and the mutants: no picture is drawn without, what needs one is left out, and the first case that
-fails is the last.
+A number stands for several cases; 32.2 is the second of them. Without numbers: all cases but those that repeat others with
+other values; --deep: those alone. --on: only what sampling alone shows, for the quick part and the mutants: no picture is
+drawn without, what needs one is left out, and the first case that fails is the last. --own: each case by a kernel with the
+effects of its scene, as renders have it. Otherwise one kernel has all effects: compiled once for all cases, but in a longer
+time.
 """
 import json
 import math
@@ -40,13 +42,14 @@ class Trouble(Exception):
 
 
 class Bench:
-    def __init__(self, program, folder):
+    def __init__(self, program, folder, own):
         self.program, self.folder, self.runs = os.path.abspath(program), folder, 0
+        self.effects = [] if own else ["--effects", "all"]
 
     def render(self, scene, lamps, samples, options=()):
         """The picture's bytes, its pixels' channels as three lists, and the statistics."""
         (self.folder / "case.json").write_text(json.dumps(scene))
-        command = [self.program, "render", "case.json", "--quiet", "--effects", "all", "--lamps", lamps, "--seed", "3", "--spp",
+        command = [self.program, "render", "case.json", "--quiet", *self.effects, "--lamps", lamps, "--seed", "3", "--spp",
                    str(samples), "-o", "case.pfm", "--stats", "case-stats.json", *options]
         done = subprocess.run(command, cwd=self.folder, capture_output=True, text=True)
         self.runs += 1
@@ -129,12 +132,13 @@ def main():
     program, _, *rest = sys.argv[1:]
     numbered = {**cases.NUMBERED, **disc_cases.NUMBERED, **image_cases.NUMBERED, **motion_cases.NUMBERED, **boundary_cases.NUMBERED}
     deep, on_alone = "--deep" in rest, "--on" in rest
-    numbers = [int(word) for word in rest if not word.startswith("--")] or sorted(numbered)
+    chosen = [word.partition(".") for word in rest if not word.startswith("--")] or [(number, "", "") for number in sorted(numbered)]
     failures = count = 0
     with tempfile.TemporaryDirectory(prefix="ballpark-lamps-") as folder:
-        bench = Bench(program, pathlib.Path(folder))
-        for number in numbers:
-            for case in list(numbered[number](pathlib.Path(folder))):
+        bench = Bench(program, pathlib.Path(folder), "--own" in rest)
+        for number, _, place in chosen:
+            made = list(numbered[int(number)](pathlib.Path(folder)))
+            for case in [made[int(place) - 1]] if place else made:
                 if case.deep != deep or on_alone and case.expected is None:
                     continue
                 count += 1
