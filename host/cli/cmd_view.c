@@ -109,6 +109,11 @@ static BpStatus save(void *context, const BpScene *scene, const BpPicture *pictu
     return BP_OK;
 }
 
+static void tell_keys(void *context) {
+    const Saving *saving = context;
+    if (!saving->line->quiet) fputs(bp_view_keys, stderr);
+}
+
 /* ---- the command ----------------------------------------------------------------------------------------
  */
 
@@ -127,10 +132,12 @@ BpStatus bp_command_view(const BpCommandLine *line, BpError *err) {
     BpScene *scene = NULL;
     BpDeviceInfo *infos = NULL;
     BpDevice **devices = NULL;
-    BpViewPlan plan = {.name = line->operands[0], .save = save, .interrupted = bp_interrupted};
+    BpViewPlan plan = {
+        .name = line->operands[0], .save = save, .opened = tell_keys, .interrupted = bp_interrupted};
     BpStatus status = BP_OK;
     BpWaiting *waiting = NULL;
     BP_TRY(load_window(&plan.window, err));
+    BP_TRY_GOTO(status, bp_view_ready(plan.window, err), done);
     BP_TRY_GOTO(status, bp_setup_scene(line, line->operands[0], &scene, err), done);
     BP_TRY_GOTO(status, bp_setup_options(line, scene, &plan.options, err), done);
     bp_setup_warn(line, scene, plan.options.precision);
@@ -146,10 +153,10 @@ BpStatus bp_command_view(const BpCommandLine *line, BpError *err) {
     plan.devices = devices;
     bp_waiting_end(waiting);
     waiting = NULL;
-    if (!line->quiet) fputs(bp_view_keys, stderr);
     bp_interrupt_catch();
     status = bp_view(&plan, scene, err);
 done:
+    plan.window->close();
     bp_waiting_end(waiting);
     for (size_t d = 0; d < plan.device_count && devices != NULL; ++d)
         if (devices[d] != NULL) bp_device_close(&devices[d]);

@@ -63,6 +63,13 @@ static BpStatus window_failed(const char *reason, BpError *err) {
     return bp_fail(err, BP_ERR_DEVICE, "the window: %s", reason);
 }
 
+static BpStatus not_opened(const char *reason, BpError *err) {
+    if (reason == NULL) return BP_OK;
+    return bp_fail(err, BP_ERR_DEVICE,
+                   "no window can be opened: %s; without one, `ballpark render --show` draws in the terminal",
+                   reason);
+}
+
 /* ---- what the person does ------------------------------------------------------------------------------ */
 
 /* Focuses on what the pixel at (x, y) shows first, x and y being shares of the picture. A click on the sky
@@ -314,6 +321,10 @@ static BpStatus work(Viewer *viewer, BpError *err) {
     return BP_OK;
 }
 
+BpStatus bp_view_ready(const BpWindow *window, BpError *err) {
+    return not_opened(window->ready(), err);
+}
+
 BpStatus bp_view(const BpViewPlan *plan, BpScene *scene, BpError *err) {
     Viewer viewer = {.plan = plan,
                      .window = plan->window,
@@ -324,11 +335,9 @@ BpStatus bp_view(const BpViewPlan *plan, BpScene *scene, BpError *err) {
                      .shrink = 1,
                      .nrmse = (double)NAN};
     BpStatus status = BP_OK;
-    const char *fault = plan->window->open(plan->name, scene->camera.width, scene->camera.height);
-    if (fault != NULL) {
-        status = window_failed(fault, err);
-        goto done;
-    }
+    const uint32_t height = scene->camera.height;
+    BP_TRY_GOTO(status, not_opened(plan->window->open(plan->name, viewer.width, height), err), done);
+    plan->opened(plan->context);
     BP_TRY_GOTO(status, restart(&viewer, viewer.width, err), done);
     while (!viewer.quit) {
         listen(&viewer);
@@ -342,7 +351,6 @@ BpStatus bp_view(const BpViewPlan *plan, BpScene *scene, BpError *err) {
         viewer.save = false;
     }
 done:
-    plan->window->close();
     bp_render_destroy(&viewer.render);
     free(viewer.bytes);
     return status;

@@ -22,14 +22,19 @@ typedef struct BpViewPlan {
     /* The person wants the picture kept: as it is shown, with the scene's camera as it is. A failure ends the
      * view. */
     BpStatus (*save)(void *context, const BpScene *scene, const BpPicture *picture, BpError *err);
-    bool (*interrupted)(void); /* Ctrl-C, asked between steps */
+    void (*opened)(void *context); /* the window is there, and keys are heard */
+    bool (*interrupted)(void);     /* Ctrl-C, asked between steps */
     void *context;
 } BpViewPlan;
 
 /* What keys and mouse do, a line each. */
 extern const char bp_view_keys[];
 
-/* Opens the window, and returns when the person closes it, or with BP_ERR_INTERRUPTED. Changes the camera of
+/* Fails if no window can be opened here, as far as can be told in advance: BP_ERR_DEVICE. */
+BpStatus bp_view_ready(const BpWindow *window, BpError *err);
+
+/* Opens the window, and returns when the person closes it, or with BP_ERR_INTERRUPTED; the caller then calls
+ * its close(). Changes the camera of
  * `scene`. BP_ERR_DEVICE: no window can be opened, or the device failed; BP_ERR_MEMORY; what save() returns.
  */
 BpStatus bp_view(const BpViewPlan *plan, BpScene *scene, BpError *err);

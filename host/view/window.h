@@ -4,15 +4,15 @@
  * Knows: nothing.   Does not know: SDL (the module does), scenes, rendering.
  *
  * A module is a shared object that exports one struct, `bp_window`. So the program needs no library for
- * windows unless somebody asks for one. All functions are called from one thread, open() first. Those that
- * return a text return NULL, or what went wrong, valid until the next call. */
+ * windows unless somebody asks for one. All functions are called from one thread, ready() first, then open().
+ * Those that return a text return NULL, or what went wrong, valid until the next call. */
 #ifndef BP_VIEW_WINDOW_H
 #define BP_VIEW_WINDOW_H
 
 #include <stdbool.h>
 #include <stdint.h>
 
-#define BP_WINDOW_VERSION 1u
+#define BP_WINDOW_VERSION 2u
 #define BP_WINDOW_SYMBOL "bp_window"
 
 typedef enum BpWindowAction {
@@ -39,6 +39,8 @@ typedef struct BpWindowEvent {
 
 typedef struct BpWindow {
     uint32_t version; /* BP_WINDOW_VERSION */
+    /* Whether windows can be shown here; asked before any work. close() ends what it begins. */
+    const char *(*ready)(void);
     /* A window for pictures of this size, or less where the screen is smaller. */
     const char *(*open)(const char *title, uint32_t width, uint32_t height);
     /* Shows `rgb`, three bytes a pixel, as large as the window allows. */

@@ -28,9 +28,19 @@ static double now(void) {
     return (double)time.tv_sec + 1e-9 * (double)time.tv_nsec;
 }
 
+/* FAKE_WINDOW_FAILS says where it fails. */
+static bool fails(const char *where) {
+    const char *chosen = getenv("FAKE_WINDOW_FAILS");
+    return chosen != NULL && strcmp(chosen, where) == 0;
+}
+
+static const char *ready(void) {
+    return fails("ready") ? "there is no screen" : NULL;
+}
+
 static const char *open_window(const char *title, uint32_t width, uint32_t height) {
     const char *path = getenv("FAKE_WINDOW_SCRIPT"), *log = getenv("FAKE_WINDOW_LOG");
-    if (getenv("FAKE_WINDOW_FAILS") != NULL) return "there is no screen";
+    if (fails("open")) return "there is no room for it";
     script = fopen(path != NULL ? path : "", "r");
     notes = fopen(log != NULL ? log : "", "w");
     if (script == NULL || notes == NULL) return "no script, or no log";
@@ -129,5 +139,5 @@ static void close_window(void) {
 }
 
 __attribute__((visibility("default"))) const BpWindow bp_window = {
-    BP_WINDOW_VERSION, open_window, show, set_title, next, close_window,
+    BP_WINDOW_VERSION, ready, open_window, show, set_title, next, close_window,
 };

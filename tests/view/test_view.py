@@ -142,11 +142,22 @@ class Scripted(ProgramTest):
 
     def test_faults(self):
         self.write("script", "quit\n")
-        for environment, code, words in (({"FAKE_WINDOW_FAILS": "1"}, 1, "there is no screen"),
+        for environment, code, words in (({"FAKE_WINDOW_FAILS": "open"}, 1, "there is no room for it"),
+                                         ({"FAKE_WINDOW_FAILS": "ready"}, 1, "there is no screen"),
                                          ({"BALLPARK_WINDOW": "/nowhere.so"}, 2, "libsdl2-dev"),
                                          ({"BALLPARK_WINDOW": "libc.so.6"}, 2, "not a module of this version")):
             self.view("quit", code=code, environment=environment)
             self.assertIn(words, self.result.errors)
+        # Without a screen, the error is all that is said, before any work.
+        result = self.run_program("view", "nowhere.json", environment={"BALLPARK_WINDOW": FAKE_WINDOW,
+                                                                       "FAKE_WINDOW_FAILS": "ready"})
+        self.assertEqual(result.errors.splitlines(), [
+            "ballpark: no window can be opened: there is no screen; without one, `ballpark render --show` draws in the "
+            "terminal"])
+        # Keys are told when the window is there to hear them.
+        result = self.run_program("view", "s.json", environment={"BALLPARK_WINDOW": FAKE_WINDOW,
+                                                                 "FAKE_WINDOW_FAILS": "open"})
+        self.assertNotIn("left drag", result.errors)
         result = self.run_program("view", "nowhere.json", environment={"BALLPARK_WINDOW": FAKE_WINDOW})
         self.assertEqual(result.returncode, 2)
         self.assertIn("nowhere.json", result.errors)
@@ -169,6 +180,16 @@ class Scripted(ProgramTest):
 
 MODULE = os.path.join(os.path.dirname(PROGRAM), "ballpark_window.so")
 class NoScreen(ProgramTest):
+    def test_libraries_are_silent(self):
+        """The error is the only line, also where no folder for sockets is set, as over ssh and in containers."""
+        for name in ("DISPLAY", "WAYLAND_DISPLAY", "XDG_RUNTIME_DIR"):
+            self.environment.pop(name, None)
+        result = self.run_program("view", "nowhere.json", environment={"SDL_VIDEODRIVER": "wayland"})
+        if "cannot be loaded" in result.errors:
+            self.skipTest("built without SDL 2")
+        self.assertEqual(result.returncode, 1, result.errors)
+        self.assertRegex(result.errors, r"^ballpark: no window can be opened: [^\n]+\n$")
+
     def test_without_a_display(self):
         """SDL opens a window that nobody sees, so nobody could close it."""
         self.write("s.json", BALLS)
@@ -177,7 +198,7 @@ class NoScreen(ProgramTest):
             if "cannot be loaded" in result.errors:
                 self.skipTest("built without SDL 2")
             self.assertEqual(result.returncode, 1, result.errors)
-            self.assertRegex(result.errors, r"the window: .*(display|not available)")
+            self.assertRegex(result.errors, r"^ballpark: no window can be opened: .*(display|not available)")
 
 
 LACKS = [name for name in ("Xvfb", "xdotool") if shutil.which(name) is None]

@@ -15,16 +15,21 @@ static bool is_invisible(const char *driver) {
            SDL_strcmp(driver, "evdev") == 0;
 }
 
-static const char *open_window(const char *title, uint32_t width, uint32_t height) {
+static const char *ready(void) {
     /* The terminal stays in charge of Ctrl-C. */
     SDL_SetHint(SDL_HINT_NO_SIGNAL_HANDLERS, "1");
     SDL_SetHint(SDL_HINT_RENDER_SCALE_QUALITY, "linear");
     SDL_SetHint(SDL_HINT_VIDEO_X11_NET_WM_BYPASS_COMPOSITOR, "0");
+    /* libwayland complains on standard error where this is not set; below a folder that is not there, it
+     * finds no display and is silent. */
+    SDL_setenv("XDG_RUNTIME_DIR", "/nonexistent", 0);
     if (SDL_Init(SDL_INIT_VIDEO) != 0) return SDL_GetError();
     if (is_invisible(SDL_GetCurrentVideoDriver()))
-        return "there is no display (check DISPLAY or WAYLAND_DISPLAY); without one, `ballpark render "
-               "--show` "
-               "draws in the terminal";
+        return "there is no display (check DISPLAY or WAYLAND_DISPLAY)";
+    return NULL;
+}
+
+static const char *open_window(const char *title, uint32_t width, uint32_t height) {
     SDL_Rect room;
     if (SDL_GetDisplayUsableBounds(0, &room) == 0 && room.w > 0 && room.h > 0 &&
         (width > (uint32_t)room.w || height > (uint32_t)room.h)) {
@@ -174,5 +179,5 @@ static void close_window(void) {
 }
 
 __attribute__((visibility("default"))) const BpWindow bp_window = {
-    BP_WINDOW_VERSION, open_window, show, set_title, next, close_window,
+    BP_WINDOW_VERSION, ready, open_window, show, set_title, next, close_window,
 };
