@@ -7,6 +7,8 @@
 #include "base/shown.h"
 #include "cli/commands.h"
 #include "cli/interrupt.h"
+#include "cli/page.h"
+#include "cli/terminal.h"
 #include "cluster/comm.h"
 #include "cluster/launch.h"
 
@@ -15,6 +17,7 @@
 #include <poll.h>
 #include <signal.h>
 #include <stdio.h>
+#include <stdlib.h>
 #include <string.h>
 #include <unistd.h>
 
@@ -27,20 +30,35 @@ static bool has_word(const char *text, const char *word) {
     return false;
 }
 
-/* "ballpark: file:line:column: message", then the attachment (a build log) as it is. */
-static void print_error(const BpError *err, BpStatus status) {
+/* "ballpark: file:line:column: message". */
+static void print_message(const BpError *err, BpStatus status, FILE *out) {
     /* A message about a file as a whole often names it already. */
     const bool names_file = err->line == 0 && has_word(err->message, err->file);
     /* "ballpark render: missing SCENE" names the program already. */
-    if (err->file[0] != '\0' || strncmp(err->message, "ballpark ", 9) != 0) fputs("ballpark: ", stderr);
+    if (err->file[0] != '\0' || strncmp(err->message, "ballpark ", 9) != 0) fputs("ballpark: ", out);
     if (err->file[0] != '\0' && !names_file) {
-        bp_show(err->file, false, stderr);
-        if (err->line > 0) fprintf(stderr, ":%d", err->line);
-        if (err->line > 0 && err->column > 0) fprintf(stderr, ":%d", err->column);
-        fputs(": ", stderr);
+        bp_show(err->file, false, out);
+        if (err->line > 0) fprintf(out, ":%d", err->line);
+        if (err->line > 0 && err->column > 0) fprintf(out, ":%d", err->column);
+        fputs(": ", out);
     }
-    bp_show(err->message[0] != '\0' ? err->message : bp_status_name(status), false, stderr);
-    fputc('\n', stderr);
+    bp_show(err->message[0] != '\0' ? err->message : bp_status_name(status), false, out);
+    fputc('\n', out);
+}
+
+/* The message, in lines that fit a terminal; programs get it in one. Then the attachment (a build log) as it
+ * is. */
+static void print_error(const BpError *err, BpStatus status, bool wide) {
+    char *text = NULL;
+    size_t size = 0;
+    FILE *message = open_memstream(&text, &size);
+    if (message == NULL) print_message(err, status, stderr); /* no memory: better unfolded than unsaid */
+    if (message != NULL) {
+        print_message(err, status, message);
+        const bool folds = !wide && isatty(STDERR_FILENO);
+        if (fclose(message) == 0) bp_page_print(text, folds ? bp_terminal_columns() : 0, stderr);
+        free(text);
+    }
     if (err->attachment == NULL) return;
     fputc('\n', stderr);
     bp_show(err->attachment, true, stderr);
@@ -100,7 +118,7 @@ static BpStatus join_ranks(char **argv, BpCommandLine *line, BpStatus status, Bp
 static BpStatus leave_ranks(const BpCommandLine *line, BpStatus status, BpError *err) {
     if (!bp_comm_is_at_work(line->comm)) return bp_comm_agree(line->comm, status, err);
     bp_comm_sign(line->comm, err);
-    print_error(err, status);
+    print_error(err, status, line->wide);
     bp_output_abandon();
     bp_comm_abort(line->comm, bp_status_exit_code(status));
     return status;
@@ -136,10 +154,10 @@ int main(int argc, char **argv) {
     /* What else went wrong is still to be told. */
     const bool about_output = status == BP_ERR_FILE && err.file[0] == '\0';
     if (left && (status == BP_OK || about_output)) end_by_signal();
-    if (status != BP_OK && tells) print_error(&err, status);
+    if (status != BP_OK && tells) print_error(&err, status, line.wide);
     bp_error_clear(&err);
     const BpStatus finished = finish_standard_output(flush_problem, &err);
-    if (status == BP_OK && finished != BP_OK) print_error(&err, finished);
+    if (status == BP_OK && finished != BP_OK) print_error(&err, finished, line.wide);
     if (status == BP_OK) status = finished;
     bp_error_clear(&err);
     bp_comm_end(&line.comm);

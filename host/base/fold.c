@@ -19,10 +19,13 @@ static void put(const char *text, size_t length, FILE *out) {
         if (text[i] != HANG && text[i] != PASTE) fputc(text[i], out);
 }
 
-/* Bytes up to the next place where `line` may be broken: a word, and the "%" behind a number. */
+/* Bytes up to the next place where `line` may be broken: a word, the "%" behind a number, or all of what
+ * stands between backticks, so that a command stays whole. */
 static size_t word_length(const char *line, size_t length) {
     size_t end = 0;
-    while (end < length && line[end] != ' ') ++end;
+    bool quoted = false;
+    for (; end < length && (line[end] != ' ' || quoted); ++end)
+        if (line[end] == '`') quoted = !quoted && memchr(line + end + 1, '`', length - end - 1) != NULL;
     if (end + 1 < length && line[end + 1] == '%')
         for (++end; end < length && line[end] != ' ';) ++end;
     return end;

@@ -38,7 +38,7 @@ void bp_keep_sums(const BpFilm *film, const char *result, BpError *err) {
     char text[sizeof err->message];
     const int length =
         snprintf(text, sizeof text,
-                 "the samples are kept: ballpark merge %s -o FILE makes the picture from them", kept);
+                 "the samples are kept: `ballpark merge %s -o FILE` makes the picture from them", kept);
     const size_t used = strlen(err->message);
     if (length >= 0 && used + 2 + (size_t)length < sizeof err->message)
         strcat(strcat(err->message, "; "), text);

@@ -18,8 +18,7 @@ size_t bp_page_columns(const BpCommandLine *line, FILE *out) {
     return line->wide ? 0 : bp_terminal_width(fileno(out));
 }
 
-/* In one piece, since standard error has no buffer. */
-static void print_folded(const char *text, size_t columns, FILE *out) {
+void bp_page_print(const char *text, size_t columns, FILE *out) {
     char *folded = NULL;
     size_t size = 0;
     FILE *stream = open_memstream(&folded, &size);
@@ -32,7 +31,7 @@ static void print_folded(const char *text, size_t columns, FILE *out) {
 void bp_page_end(BpPage *page, const BpCommandLine *line, FILE *out) {
     if (page->text != out) {
         const bool whole = fclose(page->text) == 0;
-        if (whole && !line->quiet) print_folded(page->bytes, bp_page_columns(line, out), out);
+        if (whole && !line->quiet) bp_page_print(page->bytes, bp_page_columns(line, out), out);
         free(page->bytes);
     }
     *page = (BpPage){0};

@@ -23,7 +23,12 @@ void bp_page_begin(BpPage *page, FILE *out);
 /* Prints it, unless --quiet, in lines that fit; with --wide as they are. */
 void bp_page_end(BpPage *page, const BpCommandLine *line, FILE *out);
 
-/* The same for one text on standard error. A line's end is added. What a terminal could obey is escaped. */
+/* Prints `text` in lines of at most `columns` (0: as it is) in one piece, since standard error has no buffer.
+ */
+void bp_page_print(const char *text, size_t columns, FILE *out);
+
+/* The same as a page for one text on standard error. A line's end is added. What a terminal could obey is
+ * escaped. */
 void bp_say(const BpCommandLine *line, const char *format, ...) BP_PRINTF_LIKE(2, 3);
 
 /* Columns of a page on `out`: those of the terminal there, else those that COLUMNS names, else 80; 0 with

@@ -94,7 +94,7 @@ class Replacing(Safety):
         os.mkdir(self.path("tmp"))
         for folder, name in ((self.path("tmp"), "d/a.png"), ("/dev/null/no", "d/a.exr"), ("/dev/null/no", "d/a.bpa")):
             said = self.lose_the_folder("-o", name, "-q", TMPDIR=folder)
-            kept = re.search(r"ballpark merge (\S+) -o FILE makes the picture", said)
+            kept = re.search(r"ballpark merge (\S+) -o FILE` makes the picture", said)
             self.assertTrue(kept, said)
             kept = os.path.join(self.folder, kept.group(1))
             self.assertEqual(os.path.dirname(os.path.normpath(kept)), folder if folder[1:4] != "dev" else self.folder)

@@ -66,6 +66,23 @@ class Width(ProgramTest):
                 for line in text.splitlines():
                     self.assertTrue(len(line) <= columns or columns == 50 and "  -" not in line.strip(), (columns, line))
 
+    def test_errors(self):
+        """Folded on a terminal, with commands in one piece; one line where a program may read it."""
+        missing = ("render", "a folder with blanks " * 6 + "and no end.json")
+        for arguments in missing, ("merge",), ("view", "s.json"):
+            environment = {"BALLPARK_WINDOW": "/nowhere.so", "COLUMNS": "60"}
+            screen = Terminal(self, *arguments, columns=60, environment=environment)
+            self.assertNotEqual(screen.finish(), 0)
+            lines = screen.seen.decode().replace("\r\n", "\n").splitlines()
+            self.check("\n".join(lines), 60, arguments)
+            piped = self.run_program(*arguments, environment=environment).errors
+            self.assertEqual(len(piped.splitlines()), 1)
+            self.assertEqual(" ".join(piped.split()), " ".join("\n".join(lines).split()))
+        self.assertTrue(any("`ballpark render --show`" in line for line in lines), lines)
+        wide = Terminal(self, *missing, "--wide", columns=60)
+        wide.finish()
+        self.assertEqual(len(wide.seen.splitlines()), 1, wide.seen)
+
     def test_words_stay_whole(self):
         """Folding loses nothing and adds nothing but line ends and indentation."""
         for arguments in ("explain", "s.json", "lamps.json"), ("explain", "s.json", "--pixel", "8,8"), ("help", "devices"), ("devices", "--help"):

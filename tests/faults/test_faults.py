@@ -155,7 +155,7 @@ class Faults:
             if result.returncode != 0 and there == (OLD if existing else None):
                 good = True
             self.assertTrue(good, f"{where}: {name} is {there and there[:60]}, {result.errors}")
-        for path in re.findall(r"ballpark merge (\S+) -o FILE makes the picture", result.errors):
+        for path in re.findall(r"ballpark merge (\S+) -o FILE` makes the picture", result.errors):
             path = os.path.join(self.folder, path)
             self.assertTrue(self.picture_of(path, self.results[0]) in list(self.right_pictures()), where)
             os.remove(path)
