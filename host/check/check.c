@@ -196,9 +196,8 @@ static BpStatus judge_last_round(BpCheck *check, BpError *err) {
     BpCheckResult *result = &check->result;
     const Round *last = &check->last;
     if (last->samples == 0)
-        return bp_fail(err, BP_ERR_INCONCLUSIVE,
-                       "time was up after %.3g s, before both tracers had %llu samples per pixel",
-                       check->options.seconds, (unsigned long long)check->target);
+        return bp_fail(err, BP_ERR_INCONCLUSIVE, "time was up before both tracers had %llu samples per pixel",
+                       (unsigned long long)check->target);
     copy_sums(&result->kernel, &last->kernel);
     copy_sums(&result->reference, &last->reference);
     result->cut_kernel = last->cut_kernel;

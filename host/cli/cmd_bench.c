@@ -473,6 +473,12 @@ static BpStatus prepare(const BpCommandLine *line, Bench *bench, BpError *err) {
                            "ballpark bench: expected a file, found \"-\" (standard input), which cannot be "
                            "read again in every round");
         if (!entry->fixed) {
+            if (access(entry->name, F_OK) != 0 && errno == ENOENT)
+                return bp_fail(
+                    err, BP_ERR_USAGE,
+                    "%.400s: no such file, and no fixed scene has this name; those are cover, diffuse, "
+                    "glass and field-N, such as field-1e6",
+                    entry->name);
             snprintf(entry->path, sizeof entry->path, "%s", entry->name);
             continue;
         }

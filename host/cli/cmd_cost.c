@@ -56,7 +56,9 @@ static BpStatus print_part(const void *what, FILE *out, BpError *err) {
 }
 
 static BpStatus check_outputs(const BpCommandLine *line, BpError *err) {
-    const char *const files[] = {line->output, line->csv, line->json};
+    const char *const files[] = {line->csv, line->json};
+    if (line->output != NULL)
+        BP_TRY(bp_line_check_named(line, line->output, ".html", "the study is written as an HTML page", err));
     for (size_t f = 0; f < sizeof files / sizeof files[0]; ++f)
         if (files[f] != NULL) BP_TRY(bp_line_check_output(line, files[f], err));
     return BP_OK;

@@ -203,11 +203,11 @@ static void print_effects(const BpScene *scene, const BpEffectInfo *effects, siz
     size_t in = 0;
     for (size_t e = 0; e < count; ++e) in += effects[e].simulated ? 1 : 0;
     for (size_t e = 0; e < count; ++e)
-        fprintf(out, "  %-12s %-4s " BP_HANG "%s\n", effects[e].name, effects[e].simulated ? "in" : "out",
+        fprintf(out, "  %-14s %-4s " BP_HANG "%s\n", effects[e].name, effects[e].simulated ? "in" : "out",
                 effects[e].reason);
     fprintf(out, "  %zu of %zu effects %s in the kernel\n", in, count, in == 1 ? "is" : "are");
     const BpAcceleration chosen = bp_acceleration_choose(scene, reason);
-    fprintf(out, "  %-12s %-4s " BP_HANG "%s\n", "acceleration", bp_acceleration_name(chosen), reason);
+    fprintf(out, "  %-14s %-4s " BP_HANG "%s\n", "acceleration", bp_acceleration_name(chosen), reason);
 }
 
 /* ---- what they cost --------------------------------------------------------------------------------------
@@ -232,10 +232,10 @@ static void print_costs(const BpCosts *costs, FILE *out) {
             costs->width, costs->height, costs->rounds,
             bp_format_count((double)costs->samples, rate, sizeof rate),
             costs->device.type == BP_DEVICE_CPU ? ", processor time" : "");
-    fprintf(out, "  %-18s %6s %15s\n", "kernel", "time", "quartiles");
+    fprintf(out, "  %-19s %6s %15s\n", "kernel", "time", "quartiles");
     for (size_t k = 0; k < costs->kernel_count; ++k) {
         const BpKernelCost *kernel = &costs->kernels[k];
-        fprintf(out, "  %-18s %6.3f", kernel->name, kernel->ratio);
+        fprintf(out, "  %-19s %6.3f", kernel->name, kernel->ratio);
         if (k == 0)
             fprintf(out, "  %s samples/s%s\n", bp_format_count(kernel->samples_per_second, rate, sizeof rate),
                     costs->device.type == BP_DEVICE_CPU ? " per core" : "");

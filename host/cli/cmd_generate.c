@@ -13,7 +13,6 @@
 #include <inttypes.h>
 #include <stdio.h>
 #include <string.h>
-#include <strings.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
@@ -33,19 +32,6 @@ static const char *choose_path(const BpCommandLine *line, const char *name) {
     return taken ? "-" : name;
 }
 
-static BpStatus check_path(const BpCommandLine *line, const char *path, const char *ending, const char *what,
-                           BpError *err) {
-    struct stat info;
-    const size_t length = strlen(path), end = strlen(ending);
-    /* Devices and pipes have names of their own: /dev/stdout. */
-    const bool named = strcmp(path, "-") != 0 && (stat(path, &info) != 0 || S_ISREG(info.st_mode));
-    if (named && strncmp(path, "/dev/", 5) != 0 && strncmp(path, "/proc/", 6) != 0 &&
-        (length <= end || strcasecmp(path + length - end, ending) != 0))
-        return bp_fail(err, BP_ERR_USAGE, "--output %.400s: %s is written as %s; use a name that ends in %s",
-                       path, line->operands[0], what, ending);
-    return bp_line_check_output(line, path, err);
-}
-
 static BpStatus print_scene(const void *scene, FILE *out, BpError *err) {
     return bp_scene_print(scene, out, err);
 }
@@ -58,7 +44,7 @@ static BpStatus generate_cover(const BpCommandLine *line, uint64_t seed, BpError
     const char *path = choose_path(line, "cover.json");
     const unsigned grid = bp_option_given(line, BP_OPTION_GRID) ? line->grid : GRID_DEFAULT;
     BpScene *scene = NULL;
-    BP_TRY(check_path(line, path, ".json", "a scene document", err));
+    BP_TRY(bp_line_check_named(line, path, ".json", "the cover is written as a scene document", err));
     BP_TRY(bp_scene_generate_cover(line->edition != NULL ? line->edition : "4", grid, seed, &scene, err));
     bp_line_say_overwritten(line, path);
     const BpStatus status = bp_line_write(line, path, print_scene, scene, err);
@@ -88,7 +74,7 @@ static BpStatus generate_field(const BpCommandLine *line, uint64_t seed, BpError
         return bp_fail(err, BP_ERR_USAGE,
                        "--output -: refusing to write a binary PLY file to the terminal; redirect standard "
                        "output to a file or a pipe");
-    BP_TRY(check_path(line, path, ".ply", "a PLY file", err));
+    BP_TRY(bp_line_check_named(line, path, ".ply", "a field is written as a PLY file", err));
     bp_line_say_overwritten(line, path);
     BP_TRY(bp_line_write(line, path, print_field, &field, err));
     bp_say(line, "%s: %" PRIu64 " sphere%s in the cube from -10 to 10", shown_name(path), field.count,

@@ -314,6 +314,21 @@ static void say_emptiness(const BpCommandLine *line, const RunResult *result) {
                bp_format_count((double)report->samples, samples, sizeof samples), bp_plural(report->samples));
 }
 
+/* A sphere around the camera shuts out all light, unless light comes through it: glass, or a boundary. */
+static bool is_inside_a_sphere(const BpScene *scene) {
+    const double *from = scene->camera.lookfrom;
+    for (size_t i = 0; i < scene->sphere_count; i++) {
+        const BpSphere *sphere = &scene->spheres[i];
+        const double x = from[0] - sphere->center[0], y = from[1] - sphere->center[1],
+                     z = from[2] - sphere->center[2];
+        const int kind = scene->materials[sphere->material].kind;
+        if (kind != BP_MATERIAL_DIELECTRIC && kind != BP_MATERIAL_INTERFACE &&
+            x * x + y * y + z * z < sphere->radius * sphere->radius)
+            return true;
+    }
+    return false;
+}
+
 static void print_summary(const BpCommandLine *line, const RunResult *result, const BpStopRule *rule,
                           const LoopEnd *end) {
     const BpRenderReport *report = &result->report;
@@ -350,8 +365,10 @@ static void print_summary(const BpCommandLine *line, const RunResult *result, co
     else if (isnan(result->nrmse))
         bp_say(line, "%s",
                result->samples_per_pixel < 2 ? "estimating noise needs at least two samples per pixel"
-               : report->invalid_samples > 0
-                   ? "estimating noise needs finite samples in every pixel"
+               : report->invalid_samples > 0 ? "estimating noise needs finite samples in every pixel"
+               : is_inside_a_sphere(result->scene)
+                   ? "the picture is black, so its noise is unknown: the camera is inside a sphere; check "
+                     "\"lookfrom\" and the spheres"
                    : "the picture is black, so its noise is unknown: nothing that the camera sees is lit; "
                      "check \"background\", and \"emit\" of the materials");
     say_stop(line, result, rule, end);

@@ -45,7 +45,7 @@ BpStatus bp_command_scene(const BpCommandLine *line, BpError *err) {
     const char *const path = line->operands[0];
     const char *const to = line->output != NULL ? line->output : "-";
     BpScene *scene = NULL;
-    BP_TRY(bp_line_check_output(line, to, err));
+    BP_TRY(bp_line_check_named(line, to, ".json", "a scene is written as a JSON document", err));
     BP_TRY(bp_setup_load(line, path, &scene, err));
     /* What goes to standard output is read again as seen from the current folder. */
     BpStatus status =

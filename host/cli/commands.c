@@ -266,5 +266,7 @@ BpStatus bp_command_find(const char *name, const BpCommand **command, BpError *e
     bp_printable(name, shown, sizeof shown);
     if (nearest != NULL)
         return bp_fail(err, BP_ERR_USAGE, "unknown command \"%s\"; did you mean %s?", shown, nearest);
+    if (strcmp(name, "version") == 0)
+        return bp_fail(err, BP_ERR_USAGE, "unknown command \"version\"; did you mean `ballpark --version`?");
     return bp_fail(err, BP_ERR_USAGE, "unknown command \"%s\"; see `ballpark --help`", shown);
 }

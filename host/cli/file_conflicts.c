@@ -52,7 +52,13 @@ BpStatus bp_file_conflicts_check(const BpCommandLine *line, const char *picture,
         for (size_t i = 0; i < line->operand_count && reads_files(line) && !(merges && r == BP_OPTION_OUTPUT);
              ++i)
             if (bp_output_same(result->path, line->operands[i], STDIN_FILENO))
-                return refuse(result, "its own input", err);
+                return line->output == NULL && r == BP_OPTION_OUTPUT
+                           ? bp_fail(
+                                 err, BP_ERR_USAGE,
+                                 "%.400s is named like a picture, and the result would overwrite it; give a "
+                                 "scene, or another name for the picture with -o",
+                                 line->operands[i])
+                           : refuse(result, "its own input", err);
         if (line->against != NULL && bp_output_same(result->path, line->against, STDIN_FILENO))
             return refuse(result, "the earlier check that --against names", err);
     }

@@ -110,7 +110,7 @@ enum {
                   BP_WHOLE("N", 0, BP_SAMPLE_NUMBERS - 1))                                                   \
     OPTION(DEVICE, "device", 0, BP_TRACERS,                                                                  \
            "device number, part of its name or driver version, gpu, cpu or all (see `ballpark devices`)",    \
-           const char *, device, BP_TEXT("N|NAME|all"))                                                      \
+           const char *, device, BP_TEXT("N|NAME"))                                                          \
     RENDER_OPTION(THREADS, "threads", 0, BP_TRACERS,                                                         \
                   "largest number of threads to use on a CPU, as far as its driver can divide it", uint32_t, \
                   threads, BP_WHOLE("N", 1, 65536))                                                          \

@@ -5,11 +5,25 @@
 
 #include <errno.h>
 #include <string.h>
+#include <strings.h>
+#include <sys/stat.h>
 
 BpStatus bp_line_check_output(const BpCommandLine *line, const char *path, BpError *err) {
     if (strcmp(path, "-") == 0) return BP_OK;
     if (line->no_clobber) return bp_output_check_new(path, err);
     return bp_output_check(path, err);
+}
+
+BpStatus bp_line_check_named(const BpCommandLine *line, const char *path, const char *ending,
+                             const char *what, BpError *err) {
+    struct stat info;
+    const size_t length = strlen(path), end = strlen(ending);
+    const bool named = strcmp(path, "-") != 0 && (stat(path, &info) != 0 || S_ISREG(info.st_mode)) &&
+                       strncmp(path, "/dev/", 5) != 0 && strncmp(path, "/proc/", 6) != 0;
+    if (named && (length <= end || strcasecmp(path + length - end, ending) != 0))
+        return bp_fail(err, BP_ERR_USAGE, "--output %.400s: %s; use a name that ends in %s", path, what,
+                       ending);
+    return bp_line_check_output(line, path, err);
 }
 
 void bp_line_say_overwritten(const BpCommandLine *line, const char *path) {

@@ -12,6 +12,11 @@
  * is an error. */
 BpStatus bp_line_check_output(const BpCommandLine *line, const char *path, BpError *err);
 
+/* The same for what always has one format: a file of another `ending` (".json") is refused; `what` says why.
+ * Devices and pipes have names of their own: /dev/stdout. */
+BpStatus bp_line_check_named(const BpCommandLine *line, const char *path, const char *ending,
+                             const char *what, BpError *err);
+
 /* Says on standard error that the file `path` (NULL: none) will be overwritten, if it exists. To be called
  * when work begins, after everything that can be refused has been checked: a refused command overwrites
  * nothing. */

@@ -132,8 +132,9 @@ BpStatus bp_setup_share(const BpCommandLine *line, BpRenderOptions *options, BpE
     if (line->share.count > rounds)
         return bp_fail(err, BP_ERR_USAGE,
                        "--share %" PRIu32 "/%" PRIu32 ": %" PRIu64 " sample%s per pixel make at most %" PRIu64
-                       " shares, of %" PRIu64 " samples each",
-                       line->share.number, line->share.count, samples, bp_plural(samples), rounds, round);
+                       " share%s of %" PRIu64 " samples; use fewer shares, or --spp %" PRIu64 " or more",
+                       line->share.number, line->share.count, samples, bp_plural(samples), rounds,
+                       bp_plural(rounds), round, (line->share.count - 1) * round + 1);
     const uint64_t begin = rounds * (line->share.number - 1) / line->share.count * round;
     const uint64_t end = rounds * line->share.number / line->share.count * round;
     options->first_sample = first + begin;

@@ -128,6 +128,27 @@ static const char *packed_by(const char *text, size_t length) {
     return NULL;
 }
 
+/* What a file that begins like this is, if it is none that Ballpark reads as a scene but one that it writes,
+ * and what to do with it; or NULL. */
+static const char *known_result(const char *text, size_t length) {
+    static const struct {
+        const char *beginning, *is;
+    } known[] = {{"{\"ballpark_accumulator\"",
+                  "the sums of a render (.bpa), expected a scene: `ballpark merge "
+                  "FILE.bpa -o FILE.png` makes the picture, and --resume FILE.bpa "
+                  "continues the render"},
+                 {"\x89PNG", "a PNG picture, expected a scene"},
+                 {"\x76\x2f\x31\x01", "an EXR picture, expected a scene"},
+                 {"P6", "a PPM picture, expected a scene"},
+                 {"P3", "a PPM picture, expected a scene"},
+                 {"PF", "a PFM picture, expected a scene"}};
+    for (size_t i = 0; i < sizeof known / sizeof *known; i++) {
+        const size_t size = strlen(known[i].beginning);
+        if (length >= size && memcmp(text, known[i].beginning, size) == 0) return known[i].is;
+    }
+    return NULL;
+}
+
 /* Whether a file begins with bytes that no text has, trajectories in binary formats for example. */
 static bool is_binary(const char *text, size_t length) {
     for (size_t i = 0; i < length && i < 64; i++) {
@@ -140,7 +161,12 @@ static bool is_binary(const char *text, size_t length) {
 /* Names the remedy for files that are no JSON document at all. */
 static BpStatus refuse_other_files(const BpDocument *document, size_t start, BpError *err) {
     const char *const program = packed_by(document->text, document->length);
-    char text[160];
+    const char *const result = known_result(document->text, document->length);
+    char text[256];
+    if (result != NULL) {
+        snprintf(text, sizeof text, "found %s", result);
+        return fail_at_offset(document, 0, err, text);
+    }
     if (document->text[start] == '{' || document->text[start] == '[') return BP_OK;
     if (program != NULL) {
         snprintf(text, sizeof text,

@@ -64,9 +64,9 @@ BpStatus bp_worker_create_picture(BpWorker *worker, BpError *err) {
     if (worker->picture_bytes + worker->scene_bytes > info->memory_bytes)
         return bp_fail(
             err, BP_ERR_LIMIT,
-            "scene and picture take %.1f MiB, but %s has %.1f MiB; use a smaller --width or another --device",
-            (double)(worker->picture_bytes + worker->scene_bytes) / 1048576, info->name,
-            (double)info->memory_bytes / 1048576);
+            "scene and picture take %.1f GiB, but %s has %.1f GiB; use a smaller --width or another --device",
+            (double)(worker->picture_bytes + worker->scene_bytes) / (1 << 30), info->name,
+            (double)info->memory_bytes / (1 << 30));
     BP_TRY(create_buffer(worker, &worker->sums, sums, NULL, "the picture's sums", err));
     BP_TRY(create_buffer(worker, &worker->fine_sums, sums, NULL, "the picture's fine sums", err));
     BP_TRY(create_buffer(worker, &worker->counts, counts, NULL, "the picture's counts", err));

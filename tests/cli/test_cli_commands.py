@@ -76,7 +76,9 @@ class Bench(ProgramTest):
         self.assertEqual(len(report["scenes"]), 1)
         self.assertGreater(report["scenes"][0]["samples_per_second"]["median"], 0)
         self.assertEqual(self.files(), ["b.json", "s.json"])
-        self.fail_with(2, "bench", "none.json", says="none.json")
+        self.fail_with(2, "bench", "none.json", says="none.json: no such file")
+        missing = self.fail_with(2, "bench", "covr", says="cover, diffuse, glass and field-N")
+        self.assertNotIn("round 1", missing.errors)  # before any work
 
 
 class Devices(ProgramTest):

@@ -71,7 +71,7 @@ class Merge(ProgramTest):
 
     def test_shares_that_cannot_be(self):
         for share, says in (("0/4", "shares are numbered from 1/4 to 4/4"), ("5/4", "shares are numbered from 1/4 to 4/4"),
-                            ("3", "expected I/N"), ("1/", "whole number"), ("1/4", None), ("1/9", "at most 8 shares, of 4 samples each")):
+                            ("3", "expected I/N"), ("1/", "whole number"), ("1/4", None), ("1/9", "at most 8 shares of 4 samples; use fewer shares, or --spp 33 or more")):
             arguments = ("render", "s.json", "--spp", 30, "--share", share, "-o", "x.bpa")
             if says is None:
                 self.succeed(*arguments)

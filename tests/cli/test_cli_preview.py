@@ -90,6 +90,7 @@ class Preview(ProgramTest):
 
     def test_a_folder_that_goes_is_said_once(self):
         os.mkdir(self.path("gone"))
+        self.succeed("render", "s.json", "--spp", "1", "-o", "gone/first.png", "-q")  # builds the kernel
         self.environment["TMPDIR"] = self.folder
         process = self.start("--time", "2", "--preview", "0.05", "-o", "gone/a.png")
         deadline = time.monotonic() + LIMIT_SECONDS

@@ -227,6 +227,14 @@ class StopRules(Render):
         self.assertIn("the picture is black", said)
         self.assertEqual(self.stats("--error", "1", name="dark.json")["stopped_by"], "black")
 
+    def test_inside_a_sphere(self):
+        for kind, is_said in ({"type": "lambertian", "albedo": [0.5, 0.5, 0.5]}, True), ({"type": "interface"}, False):
+            self.write("in.json", scene(materials={"m": kind}, background=[1, 1, 1] if is_said else [0, 0, 0],
+                                        spheres=[{"center": [0, 0, 0], "radius": 1, "material": "m"}]))
+            said = self.succeed("render", "in.json", "--spp", "2", "-o", "in.png").errors
+            self.assertIn("the picture is black", said)
+            self.assertEqual("the camera is inside a sphere" in said, is_said, said)
+
     def test_constant(self):
         self.write("plain.json", scene(spheres=0, background=[0.5, 0.5, 0.5]))
         stats = self.stats("--error", "1", name="plain.json")

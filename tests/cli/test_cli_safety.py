@@ -215,9 +215,26 @@ class TwoNames(Safety):
         os.mkdir(self.path("other"))
         self.succeed("render", "s.json", "-o", "b.png", "--error-map", "other/b.png", "-q")
 
+    def test_results_are_no_scenes(self):
+        """What the program has written itself is named, with what to do about it."""
+        for ending, says in (("bpa", "`ballpark merge FILE.bpa -o FILE.png` makes the picture"), ("png", "found a PNG picture"),
+                             ("exr", "found an EXR picture"), ("ppm", "found a PPM picture"), ("pfm", "found a PFM picture")):
+            self.succeed("render", "s.json", "--spp", "1", "-o", f"made.{ending}", "-q")
+            self.fail_with(2, "explain", f"made.{ending}", says=says)
+
+    def test_endings_of_documents(self):
+        """A page in cost.pdf, or a scene in s.png, would be found out much later."""
+        for arguments, says in ((("cost", "s.json", "-o", "cost.pdf"), "use a name that ends in .html"),
+                                (("scene", "s.json", "-o", "s.png"), "use a name that ends in .json"),
+                                (("generate", "field", "--count", "3", "-o", "f.json"), "use a name that ends in .ply"),
+                                (("generate", "cover", "-o", "c.ply"), "use a name that ends in .json")):
+            self.fail_with(2, *arguments, says=says)
+        for name in "cost.pdf", "s.png", "f.json", "c.ply":
+            self.assertFalse(os.path.exists(self.path(name)), name)
+
     def test_inputs(self):
         self.write("s.png", scene(8))  # a scene may be called that
-        self.refuse("render", "s.png", says="the picture s.png would overwrite")
+        self.refuse("render", "s.png", says="s.png is named like a picture, and the result would overwrite it")
         os.link(self.path("s.json"), self.path("hard.png"))
         self.refuse("render", "s.json", "-o", "hard.png", says="--output hard.png would overwrite")
         self.write("points.png", "ply\nformat ascii 1.0\nelement vertex 1\nproperty float x\nproperty float y\n"
