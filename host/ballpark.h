@@ -86,8 +86,8 @@ typedef enum BpStatus {
  * again. */
 typedef struct BpError {
     BpStatus code;
-    char message[1024]; /* what happened, where, and the remedy */
-    char file[512];     /* the file at fault, or "" */
+    char message[1024]; /* what happened, and the remedy; where in the file is told by the next members */
+    char file[512];     /* the file at fault, or ""; a message about a file as a whole may name it too */
     int line, column;   /* from 1; 0 when unknown */
     char *attachment;   /* Optional. A long text, such as a whole build log. */
 } BpError;

@@ -5,6 +5,7 @@ Knows: how the library lays out a picture.   Does not know: how it was made.
 """
 
 import ctypes as c
+import math
 import os
 import pathlib
 import typing
@@ -120,5 +121,7 @@ class Picture:
         return self.encode("png")
 
     def __repr__(self) -> str:
-        return (f"<ballpark.Picture: {self.width} x {self.height} pixels, {float(self.samples.mean()):.6g} samples per "
-                f"pixel, {100 * self.noise:.2g} % noise, stopped by {self.stopped}>")
+        samples = float(self.samples.mean())
+        noise = f"{100 * self.noise:.2g} % noise" if math.isfinite(self.noise) else "noise unknown"
+        return (f"<ballpark.Picture: {self.width} x {self.height} pixels, {samples:.6g} sample{'s' if samples != 1 else ''} "
+                f"per pixel, {noise}, stopped by {self.stopped}>")

@@ -7,6 +7,8 @@ Knows: stop rules, interruption.   Does not know: where scenes come from.
 import collections.abc
 import ctypes as c
 import dataclasses
+import difflib
+import inspect
 import math
 import os
 import signal
@@ -350,6 +352,14 @@ def make_scene(subject: Subject, *, radius: typing.Optional[npt.ArrayLike] = Non
     return _interruptible(lambda: Scene(made, sets))
 
 
+def _refuse_unknown(options: typing.Dict[str, typing.Any]) -> None:
+    """Names the option that was probably meant, before any work."""
+    known = set(inspect.signature(Render).parameters) - {"scene"}
+    for name in sorted(set(options) - known):
+        near = difflib.get_close_matches(name, [*known, *inspect.signature(render).parameters], 1)
+        raise TypeError(f"ballpark.render has no option {name!r}" + (f"; did you mean {near[0]!r}?" if near else ""))
+
+
 def render(subject: Subject, *, radius: typing.Optional[npt.ArrayLike] = None, color: typing.Optional[Color] = None,
            material: typing.Union[None, str, Document] = None, cmap: typing.Optional[str] = None,
            color_range: typing.Optional[typing.Tuple[float, float]] = None, up: typing.Optional[str] = None,
@@ -371,6 +381,7 @@ def render(subject: Subject, *, radius: typing.Optional[npt.ArrayLike] = None, c
 
     Ctrl-C raises Interrupted, a KeyboardInterrupt, whose `picture` is what was rendered so far.
     """
+    _refuse_unknown(options)
     scene = make_scene(subject, radius=radius, color=color, material=material, cmap=cmap, color_range=color_range,
                        up=up, camera=camera, width=width, height=height, materials=materials, background=background,
                        light=light, backdrop=backdrop)

@@ -21,6 +21,7 @@ static BpStatus draw(const char *scene_path, const char *picture_path, BpError *
         status = bp_render_step(render, &progress, err);
         printf("\r%.0f %%", 100.0 * (double)progress.samples_done / (double)progress.samples_total);
     }
+    if (status == BP_OK) printf("\n");
     if (status == BP_OK) status = bp_render_read(render, &picture, err);
     if (status == BP_OK)
         status = bp_picture_write(&picture, picture_path, BP_FORMAT_PNG, BP_TRANSFER_GAMMA2, err);
@@ -34,7 +35,8 @@ int main(int argc, char **argv) {
     BpError err = {0};
     if (argc != 3) return fprintf(stderr, "usage: example SCENE.json PICTURE.png\n"), 2;
     const BpStatus status = draw(argv[1], argv[2], &err);
-    if (status != BP_OK) fprintf(stderr, "example: %s\n", err.message);
+    if (status != BP_OK)
+        fprintf(stderr, "example: %s%s%s\n", err.file, err.file[0] != '\0' ? ": " : "", err.message);
     bp_error_clear(&err);
     return bp_status_exit_code(status);
 }

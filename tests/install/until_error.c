@@ -72,7 +72,8 @@ int main(int argc, char **argv) {
     bp_stop_destroy(&stop);
     bp_render_destroy(&render);
     bp_scene_destroy(&scene);
-    if (status != BP_OK) fprintf(stderr, "until_error: %s\n", err.message);
+    if (status != BP_OK)
+        fprintf(stderr, "until_error: %s%s%s\n", err.file, err.file[0] != '\0' ? ": " : "", err.message);
     bp_error_clear(&err);
     return bp_status_exit_code(status);
 }

@@ -7,6 +7,7 @@ import gc
 import json
 import math
 import pathlib
+import re
 import subprocess
 import sys
 import tempfile
@@ -77,6 +78,16 @@ def test_arrays_are_the_librarys(folder):
     gc.collect()
     ballpark.render(SCENE, seed=5)
     assert np.array_equal(kept, copy)
+
+
+def test_texts(_folder):
+    assert "1 sample per pixel, noise unknown" in repr(ballpark.render(SCENE, spp=1))
+    assert re.search(r"2 samples per pixel, [\d.]+ % noise", repr(ballpark.render(SCENE, spp=2)))
+    try:
+        ballpark.render(SCENE, widht=20)
+        raise AssertionError("accepted")
+    except TypeError as error:
+        assert str(error) == "ballpark.render has no option 'widht'; did you mean 'width'?", error
 
 
 def test_files(folder):
