@@ -6,12 +6,12 @@
 
 #include <string.h>
 
-/* Drivers of CPUs that know vectors spread explicit vectors over their lanes. There, a kernel follows as many
- * paths at a time as the widest vectors have lanes, at least eight, through sixteen-wide nodes
- * (docs/BENCHMARKS.md, "Tuning log"), and double costs little. A CPU driver that splits vectors up (it
- * reports one lane) gains nothing from many lanes, and one was seen to compile that form for ever. GPUs
- * spread work-items, and many have hardly any double: one lane, narrower nodes, error-free float transforms.
- * The options can force each choice, so every arrangement can be tested on every device. */
+/* Drivers of CPUs that know vectors spread explicit vectors over their lanes. There, a kernel follows
+ * sixteen paths at a time through sixteen-wide nodes, also where a vector has eight lanes, and eight paths
+ * where it has four (docs/BENCHMARKS.md, "Tuning log"); double costs little. A CPU driver that splits vectors
+ * up (it reports one lane) gains nothing from many lanes, and one was seen to compile that form for ever.
+ * GPUs spread work-items, and many have hardly any double: one lane, narrower nodes, error-free float
+ * transforms. The options can force each choice, so every arrangement can be tested on every device. */
 static void choose_form(const BpDeviceInfo *device, const BpRenderOptions *options,
                         BpProgramOptions *program) {
     const bool cpu = device->type == BP_DEVICE_CPU;
@@ -20,9 +20,9 @@ static void choose_form(const BpDeviceInfo *device, const BpRenderOptions *optio
                     : vectors                         ? BP_KERNEL_PACKET
                                                       : BP_KERNEL_SAMPLE;
     program->tree_width = options->tree_width != 0 ? options->tree_width : vectors ? 16 : 4;
-    program->packet_lanes = options->packet_lanes != 0  ? options->packet_lanes
-                            : device->float_lanes >= 16 ? 16
-                                                        : 8;
+    program->packet_lanes = options->packet_lanes != 0 ? options->packet_lanes
+                            : device->float_lanes >= 8 ? 16
+                                                       : 8;
     program->double_refine = cpu && device->has_double && !options->force_float_refine;
 }
 

@@ -41,14 +41,24 @@ FORCE_INLINE static child_mask leaf_candidates(const Geometry *geometry, const R
     sphere.centre.y = fma(ray.time, JOIN(vload, LANE_COUNT)(1, motion), sphere.centre.y);
     sphere.centre.z = fma(ray.time, JOIN(vload, LANE_COUNT)(2, motion), sphere.centre.z);
 #endif
-    const vuint slot = leaf_number * TREE_WIDTH + LANE_NUMBERS;
-    const vbool candidates = sphere_is_candidate(&ray, splat(bound), &sphere, slot);
-    const child_mask mask = lane_bits(candidates & (sphere.radius > splat(0))); /* an empty lane has radius -1 */
+    /* An empty lane has radius -1. Bits are combined here, not lanes: where a compiler has no masks, it repacks lanes
+     * to combine them. */
+    const child_mask filled = lane_bits(sphere.radius > splat(0));
+    child_mask mask = lane_bits(sphere_is_candidate(&ray, splat(bound), &sphere)) & filled;
+#if !OWN_SPHERE_IS_MET
+    mask &= ~((child_mask)(one->own_slot / TREE_WIDTH == leaf_number) << one->own_slot % TREE_WIDTH);
+#endif
 #if SAMPLES_LAMPS
     return known_slot / TREE_WIDTH == leaf_number ? without_bit(mask, known_slot % TREE_WIDTH) : mask;
 #else
     return mask; /* nothing is met twice */
 #endif
+}
+
+/* Asks for a leaf that will be visited soon: many leaves are then on their way at a time. */
+static void read_leaf_ahead(const Geometry *geometry, uint leaf_number) {
+    __global const real *leaf = geometry->leaves + leaf_number * (4 * TREE_WIDTH);
+    for (uint i = 0; i < 4 * TREE_WIDTH; i += LINE_BYTES / sizeof(real)) READ_AHEAD(leaf + i);
 }
 
 #if ACCELERATION_TREE

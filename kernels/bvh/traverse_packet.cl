@@ -190,10 +190,12 @@ static void traverse_nodes(const Geometry *geometry, const BoxAxis *axes, const 
             /* One leaf or none is the rule. */
             leaves[leaf_count].lane = lane;
             leaves[leaf_count].what = geometry->children[first + lowest_bit(met) % TREE_WIDTH] & ~CHILD_LEAF;
+            read_leaf_ahead(geometry, leaves[leaf_count].what);
             leaf_count += met != 0;
             for (met = without_lowest_bit(met); met != 0; met = without_lowest_bit(met)) {
                 leaves[leaf_count].lane = lane;
                 leaves[leaf_count].what = geometry->children[first + lowest_bit(met)] & ~CHILD_LEAF;
+                read_leaf_ahead(geometry, leaves[leaf_count].what);
                 ++leaf_count;
             }
         }
@@ -269,12 +271,14 @@ static void intersect_leaf(const Geometry *geometry, const Ray *ray, vbool activ
         sphere.centre = madd3(ray->time, vec3(splat(motion[0]), splat(motion[TREE_WIDTH]), splat(motion[2 * TREE_WIDTH])),
                               sphere.centre);
 #endif
+        vbool wanted = active;
 #if SAMPLES_LAMPS
-        const vbool wanted = active & vbool_of_uint(hit->slot != slot);
-#else
-        const vbool wanted = active;
+        wanted = wanted & vbool_of_uint(hit->slot != slot);
 #endif
-        const vbool candidate = sphere_is_candidate(ray, hit->bound, &sphere, slot) & wanted;
+#if !OWN_SPHERE_IS_MET
+        wanted = wanted & vbool_of_uint(ray->own_slot != slot);
+#endif
+        const vbool candidate = sphere_is_candidate(ray, hit->bound, &sphere) & wanted;
         if (any_lane(candidate)) intersect_sphere(geometry, ray, candidate, &sphere, slot, hit);
     }
 }

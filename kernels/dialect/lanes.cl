@@ -146,8 +146,22 @@ static uint LANED(bits_of_lanes)(vbool mask) {
     return (uint)(uchar)__builtin_ia32_cvtq2mask512(mask.lo) | (uint)(uchar)__builtin_ia32_cvtq2mask512(mask.hi) << 8;
 #elif LANE_COUNT == 8 && !REAL_IS_DOUBLE && defined(__AVX512DQ__) && defined(__AVX512VL__)
     return (uchar)__builtin_ia32_cvtd2mask256(mask);
+#elif LANE_COUNT == 16 && !REAL_IS_DOUBLE && defined(__AVX__)
+    return (uint)__builtin_ia32_movmskps256(as_float8(mask.lo)) | (uint)__builtin_ia32_movmskps256(as_float8(mask.hi)) << 8;
 #elif LANE_COUNT == 8 && !REAL_IS_DOUBLE && defined(__AVX__)
     return (uint)__builtin_ia32_movmskps256(as_float8(mask));
+#elif LANE_COUNT == 16 && REAL_IS_DOUBLE && defined(__AVX__)
+    return (uint)__builtin_ia32_movmskpd256(as_double4(mask.lo.lo)) |
+           (uint)__builtin_ia32_movmskpd256(as_double4(mask.lo.hi)) << 4 |
+           (uint)__builtin_ia32_movmskpd256(as_double4(mask.hi.lo)) << 8 |
+           (uint)__builtin_ia32_movmskpd256(as_double4(mask.hi.hi)) << 12;
+#elif LANE_COUNT == 8 && REAL_IS_DOUBLE && defined(__AVX__)
+    return (uint)__builtin_ia32_movmskpd256(as_double4(mask.lo)) |
+           (uint)__builtin_ia32_movmskpd256(as_double4(mask.hi)) << 4;
+#elif LANE_COUNT == 16 && defined(__SSE2__)
+    return (uint)__builtin_ia32_pmovmskb128(convert_char16(mask));
+#elif LANE_COUNT == 8 && !REAL_IS_DOUBLE && defined(__SSE2__)
+    return (uint)__builtin_ia32_movmskps(as_float4(mask.lo)) | (uint)__builtin_ia32_movmskps(as_float4(mask.hi)) << 4;
 #elif LANE_COUNT == 16
     const ulong2 bytes = as_ulong2(convert_char16(mask)) & (ulong2)0x8040201008040201;
     const ulong2 bits = (bytes * (ulong2)0x0101010101010101) >> (ulong2)56;

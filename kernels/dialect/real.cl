@@ -1,6 +1,6 @@
 /* real.cl: the numbers that every other kernel file is written in.
  *
- * Out:   real, refined, their constants, JOIN, FORCE_INLINE, VECTORS_WRITTEN.   Does not know: lanes (lanes.cl).
+ * Out:   real, refined, their constants, JOIN, FORCE_INLINE, VECTORS_WRITTEN, READ_AHEAD.   Does not know: lanes (lanes.cl).
  *
  * The program's first lines (host/opencl/program.c) define:
  *   REAL_IS_DOUBLE    0 or 1: what `real` is
@@ -69,6 +69,17 @@ typedef REFINED refined;
 #else
 #define FORCE_INLINE
 #endif
+
+/* Asks the memory for the line of a cache that contains an address, which need not exist. The language's own prefetch()
+ * does nothing in PoCL, so this is the compiler's own, where it has one for a processor. Elsewhere nothing is read ahead. */
+#define READ_AHEAD(address)
+#if defined(__has_builtin) && (defined(__x86_64__) || defined(__aarch64__))
+#if __has_builtin(__builtin_prefetch)
+#undef READ_AHEAD
+#define READ_AHEAD(address) __builtin_prefetch((const void *)(size_t)(address))
+#endif
+#endif
+#define LINE_BYTES 64u
 
 /* Says of a kernel that its vectors are as wide as they are meant to be. Intel's driver for processors otherwise spreads
  * work-items over lanes as well, which takes its compiler ten times as long and makes no kernel of ours faster. */

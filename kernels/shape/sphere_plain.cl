@@ -8,6 +8,8 @@
  * Knows: ray.cl.   Does not know: trees, materials. Read once for each number of lanes. */
 #define PLAIN_T_MIN R(1e-3)
 
+#undef OWN_SPHERE_IS_MET
+#define OWN_SPHERE_IS_MET 1
 #define Sphere LANED(Sphere)
 #define sphere_roots LANED(sphere_roots)
 #define sphere_is_candidate LANED(sphere_is_candidate)
@@ -42,7 +44,7 @@ FORCE_INLINE static vbool sphere_intersect(const Ray *ray, const Sphere *sphere,
 }
 
 /* The sphere being left is met like any other. */
-FORCE_INLINE static vbool sphere_is_candidate(const Ray *ray, vreal bound, const Sphere *sphere, vuint slot) {
+FORCE_INLINE static vbool sphere_is_candidate(const Ray *ray, vreal bound, const Sphere *sphere) {
     vrefined t;
     vbool enters;
     const vbool meets = sphere_intersect(ray, sphere, &t, &enters);

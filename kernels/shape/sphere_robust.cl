@@ -4,6 +4,7 @@
  * In:    a ray whose origin is the unevaluated sum high + low, a sphere as it is stored.
  * Out:   the interface of a shape, the same in sphere_plain.cl:
  *          sphere_is_candidate  may the ray meet the sphere before `bound`? Quick; what it rules out is surely not met.
+ *          OWN_SPHERE_IS_MET    0 or 1: the sphere being left is a candidate like any other
  *          sphere_intersect     does the ray meet it, at which distance, and from outside or inside?
  *          sphere_exit          where does a ray meet the sphere that it has left into its inside?
  *          sphere_power         how far is a point outside a sphere, as a square?
@@ -14,6 +15,8 @@
  * across the ray; s = sqrt((r^2 - l.l) / d.d) is half the chord; the roots are p - s and p + s.
  * l instead of oc.oc - r^2: E. Haines, J. Guenther and T. Akenine-Moeller, "Precision Improvements for Ray/Sphere
  * Intersection", Ray Tracing Gems, 2019. */
+#undef OWN_SPHERE_IS_MET
+#define OWN_SPHERE_IS_MET 0
 #define Sphere LANED(Sphere)
 #define Roots LANED(Roots)
 #define sphere_is_candidate LANED(sphere_is_candidate)
@@ -33,8 +36,8 @@ typedef struct Sphere {
 
 /* The sphere is met before `bound` only if sqrt(r^2 - l^2) >= max(-p, p - bound); p and l err by less than half of
  * margin = 64 u (|p| + r) + the ray's own margin (u = ROUNDOFF, |d|^2 = 1 within 28 u).
- * The sphere being left is not met from outside, and from inside sphere_exit meets it. */
-FORCE_INLINE static vbool sphere_is_candidate(const Ray *ray, vreal bound, const Sphere *sphere, vuint slot) {
+ * The sphere being left, which callers leave out, is not met from outside, and from inside sphere_exit meets it. */
+FORCE_INLINE static vbool sphere_is_candidate(const Ray *ray, vreal bound, const Sphere *sphere) {
     const Vec3 oc = subtract3(sphere->centre, ray->origin.high);
     const vreal p = dot3(oc, ray->direction);
     const Vec3 l = madd3(-p, ray->direction, oc);
@@ -42,7 +45,7 @@ FORCE_INLINE static vbool sphere_is_candidate(const Ray *ray, vreal bound, const
     const vreal reach = sphere->radius + margin;
     const vreal room = fma(reach, reach, -dot3(l, l));
     const vreal outside = larger(larger(-p, p - bound) - margin, splat(0));
-    return (room >= outside * outside) & vbool_of_uint(ray->own_slot != slot);
+    return room >= outside * outside;
 }
 
 typedef struct Roots {
