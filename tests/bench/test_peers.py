@@ -57,3 +57,21 @@ with tempfile.TemporaryDirectory() as folder:
                   f"segments a sample {rays:.4f} {peer_rays:.4f}")
             assert max(map(abs, zs)) < Z_MAX, (path, name, zs)
             assert abs(rays / peer_rays - 1) < .005, (path, name, rays, peer_rays)
+
+    # the peers of bench/compare --isa draw what the others draw
+    path = paths[0]
+    means, _ = ours(path, folder)
+    flags = []
+    if os.path.exists("/proc/cpuinfo"):
+        with open("/proc/cpuinfo") as file:
+            flags = file.read().split()
+    for isa, flag, embree_isa in (("avx2", "avx2", "avx2"), ("sse41", "sse4_1", "sse4.2")):
+        if flag not in flags or not os.path.exists(os.path.join(peers, "book_scalar_" + isa)):
+            print(f"skipped: no peers for {isa} here")
+            continue
+        entries = [peer("book_scalar_" + isa, path, "--method", "tree", "--seed", "4")]
+        if embree:
+            entries.append(peer("embree_peer_" + isa, path, "--method", "np", "--config", "isa=" + embree_isa, "--seed", "5"))
+        for mean, error, _ in entries:
+            zs = [(a - b) / (e * math.sqrt(2)) for a, b, e in zip(means, mean, error)]
+            assert max(map(abs, zs)) < Z_MAX, (isa, zs)

@@ -3,7 +3,7 @@
 Usage: test_bits.py BALLPARK SOURCE_DIR [--nightly]
 
 PoCL compiles for another processor when POCL_KERNELLIB_NAME names another library of built-in functions: that of SSE2
-has no fused multiply-add, that of AVX2 has eight lanes. All forms of the kernel on this processor are a test of
+has no fused multiply-add, that of AVX2 has no masks. All forms of the kernel on this processor are a test of
 test_cli_bits. Here each library has the form that CPUs use and others, with a tree and with a list; together the
 libraries have every form. What takes long is compiling, so scenes with kernels of their own are drawn by the first alone.
 
