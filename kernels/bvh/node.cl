@@ -17,12 +17,16 @@ static Ray ray_for_all(const Ray_one *one) {
     ray.direction = vec3(splat(one->direction.x), splat(one->direction.y), splat(one->direction.z));
     ray.cull_margin = splat(one->cull_margin);
     ray.own_slot = splat_uint(one->own_slot);
-    ray.inward = one->inward ? vbool_all : vbool_none;
+    ray.inward = (vbool)(one->inward ? -1 : 0);
 #if EFFECT_MOTION
     ray.time = splat(one->time);
 #endif
     return ray;
 }
+
+/* A whole row, by its address: rows are aligned to their own size, and an offset that the compiler knows not to wrap
+ * makes it one load. */
+static vreal row_of(__global const real *rows, uint row) { return *(__global const vreal *)(rows + (size_t)row); }
 
 /* The spheres of a leaf that the ray may meet before `bound`, without a branch. The one in `known_slot` is left out: the
  * ray has met it already, or is sent to it. */
@@ -31,15 +35,15 @@ FORCE_INLINE static child_mask leaf_candidates(const Geometry *geometry, const R
     __global const real *leaf = geometry->leaves + leaf_number * (4 * TREE_WIDTH);
     const Ray ray = ray_for_all(one);
     Sphere sphere;
-    sphere.centre.x = JOIN(vload, LANE_COUNT)(0, leaf);
-    sphere.centre.y = JOIN(vload, LANE_COUNT)(1, leaf);
-    sphere.centre.z = JOIN(vload, LANE_COUNT)(2, leaf);
-    sphere.radius = JOIN(vload, LANE_COUNT)(3, leaf);
+    sphere.centre.x = row_of(leaf, 0);
+    sphere.centre.y = row_of(leaf, TREE_WIDTH);
+    sphere.centre.z = row_of(leaf, 2 * TREE_WIDTH);
+    sphere.radius = row_of(leaf, 3 * TREE_WIDTH);
 #if EFFECT_MOTION
     __global const real *motion = geometry->leaf_motions + leaf_number * (3 * TREE_WIDTH);
-    sphere.centre.x = fma(ray.time, JOIN(vload, LANE_COUNT)(0, motion), sphere.centre.x);
-    sphere.centre.y = fma(ray.time, JOIN(vload, LANE_COUNT)(1, motion), sphere.centre.y);
-    sphere.centre.z = fma(ray.time, JOIN(vload, LANE_COUNT)(2, motion), sphere.centre.z);
+    sphere.centre.x = fma(ray.time, row_of(motion, 0), sphere.centre.x);
+    sphere.centre.y = fma(ray.time, row_of(motion, TREE_WIDTH), sphere.centre.y);
+    sphere.centre.z = fma(ray.time, row_of(motion, 2 * TREE_WIDTH), sphere.centre.z);
 #endif
     /* An empty lane has radius -1. Bits are combined here, not lanes: where a compiler has no masks, it repacks lanes
      * to combine them. */
@@ -87,10 +91,6 @@ static BoxRay box_ray(const Ray_one *ray) {
     return box;
 }
 
-/* A whole row, by its address: rows are aligned to their own size, and an offset that the compiler knows not to wrap
- * makes it one load. */
-static vreal row_of(__global const real *planes, uint row) { return *(__global const vreal *)(planes + (size_t)row); }
-
 /* 1/d errs by 5u at most, which scales a side of a box, and the products by u more. */
 #define SLAB_TOLERANCE (R(1.0) + R(16.0) * ROUNDOFF)
 
@@ -116,7 +116,7 @@ static child_mask test_node(const Geometry *geometry, const BoxRay *box, uint no
 
 /* Which children of a node are leaves. */
 static child_mask leaf_children(const Geometry *geometry, uint node) {
-    const vuint words = JOIN(vload, LANE_COUNT)(node, geometry->children);
+    const vuint words = *(__global const vuint *)(geometry->children + (size_t)(node * TREE_WIDTH));
     return lane_bits(vbool_of_uint((words & splat_uint(CHILD_LEAF)) != splat_uint(0)));
 }
 
