@@ -246,7 +246,7 @@ typedef enum BpNumerics { BP_NUMERICS_ROBUST, BP_NUMERICS_PLAIN } BpNumerics;
 typedef enum BpSampler { BP_SAMPLER_INDEPENDENT, BP_SAMPLER_SOBOL } BpSampler;
 /* How a kernel shares out the samples; pictures are the same. */
 typedef enum BpKernelForm {
-    BP_KERNEL_AUTO,   /* packets on processors with vectors, samples elsewhere */
+    BP_KERNEL_AUTO, /* packets on processors with vectors; on GPUs what is tried and kept at the first use */
     BP_KERNEL_SAMPLE, /* a work-item traces one pixel sample */
     BP_KERNEL_PACKET, /* a work-item follows as many paths at a time as there are lanes */
     BP_KERNEL_POOL    /* a work-item whose path has ended takes the next sample of its work-group */

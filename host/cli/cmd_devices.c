@@ -1,7 +1,7 @@
 /* cmd_devices.c: `ballpark devices`.
  *
  * In:    nothing.   Out: a table, or JSON, of every OpenCL device, and the drivers that crash or hang.
- * Knows: BpDeviceInfo, tables on a terminal.   Does not know: OpenCL. */
+ * Knows: BpDeviceInfo, what calibrations have found, tables on a terminal.   Does not know: OpenCL. */
 #include "commands.h"
 
 #include "base/fold.h"
@@ -13,6 +13,8 @@
 #include "json_file.h"
 #include "output.h"
 #include "page.h"
+#include "render/calibrate.h"
+#include "report_json.h"
 #include "table.h"
 
 #include <errno.h>
@@ -68,6 +70,16 @@ static BpStatus print_table(const BpCommandLine *line, const BpDeviceInfo *list,
         bp_show(list[d].refusal, false, page.text);
         fputc('\n', page.text);
     }
+    for (size_t d = 0; d < count; ++d) {
+        BpCalibration calibration;
+        char words[BP_CALIBRATION_TEXT];
+        if (list[d].type != BP_DEVICE_GPU || list[d].refusal[0] != '\0') continue;
+        const bool known = bp_calibration_known(&list[d], &calibration);
+        fprintf(page.text, "%u  " BP_HANG "%s%s\n", list[d].number,
+                known ? "calibrated: "
+                      : "not calibrated yet: the first render tries which --kernel is the fastest",
+                known ? bp_calibration_text(&calibration, words) : "");
+    }
     if (default_number != UINT32_MAX) fprintf(page.text, "* default device\n");
     bp_page_end(&page, line, stdout);
     free(table.cells);
@@ -88,6 +100,11 @@ static BpStatus write_json(const BpCommandLine *line, const BpDeviceSurvey *surv
                       (int)info->compute_units, "memory_bytes", (json_int_t)info->memory_bytes,
                       "largest_allocation_bytes", (json_int_t)info->largest_allocation_bytes, "double",
                       info->has_double, "refusal", bp_json_text(info->refusal));
+        BpCalibration calibration;
+        entry = bp_json_join(entry, json_pack("{s:o}", "calibration",
+                                              bp_calibration_known(info, &calibration)
+                                                  ? bp_calibration_json(&calibration)
+                                                  : json_null()));
         if (json_array_append_new(devices, entry) != 0) {
             json_decref(devices);
             devices = NULL;

@@ -77,6 +77,13 @@ static json_t *device_json(const BpDeviceInfo *info) {
                      bp_device_type_names[info->type]);
 }
 
+/* How the first device shares out samples; null where no calibration has decided that. */
+static json_t *calibration_json(const BpRenderReport *report) {
+    if (report->calibration.form == BP_KERNEL_AUTO) return json_null();
+    json_t *root = bp_calibration_json(&report->calibration);
+    return bp_json_join(root, json_pack("{s:f}", "seconds", report->calibration_seconds));
+}
+
 static json_t *effects_json(const BpEffects *effects) {
     json_t *names = json_array();
     for (int e = 0; e < BP_EFFECT_COUNT && names != NULL; ++e)
@@ -107,11 +114,12 @@ static json_t *stats_json(const RunResult *result) {
     double mean[3];
     bp_film_mean(result->film, mean);
     json_t *root =
-        json_pack("{s:o, s:i, s:i, s:I, s:I, s:o, s:I, s:o, s:o}", "scene", bp_json_text(result->scene_path),
-                  "width", (int)info.width, "height", (int)info.height, "samples_per_pixel",
-                  (json_int_t)result->samples_per_pixel, "max_depth", (json_int_t)options->max_depth, "seed",
-                  bp_json_whole(options->seed), "spheres", (json_int_t)info.spheres, "device",
-                  device_json(&report->device), "effects", effects_json(&report->effects));
+        json_pack("{s:o, s:i, s:i, s:I, s:I, s:o, s:I, s:o, s:o, s:o}", "scene",
+                  bp_json_text(result->scene_path), "width", (int)info.width, "height", (int)info.height,
+                  "samples_per_pixel", (json_int_t)result->samples_per_pixel, "max_depth",
+                  (json_int_t)options->max_depth, "seed", bp_json_whole(options->seed), "spheres",
+                  (json_int_t)info.spheres, "device", device_json(&report->device), "effects",
+                  effects_json(&report->effects), "calibration", calibration_json(report));
     json_t *counts = json_pack(
         "{s:o, s:I, s:I, s:[f,f,f], s:o, s:I, s:I, s:I}", "seconds", seconds_json(result), "samples",
         (json_int_t)report->samples, "rays", (json_int_t)report->segments, "mean_radiance", mean[0], mean[1],
@@ -371,6 +379,12 @@ static void print_summary(const BpCommandLine *line, const RunResult *result, co
                      "\"lookfrom\" and the spheres"
                    : "the picture is black, so its noise is unknown: nothing that the camera sees is lit; "
                      "check \"background\", and \"emit\" of the materials");
+    if (report->calibration_seconds > 0) {
+        char words[BP_CALIBRATION_TEXT];
+        bp_say(line, "calibrated %s in %s, once: %s", report->device.name,
+               bp_format_seconds(report->calibration_seconds, text, sizeof text),
+               bp_calibration_text(&report->calibration, words));
+    }
     say_stop(line, result, rule, end);
     say_emptiness(line, result);
     if (report->cut_paths > 0)

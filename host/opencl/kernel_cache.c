@@ -3,12 +3,11 @@
 
 #include "base/clock.h"
 #include "base/hash.h"
-#include "base/output_temporary.h"
+#include "cache_file.h"
 #include "cache_folder.h"
 #include "pocl.h"
 
 #include <dirent.h>
-#include <errno.h>
 #include <fcntl.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -18,8 +17,7 @@
 
 #define FOLDER "/kernels"
 #define PROGRAM_PREFIX "program-"
-#define ENTRY_BYTES_MAX (64u << 20) /* a file that is larger is none of ours */
-#define SLOW_SECONDS 0.1            /* builds that take less are not worth a file */
+#define SLOW_SECONDS 0.1 /* builds that take less are not worth a file */
 
 extern char **environ;
 
@@ -31,11 +29,6 @@ typedef struct Head {
     uint64_t sizes[PARTS];
 } Head;
 static const char magic[16] = "Ballpark kernel1";
-
-typedef struct Part {
-    const void *bytes;
-    size_t size;
-} Part;
 
 BpStatus bp_kernel_cache_mode(BpKernelCacheMode *mode, BpError *err) {
     const char *wanted = getenv("BALLPARK_KERNEL_CACHE");
@@ -119,58 +112,6 @@ char *bp_kernel_cache_path(const BpDevice *device, const char *source, const cha
 
 /* ---- files -------------------------------------------------------------------------------------------- */
 
-/* All of a file that is ours and that nobody else can write, heap, a zero byte behind it; NULL: there is no
- * such file. Its time says then that it was of use. */
-static char *read_own(const char *path, size_t *size) {
-    struct stat state;
-    char *bytes = NULL;
-    size_t done = 0;
-    const int file = open(path, O_RDONLY | O_CLOEXEC | O_NOCTTY | O_NONBLOCK | O_NOFOLLOW);
-    if (file < 0) return NULL;
-    if (fstat(file, &state) == 0 && S_ISREG(state.st_mode) && state.st_uid == geteuid() &&
-        (state.st_mode & (S_IWGRP | S_IWOTH)) == 0 && state.st_size >= 0 && state.st_size <= ENTRY_BYTES_MAX)
-        bytes = malloc((size_t)state.st_size + 1);
-    while (bytes != NULL && done < (size_t)state.st_size) {
-        const ssize_t got = read(file, bytes + done, (size_t)state.st_size - done);
-        if (got < 0 && errno == EINTR) continue;
-        if (got <= 0) break;
-        done += (size_t)got;
-    }
-    if (bytes != NULL) {
-        bytes[done] = '\0';
-        futimens(file, NULL);
-    }
-    close(file);
-    *size = done;
-    return bytes;
-}
-
-static bool write_all(int file, const void *bytes, size_t size) {
-    const char *at = bytes;
-    while (size > 0) {
-        const ssize_t put = write(file, at, size);
-        if (put < 0 && errno == EINTR) continue;
-        if (put <= 0) return false;
-        at += put;
-        size -= (size_t)put;
-    }
-    return true;
-}
-
-/* The file appears whole or not at all. Not synced: a file that a loss of power cut short is known by its
- * checksum. */
-static void write_own(const char *path, const Part *parts, size_t count) {
-    bool unnamed = false;
-    char *name = NULL;
-    const int file = bp_temporary_create(path, 0600, &unnamed, &name);
-    if (file < 0) return;
-    bool good = true;
-    for (size_t p = 0; p < count && good; ++p) good = write_all(file, parts[p].bytes, parts[p].size);
-    if (good) good = bp_temporary_place(&unnamed, &name, file, path, true) == 0;
-    if (!good) bp_temporary_remove(&name);
-    close(file);
-}
-
 typedef struct Kept {
     char name[64];
     uint64_t size;
@@ -234,7 +175,7 @@ static char *kernel_names(cl_program program) {
 
 /* The parts of a file that is whole and stands for this identity and source. */
 static bool take_apart(const char *bytes, size_t size, const char *identity, const char *source,
-                       Part parts[PARTS]) {
+                       BpCachePart parts[PARTS]) {
     Head head;
     if (size < sizeof head) return false;
     memcpy(&head, bytes, sizeof head);
@@ -255,7 +196,7 @@ static bool take_apart(const char *bytes, size_t size, const char *identity, con
            memcmp(parts[PART_SOURCE].bytes, source, strlen(source)) == 0;
 }
 
-static char *copy_part(Part part) {
+static char *copy_part(BpCachePart part) {
     char *text = malloc(part.size + 1);
     if (text == NULL) return NULL;
     memcpy(text, part.bytes, part.size);
@@ -264,7 +205,7 @@ static char *copy_part(Part part) {
 }
 
 /* NULL: the driver does not take it, or makes something else of it. */
-static cl_program revive(const BpDevice *device, const char *options, const Part parts[PARTS]) {
+static cl_program revive(const BpDevice *device, const char *options, const BpCachePart parts[PARTS]) {
     cl_int code = CL_SUCCESS, taken = CL_SUCCESS;
     const unsigned char *binary = parts[PART_BINARY].bytes;
     cl_program program = clCreateProgramWithBinary(device->context, 1, &device->id, &parts[PART_BINARY].size,
@@ -282,12 +223,12 @@ static cl_program revive(const BpDevice *device, const char *options, const Part
 }
 
 cl_program bp_kernel_cache_load(const BpDevice *device, const char *source, const char *options, char **log) {
-    Part parts[PARTS];
+    BpCachePart parts[PARTS];
     size_t size = 0;
     cl_program program = NULL;
     char *identity = identify(device, options);
     char *path = identity != NULL ? name_program(identity, source, false) : NULL;
-    char *bytes = path != NULL ? read_own(path, &size) : NULL;
+    char *bytes = path != NULL ? bp_cache_read(path, &size) : NULL;
     if (bytes != NULL) {
         if (take_apart(bytes, size, identity, source, parts)) program = revive(device, options, parts);
         if (program != NULL && log != NULL && (*log = copy_part(parts[PART_LOG])) == NULL) {
@@ -309,7 +250,7 @@ static unsigned char *fetch_binary(cl_program program, size_t *size) {
     if (clGetProgramInfo(program, CL_PROGRAM_NUM_DEVICES, sizeof devices, &devices, NULL) != CL_SUCCESS ||
         devices != 1 ||
         clGetProgramInfo(program, CL_PROGRAM_BINARY_SIZES, sizeof *size, size, NULL) != CL_SUCCESS ||
-        *size == 0 || *size > ENTRY_BYTES_MAX)
+        *size == 0 || *size > BP_CACHE_FILE_BYTES_MAX)
         return NULL;
     unsigned char *binary = malloc(*size);
     if (binary != NULL &&
@@ -330,9 +271,9 @@ void bp_kernel_cache_store(const BpDevice *device, const char *source, const cha
     unsigned char *binary = path != NULL && names != NULL ? fetch_binary(program, &binary_size) : NULL;
     if (binary != NULL) {
         if (log == NULL) log = "";
-        const Part parts[PARTS + 1] = {{&head, sizeof head},     {identity, strlen(identity)},
-                                       {source, strlen(source)}, {names, strlen(names)},
-                                       {log, strlen(log)},       {binary, binary_size}};
+        const BpCachePart parts[PARTS + 1] = {{&head, sizeof head},     {identity, strlen(identity)},
+                                              {source, strlen(source)}, {names, strlen(names)},
+                                              {log, strlen(log)},       {binary, binary_size}};
         memcpy(head.magic, magic, sizeof magic);
         for (int p = 0; p < PARTS; ++p) {
             head.sizes[p] = parts[p + 1].size;
@@ -341,8 +282,8 @@ void bp_kernel_cache_store(const BpDevice *device, const char *source, const cha
         head.checksum = bp_hash_bytes(BP_HASH_START, head.sizes, sizeof head.sizes);
         for (int p = 0; p < PARTS; ++p)
             head.checksum = bp_hash_bytes(head.checksum, parts[p + 1].bytes, parts[p + 1].size);
-        if (size <= ENTRY_BYTES_MAX && size <= bytes_max) {
-            write_own(path, parts, PARTS + 1);
+        if (size <= BP_CACHE_FILE_BYTES_MAX && size <= bytes_max) {
+            bp_cache_write(path, parts, PARTS + 1);
             make_room(bytes_max);
         }
     }
@@ -396,7 +337,7 @@ bool bp_kernel_cache_wants(const BpDevice *device, BpKernelCacheMode mode, doubl
     bool keeps = true;
     if (path != NULL) {
         size_t size = 0;
-        char *text = read_own(path, &size);
+        char *text = bp_cache_read(path, &size);
         const size_t length = strlen(identity);
         bool known = false;
         for (int answer = 0; answer < 2 && text != NULL && !known; ++answer)
@@ -407,8 +348,8 @@ bool bp_kernel_cache_wants(const BpDevice *device, BpKernelCacheMode mode, doubl
             }
         if (!known) {
             keeps = keeps_programs(device);
-            const Part parts[2] = {{identity, length}, {answers[keeps], strlen(answers[keeps])}};
-            write_own(path, parts, 2);
+            const BpCachePart parts[2] = {{identity, length}, {answers[keeps], strlen(answers[keeps])}};
+            bp_cache_write(path, parts, 2);
         }
         free(text);
     }

@@ -4,6 +4,7 @@
 #include "aovs.h"
 #include "base/clock.h"
 #include "base/status.h"
+#include "calibrate.h"
 #include "render_plan.h"
 #include "render_state.h"
 #include "round.h"
@@ -59,9 +60,19 @@ static BpStatus open_worker(BpRender *render, const BpDeviceInfo *device, BpDevi
                             BpError *err) {
     BpWorkerSetup setup;
     BpPacked packed;
-    const double start = bp_clock_seconds();
+    BpRenderOptions options = render->options;
+    BpCalibration calibration = {.form = BP_KERNEL_AUTO};
     char *features = NULL;
-    BP_TRY(bp_render_plan(render->scene, &render->options, device, &setup, &packed, err));
+    double trial = 0;
+    if (bp_calibrates(device, &options) && bp_calibrate(device, open, options.force, &calibration, &trial)) {
+        options.kernel = calibration.form;
+        if (options.local_size == 0) options.local_size = calibration.local_size;
+    }
+    if (index == 0) render->calibration = calibration;
+    render->calibration_seconds += trial;
+    const double start = bp_clock_seconds();
+    BP_TRY(bp_render_plan(render->scene, &options, device, &setup, &packed, err));
+    setup.samples_per_item = calibration.samples_per_item;
     render->effects.bits = setup.program.effects;
     render->acceleration = setup.program.tree ? BP_ACCELERATION_TREE : BP_ACCELERATION_LIST;
     render->tree_seconds += packed.tree.build_seconds;
@@ -491,6 +502,8 @@ void bp_render_report(const BpRender *render, BpRenderReport *report) {
     report->device = first->device->info;
     report->effects = render->effects;
     report->acceleration = render->acceleration;
+    report->calibration = render->calibration;
+    report->calibration_seconds = render->calibration_seconds;
     report->self_test_seconds = first->self_test_seconds;
     report->kernel = first->form;
 #define SETTING(type, member, plural) report->member = render->options.member;

@@ -6,6 +6,7 @@
 #define BP_RENDER_RENDER_H
 
 #include "film/film.h"
+#include "opencl/calibration.h"
 #include "packed/acceleration.h"
 #include "packed/effects.h"
 
@@ -19,6 +20,8 @@ typedef struct BpRenderReport {
     uint64_t private_bytes; /* of one work-item of the trace kernel, as the driver tells; 0: it does not */
     const char *build_log;  /* valid while the render lives */
     double tree_seconds, pack_seconds, kernel_build_seconds;
+    BpCalibration calibration;   /* of the first device; form BP_KERNEL_AUTO: none decided */
+    double calibration_seconds;  /* of trials on all devices; 0: what they found was remembered */
     double self_test_seconds;    /* of the device's first use; 0 once it has passed */
     double first_launch_seconds; /* of the first, tiny chunk: drivers may compile once more there */
     double trace_seconds;        /* wall clock spent in steps, without the first launch */

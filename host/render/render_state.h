@@ -7,6 +7,7 @@
 
 #include "cluster/comm.h"
 #include "film/adaptive.h"
+#include "opencl/calibration.h"
 #include "render.h"
 #include "worker.h"
 
@@ -38,6 +39,8 @@ struct BpRender {
     BpPicture aovs; /* its depth, normal and albedo, once computed */
     BpChunk last_chunk;
     double tree_seconds, pack_seconds, trace_seconds;
+    BpCalibration calibration; /* of the first device; BP_KERNEL_AUTO: none decided */
+    double calibration_seconds;
     uint64_t samples_total;
 };
 

@@ -78,8 +78,9 @@ static BpStatus create_kernels(BpWorker *worker, const BpWorkerSetup *setup, BpE
     worker->form = setup->program.form;
     const bool packet = worker->form == BP_KERNEL_PACKET;
     worker->samples_per_item = packet                           ? BP_PACKET_SAMPLES_PER_ITEM
-                               : worker->form == BP_KERNEL_POOL ? BP_POOL_SAMPLES_PER_ITEM
-                                                                : 1;
+                               : worker->form != BP_KERNEL_POOL ? 1
+                               : setup->samples_per_item != 0   ? setup->samples_per_item
+                                                                : BP_POOL_SAMPLES_PER_ITEM;
     worker->local_size = setup->local_size != 0 ? setup->local_size
                          : packet               ? BP_LOCAL_SIZE_PACKET
                                                 : BP_LOCAL_SIZE_SAMPLE;

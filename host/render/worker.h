@@ -22,6 +22,7 @@ typedef struct BpWorkerSetup {
     uint64_t seed;
     bool pixel_center;
     uint32_t local_size;                 /* 0: choose */
+    uint32_t samples_per_item;           /* of the pool form, on average; 0: choose */
     const char *extra_name, *extra_text; /* Optional. A file appended to the program. */
     bool untested;                       /* do without the device's self-test */
     uint64_t build_mark;                 /* 0, or a number that makes the source a new one */

@@ -59,7 +59,8 @@ static BpStatus open_render(const BpScene *scene, const BpRenderOptions *options
     BP_TRY_GOTO(status, bp_render_extend(*render, 2, err), failed);
     BP_TRY_GOTO(status, finish(*render, &second, err), failed);
     bp_render_report(*render, &report);
-    start->wall += report.first_launch_seconds - report.tree_seconds - report.pack_seconds;
+    start->wall +=
+        report.first_launch_seconds - report.tree_seconds - report.pack_seconds - report.calibration_seconds;
     start->processor -= report.tree_seconds + report.pack_seconds;
     /* On a CPU, the processor time up to here includes tracing the first sample, which takes as long as the
      * second. */

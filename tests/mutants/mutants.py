@@ -93,6 +93,11 @@ MUTANTS = [
     Mutant("the GPU inside the processor", "it has more compute units than a graphics card",
            [patch("host/opencl/device_choose.c", "if (own_memory != 0) return own_memory;", "(void)own_memory;")],
            [test("test_device_find", "prefers_the_most_capable_gpu")]),
+    Mutant("a damaged calibration", "caches without a checksum",
+           [patch("host/opencl/calibration.c", "strcmp(last, line) != 0 ||", "")], [test("test_calibration", "damaged")]),
+    Mutant("another driver's calibration", "a memory for each name of a device",
+           [patch("host/opencl/calibration.c", "device->name, device->version, device->driver,",
+                  'device->name, device->version, "",')], [test("test_calibration", "other_devices")]),
     # ---- the cache of compiled kernels -----------------------------------------------------------------------
     Mutant("a damaged kernel is used", "caches without a checksum",
            [patch("host/opencl/kernel_cache.c",
@@ -109,7 +114,7 @@ MUTANTS = [
            [patch("host/opencl/kernel_cache.c", "return x->tv_sec < y->tv_sec ? -1 : 1;", "return x->tv_sec < y->tv_sec ? 1 : -1;")],
            [test("test_kernel_cache", "the_oldest_goes")]),
     Mutant("a kernel that anybody wrote", "caches in shared folders",
-           [patch("host/opencl/kernel_cache.c", "(state.st_mode & (S_IWGRP | S_IWOTH)) == 0 &&", "state.st_mode != 0 &&")],
+           [patch("host/opencl/cache_file.c", "(state.st_mode & (S_IWGRP | S_IWOTH)) == 0 &&", "state.st_mode != 0 &&")],
            [test("test_kernel_cache", "what_others_could_have_written_is_not_used")]),
     # ---- chunks ----------------------------------------------------------------------------------------------
     Mutant("first chunk of any depth", "16,384 samples, whatever a path costs",

@@ -1,0 +1,26 @@
+/* cache_file.h: a file of the user's cache, which another process may write, damage or remove at any time.
+ *
+ * In:    a path, bytes.   Out: the bytes, or none.
+ * Knows: files and their owners.   Does not know: what is kept, or whether it is whole: a file has a
+ * checksum. */
+#ifndef BP_OPENCL_CACHE_FILE_H
+#define BP_OPENCL_CACHE_FILE_H
+
+#include <stddef.h>
+
+#define BP_CACHE_FILE_BYTES_MAX (64u << 20) /* a file that is larger is none of ours */
+
+typedef struct BpCachePart {
+    const void *bytes;
+    size_t size;
+} BpCachePart;
+
+/* All of a file that is ours and that nobody else can write, heap, a zero byte behind it; NULL: there is no
+ * such file. Its time says then that it was of use. */
+char *bp_cache_read(const char *path, size_t *size);
+
+/* Writes the parts one after the other. The file appears whole or not at all, and where it cannot be written
+ * nothing happens. Not synced: a file that a loss of power cut short is known by its checksum. */
+void bp_cache_write(const char *path, const BpCachePart *parts, size_t count);
+
+#endif

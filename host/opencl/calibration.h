@@ -1,0 +1,29 @@
+/* calibration.h: which arrangement of the kernel was found to be the fastest on a device, kept in the user's
+ * cache.
+ *
+ * In:    a device's description, what was found.   Out: it again, in another process.
+ * Knows: what an outcome depends on.   Does not know: how it is found (render/calibrate.h).
+ *
+ * A small text file a device, ~/.cache/ballpark/calibration-....txt, which a person can read. It holds all
+ * that the outcome depends on in words, and a checksum: one that is damaged, or about something else, is as
+ * good as none. Pictures do not depend on it. */
+#ifndef BP_OPENCL_CALIBRATION_H
+#define BP_OPENCL_CALIBRATION_H
+
+#include "base/status.h"
+
+#include <stdbool.h>
+
+typedef struct BpCalibration {
+    BpKernelForm form;         /* BP_KERNEL_SAMPLE or BP_KERNEL_POOL; BP_KERNEL_AUTO: nothing was found */
+    uint32_t local_size;       /* work-items in a work-group */
+    uint32_t samples_per_item; /* pixel samples of a work-item, on average; 1 in the sample form */
+    double gain;               /* its speed, as a multiple of that without calibration */
+} BpCalibration;
+
+/* What is remembered of the device, if it was found with the same kernels, of which `kernels` is a hash. */
+bool bp_calibration_recall(const BpDeviceInfo *device, uint64_t kernels, BpCalibration *calibration);
+/* Where that fails, it is not remembered. */
+void bp_calibration_keep(const BpDeviceInfo *device, uint64_t kernels, const BpCalibration *calibration);
+
+#endif
