@@ -69,8 +69,15 @@ double bp_scene_radiance_bound(const BpScene *scene, uint32_t max_depth, BpLamps
     brightest += discs_together(scene);
     for (size_t i = 0; i < scene->disc_count; i++)
         brightest_lamp = fmax(brightest_lamp, largest(scene->discs[i].radiance));
+    /* Most scenes use a material many times in a row; the colours of its spheres matter only where light is
+     * passed on. */
+    uint32_t known = UINT32_MAX;
+    bool colours = true;
     for (size_t i = 0; i < scene->sphere_count; i++) {
-        const BpMaterial *material = &scene->materials[scene->spheres[i].material];
+        if (scene->spheres[i].material == known && !colours) continue;
+        known = scene->spheres[i].material;
+        const BpMaterial *material = &scene->materials[known];
+        colours = largest(material->emit) > 0 || (lamps != BP_LAMPS_OFF && bp_material_is_lit(material));
         const double emitted = largest(material->emit);
         brightest = fmax(brightest, emitted);
         brightest_lamp = fmax(brightest_lamp, emitted);

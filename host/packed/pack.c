@@ -3,6 +3,7 @@
 
 #include "base/color.h"
 #include "base/status.h"
+#include "base/team.h"
 #include "environment_table.h"
 #include "reals.h"
 #include "scene/material.h"
@@ -400,6 +401,11 @@ static bool replaces_texture(const BpScene *scene, const BpSphere *sphere) {
            scene->materials[sphere->material].texture[BP_MEMBER_ALBEDO] != 0;
 }
 
+/* Whether a sphere could have a second entry of the material. */
+static bool may_have_second(const BpMaterial *material) {
+    return bp_material_is(material->kind, BP_HAS_INSIDE) || material->texture[BP_MEMBER_ALBEDO] != 0;
+}
+
 /* Whether the sphere has the second entry of its material. */
 static bool is_second(const BpScene *scene, const BpSphere *sphere) {
     return is_inside_out(scene, sphere) || replaces_texture(scene, sphere);
@@ -424,14 +430,16 @@ static BpStatus pack_materials(const BpScene *scene, uint32_t *second, BpPacked 
         goto cleanup;
     }
     uint32_t used = (uint32_t)count;
+    bool any = false;
     for (size_t m = 0; m < count; ++m) {
+        any = any || may_have_second(&scene->materials[m]);
         const uint32_t *texture = scene->materials[m].texture;
         pack_material(&scene->materials[m], false, &numbers[m], &kinds[m]);
         variations[m] = (PackedVariation){.albedo = texture[BP_MEMBER_ALBEDO],
                                           .fuzz = texture[BP_MEMBER_FUZZ],
                                           .emit = texture[BP_MEMBER_EMIT]};
     }
-    for (size_t i = 0; i < scene->sphere_count; ++i) {
+    for (size_t i = 0; i < scene->sphere_count && any; ++i) {
         const BpSphere *sphere = &scene->spheres[i];
         const uint32_t m = sphere->material;
         if (!is_second(scene, sphere) || second[m] != 0) continue;
@@ -453,32 +461,85 @@ cleanup:
     return status;
 }
 
-/* The share of a primary colour that a sphere scatters: 1 for glass, 0 for a lamp, whatever colour a cloud
- * gives. */
-static double scattered(const BpScene *scene, const BpSphere *sphere, size_t channel) {
-    const BpMaterial *material = &scene->materials[sphere->material];
-    if (!bp_material_is(material->kind, BP_SCATTERS)) return 0;
-    if (!bp_material_has(material->kind, BP_MEMBER_ALBEDO)) return 1;
-    return sphere->albedo == BP_NO_ALBEDO ? material->albedo[channel]
-                                          : (double)scene->albedos[sphere->albedo][channel];
+/* The share of each primary colour that spheres of a material scatter: 1 for glass, 0 for a lamp, whatever
+ * colour a cloud gives. */
+typedef struct Scattered {
+    double albedo[3];
+    bool replaced; /* by a sphere's own colour */
+} Scattered;
+
+static Scattered scattered_by(const BpMaterial *material) {
+    Scattered result = {{0, 0, 0}, false};
+    if (!bp_material_is(material->kind, BP_SCATTERS)) return result;
+    result.replaced = bp_material_has(material->kind, BP_MEMBER_ALBEDO);
+    for (int c = 0; c < 3; ++c) result.albedo[c] = result.replaced ? material->albedo[c] : 1;
+    return result;
 }
 
-/* What the sphere in each slot is made of. Empty slots are black. */
-static BpStatus pack_slots(const BpScene *scene, const uint32_t *second, BpPacked *packed, BpError *err) {
-    const BpTree *tree = &packed->tree;
-    const size_t slots = (size_t)tree->leaf_count * tree->width;
-    packed->slot_material = calloc(slots + 1, sizeof *packed->slot_material);
-    packed->slot_albedo = calloc(slots + 1, ALBEDO_REALS * bp_packed_real_size(packed));
-    if (packed->slot_material == NULL || packed->slot_albedo == NULL) return out_of_memory(scene, err);
-    for (size_t slot = 0; slot < slots; ++slot) {
-        if (tree->slot_sphere[slot] == NO_SPHERE) continue;
-        const BpSphere *sphere = &scene->spheres[tree->slot_sphere[slot]];
-        packed->slot_material[slot] = is_second(scene, sphere) ? second[sphere->material] : sphere->material;
-        for (size_t a = 0; a < ALBEDO_REALS; ++a)
-            bp_reals_store(packed->slot_albedo, packed->single_precision, ALBEDO_REALS * slot + a,
-                           scattered(scene, sphere, a));
+typedef struct Slots {
+    const BpScene *scene;
+    const uint32_t *second;
+    const Scattered *scattered; /* of each material */
+    BpPacked *packed;
+    size_t count;
+} Slots;
+
+#define SLOT_BLOCK 16384u
+#define SLOT_CHUNK 64u
+
+/* Spheres are asked in the order of the tree, so this mostly waits for memory. First all spheres of the chunk
+ * are looked up, then all colours: no look-up waits for the one before. */
+static void pack_slot_chunk(const Slots *slots, size_t first, size_t count) {
+    const BpScene *scene = slots->scene;
+    BpPacked *packed = slots->packed;
+    const uint32_t *spheres = packed->tree.slot_sphere + first;
+    uint32_t materials[SLOT_CHUNK], albedos[SLOT_CHUNK];
+    for (size_t s = 0; s < count; ++s) {
+        const bool used = spheres[s] != NO_SPHERE;
+        materials[s] = used ? scene->spheres[spheres[s]].material : 0;
+        albedos[s] = used ? scene->spheres[spheres[s]].albedo : BP_NO_ALBEDO;
     }
-    return BP_OK;
+    for (size_t s = 0; s < count; ++s) {
+        if (spheres[s] == NO_SPHERE) continue;
+        const Scattered *scattered = &slots->scattered[materials[s]];
+        const bool second = slots->second[materials[s]] != 0 && is_second(scene, &scene->spheres[spheres[s]]);
+        packed->slot_material[first + s] = second ? slots->second[materials[s]] : materials[s];
+        const float *own =
+            scattered->replaced && albedos[s] != BP_NO_ALBEDO ? scene->albedos[albedos[s]] : NULL;
+        for (size_t a = 0; a < ALBEDO_REALS; ++a)
+            bp_reals_store(packed->slot_albedo, packed->single_precision, ALBEDO_REALS * (first + s) + a,
+                           own != NULL ? (double)own[a] : scattered->albedo[a]);
+    }
+}
+
+static void pack_slot_block(void *context, uint32_t block, unsigned worker) {
+    (void)worker;
+    const Slots *slots = context;
+    const size_t first = (size_t)block * SLOT_BLOCK, left = slots->count - first;
+    const size_t end = first + (left < SLOT_BLOCK ? left : SLOT_BLOCK);
+    for (size_t chunk = first; chunk < end; chunk += SLOT_CHUNK)
+        pack_slot_chunk(slots, chunk, end - chunk < SLOT_CHUNK ? end - chunk : SLOT_CHUNK);
+}
+
+/* What the sphere in each slot is made of. Empty slots are black. `threads`: 0, or how many may work. */
+static BpStatus pack_slots(const BpScene *scene, const uint32_t *second, unsigned threads, BpPacked *packed,
+                           BpError *err) {
+    BpStatus status = BP_OK;
+    const size_t count = (size_t)packed->tree.leaf_count * packed->tree.width;
+    packed->slot_material = calloc(count + 1, sizeof *packed->slot_material);
+    packed->slot_albedo = calloc(count + 1, ALBEDO_REALS * bp_packed_real_size(packed));
+    Scattered *scattered = malloc((scene->material_count + 1) * sizeof *scattered);
+    BpTeam *team = bp_team_create(count < SLOT_BLOCK ? 1 : threads);
+    if (packed->slot_material != NULL && packed->slot_albedo != NULL && scattered != NULL && team != NULL) {
+        for (size_t m = 0; m < scene->material_count; ++m) scattered[m] = scattered_by(&scene->materials[m]);
+        Slots slots = {scene, second, scattered, packed, count};
+        bp_team_run(team, pack_slot_block, &slots, (uint32_t)((count + SLOT_BLOCK - 1) / SLOT_BLOCK));
+    } else {
+        status = out_of_memory(scene, err);
+    }
+    bp_team_destroy(&team);
+    free(scattered);
+    return status;
 }
 
 /* ---- media ----------------------------------------------------------------------------------------- */
@@ -517,7 +578,10 @@ static BpStatus pack_boundaries(const BpScene *scene, BpPacked *packed, BpError 
     const size_t slots = (size_t)tree->leaf_count * tree->width;
     size_t count = 0, filled = bp_scene_medium(scene) != 0;
     for (size_t i = 0; i < scene->interior_count; ++i) filled += bp_sphere_interior(scene, i) != 0;
-    for (size_t i = 0; i < scene->sphere_count; ++i)
+    bool interfaces = false;
+    for (size_t m = 0; m < scene->material_count; ++m)
+        interfaces = interfaces || scene->materials[m].kind == BP_MATERIAL_INTERFACE;
+    for (size_t i = 0; i < scene->sphere_count && interfaces; ++i)
         filled += scene->materials[scene->spheres[i].material].kind == BP_MATERIAL_INTERFACE;
     for (size_t i = 0; i < scene->sphere_count && filled > 0; ++i)
         count += bp_material_is(scene->materials[scene->spheres[i].material].kind, BP_HAS_INSIDE);
@@ -566,7 +630,7 @@ BpStatus bp_scene_pack(const BpScene *scene, const BpTreeOptions *options, bool 
     }
     BP_TRY_GOTO(status, pack_materials(scene, second, packed, err), cleanup);
     BP_TRY_GOTO(status, pack_textures(scene, origin, packed, err), cleanup);
-    BP_TRY_GOTO(status, pack_slots(scene, second, packed, err), cleanup);
+    BP_TRY_GOTO(status, pack_slots(scene, second, options->threads, packed, err), cleanup);
     BP_TRY_GOTO(status, pack_media(scene, packed, err), cleanup);
     BP_TRY_GOTO(status, pack_boundaries(scene, packed, err), cleanup);
     if (sample_lamps)

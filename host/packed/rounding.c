@@ -126,8 +126,9 @@ void bp_rounding_warnings(const BpScene *scene, BpPrecision precision, BpRoundin
     for (size_t i = 0; i < scene->sphere_count; ++i) {
         const BpSphere *sphere = &scene->spheres[i];
         const double radius = fabs(sphere->radius);
-        const double shift = fmax(surface_shift(origin, sphere, sphere->center),
-                                  surface_shift(origin, sphere, bp_sphere_end(scene, i)));
+        double shift = surface_shift(origin, sphere, sphere->center);
+        if (bp_sphere_moves(scene, i))
+            shift = fmax(shift, surface_shift(origin, sphere, bp_sphere_end(scene, i)));
         note(&off_place, i, shift / radius, BP_ROUNDING_SHIFT);
         if (radius > 100 * smallest) note(&contact, i, shift / smallest, BP_ROUNDING_CONTACT);
     }

@@ -143,8 +143,8 @@ static BpStatus build_tree(BpTreeWriter *writer, unsigned threads, BpError *err)
         goto cleanup;
     }
     const uint32_t items = scan_spheres(&scan, team);
-    BpBinaryOptions options = {.width = tree->width};
-    for (uint32_t w = tree->width; w > 1; w /= 2) options.height_max += TREE_DEPTH_MAX;
+    const BpBinaryOptions options = {.width = tree->width,
+                                     .height_max = bp_tree_width_bits(tree->width) * TREE_DEPTH_MAX};
     BP_TRY_GOTO(status, bp_binary_tree_build(scan.items, items, &options, team, &binary, err), cleanup);
     writer->items = scan.items;
     tree->first_leaves = tree->leaf_count = scan.candidates.count > 0 ? 1 : 0;

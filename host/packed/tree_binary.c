@@ -13,6 +13,9 @@
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
+#if defined(__SSE2__)
+#include <emmintrin.h>
+#endif
 
 #define BINS 32
 #define POOL_BLOCK 1024u
@@ -89,52 +92,106 @@ static int bin_of(float center, float low, float scale) {
     return bin >= BINS ? BINS - 1 : bin;
 }
 
-/* The cheapest of the splits between bins, over the three axes. */
-static Split find_split(const BpTreeItem *items, uint32_t count, uint32_t width) {
-    float low[4], high[4], scale[3];
-    memcpy(low, &items[0], sizeof low);
-    memcpy(high, &items[0], sizeof high);
+/* What find_split does for each item of a run, which is where the build spends most of its time: the bounds
+ * of the centers, and the bins of the three axes with their boxes. Compilers do not make vector code of the
+ * plain forms; both do the same arithmetic. */
+typedef struct Bins {
+    BpTreeBox boxes[3][BINS]; /* of those whose count is not 0 */
+    uint32_t counts[3][BINS];
+} Bins;
+
+static const BpTreeBox empty_box = BP_TREE_BOX_EMPTY;
+
+#if defined(__SSE2__)
+static void bound_centers(const BpTreeItem *items, uint32_t count, float low[4], float high[4]) {
+    __m128 l = _mm_loadu_ps(items[0].center), h = l;
+    for (uint32_t i = 1; i < count; ++i) {
+        const __m128 c = _mm_loadu_ps(items[i].center);
+        l = _mm_min_ps(c, l);
+        h = _mm_max_ps(c, h);
+    }
+    _mm_storeu_ps(low, l);
+    _mm_storeu_ps(high, h);
+}
+
+static void fill_bins(const BpTreeItem *items, uint32_t count, const float low[4], const float scale[4],
+                      Bins *bins) {
+    const __m128 l = _mm_loadu_ps(low), s = _mm_loadu_ps(scale);
+    for (uint32_t i = 0; i < count; ++i) {
+        const __m128 c = _mm_loadu_ps(items[i].center), r = _mm_set1_ps(items[i].radius);
+        const __m128 from = _mm_sub_ps(c, r), to = _mm_add_ps(c, r);
+        int32_t b[4];
+        /* As 16-bit numbers, of which every other is 0: bins are few. */
+        _mm_storeu_si128((__m128i *)b, _mm_min_epi16(_mm_cvttps_epi32(_mm_mul_ps(_mm_sub_ps(c, l), s)),
+                                                     _mm_set1_epi32(BINS - 1)));
+        for (int a = 0; a < 3; ++a) {
+            if (bins->counts[a][b[a]]++ == 0) bins->boxes[a][b[a]] = empty_box;
+            bp_tree_box_widen(&bins->boxes[a][b[a]], from, to);
+        }
+    }
+}
+#else
+static void bound_centers(const BpTreeItem *items, uint32_t count, float low[4], float high[4]) {
+    memcpy(low, &items[0], 4 * sizeof *low);
+    memcpy(high, &items[0], 4 * sizeof *high);
     for (uint32_t i = 1; i < count; ++i)
         for (int a = 0; a < 3; ++a) {
             low[a] = items[i].center[a] < low[a] ? items[i].center[a] : low[a];
             high[a] = items[i].center[a] > high[a] ? items[i].center[a] : high[a];
         }
+}
+
+static void fill_bins(const BpTreeItem *items, uint32_t count, const float low[4], const float scale[4],
+                      Bins *bins) {
+    for (uint32_t i = 0; i < count; ++i)
+        for (int a = 0; a < 3; ++a) {
+            const int b = bin_of(items[i].center[a], low[a], scale[a]);
+            if (bins->counts[a][b]++ == 0) bins->boxes[a][b] = empty_box;
+            bp_tree_box_add_item(&bins->boxes[a][b], &items[i]);
+        }
+}
+#endif
+
+/* The cheapest of the splits between bins, over the three axes. Most runs are small and leave most bins
+ * empty, so only those in use are looked at: a split beside an empty bin costs what that before it did. */
+static Split find_split(const BpTreeItem *items, uint32_t count, uint32_t width) {
+    float low[4], high[4], scale[4] = {0}; /* of the fourth lane, the radius: one bin, not used */
+    bound_centers(items, count, low, high);
     for (int a = 0; a < 3; ++a) {
         scale[a] = (float)BINS / (high[a] - low[a]);
         if (!(scale[a] < FLT_MAX)) scale[a] = 0; /* all in one bin */
     }
-    static const BpTreeBox empty = BP_TREE_BOX_EMPTY;
-    BpTreeBox boxes[3][BINS];
-    uint32_t counts[3][BINS] = {{0}};
-    for (int a = 0; a < 3; ++a)
-        for (int b = 0; b < BINS; ++b) boxes[a][b] = empty;
-    for (uint32_t i = 0; i < count; ++i)
-        for (int a = 0; a < 3; ++a) {
-            const int b = bin_of(items[i].center[a], low[a], scale[a]);
-            ++counts[a][b];
-            bp_tree_box_add_item(&boxes[a][b], &items[i]);
-        }
+    const uint32_t width_bits = bp_tree_width_bits(width);
+    Bins bins;
+    memset(bins.counts, 0, sizeof bins.counts);
+    fill_bins(items, count, low, scale, &bins);
     Split best = {.axis = -1};
     float best_cost = INFINITY;
     for (int a = 0; a < 3; ++a) {
         if (!(scale[a] > 0)) continue;
-        float cost_right[BINS];
-        BpTreeBox box = empty;
-        uint32_t n = 0;
-        for (int b = BINS - 1; b > 0; --b) {
-            bp_tree_box_add(&box, &boxes[a][b]);
-            n += counts[a][b];
-            cost_right[b] = bp_tree_box_half_area(&box) * bp_tree_run_cost(n, width);
+        int used[BINS], used_count = 0;
+        for (int b = 0; b < BINS; ++b) {
+            used[used_count] = b;
+            used_count += bins.counts[a][b] > 0;
         }
-        box = empty;
+        float cost_right[BINS];
+        BpTreeBox box = empty_box;
+        uint32_t n = 0;
+        for (int u = used_count - 1; u > 0; --u) {
+            bp_tree_box_add(&box, &bins.boxes[a][used[u]]);
+            n += bins.counts[a][used[u]];
+            cost_right[u] = bp_tree_box_half_area(&box) * bp_tree_run_cost(n, width_bits);
+        }
+        box = empty_box;
         n = 0;
-        for (int b = 1; b < BINS; ++b) {
-            bp_tree_box_add(&box, &boxes[a][b - 1]);
-            n += counts[a][b - 1];
-            const float cost = bp_tree_box_half_area(&box) * bp_tree_run_cost(n, width) + cost_right[b];
-            if (n > 0 && n < count && cost < best_cost) {
+        for (int u = 1; u < used_count; ++u) {
+            const int b = used[u - 1];
+            bp_tree_box_add(&box, &bins.boxes[a][b]);
+            n += bins.counts[a][b];
+            const float cost = bp_tree_box_half_area(&box) * bp_tree_run_cost(n, width_bits) + cost_right[u];
+            if (cost < best_cost) {
                 best_cost = cost;
-                best = (Split){a, b, low[a], scale[a]};
+                best = (Split){a, b + 1, low[a], scale[a]};
             }
         }
     }

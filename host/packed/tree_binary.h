@@ -8,7 +8,7 @@
 #define BP_PACKED_TREE_BINARY_H
 
 #include "base/status.h"
-#include "tree_team.h"
+#include "base/team.h"
 
 #if defined(__SSE__)
 #include <xmmintrin.h>
@@ -73,10 +73,19 @@ BpStatus bp_binary_tree_build(BpTreeItem *items, uint32_t count, const BpBinaryO
                               BpBinaryTree *tree, BpError *err);
 void bp_binary_tree_clear(BpBinaryTree *tree);
 
+/* log2 of the width of a tree. */
+static inline uint32_t bp_tree_width_bits(uint32_t width) {
+    uint32_t bits = 0;
+    for (; width > 1; width /= 2) ++bits;
+    return bits;
+}
+
 /* What the heuristic takes a run of `count` items to cost when it is met: a leaf costs the same however many
- * of its lanes are used, and so does a wide node above leaves. */
-static inline float bp_tree_run_cost(uint32_t count, uint32_t width) {
-    return (float)((count + width - 1) / width + (count + width * width - 1) / (width * width));
+ * of its lanes are used, and so does a wide node above leaves. The width comes as its bits, since divisions
+ * would take most of the time. */
+static inline float bp_tree_run_cost(uint32_t count, uint32_t width_bits) {
+    const uint32_t leaf = (1u << width_bits) - 1, node = (1u << 2 * width_bits) - 1;
+    return (float)(((count + leaf) >> width_bits) + ((count + node) >> 2 * width_bits));
 }
 
 /* The most items that a child of a node may hold, if the node may be `height_max` > 0 high. */

@@ -146,6 +146,7 @@ static uint32_t bin_of(const BpGridCell *cell, const BpGridPlane *plane) {
 BpGridPlane bp_grid_plane(const BpGrid *grid, const uint32_t *cells, uint32_t cell_count, uint32_t items,
                           uint32_t width, uint64_t side_max) {
     static const BpTreeBox empty = BP_TREE_BOX_EMPTY;
+    const uint32_t width_bits = bp_tree_width_bits(width);
     BpGridPlane best = {.axis = -1};
     float best_cost = INFINITY;
     for (int a = 0; a < 3; ++a) {
@@ -173,14 +174,14 @@ BpGridPlane bp_grid_plane(const BpGrid *grid, const uint32_t *cells, uint32_t ce
         for (uint32_t b = plane.bins - 1; b > 0; --b) {
             bp_tree_box_add(&box, &boxes[b]);
             n += counts[b];
-            cost_right[b] = bp_tree_box_half_area(&box) * bp_tree_run_cost(n, width);
+            cost_right[b] = bp_tree_box_half_area(&box) * bp_tree_run_cost(n, width_bits);
         }
         box = empty;
         n = 0;
         for (uint32_t b = 1; b < plane.bins; ++b) {
             bp_tree_box_add(&box, &boxes[b - 1]);
             n += counts[b - 1];
-            const float cost = bp_tree_box_half_area(&box) * bp_tree_run_cost(n, width) + cost_right[b];
+            const float cost = bp_tree_box_half_area(&box) * bp_tree_run_cost(n, width_bits) + cost_right[b];
             if (n > 0 && n < items && n <= side_max && items - n <= side_max && cost < best_cost) {
                 best_cost = cost;
                 best = plane;

@@ -227,7 +227,7 @@ BpStatus bp_tree_write_nodes(const BpTreeWriter *writer, const BpBinaryNode *roo
     if (root == NULL) return write_empty_root(writer, err);
     BpStatus status = BP_OK;
     Gather gather = {.writer = writer};
-    for (uint32_t w = tree->width; w > 1; w /= 2) ++gather.height_bits;
+    gather.height_bits = bp_tree_width_bits(tree->width);
     list_jobs(&gather, root, 1);
     if (gather.failed) {
         status = bp_fail(err, BP_ERR_MEMORY, "out of memory for a tree of %u leaves", root->leaves);

@@ -77,8 +77,9 @@ static BpStatus grid_init(Grid *grid, const BpParticles *p, const bool *shown, d
         for (int c = 0; c < 3; c++) grid->origin[c] = INFINITY;
         for (size_t i = 0; i < p->count; i++) {
             for (int c = 0; c < 3 && shown[i]; c++) {
-                grid->origin[c] = fmin(grid->origin[c], p->position[i][c]);
-                high[c] = fmax(high[c], p->position[i][c]);
+                const double at = p->position[i][c];
+                grid->origin[c] = at < grid->origin[c] ? at : grid->origin[c];
+                high[c] = at > high[c] ? at : high[c];
             }
         }
         for (int c = 0; c < 3; c++) grid->edges[c][c] = fmax(high[c] - grid->origin[c], reach);
@@ -360,8 +361,9 @@ BpStatus bp_particles_spacing(const BpParticles *particles, const bool *shown, d
     for (size_t i = 0; i < particles->count; i++) {
         count += shown[i];
         for (int c = 0; c < 3 && shown[i]; c++) {
-            low[c] = fmin(low[c], particles->position[i][c]);
-            high[c] = fmax(high[c], particles->position[i][c]);
+            const double at = particles->position[i][c];
+            low[c] = at < low[c] ? at : low[c];
+            high[c] = at > high[c] ? at : high[c];
         }
     }
     if (count < 2) return BP_OK;

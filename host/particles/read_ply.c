@@ -34,6 +34,7 @@ typedef struct Ply {
     Property properties[BP_PARTICLE_COLUMNS_MAX];
     size_t property_count;
     int x, y, z, radius, red, green, blue; /* among the vertices' properties */
+    double linear[256];                    /* of each 8-bit colour */
 } Ply;
 
 static BpStatus take_property(const Input *input, char **words, size_t count, Ply *ply, BpError *err) {
@@ -177,7 +178,9 @@ static BpStatus add_vertex(BpParticleFile *file, const Ply *ply, const Element *
         if (colors[i] < 0) continue;
         const double value = values[colors[i]];
         const bool bytes = ply->properties[element->first + (size_t)colors[i]].type == PLY_UINT8;
-        particle.color[i] = bytes ? bp_linear_from_srgb(value / 255) : value;
+        particle.color[i] = !bytes               ? value
+                            : ply->form == ASCII ? bp_linear_from_srgb(value / 255) /* perhaps no byte */
+                                                 : ply->linear[(int)value];
         if (!(particle.color[i] >= 0 && particle.color[i] <= 1))
             return input_fail(
                 &file->input, with_line, err,
@@ -206,6 +209,7 @@ static BpStatus take_vertices(BpParticleFile *file, Ply *ply, const Element *ele
     if (ply->x < 0 || ply->y < 0 || ply->z < 0)
         return input_fail(&file->input, false, err,
                           "found no x, y and z among the vertices, expected all three");
+    for (int b = 0; b < 256; b++) ply->linear[b] = bp_linear_from_srgb(b / 255.0);
     BP_TRY(frame_begin(file, names, element->property_count, err));
     for (uint64_t row = 0; row < element->count; row++) {
         BP_TRY(take_row(&file->input, ply, element, row, values, err));

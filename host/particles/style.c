@@ -4,6 +4,7 @@
 #include "base/color.h"
 #include "base/format.h"
 #include "base/plural.h"
+#include "base/team.h"
 #include "bonds.h"
 #include "elements.h"
 
@@ -37,6 +38,15 @@ size_t bp_particle_style_columns(const BpParticleStyle *style, const char *colum
 
 static void from_bytes(const unsigned char bytes[3], double color[3]) {
     for (int c = 0; c < 3; c++) color[c] = bp_linear_from_srgb(bytes[c] / 255.0);
+}
+
+/* The same for millions of particles: each byte's value once. */
+typedef struct Linear {
+    double of_byte[256];
+} Linear;
+
+static void look_up(const Linear *linear, const unsigned char bytes[3], double color[3]) {
+    for (int c = 0; c < 3; c++) color[c] = linear->of_byte[bytes[c]];
 }
 
 void bp_type_color(size_t type, double color[3]) {
@@ -92,6 +102,7 @@ typedef struct Job {
     size_t capacity, albedo_capacity; /* of the scene's arrays */
     uint16_t *rank; /* of a name among the kinds that get colours of the palette, from 0, in the order of the
                        file */
+    Linear linear;
     char *summary;
     size_t size;
 } Job;
@@ -337,7 +348,7 @@ static void color_of(const Job *job, size_t i, double color[3]) {
         }
         break;
     case BP_COLOR_ELEMENT:
-        from_bytes(bp_elements[tag->element].color, color);
+        look_up(&job->linear, bp_elements[tag->element].color, color);
         return;
     case BP_COLOR_COLUMN: {
         const double value = (double)p->column[style->radius_by == BP_RADIUS_COLUMN][i];
@@ -355,7 +366,7 @@ static void color_of(const Job *job, size_t i, double color[3]) {
         place = (size_t)job->rank[kind_of(job, i)] - 1;
         break;
     }
-    bp_type_color(place, color);
+    look_up(&job->linear, palette[place % PALETTE_COUNT], color);
 }
 
 /* ---- spheres --------------------------------------------------------------------------------------------
@@ -387,35 +398,100 @@ static BpStatus make_room(Job *job, size_t count, BpError *err) {
     return BP_OK;
 }
 
-/* After make_room. */
-static void put_sphere(Job *job, const double center[3], double radius, const double color[3]) {
-    BpScene *const scene = job->scene;
-    const bool has_albedo = bp_material_has(scene->materials[job->material].kind, BP_MEMBER_ALBEDO);
-    BpSphere *const sphere = &scene->spheres[scene->sphere_count++];
+static bool has_albedos(const Job *job) {
+    return bp_material_has(job->scene->materials[job->material].kind, BP_MEMBER_ALBEDO);
+}
+
+/* Sphere `place` of those that follow the scene's own; with room for it, and for its colour where the
+ * material has one. */
+static void fill_sphere(const Job *job, size_t place, const double center[3], double radius,
+                        const double color[3]) {
+    const BpScene *const scene = job->scene;
+    const size_t albedo = scene->albedo_count + place;
+    BpSphere *const sphere = &scene->spheres[scene->sphere_count + place];
     *sphere = (BpSphere){.radius = radius, .material = job->material, .albedo = BP_NO_ALBEDO};
     memcpy(sphere->center, center, sizeof sphere->center);
-    if (!has_albedo) return;
-    for (int c = 0; c < 3; c++) scene->albedos[scene->albedo_count][c] = (float)fmin(1, fmax(0, color[c]));
-    sphere->albedo = (uint32_t)scene->albedo_count++;
+    if (!has_albedos(job)) return;
+    for (int c = 0; c < 3; c++)
+        scene->albedos[albedo][c] = color[c] > 0 ? color[c] < 1 ? (float)color[c] : 1.0f : 0.0f;
+    sphere->albedo = (uint32_t)albedo;
+}
+
+static void count_spheres(Job *job, size_t count) {
+    job->scene->sphere_count += count;
+    if (has_albedos(job)) job->scene->albedo_count += count;
+}
+
+/* After make_room. */
+static void put_sphere(Job *job, const double center[3], double radius, const double color[3]) {
+    fill_sphere(job, 0, center, radius, color);
+    count_spheres(job, 1);
+}
+
+/* Particles become spheres block by block, on all threads: those without a radius are found first, which says
+ * where the spheres of each block belong. */
+typedef struct Blocks {
+    Job *job;
+    size_t *places; /* of each block: how many particles are shown, then the place of its first */
+} Blocks;
+
+enum { BLOCK = 16384 };
+
+static size_t block_end(const Blocks *blocks, uint32_t block) {
+    const size_t end = ((size_t)block + 1) * BLOCK, count = blocks->job->p->count;
+    return end < count ? end : count;
+}
+
+static void find_radii(void *context, uint32_t block, unsigned worker) {
+    (void)worker;
+    const Blocks *const blocks = context;
+    Job *const job = blocks->job;
+    for (size_t i = (size_t)block * BLOCK; i < block_end(blocks, block); i++) {
+        if (!job->shown[i]) continue;
+        const double radius = radius_of(job, i);
+        /* As in scenes; NaN, 0 and below: nothing to see. */
+        job->shown[i] = radius > 1e-37 && radius <= BP_COORDINATE_MAX;
+        blocks->places[block] += job->shown[i];
+    }
+}
+
+static void fill_spheres(void *context, uint32_t block, unsigned worker) {
+    (void)worker;
+    const Blocks *const blocks = context;
+    const Job *const job = blocks->job;
+    size_t place = blocks->places[block];
+    for (size_t i = (size_t)block * BLOCK; i < block_end(blocks, block); i++) {
+        double color[3];
+        if (!job->shown[i]) continue;
+        color_of(job, i, color);
+        fill_sphere(job, place++, job->p->position[i], radius_of(job, i), color);
+    }
 }
 
 static BpStatus put_particles(Job *job, BpError *err) {
     const BpParticles *const p = job->p;
-    size_t without = 0, first = job->scene->sphere_count;
+    const uint32_t block_count = (uint32_t)((p->count + BLOCK - 1) / BLOCK);
+    size_t put = 0;
+    const size_t first = job->scene->sphere_count;
     BP_TRY(make_room(job, job->shown_count, err));
-    for (size_t i = 0; i < p->count; i++) {
-        double color[3];
-        if (!job->shown[i]) continue;
-        const double radius = radius_of(job, i);
-        if (!(radius > 1e-37 &&
-              radius <= BP_COORDINATE_MAX)) { /* as in scenes; NaN, 0 and below: nothing to see */
-            without++;
-            job->shown[i] = false;
-            continue;
-        }
-        color_of(job, i, color);
-        put_sphere(job, p->position[i], radius, color);
+    Blocks blocks = {job, calloc((size_t)block_count + 1, sizeof *blocks.places)};
+    BpTeam *team = bp_team_create(block_count > 1 ? 0 : 1);
+    if (blocks.places == NULL || team == NULL) {
+        free(blocks.places);
+        bp_team_destroy(&team);
+        return bp_fail(err, BP_ERR_MEMORY, "out of memory for %zu particles", p->count);
     }
+    bp_team_run(team, find_radii, &blocks, block_count);
+    for (uint32_t b = 0; b < block_count; b++) {
+        const size_t here = blocks.places[b];
+        blocks.places[b] = put;
+        put += here;
+    }
+    bp_team_run(team, fill_spheres, &blocks, block_count);
+    bp_team_destroy(&team);
+    free(blocks.places);
+    count_spheres(job, put);
+    const size_t without = job->shown_count - put;
     char number[32];
     if (without > 0)
         say(job, "left out: %s without a radius above 0", bp_format_whole(without, number, sizeof number));
@@ -539,8 +615,9 @@ static void find_flat(Job *job) {
     double low = INFINITY, high = -INFINITY;
     for (size_t i = 0; i < p->count; i++) {
         if (!job->shown[i]) continue;
-        low = fmin(low, p->position[i][2]);
-        high = fmax(high, p->position[i][2]);
+        low = p->position[i][2] < low ? p->position[i][2] : low;
+        high = p->position[i][2] > high ? p->position[i][2] : high;
+        if (high > low) break;
     }
     p->flat |= job->shown_count > 2 && high == low;
 }
@@ -589,6 +666,7 @@ BpStatus bp_particles_add_to_scene(BpParticles *particles, const BpParticleStyle
                .summary = summary,
                .size = size};
     if (summary != NULL) summary[0] = '\0';
+    for (int b = 0; b < 256; b++) job.linear.of_byte[b] = bp_linear_from_srgb(b / 255.0);
     const BpStatus status = run(&job, err);
     if (range != NULL) memcpy(range, job.range, sizeof job.range);
     free(job.shown);

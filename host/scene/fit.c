@@ -97,11 +97,13 @@ void bp_fitting_add(BpFitting *f, const BpSphere *spheres, size_t count) {
         const double radius = fabs(spheres[i].radius);
         for (int k = 0; k < 3; k++) c[k] = spheres[i].center[k] - f->origin[k];
         for (int k = 0; k < 3; k++) place[k] = bp_dot(f->axes[k], c);
-        f->nearest = fmax(f->nearest, place[2] + radius);
-        f->farthest = fmin(f->farthest, place[2] - radius);
+        if (place[2] + radius > f->nearest) f->nearest = place[2] + radius;
+        if (place[2] - radius < f->farthest) f->farthest = place[2] - radius;
         for (int a = 0; a < 2; a++)
-            for (int side = 0; side < 2; side++)
-                f->least[a][side] = fmin(f->least[a][side], plane_value(f, place, radius, a, side));
+            for (int side = 0; side < 2; side++) {
+                const double value = plane_value(f, place, radius, a, side);
+                if (value < f->least[a][side]) f->least[a][side] = value;
+            }
     }
 }
 

@@ -146,11 +146,6 @@ void bp_scene_destroy(BpScene **scene) {
     *scene = NULL;
 }
 
-bool bp_sphere_moves(const BpScene *scene, size_t sphere) {
-    const double *const from = scene->spheres[sphere].center, *const to = bp_sphere_end(scene, sphere);
-    return from[0] != to[0] || from[1] != to[1] || from[2] != to[2];
-}
-
 const char *bp_sphere_name(const BpScene *scene, size_t sphere, char text[BP_SPHERE_NAME_SIZE]) {
     const BpPointFile *cloud = NULL;
     char file[64];

@@ -232,7 +232,12 @@ const char *bp_sphere_name(const BpScene *scene, size_t sphere, char text[BP_SPH
 static inline const double *bp_sphere_end(const BpScene *scene, size_t sphere) {
     return sphere < scene->moving_count ? scene->center_ends[sphere] : scene->spheres[sphere].center;
 }
-bool bp_sphere_moves(const BpScene *scene, size_t sphere);
+/* Inline, since trees ask in random order: what does not move needs no look at its numbers. */
+static inline bool bp_sphere_moves(const BpScene *scene, size_t sphere) {
+    if (sphere >= scene->moving_count) return false;
+    const double *const from = scene->spheres[sphere].center, *const to = scene->center_ends[sphere];
+    return from[0] != to[0] || from[1] != to[1] || from[2] != to[2];
+}
 
 /* Checks the invariants above; the message names the sphere, material or member by its index or name. */
 BpStatus bp_scene_validate(const BpScene *scene, BpError *err);

@@ -1,9 +1,9 @@
-/* tree_team.h: a few threads that work through numbered pieces together.
+/* team.h: a few threads that work through numbered pieces together.
  *
  * In:    a function, and how many pieces there are.   Out: every piece done, by some thread.
- * Knows: POSIX threads.   Does not know: trees. */
-#ifndef BP_PACKED_TREE_TEAM_H
-#define BP_PACKED_TREE_TEAM_H
+ * Knows: POSIX threads.   Does not know: what the work is. */
+#ifndef BP_BASE_TEAM_H
+#define BP_BASE_TEAM_H
 
 #include <stdint.h>
 

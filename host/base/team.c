@@ -1,5 +1,5 @@
-/* tree_team.c: see tree_team.h. Threads live as long as the team; a new round of work wakes them. */
-#include "tree_team.h"
+/* team.c: see team.h. Threads live as long as the team; a new round of work wakes them. */
+#include "team.h"
 
 #include <pthread.h>
 #include <stdatomic.h>

@@ -1,5 +1,5 @@
-/* test_tree_team.c: a team does every piece once, round after round. */
-#include "packed/tree_team.h"
+/* test_team.c: a team does every piece once, round after round. */
+#include "base/team.h"
 
 #include <setjmp.h>
 #include <stdarg.h>
