@@ -18,15 +18,17 @@
 #endif
 
 #define BINS 32
-#define POOL_BLOCK 1024u
+#define POOL_BLOCK (1u << 20) /* bytes */
 
 typedef struct BpNodeBlock {
     struct BpNodeBlock *next;
-    BpBinaryNode nodes[POOL_BLOCK];
+    void *nodes[POOL_BLOCK / sizeof(void *)]; /* their memory, aligned for their pointers */
 } BpNodeBlock;
 
-BpBinaryNode *bp_node_pool_take(BpNodePool *pool) {
-    if (pool->blocks == NULL || pool->used == POOL_BLOCK) {
+BpBinaryNode *bp_node_pool_take(BpNodePool *pool, uint32_t costs) {
+    const size_t align = sizeof(void *), wanted = sizeof(BpBinaryNode) + costs * sizeof(float);
+    const uint32_t bytes = (uint32_t)((wanted + align - 1) / align * align);
+    if (pool->blocks == NULL || pool->used + bytes > POOL_BLOCK) {
         BpNodeBlock *block = malloc(sizeof *block);
         if (block == NULL) {
             pool->failed = true;
@@ -36,7 +38,9 @@ BpBinaryNode *bp_node_pool_take(BpNodePool *pool) {
         pool->blocks = block;
         pool->used = 0;
     }
-    return &pool->blocks->nodes[pool->used++];
+    void *const node = (char *)pool->blocks->nodes + pool->used;
+    pool->used += bytes;
+    return node;
 }
 
 void bp_node_pool_clear(BpNodePool *pool) {
@@ -50,18 +54,22 @@ void bp_node_pool_clear(BpNodePool *pool) {
 
 /* ---- costs of wide nodes --------------------------------------------------------------------------- */
 
+static const float *costs_of(const BpBinaryNode *node) {
+    static const float nothing[BP_TREE_WIDTH_MAX];
+    return node->left == NULL ? nothing : node->cost;
+}
+
 uint32_t bp_binary_left_places(const BpBinaryNode *node, uint32_t places) {
+    const float *const left = costs_of(node->left), *const right = costs_of(node->right);
     uint32_t best = 1;
     for (uint32_t k = 2; k < places; ++k)
-        if (node->left->cost[k] + node->right->cost[places - k] <
-            node->left->cost[best] + node->right->cost[places - best])
-            best = k;
+        if (left[k] + right[places - k] < left[best] + right[places - best]) best = k;
     return best;
 }
 
 static float cost_of_places(const BpBinaryNode *node, uint32_t places) {
     const uint32_t k = bp_binary_left_places(node, places);
-    return node->left->cost[k] + node->right->cost[places - k];
+    return costs_of(node->left)[k] + costs_of(node->right)[places - k];
 }
 
 void bp_binary_finish(BpBinaryNode *node, uint32_t width) {
@@ -216,7 +224,7 @@ static uint32_t partition(BpTreeItem *items, uint32_t count, const Split *split)
 
 static BpBinaryNode *build(BpTreeItem *items, uint32_t first, uint32_t count, uint32_t width,
                            uint32_t height_max, BpNodePool *pool) {
-    BpBinaryNode *node = bp_node_pool_take(pool);
+    BpBinaryNode *node = bp_node_pool_take(pool, count <= width ? 0 : width);
     if (node == NULL) return NULL;
     node->first = first;
     node->count = count;
@@ -226,7 +234,6 @@ static BpBinaryNode *build(BpTreeItem *items, uint32_t first, uint32_t count, ui
         node->leaves = 1;
         node->height = 0;
         for (uint32_t i = first; i < first + count; ++i) bp_tree_box_add_item(&node->box, &items[i]);
-        for (int k = 0; k < BP_TREE_WIDTH_MAX; ++k) node->cost[k] = 0;
         return node;
     }
     const uint64_t side_max = bp_binary_side_max(width, height_max);

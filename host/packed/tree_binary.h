@@ -32,19 +32,20 @@ typedef struct BpBinaryNode {
     uint32_t leaves;                   /* below this node, or 1 */
     uint32_t height;                   /* 0: a leaf */
     /* cost[k]: the least expected number of visits of wide nodes below (times the area of the whole), if this
-     * node's place under a wide node may take up to k children, 1 <= k < width. */
-    float cost[BP_TREE_WIDTH_MAX];
+     * node's place under a wide node may take up to k children, 1 <= k < width. A leaf has none: it costs
+     * nothing, and with trees of many millions of spheres nodes are most of the memory. */
+    float cost[];
 } BpBinaryNode;
 
 /* Nodes in blocks that never move. Zero it before use. */
 typedef struct BpNodePool {
     struct BpNodeBlock *blocks;
-    uint32_t used; /* of the first block */
+    uint32_t used; /* bytes of the first block */
     bool failed;   /* ran out of memory */
 } BpNodePool;
 
-/* NULL and `failed` when there is no memory. */
-BpBinaryNode *bp_node_pool_take(BpNodePool *pool);
+/* A node with room for `costs` costs. NULL and `failed` when there is no memory. */
+BpBinaryNode *bp_node_pool_take(BpNodePool *pool, uint32_t costs);
 void bp_node_pool_clear(BpNodePool *pool);
 
 typedef struct BpBinaryOptions {

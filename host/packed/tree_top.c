@@ -3,7 +3,7 @@
  * Spheres are counted into the cells of a grid, which takes the place of some seven passes of splitting: the
  * upper splits are chosen among the grid's planes, over cells instead of spheres, until what remains is small
  * enough for one thread. The spheres are then moved to their runs in one stable pass, and the runs are built
- * independently (tree_binary.c). A cell that holds too much gets a grid of its own.
+ * independently (tree_binary.c). A run, or a cell, that holds too much for that gets a grid of its own.
  *
  * Every decision is made from sums and extremes over all spheres, so it is the same for any number of
  * threads. */
@@ -14,6 +14,9 @@
 #include <string.h>
 
 #define RUNS 64u /* about so many runs, or more, keep the threads of most machines busy */
+#define RUN_MOST                                                                                             \
+    131072u /* items that a core's cache holds: larger runs get grids of their own, so that time             \
+               grows with the number of spheres, and not with its logarithm too */
 
 /* Items first .. first+count-1 of buffer `buffer`, whose tree belongs at *place. */
 typedef struct Run {
@@ -32,7 +35,8 @@ typedef struct Top {
     const BpBinaryOptions *options;
     BpTeam *team;
     BpBinaryTree *tree;
-    uint32_t run_max;     /* a run this small is built by one thread */
+    uint32_t run_max;     /* a run this small is built by one thread, and one of up to four times as many */
+    uint32_t part_max;    /* of the range at hand: what is this small is not split further by its grid */
     RunList ranges, runs; /* to be gridded; to be built */
     BpBinaryNode **nodes; /* of the upper part, parents before children */
     uint32_t node_count, node_capacity;
@@ -72,7 +76,7 @@ static void build_cells(Top *top, uint32_t *cells, uint32_t cell_count, uint32_t
     uint32_t items = 0;
     for (uint32_t c = 0; c < cell_count; ++c) items += top->grid.cells[cells[c]].count;
     BpGridPlane plane = {.axis = -1};
-    if (items > top->run_max && cell_count > 1)
+    if (items > top->part_max && cell_count > 1)
         plane =
             bp_grid_plane(&top->grid, cells, cell_count, items, width, bp_binary_side_max(width, height_max));
     if (plane.axis < 0) {
@@ -83,7 +87,7 @@ static void build_cells(Top *top, uint32_t *cells, uint32_t cell_count, uint32_t
         top->failed = top->failed || !push_run(&top->runs, &run);
         return;
     }
-    BpBinaryNode *node = bp_node_pool_take(&top->tree->pools[0]);
+    BpBinaryNode *node = bp_node_pool_take(&top->tree->pools[0], top->options->width);
     BpBinaryNode **nodes = grow(top->nodes, top->node_count, &top->node_capacity, sizeof *nodes);
     if (nodes != NULL) top->nodes = nodes;
     if (node == NULL || nodes == NULL) {
@@ -145,6 +149,7 @@ static void split_range(Top *top) {
     const Run *range = &top->range;
     top->runs_before = top->runs.count;
     top->runs_here = top->filled = 0;
+    top->part_max = range->count / RUNS > top->run_max ? range->count / RUNS : top->run_max;
     bp_grid_fill(&top->grid, top->items[range->buffer] + range->first, range->count, top->team);
     build_cells(top, top->grid.used, top->grid.used_count, range->height_max, range->place);
     if (top->failed) return;
@@ -227,6 +232,7 @@ BpStatus bp_binary_tree_build(BpTreeItem *items, uint32_t count, const BpBinaryO
     top->tree = tree;
     top->run_max = count / RUNS;
     if (top->run_max < 2048) top->run_max = 2048;
+    if (top->run_max > RUN_MOST) top->run_max = RUN_MOST;
     if (count > 4 * top->run_max) {
         status = build_large(top, count, err);
     } else if (count > 0) {
