@@ -241,8 +241,14 @@ typedef struct PackedVariation {
  * X(numbers, element, name, count, what): `numbers` is REALS or UINTS, what `element` is made of; `count`
  * says how many elements there are, in terms of `width` (of the tree), `nodes`, `leaf_count`,
  * `motion_leaves`, `slots`, `material_count`, `texture_count`, `texel_count`, `sky_row_count` and so on,
- * `disc_count`, `lamp_nodes` and `lamp_slots`; `what` is how a message calls it. Arrays of the first list are
- * pack.c's, of the second the tree of lamps', of the third the tree's. Materials are arrays of numbers here,
+ * `disc_count`, `lamp_nodes` and `lamp_slots`; `what` is how a message calls it. Arrays of the first two
+ * lists are pack.c's, of the third the tree of lamps', of the last the tree's.
+ *
+ * Arrays of slots and of the tree grow with the spheres. Where one is larger than a buffer of the device may
+ * be, all of them come in SCENE_PARTS parts of PART_LENGTH elements each, the last ones perhaps empty
+ * (bvh/parts.cl). PART_LENGTH is a multiple of PART_UNIT, so that no node and no leaf lies in two parts.
+ *
+ * Materials are arrays of numbers here,
  * since Mesa's rusticl (22.3) gathers wrong ones through a pointer to structs that is cast inside a loop. */
 #define MATERIAL_REALS ((packed_uint)(sizeof(PackedMaterial) / sizeof(real)))
 #define MATERIAL_UINTS ((packed_uint)(sizeof(PackedMaterialKind) / sizeof(packed_uint)))
@@ -251,6 +257,8 @@ typedef struct PackedVariation {
 #define MEDIUM_REALS ((packed_uint)(sizeof(PackedMedium) / sizeof(real)))
 #define TEXTURE_REALS ((packed_uint)(sizeof(PackedTexture) / sizeof(real)))
 #define TEXTURE_UINTS ((packed_uint)(sizeof(PackedTextureKind) / sizeof(packed_uint)))
+#define SCENE_PARTS_MAX 8
+#define PART_UNIT 192u /* a multiple of NODE_REALS, LEAF_REALS and MOTION_REALS of all widths */
 /* clang-format off */
 #define SCENE_ARRAYS_OF_PACK(X)                                                                              \
     X(REALS, PackedCamera, camera, 1, "the camera")                                                          \
@@ -266,7 +274,8 @@ typedef struct PackedVariation {
     X(UINTS, packed_uint, sky_columns, sky_column_count, "the table of the background")                      \
     X(REALS, real, sky_heights, sky_height_count, "the table of the background")                             \
     X(REALS, real, media, medium_count * MEDIUM_REALS, "the media")                                          \
-    X(UINTS, packed_uint, boundaries, boundary_count * BOUNDARY_UINTS, "the boundaries of media")            \
+    X(UINTS, packed_uint, boundaries, boundary_count * BOUNDARY_UINTS, "the boundaries of media")
+#define SCENE_ARRAYS_OF_SLOTS(X)                                                                             \
     X(UINTS, packed_uint, slot_material, slots, "the table of sphere materials")                             \
     X(REALS, real, slot_albedo, slots * ALBEDO_REALS, "the table of sphere colours")
 #define SCENE_ARRAYS_OF_LAMPS(X)                                                                             \

@@ -32,6 +32,7 @@ static const struct {
     {"shape/ray.cl", IN_ALL},
     {"shape/sphere_robust.cl", IN_ROBUST},
     {"shape/sphere_plain.cl", IN_PLAIN},
+    {"bvh/parts.cl", IN_ALL},
     {"bvh/flat_tree.cl", IN_PACKET},
     {"bvh/geometry.cl", IN_ALL},
     {"bvh/hit.cl", IN_ALL},
@@ -210,6 +211,9 @@ BpStatus bp_program_source(const BpProgramOptions *options, const char *extra_na
         text_print(&text, "#define EFFECT_%s %d\n", bp_effect_identifier((BpEffect)e),
                    bp_effects_has(options->effects, (BpEffect)e));
     text_print(&text, "#define ACCELERATION_TREE %d\n", options->tree);
+    if (options->parts > 1)
+        text_print(&text, "#define SCENE_PARTS %u\n#define PART_LENGTH %uu\n", options->parts,
+                   options->part_length);
     const unsigned form = options->form == BP_KERNEL_PACKET ? IN_PACKET
                           : options->form == BP_KERNEL_POOL ? IN_SINGLE | IN_POOL
                                                             : IN_SINGLE | IN_SAMPLE;

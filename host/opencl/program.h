@@ -42,6 +42,8 @@ typedef struct BpProgramOptions {
     uint32_t tree_width;   /* 2, 4, 8 or 16 */
     uint32_t packet_lanes; /* 8 or 16; of the packet form alone */
     bool pixel_list;       /* chunks take their pixels from a list */
+    uint32_t parts;        /* 2 to SCENE_PARTS_MAX: arrays that grow with the spheres come in so many parts */
+    uint32_t part_length;  /* of so many elements each */
     bool double_refine;    /* refine intersections in double; else error-free float transforms */
     bool own_rounding;     /* round quotients and roots of floats by fma; bp_program_build sets it where the
                               device does not round them correctly, unless rounding does not matter */

@@ -653,6 +653,7 @@ void bp_packed_clear(BpPacked *packed) {
     bp_lamp_tree_clear(&packed->lamps);
 #define FREE_ARRAY(numbers, element, name, count, what) free(packed->name);
     SCENE_ARRAYS_OF_PACK(FREE_ARRAY)
+    SCENE_ARRAYS_OF_SLOTS(FREE_ARRAY)
 #undef FREE_ARRAY
     *packed = (BpPacked){0};
 }

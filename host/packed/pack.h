@@ -26,6 +26,7 @@ typedef struct BpPacked {
 #define BP_HOLD_UINTS uint32_t
 #define BP_HOLD(numbers, element, name, count, what) BP_HOLD_##numbers *name;
     SCENE_ARRAYS_OF_PACK(BP_HOLD)
+    SCENE_ARRAYS_OF_SLOTS(BP_HOLD)
 #undef BP_HOLD
     uint32_t material_count; /* at least one */
     uint32_t texture_count;

@@ -10,7 +10,7 @@
 
 /* Places of the arguments that follow the scene's. */
 enum {
-    ARGUMENT_FIRST_PIXEL = BP_WORKER_SCENE_ARGUMENTS,
+    ARGUMENT_FIRST_PIXEL,
     ARGUMENT_PIXEL_COUNT,
     ARGUMENT_FIRST_SAMPLE,
     ARGUMENT_SAMPLES,
@@ -51,11 +51,15 @@ static BpStatus set_arguments(BpWorker *worker, cl_kernel kernel, const BpCamera
     cl_float forward[3];
     view_direction(camera, forward);
     BP_TRY(bp_worker_bind_scene(worker, kernel, err));
-    cl_int code = clSetKernelArg(kernel, ARGUMENT_FIRST_SAMPLE, sizeof(cl_uint), &first_sample);
-    if (code == CL_SUCCESS) code = clSetKernelArg(kernel, ARGUMENT_SAMPLES, sizeof(cl_uint), &samples);
+    cl_int code = clSetKernelArg(kernel, worker->scene_arguments + ARGUMENT_FIRST_SAMPLE, sizeof(cl_uint),
+                                 &first_sample);
+    if (code == CL_SUCCESS)
+        code = clSetKernelArg(kernel, worker->scene_arguments + ARGUMENT_SAMPLES, sizeof(cl_uint), &samples);
     for (cl_uint a = 0; a < 3 && code == CL_SUCCESS; ++a)
-        code = clSetKernelArg(kernel, ARGUMENT_FORWARD + a, sizeof(cl_float), &forward[a]);
-    if (code == CL_SUCCESS) code = clSetKernelArg(kernel, ARGUMENT_OUT, sizeof(cl_mem), &out);
+        code = clSetKernelArg(kernel, worker->scene_arguments + ARGUMENT_FORWARD + a, sizeof(cl_float),
+                              &forward[a]);
+    if (code == CL_SUCCESS)
+        code = clSetKernelArg(kernel, worker->scene_arguments + ARGUMENT_OUT, sizeof(cl_mem), &out);
     return code == CL_SUCCESS ? BP_OK : bp_cl_fail(err, code, "clSetKernelArg(aovs)", worker->device);
 }
 
@@ -64,8 +68,10 @@ static BpStatus run_batch(BpWorker *worker, cl_kernel kernel, size_t local, cl_m
                           cl_uint count, cl_float *sums, BpError *err) {
     cl_command_queue queue = worker->device->queue;
     const size_t global = (count + local - 1) / local * local;
-    cl_int code = clSetKernelArg(kernel, ARGUMENT_FIRST_PIXEL, sizeof first, &first);
-    if (code == CL_SUCCESS) code = clSetKernelArg(kernel, ARGUMENT_PIXEL_COUNT, sizeof count, &count);
+    cl_int code =
+        clSetKernelArg(kernel, worker->scene_arguments + ARGUMENT_FIRST_PIXEL, sizeof first, &first);
+    if (code == CL_SUCCESS)
+        code = clSetKernelArg(kernel, worker->scene_arguments + ARGUMENT_PIXEL_COUNT, sizeof count, &count);
     if (code == CL_SUCCESS)
         code = clEnqueueNDRangeKernel(queue, kernel, 1, NULL, &global, &local, 0, NULL, NULL);
     if (code == CL_SUCCESS)

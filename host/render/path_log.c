@@ -55,7 +55,7 @@ static BpStatus run(BpWorker *worker, uint32_t pixel, uint32_t sample, uint32_t 
             goto cleanup;
         }
     }
-    cl_uint index = BP_WORKER_SCENE_ARGUMENTS;
+    cl_uint index = worker->scene_arguments;
     const cl_uint values[3] = {pixel, sample, capacity};
     for (int i = 0; i < 3 && code == CL_SUCCESS; ++i)
         code = clSetKernelArg(kernel, index++, sizeof(cl_uint), &values[i]);

@@ -21,10 +21,10 @@ static BpStatus set_argument(BpWorker *worker, cl_kernel kernel, cl_uint index, 
     return BP_OK;
 }
 
-/* Places of the arguments that change with the chunk; TRACE_PARAMETERS and accumulate.cl declare them in this
- * order. */
+/* Places of the arguments that change with the chunk, of trace after the scene's; TRACE_PARAMETERS and
+ * accumulate.cl declare them in this order. */
 enum {
-    TRACE_FIRST_PIXEL = BP_WORKER_SCENE_ARGUMENTS,
+    TRACE_FIRST_PIXEL,
     TRACE_FIRST_SAMPLE,
     TRACE_SAMPLES,
     TRACE_COUNT,
@@ -46,13 +46,14 @@ enum {
 
 BpStatus bp_worker_bind_scene(BpWorker *worker, cl_kernel kernel, BpError *err) {
     cl_uint index = 0;
-    for (size_t i = 0; i < BP_SCENE_ARRAYS; ++i)
-        BP_TRY(set_argument(worker, kernel, index++, sizeof(cl_mem), &worker->scene_arrays[i], err));
+    for (size_t i = 0; i < worker->scene_buffer_count; ++i)
+        BP_TRY(set_argument(worker, kernel, index++, sizeof(cl_mem), &worker->scene_buffers[i], err));
 #define NUMBER(name) worker->name,
     const cl_uint numbers[] = {SCENE_NUMBERS(NUMBER)};
 #undef NUMBER
     for (size_t i = 0; i < sizeof numbers / sizeof numbers[0]; ++i)
         BP_TRY(set_argument(worker, kernel, index++, sizeof(cl_uint), &numbers[i], err));
+    worker->scene_arguments = index;
     return BP_OK;
 }
 
@@ -72,7 +73,8 @@ static BpStatus create_kernels(BpWorker *worker, const BpWorkerSetup *setup, BpE
     if (setup->program.pixel_list) {
         BP_TRY(bp_worker_create_pixel_list(worker, err));
         BP_TRY(set_argument(worker, worker->fold, FOLD_LIST, sizeof(cl_mem), &worker->pixel_list, err));
-        BP_TRY(set_argument(worker, worker->trace, TRACE_LIST, sizeof(cl_mem), &worker->pixel_list, err));
+        BP_TRY(set_argument(worker, worker->trace, worker->scene_arguments + TRACE_LIST, sizeof(cl_mem),
+                            &worker->pixel_list, err));
     }
 
     worker->form = setup->program.form;
@@ -140,11 +142,13 @@ BpStatus bp_worker_create(const BpDeviceInfo *info, const BpPacked *packed, cons
         if (status != BP_OK) goto failed;
         if (ran) made->self_test_seconds = bp_clock_seconds() - start;
     }
+    BpProgramOptions program = setup->program;
+    bp_worker_choose_parts(made, packed, &program);
     char mark[64];
     snprintf(mark, sizeof mark, "typedef uint build_mark_%llu;\n", (unsigned long long)setup->build_mark);
     const bool marked = setup->build_mark != 0 && setup->extra_text == NULL;
     BP_TRY_GOTO(status,
-                bp_program_build(made->device, &setup->program, marked ? "mark.cl" : setup->extra_name,
+                bp_program_build(made->device, &program, marked ? "mark.cl" : setup->extra_name,
                                  marked ? mark : setup->extra_text, &made->program, err),
                 failed);
     BP_TRY_GOTO(status, bp_layout_check(made->device, made->program->program, packed->single_precision, err),
@@ -180,8 +184,8 @@ void bp_worker_destroy(BpWorker **worker) {
     BpWorker *w = *worker;
     if (w->device != NULL) clFinish(w->device->queue);
     for (int i = 0; i < w->flight_count; ++i) release_flight(&w->flights[i]);
-    for (size_t i = 0; i < BP_SCENE_ARRAYS; ++i)
-        if (w->scene_arrays[i] != NULL) clReleaseMemObject(w->scene_arrays[i]);
+    for (size_t i = 0; i < w->scene_buffer_count; ++i)
+        if (w->scene_buffers[i] != NULL) clReleaseMemObject(w->scene_buffers[i]);
     const cl_mem buffers[] = {w->sums,    w->fine_sums, w->counts,    w->tallies,
                               w->samples, w->lamp_rays, w->pixel_list};
     for (size_t i = 0; i < sizeof buffers / sizeof buffers[0]; ++i)
@@ -280,12 +284,12 @@ BpStatus bp_worker_start(BpWorker *worker, const BpChunk *chunk, BpError *err) {
         size_t size;
         const void *value;
     } arguments[] = {
-        {worker->trace, TRACE_FIRST_PIXEL, sizeof(cl_uint), &chunk->first_pixel},
-        {worker->trace, TRACE_FIRST_SAMPLE, sizeof(cl_uint), &first_sample},
-        {worker->trace, TRACE_SAMPLES, sizeof(cl_uint), &chunk->samples},
-        {worker->trace, TRACE_COUNT, sizeof(cl_uint), &count},
-        {worker->trace, TRACE_OUT, sizeof(cl_mem), &worker->samples},
-        {worker->trace, TRACE_LAMP_RAYS, sizeof(cl_mem), &worker->lamp_rays},
+        {worker->trace, worker->scene_arguments + TRACE_FIRST_PIXEL, sizeof(cl_uint), &chunk->first_pixel},
+        {worker->trace, worker->scene_arguments + TRACE_FIRST_SAMPLE, sizeof(cl_uint), &first_sample},
+        {worker->trace, worker->scene_arguments + TRACE_SAMPLES, sizeof(cl_uint), &chunk->samples},
+        {worker->trace, worker->scene_arguments + TRACE_COUNT, sizeof(cl_uint), &count},
+        {worker->trace, worker->scene_arguments + TRACE_OUT, sizeof(cl_mem), &worker->samples},
+        {worker->trace, worker->scene_arguments + TRACE_LAMP_RAYS, sizeof(cl_mem), &worker->lamp_rays},
         {worker->fold, FOLD_IN, sizeof(cl_mem), &worker->samples},
         {worker->fold, FOLD_PIXELS, sizeof(cl_uint), &chunk->pixel_count},
         {worker->fold, FOLD_SAMPLES, sizeof(cl_uint), &chunk->samples},

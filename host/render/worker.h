@@ -38,12 +38,11 @@ typedef struct BpWorkerSetup {
 
 /* How many arrays and how many arguments the lists in scene_types.h make. */
 #define BP_COUNT_ARRAY(numbers, element, name, count, what) +1
-#define BP_COUNT_NUMBER(name) +1
 #define BP_SCENE_NUMBER_MEMBER(name) name,
 enum {
-    BP_SCENE_ARRAYS = SCENE_ARRAYS_OF_PACK(BP_COUNT_ARRAY) SCENE_ARRAYS_OF_LAMPS(BP_COUNT_ARRAY)
-        SCENE_ARRAYS_OF_TREE(BP_COUNT_ARRAY),
-    BP_WORKER_SCENE_ARGUMENTS = BP_SCENE_ARRAYS SCENE_NUMBERS(BP_COUNT_NUMBER)
+    BP_SCENE_ARRAYS = SCENE_ARRAYS_OF_PACK(BP_COUNT_ARRAY) SCENE_ARRAYS_OF_SLOTS(BP_COUNT_ARRAY)
+        SCENE_ARRAYS_OF_LAMPS(BP_COUNT_ARRAY) SCENE_ARRAYS_OF_TREE(BP_COUNT_ARRAY),
+    BP_SCENE_BUFFERS_MAX = BP_SCENE_ARRAYS * SCENE_PARTS_MAX
 };
 
 typedef struct BpWorker {
@@ -51,7 +50,10 @@ typedef struct BpWorker {
     bool owns_device;
     BpProgram *program;
     cl_kernel trace, fold;
-    cl_mem scene_arrays[BP_SCENE_ARRAYS]; /* in the order of the lists in scene_types.h */
+    cl_mem scene_buffers[BP_SCENE_BUFFERS_MAX]; /* in the order of the lists in scene_types.h, part by part */
+    size_t scene_buffer_count;
+    uint32_t parts, part_length; /* of arrays that grow with the spheres; length 0: they are whole */
+    uint32_t scene_arguments;    /* of kernels that trace, the first ones: these, then the scene's numbers */
     cl_mem sums, fine_sums, counts, tallies, samples;
     cl_mem lamp_rays; /* of each work-item of a chunk; used only if the scene `has_lamps` */
     bool has_lamps;
@@ -84,7 +86,7 @@ BpStatus bp_worker_create(const BpDeviceInfo *info, const BpPacked *packed, cons
 void bp_worker_destroy(BpWorker **worker);
 
 /* Sets the arguments that every tracing kernel begins with (SCENE_PARAMETERS of kernels/integrator/scene.cl):
- * BP_WORKER_SCENE_ARGUMENTS of them. */
+ * worker->scene_arguments of them. */
 BpStatus bp_worker_bind_scene(BpWorker *worker, cl_kernel kernel, BpError *err);
 
 /* How many work-items trace a chunk of `count` pixel samples. */

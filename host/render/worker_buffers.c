@@ -3,6 +3,7 @@
 
 #include <stdio.h>
 #include <stdlib.h>
+#include <string.h>
 
 /* A buffer of `bytes` (at least one, since OpenCL knows no empty buffer), with `data` in it when there is
  * any. */
@@ -23,7 +24,16 @@ static BpStatus create_buffer(BpWorker *worker, cl_mem *buffer, uint64_t bytes, 
     return BP_OK;
 }
 
-BpStatus bp_worker_upload_scene(BpWorker *worker, const BpPacked *packed, BpError *err) {
+/* One of the scene's arrays. */
+typedef struct Upload {
+    uint64_t count; /* of its numbers */
+    size_t size;    /* of a number */
+    const void *data;
+    const char *what;
+    bool split; /* it comes in parts where the others do */
+} Upload;
+
+static void list_uploads(const BpWorker *worker, const BpPacked *packed, Upload uploads[BP_SCENE_ARRAYS]) {
     const BpTree *tree = &packed->tree;
     const uint64_t width = tree->width, nodes = tree->node_count, leaf_count = tree->leaf_count;
     const uint64_t slots = leaf_count * width, motion_leaves = tree->motion_leaves;
@@ -33,23 +43,76 @@ BpStatus bp_worker_upload_scene(BpWorker *worker, const BpPacked *packed, BpErro
     const uint64_t sky_column_count = packed->sky_column_count, sky_height_count = packed->sky_height_count;
     const uint64_t medium_count = packed->medium_count, boundary_count = packed->boundary_count;
     const uint64_t material_count = packed->material_count > 0 ? packed->material_count : 1;
-    /* Elements of reals shrink with the real. */
-#define BYTES_REALS(element) (sizeof(element) / sizeof(real) * worker->real_size)
-#define BYTES_UINTS(element) sizeof(element)
-#define OF_PACK(numbers, element, name, count, what) {(count)*BYTES_##numbers(element), packed->name, what},
+#define NUMBERS_REALS(element) sizeof(element) / sizeof(real), worker->real_size
+#define NUMBERS_UINTS(element) sizeof(element) / sizeof(packed_uint), sizeof(packed_uint)
+#define UPLOAD(count, each, size, data, what, split)                                                         \
+    { (count) * (each), size, data, what, split }
+#define UPLOAD_OF(...) UPLOAD(__VA_ARGS__)
+#define OF_PACK(numbers, element, name, count, what)                                                         \
+    UPLOAD_OF(count, NUMBERS_##numbers(element), packed->name, what, false),
+#define OF_SLOTS(numbers, element, name, count, what)                                                        \
+    UPLOAD_OF(count, NUMBERS_##numbers(element), packed->name, what, true),
 #define OF_LAMPS(numbers, element, name, count, what)                                                        \
-    {(count)*BYTES_##numbers(element), packed->lamps.name, what},
-#define OF_TREE(numbers, element, name, count, what) {(count)*BYTES_##numbers(element), tree->name, what},
-    const struct {
-        uint64_t bytes;
-        const void *data;
-        const char *what;
-    } uploads[BP_SCENE_ARRAYS] = {SCENE_ARRAYS_OF_PACK(OF_PACK) SCENE_ARRAYS_OF_LAMPS(OF_LAMPS)
-                                      SCENE_ARRAYS_OF_TREE(OF_TREE)};
+    UPLOAD_OF(count, NUMBERS_##numbers(element), packed->lamps.name, what, false),
+#define OF_TREE(numbers, element, name, count, what)                                                         \
+    UPLOAD_OF(count, NUMBERS_##numbers(element), tree->name, what, true),
+    const Upload list[BP_SCENE_ARRAYS] = {SCENE_ARRAYS_OF_PACK(OF_PACK) SCENE_ARRAYS_OF_SLOTS(OF_SLOTS)
+                                              SCENE_ARRAYS_OF_LAMPS(OF_LAMPS) SCENE_ARRAYS_OF_TREE(OF_TREE)};
+    memcpy(uploads, list, sizeof list);
+}
+
+void bp_worker_choose_parts(BpWorker *worker, const BpPacked *packed, BpProgramOptions *program) {
+    Upload uploads[BP_SCENE_ARRAYS];
+    uint64_t most = 0, length = worker->device->info.largest_allocation_bytes / worker->real_size;
+    bool larger = false;
+    list_uploads(worker, packed, uploads);
     for (size_t i = 0; i < BP_SCENE_ARRAYS; ++i) {
-        BP_TRY(create_buffer(worker, &worker->scene_arrays[i], uploads[i].bytes, uploads[i].data,
-                             uploads[i].what, err));
-        worker->scene_bytes += uploads[i].bytes;
+        if (!uploads[i].split) continue;
+        larger |= uploads[i].count * uploads[i].size > worker->device->info.largest_allocation_bytes;
+        if (uploads[i].count > most) most = uploads[i].count;
+    }
+    worker->part_length = 0;
+    if (!larger || length < PART_UNIT) return;
+    if (length > INT32_MAX) length = INT32_MAX; /* numbers in the kernel have 32 bits */
+    length -= length % PART_UNIT;
+    const uint64_t parts = (most + length - 1) / length;
+    program->parts = parts < 2 ? 2 : parts < SCENE_PARTS_MAX ? (uint32_t)parts : SCENE_PARTS_MAX;
+    program->part_length = worker->part_length = (uint32_t)length;
+    worker->parts = program->parts;
+}
+
+/* In parts; the last ones may be empty. */
+static BpStatus upload_parts(BpWorker *worker, const Upload *upload, BpError *err) {
+    const BpDeviceInfo *info = &worker->device->info;
+    const uint64_t length = worker->part_length, bytes = upload->count * upload->size;
+    if (upload->count > worker->parts * length)
+        return bp_fail(
+            err, BP_ERR_LIMIT,
+            "%s takes %.1f MiB, but %s allows %.1f MiB in one allocation, and %d are used for it at "
+            "most; use a smaller scene, or another --device",
+            upload->what, (double)bytes / 1048576, info->name,
+            (double)info->largest_allocation_bytes / 1048576, SCENE_PARTS_MAX);
+    for (uint64_t part = 0; part < worker->parts; ++part) {
+        const uint64_t first = part * length < upload->count ? part * length : upload->count;
+        const uint64_t left = upload->count - first, here = left < length ? left : length;
+        const void *data = here > 0 ? (const char *)upload->data + first * upload->size : NULL;
+        BP_TRY(create_buffer(worker, &worker->scene_buffers[worker->scene_buffer_count++],
+                             here * upload->size, data, upload->what, err));
+    }
+    return BP_OK;
+}
+
+BpStatus bp_worker_upload_scene(BpWorker *worker, const BpPacked *packed, BpError *err) {
+    Upload uploads[BP_SCENE_ARRAYS];
+    list_uploads(worker, packed, uploads);
+    for (size_t i = 0; i < BP_SCENE_ARRAYS; ++i) {
+        const Upload *upload = &uploads[i];
+        if (upload->split && worker->part_length > 0)
+            BP_TRY(upload_parts(worker, upload, err));
+        else
+            BP_TRY(create_buffer(worker, &worker->scene_buffers[worker->scene_buffer_count++],
+                                 upload->count * upload->size, upload->data, upload->what, err));
+        worker->scene_bytes += upload->count * upload->size;
     }
     return BP_OK;
 }

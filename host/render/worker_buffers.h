@@ -14,6 +14,11 @@
         if (cl_try_code_ != CL_SUCCESS) return bp_cl_fail(err, cl_try_code_, call, (worker)->device);        \
     } while (0)
 
+/* Where an array that grows with the spheres is larger than a buffer of the device may be: of how many parts
+ * of what length the program's arrays consist. Where even the most parts do not suffice, as many, and the
+ * upload fails. */
+void bp_worker_choose_parts(BpWorker *worker, const BpPacked *packed, BpProgramOptions *program);
+
 /* All fail with BP_ERR_LIMIT, naming what is too large and the device's limit, or with the driver's error. */
 BpStatus bp_worker_upload_scene(BpWorker *worker, const BpPacked *packed, BpError *err);
 /* Sums, counts and tallies of every pixel, zeroed. After the scene: both together must fit. */

@@ -32,7 +32,7 @@ static vreal row_of(__global const real *rows, uint row) { return *(__global con
  * ray has met it already, or is sent to it. */
 FORCE_INLINE static child_mask leaf_candidates(const Geometry *geometry, const Ray_one *one, uint leaf_number,
                                                real bound, uint known_slot) {
-    __global const real *leaf = geometry->leaves + leaf_number * (4 * TREE_WIDTH);
+    __global const real *leaf = place_in(geometry->leaves, leaf_number * (4 * TREE_WIDTH));
     const Ray ray = ray_for_all(one);
     Sphere sphere;
     sphere.centre.x = row_of(leaf, 0);
@@ -40,7 +40,7 @@ FORCE_INLINE static child_mask leaf_candidates(const Geometry *geometry, const R
     sphere.centre.z = row_of(leaf, 2 * TREE_WIDTH);
     sphere.radius = row_of(leaf, 3 * TREE_WIDTH);
 #if EFFECT_MOTION
-    __global const real *motion = geometry->leaf_motions + leaf_number * (3 * TREE_WIDTH);
+    __global const real *motion = place_in(geometry->leaf_motions, leaf_number * (3 * TREE_WIDTH));
     sphere.centre.x = fma(ray.time, row_of(motion, 0), sphere.centre.x);
     sphere.centre.y = fma(ray.time, row_of(motion, TREE_WIDTH), sphere.centre.y);
     sphere.centre.z = fma(ray.time, row_of(motion, 2 * TREE_WIDTH), sphere.centre.z);
@@ -61,7 +61,7 @@ FORCE_INLINE static child_mask leaf_candidates(const Geometry *geometry, const R
 
 /* Asks for a leaf that will be visited soon: many leaves are then on their way at a time. */
 static void read_leaf_ahead(const Geometry *geometry, uint leaf_number) {
-    __global const real *leaf = geometry->leaves + leaf_number * (4 * TREE_WIDTH);
+    __global const real *leaf = place_in(geometry->leaves, leaf_number * (4 * TREE_WIDTH));
     for (uint i = 0; i < 4 * TREE_WIDTH; i += LINE_BYTES / sizeof(real)) READ_AHEAD(leaf + i);
 }
 
@@ -96,7 +96,7 @@ static BoxRay box_ray(const Ray_one *ray) {
 
 /* The children of `node` that the ray meets before `bound`, and where it enters them. */
 static child_mask test_node(const Geometry *geometry, const BoxRay *box, uint node, real bound, vreal *entry) {
-    __global const real *planes = geometry->node_boxes + node * (6 * TREE_WIDTH);
+    __global const real *planes = place_in(geometry->node_boxes, node * (6 * TREE_WIDTH));
     /* Written out, axis by axis: a loop is not always unrolled. */
     const vreal enter_x = fma(row_of(planes, box->near_row[0]), splat(box->inverse[0]), splat(box->near_offset[0]));
     const vreal enter_y = fma(row_of(planes, box->near_row[1]), splat(box->inverse[1]), splat(box->near_offset[1]));
@@ -116,7 +116,7 @@ static child_mask test_node(const Geometry *geometry, const BoxRay *box, uint no
 
 /* Which children of a node are leaves. */
 static child_mask leaf_children(const Geometry *geometry, uint node) {
-    const vuint words = *(__global const vuint *)(geometry->children + (size_t)(node * TREE_WIDTH));
+    const vuint words = *(__global const vuint *)place_in(geometry->children, node * TREE_WIDTH);
     return lane_bits(vbool_of_uint((words & splat_uint(CHILD_LEAF)) != splat_uint(0)));
 }
 

@@ -152,7 +152,7 @@ static int take_nearest(const Geometry *geometry, real bound, Walk *walk, uint *
     const child_mask left = walk->left[level];
     real nearest;
     const uint lane = nearest_child(left, walk->entry[level], &nearest);
-    *child = geometry->children[walk->node[level] * TREE_WIDTH + lane];
+    *child = *place_in(geometry->children, walk->node[level] * TREE_WIDTH + lane);
     const int worth = nearest <= bound * SLAB_TOLERANCE;
     const child_mask rest = worth ? without_bit(left, lane) : 0;
     walk->left[level] = rest;
@@ -189,12 +189,12 @@ static void traverse_nodes(const Geometry *geometry, const BoxAxis *axes, const 
             child_mask met = enter_node(geometry, &boxes[lane], nodes[i].what, rays->bound[lane], &walks[lane]);
             /* One leaf or none is the rule. */
             leaves[leaf_count].lane = lane;
-            leaves[leaf_count].what = geometry->children[first + lowest_bit(met) % TREE_WIDTH] & ~CHILD_LEAF;
+            leaves[leaf_count].what = *place_in(geometry->children, first + lowest_bit(met) % TREE_WIDTH) & ~CHILD_LEAF;
             read_leaf_ahead(geometry, leaves[leaf_count].what);
             leaf_count += met != 0;
             for (met = without_lowest_bit(met); met != 0; met = without_lowest_bit(met)) {
                 leaves[leaf_count].lane = lane;
-                leaves[leaf_count].what = geometry->children[first + lowest_bit(met)] & ~CHILD_LEAF;
+                leaves[leaf_count].what = *place_in(geometry->children, first + lowest_bit(met)) & ~CHILD_LEAF;
                 read_leaf_ahead(geometry, leaves[leaf_count].what);
                 ++leaf_count;
             }
@@ -259,7 +259,7 @@ static void traverse_packet(const Geometry *geometry, const Ray *ray, vbool acti
 
 /* One leaf's spheres, one at a time, against all lanes. */
 static void intersect_leaf(const Geometry *geometry, const Ray *ray, vbool active, uint leaf_number, Hit *hit) {
-    __global const real *leaf = geometry->leaves + leaf_number * (4 * TREE_WIDTH);
+    __global const real *leaf = place_in(geometry->leaves, leaf_number * (4 * TREE_WIDTH));
     for (uint lane = 0; lane < TREE_WIDTH; ++lane) {
         if (leaf[3 * TREE_WIDTH + lane] <= 0) continue;
         const vuint slot = splat_uint(leaf_number * TREE_WIDTH + lane);
@@ -267,7 +267,7 @@ static void intersect_leaf(const Geometry *geometry, const Ray *ray, vbool activ
         sphere.centre = vec3(splat(leaf[lane]), splat(leaf[TREE_WIDTH + lane]), splat(leaf[2 * TREE_WIDTH + lane]));
         sphere.radius = splat(leaf[3 * TREE_WIDTH + lane]);
 #if EFFECT_MOTION
-        __global const real *motion = geometry->leaf_motions + leaf_number * (3 * TREE_WIDTH) + lane;
+        __global const real *motion = place_in(geometry->leaf_motions, leaf_number * (3 * TREE_WIDTH)) + lane;
         sphere.centre = madd3(ray->time, vec3(splat(motion[0]), splat(motion[TREE_WIDTH]), splat(motion[2 * TREE_WIDTH])),
                               sphere.centre);
 #endif

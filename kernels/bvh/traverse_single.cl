@@ -48,7 +48,7 @@ FORCE_INLINE static void traverse_tree(const Geometry *geometry, const Ray *ray,
             /* Leaves are visited at once, in any order: sorting them costs more than it saves. */
             const child_mask leaves = leaf_children(geometry, node);
             for (child_mask now = met & leaves; now != 0; now = without_lowest_bit(now)) {
-                const uint child = geometry->children[node * TREE_WIDTH + lowest_bit(now)];
+                const uint child = *place_in(geometry->children, node * TREE_WIDTH + lowest_bit(now));
                 intersect_leaf(geometry, ray, child & ~CHILD_LEAF, best);
                 if (any && best->slot != NO_SLOT) return;
             }
@@ -65,7 +65,7 @@ FORCE_INLINE static void traverse_tree(const Geometry *geometry, const Ray *ray,
 #endif
                     levels[top++] = (Level)node << TREE_WIDTH | rest;
                 }
-                node = geometry->children[node * TREE_WIDTH + lane];
+                node = *place_in(geometry->children, node * TREE_WIDTH + lane);
                 wanted = CHILDREN_ALL;
                 continue;
             }

@@ -41,6 +41,8 @@
 #undef bits_of_real
 #undef gather_real
 #undef gather_uint
+#undef gather_split_real
+#undef gather_split_uint
 
 #define splat(x) ((vreal)(x))
 #define splat_uint(x) ((vuint)(x))
@@ -74,6 +76,8 @@
 #define bits_of_real(x) as_uint(x) /* of a float */
 #define gather_real(base, index) ((base)[index])
 #define gather_uint(base, index) ((base)[index])
+#define gather_split_real(base, index) (*place_in(base, index)) /* from arrays that may come in parts (parts.cl) */
+#define gather_split_uint(base, index) (*place_in(base, index))
 #else
 /* A vbool is 0 or -1 a lane. */
 #define vreal JOIN(REAL, LANE_COUNT)
@@ -106,6 +110,17 @@
 #define gather_16(base, index) gather_8(base, (index).lo), gather_8(base, (index).hi)
 #define gather_real(base, index) ((vreal)(JOIN(gather_, LANE_COUNT)(base, index)))
 #define gather_uint(base, index) ((vuint)(JOIN(gather_, LANE_COUNT)(base, index)))
+#ifndef SCENE_PARTS
+#define gather_split_real gather_real
+#define gather_split_uint gather_uint
+#else
+#define gather_split_2(base, index) *place_in(base, (index).x), *place_in(base, (index).y)
+#define gather_split_4(base, index) gather_split_2(base, (index).lo), gather_split_2(base, (index).hi)
+#define gather_split_8(base, index) gather_split_4(base, (index).lo), gather_split_4(base, (index).hi)
+#define gather_split_16(base, index) gather_split_8(base, (index).lo), gather_split_8(base, (index).hi)
+#define gather_split_real(base, index) ((vreal)(JOIN(gather_split_, LANE_COUNT)(base, index)))
+#define gather_split_uint(base, index) ((vuint)(JOIN(gather_split_, LANE_COUNT)(base, index)))
+#endif
 
 /* The number of each lane. */
 #if LANE_COUNT == 16

@@ -56,8 +56,8 @@ __kernel VECTORS_WRITTEN void path_log(SCENE_PARAMETERS uint pixel, uint sample,
         path.lamp_slot = NO_SLOT;
         if (path.wants_lamps) light_vertices(&scene, &path);
         if (path.lamp_slot != NO_SLOT) {
-            lamp = path.lamp_slot >= DISC_SLOT ? path.lamp_slot : slot_sphere[path.lamp_slot];
-            seen = path.seen_slot >= DISC_SLOT ? path.seen_slot : slot_sphere[path.seen_slot];
+            lamp = path.lamp_slot >= DISC_SLOT ? path.lamp_slot : *place_in(scene.geometry.slot_sphere, path.lamp_slot);
+            seen = path.seen_slot >= DISC_SLOT ? path.seen_slot : *place_in(scene.geometry.slot_sphere, path.seen_slot);
         }
 #endif
         record[LOG_DISTANCE] = (real)path.distance;
@@ -87,7 +87,7 @@ __kernel VECTORS_WRITTEN void path_log(SCENE_PARAMETERS uint pixel, uint sample,
 #if EFFECT_DISCS
         if (!path.met) discs = discs_seen(&scene, &path);
 #endif
-        spheres[4 * step] = path.met ? slot_sphere[path.own_slot] : NO_SPHERE;
+        spheres[4 * step] = path.met ? *place_in(scene.geometry.slot_sphere, path.own_slot) : NO_SPHERE;
         spheres[4 * step + 1] = lamp;
         spheres[4 * step + 2] = seen;
         spheres[4 * step + 3] = discs;

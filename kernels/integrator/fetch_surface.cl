@@ -7,12 +7,12 @@
 static void fetch_surface(const Scene *scene, const Ray *ray, const Hit *hit, Sphere *sphere, Surface *surface, Vec3 *emitted) {
     const vuint slot = choose_uint(is_hit(hit), hit->slot, splat_uint(0));
     *sphere = sphere_for_ray(&scene->geometry, ray, slot);
-    const vuint material = gather_uint(scene->slot_material, slot);
+    const vuint material = gather_split_uint(scene->slot_material, slot);
     const vuint colour = slot * (uint)ALBEDO_REALS;
     const vuint numbers = material * MATERIAL_REALS;
     const vuint kinds = material * MATERIAL_UINTS;
-    surface->albedo = vec3(gather_real(scene->slot_albedo, colour), gather_real(scene->slot_albedo, colour + 1u),
-                           gather_real(scene->slot_albedo, colour + 2u));
+    surface->albedo = vec3(gather_split_real(scene->slot_albedo, colour), gather_split_real(scene->slot_albedo, colour + 1u),
+                           gather_split_real(scene->slot_albedo, colour + 2u));
     surface->kind = gather_uint(scene->material_kinds, kinds);
     *emitted = zero3();
 #if EFFECT_EMISSION

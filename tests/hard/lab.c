@@ -155,7 +155,7 @@ void lab_run(const Lab *lab, const char *kernel, size_t items, const LabArgument
     check_cl(code, kernel);
     if (scene != NULL) {
         check(bp_worker_bind_scene(scene, made, &err), &err);
-        index = BP_WORKER_SCENE_ARGUMENTS;
+        index = scene->scene_arguments;
     }
     const cl_uint count = (cl_uint)items;
     check_cl(clSetKernelArg(made, index++, sizeof count, &count), "clSetKernelArg");

@@ -48,7 +48,7 @@ static bool failed(const BpError *err, const char *what, uint32_t bits) {
 
 static BpStatus bind_chunk(BpWorker *worker, const Samples *samples, uint32_t per_pixel, BpError *err) {
     const cl_uint numbers[] = {0, 0, per_pixel, samples->count};
-    cl_uint index = BP_WORKER_SCENE_ARGUMENTS;
+    cl_uint index = worker->scene_arguments;
     for (size_t i = 0; i < sizeof numbers / sizeof numbers[0]; ++i)
         CL_TRY(worker, clSetKernelArg(worker->trace, index++, sizeof(cl_uint), &numbers[i]),
                "clSetKernelArg");
