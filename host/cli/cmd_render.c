@@ -114,12 +114,11 @@ static json_t *stats_json(const RunResult *result) {
     double mean[3];
     bp_film_mean(result->film, mean);
     json_t *root =
-        json_pack("{s:o, s:i, s:i, s:I, s:I, s:o, s:I, s:o, s:o, s:o}", "scene",
-                  bp_json_text(result->scene_path), "width", (int)info.width, "height", (int)info.height,
-                  "samples_per_pixel", (json_int_t)result->samples_per_pixel, "max_depth",
-                  (json_int_t)options->max_depth, "seed", bp_json_whole(options->seed), "spheres",
-                  (json_int_t)info.spheres, "device", device_json(&report->device), "effects",
-                  effects_json(&report->effects), "calibration", calibration_json(report));
+        json_pack("{s:o, s:i, s:i, s:I, s:I, s:o, s:I, s:o, s:o}", "scene", bp_json_text(result->scene_path),
+                  "width", (int)info.width, "height", (int)info.height, "samples_per_pixel",
+                  (json_int_t)result->samples_per_pixel, "max_depth", (json_int_t)options->max_depth, "seed",
+                  bp_json_whole(options->seed), "spheres", (json_int_t)info.spheres, "device",
+                  device_json(&report->device), "effects", effects_json(&report->effects));
     json_t *counts = json_pack(
         "{s:o, s:I, s:I, s:[f,f,f], s:o, s:I, s:I, s:I}", "seconds", seconds_json(result), "samples",
         (json_int_t)report->samples, "rays", (json_int_t)report->segments, "mean_radiance", mean[0], mean[1],
@@ -137,9 +136,9 @@ static json_t *stats_json(const RunResult *result) {
     uint64_t least, most;
     double mean_samples;
     bp_film_sample_counts(result->film, &least, &most, &mean_samples);
-    json_t *pixels =
-        json_pack("{s:b, s:I, s:f, s:I}", "adaptive", options->adaptive, "samples_min", (json_int_t)least,
-                  "samples_mean", mean_samples, "samples_max", (json_int_t)most);
+    json_t *pixels = json_pack("{s:b, s:I, s:f, s:I, s:o}", "adaptive", options->adaptive, "samples_min",
+                               (json_int_t)least, "samples_mean", mean_samples, "samples_max",
+                               (json_int_t)most, "calibration", calibration_json(report));
     root = bp_json_join(root, bp_report_settings(report));
     root = bp_json_join(root, counts);
     root = bp_json_join(root, run);

@@ -100,7 +100,7 @@ class Bench:
         words[words.index("-o") + 1] = made
         library = next(i for i, w in enumerate(words) if w.endswith("libballpark.a"))
         words[library:library] = objects
-        subprocess.run(words, cwd=self.build, check=True, capture_output=True, text=True)
+        subprocess.run(words, cwd=self.build, check=True, capture_output=True, text=True, errors="replace")
         return made
 
     def make(self, mutant):
@@ -131,7 +131,7 @@ class Bench:
                 link = os.path.join(os.path.dirname(self.scratch), sibling)
                 if not os.path.lexists(link):
                     os.symlink(os.path.join(self.source, "host", sibling), link)
-            subprocess.run(words, cwd=entry["directory"], check=True, capture_output=True, text=True)
+            subprocess.run(words, cwd=entry["directory"], check=True, capture_output=True, text=True, errors="replace")
             objects.append(made)
         return environment, objects
 
@@ -141,7 +141,7 @@ class Bench:
         scene = os.path.join(folder, trial.scene.removeprefix("book:") + ".json")
         command = [program, "check", scene, "--spp", str(trial.samples), "--seed", "1", "--quiet", "--json", "-",
                    *trial.options]
-        done = subprocess.run(command, env=environment, capture_output=True, text=True, timeout=300)
+        done = subprocess.run(command, env=environment, capture_output=True, text=True, errors="replace", timeout=300)
         if done.returncode not in (0, 3, 4):
             return ERROR, f"exit code {done.returncode}: {done.stderr.strip()[:300]}"
         result = json.loads(done.stdout)["results"][0]
@@ -156,7 +156,7 @@ class Bench:
 
     def run_test(self, trial, environment, program):
         done = subprocess.run([program], env={**environment, "BALLPARK_TEST_CASE": trial.case}, capture_output=True, text=True,
-                              timeout=300)
+                              errors="replace", timeout=300)
         if done.returncode < 0:
             return ERROR, f"crashed with signal {-done.returncode}"
         if done.returncode == 77:
@@ -173,7 +173,7 @@ class Bench:
         """A line with FAILED says what is wrong. That the program ends with an exit code of its own is no kill."""
         environment = {**environment, "PYTHONPATH": os.path.join(self.source, "tests/support")}
         command = [sys.executable, "-B", os.path.join(self.source, trial.path), program, self.source, *trial.arguments]
-        done = subprocess.run(command, env=environment, capture_output=True, text=True, timeout=300)
+        done = subprocess.run(command, env=environment, capture_output=True, text=True, errors="replace", timeout=300)
         if done.returncode == 0:
             return SURVIVED, "passed"
         failed = [line for line in done.stdout.splitlines() if "FAILED: " in line and "exit code" not in line]

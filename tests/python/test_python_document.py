@@ -3,6 +3,7 @@
 Usage: test_python_document.py SOURCE_DIR BUILD_DIR
 """
 
+import functools
 import os
 import pathlib
 import re
@@ -22,6 +23,7 @@ assert len(examples) >= 8, f"found {len(examples)} examples"
 begin = _render.Render.__init__
 
 
+@functools.wraps(begin)
 def with_few_samples(self, scene, **options):
     if options.get("spp") is None and "error" not in options and "time" not in options:
         options["spp"] = 2
