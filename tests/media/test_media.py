@@ -14,7 +14,7 @@ import subprocess
 import sys
 import tempfile
 
-from program_cases import PROGRAM, picture, run, run_cases, with_file
+from program_cases import PROGRAM, effects, picture, run, run_cases, with_file
 from pfm import read_pfm
 
 SIDE = 16
@@ -276,12 +276,12 @@ def films():
 
 
 def explained():
-    said = with_file(MIXED, lambda path: run("explain", path, "--wide").stdout.decode())
-    assert "media        in   3 spheres with a medium inside, and the scene lies in one" in said, said
-    clear = with_file(scene([ball([0, 0, 0], 1)], {"m": {}}), lambda path: run("explain", path, "--wide").stdout.decode())
-    assert "media        in   1 interface, but all media are clear" in clear, clear
-    none = with_file(scene([ball([0, 0, 0], 1, None, "matte")], {"m": {}}, medium="m"), lambda path: run("explain", path, "--wide").stdout.decode())
-    assert "media        out  no sphere has a medium inside" in none, none
+    said = effects(MIXED)
+    assert "media in 3 spheres with a medium inside, and the scene lies in one" in said, said
+    clear = effects(scene([ball([0, 0, 0], 1)], {"m": {}}))
+    assert "media in 1 interface, but all media are clear" in clear, clear
+    none = effects(scene([ball([0, 0, 0], 1, None, "matte")], {"m": {}}, medium="m"))
+    assert "media out no sphere has a medium inside" in none, none
     dense = scene([], {"m": {"scattering": 5}}, camera=pinhole(), medium="m", depth=4)
     step = with_file(dense, lambda path: run("explain", path, "--wide", "--pixel", "4,8").stdout.decode())
     assert step.count("a medium scatters it at (") == 4, step

@@ -8,6 +8,7 @@ takes long and finds what is rare is a deep case: --deep runs these, and without
 
 import json
 import os
+import re
 import subprocess
 import sys
 import tempfile
@@ -34,6 +35,11 @@ def with_file(document, use):
 def picture(document, *options):
     """The bytes of its PFM file."""
     return with_file(document, lambda path: run("render", path, "-o", "-", "--format", "pfm", "--quiet", *options).stdout)
+
+
+def effects(document):
+    """What `explain` says of its effects, with one space between the columns."""
+    return re.sub(" +", " ", with_file(document, lambda path: run("explain", path, "--wide").stdout.decode()))
 
 
 def run_cases(cases, deep_cases):
