@@ -12,59 +12,83 @@ FORCE_INLINE static void intersect_leaf(const Geometry *geometry, const Ray *ray
 }
 
 #if ACCELERATION_TREE
-/* A node of which children are still to be visited, as one number: the node's, and in its low bits the children's mask.
- * Trees of four children have fewer than 2^28 nodes, since there are fewer spheres than that.
- *
- * GPUs, which have narrow nodes, keep nothing else of a level: to test the node's boxes again, against what has been hit
- * meanwhile, costs them less than a longer stack. A processor keeps where the children are entered. */
-#if TREE_WIDTH <= 4
-typedef uint Level;
-#define KEEPS_ENTRIES 0
+/* The leaves among the children that have been met, at once and in any order: sorting them costs more than it saves. True: a
+ * hit has been found, and any will do. */
+FORCE_INLINE static int intersect_leaves(const Geometry *geometry, const Ray *ray, uint node, child_mask leaves, int any,
+                                         Hit *best) {
+    for (; leaves != 0; leaves = without_lowest_bit(leaves)) {
+        const uint child = *place_in(geometry->children, node * TREE_WIDTH + lowest_bit(leaves));
+        intersect_leaf(geometry, ray, child & ~CHILD_LEAF, best);
+        if (any && best->slot != NO_SLOT) return 1;
+    }
+    return 0;
+}
+
+#if TREE_WIDTH > 4
+/* Processors: each child that is still to be visited is on a stack, with the distance at which it is entered. */
+#define STACK_SIZE (TREE_DEPTH_MAX * (TREE_WIDTH - 1) + 1)
+
+FORCE_INLINE static void traverse_tree(const Geometry *geometry, const Ray *ray, int any, Hit *best) {
+    const BoxRay box = box_ray(ray);
+    uint stack_child[STACK_SIZE];
+    real stack_entry[STACK_SIZE];
+    real entries[TREE_WIDTH];
+    uint top = 0;
+    uint node = 0;
+    for (;;) {
+        vreal_node entry;
+        child_mask met = test_node(geometry, &box, node, best->bound, &entry);
+        JOIN(vstore, TREE_WIDTH)(entry, 0, entries);
+        const child_mask leaves = leaf_children(geometry, node);
+        if (intersect_leaves(geometry, ray, node, met & leaves, any, best)) return;
+        /* Nodes onto the stack, the nearest on top. */
+        met &= ~leaves;
+        const uint base = top;
+        for (; met != 0; met = without_lowest_bit(met)) {
+            const uint lane = lowest_bit(met);
+            const real lane_entry = entries[lane];
+            uint place = top;
+            while (place > base && stack_entry[place - 1] < lane_entry) {
+                stack_entry[place] = stack_entry[place - 1];
+                stack_child[place] = stack_child[place - 1];
+                --place;
+            }
+            stack_entry[place] = lane_entry;
+            stack_child[place] = *place_in(geometry->children, node * TREE_WIDTH + lane);
+            ++top;
+        }
+        do {
+            if (top == 0) return;
+            --top;
+        } while (stack_entry[top] > best->bound * SLAB_TOLERANCE);
+        node = stack_child[top];
+    }
+}
 #else
-typedef ulong Level;
-#define KEEPS_ENTRIES 1
-#endif
+/* GPUs, whose nodes are narrow and whose private memory is dear: a node of which children are still to be visited is one
+ * number, the node's and in its low bits the children's mask. To test the node's boxes again, against what has been hit
+ * meanwhile, costs less there than a longer stack; a processor would be 1.1 to 1.3 times slower. Trees of four children have fewer
+ * than 2^28 nodes, since there are fewer spheres than that. */
 #define CHILDREN_ALL (((child_mask)1 << TREE_WIDTH) - 1u)
 
 FORCE_INLINE static void traverse_tree(const Geometry *geometry, const Ray *ray, int any, Hit *best) {
     const BoxRay box = box_ray(ray);
-    Level levels[TREE_DEPTH_MAX];
-#if KEEPS_ENTRIES
-    vreal_node entries[TREE_DEPTH_MAX];
-#endif
+    uint levels[TREE_DEPTH_MAX];
     uint top = 0;
     uint node = 0;
     child_mask wanted = CHILDREN_ALL;
     for (;;) {
         vreal_node entry;
-        child_mask met = wanted;
-#if KEEPS_ENTRIES
-        if (wanted != CHILDREN_ALL) {
-            entry = entries[top];
-        } else
-#endif
-        {
-            met &= test_node(geometry, &box, node, best->bound, &entry);
-            /* Leaves are visited at once, in any order: sorting them costs more than it saves. */
-            const child_mask leaves = leaf_children(geometry, node);
-            for (child_mask now = met & leaves; now != 0; now = without_lowest_bit(now)) {
-                const uint child = *place_in(geometry->children, node * TREE_WIDTH + lowest_bit(now));
-                intersect_leaf(geometry, ray, child & ~CHILD_LEAF, best);
-                if (any && best->slot != NO_SLOT) return;
-            }
-            met &= ~leaves;
-        }
+        child_mask met = wanted & test_node(geometry, &box, node, best->bound, &entry);
+        const child_mask leaves = leaf_children(geometry, node);
+        if (intersect_leaves(geometry, ray, node, met & leaves, any, best)) return;
+        met &= ~leaves;
         if (met != 0) {
             real nearest;
             const uint lane = nearest_child(met, entry, &nearest);
             if (nearest <= best->bound * SLAB_TOLERANCE) {
                 const child_mask rest = without_bit(met, lane);
-                if (rest != 0) {
-#if KEEPS_ENTRIES
-                    entries[top] = entry;
-#endif
-                    levels[top++] = (Level)node << TREE_WIDTH | rest;
-                }
+                if (rest != 0) levels[top++] = node << TREE_WIDTH | rest;
                 node = *place_in(geometry->children, node * TREE_WIDTH + lane);
                 wanted = CHILDREN_ALL;
                 continue;
@@ -72,10 +96,11 @@ FORCE_INLINE static void traverse_tree(const Geometry *geometry, const Ray *ray,
         }
         if (top == 0) return;
         --top;
-        node = (uint)(levels[top] >> TREE_WIDTH);
+        node = levels[top] >> TREE_WIDTH;
         wanted = (child_mask)levels[top] & CHILDREN_ALL;
     }
 }
+#endif
 #endif
 
 /* Everything but the sphere being left. `best` brings a bound and perhaps a hit along. */

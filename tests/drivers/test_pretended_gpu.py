@@ -20,7 +20,7 @@ deep, nightly = "--deep" in sys.argv, "--nightly" in sys.argv
 DRIVERS = {"pocl.icd": {}}
 if deep:
     DRIVERS["rusticl.icd"] = {"RUSTICL_ENABLE": "llvmpipe"}
-SCENES = ("bubble", "checker-surface", "noise", "normals", "tie") if deep else ("bubble", "tie")
+SCENES = ("bubble", "checker-surface", "noise", "normals", "swarm", "tie") if deep else ("bubble", "swarm", "tie")
 recorded = [p for p in json.loads((source / "host/check/bits.json").read_text())["pictures"]
             if (p["precision"], p["refinement"]) == ("single", "float")]
 RENDERED = ("noise", "bubble") if deep else ("bubble",)  # the last of them in parts too
