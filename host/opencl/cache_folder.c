@@ -1,6 +1,8 @@
 /* cache_folder.c: see cache_folder.h. */
 #include "cache_folder.h"
 
+#include "base/hash.h"
+
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -25,4 +27,16 @@ char *bp_cache_folder(const char *below, bool make) {
         if (make && (part > 0 || home[0] == '\0') && parts[part][0] != '\0') mkdir(folder, 0700);
     }
     return folder;
+}
+
+char *bp_cache_file_path(const char *kind, const char *identity, bool make) {
+    char *folder = bp_cache_folder("", make);
+    if (folder == NULL) return NULL;
+    const size_t size = strlen(folder) + strlen(kind) + sizeof "/-0123456789abcdef.txt";
+    char *path = malloc(size);
+    if (path != NULL)
+        snprintf(path, size, "%s/%s-%016llx.txt", folder, kind,
+                 (unsigned long long)bp_hash_text(BP_HASH_START, identity));
+    free(folder);
+    return path;
 }

@@ -1,7 +1,7 @@
 /* cache_folder.h: where Ballpark keeps what it can make again.
  *
  * In:    the environment.   Out: a path.
- * Knows: the XDG Base Directory Specification.   Does not know: what is kept. */
+ * Knows: the XDG Base Directory Specification, how files of text are named.   Does not know: what is kept. */
 #ifndef BP_OPENCL_CACHE_FOLDER_H
 #define BP_OPENCL_CACHE_FOLDER_H
 
@@ -11,5 +11,8 @@
  * environment names neither as an absolute path, or out of memory. `make`: creates the folder for this user
  * alone; that this failed shows when something is written there. */
 char *bp_cache_folder(const char *below, bool make);
+
+/* The path of the file "<kind>-<hash of identity>.txt" in that folder, heap; NULL: as above. */
+char *bp_cache_file_path(const char *kind, const char *identity, bool make);
 
 #endif

@@ -21,19 +21,6 @@ static void identify(const BpDeviceInfo *device, uint64_t kernels, char *to, siz
              (unsigned long long)kernels);
 }
 
-/* Heap; NULL without a home for caches. */
-static char *name_file(const char *identity, bool make) {
-    char *folder = bp_cache_folder("", make);
-    if (folder == NULL) return NULL;
-    const size_t size = strlen(folder) + 64;
-    char *path = malloc(size);
-    if (path != NULL)
-        snprintf(path, size, "%s/calibration-%016llx.txt", folder,
-                 (unsigned long long)bp_hash_text(BP_HASH_START, identity));
-    free(folder);
-    return path;
-}
-
 /* The last line of a file, which is about all before it. */
 static void sign(uint64_t hash, char line[64]) {
     snprintf(line, 64, CHECKSUM "%016llx\n", (unsigned long long)hash);
@@ -63,7 +50,7 @@ bool bp_calibration_recall(const BpDeviceInfo *device, uint64_t kernels, BpCalib
     char identity[1024];
     size_t size = 0;
     identify(device, kernels, identity, sizeof identity);
-    char *path = name_file(identity, false);
+    char *path = bp_cache_file_path("calibration", identity, false);
     char *text = path != NULL ? bp_cache_read(path, &size) : NULL;
     const bool found = text != NULL && strlen(text) == size && read_outcome(text, identity, calibration);
     free(text);
@@ -80,7 +67,7 @@ void bp_calibration_keep(const BpDeviceInfo *device, uint64_t kernels, const BpC
     sign(bp_hash_text(bp_hash_text(BP_HASH_START, identity), outcome), line);
     const BpCachePart parts[] = {
         {identity, strlen(identity)}, {outcome, strlen(outcome)}, {line, strlen(line)}};
-    char *path = name_file(identity, true);
+    char *path = bp_cache_file_path("calibration", identity, true);
     if (path != NULL) bp_cache_write(path, parts, sizeof parts / sizeof parts[0]);
     free(path);
 }

@@ -39,22 +39,10 @@ static void identify(const BpDevice *opened, char *to, size_t size) {
     free(options);
 }
 
-static char *memory_path(const char *identity, bool make) {
-    char *folder = bp_cache_folder("", make);
-    if (folder == NULL) return NULL;
-    const size_t size = strlen(folder) + 64;
-    char *path = malloc(size);
-    if (path != NULL)
-        snprintf(path, size, "%s/self-test-%016llx.txt", folder,
-                 (unsigned long long)bp_hash_text(BP_HASH_START, identity));
-    free(folder);
-    return path;
-}
-
 char *bp_self_test_memory_path(const BpDevice *device) {
     char identity[1024];
     identify(device, identity, sizeof identity);
-    return memory_path(identity, false);
+    return bp_cache_file_path("self-test", identity, false);
 }
 
 /* Whether the file can be used: opening anything but a regular file may block. */
@@ -78,7 +66,7 @@ BpStatus bp_self_test_once(BpDevice *device, bool *ran, BpError *err) {
     BpStatus status = BP_OK;
     char identity[1024];
     identify(device, identity, sizeof identity);
-    char *path = memory_path(identity, true);
+    char *path = bp_cache_file_path("self-test", identity, true);
     if (path != NULL && !is_regular_or_absent(path)) {
         free(path);
         path = NULL;
