@@ -4,8 +4,7 @@
  * in the last place of their terms; what parts must be rare, and must not shift the mean. It is no
  * independent evidence, since both come from one kernel text; it finds numerical trouble that statistics
  * would need 1e10 samples to see. */
-#include "check/check.h"
-#include "support/unit_test.h"
+#include "support/pixel_samples.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -13,50 +12,20 @@
 
 enum { SAMPLES = 64 };
 
-typedef struct Samples {
-    float *values; /* pixel * SAMPLES + sample, 4 each */
-    size_t count;
-} Samples;
-
-static Samples draw(const BpScene *scene, BpPrecision precision) {
+static PixelSamples draw(const BpScene *scene, BpPrecision precision) {
     BpRenderOptions options;
-    BpRender *render = NULL;
-    BpError err = {0};
-    Samples all = {.count = (size_t)scene->camera.width * scene->camera.height * SAMPLES};
-    all.values = malloc(all.count * 4 * sizeof *all.values);
-    assert_non_null(all.values);
     bp_render_defaults(scene, &options);
     options.sampler = BP_SAMPLER_INDEPENDENT;
     options.samples_per_pixel = SAMPLES;
     options.precision = precision;
     options.seed = 3;
-    BpStatus status = bp_render_create(scene, &options, NULL, 0, &render, &err);
-    size_t got = 0;
-    for (bool finished = false; status == BP_OK && !finished;) {
-        BpSampleBlock block = {0};
-        status = bp_render_step_samples(render, &block, &finished, &err);
-        for (size_t i = 0; status == BP_OK && i < (size_t)block.pixel_count * block.samples; ++i, ++got) {
-            const size_t place =
-                (block.first_pixel + i / block.samples) * SAMPLES + block.first_sample + i % block.samples;
-            for (size_t k = 0; k < 4; ++k) all.values[4 * place + k] = block.values[4 * i + k];
-        }
-        bp_sample_block_clear(&block);
-    }
-    if (status != BP_OK) fail_msg("%s", err.message);
-    assert_int_equal(got, all.count);
-    bp_render_destroy(&render);
-    return all;
+    return draw_samples(scene, &options);
 }
 
 /* `parting`: the share of paths that may part. */
 static void compare(const char *name, uint32_t width, double parting) {
-    char path[512];
-    BpScene *scene = NULL;
-    BpError err = {0};
-    snprintf(path, sizeof path, "%s/%s", SOURCE_DIR, name);
-    if (bp_scene_load(path, &scene, &err) != BP_OK || bp_scene_set_width(scene, width, &err) != BP_OK)
-        fail_msg("%s", err.message);
-    const Samples single = draw(scene, BP_PRECISION_SINGLE), wide = draw(scene, BP_PRECISION_DOUBLE);
+    BpScene *scene = load_scene(name, width);
+    const PixelSamples single = draw(scene, BP_PRECISION_SINGLE), wide = draw(scene, BP_PRECISION_DOUBLE);
     size_t parted = 0;
     double close_sum = 0, difference = 0, square = 0, brightness = 0;
     for (size_t i = 0; i < single.count; ++i) {

@@ -1,16 +1,16 @@
-/* test_lock_step.c: how many lanes of a GPU have a path to follow, by replaying paths in step.
+/* test_busy_lanes.c: how many lanes of a GPU have a path to follow, by replaying paths in step.
  *
  * In:    the lengths of the paths of a picture, as the kernel traced them here.
  * Out:   for each width of a group that proceeds in step, the share of its lanes that work, in the form of
- * one work-item a sample and in that of a pool: the rows of the table in docs/GPU.md. Knows: how the two
- * forms hand out samples (trace_sample.cl, trace_pool.cl).   Does not know: what a segment costs.
+ * one work-item a sample and in that of a pool: the rows of the table in docs/GPU.md.
+ * Knows: how the two forms hand out samples (trace_sample.cl, trace_pool.cl).   Does not know: what a segment
+ * costs.
  *
- * A step is a segment of every lane that has one. Within a step lanes part again, at the nodes of the tree
- * and at materials: of that, nothing is said here. */
+ * A step is a segment of every lane that has one. Within a step, lanes part again, at the nodes of the tree
+ * and at materials; of that, nothing is said here. */
 #include "opencl/program.h"
-#include "render/render.h"
 #include "render/worker.h"
-#include "support/unit_test.h"
+#include "support/pixel_samples.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -74,39 +74,22 @@ static double share_of_pool_form(const Lengths *lengths, size_t width) {
 }
 
 static Lengths trace(const char *name) {
-    BpScene *scene = NULL;
+    char path[64];
+    snprintf(path, sizeof path, "scenes/%s.json", name);
+    BpScene *scene = load_scene(path, WIDTH);
     BpRenderOptions options;
-    BpRender *render = NULL;
-    BpError err = {0};
-    char path[512];
-    snprintf(path, sizeof path, SOURCE_DIR "/scenes/%s.json", name);
-    assert_int_equal(bp_scene_load(path, &scene, &err), BP_OK);
-    assert_int_equal(bp_scene_set_width(scene, WIDTH, &err), BP_OK);
     bp_render_defaults(scene, &options);
     options.samples_per_pixel = SAMPLES;
-    Lengths lengths = {.count = (size_t)scene->camera.width * scene->camera.height * SAMPLES};
-    lengths.of = malloc(lengths.count * sizeof *lengths.of);
+    const PixelSamples samples = draw_samples(scene, &options);
+    const Lengths lengths = {malloc(samples.count * sizeof *lengths.of), samples.count};
     assert_non_null(lengths.of);
-    size_t got = 0;
-    BpStatus status = bp_render_create(scene, &options, NULL, 0, &render, &err);
-    for (bool finished = false; status == BP_OK && !finished;) {
-        BpSampleBlock block = {0};
-        status = bp_render_step_samples(render, &block, &finished, &err);
-        for (size_t i = 0; status == BP_OK && i < (size_t)block.pixel_count * block.samples; ++i, ++got) {
-            const size_t place =
-                (block.first_pixel + i / block.samples) * SAMPLES + block.first_sample + i % block.samples;
-            const float segments = block.values[4 * i + 3];
-            assert_true(segments >= 1 && segments <= (float)options.max_depth + 0.5f);
-            lengths.of[place] = (uint32_t)segments;
-        }
-        bp_sample_block_clear(&block);
+    for (size_t i = 0; i < samples.count; ++i) {
+        const float segments = samples.values[4 * i + 3];
+        assert_true(segments >= 1 && segments <= (float)options.max_depth + 0.5f);
+        lengths.of[i] = (uint32_t)segments;
     }
-    if (status != BP_OK) print_message("%s\n", err.message);
-    assert_int_equal(status, BP_OK);
-    assert_int_equal(got, lengths.count);
-    bp_render_destroy(&render);
+    free(samples.values);
     bp_scene_destroy(&scene);
-    bp_error_clear(&err);
     return lengths;
 }
 
