@@ -110,41 +110,31 @@ static BpStatus fail_syntax(const BpDocument *document, const json_error_t *erro
     return fail_at_offset(document, at, err, text);
 }
 
-/* What packed a file that begins like this, or NULL. */
-static const char *packed_by(const char *text, size_t length) {
-    static const struct {
-        const char *beginning, *program;
-    } known[] = {{"\x1f\x8b", "gzip"},
-                 {"BZh", "bzip2"},
-                 {"\xfd"
-                  "7zXZ",
-                  "xz"},
-                 {"\x28\xb5\x2f\xfd", "zstd"},
-                 {"PK\x03\x04", "zip"}};
-    for (size_t i = 0; i < sizeof known / sizeof *known; i++) {
-        const size_t size = strlen(known[i].beginning);
-        if (length >= size && memcmp(text, known[i].beginning, size) == 0) return known[i].program;
-    }
-    return NULL;
-}
+/* Files that are often given in place of a scene, known by their first bytes, and what to do with them. */
+typedef struct KnownFile {
+    const char *beginning, *what, *remedy;
+} KnownFile;
 
-/* What a file that begins like this is, if it is none that Ballpark reads as a scene but one that it writes,
- * and what to do with it; or NULL. */
-static const char *known_result(const char *text, size_t length) {
-    static const struct {
-        const char *beginning, *is;
-    } known[] = {{"{\"ballpark_accumulator\"",
-                  "the sums of a render (.bpa), expected a scene: `ballpark merge "
-                  "FILE.bpa -o FILE.png` makes the picture, and --resume FILE.bpa "
-                  "continues the render"},
-                 {"\x89PNG", "a PNG picture, expected a scene"},
-                 {"\x76\x2f\x31\x01", "an EXR picture, expected a scene"},
-                 {"P6", "a PPM picture, expected a scene"},
-                 {"P3", "a PPM picture, expected a scene"},
-                 {"PF", "a PFM picture, expected a scene"}};
+/* The known file that begins like this, or NULL. */
+static const KnownFile *known_file(const char *text, size_t length) {
+    static const char unpack[] = "; unpack it first (only files of particles may be packed, by gzip)";
+    static const KnownFile known[] = {
+        {"{\"ballpark_accumulator\"", "the sums of a render (.bpa)",
+         ": `ballpark merge FILE.bpa -o FILE.png` makes the picture, and --resume FILE.bpa continues the "
+         "render"},
+        {"\x89PNG", "a PNG picture", ""},
+        {"\x76\x2f\x31\x01", "an EXR picture", ""},
+        {"P6", "a PPM picture", ""},
+        {"P3", "a PPM picture", ""},
+        {"PF", "a PFM picture", ""},
+        {"\x1f\x8b", "a file packed by gzip", unpack},
+        {"BZh", "a file packed by bzip2", unpack},
+        {"\xfd\x37zXZ", "a file packed by xz", unpack},
+        {"\x28\xb5\x2f\xfd", "a file packed by zstd", unpack},
+        {"PK\x03\x04", "a file packed by zip", unpack}};
     for (size_t i = 0; i < sizeof known / sizeof *known; i++) {
         const size_t size = strlen(known[i].beginning);
-        if (length >= size && memcmp(text, known[i].beginning, size) == 0) return known[i].is;
+        if (length >= size && memcmp(text, known[i].beginning, size) == 0) return &known[i];
     }
     return NULL;
 }
@@ -160,21 +150,13 @@ static bool is_binary(const char *text, size_t length) {
 
 /* Names the remedy for files that are no JSON document at all. */
 static BpStatus refuse_other_files(const BpDocument *document, size_t start, BpError *err) {
-    const char *const program = packed_by(document->text, document->length);
-    const char *const result = known_result(document->text, document->length);
-    char text[256];
-    if (result != NULL) {
-        snprintf(text, sizeof text, "found %s", result);
+    const KnownFile *const known = known_file(document->text, document->length);
+    if (known != NULL) {
+        char text[256];
+        snprintf(text, sizeof text, "found %s, expected a scene%s", known->what, known->remedy);
         return fail_at_offset(document, 0, err, text);
     }
     if (document->text[start] == '{' || document->text[start] == '[') return BP_OK;
-    if (program != NULL) {
-        snprintf(text, sizeof text,
-                 "found a file packed by %s, expected a scene; unpack it first (only files of particles may "
-                 "be packed, by gzip)",
-                 program);
-        return fail_at_offset(document, 0, err, text);
-    }
     if (is_binary(document->text, document->length))
         return fail_at_offset(
             document, 0, err,
