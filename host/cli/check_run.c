@@ -3,7 +3,7 @@
 
 #include "base/format.h"
 #include "check_entry.h"
-#include "image/image.h"
+#include "content.h"
 #include "interrupt.h"
 #include "item_device.h"
 #include "output.h"
@@ -25,17 +25,6 @@ static void show_progress(const char *name, const BpCheckProgress *progress) {
     bp_terminal_show(text);
 }
 
-typedef struct Map {
-    const BpPicture *picture;
-    BpFormat format;
-    BpTransfer transfer;
-} Map;
-
-static BpStatus print_map(const void *what, FILE *out, BpError *err) {
-    const Map *map = what;
-    return bp_picture_write_stream(map->picture, out, map->format, map->transfer, err);
-}
-
 /* What the child has beside the run. */
 typedef struct Child {
     const BpCheckRun *run;
@@ -46,8 +35,8 @@ static BpStatus write_map(const BpCheckRun *run, const BpCheckItem *item, const 
                           BpError *err) {
     BpPicture picture;
     BP_TRY(bp_check_map(result, item->scene->transfer, &picture, err));
-    const Map map = {&picture, run->map_format, item->scene->transfer};
-    const BpStatus status = bp_line_write(run->line, run->map, print_map, &map, err);
+    const BpStatus status = bp_line_write_picture(run->line, run->map, &picture, run->map_format,
+                                                  item->scene->transfer, NULL, err);
     bp_picture_clear(&picture);
     return status;
 }

@@ -6,6 +6,7 @@
 #include "base/clock.h"
 #include "base/output_file.h"
 #include "base/shown.h"
+#include "content.h"
 #include "file_conflicts.h"
 #include "film/film_file.h"
 #include "option_table.h"
@@ -118,13 +119,9 @@ static void report(BpCheckpoint *checkpoint, BpStatus status, BpError *fault) {
     bp_error_clear(fault);
 }
 
-static BpStatus print_film(const void *film, FILE *out, BpError *err) {
-    return bp_film_write_stream(film, out, err);
-}
-
 static BpStatus write_to(const char *path, bool new_only, const BpFilm *film, BpError *err) {
     const BpCommandLine line = {.no_clobber = new_only};
-    return bp_line_write(&line, path, print_film, film, err);
+    return bp_line_write_film(&line, path, film, err);
 }
 
 void bp_checkpoint_write(BpCheckpoint *checkpoint, const BpFilm *film) {

@@ -14,6 +14,7 @@
 #include "base/quantile.h"
 #include "base/shown.h"
 #include "base/status.h"
+#include "content.h"
 #include "film/film.h"
 #include "formats/field.h"
 #include "interrupt.h"
@@ -94,10 +95,6 @@ static void make_glass(BpMaterial *material) {
     material->total_reflection = BP_TOTAL_REFLECT;
 }
 
-static BpStatus print_scene(const void *scene, FILE *out, BpError *err) {
-    return bp_scene_print(scene, out, err);
-}
-
 static BpStatus write_cover(const BpCommandLine *line, const char *name, const char *path, BpError *err) {
     BpScene *scene = NULL;
     BP_TRY(bp_line_check_output(line, path, err));
@@ -111,7 +108,7 @@ static BpStatus write_cover(const BpCommandLine *line, const char *name, const c
         if (strcmp(name, "glass") == 0 && m != ground) make_glass(&scene->materials[m]);
     }
     bp_line_say_overwritten(line, path);
-    status = bp_line_write(line, path, print_scene, scene, err);
+    status = bp_line_write_scene(line, path, scene, err);
 done:
     bp_scene_destroy(&scene);
     return status;

@@ -6,7 +6,6 @@
 
 #include "base/format.h"
 #include "base/json_memory.h"
-#include "base/output_target.h"
 #include "interrupt.h"
 #include "json_file.h"
 #include "output.h"
@@ -15,7 +14,6 @@
 #include "study/study.h"
 #include "terminal.h"
 
-#include <errno.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -49,10 +47,10 @@ typedef struct Printed {
 
 static BpStatus print_part(const void *what, FILE *out, BpError *err) {
     const Printed *printed = what;
-    if (printed->print(printed->result, out)) return BP_OK;
-    if (bp_json_memory_failed()) return bp_fail(err, BP_ERR_MEMORY, "out of memory for the results");
-    return bp_fail(err, BP_ERR_FILE, "%s%s%s", out == stdout ? "cannot write to standard output: " : "",
-                   strerror(errno), bp_output_remedy(errno));
+    const bool written = printed->print(printed->result, out);
+    if (!written && bp_json_memory_failed())
+        return bp_fail(err, BP_ERR_MEMORY, "out of memory for the results");
+    return bp_print_end(out, written, err);
 }
 
 static BpStatus check_outputs(const BpCommandLine *line, BpError *err) {

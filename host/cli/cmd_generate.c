@@ -5,6 +5,7 @@
 #include "commands.h"
 
 #include "base/plural.h"
+#include "content.h"
 #include "formats/field.h"
 #include "output.h"
 #include "page.h"
@@ -32,10 +33,6 @@ static const char *choose_path(const BpCommandLine *line, const char *name) {
     return taken ? "-" : name;
 }
 
-static BpStatus print_scene(const void *scene, FILE *out, BpError *err) {
-    return bp_scene_print(scene, out, err);
-}
-
 static const char *shown_name(const char *path) {
     return strcmp(path, "-") == 0 ? "standard output" : path;
 }
@@ -47,7 +44,7 @@ static BpStatus generate_cover(const BpCommandLine *line, uint64_t seed, BpError
     BP_TRY(bp_line_check_named(line, path, ".json", "the cover is written as a scene document", err));
     BP_TRY(bp_scene_generate_cover(line->edition != NULL ? line->edition : "4", grid, seed, &scene, err));
     bp_line_say_overwritten(line, path);
-    const BpStatus status = bp_line_write(line, path, print_scene, scene, err);
+    const BpStatus status = bp_line_write_scene(line, path, scene, err);
     if (status == BP_OK) {
         BpSceneInfo info;
         bp_scene_info(scene, &info);

@@ -4,6 +4,7 @@
  * Knows: where relative paths begin in what is written.   Does not know: the grammar. */
 #include "commands.h"
 
+#include "content.h"
 #include "formats/scene_parse.h"
 #include "output.h"
 #include "scene/scene.h"
@@ -37,10 +38,6 @@ static BpStatus move_files(BpScene *scene, const char *from, const char *to, BpE
     return BP_OK;
 }
 
-static BpStatus print_scene(const void *scene, FILE *out, BpError *err) {
-    return bp_scene_print(scene, out, err);
-}
-
 BpStatus bp_command_scene(const BpCommandLine *line, BpError *err) {
     const char *const path = line->operands[0];
     const char *const to = line->output != NULL ? line->output : "-";
@@ -52,7 +49,7 @@ BpStatus bp_command_scene(const BpCommandLine *line, BpError *err) {
         move_files(scene, strcmp(path, "-") == 0 ? "" : path, strcmp(to, "-") == 0 ? "" : to, err);
     if (status == BP_OK) {
         bp_line_say_overwritten(line, to);
-        status = bp_line_write(line, to, print_scene, scene, err);
+        status = bp_line_write_scene(line, to, scene, err);
     }
     bp_scene_destroy(&scene);
     return status;

@@ -6,8 +6,8 @@
 
 #include "base/module.h"
 #include "base/plural.h"
+#include "content.h"
 #include "formats/scene_parse.h"
-#include "image/image.h"
 #include "interrupt.h"
 #include "opencl/device.h"
 #include "output.h"
@@ -46,16 +46,6 @@ typedef struct Saving {
     BpTransfer transfer;
     unsigned number; /* of the latest */
 } Saving;
-
-typedef struct Printed {
-    const BpPicture *picture;
-    BpTransfer transfer;
-} Printed;
-
-static BpStatus print_picture(const void *what, FILE *out, BpError *err) {
-    const Printed *printed = what;
-    return bp_picture_write_stream(printed->picture, out, BP_FORMAT_PNG, printed->transfer, err);
-}
 
 /* The scene's name without folder and ending, "scene" for standard input, then the first number that is free.
  */
@@ -99,11 +89,10 @@ static void print_command(const BpCommandLine *line, const BpScene *scene) {
 static BpStatus save(void *context, const BpScene *scene, const BpPicture *picture, BpError *err) {
     Saving *saving = context;
     char name[1024];
-    const Printed printed = {picture, saving->transfer};
     BpCommandLine careful = *saving->line;
     careful.no_clobber = true;
     BP_TRY(choose_name(saving, name, sizeof name, err));
-    BP_TRY(bp_line_write(&careful, name, print_picture, &printed, err));
+    BP_TRY(bp_line_write_picture(&careful, name, picture, BP_FORMAT_PNG, saving->transfer, NULL, err));
     bp_say(saving->line, "saved %s; this command renders it with less noise:", name);
     print_command(saving->line, scene);
     return BP_OK;

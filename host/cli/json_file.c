@@ -2,7 +2,6 @@
 #include "json_file.h"
 
 #include "base/json_memory.h"
-#include "output.h"
 
 #include <errno.h>
 #include <inttypes.h>
@@ -15,13 +14,18 @@ static BpStatus dump(const void *what, FILE *stream, BpError *err) {
     return bp_print_end(stream, written && fputc('\n', stream) != EOF, err);
 }
 
-BpStatus bp_json_write(const BpCommandLine *line, json_t *root, const char *path, BpError *err) {
+BpStatus bp_json_write_as(const BpCommandLine *line, json_t *root, const char *path, BpPrint *print,
+                          BpError *err) {
     /* An allocation may also have failed without an error, leaving a list incomplete. */
     const BpStatus status = root == NULL || bp_json_memory_failed()
                                 ? bp_fail(err, BP_ERR_MEMORY, "out of memory for the document %s", path)
-                                : bp_line_write(line, path, dump, root, err);
+                                : bp_line_write(line, path, print, root, err);
     json_decref(root);
     return status;
+}
+
+BpStatus bp_json_write(const BpCommandLine *line, json_t *root, const char *path, BpError *err) {
+    return bp_json_write_as(line, root, path, dump, err);
 }
 
 json_t *bp_json_whole(uint64_t number) {

@@ -5,13 +5,16 @@
 #ifndef BP_CLI_JSON_FILE_H
 #define BP_CLI_JSON_FILE_H
 
-#include "options.h"
+#include "output.h"
 
 #include <jansson.h>
 
 /* Writes `root`, indented, and releases it. "-": standard output. A NULL root is memory that ran out
  * (BP_ERR_MEMORY), so that the result of json_pack() can be passed on unchecked. */
 BpStatus bp_json_write(const BpCommandLine *line, json_t *root, const char *path, BpError *err);
+/* The same in another format, by `print`, which gets the root. */
+BpStatus bp_json_write_as(const BpCommandLine *line, json_t *root, const char *path, BpPrint *print,
+                          BpError *err);
 
 /* A number of 64 bits, exact: jansson's integers have a sign, so from 2^63 on it is a text of decimal digits.
  */

@@ -1,9 +1,9 @@
 /* junit_file.c: see junit_file.h. */
 #include "junit_file.h"
 
-#include "base/json_memory.h"
+#include "json_file.h"
+
 #include "base/shown.h"
-#include "output.h"
 
 #include <stdio.h>
 #include <string.h>
@@ -111,9 +111,5 @@ static BpStatus print_suites(const void *what, FILE *out, BpError *err) {
 }
 
 BpStatus bp_junit_write(const BpCommandLine *line, json_t *suites, const char *path, BpError *err) {
-    const BpStatus status = suites == NULL || bp_json_memory_failed()
-                                ? bp_fail(err, BP_ERR_MEMORY, "out of memory for the document %s", path)
-                                : bp_line_write(line, path, print_suites, suites, err);
-    json_decref(suites);
-    return status;
+    return bp_json_write_as(line, suites, path, print_suites, err);
 }

@@ -39,8 +39,7 @@ BpStatus bp_print_end(FILE *out, bool written, BpError *err) {
 
 static BpStatus print_to_standard_output(BpPrint *print, const void *what, BpError *err) {
     BP_TRY(print(what, stdout, err));
-    if (fflush(stdout) == 0 && !ferror(stdout)) return BP_OK;
-    return bp_fail(err, BP_ERR_FILE, "cannot write to standard output: %s", strerror(errno));
+    return bp_print_end(stdout, true, err);
 }
 
 BpStatus bp_line_write(const BpCommandLine *line, const char *path, BpPrint *print, const void *what,

@@ -7,6 +7,7 @@
 
 #include "base/format.h"
 #include "base/json_text.h"
+#include "content.h"
 #include "film/film_file.h"
 #include "image/color_bar.h"
 #include "image/depth_cues.h"
@@ -180,23 +181,6 @@ void bp_result_say_overwritten(const BpCommandLine *line, const BpResultFile *re
     if (result->error_map[0] != '\0') bp_line_say_overwritten(line, result->error_map);
 }
 
-typedef struct Printed {
-    const BpPicture *picture;
-    BpFormat format;
-    BpTransfer transfer;
-    const BpImageExtra *extra;
-} Printed;
-
-static BpStatus print_picture(const void *what, FILE *out, BpError *err) {
-    const Printed *printed = what;
-    return bp_picture_write_extra(printed->picture, out, printed->format, printed->transfer, printed->extra,
-                                  err);
-}
-
-static BpStatus print_film(const void *film, FILE *out, BpError *err) {
-    return bp_film_write_stream(film, out, err);
-}
-
 static BpStatus print_error_map(const void *picture, FILE *out, BpError *err) {
     return bp_error_map_print(picture, out, err);
 }
@@ -263,7 +247,6 @@ BpStatus bp_result_write(const BpCommandLine *line, const BpResultFile *result, 
     BpImageExtra extra = {.dots_per_inch = bp_option_given(line, BP_OPTION_DPI) ? line->dpi : 0,
                           .deep = line->bit_depth != NULL && strcmp(line->bit_depth, "16") == 0};
     Metadata metadata = {.command_text = NULL};
-    const Printed printed = {&picture, result->format, transfer, &extra};
     if (line->metadata) BP_TRY_GOTO(status, make_metadata(line, film, &metadata, &extra, err), done);
     const bool bytes = result->format == BP_FORMAT_PNG || result->format == BP_FORMAT_PPM ||
                        result->format == BP_FORMAT_PPM_ASCII;
@@ -284,8 +267,9 @@ BpStatus bp_result_write(const BpCommandLine *line, const BpResultFile *result, 
                bp_result_name(result));
     BpCommandLine of_result = *line;
     if (result->is_own) of_result.no_clobber = false;
-    status = is_picture ? bp_line_write(&of_result, result->path, print_picture, &printed, err)
-                        : bp_line_write(&of_result, result->path, print_film, film, err);
+    status = is_picture ? bp_line_write_picture(&of_result, result->path, &picture, result->format, transfer,
+                                                &extra, err)
+                        : bp_line_write_film(&of_result, result->path, film, err);
     /* Who closes a pipe wants no more of the picture, but the map is a file of its own. */
     if (has_map && (status == BP_OK || strcmp(result->path, "-") == 0)) {
         const BpStatus mapped = bp_line_write(line, result->error_map, print_error_map,
