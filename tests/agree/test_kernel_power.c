@@ -2,11 +2,8 @@
  * were made too bright by factors chosen for a predicted power. */
 #include "check/check.h"
 #include "check/statistics.h"
-#include "reference/reference.h"
 #include "support/kernel_copy.h"
 #include "verdict_scenes.h"
-
-#include <math.h>
 
 static void draw_kernel(const BpScene *scene, uint64_t samples, uint64_t seed, BpSums *sums) {
     BpRender *render = NULL;
@@ -26,17 +23,11 @@ static void draw_kernel(const BpScene *scene, uint64_t samples, uint64_t seed, B
     bp_render_destroy(&render);
 }
 
-static void draw_reference(const BpScene *scene, uint64_t samples, uint64_t seed, BpSums *sums) {
-    const BpReferenceOptions options = {.samples = samples, .seed = ~seed, .max_depth = 6};
-    assert_int_equal(bp_sums_init(sums, scene->camera.width, scene->camera.height, NULL), BP_OK);
-    assert_int_equal(bp_reference_render(scene, &options, sums, NULL, NULL), BP_OK);
-}
-
 static BpVerdict check(const BpScene *scene, uint64_t samples, uint64_t seed, double level) {
     BpSums kernel, reference;
     BpVerdict verdict;
     draw_kernel(scene, samples, seed, &kernel);
-    draw_reference(scene, samples, seed, &reference);
+    draw_reference(scene, samples, ~seed, &reference);
     assert_int_equal(bp_verdict(&kernel, &reference, level, BP_VERDICT_MARGIN, &verdict, NULL), BP_OK);
     bp_sums_clear(&kernel);
     bp_sums_clear(&reference);
@@ -59,34 +50,15 @@ static void control(void **state) {
     assert_true(bp_binomial_two_sided((uint64_t)interval_missed, 200, 0.05) > 1e-4);
 }
 
-/* The mean of a pixel's samples over the picture, and the variance of one sample's share in it. */
-static void measure(const BpScene *scene, double *mean, double *variance) {
-    BpSums sums;
-    draw_reference(scene, 4096, 99, &sums);
-    *mean = *variance = 0;
-    const double pixels = (double)sums.width * sums.height;
-    for (size_t p = 0; p < (size_t)sums.width * sums.height; ++p) {
-        const double m = sums.pixels[p].sum[0] / 4096;
-        *mean += m / pixels;
-        *variance += (sums.pixels[p].sum2[0] / 4096 - m * m) / (pixels * pixels);
-    }
-    bp_sums_clear(&sums);
-}
-
 static void calibrated(void **state) {
     (void)state;
     BuiltScene built;
     grey_scene(&built);
     double mean, variance;
-    measure(&built.scene, &mean, &variance);
-    const double limit = bp_normal_upper_quantile(bp_level_bonferroni(0.45 * BP_VERDICT_LEVEL, 3) / 2);
+    measure_picture(&built.scene, ~UINT64_C(99), &mean, &variance);
     const double powers[3] = {0.1, 0.5, 0.9}, samples = 256;
     for (int i = 0; i < 3; ++i) {
-        double bias = 0;
-        for (int step = 0; step < 20; ++step) { /* the brighter side is noisier in proportion */
-            const double error = sqrt(variance * (1 + pow(1 + bias, 2)) / samples) / mean;
-            bias = bp_z_detectable(limit, powers[i]) * error + BP_VERDICT_ROUNDING;
-        }
+        const double bias = bias_of_power(powers[i], mean, variance, samples);
         char brighter[512];
         snprintf(brighter, sizeof brighter,
                  "(real4)(R(%.9f), R(%.9f), R(%.9f), 1) * (real4)(red[lane], green[lane], blue[lane], "
@@ -99,7 +71,7 @@ static void calibrated(void **state) {
         for (uint64_t run = 0; run < 100; ++run) {
             const BpVerdict verdict =
                 check(&built.scene, (uint64_t)samples, 1000 * (uint64_t)(i + 1) + run, 1e-4);
-            by_picture += verdict.worst[BP_FAMILY_PICTURE].z > limit;
+            by_picture += verdict.worst[BP_FAMILY_PICTURE].z > picture_limit();
             rejected += verdict.conclusion == BP_DISAGREE;
         }
         kernel_copy_close(&copy);
@@ -118,12 +90,7 @@ static void calibrated(void **state) {
 static void half_percent(void **state) {
     (void)state;
     BuiltScene built;
-    built_scene_init(&built);
-    built_material(&built, BP_MATERIAL_LAMBERTIAN, 0.5, NULL);
-    built_sphere(&built, 0, -100.5, -1, 100, 0);
-    built_sphere(&built, 0, 0, -1, 0.5, 0);
-    built.scene.camera.width = built.scene.camera.height = 64;
-    built.scene.camera.pixel_sampling = BP_PIXEL_SQUARE;
+    diffuse_scene(&built);
     int wrong = 0, right = 0;
     for (uint64_t seed = 0; seed < 10; ++seed)
         right += check(&built.scene, BP_CHECK_SAMPLES_DEFAULT, seed, BP_VERDICT_LEVEL).conclusion != BP_AGREE;

@@ -13,12 +13,6 @@
 #include <stdlib.h>
 #include <string.h>
 
-static void draw(const BpScene *scene, uint64_t samples, uint64_t seed, BpSums *sums) {
-    const BpReferenceOptions options = {.samples = samples, .seed = seed, .max_depth = 6};
-    assert_int_equal(bp_sums_init(sums, scene->camera.width, scene->camera.height, NULL), BP_OK);
-    assert_int_equal(bp_reference_render(scene, &options, sums, NULL, NULL), BP_OK);
-}
-
 /* The sums as they would be had every sample been brighter by the factor. */
 static void brighten(BpSums *sums, double factor) {
     for (size_t p = 0; p < (size_t)sums->width * sums->height; ++p) {
@@ -44,8 +38,8 @@ static void control(void **state) {
     int rejected = 0, by_family[BP_FAMILIES] = {0}, ratio_missed = 0;
     for (uint64_t i = 0; i < 200; ++i) {
         BpSums a, b;
-        draw(&built.scene, 200, 2 * i + 1, &a);
-        draw(&built.scene, 200, 2 * i + 2, &b);
+        draw_reference(&built.scene, 200, 2 * i + 1, &a);
+        draw_reference(&built.scene, 200, 2 * i + 2, &b);
         const BpVerdict verdict = judge(&a, &b, 0.05);
         rejected += verdict.conclusion == BP_DISAGREE;
         for (int f = 0; f < BP_FAMILIES; ++f) by_family[f] += verdict.worst[f].z > verdict.worst[f].limit;
@@ -66,35 +60,20 @@ static void control(void **state) {
 static void calibrated(void **state) {
     (void)state;
     BuiltScene built;
-    coloured_scene(&built);
-    for (int i = 0; i < 8; ++i)
-        for (int c = 0; c < 3; ++c)
-            built.materials[i].emit[c] = built.materials[i].emit[i / 2 < 3 ? i / 2 : 0];
+    grey_scene(&built);
     BpSums a, b;
-    draw(&built.scene, 4096, 99, &a);
-    double mean = 0, variance = 0; /* of the mean over the picture, per sample of each pixel */
-    for (int p = 0; p < 256; ++p) {
-        const double m = a.pixels[p].sum[0] / 4096;
-        mean += m / 256;
-        variance += (a.pixels[p].sum2[0] / 4096 - m * m) / (256.0 * 256);
-    }
-    bp_sums_clear(&a);
-    const double samples = 256;
-    const double powers[3] = {0.1, 0.5, 0.9};
+    double mean, variance;
+    measure_picture(&built.scene, 99, &mean, &variance);
+    const double powers[3] = {0.1, 0.5, 0.9}, samples = 256;
     for (int i = 0; i < 3; ++i) {
-        double limit = 0, bias = 0;
-        for (int step = 0; step < 20; ++step) { /* the brighter side is noisier in proportion */
-            const double error = sqrt(variance * (1 + pow(1 + bias, 2)) / samples) / mean;
-            limit = bp_normal_upper_quantile(bp_level_bonferroni(0.45 * BP_VERDICT_LEVEL, 3) / 2);
-            bias = bp_z_detectable(limit, powers[i]) * error + BP_VERDICT_ROUNDING;
-        }
+        const double bias = bias_of_power(powers[i], mean, variance, samples);
         int by_picture = 0, rejected = 0;
         for (uint64_t run = 0; run < 100; ++run) {
-            draw(&built.scene, (uint64_t)samples, 1000 + 200 * (uint64_t)i + 2 * run, &a);
-            draw(&built.scene, (uint64_t)samples, 1001 + 200 * (uint64_t)i + 2 * run, &b);
+            draw_reference(&built.scene, (uint64_t)samples, 1000 + 200 * (uint64_t)i + 2 * run, &a);
+            draw_reference(&built.scene, (uint64_t)samples, 1001 + 200 * (uint64_t)i + 2 * run, &b);
             brighten(&a, 1 + bias);
             const BpVerdict verdict = judge(&a, &b, BP_VERDICT_LEVEL);
-            by_picture += verdict.worst[BP_FAMILY_PICTURE].z > limit;
+            by_picture += verdict.worst[BP_FAMILY_PICTURE].z > picture_limit();
             rejected += verdict.conclusion == BP_DISAGREE;
             bp_sums_clear(&a);
             bp_sums_clear(&b);
@@ -113,17 +92,11 @@ static void calibrated(void **state) {
 static void half_percent(void **state) {
     (void)state;
     BuiltScene built;
-    built_scene_init(&built);
-    built_material(&built, BP_MATERIAL_LAMBERTIAN, 0.5, NULL);
-    built_sphere(&built, 0, -100.5, -1, 100, 0);
-    built_sphere(&built, 0, 0, -1, 0.5, 0);
+    diffuse_scene(&built);
     for (int c = 0; c < 3; ++c) built.scene.background_top[c] = 0.5 + 0.2 * c;
-    BpCamera *camera = &built.scene.camera;
-    camera->width = camera->height = 64;
-    camera->pixel_sampling = BP_PIXEL_SQUARE;
     BpSums a, b;
-    draw(&built.scene, 1024, 1, &a);
-    draw(&built.scene, 1024, 2, &b);
+    draw_reference(&built.scene, 1024, 1, &a);
+    draw_reference(&built.scene, 1024, 2, &b);
     const BpVerdict right = judge(&a, &b, BP_VERDICT_LEVEL);
     char *text = bp_verdict_text(&right);
     assert_non_null(text);

@@ -179,21 +179,26 @@ void lab_run(const Lab *lab, const char *kernel, size_t items, const LabArgument
     clReleaseKernel(made);
 }
 
+/* How the lab's variant renders a scene: with the choices and the tree that its probes have. */
+static void set_options(const Lab *lab, const BpScene *scene, BpRenderOptions *options) {
+    bp_render_defaults(scene, options);
+    options->precision = lab->options.precision;
+    options->numerics = lab->options.numerics;
+    options->math = lab->options.math;
+    options->kernel = BP_KERNEL_SAMPLE;
+    options->all_effects = true;
+    options->force_tree = true;
+    options->tree_width = lab->options.tree_width;
+    options->force_float_refine = !lab->refined_double;
+}
+
 BpWorker *lab_scene(const Lab *lab, const BpScene *scene) {
     BpError err = {0};
     BpRenderOptions options;
     BpWorkerSetup setup;
     BpPacked packed;
     BpWorker *worker = NULL;
-    bp_render_defaults(scene, &options);
-    options.precision = lab->options.precision;
-    options.numerics = lab->options.numerics;
-    options.math = lab->options.math;
-    options.kernel = BP_KERNEL_SAMPLE;
-    options.all_effects = true;
-    options.force_tree = true;
-    options.tree_width = lab->options.tree_width;
-    options.force_float_refine = !lab->refined_double;
+    set_options(lab, scene, &options);
     check(bp_render_plan(scene, &options, &lab->info, &setup, &packed, &err), &err);
     setup.program = lab->options; /* the program that is built already, and so in the driver's cache */
     char *text = probe_text();
@@ -213,17 +218,9 @@ void lab_render(const Lab *lab, const BpScene *scene, uint64_t samples, uint64_t
     BpRender *render = NULL;
     BpProgress progress;
     BpRenderReport report;
-    bp_render_defaults(scene, &options);
+    set_options(lab, scene, &options);
     options.samples_per_pixel = samples;
     options.seed = seed;
-    options.precision = lab->options.precision;
-    options.numerics = lab->options.numerics;
-    options.math = lab->options.math;
-    options.kernel = BP_KERNEL_SAMPLE;
-    options.all_effects = true;
-    options.force_tree = true;
-    options.tree_width = lab->options.tree_width;
-    options.force_float_refine = !lab->refined_double;
     options.force = true;
     check(bp_render_create(scene, &options, &lab->info, 1, &render, &err), &err);
     do check(bp_render_step(render, &progress, &err), &err);
