@@ -14,9 +14,9 @@
 #include <string.h>
 
 #define RUNS 64u /* about so many runs, or more, keep the threads of most machines busy */
-#define RUN_MOST                                                                                             \
-    131072u /* items that a core's cache holds: larger runs get grids of their own, so that time             \
-               grows with the number of spheres, and not with its logarithm too */
+/* As many items as a core's cache holds. Larger runs get grids of their own, so that time grows with the
+ * number of spheres alone, and not with its logarithm too. */
+#define RUN_MAX 131072u
 
 /* Items first .. first+count-1 of buffer `buffer`, whose tree belongs at *place. */
 typedef struct Run {
@@ -232,7 +232,7 @@ BpStatus bp_binary_tree_build(BpTreeItem *items, uint32_t count, const BpBinaryO
     top->tree = tree;
     top->run_max = count / RUNS;
     if (top->run_max < 2048) top->run_max = 2048;
-    if (top->run_max > RUN_MOST) top->run_max = RUN_MOST;
+    if (top->run_max > RUN_MAX) top->run_max = RUN_MAX;
     if (count > 4 * top->run_max) {
         status = build_large(top, count, err);
     } else if (count > 0) {

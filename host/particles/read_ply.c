@@ -209,7 +209,7 @@ static BpStatus take_vertices(BpParticleFile *file, Ply *ply, const Element *ele
     if (ply->x < 0 || ply->y < 0 || ply->z < 0)
         return input_fail(&file->input, false, err,
                           "found no x, y and z among the vertices, expected all three");
-    for (int b = 0; b < 256; b++) ply->linear[b] = bp_linear_from_srgb(b / 255.0);
+    bp_linear_of_bytes(ply->linear);
     BP_TRY(frame_begin(file, names, element->property_count, err));
     for (uint64_t row = 0; row < element->count; row++) {
         BP_TRY(take_row(&file->input, ply, element, row, values, err));

@@ -40,13 +40,8 @@ static void from_bytes(const unsigned char bytes[3], double color[3]) {
     for (int c = 0; c < 3; c++) color[c] = bp_linear_from_srgb(bytes[c] / 255.0);
 }
 
-/* The same for millions of particles: each byte's value once. */
-typedef struct Linear {
-    double of_byte[256];
-} Linear;
-
-static void look_up(const Linear *linear, const unsigned char bytes[3], double color[3]) {
-    for (int c = 0; c < 3; c++) color[c] = linear->of_byte[bytes[c]];
+static void look_up(const double linear[256], const unsigned char bytes[3], double color[3]) {
+    for (int c = 0; c < 3; c++) color[c] = linear[bytes[c]];
 }
 
 void bp_type_color(size_t type, double color[3]) {
@@ -102,7 +97,7 @@ typedef struct Job {
     size_t capacity, albedo_capacity; /* of the scene's arrays */
     uint16_t *rank; /* of a name among the kinds that get colours of the palette, from 0, in the order of the
                        file */
-    Linear linear;
+    double linear[256]; /* of each byte of an sRGB colour */
     char *summary;
     size_t size;
 } Job;
@@ -348,7 +343,7 @@ static void color_of(const Job *job, size_t i, double color[3]) {
         }
         break;
     case BP_COLOR_ELEMENT:
-        look_up(&job->linear, bp_elements[tag->element].color, color);
+        look_up(job->linear, bp_elements[tag->element].color, color);
         return;
     case BP_COLOR_COLUMN: {
         const double value = (double)p->column[style->radius_by == BP_RADIUS_COLUMN][i];
@@ -366,7 +361,7 @@ static void color_of(const Job *job, size_t i, double color[3]) {
         place = (size_t)job->rank[kind_of(job, i)] - 1;
         break;
     }
-    look_up(&job->linear, palette[place % PALETTE_COUNT], color);
+    look_up(job->linear, palette[place % PALETTE_COUNT], color);
 }
 
 /* ---- spheres --------------------------------------------------------------------------------------------
@@ -666,7 +661,7 @@ BpStatus bp_particles_add_to_scene(BpParticles *particles, const BpParticleStyle
                .summary = summary,
                .size = size};
     if (summary != NULL) summary[0] = '\0';
-    for (int b = 0; b < 256; b++) job.linear.of_byte[b] = bp_linear_from_srgb(b / 255.0);
+    bp_linear_of_bytes(job.linear);
     const BpStatus status = run(&job, err);
     if (range != NULL) memcpy(range, job.range, sizeof job.range);
     free(job.shown);
