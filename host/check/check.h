@@ -4,9 +4,9 @@
  * Knows: the render loop, the reference.   Does not know: OpenCL, the command line, files.
  *
  * The result depends on scene, samples, seed and device, not on chunks, threads or the machine's load. With a
- * limit of time both sides proceed in rounds, each as long as all before it together, and when time is up the
- * last whole round is judged: the clock then decides about the number of samples, which what they are does
- * not depend on, so the verdict's error rate holds. */
+ * limit of time, both sides proceed in rounds, each as long as all before it together, and the last round
+ * that was completed in time is judged. The clock then decides how many samples there are, but not what they
+ * say, so the verdict's error rate holds. */
 #ifndef BP_CHECK_CHECK_H
 #define BP_CHECK_CHECK_H
 

@@ -198,8 +198,8 @@ const BpCommand bp_commands[] = {
         .description =
             "Lists every device of every OpenCL platform and marks the default: a GPU if "
             "there is one, otherwise a CPU. A driver that crashes or hangs when asked for its devices is "
-            "named and left out. Of a GPU it says which --kernel was the fastest when it was first used, and "
-            "gets used since.",
+            "named and left out. For a GPU it says which --kernel was the fastest when the GPU was first "
+            "used, and has been used there since.",
         .examples = "  ballpark devices\n"
                     "  ballpark devices --json -       the same as JSON\n",
         .bit = BP_DEVICES,

@@ -2,8 +2,8 @@
  *
  * Out:   one row for each option. From it come the option's number and its member of BpCommandLine
  * (options.h), the reading of its value, its line in the help, and the commands that take it
- * (option_table.c). Knows: names, values and help texts of options.   Does not know: what a command does with
- * them.
+ * (option_table.c).
+ * Knows: names, values and help texts of options.   Does not know: what a command does with them.
  *
  * A new option is a row here, and the code that uses its value. Rows stand in the order of the help. */
 #ifndef BP_CLI_OPTION_LIST_H

@@ -16,7 +16,7 @@ typedef struct BpCachePart {
 } BpCachePart;
 
 /* All of a file that is ours and that nobody else can write, heap, a zero byte behind it; NULL: there is no
- * such file. Its time says then that it was of use. */
+ * such file. Reading sets the file's time, so that those of no use any more are the oldest. */
 char *bp_cache_read(const char *path, size_t *size);
 
 /* Writes the parts one after the other. The file appears whole or not at all, and where it cannot be written

@@ -1,7 +1,8 @@
 /* cache_folder.h: where Ballpark keeps what it can make again.
  *
  * In:    the environment.   Out: a path.
- * Knows: the XDG Base Directory Specification, how files of text are named.   Does not know: what is kept. */
+ * Knows: the XDG Base Directory Specification, how our text files there are named.
+ * Does not know: what is kept. */
 #ifndef BP_OPENCL_CACHE_FOLDER_H
 #define BP_OPENCL_CACHE_FOLDER_H
 

@@ -4,9 +4,9 @@
  * In:    a device's description, what was found.   Out: it again, in another process.
  * Knows: what an outcome depends on.   Does not know: how it is found (render/calibrate.h).
  *
- * A small text file a device, ~/.cache/ballpark/calibration-....txt, which a person can read. It holds all
- * that the outcome depends on in words, and a checksum: one that is damaged, or about something else, is as
- * good as none. Pictures do not depend on it. */
+ * Each device has a small text file, ~/.cache/ballpark/calibration-....txt, which a person can read. It holds
+ * all that the outcome depends on, in words, and a checksum: a file that is damaged, or about something else,
+ * is as good as none. Pictures do not depend on it. */
 #ifndef BP_OPENCL_CALIBRATION_H
 #define BP_OPENCL_CALIBRATION_H
 
