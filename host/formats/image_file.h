@@ -1,7 +1,8 @@
 /* image_file.h: images that a scene names: PNG, OpenEXR and PFM.
  *
  * In:    an open file.   Out: an image of linear texels (scene/texels.h), or an error that names file and
- * place. Knows: the three formats, by their first bytes.   Does not know: what the image is for.
+ * place.
+ * Knows: the three formats, by their first bytes.   Does not know: what the image is for.
  *
  * Files are not trusted: sizes are held against limits, and against the size of the file where the format has
  * no way to say more with less, before memory is taken. */

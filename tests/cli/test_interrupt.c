@@ -1,5 +1,5 @@
-/* Signals: before there is something to save, the first, the same key twice, the second; and who gets none.
- */
+/* test_interrupt.c: signals: before there is something to save, the first, the same key twice, the second;
+ * and who gets none. */
 #include "base/clock.h"
 #include "cli/interrupt.h"
 

@@ -1,4 +1,4 @@
-/* Numbers as people read them, the progress bar at every width. */
+/* test_texts.c: numbers as people read them, the progress bar at every width. */
 #include "base/format.h"
 #include "cli/progress.h"
 #include "cli/values.h"

@@ -3,8 +3,9 @@
  * Usage: gpu_kernels SCENE FOLDER
  *
  * In:    a scene.   Out: FORM.cl for the forms `sample` and `pool`, and FORM-rounding.cl for GPUs whose
- * quotients are not rounded correctly; each is one program with the trace kernel of that form. Knows:
- * render_plan.h, which makes a render's choices for a GPU without double.   Does not know: any device. */
+ * quotients are not rounded correctly; each is one program with the trace kernel of that form.
+ * Knows: render_plan.h, which makes a render's choices for a GPU without double.   Does not know: any device.
+ */
 #include "ballpark.h"
 #include "opencl/program.h"
 #include "render/render_plan.h"

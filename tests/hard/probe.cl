@@ -209,7 +209,7 @@ __kernel void probe_tree(uint count, __global const real *rays, __global const r
     row[4] = intersect_any(&geometry, &ray, REAL_LARGE);
 }
 
-/* Arithmetic that the compiler must leave alone. In: a, b, zero. Out: see test_arithmetic.c. */
+/* Arithmetic that the compiler must leave alone. In: a, b, zero. Out: see test_sums.c. */
 __kernel void probe_arithmetic(uint count, __global const real *in, __global real *out) {
     PROBE_ITEM
     const real a = in[3 * item], b = in[3 * item + 1], zero = in[3 * item + 2];

@@ -1,8 +1,8 @@
 /* effects_scenes.h: a small scene for every set of effects that can occur, with a list and with a tree.
  *
  * In:    a set of bits, list or tree.   Out: a scene that calls for exactly these effects, with every
- * sub-kind of each (lobes, fuzz shapes, Fresnel, total reflection), for tests of specialised kernels. Knows:
- * BpScene, the effects.   Does not know: kernels. */
+ * sub-kind of each (lobes, fuzz shapes, Fresnel, total reflection), for tests of specialised kernels.
+ * Knows: BpScene, the effects.   Does not know: kernels. */
 #ifndef TESTS_DEVICE_EFFECTS_SCENES_H
 #define TESTS_DEVICE_EFFECTS_SCENES_H
 

@@ -1,9 +1,9 @@
 /* test_effects_cost.c: a specialised kernel is never slower than the general one, and kernels build fast.
  *
- * Ratios only, medians of interleaved rounds (engine/effect_costs.h): a slow or busy machine fails nothing.
+ * Ratios only, medians of interleaved rounds (study/effect_costs.h): a slow or busy machine fails nothing.
  * The yardstick for building is the compiler's time for a small fixed kernel in the same run.
  *
- * effects_cost [all]: one scene for each set of effects that occurs in scenes/; or all scenes. */
+ * test_effects_cost [all]: one scene for each set of effects that occurs in scenes/; or all scenes. */
 #include "base/clock.h"
 #include "opencl/device.h"
 #include "scene/scene.h"

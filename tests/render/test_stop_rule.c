@@ -1,4 +1,4 @@
-/* The stop rules on made-up renders: counts are fixed, every rule ends, none ends early. */
+/* test_stop_rule.c: the stop rules on made-up renders: counts are fixed, every rule ends, none ends early. */
 #include "render/stop_rule.h"
 
 #include <math.h>
