@@ -2,6 +2,7 @@
 #include "reader.h"
 
 #include "base/message_text.h"
+#include "base/pages.h"
 #include "names.h"
 
 #include <math.h>
@@ -69,7 +70,7 @@ BpStatus frame_begin(BpParticleFile *file, const char *const *columns, size_t co
 
 static bool resize(void *array, size_t capacity, size_t size) {
     void **const place = array;
-    void *const grown = realloc(*place, capacity * size);
+    void *const grown = bp_large_pages(realloc(*place, capacity * size), capacity * size);
     if (grown != NULL) *place = grown;
     return grown != NULL;
 }
