@@ -6,6 +6,7 @@
 #include "tree.h"
 
 #include "base/clock.h"
+#include "base/pages.h"
 #include "scene_types.h"
 #include "tree_binary.h"
 #include "tree_write.h"
@@ -135,7 +136,8 @@ static BpStatus build_tree(BpTreeWriter *writer, unsigned threads, BpError *err)
     BpBinaryTree binary = {0};
     BpTeam *team = bp_team_create(threads);
     Scan scan = {.scene = writer->scene, .origin = writer->origin, .width = tree->width};
-    scan.items = malloc(((size_t)count + 1) * sizeof *scan.items);
+    const size_t item_bytes = ((size_t)count + 1) * sizeof *scan.items;
+    scan.items = bp_large_pages(malloc(item_bytes), item_bytes);
     scan.largest = malloc(blocks * sizeof *scan.largest);
     scan.bounds = malloc(blocks * sizeof *scan.bounds);
     if (team == NULL || scan.items == NULL || scan.largest == NULL || scan.bounds == NULL) {
@@ -145,7 +147,7 @@ static BpStatus build_tree(BpTreeWriter *writer, unsigned threads, BpError *err)
     const uint32_t items = scan_spheres(&scan, team);
     const BpBinaryOptions options = {.width = tree->width,
                                      .height_max = bp_tree_width_bits(tree->width) * TREE_DEPTH_MAX};
-    BP_TRY_GOTO(status, bp_binary_tree_build(scan.items, items, &options, team, &binary, err), cleanup);
+    BP_TRY_GOTO(status, bp_binary_tree_build(&scan.items, items, &options, team, &binary, err), cleanup);
     writer->items = scan.items;
     tree->first_leaves = tree->leaf_count = scan.candidates.count > 0 ? 1 : 0;
     BP_TRY_GOTO(status, bp_tree_write_nodes(writer, binary.root, team, err), cleanup);

@@ -9,6 +9,8 @@
  * GPUs through compressed wide BVHs", 2017, section 4.1). */
 #include "tree_binary.h"
 
+#include "base/pages.h"
+
 #include <float.h>
 #include <math.h>
 #include <stdlib.h>
@@ -18,18 +20,22 @@
 #endif
 
 #define BINS 32
-#define POOL_BLOCK (1u << 20) /* bytes */
+#define POOL_BLOCK (1u << 20) /* bytes; each block is twice as large as the one before, up to the most */
+#define POOL_BLOCK_MOST (1u << 24)
 
 typedef struct BpNodeBlock {
     struct BpNodeBlock *next;
-    void *nodes[POOL_BLOCK / sizeof(void *)]; /* their memory, aligned for their pointers */
+    void *nodes[]; /* their memory, aligned for their pointers */
 } BpNodeBlock;
 
 BpBinaryNode *bp_node_pool_take(BpNodePool *pool, uint32_t costs) {
     const size_t align = sizeof(void *), wanted = sizeof(BpBinaryNode) + costs * sizeof(float);
     const uint32_t bytes = (uint32_t)((wanted + align - 1) / align * align);
-    if (pool->blocks == NULL || pool->used + bytes > POOL_BLOCK) {
-        BpNodeBlock *block = malloc(sizeof *block);
+    if (pool->blocks == NULL || pool->used + bytes > pool->size) {
+        const uint32_t size = pool->size == 0                ? POOL_BLOCK
+                              : pool->size < POOL_BLOCK_MOST ? 2 * pool->size
+                                                             : POOL_BLOCK_MOST;
+        BpNodeBlock *block = bp_large_pages(malloc(sizeof *block + size), sizeof *block + size);
         if (block == NULL) {
             pool->failed = true;
             return NULL;
@@ -37,6 +43,7 @@ BpBinaryNode *bp_node_pool_take(BpNodePool *pool, uint32_t costs) {
         block->next = pool->blocks;
         pool->blocks = block;
         pool->used = 0;
+        pool->size = size;
     }
     void *const node = (char *)pool->blocks->nodes + pool->used;
     pool->used += bytes;

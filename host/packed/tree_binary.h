@@ -40,8 +40,8 @@ typedef struct BpBinaryNode {
 /* Nodes in blocks that never move. Zero it before use. */
 typedef struct BpNodePool {
     struct BpNodeBlock *blocks;
-    uint32_t used; /* bytes of the first block */
-    bool failed;   /* ran out of memory */
+    uint32_t used, size; /* bytes of the first block */
+    bool failed;         /* ran out of memory */
 } BpNodePool;
 
 /* A node with room for `costs` costs. NULL and `failed` when there is no memory. */
@@ -69,9 +69,10 @@ typedef struct BpBinaryTree {
     unsigned pool_count;
 } BpBinaryTree;
 
-/* Reorders `items` and builds the tree over them. The result does not depend on the team's size. */
-BpStatus bp_binary_tree_build(BpTreeItem *items, uint32_t count, const BpBinaryOptions *options, BpTeam *team,
-                              BpBinaryTree *tree, BpError *err);
+/* Reorders `*items`, or frees it and puts a reordered copy in its place, and builds the tree over them. The
+ * result does not depend on the team's size. */
+BpStatus bp_binary_tree_build(BpTreeItem **items, uint32_t count, const BpBinaryOptions *options,
+                              BpTeam *team, BpBinaryTree *tree, BpError *err);
 void bp_binary_tree_clear(BpBinaryTree *tree);
 
 /* log2 of the width of a tree. */

@@ -8,12 +8,16 @@
 #define PLANES 32
 #define BLOCK_MIN 4096u
 
-bool bp_grid_init(BpGrid *grid, uint32_t count_max, unsigned workers) {
-    *grid = (BpGrid){0};
-    grid->cells = malloc((size_t)workers * BP_GRID_CELLS_MAX * sizeof *grid->cells);
-    grid->cell_of = malloc(count_max * sizeof *grid->cell_of);
-    grid->used = malloc(BP_GRID_CELLS_MAX * sizeof *grid->used);
-    return grid->cells != NULL && grid->cell_of != NULL && grid->used != NULL;
+/* Room for `count` items. */
+static bool make_room(BpGrid *grid, uint32_t count, unsigned workers) {
+    if (grid->cells == NULL) grid->cells = malloc((size_t)workers * BP_GRID_CELLS_MAX * sizeof *grid->cells);
+    if (grid->used == NULL) grid->used = malloc(BP_GRID_CELLS_MAX * sizeof *grid->used);
+    if (grid->cell_of_capacity < count) {
+        free(grid->cell_of);
+        grid->cell_of = malloc(count * sizeof *grid->cell_of);
+        grid->cell_of_capacity = grid->cell_of != NULL ? count : 0;
+    }
+    return grid->cells != NULL && grid->used != NULL && grid->cell_of != NULL;
 }
 
 void bp_grid_clear(BpGrid *grid) {
@@ -109,8 +113,9 @@ static void count_block(void *context, uint32_t block, unsigned worker) {
     }
 }
 
-void bp_grid_fill(BpGrid *grid, const BpTreeItem *items, uint32_t count, BpTeam *team) {
+bool bp_grid_fill(BpGrid *grid, const BpTreeItem *items, uint32_t count, BpTeam *team) {
     const unsigned workers = bp_team_size(team);
+    if (!make_room(grid, count, workers)) return false;
     grid->items = items;
     grid->count = count;
     grid->block_size = count / BP_GRID_BLOCKS_MAX + 1;
@@ -135,6 +140,7 @@ void bp_grid_fill(BpGrid *grid, const BpTreeItem *items, uint32_t count, BpTeam 
         cell->at[2] = (uint16_t)(c / grid->columns[0] / grid->columns[1]);
         grid->used[grid->used_count++] = c;
     }
+    return true;
 }
 
 /* ---- planes ---------------------------------------------------------------------------------------- */

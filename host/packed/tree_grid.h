@@ -20,7 +20,8 @@ typedef struct BpGridCell {
 typedef struct BpGrid {
     BpGridCell *cells; /* BP_GRID_CELLS_MAX for each worker; the first so many are the whole */
     uint16_t *cell_of; /* of each item, in order */
-    uint32_t *used;    /* the cells that are not empty */
+    uint32_t cell_of_capacity;
+    uint32_t *used; /* the cells that are not empty */
     uint32_t used_count;
     /* The items at hand, and the blocks in which threads take them. */
     const BpTreeItem *items;
@@ -36,12 +37,11 @@ typedef struct BpGridPlane {
     uint32_t low, bins, span, bin;
 } BpGridPlane;
 
-/* Memory for up to `count_max` items. False: there is not enough; clear all the same. */
-bool bp_grid_init(BpGrid *grid, uint32_t count_max, unsigned workers);
-void bp_grid_clear(BpGrid *grid);
+/* Lays a grid over the items and counts them into its cells. `items` must outlive its use, and the team is
+ * the same for all uses. Zero a grid before the first. False: out of memory. */
+bool bp_grid_fill(BpGrid *grid, const BpTreeItem *items, uint32_t count, BpTeam *team);
 
-/* Lays a grid over the items and counts them into its cells. `items` must outlive its use. */
-void bp_grid_fill(BpGrid *grid, const BpTreeItem *items, uint32_t count, BpTeam *team);
+void bp_grid_clear(BpGrid *grid);
 
 /* Number of items in a block, the first of which is *first. */
 uint32_t bp_grid_block(const BpGrid *grid, uint32_t block, uint32_t *first);

@@ -1,28 +1,31 @@
-/* tree_top.c: the upper part of a large binary tree, on all threads; see tree_binary.h.
+/* tree_top.c: the upper part of a large binary tree; see tree_binary.h.
  *
- * Spheres are counted into the cells of a grid, which takes the place of some seven passes of splitting: the
- * upper splits are chosen among the grid's planes, over cells instead of spheres, until what remains is small
- * enough for one thread. The spheres are then moved to their runs in one stable pass, and the runs are built
- * independently (tree_binary.c). A run, or a cell, that holds too much for that gets a grid of its own.
+ * Spheres are counted into the cells of a grid, which takes the place of some six passes of splitting: the
+ * upper splits are chosen among the grid's planes, over cells instead of spheres, and the spheres are then
+ * moved to their parts in one stable pass. First all threads together part the whole into some ranges, and
+ * again what is still too large for one thread. Then each thread takes range after range, parts it by grids
+ * of its own until what remains is small, and builds that (tree_binary.c). So the number of passes over
+ * memory does not grow with the number of spheres, and most of them stay in a core's cache.
  *
  * Every decision is made from sums and extremes over all spheres, so it is the same for any number of
  * threads. */
+#include "base/pages.h"
 #include "tree_binary.h"
 #include "tree_grid.h"
 
 #include <stdlib.h>
 #include <string.h>
 
-#define RUNS 64u /* about so many runs, or more, keep the threads of most machines busy */
-/* As many items as a core's cache holds. Larger runs get grids of their own, so that time grows with the
- * number of spheres alone, and not with its logarithm too. */
-#define RUN_MAX 131072u
+#define RANGES 64u /* about so many ranges, or more, keep the threads of most machines busy */
+#define RANGE_LEAST 2048u
+#define RANGE_MOST (1u << 19) /* a thread's copy of a range is up to four times as many items */
+#define RUN_MOST 16384u       /* runs of up to four times as many items fit a core's cache and need no grid */
 
-/* Items first .. first+count-1 of buffer `buffer`, whose tree belongs at *place. */
+/* Items first .. first+count-1, whose tree belongs at *place. */
 typedef struct Run {
     uint32_t first, count, height_max;
-    int buffer;
     BpBinaryNode **place;
+    bool one; /* a grid cannot part it */
 } Run;
 
 typedef struct RunList {
@@ -30,26 +33,29 @@ typedef struct RunList {
     uint32_t count, capacity;
 } RunList;
 
-typedef struct Top {
-    BpTreeItem *items[2];
+/* Parts ranges by grids: one for all threads together, and one for each thread. */
+typedef struct Splitter {
+    BpTreeItem *items;
     const BpBinaryOptions *options;
     BpTeam *team;
-    BpBinaryTree *tree;
-    uint32_t run_max;     /* a run this small is built by one thread, and one of up to four times as many */
-    uint32_t part_max;    /* of the range at hand: what is this small is not split further by its grid */
-    RunList ranges, runs; /* to be gridded; to be built */
-    BpBinaryNode **nodes; /* of the upper part, parents before children */
+    BpNodePool *pool;
+    uint32_t run_max;     /* what is this small is not split further by a grid */
+    BpBinaryNode **nodes; /* made here, parents before children */
     uint32_t node_count, node_capacity;
+    BpTreeItem *buffer;
+    uint32_t buffer_capacity;
+    bool whole;  /* the range at hand is all there is: its copy replaces it */
     bool failed; /* out of memory */
 
     /* The range at hand. */
     Run range;
     BpGrid grid;
-    uint32_t run_of[BP_GRID_CELLS_MAX]; /* number in `runs`, counted from runs_before */
-    uint32_t runs_before, runs_here;
-    uint32_t *offsets; /* grid.block_count * runs_here */
-    uint32_t filled;   /* items in the runs so far */
-} Top;
+    uint32_t part_max;                  /* parts this small are not split further by this grid */
+    uint32_t run_of[BP_GRID_CELLS_MAX]; /* number in `parts` */
+    RunList parts;
+    uint32_t *offsets; /* grid.block_count * parts.count */
+    uint32_t filled;   /* items in the parts so far */
+} Splitter;
 
 static void *grow(void *array, uint32_t count, uint32_t *capacity, size_t size) {
     if (count < *capacity) return array;
@@ -69,116 +75,165 @@ static bool push_run(RunList *list, const Run *run) {
 
 /* ---- ranges ---------------------------------------------------------------------------------------- */
 
-/* Builds the upper tree over cells; what is small enough, or cannot be parted, becomes a run. */
-static void build_cells(Top *top, uint32_t *cells, uint32_t cell_count, uint32_t height_max,
+/* Builds the upper tree over cells; what is small enough, or cannot be parted, becomes a part. */
+static void build_cells(Splitter *s, uint32_t *cells, uint32_t cell_count, uint32_t height_max,
                         BpBinaryNode **place) {
-    const uint32_t width = top->options->width;
+    const uint32_t width = s->options->width;
     uint32_t items = 0;
-    for (uint32_t c = 0; c < cell_count; ++c) items += top->grid.cells[cells[c]].count;
+    for (uint32_t c = 0; c < cell_count; ++c) items += s->grid.cells[cells[c]].count;
     BpGridPlane plane = {.axis = -1};
-    if (items > top->part_max && cell_count > 1)
+    if (items > s->part_max && cell_count > 1)
         plane =
-            bp_grid_plane(&top->grid, cells, cell_count, items, width, bp_binary_side_max(width, height_max));
+            bp_grid_plane(&s->grid, cells, cell_count, items, width, bp_binary_side_max(width, height_max));
     if (plane.axis < 0) {
-        const Run run = {top->range.first + top->filled, items, height_max, 1 - top->range.buffer, place};
-        for (uint32_t c = 0; c < cell_count; ++c) top->run_of[cells[c]] = top->runs_here;
-        top->filled += items;
-        ++top->runs_here;
-        top->failed = top->failed || !push_run(&top->runs, &run);
+        const Run run = {s->range.first + s->filled, items, height_max, place, items == s->range.count};
+        for (uint32_t c = 0; c < cell_count; ++c) s->run_of[cells[c]] = s->parts.count;
+        s->filled += items;
+        s->failed = s->failed || !push_run(&s->parts, &run);
         return;
     }
-    BpBinaryNode *node = bp_node_pool_take(&top->tree->pools[0], top->options->width);
-    BpBinaryNode **nodes = grow(top->nodes, top->node_count, &top->node_capacity, sizeof *nodes);
-    if (nodes != NULL) top->nodes = nodes;
+    BpBinaryNode *node = bp_node_pool_take(s->pool, s->options->width);
+    BpBinaryNode **nodes = grow(s->nodes, s->node_count, &s->node_capacity, sizeof *nodes);
+    if (nodes != NULL) s->nodes = nodes;
     if (node == NULL || nodes == NULL) {
-        top->failed = true;
+        s->failed = true;
         return;
     }
     node->left = node->right = NULL;
     node->first = 0;
     node->count = items;
-    *place = top->nodes[top->node_count++] = node;
-    const uint32_t left = bp_grid_part(&top->grid, cells, cell_count, &plane);
-    build_cells(top, cells, left, height_max - 1, &node->left);
-    build_cells(top, cells + left, cell_count - left, height_max - 1, &node->right);
+    *place = s->nodes[s->node_count++] = node;
+    const uint32_t left = bp_grid_part(&s->grid, cells, cell_count, &plane);
+    build_cells(s, cells, left, height_max - 1, &node->left);
+    build_cells(s, cells + left, cell_count - left, height_max - 1, &node->right);
 }
 
 static void histogram_block(void *context, uint32_t block, unsigned worker) {
     (void)worker;
-    Top *top = context;
+    Splitter *s = context;
     uint32_t first;
-    const uint32_t count = bp_grid_block(&top->grid, block, &first);
-    uint32_t *offsets = top->offsets + (size_t)block * top->runs_here;
-    for (uint32_t i = first; i < first + count; ++i) ++offsets[top->run_of[top->grid.cell_of[i]]];
+    const uint32_t count = bp_grid_block(&s->grid, block, &first);
+    uint32_t *offsets = s->offsets + (size_t)block * s->parts.count;
+    for (uint32_t i = first; i < first + count; ++i) ++offsets[s->run_of[s->grid.cell_of[i]]];
 }
 
 static void scatter_block(void *context, uint32_t block, unsigned worker) {
     (void)worker;
-    Top *top = context;
-    BpTreeItem *to = top->items[1 - top->range.buffer];
+    Splitter *s = context;
     uint32_t first;
-    const uint32_t count = bp_grid_block(&top->grid, block, &first);
-    uint32_t *offsets = top->offsets + (size_t)block * top->runs_here;
+    const uint32_t count = bp_grid_block(&s->grid, block, &first);
+    uint32_t *offsets = s->offsets + (size_t)block * s->parts.count;
     for (uint32_t i = first; i < first + count; ++i)
-        to[offsets[top->run_of[top->grid.cell_of[i]]]++] = top->grid.items[i];
+        s->buffer[offsets[s->run_of[s->grid.cell_of[i]]]++] = s->grid.items[i];
 }
 
-/* Moves the items of the range to the runs that build_cells() made of it. */
-static void move_items(Top *top) {
-    top->offsets = calloc((size_t)top->grid.block_count * top->runs_here, sizeof *top->offsets);
-    if (top->offsets == NULL) {
-        top->failed = true;
+static void return_block(void *context, uint32_t block, unsigned worker) {
+    (void)worker;
+    Splitter *s = context;
+    uint32_t first;
+    const uint32_t count = bp_grid_block(&s->grid, block, &first);
+    memcpy(s->items + s->range.first + first, s->buffer + first, count * sizeof *s->buffer);
+}
+
+/* Moves the items of the range to the parts that build_cells() made of it. */
+static void move_items(Splitter *s) {
+    const uint32_t count = s->range.count;
+    if (s->buffer_capacity < count) {
+        free(s->buffer);
+        const size_t bytes = count * sizeof *s->buffer;
+        s->buffer = bp_large_pages(malloc(bytes), bytes);
+        s->buffer_capacity = count;
+    }
+    s->offsets = calloc((size_t)s->grid.block_count * s->parts.count, sizeof *s->offsets);
+    if (s->offsets == NULL || s->buffer == NULL) {
+        s->failed = true;
         return;
     }
-    bp_team_run(top->team, histogram_block, top, top->grid.block_count);
-    uint32_t next = top->range.first;
-    for (uint32_t r = 0; r < top->runs_here; ++r)
-        for (uint32_t b = 0; b < top->grid.block_count; ++b) {
-            uint32_t *offset = &top->offsets[(size_t)b * top->runs_here + r];
+    bp_team_run(s->team, histogram_block, s, s->grid.block_count);
+    uint32_t next = 0;
+    for (uint32_t r = 0; r < s->parts.count; ++r)
+        for (uint32_t b = 0; b < s->grid.block_count; ++b) {
+            uint32_t *offset = &s->offsets[(size_t)b * s->parts.count + r];
             const uint32_t here = *offset;
             *offset = next;
             next += here;
         }
-    bp_team_run(top->team, scatter_block, top, top->grid.block_count);
-    free(top->offsets);
-    top->offsets = NULL;
+    bp_team_run(s->team, scatter_block, s, s->grid.block_count);
+    if (s->whole) {
+        BpTreeItem *const before = s->items;
+        s->items = s->buffer;
+        s->buffer = NULL;
+        s->buffer_capacity = 0;
+        free(before);
+    } else {
+        bp_team_run(s->team, return_block, s, s->grid.block_count);
+    }
+    free(s->offsets);
+    s->offsets = NULL;
 }
 
-/* Parts the range into runs; of those too large for one thread, ranges. */
-static void split_range(Top *top) {
-    const Run *range = &top->range;
-    top->runs_before = top->runs.count;
-    top->runs_here = top->filled = 0;
-    top->part_max = range->count / RUNS > top->run_max ? range->count / RUNS : top->run_max;
-    bp_grid_fill(&top->grid, top->items[range->buffer] + range->first, range->count, top->team);
-    build_cells(top, top->grid.used, top->grid.used_count, range->height_max, range->place);
-    if (top->failed) return;
-    if (top->runs_here == 1) {
-        top->runs.runs[top->runs.count - 1].buffer = top->range.buffer;
+/* Parts a range. What is too large for what follows, more than `most`, goes back to `ranges`, the rest to
+ * `runs`. */
+static void split_range(Splitter *s, const Run *range, uint32_t most, RunList *ranges, RunList *runs) {
+    s->range = *range;
+    s->parts.count = s->filled = 0;
+    s->part_max = range->count / RANGES > s->run_max ? range->count / RANGES : s->run_max;
+    if (!bp_grid_fill(&s->grid, s->items + range->first, range->count, s->team)) {
+        s->failed = true;
         return;
     }
-    move_items(top);
-    uint32_t kept = top->runs_before;
-    for (uint32_t r = top->runs_before; r < top->runs.count && !top->failed; ++r) {
-        const Run run = top->runs.runs[r];
-        if (run.count > 4 * top->run_max)
-            top->failed = !push_run(&top->ranges, &run);
-        else
-            top->runs.runs[kept++] = run;
+    build_cells(s, s->grid.used, s->grid.used_count, range->height_max, range->place);
+    if (!s->failed && s->parts.count > 1) move_items(s);
+    for (uint32_t p = 0; p < s->parts.count && !s->failed; ++p) {
+        const Run *part = &s->parts.runs[p];
+        s->failed = !push_run(part->count > most && !part->one ? ranges : runs, part);
     }
-    top->runs.count = kept;
 }
 
-/* ---- the runs -------------------------------------------------------------------------------------- */
+static void splitter_clear(Splitter *s) {
+    bp_grid_clear(&s->grid);
+    free(s->nodes);
+    free(s->buffer);
+    free(s->parts.runs);
+}
+
+/* Makes the nodes whole whose children are. */
+static void finish_nodes(Splitter *s) {
+    for (uint32_t n = s->node_count; n > 0 && !s->failed; --n)
+        bp_binary_finish(s->nodes[n - 1], s->options->width);
+    s->node_count = 0;
+}
+
+/* ---- the threads ----------------------------------------------------------------------------------- */
+
+typedef struct Top {
+    Splitter *own; /* of each thread */
+    RunList runs;  /* for one thread each, the largest first */
+    BpBinaryTree *tree;
+} Top;
 
 static void build_run(void *context, uint32_t piece, unsigned worker) {
     Top *top = context;
-    const Run *run = &top->runs.runs[piece];
-    if (run->buffer == 1)
-        memcpy(top->items[0] + run->first, top->items[1] + run->first, run->count * sizeof(BpTreeItem));
-    const BpBinaryOptions options = {top->options->width, run->height_max};
+    Splitter *s = &top->own[worker];
     BpNodePool pool = top->tree->pools[worker]; /* a copy, for neighbours in memory belong to other threads */
-    *run->place = bp_binary_build_run(top->items[0], run->first, run->count, &options, &pool);
+    RunList ranges = {0}, runs = {0};
+    s->pool = &pool;
+    s->failed = s->failed || !push_run(top->runs.runs[piece].count > 4 * s->run_max ? &ranges : &runs,
+                                       &top->runs.runs[piece]);
+    while (!s->failed && ranges.count + runs.count > 0) {
+        if (runs.count > 0) {
+            const Run *run = &runs.runs[--runs.count];
+            const BpBinaryOptions options = {s->options->width, run->height_max};
+            *run->place = bp_binary_build_run(s->items, run->first, run->count, &options, &pool);
+            s->failed = pool.failed;
+        } else {
+            const Run range = ranges.runs[--ranges.count];
+            split_range(s, &range, 4 * s->run_max, &ranges, &runs);
+        }
+    }
+    finish_nodes(s);
+    free(ranges.runs);
+    free(runs.runs);
     top->tree->pools[worker] = pool;
 }
 
@@ -188,63 +243,57 @@ static int larger_first(const void *a, const void *b) {
     return l->first < r->first ? -1 : l->first > r->first;
 }
 
-static BpStatus build_large(Top *top, uint32_t count, BpError *err) {
-    const unsigned workers = bp_team_size(top->team);
-    top->items[1] = malloc(count * sizeof *top->items[1]);
-    const Run all = {0, count, top->options->height_max, 0, &top->tree->root};
-    top->failed =
-        !bp_grid_init(&top->grid, count, workers) || top->items[1] == NULL || !push_run(&top->ranges, &all);
-    while (top->ranges.count > 0 && !top->failed) {
-        top->range = top->ranges.runs[--top->ranges.count];
-        split_range(top);
+/* All threads together part the whole into runs of at most about `most` items, one for each thread's turn. */
+static void split_whole(Splitter *all, const Run *whole, uint32_t most, RunList *runs) {
+    RunList ranges = {0};
+    all->failed = !push_run(whole->count > most ? &ranges : runs, whole);
+    while (!all->failed && ranges.count > 0) {
+        const Run range = ranges.runs[--ranges.count];
+        all->whole = range.count == whole->count;
+        split_range(all, &range, most, &ranges, runs);
     }
-    if (!top->failed) {
-        qsort(top->runs.runs, top->runs.count, sizeof *top->runs.runs, larger_first);
-        bp_team_run(top->team, build_run, top, top->runs.count);
-    }
-    for (unsigned w = 0; w < workers; ++w) top->failed = top->failed || top->tree->pools[w].failed;
-    for (uint32_t n = top->node_count; n > 0 && !top->failed; --n)
-        bp_binary_finish(top->nodes[n - 1], top->options->width);
-    const bool failed = top->failed;
-    bp_grid_clear(&top->grid);
-    free(top->items[1]);
-    free(top->ranges.runs);
-    free(top->runs.runs);
-    free(top->nodes);
-    return failed ? bp_fail(err, BP_ERR_MEMORY, "out of memory while building the tree of %u spheres", count)
-                  : BP_OK;
+    free(ranges.runs);
+    bp_grid_clear(&all->grid);
+    free(all->buffer);
+    all->buffer = NULL;
 }
 
-BpStatus bp_binary_tree_build(BpTreeItem *items, uint32_t count, const BpBinaryOptions *options, BpTeam *team,
-                              BpBinaryTree *tree, BpError *err) {
-    BpStatus status = BP_OK;
-    Top *top = NULL;
-    *tree = (BpBinaryTree){.pool_count = bp_team_size(team)};
-    tree->pools = calloc(tree->pool_count, sizeof *tree->pools);
-    top = calloc(1, sizeof *top);
-    if (tree->pools == NULL || top == NULL) {
-        status = bp_fail(err, BP_ERR_MEMORY, "out of memory while building the tree of %u spheres", count);
-        goto cleanup;
+BpStatus bp_binary_tree_build(BpTreeItem **items, uint32_t count, const BpBinaryOptions *options,
+                              BpTeam *team, BpBinaryTree *tree, BpError *err) {
+    const unsigned workers = bp_team_size(team);
+    *tree = (BpBinaryTree){.pools = calloc(workers, sizeof *tree->pools), .pool_count = workers};
+    Top top = {.own = calloc(workers, sizeof *top.own), .tree = tree};
+    Splitter *all = calloc(1, sizeof *all);
+    BpTeam *alone = bp_team_create(1);
+    bool failed = tree->pools == NULL || top.own == NULL || all == NULL || alone == NULL;
+    if (!failed && count > 0) {
+        const Run whole = {.count = count, .height_max = options->height_max, .place = &tree->root};
+        *all = (Splitter){.items = *items, .options = options, .team = team, .pool = &tree->pools[0]};
+        all->run_max = count / RANGES < RANGE_MOST ? count / RANGES : RANGE_MOST;
+        if (all->run_max < RANGE_LEAST) all->run_max = RANGE_LEAST;
+        split_whole(all, &whole, 4 * all->run_max, &top.runs);
+        *items = all->items;
+        for (unsigned w = 0; w < workers; ++w)
+            top.own[w] = (Splitter){.items = *items, .options = options, .team = alone, .run_max = RUN_MOST};
+        if (!all->failed) {
+            qsort(top.runs.runs, top.runs.count, sizeof *top.runs.runs, larger_first);
+            bp_team_run(team, build_run, &top, top.runs.count);
+        }
+        for (unsigned w = 0; w < workers; ++w) {
+            all->failed = all->failed || top.own[w].failed;
+            splitter_clear(&top.own[w]);
+        }
+        finish_nodes(all);
+        failed = all->failed;
+        splitter_clear(all);
     }
-    top->items[0] = items;
-    top->options = options;
-    top->team = team;
-    top->tree = tree;
-    top->run_max = count / RUNS;
-    if (top->run_max < 2048) top->run_max = 2048;
-    if (top->run_max > RUN_MAX) top->run_max = RUN_MAX;
-    if (count > 4 * top->run_max) {
-        status = build_large(top, count, err);
-    } else if (count > 0) {
-        tree->root = bp_binary_build_run(items, 0, count, options, &tree->pools[0]);
-        if (tree->root == NULL)
-            status =
-                bp_fail(err, BP_ERR_MEMORY, "out of memory while building the tree of %u spheres", count);
-    }
-cleanup:
-    free(top);
-    if (status != BP_OK) bp_binary_tree_clear(tree);
-    return status;
+    free(top.own);
+    free(top.runs.runs);
+    free(all);
+    bp_team_destroy(&alone);
+    if (!failed) return BP_OK;
+    bp_binary_tree_clear(tree);
+    return bp_fail(err, BP_ERR_MEMORY, "out of memory while building the tree of %u spheres", count);
 }
 
 void bp_binary_tree_clear(BpBinaryTree *tree) {

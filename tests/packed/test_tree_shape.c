@@ -158,9 +158,17 @@ static void large_and_degenerate(void **state) {
         int shape;
         size_t count;
         uint32_t width;
-    } cases[] = {{SHAPE_SAME, 100000, 8},   {SHAPE_SAME, 100000, 2},     {SHAPE_POWERS, 100000, 2},
-                 {SHAPE_POWERS, 100000, 8}, {SHAPE_CLUSTERS, 200000, 4}, {SHAPE_GRID, 200000, 8},
-                 {SHAPE_FIELD, 400000, 8},  {SHAPE_WILD, 300000, 8},     {SHAPE_LINE, 300000, 2}};
+    } cases[] = {{SHAPE_SAME, 100000, 8},
+                 {SHAPE_SAME, 100000, 2},
+                 {SHAPE_POWERS, 100000, 2},
+                 {SHAPE_POWERS, 100000, 8},
+                 {SHAPE_CLUSTERS, 200000, 4},
+                 {SHAPE_GRID, 200000, 8},
+                 {SHAPE_FIELD, 400000, 8},
+                 {SHAPE_WILD, 300000, 8},
+                 {SHAPE_LINE, 300000, 2},
+                 /* More than 2^22: threads part their ranges by grids of their own. */
+                 {SHAPE_FIELD, 6000000, 16}};
     const double origin[3] = {3, 2, 1};
     for (size_t i = 0; i < sizeof cases / sizeof cases[0]; ++i) {
         BpScene scene = make_spheres(cases[i].shape, cases[i].count, 2);
@@ -173,37 +181,39 @@ static void large_and_degenerate(void **state) {
     }
 }
 
+static void assert_same_for_threads(int shape, size_t count) {
+    const unsigned threads[] = {1, 2, 5};
+    const double origin[3] = {0, 0, 0};
+    BpScene scene = make_spheres(shape, count, 3);
+    BpTree first = {0};
+    for (int t = 0; t < 3; ++t) {
+        const BpTreeOptions options = {8, true, false, threads[t], false};
+        BpTree tree;
+        assert_int_equal(bp_tree_build(&scene, origin, &options, &tree, NULL), BP_OK);
+        if (t == 0) {
+            first = tree;
+            continue;
+        }
+        assert_int_equal(tree.node_count, first.node_count);
+        assert_int_equal(tree.leaf_count, first.leaf_count);
+        assert_int_equal(tree.first_leaves, first.first_leaves);
+        assert_int_equal(tree.depth, first.depth);
+        const size_t nodes = tree.node_count, leaves = tree.leaf_count;
+        assert_memory_equal(tree.node_boxes, first.node_boxes, nodes * NODE_REALS(8) * sizeof(float));
+        assert_memory_equal(tree.children, first.children, nodes * 8 * sizeof(uint32_t));
+        assert_memory_equal(tree.leaves, first.leaves, leaves * LEAF_REALS(8) * sizeof(float));
+        assert_memory_equal(tree.slot_sphere, first.slot_sphere, leaves * 8 * sizeof(uint32_t));
+        bp_tree_clear(&tree);
+    }
+    bp_tree_clear(&first);
+    free(scene.spheres);
+}
+
 static void same_for_any_number_of_threads(void **state) {
     (void)state;
     const size_t counts[] = {100, 30000, 200000};
-    const unsigned threads[] = {1, 2, 5};
-    const double origin[3] = {0, 0, 0};
     for (int shape = 0; shape < SHAPE_COUNT; ++shape)
-        for (size_t c = 0; c < 3; ++c) {
-            BpScene scene = make_spheres(shape, counts[c], 3);
-            BpTree first = {0};
-            for (int t = 0; t < 3; ++t) {
-                const BpTreeOptions options = {8, true, false, threads[t], false};
-                BpTree tree;
-                assert_int_equal(bp_tree_build(&scene, origin, &options, &tree, NULL), BP_OK);
-                if (t == 0) {
-                    first = tree;
-                    continue;
-                }
-                assert_int_equal(tree.node_count, first.node_count);
-                assert_int_equal(tree.leaf_count, first.leaf_count);
-                assert_int_equal(tree.first_leaves, first.first_leaves);
-                assert_int_equal(tree.depth, first.depth);
-                const size_t nodes = tree.node_count, leaves = tree.leaf_count;
-                assert_memory_equal(tree.node_boxes, first.node_boxes, nodes * NODE_REALS(8) * sizeof(float));
-                assert_memory_equal(tree.children, first.children, nodes * 8 * sizeof(uint32_t));
-                assert_memory_equal(tree.leaves, first.leaves, leaves * LEAF_REALS(8) * sizeof(float));
-                assert_memory_equal(tree.slot_sphere, first.slot_sphere, leaves * 8 * sizeof(uint32_t));
-                bp_tree_clear(&tree);
-            }
-            bp_tree_clear(&first);
-            free(scene.spheres);
-        }
+        for (size_t c = 0; c < 3; ++c) assert_same_for_threads(shape, counts[c]);
 }
 
 static void lists_keep_the_order(void **state) {
