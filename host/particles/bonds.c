@@ -1,6 +1,7 @@
 /* bonds.c: see bonds.h. */
 #include "bonds.h"
 
+#include "base/team.h"
 #include "elements.h"
 
 #include <stdlib.h>
@@ -8,12 +9,76 @@
 
 #define NEVER UINT32_MAX
 
+/* Particles are taken by blocks, on all threads. */
+enum { BLOCK = 65536 };
+
+typedef struct Bounds {
+    double low[3], high[3];
+    size_t count; /* of those shown */
+} Bounds;
+
+typedef struct Bounding {
+    const BpParticles *particles;
+    const bool *shown;
+    Bounds *blocks;
+} Bounding;
+
+static size_t block_end(const BpParticles *p, uint32_t block) {
+    const size_t end = ((size_t)block + 1) * BLOCK;
+    return end < p->count ? end : p->count;
+}
+
+static void bound_block(void *context, uint32_t block, unsigned worker) {
+    (void)worker;
+    const Bounding *const bounding = context;
+    const BpParticles *const p = bounding->particles;
+    Bounds bounds = {{INFINITY, INFINITY, INFINITY}, {-INFINITY, -INFINITY, -INFINITY}, 0};
+    for (size_t i = (size_t)block * BLOCK; i < block_end(p, block); i++) {
+        if (!bounding->shown[i]) continue;
+        bounds.count++;
+        for (int c = 0; c < 3; c++) {
+            const double at = p->position[i][c];
+            bounds.low[c] = at < bounds.low[c] ? at : bounds.low[c];
+            bounds.high[c] = at > bounds.high[c] ? at : bounds.high[c];
+        }
+    }
+    bounding->blocks[block] = bounds;
+}
+
+static uint32_t block_count(const BpParticles *p) {
+    return (uint32_t)((p->count + BLOCK - 1) / BLOCK);
+}
+
+static BpTeam *team_for(const BpParticles *p) {
+    return bp_team_create(p->count > BLOCK ? 0 : 1);
+}
+
+/* Of all particles that are shown. */
+static BpStatus find_bounds(const BpParticles *p, const bool *shown, Bounds *bounds, BpError *err) {
+    Bounding bounding = {p, shown, malloc((block_count(p) + 1) * sizeof(Bounds))};
+    BpTeam *team = team_for(p);
+    const bool good = bounding.blocks != NULL && team != NULL;
+    *bounds = (Bounds){{INFINITY, INFINITY, INFINITY}, {-INFINITY, -INFINITY, -INFINITY}, 0};
+    if (good) bp_team_run(team, bound_block, &bounding, block_count(p));
+    for (uint32_t b = 0; b < block_count(p) && good; b++) {
+        bounds->count += bounding.blocks[b].count;
+        for (int c = 0; c < 3; c++) {
+            bounds->low[c] = fmin(bounds->low[c], bounding.blocks[b].low[c]);
+            bounds->high[c] = fmax(bounds->high[c], bounding.blocks[b].high[c]);
+        }
+    }
+    bp_team_destroy(&team);
+    free(bounding.blocks);
+    return good ? BP_OK : bp_fail(err, BP_ERR_MEMORY, "out of memory for %zu particles", p->count);
+}
+
 /* Particles sorted into the cells of a grid; the lists are chains through `next`. */
 typedef struct Grid {
     const BpParticles *particles;
     bool periodic;
     double origin[3], edges[3][3], inverse[3][3]; /* share = (place - origin) * inverse */
     int32_t sides[3];
+    size_t cell_count;
     uint32_t *first, *next;
 } Grid;
 
@@ -66,23 +131,20 @@ static void grid_clear(Grid *grid) {
     free(grid->next);
 }
 
+static size_t cell_number(const Grid *grid, const int32_t cell[3]) {
+    return ((size_t)cell[2] * (size_t)grid->sides[1] + (size_t)cell[1]) * (size_t)grid->sides[0] +
+           (size_t)cell[0];
+}
+
 /* Cells are at least `reach` wide, so that neighbours nearer than that lie in the cells around. */
-static BpStatus grid_init(Grid *grid, const BpParticles *p, const bool *shown, double reach, BpError *err) {
-    *grid = (Grid){.particles = p, .periodic = p->has_cell && p->periodic};
+static void grid_lay(Grid *grid, const BpParticles *p, const Bounds *bounds, double reach) {
+    *grid = (Grid){.particles = p, .periodic = p->has_cell && p->periodic, .cell_count = 1};
     if (grid->periodic) {
         memcpy(grid->origin, p->cell_origin, sizeof grid->origin);
         memcpy(grid->edges, p->cell, sizeof grid->edges);
     } else {
-        double high[3] = {-INFINITY, -INFINITY, -INFINITY};
-        for (int c = 0; c < 3; c++) grid->origin[c] = INFINITY;
-        for (size_t i = 0; i < p->count; i++) {
-            for (int c = 0; c < 3 && shown[i]; c++) {
-                const double at = p->position[i][c];
-                grid->origin[c] = at < grid->origin[c] ? at : grid->origin[c];
-                high[c] = at > high[c] ? at : high[c];
-            }
-        }
-        for (int c = 0; c < 3; c++) grid->edges[c][c] = fmax(high[c] - grid->origin[c], reach);
+        memcpy(grid->origin, bounds->low, sizeof grid->origin);
+        for (int c = 0; c < 3; c++) grid->edges[c][c] = fmax(bounds->high[c] - bounds->low[c], reach);
     }
     invert((const double(*)[3])grid->edges, grid->inverse);
     double sides[3], cells = 1;
@@ -95,25 +157,28 @@ static BpStatus grid_init(Grid *grid, const BpParticles *p, const bool *shown, d
         cells *= sides[i];
     }
     const double room = 4 * (double)p->count + 64, shrink = cells > room ? cbrt(room / cells) : 1;
-    size_t count = 1;
     for (int i = 0; i < 3; i++) {
         grid->sides[i] = (int32_t)fmax(1, floor(sides[i] * shrink));
-        count *= (size_t)grid->sides[i];
+        grid->cell_count *= (size_t)grid->sides[i];
     }
-    grid->first = malloc(count * sizeof *grid->first);
+}
+
+static BpStatus grid_init(Grid *grid, const BpParticles *p, const bool *shown, double reach, BpError *err) {
+    Bounds bounds;
+    BP_TRY(find_bounds(p, shown, &bounds, err));
+    grid_lay(grid, p, &bounds, reach);
+    grid->first = malloc(grid->cell_count * sizeof *grid->first);
     grid->next = malloc((p->count + 1) * sizeof *grid->next);
     if (grid->first == NULL || grid->next == NULL) {
         grid_clear(grid);
         return bp_fail(err, BP_ERR_MEMORY, "out of memory for a grid of %zu particles", p->count);
     }
-    for (size_t i = 0; i < count; i++) grid->first[i] = NEVER;
+    for (size_t i = 0; i < grid->cell_count; i++) grid->first[i] = NEVER;
     for (size_t i = p->count; i-- > 0;) {
         int32_t cell[3];
         if (!shown[i]) continue;
         cell_of(grid, p->position[i], cell);
-        uint32_t *const head = &grid->first[((size_t)cell[2] * (size_t)grid->sides[1] + (size_t)cell[1]) *
-                                                (size_t)grid->sides[0] +
-                                            (size_t)cell[0]];
+        uint32_t *const head = &grid->first[cell_number(grid, cell)];
         grid->next[i] = *head;
         *head = (uint32_t)i;
     }
@@ -350,55 +415,177 @@ static int compare_reals(const void *a, const void *b) {
     return one < other ? -1 : one > other;
 }
 
+/* The distances of a thousand particles to their nearest neighbours. Only what lies in the cells around those
+ * is kept, so that millions of particles need one pass and hardly any memory. */
+typedef struct Sampling {
+    Grid grid; /* without its lists */
+    const bool *shown;
+    uint64_t *marks;  /* one bit a cell: a sample may have neighbours there */
+    uint32_t *before; /* how many cells are marked before each word of marks */
+    struct Near {
+        uint32_t *particles;
+        uint32_t count, capacity;
+        bool failed;
+    } * near;                          /* of each block: the particles in marked cells */
+    uint32_t *first, *next, *particle; /* the list of each marked cell, in the particles' order */
+} Sampling;
+
+static bool is_marked(const Sampling *s, size_t cell) {
+    return (s->marks[cell / 64] >> cell % 64 & 1) != 0;
+}
+
+/* The place of a marked cell among the marked ones. */
+static uint32_t place_of(const Sampling *s, size_t cell) {
+    uint32_t place = s->before[cell / 64];
+    for (uint64_t bits = s->marks[cell / 64] & (((uint64_t)1 << cell % 64) - 1); bits != 0; bits &= bits - 1)
+        place++;
+    return place;
+}
+
+static void sort_out_block(void *context, uint32_t block, unsigned worker) {
+    (void)worker;
+    const Sampling *const s = context;
+    const BpParticles *const p = s->grid.particles;
+    struct Near *const near = &s->near[block];
+    for (size_t i = (size_t)block * BLOCK; i < block_end(p, block) && !near->failed; i++) {
+        int32_t cell[3];
+        if (!s->shown[i]) continue;
+        cell_of(&s->grid, p->position[i], cell);
+        if (!is_marked(s, cell_number(&s->grid, cell))) continue;
+        if (near->count == near->capacity) {
+            const uint32_t capacity = near->capacity > 0 ? 2 * near->capacity : 256;
+            uint32_t *const grown = realloc(near->particles, capacity * sizeof *grown);
+            near->failed = grown == NULL;
+            if (near->failed) return;
+            near->particles = grown;
+            near->capacity = capacity;
+        }
+        near->particles[near->count++] = (uint32_t)i;
+    }
+}
+
+static void sampling_clear(Sampling *s) {
+    for (uint32_t b = 0; b < block_count(s->grid.particles) && s->near != NULL; b++)
+        free(s->near[b].particles);
+    free(s->near);
+    free(s->marks);
+    free(s->before);
+    free(s->first);
+    free(s->next);
+    free(s->particle);
+}
+
+/* Marks the cells around every `step`-th particle. */
+static void mark_cells(Sampling *s, size_t step) {
+    const BpParticles *const p = s->grid.particles;
+    for (size_t i = 0; i < p->count; i += step) {
+        int32_t cell[3];
+        size_t around[27];
+        if (!s->shown[i]) continue;
+        cell_of(&s->grid, p->position[i], cell);
+        const size_t cells = cells_around(&s->grid, cell, around);
+        for (size_t c = 0; c < cells; c++) s->marks[around[c] / 64] |= (uint64_t)1 << around[c] % 64;
+    }
+}
+
+/* Links what the blocks found into the lists of the marked cells. False: out of memory. */
+static bool link_cells(Sampling *s) {
+    const size_t words = s->grid.cell_count / 64 + 1;
+    size_t count = 0;
+    uint32_t marked = 0;
+    for (size_t w = 0; w < words; w++) {
+        s->before[w] = marked;
+        for (uint64_t bits = s->marks[w]; bits != 0; bits &= bits - 1) marked++;
+    }
+    for (uint32_t b = 0; b < block_count(s->grid.particles); b++) {
+        if (s->near[b].failed) return false;
+        count += s->near[b].count;
+    }
+    s->first = malloc((marked + 1) * sizeof *s->first);
+    s->next = malloc((count + 1) * sizeof *s->next);
+    s->particle = malloc((count + 1) * sizeof *s->particle);
+    if (s->first == NULL || s->next == NULL || s->particle == NULL) return false;
+    for (uint32_t m = 0; m < marked; m++) s->first[m] = NEVER;
+    for (uint32_t b = block_count(s->grid.particles), n = 0; b-- > 0;)
+        for (uint32_t k = s->near[b].count; k-- > 0; n++) {
+            int32_t cell[3];
+            s->particle[n] = s->near[b].particles[k];
+            cell_of(&s->grid, s->grid.particles->position[s->particle[n]], cell);
+            uint32_t *const head = &s->first[place_of(s, cell_number(&s->grid, cell))];
+            s->next[n] = *head;
+            *head = n;
+        }
+    return true;
+}
+
+/* Needs the grid. */
+static BpStatus sampling_fill(Sampling *s, size_t step, BpError *err) {
+    const BpParticles *const p = s->grid.particles;
+    const size_t words = s->grid.cell_count / 64 + 1;
+    BpTeam *team = team_for(p);
+    s->marks = calloc(words, sizeof *s->marks);
+    s->before = malloc(words * sizeof *s->before);
+    s->near = calloc(block_count(p) + 1, sizeof *s->near);
+    bool good = team != NULL && s->marks != NULL && s->before != NULL && s->near != NULL;
+    if (good) {
+        mark_cells(s, step);
+        bp_team_run(team, sort_out_block, s, block_count(p));
+        good = link_cells(s);
+    }
+    bp_team_destroy(&team);
+    return good ? BP_OK : bp_fail(err, BP_ERR_MEMORY, "out of memory for a grid of %zu particles", p->count);
+}
+
+/* The square of the distance to the nearest neighbour; infinite where there is none. */
+static double nearest_square(const Sampling *s, size_t i) {
+    const BpParticles *const p = s->grid.particles;
+    int32_t cell[3];
+    size_t around[27];
+    double least = INFINITY;
+    cell_of(&s->grid, p->position[i], cell);
+    const size_t cells = cells_around(&s->grid, cell, around);
+    for (size_t c = 0; c < cells; c++) {
+        uint32_t n = s->first[place_of(s, around[c])];
+        for (size_t looked = 0; n != NEVER && looked < 4096; n = s->next[n], looked++) {
+            double d[3];
+            way(&s->grid, p->position[i], p->position[s->particle[n]], d);
+            const double squared = d[0] * d[0] + d[1] * d[1] + d[2] * d[2];
+            if (s->particle[n] != i && squared > 0) least = fmin(least, squared);
+        }
+    }
+    return least;
+}
+
 BpStatus bp_particles_spacing(const BpParticles *particles, const bool *shown, double *spacing,
                               BpError *err) {
     enum { MOST = 1000 };
-    double nearest[MOST], low[3] = {INFINITY, INFINITY, INFINITY},
-                          high[3] = {-INFINITY, -INFINITY, -INFINITY}, volume = 1;
-    size_t count = 0, found = 0;
+    double nearest[MOST], volume = 1;
+    Bounds bounds;
+    size_t found = 0;
     int dimensions = 0;
     *spacing = 0;
-    for (size_t i = 0; i < particles->count; i++) {
-        count += shown[i];
-        for (int c = 0; c < 3 && shown[i]; c++) {
-            const double at = particles->position[i][c];
-            low[c] = at < low[c] ? at : low[c];
-            high[c] = at > high[c] ? at : high[c];
-        }
-    }
-    if (count < 2) return BP_OK;
+    BP_TRY(find_bounds(particles, shown, &bounds, err));
+    if (bounds.count < 2) return BP_OK;
     for (int c = 0; c < 3; c++) {
-        if (!(high[c] > low[c])) continue;
-        volume *= high[c] - low[c];
+        if (!(bounds.high[c] > bounds.low[c])) continue;
+        volume *= bounds.high[c] - bounds.low[c];
         dimensions++;
     }
     if (dimensions == 0) return BP_OK;
-    Grid grid;
     /* About eight particles a cell. If the nearest neighbour is further away than that, what is found is near
      * enough. */
-    const double reach = 2 * pow(volume / (double)count, 1.0 / dimensions);
-    BP_TRY(grid_init(&grid, particles, shown, reach, err));
+    const double reach = 2 * pow(volume / (double)bounds.count, 1.0 / dimensions);
     const size_t step = particles->count / MOST + 1;
-    for (size_t i = 0; i < particles->count; i += step) {
-        int32_t cell[3];
-        size_t around[27];
-        double least = INFINITY;
+    Sampling sampling = {.shown = shown};
+    grid_lay(&sampling.grid, particles, &bounds, reach);
+    const BpStatus status = sampling_fill(&sampling, step, err);
+    for (size_t i = 0; i < particles->count && status == BP_OK; i += step) {
         if (!shown[i]) continue;
-        cell_of(&grid, particles->position[i], cell);
-        const size_t cells = cells_around(&grid, cell, around);
-        for (size_t c = 0; c < cells; c++) {
-            size_t looked = 0;
-            for (uint32_t k = grid.first[around[c]]; k != NEVER && looked < 4096;
-                 k = grid.next[k], looked++) {
-                double d[3];
-                way(&grid, particles->position[i], particles->position[k], d);
-                const double squared = d[0] * d[0] + d[1] * d[1] + d[2] * d[2];
-                if (k != i && squared > 0) least = fmin(least, squared);
-            }
-        }
-        if (isfinite(least)) nearest[found++] = sqrt(least);
+        const double square = nearest_square(&sampling, i);
+        if (isfinite(square)) nearest[found++] = sqrt(square);
     }
-    grid_clear(&grid);
+    sampling_clear(&sampling);
+    if (status != BP_OK) return status;
     if (found == 0) {
         *spacing = reach / 2;
         return BP_OK;
