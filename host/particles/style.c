@@ -3,6 +3,7 @@
 
 #include "base/color.h"
 #include "base/format.h"
+#include "base/pages.h"
 #include "base/plural.h"
 #include "base/team.h"
 #include "bonds.h"
@@ -367,8 +368,8 @@ static void color_of(const Job *job, size_t i, double color[3]) {
 /* ---- spheres --------------------------------------------------------------------------------------------
  */
 
-/* Room for `count` more spheres, each with a colour. */
-static BpStatus make_room(Job *job, size_t count, BpError *err) {
+/* Room for `count` more spheres and `colors` more colours. */
+static BpStatus make_room(Job *job, size_t count, size_t colors, BpError *err) {
     BpScene *const scene = job->scene;
     if (count > BP_SPHERES_MAX || scene->sphere_count > BP_SPHERES_MAX - count)
         return bp_fail(err, BP_ERR_SCENE, "found more than %u spheres, expected fewer", BP_SPHERES_MAX);
@@ -376,16 +377,18 @@ static BpStatus make_room(Job *job, size_t count, BpError *err) {
         size_t capacity = scene->sphere_count + count;
         if (job->capacity > 0 && capacity < job->capacity + job->capacity / 2)
             capacity = job->capacity + job->capacity / 2;
-        BpSphere *const spheres = realloc(scene->spheres, (capacity + 1) * sizeof *spheres);
+        const size_t bytes = (capacity + 1) * sizeof(BpSphere);
+        BpSphere *const spheres = bp_large_pages(realloc(scene->spheres, bytes), bytes);
         if (spheres == NULL) return bp_fail(err, BP_ERR_MEMORY, "out of memory for %zu spheres", capacity);
         scene->spheres = spheres;
         job->capacity = capacity;
     }
-    if (scene->albedo_count + count > job->albedo_capacity) {
-        size_t capacity = scene->albedo_count + count;
+    if (scene->albedo_count + colors > job->albedo_capacity) {
+        size_t capacity = scene->albedo_count + colors;
         if (job->albedo_capacity > 0 && capacity < job->albedo_capacity + job->albedo_capacity / 2)
             capacity = job->albedo_capacity + job->albedo_capacity / 2;
-        float(*const albedos)[3] = realloc(scene->albedos, (capacity + 1) * sizeof *albedos);
+        const size_t bytes = (capacity + 1) * sizeof *scene->albedos;
+        float(*const albedos)[3] = bp_large_pages(realloc(scene->albedos, bytes), bytes);
         if (albedos == NULL) return bp_fail(err, BP_ERR_MEMORY, "out of memory for %zu colours", capacity);
         scene->albedos = albedos;
         job->albedo_capacity = capacity;
@@ -397,30 +400,30 @@ static bool has_albedos(const Job *job) {
     return bp_material_has(job->scene->materials[job->material].kind, BP_MEMBER_ALBEDO);
 }
 
-/* Sphere `place` of those that follow the scene's own; with room for it, and for its colour where the
- * material has one. */
+/* Sphere `place` of those that follow the scene's own, and colour `color_place`; with room for both. NULL:
+ * the colour is there already. */
 static void fill_sphere(const Job *job, size_t place, const double center[3], double radius,
-                        const double color[3]) {
+                        size_t color_place, const double color[3]) {
     const BpScene *const scene = job->scene;
-    const size_t albedo = scene->albedo_count + place;
+    const size_t albedo = scene->albedo_count + color_place;
     BpSphere *const sphere = &scene->spheres[scene->sphere_count + place];
     *sphere = (BpSphere){.radius = radius, .material = job->material, .albedo = BP_NO_ALBEDO};
     memcpy(sphere->center, center, sizeof sphere->center);
     if (!has_albedos(job)) return;
-    for (int c = 0; c < 3; c++)
+    for (int c = 0; c < 3 && color != NULL; c++)
         scene->albedos[albedo][c] = color[c] > 0 ? color[c] < 1 ? (float)color[c] : 1.0f : 0.0f;
     sphere->albedo = (uint32_t)albedo;
 }
 
-static void count_spheres(Job *job, size_t count) {
+static void count_spheres(Job *job, size_t count, size_t colors) {
     job->scene->sphere_count += count;
-    if (has_albedos(job)) job->scene->albedo_count += count;
+    if (has_albedos(job)) job->scene->albedo_count += colors;
 }
 
 /* After make_room. */
 static void put_sphere(Job *job, const double center[3], double radius, const double color[3]) {
-    fill_sphere(job, 0, center, radius, color);
-    count_spheres(job, 1);
+    fill_sphere(job, 0, center, radius, 0, color);
+    count_spheres(job, 1, 1);
 }
 
 /* Particles become spheres block by block, on all threads: those without a radius are found first, which says
@@ -428,6 +431,7 @@ static void put_sphere(Job *job, const double center[3], double radius, const do
 typedef struct Blocks {
     Job *job;
     size_t *places; /* of each block: how many particles are shown, then the place of its first */
+    bool one_color; /* of all: then there is one entry for it, which caches hold */
 } Blocks;
 
 enum { BLOCK = 16384 };
@@ -458,8 +462,10 @@ static void fill_spheres(void *context, uint32_t block, unsigned worker) {
     for (size_t i = (size_t)block * BLOCK; i < block_end(blocks, block); i++) {
         double color[3];
         if (!job->shown[i]) continue;
-        color_of(job, i, color);
-        fill_sphere(job, place++, job->p->position[i], radius_of(job, i), color);
+        if (!blocks->one_color || place == 0) color_of(job, i, color);
+        fill_sphere(job, place, job->p->position[i], radius_of(job, i), blocks->one_color ? 0 : place,
+                    !blocks->one_color || place == 0 ? color : NULL);
+        place++;
     }
 }
 
@@ -468,8 +474,9 @@ static BpStatus put_particles(Job *job, BpError *err) {
     const uint32_t block_count = (uint32_t)((p->count + BLOCK - 1) / BLOCK);
     size_t put = 0;
     const size_t first = job->scene->sphere_count;
-    BP_TRY(make_room(job, job->shown_count, err));
-    Blocks blocks = {job, calloc((size_t)block_count + 1, sizeof *blocks.places)};
+    const bool one_color = job->color_by == BP_COLOR_CONSTANT && job->style->color_count == 0;
+    BP_TRY(make_room(job, job->shown_count, one_color ? 1 : job->shown_count, err));
+    Blocks blocks = {job, calloc((size_t)block_count + 1, sizeof *blocks.places), one_color};
     BpTeam *team = bp_team_create(block_count > 1 ? 0 : 1);
     if (blocks.places == NULL || team == NULL) {
         free(blocks.places);
@@ -485,7 +492,7 @@ static BpStatus put_particles(Job *job, BpError *err) {
     bp_team_run(team, fill_spheres, &blocks, block_count);
     bp_team_destroy(&team);
     free(blocks.places);
-    count_spheres(job, put);
+    count_spheres(job, put, one_color && put > 0 ? 1 : put);
     const size_t without = job->shown_count - put;
     char number[32];
     if (without > 0)
@@ -509,7 +516,7 @@ static BpStatus put_beads(Job *job, const double a[3], const double b[3], double
         sqrt((b[0] - a[0]) * (b[0] - a[0]) + (b[1] - a[1]) * (b[1] - a[1]) + (b[2] - a[2]) * (b[2] - a[2]));
     const double wanted = ceil(length / (spacing * radius));
     const size_t count = wanted < BEADS_MAX ? (size_t)fmax(wanted, 1) : BEADS_MAX;
-    BP_TRY(make_room(job, count, err));
+    BP_TRY(make_room(job, count, count, err));
     for (size_t i = 0; i < count; i++) {
         const double t = ((double)i + 0.5) / (double)count;
         double place[3], squared = 0;
@@ -598,7 +605,7 @@ static BpStatus put_box(Job *job, BpError *err) {
         for (int c = 0; c < 3; c++)
             place[c] = p->cell_origin[c] + (corner & 1) * p->cell[0][c] + (corner >> 1 & 1) * p->cell[1][c] +
                        (corner >> 2) * p->cell[2][c];
-        BP_TRY(make_room(job, 1, err));
+        BP_TRY(make_room(job, 1, 1, err));
         put_sphere(job, place, EDGE_SHARE * longest * 1.0001, color);
     }
     return BP_OK;
