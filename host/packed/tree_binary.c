@@ -213,20 +213,17 @@ static Split find_split(const BpTreeItem *items, uint32_t count, uint32_t width)
     return best;
 }
 
-/* Moves the items left of the split to the front and returns their number. */
+/* Moves the items left of the split to the front and returns their number. Which side an item belongs to
+ * cannot be foreseen, so there is no branch on it. */
 static uint32_t partition(BpTreeItem *items, uint32_t count, const Split *split) {
-    uint32_t left = 0, right = count;
-    for (;;) {
-        while (left < right && bin_of(items[left].center[split->axis], split->low, split->scale) < split->bin)
-            ++left;
-        while (left < right &&
-               bin_of(items[right - 1].center[split->axis], split->low, split->scale) >= split->bin)
-            --right;
-        if (left >= right) return left;
-        const BpTreeItem item = items[left];
-        items[left++] = items[--right];
-        items[right] = item;
+    uint32_t left = 0;
+    for (uint32_t i = 0; i < count; ++i) {
+        const BpTreeItem item = items[i];
+        items[i] = items[left];
+        items[left] = item;
+        left += bin_of(item.center[split->axis], split->low, split->scale) < split->bin;
     }
+    return left;
 }
 
 static BpBinaryNode *build(BpTreeItem *items, uint32_t first, uint32_t count, uint32_t width,
