@@ -161,6 +161,17 @@ MUTANTS = [
     Mutant("a bond drawn twice", "once as the file's, once by distance", [
         patch("host/particles/bonds.c", "            if (is_given(bonds, i, k)) continue;\n", "")],
            [particle_scenes("connections_of_pdb")]),
+    Mutant("neighbours below and before alone", "the spacing looks at one of the 27 cells around a particle", [
+        patch("host/particles/bonds.c", "    for (size_t c = 0; c < cells; c++) {\n        uint32_t n = s->first",
+              "    for (size_t c = 0; c < 1; c++) {\n        uint32_t n = s->first")],
+           [particle_scenes("spacing")]),
+    # ---- large trees ----------------------------------------------------------------------------------------
+    Mutant("every range at the beginning", "parts of a thread's range that are placed as if it were the whole",
+           [patch("host/packed/tree_top.c", "{s->range.first + s->filled, items", "{s->filled, items")],
+           [test("test_tree_shape", "large_and_degenerate")]),
+    Mutant("a thread's nodes left open", "no boxes and costs for the nodes that a thread made by its grids",
+           [patch("host/packed/tree_top.c", "    finish_nodes(s);\n    free(ranges.runs);", "    free(ranges.runs);")],
+           [test("test_tree_shape", "large_and_degenerate")]),
     # ---- ranks that share a render ---------------------------------------------------------------------------
     Mutant("the end of a block", "strips of equal length, and nobody has what is left over",
            [patch("host/render/portion.c", "const uint64_t length = portion->strip + 1 == portion->strips ? all - first : step;",

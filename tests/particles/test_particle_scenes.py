@@ -6,6 +6,7 @@ import gzip
 import json
 import math
 import os
+import random
 
 from cli import ProgramTest, main, scene
 from pfm import read_pfm
@@ -153,6 +154,14 @@ class Scenes(ProgramTest):
             beads = [pdb_line(i, " C1 ", "DPP", (spacing * i, 0, 0)) for i in range(20)]
             self.write("a.pdb", "".join(beads))
             self.assertIn(says, self.notes("a.pdb"))
+
+    def test_spacing(self):
+        """Half the median of the distances to the nearest neighbour, over about a thousand particles, as all pairs give it."""
+        source = random.Random(11)
+        points = [tuple(source.random() for _ in range(3)) for _ in range(1500)]
+        self.write("a.csv", "x,y,z\n" + "".join(f"{x!r},{y!r},{z!r}\n" for x, y, z in points))
+        nearest = sorted(min(math.dist(p, q) for q in points if q != p) for p in points[::2])
+        self.assertIn(f"radius {nearest[len(nearest) // 2] / 2:.3g}: half the median", self.notes("a.csv"))
 
     def test_molecules_made_whole(self):
         cell = "CRYST1   20.000   20.000   20.000  90.00  90.00  90.00 P 1           1\n"
