@@ -12,9 +12,15 @@ import numpy as np
 import numpy.typing as npt
 
 from . import _library as lib
-from ._scene import Color, Document, Spheres
+from ._scene import Color, Document, Spheres, _numbers, wrong_type
 
 RADII = {"vdw": "van_der_waals", "covalent": "covalent"}
+
+
+def _expect(function: str, thing: typing.Any, members: typing.Sequence[str], expected: str) -> None:
+    """Refuses what lacks a member."""
+    if not all(hasattr(thing, member) for member in members):
+        raise wrong_type(function, thing, expected)
 
 
 @functools.lru_cache(maxsize=None)
@@ -41,10 +47,10 @@ def _of_elements(numbers: npt.NDArray[typing.Any], radius: typing.Union[str, npt
     if isinstance(radius, str):
         if radius not in RADII:
             raise lib.SceneError(f'radius: found "{radius}", expected "vdw", "covalent", a number or an array')
-        radii: npt.ArrayLike = scale * (vdw if radius == "vdw" else covalent)[known]
+        radii = (vdw if radius == "vdw" else covalent)[known]
     else:
-        radii = scale * np.asarray(radius)
-    return radii, colors[known] if color is None else color
+        radii = _numbers(radius, "radius")
+    return _numbers(scale, "scale") * radii, colors[known] if color is None else color
 
 
 def from_ase(atoms: typing.Any, *, radius: typing.Union[str, npt.ArrayLike] = "vdw", scale: float = 1.0,
@@ -54,6 +60,7 @@ def from_ase(atoms: typing.Any, *, radius: typing.Union[str, npt.ArrayLike] = "v
 
     radius: "vdw", "covalent", or in angstrom; scale multiplies it. color: as in Spheres.
     """
+    _expect("from_ase", atoms, ("get_atomic_numbers", "get_positions"), "an ase.Atoms")
     numbers = np.asarray(atoms.get_atomic_numbers())
     radii, colors = _of_elements(numbers, radius, scale, color)
     return Spheres(np.asarray(atoms.get_positions()), radii, colors, material, name="atoms")
@@ -85,8 +92,10 @@ def from_mdanalysis(atoms: typing.Any, *, radius: typing.Union[str, npt.ArrayLik
     Elements are the topology's; where it has none, they follow from the names of atoms and residues, and where it has
     no names, atoms look alike. Arguments: see from_ase().
     """
-    atoms = getattr(atoms, "atoms", atoms)
-    positions = np.asarray(atoms.positions)
+    given, atoms = atoms, getattr(atoms, "atoms", atoms)
+    if not hasattr(atoms, "positions") and not hasattr(atoms, "n_atoms") or hasattr(atoms, "get_atomic_numbers"):
+        raise wrong_type("from_mdanalysis", given, "an AtomGroup or a Universe of MDAnalysis")
+    positions = np.asarray(atoms.positions)  # MDAnalysis says it where there are none
     numbers = np.zeros(len(positions), np.int64)
     if hasattr(atoms, "elements"):
         numbers = _numbers_of(np.asarray(atoms.elements))
@@ -106,8 +115,9 @@ def from_gsd(frame: typing.Any, *, radius: typing.Optional[npt.ArrayLike] = None
 
     radius: instead of the diameters; scale multiplies it. color: as in Spheres. Two dimensions are seen from the front.
     """
+    _expect("from_gsd", frame, ("particles", "configuration"), "a frame of gsd.hoomd, such as trajectory[0]")
     particles = frame.particles
-    positions = np.asarray(particles.position)
+    positions = _numbers(particles.position, "positions")
     if radius is None:
         diameter = particles.diameter
         radius = 0.5 if diameter is None else np.asarray(diameter) / 2
@@ -120,5 +130,5 @@ def from_gsd(frame: typing.Any, *, radius: typing.Optional[npt.ArrayLike] = None
             table[number] = rgb[:]
         color = table[0] if types is None else table[np.asarray(types)]
     flat = getattr(frame.configuration, "dimensions", 3) == 2
-    return Spheres(positions, scale * np.asarray(radius), color, material, up="y" if flat else "z",
+    return Spheres(positions, _numbers(scale, "scale") * _numbers(radius, "radius"), color, material, up="y" if flat else "z",
                    view="front" if flat else "three-quarter", name="particles")

@@ -22,7 +22,7 @@ import numpy.typing as npt
 
 from . import _library as lib
 from ._picture import Picture
-from ._scene import Color, Document, Scene, Spheres, _whole, particle_document
+from ._scene import ADAPTERS, Color, Document, Scene, Spheres, _whole, list_of_spheres, particle_document, wrong_type
 
 T = typing.TypeVar("T")
 
@@ -159,6 +159,8 @@ class Render:
                  precision: str = "single", math: str = "strict", numerics: str = "robust", lamps: str = "on",
                  kernel: str = "auto", adaptive: bool = False, aovs: bool = False, threads: int = 0,
                  force: bool = False):
+        if not isinstance(scene, Scene):
+            raise wrong_type("ballpark.Render", scene, "a Scene, such as ballpark.make_scene() returns")
         self.scene = scene
         self._render, self._stop = lib.Handle("render"), lib.Handle("stop")
         self._progress, self._reason = lib.BpProgress(), c.c_int(0)
@@ -309,7 +311,12 @@ Subject = typing.Union[Scene, Spheres, typing.Sequence[Spheres], Document, str, 
 
 
 def _is_spheres(subject: typing.Any) -> bool:
-    return isinstance(subject, (list, tuple)) and len(subject) > 0 and all(isinstance(s, Spheres) for s in subject)
+    return isinstance(subject, Spheres) or (
+        isinstance(subject, (list, tuple)) and any(isinstance(one, Spheres) for one in subject))
+
+
+def _is_array(subject: typing.Any) -> bool:
+    return hasattr(subject, "__array__") or isinstance(subject, collections.abc.Sequence)
 
 
 def make_scene(subject: Subject, *, radius: typing.Optional[npt.ArrayLike] = None,
@@ -343,9 +350,10 @@ def make_scene(subject: Subject, *, radius: typing.Optional[npt.ArrayLike] = Non
         if width is not None and width != scene.width:
             scene.set_width(width)
         return scene
-    if isinstance(subject, Spheres) or _is_spheres(subject):
-        sets = [subject] if isinstance(subject, Spheres) else list(typing.cast(typing.Sequence[Spheres], subject))
-        sets = [dataclasses.replace(one, **given) for one in sets]
+    if _is_spheres(subject):
+        sets = [dataclasses.replace(one, **given) for one in list_of_spheres(subject)]
+    elif not _is_array(subject) or type(subject).__module__.partition(".")[0] in ADAPTERS:
+        raise wrong_type("ballpark.render", subject, "positions (N, 3), Spheres, a dict, a Scene or the path of a file")
     else:
         sets = [Spheres(typing.cast(npt.ArrayLike, subject), **given)]
     made = particle_document(sets, camera, width, height, scene_members)
@@ -382,6 +390,8 @@ def render(subject: Subject, *, radius: typing.Optional[npt.ArrayLike] = None, c
     Ctrl-C raises Interrupted, a KeyboardInterrupt, whose `picture` is what was rendered so far.
     """
     _refuse_unknown(options)
+    if progress is not None and not isinstance(progress, bool) and not callable(progress):
+        raise wrong_type("progress", progress, "True or a function")
     scene = make_scene(subject, radius=radius, color=color, material=material, cmap=cmap, color_range=color_range,
                        up=up, camera=camera, width=width, height=height, materials=materials, background=background,
                        light=light, backdrop=backdrop)

@@ -24,6 +24,17 @@ PARTICLE_CAMERA: typing.Dict[str, typing.Any] = {
 PARTICLE_SCENE: typing.Dict[str, typing.Any] = {"light": "soft", "transfer": "srgb"}
 
 
+# What takes the objects of other packages.
+ADAPTERS = {"ase": "from_ase", "MDAnalysis": "from_mdanalysis", "gsd": "from_gsd"}
+
+
+def wrong_type(what: str, found: object, expected: str) -> TypeError:
+    """Names what was expected, and for an object of another package the function that takes it."""
+    adapter = ADAPTERS.get(type(found).__module__.partition(".")[0])
+    hint = f"; see ballpark.{adapter}()" if adapter and what != adapter else ""
+    return TypeError(f"{what}: found {type(found).__name__}, expected {expected}{hint}")
+
+
 def _srgb_to_linear(share: npt.NDArray[np.float64]) -> npt.NDArray[typing.Any]:
     """IEC 61966-2-1."""
     return np.where(share <= 0.04045, share / 12.92, ((share + 0.055) / 1.055) ** 2.4)
@@ -32,6 +43,8 @@ def _srgb_to_linear(share: npt.NDArray[np.float64]) -> npt.NDArray[typing.Any]:
 def _map_colors(values: npt.NDArray[typing.Any], cmap: str,
                 color_range: typing.Optional[typing.Tuple[float, float]]) -> npt.NDArray[np.float32]:
     """Colours for numbers; those that are not finite become grey."""
+    if not isinstance(cmap, str):
+        raise wrong_type("cmap", cmap, 'a name such as "viridis"')
     table = np.empty((257, 3), np.float32)
     rgb = (c.c_double * 3)()
     for place in range(256):
@@ -44,8 +57,12 @@ def _map_colors(values: npt.NDArray[typing.Any], cmap: str,
     table[256] = 0.3
     values = np.asarray(values, np.float64)
     known = np.isfinite(values)
-    low, high = color_range if color_range is not None else (
-        (float(values[known].min()), float(values[known].max())) if known.any() else (0.0, 1.0))
+    low, high = (float(values[known].min()), float(values[known].max())) if known.any() else (0.0, 1.0)
+    if color_range is not None:
+        try:
+            low, high = (float(end) for end in color_range)
+        except (TypeError, ValueError):
+            raise lib.SceneError(f"color_range: found {color_range!r}, expected two numbers") from None
     scale = 255 / (high - low) if high > low else 0.0
     with np.errstate(invalid="ignore"):
         places = np.clip((values - low) * scale + 0.5, 0, 255) if scale else np.full(values.shape, 127.0)
@@ -64,9 +81,7 @@ def _colors(color: Color, count: int, cmap: str,
         if len(digits) == 3:
             digits = "".join(digit * 2 for digit in digits)
         return _srgb_to_linear(np.array([int(digits[i:i + 2], 16) for i in (0, 2, 4)]) / 255)
-    array = np.asarray(color)
-    if array.dtype == object or array.dtype.kind not in "fiub":
-        raise lib.SceneError(f"color: found {array.dtype}, expected numbers")
+    array = _array(color, "color")
     if array.shape == (count,) and (count != 3 or cmap != ""):  # three numbers are a colour, unless a map is named
         return _map_colors(array, cmap or "viridis", color_range)
     if array.shape not in ((3,), (count, 3)):
@@ -78,14 +93,25 @@ def _colors(color: Color, count: int, cmap: str,
     return array
 
 
-def _numbers(array: npt.ArrayLike, what: str) -> npt.NDArray[typing.Any]:
+def _array(values: npt.ArrayLike, what: str) -> npt.NDArray[typing.Any]:
+    """An array of numbers of any type."""
+    try:
+        array = np.asarray(values)
+    except ValueError:
+        raise lib.SceneError(f"{what}: found rows of different lengths, expected numbers") from None
+    if array.dtype.kind in "US":
+        raise lib.SceneError(f"{what}: found text, expected numbers")
+    if array.dtype.kind == "O":
+        raise wrong_type(what, values, "numbers")
+    if array.dtype.kind not in "fiub":
+        raise lib.SceneError(f"{what}: found {array.dtype}, expected numbers")
+    return array
+
+
+def _numbers(values: npt.ArrayLike, what: str) -> npt.NDArray[typing.Any]:
     """The array itself where the library can read it in place, else a copy as doubles."""
-    numbers = np.asarray(array)
-    if numbers.dtype in (np.dtype(np.float32), np.dtype(np.float64)):
-        return numbers
-    if numbers.dtype.kind not in "fiub":
-        raise lib.SceneError(f"{what}: found {numbers.dtype}, expected numbers")
-    return numbers.astype(np.float64)
+    array = _array(values, what)
+    return array if array.dtype in (np.dtype(np.float32), np.dtype(np.float64)) else array.astype(np.float64)
 
 
 def _rows(array: typing.Optional[npt.NDArray[typing.Any]], per_sphere: bool) -> lib.BpRows:
@@ -167,6 +193,18 @@ class Camera:
                 for name, value in dataclasses.asdict(self).items()}
 
 
+def list_of_spheres(spheres: typing.Any) -> typing.List[Spheres]:
+    """One Spheres, or several."""
+    if isinstance(spheres, Spheres):
+        return [spheres]
+    if not isinstance(spheres, (list, tuple)):
+        raise wrong_type("spheres", spheres, "Spheres or a list of them")
+    for number, one in enumerate(spheres):
+        if not isinstance(one, Spheres):
+            raise wrong_type(f"spheres[{number}]", one, "Spheres")
+    return list(spheres)
+
+
 class Scene:
     """A scene: a document of the JSON grammar (scenes/README.md) as a dict, and more spheres as arrays.
 
@@ -175,7 +213,7 @@ class Scene:
     """
 
     def __init__(self, document: Document, spheres: typing.Union[Spheres, typing.Sequence[Spheres]] = ()):
-        sets = [spheres] if isinstance(spheres, Spheres) else list(spheres)
+        sets = list_of_spheres(spheres)
         text, names = self._text(document, sets)
         keep: typing.List[typing.Any] = []
         array = (lib.BpSphereSet * max(1, len(sets)))(*(
@@ -199,8 +237,10 @@ class Scene:
                 name = f"{one.name} {number}"
                 whole["materials"] = {**whole.get("materials", {}), name: one.material}
                 names.append(name)
-            else:
+            elif one.material is None or isinstance(one.material, str):
                 names.append(one.material)
+            else:
+                raise wrong_type("material", one.material, "a name or a dict")
         try:
             return json.dumps(whole, default=_plain, allow_nan=False).encode(), names
         except ValueError as problem:
@@ -259,6 +299,8 @@ def particle_document(sets: typing.Sequence[Spheres], camera: typing.Optional[Do
                       height: typing.Optional[int], members: Document) -> typing.Dict[str, typing.Any]:
     """The document for bare spheres: a fitted camera, unless `camera` says where it stands, and soft light, unless `members`
     has a background."""
+    if camera is not None and not isinstance(camera, typing.Mapping):
+        raise wrong_type("camera", camera, 'a dict such as {"vfov": 30}')
     own = dict(camera or {})
     placed = {"lookfrom", "lookat", "focus_dist", "defocus_angle"} & set(own)
     whole = dict(PARTICLE_CAMERA)

@@ -145,6 +145,17 @@ def test_refused():
     refused(ValueError, ["material", '"gold"'], draw, material="golf", materials={"gold": {"type": "normals"}})
     refused(ValueError, ["up", '"w"'], draw, up="w")
     refused(ValueError, "sphere", ballpark.render, np.empty((0, 3)))
+    for subject in (3, None, print, {1, 2}):
+        refused(TypeError, [f"found {type(subject).__name__}", "(N, 3)", "Spheres", "path"], ballpark.render, subject)
+    refused(ValueError, ["positions", "different lengths"], ballpark.render, [[0, 0, 0], [1, 1]])
+    refused(ValueError, ["positions", "text"], ballpark.render, ["a.json", "b.json"])
+    refused(TypeError, ["spheres[1]", "ndarray", "Spheres"], ballpark.render, [ballpark.Spheres(POSITIONS), POSITIONS])
+    refused(TypeError, ["spheres", "int", "Spheres"], ballpark.Scene, {"camera": {}}, 3)
+    refused(TypeError, ["camera", "str", "dict"], draw, camera="front")
+    refused(TypeError, ["material", "int", "name"], draw, material=3)
+    refused(TypeError, ["cmap", "int", "viridis"], draw, color=np.arange(60.0), cmap=3)
+    for wrong in (3, (1,), ("a", "b")):
+        refused(ValueError, ["color_range", "two numbers"], draw, color=np.arange(60.0), color_range=wrong)
 
 
 with tempfile.TemporaryDirectory() as name:

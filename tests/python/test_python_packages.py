@@ -112,8 +112,23 @@ def test_gsd(folder):
             same_picture(ballpark.from_gsd(file[0]), path)
 
 
+def test_refused(folder):
+    """What is no object of the package is named, and so is the function that takes it."""
+    arrays = np.zeros((2, 3))
+    for function, expected in ((ballpark.from_ase, "ase.Atoms"), (ballpark.from_mdanalysis, "AtomGroup"),
+                               (ballpark.from_gsd, "trajectory[0]")):
+        for thing in (3, None, arrays, "water.xyz", [FakeAtoms()]):
+            package.refused(TypeError, [function.__name__, type(thing).__name__, expected], function, thing)
+    foreign = type("Atoms", (FakeAtoms,), {"__module__": "ase.atoms", "positions": arrays, "__len__": lambda self: 2})()
+    package.refused(TypeError, ["found Atoms", "ballpark.from_ase()"], ballpark.from_mdanalysis, foreign)
+    package.refused(TypeError, ["found Atoms", "positions (N, 3)", "ballpark.from_ase()"], ballpark.render, foreign)
+    package.refused(ValueError, ["scale", "text"], ballpark.from_ase, FakeAtoms(), scale="half")
+    empty = types.SimpleNamespace(particles=types.SimpleNamespace(position=None), configuration=None)
+    package.refused(TypeError, ["positions", "NoneType"], ballpark.from_gsd, empty)
+
+
 with tempfile.TemporaryDirectory() as name:
-    for function in (test_ase, test_mdanalysis, test_gsd):
+    for function in (test_ase, test_mdanalysis, test_gsd, test_refused):
         print(function.__name__, flush=True)
         function(pathlib.Path(name))
 for name in left_out:

@@ -190,6 +190,8 @@ def test_errors(folder):
     refused(ValueError, "time", ballpark.render, SCENE, time=math.nan)
     refused(ValueError, ["radius", "whole scene"], ballpark.render, SCENE, radius=1)
     refused(TypeError, "sppp", ballpark.render, SCENE, sppp=1)
+    refused(TypeError, ["progress", "int", "function"], ballpark.render, SCENE, progress=3)
+    refused(TypeError, ["dict", "make_scene"], ballpark.Render, SCENE)
     refused(ballpark.DeviceError, "teapot", ballpark.render, SCENE, device="teapot")
     refused(RuntimeError, "", ballpark.render, SCENE, device=99)
     refused(ValueError, "width", ballpark.Scene(SCENE).set_width, 0)
