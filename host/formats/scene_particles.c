@@ -3,6 +3,7 @@
  * In:    the node of "particles".   Out: the particles of the files that it names, as spheres.
  * Knows: the members of an entry, where relative paths begin. Does not know: the formats (particles/). */
 #include "base/json_memory.h"
+#include "base/message_text.h"
 #include "input_file.h"
 #include "particles/style.h"
 #include "scene_parse.h"
@@ -66,6 +67,20 @@ static BpStatus read_named(const BpNode *node, bool colors, BpStyleNamed *list, 
     return BP_OK;
 }
 
+/* One of `names`. Any other word is probably meant as the name of a column, unless it is nearly one of them.
+ */
+static BpStatus read_by(const BpNode *node, const char *const *names, size_t count, const char *expected,
+                        int *choice, BpError *err) {
+    const char *word = json_string_value(node->value);
+    char text[256];
+    bool known = bp_nearest_name(word, names, count) != NULL;
+    for (size_t i = 0; i < count; i++) known = known || strcmp(word, names[i]) == 0;
+    if (known) return bp_node_choice(node, names, count, choice, err);
+    snprintf(text, sizeof text, "%s; for a column of the file, { \"column\": \"%s\" }", expected,
+             strlen(word) <= 64 ? word : "NAME");
+    return bp_node_wrong(node, text, err);
+}
+
 static BpStatus read_radius(const BpNode *node, BpParticleStyle *style, BpError *err) {
     static const char *const by_names[] = {"vdw", "covalent"};
     static const char *const names[] = {"by", "column", "scale", "types"};
@@ -79,7 +94,8 @@ static BpStatus read_radius(const BpNode *node, BpParticleStyle *style, BpError 
         return read_above_zero(node, &style->radius, err);
     }
     if (json_is_string(node->value)) {
-        BP_TRY(bp_node_choice(node, by_names, BP_COUNT(by_names), &choice, err));
+        BP_TRY(
+            read_by(node, by_names, BP_COUNT(by_names), "a number, \"vdw\" or \"covalent\"", &choice, err));
         style->radius_by = choice == 0 ? BP_RADIUS_VDW : BP_RADIUS_COVALENT;
         return BP_OK;
     }
@@ -128,7 +144,8 @@ static BpStatus read_colors(const BpNode *node, BpParticleStyle *style, BpError 
         return read_color(node, style->color, err);
     }
     if (json_is_string(node->value)) {
-        BP_TRY(bp_node_choice(node, by_names, BP_COUNT(by_names), &choice, err));
+        BP_TRY(read_by(node, by_names, BP_COUNT(by_names),
+                       "[r, g, b], \"element\", \"chain\", \"residue\" or \"type\"", &choice, err));
         style->color_by = (BpColorBy)(BP_COLOR_ELEMENT + choice);
         return BP_OK;
     }
