@@ -61,12 +61,14 @@ json_t *bp_study_json(const BpStudyResult *result) {
     const BpCamera *camera = &result->scene->camera;
     const BpDeviceInfo *device = &result->report.device;
     BpSceneInfo info;
+    char warning[512];
     bp_scene_info(result->scene, &info);
+    bp_study_shortness_text(result, warning, sizeof warning);
     json_t *series = json_array(), *advice = json_array();
     for (size_t s = 0; s < result->count; s++) append(&series, series_json(&result->series[s]));
     for (int t = 0; t < BP_STUDY_TARGETS; t++) append(&advice, advice_json(result, &result->advice[t]));
     return json_pack("{s:s, s:o, s:o, s:i, s:i, s:[i,i], s:{s:o, s:o, s:o}, s:{s:s, s:i, s:I, s:o}, s:o, "
-                     "s:f, s:f, s:b, s:o, s:o}",
+                     "s:f, s:f, s:b, s:o, s:o, s:o}",
                      "version", bp_version(), "scene", bp_json_text(result->scene->path), "title",
                      bp_json_text(info.title), "width", (int)camera->width, "height", (int)camera->height,
                      "advice_size", (int)result->full_width, (int)result->full_height, "device", "platform",
@@ -76,5 +78,6 @@ json_t *bp_study_json(const BpStudyResult *result) {
                      "max_depth", (int)BP_STUDY_DEPTH, "samples_per_pixel",
                      (json_int_t)result->reference_samples, "nrmse", number(result->reference_error),
                      "brightness", number(result->brightness), "budget_seconds", result->budget, "seconds",
-                     result->seconds, "cut_short", result->cut_short, "series", series, "advice", advice);
+                     result->seconds, "cut_short", result->cut_short, "series", series, "advice", advice,
+                     "warning", warning[0] == '\0' ? json_null() : json_string(warning));
 }

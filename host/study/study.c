@@ -384,7 +384,7 @@ static BpStatus conclude(BpStudy *study, BpError *err) {
 BpStatus bp_study_stop(BpStudy *study, BpError *err) {
     if (study->phase == BP_STUDY_DONE) return BP_OK;
     for (size_t s = 0; s < study->result.count; s++)
-        if (study->result.series[s].count < 2)
+        if (study->result.series[s].count < BP_STUDY_LEVELS_MIN)
             return bp_fail(err, BP_ERR_INTERRUPTED,
                            "interrupted before every configuration had two sample counts; there is nothing "
                            "to compare yet");

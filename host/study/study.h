@@ -24,6 +24,7 @@
 #define BP_STUDY_SECONDS_DEFAULT 60.0
 #define BP_STUDY_DEPTH 1000u /* of the truth */
 #define BP_STUDY_CONFIGURATIONS_MAX 22
+#define BP_STUDY_LEVELS_MIN 2 /* sample counts; without two there is nothing to compare */
 #define BP_STUDY_LEVELS_MAX 10
 #define BP_STUDY_TARGETS 3
 
@@ -123,6 +124,9 @@ const char *bp_study_fresnel_name(BpStudyFresnel fresnel);
 /* The relative uncertainty of a ratio of two times: half the widest 95 % interval of time_ratio. NaN where
  * none is known. */
 double bp_study_time_scatter(const BpStudyResult *result);
+/* Why a study was too short to rely on its advice, and what to do; "" where it was long enough. Returns
+ * `text`. */
+const char *bp_study_shortness_text(const BpStudyResult *result, char *text, size_t size);
 /* One line: what to do for this error and what it costs; no line end. */
 const char *bp_study_advice_text(const BpStudyResult *result, const BpStudyAdvice *advice, char *text,
                                  size_t size);

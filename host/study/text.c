@@ -81,6 +81,7 @@ bool bp_study_print(const BpStudyResult *result, FILE *out) {
     if (isfinite(scatter))
         fprintf(out, "time: ratios are accurate to +- %.2g %% (95 %% interval), less so for adaptive.\n",
                 100 * scatter);
+    if (*bp_study_shortness_text(result, line, sizeof line) != '\0') fprintf(out, "\n%s\n", line);
     fprintf(out, "\nRecommended for an error of (times: on this device, when otherwise idle)\n");
     for (int t = 0; t < BP_STUDY_TARGETS; t++) {
         bp_study_advice_text(result, &result->advice[t], line, sizeof line);
@@ -92,6 +93,32 @@ bool bp_study_print(const BpStudyResult *result, FILE *out) {
             fprintf(out, "  %.*s:\n      " BP_PASTE "%s\n", (int)(command - line), line, command + 2);
     }
     return fflush(out) == 0 && !ferror(out);
+}
+
+const char *bp_study_shortness_text(const BpStudyResult *result, char *text, size_t size) {
+    const BpStudySeries *base = &result->series[0];
+    char least[64] = "", bias[32], unnoticed[96] = "";
+    if (base->count <= BP_STUDY_LEVELS_MIN)
+        snprintf(least, sizeof least, "it got no further than %" PRIu64 " samples per pixel",
+                 base->points[base->count - 1].samples);
+    else if (isnan(bp_study_time_scatter(result)))
+        snprintf(least, sizeof least, "it has too few measurements to compare times");
+    double hidden = 0; /* the largest bias that may keep a recommended configuration from its error */
+    for (int t = 0; t < BP_STUDY_TARGETS; t++) {
+        const BpStudyAdvice *advice = &result->advice[t];
+        const double high = result->series[advice->series].bias_square.high;
+        if (advice->reachable && high > advice->target * advice->target) hidden = fmax(hidden, sqrt(high));
+    }
+    if (hidden > 0)
+        snprintf(unnoticed, sizeof unnoticed, "%sa bias of up to %s would have gone unnoticed",
+                 least[0] != '\0' ? ", and " : "", bp_format_percent(hidden, bias, sizeof bias));
+    text[0] = '\0';
+    if (least[0] != '\0' || hidden > 0)
+        snprintf(text, size,
+                 "This study was too short to rely on its recommendations: %s%s. Give it more time, such as "
+                 "--time %.0fs.",
+                 least, unnoticed, fmax(BP_STUDY_SECONDS_DEFAULT, 4 * result->budget));
+    return text;
 }
 
 const char *bp_study_advice_text(const BpStudyResult *result, const BpStudyAdvice *advice, char *text,

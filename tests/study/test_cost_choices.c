@@ -128,6 +128,51 @@ static BpScene *load(const char *name) {
     return scene;
 }
 
+/* A study that had time for the least only, or whose clock or references were too coarse, says so. */
+static void test_shortness(void **state) {
+    (void)state;
+    static BpStudyResult result;
+    static BpScene scene;
+    char text[512];
+    memset(&result, 0, sizeof result);
+    result.scene = &scene;
+    result.budget = 60;
+    result.count = 2;
+    for (size_t s = 0; s < 2; s++) {
+        BpStudySeries *series = &result.series[s];
+        series->count = 3;
+        for (size_t i = 0; i < 3; i++) series->points[i].samples = 4u << 2 * i;
+        series->time_ratio = (BpStudyEstimate){1, 0.9, 1.1};
+        series->bias_square = (BpStudyEstimate){0, -1e-8, 1e-8};
+    }
+    for (int t = 0; t < BP_STUDY_TARGETS; t++)
+        result.advice[t] = (BpStudyAdvice){.target = t == 0   ? 0.05
+                                                     : t == 1 ? 0.01
+                                                              : 0.002,
+                                           .reachable = true,
+                                           .series = 1};
+    assert_string_equal(bp_study_shortness_text(&result, text, sizeof text), "");
+
+    result.series[1].bias_square.high = 9e-6; /* 0.3 %: more than the 0.2 % that are promised */
+    assert_non_null(
+        strstr(bp_study_shortness_text(&result, text, sizeof text),
+               ": a bias of up to 0.3 % would have gone unnoticed. Give it more time, such as --time 240s."));
+    result.advice[2].reachable = false; /* nothing is promised */
+    assert_string_equal(bp_study_shortness_text(&result, text, sizeof text), "");
+    result.series[1].bias_square.high = (double)NAN; /* a device without double: the curve's floor counts */
+    assert_string_equal(bp_study_shortness_text(&result, text, sizeof text), "");
+
+    result.budget = 1;
+    result.series[1].time_ratio.value = (double)NAN;
+    assert_non_null(
+        strstr(bp_study_shortness_text(&result, text, sizeof text),
+               ": it has too few measurements to compare times. Give it more time, such as --time 60s."));
+    result.series[0].count = result.series[1].count = 2;
+    result.series[1].bias_square.high = 9e-4;
+    assert_non_null(strstr(bp_study_shortness_text(&result, text, sizeof text),
+                           ": it got no further than 16 samples per pixel, and a bias of up to 3.0 % would"));
+}
+
 static void test_configurations(void **state) {
     (void)state;
     BpStudyConfiguration configurations[BP_STUDY_CONFIGURATIONS_MAX];
@@ -174,6 +219,7 @@ int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_advice),
         cmocka_unit_test(test_advice_can_be_followed),
+        cmocka_unit_test(test_shortness),
         cmocka_unit_test(test_configurations),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

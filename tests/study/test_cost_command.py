@@ -55,6 +55,7 @@ class Cost(ProgramTest):
             self.assertIn(series["name"], self.table)
         for advice in result["advice"]:
             self.assertIn(advice["text"], " ".join(self.table.split()))
+        self.assertEqual("too short to rely on" in self.table, result["warning"] is not None)
 
     def test_figures_fit_together(self):
         result = self.glass()

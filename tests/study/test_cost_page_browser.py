@@ -156,6 +156,7 @@ class PageInBrowser(PageTest):
         self.assertEqual(len(dom.having("target")), 3)
         self.assertGreater(compared, ways * (9 + 6 * counts + counts))
         self.assertEqual([e["text"] for e in dom.elements if "f-title" in e["attributes"].get("class", "")], [TITLE])
+        self.assertEqual([e["text"] for e in dom.elements if e["attributes"].get("id") == "warning"], [result["warning"] or ""])
         self.assertEqual([e["text"] for e in dom.elements if e["tag"] == "title"][0], f"What accuracy costs: {TITLE}")
         self.assertFalse([e for e in dom.elements if e["tag"] == "b" and "matte" in e["text"]])
         self.assertEqual(len([e for e in dom.elements if e["tag"] == "script"]), 3)
