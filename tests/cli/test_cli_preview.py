@@ -9,6 +9,7 @@ import subprocess
 import time
 
 from cli import LIMIT_SECONDS, PROGRAM, ProgramTest, main, scene
+from png import read_png
 from terminal import Terminal
 
 WIDTH, HEIGHT = 40, 24
@@ -189,6 +190,30 @@ class Show(ProgramTest):
         self.assertAlmostEqual(len(rows[0]) / len(rows), WIDTH / HEIGHT, delta=0.1)
         for a, b in zip(mean(rows), mean(read_ppm(self.read("a.ppm")))):
             self.assertLess(abs(a - b), 6)
+
+    def test_sixels_as_another_decoder_reads_them(self):
+        decoder = shutil.which("sixel2png")
+        if not decoder:
+            self.skipTest("sixel2png (Debian's libsixel-bin) is not installed")
+        seen, file = self.draw(environment={"BALLPARK_SHOW": "sixel"})
+        self.write("a.six", re.findall(rb"(?s)\x1bP.*?\x1b\\", seen)[-1])
+        subprocess.run([decoder, "-i", "a.six", "-o", "sixel.png"], cwd=self.folder, check=True, timeout=LIMIT_SECONDS)
+        width, height, bits, channels, rows, _ = read_png(self.read("sixel.png"))
+        mine = read_sixels(seen[seen.rindex(b"\x1b7"):])
+        self.assertEqual((width, height, bits, channels), (len(mine[0]), len(mine), 8, 3))
+        for row, line in zip(rows, mine):
+            for x, pixel in enumerate(line):
+                for a, b in zip(row[3 * x:], pixel):
+                    self.assertLess(abs(a - b), 2)
+        # Dithering changes single pixels, not what is seen: the means of a grid of nine.
+        picture = read_ppm(file)
+
+        def part(grid, i, j):
+            return mean([line[len(line) * i // 3:len(line) * (i + 1) // 3]
+                         for line in grid[len(grid) * j // 3:len(grid) * (j + 1) // 3]])
+        for i, j in ((i, j) for i in range(3) for j in range(3)):
+            for a, b in zip(part(mine, i, j), part(picture, i, j)):
+                self.assertLess(abs(a - b), 8)
 
     def test_a_terminal_without_sixels_and_a_silent_one(self):
         for answer in (b"\x1b[?64;1;14c", b""):
