@@ -176,9 +176,8 @@ BpStatus bp_particle_file_frame(BpParticleFile *file, int64_t number, BpParticle
     if (!end) return BP_OK;
     count = file->frame_count_known ? file->frame_count : count;
     const BpStatus status = bp_fail(err, BP_ERR_SCENE,
-                                    "found %" PRIu64 " frame%s, expected frame %" PRId64
-                                    "; frames are counted from 0, and from the end as "
-                                    "-1, -2, ...",
+                                    "found %" PRIu64 " frame%s, so there is no frame %" PRId64
+                                    "; count from 0, or from the end as -1, -2, ...",
                                     count, bp_plural(count), number);
     bp_error_at(err, file->input.name, 0, 0);
     return status;

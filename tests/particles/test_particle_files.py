@@ -272,7 +272,7 @@ class Formats(FileTest):
             s = self.summary(path, frame)
             self.assertEqual((s["frames"], s["count"], s["high"][0]), (4, count, count - 1))
         for frame in (4, -5):
-            self.refuse("a.xyz", text, "found 4 frames", f"expected frame {frame}", arguments=[frame])
+            self.refuse("a.xyz", text, "found 4 frames", f"no frame {frame}", arguments=[frame])
 
     def test_pdb(self):
         s = self.of("a.pdb", PDB, 0, "bfactor")

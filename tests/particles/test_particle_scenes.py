@@ -106,11 +106,13 @@ class Scenes(ProgramTest):
         self.write("a.xyz", ATOMS)
         self.write("a.csv", "x,y,z,charge\n1,2,3,4\n")
         for changes, says in [({"file": "none.xyz"}, "none.xyz"), ({"file": "x.json"}, "unknown format"),
-                              ({"frame": 1}, "expected frame 1"), ({"frame": 0.5}, "whole number"),
+                              ({"frame": 1}, "no frame 1"), ({"frame": 0.5}, "whole number"),
                               ({"style": "stick"}, '"spacefill"'), ({"radius": 0}, "above 0"), ({"radius": "vdv"}, '"vdw"'),
                               ({"radius": {"by": "vdw", "column": "x"}}, "one of the two"), ({"colour": 1}, '"color"'),
                               ({"color": [0, 0, 2]}, "from 0 to 1"), ({"color": {"map": "viridis"}}, "column"), ({"color": {"bar": True}}, "column"),
                               ({"color": {"column": "x", "map": "virids"}}, '"viridis"'), ({"color": "chain"}, "no chains"),
+                              ({"color": "temperature"}, '{ "column": "temperature" }'), ({"color": "elemnt"}, '"element"'),
+                              ({"radius": "mass"}, '{ "column": "mass" }'),
                               ({"color": {"column": "x", "range": [2, 1]}}, "lesser"), ({"box": 1}, "true or false"),
                               ({"box": True}, "no cell"), ({"bonds": 3}, "true, false"), ({"material": "m"}, '"m"'),
                               ({"file": "a.csv", "color": {"column": "chrge"}}, "charge"),
@@ -310,7 +312,7 @@ class Scenes(ProgramTest):
             self.assertEqual(self.spheres("run.dump", "--frame", frame), count)
         self.assertEqual(self.document("run.dump", "--frame", 1)["particles"], [{"file": "run.dump", "frame": 1}])
         for frame in (4, -5):
-            self.fail_with(2, "render", "run.dump", "--frame", frame, says=[f"expected frame {frame}", "4 frames"])
+            self.fail_with(2, "render", "run.dump", "--frame", frame, says=[f"no frame {frame}", "4 frames"])
         for text, numbers in [("::", [0, 1, 2, 3]), ("1:3", [1, 2]), ("::2", [0, 2]), ("-2:", [2, 3]), (":-1:2", [0, 2])]:
             self.succeed("render", "run.dump", *SIZE, "--frames", text, "-o", "f.pfm")
             made = [name for name in self.files() if name.startswith("f-")]
