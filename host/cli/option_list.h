@@ -246,7 +246,7 @@ enum {
     NOTE(SAMPLER, BP_RENDER | BP_EXPLAIN | BP_COST | BP_VIEW, NULL, "sobol")                                 \
     NOTE(SAMPLER, BP_BENCH, NULL, "independent")                                                             \
     NOTE(KERNEL, BP_TRACERS, NULL,                                                                           \
-         "packet on a CPU, on a GPU what was the fastest when it was first used, sample elsewhere")          \
+         "packet on a CPU; on a GPU, the fastest in a trial at its first use; sample elsewhere")             \
     NOTE(TRANSFER, BP_RENDER | BP_VIEW, NULL, "the scene's")                                                 \
     NOTE(TRANSFER, BP_MERGE, NULL, "that of the first file's scene")                                         \
     NOTE(BIT_DEPTH, BP_RENDER | BP_MERGE, NULL, "8")                                                         \

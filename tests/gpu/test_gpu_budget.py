@@ -42,7 +42,7 @@ LIMITS = {
 }
 NAMES = {"sm_86": "NVIDIA Ampere (RTX 30)", "sm_90": "NVIDIA Hopper (H100)", "gfx90a": "AMD CDNA 2 (MI200)",
          "gfx942": "AMD CDNA 3 (MI300)", "gfx1030": "AMD RDNA 2 (RX 6000)", "gfx1100": "AMD RDNA 3 (RX 7000)",
-         "dg2": "Intel Arc", "dg2, 256 registers": "Intel Arc, 256 registers a thread"}
+         "dg2": "Intel Arc", "dg2, 256 registers": "Intel Arc, 256 registers per thread"}
 
 
 def run(*command, **options):
