@@ -35,9 +35,13 @@ def run(*command, **options):
     return done
 
 
-def draw(python, folder, name, **variables):
+def environment_with(**variables):
     clean = {key: value for key, value in os.environ.items() if not key.startswith(("PYTHON", "BALLPARK_", "OCL_ICD"))}
-    done = run(python, "-c", DRAW, folder / name, cwd=folder, env={**clean, **variables})
+    return {**clean, **variables}
+
+
+def draw(python, folder, name, **variables):
+    done = run(python, "-c", DRAW, folder / name, cwd=folder, env=environment_with(**variables))
     assert done.returncode == 0, done.stderr
     return (folder / name).read_bytes(), done.stdout
 
@@ -92,6 +96,13 @@ def main(folder):
         return
     if run(*pip, f"{wheel}[cpu]").returncode != 0:
         left_out.append("pocl-binary-distribution cannot be fetched: the extra is not tried")
+        return
+    asked = run(python, "-c", "import ballpark; print(ballpark.devices()[0].name)", cwd=folder,
+                env=environment_with(BALLPARK_DRIVER="pypi"))
+    # "pthread-", what its compiler takes the processor for, and the processor's own name.
+    own = re.search(r"^model name\s*: (.*)$", pathlib.Path("/proc/cpuinfo").read_text(), re.M)
+    if own and asked.stdout.strip() == f"pthread-{own.group(1).strip()}":
+        left_out.append("the PoCL of PyPI does not know this processor: the extra is not tried")
         return
     (folder / "cache").mkdir()
     packaged, output = draw(python, folder, "packaged.pfm", BALLPARK_DRIVER="pypi", POCL_CACHE_DIR=str(folder / "cache"))
