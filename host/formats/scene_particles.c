@@ -283,7 +283,7 @@ static void keep_legend(const BpParticleStyle *style, const double range[2], BpS
     memcpy(scene->legend.range, range, sizeof scene->legend.range);
     for (int i = 0; i < STOPS; i++) {
         double color[3];
-        bp_particle_style_map(style, i / (STOPS - 1.0), color);
+        bp_particle_style_map(style, i / (double)(STOPS - 1), color);
         for (int c = 0; c < 3; c++) scene->legend.colors[i][c] = (float)color[c];
     }
 }

@@ -28,7 +28,7 @@ typedef struct Head {
     uint64_t checksum; /* of everything behind it */
     uint64_t sizes[PARTS];
 } Head;
-static const char magic[16] = "Ballpark kernel1";
+static const char magic[] = "Ballpark kernel1";
 
 BpStatus bp_kernel_cache_mode(BpKernelCacheMode *mode, BpError *err) {
     const char *wanted = getenv("BALLPARK_KERNEL_CACHE");
@@ -180,7 +180,7 @@ static bool take_apart(const char *bytes, size_t size, const char *identity, con
     if (size < sizeof head) return false;
     memcpy(&head, bytes, sizeof head);
     const size_t behind = offsetof(Head, sizes);
-    if (memcmp(head.magic, magic, sizeof magic) != 0 ||
+    if (memcmp(head.magic, magic, sizeof head.magic) != 0 ||
         head.checksum != bp_hash_bytes(BP_HASH_START, bytes + behind, size - behind))
         return false;
     size_t at = sizeof head;
@@ -274,7 +274,7 @@ void bp_kernel_cache_store(const BpDevice *device, const char *source, const cha
         const BpCachePart parts[PARTS + 1] = {{&head, sizeof head},     {identity, strlen(identity)},
                                               {source, strlen(source)}, {names, strlen(names)},
                                               {log, strlen(log)},       {binary, binary_size}};
-        memcpy(head.magic, magic, sizeof magic);
+        memcpy(head.magic, magic, sizeof head.magic);
         for (int p = 0; p < PARTS; ++p) {
             head.sizes[p] = parts[p + 1].size;
             size += parts[p + 1].size;

@@ -199,7 +199,7 @@ static BpStatus take_atom(BpParticleFile *file, const Layout *layout, uint64_t n
         if (role == RADIUS || role == NUMBER) {
             if (!word_number(words[w], &value)) return input_wrong(input, words[w], "a finite number", err);
             if (role == RADIUS) particle.radius = value;
-            if (role == NUMBER && value >= 1 && value <= BP_ELEMENT_MAX) {
+            if (role == NUMBER && value >= 1 && value <= (double)BP_ELEMENT_MAX) {
                 particle.element = (uint8_t)value;
                 if (particle.type == NULL) {
                     snprintf(type, sizeof type, "%s", bp_elements[particle.element].symbol);

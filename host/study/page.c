@@ -57,7 +57,7 @@ static void print_scale(FILE *out) {
     enum { STEPS = 24 };
     for (int i = 0; i <= STEPS; i++) {
         uint8_t rgb[3];
-        bp_error_color(BP_ERROR_MAP_LEAST * pow(BP_ERROR_MAP_MOST / BP_ERROR_MAP_LEAST, (double)i / STEPS),
+        bp_error_color(BP_ERROR_MAP_LEAST * pow(BP_ERROR_MAP_MOST / BP_ERROR_MAP_LEAST, i / (double)STEPS),
                        rgb);
         fprintf(out, "%s\"#%02x%02x%02x\"", i == 0 ? "" : ", ", rgb[0], rgb[1], rgb[2]);
     }
