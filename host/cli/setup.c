@@ -44,6 +44,21 @@ static void say_fresnel(const BpCommandLine *line, const size_t counts[2]) {
                counts[0], counts[1], bp_plural(counts[1]));
 }
 
+/* A misspelt name adds a material that nothing has. */
+static void say_unused_material(const BpCommandLine *line, const char *set, const BpScene *scene) {
+    static const char list[] = "materials.";
+    if (strncmp(set, list, sizeof list - 1) != 0) return;
+    for (size_t m = 0; m < scene->material_count; m++) {
+        const char *name = scene->materials[m].name, *rest = set + sizeof list - 1;
+        const size_t length = strlen(name);
+        if (strncmp(rest, name, length) != 0 || (rest[length] != '=' && rest[length] != '.')) continue;
+        size_t i = 0;
+        while (i < scene->sphere_count && scene->spheres[i].material != m) i++;
+        if (i == scene->sphere_count)
+            bp_say(line, "--set %s changes nothing: no sphere has this material", set);
+    }
+}
+
 void bp_setup_notes(const BpCommandLine *line, const BpScene *scene) {
     BpPage page;
     bp_page_begin(&page, stderr);
@@ -73,6 +88,7 @@ BpStatus bp_setup_load(const BpCommandLine *line, const char *path, BpScene **sc
                                     .fresnel_counts = counts};
     BP_TRY(bp_setup_load_changed(line, path, &changes, scene, err));
     if (line->fresnel != NULL) say_fresnel(line, counts);
+    for (size_t i = 0; i < line->set.count; i++) say_unused_material(line, line->set.list[i], *scene);
     bp_setup_notes(line, *scene);
     return BP_OK;
 }

@@ -97,6 +97,14 @@ class Set(ProgramTest):
                 self.fail_with(2, "render", "s.json", "--set", given, says=says)
         self.assertEqual(self.files(), ["s.json"])
 
+    def test_a_material_that_nothing_has(self):
+        matte = '={"type":"lambertian","albedo":[1,1,1]}'
+        for name, said in (("mm", True), ("m", False), ("my.glass", False)):
+            errors = self.succeed("explain", "s.json", "--set", f"materials.{name}{matte}").errors
+            self.assertEqual("no sphere has this material" in errors, said, name)
+        errors = self.succeed("explain", "s.json", "--set", "materials.mm" + matte, "--set", "spheres[0].material=mm").errors
+        self.assertNotIn("no sphere", errors)
+
     def test_other_errors_keep_their_place(self):
         """Members that are added, removed or replaced do not shift what is said of those after them."""
         document = json.loads(json.dumps(self.document))
