@@ -161,7 +161,7 @@ static void binary_list_of_negative_length(void **state) {
                                 "ply\nformat binary_little_endian 1.0\nelement vertex 1\n" XYZ
                                 "property list char int many\nend_header\n");
     memset(bytes + n, 0, 12);
-    bytes[n + 12] = -1;
+    bytes[n + 12] = (char)-1;
     refuse_bytes(bytes, n + 13, 0, "found -1 as the length of a list");
 }
 
