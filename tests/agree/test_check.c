@@ -1,20 +1,11 @@
 /* test_check.c: a check's result depends on scene, samples and seed, not on chunks, threads or steps; and
  * what it refuses. */
 #include "check/check.h"
+#include "support/load_scene.h"
 #include "support/unit_test.h"
 
 #include <stdio.h>
 #include <string.h>
-
-static BpScene *scene_of(const char *name, uint32_t width) {
-    char path[512];
-    BpScene *scene = NULL;
-    BpError err = {0};
-    snprintf(path, sizeof path, "%s/scenes/%s", SOURCE_DIR, name);
-    if (bp_scene_load(path, &scene, &err) != BP_OK || bp_scene_set_width(scene, width, &err) != BP_OK)
-        fail_msg("%s", err.message);
-    return scene;
-}
 
 static BpCheckOptions options_for(const BpScene *scene) {
     BpCheckOptions options = {.level = BP_VERDICT_LEVEL, .margin = 0.05};
@@ -51,7 +42,7 @@ static bool same_sums(const BpSums *a, const BpSums *b) {
 
 static void chunks_and_threads_change_nothing(void **state) {
     (void)state;
-    BpScene *scene = scene_of("v4-18-glass-hollow.json", 40);
+    BpScene *scene = load_scene("scenes/v4-18-glass-hollow.json", 40);
     BpCheckOptions options = options_for(scene);
     BpCheck *plain = check_with(scene, &options);
     assert_int_equal(result_of(plain)->verdict.conclusion, BP_AGREE);
@@ -86,7 +77,7 @@ static void chunks_and_threads_change_nothing(void **state) {
  * between. */
 static void limits_of_time(void **state) {
     (void)state;
-    BpScene *scene = scene_of("v4-18-glass-hollow.json", 40);
+    BpScene *scene = load_scene("scenes/v4-18-glass-hollow.json", 40);
     BpCheckOptions options = options_for(scene);
     BpCheck *plain = check_with(scene, &options);
     options.seconds = 1e6;
@@ -135,7 +126,7 @@ static void limits_of_time(void **state) {
 /* Three panels with gaps and a legend below; the third is white where the z is 0. */
 static void map(void **state) {
     (void)state;
-    BpScene *scene = scene_of("v4-red-sphere.json", 40); /* no noise: every z is 0 */
+    BpScene *scene = load_scene("scenes/v4-red-sphere.json", 40); /* no noise: every z is 0 */
     const BpCheckOptions options = options_for(scene);
     BpCheck *check = check_with(scene, &options);
     BpPicture picture;
@@ -163,7 +154,7 @@ static void map(void **state) {
 
 static void refusals(void **state) {
     (void)state;
-    BpScene *scene = scene_of("v4-sky.json", 8);
+    BpScene *scene = load_scene("scenes/v4-sky.json", 8);
     BpCheckOptions options = options_for(scene);
     BpCheck *check = NULL;
     BpError err = {0};

@@ -4,6 +4,7 @@
  * in the last place of their terms; what parts must be rare, and must not shift the mean. It is no
  * independent evidence, since both come from one kernel text; it finds numerical trouble that statistics
  * would need 1e10 samples to see. */
+#include "support/load_scene.h"
 #include "support/pixel_samples.h"
 
 #include <math.h>

@@ -10,6 +10,7 @@
  * and at materials; of that, nothing is said here. */
 #include "opencl/program.h"
 #include "render/worker.h"
+#include "support/load_scene.h"
 #include "support/pixel_samples.h"
 
 #include <math.h>

@@ -4,6 +4,7 @@
  * tree, the widths of trees and packets, work-groups and chunks change no bit of the film, no ray segment,
  * and no ray to a lamp. */
 #include "render/render.h"
+#include "support/load_scene.h"
 #include "support/unit_test.h"
 
 #include <stdio.h>
@@ -73,11 +74,7 @@ static const Variation variations[] = {
 
 /* The first `count` variations. */
 static void check_scene(const char *name, size_t count) {
-    char path[512];
-    BpScene *scene = NULL;
-    snprintf(path, sizeof path, "%s/%s", SOURCE_DIR, name);
-    if (bp_scene_load(path, &scene, &err) != BP_OK || bp_scene_set_width(scene, 24, &err) != BP_OK)
-        fail_msg("%s", err.message);
+    BpScene *scene = load_scene(name, 24);
     BpRenderOptions options;
     bp_render_defaults(scene, &options);
     options.samples_per_pixel = 6;

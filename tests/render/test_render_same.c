@@ -5,27 +5,14 @@
  * work-group size, tree width and number of lanes, of which the rest has a few. */
 #include "opencl/device.h"
 #include "render/render.h"
+#include "support/load_scene.h"
+#include "support/unit_test.h"
 
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
 #include <stdio.h>
 #include <string.h>
 
-#include <cmocka.h>
-
 static BpError err;
 static BpDevice *opened; /* the default device: what one render has built, the next need not build */
-
-static BpScene *scene_of(const char *name, uint32_t width) {
-    char path[512];
-    BpScene *scene = NULL;
-    snprintf(path, sizeof path, "%s/scenes/%s", SOURCE_DIR, name);
-    if (bp_scene_load(path, &scene, &err) != BP_OK || bp_scene_set_width(scene, width, &err) != BP_OK)
-        fail_msg("%s", err.message);
-    return scene;
-}
 
 /* Renders and copies the film's sums and counts into a new one that the caller destroys. Without devices, on
  * the one that is open. */
@@ -76,7 +63,7 @@ static void check_same(const BpScene *scene, const BpRenderOptions *varied, cons
 /* The form of the kernel, the chunks, tree and list: cheap to vary, since little or nothing is compiled anew.
  */
 static void check_variations(const char *name, uint32_t width, BpSampler sampler) {
-    BpScene *scene = scene_of(name, width);
+    BpScene *scene = load_scene(name, width);
     BpRenderOptions options;
     bp_render_defaults(scene, &options);
     options.samples_per_pixel = 6;
@@ -139,7 +126,7 @@ static void work_groups_and_widths_are_the_same(void **state) {
     const bool every = *state != NULL;
     /* Of its trees, the sixteen-wide one has one batch of leaves to be tried one by one, the eight-wide one
      * has three, and the narrower ones are walked. */
-    BpScene *scene = scene_of("cover.json", 24);
+    BpScene *scene = load_scene("scenes/cover.json", 24);
     BpRenderOptions options;
     bp_render_defaults(scene, &options);
     options.samples_per_pixel = 6;
@@ -180,24 +167,24 @@ static void work_groups_and_widths_are_the_same(void **state) {
 
 static void cover_is_the_same(void **state) {
     (void)state;
-    check_variations("cover.json", 24, BP_SAMPLER_INDEPENDENT);
+    check_variations("scenes/cover.json", 24, BP_SAMPLER_INDEPENDENT);
 }
 
 static void hollow_glass_is_the_same(void **state) {
     (void)state;
-    check_variations("v4-18-glass-hollow.json", 24, BP_SAMPLER_SOBOL);
+    check_variations("scenes/v4-18-glass-hollow.json", 24, BP_SAMPLER_SOBOL);
 }
 
 /* Its tree is walked, sixteen wide. */
 static void swarm_is_the_same(void **state) {
     (void)state;
-    check_variations("../tests/agree/scenes/swarm.json", 16, BP_SAMPLER_INDEPENDENT);
+    check_variations("tests/agree/scenes/swarm.json", 16, BP_SAMPLER_INDEPENDENT);
 }
 
 /* Samples 0..9 equal samples 0..3 plus 4..9: what merging runs rests on. */
 static void halves_add_up(void **state) {
     (void)state;
-    BpScene *scene = scene_of("cover.json", 24);
+    BpScene *scene = load_scene("scenes/cover.json", 24);
     for (int sampler = 0; sampler < 2; ++sampler) {
         BpRenderOptions options;
         bp_render_defaults(scene, &options);
@@ -223,7 +210,7 @@ static void halves_add_up(void **state) {
 /* A render that is extended equals one that asked for all samples at once. */
 static void extension_adds_up(void **state) {
     (void)state;
-    BpScene *scene = scene_of("cover.json", 24);
+    BpScene *scene = load_scene("scenes/cover.json", 24);
     BpRenderOptions options;
     bp_render_defaults(scene, &options);
     options.samples_per_pixel = 9;
@@ -251,7 +238,7 @@ static void extension_adds_up(void **state) {
 /* Three workers share a picture; that all are on one device is nothing they know of. */
 static void several_devices_are_the_same(void **state) {
     (void)state;
-    BpScene *scene = scene_of("cover.json", 48);
+    BpScene *scene = load_scene("scenes/cover.json", 48);
     BpRenderOptions options;
     bp_render_defaults(scene, &options);
     options.samples_per_pixel = 20;
@@ -272,7 +259,7 @@ static void several_devices_are_the_same(void **state) {
 /* Paths that the cap cuts are black for what they miss, and counted. */
 static void depth_cap_is_black_and_counted(void **state) {
     (void)state;
-    BpScene *scene = scene_of("v4-18-glass-hollow.json", 24);
+    BpScene *scene = load_scene("scenes/v4-18-glass-hollow.json", 24);
     BpRenderOptions options;
     bp_render_defaults(scene, &options);
     options.samples_per_pixel = 8;

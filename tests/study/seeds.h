@@ -6,6 +6,7 @@
 #define TESTS_COST_SEEDS_H
 
 #include "base/color.h"
+#include "support/load_scene.h"
 #include "support/unit_test.h"
 
 #include "base/status.h"
@@ -19,14 +20,11 @@ static inline void must(BpStatus status, const BpError *err) {
     if (status != BP_OK) fail_msg("%s", err->message);
 }
 
-static inline BpScene *load_scene(const char *name, uint32_t width) {
+/* A scene of the book, without folder and ending. */
+static inline BpScene *book_scene(const char *name, uint32_t width) {
     char path[512];
-    BpScene *scene = NULL;
-    BpError err = {0};
-    snprintf(path, sizeof path, SOURCE_DIR "/scenes/%s.json", name);
-    must(bp_scene_load(path, &scene, &err), &err);
-    must(bp_scene_set_width(scene, width, &err), &err);
-    return scene;
+    snprintf(path, sizeof path, "scenes/%s.json", name);
+    return load_scene(path, width);
 }
 
 static inline BpRender *open_render(const BpScene *scene, BpSampler sampler, uint64_t seed,

@@ -56,7 +56,7 @@ static void add_blocks(const BpPicture *x, const BpPicture *even, double *sum, d
 
 static void honest_and_better(void **state) {
     (void)state;
-    BpScene *scene = load_scene(SCENE, WIDTH);
+    BpScene *scene = book_scene(SCENE, WIDTH);
     BpPicture references[2];
     for (uint64_t r = 0; r < 2; r++)
         references[r] = make_picture(scene, BP_SAMPLER_SOBOL, 1001 + r, 32 * SAMPLES);
@@ -119,7 +119,7 @@ static void assert_same_sums(BpRender *one, BpRender *other) {
 
 static void arrangement_changes_nothing(void **state) {
     (void)state;
-    BpScene *scene = load_scene(SCENE, WIDTH);
+    BpScene *scene = book_scene(SCENE, WIDTH);
     BpRenderOptions options;
     bp_render_defaults(scene, &options);
     options.samples_per_pixel = 70;
@@ -146,7 +146,7 @@ static void arrangement_changes_nothing(void **state) {
 /* A black picture has equal errors everywhere: every pixel gets the mean, as in an even render. */
 static void equal_errors_are_even(void **state) {
     (void)state;
-    BpScene *scene = load_scene(SCENE, WIDTH);
+    BpScene *scene = book_scene(SCENE, WIDTH);
     BpRenderOptions options;
     for (int c = 0; c < 3; c++) scene->background_bottom[c] = scene->background_top[c] = 0;
     bp_render_defaults(scene, &options);

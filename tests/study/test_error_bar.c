@@ -118,7 +118,7 @@ static void check_picture(const char *name, BpScene *scene, double cv_max, bool 
 }
 
 static void check_scene(const char *name, double cv_max, bool heavy_tails) {
-    check_picture(name, load_scene(name, WIDTH), cv_max, heavy_tails, 0.1);
+    check_picture(name, book_scene(name, WIDTH), cv_max, heavy_tails, 0.1);
 }
 
 static void test_cover(void **state) {
@@ -139,7 +139,7 @@ static void test_glass(void **state) {
 /* The lamps scene without glass: all that is left of its noise is what sampling lamps has to do with. */
 static void test_lamps(void **state) {
     (void)state;
-    BpScene *scene = load_scene("lamps", 2 * WIDTH);
+    BpScene *scene = book_scene("lamps", 2 * WIDTH);
     for (size_t m = 0; m < scene->material_count; m++) {
         BpMaterial *material = &scene->materials[m];
         if (material->kind != BP_MATERIAL_DIELECTRIC) continue;
@@ -152,7 +152,7 @@ static void test_lamps(void **state) {
 /* Every kind of material emits, under a sky dim enough for rays to lamps. */
 static void test_emission(void **state) {
     (void)state;
-    BpScene *scene = load_scene("../tests/agree/scenes/emission", 3 * WIDTH / 2);
+    BpScene *scene = book_scene("../tests/agree/scenes/emission", 3 * WIDTH / 2);
     for (int c = 0; c < 3; c++) scene->background_bottom[c] = scene->background_top[c] = 0.1;
     BpEffectInfo lamps;
     assert_true(bp_scene_effect(scene, BP_EFFECT_LAMPS, &lamps) && lamps.simulated);
@@ -162,7 +162,7 @@ static void test_emission(void **state) {
 /* With its glass: lamps seen through it are left to chance, and few samples bring much of the light. */
 static void test_caustic(void **state) {
     (void)state;
-    check_picture("lamps", load_scene("lamps", 2 * WIDTH), 20, true, 0.03);
+    check_picture("lamps", book_scene("lamps", 2 * WIDTH), 20, true, 0.03);
 }
 
 int main(void) {

@@ -130,7 +130,7 @@ static void test_adaptive(void **state) {
 
 static int set_up(void **state) {
     static Case test;
-    test.scene = load_scene(SCENE, WIDTH);
+    test.scene = book_scene(SCENE, WIDTH);
     for (uint64_t r = 0; r < 2; r++)
         test.references[r] = make_picture(test.scene, BP_SAMPLER_SOBOL, 1001 + r, REFERENCE_SAMPLES);
     *state = &test;

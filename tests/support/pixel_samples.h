@@ -1,6 +1,6 @@
 /* pixel_samples.h: every single sample of a scene's picture.
  *
- * In:    a scene file, a width, options of a render.   Out: radiance and length of each path, in the order of
+ * In:    a scene, options of a render.   Out: radiance and length of each path, in the order of
  * pixels, and of samples within a pixel.
  * Knows: that chunks hand out blocks of samples.   Does not know: what is tested. */
 #ifndef TESTS_SUPPORT_PIXEL_SAMPLES_H
@@ -9,7 +9,6 @@
 #include "render/render.h"
 #include "support/unit_test.h"
 
-#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -17,17 +16,6 @@ typedef struct PixelSamples {
     float *values; /* (pixel * samples + sample) * 4, as in BpSampleBlock; the caller frees it */
     size_t count;  /* of samples */
 } PixelSamples;
-
-/* Loads a scene, named by its path in the repository, at this width. The caller destroys it. */
-static inline BpScene *load_scene(const char *name, uint32_t width) {
-    char path[512];
-    BpScene *scene = NULL;
-    BpError err = {0};
-    snprintf(path, sizeof path, "%s/%s", SOURCE_DIR, name);
-    if (bp_scene_load(path, &scene, &err) != BP_OK || bp_scene_set_width(scene, width, &err) != BP_OK)
-        fail_msg("%s", err.message);
-    return scene;
-}
 
 /* Draws the options' samples of every pixel on the default device. */
 static inline PixelSamples draw_samples(const BpScene *scene, const BpRenderOptions *options) {
