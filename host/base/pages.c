@@ -4,6 +4,7 @@
 
 #include <errno.h>
 #include <stdint.h>
+#include <stdlib.h>
 #include <sys/mman.h>
 #include <unistd.h>
 
@@ -22,4 +23,8 @@ void *bp_large_pages(void *memory, size_t bytes) {
     (void)bytes;
 #endif
     return memory;
+}
+
+void *bp_large_zeroed(size_t count, size_t size) {
+    return bp_large_pages(calloc(count, size), count * size);
 }

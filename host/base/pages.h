@@ -1,6 +1,6 @@
 /* pages.h: large pages for large arrays.
  *
- * In:    memory that malloc gave and that is about to be filled.   Out: the same memory.
+ * In:    memory that malloc gave and that is about to be filled, or a size.   Out: that memory.
  * Knows: the system's pages.   Does not know: what the memory is for. */
 #ifndef BP_BASE_PAGES_H
 #define BP_BASE_PAGES_H
@@ -11,5 +11,8 @@
  * request: an array of millions of spheres is then filled without a fault for every 4096 bytes. Contents
  * stay. Returns `memory`, which may be NULL. */
 void *bp_large_pages(void *memory, size_t bytes);
+
+/* As calloc(), with such pages. */
+void *bp_large_zeroed(size_t count, size_t size);
 
 #endif

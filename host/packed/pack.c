@@ -527,11 +527,8 @@ static BpStatus pack_slots(const BpScene *scene, const uint32_t *second, unsigne
                            BpError *err) {
     BpStatus status = BP_OK;
     const size_t count = (size_t)packed->tree.leaf_count * packed->tree.width;
-    const size_t albedo_bytes = ALBEDO_REALS * bp_packed_real_size(packed);
-    packed->slot_material = calloc(count + 1, sizeof *packed->slot_material);
-    packed->slot_albedo = calloc(count + 1, albedo_bytes);
-    bp_large_pages(packed->slot_material, (count + 1) * sizeof *packed->slot_material);
-    bp_large_pages(packed->slot_albedo, (count + 1) * albedo_bytes);
+    packed->slot_material = bp_large_zeroed(count + 1, sizeof *packed->slot_material);
+    packed->slot_albedo = bp_large_zeroed(count + 1, ALBEDO_REALS * bp_packed_real_size(packed));
     Scattered *scattered = malloc((scene->material_count + 1) * sizeof *scattered);
     BpTeam *team = bp_team_create(count < SLOT_BLOCK ? 1 : threads);
     if (packed->slot_material != NULL && packed->slot_albedo != NULL && scattered != NULL && team != NULL) {

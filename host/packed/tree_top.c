@@ -190,10 +190,17 @@ static void split_range(Splitter *s, const Run *range, uint32_t most, RunList *r
     }
 }
 
-static void splitter_clear(Splitter *s) {
+/* Gives back what a range was moved by. */
+static void release_room(Splitter *s) {
     bp_grid_clear(&s->grid);
-    free(s->nodes);
     free(s->buffer);
+    s->buffer = NULL;
+    s->buffer_capacity = 0;
+}
+
+static void splitter_clear(Splitter *s) {
+    release_room(s);
+    free(s->nodes);
     free(s->parts.runs);
 }
 
@@ -253,9 +260,7 @@ static void split_whole(Splitter *all, const Run *whole, uint32_t most, RunList 
         split_range(all, &range, most, &ranges, runs);
     }
     free(ranges.runs);
-    bp_grid_clear(&all->grid);
-    free(all->buffer);
-    all->buffer = NULL;
+    release_room(all); /* before each thread takes some */
 }
 
 BpStatus bp_binary_tree_build(BpTreeItem **items, uint32_t count, const BpBinaryOptions *options,
