@@ -43,7 +43,12 @@ __kernel VECTORS_WRITTEN void trace(TRACE_PARAMETERS) {
             /* Of a path that goes on this is not the last word, but its place is its own, and to ask costs more. */
             for (uint lane = 0; lane < used; ++lane)
                 vstore4((real4)(red[lane], green[lane], blue[lane], count[lane]), place[lane], samples);
-            if (next >= end) break;
+            if (next >= end) {
+#if EFFECT_LAMPS
+                lamp_rays[item] = lamp_rays_of(&path);
+#endif
+                return; /* from here: a common end behind the loop makes compilers keep more in memory */
+            }
             used = lanes;
             /* The free lanes take the next pixel samples, the lowest lane first. */
             const uint free = lane_bits(vbool_not(busy));
@@ -72,7 +77,4 @@ __kernel VECTORS_WRITTEN void trace(TRACE_PARAMETERS) {
 #endif
         trace_bounce(&scene, &path);
     }
-#if EFFECT_LAMPS
-    lamp_rays[item] = lamp_rays_of(&path);
-#endif
 }
