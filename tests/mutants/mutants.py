@@ -168,10 +168,10 @@ MUTANTS = [
     # ---- large trees ----------------------------------------------------------------------------------------
     Mutant("every range at the beginning", "parts of a thread's range that are placed as if it were the whole",
            [patch("host/packed/tree_top.c", "{s->range.first + s->filled, items", "{s->filled, items")],
-           [test("test_tree_shape", "large_and_degenerate")]),
+           [test("test_tree_shape", "grids_of_threads")]),
     Mutant("a thread's nodes left open", "no boxes and costs for the nodes that a thread made by its grids",
            [patch("host/packed/tree_top.c", "    finish_nodes(s);\n    free(ranges.runs);", "    free(ranges.runs);")],
-           [test("test_tree_shape", "large_and_degenerate")]),
+           [test("test_tree_shape", "grids_of_threads")]),
     # ---- ranks that share a render ---------------------------------------------------------------------------
     Mutant("the end of a block", "strips of equal length, and nobody has what is left over",
            [patch("host/render/portion.c", "const uint64_t length = portion->strip + 1 == portion->strips ? all - first : step;",
