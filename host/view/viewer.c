@@ -2,7 +2,8 @@
  *
  * While the camera moves, each picture has one sample per pixel and as few pixels as it takes to show several
  * a second. When it has rested for a moment, the picture is rendered at its full size, and its samples double
- * from pass to pass until noise is where the person wants it. */
+ * from pass to pass until noise is where the person wants it. A move interrupts that, but not a picture of
+ * the camera moving, or else somebody who does not stop would see none. */
 #include "viewer.h"
 
 #include "base/clock.h"
@@ -20,12 +21,12 @@
 #include <stdlib.h>
 #include <string.h>
 
-#define REST_SECONDS 0.3  /* until a camera that has moved counts as resting */
-#define SHOW_SECONDS 0.1  /* between two pictures of the same camera */
-#define TITLE_SECONDS 0.5 /* between two titles */
-#define FRAME_MOST 0.12   /* seconds that a picture of a moving camera may take */
-#define FRAME_LEAST 0.05
-#define SHRINK_MOST 8.0
+#define REST_SECONDS 0.3       /* until a camera that has moved counts as resting */
+#define SHOW_SECONDS 0.1       /* between two pictures of the same camera */
+#define TITLE_SECONDS 0.5      /* between two titles */
+#define FRAME_SECONDS 0.06     /* that a picture of a moving camera should take */
+#define LEAST_PIXELS 4000.0    /* of a picture of a moving camera: 84 x 47 */
+#define FIRST_PIXELS 57600.0   /* of the first picture, when the speed is not known: 320 x 180 */
 #define BLACK_SAMPLES 1024     /* per pixel, after which a picture without light counts as black */
 #define DEGREES_A_WINDOW 180.0 /* a drag across the whole height */
 
@@ -51,10 +52,12 @@ typedef struct Viewer {
     double exposure;        /* in stops */
     bool moved, quit, save; /* since the last step */
     bool shown;             /* the newest samples have been */
-    double moved_at, restarted_at, shown_at, titled_at;
-    uint64_t samples; /* per pixel, of the pass at hand */
-    double nrmse;     /* of what has been shown */
-    bool rests;       /* nothing is left to do */
+    bool moving;            /* the picture at hand is one of a moving camera */
+    double moved_at, restarted_at, traced_at, shown_at, titled_at; /* traced_at: its first sample was begun */
+    uint64_t samples;                                              /* per pixel, of the pass at hand */
+    uint64_t samples_done;                                         /* of all pixels */
+    double nrmse;                                                  /* of what has been shown */
+    bool rests;                                                    /* nothing is left to do */
     uint8_t *bytes;
     size_t byte_count;
 } Viewer;
@@ -186,30 +189,53 @@ static void listen(Viewer *viewer) {
 /* ---- rendering ------------------------------------------------------------------------------------------
  */
 
-static BpStatus restart(Viewer *viewer, uint32_t width, BpError *err) {
+static BpStatus restart(Viewer *viewer, bool moving, BpError *err) {
+    const double width = moving ? fmax(1, floor(viewer->width / viewer->shrink + 0.5)) : viewer->width;
     BpRenderOptions options = viewer->plan->options;
     options.samples_per_pixel = 1;
     bp_render_destroy(&viewer->render);
-    BP_TRY(bp_scene_set_width(viewer->scene, width, err));
+    BP_TRY(bp_scene_set_width(viewer->scene, (uint32_t)width, err));
     bp_light_place(viewer->scene); /* light by name is the camera's */
     viewer->restarted_at = bp_clock_seconds();
     viewer->samples = 1;
-    viewer->rests = viewer->shown = false;
+    viewer->samples_done = 0;
+    viewer->moved = viewer->rests = viewer->shown = false;
+    viewer->moving = moving;
     viewer->nrmse = (double)NAN;
-    return bp_render_create_on(viewer->scene, &options, viewer->plan->devices, viewer->plan->device_count,
-                               &viewer->render, err);
+    BP_TRY(bp_render_create_on(viewer->scene, &options, viewer->plan->devices, viewer->plan->device_count,
+                               &viewer->render, err));
+    viewer->traced_at = bp_clock_seconds();
+    return BP_OK;
 }
 
-static uint32_t moving_width(const Viewer *viewer) {
-    return (uint32_t)fmax(1, floor(viewer->width / viewer->shrink + 0.5));
+/* Seconds that tracing a picture of a moving camera should take. What comes before, such as building the
+ * tree, takes the same time for every size, so there is no use in a size that takes much less than that. */
+static double frame_seconds(const Viewer *viewer) {
+    const double before = viewer->traced_at - viewer->restarted_at;
+    return fmax(FRAME_SECONDS - before, before / 4);
 }
 
-/* The size of pictures while the camera moves, by how long this one took. */
-static void adapt_size(Viewer *viewer, double seconds) {
-    if (seconds > FRAME_MOST)
-        viewer->shrink = fmin(SHRINK_MOST, viewer->shrink * fmin(2, sqrt(seconds / FRAME_MOST)));
-    else if (seconds < FRAME_LEAST)
-        viewer->shrink = fmax(1, viewer->shrink / 1.25);
+static double shrink_to(const Viewer *viewer, double pixels) {
+    const double aspect = (double)viewer->scene->camera.width / viewer->scene->camera.height;
+    return fmax(1, viewer->width / sqrt(fmax(pixels, LEAST_PIXELS) * aspect));
+}
+
+/* The size of pictures while the camera moves, by how long so many samples took, the first of each pixel. It
+ * stays while it is about right, since sizes that change at every picture are unpleasant to look at. */
+static void adapt_size(Viewer *viewer, uint64_t samples, double seconds) {
+    const double wanted = frame_seconds(viewer);
+    const bool is_right = viewer->moving && seconds > 0.5 * wanted && seconds < 1.5 * wanted;
+    if (!is_right) viewer->shrink = shrink_to(viewer, (double)samples * wanted / fmax(seconds, 1e-6));
+}
+
+/* Whether the picture of a moving camera has still to be shown. If it takes far too long, it need not be, and
+ * the next one will be smaller. */
+static bool must_be_shown(Viewer *viewer, double now) {
+    if (!viewer->moving || viewer->samples > 1 || viewer->rests) return false;
+    const double seconds = now - viewer->traced_at;
+    if (seconds < 3 * frame_seconds(viewer) || viewer->shrink >= shrink_to(viewer, 0)) return true;
+    adapt_size(viewer, viewer->samples_done, seconds);
+    return false;
 }
 
 /* The picture as the window shows it. The caller clears it. */
@@ -282,7 +308,9 @@ static BpStatus save(Viewer *viewer, BpError *err) {
 static BpStatus finish_pass(Viewer *viewer, BpError *err) {
     const double now = bp_clock_seconds();
     const bool small = viewer->scene->camera.width < viewer->width;
-    if (viewer->samples == 1) adapt_size(viewer, now - viewer->restarted_at);
+    if (viewer->samples == 1)
+        adapt_size(viewer, viewer->scene->camera.width * (uint64_t)viewer->scene->camera.height,
+                   now - viewer->traced_at);
     if (viewer->samples == 1 || now - viewer->shown_at >= SHOW_SECONDS) BP_TRY(show(viewer, err));
     const uint64_t most = viewer->plan->options.samples_per_pixel;
     if (small && viewer->samples >= 8) { /* the picture in full size is to come */
@@ -301,16 +329,15 @@ static BpStatus finish_pass(Viewer *viewer, BpError *err) {
 
 static BpStatus work(Viewer *viewer, BpError *err) {
     const double now = bp_clock_seconds();
-    BpProgress progress = {0};
-    if (viewer->moved) {
-        viewer->moved = false;
-        viewer->moved_at = now;
-        BP_TRY(restart(viewer, moving_width(viewer), err));
-    } else if (viewer->scene->camera.width != viewer->width && now - viewer->moved_at > REST_SECONDS) {
-        BP_TRY(restart(viewer, viewer->width, err));
-    }
+    const bool rested = now - viewer->moved_at > REST_SECONDS;
+    if (viewer->moved) viewer->moved_at = now;
+    if ((viewer->moved || (rested && viewer->scene->camera.width != viewer->width)) &&
+        !must_be_shown(viewer, now))
+        BP_TRY(restart(viewer, viewer->moved, err));
     if (!viewer->rests) {
-        BP_TRY(bp_render_step(viewer->render, &progress, err));
+        BpProgress progress = {0};
+        BP_TRY(bp_render_step_chunk(viewer->render, &progress, err));
+        viewer->samples_done = progress.samples_done;
         if (progress.finished) BP_TRY(finish_pass(viewer, err));
     }
     /* A long pass is shown as it grows; the first is not, since it has pixels without a sample. */
@@ -332,13 +359,14 @@ BpStatus bp_view(const BpViewPlan *plan, BpScene *scene, BpError *err) {
                      .first = scene->camera,
                      .width = scene->camera.width,
                      .window_height = scene->camera.height,
-                     .shrink = 1,
                      .nrmse = (double)NAN};
     BpStatus status = BP_OK;
     const uint32_t height = scene->camera.height;
     BP_TRY_GOTO(status, not_opened(plan->window->open(plan->name, viewer.width, height), err), done);
     plan->opened(plan->context);
-    BP_TRY_GOTO(status, restart(&viewer, viewer.width, err), done);
+    viewer.shrink = shrink_to(&viewer, FIRST_PIXELS);
+    viewer.moved_at = bp_clock_seconds();
+    BP_TRY_GOTO(status, restart(&viewer, true, err), done);
     while (!viewer.quit) {
         listen(&viewer);
         if (viewer.quit) break;

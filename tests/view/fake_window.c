@@ -6,7 +6,8 @@
  *
  * Events: "drag BUTTON DX DY", "click X Y", "wheel N", "key C", "resize W H", "quit"; "frames N" waits for N
  * more pictures, "rest" until the view has waited for events for half a second, "times N" repeats the rest of
- * the line's following event N times, each after a picture. */
+ * the line's following event N times, each after a picture; "flood N" repeats it whenever the view asks,
+ * until there are N more pictures, like somebody who does not wait for them. */
 #include "view/window.h"
 
 #include <stdio.h>
@@ -21,6 +22,7 @@ static uint64_t frames, wanted;          /* shown; to wait for */
 static unsigned idle_calls, idle_wanted; /* of next(), in a row; to wait for */
 static char repeated[128];
 static long repetitions;
+static bool floods, breathes; /* breathes: the next answer is that nothing has happened */
 
 static double now(void) {
     struct timespec time;
@@ -96,7 +98,12 @@ static bool play(BpWindowEvent *event) {
     char line[128];
     unsigned long long count;
     long times;
-    if (frames < wanted) return false;
+    if (breathes) return breathes = false;
+    if (frames < wanted) {
+        breathes = floods;
+        return floods && read_event(repeated, event);
+    }
+    floods = false;
     if (idle_calls < idle_wanted) return false;
     if (idle_wanted > 0) fputs("rested\n", notes);
     idle_wanted = 0;
@@ -117,6 +124,11 @@ static bool play(BpWindowEvent *event) {
     }
     if (sscanf(line, "times %ld %127[^\n]", &times, repeated) == 2) {
         repetitions = times;
+        return false;
+    }
+    if (sscanf(line, "flood %llu %127[^\n]", &count, repeated) == 2) {
+        wanted = frames + count;
+        floods = true;
         return false;
     }
     return read_event(line, event);

@@ -118,6 +118,23 @@ class Scripted(ProgramTest):
         focus = float(re.search(r'"focus_dist": ([\d.]+)', match[1])[1])
         self.assertAlmostEqual(focus, 9, delta=0.05)
 
+    def test_moves_without_end_do_not_starve_it(self):
+        """A picture that takes longer than the next move is shown all the same, and the next ones are smaller."""
+        self.write("s.json", {"camera": {"image_width": 320, "image_height": 160, "lookfrom": [0, 0, 5], "lookat": [0, 0, 0],
+                                         "samples_per_pixel": 1, "max_depth": 300},
+                              "materials": {"white": {"type": "lambertian", "albedo": [1, 1, 1], "emit": [0.001, 0.001, 0.001]}},
+                              "spheres": [{"center": [0, 0, 0], "radius": 10, "material": "white"}]})
+        widths = [width for width, *_ in self.shown(self.view("frames 1", "flood 4 drag 1 1 0", "quit"))]
+        self.assertGreaterEqual(len(widths), 5)
+        self.assertLessEqual(widths[-1], widths[0])
+
+    def test_a_move_interrupts_the_full_size(self):
+        """The first picture is small, as those of a moving camera are, and what rests is as large as the window."""
+        widths = [width for width, *_ in self.shown(self.view("rest", "drag 1 5 0", "frames 1", "quit", options=(
+            "--width", "1600", "--error", "20%")))]
+        self.assertLess(widths[0], 1600)
+        self.assertIn(1600, widths)
+
     def test_many_moves_leak_nothing(self):
         """Memory after 1,000 moves is what it was after 200."""
         self.write("script", "rest\ntimes 1100 drag 1 1 0\nframes 1\nquit\n")
