@@ -107,6 +107,11 @@ static bool find_lack(cl_device_id id, const BpDeviceInfo *info, char refusal[12
         snprintf(refusal, 128, "its float does not round to nearest");
     else if (!info->available)
         snprintf(refusal, 128, "it is not available now");
+    else if (bp_pocl_fails_here(info))
+        snprintf(
+            refusal, 128,
+            "PoCL %.16s is too old for this processor; PoCL 3.1 or Intel's driver works (docs/PYTHON.md)",
+            info->driver);
     return true;
 }
 

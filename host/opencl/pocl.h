@@ -1,8 +1,9 @@
 /* pocl.h: what PoCL, the OpenCL driver of processors, needs from the system and does not say when it is
  * missing.
  *
- * In:    the environment.   Out: what is missing, and the remedy, as text.
- * Knows: PoCL's cache folder, and that it calls a linker.   Does not know: scenes, kernels. */
+ * In:    the environment, the processor's name.   Out: what is missing, and the remedy, as text.
+ * Knows: PoCL's cache folder, that it calls a linker, how it names processors.   Does not know: scenes,
+ * kernels. */
 #ifndef BP_OPENCL_POCL_H
 #define BP_OPENCL_POCL_H
 
@@ -19,5 +20,13 @@ bool bp_pocl_cache_fails(char text[512]);
 bool bp_pocl_finds_linker(void);
 /* Builds and runs a kernel that no cache can have. Where PoCL finds no linker this may end the process. */
 BpStatus bp_pocl_try_kernel(const BpDeviceInfo *info, BpError *err);
+
+/* Whether PoCL has no working compiler for this processor. Before 3.1 it lets its compiler name the
+ * processor, and where that is older than the processor, kernels may use fewer instructions than PoCL's own
+ * functions: the compiler ends the process, takes all memory, or makes kernels that compute wrongly. `model`:
+ * what /proc/cpuinfo calls the processor. */
+bool bp_pocl_is_too_old(const char *driver, const char *name, const char *model);
+/* The same for a device on this machine. */
+bool bp_pocl_fails_here(const BpDeviceInfo *info);
 
 #endif

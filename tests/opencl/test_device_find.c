@@ -5,6 +5,7 @@
 
 #include "base/clock.h"
 #include "base/hash.h"
+#include "opencl/pocl.h"
 #include "opencl/program.h"
 #include "opencl/self_test.h"
 
@@ -119,6 +120,18 @@ static void prefers_the_most_capable_gpu(void **state) {
     expect("cpu,integrated,small|large,roomy", "gpu", 3);
     expect("old=Large,small", NULL, 1);
     expect("integrated,large", "integrated", 0); /* who asks for one gets it */
+}
+
+static void an_old_pocl_must_know_the_processor(void **state) {
+    (void)state;
+    assert_true(bp_pocl_is_too_old("3.0-rc2", "pthread-AMD EPYC", "AMD EPYC"));
+    assert_true(bp_pocl_is_too_old("1.8", "pthread-Intel(R) Xeon(R) 6", "Intel(R) Xeon(R) 6"));
+    assert_true(bp_pocl_is_too_old("3.0", "basic-AMD EPYC", "AMD EPYC"));
+    assert_false(bp_pocl_is_too_old("3.0", "pthread-znver3-AMD EPYC", "AMD EPYC"));
+    assert_false(bp_pocl_is_too_old("3.1+debian", "pthread-AMD EPYC", "AMD EPYC"));
+    assert_false(bp_pocl_is_too_old("5.0", "cpu-AMD EPYC", "AMD EPYC"));
+    assert_false(bp_pocl_is_too_old("3.0", "pthread-AMD EPYC", ""));
+    assert_false(bp_pocl_is_too_old("3.0", "cpu", "AMD EPYC"));
 }
 
 static void numbers_come_first(void **state) {
@@ -414,6 +427,7 @@ int main(void) {
         cmocka_unit_test(tolerates_platforms_without_devices),
         cmocka_unit_test(prefers_a_gpu_that_can_render),
         cmocka_unit_test(prefers_the_most_capable_gpu),
+        cmocka_unit_test(an_old_pocl_must_know_the_processor),
         cmocka_unit_test(numbers_come_first),
         cmocka_unit_test(parts_of_names_in_any_case),
         cmocka_unit_test(versions_of_drivers),
