@@ -4,25 +4,27 @@ In:    the environment, the system's list of drivers, installed packages.   Out:
 Knows: how the OpenCL loader looks for drivers.   Does not know: what drivers do.
 """
 
-import importlib.util
+import importlib.metadata
 import os
 import pathlib
 import typing
 
 SYSTEM_FOLDER = "/etc/OpenCL/vendors"  # where drivers register
+# Packages of PyPI with a driver, the best first, and what their libraries are called.
+PACKAGES = (("intel-opencl-rt", "libintelocl.so"), ("pocl-binary-distribution", "libpocl-*.so"))
 
 
 def packaged_driver() -> typing.Optional[pathlib.Path]:
-    """The library of pocl-binary-distribution, if that package is installed.
-
-    It keeps its library in a folder named after another package, which need not be there.
-    """
-    spec = importlib.util.find_spec("pocl_binary_distribution")
-    if spec is None:
-        return None
-    for folder in spec.submodule_search_locations or []:
-        for library in sorted(pathlib.Path(folder).parent.glob("pyopencl/.libs/libpocl-*.so")):
-            return library
+    """The library of the first of the packages that is installed."""
+    for package, name in PACKAGES:
+        try:
+            files = importlib.metadata.files(package) or []
+        except importlib.metadata.PackageNotFoundError:
+            continue
+        for file in files:
+            library = pathlib.Path(str(file.locate()))
+            if file.match(name) and library.is_file():
+                return library.resolve()
     return None
 
 

@@ -35,13 +35,22 @@ with tempfile.TemporaryDirectory() as name:
         assert chosen(without) == (None, None)
         package.refused(ImportError, "[cpu]", chosen, without, BALLPARK_DRIVER="pypi")
 
-    # As pocl-binary-distribution lies in site-packages.
-    (folder / "site/pocl_binary_distribution").mkdir(parents=True)
-    (folder / "site/pocl_binary_distribution/__init__.py").touch()
-    library = folder / "site/pyopencl/.libs/libpocl-0123abcd.so"
-    library.parent.mkdir(parents=True)
-    library.touch()
-    sys.path.insert(0, str(folder / "site"))
+    # Where pip puts the drivers of two packages, and its list of their files.
+    site = folder / "lib/python3/site-packages"
+    for package_name, file in (("pocl_binary_distribution", "pyopencl/.libs/libpocl-0123abcd.so"),
+                               ("intel_opencl_rt", "../../libintelocl.so")):
+        library = site / file
+        library.parent.mkdir(parents=True, exist_ok=True)
+        library.touch()
+        if file.startswith(".."):
+            library = library.resolve()
+        info = site / f"{package_name}-3.0.dist-info"
+        info.mkdir()
+        (info / "METADATA").write_text(f"Metadata-Version: 2.1\nName: {package_name.replace('_', '-')}\nVersion: 3.0\n")
+        (info / "RECORD").write_text(f"{package_name}/__init__.py,,\n{file},,\n")
+        if package_name.startswith("pocl"):
+            sys.path.insert(0, str(site))
+            assert _driver.packaged_driver() == library, _driver.packaged_driver()
 
     here = str(library)
     assert chosen(without) == (here, here)
