@@ -6,6 +6,7 @@
 
 #include "base/module.h"
 #include "base/plural.h"
+#include "command_text.h"
 #include "content.h"
 #include "formats/scene_parse.h"
 #include "interrupt.h"
@@ -64,29 +65,53 @@ static BpStatus choose_name(Saving *saving, char *name, size_t size, BpError *er
     return BP_OK;
 }
 
-/* On one line, for a shell. */
-static void print_command(const BpCommandLine *line, const BpScene *scene) {
+/* The scene's camera as the value of --set, on one line. Heap; NULL: out of memory. */
+static char *camera_text(const BpScene *scene) {
     char *text = NULL;
     size_t length = 0;
     FILE *out = open_memstream(&text, &length);
-    if (out == NULL) return;
+    if (out == NULL) return NULL;
     bp_scene_print_camera(&scene->camera, out);
-    if (fclose(out) == 0) {
-        const char *object = strchr(text, '{');
-        printf("ballpark render %s --set 'camera=",
-               strcmp(line->operands[0], "-") == 0 ? "SCENE" : line->operands[0]);
-        for (const char *c = object; c != NULL && *c != '\0'; ++c) {
-            const bool space = *c == ' ' || *c == '\n';
-            if (!space) putchar(*c);
-            if (space && c[1] != ' ' && c[1] != '\n' && c[1] != '\0') putchar(' ');
-        }
-        puts("'");
-        fflush(stdout);
+    if (fclose(out) != 0) return NULL;
+    const char *object = text != NULL ? strchr(text, '{') : NULL;
+    if (object == NULL) return text;
+    char *to = text; /* text begins with a name before the brace, which is at least as long */
+    memcpy(to, "camera=", 7);
+    to += 7;
+    for (const char *c = object; *c != '\0'; ++c) {
+        const bool space = *c == ' ' || *c == '\n';
+        if (!space) *to++ = *c;
+        if (space && c[1] != ' ' && c[1] != '\n' && c[1] != '\0') *to++ = ' ';
     }
-    free(text);
+    *to = '\0';
+    return text;
 }
 
-static BpStatus save(void *context, const BpScene *scene, const BpPicture *picture, BpError *err) {
+/* With every option that decides how the picture looks. The camera has those of --width, --fit and
+ * --projection. */
+static void print_command(const BpCommandLine *line, const BpScene *scene, double exposure) {
+    static const BpOption others[] = {BP_OPTION_ERROR,      BP_OPTION_WIDTH, BP_OPTION_FIT,
+                                      BP_OPTION_PROJECTION, BP_OPTION_QUIET, BP_OPTION_WIDE};
+    char command[BP_COMMAND_TEXT_SIZE], unnamed[] = "SCENE", *operand = line->operands[0];
+    BpCommandLine again = *line;
+    char *camera = camera_text(scene);
+    if (camera == NULL || again.set.count == BP_TEXTS_MAX) goto done;
+    if (bp_command_find("render", &again.command, NULL) != BP_OK) goto done;
+    for (size_t i = 0; i < sizeof others / sizeof others[0]; ++i) again.given[others[i]] = false;
+    if (strcmp(operand, "-") == 0) operand = unnamed;
+    again.operands = &operand;
+    again.given[BP_OPTION_SET] = true;
+    again.set.list[again.set.count++] = camera; /* the last one counts */
+    again.given[BP_OPTION_EXPOSURE] = exposure != 0;
+    again.exposure = exposure;
+    puts(bp_command_text(&again, NULL, 0, command, sizeof command));
+    fflush(stdout);
+done:
+    free(camera);
+}
+
+static BpStatus save(void *context, const BpScene *scene, const BpPicture *picture, double exposure,
+                     BpError *err) {
     Saving *saving = context;
     char name[1024];
     BpCommandLine careful = *saving->line;
@@ -94,7 +119,7 @@ static BpStatus save(void *context, const BpScene *scene, const BpPicture *pictu
     BP_TRY(choose_name(saving, name, sizeof name, err));
     BP_TRY(bp_line_write_picture(&careful, name, picture, BP_FORMAT_PNG, saving->transfer, NULL, err));
     bp_say(saving->line, "saved %s; this command renders it with less noise:", name);
-    print_command(saving->line, scene);
+    print_command(saving->line, scene, exposure);
     return BP_OK;
 }
 
@@ -134,6 +159,7 @@ BpStatus bp_command_view(const BpCommandLine *line, BpError *err) {
     plan.options.samples_per_pixel = BP_SPP_MAX;
     plan.target = bp_option_given(line, BP_OPTION_ERROR) ? line->error_percent / 100 : TARGET;
     plan.transfer = bp_option_given(line, BP_OPTION_TRANSFER) ? line->transfer : scene->transfer;
+    plan.exposure = line->exposure;
     Saving saving = {.line = line, .transfer = plan.transfer};
     plan.context = &saving;
     waiting = bp_waiting_begin(line->quiet, "preparing %zu sphere%s and the kernel", scene->sphere_count,

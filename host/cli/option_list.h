@@ -134,6 +134,9 @@ enum {
                   BpKernelForm, kernel, BP_CHOICE("", bp_kernel_names, BP_KERNEL_SAMPLE))                    \
     OPTION(TRANSFER, "transfer", 0, BP_RENDER | BP_MERGE | BP_VIEW, "tone curve of 8-bit output",            \
            BpTransfer, transfer, BP_CHOICE("", bp_transfer_names, 0))                                        \
+    OPTION(EXPOSURE, "exposure", 0, BP_RENDER | BP_MERGE | BP_VIEW,                                          \
+           "make the picture brighter by STOPS, each a factor of two; darker if negative", double, exposure, \
+           BP_REAL("STOPS", -100, 100))                                                                      \
     OPTION(FORMAT, "format", 0, BP_RENDER | BP_MERGE, "png, ppm, ppm-ascii, pfm, exr or bpa", BpFormat,      \
            format, BP_CHOICE("FORMAT", bp_format_names, 0))                                                  \
     OPTION(ERROR_MAP, "error-map", 0, BP_RENDER | BP_MERGE, "write a heat map of each pixel's noise",        \
@@ -249,6 +252,7 @@ enum {
          "packet on a CPU; on a GPU, the fastest in a trial at its first use; sample elsewhere")             \
     NOTE(TRANSFER, BP_RENDER | BP_VIEW, NULL, "the scene's")                                                 \
     NOTE(TRANSFER, BP_MERGE, NULL, "that of the first file's scene")                                         \
+    NOTE(EXPOSURE, BP_RENDER | BP_MERGE | BP_VIEW, NULL, "0")                                                \
     NOTE(BIT_DEPTH, BP_RENDER | BP_MERGE, NULL, "8")                                                         \
     NOTE(PROJECTION, BP_TRACERS | BP_SCENE, NULL, "the scene's")                                             \
     NOTE(LIGHT, BP_TRACERS | BP_SCENE, NULL, "the scene's; soft for a file of particles")                    \

@@ -3,6 +3,7 @@
 
 #include "base/clock.h"
 #include "base/shown.h"
+#include "image/image.h"
 #include "render/render.h"
 
 #include <inttypes.h>
@@ -58,6 +59,7 @@ static BpStatus show(BpPreview *preview, const BpFilm *film, BpError *err) {
                                     ? preview->line->transfer
                                     : (BpTransfer)film->transfer;
     BpStatus status = bp_film_picture(film, &picture, err);
+    if (status == BP_OK) bp_picture_expose(&picture, preview->line->exposure);
     if (status == BP_OK) status = bp_terminal_picture_draw(&preview->terminal, &picture, transfer, err);
     bp_picture_clear(&picture);
     return status;

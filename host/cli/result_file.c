@@ -132,6 +132,11 @@ static BpStatus choose_error_map(const BpCommandLine *line, const char *source, 
     return bp_fail(err, BP_ERR_FILE, "the path after --error-map is too long");
 }
 
+/* By a transfer curve, as a screen shows it. */
+static bool is_encoded(BpFormat format) {
+    return format == BP_FORMAT_PNG || format == BP_FORMAT_PPM || format == BP_FORMAT_PPM_ASCII;
+}
+
 /* What has no place in the format that is asked for. */
 static BpStatus check_figure(const BpCommandLine *line, BpFormat format, BpError *err) {
     const bool png = format == BP_FORMAT_PNG, noted = png || format == BP_FORMAT_EXR;
@@ -146,6 +151,12 @@ static BpStatus check_figure(const BpCommandLine *line, BpFormat format, BpError
             err, BP_ERR_USAGE,
             "--outlines and --depth-fog are drawn into pictures, and a .bpa file holds sums; give them to "
             "`ballpark merge`, which makes the picture");
+    if (bp_option_given(line, BP_OPTION_EXPOSURE) && !is_encoded(format))
+        return bp_fail(
+            err, BP_ERR_USAGE,
+            "--exposure applies to PNG and PPM pictures, and this one is %s, which keeps the radiance "
+            "as it is",
+            bp_format_names[format]);
     if (!png && line->bit_depth != NULL)
         return bp_fail(err, BP_ERR_USAGE, "--bit-depth applies to PNG pictures, and this one is %s",
                        bp_format_names[format]);
@@ -248,14 +259,14 @@ BpStatus bp_result_write(const BpCommandLine *line, const BpResultFile *result, 
                           .deep = line->bit_depth != NULL && strcmp(line->bit_depth, "16") == 0};
     Metadata metadata = {.command_text = NULL};
     if (line->metadata) BP_TRY_GOTO(status, make_metadata(line, film, &metadata, &extra, err), done);
-    const bool bytes = result->format == BP_FORMAT_PNG || result->format == BP_FORMAT_PPM ||
-                       result->format == BP_FORMAT_PPM_ASCII;
-    const BpLegend *const legend = scene != NULL && scene->legend.shown && bytes ? &scene->legend : NULL;
+    const BpLegend *const legend =
+        scene != NULL && scene->legend.shown && is_encoded(result->format) ? &scene->legend : NULL;
     /* The map shows the errors of what was rendered, not of what is drawn over it. */
-    const bool apart = legend != NULL || bp_result_has_cues(line);
+    const bool apart = legend != NULL || bp_result_has_cues(line) || line->exposure != 0;
     if (is_picture || has_map) BP_TRY_GOTO(status, bp_film_picture(film, &picture, err), done);
     if (has_map && apart) BP_TRY_GOTO(status, bp_film_picture(film, &undrawn, err), done);
     BP_TRY_GOTO(status, draw_cues(line, scene, &picture, err), done);
+    if (is_picture) bp_picture_expose(&picture, line->exposure);
     if (legend != NULL)
         BP_TRY_GOTO(status,
                     bp_color_bar_draw(&picture, transfer, (const float(*)[3])legend->colors, legend->range,

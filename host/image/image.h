@@ -36,6 +36,9 @@ typedef struct BpImageExtra {
 /* bp_transfer_byte for 16 bits: encoded, clamped to [0, 1], times 65535, rounded. */
 uint16_t bp_transfer_word(double linear, BpTransfer transfer);
 
+/* Multiplies the radiance by 2 to the power of `stops`, and nothing else. */
+void bp_picture_expose(BpPicture *picture, double stops);
+
 /* bp_picture_write_stream with more than pixels. */
 BpStatus bp_picture_write_extra(const BpPicture *picture, FILE *out, BpFormat format, BpTransfer transfer,
                                 const BpImageExtra *extra, BpError *err);

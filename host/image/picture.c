@@ -7,6 +7,8 @@
 #include "aov_list.h"
 
 #include <errno.h>
+#include <float.h>
+#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 #include <strings.h>
@@ -104,6 +106,13 @@ BpStatus bp_picture_encode(const BpPicture *picture, BpFormat format, BpTransfer
 void bp_picture_bytes(const BpPicture *picture, BpTransfer transfer, uint8_t *rgb) {
     const size_t count = (size_t)picture->width * picture->height * 3;
     for (size_t i = 0; i < count; i++) rgb[i] = bp_transfer_byte((double)picture->rgb[i], transfer);
+}
+
+void bp_picture_expose(BpPicture *picture, double stops) {
+    const double factor = exp2(stops);
+    const size_t count = (size_t)picture->width * picture->height * 3;
+    for (size_t i = 0; i < count && factor != 1; i++)
+        picture->rgb[i] = (float)fmin(factor * (double)picture->rgb[i], (double)FLT_MAX);
 }
 
 void bp_picture_clear(BpPicture *picture) {

@@ -35,7 +35,7 @@ const char bp_view_keys[] = "left drag    orbit around the point that the camera
                             "wheel        zoom in and out\n"
                             "left click   focus on what is under the pointer\n"
                             "[ ]          smaller, larger aperture\n"
-                            "- +          darker, brighter; 0: as the scene has it\n"
+                            "- +          darker, brighter; 0: neither\n"
                             "s            save the picture, and print the command that renders it\n"
                             "r            go back to the first camera\n"
                             "q, Escape    quit\n";
@@ -115,6 +115,7 @@ static void press(Viewer *viewer, char key) {
     case '-':
     case '0':
         viewer->exposure = key == '0' ? 0 : viewer->exposure + (key == '-' ? -1.0 : 1.0) / 3;
+        if (fabs(viewer->exposure) < 1e-9) viewer->exposure = 0; /* three thirds and back */
         viewer->shown = false;
         viewer->shown_at = 0;
         break;
@@ -244,9 +245,7 @@ static BpStatus read_picture(Viewer *viewer, BpPicture *picture, BpError *err) {
     BP_TRY(bp_render_read_film(viewer->render, &film, err));
     viewer->nrmse = bp_film_nrmse(film);
     BP_TRY(bp_film_picture(film, picture, err));
-    const float factor = (float)exp2(viewer->exposure);
-    const size_t count = (size_t)picture->width * picture->height * 3;
-    for (size_t i = 0; i < count && factor != 1; ++i) picture->rgb[i] *= factor;
+    bp_picture_expose(picture, viewer->exposure);
     return BP_OK;
 }
 
@@ -299,7 +298,8 @@ static void set_title(Viewer *viewer) {
 static BpStatus save(Viewer *viewer, BpError *err) {
     BpPicture picture = {0};
     BpStatus status = read_picture(viewer, &picture, err);
-    if (status == BP_OK) status = viewer->plan->save(viewer->plan->context, viewer->scene, &picture, err);
+    if (status == BP_OK)
+        status = viewer->plan->save(viewer->plan->context, viewer->scene, &picture, viewer->exposure, err);
     bp_picture_clear(&picture);
     return status;
 }
@@ -359,6 +359,7 @@ BpStatus bp_view(const BpViewPlan *plan, BpScene *scene, BpError *err) {
                      .first = scene->camera,
                      .width = scene->camera.width,
                      .window_height = scene->camera.height,
+                     .exposure = plan->exposure,
                      .nrmse = (double)NAN};
     BpStatus status = BP_OK;
     const uint32_t height = scene->camera.height;

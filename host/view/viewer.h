@@ -19,9 +19,11 @@ typedef struct BpViewPlan {
     BpRenderOptions options; /* samples_per_pixel: the most */
     double target;           /* noise at which it rests, a fraction */
     BpTransfer transfer;     /* of the window */
-    /* The person wants the picture kept: as it is shown, with the scene's camera as it is. A failure ends the
-     * view. */
-    BpStatus (*save)(void *context, const BpScene *scene, const BpPicture *picture, BpError *err);
+    double exposure;         /* in stops, at the beginning */
+    /* The person wants the picture kept: as it is shown, with the scene's camera as it is and so many stops
+     * of exposure. A failure ends the view. */
+    BpStatus (*save)(void *context, const BpScene *scene, const BpPicture *picture, double exposure,
+                     BpError *err);
     void (*opened)(void *context); /* the window is there, and keys are heard */
     bool (*interrupted)(void);     /* Ctrl-C, asked between steps */
     void *context;

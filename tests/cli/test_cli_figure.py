@@ -60,6 +60,28 @@ class Figure(cli.ProgramTest):
                     self.assertAlmostEqual(word, 65535 * encoded, delta=0.6)
         self.assert_same(self.render("a.png", "--bit-depth", 8), self.render("b.png"))
 
+    def test_exposure(self):
+        """So many stops multiply the radiance before the transfer curve; noise and its map stay as they are."""
+        for stops in (1.5, -2):
+            for transfer in ("linear", "gamma2"):
+                rows = read_png(self.render("a.png", "--bit-depth", 16, "--transfer", transfer, "--exposure", stops))[4]
+                values = list(read_pfm(self.render("a.pfm"))[2])
+                for y, row in enumerate(rows):
+                    for i, word in enumerate(row):
+                        linear = values[(8 - 1 - y) * 3 * 16 + i] * 2 ** stops
+                        self.assertAlmostEqual(word, 65535 * min(linear if transfer == "linear" else linear ** 0.5, 1), delta=0.6)
+        self.assert_same(self.render("a.png", "--exposure", 0), self.render("b.png"))
+        brighter = self.render("a.png", "--exposure", 1, "--error-map", "a-map.png")
+        self.assert_different(brighter, self.render("b.png", "--error-map", "b-map.png"))
+        self.assert_same(self.read("a-map.png"), self.read("b-map.png"))
+        self.render("a.bpa")
+        self.succeed("merge", "a.bpa", "--exposure", 1, "-o", "merged.png")
+        self.assert_same(self.read("merged.png"), brighter)
+        self.succeed("render", "scene.json", "--exposure", 1, "--preview", 0.001, "-o", "previewed.png")
+        self.assert_same(self.read("previewed.png"), brighter)
+        for ending in ("exr", "pfm", "bpa"):
+            self.fail_with(2, "render", "scene.json", "--exposure", 1, "-o", f"a.{ending}", says="--exposure applies to PNG")
+
     def test_16_bits_with_alpha(self):
         self.write("scene.json", cli.scene(16, 8, spheres=1, backdrop="none", transfer="linear"))
         width, height, bits, channels, rows, _ = read_png(self.render("a.png", "--bit-depth", 16))

@@ -94,6 +94,7 @@ class Wrong(ProgramTest):
             "--effects": ["none"],
             "--kernel": ["auto"],
             "--transfer": ["gamma"],
+            "--exposure": ["", "101", "-101", "nan", "1stop"],
             "--format": ["jpg", "PNG"],
         }
         for option, values in bad.items():

@@ -4,6 +4,7 @@ test_view.py PROGRAM SOURCE_DIR FAKE_WINDOW [unittest's arguments]"""
 
 import os
 import re
+import shlex
 import shutil
 import signal
 import subprocess
@@ -14,6 +15,7 @@ import unittest
 FAKE_WINDOW = os.path.abspath(sys.argv.pop(3))
 
 from cli import LIMIT_SECONDS, PROGRAM, SOURCE, ProgramTest, main  # noqa: E402
+from png import read_png  # noqa: E402
 
 BALLS = {"camera": {"image_width": 80, "image_height": 40, "lookfrom": [0, 0, 10], "lookat": [0, 0, 0], "vfov": 20,
                     "samples_per_pixel": 4, "max_depth": 4},
@@ -99,6 +101,20 @@ class Scripted(ProgramTest):
         stops = [color[1] for _, _, color in self.stops(lines)]
         self.assertAlmostEqual(stops[1] / stops[0], 2, delta=0.1)
         self.assertAlmostEqual(stops[2], stops[0], delta=1)
+
+    def test_the_printed_command_carries_what_is_seen(self):
+        """Options, exposure and camera: the command renders the saved picture again, but for its noise."""
+        options = ("--error", "2%", "--transfer", "linear", "--set", "background=[0.1,0.3,0.2]", "--exposure", "-1",
+                   "--width", "60", "--light", "soft")
+        self.view("rest", "drag 1 -3 2", "key -", "rest", "key s", "frames 0", "quit", options=options)
+        command = shlex.split(self.result.stdout.decode())
+        self.assertEqual(command[:3], ["ballpark", "render", "s.json"])
+        self.assertAlmostEqual(float(command[command.index("--exposure") + 1]), -4 / 3)
+        self.succeed(*command[1:], "--error", "2%", "-o", "again.png")
+        saved, again = (read_png(self.read(name)) for name in ("s-view-1.png", "again.png"))
+        self.assertEqual(saved[:2], again[:2])
+        means = [sum(sum(row) for row in rows) for *_, rows, _ in (saved, again)]
+        self.assertAlmostEqual(means[1] / means[0], 1, delta=0.05)
 
     def test_saving(self):
         self.write("s-view-1.png", "somebody's")
