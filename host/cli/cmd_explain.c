@@ -193,9 +193,10 @@ static void print_heading(const char *path, const BpScene *scene, FILE *out) {
     bp_show(path, false, out);
     fputs(": ", out);
     bp_show(info.title, false, out);
-    fprintf(out, "%s%zu sphere%s, %zu material%s, %ux%u\n", info.title[0] != '\0' ? "; " : "", info.spheres,
-            info.spheres == 1 ? "" : "s", info.materials, info.materials == 1 ? "" : "s", info.width,
-            info.height);
+    char spheres[32];
+    fprintf(out, "%s%s sphere%s, %zu material%s, %ux%u\n", info.title[0] != '\0' ? "; " : "",
+            bp_format_whole(info.spheres, spheres, sizeof spheres), info.spheres == 1 ? "" : "s",
+            info.materials, info.materials == 1 ? "" : "s", info.width, info.height);
 }
 
 static void print_effects(const BpScene *scene, const BpEffectInfo *effects, size_t count, FILE *out) {

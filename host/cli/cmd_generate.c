@@ -4,6 +4,7 @@
  * Knows: the generators' names.       Does not know: the order of their draws. */
 #include "commands.h"
 
+#include "base/format.h"
 #include "base/plural.h"
 #include "content.h"
 #include "formats/field.h"
@@ -48,8 +49,9 @@ static BpStatus generate_cover(const BpCommandLine *line, uint64_t seed, BpError
     if (status == BP_OK) {
         BpSceneInfo info;
         bp_scene_info(scene, &info);
-        bp_say(line, "%s: %zu sphere%s, %s", shown_name(path), info.spheres, bp_plural(info.spheres),
-               info.title);
+        char count[32];
+        bp_say(line, "%s: %s sphere%s, %s", shown_name(path),
+               bp_format_whole(info.spheres, count, sizeof count), bp_plural(info.spheres), info.title);
     }
     bp_scene_destroy(&scene);
     return status;
@@ -65,6 +67,7 @@ static BpStatus print_field(const void *what, FILE *out, BpError *err) {
 }
 
 static BpStatus generate_field(const BpCommandLine *line, uint64_t seed, BpError *err) {
+    char count[32];
     const char *path = choose_path(line, "field.ply");
     const Field field = {bp_option_given(line, BP_OPTION_COUNT) ? line->count : FIELD_COUNT_DEFAULT, seed};
     if (strcmp(path, "-") == 0 && isatty(STDOUT_FILENO))
@@ -74,8 +77,8 @@ static BpStatus generate_field(const BpCommandLine *line, uint64_t seed, BpError
     BP_TRY(bp_line_check_named(line, path, ".ply", "a field is written as a PLY file", err));
     bp_line_say_overwritten(line, path);
     BP_TRY(bp_line_write(line, path, print_field, &field, err));
-    bp_say(line, "%s: %" PRIu64 " sphere%s in the cube from -10 to 10", shown_name(path), field.count,
-           bp_plural(field.count));
+    bp_say(line, "%s: %s sphere%s in the cube from -10 to 10", shown_name(path),
+           bp_format_whole(field.count, count, sizeof count), bp_plural(field.count));
     return BP_OK;
 }
 

@@ -390,6 +390,11 @@ static void print_summary(const BpCommandLine *line, const RunResult *result, co
         bp_say(line, "%s of the paths were cut off at %" PRIu32 " segment%s (--depth) and counted as black",
                bp_format_percent((double)report->cut_paths / (double)report->samples, text, sizeof text),
                result->options->max_depth, bp_plural(result->options->max_depth));
+    if (result->scene->medium != 0 && 2 * report->cut_paths > report->samples)
+        bp_say(
+            line,
+            "the \"medium\" of the whole scene has no end, so no light of the sky comes through it; put it "
+            "into a large sphere of an \"interface\" material instead, as its \"interior\"");
     bp_result_warn(line, result->film);
     if (report->invalid_samples > 0)
         bp_say(line, "warning: %" PRIu64 " sample%s not finite and left out of the picture",
@@ -597,9 +602,10 @@ static BpStatus prepare(Run *run, const BpCommandLine *line, Job *job, Work *wor
                 done);
     if (run->devices == NULL) BP_TRY_GOTO(status, find_devices(run, err), done);
     work->result.device_count = run->device_count;
-    waiting =
-        bp_waiting_begin(line->quiet, "preparing %zu sphere%s and the kernel for %s",
-                         job->scene->sphere_count, bp_plural(job->scene->sphere_count), run->devices[0].name);
+    char spheres[32];
+    waiting = bp_waiting_begin(line->quiet, "preparing %s sphere%s and the kernel for %s",
+                               bp_format_whole(job->scene->sphere_count, spheres, sizeof spheres),
+                               bp_plural(job->scene->sphere_count), run->devices[0].name);
     if (run->open == NULL) BP_TRY_GOTO(status, open_devices(run, err), done);
     BP_TRY_GOTO(
         status,

@@ -4,6 +4,7 @@
  * Knows: which module that is, how saved pictures are named.   Does not know: SDL, what the window shows. */
 #include "commands.h"
 
+#include "base/format.h"
 #include "base/module.h"
 #include "base/plural.h"
 #include "command_text.h"
@@ -162,7 +163,9 @@ BpStatus bp_command_view(const BpCommandLine *line, BpError *err) {
     plan.exposure = line->exposure;
     Saving saving = {.line = line, .transfer = plan.transfer};
     plan.context = &saving;
-    waiting = bp_waiting_begin(line->quiet, "preparing %zu sphere%s and the kernel", scene->sphere_count,
+    char spheres[32];
+    waiting = bp_waiting_begin(line->quiet, "preparing %s sphere%s and the kernel",
+                               bp_format_whole(scene->sphere_count, spheres, sizeof spheres),
                                bp_plural(scene->sphere_count));
     BP_TRY_GOTO(status, open_devices(line, &infos, &devices, &plan.device_count, err), done);
     plan.devices = devices;

@@ -188,6 +188,15 @@ class Statistics(Render):
         self.assertEqual(stats["rays"], 4 * stats["samples"])
         said = self.succeed("render", "ball.json", "--depth", "4", "-o", "x.png").errors
         self.assertIn("100 % of the paths were cut off at 4 segments", said)
+        self.assertNotIn("medium", said)
+
+    def test_fog_without_end(self):
+        """No path gets through it to the sky, and the picture says why it is dark."""
+        self.write("fog.json", scene(media={"fog": {"scattering": 1}}, medium="fog"))
+        said = self.succeed("render", "fog.json", "-o", "x.png").errors
+        self.assertIn('the "medium" of the whole scene has no end', said)
+        self.write("clear.json", scene(media={"fog": {"absorption": 1}}, medium="fog"))
+        self.assertNotIn("has no end", self.succeed("render", "clear.json", "-o", "x.png").errors)
 
 
 class StopRules(Render):
