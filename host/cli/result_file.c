@@ -66,7 +66,7 @@ static bool renders(const BpCommandLine *line) {
     return line->command->bit == BP_RENDER;
 }
 
-static bool is_folder(const char *path) {
+bool bp_result_is_folder(const char *path) {
     struct stat info;
     const size_t length = strlen(path);
     return (length > 0 && path[length - 1] == '/') || (stat(path, &info) == 0 && S_ISDIR(info.st_mode));
@@ -76,7 +76,7 @@ static bool is_folder(const char *path) {
  * several. */
 static BpStatus find_folder(const BpCommandLine *line, const char *option, const char *path, bool *folder,
                             BpError *err) {
-    *folder = renders(line) && is_folder(path);
+    *folder = renders(line) && bp_result_is_folder(path);
     if (*folder || !renders(line) || line->operand_count < 2) return BP_OK;
     return bp_fail(err, BP_ERR_USAGE,
                    "%s %.400s: %zu scenes need a file each; name a folder that exists, or leave %s out",

@@ -23,6 +23,9 @@ typedef struct BpResultFile {
  * to a terminal; one file for several pictures, or for two things) or BP_ERR_FILE. */
 BpStatus bp_result_choose(const BpCommandLine *line, const char *source, BpResultFile *result, BpError *err);
 
+/* Whether --output PATH is a folder: it exists as one, or ends with a slash. */
+bool bp_result_is_folder(const char *path);
+
 /* Says of both files, when work begins, that they will be overwritten (output.h). */
 void bp_result_say_overwritten(const BpCommandLine *line, const BpResultFile *result);
 

@@ -2,6 +2,7 @@
 #include "series.h"
 
 #include "base/plural.h"
+#include "result_file.h"
 #include "scene/fit.h"
 #include "scene/light.h"
 #include "setup.h"
@@ -131,14 +132,17 @@ void bp_series_end(BpSeries *series) {
     bp_scene_destroy(&series->scene);
 }
 
-/* name-0012.png of name.png. */
+/* name-0012.png of name.png; in a folder, and without --output, named after the scene. */
 BpStatus bp_series_line(BpSeries *series, BpCommandLine *line, BpError *err) {
     *line = *series->line;
     if (!bp_option_given(line, BP_OPTION_FRAMES) && !bp_option_given(line, BP_OPTION_TURNTABLE)) return BP_OK;
-    const bool named = line->output != NULL;
+    const bool has_folder = line->output != NULL && bp_result_is_folder(line->output);
+    const bool named = line->output != NULL && !has_folder;
+    const char *const folder = has_folder ? line->output : "";
+    const char *const joint = has_folder && folder[strlen(folder) - 1] != '/' ? "/" : "";
     const char *name = named ? line->output : line->operands[0];
     const char *const slash = strrchr(name, '/');
-    if (!named && slash != NULL) name = slash + 1; /* in the current folder */
+    if (!named && slash != NULL) name = slash + 1; /* in the current folder, or the one that is named */
     size_t stem = strlen(name);
     if (!named && stem > 3 && strcmp(name + stem - 3, ".gz") == 0) stem -= 3;
     const size_t base = named && slash != NULL ? (size_t)(slash - name) + 1 : 0;
@@ -158,8 +162,8 @@ BpStatus bp_series_line(BpSeries *series, BpCommandLine *line, BpError *err) {
                               : (uint64_t)series->first_frame + (series->count - 1) * series->step;
     char digits[24];
     const int width = snprintf(digits, sizeof digits, "%" PRIu64, most);
-    const int length = snprintf(series->output, sizeof series->output, "%.*s-%0*" PRIu64 "%s", (int)dot, name,
-                                width > 4 ? width : 4, number, ending);
+    const int length = snprintf(series->output, sizeof series->output, "%s%s%.*s-%0*" PRIu64 "%s", folder,
+                                joint, (int)dot, name, width > 4 ? width : 4, number, ending);
     if (length >= (int)sizeof series->output)
         return bp_fail(err, BP_ERR_FILE, "the path after --output is too long");
     line->output = series->output;

@@ -321,6 +321,10 @@ class Scenes(ProgramTest):
                 os.remove(self.path(name))
         self.succeed("render", "run.dump", *SIZE, "--frames", "1:2")
         self.assertIn("run-0001.png", self.files())
+        os.mkdir(self.path("pictures"))
+        for folder in ("pictures", "pictures/"):
+            self.succeed("render", "run.dump", *SIZE, "--frames", "1:3", "-o", folder)
+            self.assertEqual(sorted(os.listdir(self.path("pictures"))), ["run-0001.png", "run-0002.png"])
         for options, says in [(("--frames", "4:"), "no such frame"), (("--frames", "3"), "A:B:S"), (("--frames", "::0"), "A:B:S"),
                               (("--frames", "::", "--frame", 1), "--frame"), (("--frames", "::", "--turntable", 3), "together"),
                               (("--frames", "::", "--stats", "s.json"), "--stats"), (("--frames", "::", "-o", "-"), "standard output"),
