@@ -5,6 +5,7 @@
 #ifndef BP_BASE_TEAM_H
 #define BP_BASE_TEAM_H
 
+#include <stddef.h>
 #include <stdint.h>
 
 typedef struct BpTeam BpTeam;
@@ -21,5 +22,20 @@ unsigned bp_team_size(const BpTeam *team);
 /* Calls work(context, piece, worker) once for every piece in 0 .. pieces-1, in any order, and returns when
  * all are done. What they wrote is visible to the caller. */
 void bp_team_run(BpTeam *team, BpTeamWork *work, void *context, uint32_t pieces);
+
+/* Long arrays are worked through in blocks of this many elements, the last one perhaps shorter; each is a
+ * piece. */
+#define BP_BLOCK 16384u
+
+static inline uint32_t bp_block_count(size_t elements) {
+    return (uint32_t)((elements + BP_BLOCK - 1) / BP_BLOCK);
+}
+static inline size_t bp_block_begin(uint32_t block) {
+    return (size_t)block * BP_BLOCK;
+}
+static inline size_t bp_block_end(uint32_t block, size_t elements) {
+    const size_t end = bp_block_begin(block + 1);
+    return end < elements ? end : elements;
+}
 
 #endif

@@ -485,7 +485,6 @@ typedef struct Slots {
     size_t count;
 } Slots;
 
-#define SLOT_BLOCK 16384u
 #define SLOT_CHUNK 64u
 
 /* Spheres are asked in the order of the tree, so this mostly waits for memory. First all spheres of the chunk
@@ -516,9 +515,8 @@ static void pack_slot_chunk(const Slots *slots, size_t first, size_t count) {
 static void pack_slot_block(void *context, uint32_t block, unsigned worker) {
     (void)worker;
     const Slots *slots = context;
-    const size_t first = (size_t)block * SLOT_BLOCK, left = slots->count - first;
-    const size_t end = first + (left < SLOT_BLOCK ? left : SLOT_BLOCK);
-    for (size_t chunk = first; chunk < end; chunk += SLOT_CHUNK)
+    const size_t end = bp_block_end(block, slots->count);
+    for (size_t chunk = bp_block_begin(block); chunk < end; chunk += SLOT_CHUNK)
         pack_slot_chunk(slots, chunk, end - chunk < SLOT_CHUNK ? end - chunk : SLOT_CHUNK);
 }
 
@@ -530,11 +528,11 @@ static BpStatus pack_slots(const BpScene *scene, const uint32_t *second, unsigne
     packed->slot_material = bp_large_zeroed(count + 1, sizeof *packed->slot_material);
     packed->slot_albedo = bp_large_zeroed(count + 1, ALBEDO_REALS * bp_packed_real_size(packed));
     Scattered *scattered = malloc((scene->material_count + 1) * sizeof *scattered);
-    BpTeam *team = bp_team_create(count < SLOT_BLOCK ? 1 : threads);
+    BpTeam *team = bp_team_create(count < BP_BLOCK ? 1 : threads);
     if (packed->slot_material != NULL && packed->slot_albedo != NULL && scattered != NULL && team != NULL) {
         for (size_t m = 0; m < scene->material_count; ++m) scattered[m] = scattered_by(&scene->materials[m]);
         Slots slots = {scene, second, scattered, packed, count};
-        bp_team_run(team, pack_slot_block, &slots, (uint32_t)((count + SLOT_BLOCK - 1) / SLOT_BLOCK));
+        bp_team_run(team, pack_slot_block, &slots, bp_block_count(count));
     } else {
         status = out_of_memory(scene, err);
     }

@@ -18,7 +18,6 @@
 /* A sphere whose box has more than this part of the area of the box around all others is met by so many rays,
  * and makes every box above it so large, that it is cheaper to test it always. */
 #define HUGE_AREA_PART (1.0 / 64.0)
-#define BLOCK 16384u
 
 /* The largest spheres, by radius, then index. */
 typedef struct Largest {
@@ -49,17 +48,12 @@ static void offer(const BpScene *scene, uint32_t width, Largest *largest, uint32
     largest->index[place] = sphere;
 }
 
-static uint32_t block_end(const Scan *scan, uint32_t block) {
-    const size_t end = ((size_t)block + 1) * BLOCK;
-    return (uint32_t)(end < scan->scene->sphere_count ? end : scan->scene->sphere_count);
-}
-
 static void find_largest(void *context, uint32_t block, unsigned worker) {
     (void)worker;
     Scan *scan = context;
     Largest largest = {.count = 0};
-    for (uint32_t i = block * BLOCK; i < block_end(scan, block); ++i)
-        offer(scan->scene, scan->width, &largest, i);
+    for (size_t i = bp_block_begin(block); i < bp_block_end(block, scan->scene->sphere_count); ++i)
+        offer(scan->scene, scan->width, &largest, (uint32_t)i);
     scan->largest[block] = largest;
 }
 
@@ -67,18 +61,18 @@ static void make_items(void *context, uint32_t block, unsigned worker) {
     (void)worker;
     Scan *scan = context;
     /* Candidates before this block leave no gap; those within are passed over. */
-    bool skip[BLOCK / 64][64];
+    bool skip[BP_BLOCK / 64][64];
     memset(skip, 0, sizeof skip);
-    uint32_t place = block * BLOCK;
+    uint32_t place = block * BP_BLOCK;
     for (uint32_t k = 0; k < scan->candidates.count; ++k) {
         const uint32_t index = scan->candidates.index[k];
-        if (index < block * BLOCK) --place;
-        if (index / BLOCK == block) skip[index % BLOCK / 64][index % 64] = true;
+        if (index < block * BP_BLOCK) --place;
+        if (index / BP_BLOCK == block) skip[index % BP_BLOCK / 64][index % 64] = true;
     }
     BpBounds bounds = BP_BOUNDS_EMPTY;
-    for (uint32_t i = block * BLOCK; i < block_end(scan, block); ++i) {
-        if (skip[i % BLOCK / 64][i % 64]) continue;
-        const BpTreeItem item = bp_tree_item(scan->scene, i, scan->origin);
+    for (size_t i = bp_block_begin(block); i < bp_block_end(block, scan->scene->sphere_count); ++i) {
+        if (skip[i % BP_BLOCK / 64][i % 64]) continue;
+        const BpTreeItem item = bp_tree_item(scan->scene, (uint32_t)i, scan->origin);
         const BpBounds box = bp_tree_item_bounds(&item);
         bp_bounds_add(&bounds, &box);
         scan->items[place++] = item;
@@ -90,7 +84,7 @@ static void make_items(void *context, uint32_t block, unsigned worker) {
  * longest prefix of the `width` largest spheres of which each is huge against the box around all spheres that
  * are not among the `width` largest. Returns the number of items. */
 static uint32_t scan_spheres(Scan *scan, BpTeam *team) {
-    const uint32_t count = (uint32_t)scan->scene->sphere_count, blocks = (count + BLOCK - 1) / BLOCK;
+    const uint32_t count = (uint32_t)scan->scene->sphere_count, blocks = bp_block_count(count);
     bp_team_run(team, find_largest, scan, blocks);
     for (uint32_t b = 0; b < blocks; ++b)
         for (uint32_t k = 0; k < scan->largest[b].count; ++k)
@@ -130,8 +124,8 @@ static BpStatus build_list(const BpTreeWriter *writer, BpError *err) {
 
 static BpStatus build_tree(BpTreeWriter *writer, unsigned threads, BpError *err) {
     BpTree *tree = writer->tree;
-    const uint32_t count = (uint32_t)writer->scene->sphere_count, blocks = count / BLOCK + 1;
-    if (threads == 0 && count < BLOCK) threads = 1; /* waking them would take longer */
+    const uint32_t count = (uint32_t)writer->scene->sphere_count, blocks = bp_block_count(count) + 1;
+    if (threads == 0 && count < BP_BLOCK) threads = 1; /* waking them would take longer */
     BpStatus status = BP_OK;
     BpBinaryTree binary = {0};
     BpTeam *team = bp_team_create(threads);

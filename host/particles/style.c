@@ -434,18 +434,11 @@ typedef struct Blocks {
     bool one_color; /* of all: then there is one entry for it, which caches hold */
 } Blocks;
 
-enum { BLOCK = 16384 };
-
-static size_t block_end(const Blocks *blocks, uint32_t block) {
-    const size_t end = ((size_t)block + 1) * BLOCK, count = blocks->job->p->count;
-    return end < count ? end : count;
-}
-
 static void find_radii(void *context, uint32_t block, unsigned worker) {
     (void)worker;
     const Blocks *const blocks = context;
     Job *const job = blocks->job;
-    for (size_t i = (size_t)block * BLOCK; i < block_end(blocks, block); i++) {
+    for (size_t i = bp_block_begin(block); i < bp_block_end(block, job->p->count); i++) {
         if (!job->shown[i]) continue;
         const double radius = radius_of(job, i);
         /* As in scenes; NaN, 0 and below: nothing to see. */
@@ -459,7 +452,7 @@ static void fill_spheres(void *context, uint32_t block, unsigned worker) {
     const Blocks *const blocks = context;
     const Job *const job = blocks->job;
     size_t place = blocks->places[block];
-    for (size_t i = (size_t)block * BLOCK; i < block_end(blocks, block); i++) {
+    for (size_t i = bp_block_begin(block); i < bp_block_end(block, job->p->count); i++) {
         double color[3];
         if (!job->shown[i]) continue;
         if (!blocks->one_color || place == 0) color_of(job, i, color);
@@ -471,7 +464,7 @@ static void fill_spheres(void *context, uint32_t block, unsigned worker) {
 
 static BpStatus put_particles(Job *job, BpError *err) {
     const BpParticles *const p = job->p;
-    const uint32_t block_count = (uint32_t)((p->count + BLOCK - 1) / BLOCK);
+    const uint32_t block_count = bp_block_count(p->count);
     size_t put = 0;
     const size_t first = job->scene->sphere_count;
     const bool one_color = job->color_by == BP_COLOR_CONSTANT && job->style->color_count == 0;
