@@ -8,6 +8,8 @@
 #include "base/team.h"
 #include "bonds.h"
 #include "elements.h"
+#include "molecules.h"
+#include "spacing.h"
 
 #include <stdarg.h>
 #include <stdlib.h>

@@ -1,0 +1,126 @@
+/* test_grid.c: neighbours found by the grid, beside all pairs; lattices that are oblique and repeat, or not.
+ *
+ * Knows: the lists of the grid, shares and ways.   Does not know: bonds, files. */
+#include "particles/grid.h"
+#include "support/unit_test.h"
+
+#include "base/random.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+enum { COUNT = 300 };
+
+/* The square of the shortest way among the images of b in the cells around. */
+static double shortest(const BpParticles *p, const double a[3], const double b[3]) {
+    double least = INFINITY;
+    const int reach = p->periodic ? 2 : 0;
+    for (int x = -reach; x <= reach; x++)
+        for (int y = -reach; y <= reach; y++)
+            for (int z = -reach; z <= reach; z++) {
+                double square = 0;
+                for (int c = 0; c < 3; c++) {
+                    const double d = b[c] - a[c] + x * p->cell[0][c] + y * p->cell[1][c] + z * p->cell[2][c];
+                    square += d * d;
+                }
+                least = fmin(least, square);
+            }
+    return least;
+}
+
+/* Every pair nearer than `reach`, by the grid as by all pairs; particles that are not shown are in no list.
+ */
+static void check_pairs(const BpParticles *p, const bool *shown, double reach) {
+    static bool near[COUNT][COUNT];
+    BpParticleGrid grid;
+    BpError err;
+    size_t found = 0;
+    memset(near, 0, sizeof near);
+    assert_int_equal(bp_particle_grid_init(&grid, p, shown, reach, &err), BP_OK);
+    for (uint32_t i = 0; i < COUNT; i++) {
+        size_t cells[27];
+        const size_t count = bp_particle_grid_around(&grid, p->position[i], cells);
+        assert_in_range(count, 1, 27);
+        bool own = false;
+        for (size_t c = 0; c < count; c++) {
+            own |= cells[c] == bp_particle_grid_cell(&grid, p->position[i]);
+            uint32_t before = 0;
+            for (uint32_t k = grid.first[cells[c]]; k != BP_NO_PARTICLE; k = grid.next[k]) {
+                double d[3];
+                assert_true(shown[k] && k >= before);
+                before = k + 1;
+                bp_lattice_way(&grid.lattice, p->position[i], p->position[k], d);
+                const double square = d[0] * d[0] + d[1] * d[1] + d[2] * d[2];
+                assert_false(near[i][k]);
+                near[i][k] = square < reach * reach;
+                found += near[i][k];
+            }
+        }
+        assert_true(own);
+    }
+    for (uint32_t i = 0; i < COUNT; i++)
+        for (uint32_t k = 0; k < COUNT; k++)
+            assert_int_equal(near[i][k],
+                             shown[k] && shortest(p, p->position[i], p->position[k]) < reach * reach);
+    assert_true(found > COUNT); /* not each with itself alone */
+    bp_particle_grid_clear(&grid);
+}
+
+static void pairs_are_found(void **state) {
+    (void)state;
+    static const double cells[][3][3] = {{{10, 0, 0}, {0, 8, 0}, {0, 0, 9}},
+                                         {{10, 0, 0}, {3, 8, 0}, {-2, 1, 9}},
+                                         {{9, 1, -1}, {-1, 10, 2}, {2, 0, 30}}};
+    static double position[COUNT][3];
+    static bool shown[COUNT];
+    BpRandom random = {5};
+    for (size_t cell = 0; cell < sizeof cells / sizeof *cells; cell++)
+        for (int periodic = 0; periodic < 2; periodic++) {
+            BpParticles p = {
+                .count = COUNT, .position = position, .has_cell = true, .periodic = periodic != 0};
+            memcpy(p.cell, cells[cell], sizeof p.cell);
+            for (int c = 0; c < 3; c++) p.cell_origin[c] = 5 * bp_random_next(&random) - 20;
+            for (size_t i = 0; i < COUNT; i++) {
+                shown[i] = bp_random_next(&random) < 0.9;
+                memcpy(position[i], p.cell_origin, sizeof position[i]);
+                for (int e = 0; e < 3; e++) {
+                    const double share = 1.2 * bp_random_next(&random) - 0.1; /* some outside of the cell */
+                    for (int c = 0; c < 3; c++) position[i][c] += share * p.cell[e][c];
+                }
+            }
+            check_pairs(&p, shown, 1.1);
+            check_pairs(&p, shown, 2.9);
+        }
+}
+
+static void bounds_are_of_those_shown(void **state) {
+    (void)state;
+    enum { MANY = 3 * 16384 + 5 };
+    BpParticles p = {.count = MANY, .position = calloc(MANY, sizeof *p.position)};
+    bool *shown = calloc(MANY, sizeof *shown);
+    BpParticleBounds bounds;
+    BpError err;
+    BpRandom random = {9};
+    assert_true(p.position != NULL && shown != NULL);
+    assert_int_equal(bp_particle_bounds(&p, shown, &bounds, &err), BP_OK);
+    assert_int_equal(bounds.count, 0);
+    for (size_t i = 0; i < MANY; i++) {
+        shown[i] = i % 3 != 0;
+        for (int c = 0; c < 3; c++) p.position[i][c] = bp_random_next(&random);
+    }
+    p.position[MANY - 1][0] = -7; /* the last one, in a block of its own */
+    p.position[16384][1] = 8;     /* the first of a block */
+    p.position[3][2] = 100;       /* not shown */
+    assert_true(shown[MANY - 1] && shown[16384] && !shown[3]);
+    assert_int_equal(bp_particle_bounds(&p, shown, &bounds, &err), BP_OK);
+    assert_int_equal(bounds.count, MANY - (MANY + 2) / 3);
+    assert_true(bounds.low[0] == -7 && bounds.high[1] == 8 && bounds.high[2] < 1);
+    free(p.position);
+    free(shown);
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {cmocka_unit_test(pairs_are_found),
+                                       cmocka_unit_test(bounds_are_of_those_shown)};
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
