@@ -244,9 +244,10 @@ typedef struct PackedVariation {
  * `disc_count`, `lamp_nodes` and `lamp_slots`; `what` is how a message calls it. Arrays of the first two
  * lists are pack.c's, of the third the tree of lamps', of the last the tree's.
  *
- * Arrays of slots and of the tree grow with the spheres. Where one is larger than a buffer of the device may
- * be, all of them come in SCENE_PARTS parts of PART_LENGTH elements each, the last ones perhaps empty
- * (bvh/parts.cl). PART_LENGTH is a multiple of PART_UNIT, so that no node and no leaf lies in two parts.
+ * Arrays of slots, of lamps and of the tree grow with the spheres. Where one is larger than a buffer of the
+ * device may be, all of them come in SCENE_PARTS parts of PART_LENGTH elements each, the last ones perhaps
+ * empty (bvh/parts.cl). PART_LENGTH is a multiple of PART_UNIT, so that no node and no leaf lies in two
+ * parts; a node of the tree of lamps may, but for the root, which is read from the first part alone.
  *
  * Materials are arrays of numbers here,
  * since Mesa's rusticl (22.3) gathers wrong ones through a pointer to structs that is cast inside a loop. */
@@ -303,6 +304,7 @@ enum { PATTERN_CHECKER, PATTERN_PERLIN, PATTERN_TURBULENCE, PATTERN_MARBLE, PATT
 
 #ifdef BP_HOST
 _Static_assert(sizeof(real) == 8, "the host packs in double");
+_Static_assert(PART_UNIT >= LAMP_NODE_REALS, "the root of the tree of lamps lies in the first part");
 _Static_assert(sizeof(PackedCamera) == 32 * sizeof(real), "PackedCamera has padding");
 _Static_assert(sizeof(PackedSky) == 48 * sizeof(real), "PackedSky has padding");
 _Static_assert(sizeof(PackedDisc) == 12 * sizeof(real), "PackedDisc has padding");

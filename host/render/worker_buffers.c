@@ -53,7 +53,7 @@ static void list_uploads(const BpWorker *worker, const BpPacked *packed, Upload 
 #define OF_SLOTS(numbers, element, name, count, what)                                                        \
     UPLOAD_OF(count, NUMBERS_##numbers(element), packed->name, what, true),
 #define OF_LAMPS(numbers, element, name, count, what)                                                        \
-    UPLOAD_OF(count, NUMBERS_##numbers(element), packed->lamps.name, what, false),
+    UPLOAD_OF(count, NUMBERS_##numbers(element), packed->lamps.name, what, true),
 #define OF_TREE(numbers, element, name, count, what)                                                         \
     UPLOAD_OF(count, NUMBERS_##numbers(element), tree->name, what, true),
     const Upload list[BP_SCENE_ARRAYS] = {SCENE_ARRAYS_OF_PACK(OF_PACK) SCENE_ARRAYS_OF_SLOTS(OF_SLOTS)

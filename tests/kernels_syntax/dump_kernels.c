@@ -3,7 +3,7 @@
  * In:    a folder.   Out: one .cl file a variant; its name ends in _fp64.cl where the program needs double.
  * Knows: program.h.  Does not know: any device; what checks the files (test_kernels_syntax.py).
  *
- * All combinations of all choices would be 256 * 1024 programs. Written are: with every effect, a covering
+ * All combinations of choices and effects are billions. Written are: with every effect, a covering
  * array of the other choices, so that any three of them come together in some program; and of the sets of
  * effects, with a list and with a tree, a covering array too, and every set that has or lacks one effect at
  * most. These have the other choices of one program of the first kind each, in turn. */
@@ -15,7 +15,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum { CHOICES = 13, COMBINATIONS = 1 << CHOICES, SETS = 2 << BP_EFFECT_COUNT };
+enum { CHOICES = 14, COMBINATIONS = 1 << CHOICES, SETS = 2 << BP_EFFECT_COUNT };
 
 static bool allow_any(uint32_t word) {
     (void)word;
@@ -36,6 +36,8 @@ static BpProgramOptions combination(uint32_t c) {
     options.tree = (c & 512u) != 0;
     options.packet_lanes = c & 1024u ? 16 : 8;
     options.own_rounding = (c & 2048u) != 0;
+    options.parts = c & 8192u ? 3 : 0;
+    options.part_length = 8192;
     return options;
 }
 
@@ -61,11 +63,12 @@ static BpStatus dump(const char *folder, const BpProgramOptions *options, BpErro
     char path[4096];
     FILE *file = NULL;
     BpStatus status = BP_OK;
-    snprintf(path, sizeof path, "%s/e%02x_t%d_w%u_l%u_p%d_m%d_n%d_s%d_k%d_r%d_x%d_o%d%s.cl", folder,
+    snprintf(path, sizeof path, "%s/e%02x_t%d_w%u_l%u_p%d_m%d_n%d_s%d_k%d_r%d_x%d_o%d_a%u%s.cl", folder,
              (unsigned)options->effects, (int)options->tree, (unsigned)options->tree_width,
              (unsigned)options->packet_lanes, (int)options->precision, (int)options->math,
              (int)options->numerics, (int)options->sampler, (int)options->form, (int)options->double_refine,
-             (int)options->pixel_list, (int)options->own_rounding, needs_double ? "_fp64" : "");
+             (int)options->pixel_list, (int)options->own_rounding, (unsigned)options->parts,
+             needs_double ? "_fp64" : "");
     BP_TRY_GOTO(status,
                 bp_program_source(options, "entry/aovs.cl", bp_kernel_file("entry/aovs.cl"), &source, err),
                 done);

@@ -344,6 +344,9 @@ MUTANTS = [
     Mutant("every part is the first", "an array in parts: uploads that forget where they are",
            [patch("host/render/worker_buffers.c", "+ first * upload->size : NULL", "+ 0 * first : NULL")],
            [Script("tests/drivers/test_parts.py", ("packet",), "1 exact")]),
+    Mutant("the second part is the last", "an array in parts: elements beyond the second part",
+           [patch("kernels/bvh/parts.cl", "((array)[(index) / PART_LENGTH]", "((array)[min((index) / PART_LENGTH, 1u)]")],
+           [Script("tests/drivers/test_parts.py", ("packet",), "1 exact")]),
     # ---- paths and sums ------------------------------------------------------------------------------------
     Mutant("depth off by one, longer", "first: depth < 50 from 0",
            [patch(KERNEL, "vbool_of_uint(path.depth >= splat_uint(max_depth))",
