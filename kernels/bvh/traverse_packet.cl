@@ -275,10 +275,11 @@ static void intersect_leaf(const Geometry *geometry, const Ray *ray, vbool activ
 #if SAMPLES_LAMPS
         wanted = wanted & vbool_of_uint(hit->slot != slot);
 #endif
+        vbool candidate = sphere_is_candidate(ray, hit->bound, &sphere);
 #if !OWN_SPHERE_IS_MET
-        wanted = wanted & vbool_of_uint(ray->own_slot != slot);
+        candidate = candidate & vbool_of_uint(ray->own_slot != slot);
 #endif
-        const vbool candidate = sphere_is_candidate(ray, hit->bound, &sphere) & wanted;
+        candidate = candidate & wanted;
         if (any_lane(candidate)) intersect_sphere(geometry, ray, candidate, &sphere, slot, hit);
     }
 }

@@ -1,7 +1,7 @@
 /* test_tree_shape.c: what every tree must be, over many scenes, widths and both precisions.
  *
- * The size at which threads have grids of their own takes long, so that case runs only where it is asked for by name
- * (support/one_case.c). */
+ * The size at which threads have grids of their own takes long, so that case runs only where it is asked for
+ * by name (support/one_case.c). */
 #define BP_HOST
 #include "base/status.h"
 #include "packed/reals.h"
@@ -172,15 +172,9 @@ static void large_and_degenerate(void **state) {
         int shape;
         size_t count;
         uint32_t width;
-    } cases[] = {{SHAPE_SAME, 100000, 8},
-                 {SHAPE_SAME, 100000, 2},
-                 {SHAPE_POWERS, 100000, 2},
-                 {SHAPE_POWERS, 100000, 8},
-                 {SHAPE_CLUSTERS, 200000, 4},
-                 {SHAPE_GRID, 200000, 8},
-                 {SHAPE_FIELD, 400000, 8},
-                 {SHAPE_WILD, 300000, 8},
-                 {SHAPE_LINE, 300000, 2}};
+    } cases[] = {{SHAPE_SAME, 100000, 8},   {SHAPE_SAME, 100000, 2},     {SHAPE_POWERS, 100000, 2},
+                 {SHAPE_POWERS, 100000, 8}, {SHAPE_CLUSTERS, 200000, 4}, {SHAPE_GRID, 200000, 8},
+                 {SHAPE_FIELD, 400000, 8},  {SHAPE_WILD, 300000, 8},     {SHAPE_LINE, 300000, 2}};
     for (size_t i = 0; i < sizeof cases / sizeof cases[0]; ++i)
         check_shape(cases[i].shape, cases[i].count, cases[i].width);
 }
