@@ -96,18 +96,19 @@ class Bench:
         return shlex.split(listed.splitlines()[-1].split(" && ")[1])
 
     def relink(self, target, objects):
-        """The program `target` with objects put before the library; returns its path."""
+        """The program `target` with objects replaced: those of the library by others before it. Returns its path."""
         words = self.link_command(target)
         made = os.path.join(self.scratch, os.path.basename(target))
         words[words.index("-o") + 1] = made
+        words = [word for word in words if word not in objects]
         library = next(i for i, w in enumerate(words) if w.endswith("libballpark.a"))
-        words[library:library] = objects
+        words[library:library] = objects.values()
         subprocess.run(words, cwd=self.build, check=True, capture_output=True, text=True, errors="replace")
         return made
 
     def make(self, mutant):
-        """Writes the mutant. Returns (environment, objects): where the kernels are, what to link first."""
-        environment, objects = dict(self.environment), []
+        """Writes the mutant. Returns (environment, objects): where the kernels are, {object of the product: what replaces it}."""
+        environment, objects = dict(self.environment), {}
         texts = self.patched_texts(mutant)
         if any(path.startswith("kernels/") for path in texts):
             folder = os.path.join(self.scratch, "kernels")
@@ -124,8 +125,9 @@ class Bench:
             copy = os.path.join(self.scratch, os.path.basename(path))
             with open(copy, "w", encoding="utf-8") as file:
                 file.write(text)
-            made = copy + ".o"
-            words[words.index("-o") + 1] = made
+            made, place = copy + ".o", words.index("-o") + 1
+            objects[words[place]] = made
+            words[place] = made
             words = [copy if os.path.realpath(w) == os.path.join(self.source, path) else w for w in words]
             words.append("-iquote" + os.path.join(self.source, os.path.dirname(path)))
             # Headers named relative to the file: "../base/status.h".
@@ -134,7 +136,6 @@ class Bench:
                 if not os.path.lexists(link):
                     os.symlink(os.path.join(self.source, "host", sibling), link)
             subprocess.run(words, cwd=entry["directory"], check=True, capture_output=True, text=True, errors="replace")
-            objects.append(made)
         return environment, objects
 
     def run_check(self, trial, environment, program):
