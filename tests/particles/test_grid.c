@@ -23,7 +23,7 @@ static double shortest(const BpParticles *p, const double a[3], const double b[3
                     const double d = b[c] - a[c] + x * p->cell[0][c] + y * p->cell[1][c] + z * p->cell[2][c];
                     square += d * d;
                 }
-                least = fmin(least, square);
+                if (square < least) least = square; /* GCC 12 for ARM cannot compile fmin() here */
             }
     return least;
 }
