@@ -73,7 +73,10 @@ static char *camera_text(const BpScene *scene) {
     FILE *out = open_memstream(&text, &length);
     if (out == NULL) return NULL;
     bp_scene_print_camera(&scene->camera, out);
-    if (fclose(out) != 0) return NULL;
+    if (fclose(out) != 0) {
+        free(text);
+        return NULL;
+    }
     const char *object = text != NULL ? strchr(text, '{') : NULL;
     if (object == NULL) return text;
     char *to = text; /* text begins with a name before the brace, which is at least as long */

@@ -99,11 +99,15 @@ bool bp_pocl_cache_fails(char text[512]) {
     return true;
 }
 
+static bool is_before_3_1(const char *driver) {
+    unsigned major, minor;
+    return sscanf(driver, "%u.%u", &major, &minor) == 2 && !(major > 3 || (major == 3 && minor > 0));
+}
+
 /* A device is called "pthread-PROCESSOR-MODEL", PROCESSOR being the compiler's name for it; where the
  * compiler has none, that part is missing. */
 bool bp_pocl_is_too_old(const char *driver, const char *name, const char *model) {
-    unsigned major, minor;
-    if (sscanf(driver, "%u.%u", &major, &minor) != 2 || major > 3 || (major == 3 && minor > 0)) return false;
+    if (!is_before_3_1(driver)) return false;
     const char *dash = strchr(name, '-');
     const size_t length = strlen(model);
     return dash != NULL && length > 0 && strncmp(dash + 1, model, length) == 0;
@@ -115,7 +119,8 @@ bool bp_pocl_fails_here(const BpDeviceInfo *info) {
 #if defined __x86_64__
     has_avx = __builtin_cpu_supports("avx");
 #endif
-    if (!has_avx || strcmp(info->platform, BP_POCL_PLATFORM) != 0) return false;
+    if (!has_avx || strcmp(info->platform, BP_POCL_PLATFORM) != 0 || !is_before_3_1(info->driver))
+        return false;
     FILE *file = fopen("/proc/cpuinfo", "r");
     while (file != NULL && model[0] == '\0' && fgets(line, sizeof line, file) != NULL)
         if (sscanf(line, "model name : %255[^\n]", model) != 1) model[0] = '\0';

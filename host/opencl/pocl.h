@@ -23,8 +23,8 @@ BpStatus bp_pocl_try_kernel(const BpDeviceInfo *info, BpError *err);
 
 /* Whether PoCL has no working compiler for this processor. Before 3.1 it lets its compiler name the
  * processor, and where that is older than the processor, kernels may use fewer instructions than PoCL's own
- * functions: the compiler ends the process or takes all memory. `model`:
- * what /proc/cpuinfo calls the processor. */
+ * functions: the compiler ends the process or takes all memory. `model`: what /proc/cpuinfo calls the
+ * processor. */
 bool bp_pocl_is_too_old(const char *driver, const char *name, const char *model);
 /* The same for a device on this machine. */
 bool bp_pocl_fails_here(const BpDeviceInfo *info);

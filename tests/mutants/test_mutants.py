@@ -30,14 +30,12 @@ import time
 
 from mutants import MUTANTS, Check, Script
 
-TUNABLES = "glibc.malloc.hugetlb=1:glibc.malloc.top_pad=33554432:glibc.malloc.trim_threshold=536870912"  # tests/CMakeLists.txt
 SURVIVED, KILLED, ERROR = "SURVIVED", "killed", "ERROR"
 
 
 def environment_of(cache):
     """Names the folder of a kernel cache to drivers, and asks for kernels that are compiled soon."""
-    return {"POCL_CACHE_DIR": cache, "MESA_SHADER_CACHE_DIR": cache, "POCL_EXTRA_BUILD_FLAGS": "-cl-opt-disable",
-            "GLIBC_TUNABLES": TUNABLES}
+    return {"POCL_CACHE_DIR": cache, "MESA_SHADER_CACHE_DIR": cache, "POCL_EXTRA_BUILD_FLAGS": "-cl-opt-disable"}
 
 
 def copy_cache(source, target):
