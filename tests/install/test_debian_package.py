@@ -52,6 +52,11 @@ with tempfile.TemporaryDirectory() as name:
         skip(re.search(r"Unmet build dependencies.*", done.stdout).group(0))
     assert done.returncode == 0, "dpkg-buildpackage failed"
 
+    # The packages were built without tests, so none is found; that they would be run is shown.
+    environment["DEB_BUILD_OPTIONS"] = ""
+    done = run("debian/rules", "override_dh_auto_test", cwd=tree, env=environment)
+    assert done.returncode == 0 and "No tests were found" in done.stdout, "debian/rules cannot run the tests"
+
     contents = {}
     for package in folder.glob("*.deb"):
         rows = subprocess.run(["dpkg-deb", "-c", package], capture_output=True, text=True, check=True).stdout
