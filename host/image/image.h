@@ -36,7 +36,7 @@ typedef struct BpImageExtra {
 /* bp_transfer_byte for 16 bits: encoded, clamped to [0, 1], times 65535, rounded. */
 uint16_t bp_transfer_word(double linear, BpTransfer transfer);
 
-/* Multiplies the radiance by 2 to the power of `stops`, and nothing else. */
+/* Multiplies the radiance by 2 to the power of `stops`, and nothing else; NaN stays NaN. */
 void bp_picture_expose(BpPicture *picture, double stops);
 
 /* bp_picture_write_stream with more than pixels. */

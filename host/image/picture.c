@@ -111,8 +111,10 @@ void bp_picture_bytes(const BpPicture *picture, BpTransfer transfer, uint8_t *rg
 void bp_picture_expose(BpPicture *picture, double stops) {
     const double factor = exp2(stops);
     const size_t count = (size_t)picture->width * picture->height * 3;
-    for (size_t i = 0; i < count && factor != 1; i++)
-        picture->rgb[i] = (float)fmin(factor * (double)picture->rgb[i], (double)FLT_MAX);
+    for (size_t i = 0; i < count && factor != 1; i++) {
+        const double exposed = factor * (double)picture->rgb[i];
+        picture->rgb[i] = exposed > (double)FLT_MAX ? FLT_MAX : (float)exposed;
+    }
 }
 
 void bp_picture_clear(BpPicture *picture) {

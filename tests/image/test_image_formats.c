@@ -5,6 +5,7 @@
 
 #include "image/image.h"
 
+#include <float.h>
 #include <math.h>
 #include <openexr.h>
 #include <png.h>
@@ -378,6 +379,23 @@ static void what_the_exr_library_refuses_is_an_error(void **state) {
     alarm(0);
 }
 
+/* Twice the light for each stop; what is no number stays none, and what is too large is as large as can be.
+ */
+static void exposure(void **state) {
+    (void)state;
+    static const float before[6] = {NAN, INFINITY, 3e38f, 0.25f, 0, 1e-30f};
+    for (int stops = -1; stops <= 1; stops++) {
+        BpPicture picture = make_picture(2, 1);
+        memcpy(picture.rgb, before, sizeof before);
+        bp_picture_expose(&picture, stops);
+        assert_true(isnan(picture.rgb[0]));
+        assert_true(picture.rgb[1] > 3.4e38f);
+        assert_true(stops == 1 ? picture.rgb[2] == FLT_MAX : picture.rgb[2] == 3e38f * exp2f((float)stops));
+        for (int i = 3; i < 6; i++) assert_true(picture.rgb[i] == before[i] * exp2f((float)stops));
+        bp_picture_clear(&picture);
+    }
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(names_and_endings),
@@ -388,6 +406,7 @@ int main(void) {
         cmocka_unit_test(exr_reads_back_bit_for_bit),
         cmocka_unit_test(exr_of_any_noise_reads_back),
         cmocka_unit_test(exr_is_compressed),
+        cmocka_unit_test(exposure),
         cmocka_unit_test(a_full_disk_is_an_error),
         cmocka_unit_test(a_failed_write_keeps_the_old_picture),
         cmocka_unit_test(what_is_no_picture_is_refused),
