@@ -124,19 +124,25 @@ static bool has_depth(const BpPicture *picture) {
     return false;
 }
 
-/* The median of the known relative errors; NaN if none is known. `of_spheres`: only over pixels that show
- * some sphere, since the sky has no noise and would hide that of the spheres. */
-static BpStatus median_error(const BpPicture *picture, bool of_spheres, double *median, BpError *err) {
+/* The median of the known relative errors; NaN if none is known. It is over pixels that show
+ * some sphere, since the sky has no noise and would hide that of the spheres. A picture without depth does
+ * not tell what sky is; there the pixels that have no noise are left out, if others have some. `of_what` says
+ * which pixels the median is of. */
+static BpStatus median_error(const BpPicture *picture, double *median, const char **of_what, BpError *err) {
+    const bool of_spheres = has_depth(picture);
     const size_t pixels = (size_t)picture->width * picture->height;
     double *errors = malloc(pixels * sizeof *errors);
     if (errors == NULL) return bp_fail(err, BP_ERR_MEMORY, "out of memory for the error map");
-    size_t count = 0;
+    size_t known = 0, count = 0;
     for (size_t i = 0; i < pixels; i++) {
         const double error = bp_pixel_relative_error(picture, i);
-        if (!isnan(error) && (!of_spheres || isfinite(picture->depth[i]))) errors[count++] = error;
+        if (isnan(error) || (of_spheres && !isfinite(picture->depth[i]))) continue;
+        known++;
+        if (of_spheres || error > 0) errors[count++] = error;
     }
     bp_sort_doubles(errors, count);
-    *median = count == 0 ? (double)NAN : errors[count / 2];
+    *median = known == 0 ? (double)NAN : count == 0 ? 0 : errors[count / 2];
+    *of_what = of_spheres ? " on spheres" : count > 0 && count < known ? " where noisy" : "";
     free(errors);
     return BP_OK;
 }
@@ -189,14 +195,14 @@ BpStatus bp_error_map_draw(const BpPicture *picture, BpCanvas *canvas, BpError *
     if (picture->width == 0 || picture->height == 0 || picture->rgb == NULL || picture->error == NULL)
         return bp_fail(err, BP_ERR_USAGE, "the picture has no standard errors to make an error map from");
     double median = 0;
-    const bool of_spheres = has_depth(picture);
-    BP_TRY(median_error(picture, of_spheres, &median, err));
+    const char *of_what = "";
+    BP_TRY(median_error(picture, &median, &of_what, err));
     const MapPlan plan = plan_canvas(picture, canvas);
     canvas->rgb = malloc((size_t)canvas->width * canvas->height * 3);
     if (canvas->rgb == NULL) return bp_fail(err, BP_ERR_MEMORY, "out of memory for the error map");
     bp_canvas_fill(canvas, 0, 0, canvas->width, canvas->height, paper);
     draw_pixels(picture, &plan, canvas);
-    draw_legend(&plan, of_spheres ? " on spheres" : "", median, canvas);
+    draw_legend(&plan, of_what, median, canvas);
     return BP_OK;
 }
 

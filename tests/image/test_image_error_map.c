@@ -157,6 +157,30 @@ static void the_median_is_of_spheres(void **state) {
     bp_picture_clear(&even);
 }
 
+/* Without a depth, pixels without noise do not lower the median: one or most of them, it is the same. */
+static void the_median_is_where_noise_is(void **state) {
+    (void)state;
+    BpPicture one = make_picture(320, 10), most = make_picture(320, 10);
+    BpCanvas canvas, expected;
+    for (size_t i = 0; i < 3 * 3200; i++) {
+        one.error[i] = i < 3 ? 0 : 0.05f;
+        most.error[i] = i % 960 >= 300 ? 0 : 0.05f;
+    }
+    assert_int_equal(bp_error_map_draw(&one, &expected, NULL), BP_OK);
+    assert_int_equal(bp_error_map_draw(&most, &canvas, NULL), BP_OK);
+    const size_t end = (size_t)3 * canvas.width * canvas.height, line = (size_t)3 * canvas.width * 14;
+    assert_memory_equal(canvas.rgb + end - line, expected.rgb + end - line, line);
+    free(canvas.rgb);
+    /* Where no pixel has any, that is what it says. */
+    memset(most.error, 0, 3 * 3200 * sizeof *most.error);
+    assert_int_equal(bp_error_map_draw(&most, &canvas, NULL), BP_OK);
+    assert_memory_not_equal(canvas.rgb + end - line, expected.rgb + end - line, line);
+    free(canvas.rgb);
+    free(expected.rgb);
+    bp_picture_clear(&one);
+    bp_picture_clear(&most);
+}
+
 static void every_letter_has_its_own_shape(void **state) {
     (void)state;
     static const char letters[] = "0123456789.%<>abcdefghijklmnopqrstuvwxyz";
@@ -216,6 +240,7 @@ int main(void) {
         cmocka_unit_test(pixels_stand_in_their_place),
         cmocka_unit_test(the_legend_shows_the_scale),
         cmocka_unit_test(the_median_is_of_spheres),
+        cmocka_unit_test(the_median_is_where_noise_is),
         cmocka_unit_test(every_letter_has_its_own_shape),
         cmocka_unit_test(drawing_stays_on_the_canvas),
         cmocka_unit_test(files),
