@@ -92,15 +92,15 @@ static char *camera_text(const BpScene *scene) {
 }
 
 /* With every option that decides how the picture looks. The camera has those of --width, --fit and
- * --projection. */
-static void print_command(const BpCommandLine *line, const BpScene *scene, double exposure) {
+ * --projection. False when there are too many for one command line. */
+static bool make_command(const BpCommandLine *line, char *camera, double exposure,
+                         char command[BP_COMMAND_TEXT_SIZE]) {
     static const BpOption others[] = {BP_OPTION_ERROR,      BP_OPTION_WIDTH, BP_OPTION_FIT,
                                       BP_OPTION_PROJECTION, BP_OPTION_QUIET, BP_OPTION_WIDE};
-    char command[BP_COMMAND_TEXT_SIZE], unnamed[] = "SCENE", *operand = line->operands[0];
+    char unnamed[] = "SCENE", *operand = line->operands[0];
     BpCommandLine again = *line;
-    char *camera = camera_text(scene);
-    if (camera == NULL || again.set.count == BP_TEXTS_MAX) goto done;
-    if (bp_command_find("render", &again.command, NULL) != BP_OK) goto done;
+    if (again.set.count == BP_TEXTS_MAX || bp_command_find("render", &again.command, NULL) != BP_OK)
+        return false;
     for (size_t i = 0; i < sizeof others / sizeof others[0]; ++i) again.given[others[i]] = false;
     if (strcmp(operand, "-") == 0) operand = unnamed;
     again.operands = &operand;
@@ -108,22 +108,27 @@ static void print_command(const BpCommandLine *line, const BpScene *scene, doubl
     again.set.list[again.set.count++] = camera; /* the last one counts */
     again.given[BP_OPTION_EXPOSURE] = exposure != 0;
     again.exposure = exposure;
-    puts(bp_command_text(&again, NULL, 0, command, sizeof command));
-    fflush(stdout);
-done:
-    free(camera);
+    return bp_command_text(&again, NULL, 0, command, BP_COMMAND_TEXT_SIZE)[0] != '\0';
 }
 
 static BpStatus save(void *context, const BpScene *scene, const BpPicture *picture, double exposure,
                      BpError *err) {
     Saving *saving = context;
-    char name[1024];
+    char name[1024], command[BP_COMMAND_TEXT_SIZE];
     BpCommandLine careful = *saving->line;
     careful.no_clobber = true;
     BP_TRY(choose_name(saving, name, sizeof name, err));
     BP_TRY(bp_line_write_picture(&careful, name, picture, BP_FORMAT_PNG, saving->transfer, NULL, err));
-    bp_say(saving->line, "saved %s; this command renders it with less noise:", name);
-    print_command(saving->line, scene, exposure);
+    char *camera = camera_text(scene);
+    if (camera == NULL) return bp_fail(err, BP_ERR_MEMORY, "out of memory for the camera's text");
+    const bool fits = make_command(saving->line, camera, exposure, command);
+    bp_say(saving->line,
+           fits ? "saved %s; this command renders it with less noise:"
+                : "saved %s; the command that renders it with less noise would be too long; its camera:",
+           name);
+    puts(fits ? command : camera);
+    fflush(stdout);
+    free(camera);
     return BP_OK;
 }
 

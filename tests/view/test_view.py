@@ -116,6 +116,12 @@ class Scripted(ProgramTest):
         means = [sum(sum(row) for row in rows) for *_, rows, _ in (saved, again)]
         self.assertAlmostEqual(means[1] / means[0], 1, delta=0.05)
 
+    def test_a_command_that_is_too_long(self):
+        """Where --set is there as often as it can be, the camera is printed for itself."""
+        many = ("--set", "background=[0.1,0.3,0.2]") * 256
+        self.view("rest", "key s", "frames 0", "quit", options=("--error", "5%", *many))
+        self.assertRegex(self.result.stdout.decode(), r'^camera=\{.*\}\n$')
+
     def test_saving(self):
         self.write("s-view-1.png", "somebody's")
         self.view("rest", "drag 1 -10 3", "key ]", "click 0.5 0.5", "rest", "key s", "rest", "key s", "frames 0", "quit",
