@@ -315,8 +315,12 @@ static BpStatus conclude(Session *session, const json_t *against, BpError *err) 
                        counts.disagree, entries);
     if (counts.failed > 0 && entries == 1 && error->code != BP_OK) {
         const bool device = error->code == BP_ERR_DEVICE || error->code == BP_ERR_BUILD;
+        const BpDeviceInfo *at = &session->devices[0];
         const BpStatus status =
-            bp_fail(err, device ? BP_ERR_BROKEN_DEVICE : error->code, "%s", error->message);
+            error->code == BP_ERR_BROKEN_DEVICE /* which crashed or hung, and that is all that is said */
+                ? bp_fail(err, error->code, "%s (%s, driver %s) %s", at->name, at->platform, at->driver,
+                          error->message)
+                : bp_fail(err, device ? BP_ERR_BROKEN_DEVICE : error->code, "%s", error->message);
         if (error->file[0] != '\0') bp_error_at(err, error->file, error->line, error->column);
         bp_error_attach(err, error->attachment);
         return status;

@@ -122,8 +122,8 @@ class Drivers(cli.ProgramTest):
     def test_one_broken_device(self):
         self.install("fake")
         self.environment["FAKE_DEVICES"] = "crashing=Bad@2.5,old=Old"
-        self.fail_with(6, "check", "s.json", "--device", "Bad", says="crashed: ")
-        self.fail_with(6, "check", "s.json", "--device", "2.5", says="crashed: ")
+        self.fail_with(6, "check", "s.json", "--device", "Bad", says="Bad (Fake One, driver 2.5) crashed: ")
+        self.fail_with(6, "check", "s.json", "--device", "2.5", says="Bad (Fake One, driver 2.5) crashed: ")
         self.fail_with(6, "check", "s.json", "--device", "1", says="OpenCL 1.1")
         self.fail_with_output(6, "check", "--bits", "--device", "Bad", "--json", "b.json", says="a device failed")
         results = json.loads(self.read("b.json"))["results"]
