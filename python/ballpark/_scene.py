@@ -161,6 +161,9 @@ class Spheres:
         color = None
         if self.color is not None:
             color = _numbers(_colors(self.color, count, self.cmap, self.color_range), "color")
+        if (self.cmap or self.color_range is not None) and (self.color is None or np.shape(self.color) != (count,)):
+            raise lib.SceneError(f"{'cmap' if self.cmap else 'color_range'}: found without numbers to map; give `color` "
+                                 "as one number per sphere")
         keep += [positions, radius, color]
         return lib.BpSphereSet(count, _rows(positions, True), _rows(radius, radius.ndim == 1),
                                _rows(color, color is not None and color.ndim == 2),

@@ -141,6 +141,9 @@ def test_refused():
     refused(ValueError, ["color", "(60, 4)", "(60, 3)"], draw, color=np.ones((60, 4)))
     refused(ValueError, ["color", "red", "#rrggbb"], draw, color="red")
     refused(ValueError, ["cmap", "jet", "viridis"], draw, color=np.arange(60.0), cmap="jet")
+    for color in (None, "#ff0000", (0.1, 0.2, 0.3)):
+        refused(ValueError, ["cmap", "one number per sphere"], draw, color=color, cmap="viridis")
+        refused(ValueError, ["color_range", "one number per sphere"], draw, color=color, color_range=(0, 1))
     refused(ValueError, ["positions", "numbers"], draw, np.full((60, 3), "x"))
     refused(ValueError, ["material", '"gold"'], draw, material="golf", materials={"gold": {"type": "normals"}})
     refused(ValueError, ["up", '"w"'], draw, up="w")
