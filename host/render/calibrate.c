@@ -76,7 +76,7 @@ bool bp_calibration_known(const BpDeviceInfo *device, BpCalibration *calibration
     return known;
 }
 
-/* Seconds for a chunk of so many samples a pixel; infinite: the device cannot do that. By the wall clock,
+/* Seconds for a chunk of so many samples per pixel; infinite: the device cannot do that. By the wall clock,
  * since some devices have none of their own (Mesa's llvmpipe). */
 static double time_chunk(BpWorker *worker, uint32_t samples) {
     const BpChunk chunk = {.pixel_count = worker->pixels, .samples = samples};
