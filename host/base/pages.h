@@ -1,10 +1,11 @@
 /* pages.h: large pages for large arrays.
  *
- * In:    memory that malloc gave and that is about to be filled, or a size.   Out: that memory.
+ * In:    memory that malloc gave and that is about to be filled, or a size.   Out: memory.
  * Knows: the system's pages.   Does not know: what the memory is for. */
 #ifndef BP_BASE_PAGES_H
 #define BP_BASE_PAGES_H
 
+#include <stdbool.h>
 #include <stddef.h>
 
 /* Asks the system to back an array by pages of some megabytes, if it is large and the system has them on
@@ -12,7 +13,11 @@
  * stay. Returns `memory`, which may be NULL. */
 void *bp_large_pages(void *memory, size_t bytes);
 
-/* As calloc(), with such pages. */
-void *bp_large_zeroed(size_t count, size_t size);
+/* Memory for `count` things of `size` bytes, not zeroed, on pages of its own, which are large where it is.
+ * Devices that share the host's memory can use it where it lies. NULL: out of memory. Free with free(). */
+void *bp_own_pages(size_t count, size_t size);
+
+/* Whether memory begins a page, as that of bp_own_pages() does. */
+bool bp_begins_page(const void *memory);
 
 #endif

@@ -499,10 +499,12 @@ static void pack_slot_chunk(const Slots *slots, size_t first, size_t count) {
         materials[s] = used ? scene->spheres[spheres[s]].material : 0;
         albedos[s] = used ? scene->spheres[spheres[s]].albedo : BP_NO_ALBEDO;
     }
+    static const Scattered nothing;
     for (size_t s = 0; s < count; ++s) {
-        if (spheres[s] == NO_SPHERE) continue;
-        const Scattered *scattered = &slots->scattered[materials[s]];
-        const bool second = slots->second[materials[s]] != 0 && is_second(scene, &scene->spheres[spheres[s]]);
+        const bool used = spheres[s] != NO_SPHERE;
+        const Scattered *scattered = used ? &slots->scattered[materials[s]] : &nothing;
+        const bool second =
+            used && slots->second[materials[s]] != 0 && is_second(scene, &scene->spheres[spheres[s]]);
         packed->slot_material[first + s] = second ? slots->second[materials[s]] : materials[s];
         const float *own =
             scattered->replaced && albedos[s] != BP_NO_ALBEDO ? scene->albedos[albedos[s]] : NULL;
@@ -525,8 +527,8 @@ static BpStatus pack_slots(const BpScene *scene, const uint32_t *second, unsigne
                            BpError *err) {
     BpStatus status = BP_OK;
     const size_t count = (size_t)packed->tree.leaf_count * packed->tree.width;
-    packed->slot_material = bp_large_zeroed(count + 1, sizeof *packed->slot_material);
-    packed->slot_albedo = bp_large_zeroed(count + 1, ALBEDO_REALS * bp_packed_real_size(packed));
+    packed->slot_material = bp_own_pages(count + 1, sizeof *packed->slot_material);
+    packed->slot_albedo = bp_own_pages(count + 1, ALBEDO_REALS * bp_packed_real_size(packed));
     Scattered *scattered = malloc((scene->material_count + 1) * sizeof *scattered);
     BpTeam *team = bp_team_create(count < BP_BLOCK ? 1 : threads);
     if (packed->slot_material != NULL && packed->slot_albedo != NULL && scattered != NULL && team != NULL) {

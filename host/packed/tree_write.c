@@ -424,13 +424,13 @@ BpStatus bp_tree_allocate(BpTree *tree, uint32_t nodes, uint32_t leaves, BpError
     BP_TRY(bp_tree_check_size(tree->width, nodes, leaves, err));
     const size_t real_size = tree->single_precision ? sizeof(float) : sizeof(double);
     const size_t n = nodes > 0 ? nodes : 1, l = leaves > 0 ? leaves : 1, width = tree->width;
-    tree->node_boxes = bp_large_zeroed(n * NODE_REALS(width), real_size);
-    tree->children = bp_large_zeroed(n * width, sizeof *tree->children);
-    tree->leaves = bp_large_zeroed(l * LEAF_REALS(width), real_size);
-    tree->slot_sphere = bp_large_zeroed(l * width, sizeof *tree->slot_sphere);
+    tree->node_boxes = bp_own_pages(n * NODE_REALS(width), real_size);
+    tree->children = bp_own_pages(n * width, sizeof *tree->children);
+    tree->leaves = bp_own_pages(l * LEAF_REALS(width), real_size);
+    tree->slot_sphere = bp_own_pages(l * width, sizeof *tree->slot_sphere);
     if (tree->has_motions) {
         tree->motion_leaves = leaves;
-        tree->leaf_motions = bp_large_zeroed(l * MOTION_REALS(width), real_size);
+        tree->leaf_motions = bp_own_pages(l * MOTION_REALS(width), real_size);
     }
     if (tree->node_boxes != NULL && tree->children != NULL && tree->leaves != NULL &&
         tree->slot_sphere != NULL && (tree->leaf_motions != NULL || !tree->has_motions))

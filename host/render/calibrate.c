@@ -97,7 +97,6 @@ static BpWorker *open_arrangement(const BpScene *scene, BpDevice *device, BpCali
     setup.untested = untested;
     if (bp_worker_create(&device->info, &packed, &setup, &worker, NULL) == BP_OK)
         arrangement->local_size = (uint32_t)worker->local_size;
-    bp_packed_clear(&packed);
     return worker;
 }
 

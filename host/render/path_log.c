@@ -133,6 +133,7 @@ BpStatus bp_path_log(const BpScene *scene, const BpRenderOptions *options, const
     BP_TRY(bp_render_plan(scene, &wanted, &chosen, &setup, &packed, err));
     setup.extra_name = "entry/path_log.cl";
     setup.extra_text = bp_kernel_file("entry/path_log.cl");
+    const bool single_precision = packed.single_precision;
     BpStatus status = bp_worker_create(&chosen, &packed, &setup, &worker, err);
     if (status != BP_OK) goto cleanup;
     const uint32_t capacity = wanted.max_depth < 1           ? 1
@@ -149,7 +150,7 @@ BpStatus bp_path_log(const BpScene *scene, const BpRenderOptions *options, const
     double space[3];
     bp_camera_origin(scene, space);
     for (size_t i = 0; i < records.count; ++i)
-        read_step(scene, space, &records, packed.single_precision, i, &path->steps[i]);
+        read_step(scene, space, &records, single_precision, i, &path->steps[i]);
     path->count = records.count;
     path->cut = path->count == 0 || path->steps[path->count - 1].goes_on;
     path->device = chosen;
@@ -159,7 +160,6 @@ cleanup:
     free(records.numbers);
     free(records.spheres);
     bp_worker_destroy(&worker);
-    bp_packed_clear(&packed);
     return status;
 }
 

@@ -85,7 +85,7 @@ static BpStatus open_worker(BpRender *render, const BpDeviceInfo *device, BpDevi
         setup.extra_text = features;
     }
     if (status == BP_OK) status = bp_worker_create(device, &packed, &setup, &render->workers[index], err);
-    bp_packed_clear(&packed);
+    bp_packed_clear(&packed); /* unless the worker has taken it over */
     free(features);
     return status;
 }

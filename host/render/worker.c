@@ -114,10 +114,16 @@ static uint64_t chunk_samples_max(const BpDeviceInfo *info) {
     return units < 8 ? (units > 0 ? units : 1) << 19 : 1u << 22;
 }
 
-BpStatus bp_worker_create(const BpDeviceInfo *info, const BpPacked *packed, const BpWorkerSetup *setup,
+BpStatus bp_worker_create(const BpDeviceInfo *info, BpPacked *given, const BpWorkerSetup *setup,
                           BpWorker **worker, BpError *err) {
     BpWorker *made = calloc(1, sizeof *made);
-    if (made == NULL) return bp_fail(err, BP_ERR_MEMORY, "no memory for a device's bookkeeping");
+    if (made == NULL) {
+        bp_packed_clear(given);
+        return bp_fail(err, BP_ERR_MEMORY, "no memory for a device's bookkeeping");
+    }
+    BpPacked *const packed = &made->packed;
+    *packed = *given;
+    *given = (BpPacked){0};
     made->real_size = bp_packed_real_size(packed);
     made->width = setup->width;
     made->pixels = setup->width * setup->height;
@@ -153,7 +159,7 @@ BpStatus bp_worker_create(const BpDeviceInfo *info, const BpPacked *packed, cons
                 failed);
     BP_TRY_GOTO(status, bp_layout_check(made->device, made->program->program, packed->single_precision, err),
                 failed);
-    BP_TRY_GOTO(status, bp_worker_upload_scene(made, packed, err), failed);
+    BP_TRY_GOTO(status, bp_worker_upload_scene(made, err), failed);
     BP_TRY_GOTO(status, bp_worker_create_picture(made, err), failed);
     BP_TRY_GOTO(status, create_kernels(made, setup, err), failed);
 
@@ -192,6 +198,7 @@ void bp_worker_destroy(BpWorker **worker) {
         if (buffers[i] != NULL) clReleaseMemObject(buffers[i]);
     if (w->trace != NULL) clReleaseKernel(w->trace);
     if (w->fold != NULL) clReleaseKernel(w->fold);
+    bp_packed_clear(&w->packed);
     bp_program_destroy(&w->program);
     if (w->owns_device) bp_device_close(&w->device);
     free(w);

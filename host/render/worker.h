@@ -50,6 +50,7 @@ typedef struct BpWorker {
     bool owns_device;
     BpProgram *program;
     cl_kernel trace, fold;
+    BpPacked packed;                            /* where the device uses it in place; else empty */
     cl_mem scene_buffers[BP_SCENE_BUFFERS_MAX]; /* in the order of the lists in scene_types.h, part by part */
     size_t scene_buffer_count;
     uint32_t parts, part_length; /* of arrays that grow with the spheres; length 0: they are whole */
@@ -79,9 +80,9 @@ typedef struct BpWorker {
     uint64_t samples_done;
 } BpWorker;
 
-/* Opens `info`, builds the program, uploads `packed` (not needed afterwards). Refuses what does not fit the
- * device's memory, naming the limit. Free with bp_worker_destroy(). */
-BpStatus bp_worker_create(const BpDeviceInfo *info, const BpPacked *packed, const BpWorkerSetup *setup,
+/* Opens `info`, builds the program, uploads `packed`, which it takes over and leaves empty. Refuses what does
+ * not fit the device's memory, naming the limit. Free with bp_worker_destroy(). */
+BpStatus bp_worker_create(const BpDeviceInfo *info, BpPacked *packed, const BpWorkerSetup *setup,
                           BpWorker **worker, BpError *err);
 void bp_worker_destroy(BpWorker **worker);
 

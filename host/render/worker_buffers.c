@@ -1,12 +1,19 @@
 /* worker_buffers.c: see worker_buffers.h. */
 #include "worker_buffers.h"
 
+#include "base/pages.h"
+
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
+static bool uses_in_place(const BpDeviceInfo *info) {
+    return info->type == BP_DEVICE_CPU && info->has_shared_memory;
+}
+
 /* A buffer of `bytes` (at least one, since OpenCL knows no empty buffer), with `data` in it when there is
- * any. */
+ * any. Where that has pages of its own and the device shares the host's memory, the buffer is that array:
+ * nothing is copied, and large pages stay large, which makes looking something up in many of them faster. */
 static BpStatus create_buffer(BpWorker *worker, cl_mem *buffer, uint64_t bytes, const void *data,
                               const char *what, BpError *err) {
     const BpDeviceInfo *info = &worker->device->info;
@@ -17,7 +24,10 @@ static BpStatus create_buffer(BpWorker *worker, cl_mem *buffer, uint64_t bytes, 
                        what, (double)bytes / 1048576, info->name,
                        (double)info->largest_allocation_bytes / 1048576);
     cl_int code = CL_SUCCESS;
-    const cl_mem_flags flags = CL_MEM_READ_WRITE | (data != NULL && bytes > 0 ? CL_MEM_COPY_HOST_PTR : 0);
+    const cl_mem_flags flags = data == NULL || bytes == 0 ? CL_MEM_READ_WRITE
+                               : uses_in_place(info) && bp_begins_page(data)
+                                   ? CL_MEM_READ_ONLY | CL_MEM_USE_HOST_PTR
+                                   : CL_MEM_READ_ONLY | CL_MEM_COPY_HOST_PTR;
     *buffer = clCreateBuffer(worker->device->context, flags, bytes > 0 ? (size_t)bytes : 16,
                              bytes > 0 ? (void *)(uintptr_t)data : NULL, &code);
     CL_TRY(worker, code, "clCreateBuffer");
@@ -102,9 +112,9 @@ static BpStatus upload_parts(BpWorker *worker, const Upload *upload, BpError *er
     return BP_OK;
 }
 
-BpStatus bp_worker_upload_scene(BpWorker *worker, const BpPacked *packed, BpError *err) {
+BpStatus bp_worker_upload_scene(BpWorker *worker, BpError *err) {
     Upload uploads[BP_SCENE_ARRAYS];
-    list_uploads(worker, packed, uploads);
+    list_uploads(worker, &worker->packed, uploads);
     for (size_t i = 0; i < BP_SCENE_ARRAYS; ++i) {
         const Upload *upload = &uploads[i];
         if (upload->split && worker->part_length > 0)
@@ -114,6 +124,7 @@ BpStatus bp_worker_upload_scene(BpWorker *worker, const BpPacked *packed, BpErro
                                  upload->count * upload->size, upload->data, upload->what, err));
         worker->scene_bytes += upload->count * upload->size;
     }
+    if (!uses_in_place(&worker->device->info)) bp_packed_clear(&worker->packed);
     return BP_OK;
 }
 

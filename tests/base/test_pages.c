@@ -7,6 +7,7 @@
 #include <stddef.h>
 #include <stdint.h>
 #include <stdlib.h>
+#include <string.h>
 
 #include <cmocka.h>
 
@@ -36,7 +37,23 @@ static void nothing_is_nothing(void **state) {
     assert_int_equal(errno, ERANGE);
 }
 
+static void own_pages_begin_and_end_alone(void **state) {
+    (void)state;
+    const size_t sizes[] = {0, 1, 4096, 100001, 8 << 20, (9 << 20) + 1};
+    for (size_t s = 0; s < sizeof sizes / sizeof *sizes; ++s) {
+        unsigned char *const memory = bp_own_pages(sizes[s], 3);
+        assert_non_null(memory);
+        assert_true(bp_begins_page(memory));
+        assert_false(bp_begins_page(memory + 1));
+        memset(memory, 7, 3 * sizes[s]);
+        free(memory);
+    }
+    assert_null(bp_own_pages(SIZE_MAX / 2, 3));
+    assert_null(bp_own_pages(1, SIZE_MAX));
+}
+
 int main(void) {
-    const struct CMUnitTest tests[] = {cmocka_unit_test(contents_stay), cmocka_unit_test(nothing_is_nothing)};
+    const struct CMUnitTest tests[] = {cmocka_unit_test(contents_stay), cmocka_unit_test(nothing_is_nothing),
+                                       cmocka_unit_test(own_pages_begin_and_end_alone)};
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -29,6 +29,7 @@
 
 extern void *__libc_malloc(size_t size);
 extern void *__libc_calloc(size_t count, size_t size);
+extern void *__libc_memalign(size_t alignment, size_t size);
 extern void *__libc_realloc(void *old, size_t size);
 
 typedef struct Range {
@@ -144,6 +145,11 @@ void *malloc(size_t size) {
 void *calloc(size_t count, size_t size) {
     REFUSE_MEMORY();
     return __libc_calloc(count, size);
+}
+
+void *aligned_alloc(size_t alignment, size_t size) {
+    REFUSE_MEMORY();
+    return __libc_memalign(alignment, size);
 }
 
 void *realloc(void *old, size_t size) {

@@ -207,7 +207,6 @@ BpWorker *lab_scene(const Lab *lab, const BpScene *scene) {
     setup.untested = true;
     check(bp_worker_create(&lab->info, &packed, &setup, &worker, &err), &err);
     free(text);
-    bp_packed_clear(&packed);
     return worker;
 }
 

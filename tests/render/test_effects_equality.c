@@ -60,8 +60,8 @@ static BpStatus bind_chunk(BpWorker *worker, const Samples *samples, uint32_t pe
 }
 
 /* All samples of the picture in one launch, of the size that a render would choose. */
-static BpStatus launch(BpWorker *worker, const BpPacked *packed, BpKernelForm form, uint32_t per_pixel,
-                       Samples *samples, BpError *err) {
+static BpStatus launch(BpWorker *worker, BpKernelForm form, uint32_t per_pixel, Samples *samples,
+                       BpError *err) {
     cl_int code = CL_SUCCESS;
     const bool packet = form == BP_KERNEL_PACKET;
     worker->form = form;
@@ -69,7 +69,7 @@ static BpStatus launch(BpWorker *worker, const BpPacked *packed, BpKernelForm fo
     const size_t local = packet ? BP_LOCAL_SIZE_PACKET : BP_LOCAL_SIZE_SAMPLE;
     const size_t items = bp_worker_items(worker, samples->count);
     const size_t global = (items + local - 1) / local * local;
-    BP_TRY(bp_worker_upload_scene(worker, packed, err));
+    BP_TRY(bp_worker_upload_scene(worker, err));
     BP_TRY(bp_worker_reserve_samples(worker, samples->count, err));
     worker->trace = clCreateKernel(worker->program->program, "trace", &code);
     CL_TRY(worker, code, "clCreateKernel(trace)");
@@ -112,8 +112,10 @@ static BpStatus trace(const Lab *lab, const BpScene *scene, const BpRenderOption
     worker->seed_high = (uint32_t)(setup.seed >> 32);
     worker->first_leaves = packed.tree.first_leaves;
     worker->leaf_count = packed.tree.leaf_count;
+    worker->packed = packed;
+    packed = (BpPacked){0};
     worker->samples_limit = samples->count;
-    status = launch(worker, &packed, setup.program.form, (uint32_t)options->samples_per_pixel, samples, err);
+    status = launch(worker, setup.program.form, (uint32_t)options->samples_per_pixel, samples, err);
     worker->device = NULL; /* the lab's */
     worker->program = NULL;
     bp_worker_destroy(&worker);
