@@ -285,18 +285,18 @@ def _partial(render: Render) -> typing.Optional[Picture]:
 def _run(render: Render, report: typing.Optional[typing.Callable[[Progress], object]]) -> Picture:
     """Steps to the end; Ctrl-C hands over what there is."""
     while render.stopped is None:
-        with _CtrlC() as ctrl_c:
-            # A step ends soon, unless a driver compiles in it: then nothing is rendered yet, and it is left to its end.
-            if not render._start_step().wait(ctrl_c, INTERRUPT_SECONDS):
-                raise Interrupted(None)
-            if ctrl_c.pressed_at is not None:
-                raise Interrupted(_partial(render))
         try:
+            with _CtrlC() as ctrl_c:
+                # A step ends soon, unless a driver compiles in it: then nothing is rendered yet, and it is left to its end.
+                if not render._start_step().wait(ctrl_c, INTERRUPT_SECONDS):
+                    raise Interrupted(None)
+                if ctrl_c.pressed_at is not None:
+                    raise Interrupted(_partial(render))
             if report is not None and report(render.progress()) is False:
                 break
         except Interrupted:
-            raise  # of another render, in the report
-        except KeyboardInterrupt:
+            raise  # one of the two above, or of another render, in the report
+        except KeyboardInterrupt:  # between two steps, or in the report
             raise Interrupted(_partial(render)) from None
     return render.picture()
 
