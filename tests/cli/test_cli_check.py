@@ -128,6 +128,7 @@ class Suite(Check):
     def report_of(self, name, report):
         return next(scene for scene in report["scenes"] if scene["scene"] == name)
 
+    @cli.deep
     def test_a_wrong_kernel(self):
         """What disagrees and what is inconclusive fails; quiet shows these alone."""
         fault = self.broken_kernels()

@@ -25,6 +25,7 @@ class DimTest(ProgramTest):
         self.succeed("render", name, "-o", "x.pfm", "--stats", "stats.json", "-q", *options)
         return json.loads(self.read("stats.json"))
 
+    @deep
     def test_a_sky_keeps_its_radiance(self):
         for emitter in ({"type": "diffuse_light"}, {"type": "dielectric", "refraction_index": 1.5}):
             for seen in SEEN:

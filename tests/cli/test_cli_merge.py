@@ -81,6 +81,7 @@ class Merge(ProgramTest):
         self.fail_with(2, "render", "s.json", "--share", "1/2", "--error", "1", "-o", "y.bpa", says="--share and --error contradict")
         self.fail_with(2, "render", "s.json", "--share", "1/2", "--adaptive", "-o", "y.bpa", says="--share and --adaptive contradict")
 
+    @deep
     def test_many_files(self):
         """As many as there are, in any order, and in no more memory than a few need: names like those of a job array."""
         self.write("s.json", scene(320, 180, camera={"samples_per_pixel": 1, "max_depth": 1}))

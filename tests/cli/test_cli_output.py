@@ -7,7 +7,7 @@ import signal
 import subprocess
 import time
 
-from cli import LIMIT_SECONDS, PROGRAM, ProgramTest, main, scene
+from cli import LIMIT_SECONDS, PROGRAM, ProgramTest, deep, main, scene
 from terminal import Terminal
 
 
@@ -74,6 +74,7 @@ class Clobber(ProgramTest):
             (("generate", "field", "--count", "9", "-o", "i.ply"), ["i.ply"]),
         ]
 
+    @deep
     def test_every_command(self):
         os.mkdir(self.path("folder"))
         for command, files in self.commands():

@@ -8,7 +8,7 @@ import signal
 import subprocess
 import time
 
-from cli import LIMIT_SECONDS, PROGRAM, ProgramTest, main, scene
+from cli import LIMIT_SECONDS, PROGRAM, ProgramTest, deep, main, scene
 from png import read_png
 from terminal import Terminal
 
@@ -81,6 +81,7 @@ class Preview(ProgramTest):
         self.assertEqual(len(seen), 3, "the file was not rewritten")
         self.assertEqual(self.files(), ["a.ppm", "s.json"])
 
+    @deep
     def test_bits_stay_the_same(self):
         for options in ((), ("--adaptive",)):
             self.succeed("render", "s.json", "--spp", "256", *options, "-o", "a.pfm")

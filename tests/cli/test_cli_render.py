@@ -236,6 +236,7 @@ class StopRules(Render):
         self.assertIn("the picture is black", said)
         self.assertEqual(self.stats("--error", "1", name="dark.json")["stopped_by"], "black")
 
+    @deep
     def test_inside_a_sphere(self):
         for kind, is_said in ({"type": "lambertian", "albedo": [0.5, 0.5, 0.5]}, True), ({"type": "interface"}, False):
             self.write("in.json", scene(materials={"m": kind}, background=[1, 1, 1] if is_said else [0, 0, 0],
@@ -263,6 +264,7 @@ class StopRules(Render):
             file.write(text[:at] + broken + text[end:])
         return {"BALLPARK_KERNELS": self.path("kernels")}
 
+    @deep
     def test_hardly_any_sample_is_light(self):
         """No picture then, and none of those that were there is touched."""
         here = self.broken_sky("splat(NAN)")
@@ -289,6 +291,7 @@ class StopRules(Render):
         self.fail_with(1, "cost", "n.json", "--time", "0.1", "--json", "n.out", environment=here, says="samples are not finite")
         self.assertEqual(self.files(), ["kernels", "n.json", "s.json"])
 
+    @deep
     def test_a_pixel_that_is_never_light(self):
         """Samples that are no numbers are left out; where a pixel has no other, --error ends and says so."""
         here = self.broken_sky("choose(direction.x < splat(R(-0.5)), splat(NAN), light.x)")

@@ -179,6 +179,7 @@ class SmallDisk(Safety):
             self.end(process, "No space left")
         self.assertEqual(sorted(os.listdir(self.path("disk"))), ["a.bpa", "filler"])
 
+    @cli.deep
     def test_disk_that_becomes_read_only(self):
         process = self.begin()
         while subprocess.run(["mount", "-o", "remount,ro", self.path("disk")], check=False,
@@ -326,6 +327,7 @@ class OpenFiles(Safety):
 class OneOfSeveral(Safety):
     """A document that cannot be written takes no other result of minutes of work with it."""
 
+    @cli.deep
     def test_study(self):
         self.write("s.json", scene(4, 4))
         result = self.fail_with(1, "cost", "s.json", "--time", "0.1", "-o", "/dev/full", "--csv", "c.csv", "--json", "c.json",

@@ -3,7 +3,7 @@
 import json
 import os
 
-from cli import ProgramTest, main, scene
+from cli import ProgramTest, deep, main, scene
 
 GLASS = {"m": {"type": "dielectric", "refraction_index": 1.5}}
 
@@ -80,6 +80,7 @@ class Empty(ProgramTest):
                        {"lookat": [0, 9, -1], "aperture": 0.1, "focus_dist": 3}):
             self.assertIn(self.NOTHING, self.said(camera=camera), camera)
 
+    @deep
     def test_lamps_out_of_view(self):
         lamp = {"m": {"type": "diffuse_light", "emit": [1, 1, 1]}}
         self.assertIn(self.NOTHING, self.said(materials=lamp, camera={"lookat": [0, 9, -1]}))
@@ -101,6 +102,7 @@ class Empty(ProgramTest):
         ball = [{"center": [0, 0, -1000], "radius": 1e-6, "material": "m"}]
         self.assertIn(self.NOTHING, self.said(spheres=ball))
 
+    @deep
     def test_huge_ground_under_the_camera(self):
         """All planes along the edges of the view cut it, though the camera looks up; and fuzzy metal may end a path at once."""
         ground = [{"center": [0, -1001, 0], "radius": 1000, "material": "m"}]

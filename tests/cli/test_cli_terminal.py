@@ -8,7 +8,7 @@ import subprocess
 import time
 import unicodedata
 
-from cli import LIMIT_SECONDS, PROGRAM, ProgramTest, main, scene
+from cli import LIMIT_SECONDS, PROGRAM, ProgramTest, deep, main, scene
 from terminal import Terminal
 
 # What renders for as long as a test looks leaves the other cores to other tests.
@@ -44,6 +44,7 @@ class Bar(ProgramTest):
             for text in self.draw(columns=columns).drawings():
                 self.assertLess(sum(not unicodedata.combining(c) for c in text), columns, text)
 
+    @deep
     def test_every_narrow_width(self):
         """One render, whose terminal is resized: what is drawn never reaches the last column, where lines would wrap."""
         screen = Terminal(self, "render", "s.json", *FOREVER, columns=80)
