@@ -8,9 +8,8 @@
 #include <sys/mman.h>
 #include <unistd.h>
 
-#define LARGE ((size_t)8 << 20) /* bytes: a few large pages */
-#define LARGE_PAGE                                                                                           \
-    ((size_t)2 << 20) /* of most processors; with larger ones, the first and the last are shared */
+#define LARGE ((size_t)8 << 20)      /* bytes: a few large pages */
+#define LARGE_PAGE ((size_t)2 << 20) /* of most processors */
 
 static size_t page_bytes(void) {
     return (size_t)sysconf(_SC_PAGESIZE);
