@@ -1,6 +1,6 @@
-/* pages.h: large pages for large arrays.
+/* pages.h: large pages for large arrays, and arrays on pages of their own.
  *
- * In:    memory that malloc gave and that is about to be filled, or a size.   Out: memory.
+ * In:    memory from malloc() that is about to be filled, or a size.   Out: memory.
  * Knows: the system's pages.   Does not know: what the memory is for. */
 #ifndef BP_BASE_PAGES_H
 #define BP_BASE_PAGES_H
@@ -13,8 +13,8 @@
  * stay. Returns `memory`, which may be NULL. */
 void *bp_large_pages(void *memory, size_t bytes);
 
-/* Memory for `count` things of `size` bytes, not zeroed, on pages of its own, which are large where it is.
- * Devices that share the host's memory can use it where it lies. NULL: out of memory. Free with free(). */
+/* Memory for `count` elements of `size` bytes, not zeroed, on pages of its own: large ones, if it is large.
+ * Devices that share the host's memory can use it in place. NULL: out of memory. Free with free(). */
 void *bp_own_pages(size_t count, size_t size);
 
 /* Whether memory begins a page, as that of bp_own_pages() does. */

@@ -124,10 +124,10 @@ static bool has_depth(const BpPicture *picture) {
     return false;
 }
 
-/* The median of the known relative errors; NaN if none is known. It is over pixels that show
- * some sphere, since the sky has no noise and would hide that of the spheres. A picture without depth does
- * not tell what sky is; there the pixels that have no noise are left out, if others have some. `of_what` says
- * which pixels the median is of. */
+/* The median of the known relative errors; NaN if none is known. It is over pixels that show some sphere,
+ * since the sky has no noise and would hide that of the spheres. A picture without depth does not tell what
+ * is sky; there pixels without noise are left out, if others have some. `of_what`: which pixels it is over.
+ */
 static BpStatus median_error(const BpPicture *picture, double *median, const char **of_what, BpError *err) {
     const bool of_spheres = has_depth(picture);
     const size_t pixels = (size_t)picture->width * picture->height;

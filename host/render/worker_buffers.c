@@ -13,7 +13,7 @@ static bool uses_in_place(const BpDeviceInfo *info) {
 
 /* A buffer of `bytes` (at least one, since OpenCL knows no empty buffer), with `data` in it when there is
  * any. Where that has pages of its own and the device shares the host's memory, the buffer is that array:
- * nothing is copied, and large pages stay large, which makes looking something up in many of them faster. */
+ * nothing is copied, and large pages stay large. */
 static BpStatus create_buffer(BpWorker *worker, cl_mem *buffer, uint64_t bytes, const void *data,
                               const char *what, BpError *err) {
     const BpDeviceInfo *info = &worker->device->info;

@@ -21,7 +21,7 @@ void bp_worker_choose_parts(BpWorker *worker, const BpPacked *packed, BpProgramO
 
 /* All fail with BP_ERR_LIMIT, naming what is too large and the device's limit, or with the driver's error. */
 
-/* The arrays of worker->packed, which is then cleared unless the device uses a part of it where it lies. */
+/* The arrays of worker->packed, which is then cleared unless the device uses a part of it in place. */
 BpStatus bp_worker_upload_scene(BpWorker *worker, BpError *err);
 /* Sums, counts and tallies of every pixel, zeroed. After the scene: both together must fit. */
 BpStatus bp_worker_create_picture(BpWorker *worker, BpError *err);

@@ -379,8 +379,7 @@ static void what_the_exr_library_refuses_is_an_error(void **state) {
     alarm(0);
 }
 
-/* Twice the light for each stop; what is no number stays none, and what is too large is as large as can be.
- */
+/* Twice the light for each stop; NaN stays NaN, and what would be too large becomes the largest float. */
 static void exposure(void **state) {
     (void)state;
     static const float before[6] = {NAN, INFINITY, 3e38f, 0.25f, 0, 1e-30f};
