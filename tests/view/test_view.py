@@ -249,8 +249,10 @@ class Screen(ProgramTest):
     def setUp(self):
         super().setUp()
         reading, writing = os.pipe()
-        server = subprocess.Popen(["Xvfb", "-displayfd", str(writing), "-screen", "0", "800x600x24", "-nolisten", "tcp"],
-                                  pass_fds=[writing], stderr=subprocess.DEVNULL)
+        # Without -noreset the server restarts when its last client disconnects. That is xdotool, and may come before the
+        # window, whose connection is then refused.
+        server = subprocess.Popen(["Xvfb", "-displayfd", str(writing), "-screen", "0", "800x600x24", "-nolisten", "tcp",
+                                   "-noreset"], pass_fds=[writing], stderr=subprocess.DEVNULL)
         os.close(writing)
         self.addCleanup(lambda: (server.terminate(), server.wait()))
         with os.fdopen(reading) as pipe:
@@ -263,12 +265,14 @@ class Screen(ProgramTest):
         result = subprocess.run(["xdotool", *arguments], env=self.environment, capture_output=True, text=True)
         return result.stdout.strip()
 
-    def wait_for(self, ask, what):
+    def wait_for(self, process, ask, what):
         deadline = time.monotonic() + LIMIT_SECONDS
         while time.monotonic() < deadline:
             answer = ask()
             if answer:
                 return answer
+            if process.poll() is not None:
+                self.fail(f"the program ended before {what}: {process.stderr.read()}")
             time.sleep(0.05)
         self.fail(f"waited too long for {what}")
 
@@ -278,11 +282,11 @@ class Screen(ProgramTest):
                                    env=self.environment, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
         self.addCleanup(lambda: process.poll() is None and (process.kill(), process.wait()))
         title = lambda: self.tool("search", "--name", "v4-22-defocus", "getwindowname", "%@")  # noqa: E731
-        self.wait_for(lambda: re.search(r": 320x180, \d+ samples, noise", title()), "a picture")
+        self.wait_for(process, lambda: re.search(r": 320x180, \d+ samples, noise", title()), "a picture")
         self.tool("search", "--name", "v4-22-defocus", "windowfocus")
         self.tool("mousemove", "400", "300", "mousedown", "1", "mousemove", "430", "310", "mousemove", "450", "320",
                   "mouseup", "1")
-        self.wait_for(lambda: self.press("s"), "the saved picture")
+        self.wait_for(process, lambda: self.press("s"), "the saved picture")
         self.tool("key", "q")
         out, errors = process.communicate(timeout=LIMIT_SECONDS)
         self.assertEqual(process.returncode, 0, errors)
