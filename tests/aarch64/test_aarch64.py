@@ -25,6 +25,9 @@ import sys
 import tempfile
 import time
 
+import trim_pocl
+from drivers import icd
+
 build, source, nightly = pathlib.Path(sys.argv[1]), pathlib.Path(sys.argv[2]), "--nightly" in sys.argv
 # Scene, width and samples; form of the kernel, precision. A tree of 2002 spheres of three materials.
 PICTURES = [("swarm", 12, 8, "packet", "single"), ("swarm", 12, 8, "sample", "double")]
@@ -95,6 +98,12 @@ def unit_tests():
 def pocl(folder):
     """The environment in which PoCL for ARM finds its files and a linker."""
     library = next((root / "usr/lib/aarch64-linux-gnu").glob("libpocl.so.*"))
+    try:  # this machine's LLVM reads what that of ARM reads, if they are of one version
+        _, llvm = trim_pocl.installed_pocl()
+        if (library.parent / llvm.name).exists():
+            library = trim_pocl.copy_pocl(library, llvm, folder / "pocl", source)
+    except trim_pocl.CannotTrim as error:
+        print(f"PoCL as it is installed: {error}")
     (folder / "vendors").mkdir()
     (folder / "vendors/pocl.icd").write_text(f"{library}\n")
     compiler_files = pathlib.Path(run([COMPILER, "-print-libgcc-file-name"]).stdout.strip()).parent
@@ -115,7 +124,7 @@ def same_pictures(folder, environment):
         files = folder / "here.pfm", folder / "there.pfm"
         words = ["render", source / f"tests/agree/scenes/{scene}.json", "--width", width, "--spp", samples, "--kernel", kernel,
                  "--precision", precision, "--quiet", "-o"]
-        run([build / "ballpark", *words, files[0]], {"OCL_ICD_VENDORS": "pocl.icd"})
+        run([build / "ballpark", *words, files[0]], {"OCL_ICD_VENDORS": icd("pocl.icd")})
         done = emulated([own / "ballpark", *words, files[1]], environment)
         assert files[0].read_bytes() == files[1].read_bytes(), f"{scene}, {kernel}, {precision}: the pictures differ"
         print(f"{scene}, {kernel}, {precision}: the same bits; the kernel and the picture took {done.seconds:.0f} s", flush=True)

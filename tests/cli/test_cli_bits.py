@@ -10,6 +10,7 @@ import struct
 import xml.etree.ElementTree as xml
 
 import cli
+from drivers import icd
 from lamps_sampled import with_lamps
 
 with open(os.path.join(cli.SOURCE, "host/check/bits.json")) as file:
@@ -34,10 +35,10 @@ def changed(radiance, pixels, by):
 class Bits(cli.ProgramTest):
     def setUp(self):
         super().setUp()
-        listed = self.run_program("devices", environment={"OCL_ICD_VENDORS": "pocl.icd"})
+        listed = self.run_program("devices", environment={"OCL_ICD_VENDORS": icd("pocl.icd")})
         if b"Portable Computing Language" not in listed.stdout:
             self.skipTest("PoCL is not installed as pocl.icd")
-        self.environment["OCL_ICD_VENDORS"] = "pocl.icd"
+        self.environment["OCL_ICD_VENDORS"] = icd("pocl.icd")
 
     def check(self, code, pictures, *options, says=(), **environment):
         """Runs against these pictures in place of the recorded ones; returns the result, and the document's results."""

@@ -20,6 +20,7 @@ import subprocess
 import sys
 import tempfile
 
+from drivers import icd
 from lamps_sampled import with_lamps
 
 program, source, nightly = sys.argv[1], pathlib.Path(sys.argv[2]), "--nightly" in sys.argv
@@ -69,7 +70,7 @@ def instruction_sets(folder):
             pictures = [p for p in recorded if (p["precision"], p["refinement"]) == (precision, refinement)
                         and (p["scene"] not in LAMPS or form == FORMS[library][0])]
             pathlib.Path(folder, "pictures.json").write_text(json.dumps({"pictures": pictures}))
-            done, results = check(folder, {"OCL_ICD_VENDORS": "pocl.icd", "POCL_KERNELLIB_NAME": library,
+            done, results = check(folder, {"OCL_ICD_VENDORS": icd("pocl.icd"), "POCL_KERNELLIB_NAME": library,
                                            "BALLPARK_BITS": str(pathlib.Path(folder, "pictures.json"))}, "--kernel", kernel)
             assert done.returncode == 0, f"{library}: exit code {done.returncode}\n{done.stdout}{done.stderr[-3000:]}\n" \
                 "If pictures were to change, record them anew: scripts/record-bits"

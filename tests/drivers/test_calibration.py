@@ -11,11 +11,13 @@ import subprocess
 import sys
 import tempfile
 
+from drivers import icd
+
 program, source, shim = sys.argv[1], pathlib.Path(sys.argv[2]), os.path.abspath(sys.argv[3])
 if not os.path.exists("/etc/OpenCL/vendors/pocl.icd"):
     print("skipped: no pocl.icd here")
     sys.exit(77)
-CPU = {**os.environ, "OCL_ICD_VENDORS": "pocl.icd"}
+CPU = {**os.environ, "OCL_ICD_VENDORS": icd("pocl.icd")}
 GPU = {**CPU, "LD_PRELOAD": shim}
 
 

@@ -15,6 +15,8 @@ import subprocess
 import sys
 import tempfile
 
+from drivers import icd
+
 program, source, shim = sys.argv[1], pathlib.Path(sys.argv[2]), os.path.abspath(sys.argv[3])
 deep = "--deep" in sys.argv
 SCENES = ("bubble", "noise")
@@ -30,7 +32,7 @@ NONE = {"#if !OWN_ROUNDING || REAL_IS_DOUBLE\n#define divide(a, b) ((a) / (b))\n
 
 def run(environment, *arguments, code=0):
     done = subprocess.run([program, *map(str, arguments)], capture_output=True, text=True, timeout=900, check=False,
-                          env={**os.environ, "OCL_ICD_VENDORS": "pocl.icd", **environment})
+                          env={**os.environ, "OCL_ICD_VENDORS": icd("pocl.icd"), **environment})
     assert done.returncode == code, f"{arguments}: exit code {done.returncode}\n{done.stdout}{done.stderr[-3000:]}"
     return done
 

@@ -15,6 +15,8 @@ import subprocess
 import sys
 import tempfile
 
+from drivers import icd
+
 program, source, shim = sys.argv[1], pathlib.Path(sys.argv[2]), os.path.abspath(sys.argv[3])
 deep, nightly = "--deep" in sys.argv, "--nightly" in sys.argv
 DRIVERS = {"pocl.icd": {}}
@@ -49,7 +51,7 @@ def compare_recorded(folder, driver, gpu):
 
 
 def pretend(folder, driver, environment):
-    gpu = {**environment, "OCL_ICD_VENDORS": driver, "LD_PRELOAD": shim, "BALLPARK_BITS": str(folder / "bits.json")}
+    gpu = {**environment, "OCL_ICD_VENDORS": icd(driver), "LD_PRELOAD": shim, "BALLPARK_BITS": str(folder / "bits.json")}
     listed = json.loads(run(gpu, "devices", "--json", "-").stdout)["devices"]
     assert [(d["type"], d["double"]) for d in listed] == [("gpu", False)] * len(listed), listed
 
@@ -81,16 +83,16 @@ def pretend(folder, driver, environment):
     assert "has no double precision" in failed.stderr, failed.stderr
 
 
-for icd, settings in DRIVERS.items():
-    if not os.path.exists(f"/etc/OpenCL/vendors/{icd}"):
-        print(f"skipped: no {icd} here")
+for driver_icd, settings in DRIVERS.items():
+    if not os.path.exists(f"/etc/OpenCL/vendors/{driver_icd}"):
+        print(f"skipped: no {driver_icd} here")
         continue
     with tempfile.TemporaryDirectory() as name:
         listed = subprocess.run([program, "devices"], capture_output=True, timeout=120, check=False,
-                                env={**os.environ, **settings, "OCL_ICD_VENDORS": icd})
+                                env={**os.environ, **settings, "OCL_ICD_VENDORS": icd(driver_icd)})
         if listed.returncode != 0:
-            print(f"skipped: {icd} has no device here")
+            print(f"skipped: {driver_icd} has no device here")
             continue
-        pretend(pathlib.Path(name), icd, settings)
+        pretend(pathlib.Path(name), driver_icd, settings)
     ran += 1
 sys.exit(0 if ran else 77)

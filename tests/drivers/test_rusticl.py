@@ -11,11 +11,12 @@ import subprocess
 import sys
 import tempfile
 
+from drivers import icd
 from pfm import read_pfm
 
 program, scenes = sys.argv[1], pathlib.Path(sys.argv[2])
 RUSTICL = dict(os.environ, OCL_ICD_VENDORS="rusticl.icd", RUSTICL_ENABLE="llvmpipe")
-POCL = dict(os.environ, OCL_ICD_VENDORS="pocl.icd")
+POCL = dict(os.environ, OCL_ICD_VENDORS=icd("pocl.icd"))
 
 
 def has_device(environment):

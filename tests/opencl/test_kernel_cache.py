@@ -6,6 +6,7 @@ import os
 import subprocess
 
 import cli
+from drivers import icd
 
 SIZE = ("--width", 16, "--spp", 4, "--quiet", "--force")
 
@@ -15,7 +16,7 @@ class KernelCache(cli.ProgramTest):
 
     def setUp(self):
         super().setUp()
-        self.environment["OCL_ICD_VENDORS"] = "pocl.icd"
+        self.environment["OCL_ICD_VENDORS"] = icd("pocl.icd")
         if self.run_program("devices").returncode != 0:
             self.skipTest("PoCL is not installed as pocl.icd")
         os.mkdir(self.path("home"))
