@@ -1,4 +1,4 @@
-/* kernel_copy.h: a copy of kernels/ with one text replaced, which the program then reads.
+/* kernel_copy.h: a copy of kernels/ with texts replaced, which the program then reads.
  *
  * Knows: files, BALLPARK_KERNELS.   Does not know: what the patch does. */
 #ifndef TESTS_SUPPORT_KERNEL_COPY_H
@@ -70,13 +70,9 @@ static inline void kernel_copy_remove(const char *path) {
     remove(path);
 }
 
-/* Copies kernels/ with `find`, which must stand in the file `name` (its path in kernels/) exactly once,
- * replaced, and points BALLPARK_KERNELS there. */
-static inline void kernel_copy_open(KernelCopy *copy, const char *name, const char *find,
-                                    const char *replacement) {
-    snprintf(copy->folder, sizeof copy->folder, "/tmp/ballpark-kernels-XXXXXX");
-    assert_non_null(mkdtemp(copy->folder));
-    kernel_copy_folder(SOURCE_DIR "/kernels", copy->folder);
+/* Replaces `find`, which must stand in the copy's file `name` (its path in kernels/) exactly once. */
+static inline void kernel_copy_patch(const KernelCopy *copy, const char *name, const char *find,
+                                     const char *replacement) {
     char path[KERNEL_PATH];
     kernel_copy_join(path, copy->folder, name);
     const char *text = kernel_text(path), *place = strstr(text, find);
@@ -86,6 +82,15 @@ static inline void kernel_copy_open(KernelCopy *copy, const char *name, const ch
     assert_non_null(file);
     fprintf(file, "%.*s%s%s", (int)(place - text), text, replacement, place + strlen(find));
     assert_int_equal(fclose(file), 0);
+}
+
+/* Copies kernels/ with one text replaced, as kernel_copy_patch does, and points BALLPARK_KERNELS there. */
+static inline void kernel_copy_open(KernelCopy *copy, const char *name, const char *find,
+                                    const char *replacement) {
+    snprintf(copy->folder, sizeof copy->folder, "/tmp/ballpark-kernels-XXXXXX");
+    assert_non_null(mkdtemp(copy->folder));
+    kernel_copy_folder(SOURCE_DIR "/kernels", copy->folder);
+    kernel_copy_patch(copy, name, find, replacement);
     setenv("BALLPARK_KERNELS", copy->folder, 1);
 }
 
