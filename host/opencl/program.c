@@ -22,6 +22,7 @@ static const struct {
     unsigned only_in;
 } files[] = {
     {"dialect/real.cl", IN_ALL},
+    {"dialect/fused.cl", IN_ALL},
     {"scene_types.h", IN_ALL},
     {"aov_list.h", IN_ALL},
     /* for one lane */

@@ -210,9 +210,9 @@ static void compare(const Inputs *in, const uint32_t *rows, const uint32_t *layo
     }
 }
 
-const char *const bp_self_test_files[BP_SELF_TEST_FILES] = {"dialect/real.cl",      "scene_types.h",
-                                                            "dialect/lanes_one.cl", "dialect/lanes.cl",
-                                                            "dialect/divide.cl",    "entry/self_test.cl"};
+const char *const bp_self_test_files[BP_SELF_TEST_FILES] = {
+    "dialect/real.cl",  "dialect/fused.cl",  "scene_types.h",     "dialect/lanes_one.cl",
+    "dialect/lanes.cl", "dialect/divide.cl", "entry/self_test.cl"};
 
 /* The test's own program: the kernels' dialect, the packed structs and self_test.cl, and nothing else, so
  * that it builds fast and speaks even where the whole kernel does not build. The caller frees *source. */
