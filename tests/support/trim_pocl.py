@@ -23,10 +23,10 @@ import subprocess
 import sys
 
 # Functions whose names the kernels put together by macros.
-ASSEMBLED = re.compile(r"(convert_(float|double|u?char|u?int|u?long)|vload|vstore)(2|4|8|16)?")
-# Types that no kernel has: short, half, and vectors of three.
-MANGLED = re.compile(r"Dv3_|Dh|(^|_)[st]")
-DECLARED = re.compile(r"\b(u?short|half)\d*\b|\b(float|double|u?char|u?int|u?long)3\b")
+ASSEMBLED = re.compile(r"(convert_(float|double|u?char|u?int|u?long)|vload|vstore)(2|3|4|8|16)?")
+# Types that no kernel has: short and half.
+MANGLED = re.compile(r"Dh|(^|_)[st]")
+DECLARED = re.compile(r"\b(u?short|half)\d*\b")
 # Which of the libraries for instruction sets are trimmed. The others are there too, but as they are installed.
 TRIMMED = re.compile(r"kernel-(x86_64-.*-(avx512|avx2|sse41|sse2)|aarch64-.*)\.bc")
 
