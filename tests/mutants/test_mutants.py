@@ -9,14 +9,15 @@ Kernel text is patched in a copy that the program reads through BALLPARK_KERNELS
 compiled with the command that built the product, and linked before the library. A build that fails, a crash, or a
 text that no longer stands where a patch looks for it is an error, not a kill. Before the first mutant of a trial, the
 trial is run on the product unpatched: there it must pass. These runs share a kernel cache, one at a time, so that they
-compile each kernel once. A mutant is tried with a copy of that cache, so that only the kernels that its patch changes
-are compiled.
+compile each kernel once. A mutant is tried with a copy of what its trial used of that cache, so that only the kernels that
+its patch changes are compiled.
 
 A trial is no more than what finds the bug: one case of a test program, and as few samples as are needed. Most of the time
 goes into compiling kernels. A bug does not depend on how well it is compiled, so PoCL optimises nothing, in the control
 too: that takes a quarter less time.
 """
 import concurrent.futures
+import glob
 import json
 import os
 import resource
@@ -38,7 +39,13 @@ def environment_of(cache):
     return {"POCL_CACHE_DIR": cache, "MESA_SHADER_CACHE_DIR": cache, "POCL_EXTRA_BUILD_FLAGS": "-cl-opt-disable"}
 
 
-def copy_cache(source, target):
+def used_since(cache, start):
+    """The programs in a kernel cache of PoCL, XX/YYY each, that were compiled or found there since a time."""
+    marks = glob.glob(os.path.join(cache, "*", "*", "last_accessed"))
+    return [os.path.relpath(os.path.dirname(mark), cache) for mark in marks if os.stat(mark).st_mtime >= start]
+
+
+def copy_program(source, target):
     """What is compiled by links, which cost next to nothing: it is written once. The rest is small."""
     for folder, _, names in os.walk(source):
         there = os.path.join(target, os.path.relpath(folder, source))
@@ -204,12 +211,13 @@ class Controls:
         self.source, self.build, self.cache = source, build, os.path.join(folder, "cache")
         os.mkdir(self.cache)
         self.lock = threading.Lock()
-        self.results = {}  # trial: (outcome, what was said)
+        self.results = {}  # trial: (outcome, what was said, the programs that it used)
 
     def of(self, trial, cache):
-        """What the trial says of the product; copies the kernels that are compiled by then into the folder `cache`."""
+        """What the trial says of the product; copies the kernels that it used into the folder `cache`."""
         with self.lock:
             if trial not in self.results:
+                start = time.time() - 1  # the clock of files is a little behind
                 with tempfile.TemporaryDirectory() as folder:
                     bench = Bench(self.source, self.build, folder)
                     environment = {**bench.environment, **environment_of(self.cache)}
@@ -217,14 +225,16 @@ class Controls:
                         outcome, said = bench.run(trial, environment, [])
                     except subprocess.TimeoutExpired:
                         outcome, said = ERROR, "it did not end"
-                self.results[trial] = outcome, said
+                self.results[trial] = outcome, said, used_since(self.cache, start)
                 if outcome != SURVIVED:
                     print(f"CONTROL {outcome}: {name_of(trial)}: {said}", flush=True)
-            copy_cache(self.cache, cache)
-            return self.results[trial]
+            outcome, said, programs = self.results[trial]
+            for program in programs:
+                copy_program(os.path.join(self.cache, program), os.path.join(cache, program))
+            return outcome, said
 
     def failures(self):
-        return sum(outcome != SURVIVED for outcome, _ in self.results.values())
+        return sum(outcome != SURVIVED for outcome, _, _ in self.results.values())
 
 
 def try_mutant(bench, mutant, controls):
