@@ -98,12 +98,18 @@ static BoxRay box_ray(const Ray_one *ray) {
 static child_mask test_node(const Geometry *geometry, const BoxRay *box, uint node, real bound, vreal *entry) {
     __global const real *planes = place_in(geometry->node_boxes, node * (6 * TREE_WIDTH));
     /* Written out, axis by axis: a loop is not always unrolled. */
-    const vreal enter_x = fma(row_of(planes, box->near_row[0]), splat(box->inverse[0]), splat(box->near_offset[0]));
-    const vreal enter_y = fma(row_of(planes, box->near_row[1]), splat(box->inverse[1]), splat(box->near_offset[1]));
-    const vreal enter_z = fma(row_of(planes, box->near_row[2]), splat(box->inverse[2]), splat(box->near_offset[2]));
-    const vreal leave_x = fma(row_of(planes, box->far_row[0]), splat(box->inverse[0]), splat(box->far_offset[0]));
-    const vreal leave_y = fma(row_of(planes, box->far_row[1]), splat(box->inverse[1]), splat(box->far_offset[1]));
-    const vreal leave_z = fma(row_of(planes, box->far_row[2]), splat(box->inverse[2]), splat(box->far_offset[2]));
+    const vreal enter_x = loose_fma(row_of(planes, box->near_row[0]), splat(box->inverse[0]),
+                                    splat(box->near_offset[0]));
+    const vreal enter_y = loose_fma(row_of(planes, box->near_row[1]), splat(box->inverse[1]),
+                                    splat(box->near_offset[1]));
+    const vreal enter_z = loose_fma(row_of(planes, box->near_row[2]), splat(box->inverse[2]),
+                                    splat(box->near_offset[2]));
+    const vreal leave_x = loose_fma(row_of(planes, box->far_row[0]), splat(box->inverse[0]),
+                                    splat(box->far_offset[0]));
+    const vreal leave_y = loose_fma(row_of(planes, box->far_row[1]), splat(box->inverse[1]),
+                                    splat(box->far_offset[1]));
+    const vreal leave_z = loose_fma(row_of(planes, box->far_row[2]), splat(box->inverse[2]),
+                                    splat(box->far_offset[2]));
     const vreal enter_xy = larger(enter_x, enter_y);
     const vreal enter_z0 = larger(enter_z, splat(0));
     const vreal near = larger(enter_xy, enter_z0);

@@ -96,12 +96,12 @@ static void traverse_batch(const Geometry *geometry, const FlatBatch *batch, con
     vuint met = splat_uint(0);
     for (uint k = 0; k < batch->count; ++k) {
         const real *planes = batch->planes[k];
-        const vreal low_x = fma(splat(planes[0]), axes[0].inverse, low_offset[0]);
-        const vreal low_y = fma(splat(planes[1]), axes[1].inverse, low_offset[1]);
-        const vreal low_z = fma(splat(planes[2]), axes[2].inverse, low_offset[2]);
-        const vreal high_x = fma(splat(planes[3]), axes[0].inverse, high_offset[0]);
-        const vreal high_y = fma(splat(planes[4]), axes[1].inverse, high_offset[1]);
-        const vreal high_z = fma(splat(planes[5]), axes[2].inverse, high_offset[2]);
+        const vreal low_x = loose_fma(splat(planes[0]), axes[0].inverse, low_offset[0]);
+        const vreal low_y = loose_fma(splat(planes[1]), axes[1].inverse, low_offset[1]);
+        const vreal low_z = loose_fma(splat(planes[2]), axes[2].inverse, low_offset[2]);
+        const vreal high_x = loose_fma(splat(planes[3]), axes[0].inverse, high_offset[0]);
+        const vreal high_y = loose_fma(splat(planes[4]), axes[1].inverse, high_offset[1]);
+        const vreal high_z = loose_fma(splat(planes[5]), axes[2].inverse, high_offset[2]);
         const vreal near =
             larger(larger(smaller(low_x, high_x), smaller(low_y, high_y)), larger(smaller(low_z, high_z), splat(0)));
         const vreal far =

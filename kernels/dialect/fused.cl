@@ -1,6 +1,7 @@
 /* fused.cl: a * b + c, rounded once, on processors that have no instruction for it.
  *
- * Out:   fma, which from here on is this file's where the processor is of that kind and its compiler is clang.
+ * Out:   fma, which from here on is this file's where the processor is of that kind and its compiler is clang; loose_fma,
+ *        for tests whose margins cover two roundings.
  * Knows: real.cl.   Does not know: what is computed.
  *
  * Processors with SSE alone have no fused multiply-add, so compilers call the C library for each lane, which takes a hundred cycles. Both
@@ -72,4 +73,8 @@ FORCE_INLINE static double OVERLOADED fused(double a, double b, double c) {
     return fused((double2)a, (double2)b, (double2)c).x;
 }
 #define fma fused
+/* a * b + c, rounded twice, which costs a twentieth here. No picture may depend on the result. */
+#define loose_fma(a, b, c) ((a) * (b) + (c))
+#else
+#define loose_fma fma
 #endif

@@ -11,6 +11,8 @@
 #define scale3 LANED(scale3)
 #define madd3 LANED(madd3)
 #define dot3 LANED(dot3)
+#define loose_madd3 LANED(loose_madd3)
+#define loose_dot3 LANED(loose_dot3)
 #define choose3 LANED(choose3)
 #define normalise3 LANED(normalise3)
 #define at_least LANED(at_least)
@@ -38,6 +40,11 @@ static Vec3 scale3(vreal s, Vec3 a) { return vec3(s * a.x, s * a.y, s * a.z); }
 /* s * a + b */
 static Vec3 madd3(vreal s, Vec3 a, Vec3 b) { return vec3(fma(s, a.x, b.x), fma(s, a.y, b.y), fma(s, a.z, b.z)); }
 static vreal dot3(Vec3 a, Vec3 b) { return fma(a.x, b.x, fma(a.y, b.y, a.z * b.z)); }
+/* The same by loose_fma (fused.cl). */
+static Vec3 loose_madd3(vreal s, Vec3 a, Vec3 b) {
+    return vec3(loose_fma(s, a.x, b.x), loose_fma(s, a.y, b.y), loose_fma(s, a.z, b.z));
+}
+static vreal loose_dot3(Vec3 a, Vec3 b) { return loose_fma(a.x, b.x, loose_fma(a.y, b.y, a.z * b.z)); }
 static Vec3 choose3(vbool mask, Vec3 a, Vec3 b) {
     return vec3(choose(mask, a.x, b.x), choose(mask, a.y, b.y), choose(mask, a.z, b.z));
 }

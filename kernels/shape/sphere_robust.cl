@@ -39,11 +39,11 @@ typedef struct Sphere {
  * The sphere being left, which callers leave out, is not met from outside, and from inside sphere_exit meets it. */
 FORCE_INLINE static vbool sphere_is_candidate(const Ray *ray, vreal bound, const Sphere *sphere) {
     const Vec3 oc = subtract3(sphere->centre, ray->origin.high);
-    const vreal p = dot3(oc, ray->direction);
-    const Vec3 l = madd3(-p, ray->direction, oc);
-    const vreal margin = fma(splat(R(64.0) * ROUNDOFF), fabs(p) + sphere->radius, ray->cull_margin);
+    const vreal p = loose_dot3(oc, ray->direction);
+    const Vec3 l = loose_madd3(-p, ray->direction, oc);
+    const vreal margin = loose_fma(splat(R(64.0) * ROUNDOFF), fabs(p) + sphere->radius, ray->cull_margin);
     const vreal reach = sphere->radius + margin;
-    const vreal room = fma(reach, reach, -dot3(l, l));
+    const vreal room = loose_fma(reach, reach, -loose_dot3(l, l));
     const vreal outside = larger(larger(-p, p - bound) - margin, splat(0));
     return room >= outside * outside;
 }

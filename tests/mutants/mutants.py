@@ -83,6 +83,8 @@ MUTANTS = [
            [test("test_fused", "floats")]),
     Mutant("infinities are inexact", "a comparison that is true of what is not a number",
            [patch(KERNEL, "inexact = (rest < 0.0) | (rest > 0.0)", "inexact = rest != 0.0")], [test("test_fused", "floats")]),
+    Mutant("loose without the sum", "a fused multiply-add for tests with margins, as a product",
+           [patch(KERNEL, "((a) * (b) + (c))", "((a) * (b))")], [test("test_fused", "floats")]),
     Mutant("products of any size", "Dekker's product where it overflows or loses digits",
            [patch(KERNEL, "if ((usual.x & usual.y) == 0) return (double2)(fma(a.x, b.x, c.x), fma(a.y, b.y, c.y));", "")],
            [test("test_fused", "doubles")]),
