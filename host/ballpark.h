@@ -218,7 +218,8 @@ typedef struct BpDeviceInfo {
     BpDeviceType type;
     char platform[128], name[256], vendor[128], version[128], driver[128];
     unsigned compute_units;
-    unsigned float_lanes; /* of its vector instructions, as the driver says; 1: it has none, or hides them */
+    unsigned float_lanes; /* of its vector instructions, as the driver says; 1: it has none, or hides them.
+                             4 where PoCL runs on 64-bit ARM, since it says 1 of all processors but x86's */
     uint64_t memory_bytes, largest_allocation_bytes;
     bool has_double, has_compiler, available;
     char refusal[128];      /* what the device lacks, so that it cannot render; "": nothing */

@@ -115,6 +115,18 @@ static bool find_lack(cl_device_id id, const BpDeviceInfo *info, char refusal[12
     return true;
 }
 
+/* PoCL looks for vectors on x86 processors alone and reports one lane for all others. 64-bit ARM always has
+ * vectors of four. */
+static unsigned float_lanes_of(cl_device_id id, const BpDeviceInfo *info) {
+    const unsigned lanes = device_uint(id, CL_DEVICE_NATIVE_VECTOR_WIDTH_FLOAT);
+#ifdef __aarch64__
+    if (lanes < 4 && info->type == BP_DEVICE_CPU && strcmp(info->platform, BP_POCL_PLATFORM) == 0) return 4;
+#else
+    (void)info;
+#endif
+    return lanes;
+}
+
 /* false: out of memory. */
 static bool describe(cl_device_id id, cl_platform_id platform, unsigned number, BpDeviceInfo *info) {
     memset(info, 0, sizeof *info);
@@ -130,7 +142,7 @@ static bool describe(cl_device_id id, cl_platform_id platform, unsigned number, 
                  : (type & CL_DEVICE_TYPE_CPU) != 0 ? BP_DEVICE_CPU
                                                     : BP_DEVICE_OTHER;
     info->compute_units = device_uint(id, CL_DEVICE_MAX_COMPUTE_UNITS);
-    info->float_lanes = device_uint(id, CL_DEVICE_NATIVE_VECTOR_WIDTH_FLOAT);
+    info->float_lanes = float_lanes_of(id, info);
     info->memory_bytes = device_ulong(id, CL_DEVICE_GLOBAL_MEM_SIZE);
     info->largest_allocation_bytes = device_ulong(id, CL_DEVICE_MAX_MEM_ALLOC_SIZE);
     info->has_double = device_ulong(id, CL_DEVICE_DOUBLE_FP_CONFIG) != 0;
