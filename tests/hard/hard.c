@@ -1,7 +1,7 @@
 /* hard.c: the forty tests of numerical stability on one variant of the program.
  *
- *     hard VARIANT [GROUP...]   double, float, all-double: every test must pass; of all groups, or of those
- * named hard fast                 --math fast: says which tests it fails; that is no failure of this program
+ *     hard VARIANT [GROUP...]   double, float, all-double: every test of these groups must pass (all groups)
+ *     hard fast [GROUP...]      --math fast: says which tests it fails; that is no failure of this program
  *
  * Exit code 77: the device cannot run the variant. */
 #include "suite.h"
