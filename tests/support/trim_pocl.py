@@ -1,7 +1,8 @@
 """A copy of PoCL that compiles Ballpark's kernels in about half the time, for tests: trim_pocl.py FOLDER BALLPARK SOURCE_DIR
 
 In:    the PoCL that is installed, as the OpenCL loader finds it; the sources of all kernels, those of tests too.
-Out:   FOLDER/vendors, which OCL_ICD_VENDORS may name: the installed drivers, with a copy of PoCL in place of PoCL.
+Out:   FOLDER/vendors, which OCL_ICD_VENDORS may name: the copy, without the other drivers that are installed. A program loads
+       every driver it finds, and Mesa's take 15 ms; tests of other drivers name them.
        Where it cannot be made, there is no FOLDER, and one line says why: tests then use PoCL as it is installed.
 Knows: what PoCL's files are called, how OpenCL's functions are mangled, LLVM's interface in C.
 Does not know: what the kernels do.
@@ -136,7 +137,7 @@ def loaded_libraries(driver):
 
 
 def copy_pocl(pocl, llvm, folder, source_dir):
-    """Copies PoCL, whose library is `pocl`, to `folder`, which must not exist. It finds its files from where its library lies.
+    """Copies PoCL, whose library is `pocl`, to `folder`. It finds its files from where its library lies.
 
     `llvm` is the library of the LLVM that it was made with. Returns where the driver now lies.
     """
@@ -161,38 +162,34 @@ def copy_pocl(pocl, llvm, folder, source_dir):
     return driver
 
 
-def installed_drivers():
-    """The installed .icd files: name and what stands in it; and which of them is PoCL's."""
-    folder = pathlib.Path("/etc/OpenCL/vendors")
-    drivers = {path.name: path.read_text(encoding="utf-8").strip() for path in sorted(folder.glob("*.icd"))}
-    name = next((name for name, library in drivers.items() if "libpocl" in library), None)
-    if name is None:
-        raise CannotTrim("no PoCL in /etc/OpenCL/vendors")
-    return drivers, name
+def installed_driver():
+    """The name of PoCL's .icd file, and the library that it names."""
+    for path in sorted(pathlib.Path("/etc/OpenCL/vendors").glob("*.icd")):
+        library = path.read_text(encoding="utf-8").strip()
+        if "libpocl" in library:
+            return path.name, library
+    raise CannotTrim("no PoCL in /etc/OpenCL/vendors")
 
 
 def installed_pocl():
     """PoCL's library and LLVM's."""
-    drivers, name = installed_drivers()
-    return loaded_libraries(drivers[name])
+    return loaded_libraries(installed_driver()[1])
 
 
 def make(folder, program, source_dir):
     """Makes `folder`, and tries whether the program draws with it."""
-    drivers, name = installed_drivers()
-    drivers[name] = copy_pocl(*loaded_libraries(drivers[name]), folder, source_dir)
+    name, library = installed_driver()
     trial = folder / "trial"
-    trial.mkdir()
-    for icd, library in drivers.items():
-        (trial / icd).write_text(f"{library}\n", encoding="utf-8")
-    environment = {**os.environ, "OCL_ICD_VENDORS": str(trial / name), "POCL_CACHE_DIR": str(trial),
+    trial.mkdir(parents=True)
+    (trial / name).write_text(f"{copy_pocl(*loaded_libraries(library), folder, source_dir)}\n", encoding="utf-8")
+    environment = {**os.environ, "OCL_ICD_VENDORS": str(trial), "POCL_CACHE_DIR": str(trial),
                    "POCL_EXTRA_BUILD_FLAGS": "-cl-opt-disable"}
     done = subprocess.run([program, "render", source_dir / "tests/agree/scenes/tie.json", "--width", "8", "--spp", "1", "--quiet",
                            "-o", trial / "picture.pfm"], capture_output=True, text=True, env=environment, check=False, timeout=300)
     if done.returncode != 0:
         raise CannotTrim(done.stderr.strip())
     for path in trial.iterdir():
-        if path.name not in drivers:
+        if path.name != name:
             shutil.rmtree(path, ignore_errors=True)
             path.unlink(missing_ok=True)
     trial.rename(folder / "vendors")
