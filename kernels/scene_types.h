@@ -1,8 +1,8 @@
 /* scene_types.h: the layout of everything that host and device share.
  *
  * Read by both compilers: the host's C compiler (which defines BP_HOST) and the OpenCL compiler. It is the
- * only such file. Change a struct here and both sides change; change it on one side alone and the probe
- * kernel `probe_layout` makes every render refuse to start.
+ * only such file. Change a struct here and both sides change. Neither compiler accepts a struct that it would
+ * lay out with padding, so both have every member at the same place.
  *
  * `real` is double on the host, which packs in double; on the device it is float, or double under
  * --precision double. Packed structs hold reals only or uints only, so that narrowing a whole buffer is one
@@ -302,18 +302,28 @@ enum { MAPPING_SOLID, MAPPING_SURFACE };
 enum { PATTERN_CHECKER, PATTERN_PERLIN, PATTERN_TURBULENCE, PATTERN_MARBLE, PATTERN_WOOD, PATTERN_IMAGE };
 #define LATTICE_PERIOD 0x400000u /* cells are counted modulo this: whole numbers that a float holds */
 
+/* OpenCL C 1.2 has no static assertions, but no array has a negative size. */
+#ifdef BP_HOST
+#define SIZE_IS(type, size) _Static_assert(sizeof(type) == (size), #type " has padding");
+#else
+#define SIZE_IS(type, size) typedef char type##_has_padding[sizeof(type) == (size) ? 1 : -1];
+#endif
+/* clang-format off */
+SIZE_IS(PackedCamera, 32 * sizeof(real))
+SIZE_IS(PackedSky, 48 * sizeof(real))
+SIZE_IS(PackedDisc, 12 * sizeof(real))
+SIZE_IS(PackedMaterial, 8 * sizeof(real))
+SIZE_IS(PackedMaterialKind, 16)
+SIZE_IS(PackedTexture, 32 * sizeof(real))
+SIZE_IS(PackedTextureKind, 48)
+SIZE_IS(PackedMedium, 8 * sizeof(real))
+SIZE_IS(PackedVariation, 16)
+/* clang-format on */
+#undef SIZE_IS
+
 #ifdef BP_HOST
 _Static_assert(sizeof(real) == 8, "the host packs in double");
 _Static_assert(PART_UNIT >= LAMP_NODE_REALS, "the root of the tree of lamps lies in the first part");
-_Static_assert(sizeof(PackedCamera) == 32 * sizeof(real), "PackedCamera has padding");
-_Static_assert(sizeof(PackedSky) == 48 * sizeof(real), "PackedSky has padding");
-_Static_assert(sizeof(PackedDisc) == 12 * sizeof(real), "PackedDisc has padding");
-_Static_assert(sizeof(PackedMaterial) == 8 * sizeof(real), "PackedMaterial has padding");
-_Static_assert(sizeof(PackedMaterialKind) == 16, "PackedMaterialKind has padding");
-_Static_assert(sizeof(PackedTexture) == 32 * sizeof(real), "PackedTexture has padding");
-_Static_assert(sizeof(PackedTextureKind) == 48, "PackedTextureKind has padding");
-_Static_assert(sizeof(PackedMedium) == 8 * sizeof(real), "PackedMedium has padding");
-_Static_assert(sizeof(PackedVariation) == 16, "PackedVariation has padding");
 #define BP_PLACE(place, type, member, element)                                                               \
     _Static_assert(offsetof(type, member) == (place) * sizeof(element), "the place of " #member)
 BP_PLACE(DISC_DIRECTION, PackedDisc, direction, real);

@@ -98,7 +98,6 @@ static const struct {
     {"entry/trace_pool.cl", IN_POOL},
     {"entry/trace_packet.cl", IN_PACKET},
     {"film/accumulate.cl", IN_ALL},
-    {"entry/probe_layout.cl", IN_ALL},
 };
 
 /* A text that grows. `failed` remembers an allocation that did not succeed. */

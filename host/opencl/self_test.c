@@ -5,9 +5,6 @@
 #include "base/random.h"
 #include "program.h"
 
-#define BP_HOST
-#include "scene_types.h"
-
 #include <math.h>
 #include <stddef.h>
 #include <stdio.h>
@@ -15,7 +12,6 @@
 #include <string.h>
 
 #define ITEMS 512u
-#define LAYOUT_WORDS 5u
 
 /* name, allowed error in units in the last place of a float (0: every bit), needs double, what it shows */
 #define COLUMN_LIST(X)                                                                                       \
@@ -159,18 +155,6 @@ static void expect(const Inputs *in, uint32_t item, uint32_t row[COLUMN_COUNT], 
     row[COLUMN_DOUBLE_CONTRACTION] = 0;
 }
 
-static const char *const layout_names[LAYOUT_WORDS] = {"real", "PackedCamera", "PackedSky", "PackedMaterial",
-                                                       "PackedMaterialKind"};
-
-/* The device's real is float here, half of the host's. */
-static void expect_layout(uint32_t words[LAYOUT_WORDS]) {
-    words[0] = 4;
-    words[1] = (uint32_t)(sizeof(PackedCamera) / 2 << 16 | offsetof(PackedCamera, lens_up) / 2);
-    words[2] = (uint32_t)(sizeof(PackedSky) / 2 << 16 | offsetof(PackedSky, top) / 2);
-    words[3] = (uint32_t)(sizeof(PackedMaterial) / 2 << 16 | offsetof(PackedMaterial, refraction_index) / 2);
-    words[4] = (uint32_t)(sizeof(PackedMaterialKind) << 16 | offsetof(PackedMaterialKind, total_reflection));
-}
-
 static bool within(float got, double exact, double ulps) {
     if (!isfinite(got)) return false;
     const double unit = ldexp(1.0, ilogb(exact) - 23);
@@ -178,18 +162,10 @@ static bool within(float got, double exact, double ulps) {
 }
 
 /* Compares all rows; *failures counts the columns that are wrong, `story` is about the first of them. */
-static void compare(const Inputs *in, const uint32_t *rows, const uint32_t *layout, bool has_double,
-                    unsigned *failures, char *story, size_t size) {
-    uint32_t expected_layout[LAYOUT_WORDS];
+static void compare(const Inputs *in, const uint32_t *rows, bool has_double, unsigned *failures, char *story,
+                    size_t size) {
     bool wrong[COLUMN_COUNT] = {false};
     *failures = 0;
-    expect_layout(expected_layout);
-    for (unsigned w = 0; w < LAYOUT_WORDS; ++w) {
-        if (layout[w] == expected_layout[w]) continue;
-        if ((*failures)++ == 0)
-            snprintf(story, size, "the layout of %s (size and last member: 0x%08x, not 0x%08x)",
-                     layout_names[w], (unsigned)layout[w], (unsigned)expected_layout[w]);
-    }
     for (uint32_t item = 0; item < ITEMS; ++item) {
         uint32_t row[COLUMN_COUNT] = {0};
         double exact[COLUMN_COUNT] = {0};
@@ -210,12 +186,12 @@ static void compare(const Inputs *in, const uint32_t *rows, const uint32_t *layo
     }
 }
 
-const char *const bp_self_test_files[BP_SELF_TEST_FILES] = {
-    "dialect/real.cl",  "dialect/fused.cl",  "scene_types.h",     "dialect/lanes_one.cl",
-    "dialect/lanes.cl", "dialect/divide.cl", "entry/self_test.cl"};
+const char *const bp_self_test_files[BP_SELF_TEST_FILES] = {"dialect/real.cl",      "dialect/fused.cl",
+                                                            "dialect/lanes_one.cl", "dialect/lanes.cl",
+                                                            "dialect/divide.cl",    "entry/self_test.cl"};
 
-/* The test's own program: the kernels' dialect, the packed structs and self_test.cl, and nothing else, so
- * that it builds fast and speaks even where the whole kernel does not build. The caller frees *source. */
+/* The test's own program: the kernels' dialect and self_test.cl, and nothing else, so that it builds fast and
+ * speaks even where the whole kernel does not build. The caller frees *source. */
 static BpStatus assemble(const BpDevice *device, const char *kernel_text, char **source, BpError *err) {
     BpStatus status = BP_OK;
     char *texts[BP_SELF_TEST_FILES] = {NULL};
@@ -258,15 +234,15 @@ done:
 
 /* Runs the built kernel over `in`. */
 static BpStatus launch(BpDevice *device, cl_program program, const Inputs *in, uint32_t *rows,
-                       size_t rows_size, uint32_t layout[LAYOUT_WORDS], BpError *err) {
+                       size_t rows_size, BpError *err) {
     BpStatus status = BP_OK;
-    cl_mem buffers[4] = {NULL};
-    const size_t sizes[4] = {sizeof in->uints, sizeof in->floats, rows_size, LAYOUT_WORDS * sizeof(uint32_t)};
-    const void *contents[4] = {in->uints, in->floats, rows, layout};
+    cl_mem buffers[3] = {NULL};
+    const size_t sizes[3] = {sizeof in->uints, sizeof in->floats, rows_size};
+    const void *contents[3] = {in->uints, in->floats, rows};
     cl_int code;
     const char *call = "clCreateKernel(self_test)";
     cl_kernel kernel = clCreateKernel(program, "self_test", &code);
-    for (cl_uint i = 0; i < 4 && code == CL_SUCCESS; ++i) {
+    for (cl_uint i = 0; i < 3 && code == CL_SUCCESS; ++i) {
         call = "clCreateBuffer";
         /* The host's copy of what comes out is 0, so an answer that is never written is wrong. */
         buffers[i] = clCreateBuffer(device->context, CL_MEM_READ_WRITE | CL_MEM_COPY_HOST_PTR, sizes[i],
@@ -285,10 +261,8 @@ static BpStatus launch(BpDevice *device, cl_program program, const Inputs *in, u
         call = "clEnqueueReadBuffer";
         code = clEnqueueReadBuffer(device->queue, buffers[2], CL_TRUE, 0, sizes[2], rows, 0, NULL, NULL);
     }
-    if (code == CL_SUCCESS)
-        code = clEnqueueReadBuffer(device->queue, buffers[3], CL_TRUE, 0, sizes[3], layout, 0, NULL, NULL);
     if (code != CL_SUCCESS) status = bp_cl_fail(err, code, call, device);
-    for (int i = 0; i < 4; ++i)
+    for (int i = 0; i < 3; ++i)
         if (buffers[i] != NULL) clReleaseMemObject(buffers[i]);
     if (kernel != NULL) clReleaseKernel(kernel);
     return status;
@@ -299,7 +273,7 @@ BpStatus bp_self_test_run(BpDevice *device, const char *kernel_text, BpError *er
     char *source = NULL, story[256] = "";
     Inputs *in = malloc(sizeof *in);
     const size_t rows_size = ITEMS * COLUMN_COUNT * sizeof(uint32_t);
-    uint32_t *rows = calloc(1, rows_size), layout[LAYOUT_WORDS] = {0};
+    uint32_t *rows = calloc(1, rows_size);
     cl_program program = NULL;
     unsigned failures;
 
@@ -310,8 +284,8 @@ BpStatus bp_self_test_run(BpDevice *device, const char *kernel_text, BpError *er
     make_inputs(in);
     BP_TRY_GOTO(status, assemble(device, kernel_text, &source, err), cleanup);
     BP_TRY_GOTO(status, bp_device_build(device, source, NULL, &program, NULL, err), cleanup);
-    BP_TRY_GOTO(status, launch(device, program, in, rows, rows_size, layout, err), cleanup);
-    compare(in, rows, layout, device->info.has_double, &failures, story, sizeof story);
+    BP_TRY_GOTO(status, launch(device, program, in, rows, rows_size, err), cleanup);
+    compare(in, rows, device->info.has_double, &failures, story, sizeof story);
     if (failures > 0)
         status = bp_fail(err, BP_ERR_DEVICE,
                          "device %u (%s, driver %s) failed its self-test, so its pictures could be wrong: %s "

@@ -5,15 +5,15 @@
  *
  * Integers (random numbers and fixed-point sums rest on them), rounding, fused and unfused products,
  * quotients and square roots within OpenCL's bounds, and rounded correctly where kernels use them, NaN and
- * infinities, vector lanes, loops with private arrays, and the layout of every packed struct. It takes a
- * fraction of a second, most of it the compiler's, and is remembered. */
+ * infinities, vector lanes, loops with private arrays. It takes a fraction of a second, most of it
+ * the compiler's, and is remembered. */
 #ifndef BP_OPENCL_SELF_TEST_H
 #define BP_OPENCL_SELF_TEST_H
 
 #include "device.h"
 
 /* The kernel files that the test's program is made of, in their order. */
-#define BP_SELF_TEST_FILES 7
+#define BP_SELF_TEST_FILES 6
 extern const char *const bp_self_test_files[BP_SELF_TEST_FILES];
 
 /* Runs the self-test. BP_ERR_DEVICE: the message names the device, its driver and the first thing that is

@@ -2,7 +2,6 @@
 #include "worker.h"
 
 #include "base/clock.h"
-#include "opencl/layout.h"
 #include "opencl/self_test.h"
 #include "worker_buffers.h"
 
@@ -156,8 +155,6 @@ BpStatus bp_worker_create(const BpDeviceInfo *info, BpPacked *given, const BpWor
     BP_TRY_GOTO(status,
                 bp_program_build(made->device, &program, marked ? "mark.cl" : setup->extra_name,
                                  marked ? mark : setup->extra_text, &made->program, err),
-                failed);
-    BP_TRY_GOTO(status, bp_layout_check(made->device, made->program->program, packed->single_precision, err),
                 failed);
     BP_TRY_GOTO(status, bp_worker_upload_scene(made, err), failed);
     BP_TRY_GOTO(status, bp_worker_create_picture(made, err), failed);

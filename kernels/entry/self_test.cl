@@ -6,7 +6,7 @@
  *
  * Knows: the dialect.   Does not know: the answers.
  * Each column is something that the kernels rely on; together they find drivers that contract a*b+c, reassociate,
- * flush what they should not, forget NaN, or pack structs in their own way. */
+ * flush what they should not, or forget NaN. */
 
 /* A walk of data-dependent length over an implicit binary tree with a private stack, as the traversal does it. */
 static uint walk(uint seed) {
@@ -60,29 +60,12 @@ static uint fused_lanes(float8 v, float8 w, float zero) {
            (uint)((as_ulong(convert_char8(fused)) & 0x8040201008040201UL) >> 32);
 }
 
-/* Size of each packed struct and the offset of its last member, in bytes, folded into one number each. */
-static void layout(__global uint *out) {
-    PackedCamera camera;
-    PackedSky sky;
-    PackedMaterial material;
-    PackedMaterialKind kind;
-#define OFFSET(object, member) ((uint)((__private char *)&object.member - (__private char *)&object))
-    out[0] = (uint)sizeof(real);
-    out[1] = (uint)sizeof(PackedCamera) << 16 | OFFSET(camera, lens_up);
-    out[2] = (uint)sizeof(PackedSky) << 16 | OFFSET(sky, top);
-    out[3] = (uint)sizeof(PackedMaterial) << 16 | OFFSET(material, refraction_index);
-    out[4] = (uint)sizeof(PackedMaterialKind) << 16 | OFFSET(kind, total_reflection);
-#undef OFFSET
-}
-
-__kernel void self_test(__global const uint *uints_in, __global const float *floats_in, __global uint *rows,
-                        __global uint *layout_out) {
+__kernel void self_test(__global const uint *uints_in, __global const float *floats_in, __global uint *rows) {
     const uint item = (uint)get_global_id(0);
     __global uint *row = rows + item * ROW_COLUMNS;
     const uint m = uints_in[2u * item], n = uints_in[2u * item + 1u];
     __global const float *floats = floats_in + 5u * item;
     const float a = floats[0], b = floats[1], c = floats[2], zero = floats[3];
-    if (item == 0u) layout(layout_out);
 
     row[COLUMN_INTEGERS] = (m * n + (m << 7)) ^ (n >> 9) ^ (mul_hi(m, n) - popcount(m));
     const ulong wide_product = (ulong)m * (ulong)n + ((ulong)n << 32);

@@ -1,12 +1,14 @@
-"""A device that computes wrongly is refused by name before anything is rendered, and used all the same with --force.
+"""A device that computes wrongly is refused by name before anything is rendered, and used all the same with --force. One that
+pads a struct is refused with its name.
 
-The wrong device is the right one with a broken kernel in its self-test.
+The wrong device is the right one with a broken kernel in its self-test, or with one more member in a struct.
 
 Usage: test_self_test_refusal.py BALLPARK KERNELS SCENE
 """
 
 import os
 import pathlib
+import re
 import shutil
 import subprocess
 import sys
@@ -56,4 +58,15 @@ with tempfile.TemporaryDirectory() as folder:
         for text in f"cannot open {missing[:200]}", "/real.cl: No such file", "BALLPARK_KERNELS", "unset it":
             assert text in words, f"{text}: {words}"
         assert "--force" not in words and "warning" not in words, words
-print("refused, and forced")
+
+    structs = re.findall(r"typedef struct (\w+) {\n", types := (pathlib.Path(kernels) / "scene_types.h").read_text())
+    assert len(structs) >= 9, structs
+    shutil.rmtree(broken)
+    shutil.copytree(kernels, broken)
+    for struct in structs:
+        padded = re.sub(rf"(typedef struct {struct} {{\n)", r"\1packed_uint padding;", types)
+        (broken / "scene_types.h").write_text(padded)
+        code, words = run({**environment, "BALLPARK_KERNELS": str(broken)}, *small, "--force")
+        assert code == 1 and not picture.exists(), f"{struct}: exit {code}\n{words}"
+        assert f"{struct}_has_padding" in words, f"{struct}: {words}"
+print("refused, and forced; no padding")
