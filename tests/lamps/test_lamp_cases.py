@@ -43,24 +43,50 @@ class Trouble(Exception):
 
 class Bench:
     def __init__(self, program, folder, own):
-        self.program, self.folder, self.runs = os.path.abspath(program), folder, 0
+        self.program, self.folder, self.pictures = os.path.abspath(program), folder, 0
         self.effects = [] if own else ["--effects", "all"]
+        self.drawn = {}  # by render_together, for render
+
+    def run(self, names, lamps, samples, options):
+        """What the program said, and the statistics of each scene if it succeeded."""
+        command = [self.program, "render", *names, "--quiet", *self.effects, "--lamps", lamps, "--seed", "3", "--spp",
+                   str(samples), "-o", "./", "--format", "pfm", "--stats", "stats.json", *options]
+        done = subprocess.run(command, cwd=self.folder, capture_output=True, text=True)
+        if done.returncode != 0:
+            return done, []
+        stats = json.loads((self.folder / "stats.json").read_text())
+        return done, stats["renders"] if len(names) > 1 else [stats]
+
+    def render_together(self, wanted):
+        """Draws scenes by one run for all that have the same options, since a run takes longer to begin than to draw a scene. What
+        fails is drawn again, alone, by render."""
+        groups = {}
+        for scene, *how in wanted:
+            groups.setdefault(tuple(how), []).append(scene)
+        for how, scenes in groups.items():
+            names = [f"case-{number}.json" for number in range(len(scenes))]
+            for name, scene in zip(names, scenes):
+                (self.folder / name).write_text(json.dumps(scene))
+            _, stats = self.run(names, *how)
+            for name, scene, one in zip(names, scenes, stats):
+                picture = (self.folder / name).with_suffix(".pfm").read_bytes()
+                self.drawn[json.dumps(scene), *how] = picture, one
 
     def render(self, scene, lamps, samples, options=()):
         """The picture's bytes, its pixels' channels as three lists, and the statistics."""
-        (self.folder / "case.json").write_text(json.dumps(scene))
-        command = [self.program, "render", "case.json", "--quiet", *self.effects, "--lamps", lamps, "--seed", "3", "--spp",
-                   str(samples), "-o", "case.pfm", "--stats", "case-stats.json", *options]
-        done = subprocess.run(command, cwd=self.folder, capture_output=True, text=True)
-        self.runs += 1
-        if "samples are not finite" in done.stderr:
-            raise Trouble(f"samples that are not finite with lamps {lamps}")
-        if done.returncode != 0:
-            raise Trouble(f"exit code {done.returncode}: {done.stderr.strip()}")
-        stats = json.loads((self.folder / "case-stats.json").read_text())
+        self.pictures += 1
+        drawn = self.drawn.get((json.dumps(scene), lamps, samples, options))
+        if drawn is None:
+            (self.folder / "case.json").write_text(json.dumps(scene))
+            done, stats = self.run(["case.json"], lamps, samples, options)
+            if "samples are not finite" in done.stderr:
+                raise Trouble(f"samples that are not finite with lamps {lamps}")
+            if done.returncode != 0:
+                raise Trouble(f"exit code {done.returncode}: {done.stderr.strip()}")
+            drawn = (self.folder / "case.pfm").read_bytes(), stats[0]
+        picture, stats = drawn
         if stats["invalid_samples"] != 0:
             raise Trouble(f"{stats['invalid_samples']} invalid samples with lamps {lamps}")
-        picture = (self.folder / "case.pfm").read_bytes()
         numbers = read_pfm(picture)[2]
         return picture, [list(numbers[c::3]) for c in range(3)], stats
 
@@ -75,6 +101,15 @@ def judge(values, expected, what, rounding):
     if not z <= Z_MAX:
         raise Trouble(f"{what}: {mean:.9g}, expected {expected:.9g} ({mean / expected - 1 if expected else math.inf:+.3%}), z = {z:.1f}")
     return z, error / abs(expected) if expected else 0.0
+
+
+def pictures_of(case, on_alone):
+    """What run_case will render, if it is right."""
+    yield case.scene, "on", case.samples, case.options
+    if case.like is not None:
+        yield case.like, "on", case.samples, case.options
+    if case.chance and not on_alone:
+        yield case.scene, "off", case.samples, case.options
 
 
 def run_case(bench, case, on_alone=False):
@@ -133,23 +168,25 @@ def main():
     numbered = {**cases.NUMBERED, **disc_cases.NUMBERED, **image_cases.NUMBERED, **motion_cases.NUMBERED, **boundary_cases.NUMBERED}
     deep, on_alone = "--deep" in rest, "--on" in rest
     chosen = [word.partition(".") for word in rest if not word.startswith("--")] or [(number, "", "") for number in sorted(numbered)]
-    failures = count = 0
+    failures = 0
     with tempfile.TemporaryDirectory(prefix="ballpark-lamps-") as folder:
         bench = Bench(program, pathlib.Path(folder), "--own" in rest)
+        tried = []
         for number, _, place in chosen:
             made = list(numbered[int(number)](pathlib.Path(folder)))
-            for case in [made[int(place) - 1]] if place else made:
-                if case.deep != deep or on_alone and case.expected is None:
-                    continue
-                count += 1
-                try:
-                    print(f"{number:2} {case.name:58} {run_case(bench, case, on_alone)}", flush=True)
-                except Trouble as trouble:
-                    failures += 1
-                    print(f"{number:2} {case.name:58} FAILED: {trouble}", flush=True)
-                    if on_alone:
-                        return 1
-        print(f"{count} cases in {bench.runs} renders, {failures} failed")
+            tried += [(number, case) for case in ([made[int(place) - 1]] if place else made)
+                      if case.deep == deep and not (on_alone and case.expected is None)]
+        # Those with files are drawn alone: names of files repeat.
+        bench.render_together([one for _, case in tried if not case.files for one in pictures_of(case, on_alone)])
+        for number, case in tried:
+            try:
+                print(f"{number:2} {case.name:58} {run_case(bench, case, on_alone)}", flush=True)
+            except Trouble as trouble:
+                failures += 1
+                print(f"{number:2} {case.name:58} FAILED: {trouble}", flush=True)
+                if on_alone:
+                    return 1
+        print(f"{len(tried)} cases with {bench.pictures} pictures, {failures} failed")
     return 1 if failures else 0
 
 

@@ -11,7 +11,7 @@
  * reported, and the pictures must agree within their error.
  *
  * Nearly all of the time is the compiler's, so nothing but the trace kernels is compiled, and the general
- * ones once.
+ * ones once; and PoCL optimises only packets, since no processor is given the other form.
  *
  * test_effects_equality [every [PART OF]]: PART of OF shares, which can run side by side if each has a kernel
  * cache of its own. */
@@ -88,6 +88,8 @@ static BpStatus trace(const Lab *lab, const BpScene *scene, const BpRenderOption
     BpWorkerSetup setup;
     BpPacked packed = {0};
     BpStatus status = bp_render_plan(scene, options, &lab->device->info, &setup, &packed, err);
+    const char *const flags = setup.program.form == BP_KERNEL_PACKET ? "" : "-cl-opt-disable";
+    if (status == BP_OK && setenv("POCL_EXTRA_BUILD_FLAGS", flags, 1) != 0) status = BP_ERR_MEMORY;
     if (status == BP_OK && *program == NULL)
         status = bp_program_build(lab->device, &setup.program, NULL, NULL, program, err);
     if (status != BP_OK) goto done;
