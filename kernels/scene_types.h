@@ -304,25 +304,27 @@ enum { PATTERN_CHECKER, PATTERN_PERLIN, PATTERN_TURBULENCE, PATTERN_MARBLE, PATT
 
 /* OpenCL C 1.2 has no static assertions, but no array has a negative size. */
 #ifdef BP_HOST
+#define REAL_BYTES 8
 #define SIZE_IS(type, size) _Static_assert(sizeof(type) == (size), #type " has padding");
 #else
+#define REAL_BYTES (REAL_IS_DOUBLE ? 8 : 4)
 #define SIZE_IS(type, size) typedef char type##_has_padding[sizeof(type) == (size) ? 1 : -1];
 #endif
 /* clang-format off */
-SIZE_IS(PackedCamera, 32 * sizeof(real))
-SIZE_IS(PackedSky, 48 * sizeof(real))
-SIZE_IS(PackedDisc, 12 * sizeof(real))
-SIZE_IS(PackedMaterial, 8 * sizeof(real))
+SIZE_IS(PackedCamera, 32 * REAL_BYTES)
+SIZE_IS(PackedSky, 48 * REAL_BYTES)
+SIZE_IS(PackedDisc, 12 * REAL_BYTES)
+SIZE_IS(PackedMaterial, 8 * REAL_BYTES)
 SIZE_IS(PackedMaterialKind, 16)
-SIZE_IS(PackedTexture, 32 * sizeof(real))
+SIZE_IS(PackedTexture, 32 * REAL_BYTES)
 SIZE_IS(PackedTextureKind, 48)
-SIZE_IS(PackedMedium, 8 * sizeof(real))
+SIZE_IS(PackedMedium, 8 * REAL_BYTES)
 SIZE_IS(PackedVariation, 16)
 /* clang-format on */
 #undef SIZE_IS
+#undef REAL_BYTES
 
 #ifdef BP_HOST
-_Static_assert(sizeof(real) == 8, "the host packs in double");
 _Static_assert(PART_UNIT >= LAMP_NODE_REALS, "the root of the tree of lamps lies in the first part");
 #define BP_PLACE(place, type, member, element)                                                               \
     _Static_assert(offsetof(type, member) == (place) * sizeof(element), "the place of " #member)

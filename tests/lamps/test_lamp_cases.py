@@ -58,8 +58,8 @@ class Bench:
         return done, stats["renders"] if len(names) > 1 else [stats]
 
     def render_together(self, wanted):
-        """Draws scenes by one run for all that have the same options, since a run takes longer to begin than to draw a scene. What
-        fails is drawn again, alone, by render."""
+        """Draws all scenes that have the same options in one run, since starting the program takes longer than drawing a scene.
+        Where a run fails, render draws its scenes one by one."""
         groups = {}
         for scene, *how in wanted:
             groups.setdefault(tuple(how), []).append(scene)
@@ -70,7 +70,7 @@ class Bench:
             _, stats = self.run(names, *how)
             for name, scene, one in zip(names, scenes, stats):
                 picture = (self.folder / name).with_suffix(".pfm").read_bytes()
-                self.drawn[json.dumps(scene), *how] = picture, one
+                self.drawn[(json.dumps(scene), *how)] = picture, one
 
     def render(self, scene, lamps, samples, options=()):
         """The picture's bytes, its pixels' channels as three lists, and the statistics."""

@@ -88,10 +88,10 @@ static BpStatus trace(const Lab *lab, const BpScene *scene, const BpRenderOption
     BpWorkerSetup setup;
     BpPacked packed = {0};
     BpStatus status = bp_render_plan(scene, options, &lab->device->info, &setup, &packed, err);
-    const char *const flags = setup.program.form == BP_KERNEL_PACKET ? "" : "-cl-opt-disable";
-    if (status == BP_OK && setenv("POCL_EXTRA_BUILD_FLAGS", flags, 1) != 0) status = BP_ERR_MEMORY;
-    if (status == BP_OK && *program == NULL)
+    if (status == BP_OK && *program == NULL) {
+        setenv("POCL_EXTRA_BUILD_FLAGS", setup.program.form == BP_KERNEL_PACKET ? "" : "-cl-opt-disable", 1);
         status = bp_program_build(lab->device, &setup.program, NULL, NULL, program, err);
+    }
     if (status != BP_OK) goto done;
     BpWorker *worker = calloc(1, sizeof *worker);
     samples->count = setup.width * setup.height * (uint32_t)options->samples_per_pixel;
