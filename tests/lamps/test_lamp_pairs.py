@@ -61,17 +61,46 @@ class Sums:
             self.values = [a * unit for a in numbers]
 
 
-def render(program, folder, scene, lamps, samples, *options):
-    """(sums, statistics)"""
-    command = [program, "render", str(scene), "--quiet", "--effects", "all", "--lamps", lamps, "--seed", "11", "--spp",
-               str(samples), "--width", "24", "-o", "pair.bpa", "--stats", "pair-stats.json", *options]
-    done = subprocess.run(command, cwd=folder, capture_output=True, text=True)
-    if done.returncode != 0:
-        raise Trouble(f"exit code {done.returncode}: {done.stderr.strip()}")
+def run(program, folder, scenes, *options):
+    """The exit code, what was written to standard output, and what to standard error."""
+    done = subprocess.run([program, *options[:1], *map(str, scenes), "--quiet", "--effects", "all", "--width", "24", *options[1:]],
+                          cwd=folder, capture_output=True, text=True)
+    return done.returncode, done.stdout, done.stderr.strip()
+
+
+def render(program, folder, scenes, lamps, samples, *options):
+    """{scene: (sums, statistics) or Trouble}. All in one run, since starting the program takes longer than drawing a scene; where
+    that fails, one by one."""
+    code, _, errors = run(program, folder, scenes, "render", "--lamps", lamps, "--seed", "11", "--spp", str(samples), "-o", "./",
+                          "--format", "bpa", "--stats", "pair-stats.json", *options)
+    if code != 0 and len(scenes) == 1:
+        return {scenes[0]: Trouble(f"exit code {code}: {errors}")}
+    if code != 0:
+        return {scene: drawn for each in scenes
+                for scene, drawn in render(program, folder, [each], lamps, samples, *options).items()}
     stats = json.loads((folder / "pair-stats.json").read_text())
-    if stats["invalid_samples"] != 0:
-        raise Trouble(f"{stats['invalid_samples']} invalid samples with lamps {lamps}")
-    return Sums(folder / "pair.bpa"), stats
+    drawn = {}
+    for scene, one in zip(scenes, stats["renders"] if len(scenes) > 1 else [stats]):
+        drawn[scene] = (Sums(folder / f"{scene.stem}.bpa"), one)
+        if one["invalid_samples"] != 0:
+            drawn[scene] = Trouble(f"{one['invalid_samples']} invalid samples with lamps {lamps}")
+    return drawn
+
+
+def check(program, folder, scenes):
+    """{scene: the verdict of `ballpark check`, or Trouble}"""
+    code, written, errors = run(program, folder, scenes, "check", "--lamps", "on", "--spp", "512", "--seed", "12", "--json", "-")
+    if code in (0, 3, 4):
+        return dict(zip(scenes, json.loads(written)["results"]))
+    if len(scenes) == 1:
+        return {scenes[0]: Trouble(f"check: exit code {code}: {errors}")}
+    return {scene: verdict for each in scenes for scene, verdict in check(program, folder, [each]).items()}
+
+
+def found_for(scene, drawn):
+    if isinstance(drawn[scene], Trouble):
+        raise drawn[scene]
+    return drawn[scene]
 
 
 def compare(on, off, samples):
@@ -110,15 +139,9 @@ def compare(on, off, samples):
     return worst, found, where
 
 
-def run_scene(program, folder, scene, samples, deep):
-    on, on_stats = render(program, folder, scene, "on", samples)
-    off, off_stats = render(program, folder, scene, "off", samples)
-    few = 32
-    if deep:
-        one = render(program, folder, scene, "on", few, "--kernel", "packet")
-        other = render(program, folder, scene, "on", few, "--kernel", "sample")
-    else:
-        one, other = (on, on_stats), render(program, folder, scene, "on", samples, "--kernel", "sample")
+def judge(scene, pictures, verdicts, samples, deep):
+    """One line about a scene; Trouble where it is wrong."""
+    (on, on_stats), (off, off_stats), one, other = (found_for(scene, drawn) for drawn in pictures)
     if on_stats["lamps"] != "on" or off_stats["lamps"] != "off":
         raise Trouble(f"lamps {on_stats['lamps']} and {off_stats['lamps']}")
     if off_stats["lamp_rays"] != 0 or on_stats["lamp_rays"] == 0:
@@ -138,13 +161,8 @@ def run_scene(program, folder, scene, samples, deep):
     if deep and found > FOUND_MAX and scene.stem not in TOO_SMALL:
         raise Trouble(f"a bias below {found:.1%} would not be found")
     said = ""
-    if deep and scene.parent == folder:
-        command = [program, "check", str(scene), "--lamps", "on", "--effects", "all", "--spp", "512",
-                   "--width", "24", "--seed", "12", "--quiet", "--json", "-"]
-        done = subprocess.run(command, cwd=folder, capture_output=True, text=True)
-        if done.returncode not in (0, 3, 4):
-            raise Trouble(f"check: exit code {done.returncode}: {done.stderr.strip()}")
-        verdict = json.loads(done.stdout)["results"][0]
+    if scene in verdicts:
+        verdict = found_for(scene, verdicts)
         means = next(test["z"] for test in verdict["tests"] if test["family"] == "picture")
         if not means <= Z_MAX:
             raise Trouble(f"against the reference: z = {means:.1f}")
@@ -157,31 +175,41 @@ def main():
     program, deep = os.path.abspath(program), "--deep" in rest
     lit, dark = lamp_scenes.in_files(source)
     every = {path.stem: path.resolve() for path in lit}
-    names = [word for word in rest if word != "--deep"] or (QUICK if not deep else [*every, *lamp_scenes.GENERATED])
-    failures = count = 0
+    named = [word for word in rest if word != "--deep"]
+    names = named or ([*every, *lamp_scenes.GENERATED] if deep else QUICK)
+    samples = 4096 if deep else 256
+    failures = 0
     with tempfile.TemporaryDirectory(prefix="ballpark-lamps-") as folder:
         folder = pathlib.Path(folder)
+        scenes, made = [], []
         for name in names:
-            path = every.get(name)
-            if path is None:
-                path = folder / f"{name}.json"
-                path.write_text(json.dumps(lamp_scenes.generated(name)))
-            count += 1
+            if name not in every:
+                made.append(folder / f"{name}.json")
+                made[-1].write_text(json.dumps(lamp_scenes.generated(name)))
+            scenes.append(every[name] if name in every else made[-1])
+        on, off = (render(program, folder, scenes, lamps, samples) for lamps in ("on", "off"))
+        if deep:
+            one, other = (render(program, folder, scenes, "on", 32, "--kernel", form) for form in ("packet", "sample"))
+        else:
+            one, other = on, render(program, folder, scenes, "on", samples, "--kernel", "sample")
+        verdicts = check(program, folder, made) if deep and made else {}
+        for scene in scenes:
             try:
-                print(f"{name:20} {run_scene(program, folder, path, 4096 if deep else 256, deep)}", flush=True)
+                print(f"{scene.stem:20} {judge(scene, (on, off, one, other), verdicts, samples, deep)}", flush=True)
             except Trouble as trouble:
                 failures += 1
-                print(f"{name:20} FAILED: {trouble}", flush=True)
-        if not [word for word in rest if word != "--deep"]:
-            for path in dark[::5] if deep else [path for path in dark if path.stem in QUICK_DARK]:
-                count += 1
-                try:
-                    on, off = (render(program, folder, path.resolve(), lamps, 8) for lamps in ("on", "off"))
-                    if on[0].body != off[0].body or on[1]["lamps"] != "off":
-                        raise Trouble("lamps on and off differ, without a lamp")
-                except Trouble as trouble:
-                    failures += 1
-                    print(f"{path.stem:20} FAILED: {trouble}", flush=True)
+                print(f"{scene.stem:20} FAILED: {trouble}", flush=True)
+        dark = [] if named else [path.resolve() for path in (dark[::5] if deep else dark) if deep or path.stem in QUICK_DARK]
+        on, off = (render(program, folder, dark, lamps, 8) if dark else {} for lamps in ("on", "off"))
+        for scene in dark:
+            try:
+                (on_sums, on_stats), (off_sums, _) = found_for(scene, on), found_for(scene, off)
+                if on_sums.body != off_sums.body or on_stats["lamps"] != "off":
+                    raise Trouble("lamps on and off differ, without a lamp")
+            except Trouble as trouble:
+                failures += 1
+                print(f"{scene.stem:20} FAILED: {trouble}", flush=True)
+    count = len(scenes) + len(dark)
     print(f"{count} scenes, {failures} failed")
     return 1 if failures else 0
 
