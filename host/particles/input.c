@@ -14,11 +14,14 @@
 #include <unistd.h>
 #include <zlib.h>
 
-enum { BLOCK = 1 << 20 };
+/* A block grows from this to BP_INPUT_BLOCK while there is more to read, since most files are short. */
+enum { FIRST_BLOCK = 1 << 10 };
+/* From this many bytes on, zlib gets larger buffers. */
+enum { LARGE_FILE = 1 << 17 };
 
 BpStatus input_init(Input *input, FILE *stream, const char *name, BpError *err) {
-    *input = (Input){.stream = stream, .name = name, .capacity = BLOCK};
-    input->buffer = malloc(BLOCK + 1); /* one more for the NUL after a last line */
+    *input = (Input){.stream = stream, .name = name, .capacity = FIRST_BLOCK};
+    input->buffer = malloc(FIRST_BLOCK + 1); /* one more for the NUL after a last line */
     if (input->buffer == NULL)
         return bp_fail(err, BP_ERR_MEMORY, "out of memory for a block of a file of particles");
     return input_rewind(input, err);
@@ -40,15 +43,32 @@ BpStatus input_rewind(Input *input, BpError *err) {
     /* zlib closes what it opens, so it gets a descriptor of its own; they share their place in the file. It
      * passes bytes through unchanged where there is no gzip header. */
     const int descriptor = dup(fileno(input->stream));
-    if (descriptor >= 0 && lseek(descriptor, 0, SEEK_SET) == 0) input->gz = gzdopen(descriptor, "rb");
+    const off_t size = descriptor >= 0 ? lseek(descriptor, 0, SEEK_END) : -1;
+    if (size >= 0 && lseek(descriptor, 0, SEEK_SET) == 0) input->gz = gzdopen(descriptor, "rb");
     if (input->gz == NULL) {
         const BpStatus status = bp_fail(err, BP_ERR_FILE, "cannot read it: %s", strerror(errno));
         if (descriptor >= 0) close(descriptor);
         bp_error_at(err, input->name, 0, 0);
         return status;
     }
-    gzbuffer(input->gz, 1 << 17);
+    gzbuffer(input->gz, size < LARGE_FILE ? 1 << 12 : 1 << 17);
     return BP_OK;
+}
+
+/* Doubles the block, or makes it hold `count` bytes, up to the largest. */
+static bool grow(Input *input, size_t count) {
+    size_t capacity = 2 * input->capacity;
+    if (capacity < count) capacity = count;
+    if (capacity > BP_INPUT_BLOCK) capacity = BP_INPUT_BLOCK;
+    unsigned char *const grown = realloc(input->buffer, capacity + 1);
+    if (grown == NULL) {
+        input->failed = true;
+        input->fault = BP_ERR_MEMORY;
+        return false;
+    }
+    input->buffer = grown;
+    input->capacity = capacity;
+    return true;
 }
 
 bool input_fill(Input *input, size_t count) {
@@ -57,6 +77,9 @@ bool input_fill(Input *input, size_t count) {
     memmove(input->buffer, input->buffer + input->begin, input->end - input->begin);
     input->end -= input->begin;
     input->begin = 0;
+    /* What was read before filled the block, or `count` does not fit. */
+    const bool is_full = input->taken + input->end >= input->capacity || count > input->capacity;
+    if (is_full && input->capacity < BP_INPUT_BLOCK && !grow(input, count)) return false;
     while (input->end < count) {
         const int got =
             gzread(input->gz, input->buffer + input->end, (unsigned)(input->capacity - input->end));
@@ -138,7 +161,7 @@ BpStatus input_line(Input *input, char **line, BpError *err) {
         if (here > seen) end = memchr(input->buffer + input->begin + seen, '\n', here - seen);
         seen = here;
         if (end != NULL) break;
-        if (here == input->capacity)
+        if (here == BP_INPUT_BLOCK)
             return input_fail(input, true, err, "found a line of over %zu bytes, expected shorter lines",
                               here);
         if (!input_fill(input, here + 1)) {

@@ -11,6 +11,8 @@
 
 /* What one file may unpack to: past it, reading ends with an error. */
 #define BP_INPUT_BYTES_MAX ((uint64_t)1 << 42)
+/* The largest block, in bytes, and so the longest line. */
+enum { BP_INPUT_BLOCK = 1 << 20 };
 
 typedef struct Input {
     FILE *stream;
@@ -30,7 +32,8 @@ BpStatus input_init(Input *input, FILE *stream, const char *name, BpError *err);
 void input_clear(Input *input);
 /* Begins again at the file's beginning. */
 BpStatus input_rewind(Input *input, BpError *err);
-/* Reads until `count` bytes, at most the capacity, lie at buffer + begin. False at the end of the file. */
+/* Reads until `count` bytes, at most BP_INPUT_BLOCK, lie at buffer + begin, which may move. False at the
+ * end of the file. */
 bool input_fill(Input *input, size_t count);
 void input_take(Input *input, size_t count);
 /* Passes over `count` bytes; false when the file ends before. */

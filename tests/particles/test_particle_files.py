@@ -506,6 +506,24 @@ class Hostile(FileTest):
         self.refuse("a.ply", PLY.replace("property float y\n", ""), "x, y and z")
         self.refuse("a.ply", PLY.replace("element vertex 2", "element points 2"), "element vertex")
 
+    def test_long_lines(self):
+        """Lines longer than what is read at first, and the longest allowed one."""
+        for length in (1023, 1024, 1025, 5000, (1 << 20) - 1):
+            for name, pack in (("a.xyz", bytes), ("a.xyz.gz", gzip.compress)):
+                text = b"2\n" + b"x" * length + b"\nO 1 2 3\nH 4 5 6\n"
+                found = self.summary(self.write(name, pack(text)))
+                self.assertEqual((found["count"], found["low"], found["high"]), (2, [1, 2, 3], [4, 5, 6]), (name, length))
+        self.refuse("a.xyz", b"1\n" + b"x" * (1 << 20) + b"\nO 1 2 3\n", ":2:", "line of over")
+
+    def test_wide_rows(self):
+        """Rows of numbers that are larger than what is read at first."""
+        for more in (50, 100, 125):
+            head = "ply\nformat binary_little_endian 1.0\nelement vertex 3\n" + "".join(
+                f"property double {name}\n" for name in ["x", "y", "z", *(f"p{i}" for i in range(more))]) + "end_header\n"
+            rows = b"".join(struct.pack(f"<{3 + more}d", k, k + 1, k + 2, *[9.0] * more) for k in (1, 2, 3))
+            found = self.summary(self.write("a.ply", head.encode() + rows))
+            self.assertEqual((found["count"], found["low"], found["high"]), (3, [1, 2, 3], [3, 4, 5]), more)
+
     def test_damage(self):
         self.refuse("a.xyz", b"1\n\nO 0 \0 0\n", ":3:", "value 0")
         self.refuse("a.xyz", b"1\n" + b"x" * 3000000, ":2:", "line of over")

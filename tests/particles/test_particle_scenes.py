@@ -194,6 +194,14 @@ class Scenes(ProgramTest):
         self.document_with({"file": "a.xyz", "box": True})
         self.assertGreater(self.spheres("x.json"), 1000)
 
+    def test_long_line(self):
+        """A comment longer than what is read of a file at first."""
+        scenes = []
+        for length in (5, 5000):
+            self.write("one.xyz", "1\n" + "x" * length + "\nO 1 2 3\n")
+            scenes.append(self.succeed("scene", "one.xyz").stdout)
+        self.assertEqual(*scenes)
+
     def test_connections_of_pdb(self):
         """PDB files list some bonds only: the others are found by distance, and each is drawn once."""
         chain = [pdb_line(i, " C  ", "ALA", (1.4 * i, 0, 0), " C") for i in range(1, 6)]
