@@ -61,9 +61,9 @@ class Sums:
             self.values = [a * unit for a in numbers]
 
 
-def run(program, folder, scenes, *options):
+def run(program, command, folder, scenes, *options):
     """The exit code, what was written to standard output, and what to standard error."""
-    done = subprocess.run([program, *options[:1], *map(str, scenes), "--quiet", "--effects", "all", "--width", "24", *options[1:]],
+    done = subprocess.run([program, command, *map(str, scenes), "--quiet", "--effects", "all", "--width", "24", *options],
                           cwd=folder, capture_output=True, text=True)
     return done.returncode, done.stdout, done.stderr.strip()
 
@@ -71,7 +71,7 @@ def run(program, folder, scenes, *options):
 def render(program, folder, scenes, lamps, samples, *options):
     """{scene: (sums, statistics) or Trouble}. All in one run, since starting the program takes longer than drawing a scene; where
     that fails, one by one."""
-    code, _, errors = run(program, folder, scenes, "render", "--lamps", lamps, "--seed", "11", "--spp", str(samples), "-o", "./",
+    code, _, errors = run(program, "render", folder, scenes, "--lamps", lamps, "--seed", "11", "--spp", str(samples), "-o", "./",
                           "--format", "bpa", "--stats", "pair-stats.json", *options)
     if code != 0 and len(scenes) == 1:
         return {scenes[0]: Trouble(f"exit code {code}: {errors}")}
@@ -89,7 +89,7 @@ def render(program, folder, scenes, lamps, samples, *options):
 
 def check(program, folder, scenes):
     """{scene: the verdict of `ballpark check`, or Trouble}"""
-    code, written, errors = run(program, folder, scenes, "check", "--lamps", "on", "--spp", "512", "--seed", "12", "--json", "-")
+    code, written, errors = run(program, "check", folder, scenes, "--lamps", "on", "--spp", "512", "--seed", "12", "--json", "-")
     if code in (0, 3, 4):
         return dict(zip(scenes, json.loads(written)["results"]))
     if len(scenes) == 1:

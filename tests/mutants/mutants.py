@@ -180,10 +180,11 @@ MUTANTS = [
     Mutant("a camera that does not see arrays", "the camera was fitted to the document's particles alone",
            [patch("host/formats/scene_sets.c", "    scene->has_particles = true;", "")],
            [test("test_library_arrays", "test_fit")]),
-    # ---- bonds ----------------------------------------------------------------------------------------------
+    # ---- files of particles ----------------------------------------------------------------------------------
     Mutant("a block that does not grow", "lines longer than what is read at first", [
         patch("host/particles/input.c", "if (here == BP_INPUT_BLOCK)", "if (here == input->capacity)")],
            [particle_scenes("long_line")]),
+    # ---- bonds ----------------------------------------------------------------------------------------------
     Mutant("a ligand's bonds for a protein's", "PDB files list the bonds of ligands, which stood for all", [
         patch("host/particles/bonds.c", "particles->bond_count == 0 || particles->bonds_partial;", "particles->bond_count == 0;")],
            [particle_scenes("connections_of_pdb")]),
