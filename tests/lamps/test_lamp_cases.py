@@ -16,6 +16,7 @@ drawn without, what needs one is left out, and the first case that fails is the 
 effects of its scene, as renders have it. Otherwise one kernel has all effects: compiled once for all cases, but in a longer
 time.
 """
+import itertools
 import json
 import math
 import os
@@ -173,8 +174,8 @@ def main():
         bench = Bench(program, pathlib.Path(folder), "--own" in rest)
         tried = []
         for number, _, place in chosen:
-            made = list(numbered[int(number)](pathlib.Path(folder)))
-            tried += [(number, case) for case in ([made[int(place) - 1]] if place else made)
+            made = numbered[int(number)](pathlib.Path(folder))  # one after the other: some closed forms take long
+            tried += [(number, case) for case in (itertools.islice(made, int(place) - 1, int(place)) if place else made)
                       if case.deep == deep and not (on_alone and case.expected is None)]
         # Those with files are drawn alone: names of files repeat.
         bench.render_together([one for _, case in tried if not case.files for one in pictures_of(case, on_alone)])
