@@ -101,15 +101,4 @@ with tempfile.TemporaryDirectory() as folder:
         assert text.count("from (") == len(steps) and "hits nothing: the sky" in text, text
     assert len(lengths) > 1, "every path is as long as the others"
     run("explain", scene, "--pixel", "48,0", "--width", 48, code=2)
-
-    # Measured. Few effects are out of this scene, so few kernels are compiled; the deep test has them all out.
-    every_kind = {"m": {"type": "lambertian", "albedo": {"texture": "t"}}, "n": {"type": "metal", "albedo": [0.5] * 3},
-                  "g": {"type": "dielectric", "refraction_index": 1.5}, "l": {"type": "diffuse_light", "emit": [4] * 3},
-                  "c": {"type": "normals"}, "i": {"type": "interface"}}
-    spheres = [{"center": [0.5 * i - 1, 0, -2], "radius": 0.2, "material": name} for i, name in enumerate(every_kind)]
-    spheres[0]["center_end"] = [-1, 0.1, -2]
-    scene = pathlib.Path(folder, "all.json")
-    scene.write_text(json.dumps({"camera": {"image_width": 64}, "textures": {"t": {"type": "noise", "colors": [0.5, 1]}}, "materials": every_kind, "spheres": spheres,
-                                 "background": {"discs": [{"direction": [0, 1, 0], "half_angle": 5, "radiance": [1] * 3}]}}))
-    check_measured(scene, [name for name in ALL if name not in ("lens", "images", "environment", "shadow_catcher")], target)
 print(f"{len(document)} scenes explained")
