@@ -11,7 +11,8 @@ The host code is built with warnings as errors, as a user would (-O3), and the u
 
 Then PoCL for ARM compiles kernels, vectors of four lanes, and pictures must have the same bits as on this machine, whose
 pictures test_cli_bits compares with the recorded ones. An emulated compiler takes ten times as long, so these are two
-kernels, of which PoCL optimises the packets, since no processor is given the other form; --nightly compares every recorded picture in every form that processors use.
+kernels, of which PoCL optimises the packets, since no processor is given the other form. --nightly compares every recorded
+picture in every form that processors use.
 
 qemu-user lets a program start only programs of this machine, so PoCL is given this machine's linker, for ARM.
 """
