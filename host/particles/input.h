@@ -33,14 +33,14 @@ void input_clear(Input *input);
 /* Begins again at the file's beginning. */
 BpStatus input_rewind(Input *input, BpError *err);
 /* Reads until `count` bytes, at most BP_INPUT_BLOCK, lie at buffer + begin, which may move. False at the
- * end of the file. */
+ * end of the file, and where reading failed. */
 bool input_fill(Input *input, size_t count);
 void input_take(Input *input, size_t count);
 /* Passes over `count` bytes; false when the file ends before. */
 bool input_skip(Input *input, uint64_t count);
 
 /* Takes a line; *line is ended by a NUL in place of its end (LF or CR LF), and valid until the next call;
- * NULL at the end of the file. Fails on lines longer than a block and on bytes of value 0. */
+ * NULL at the end of the file. Fails on lines of BP_INPUT_BLOCK bytes and more, and on bytes of value 0. */
 BpStatus input_line(Input *input, char **line, BpError *err);
 /* The same, passing over blank lines. */
 BpStatus input_full_line(Input *input, char **line, BpError *err);

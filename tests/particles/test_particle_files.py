@@ -516,7 +516,7 @@ class Hostile(FileTest):
         self.refuse("a.xyz", b"1\n" + b"x" * (1 << 20) + b"\nO 1 2 3\n", ":2:", "line of over")
 
     def test_wide_rows(self):
-        """Rows of numbers that are larger than what is read at first."""
+        """Rows of numbers that lie across blocks, the widest as large as what is read at first."""
         for more in (50, 100, 125):
             head = "ply\nformat binary_little_endian 1.0\nelement vertex 3\n" + "".join(
                 f"property double {name}\n" for name in ["x", "y", "z", *(f"p{i}" for i in range(more))]) + "end_header\n"
