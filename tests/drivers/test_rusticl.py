@@ -1,6 +1,8 @@
 """On a second driver, Mesa's rusticl on llvmpipe, the picture agrees with PoCL's.
 
-Usage: test_rusticl.py BALLPARK SCENES
+Usage: test_rusticl.py BALLPARK SCENES CALL_FMA
+
+CALL_FMA runs a kernel of one line. Where it crashes, the driver is broken, and the test is skipped.
 """
 
 import json
@@ -14,7 +16,7 @@ import tempfile
 from drivers import icd
 from pfm import read_pfm
 
-program, scenes = sys.argv[1], pathlib.Path(sys.argv[2])
+program, scenes, call_fma = sys.argv[1], pathlib.Path(sys.argv[2]), sys.argv[3]
 RUSTICL = dict(os.environ, OCL_ICD_VENDORS="rusticl.icd", RUSTICL_ENABLE="llvmpipe")
 POCL = dict(os.environ, OCL_ICD_VENDORS=icd("pocl.icd"))
 
@@ -36,6 +38,11 @@ def render(environment, scene, folder, *options):
 if not os.path.exists("/etc/OpenCL/vendors/rusticl.icd") or not has_device(RUSTICL):
     print("skipped: no rusticl with llvmpipe here (Debian: mesa-opencl-icd)")
     sys.exit(77)
+simplest = subprocess.run([call_fma], capture_output=True, text=True, env=RUSTICL, timeout=120)
+if simplest.returncode < 0:
+    print(f"skipped: this rusticl crashes (signal {-simplest.returncode}) in a kernel of one line that calls fma")
+    sys.exit(77)
+assert simplest.returncode == 0, f"a kernel that calls fma: exit code {simplest.returncode}\n{simplest.stdout}{simplest.stderr}"
 if not has_device(POCL):
     print("skipped: no PoCL here to compare with")
     sys.exit(77)
