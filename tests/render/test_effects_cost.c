@@ -6,6 +6,7 @@
  * test_effects_cost [all]: one scene for each set of effects that occurs in scenes/; or all scenes. */
 #include "base/clock.h"
 #include "opencl/device.h"
+#include "opencl/pocl.h"
 #include "scene/scene.h"
 #include "study/effect_costs.h"
 
@@ -18,11 +19,15 @@
 
 enum { WIDTH = 160, SETS_MAX = 1 << BP_EFFECT_COUNT };
 #define SLOWER_MAX 1.02
-/* Cold build of a trace program over that of the yardstick, in processor time. Of the kernels that scenes get
- * 2.1 to 3.1 were measured; of the general one, which has the code of all fifteen effects and is built only
- * where it is asked for, 5.0. */
+/* Cold build of a trace program over that of the yardstick, in processor time, with PoCL 3.1. Of the kernels
+ * that scenes get 2.1 to 3.5 were measured; of the general one, which has the code of all fifteen effects and
+ * is built only where it is asked for, 5.7. */
 #define BUILD_RATIO_MAX 5.0
 #define GENERAL_BUILD_RATIO_MAX 8.0
+/* Since version 4, PoCL inlines functions whose vectors are wider than a register, whatever a kernel says of
+ * them, into both functions that it makes of a kernel, and so compiles them twice. With PoCL 5.0 the same
+ * kernels took 4.8 and 11.3 yardsticks. Of other drivers no more is known. */
+#define COMPILED_TIMES_ELSEWHERE 2.0
 
 /* Its building exercises the same parts of a driver: parser, optimiser, code generator. */
 static const char yardstick[] =
@@ -106,16 +111,25 @@ static bool check_scene(const char *name, const BpScene *scene, const BpDeviceIn
     return false;
 }
 
-/* The median of three: one build has been seen to take a quarter of its usual time. */
+/* The most of three: where a driver still has a part of its compiler loaded from the build before, one has
+ * been seen to take a quarter of its usual time. */
 static bool time_yardstick(const BpDeviceInfo *device, uint64_t mark, double *seconds, BpError *err) {
-    double taken[3];
+    double taken;
     /* The first time a process builds anything, the driver loads its compiler. */
-    if (!build_yardstick(device, mark, &taken[0], err)) return false;
-    for (uint64_t i = 0; i < 3; ++i)
-        if (!build_yardstick(device, mark + 1 + i, &taken[i], err)) return false;
-    const double low = fmin(taken[0], taken[1]), high = fmax(taken[0], taken[1]);
-    *seconds = fmax(low, fmin(high, taken[2]));
+    if (!build_yardstick(device, mark, &taken, err)) return false;
+    *seconds = 0;
+    for (uint64_t i = 1; i <= 3; ++i) {
+        if (!build_yardstick(device, mark + i, &taken, err)) return false;
+        *seconds = fmax(*seconds, taken);
+    }
     return true;
+}
+
+static double most_yardsticks(const BpDeviceInfo *device, const char *kernel) {
+    const bool early_pocl =
+        strcmp(device->platform, BP_POCL_PLATFORM) == 0 && strtol(device->driver, NULL, 10) < 4;
+    const double once = strcmp(kernel, "general") == 0 ? GENERAL_BUILD_RATIO_MAX : BUILD_RATIO_MAX;
+    return early_pocl ? once : once * COMPILED_TIMES_ELSEWHERE;
 }
 
 /* Whether both kernels of a scene build within as many yardsticks as they may. */
@@ -132,7 +146,7 @@ static bool builds_fast(const BpScene *scene, const BpDeviceInfo *device, uint64
         const double ratio = kernel->cold_processor_seconds / small;
         printf("%-12s builds in %.2f s of processor time (%.1f yardsticks of %.2f s), again in %.2f s\n",
                kernel->name, kernel->cold_processor_seconds, ratio, small, kernel->warm_processor_seconds);
-        const double most = strcmp(kernel->name, "general") == 0 ? GENERAL_BUILD_RATIO_MAX : BUILD_RATIO_MAX;
+        const double most = most_yardsticks(device, kernel->name);
         if (!(ratio <= most)) {
             fprintf(stderr, "%s: %.1f yardsticks, more than %.1f\n", kernel->name, ratio, most);
             right = false;
