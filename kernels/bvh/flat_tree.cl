@@ -1,5 +1,5 @@
-/* flat_tree.cl: the leaves of a small tree in a row, for packets: to test the boxes of all leaves, one after the other,
- * against all lanes is then faster than a walk.
+/* flat_tree.cl: the leaves of a small tree in a row, for packets: to test the boxes of all leaves is then faster than a
+ * walk.
  *
  * In:    packed nodes.   Out: leaves and their boxes, the work-item's own copy.
  * Knows: scene_types.h.   Does not know: rays. */
@@ -11,7 +11,8 @@
 typedef struct FlatBatch {
     uint count;
     uint leaf[BATCH_LEAVES];
-    real planes[BATCH_LEAVES][6]; /* low x, y, z, high x, y, z */
+    /* As in a node: low x, y, z, high x, y, z of so many boxes. */
+    JOIN(REAL, TREE_WIDTH) planes[BATCH_LEAVES / TREE_WIDTH][6];
 } FlatBatch;
 
 typedef struct FlatTree {
@@ -31,8 +32,11 @@ static void flatten_tree(__global const real *boxes, __global const uint *childr
             if ((child & CHILD_LEAF) == 0 || plane[0] > plane[3 * TREE_WIDTH]) continue;
             FlatBatch *batch = &flat->batches[count / BATCH_LEAVES];
             const uint place = count % BATCH_LEAVES;
+            real *own_plane = (real *)batch->planes[place / TREE_WIDTH] + place % TREE_WIDTH;
+            if (place % TREE_WIDTH == 0)
+                for (uint row = 0; row < 6; ++row) batch->planes[place / TREE_WIDTH][row] = (JOIN(REAL, TREE_WIDTH))(0);
             batch->leaf[place] = child & ~CHILD_LEAF;
-            for (uint row = 0; row < 6; ++row) batch->planes[place][row] = plane[row * TREE_WIDTH];
+            for (uint row = 0; row < 6; ++row) own_plane[row * TREE_WIDTH] = plane[row * TREE_WIDTH];
             batch->count = place + 1;
             ++count;
         }

@@ -94,22 +94,15 @@ static BoxRay box_ray(const Ray_one *ray) {
 /* 1/d errs by 5u at most, which scales a side of a box, and the products by u more. */
 #define SLAB_TOLERANCE (R(1.0) + R(16.0) * ROUNDOFF)
 
-/* The children of `node` that the ray meets before `bound`, and where it enters them. */
-static child_mask test_node(const Geometry *geometry, const BoxRay *box, uint node, real bound, vreal *entry) {
-    __global const real *planes = place_in(geometry->node_boxes, node * (6 * TREE_WIDTH));
-    /* Written out, axis by axis: a loop is not always unrolled. */
-    const vreal enter_x = loose_fma(row_of(planes, box->near_row[0]), splat(box->inverse[0]),
-                                    splat(box->near_offset[0]));
-    const vreal enter_y = loose_fma(row_of(planes, box->near_row[1]), splat(box->inverse[1]),
-                                    splat(box->near_offset[1]));
-    const vreal enter_z = loose_fma(row_of(planes, box->near_row[2]), splat(box->inverse[2]),
-                                    splat(box->near_offset[2]));
-    const vreal leave_x = loose_fma(row_of(planes, box->far_row[0]), splat(box->inverse[0]),
-                                    splat(box->far_offset[0]));
-    const vreal leave_y = loose_fma(row_of(planes, box->far_row[1]), splat(box->inverse[1]),
-                                    splat(box->far_offset[1]));
-    const vreal leave_z = loose_fma(row_of(planes, box->far_row[2]), splat(box->inverse[2]),
-                                    splat(box->far_offset[2]));
+/* The boxes that the ray meets before `bound`, and where it enters them, by the planes that it meets first and last. */
+FORCE_INLINE static child_mask test_boxes(const BoxRay *box, vreal near_x, vreal near_y, vreal near_z, vreal far_x,
+                                          vreal far_y, vreal far_z, real bound, vreal *entry) {
+    const vreal enter_x = loose_fma(near_x, splat(box->inverse[0]), splat(box->near_offset[0]));
+    const vreal enter_y = loose_fma(near_y, splat(box->inverse[1]), splat(box->near_offset[1]));
+    const vreal enter_z = loose_fma(near_z, splat(box->inverse[2]), splat(box->near_offset[2]));
+    const vreal leave_x = loose_fma(far_x, splat(box->inverse[0]), splat(box->far_offset[0]));
+    const vreal leave_y = loose_fma(far_y, splat(box->inverse[1]), splat(box->far_offset[1]));
+    const vreal leave_z = loose_fma(far_z, splat(box->inverse[2]), splat(box->far_offset[2]));
     const vreal enter_xy = larger(enter_x, enter_y);
     const vreal enter_z0 = larger(enter_z, splat(0));
     const vreal near = larger(enter_xy, enter_z0);
@@ -119,6 +112,32 @@ static child_mask test_node(const Geometry *geometry, const BoxRay *box, uint no
     *entry = near;
     return lane_bits(near <= far * SLAB_TOLERANCE);
 }
+
+/* The children of `node` that the ray meets before `bound`, and where it enters them. */
+static child_mask test_node(const Geometry *geometry, const BoxRay *box, uint node, real bound, vreal *entry) {
+    __global const real *planes = place_in(geometry->node_boxes, node * (6 * TREE_WIDTH));
+    return test_boxes(box, row_of(planes, box->near_row[0]), row_of(planes, box->near_row[1]),
+                      row_of(planes, box->near_row[2]), row_of(planes, box->far_row[0]), row_of(planes, box->far_row[1]),
+                      row_of(planes, box->far_row[2]), bound, entry);
+}
+
+#ifdef BATCH_LEAVES
+static vreal flat_row_of(const real *rows, uint row) { return *(const vreal *)(rows + (size_t)row); }
+
+/* The leaves of a batch that the ray meets before `bound`, one bit each. */
+static uint test_batch(const FlatBatch *batch, const BoxRay *box, real bound) {
+    uint met = 0;
+    for (uint first = 0; first < batch->count; first += TREE_WIDTH) {
+        const real *planes = (const real *)batch->planes[first / TREE_WIDTH];
+        vreal entry;
+        met |= test_boxes(box, flat_row_of(planes, box->near_row[0]), flat_row_of(planes, box->near_row[1]),
+                          flat_row_of(planes, box->near_row[2]), flat_row_of(planes, box->far_row[0]),
+                          flat_row_of(planes, box->far_row[1]), flat_row_of(planes, box->far_row[2]), bound, &entry)
+               << first;
+    }
+    return met & (~0u >> (BATCH_LEAVES - batch->count));
+}
+#endif
 
 /* Which children of a node are leaves. */
 static child_mask leaf_children(const Geometry *geometry, uint node) {

@@ -15,6 +15,7 @@ typedef struct Visit {
 } Visit;
 
 #define FOUND_MAX 64u
+#define FEW_BOXES 16u /* for more, it is faster to test a ray against many boxes than a box against many rays */
 
 /* The rays of all lanes, and what each has met. */
 typedef struct LaneRays {
@@ -83,9 +84,41 @@ static void intersect_leaves(const Geometry *geometry, const Visit *visits, uint
     }
 }
 
-/* The leaves of one batch, against all lanes; a bound below 0 switches a lane off. */
-static void traverse_batch(const Geometry *geometry, const FlatBatch *batch, const BoxAxis *axes, vreal bound,
-                           LaneRays *rays) {
+/* What box tests need of the rays of all lanes. */
+typedef struct LaneBoxRays {
+    real inverse[3][LANE_COUNT], near_offset[3][LANE_COUNT], far_offset[3][LANE_COUNT];
+    uint near_row[3][LANE_COUNT];
+} LaneBoxRays;
+
+static void store_box_axes(const BoxAxis *axes, LaneBoxRays *boxes) {
+    for (uint axis = 0; axis < 3; ++axis) {
+        store_lanes(axes[axis].inverse, boxes->inverse[axis]);
+        store_lanes(axes[axis].near_offset, boxes->near_offset[axis]);
+        store_lanes(axes[axis].far_offset, boxes->far_offset[axis]);
+        store_lanes(choose_uint(axes[axis].inverse < splat(0), splat_uint((axis + 3) * TREE_WIDTH),
+                                splat_uint(axis * TREE_WIDTH)),
+                    boxes->near_row[axis]);
+    }
+}
+
+static void load_box_axis(const LaneBoxRays *boxes, uint lane, uint axis, BoxRay *box) {
+    box->inverse[axis] = boxes->inverse[axis][lane];
+    box->near_offset[axis] = boxes->near_offset[axis][lane];
+    box->far_offset[axis] = boxes->far_offset[axis][lane];
+    box->near_row[axis] = boxes->near_row[axis][lane];
+    box->far_row[axis] = (2 * axis + 3) * TREE_WIDTH - box->near_row[axis];
+}
+
+static BoxRay box_ray_of_lane(const LaneBoxRays *boxes, uint lane) {
+    BoxRay box; /* without a loop: it is not always unrolled, and the ray then passes through memory */
+    load_box_axis(boxes, lane, 0, &box);
+    load_box_axis(boxes, lane, 1, &box);
+    load_box_axis(boxes, lane, 2, &box);
+    return box;
+}
+
+/* Few boxes: one after the other against the rays of all lanes. A bound below 0 switches a lane off. */
+static vuint test_few_boxes(const FlatBatch *batch, const BoxAxis *axes, vreal bound) {
     /* Lanes differ in which plane of a pair they meet first. */
     vreal low_offset[3], high_offset[3];
     for (uint axis = 0; axis < 3; ++axis) {
@@ -95,19 +128,45 @@ static void traverse_batch(const Geometry *geometry, const FlatBatch *batch, con
     }
     vuint met = splat_uint(0);
     for (uint k = 0; k < batch->count; ++k) {
-        const real *planes = batch->planes[k];
+        const real *planes = (const real *)batch->planes[k / TREE_WIDTH] + k % TREE_WIDTH;
         const vreal low_x = loose_fma(splat(planes[0]), axes[0].inverse, low_offset[0]);
-        const vreal low_y = loose_fma(splat(planes[1]), axes[1].inverse, low_offset[1]);
-        const vreal low_z = loose_fma(splat(planes[2]), axes[2].inverse, low_offset[2]);
-        const vreal high_x = loose_fma(splat(planes[3]), axes[0].inverse, high_offset[0]);
-        const vreal high_y = loose_fma(splat(planes[4]), axes[1].inverse, high_offset[1]);
-        const vreal high_z = loose_fma(splat(planes[5]), axes[2].inverse, high_offset[2]);
+        const vreal low_y = loose_fma(splat(planes[TREE_WIDTH]), axes[1].inverse, low_offset[1]);
+        const vreal low_z = loose_fma(splat(planes[2 * TREE_WIDTH]), axes[2].inverse, low_offset[2]);
+        const vreal high_x = loose_fma(splat(planes[3 * TREE_WIDTH]), axes[0].inverse, high_offset[0]);
+        const vreal high_y = loose_fma(splat(planes[4 * TREE_WIDTH]), axes[1].inverse, high_offset[1]);
+        const vreal high_z = loose_fma(splat(planes[5 * TREE_WIDTH]), axes[2].inverse, high_offset[2]);
         const vreal near =
             larger(larger(smaller(low_x, high_x), smaller(low_y, high_y)), larger(smaller(low_z, high_z), splat(0)));
         const vreal far =
             smaller(smaller(larger(low_x, high_x), larger(low_y, high_y)), smaller(larger(low_z, high_z), bound));
         met |= choose_uint(near <= far * SLAB_TOLERANCE, splat_uint(1u << k), splat_uint(0));
     }
+    return met;
+}
+
+/* Many boxes: TREE_WIDTH at a time against the ray of one lane, which has the planes of each pair in order. */
+static vuint test_many_boxes(const FlatBatch *batch, const BoxAxis *axes, const uint *alive, const LaneRays *rays) {
+    LaneBoxRays boxes;
+    store_box_axes(axes, &boxes);
+    uint lanes[LANE_COUNT + 1], lane_count = 0, met[LANE_COUNT];
+    for (uint lane = 0; lane < LANE_COUNT; ++lane) {
+        lanes[lane_count] = lane;
+        lane_count += alive[lane];
+    }
+    store_lanes(splat_uint(0), met);
+    for (uint i = 0; i < lane_count; ++i) {
+        const BoxRay box = box_ray_of_lane(&boxes, lanes[i]);
+        met[lanes[i]] = test_batch(batch, &box, rays->bound[lanes[i]]);
+    }
+    return load_lanes(met);
+}
+
+/* The leaves of one batch. */
+static void traverse_batch(const Geometry *geometry, const FlatBatch *batch, const BoxAxis *axes, vbool active,
+                           const uint *alive, LaneRays *rays) {
+    vuint met = batch->count <= FEW_BOXES
+                    ? test_few_boxes(batch, axes, choose(active, load_lanes(rays->bound), splat(-1)))
+                    : test_many_boxes(batch, axes, alive, rays);
     /* The first of each lane, the second of each lane, and so on: most have two at most. */
     Visit visits[LANE_COUNT * BATCH_LEAVES + 1];
     uint count = 0;
@@ -246,8 +305,7 @@ static void traverse_packet(const Geometry *geometry, const Ray *ray, vbool acti
     const FlatTree *flat = &geometry->flat;
     if (flat->batch_count > 0) {
         for (uint batch = 0; batch < flat->batch_count; ++batch)
-            traverse_batch(geometry, &flat->batches[batch], axes, choose(active, load_lanes(rays.bound), splat(-1)),
-                           &rays);
+            traverse_batch(geometry, &flat->batches[batch], axes, active, alive, &rays);
     } else
         traverse_nodes(geometry, axes, alive, &rays);
     hit->t = load_lanes(rays.t);
