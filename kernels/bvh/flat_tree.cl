@@ -11,7 +11,7 @@
 typedef struct FlatBatch {
     uint count;
     uint leaf[BATCH_LEAVES];
-    /* As in a node: low x, y, z, high x, y, z of so many boxes. */
+    /* Rows as in a node: low x, y, z, high x, y, z of TREE_WIDTH boxes; 0 where there is no box. */
     JOIN(REAL, TREE_WIDTH) planes[BATCH_LEAVES / TREE_WIDTH][6];
 } FlatBatch;
 

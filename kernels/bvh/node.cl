@@ -1,7 +1,7 @@
-/* node.cl: a node's children and a leaf's spheres, all TREE_WIDTH of them at once, against one ray.
+/* node.cl: a node's children, a small tree's leaves and a leaf's spheres, TREE_WIDTH of them at once, against one ray.
  *
  * In:    a ray, packed nodes and leaves.   Out: which of them the ray may meet before a bound, as a child_mask.
- * Knows: how nodes and leaves are packed; the interface of shape/.   Does not know: the order of visits.
+ * Knows: how nodes and leaves are packed; flat_tree.cl; the interface of shape/.   Does not know: the order of visits.
  *
  * The tests are conservative and in `real`: what they cannot rule out is decided by sphere_intersect, one sphere at a
  * time. */
@@ -122,6 +122,7 @@ static child_mask test_node(const Geometry *geometry, const BoxRay *box, uint no
 }
 
 #ifdef BATCH_LEAVES
+/* row_of, of the work-item's own copy. */
 static vreal flat_row_of(const real *rows, uint row) { return *(const vreal *)(rows + (size_t)row); }
 
 /* The leaves of a batch that the ray meets before `bound`, one bit each. */
