@@ -74,11 +74,12 @@ def compile_for(target, source, options):
     path = library(target[0])
     command = [find(CLANG), *COMMON, "-O3", "-target", target[1], *options, "-Xclang", "-mlink-builtin-bitcode", "-Xclang", path,
                "-Wno-linker-warnings", "-S"]
-    # Bitcode of a later LLVM cannot be read, and what fails for a kernel of one line is not the fault of the tracer's.
+    # Bitcode of a later LLVM cannot be read. What fails for a kernel of one line is not the fault of the tracer's.
     small = source.with_name("small.cl")
     small.write_text("__kernel void small(__global float *x) { x[get_global_id(0)] = fma(x[0], x[1], sin(x[2])); }\n")
-    if subprocess.run([*command, "-o", os.devnull, small], capture_output=True, check=False).returncode != 0:
-        raise Missing(f"{CLANG} cannot read {path}, which another version of LLVM wrote")
+    tried = subprocess.run([*command, "-o", os.devnull, small], capture_output=True, text=True, check=False)
+    if tried.returncode != 0:
+        raise Missing(f"{CLANG} cannot use {path}: {tried.stderr.strip().splitlines()[0] if tried.stderr.strip() else 'it says nothing'}")
     out = source.with_suffix(".s")
     run(*command, "-o", out, source)
     return out.read_text()
