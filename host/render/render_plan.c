@@ -6,9 +6,8 @@
 
 #include <string.h>
 
-/* Drivers of CPUs that know vectors spread explicit vectors over their lanes. There, a kernel follows
- * sixteen paths at a time through sixteen-wide nodes, also where a vector has eight lanes, and eight paths
- * where it has four (docs/BENCHMARKS.md, "Tuning log"); double costs little. A CPU driver that splits vectors
+/* Drivers of CPUs that know vectors spread explicit vectors over their lanes. There, a kernel follows many
+ * paths at a time through sixteen-wide nodes; double costs little. A CPU driver that splits vectors
  * up (it reports one lane) gains nothing from many lanes, and one was seen to compile that form for ever.
  * GPUs spread work-items, and many have hardly any double: one lane, narrower nodes, error-free float
  * transforms. The options can force each choice, so every arrangement can be tested on every device. */
@@ -20,10 +19,17 @@ static void choose_form(const BpDeviceInfo *device, const BpRenderOptions *optio
                     : vectors                         ? BP_KERNEL_PACKET
                                                       : BP_KERNEL_SAMPLE;
     program->tree_width = options->tree_width != 0 ? options->tree_width : vectors ? 16 : 4;
-    program->packet_lanes = options->packet_lanes != 0 ? options->packet_lanes
-                            : device->float_lanes >= 8 ? 16
-                                                       : 8;
     program->double_refine = cpu && device->has_double && !options->force_float_refine;
+}
+
+/* Paths of a packet: sixteen where a vector has as many lanes, else eight, which need fewer registers. But
+ * while rays walk through a large tree they wait for memory, and with sixteen there is more to do meanwhile:
+ * so vectors of eight lanes follow sixteen there (docs/BENCHMARKS.md, "Tuning log"). */
+static uint32_t choose_packet_lanes(const BpDeviceInfo *device, const BpRenderOptions *options,
+                                    const BpTree *tree) {
+    if (options->packet_lanes != 0) return options->packet_lanes;
+    const bool walks = tree->leaf_count - tree->first_leaves > FLAT_LEAVES_MAX;
+    return device->float_lanes >= 16 || (device->float_lanes >= 8 && walks) ? 16 : 8;
 }
 
 BpLamps bp_render_lamps_of(const BpEffects *effects, const BpRenderOptions *options) {
@@ -81,6 +87,8 @@ BpStatus bp_render_plan(const BpScene *scene, const BpRenderOptions *options, co
         .threads = options->threads,
         .motions = bp_effects_has(setup->program.effects, BP_EFFECT_MOTION),
     };
-    return bp_scene_pack(scene, &tree_options, bp_effects_has(setup->program.effects, BP_EFFECT_LAMPS),
-                         packed, err);
+    BP_TRY(bp_scene_pack(scene, &tree_options, bp_effects_has(setup->program.effects, BP_EFFECT_LAMPS),
+                         packed, err));
+    setup->program.packet_lanes = choose_packet_lanes(device, options, &packed->tree);
+    return BP_OK;
 }

@@ -6,7 +6,7 @@ typedef struct Geometry {
     SCENE_ARRAYS_OF_TREE(SPLIT_MEMBER)
     uint first_leaves; /* the leaves of spheres so large that most rays meet them; without a tree, all */
     uint leaf_count;
-#ifdef BATCH_LEAVES
+#ifdef FLAT_GROUPS_MAX
     FlatTree flat;
 #endif
 } Geometry;
@@ -18,9 +18,9 @@ static void geometry_init(SCENE_ARRAYS_OF_TREE(SPLIT_PARAMETER) uint first_leave
 #undef SET_ARRAY
     geometry->first_leaves = first_leaves;
     geometry->leaf_count = leaf_count;
-#if defined(BATCH_LEAVES) && defined(SCENE_PARTS)
-    geometry->flat.batch_count = 0; /* the tree is too large */
-#elif defined(BATCH_LEAVES)
-    flatten_tree(node_boxes, children, leaf_count - first_leaves, &geometry->flat);
+#if defined(FLAT_GROUPS_MAX) && defined(SCENE_PARTS)
+    geometry->flat.leaf_count = 0; /* the tree is too large */
+#elif defined(FLAT_GROUPS_MAX)
+    flatten_tree(node_boxes, children, first_leaves, leaf_count - first_leaves, &geometry->flat);
 #endif
 }

@@ -50,7 +50,8 @@ FORCE_INLINE static child_mask leaf_candidates(const Geometry *geometry, const R
     const child_mask filled = lane_bits(sphere.radius > splat(0));
     child_mask mask = lane_bits(sphere_is_candidate(&ray, splat(bound), &sphere)) & filled;
 #if !OWN_SPHERE_IS_MET
-    mask &= ~((child_mask)(one->own_slot / TREE_WIDTH == leaf_number) << one->own_slot % TREE_WIDTH);
+    const uint own = one->own_slot - leaf_number * TREE_WIDTH;
+    mask &= ~(own < TREE_WIDTH ? (child_mask)1 << own : (child_mask)0);
 #endif
 #if SAMPLES_LAMPS
     return known_slot / TREE_WIDTH == leaf_number ? without_bit(mask, known_slot % TREE_WIDTH) : mask;
@@ -121,22 +122,17 @@ static child_mask test_node(const Geometry *geometry, const BoxRay *box, uint no
                       row_of(planes, box->far_row[2]), bound, entry);
 }
 
-#ifdef BATCH_LEAVES
+#ifdef FLAT_GROUPS_MAX
 /* row_of, of the work-item's own copy. */
 static vreal flat_row_of(const real *rows, uint row) { return *(const vreal *)(rows + (size_t)row); }
 
-/* The leaves of a batch that the ray meets before `bound`, one bit each. */
-static uint test_batch(const FlatBatch *batch, const BoxRay *box, real bound) {
-    uint met = 0;
-    for (uint first = 0; first < batch->count; first += TREE_WIDTH) {
-        const real *planes = (const real *)batch->planes[first / TREE_WIDTH];
-        vreal entry;
-        met |= test_boxes(box, flat_row_of(planes, box->near_row[0]), flat_row_of(planes, box->near_row[1]),
-                          flat_row_of(planes, box->near_row[2]), flat_row_of(planes, box->far_row[0]),
-                          flat_row_of(planes, box->far_row[1]), flat_row_of(planes, box->far_row[2]), bound, &entry)
-               << first;
-    }
-    return met & (~0u >> (BATCH_LEAVES - batch->count));
+/* The leaves of a group that the ray meets before `bound`. */
+FORCE_INLINE static child_mask test_group(const FlatTree *flat, uint group, const BoxRay *box, real bound) {
+    const real *planes = (const real *)flat->planes[group];
+    vreal entry;
+    return test_boxes(box, flat_row_of(planes, box->near_row[0]), flat_row_of(planes, box->near_row[1]),
+                      flat_row_of(planes, box->near_row[2]), flat_row_of(planes, box->far_row[0]),
+                      flat_row_of(planes, box->far_row[1]), flat_row_of(planes, box->far_row[2]), bound, &entry);
 }
 #endif
 

@@ -15,7 +15,6 @@ typedef struct Visit {
 } Visit;
 
 #define FOUND_MAX 64u
-#define FEW_BOXES 16u /* for more, it is faster to test a ray against many boxes than a box against many rays */
 
 /* The rays of all lanes, and what each has met. */
 typedef struct LaneRays {
@@ -90,15 +89,20 @@ typedef struct LaneBoxRays {
     uint near_row[3][LANE_COUNT];
 } LaneBoxRays;
 
+/* Axis by axis without a loop, here and below: one is not always unrolled, and the rays then pass through memory. */
+static void store_box_axis(BoxAxis axis, uint number, LaneBoxRays *boxes) {
+    store_lanes(axis.inverse, boxes->inverse[number]);
+    store_lanes(axis.near_offset, boxes->near_offset[number]);
+    store_lanes(axis.far_offset, boxes->far_offset[number]);
+    store_lanes(choose_uint(axis.inverse < splat(0), splat_uint((number + 3) * TREE_WIDTH),
+                            splat_uint(number * TREE_WIDTH)),
+                boxes->near_row[number]);
+}
+
 static void store_box_axes(const BoxAxis *axes, LaneBoxRays *boxes) {
-    for (uint axis = 0; axis < 3; ++axis) {
-        store_lanes(axes[axis].inverse, boxes->inverse[axis]);
-        store_lanes(axes[axis].near_offset, boxes->near_offset[axis]);
-        store_lanes(axes[axis].far_offset, boxes->far_offset[axis]);
-        store_lanes(choose_uint(axes[axis].inverse < splat(0), splat_uint((axis + 3) * TREE_WIDTH),
-                                splat_uint(axis * TREE_WIDTH)),
-                    boxes->near_row[axis]);
-    }
+    store_box_axis(axes[0], 0, boxes);
+    store_box_axis(axes[1], 1, boxes);
+    store_box_axis(axes[2], 2, boxes);
 }
 
 static void load_box_axis(const LaneBoxRays *boxes, uint lane, uint axis, BoxRay *box) {
@@ -110,75 +114,108 @@ static void load_box_axis(const LaneBoxRays *boxes, uint lane, uint axis, BoxRay
 }
 
 static BoxRay box_ray_of_lane(const LaneBoxRays *boxes, uint lane) {
-    BoxRay box; /* without a loop: it is not always unrolled, and the ray then passes through memory */
+    BoxRay box;
     load_box_axis(boxes, lane, 0, &box);
     load_box_axis(boxes, lane, 1, &box);
     load_box_axis(boxes, lane, 2, &box);
     return box;
 }
 
-/* Few boxes: one after the other against the rays of all lanes. A bound below 0 switches a lane off. */
-static vuint test_few_boxes(const FlatBatch *batch, const BoxAxis *axes, vreal bound) {
-    /* Lanes differ in which plane of a pair they meet first. */
-    vreal low_offset[3], high_offset[3];
-    for (uint axis = 0; axis < 3; ++axis) {
-        const vbool backwards = axes[axis].inverse < splat(0);
-        low_offset[axis] = choose(backwards, axes[axis].far_offset, axes[axis].near_offset);
-        high_offset[axis] = choose(backwards, axes[axis].near_offset, axes[axis].far_offset);
-    }
+/* Box tests of the rays of all lanes at once, which differ in which plane of a pair they meet first. */
+typedef struct PacketBoxRay {
+    vreal inverse[3], low_offset[3], high_offset[3];
+    vreal bound; /* below 0: the lane is off */
+} PacketBoxRay;
+
+static void set_packet_box_axis(BoxAxis axis, uint number, PacketBoxRay *box) {
+    const vbool backwards = axis.inverse < splat(0);
+    box->inverse[number] = axis.inverse;
+    box->low_offset[number] = choose(backwards, axis.far_offset, axis.near_offset);
+    box->high_offset[number] = choose(backwards, axis.near_offset, axis.far_offset);
+}
+
+static PacketBoxRay packet_box_ray(const BoxAxis *axes, vbool active, vreal bound) {
+    PacketBoxRay box;
+    set_packet_box_axis(axes[0], 0, &box);
+    set_packet_box_axis(axes[1], 1, &box);
+    set_packet_box_axis(axes[2], 2, &box);
+    box.bound = choose(active, bound, splat(-1));
+    return box;
+}
+
+/* The lanes whose rays meet one box, of which planes[0], planes[stride], ... are the six planes. */
+FORCE_INLINE static vbool meets_box(const PacketBoxRay *box, const real *planes, uint stride) {
+    const vreal low_x = loose_fma(splat(planes[0]), box->inverse[0], box->low_offset[0]);
+    const vreal low_y = loose_fma(splat(planes[stride]), box->inverse[1], box->low_offset[1]);
+    const vreal low_z = loose_fma(splat(planes[2 * stride]), box->inverse[2], box->low_offset[2]);
+    const vreal high_x = loose_fma(splat(planes[3 * stride]), box->inverse[0], box->high_offset[0]);
+    const vreal high_y = loose_fma(splat(planes[4 * stride]), box->inverse[1], box->high_offset[1]);
+    const vreal high_z = loose_fma(splat(planes[5 * stride]), box->inverse[2], box->high_offset[2]);
+    const vreal near =
+        larger(larger(smaller(low_x, high_x), smaller(low_y, high_y)), larger(smaller(low_z, high_z), splat(0)));
+    const vreal far =
+        smaller(smaller(larger(low_x, high_x), larger(low_y, high_y)), smaller(larger(low_z, high_z), box->bound));
+    return near <= far * SLAB_TOLERANCE;
+}
+
+/* The only group of a tree: each of its boxes against the rays of all lanes. Returns the number of visits. */
+static uint visit_lone_group(const FlatTree *flat, const PacketBoxRay *box, Visit *visits) {
     vuint met = splat_uint(0);
-    for (uint k = 0; k < batch->count; ++k) {
-        const real *planes = (const real *)batch->planes[k / TREE_WIDTH] + k % TREE_WIDTH;
-        const vreal low_x = loose_fma(splat(planes[0]), axes[0].inverse, low_offset[0]);
-        const vreal low_y = loose_fma(splat(planes[TREE_WIDTH]), axes[1].inverse, low_offset[1]);
-        const vreal low_z = loose_fma(splat(planes[2 * TREE_WIDTH]), axes[2].inverse, low_offset[2]);
-        const vreal high_x = loose_fma(splat(planes[3 * TREE_WIDTH]), axes[0].inverse, high_offset[0]);
-        const vreal high_y = loose_fma(splat(planes[4 * TREE_WIDTH]), axes[1].inverse, high_offset[1]);
-        const vreal high_z = loose_fma(splat(planes[5 * TREE_WIDTH]), axes[2].inverse, high_offset[2]);
-        const vreal near =
-            larger(larger(smaller(low_x, high_x), smaller(low_y, high_y)), larger(smaller(low_z, high_z), splat(0)));
-        const vreal far =
-            smaller(smaller(larger(low_x, high_x), larger(low_y, high_y)), smaller(larger(low_z, high_z), bound));
-        met |= choose_uint(near <= far * SLAB_TOLERANCE, splat_uint(1u << k), splat_uint(0));
-    }
-    return met;
-}
-
-/* Many boxes: TREE_WIDTH at a time against the ray of one lane, which has the planes of each pair in order. */
-static vuint test_many_boxes(const FlatBatch *batch, const BoxAxis *axes, const uint *alive, const LaneRays *rays) {
-    LaneBoxRays boxes;
-    store_box_axes(axes, &boxes);
-    uint lanes[LANE_COUNT + 1], lane_count = 0, met[LANE_COUNT];
-    for (uint lane = 0; lane < LANE_COUNT; ++lane) {
-        lanes[lane_count] = lane;
-        lane_count += alive[lane];
-    }
-    store_lanes(splat_uint(0), met);
-    for (uint i = 0; i < lane_count; ++i) {
-        const BoxRay box = box_ray_of_lane(&boxes, lanes[i]);
-        met[lanes[i]] = test_batch(batch, &box, rays->bound[lanes[i]]);
-    }
-    return load_lanes(met);
-}
-
-/* The leaves of one batch. */
-static void traverse_batch(const Geometry *geometry, const FlatBatch *batch, const BoxAxis *axes, vbool active,
-                           const uint *alive, LaneRays *rays) {
-    vuint met = batch->count <= FEW_BOXES
-                    ? test_few_boxes(batch, axes, choose(active, load_lanes(rays->bound), splat(-1)))
-                    : test_many_boxes(batch, axes, alive, rays);
+    for (uint k = 0; k < flat->leaf_count; ++k)
+        met |= choose_uint(meets_box(box, (const real *)flat->planes[0] + k, TREE_WIDTH), splat_uint(1u << k),
+                           splat_uint(0));
     /* The first of each lane, the second of each lane, and so on: most have two at most. */
-    Visit visits[LANE_COUNT * BATCH_LEAVES + 1];
     uint count = 0;
     while (any_lane(vbool_of_uint(met != splat_uint(0)))) {
         uint left[LANE_COUNT];
         store_lanes(met, left);
         for (uint lane = 0; lane < LANE_COUNT; ++lane) {
             visits[count].lane = lane;
-            visits[count].what = batch->leaf[lowest_bit(left[lane]) % BATCH_LEAVES];
+            visits[count].what = flat->first_leaf + lowest_bit(left[lane]);
             count += left[lane] != 0;
         }
         met &= met - 1u;
+    }
+    return count;
+}
+
+#define VISITS_MAX 64u
+
+/* The leaves of a small tree: TREE_WIDTH boxes at a time, against each ray that meets the box around them. */
+static void traverse_flat(const Geometry *geometry, const BoxAxis *axes, vbool active, vreal bound, LaneRays *rays) {
+    const FlatTree *flat = &geometry->flat;
+    const PacketBoxRay packet = packet_box_ray(axes, active, bound);
+    Visit visits[VISITS_MAX + LANE_COUNT * TREE_WIDTH + 2];
+    uint count = 0;
+    if (flat->leaf_count <= TREE_WIDTH)
+        count = visit_lone_group(flat, &packet, visits);
+    else {
+        LaneBoxRays boxes;
+        store_box_axes(axes, &boxes);
+        for (uint group = 0; group * TREE_WIDTH < flat->leaf_count; ++group) {
+            const uint first = flat->first_leaf + group * TREE_WIDTH;
+            for (uint lanes = lane_bits(meets_box(&packet, flat->around[group], 1)); lanes != 0; lanes &= lanes - 1u) {
+                const uint lane = lowest_bit(lanes);
+                const BoxRay box = box_ray_of_lane(&boxes, lane);
+                child_mask met = test_group(flat, group, &box, rays->bound[lane]);
+                /* Two leaves at most are the rule. */
+                visits[count].lane = lane;
+                visits[count].what = first + lowest_bit(met);
+                count += met != 0;
+                met = without_lowest_bit(met);
+                visits[count].lane = lane;
+                visits[count].what = first + lowest_bit(met);
+                count += met != 0;
+                for (met = without_lowest_bit(met); met != 0; met = without_lowest_bit(met)) {
+                    visits[count].lane = lane;
+                    visits[count].what = first + lowest_bit(met);
+                    ++count;
+                }
+            }
+            if (count < VISITS_MAX) continue;
+            intersect_leaves(geometry, visits, count, rays);
+            count = 0;
+        }
     }
     intersect_leaves(geometry, visits, count, rays);
 }
@@ -219,21 +256,18 @@ static int take_nearest(const Geometry *geometry, real bound, Walk *walk, uint *
     return worth;
 }
 
-static void traverse_nodes(const Geometry *geometry, const BoxAxis *axes, const uint *alive, LaneRays *rays) {
-    real inverse[3][LANE_COUNT], near_offset[3][LANE_COUNT], far_offset[3][LANE_COUNT];
-    for (uint axis = 0; axis < 3; ++axis) {
-        store_lanes(axes[axis].inverse, inverse[axis]);
-        store_lanes(axes[axis].near_offset, near_offset[axis]);
-        store_lanes(axes[axis].far_offset, far_offset[axis]);
-    }
+static void traverse_nodes(const Geometry *geometry, const BoxAxis *axes, vbool active, LaneRays *rays) {
+    uint alive[LANE_COUNT];
+    store_lanes(choose_uint(active, splat_uint(1), splat_uint(0)), alive);
+    LaneBoxRays stored;
+    store_box_axes(axes, &stored);
     BoxRay boxes[LANE_COUNT];
     Walk walks[LANE_COUNT];
     uint walking[LANE_COUNT + 1], walking_count = 0; /* lanes that are not through */
     Visit nodes[LANE_COUNT + 1], leaves[LANE_COUNT * TREE_WIDTH + 1];
     uint node_count = 0;
     for (uint lane = 0; lane < LANE_COUNT; ++lane) {
-        for (uint axis = 0; axis < 3; ++axis)
-            set_box_axis(&boxes[lane], axis, inverse[axis][lane], near_offset[axis][lane], far_offset[axis][lane]);
+        boxes[lane] = box_ray_of_lane(&stored, lane);
         walks[lane].depth = 0;
         nodes[node_count].lane = walking[walking_count] = lane;
         nodes[node_count].what = 0;
@@ -277,7 +311,6 @@ static void traverse_nodes(const Geometry *geometry, const BoxAxis *axes, const 
 static void traverse_packet(const Geometry *geometry, const Ray *ray, vbool active, Hit *hit) {
     if (geometry->leaf_count == geometry->first_leaves) return;
     LaneRays rays;
-    uint alive[LANE_COUNT];
     store_lanes(ray->origin.high.x, rays.high[0]);
     store_lanes(ray->origin.high.y, rays.high[1]);
     store_lanes(ray->origin.high.z, rays.high[2]);
@@ -297,17 +330,14 @@ static void traverse_packet(const Geometry *geometry, const Ray *ray, vbool acti
     store_lanes(hit->slot, rays.slot);
     store_lanes(choose_uint(hit->enters, splat_uint(1), splat_uint(0)), rays.enters);
     store_lanes(hit->bound, rays.bound);
-    store_lanes(choose_uint(active, splat_uint(1), splat_uint(0)), alive);
     BoxAxis axes[3];
     axes[0] = box_axis(ray->origin.high.x, ray->direction.x);
     axes[1] = box_axis(ray->origin.high.y, ray->direction.y);
     axes[2] = box_axis(ray->origin.high.z, ray->direction.z);
-    const FlatTree *flat = &geometry->flat;
-    if (flat->batch_count > 0) {
-        for (uint batch = 0; batch < flat->batch_count; ++batch)
-            traverse_batch(geometry, &flat->batches[batch], axes, active, alive, &rays);
-    } else
-        traverse_nodes(geometry, axes, alive, &rays);
+    if (geometry->flat.leaf_count > 0)
+        traverse_flat(geometry, axes, active, hit->bound, &rays);
+    else
+        traverse_nodes(geometry, axes, active, &rays);
     hit->t = load_lanes(rays.t);
     hit->slot = load_lanes(rays.slot);
     hit->enters = vbool_of_uint(load_lanes(rays.enters) != splat_uint(0));
@@ -319,7 +349,7 @@ static void traverse_packet(const Geometry *geometry, const Ray *ray, vbool acti
 static void intersect_leaf(const Geometry *geometry, const Ray *ray, vbool active, uint leaf_number, Hit *hit) {
     __global const real *leaf = place_in(geometry->leaves, leaf_number * (4 * TREE_WIDTH));
     for (uint lane = 0; lane < TREE_WIDTH; ++lane) {
-        if (leaf[3 * TREE_WIDTH + lane] <= 0) continue;
+        if (leaf[3 * TREE_WIDTH + lane] <= 0) break; /* the rest of the leaf is empty */
         const vuint slot = splat_uint(leaf_number * TREE_WIDTH + lane);
         Sphere sphere;
         sphere.centre = vec3(splat(leaf[lane]), splat(leaf[TREE_WIDTH + lane]), splat(leaf[2 * TREE_WIDTH + lane]));

@@ -126,6 +126,8 @@ static void check_slots(const BpScene *scene, const BpPacked *packed) {
             require(slot_value(tree, slot, 3) == -1);
             continue;
         }
+        require(slot % tree->width == 0 ||
+                tree->slot_sphere[slot - 1] != NO_SPHERE); /* empty ones come last */
         require(index < scene->sphere_count && seen[index]++ == 0);
         check_sphere(scene, tree, slot);
         require(packed->slot_material[slot] < packed->material_count);
