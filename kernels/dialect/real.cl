@@ -16,6 +16,12 @@
  * Rounding is part of the product: no contraction of a*b+c unless fma() is written. */
 #pragma OPENCL FP_CONTRACT OFF
 
+/* Clang warns where functions pass vectors that are wider than the processor's, since other compilers may pass them
+ * in another way. None are called here, and PoCL would write the number of warnings to the user's terminal. */
+#ifdef __clang__
+#pragma clang diagnostic ignored "-Wpsabi"
+#endif
+
 #if REAL_IS_DOUBLE || REFINE_IS_DOUBLE
 #pragma OPENCL EXTENSION cl_khr_fp64 : enable
 #endif
