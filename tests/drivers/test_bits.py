@@ -78,6 +78,7 @@ def instruction_sets(folder):
                                            "BALLPARK_BITS": str(pathlib.Path(folder, "pictures.json"))}, "--kernel", kernel)
             assert done.returncode == 0, f"{library}: exit code {done.returncode}\n{done.stdout}{done.stderr[-3000:]}\n" \
                 "If pictures were to change, record them anew: scripts/record-bits"
+            assert done.stderr == "", f"{library}: a compiler should say nothing: {done.stderr[-3000:]}"
             assert len(pictures) >= (25 if with_own else 15) and count(results, "agree") == 2 * len(pictures), "hardly anything was compared"
             names.add(results[0]["device"]["name"])
             print(f"PoCL, {library}, {' '.join(form)}: {2 * len(pictures)} pictures the same, {results[0]['device']['name']}",
