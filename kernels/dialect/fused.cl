@@ -72,6 +72,7 @@ FORCE_INLINE static float OVERLOADED fused(float a, float b, float c) { return f
 FORCE_INLINE static double OVERLOADED fused(double a, double b, double c) {
     return fused((double2)a, (double2)b, (double2)c).x;
 }
+#undef fma /* a macro of PoCL's header */
 #define fma fused
 /* a * b + c, rounded twice, which costs a twentieth here. No picture may depend on the result. */
 #define loose_fma(a, b, c) ((a) * (b) + (c))
