@@ -14,6 +14,14 @@ typedef struct Visit {
     uint lane, what;
 } Visit;
 
+/* Notes a visit, which counts only where it is `wanted`: so nothing branches, and there must be room for one more.
+ * Returns the number of visits. */
+FORCE_INLINE static uint add_visit(Visit *visits, uint count, uint lane, uint what, int wanted) {
+    visits[count].lane = lane;
+    visits[count].what = what;
+    return count + (wanted != 0);
+}
+
 #define FOUND_MAX 64u
 
 /* The rays of all lanes, and what each has met. */
@@ -68,15 +76,10 @@ static void intersect_leaves(const Geometry *geometry, const Visit *visits, uint
         const Ray_one ray = ray_of_lane(rays, lane);
         child_mask candidates = leaf_candidates(geometry, &ray, visits[i].what, rays->bound[lane], rays->slot[lane]);
         /* Mostly there is one candidate or none, so it is noted without asking which. */
-        found[found_count].lane = lane;
-        found[found_count].what = first + lowest_bit(candidates);
-        found_count += candidates != 0;
+        found_count = add_visit(found, found_count, lane, first + lowest_bit(candidates), candidates != 0);
         for (candidates = without_lowest_bit(candidates); candidates != 0;
-             candidates = without_lowest_bit(candidates)) {
-            found[found_count].lane = lane;
-            found[found_count].what = first + lowest_bit(candidates);
-            ++found_count;
-        }
+             candidates = without_lowest_bit(candidates))
+            found_count = add_visit(found, found_count, lane, first + lowest_bit(candidates), 1);
         if (found_count < FOUND_MAX && i + 1 < count) continue;
         for (uint k = 0; k < found_count; ++k) intersect_slot_of_lane(geometry, rays, found[k].lane, found[k].what);
         found_count = 0;
@@ -169,11 +172,8 @@ static uint visit_lone_group(const FlatTree *flat, const PacketBoxRay *box, Visi
     while (any_lane(vbool_of_uint(met != splat_uint(0)))) {
         uint left[LANE_COUNT];
         store_lanes(met, left);
-        for (uint lane = 0; lane < LANE_COUNT; ++lane) {
-            visits[count].lane = lane;
-            visits[count].what = flat->first_leaf + lowest_bit(left[lane]);
-            count += left[lane] != 0;
-        }
+        for (uint lane = 0; lane < LANE_COUNT; ++lane)
+            count = add_visit(visits, count, lane, flat->first_leaf + lowest_bit(left[lane]), left[lane] != 0);
         met &= met - 1u;
     }
     return count;
@@ -199,18 +199,11 @@ static void traverse_flat(const Geometry *geometry, const BoxAxis *axes, vbool a
                 const BoxRay box = box_ray_of_lane(&boxes, lane);
                 child_mask met = test_group(flat, group, &box, rays->bound[lane]);
                 /* Two leaves at most are the rule. */
-                visits[count].lane = lane;
-                visits[count].what = first + lowest_bit(met);
-                count += met != 0;
+                count = add_visit(visits, count, lane, first + lowest_bit(met), met != 0);
                 met = without_lowest_bit(met);
-                visits[count].lane = lane;
-                visits[count].what = first + lowest_bit(met);
-                count += met != 0;
-                for (met = without_lowest_bit(met); met != 0; met = without_lowest_bit(met)) {
-                    visits[count].lane = lane;
-                    visits[count].what = first + lowest_bit(met);
-                    ++count;
-                }
+                count = add_visit(visits, count, lane, first + lowest_bit(met), met != 0);
+                for (met = without_lowest_bit(met); met != 0; met = without_lowest_bit(met))
+                    count = add_visit(visits, count, lane, first + lowest_bit(met), 1);
             }
             if (count < VISITS_MAX) continue;
             intersect_leaves(geometry, visits, count, rays);
