@@ -3,6 +3,7 @@
 #include "check/check.h"
 #include "check/statistics.h"
 #include "reference/reference.h"
+#include "support/open_render.h"
 #include "support/unit_test.h"
 
 #include <math.h>
@@ -68,7 +69,7 @@ static void trace_kernel(const BpScene *scene, uint64_t first_sample, uint64_t s
     options.first_sample = first_sample;
     options.samples_per_pixel = samples;
     options.seed = seed;
-    BpStatus status = bp_render_create(scene, &options, NULL, 0, &render, &err);
+    BpStatus status = open_render_on_device(scene, &options, &render, &err);
     if (status == BP_OK) status = bp_check_render_kernel(render, sums, NULL, &err);
     if (status != BP_OK) fail_msg("%s", err.message);
     bp_render_destroy(&render);

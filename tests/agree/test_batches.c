@@ -8,6 +8,7 @@
 #include "reference/reference.h"
 #include "reference/vec.h"
 #include "support/build_scene.h"
+#include "support/open_render.h"
 #include "support/unit_test.h"
 
 #include <math.h>
@@ -93,7 +94,7 @@ static void kernel(void **state) {
         options.samples_per_pixel = SAMPLES;
         options.seed = (uint64_t)seed; /* neighbours, as a user would choose them */
         BpStatus status = bp_sums_init(&sums, SIDE, SIDE, &err);
-        if (status == BP_OK) status = bp_render_create(&built.scene, &options, NULL, 0, &render, &err);
+        if (status == BP_OK) status = open_render_on_device(&built.scene, &options, &render, &err);
         if (status == BP_OK) status = bp_check_render_kernel(render, &sums, NULL, &err);
         if (status != BP_OK) fail_msg("%s", err.message);
         collect(&sums, seed, &batches);

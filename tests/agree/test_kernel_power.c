@@ -3,6 +3,7 @@
 #include "check/check.h"
 #include "check/statistics.h"
 #include "support/kernel_copy.h"
+#include "support/open_render.h"
 #include "verdict_scenes.h"
 
 static void draw_kernel(const BpScene *scene, uint64_t samples, uint64_t seed, BpSums *sums) {
@@ -17,7 +18,7 @@ static void draw_kernel(const BpScene *scene, uint64_t samples, uint64_t seed, B
         BP_LAMPS_OFF; /* the reference finds lamps by chance, and the level holds for equal spreads */
     options.seed = seed;
     BpStatus status = bp_sums_init(sums, scene->camera.width, scene->camera.height, &err);
-    if (status == BP_OK) status = bp_render_create(scene, &options, NULL, 0, &render, &err);
+    if (status == BP_OK) status = open_render_on_device(scene, &options, &render, &err);
     if (status == BP_OK) status = bp_check_render_kernel(render, sums, NULL, &err);
     if (status != BP_OK) fail_msg("%s\n%s", err.message, err.attachment != NULL ? err.attachment : "");
     bp_render_destroy(&render);

@@ -200,11 +200,12 @@ BpWorker *lab_scene(const Lab *lab, const BpScene *scene) {
     BpWorker *worker = NULL;
     set_options(lab, scene, &options);
     check(bp_render_plan(scene, &options, &lab->info, &setup, &packed, &err), &err);
-    setup.program = lab->options; /* the program that is built already, and so in the driver's cache */
+    setup.program = lab->options; /* the program that is built already */
     char *text = probe_text();
     setup.extra_name = "probe.cl";
     setup.extra_text = text;
     setup.untested = true;
+    setup.device = lab->device;
     check(bp_worker_create(&lab->info, &packed, &setup, &worker, &err), &err);
     free(text);
     return worker;
@@ -221,7 +222,7 @@ void lab_render(const Lab *lab, const BpScene *scene, uint64_t samples, uint64_t
     options.samples_per_pixel = samples;
     options.seed = seed;
     options.force = true;
-    check(bp_render_create(scene, &options, &lab->info, 1, &render, &err), &err);
+    check(bp_render_create_on(scene, &options, &lab->device, 1, &render, &err), &err);
     do check(bp_render_step(render, &progress, &err), &err);
     while (!progress.finished);
     check(bp_render_read(render, picture, &err), &err);

@@ -3,8 +3,8 @@
  * The tree of lamps has a width and an order of its own, whatever the tree of spheres looks like. So list or
  * tree, the widths of trees and packets, work-groups and chunks change no bit of the film, no ray segment,
  * and no ray to a lamp. */
-#include "render/render.h"
 #include "support/load_scene.h"
+#include "support/open_render.h"
 #include "support/unit_test.h"
 
 #include <stdio.h>
@@ -19,7 +19,7 @@ static char *render(const BpScene *scene, const BpRenderOptions *options, size_t
     BpRender *made = NULL;
     BpProgress progress = {0};
     const BpFilm *film = NULL;
-    if (bp_render_create(scene, options, NULL, 0, &made, &err) != BP_OK) fail_msg("%s", err.message);
+    if (open_render_on_device(scene, options, &made, &err) != BP_OK) fail_msg("%s", err.message);
     while (!progress.finished)
         if (bp_render_step(made, &progress, &err) != BP_OK) fail_msg("%s", err.message);
     if (bp_render_read_film(made, &film, &err) != BP_OK) fail_msg("%s", err.message);

@@ -6,8 +6,8 @@
  *
  * The sky differs in every direction, so that a ray without a direction cannot pass for one that met nothing.
  */
-#include "render/render.h"
 #include "scene/scene.h"
+#include "support/open_render.h"
 
 #include <float.h>
 #include <setjmp.h>
@@ -87,7 +87,6 @@ static const char *const values[] = {"0",     "5e-324", "1.2e-38", "1e-30",   "1
                                      "1e-15", "1e-6",   "1",       "179.9",   "179.99999999999997",
                                      "1e3",   "1e6",    "1e12",    "1.01e12", "1e39"};
 
-static BpDeviceInfo device;
 static bool every_value;
 
 static void render(const BpScene *scene, const char *text) {
@@ -100,8 +99,7 @@ static void render(const BpScene *scene, const char *text) {
     options.samples_per_pixel = 4;
     options.all_effects = options.force_tree = true; /* one program for all */
     options.force = true;                            /* the self-test is another test */
-    if (bp_render_create(scene, &options, &device, 1, &made, &err) != BP_OK)
-        fail_msg("%s: %s", err.message, text);
+    if (open_render_on_device(scene, &options, &made, &err) != BP_OK) fail_msg("%s: %s", err.message, text);
     do {
         if (bp_render_step(made, &progress, &err) != BP_OK) fail_msg("%s: %s", err.message, text);
     } while (!progress.finished);
@@ -153,6 +151,7 @@ static void every_member_at_its_ends(void **state) {
 
 int main(int argc, char **argv) {
     BpError err = {0};
+    BpDeviceInfo device;
     every_value = argc > 1 && strcmp(argv[1], "every") == 0;
     if (bp_device_find(NULL, &device, &err) != BP_OK) {
         fprintf(stderr, "skipped: %s\n", err.message);

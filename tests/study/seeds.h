@@ -7,6 +7,7 @@
 
 #include "base/color.h"
 #include "support/load_scene.h"
+#include "support/open_render.h"
 #include "support/unit_test.h"
 
 #include "base/status.h"
@@ -36,7 +37,7 @@ static inline BpRender *open_render(const BpScene *scene, BpSampler sampler, uin
     options.sampler = sampler;
     options.seed = seed;
     options.samples_per_pixel = samples;
-    must(bp_render_create(scene, &options, NULL, 0, &render, &err), &err);
+    must(open_render_on_device(scene, &options, &render, &err), &err);
     return render;
 }
 

@@ -19,7 +19,7 @@ static BpRender *open_adaptive(const BpScene *scene, const BpRenderOptions *want
     BpRender *render = NULL;
     BpError err = {0};
     options.adaptive = true;
-    must(bp_render_create(scene, &options, NULL, 0, &render, &err), &err);
+    must(open_render_on_device(scene, &options, &render, &err), &err);
     return render;
 }
 

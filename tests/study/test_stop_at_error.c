@@ -42,7 +42,7 @@ static void render_until(const BpScene *scene, const BpStopRule *rule, BpSampler
     options.seed = seed;
     options.samples_per_pixel = bp_stop_first(rule);
     options.adaptive = rule->adaptive;
-    must(bp_render_create(scene, &options, NULL, 0, &render, &err), &err);
+    must(open_render_on_device(scene, &options, &render, &err), &err);
     for (;;) {
         const BpFilm *film = finish_render(render);
         uint64_t next = 0;

@@ -7,6 +7,7 @@
 #define TESTS_SUPPORT_PIXEL_SAMPLES_H
 
 #include "render/render.h"
+#include "support/open_render.h"
 #include "support/unit_test.h"
 
 #include <stdlib.h>
@@ -26,7 +27,7 @@ static inline PixelSamples draw_samples(const BpScene *scene, const BpRenderOpti
     all.values = malloc(all.count * 4 * sizeof *all.values);
     assert_non_null(all.values);
     size_t got = 0;
-    BpStatus status = bp_render_create(scene, options, NULL, 0, &render, &err);
+    BpStatus status = open_render_on_device(scene, options, &render, &err);
     for (bool finished = false; status == BP_OK && !finished;) {
         BpSampleBlock block = {0};
         status = bp_render_step_samples(render, &block, &finished, &err);
