@@ -205,11 +205,13 @@ def name_of(trial):
 
 
 class Controls:
-    """Trials on the product itself, each run once, when a mutant first asks for it, in a cache of kernels that all share."""
+    """Trials on the product itself, each run once, when a mutant first asks for it, in the kernel cache of these tests' turn, or
+    in one of its own where the environment names none."""
 
     def __init__(self, source, build, folder):
-        self.source, self.build, self.cache = source, build, os.path.join(folder, "cache")
-        os.mkdir(self.cache)
+        self.source, self.build = source, build
+        self.cache = os.environ.get("POCL_CACHE_DIR") or os.path.join(folder, "cache")
+        os.makedirs(self.cache, exist_ok=True)
         self.lock = threading.Lock()
         self.results = {}  # trial: (outcome, what was said, the programs that it used)
 
