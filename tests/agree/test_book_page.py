@@ -51,7 +51,7 @@ def apply_example(tree):
 
 
 def build_example(tree, build):
-    steps = [["cmake", "-S", tree, "-B", build, "-DCMAKE_BUILD_TYPE=Release", "-DBUILD_TESTING=OFF"],
+    steps = [["cmake", "-S", tree, "-B", build, "-DCMAKE_BUILD_TYPE=Debug", "-DBALLPARK_TESTS=OFF"],
              ["cmake", "--build", build, "--target", "ballpark", "--parallel", "2"],
              [f"{build}/ballpark", "check", f"{tree}/tests/agree/scenes/retroreflector.json", "--width", "32"]]
     for step in steps:

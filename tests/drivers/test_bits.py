@@ -5,9 +5,9 @@ Usage: test_bits.py BALLPARK SOURCE_DIR [--nightly]
 PoCL compiles for another processor when POCL_KERNELLIB_NAME names another library of built-in functions: that of SSE2
 has no fused multiply-add, that of AVX2 has no masks. All forms of the kernel on this processor are a test of
 test_cli_bits. Here each library has the form that CPUs use and others, with a tree and with a list; together the
-libraries have every form. What takes long is compiling, twice as long without fused multiply-adds. So scenes with kernels of
-their own are drawn in one form, and with one library unless this is --nightly; and PoCL optimises only packets, since no
-processor is given the other form.
+libraries have every form. This processor's own library is left out. What takes long is compiling, twice as long without fused
+multiply-adds. So scenes with kernels of their own are drawn in one form, and with AVX2 alone unless this is --nightly; and PoCL
+optimises only packets, since no processor is given the other form.
 
 Other drivers render a few pictures, by the one-path form and with hits refined in float, as GPUs do, since their
 compilers are slow. Intel's has a test of its own. Mesa's takes minutes for a kernel with all effects, so it is tried with
@@ -50,8 +50,15 @@ def count(results, verdict):
     return sum(result["verdict"] == verdict for result in results)
 
 
+def device_names(environment):
+    """PoCL's devices, as it calls them; their names tell the instruction set."""
+    done = subprocess.run([program, "devices", "--json", "-"], text=True, capture_output=True, check=True, timeout=60,
+                          env={**os.environ, "OCL_ICD_VENDORS": icd("pocl.icd"), **environment})
+    return [device["name"] for device in json.loads(done.stdout)["devices"]]
+
+
 def pocl_libraries():
-    """The libraries for x86-64 that this processor can run."""
+    """The libraries for x86-64 that this processor can run, without its own."""
     flags = pathlib.Path("/proc/cpuinfo").read_text().split() if os.path.exists("/proc/cpuinfo") else []
     known = {"avx2": "avx2", "sse41": "sse4_1", "sse2": "sse2"}
     assert known.keys() == FORMS.keys()
@@ -59,6 +66,10 @@ def pocl_libraries():
              if flag in flags and list(pathlib.Path("/usr/share/pocl").glob(f"kernel-x86_64-*-{name}.bc"))]
     for name in known.keys() - set(found):
         print(f"skipped: PoCL's built-in functions for {name} are not installed, or the processor lacks it")
+    own = device_names({})
+    for name in [name for name in found if not nightly and device_names({"POCL_KERNELLIB_NAME": name}) == own]:
+        found.remove(name)
+        print(f"{name} is what PoCL takes by itself on this processor: test_cli_bits")
     return found
 
 
@@ -69,7 +80,7 @@ def instruction_sets(folder):
     for library in pocl_libraries():
         for form in FORMS[library]:
             kernel, precision, refinement = form
-            with_own = form == FORMS[library][0] and (nightly or ran == 0)
+            with_own = form == FORMS[library][0] and (nightly or library == "avx2")
             pictures = [p for p in recorded if (p["precision"], p["refinement"]) == (precision, refinement)
                         and (p["scene"] not in LAMPS or with_own)]
             pathlib.Path(folder, "pictures.json").write_text(json.dumps({"pictures": pictures}))
