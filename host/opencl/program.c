@@ -28,6 +28,7 @@ static const struct {
     /* for one lane */
     {"dialect/lanes_one.cl", IN_ALL},
     {"dialect/lanes.cl", IN_ALL},
+    {"dialect/lane_by_lane.cl", IN_ALL},
     {"dialect/divide.cl", IN_ALL},
     {"dialect/vector.cl", IN_ALL},
     {"shape/ray.cl", IN_ALL},
@@ -41,6 +42,7 @@ static const struct {
     /* for the children of a node */
     {"dialect/lanes_node.cl", IN_ALL},
     {"dialect/lanes.cl", IN_ALL},
+    {"dialect/lane_by_lane.cl", IN_ALL},
     {"dialect/divide.cl", IN_ALL},
     {"dialect/vector.cl", IN_ALL},
     {"shape/ray.cl", IN_ALL},
@@ -52,6 +54,7 @@ static const struct {
     {"dialect/lanes_one.cl", IN_SINGLE},
     {"dialect/lanes_packet.cl", IN_PACKET},
     {"dialect/lanes.cl", IN_ALL},
+    {"dialect/lane_by_lane.cl", IN_PACKET},
     {"dialect/divide.cl", IN_PACKET},
     {"dialect/vector.cl", IN_PACKET},
     {"shape/ray.cl", IN_PACKET},

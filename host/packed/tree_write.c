@@ -374,7 +374,7 @@ BpBounds bp_tree_write_leaf(const BpTreeWriter *writer, uint32_t leaf, const BpT
     BpBounds box = BP_BOUNDS_EMPTY;
     for (uint32_t lane = 0; lane < width; ++lane) {
         uint32_t index = NO_SPHERE;
-        double center[3] = {0, 0, 0}, radius = -1;
+        double center[3] = {NAN, NAN, NAN}, radius = -1;
         const bool moves = lane < count && bp_sphere_moves(writer->scene, items[lane].sphere);
         for (uint32_t a = 0; a < 3 && tree->has_motions; ++a)
             bp_reals_store(tree->leaf_motions, single, (size_t)leaf * MOTION_REALS(width) + a * width + lane,

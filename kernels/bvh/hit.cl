@@ -42,8 +42,8 @@ FORCE_INLINE static void keep_closer(const Geometry *geometry, vbool found, vref
     const vbool tie = found & vbool_of_refined(t == hit->t) & is_hit(hit);
     if (any_lane(tie)) {
         const vuint other = choose_uint(tie, hit->slot, splat_uint(0));
-        closer = closer | (tie & vbool_of_uint(gather_split_uint(geometry->slot_sphere, slot) <
-                                               gather_split_uint(geometry->slot_sphere, other)));
+        closer = closer | (tie & vbool_of_uint(gather_split_uint(geometry->slot_sphere, 0, slot) <
+                                               gather_split_uint(geometry->slot_sphere, 0, other)));
     }
     hit->t = choose_refined(closer, t, hit->t);
     hit->slot = choose_uint(closer, slot, hit->slot);
@@ -55,10 +55,10 @@ static Sphere load_sphere(const Geometry *geometry, vuint slot) {
     const vuint lane = slot % TREE_WIDTH;
     const vuint place = (slot - lane) * 4u + lane;
     Sphere sphere;
-    sphere.centre = vec3(gather_split_real(geometry->leaves, place),
-                         gather_split_real(geometry->leaves, place + (uint)TREE_WIDTH),
-                         gather_split_real(geometry->leaves, place + (uint)(2 * TREE_WIDTH)));
-    sphere.radius = gather_split_real(geometry->leaves, place + (uint)(3 * TREE_WIDTH));
+    sphere.centre = vec3(gather_split_real(geometry->leaves, 0, place),
+                         gather_split_real(geometry->leaves, TREE_WIDTH, place),
+                         gather_split_real(geometry->leaves, 2 * TREE_WIDTH, place));
+    sphere.radius = gather_split_real(geometry->leaves, 3 * TREE_WIDTH, place);
     return sphere;
 }
 
@@ -67,9 +67,9 @@ static Sphere load_sphere(const Geometry *geometry, vuint slot) {
 static Vec3 centre_at(const Geometry *geometry, vuint slot, vreal time, Vec3 first) {
     const vuint lane = slot % TREE_WIDTH;
     const vuint place = (slot - lane) * 3u + lane;
-    const Vec3 motion = vec3(gather_split_real(geometry->leaf_motions, place),
-                             gather_split_real(geometry->leaf_motions, place + (uint)TREE_WIDTH),
-                             gather_split_real(geometry->leaf_motions, place + (uint)(2 * TREE_WIDTH)));
+    const Vec3 motion = vec3(gather_split_real(geometry->leaf_motions, 0, place),
+                             gather_split_real(geometry->leaf_motions, TREE_WIDTH, place),
+                             gather_split_real(geometry->leaf_motions, 2 * TREE_WIDTH, place));
     return madd3(time, motion, first);
 }
 #endif

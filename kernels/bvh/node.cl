@@ -45,10 +45,11 @@ FORCE_INLINE static child_mask leaf_candidates(const Geometry *geometry, const R
     sphere.centre.y = fma(ray.time, row_of(motion, TREE_WIDTH), sphere.centre.y);
     sphere.centre.z = fma(ray.time, row_of(motion, 2 * TREE_WIDTH), sphere.centre.z);
 #endif
-    /* An empty lane has radius -1. Bits are combined here, not lanes: where a compiler has no masks, it repacks lanes
-     * to combine them. */
-    const child_mask filled = lane_bits(sphere.radius > splat(0));
-    child_mask mask = lane_bits(sphere_is_candidate(&ray, splat(bound), &sphere)) & filled;
+    /* An empty lane has its centre at NaN, so no comparison holds. */
+    child_mask mask = lane_bits(sphere_is_candidate(&ray, splat(bound), &sphere));
+#ifdef __FAST_RELAXED_MATH__
+    mask &= lane_bits(sphere.radius > splat(0)); /* here a compiler may take a NaN for a number */
+#endif
 #if !OWN_SPHERE_IS_MET
     const uint own = one->own_slot - leaf_number * TREE_WIDTH;
     mask &= ~(own < TREE_WIDTH ? (child_mask)1 << own : (child_mask)0);

@@ -26,28 +26,28 @@ FORCE_INLINE static uint add_visit(Visit *visits, uint count, uint lane, uint wh
 
 /* The rays of all lanes, and what each has met. */
 typedef struct LaneRays {
-    real high[3][LANE_COUNT], low[3][LANE_COUNT], direction[3][LANE_COUNT];
-    real origin_error[LANE_COUNT], cull_margin[LANE_COUNT];
-    uint own_slot[LANE_COUNT];
+    LaneReals high[3], low[3], direction[3];
+    LaneReals origin_error, cull_margin;
+    LaneUints own_slot;
 #if EFFECT_MOTION
-    real time[LANE_COUNT];
+    LaneReals time;
 #endif
-    refined t[LANE_COUNT];
-    uint slot[LANE_COUNT], enters[LANE_COUNT];
-    real bound[LANE_COUNT];
+    LaneRefineds t;
+    LaneUints slot, enters;
+    LaneReals bound;
 } LaneRays;
 
 static Ray_one ray_of_lane(const LaneRays *rays, uint lane) {
     Ray_one ray;
-    ray.origin.high = vec3_one(rays->high[0][lane], rays->high[1][lane], rays->high[2][lane]);
-    ray.origin.low = vec3_one(rays->low[0][lane], rays->low[1][lane], rays->low[2][lane]);
-    ray.origin.error = rays->origin_error[lane];
-    ray.direction = vec3_one(rays->direction[0][lane], rays->direction[1][lane], rays->direction[2][lane]);
-    ray.cull_margin = rays->cull_margin[lane];
-    ray.own_slot = rays->own_slot[lane];
+    ray.origin.high = vec3_one(rays->high[0].of[lane], rays->high[1].of[lane], rays->high[2].of[lane]);
+    ray.origin.low = vec3_one(rays->low[0].of[lane], rays->low[1].of[lane], rays->low[2].of[lane]);
+    ray.origin.error = rays->origin_error.of[lane];
+    ray.direction = vec3_one(rays->direction[0].of[lane], rays->direction[1].of[lane], rays->direction[2].of[lane]);
+    ray.cull_margin = rays->cull_margin.of[lane];
+    ray.own_slot = rays->own_slot.of[lane];
     ray.inward = 0; /* intersect_own_sphere has seen to that */
 #if EFFECT_MOTION
-    ray.time = rays->time[lane];
+    ray.time = rays->time.of[lane];
 #endif
     return ray;
 }
@@ -56,15 +56,15 @@ static void intersect_slot_of_lane(const Geometry *geometry, LaneRays *rays, uin
     const Ray_one ray = ray_of_lane(rays, lane);
     const Sphere_one sphere = sphere_for_ray_one(geometry, &ray, slot);
     Hit_one hit;
-    hit.t = rays->t[lane];
-    hit.slot = rays->slot[lane];
-    hit.enters = (int)rays->enters[lane];
-    hit.bound = rays->bound[lane];
+    hit.t = rays->t.of[lane];
+    hit.slot = rays->slot.of[lane];
+    hit.enters = (int)rays->enters.of[lane];
+    hit.bound = rays->bound.of[lane];
     intersect_sphere_one(geometry, &ray, 1, &sphere, slot, &hit);
-    rays->t[lane] = hit.t;
-    rays->slot[lane] = hit.slot;
-    rays->enters[lane] = (uint)hit.enters;
-    rays->bound[lane] = hit.bound;
+    rays->t.of[lane] = hit.t;
+    rays->slot.of[lane] = hit.slot;
+    rays->enters.of[lane] = (uint)hit.enters;
+    rays->bound.of[lane] = hit.bound;
 }
 
 /* Visits leaves and decides about the spheres that may be met there. */
@@ -74,7 +74,7 @@ static void intersect_leaves(const Geometry *geometry, const Visit *visits, uint
     for (uint i = 0; i < count; ++i) {
         const uint lane = visits[i].lane, first = visits[i].what * TREE_WIDTH;
         const Ray_one ray = ray_of_lane(rays, lane);
-        child_mask candidates = leaf_candidates(geometry, &ray, visits[i].what, rays->bound[lane], rays->slot[lane]);
+        child_mask candidates = leaf_candidates(geometry, &ray, visits[i].what, rays->bound.of[lane], rays->slot.of[lane]);
         /* Mostly there is one candidate or none, so it is noted without asking which. */
         found_count = add_visit(found, found_count, lane, first + lowest_bit(candidates), candidates != 0);
         for (candidates = without_lowest_bit(candidates); candidates != 0;
@@ -88,18 +88,17 @@ static void intersect_leaves(const Geometry *geometry, const Visit *visits, uint
 
 /* What box tests need of the rays of all lanes. */
 typedef struct LaneBoxRays {
-    real inverse[3][LANE_COUNT], near_offset[3][LANE_COUNT], far_offset[3][LANE_COUNT];
-    uint near_row[3][LANE_COUNT];
+    LaneReals inverse[3], near_offset[3], far_offset[3];
+    LaneUints near_row[3];
 } LaneBoxRays;
 
 /* Axis by axis without a loop, here and below: one is not always unrolled, and the rays then pass through memory. */
 static void store_box_axis(BoxAxis axis, uint number, LaneBoxRays *boxes) {
-    store_lanes(axis.inverse, boxes->inverse[number]);
-    store_lanes(axis.near_offset, boxes->near_offset[number]);
-    store_lanes(axis.far_offset, boxes->far_offset[number]);
-    store_lanes(choose_uint(axis.inverse < splat(0), splat_uint((number + 3) * TREE_WIDTH),
-                            splat_uint(number * TREE_WIDTH)),
-                boxes->near_row[number]);
+    boxes->inverse[number].all = axis.inverse;
+    boxes->near_offset[number].all = axis.near_offset;
+    boxes->far_offset[number].all = axis.far_offset;
+    boxes->near_row[number].all = choose_uint(axis.inverse < splat(0), splat_uint((number + 3) * TREE_WIDTH),
+                                              splat_uint(number * TREE_WIDTH));
 }
 
 static void store_box_axes(const BoxAxis *axes, LaneBoxRays *boxes) {
@@ -109,10 +108,10 @@ static void store_box_axes(const BoxAxis *axes, LaneBoxRays *boxes) {
 }
 
 static void load_box_axis(const LaneBoxRays *boxes, uint lane, uint axis, BoxRay *box) {
-    box->inverse[axis] = boxes->inverse[axis][lane];
-    box->near_offset[axis] = boxes->near_offset[axis][lane];
-    box->far_offset[axis] = boxes->far_offset[axis][lane];
-    box->near_row[axis] = boxes->near_row[axis][lane];
+    box->inverse[axis] = boxes->inverse[axis].of[lane];
+    box->near_offset[axis] = boxes->near_offset[axis].of[lane];
+    box->far_offset[axis] = boxes->far_offset[axis].of[lane];
+    box->near_row[axis] = boxes->near_row[axis].of[lane];
     box->far_row[axis] = (2 * axis + 3) * TREE_WIDTH - box->near_row[axis];
 }
 
@@ -170,10 +169,10 @@ static uint visit_lone_group(const FlatTree *flat, const PacketBoxRay *box, Visi
     /* The first of each lane, the second of each lane, and so on: most have two at most. */
     uint count = 0;
     while (any_lane(vbool_of_uint(met != splat_uint(0)))) {
-        uint left[LANE_COUNT];
-        store_lanes(met, left);
+        LaneUints left;
+        left.all = met;
         for (uint lane = 0; lane < LANE_COUNT; ++lane)
-            count = add_visit(visits, count, lane, flat->first_leaf + lowest_bit(left[lane]), left[lane] != 0);
+            count = add_visit(visits, count, lane, flat->first_leaf + lowest_bit(left.of[lane]), left.of[lane] != 0);
         met &= met - 1u;
     }
     return count;
@@ -197,7 +196,7 @@ static void traverse_flat(const Geometry *geometry, const BoxAxis *axes, vbool a
             for (uint lanes = lane_bits(meets_box(&packet, flat->around[group], 1)); lanes != 0; lanes &= lanes - 1u) {
                 const uint lane = lowest_bit(lanes);
                 const BoxRay box = box_ray_of_lane(&boxes, lane);
-                child_mask met = test_group(flat, group, &box, rays->bound[lane]);
+                child_mask met = test_group(flat, group, &box, rays->bound.of[lane]);
                 /* Two leaves at most are the rule. */
                 count = add_visit(visits, count, lane, first + lowest_bit(met), met != 0);
                 met = without_lowest_bit(met);
@@ -250,8 +249,8 @@ static int take_nearest(const Geometry *geometry, real bound, Walk *walk, uint *
 }
 
 static void traverse_nodes(const Geometry *geometry, const BoxAxis *axes, vbool active, LaneRays *rays) {
-    uint alive[LANE_COUNT];
-    store_lanes(choose_uint(active, splat_uint(1), splat_uint(0)), alive);
+    LaneUints alive;
+    alive.all = choose_uint(active, splat_uint(1), splat_uint(0));
     LaneBoxRays stored;
     store_box_axes(axes, &stored);
     BoxRay boxes[LANE_COUNT];
@@ -264,15 +263,15 @@ static void traverse_nodes(const Geometry *geometry, const BoxAxis *axes, vbool 
         walks[lane].depth = 0;
         nodes[node_count].lane = walking[walking_count] = lane;
         nodes[node_count].what = 0;
-        node_count += alive[lane];
-        walking_count += alive[lane];
+        node_count += alive.of[lane];
+        walking_count += alive.of[lane];
     }
     for (;;) {
         uint leaf_count = 0;
         for (uint i = 0; i < node_count; ++i) {
             const uint lane = nodes[i].lane;
             const uint first = nodes[i].what * TREE_WIDTH;
-            child_mask met = enter_node(geometry, &boxes[lane], nodes[i].what, rays->bound[lane], &walks[lane]);
+            child_mask met = enter_node(geometry, &boxes[lane], nodes[i].what, rays->bound.of[lane], &walks[lane]);
             /* One leaf or none is the rule. */
             leaves[leaf_count].lane = lane;
             leaves[leaf_count].what = *place_in(geometry->children, first + lowest_bit(met) % TREE_WIDTH) & ~CHILD_LEAF;
@@ -293,7 +292,7 @@ static void traverse_nodes(const Geometry *geometry, const BoxAxis *axes, vbool 
             if (walks[lane].depth == 0) continue;
             walking[left++] = lane;
             nodes[node_count].lane = lane;
-            node_count += take_nearest(geometry, rays->bound[lane], &walks[lane], &nodes[node_count].what);
+            node_count += take_nearest(geometry, rays->bound.of[lane], &walks[lane], &nodes[node_count].what);
         }
         walking_count = left;
         if (left == 0) return;
@@ -304,25 +303,25 @@ static void traverse_nodes(const Geometry *geometry, const BoxAxis *axes, vbool 
 static void traverse_packet(const Geometry *geometry, const Ray *ray, vbool active, Hit *hit) {
     if (geometry->leaf_count == geometry->first_leaves) return;
     LaneRays rays;
-    store_lanes(ray->origin.high.x, rays.high[0]);
-    store_lanes(ray->origin.high.y, rays.high[1]);
-    store_lanes(ray->origin.high.z, rays.high[2]);
-    store_lanes(ray->origin.low.x, rays.low[0]);
-    store_lanes(ray->origin.low.y, rays.low[1]);
-    store_lanes(ray->origin.low.z, rays.low[2]);
-    store_lanes(ray->direction.x, rays.direction[0]);
-    store_lanes(ray->direction.y, rays.direction[1]);
-    store_lanes(ray->direction.z, rays.direction[2]);
-    store_lanes(ray->origin.error, rays.origin_error);
-    store_lanes(ray->cull_margin, rays.cull_margin);
-    store_lanes(ray->own_slot, rays.own_slot);
+    rays.high[0].all = ray->origin.high.x;
+    rays.high[1].all = ray->origin.high.y;
+    rays.high[2].all = ray->origin.high.z;
+    rays.low[0].all = ray->origin.low.x;
+    rays.low[1].all = ray->origin.low.y;
+    rays.low[2].all = ray->origin.low.z;
+    rays.direction[0].all = ray->direction.x;
+    rays.direction[1].all = ray->direction.y;
+    rays.direction[2].all = ray->direction.z;
+    rays.origin_error.all = ray->origin.error;
+    rays.cull_margin.all = ray->cull_margin;
+    rays.own_slot.all = ray->own_slot;
 #if EFFECT_MOTION
-    store_lanes(ray->time, rays.time);
+    rays.time.all = ray->time;
 #endif
-    store_lanes(hit->t, rays.t);
-    store_lanes(hit->slot, rays.slot);
-    store_lanes(choose_uint(hit->enters, splat_uint(1), splat_uint(0)), rays.enters);
-    store_lanes(hit->bound, rays.bound);
+    rays.t.all = hit->t;
+    rays.slot.all = hit->slot;
+    rays.enters.all = choose_uint(hit->enters, splat_uint(1), splat_uint(0));
+    rays.bound.all = hit->bound;
     BoxAxis axes[3];
     axes[0] = box_axis(ray->origin.high.x, ray->direction.x);
     axes[1] = box_axis(ray->origin.high.y, ray->direction.y);
@@ -331,10 +330,10 @@ static void traverse_packet(const Geometry *geometry, const Ray *ray, vbool acti
         traverse_flat(geometry, axes, active, hit->bound, &rays);
     else
         traverse_nodes(geometry, axes, active, &rays);
-    hit->t = load_lanes(rays.t);
-    hit->slot = load_lanes(rays.slot);
-    hit->enters = vbool_of_uint(load_lanes(rays.enters) != splat_uint(0));
-    hit->bound = load_lanes(rays.bound);
+    hit->t = rays.t.all;
+    hit->slot = rays.slot.all;
+    hit->enters = vbool_of_uint(rays.enters.all != splat_uint(0));
+    hit->bound = rays.bound.all;
 }
 #endif
 

@@ -32,13 +32,11 @@ FORCE_INLINE static void traverse_tree(const Geometry *geometry, const Ray *ray,
     const BoxRay box = box_ray(ray);
     uint stack_child[STACK_SIZE];
     real stack_entry[STACK_SIZE];
-    real entries[TREE_WIDTH];
+    LaneReals_node entries;
     uint top = 0;
     uint node = 0;
     for (;;) {
-        vreal_node entry;
-        child_mask met = test_node(geometry, &box, node, best->bound, &entry);
-        JOIN(vstore, TREE_WIDTH)(entry, 0, entries);
+        child_mask met = test_node(geometry, &box, node, best->bound, &entries.all);
         const child_mask leaves = leaf_children(geometry, node);
         if (intersect_leaves(geometry, ray, node, met & leaves, any, best)) return;
         /* Nodes onto the stack, the nearest on top. */
@@ -46,7 +44,7 @@ FORCE_INLINE static void traverse_tree(const Geometry *geometry, const Ray *ray,
         const uint base = top;
         for (; met != 0; met = without_lowest_bit(met)) {
             const uint lane = lowest_bit(met);
-            const real lane_entry = entries[lane];
+            const real lane_entry = entries.of[lane];
             uint place = top;
             while (place > base && stack_entry[place - 1] < lane_entry) {
                 stack_entry[place] = stack_entry[place - 1];

@@ -80,11 +80,12 @@ static vreal divide(vreal a, vreal b) {
         const vbool special = vbool_not(numbers & (a != splat(0)) & (b != splat(0)));
         q = choose(special, a / b, q);
         if (!any_lane(vbool_not(usual | special))) return q;
-        real dividends[LANE_COUNT], divisors[LANE_COUNT];
-        store_lanes(a, dividends);
-        store_lanes(b, divisors);
-        for (uint lane = 0; lane < LANE_COUNT; ++lane) dividends[lane] = divide_wholes(dividends[lane], divisors[lane]);
-        q = load_lanes(dividends);
+        LaneReals dividends, divisors;
+        dividends.all = a;
+        divisors.all = b;
+        for (uint lane = 0; lane < LANE_COUNT; ++lane)
+            dividends.of[lane] = divide_wholes(dividends.of[lane], divisors.of[lane]);
+        q = dividends.all;
     }
     return q;
 }

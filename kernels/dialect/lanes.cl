@@ -33,8 +33,6 @@
 #undef splat
 #undef splat_uint
 #undef splat_refined
-#undef load_lanes
-#undef store_lanes
 #undef uint_to_real
 #undef to_uint
 #undef real_of_bits
@@ -68,16 +66,15 @@
 #define vbool_of_refined(mask) (mask)
 #define to_refined(x) ((refined)(x))
 #define to_real(x) ((real)(x))
-#define load_lanes(array) ((array)[0])
-#define store_lanes(x, array) ((array)[0] = (x))
 #define uint_to_real(x) ((real)(x))
 #define to_uint(x) ((uint)(int)(x))
 #define real_of_bits(x) ((real)as_float(x))
 #define bits_of_real(x) as_uint(x) /* of a float */
 #define gather_real(base, index) ((base)[index])
 #define gather_uint(base, index) ((base)[index])
-#define gather_split_real(base, index) (*place_in(base, index)) /* from arrays that may come in parts (parts.cl) */
-#define gather_split_uint(base, index) (*place_in(base, index))
+/* From arrays that may come in parts (parts.cl), `offset` elements after `index`. */
+#define gather_split_real(base, offset, index) (*place_in(base, (offset) + (index)))
+#define gather_split_uint(base, offset, index) (*place_in(base, (offset) + (index)))
 #else
 /* A vbool is 0 or -1 a lane. */
 #define vreal JOIN(REAL, LANE_COUNT)
@@ -97,29 +94,33 @@
 #define vbool_of_refined(mask) JOIN(JOIN(convert_, REAL_MASK), LANE_COUNT)(mask)
 #define to_refined(x) JOIN(JOIN(convert_, REFINED), LANE_COUNT)(x)
 #define to_real(x) JOIN(JOIN(convert_, REAL), LANE_COUNT)(x)
-#define load_lanes(array) JOIN(vload, LANE_COUNT)(0, array)
-#define store_lanes(x, array) JOIN(vstore, LANE_COUNT)(x, 0, array)
 #define to_uint(x) JOIN(convert_uint, LANE_COUNT)(JOIN(convert_int, LANE_COUNT)(x))
 #define uint_to_real(x) JOIN(JOIN(convert_, REAL), LANE_COUNT)(x)
 #define real_of_bits(x) JOIN(JOIN(convert_, REAL), LANE_COUNT)(JOIN(as_float, LANE_COUNT)(x))
 #define bits_of_real(x) JOIN(as_uint, LANE_COUNT)(x)
-/* Tables have fewer than 2^31 entries, and some processors gather faster with signed offsets. */
+/* A constant belongs to `base`: what is gathered with one index takes that apart once. Tables have fewer than 2^31 entries,
+ * and processors that gather do so faster with signed indices; for others each index is taken out of its vector, and then
+ * extending no sign is faster. */
+#ifdef __AVX512F__
 #define gather_2(base, index) (base)[(int)(index).x], (base)[(int)(index).y]
+#else
+#define gather_2(base, index) (base)[(index).x], (base)[(index).y]
+#endif
 #define gather_4(base, index) gather_2(base, (index).lo), gather_2(base, (index).hi)
 #define gather_8(base, index) gather_4(base, (index).lo), gather_4(base, (index).hi)
 #define gather_16(base, index) gather_8(base, (index).lo), gather_8(base, (index).hi)
 #define gather_real(base, index) ((vreal)(JOIN(gather_, LANE_COUNT)(base, index)))
 #define gather_uint(base, index) ((vuint)(JOIN(gather_, LANE_COUNT)(base, index)))
 #ifndef SCENE_PARTS
-#define gather_split_real gather_real
-#define gather_split_uint gather_uint
+#define gather_split_real(base, offset, index) gather_real((base) + (offset), index)
+#define gather_split_uint(base, offset, index) gather_uint((base) + (offset), index)
 #else
 #define gather_split_2(base, index) *place_in(base, (index).x), *place_in(base, (index).y)
 #define gather_split_4(base, index) gather_split_2(base, (index).lo), gather_split_2(base, (index).hi)
 #define gather_split_8(base, index) gather_split_4(base, (index).lo), gather_split_4(base, (index).hi)
 #define gather_split_16(base, index) gather_split_8(base, (index).lo), gather_split_8(base, (index).hi)
-#define gather_split_real(base, index) ((vreal)(JOIN(gather_split_, LANE_COUNT)(base, index)))
-#define gather_split_uint(base, index) ((vuint)(JOIN(gather_split_, LANE_COUNT)(base, index)))
+#define gather_split_real(base, offset, index) ((vreal)(JOIN(gather_split_, LANE_COUNT)(base, (uint)(offset) + (index))))
+#define gather_split_uint(base, offset, index) ((vuint)(JOIN(gather_split_, LANE_COUNT)(base, (uint)(offset) + (index))))
 #endif
 
 /* The number of each lane. */

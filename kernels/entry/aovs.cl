@@ -18,17 +18,12 @@ __kernel VECTORS_WRITTEN void aovs(SCENE_PARAMETERS uint first_pixel, uint pixel
     real sums[AOV_FLOATS];
     for (uint i = 0; i < AOV_FLOATS; ++i) sums[i] = 0;
     for (uint begun = 0; begun < samples; begun += LANE_COUNT) {
-        uint numbers[LANE_COUNT];
-        real fresh_lane[LANE_COUNT];
-        for (uint lane = 0; lane < LANE_COUNT; ++lane) {
-            numbers[lane] = first_sample + begun + lane;
-            fresh_lane[lane] = begun + lane < samples ? 1 : 0;
-        }
+        const vuint numbers = splat_uint(begun) + LANE_NUMBERS;
         Path path;
         path_none(&path);
-        const SampleKey key = sample_key(seed_low, seed_high, splat_uint(pixel), load_lanes(numbers), replicates);
+        const SampleKey key = sample_key(seed_low, seed_high, splat_uint(pixel), first_sample + numbers, replicates);
         path_init_from_camera(camera, pixel_center, key, splat((real)(pixel % width)), splat((real)(pixel / width)),
-                              load_lanes(fresh_lane) != splat(0), &path);
+                              vbool_of_uint(numbers < splat_uint(samples)), &path);
         const Ray ray = path_ray(&path);
         const Hit hit = intersect_closest(&scene.geometry, &ray, path.alive);
         const vbool met = path.alive & is_hit(&hit);
@@ -53,9 +48,9 @@ __kernel VECTORS_WRITTEN void aovs(SCENE_PARAMETERS uint first_pixel, uint pixel
             [AOV_ALBEDO] = surface.albedo.x, surface.albedo.y, surface.albedo.z,
             [AOV_MET] = splat(1)};
         for (uint i = 0; i < AOV_FLOATS; ++i) {
-            real lanes[LANE_COUNT];
-            store_lanes(choose(met, values[i], splat(0)), lanes);
-            for (uint lane = 0; lane < LANE_COUNT; ++lane) sums[i] += lanes[lane];
+            LaneReals lanes;
+            lanes.all = choose(met, values[i], splat(0));
+            for (uint lane = 0; lane < LANE_COUNT; ++lane) sums[i] += lanes.of[lane];
         }
     }
     for (uint i = 0; i < AOV_FLOATS; ++i) out[(size_t)item * AOV_FLOATS + i] = (float)sums[i];

@@ -21,28 +21,24 @@ __kernel VECTORS_WRITTEN void trace(TRACE_PARAMETERS) {
     const uint lanes = min((uint)LANE_COUNT, end - next); /* that ever have one */
     uint used = 0;
     for (;;) {
-        const vbool reached = path_moves(&path) & vbool_of_uint(path.depth >= splat_uint(max_depth));
-        cut = cut | reached;
-        path.alive = path.alive & vbool_not(reached);
-
 #if SAMPLES_LAMPS
         const vbool busy = path.alive | path.wants_lamps;
 #else
         const vbool busy = path.alive;
 #endif
         /* Once half of the lanes are free: results out, the next pixel samples in. */
-        const uint alive = popcount(lane_bits(busy));
+        uint alive = popcount(lane_bits(busy));
         if (alive == 0 || (alive <= LANE_COUNT / 2 && next < end)) {
-            real red[LANE_COUNT], green[LANE_COUNT], blue[LANE_COUNT], count[LANE_COUNT];
-            uint place[LANE_COUNT];
-            store_lanes(path.radiance.x, red);
-            store_lanes(path.radiance.y, green);
-            store_lanes(path.radiance.z, blue);
-            store_lanes(uint_to_real(path.depth) + choose(cut, splat(R(0.5)), splat(0)), count);
-            store_lanes(number, place);
+            LaneReals red, green, blue, count;
+            LaneUints place;
+            red.all = path.radiance.x;
+            green.all = path.radiance.y;
+            blue.all = path.radiance.z;
+            count.all = uint_to_real(path.depth) + choose(cut, splat(R(0.5)), splat(0));
+            place.all = number;
             /* Of a path that goes on this is not the last word, but its place is its own, and to ask costs more. */
             for (uint lane = 0; lane < used; ++lane)
-                vstore4((real4)(red[lane], green[lane], blue[lane], count[lane]), place[lane], samples);
+                vstore4((real4)(red.of[lane], green.of[lane], blue.of[lane], count.of[lane]), place.of[lane], samples);
             if (next >= end) {
 #if EFFECT_LAMPS
                 lamp_rays[item] = lamp_rays_of(&path);
@@ -60,14 +56,17 @@ __kernel VECTORS_WRITTEN void trace(TRACE_PARAMETERS) {
             const Pixels pixels = pixels_ahead(&pixel, ahead, width);
             const uint taken = min((uint)popcount(free), end - next);
             next += taken;
+            alive += taken;
             for (sample += taken; sample >= samples_per_pixel; sample -= samples_per_pixel) next_pixel(&pixel, width);
             const SampleKey key = sample_key(seed_low, seed_high, pixels.row * width + pixels.column,
                                              first_sample + sample_number, replicates);
             path_init_from_camera(camera, pixel_center, key, uint_to_real(pixels.column), uint_to_real(pixels.row),
                                   fresh, &path);
             cut = cut & vbool_not(fresh);
-            continue; /* a cap of 0 cuts at once */
         }
+        const vbool reached = path_moves(&path) & vbool_of_uint(path.depth >= splat_uint(max_depth));
+        cut = cut | reached;
+        path.alive = path.alive & vbool_not(reached);
 #if SAMPLES_LAMPS
         /* Vertices wait until most paths stand at one. */
         if (2 * popcount(lane_bits(path.wants_lamps)) > alive) {

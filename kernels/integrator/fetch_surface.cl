@@ -7,29 +7,29 @@
 static void fetch_surface(const Scene *scene, const Ray *ray, const Hit *hit, Sphere *sphere, Surface *surface, Vec3 *emitted) {
     const vuint slot = choose_uint(is_hit(hit), hit->slot, splat_uint(0));
     *sphere = sphere_for_ray(&scene->geometry, ray, slot);
-    const vuint material = gather_split_uint(scene->slot_material, slot);
+    const vuint material = gather_split_uint(scene->slot_material, 0, slot);
     const vuint colour = slot * (uint)ALBEDO_REALS;
     const vuint numbers = material * MATERIAL_REALS;
     const vuint kinds = material * MATERIAL_UINTS;
-    surface->albedo = vec3(gather_split_real(scene->slot_albedo, colour), gather_split_real(scene->slot_albedo, colour + 1u),
-                           gather_split_real(scene->slot_albedo, colour + 2u));
+    surface->albedo = vec3(gather_split_real(scene->slot_albedo, 0, colour), gather_split_real(scene->slot_albedo, 1u, colour),
+                           gather_split_real(scene->slot_albedo, 2u, colour));
     surface->kind = gather_uint(scene->material_kinds, kinds);
     *emitted = zero3();
 #if EFFECT_EMISSION
-    *emitted = vec3(gather_real(scene->materials, numbers), gather_real(scene->materials, numbers + 1u),
-                    gather_real(scene->materials, numbers + 2u));
+    *emitted = vec3(gather_real(scene->materials, numbers), gather_real(scene->materials + 1u, numbers),
+                    gather_real(scene->materials + 2u, numbers));
 #endif
 #if EFFECT_LAMBERTIAN
-    surface->lobe = gather_uint(scene->material_kinds, kinds + MATERIAL_LOBE);
+    surface->lobe = gather_uint(scene->material_kinds + MATERIAL_LOBE, kinds);
 #endif
 #if EFFECT_METAL
-    surface->fuzz = gather_real(scene->materials, numbers + MATERIAL_FUZZ);
+    surface->fuzz = gather_real(scene->materials + MATERIAL_FUZZ, numbers);
 #endif
 #if EFFECT_METAL || EFFECT_DIELECTRIC
-    surface->variant = gather_uint(scene->material_kinds, kinds + MATERIAL_VARIANT);
+    surface->variant = gather_uint(scene->material_kinds + MATERIAL_VARIANT, kinds);
 #endif
 #if EFFECT_DIELECTRIC
-    surface->refraction_index = gather_real(scene->materials, numbers + MATERIAL_INDEX);
-    surface->total_reflection = gather_uint(scene->material_kinds, kinds + MATERIAL_TOTAL_REFLECTION);
+    surface->refraction_index = gather_real(scene->materials + MATERIAL_INDEX, numbers);
+    surface->total_reflection = gather_uint(scene->material_kinds + MATERIAL_TOTAL_REFLECTION, kinds);
 #endif
 }

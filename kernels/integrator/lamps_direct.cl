@@ -40,10 +40,10 @@ static vreal lamp_hit_weight(const Scene *scene, const Path *path, vuint slot, c
 }
 
 static Vec3 radiance_of_sphere(const Scene *scene, vuint slot) {
-    const vuint numbers = gather_split_uint(scene->slot_material, slot) * MATERIAL_REALS;
-    return vec3(gather_real(scene->materials, numbers + MATERIAL_EMIT),
-                gather_real(scene->materials, numbers + (MATERIAL_EMIT + 1u)),
-                gather_real(scene->materials, numbers + (MATERIAL_EMIT + 2u)));
+    const vuint numbers = gather_split_uint(scene->slot_material, 0, slot) * MATERIAL_REALS;
+    return vec3(gather_real(scene->materials + MATERIAL_EMIT, numbers),
+                gather_real(scene->materials + (MATERIAL_EMIT + 1u), numbers),
+                gather_real(scene->materials + (MATERIAL_EMIT + 2u), numbers));
 }
 #endif
 
@@ -83,7 +83,7 @@ static Hit first_seen(const Scene *scene, const Ray *ray, const LampChoice *choi
 static vbool meets_boundary(const Scene *scene, const Hit *hit, vuint lamp, vbool active) {
     const vbool other = active & vbool_of_uint(hit->slot != lamp);
     if (!any_lane(other)) return vbool_none;
-    const vuint material = gather_split_uint(scene->slot_material, choose_uint(other, hit->slot, splat_uint(0)));
+    const vuint material = gather_split_uint(scene->slot_material, 0, choose_uint(other, hit->slot, splat_uint(0)));
     return other & vbool_of_uint(gather_uint(scene->material_kinds, material * MATERIAL_UINTS) == splat_uint(KIND_INTERFACE));
 }
 
@@ -176,8 +176,8 @@ static Vec3 radiance_of_lamp(const Scene *scene, const Ray *ray, const LampChoic
 #if SAMPLES_DISCS
     const vuint place = choose_uint(disc, slot - splat_uint(DISC_SLOT), splat_uint(0)) * DISC_REALS + DISC_RADIANCE;
     return choose3(disc,
-                   vec3(gather_real(scene->discs, place), gather_real(scene->discs, place + 1u),
-                        gather_real(scene->discs, place + 2u)),
+                   vec3(gather_real(scene->discs, place), gather_real(scene->discs + 1u, place),
+                        gather_real(scene->discs + 2u, place)),
                    radiance);
 #else
     return radiance;

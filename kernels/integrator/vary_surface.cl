@@ -8,7 +8,7 @@ static Vec3 texture_value(const Scene *scene, vuint number, const Point *point, 
     const vuint index = choose_uint(active, number - splat_uint(1), splat_uint(0));
     const vuint numbers = index * TEXTURE_REALS, kinds = index * TEXTURE_UINTS;
 #if EFFECT_NOISE || EFFECT_IMAGES
-    const vuint pattern = gather_uint(scene->texture_kinds, kinds + TEXTURE_PATTERN);
+    const vuint pattern = gather_uint(scene->texture_kinds + TEXTURE_PATTERN, kinds);
     Vec3 value = zero3();
     vbool rest = active;
 #if EFFECT_IMAGES
@@ -32,8 +32,8 @@ static Vec3 texture_value(const Scene *scene, vuint number, const Point *point, 
 
 /* What the sphere in `slot` emits at a point, in the `active` lanes: `radiance`, but for materials whose light varies. */
 static Vec3 vary_radiance(const Scene *scene, vuint slot, const Point *point, Vec3 outward, vbool active, Vec3 radiance) {
-    const vuint material = gather_split_uint(scene->slot_material, slot);
-    const vuint number = gather_uint(scene->variations, material * VARIATION_UINTS + VARIATION_EMIT);
+    const vuint material = gather_split_uint(scene->slot_material, 0, slot);
+    const vuint number = gather_uint(scene->variations + VARIATION_EMIT, material * VARIATION_UINTS);
     const vbool varies = active & vbool_of_uint(number != splat_uint(0));
     if (!any_lane(varies)) return radiance;
     return choose3(varies, texture_value(scene, number, point, outward, varies), radiance);
@@ -42,7 +42,7 @@ static Vec3 vary_radiance(const Scene *scene, vuint slot, const Point *point, Ve
 /* For the lanes `met`, each in a slot. One member after the other, in a loop, so that the code of textures is there once. */
 static void vary_surface(const Scene *scene, vbool met, vuint slot, const Point *point, Vec3 outward, Surface *surface,
                          Vec3 *emitted) {
-    const vuint material = gather_split_uint(scene->slot_material, choose_uint(met, slot, splat_uint(0)));
+    const vuint material = gather_split_uint(scene->slot_material, 0, choose_uint(met, slot, splat_uint(0)));
     for (uint member = 0; member < VARIATIONS; ++member) {
         const vuint number = gather_uint(scene->variations, material * VARIATION_UINTS + member);
         const vbool varies = met & vbool_of_uint(number != splat_uint(0));

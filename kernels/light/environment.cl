@@ -55,7 +55,7 @@ static vreal row_height(const Scene *scene, vuint row, vbool *upper, vreal *more
     *upper = vbool_of_uint(row + row < splat_uint(rows));
     const vuint from_pole = choose_uint(*upper, row, splat_uint(rows - 1u) - row);
     const vreal height = gather_real(scene->sky_heights, from_pole);
-    *more = gather_real(scene->sky_heights, from_pole + 1u) - height;
+    *more = gather_real(scene->sky_heights + 1u, from_pole) - height;
     return height;
 }
 
@@ -72,8 +72,8 @@ static EnvironmentCell environment_cell(const Scene *scene, Vec3 direction) {
     const vuint row = to_uint(at_most(v * sky->rows, splat(sky->rows - R(1.0))));
     const vuint place = row * (columns + 1u) + column;
     EnvironmentCell cell;
-    cell.probability = share_of(gather_uint(scene->sky_rows, row), gather_uint(scene->sky_rows, row + 1u)) *
-                       share_of(gather_uint(scene->sky_columns, place), gather_uint(scene->sky_columns, place + 1u));
+    cell.probability = share_of(gather_uint(scene->sky_rows, row), gather_uint(scene->sky_rows + 1u, row)) *
+                       share_of(gather_uint(scene->sky_columns, place), gather_uint(scene->sky_columns + 1u, place));
     row_height(scene, row, &upper, &more);
     cell.cap = divide(splat(2) * more, splat(sky->columns));
     return cell;
@@ -89,7 +89,7 @@ static EnvironmentCell sample_environment(const Scene *scene, SampleKey key, vui
     const vuint row = find_share(scene->sky_rows, splat_uint(0), (uint)sky->rows, down);
     const vuint begin = row * (columns + 1u);
     const vuint column = find_share(scene->sky_columns, begin, columns, across);
-    const vuint row_low = gather_uint(scene->sky_rows, row), row_high = gather_uint(scene->sky_rows, row + 1u);
+    const vuint row_low = gather_uint(scene->sky_rows, row), row_high = gather_uint(scene->sky_rows + 1u, row);
     const vuint low = gather_uint(scene->sky_columns, begin + column);
     const vuint high = gather_uint(scene->sky_columns, begin + column + 1u);
     EnvironmentCell cell;

@@ -48,11 +48,11 @@ static LampChild load_root_child(const Scene *scene, uint k, vreal time) {
 static LampChild load_child(const Scene *scene, vuint node, vuint k, vreal time) {
     const vuint place = node * LAMP_NODE_REALS + k;
     LampChild child;
-    child.centre = vec3(gather_split_real(scene->lamps, place), gather_split_real(scene->lamps, place + LAMP_WIDTH),
-                        gather_split_real(scene->lamps, place + 2 * LAMP_WIDTH));
-    child.radius = gather_split_real(scene->lamps, place + 3 * LAMP_WIDTH);
-    child.power = gather_split_real(scene->lamps, place + 4 * LAMP_WIDTH);
-    move_child(scene, gather_split_uint(scene->lamp_children, node * LAMP_WIDTH + k), time, &child);
+    child.centre = vec3(gather_split_real(scene->lamps, 0, place), gather_split_real(scene->lamps, LAMP_WIDTH, place),
+                        gather_split_real(scene->lamps, 2 * LAMP_WIDTH, place));
+    child.radius = gather_split_real(scene->lamps, 3 * LAMP_WIDTH, place);
+    child.power = gather_split_real(scene->lamps, 4 * LAMP_WIDTH, place);
+    move_child(scene, gather_split_uint(scene->lamp_children, 0, node * LAMP_WIDTH + k), time, &child);
     return child;
 }
 
@@ -165,7 +165,7 @@ FORCE_INLINE static vuint choose_child(const Scene *scene, vuint node, int root,
     choice->sphere.centre = choose3(active, sphere.centre, choice->sphere.centre);
     choice->sphere.radius = choose(active, sphere.radius, choice->sphere.radius);
     if (root) choice->sum = sum;
-    return gather_split_uint(scene->lamp_children, node * LAMP_WIDTH + child);
+    return gather_split_uint(scene->lamp_children, 0, node * LAMP_WIDTH + child);
 }
 
 /* The lanes that are to go on below the child `word`. */
@@ -211,13 +211,13 @@ static vreal share_of_child(const Scene *scene, vuint node, const Point *point, 
 static vreal lamp_probability(const Scene *scene, const Point *point, const Lobe *lobe, vreal time, vreal sum, vuint slot,
                               vbool active) {
     const uint mask = LAMP_WIDTH - 1u;
-    vuint trail = gather_split_uint(scene->slot_lamp, choose_uint(active, slot, splat_uint(0)));
+    vuint trail = gather_split_uint(scene->slot_lamp, 0, choose_uint(active, slot, splat_uint(0)));
     const vbool known = active & vbool_of_uint(trail != splat_uint(NO_LAMP));
     vuint k = trail & mask;
     const LampChild child = load_child(scene, splat_uint(0), k, time);
     const vreal importance = lamp_importance(&child, point, lobe, is_fuzzy(lobe));
     vreal probability = choose(known & (importance > splat(0)), divide(importance, sum), splat(0));
-    vuint word = gather_split_uint(scene->lamp_children, k);
+    vuint word = gather_split_uint(scene->lamp_children, 0, k);
     for (;;) {
         const vbool deeper = goes_deeper(known, probability, word);
         if (!any_lane(deeper)) break;
@@ -226,7 +226,7 @@ static vreal lamp_probability(const Scene *scene, const Point *point, const Lobe
         const vuint node = choose_uint(deeper, word, splat_uint(0));
         const vreal share = share_of_child(scene, node, point, lobe, time, k);
         probability = choose(deeper, probability * share, probability);
-        word = choose_uint(deeper, gather_split_uint(scene->lamp_children, node * LAMP_WIDTH + k), word);
+        word = choose_uint(deeper, gather_split_uint(scene->lamp_children, 0, node * LAMP_WIDTH + k), word);
     }
     return probability;
 }

@@ -39,8 +39,8 @@ static void find_media(const Scene *scene, const Ray *ray, vbool moving, Path *p
 
 static Vec3 medium_colour(const Scene *scene, vuint medium, uint member) {
     const vuint place = medium * MEDIUM_REALS + member;
-    return vec3(gather_real(scene->media, place), gather_real(scene->media, place + 1u),
-                gather_real(scene->media, place + 2u));
+    return vec3(gather_real(scene->media, place), gather_real(scene->media + 1u, place),
+                gather_real(scene->media + 2u, place));
 }
 
 /* exp(x) for x that is below 40. */

@@ -11,8 +11,8 @@ static vuint checker_field(const Scene *scene, vuint numbers, Vec3 normal) {
     for (uint i = 0; i < 9; ++i) axes[i] = gather_real(scene->textures, numbers + (TEXTURE_AXES + i));
     sphere_map(normal, vec3(axes[0], axes[1], axes[2]), vec3(axes[3], axes[4], axes[5]),
                vec3(axes[6], axes[7], axes[8]), &u, &v);
-    const vreal around = gather_real(scene->textures, numbers + TEXTURE_FIELDS);
-    const vreal upwards = gather_real(scene->textures, numbers + (TEXTURE_FIELDS + 1u));
+    const vreal around = gather_real(scene->textures + TEXTURE_FIELDS, numbers);
+    const vreal upwards = gather_real(scene->textures + (TEXTURE_FIELDS + 1u), numbers);
     /* Beyond the seam the first field begins again: u of 1 is u of 0. */
     return to_uint(floor(u * around)) + field_at(v, upwards);
 }
@@ -21,7 +21,7 @@ static vuint checker_field(const Scene *scene, vuint numbers, Vec3 normal) {
 static Vec3 checker_colour(const Scene *scene, vuint numbers, vuint kinds, const Point *point, Vec3 normal,
                            vbool active) {
     const vbool over_surface =
-        vbool_of_uint(gather_uint(scene->texture_kinds, kinds + TEXTURE_MAPPING) == splat_uint(MAPPING_SURFACE));
+        vbool_of_uint(gather_uint(scene->texture_kinds + TEXTURE_MAPPING, kinds) == splat_uint(MAPPING_SURFACE));
     vuint number = splat_uint(0);
     if (any_lane(active & vbool_not(over_surface))) {
         const LatticePlace place = lattice_place(scene, numbers, kinds, point);
@@ -30,7 +30,7 @@ static Vec3 checker_colour(const Scene *scene, vuint numbers, vuint kinds, const
     if (any_lane(active & over_surface))
         number = choose_uint(over_surface, checker_field(scene, numbers, normal), number);
     const vuint colour = numbers + (number & splat_uint(1)) * (TEXTURE_SECOND - TEXTURE_FIRST);
-    return vec3(gather_real(scene->textures, colour), gather_real(scene->textures, colour + 1u),
-                gather_real(scene->textures, colour + 2u));
+    return vec3(gather_real(scene->textures, colour), gather_real(scene->textures + 1u, colour),
+                gather_real(scene->textures + 2u, colour));
 }
 #endif

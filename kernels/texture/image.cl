@@ -15,8 +15,8 @@ typedef struct Image {
 
 static Vec3 load_texel(const Scene *scene, const Image *image, vuint column, vuint row) {
     const vuint place = (image->first + row * image->width + column) * TEXEL_UINTS;
-    return vec3(real_of_bits(gather_uint(scene->texels, place)), real_of_bits(gather_uint(scene->texels, place + 1u)),
-                real_of_bits(gather_uint(scene->texels, place + 2u)));
+    return vec3(real_of_bits(gather_uint(scene->texels, place)), real_of_bits(gather_uint(scene->texels + 1u, place)),
+                real_of_bits(gather_uint(scene->texels + 2u, place)));
 }
 
 static Vec3 image_colour(const Scene *scene, const Image *image, vreal x, vreal y) {
@@ -45,14 +45,14 @@ static Vec3 image_texture(const Scene *scene, vuint numbers, vuint kinds, Vec3 n
     for (uint i = 0; i < 9; ++i) axes[i] = gather_real(scene->textures, numbers + (TEXTURE_AXES + i));
     sphere_map(normal, vec3(axes[0], axes[1], axes[2]), vec3(axes[3], axes[4], axes[5]),
                vec3(axes[6], axes[7], axes[8]), &u, &v);
-    const vreal around = choose(active, gather_real(scene->textures, numbers + TEXTURE_FIELDS), splat(1));
-    const vreal downwards = choose(active, gather_real(scene->textures, numbers + (TEXTURE_FIELDS + 1u)), splat(1));
+    const vreal around = choose(active, gather_real(scene->textures + TEXTURE_FIELDS, numbers), splat(1));
+    const vreal downwards = choose(active, gather_real(scene->textures + (TEXTURE_FIELDS + 1u), numbers), splat(1));
     const vbool clamped =
-        vbool_of_uint(gather_uint(scene->texture_kinds, kinds + TEXTURE_CLAMPED) != splat_uint(0));
+        vbool_of_uint(gather_uint(scene->texture_kinds + TEXTURE_CLAMPED, kinds) != splat_uint(0));
     Image image;
-    image.first = choose_uint(active, gather_uint(scene->texture_kinds, kinds + TEXTURE_IMAGE), splat_uint(0));
-    image.width = choose_uint(active, gather_uint(scene->texture_kinds, kinds + TEXTURE_WIDTH), splat_uint(1));
-    image.height = choose_uint(active, gather_uint(scene->texture_kinds, kinds + TEXTURE_HEIGHT), splat_uint(1));
+    image.first = choose_uint(active, gather_uint(scene->texture_kinds + TEXTURE_IMAGE, kinds), splat_uint(0));
+    image.width = choose_uint(active, gather_uint(scene->texture_kinds + TEXTURE_WIDTH, kinds), splat_uint(1));
+    image.height = choose_uint(active, gather_uint(scene->texture_kinds + TEXTURE_HEIGHT, kinds), splat_uint(1));
     image.columns = choose(clamped, uint_to_real(image.width), around);
     image.rows = choose(clamped, uint_to_real(image.height), downwards);
     image.ring = vbool_not(clamped);

@@ -29,17 +29,17 @@ static void lattice_axis(vreal high, vreal low, vreal scale, vreal scale_low, vr
 
 /* In the lattice of the texture that begins at `numbers` and `kinds` in its tables. */
 static LatticePlace lattice_place(const Scene *scene, vuint numbers, vuint kinds, const Point *point) {
-    const vreal scale = gather_real(scene->textures, numbers + TEXTURE_SCALE);
-    const vreal scale_low = gather_real(scene->textures, numbers + TEXTURE_SCALE_LOW);
+    const vreal scale = gather_real(scene->textures + TEXTURE_SCALE, numbers);
+    const vreal scale_low = gather_real(scene->textures + TEXTURE_SCALE_LOW, numbers);
     LatticePlace place;
-    lattice_axis(point->high.x, point->low.x, scale, scale_low, gather_real(scene->textures, numbers + TEXTURE_REST),
-                 gather_uint(scene->texture_kinds, kinds + TEXTURE_CELL), &place.x, &place.in_cell.x);
+    lattice_axis(point->high.x, point->low.x, scale, scale_low, gather_real(scene->textures + TEXTURE_REST, numbers),
+                 gather_uint(scene->texture_kinds + TEXTURE_CELL, kinds), &place.x, &place.in_cell.x);
     lattice_axis(point->high.y, point->low.y, scale, scale_low,
-                 gather_real(scene->textures, numbers + (TEXTURE_REST + 1u)),
-                 gather_uint(scene->texture_kinds, kinds + (TEXTURE_CELL + 1u)), &place.y, &place.in_cell.y);
+                 gather_real(scene->textures + (TEXTURE_REST + 1u), numbers),
+                 gather_uint(scene->texture_kinds + (TEXTURE_CELL + 1u), kinds), &place.y, &place.in_cell.y);
     lattice_axis(point->high.z, point->low.z, scale, scale_low,
-                 gather_real(scene->textures, numbers + (TEXTURE_REST + 2u)),
-                 gather_uint(scene->texture_kinds, kinds + (TEXTURE_CELL + 2u)), &place.z, &place.in_cell.z);
+                 gather_real(scene->textures + (TEXTURE_REST + 2u), numbers),
+                 gather_uint(scene->texture_kinds + (TEXTURE_CELL + 2u), kinds), &place.z, &place.in_cell.z);
     return place;
 }
 #endif

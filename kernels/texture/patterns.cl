@@ -14,16 +14,16 @@ static vreal waves_along(const Scene *scene, vuint numbers, vuint axis, const Po
     vreal waves;
     lattice_axis(by_axis(axis, point->high.x, point->high.y, point->high.z),
                  by_axis(axis, point->low.x, point->low.y, point->low.z),
-                 gather_real(scene->textures, numbers + TEXTURE_WAVE),
-                 gather_real(scene->textures, numbers + TEXTURE_WAVE_LOW),
-                 gather_real(scene->textures, numbers + TEXTURE_WAVE_REST), splat_uint(0), &cell, &waves);
+                 gather_real(scene->textures + TEXTURE_WAVE, numbers),
+                 gather_real(scene->textures + TEXTURE_WAVE_LOW, numbers),
+                 gather_real(scene->textures + TEXTURE_WAVE_REST, numbers), splat_uint(0), &cell, &waves);
     return waves;
 }
 
 /* From the axis through the origin to the point, along one coordinate. */
 static vrefined from_origin(const Scene *scene, vuint place, vreal high, vreal low) {
     const vreal centre = gather_real(scene->textures, place);
-    const vreal centre_low = gather_real(scene->textures, place + (TEXTURE_CENTRE_LOW - TEXTURE_CENTRE));
+    const vreal centre_low = gather_real(scene->textures + (TEXTURE_CENTRE_LOW - TEXTURE_CENTRE), place);
     return (to_refined(high) - to_refined(centre)) + (to_refined(low) - to_refined(centre_low));
 }
 
@@ -36,8 +36,8 @@ static vreal waves_around(const Scene *scene, vuint numbers, vuint axis, const P
     x = choose_refined(vbool_of_uint(axis == splat_uint(0)), splat_refined(0), x);
     y = choose_refined(vbool_of_uint(axis == splat_uint(1)), splat_refined(0), y);
     z = choose_refined(vbool_of_uint(axis == splat_uint(2)), splat_refined(0), z);
-    const vrefined wave = to_refined(gather_real(scene->textures, numbers + TEXTURE_WAVE)) +
-                          to_refined(gather_real(scene->textures, numbers + TEXTURE_WAVE_LOW));
+    const vrefined wave = to_refined(gather_real(scene->textures + TEXTURE_WAVE, numbers)) +
+                          to_refined(gather_real(scene->textures + TEXTURE_WAVE_LOW, numbers));
     const vrefined waves = square_root_refined(fma(x, x, fma(y, y, z * z))) * wave;
     return to_real(waves - floor(waves));
 }
@@ -46,19 +46,19 @@ static vreal waves_around(const Scene *scene, vuint numbers, vuint axis, const P
 static vreal pattern_share(const Scene *scene, vuint numbers, vuint kinds, const Point *point, vuint pattern,
                            vbool active) {
     const LatticePlace place = lattice_place(scene, numbers, kinds, point);
-    const vuint octaves = choose_uint(active, gather_uint(scene->texture_kinds, kinds + TEXTURE_OCTAVES), splat_uint(0));
-    const vreal noise = octaves_of_noise(place, octaves, gather_uint(scene->texture_kinds, kinds + TEXTURE_SEED));
+    const vuint octaves = choose_uint(active, gather_uint(scene->texture_kinds + TEXTURE_OCTAVES, kinds), splat_uint(0));
+    const vreal noise = octaves_of_noise(place, octaves, gather_uint(scene->texture_kinds + TEXTURE_SEED, kinds));
     const vbool marble = vbool_of_uint(pattern == splat_uint(PATTERN_MARBLE));
     const vbool wood = vbool_of_uint(pattern == splat_uint(PATTERN_WOOD));
     const vbool rough = marble | vbool_of_uint(pattern == splat_uint(PATTERN_TURBULENCE));
     const vreal height = choose(rough, fabs(noise), noise);
     vreal share = choose(rough, height, fma(splat(R(0.5)), height, splat(R(0.5))));
     if (any_lane(active & (marble | wood))) {
-        const vuint axis = gather_uint(scene->texture_kinds, kinds + TEXTURE_AXIS);
+        const vuint axis = gather_uint(scene->texture_kinds + TEXTURE_AXIS, kinds);
         vreal waves = splat(0), sine, cosine;
         if (any_lane(active & marble)) waves = waves_along(scene, numbers, axis, point);
         if (any_lane(active & wood)) waves = choose(wood, waves_around(scene, numbers, axis, point), waves);
-        waves = fma(gather_real(scene->textures, numbers + TEXTURE_DISTORTION), height, waves);
+        waves = fma(gather_real(scene->textures + TEXTURE_DISTORTION, numbers), height, waves);
         sin_cos_turn(at_most(at_least(waves - floor(waves), splat(0)), splat(1)), &sine, &cosine);
         share = choose(marble | wood, fma(splat(R(0.5)), sine, splat(R(0.5))), share);
     }
@@ -69,12 +69,12 @@ static vreal pattern_share(const Scene *scene, vuint numbers, vuint kinds, const
 static Vec3 pattern_colour(const Scene *scene, vuint numbers, vuint kinds, const Point *point, vuint pattern,
                            vbool active) {
     const vreal share = pattern_share(scene, numbers, kinds, point, pattern, active);
-    const Vec3 first = vec3(gather_real(scene->textures, numbers + TEXTURE_FIRST),
-                            gather_real(scene->textures, numbers + (TEXTURE_FIRST + 1u)),
-                            gather_real(scene->textures, numbers + (TEXTURE_FIRST + 2u)));
-    const Vec3 second = vec3(gather_real(scene->textures, numbers + TEXTURE_SECOND),
-                             gather_real(scene->textures, numbers + (TEXTURE_SECOND + 1u)),
-                             gather_real(scene->textures, numbers + (TEXTURE_SECOND + 2u)));
+    const Vec3 first = vec3(gather_real(scene->textures + TEXTURE_FIRST, numbers),
+                            gather_real(scene->textures + (TEXTURE_FIRST + 1u), numbers),
+                            gather_real(scene->textures + (TEXTURE_FIRST + 2u), numbers));
+    const Vec3 second = vec3(gather_real(scene->textures + TEXTURE_SECOND, numbers),
+                             gather_real(scene->textures + (TEXTURE_SECOND + 1u), numbers),
+                             gather_real(scene->textures + (TEXTURE_SECOND + 2u), numbers));
     return madd3(share, subtract3(second, first), first);
 }
 #endif

@@ -15,7 +15,7 @@ import time
 
 program, source = sys.argv[1], pathlib.Path(sys.argv[2])
 scene = source / "tests/agree/scenes/lobe-lambertian.json"
-store = "store_lanes(path.radiance.x, red);"
+store = "red.all = path.radiance.x;"
 
 
 def check(folder, *more, kernels=None):

@@ -62,12 +62,12 @@ static void calibrated(void **state) {
         const double bias = bias_of_power(powers[i], mean, variance, samples);
         char brighter[512];
         snprintf(brighter, sizeof brighter,
-                 "(real4)(R(%.9f), R(%.9f), R(%.9f), 1) * (real4)(red[lane], green[lane], blue[lane], "
-                 "count[lane])",
+                 "(real4)(R(%.9f), R(%.9f), R(%.9f), 1) * "
+                 "(real4)(red.of[lane], green.of[lane], blue.of[lane], count.of[lane])",
                  1 + bias, 1 + bias, 1 + bias);
         KernelCopy copy;
         kernel_copy_open(&copy, "entry/trace_packet.cl",
-                         "(real4)(red[lane], green[lane], blue[lane], count[lane])", brighter);
+                         "(real4)(red.of[lane], green.of[lane], blue.of[lane], count.of[lane])", brighter);
         int by_picture = 0, rejected = 0;
         for (uint64_t run = 0; run < 100; ++run) {
             const BpVerdict verdict =
@@ -96,9 +96,10 @@ static void half_percent(void **state) {
     for (uint64_t seed = 0; seed < 10; ++seed)
         right += check(&built.scene, BP_CHECK_SAMPLES_DEFAULT, seed, BP_VERDICT_LEVEL).conclusion != BP_AGREE;
     KernelCopy copy;
-    kernel_copy_open(
-        &copy, "entry/trace_packet.cl", "(real4)(red[lane], green[lane], blue[lane], count[lane])",
-        "(real4)(R(1.005) * red[lane], R(1.005) * green[lane], R(1.005) * blue[lane], count[lane])");
+    kernel_copy_open(&copy, "entry/trace_packet.cl",
+                     "(real4)(red.of[lane], green.of[lane], blue.of[lane], count.of[lane])",
+                     "(real4)(R(1.005) * red.of[lane], R(1.005) * green.of[lane], R(1.005) * blue.of[lane], "
+                     "count.of[lane])");
     for (uint64_t seed = 10; seed < 20; ++seed)
         wrong +=
             check(&built.scene, BP_CHECK_SAMPLES_DEFAULT, seed, BP_VERDICT_LEVEL).conclusion == BP_DISAGREE;

@@ -63,7 +63,7 @@ void cases_run(const Lab *lab, Cases *cases, const uint32_t *own) {
     uint32_t children[8], slots[8];
     if (leaves == NULL || none == NULL) abort();
     lab_unit_rays(lab, cases->count, cases->rays);
-    for (size_t i = 0; i < cases->count * 4 * width; ++i) leaves[i] = i / width % 4 == 3 ? -1 : 0;
+    for (size_t i = 0; i < cases->count * 4 * width; ++i) leaves[i] = i / width % 4 == 3 ? -1 : NAN;
     for (size_t i = 0; i < cases->count; ++i)
         for (uint32_t row = 0; row < 4; ++row)
             leaves[(i * 4 + row) * width + i % width] = cases->spheres[i * 4 + row];

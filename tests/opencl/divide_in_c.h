@@ -19,6 +19,9 @@ typedef uint64_t ulong;
 #define as_float(bits) bp_bits_float(bits)
 
 static int quotient_error, root_error;
+typedef union LaneReals {
+    float all, of[1];
+} LaneReals;
 static inline float off_by(float x, int ulps) {
     return as_float(as_uint(x) + (uint32_t)ulps);
 }
@@ -39,8 +42,6 @@ static inline float off_by(float x, int ulps) {
 #define any_lane(mask) ((mask) != 0)
 #define vbool_not(mask) (!(mask))
 #define vbool_of_uint(mask) (mask)
-#define load_lanes(array) ((array)[0])
-#define store_lanes(x, array) ((array)[0] = (x))
 #define real_of_bits(x) as_float(x)
 #define bits_of_real(x) as_uint(x)
 #define clz(x) __builtin_clz(x)

@@ -71,10 +71,11 @@ static void make_pairs(float *a, float *b) {
 }
 
 static char *assemble(void) {
-    static const char *const files[] = {"dialect/real.cl",   "dialect/lanes_one.cl",    "dialect/lanes.cl",
-                                        "dialect/divide.cl", "dialect/lanes_node.cl",   "dialect/lanes.cl",
-                                        "dialect/divide.cl", "dialect/lanes_packet.cl", "dialect/lanes.cl",
-                                        "dialect/divide.cl"};
+    static const char *const files[] = {
+        "dialect/real.cl",   "dialect/lanes_one.cl",    "dialect/lanes.cl", "dialect/lane_by_lane.cl",
+        "dialect/divide.cl", "dialect/lanes_node.cl",   "dialect/lanes.cl", "dialect/lane_by_lane.cl",
+        "dialect/divide.cl", "dialect/lanes_packet.cl", "dialect/lanes.cl", "dialect/lane_by_lane.cl",
+        "dialect/divide.cl"};
     char *source = strdup(worse);
     for (size_t f = 0; f <= sizeof files / sizeof files[0]; ++f) {
         char *text = NULL;
