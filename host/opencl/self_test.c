@@ -185,9 +185,9 @@ static void compare(const Inputs *in, const uint32_t *rows, bool has_double, uns
     }
 }
 
-const char *const bp_self_test_files[BP_SELF_TEST_FILES] = {"dialect/real.cl",      "dialect/fused.cl",
-                                                            "dialect/lanes_one.cl", "dialect/lanes.cl",
-                                                            "dialect/divide.cl",    "entry/self_test.cl"};
+const char *const bp_self_test_files[BP_SELF_TEST_FILES] = {
+    "dialect/real.cl",         "dialect/fused.cl",  "dialect/lanes_one.cl", "dialect/lanes.cl",
+    "dialect/lane_by_lane.cl", "dialect/divide.cl", "entry/self_test.cl"};
 
 /* The test's own program: the kernels' dialect and self_test.cl, and nothing else, so that it builds fast and
  * speaks even where the whole kernel does not build. The caller frees *source. */

@@ -13,7 +13,7 @@
 #include "device.h"
 
 /* The kernel files that the test's program is made of, in their order. */
-#define BP_SELF_TEST_FILES 6
+#define BP_SELF_TEST_FILES 7
 extern const char *const bp_self_test_files[BP_SELF_TEST_FILES];
 
 /* Runs the self-test. BP_ERR_DEVICE: the message names the device, its driver and the first thing that is

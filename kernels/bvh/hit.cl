@@ -41,8 +41,9 @@ FORCE_INLINE static void keep_closer(const Geometry *geometry, vbool found, vref
     vbool closer = found & vbool_of_refined(t < hit->t);
     const vbool tie = found & vbool_of_refined(t == hit->t) & is_hit(hit);
     if (any_lane(tie)) {
-        const vuint other = choose_uint(tie, hit->slot, splat_uint(0));
-        closer = closer | (tie & vbool_of_uint(gather_split_uint(geometry->slot_sphere, 0, slot) <
+        /* Only lanes of a tie have two spheres: others may stand for a disc of the sky. */
+        const vuint one = choose_uint(tie, slot, splat_uint(0)), other = choose_uint(tie, hit->slot, splat_uint(0));
+        closer = closer | (tie & vbool_of_uint(gather_split_uint(geometry->slot_sphere, 0, one) <
                                                gather_split_uint(geometry->slot_sphere, 0, other)));
     }
     hit->t = choose_refined(closer, t, hit->t);

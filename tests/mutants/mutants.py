@@ -306,7 +306,7 @@ MUTANTS = [
            [patch(KERNEL, "at_least(-dot3(surface->incoming, surface->normal), splat(0))",
                   "at_least(dot3(surface->incoming, surface->normal), splat(0))")], [check("glass-schlick")]),
     Mutant("ties won by the later sphere", "third: a closed interval",
-           [patch(KERNEL, "gather_split_uint(geometry->slot_sphere, 0, slot) <", "gather_split_uint(geometry->slot_sphere, 0, slot) >")],
+           [patch(KERNEL, "gather_split_uint(geometry->slot_sphere, 0, one) <", "gather_split_uint(geometry->slot_sphere, 0, one) >")],
            [check("tie")]),
     Mutant("the farther root", "classic",
            [patch(KERNEL, "choose_refined(inside, roots.far, entry)", "roots.far")], [check("mirror")]),
