@@ -190,9 +190,9 @@ typedef struct PackedVariation {
 
 /* A leaf is `width` spheres as structure of arrays: width reals each of center x, y, z and radius (> 0).
  * An empty lane has its center at NaN, which no ray may meet, and radius -1, and only empty ones follow it.
- * Lane l of leaf f is slot f * width + l. What a path needs of a sphere that it has met stands by slot, so that
- * nothing has to be looked up to find it: `slot_sphere`, the sphere's index in the scene (NO_SPHERE when empty);
- * `slot_material`; `slot_albedo`, ALBEDO_REALS each. Sizes in reals: */
+ * Lane l of leaf f is slot f * width + l. What a path needs of a sphere that it has met stands by slot, so
+ * that nothing has to be looked up to find it: `slot_sphere`, the sphere's index in the scene (NO_SPHERE when
+ * empty); `slot_material`; `slot_albedo`, ALBEDO_REALS each. Sizes in reals: */
 #define LEAF_REALS(width) (4 * (width))
 #define ALBEDO_REALS 3
 /* How far a leaf's spheres move while the shutter is open: width reals each of x, y, z; -0 where they do not,
