@@ -99,8 +99,8 @@
 #define real_of_bits(x) JOIN(JOIN(convert_, REAL), LANE_COUNT)(JOIN(as_float, LANE_COUNT)(x))
 #define bits_of_real(x) JOIN(as_uint, LANE_COUNT)(x)
 /* A constant belongs to `base`: what is gathered with one index takes that apart once. Tables have fewer than 2^31 entries,
- * and processors that gather do so faster with signed indices; for others each index is taken out of its vector, and then
- * extending no sign is faster. */
+ * and processors that gather do so faster with signed indices. Elsewhere each index is taken out of its vector, which is
+ * faster without a sign to extend. */
 #ifdef __AVX512F__
 #define gather_2(base, index) (base)[(int)(index).x], (base)[(int)(index).y]
 #else

@@ -64,6 +64,7 @@ __kernel VECTORS_WRITTEN void trace(TRACE_PARAMETERS) {
                                   fresh, &path);
             cut = cut & vbool_not(fresh);
         }
+        /* Behind the refill, so that a cap of 0 cuts new paths at once. */
         const vbool reached = path_moves(&path) & vbool_of_uint(path.depth >= splat_uint(max_depth));
         cut = cut | reached;
         path.alive = path.alive & vbool_not(reached);

@@ -90,8 +90,8 @@ static EnvironmentCell sample_environment(const Scene *scene, SampleKey key, vui
     const vuint begin = row * (columns + 1u);
     const vuint column = find_share(scene->sky_columns, begin, columns, across);
     const vuint row_low = gather_uint(scene->sky_rows, row), row_high = gather_uint(scene->sky_rows + 1u, row);
-    const vuint low = gather_uint(scene->sky_columns, begin + column);
-    const vuint high = gather_uint(scene->sky_columns, begin + column + 1u);
+    const vuint place = begin + column;
+    const vuint low = gather_uint(scene->sky_columns, place), high = gather_uint(scene->sky_columns + 1u, place);
     EnvironmentCell cell;
     cell.probability = share_of(row_low, row_high) * share_of(low, high);
     const vreal below =

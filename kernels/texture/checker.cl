@@ -8,7 +8,7 @@ static vuint field_at(vreal place, vreal fields) { return to_uint(at_most(floor(
 
 static vuint checker_field(const Scene *scene, vuint numbers, Vec3 normal) {
     vreal axes[9], u, v;
-    for (uint i = 0; i < 9; ++i) axes[i] = gather_real(scene->textures, numbers + (TEXTURE_AXES + i));
+    for (uint i = 0; i < 9; ++i) axes[i] = gather_real(scene->textures + (TEXTURE_AXES + i), numbers);
     sphere_map(normal, vec3(axes[0], axes[1], axes[2]), vec3(axes[3], axes[4], axes[5]),
                vec3(axes[6], axes[7], axes[8]), &u, &v);
     const vreal around = gather_real(scene->textures + TEXTURE_FIELDS, numbers);

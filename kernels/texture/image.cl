@@ -42,7 +42,7 @@ static Vec3 image_colour(const Scene *scene, const Image *image, vreal x, vreal 
 /* Of the texture that begins at `numbers` and `kinds` in its tables, on the surface of a sphere. */
 static Vec3 image_texture(const Scene *scene, vuint numbers, vuint kinds, Vec3 normal, vbool active) {
     vreal axes[9], u, v;
-    for (uint i = 0; i < 9; ++i) axes[i] = gather_real(scene->textures, numbers + (TEXTURE_AXES + i));
+    for (uint i = 0; i < 9; ++i) axes[i] = gather_real(scene->textures + (TEXTURE_AXES + i), numbers);
     sphere_map(normal, vec3(axes[0], axes[1], axes[2]), vec3(axes[3], axes[4], axes[5]),
                vec3(axes[6], axes[7], axes[8]), &u, &v);
     const vreal around = choose(active, gather_real(scene->textures + TEXTURE_FIELDS, numbers), splat(1));
