@@ -3,16 +3,14 @@
  * On the default device: chunks, work-group sizes, kernel forms, list or tree, tree widths, first samples and
  * repetition change no bit of the film; the seed changes it. With the argument `every`: nothing but every
  * work-group size, tree width and number of lanes, of which the rest has a few. */
-#include "opencl/device.h"
-#include "render/render.h"
 #include "support/load_scene.h"
+#include "support/open_render.h"
 #include "support/unit_test.h"
 
 #include <stdio.h>
 #include <string.h>
 
 static BpError err;
-static BpDevice *opened; /* the default device: what one render has built, the next need not build */
 
 /* Renders and copies the film's sums and counts into a new one that the caller destroys. Without devices, on
  * the one that is open. */
@@ -23,7 +21,7 @@ static BpFilm *render_on(const BpScene *scene, const BpRenderOptions *options, c
     const BpFilm *read = NULL;
     BpFilm *copy = NULL;
     const BpStatus created = device_count == 0
-                                 ? bp_render_create_on(scene, options, &opened, 1, &made, &err)
+                                 ? open_render_on_device(scene, options, &made, &err)
                                  : bp_render_create(scene, options, devices, device_count, &made, &err);
     if (created != BP_OK) fail_msg("%s", err.message);
     do {
@@ -75,7 +73,7 @@ static void check_variations(const char *name, uint32_t width, BpSampler sampler
 
     check_same(scene, &options, expected, segments, "a second run");
     uint64_t anew_segments = 0;
-    BpFilm *anew = render_on(scene, &options, &opened->info, 1, &anew_segments);
+    BpFilm *anew = render_on(scene, &options, &opened_device->info, 1, &anew_segments);
     if (!same(expected, anew) || anew_segments != segments)
         fail_msg("another picture on a device opened anew");
     bp_film_destroy(&anew);
@@ -294,11 +292,6 @@ static void depth_cap_is_black_and_counted(void **state) {
 
 int main(int argc, char **argv) {
     bool every = true;
-    BpDeviceInfo device;
-    if (bp_device_find(NULL, &device, &err) != BP_OK || bp_device_open(&device, &opened, &err) != BP_OK) {
-        fprintf(stderr, "%s\n", err.message);
-        return 1;
-    }
     const struct CMUnitTest all[] = {cmocka_unit_test_prestate(work_groups_and_widths_are_the_same, &every)};
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(cover_is_the_same),
@@ -310,8 +303,6 @@ int main(int argc, char **argv) {
         cmocka_unit_test(extension_adds_up),
         cmocka_unit_test(depth_cap_is_black_and_counted),
     };
-    const int failed = argc > 1 && strcmp(argv[1], "every") == 0 ? cmocka_run_group_tests(all, NULL, NULL)
-                                                                 : cmocka_run_group_tests(tests, NULL, NULL);
-    bp_device_close(&opened);
-    return failed;
+    return argc > 1 && strcmp(argv[1], "every") == 0 ? cmocka_run_group_tests(all, NULL, NULL)
+                                                     : cmocka_run_group_tests(tests, NULL, NULL);
 }
