@@ -47,7 +47,7 @@ def draw(python, folder, name, **variables):
 
 
 def main(folder):
-    made = run(sys.executable, source / "scripts/wheel", folder, cwd=folder)
+    made = run(sys.executable, source / "scripts/wheel", folder, cwd=folder, env={**os.environ, "BALLPARK_BUILD": str(build)})
     assert made.returncode == 0, made.stderr
     wheel = pathlib.Path(made.stdout.splitlines()[-1])
     assert re.fullmatch(r"ballpark_render-[\d.]+-py3-none-(manylinux_\d+_\d+|linux)_\w+\.whl", wheel.name), wheel.name
