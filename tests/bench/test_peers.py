@@ -8,7 +8,7 @@ import tempfile
 
 program, peers, scenes = sys.argv[1:4]
 Z_MAX = 4.0  # of 3 channels of all pairs below; by chance about 1 run in 300
-SAMPLES = 128
+SAMPLES = 64
 
 
 def call(command):

@@ -29,7 +29,7 @@ def reports(scene, folder, environment=None, check="--uninitialized", form="samp
     picture, log = pathlib.Path(folder, "picture.pfm"), pathlib.Path(folder, "log")
     # Oclgrind cannot run what LLVM's inliner leaves behind, so nothing is optimised.
     command = ["oclgrind", "--build-options", "-O0", check, "--max-errors", "1000000", "--log", str(log)]
-    command += [program, "render", str(scenes / scene), "--width", "16", "--spp", "2", "--kernel", form]
+    command += [program, "render", str(scenes / scene), "--width", "16", "--spp", "1", "--kernel", form]
     command += ["--device", "oclgrind", "--force", "-o", str(picture)]
     done = subprocess.run(command, capture_output=True, text=True, timeout=300, env=environment)
     print(done.stdout, done.stderr, sep="", end="", flush=True)
