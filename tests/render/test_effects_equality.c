@@ -12,8 +12,8 @@
  *
  * Nearly all of the time is the compiler's, so nothing but the trace kernels is compiled, and the general
  * ones once; and PoCL optimises nothing: what a set leaves out is a matter of the source, and that optimised
- * kernels draw the same bits is shown by recorded pictures (test_cli_bits). With `every` it optimises packets,
- * as users have them.
+ * kernels draw the same bits is shown by recorded pictures (test_cli_bits). With `every` it optimises
+ * packets, as users have them.
  *
  * test_effects_equality [every [PART OF]]: PART of OF shares, which can run side by side if each has a kernel
  * cache of its own. */
@@ -31,8 +31,8 @@ enum { FORMS = 2, ACCELERATIONS = 2, LAMPS = 2, WIDTH = 16, SAMPLES_MAX = 8 }; /
 
 typedef struct Lab {
     BpDevice *device;
-    bool exact;     /* the same bits are asked for */
-    bool optimised; /* packets are compiled as users have them */
+    bool exact;                                      /* the same bits are asked for */
+    bool optimised;                                  /* packets are compiled as users have them */
     BpProgram *general[FORMS][ACCELERATIONS][LAMPS]; /* each built when first needed */
     unsigned dark;                                   /* pictures without light, which would prove nothing */
     unsigned inexact;
