@@ -120,7 +120,7 @@ class Kills(cli.ProgramTest):
         chance, span, unnamed = random.Random(9), 1.1 * (time.monotonic() - begin), self.has_unnamed_files()
         whole, kinds = self.read("whole.exr"), (signal.SIGKILL, signal.SIGKILL, signal.SIGUSR1, signal.SIGTERM)
         kills = resumed = finished = 0
-        while kills < KILLS:
+        while kills < KILLS or (resumed == 0 and kills < 40):  # on a busy machine the first may all come too early
             going_on = "a.bpa" in self.files()
             arguments = ["render", "s.json", "--checkpoint", "0.02", "-o", "a.exr"] + (["--resume", "a.bpa"] if going_on else [])
             process = self.start(arguments)
