@@ -134,24 +134,6 @@
 #define LANE_NUMBERS ((vuint)(0, 1))
 #endif
 
-/* Drivers' own any() may ask lane by lane. */
-static int LANED(any_of_lanes)(vbool mask) {
-#if LANE_COUNT == 16
-    const JOIN(REAL_MASK, 8) eight = mask.lo | mask.hi;
-    const JOIN(REAL_MASK, 4) four = eight.lo | eight.hi;
-#elif LANE_COUNT == 8
-    const JOIN(REAL_MASK, 4) four = mask.lo | mask.hi;
-#elif LANE_COUNT == 4
-    const JOIN(REAL_MASK, 4) four = mask;
-#endif
-#if LANE_COUNT >= 4
-    const JOIN(REAL_MASK, 2) two = four.lo | four.hi;
-#else
-    const JOIN(REAL_MASK, 2) two = mask;
-#endif
-    return (two.x | two.y) != 0;
-}
-
 /* Bit l: lane l. Some compilers offer the one instruction that their processors have for this (a macro says which
  * processor). Everybody else gathers one bit of each lane's byte by a multiplication: byte l holds bit l, and the
  * product adds them up in its highest byte. */
@@ -188,6 +170,28 @@ static uint LANED(bits_of_lanes)(vbool mask) {
     return ((uint)mask.x & 1u) | ((uint)mask.y & 2u) | ((uint)mask.z & 4u) | ((uint)mask.w & 8u);
 #else
     return ((uint)mask.x & 1u) | ((uint)mask.y & 2u);
+#endif
+}
+
+/* Drivers' own any() may ask lane by lane. With AVX-512, a comparison's result is a set of bits already. */
+static int LANED(any_of_lanes)(vbool mask) {
+#if LANE_COUNT == 16 && defined(__AVX512DQ__)
+    return lane_bits(mask) != 0;
+#else
+#if LANE_COUNT == 16
+    const JOIN(REAL_MASK, 8) eight = mask.lo | mask.hi;
+    const JOIN(REAL_MASK, 4) four = eight.lo | eight.hi;
+#elif LANE_COUNT == 8
+    const JOIN(REAL_MASK, 4) four = mask.lo | mask.hi;
+#elif LANE_COUNT == 4
+    const JOIN(REAL_MASK, 4) four = mask;
+#endif
+#if LANE_COUNT >= 4
+    const JOIN(REAL_MASK, 2) two = four.lo | four.hi;
+#else
+    const JOIN(REAL_MASK, 2) two = mask;
+#endif
+    return (two.x | two.y) != 0;
 #endif
 }
 #endif
