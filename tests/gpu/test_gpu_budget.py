@@ -79,7 +79,9 @@ def compile_for(target, source, options):
     small.write_text("__kernel void small(__global float *x) { x[get_global_id(0)] = fma(x[0], x[1], sin(x[2])); }\n")
     tried = subprocess.run([*command, "-o", os.devnull, small], capture_output=True, text=True, check=False)
     if tried.returncode != 0:
-        raise Missing(f"{CLANG} cannot use {path}: {tried.stderr.strip().splitlines()[0] if tried.stderr.strip() else 'it says nothing'}")
+        # Behind a quotation mark is a name that clang has freed already.
+        reason = tried.stderr.strip().split(" '")[0].splitlines() or ["it says nothing"]
+        raise Missing(f"{CLANG} cannot use {path}: {reason[0]}")
     out = source.with_suffix(".s")
     run(*command, "-o", out, source)
     return out.read_text()
