@@ -15,6 +15,13 @@ def call(command):
     return json.loads(subprocess.run(command, check=True, capture_output=True, text=True).stdout)
 
 
+def form(path, variables):
+    """The form of the kernel that a device gets by itself."""
+    report = subprocess.run([program, "bench", path, "--rounds", "1", "--time", "0.01", "--width", "16", "--json", "-", "-q"], check=True,
+                            capture_output=True, text=True, env={**os.environ, **variables})
+    return json.loads(report.stdout)["kernel"]
+
+
 def peer(name, path, *options):
     figures = call([os.path.join(peers, name), path, "--width", "160", "--spp", str(SAMPLES), *options])
     return figures["mean_radiance"], figures["standard_error"], figures["rays"] / figures["samples"]
@@ -75,3 +82,8 @@ with tempfile.TemporaryDirectory() as folder:
         for mean, error, _ in entries:
             zs = [(a - b) / (e * math.sqrt(2)) for a, b, e in zip(means, mean, error)]
             assert max(map(abs, zs)) < Z_MAX, (isa, zs)
+
+    # nor do wider vectors than the peers': with one float a vector, a device gets no packets
+    narrow = {"LD_PRELOAD": os.path.join(os.path.abspath(peers), "narrow_vectors.so"), "NARROW_VECTORS": "1"}
+    if form(path, {}) == "packet":
+        assert form(path, narrow) == "sample" and form(path, {**narrow, "NARROW_VECTORS": "64"}) == "packet"
