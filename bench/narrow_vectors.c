@@ -1,21 +1,14 @@
 /* narrow_vectors.c: loaded before the program (LD_PRELOAD), makes every device one whose vectors have at most
  * NARROW_VECTORS floats. PoCL asks the processor, whatever POCL_KERNELLIB_NAME says.
  *
- * In:    NARROW_VECTORS, a number.   Knows: clGetDeviceInfo.   Does not know: what the answers are for. */
+ * In:    NARROW_VECTORS, a number.   Knows: real_driver.h.   Does not know: what the answers are for. */
 #define _GNU_SOURCE
-#define CL_TARGET_OPENCL_VERSION 120
-#include <CL/cl.h>
-#include <dlfcn.h>
-#include <stddef.h>
+#include "real_driver.h"
+
 #include <stdlib.h>
 
-typedef cl_int Ask(cl_device_id, cl_device_info, size_t, void *, size_t *);
-
 cl_int clGetDeviceInfo(cl_device_id device, cl_device_info what, size_t size, void *to, size_t *size_ret) {
-    void *const next = dlsym(RTLD_NEXT, "clGetDeviceInfo");
-    Ask *ask;
-    *(void **)&ask = next;
-    const cl_int code = ask(device, what, size, to, size_ret);
+    const cl_int code = real_device_info(device, what, size, to, size_ret);
     const char *const text = getenv("NARROW_VECTORS");
     if (code != CL_SUCCESS || to == NULL || text == NULL || what != CL_DEVICE_NATIVE_VECTOR_WIDTH_FLOAT)
         return code;

@@ -11,15 +11,14 @@ Z_MAX = 4.0  # of 3 channels of all pairs below; by chance about 1 run in 300
 SAMPLES = 64
 
 
-def call(command):
-    return json.loads(subprocess.run(command, check=True, capture_output=True, text=True).stdout)
+def call(command, variables={}):
+    done = subprocess.run(command, check=True, capture_output=True, text=True, env={**os.environ, **variables})
+    return json.loads(done.stdout)
 
 
 def form(path, variables):
     """The form of the kernel that a device gets by itself."""
-    report = subprocess.run([program, "bench", path, "--rounds", "1", "--time", "0.01", "--width", "16", "--json", "-", "-q"], check=True,
-                            capture_output=True, text=True, env={**os.environ, **variables})
-    return json.loads(report.stdout)["kernel"]
+    return call([program, "bench", path, "--rounds", "1", "--time", "0.01", "--width", "16", "--json", "-", "-q"], variables)["kernel"]
 
 
 def peer(name, path, *options):
@@ -83,7 +82,7 @@ with tempfile.TemporaryDirectory() as folder:
             zs = [(a - b) / (e * math.sqrt(2)) for a, b, e in zip(means, mean, error)]
             assert max(map(abs, zs)) < Z_MAX, (isa, zs)
 
-    # nor do wider vectors than the peers': with one float a vector, a device gets no packets
+    # --isa narrows the vectors of devices, too: with one float in each, a device gets no packets
     narrow = {"LD_PRELOAD": os.path.join(os.path.abspath(peers), "narrow_vectors.so"), "NARROW_VECTORS": "1"}
     if form(path, {}) == "packet":
         assert form(path, narrow) == "sample" and form(path, {**narrow, "NARROW_VECTORS": "64"}) == "packet"

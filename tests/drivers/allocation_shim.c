@@ -1,15 +1,12 @@
 /* allocation_shim.c: loaded before the program (LD_PRELOAD), makes every device one whose largest buffer has
  * PRETEND_ALLOCATION bytes: it says so, and makes no larger one.
  *
- * Knows: clGetDeviceInfo, clCreateBuffer.   Does not know: what is put into buffers. */
+ * Knows: real_driver.h, clCreateBuffer.   Does not know: what is put into buffers. */
 #define _GNU_SOURCE
-#define CL_TARGET_OPENCL_VERSION 120
-#include <CL/cl.h>
-#include <dlfcn.h>
-#include <stddef.h>
+#include "real_driver.h"
+
 #include <stdlib.h>
 
-typedef cl_int Ask(cl_device_id, cl_device_info, size_t, void *, size_t *);
 typedef cl_mem Create(cl_context, cl_mem_flags, size_t, void *, cl_int *);
 
 static cl_ulong most(void) {
@@ -18,10 +15,7 @@ static cl_ulong most(void) {
 }
 
 cl_int clGetDeviceInfo(cl_device_id device, cl_device_info what, size_t size, void *to, size_t *size_ret) {
-    void *const next = dlsym(RTLD_NEXT, "clGetDeviceInfo");
-    Ask *ask;
-    *(void **)&ask = next;
-    const cl_int code = ask(device, what, size, to, size_ret);
+    const cl_int code = real_device_info(device, what, size, to, size_ret);
     if (code != CL_SUCCESS || to == NULL || what != CL_DEVICE_MAX_MEM_ALLOC_SIZE) return code;
     if (*(cl_ulong *)to > most()) *(cl_ulong *)to = most();
     return code;

@@ -3,22 +3,15 @@
  * PRETEND_ROUGH in the environment it denies that quotients and roots are rounded correctly, and with
  * PRETEND_ROUGH=only says nothing else.
  *
- * Knows: clGetDeviceInfo.   Does not know: what the answers are for. */
+ * Knows: real_driver.h.   Does not know: what the answers are for. */
 #define _GNU_SOURCE
-#define CL_TARGET_OPENCL_VERSION 120
-#include <CL/cl.h>
-#include <dlfcn.h>
-#include <stddef.h>
+#include "real_driver.h"
+
 #include <stdlib.h>
 #include <string.h>
 
-typedef cl_int Ask(cl_device_id, cl_device_info, size_t, void *, size_t *);
-
 cl_int clGetDeviceInfo(cl_device_id device, cl_device_info what, size_t size, void *to, size_t *size_ret) {
-    void *const next = dlsym(RTLD_NEXT, "clGetDeviceInfo");
-    Ask *ask;
-    *(void **)&ask = next;
-    const cl_int code = ask(device, what, size, to, size_ret);
+    const cl_int code = real_device_info(device, what, size, to, size_ret);
     if (code != CL_SUCCESS || to == NULL) return code;
     const char *const rough = getenv("PRETEND_ROUGH");
     if (rough != NULL && what == CL_DEVICE_SINGLE_FP_CONFIG)
