@@ -18,7 +18,7 @@ static BoxAxis box_axis(vreal origin, vreal direction) {
     const vreal safe = choose(fabs(direction) < splat(R(1e-24)), copysign(splat(R(1e-24)), direction), direction);
     const vreal shift = copysign(origin * (R(8.0) * ROUNDOFF), safe);
     BoxAxis axis;
-    axis.inverse = divide(splat(1), safe);
+    axis.inverse = loose_divide(splat(1), safe);
     axis.near_offset = -(origin + shift) * axis.inverse;
     axis.far_offset = -(origin - shift) * axis.inverse;
     return axis;

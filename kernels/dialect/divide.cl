@@ -1,20 +1,28 @@
 /* divide.cl: quotients and square roots, rounded as the exact ones are (IEEE 754), whatever the device does.
  *
  * In:    numbers, one a lane; OWN_ROUNDING, which the program's first lines define (host/opencl/program.c).
- * Out:   divide(a, b) and square_root(x), and the same for refined numbers.
+ * Out:   divide(a, b) and square_root(x), and the same for refined numbers; loose_divide(a, b), rounded as the device likes,
+ *        for tests whose margins cover that.
  * Knows: lanes.cl.   Does not know: what is divided. Read once for each number of lanes.
  *
  * OpenCL rounds quotients and roots in double correctly, and those of floats if the device offers that. A device that
- * does not may be off by 2.5 and 3 units in the last place (4 in the embedded profile). OWN_ROUNDING brings
- * what it says to the right one of its neighbours by fma (P. Markstein, "Computation of elementary functions on the IBM
- * RISC System/6000 processor", 1990). OpenCL rounds fma correctly everywhere, if slowly without hardware for it. All floats
- * are covered, subnormal ones too, unless the device takes those for 0. */
+ * does not may be off by 2.5 and 3 units in the last place (4 in the embedded profile), though many are right all the same.
+ * OWN_ROUNDING tries what the device says, and where that is wrong finds the right neighbour by fma (P. Markstein,
+ * "Computation of elementary functions on the IBM RISC System/6000 processor", 1990). OpenCL rounds fma correctly
+ * everywhere, if slowly without hardware for it. All floats are covered, subnormal ones too, unless the device takes those
+ * for 0. */
 #if !OWN_ROUNDING || REAL_IS_DOUBLE
 #define divide(a, b) ((a) / (b))
 #define square_root(x) sqrt(x)
+#define loose_divide(a, b) ((a) / (b))
 #else
+#define loose_divide(a, b) DEVICE_QUOTIENT(a, b)
 #define divide LANED(divide)
 #define square_root LANED(square_root)
+#define correct_quotient LANED(correct_quotient)
+#define correct_root LANED(correct_root)
+#define root_above LANED(root_above)
+#define root_below LANED(root_below)
 #ifndef DEVICE_QUOTIENT /* a test has worse ones */
 #define DEVICE_QUOTIENT(a, b) ((a) / (b))
 #define DEVICE_ROOT(x) sqrt(x)
@@ -56,7 +64,7 @@ static float divide_wholes(float a, float b) {
 /* The quotient of the mantissas, in (1/2, 2), to which the exponents are added. From an inverse that is rounded
  * correctly, adding the remainder times the inverse to a quotient that is off by a unit at most ends at the neighbour to
  * which the exact quotient is rounded. Newton's method rounds all inverses correctly but that of the largest mantissa. */
-static vreal divide(vreal a, vreal b) {
+static vreal correct_quotient(vreal a, vreal b) {
     const vuint a_bits = bits_of_real(a), b_bits = bits_of_real(b);
     const vreal x = real_of_bits((a_bits & 0x007fffffu) | 0x3f800000u);
     const vreal y = real_of_bits((b_bits & 0x007fffffu) | 0x3f800000u);
@@ -70,39 +78,64 @@ static vreal divide(vreal a, vreal b) {
     const vuint a_exponent = (a_bits >> 23) & 255u, b_exponent = (b_bits >> 23) & 255u;
     const vuint scaled = bits_of_real(q) + ((a_exponent - b_exponent) << 23);
     const vuint exponent = (bits_of_real(q) >> 23) + a_exponent - b_exponent;
-    q = real_of_bits(scaled | ((a_bits ^ b_bits) & 0x80000000u));
     const vbool usual = vbool_of_uint(a_exponent - 1u < splat_uint(254)) &
                         vbool_of_uint(b_exponent - 1u < splat_uint(254)) &
                         vbool_of_uint(exponent - 1u < splat_uint(254));
-    if (any_lane(vbool_not(usual))) {
-        /* 0, infinity or NaN: of lanes that are not in use, often, and the device knows the quotient. */
-        const vbool numbers = (fabs(a) <= splat(REAL_MAX)) & (fabs(b) <= splat(REAL_MAX));
-        const vbool special = vbool_not(numbers & (a != splat(0)) & (b != splat(0)));
-        q = choose(special, a / b, q);
-        if (!any_lane(vbool_not(usual | special))) return q;
-        LaneReals dividends, divisors;
-        dividends.all = a;
-        divisors.all = b;
-        for (uint lane = 0; lane < LANE_COUNT; ++lane)
-            dividends.of[lane] = divide_wholes(dividends.of[lane], divisors.of[lane]);
-        q = dividends.all;
-    }
-    return q;
+    q = real_of_bits(scaled | ((a_bits ^ b_bits) & 0x80000000u));
+    if (!any_lane(vbool_not(usual))) return q;
+    LaneReals dividends, divisors;
+    dividends.all = a;
+    divisors.all = b;
+    for (uint lane = 0; lane < LANE_COUNT; ++lane)
+        dividends.of[lane] = divide_wholes(dividends.of[lane], divisors.of[lane]);
+    return choose(usual, q, dividends.all);
 }
 
-/* One step of Newton's method is off by a unit at most. A float is the rounded root if the number lies between its products
- * with its neighbours (Tuckerman's test; R. Agarwal et al., "New scalar and vector elementary functions for the IBM
- * System/370", 1986). Small numbers are moved away from where remainders are subnormal. 0, infinity, NaN and what is negative
- * have no remainder that means anything. */
-static vreal square_root(vreal x) {
+/* A quotient is right if the remainder is less than the divisor times half a unit in the last place. Both are rounded alike,
+ * so rounding cannot make it less. Below a power of two half a unit is half as much, but no quotient of floats comes that
+ * close to one from below. (Of a quotient that is 0, or nearly, the unit comes out negative here.) With infinities and NaN
+ * no comparison holds. */
+static vreal divide(vreal a, vreal b) {
+    const vreal q = DEVICE_QUOTIENT(a, b);
+    const vreal half_unit = real_of_bits((bits_of_real(q) & 0x7f800000u) - (24u << 23));
+    const vbool right = fabs(fma(-q, b, a)) < fabs(b) * half_unit;
+    if (!any_lane(vbool_not(right))) return q;
+    /* 0, infinity or NaN: of lanes that are not in use, often, and the device knows the quotient. */
+    const vbool numbers = (fabs(a) <= splat(REAL_MAX)) & (fabs(b) <= splat(REAL_MAX));
+    const vbool special = vbool_not(numbers & (a != splat(0)) & (b != splat(0)));
+    const vreal found = choose(special, a / b, q);
+    const vbool wrong = vbool_not(right | special);
+    return any_lane(wrong) ? choose(wrong, correct_quotient(a, b), found) : found;
+}
+
+/* A float is the rounded root if the number lies between its products with its neighbours (Tuckerman's test; R. Agarwal et
+ * al., "New scalar and vector elementary functions for the IBM System/370", 1986). */
+static vreal root_above(vreal root) { return real_of_bits(bits_of_real(root) + 1u); }
+static vreal root_below(vreal root) { return real_of_bits(bits_of_real(root) - 1u); }
+
+/* One step of Newton's method is off by a unit at most. Small numbers are moved away from where remainders are subnormal. */
+static vreal correct_root(vreal x) {
     const vbool tiny = x < splat(0x1p-96f);
     const vreal scaled = choose(tiny, x * splat(0x1p64f), x);
     vreal root = DEVICE_ROOT(scaled);
     root = fma(fma(-root, root, scaled), DEVICE_QUOTIENT(splat(0.5f), root), root);
-    const vreal below = real_of_bits(bits_of_real(root) - 1u), above = real_of_bits(bits_of_real(root) + 1u);
+    const vreal below = root_below(root), above = root_above(root);
     root = choose(fma(-above, root, scaled) > splat(0), above, choose(fma(-below, root, scaled) > splat(0), root, below));
-    root = choose(tiny, root * splat(0x1p-32f), root);
-    return choose((scaled > splat(0)) & (scaled <= splat(REAL_MAX)), root, sqrt(x));
+    return choose(tiny, root * splat(0x1p-32f), root);
+}
+
+/* Numbers whose products underflow fail the test, as do 0, infinity, NaN and negative numbers, whose roots the device
+ * knows. */
+static vreal square_root(vreal x) {
+    const vreal root = DEVICE_ROOT(x);
+    const vbool small_enough = fma(-root_below(root), root, x) > splat(0);
+    const vbool large_enough = fma(-root_above(root), root, x) < splat(0);
+    const vbool right = small_enough & large_enough;
+    if (!any_lane(vbool_not(right))) return root;
+    const vbool special = vbool_not((x > splat(0)) & (x <= splat(REAL_MAX)));
+    const vreal found = choose(special, sqrt(x), root);
+    const vbool wrong = vbool_not(right | special);
+    return any_lane(wrong) ? choose(wrong, correct_root(x), found) : found;
 }
 #endif
 
