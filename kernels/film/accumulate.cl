@@ -37,6 +37,17 @@ static real power_of_two(int exponent) {
 #endif
 }
 
+/* The whole steps in valid numbers. There is one instruction for this with AVX-512; elsewhere, drivers call a function, or
+ * take the numbers one by one. */
+static long4 whole_steps(real4 scaled) {
+#ifdef __AVX512DQ__
+    return convert_long4(scaled);
+#else
+    const int4 high = convert_int4(scaled * (real4)R(0x1p-16)), low = convert_int4(scaled - to_real4(high) * (real4)R(0x1p16));
+    return (convert_long4(high) << (long4)16) + convert_long4(low);
+#endif
+}
+
 /* As bits, what is NaN, infinite, negative or too large is a larger integer than any valid number; but -0 is 0. */
 static BITS4 order_of(real4 scaled) {
     const BITS4 bits = as_bits4(scaled);
@@ -64,12 +75,12 @@ static ReplicateSum sum_split(__global const real *samples, uint begin, uint end
         const BITS4 order = order_of(scaled);
         if (!is_valid(order)) continue;
         ++total.count;
-        const long4 whole = convert_long4(scaled);
+        const long4 whole = whole_steps(scaled);
         total.sum += whole;
         total.missed += (uint)(whole.w >> (MISSED_BITS + 1)) & 1;
         if (!any_below(order - 1, BITS_SPLIT - 1)) continue;
         const real4 rest = (scaled - to_real4(whole)) * (real4)(1l << FINE_BITS);
-        total.fine += convert_long4(rest);
+        total.fine += whole_steps(rest);
         total.coarse |= any_below(order - 1, BITS_COARSE - 1);
     }
     return total;
@@ -118,7 +129,7 @@ __kernel void accumulate(__global const real *samples, uint pixel_count, uint sa
         uint count = 0;
         for (uint s = begin; s < samples_per_pixel; s += replicates) {
             const real4 scaled = vload4(s, mine) * scales;
-            const long4 fixed = convert_long4(scaled);
+            const long4 fixed = whole_steps(scaled);
             const BITS4 order = order_of(scaled);
             largest = max(largest, order);
             least = min(least, order - 1);
