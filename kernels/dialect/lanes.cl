@@ -41,6 +41,7 @@
 #undef gather_uint
 #undef gather_split_real
 #undef gather_split_uint
+#undef scatter4
 
 #define splat(x) ((vreal)(x))
 #define splat_uint(x) ((vuint)(x))
@@ -122,6 +123,17 @@
 #define gather_split_real(base, offset, index) ((vreal)(JOIN(gather_split_, LANE_COUNT)(base, (uint)(offset) + (index))))
 #define gather_split_uint(base, offset, index) ((vuint)(JOIN(gather_split_, LANE_COUNT)(base, (uint)(offset) + (index))))
 #endif
+/* Four numbers of each lane to its place among groups of four, the last lane first. */
+#define scatter4_1(a, b, c, d, place, base) vstore4((JOIN(REAL, 4))(a, b, c, d), place, base)
+#define scatter4_2(a, b, c, d, place, base)                                                                            \
+    scatter4_1((a).y, (b).y, (c).y, (d).y, (place).y, base), scatter4_1((a).x, (b).x, (c).x, (d).x, (place).x, base)
+#define scatter4_4(a, b, c, d, place, base)                                                                            \
+    scatter4_2((a).hi, (b).hi, (c).hi, (d).hi, (place).hi, base), scatter4_2((a).lo, (b).lo, (c).lo, (d).lo, (place).lo, base)
+#define scatter4_8(a, b, c, d, place, base)                                                                            \
+    scatter4_4((a).hi, (b).hi, (c).hi, (d).hi, (place).hi, base), scatter4_4((a).lo, (b).lo, (c).lo, (d).lo, (place).lo, base)
+#define scatter4_16(a, b, c, d, place, base)                                                                           \
+    scatter4_8((a).hi, (b).hi, (c).hi, (d).hi, (place).hi, base), scatter4_8((a).lo, (b).lo, (c).lo, (d).lo, (place).lo, base)
+#define scatter4(a, b, c, d, place, base) JOIN(scatter4_, LANE_COUNT)(a, b, c, d, place, base)
 
 /* The number of each lane. */
 #if LANE_COUNT == 16

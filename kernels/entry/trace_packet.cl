@@ -16,10 +16,10 @@ __kernel VECTORS_WRITTEN void trace(TRACE_PARAMETERS) {
 
     Path path;
     path_none(&path);
-    vbool cut = path.alive;       /* lanes whose path the cap has ended, black for what is missing */
-    vuint number = splat_uint(0); /* of a lane's pixel sample within the chunk */
-    const uint lanes = min((uint)LANE_COUNT, end - next); /* that ever have one */
-    uint used = 0;
+    vbool cut = path.alive; /* lanes whose path the cap has ended, black for what is missing */
+    /* Of a lane's pixel sample within the chunk. If there are fewer than lanes, the rest writes to the place of the first
+     * lane, which writes after them. */
+    vuint number = splat_uint(next);
     for (;;) {
 #if SAMPLES_LAMPS
         const vbool busy = path.alive | path.wants_lamps;
@@ -29,23 +29,15 @@ __kernel VECTORS_WRITTEN void trace(TRACE_PARAMETERS) {
         /* Once half of the lanes are free: results out, the next pixel samples in. */
         uint alive = popcount(lane_bits(busy));
         if (alive == 0 || (alive <= LANE_COUNT / 2 && next < end)) {
-            LaneReals red, green, blue, count;
-            LaneUints place;
-            red.all = path.radiance.x;
-            green.all = path.radiance.y;
-            blue.all = path.radiance.z;
-            count.all = uint_to_real(path.depth) + choose(cut, splat(R(0.5)), splat(0));
-            place.all = number;
+            const vreal count = uint_to_real(path.depth) + choose(cut, splat(R(0.5)), splat(0));
             /* Of a path that goes on this is not the last word, but its place is its own, and to ask costs more. */
-            for (uint lane = 0; lane < used; ++lane)
-                vstore4((real4)(red.of[lane], green.of[lane], blue.of[lane], count.of[lane]), place.of[lane], samples);
+            scatter4(path.radiance.x, path.radiance.y, path.radiance.z, count, number, samples);
             if (next >= end) {
 #if EFFECT_LAMPS
                 lamp_rays[item] = lamp_rays_of(&path);
 #endif
                 return; /* from here: a common end behind the loop makes compilers keep more in memory */
             }
-            used = lanes;
             /* The free lanes take the next pixel samples, the lowest lane first. */
             const uint free = lane_bits(vbool_not(busy));
             const vuint rank = popcount(splat_uint(free) & BITS_BELOW);

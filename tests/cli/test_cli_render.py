@@ -42,6 +42,12 @@ class Picture(Render):
             with self.subTest(options):
                 self.assert_same(whole, self.pfm(*options), options)
 
+    def test_fewer_samples_than_lanes(self):
+        for width, samples in ((1, 1), (1, 3), (3, 1), (4, 1), (5, 3)):
+            with self.subTest(width=width, samples=samples):
+                tiny = ["--width", str(width), "--spp", str(samples)]
+                self.assert_same(self.pfm(*tiny, "--kernel", "sample"), self.pfm(*tiny, "--kernel", "packet"), tiny)
+
     @deep
     def test_choices_of_computing(self):
         """Fast mathematics and plain numerics give about the same picture."""
