@@ -28,10 +28,9 @@ static Ray ray_for_all(const Ray_one *one) {
  * makes it one load. */
 static vreal row_of(__global const real *rows, uint row) { return *(__global const vreal *)(rows + (size_t)row); }
 
-/* The spheres of a leaf that the ray may meet before `bound`, without a branch. The one in `known_slot` is left out: the
- * ray has met it already, or is sent to it. */
+/* The spheres of a leaf that the ray may meet before `bound`, without a branch. */
 FORCE_INLINE static child_mask leaf_candidates(const Geometry *geometry, const Ray_one *one, uint leaf_number,
-                                               real bound, uint known_slot) {
+                                               real bound) {
     __global const real *leaf = place_in(geometry->leaves, leaf_number * (4 * TREE_WIDTH));
     const Ray ray = ray_for_all(one);
     Sphere sphere;
@@ -50,14 +49,20 @@ FORCE_INLINE static child_mask leaf_candidates(const Geometry *geometry, const R
 #ifdef __FAST_RELAXED_MATH__
     mask &= lane_bits(sphere.radius > splat(0)); /* here a compiler may take a NaN for a number */
 #endif
+    return mask;
+}
+
+/* Leaves out of a leaf's candidates the sphere that the ray starts from, if it is not met that way, and the one in
+ * `known_slot`: the ray has met it already, or is sent to it. */
+static child_mask without_known(child_mask candidates, uint leaf_number, uint own_slot, uint known_slot) {
 #if !OWN_SPHERE_IS_MET
-    const uint own = one->own_slot - leaf_number * TREE_WIDTH;
-    mask &= ~(own < TREE_WIDTH ? (child_mask)1 << own : (child_mask)0);
+    const uint own = own_slot - leaf_number * TREE_WIDTH;
+    candidates &= ~(own < TREE_WIDTH ? (child_mask)1 << own : (child_mask)0);
 #endif
 #if SAMPLES_LAMPS
-    return known_slot / TREE_WIDTH == leaf_number ? without_bit(mask, known_slot % TREE_WIDTH) : mask;
+    return known_slot / TREE_WIDTH == leaf_number ? without_bit(candidates, known_slot % TREE_WIDTH) : candidates;
 #else
-    return mask; /* nothing is met twice */
+    return candidates; /* nothing is met twice */
 #endif
 }
 

@@ -67,22 +67,33 @@ static void intersect_slot_of_lane(const Geometry *geometry, LaneRays *rays, uin
     rays->bound.of[lane] = hit.bound;
 }
 
-/* Visits leaves and decides about the spheres that may be met there. */
+#define LEAF_BATCH 32u
+
+/* Visits leaves and decides about the spheres that may be met there. Of a batch, all leaves are tested before anything
+ * depends on it: a branch that is guessed wrong then throws away no test. */
 static void intersect_leaves(const Geometry *geometry, const Visit *visits, uint count, LaneRays *rays) {
     Visit found[FOUND_MAX + TREE_WIDTH];
+    child_mask met[LEAF_BATCH];
     uint found_count = 0;
-    for (uint i = 0; i < count; ++i) {
-        const uint lane = visits[i].lane, first = visits[i].what * TREE_WIDTH;
-        const Ray_one ray = ray_of_lane(rays, lane);
-        child_mask candidates = leaf_candidates(geometry, &ray, visits[i].what, rays->bound.of[lane], rays->slot.of[lane]);
-        /* Mostly there is one candidate or none, so it is noted without asking which. */
-        found_count = add_visit(found, found_count, lane, first + lowest_bit(candidates), candidates != 0);
-        for (candidates = without_lowest_bit(candidates); candidates != 0;
-             candidates = without_lowest_bit(candidates))
-            found_count = add_visit(found, found_count, lane, first + lowest_bit(candidates), 1);
-        if (found_count < FOUND_MAX && i + 1 < count) continue;
-        for (uint k = 0; k < found_count; ++k) intersect_slot_of_lane(geometry, rays, found[k].lane, found[k].what);
-        found_count = 0;
+    for (uint begin = 0; begin < count; begin += LEAF_BATCH) {
+        const uint end = min(begin + LEAF_BATCH, count);
+        for (uint i = begin; i < end; ++i) {
+            const Ray_one ray = ray_of_lane(rays, visits[i].lane);
+            met[i - begin] = leaf_candidates(geometry, &ray, visits[i].what, rays->bound.of[visits[i].lane]);
+        }
+        for (uint i = begin; i < end; ++i) {
+            const uint lane = visits[i].lane, leaf = visits[i].what, first = leaf * TREE_WIDTH;
+            child_mask candidates =
+                without_known(met[i - begin], leaf, rays->own_slot.of[lane], rays->slot.of[lane]);
+            /* Mostly there is one candidate or none, so it is noted without asking which. */
+            found_count = add_visit(found, found_count, lane, first + lowest_bit(candidates), candidates != 0);
+            for (candidates = without_lowest_bit(candidates); candidates != 0;
+                 candidates = without_lowest_bit(candidates))
+                found_count = add_visit(found, found_count, lane, first + lowest_bit(candidates), 1);
+            if (found_count < FOUND_MAX && i + 1 < count) continue;
+            for (uint k = 0; k < found_count; ++k) intersect_slot_of_lane(geometry, rays, found[k].lane, found[k].what);
+            found_count = 0;
+        }
     }
 }
 
@@ -180,6 +191,32 @@ static uint visit_lone_group(const FlatTree *flat, const PacketBoxRay *box, Visi
 
 #define VISITS_MAX 64u
 
+/* The boxes of one group against the ray of each of `lanes`, first all tests and then the visits. Returns the number of
+ * visits, of which there have been `count`. */
+FORCE_INLINE static uint visit_group(const FlatTree *flat, uint group, uint lanes, const LaneBoxRays *boxes,
+                                     const LaneRays *rays, Visit *visits, uint count) {
+    const uint first = flat->first_leaf + group * TREE_WIDTH;
+    uint tested[LANE_COUNT], tested_count = 0;
+    child_mask met[LANE_COUNT];
+    for (; lanes != 0; lanes &= lanes - 1u) {
+        const uint lane = lowest_bit(lanes);
+        const BoxRay box = box_ray_of_lane(boxes, lane);
+        tested[tested_count] = lane;
+        met[tested_count++] = test_group(flat, group, &box, rays->bound.of[lane]);
+    }
+    for (uint i = 0; i < tested_count; ++i) {
+        const uint lane = tested[i];
+        child_mask left = met[i];
+        /* Two leaves at most are the rule. */
+        count = add_visit(visits, count, lane, first + lowest_bit(left), left != 0);
+        left = without_lowest_bit(left);
+        count = add_visit(visits, count, lane, first + lowest_bit(left), left != 0);
+        for (left = without_lowest_bit(left); left != 0; left = without_lowest_bit(left))
+            count = add_visit(visits, count, lane, first + lowest_bit(left), 1);
+    }
+    return count;
+}
+
 /* The leaves of a small tree: TREE_WIDTH boxes at a time, against each ray that meets the box around them. */
 static void traverse_flat(const Geometry *geometry, const BoxAxis *axes, vbool active, vreal bound, LaneRays *rays) {
     const FlatTree *flat = &geometry->flat;
@@ -192,18 +229,8 @@ static void traverse_flat(const Geometry *geometry, const BoxAxis *axes, vbool a
         LaneBoxRays boxes;
         store_box_axes(axes, &boxes);
         for (uint group = 0; group * TREE_WIDTH < flat->leaf_count; ++group) {
-            const uint first = flat->first_leaf + group * TREE_WIDTH;
-            for (uint lanes = lane_bits(meets_box(&packet, flat->around[group], 1)); lanes != 0; lanes &= lanes - 1u) {
-                const uint lane = lowest_bit(lanes);
-                const BoxRay box = box_ray_of_lane(&boxes, lane);
-                child_mask met = test_group(flat, group, &box, rays->bound.of[lane]);
-                /* Two leaves at most are the rule. */
-                count = add_visit(visits, count, lane, first + lowest_bit(met), met != 0);
-                met = without_lowest_bit(met);
-                count = add_visit(visits, count, lane, first + lowest_bit(met), met != 0);
-                for (met = without_lowest_bit(met); met != 0; met = without_lowest_bit(met))
-                    count = add_visit(visits, count, lane, first + lowest_bit(met), 1);
-            }
+            const uint lanes = lane_bits(meets_box(&packet, flat->around[group], 1));
+            count = visit_group(flat, group, lanes, &boxes, rays, visits, count);
             if (count < VISITS_MAX) continue;
             intersect_leaves(geometry, visits, count, rays);
             count = 0;

@@ -3,7 +3,8 @@
  * In:    a ray, the geometry.   Out: the hit of least (distance, sphere index); or whether there is any.
  * Knows: node.cl, hit.cl.   Does not know: materials, what made the ray. */
 FORCE_INLINE static void intersect_leaf(const Geometry *geometry, const Ray *ray, uint leaf_number, Hit *best) {
-    for (child_mask candidates = leaf_candidates(geometry, ray, leaf_number, best->bound, best->slot); candidates != 0;
+    const child_mask met = leaf_candidates(geometry, ray, leaf_number, best->bound);
+    for (child_mask candidates = without_known(met, leaf_number, ray->own_slot, best->slot); candidates != 0;
          candidates = without_lowest_bit(candidates)) {
         const uint slot = leaf_number * TREE_WIDTH + lowest_bit(candidates);
         const Sphere sphere = sphere_for_ray(geometry, ray, slot);
