@@ -173,9 +173,9 @@ static uint LANED(bits_of_lanes)(vbool mask) {
 #elif LANE_COUNT == 8 && !REAL_IS_DOUBLE && defined(__SSE2__)
     return (uint)__builtin_ia32_movmskps(as_float4(mask.lo)) | (uint)__builtin_ia32_movmskps(as_float4(mask.hi)) << 4;
 #elif LANE_COUNT == 16
-    const ulong2 bytes = as_ulong2(convert_char16(mask)) & (ulong2)0x8040201008040201;
-    const ulong2 bits = (bytes * (ulong2)0x0101010101010101) >> (ulong2)56;
-    return (uint)bits.x | (uint)bits.y << 8;
+    const uchar16 bits = as_uchar16((as_ulong2(convert_char16(mask)) & (ulong2)0x8040201008040201) *
+                                    (ulong2)0x0101010101010101);
+    return as_uint((uchar4)(bits.s7, bits.sf, 0, 0)); /* side by side before they leave the vector */
 #elif LANE_COUNT == 8
     return (uint)(((as_ulong(convert_char8(mask)) & (ulong)0x8040201008040201) * (ulong)0x0101010101010101) >> 56);
 #elif LANE_COUNT == 4
