@@ -15,7 +15,7 @@ import time
 
 program, source = sys.argv[1], pathlib.Path(sys.argv[2])
 scene = source / "tests/agree/scenes/lobe-lambertian.json"
-store = "red.all = path.radiance.x;"
+store = "scatter4(path.radiance.x, path.radiance.y, path.radiance.z, count, number, samples);"
 
 
 def check(folder, *more, kernels=None):

@@ -62,12 +62,12 @@ static void calibrated(void **state) {
         const double bias = bias_of_power(powers[i], mean, variance, samples);
         char brighter[512];
         snprintf(brighter, sizeof brighter,
-                 "(real4)(R(%.9f), R(%.9f), R(%.9f), 1) * "
-                 "(real4)(red.of[lane], green.of[lane], blue.of[lane], count.of[lane])",
+                 "scatter4(R(%.9f) * path.radiance.x, R(%.9f) * path.radiance.y, "
+                 "R(%.9f) * path.radiance.z,",
                  1 + bias, 1 + bias, 1 + bias);
         KernelCopy copy;
         kernel_copy_open(&copy, "entry/trace_packet.cl",
-                         "(real4)(red.of[lane], green.of[lane], blue.of[lane], count.of[lane])", brighter);
+                         "scatter4(path.radiance.x, path.radiance.y, path.radiance.z,", brighter);
         int by_picture = 0, rejected = 0;
         for (uint64_t run = 0; run < 100; ++run) {
             const BpVerdict verdict =
@@ -97,9 +97,9 @@ static void half_percent(void **state) {
         right += check(&built.scene, BP_CHECK_SAMPLES_DEFAULT, seed, BP_VERDICT_LEVEL).conclusion != BP_AGREE;
     KernelCopy copy;
     kernel_copy_open(&copy, "entry/trace_packet.cl",
-                     "(real4)(red.of[lane], green.of[lane], blue.of[lane], count.of[lane])",
-                     "(real4)(R(1.005) * red.of[lane], R(1.005) * green.of[lane], R(1.005) * blue.of[lane], "
-                     "count.of[lane])");
+                     "scatter4(path.radiance.x, path.radiance.y, path.radiance.z,",
+                     "scatter4(R(1.005) * path.radiance.x, R(1.005) * path.radiance.y, "
+                     "R(1.005) * path.radiance.z,");
     for (uint64_t seed = 10; seed < 20; ++seed)
         wrong +=
             check(&built.scene, BP_CHECK_SAMPLES_DEFAULT, seed, BP_VERDICT_LEVEL).conclusion == BP_DISAGREE;
