@@ -98,7 +98,7 @@ static BoxRay box_ray(const Ray_one *ray) {
     return box;
 }
 
-/* 1/d errs by 5u at most, which scales a side of a box, and the products by u more. */
+/* 1/d errs by 5u at most (6u in the embedded profile), which scales a side of a box, and the products by u more. */
 #define SLAB_TOLERANCE (R(1.0) + R(16.0) * ROUNDOFF)
 
 /* The boxes that the ray meets before `bound`, and where it enters them, by the planes that it meets first and last. */

@@ -22,6 +22,16 @@ FORCE_INLINE static uint add_visit(Visit *visits, uint count, uint lane, uint wh
     return count + (wanted != 0);
 }
 
+/* Notes the visits of `lane` to `first` plus each bit of a mask, of which there are mostly `usual` at most: those are noted
+ * without asking whether there are as many. */
+FORCE_INLINE static uint add_visits(Visit *visits, uint count, uint lane, uint first, child_mask mask, uint usual) {
+    for (uint i = 0; i < usual; ++i, mask = without_lowest_bit(mask))
+        count = add_visit(visits, count, lane, first + lowest_bit(mask), mask != 0);
+    for (; mask != 0; mask = without_lowest_bit(mask))
+        count = add_visit(visits, count, lane, first + lowest_bit(mask), 1);
+    return count;
+}
+
 #define FOUND_MAX 64u
 
 /* The rays of all lanes, and what each has met. */
@@ -82,14 +92,9 @@ static void intersect_leaves(const Geometry *geometry, const Visit *visits, uint
             met[i - begin] = leaf_candidates(geometry, &ray, visits[i].what, rays->bound.of[visits[i].lane]);
         }
         for (uint i = begin; i < end; ++i) {
-            const uint lane = visits[i].lane, leaf = visits[i].what, first = leaf * TREE_WIDTH;
-            child_mask candidates =
-                without_known(met[i - begin], leaf, rays->own_slot.of[lane], rays->slot.of[lane]);
-            /* Mostly there is one candidate or none, so it is noted without asking which. */
-            found_count = add_visit(found, found_count, lane, first + lowest_bit(candidates), candidates != 0);
-            for (candidates = without_lowest_bit(candidates); candidates != 0;
-                 candidates = without_lowest_bit(candidates))
-                found_count = add_visit(found, found_count, lane, first + lowest_bit(candidates), 1);
+            const uint lane = visits[i].lane, leaf = visits[i].what;
+            const child_mask left = without_known(met[i - begin], leaf, rays->own_slot.of[lane], rays->slot.of[lane]);
+            found_count = add_visits(found, found_count, lane, leaf * TREE_WIDTH, left, 1);
             if (found_count < FOUND_MAX && i + 1 < count) continue;
             for (uint k = 0; k < found_count; ++k) intersect_slot_of_lane(geometry, rays, found[k].lane, found[k].what);
             found_count = 0;
@@ -204,16 +209,7 @@ FORCE_INLINE static uint visit_group(const FlatTree *flat, uint group, uint lane
         tested[tested_count] = lane;
         met[tested_count++] = test_group(flat, group, &box, rays->bound.of[lane]);
     }
-    for (uint i = 0; i < tested_count; ++i) {
-        const uint lane = tested[i];
-        child_mask left = met[i];
-        /* Two leaves at most are the rule. */
-        count = add_visit(visits, count, lane, first + lowest_bit(left), left != 0);
-        left = without_lowest_bit(left);
-        count = add_visit(visits, count, lane, first + lowest_bit(left), left != 0);
-        for (left = without_lowest_bit(left); left != 0; left = without_lowest_bit(left))
-            count = add_visit(visits, count, lane, first + lowest_bit(left), 1);
-    }
+    for (uint i = 0; i < tested_count; ++i) count = add_visits(visits, count, tested[i], first, met[i], 2);
     return count;
 }
 

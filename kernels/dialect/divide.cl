@@ -7,7 +7,7 @@
  *
  * OpenCL rounds quotients and roots in double correctly, and those of floats if the device offers that. A device that
  * does not may be off by 2.5 and 3 units in the last place (4 in the embedded profile), though many are right all the same.
- * OWN_ROUNDING tries what the device says, and where that is wrong finds the right neighbour by fma (P. Markstein,
+ * With OWN_ROUNDING, each result of the device is checked, and a wrong one is computed anew, both by fma (P. Markstein,
  * "Computation of elementary functions on the IBM RISC System/6000 processor", 1990). OpenCL rounds fma correctly
  * everywhere, if slowly without hardware for it. All floats are covered, subnormal ones too, unless the device takes those
  * for 0. */
