@@ -75,12 +75,20 @@ static const char *file_name(const char *path) {
     return slash != NULL ? slash + 1 : path;
 }
 
-/* The scene of that name; else of that file name, as folders move. */
-static const json_t *find_scene(const json_t *scenes, const char *name) {
+/* Documents from before there was "light_sampling" have one check of each scene. */
+static bool sampled_alike(const json_t *one, const json_t *other) {
+    const char *a = bp_check_text(one, BP_CHECK_SAMPLING), *b = bp_check_text(other, BP_CHECK_SAMPLING);
+    return a[0] == '\0' || b[0] == '\0' || strcmp(a, b) == 0;
+}
+
+/* The same check: of the scene of that name; else of that file name, as folders move. */
+static const json_t *find_scene(const json_t *scenes, const json_t *wanted) {
+    const char *name = bp_check_text(wanted, "scene");
     const json_t *found = NULL;
     for (size_t i = 0; i < json_array_size(scenes); ++i) {
         const json_t *scene = json_array_get(scenes, i);
         const char *other = bp_check_text(scene, "scene");
+        if (!sampled_alike(scene, wanted)) continue;
         if (strcmp(other, name) == 0) return scene;
         if (found == NULL && strcmp(file_name(other), file_name(name)) == 0) found = scene;
     }
@@ -120,6 +128,8 @@ static void compare_settings(Changes *changes, const json_t *scene, const json_t
                              const json_t *entry, const json_t *old) {
     static const char *const members[] = {"width",     "height", "samples_per_pixel",
                                           "max_depth", "seed",   "spheres"};
+    char name[BP_CHECK_LABEL_SIZE];
+    bp_check_label(scene, name, sizeof name);
     for (size_t m = 0; m < sizeof members / sizeof *members; ++m) {
         const json_t *now = json_object_get(scene, members[m]), *was = json_object_get(old_scene, members[m]);
         if (now == NULL || was == NULL || json_equal(now, was)) continue;
@@ -129,7 +139,7 @@ static void compare_settings(Changes *changes, const json_t *scene, const json_t
         snprintf(was_text, sizeof was_text, "%s %.30s", members[m], was_value != NULL ? was_value : "?");
         free(now_value);
         free(was_value);
-        add(changes, "settings", bp_check_text(scene, "scene"), entry, was_text, now_text);
+        add(changes, "settings", name, entry, was_text, now_text);
     }
     const json_t *now = json_object_get(entry, "settings"), *was = json_object_get(old, "settings");
     const char *key;
@@ -137,20 +147,23 @@ static void compare_settings(Changes *changes, const json_t *scene, const json_t
     json_object_foreach((json_t *)(uintptr_t)now, key, value) {
         const json_t *before = json_object_get(was, key);
         if (json_is_string(value) && json_is_string(before) && !json_equal(value, before))
-            add(changes, "settings", bp_check_text(scene, "scene"), entry, json_string_value(before),
-                json_string_value(value));
+            add(changes, "settings", name, entry, json_string_value(before), json_string_value(value));
     }
 }
 
 static void compare_entry(Changes *changes, const json_t *scene, const json_t *old_scene, const json_t *entry,
                           const json_t *old) {
-    const char *name = bp_check_text(scene, "scene");
+    char name[BP_CHECK_LABEL_SIZE];
     const char *was = verdict_of(old), *now = verdict_of(entry);
     compare_settings(changes, scene, old_scene, entry, old);
     if (strcmp(was, now) == 0) return;
     const bool regressed = agrees(old) && !agrees(entry);
     changes->regressions += regressed;
-    add(changes, regressed ? "regression" : agrees(entry) ? "recovered" : "verdict", name, entry, was, now);
+    add(changes,
+        regressed       ? "regression"
+        : agrees(entry) ? "recovered"
+                        : "verdict",
+        bp_check_label(scene, name, sizeof name), entry, was, now);
 }
 
 static void compare_driver(Changes *changes, const json_t *entry, const json_t *old) {
@@ -178,8 +191,9 @@ json_t *bp_check_against(const json_t *scenes, const json_t *earlier, const char
     size_t index;
     bool first = true;
     json_array_foreach(scenes, index, scene) {
-        const char *name = bp_check_text(scene, "scene");
-        const json_t *old_scene = find_scene(old_scenes, name);
+        char name[BP_CHECK_LABEL_SIZE];
+        const json_t *old_scene = find_scene(old_scenes, scene);
+        bp_check_label(scene, name, sizeof name);
         const json_t *results = json_object_get(scene, "results"),
                      *old = json_object_get(old_scene, "results");
         for (size_t d = 0; d < json_array_size(results); ++d) {

@@ -126,6 +126,12 @@ const char *bp_check_text(const json_t *object, const char *key) {
     return text != NULL ? text : "";
 }
 
+const char *bp_check_label(const json_t *scene, char *text, size_t size) {
+    const bool sampled = strcmp(bp_check_text(scene, BP_CHECK_SAMPLING), bp_lamps_names[BP_LAMPS_ON]) == 0;
+    snprintf(text, size, "%s%s", bp_check_text(scene, "scene"), sampled ? " (lights sampled)" : "");
+    return text;
+}
+
 const char *bp_check_device_text(const json_t *entry, const char *key) {
     return bp_check_text(json_object_get(entry, "device"), key);
 }

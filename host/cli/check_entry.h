@@ -25,6 +25,12 @@ json_t *bp_check_device_json(const BpDeviceInfo *device);
 const char *bp_check_text(const json_t *object, const char *key);
 const char *bp_check_device_text(const json_t *entry, const char *key);
 
+/* The member of a scene's object that says whether its lights were sampled: "on" or "off". */
+#define BP_CHECK_SAMPLING "light_sampling"
+enum { BP_CHECK_LABEL_SIZE = 4200 };
+/* The name of a scene's object in tables and messages: "NAME", or "NAME (lights sampled)"; returns `text`. */
+const char *bp_check_label(const json_t *scene, char *text, size_t size);
+
 /* "NAME (PLATFORM, driver VERSION)", shown safely, with a 0; returns `text`. */
 const char *bp_check_device_title(const json_t *entry, char *text, size_t size);
 

@@ -24,9 +24,10 @@ static json_t *case_of(const json_t *scene, const json_t *entry) {
     const json_t *seconds = json_object_get(entry, "seconds");
     const double spent = json_number_value(json_object_get(seconds, "kernel")) +
                          json_number_value(json_object_get(seconds, "reference"));
-    return json_pack("{s:s, s:s, s:f, s:s, s:s, s:s}", "name", bp_check_text(scene, "scene"), "class",
-                     "ballpark.check", "seconds", spent, "outcome", outcome, "type", verdict, "reason",
-                     bp_check_text(entry, "reason"));
+    char name[BP_CHECK_LABEL_SIZE];
+    return json_pack("{s:s, s:s, s:f, s:s, s:s, s:s}", "name", bp_check_label(scene, name, sizeof name),
+                     "class", "ballpark.check", "seconds", spent, "outcome", outcome, "type", verdict,
+                     "reason", bp_check_text(entry, "reason"));
 }
 
 json_t *bp_check_junit(const json_t *scenes, const json_t *broken) {

@@ -2,14 +2,17 @@
 #include "check_report.h"
 
 #include "base/json_text.h"
+#include "base/names.h"
 #include "base/shown.h"
 #include "json_file.h"
+#include "render/render_plan.h"
 
 #include <math.h>
 #include <string.h>
 
 json_t *bp_check_scene_json(const char *name, const BpScene *scene, const BpRenderOptions *options) {
-    return json_pack("{s:o, s:i, s:i, s:I, s:i, s:o, s:I, s:[]}", "scene", bp_json_text(name), "width",
+    return json_pack("{s:o, s:s, s:i, s:i, s:I, s:i, s:o, s:I, s:[]}", "scene", bp_json_text(name),
+                     BP_CHECK_SAMPLING, bp_lamps_names[bp_render_lamps(scene, options)], "width",
                      (int)scene->camera.width, "height", (int)scene->camera.height, "samples_per_pixel",
                      (json_int_t)options->samples_per_pixel, "max_depth", (int)options->max_depth, "seed",
                      bp_json_whole(options->seed), "spheres", (json_int_t)scene->sphere_count, "results");
@@ -36,6 +39,7 @@ json_t *bp_check_document(json_t *scenes, json_t *broken, const char *suite, dou
         failed |= json_object_set(document, "scenes", scenes);
     } else {
         failed |= json_object_update(document, json_array_get(scenes, 0));
+        if (json_array_size(scenes) > 1) failed |= json_object_set(document, "scenes", scenes);
     }
     failed |= json_object_set_new(document, "verdict", json_string(bp_check_overall(&counts)));
     failed |= json_object_set(document, "broken_drivers", broken);
@@ -104,7 +108,7 @@ void bp_check_print_table(const json_t *scenes, bool quiet, FILE *out) {
     const size_t count = json_array_size(scenes);
     const json_t *first = json_object_get(json_array_get(scenes, 0), "results");
     const size_t devices = json_array_size(first);
-    char title[700], name[740];
+    char title[700], name[BP_CHECK_LABEL_SIZE];
     if (count == 1 && !quiet) print_head("device", out);
     for (size_t d = 0; d < devices; ++d) {
         const json_t *entry = json_array_get(first, d);
@@ -123,9 +127,9 @@ void bp_check_print_table(const json_t *scenes, bool quiet, FILE *out) {
             entry = json_array_get(json_object_get(scene, "results"), d);
             bp_check_count(entry, &counts);
             if (!quiet || !json_is_true(json_object_get(entry, "agree")))
-                print_row(entry, bp_check_text(scene, "scene"), out);
+                print_row(entry, bp_check_label(scene, name, sizeof name), out);
         }
-        fprintf(out, "  %zu scenes: %u agree, %u disagree, %u inconclusive, %u failed\n", count, counts.agree,
+        fprintf(out, "  %zu checks: %u agree, %u disagree, %u inconclusive, %u failed\n", count, counts.agree,
                 counts.disagree, counts.inconclusive, counts.failed);
     }
 }

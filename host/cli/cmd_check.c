@@ -23,6 +23,7 @@
 #include "option_table.h"
 #include "output.h"
 #include "page.h"
+#include "render/render_plan.h"
 #include "setup.h"
 #include "suite.h"
 
@@ -34,6 +35,8 @@
 #define SUITE_LEVEL 1e-3  /* of the whole suite; each scene gets an equal part */
 #define SUITE_MARGIN 0.01 /* which every scene of it reaches with the default number of samples */
 #define SURVEY_SECONDS_MIN 5.0
+/* Paths that find lights by chance, as the reference's do; and light sampling, as renders use it. */
+enum { CHECKS_OF_A_SCENE = 2 };
 
 /* One run of the command. */
 typedef struct Session {
@@ -47,9 +50,9 @@ typedef struct Session {
     BpDeviceInfo *devices; /* those that are checked */
     size_t device_count;
     BpFormat map_format;
-    json_t *scenes; /* check_report.h */
-    BpError error;  /* of the first item that failed by an error */
-    char *text;     /* the verdict for people, if there is one item and one device */
+    json_t *scenes;                /* check_report.h */
+    BpError error;                 /* of the first item that failed by an error */
+    char *text[CHECKS_OF_A_SCENE]; /* the verdicts for people, of one scene on one device */
     bool interrupted;
 } Session;
 
@@ -111,16 +114,12 @@ static BpStatus find_map_format(Session *session, BpError *err) {
 /* ---- scenes ----------------------------------------------------------------------------------------------
  */
 
-/* `index`: in the suite; every scene has a seed of its own, so that their errors are independent. */
-static BpStatus add_item(Session *session, const char *name, BpScene *scene, size_t index, double level,
+/* `index`: every check has a seed of its own, so that their errors are independent. */
+static BpStatus add_item(Session *session, const char *name, BpScene *scene, BpLamps lamps, size_t index,
                          BpError *err) {
     const BpCommandLine *line = session->line;
     BpCheckItem *item = &session->items[session->item_count];
-    if (bp_option_given(line, BP_OPTION_WIDTH))
-        BP_TRY(bp_scene_set_width(scene, line->width, err));
-    else if (scene->camera.width > BP_CHECK_WIDTH_DEFAULT)
-        BP_TRY(bp_scene_set_width(scene, BP_CHECK_WIDTH_DEFAULT, err));
-    *item = (BpCheckItem){.name = name, .scene = scene, .options = {.level = level}};
+    *item = (BpCheckItem){.name = name, .scene = scene};
     item->options.threads = line->threads;
     item->options.margin = bp_option_given(line, BP_OPTION_MARGIN) ? line->margin_percent / 100
                            : line->suite                           ? SUITE_MARGIN
@@ -129,8 +128,7 @@ static BpStatus add_item(Session *session, const char *name, BpScene *scene, siz
     BP_TRY(bp_setup_options(line, scene, options, err));
     if (!bp_option_given(line, BP_OPTION_SPP)) options->samples_per_pixel = BP_CHECK_SAMPLES_DEFAULT;
     options->sampler = BP_SAMPLER_INDEPENDENT;
-    /* As the reference does: only then spreads are the same, and all tests hold. */
-    if (!bp_option_given(line, BP_OPTION_LAMPS)) options->lamps = BP_LAMPS_OFF;
+    options->lamps = lamps;
     options->seed += index;
     ++session->item_count;
     if (json_array_append_new(session->scenes, bp_check_scene_json(name, scene, options)) != 0)
@@ -138,21 +136,41 @@ static BpStatus add_item(Session *session, const char *name, BpScene *scene, siz
     return BP_OK;
 }
 
+/* The checks of one scene. Without --lamps, a scene whose lights can be sampled is checked without and with
+ * that: the first tests more, since spreads are then the same as the reference's; the second is what renders
+ * do. `index`: of the scene, in a suite of `count`. */
+static BpStatus add_items(Session *session, const char *name, BpScene *scene, size_t index, size_t count,
+                          BpError *err) {
+    const BpCommandLine *line = session->line;
+    const bool given = bp_option_given(line, BP_OPTION_LAMPS);
+    const BpRenderOptions sampled = {.lamps = BP_LAMPS_ON};
+    if (bp_option_given(line, BP_OPTION_WIDTH))
+        BP_TRY(bp_scene_set_width(scene, line->width, err));
+    else if (scene->camera.width > BP_CHECK_WIDTH_DEFAULT)
+        BP_TRY(bp_scene_set_width(scene, BP_CHECK_WIDTH_DEFAULT, err));
+    BP_TRY(add_item(session, name, scene, given ? line->lamps : BP_LAMPS_OFF, index, err));
+    if (given || bp_render_lamps(scene, &sampled) == BP_LAMPS_OFF) return BP_OK;
+    return add_item(session, name, scene, BP_LAMPS_ON, count + index, err);
+}
+
 static BpStatus load_items(Session *session, BpError *err) {
     const BpCommandLine *line = session->line;
     if (line->suite) BP_TRY(bp_suite_load(&session->suite, err));
     const size_t count = line->suite ? session->suite.count : 1;
-    session->items = calloc(count, sizeof *session->items);
+    session->items = calloc(CHECKS_OF_A_SCENE * count, sizeof *session->items);
     session->scenes = json_array();
     if (session->items == NULL || session->scenes == NULL)
         return bp_fail(err, BP_ERR_MEMORY, "out of memory for %zu scenes", count);
     for (size_t i = 0; i < session->suite.count; ++i)
-        BP_TRY(add_item(session, session->suite.names[i], session->suite.scenes[i], i,
-                        SUITE_LEVEL / (double)count, err));
-    if (line->suite) return BP_OK;
-    BP_TRY(bp_setup_scene(line, line->operands[0], &session->scene, err));
-    BP_TRY(add_item(session, session->scene->path, session->scene, 0, BP_VERDICT_LEVEL, err));
-    bp_setup_warn(line, session->scene, session->items[0].options.render.precision);
+        BP_TRY(add_items(session, session->suite.names[i], session->suite.scenes[i], i, count, err));
+    if (!line->suite) {
+        BP_TRY(bp_setup_scene(line, line->operands[0], &session->scene, err));
+        BP_TRY(add_items(session, session->scene->path, session->scene, 0, count, err));
+        bp_setup_warn(line, session->scene, session->items[0].options.render.precision);
+    }
+    const double level = line->suite ? SUITE_LEVEL : BP_VERDICT_LEVEL;
+    for (size_t i = 0; i < session->item_count; ++i)
+        session->items[i].options.level = level / (double)session->item_count;
     return BP_OK;
 }
 
@@ -254,9 +272,8 @@ static BpStatus check_device(Session *session, const BpDeviceInfo *device, BpErr
         for (size_t i = 0; i < session->item_count; ++i)
             outcomes[i].result = json_pack("{s:o}", "entry", bp_check_entry_failed(device, device->refusal));
     }
-    const char *text = bp_check_text(outcomes[0].result, "text");
-    if (status == BP_OK && session->item_count == 1 && !wants_all(line) && text[0] != '\0')
-        session->text = strdup(text);
+    for (size_t i = 0; i < session->item_count && status == BP_OK && !line->suite && !wants_all(line); ++i)
+        status = bp_copy_text(bp_check_text(outcomes[i].result, "text"), &session->text[i], err);
     if (status == BP_OK) status = add_entries(session, outcomes, err);
     bp_item_outcomes_clear(outcomes, session->item_count);
     free(outcomes);
@@ -266,18 +283,24 @@ static BpStatus check_device(Session *session, const BpDeviceInfo *device, BpErr
 /* ---- what comes of it ------------------------------------------------------------------------------------
  */
 
-/* The verdict of one scene on one device. */
-static void print_verdict(const Session *session, FILE *out) {
-    const json_t *scene = json_array_get(session->scenes, 0);
+/* One check of a scene on one device. */
+static void print_verdict(const Session *session, size_t item, FILE *out) {
+    const json_t *scene = json_array_get(session->scenes, item);
     const json_t *entry = json_array_get(json_object_get(scene, "results"), 0);
     const json_int_t samples = json_integer_value(json_object_get(entry, "samples_per_pixel"));
     char title[700];
-    bp_show(bp_check_text(scene, "scene"), false, out);
+    char name[BP_CHECK_LABEL_SIZE];
+    bp_show(bp_check_label(scene, name, sizeof name), false, out);
     fprintf(out, " on %s\n", bp_check_device_title(entry, title, sizeof title));
     fprintf(out, "%dx%d pixels, %" JSON_INTEGER_FORMAT " sample%s each%s: %s",
             (int)json_integer_value(json_object_get(scene, "width")),
             (int)json_integer_value(json_object_get(scene, "height")), samples, bp_plural((uint64_t)samples),
-            json_is_true(json_object_get(entry, "timed_out")) ? " when time was up" : "", session->text);
+            json_is_true(json_object_get(entry, "timed_out")) ? " when time was up" : "",
+            session->text[item]);
+}
+
+static bool has_verdict(const Session *session, size_t item) {
+    return session->text[item] != NULL && session->text[item][0] != '\0';
 }
 
 static BpStatus write_documents(Session *session, const json_t *against, BpError *err) {
@@ -296,6 +319,18 @@ static BpStatus write_documents(Session *session, const json_t *against, BpError
     }
     json_decref(broken);
     return status;
+}
+
+/* Of the first check on the first device that is. */
+static const char *why_inconclusive(const Session *session) {
+    size_t index;
+    json_t *scene;
+    json_array_foreach(session->scenes, index, scene) {
+        const json_t *entry = json_array_get(json_object_get(scene, "results"), 0);
+        if (strcmp(bp_check_text(entry, "verdict"), "inconclusive") == 0)
+            return bp_check_text(entry, "reason");
+    }
+    return "";
 }
 
 /* The exit code, by the worst that has happened. */
@@ -336,11 +371,8 @@ static BpStatus conclude(Session *session, const json_t *against, BpError *err) 
     if (gone > 0)
         return bp_fail(err, BP_ERR_NO_DEVICE, "%zu device%s of the earlier check %s not there", gone,
                        bp_plural(gone), gone == 1 ? "is" : "are");
-    if (counts.inconclusive > 0 && entries == 1)
-        return bp_fail(
-            err, BP_ERR_INCONCLUSIVE, "%s: inconclusive: %s", name,
-            bp_check_text(json_array_get(json_object_get(json_array_get(session->scenes, 0), "results"), 0),
-                          "reason"));
+    if (counts.inconclusive > 0 && !line->suite && !wants_all(line))
+        return bp_fail(err, BP_ERR_INCONCLUSIVE, "%s: inconclusive: %s", name, why_inconclusive(session));
     if (counts.inconclusive > 0)
         return bp_fail(err, BP_ERR_INCONCLUSIVE, "%s: %u of %zu checks are inconclusive", name,
                        counts.inconclusive, entries);
@@ -370,12 +402,11 @@ static BpStatus check_all(Session *session, BpError *err) {
     if (!is_stdout(line->json) && !is_stdout(line->junit)) {
         BpPage page;
         BpCommandLine loud = *line; /* with --quiet, the rows that remain are errors */
-        loud.quiet = line->quiet && session->text != NULL;
+        loud.quiet = line->quiet && !line->suite && !wants_all(line);
         bp_page_begin(&page, stdout);
-        if (session->text != NULL)
-            print_verdict(session, page.text);
-        else if (wants_all(line) || line->suite)
-            bp_check_print_table(session->scenes, line->quiet, page.text);
+        for (size_t i = 0; i < CHECKS_OF_A_SCENE; ++i)
+            if (has_verdict(session, i)) print_verdict(session, i, page.text);
+        if (wants_all(line) || line->suite) bp_check_print_table(session->scenes, line->quiet, page.text);
         if (against != NULL) bp_check_against_print(against, page.text);
         bp_page_end(&page, &loud, stdout);
     }
@@ -510,6 +541,6 @@ BpStatus bp_command_check(const BpCommandLine *line, BpError *err) {
     json_decref(session.earlier);
     free(session.devices);
     free(session.items);
-    free(session.text);
+    for (size_t i = 0; i < CHECKS_OF_A_SCENE; ++i) free(session.text[i]);
     return status;
 }

@@ -217,7 +217,7 @@ enum {
     NOTE(OUTPUT, BP_SCENE, "where the document goes", "standard output")                                     \
     NOTE(FRAME, BP_TRACERS | BP_SCENE, NULL, "0")                                                            \
     NOTE(LAMPS, BP_TRACERS & ~BP_CHECK, NULL, "on where it helps")                                           \
-    NOTE(LAMPS, BP_CHECK, NULL, "off, as in the reference")                                                  \
+    NOTE(LAMPS, BP_CHECK, NULL, "both are checked")                                                          \
     NOTE(SPP, BP_RENDER, NULL, "the scene's number")                                                         \
     NOTE(SPP, BP_CHECK, NULL, "1024")                                                                        \
     NOTE(ERROR, BP_VIEW, "render until the noise of the picture (NRMSE) is below PERCENT", "1%")             \

@@ -30,6 +30,26 @@ def check(program, scene, samples, more):
     return json.loads(done.stdout), ""
 
 
+def judge(report, name, scenes, rows):
+    """Prints and keeps one check of a scene; returns whether it fails."""
+    result = report["results"][0]
+    sampled = report["light_sampling"] == "on"
+    name += " (lights sampled)" if sampled else ""
+    level = SUITE_LEVEL / (2 * scenes)
+    worst = max(t["z"] / limit_of(level * SHARES[t["family"]], t["tests"]) for t in result["tests"])
+    invalid = sum(result["invalid_samples"].values())
+    agree = worst <= 1 and invalid == 0 and result["verdict"] != "inconclusive"
+    b = result["brightness"]
+    interval = f"{b['low']:.5f} .. {b['high']:.5f}" if b["low"] is not None else "-"
+    ratio = f"{b['ratio']:.5f}" if b["ratio"] is not None else "-"
+    bias = result["smallest_bias"]["value"]
+    print(f"{name:32} {worst:11.2f}  {ratio:>9} {interval:>20}  {100 * (bias or 0):8.3f} %"
+          + ("" if agree else f"  {result['verdict'].upper()}") + (f"  {invalid} invalid samples" if invalid else ""), flush=True)
+    rows.append({"scene": name, "agree": agree, "worst": worst, "width": report["width"],
+                 "height": report["height"], "samples": report["samples_per_pixel"], "result": result})
+    return not agree
+
+
 def main():
     program, result_path, samples, *rest = sys.argv[1:]
     more, seed = [], 1
@@ -49,20 +69,8 @@ def main():
             print(f"{name:32} FAILED: {trouble}")
             rows.append({"scene": name, "error": trouble})
             continue
-        result = report["results"][0]
-        level = SUITE_LEVEL / len(rest)
-        worst = max(t["z"] / limit_of(level * SHARES[t["family"]], t["tests"]) for t in result["tests"])
-        invalid = sum(result["invalid_samples"].values())
-        agree = worst <= 1 and invalid == 0 and result["verdict"] != "inconclusive"
-        failures += not agree
-        b = result["brightness"]
-        interval = f"{b['low']:.5f} .. {b['high']:.5f}" if b["low"] is not None else "-"
-        ratio = f"{b['ratio']:.5f}" if b["ratio"] is not None else "-"
-        bias = result["smallest_bias"]["value"]
-        print(f"{name:32} {worst:11.2f}  {ratio:>9} {interval:>20}  {100 * (bias or 0):8.3f} %"
-              + ("" if agree else f"  {result['verdict'].upper()}") + (f"  {invalid} invalid samples" if invalid else ""), flush=True)
-        rows.append({"scene": name, "agree": agree, "worst": worst, "width": report["width"],
-                     "height": report["height"], "samples": report["samples_per_pixel"], "result": result})
+        for one in report.get("scenes", [report]):  # without and with light sampling, where the scene calls for it
+            failures += judge(one, name, len(rest), rows)
     with open(result_path, "w", encoding="utf-8") as file:
         json.dump({"level": SUITE_LEVEL, "scenes": rows}, file, indent=1)
     print(f"{len(rest)} scenes, {failures} disagree or fail (a right kernel is rejected with probability "
