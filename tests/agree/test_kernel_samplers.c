@@ -1,5 +1,5 @@
 /* test_kernel_samplers.c: every direction and point the kernel draws, against the law it should follow; and
- * pairs of dimensions, which must be independent. */
+ * pairs of dimensions, and pixels, which must be independent, also in a low-discrepancy sequence. */
 #include "support/probe.h"
 #include "support/uniformity.h"
 
@@ -37,6 +37,25 @@ static const char probe_text[] =
     "    sample_2d(probe_key(seed, i), splat_uint(DIMENSION_LENS), &u, &v);\n"
     "    sample_disk(u, v, &x, &y);\n"
     "    vstore3((float3)(x, y, 0), i, out);\n"
+    "}\n"
+    /* of many pixels, one sample each: the same numbers in two pixels, or two pairs in one */
+    "__kernel void neighbours(uint seed, uint which, __global float *out) {\n"
+    "    const uint i = get_global_id(0), step = which < 2u ? 1u : which < 4u ? 640u : 0u, sample = (which & "
+    "1u) * 5u;\n"
+    "    float u, v, s, t;\n"
+    "    sample_2d(sample_key(seed, 5u, i, sample, 4u), splat_uint(DIMENSION_PIXEL), &u, &v);\n"
+    "    sample_2d(sample_key(seed, 5u, i + step, sample, 4u), splat_uint(step > 0 ? DIMENSION_PIXEL : "
+    "DIMENSION_LENS), &s, &t);\n"
+    "    vstore3((float3)(u, s, 0), i, out);\n"
+    "}\n"
+    "__kernel void couple(uint seed, uint which, __global float *out) {\n"
+    "    const uint i = get_global_id(0);\n"
+    "    const uint dimensions[4] = {DIMENSION_PIXEL, DIMENSION_LENS, DIMENSION_BOUNCE, DIMENSION_BOUNCE + "
+    "BOUNCE_LAMP};\n"
+    "    float u, v;\n"
+    "    sample_2d(sample_key(seed, 5u, i, (which >> 2) * 7u, 4u), splat_uint(dimensions[which & 3u]), &u, "
+    "&v);\n"
+    "    vstore3((float3)(u, v, 0), i, out);\n"
     "}\n"
     "__kernel void pair(uint seed, uint which, __global float *out) {\n"
     "    const uint i = get_global_id(0);\n"
@@ -127,6 +146,32 @@ static void pairs_of_dimensions(void **state) {
     }
 }
 
+/* Neighbouring pixels, and pairs of numbers, have nothing to do with each other, whatever the sampler: of any
+ * one sample, over all pixels. */
+static void assert_independent(const Probe *probe, const char *kernel, cl_uint cases) {
+    for (cl_uint which = 0; which < cases; ++which) {
+        char what[64];
+        draw(probe, kernel, which);
+        for (size_t i = 0; i < COUNT; ++i)
+            for (size_t d = 0; d < 2; ++d) points[2 * i + d] = (double)drawn[3 * i + d];
+        snprintf(what, sizeof what, "%s, case %u", kernel, which);
+        assert_uniform(what, 2);
+    }
+}
+
+static void independent(void **state) {
+    assert_independent(*state, "neighbours", 6);
+}
+
+static void sobol(void **state) {
+    (void)state;
+    Probe probe;
+    probe_open_sampler(&probe, BP_SAMPLER_SOBOL, probe_text);
+    assert_independent(&probe, "neighbours", 6);
+    assert_independent(&probe, "couple", 8);
+    probe_close(&probe);
+}
+
 static int open_probe(void **state) {
     static Probe probe;
     probe_open(&probe, probe_text);
@@ -139,7 +184,8 @@ static int close_probe(void **state) {
 }
 
 int main(void) {
-    const struct CMUnitTest tests[] = {cmocka_unit_test(lobes), cmocka_unit_test(sphere_and_ball),
-                                       cmocka_unit_test(disk), cmocka_unit_test(pairs_of_dimensions)};
+    const struct CMUnitTest tests[] = {cmocka_unit_test(lobes),       cmocka_unit_test(sphere_and_ball),
+                                       cmocka_unit_test(disk),        cmocka_unit_test(pairs_of_dimensions),
+                                       cmocka_unit_test(independent), cmocka_unit_test(sobol)};
     return cmocka_run_group_tests(tests, open_probe, close_probe);
 }

@@ -1,5 +1,5 @@
-/* test_random_numbers.c: the kernel's random bits against an independent implementation, and its uniform
- * numbers at the ends of their range. */
+/* test_random_numbers.c: the kernel's random bits, and the pairs of its low-discrepancy sequence, against an
+ * independent implementation; and its uniform numbers at the ends of their range. */
 #include "support/probe.h"
 
 #include <string.h>
@@ -9,6 +9,14 @@ static const char probe_text[] =
     "    const uint i = get_global_id(0);\n"
     "    const SampleKey key = mix_key(seed_low, seed_high, i % 61u * 7919u, i / 61u * 104729u);\n"
     "    out[i] = random_bits(key, i % 97u);\n"
+    "}\n"
+    "__kernel void pairs(uint seed_low, uint seed_high, __global float *out) {\n"
+    "    const uint i = get_global_id(0);\n"
+    "    float u, v;\n"
+    "    sample_2d(sample_key(seed_low, seed_high, i % 61u * 7919u, i / 61u * 13u, 4u), splat_uint(i % 62u), "
+    "&u, &v);\n"
+    "    out[2u * i] = u;\n"
+    "    out[2u * i + 1u] = v;\n"
     "}\n"
     "__kernel void ends(uint first, uint unused, __global float *out) {\n"
     "    const uint i = get_global_id(0);\n"
@@ -48,6 +56,60 @@ static void bits_are_the_documented_ones(void **state) {
     }
 }
 
+static uint32_t mirrored(uint32_t x) {
+    uint32_t y = 0;
+    for (int bit = 0; bit < 32; ++bit) y |= (x >> bit & 1u) << (31 - bit);
+    return y;
+}
+
+/* Laine and Karras, 2011, with the constants of N. Vegdahl that Burley recommends, as sampler.cl documents
+ * them. */
+static uint32_t laine_karras(uint32_t x, uint32_t seed) {
+    x ^= x * 0x3d20adeau;
+    x += seed;
+    x *= (seed >> 16) | 1u;
+    x ^= x * 0x05526c56u;
+    return x ^ x * 0x53a22864u;
+}
+
+/* The first two dimensions of Sobol's sequence by direction numbers (S. Joe, F. Kuo, 2008): 1/2, 1/4, ...
+ * and, for the polynomial x + 1, v = v before, and half of it. */
+static void sobol_pair(uint32_t index, uint32_t pair[2]) {
+    uint32_t first = 0x80000000u, second = 0x80000000u;
+    pair[0] = pair[1] = 0;
+    for (; index != 0; index >>= 1) {
+        if (index & 1u) {
+            pair[0] ^= first;
+            pair[1] ^= second;
+        }
+        first >>= 1;
+        second ^= second >> 1;
+    }
+}
+
+/* Burley, 2020, listing 3: the index shuffled, then the second number scrambled; the first needs no more. */
+static void pairs_are_the_documented_ones(void **state) {
+    (void)state;
+    enum { COUNT = 61 * 62 * 4 };
+    static float found[COUNT][2];
+    Probe probe;
+    probe_open_sampler(&probe, BP_SAMPLER_SOBOL, probe_text);
+    const uint32_t low = 0xdeadbeefu, high = 0x12345678u;
+    probe_run(&probe, "pairs", low, high, COUNT, found, sizeof found);
+    probe_close(&probe);
+    for (uint32_t i = 0; i < COUNT; ++i) {
+        const uint32_t pixel = i % 61 * 7919, sample = i / 61 * 13, replicate = ~(sample % 4),
+                       dimension = i % 62;
+        uint32_t pair[2];
+        sobol_pair(mirrored(laine_karras(mirrored(sample / 4),
+                                         expected_bits(low, high, pixel, replicate, dimension))),
+                   pair);
+        pair[1] = mirrored(
+            laine_karras(mirrored(pair[1]), expected_bits(low, high, pixel, replicate, dimension + 1)));
+        for (int d = 0; d < 2; ++d) assert_true(found[i][d] == (float)(pair[d] >> 8) * 0x1p-24f);
+    }
+}
+
 /* 2^32 bit patterns are too many; the first and last half million hold both ends. */
 static void uniform_numbers_stay_below_one(void **state) {
     const Probe *probe = *state;
@@ -74,6 +136,7 @@ static int close_probe(void **state) {
 
 int main(void) {
     const struct CMUnitTest tests[] = {cmocka_unit_test(bits_are_the_documented_ones),
+                                       cmocka_unit_test(pairs_are_the_documented_ones),
                                        cmocka_unit_test(uniform_numbers_stay_below_one)};
     return cmocka_run_group_tests(tests, open_probe, close_probe);
 }

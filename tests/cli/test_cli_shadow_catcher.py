@@ -87,6 +87,32 @@ class ShadowCatcher(cli.ProgramTest):
             shadow = self.shadow(ball(1.0, background=background))
             self.assertEqual({value for (x, z), value in shadow.items() if math.hypot(x, z) > 1.3}, {0})
 
+        # Seen from the side, the ground right below a ball that hangs above it: there what stands overhead hides nothing either.
+        aside = dict(ABOVE, lookfrom=[0, 50, 50], vup=[0, 1, 0])
+        for background in ([0, 0, 0], below):
+            shadow = self.shadow(ball(4.0, camera=aside, background=background))
+            self.assertEqual({value for (x, y), value in shadow.items() if math.hypot(x, y) < 0.6}, {0})
+
+    def test_a_gradient(self):
+        """A sky that is dark overhead, as (1 - cos) / 2, where a ball hides a cone of half angle 25.8 degrees: 2.8 % of the light."""
+        sine = 1 / 2.294
+        samples = 16384
+        camera = dict(ABOVE, lookfrom=[0, 50, 50], vup=[0, 1, 0], view_height=0.4, samples_per_pixel=samples)
+        document = ball(2.294 * 10, radius=10.0, camera=camera, background={"bottom": [1, 1, 1], "top": [0, 0, 0]})
+        document["camera"]["image_width"] = 8
+        document["camera"]["image_height"] = 8
+        self.write("s.json", document)
+        self.succeed("render", "s.json", "-o", "s.pfm", "--quiet")
+        _, _, values = read_pfm(self.read("s.pfm"))
+        found = 1 - sum(values[::3]) / 64
+        least = math.sqrt(1 - sine ** 2)
+
+        def light(c):  # from 0 to the cosine c
+            return c ** 2 / 4 - c ** 3 / 6
+        wanted = (light(1) - light(least)) / light(1)
+        error = math.sqrt(wanted * (1 - wanted) / (64 * samples))
+        self.assertLess(abs(found - wanted), 4 * error + 0.003 * wanted, (found, wanted))
+
     def test_alpha(self):
         """Without a backdrop the shadow is black, and as opaque as it is dark: over white, that is the picture with a white backdrop."""
         white = self.shadow(ball(1.0))

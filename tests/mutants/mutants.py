@@ -50,6 +50,11 @@ def motion_cases(*names):
     return Script("tests/motion/test_motion.py", names, "9 motion")
 
 
+def closed_pictures(*names):
+    """Tests of tests/agree/test_closed_pictures.py."""
+    return Script("tests/agree/test_closed_pictures.py", tuple(f"ClosedPictures.test_{name}" for name in names), "4 closed forms")
+
+
 def media_cases(*names):
     """Cases of tests/media/test_media.py."""
     return Script("tests/media/test_media.py", names, "9 media")
@@ -926,6 +931,44 @@ MUTANTS = [
            [patch(KERNEL, "R(0.07957747154594767)", "R(0.15915494309189535)")], [check("media-lamp", 8)]),
     Mutant("films of other media", "this program: a merge of two pictures",
            [patch("host/film/film_scene.c", "    hash = mix_reals(hash, medium->scattering, 3);\n", "")], [media_cases("films")]),
+    # ---- constants that are off by one in a hundred ----------------------------------------------------------
+    Mutant("a lens 1 % wide", "put in by hand, and no test saw it",
+           [patch("host/packed/pack.c", "camera->lens_radius * right[a];", "1.01 * camera->lens_radius * right[a];"),
+            patch("host/packed/pack.c", "camera->lens_radius * up[a];", "1.01 * camera->lens_radius * up[a];")], [closed_pictures("how_wide_a_lens_is")]),
+    Mutant("polarisations 51 to 49", "put in by hand, and no test saw it",
+           [patch(KERNEL, "return R(0.5) * fma(across, across, along * along);", "return fma(R(0.51) * across, across, R(0.49) * along * along);")],
+           [test("test_kernel_constants", "fresnel", "3 samplers")]),
+    Mutant("Fresnel 2 % more from inside", "put in by hand, and no test saw it",
+           [patch(KERNEL, "choose(exact, fresnel_exact(c, n, t), reflectance)", "choose(exact, choose(surface->enters, splat(1), splat(R(1.02))) * fresnel_exact(c, n, t), reflectance)")],
+           [test("test_kernel_constants", "glass", "3 samplers")]),
+    Mutant("Schlick 2 % more from inside", "the same for the book's formula",
+           [patch(KERNEL, "vreal reflectance = fresnel_schlick(c, ratio);", "vreal reflectance = choose(surface->enters, splat(1), splat(R(1.02))) * fresnel_schlick(c, ratio);")],
+           [test("test_kernel_constants", "glass", "3 samplers")]),
+    Mutant("fuzz 1 % wide", "put in by hand, and no test saw it",
+           [patch(KERNEL, "madd3(surface->fuzz, offset, direction)", "madd3(R(1.01) * surface->fuzz, offset, direction)")],
+           [test("test_kernel_constants", "fuzz", "3 samplers")]),
+    Mutant("the time from the lens's radius", "a dimension used twice",
+           [patch(KERNEL, "sample_1d(key, splat_uint(DIMENSION_TIME))", "sample_1d(key, splat_uint(DIMENSION_LENS))")], [closed_pictures("lens_and_time")]),
+    Mutant("no light found counted as lit", "ground right below a ball, where no light comes to either",
+           [patch(KERNEL, "return wanted & vbool_not(open);", "return wanted;")],
+           [Script("tests/cli/test_cli_shadow_catcher.py", ("ShadowCatcher.test_light_that_is_not_there",), "1 exact")]),
+    Mutant("a catcher's gradient 2 % flat", "put in by hand, and no test saw it",
+           [patch(KERNEL, "fma(splat(R(0.5)), dot3(candidate, splat3(sky->up)), splat(R(0.5)))", "fma(splat(R(0.49)), dot3(candidate, splat3(sky->up)), splat(R(0.5)))")],
+           [Script("tests/cli/test_cli_shadow_catcher.py", ("ShadowCatcher.test_a_gradient",), "1 exact")]),
+    Mutant("both numbers of a pair by one scramble", "put in by hand, and no test saw it",
+           [patch(KERNEL, "reverse_bits(second_dimension(x)), random_bits(scramble, dimension + 1u)", "reverse_bits(second_dimension(x)), random_bits(scramble, dimension)")],
+           [test("test_random_numbers", "pairs_are_the_documented_ones")]),
+    Mutant("replicates of neighbouring pixels alike", "put in by hand, and no test saw it",
+           [patch(KERNEL, "mix_key(seed_low, seed_high, pixel, ~(sample % replicates))", "mix_key(seed_low, seed_high, pixel >> 1, ~(sample % replicates))")],
+           [test("test_kernel_samplers", "sobol", "3 samplers")]),
+    Mutant("flights 0.5 % long", "put in by hand, and check was inconclusive",
+           [patch(KERNEL, "const vreal until = divide(free,", "const vreal until = R(1.005) * divide(free,")], [closed_pictures("how_far_paths_fly")]),
+    Mutant("one side by balance, the other by power", "put in by hand, and no test saw it",
+           [patch(KERNEL, "const vreal square = ratio * ratio;\n    return choose(shared, divide(square", "const vreal square = ratio;\n    return choose(shared, divide(square")],
+           [lamp_case("1.2")]),
+    Mutant("fog before lamps 2 % thin", "put in by hand, and no test saw it",
+           [patch(KERNEL, "transmittance(scene, medium, choose(far, splat(REAL_LARGE), length))", "transmittance(scene, medium, R(0.98) * choose(far, splat(REAL_LARGE), length))")],
+           [closed_pictures("fog_before_a_lamp")]),
     # ---- spheres that move ---------------------------------------------------------------------------------
     Mutant("boxes of the first moment", "second book: a bounding box of center0 alone",
            [patch("host/packed/tree_write.c", "high = fmax(center[a], center[a] + motion);", "high = center[a];")], [motion_cases("order")]),

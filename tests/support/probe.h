@@ -14,14 +14,15 @@ typedef struct Probe {
     BpProgram *program;
 } Probe;
 
-/* Builds the general program, one lane, single precision, independent samples, with `text` at its end. */
-static inline void probe_open(Probe *probe, const char *text) {
+/* Builds the general program, one lane, single precision, with `text` at its end. */
+static inline void probe_open_sampler(Probe *probe, BpSampler sampler, const char *text) {
     BpDeviceInfo info;
     BpError err = {0};
     const BpProgramOptions options = {
         .effects = BP_EFFECTS_ALL & ~(1u << BP_EFFECT_MOTION), /* probes make rays and leaves of their own */
         .tree = true,
         .form = BP_KERNEL_SAMPLE,
+        .sampler = sampler,
         .tree_width = 8};
     *probe = (Probe){0};
     BpStatus status = bp_device_find(NULL, &info, &err);
@@ -29,6 +30,11 @@ static inline void probe_open(Probe *probe, const char *text) {
     if (status == BP_OK)
         status = bp_program_build(probe->device, &options, "probe", text, &probe->program, &err);
     if (status != BP_OK) fail_msg("%s\n%s", err.message, err.attachment != NULL ? err.attachment : "");
+}
+
+/* With independent samples. */
+static inline void probe_open(Probe *probe, const char *text) {
+    probe_open_sampler(probe, BP_SAMPLER_INDEPENDENT, text);
 }
 
 static inline void probe_close(Probe *probe) {
