@@ -1,8 +1,10 @@
 /* frame.c: where readers put points; see reader.h and particles.h. */
 #include "reader.h"
 
+#include "base/format.h"
 #include "base/message_text.h"
 #include "base/pages.h"
+#include "base/plural.h"
 #include "names.h"
 
 #include <math.h>
@@ -11,6 +13,8 @@
 #include <string.h>
 
 #define COORDINATE_MAX 1.0e12 /* that of a scene */
+#define SHORTEST_EDGE 1.0e-30 /* of a cell */
+#define FLATTEST 1.0e-9       /* the volume of a cell, of that which edges at right angles span */
 #define PI 3.14159265358979323846
 
 enum { FIRST_CAPACITY = 4096 };
@@ -173,22 +177,63 @@ BpStatus frame_add_bond(BpParticleFile *file, uint32_t a, uint32_t b, BpError *e
     return BP_OK;
 }
 
-void frame_cell(BpParticleFile *file, const double origin[3], const double edges[3][3], bool periodic) {
+bool bp_particles_repeat(const BpParticles *particles) {
+    return particles->periodic[0] || particles->periodic[1] || particles->periodic[2];
+}
+
+static double length_of(const double v[3]) {
+    return sqrt(v[0] * v[0] + v[1] * v[1] + v[2] * v[2]);
+}
+
+/* Whether the edges that repeat lie in as many dimensions as they are, and not nearly in fewer. */
+static bool is_spanned(const double edges[3][3], const bool periodic[3]) {
+    double unit[3][3] = {{0}}, measure = 1;
+    for (int e = 0; e < 3; e++) { /* the parts at right angles to the edges before (Gram, Schmidt) */
+        if (!periodic[e]) continue;
+        const double length = length_of(edges[e]);
+        for (int i = 0; i < 3; i++) unit[e][i] = edges[e][i] / length;
+        for (int f = 0; f < e; f++) {
+            double along = 0;
+            for (int i = 0; i < 3; i++) along += unit[e][i] * unit[f][i];
+            for (int i = 0; i < 3; i++) unit[e][i] -= along * unit[f][i];
+        }
+        const double rest = length_of(unit[e]);
+        measure *= rest;
+        for (int i = 0; i < 3; i++) unit[e][i] /= rest > 0 ? rest : 1;
+    }
+    return measure > FLATTEST;
+}
+
+void frame_cell(BpParticleFile *file, const double origin[3], const double edges[3][3],
+                const bool periodic[3]) {
     BpParticles *const p = file->out;
     if (p == NULL) return;
-    const double(*e)[3] = edges;
-    const double volume = e[0][0] * (e[1][1] * e[2][2] - e[1][2] * e[2][1]) -
-                          e[0][1] * (e[1][0] * e[2][2] - e[1][2] * e[2][0]) +
-                          e[0][2] * (e[1][0] * e[2][1] - e[1][1] * e[2][0]);
-    double longest = 0;
-    for (int i = 0; i < 3; i++)
-        longest =
-            fmax(longest, fmax(fabs(origin[i]), fmax(fabs(e[i][0]), fmax(fabs(e[i][1]), fabs(e[i][2])))));
-    if (!(fabs(volume) > 0) || !(longest <= COORDINATE_MAX)) return;
+    double longest = 0, farthest = 0;
+    for (int i = 0; i < 3; i++) {
+        longest = fmax(longest, length_of(edges[i]));
+        farthest = fmax(farthest, fabs(origin[i]));
+    }
+    if (!(longest > SHORTEST_EDGE && longest <= COORDINATE_MAX && farthest <= COORDINATE_MAX)) return;
     p->has_cell = true;
-    p->periodic = periodic;
+    for (int i = 0; i < 3; i++) p->periodic[i] = periodic[i] && length_of(edges[i]) > SHORTEST_EDGE;
+    if (!is_spanned(edges, p->periodic)) {
+        for (int i = 0; i < 3; i++) p->periodic[i] = false;
+        bp_particles_note(p, "the cell is flat, so nothing repeats");
+    }
     memcpy(p->cell_origin, origin, sizeof p->cell_origin);
     memcpy(p->cell, edges, sizeof p->cell);
+}
+
+void frame_note_shapes(BpParticleFile *file, uint64_t count, const char *kind) {
+    char number[32];
+    if (file->out == NULL || count == 0) return;
+    bp_particles_note(file->out, "%s %s%s drawn as %s", bp_format_whole(count, number, sizeof number), kind,
+                      bp_plural(count), count == 1 ? "a sphere" : "spheres");
+}
+
+double frame_ellipsoid_radius(const double half_axes[3]) {
+    if (!(half_axes[0] > 0 && half_axes[1] > 0 && half_axes[2] > 0)) return NAN;
+    return cbrt(half_axes[0]) * cbrt(half_axes[1]) * cbrt(half_axes[2]);
 }
 
 void frame_cell_angles(BpParticleFile *file, const double lengths[3], const double angles[3]) {
@@ -203,5 +248,5 @@ void frame_cell_angles(BpParticleFile *file, const double lengths[3], const doub
     const double z = 1 - cosine[1] * cosine[1] - y * y;
     if (!(sine > 0 && z > 0)) return;
     const double edges[3][3] = {{a, 0, 0}, {b * cosine[2], b * sine, 0}, {c * cosine[1], c * y, c * sqrt(z)}};
-    frame_cell(file, origin, edges, true);
+    frame_cell(file, origin, edges, FRAME_PERIODIC);
 }

@@ -19,22 +19,24 @@ typedef struct BpParticleGrid {
     const BpParticles *particles;
     BpLattice lattice;
     int32_t sides[3];
+    int32_t steps[3]; /* so many cells away from a place may its neighbours lie */
     size_t cell_count;
     /* The lists: the first particle of each cell, and the one after each. NULL where none were made. */
     uint32_t *first, *next;
+    int32_t (
+        *whole)[3]; /* of each particle in a list, as bp_lattice_shares() has it; NULL: nothing repeats */
 } BpParticleGrid;
 
 /* Of the particles of which shown[i] holds. */
 BpStatus bp_particle_bounds(const BpParticles *particles, const bool *shown, BpParticleBounds *bounds,
                             BpError *err);
 
-/* The cells alone. They fill the frame's cell if it repeats, else the bounds, and are at least `reach` wide,
- * so that neighbours nearer than that lie in the cells around. */
-void bp_particle_grid_lay(BpParticleGrid *grid, const BpParticles *particles, const BpParticleBounds *bounds,
-                          double reach);
+/* The cells alone. They fill `lattice` along the edges that repeat, and the bounds along the others. */
+void bp_particle_grid_lay(BpParticleGrid *grid, const BpParticles *particles, const BpLattice *lattice,
+                          const BpParticleBounds *bounds, double reach);
 
-/* The cells, and the lists of those shown, each from low numbers to high ones. Release with
- * bp_particle_grid_clear(). */
+/* The cells in the lattice of the frame's cell, and the lists of those shown, each from low numbers to high
+ * ones. Release with bp_particle_grid_clear(). */
 BpStatus bp_particle_grid_init(BpParticleGrid *grid, const BpParticles *particles, const bool *shown,
                                double reach, BpError *err);
 void bp_particle_grid_clear(BpParticleGrid *grid);
@@ -42,7 +44,20 @@ void bp_particle_grid_clear(BpParticleGrid *grid);
 /* The number of the cell that a place lies in; the nearest one, if it lies outside. */
 size_t bp_particle_grid_cell(const BpParticleGrid *grid, const double place[3]);
 
-/* The numbers of that cell and of those around it, each once. Returns how many. */
-size_t bp_particle_grid_around(const BpParticleGrid *grid, const double place[3], size_t cells[27]);
+/* A walk through all cells that may hold neighbours nearer than the reach, each in all of its images. In a
+ * lattice that is thinner than the reach, a cell comes several times, with other images. */
+typedef struct BpGridWalk {
+    const BpParticleGrid *grid;
+    int32_t whole[3];               /* of the place */
+    int32_t low[3], high[3], at[3]; /* cells, counted on across the sides of the lattice */
+    size_t cell;
+    int32_t image[3]; /* the lattice's edges from where `cell` lies to where it is met */
+} BpGridWalk;
+
+void bp_particle_grid_begin(const BpParticleGrid *grid, const double place[3], BpGridWalk *walk);
+/* Goes on to the next cell, the first one at first. False: there is none. */
+bool bp_particle_grid_next(BpGridWalk *walk);
+/* The image in which a particle of the walk's cell is met from the walk's place, by its own `whole`. */
+void bp_particle_grid_image(const BpGridWalk *walk, const int32_t whole[3], int32_t image[3]);
 
 #endif

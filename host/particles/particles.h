@@ -71,8 +71,8 @@ typedef struct BpParticles {
     BpNames names;
     bool has_name, has_residue, has_chain, has_type, has_element; /* some particle has one */
     bool element_guessed;                                         /* some from its name */
-    bool has_cell, periodic;
-    double cell_origin[3], cell[3][3]; /* the cell's edges as rows */
+    bool has_cell, periodic[3];        /* along each edge; none where there is no cell */
+    double cell_origin[3], cell[3][3]; /* the cell's edges as rows; those that repeat are independent */
     uint32_t (*bonds)[2];              /* Optional: given in the file */
     size_t bond_count;
     bool bonds_partial;    /* the format gives some bonds only (PDB): others are found by distance */
@@ -85,6 +85,8 @@ typedef struct BpParticles {
 } BpParticles;
 
 void bp_particles_clear(BpParticles *particles);
+/* Whether the cell repeats along some edge. */
+bool bp_particles_repeat(const BpParticles *particles);
 /* Adds to the notes what is not there yet. */
 void bp_particles_note(BpParticles *particles, const char *format, ...) BP_PRINTF_LIKE(2, 3);
 

@@ -116,7 +116,7 @@ static void add_cell(BpParticleFile *file, const Data *data) {
     const double edges[3][3] = {{data->high[0] - data->low[0], 0, 0},
                                 {data->tilt[0], data->high[1] - data->low[1], 0},
                                 {data->tilt[1], data->tilt[2], data->high[2] - data->low[2]}};
-    frame_cell(file, data->low, edges, true);
+    frame_cell(file, data->low, edges, FRAME_PERIODIC);
 }
 
 static bool looks_whole(const char *word) {

@@ -8,22 +8,32 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum { WORDS_MAX = BP_PARTICLE_COLUMNS_MAX };
+enum { WORDS_MAX = BP_PARTICLE_COLUMNS_MAX, BOX_LINE = 64, BOX_WORDS = 8 };
 
 typedef struct Dump {
     double origin[3], edges[3][3];
-    bool has_box, periodic, scaled, unwrapped;
+    bool has_box, periodic[3], scaled, unwrapped;
     char header[4096]; /* the words after ITEM: ATOMS */
     char *columns[WORDS_MAX];
     size_t column_count;
     int position[3], type, element, radius, diameter, mass, molecule;
 } Dump;
 
+/* The last three words are the boundaries, two letters each: those of the lower side and of the upper one. An
+ * edge repeats if both are p. Old files have no such words. */
+static void take_boundaries(const char *flags, bool periodic[3]) {
+    char text[BOX_LINE], *words[BOX_WORDS];
+    snprintf(text, sizeof text, "%s", flags);
+    const size_t count = split_words(text, words, BOX_WORDS);
+    for (size_t i = 0; i < 3; i++)
+        periodic[i] = count >= 3 && count <= BOX_WORDS && strcmp(words[count - 3 + i], "pp") == 0;
+}
+
 static BpStatus take_box(Input *input, const char *flags, Dump *dump, BpError *err) {
     const bool triclinic = strstr(flags, "xy xz yz") != NULL, general = strstr(flags, "abc") != NULL;
     const size_t count = general ? 4 : triclinic ? 3 : 2;
     double value[3][4] = {{0}};
-    dump->periodic = strchr(flags, 'p') != NULL;
+    take_boundaries(flags, dump->periodic);
     for (int i = 0; i < 3; i++) {
         char *line = NULL, *words[4];
         BP_TRY(input_needed_line(input, &line, "three lines of bounds", err));
@@ -143,7 +153,7 @@ static BpStatus take_frame(BpParticleFile *file, Dump *dump, BpError *err) {
             BP_TRY(word_count(input, found == 1 ? words[0] : "other words", "atoms", &count, err));
             has_count = true;
         } else if (strncmp(line, "ITEM: BOX BOUNDS", 16) == 0) {
-            char flags[64];
+            char flags[BOX_LINE];
             snprintf(flags, sizeof flags, "%s", line + 16);
             BP_TRY(take_box(input, flags, dump, err));
         } else if (strncmp(line, "ITEM: ATOMS", 11) == 0) {
@@ -164,7 +174,8 @@ static BpStatus take_frame(BpParticleFile *file, Dump *dump, BpError *err) {
         if (dump->element < 0 && dump->mass >= 0) bp_particles_note(file->out, "elements from masses");
     }
     if (dump->has_box)
-        frame_cell(file, dump->origin, (const double(*)[3])dump->edges, dump->periodic && !dump->unwrapped);
+        frame_cell(file, dump->origin, (const double(*)[3])dump->edges,
+                   dump->unwrapped ? (const bool[3]){false, false, false} : dump->periodic);
     for (uint64_t i = 0; i < count; i++) {
         BP_TRY(input_needed_line(input, &line, "as many atoms as ITEM: NUMBER OF ATOMS says", err));
         BP_TRY(take_atom(file, dump, line, err));

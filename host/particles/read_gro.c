@@ -89,6 +89,6 @@ BpStatus read_gro(BpParticleFile *file, bool *end, BpError *err) {
     BP_TRY(take_box(input, line, box, err));
     /* v1x v2y v3z v1y v1z v2x v2z v3x v3y */
     const double edges[3][3] = {{box[0], box[3], box[4]}, {box[5], box[1], box[6]}, {box[7], box[8], box[2]}};
-    frame_cell(file, origin, edges, true);
+    frame_cell(file, origin, edges, FRAME_PERIODIC);
     return BP_OK;
 }

@@ -340,7 +340,7 @@ static BpStatus take_box(BpParticleFile *file, BpError *err) {
     double origin[3];
     for (int i = 0; i < 3; i++) origin[i] = -(edges[0][i] + edges[1][i] + edges[2][i]) / 2;
     if (file->out != NULL) file->out->flat = flat;
-    frame_cell(file, origin, edges, true);
+    frame_cell(file, origin, edges, (const bool[3]){true, true, !flat});
     return BP_OK;
 }
 

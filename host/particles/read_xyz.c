@@ -132,12 +132,38 @@ static BpStatus parse_comment(const Input *input, const char *comment, Layout *l
     return status;
 }
 
+/* The value of pbc: three words for the three edges, or one for all, in quotes, brackets or braces. False: it
+ * is something else. */
+static bool parse_periodic(char *text, bool periodic[3]) {
+    static const char *const words[2][6] = {{"F", "f", "False", "false", "FALSE", "0"},
+                                            {"T", "t", "True", "true", "TRUE", "1"}};
+    int count = 0;
+    char *rest = NULL;
+    for (char *word = strtok_r(text, " \t,;()[]{}\"'", &rest); word != NULL;
+         word = strtok_r(NULL, " \t,;()[]{}\"'", &rest)) {
+        bool known = false;
+        for (int value = 0; value < 2 && count < 3; value++)
+            for (int i = 0; i < 6 && !known; i++) {
+                known = strcmp(word, words[value][i]) == 0;
+                if (known) periodic[count] = value == 1;
+            }
+        if (!known) return false;
+        count++;
+    }
+    if (count == 1) periodic[1] = periodic[2] = periodic[0];
+    return count == 1 || count == 3;
+}
+
 static void parse_cell(BpParticleFile *file, const char *comment) {
     double edges[9], origin[3] = {0, 0, 0};
     char *const value = malloc(KEY_SIZE);
     if (value == NULL) return;
-    bool periodic = true;
-    if (find_key(comment, "pbc", value)) periodic = strpbrk(value, "Tt1") != NULL;
+    bool periodic[3] = {true, true, true};
+    if (find_key(comment, "pbc", value) && !parse_periodic(value, periodic)) {
+        periodic[0] = periodic[1] = periodic[2] = true;
+        if (file->out != NULL)
+            bp_particles_note(file->out, "pbc is not three of T or F, so all edges are taken to repeat");
+    }
     if (find_key(comment, "Origin", value) && numbers_of(value, origin, 3) != 3)
         origin[0] = origin[1] = origin[2] = 0;
     if (find_key(comment, "Lattice", value) && numbers_of(value, edges, 9) == 9) {

@@ -59,7 +59,18 @@ void atom_mark_place(Particle *atom, char place, char *first);
 /* A cell from its lengths and angles in degrees (crystallography's convention: a along x, b in the plane of x
  * and y), its origin at 0. Cells that are none (lengths of 0 or 1, as placeholders) are passed over. */
 void frame_cell_angles(BpParticleFile *file, const double lengths[3], const double angles[3]);
-void frame_cell(BpParticleFile *file, const double origin[3], const double edges[3][3], bool periodic);
+/* A cell from its edges, the rows, and which of them repeat. One without length does not; if those that do
+ * span nothing, none does, and a note says so. */
+void frame_cell(BpParticleFile *file, const double origin[3], const double edges[3][3],
+                const bool periodic[3]);
+#define FRAME_PERIODIC ((const bool[3]){true, true, true})
+
+/* Notes how many particles of the frame have another shape than the sphere that is drawn: `kind` is
+ * "ellipsoid", for example, and 0 notes nothing. */
+void frame_note_shapes(BpParticleFile *file, uint64_t count, const char *kind);
+/* The radius of the sphere that has the volume of an ellipsoid of these three half-axes; NaN if one is not
+ * above 0. */
+double frame_ellipsoid_radius(const double half_axes[3]);
 
 typedef BpStatus ReadFrame(BpParticleFile *file, bool *end, BpError *err);
 ReadFrame read_xyz, read_pdb, read_cif, read_gro, read_dump, read_data, read_gsd, read_csv, read_ply;

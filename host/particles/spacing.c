@@ -5,17 +5,22 @@
 #include "grid.h"
 
 #include <stdlib.h>
+#include <string.h>
 
 static int compare_reals(const void *a, const void *b) {
     const double one = *(const double *)a, other = *(const double *)b;
     return one < other ? -1 : one > other;
 }
 
+enum { SAMPLES_MAX = 1000 };
+
 /* The distances of a thousand particles to their nearest neighbours. Only what lies in the cells around those
  * is kept, so that millions of particles need one pass and hardly any memory. */
 typedef struct Sampling {
     BpParticleGrid grid; /* without its lists */
     const bool *shown;
+    uint32_t sample[SAMPLES_MAX];
+    size_t sample_count;
     uint64_t *marks;  /* one bit a cell: a sample may have neighbours there */
     uint32_t *before; /* how many cells are marked before each word of marks */
     struct Near {
@@ -57,7 +62,7 @@ static void sort_out_block(void *context, uint32_t block, unsigned worker) {
     }
 }
 
-static void sampling_clear(Sampling *s) {
+static void sampling_clear(Sampling *s) { /* the samples stay */
     for (uint32_t b = 0; b < bp_block_count(s->grid.particles->count) && s->near != NULL; b++)
         free(s->near[b].particles);
     free(s->near);
@@ -66,16 +71,17 @@ static void sampling_clear(Sampling *s) {
     free(s->first);
     free(s->next);
     free(s->particle);
+    s->near = NULL;
+    s->marks = NULL;
+    s->before = s->first = s->next = s->particle = NULL;
 }
 
-/* Marks the cells around every `step`-th particle. */
-static void mark_cells(Sampling *s, size_t step) {
-    const BpParticles *const p = s->grid.particles;
-    for (size_t i = 0; i < p->count; i += step) {
-        size_t around[27];
-        if (!s->shown[i]) continue;
-        const size_t cells = bp_particle_grid_around(&s->grid, p->position[i], around);
-        for (size_t c = 0; c < cells; c++) s->marks[around[c] / 64] |= (uint64_t)1 << around[c] % 64;
+/* Marks the cells around the samples. */
+static void mark_cells(Sampling *s) {
+    for (size_t n = 0; n < s->sample_count; n++) {
+        BpGridWalk walk;
+        bp_particle_grid_begin(&s->grid, s->grid.particles->position[s->sample[n]], &walk);
+        while (bp_particle_grid_next(&walk)) s->marks[walk.cell / 64] |= (uint64_t)1 << walk.cell % 64;
     }
 }
 
@@ -109,7 +115,7 @@ static bool link_cells(Sampling *s) {
 }
 
 /* Needs the grid. */
-static BpStatus sampling_fill(Sampling *s, size_t step, BpError *err) {
+static BpStatus sampling_fill(Sampling *s, BpError *err) {
     const BpParticles *const p = s->grid.particles;
     const size_t words = s->grid.cell_count / 64 + 1;
     BpTeam *team = bp_team_create(bp_block_count(p->count) > 1 ? 0 : 1);
@@ -118,7 +124,7 @@ static BpStatus sampling_fill(Sampling *s, size_t step, BpError *err) {
     s->near = calloc((size_t)bp_block_count(p->count) + 1, sizeof *s->near);
     bool good = team != NULL && s->marks != NULL && s->before != NULL && s->near != NULL;
     if (good) {
-        mark_cells(s, step);
+        mark_cells(s);
         bp_team_run(team, sort_out_block, s, bp_block_count(p->count));
         good = link_cells(s);
     }
@@ -126,59 +132,103 @@ static BpStatus sampling_fill(Sampling *s, size_t step, BpError *err) {
     return good ? BP_OK : bp_fail(err, BP_ERR_MEMORY, "out of memory for a grid of %zu particles", p->count);
 }
 
-/* The square of the distance to the nearest neighbour; infinite where there is none. */
-static double nearest_square(const Sampling *s, size_t i) {
+/* The distance to the nearest neighbour, if that is within the grid's reach, else that or a greater one;
+ * infinite where there is none. */
+static double nearest_of(const Sampling *s, uint32_t i) {
     const BpParticles *const p = s->grid.particles;
-    size_t around[27];
+    BpGridWalk walk;
     double least = INFINITY;
-    const size_t cells = bp_particle_grid_around(&s->grid, p->position[i], around);
-    for (size_t c = 0; c < cells; c++) {
-        uint32_t n = s->first[place_of(s, around[c])];
+    bp_particle_grid_begin(&s->grid, p->position[i], &walk);
+    while (bp_particle_grid_next(&walk)) {
+        uint32_t n = s->first[place_of(s, walk.cell)];
         for (size_t looked = 0; n != BP_NO_PARTICLE && looked < 4096; n = s->next[n], looked++) {
-            double d[3];
-            bp_lattice_way(&s->grid.lattice, p->position[i], p->position[s->particle[n]], d);
+            double d[3], share[3];
+            int32_t whole[3] = {0, 0, 0}, image[3];
+            const double *const place = p->position[s->particle[n]];
+            if (bp_lattice_repeats(&s->grid.lattice))
+                bp_lattice_shares(&s->grid.lattice, place, share, whole);
+            bp_particle_grid_image(&walk, whole, image);
+            bp_lattice_way(&s->grid.lattice, p->position[i], place, image, d);
             const double squared = d[0] * d[0] + d[1] * d[1] + d[2] * d[2];
-            if (s->particle[n] != i && squared > 0) least = fmin(least, squared);
+            if (squared > 0) least = fmin(least, squared);
         }
     }
-    return least;
+    return sqrt(least);
+}
+
+/* Every n-th of those shown, so that there are up to SAMPLES_MAX. */
+static void choose_samples(Sampling *s, const BpParticles *particles, size_t shown_count) {
+    const size_t step = shown_count / SAMPLES_MAX + 1;
+    size_t seen = 0;
+    for (size_t i = 0; i < particles->count; i++)
+        if (s->shown[i] && seen++ % step == 0) s->sample[s->sample_count++] = (uint32_t)i;
+}
+
+/* The edges of the cell along which images are neighbours. */
+static void choose_lattice(const BpParticles *particles, const BpParticleBounds *bounds, BpLattice *lattice) {
+    BpParticles own = {.periodic = {false}};
+    memcpy(own.periodic, particles->periodic, sizeof own.periodic);
+    memcpy(own.cell_origin, particles->cell_origin, sizeof own.cell_origin);
+    memcpy(own.cell, particles->cell, sizeof own.cell);
+    /* Simulations in two dimensions have a cell of any height. */
+    if (bounds->count > 2 && bounds->low[2] == bounds->high[2])
+        for (int e = 0; e < 3; e++) own.periodic[e] &= particles->cell[e][2] == 0;
+    bp_lattice_of(lattice, &own);
+}
+
+/* About eight particles a cell of the grid; and no more than the distance of a particle to its own image. */
+static double first_reach(const BpParticleBounds *bounds, const BpLattice *lattice) {
+    double volume = 1, shortest = INFINITY;
+    int dimensions = 0;
+    for (int c = 0; c < 3; c++) {
+        if (!(bounds->high[c] > bounds->low[c])) continue;
+        volume *= bounds->high[c] - bounds->low[c];
+        dimensions++;
+    }
+    for (int e = 0; e < 3; e++) {
+        const double *const edge = lattice->edges[e];
+        if (lattice->periodic[e])
+            shortest = fmin(shortest, sqrt(edge[0] * edge[0] + edge[1] * edge[1] + edge[2] * edge[2]));
+    }
+    const double reach =
+        dimensions > 0 ? 2 * pow(volume / (double)bounds->count, 1.0 / dimensions) : INFINITY;
+    return fmin(reach, shortest * (1 + 1e-6));
+}
+
+/* The median for one reach; infinite: it is beyond that. */
+static BpStatus median_within(Sampling *s, const BpParticles *particles, const BpLattice *lattice,
+                              const BpParticleBounds *bounds, double reach, double *median, BpError *err) {
+    double nearest[SAMPLES_MAX];
+    bp_particle_grid_lay(&s->grid, particles, lattice, bounds, reach);
+    const BpStatus status = sampling_fill(s, err);
+    for (size_t n = 0; n < s->sample_count && status == BP_OK; n++) nearest[n] = nearest_of(s, s->sample[n]);
+    sampling_clear(s);
+    BP_TRY(status);
+    qsort(nearest, s->sample_count, sizeof *nearest, compare_reals);
+    *median = nearest[s->sample_count / 2];
+    if (*median > reach) *median = INFINITY;
+    return BP_OK;
 }
 
 BpStatus bp_particles_spacing(const BpParticles *particles, const bool *shown, double *spacing,
                               BpError *err) {
-    enum { MOST = 1000 };
-    double nearest[MOST], volume = 1;
     BpParticleBounds bounds;
-    size_t found = 0;
-    int dimensions = 0;
+    BpLattice lattice;
+    Sampling sampling = {.shown = shown};
+    double farthest = 0, median = INFINITY;
     *spacing = 0;
     BP_TRY(bp_particle_bounds(particles, shown, &bounds, err));
-    if (bounds.count < 2) return BP_OK;
-    for (int c = 0; c < 3; c++) {
-        if (!(bounds.high[c] > bounds.low[c])) continue;
-        volume *= bounds.high[c] - bounds.low[c];
-        dimensions++;
+    if (bounds.count == 0) return BP_OK;
+    choose_lattice(particles, &bounds, &lattice);
+    choose_samples(&sampling, particles, bounds.count);
+    for (int c = 0; c < 3; c++) farthest += bounds.high[c] - bounds.low[c];
+    double reach = first_reach(&bounds, &lattice);
+    /* Particles in clusters have a nearest neighbour sooner, others later than if they filled their bounds.
+     */
+    for (; isfinite(reach) && isinf(median); reach *= 4) {
+        BP_TRY(median_within(&sampling, particles, &lattice, &bounds, reach, &median, err));
+        if (reach > 1.001 * farthest) break;
     }
-    if (dimensions == 0) return BP_OK;
-    /* About eight particles a cell. If the nearest neighbour is further away than that, what is found is near
-     * enough. */
-    const double reach = 2 * pow(volume / (double)bounds.count, 1.0 / dimensions);
-    const size_t step = particles->count / MOST + 1;
-    Sampling sampling = {.shown = shown};
-    bp_particle_grid_lay(&sampling.grid, particles, &bounds, reach);
-    const BpStatus status = sampling_fill(&sampling, step, err);
-    for (size_t i = 0; i < particles->count && status == BP_OK; i += step) {
-        if (!shown[i]) continue;
-        const double square = nearest_square(&sampling, i);
-        if (isfinite(square)) nearest[found++] = sqrt(square);
-    }
-    sampling_clear(&sampling);
-    if (status != BP_OK) return status;
-    if (found == 0) {
-        *spacing = reach / 2;
-        return BP_OK;
-    }
-    qsort(nearest, found, sizeof *nearest, compare_reals);
-    *spacing = nearest[found / 2];
+    *spacing = isfinite(median) ? median : 0;
     return BP_OK;
 }

@@ -525,27 +525,41 @@ static BpStatus put_beads(Job *job, const double a[3], const double b[3], double
     return BP_OK;
 }
 
+/* Says how many bonds there are, and how many of them, `drawn` and `given` of these, are seen. */
+static void say_bonds(Job *job, size_t drawn, size_t given, size_t across) {
+    char number[32], other[32], beside[64] = "";
+    if (across > 0)
+        snprintf(beside, sizeof beside, ", %s across the cell not drawn",
+                 bp_format_whole(across, other, sizeof other));
+    bp_format_whole(drawn, number, sizeof number);
+    if (given == drawn && job->p->bond_count > 0)
+        say(job, "%s bonds%s", number, beside);
+    else if (given == 0)
+        say(job, "%s bonds by distance%s", number, beside);
+    else
+        say(job, "%s bonds, %s of them given by the file, the others by distance%s", number,
+            bp_format_whole(given, other, sizeof other), beside);
+    if (job->p->bonds_left_out > 0)
+        say(job, "left out: %s connections to atoms that are missing or share their number",
+            bp_format_whole(job->p->bonds_left_out, number, sizeof number));
+}
+
 /* Each half in the colour of its end. Bonds across the cell are left out, since their ends lie apart. */
 static BpStatus put_bonds(Job *job, BpError *err) {
     const BpParticles *const p = job->p;
     const bool molecules = p->angstrom > 0 && p->has_element;
     const bool clear = is_seen_through(job);
-    size_t drawn = 0, given = 0;
+    size_t drawn = 0, given = 0, across = 0;
     for (size_t i = 0; i < job->bonds.count; i++) {
-        const uint32_t a = job->bonds.pair[i][0], b = job->bonds.pair[i][1];
-        double middle[3], color[3], length = 0;
+        const BpBond *const bond = &job->bonds.bond[i];
+        const uint32_t a = bond->a, b = bond->b;
+        double middle[3], color[3];
         if (!job->shown[a] || !job->shown[b]) continue;
-        for (int c = 0; c < 3; c++) {
-            middle[c] = (p->position[a][c] + p->position[b][c]) / 2;
-            length += (p->position[a][c] - p->position[b][c]) * (p->position[a][c] - p->position[b][c]);
+        if (bond->image[0] != 0 || bond->image[1] != 0 || bond->image[2] != 0) {
+            across++;
+            continue;
         }
-        bool across = false;
-        for (int e = 0; e < 3 && p->has_cell && p->periodic; e++) {
-            double edge = 0;
-            for (int c = 0; c < 3; c++) edge += p->cell[e][c] * p->cell[e][c];
-            across |= length > 0.25 * edge;
-        }
-        if (across) continue;
+        for (int c = 0; c < 3; c++) middle[c] = (p->position[a][c] + p->position[b][c]) / 2;
         double radius = job->style->bond_radius;
         if (radius == 0)
             radius =
@@ -560,18 +574,7 @@ static BpStatus put_bonds(Job *job, BpError *err) {
         drawn++;
         given += i < job->bonds.given;
     }
-    char number[32], given_number[32];
-    bp_format_whole(drawn, number, sizeof number);
-    if (given == drawn && p->bond_count > 0)
-        say(job, "%s bonds", number);
-    else if (given == 0)
-        say(job, "%s bonds by distance", number);
-    else
-        say(job, "%s bonds, %s of them given by the file, the others by distance", number,
-            bp_format_whole(given, given_number, sizeof given_number));
-    if (p->bonds_left_out > 0)
-        say(job, "left out: %s connections to atoms that are missing or share their number",
-            bp_format_whole(p->bonds_left_out, number, sizeof number));
+    say_bonds(job, drawn, given, across);
     return BP_OK;
 }
 
@@ -625,9 +628,10 @@ static BpStatus run(Job *job, BpError *err) {
     BP_TRY(choose_shown(job, err));
     if (p->notes[0] != '\0') say(job, "%s", p->notes);
     const bool bonds = job->style->bonds || job->style->kind == BP_STYLE_BALL_AND_STICK;
-    const bool whole =
-        job->style->whole && p->has_cell && p->periodic && (p->bond_count > 0 || p->has_element);
+    const bool whole = job->style->whole && bp_particles_repeat(p) && (p->bond_count > 0 || p->has_element);
     if (bonds || whole) BP_TRY(bp_bonds_find(p, job->shown, &job->bonds, err));
+    if (job->bonds.crowded)
+        say(job, "no bonds by distance, since atoms lie in each other; is their unit of length right?");
     size_t moved = 0;
     if (whole) BP_TRY(bp_molecules_make_whole(p, job->shown, &job->bonds, &moved, err));
     if (moved > 0)
@@ -668,6 +672,6 @@ BpStatus bp_particles_add_to_scene(BpParticles *particles, const BpParticleStyle
     if (range != NULL) memcpy(range, job.range, sizeof job.range);
     free(job.shown);
     free(job.rank);
-    free(job.bonds.pair);
+    free(job.bonds.bond);
     return status;
 }

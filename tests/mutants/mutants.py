@@ -198,17 +198,17 @@ MUTANTS = [
         patch("host/particles/bonds.c", "particles->bond_count == 0 || particles->bonds_partial;", "particles->bond_count == 0;")],
            [particle_scenes("connections_of_pdb")]),
     Mutant("a bond drawn twice", "once as the file's, once by distance", [
-        patch("host/particles/bonds.c", "            if (is_given(bonds, i, k)) continue;\n", "")],
+        patch("host/particles/bonds.c", "is_in_reach(grid, &bond) && !is_given(bonds, &bond)", "is_in_reach(grid, &bond)")],
            [particle_scenes("connections_of_pdb")]),
     Mutant("neighbours below and before alone", "the spacing looks at one of the 27 cells around a particle", [
-        patch("host/particles/spacing.c", "    for (size_t c = 0; c < cells; c++) {\n        uint32_t n = s->first",
-              "    for (size_t c = 0; c < 1; c++) {\n        uint32_t n = s->first")],
+        patch("host/particles/spacing.c", "    while (bp_particle_grid_next(&walk)) {\n        uint32_t n = s->first",
+              "    if (bp_particle_grid_next(&walk)) {\n        uint32_t n = s->first")],
            [particle_scenes("spacing")]),
     Mutant("a grid that ends at the lattice's sides", "neighbours across the sides of a periodic cell were not sought", [
-        patch("host/particles/grid.c", "if (grid->lattice.periodic) at = (at + grid->sides[i]) % grid->sides[i];", "")],
+        patch("host/particles/grid.c", "if (!grid->lattice.periodic[i] && walk->low[i] < 0)", "if (walk->low[i] < 0)")],
            [test("test_grid", "pairs_are_found")]),
     Mutant("ways along the wrong edges", "whole edges are rows of the matrix, not columns", [
-        patch("host/particles/lattice.c", "out[k] -= whole * lattice->edges[i][k]", "out[k] -= whole * lattice->edges[k][i]")],
+        patch("host/particles/lattice.c", "out[k] += image[i] * lattice->edges[i][k]", "out[k] += image[i] * lattice->edges[k][i]")],
            [test("test_grid", "pairs_are_found")]),
     # ---- large trees ----------------------------------------------------------------------------------------
     Mutant("every range at the beginning", "parts of a thread's range that are placed as if it were the whole",

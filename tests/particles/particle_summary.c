@@ -10,7 +10,8 @@
 #include <string.h>
 
 static void print_cell(const BpParticles *p) {
-    printf(", \"periodic\": %s, \"cell\": [", p->periodic ? "true" : "false");
+    printf(", \"periodic\": [%s, %s, %s], \"cell\": [", p->periodic[0] ? "true" : "false",
+           p->periodic[1] ? "true" : "false", p->periodic[2] ? "true" : "false");
     for (int i = 0; i < 3; i++)
         printf("%s[%.9g, %.9g, %.9g]", i > 0 ? ", " : "", p->cell[i][0], p->cell[i][1], p->cell[i][2]);
     printf("], \"origin\": [%.9g, %.9g, %.9g]", p->cell_origin[0], p->cell_origin[1], p->cell_origin[2]);

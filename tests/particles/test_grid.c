@@ -1,4 +1,5 @@
-/* test_grid.c: neighbours found by the grid, beside all pairs; lattices that are oblique and repeat, or not.
+/* test_grid.c: neighbours found by the grid, beside all pairs; lattices that are oblique and repeat, in part,
+ * or not.
  *
  * Knows: the lists of the grid, shares and ways.   Does not know: bonds, files. */
 #include "particles/grid.h"
@@ -14,10 +15,11 @@ enum { COUNT = 300 };
 /* The square of the shortest way among the images of b in the cells around. */
 static double shortest(const BpParticles *p, const double a[3], const double b[3]) {
     double least = INFINITY;
-    const int reach = p->periodic ? 2 : 0;
-    for (int x = -reach; x <= reach; x++)
-        for (int y = -reach; y <= reach; y++)
-            for (int z = -reach; z <= reach; z++) {
+    int reach[3];
+    for (int e = 0; e < 3; e++) reach[e] = p->periodic[e] ? 2 : 0;
+    for (int x = -reach[0]; x <= reach[0]; x++)
+        for (int y = -reach[1]; y <= reach[1]; y++)
+            for (int z = -reach[2]; z <= reach[2]; z++) {
                 double square = 0;
                 for (int c = 0; c < 3; c++) {
                     const double d = b[c] - a[c] + x * p->cell[0][c] + y * p->cell[1][c] + z * p->cell[2][c];
@@ -38,22 +40,25 @@ static void check_pairs(const BpParticles *p, const bool *shown, double reach) {
     memset(near, 0, sizeof near);
     assert_int_equal(bp_particle_grid_init(&grid, p, shown, reach, &err), BP_OK);
     for (uint32_t i = 0; i < COUNT; i++) {
-        size_t cells[27];
-        const size_t count = bp_particle_grid_around(&grid, p->position[i], cells);
-        assert_in_range(count, 1, 27);
+        BpGridWalk walk;
         bool own = false;
-        for (size_t c = 0; c < count; c++) {
-            own |= cells[c] == bp_particle_grid_cell(&grid, p->position[i]);
+        bp_particle_grid_begin(&grid, p->position[i], &walk);
+        while (bp_particle_grid_next(&walk)) {
+            own |= walk.cell == bp_particle_grid_cell(&grid, p->position[i]);
             uint32_t before = 0;
-            for (uint32_t k = grid.first[cells[c]]; k != BP_NO_PARTICLE; k = grid.next[k]) {
+            for (uint32_t k = grid.first[walk.cell]; k != BP_NO_PARTICLE; k = grid.next[k]) {
+                const int32_t nowhere[3] = {0, 0, 0};
                 double d[3];
+                int32_t image[3];
                 assert_true(shown[k] && k >= before);
                 before = k + 1;
-                bp_lattice_way(&grid.lattice, p->position[i], p->position[k], d);
+                bp_particle_grid_image(&walk, grid.whole != NULL ? grid.whole[k] : nowhere, image);
+                bp_lattice_way(&grid.lattice, p->position[i], p->position[k], image, d);
                 const double square = d[0] * d[0] + d[1] * d[1] + d[2] * d[2];
+                if (square >= reach * reach) continue;
                 assert_false(near[i][k]);
-                near[i][k] = square < reach * reach;
-                found += near[i][k];
+                near[i][k] = true;
+                found++;
             }
         }
         assert_true(own);
@@ -75,9 +80,11 @@ static void pairs_are_found(void **state) {
     static bool shown[COUNT];
     BpRandom random = {5};
     for (size_t cell = 0; cell < sizeof cells / sizeof *cells; cell++)
-        for (int periodic = 0; periodic < 2; periodic++) {
-            BpParticles p = {
-                .count = COUNT, .position = position, .has_cell = true, .periodic = periodic != 0};
+        for (int edges = 0; edges < 8; edges++) { /* which of them repeat */
+            BpParticles p = {.count = COUNT,
+                             .position = position,
+                             .has_cell = true,
+                             .periodic = {(edges & 1) != 0, (edges & 2) != 0, (edges & 4) != 0}};
             memcpy(p.cell, cells[cell], sizeof p.cell);
             for (int c = 0; c < 3; c++) p.cell_origin[c] = 5 * bp_random_next(&random) - 20;
             for (size_t i = 0; i < COUNT; i++) {

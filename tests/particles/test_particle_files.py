@@ -261,7 +261,7 @@ class Formats(FileTest):
 
     def test_extended_xyz(self):
         s = self.of("a.xyz", EXTENDED, 0, "force_y")
-        self.assertEqual((s["count"], s["elements"], s["periodic"]), (2, {"C": 1, "Fe": 1}, True))
+        self.assertEqual((s["count"], s["elements"], s["periodic"]), (2, {"C": 1, "Fe": 1}, [True, True, False]))
         self.assertEqual((s["cell"], s["origin"]), ([[10, 0, 0], [2, 9, 0], [1, 1, 8]], [-1, -2, -3]))
         self.assertEqual((s["radius"], s["color"], s["column_sum"]), (0.5, [1, 0.5, 0], 9))
 
