@@ -3,6 +3,7 @@
 
 #include <stddef.h>
 #include <stdlib.h>
+#include <string.h>
 
 static bool is_digit(char c) {
     return c >= '0' && c <= '9';
@@ -55,6 +56,38 @@ const char *bp_decimal_parse(const char *text, double *value) {
     char *end = NULL;
     *value = strtod(text, &end);
     return end != text ? end : NULL;
+}
+
+/* What follows the letters that begin an exponent at `text`, be they left away; NULL: no exponent begins
+ * there. *digits: how many digits it must have; 0: any number. */
+static const char *exponent_at(const char *text, bool has_point, size_t *digits) {
+    *digits = 0;
+    if (*text != '\0' && strchr("dDqQ", *text) != NULL) return text + 1;
+    if (text[0] == '*' && text[1] == '^') return text + 2;
+    *digits = 3;
+    return has_point && (*text == '-' || *text == '+') && text[1] != '0' ? text : NULL;
+}
+
+const char *bp_table_number_parse(const char *text, double *value) {
+    enum { TEXT_SIZE = 128, DIGITS_MAX = 100 };
+    const char *const end = bp_decimal_parse(text, value);
+    if (end == NULL || *end == '\0' || *end == ' ' || !(is_digit(end[-1]) || end[-1] == '.')) return end;
+    const size_t length = (size_t)(end - text);
+    size_t wanted = 0;
+    const char *const exponent = exponent_at(end, memchr(text, '.', length) != NULL, &wanted);
+    const bool has_exponent = memchr(text, 'e', length) != NULL || memchr(text, 'E', length) != NULL;
+    if (exponent == NULL || has_exponent || length > DIGITS_MAX) return end;
+    const char *const first = *exponent == '-' || *exponent == '+' ? exponent + 1 : exponent;
+    const size_t count = strspn(first, "0123456789");
+    if (count == 0 || count > 5 || (wanted > 0 && count != wanted)) return end;
+    /* Written anew with an e, so that the value is rounded as any other. */
+    char copy[TEXT_SIZE];
+    const size_t rest = (size_t)(first - exponent) + count;
+    memcpy(copy, text, length);
+    copy[length] = 'e';
+    memcpy(copy + length + 1, exponent, rest);
+    copy[length + 1 + rest] = '\0';
+    return bp_decimal_parse(copy, value) != NULL ? first + count : end;
 }
 
 const char *bp_whole_parse(const char *text, int64_t *value) {

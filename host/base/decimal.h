@@ -13,6 +13,11 @@
  * the C locale (uselocale) before. */
 const char *bp_decimal_parse(const char *text, double *value);
 
+/* The same for what programs write into tables, where an exponent may also begin with D or Q (Fortran's
+ * double and quadruple precision) or with *^ (Mathematica), and where Fortran leaves its letter away before
+ * three digits: 1.5D+02, -4.7*^-1, 0.25-103. */
+const char *bp_table_number_parse(const char *text, double *value);
+
 /* The same for a whole number that fits; a sign is accepted. */
 const char *bp_whole_parse(const char *text, int64_t *value);
 

@@ -1,6 +1,8 @@
 /* json_memory.c: see json_memory.h. */
 #include "json_memory.h"
 
+#include "encoding.h"
+
 #include <errno.h>
 #include <stdatomic.h>
 #include <stdlib.h>
@@ -23,8 +25,9 @@ bool bp_json_memory_failed(void) {
 }
 
 json_t *bp_json_load(const char *text, size_t length, size_t flags, json_error_t *error, bool *no_memory) {
+    const size_t mark = bp_text_mark(text, length);
     errno = 0;
-    json_t *root = json_loadb(text, length, flags, error);
+    json_t *root = json_loadb(text + mark, length - mark, flags, error);
     *no_memory = bp_json_memory_failed() || (root == NULL && errno == ENOMEM);
     if (!*no_memory) return root;
     json_decref(root);

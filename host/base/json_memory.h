@@ -18,7 +18,8 @@ void bp_json_memory_watch(void);
 /* Whether jansson has ever been refused memory: whatever it made in this process may lack something. */
 bool bp_json_memory_failed(void);
 
-/* json_loadb(); *no_memory: it failed for lack of memory, whatever `error` says. */
+/* json_loadb() of a text that may begin with a byte order mark; *no_memory: it failed for lack of memory,
+ * whatever `error` says. */
 json_t *bp_json_load(const char *text, size_t length, size_t flags, json_error_t *error, bool *no_memory);
 
 /* `text` in quotes, as a document holds it; heap. NULL: it is not UTF-8, or *no_memory. */

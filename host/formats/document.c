@@ -1,6 +1,7 @@
 /* document.c: see document.h. */
 #include "document.h"
 
+#include "base/encoding.h"
 #include "base/json_memory.h"
 
 #include <limits.h>
@@ -156,6 +157,12 @@ static BpStatus refuse_other_files(const BpDocument *document, size_t start, BpE
         snprintf(text, sizeof text, "found %s, expected a scene%s", known->what, known->remedy);
         return fail_at_offset(document, 0, err, text);
     }
+    const char *const wide = bp_text_wide(document->text, document->length);
+    if (wide != NULL) {
+        char text[256];
+        snprintf(text, sizeof text, BP_TEXT_WIDE_FORMAT, wide, wide);
+        return fail_at_offset(document, 0, err, text);
+    }
     if (document->text[start] == '{' || document->text[start] == '[') return BP_OK;
     if (is_binary(document->text, document->length))
         return fail_at_offset(
@@ -167,10 +174,9 @@ static BpStatus refuse_other_files(const BpDocument *document, size_t start, BpE
 
 BpStatus bp_document_open(const char *text, size_t length, const char *name, BpDocument *document,
                           BpError *err) {
-    if (length >= 3 && memcmp(text, "\xef\xbb\xbf", 3) == 0) { /* a byte order mark says nothing in UTF-8 */
-        text += 3;
-        length -= 3;
-    }
+    const size_t mark = bp_text_mark(text, length);
+    text += mark;
+    length -= mark;
     *document = (BpDocument){.name = name, .text = text, .length = length, .root = NULL};
     size_t start = 0;
     while (start < length && strchr(" \t\r\n", text[start]) != NULL && text[start] != '\0') start++;

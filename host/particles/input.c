@@ -2,6 +2,7 @@
 #include "input.h"
 
 #include "base/decimal.h"
+#include "base/encoding.h"
 #include "base/message_text.h"
 
 #include <errno.h>
@@ -11,6 +12,7 @@
 #include <stdarg.h>
 #include <stdlib.h>
 #include <string.h>
+#include <strings.h>
 #include <unistd.h>
 #include <zlib.h>
 
@@ -55,6 +57,10 @@ BpStatus input_rewind(Input *input, BpError *err) {
     return BP_OK;
 }
 
+bool input_is_packed(Input *input) {
+    return !gzdirect(input->gz);
+}
+
 /* Doubles the block, or makes it hold `count` bytes, up to the largest. */
 static bool grow(Input *input, size_t count) {
     size_t capacity = 2 * input->capacity;
@@ -88,10 +94,12 @@ bool input_fill(Input *input, size_t count) {
         if (got < 0 || code == Z_BUF_ERROR) { /* the latter: cut off amid packed data */
             input->failed = true;
             input->fault = code == Z_MEM_ERROR ? BP_ERR_MEMORY : code == Z_ERRNO ? BP_ERR_FILE : BP_ERR_SCENE;
-            const char *const what = code == Z_ERRNO       ? strerror(errno)
-                                     : code == Z_BUF_ERROR ? "its gzip data is cut off"
-                                                           : text;
-            snprintf(input->failure, sizeof input->failure, "%s", what);
+            const char *const what = code == Z_BUF_ERROR ? "its gzip data is cut off" : text;
+            if (code == Z_ERRNO)
+                snprintf(input->failure, sizeof input->failure, "cannot read it: %s", strerror(errno));
+            else
+                snprintf(input->failure, sizeof input->failure, "found damage, expected a whole file: %s",
+                         what);
         }
         if (got > 0) input->end += (size_t)got;
         if (got <= 0 || input->failed) break;
@@ -99,7 +107,8 @@ bool input_fill(Input *input, size_t count) {
             input->failed = true;
             input->fault = BP_ERR_SCENE;
             snprintf(input->failure, sizeof input->failure,
-                     "it unpacks to more than %" PRIu64 " GiB, expected less", BP_INPUT_BYTES_MAX >> 30);
+                     "found more than %" PRIu64 " GiB when unpacked, expected less",
+                     BP_INPUT_BYTES_MAX >> 30);
         }
     }
     return input->end >= count;
@@ -130,10 +139,8 @@ BpStatus input_fail(const Input *input, bool with_line, BpError *err, const char
     const BpStatus status = input->failed ? input->fault : BP_ERR_SCENE;
     if (status == BP_ERR_MEMORY && input->failed)
         snprintf(text, sizeof text, "out of memory for reading it");
-    else if (status == BP_ERR_FILE && input->failed)
-        snprintf(text, sizeof text, "cannot read it: %s", input->failure);
     else if (input->failed)
-        snprintf(text, sizeof text, "found damage, expected a whole file: %s", input->failure);
+        snprintf(text, sizeof text, "%s", input->failure);
     bp_fail(err, status, "%s", text);
     bp_error_at(err, input->name, !with_line ? 0 : input->line < INT_MAX ? (int)input->line : INT_MAX, 0);
     return status;
@@ -143,6 +150,18 @@ BpStatus input_wrong(const Input *input, const char *found, const char *expected
     char shown[48];
     bp_printable(found, shown, sizeof shown);
     return input_fail(input, true, err, "found \"%s\", expected %s", shown, expected);
+}
+
+/* Lines end with LF or CR LF. Where the beginning of a file has more CR than LF, they end with CR, as on
+ * computers of Apple before 2001. */
+static char find_line_end(Input *input) {
+    (void)input_fill(input, 1);
+    size_t feeds = 0, returns = 0;
+    for (size_t i = input->begin; i < input->end; i++) {
+        feeds += input->buffer[i] == '\n';
+        returns += input->buffer[i] == '\r' && i + 1 < input->end && input->buffer[i + 1] != '\n';
+    }
+    return returns > feeds ? '\r' : '\n';
 }
 
 BpStatus input_line(Input *input, char **line, BpError *err) {
@@ -156,9 +175,10 @@ BpStatus input_line(Input *input, char **line, BpError *err) {
     unsigned char *end = NULL;
     *line = NULL;
     input->line++;
+    if (input->line_end == '\0') input->line_end = find_line_end(input);
     for (;;) {
         const size_t here = input->end - input->begin;
-        if (here > seen) end = memchr(input->buffer + input->begin + seen, '\n', here - seen);
+        if (here > seen) end = memchr(input->buffer + input->begin + seen, input->line_end, here - seen);
         seen = here;
         if (end != NULL) break;
         if (here == BP_INPUT_BLOCK)
@@ -171,9 +191,15 @@ BpStatus input_line(Input *input, char **line, BpError *err) {
             break;
         }
     }
-    unsigned char *const start = input->buffer + input->begin;
-    const size_t length = (size_t)(end - start);
+    unsigned char *start = input->buffer + input->begin;
+    size_t length = (size_t)(end - start);
     input_take(input, input->begin + length < input->end ? length + 1 : length);
+    const char *const wide = input->line == 1 ? bp_text_wide(start, length) : NULL;
+    if (wide != NULL) return input_fail(input, false, err, BP_TEXT_WIDE_FORMAT, wide, wide);
+    /* Files that were joined have marks amid them. */
+    const size_t mark = bp_text_mark(start, length);
+    start += mark;
+    length -= mark;
     if (memchr(start, '\0', length) != NULL)
         return input_fail(
             input, true, err,
@@ -214,8 +240,33 @@ size_t split_words(char *line, char **words, size_t max) {
 }
 
 bool word_number(const char *word, double *value) {
-    const char *const end = bp_decimal_parse(word, value);
+    const char *const end = bp_table_number_parse(word, value);
     return end != NULL && *end == '\0' && isfinite(*value);
+}
+
+bool word_number_or_none(const char *word, double *value) {
+    /* The last two are those of Microsoft's compilers until 2013. */
+    static const char *const none[] = {"nan", "nan(ind)", "nan(snan)", "nanq", "1.#qnan", "1.#ind"};
+    if (word_number(word, value)) return true;
+    const char *const unsigned_word = *word == '-' || *word == '+' ? word + 1 : word;
+    bool found = *word == '*' && word[strspn(word, "*")] == '\0';
+    for (size_t i = 0; i < sizeof none / sizeof *none && !found; i++) {
+        const size_t length = strlen(none[i]);
+        const char *const rest = unsigned_word + length;
+        found = strncasecmp(unsigned_word, none[i], length) == 0 && rest[strspn(rest, "0")] == '\0';
+    }
+    if (found) *value = NAN;
+    return found;
+}
+
+bool word_logical(const char *word, double *value) {
+    static const char *const words[] = {"F", "False", "false", "FALSE", "T", "True", "true", "TRUE"};
+    for (size_t i = 0; i < sizeof words / sizeof *words; i++) {
+        if (strcmp(word, words[i]) != 0) continue;
+        *value = i >= 4;
+        return true;
+    }
+    return false;
 }
 
 bool word_whole(const char *word, int64_t *value) {

@@ -1,7 +1,8 @@
 /* input.h: the bytes and lines of a file of particles, unpacked where gzip packed them.
  *
  * In:    a stream.   Out: blocks, lines, words, numbers; errors with file and line.
- * Knows: gzip (zlib).   Does not know: any format. Memory is one block, however long the file. */
+ * Knows: gzip (zlib), encodings, how programs write numbers.   Does not know: any format. Memory is one
+ * block, however long the file. */
 #ifndef BP_PARTICLES_INPUT_H
 #define BP_PARTICLES_INPUT_H
 
@@ -23,15 +24,18 @@ typedef struct Input {
     uint64_t taken; /* bytes before `begin` */
     uint64_t line;  /* of the line last taken, from 1 */
     char *held;     /* a line that was given back */
-    bool failed;    /* reading failed; `failure` says how */
+    char line_end;  /* the byte that ends lines; 0: no line was read yet */
+    bool failed;    /* reading failed; `failure` says how, in a message's words */
     BpStatus fault; /* BP_ERR_SCENE: the file is damaged; BP_ERR_FILE: it cannot be read; BP_ERR_MEMORY */
-    char failure[128];
+    char failure[192];
 } Input;
 
 BpStatus input_init(Input *input, FILE *stream, const char *name, BpError *err);
 void input_clear(Input *input);
 /* Begins again at the file's beginning. */
 BpStatus input_rewind(Input *input, BpError *err);
+/* Whether gzip packed the file, of which nothing was read yet. */
+bool input_is_packed(Input *input);
 /* Reads until `count` bytes, at most BP_INPUT_BLOCK, lie at buffer + begin, which may move. False at the
  * end of the file, and where reading failed. */
 bool input_fill(Input *input, size_t count);
@@ -39,8 +43,9 @@ void input_take(Input *input, size_t count);
 /* Passes over `count` bytes; false when the file ends before. */
 bool input_skip(Input *input, uint64_t count);
 
-/* Takes a line; *line is ended by a NUL in place of its end (LF or CR LF), and valid until the next call;
- * NULL at the end of the file. Fails on lines of BP_INPUT_BLOCK bytes and more, and on bytes of value 0. */
+/* Takes a line; *line is ended by a NUL in place of its end (LF, CR LF, or CR in files that have no other),
+ * and valid until the next call; NULL at the end of the file. A byte order mark before it is left away. Fails
+ * on lines of BP_INPUT_BLOCK bytes and more, on bytes of value 0, and on text in UTF-16 or UTF-32. */
 BpStatus input_line(Input *input, char **line, BpError *err);
 /* The same, passing over blank lines. */
 BpStatus input_full_line(Input *input, char **line, BpError *err);
@@ -58,8 +63,13 @@ BpStatus input_wrong(const Input *input, const char *found, const char *expected
 
 /* Splits at blanks, in place. Returns how many words there are, the first `max` of which are in `words`. */
 size_t split_words(char *line, char **words, size_t max);
-/* The whole word as a finite number. */
+/* The whole word as a finite number, also with the exponents of bp_table_number_parse(). */
 bool word_number(const char *word, double *value);
+/* The same where a number may be missing: NaN for what programs write in its place: nan in all spellings, and
+ * the stars that Fortran and C leave where a field is too narrow. */
+bool word_number_or_none(const char *word, double *value);
+/* A truth value as a number: 1 for T, True, true or TRUE, 0 for F and its like. */
+bool word_logical(const char *word, double *value);
 /* The whole word as a whole number. */
 bool word_whole(const char *word, int64_t *value);
 /* A count of at most BP_PARTICLES_MAX. */
