@@ -264,15 +264,6 @@ static BpStatus open_file(const BpNode *file_node, const char *path, const Entry
     return BP_OK;
 }
 
-static BpStatus add_notes(BpScene *scene, const char *file, const char *summary, BpError *err) {
-    const size_t used = strlen(scene->notes), size = used + strlen(file) + strlen(summary) + 4;
-    char *const notes = realloc(scene->notes, size);
-    if (notes == NULL) return bp_fail(err, BP_ERR_MEMORY, "out of memory for notes");
-    scene->notes = notes;
-    snprintf(notes + used, size - used, "%s: %s\n", file, summary);
-    return BP_OK;
-}
-
 static void keep_legend(const BpParticleStyle *style, const double range[2], BpScene *scene) {
     enum { STOPS = sizeof scene->legend.colors / sizeof scene->legend.colors[0] };
     scene->has_color_range = true;
@@ -303,7 +294,7 @@ static BpStatus add_particles(BpParticleFile *file, const char *path, const Entr
     if (status == BP_OK && !particles.flat) scene->up = particles.up;
     if (status == BP_OK && particles.flat) scene->flat = true;
     bp_particles_clear(&particles);
-    return status == BP_OK ? add_notes(scene, entry->file, summary, err) : status;
+    return status == BP_OK ? bp_add_scene_notes(scene, entry->file, summary, err) : status;
 }
 
 static BpStatus read_file(const BpNode *file_node, const Entry *entry, size_t place,

@@ -2,6 +2,7 @@
 #include "particles.h"
 #include "reader.h"
 
+#include "base/encoding.h"
 #include "base/message_text.h"
 #include "base/plural.h"
 
@@ -38,7 +39,8 @@ static BpParticleFormat format_of_beginning(const char *text, size_t length) {
     static const char *const pdb[] = {"HEADER    ", "CRYST1 ", "ATOM      ",
                                       "HETATM",     "REMARK ", "MODEL     "};
     if (length >= 8 && memcmp(text, gsd, 8) == 0) return BP_PARTICLES_GSD;
-    if (strncmp(text, "ply\n", 4) == 0 || strncmp(text, "ply\r", 4) == 0) return BP_PARTICLES_PLY;
+    if (strncmp(text, "ply", 3) == 0 && text[3] != '\0' && strchr(" \t\r\n", text[3]) != NULL)
+        return BP_PARTICLES_PLY;
     if (strncmp(text, "ITEM: ", 6) == 0) return BP_PARTICLES_DUMP;
     if (strncmp(text, "data_", 5) == 0) return BP_PARTICLES_CIF;
     for (size_t i = 0; i < sizeof pdb / sizeof *pdb; i++)
@@ -82,10 +84,13 @@ BpParticleFormat bp_particle_format_find(const char *name, FILE *stream) {
         close(descriptor);
     }
     rewind(stream);
-    text[length > 0 ? length : 0] = '\0';
-    if (text[strspn(text, "\xef\xbb\xbf \t\r\n")] == '{')
+    if (length < 0) length = 0;
+    text[length] = '\0';
+    const size_t mark = bp_text_mark(text, (size_t)length);
+    const char *const begin = text + mark;
+    if (begin[strspn(begin, " \t\r\n")] == '{')
         return BP_PARTICLES_NONE; /* a scene document, whatever its name */
-    const BpParticleFormat format = format_of_beginning(text, length > 0 ? (size_t)length : 0);
+    const BpParticleFormat format = format_of_beginning(begin, (size_t)length - mark);
     return format != BP_PARTICLES_NONE ? format : format_of_name(name);
 }
 
@@ -121,6 +126,7 @@ void bp_particle_file_close(BpParticleFile **file) {
     if (file == NULL || *file == NULL) return;
     drop_state(*file);
     input_clear(&(*file)->input);
+    free((*file)->gone);
     free(*file);
     *file = NULL;
 }
@@ -132,7 +138,8 @@ BpStatus bp_particle_file_next(BpParticleFile *file, BpParticles *particles, boo
     const locale_t before = uselocale(point);
     file->out = particles;
     *end = false;
-    const BpStatus status = formats[file->format].read(file, end, err);
+    BpStatus status = formats[file->format].read(file, end, err);
+    if (status == BP_OK && !*end) status = frame_end(file, err);
     file->out = NULL;
     uselocale(before);
     freelocale(point);

@@ -48,6 +48,8 @@ void bp_particles_note(BpParticles *particles, const char *format, ...) {
 
 BpStatus frame_begin(BpParticleFile *file, const char *const *columns, size_t column_count, BpError *err) {
     file->added = 0;
+    file->gone_count = 0;
+    file->colors = (ColorRange){0};
     file->taken_count = 0;
     if (file->out == NULL) return BP_OK; /* a frame that is passed over may lack the columns */
     file->taken_count = file->wanted_count;
@@ -132,11 +134,36 @@ static BpStatus add_tag(BpParticles *p, const Particle *particle, BpError *err) 
     return BP_OK;
 }
 
+/* A particle without a place: only its number is kept, by which bonds find that it is gone. */
+static BpStatus leave_out(BpParticleFile *file, BpError *err) {
+    if (file->gone_count == file->gone_capacity) {
+        const size_t capacity = file->gone_capacity > 0 ? 2 * file->gone_capacity : FIRST_CAPACITY;
+        if (!resize(&file->gone, capacity, sizeof *file->gone))
+            return bp_fail(err, BP_ERR_MEMORY, "out of memory for %zu points without a place", capacity);
+        file->gone_capacity = capacity;
+    }
+    file->gone[file->gone_count++] = (uint32_t)(file->added - 1);
+    return BP_OK;
+}
+
+static BpStatus take_color(BpParticleFile *file, const double color[3], bool with_line, BpError *err) {
+    char text[BP_NUMBER_TEXT_SIZE];
+    int channel = 0;
+    if (isnan(color[0]) && isnan(color[1]) && isnan(color[2])) return BP_OK;
+    if (color_range_take(&file->colors, color, file->added - 1, with_line ? file->input.line : 0, &channel))
+        return BP_OK;
+    return input_fail(&file->input, with_line, err, "particle %zu (from 0): %s: found %s, expected %s",
+                      file->added - 1, bp_color_channels[channel], bp_number_text(color[channel], text),
+                      color_range_expected(&file->colors));
+}
+
 BpStatus frame_add(BpParticleFile *file, const Particle *particle, bool with_line, BpError *err) {
     BpParticles *const p = file->out;
+    const double *const place = particle->position;
+    const bool has_place = !isnan(place[0]) && !isnan(place[1]) && !isnan(place[2]);
     for (int i = 0; i < 3; i++) {
         char text[BP_NUMBER_TEXT_SIZE];
-        if (fabs(particle->position[i]) <= COORDINATE_MAX) continue;
+        if (fabs(place[i]) <= COORDINATE_MAX || isnan(place[i])) continue;
         return input_fail(&file->input, with_line, err,
                           "particle %zu (from 0): found %s, expected a coordinate from -1e12 to 1e12",
                           file->added, bp_number_text(particle->position[i], text));
@@ -146,6 +173,8 @@ BpStatus frame_add(BpParticleFile *file, const Particle *particle, bool with_lin
                           "found more particles, expected at most %u in a frame", BP_PARTICLES_MAX);
     file->added++;
     if (p == NULL) return BP_OK;
+    if (!has_place) return leave_out(file, err);
+    BP_TRY(take_color(file, particle->color, with_line, err));
     if (p->count == p->capacity && !grow(file, p))
         return bp_fail(err, BP_ERR_MEMORY, "out of memory for more than %zu particles", p->count);
     const BpStatus status = add_tag(p, particle, err);
@@ -163,9 +192,28 @@ BpStatus frame_add(BpParticleFile *file, const Particle *particle, bool with_lin
     return BP_OK;
 }
 
+/* The place among the particles that are left of the one with a number; UINT32_MAX: it is gone. */
+static uint32_t place_of(const BpParticleFile *file, uint32_t number) {
+    size_t low = 0, high = file->gone_count;
+    while (low < high) {
+        const size_t middle = low + (high - low) / 2;
+        if (file->gone[middle] < number)
+            low = middle + 1;
+        else
+            high = middle;
+    }
+    return low < file->gone_count && file->gone[low] == number ? UINT32_MAX : number - (uint32_t)low;
+}
+
 BpStatus frame_add_bond(BpParticleFile *file, uint32_t a, uint32_t b, BpError *err) {
     BpParticles *const p = file->out;
     if (p == NULL) return BP_OK;
+    a = place_of(file, a);
+    b = place_of(file, b);
+    if (a == UINT32_MAX || b == UINT32_MAX) {
+        p->bonds_left_out++;
+        return BP_OK;
+    }
     if (p->bond_count == p->bond_capacity) {
         const size_t capacity = p->bond_capacity > 0 ? 2 * p->bond_capacity : FIRST_CAPACITY;
         if (!resize(&p->bonds, capacity, sizeof *p->bonds))
@@ -174,6 +222,22 @@ BpStatus frame_add_bond(BpParticleFile *file, uint32_t a, uint32_t b, BpError *e
     }
     p->bonds[p->bond_count][0] = a;
     p->bonds[p->bond_count++][1] = b;
+    return BP_OK;
+}
+
+BpStatus frame_end(BpParticleFile *file, BpError *err) {
+    BpParticles *const p = file->out;
+    const ColorRange *const colors = &file->colors;
+    if (p == NULL) return BP_OK;
+    if (file->gone_count > 0)
+        bp_particles_note(p, "%zu point%s without a place left out", file->gone_count,
+                          bp_plural(file->gone_count));
+    if (p->color == NULL) return BP_OK;
+    const double scale = color_range_scale(colors);
+    if (scale == 0) return color_range_fail(colors, "particle", file->input.name, err);
+    color_range_make_linear(scale, p->color, p->count);
+    const char *const note = color_range_note(colors);
+    if (note != NULL) bp_particles_note(p, "%s", note);
     return BP_OK;
 }
 
@@ -213,7 +277,11 @@ void frame_cell(BpParticleFile *file, const double origin[3], const double edges
         longest = fmax(longest, length_of(edges[i]));
         farthest = fmax(farthest, fabs(origin[i]));
     }
-    if (!(longest > SHORTEST_EDGE && longest <= COORDINATE_MAX && farthest <= COORDINATE_MAX)) return;
+    if (!(longest > SHORTEST_EDGE)) return; /* the cell of a file that has none */
+    if (!(longest <= COORDINATE_MAX && farthest <= COORDINATE_MAX)) {
+        bp_particles_note(p, "a cell that is not finite, or larger than 1e12, left out");
+        return;
+    }
     p->has_cell = true;
     for (int i = 0; i < 3; i++) p->periodic[i] = periodic[i] && length_of(edges[i]) > SHORTEST_EDGE;
     if (!is_spanned(edges, p->periodic)) {

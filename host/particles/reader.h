@@ -1,6 +1,6 @@
 /* reader.h: the interface that every format's reader has, and how it hands points over.
  *
- * In:    an input.   Out: calls of frame_begin, frame_add, frame_end.
+ * In:    an input.   Out: calls of frame_begin and frame_add.
  * Knows: what all formats share.   Does not know: any of them.
  *
  * A reader is one function that reads one frame. It is called again and again until it says that there is no
@@ -8,6 +8,7 @@
 #ifndef BP_PARTICLES_READER_H
 #define BP_PARTICLES_READER_H
 
+#include "color_range.h"
 #include "input.h"
 #include "particles.h"
 
@@ -23,17 +24,20 @@ struct BpParticleFile {
     size_t taken_count; /* of the wanted columns, how many this frame's are taken: all, or none when passed
                            over */
     int wanted_column[BP_PARTICLE_WANTED_MAX]; /* the first taken_count of them are set */
-    size_t added;                              /* in this frame */
-    void *state;                               /* of the format's reader, freed with the file */
+    size_t added;                              /* in this frame, with those that were left out */
+    uint32_t *gone;                            /* the numbers of those that were left out, rising */
+    size_t gone_count, gone_capacity;
+    ColorRange colors; /* of this frame; what the type says of them, the reader sets after frame_begin */
+    void *state;       /* of the format's reader, freed with the file */
 };
 
 /* One particle. Texts may be NULL and are copied; those longer than BP_PARTICLE_NAME_SIZE are cut. */
 typedef struct Particle {
-    double position[3];
+    double position[3]; /* NaN: it has no place */
     const char *name, *residue, *chain, *type;
     uint8_t element, flags;
     double radius;        /* NaN: none */
-    double color[3];      /* color[0] NaN: none */
+    double color[3];      /* color[0] NaN: none; else numbers of any scale (color_range.h) */
     const double *values; /* of the columns named to frame_begin */
 } Particle;
 
@@ -44,10 +48,15 @@ typedef struct Particle {
 
 /* Begins a frame whose numeric columns are `columns`; fails if a wanted one is not among them. */
 BpStatus frame_begin(BpParticleFile *file, const char *const *columns, size_t column_count, BpError *err);
-/* Hands one particle over. Fails on coordinates that are not finite or too large. `with_line`: the error
- * names the line last taken. */
+/* Hands one particle over. One without a place (a coordinate that is NaN) is left out and counted. Fails on
+ * coordinates that are infinite or too large, and on colours that can be none. `with_line`: the error names
+ * the line last taken. */
 BpStatus frame_add(BpParticleFile *file, const Particle *particle, bool with_line, BpError *err);
+/* `a` and `b` count the particles as they were handed over, from 0, with those that were left out. A bond of
+ * one that was left out is too. */
 BpStatus frame_add_bond(BpParticleFile *file, uint32_t a, uint32_t b, BpError *err);
+/* After all of a frame: makes its colours linear, and notes what was left out and decided. */
+BpStatus frame_end(BpParticleFile *file, BpError *err);
 /* An atom whose name and residue are set (atom.c): its element, from `symbol` where the file has one ("":
  * none), else from its name, and then it is a guess; or no element, for a site of a model. `name`, `fixed`:
  * as bp_element_of_name() has them. */

@@ -30,7 +30,7 @@ static inline BpStatus read_bytes(const void *bytes, size_t size, const BpPlyOpt
     assert_non_null(stream);
     assert_int_equal(fwrite(bytes, 1, size, stream), size);
     rewind(stream);
-    const BpStatus status = bp_ply_read(stream, size, "points.ply", options, scene, err);
+    const BpStatus status = bp_ply_read(stream, size, "points.ply", options, scene, NULL, err);
     fclose(stream);
     return status;
 }

@@ -2,6 +2,7 @@
  * that asks for it; files end where their header says. */
 #include "scene/scene.h"
 
+#include <math.h>
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stdio.h>
@@ -74,23 +75,63 @@ static void coincident_vertices_are_named(void **state) {
            "scene.json", 4, 1, (const char *const[5]){"spheres[1] and vertex 0 (from 0) of more.ply"});
 }
 
-static void not_a_number_is_named(void **state) {
+static void an_infinite_place_is_named(void **state) {
     (void)state;
-    char bytes[256];
-    const char *header = BINARY("2") "end_header\n";
-    const size_t n = strlen(header);
-    static const unsigned char nan_bytes[4] = {0, 0, 0xc0, 0x7f};
-    memcpy(bytes, header, n);
-    memset(bytes + n, 0, 24);
-    memcpy(bytes + n + 12 + 8, nan_bytes, 4); /* z of vertex 1 */
-    write_file("points.ply", bytes, n + 24);
-    refuse(SCENE("", CLOUD("points.ply")), "points.ply", 0, 0,
-           (const char *const[5]){"vertex 1 (from 0): z: found nan", "remove or correct the point",
-                                  "scene.json:4:22"});
     write_text("points.ply", ASCII("1") "end_header\n1 inf 3\n");
     refuse(SCENE("", CLOUD("points.ply")), "points.ply", 8, 0,
            (const char *const[5]){"vertex 0 (from 0): y: found inf", "remove or correct the point",
                                   "scene.json:4:22"});
+}
+
+/* Loads a scene whose notes are these; the caller destroys it. */
+static BpScene *noted(const char *text, const char *notes) {
+    BpScene *scene = NULL;
+    BpError err = {0};
+    write_text("scene.json", text);
+    if (bp_scene_load("scene.json", &scene, &err) != BP_OK) fail_msg("%s", err.message);
+    assert_string_equal(scene->notes, notes);
+    return scene;
+}
+
+static void points_without_a_place_are_left_out(void **state) {
+    (void)state;
+    static const char *const scene = SCENE("", CLOUD("points.ply"));
+    static const char note[] = "points.ply: 1 point without a place left out\n";
+    static const float places[3][3] = {{1, 2, 3}, {0, 0, NAN}, {7, 8, 9}};
+    char bytes[256];
+    const char *header = BINARY("3") "end_header\n";
+    const size_t n = strlen(header);
+    memcpy(bytes, header, n);
+    memcpy(bytes + n, places, sizeof places);
+    static const char *const texts[] = {"nan nan nan", "1 ******** 3", "1 2 -nan(ind)", "NaN 2 3"};
+    const size_t count = sizeof texts / sizeof *texts;
+    for (size_t i = 0; i <= count; i++) {
+        if (i == count) {
+            write_file("points.ply", bytes, n + sizeof places);
+        } else {
+            char text[256];
+            snprintf(text, sizeof text, ASCII("3") "end_header\n1 2 3\n%s\n7 8 9\n", texts[i]);
+            write_text("points.ply", text);
+        }
+        BpScene *found = noted(scene, note);
+        assert_int_equal(found->sphere_count, 2);
+        for (int c = 0; c < 3; c++) {
+            assert_true(found->spheres[0].center[c] == (double)places[0][c]);
+            assert_true(found->spheres[1].center[c] == (double)places[2][c]);
+        }
+        bp_scene_destroy(&found);
+    }
+}
+
+static void marks_and_encodings(void **state) {
+    (void)state;
+    static const char *const scene = SCENE("", CLOUD("points.ply"));
+    write_text("points.ply", "\xef\xbb\xbf" ASCII("1") "end_header\n1 2 3\n");
+    accept(scene, 1);
+    write_file("points.ply", "\xff\xfep\0l\0y\0\n\0", 10);
+    refuse(scene, "points.ply", 0, 0, (const char *const[5]){"UTF-16", "iconv -f UTF-16 -t UTF-8"});
+    write_file("points.ply", "\x1f\x8b\x08\0\0\0\0\0\0\xff\x03\0\0\0\0\0\0\0\0\0", 20);
+    refuse(scene, "points.ply", 0, 0, (const char *const[5]){"gzip", "unpack it"});
 }
 
 static void what_follows_the_last_element(void **state) {
@@ -125,9 +166,10 @@ static void what_follows_the_last_element(void **state) {
 int main(void) {
     char folder[] = "/tmp/ballpark-clouds-XXXXXX";
     if (mkdtemp(folder) == NULL || chdir(folder) != 0) return 1;
-    const struct CMUnitTest tests[] = {cmocka_unit_test(coincident_vertices_are_named),
-                                       cmocka_unit_test(not_a_number_is_named),
-                                       cmocka_unit_test(what_follows_the_last_element)};
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(coincident_vertices_are_named), cmocka_unit_test(an_infinite_place_is_named),
+        cmocka_unit_test(points_without_a_place_are_left_out), cmocka_unit_test(marks_and_encodings),
+        cmocka_unit_test(what_follows_the_last_element)};
     const int failed = cmocka_run_group_tests(tests, NULL, NULL);
     static const char *const files[] = {"scene.json", "points.ply", "twice.ply", "more.ply"};
     for (size_t i = 0; i < sizeof files / sizeof *files; ++i) unlink(files[i]);

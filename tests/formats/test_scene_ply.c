@@ -1,7 +1,7 @@
 /* test_scene_ply.c: points from PLY files in every form. */
 #include "base/random.h"
 #include "formats/field.h"
-#include "formats/ply_parts.h"
+#include "particles/ply_rows.h"
 #include "ply_data.h"
 
 #include <math.h>
@@ -57,7 +57,8 @@ static void ascii_numbers(void **state) {
                                         "0.3",
                                         "1.7976931348623157e308",
                                         "3.14159265358979323846",
-                                        "2E+3"};
+                                        "2E+3",
+                                        "1e-05"};
     for (size_t i = 0; i < sizeof texts / sizeof *texts; i++) {
         char text[64];
         snprintf(text, sizeof text, "  %s 7", texts[i]);
@@ -68,13 +69,42 @@ static void ascii_numbers(void **state) {
         assert_true(ply_parse_number(&cursor, &value) && value == 7);
         assert_false(ply_parse_number(&cursor, &value));
     }
-    static const char *const bad[] = {"", " ", "x", "1x", "-", ".", "1e", "--1", "1,5"};
+    static const char *const bad[] = {"",         " ",        "x",     "1x",      "-",    ".",   "1e",
+                                      "--1",      "1,5",      "1D",    "1*^",     "1*2",  "1-2", "1-103",
+                                      "1.5-1034", "1.5-12.5", "1e5D3", "1.5D--2", "nano", "1.#"};
     for (size_t i = 0; i < sizeof bad / sizeof *bad; i++) {
         char text[16];
         double value;
         strcpy(text, bad[i]);
         char *cursor = text;
         if (ply_parse_number(&cursor, &value)) fail_msg("accepted \"%s\"", bad[i]);
+    }
+    /* As Fortran and Mathematica write exponents. */
+    static const char *const others[][2] = {{"1.5D+02", "1.5e2"},
+                                            {"-.25d0", "-.25"},
+                                            {"1Q-3", "1e-3"},
+                                            {"-4.7*^-1", "-0.47"},
+                                            {"3*^2", "300"},
+                                            {"0.25-103", "0.25e-103"},
+                                            {"-1.75+101", "-1.75e101"},
+                                            {"0.1234567890123456789012D+01", "1.234567890123456789012"}};
+    for (size_t i = 0; i < sizeof others / sizeof *others; i++) {
+        char text[64];
+        double value = 0;
+        snprintf(text, sizeof text, "%s 7", others[i][0]);
+        char *cursor = text;
+        assert_true(ply_parse_number(&cursor, &value));
+        if (!(value == strtod(others[i][1], NULL))) fail_msg("%s: %.17g", others[i][0], value);
+        assert_true(ply_parse_number(&cursor, &value) && value == 7);
+    }
+    static const char *const none[] = {"nan", "-NaN", "nan(ind)", "-1.#IND", "1.#QNAN00", "********"};
+    for (size_t i = 0; i < sizeof none / sizeof *none; i++) {
+        char text[64];
+        double value = 0;
+        strcpy(text, none[i]);
+        char *cursor = text;
+        assert_true(ply_parse_number(&cursor, &value) && isnan(value));
+        assert_int_equal(*cursor, '\0');
     }
     /* Against strtod, over numbers of all lengths. */
     BpRandom random = {1};
@@ -129,6 +159,64 @@ static void linear_colours(void **state) {
     assert_true(scene->albedos[0][0] == 0 && scene->albedos[0][1] == 0.5f && scene->albedos[0][2] == 1);
     assert_true(scene->spheres[0].radius == 0.5);
     bp_scene_destroy(&scene);
+}
+
+/* IEC 61966-2-1. */
+static double linear(double encoded) {
+    return encoded <= 0.04045 ? encoded / 12.92 : pow((encoded + 0.055) / 1.055, 2.4);
+}
+
+/* The type tells uchar; of others the largest number of the file decides. */
+static void ranges_of_colours(void **state) {
+    (void)state;
+    static const struct {
+        const char *type, *names[3];
+        double numbers[6], scale; /* scale 1: linear */
+        const char *note;
+    } cases[] = {
+        {"uchar", {"red", "green", "blue"}, {1, 0, 1, 0, 0, 1}, 255, ""},
+        {"uchar", {"diffuse_red", "diffuse_green", "diffuse_blue"}, {255, 128, 10, 11, 3, 0}, 255, ""},
+        {"ushort",
+         {"r", "g", "b"},
+         {65535, 32768, 100, 0, 257, 3000},
+         65535,
+         "colours read as 16 bits (sRGB)"},
+        {"ushort", {"red", "green", "blue"}, {255, 128, 10, 11, 3, 0}, 255, "colours read as bytes (sRGB)"},
+        {"int", {"red", "green", "blue"}, {255, 128, 10, 11, 3, 0}, 255, "colours read as bytes (sRGB)"},
+        {"uint", {"R", "G", "B"}, {1000, 128, 10, 11, 3, 0}, 65535, "colours read as 16 bits (sRGB)"},
+        {"int", {"red", "green", "blue"}, {1, 0, 1, 0, 0, 1}, 1, "colours read as linear shares from 0 to 1"},
+        {"float", {"vertex_color_r", "vertex_color_g", "vertex_color_b"}, {1, 0.5, 0.25, 0, 0.125, 1}, 1, ""},
+        {"double", {"red", "green", "blue"}, {255, 127.5, 10, 11, 3, 0}, 255, "colours read as bytes (sRGB)"},
+        {"float", {"red", "green", "blue"}, {1.000001, 0.5, 0.25, 0, 0.125, 1}, 1, ""}};
+    for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
+        char text[512], notes[BP_PLY_NOTES_SIZE];
+        const double *const n = cases[i].numbers;
+        BpError err = {0};
+        const int length = snprintf(
+            text, sizeof text,
+            "ply\nformat ascii 1.0\nelement face 1\nproperty list uchar int a\nelement vertex 2\nproperty "
+            "float x\nproperty float y\nproperty float z\nproperty %s %s\nproperty %s %s\nproperty %s "
+            "%s\nproperty uchar alpha\nend_header\n3 0 0 0\n1 2 3 %.9g %.9g %.9g 7\n4 5 6 %.9g %.9g %.9g 7\n",
+            cases[i].type, cases[i].names[0], cases[i].type, cases[i].names[1], cases[i].type,
+            cases[i].names[2], n[0], n[1], n[2], n[3], n[4], n[5]);
+        FILE *const stream = tmpfile();
+        assert_non_null(stream);
+        assert_int_equal(fwrite(text, 1, (size_t)length, stream), length);
+        rewind(stream);
+        BpScene *scene = empty_scene();
+        if (bp_ply_read(stream, (uint64_t)length, "a.ply", &all_matte, scene, notes, &err) != BP_OK)
+            fail_msg("case %zu: %s", i, err.message);
+        fclose(stream);
+        assert_string_equal(notes, cases[i].note);
+        assert_int_equal(scene->albedo_count, 2);
+        for (int c = 0; c < 6; c++) {
+            const double share = n[c] / cases[i].scale;
+            assert_close((double)scene->albedos[c / 3][c % 3], share >= 1            ? 1
+                                                               : cases[i].scale == 1 ? share
+                                                                                     : linear(share));
+        }
+        bp_scene_destroy(&scene);
+    }
 }
 
 static size_t put(unsigned char *out, const void *value, size_t size, bool big) {
@@ -255,8 +343,10 @@ static void field_and_cloud(void **state) {
 
 int main(void) {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(ascii_minimal),  cmocka_unit_test(ascii_numbers), cmocka_unit_test(ascii_everything),
-        cmocka_unit_test(linear_colours), cmocka_unit_test(binary),        cmocka_unit_test(field_and_cloud),
+        cmocka_unit_test(ascii_minimal),     cmocka_unit_test(ascii_numbers),
+        cmocka_unit_test(ascii_everything),  cmocka_unit_test(linear_colours),
+        cmocka_unit_test(ranges_of_colours), cmocka_unit_test(binary),
+        cmocka_unit_test(field_and_cloud),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

