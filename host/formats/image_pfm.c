@@ -2,30 +2,47 @@
  *
  * "PF" (colours) or "Pf" (grey), width, height and a number whose sign tells the order of bytes, then 32-bit
  * floats, the lowest row first (P. Debevec, "HDRShop", 2001). Beyond its sign the number says nothing that
- * programs agree on, so it is not used. */
+ * programs agree on, so it is not used, which is said where it is not 1. Between the words may stand any
+ * white space and lines of comment ("#"), as ImageMagick writes them; behind the number only white space. */
 #include "image_file.h"
 
 #include "base/decimal.h"
 
 #include <inttypes.h>
+#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
 enum { WORD_MAX = 32 };
+
+static bool is_space(int c) {
+    return c == ' ' || c == '\t' || c == '\n' || c == '\r';
+}
+
+/* The first character behind white space and comments. */
+static int skip_space(FILE *stream) {
+    int c = fgetc(stream);
+    while (is_space(c) || c == '#') {
+        if (c == '#')
+            while (c != '\n' && c != EOF) c = fgetc(stream);
+        else
+            c = fgetc(stream);
+    }
+    return c;
+}
 
 /* The next word of the header and the one character of space behind it. False: there is none of a sane
  * length.
  */
 static bool read_word(FILE *stream, char word[WORD_MAX]) {
     size_t length = 0;
-    int c = fgetc(stream);
-    while (c == ' ' || c == '\t' || c == '\n' || c == '\r') c = fgetc(stream);
+    int c = skip_space(stream);
     while (c > ' ' && c < 127 && length + 1 < WORD_MAX) {
         word[length++] = (char)c;
         c = fgetc(stream);
     }
     word[length] = '\0';
-    return length > 0 && (c == ' ' || c == '\t' || c == '\n' || c == '\r');
+    return length > 0 && is_space(c);
 }
 
 static bool read_number(FILE *stream, double *number) {
@@ -63,6 +80,12 @@ static BpStatus read_rows(const BpImageInput *input, size_t channels, bool littl
     return status;
 }
 
+/* Reads over so many bytes, the end of a line for example, if they are white space. */
+static bool skip_rest(FILE *stream, uint64_t count) {
+    while (count > 0 && is_space(fgetc(stream))) count--;
+    return count == 0;
+}
+
 BpStatus bp_image_read_pfm(const BpImageInput *input, BpImage **image, BpError *err) {
     char kind[WORD_MAX];
     double width = 0, height = 0, scale = 0;
@@ -81,12 +104,15 @@ BpStatus bp_image_read_pfm(const BpImageInput *input, BpImage **image, BpError *
     const uint64_t wanted = 4 * channels * (uint64_t)width * (uint64_t)height;
     const long begin = ftell(input->stream);
     const uint64_t there = begin >= 0 && input->size >= (uint64_t)begin ? input->size - (uint64_t)begin : 0;
-    if (width <= BP_IMAGE_SIDE_MAX && height <= BP_IMAGE_SIDE_MAX && there != wanted)
+    if (width <= BP_IMAGE_SIDE_MAX && height <= BP_IMAGE_SIDE_MAX &&
+        (there < wanted || !skip_rest(input->stream, there - wanted)))
         return bp_image_fail(input, err,
                              "found %" PRIu64 " bytes behind the header, expected %" PRIu64
                              " for %.0f by %.0f texels; the file is damaged or incomplete",
                              there, wanted, width, height);
     BP_TRY(bp_image_allocate(input, (uint64_t)width, (uint64_t)height, image, err));
+    if (fabs(fabs(scale) - 1) > 1e-6)
+        bp_texels_note(*image, "the factor %g of its header is not used", fabs(scale));
     const BpStatus status = read_rows(input, (size_t)channels, scale < 0, *image, err);
     if (status != BP_OK) bp_texels_destroy(image);
     return status;

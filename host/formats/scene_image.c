@@ -76,6 +76,8 @@ BpStatus bp_parse_image(const BpNode *file_node, const BpNode *encoding_node, co
                           ? stand_in(encoding, scale, image, err)
                           : read_file(file_node, file, encoding, scale, scene, image, err);
     if (status == BP_OK) status = keep_image(file, *image, scene, err);
+    if (status == BP_OK && (*image)->notes[0] != '\0')
+        status = bp_scene_note(scene, file, (*image)->notes, err);
     return status;
 }
 

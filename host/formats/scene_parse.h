@@ -110,8 +110,6 @@ BpStatus bp_missing_material_text(const BpMaterialIndex *index, const char *name
 uint32_t bp_implicit_material(BpScene *scene, BpError *err);
 /* Adds to an error that stands in the file of points where the scene asks for that file. */
 void bp_name_document(const BpNode *file_node, const char *what, BpError *err);
-/* Adds a line to the scene's notes: what was guessed of that file, or left out. */
-BpStatus bp_add_scene_notes(BpScene *scene, const char *file, const char *text, BpError *err);
 /* Keeps the name of a file of points, whose spheres begin at `first`. `particles`: see BpPointFile, copied.
  */
 BpStatus bp_keep_point_file(const char *file, size_t first, const char *particles, BpScene *scene,

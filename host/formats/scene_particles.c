@@ -294,7 +294,7 @@ static BpStatus add_particles(BpParticleFile *file, const char *path, const Entr
     if (status == BP_OK && !particles.flat) scene->up = particles.up;
     if (status == BP_OK && particles.flat) scene->flat = true;
     bp_particles_clear(&particles);
-    return status == BP_OK ? bp_add_scene_notes(scene, entry->file, summary, err) : status;
+    return status == BP_OK ? bp_scene_note(scene, entry->file, summary, err) : status;
 }
 
 static BpStatus read_file(const BpNode *file_node, const Entry *entry, size_t place,

@@ -29,15 +29,6 @@ BpStatus bp_keep_point_file(const char *file, size_t first, const char *particle
     return bp_copy_text(file, &files[scene->point_file_count - 1].file, err);
 }
 
-BpStatus bp_add_scene_notes(BpScene *scene, const char *file, const char *text, BpError *err) {
-    const size_t used = strlen(scene->notes), size = used + strlen(file) + strlen(text) + 4;
-    char *const notes = realloc(scene->notes, size);
-    if (notes == NULL) return bp_fail(err, BP_ERR_MEMORY, "out of memory for notes");
-    scene->notes = notes;
-    snprintf(notes + used, size - used, "%s: %s\n", file, text);
-    return BP_OK;
-}
-
 static BpStatus read_file(const BpNode *file_node, const char *file, const BpPlyOptions *options,
                           BpScene *scene, BpError *err) {
     FILE *stream = NULL;
@@ -60,7 +51,7 @@ static BpStatus read_file(const BpNode *file_node, const char *file, const BpPly
     status = bp_ply_read(stream, size, path, options, scene, notes, err);
     fclose(stream);
     if (status == BP_ERR_SCENE && err != NULL) bp_name_document(file_node, "a cloud", err);
-    if (status == BP_OK && notes[0] != '\0') status = bp_add_scene_notes(scene, file, notes, err);
+    if (status == BP_OK && notes[0] != '\0') status = bp_scene_note(scene, file, notes, err);
     if (status == BP_OK) status = bp_keep_point_file(file, first, NULL, scene, err);
 done:
     free(path);

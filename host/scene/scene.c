@@ -4,6 +4,7 @@
 #include "base/status.h"
 
 #include <math.h>
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -144,6 +145,15 @@ void bp_scene_destroy(BpScene **scene) {
     free(s->notes);
     free(s);
     *scene = NULL;
+}
+
+BpStatus bp_scene_note(BpScene *scene, const char *file, const char *text, BpError *err) {
+    const size_t used = strlen(scene->notes), size = used + strlen(file) + strlen(text) + 4;
+    char *const notes = realloc(scene->notes, size);
+    if (notes == NULL) return bp_fail(err, BP_ERR_MEMORY, "out of memory for notes");
+    scene->notes = notes;
+    snprintf(notes + used, size - used, "%s: %s\n", file, text);
+    return BP_OK;
 }
 
 const char *bp_sphere_name(const BpScene *scene, size_t sphere, char text[BP_SPHERE_NAME_SIZE]) {

@@ -221,6 +221,8 @@ double bp_lens_radius(double defocus_degrees, double focus_dist);
 
 /* Copies a string; NULL becomes "". */
 BpStatus bp_copy_text(const char *text, char **copy, BpError *err);
+/* Adds the line "FILE: TEXT" to the scene's notes. BP_ERR_MEMORY. */
+BpStatus bp_scene_note(BpScene *scene, const char *file, const char *text, BpError *err);
 /* A scene that holds nothing but defaults. */
 BpStatus bp_scene_create_empty(const char *path, BpScene **scene, BpError *err);
 

@@ -5,6 +5,8 @@
 #include "scene.h"
 
 #include <math.h>
+#include <stdarg.h>
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -36,6 +38,16 @@ void bp_texels_destroy(BpImage **image) {
     *image = NULL;
 }
 
+void bp_texels_note(BpImage *image, const char *format, ...) {
+    const size_t used = strlen(image->notes), room = sizeof image->notes - used;
+    va_list arguments;
+    va_start(arguments, format);
+    const int length = snprintf(image->notes + used, room, "%s", used > 0 ? "; " : "");
+    if ((size_t)length < room)
+        vsnprintf(image->notes + used + length, room - (size_t)length, format, arguments);
+    va_end(arguments);
+}
+
 static BpStatus refuse_texel(const BpImage *image, size_t place, double scale, const char *path,
                              BpError *err) {
     static const char *const channels[] = {"red", "green", "blue"};
@@ -53,6 +65,33 @@ static BpStatus refuse_texel(const BpImage *image, size_t place, double scale, c
     return status;
 }
 
+/* Values below 0, and the texels that have them. */
+typedef struct Negatives {
+    size_t texels;
+    double least; /* as the file has it */
+} Negatives;
+
+static void note_negatives(const Negatives *negatives, BpImage *image) {
+    if (negatives->texels == 0) return;
+    bp_texels_note(image, "%zu of %zu texels %s below 0, down to %.3g, which count as 0", negatives->texels,
+                   (size_t)image->width * image->height,
+                   negatives->texels == 1 ? "has values" : "have values", negatives->least);
+}
+
+/* Makes 0 of what is below, -0 too. */
+static void raise_negatives(float texel[3], Negatives *negatives) {
+    bool found = false;
+    for (int c = 0; c < 3; c++) {
+        if (!isfinite(texel[c])) continue;
+        if (texel[c] < 0) {
+            found = true;
+            negatives->least = fmin(negatives->least, (double)texel[c]);
+        }
+        if (!(texel[c] > 0)) texel[c] = 0;
+    }
+    if (found) negatives->texels++;
+}
+
 /* FNV-1a with 32-bit words, as film_scene.c hashes. */
 static uint64_t mix(uint64_t hash, uint32_t word) {
     hash = (hash ^ word) * 0x100000001b3u;
@@ -62,6 +101,7 @@ static uint64_t mix(uint64_t hash, uint32_t word) {
 BpStatus bp_texels_finish(BpImage *image, double scale, const char *path, BpError *err) {
     const size_t width = image->width, height = image->height;
     double sum = 0, squares = 0;
+    Negatives negatives = {0};
     image->scale = scale;
     image->is_gray = true;
     image->hash = mix(mix(0xcbf29ce484222325u, image->width), image->height);
@@ -69,11 +109,12 @@ BpStatus bp_texels_finish(BpImage *image, double scale, const char *path, BpErro
         double row_sum = 0, row_squares = 0;
         for (size_t i = 3 * row * width; i < 3 * (row + 1) * width; i += 3) {
             float *const texel = image->texels + i;
+            raise_negatives(texel, &negatives);
             for (size_t c = 0; c < 3; c++) {
                 const double value = (double)texel[c] * scale;
                 if (!(value >= 0 && value <= BP_RADIANCE_MAX))
                     return refuse_texel(image, i + c, scale, path, err);
-                texel[c] = (float)value + 0.0f; /* -0 becomes 0 */
+                texel[c] = (float)value;
                 image->bound[c] = fmax(image->bound[c], (double)texel[c]);
                 uint32_t bits;
                 memcpy(&bits, &texel[c], sizeof bits);
@@ -89,6 +130,7 @@ BpStatus bp_texels_finish(BpImage *image, double scale, const char *path, BpErro
         sum += row_sum / (double)width * share;
         squares += row_squares / (double)width * share;
     }
+    note_negatives(&negatives, image);
     image->mean = sum;
     image->spread = sum > 0 ? sqrt(fmax(squares / (sum * sum) - 1, 0)) : 0;
     return BP_OK;

@@ -3,6 +3,9 @@
  * In:    what a file held.   Out: texels that are colours or radiances, their bound, a hash of all.
  * Knows: what a texel may be.   Does not know: formats of files, spheres, how an image is looked up.
  *
+ * A value below 0, as resampling makes it beside bright texels, counts as 0, since nothing emits or reflects
+ * less; the image's notes say how many there were.
+ *
  * Texels are floats, since files hold no more: pack and the reference tracer read the same numbers. */
 #ifndef BP_SCENE_TEXELS_H
 #define BP_SCENE_TEXELS_H
@@ -16,6 +19,8 @@
 #define BP_IMAGE_TEXELS_MAX ((uint64_t)1 << 27) /* of all images of a scene together: 16384 by 8192 */
 #define BP_IMAGES_MAX 1024u
 #define BP_IMAGE_SCALE_MAX 1.0e12
+
+enum { BP_IMAGE_NOTES_SIZE = 512 };
 
 /* How the numbers of a file stand for light. */
 typedef enum BpEncoding {
@@ -35,14 +40,19 @@ typedef struct BpImage {
     double spread;   /* the standard deviation of the luminance over that sphere, over its mean */
     bool is_gray;    /* red, green and blue are equal everywhere */
     uint64_t hash;
+    char notes[BP_IMAGE_NOTES_SIZE]; /* what was left out, changed or guessed, for a person; "" */
 } BpImage;
 
 /* Black texels. BP_ERR_MEMORY. */
 BpStatus bp_texels_create(uint32_t width, uint32_t height, BpImage **image, BpError *err);
 void bp_texels_destroy(BpImage **image); /* NULL-safe */
 
-/* Multiplies the texels by `scale`, and finds what follows from them. Fails with BP_ERR_SCENE, naming its
- * place, for a texel that is not a number from 0 to 1e12; `path` is the file that it stands in. */
+/* Adds to the image's notes. */
+void bp_texels_note(BpImage *image, const char *format, ...) BP_PRINTF_LIKE(2, 3);
+
+/* Multiplies the texels by `scale`, makes 0 of what is below, and finds what follows from them. Fails with
+ * BP_ERR_SCENE, naming its place, for a texel that is not finite or above 1e12; `path` is the file that it
+ * stands in. */
 BpStatus bp_texels_finish(BpImage *image, double scale, const char *path, BpError *err);
 
 #endif
