@@ -1,8 +1,12 @@
 /* image_exr.c: images as OpenEXR files, by the library's C API (OpenEXRCore); see image_file.h.
  *
- * The first part of a file, in scan lines or tiles, the largest level: R, G and B as half or 32-bit floats,
- * or Y alone as grey. The image is the data window, whatever the display window is. */
+ * Scan lines or tiles, the largest level: R, G and B as half or 32-bit floats, or Y alone as grey, in the
+ * layer that exr_layers.h chooses. The image is the display window: black where the file has no data, without
+ * what lies around it. Colours of other primaries than Rec. 709's (the attribute "chromaticities") are
+ * converted. */
+#include "exr_layers.h"
 #include "image_file.h"
+#include "primaries.h"
 
 #include <errno.h>
 #include <openexr.h>
@@ -18,8 +22,10 @@ typedef struct ExrReader {
     exr_decode_pipeline_t decode;
     bool decoding;
     BpImage *image;
-    exr_attr_box2i_t window;
-    bool gray;
+    BpExrLayer layer;
+    exr_attr_box2i_t window, display; /* where there are data; what the image shows */
+    float *block;                     /* a chunk's pixels, unpacked, before they go to their place */
+    size_t block_size;
 } ExrReader;
 
 static int64_t read_at(exr_const_context_t context, void *user_data, void *buffer, uint64_t size,
@@ -52,89 +58,136 @@ static BpStatus fail_code(const ExrReader *reader, const char *what, exr_result_
                          exr_get_default_error_message(code));
 }
 
-/* Whether the channels are what an image has. */
-static BpStatus check_channels(ExrReader *reader, BpError *err) {
-    static const char letters[] = "RGBY";
-    const exr_attr_chlist_t *channels = NULL;
-    const exr_result_t code = exr_get_channels(reader->exr, 0, &channels);
-    unsigned found = 0;
-    if (code != EXR_ERR_SUCCESS) return fail_code(reader, "its channels", code, err);
-    for (int i = 0; i < channels->num_channels; i++) {
-        const exr_attr_chlist_entry_t *channel = &channels->entries[i];
-        if (channel->x_sampling != 1 || channel->y_sampling != 1)
-            return bp_image_fail(reader->input, err,
-                                 "found a channel with fewer samples than pixels, expected one for each");
-        const char *const letter =
-            channel->name.length == 1 ? memchr(letters, channel->name.str[0], sizeof letters - 1) : NULL;
-        if (letter == NULL) continue;
-        if (channel->pixel_type != EXR_PIXEL_HALF && channel->pixel_type != EXR_PIXEL_FLOAT)
-            return bp_image_fail(reader->input, err, "found whole numbers in channel %c, expected floats",
-                                 *letter);
-        found |= 1u << (letter - letters);
-    }
-    reader->gray = found == 8;
-    if ((found & 7) != 7 && !reader->gray)
-        return bp_image_fail(reader->input, err, "found no channels R, G and B, nor Y alone, expected these");
-    return BP_OK;
-}
-
-static BpStatus read_header(ExrReader *reader, exr_storage_t *storage, BpError *err) {
+static BpStatus open_file(ExrReader *reader, BpError *err) {
     exr_context_initializer_t init = EXR_DEFAULT_CONTEXT_INITIALIZER;
     errno = 0;
     init.error_handler_fn = keep_quiet;
     init.user_data = (void *)(uintptr_t)reader->input;
     init.read_fn = read_at;
     init.size_fn = size_of;
-    exr_result_t code = exr_start_read(&reader->exr, reader->input->path, &init);
-    if (code != EXR_ERR_SUCCESS) return fail_code(reader, "its header", code, err);
-    code = exr_get_storage(reader->exr, 0, storage);
-    if (code == EXR_ERR_SUCCESS) code = exr_get_data_window(reader->exr, 0, &reader->window);
-    if (code != EXR_ERR_SUCCESS) return fail_code(reader, "its header", code, err);
-    if (*storage != EXR_STORAGE_SCANLINE && *storage != EXR_STORAGE_TILED)
-        return bp_image_fail(reader->input, err, "found deep data, expected an image");
-    return check_channels(reader, err);
+    const exr_result_t code = exr_start_read(&reader->exr, reader->input->path, &init);
+    return code == EXR_ERR_SUCCESS ? BP_OK : fail_code(reader, "its header", code, err);
 }
 
-/* Reads a block of pixels straight into the image. `column`, `row`: of its first, as the file has it. */
+/* The layer's windows, and that it is no cube. */
+static BpStatus read_header(ExrReader *reader, exr_storage_t *storage, BpError *err) {
+    const int part = reader->layer.part;
+    exr_attr_box2i_t *const windows[] = {&reader->window, &reader->display};
+    exr_envmap_t map = EXR_ENVMAP_LATLONG;
+    exr_result_t code = exr_get_storage(reader->exr, part, storage);
+    if (code == EXR_ERR_SUCCESS) code = exr_get_data_window(reader->exr, part, &reader->window);
+    if (code == EXR_ERR_SUCCESS) code = exr_get_display_window(reader->exr, part, &reader->display);
+    if (code != EXR_ERR_SUCCESS) return fail_code(reader, "its header", code, err);
+    if (exr_attr_get_envmap(reader->exr, part, "envmap", &map) == EXR_ERR_SUCCESS && map == EXR_ENVMAP_CUBE)
+        return bp_image_fail(reader->input, err,
+                             "found a cube map, expected an image by longitude and latitude; convert it "
+                             "(exrenvmap of OpenEXR does)");
+    for (int w = 0; w < 2; w++) /* the second is held against the scene's texels as well */
+        if ((int64_t)windows[w]->max.x - windows[w]->min.x >= BP_IMAGE_SIDE_MAX ||
+            (int64_t)windows[w]->max.y - windows[w]->min.y >= BP_IMAGE_SIDE_MAX)
+            return bp_image_fail(reader->input, err,
+                                 "found a %s window of %lld by %lld texels, expected sides of "
+                                 "1 to %u",
+                                 w == 0 ? "data" : "display",
+                                 (long long)windows[w]->max.x - windows[w]->min.x + 1,
+                                 (long long)windows[w]->max.y - windows[w]->min.y + 1, BP_IMAGE_SIDE_MAX);
+    return BP_OK;
+}
+
+/* Copies those pixels of an unpacked chunk that the display window has. */
+static void place_block(ExrReader *reader, int64_t column, int64_t row, int64_t columns, int64_t rows) {
+    const int64_t left = column + reader->window.min.x - reader->display.min.x;
+    const int64_t top = row + reader->window.min.y - reader->display.min.y;
+    const int64_t width = reader->image->width, height = reader->image->height;
+    const int64_t begin = left < 0 ? -left : 0, end = left + columns > width ? width - left : columns;
+    for (int64_t y = 0; y < rows && begin < end; y++)
+        if (top + y >= 0 && top + y < height)
+            memcpy(reader->image->texels + 3 * ((top + y) * width + left + begin),
+                   reader->block + 3 * (y * columns + begin), (size_t)(end - begin) * 3 * sizeof(float));
+}
+
+/* Room for the pixels of a chunk, all black. */
+static BpStatus clear_block(ExrReader *reader, int64_t columns, int64_t rows, BpError *err) {
+    const size_t size = (size_t)columns * (size_t)rows * 3 * sizeof(float);
+    if (size > reader->block_size) {
+        free(reader->block);
+        reader->block = malloc(size);
+        reader->block_size = reader->block != NULL ? size : 0;
+        if (reader->block == NULL)
+            return bp_fail(err, BP_ERR_MEMORY, "out of memory for reading an OpenEXR file");
+    }
+    if (size > 0) memset(reader->block, 0, size);
+    return BP_OK;
+}
+
+/* Reads a block of pixels. `column`, `row`: of its first, in the data window. */
 static BpStatus read_chunk(ExrReader *reader, const exr_chunk_info_t *chunk, int64_t column, int64_t row,
                            BpError *err) {
-    const int64_t width = reader->image->width, height = reader->image->height;
+    const int64_t width = (int64_t)reader->window.max.x - reader->window.min.x + 1;
+    const int64_t height = (int64_t)reader->window.max.y - reader->window.min.y + 1;
+    const int part = reader->layer.part;
     char what[64];
     snprintf(what, sizeof what, "row %lld, column %lld", (long long)row, (long long)column);
     if (column < 0 || row < 0 || chunk->width < 0 || chunk->height < 0 || column + chunk->width > width ||
         row + chunk->height > height || chunk->unpacked_size > CHUNK_BYTES_MAX ||
         chunk->packed_size > reader->input->size)
         return fail_code(reader, what, EXR_ERR_CORRUPT_CHUNK, err);
-    exr_result_t code = reader->decoding ? exr_decoding_update(reader->exr, 0, chunk, &reader->decode)
-                                         : exr_decoding_initialize(reader->exr, 0, chunk, &reader->decode);
+    BP_TRY(clear_block(reader, chunk->width, chunk->height, err));
+    exr_result_t code = reader->decoding ? exr_decoding_update(reader->exr, part, chunk, &reader->decode)
+                                         : exr_decoding_initialize(reader->exr, part, chunk, &reader->decode);
     const bool first = !reader->decoding;
     reader->decoding = reader->decoding || code == EXR_ERR_SUCCESS;
-    float *const texels = reader->image->texels + 3 * (row * width + column);
     for (int i = 0; i < reader->decode.channel_count && code == EXR_ERR_SUCCESS; i++) {
         exr_coding_channel_info_t *channel = &reader->decode.channels[i];
-        const char *const letters = reader->gray ? "Y" : "RGB", *name = channel->channel_name;
-        const char *const letter = strlen(name) == 1 ? strchr(letters, name[0]) : NULL;
+        const int place = bp_exr_channel_place(&reader->layer, channel->channel_name);
         channel->decode_to_ptr = NULL;
-        if (letter == NULL) continue;
-        channel->decode_to_ptr = (uint8_t *)(texels + (letter - letters));
+        if (place < 0) continue;
+        channel->decode_to_ptr = (uint8_t *)(reader->block + place);
         channel->user_bytes_per_element = sizeof(float);
         channel->user_data_type = EXR_PIXEL_FLOAT;
         channel->user_pixel_stride = 3 * sizeof(float);
-        channel->user_line_stride = (int32_t)(3 * sizeof(float) * reader->image->width);
+        channel->user_line_stride = (int32_t)(3 * sizeof(float)) * chunk->width;
     }
     if (code == EXR_ERR_SUCCESS && first)
-        code = exr_decoding_choose_default_routines(reader->exr, 0, &reader->decode);
-    if (code == EXR_ERR_SUCCESS) code = exr_decoding_run(reader->exr, 0, &reader->decode);
-    return code == EXR_ERR_SUCCESS ? BP_OK : fail_code(reader, what, code, err);
+        code = exr_decoding_choose_default_routines(reader->exr, part, &reader->decode);
+    if (code == EXR_ERR_SUCCESS) code = exr_decoding_run(reader->exr, part, &reader->decode);
+    if (code != EXR_ERR_SUCCESS) return fail_code(reader, what, code, err);
+    place_block(reader, column, row, chunk->width, chunk->height);
+    return BP_OK;
+}
+
+/* Numbers of units of `step` pixels, counted from where the data begin. */
+typedef struct Span {
+    int64_t begin, end;
+} Span;
+
+/* The units that the display window has pixels of. */
+static Span span_shown(int32_t data_min, int32_t data_max, int32_t shown_min, int32_t shown_max,
+                       int64_t step) {
+    const int64_t first = shown_min > data_min ? (int64_t)shown_min - data_min : 0;
+    const int64_t last = (int64_t)(shown_max < data_max ? shown_max : data_max) - data_min;
+    return (Span){first / step, last < first ? first / step : last / step + 1};
+}
+
+static Span rows_shown(const ExrReader *reader, int64_t step) {
+    return span_shown(reader->window.min.y, reader->window.max.y, reader->display.min.y,
+                      reader->display.max.y, step);
+}
+
+static Span columns_shown(const ExrReader *reader, int64_t step) {
+    return span_shown(reader->window.min.x, reader->window.max.x, reader->display.min.x,
+                      reader->display.max.x, step);
 }
 
 static BpStatus read_lines(ExrReader *reader, BpError *err) {
     int32_t lines = 0;
-    exr_result_t code = exr_get_scanlines_per_chunk(reader->exr, 0, &lines);
+    exr_result_t code = exr_get_scanlines_per_chunk(reader->exr, reader->layer.part, &lines);
     if (code != EXR_ERR_SUCCESS || lines < 1) return fail_code(reader, "its header", code, err);
-    for (int64_t row = 0; row < reader->image->height; row += lines) {
+    const Span chunks = rows_shown(reader, lines);
+    for (int64_t row = chunks.begin * lines; row < chunks.end * lines; row += lines) {
         exr_chunk_info_t chunk;
-        code = exr_read_scanline_chunk_info(reader->exr, 0, (int)(row + reader->window.min.y), &chunk);
+        code = exr_read_scanline_chunk_info(reader->exr, reader->layer.part,
+                                            (int)(row + reader->window.min.y), &chunk);
         char what[32];
         snprintf(what, sizeof what, "row %lld", (long long)row);
         if (code != EXR_ERR_SUCCESS) return fail_code(reader, what, code, err);
@@ -144,21 +197,23 @@ static BpStatus read_lines(ExrReader *reader, BpError *err) {
 }
 
 static BpStatus read_tiles(ExrReader *reader, BpError *err) {
+    const int part = reader->layer.part;
     uint32_t tile_width = 0, tile_height = 0;
     exr_tile_level_mode_t levels;
     exr_tile_round_mode_t rounding;
     exr_result_t code =
-        exr_get_tile_descriptor(reader->exr, 0, &tile_width, &tile_height, &levels, &rounding);
+        exr_get_tile_descriptor(reader->exr, part, &tile_width, &tile_height, &levels, &rounding);
     if (code != EXR_ERR_SUCCESS || tile_width < 1 || tile_height < 1)
         return fail_code(reader, "its tiles", code, err);
-    for (uint32_t y = 0; y * (uint64_t)tile_height < reader->image->height; y++)
-        for (uint32_t x = 0; x * (uint64_t)tile_width < reader->image->width; x++) {
+    const Span rows = rows_shown(reader, tile_height), columns = columns_shown(reader, tile_width);
+    for (int64_t y = rows.begin; y < rows.end; y++)
+        for (int64_t x = columns.begin; x < columns.end; x++) {
             exr_chunk_info_t chunk;
             char what[64];
-            snprintf(what, sizeof what, "tile %u, %u", (unsigned)x, (unsigned)y);
-            code = exr_read_tile_chunk_info(reader->exr, 0, (int)x, (int)y, 0, 0, &chunk);
+            snprintf(what, sizeof what, "tile %lld, %lld", (long long)x, (long long)y);
+            code = exr_read_tile_chunk_info(reader->exr, part, (int)x, (int)y, 0, 0, &chunk);
             if (code != EXR_ERR_SUCCESS) return fail_code(reader, what, code, err);
-            BP_TRY(read_chunk(reader, &chunk, (int64_t)x * tile_width, (int64_t)y * tile_height, err));
+            BP_TRY(read_chunk(reader, &chunk, x * tile_width, y * tile_height, err));
         }
     return BP_OK;
 }
@@ -169,15 +224,50 @@ static void spread_gray(BpImage *image) {
         image->texels[3 * i + 1] = image->texels[3 * i + 2] = image->texels[3 * i];
 }
 
+/* Says what of the display window has no data, and what of the data is not shown. */
+static void note_windows(const ExrReader *reader) {
+    const Span rows = rows_shown(reader, 1), columns = columns_shown(reader, 1);
+    const int64_t shown = columns.end > columns.begin && rows.end > rows.begin
+                              ? (columns.end - columns.begin) * (rows.end - rows.begin)
+                              : 0;
+    const int64_t texels = (int64_t)reader->image->width * reader->image->height;
+    const int64_t data = ((int64_t)reader->window.max.x - reader->window.min.x + 1) *
+                         ((int64_t)reader->window.max.y - reader->window.min.y + 1);
+    if (shown < texels)
+        bp_texels_note(reader->image, "it has data for %lld of %lld texels, and the others are black",
+                       (long long)shown, (long long)texels);
+    if (shown < data)
+        bp_texels_note(reader->image, "%lld pixels outside its display window are left out",
+                       (long long)(data - shown));
+}
+
+/* Colours of other primaries become Rec. 709's; grey is the same in all of them. */
+static BpStatus convert_colors(const ExrReader *reader, BpError *err) {
+    exr_attr_chromaticities_t c;
+    if (reader->layer.gray ||
+        exr_attr_get_chromaticities(reader->exr, reader->layer.part, "chromaticities", &c) != EXR_ERR_SUCCESS)
+        return BP_OK;
+    const BpPrimaries primaries = {{(double)c.red_x, (double)c.red_y},
+                                   {(double)c.green_x, (double)c.green_y},
+                                   {(double)c.blue_x, (double)c.blue_y},
+                                   {(double)c.white_x, (double)c.white_y}};
+    return bp_image_convert(reader->input, &primaries, "the attribute \"chromaticities\"", reader->image,
+                            err);
+}
+
 static BpStatus read_image(ExrReader *reader, BpError *err) {
     exr_storage_t storage;
+    BP_TRY(open_file(reader, err));
+    BP_TRY(bp_exr_layer_choose(reader->input, reader->exr, &reader->layer, err));
     BP_TRY(read_header(reader, &storage, err));
-    const exr_attr_box2i_t window = reader->window;
-    BP_TRY(bp_image_allocate(reader->input, (uint64_t)((int64_t)window.max.x - window.min.x + 1),
-                             (uint64_t)((int64_t)window.max.y - window.min.y + 1), &reader->image, err));
+    const exr_attr_box2i_t display = reader->display;
+    BP_TRY(bp_image_allocate(reader->input, (uint64_t)((int64_t)display.max.x - display.min.x + 1),
+                             (uint64_t)((int64_t)display.max.y - display.min.y + 1), &reader->image, err));
     BP_TRY(storage == EXR_STORAGE_SCANLINE ? read_lines(reader, err) : read_tiles(reader, err));
-    if (reader->gray) spread_gray(reader->image);
-    return BP_OK;
+    if (reader->layer.gray) spread_gray(reader->image);
+    if (reader->layer.note[0] != '\0') bp_texels_note(reader->image, "%s", reader->layer.note);
+    note_windows(reader);
+    return convert_colors(reader, err);
 }
 
 BpStatus bp_image_read_exr(const BpImageInput *input, BpImage **image, BpError *err) {
@@ -185,6 +275,7 @@ BpStatus bp_image_read_exr(const BpImageInput *input, BpImage **image, BpError *
     const BpStatus status = read_image(&reader, err);
     if (reader.decoding) exr_decoding_destroy(reader.exr, &reader.decode);
     if (reader.exr != NULL) exr_finish(&reader.exr);
+    free(reader.block);
     if (status != BP_OK) bp_texels_destroy(&reader.image);
     *image = reader.image;
     return status;

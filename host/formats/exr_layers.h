@@ -1,0 +1,30 @@
+/* exr_layers.h: which channels of an OpenEXR file are the image.
+ *
+ * In:    an open file.   Out: a part and a layer that has R, G and B, or Y alone.
+ * Knows: parts, names of channels and layers.   Does not know: pixels. */
+#ifndef BP_FORMATS_EXR_LAYERS_H
+#define BP_FORMATS_EXR_LAYERS_H
+
+#include "image_file.h"
+
+#include <openexr.h>
+
+enum { BP_EXR_NAME_SIZE = 256 };
+
+typedef struct BpExrLayer {
+    int part;
+    char prefix[BP_EXR_NAME_SIZE];   /* of its channels' names: "", "beauty." */
+    bool gray;                       /* Y alone */
+    char note[2 * BP_EXR_NAME_SIZE]; /* which layer was taken, where there are others; "" */
+} BpExrLayer;
+
+/* The first part that has the channels without a layer's name, else the only layer that has them, else the
+ * only one called "Combined", "beauty" or "rgba". BP_ERR_SCENE names the layers where several could be meant,
+ * and refuses whole numbers, chroma and channels with fewer samples than pixels. */
+BpStatus bp_exr_layer_choose(const BpImageInput *input, exr_const_context_t exr, BpExrLayer *layer,
+                             BpError *err);
+
+/* Where a channel stands among a texel's numbers: 0 to 2; -1 if it is not the layer's. */
+int bp_exr_channel_place(const BpExrLayer *layer, const char *channel);
+
+#endif

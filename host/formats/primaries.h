@@ -1,0 +1,25 @@
+/* primaries.h: colours of other red, green and blue as those of Rec. 709.
+ *
+ * In:    where a file's primaries and white lie.   Out: its image in Rec. 709's.
+ * Knows: CIE 1931 chromaticities, adaptation to another white.   Does not know: formats of files. */
+#ifndef BP_FORMATS_PRIMARIES_H
+#define BP_FORMATS_PRIMARIES_H
+
+#include "image_file.h"
+
+/* CIE x and y. */
+typedef struct BpPrimaries {
+    double red[2], green[2], blue[2], white[2];
+} BpPrimaries;
+
+/* The matrix that makes linear colours of Rec. 709 of linear colours of `from`. White becomes white
+ * (adaptation by Lam's Bradford matrix, 1985), but the numbers of CIE XYZ, whose "white" is a convention, are
+ * taken as they are. False: the primaries span no colours. */
+bool bp_primaries_matrix(const BpPrimaries *from, double matrix[3][3]);
+
+/* Converts the image unless its primaries are Rec. 709's, to within 0.0005, and notes it. `source`: what of
+ * the file says so, for messages. BP_ERR_SCENE. Texels that are not finite stay as they are. */
+BpStatus bp_image_convert(const BpImageInput *input, const BpPrimaries *from, const char *source,
+                          BpImage *image, BpError *err);
+
+#endif
