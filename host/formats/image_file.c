@@ -39,7 +39,7 @@ BpStatus bp_image_read(FILE *stream, uint64_t size, const char *path, BpEncoding
                    {{0x76, 0x2f, 0x31, 0x01}, 4, bp_image_read_exr},
                    {{'P', 'F'}, 2, bp_image_read_pfm},
                    {{'P', 'f'}, 2, bp_image_read_pfm}};
-    const BpImageInput input = {stream, size, path, encoding != BP_ENCODING_LINEAR, texels_max};
+    const BpImageInput input = {stream, size, path, encoding, texels_max};
     unsigned char first[4] = {0};
     *image = NULL;
     const size_t count = fread(first, 1, sizeof first, stream);

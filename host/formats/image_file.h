@@ -15,10 +15,10 @@
 
 /* A file that is being read. */
 typedef struct BpImageInput {
-    FILE *stream;     /* at its beginning */
-    uint64_t size;    /* in bytes */
-    const char *path; /* for messages */
-    bool srgb;        /* of a PNG: its numbers are sRGB's */
+    FILE *stream;        /* at its beginning */
+    uint64_t size;       /* in bytes */
+    const char *path;    /* for messages */
+    BpEncoding encoding; /* of a PNG's numbers: as the file says, or as the scene does */
     uint64_t texels_max;
 } BpImageInput;
 

@@ -1,11 +1,17 @@
 /* image_png.c: images as PNG files, by libpng; see image_file.h.
  *
- * 8 and 16 bits a channel, grey, colours or a palette, interlaced or not; alpha is left out. What a file says
- * of its colour space is not looked at: the scene says whether its numbers are sRGB's. */
+ * 8 and 16 bits a channel, grey, colours or a palette, interlaced or not; alpha is left out. Where the scene
+ * does not say how numbers are encoded, the file does: by the chunks gAMA and cHRM, which are followed, or by
+ * sRGB. The colour spaces of ICC profiles and of cICP are not known here: such numbers are taken for sRGB's,
+ * which is noted unless they are. The order of these chunks is that of the PNG specification (third edition,
+ * 2023, section 4.3). */
 #include "image_file.h"
+#include "primaries.h"
 
 #include "base/color.h"
+#include "base/message_text.h"
 
+#include <math.h>
 #include <png.h>
 #include <setjmp.h>
 #include <stdlib.h>
@@ -54,13 +60,76 @@ static void read_bytes(png_structp png, png_bytep bytes, size_t count) {
     if (fread(bytes, 1, count, reader->input->stream) != count) png_error(png, "the file ends too early");
 }
 
-/* Linear light of all numbers of `bits` bits. */
-static float *light_of_numbers(int bits, bool srgb) {
+/* How numbers stand for light. */
+typedef struct PngColors {
+    double exponent; /* 0: as sRGB has it */
+    bool converted;
+    BpPrimaries primaries; /* of `converted` */
+} PngColors;
+
+/* Whether an ICC profile calls itself sRGB, in ASCII or in UTF-16. */
+static bool is_srgb_profile(const unsigned char *profile, size_t size) {
+    for (size_t i = 0; i + 4 <= size; i++)
+        if (memcmp(profile + i, "sRGB", 4) == 0 ||
+            (i + 7 <= size && memcmp(profile + i, "s\0R\0G\0B", 7) == 0))
+            return true;
+    return false;
+}
+
+/* Whether a chunk that is not applied has the last word on colours; it is noted unless it says sRGB. */
+static bool has_other_space(PngReader *reader) {
+    png_unknown_chunkp chunks = NULL;
+    png_charp name = NULL;
+    png_bytep profile = NULL;
+    png_uint_32 size = 0;
+    int compression = 0;
+    const int count = png_get_unknown_chunks(reader->png, reader->info, &chunks);
+    for (int i = 0; i < count; i++) {
+        if (memcmp(chunks[i].name, "cICP", 4) != 0 || chunks[i].size < 4) continue;
+        const unsigned primaries = chunks[i].data[0], curve = chunks[i].data[1];
+        if (primaries != 1 || curve != 13)
+            bp_texels_note(
+                reader->image,
+                "its colour space (primaries %u, curve %u of its cICP chunk) is not known: read as sRGB",
+                primaries, curve);
+        return true;
+    }
+    if (png_get_iCCP(reader->png, reader->info, &name, &compression, &profile, &size) == 0) return false;
+    if (!is_srgb_profile(profile, size)) {
+        char shown[80];
+        bp_printable(name, shown, sizeof shown);
+        bp_texels_note(reader->image, "its ICC profile \"%s\" is not applied: read as sRGB", shown);
+    }
+    return true;
+}
+
+/* Programs write gamma 1 / 2.2, more or less rounded, for sRGB's curve, which it imitates. */
+static bool is_srgb_gamma(double gamma) {
+    return fabs(2.2 * gamma - 1) < 0.02;
+}
+
+/* What the file says of its colours. */
+static void read_colors(PngReader *reader, PngColors *colors) {
+    int intent = 0;
+    double gamma = 0;
+    BpPrimaries *const p = &colors->primaries;
+    if (has_other_space(reader) || png_get_sRGB(reader->png, reader->info, &intent) != 0) return;
+    if (png_get_gAMA(reader->png, reader->info, &gamma) != 0 && gamma > 0 && !is_srgb_gamma(gamma)) {
+        colors->exponent = 1 / gamma;
+        bp_texels_note(reader->image, "its numbers are decoded by the gamma of its gAMA chunk, %.4g", gamma);
+    }
+    colors->converted = (png_get_color_type(reader->png, reader->info) & PNG_COLOR_MASK_COLOR) != 0 &&
+                        png_get_cHRM(reader->png, reader->info, &p->white[0], &p->white[1], &p->red[0],
+                                     &p->red[1], &p->green[0], &p->green[1], &p->blue[0], &p->blue[1]) != 0;
+}
+
+/* Linear light of all numbers of `bits` bits; see PngColors for `exponent`. */
+static float *light_of_numbers(int bits, double exponent) {
     const size_t count = (size_t)1 << bits;
     float *light = malloc(count * sizeof *light);
     for (size_t i = 0; light != NULL && i < count; i++) {
         const double share = (double)i / (double)(count - 1);
-        light[i] = (float)(srgb ? bp_linear_from_srgb(share) : share);
+        light[i] = (float)(exponent == 0 ? bp_linear_from_srgb(share) : pow(share, exponent));
     }
     return light;
 }
@@ -79,6 +148,7 @@ static BpStatus read_image(PngReader *reader, BpError *err) {
     png_set_chunk_malloc_max(png, 1 << 24);
     png_set_chunk_cache_max(png, 64);
     png_set_keep_unknown_chunks(png, PNG_HANDLE_CHUNK_NEVER, NULL, 0);
+    png_set_keep_unknown_chunks(png, PNG_HANDLE_CHUNK_ALWAYS, (png_const_bytep) "cICP", 1);
     png_set_read_fn(png, reader, read_bytes);
     png_read_info(png, info);
     const uint32_t width = png_get_image_width(png, info), height = png_get_image_height(png, info);
@@ -92,6 +162,8 @@ static BpStatus read_image(PngReader *reader, BpError *err) {
             (unsigned long long)reader->input->size, (unsigned long long)least, (unsigned)width,
             (unsigned)height);
     BP_TRY(bp_image_allocate(reader->input, width, height, &reader->image, err));
+    PngColors colors = {.exponent = reader->input->encoding == BP_ENCODING_LINEAR ? 1 : 0};
+    if (reader->input->encoding == BP_ENCODING_OF_FORMAT) read_colors(reader, &colors);
     png_set_expand(png); /* palettes, and grey of fewer than 8 bits */
     png_set_strip_alpha(png);
     png_set_gray_to_rgb(png);
@@ -99,7 +171,7 @@ static BpStatus read_image(PngReader *reader, BpError *err) {
     png_read_update_info(png, info);
     const size_t row_bytes = png_get_rowbytes(png, info);
     if (row_bytes != (size_t)width * (wide ? 6 : 3)) png_error(png, "unexpected kind of pixels");
-    reader->light = light_of_numbers(wide ? 16 : 8, reader->input->srgb);
+    reader->light = light_of_numbers(wide ? 16 : 8, colors.exponent);
     reader->bytes = calloc(interlaced ? height : 1, row_bytes);
     if (reader->bytes != NULL && interlaced) reader->rows = malloc(height * sizeof *reader->rows);
     if (reader->light == NULL || reader->bytes == NULL || (interlaced && reader->rows == NULL))
@@ -115,7 +187,8 @@ static BpStatus read_image(PngReader *reader, BpError *err) {
         store_row(reader, interlaced ? reader->rows[row] : reader->bytes, row, wide);
     }
     png_read_end(png, NULL);
-    return BP_OK;
+    if (!colors.converted) return BP_OK;
+    return bp_image_convert(reader->input, &colors.primaries, "its cHRM chunk", reader->image, err);
 }
 
 static BpStatus read_guarded(PngReader *reader, BpError *err) {

@@ -17,7 +17,7 @@ static inline void check_image(const uint8_t *data, size_t size,
     if (size == 0) return; /* fmemopen has no empty files everywhere */
     FILE *stream = fmemopen((void *)(uintptr_t)data, size, "rb");
     require(stream != NULL);
-    const BpImageInput input = {stream, size, "x.image", true, TEXELS_MAX};
+    const BpImageInput input = {stream, size, "x.image", BP_ENCODING_OF_FORMAT, TEXELS_MAX};
     BpImage *image = NULL;
     BpError err = {0};
     BpStatus status = read(&input, &image, &err);

@@ -882,7 +882,7 @@ MUTANTS = [
     Mutant("the sums do not expect an image around", "the brightest sphere alone sets the scale",
            [patch("host/film/film_scene.c", "brightest = brightest_lamp = largest(scene->environment->bound);", "(void)0;")], [lamp_case("74.1")]),
     Mutant("sRGB taken for light", "classic: textures too bright",
-           [patch("host/formats/image_png.c", "srgb ? bp_linear_from_srgb(share) : share", "srgb ? share : share")], [images("srgb_and_scale")]),
+           [patch("host/formats/image_png.c", "exponent == 0 ? bp_linear_from_srgb(share)", "exponent == 0 ? share")], [images("srgb_and_scale")]),
     Mutant("a PFM from the top", "classic: its rows upside down",
            [patch("host/formats/image_pfm.c", "image->texels[3 * width * row + i]", "image->texels[3 * width * (image->height - 1 - row) + i]")],
            [images("formats")]),
