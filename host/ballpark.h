@@ -350,7 +350,7 @@ typedef enum BpStopReason {
     BP_STOP_TIME,
     BP_STOP_CONSTANT, /* no two samples of a pixel differ, so no error is left */
     BP_STOP_BLACK,    /* no sample brought light, so an error relative to brightness does not exist */
-    BP_STOP_INVALID   /* a pixel has no finite sample, or next to none, so the error stays unknown */
+    BP_STOP_INVALID   /* a pixel has no valid sample, or next to none, so the error stays unknown */
 } BpStopReason;
 
 /* "samples", "error", "time", "constant", "black", "invalid"; "interrupt" for not yet; static. */
@@ -498,8 +498,12 @@ typedef struct BpFilmInfo {
     size_t range_count;                            /* see bp_film_range() */
     bool partial;                                  /* of an interrupted or an adaptive render */
     uint64_t segments, cut_paths, invalid_samples; /* in all: ray segments; paths that the depth ended;
-                                                      samples that were not finite and are left out */
-    uint64_t lamp_rays;                            /* sent to lamps, in all; they are no segments */
+                                                      samples that are left out of the picture: */
+    /* those that had a channel that was NaN or infinite; of the others, those that had a negative one; and
+     * those that were finite but brighter than the sums can hold. Films of older versions do not tell them
+     * apart, and add to invalid_samples alone. */
+    uint64_t not_finite_samples, negative_samples, out_of_range_samples;
+    uint64_t lamp_rays; /* sent to lamps, in all; they are no segments */
     /* What two films must have in common to be merged. */
     uint64_t scene_hash; /* of all in a scene that can change radiance */
     uint64_t seed;

@@ -383,10 +383,19 @@ BP_PLACE(MATERIAL_TOTAL_REFLECTION, PackedMaterialKind, total_reflection, packed
 #define COUNT_HAS_FINE 0x80000000u /* its fine sums have begun; before that they are not even zeroed */
 #define COUNT_COARSE 0x40000000u   /* a sample was so dim that a fine step is more than a millionth of it */
 
-/* What a pixel counts beside its sums: ray segments, paths cut by the depth cap, invalid samples, valid ones
- * whose camera ray met nothing, and rays to lamps, which are dealt out over pixels so that their sum is
- * right. */
-enum { TALLY_SEGMENTS, TALLY_CUT, TALLY_INVALID, TALLY_MISSED, TALLY_LAMP_RAYS, TALLIES };
+/* What a pixel counts beside its sums: ray segments, paths cut by the depth cap, samples that are left out,
+ * by cause, valid ones whose camera ray met nothing, and rays to lamps, which are dealt out over pixels so
+ * that their sum is right. */
+enum {
+    TALLY_SEGMENTS,
+    TALLY_CUT,
+    TALLY_NOT_FINITE,
+    TALLY_NEGATIVE,
+    TALLY_OUT_OF_RANGE,
+    TALLY_MISSED,
+    TALLY_LAMP_RAYS,
+    TALLIES
+};
 /* Added to the number of segments of a path whose camera ray met nothing; no path has as many, and twice both
  * together, and one more, is exact in float. */
 #define MISSED_MARK 0x200000u

@@ -209,7 +209,7 @@ static BpStatus trace(BpRender *render, double seconds, Run *run, BpError *err) 
         whole += taken;
     } while (whole < WARM_UP_SECONDS);
     BP_TRY(read_report(render, &before, &film, err));
-    BP_TRY(bp_film_check_finite(film, err)); /* broken paths have another speed */
+    BP_TRY(bp_film_check_valid(film, err)); /* broken paths have another speed */
 
     /* The last pass of the warm-up was samples / 2 + 1. */
     const double more = seconds / taken * (double)(samples / 2 + 1);

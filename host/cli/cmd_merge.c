@@ -225,7 +225,7 @@ BpStatus bp_command_merge(const BpCommandLine *line, BpError *err) {
     BP_TRY(bp_result_choose(line, line->operands[0], &result, err));
     BP_TRY_GOTO(status, read_headers(line, &parts, err), done);
     BP_TRY_GOTO(status, add_files(line, &parts, &sum, err), done);
-    BP_TRY_GOTO(status, bp_film_check_finite(sum, err), done);
+    BP_TRY_GOTO(status, bp_film_check_valid(sum, err), done);
     BP_TRY_GOTO(status, check_cues(line, sum, err), done);
     bp_result_say_overwritten(line, &result);
     BP_TRY_GOTO(status, bp_result_write(line, &result, sum, false, (BpTransfer)sum->transfer, NULL, err),
@@ -241,9 +241,11 @@ BpStatus bp_command_merge(const BpCommandLine *line, BpError *err) {
            nrmse);
     warn_missing(line, &parts);
     bp_result_warn(line, sum);
+    char causes[BP_INVALID_TEXT_SIZE];
     if (sum->invalid_samples > 0)
-        bp_say(line, "warning: %" PRIu64 " sample%s not finite; left out of the picture",
-               sum->invalid_samples, sum->invalid_samples == 1 ? " was" : "s were");
+        bp_say(line, "warning: %" PRIu64 " sample%s invalid%s and left out of the picture",
+               sum->invalid_samples, sum->invalid_samples == 1 ? " was" : "s were",
+               bp_film_invalid_causes(sum, causes));
 done:
     free(parts.list);
     bp_film_destroy(&sum);

@@ -119,11 +119,16 @@ static json_t *stats_json(const RunResult *result) {
                   (json_int_t)result->samples_per_pixel, "max_depth", (json_int_t)options->max_depth, "seed",
                   bp_json_whole(options->seed), "spheres", (json_int_t)info.spheres, "device",
                   device_json(&report->device), "effects", effects_json(&report->effects));
-    json_t *counts = json_pack(
-        "{s:o, s:I, s:I, s:[f,f,f], s:o, s:I, s:I, s:I}", "seconds", seconds_json(result), "samples",
-        (json_int_t)report->samples, "rays", (json_int_t)report->segments, "mean_radiance", mean[0], mean[1],
-        mean[2], "nrmse", json_number(result->nrmse), "invalid_samples", (json_int_t)report->invalid_samples,
-        "cut_paths", (json_int_t)report->cut_paths, "lamp_rays", (json_int_t)report->lamp_rays);
+    json_t *counts =
+        json_pack("{s:o, s:I, s:I, s:[f,f,f], s:o, s:I, s:I, s:I, s:I, s:I, s:I}", "seconds",
+                  seconds_json(result), "samples", (json_int_t)report->samples, "rays",
+                  (json_int_t)report->segments, "mean_radiance", mean[0], mean[1], mean[2], "nrmse",
+                  json_number(result->nrmse), "invalid_samples", (json_int_t)report->invalid_samples,
+#define MEMBER(member, tally, words) #member, (json_int_t)report->member,
+                  BP_INVALID_LIST(MEMBER)
+#undef MEMBER
+                      "cut_paths",
+                  (json_int_t)report->cut_paths, "lamp_rays", (json_int_t)report->lamp_rays);
     json_t *run = json_pack("{s:s, s:o, s:I, s:i, s:b, s:o, s:s, s:i, s:i, s:I, s:I, s:I, s:s}",
                             "acceleration", bp_acceleration_name(report->acceleration), "output",
                             bp_json_text(result->output), "first_sample", (json_int_t)options->first_sample,
@@ -287,7 +292,7 @@ static void say_stop(const BpCommandLine *line, const RunResult *result, const B
                "noise is still above --error: the limit of %" PRIu64 " sample%s per pixel was reached first",
                rule->samples_max, bp_plural(rule->samples_max));
     if (end->reason == BP_STOP_INVALID)
-        bp_say(line, "almost no sample of some pixel is finite, so noise cannot be estimated and --error "
+        bp_say(line, "almost no sample of some pixel is valid, so noise cannot be estimated and --error "
                      "cannot be reached");
     if (rule->error > 0.0 && end->reason == BP_STOP_TIME)
         bp_say(line, "noise is still above --error: time ran out");
@@ -372,7 +377,7 @@ static void print_summary(const BpCommandLine *line, const RunResult *result, co
     else if (isnan(result->nrmse))
         bp_say(line, "%s",
                result->samples_per_pixel < 2 ? "estimating noise needs at least two samples per pixel"
-               : report->invalid_samples > 0 ? "estimating noise needs finite samples in every pixel"
+               : report->invalid_samples > 0 ? "estimating noise needs valid samples in every pixel"
                : is_inside_a_sphere(result->scene)
                    ? "the picture is black, so its noise is unknown: the camera is inside a sphere; check "
                      "\"lookfrom\" and the spheres"
@@ -396,9 +401,11 @@ static void print_summary(const BpCommandLine *line, const RunResult *result, co
             "the \"medium\" of the whole scene has no end, so no light of the sky comes through it; put it "
             "into a large sphere of an \"interface\" material instead, as its \"interior\"");
     bp_result_warn(line, result->film);
+    char causes[BP_INVALID_TEXT_SIZE];
     if (report->invalid_samples > 0)
-        bp_say(line, "warning: %" PRIu64 " sample%s not finite and left out of the picture",
-               report->invalid_samples, report->invalid_samples == 1 ? " was" : "s were");
+        bp_say(line, "warning: %" PRIu64 " sample%s invalid%s and left out of the picture",
+               result->film->invalid_samples, result->film->invalid_samples == 1 ? " was" : "s were",
+               bp_film_invalid_causes(result->film, causes));
 }
 
 /* What to say of a render that was interrupted, and what can be done about it. */
@@ -435,14 +442,17 @@ static BpStatus deliver(const BpCommandLine *line, BpResultFile *file, const BpS
     result->stopped_by = end->reason;
     result->nrmse = bp_film_nrmse(result->film);
     /* The few samples left would misrepresent the scene, so no picture is written. */
-    const uint64_t samples = result->report.samples, invalid = result->report.invalid_samples;
-    if (invalid > samples / 2)
+    const uint64_t samples = result->report.samples;
+    char causes[BP_INVALID_TEXT_SIZE];
+    if (result->report.invalid_samples > samples / 2)
         return bp_fail(err, BP_ERR_LIMIT,
                        "%" PRIu64 " of %" PRIu64
-                       " sample%s not finite, so %s was not written: the scene's numbers may be too large or "
-                       "too small for %s precision; %schoose another unit of length, or find the wrong "
+                       " sample%s invalid%s, so %s was not written: the scene's numbers "
+                       "may be too large or too small for %s precision; %schoose another unit of length, or "
+                       "find the wrong "
                        "pixels with `ballpark check`",
-                       invalid, samples, samples == 1 ? " is" : "s are", result->output,
+                       result->report.invalid_samples, samples, samples == 1 ? " is" : "s are",
+                       bp_film_invalid_causes(result->film, causes), result->output,
                        result->options->precision == BP_PRECISION_DOUBLE ? "double" : "single",
                        result->options->precision == BP_PRECISION_DOUBLE ? "" : "use --precision double, ");
     const double write_start = bp_clock_seconds();

@@ -87,7 +87,10 @@ void bp_film_info(const BpFilm *film, BpFilmInfo *info) {
         .segments = film->segments,
         .cut_paths = film->cut_paths,
         .invalid_samples = film->invalid_samples,
-        .lamp_rays = film->lamp_rays,
+#define GIVE(member, tally, words) .member = film->member,
+        BP_INVALID_LIST(GIVE)
+#undef GIVE
+            .lamp_rays = film->lamp_rays,
         .scene_hash = film->scene_hash,
         .seed = film->seed,
         .max_depth = film->max_depth,
@@ -267,6 +270,9 @@ BpStatus bp_film_add_sums(BpFilm *film, const BpFilm *from, BpError *err) {
     film->segments += from->segments;
     film->cut_paths += from->cut_paths;
     film->invalid_samples += from->invalid_samples;
+#define ADD(member, tally, words) film->member += from->member;
+    BP_INVALID_LIST(ADD)
+#undef ADD
     film->lamp_rays += from->lamp_rays;
     return BP_OK;
 }

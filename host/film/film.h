@@ -32,6 +32,14 @@ struct BpSampleRange {
     uint64_t first, count;
 };
 
+/* Why samples are left out of the sums. X(member of BpFilm, BpFilmInfo and BpRenderReport, tally of the
+ * kernels, in words). The causes add up to `invalid_samples`, except that films of older versions know no
+ * causes. */
+#define BP_INVALID_LIST(X)                                                                                   \
+    X(not_finite_samples, TALLY_NOT_FINITE, "not finite")                                                    \
+    X(negative_samples, TALLY_NEGATIVE, "negative")                                                          \
+    X(out_of_range_samples, TALLY_OUT_OF_RANGE, "brighter than the sums can hold")
+
 #define BP_FILM_AOV(place, member, floats, mean, channels) float *member;
 
 /* Where a render stood when its film was read, so that another can go on from there (render.h). */
@@ -68,7 +76,8 @@ struct BpFilm {
     int64_t *sums;      /* width * height * K * 3, index ((pixel * K) + k) * 3 + channel */
     int64_t *fine_sums; /* Optional. Of the same shape, in steps 2^38 times finer; NULL: all are 0 */
     uint32_t *counts;   /* width * height * K: valid samples */
-    uint64_t segments, cut_paths, invalid_samples, lamp_rays; /* totals over the picture */
+    uint64_t segments, cut_paths, invalid_samples, lamp_rays;            /* totals over the picture */
+    uint64_t not_finite_samples, negative_samples, out_of_range_samples; /* of the invalid ones */
     uint64_t *pixel_segments; /* Optional. Of each pixel: adaptive sampling asks for it; not merged. */
     uint64_t *met; /* Optional. Of each pixel: valid samples whose camera ray met something; a scene without a
                       backdrop asks for it, and the picture's alpha is its share of all */
@@ -164,8 +173,11 @@ uint64_t bp_film_range_total(const BpFilm *film);
 /* Squared standard error of one pixel's luminance, by the same formula; NaN with fewer than two replicates.
  */
 double bp_film_squared_error(const BpFilm *film, size_t pixel);
-/* BP_ERR_LIMIT when most samples were no finite numbers: what is left then says nothing of the scene. */
-BpStatus bp_film_check_finite(const BpFilm *film, BpError *err);
+/* Why samples are left out, in words: " (2 not finite, 1 negative)"; "" without any. */
+enum { BP_INVALID_TEXT_SIZE = 192 };
+const char *bp_film_invalid_causes(const BpFilm *film, char text[BP_INVALID_TEXT_SIZE]);
+/* BP_ERR_LIMIT when most samples were left out: the others then say nothing of the scene. */
+BpStatus bp_film_check_valid(const BpFilm *film, BpError *err);
 /* The fewest and the most valid samples that a pixel has, and the mean. */
 void bp_film_sample_counts(const BpFilm *film, uint64_t *least, uint64_t *most, double *mean);
 /* The most that rounding samples to steps can have changed the picture's mean luminance by, relative to it.

@@ -136,16 +136,42 @@ double bp_film_squared_error(const BpFilm *film, size_t pixel) {
     return estimate_pixel(film, pixel).squared_error[3];
 }
 
-BpStatus bp_film_check_finite(const BpFilm *film, BpError *err) {
+const char *bp_film_invalid_causes(const BpFilm *film, char text[BP_INVALID_TEXT_SIZE]) {
+#define ADD(member, tally, words) +film->member
+    const uint64_t known = 0 BP_INVALID_LIST(ADD);
+#undef ADD
+    const struct {
+        uint64_t count;
+        const char *words;
+    } causes[] = {
+#define CAUSE(member, tally, words) {film->member, words},
+        BP_INVALID_LIST(CAUSE)
+#undef CAUSE
+            {film->invalid_samples - known, "of a cause that an older version did not note"}};
+    text[0] = '\0';
+    const char *before = " (";
+    for (size_t i = 0; i < sizeof causes / sizeof *causes; i++) {
+        const size_t used = strlen(text);
+        if (causes[i].count == 0) continue;
+        snprintf(text + used, BP_INVALID_TEXT_SIZE - used, "%s%" PRIu64 " %s", before, causes[i].count,
+                 causes[i].words);
+        before = ", ";
+    }
+    if (before[0] == ',') strcat(text, ")");
+    return text;
+}
+
+BpStatus bp_film_check_valid(const BpFilm *film, BpError *err) {
     const size_t cells = (size_t)film->width * film->height * film->replicates;
     uint64_t valid = 0;
     for (size_t cell = 0; cell < cells; cell++) valid += film->counts[cell];
     if (film->invalid_samples <= valid) return BP_OK;
+    char text[BP_INVALID_TEXT_SIZE];
     return bp_fail(err, BP_ERR_LIMIT,
-                   "%" PRIu64 " of %" PRIu64
-                   " samples are not finite, so they show nothing of the scene: its "
+                   "%" PRIu64 " of %" PRIu64 " samples are invalid%s, so they show nothing of the scene: its "
                    "numbers may be too large or too small for %s precision, and ballpark check tells more",
-                   film->invalid_samples, film->invalid_samples + valid, bp_precision_names[film->precision]);
+                   film->invalid_samples, film->invalid_samples + valid, bp_film_invalid_causes(film, text),
+                   bp_precision_names[film->precision]);
 }
 
 void bp_film_sample_counts(const BpFilm *film, uint64_t *least, uint64_t *most, double *mean) {

@@ -52,6 +52,12 @@ static bool add_optional(json_t *header, const BpFilm *film) {
             header, "job", json_pack("[I,I]", (json_int_t)film->job.first, (json_int_t)film->job.count)) != 0)
         return false;
     if (film->met != NULL && json_object_set_new(header, "alpha", json_true()) != 0) return false;
+#define WRITE(member, tally, words)                                                                          \
+    if (film->member > 0 &&                                                                                  \
+        json_object_set_new(header, #member, json_integer((json_int_t)film->member)) != 0)                   \
+        return false;
+    BP_INVALID_LIST(WRITE)
+#undef WRITE
     if (film->lamp_rays > 0 &&
         json_object_set_new(header, "lamp_rays", json_integer((json_int_t)film->lamp_rays)) != 0)
         return false;
@@ -266,6 +272,18 @@ static void read_plan(Reader *reader, BpFilm *film) {
         bad_member(reader, "plan", "one that goes with the size of the picture and the samples");
 }
 
+/* Older files do not know the causes, and no file has those of which there is none. */
+static void read_invalid(Reader *reader, BpFilm *film) {
+    uint64_t known = 0;
+    film->invalid_samples = read_integer(reader, "invalid_samples", 0, INT64_MAX);
+#define READ(member, tally, words)                                                                           \
+    if (json_object_get(reader->header, #member) != NULL)                                                    \
+        film->member = read_integer(reader, #member, 0, (int64_t)(film->invalid_samples - known));           \
+    known += film->member;
+    BP_INVALID_LIST(READ)
+#undef READ
+}
+
 static void read_settings(Reader *reader, BpFilm *film) {
     const json_t *scale = json_object_get(reader->header, "scale_log2");
     if (!json_is_integer(scale) || json_integer_value(scale) < -126 || json_integer_value(scale) > 126)
@@ -286,7 +304,7 @@ static void read_settings(Reader *reader, BpFilm *film) {
     film->transfer = (BpTransfer)read_name(reader, "transfer", bp_transfer_names);
     film->segments = read_integer(reader, "segments", 0, INT64_MAX);
     film->cut_paths = read_integer(reader, "cut_paths", 0, INT64_MAX);
-    film->invalid_samples = read_integer(reader, "invalid_samples", 0, INT64_MAX);
+    read_invalid(reader, film);
     if (json_object_get(reader->header, "lamp_rays") != NULL)
         film->lamp_rays = read_integer(reader, "lamp_rays", 0, INT64_MAX);
     film->partial = read_truth(reader, "partial");

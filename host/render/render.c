@@ -534,6 +534,9 @@ void bp_render_report(const BpRender *render, BpRenderReport *report) {
         report->segments = render->film->segments;
         report->cut_paths = render->film->cut_paths;
         report->invalid_samples = render->film->invalid_samples;
+#define GIVE(member, tally, words) report->member = render->film->member;
+        BP_INVALID_LIST(GIVE)
+#undef GIVE
         report->lamp_rays = render->film->lamp_rays;
     }
 }

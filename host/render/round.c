@@ -130,7 +130,10 @@ BpStatus bp_round_add_films(BpComm *comm, BpFilm *film, BpError *err) {
     enum { FINE = 1, COARSE = 2 };
     const size_t pixels = (size_t)film->width * film->height, cells = pixels * film->replicates;
     uint32_t has = (film->fine_sums != NULL ? FINE : 0) | (film->coarse ? COARSE : 0);
-    uint64_t totals[] = {film->segments, film->cut_paths, film->invalid_samples, film->lamp_rays};
+#define TOTAL(member, tally, words) film->member,
+    uint64_t totals[] = {film->segments, film->cut_paths, film->invalid_samples, film->lamp_rays,
+                         BP_INVALID_LIST(TOTAL)};
+#undef TOTAL
     if (comm == NULL) return BP_OK;
     BP_TRY(bp_comm_unite(comm, &has, err));
     if (has & FINE) BP_TRY(bp_film_add_fine_sums(film, err));
@@ -141,10 +144,14 @@ BpStatus bp_round_add_films(BpComm *comm, BpFilm *film, BpError *err) {
     if (film->met != NULL) BP_TRY(bp_comm_add_64(comm, film->met, pixels, err));
     BP_TRY(bp_comm_add_64(comm, totals, sizeof totals / sizeof totals[0], err));
     film->coarse = (has & COARSE) != 0;
-    film->segments = totals[0];
-    film->cut_paths = totals[1];
-    film->invalid_samples = totals[2];
-    film->lamp_rays = totals[3];
+    const uint64_t *total = totals;
+    film->segments = *total++;
+    film->cut_paths = *total++;
+    film->invalid_samples = *total++;
+    film->lamp_rays = *total++;
+#define TAKE(member, tally, words) film->member = *total++;
+    BP_INVALID_LIST(TAKE)
+#undef TAKE
     return BP_OK;
 }
 

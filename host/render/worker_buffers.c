@@ -229,7 +229,11 @@ static BpStatus collect_block(BpWorker *worker, size_t first, size_t count, cl_l
         film->segments += tally[TALLY_SEGMENTS];
         if (film->pixel_segments != NULL) film->pixel_segments[first + i] += tally[TALLY_SEGMENTS];
         film->cut_paths += tally[TALLY_CUT];
-        film->invalid_samples += tally[TALLY_INVALID];
+#define ADD(member, place, words)                                                                            \
+    film->member += tally[place];                                                                            \
+    film->invalid_samples += tally[place];
+        BP_INVALID_LIST(ADD)
+#undef ADD
         film->lamp_rays += tally[TALLY_LAMP_RAYS];
         if (film->met == NULL) continue;
         for (size_t k = 0; k < k_count; ++k) film->met[first + i] += counts[i * k_count + k] & COUNT_SAMPLES;

@@ -56,7 +56,7 @@ static BpStatus read_sums(const BpSums *sums, BpPicture *picture, BpError *err) 
 static BpStatus read_render(BpRender *render, BpPicture *picture, BpError *err) {
     const BpFilm *film = NULL;
     BP_TRY(bp_render_read_film(render, &film, err));
-    BP_TRY(bp_film_check_finite(film, err));
+    BP_TRY(bp_film_check_valid(film, err));
     return bp_film_picture(film, picture, err);
 }
 

@@ -232,7 +232,7 @@ static BpStatus note_first(BpStudy *study, size_t s, BpError *err) {
     BpPicture picture;
     const BpFilm *film = NULL;
     BP_TRY(bp_render_read_film(study->runners[s].render, &film, err));
-    BP_TRY(bp_film_check_finite(film, err));
+    BP_TRY(bp_film_check_valid(film, err));
     BP_TRY(bp_film_picture(film, &picture, err));
     if (s > 0) {
         bp_study_interest_add(study->interest, &picture, &study->first, study->result.brightness);

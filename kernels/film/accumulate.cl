@@ -6,13 +6,14 @@
  * Knows: fixed point, replicates.   Does not know: what a sample shows, the picture's estimates (the host does).
  *
  * Sums of integers do not depend on their order: chunks, merged runs and several devices agree to the bit. A sample
- * that is NaN, infinite, negative or larger than any path can bring (2^39 in fixed point) is left out and counted;
- * it is found by its bits, since a compiler may assume that NaN does not exist. */
+ * that is NaN, infinite, negative or larger than any path can bring (2^39 in fixed point) is left out and counted
+ * by its cause; it is found by its bits, since a compiler may assume that NaN does not exist. */
 #if REAL_IS_DOUBLE
 #define BITS ulong
 #define BITS4 ulong4
 #define as_bits4 as_ulong4
 #define BITS_SIGN 0x8000000000000000ul
+#define BITS_INFINITY 0x7ff0000000000000ul
 #define BITS_LIMIT 0x4260000000000000ul /* of 2^39 */
 #define BITS_SPLIT 0x4140000000000000ul  /* of 2^21 */
 #define BITS_COARSE 0x3ed0000000000000ul /* of 2^-18: 2^20 fine steps */
@@ -22,6 +23,7 @@
 #define BITS4 uint4
 #define as_bits4 as_uint4
 #define BITS_SIGN 0x80000000u
+#define BITS_INFINITY 0x7f800000u
 #define BITS_LIMIT 0x53000000u
 #define BITS_SPLIT 0x4a000000u
 #define BITS_COARSE 0x36800000u
@@ -64,16 +66,32 @@ static int any_below(BITS4 least, BITS limit) { return least.x < limit || least.
 typedef struct ReplicateSum {
     long4 sum, fine;
     uint count, coarse, missed;
+    uint not_finite, negative, out_of_range; /* samples left out */
 } ReplicateSum;
+
+/* Counts a sample that is not valid by the first of these causes that one of its channels has. What is finite may be
+ * infinite once it is scaled, so this looks at the sample as it was traced. */
+static void count_cause(real4 sample, ReplicateSum *total) {
+    const BITS4 bits = as_bits4(sample), size = bits & (BITS4)(BITS_SIGN - 1);
+    if (size.x >= BITS_INFINITY || size.y >= BITS_INFINITY || size.z >= BITS_INFINITY)
+        ++total->not_finite;
+    else if (bits.x > BITS_SIGN || bits.y > BITS_SIGN || bits.z > BITS_SIGN)
+        ++total->negative;
+    else
+        ++total->out_of_range;
+}
 
 /* The sum of the valid samples `begin`, `begin` + `stride`, ...: fractions of steps count in those samples of which a
  * channel is below 2^21 steps, the others are right to 2^-21 without. */
 static ReplicateSum sum_split(__global const real *samples, uint begin, uint end, uint stride, real4 scales) {
-    ReplicateSum total = {0, 0, 0, 0, 0};
+    ReplicateSum total = {0, 0, 0, 0, 0, 0, 0, 0};
     for (uint s = begin; s < end; s += stride) {
         const real4 scaled = vload4(s, samples) * scales;
         const BITS4 order = order_of(scaled);
-        if (!is_valid(order)) continue;
+        if (!is_valid(order)) {
+            count_cause(vload4(s, samples), &total);
+            continue;
+        }
         ++total.count;
         const long4 whole = whole_steps(scaled);
         total.sum += whole;
@@ -120,7 +138,8 @@ __kernel void accumulate(__global const real *samples, uint pixel_count, uint sa
     __global const real *mine = samples + (size_t)item * samples_per_pixel * 4;
     /* The fourth number becomes twice the segments, plus 1 for a cut, with the mark of a path that missed everything. */
     const real4 scales = (real4)(scale, scale, scale, 2);
-    ulong twice_segments = 0, cut = 0, invalid = 0, missed = 0;
+    ulong twice_segments = 0, cut = 0, missed = 0;
+    __global ulong *tally = tallies + pixel * TALLIES;
     for (uint k = 0; k < replicates; ++k) {
         const uint begin = (k + replicates - first_sample % replicates) % replicates;
         long4 sum = 0;
@@ -143,7 +162,11 @@ __kernel void accumulate(__global const real *samples, uint pixel_count, uint sa
         uint known = counts[cell];
         if (!is_valid(largest) || any_below(least, BITS_SPLIT - 1)) { /* hardly ever: once more, with more care */
             const ReplicateSum careful = sum_split(mine, begin, samples_per_pixel, replicates, scales);
-            invalid += count - careful.count;
+            if (careful.count < count) {
+                tally[TALLY_NOT_FINITE] += careful.not_finite;
+                tally[TALLY_NEGATIVE] += careful.negative;
+                tally[TALLY_OUT_OF_RANGE] += careful.out_of_range;
+            }
             count = careful.count;
             flags.y = careful.missed;
             sum = careful.sum;
@@ -160,10 +183,8 @@ __kernel void accumulate(__global const real *samples, uint pixel_count, uint sa
         missed += flags.y;
         counts[cell] = known + count;
     }
-    __global ulong *tally = tallies + pixel * TALLIES;
     tally[TALLY_SEGMENTS] += (twice_segments - cut) / 2;
     tally[TALLY_CUT] += cut;
-    tally[TALLY_INVALID] += invalid;
     tally[TALLY_MISSED] += missed;
     if (item_count > 0) tally[TALLY_LAMP_RAYS] += share_of_lamp_rays(lamp_rays, item_count, item, pixel_count);
 }

@@ -278,7 +278,7 @@ class StopRules(Render):
         for output in "x.png", "x.exr", "x.bpa":
             self.write(output, "precious")
             self.fail_with(1, "render", "n.json", "-o", output, "--stats", "n.stats", environment=here,
-                           says=["2048 of 2048 samples are not finite", output, "was not written", "--precision double",
+                           says=["2048 of 2048 samples are invalid (2048 not finite)", output, "was not written", "--precision double",
                                  "unit of length"])
             self.assertEqual(self.read(output), b"precious")
         self.assertEqual(self.files(), ["kernels", "n.json", "s.json", "x.bpa", "x.exr", "x.png"])
@@ -291,10 +291,10 @@ class StopRules(Render):
         for command in (("bench", "n.json", "--time", "0.01", "--rounds", "1", "--json", "n.out"),
                         ("cost", "n.json", "--time", "0.1", "--json", "n.out"),
                         ("cost", "n.json", "--time", "0.1", "--precision", "double", "--csv", "n.out")):
-            self.fail_with(1, *command, environment=here, says=["samples are not finite", "ballpark check"])
+            self.fail_with(1, *command, environment=here, says=["samples are invalid (", " not finite)", "ballpark check"])
         shutil.rmtree(self.path("kernels"))
         here = self.broken_sky("sizeof(R(1.0)) == 4 ? splat(NAN) : light.x")  # the truth is of double precision, and right
-        self.fail_with(1, "cost", "n.json", "--time", "0.1", "--json", "n.out", environment=here, says="samples are not finite")
+        self.fail_with(1, "cost", "n.json", "--time", "0.1", "--json", "n.out", environment=here, says="samples are invalid")
         self.assertEqual(self.files(), ["kernels", "n.json", "s.json"])
 
     @deep
@@ -305,8 +305,8 @@ class StopRules(Render):
         for options in (["--error", "0.1"], ["--error", "0.1", "--time", "100"], ["--error", "0.1", "--spp", "100000"]):
             said = self.succeed("render", "n.json", "--stats", "n.stats", *options, environment=here).errors
             self.assertIn("--error cannot be reached", said)
-            self.assertIn("estimating noise needs finite samples in every pixel", said)
-            self.assertRegex(said, r"warning: \d+ samples were not finite and left out of the picture")
+            self.assertIn("estimating noise needs valid samples in every pixel", said)
+            self.assertRegex(said, r"warning: (\d+) samples were invalid \(\1 not finite\) and left out of the picture")
             with open(self.path("n.stats")) as file:
                 stats = json.load(file)
             self.assertEqual((stats["stopped_by"], stats["nrmse"]), ("invalid", None))

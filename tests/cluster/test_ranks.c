@@ -101,6 +101,9 @@ static BpFilm *own_film(uint32_t rank) {
     film->segments = 1000 + rank;
     film->cut_paths = 2000 + rank;
     film->invalid_samples = 3000 + rank;
+    film->not_finite_samples = 500 + rank;
+    film->negative_samples = 600 + rank;
+    film->out_of_range_samples = 700 + rank;
     film->lamp_rays = 4000 + rank;
     return film;
 }
@@ -128,6 +131,9 @@ static bool add_films(BpComm *comm) {
                holds(film->segments == 1000 * RANKS + sum_of_ranks, "segments") &&
                holds(film->cut_paths == 2000 * RANKS + sum_of_ranks, "cut paths") &&
                holds(film->invalid_samples == 3000 * RANKS + sum_of_ranks, "invalid samples") &&
+               holds(film->not_finite_samples == 500 * RANKS + sum_of_ranks, "samples not finite") &&
+               holds(film->negative_samples == 600 * RANKS + sum_of_ranks, "negative samples") &&
+               holds(film->out_of_range_samples == 700 * RANKS + sum_of_ranks, "samples out of range") &&
                holds(film->lamp_rays == 4000 * RANKS + sum_of_ranks, "rays to lamps");
     }
     bp_film_destroy(&film);

@@ -143,7 +143,9 @@ static void what_met_nothing_is_counted(void **state) {
         fold(*state, &samples[0][0], 12, 0, sums, counts, tallies);
         assert_int_equal(tallies[TALLY_SEGMENTS], 8 * 1000000 + 4);
         assert_int_equal(tallies[TALLY_CUT], 8);
-        assert_int_equal(tallies[TALLY_INVALID], careful ? 3 : 0);
+        assert_int_equal(tallies[TALLY_NOT_FINITE], careful ? 2 : 0);
+        assert_int_equal(tallies[TALLY_NEGATIVE], careful ? 1 : 0);
+        assert_int_equal(tallies[TALLY_OUT_OF_RANGE], 0);
         assert_int_equal(tallies[TALLY_MISSED], careful ? 2 : 4);
         assert_true(tallies[TALLY_LAMP_RAYS] == (UINT64_C(1) << 32)); /* more than 32 bits hold */
     }
@@ -167,9 +169,11 @@ static void invalid_samples_are_left_out(void **state) {
     cl_uint counts[REPLICATES] = {0};
     cl_ulong tallies[TALLIES] = {0};
     fold(*state, &samples[0][0], 12, 0, sums, counts, tallies);
-    assert_int_equal(tallies[0], 11 * 3 + 50);
-    assert_int_equal(tallies[1], 1);
-    assert_int_equal(tallies[2], 5);
+    assert_int_equal(tallies[TALLY_SEGMENTS], 11 * 3 + 50);
+    assert_int_equal(tallies[TALLY_CUT], 1);
+    assert_int_equal(tallies[TALLY_NOT_FINITE], 3);
+    assert_int_equal(tallies[TALLY_NEGATIVE], 1);
+    assert_int_equal(tallies[TALLY_OUT_OF_RANGE], 1);
     /* replicate k: samples k, k + 4, k + 8 without 1, 2, 3, 4, 5 */
     const cl_uint expected[REPLICATES] = {2, 1, 2, 2};
     const cl_long quarter = (cl_long)1 << (SCALE - 2);
@@ -255,7 +259,8 @@ static void dim_samples_are_kept(void **state) {
             if (!fine) assert_int_equal(whole.fine_sums[i], 0x5555555555555555);
         }
     }
-    assert_int_equal(whole.tallies[2], 0);
+    for (int cause = TALLY_NOT_FINITE; cause <= TALLY_OUT_OF_RANGE; cause++)
+        assert_int_equal(whole.tallies[cause], 0);
     /* In parts, in another order: the same numbers. */
     fold_scaled(*state, samples[1001], COUNT - 1001, 1001, 38 - 17, &parts);
     fold_scaled(*state, samples[0], 1001, 0, 38 - 17, &parts);
@@ -280,7 +285,7 @@ static void samples_too_dim_are_marked(void **state) {
     assert_int_equal(pixel.counts[1], 1);
     assert_int_equal(pixel.counts[2], 2);
     assert_int_equal(pixel.counts[3], 2);
-    assert_int_equal(pixel.tallies[2], 1);
+    assert_int_equal(pixel.tallies[TALLY_NOT_FINITE], 1);
     const float dim[4] = {0, 0, step * 1048575, 1}, lost[4] = {step * 0.25f, 0, 0, 1};
     fold_scaled(*state, dim, 1, 0, SCALE, &pixel);
     assert_int_equal(pixel.counts[0], 3 | COUNT_HAS_FINE | COUNT_COARSE);

@@ -25,6 +25,9 @@ static void assert_same(const BpFilm *a, const BpFilm *b) {
     assert_true(a->segments == b->segments);
     assert_int_equal(a->cut_paths, b->cut_paths);
     assert_int_equal(a->invalid_samples, b->invalid_samples);
+    assert_int_equal(a->not_finite_samples, b->not_finite_samples);
+    assert_int_equal(a->negative_samples, b->negative_samples);
+    assert_int_equal(a->out_of_range_samples, b->out_of_range_samples);
     assert_true(a->lamp_rays == b->lamp_rays);
     assert_string_equal(a->title, b->title);
     assert_int_equal(a->range_count, b->range_count);

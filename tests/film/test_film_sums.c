@@ -33,7 +33,10 @@ static BpFilm *render(uint64_t first, uint64_t count) {
         }
     film->segments = 35 * count * 3;
     film->cut_paths = count;
-    film->invalid_samples = 1;
+    film->invalid_samples = 7;
+    film->not_finite_samples = 1;
+    film->negative_samples = 2;
+    film->out_of_range_samples = 4;
     film->lamp_rays = 7 * count;
     return film;
 }
@@ -75,7 +78,10 @@ static void two_halves_are_the_whole(void **state) {
     assert_int_equal(bp_film_merge(first, second, NULL), BP_OK);
     assert_same_sums(first, whole);
     assert_int_equal(first->range_count, 1);
-    assert_int_equal(first->invalid_samples, 2);
+    assert_int_equal(first->invalid_samples, 14);
+    assert_int_equal(first->not_finite_samples, 2);
+    assert_int_equal(first->negative_samples, 4);
+    assert_int_equal(first->out_of_range_samples, 8);
     bp_film_destroy(&whole);
     bp_film_destroy(&first);
     bp_film_destroy(&second);

@@ -35,6 +35,9 @@ static BpFilm *make_accumulator(Bytes *bytes) {
     made->segments = take_bits(bytes, 8) >> 1;
     made->cut_paths = take_bits(bytes, 8) >> 1;
     made->invalid_samples = take_bits(bytes, 8) >> 1;
+    made->not_finite_samples = made->invalid_samples / 4;
+    made->negative_samples = made->invalid_samples / 8;
+    made->out_of_range_samples = made->invalid_samples / 2;
     made->lamp_rays = made->segments ^ made->cut_paths;
     made->title = make_title(bytes);
     for (unsigned i = take_byte(bytes) % 6; i > 0; i--) {
@@ -72,6 +75,9 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size) {
     require(read->segments == made->segments && read->cut_paths == made->cut_paths);
     require(read->lamp_rays == made->lamp_rays);
     require(read->invalid_samples == made->invalid_samples && strcmp(read->title, made->title) == 0);
+    require(read->not_finite_samples == made->not_finite_samples &&
+            read->negative_samples == made->negative_samples &&
+            read->out_of_range_samples == made->out_of_range_samples);
     require(read->range_count == made->range_count);
     for (size_t i = 0; i < made->range_count; i++)
         require(read->ranges[i].first == made->ranges[i].first &&

@@ -80,8 +80,8 @@ class Bench:
         if drawn is None:
             (self.folder / "case.json").write_text(json.dumps(scene))
             done, stats = self.run(["case.json"], lamps, samples, options)
-            if "samples are not finite" in done.stderr:
-                raise Trouble(f"samples that are not finite with lamps {lamps}")
+            if "samples are invalid" in done.stderr:
+                raise Trouble(f"invalid samples with lamps {lamps}")
             if done.returncode != 0:
                 raise Trouble(f"exit code {done.returncode}: {done.stderr.strip()}")
             drawn = (self.folder / "case.pfm").read_bytes(), stats[0]

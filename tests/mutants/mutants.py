@@ -224,7 +224,7 @@ MUTANTS = [
     Mutant("a row without an end", "part of a sample goes on past the last pixel",
            [patch("host/render/portion.c", "row = pixels - pixel;", "row = pixels;")], [test("test_portion", "each_sample_once")]),
     Mutant("rays to lamps of one rank", "a total that films have and ranks do not add",
-           [patch("host/render/round.c", "film->invalid_samples, film->lamp_rays};", "film->invalid_samples, 0};")],
+           [patch("host/render/round.c", "film->lamp_rays, BP_INVALID_LIST(TOTAL)}", "0, BP_INVALID_LIST(TOTAL)}")],
            [test("test_ranks", "test_films")]),
     Mutant("the alpha of one rank", "this program: films that are added gained an alpha, which was not",
            [patch("host/render/round.c", "if (film->met != NULL) BP_TRY(bp_comm_add_64(comm, film->met, pixels, err));", "")],

@@ -1,0 +1,95 @@
+"""Samples that are left out: each cause is counted and named for what it is, from the kernel to the end of a render, in statistics,
+in films and in what is merged of them.
+
+In:    kernels whose sky is wrong in a known share of the samples.   Out: counts, compared with the share.
+"""
+import json
+import shutil
+import struct
+import zlib
+
+from cli import ProgramTest, broken_kernels, main, scene
+
+# By member of the statistics: what makes a sample invalid in this way, and the cause in words.
+WHAT = {"not_finite_samples": ("splat(NAN)", "not finite"), "negative_samples": ("splat(R(-0.25))", "negative"),
+        "out_of_range_samples": ("splat(R(1e6))", "brighter than the sums can hold")}
+
+
+class Invalid(ProgramTest):
+    def sky(self, value):
+        if "kernels" in self.files():
+            shutil.rmtree(self.path("kernels"))
+        right = "madd3(fma(splat(R(0.5)), height, splat(R(0.5))), subtract3(top, bottom), bottom);"
+        return broken_kernels(self, "light/sky.cl", f"return {right}", f"Vec3 light = {right} light.x = {value}; return light;")
+
+    def render(self, here, *options):
+        result = self.succeed("render", "s.json", "--stats", "s.stats", "-o", "s.bpa", *options, environment=here)
+        return json.loads(self.read("s.stats")), result.errors
+
+    def counts(self, stats):
+        return {name: stats[name] for name in WHAT}
+
+    def setUp(self):
+        super().setUp()
+        # The camera looks along -z with x to the right, and samples lie in the middles of pixels, so that x below c z holds for
+        # whole columns: below z / 2, for a quarter of them.
+        self.write("s.json", scene(16, spheres=0, background=[0.5, 0.6, 0.7],
+                                   camera={"vfov": 90, "pixel_sampling": "center", "samples_per_pixel": 4, "aspect_ratio": 1}))
+
+    def test_causes(self):
+        """A quarter of 16 * 16 * 4 samples, of each cause; in single and double precision, and by merge."""
+        for precision in ("single", "double"):
+            for name, (value, words) in WHAT.items():
+                here = self.sky(f"choose(direction.x < splat(R(0.5)) * direction.z, {value}, light.x)")
+                stats, said = self.render(here, "--precision", precision)
+                self.assertEqual(stats["invalid_samples"], 256, name)
+                self.assertEqual(self.counts(stats), {other: 256 if other == name else 0 for other in WHAT})
+                self.assertIn(f"warning: 256 samples were invalid (256 {words}) and left out of the picture", said)
+                merged = self.succeed("merge", "s.bpa", "-o", "m.png").errors
+                self.assertIn(f"warning: 256 samples were invalid (256 {words}) and left out of the picture", merged)
+
+    def test_all_at_once(self):
+        """Three strips; a merge and a render that goes on add each cause to its like, and older films have none."""
+        value = "light.x"
+        for limit, (bad, _) in zip((0.25, 0.5, 0.75), WHAT.values()):
+            value = f"choose(direction.x < splat(R({limit})) * direction.z, {bad}, {value})"
+        here = self.sky(value)
+        stats, said = self.render(here)
+        # Columns 0 and 1, 2 and 3, 4 and 5: the last of the choices is the first that is asked.
+        self.assertEqual(self.counts(stats), dict.fromkeys(WHAT, 128))
+        causes = "128 not finite, 128 negative, 128 brighter than the sums can hold"
+        self.assertIn(f"warning: 384 samples were invalid ({causes})", said)
+        film = self.read("s.bpa")
+        self.succeed("render", "s.json", "-q", "--first-sample", 4, "-o", "t.bpa", environment=here)
+        said = self.succeed("merge", "s.bpa", "t.bpa", "-o", "m.png").errors
+        self.assertIn(f"768 samples were invalid ({causes.replace('128', '256')})", said)
+        said = self.succeed("render", "s.json", "--resume", "s.bpa", "--spp", 8, "-o", "u.png", environment=here).errors
+        self.assertIn(f"768 samples were invalid ({causes.replace('128', '256')})", said)
+        header, body = film.split(b"\n", 1)
+        old = json.loads(header)
+        for name in WHAT:
+            self.assertEqual(old.pop(name), 128)
+        old = json.dumps(old).encode() + b"\n" + body[:-4]
+        self.write("old.bpa", old + struct.pack("<I", zlib.crc32(old)))
+        said = self.succeed("merge", "old.bpa", "t.bpa", "-o", "m.png").errors
+        self.assertIn(f"768 samples were invalid ({causes}, 384 of a cause that an older version did not note)", said)
+
+    def test_nothing_left(self):
+        """When most samples are invalid there is no picture, and the cause is the one."""
+        for name, (value, words) in WHAT.items():
+            here = self.sky(value)
+            self.fail_with(1, "render", "s.json", "-o", "x.png", environment=here,
+                           says=[f"1024 of 1024 samples are invalid (1024 {words}), so x.png was not written"])
+            self.assertNotIn("x.png", self.files())
+
+    def test_valid(self):
+        """Without any, films do not speak of causes, and statistics have zeros."""
+        stats, said = self.render({})
+        self.assertEqual(self.counts(stats), dict.fromkeys(WHAT, 0))
+        self.assertNotIn("invalid", said)
+        for name in WHAT:
+            self.assertNotIn(name.encode(), self.read("s.bpa").split(b"\n", 1)[0])
+
+
+if __name__ == "__main__":
+    main()
