@@ -29,6 +29,10 @@
  *   independent: there is no state outside of handles, but for caches in files. The environment
  *   (BALLPARK_KERNELS, and what OpenCL drivers read) must not change meanwhile. No function prints, exits or
  *   touches signals; a driver may.
+ * - Processes. OpenCL drivers do not survive fork(). In a process forked from one that has used OpenCL, every
+ *   function that would need a driver fails with BP_ERR_DEVICE; pictures, films and scenes remain usable, and
+ *   `_destroy` frees the host's memory alone. A process may fork before anything uses OpenCL, and then use
+ * it.
  * - Options. A struct of options is filled by its function `_defaults`; then change what matters. New members
  *   may come in a minor version, so a struct that was filled member by member would lack them.
  * - Versions. While the version is 0.x, structs may grow in a minor version and not in a patch: see

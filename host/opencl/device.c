@@ -2,6 +2,7 @@
 #include "device.h"
 
 #include "base/clock.h"
+#include "forked.h"
 #include "kernel_cache.h"
 #include "pocl.h"
 
@@ -88,18 +89,20 @@ cleanup:
     return status;
 }
 
+static void release_objects(BpDevice *device) {
+    if (device->queue != NULL) {
+        clFinish(device->queue);
+        clReleaseCommandQueue(device->queue);
+    }
+    for (size_t i = 0; i < device->built_count; ++i) clReleaseProgram(device->built[i].program);
+    if (device->context != NULL) clReleaseContext(device->context);
+}
+
 void bp_device_close(BpDevice **device) {
     if (*device == NULL) return;
-    if ((*device)->queue != NULL) {
-        clFinish((*device)->queue);
-        clReleaseCommandQueue((*device)->queue);
-    }
-    for (size_t i = 0; i < (*device)->built_count; ++i) {
-        clReleaseProgram((*device)->built[i].program);
-        free((*device)->built[i].log);
-    }
+    if (!bp_drivers_left_behind()) release_objects(*device);
+    for (size_t i = 0; i < (*device)->built_count; ++i) free((*device)->built[i].log);
     free((*device)->built);
-    if ((*device)->context != NULL) clReleaseContext((*device)->context);
     free(*device);
     *device = NULL;
 }

@@ -5,6 +5,7 @@
 #include "device.h"
 
 #include "device_choose.h"
+#include "forked.h"
 #include "pocl.h"
 
 #include <ctype.h>
@@ -157,6 +158,7 @@ static bool describe(cl_device_id id, cl_platform_id platform, unsigned number, 
 static BpStatus list_platforms(cl_platform_id **platforms, cl_uint *count, BpError *err) {
     *platforms = NULL;
     *count = 0;
+    BP_TRY(bp_drivers_use(err));
     /* Without any driver the loader says CL_PLATFORM_NOT_FOUND_KHR; other loaders say 0 platforms. */
     if (clGetPlatformIDs(0, NULL, count) != CL_SUCCESS || *count == 0) {
         *count = 0;

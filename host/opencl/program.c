@@ -3,6 +3,7 @@
 
 #include "base/clock.h"
 #include "base/hash.h"
+#include "forked.h"
 #include "packed/effects.h"
 
 #include <errno.h>
@@ -308,7 +309,7 @@ failed:
 
 void bp_program_destroy(BpProgram **program) {
     if (program == NULL || *program == NULL) return;
-    if ((*program)->program != NULL) clReleaseProgram((*program)->program);
+    if ((*program)->program != NULL && !bp_drivers_left_behind()) clReleaseProgram((*program)->program);
     free((*program)->log);
     free(*program);
     *program = NULL;

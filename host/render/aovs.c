@@ -4,6 +4,7 @@
 #include "base/status.h"
 
 #include "aov_list.h"
+#include "opencl/forked.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -106,6 +107,7 @@ BpStatus bp_aovs_fill(BpWorker *worker, const BpScene *scene, BpPicture *picture
     BpStatus status = BP_OK;
     cl_int code = CL_SUCCESS;
     cl_mem out = NULL;
+    BP_TRY(bp_drivers_use(err));
     size_t local = LOCAL_SIZE, most = 0;
     cl_float *sums = malloc((size_t)batch * AOV_FLOATS * sizeof *sums);
     cl_kernel kernel = clCreateKernel(worker->program->program, "aovs", &code);

@@ -2,6 +2,7 @@
 #include "worker.h"
 
 #include "base/clock.h"
+#include "opencl/forked.h"
 #include "opencl/self_test.h"
 #include "worker_buffers.h"
 
@@ -182,9 +183,7 @@ static void release_flight(struct BpFlight *flight) {
     *flight = (struct BpFlight){0};
 }
 
-void bp_worker_destroy(BpWorker **worker) {
-    if (worker == NULL || *worker == NULL) return;
-    BpWorker *w = *worker;
+static void release_objects(BpWorker *w) {
     if (w->device != NULL) clFinish(w->device->queue);
     for (int i = 0; i < w->flight_count; ++i) release_flight(&w->flights[i]);
     for (size_t i = 0; i < w->scene_buffer_count; ++i)
@@ -195,6 +194,12 @@ void bp_worker_destroy(BpWorker **worker) {
         if (buffers[i] != NULL) clReleaseMemObject(buffers[i]);
     if (w->trace != NULL) clReleaseKernel(w->trace);
     if (w->fold != NULL) clReleaseKernel(w->fold);
+}
+
+void bp_worker_destroy(BpWorker **worker) {
+    if (worker == NULL || *worker == NULL) return;
+    BpWorker *w = *worker;
+    if (!bp_drivers_left_behind()) release_objects(w);
     bp_packed_clear(&w->packed);
     bp_program_destroy(&w->program);
     if (w->owns_device) bp_device_close(&w->device);
@@ -217,6 +222,7 @@ static double event_seconds(cl_event from, cl_profiling_info from_what, cl_event
 
 BpStatus bp_worker_wait(BpWorker *worker, BpError *err) {
     if (worker->flight_count == 0) return BP_OK;
+    BP_TRY(bp_drivers_use(err));
     struct BpFlight *flight = &worker->flights[0];
     CL_TRY(worker, clWaitForEvents(1, &flight->fold_end), "clWaitForEvents");
     const double seconds = event_seconds(flight->trace_start, CL_PROFILING_COMMAND_START, flight->fold_end);
@@ -239,6 +245,7 @@ BpStatus bp_worker_make_room(BpWorker *worker, BpError *err) {
 BpStatus bp_worker_oldest_done(BpWorker *worker, bool *done, BpError *err) {
     *done = true;
     if (worker->flight_count == 0) return BP_OK;
+    BP_TRY(bp_drivers_use(err));
     cl_int state = CL_QUEUED;
     CL_TRY(worker,
            clGetEventInfo(worker->flights[0].fold_end, CL_EVENT_COMMAND_EXECUTION_STATUS, sizeof state,
@@ -249,6 +256,7 @@ BpStatus bp_worker_oldest_done(BpWorker *worker, bool *done, BpError *err) {
 }
 
 BpStatus bp_worker_wait_for_all(BpWorker *worker, BpError *err) {
+    BP_TRY(bp_drivers_use(err)); /* what comes next reads or writes buffers */
     while (worker->flight_count > 0) BP_TRY(bp_worker_wait(worker, err));
     return BP_OK;
 }
@@ -274,6 +282,7 @@ uint32_t bp_worker_items(const BpWorker *worker, uint32_t count) {
 BpStatus bp_worker_start(BpWorker *worker, const BpChunk *chunk, BpError *err) {
     const uint32_t count = chunk->pixel_count * chunk->samples;
     const bool first = worker->samples_done == 0 && worker->flight_count == 0;
+    BP_TRY(bp_drivers_use(err));
     BP_TRY(bp_worker_make_room(worker, err));
     if (count > worker->samples_capacity) {
         BP_TRY(bp_worker_wait_for_all(worker, err));
