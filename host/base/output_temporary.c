@@ -26,7 +26,21 @@
  * ends the program then must know what to remove. */
 
 static pthread_mutex_t names_lock = PTHREAD_MUTEX_INITIALIZER;
+static pthread_once_t forks_heeded = PTHREAD_ONCE_INIT;
 static char *names[16]; /* never more at once; any more would stay behind after a signal */
+
+static void lock_names(void) {
+    pthread_mutex_lock(&names_lock);
+}
+
+static void unlock_names(void) {
+    pthread_mutex_unlock(&names_lock);
+}
+
+/* A process that is forked while another thread holds the lock would wait for it for ever. */
+static void hold_names_over_forks(void) {
+    pthread_atfork(lock_names, unlock_names, unlock_names);
+}
 
 static void note_name(char *name) {
     for (size_t i = 0; i < sizeof names / sizeof names[0]; i++) {
@@ -42,26 +56,26 @@ static void forget_name(const char *name) {
 }
 
 void bp_temporary_abandon(void) {
-    pthread_mutex_lock(&names_lock); /* for good */
+    lock_names(); /* for good */
     for (size_t i = 0; i < sizeof names / sizeof names[0]; i++)
         if (names[i] != NULL) unlink(names[i]);
 }
 
 void bp_temporary_remove(char **name) {
     if (*name == NULL) return;
-    pthread_mutex_lock(&names_lock);
+    lock_names();
     unlink(*name);
     forget_name(*name);
-    pthread_mutex_unlock(&names_lock);
+    unlock_names();
     free(*name);
     *name = NULL;
 }
 
 char *bp_temporary_keep(char **name) {
     char *kept = *name;
-    pthread_mutex_lock(&names_lock);
+    lock_names();
     forget_name(kept);
-    pthread_mutex_unlock(&names_lock);
+    unlock_names();
     *name = NULL;
     return kept;
 }
@@ -116,7 +130,8 @@ static int make_name(const char *folder, size_t folder_length, const char *targe
     char *path = stem_in(folder, folder_length, target, &length);
     int made = -1, problem = path == NULL ? ENOMEM : EEXIST;
     BpRandom random = {first_state()};
-    pthread_mutex_lock(&names_lock);
+    pthread_once(&forks_heeded, hold_names_over_forks);
+    lock_names();
     for (int attempt = 0; attempt < ATTEMPTS && problem == EEXIST; attempt++) {
         make_suffix(path + length, &random);
         if (descriptor >= 0) {
@@ -128,7 +143,7 @@ static int make_name(const char *folder, size_t folder_length, const char *targe
         }
     }
     if (made >= 0) note_name(path);
-    pthread_mutex_unlock(&names_lock);
+    unlock_names();
     if (made < 0) {
         free(path);
         errno = problem;
@@ -256,14 +271,14 @@ int bp_temporary_place(bool *unnamed, char **name, int descriptor, const char *t
         if (problem != 0) return problem;
     }
     /* Once the file has a name it is finished, so a signal waits until it is in its place. */
-    pthread_mutex_lock(&names_lock);
+    lock_names();
     int problem = replace ? 0 : claim(*name, target);
     if (problem == 0 && rename(*name, target) != 0) problem = errno;
     if (problem == 0) {
         unlink(*name); /* a rename of two links to one file does nothing */
         forget_name(*name);
     }
-    pthread_mutex_unlock(&names_lock);
+    unlock_names();
     if (problem != 0) return problem;
     free(*name);
     *name = NULL;
