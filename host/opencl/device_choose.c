@@ -20,20 +20,36 @@ static bool same(const char *a, const char *b) {
     return strlen(a) == strlen(b) && contains(a, b);
 }
 
-static bool fits(const BpDeviceInfo *device, const char *text) {
-    return contains(device->name, text) || contains(device->platform, text) ||
-           contains(device->vendor, text) || contains(device->version, text) ||
-           contains(device->driver, text);
+/* By what lists of devices show. */
+static bool fits_shown(const BpDeviceInfo *device, const char *text) {
+    return contains(device->name, text) || contains(device->platform, text) || contains(device->driver, text);
+}
+
+static bool fits_hidden(const BpDeviceInfo *device, const char *text) {
+    return contains(device->vendor, text) || contains(device->version, text);
+}
+
+/* Vendor and version, which nobody sees, count only where nothing that is shown has the text. */
+static bool fits(const BpDeviceInfo *device, const char *text, bool shown) {
+    return shown ? fits_shown(device, text) : fits_hidden(device, text);
+}
+
+static bool any_fits_shown(const BpDeviceInfo *list, size_t count, const char *text) {
+    for (size_t i = 0; i < count; ++i)
+        if (fits_shown(&list[i], text)) return true;
+    return false;
 }
 
 /* Appends "; 0: name (platform)" for each device that `text` fits (all for NULL), as far as there is room. */
 static void append_devices(char *to, size_t size, const BpDeviceInfo *list, size_t count, const char *text) {
     const char *separator = "";
+    const bool shown = text == NULL || any_fits_shown(list, count, text);
     for (size_t i = 0; i < count; ++i) {
-        if (text != NULL && !fits(&list[i], text)) continue;
+        if (text != NULL && !fits(&list[i], text, shown)) continue;
         const size_t used = strlen(to);
-        snprintf(to + used, size - used, "%s%u: %s (%s, driver %s)%s%s", separator, list[i].number,
-                 list[i].name, list[i].platform, list[i].driver,
+        snprintf(to + used, size - used, "%s%u: %s (%s, driver %s%s%s%s%s)%s%s", separator, list[i].number,
+                 list[i].name, list[i].platform, list[i].driver, shown ? "" : ", vendor ",
+                 shown ? "" : list[i].vendor, shown ? "" : ", version ", shown ? "" : list[i].version,
                  list[i].refusal[0] != '\0' ? ", cannot render: " : "", list[i].refusal);
         separator = "; ";
     }
@@ -109,9 +125,10 @@ static const BpDeviceInfo *by_number(const BpDeviceInfo *list, size_t count, con
 static const BpDeviceInfo *by_text(const BpDeviceInfo *list, size_t count, const char *text,
                                    bool *ambiguous) {
     const BpDeviceInfo *chosen = NULL;
+    const bool shown = any_fits_shown(list, count, text);
     *ambiguous = false;
     for (size_t i = 0; i < count; ++i) {
-        if (!fits(&list[i], text)) continue;
+        if (!fits(&list[i], text, shown)) continue;
         if (chosen == NULL || (chosen->refusal[0] != '\0' && list[i].refusal[0] == '\0')) {
             chosen = &list[i];
             *ambiguous = false;

@@ -178,6 +178,13 @@ static void one_text_for_several_devices(void **state) {
     expect("gpu=Card,gpu=Card XT", "card", 0);
     expect("old=Card,gpu=Card XT", "card", 1); /* one of them cannot render */
     expect("gpu=Card XT,old=Card", "card", 0);
+    /* The version of OpenCL is in no list: it counts only where nothing else has the text, and then it is
+     * shown. */
+    expect("gpu=A@3.0,nvidia=B@4.0", "3.0", 0);
+    expect("gpu=A,cpu=B", "1.2 fake", 1);
+    expect_error("gpu=A@7.5,nvidia=B@7.5", "opencl 3.0",
+                 "several devices; give a number: 0: A (Fake One, driver 7.5, vendor Nobody, version OpenCL "
+                 "3.0 fake)");
 }
 
 static void refuses_by_what_is_lacking(void **state) {
