@@ -2,6 +2,7 @@
 #include "message_text.h"
 
 #include <math.h>
+#include <stdbool.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -33,16 +34,22 @@ static size_t edit_distance(const char *a, size_t a_length, const char *b, size_
     return previous[b_length];
 }
 
+/* One letter may be wrong, or a third of them in a word that begins alike: what differs more is another word.
+ */
+static bool is_near(const char *a, size_t a_length, const char *b, size_t b_length, size_t distance) {
+    return distance <= 1 || (a[0] == b[0] && 3 * distance <= (a_length > b_length ? a_length : b_length));
+}
+
 const char *bp_nearest_name(const char *name, const char *const *names, size_t name_count) {
     const size_t length = strlen(name);
     if (length > NAME_MAX_COMPARED) return NULL;
     const char *nearest = NULL;
-    size_t nearest_distance = length / 2 + 1; /* further than this, nobody meant it */
+    size_t nearest_distance = NAME_MAX_COMPARED + 1;
     for (size_t i = 0; i < name_count; i++) {
         const size_t other_length = strlen(names[i]);
         if (other_length > NAME_MAX_COMPARED) continue;
         const size_t distance = edit_distance(name, length, names[i], other_length);
-        if (distance < nearest_distance) {
+        if (distance < nearest_distance && is_near(name, length, names[i], other_length, distance)) {
             nearest = names[i];
             nearest_distance = distance;
         }

@@ -21,6 +21,27 @@ static void list_takers(BpOption option, char *text, size_t size) {
                                      bp_commands[c].name);
 }
 
+/* What does the same as an option that other renderers have; NULL for others, and where the command has none
+ * of it. */
+static const char *instead_of(const char *name, const BpCommand *command) {
+    static const char shape[] =
+        "the height follows from --width and the scene's \"aspect_ratio\" or \"image_height\"";
+    static const struct {
+        const char *name, *instead;
+        BpOption option;
+    } foreign[] = {{"--height", shape, BP_OPTION_WIDTH},
+                   {"--size", shape, BP_OPTION_WIDTH},
+                   {"--resolution", shape, BP_OPTION_WIDTH},
+                   {"--samples", "--spp sets the samples per pixel", BP_OPTION_SPP},
+                   {"--out", "--output names the file", BP_OPTION_OUTPUT},
+                   {"--gpu", "--device gpu chooses one", BP_OPTION_DEVICE},
+                   {"--cpu", "--device cpu chooses it", BP_OPTION_DEVICE}};
+    for (size_t i = 0; i < sizeof foreign / sizeof *foreign && command != NULL; i++)
+        if (strcmp(name, foreign[i].name) == 0 && bp_option_taken(foreign[i].option, command))
+            return foreign[i].instead;
+    return NULL;
+}
+
 static BpStatus fail_unknown_option(const BpCommandLine *line, const char *found, BpError *err) {
     char name[64];
     snprintf(name, sizeof name, "%.*s", (int)strcspn(found, "="), found);
@@ -28,6 +49,10 @@ static BpStatus fail_unknown_option(const BpCommandLine *line, const char *found
     const char *command = line->command != NULL ? line->command->name : NULL;
     const char *blank = command != NULL ? " " : "";
     if (command == NULL) command = "";
+    const char *const instead = instead_of(name, line->command);
+    if (instead != NULL)
+        return bp_fail(err, BP_ERR_USAGE, "unknown option %s; %s (see `ballpark help%s%s`)", name, instead,
+                       blank, command);
     if (nearest != NULL)
         return bp_fail(err, BP_ERR_USAGE, "unknown option %s; did you mean --%s? (see `ballpark help%s%s`)",
                        name, nearest, blank, command);

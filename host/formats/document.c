@@ -3,7 +3,10 @@
 
 #include "base/encoding.h"
 #include "base/json_memory.h"
+#include "json_advice.h"
+#include "known_file.h"
 
+#include <ctype.h>
 #include <limits.h>
 #include <math.h>
 #include <stdarg.h>
@@ -14,19 +17,6 @@
 enum { DEPTH_MAX = 16, FOUND_SIZE = 80 };
 
 /* ---- syntax -------------------------------------------------------------------------------------------- */
-
-/* Where the token begins at which jansson reports an error; it tells where the token ends. */
-static size_t token_start(const BpDocument *document, const json_error_t *error) {
-    size_t end = error->position < 0 ? 0 : (size_t)error->position;
-    if (end > document->length) end = document->length;
-    const char *near = strstr(error->text, " near '");
-    if (near == NULL) return end;
-    const char *const token = near + strlen(" near '");
-    const size_t token_length = strlen(token) > 0 ? strlen(token) - 1 : 0;
-    if (token_length <= end && memcmp(document->text + end - token_length, token, token_length) == 0)
-        return end - token_length;
-    return end;
-}
 
 static BpStatus fail_at_offset(const BpDocument *document, size_t offset, BpError *err, const char *text) {
     int line = 0, column = 0;
@@ -65,11 +55,11 @@ static bool only_space_before(const char *text, size_t end) {
 }
 
 static BpStatus fail_syntax(const BpDocument *document, const json_error_t *error, BpError *err) {
-    const size_t at = token_start(document, error);
+    const size_t at = bp_json_error_place(document->text, document->length, error);
     const char *const rest = document->text + at;
-    const size_t rest_length = document->length - at;
     const char *hint = "";
-    char found[sizeof error->text], text[512];
+    char found[sizeof error->text], text[640], advice[BP_JSON_ADVICE_SIZE],
+        hinted[BP_JSON_ADVICE_SIZE + 4] = "";
     bp_printable(error->text, found, sizeof found);
     switch (json_error_code(error)) {
     case json_error_duplicate_key:
@@ -81,9 +71,10 @@ static BpStatus fail_syntax(const BpDocument *document, const json_error_t *erro
         hint = "; expected UTF-8: save the file in that encoding";
         break;
     case json_error_premature_end_of_input:
-        return fail_at_offset(document, document->length, err,
-                              "found the end of the text, expected more: a bracket or quote is not closed, "
-                              "or the file is truncated");
+        bp_json_advice(document->text, document->length, document->length, advice);
+        snprintf(text, sizeof text, "found the end of the text, expected more: %s",
+                 advice[0] != '\0' ? advice : "a bracket or quote is not closed, or the file is truncated");
+        return fail_at_offset(document, document->length, err, text);
     case json_error_end_of_input_expected:
         hint = "; expected nothing after the closing brace";
         break;
@@ -91,53 +82,18 @@ static BpStatus fail_syntax(const BpDocument *document, const json_error_t *erro
         hint = "; expected a number that double precision holds (up to 1.7e308)";
         break;
     default:
-        if (rest_length > 0 && (rest[0] == '/' || rest[0] == '#'))
-            hint = "; JSON has no comments: use \"title\" and \"source\", or remove it";
-        else if (rest_length > 2 && (strncmp(rest, "NaN", 3) == 0 || strncmp(rest, "nan", 3) == 0))
-            hint = "; JSON has no NaN: expected a finite number";
-        else if (rest_length > 2 && (strncmp(rest, "Inf", 3) == 0 || strncmp(rest, "inf", 3) == 0))
-            hint = "; JSON has no Infinity: expected a finite number";
-        else if (rest_length > 0 && (rest[0] == '}' || rest[0] == ']'))
-            hint = "; is there a comma too many before it?";
-        else if (rest_length > 0 && rest[0] == '-')
-            hint = "; JSON has no -Infinity or -NaN: expected a finite number";
+        bp_json_advice(document->text, document->length, at, advice);
+        if (advice[0] != '\0' && !(only_space_before(document->text, at) && isalnum((unsigned char)rest[0])))
+            snprintf(hinted, sizeof hinted, "; %s", advice);
         else if (only_space_before(document->text, at))
             hint =
                 "; expected a scene, which begins with \"{\", or a file of particles with the ending of its "
                 "format (`ballpark help render` lists them)";
         break;
     }
+    if (hint[0] == '\0') hint = hinted;
     snprintf(text, sizeof text, "not JSON: %s%s", found, hint);
     return fail_at_offset(document, at, err, text);
-}
-
-/* Files that are often given in place of a scene, known by their first bytes, and what to do with them. */
-typedef struct KnownFile {
-    const char *beginning, *what, *remedy;
-} KnownFile;
-
-/* The known file that begins like this, or NULL. */
-static const KnownFile *known_file(const char *text, size_t length) {
-    static const char unpack[] = "; unpack it first (only files of particles may be packed, by gzip)";
-    static const KnownFile known[] = {
-        {"{\"ballpark_accumulator\"", "the sums of a render (.bpa)",
-         ": `ballpark merge FILE.bpa -o FILE.png` makes the picture, and --resume FILE.bpa continues the "
-         "render"},
-        {"\x89PNG", "a PNG picture", ""},
-        {"\x76\x2f\x31\x01", "an EXR picture", ""},
-        {"P6", "a PPM picture", ""},
-        {"P3", "a PPM picture", ""},
-        {"PF", "a PFM picture", ""},
-        {"\x1f\x8b", "a file packed by gzip", unpack},
-        {"BZh", "a file packed by bzip2", unpack},
-        {"\xfd\x37zXZ", "a file packed by xz", unpack},
-        {"\x28\xb5\x2f\xfd", "a file packed by zstd", unpack},
-        {"PK\x03\x04", "a file packed by zip", unpack}};
-    for (size_t i = 0; i < sizeof known / sizeof *known; i++) {
-        const size_t size = strlen(known[i].beginning);
-        if (length >= size && memcmp(text, known[i].beginning, size) == 0) return &known[i];
-    }
-    return NULL;
 }
 
 /* Whether a file begins with bytes that no text has, trajectories in binary formats for example. */
@@ -151,10 +107,10 @@ static bool is_binary(const char *text, size_t length) {
 
 /* Names the remedy for files that are no JSON document at all. */
 static BpStatus refuse_other_files(const BpDocument *document, size_t start, BpError *err) {
-    const KnownFile *const known = known_file(document->text, document->length);
-    if (known != NULL) {
-        char text[256];
-        snprintf(text, sizeof text, "found %s, expected a scene%s", known->what, known->remedy);
+    BpKnownFile known;
+    if (bp_known_file(document->name, document->text, document->length, document->length, &known)) {
+        char text[320];
+        snprintf(text, sizeof text, "found %s, expected a scene%s", known.what, bp_known_file_remedy(&known));
         return fail_at_offset(document, 0, err, text);
     }
     const char *const wide = bp_text_wide(document->text, document->length);
@@ -382,10 +338,23 @@ void bp_missing_name_text(const char *kind, const char *list, const char *const 
         return;
     }
     const char *nearest = bp_nearest_name(name, names, count);
-    bp_printable(nearest != NULL ? nearest : names[0], near_shown, sizeof near_shown);
-    snprintf(out, BP_MISSING_NAME_SIZE,
-             "found the %s \"%s\", expected a name from \"%s\"; did you mean \"%s\"?", kind, shown, list,
-             near_shown);
+    if (nearest != NULL) {
+        bp_printable(nearest, near_shown, sizeof near_shown);
+        snprintf(out, BP_MISSING_NAME_SIZE,
+                 "found the %s \"%s\", expected a name from \"%s\"; did you mean \"%s\"?", kind, shown, list,
+                 near_shown);
+        return;
+    }
+    snprintf(out, BP_MISSING_NAME_SIZE, "found the %s \"%s\", expected a name from \"%s\":", kind, shown,
+             list);
+    for (size_t i = 0; i < count; i++) {
+        const size_t used = strlen(out);
+        bp_printable(names[i], near_shown, sizeof near_shown);
+        const bool fits = used + strlen(near_shown) + 8 < BP_MISSING_NAME_SIZE;
+        snprintf(out + used, BP_MISSING_NAME_SIZE - used, fits ? "%s \"%s\"" : "%s ...", i > 0 ? "," : "",
+                 near_shown);
+        if (!fits) return;
+    }
 }
 
 BpStatus bp_node_fail_name(const BpNode *node, const char *kind, const char *list, const char *const *names,
@@ -406,6 +375,13 @@ BpStatus bp_node_require(const BpNode *object, const char *name, const char *exp
     return bp_node_fail(object, BP_PART_VALUE, err, "found no \"%s\", expected %s", name, expected);
 }
 
+/* The name that is probably meant; none that the object has already. */
+static const char *nearest_absent(const BpNode *node, const char *name, const char *const *names,
+                                  size_t count) {
+    const char *const nearest = bp_nearest_name(name, names, count);
+    return nearest != NULL && json_object_get(node->value, nearest) == NULL ? nearest : NULL;
+}
+
 BpStatus bp_node_object(const BpNode *node, const char *const *names, size_t name_count, BpError *err) {
     if (node->value == NULL) return BP_OK;
     if (!json_is_object(node->value)) return bp_node_wrong(node, "an object: { ... }", err);
@@ -416,7 +392,7 @@ BpStatus bp_node_object(const BpNode *node, const char *const *names, size_t nam
         while (i < name_count && strcmp(name, names[i]) != 0) i++;
         if (i < name_count) continue;
         const BpNode unknown = bp_node_member(node, name);
-        const char *nearest = bp_nearest_name(name, names, name_count);
+        const char *nearest = nearest_absent(node, name, names, name_count);
         if (nearest != NULL)
             return bp_node_fail(&unknown, BP_PART_NAME, err, "unknown member; did you mean \"%s\"?", nearest);
         char list[384] = "";

@@ -2,6 +2,7 @@
 #include "image_file.h"
 
 #include "input_file.h"
+#include "known_file.h"
 
 #include <inttypes.h>
 #include <string.h>
@@ -27,6 +28,20 @@ BpStatus bp_image_allocate(const BpImageInput *input, uint64_t width, uint64_t h
                              "%" PRIu64 " are left; use a smaller image",
                              width, height, BP_IMAGE_TEXELS_MAX, input->texels_max);
     return bp_texels_create((uint32_t)width, (uint32_t)height, image, err);
+}
+
+/* Says what the file is, if it is known, and how to convert it. */
+static BpStatus fail_kind(const BpImageInput *input, BpError *err) {
+    char bytes[512];
+    BpKnownFile known = {BP_FILE_SOURCE, "another kind of file"};
+    const size_t length = fread(bytes, 1, sizeof bytes, input->stream);
+    if (length == 0)
+        known.what = "an empty file";
+    else
+        bp_known_file(input->path, bytes, length, (size_t)input->size, &known);
+    return bp_image_fail(input, err, "found %s, expected an image: PNG, OpenEXR or PFM%s", known.what,
+                         known.kind == BP_FILE_IMAGE ? "; ImageMagick converts it: convert FILE FILE.png"
+                                                     : "");
 }
 
 BpStatus bp_image_read(FILE *stream, uint64_t size, const char *path, BpEncoding encoding, double scale,
@@ -58,6 +73,5 @@ BpStatus bp_image_read(FILE *stream, uint64_t size, const char *path, BpEncoding
             bp_texels_destroy(image);
         return status;
     }
-    return bp_image_fail(&input, err, "found %s, expected an image: PNG, OpenEXR or PFM",
-                         count == 0 ? "an empty file" : "another kind of file");
+    return fail_kind(&input, err);
 }

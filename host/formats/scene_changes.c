@@ -2,6 +2,7 @@
 #include "scene_changes.h"
 
 #include "base/json_memory.h"
+#include "json_advice.h"
 
 #include <stdio.h>
 #include <stdlib.h>
@@ -36,9 +37,13 @@ static BpStatus read_value(const char *set, const char *text, json_t **value, Bp
     if (*value == NULL && !no_memory && is_word(text)) *value = json_string(text);
     if (*value != NULL) return BP_OK;
     if (no_memory) return bp_fail(err, BP_ERR_MEMORY, "out of memory while changing the scene");
-    return fail(set, err,
-                "the value is not JSON; expected a number, a word, a list such as [0,1,0], or a text in "
-                "double quotes");
+    char advice[BP_JSON_ADVICE_SIZE], message[BP_JSON_ADVICE_SIZE + 40];
+    bp_json_advice(text, strlen(text), bp_json_error_place(text, strlen(text), &error), advice);
+    snprintf(message, sizeof message, "the value is not JSON; %s",
+             advice[0] != '\0'
+                 ? advice
+                 : "expected a number, a word, a list such as [0,1,0], or a text in double quotes");
+    return fail(set, err, message);
 }
 
 /* ---- the member ---------------------------------------------------------------------------------------- */

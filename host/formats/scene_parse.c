@@ -368,11 +368,29 @@ static BpStatus choose_fresnel(const BpSceneChanges *changes, BpScene *scene, Bp
     return BP_OK;
 }
 
+/* Other programs have more shapes than spheres. */
+static BpStatus refuse_other_shapes(const BpNode *root, BpError *err) {
+    static const char *const shapes[] = {
+        "triangles", "triangle", "quads", "quad",      "boxes", "box",     "cubes",  "meshes",
+        "mesh",      "planes",   "plane", "cylinders", "cones", "disks",   "shapes", "primitives",
+        "polygons",  "vertices", "faces", "objects",   "world", "geometry"};
+    for (size_t i = 0; i < BP_COUNT(shapes); i++) {
+        const BpNode shape = bp_node_member(root, shapes[i]);
+        if (shape.value != NULL)
+            return bp_node_fail(
+                &shape, BP_PART_NAME, err,
+                "unknown member; only spheres are rendered: write them in \"spheres\", or name "
+                "files of them in \"clouds\" or \"particles\"");
+    }
+    return BP_OK;
+}
+
 static BpStatus parse_body(const BpNode *root, const BpSceneChanges *changes, BpScene *scene, BpError *err) {
     static const char *const names[] = {"format",   "title",         "source",    "camera",   "background",
                                         "backdrop", "light",         "transfer",  "textures", "materials",
                                         "spheres",  "clouds",        "particles", "$schema",  "media",
                                         "medium",   "shadow_catcher"};
+    BP_TRY(refuse_other_shapes(root, err));
     BP_TRY(bp_node_object(root, names, BP_COUNT(names), err));
     BP_TRY(bp_node_require(root, "camera", "one, such as \"camera\": { \"image_width\": 400 }", err));
     BP_TRY(parse_head(root, scene, err));

@@ -5,6 +5,7 @@
 #include "base/json_memory.h"
 #include "base/message_text.h"
 #include "input_file.h"
+#include "known_file.h"
 #include "particles/style.h"
 #include "scene_parse.h"
 
@@ -230,6 +231,19 @@ void bp_particle_cache_clear(BpParticleCache *cache) {
     *cache = (BpParticleCache){0};
 }
 
+/* Says what the file is, if it is known, and how to convert it. */
+static BpStatus fail_format(const BpNode *node, const char *path, FILE *stream, uint64_t size, BpError *err) {
+    char bytes[4096];
+    BpKnownFile known = {BP_FILE_SOURCE, "a file of an unknown format"};
+    const size_t length = fread(bytes, 1, sizeof bytes, stream);
+    bp_known_file(path, bytes, length, (size_t)size, &known);
+    return bp_node_fail(
+        node, BP_PART_VALUE, err,
+        "found %s, expected a name that ends in .xyz, .pdb, .cif, .gro, .dump, .lammpstrj, .data, "
+        ".gsd, .csv or .ply (and perhaps .gz)%s",
+        known.what, known.kind == BP_FILE_PARTICLES ? "; convert it, with ASE or MDAnalysis" : "");
+}
+
 /* The file of an entry of "particles", from the cache, or opened and, if there is room, left in it. */
 static BpStatus open_file(const BpNode *file_node, const char *path, const Entry *entry, size_t place,
                           BpParticleCache *cache, BpParticleFile **file, BpError *err) {
@@ -243,11 +257,7 @@ static BpStatus open_file(const BpNode *file_node, const char *path, const Entry
     BP_TRY(bp_node_open_file(file_node, path, "a file of particles", &stream, &size, err));
     BpStatus status = BP_OK;
     const BpParticleFormat format = bp_particle_format_find(path, stream);
-    if (format == BP_PARTICLES_NONE)
-        status = bp_node_fail(
-            file_node, BP_PART_VALUE, err,
-            "found a file of an unknown format, expected a name that ends in .xyz, .pdb, .cif, .gro, .dump, "
-            ".lammpstrj, .data, .gsd, .csv or .ply (and perhaps .gz)");
+    if (format == BP_PARTICLES_NONE) status = fail_format(file_node, path, stream, size, err);
     char *const copy = status == BP_OK ? strdup(path) : NULL; /* the file's reader keeps the name */
     if (status == BP_OK && copy == NULL) status = bp_fail(err, BP_ERR_MEMORY, "out of memory for a path");
     if (status == BP_OK)

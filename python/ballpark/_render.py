@@ -364,7 +364,7 @@ def _refuse_unknown(options: typing.Dict[str, typing.Any]) -> None:
     """Names the option that was probably meant, before any work."""
     known = set(inspect.signature(Render).parameters) - {"scene"}
     for name in sorted(set(options) - known):
-        near = difflib.get_close_matches(name, [*known, *inspect.signature(render).parameters], 1)
+        near = difflib.get_close_matches(name, [*known, *inspect.signature(render).parameters], 1, 0.8)
         raise TypeError(f"ballpark.render has no option {name!r}" + (f"; did you mean {near[0]!r}?" if near else ""))
 
 

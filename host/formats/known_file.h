@@ -1,0 +1,35 @@
+/* known_file.h: kinds of files that are often given in place of another.
+ *
+ * In:    a file's name and its first bytes.   Out: what it is, and what can be done with it.
+ * Knows: how such files begin and what they are called.   Does not know: what was expected, or how to read
+ * them. */
+#ifndef BP_FORMATS_KNOWN_FILE_H
+#define BP_FORMATS_KNOWN_FILE_H
+
+#include <stdbool.h>
+#include <stddef.h>
+
+typedef enum BpFileKind {
+    BP_FILE_SUMS,      /* of a render: .bpa */
+    BP_FILE_PICTURE,   /* that this program reads */
+    BP_FILE_IMAGE,     /* a picture that others read */
+    BP_FILE_GZIP,      /* which files of particles may be packed by */
+    BP_FILE_PACKED,    /* otherwise */
+    BP_FILE_PARTICLES, /* of other programs: trajectories, crystals */
+    BP_FILE_MESH,      /* of triangles, and scenes of other programs */
+    BP_FILE_SOURCE     /* of a program */
+} BpFileKind;
+
+typedef struct BpKnownFile {
+    BpFileKind kind;
+    const char *what; /* "a PNG picture"; static */
+} BpKnownFile;
+
+/* Whether it is one of them. `name` may be a path, or no name of a file at all. More than the first 4 KiB
+ * make no difference; `size` is that of the whole file. */
+bool bp_known_file(const char *name, const char *bytes, size_t length, size_t size, BpKnownFile *found);
+
+/* What to do with one where a scene was expected: "; ..." or "". Static. */
+const char *bp_known_file_remedy(const BpKnownFile *file);
+
+#endif

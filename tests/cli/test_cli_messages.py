@@ -1,0 +1,150 @@
+"""What the program says of slips that people make: each message names the place, what was found, and what to write instead.
+
+In:    documents with one slip, files of other programs, options of other renderers.   Out: the messages.
+"""
+import gzip
+import struct
+
+from cli import ProgramTest, main, scene
+
+
+class Messages(ProgramTest):
+    def refused(self, text, place, says):
+        """`text` is a scene's; `place` is LINE:COLUMN."""
+        self.write("s.json", text)
+        result = self.fail_with(2, "render", "s.json", "-o", "x.png", says=[f"s.json:{place}: ", says])
+        self.assertNotIn("x.png", self.files())
+        return result.errors
+
+    def test_numbers(self):
+        for written, place, says in ((".5", 20, "write 0.5"), ("-.5", 20, "write -0.5"), ("5.", 20, "write 5.0"), ("+1", 20, "write 1"),
+                                     ("+.5e3", 20, "write 0.5e3"), ("-0.", 20, "write -0.0"), ("007.50", 20, "write 7.50"),
+                                     ("2.e-1", 20, "write 2.0e-1"), ("1e", 20, '"1e" is no number'), ("1e+", 20, '"1e+" is no number'),
+                                     ("0x10", 21, '"0x10" is no number'), ("20deg", 22, '"20deg" is no number'),
+                                     ("1_000", 21, '"1_000" is no number'), ("1,5", 22, "numbers have a decimal point"),
+                                     ("1/2", 21, "JSON does not calculate"), ("2*3", 21, "JSON does not calculate"),
+                                     ("NaN", 20, "JSON has no NaN: expected a finite number"), ("-inf", 20, "JSON has no -Infinity"),
+                                     ("Infinity", 20, "JSON has no Infinity")):
+            for rest in ("}}", ', "max_depth": 3}}', " }\n}"):
+                self.refused('{"camera":{"vfov": ' + written + rest, f"1:{place}", says)
+        # What is advised is right: it is read.
+        for written, right in ((".5", "0.5"), ("5.", "5.0"), ("+1", "1")):
+            self.write("s.json", scene(spheres=[]))
+            self.fail_with(2, "render", "s.json", "--set", f"camera.vfov={written}", says=f"the value is not JSON; write {right}")
+            self.succeed("render", "s.json", "-q", "--set", f"camera.vfov={right}")
+
+    def test_signs_and_words(self):
+        for text, place, says in (
+                ('{"camera":{"lookat": [1,2,3,]}}', "1:29", "is there a comma too many before it?"),
+                ('{"camera":{"vfov": 1,\n}}', "2:1", "is there a comma too many before it?"),
+                ('{"camera":{"vfov": 1,,"a":2}}', "1:22", "a comma too many: remove it"),
+                ('{"camera":{"lookat": [,1,2,3]}}', "1:23", "a comma too many: remove it"),
+                ('{"camera":{"vfov":,"a":2}}', "1:19", "a value is missing after the colon"),
+                ('{"camera":{"vfov":}}', "1:19", "a value is missing after the colon"),
+                ('{"camera"}', "1:10", "a colon and a value are missing"),
+                ("{'camera':{'vfov': 1}}", "1:2", "double quotes"), ("{\"camera\":{\"view\": 'front'}}", "1:20", "double quotes"),
+                ('{“camera”:{"vfov": 1}}', "1:2", "double quotes"), ('{"title": „a“}', "1:11", "double quotes"),
+                ('{camera:{"vfov": 1}}', "1:2", 'write "camera"'), ('{"camera":{vfov: 1}}', "1:12", 'write "vfov"'),
+                ('{"camera":{"view": front}}', "1:20", 'write "front"'),
+                ('{"camera":{"fit": True}}', "1:19", "write true"), ('{"camera":{"fit": None}}', "1:19", "write null"),
+                ('// a\n{"camera":{}}', "1:1", "JSON has no comments"), ('# a\n{"camera":{}}', "1:1", "JSON has no comments"),
+                ('{"camera":{"vfov": 1 /* a */}}', "1:22", "JSON has no comments"),
+                ('{"camera":{"lookat": (1,2,3)}}', "1:22", "square brackets: [1, 2, 3]"),
+                ('{"camera":{"vfov"= 1}}', "1:18", "a colon stands between a name and its value"),
+                ('{"camera":{"vfov": 1};"a":2}', "1:22", "a comma stands between members"),
+                ('{"camera":{"vfov": 1} "title": "a"}', "1:23", "is there a comma missing before it?"),
+                ('{"camera":{"lookat": [1 2 3]}}', "1:25", "is there a comma missing before it?"),
+                ('{"camera":{"vfov" 1}}', "1:19", "is there a colon or a comma missing before it?"),
+                ('{"title": "a\nb"}', "1:11", "is its closing quote missing?"), ('{"title": "a\\qb"}', "1:11", "write \\\\ for a backslash"),
+                ('{"title": "a\tb"}', "1:11", "write \\t for a tab")):
+            self.refused(text, place, says)
+
+    def test_brackets(self):
+        for text, place, says in (
+                ('{"camera":{"vfov": 1}\n', "2:1", "the { of line 1 is not closed, or the file is truncated"),
+                ('{"camera":\n{"lookat":\n[1,2', "3:5", "the [ of line 3 is not closed"),
+                ('{"title": "[abc', "1:16", "the quote of line 1 is not closed"),
+                ('{"camera":{"lookat": [1,\n2,3}}', "2:4", "the [ of line 1 is not closed before it"),
+                ('{"camera":\n{"vfov": 1]}', "2:11", "the { of line 2 is not closed before it"),
+                ('{"camera":{"vfov": 1}}}', "1:23", "expected nothing after the closing brace")):
+            self.refused(text, place, says)
+
+    def test_shapes(self):
+        for name in ("triangles", "quads", "meshes", "boxes", "mesh", "cylinders", "planes"):
+            said = self.refused('{"camera": {},\n "%s": []}' % name, "2:2", f"{name}: unknown member; only spheres are rendered")
+            self.assertIn('in "spheres", or name files of them in "clouds" or "particles"', said)
+
+    def test_near_names(self):
+        """A suggestion is near, and never a name that is there already."""
+        for name, near in (("spheers", "spheres"), ("spere", "spheres"), ("textur", "textures"), ("lihgt", "light"), ("backgroud", "background"),
+                           ("material", "materials"), ("transfr", "transfer")):
+            self.refused('{"camera": {}, "%s": []}' % name, "1:16", f'unknown member; did you mean "{near}"?')
+        for name in ("transformations", "shading", "lookat", "pictures", "tone"):
+            said = self.refused('{"camera": {}, "%s": []}' % name, "1:16", "unknown member; expected one of format, ")
+            self.assertNotIn("did you mean", said)
+        sphere = '{"camera": {}, "materials": {"alu": {"type": "metal", "albedo": [1, 1, 1]}},\n "spheres": [{"center": [0, 0, 0], %s}]}'
+        said = self.refused(sphere % '"center2": [1, 1, 1], "radius": 1, "material": "alu"', "2:36", "unknown member; expected one of ")
+        self.assertIn("center_end", said)
+        said = self.refused(sphere % '"radius": 1, "material": "gold"', "2:61", 'found the material "gold", expected a name from "materials": "alu"')
+        self.assertNotIn("did you mean", said)
+        self.refused(sphere % '"radius": 1, "material": "aul"', "2:61", 'did you mean "alu"?')
+
+    def test_options(self):
+        self.write("s.json", scene())
+        for option, says in (("--height", 'the height follows from --width and the scene\'s "aspect_ratio" or "image_height"'),
+                             ("--samples", "--spp sets the samples per pixel"), ("--gpu", "--device gpu"), ("--widht", "did you mean --width?"),
+                             ("--tranfser", "did you mean --transfer?")):
+            self.fail_with(2, "render", "s.json", option, "3", says=[f"unknown option {option}", says])
+        for option in ("--weight", "--aperture", "--lens", "--sun"):
+            said = self.fail_with(2, "render", "s.json", option, "3", says=[f"unknown option {option}; see `ballpark help render`"])
+            self.assertNotIn("did you mean", said.errors)
+        # merge has no width.
+        self.assertNotIn("--width", self.fail_with(2, "merge", "s.bpa", "--height", "3").errors)
+
+    CONVERT = "convert it, with ASE or MDAnalysis, to extended XYZ"
+    SPHERES = "only spheres are rendered"
+    POSCAR = b"NaCl\n 1.0\n5.6 0 0\n0 5.6 0\n0 0 5.6\nNa Cl\n4 4\nDirect\n0 0 0\n"
+    OBJ = b"# a cube\nmtllib a.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n"
+    FILES = (("POSCAR", POSCAR, "a structure of VASP (POSCAR)", CONVERT), ("CONTCAR.relaxed", POSCAR, "a structure of VASP", CONVERT),
+             ("unnamed", POSCAR, "a structure of VASP", CONVERT), ("run.vasp", POSCAR, "a structure of VASP", CONVERT),
+             ("a.obj", OBJ, "a mesh (OBJ)", SPHERES), ("unnamed", OBJ, "a mesh (OBJ)", SPHERES),
+             ("a.stl", b"solid x\nfacet normal 0 0 1\n", "a mesh (STL)", SPHERES),
+             ("unnamed", b"solid" + bytes(75) + struct.pack("<I", 2) + bytes(100), "a mesh (STL)", SPHERES),
+             ("a.xtc", struct.pack(">ii", 1995, 3) + bytes(90), "a trajectory of GROMACS (XTC)", CONVERT),
+             ("unnamed", struct.pack(">ii", 1993, 3) + bytes(90), "a trajectory of GROMACS (TRR)", CONVERT),
+             ("a.dcd", struct.pack("<i", 84) + b"CORD" + bytes(90), "a trajectory of CHARMM or NAMD (DCD)", CONVERT),
+             ("a.nc", b"CDF\1" + bytes(90), "a NetCDF file", CONVERT), ("a.h5", b"\x89HDF\r\n\x1a\n" + bytes(90), "an HDF5 file", CONVERT),
+             ("a.blend", b"BLENDER-v300" + bytes(90), "a file of Blender", SPHERES),
+             ("packed.blend", b"\x28\xb5\x2f\xfd" + bytes(90), "a file of Blender", SPHERES),
+             ("main.cc", b"// A picture\n#include <iostream>\nint main() {}\n", "the source text of a program", "write the scene as JSON"),
+             ("unnamed", b'#include "rtweekend.h"\n', "the source text of a program", "write the scene as JSON"),
+             ("a.test.gz", gzip.compress(b"hello"), "a file packed by gzip", "whose format the name tells, as in FILE.xyz.gz; rename it, or unpack"),
+             ("a.json.gz", gzip.compress(b"{}"), "a file packed by gzip", "unpack it"),
+             ("a.xyz.bz2", b"BZh91AY&SY" + bytes(20), "a file packed by bzip2", "unpack it first"),
+             ("a.jpg", b"\xff\xd8\xff\xe0" + bytes(90), "a JPEG picture", "expected a scene"))
+
+    def test_files(self):
+        for name, content, what, remedy in self.FILES:
+            self.write(name, content)
+            said = self.fail_with(2, "render", name, "-o", "x.png", says=[f"{name}:1:1: found {what}", remedy]).errors
+            self.assertNotIn("not JSON", said)
+            self.write("s.json", scene(particles=[{"file": name}]))
+            said = self.fail_with(2, "render", "s.json", "-o", "x.png", says=["s.json:1:", f"particles[0].file: found {what}"]).errors
+            self.assertEqual("convert it" in said, remedy == self.CONVERT)
+        # A scene is a scene by what is in it, whatever it is called.
+        for name in ("POSCAR", "scene.obj", "scene.c"):
+            self.write(name, scene(spheres=[]))
+            self.succeed("render", name, "-o", "x.png")
+
+    def test_images(self):
+        for name, head, what in (("a.jpg", b"\xff\xd8\xff\xe0", "a JPEG picture"), ("a.webp", b"RIFF\0\0\0\0WEBPVP8 ", "a WebP picture"),
+                                 ("a.tif", b"II*\0", "a TIFF picture"), ("a.tif", b"MM\0*", "a TIFF picture"), ("a.gif", b"GIF89a", "a GIF picture"),
+                                 ("a.bmp", b"BM\x99\0", "a BMP picture")):
+            self.write(name, head + bytes(90))
+            self.write("s.json", scene(background={"image": name}))
+            self.fail_with(2, "render", "s.json", "-o", "x.png",
+                           says=[f"{name}: found {what}, expected an image: ", "ImageMagick converts it: convert FILE FILE.png"])
+
+
+if __name__ == "__main__":
+    main()
