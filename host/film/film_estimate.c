@@ -136,28 +136,23 @@ double bp_film_squared_error(const BpFilm *film, size_t pixel) {
     return estimate_pixel(film, pixel).squared_error[3];
 }
 
+static void add_cause(uint64_t count, const char *words, char text[BP_INVALID_TEXT_SIZE]) {
+    const size_t used = strlen(text);
+    if (count == 0) return;
+    snprintf(text + used, BP_INVALID_TEXT_SIZE - used, "%s%" PRIu64 " %s", used > 0 ? ", " : " (", count,
+             words);
+}
+
 const char *bp_film_invalid_causes(const BpFilm *film, char text[BP_INVALID_TEXT_SIZE]) {
-#define ADD(member, tally, words) +film->member
-    const uint64_t known = 0 BP_INVALID_LIST(ADD);
-#undef ADD
-    const struct {
-        uint64_t count;
-        const char *words;
-    } causes[] = {
-#define CAUSE(member, tally, words) {film->member, words},
-        BP_INVALID_LIST(CAUSE)
-#undef CAUSE
-            {film->invalid_samples - known, "of a cause that an older version did not note"}};
+    uint64_t unknown = film->invalid_samples;
     text[0] = '\0';
-    const char *before = " (";
-    for (size_t i = 0; i < sizeof causes / sizeof *causes; i++) {
-        const size_t used = strlen(text);
-        if (causes[i].count == 0) continue;
-        snprintf(text + used, BP_INVALID_TEXT_SIZE - used, "%s%" PRIu64 " %s", before, causes[i].count,
-                 causes[i].words);
-        before = ", ";
-    }
-    if (before[0] == ',') strcat(text, ")");
+#define SAY(member, tally, words)                                                                            \
+    add_cause(film->member, words, text);                                                                    \
+    unknown -= film->member;
+    BP_INVALID_LIST(SAY)
+#undef SAY
+    add_cause(unknown, "of a cause that an older version did not note", text);
+    if (text[0] != '\0') strcat(text, ")");
     return text;
 }
 
