@@ -3,8 +3,8 @@
  * In:    an open file, or a trajectory of many frames.   Out: one frame of points at a time.
  * Knows: which formats there are.   Does not know: scenes, how points look (style.h), how a file was found.
  *
- * Formats: XYZ (plain and extended), PDB, mmCIF, GRO, LAMMPS dump and data, GSD, CSV, PLY; each also packed
- * by gzip. Nothing in a file is trusted: memory grows with what was read and never with what a count
+ * Formats: XYZ (plain and extended), PDB, PQR, mmCIF, GRO, LAMMPS dump and data, GSD, CSV, PLY; each also
+ * packed by gzip. Nothing in a file is trusted: memory grows with what was read and never with what a count
  * promises, and every error names the file, and the line where there are lines. A reader that has to guess
  * says so in `notes`. Coordinates are as written, in the file's unit of length. */
 #ifndef BP_PARTICLES_PARTICLES_H
@@ -19,6 +19,7 @@ typedef enum BpParticleFormat {
     BP_PARTICLES_NONE, /* no file of particles, as far as name and beginning tell */
     BP_PARTICLES_XYZ,
     BP_PARTICLES_PDB,
+    BP_PARTICLES_PQR,
     BP_PARTICLES_CIF,
     BP_PARTICLES_GRO,
     BP_PARTICLES_DUMP,
@@ -48,7 +49,7 @@ typedef struct BpNames {
 } BpNames;
 
 enum {
-    BP_PARTICLE_ALTERNATIVE = 1, /* another place of an atom that was already handed over */
+    BP_PARTICLE_ALTERNATIVE = 1, /* another place of an atom that is shown elsewhere */
     BP_PARTICLE_DUMMY = 2,       /* a site of a model, no atom */
     BP_PARTICLE_ELEMENT_GUESSED = 4
 };

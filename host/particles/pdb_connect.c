@@ -4,18 +4,22 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum { FIELD = 5, FIRST_ATOM_COLUMN = 7, FIRST_BOND_COLUMN = 12, BONDS_A_LINE = 4, FIRST_CAPACITY = 1024 };
+enum {
+    FIELD = 5,
+    FIELD_MAX = 8,
+    BEGIN = 6,   /* of the numbers, after the record's name */
+    NUMBERS = 5, /* of a line: an atom and what it is bonded to; hydrogen bonds follow in old files */
+    FIRST_CAPACITY = 1024
+};
 
-/* The text in five columns as a number, in which every text has its own; 0: there is none. False: something
- * that is no serial number. */
-static bool serial_at(const char *line, size_t length, size_t column, uint64_t *key) {
-    char text[FIELD + 1];
-    fixed_text(line, length, column, column + FIELD - 1, text, sizeof text);
-    const char *rest = text;
-    while (rest[0] == '0' && rest[1] != '\0') rest++;
+/* A serial number as a number, in which every text has its own; 0: "". False: something that is none. */
+static bool key_of(const char *text, size_t length, uint64_t *key) {
+    size_t i = 0;
+    while (i + 1 < length && text[i] == '0') i++;
     *key = 0;
-    for (; *rest != '\0'; rest++) {
-        const unsigned char c = (unsigned char)*rest;
+    if (length - i > FIELD_MAX) return false;
+    for (; i < length; i++) {
+        const unsigned char c = (unsigned char)text[i];
         const bool good =
             (c >= '0' && c <= '9') || (c >= 'A' && c <= 'Z') || (c >= 'a' && c <= 'z') || c == '-';
         if (!good) return false;
@@ -36,24 +40,72 @@ static bool make_room(void *array, size_t count, size_t *capacity, size_t size) 
     return true;
 }
 
-BpStatus pdb_take_serial(PdbSerials *serials, const char *line, BpError *err) {
+BpStatus pdb_take_serial(PdbSerials *serials, const char *text, BpError *err) {
+    const size_t length = strlen(text);
     uint64_t key = 0;
-    if (!serial_at(line, strlen(line), FIRST_ATOM_COLUMN, &key)) key = 0;
+    if (!key_of(text, length, &key)) key = 0;
     if (!make_room(&serials->key, serials->count, &serials->capacity, sizeof *serials->key))
         return bp_fail(err, BP_ERR_MEMORY, "out of memory for the numbers of %zu atoms", serials->count);
     serials->key[serials->count++] = key;
+    if (key != 0 && length > serials->longest) serials->longest = length;
     return BP_OK;
 }
 
-BpStatus pdb_take_links(PdbLinks *links, const char *line, BpError *err) {
-    const size_t length = strlen(line);
+/* What a line gives: numbers as texts, "" where columns are blank. */
+typedef struct Fields {
+    const char *begin[NUMBERS];
+    size_t length[NUMBERS], count;
+} Fields;
+
+static bool is_blank(char c) {
+    return c == ' ' || c == '\t' || c == '\r';
+}
+
+/* Columns of one width, in which numbers are at the right end. False: the line has other columns. */
+static bool take_columns(const char *text, size_t length, size_t width, Fields *fields) {
+    *fields = (Fields){0};
+    for (size_t at = 0; at < length && fields->count < NUMBERS; at += width) {
+        size_t begin = at, end = at + width < length ? at + width : length;
+        while (begin < end && is_blank(text[begin])) begin++;
+        if (begin < end && (end - at < width || is_blank(text[end - 1]))) return false;
+        for (size_t i = begin; i < end; i++)
+            if (is_blank(text[i])) return false;
+        fields->begin[fields->count] = text + begin;
+        fields->length[fields->count++] = end - begin;
+    }
+    /* A number that goes on behind them: they are wider. */
+    return fields->count > 0 && (length <= NUMBERS * width || is_blank(text[NUMBERS * width]));
+}
+
+static void take_words(const char *text, size_t length, Fields *fields) {
+    const char *const end = text + length;
+    *fields = (Fields){0};
+    while (fields->count < NUMBERS) {
+        while (text < end && is_blank(*text)) text++;
+        if (text == end) return;
+        fields->begin[fields->count] = text;
+        while (text < end && !is_blank(*text)) text++;
+        fields->length[fields->count] = (size_t)(text - fields->begin[fields->count]);
+        fields->count++;
+    }
+}
+
+BpStatus pdb_take_links(PdbLinks *links, const PdbSerials *serials, const char *line, BpError *err) {
+    const size_t width = serials->longest > FIELD ? serials->longest : FIELD;
+    const char *const text = line + BEGIN;
+    size_t length = strlen(text);
+    Fields fields;
     uint64_t atom = 0, other = 0;
-    if (!serial_at(line, length, FIRST_ATOM_COLUMN, &atom) || atom == 0) {
+    while (length > 0 && is_blank(text[length - 1])) length--;
+    const bool by_columns = take_columns(text, length, width, &fields);
+    if (!by_columns) take_words(text, length, &fields);
+    if (fields.count == 0 || fields.length[0] > width || !key_of(fields.begin[0], fields.length[0], &atom) ||
+        atom == 0) {
         links->unreadable++;
         return BP_OK;
     }
-    for (size_t i = 0; i < BONDS_A_LINE; i++) { /* columns from 32 on held hydrogen bonds and salt bridges */
-        if (!serial_at(line, length, FIRST_BOND_COLUMN + FIELD * i, &other)) {
+    for (size_t i = 1; i < fields.count; i++) {
+        if (fields.length[i] > width || !key_of(fields.begin[i], fields.length[i], &other)) {
             links->unreadable++;
             continue;
         }

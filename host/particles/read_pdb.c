@@ -1,8 +1,9 @@
-/* read_pdb.c: PDB, the format of fixed columns (wwPDB, version 3.3), as programs of all ages write it; see
- * reader.h. */
-#include "elements.h"
+/* read_pdb.c: PDB, the format of fixed columns (wwPDB, version 3.3), as programs of all ages write it, and
+ * PQR, which differs in the lines of atoms; see reader.h. */
+#include "crystal.h"
+#include "pdb_atom.h"
 #include "pdb_connect.h"
-#include "reader.h"
+#include "places.h"
 
 #include <stdlib.h>
 #include <string.h>
@@ -10,68 +11,75 @@
 /* How far connections are looked for behind a model. */
 #define TAIL_BYTES_MAX ((uint64_t)1 << 30)
 
+enum { CELL_BYTES = 60 };
+
 /* What is kept from frame to frame. */
 typedef struct State {
-    char cell[64];        /* the line that says it, or "" */
+    char cell[64]; /* the line that says it, or "" */
+    CrystalFrame crystal;
+    bool scale_here;      /* `crystal` is of the lines before this frame */
+    bool names_left;      /* as pdb_read_atom() has it */
+    Places places;        /* of this frame */
     PdbLinks links, tail; /* of this frame; behind the last of several models, for each of them */
     PdbSerials serials;   /* of this frame */
     bool tail_read;
+    bool cell_behind; /* the first frame had no cell before it, so each has its own behind it */
 } State;
 
 static bool is_record(const char *line, const char *name) {
     return strncmp(line, name, strlen(name)) == 0;
 }
 
-static bool is_atom(const char *line) {
-    return is_record(line, "ATOM  ") || is_record(line, "HETATM");
-}
-
 /* A number in fixed columns; false when there is none. */
-static bool fixed_number(const char *line, size_t length, size_t first, size_t last, double *value) {
+static bool fixed_number(const char *line, size_t first, size_t last, double *value) {
     char text[16];
-    return word_number(fixed_text(line, length, first, last, text, sizeof text), value);
+    return word_number(fixed_text(line, strlen(line), first, last, text, sizeof text), value);
 }
 
-static void take_cell(BpParticleFile *file, const char *line, size_t length) {
+static void take_cell(BpParticleFile *file, const State *state) {
+    const char *const line = state->cell;
     double lengths[3], angles[3];
     for (size_t i = 0; i < 3; i++) {
-        if (!fixed_number(line, length, 7 + 9 * i, 15 + 9 * i, &lengths[i])) return;
-        if (!fixed_number(line, length, 34 + 7 * i, 40 + 7 * i, &angles[i])) return;
+        if (!fixed_number(line, 7 + 9 * i, 15 + 9 * i, &lengths[i])) return;
+        if (!fixed_number(line, 34 + 7 * i, 40 + 7 * i, &angles[i])) return;
     }
     frame_cell_angles(file, lengths, angles);
+    crystal_turn_cell(file, &state->crystal, "SCALE");
 }
 
-static BpStatus take_atom(BpParticleFile *file, const char *line, char *alternative, BpError *err) {
-    Input *const input = &file->input;
-    const size_t length = strlen(line);
-    char name[8], residue[8], chain[8], symbol[4], padded[5] = "    ";
-    double values[3] = {NAN, NAN, NAN}, whole = 0;
-    Particle particle = PARTICLE_NONE;
-    for (size_t i = 0; i < 3; i++) {
-        char text[16];
-        if (fixed_number(line, length, 31 + 8 * i, 38 + 8 * i, &particle.position[i])) continue;
-        fixed_text(line, length, 31 + 8 * i, 38 + 8 * i, text, sizeof text);
-        return input_wrong(input, text, "a coordinate in columns 31-38, 39-46 and 47-54", err);
+/* The cell and how it lies are kept for the frames that follow, since many files say them once; but a new
+ * cell does not lie as the one before. */
+static void take_crystal(State *state, const char *line) {
+    if (is_record(line, "CRYST1") && strncmp(line, state->cell, CELL_BYTES) != 0) {
+        snprintf(state->cell, sizeof state->cell, "%.*s", CELL_BYTES, line);
+        if (!state->scale_here) state->crystal = (CrystalFrame){0};
     }
-    for (size_t i = 0; i < 4 && 12 + i < length; i++) padded[i] = line[12 + i];
-    particle.name = fixed_text(line, length, 13, 16, name, sizeof name);
-    particle.residue = fixed_text(line, length, 18, 21, residue, sizeof residue); /* as TIP3 is written */
-    particle.chain = fixed_text(line, length, 22, 22, chain, sizeof chain);
-    if (chain[0] == '\0') particle.chain = fixed_text(line, length, 73, 76, chain, sizeof chain);
-    fixed_text(line, length, 77, 78, symbol, sizeof symbol);
-    atom_identify(&particle, symbol, padded, true);
-    const char place = length > 16 ? line[16] : ' ';
-    atom_mark_place(&particle, place == ' ' ? '\0' : place, alternative);
-    if (!fixed_number(line, length, 55, 60, &values[0])) values[0] = NAN;
-    if (!fixed_number(line, length, 61, 66, &values[1])) values[1] = NAN;
-    if (fixed_number(line, length, 23, 26, &whole)) values[2] = whole;
-    particle.values = values;
-    return frame_add(file, &particle, true, err);
+    if (!is_record(line, "SCALE") || line[5] < '1' || line[5] > '3') return;
+    if (!state->scale_here) state->crystal = (CrystalFrame){0};
+    state->scale_here = true;
+    const int i = line[5] - '1';
+    double *const row = state->crystal.row[i];
+    state->crystal.given[i] = fixed_number(line, 11, 20, &row[0]) && fixed_number(line, 21, 30, &row[1]) &&
+                              fixed_number(line, 31, 40, &row[2]);
+    if (!fixed_number(line, 46, 55, &row[3])) row[3] = 0;
+}
+
+static BpStatus take_atom(BpParticleFile *file, State *state, const char *line, BpError *err) {
+    PdbAtom atom;
+    if (file->format == BP_PARTICLES_PQR)
+        BP_TRY(pqr_read_atom(&file->input, line, &atom, err));
+    else
+        BP_TRY(pdb_read_atom(&file->input, line, &atom, &state->names_left, err));
+    BP_TRY(frame_add(file, &atom.particle, true, err));
+    if (file->out == NULL) return BP_OK;
+    BP_TRY(places_take(&state->places, atom.site, atom.letter, err));
+    return pdb_take_serial(&state->serials, atom.serial, err);
 }
 
 void pdb_state_destroy(void *state) {
     State *const pdb = state;
     if (pdb == NULL) return;
+    places_clear(&pdb->places);
     free(pdb->links.pair);
     free(pdb->tail.pair);
     free(pdb->serials.key);
@@ -87,8 +95,9 @@ static BpStatus read_tail(Input *input, State *state, BpError *err) {
     while (status == BP_OK && input->taken - taken < TAIL_BYTES_MAX &&
            input_line(input, &line, NULL) == BP_OK) {
         if (line == NULL) break;
-        if (is_atom(line)) state->tail.count = state->tail.unreadable = 0; /* those of a model are its own */
-        if (is_record(line, "CONECT")) status = pdb_take_links(&state->tail, line, err);
+        if (pdb_is_atom(line))
+            state->tail.count = state->tail.unreadable = 0; /* those of a model are its own */
+        if (is_record(line, "CONECT")) status = pdb_take_links(&state->tail, &state->serials, line, err);
     }
     BP_TRY(status);
     state->tail_read = true;
@@ -99,20 +108,35 @@ static BpStatus read_tail(Input *input, State *state, BpError *err) {
     return BP_OK;
 }
 
+/* After the end of a model: some programs write its cell there. */
+static BpStatus take_cell_behind(BpParticleFile *file, State *state, BpError *err) {
+    char *line = NULL;
+    state->cell_behind |= file->frame == 0 && state->cell[0] == '\0';
+    if (!state->cell_behind) return BP_OK;
+    BP_TRY(input_line(&file->input, &line, err));
+    if (line == NULL) return BP_OK;
+    if (is_record(line, "CRYST1"))
+        take_crystal(state, line);
+    else
+        input_hold(&file->input, line);
+    return BP_OK;
+}
+
 BpStatus read_pdb(BpParticleFile *file, bool *end, BpError *err) {
-    static const char *const columns[] = {"occupancy", "bfactor", "residue_number"};
+    const char *const *const columns = file->format == BP_PARTICLES_PQR ? pqr_columns : pdb_columns;
     Input *const input = &file->input;
-    bool begun = false, has_atoms = false, model = false;
-    char *line = NULL, alternative = '\0';
+    bool has_atoms = false, model = false;
+    char *line = NULL;
     if (file->state == NULL) file->state = calloc(1, sizeof(State));
     State *const state = file->state;
     if (state == NULL) return bp_fail(err, BP_ERR_MEMORY, "out of memory");
-    state->links.count = state->links.unreadable = state->serials.count = 0;
+    state->links.count = state->links.unreadable = 0;
+    state->serials.count = state->serials.longest = state->places.count = 0;
+    state->scale_here = false;
     for (;;) {
         BP_TRY(input_line(input, &line, err));
         if (line == NULL) break;
-        /* Kept for the frames that follow, since many files say it once. */
-        if (is_record(line, "CRYST1")) snprintf(state->cell, sizeof state->cell, "%.60s", line);
+        take_crystal(state, line);
         model = is_record(line, "ENDMDL");
         if (has_atoms && (model || strcmp(line, "END") == 0 || is_record(line, "END "))) break;
         if (has_atoms && is_record(line, "MODEL ")) {
@@ -120,21 +144,22 @@ BpStatus read_pdb(BpParticleFile *file, bool *end, BpError *err) {
             break;
         }
         if (has_atoms && file->out != NULL && is_record(line, "CONECT"))
-            BP_TRY(pdb_take_links(&state->links, line, err));
-        if (!is_atom(line)) continue;
-        if (!begun) BP_TRY(frame_begin(file, columns, 3, err));
-        begun = has_atoms = true;
-        BP_TRY(take_atom(file, line, &alternative, err));
-        if (file->out != NULL) BP_TRY(pdb_take_serial(&state->serials, line, err));
+            BP_TRY(pdb_take_links(&state->links, &state->serials, line, err));
+        if (!pdb_is_atom(line)) continue;
+        if (!has_atoms) BP_TRY(frame_begin(file, columns, PDB_COLUMN_COUNT, err));
+        has_atoms = true;
+        BP_TRY(take_atom(file, state, line, err));
     }
     *end = !has_atoms && file->frame > 0;
     if (*end) return BP_OK;
     if (!has_atoms)
         return input_fail(input, false, err, "found no line of ATOM or HETATM, expected a PDB file's atoms");
-    if (file->out == NULL) return BP_OK;
+    if (file->out == NULL) return model ? take_cell_behind(file, state, err) : BP_OK;
     file->out->angstrom = 1;
-    if (state->cell[0] != '\0') take_cell(file, state->cell, strlen(state->cell));
     if (model && !state->tail_read) BP_TRY(read_tail(input, state, err));
+    if (model) BP_TRY(take_cell_behind(file, state, err));
+    if (state->cell[0] != '\0') take_cell(file, state);
+    BP_TRY(places_mark(&state->places, file->out, err));
     file->out->bonds_partial = true;
     BP_TRY(pdb_add_bonds(file, &state->links, &state->serials, err));
     return pdb_add_bonds(file, &state->tail, &state->serials, err);

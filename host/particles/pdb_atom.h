@@ -1,0 +1,29 @@
+/* pdb_atom.h: the line of one atom, in a PDB file and in a PQR file.
+ *
+ * In:    a line that begins with ATOM or HETATM.   Out: what it says of the atom.
+ * Knows: columns and words of such lines, and how programs write numbers that do not fit.   Does not know:
+ *        other lines, frames. */
+#ifndef BP_PARTICLES_PDB_ATOM_H
+#define BP_PARTICLES_PDB_ATOM_H
+
+#include "reader.h"
+
+typedef struct PdbAtom {
+    Particle particle; /* whose texts are those below, as `values` are its values */
+    char name[8], residue[8], chain[8];
+    char serial[12], site[32], letter[2]; /* as in pdb_connect.h and places.h */
+    double values[3];                     /* of pdb_columns or pqr_columns */
+} PdbAtom;
+
+enum { PDB_COLUMN_COUNT = 3 };
+extern const char *const pdb_columns[PDB_COLUMN_COUNT], *const pqr_columns[PDB_COLUMN_COUNT];
+
+bool pdb_is_atom(const char *line);
+/* PDB: fixed columns. *names_left: some name of one letter stood at the left end of its columns, so that
+ * these do not tell elements; false at the beginning of a file. Fails without coordinates. */
+BpStatus pdb_read_atom(const Input *input, const char *line, PdbAtom *atom, bool *names_left, BpError *err);
+/* PQR (PDB2PQR, APBS): words, of which the last are x, y, z, charge and radius, all in angstrom and
+ * elementary charges, and perhaps an element; numbers with signs may touch. */
+BpStatus pqr_read_atom(const Input *input, const char *line, PdbAtom *atom, BpError *err);
+
+#endif

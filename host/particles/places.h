@@ -1,0 +1,31 @@
+/* places.h: which of the alternative places of atoms are shown.
+ *
+ * In:    for each particle of a frame its site and its letter.   Out: flags of the frame's particles.
+ * Knows: what alternative places are in PDB and mmCIF files.   Does not know: how these are written.
+ *
+ * Each atom is shown at one place. A site is a residue: chain, number and insertion code. Of its places those
+ * with letter A are shown, or if it has none, those with its first letter; an atom that has no such place is
+ * shown at its first. Where residues of different names share a site, and no letter, they are alternatives as
+ * well (microheterogeneity). An atom without a letter is always shown. */
+#ifndef BP_PARTICLES_PLACES_H
+#define BP_PARTICLES_PLACES_H
+
+#include "particles.h"
+
+/* Begins as zero; release with places_clear(). */
+typedef struct Places {
+    uint64_t *site; /* of each particle, in their order */
+    uint32_t *letter;
+    size_t count, capacity;
+    bool any; /* some particle has a letter */
+} Places;
+
+/* Takes the next particle. `site`: the text that names its residue in the file; `letter`: at most four bytes
+ * of it count; "": it has one place. */
+BpStatus places_take(Places *places, const char *site, const char *letter, BpError *err);
+/* Marks what is not shown among the particles, which are those taken since the beginning or the last call,
+ * and begins anew. */
+BpStatus places_mark(Places *places, BpParticles *particles, BpError *err);
+void places_clear(Places *places);
+
+#endif
