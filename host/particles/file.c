@@ -135,23 +135,39 @@ void bp_particle_file_close(BpParticleFile **file) {
     *file = NULL;
 }
 
+/* Whether the frame that failed is one that is still being written, behind at least one whole frame. */
+static bool is_cut(const BpParticleFile *file, BpStatus status) {
+    return status == BP_ERR_SCENE && file->frame > 0 && file->input.ended;
+}
+
 BpStatus bp_particle_file_next(BpParticleFile *file, BpParticles *particles, bool *end, BpError *err) {
     /* Numbers have a point, whatever the caller's locale. */
     const locale_t point = newlocale(LC_NUMERIC_MASK, "C", (locale_t)0);
     if (point == (locale_t)0) return bp_fail(err, BP_ERR_MEMORY, "out of memory for a locale");
     const locale_t before = uselocale(point);
+    BpError fault = {0};
     file->out = particles;
     *end = false;
-    BpStatus status = formats[file->format].read(file, end, err);
-    if (status == BP_OK && !*end) status = frame_end(file, err);
+    BpStatus status = formats[file->format].read(file, end, &fault);
+    if (status == BP_OK && !*end) status = frame_end(file, &fault);
     file->out = NULL;
     uselocale(before);
     freelocale(point);
-    if (status == BP_OK && !*end) file->frame++;
-    if (status == BP_OK && *end) {
+    if (is_cut(file, status)) {
+        if (particles != NULL) bp_particles_clear(particles);
+        status = BP_OK;
+        *end = file->cut = true;
+    }
+    if (status != BP_OK) {
+        bp_fail(err, status, "%s", fault.message);
+        bp_error_at(err, fault.file, fault.line, fault.column);
+    } else if (*end) {
         file->frame_count = file->frame;
         file->frame_count_known = true;
+    } else {
+        file->frame++;
     }
+    bp_error_clear(&fault);
     return status;
 }
 
@@ -184,12 +200,17 @@ BpStatus bp_particle_file_frame(BpParticleFile *file, int64_t number, BpParticle
     if (!end && file->format == BP_PARTICLES_GSD) file->frame = wanted;
     while (!end && file->frame < wanted) BP_TRY(bp_particle_file_next(file, NULL, &end, err));
     if (!end) BP_TRY(bp_particle_file_next(file, particles, &end, err));
-    if (!end) return BP_OK;
+    if (!end) {
+        if (file->cut && particles != NULL)
+            bp_particles_note(particles, "the last frame is cut short: left out");
+        return BP_OK;
+    }
     count = file->frame_count_known ? file->frame_count : count;
-    const BpStatus status = bp_fail(err, BP_ERR_SCENE,
-                                    "found %" PRIu64 " frame%s, so there is no frame %" PRId64
-                                    "; count from 0, or from the end as -1, -2, ...",
-                                    count, bp_plural(count), number);
+    const BpStatus status =
+        bp_fail(err, BP_ERR_SCENE,
+                "found %" PRIu64 " frame%s%s, so there is no frame %" PRId64
+                "; count from 0, or from the end as -1, -2, ...",
+                count, bp_plural(count), file->cut ? " and a part of another" : "", number);
     bp_error_at(err, file->input.name, 0, 0);
     return status;
 }

@@ -41,7 +41,7 @@ BpStatus input_rewind(Input *input, BpError *err) {
     input->begin = input->end = 0;
     input->taken = input->line = 0;
     input->held = NULL;
-    input->failed = false;
+    input->ended = input->failed = false;
     /* zlib closes what it opens, so it gets a descriptor of its own; they share their place in the file. It
      * passes bytes through unchanged where there is no gzip header. */
     const int descriptor = dup(fileno(input->stream));
@@ -91,7 +91,9 @@ bool input_fill(Input *input, size_t count) {
             gzread(input->gz, input->buffer + input->end, (unsigned)(input->capacity - input->end));
         int code = Z_OK;
         const char *const text = gzerror(input->gz, &code);
-        if (got < 0 || code == Z_BUF_ERROR) { /* the latter: cut off amid packed data */
+        const bool is_cut =
+            got == 0 && code == Z_BUF_ERROR; /* amid packed data, all of which was handed over */
+        if (got < 0 || is_cut) {
             input->failed = true;
             input->fault = code == Z_MEM_ERROR ? BP_ERR_MEMORY : code == Z_ERRNO ? BP_ERR_FILE : BP_ERR_SCENE;
             const char *const what = code == Z_BUF_ERROR ? "its gzip data is cut off" : text;
@@ -101,6 +103,7 @@ bool input_fill(Input *input, size_t count) {
                 snprintf(input->failure, sizeof input->failure, "found damage, expected a whole file: %s",
                          what);
         }
+        input->ended |= got == 0;
         if (got > 0) input->end += (size_t)got;
         if (got <= 0 || input->failed) break;
         if (input->taken + input->end > BP_INPUT_BYTES_MAX) {
@@ -128,6 +131,14 @@ bool input_skip(Input *input, uint64_t count) {
         count -= some;
     }
     return true;
+}
+
+BpStatus input_return_to(Input *input, uint64_t taken, uint64_t line, BpError *err) {
+    BP_TRY(input_rewind(input, err));
+    if (!input_skip(input, taken))
+        return input_fail(input, false, err, "found a shorter file than before, expected it unchanged");
+    input->line = line;
+    return BP_OK;
 }
 
 BpStatus input_fail(const Input *input, bool with_line, BpError *err, const char *format, ...) {
@@ -193,6 +204,7 @@ BpStatus input_line(Input *input, char **line, BpError *err) {
     }
     unsigned char *start = input->buffer + input->begin;
     size_t length = (size_t)(end - start);
+    input->open_line = input->begin + length == input->end;
     input_take(input, input->begin + length < input->end ? length + 1 : length);
     const char *const wide = input->line == 1 ? bp_text_wide(start, length) : NULL;
     if (wide != NULL) return input_fail(input, false, err, BP_TEXT_WIDE_FORMAT, wide, wide);

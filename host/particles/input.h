@@ -23,8 +23,10 @@ typedef struct Input {
     size_t capacity, begin, end;
     uint64_t taken; /* bytes before `begin` */
     uint64_t line;  /* of the line last taken, from 1 */
+    bool open_line; /* the line last taken had no end: the file ends there */
     char *held;     /* a line that was given back */
     char line_end;  /* the byte that ends lines; 0: no line was read yet */
+    bool ended;     /* reading came to the end, or to where packed data is cut off */
     bool failed;    /* reading failed; `failure` says how, in a message's words */
     BpStatus fault; /* BP_ERR_SCENE: the file is damaged; BP_ERR_FILE: it cannot be read; BP_ERR_MEMORY */
     char failure[192];
@@ -42,6 +44,9 @@ bool input_fill(Input *input, size_t count);
 void input_take(Input *input, size_t count);
 /* Passes over `count` bytes; false when the file ends before. */
 bool input_skip(Input *input, uint64_t count);
+
+/* Returns to where `taken` bytes and `line` lines were taken. */
+BpStatus input_return_to(Input *input, uint64_t taken, uint64_t line, BpError *err);
 
 /* Takes a line; *line is ended by a NUL in place of its end (LF, CR LF, or CR in files that have no other),
  * and valid until the next call; NULL at the end of the file. A byte order mark before it is left away. Fails

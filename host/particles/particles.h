@@ -104,7 +104,9 @@ BpStatus bp_particle_file_open(FILE *stream, const char *name, BpParticleFormat 
                                const char *const *wanted, size_t wanted_count, BpParticleFile **file,
                                BpError *err);
 /* Reads the next frame into `particles`, which holds a frame or is zeroed; NULL: passes over it, and looks
- * only at what is needed for that. *end: there was none. The first frame of a file must exist. */
+ * only at what is needed for that. *end: there was none. The first frame of a file must exist. A later one
+ * that breaks off at the end of the file, as while it is being written, does not count; a fault before the
+ * end of the file is an error in any frame. */
 BpStatus bp_particle_file_next(BpParticleFile *file, BpParticles *particles, bool *end, BpError *err);
 /* Reads frame `number`, counted from 0; below 0 from the end: -1 is the last. */
 BpStatus bp_particle_file_frame(BpParticleFile *file, int64_t number, BpParticles *particles, BpError *err);

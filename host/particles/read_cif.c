@@ -183,6 +183,7 @@ static BpStatus take_row(Input *input, State *state, char *token, BpError *err) 
     bool quoted = false;
     for (size_t c = 0; c < state->column_count; c++) {
         if (c > 0) BP_TRY(next_token(input, state, &token, &quoted, err));
+        if (token == NULL && !input->open_line) input->ended = false; /* a value is missing somewhere above */
         if (token == NULL || (!quoted && (token[0] == '_' || is_keyword(token))))
             return input_fail(
                 input, true, err,

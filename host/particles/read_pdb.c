@@ -24,6 +24,8 @@ typedef struct State {
     PdbSerials serials;   /* of this frame */
     bool tail_read;
     bool cell_behind; /* the first frame had no cell before it, so each has its own behind it */
+    bool closed;   /* the frame before ended with a record that says so, and had */
+    size_t before; /* so many atoms */
 } State;
 
 static bool is_record(const char *line, const char *name) {
@@ -101,11 +103,7 @@ static BpStatus read_tail(Input *input, State *state, BpError *err) {
     }
     BP_TRY(status);
     state->tail_read = true;
-    BP_TRY(input_rewind(input, err));
-    if (!input_skip(input, taken))
-        return input_fail(input, false, err, "found a shorter file than before, expected it unchanged");
-    input->line = number;
-    return BP_OK;
+    return input_return_to(input, taken, number, err);
 }
 
 /* After the end of a model: some programs write its cell there. */
@@ -125,7 +123,7 @@ static BpStatus take_cell_behind(BpParticleFile *file, State *state, BpError *er
 BpStatus read_pdb(BpParticleFile *file, bool *end, BpError *err) {
     const char *const *const columns = file->format == BP_PARTICLES_PQR ? pqr_columns : pdb_columns;
     Input *const input = &file->input;
-    bool has_atoms = false, model = false;
+    bool has_atoms = false, model = false, closed = false;
     char *line = NULL;
     if (file->state == NULL) file->state = calloc(1, sizeof(State));
     State *const state = file->state;
@@ -138,7 +136,8 @@ BpStatus read_pdb(BpParticleFile *file, bool *end, BpError *err) {
         if (line == NULL) break;
         take_crystal(state, line);
         model = is_record(line, "ENDMDL");
-        if (has_atoms && (model || strcmp(line, "END") == 0 || is_record(line, "END "))) break;
+        closed = has_atoms && (model || strcmp(line, "END") == 0 || is_record(line, "END "));
+        if (closed) break;
         if (has_atoms && is_record(line, "MODEL ")) {
             input_hold(input, line);
             break;
@@ -154,6 +153,12 @@ BpStatus read_pdb(BpParticleFile *file, bool *end, BpError *err) {
     if (*end) return BP_OK;
     if (!has_atoms)
         return input_fail(input, false, err, "found no line of ATOM or HETATM, expected a PDB file's atoms");
+    if (line == NULL && state->closed && file->added < state->before)
+        return input_fail(input, true, err,
+                          "found the end of the file after %zu atoms, expected ENDMDL or END; it is cut off",
+                          file->added);
+    state->closed = closed;
+    state->before = file->added;
     if (file->out == NULL) return model ? take_cell_behind(file, state, err) : BP_OK;
     file->out->angstrom = 1;
     if (model && !state->tail_read) BP_TRY(read_tail(input, state, err));

@@ -20,6 +20,7 @@ struct BpParticleFile {
     uint64_t frame;         /* the number of the next frame */
     uint64_t frame_count;   /* once it is known */
     bool frame_count_known; /* from an index, or from reading all */
+    bool cut;               /* behind the last whole frame there is a part of another */
     BpParticles *out;       /* where frame_add puts points; NULL: nowhere */
     size_t taken_count; /* of the wanted columns, how many this frame's are taken: all, or none when passed
                            over */

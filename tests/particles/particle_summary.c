@@ -1,6 +1,7 @@
 /* particle_summary.c: prints what a file of particles holds, as one line of JSON; for the scripts beside it.
  *
- * particle_summary FILE [FRAME [COLUMN]]. Exit code 1 and the message on standard error when it is refused.
+ * particle_summary FILE [FRAME [COLUMN [values]]]; with the last, of every particle too; a column "" is none.
+ * Exit code 1 and the message on standard error when it is refused.
  */
 #include "particles/elements.h"
 #include "particles/particles.h"
@@ -66,6 +67,33 @@ static void print_summary(const BpParticles *p) {
     }
 }
 
+static void print_number(double value, bool first) {
+    printf(isnan(value) ? "%snull" : "%s%.9g", first ? "" : ", ", value);
+}
+
+/* Of every particle, in the file's order; and the ends of all bonds. */
+static void print_values(const BpParticles *p) {
+    printf(", \"positions\": [");
+    for (size_t i = 0; i < p->count; i++)
+        printf("%s[%.12g, %.12g, %.12g]", i > 0 ? ", " : "", p->position[i][0], p->position[i][1],
+               p->position[i][2]);
+    printf("], \"types\": [");
+    for (size_t i = 0; i < p->count; i++)
+        printf("%s\"%s\"", i > 0 ? ", " : "", p->names.count > 0 ? p->names.text[p->tag[i].type] : "");
+    printf("], \"symbols\": [");
+    for (size_t i = 0; i < p->count; i++)
+        printf("%s\"%s\"", i > 0 ? ", " : "", bp_elements[p->tag[i].element].symbol);
+    printf("], \"radii\": [");
+    for (size_t i = 0; i < p->count && p->radius != NULL; i++) print_number((double)p->radius[i], i == 0);
+    printf("], \"values\": [");
+    for (size_t i = 0; i < p->count && p->column[0] != NULL; i++)
+        print_number((double)p->column[0][i], i == 0);
+    printf("], \"pairs\": [");
+    for (size_t b = 0; b < p->bond_count; b++)
+        printf("%s[%u, %u]", b > 0 ? ", " : "", p->bonds[b][0], p->bonds[b][1]);
+    printf("]");
+}
+
 int main(int argc, char **argv) {
     BpError err = {0};
     BpParticles particles = {0};
@@ -77,13 +105,14 @@ int main(int argc, char **argv) {
     const BpParticleFormat format = bp_particle_format_find(argv[1], stream);
     BpStatus status = format == BP_PARTICLES_NONE ? BP_ERR_USAGE : BP_OK;
     if (status == BP_OK)
-        status = bp_particle_file_open(stream, argv[1], format, wanted, argc > 3, &file, &err);
+        status = bp_particle_file_open(stream, argv[1], format, wanted, wanted[0][0] != '\0', &file, &err);
     if (status == BP_OK)
         status = bp_particle_file_frame(file, argc > 2 ? strtol(argv[2], NULL, 10) : 0, &particles, &err);
     if (status == BP_OK) status = bp_particle_file_count(file, &frames, &err);
     if (status == BP_OK) {
         printf("{\"format\": \"%s\", \"frames\": %" PRIu64 ", ", bp_particle_format_name(format), frames);
         print_summary(&particles);
+        if (argc > 4) print_values(&particles);
         printf("}\n");
     } else {
         fprintf(stderr, "%s:%d: %s\n", err.file, err.line, err.message);

@@ -534,7 +534,7 @@ class Hostile(FileTest):
         self.refuse("a.xyz", b"1\n\nO 0 \0 0\n", ":3:", "value 0")
         self.refuse("a.xyz", b"1\n" + b"x" * 3000000, ":2:", "line of over")
         packed = gzip.compress(XYZ.encode() * 1000)
-        self.refuse("a.xyz.gz", packed[:-20], "damage", arguments=[-1])
+        self.refuse("a.xyz.gz", gzip.compress(XYZ.encode() * 30)[:30], "damage", arguments=[-1])
         self.refuse("a.xyz.gz", packed[:30] + b"\xff\xff\xff" + packed[33:], "damage", arguments=[-1])
         self.refuse("a.gsd.gz", gzip.compress(GSD)[:-9], "damage")
 
