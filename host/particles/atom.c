@@ -21,6 +21,15 @@ void atom_identify(Particle *atom, const char *symbol, const char *name, bool fi
     }
 }
 
+void atom_note_masses(BpParticles *particles, size_t known, size_t count, const char *things, bool united) {
+    if (known == count && count > 0)
+        bp_particles_note(particles, "elements from masses%s",
+                          united ? " (CH, CH2, CH3 and CH4 as carbon)" : "");
+    else if (known > 0)
+        bp_particles_note(particles, "no elements, since the masses of %zu of %zu %s are those of none",
+                          count - known, count, things);
+}
+
 void atom_mark_place(Particle *atom, char place, char *first) {
     if (place == '\0') return;
     if (*first == '\0') *first = place;

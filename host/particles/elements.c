@@ -79,12 +79,34 @@ uint8_t bp_element_of_symbol(const char *symbol) {
     return 0;
 }
 
-uint8_t bp_element_of_mass(double mass) {
-    if (mass > 2.0 && mass < 2.03) return 1; /* deuterium */
-    for (int z = 1; z <= 103; z++)
-        if (fabs(mass - (double)bp_elements[z].mass) <= 0.006 * (double)bp_elements[z].mass)
-            return (uint8_t)z;
-    return 0;
+/* Masses of groups lie close: O2 is 0.2 % from sulphur, CH2 0.14 % from nitrogen. */
+static bool is_mass_of(double mass, double own) {
+    const double rounded = floor(10 * own + 0.5) / 10, off = fabs(mass - own);
+    if (off <= fmax(0.012, 0.0005 * own)) return true;
+    /* Not where that is a whole number far off: 45 is a bead of Martini and no scandium. */
+    return own > 2 && fabs(mass - rounded) < 1e-6 && (rounded != floor(rounded) || off < 0.04);
+}
+
+uint8_t bp_element_of_mass(double mass, bool *united) {
+    static const double deuterium = 2.014, hydrogen = 1.008, carbon = 12.011;
+    uint8_t nearest = 0;
+    double least = INFINITY;
+    *united = false;
+    if (fabs(mass - hydrogen) > 0.006 && mass < 2) return 0; /* 1 is the mass of whatever has no unit */
+    if (fabs(mass - deuterium) <= 0.006) return 1;
+    for (int z = 1; z <= 103; z++) {
+        const double own = (double)bp_elements[z].mass;
+        if (!is_mass_of(mass, own) || fabs(mass - own) >= least) continue;
+        least = fabs(mass - own);
+        nearest = (uint8_t)z;
+    }
+    for (int hydrogens = 1; hydrogens <= 4; hydrogens++) {
+        const double off = fabs(mass - carbon - hydrogens * hydrogen);
+        if (off > 0.012 || off >= least) continue;
+        *united = true;
+        return 6;
+    }
+    return nearest;
 }
 
 static bool is_among(const char *name, const char *const *names) {

@@ -26,8 +26,10 @@ uint8_t bp_element_of_symbol(const char *symbol);
  * blank, as columns 13 to 16 of a PDB line do, which tells CA (calcium) from " CA" (a carbon). `fixed`: the
  * name is such a column. 0: unknown. *dummy: a site of a model (of water, say) and no atom. */
 uint8_t bp_element_of_name(const char *name, const char *residue, bool fixed, bool *dummy);
-/* The element whose mass is within 0.6 %; 0: none. */
-uint8_t bp_element_of_mass(double mass);
+/* The element of a mass in daltons as people round it: within 0.05 % (0.012 dalton for the light ones) of the
+ * element's, or that with one decimal; 0: none. *united: it is the carbon of a group that stands as one atom:
+ * CH, CH2, CH3 or CH4. */
+uint8_t bp_element_of_mass(double mass, bool *united);
 /* Residues that are water, and those that are single ions of the water around a molecule. */
 bool bp_residue_is_water(const char *residue);
 bool bp_residue_is_ion(const char *residue);

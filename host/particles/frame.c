@@ -93,13 +93,18 @@ static bool grow(BpParticleFile *file, BpParticles *p) {
     return good;
 }
 
+/* Makes room for radii: none, for the particles so far. */
+static BpStatus have_radii(BpParticles *p, BpError *err) {
+    if (p->radius != NULL) return BP_OK;
+    p->radius = malloc(p->capacity * sizeof *p->radius);
+    if (p->radius == NULL) return bp_fail(err, BP_ERR_MEMORY, "out of memory for radii");
+    for (size_t i = 0; i < p->count; i++) p->radius[i] = NAN;
+    return BP_OK;
+}
+
 static BpStatus add_radius(BpParticles *p, double radius, BpError *err) {
-    if (p->radius == NULL) {
-        if (isnan(radius)) return BP_OK;
-        p->radius = malloc(p->capacity * sizeof *p->radius);
-        if (p->radius == NULL) return bp_fail(err, BP_ERR_MEMORY, "out of memory for radii");
-        for (size_t i = 0; i < p->count; i++) p->radius[i] = NAN;
-    }
+    if (p->radius == NULL && isnan(radius)) return BP_OK;
+    BP_TRY(have_radii(p, err));
     p->radius[p->count] = (float)radius;
     return BP_OK;
 }
@@ -189,6 +194,14 @@ BpStatus frame_add(BpParticleFile *file, const Particle *particle, bool with_lin
         p->column[w][p->count] = (float)particle->values[file->wanted_column[w]];
     }
     p->count++;
+    return BP_OK;
+}
+
+BpStatus frame_set_radius(BpParticleFile *file, size_t at, double radius, BpError *err) {
+    BpParticles *const p = file->out;
+    if (p == NULL || at >= p->count || !(radius > 0)) return BP_OK;
+    BP_TRY(have_radii(p, err));
+    p->radius[at] = (float)radius;
     return BP_OK;
 }
 

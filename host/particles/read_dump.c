@@ -1,8 +1,9 @@
 /* read_dump.c: LAMMPS dump files in text form (dump custom, atom and their like); see reader.h.
  *
  * Knows: wrapped, scaled and unwrapped coordinates; boxes that are orthogonal, triclinic in LAMMPS's own
- * form, and triclinic by three vectors. */
+ * form, and triclinic by three vectors; units. */
 #include "elements.h"
+#include "lammps.h"
 #include "reader.h"
 
 #include <stdlib.h>
@@ -16,8 +17,15 @@ typedef struct Dump {
     char header[4096]; /* the words after ITEM: ATOMS */
     char *columns[WORDS_MAX];
     size_t column_count;
-    int position[3], type, element, radius, diameter, mass, molecule;
+    int position[3], type, element, radius, diameter, mass; /* places of columns; -1: nowhere */
+    size_t known_masses;                                    /* those of elements, in this frame */
+    bool united;                                            /* some stand for a carbon and its hydrogens */
 } Dump;
+
+/* What is kept from frame to frame: a dump names its units once. */
+typedef struct State {
+    const LammpsUnits *units; /* NULL: it names none */
+} State;
 
 /* The last three words are the boundaries, two letters each: those of the lower side and of the upper one. An
  * edge repeats if both are p. Old files have no such words. */
@@ -82,11 +90,11 @@ static BpStatus take_columns(Input *input, const char *text, Dump *dump, BpError
         return input_fail(input, true, err, "found %zu columns, expected at most %d", dump->column_count,
                           WORDS_MAX);
     dump->type = column_named(dump, "type");
+    if (dump->type < 0) dump->type = column_named(dump, "typelabel");
     dump->element = column_named(dump, "element");
     dump->radius = column_named(dump, "radius");
     dump->diameter = column_named(dump, "diameter");
     dump->mass = column_named(dump, "mass");
-    dump->molecule = column_named(dump, "mol");
     for (int s = 0; s < 4; s++) {
         for (int i = 0; i < 3; i++) dump->position[i] = column_named(dump, sets[s][i]);
         if (dump->position[0] < 0 || dump->position[1] < 0 || dump->position[2] < 0) continue;
@@ -100,7 +108,16 @@ static BpStatus take_columns(Input *input, const char *text, Dump *dump, BpError
                       "found no columns of coordinates, expected x y z, xu yu zu, xs ys zs or xsu ysu zsu");
 }
 
-static BpStatus take_atom(BpParticleFile *file, const Dump *dump, char *line, BpError *err) {
+/* Elements of masses count for all atoms of the frame or for none, as in data files. */
+static void settle_masses(BpParticles *p, const Dump *dump) {
+    if (p == NULL || dump->element >= 0 || dump->mass < 0) return;
+    for (size_t i = 0; i < p->count && dump->known_masses < p->count; i++) p->tag[i].element = 0;
+    p->has_element = p->has_element && dump->known_masses == p->count;
+    if (p->angstrom == 0 && p->has_element) p->angstrom = 1;
+    atom_note_masses(p, dump->known_masses, p->count, "atoms", dump->united);
+}
+
+static BpStatus take_atom(BpParticleFile *file, Dump *dump, char *line, BpError *err) {
     char *words[WORDS_MAX];
     double values[WORDS_MAX], place[3];
     Particle particle = PARTICLE_NONE;
@@ -120,8 +137,14 @@ static BpStatus take_atom(BpParticleFile *file, const Dump *dump, char *line, Bp
         particle.element = bp_element_of_symbol(words[dump->element]);
         if (dump->type < 0) particle.type = words[dump->element];
     } else if (dump->mass >= 0) {
+        const State *const state = file->state;
+        const double dalton = state->units != NULL ? state->units->dalton : 1;
+        bool united = false;
         double mass = 0;
-        if (word_number(words[dump->mass], &mass)) particle.element = bp_element_of_mass(mass);
+        if (dalton > 0 && word_number(words[dump->mass], &mass))
+            particle.element = bp_element_of_mass(mass / dalton, &united);
+        dump->known_masses += particle.element != 0;
+        dump->united |= united;
     }
     if (dump->radius >= 0 && !word_number(words[dump->radius], &particle.radius))
         return input_wrong(&file->input, words[dump->radius], "a radius", err);
@@ -136,6 +159,13 @@ static BpStatus take_atom(BpParticleFile *file, const Dump *dump, char *line, Bp
     }
     particle.values = values;
     return frame_add(file, &particle, true, err);
+}
+
+static BpStatus take_units(const Input *input, char *line, State *state, BpError *err) {
+    char *word = line;
+    if (split_words(line, &word, 1) == 1) state->units = lammps_units_find(word);
+    if (state->units != NULL) return BP_OK;
+    return input_wrong(input, word, "units: " LAMMPS_UNIT_NAMES, err);
 }
 
 /* The frame from ITEM: TIMESTEP, which is taken, to its last atom. */
@@ -159,7 +189,9 @@ static BpStatus take_frame(BpParticleFile *file, Dump *dump, BpError *err) {
         } else if (strncmp(line, "ITEM: ATOMS", 11) == 0) {
             break;
         } else if (strncmp(line, "ITEM:", 5) == 0) { /* UNITS, TIME: one line each */
+            const bool units = strncmp(line, "ITEM: UNITS", 11) == 0;
             BP_TRY(input_needed_line(input, &line, "a line after ITEM", err));
+            if (units) BP_TRY(take_units(input, line, file->state, err));
         } else {
             return input_wrong(input, line, expected, err);
         }
@@ -170,8 +202,9 @@ static BpStatus take_frame(BpParticleFile *file, Dump *dump, BpError *err) {
     BP_TRY(frame_begin(file, (const char *const *)dump->columns, dump->column_count, err));
     if (file->out != NULL) {
         file->out->up = 2;
-        if (dump->element >= 0 || dump->mass >= 0) file->out->angstrom = 1;
-        if (dump->element < 0 && dump->mass >= 0) bp_particles_note(file->out, "elements from masses");
+        const State *const state = file->state;
+        if (state->units != NULL) file->out->angstrom = state->units->angstrom;
+        if (state->units == NULL && dump->element >= 0) file->out->angstrom = 1;
     }
     if (dump->has_box)
         frame_cell(file, dump->origin, (const double(*)[3])dump->edges,
@@ -180,19 +213,23 @@ static BpStatus take_frame(BpParticleFile *file, Dump *dump, BpError *err) {
         BP_TRY(input_needed_line(input, &line, "as many atoms as ITEM: NUMBER OF ATOMS says", err));
         BP_TRY(take_atom(file, dump, line, err));
     }
+    settle_masses(file->out, dump);
     return BP_OK;
 }
 
 BpStatus read_dump(BpParticleFile *file, bool *end, BpError *err) {
     Input *const input = &file->input;
     char *line = NULL;
+    if (file->state == NULL) file->state = calloc(1, sizeof(State));
+    if (file->state == NULL) return bp_fail(err, BP_ERR_MEMORY, "out of memory");
     BP_TRY(input_full_line(input, &line, err));
     *end = line == NULL && file->frame > 0;
     if (*end) return BP_OK;
-    /* A first item of another kind (UNITS) comes with a line of its own. */
+    /* UNITS and TIME come before TIMESTEP, each with a line of its own. */
     while (line != NULL && (strncmp(line, "ITEM: UNITS", 11) == 0 || strncmp(line, "ITEM: TIME", 10) == 0)) {
-        const bool step = strncmp(line, "ITEM: TIMESTEP", 14) == 0;
+        const bool step = strncmp(line, "ITEM: TIMESTEP", 14) == 0, units = line[6] == 'U';
         BP_TRY(input_needed_line(input, &line, "a line after ITEM", err));
+        if (units) BP_TRY(take_units(input, line, file->state, err));
         if (step) {
             Dump *const dump = calloc(1, sizeof *dump);
             if (dump == NULL) return bp_fail(err, BP_ERR_MEMORY, "out of memory");

@@ -53,6 +53,8 @@ BpStatus frame_begin(BpParticleFile *file, const char *const *columns, size_t co
  * coordinates that are infinite or too large, and on colours that can be none. `with_line`: the error names
  * the line last taken. */
 BpStatus frame_add(BpParticleFile *file, const Particle *particle, bool with_line, BpError *err);
+/* Gives particle `at` of the frame a radius; one that is not above 0 is none. */
+BpStatus frame_set_radius(BpParticleFile *file, size_t at, double radius, BpError *err);
 /* `a` and `b` count the particles as they were handed over, from 0, with those that were left out. A bond of
  * one that was left out is too. */
 BpStatus frame_add_bond(BpParticleFile *file, uint32_t a, uint32_t b, BpError *err);
@@ -62,6 +64,9 @@ BpStatus frame_end(BpParticleFile *file, BpError *err);
  * none), else from its name, and then it is a guess; or no element, for a site of a model. `name`, `fixed`:
  * as bp_element_of_name() has them. */
 void atom_identify(Particle *atom, const char *symbol, const char *name, bool fixed);
+/* Notes what became of masses where elements were sought for `count` things ("types"): they are taken for all
+ * of them or for none. `united`: some are carbons of united atoms. */
+void atom_note_masses(BpParticles *particles, size_t known, size_t count, const char *things, bool united);
 /* One of the places that an atom may be at: `place` is a letter, or 0 where there is one place only. Of the
  * places the first of its file is shown, A mostly. *first: that letter, 0 at the beginning of a file. */
 void atom_mark_place(Particle *atom, char place, char *first);

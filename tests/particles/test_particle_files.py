@@ -360,7 +360,7 @@ class Formats(FileTest):
         self.assertEqual((s["origin"], s["cell"]), ([-1, 0, 0], [[10, 0, 0], [1, 10, 0], [2, 3, 10]]))
         self.near([s["column_sum"]], [0])
         guessed = self.of("a.data", DATA.replace("# full", "# my own words"))
-        self.assertIn("atom style full from the number of words", guessed["notes"])
+        self.assertIn("atom style full, the only one that the lines fit", guessed["notes"])
         other = self.of("a.data", DATA.replace("Bonds", "Bnods"))
         self.assertEqual((other["bonds"], "section Bnods passed over" in other["notes"]), (0, True))
         hybrid = "t\n\n1 atoms\n\nAtoms # hybrid\n\n1 3 0.5 1.5 2.5 1 2 3 4 5 6\n"
@@ -437,7 +437,7 @@ class Hostile(FileTest):
         self.refuse("a.dump", DUMP.replace("ATOMS\n2\n", "ATOMS\n1000000000\n"), ":4:", "at most 134217728")
         self.refuse("a.data", DATA.replace("3 atoms", "1000000000 atoms"), ":3:", "at most 134217728")
         self.refuse("a.data", DATA.replace("3 atoms", "100000000 atoms"), "found 3 lines", "expected 100000000")
-        self.refuse("a.data", DATA.replace("2 bonds", "100000000 bonds"), "bond 3 of 100000000")
+        self.refuse("a.data", DATA.replace("2 bonds", "100000000 bonds"), "found 2 lines of bonds, expected 100000000")
         self.refuse("a.ply", PLY.replace("vertex 2", "vertex 100000000"), ":18:", "row 2 of 100000000")
         self.refuse("a.ply", PLY.replace("vertex 2", "vertex 1000000000"), ":18:", "row 2 of 1000000000")
         binary = PLY.split("end_header\n", 1)[0].replace("ascii", "binary_little_endian") + "end_header\n"
@@ -503,7 +503,7 @@ class Hostile(FileTest):
         self.refuse("a.dump", DUMP.replace("xs ys zs", "fx fy fz"), ":9:", "coordinates")
         self.refuse("a.dump", "ITEM: NUMBER OF ATOMS\n1\n", "ITEM: TIMESTEP")
         self.refuse("a.data", "title\n\n1 atoms\n", "Atoms")
-        self.refuse("a.data", "t\n\n1 atoms\n\nAtoms\n\n1 3 0.5 1.5 2.5 1 2 3 4 5 6\n", ":7:", "name the style")
+        self.refuse("a.data", "t\n\n1 atoms\n\nAtoms\n\n1 3 0.5 1.5 2.5 1 2 3 4 5 6\n", ":5:", "name the style")
         self.refuse("a.data", DATA.replace("1 1 7 5", "1 1 7 6"), "6", "number of an atom")
         self.refuse("a.csv", "a,b\n1,2\n", "columns x and y")
         self.refuse("a.csv", "x,y,z\n1,2\n", ":2:", "found 2 fields, expected 3")
