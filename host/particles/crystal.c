@@ -103,7 +103,7 @@ void crystal_turn_cell(BpParticleFile *file, const CrystalFrame *frame, const ch
     double edges[3][3], origin[3];
     memcpy(edges, p->cell, sizeof edges);
     if (turn(frame, edges, origin)) {
-        frame_cell(file, origin, (const double(*)[3])edges, true);
+        frame_cell(file, origin, (const double(*)[3])edges, FRAME_PERIODIC);
         return;
     }
     memset(&p->periodic, 0, sizeof p->periodic);
