@@ -16,7 +16,8 @@ import test_particle_files as files
 HEAD = "t\n\n2 atoms\n3 atom types\n0 10 xlo xhi\n0 11 ylo yhi\n0 12 zlo zhi\n\n"
 PLACES = [[1.25, 2.25, 4.5], [3.125, 5.5, 6.5]]
 # Two atoms of types 1 and 3, with charge -0.75, molecule 7 and diameter 0.875 where a style has them, as LAMMPS 22 Jul 2025
-# wrote them in each style (write_data); sizes as it reported them.
+# wrote them in each style (write_data). By hand: wavepacket, which it was built without; template, with other types; the x0 of
+# smd and the z of line, so that other columns than x, y and z would show.
 WRITTEN = {
     "amoeba": ("1 7 1 -0.75 1.25 2.25 4.5 0 0 0", "2 7 3 -0.75 3.125 5.5 6.5 0 0 0"),
     "angle": ("1 7 1 1.25 2.25 4.5 0 0 0", "2 7 3 3.125 5.5 6.5 0 0 0"),
