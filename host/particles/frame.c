@@ -312,9 +312,12 @@ void frame_note_shapes(BpParticleFile *file, uint64_t count, const char *kind) {
                       bp_plural(count), count == 1 ? "a sphere" : "spheres");
 }
 
-double frame_ellipsoid_radius(const double half_axes[3]) {
-    if (!(half_axes[0] > 0 && half_axes[1] > 0 && half_axes[2] > 0)) return NAN;
-    return cbrt(half_axes[0]) * cbrt(half_axes[1]) * cbrt(half_axes[2]);
+bool frame_take_ellipsoid(Particle *particle, const double half_axes[3]) {
+    const double a = half_axes[0], b = half_axes[1], c = half_axes[2];
+    if (!(a > 0 && b > 0 && c > 0)) return false;
+    const bool round = a == b && b == c;
+    if (isnan(particle->radius)) particle->radius = round ? a : cbrt(a) * cbrt(b) * cbrt(c);
+    return !round;
 }
 
 void frame_cell_angles(BpParticleFile *file, const double lengths[3], const double angles[3]) {

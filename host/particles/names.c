@@ -31,33 +31,41 @@ static bool grow(BpNames *names) {
     return true;
 }
 
+/* Appends a text, with room for it in the arrays. */
+static bool append(BpNames *names, const char *text) {
+    const size_t size = strlen(text) + 1;
+    char *const copy = malloc(size);
+    if (copy == NULL) return false;
+    memcpy(copy, text, size);
+    names->text[names->count++] = copy;
+    return true;
+}
+
 BpStatus names_number(BpNames *names, const char *text, uint16_t *number, BpError *err) {
-    char cut[BP_PARTICLE_NAME_SIZE];
     *number = 0;
     if (text == NULL || text[0] == '\0') return BP_OK;
-    size_t length = strlen(text);
-    if (length > sizeof cut - 1) length = sizeof cut - 1;
-    memcpy(cut, text, length);
-    cut[length] = '\0';
-    if (names->count == 0 || names->count == names->capacity) {
-        if (!grow(names)) return bp_fail(err, BP_ERR_MEMORY, "out of memory for names of particles");
-        if (names->count == 0) names->text[names->count++][0] = '\0';
-    }
-    size_t at = hash_of(cut) % names->slot_count;
-    while (names->slots[at] != 0 && strcmp(names->text[names->slots[at]], cut) != 0)
+    bool good = (names->count > 0 && names->count < names->capacity) || grow(names);
+    if (good && names->count == 0) good = append(names, "");
+    size_t at = good ? hash_of(text) % names->slot_count : 0;
+    while (good && names->slots[at] != 0 && strcmp(names->text[names->slots[at]], text) != 0)
         at = (at + 1) % names->slot_count;
-    if (names->slots[at] == 0) {
+    if (good && names->slots[at] == 0) {
+        if (strlen(text) >= BP_PARTICLE_NAME_SIZE)
+            return bp_fail(err, BP_ERR_SCENE, "found a name of %zu bytes, expected at most %d", strlen(text),
+                           BP_PARTICLE_NAME_SIZE - 1);
         if (names->count == NAMES_MAX)
             return bp_fail(err, BP_ERR_SCENE, "found more than %d different names, expected fewer",
                            NAMES_MAX - 1);
-        memcpy(names->text[names->count], cut, length + 1);
-        names->slots[at] = (uint32_t)names->count++;
+        good = append(names, text);
+        if (good) names->slots[at] = (uint32_t)names->count - 1;
     }
+    if (!good) return bp_fail(err, BP_ERR_MEMORY, "out of memory for names of particles");
     *number = (uint16_t)names->slots[at];
     return BP_OK;
 }
 
 void names_clear(BpNames *names) {
+    for (size_t i = 0; i < names->count; i++) free(names->text[i]);
     free(names->text);
     free(names->slots);
     *names = (BpNames){0};

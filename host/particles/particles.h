@@ -36,13 +36,14 @@ const char *bp_particle_format_name(BpParticleFormat format);
 enum {
     BP_PARTICLE_COLUMNS_MAX = 128, /* numeric columns of a file */
     BP_PARTICLE_WANTED_MAX = 2,    /* columns kept at a time */
-    BP_PARTICLE_NAME_SIZE = 24,    /* of the name of an atom, a residue, a chain, a type */
+    BP_PARTICLE_NAME_SIZE =
+        1024, /* of the name of an atom, a residue, a chain, a type; longer ones are refused */
     BP_PARTICLE_NOTES_SIZE = 480
 };
 
 /* Texts that repeat, each kept once. Number 0 is "". */
 typedef struct BpNames {
-    char (*text)[BP_PARTICLE_NAME_SIZE];
+    char **text;
     size_t count, capacity;
     uint32_t *slots; /* a hash table of numbers */
     size_t slot_count;

@@ -45,7 +45,7 @@ typedef struct State {
     bool in_table;
     char first_alternative;
     /* The first row of the next model. */
-    char row[FIELD_COUNT][64];
+    char row[FIELD_COUNT][BP_PARTICLE_NAME_SIZE];
     bool held;
 } State;
 
@@ -190,8 +190,14 @@ static BpStatus take_row(Input *input, State *state, char *token, BpError *err) 
                 "found %s in a row of _atom_site, expected %zu values: the file is cut off, or a "
                 "value is missing",
                 token == NULL ? "the end of the file" : "a name", state->column_count);
-        for (int f = 0; f < FIELD_COUNT; f++)
-            if (state->field_column[f] == (int)c) snprintf(state->row[f], sizeof state->row[f], "%s", token);
+        for (int f = 0; f < FIELD_COUNT; f++) {
+            if (state->field_column[f] != (int)c) continue;
+            if (strlen(token) >= sizeof state->row[f])
+                return input_fail(input, true, err,
+                                  "found a value of %zu bytes in _atom_site.%s, expected at most %zu",
+                                  strlen(token), field_names[f], sizeof state->row[f] - 1);
+            snprintf(state->row[f], sizeof state->row[f], "%s", token);
+        }
     }
     return BP_OK;
 }
@@ -225,7 +231,7 @@ static BpStatus add_row(BpParticleFile *file, State *state, BpError *err) {
 BpStatus read_cif(BpParticleFile *file, bool *end, BpError *err) {
     static const char *const columns[] = {"occupancy", "bfactor", "residue_number"};
     Input *const input = &file->input;
-    char *token = NULL, model[64] = "";
+    char *token = NULL, model[BP_PARTICLE_NAME_SIZE] = "";
     bool quoted = false, has_rows = false;
     if (file->state == NULL) file->state = calloc(1, sizeof(State));
     State *const state = file->state;

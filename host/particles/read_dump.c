@@ -17,9 +17,10 @@ typedef struct Dump {
     char header[4096]; /* the words after ITEM: ATOMS */
     char *columns[WORDS_MAX];
     size_t column_count;
-    int position[3], type, element, radius, diameter, mass; /* places of columns; -1: nowhere */
+    int position[3], shape[3], type, element, radius, diameter, mass, molecule; /* places of columns; -1: nowhere */
     size_t known_masses;                                    /* those of elements, in this frame */
     bool united;                                            /* some stand for a carbon and its hydrogens */
+    uint64_t ellipsoids;
 } Dump;
 
 /* What is kept from frame to frame: a dump names its units once. */
@@ -81,6 +82,18 @@ static int column_named(const Dump *dump, const char *name) {
     return -1;
 }
 
+/* The columns of an ellipsoid's three diameters, under the name of the attribute or as a compute "shape" has
+ * them. */
+static void find_shape(Dump *dump) {
+    static const char *const sets[2][3] = {{"shapex", "shapey", "shapez"},
+                                           {"c_shape[1]", "c_shape[2]", "c_shape[3]"}};
+    for (int s = 0; s < 2; s++) {
+        for (int i = 0; i < 3; i++) dump->shape[i] = column_named(dump, sets[s][i]);
+        if (dump->shape[0] >= 0 && dump->shape[1] >= 0 && dump->shape[2] >= 0) return;
+    }
+    dump->shape[0] = -1;
+}
+
 static BpStatus take_columns(Input *input, const char *text, Dump *dump, BpError *err) {
     static const char *const sets[4][3] = {
         {"x", "y", "z"}, {"xs", "ys", "zs"}, {"xu", "yu", "zu"}, {"xsu", "ysu", "zsu"}};
@@ -95,6 +108,8 @@ static BpStatus take_columns(Input *input, const char *text, Dump *dump, BpError
     dump->radius = column_named(dump, "radius");
     dump->diameter = column_named(dump, "diameter");
     dump->mass = column_named(dump, "mass");
+    dump->molecule = column_named(dump, "mol");
+    find_shape(dump);
     for (int s = 0; s < 4; s++) {
         for (int i = 0; i < 3; i++) dump->position[i] = column_named(dump, sets[s][i]);
         if (dump->position[0] < 0 || dump->position[1] < 0 || dump->position[2] < 0) continue;
@@ -115,6 +130,19 @@ static void settle_masses(BpParticles *p, const Dump *dump) {
     p->has_element = p->has_element && dump->known_masses == p->count;
     if (p->angstrom == 0 && p->has_element) p->angstrom = 1;
     atom_note_masses(p, dump->known_masses, p->count, "atoms", dump->united);
+}
+
+static BpStatus take_shape(const Input *input, Dump *dump, char *const *words, Particle *particle,
+                           BpError *err) {
+    double half_axes[3];
+    if (dump->shape[0] < 0) return BP_OK;
+    for (int i = 0; i < 3; i++) {
+        if (!word_number(words[dump->shape[i]], &half_axes[i]))
+            return input_wrong(input, words[dump->shape[i]], "a diameter", err);
+        half_axes[i] /= 2;
+    }
+    dump->ellipsoids += frame_take_ellipsoid(particle, half_axes);
+    return BP_OK;
 }
 
 static BpStatus take_atom(BpParticleFile *file, Dump *dump, char *line, BpError *err) {
@@ -153,6 +181,7 @@ static BpStatus take_atom(BpParticleFile *file, Dump *dump, char *line, BpError 
             return input_wrong(&file->input, words[dump->diameter], "a diameter", err);
         particle.radius /= 2;
     }
+    BP_TRY(take_shape(&file->input, dump, words, &particle, err));
     for (size_t w = 0; w < file->taken_count; w++) {
         const int c = file->wanted_column[w];
         if (!word_number(words[c], &values[c])) values[c] = NAN;
@@ -214,6 +243,7 @@ static BpStatus take_frame(BpParticleFile *file, Dump *dump, BpError *err) {
         BP_TRY(take_atom(file, dump, line, err));
     }
     settle_masses(file->out, dump);
+    frame_note_shapes(file, dump->ellipsoids, "ellipsoid");
     return BP_OK;
 }
 

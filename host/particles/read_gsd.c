@@ -4,9 +4,12 @@
  * The layout is that of the specification (gsd.readthedocs.io, "File layer" and "HOOMD Schema"): a header, an
  * index of chunks, a list of their names. What a frame lacks is frame 0's if that has as many particles, else
  * the schema's default. Chunks are read where they lie, so packed files are unpacked into a temporary one. */
+#include "gsd_shapes.h"
 #include "reader.h"
 
+#include "base/format.h"
 #include "base/message_text.h"
+#include "base/plural.h"
 
 #include <errno.h>
 #include <inttypes.h>
@@ -17,7 +20,14 @@
 #define MAGIC UINT64_C(0x65DF65DF65DF65DF)
 #define UNPACKED_MAX ((uint64_t)16 << 30)
 
-enum { HEADER_BYTES = 256, ENTRY_BYTES = 32, NAME_BYTES = 64, NAMES_MAX = 65535, TYPES_MAX = 4096 };
+enum {
+    HEADER_BYTES = 256,
+    ENTRY_BYTES = 32,
+    NAME_BYTES = 64,
+    NAMES_MAX = 65535,
+    TYPES_MAX = 4096,
+    SHAPE_BYTES_MAX = 1 << 20
+};
 
 typedef struct Entry {
     uint64_t frame, rows;
@@ -344,34 +354,115 @@ static BpStatus take_box(BpParticleFile *file, BpError *err) {
     return BP_OK;
 }
 
-/* The names of the types, `width` bytes each, into *names; there is "A" alone by default. */
-static BpStatus take_types(const BpParticleFile *file, char **names, size_t *count, size_t *width,
+/* Texts of `width` bytes each. */
+typedef struct Texts {
+    char *text;
+    size_t count, width;
+} Texts;
+
+/* A chunk of texts of at most `most` bytes; none where neither frame has it. */
+static BpStatus take_texts(const BpParticleFile *file, const char *chunk, size_t most, Texts *texts,
                            BpError *err) {
     const Entry *entry = NULL;
-    *count = 0;
-    *names = NULL;
-    BP_TRY(need_chunk(file, "particles/types", 0, 0, &entry, err));
+    *texts = (Texts){0};
+    BP_TRY(need_chunk(file, chunk, 0, 0, &entry, err));
     if (entry == NULL) return BP_OK;
-    if (entry->rows > TYPES_MAX || entry->columns > 1024 || type_size(entry->type) != 1)
+    if (entry->rows > TYPES_MAX || entry->columns > most || type_size(entry->type) != 1)
         return input_fail(&file->input, false, err,
-                          "particles/types: found %" PRIu64
-                          " names of %u bytes, expected at most %d of at most 1024",
-                          entry->rows, (unsigned)entry->columns, TYPES_MAX);
-    *width = entry->columns;
-    *names = malloc((size_t)entry->rows * *width + 1);
-    if (*names == NULL) return bp_fail(err, BP_ERR_MEMORY, "out of memory for names of types");
-    *count = (size_t)entry->rows;
-    return read_at(&file->input, file->state, (uint64_t)entry->location, *names, (size_t)entry->rows * *width,
-                   err);
+                          "%s: found %" PRIu64 " texts of %u bytes, expected at most %d of at most %zu",
+                          chunk, entry->rows, (unsigned)entry->columns, TYPES_MAX, most);
+    *texts = (Texts){.width = entry->columns, .count = (size_t)entry->rows};
+    texts->text = malloc(texts->count * texts->width + 1);
+    if (texts->text == NULL) return bp_fail(err, BP_ERR_MEMORY, "out of memory for %s", chunk);
+    return read_at(&file->input, file->state, (uint64_t)entry->location, texts->text,
+                   texts->count * texts->width, err);
 }
 
-static BpStatus take_bonds(BpParticleFile *file, uint64_t particles, BpError *err) {
+/* What is known of a type. */
+typedef struct Kind {
+    GsdShape shape;
+    uint64_t particles; /* of this type */
+} Kind;
+
+typedef struct Types {
+    Texts names; /* there is "A" alone by default */
+    Kind *kinds;
+    size_t kind_count;
+    bool unions;  /* some type is a union of spheres */
+    Kind unknown; /* of types without a shape */
+} Types;
+
+static void types_clear(Types *types) {
+    for (size_t i = 0; i < types->kind_count; i++) free(types->kinds[i].shape.sphere);
+    free(types->kinds);
+    free(types->names.text);
+}
+
+/* The shapes of the types, which HOOMD-blue's hard particles have. */
+static BpStatus take_shapes(const BpParticleFile *file, Types *types, BpError *err) {
+    Texts texts;
+    BpStatus status = take_texts(file, "particles/type_shapes", SHAPE_BYTES_MAX, &texts, err);
+    if (status == BP_OK) types->kinds = calloc(texts.count + 1, sizeof *types->kinds);
+    if (status == BP_OK && types->kinds == NULL)
+        status = bp_fail(err, BP_ERR_MEMORY, "out of memory for the shapes of types");
+    for (size_t i = 0; i < texts.count && status == BP_OK; i++) {
+        Kind *const kind = &types->kinds[types->kind_count++];
+        BpError own = {0};
+        status = gsd_shape_read(texts.text + i * texts.width, texts.width, &kind->shape, &own);
+        types->unions |= kind->shape.sphere_count > 0;
+        if (status != BP_OK)
+            status = input_fail(&file->input, false, err, "particles/type_shapes: shape %zu (from 0): %s", i,
+                                own.message);
+        bp_error_clear(&own);
+    }
+    free(texts.text);
+    return status;
+}
+
+static BpStatus take_types(const BpParticleFile *file, Types *types, BpError *err) {
+    types->unknown.shape.diameter = NAN;
+    BP_TRY(take_texts(file, "particles/types", BP_PARTICLE_NAME_SIZE, &types->names, err));
+    return take_shapes(file, types, err);
+}
+
+/* Says which shapes are not drawn as they are. */
+static void note_shapes(BpParticleFile *file, const Types *types) {
+    static const char *const kinds[] = {"ellipsoid", "polygon", "polyhedron", "sphere union", "other shape"};
+    uint64_t unions = 0, spheres = 0;
+    char number[32], other[32];
+    for (size_t k = 0; k < sizeof kinds / sizeof *kinds; k++) {
+        uint64_t count = 0;
+        for (size_t i = 0; i < types->kind_count; i++)
+            if (types->kinds[i].shape.kind != NULL && strcmp(types->kinds[i].shape.kind, kinds[k]) == 0)
+                count += types->kinds[i].particles;
+        frame_note_shapes(file, count, kinds[k]);
+    }
+    for (size_t i = 0; i < types->kind_count; i++) {
+        if (types->kinds[i].shape.sphere_count == 0) continue;
+        unions += types->kinds[i].particles;
+        spheres += types->kinds[i].particles * types->kinds[i].shape.sphere_count;
+    }
+    if (unions > 0)
+        bp_particles_note(file->out, "%s sphere union%s drawn as %s spheres",
+                          bp_format_whole(unions, number, sizeof number), bp_plural(unions),
+                          bp_format_whole(spheres, other, sizeof other));
+}
+
+/* `first`: the number of each particle's first sphere; NULL: its own. */
+static BpStatus take_bonds(BpParticleFile *file, uint64_t particles, const uint32_t *first, BpError *err) {
     const Entry *entry = NULL;
     Column column = {0};
-    BP_TRY(need_chunk(file, "bonds/group", 0, 2, &entry, err));
-    if (entry == NULL || entry->rows == 0) return BP_OK;
     const bool own = find_chunk(file->state, file->frame, "bonds/group") != NULL;
-    BpStatus status = column_open(file, "bonds/group", entry->rows, 2, &column, err);
+    double count = -1; /* not said */
+    BpStatus status = column_open(file, "bonds/N", 1, 1, &column, err);
+    if (status == BP_OK) status = column_row(file, &column, 0, &count, err);
+    free(column.bytes);
+    BP_TRY(status);
+    BP_TRY(need_chunk(file, "bonds/group", 0, 2, &entry, err));
+    if (entry == NULL || entry->rows == 0 || count == 0) return BP_OK;
+    if (!own && count >= 0 && (double)entry->rows != count)
+        return BP_OK; /* frame 0's, which had more or fewer */
+    status = column_open(file, "bonds/group", entry->rows, 2, &column, err);
     for (uint64_t i = 0; i < entry->rows && status == BP_OK; i++) {
         double pair[2] = {0, 0};
         BP_TRY_GOTO(status, column_row(file, &column, i, pair, err), done);
@@ -384,59 +475,93 @@ static BpStatus take_bonds(BpParticleFile *file, uint64_t particles, BpError *er
                                 i, particles);
             goto done;
         }
-        status = frame_add_bond(file, (uint32_t)pair[0], (uint32_t)pair[1], err);
+        const uint32_t a = (uint32_t)pair[0], b = (uint32_t)pair[1];
+        status = frame_add_bond(file, first != NULL ? first[a] : a, first != NULL ? first[b] : b, err);
     }
 done:
     free(column.bytes);
     return status;
 }
 
-enum { POSITION, DIAMETER, TYPE, MASS, CHARGE, VELOCITY, CHUNK_COUNT };
+enum { POSITION, DIAMETER, TYPE, MASS, CHARGE, VELOCITY, ORIENTATION, CHUNK_COUNT };
 
-static BpStatus take_particles(BpParticleFile *file, uint64_t count, Column *columns, const char *types,
-                               size_t type_count, size_t type_width, BpError *err) {
+/* Turns a vector by a quaternion (w, x, y, z) of any length; by none if that is 0. */
+static void turn(const double q[4], const double v[3], double out[3]) {
+    const double square = q[0] * q[0] + q[1] * q[1] + q[2] * q[2] + q[3] * q[3];
+    const double s = square > 0 ? 2 / square : 0;
+    for (int i = 0; i < 3; i++) {
+        const int k = (i + 1) % 3, l = (i + 2) % 3;
+        out[i] = v[i] + s * (q[0] * (q[1 + k] * v[l] - q[1 + l] * v[k]) +
+                             q[1 + k] * (q[1 + i] * v[k] - q[1 + k] * v[i]) +
+                             q[1 + l] * (q[1 + i] * v[l] - q[1 + l] * v[i]));
+    }
+}
+
+/* Hands a particle over, as a sphere or as those of its shape. */
+static BpStatus add_shape(BpParticleFile *file, const GsdShape *shape, const double orientation[4],
+                          Particle *particle, double *values, BpError *err) {
+    const double center[3] = {particle->position[0], particle->position[1], particle->position[2]};
+    if (shape->sphere_count == 0) return frame_add(file, particle, false, err);
+    for (size_t i = 0; i < shape->sphere_count; i++) {
+        turn(orientation, shape->sphere[i], particle->position);
+        for (int c = 0; c < 3; c++) values[c] = particle->position[c] += center[c];
+        particle->radius = shape->sphere[i][3];
+        values[3] = 2 * particle->radius;
+        BP_TRY(frame_add(file, particle, false, err));
+    }
+    return BP_OK;
+}
+
+static BpStatus take_particles(BpParticleFile *file, uint64_t count, Column *columns, Types *types,
+                               uint32_t *first, BpError *err) {
     for (uint64_t i = 0; i < count; i++) {
-        double place[3] = {0, 0, 0}, diameter = 1, type = 0;
+        double place[3] = {0, 0, 0}, diameter = 1, type = 0, orientation[4] = {1, 0, 0, 0};
         double values[9] = {0, 0, 0, 1, 1, 0, 0, 0, 0};
-        char name[BP_PARTICLE_NAME_SIZE] = "A";
+        char name[BP_PARTICLE_NAME_SIZE + 1] = "A";
         BP_TRY(column_row(file, &columns[POSITION], i, place, err));
         BP_TRY(column_row(file, &columns[DIAMETER], i, &diameter, err));
         BP_TRY(column_row(file, &columns[TYPE], i, &type, err));
         BP_TRY(column_row(file, &columns[MASS], i, &values[4], err));
         BP_TRY(column_row(file, &columns[CHARGE], i, &values[5], err));
         BP_TRY(column_row(file, &columns[VELOCITY], i, &values[6], err));
+        BP_TRY(column_row(file, &columns[ORIENTATION], i, orientation, err));
+        if (!(type >= 0) || (types->names.count > 0 && !(type < (double)types->names.count)))
+            return input_fail(&file->input, false, err,
+                              "particle %" PRIu64 " (from 0): found type %.0f, expected one below %zu", i,
+                              type, types->names.count);
+        if (types->names.count > 0)
+            snprintf(name, sizeof name, "%.*s", (int)types->names.width,
+                     types->names.text + (size_t)type * types->names.width);
+        Kind *const kind = type < (double)types->kind_count ? &types->kinds[(size_t)type] : &types->unknown;
+        kind->particles++;
+        if (columns[DIAMETER].entry == NULL && !isnan(kind->shape.diameter)) diameter = kind->shape.diameter;
         memcpy(values, place, sizeof place);
         values[3] = diameter;
-        if (type_count > 0) {
-            if (!(type >= 0 && type < (double)type_count))
-                return input_fail(&file->input, false, err,
-                                  "particle %" PRIu64 " (from 0): found type %.0f, expected one below %zu", i,
-                                  type, type_count);
-            snprintf(name, sizeof name, "%.*s", (int)type_width, types + (size_t)type * type_width);
-        }
         Particle particle = PARTICLE_NONE;
         memcpy(particle.position, place, sizeof place);
         particle.radius = diameter / 2;
         particle.type = name;
         particle.values = values;
-        BP_TRY(frame_add(file, &particle, false, err));
+        if (first != NULL) first[i] = (uint32_t)file->added;
+        BP_TRY(add_shape(file, &kind->shape, orientation, &particle, values, err));
     }
+    note_shapes(file, types);
     return BP_OK;
 }
 
 BpStatus read_gsd(BpParticleFile *file, bool *end, BpError *err) {
     static const char *const names[] = {"x", "y", "z", "diameter", "mass", "charge", "vx", "vy", "vz"};
-    static const char *const chunks[CHUNK_COUNT] = {"particles/position", "particles/diameter",
-                                                    "particles/typeid",   "particles/mass",
-                                                    "particles/charge",   "particles/velocity"};
-    static const uint32_t widths[CHUNK_COUNT] = {3, 1, 1, 1, 1, 3};
+    static const char *const chunks[CHUNK_COUNT] = {
+        "particles/position", "particles/diameter", "particles/typeid",     "particles/mass",
+        "particles/charge",   "particles/velocity", "particles/orientation"};
+    static const uint32_t widths[CHUNK_COUNT] = {3, 1, 1, 1, 1, 3, 4};
     BP_TRY(open_state(file, err));
     const State *const s = file->state;
     *end = file->frame >= s->frame_count;
     if (*end) return BP_OK;
     Column columns[CHUNK_COUNT] = {{0}}, number = {0};
-    char *types = NULL;
-    size_t type_count = 0, type_width = 0;
+    Types types = {0};
+    uint32_t *first = NULL;
     double count = 0;
     BpStatus status = BP_OK;
     BP_TRY(frame_begin(file, names, 9, err));
@@ -451,20 +576,28 @@ BpStatus read_gsd(BpParticleFile *file, bool *end, BpError *err) {
                             BP_PARTICLES_MAX);
         goto done;
     }
+    BP_TRY_GOTO(status, take_types(file, &types, err), done);
     for (int c = 0; c < CHUNK_COUNT; c++)
-        BP_TRY_GOTO(status, column_open(file, chunks[c], (uint64_t)count, widths[c], &columns[c], err), done);
+        if (c != ORIENTATION || types.unions)
+            BP_TRY_GOTO(status, column_open(file, chunks[c], (uint64_t)count, widths[c], &columns[c], err),
+                        done);
     if (count > 0 && columns[POSITION].entry == NULL) {
         status = input_fail(&file->input, false, err,
                             "found no positions in frame %" PRIu64 ", expected them", file->frame);
         goto done;
     }
-    BP_TRY_GOTO(status, take_types(file, &types, &type_count, &type_width, err), done);
-    BP_TRY_GOTO(status, take_particles(file, (uint64_t)count, columns, types, type_count, type_width, err),
-                done);
-    status = take_bonds(file, (uint64_t)count, err);
+    if (types.unions && count > 0) { /* there are positions of as many particles in the file */
+        first = malloc((size_t)count * sizeof *first);
+        if (first == NULL)
+            status = bp_fail(err, BP_ERR_MEMORY, "out of memory for %.0f unions of spheres", count);
+        if (first == NULL) goto done;
+    }
+    BP_TRY_GOTO(status, take_particles(file, (uint64_t)count, columns, &types, first, err), done);
+    status = take_bonds(file, (uint64_t)count, first, err);
 done:
     free(number.bytes);
     for (int c = 0; c < CHUNK_COUNT; c++) free(columns[c].bytes);
-    free(types);
+    types_clear(&types);
+    free(first);
     return status;
 }

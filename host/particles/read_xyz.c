@@ -11,7 +11,7 @@
 
 enum { WORDS_MAX = 160, KEY_SIZE = 4096 };
 
-typedef enum Role { SPECIES, POSITION, RADIUS, COLOR, NUMBER, ATOM_NAME, RESIDUE, OTHER } Role;
+typedef enum Role { SPECIES, POSITION, RADIUS, COLOR, NUMBER, SHAPE, ATOM_NAME, RESIDUE, OTHER } Role;
 
 typedef struct Layout {
     struct {
@@ -19,11 +19,12 @@ typedef struct Layout {
         int words;
     } property[WORDS_MAX];
     size_t property_count, word_count;
-    char column[BP_PARTICLE_COLUMNS_MAX][32];
+    char column[BP_PARTICLE_COLUMNS_MAX][96]; /* longer than any that can be wanted */
     const char *columns[BP_PARTICLE_COLUMNS_MAX];
     int column_word[BP_PARTICLE_COLUMNS_MAX];
     size_t column_count;
     bool extended;
+    uint64_t ellipsoids;
 } Layout;
 
 /* The value of a key in an extended comment (key=value or key="value"); false: it has none. */
@@ -61,7 +62,7 @@ static int numbers_of(const char *text, double *numbers, int max) {
 static void add_column(Layout *layout, const char *name, const char *suffix, int word) {
     if (layout->column_count == BP_PARTICLE_COLUMNS_MAX) return;
     const size_t c = layout->column_count++;
-    snprintf(layout->column[c], sizeof layout->column[c], "%.20s%s", name, suffix);
+    snprintf(layout->column[c], sizeof layout->column[c], "%.79s%s", name, suffix);
     layout->columns[c] = layout->column[c];
     layout->column_word[c] = word;
 }
@@ -86,9 +87,10 @@ static BpStatus parse_properties(const Input *input, char *text, Layout *layout,
                    : strcmp(name, "resname") == 0 || strcmp(name, "residuenames") == 0 ? RESIDUE
                                                                                        : OTHER;
         if (type[0] == 'R' && count == 3)
-            role = strcmp(name, "pos") == 0                                   ? POSITION
-                   : strcmp(name, "color") == 0 || strcmp(name, "Color") == 0 ? COLOR
-                                                                              : OTHER;
+            role = strcmp(name, "pos") == 0                                              ? POSITION
+                   : strcmp(name, "color") == 0 || strcmp(name, "Color") == 0            ? COLOR
+                   : strcmp(name, "aspherical_shape") == 0 || strcmp(name, "shape") == 0 ? SHAPE
+                                                                                         : OTHER;
         if (type[0] == 'R' && count == 1 && (strcmp(name, "radius") == 0 || strcmp(name, "Radius") == 0))
             role = RADIUS;
         if (type[0] == 'I' && count == 1 && strcmp(name, "Z") == 0) role = NUMBER;
@@ -184,11 +186,11 @@ static uint8_t element_of(const char *species) {
     return bp_element_of_symbol(symbol);
 }
 
-static BpStatus take_atom(BpParticleFile *file, const Layout *layout, uint64_t number, uint64_t count,
+static BpStatus take_atom(BpParticleFile *file, Layout *layout, uint64_t number, uint64_t count,
                           BpError *err) {
     Input *const input = &file->input;
     char *line, *words[WORDS_MAX], type[8];
-    double values[BP_PARTICLE_COLUMNS_MAX];
+    double values[BP_PARTICLE_COLUMNS_MAX], shape[3] = {0, 0, 0};
     Particle particle = PARTICLE_NONE;
     BP_TRY(input_line(input, &line, err));
     if (line == NULL)
@@ -207,9 +209,10 @@ static BpStatus take_atom(BpParticleFile *file, const Layout *layout, uint64_t n
         const Role role = layout->property[p].role;
         bool good = true;
         double value = 0;
-        for (int i = 0; i < 3 && (role == POSITION || role == COLOR); i++)
-            good = good && word_number(words[w + (size_t)i],
-                                       role == POSITION ? &particle.position[i] : &particle.color[i]);
+        for (int i = 0; i < 3 && (role == POSITION || role == COLOR || role == SHAPE); i++)
+            good = good && word_number(words[w + (size_t)i], role == POSITION ? &particle.position[i]
+                                                             : role == COLOR  ? &particle.color[i]
+                                                                              : &shape[i]);
         if (!good) return input_wrong(input, words[w], "three finite numbers", err);
         if (role == COLOR)
             for (int i = 0; i < 3; i++)
@@ -235,6 +238,7 @@ static BpStatus take_atom(BpParticleFile *file, const Layout *layout, uint64_t n
         }
         w += (size_t)layout->property[p].words;
     }
+    layout->ellipsoids += frame_take_ellipsoid(&particle, shape);
     for (size_t k = 0; k < file->taken_count; k++) {
         const int c = file->wanted_column[k];
         values[c] = NAN;
@@ -270,6 +274,7 @@ BpStatus read_xyz(BpParticleFile *file, bool *end, BpError *err) {
         parse_cell(file, line);
         for (uint64_t i = 0; i < count && status == BP_OK; i++)
             status = take_atom(file, layout, i, count, err);
+        frame_note_shapes(file, layout->ellipsoids, "ellipsoid");
     }
     free(layout);
     return status;

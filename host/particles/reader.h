@@ -32,7 +32,8 @@ struct BpParticleFile {
     void *state;       /* of the format's reader, freed with the file */
 };
 
-/* One particle. Texts may be NULL and are copied; those longer than BP_PARTICLE_NAME_SIZE are cut. */
+/* One particle. Texts may be NULL and are copied; those of BP_PARTICLE_NAME_SIZE bytes and more are
+ * refused, since names that were cut could become equal. */
 typedef struct Particle {
     double position[3]; /* NaN: it has no place */
     const char *name, *residue, *chain, *type;
@@ -83,9 +84,9 @@ void frame_cell(BpParticleFile *file, const double origin[3], const double edges
 /* Notes how many particles of the frame have another shape than the sphere that is drawn: `kind` is
  * "ellipsoid", for example, and 0 notes nothing. */
 void frame_note_shapes(BpParticleFile *file, uint64_t count, const char *kind);
-/* The radius of the sphere that has the volume of an ellipsoid of these three half-axes; NaN if one is not
- * above 0. */
-double frame_ellipsoid_radius(const double half_axes[3]);
+/* Gives a particle without a radius that of the sphere of an ellipsoid's volume, if all three half-axes are
+ * above 0. True: it is an ellipsoid, and no sphere. */
+bool frame_take_ellipsoid(Particle *particle, const double half_axes[3]);
 
 typedef BpStatus ReadFrame(BpParticleFile *file, bool *end, BpError *err);
 ReadFrame read_xyz, read_pdb, read_cif, read_gro, read_dump, read_data, read_gsd, read_csv, read_ply;

@@ -29,11 +29,11 @@ typedef enum BpColorBy {
     BP_COLOR_COLUMN
 } BpColorBy;
 
-enum { BP_STYLE_NAMED_MAX = 128 };
+enum { BP_STYLE_NAMED_MAX = 128, BP_STYLE_NAME_SIZE = 256 };
 
 /* What one element or type has instead of its default. */
 typedef struct BpStyleNamed {
-    char name[BP_PARTICLE_NAME_SIZE];
+    char name[BP_STYLE_NAME_SIZE];
     double value[3]; /* of a radius: the first */
 } BpStyleNamed;
 

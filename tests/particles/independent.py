@@ -2,6 +2,7 @@
 
 python3 independent.py ase|mdanalysis|gsd FILE FORMAT FRAME
 python3 independent.py write FOLDER         writes files by ASE and gsd, and says what they hold
+python3 independent.py write-gsd FOLDER     writes random.gsd, and says for each frame what gsd finds in it, value by value
 """
 import json
 import os
@@ -81,7 +82,76 @@ def write_gsd(folder):
             file.append(frame)
 
 
+def change_frame(random, frame, what, count):
+    """Gives a frame what is to be tried; everything else is left out, so that it is that of the first frame, or the default."""
+    import numpy
+    frame.particles.N = count
+    frame.particles.position = random.uniform(-5, 5, (count, 3))
+    if what in ("all", "types"):
+        frame.particles.types = ["A", "Bee", "a type of forty letters, to the letter x"][:3 if what == "all" else 2]
+        frame.particles.typeid = random.integers(0, len(frame.particles.types), count)
+    if what in ("all", "sizes"):
+        frame.particles.diameter = random.uniform(0.5, 2, count)
+        frame.particles.mass = random.uniform(1, 9, count)
+    if what in ("all", "motion"):
+        frame.particles.charge = random.uniform(-2, 2, count)
+        frame.particles.velocity = random.uniform(-9, 9, (count, 3))
+        frame.particles.image = random.integers(-3, 3, (count, 3))
+        frame.particles.orientation = random.uniform(-1, 1, (count, 4))
+    if what in ("all", "box"):
+        frame.configuration.box = numpy.concatenate([random.uniform(5, 20, 3), random.uniform(-1.4, 1.4, 3)])
+    if what == "flat":
+        frame.configuration.box = [7, 8, 0, 0.3, 0, 0]
+        frame.configuration.dimensions = 2
+        frame.particles.position[:, 2] = 0
+    if what in ("all", "bonds"):
+        frame.bonds.N = count // 2
+        frame.bonds.types = ["b", "c"]
+        frame.bonds.typeid = random.integers(0, 2, count // 2)
+        frame.bonds.group = [random.choice(count, 2, replace=False) for _ in range(count // 2)]
+    if what == "no bonds":
+        frame.bonds.N = 0
+
+
+def found_in(frame, what):
+    """One frame as gsd reads it."""
+    p, box = frame.particles, [float(x) for x in frame.configuration.box]
+    flat = int(frame.configuration.dimensions) == 2
+    lz = 1.0 if flat and box[2] == 0 else box[2]
+    cell = [[box[0], 0, 0], [box[3] * box[1], box[1], 0], [box[4] * lz, box[5] * lz, lz]]
+    columns = {"diameter": p.diameter, "mass": p.mass, "charge": p.charge,
+               **{name: p.velocity[:, i] for i, name in enumerate(("vx", "vy", "vz"))}, "y": p.position[:, 1]}
+    return {"what": what, "positions": p.position.astype(float).tolist(), "types": [p.types[i] for i in p.typeid],
+            "radii": (p.diameter.astype(float) / 2).tolist(), "cell": cell, "flat": flat,
+            "origin": [-(cell[0][i] + cell[1][i] + cell[2][i]) / 2 for i in range(3)],
+            "pairs": [list(map(int, pair)) for pair in frame.bonds.group] if frame.bonds.N else [],
+            "columns": {name: values.astype(float).tolist() for name, values in columns.items()}}
+
+
+def write_random_gsd(folder):
+    import gsd.hoomd
+    import numpy
+    random = numpy.random.default_rng(3)
+    frames = [("all", 30), ("positions", 30), ("types", 30), ("sizes", 30), ("motion", 30), ("box", 30), ("bonds", 30),
+              ("no bonds", 30), ("positions", 12), ("all", 12), ("bonds", 50), ("types", 50), ("flat", 30), ("positions", 40)]
+    path = os.path.join(folder, "random.gsd")
+    with gsd.hoomd.open(path, "w") as file:
+        for step, (what, count) in enumerate(frames):
+            frame = gsd.hoomd.Frame()
+            frame.configuration.step = step
+            change_frame(random, frame, what, count)
+            file.append(frame)
+    with gsd.hoomd.open(path, "r") as file:
+        print(json.dumps([found_in(frame, what) for frame, (what, _) in zip(file, frames)]))
+
+
 def main():
+    if sys.argv[1] == "write-gsd":
+        try:
+            write_random_gsd(sys.argv[2])
+        except ImportError:
+            return 77
+        return 0
     if sys.argv[1] == "write":
         written = []
         for name, write in [("ase", write_ase), ("gsd", write_gsd)]:

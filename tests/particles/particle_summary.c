@@ -31,6 +31,7 @@ static void print_summary(const BpParticles *p) {
         alternatives += (p->tag[i].flags & BP_PARTICLE_ALTERNATIVE) != 0;
         dummies += (p->tag[i].flags & BP_PARTICLE_DUMMY) != 0;
     }
+    printf("\"names\": %zu, ", p->names.count > 0 ? p->names.count - 1 : 0);
     printf("\"count\": %zu, \"bonds\": %zu, \"left_out\": %zu, \"angstrom\": %g, \"up\": %d, \"flat\": %s, "
            "\"notes\": \"%s\", "
            "\"alternatives\": %zu, \"dummies\": %zu",
@@ -75,7 +76,7 @@ static void print_number(double value, bool first) {
 static void print_values(const BpParticles *p) {
     printf(", \"positions\": [");
     for (size_t i = 0; i < p->count; i++)
-        printf("%s[%.12g, %.12g, %.12g]", i > 0 ? ", " : "", p->position[i][0], p->position[i][1],
+        printf("%s[%.17g, %.17g, %.17g]", i > 0 ? ", " : "", p->position[i][0], p->position[i][1],
                p->position[i][2]);
     printf("], \"types\": [");
     for (size_t i = 0; i < p->count; i++)
