@@ -135,13 +135,14 @@ def write_random_gsd(folder):
     frames = [("all", 30), ("positions", 30), ("types", 30), ("sizes", 30), ("motion", 30), ("box", 30), ("bonds", 30),
               ("no bonds", 30), ("positions", 12), ("all", 12), ("bonds", 50), ("types", 50), ("flat", 30), ("positions", 40)]
     path = os.path.join(folder, "random.gsd")
-    with gsd.hoomd.open(path, "w") as file:
+    new = hasattr(gsd.hoomd, "Frame")
+    with gsd.hoomd.open(path, "w" if new else "wb") as file:
         for step, (what, count) in enumerate(frames):
-            frame = gsd.hoomd.Frame()
+            frame = gsd.hoomd.Frame() if new else gsd.hoomd.Snapshot()
             frame.configuration.step = step
             change_frame(random, frame, what, count)
             file.append(frame)
-    with gsd.hoomd.open(path, "r") as file:
+    with gsd.hoomd.open(path, "r" if new else "rb") as file:
         print(json.dumps([found_in(frame, what) for frame, (what, _) in zip(file, frames)]))
 
 
