@@ -1,6 +1,6 @@
 /* atom.c: what the formats of molecules say of an atom in the same way; see reader.h.
  *
- * In:    names and letters as a file has them.   Out: a particle's element and flags.
+ * In:    names as a file has them.   Out: a particle's element and flags.
  * Knows: elements.h.   Does not know: how a format is written. */
 #include "elements.h"
 #include "reader.h"
@@ -28,10 +28,4 @@ void atom_note_masses(BpParticles *particles, size_t known, size_t count, const 
     else if (known > 0)
         bp_particles_note(particles, "no elements, since the masses of %zu of %zu %s are those of none",
                           count - known, count, things);
-}
-
-void atom_mark_place(Particle *atom, char place, char *first) {
-    if (place == '\0') return;
-    if (*first == '\0') *first = place;
-    if (place != *first && place != 'A') atom->flags |= BP_PARTICLE_ALTERNATIVE;
 }

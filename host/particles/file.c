@@ -59,7 +59,8 @@ static BpParticleFormat format_of_name(const char *name) {
         {".gro", BP_PARTICLES_GRO},         {".dump", BP_PARTICLES_DUMP},  {".lammpstrj", BP_PARTICLES_DUMP},
         {".lammpsdump", BP_PARTICLES_DUMP}, {".data", BP_PARTICLES_DATA},  {".lmp", BP_PARTICLES_DATA},
         {".lammpsdata", BP_PARTICLES_DATA}, {".gsd", BP_PARTICLES_GSD},    {".csv", BP_PARTICLES_CSV},
-        {".tsv", BP_PARTICLES_CSV},         {".ply", BP_PARTICLES_PLY},    {".pqr", BP_PARTICLES_PQR}};
+        {".tsv", BP_PARTICLES_CSV},         {".ply", BP_PARTICLES_PLY},    {".pqr", BP_PARTICLES_PQR},
+        {".pdbx", BP_PARTICLES_CIF}};
     size_t length = strlen(name);
     if (length > 3 && strcasecmp(name + length - 3, ".gz") == 0) length -= 3;
     for (size_t i = 0; i < sizeof endings / sizeof *endings; i++) {
@@ -121,6 +122,8 @@ static void drop_state(BpParticleFile *file) {
         gsd_state_destroy(file->state);
     else if (file->format == BP_PARTICLES_PDB || file->format == BP_PARTICLES_PQR)
         pdb_state_destroy(file->state);
+    else if (file->format == BP_PARTICLES_CIF)
+        cif_state_destroy(file->state);
     else
         free(file->state);
     file->state = NULL;

@@ -1,10 +1,13 @@
-/* read_cif.c: mmCIF: the table _atom_site and the cell; see reader.h.
+/* read_cif.c: mmCIF: the atoms of _atom_site, the cell, and how the cell lies; see reader.h.
  *
- * Knows: CIF's tokens (S. R. Hall, F. H. Allen, I. D. Brown 1991) as far as tables need them. */
+ * Each model is a frame, and so is each data block that has atoms. */
+#include "cif_token.h"
+#include "crystal.h"
 #include "elements.h"
-#include "reader.h"
+#include "places.h"
 
-#include "base/message_text.h"
+#include "base/format.h"
+#include "base/plural.h"
 
 #include <stdlib.h>
 #include <string.h>
@@ -27,170 +30,290 @@ typedef enum Field {
     Z,
     OCCUPANCY,
     B_FACTOR,
-    SEQUENCE,
+    AUTH_SEQUENCE,
+    LABEL_SEQUENCE,
+    INSERTION,
     FIELD_COUNT
 } Field;
 
 static const char *const field_names[FIELD_COUNT] = {
-    "pdbx_PDB_model_num", "type_symbol",    "auth_atom_id",  "label_atom_id", "label_alt_id", "auth_comp_id",
-    "label_comp_id",      "auth_asym_id",   "label_asym_id", "Cartn_x",       "Cartn_y",      "Cartn_z",
-    "occupancy",          "B_iso_or_equiv", "auth_seq_id"};
+    "pdbx_PDB_model_num", "type_symbol",    "auth_atom_id",  "label_atom_id",
+    "label_alt_id",       "auth_comp_id",   "label_comp_id", "auth_asym_id",
+    "label_asym_id",      "Cartn_x",        "Cartn_y",       "Cartn_z",
+    "occupancy",          "B_iso_or_equiv", "auth_seq_id",   "label_seq_id",
+    "pdbx_PDB_ins_code"};
+
+/* The numbers of a block that say what the cell is and how it lies: lengths and angles, then two matrices of
+ * three rows, each with its vector behind it. */
+enum { LENGTHS = 0, ANGLES = 3, FRACT = 6, CARTN = 18, NUMBER_COUNT = 30 };
+
+typedef struct Cell {
+    double number[NUMBER_COUNT];
+    bool has[NUMBER_COUNT];
+} Cell;
 
 /* What is kept from frame to frame: the table goes on where the last model ended. */
 typedef struct State {
-    char *cursor; /* in the line that is being read; NULL: at the next line */
+    CifTokens tokens;
+    bool pending; /* the token of `tokens` is still to be looked at */
     size_t column_count;
     int field_column[FIELD_COUNT]; /* -1: absent */
-    double lengths[3], angles[3];
-    bool in_table;
-    char first_alternative;
-    /* The first row of the next model. */
+    Cell cell;
+    bool in_table, found; /* its rows follow; some table was found */
+    bool single;          /* the block's atoms are one row, written as items */
+    bool held;            /* `row` is the first of the next frame */
     char row[FIELD_COUNT][BP_PARTICLE_NAME_SIZE];
-    bool held;
+    Places places;
 } State;
 
-/* The next token of the file; NULL: its end. *quoted: it stood in quotes or between semicolons, so it is a
- * value whatever it looks like. Texts between semicolons are passed over, and given as "". */
-static BpStatus next_token(Input *input, State *state, char **token, bool *quoted, BpError *err) {
-    static char empty[1] = "";
-    *quoted = false;
-    for (;;) {
-        if (state->cursor == NULL) {
-            BP_TRY(input_line(input, &state->cursor, err));
-            *token = NULL;
-            if (state->cursor == NULL) return BP_OK;
-            if (state->cursor[0] == ';') {
-                char *line = NULL;
-                const uint64_t opened = input->line;
-                do {
-                    BP_TRY(input_line(input, &line, err));
-                    if (line == NULL)
-                        return input_fail(
-                            input, true, err,
-                            "found the end of the file in the text that line %llu opens, expected "
-                            "a line that begins with \";\"",
-                            (unsigned long long)opened);
-                } while (line[0] != ';');
-                state->cursor = line + 1;
-                *token = empty;
-                *quoted = true;
-                return BP_OK;
-            }
-        }
-        char *c = state->cursor + strspn(state->cursor, " \t\r");
-        if (*c == '\0' || *c == '#') {
-            state->cursor = NULL;
-            continue;
-        }
-        char *after = NULL;
-        if (*c == '\'' || *c == '"') { /* ended by the same quote before a blank */
-            for (after = c + 1; *after != '\0'; after++)
-                if (*after == *c && (after[1] == '\0' || after[1] == ' ' || after[1] == '\t')) break;
-            if (*after == '\0')
-                return input_fail(input, true, err, "found a quote that is not closed, expected its end");
-            *quoted = true;
-            c++;
-        } else {
-            after = c + strcspn(c, " \t\r");
-        }
-        state->cursor = *after != '\0' ? after + 1 : NULL;
-        *after = '\0';
-        *token = c;
-        return BP_OK;
-    }
+void cif_state_destroy(void *state) {
+    State *const cif = state;
+    if (cif == NULL) return;
+    places_clear(&cif->places);
+    free(cif);
 }
 
-static void take_cell_item(State *state, const char *name, const char *value) {
-    static const char *const names[6] = {"_cell.length_a",    "_cell.length_b",   "_cell.length_c",
-                                         "_cell.angle_alpha", "_cell.angle_beta", "_cell.angle_gamma"};
-    for (int i = 0; i < 6; i++) {
-        double number = 0;
-        if (strcasecmp(name, names[i]) == 0 && word_number(value, &number))
-            *(i < 3 ? &state->lengths[i] : &state->angles[i - 3]) = number;
-    }
-}
-
-/* After "loop_": takes the names; true in state->in_table when it is the table of atoms. *first: the first
- * value after the names, or NULL. */
-static BpStatus take_loop(Input *input, State *state, char **token, bool *quoted, BpError *err) {
-    size_t count = 0;
-    bool atoms = false, fractions = false;
-    for (int f = 0; f < FIELD_COUNT; f++) state->field_column[f] = -1;
-    for (;;) {
-        BP_TRY(next_token(input, state, token, quoted, err));
-        if (*token == NULL || *quoted || (*token)[0] != '_') break;
-        if (strncasecmp(*token, "_atom_site.", 11) == 0) {
-            atoms = true;
-            for (int f = 0; f < FIELD_COUNT; f++)
-                if (strcasecmp(*token + 11, field_names[f]) == 0 && state->field_column[f] < 0)
-                    state->field_column[f] = (int)count;
-        }
-        if (strncasecmp(*token, "_atom_site_fract_x", 18) == 0) fractions = true;
-        count++;
-        if (count > COLUMNS_MAX)
-            return input_fail(input, true, err, "found a table of more than %d columns, expected fewer",
-                              COLUMNS_MAX);
-    }
-    if (fractions)
-        return input_fail(
-            input, true, err,
-            "found fractions of a cell (_atom_site_fract_x), as CIF files of crystals have them, "
-            "expected _atom_site.Cartn_x; convert the file, to extended XYZ for example");
-    state->column_count = count;
-    state->in_table = atoms;
-    if (!atoms) return BP_OK;
-    for (int f = X; f <= Z; f++)
-        if (state->field_column[f] < 0)
-            return input_fail(input, true, err,
-                              "found no _atom_site.%s, expected Cartn_x, Cartn_y and Cartn_z",
-                              field_names[f]);
+static BpStatus peek(Input *input, State *state, BpError *err) {
+    if (state->pending) return BP_OK;
+    BP_TRY(cif_next(&state->tokens, input, err));
+    state->pending = true;
     return BP_OK;
 }
 
-static bool is_keyword(const char *token) {
-    return strncasecmp(token, "loop_", 6) == 0 || strncasecmp(token, "data_", 5) == 0 ||
-           strncasecmp(token, "save_", 5) == 0 || strncasecmp(token, "stop_", 6) == 0;
+static bool is_word(const State *state, const char *word, size_t length) {
+    return cif_is_keyword(&state->tokens) && strncasecmp(state->tokens.token, word, length) == 0;
 }
 
-/* Passes over all that stands before the table of atoms; *token is its first value. */
-static BpStatus find_table(Input *input, State *state, char **token, bool *quoted, BpError *err) {
-    BP_TRY(next_token(input, state, token, quoted, err));
-    while (*token != NULL) {
-        if (!*quoted && strcasecmp(*token, "loop_") == 0) {
-            BP_TRY(take_loop(input, state, token, quoted, err));
-            if (state->in_table) return BP_OK;
-            continue;
-        }
-        if (!*quoted && strncasecmp(*token, "_atom_site.Cartn_x", 19) == 0)
-            return input_fail(input, true, err,
-                              "found _atom_site with one value, expected a table: loop_ and its names");
-        if (!*quoted && strncasecmp(*token, "_cell.", 6) == 0) {
-            char name[32];
-            snprintf(name, sizeof name, "%s", *token);
-            BP_TRY(next_token(input, state, token, quoted, err));
-            if (*token != NULL) take_cell_item(state, name, *token);
-            continue;
-        }
-        BP_TRY(next_token(input, state, token, quoted, err));
+/* ---- the cell --------------------------------------------------------------------------------------------
+ */
+
+/* The place of "matrix[2][3]" or "vector[2]" among the twelve numbers of a transformation; -1: another name.
+ */
+static int place_in_transformation(const char *name) {
+    for (int place = 0; place < 12; place++) {
+        char text[16];
+        const int row = place / 4 + 1, column = place % 4 + 1;
+        if (column < 4)
+            snprintf(text, sizeof text, "matrix[%d][%d]", row, column);
+        else
+            snprintf(text, sizeof text, "vector[%d]", row);
+        if (strcasecmp(name, text) == 0) return place;
     }
-    return input_fail(
-        input, false, err,
-        "found no table _atom_site, expected an mmCIF file's atoms (loop_ _atom_site.Cartn_x ...)");
+    return -1;
 }
 
-/* One row into state->row. `token`: its first value. */
-static BpStatus take_row(Input *input, State *state, char *token, BpError *err) {
-    bool quoted = false;
+/* The number that an item gives; -1: none. */
+static int number_of_item(const char *name) {
+    static const char *const cell[6] = {"length_a",    "length_b",   "length_c",
+                                        "angle_alpha", "angle_beta", "angle_gamma"};
+    if (strncasecmp(name, "_cell.", 6) == 0)
+        for (int i = 0; i < 6; i++)
+            if (strcasecmp(name + 6, cell[i]) == 0) return i;
+    if (strncasecmp(name, "_atom_sites.", 12) != 0) return -1;
+    const bool fract = strncasecmp(name + 12, "fract_transf_", 13) == 0;
+    if (!fract && strncasecmp(name + 12, "Cartn_transf_", 13) != 0) return -1;
+    const int place = place_in_transformation(name + 25);
+    return place < 0 ? -1 : (fract ? FRACT : CARTN) + place;
+}
+
+static void take_number(Cell *cell, int item, const char *value) {
+    if (item >= 0 && cif_number(value, &cell->number[item])) cell->has[item] = true;
+}
+
+/* A row counts if its three numbers are there; its vector is 0 where it is not. */
+static bool take_row_of(const Cell *cell, int first, double row[4]) {
+    for (int i = 0; i < 4; i++) row[i] = cell->has[first + i] ? cell->number[first + i] : 0;
+    return cell->has[first] && cell->has[first + 1] && cell->has[first + 2];
+}
+
+static void put_cell(BpParticleFile *file, const Cell *cell) {
+    CrystalFrame frame = {0};
+    double edges[3][4];
+    bool by_shares = false, by_edges = true;
+    for (int i = 0; i < 3; i++) {
+        frame.given[i] = take_row_of(cell, FRACT + 4 * i, frame.row[i]);
+        by_shares |= frame.given[i];
+        by_edges &= take_row_of(cell, CARTN + 4 * i, edges[i]);
+    }
+    if (!by_shares && by_edges) crystal_frame_of_edges(&frame, (const double(*)[4])edges);
+    frame_cell_angles(file, &cell->number[LENGTHS], &cell->number[ANGLES]);
+    crystal_turn_cell(file, &frame, "_atom_sites");
+}
+
+/* ---- what stands around the atoms ------------------------------------------------------------------------
+ */
+
+/* Crystals' files have shares of the cell for places. */
+static BpStatus refuse_fractions(const Input *input, const State *state, const char *name, BpError *err) {
+    if (state->found || strncasecmp(name, "_atom_site_fract_x", 18) != 0) return BP_OK;
+    return input_fail(input, true, err,
+                      "found fractions of a cell (_atom_site_fract_x), as CIF files of crystals have them, "
+                      "expected _atom_site.Cartn_x; convert the file, to extended XYZ for example");
+}
+
+static bool is_of_atoms(const char *name) {
+    return strncasecmp(name, "_atom_site.", 11) == 0;
+}
+
+/* Notes where a field of _atom_site stands; returns which it is, or FIELD_COUNT. */
+static int take_field(State *state, const char *name, size_t column) {
+    for (int f = 0; f < FIELD_COUNT && is_of_atoms(name); f++) {
+        if (strcasecmp(name + 11, field_names[f]) != 0) continue;
+        if (state->field_column[f] < 0) state->field_column[f] = (int)column;
+        return f;
+    }
+    return FIELD_COUNT;
+}
+
+/* Whether the atoms have places; those of later blocks may lack them, and are passed over. */
+static BpStatus check_fields(const Input *input, const State *state, bool *good, BpError *err) {
+    *good = true;
+    for (int f = X; f <= Z; f++) {
+        if (state->field_column[f] >= 0) continue;
+        *good = false;
+        if (state->found) return BP_OK;
+        return input_fail(input, true, err, "found no _atom_site.%s, expected Cartn_x, Cartn_y and Cartn_z",
+                          field_names[f]);
+    }
+    return BP_OK;
+}
+
+static void forget_fields(State *state) {
+    for (int f = 0; f < FIELD_COUNT; f++) state->field_column[f] = -1;
+}
+
+/* A table: stops at the first value of one of atoms, with state->in_table. Of one that gives the cell, the
+ * first row is taken. */
+static BpStatus take_loop(Input *input, State *state, BpError *err) {
+    int item[COLUMNS_MAX];
+    size_t count = 0;
+    bool atoms = false;
+    for (;; count++) {
+        BP_TRY(peek(input, state, err));
+        if (!cif_is_name(&state->tokens)) break;
+        const char *const name = state->tokens.token;
+        BP_TRY(refuse_fractions(input, state, name, err));
+        if (!atoms && is_of_atoms(name)) {
+            atoms = true;
+            state->single = false;
+            forget_fields(state);
+        }
+        take_field(state, name, count);
+        if (count < COLUMNS_MAX) item[count] = number_of_item(name);
+        state->pending = false;
+        if (atoms && count >= COLUMNS_MAX)
+            return input_fail(input, true, err, "found a table of more than %d columns, expected fewer",
+                              COLUMNS_MAX);
+    }
+    state->column_count = count;
+    if (atoms) return check_fields(input, state, &state->in_table, err);
+    for (size_t c = 0; c < count && c < COLUMNS_MAX; c++) {
+        BP_TRY(peek(input, state, err));
+        if (!cif_is_value(&state->tokens)) break;
+        take_number(&state->cell, item[c], state->tokens.token);
+        state->pending = false;
+    }
+    return BP_OK;
+}
+
+/* A name and its value. A table of one row may be written so. */
+static BpStatus take_item(Input *input, State *state, BpError *err) {
+    char name[CIF_TEXT_SIZE];
+    snprintf(name, sizeof name, "%s", state->tokens.token);
+    BP_TRY(refuse_fractions(input, state, name, err));
+    state->pending = false;
+    BP_TRY(peek(input, state, err));
+    if (!cif_is_value(&state->tokens)) return BP_OK;
+    const char *const value = state->tokens.token;
+    take_number(&state->cell, number_of_item(name), value);
+    if (!state->single && is_of_atoms(name)) {
+        state->single = true;
+        forget_fields(state);
+    }
+    const int field = take_field(state, name, 0);
+    if (field < FIELD_COUNT) snprintf(state->row[field], sizeof state->row[field], "%s", value);
+    state->pending = false;
+    return BP_OK;
+}
+
+/* A save frame, as dictionaries have them, holds no atoms. */
+static BpStatus skip_save_frame(Input *input, State *state, BpError *err) {
+    const bool opens = state->tokens.token[5] != '\0';
+    do {
+        state->pending = false;
+        BP_TRY(peek(input, state, err));
+    } while (opens && state->tokens.token != NULL && !is_word(state, "save_", 5));
+    if (opens) state->pending = false;
+    return BP_OK;
+}
+
+static BpStatus take_next(Input *input, State *state, BpError *err) {
+    if (is_word(state, "save_", 5)) return skip_save_frame(input, state, err);
+    if (cif_is_name(&state->tokens)) return take_item(input, state, err);
+    const bool loop = is_word(state, "loop_", 5);
+    state->pending = false;
+    return loop ? take_loop(input, state, err) : BP_OK;
+}
+
+/* The atoms that a block had as items become the frame's only row. */
+static BpStatus end_block(const Input *input, State *state, BpError *err) {
+    if (!state->single) return BP_OK;
+    state->single = false;
+    return check_fields(input, state, &state->held, err);
+}
+
+/* Passes over all that stands before the next atoms: then either the token is the first value of a table,
+ * with state->in_table, or the only row is held. Neither: there are no further ones. */
+static BpStatus find_atoms(Input *input, State *state, BpError *err) {
+    for (;;) {
+        BP_TRY(peek(input, state, err));
+        const bool ends = state->tokens.token == NULL || is_word(state, "data_", 5);
+        if (ends) BP_TRY(end_block(input, state, err));
+        if (state->held || state->tokens.token == NULL) return BP_OK;
+        if (ends) state->cell = (Cell){0};
+        BP_TRY(take_next(input, state, err));
+        if (!state->in_table) continue;
+        BP_TRY(peek(input, state, err));
+        if (cif_is_value(&state->tokens)) return BP_OK;
+        if (!state->found)
+            return input_fail(input, true, err, "found a table _atom_site without rows, expected atoms");
+        state->in_table = false;
+    }
+}
+
+/* Categories may stand in any order: where the cell, or how it lies, was not said before the first table of
+ * atoms, the block is read to its end for it, and then again up to the table. What is wrong there is no fault
+ * of the atoms before. */
+static BpStatus find_cell_behind(Input *input, State *state, BpError *err) {
+    if (state->cell.has[LENGTHS] && (state->cell.has[FRACT] || state->cell.has[CARTN])) return BP_OK;
+    while (peek(input, state, NULL) == BP_OK && state->tokens.token != NULL && !is_word(state, "data_", 5))
+        if (take_next(input, state, NULL) != BP_OK) break;
+    const Cell cell = state->cell;
+    const Places places = state->places;
+    BP_TRY(input_rewind(input, err));
+    *state = (State){.places = places};
+    BP_TRY(find_atoms(input, state, err));
+    state->cell = cell;
+    return BP_OK;
+}
+
+/* ---- atoms -----------------------------------------------------------------------------------------------
+ */
+
+/* One row into state->row. */
+static BpStatus take_row(Input *input, State *state, BpError *err) {
     for (size_t c = 0; c < state->column_count; c++) {
-        if (c > 0) BP_TRY(next_token(input, state, &token, &quoted, err));
-        if (token == NULL && !input->open_line) input->ended = false; /* a value is missing somewhere above */
-        if (token == NULL || (!quoted && (token[0] == '_' || is_keyword(token))))
-            return input_fail(
-                input, true, err,
-                "found %s in a row of _atom_site, expected %zu values: the file is cut off, or a "
-                "value is missing",
-                token == NULL ? "the end of the file" : "a name", state->column_count);
+        BP_TRY(peek(input, state, err));
+        if (state->tokens.token == NULL && !input->open_line)
+            input->ended = false; /* a value is missing somewhere above */
+        if (!cif_is_value(&state->tokens))
+            return input_fail(input, true, err,
+                              "found %s in a row of _atom_site, expected %zu values: the file is cut off, or "
+                              "a value is missing",
+                              state->tokens.token == NULL ? "the end of the file" : "a name",
+                              state->column_count);
         for (int f = 0; f < FIELD_COUNT; f++) {
+            const char *const token = state->tokens.token;
             if (state->field_column[f] != (int)c) continue;
             if (strlen(token) >= sizeof state->row[f])
                 return input_fail(input, true, err,
@@ -198,73 +321,97 @@ static BpStatus take_row(Input *input, State *state, char *token, BpError *err) 
                                   strlen(token), field_names[f], sizeof state->row[f] - 1);
             snprintf(state->row[f], sizeof state->row[f], "%s", token);
         }
+        state->pending = false;
     }
     return BP_OK;
 }
 
-/* "" for the values that stand for none. */
+/* The value of a field, or else of the other; "": neither has one. */
 static const char *text_of(const State *state, Field field, Field instead) {
-    if (state->field_column[field] < 0 && instead != FIELD_COUNT) field = instead;
-    const char *const text = state->field_column[field] >= 0 ? state->row[field] : "";
-    return strcmp(text, ".") == 0 || strcmp(text, "?") == 0 ? "" : text;
+    const char *const text = state->field_column[field] >= 0 ? cif_known(state->row[field]) : "";
+    return text[0] != '\0' || instead == field ? text : text_of(state, instead, instead);
 }
 
-static BpStatus add_row(BpParticleFile *file, State *state, BpError *err) {
+static double number_in(const State *state, Field field, Field instead) {
+    double value = 0;
+    return cif_number(text_of(state, field, instead), &value) ? value : NAN;
+}
+
+/* *unknown counts the atoms whose place the file does not know. */
+static BpStatus add_row(BpParticleFile *file, State *state, size_t *unknown, BpError *err) {
     Particle particle = PARTICLE_NONE;
-    double values[3] = {NAN, NAN, NAN};
-    for (int i = 0; i < 3; i++)
-        if (!word_number(state->row[X + i], &particle.position[i]))
-            return input_wrong(&file->input, state->row[X + i], "a coordinate in _atom_site.Cartn_x, y and z",
+    for (Field f = X; f <= Z; f++) {
+        if (text_of(state, f, f)[0] == '\0' && state->row[f][0] != '\0') {
+            ++*unknown;
+            return BP_OK;
+        }
+        if (!cif_number(state->row[f], &particle.position[f - X]))
+            return input_wrong(&file->input, state->row[f], "a coordinate in _atom_site.Cartn_x, y and z",
                                err);
+    }
     particle.name = text_of(state, AUTH_NAME, LABEL_NAME);
     particle.residue = text_of(state, AUTH_RESIDUE, LABEL_RESIDUE);
     particle.chain = text_of(state, AUTH_CHAIN, LABEL_CHAIN);
-    atom_identify(&particle, text_of(state, SYMBOL, FIELD_COUNT), particle.name, false);
-    atom_mark_place(&particle, text_of(state, ALTERNATIVE, FIELD_COUNT)[0], &state->first_alternative);
-    static const Field numbers[3] = {OCCUPANCY, B_FACTOR, SEQUENCE};
-    for (int i = 0; i < 3; i++)
-        if (!word_number(text_of(state, numbers[i], FIELD_COUNT), &values[i])) values[i] = NAN;
+    atom_identify(&particle, text_of(state, SYMBOL, SYMBOL), particle.name, false);
+    const double values[3] = {number_in(state, OCCUPANCY, OCCUPANCY), number_in(state, B_FACTOR, B_FACTOR),
+                              number_in(state, AUTH_SEQUENCE, LABEL_SEQUENCE)};
     particle.values = values;
-    return frame_add(file, &particle, true, err);
+    BP_TRY(frame_add(file, &particle, true, err));
+    if (file->out == NULL) return BP_OK;
+    char site[3 * CIF_TEXT_SIZE];
+    snprintf(site, sizeof site, "%s/%s/%s", particle.chain, text_of(state, AUTH_SEQUENCE, LABEL_SEQUENCE),
+             text_of(state, INSERTION, INSERTION));
+    return places_take(&state->places, site, text_of(state, ALTERNATIVE, ALTERNATIVE), err);
+}
+
+/* The rows of one model. */
+static BpStatus take_model(BpParticleFile *file, State *state, size_t *unknown, BpError *err) {
+    Input *const input = &file->input;
+    char model[CIF_TEXT_SIZE] = "";
+    for (bool has_rows = false;; has_rows = true) {
+        if (!state->held) {
+            if (!state->in_table) return BP_OK;
+            BP_TRY(peek(input, state, err));
+            state->in_table = cif_is_value(&state->tokens);
+            if (!state->in_table) return BP_OK;
+            BP_TRY(take_row(input, state, err));
+        }
+        const char *const here = text_of(state, MODEL, MODEL);
+        state->held = has_rows && strcmp(model, here) != 0;
+        if (state->held) return BP_OK;
+        snprintf(model, sizeof model, "%s", here);
+        BP_TRY(add_row(file, state, unknown, err));
+    }
 }
 
 BpStatus read_cif(BpParticleFile *file, bool *end, BpError *err) {
     static const char *const columns[] = {"occupancy", "bfactor", "residue_number"};
     Input *const input = &file->input;
-    char *token = NULL, model[BP_PARTICLE_NAME_SIZE] = "";
-    bool quoted = false, has_rows = false;
+    size_t unknown = 0;
     if (file->state == NULL) file->state = calloc(1, sizeof(State));
     State *const state = file->state;
     if (state == NULL) return bp_fail(err, BP_ERR_MEMORY, "out of memory");
-    if (file->frame == 0) {
-        *state = (State){0};
-        BP_TRY(find_table(input, state, &token, &quoted, err));
-    }
-    *end = file->frame > 0 && !state->held;
+    if (!state->held && !state->in_table) BP_TRY(find_atoms(input, state, err));
+    *end = !state->held && !state->in_table && state->found;
     if (*end) return BP_OK;
+    if (!state->held && !state->in_table)
+        return input_fail(
+            input, false, err,
+            "found no table _atom_site, expected an mmCIF file's atoms (loop_ _atom_site.Cartn_x ...)");
+    if (!state->found && state->in_table) BP_TRY(find_cell_behind(input, state, err));
+    state->found = true;
+    state->places.count = 0;
     BP_TRY(frame_begin(file, columns, 3, err));
     if (file->out != NULL) file->out->angstrom = 1;
-    frame_cell_angles(file, state->lengths, state->angles);
-    bool held = state->held;
-    state->held = false;
-    for (;;) {
-        if (!held) {
-            if (token == NULL && has_rows) BP_TRY(next_token(input, state, &token, &quoted, err));
-            if (token == NULL || (!quoted && (token[0] == '_' || is_keyword(token)))) break;
-            BP_TRY(take_row(input, state, token, err));
-        }
-        held = false;
-        token = NULL;
-        const char *const here = text_of(state, MODEL, FIELD_COUNT);
-        if (has_rows && strcmp(model, here) != 0) {
-            state->held = true;
-            return BP_OK;
-        }
-        snprintf(model, sizeof model, "%s", here);
-        has_rows = true;
-        BP_TRY(add_row(file, state, err));
-    }
-    if (!has_rows)
-        return input_fail(input, true, err, "found a table _atom_site without rows, expected atoms");
-    return BP_OK;
+    put_cell(file, &state->cell);
+    BP_TRY(take_model(file, state, &unknown, err));
+    if (file->added == 0)
+        return input_fail(input, true, err,
+                          "found no atom with a place, expected numbers in _atom_site.Cartn_x");
+    if (file->out == NULL) return BP_OK;
+    char number[32];
+    if (unknown > 0)
+        bp_particles_note(file->out, "left out: %s atom%s without a place",
+                          bp_format_whole(unknown, number, sizeof number), bp_plural(unknown));
+    return places_mark(&state->places, file->out, err);
 }

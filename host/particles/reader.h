@@ -68,9 +68,6 @@ void atom_identify(Particle *atom, const char *symbol, const char *name, bool fi
 /* Notes what became of masses where elements were sought for `count` things ("types"): they are taken for all
  * of them or for none. `united`: some are carbons of united atoms. */
 void atom_note_masses(BpParticles *particles, size_t known, size_t count, const char *things, bool united);
-/* One of the places that an atom may be at: `place` is a letter, or 0 where there is one place only. Of the
- * places the first of its file is shown, A mostly. *first: that letter, 0 at the beginning of a file. */
-void atom_mark_place(Particle *atom, char place, char *first);
 
 /* A cell from its lengths and angles in degrees (crystallography's convention: a along x, b in the plane of x
  * and y), its origin at 0. Cells that are none (lengths of 0 or 1, as placeholders) are passed over. */
@@ -93,8 +90,9 @@ ReadFrame read_xyz, read_pdb, read_cif, read_gro, read_dump, read_data, read_gsd
 
 /* Releases what a GSD file's index takes. */
 void gsd_state_destroy(void *state);
-/* Releases what a PDB file's reader keeps from frame to frame. */
+/* Release what the readers of PDB and of mmCIF files keep from frame to frame. */
 void pdb_state_destroy(void *state);
+void cif_state_destroy(void *state);
 BpStatus gsd_frame_count(BpParticleFile *file, uint64_t *count, BpError *err);
 
 #endif

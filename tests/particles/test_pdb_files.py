@@ -155,10 +155,16 @@ class Alternatives(listed.ListTest):
     """Of each atom one place, of a residue one conformer."""
 
     def chosen(self, *atoms):
-        """Which of the atoms, each (name, letter, more), are shown, by their numbers in the file."""
+        """Which of the atoms, each (name, letter, more), are shown, by their numbers in the file; the same in PDB and mmCIF."""
         lines = [dict({"name": f" {a[0]:<3s}", "letter": a[1]}, **(a[2] if len(a) > 2 else {})) for a in atoms]
         found = self.of("a.pdb", "".join(atom(serial=i, place=(i, 0, 0), **line) for i, line in enumerate(lines)))
         result = [round(p[0]) for p in found.places(shown=True)]
+        names = "id type_symbol auth_atom_id label_alt_id auth_comp_id auth_asym_id auth_seq_id pdbx_PDB_ins_code Cartn_x Cartn_y Cartn_z"
+        rows = [f"{i} C {line['name'].strip()} {line['letter'].strip() or '.'} {line.get('residue', 'ALA')} {line.get('chain', 'A')} "
+                f"{line.get('number', 1)} {line.get('code', '?')} {i} 0 0" for i, line in enumerate(lines)]
+        if not any("segment" in line for line in lines):
+            cif = "data_x\nloop_\n" + "".join(f"_atom_site.{n}\n" for n in names.split()) + "\n".join(rows) + "\n"
+            self.assertEqual([round(p[0]) for p in self.of("a.cif", cif).places(shown=True)], result)
         return result
 
     def test_letters(self):
@@ -371,7 +377,8 @@ class Independent(listed.ListTest):
         """Each atom of each real file: place, name, residue, element where columns 77 and 78 have one, and whether it is shown."""
         compared = 0
         for path in sorted(glob.glob(os.path.join(self.real_files(), "**/*.pdb.gz"), recursive=True)
-                           + glob.glob(os.path.join(self.real_files(), "*.pdb"))):
+                           + glob.glob(os.path.join(self.real_files(), "*.pdb"))
+                           + glob.glob(os.path.join(self.real_files(), "mmcif", "*.cif*"))):
             name = os.path.basename(path)
             with open(path, "rb") as file:
                 packed = file.read(2) == b"\x1f\x8b"

@@ -1,0 +1,32 @@
+/* cif_token.h: the tokens of a CIF file.
+ *
+ * In:    lines.   Out: names, keywords and values, one after the other; values as numbers.
+ * Knows: CIF's syntax (S. R. Hall, F. H. Allen, I. D. Brown 1991).   Does not know: what names mean. */
+#ifndef BP_PARTICLES_CIF_TOKEN_H
+#define BP_PARTICLES_CIF_TOKEN_H
+
+#include "input.h"
+
+enum { CIF_TEXT_SIZE = 64 };
+
+/* Begins as zero, with an input that is at the beginning of a line. */
+typedef struct CifTokens {
+    char *cursor; /* in the line that is being read; NULL: at the next line */
+    char *token;  /* the token last taken, valid until the next; NULL: the end of the file */
+    bool quoted;  /* it stood in quotes or between semicolons, so it is a value whatever it looks like */
+    char text[CIF_TEXT_SIZE]; /* of the token, where it is a text of several lines */
+} CifTokens;
+
+/* Takes the next token. Of texts between semicolons the first bytes are kept, without ends of lines. */
+BpStatus cif_next(CifTokens *tokens, Input *input, BpError *err);
+/* What the token is: the name of an item, or a word that opens something ("loop_", "data_...", "save_...").
+ * All else is a value. */
+bool cif_is_name(const CifTokens *tokens);
+bool cif_is_keyword(const CifTokens *tokens);
+bool cif_is_value(const CifTokens *tokens);
+/* The value as a number, which may have its standard uncertainty behind it in brackets: 0.12(3). */
+bool cif_number(const char *text, double *value);
+/* The text, or "" for the values that stand for none: "." and "?". */
+const char *cif_known(const char *text);
+
+#endif
