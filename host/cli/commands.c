@@ -15,10 +15,10 @@ const BpCommand bp_commands[] = {
         .summary = "render scenes to pictures",
         .description =
             "Renders each SCENE, a JSON document (see scenes/README.md; \"-\" is standard input, for "
-            "every command that takes a scene), or a file of particles (.xyz, .pdb, .cif, .gro, .dump, "
-            ".lammpstrj, .data, .gsd, .csv, .ply, and .gz of each; see docs/PARTICLES.md). The picture is "
-            "named after the scene and written "
-            "to the current folder, unless --output names another file or folder. The ending "
+            "every command that takes a scene), or a file of particles (.xyz, .pdb, .pqr, .cif, .gro, "
+            ".dump, .lammpstrj, .data, .gsd, .csv, .ply, and .gz of each; see docs/PARTICLES.md). The "
+            "picture is named after the scene and written to the current folder, unless --output names "
+            "another file or folder. The ending "
             "selects the format: .png, .ppm, .pfm, .exr (with layers for noise, samples, depth, "
             "normal and albedo), or .bpa, which keeps the sums of the samples for `ballpark "
             "merge`. All scenes are read before the first is rendered; a kernel that several of "
@@ -231,9 +231,10 @@ const BpCommand bp_commands[] = {
         .summary = "print the scene that a file becomes, to edit and cite",
         .description =
             "Prints, as a JSON document, the scene that `ballpark render FILE` would "
-            "render, to standard output or with -o to a file. For a file of particles (XYZ, PDB, mmCIF, "
-            "GRO, LAMMPS dump and data, GSD, CSV, PLY; each also packed by gzip), the document contains "
-            "all choices: camera, light, style. The particles stay in their file, which the document "
+            "render, to standard output or with -o to a file. For a file of particles (XYZ, PDB, PQR, "
+            "mmCIF, GRO, LAMMPS dump and data, GSD, CSV, PLY; each also packed by gzip), the document "
+            "contains all choices: camera, light, style. The particles stay in their file, which the "
+            "document "
             "names. docs/PARTICLES.md describes its members.",
         .examples = "  ballpark scene protein.pdb -o protein.json\n"
                     "  ballpark scene run.gsd --frame -1 | ballpark render - -o last.png\n",
