@@ -1,153 +1,154 @@
-/* read_csv.c: tables of text: comma, semicolon, tab or blanks between the columns; see reader.h. */
+/* read_csv.c: tables of text: comma, semicolon, tab or blanks between the columns; see reader.h.
+ *
+ * Knows: which columns a particle is made of.   Does not know: how fields are written (csv_fields.h). */
+#include "column_names.h"
+#include "csv_fields.h"
 #include "elements.h"
 #include "reader.h"
+
+#include "base/message_text.h"
 
 #include <stdlib.h>
 #include <string.h>
 #include <strings.h>
 
-typedef enum Role { X, Y, Z, RADIUS, DIAMETER, RED, GREEN, BLUE, TYPE, ELEMENT, ROLE_COUNT } Role;
+typedef enum Role { X, Y, Z, RADIUS, RED, GREEN, BLUE, TYPE, ELEMENT, ROLE_COUNT } Role;
+
+enum { COLUMNS_MAX = BP_PARTICLE_COLUMNS_MAX, NAMES_SIZE = 8192 };
 
 typedef struct Table {
-    char separator; /* ' ': blanks */
-    char names_text[8192];
-    char *names[BP_PARTICLE_COLUMNS_MAX];
-    size_t count;
-    int role[ROLE_COUNT];
+    CsvForm form;
+    char names_text[NAMES_SIZE];
+    char *names[COLUMNS_MAX];
+    int count;
+    int role[ROLE_COUNT]; /* the column; below 0: none */
+    size_t place_sets;    /* how many columns could be the places */
+    double radius_scale;  /* 1/2 for diameters */
+    double angstrom;      /* from the unit behind a name; 0: unknown */
     bool has_header;
 } Table;
 
-/* Splits in place. A field may stand in double quotes, which are taken away. */
-static size_t split_fields(char *line, char separator, char **fields, size_t max) {
-    if (separator == ' ') return split_words(line, fields, max);
-    size_t count = 0;
-    for (;;) {
-        line += strspn(line, separator == '\t' ? " " : " \t");
-        char *const begin = *line == '"' ? line + 1 : line;
-        char *end = *line == '"' ? strchr(begin, '"') : NULL;
-        char *next = strchr(end != NULL ? end : begin, separator);
-        if (end == NULL) {
-            end = next != NULL ? next : begin + strlen(begin);
-            while (end > begin && (end[-1] == ' ' || end[-1] == '\r')) end--;
-        }
-        const bool more = next != NULL;
-        *end = '\0';
-        if (count < max) fields[count] = begin;
-        count++;
-        if (!more) return count;
-        line = next + 1;
+/* ---- the names of columns -------------------------------------------------------------------------------
+ */
+
+static BpStatus fail_twice(const Input *input, const char *name, BpError *err) {
+    return input_fail(input, true, err, "found %s in two columns, expected one", name);
+}
+
+static BpStatus fail_quote(const Input *input, BpError *err) {
+    return input_fail(input, true, err, "found a quote that is not closed, expected its end in this line");
+}
+
+/* The first of these names that a column has. */
+static BpStatus find_role(const Input *input, Table *table, Role role, const char *const *names, size_t count,
+                          BpError *err) {
+    for (size_t i = 0; i < count && table->role[role] < 0; i++) {
+        table->role[role] = column_named((const char *const *)table->names, (size_t)table->count, names[i]);
+        if (table->role[role] == COLUMN_TWICE) return fail_twice(input, names[i], err);
     }
+    return BP_OK;
 }
 
-static char separator_of(const char *line) {
-    static const char separators[] = ",;\t";
-    for (const char *s = separators; *s != '\0'; s++)
-        if (strchr(line, *s) != NULL) return *s;
-    return ' ';
+/* Long names go before short ones: r is any column where another is the radius, and red beside g and b. */
+static BpStatus find_radius(const Input *input, Table *table, BpError *err) {
+    static const char *const names[] = {"radius", "diameter", "r", "d"};
+    for (size_t i = 0; i < 4 && table->role[RADIUS] < 0; i++) {
+        BP_TRY(find_role(input, table, RADIUS, &names[i], 1, err));
+        if (table->role[RADIUS] >= 0 && table->role[RADIUS] == table->role[RED]) table->role[RADIUS] = -1;
+        table->radius_scale = i % 2 == 1 ? 0.5 : 1;
+    }
+    return BP_OK;
 }
 
-static Role role_of(const char *name) {
-    static const struct {
-        const char *name;
-        Role role;
-    } known[] = {{"x", X},
-                 {"y", Y},
-                 {"z", Z},
-                 {"pos_x", X},
-                 {"pos_y", Y},
-                 {"pos_z", Z},
-                 {"position_x", X},
-                 {"position_y", Y},
-                 {"position_z", Z},
-                 {"points:0", X},
-                 {"points:1", Y},
-                 {"points:2", Z},
-                 {"points_0", X},
-                 {"points_1", Y},
-                 {"points_2", Z},
-                 {"radius", RADIUS},
-                 {"r", RADIUS},
-                 {"diameter", DIAMETER},
-                 {"d", DIAMETER},
-                 {"red", RED},
-                 {"green", GREEN},
-                 {"blue", BLUE},
-                 {"type", TYPE},
-                 {"species", TYPE},
-                 {"element", ELEMENT}};
-    for (size_t i = 0; i < sizeof known / sizeof *known; i++)
-        if (strcasecmp(name, known[i].name) == 0) return known[i].role;
-    return ROLE_COUNT;
-}
-
-/* The names of the columns, from the first line, or none: then they are x, y, z and radius. */
-static BpStatus take_header(Input *input, char *line, Table *table, BpError *err) {
-    static char *const plain[] = {"x", "y", "z", "radius"};
-    while (*line == '#' || *line == ' ') line++;
-    table->separator = separator_of(line);
-    snprintf(table->names_text, sizeof table->names_text, "%s", line);
-    if (strlen(line) >= sizeof table->names_text)
+/* Places and radii must have one unit. */
+static BpStatus find_unit(const Input *input, Table *table, BpError *err) {
+    char first[COLUMN_UNIT_SIZE] = "", unit[COLUMN_UNIT_SIZE], shown[2][64];
+    for (int r = X; r <= RADIUS; r++) {
+        if (table->role[r] < 0) continue;
+        column_unit(table->names[table->role[r]], unit);
+        if (unit[0] == '\0') continue;
+        if (first[0] == '\0') memcpy(first, unit, sizeof first);
+        const double one = column_angstrom(first), other = column_angstrom(unit);
+        if (one > 0 && other > 0 ? one == other : strcasecmp(first, unit) == 0) continue;
+        bp_printable(first, shown[0], sizeof shown[0]);
+        bp_printable(unit, shown[1], sizeof shown[1]);
         return input_fail(input, true, err,
-                          "found a first line of more than %zu bytes, expected names of columns",
-                          sizeof table->names_text - 1);
-    table->count = split_fields(table->names_text, table->separator, table->names, BP_PARTICLE_COLUMNS_MAX);
-    if (table->count > BP_PARTICLE_COLUMNS_MAX)
-        return input_fail(input, true, err, "found %zu columns, expected at most %d", table->count,
-                          BP_PARTICLE_COLUMNS_MAX);
-    for (int r = 0; r < ROLE_COUNT; r++) table->role[r] = -1;
-    size_t numbers = 0;
-    double ignored = 0;
-    for (size_t i = 0; i < table->count; i++) numbers += word_number(table->names[i], &ignored);
-    table->has_header = numbers < table->count;
-    if (!table->has_header) {
-        if (table->count < 2 || table->count > 4)
-            return input_fail(
-                input, true, err,
-                "found %zu columns without names, expected a first line that names them, such as "
-                "x,y,z,radius",
-                table->count);
-        for (size_t i = 0; i < table->count; i++) table->names[i] = plain[i];
+                          "found lengths in %s and in %s, expected one unit for places and radii", shown[0],
+                          shown[1]);
     }
-    for (size_t i = 0; i < table->count; i++) {
-        const Role role = role_of(table->names[i]);
-        if (role == ROLE_COUNT) continue;
-        if (table->role[role] >= 0)
-            return input_fail(input, true, err, "found %.32s in two columns, expected one", table->names[i]);
-        table->role[role] = (int)i;
-    }
+    table->angstrom = column_angstrom(first);
+    return BP_OK;
+}
+
+static BpStatus find_roles(const Input *input, Table *table, BpError *err) {
+    static const char *const axes[] = {"x", "y", "z"}, *const types[] = {"type", "species", "particletype"},
+                             *const elements[] = {"element"};
+    const char *const *const names = (const char *const *)table->names;
+    for (int r = 0; r < ROLE_COUNT; r++) table->role[r] = COLUMN_NONE;
+    table->place_sets = column_find_places(names, (size_t)table->count, &table->role[X]);
+    for (int i = 0; i < 3; i++)
+        if (table->role[i] == COLUMN_TWICE) return fail_twice(input, axes[i], err);
     if (table->role[X] < 0 || table->role[Y] < 0)
         return input_fail(
             input, true, err,
             "found no columns x and y, expected a first line that names them, such as x,y,z,radius");
-    return BP_OK;
+    if (!column_find_color(names, (size_t)table->count, &table->role[RED]))
+        table->role[RED] = table->role[GREEN] = table->role[BLUE] = COLUMN_NONE;
+    BP_TRY(find_radius(input, table, err));
+    BP_TRY(find_role(input, table, TYPE, types, 3, err));
+    BP_TRY(find_role(input, table, ELEMENT, elements, 1, err));
+    return find_unit(input, table, err);
 }
 
-static BpStatus take_row(BpParticleFile *file, const Table *table, char *line, BpError *err) {
-    char *fields[BP_PARTICLE_COLUMNS_MAX];
-    double values[BP_PARTICLE_COLUMNS_MAX], number[ROLE_COUNT];
+/* The names of the columns, from a line of names, or of numbers: then they are x, y, z and radius. */
+static BpStatus take_header(const Input *input, const char *line, bool named, Table *table, BpError *err) {
+    static char *const plain[] = {"x", "y", "z", "radius"};
+    if (named) line += strspn(line, "#%/ \t");
+    if (snprintf(table->names_text, NAMES_SIZE, "%s", line) >= NAMES_SIZE)
+        return input_fail(input, true, err,
+                          "found a first line of more than %d bytes, expected names of columns",
+                          NAMES_SIZE - 1);
+    if (csv_split(table->names_text, table->form.separator, table->names, COLUMNS_MAX, &table->count) ==
+        CSV_UNCLOSED)
+        return fail_quote(input, err);
+    table->has_header = named;
+    if (table->count > COLUMNS_MAX)
+        return input_fail(input, true, err, "found %d columns, expected at most %d", table->count,
+                          COLUMNS_MAX);
+    if (!named && (table->count < 2 || table->count > 4))
+        return input_fail(input, true, err,
+                          "found %d columns without names, expected a first line that names them, such as "
+                          "x,y,z,radius",
+                          table->count);
+    for (int i = 0; i < table->count && !named; i++) table->names[i] = plain[i];
+    return find_roles(input, table, err);
+}
+
+/* ---- rows -----------------------------------------------------------------------------------------------
+ */
+
+static BpStatus take_row(BpParticleFile *file, Table *table, char *line, BpError *err) {
+    Input *const input = &file->input;
+    char *fields[COLUMNS_MAX];
+    double values[COLUMNS_MAX], number[ROLE_COUNT];
     Particle particle = PARTICLE_NONE;
-    const size_t found = split_fields(line, table->separator, fields, BP_PARTICLE_COLUMNS_MAX);
-    if (found != table->count)
-        return input_fail(&file->input, true, err, "found %zu field%s, expected %zu, as in the first line",
-                          found, found == 1 ? "" : "s", table->count);
+    int filled = 0;
+    const int found = csv_split(line, table->form.separator, fields, COLUMNS_MAX, &filled);
+    if (found == CSV_UNCLOSED) return fail_quote(input, err);
+    if (filled == 0) return BP_OK; /* spreadsheets add rows of nothing */
+    if (found < table->count || filled > table->count)
+        return input_fail(input, true, err, "found %d field%s, expected %d, as in the first line", found,
+                          found == 1 ? "" : "s", table->count);
     for (int r = X; r <= BLUE; r++) {
         number[r] = NAN;
-        if (table->role[r] >= 0 && !word_number(fields[table->role[r]], &number[r]))
-            return input_wrong(&file->input, fields[table->role[r]], "a finite number", err);
+        if (table->role[r] >= 0)
+            BP_TRY(csv_number(input, &table->form, fields[table->role[r]], &number[r], err));
     }
     for (int i = 0; i < 3; i++) {
         particle.position[i] = table->role[i] >= 0 ? number[i] : 0;
         particle.color[i] = number[RED + i];
     }
-    const bool color = table->role[RED] >= 0 && table->role[GREEN] >= 0 && table->role[BLUE] >= 0;
-    for (int i = 0; i < 3; i++) {
-        if (!color) particle.color[i] = NAN;
-        if (color && !(particle.color[i] >= 0 && particle.color[i] <= 1))
-            return input_wrong(&file->input, fields[table->role[RED + i]],
-                               "a share of light from 0 to 1 (linear)", err);
-    }
-    if (table->role[RADIUS] >= 0) particle.radius = number[RADIUS];
-    if (table->role[RADIUS] < 0 && table->role[DIAMETER] >= 0) particle.radius = number[DIAMETER] / 2;
+    particle.radius = number[RADIUS] * table->radius_scale;
     if (table->role[TYPE] >= 0) particle.type = fields[table->role[TYPE]];
     if (table->role[ELEMENT] >= 0) {
         particle.element = bp_element_of_symbol(fields[table->role[ELEMENT]]);
@@ -155,71 +156,102 @@ static BpStatus take_row(BpParticleFile *file, const Table *table, char *line, B
     }
     for (size_t w = 0; w < file->taken_count; w++) {
         const int c = file->wanted_column[w];
-        if (!word_number(fields[c], &values[c])) values[c] = NAN;
+        values[c] = csv_number_or_none(&table->form, fields[c]);
     }
     particle.values = values;
     return frame_add(file, &particle, true, err);
 }
 
-static BpStatus take_table(BpParticleFile *file, Table *table, BpError *err) {
-    Input *const input = &file->input;
-    char *line = NULL, *after = NULL;
-    bool named = false;
-    /* The names are in the first line that is not a remark, or in a remark just before it. */
-    char *const remark = malloc(sizeof table->names_text);
-    if (remark == NULL) return bp_fail(err, BP_ERR_MEMORY, "out of memory");
-    remark[0] = '\0';
-    BpStatus status = BP_OK;
+/* ---- the whole ------------------------------------------------------------------------------------------
+ */
+
+/* The next line that is neither empty nor a remark. `remark`: Optional; gets the last of those before it. */
+static BpStatus next_row(Input *input, char **line, char *remark, BpError *err) {
     for (;;) {
-        BP_TRY_GOTO(status, input_full_line(input, &line, err), done);
-        if (line == NULL || line[strspn(line, " ")] != '#') break;
-        snprintf(remark, sizeof table->names_text, "%s", line);
+        BP_TRY(input_full_line(input, line, err));
+        if (*line == NULL) return BP_OK;
+        const bool is_remark = csv_is_remark(*line);
+        if (is_remark && remark != NULL) snprintf(remark, NAMES_SIZE, "%s", *line);
+        if (!is_remark && !csv_is_empty(*line)) return BP_OK;
     }
-    if (line != NULL && strncmp(line, "\xef\xbb\xbf", 3) == 0) line += 3;
-    if (line == NULL) {
-        status = input_fail(input, true, err, "found no line, expected a table with columns x, y and z");
-        goto done;
+}
+
+/* The separator that a line such as "sep=;" tells spreadsheets; 0: it is no such line. */
+static char separator_line(const char *line) {
+    line += *line == '"';
+    return strncasecmp(line, "sep=", 4) == 0 ? line[4] : '\0';
+}
+
+/* The names are in the first line that is no remark, or in a remark just before it. *line: that line if it
+ * holds numbers, else NULL. */
+static BpStatus begin_table(Input *input, Table *table, char *remark, char **line, BpError *err) {
+    BP_TRY(next_row(input, line, remark, err));
+    const char told = *line != NULL ? separator_line(*line) : '\0';
+    if (told != '\0') BP_TRY(next_row(input, line, remark, err));
+    if (*line == NULL)
+        return input_fail(input, true, err, "found no line, expected a table with columns x, y and z");
+    const char separator = csv_separator_of_numbers(*line);
+    table->form.separator = told != '\0'        ? told
+                            : separator != '\0' ? separator
+                                                : csv_separator_of_names(*line);
+    if (separator == '\0') {
+        BP_TRY(take_header(input, *line, true, table, err));
+        *line = NULL;
+        return BP_OK;
     }
-    const char first = line[strspn(line, " \t\"")];
-    named = (first >= '0' && first <= '9') || first == '-' || first == '+' || first == '.';
-    after = named ? line : NULL;
-    if (named && remark[0] != '\0') {
-        Table probe = *table;
+    if (remark[0] != '\0') {
         BpError ignored = {0};
-        if (take_header(input, remark, &probe, &ignored) == BP_OK && probe.has_header) {
-            BP_TRY_GOTO(status, take_header(input, remark, table, err), done);
-            table->separator = separator_of(line);
-        }
+        Table probe = {.form.separator = told != '\0' ? told : csv_separator_of_names(remark)};
+        const bool named = take_header(input, remark, true, &probe, &ignored) == BP_OK;
         bp_error_clear(&ignored);
+        if (named) {
+            table->form.separator = probe.form.separator;
+            BP_TRY(take_header(input, remark, true, table, err));
+            table->form.separator = told != '\0' ? told : separator;
+            return BP_OK;
+        }
     }
-    if (table->count == 0) BP_TRY_GOTO(status, take_header(input, line, table, err), done);
-    BP_TRY_GOTO(status, frame_begin(file, (const char *const *)table->names, table->count, err), done);
-    if (file->out != NULL) {
-        file->out->up = 2;
-        file->out->flat = table->role[Z] < 0;
-        if (table->role[ELEMENT] >= 0) file->out->angstrom = 1;
-        if (!table->has_header) bp_particles_note(file->out, "columns without names read as x, y, z, radius");
+    return take_header(input, *line, false, table, err);
+}
+
+static void note_choices(BpParticles *p, const Table *table) {
+    char shown[3][32];
+    p->up = 2;
+    p->flat = table->role[Z] < 0;
+    p->angstrom = table->angstrom;
+    if (table->role[ELEMENT] >= 0 && p->angstrom == 0) p->angstrom = 1;
+    if (!table->has_header) bp_particles_note(p, "columns without names read as x, y, z, radius");
+    if (table->place_sets < 2) return;
+    for (int i = 0; i < 3; i++)
+        bp_printable(table->role[i] >= 0 ? table->names[table->role[i]] : "", shown[i], sizeof shown[i]);
+    bp_particles_note(p, "places from %s, %s%s%s", shown[0], shown[1], shown[2][0] != '\0' ? ", " : "",
+                      shown[2]);
+}
+
+static BpStatus take_table(BpParticleFile *file, Table *table, char *remark, BpError *err) {
+    Input *const input = &file->input;
+    char *line = NULL;
+    BP_TRY(begin_table(input, table, remark, &line, err));
+    BP_TRY(frame_begin(file, (const char *const *)table->names, (size_t)table->count, err));
+    file->colors.ambiguous = true;
+    if (file->out != NULL) note_choices(file->out, table);
+    if (line == NULL) BP_TRY(next_row(input, &line, NULL, err));
+    while (line != NULL) {
+        BP_TRY(take_row(file, table, line, err));
+        BP_TRY(next_row(input, &line, NULL, err));
     }
-    if (after != NULL) BP_TRY_GOTO(status, take_row(file, table, after, err), done);
-    for (;;) {
-        BP_TRY_GOTO(status, input_full_line(input, &line, err), done);
-        if (line == NULL) break;
-        if (line[strspn(line, " ")] == '#') continue;
-        BP_TRY_GOTO(status, take_row(file, table, line, err), done);
-    }
-    if (file->added == 0)
-        status = input_fail(input, true, err, "found a table without rows, expected particles");
-done:
-    free(remark);
-    return status;
+    if (file->added > 0) return BP_OK;
+    return input_fail(input, true, err, "found a table without rows, expected particles");
 }
 
 BpStatus read_csv(BpParticleFile *file, bool *end, BpError *err) {
     *end = file->frame > 0;
     if (*end) return BP_OK;
     Table *const table = calloc(1, sizeof *table);
-    if (table == NULL) return bp_fail(err, BP_ERR_MEMORY, "out of memory");
-    const BpStatus status = take_table(file, table, err);
+    char *const remark = calloc(1, NAMES_SIZE);
+    const BpStatus status = table != NULL && remark != NULL ? take_table(file, table, remark, err)
+                                                            : bp_fail(err, BP_ERR_MEMORY, "out of memory");
+    free(remark);
     free(table);
     return status;
 }
