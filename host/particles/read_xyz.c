@@ -2,14 +2,14 @@
  *
  * Knows: the format.   Does not know: what becomes of the points. */
 #include "elements.h"
+#include "key_values.h"
 #include "reader.h"
-
-#include "base/decimal.h"
 
 #include <stdlib.h>
 #include <string.h>
+#include <strings.h>
 
-enum { WORDS_MAX = 160, KEY_SIZE = 4096 };
+enum { WORDS_MAX = 160 };
 
 typedef enum Role { SPECIES, POSITION, RADIUS, COLOR, NUMBER, SHAPE, ATOM_NAME, RESIDUE, OTHER } Role;
 
@@ -23,41 +23,9 @@ typedef struct Layout {
     const char *columns[BP_PARTICLE_COLUMNS_MAX];
     int column_word[BP_PARTICLE_COLUMNS_MAX];
     size_t column_count;
-    bool extended;
+    bool extended, whole_colors; /* whole_colors: they are of type I */
     uint64_t ellipsoids;
 } Layout;
-
-/* The value of a key in an extended comment (key=value or key="value"); false: it has none. */
-static bool find_key(const char *comment, const char *key, char *value) {
-    const size_t length = strlen(key);
-    bool quoted = false;
-    for (const char *c = comment; *c != '\0'; c++) {
-        if (*c == '"') quoted = !quoted;
-        if (quoted || strncmp(c, key, length) != 0 || c[length] != '=') continue;
-        if (c != comment && c[-1] != ' ' && c[-1] != '\t') continue;
-        c += length + 1;
-        const bool quote = *c == '"';
-        c += quote;
-        size_t count = 0;
-        while (*c != '\0' && (quote ? *c != '"' : *c != ' ' && *c != '\t') && count < KEY_SIZE - 1)
-            value[count++] = *c++;
-        value[count] = '\0';
-        return true;
-    }
-    return false;
-}
-
-/* Reads up to `max` numbers; returns how many there were before anything else. */
-static int numbers_of(const char *text, double *numbers, int max) {
-    int count = 0;
-    for (;;) {
-        while (*text == ' ' || *text == '\t' || *text == ',' || *text == '[' || *text == ']') text++;
-        if (*text == '\0' || count == max) return count;
-        text = bp_decimal_parse(text, &numbers[count]);
-        if (text == NULL || !isfinite(numbers[count])) return count;
-        count++;
-    }
-}
 
 static void add_column(Layout *layout, const char *name, const char *suffix, int word) {
     if (layout->column_count == BP_PARTICLE_COLUMNS_MAX) return;
@@ -67,43 +35,57 @@ static void add_column(Layout *layout, const char *name, const char *suffix, int
     layout->column_word[c] = word;
 }
 
-static BpStatus parse_properties(const Input *input, char *text, Layout *layout, BpError *err) {
+/* What a property is by its name, in letters of either case, its type and its number of words. */
+static Role role_of(const char *name, char type, int64_t count) {
+    static const struct {
+        const char *name;
+        Role role;
+        const char *types;
+        int64_t count;
+    } known[] = {
+        {"species", SPECIES, "S", 1},      {"element", SPECIES, "S", 1},        {"pos", POSITION, "RI", 3},
+        {"position", POSITION, "RI", 3},   {"positions", POSITION, "RI", 3},    {"color", COLOR, "RI", 3},
+        {"colour", COLOR, "RI", 3},        {"radius", RADIUS, "RI", 1},         {"Z", NUMBER, "I", 1},
+        {"atom_name", ATOM_NAME, "S", 1},  {"name", ATOM_NAME, "S", 1},         {"resname", RESIDUE, "S", 1},
+        {"residuenames", RESIDUE, "S", 1}, {"aspherical_shape", SHAPE, "R", 3}, {"shape", SHAPE, "R", 3}};
+    for (size_t i = 0; i < sizeof known / sizeof *known; i++)
+        if (strcasecmp(name, known[i].name) == 0 && strchr(known[i].types, type) != NULL &&
+            count == known[i].count)
+            return known[i].role;
+    return OTHER;
+}
+
+static void add_columns(Layout *layout, Role role, const char *name, int64_t count, int word) {
     static const char *const axes[] = {"_x", "_y", "_z"};
+    for (int i = 0; i < count; i++) {
+        char suffix[16] = "";
+        if (count == 3)
+            snprintf(suffix, sizeof suffix, "%s", axes[i]);
+        else if (count > 1)
+            snprintf(suffix, sizeof suffix, "_%d", i + 1);
+        add_column(layout, role == POSITION ? axes[i] + 1 : name, role == POSITION ? "" : suffix, word + i);
+    }
+}
+
+static BpStatus parse_properties(const Input *input, char *text, Layout *layout, BpError *err) {
     static const char expected[] = "Properties=NAME:TYPE:COUNT:..., such as species:S:1:pos:R:3";
     bool has_position = false;
     int word = 0;
     char *rest = NULL;
     for (char *name = strtok_r(text, ":", &rest); name != NULL; name = strtok_r(NULL, ":", &rest)) {
-        const char *const type = strtok_r(NULL, ":", &rest);
-        const char *const count_text = type != NULL ? strtok_r(NULL, ":", &rest) : NULL;
+        const char *const type_text = strtok_r(NULL, ":", &rest);
+        const char *const count_text = type_text != NULL ? strtok_r(NULL, ":", &rest) : NULL;
+        const char type = type_text != NULL ? type_text[0] & ~0x20 : '\0'; /* as a capital */
         int64_t count = 0;
-        if (count_text == NULL || !word_whole(count_text, &count) || count < 1 || count > 64 ||
-            word + count > WORDS_MAX || layout->property_count == WORDS_MAX)
+        if (count_text == NULL || type_text[1] != '\0' || strchr("SRIL", type) == NULL ||
+            !word_whole(count_text, &count) || count < 1 || count > 64 || word + count > WORDS_MAX ||
+            layout->property_count == WORDS_MAX)
             return input_wrong(input, name, expected, err);
-        Role role = OTHER;
-        if (type[0] == 'S' && count == 1)
-            role = strcmp(name, "species") == 0 || strcmp(name, "element") == 0        ? SPECIES
-                   : strcmp(name, "atom_name") == 0 || strcmp(name, "name") == 0       ? ATOM_NAME
-                   : strcmp(name, "resname") == 0 || strcmp(name, "residuenames") == 0 ? RESIDUE
-                                                                                       : OTHER;
-        if (type[0] == 'R' && count == 3)
-            role = strcmp(name, "pos") == 0                                              ? POSITION
-                   : strcmp(name, "color") == 0 || strcmp(name, "Color") == 0            ? COLOR
-                   : strcmp(name, "aspherical_shape") == 0 || strcmp(name, "shape") == 0 ? SHAPE
-                                                                                         : OTHER;
-        if (type[0] == 'R' && count == 1 && (strcmp(name, "radius") == 0 || strcmp(name, "Radius") == 0))
-            role = RADIUS;
-        if (type[0] == 'I' && count == 1 && strcmp(name, "Z") == 0) role = NUMBER;
+        Role role = role_of(name, type, count);
+        if (role == POSITION && has_position) role = OTHER;
         has_position |= role == POSITION;
-        for (int i = 0; type[0] != 'S' && i < count; i++) {
-            char suffix[16] = "";
-            if (count == 3)
-                snprintf(suffix, sizeof suffix, "%s", axes[i]);
-            else if (count > 1)
-                snprintf(suffix, sizeof suffix, "_%d", i + 1);
-            add_column(layout, role == POSITION ? axes[i] + 1 : name, role == POSITION ? "" : suffix,
-                       word + i);
-        }
+        layout->whole_colors |= role == COLOR && type == 'I';
+        if (type != 'S') add_columns(layout, role, name, count, word);
         layout->property[layout->property_count].role = role;
         layout->property[layout->property_count++].words = (int)count;
         word += (int)count;
@@ -113,40 +95,43 @@ static BpStatus parse_properties(const Input *input, char *text, Layout *layout,
     return BP_OK;
 }
 
-static BpStatus parse_comment(const Input *input, const char *comment, Layout *layout, BpError *err) {
-    static char *const plain[] = {"x", "y", "z"};
-    char *const value = malloc(KEY_SIZE);
-    if (value == NULL) return bp_fail(err, BP_ERR_MEMORY, "out of memory");
-    BpStatus status = BP_OK;
-    layout->extended = find_key(comment, "Properties", value);
-    if (layout->extended) {
-        status = parse_properties(input, value, layout, err);
-    } else {
-        layout->property[0].role = SPECIES;
-        layout->property[0].words = 1;
-        layout->property[1].role = POSITION;
-        layout->property[1].words = 3;
-        layout->property_count = 2;
-        layout->word_count = 4;
-        for (int i = 0; i < 3; i++) add_column(layout, plain[i], "", 1 + i);
-    }
-    free(value);
-    return status;
+static void plain_layout(Layout *layout) {
+    static char *const axes[] = {"x", "y", "z"};
+    layout->property[0].role = SPECIES;
+    layout->property[0].words = 1;
+    layout->property[1].role = POSITION;
+    layout->property[1].words = 3;
+    layout->property_count = 2;
+    layout->word_count = 4;
+    for (int i = 0; i < 3; i++) add_column(layout, axes[i], "", 1 + i);
 }
 
-/* The value of pbc: three words for the three edges, or one for all, in quotes, brackets or braces. False: it
- * is something else. */
+static BpStatus fail_cell(const Input *input, const char *key, const char *expected, BpError *err) {
+    return input_fail(input, true, err, "found %s, which is not understood, expected %s", key, expected);
+}
+
+/* The vectors of the cell as rows, from nine numbers or, along the axes, from three. False: there are others.
+ */
+static bool parse_edges(const char *value, double edges[3][3]) {
+    double numbers[9];
+    const int count = key_numbers(value, numbers, 9);
+    memset(edges, 0, 9 * sizeof(double));
+    for (int i = 0; i < 3 && count == 3; i++) edges[i][i] = numbers[i];
+    if (count == 9) memcpy(edges, numbers, sizeof numbers);
+    return count == 3 || count == 9;
+}
+
+/* The value of pbc: three words for the three edges, or one for all. False: it is something else. */
 static bool parse_periodic(char *text, bool periodic[3]) {
-    static const char *const words[2][6] = {{"F", "f", "False", "false", "FALSE", "0"},
-                                            {"T", "t", "True", "true", "TRUE", "1"}};
+    static const char *const words[2][4] = {{"F", "False", "0", "no"}, {"T", "True", "1", "yes"}};
     int count = 0;
     char *rest = NULL;
     for (char *word = strtok_r(text, " \t,;()[]{}\"'", &rest); word != NULL;
          word = strtok_r(NULL, " \t,;()[]{}\"'", &rest)) {
         bool known = false;
         for (int value = 0; value < 2 && count < 3; value++)
-            for (int i = 0; i < 6 && !known; i++) {
-                known = strcmp(word, words[value][i]) == 0;
+            for (int i = 0; i < 4 && !known; i++) {
+                known = strcasecmp(word, words[value][i]) == 0;
                 if (known) periodic[count] = value == 1;
             }
         if (!known) return false;
@@ -156,24 +141,53 @@ static bool parse_periodic(char *text, bool periodic[3]) {
     return count == 1 || count == 3;
 }
 
-static void parse_cell(BpParticleFile *file, const char *comment) {
-    double edges[9], origin[3] = {0, 0, 0};
-    char *const value = malloc(KEY_SIZE);
-    if (value == NULL) return;
+/* What cannot be read as a cell is an error, since the frame has one; but where the frame is a plain one, its
+ * second line may say anything, and then a note says what was passed over. `value`: room for a value. */
+static BpStatus parse_cell(BpParticleFile *file, const char *comment, bool extended, char *value,
+                           BpError *err) {
+    double edges[3][3], origin[3] = {0, 0, 0};
     bool periodic[3] = {true, true, true};
-    if (find_key(comment, "pbc", value) && !parse_periodic(value, periodic)) {
+    const KeyFound found = key_find(comment, "Lattice", value);
+    if (found == KEY_ABSENT) {
+        if (key_find(comment, "cell", value) != KEY_ABSENT && file->out != NULL)
+            bp_particles_note(file->out, "cell= passed over, since a cell is called Lattice=");
+        return BP_OK;
+    }
+    if (found == KEY_BROKEN || !parse_edges(value, edges)) {
+        if (extended || strstr(comment, "Lattice") != NULL)
+            return fail_cell(&file->input, "Lattice",
+                             "three vectors, such as Lattice=\"10 0 0 0 10 0 0 0 10\"", err);
+        if (file->out != NULL) bp_particles_note(file->out, "lattice= passed over: no three vectors");
+        return BP_OK;
+    }
+    const KeyFound origin_found = key_find(comment, "Origin", value);
+    if (origin_found != KEY_ABSENT && (origin_found == KEY_BROKEN || key_numbers(value, origin, 3) != 3))
+        return fail_cell(&file->input, "Origin", "a point, such as Origin=\"0 0 0\"", err);
+    const KeyFound periodic_found = key_find(comment, "pbc", value);
+    if (periodic_found != KEY_ABSENT && (periodic_found == KEY_BROKEN || !parse_periodic(value, periodic))) {
         periodic[0] = periodic[1] = periodic[2] = true;
         if (file->out != NULL)
             bp_particles_note(file->out, "pbc is not three of T or F, so all edges are taken to repeat");
     }
-    if (find_key(comment, "Origin", value) && numbers_of(value, origin, 3) != 3)
-        origin[0] = origin[1] = origin[2] = 0;
-    if (find_key(comment, "Lattice", value) && numbers_of(value, edges, 9) == 9) {
-        const double rows[3][3] = {
-            {edges[0], edges[1], edges[2]}, {edges[3], edges[4], edges[5]}, {edges[6], edges[7], edges[8]}};
-        frame_cell(file, origin, rows, periodic);
-    }
-    free(value);
+    frame_cell(file, origin, (const double(*)[3])edges, periodic);
+    return BP_OK;
+}
+
+static BpStatus begin_frame(BpParticleFile *file, const char *comment, Layout *layout, char *value,
+                            BpError *err) {
+    const KeyFound found = key_find(comment, "Properties", value);
+    if (found == KEY_BROKEN)
+        return input_fail(&file->input, true, err,
+                          "found Properties without an end, expected a quote or bracket that closes it");
+    layout->extended = found == KEY_FOUND;
+    if (layout->extended)
+        BP_TRY(parse_properties(&file->input, value, layout, err));
+    else
+        plain_layout(layout);
+    BP_TRY(frame_begin(file, layout->columns, layout->column_count, err));
+    if (file->out != NULL) file->out->angstrom = 1;
+    file->colors.ambiguous = layout->whole_colors;
+    return parse_cell(file, comment, layout->extended, value, err);
 }
 
 /* A symbol may have digits behind it. A number alone is a type: LAMMPS and others write it so. */
@@ -184,6 +198,36 @@ static uint8_t element_of(const char *species) {
     const size_t letters = strlen(symbol);
     if (species[letters] != '\0' && (species[letters] < '0' || species[letters] > '9')) return 0;
     return bp_element_of_symbol(symbol);
+}
+
+/* Splits an atom's line. In extended XYZ, texts with blanks stand in quotes; but names of atoms have quotes
+ * of their own (O5', H5''), so these count only where the words are too many otherwise. */
+static size_t split_atom(char *line, const Layout *layout, char **words) {
+    size_t count = 0;
+    for (const char *c = line + strspn(line, " \t\r"); *c != '\0'; c += strspn(c, " \t\r"), count++)
+        c += strcspn(c, " \t\r");
+    if (!layout->extended || strpbrk(line, "\"'") == NULL) return split_words(line, words, WORDS_MAX);
+    const bool joined = count > layout->word_count;
+    count = 0;
+    for (;;) {
+        line += strspn(line, " \t\r");
+        if (*line == '\0') return count;
+        const char quote = *line == '"' || *line == '\'' ? *line : '\0';
+        char *end = line + strcspn(line, " \t\r");
+        if (quote != '\0' && joined)
+            for (char *c = line + 1; *c != '\0'; c++)
+                if (*c == quote && (c[1] == '\0' || strchr(" \t\r", c[1]) != NULL)) {
+                    end = c + 1;
+                    break;
+                }
+        const bool more = *end != '\0';
+        *end = '\0';
+        const bool whole = quote != '\0' && end - line >= 3 && end[-1] == quote;
+        if (whole) end[-1] = '\0';
+        if (count < WORDS_MAX) words[count] = line + whole;
+        count++;
+        line = end + more;
+    }
 }
 
 static BpStatus take_atom(BpParticleFile *file, Layout *layout, uint64_t number, uint64_t count,
@@ -199,7 +243,7 @@ static BpStatus take_atom(BpParticleFile *file, Layout *layout, uint64_t number,
             "found the end of the file, expected atom %llu (from 0) of %llu; it is cut off, or its "
             "count is wrong",
             (unsigned long long)number, (unsigned long long)count);
-    const size_t found = split_words(line, words, WORDS_MAX);
+    const size_t found = split_atom(line, layout, words);
     if (found < layout->word_count || (layout->extended && found > layout->word_count))
         return input_fail(input, true, err, "found %zu word%s, expected %zu: %s", found,
                           found == 1 ? "" : "s", layout->word_count,
@@ -207,17 +251,15 @@ static BpStatus take_atom(BpParticleFile *file, Layout *layout, uint64_t number,
     size_t w = 0;
     for (size_t p = 0; p < layout->property_count; p++) {
         const Role role = layout->property[p].role;
-        bool good = true;
         double value = 0;
-        for (int i = 0; i < 3 && (role == POSITION || role == COLOR || role == SHAPE); i++)
-            good = good && word_number(words[w + (size_t)i], role == POSITION ? &particle.position[i]
-                                                             : role == COLOR  ? &particle.color[i]
-                                                                              : &shape[i]);
-        if (!good) return input_wrong(input, words[w], "three finite numbers", err);
-        if (role == COLOR)
-            for (int i = 0; i < 3; i++)
-                if (!(particle.color[i] >= 0 && particle.color[i] <= 1))
-                    return input_wrong(input, words[w], "a colour of shares from 0 to 1", err);
+        for (size_t i = 0; i < 3; i++) {
+            if (role == POSITION && !word_number_or_none(words[w + i], &particle.position[i]))
+                return input_wrong(input, words[w + i], "a finite number: a coordinate", err);
+            if (role == SHAPE && !word_number(words[w + i], &shape[i]))
+                return input_wrong(input, words[w + i], "a finite number: half an axis of an ellipsoid", err);
+            if (role == COLOR && !word_number(words[w + i], &particle.color[i]))
+                return input_wrong(input, words[w + i], "a finite number: a share of a colour", err);
+        }
         if (role == SPECIES) {
             particle.element = element_of(words[w]);
             particle.type = words[w];
@@ -226,7 +268,8 @@ static BpStatus take_atom(BpParticleFile *file, Layout *layout, uint64_t number,
         if (role == ATOM_NAME) particle.name = words[w];
         if (role == RESIDUE) particle.residue = words[w];
         if (role == RADIUS || role == NUMBER) {
-            if (!word_number(words[w], &value)) return input_wrong(input, words[w], "a finite number", err);
+            if (!word_number_or_none(words[w], &value))
+                return input_wrong(input, words[w], "a finite number", err);
             if (role == RADIUS) particle.radius = value;
             if (role == NUMBER && value >= 1 && value <= (double)BP_ELEMENT_MAX) {
                 particle.element = (uint8_t)value;
@@ -243,10 +286,7 @@ static BpStatus take_atom(BpParticleFile *file, Layout *layout, uint64_t number,
         const int c = file->wanted_column[k];
         values[c] = NAN;
         const char *const word = words[layout->column_word[c]];
-        if (strcmp(word, "T") == 0 || strcmp(word, "F") == 0)
-            values[c] = word[0] == 'T';
-        else if (!word_number(word, &values[c]))
-            values[c] = NAN;
+        if (!word_logical(word, &values[c]) && !word_number(word, &values[c])) values[c] = NAN;
     }
     particle.values = values;
     return frame_add(file, &particle, true, err);
@@ -266,16 +306,12 @@ BpStatus read_xyz(BpParticleFile *file, bool *end, BpError *err) {
     BP_TRY(word_count(input, words[0], "atoms", &count, err));
     BP_TRY(input_needed_line(input, &line, "the comment line of an XYZ file", err));
     Layout *const layout = calloc(1, sizeof *layout);
-    if (layout == NULL) return bp_fail(err, BP_ERR_MEMORY, "out of memory");
-    BpStatus status = parse_comment(input, line, layout, err);
-    if (status == BP_OK) status = frame_begin(file, layout->columns, layout->column_count, err);
-    if (status == BP_OK) {
-        if (file->out != NULL) file->out->angstrom = 1;
-        parse_cell(file, line);
-        for (uint64_t i = 0; i < count && status == BP_OK; i++)
-            status = take_atom(file, layout, i, count, err);
-        frame_note_shapes(file, layout->ellipsoids, "ellipsoid");
-    }
+    char *const value = malloc(KEY_VALUE_SIZE);
+    BpStatus status = layout != NULL && value != NULL ? begin_frame(file, line, layout, value, err)
+                                                      : bp_fail(err, BP_ERR_MEMORY, "out of memory");
+    for (uint64_t i = 0; i < count && status == BP_OK; i++) status = take_atom(file, layout, i, count, err);
+    if (status == BP_OK) frame_note_shapes(file, layout->ellipsoids, "ellipsoid");
+    free(value);
     free(layout);
     return status;
 }
