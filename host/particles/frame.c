@@ -197,16 +197,7 @@ BpStatus frame_add(BpParticleFile *file, const Particle *particle, bool with_lin
     return BP_OK;
 }
 
-BpStatus frame_set_radius(BpParticleFile *file, size_t at, double radius, BpError *err) {
-    BpParticles *const p = file->out;
-    if (p == NULL || at >= p->count || !(radius > 0)) return BP_OK;
-    BP_TRY(have_radii(p, err));
-    p->radius[at] = (float)radius;
-    return BP_OK;
-}
-
-/* The place among the particles that are left of the one with a number; UINT32_MAX: it is gone. */
-static uint32_t place_of(const BpParticleFile *file, uint32_t number) {
+uint32_t frame_place(const BpParticleFile *file, uint32_t number) {
     size_t low = 0, high = file->gone_count;
     while (low < high) {
         const size_t middle = low + (high - low) / 2;
@@ -218,11 +209,21 @@ static uint32_t place_of(const BpParticleFile *file, uint32_t number) {
     return low < file->gone_count && file->gone[low] == number ? UINT32_MAX : number - (uint32_t)low;
 }
 
+BpStatus frame_set_radius(BpParticleFile *file, uint32_t number, double radius, BpError *err) {
+    BpParticles *const p = file->out;
+    if (p == NULL || !(radius > 0)) return BP_OK;
+    const uint32_t at = frame_place(file, number);
+    if (at >= p->count) return BP_OK;
+    BP_TRY(have_radii(p, err));
+    p->radius[at] = (float)radius;
+    return BP_OK;
+}
+
 BpStatus frame_add_bond(BpParticleFile *file, uint32_t a, uint32_t b, BpError *err) {
     BpParticles *const p = file->out;
     if (p == NULL) return BP_OK;
-    a = place_of(file, a);
-    b = place_of(file, b);
+    a = frame_place(file, a);
+    b = frame_place(file, b);
     if (a == UINT32_MAX || b == UINT32_MAX) {
         p->bonds_left_out++;
         return BP_OK;

@@ -163,16 +163,21 @@ BpStatus input_wrong(const Input *input, const char *found, const char *expected
     return input_fail(input, true, err, "found \"%s\", expected %s", shown, expected);
 }
 
-/* Lines end with LF or CR LF. Where the beginning of a file has more CR than LF, they end with CR, as on
- * computers of Apple before 2001. */
-static char find_line_end(Input *input) {
-    (void)input_fill(input, 1);
+/* Before the first line: its encoding, and what ends lines. That is LF, or CR LF; where the beginning of a
+ * file has more CR than LF, it is CR, as on computers of Apple before 2001. */
+static BpStatus begin_lines(Input *input, BpError *err) {
+    (void)input_fill(input, 4);
+    const unsigned char *const text = input->buffer + input->begin;
+    const size_t length = input->end - input->begin;
+    const char *const wide = bp_text_wide(text, length);
+    if (wide != NULL) return input_fail(input, false, err, BP_TEXT_WIDE_FORMAT, wide, wide);
     size_t feeds = 0, returns = 0;
-    for (size_t i = input->begin; i < input->end; i++) {
-        feeds += input->buffer[i] == '\n';
-        returns += input->buffer[i] == '\r' && i + 1 < input->end && input->buffer[i + 1] != '\n';
+    for (size_t i = 0; i < length; i++) {
+        feeds += text[i] == '\n';
+        returns += text[i] == '\r' && i + 1 < length && text[i + 1] != '\n';
     }
-    return returns > feeds ? '\r' : '\n';
+    input->line_end = returns > feeds ? '\r' : '\n';
+    return BP_OK;
 }
 
 BpStatus input_line(Input *input, char **line, BpError *err) {
@@ -186,7 +191,7 @@ BpStatus input_line(Input *input, char **line, BpError *err) {
     unsigned char *end = NULL;
     *line = NULL;
     input->line++;
-    if (input->line_end == '\0') input->line_end = find_line_end(input);
+    if (input->line_end == '\0') BP_TRY(begin_lines(input, err));
     for (;;) {
         const size_t here = input->end - input->begin;
         if (here > seen) end = memchr(input->buffer + input->begin + seen, input->line_end, here - seen);
@@ -206,8 +211,6 @@ BpStatus input_line(Input *input, char **line, BpError *err) {
     size_t length = (size_t)(end - start);
     input->open_line = input->begin + length == input->end;
     input_take(input, input->begin + length < input->end ? length + 1 : length);
-    const char *const wide = input->line == 1 ? bp_text_wide(start, length) : NULL;
-    if (wide != NULL) return input_fail(input, false, err, BP_TEXT_WIDE_FORMAT, wide, wide);
     /* Files that were joined have marks amid them. */
     const size_t mark = bp_text_mark(start, length);
     start += mark;
@@ -257,15 +260,16 @@ bool word_number(const char *word, double *value) {
 }
 
 bool word_number_or_none(const char *word, double *value) {
-    /* The last two are those of Microsoft's compilers until 2013. */
-    static const char *const none[] = {"nan", "nan(ind)", "nan(snan)", "nanq", "1.#qnan", "1.#ind"};
-    if (word_number(word, value)) return true;
+    /* Those of IBM's compilers, and of Microsoft's until 2013. */
+    static const char *const none[] = {"nanq", "1.#qnan", "1.#ind"};
+    const char *const end = bp_table_number_parse(word, value);
+    if (end != NULL && *end == '\0') return !isinf(*value);
     const char *const unsigned_word = *word == '-' || *word == '+' ? word + 1 : word;
     bool found = *word == '*' && word[strspn(word, "*")] == '\0';
     for (size_t i = 0; i < sizeof none / sizeof *none && !found; i++) {
         const size_t length = strlen(none[i]);
-        const char *const rest = unsigned_word + length;
-        found = strncasecmp(unsigned_word, none[i], length) == 0 && rest[strspn(rest, "0")] == '\0';
+        found = strncasecmp(unsigned_word, none[i], length) == 0 &&
+                unsigned_word[length + strspn(unsigned_word + length, "0")] == '\0';
     }
     if (found) *value = NAN;
     return found;

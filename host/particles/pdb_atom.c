@@ -97,9 +97,8 @@ BpStatus pdb_read_atom(const Input *input, const char *line, PdbAtom *atom, bool
     line += by;
     length -= by;
     for (size_t i = 0; i < 3; i++) {
-        particle->position[i] = number_at(line, length, 31 + 8 * i, 38 + 8 * i);
-        if (!isnan(particle->position[i])) continue;
         fixed_text(line, length, 31 + 8 * i, 38 + 8 * i, text, sizeof text);
+        if (word_number_or_none(text, &particle->position[i])) continue;
         return input_wrong(input, text, "a coordinate in columns 31-38, 39-46 and 47-54", err);
     }
     fixed_text(line, length, 73, 76, segment, sizeof segment);

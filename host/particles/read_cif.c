@@ -345,7 +345,8 @@ static BpStatus add_row(BpParticleFile *file, State *state, size_t *unknown, BpE
             ++*unknown;
             return BP_OK;
         }
-        if (!cif_number(state->row[f], &particle.position[f - X]))
+        double *const place = &particle.position[f - X];
+        if (!cif_number(state->row[f], place) && !word_number_or_none(state->row[f], place))
             return input_wrong(&file->input, state->row[f], "a coordinate in _atom_site.Cartn_x, y and z",
                                err);
     }

@@ -267,7 +267,10 @@ static void set_elements(BpParticleFile *file, const Data *data) {
         used++;
     }
     if (known == used) {
-        for (size_t i = 0; i < p->count; i++) p->tag[i].element = element[data->types_of[i]];
+        for (uint32_t i = 0; i < data->id_count; i++) {
+            const uint32_t at = frame_place(file, i);
+            if (at != UINT32_MAX) p->tag[at].element = element[data->types_of[i]];
+        }
         p->has_element = used > 0;
         if (data->units == NULL) p->angstrom = 1;
     }
@@ -466,7 +469,7 @@ static BpStatus take_atom(BpParticleFile *file, Data *data, char **words, size_t
     if (!lammps_line_fits(layout, words, count, (int64_t)data->types, data->guessed, &wrong))
         return refuse_line(&file->input, data, words, count, wrong, err);
     for (int i = 0; i < COLUMN_COUNT; i++)
-        if (places[i] < 0 || !word_number(words[places[i]], &values[i])) values[i] = NAN;
+        if (places[i] < 0 || !word_number_or_none(words[places[i]], &values[i])) values[i] = NAN;
     memcpy(particle.position, values, sizeof particle.position);
     const int sized = layout->diameter >= 0 ? layout->diameter : layout->radius;
     if (sized >= 0 && word_number(words[sized], &size) && size > 0)
@@ -529,9 +532,10 @@ static BpStatus take_velocity(BpParticleFile *file, Data *data, char **words, si
     BP_TRY(take_numbers(&file->input, words + 1, 3, velocity, err));
     if (file->taken_count == 0) return BP_OK;
     BP_TRY(find_place(&file->input, data, words[0], &at, err));
+    at = frame_place(file, at);
     for (size_t w = 0; w < file->taken_count; w++) {
         const int c = file->wanted_column[w] - VELOCITY;
-        if (c >= 0) file->out->column[w][at] = (float)velocity[c];
+        if (c >= 0 && at != UINT32_MAX) file->out->column[w][at] = (float)velocity[c];
     }
     return BP_OK;
 }

@@ -17,9 +17,10 @@ typedef struct Dump {
     char header[4096]; /* the words after ITEM: ATOMS */
     char *columns[WORDS_MAX];
     size_t column_count;
-    int position[3], shape[3], type, element, radius, diameter, mass, molecule; /* places of columns; -1: nowhere */
-    size_t known_masses;                                    /* those of elements, in this frame */
-    bool united;                                            /* some stand for a carbon and its hydrogens */
+    int position[3], shape[3], type, element, radius, diameter, mass,
+        molecule;        /* places of columns; -1: nowhere */
+    size_t known_masses; /* those of elements, in this frame */
+    bool united;         /* some stand for a carbon and its hydrogens */
     uint64_t ellipsoids;
 } Dump;
 
@@ -124,12 +125,12 @@ static BpStatus take_columns(Input *input, const char *text, Dump *dump, BpError
 }
 
 /* Elements of masses count for all atoms of the frame or for none, as in data files. */
-static void settle_masses(BpParticles *p, const Dump *dump) {
+static void settle_masses(BpParticles *p, const Dump *dump, size_t count) {
     if (p == NULL || dump->element >= 0 || dump->mass < 0) return;
-    for (size_t i = 0; i < p->count && dump->known_masses < p->count; i++) p->tag[i].element = 0;
-    p->has_element = p->has_element && dump->known_masses == p->count;
+    for (size_t i = 0; i < p->count && dump->known_masses < count; i++) p->tag[i].element = 0;
+    p->has_element = p->has_element && dump->known_masses == count;
     if (p->angstrom == 0 && p->has_element) p->angstrom = 1;
-    atom_note_masses(p, dump->known_masses, p->count, "atoms", dump->united);
+    atom_note_masses(p, dump->known_masses, count, "atoms", dump->united);
 }
 
 static BpStatus take_shape(const Input *input, Dump *dump, char *const *words, Particle *particle,
@@ -154,7 +155,7 @@ static BpStatus take_atom(BpParticleFile *file, Dump *dump, char *line, BpError 
         return input_fail(&file->input, true, err, "found %zu word%s, expected %zu, as ITEM: ATOMS says",
                           found, found == 1 ? "" : "s", dump->column_count);
     for (int i = 0; i < 3; i++)
-        if (!word_number(words[dump->position[i]], &place[i]))
+        if (!word_number_or_none(words[dump->position[i]], &place[i]))
             return input_wrong(&file->input, words[dump->position[i]], "a coordinate", err);
     for (int i = 0; i < 3; i++) {
         particle.position[i] = dump->scaled ? dump->origin[i] : place[i];
@@ -242,7 +243,7 @@ static BpStatus take_frame(BpParticleFile *file, Dump *dump, BpError *err) {
         BP_TRY(input_needed_line(input, &line, "as many atoms as ITEM: NUMBER OF ATOMS says", err));
         BP_TRY(take_atom(file, dump, line, err));
     }
-    settle_masses(file->out, dump);
+    settle_masses(file->out, dump, file->added);
     frame_note_shapes(file, dump->ellipsoids, "ellipsoid");
     return BP_OK;
 }

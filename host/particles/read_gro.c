@@ -25,13 +25,14 @@ typedef struct Frame {
     size_t unreadable; /* atoms with something else in place of velocities */
 } Frame;
 
-/* Three numbers in fields; returns how many fields from the first on hold one. */
+/* Three numbers in fields, or NaN where there is said to be none; returns how many fields from the first on
+ * hold one. */
 static size_t take_fields(const char *line, size_t first, size_t width, double values[3]) {
     const size_t length = strlen(line);
     for (size_t i = 0; i < 3; i++) {
         char text[32];
         fixed_text(line, length, first + width * i, first + width * (i + 1) - 1, text, sizeof text);
-        if (!word_number(text, &values[i])) return i;
+        if (!word_number_or_none(text, &values[i])) return i;
     }
     return 3;
 }

@@ -24,8 +24,8 @@ typedef struct State {
     PdbSerials serials;   /* of this frame */
     bool tail_read;
     bool cell_behind; /* the first frame had no cell before it, so each has its own behind it */
-    bool closed;   /* the frame before ended with a record that says so, and had */
-    size_t before; /* so many atoms */
+    bool closed;      /* the frame before ended with a record that says so, and had */
+    size_t before;    /* so many atoms */
 } State;
 
 static bool is_record(const char *line, const char *name) {

@@ -54,8 +54,11 @@ BpStatus frame_begin(BpParticleFile *file, const char *const *columns, size_t co
  * coordinates that are infinite or too large, and on colours that can be none. `with_line`: the error names
  * the line last taken. */
 BpStatus frame_add(BpParticleFile *file, const Particle *particle, bool with_line, BpError *err);
-/* Gives particle `at` of the frame a radius; one that is not above 0 is none. */
-BpStatus frame_set_radius(BpParticleFile *file, size_t at, double radius, BpError *err);
+/* The place among the particles that are left of the one with a number, counted as they were handed over,
+ * from 0; UINT32_MAX: it was left out. */
+uint32_t frame_place(const BpParticleFile *file, uint32_t number);
+/* Gives the particle of that number a radius; one that is not above 0 is none. */
+BpStatus frame_set_radius(BpParticleFile *file, uint32_t number, double radius, BpError *err);
 /* `a` and `b` count the particles as they were handed over, from 0, with those that were left out. A bond of
  * one that was left out is too. */
 BpStatus frame_add_bond(BpParticleFile *file, uint32_t a, uint32_t b, BpError *err);

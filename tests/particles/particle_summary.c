@@ -1,7 +1,7 @@
 /* particle_summary.c: prints what a file of particles holds, as one line of JSON; for the scripts beside it.
  *
- * particle_summary FILE [FRAME [COLUMN [values]]]; with the last, of every particle too; a column "" is none.
- * Exit code 1 and the message on standard error when it is refused.
+ * particle_summary FILE [FRAME [COLUMN [values]]]. It lists each particle if there are at most LISTED_MAX, or
+ * if asked for values; a column "" is none. Exit code 1 and the message on standard error when it is refused.
  */
 #include "particles/elements.h"
 #include "particles/particles.h"
@@ -9,6 +9,65 @@
 #include <inttypes.h>
 #include <stdlib.h>
 #include <string.h>
+
+enum { LISTED_MAX = 1000 };
+
+static void print_text(const char *text) {
+    putchar('"');
+    for (; *text != '\0'; text++) {
+        if (*text == '"' || *text == '\\') putchar('\\');
+        putchar(*text);
+    }
+    putchar('"');
+}
+
+static void print_numbers(const double *numbers, size_t count) {
+    printf("%s", count > 1 ? "[" : "");
+    for (size_t i = 0; i < count; i++) {
+        printf("%s", i > 0 ? ", " : "");
+        if (isnan(numbers[i]))
+            printf("null");
+        else
+            printf("%.17g", numbers[i]);
+    }
+    printf("%s", count > 1 ? "]" : "");
+}
+
+static void print_color(const float color[3]) {
+    print_numbers((const double[3]){(double)color[0], (double)color[1], (double)color[2]}, 3);
+}
+
+static const char *name_of(const BpParticles *p, uint16_t number) {
+    return p->names.count > 0 ? p->names.text[number] : "";
+}
+
+/* Lists of one entry a particle, in the file's order; empty where the frame has no such thing. And the ends
+ * of all bonds. */
+static void print_lists(const BpParticles *p) {
+    enum { POSITIONS, TYPES, NAMES, SYMBOLS, RADII, COLORS, VALUES, LISTS };
+    static const char *const lists[LISTS] = {"positions", "types",  "atom_names", "symbols",
+                                             "radii",     "colors", "values"};
+    const bool has[LISTS] = {
+        true, true, true, true, p->radius != NULL, p->color != NULL, p->column[0] != NULL};
+    for (int list = 0; list < LISTS; list++) {
+        printf(", \"%s\": [", lists[list]);
+        for (size_t i = 0; i < p->count && has[list]; i++) {
+            printf("%s", i > 0 ? ", " : "");
+            if (list == POSITIONS) print_numbers(p->position[i], 3);
+            if (list == TYPES) print_text(name_of(p, p->tag[i].type));
+            if (list == NAMES) print_text(name_of(p, p->tag[i].name));
+            if (list == SYMBOLS) print_text(bp_elements[p->tag[i].element].symbol);
+            if (list == RADII) print_numbers(&(double){(double)p->radius[i]}, 1);
+            if (list == COLORS) print_color(p->color[i]);
+            if (list == VALUES) print_numbers(&(double){(double)p->column[0][i]}, 1);
+        }
+        putchar(']');
+    }
+    printf(", \"pairs\": [");
+    for (size_t b = 0; b < p->bond_count; b++)
+        printf("%s[%u, %u]", b > 0 ? ", " : "", (unsigned)p->bonds[b][0], (unsigned)p->bonds[b][1]);
+    putchar(']');
+}
 
 static void print_cell(const BpParticles *p) {
     printf(", \"periodic\": [%s, %s, %s], \"cell\": [", p->periodic[0] ? "true" : "false",
@@ -33,10 +92,10 @@ static void print_summary(const BpParticles *p) {
     }
     printf("\"names\": %zu, ", p->names.count > 0 ? p->names.count - 1 : 0);
     printf("\"count\": %zu, \"bonds\": %zu, \"left_out\": %zu, \"angstrom\": %g, \"up\": %d, \"flat\": %s, "
-           "\"notes\": \"%s\", "
-           "\"alternatives\": %zu, \"dummies\": %zu",
+           "\"alternatives\": %zu, \"dummies\": %zu, \"notes\": ",
            p->count, p->bond_count, p->bonds_left_out, p->angstrom, p->up, p->flat ? "true" : "false",
-           p->notes, alternatives, dummies);
+           alternatives, dummies);
+    print_text(p->notes);
     if (p->count > 0)
         printf(", \"low\": [%.9g, %.9g, %.9g], \"high\": [%.9g, %.9g, %.9g], \"mean\": [%.9g, %.9g, %.9g]",
                low[0], low[1], low[2], high[0], high[1], high[2], sum[0] / (double)p->count,
@@ -54,45 +113,23 @@ static void print_summary(const BpParticles *p) {
     if (p->color != NULL)
         printf(", \"color\": [%.6g, %.6g, %.6g]", (double)p->color[0][0], (double)p->color[0][1],
                (double)p->color[0][2]);
-    if (p->count > 0)
-        printf(", \"first\": {\"name\": \"%s\", \"residue\": \"%s\", \"chain\": \"%s\", \"type\": \"%s\"}",
-               p->names.count > 0 ? p->names.text[p->tag[0].name] : "",
-               p->names.count > 0 ? p->names.text[p->tag[0].residue] : "",
-               p->names.count > 0 ? p->names.text[p->tag[0].chain] : "",
-               p->names.count > 0 ? p->names.text[p->tag[0].type] : "");
+    if (p->count > 0) {
+        const BpParticleTag *const tag = &p->tag[0];
+        const char *const keys[] = {"{\"name\"", ", \"residue\"", ", \"chain\"", ", \"type\""};
+        const uint16_t numbers[] = {tag->name, tag->residue, tag->chain, tag->type};
+        printf(", \"first\": ");
+        for (int i = 0; i < 4; i++) {
+            printf("%s: ", keys[i]);
+            print_text(name_of(p, numbers[i]));
+        }
+        printf("}");
+    }
     if (p->column[0] != NULL) {
         double total = 0;
         for (size_t i = 0; i < p->count; i++)
             if (!isnan(p->column[0][i])) total += (double)p->column[0][i];
         printf(", \"column_sum\": %.9g", total);
     }
-}
-
-static void print_number(double value, bool first) {
-    printf(isnan(value) ? "%snull" : "%s%.9g", first ? "" : ", ", value);
-}
-
-/* Of every particle, in the file's order; and the ends of all bonds. */
-static void print_values(const BpParticles *p) {
-    printf(", \"positions\": [");
-    for (size_t i = 0; i < p->count; i++)
-        printf("%s[%.17g, %.17g, %.17g]", i > 0 ? ", " : "", p->position[i][0], p->position[i][1],
-               p->position[i][2]);
-    printf("], \"types\": [");
-    for (size_t i = 0; i < p->count; i++)
-        printf("%s\"%s\"", i > 0 ? ", " : "", p->names.count > 0 ? p->names.text[p->tag[i].type] : "");
-    printf("], \"symbols\": [");
-    for (size_t i = 0; i < p->count; i++)
-        printf("%s\"%s\"", i > 0 ? ", " : "", bp_elements[p->tag[i].element].symbol);
-    printf("], \"radii\": [");
-    for (size_t i = 0; i < p->count && p->radius != NULL; i++) print_number((double)p->radius[i], i == 0);
-    printf("], \"values\": [");
-    for (size_t i = 0; i < p->count && p->column[0] != NULL; i++)
-        print_number((double)p->column[0][i], i == 0);
-    printf("], \"pairs\": [");
-    for (size_t b = 0; b < p->bond_count; b++)
-        printf("%s[%u, %u]", b > 0 ? ", " : "", p->bonds[b][0], p->bonds[b][1]);
-    printf("]");
 }
 
 int main(int argc, char **argv) {
@@ -113,7 +150,7 @@ int main(int argc, char **argv) {
     if (status == BP_OK) {
         printf("{\"format\": \"%s\", \"frames\": %" PRIu64 ", ", bp_particle_format_name(format), frames);
         print_summary(&particles);
-        if (argc > 4) print_values(&particles);
+        if (argc > 4 || particles.count <= LISTED_MAX) print_lists(&particles);
         printf("}\n");
     } else {
         fprintf(stderr, "%s:%d: %s\n", err.file, err.line, err.message);
