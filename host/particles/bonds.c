@@ -136,10 +136,11 @@ static BpStatus bond_one(const BpParticleGrid *grid, uint32_t i, BpBonds *bonds,
     bp_particle_grid_begin(grid, p->position[i], &walk);
     while (bp_particle_grid_next(&walk)) {
         for (uint32_t k = grid->first[walk.cell]; k != BP_NO_PARTICLE; k = grid->next[k]) {
-            const uint8_t other = p->tag[k].element;
-            BpBond bond = {i, k, {0, 0, 0}};
             ++*tests;
-            if (k < i || other == 0 || (element == 1 && other == 1)) continue;
+            if (k < i) continue;
+            const uint8_t other = p->tag[k].element;
+            if (other == 0 || (element == 1 && other == 1)) continue;
+            BpBond bond = {i, k, {0, 0, 0}};
             if (grid->whole != NULL) bp_particle_grid_image(&walk, grid->whole[k], bond.image);
             if (k == i && !is_forward(bond.image)) continue;
             if (is_in_reach(grid, &bond) && !is_given(bonds, &bond)) BP_TRY(add_bond(bonds, &bond, err));

@@ -218,7 +218,7 @@ BpStatus bp_particles_spacing(const BpParticles *particles, const bool *shown, d
     double farthest = 0, median = INFINITY;
     *spacing = 0;
     BP_TRY(bp_particle_bounds(particles, shown, &bounds, err));
-    if (bounds.count == 0) return BP_OK;
+    if (bounds.count < 2) return BP_OK; /* one alone has images of its own, but these are not seen */
     choose_lattice(particles, &bounds, &lattice);
     choose_samples(&sampling, particles, bounds.count);
     for (int c = 0; c < 3; c++) farthest += bounds.high[c] - bounds.low[c];
