@@ -8,8 +8,8 @@
 #include "particles.h"
 
 /* The median distance of a particle to its nearest neighbour, from up to 1000 of those shown; 0: there is
- * none, or one particle alone. In a cell that repeats, images are neighbours too, a particle's own as well, except those above and
- * below particles that all lie at one z. Particles in one place are no neighbours. */
+ * none, or one particle alone. In a cell that repeats, images are neighbours too, a particle's own as well,
+ * except those above and below particles that all lie at one z. Particles in one place are no neighbours. */
 BpStatus bp_particles_spacing(const BpParticles *particles, const bool *shown, double *spacing, BpError *err);
 
 #endif

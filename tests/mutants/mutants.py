@@ -210,6 +210,22 @@ MUTANTS = [
     Mutant("ways along the wrong edges", "whole edges are rows of the matrix, not columns", [
         patch("host/particles/lattice.c", "out[k] += image[i] * lattice->edges[i][k]", "out[k] += image[i] * lattice->edges[k][i]")],
            [test("test_grid", "pairs_are_found")]),
+    Mutant("cells that repeat along all edges", "one p among the boundaries of a LAMMPS dump made all three edges repeat", [
+        patch("host/particles/lattice.c", "    memcpy(lattice->periodic, periodic, sizeof lattice->periodic);",
+              "    for (int e = 0; e < 3; e++) lattice->periodic[e] = periodic[0] || periodic[1] || periodic[2];")],
+           [test("test_bonds", "bonds_are_those_of_all_images")]),
+    Mutant("atoms that are no neighbours of themselves", "an atom's bonds to its own images were not sought", [
+        patch("host/particles/bonds.c", "            if (k < i) continue;", "            if (k <= i) continue;")],
+           [test("test_bonds", "bonds_are_those_of_all_images")]),
+    Mutant("images in the cells beside alone", "in a cell thinner than a bond, images further away were not sought", [
+        patch("host/particles/grid.c", "grid->steps[i] = (int32_t)fmin(1e6, fmax(1, steps));", "grid->steps[i] = 1 + 0 * (int32_t)steps;")],
+           [test("test_bonds", "bonds_are_those_of_all_images")]),
+    Mutant("the image that rounding finds", "in skewed cells it is not the nearest one", [
+        patch("host/particles/lattice.c", "        most[i] = middle[i] + lattice->periodic[i];", "        least[i] = most[i] = middle[i];")],
+           [test("test_bonds", "given_bonds_go_to_the_nearest_image")]),
+    Mutant("molecules torn by thin cells", "the image of a bond was not followed", [
+        patch("host/particles/molecules.c", "(int64_t)walk->move[i][e] + link->image[e];", "(int64_t)walk->move[i][e] + 0 * link->image[e];")],
+           [test("test_bonds", "chains_are_made_whole")]),
     # ---- large trees ----------------------------------------------------------------------------------------
     Mutant("every range at the beginning", "parts of a thread's range that are placed as if it were the whole",
            [patch("host/packed/tree_top.c", "{s->range.first + s->filled, items", "{s->filled, items")],

@@ -110,7 +110,8 @@ class Periodic(unittest.TestCase):
         head, end = '2\nLattice="4 0 0 0 4 0 0 0 4" %s Properties=species:S:1:pos:R:3\n', "C 0.2 2 2\nC 3.4 2 2\n"
         for text, expected in [("", "TTT"), ('pbc="F T T"', "FTT"), ('pbc="T F T"', "TFT"), ('pbc="T T F"', "TTF"), ('pbc="F F F"', "FFF"),
                                ('pbc="false True TRUE"', "FTT"), ('pbc="0 1 0"', "FTF"), ('pbc="t f t"', "TFT"), ("pbc=F", "FFF"),
-                               ("pbc=T", "TTT"), ("pbc=[F,T,T]", "FTT"), ('pbc="[T, F, F]"', "TFF"), ('pbc="F,F,T"', "FFT")]:
+                               ("pbc=T", "TTT"), ("pbc=[F,T,T]", "FTT"), ("pbc=[F, T, F]", "FTF"),
+                               ("pbc={T F F}", "TFF"), ("pbc='F T F'", "FTF"), ('pbc="[T, F, F]"', "TFF"), ('pbc="F,F,T"', "FFT")]:
             s = self.summary("a.xyz", head % text + end)
             self.assertEqual("".join("FT"[p] for p in s["periodic"]), expected, text)
             self.assertEqual(s["notes"], "")
