@@ -55,6 +55,20 @@ static bool is_light(const BpPicture *picture, BpTransfer transfer, uint32_t lef
     return count > 0 && sum / (double)count >= 128;
 }
 
+/* Lays a rim around what was drawn in `ink`, as wide as `reach`, over what is untouched. */
+static void draw_rim(BpCanvas *canvas, const uint8_t untouched[3], const uint8_t ink[3], const uint8_t rim[3],
+                     uint32_t reach) {
+    for (uint32_t y = 0; y < canvas->height; y++)
+        for (uint32_t x = 0; x < canvas->width; x++) {
+            if (memcmp(canvas->rgb + 3 * ((size_t)y * canvas->width + x), ink, 3) != 0) continue;
+            for (uint32_t v = y > reach ? y - reach : 0; v <= y + reach && v < canvas->height; v++)
+                for (uint32_t u = x > reach ? x - reach : 0; u <= x + reach && u < canvas->width; u++) {
+                    uint8_t *const pixel = canvas->rgb + 3 * ((size_t)v * canvas->width + u);
+                    if (memcmp(pixel, untouched, 3) == 0) memcpy(pixel, rim, 3);
+                }
+        }
+}
+
 static void draw(BpCanvas *canvas, BpTransfer transfer, const float colors[BP_COLOR_BAR_STOPS][3],
                  const Tick *ticks, int count, const char *title, uint32_t scale, uint32_t right,
                  const uint8_t ink[3]) {
@@ -83,6 +97,7 @@ BpStatus bp_color_bar_draw(BpPicture *picture, BpTransfer transfer, const float 
                            const double range[2], const char *title, BpError *err) {
     static const uint8_t untouched[3] = {1, 2, 3}; /* no colour of a map */
     static const uint8_t dark[3] = {40, 40, 40}, light[3] = {224, 224, 224};
+    static const uint8_t white[3] = {255, 255, 255};
     Tick ticks[TICKS_MAX] = {{0}};
     char small[64];
     const int count = choose_ticks(range, ticks);
@@ -99,8 +114,11 @@ BpStatus bp_color_bar_draw(BpPicture *picture, BpTransfer transfer, const float 
     canvas.rgb = malloc(3 * pixels);
     if (canvas.rgb == NULL) return bp_fail(err, BP_ERR_MEMORY, "out of memory for a colour bar");
     bp_canvas_fill(&canvas, 0, 0, canvas.width, canvas.height, untouched);
-    draw(&canvas, transfer, colors, ticks, count, small, scale, right,
-         is_light(picture, transfer, picture->width - right) ? dark : light);
+    /* A transparent picture lies on a page of any colour: dark letters with a light rim stand out from all.
+     */
+    const bool is_dark = picture->alpha != NULL || is_light(picture, transfer, picture->width - right);
+    draw(&canvas, transfer, colors, ticks, count, small, scale, right, is_dark ? dark : light);
+    if (picture->alpha != NULL) draw_rim(&canvas, untouched, dark, white, 2 * scale);
     bp_canvas_copy(&canvas, untouched, picture, 0, transfer);
     free(canvas.rgb);
     return BP_OK;
