@@ -39,9 +39,9 @@ static BpStatus fail_kind(const BpImageInput *input, BpError *err) {
         known.what = "an empty file";
     else
         bp_known_file(input->path, bytes, length, (size_t)input->size, &known);
-    return bp_image_fail(input, err, "found %s, expected an image: PNG, OpenEXR or PFM%s", known.what,
-                         known.kind == BP_FILE_IMAGE ? "; ImageMagick converts it: convert FILE FILE.png"
-                                                     : "");
+    return bp_image_fail(
+        input, err, "found %s, expected an image: PNG, OpenEXR, PFM or Radiance (.hdr)%s", known.what,
+        known.kind == BP_FILE_IMAGE ? "; ImageMagick converts it: convert FILE FILE.png" : "");
 }
 
 BpStatus bp_image_read(FILE *stream, uint64_t size, const char *path, BpEncoding encoding, double scale,
@@ -53,7 +53,8 @@ BpStatus bp_image_read(FILE *stream, uint64_t size, const char *path, BpEncoding
     } formats[] = {{{0x89, 'P', 'N', 'G'}, 4, bp_image_read_png},
                    {{0x76, 0x2f, 0x31, 0x01}, 4, bp_image_read_exr},
                    {{'P', 'F'}, 2, bp_image_read_pfm},
-                   {{'P', 'f'}, 2, bp_image_read_pfm}};
+                   {{'P', 'f'}, 2, bp_image_read_pfm},
+                   {{'#', '?'}, 2, bp_image_read_hdr}};
     const BpImageInput input = {stream, size, path, encoding, texels_max};
     unsigned char first[4] = {0};
     *image = NULL;
@@ -63,7 +64,7 @@ BpStatus bp_image_read(FILE *stream, uint64_t size, const char *path, BpEncoding
         if (count < formats[i].count || memcmp(first, formats[i].first, formats[i].count) != 0) continue;
         if (encoding == BP_ENCODING_SRGB && formats[i].read != bp_image_read_png)
             return bp_image_fail(&input, err,
-                                 "found an EXR or PFM file, whose numbers are linear, expected no "
+                                 "found an EXR, PFM or Radiance file, whose numbers are linear, expected no "
                                  "\"encoding\": \"srgb\"; remove it");
         BpStatus status = formats[i].read(&input, image, err);
         if (status == BP_OK) status = bp_texels_finish(*image, scale, path, err);

@@ -103,7 +103,8 @@ static BpStatus parse_image(const BpNode *node, unsigned flags, BpScene *scene, 
     const BpNode scale = bp_node_member(node, "scale");
     const BpNode wrap = bp_node_member(node, "wrap");
     int choice = BP_WRAP_REPEAT;
-    BP_TRY(bp_node_require(node, "file", "the path of a PNG, EXR or PFM file, relative to the scene", err));
+    BP_TRY(bp_node_require(node, "file",
+                           "the path of a PNG, EXR, PFM or Radiance file, relative to the scene", err));
     BP_TRY(bp_node_choice(&wrap, bp_wrap_names, bp_wrap_count, &choice, err));
     texture->wrap = (BpWrap)choice;
     return bp_parse_image(&file, &encoding, &scale, flags, scene, &texture->image, err);

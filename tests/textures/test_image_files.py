@@ -16,6 +16,21 @@ WHOLE = (0, 0, WIDTH - 1, HEIGHT - 1)
 REC709 = (0.64, 0.33, 0.3, 0.6, 0.15, 0.06, 0.3127, 0.329)
 
 
+# From linear colours of these primaries to linear Rec. 709: XYZ by IEC 61966-2-1 with seven digits (B. Lindbloom), ACES by the
+# Academy's transforms, Rec. 2020 by ITU-R BT.2087, Display P3 by CSS Color 4.
+MATRICES = {
+    "xyz": ((1, 0, 0, 1, 0, 0, 1 / 3, 1 / 3),
+            ((3.2404542, -1.5371385, -0.4985314), (-0.9692660, 1.8760108, 0.0415560), (0.0556434, -0.2040259, 1.0572252))),
+    "ap0": ((0.7347, 0.2653, 0, 1, 0.0001, -0.077, 0.32168, 0.33767),
+            ((2.5216862, -1.1341310, -0.3875552), (-0.2764799, 1.3727191, -0.0962392), (-0.0153781, -0.1529753, 1.1683534))),
+    "ap1": ((0.713, 0.293, 0.165, 0.83, 0.128, 0.044, 0.32168, 0.33767),
+            ((1.7050510, -0.6217921, -0.0832589), (-0.1302564, 1.1408047, -0.0105483), (-0.0240034, -0.1289690, 1.1529723))),
+    "2020": ((0.708, 0.292, 0.17, 0.797, 0.131, 0.046, 0.3127, 0.329),
+             ((1.660491, -0.587641, -0.072850), (-0.124550, 1.132900, -0.008349), (-0.018151, -0.100579, 1.118730))),
+    "p3": ((0.68, 0.32, 0.265, 0.69, 0.15, 0.06, 0.3127, 0.329),
+           ((1.2249402, -0.2249402, 0), (-0.0420570, 1.0420570, 0), (-0.0196376, -0.0786361, 1.0982736)))}
+
+
 def share(x, y, c):
     return (37 * (x + 9) + 91 * (y + 9) + 53 * c + 7 * x * y) % 256 / 255
 
@@ -176,24 +191,10 @@ class ImageFiles(ProgramTest):
         self.write("a.exr", cube)
         self.fail_with(2, "render", "s.json", "-o", "x.png", "--set", "background.image=a.exr", says=["a.exr", "cube map"])
 
-    # From linear colours of these primaries to linear Rec. 709: XYZ by IEC 61966-2-1 with seven digits (B. Lindbloom), ACES by the
-    # Academy's transforms, Rec. 2020 by ITU-R BT.2087, Display P3 by CSS Color 4.
-    MATRICES = {
-        "xyz": ((1, 0, 0, 1, 0, 0, 1 / 3, 1 / 3),
-                ((3.2404542, -1.5371385, -0.4985314), (-0.9692660, 1.8760108, 0.0415560), (0.0556434, -0.2040259, 1.0572252))),
-        "ap0": ((0.7347, 0.2653, 0, 1, 0.0001, -0.077, 0.32168, 0.33767),
-                ((2.5216862, -1.1341310, -0.3875552), (-0.2764799, 1.3727191, -0.0962392), (-0.0153781, -0.1529753, 1.1683534))),
-        "ap1": ((0.713, 0.293, 0.165, 0.83, 0.128, 0.044, 0.32168, 0.33767),
-                ((1.7050510, -0.6217921, -0.0832589), (-0.1302564, 1.1408047, -0.0105483), (-0.0240034, -0.1289690, 1.1529723))),
-        "2020": ((0.708, 0.292, 0.17, 0.797, 0.131, 0.046, 0.3127, 0.329),
-                 ((1.660491, -0.587641, -0.072850), (-0.124550, 1.132900, -0.008349), (-0.018151, -0.100579, 1.118730))),
-        "p3": ((0.68, 0.32, 0.265, 0.69, 0.15, 0.06, 0.3127, 0.329),
-               ((1.2249402, -0.2249402, 0), (-0.0420570, 1.0420570, 0), (-0.0196376, -0.0786361, 1.0982736)))}
-
     def test_chromaticities(self):
         for color in ((0.2, 0.4, 0.6), (0.5, 0.5, 0.5), (3, 2, 0.25)):
             channels = {c: lambda x, y, v=v: v for c, v in zip("RGB", color)}
-            for name, (places, matrix) in self.MATRICES.items():
+            for name, (places, matrix) in MATRICES.items():
                 expected = [sum(m * v for m, v in zip(row, color)) for row in matrix]
                 found, said = self.texel("a.exr", exr(part(channels, more=chromaticities(places))))
                 self.assert_near(found, expected, 5e-4 * max(1, *color), (name, color))
@@ -201,15 +202,111 @@ class ImageFiles(ProgramTest):
                 self.assertEqual("below 0" in said, min(expected) < 0, said)
             found, said = self.texel("a.exr", exr(part(channels, more=chromaticities(REC709))))
             self.assertEqual((found, said), ([struct.unpack("f", struct.pack("f", v))[0] for v in color], ""))
-        gray = exr(part({"Y": lambda x, y: 0.5}, more=chromaticities(self.MATRICES["ap0"][0])))
+        gray = exr(part({"Y": lambda x, y: 0.5}, more=chromaticities(MATRICES["ap0"][0])))
         self.assertEqual(self.texel("a.exr", gray), ([0.5] * 3, ""))
         for places in ([0.0] * 8, (0.6, 0.3, 0.6, 0.3, 0.15, 0.06, 0.3127, 0.329), (*REC709[:7], 0), (float("nan"), *REC709[1:])):
             self.write("a.exr", exr(part(RGB, more=chromaticities(places))))
             self.fail_with(2, "render", "s.json", "-o", "x.png", says=["a.exr", "found primaries that span no colours"])
         # What is not finite is refused at its own place, not at one that the conversion spread it to.
         channels = {**RGB, "B": lambda x, y: float("inf") if (x, y) == (3, 2) else 0}
-        self.write("a.exr", exr(part(channels, more=chromaticities(self.MATRICES["ap1"][0]))))
+        self.write("a.exr", exr(part(channels, more=chromaticities(MATRICES["ap1"][0]))))
         self.fail_with(2, "render", "s.json", "-o", "x.png", says=["found inf as the blue of the texel in column 3 of row 2"])
+
+    # ---- Radiance ------------------------------------------------------------------------------------------
+
+    @staticmethod
+    def bytes_of(x, y):
+        return bytes([(40 * x + 11 * y) % 256, (90 * y + 3 * x) % 256, (7 * x * y + 5) % 256, 120 + (x + y) % 12])
+
+    @classmethod
+    def value_of(cls, x, y):
+        """Mantissas of eight bits, and the exponent above 128."""
+        r, g, b, e = cls.bytes_of(x, y)
+        return [m / 256 * 2.0 ** (e - 128) for m in (r, g, b)]
+
+    @staticmethod
+    def packed(line):
+        """A line of texels, each component by itself, with runs where bytes are equal."""
+        out = struct.pack(">BBH", 2, 2, len(line))
+        for c in range(4):
+            row, i = [t[c] for t in line], 0
+            while i < len(row):
+                run = 1
+                while i + run < len(row) and run < 127 and row[i + run] == row[i]:
+                    run += 1
+                if run > 2:
+                    out, i = out + bytes([128 + run, row[i]]), i + run
+                else:
+                    end = min(i + 5, len(row))
+                    out, i = out + bytes([end - i]) + bytes(row[i:end]), end
+        return out
+
+    @staticmethod
+    def runs(line):
+        """As the first versions wrote: 1, 1, 1 and the digits of how often the texel before is repeated."""
+        out, i = b"", 0
+        while i < len(line):
+            run = 1
+            while i + run < len(line) and line[i + run] == line[i]:
+                run += 1
+            out, left, i = out + line[i], run - 1, i + run
+            while left:
+                out, left = out + bytes([1, 1, 1, left % 256]), left // 256
+        return out
+
+    def hdr(self, size, lines, pack, variables=b"FORMAT=32-bit_rle_rgbe\n", magic=b"#?RADIANCE\n"):
+        return magic + variables + b"\n" + size + b"\n" + b"".join(pack(line) for line in lines)
+
+    def test_radiance(self):
+        """Each way to pack, and each order of rows and columns, is the same picture as floats."""
+        right = self.around("right.pfm", images.pfm(WIDTH, HEIGHT, self.value_of))[0]
+        rows = [[self.bytes_of(x, y) for x in range(WIDTH)] for y in range(HEIGHT)]
+        columns = [[self.bytes_of(x, y) for y in range(HEIGHT)] for x in range(WIDTH)]
+        flat = b"".join
+        normal = b"-Y 6 +X 12"
+        for size, lines, pack in ((normal, rows, flat), (normal, rows, self.packed), (normal, rows, self.runs),
+                                  (b"+Y 6 +X 12", rows[::-1], self.packed), (b"-Y 6 -X 12", [row[::-1] for row in rows], flat),
+                                  (b"+X 12 -Y 6", columns, flat), (b"-X 12 +Y 6", [c[::-1] for c in columns[::-1]], flat)):
+            found, said = self.around("a.hdr", self.hdr(size, lines, pack))
+            self.assertEqual((found, said), (right, ""), size)
+        more = b"# made by a test\nSOFTWARE=" + b"x" * 5000 + b"\nFORMAT=32-bit_rle_rgbe\r\nPIXASPECT=1\n"
+        self.assertEqual(self.around("a.hdr", self.hdr(normal, rows, self.packed, more, b"#?RGBE\n"))[0], right)
+        # A sky of one colour in long runs, of both kinds, over the bounds of one byte.
+        plain = [[bytes([128, 64, 32, 129])] * 1000] * 3
+        right = self.around("right.pfm", images.pfm(1000, 3, lambda x, y: (1, 0.5, 0.25)))[0]
+        for pack in (self.packed, self.runs):
+            self.assertEqual(self.around("a.hdr", self.hdr(b"-Y 3 +X 1000", plain, pack))[0], right)
+
+    def test_radiance_variables(self):
+        one = lambda variables, texel=(128, 64, 32, 129): self.texel("a.hdr", self.hdr(b"-Y 1 +X 1", [[bytes(texel)]], b"".join, variables))
+        self.assertEqual(one(b""), ([1, 0.5, 0.25], ""))
+        self.assertEqual(one(b"", (255, 1, 0, 0)), ([0, 0, 0], ""))
+        found, said = one(b"EXPOSURE=2\nEXPOSURE= 0.25\nCOLORCORR=4 1 0.5\n")
+        self.assertEqual(found, [0.5, 1, 1])
+        self.assertIn("its EXPOSURE or COLORCORR is undone: values are multiplied by 0.5, 2 and 4", said)
+        for name, variables in (("xyz", b"FORMAT=32-bit_rle_xyze\n"), ("ap1", b"PRIMARIES=0.713 0.293 0.165 0.83 0.128 0.044 0.32168 0.33767\n"),
+                                ("2020", b"PRIMARIES= .708 .292 .17 .797 .131 .046 .3127 .329\n")):
+            found, said = one(variables)
+            self.assert_near(found, [sum(m * v for m, v in zip(row, (1, 0.5, 0.25))) for row in MATRICES[name][1]], 5e-4, name)
+            self.assertIn("converted to the primaries of Rec. 709", said)
+        self.assertEqual(one(b"PRIMARIES=0.64 0.33 0.3 0.6 0.15 0.06 0.3127 0.329\n"), ([1, 0.5, 0.25], ""))
+
+    def test_radiance_refused(self):
+        self.write("s.json", scene(background={"image": "a.hdr"}))
+        rows = [[self.bytes_of(x, y) for x in range(WIDTH)] for y in range(HEIGHT)]
+        good = self.hdr(b"-Y 6 +X 12", rows, self.packed)
+        for content, says in ((good[:-1], "found the end of the file in line 5 of 6"), (good[:30], "found no end of the header"),
+                              (self.hdr(b"-Y 6 +X 12", rows, b"".join)[:-4], "found the end of the file in line 5 of 6"),
+                              (self.hdr(b"6 12", rows, self.packed), 'found the line "6 12", expected the size'),
+                              (self.hdr(b"-Y 6 +Y 12", rows, self.packed), "expected the size"), (self.hdr(b"-Y 0 +X 12", rows, self.packed), "expected the size"),
+                              (self.hdr(b"-Y 6 +X 13", rows, self.packed), "found 12 texels in line 0, expected 13"),
+                              (self.hdr(b"-Y 6 +X 70000", rows, self.packed), "70000 by 6 texels"),
+                              (self.hdr(b"-Y 1 +X 12", [[b"\2\2\0\x0c\x8d\1"]], b"".join), "found a run that leaves line 0"),
+                              (self.hdr(b"-Y 1 +X 12", [[b"\1\1\1\2"]], b"".join), "found a run that leaves line 0"),
+                              (self.hdr(b"-Y 6 +X 12", rows, self.packed, b"FORMAT=64-bit\n"), 'found the line "FORMAT=64-bit"'),
+                              (self.hdr(b"-Y 6 +X 12", rows, self.packed, b"EXPOSURE=0\n"), 'found the line "EXPOSURE=0", expected numbers above 0')):
+            self.write("a.hdr", content)
+            self.fail_with(2, "render", "s.json", "-o", "x.png", says=["a.hdr: ", says])
 
     def test_negative(self):
         """What is below 0 counts as 0, in all formats alike, and is counted."""
@@ -247,7 +344,7 @@ class ImageFiles(ProgramTest):
         srgb = [linear(v) for v in (188, 100, 30)]
         gamma = lambda value: (b"gAMA", struct.pack(">I", value))
         places = lambda p: (b"cHRM", struct.pack(">8I", *(round(1e5 * v) for v in (*p[6:], *p[:6]))))
-        p3, matrix = self.MATRICES["p3"]
+        p3, matrix = MATRICES["p3"]
         profile = lambda text: (b"iCCP", b"name\0\0" + zlib.compress(self.profile(text), 0))
         power = lambda e: [(v / 255) ** e for v in (188, 100, 30)]
         converted = [sum(m * v for m, v in zip(row, srgb)) for row in matrix]
