@@ -12,7 +12,9 @@ import numpy as np
 import numpy.typing as npt
 
 from . import _library as lib
-from ._scene import Color, Document, Spheres, _numbers, wrong_type
+from ._arguments import floats, wrong_type
+from ._colors import Color
+from ._scene import Document, Spheres
 
 RADII = {"vdw": "van_der_waals", "covalent": "covalent"}
 
@@ -49,8 +51,8 @@ def _of_elements(numbers: npt.NDArray[typing.Any], radius: typing.Union[str, npt
             raise lib.SceneError(f'radius: found "{radius}", expected "vdw", "covalent", a number or an array')
         radii = (vdw if radius == "vdw" else covalent)[known]
     else:
-        radii = _numbers(radius, "radius")
-    return _numbers(scale, "scale") * radii, colors[known] if color is None else color
+        radii = floats(radius, "radius")
+    return floats(scale, "scale") * radii, colors[known] if color is None else color
 
 
 def from_ase(atoms: typing.Any, *, radius: typing.Union[str, npt.ArrayLike] = "vdw", scale: float = 1.0,
@@ -117,7 +119,7 @@ def from_gsd(frame: typing.Any, *, radius: typing.Optional[npt.ArrayLike] = None
     """
     _expect("from_gsd", frame, ("particles", "configuration"), "a frame of gsd.hoomd, such as trajectory[0]")
     particles = frame.particles
-    positions = _numbers(particles.position, "positions")
+    positions = floats(particles.position, "positions")
     if radius is None:
         diameter = particles.diameter
         radius = 0.5 if diameter is None else np.asarray(diameter) / 2
@@ -130,5 +132,5 @@ def from_gsd(frame: typing.Any, *, radius: typing.Optional[npt.ArrayLike] = None
             table[number] = rgb[:]
         color = table[0] if types is None else table[np.asarray(types)]
     flat = getattr(frame.configuration, "dimensions", 3) == 2
-    return Spheres(positions, _numbers(scale, "scale") * _numbers(radius, "radius"), color, material, up="y" if flat else "z",
+    return Spheres(positions, floats(scale, "scale") * floats(radius, "radius"), color, material, up="y" if flat else "z",
                    view="front" if flat else "three-quarter", name="particles")

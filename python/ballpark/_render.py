@@ -11,20 +11,19 @@ import difflib
 import inspect
 import math
 import os
-import signal
 import sys
 import threading
-import time
 import types
 import typing
 
 import numpy.typing as npt
 
 from . import _library as lib
+from ._arguments import ADAPTERS, whole_number, wrong_type
+from ._colors import Color
+from ._interrupt import CtrlC, Job, interruptible
 from ._picture import Picture
-from ._scene import ADAPTERS, Color, Document, Scene, Spheres, _whole, list_of_spheres, particle_document, wrong_type
-
-T = typing.TypeVar("T")
+from ._scene import Document, Scene, Spheres, list_of_spheres, particle_document
 
 
 class Interrupted(KeyboardInterrupt):
@@ -78,72 +77,6 @@ def devices() -> typing.List[Device]:
         lib.library().bp_free(c.cast(found, c.c_void_p))
 
 
-class _CtrlC:
-    """While entered, Ctrl-C is noted and does not raise, so that it never comes between two steps of the bookkeeping.
-
-    Only where it would raise otherwise: in the main thread, and where nobody has installed a handler of his own.
-    """
-
-    def __init__(self) -> None:
-        self.pressed_at: typing.Optional[float] = None
-        self._ours = False
-
-    def _note(self, number: int, frame: typing.Optional[types.FrameType]) -> None:
-        if self.pressed_at is None:
-            self.pressed_at = time.monotonic()
-
-    def __enter__(self) -> "_CtrlC":
-        self._ours = (threading.current_thread() is threading.main_thread()
-                      and signal.getsignal(signal.SIGINT) is signal.default_int_handler)
-        if self._ours:
-            signal.signal(signal.SIGINT, self._note)
-        return self
-
-    def __exit__(self, *_: object) -> None:
-        if self._ours:
-            signal.signal(signal.SIGINT, signal.default_int_handler)
-
-
-POLL_SECONDS = 0.1
-
-
-class _Job:
-    """A call into the library, which Python cannot interrupt: it runs in a thread of its own, and can be left alone."""
-
-    def __init__(self, function: typing.Callable[[], typing.Any]):
-        self.function = function
-        self.result: typing.Any = None
-        self.problem: typing.Optional[BaseException] = None
-        self.done = threading.Event()
-        threading.Thread(target=self._run, name="ballpark").start()
-
-    def _run(self) -> None:
-        try:
-            self.result = self.function()
-        except BaseException as problem:  # raised again where it is waited for
-            self.problem = problem
-        self.done.set()
-
-    def wait(self, ctrl_c: _CtrlC, patience: float) -> bool:
-        """Until it is done; False: Ctrl-C was pressed, and it is not done within `patience` seconds of that."""
-        while not self.done.wait(POLL_SECONDS):
-            if ctrl_c.pressed_at is not None and time.monotonic() - ctrl_c.pressed_at > patience:
-                return False
-        if self.problem is not None:
-            raise self.problem
-        return True
-
-
-def _interruptible(function: typing.Callable[[], T]) -> T:
-    """Calls it. Ctrl-C raises KeyboardInterrupt soon, and leaves the call to its end."""
-    with _CtrlC() as ctrl_c:
-        job = _Job(function)
-        if not job.wait(ctrl_c, 0) or ctrl_c.pressed_at is not None:
-            raise KeyboardInterrupt
-    result: T = job.result
-    return result
-
-
 class Render:
     """A render of a scene, for pictures on the way: step() until it returns a reason, picture() at any time.
 
@@ -174,12 +107,12 @@ class Render:
                 raise lib.SceneError(f'{name}: found "{word}", expected one of {", ".join(lib.CHOICES[name])}')
             setattr(options, name, lib.CHOICES[name].index(word))
         if spp is not None:
-            options.samples_per_pixel = _whole("spp", spp, 1, 1 << 32)
-        options.seed = _whole("seed", seed, 0, (1 << 64) - 1)
-        options.first_sample = _whole("first_sample", first_sample, 0, (1 << 32) - 1)
+            options.samples_per_pixel = whole_number("spp", spp, 1, 1 << 32)
+        options.seed = whole_number("seed", seed, 0, (1 << 64) - 1)
+        options.first_sample = whole_number("first_sample", first_sample, 0, (1 << 32) - 1)
         if depth is not None:
-            options.max_depth = _whole("depth", depth, 0, 1000000)
-        options.threads = _whole("threads", threads, 0, 65536)
+            options.max_depth = whole_number("depth", depth, 0, 1000000)
+        options.threads = whole_number("threads", threads, 0, 65536)
         options.adaptive, options.features, options.force = bool(adaptive), bool(aovs), bool(force)
         rule = lib.BpStopRule()
         lib.library().bp_stop_rule_defaults(scene._handle.pointer, c.byref(options), c.byref(rule))
@@ -187,7 +120,7 @@ class Render:
         if spp is None and (error is not None or time is not None):
             rule.samples_max = 0
         chosen = lib.BpDeviceInfo()
-        _interruptible(lambda: self._create(options, rule, device, chosen))
+        interruptible(lambda: self._create(options, rule, device, chosen))
         self.device = _device(chosen)
 
     def _create(self, options: lib.BpRenderOptions, rule: lib.BpStopRule, device: typing.Union[None, int, str],
@@ -201,17 +134,17 @@ class Render:
     def step(self) -> typing.Optional[str]:
         """Renders for about 0.2 s. Returns why the render has ended ("samples", "error", ...), or None: go on."""
         if self._reason.value == 0:
-            with _CtrlC() as ctrl_c:
+            with CtrlC() as ctrl_c:
                 if not self._start_step().wait(ctrl_c, INTERRUPT_SECONDS) or ctrl_c.pressed_at is not None:
                     raise KeyboardInterrupt
         return self.stopped
 
-    def _start_step(self) -> _Job:
+    def _start_step(self) -> Job:
         with self._lock:
             if self._busy or not self._render:
                 raise lib.Error("the render is closed" if not self._busy else "a step of the render is under way")
             self._busy = True
-        return _Job(self._step)
+        return Job(self._step)
 
     def _step(self) -> None:
         try:
@@ -286,7 +219,7 @@ def _run(render: Render, report: typing.Optional[typing.Callable[[Progress], obj
     """Steps to the end; Ctrl-C hands over what there is."""
     while render.stopped is None:
         try:
-            with _CtrlC() as ctrl_c:
+            with CtrlC() as ctrl_c:
                 # A step ends soon, unless a driver compiles in it: then nothing is rendered yet, and it is left to its end.
                 if not render._start_step().wait(ctrl_c, INTERRUPT_SECONDS):
                     raise Interrupted(None)
@@ -342,11 +275,9 @@ def make_scene(subject: Subject, *, radius: typing.Optional[npt.ArrayLike] = Non
         if isinstance(subject, Scene):
             scene = subject
         elif isinstance(subject, collections.abc.Mapping):
-            document: Document = subject
-            scene = _interruptible(lambda: Scene(document))
+            scene = Scene(subject)
         else:
-            path: typing.Union[str, "os.PathLike[str]"] = subject
-            scene = _interruptible(lambda: Scene.load(path))
+            scene = Scene.load(subject)
         if width is not None and width != scene.width:
             scene.set_width(width)
         return scene
@@ -356,8 +287,7 @@ def make_scene(subject: Subject, *, radius: typing.Optional[npt.ArrayLike] = Non
         raise wrong_type("ballpark.render", subject, "positions (N, 3), Spheres, a dict, a Scene or the path of a file")
     else:
         sets = [Spheres(typing.cast(npt.ArrayLike, subject), **given)]
-    made = particle_document(sets, camera, width, height, scene_members)
-    return _interruptible(lambda: Scene(made, sets))
+    return Scene(particle_document(sets, camera, width, height, scene_members), sets)
 
 
 def _refuse_unknown(options: typing.Dict[str, typing.Any]) -> None:

@@ -1,12 +1,13 @@
 """Scenes: documents of the JSON grammar as dicts or files, and spheres as arrays.
 
 In:    dicts, paths, numpy arrays.   Out: a scene of the library.
-Knows: how arrays lie in memory, what colours may be.   Does not know: rendering, other packages' objects.
+Knows: how arrays lie in memory, which of their rows count.   Does not know: rendering, other packages' objects.
 """
 
 import ctypes as c
 import dataclasses
 import json
+import math
 import os
 import typing
 
@@ -14,104 +15,16 @@ import numpy as np
 import numpy.typing as npt
 
 from . import _library as lib
+from ._arguments import Array, c_text, floats, warn, whole_number, wrong_type
+from ._colors import Color, linear_colors
+from ._interrupt import interruptible
 
 Document = typing.Mapping[str, typing.Any]
-Color = typing.Union[str, npt.ArrayLike]
 
 # What a render of bare positions looks like: as files of particles do.
 PARTICLE_CAMERA: typing.Dict[str, typing.Any] = {
     "image_width": 800, "aspect_ratio": [4, 3], "samples_per_pixel": 32, "max_depth": 20, "vfov": 30}
 PARTICLE_SCENE: typing.Dict[str, typing.Any] = {"light": "soft", "transfer": "srgb"}
-
-
-# What takes the objects of other packages.
-ADAPTERS = {"ase": "from_ase", "MDAnalysis": "from_mdanalysis", "gsd": "from_gsd"}
-
-
-def wrong_type(what: str, found: object, expected: str) -> TypeError:
-    """Names what was expected, and for an object of another package the function that takes it."""
-    adapter = ADAPTERS.get(type(found).__module__.partition(".")[0])
-    hint = f"; see ballpark.{adapter}()" if adapter and what != adapter else ""
-    return TypeError(f"{what}: found {type(found).__name__}, expected {expected}{hint}")
-
-
-def _srgb_to_linear(share: npt.NDArray[np.float64]) -> npt.NDArray[typing.Any]:
-    """IEC 61966-2-1."""
-    return np.where(share <= 0.04045, share / 12.92, ((share + 0.055) / 1.055) ** 2.4)
-
-
-def _map_colors(values: npt.NDArray[typing.Any], cmap: str,
-                color_range: typing.Optional[typing.Tuple[float, float]]) -> npt.NDArray[np.float32]:
-    """Colours for numbers; those that are not finite become grey."""
-    if not isinstance(cmap, str):
-        raise wrong_type("cmap", cmap, 'a name such as "viridis"')
-    table = np.empty((257, 3), np.float32)
-    rgb = (c.c_double * 3)()
-    for place in range(256):
-        if not lib.library().bp_color_map(cmap.encode(), place / 255, rgb):
-            names: typing.List[str] = []
-            while lib.library().bp_color_map_name(len(names)):
-                names.append(lib.library().bp_color_map_name(len(names)).decode())
-            raise lib.SceneError(f'cmap: found "{cmap}", expected one of {", ".join(names)}')
-        table[place] = rgb[:]
-    table[256] = 0.3
-    values = np.asarray(values, np.float64)
-    known = np.isfinite(values)
-    low, high = (float(values[known].min()), float(values[known].max())) if known.any() else (0.0, 1.0)
-    if color_range is not None:
-        try:
-            low, high = (float(end) for end in color_range)
-        except (TypeError, ValueError):
-            raise lib.SceneError(f"color_range: found {color_range!r}, expected two numbers") from None
-    scale = 255 / (high - low) if high > low else 0.0
-    with np.errstate(invalid="ignore"):
-        places = np.clip((values - low) * scale + 0.5, 0, 255) if scale else np.full(values.shape, 127.0)
-    places = np.where(known, places, 256)
-    colors: npt.NDArray[np.float32] = table[places.astype(np.intp)]
-    return colors
-
-
-def _colors(color: Color, count: int, cmap: str,
-            color_range: typing.Optional[typing.Tuple[float, float]]) -> npt.NDArray[typing.Any]:
-    """Three linear shares of light, for all spheres (3,) or for each (count, 3)."""
-    if isinstance(color, str):
-        digits = color[1:]
-        if not color.startswith("#") or len(digits) not in (3, 6) or set(digits.lower()) - set("0123456789abcdef"):
-            raise lib.SceneError(f'color: found "{color}", expected "#rrggbb", (r, g, b) or an array')
-        if len(digits) == 3:
-            digits = "".join(digit * 2 for digit in digits)
-        return _srgb_to_linear(np.array([int(digits[i:i + 2], 16) for i in (0, 2, 4)]) / 255)
-    array = _array(color, "color")
-    if array.shape == (count,) and (count != 3 or cmap != ""):  # three numbers are a colour, unless a map is named
-        return _map_colors(array, cmap or "viridis", color_range)
-    if array.shape not in ((3,), (count, 3)):
-        raise lib.SceneError(f"color: found an array of shape {array.shape}, expected (3,), ({count}, 3), or ({count},) "
-                             "for a colour map")
-    if array.dtype == np.uint8:
-        linear: npt.NDArray[np.float32] = _srgb_to_linear(np.arange(256) / 255).astype(np.float32)
-        return np.take(linear, array, axis=0)
-    return array
-
-
-def _array(values: npt.ArrayLike, what: str) -> npt.NDArray[typing.Any]:
-    """An array of numbers of any type."""
-    try:
-        array = np.asarray(values)
-    except ValueError:
-        raise lib.SceneError(f"{what}: found rows of different lengths, expected numbers") from None
-    if array.dtype.kind in "US":
-        raise lib.SceneError(f"{what}: found text, expected numbers")
-    if array.dtype.kind == "O":
-        raise wrong_type(what, values, "numbers")
-    if array.dtype.kind not in "fiub":
-        raise lib.SceneError(f"{what}: found {array.dtype}, expected numbers")
-    return array
-
-
-def _numbers(values: npt.ArrayLike, what: str) -> npt.NDArray[typing.Any]:
-    """The array itself where the library can read it in place, else a copy as doubles."""
-    array = _array(values, what)
-    return array if array.dtype in (np.dtype(np.float32), np.dtype(np.float64)) else array.astype(np.float64)
 
 
 def _rows(array: typing.Optional[npt.NDArray[typing.Any]], per_sphere: bool) -> lib.BpRows:
@@ -149,34 +62,87 @@ class Spheres:
     view: typing.Union[str, typing.Sequence[float]] = "three-quarter"
     name: str = "positions"
 
+    def _places(self) -> Array:
+        places = floats(self.positions, "positions")
+        if places.ndim != 2 or places.shape[1] != 3:
+            hint = ("; transpose it, as in positions.T" if places.ndim == 2 and places.shape[0] == 3 else
+                    "; points in a plane need a third column, of zeros" if places.ndim == 2 and places.shape[1] == 2 else
+                    "; one point is [[x, y, z]]" if places.shape == (3,) else "")
+            raise lib.SceneError(f"positions: found an array of shape {places.shape}, expected (N, 3){hint}")
+        return places
+
+    def _kept(self, places: Array) -> typing.Optional[Array]:
+        """Which points have a place; None: all."""
+        kept: Array = np.asarray(~np.isnan(places).any(axis=1))
+        left_out = len(kept) - int(np.count_nonzero(kept))
+        if left_out == 0:
+            return None
+        if left_out == len(kept):
+            raise lib.SceneError(f"{self.name}: found no place (masked, missing or NaN) for any of {left_out:,}, expected some")
+        warn(f"ballpark: {self.name}: left out for lack of a place (masked, missing or NaN): {left_out:,} of {len(kept):,}")
+        return kept
+
+    def _radii(self, count: int, kept: typing.Optional[Array]) -> Array:
+        radii = floats(self.radius, "radius")
+        if radii.shape not in ((), (count,)):
+            raise lib.SceneError(f"radius: found an array of shape {radii.shape}, expected a number or ({count},)")
+        radii = radii[kept] if kept is not None and radii.ndim == 1 else radii
+        self._expect_all("radius", np.isnan(radii), kept)
+        return radii
+
+    def _expect_all(self, what: str, missing: Array, kept: typing.Optional[Array]) -> None:
+        """Refuses spheres with a place that lack something else."""
+        lacking = np.flatnonzero(missing)
+        if len(lacking) > 0:
+            first = lacking[0] if kept is None else np.flatnonzero(kept)[lacking[0]]
+            more = f", nor for {len(lacking) - 1:,} more" if len(lacking) > 1 else ""
+            raise lib.SceneError(f"{what}: found no number (masked, missing or NaN) for sphere {first} (from 0) of "
+                                 f"{self.name}{more}, expected one")
+
     def _set(self, material: typing.Optional[str], keep: typing.List[typing.Any]) -> lib.BpSphereSet:
         """For the library; `keep` gets what must live until it has read the arrays."""
-        positions = _numbers(self.positions, "positions")
-        if positions.ndim != 2 or positions.shape[1] != 3:
-            raise lib.SceneError(f"positions: found an array of shape {positions.shape}, expected (N, 3)")
-        count = positions.shape[0]
-        radius = _numbers(self.radius, "radius")
-        if radius.shape not in ((), (count,)):
-            raise lib.SceneError(f"radius: found an array of shape {radius.shape}, expected a number or ({count},)")
-        color = None
-        if self.color is not None:
-            color = _numbers(_colors(self.color, count, self.cmap, self.color_range), "color")
-        if (self.cmap or self.color_range is not None) and (self.color is None or np.shape(self.color) != (count,)):
-            raise lib.SceneError(f"{'cmap' if self.cmap else 'color_range'}: found without numbers to map; give `color` "
-                                 "as one number per sphere")
-        keep += [positions, radius, color]
-        return lib.BpSphereSet(count, _rows(positions, True), _rows(radius, radius.ndim == 1),
-                               _rows(color, color is not None and color.ndim == 2),
-                               None if material is None else material.encode(), self.name.encode())
+        places = self._places()
+        count, kept = len(places), self._kept(places)
+        radii = self._radii(count, kept)
+        colors = linear_colors(self.color, count, kept, self.cmap, self.color_range)
+        if colors is not None:
+            self._expect_all("color", np.asarray(np.isnan(colors).any(axis=-1)), kept if colors.ndim == 2 else None)
+        if kept is not None:
+            places = places[kept]
+        name = self.name if kept is None else f"those {self.name} that have a place"
+        keep += [places, radii, colors]
+        return lib.BpSphereSet(len(places), _rows(places, True), _rows(radii, radii.ndim == 1),
+                               _rows(colors, colors is not None and colors.ndim == 2),
+                               None if material is None else c_text("material", material), c_text("name", name))
 
 
-def _plain(value: typing.Any) -> typing.Any:
-    """What json does not know: arrays and numbers of numpy."""
-    if isinstance(value, (np.ndarray, np.generic)):
-        return value.tolist()
+def _member(place: str, name: typing.Union[str, int]) -> str:
+    return f"{place}[{name}]" if isinstance(name, int) else f"{place}.{name}" if place else name
+
+
+def _plain(value: typing.Any, place: str) -> typing.Any:
+    """What json can write, with lists in place of arrays. `place` names the member in messages."""
+    if isinstance(value, typing.Mapping):
+        for name in value:
+            if not isinstance(name, str):
+                raise lib.SceneError(f"{place + ': ' if place else ''}found the name {name!r}, expected a text")
+        return {name: _plain(part, _member(place, name)) for name, part in value.items()}
+    if isinstance(value, (list, tuple)):
+        return [_plain(part, _member(place, number)) for number, part in enumerate(value)]
     if isinstance(value, os.PathLike):
         return os.fspath(value)
-    raise lib.SceneError(f"found {type(value).__name__}, expected what JSON can hold, or an array")
+    if isinstance(value, np.generic):
+        value = float(value) if isinstance(value, np.floating) else value.item()
+    elif hasattr(value, "__array__"):
+        array = np.ma.asarray(value)
+        if array.dtype.kind in "biuf" and array.dtype.itemsize <= 8 and np.isfinite(array).all():
+            return array.tolist()
+        return _plain(array.tolist(), place)
+    if isinstance(value, float) and not math.isfinite(value):
+        raise lib.SceneError(f"{place}: found {value}, expected a finite number")
+    if value is not None and not isinstance(value, (str, int, float)):
+        raise lib.SceneError(f"{place}: found {type(value).__name__}, expected what JSON can hold, or an array")
+    return value
 
 
 @dataclasses.dataclass(frozen=True)
@@ -222,9 +188,13 @@ class Scene:
         array = (lib.BpSphereSet * max(1, len(sets)))(*(
             one._set(name, keep) for one, name in zip(sets, names)))
         self._handle = lib.Handle("scene")
-        lib.call("bp_scene_parse_with_spheres", text, len(text), b"scene", array, len(sets), self._handle.address,
-                 hide_place=True)
-        del keep
+
+        def parse() -> None:
+            lib.call("bp_scene_parse_with_spheres", text, len(text), b"scene", array, len(sets), self._handle.address,
+                     hide_place=True)
+            keep.clear()
+
+        interruptible(parse)
         self._read()
 
     @staticmethod
@@ -233,30 +203,26 @@ class Scene:
         """The document with the sets' own materials, and the name of each set's material."""
         if not isinstance(document, typing.Mapping):
             raise lib.SceneError(f"found {type(document).__name__}, expected a dict such as {{\"camera\": {{}}}}")
-        whole = dict(document)
+        wanted = dict(document)
         names: typing.List[typing.Optional[str]] = []
         for number, one in enumerate(sets):
             if isinstance(one.material, typing.Mapping):
                 name = f"{one.name} {number}"
-                whole["materials"] = {**whole.get("materials", {}), name: one.material}
+                wanted["materials"] = {**wanted.get("materials", {}), name: one.material}
                 names.append(name)
             elif one.material is None or isinstance(one.material, str):
                 names.append(one.material)
             else:
                 raise wrong_type("material", one.material, "a name or a dict")
-        try:
-            return json.dumps(whole, default=_plain, allow_nan=False).encode(), names
-        except ValueError as problem:
-            if isinstance(problem, lib.SceneError):
-                raise
-            raise lib.SceneError(f"found a number that is not finite, expected finite ones ({problem})") from None
+        return json.dumps(_plain(wanted, "")).encode(), names
 
     @classmethod
     def load(cls, path: typing.Union[str, "os.PathLike[str]"]) -> "Scene":
         """Reads a scene document or a file of particles (docs/PARTICLES.md)."""
         scene = cls.__new__(cls)
         scene._handle = lib.Handle("scene")
-        lib.call("bp_scene_load", os.fsencode(path), scene._handle.address)
+        encoded = c_text("path", path)
+        interruptible(lambda: lib.call("bp_scene_load", encoded, scene._handle.address))
         scene._read()
         return scene
 
@@ -276,7 +242,7 @@ class Scene:
 
     def set_width(self, width: int) -> None:
         """Changes the picture's width; the aspect ratio stays. Not while a Render of the scene is under way."""
-        lib.call("bp_scene_set_width", self._handle.pointer, _whole("width", width, 1, 65535))
+        lib.call("bp_scene_set_width", self._handle.pointer, whole_number("width", width, 1, 65535))
         self._read()
 
     def __repr__(self) -> str:
@@ -286,16 +252,6 @@ class Scene:
 
 def _triple(vector: typing.Any) -> typing.Tuple[float, float, float]:
     return vector[0], vector[1], vector[2]
-
-
-def _whole(name: str, value: typing.Any, least: int, most: int) -> int:
-    try:
-        number = int(value)
-    except (TypeError, ValueError):
-        number = least - 1
-    if number != value or not least <= number <= most:
-        raise lib.SceneError(f"{name}: found {value!r}, expected a whole number from {least} to {most}")
-    return number
 
 
 def particle_document(sets: typing.Sequence[Spheres], camera: typing.Optional[Document], width: typing.Optional[int],

@@ -78,11 +78,11 @@ def test_colors():
         mean("#ff8000"), mean(np.tile(np.uint8([255, 128, 0]), (60, 1))), atol=1e-6)
     assert np.array_equal(mean("#f00"), mean("#ff0000")) and np.array_equal(mean("#ff0000"), mean((1, 0, 0)))
     assert np.array_equal(mean("#FF0000"), mean(np.uint8([255, 0, 0])))
-    linear = float(ballpark._scene._colors("#808080", 60, "", None)[0])
+    linear = float(ballpark._colors.linear_colors("#808080", 60, None, "", None)[0])
     assert abs(linear - 0.21586) < 1e-4, linear
     # Numbers by a map: least and greatest get its ends, the others lie between.
     values = np.arange(60.0)
-    table = ballpark._scene._map_colors(values, "viridis", None)
+    table = ballpark._colors.map_colors(values, "viridis", None)
     assert table[0][2] > table[0][1] and table[-1][1] > table[-1][2]  # violet to yellow
     assert np.array_equal(mean(values), mean(values, cmap="viridis")) and not np.array_equal(mean(values), mean(values, cmap="plasma"))
     assert np.array_equal(mean(values), mean(values, color_range=(0, 59)))
@@ -90,8 +90,8 @@ def test_colors():
     assert np.array_equal(mean(values), mean(values.astype(np.int16)))
     holes = values.copy()
     holes[3] = np.nan
-    assert np.array_equal(ballpark._scene._map_colors(holes, "viridis", None)[3], np.float32([0.3, 0.3, 0.3]))
-    constant = ballpark._scene._map_colors(np.ones(5), "viridis", None)
+    assert np.array_equal(ballpark._colors.map_colors(holes, "viridis", None)[3], np.float32([0.3, 0.3, 0.3]))
+    constant = ballpark._colors.map_colors(np.ones(5), "viridis", None)
     assert (constant == constant[0]).all()
     # Three spheres, three numbers: a colour, unless a map is named.
     three = POSITIONS[:3]
