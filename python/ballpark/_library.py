@@ -7,6 +7,7 @@ Knows: the C interface (tests/python compares the structs with the header).   Do
 import ctypes as c
 import os
 import pathlib
+import threading
 import typing
 
 from . import _driver
@@ -168,6 +169,7 @@ _OTHER: typing.Dict[str, typing.Tuple[typing.Any, typing.List[typing.Any]]] = {
 }
 
 _loaded: typing.Optional[c.CDLL] = None
+_loading = threading.Lock()
 
 
 def _find() -> str:
@@ -180,29 +182,44 @@ def _find() -> str:
     return str(beside) if beside.exists() else name
 
 
+def _open() -> c.CDLL:
+    _driver.choose()
+    path = _find()
+    try:
+        opened = c.CDLL(path)
+    except OSError as problem:
+        raise ImportError(f"cannot open {path}: {problem}; install the wheel ballpark-render, or name the library "
+                          "in BALLPARK_LIBRARY") from None
+    opened.bp_api_version.restype = c.c_int
+    if opened.bp_api_version() != API_VERSION:
+        raise ImportError(f"{path} is of another version of Ballpark: its interface is {opened.bp_api_version()}, "
+                          f"expected {API_VERSION}")
+    for name, arguments in _STATUS.items():
+        function = getattr(opened, name)
+        function.restype, function.argtypes = c.c_int, [*arguments, _ERR]
+    for name, (result, arguments) in _OTHER.items():
+        function = getattr(opened, name)
+        function.restype, function.argtypes = result, arguments
+    return opened
+
+
 def library() -> c.CDLL:
-    """The shared library, opened at the first call."""
+    """The shared library, opened at the first call: once, whatever threads make it, as the environment is changed first."""
     global _loaded
     if _loaded is None:
-        _driver.choose()
-        path = _find()
-        try:
-            opened = c.CDLL(path)
-        except OSError as problem:
-            raise ImportError(f"cannot open {path}: {problem}; install the wheel ballpark-render, or name the library "
-                              "in BALLPARK_LIBRARY") from None
-        opened.bp_api_version.restype = c.c_int
-        if opened.bp_api_version() != API_VERSION:
-            raise ImportError(f"{path} is of another version of Ballpark: its interface is {opened.bp_api_version()}, "
-                              f"expected {API_VERSION}")
-        for name, arguments in _STATUS.items():
-            function = getattr(opened, name)
-            function.restype, function.argtypes = c.c_int, [*arguments, _ERR]
-        for name, (result, arguments) in _OTHER.items():
-            function = getattr(opened, name)
-            function.restype, function.argtypes = result, arguments
-        _loaded = opened
+        with _loading:
+            if _loaded is None:
+                _loaded = _open()
     return _loaded
+
+
+def _unlock() -> None:
+    """In a forked process, where the thread that opens the library is not."""
+    global _loading
+    _loading = threading.Lock()
+
+
+os.register_at_fork(after_in_child=_unlock)
 
 
 def failure(status: int, error: BpError, hide_place: bool = False) -> Error:
@@ -227,17 +244,22 @@ def call(name: str, *arguments: typing.Any, hide_place: bool = False) -> None:
     status = getattr(library(), name)(*arguments, c.byref(error))
     if status == 0:
         return
-    if status == 2 and name != "":  # BP_ERR_MEMORY
+    if status == 2:  # BP_ERR_MEMORY
+        message = error.message.decode(errors="replace")
         library().bp_error_clear(c.byref(error))
-        raise MemoryError(error.message.decode(errors="replace") or "out of memory")
+        raise MemoryError(message or "out of memory")
     raise failure(status, error, hide_place)
 
 
 class Handle:
-    """An object of the library, destroyed with this one; `kind` is "scene", "render", "stop" or "film"."""
+    """An object of the library, destroyed with this one; `kind` is "scene", "render", "stop" or "film".
 
-    def __init__(self, kind: str):
-        self.kind, self.pointer = kind, c.c_void_p()
+    first: what has to be destroyed before it. A process that inherits it by a fork leaves it alone: a thread that is not
+    there may have been changing it, and its memory goes with the process.
+    """
+
+    def __init__(self, kind: str, first: typing.Optional["Handle"] = None):
+        self.kind, self.pointer, self._first, self._process = kind, c.c_void_p(), first, os.getpid()
 
     @property
     def address(self) -> typing.Any:
@@ -246,8 +268,16 @@ class Handle:
     def __bool__(self) -> bool:
         return bool(self.pointer)
 
+    def __reduce__(self) -> typing.NoReturn:
+        what, instead = {"film": ("picture", "its arrays, such as picture.radiance, or a file"),
+                         "scene": ("scene", "what it was made of")}.get(self.kind, (self.kind, "its scene and options"))
+        raise TypeError(f"a {what} lives in the memory of this process and can be neither pickled nor copied; hand over "
+                        f"{instead} instead")
+
     def destroy(self) -> None:
-        if self.pointer:
+        if self._first is not None:
+            self._first.destroy()
+        if self.pointer and self._process == os.getpid():
             getattr(library(), f"bp_{self.kind}_destroy")(c.byref(self.pointer))
 
     def __del__(self) -> None:

@@ -14,6 +14,7 @@ import numpy as np
 import numpy.typing as npt
 
 from . import _library as lib
+from ._arguments import c_text
 
 
 class _Memory:
@@ -23,7 +24,7 @@ class _Memory:
         self.struct = lib.BpPicture()
 
     def __del__(self) -> None:
-        if lib._loaded is not None:
+        if lib._loaded is not None and hasattr(self, "struct"):
             lib.library().bp_picture_clear(c.byref(self.struct))
 
 
@@ -107,14 +108,14 @@ class Picture:
         if ending not in lib.FORMATS:
             raise lib.SceneError(f'{path}: found the ending ".{ending}", expected .png, .ppm, .pfm, .exr or .bpa')
         if ending == "bpa":
-            lib.call("bp_film_write", self._film.pointer, os.fsencode(path))
+            lib.call("bp_film_write", self._film.pointer, c_text("path", path))
         else:
-            lib.call("bp_picture_write", c.byref(self._memory.struct), os.fsencode(path), lib.FORMATS.index(ending),
+            lib.call("bp_picture_write", c.byref(self._memory.struct), c_text("path", path), lib.FORMATS.index(ending),
                      self._transfer(transfer))
 
     def save_error_map(self, path: typing.Union[str, "os.PathLike[str]"]) -> None:
         """Writes a heat map of each pixel's noise, with a legend, as a PNG."""
-        lib.call("bp_error_map_write", c.byref(self._memory.struct), os.fsencode(path))
+        lib.call("bp_error_map_write", c.byref(self._memory.struct), c_text("path", path))
 
     def _repr_png_(self) -> bytes:
         """What notebooks show."""

@@ -19,7 +19,7 @@ import typing
 import numpy.typing as npt
 
 from . import _library as lib
-from ._arguments import ADAPTERS, whole_number, wrong_type
+from ._arguments import ADAPTERS, c_text, whole_number, wrong_type
 from ._colors import Color
 from ._interrupt import CtrlC, Job, interruptible
 from ._picture import Picture
@@ -95,9 +95,10 @@ class Render:
         if not isinstance(scene, Scene):
             raise wrong_type("ballpark.Render", scene, "a Scene, such as ballpark.make_scene() returns")
         self.scene = scene
-        self._render, self._stop = lib.Handle("render"), lib.Handle("stop")
+        self._stop = lib.Handle("stop")
+        self._render = lib.Handle("render", first=self._stop)
         self._progress, self._reason = lib.BpProgress(), c.c_int(0)
-        self._lock, self._busy, self._closing = threading.Lock(), False, False
+        self._lock, self._busy, self._closing, self._process = threading.Lock(), False, False, os.getpid()
         options = lib.BpRenderOptions()
         lib.library().bp_render_defaults(scene._handle.pointer, c.byref(options))
         words = {"sampler": sampler, "precision": precision, "math": math, "numerics": numerics, "lamps": lamps,
@@ -125,7 +126,7 @@ class Render:
 
     def _create(self, options: lib.BpRenderOptions, rule: lib.BpStopRule, device: typing.Union[None, int, str],
                 chosen: lib.BpDeviceInfo) -> None:
-        name = None if device is None else str(device).encode()
+        name = None if device is None else c_text("device", str(device))
         lib.call("bp_device_find", name, c.byref(chosen))
         lib.call("bp_render_create", self.scene._handle.pointer, c.byref(options), c.byref(chosen), 1,
                  self._render.address)
@@ -139,11 +140,35 @@ class Render:
                     raise KeyboardInterrupt
         return self.stopped
 
-    def _start_step(self) -> Job:
+    def _take(self) -> None:
+        """From here to _give() no other call may use the handles; one that is closed meanwhile is destroyed by _give()."""
+        if self._process != os.getpid():
+            devices()  # says that drivers do not survive a fork
         with self._lock:
-            if self._busy or not self._render:
-                raise lib.Error("the render is closed" if not self._busy else "a step of the render is under way")
+            if self._busy:
+                raise lib.Error("a step of the render is under way, or another thread uses it")
+            if self._closing:
+                raise lib.Error("the render is closed")
             self._busy = True
+
+    def _give(self) -> None:
+        with self._lock:
+            self._busy = False
+            if self._closing:
+                self._render.destroy()
+
+    def _call(self, name: str, *arguments: typing.Any) -> None:
+        with CtrlC() as ctrl_c:
+            self._take()
+            try:
+                lib.call(name, *arguments)
+            finally:
+                self._give()
+        if ctrl_c.pressed_at is not None:
+            raise KeyboardInterrupt
+
+    def _start_step(self) -> Job:
+        self._take()
         return Job(self._step)
 
     def _step(self) -> None:
@@ -151,10 +176,7 @@ class Render:
             lib.call("bp_render_step", self._render.pointer, c.byref(self._progress))
             lib.call("bp_stop_check", self._stop.pointer, c.byref(self._progress), c.byref(self._reason))
         finally:
-            with self._lock:
-                self._busy = False
-                if self._closing:
-                    self._destroy()
+            self._give()
 
     @property
     def stopped(self) -> typing.Optional[str]:
@@ -167,26 +189,24 @@ class Render:
     def progress(self) -> Progress:
         """How far it is; as often as wanted."""
         estimate = lib.BpStopEstimate()
-        lib.call("bp_stop_estimate", self._stop.pointer, c.byref(self._progress), c.byref(estimate))
+        self._call("bp_stop_estimate", self._stop.pointer, c.byref(self._progress), c.byref(estimate))
         return Progress(estimate.fraction, estimate.seconds, estimate.seconds_left, estimate.nrmse,
                         self._progress.samples_done, estimate.samples_per_second)
 
     def picture(self) -> Picture:
         """The picture as it stands, of its own: later steps do not change it."""
         film = lib.Handle("film")
-        lib.call("bp_render_film", self._render.pointer, film.address)
+        self._call("bp_render_film", self._render.pointer, film.address)
         return Picture(film, self.scene.transfer, self.stopped or "interrupt", self._progress.trace_seconds)
 
     def close(self) -> None:
         """Releases the device's memory now instead of when the object is gone, or once a step under way has ended."""
+        if self._process != os.getpid():
+            return  # the lock may be a thread's that is not here, and the memory goes with the process
         with self._lock:
             self._closing = True
             if not self._busy:
-                self._destroy()
-
-    def _destroy(self) -> None:  # a stop rule goes before its render
-        self._stop.destroy()
-        self._render.destroy()
+                self._render.destroy()
 
     def __enter__(self) -> "Render":
         return self
@@ -195,17 +215,17 @@ class Render:
                  trace: typing.Optional[types.TracebackType]) -> None:
         self.close()
 
-    def __del__(self) -> None:
-        if lib._loaded is not None and hasattr(self, "_closing"):
-            self._destroy()
-
 
 def _positive(name: str, value: typing.Optional[float]) -> float:
     if value is None:
         return 0.0
-    if not (isinstance(value, (int, float)) or hasattr(value, "__float__")) or not 0 < float(value) < math.inf:
+    try:
+        number = math.nan if isinstance(value, str) else float(value)
+    except (TypeError, ValueError, OverflowError):
+        number = math.nan
+    if not 0 < number < math.inf:
         raise lib.SceneError(f"{name}: found {value!r}, expected a number above 0")
-    return float(value)
+    return number
 
 
 INTERRUPT_SECONDS = 0.7  # how long Ctrl-C waits for a step in progress, so that its samples are kept
@@ -217,8 +237,10 @@ def _partial(render: Render) -> typing.Optional[Picture]:
 
 def _run(render: Render, report: typing.Optional[typing.Callable[[Progress], object]]) -> Picture:
     """Steps to the end; Ctrl-C hands over what there is."""
-    while render.stopped is None:
+    while True:
         try:
+            if render.stopped is not None:
+                return render.picture()
             with CtrlC() as ctrl_c:
                 # A step ends soon, unless a driver compiles in it: then nothing is rendered yet, and it is left to its end.
                 if not render._start_step().wait(ctrl_c, INTERRUPT_SECONDS):
@@ -226,12 +248,11 @@ def _run(render: Render, report: typing.Optional[typing.Callable[[Progress], obj
                 if ctrl_c.pressed_at is not None:
                     raise Interrupted(_partial(render))
             if report is not None and report(render.progress()) is False:
-                break
+                return render.picture()
         except Interrupted:
             raise  # one of the two above, or of another render, in the report
         except KeyboardInterrupt:  # between two steps, or in the report
             raise Interrupted(_partial(render)) from None
-    return render.picture()
 
 
 def _bar(progress: Progress) -> None:
@@ -322,11 +343,15 @@ def render(subject: Subject, *, radius: typing.Optional[npt.ArrayLike] = None, c
     _refuse_unknown(options)
     if progress is not None and not isinstance(progress, bool) and not callable(progress):
         raise wrong_type("progress", progress, "True or a function")
-    scene = make_scene(subject, radius=radius, color=color, material=material, cmap=cmap, color_range=color_range,
-                       up=up, camera=camera, width=width, height=height, materials=materials, background=background,
-                       light=light, backdrop=backdrop)
     report = _bar if progress is True else progress if callable(progress) else None
-    with Render(scene, **options) as running:
+    try:
+        scene = make_scene(subject, radius=radius, color=color, material=material, cmap=cmap, color_range=color_range,
+                           up=up, camera=camera, width=width, height=height, materials=materials, background=background,
+                           light=light, backdrop=backdrop)
+        running = Render(scene, **options)
+    except KeyboardInterrupt:
+        raise Interrupted(None) from None
+    with running:
         try:
             return _run(running, report)
         finally:

@@ -19,7 +19,7 @@ ballpark, _ = package.load(source, build)
 
 # Says READY, waits for Ctrl-C in what follows, and then renders again in the same process.
 RENDERING = """
-import sys
+import sys, threading
 import numpy as np, ballpark
 positions = np.random.default_rng(1).random((100, 3))
 def report(now):
@@ -29,6 +29,7 @@ try:
 except ballpark.Interrupted as stop:
     assert isinstance(stop, KeyboardInterrupt)
     picture = stop.picture
+    assert threading.active_count() == 1
     assert picture.stopped == "interrupt" and picture.samples.max() > 0 and picture.radiance.mean() > 0.1
     picture.save("partial.png")
     assert ballpark.render(positions, radius=0.05, width=64, spp=2).stopped == "samples"
@@ -42,8 +43,22 @@ ballpark.devices()
 try:
     print("READY", flush=True)
     ballpark.render(positions, radius=0.05, width=64, spp=2**26)
-except KeyboardInterrupt as stop:
+except KeyboardInterrupt as stop:  # a plain one if it comes before the render
     print("STOPPED", getattr(stop, "picture", None), flush=True)
+"""
+# Step by step: KeyboardInterrupt comes out of step(), and what is there can still be read.
+STEPPING = """
+import threading
+import numpy as np, ballpark
+scene = ballpark.make_scene(np.random.default_rng(1).random((100, 3)), radius=0.05, width=64)
+with ballpark.Render(scene, spp=2**26) as running:
+    running.step()
+    print("READY", flush=True)
+    try:
+        while running.step() is None: pass
+    except KeyboardInterrupt:
+        assert running.picture().samples.max() > 0 and running.step() is None
+        print("STOPPED", threading.active_count(), flush=True)
 """
 LEFT_ALONE = """
 import numpy as np, ballpark
@@ -70,6 +85,9 @@ with tempfile.TemporaryDirectory() as folder:
 
     code, output, errors = interrupted(BUILDING, folder, POCL_CACHE_DIR=folder, XDG_CACHE_HOME=folder)
     assert code == 0 and "STOPPED" in output, (code, output, errors)
+
+    code, output, errors = interrupted(STEPPING, folder)
+    assert code == 0 and "STOPPED 1" in output, (code, output, errors)
 
     # Nobody catches it: Python ends as it does on every Ctrl-C.
     code, output, errors = interrupted(LEFT_ALONE, folder)
