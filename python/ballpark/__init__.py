@@ -5,6 +5,8 @@
     picture.save("cloud.png")
 """
 
+import typing
+
 from . import _library
 from ._library import DeviceError, Error, SceneError
 from ._particles import from_ase, from_gsd, from_mdanalysis
@@ -21,3 +23,10 @@ def library_version() -> str:
     """The version and commit of the library, such as "0.1.0 (commit abcdef1)"."""
     text: bytes = _library.library().bp_version()
     return text.decode()
+
+
+def __getattr__(name: str) -> typing.Any:
+    """`__version__`, the library's, such as "0.1.0"; asked for, so that importing the package does not open the library."""
+    if name == "__version__":
+        return library_version().partition(" ")[0]
+    raise AttributeError(f"module {__name__!r} has no attribute {name!r}")

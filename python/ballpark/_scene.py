@@ -42,6 +42,7 @@ class Spheres:
     """Many spheres of one material, as arrays.
 
     positions: (N, 3), in any unit of length. Arrays of float32 and float64 are read where they lie, with any strides.
+        Those that are masked, None, NA or NaN in a coordinate are left out, with their radius and colour, and a warning.
     radius: a number, or (N,).
     color: linear shares of light (r, g, b) or (N, 3); uint8 arrays and "#rrggbb" are sRGB; numbers (N,) go through the
         colour map `cmap` ("viridis", "plasma", "cividis", "coolwarm"), from the least to the greatest or over

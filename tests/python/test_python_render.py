@@ -81,6 +81,9 @@ def test_arrays_are_the_librarys(folder):
 
 
 def test_texts(_folder):
+    printed = subprocess.run([build / "ballpark", "--version"], capture_output=True, text=True, check=True).stdout
+    assert re.fullmatch(r"\d+\.\d+\.\d+\S*", ballpark.__version__) and ballpark.__version__ in printed.split()
+    refused(AttributeError, "__versions__", getattr, ballpark, "__versions__")
     assert "1 sample per pixel, noise unknown" in repr(ballpark.render(SCENE, spp=1))
     assert re.search(r"2 samples per pixel, [\d.]+ % noise", repr(ballpark.render(SCENE, spp=2)))
     try:
