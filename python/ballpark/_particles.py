@@ -12,7 +12,7 @@ import numpy as np
 import numpy.typing as npt
 
 from . import _library as lib
-from ._arguments import floats, wrong_type
+from ._arguments import floats, warn, wrong_type
 from ._colors import Color
 from ._scene import Document, Spheres
 
@@ -110,19 +110,51 @@ def from_mdanalysis(atoms: typing.Any, *, radius: typing.Union[str, npt.ArrayLik
     return Spheres(positions, radii, colors, material, name="atoms")
 
 
+def _shape_diameter(shape: typing.Mapping[str, typing.Any]) -> float:
+    """Of the sphere that stands for a shape of HOOMD-blue: an ellipsoid's has the same volume, that of corners or of a union of
+    spheres reaches the farthest point. NaN: no size is known."""
+    if "diameter" in shape:
+        return float(shape["diameter"])
+    if {"a", "b", "c"} <= set(shape):
+        return float(2 * np.cbrt(shape["a"] * shape["b"] * shape["c"]))
+    if "vertices" in shape:
+        return float(2 * (np.linalg.norm(shape["vertices"], axis=1).max() + shape.get("rounding_radius", 0)))
+    if "centers" in shape:
+        return float((2 * np.linalg.norm(shape["centers"], axis=1) + np.asarray(shape["diameters"])).max())
+    return float("nan")
+
+
+def _gsd_diameters(particles: typing.Any) -> npt.NDArray[typing.Any]:
+    """The diameters of the frame, or where it has none (gsd then says 1), those of the types' shapes."""
+    diameters = np.ones(len(particles.position)) if particles.diameter is None else floats(particles.diameter, "diameter")
+    shapes, types = getattr(particles, "type_shapes", None), particles.typeid
+    if not shapes or types is None or not (diameters == 1).all():
+        return diameters
+    types = np.asarray(types)
+    known = types < len(shapes)
+    of_types = np.array([_shape_diameter(shape) for shape in shapes])
+    is_other = np.array([bool(shape) and shape.get("type") != "Sphere" for shape in shapes])
+    others = int(np.count_nonzero(is_other[types[known]]))
+    if others > 0:
+        warn(f"ballpark: from_gsd: particles of other shapes drawn as spheres: {others:,} of {len(types):,}")
+    own = np.full(len(types), np.nan)
+    own[known] = of_types[types[known]]
+    return np.where(np.isnan(own), diameters, own)
+
+
 def from_gsd(frame: typing.Any, *, radius: typing.Optional[npt.ArrayLike] = None, scale: float = 1.0,
              color: typing.Optional[Color] = None,
              material: typing.Union[None, str, Document] = None) -> Spheres:
     """The particles of a frame of gsd.hoomd: radii are half the diameters, colours go by type, z is up.
 
+    Where the frame has no diameters, those of the types' shapes count; what is no sphere becomes one, with a warning.
     radius: instead of the diameters; scale multiplies it. color: as in Spheres. Two dimensions are seen from the front.
     """
     _expect("from_gsd", frame, ("particles", "configuration"), "a frame of gsd.hoomd, such as trajectory[0]")
     particles = frame.particles
     positions = floats(particles.position, "positions")
     if radius is None:
-        diameter = particles.diameter
-        radius = 0.5 if diameter is None else np.asarray(diameter) / 2
+        radius = _gsd_diameters(particles) / 2
     if color is None:
         types = particles.typeid
         count = 1 if types is None or len(types) == 0 else int(np.max(types)) + 1

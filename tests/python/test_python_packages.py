@@ -8,6 +8,7 @@ import pathlib
 import sys
 import tempfile
 import types
+import warnings
 
 import package
 
@@ -112,6 +113,55 @@ def test_gsd(folder):
             same_picture(ballpark.from_gsd(file[0]), path)
 
 
+def test_gsd_shapes(folder):
+    """Sizes in type_shapes, as hard particles have them: known lengths, and what the library reads of the same file."""
+    shapes = [{"type": "Sphere", "diameter": 0.5}, {"type": "Ellipsoid", "a": 0.25, "b": 0.5, "c": 1},
+              {"type": "ConvexPolyhedron", "rounding_radius": 0.25, "vertices": [[0.3, 0, 0.4], [0, 0.1, 0], [0, 0, 0], [0.1, 0, 0]]},
+              {"type": "SphereUnion", "centers": [[0, 0, 0.5], [0, 0, -0.5]], "diameters": [0.5, 1]}, {}]
+    particles = types.SimpleNamespace(position=np.float32([[2 * i, 0, i] for i in range(5)]), typeid=np.arange(5), type_shapes=shapes,
+                                      diameter=np.ones(5, np.float32))
+    frame = types.SimpleNamespace(particles=particles, configuration=types.SimpleNamespace(dimensions=3))
+    with warnings.catch_warnings(record=True) as caught:
+        warnings.simplefilter("always")
+        spheres = ballpark.from_gsd(frame)
+    assert np.allclose(spheres.radius, [0.25, 0.5, 0.75, 1, 0.5]), spheres.radius
+    assert len(caught) == 1 and "3 of 5" in str(caught[0].message) and caught[0].filename == __file__
+    particles.diameter = np.float32([1, 2, 3, 4, 5])  # the particles' own go first
+    assert np.allclose(ballpark.from_gsd(frame).radius, [0.5, 1, 1.5, 2, 2.5])
+    module = installed("gsd.hoomd")
+    if module and hasattr(module, "Frame"):
+        real = module.Frame()
+        real.particles.N, real.particles.position = 3, [[0, 0, 0], [2, 0, 0], [0, 2, 1]]
+        real.particles.types, real.particles.typeid, real.particles.type_shapes = ["A", "B"], [0, 1, 0], shapes[:2]
+        real.configuration.box = [8, 8, 8, 0, 0, 0]
+        with module.open(name=str(folder / "shapes.gsd"), mode="w") as file:
+            file.append(real)
+        with module.open(name=str(folder / "shapes.gsd"), mode="r") as file, warnings.catch_warnings():
+            warnings.simplefilter("ignore")
+            spheres = ballpark.from_gsd(file[0])
+        assert np.allclose(spheres.radius, [0.25, 0.5, 0.25]) and np.array_equal(spheres.positions, real.particles.position)
+        same_picture(spheres, folder / "shapes.gsd")
+
+
+def test_values_of_ase(folder):
+    """A frame of a file by ASE: positions as it gives them, and the picture of the library's own reader."""
+    if installed("ase.io"):
+        import ase.io
+        path = folder / "frames.xyz"
+        frames = [np.round(np.random.default_rng(seed).random((4, 3)) * 8, 3) for seed in (1, 2)]
+        path.write_text("".join("4\n\n" + "".join(f"{symbol} {x} {y} {z}\n" for symbol, (x, y, z) in zip("CONH", frame))
+                                for frame in frames))
+        read = ase.io.read(path, index=":")
+        for atoms, frame in zip(read, frames):
+            spheres = ballpark.from_ase(atoms)
+            assert np.array_equal(spheres.positions, frame) and np.allclose(spheres.radius, [1.7, 1.52, 1.55, 1.1])
+            depth = ballpark.render(spheres, width=64, spp=1, aovs=True, camera={"lookfrom": [4, 4, 60], "lookat": [4, 4, 0],
+                                                                               "vfov": 20}).depth
+            front = (frame[:, 2] + spheres.radius).max()
+            assert 60 - front - 0.01 < depth.min() < 60 - front + 0.3, (depth.min(), front)
+        same_picture(ballpark.from_ase(read[0]), path)
+
+
 def test_refused(folder):
     """What is no object of the package is named, and so is the function that takes it."""
     arrays = np.zeros((2, 3))
@@ -128,7 +178,7 @@ def test_refused(folder):
 
 
 with tempfile.TemporaryDirectory() as name:
-    for function in (test_ase, test_mdanalysis, test_gsd, test_refused):
+    for function in (test_ase, test_mdanalysis, test_gsd, test_gsd_shapes, test_values_of_ase, test_refused):
         print(function.__name__, flush=True)
         function(pathlib.Path(name))
 for name in left_out:
