@@ -17,6 +17,8 @@ import sys
 import tempfile
 import unittest
 
+from test_particle_files import GSD_FRAMES, floats, gsd_file, whole
+
 SUMMARY = os.path.abspath(sys.argv[1])
 READERS_PYTHON = os.environ.get("BALLPARK_READERS_PYTHON", sys.executable)
 
@@ -183,7 +185,13 @@ class Numbers(TableTest):
                 "Bonds\n\n1 1 30 40\n2 1 10 20\n3 1 10 30\n")
         pdb = "".join(f"HETATM{n:5d}  C   LIG A   1    {x:>8s}   0.000   0.000\n" for n, x in
                       [(10, "0.000"), (20, "     nan"), (30, "1.000"), (40, "2.000")]) + "CONECT   30   40\nCONECT   10   20   30\n"
-        for name, content in ("a.data", data), ("a.pdb", pdb):
+        nan = math.nan
+        gsd = gsd_file([dict(GSD_FRAMES[0], **{
+            "particles/N": whole(1, 4), "particles/position": floats(3, 0, 0, 0, 0, nan, 0, 1, 0, 0, 2, 0, 0), "particles/typeid": whole(1, 0, 1, 0, 1),
+            "particles/diameter": floats(1, 1, 2, 3, 4), "bonds/N": whole(1, 3), "bonds/group": whole(2, 2, 3, 0, 1, 0, 2)})])
+        found = self.of("a.gsd", gsd)
+        self.assertEqual((found["radii"], found["types"]), ([0.5, 1.5, 2], ["A", "A", "Bee"]))
+        for name, content in ("a.data", data), ("a.pdb", pdb), ("a.gsd", gsd):
             found = self.of(name, content)
             self.assertEqual(found["positions"], [[0, 0, 0], [1, 0, 0], [2, 0, 0]], name)
             self.assertEqual((sorted(map(sorted, found["pairs"])), found["left_out"]), ([[0, 1], [1, 2]], 1), name)
