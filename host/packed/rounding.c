@@ -1,6 +1,8 @@
 /* rounding.c: see rounding.h. */
 #include "rounding.h"
 
+#include "base/message_text.h"
+#include "base/status.h"
 #include "scene/material.h"
 
 #include <math.h>
@@ -152,4 +154,25 @@ void bp_rounding_warnings(const BpScene *scene, BpPrecision precision, BpRoundin
                  "its thickness in single precision; use --precision double, or a thicker wall",
                  bp_sphere_name(scene, thin.sphere, name), others(&thin, more), wall, thin.ratio);
     add_lens(&scene->camera, limits);
+}
+
+BpStatus bp_rounding_check_indices(const BpScene *scene, BpPrecision precision, BpError *err) {
+    for (size_t m = 0; m < scene->material_count && precision == BP_PRECISION_SINGLE; ++m) {
+        const BpMaterial *material = &scene->materials[m];
+        const double index = material->refraction_index;
+        size_t i = 0;
+        if (material->kind != BP_MATERIAL_DIELECTRIC ||
+            (index >= 1 / BP_SINGLE_INDEX_MAX && index <= BP_SINGLE_INDEX_MAX))
+            continue;
+        while (i < scene->sphere_count && scene->spheres[i].material != m) ++i;
+        if (i == scene->sphere_count) continue;
+        char name[BP_SPHERE_NAME_SIZE];
+        bp_printable(material->name, name, sizeof name);
+        return bp_fail(
+            err, BP_ERR_SCENE,
+            "materials.%s.refraction_index: found %g, expected 1e-4 to 1e4 in single precision, which "
+            "cannot tell apart the rays that such a surface refracts; use --precision double",
+            name, index);
+    }
+    return BP_OK;
 }

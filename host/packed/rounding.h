@@ -1,7 +1,7 @@
 /* rounding.h: what rounding a scene to single precision does to it, where that can be seen.
  *
- * In:    a validated scene.   Out: warnings, each naming a sphere or the lens, a ratio and a remedy.
- * Knows: that the kernel sees centres relative to the camera, and all in float (docs/NUMERICS.md).
+ * In:    a validated scene.   Out: warnings, each naming a sphere or the lens, a ratio and a remedy; or an
+ * error. Knows: that the kernel sees centres relative to the camera, and all in float (docs/NUMERICS.md).
  * Does not know: OpenCL, where the warnings go. */
 #ifndef BP_PACKED_ROUNDING_H
 #define BP_PACKED_ROUNDING_H
@@ -24,5 +24,10 @@ typedef struct BpRoundingWarnings {
  * Double precision has none: within the grammar's sizes its rounding stays below 1e-3 of a radius of 1e-7 or
  * more. */
 void bp_rounding_warnings(const BpScene *scene, BpPrecision precision, BpRoundingWarnings *limits);
+
+/* BP_ERR_SCENE where a sphere's index of refraction is so far from 1 that directions in float are too coarse:
+ * a refracted ray errs by 1e-7 of the ratio of the indices. */
+#define BP_SINGLE_INDEX_MAX 1.0e4 /* and at least its reciprocal */
+BpStatus bp_rounding_check_indices(const BpScene *scene, BpPrecision precision, BpError *err);
 
 #endif

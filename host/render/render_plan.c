@@ -3,6 +3,7 @@
 
 #include "base/status.h"
 #include "packed/acceleration.h"
+#include "packed/rounding.h"
 
 #include <string.h>
 
@@ -59,6 +60,7 @@ BpStatus bp_render_plan(const BpScene *scene, const BpRenderOptions *options, co
         return bp_fail(err, BP_ERR_DEVICE,
                        "%s has no double precision; leave --precision double out, or use another --device",
                        device->name);
+    BP_TRY(bp_rounding_check_indices(scene, options->precision, err));
     memset(setup, 0, sizeof *setup);
     BpEffects effects;
     bp_effects_analyse(scene, &effects);

@@ -20,6 +20,15 @@ static vreal fresnel_schlick(vreal c, vreal n) {
     return fma(R(1.0) - r0, m2 * m2 * m, r0);
 }
 
+/* From this ratio of the indices on, the direction of refraction is found from the part of the incoming one along the
+ * surface, which magnifies no rounding but that of directions and normals. Below, the quicker way errs by as little. */
+#define STEEP_RATIO R(8.0)
+
+/* The part of a refracted direction along the surface; `c`: the cosine of incidence. */
+static Vec3 along_surface(const Surface *surface, vreal c, vreal ratio) {
+    return scale3(ratio, madd3(c, surface->normal, surface->incoming));
+}
+
 /* Chooses reflection with the probability of the reflectance, so the weight is the albedo, which is stored as 1. Where
  * the scene wants total reflection to absorb, it ends the path. */
 static BsdfSample dielectric_sample(const Surface *surface, SampleKey key, vuint bounce) {
@@ -28,7 +37,12 @@ static BsdfSample dielectric_sample(const Surface *surface, SampleKey key, vuint
     const vreal c = at_most(at_least(-dot3(surface->incoming, surface->normal), splat(0)), splat(1));
     const vreal ratio = divide(splat(1), n);
     /* (1-c)(1+c) keeps the bits that 1 - c c loses near normal incidence */
-    const vreal transmitted2 = fma(-ratio * ratio, (R(1.0) - c) * (R(1.0) + c), splat(1));
+    vreal transmitted2 = fma(-ratio * ratio, (R(1.0) - c) * (R(1.0) + c), splat(1));
+    const vbool steep = ratio > splat(STEEP_RATIO);
+    if (any_lane(steep)) {
+        const Vec3 along = along_surface(surface, c, ratio);
+        transmitted2 = choose(steep, splat(1) - dot3(along, along), transmitted2);
+    }
     const vbool total = transmitted2 < splat(0);
     const vreal t = square_root(fabs(transmitted2));
     const vbool exact = vbool_of_uint(surface->variant == splat_uint(FRESNEL_EXACT));
@@ -42,7 +56,8 @@ static BsdfSample dielectric_sample(const Surface *surface, SampleKey key, vuint
     const vbool reflects = (total & as_reflection) | (vbool_not(total) & by_chance);
     const vbool lost = total & vbool_not(as_reflection | as_refraction);
     const Vec3 mirrored = madd3(splat(2) * c, surface->normal, surface->incoming);
-    const Vec3 bent = madd3(fma(ratio, c, -t), surface->normal, scale3(ratio, surface->incoming));
+    Vec3 bent = madd3(fma(ratio, c, -t), surface->normal, scale3(ratio, surface->incoming));
+    if (any_lane(steep)) bent = choose3(steep, madd3(-t, surface->normal, along_surface(surface, c, ratio)), bent);
     /* Equal indices: there is no surface. */
     const vbool matched = surface->refraction_index == splat(1);
     const vbool refracted = vbool_not(reflects) | matched;

@@ -1,4 +1,4 @@
-/* test_dielectric.c: tests 20 to 25: Fresnel, the critical angle, furnaces. */
+/* test_dielectric.c: tests 20 to 25: Fresnel, the critical angle, furnaces; and indices far from 1. */
 #define BP_HOST
 #include "suite.h"
 
@@ -50,6 +50,63 @@ static void critical_angle(void **state) {
         if (i / 4 % 5 == 0) assert_true(row[4] == 0);
     }
     assert_true(refracted > 0);
+}
+
+/* Where the ratio of indices is 1 over 8 to 1e4, from both sides, by rays that fill the cone that is not
+ * reflected and a little more: what is refracted goes where 113 bits say, from the same floats, and total
+ * reflection begins there. */
+static void indices_far_from_1(void **state) {
+    const Lab *lab = *state;
+    const double ratios[] = {1e-4, 1e-2, 1.0 / 9, 9, 100, 1e3, 1e4};
+    enum { COUNT = 7 * 512 };
+    static double in[COUNT * SCATTER_IN], out[COUNT * SCATTER_OUT];
+    static uint32_t words[COUNT * SCATTER_WORDS];
+    double worst = 0;
+    size_t refracted = 0, reflected = 0;
+    for (uint32_t i = 0; i < COUNT; ++i) {
+        const double ratio = ratios[i % 7], share = (i / 7 + 0.5) / 512 * 1.2;
+        const double sine = ratio > 1 ? share / ratio : fmin(share, 0.999), turn = 0.7 * i;
+        const double tilt = 0.3 + 0.001 * (i % 500), c = cos(tilt), s = sin(tilt),
+                     down = sqrt(1 - sine * sine);
+        double *numbers = in + i * SCATTER_IN;
+        /* the normal lies aslant, so that every component of both is rounded */
+        const double across = sine * cos(turn), deep = sine * sin(turn);
+        numbers[0] = lab_float(across * c + down * s);
+        numbers[1] = lab_float(across * s - down * c);
+        numbers[2] = lab_float(deep);
+        numbers[3] = lab_float(-s);
+        numbers[4] = lab_float(c);
+        numbers[6] = lab_float(i % 2 == 0 ? 1 / ratio : ratio);
+        const uint32_t choice[] = {i % 2 == 0, KIND_DIELECTRIC, 0, FRESNEL_NONE, TOTAL_REFLECT, i};
+        memcpy(words + i * SCATTER_WORDS, choice, sizeof choice);
+    }
+    const LabArgument arguments[] = {{LAB_REALS, in, COUNT * SCATTER_IN},
+                                     {LAB_WORDS, words, COUNT * SCATTER_WORDS},
+                                     {LAB_NUMBER, NULL, 20},
+                                     {LAB_OUT_REFINED, out, COUNT * SCATTER_OUT}};
+    lab_run(lab, "probe_scatter", COUNT, arguments, 4, NULL);
+    for (uint32_t i = 0; i < COUNT; ++i) {
+        const double *d = in + i * SCATTER_IN, *n = d + 3, *row = out + i * SCATTER_OUT;
+        const double index = lab_float(d[6]), k = i % 2 == 0 ? 1 / index : index;
+        Wide cosine = 0, along[3], square = 0, length2 = 0;
+        for (int a = 0; a < 3; ++a) cosine -= (Wide)d[a] * (Wide)n[a];
+        for (int a = 0; a < 3; ++a) length2 += (Wide)n[a] * (Wide)n[a];
+        for (int a = 0; a < 3; ++a) along[a] = (Wide)k * ((Wide)d[a] + cosine / length2 * (Wide)n[a]);
+        for (int a = 0; a < 3; ++a) square += along[a] * along[a];
+        const double room = 1 - (double)square, slack = 1e-6 * fmax(k, 1);
+        assert_true(row[3] == 1);
+        if (fabs(room) > slack) assert_true((row[4] != 0) == (room > 0));
+        refracted += row[4] != 0;
+        reflected += row[4] == 0;
+        if (row[4] == 0 || room < 0.01) continue;
+        for (int a = 0; a < 3; ++a) {
+            const double expected = (double)along[a] - sqrt(room) * n[a], off = fabs(row[a] - expected);
+            worst = fmax(worst, off / fmax(k, 1));
+            assert_true(off <= 4e-7 * fmax(k, 1));
+        }
+    }
+    print_message("    directions off by %.2g of the ratio of indices\n", worst);
+    assert_true(refracted > COUNT / 2 && reflected > COUNT / 16);
 }
 
 /* Fresnel's equations in 113 bits; `cosine` on the side that the light comes from, index of the far over it.
@@ -196,8 +253,9 @@ static void furnace_fuzz(void **state) {
 
 int run_dielectric(Lab *lab) {
     const struct CMUnitTest tests[] = {
-        HARD_TEST(critical_angle),  HARD_TEST(fresnel_table), HARD_TEST(fresnel_mean),
-        HARD_TEST(furnace_lambert), HARD_TEST(furnace_glass), HARD_TEST(furnace_fuzz),
+        HARD_TEST(critical_angle),     HARD_TEST(fresnel_table),   HARD_TEST(fresnel_mean),
+        HARD_TEST(indices_far_from_1), HARD_TEST(furnace_lambert), HARD_TEST(furnace_glass),
+        HARD_TEST(furnace_fuzz),
     };
     return cmocka_run_group_tests_name("dielectric", tests, NULL, NULL);
 }
