@@ -89,7 +89,7 @@ static bool in_disc(const BpDisc *disc, Vec direction) {
 static Vec gradient(const BpScene *scene, Vec direction) {
     const Vec own = vec(scene->background_up);
     const Vec up = length2(own) > 0 ? unit(own) : (Vec){0, 1, 0};
-    const double a = 0.5 * (dot(unit(direction), up) + 1);
+    const double a = fmin(fmax(0.5 * (dot(unit(direction), up) + 1), 0), 1);
     return mixed(scene->background_bottom, scene->background_top, a);
 }
 

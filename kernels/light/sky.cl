@@ -6,7 +6,9 @@ static Vec3 sky_radiance(__global const PackedSky *sky, Vec3 direction) {
     /* fma(a, top - bottom, bottom), so that equal ends give exactly the constant sky. */
     const Vec3 bottom = splat3(sky->bottom), top = splat3(sky->top);
     const vreal height = dot3(direction, splat3(sky->up));
-    return madd3(fma(splat(R(0.5)), height, splat(R(0.5))), subtract3(top, bottom), bottom);
+    const Vec3 radiance = madd3(fma(splat(R(0.5)), height, splat(R(0.5))), subtract3(top, bottom), bottom);
+    /* A direction is a unit vector but for rounding, and so may lie a little beyond an end that is black. */
+    return vec3(at_least(radiance.x, splat(0)), at_least(radiance.y, splat(0)), at_least(radiance.z, splat(0)));
 }
 
 static int has_backdrop(__global const PackedSky *sky) { return sky->backdrop_bottom[3] != 0; }
