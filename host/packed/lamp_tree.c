@@ -310,7 +310,8 @@ BpStatus bp_lamp_tree_build(const BpScene *scene, const BpTree *tree, BpLampTree
     const uint32_t count = lamps->lamp_count;
     lamps->unit = unit_of_power(scene, enclosing);
     bool enough = true;
-    if (count > 0) {
+    if (count > 0 ||
+        enclosing != SIZE_MAX) { /* a kernel asks for the lamp in the slot of each that it hits */
         slot_of = malloc(scene->sphere_count * sizeof *slot_of);
         builder.lamps = malloc((count + 1) * sizeof *builder.lamps);
         lamps->slot_lamp = malloc(slots * sizeof *lamps->slot_lamp);

@@ -2,6 +2,7 @@
 #include "worker_buffers.h"
 
 #include "base/pages.h"
+#include "packed/tree_binary.h"
 
 #include <stdio.h>
 #include <stdlib.h>
@@ -11,9 +12,19 @@ static bool uses_in_place(const BpDeviceInfo *info) {
     return info->type == BP_DEVICE_CPU && info->has_shared_memory;
 }
 
-/* A buffer of `bytes` (at least one, since OpenCL knows no empty buffer), with `data` in it when there is
- * any. Where that has pages of its own and the device shares the host's memory, the buffer is that array:
- * nothing is copied, and large pages stay large. */
+/* What a kernel gets in place of an empty array, which OpenCL does not know. Lanes that met nothing read the
+ * first element of an array and do not use it, but by a number in it they may read another array: so there is
+ * room for an element of any of them, and all of it is 0. */
+static const uint64_t nothing[512 / sizeof(uint64_t)];
+#define HOLDS(numbers)                                                                                       \
+    _Static_assert((numbers) * sizeof(double) <= sizeof nothing, "no room for one of " #numbers)
+HOLDS(sizeof(PackedTexture) / sizeof(real));
+HOLDS(LEAF_REALS(BP_TREE_WIDTH_MAX));
+HOLDS(LAMP_NODE_REALS);
+
+/* A buffer of `bytes`, with `data` in it when there is any; without a byte, one of zeros. Where that has
+ * pages of its own and the device shares the host's memory, the buffer is that array: nothing is copied, and
+ * large pages stay large. */
 static BpStatus create_buffer(BpWorker *worker, cl_mem *buffer, uint64_t bytes, const void *data,
                               const char *what, BpError *err) {
     const BpDeviceInfo *info = &worker->device->info;
@@ -24,12 +35,15 @@ static BpStatus create_buffer(BpWorker *worker, cl_mem *buffer, uint64_t bytes, 
                        what, (double)bytes / 1048576, info->name,
                        (double)info->largest_allocation_bytes / 1048576);
     cl_int code = CL_SUCCESS;
-    const cl_mem_flags flags = data == NULL || bytes == 0 ? CL_MEM_READ_WRITE
-                               : uses_in_place(info) && bp_begins_page(data)
-                                   ? CL_MEM_READ_ONLY | CL_MEM_USE_HOST_PTR
-                                   : CL_MEM_READ_ONLY | CL_MEM_COPY_HOST_PTR;
-    *buffer = clCreateBuffer(worker->device->context, flags, bytes > 0 ? (size_t)bytes : 16,
-                             bytes > 0 ? (void *)(uintptr_t)data : NULL, &code);
+    const bool in_place = bytes > 0 && uses_in_place(info) && bp_begins_page(data);
+    if (bytes == 0) {
+        bytes = sizeof nothing;
+        data = nothing;
+    }
+    const cl_mem_flags flags = data == NULL ? CL_MEM_READ_WRITE
+                               : in_place   ? CL_MEM_READ_ONLY | CL_MEM_USE_HOST_PTR
+                                            : CL_MEM_READ_ONLY | CL_MEM_COPY_HOST_PTR;
+    *buffer = clCreateBuffer(worker->device->context, flags, (size_t)bytes, (void *)(uintptr_t)data, &code);
     CL_TRY(worker, code, "clCreateBuffer");
     return BP_OK;
 }

@@ -61,15 +61,15 @@ static vreal row_height(const Scene *scene, vuint row, vbool *upper, vreal *more
 
 static vreal share_of(vuint low, vuint high) { return uint_to_real(high - low) * R(0x1p-24); }
 
-/* The square in which a direction lies. */
+/* The square in which a direction lies; of a lane whose direction is none, any. */
 static EnvironmentCell environment_cell(const Scene *scene, Vec3 direction) {
     __global const PackedSky *sky = scene->sky;
     const uint columns = (uint)sky->columns;
     vreal u, v, more;
     vbool upper;
     environment_place(sky, direction, &u, &v);
-    const vuint column = to_uint(at_most(u * sky->columns, splat(sky->columns - R(1.0))));
-    const vuint row = to_uint(at_most(v * sky->rows, splat(sky->rows - R(1.0))));
+    const vuint column = min(to_uint(u * sky->columns), splat_uint(columns - 1u));
+    const vuint row = min(to_uint(v * sky->rows), splat_uint((uint)sky->rows - 1u));
     const vuint place = row * (columns + 1u) + column;
     EnvironmentCell cell;
     cell.probability = share_of(gather_uint(scene->sky_rows, row), gather_uint(scene->sky_rows + 1u, row)) *

@@ -98,7 +98,38 @@ static void balls_hold_lamps_that_move(void **state) {
     }
 }
 
+/* A lamp around everything is no lamp that rays are sent to, but paths hit it: so its slot says that. */
+static void slots_of_a_lamp_around_everything(void **state) {
+    (void)state;
+    BpSphere spheres[20];
+    BpMaterial lamp = {.name = (char *)"lamp", .kind = BP_MATERIAL_LAMBERTIAN, .emit = {1, 1, 1}};
+    BpMaterial materials[] = {lamp, {.name = (char *)"matte", .kind = BP_MATERIAL_LAMBERTIAN}};
+    for (uint32_t i = 0; i < 20; ++i)
+        spheres[i] = (BpSphere){.center = {0.1 * i, 0, 0},
+                                .radius = i == 0 ? 10 : 0.01,
+                                .material = i > 0,
+                                .albedo = BP_NO_ALBEDO};
+    BpScene scene = {.materials = materials, .material_count = 2, .spheres = spheres, .sphere_count = 20};
+    scene.camera = (BpCamera){.width = 4,
+                              .height = 4,
+                              .aspect_ratio = 1,
+                              .vfov_degrees = 90,
+                              .lookfrom = {0, 0, 20},
+                              .vup = {0, 1, 0},
+                              .focus_dist = 10};
+    const BpTreeOptions options = {8, true, false, 1, false};
+    BpPacked packed;
+    BpError err = {0};
+    assert_int_equal(bp_scene_pack(&scene, &options, true, &packed, &err), BP_OK);
+    assert_int_equal(packed.lamps.lamp_count, 0);
+    assert_int_equal(packed.lamps.slot_count, packed.tree.leaf_count * packed.tree.width);
+    for (uint32_t slot = 0; slot < packed.lamps.slot_count; ++slot)
+        assert_int_equal(packed.lamps.slot_lamp[slot], NO_LAMP);
+    bp_packed_clear(&packed);
+}
+
 int main(void) {
-    const struct CMUnitTest tests[] = {cmocka_unit_test(balls_hold_lamps_that_move)};
+    const struct CMUnitTest tests[] = {cmocka_unit_test(balls_hold_lamps_that_move),
+                                       cmocka_unit_test(slots_of_a_lamp_around_everything)};
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
