@@ -176,7 +176,7 @@ def test_errors(folder):
         change(scene)
         return scene
     refused(ballpark.SceneError, ["camera.lookform", '"lookfrom"'], ballpark.render,
-            wrong(lambda scene: scene["camera"].update(lookform=1)))
+            wrong(lambda scene: scene["camera"].update(lookform=scene["camera"].pop("lookfrom"))))
     error = refused(ValueError, ["spheres[1].radius", "found 0"], ballpark.Scene,
                     wrong(lambda scene: scene["spheres"][1].update(radius=0)))
     assert (error.status, error.file, error.line) == ("bad scene", "", 0)
