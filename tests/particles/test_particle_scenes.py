@@ -132,7 +132,7 @@ class Scenes(ProgramTest):
         self.fail_with(2, "render", "x.json", "-o", "a.xyz", "--format", "png", says="overwrite")
 
     def test_errors_name_file_and_line(self):
-        self.write("a.xyz", "2\n\nO 0 0 0\nO 0 nan 0\n")
+        self.write("a.xyz", "2\n\nO 0 0 0\nO 0 inf 0\n")
         self.fail_with(2, "render", "a.xyz", "-o", "x.png", says="a.xyz:4: ")
         self.document_with({"file": "a.xyz"})
         self.fail_with(2, "render", "x.json", "-o", "x.png", says=["a.xyz:4: ", "(particles of x.json:1:"])

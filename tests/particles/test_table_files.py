@@ -226,7 +226,7 @@ class Xyz(TableTest):
         lattice = "Lattice=\"4 0 0 0 5 0 0 0 6\" Properties=species:S:1:pos:R:3 pbc="
         for flags, periodic in [('"F F F"', False), ("'F F F'", False), ("[F, F, F]", False), ("{F F F}", False), ('"T T T"', True),
                                 ("[T,T,T]", True), ("[True, True, True]", True), ("'1 1 1'", True)]:
-            self.assertEqual(self.cell(lattice + flags, [[4, 0, 0], [0, 5, 0], [0, 0, 6]])["periodic"], periodic, flags)
+            self.assertEqual(self.cell(lattice + flags, [[4, 0, 0], [0, 5, 0], [0, 0, 6]])["periodic"], [periodic] * 3, flags)
 
     def test_cells_that_cannot_be_read(self):
         """An error where the frame has one for certain, else a note; never silence."""
@@ -237,9 +237,10 @@ class Xyz(TableTest):
                 self.refuse("a.xyz", f"1\nLattice={value}{p}\nC 1 2 3\n", ":2:", "Lattice")
                 self.refuse("a.xyz", f"1\nLattice={value}\nC 1 2 3\n", ":2:", "Lattice")
         self.refuse("a.xyz", f"1\nLattice='4 4 4' Origin='1 2'{p}\nC 1 2 3\n", ":2:", "Origin")
-        for comment, note in [("fcc, lattice=4.05", "lattice= passed over"), ("cell='4 4 4'" + p, "cell= passed over"),
-                              ("Lattice='4 0 0 0 5 0 0 0 0'" + p, "a cell without a volume left out")]:
+        for comment, note in [("fcc, lattice=4.05", "lattice= passed over"), ("cell='4 4 4'" + p, "cell= passed over")]:
             self.assertIn(note, self.cell(comment, None)["notes"])
+        flat = self.cell("Lattice='4 0 0 0 5 0 0 0 0'" + p, [[4, 0, 0], [0, 5, 0], [0, 0, 0]])
+        self.assertEqual(flat["periodic"], [True, True, False])  # an edge of no length repeats nothing
         for comment in ("", " ", "\t", "it's water, \"fine", "a = b = c", "=", "(x", "Lattice of 4", "x=\"Lattice=3\""):
             self.assertEqual(self.cell(comment, None)["notes"], "", comment)
 
