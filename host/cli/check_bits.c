@@ -5,6 +5,7 @@
 #include "base/json_text.h"
 #include "base/names.h"
 #include "base/shown.h"
+#include "base/words.h"
 #include "check/bits.h"
 #include "check_entry.h"
 #include "device_items.h"
@@ -159,16 +160,25 @@ static json_t *form_json(const Form *form, const BpDeviceInfo *device, const cha
                      strcmp(verdict, "agree") == 0);
 }
 
+#define KIND_TEXTS(X)                                                                                        \
+    X(BP_BITS_SAME, "the same picture")                                                                      \
+    X(BP_BITS_ROUNDING, "rounding: all pixels are equal but for their last digits")                          \
+    X(BP_BITS_PATHS, "paths that went another way: some pixels are others")                                  \
+    X(BP_BITS_PICTURE, "another picture: most pixels are others")
+BP_WORDS(BpBitsKind, static const char *const kind_texts, KIND_TEXTS);
+
+#define KIND_WORDS(X)                                                                                        \
+    X(BP_BITS_SAME, "same")                                                                                  \
+    X(BP_BITS_ROUNDING, "rounding") X(BP_BITS_PATHS, "paths") X(BP_BITS_PICTURE, "picture")
+BP_WORDS(BpBitsKind, static const char *const kind_names, KIND_WORDS);
+
 static void describe(const BpBitsDifference *difference, char *text, size_t size) {
-    static const char *const kinds[] = {
-        "the same picture", "rounding: all pixels are equal but for their last digits",
-        "paths that went another way: some pixels are others", "another picture: most pixels are others"};
     if (difference->different == 0)
         snprintf(text, size, "the sums differ by less than the last digit of a pixel");
     else
-        snprintf(text, size,
-                 "%" PRIu32 " of %" PRIu32 " pixels differ, by up to %.2g of the mean brightness; %s",
-                 difference->different, difference->pixels, difference->largest, kinds[difference->kind]);
+        snprintf(
+            text, size, "%" PRIu32 " of %" PRIu32 " pixels differ, by up to %.2g of the mean brightness; %s",
+            difference->different, difference->pixels, difference->largest, kind_texts[difference->kind]);
 }
 
 static json_t *compare(const Form *form, const BpDeviceInfo *device, const BpFilm *film, BpError *err) {
@@ -189,13 +199,12 @@ static json_t *compare(const Form *form, const BpDeviceInfo *device, const BpFil
             return NULL;
         describe(&difference, reason, sizeof reason);
     }
-    static const char *const kinds[] = {"same", "rounding", "paths", "picture"};
     char *radiance = bp_bits_radiance(film);
     json_t *entry = form_json(form, device, "disagree");
     json_t *more = json_pack("{s:s, s:s, s:s, s:s, s:{s:s, s:i, s:i, s:o, s:o}}", "reason", reason, "hash",
                              own, "recorded_hash", hash, "radiance", radiance != NULL ? radiance : "",
-                             "difference", "kind", kinds[difference.kind], "pixels", (int)difference.pixels,
-                             "different", (int)difference.different, "largest",
+                             "difference", "kind", kind_names[difference.kind], "pixels",
+                             (int)difference.pixels, "different", (int)difference.different, "largest",
                              isfinite(difference.largest) ? json_real(difference.largest) : json_null(),
                              "mean", isfinite(difference.mean) ? json_real(difference.mean) : json_null());
     json_object_update(entry, more);

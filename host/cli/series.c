@@ -2,6 +2,7 @@
 #include "series.h"
 
 #include "base/plural.h"
+#include "base/words.h"
 #include "result_file.h"
 #include "scene/fit.h"
 #include "scene/light.h"
@@ -132,6 +133,13 @@ void bp_series_end(BpSeries *series) {
     bp_scene_destroy(&series->scene);
 }
 
+#define ENDINGS(X)                                                                                           \
+    X(BP_FORMAT_PNG, ".png")                                                                                 \
+    X(BP_FORMAT_PPM, ".ppm")                                                                                 \
+    X(BP_FORMAT_PPM_ASCII, ".ppm") X(BP_FORMAT_PFM, ".pfm") X(BP_FORMAT_EXR, ".exr")                         \
+        X(BP_FORMAT_BPA, ".bpa")
+BP_WORDS(BpFormat, static const char *const endings, ENDINGS);
+
 /* name-0012.png of name.png; in a folder, and without --output, named after the scene. */
 BpStatus bp_series_line(BpSeries *series, BpCommandLine *line, BpError *err) {
     *line = *series->line;
@@ -149,9 +157,6 @@ BpStatus bp_series_line(BpSeries *series, BpCommandLine *line, BpError *err) {
     size_t dot = stem;
     for (size_t i = stem; i-- > base + 1 && dot == stem;)
         if (name[i] == '.') dot = i;
-    static const char *const endings[] = {
-        [BP_FORMAT_PNG] = ".png", [BP_FORMAT_PPM] = ".ppm", [BP_FORMAT_PPM_ASCII] = ".ppm",
-        [BP_FORMAT_PFM] = ".pfm", [BP_FORMAT_EXR] = ".exr", [BP_FORMAT_BPA] = ".bpa"};
     const bool has_format = bp_option_given(line, BP_OPTION_FORMAT);
     const char *const ending = named ? name + dot : endings[has_format ? line->format : BP_FORMAT_PNG];
     const uint64_t number = bp_option_given(line, BP_OPTION_TURNTABLE)

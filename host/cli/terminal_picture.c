@@ -3,6 +3,7 @@
 #include "terminal_picture.h"
 
 #include "base/clock.h"
+#include "base/words.h"
 #include "image/image.h"
 #include "terminal.h"
 
@@ -85,8 +86,12 @@ static BpTerminalGraphics detect(void) {
     return ask_for_sixels() ? BP_GRAPHICS_SIXEL : BP_GRAPHICS_BLOCKS;
 }
 
+#define GRAPHICS_WORDS(X)                                                                                    \
+    X(BP_GRAPHICS_BLOCKS, "blocks")                                                                          \
+    X(BP_GRAPHICS_KITTY, "kitty") X(BP_GRAPHICS_ITERM2, "iterm2") X(BP_GRAPHICS_SIXEL, "sixel")
+BP_WORDS(BpTerminalGraphics, static const char *const names, GRAPHICS_WORDS);
+
 BpStatus bp_terminal_picture_begin(BpTerminalPicture *shown, BpError *err) {
-    static const char *const names[] = {"blocks", "kitty", "iterm2", "sixel"};
     const char *wanted = getenv("BALLPARK_SHOW");
     *shown = (BpTerminalPicture){0};
     if (!bp_terminal_is_live(false))

@@ -4,6 +4,7 @@
  * Knows: the names and defaults of the book's fourth-edition camera. */
 #include "scene_parse.h"
 
+#include "base/words.h"
 #include "scene/fit.h"
 
 #include <math.h>
@@ -156,6 +157,9 @@ static BpStatus read_fit(const BpNode *node, BpCamera *camera, BpError *err) {
     return read_view(&view, camera, err);
 }
 
+#define SAMPLING_WORDS(X) X(BP_PIXEL_SQUARE, "square") X(BP_PIXEL_CENTER, "center")
+BP_WORDS(BpPixelSampling, static const char *const sampling_names, SAMPLING_WORDS);
+
 BpStatus bp_parse_camera(const BpNode *node, BpCamera *camera, BpError *err) {
     static const char *const names[] = {"image_width",
                                         "image_height",
@@ -175,7 +179,6 @@ BpStatus bp_parse_camera(const BpNode *node, BpCamera *camera, BpError *err) {
                                         "margin",
                                         "projection",
                                         "view_height"};
-    static const char *const sampling_names[] = {[BP_PIXEL_SQUARE] = "square", [BP_PIXEL_CENTER] = "center"};
     bp_camera_defaults(camera);
     BP_TRY(bp_node_object(node, names, BP_COUNT(names), err));
     BP_TRY(read_size(node, camera, err));

@@ -3,6 +3,8 @@
  * In:    the nodes of a path and of how the file is meant.   Out: images that the scene owns.
  * Knows: where relative paths begin.   Does not know: the formats (image_file.h), what an image is for. */
 #include "image_file.h"
+
+#include "base/words.h"
 #include "input_file.h"
 #include "scene_parse.h"
 
@@ -10,7 +12,9 @@
 #include <stdlib.h>
 #include <string.h>
 
-static const char *const encoding_names[] = {"srgb", "linear"};
+#define ENCODING_WORDS(X)                                                                                    \
+    X(BP_ENCODING_OF_FORMAT, NULL) X(BP_ENCODING_SRGB, "srgb") X(BP_ENCODING_LINEAR, "linear")
+BP_WORDS(BpEncoding, static const char *const encoding_names, ENCODING_WORDS);
 
 static BpStatus read_file(const BpNode *node, const char *file, BpEncoding encoding, double scale,
                           const BpScene *scene, BpImage **image, BpError *err) {
@@ -57,7 +61,7 @@ BpStatus bp_parse_image(const BpNode *file_node, const BpNode *encoding_node, co
     int choice = -1;
     double scale = 1;
     BP_TRY(bp_node_string(file_node, &file, err));
-    BP_TRY(bp_node_choice(encoding_node, encoding_names, BP_COUNT(encoding_names), &choice, err));
+    BP_TRY(bp_node_choice(encoding_node, encoding_names + 1, BP_COUNT(encoding_names) - 1, &choice, err));
     BP_TRY(bp_node_number(scale_node, &scale, err));
     if (!(scale >= 0 && scale <= BP_IMAGE_SCALE_MAX))
         return bp_node_wrong(scale_node, "a factor from 0 to 1e12", err);

@@ -4,6 +4,7 @@
  * Knows: the grammar.   Does not know: materials. Ranges are checked by scene_validate.c. */
 #include "scene_parse.h"
 
+#include "base/words.h"
 #include <stdlib.h>
 #include <string.h>
 
@@ -41,11 +42,13 @@ static BpStatus parse_repeat(const BpNode *node, uint32_t repeat[2], BpError *er
 /* Which textures have a member. */
 enum { OF_SOLID = 1, OF_SURFACE = 2, OF_NOISE = 4, OF_WAVES = 8, OF_CHECKER = 16, OF_IMAGE = 32 };
 
+#define SORTS_OF_TYPE(X)                                                                                     \
+    X(BP_TEXTURE_CHECKER, OF_CHECKER) X(BP_TEXTURE_NOISE, OF_NOISE) X(BP_TEXTURE_IMAGE, OF_IMAGE)
+BP_WORDS(BpTextureType, static const unsigned sorts_of_type, SORTS_OF_TYPE);
+
 static unsigned sorts_of(const BpTexture *texture) {
     unsigned sorts = texture->mapping == BP_MAPPING_SOLID ? OF_SOLID : OF_SURFACE;
-    static const unsigned of_type[] = {
-        [BP_TEXTURE_CHECKER] = OF_CHECKER, [BP_TEXTURE_NOISE] = OF_NOISE, [BP_TEXTURE_IMAGE] = OF_IMAGE};
-    sorts |= of_type[texture->type];
+    sorts |= sorts_of_type[texture->type];
     return sorts | (bp_texture_has_waves(texture) ? OF_WAVES : 0);
 }
 

@@ -6,6 +6,8 @@
 #ifndef BP_PARTICLES_PLY_TYPE_H
 #define BP_PARTICLES_PLY_TYPE_H
 
+#include "base/words.h"
+
 #include <stdbool.h>
 #include <stddef.h>
 #include <stdint.h>
@@ -32,10 +34,16 @@ PlyType ply_type_named(const char *name);
 
 /* The rest is inline, since millions of numbers are read. */
 
+#define PLY_TYPE_SIZES(X)                                                                                    \
+    X(PLY_NONE, 0)                                                                                           \
+    X(PLY_INT8, 1)                                                                                           \
+    X(PLY_UINT8, 1) X(PLY_INT16, 2) X(PLY_UINT16, 2) X(PLY_INT32, 4) X(PLY_UINT32, 4) X(PLY_FLOAT32, 4)      \
+        X(PLY_FLOAT64, 8)
+BP_WORDS(PlyType, static const unsigned char ply_type_sizes, PLY_TYPE_SIZES);
+
 /* In bytes; 0 for PLY_NONE. */
 static inline size_t ply_type_size(PlyType type) {
-    static const unsigned char sizes[] = {0, 1, 1, 2, 2, 4, 4, 4, 8};
-    return sizes[type];
+    return ply_type_sizes[type];
 }
 
 /* The number in ply_type_size() bytes; `swap`: their order is not this machine's. */

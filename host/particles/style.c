@@ -6,6 +6,7 @@
 #include "base/pages.h"
 #include "base/plural.h"
 #include "base/team.h"
+#include "base/words.h"
 #include "bonds.h"
 #include "elements.h"
 #include "molecules.h"
@@ -284,23 +285,27 @@ static BpStatus rank_names(Job *job, BpError *err) {
     return BP_OK;
 }
 
+/* What colours are by. */
+#define COLOR_WORDS(X)                                                                                       \
+    X(BP_COLOR_AUTO, "")                                                                                     \
+    X(BP_COLOR_CONSTANT, "")                                                                                 \
+    X(BP_COLOR_ELEMENT, "elements") X(BP_COLOR_CHAIN, "chains") X(BP_COLOR_RESIDUE, "residues")              \
+        X(BP_COLOR_TYPE, "types") X(BP_COLOR_COLUMN, "values")
+BP_WORDS(BpColorBy, static const char *const color_names, COLOR_WORDS);
+
 static BpStatus choose_colors(Job *job, BpError *err) {
     const BpParticles *const p = job->p;
     const BpParticleStyle *const style = job->style;
     job->color_by = style->color_by;
     if (style->color_by == BP_COLOR_AUTO && p->color == NULL)
         job->color_by = p->has_element ? BP_COLOR_ELEMENT : p->has_type ? BP_COLOR_TYPE : BP_COLOR_CONSTANT;
-    static const char *const names[] = {[BP_COLOR_ELEMENT] = "elements",
-                                        [BP_COLOR_CHAIN] = "chains",
-                                        [BP_COLOR_RESIDUE] = "residues",
-                                        [BP_COLOR_TYPE] = "types"};
     const bool has = (style->color_by == BP_COLOR_ELEMENT && !p->has_element) ||
                      (style->color_by == BP_COLOR_CHAIN && !p->has_chain) ||
                      (style->color_by == BP_COLOR_RESIDUE && !p->has_residue) ||
                      (style->color_by == BP_COLOR_TYPE && !p->has_type);
     if (has)
         return bp_fail(err, BP_ERR_SCENE, "found no %s in the file, expected them for colours",
-                       names[style->color_by]);
+                       color_names[style->color_by]);
     if (job->color_by == BP_COLOR_CHAIN || job->color_by == BP_COLOR_RESIDUE ||
         job->color_by == BP_COLOR_TYPE)
         return rank_names(job, err);

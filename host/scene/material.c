@@ -1,19 +1,24 @@
 /* material.c: see material.h. */
 #include "material.h"
 
+#include "base/words.h"
 #include "scene.h"
 
 #include <math.h>
 #include <string.h>
 
-static const char *const bp_scatter_names[] = {[BP_SCATTER_LAMBERTIAN] = "lambertian",
-                                               [BP_SCATTER_COSINE_CUBED] = "cosine_cubed",
-                                               [BP_SCATTER_HEMISPHERE] = "hemisphere"};
-static const char *const bp_fuzz_shape_names[] = {[BP_FUZZ_SPHERE] = "sphere", [BP_FUZZ_BALL] = "ball"};
-static const char *const bp_fresnel_names[] = {
-    [BP_FRESNEL_SCHLICK] = "schlick", [BP_FRESNEL_EXACT] = "exact", [BP_FRESNEL_NONE] = "none"};
-static const char *const bp_total_reflection_names[] = {
-    [BP_TOTAL_REFLECT] = "reflect", [BP_TOTAL_ABSORB] = "absorb", [BP_TOTAL_REFRACT] = "refract"};
+#define SCATTER_WORDS(X)                                                                                     \
+    X(BP_SCATTER_LAMBERTIAN, "lambertian")                                                                   \
+    X(BP_SCATTER_COSINE_CUBED, "cosine_cubed") X(BP_SCATTER_HEMISPHERE, "hemisphere")
+BP_WORDS(BpScatter, static const char *const bp_scatter_names, SCATTER_WORDS);
+#define FUZZ_SHAPE_WORDS(X) X(BP_FUZZ_SPHERE, "sphere") X(BP_FUZZ_BALL, "ball")
+BP_WORDS(BpFuzzShape, static const char *const bp_fuzz_shape_names, FUZZ_SHAPE_WORDS);
+#define FRESNEL_WORDS(X)                                                                                     \
+    X(BP_FRESNEL_SCHLICK, "schlick") X(BP_FRESNEL_EXACT, "exact") X(BP_FRESNEL_NONE, "none")
+BP_WORDS(BpFresnel, static const char *const bp_fresnel_names, FRESNEL_WORDS);
+#define TOTAL_REFLECTION_WORDS(X)                                                                            \
+    X(BP_TOTAL_REFLECT, "reflect") X(BP_TOTAL_ABSORB, "absorb") X(BP_TOTAL_REFRACT, "refract")
+BP_WORDS(BpTotalReflection, static const char *const bp_total_reflection_names, TOTAL_REFLECTION_WORDS);
 
 const BpMaterialType bp_material_types[] = {
 #define TYPE(identifier, name, kernel_kind, effect, traits, members, needed, outcome)                        \

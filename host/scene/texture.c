@@ -1,6 +1,7 @@
 /* texture.c: see texture.h. */
 #include "texture.h"
 
+#include "base/words.h"
 #include "texels.h"
 #include "vector.h"
 
@@ -8,17 +9,20 @@
 
 #define PI 3.14159265358979323846
 
-const char *const bp_texture_type_names[] = {
-    [BP_TEXTURE_CHECKER] = "checker", [BP_TEXTURE_NOISE] = "noise", [BP_TEXTURE_IMAGE] = "image"};
+#define TEXTURE_TYPE_WORDS(X)                                                                                \
+    X(BP_TEXTURE_CHECKER, "checker") X(BP_TEXTURE_NOISE, "noise") X(BP_TEXTURE_IMAGE, "image")
+BP_WORDS(BpTextureType, const char *const bp_texture_type_names, TEXTURE_TYPE_WORDS);
 const size_t bp_texture_type_count = sizeof bp_texture_type_names / sizeof bp_texture_type_names[0];
-const char *const bp_mapping_names[] = {[BP_MAPPING_SOLID] = "solid", [BP_MAPPING_SURFACE] = "surface"};
+#define MAPPING_WORDS(X) X(BP_MAPPING_SOLID, "solid") X(BP_MAPPING_SURFACE, "surface")
+BP_WORDS(BpMapping, const char *const bp_mapping_names, MAPPING_WORDS);
 const size_t bp_mapping_count = sizeof bp_mapping_names / sizeof bp_mapping_names[0];
-const char *const bp_pattern_names[] = {[BP_PATTERN_PERLIN] = "perlin",
-                                        [BP_PATTERN_TURBULENCE] = "turbulence",
-                                        [BP_PATTERN_MARBLE] = "marble",
-                                        [BP_PATTERN_WOOD] = "wood"};
+#define PATTERN_WORDS(X)                                                                                     \
+    X(BP_PATTERN_PERLIN, "perlin")                                                                           \
+    X(BP_PATTERN_TURBULENCE, "turbulence") X(BP_PATTERN_MARBLE, "marble") X(BP_PATTERN_WOOD, "wood")
+BP_WORDS(BpPattern, const char *const bp_pattern_names, PATTERN_WORDS);
 const size_t bp_pattern_count = sizeof bp_pattern_names / sizeof bp_pattern_names[0];
-const char *const bp_wrap_names[] = {[BP_WRAP_REPEAT] = "repeat", [BP_WRAP_CLAMP] = "clamp"};
+#define WRAP_WORDS(X) X(BP_WRAP_REPEAT, "repeat") X(BP_WRAP_CLAMP, "clamp")
+BP_WORDS(BpWrap, const char *const bp_wrap_names, WRAP_WORDS);
 const size_t bp_wrap_count = sizeof bp_wrap_names / sizeof bp_wrap_names[0];
 const char *const bp_axis_names[] = {"x", "y", "z"};
 const size_t bp_axis_count = sizeof bp_axis_names / sizeof bp_axis_names[0];
@@ -28,16 +32,20 @@ void bp_texture_defaults(BpTexture *texture) {
         (BpTexture){.size = 1, .up = {0, 1, 0}, .repeat = {1, 1}, .octaves = 1, .axis = 2, .period = 1};
 }
 
+typedef struct PatternDefaults {
+    uint32_t octaves;
+    double distortion;
+} PatternDefaults;
+
+#define PATTERN_DEFAULTS(X)                                                                                  \
+    X(BP_PATTERN_PERLIN, BP_BRACED(1, 0))                                                                    \
+    X(BP_PATTERN_TURBULENCE, BP_BRACED(7, 0))                                                                \
+    X(BP_PATTERN_MARBLE, BP_BRACED(7, 1.6)) X(BP_PATTERN_WOOD, BP_BRACED(2, 0.3))
+BP_WORDS(BpPattern, static const PatternDefaults pattern_defaults, PATTERN_DEFAULTS);
+
 void bp_texture_pattern_defaults(BpTexture *texture) {
-    static const struct {
-        uint32_t octaves;
-        double distortion;
-    } defaults[] = {[BP_PATTERN_PERLIN] = {1, 0},
-                    [BP_PATTERN_TURBULENCE] = {7, 0},
-                    [BP_PATTERN_MARBLE] = {7, 1.6},
-                    [BP_PATTERN_WOOD] = {2, 0.3}};
-    texture->octaves = defaults[texture->pattern].octaves;
-    texture->distortion = defaults[texture->pattern].distortion;
+    texture->octaves = pattern_defaults[texture->pattern].octaves;
+    texture->distortion = pattern_defaults[texture->pattern].distortion;
     texture->period = texture->size;
 }
 

@@ -2,6 +2,7 @@
 #include "configurations.h"
 
 #include "base/names.h"
+#include "base/words.h"
 #include "render/render_plan.h"
 
 #include <stdio.h>
@@ -59,9 +60,13 @@ static const Row rows[] = {
     {"together", "all shortcuts", {.depth = 10, MATH(FAST), NUMERICS(PLAIN)}},
 };
 
+#define FRESNEL_WORDS(X)                                                                                     \
+    X(BP_STUDY_FRESNEL_SCENE, "scene")                                                                       \
+    X(BP_STUDY_FRESNEL_SCHLICK, "schlick") X(BP_STUDY_FRESNEL_EXACT, "exact")
+BP_WORDS(BpStudyFresnel, static const char *const fresnel_names, FRESNEL_WORDS);
+
 const char *bp_study_fresnel_name(BpStudyFresnel fresnel) {
-    static const char *const names[] = {"scene", "schlick", "exact"};
-    return names[fresnel];
+    return fresnel_names[fresnel];
 }
 
 /* Whether a dielectric in use would look different with this Fresnel. */

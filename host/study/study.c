@@ -4,6 +4,7 @@
 
 #include "base/clock.h"
 #include "base/status.h"
+#include "base/words.h"
 #include "configurations.h"
 #include "crop.h"
 #include "fit.h"
@@ -449,9 +450,13 @@ static BpStatus step_levels(BpStudy *study, BpError *err) {
     return next_level(study, err);
 }
 
+#define PHASE_WORDS(X)                                                                                       \
+    X(BP_STUDY_OPEN_REFERENCES, "opening the references")                                                    \
+    X(BP_STUDY_REFERENCES, "rendering the references")                                                       \
+    X(BP_STUDY_OPEN_CONFIGURATIONS, "building kernels") X(BP_STUDY_LEVELS, "") X(BP_STUDY_DONE, "done")
+BP_WORDS(BpStudyPhase, static const char *const phase_words, PHASE_WORDS);
+
 static void report_progress(const BpStudy *study, BpStudyProgress *progress) {
-    static const char *const words[] = {"opening the references", "rendering the references",
-                                        "building kernels", "", "done"};
     const double spent = elapsed(study);
     progress->finished = study->phase == BP_STUDY_DONE;
     progress->seconds_left = progress->finished ? 0 : fmax(0, study->result.budget - spent);
@@ -461,7 +466,7 @@ static void report_progress(const BpStudy *study, BpStudyProgress *progress) {
                  study->phase == BP_STUDY_LEVELS ? "" : "building: ",
                  study->result.series[study->turn].configuration.name);
     else
-        snprintf(progress->doing, sizeof progress->doing, "%s", words[study->phase]);
+        snprintf(progress->doing, sizeof progress->doing, "%s", phase_words[study->phase]);
     if (study->phase == BP_STUDY_LEVELS) {
         const size_t used = strlen(progress->doing);
         snprintf(progress->doing + used, sizeof progress->doing - used, ", %llu samples",

@@ -1,0 +1,30 @@
+/* words.h: tables of what belongs to each value of an enumeration, none of which can be forgotten.
+ *
+ * In:    a list X(value, what) of all values of an enumeration.   Out: an array by value.
+ * Knows: that compilers warn of a switch that lacks a value (-Wswitch, a part of -Wall).
+ * Does not know: any enumeration. */
+#ifndef BP_BASE_WORDS_H
+#define BP_BASE_WORDS_H
+
+#define BP_WORD_AT(value, what) [value] = what,
+#define BP_WORD_CASE(value, what) case value:
+
+/* For `what` that is a struct. */
+#define BP_BRACED(...)                                                                                       \
+    { __VA_ARGS__ }
+
+/* `declaration[] = { ... }`, for the outermost level of a file, and a function that nobody calls, in which
+ * the compiler misses what LIST lacks. */
+#define BP_WORDS(type, declaration, LIST)                                                                    \
+    BP_WORDS_COMPLETE(type, LIST)                                                                            \
+    declaration[] = {LIST(BP_WORD_AT)}
+/* The same, with NULL at the end. */
+#define BP_WORDS_ENDED(type, declaration, LIST)                                                              \
+    BP_WORDS_COMPLETE(type, LIST)                                                                            \
+    declaration[] = {LIST(BP_WORD_AT) NULL}
+#define BP_WORDS_COMPLETE(type, LIST)                                                                        \
+    static inline void LIST##_are_complete(type value) {                                                     \
+        switch (value) { LIST(BP_WORD_CASE) break; }                                                         \
+    }
+
+#endif
