@@ -37,8 +37,8 @@ PlyType ply_type_named(const char *name);
 #define PLY_TYPE_SIZES(X)                                                                                    \
     X(PLY_NONE, 0)                                                                                           \
     X(PLY_INT8, 1)                                                                                           \
-    X(PLY_UINT8, 1) X(PLY_INT16, 2) X(PLY_UINT16, 2) X(PLY_INT32, 4) X(PLY_UINT32, 4) X(PLY_FLOAT32, 4)      \
-        X(PLY_FLOAT64, 8)
+    X(PLY_UINT8, 1)                                                                                          \
+    X(PLY_INT16, 2) X(PLY_UINT16, 2) X(PLY_INT32, 4) X(PLY_UINT32, 4) X(PLY_FLOAT32, 4) X(PLY_FLOAT64, 8)
 BP_WORDS(PlyType, static const unsigned char ply_type_sizes, PLY_TYPE_SIZES);
 
 /* In bytes; 0 for PLY_NONE. */

@@ -409,7 +409,7 @@ BpStatus bp_render_describe(const BpRender *render, BpFilm *film, BpError *err) 
 #undef SETTING
     film->transfer = render->scene->transfer;
     film->job = (struct BpSampleRange){options->job_first, options->job_samples};
-    if (render->scene->title != NULL) film->title = strdup(render->scene->title);
+    if (render->scene->title != NULL) BP_TRY(bp_copy_text(render->scene->title, &film->title, err));
     /* A pass in progress counts as begun: its samples are taken, though not yet by every pixel. */
     uint64_t begun = render->schedule.done + render->schedule.pass_samples;
     film->partial = render->schedule.pass_samples > 0;

@@ -24,7 +24,8 @@ MEMORY_KINDS = ("alloc", "json", "library")
 OLD = b"what was there before"
 # The sky outshines the lamp, so no rays are sent to it: a program that were to find so only with enough memory would make
 # another picture without.
-SCENE = cli.scene(16, 9, camera={"samples_per_pixel": 1}, materials={
+# Its title stands in files of sums.
+SCENE = cli.scene(16, 9, title="two balls", camera={"samples_per_pixel": 1}, materials={
     "m": {"type": "lambertian", "albedo": [0.5, 0.4, 0.3]}, "l": {"type": "diffuse_light", "emit": [0.3, 0.3, 0.3]}},
     spheres=[{"center": [0.3 * i - 0.1, 0, -1 - 0.01 * i], "radius": 0.5, "material": "ml"[i]} for i in range(2)])
 XYZ = "2\nfirst\nC 0 0 0\nO 1 0 0\n2\nsecond\nC 0 0 0\nO 1.2 0 0\n"
