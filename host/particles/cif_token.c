@@ -84,6 +84,10 @@ bool cif_number(const char *text, double *value) {
     return word_number(number, value);
 }
 
+bool cif_is_unknown(const char *text) {
+    return strcmp(text, ".") == 0 || strcmp(text, "?") == 0;
+}
+
 const char *cif_known(const char *text) {
-    return strcmp(text, ".") == 0 || strcmp(text, "?") == 0 ? "" : text;
+    return cif_is_unknown(text) ? "" : text;
 }

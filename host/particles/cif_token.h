@@ -26,7 +26,9 @@ bool cif_is_keyword(const CifTokens *tokens);
 bool cif_is_value(const CifTokens *tokens);
 /* The value as a number, which may have its standard uncertainty behind it in brackets: 0.12(3). */
 bool cif_number(const char *text, double *value);
-/* The text, or "" for the values that stand for none: "." and "?". */
+/* Whether the value stands for none: "." and "?". */
+bool cif_is_unknown(const char *text);
+/* The text, or "" for such a value. */
 const char *cif_known(const char *text);
 
 #endif

@@ -38,7 +38,9 @@ static bool grow(Places *places) {
     return true;
 }
 
-BpStatus places_take(Places *places, const char *site, const char *letter, BpError *err) {
+BpStatus places_take(Places *places, const BpParticles *particles, const char *site, const char *letter,
+                     BpError *err) {
+    if (places->count >= particles->count) return BP_OK;
     if (places->count == places->capacity && !grow(places))
         return bp_fail(err, BP_ERR_MEMORY, "out of memory for the places of %zu atoms", places->count);
     places->site[places->count] = number_of(site);
@@ -170,7 +172,7 @@ BpStatus places_mark(Places *places, BpParticles *particles, BpError *err) {
     const bool any = places->any;
     size_t count = 0;
     places->any = false;
-    if (!any || taken != particles->count) {
+    if (!any) {
         places->count = 0;
         return BP_OK;
     }

@@ -20,9 +20,11 @@ typedef struct Places {
     bool any; /* some particle has a letter */
 } Places;
 
-/* Takes the next particle. `site`: the text that names its residue in the file; `letter`: at most four bytes
- * of it count; "": it has one place. */
-BpStatus places_take(Places *places, const char *site, const char *letter, BpError *err);
+/* Takes what was handed over last; nothing, if that has no place, so that it is none of the particles.
+ * `site`: the text that names its residue in the file; `letter`: at most four bytes of it count; "": it has
+ * one place. */
+BpStatus places_take(Places *places, const BpParticles *particles, const char *site, const char *letter,
+                     BpError *err);
 /* Marks what is not shown among the particles, which are those taken since the beginning or the last call,
  * and begins anew. */
 BpStatus places_mark(Places *places, BpParticles *particles, BpError *err);

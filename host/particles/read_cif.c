@@ -6,9 +6,6 @@
 #include "elements.h"
 #include "places.h"
 
-#include "base/format.h"
-#include "base/plural.h"
-
 #include <stdlib.h>
 #include <string.h>
 #include <strings.h>
@@ -337,16 +334,13 @@ static double number_in(const State *state, Field field, Field instead) {
     return cif_number(text_of(state, field, instead), &value) ? value : NAN;
 }
 
-/* *unknown counts the atoms whose place the file does not know. */
-static BpStatus add_row(BpParticleFile *file, State *state, size_t *unknown, BpError *err) {
+static BpStatus add_row(BpParticleFile *file, State *state, BpError *err) {
     Particle particle = PARTICLE_NONE;
     for (Field f = X; f <= Z; f++) {
-        if (text_of(state, f, f)[0] == '\0' && state->row[f][0] != '\0') {
-            ++*unknown;
-            return BP_OK;
-        }
         double *const place = &particle.position[f - X];
-        if (!cif_number(state->row[f], place) && !word_number_or_none(state->row[f], place))
+        if (cif_is_unknown(state->row[f]))
+            *place = NAN;
+        else if (!cif_number(state->row[f], place) && !word_number_or_none(state->row[f], place))
             return input_wrong(&file->input, state->row[f], "a coordinate in _atom_site.Cartn_x, y and z",
                                err);
     }
@@ -362,11 +356,11 @@ static BpStatus add_row(BpParticleFile *file, State *state, size_t *unknown, BpE
     char site[3 * CIF_TEXT_SIZE];
     snprintf(site, sizeof site, "%s/%s/%s", particle.chain, text_of(state, AUTH_SEQUENCE, LABEL_SEQUENCE),
              text_of(state, INSERTION, INSERTION));
-    return places_take(&state->places, site, text_of(state, ALTERNATIVE, ALTERNATIVE), err);
+    return places_take(&state->places, file->out, site, text_of(state, ALTERNATIVE, ALTERNATIVE), err);
 }
 
 /* The rows of one model. */
-static BpStatus take_model(BpParticleFile *file, State *state, size_t *unknown, BpError *err) {
+static BpStatus take_model(BpParticleFile *file, State *state, BpError *err) {
     Input *const input = &file->input;
     char model[CIF_TEXT_SIZE] = "";
     for (bool has_rows = false;; has_rows = true) {
@@ -381,14 +375,13 @@ static BpStatus take_model(BpParticleFile *file, State *state, size_t *unknown, 
         state->held = has_rows && strcmp(model, here) != 0;
         if (state->held) return BP_OK;
         snprintf(model, sizeof model, "%s", here);
-        BP_TRY(add_row(file, state, unknown, err));
+        BP_TRY(add_row(file, state, err));
     }
 }
 
 BpStatus read_cif(BpParticleFile *file, bool *end, BpError *err) {
     static const char *const columns[] = {"occupancy", "bfactor", "residue_number"};
     Input *const input = &file->input;
-    size_t unknown = 0;
     if (file->state == NULL) file->state = calloc(1, sizeof(State));
     State *const state = file->state;
     if (state == NULL) return bp_fail(err, BP_ERR_MEMORY, "out of memory");
@@ -405,14 +398,12 @@ BpStatus read_cif(BpParticleFile *file, bool *end, BpError *err) {
     BP_TRY(frame_begin(file, columns, 3, err));
     if (file->out != NULL) file->out->angstrom = 1;
     put_cell(file, &state->cell);
-    BP_TRY(take_model(file, state, &unknown, err));
-    if (file->added == 0)
+    BP_TRY(take_model(file, state, err));
+    if (file->out == NULL) return BP_OK;
+    if (file->out->count == 0) {
+        input->ended = false; /* nothing is missing behind */
         return input_fail(input, true, err,
                           "found no atom with a place, expected numbers in _atom_site.Cartn_x");
-    if (file->out == NULL) return BP_OK;
-    char number[32];
-    if (unknown > 0)
-        bp_particles_note(file->out, "left out: %s atom%s without a place",
-                          bp_format_whole(unknown, number, sizeof number), bp_plural(unknown));
+    }
     return places_mark(&state->places, file->out, err);
 }

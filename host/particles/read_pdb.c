@@ -74,7 +74,7 @@ static BpStatus take_atom(BpParticleFile *file, State *state, const char *line, 
         BP_TRY(pdb_read_atom(&file->input, line, &atom, &state->names_left, err));
     BP_TRY(frame_add(file, &atom.particle, true, err));
     if (file->out == NULL) return BP_OK;
-    BP_TRY(places_take(&state->places, atom.site, atom.letter, err));
+    BP_TRY(places_take(&state->places, file->out, atom.site, atom.letter, err));
     return pdb_take_serial(&state->serials, atom.serial, err);
 }
 

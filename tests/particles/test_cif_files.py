@@ -76,7 +76,7 @@ class Cif(listed.ListTest):
         text += "? CA . A ? 7 ? 1 2 3\nCB CX B A 8 9 N 4 5 6\n. O A A 1 1 O ? 0 0\nN N A A 1 1 N 0 0 .\n"
         found = self.of("a.cif", text, 0, "residue_number")
         self.assertEqual([(a.name, a.chain, a.first, a.element, a.x) for a in found.atoms], [("CA", "A", 7, "C", 1), ("CB", "B", 8, "N", 4)])
-        self.assertIn("left out: 2 atoms without a place", found.head["notes"])
+        self.assertIn("2 points without a place left out", found.head["notes"])
         self.refuse("a.cif", "data_x\n" + rows(("?", "?", "?")), "no atom with a place")
 
     def test_names_in_quotes(self):

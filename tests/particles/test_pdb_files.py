@@ -227,6 +227,21 @@ class Alternatives(listed.ListTest):
                     expected.append(i)
             self.assertEqual(self.chosen(*atoms), expected, atoms)
 
+    def test_atoms_without_a_place(self):
+        """They are left out, and change neither what is shown of the others nor the bonds of these."""
+        lines = [atom(i, name, letter, place=(i, 0, 0)) for i, (name, letter) in enumerate([(" N  ", " "), (" CA ", "A"), (" CA ", "B"), (" C  ", " ")])]
+        for gone in range(4):
+            text = "".join(line if i != gone else line.replace(f"{i:8.3f}   0.000", "     nan   0.000", 1) for i, line in enumerate(lines))
+            found = self.of("a.pdb", text + "CONECT    0    3\n")
+            shown = [i for i in range(4) if i != gone and (i != 2 or gone == 1)]
+            self.assertEqual([p[0] for p in found.places(shown=True)], shown)
+            self.assertIn("1 point without a place left out", found.head["notes"])
+            self.assertEqual(found.head["bonds"], [[0, 2]] if gone in (1, 2) else [])
+            cif = "data_x\nloop_\n" + "".join(f"_atom_site.{n}\n" for n in ("label_atom_id", "label_alt_id", "Cartn_x", "Cartn_y", "Cartn_z"))
+            for unknown in ("?", ".", "nan"):
+                rows = [f"{line[12:16]} {line[16].strip() or '.'} {unknown if i == gone else i} 0 0\n" for i, line in enumerate(lines)]
+                self.assertEqual([p[0] for p in self.of("a.cif", cif + "".join(rows)).places(shown=True)], shown, unknown)
+
     def test_many_places(self):
         """A file in which all atoms share a site, or each has one of its own, takes no longer than others."""
         for number in (lambda i: 1, lambda i: i % 9999):
