@@ -26,13 +26,21 @@
  *   unless it says so.
  * - Threads. A handle is used by one thread at a time, but functions that take a `const` handle may run at
  *   the same time: many threads may render one scene, each by a render of its own. Different handles are
- *   independent: there is no state outside of handles, but for caches in files. The environment
- *   (BALLPARK_KERNELS, and what OpenCL drivers read) must not change meanwhile. No function prints, exits or
- *   touches signals; a driver may.
+ *   independent, also in the first calls of a process: there is no state outside of handles, but for caches
+ *   in files and the start of the OpenCL drivers, which one thread does while the others wait. The
+ *   environment (BALLPARK_KERNELS, and what OpenCL drivers read) must not change meanwhile. No function
+ *   prints, exits or touches signals; a driver may.
  * - Processes. OpenCL drivers do not survive fork(). In a process forked from one that has used OpenCL, every
  *   function that would need a driver fails with BP_ERR_DEVICE; pictures, films and scenes remain usable, and
- *   `_destroy` frees the host's memory alone. A process may fork before anything uses OpenCL, and then use
- * it.
+ *   `_destroy` frees the host's memory alone. A process may fork before anything uses OpenCL, and then
+ *   use it.
+ * - Drivers. All OpenCL drivers of the machine start with the first call that needs a device. One that does
+ *   not answer within 20 seconds, when it starts or opens a device, is given up with BP_ERR_DEVICE, whose
+ *   message says what is known of it; BALLPARK_DRIVER_SECONDS in the environment sets another limit, 0 none.
+ *   Its thread cannot be ended and stays behind. Where that holds a lock of the system's loader, exit() waits
+ *   for it; _exit() does not. A driver that crashes or ends the process takes it along, since a library
+ *   cannot prevent that. `ballpark devices` asks drivers in processes of their own and names the one that is
+ *   broken; with OCL_ICD_VENDORS naming the .icd file of another, it is not loaded at all.
  * - Options. A struct of options is filled by its function `_defaults`; then change what matters. New members
  *   may come in a minor version, so a struct that was filled member by member would lack them.
  * - Versions. While the version is 0.x, structs may grow in a minor version and not in a patch: see

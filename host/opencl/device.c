@@ -2,6 +2,8 @@
 #include "device.h"
 
 #include "base/clock.h"
+#include "base/long_call.h"
+#include "driver_start.h"
 #include "forked.h"
 #include "kernel_cache.h"
 #include "pocl.h"
@@ -24,6 +26,78 @@ static void take_part(BpDevice *device, uint32_t units) {
     if (clCreateSubDevices(device->id, by_counts, 1, &part, &count) != CL_SUCCESS || count != 1) return;
     device->id = part;
     device->info.compute_units = units;
+}
+
+/* What opening a device asks of its driver. */
+typedef struct Opening {
+    cl_device_id id;
+    cl_context context;
+    cl_command_queue queue;
+    cl_int code;
+    const char *call; /* that gave the code */
+    char what[600];   /* "opening device 0 (...)" */
+} Opening;
+
+static void open_device(Opening *opening) {
+    cl_platform_id platform = NULL;
+    opening->call = "clGetDeviceInfo(CL_DEVICE_PLATFORM)";
+    opening->code = clGetDeviceInfo(opening->id, CL_DEVICE_PLATFORM, sizeof platform, &platform, NULL);
+    if (opening->code != CL_SUCCESS) return;
+    const cl_context_properties properties[] = {CL_CONTEXT_PLATFORM, (cl_context_properties)platform, 0};
+    opening->call = "clCreateContext";
+    opening->context = clCreateContext(properties, 1, &opening->id, NULL, NULL, &opening->code);
+    if (opening->code != CL_SUCCESS) return;
+    opening->call = "clCreateCommandQueue";
+    opening->queue =
+        clCreateCommandQueue(opening->context, opening->id, CL_QUEUE_PROFILING_ENABLE, &opening->code);
+}
+
+static void ask_to_open(void *argument) {
+    Opening *opening = argument;
+    bp_driver_tell(opening->what);
+    open_device(opening);
+    bp_driver_tell(NULL);
+}
+
+static void release_opening(void *argument) {
+    Opening *opening = argument;
+    if (opening->queue != NULL) clReleaseCommandQueue(opening->queue);
+    if (opening->context != NULL) clReleaseContext(opening->context);
+    free(opening);
+}
+
+/* Context and queue, unless the driver hangs (driver_start.h). */
+static BpStatus open_within_limit(BpDevice *device, BpError *err) {
+    double seconds;
+    BP_TRY(bp_driver_seconds(&seconds, err));
+    Opening *opening = calloc(1, sizeof *opening);
+    if (opening == NULL)
+        return bp_fail(err, BP_ERR_MEMORY, "no memory to open device %u", device->info.number);
+    opening->id = device->id;
+    snprintf(opening->what, sizeof opening->what, "opening device %u (%s, %s, driver %s)",
+             device->info.number, device->info.name, device->info.platform, device->info.driver);
+    BpLongCall *call = bp_long_call_begin(ask_to_open, opening, release_opening);
+    if (call == NULL) {
+        free(opening);
+        return bp_fail(err, BP_ERR_MEMORY, "no memory to open device %u", device->info.number);
+    }
+    BpStatus status = BP_OK;
+    if (!bp_long_call_wait(call, seconds, NULL)) {
+        status = bp_fail(
+            err, BP_ERR_DEVICE,
+            "device %u (%s, %s, driver %s) hangs: it could not be opened within %.3g s; choose another "
+            "one, or set " BP_DRIVER_SECONDS " to a longer time",
+            device->info.number, device->info.name, device->info.platform, device->info.driver, seconds);
+    } else if (opening->code != CL_SUCCESS) {
+        status = bp_cl_fail(err, opening->code, opening->call, device);
+    } else {
+        device->context = opening->context;
+        device->queue = opening->queue;
+        opening->context = NULL;
+        opening->queue = NULL;
+    }
+    bp_long_call_leave(call);
+    return status;
 }
 
 BpStatus bp_device_open(const BpDeviceInfo *info, BpDevice **device, BpError *err) {
@@ -60,24 +134,7 @@ BpStatus bp_device_open_part(const BpDeviceInfo *info, uint32_t threads, BpDevic
     opened->info = list[info->number];
     opened->id = ids[info->number];
     if (threads > 0) take_part(opened, threads);
-
-    cl_platform_id platform = NULL;
-    cl_int code = clGetDeviceInfo(opened->id, CL_DEVICE_PLATFORM, sizeof platform, &platform, NULL);
-    if (code != CL_SUCCESS) {
-        status = bp_cl_fail(err, code, "clGetDeviceInfo(CL_DEVICE_PLATFORM)", opened);
-        goto cleanup;
-    }
-    const cl_context_properties properties[] = {CL_CONTEXT_PLATFORM, (cl_context_properties)platform, 0};
-    opened->context = clCreateContext(properties, 1, &opened->id, NULL, NULL, &code);
-    if (code != CL_SUCCESS) {
-        status = bp_cl_fail(err, code, "clCreateContext", opened);
-        goto cleanup;
-    }
-    opened->queue = clCreateCommandQueue(opened->context, opened->id, CL_QUEUE_PROFILING_ENABLE, &code);
-    if (code != CL_SUCCESS) {
-        status = bp_cl_fail(err, code, "clCreateCommandQueue", opened);
-        goto cleanup;
-    }
+    BP_TRY_GOTO(status, open_within_limit(opened, err), cleanup);
     *device = opened;
     opened = NULL;
     status = BP_OK;

@@ -5,6 +5,7 @@
 #include "device.h"
 
 #include "device_choose.h"
+#include "driver_start.h"
 #include "forked.h"
 #include "pocl.h"
 
@@ -185,6 +186,7 @@ BpStatus bp_device_ids(BpDeviceInfo **list, cl_device_id **ids, size_t *count, B
     if (ids != NULL) *ids = NULL;
     *count = 0;
 
+    BP_TRY(bp_drivers_start(err));
     BP_TRY_GOTO(status, list_platforms(&platforms, &platform_count, err), cleanup);
     for (cl_uint p = 0; p < platform_count; ++p) {
         cl_uint here = 0;

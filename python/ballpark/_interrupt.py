@@ -43,14 +43,17 @@ POLL_SECONDS = 0.1
 
 
 class Job:
-    """A call into the library, which Python cannot interrupt: it runs in a thread of its own, and can be left alone."""
+    """A call into the library, which Python cannot interrupt: it runs in a thread of its own, and can be left alone.
 
-    def __init__(self, function: typing.Callable[[], typing.Any]):
+    daemon: the end of Python does not wait for it.
+    """
+
+    def __init__(self, function: typing.Callable[[], typing.Any], daemon: bool = False):
         self.function = function
         self.result: typing.Any = None
         self.problem: typing.Optional[BaseException] = None
         self.done = threading.Event()
-        self._thread = threading.Thread(target=self._run, name="ballpark")
+        self._thread = threading.Thread(target=self._run, name="ballpark", daemon=daemon)
         self._thread.start()
 
     def _run(self) -> None:
@@ -71,11 +74,11 @@ class Job:
         return True
 
 
-def interruptible(function: typing.Callable[[], T]) -> T:
-    """Calls it. Ctrl-C raises KeyboardInterrupt soon, and leaves the call to its end."""
+def interruptible(function: typing.Callable[[], T], patience: float = 0, daemon: bool = False) -> T:
+    """Calls it. Ctrl-C raises KeyboardInterrupt within `patience` seconds, and leaves the call to its end (Job)."""
     with CtrlC() as ctrl_c:
-        job = Job(function)
-        if not job.wait(ctrl_c, 0) or ctrl_c.pressed_at is not None:
+        job = Job(function, daemon)
+        if not job.wait(ctrl_c, patience) or ctrl_c.pressed_at is not None:
             raise KeyboardInterrupt
     result: T = job.result
     return result

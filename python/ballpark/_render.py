@@ -69,6 +69,10 @@ def _device(info: lib.BpDeviceInfo) -> Device:
 
 def devices() -> typing.List[Device]:
     """Every OpenCL device; those with a `refusal` cannot render."""
+    return interruptible(_list_devices, INTERRUPT_SECONDS, daemon=True)
+
+
+def _list_devices() -> typing.List[Device]:
     found, count = c.POINTER(lib.BpDeviceInfo)(), c.c_size_t()
     lib.call("bp_devices_list", c.byref(found), c.byref(count))
     try:
@@ -121,6 +125,7 @@ class Render:
         if spp is None and (error is not None or time is not None):
             rule.samples_max = 0
         chosen = lib.BpDeviceInfo()
+        devices()  # starts the drivers, one of which may hang: the end of Python is not to wait for that
         interruptible(lambda: self._create(options, rule, device, chosen))
         self.device = _device(chosen)
 

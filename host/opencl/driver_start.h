@@ -1,0 +1,35 @@
+/* driver_start.h: the drivers' first answers, once in a process, by one thread, and with a limit of time.
+ *
+ * In:    BALLPARK_DRIVER_SECONDS.   Out: drivers that have started; or an error that says which did not
+ * answer. Knows: OpenCL's platforms.   Does not know: devices in particular.
+ *
+ * The OpenCL loader loads all drivers at the first call, and a driver looks for its devices when it is first
+ * asked for them. Neither is safe where several threads come first: PoCL 3.1 tells all threads but one that
+ * it has no devices, or crashes. And a driver that hangs would hang everybody who asks. So everything that
+ * uses OpenCL begins with bp_drivers_start(): one thread asks, all others wait, and nobody waits for ever. */
+#ifndef BP_OPENCL_DRIVER_START_H
+#define BP_OPENCL_DRIVER_START_H
+
+#include "base/status.h"
+
+#define BP_DRIVER_SECONDS "BALLPARK_DRIVER_SECONDS"
+
+/* How long a driver may take to start, and to open a device: what BALLPARK_DRIVER_SECONDS says, without it
+ * 20; 0: no limit. BP_ERR_USAGE: it says something else. */
+BpStatus bp_driver_seconds(double *seconds, BpError *err);
+
+/* Until all drivers have listed their devices. BP_ERR_DEVICE: some driver hangs; so it is for every later
+ * call, unless it has answered by then. */
+BpStatus bp_drivers_start(BpError *err);
+
+/* The same for the program. BP_ERR_BROKEN_DEVICE: some driver hangs. BP_ERR_INTERRUPTED: stop() said so
+ * (Optional; asked all the time that this waits: long_call.h). */
+BpStatus bp_drivers_start_until(bool (*stop)(void), BpError *err);
+
+/* What a driver is at, for a handler of signals: "starting" or "opening device 0 (...)"; NULL: nothing, as
+ * far as this is told. Where several threads work at once it is that of the last one that began. */
+const char *bp_driver_doing(void);
+/* Tells it. `what`: stands as long as it is told; NULL: the driver has returned. */
+void bp_driver_tell(const char *what);
+
+#endif
