@@ -3,9 +3,11 @@
  * In:    argc, argv.   Out: an exit code (BP_STATUS_LIST).
  * Knows: how an error is shown, and by which of several processes.  Does not know: what any command does. */
 #include "base/json_memory.h"
+#include "base/long_call.h"
 #include "base/output_file.h"
 #include "base/shown.h"
 #include "cli/commands.h"
+#include "cli/driver_care.h"
 #include "cli/interrupt.h"
 #include "cli/page.h"
 #include "cli/terminal.h"
@@ -135,6 +137,7 @@ int main(int argc, char **argv) {
     signal(SIGXFSZ, SIG_IGN);
     bp_interrupt_install();
     bp_json_memory_watch();
+    bp_driver_care_begin(argc, argv);
 
     BpStatus status = join_ranks(argv, &line, bp_command_line_parse(argc, argv, &line, &err), &err);
     /* Of several processes one tells what all of them met with. */
@@ -161,5 +164,6 @@ int main(int argc, char **argv) {
     if (status == BP_OK) status = finished;
     bp_error_clear(&err);
     bp_comm_end(&line.comm);
+    if (bp_long_call_hangs()) _exit(bp_status_exit_code(status)); /* with a driver that hangs */
     return bp_status_exit_code(status);
 }

@@ -17,8 +17,9 @@
 #include <sys/prctl.h>
 #endif
 
-/* Exit codes of the child: the work succeeded; it failed and wrote the reason. */
-enum { CHILD_DONE = 0, CHILD_FAILED = 1 };
+/* Exit codes of the child: the work succeeded; it failed and wrote the reason. No others are ours, least of
+ * all 0: a driver may have ended the process. */
+enum { CHILD_DONE = 113, CHILD_FAILED = 114 };
 
 /* How often the parent looks whether it was interrupted, and how many times later it tells the child again.
  */
@@ -103,12 +104,12 @@ static void describe_end(int ended, bool hung, double seconds, BpChildReport *re
                      "crashed: %s; PoCL, the driver for CPUs, needs the linker `ld`, which is not in PATH: "
                      "install binutils, or add the folder of `ld` to PATH",
                      strsignal(SIGABRT));
-    } else if (WEXITSTATUS(ended) > CHILD_FAILED) {
-        report->end = BP_CHILD_FAILED;
-        snprintf(failure, size, "its driver ended the process with exit code %d", WEXITSTATUS(ended));
     } else if (WEXITSTATUS(ended) == CHILD_FAILED) {
         report->end = BP_CHILD_FAILED;
         snprintf(failure, size, "%s", report->size > 0 ? report->bytes : "failed without a message");
+    } else if (WEXITSTATUS(ended) != CHILD_DONE) {
+        report->end = BP_CHILD_FAILED;
+        snprintf(failure, size, "ended the process with exit code %d", WEXITSTATUS(ended));
     }
 }
 

@@ -480,8 +480,6 @@ static BpStatus prepare(const BpCommandLine *line, Bench *bench, BpError *err) {
             continue;
         }
         if (bench->folder == NULL) BP_TRY(open_folder(line, bench, err));
-        if (bp_interrupted())
-            return bp_fail(err, BP_ERR_INTERRUPTED, "interrupted before a scene was traced");
         BP_TRY(write_fixed_scene(line, entry->name, bench->folder, entry->path, sizeof entry->path, err));
         if (line->output != NULL) bp_say(line, "%s: the scene %s", entry->path, entry->name);
     }
@@ -493,6 +491,7 @@ static BpStatus run_rounds(const BpCommandLine *line, Bench *bench, BpError *err
     BpDeviceInfo *devices = NULL;
     size_t device_count = 0;
     BpStatus status = bp_setup_devices(line, &devices, &device_count, err);
+    bp_interrupt_catch();
     for (size_t r = 0; r < bench->rounds && status == BP_OK; ++r) {
         for (size_t i = 0; i < bench->count && status == BP_OK; ++i) {
             Entry *entry = &bench->entries[i];
@@ -516,7 +515,6 @@ BpStatus bp_command_bench(const BpCommandLine *line, BpError *err) {
     Bench bench = {0};
     BpStatus status = BP_OK;
     if (line->json != NULL) BP_TRY(bp_line_check_output(line, line->json, err));
-    bp_interrupt_catch();
     BP_TRY_GOTO(status, prepare(line, &bench, err), done);
     if (line->output != NULL) goto done; /* the scenes were wanted, not figures */
     BP_TRY_GOTO(status, run_rounds(line, &bench, err), done);

@@ -20,6 +20,7 @@
 #include "interrupt.h"
 #include "json_file.h"
 #include "junit_file.h"
+#include "opencl/driver_start.h"
 #include "option_table.h"
 #include "output.h"
 #include "page.h"
@@ -214,8 +215,11 @@ static BpStatus find_devices(Session *session, BpError *err) {
     const BpCommandLine *line = session->line;
     BpDeviceSurvey *survey = &session->survey;
     /* Even where a check may take no time, drivers need some to start. */
-    double seconds = bp_option_given(line, BP_OPTION_TIMEOUT) ? line->timeout_seconds : BP_SURVEY_SECONDS;
-    if (seconds < SURVEY_SECONDS_MIN) seconds = SURVEY_SECONDS_MIN;
+    double seconds = line->timeout_seconds;
+    if (!bp_option_given(line, BP_OPTION_TIMEOUT))
+        BP_TRY(bp_driver_seconds(&seconds, err));
+    else if (seconds < SURVEY_SECONDS_MIN)
+        seconds = SURVEY_SECONDS_MIN;
     BP_TRY(bp_device_survey(seconds, line->quiet, survey, err));
     session->devices = calloc(survey->count + 1, sizeof *session->devices);
     if (session->devices == NULL) return bp_fail(err, BP_ERR_MEMORY, "out of memory for a list of devices");

@@ -11,6 +11,7 @@
 #include "device_survey.h"
 #include "interrupt.h"
 #include "json_file.h"
+#include "opencl/driver_start.h"
 #include "output.h"
 #include "page.h"
 #include "render/calibrate.h"
@@ -118,8 +119,8 @@ static BpStatus write_json(const BpCommandLine *line, const BpDeviceSurvey *surv
 
 BpStatus bp_command_devices(const BpCommandLine *line, BpError *err) {
     BpDeviceSurvey survey = {0};
-    const double seconds =
-        bp_option_given(line, BP_OPTION_TIMEOUT) ? line->timeout_seconds : BP_SURVEY_SECONDS;
+    double seconds = line->timeout_seconds;
+    if (!bp_option_given(line, BP_OPTION_TIMEOUT)) BP_TRY(bp_driver_seconds(&seconds, err));
     if (line->json != NULL) BP_TRY(bp_line_check_output(line, line->json, err));
     bp_interrupt_catch(); /* a signal ends the child that lists, too */
     BpStatus status = bp_device_survey(seconds, line->quiet, &survey, err), shown = BP_OK;

@@ -6,26 +6,16 @@
 #include "child_process.h"
 #include "interrupt.h"
 #include "opencl/device_choose.h"
+#include "opencl/driver_files.h"
+#include "opencl/driver_start.h"
 
 #include "page.h"
 
-#include <dirent.h>
 #include <errno.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-#include <sys/stat.h>
 #include <unistd.h>
-
-#define VENDORS "OCL_ICD_VENDORS"
-#define VENDORS_DEFAULT "/etc/OpenCL/vendors"
-enum { DRIVERS_MAX = 64 };
-
-typedef struct Drivers {
-    char files[DRIVERS_MAX][512];
-    size_t count;
-    char place[512]; /* where they were looked for */
-} Drivers;
 
 /* ---- asking ------------------------------------------------------------------------------------------- */
 
@@ -34,7 +24,8 @@ static bool list_in_child(void *argument, FILE *out) {
     BpDeviceInfo *list = NULL;
     size_t count = 0;
     BpError err = {0};
-    if (argument != NULL) setenv(VENDORS, argument, 1);
+    if (argument != NULL) setenv(BP_DRIVER_VENDORS, argument, 1);
+    setenv(BP_DRIVER_SECONDS, "0", 1); /* the parent has the clock */
     const BpStatus status = bp_devices_list(&list, &count, &err);
     if (status != BP_OK) fputs(err.message, out);
     const bool good = status == BP_OK && (count == 0 || fwrite(list, sizeof *list, count, out) == count);
@@ -50,60 +41,7 @@ static void keep_list(BpChildReport *report, BpDeviceSurvey *survey) {
     report->bytes = NULL;
 }
 
-/* ---- the drivers' files, as ocl-icd finds them (libOpenCL(7)); Khronos' loader knows folders alone --------
- */
-
-static bool ends_with(const char *text, const char *end) {
-    const size_t length = strlen(text), tail = strlen(end);
-    return length >= tail && strcmp(text + length - tail, end) == 0;
-}
-
-static bool is_folder(const char *path) {
-    struct stat found;
-    return stat(path, &found) == 0 && S_ISDIR(found.st_mode);
-}
-
-static void add_driver(Drivers *drivers, const char *folder, const char *name) {
-    if (drivers->count == DRIVERS_MAX) return;
-    const int length = snprintf(drivers->files[drivers->count], sizeof drivers->files[0], "%s%s%s", folder,
-                                folder[0] != '\0' ? "/" : "", name);
-    if (length > 0 && (size_t)length < sizeof drivers->files[0]) ++drivers->count;
-}
-
-static int by_name(const void *a, const void *b) {
-    return strcmp(a, b);
-}
-
-static void find_drivers(Drivers *drivers) {
-    const char *vendors = getenv(VENDORS), *path = getenv("OPENCL_VENDOR_PATH");
-    const char *usual = path != NULL && path[0] != '\0' ? path : VENDORS_DEFAULT;
-    const bool named = vendors != NULL && vendors[0] != '\0' && !is_folder(vendors);
-    const char *folder = vendors != NULL && vendors[0] != '\0' ? vendors : usual;
-    drivers->count = 0;
-    snprintf(drivers->place, sizeof drivers->place, "%s", folder);
-    if (named) { /* one file, or a library */
-        char beside[512];
-        snprintf(beside, sizeof beside, "%s/%s", usual, vendors);
-        const bool there = strchr(vendors, '/') == NULL && access(beside, R_OK) == 0;
-        add_driver(drivers, "", there ? beside : vendors);
-        return;
-    }
-    DIR *open = opendir(folder);
-    if (open == NULL) return;
-    for (const struct dirent *entry = readdir(open); entry != NULL; entry = readdir(open))
-        if (ends_with(entry->d_name, ".icd")) add_driver(drivers, folder, entry->d_name);
-    closedir(open);
-    qsort(drivers->files, drivers->count, sizeof drivers->files[0], by_name);
-}
-
-/* What the file names on its first line; a library named in its place stands for itself. */
-static void read_library(const char *file, char library[256]) {
-    library[0] = '\0';
-    FILE *in = ends_with(file, ".icd") ? fopen(file, "r") : NULL;
-    if (in == NULL || fgets(library, 256, in) == NULL) snprintf(library, 256, "%s", in == NULL ? file : "");
-    library[strcspn(library, "\r\n")] = '\0';
-    if (in != NULL) fclose(in);
-}
+/* ---- a folder of drivers' files ---------------------------------------------------------------------- */
 
 /* Puts a file that names the library of one driver into `folder`, under its number; false: errno says why
  * not. */
@@ -132,7 +70,7 @@ static void name_broken(const BpBrokenDriver *driver) {
 }
 
 /* Asks the drivers one by one; those that answer end up in the survey's folder, the others in its list. */
-static BpStatus try_each(const Drivers *drivers, double seconds, bool quiet, BpDeviceSurvey *survey,
+static BpStatus try_each(const BpDriverFiles *drivers, double seconds, bool quiet, BpDeviceSurvey *survey,
                          BpError *err) {
     BpTemporaryFolder alone = {0};
     BpStatus status = bp_temporary_folder_make(&survey->folder, err);
@@ -143,7 +81,7 @@ static BpStatus try_each(const Drivers *drivers, double seconds, bool quiet, BpD
     for (size_t d = 0; d < drivers->count && status == BP_OK && !bp_interrupted(); ++d) {
         BpChildReport report;
         char library[256];
-        read_library(drivers->files[d], library);
+        bp_driver_files_library(drivers->files[d], library);
         if (library[0] == '\0') continue; /* the loader finds no driver there either */
         bool written = enter(alone.path, d, library);
         if (written) status = bp_run_in_child(list_in_child, alone.path, seconds, &report, err);
@@ -166,22 +104,13 @@ static BpStatus try_each(const Drivers *drivers, double seconds, bool quiet, BpD
     return status;
 }
 
-BpStatus bp_device_survey(double seconds, bool quiet, BpDeviceSurvey *survey, BpError *err) {
+/* `failure`: what asking all at once has come to. */
+static BpStatus survey_each(double seconds, bool quiet, const char *failure, BpDeviceSurvey *survey,
+                            BpError *err) {
     BpChildReport report;
-    *survey = (BpDeviceSurvey){0};
-    BP_TRY(bp_run_in_child(list_in_child, NULL, seconds, &report, err));
-    if (report.end == BP_CHILD_DONE) {
-        keep_list(&report, survey);
-        return BP_OK;
-    }
-    free(report.bytes);
-    if (bp_interrupted()) return bp_fail(err, BP_ERR_INTERRUPTED, "interrupted");
-    char failure[256];
-    memcpy(failure, report.failure, sizeof failure);
-
-    Drivers *drivers = malloc(sizeof *drivers);
+    BpDriverFiles *drivers = malloc(sizeof *drivers);
     if (drivers == NULL) return bp_fail(err, BP_ERR_MEMORY, "out of memory for a list of drivers");
-    find_drivers(drivers);
+    bp_driver_files_find(drivers);
     BpStatus status = BP_OK;
     if (drivers->count > 0) status = try_each(drivers, seconds, quiet, survey, err);
     if (bp_interrupted() && status == BP_OK) status = bp_fail(err, BP_ERR_INTERRUPTED, "interrupted");
@@ -190,7 +119,7 @@ BpStatus bp_device_survey(double seconds, bool quiet, BpDeviceSurvey *survey, Bp
                          "listing the OpenCL devices %s; no single driver in %s is to blame: set "
                          "OCL_ICD_VENDORS to the .icd file of one",
                          failure, drivers->place);
-    if (status == BP_OK && setenv(VENDORS, survey->folder.path, 1) != 0)
+    if (status == BP_OK && setenv(BP_DRIVER_VENDORS, survey->folder.path, 1) != 0)
         status = bp_fail(err, BP_ERR_MEMORY, "out of memory for the environment");
     if (status == BP_OK) status = bp_run_in_child(list_in_child, NULL, seconds, &report, err);
     if (status == BP_OK && report.end == BP_CHILD_DONE)
@@ -204,6 +133,24 @@ BpStatus bp_device_survey(double seconds, bool quiet, BpDeviceSurvey *survey, Bp
     }
     free(drivers);
     return status;
+}
+
+BpStatus bp_device_survey(double seconds, bool quiet, BpDeviceSurvey *survey, BpError *err) {
+    BpChildReport report;
+    *survey = (BpDeviceSurvey){0};
+    BP_TRY(bp_run_in_child(list_in_child, NULL, seconds, &report, err));
+    if (report.end == BP_CHILD_DONE) {
+        keep_list(&report, survey);
+        return BP_OK;
+    }
+    free(report.bytes);
+    if (bp_interrupted()) return bp_fail(err, BP_ERR_INTERRUPTED, "interrupted");
+    return survey_each(seconds, quiet, report.failure, survey, err);
+}
+
+BpStatus bp_device_survey_each(double seconds, bool quiet, BpDeviceSurvey *survey, BpError *err) {
+    *survey = (BpDeviceSurvey){0};
+    return survey_each(seconds, quiet, "failed", survey, err);
 }
 
 void bp_device_survey_clear(BpDeviceSurvey *survey) {

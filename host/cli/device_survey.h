@@ -15,9 +15,6 @@
 
 #include <jansson.h>
 
-/* How long a driver may take to list its devices, unless --timeout says otherwise. */
-#define BP_SURVEY_SECONDS 20.0
-
 typedef struct BpBrokenDriver {
     char file[512];    /* "/etc/OpenCL/vendors/some.icd" */
     char library[256]; /* what the file names */
@@ -36,6 +33,8 @@ typedef struct BpDeviceSurvey {
  * attempt. Call it before this process uses OpenCL. BP_ERR_BROKEN_DEVICE: no answer, and no single driver is
  * to blame. Clear it in any case, but only after the devices have been used. */
 BpStatus bp_device_survey(double seconds, bool quiet, BpDeviceSurvey *survey, BpError *err);
+/* The same where asking all drivers at once is known to fail: asks each by itself. */
+BpStatus bp_device_survey_each(double seconds, bool quiet, BpDeviceSurvey *survey, BpError *err);
 void bp_device_survey_clear(BpDeviceSurvey *survey);
 
 /* The device that `text` means, as bp_device_choose(); the error names broken drivers too. */

@@ -4,6 +4,7 @@
 #include "base/plural.h"
 #include "base/shown.h"
 #include "child_process.h"
+#include "driver_care.h"
 #include "file_conflicts.h"
 #include "film/film.h"
 #include "formats/input_file.h"
@@ -29,6 +30,7 @@ static BpStatus load(const char *path, const BpSceneChanges *changes, BpScene **
                        "the scene \"-\" is standard input, which is the terminal; pipe a scene into it: "
                        "ballpark generate cover | ballpark render - -o cover.png");
     BP_TRY(bp_stream_read(stdin, 0, name, &text, &length, err));
+    bp_driver_care_keep_input(text, length);
     const BpStatus status = bp_scene_parse_changed(text, length, name, changes, scene, err);
     free(text);
     return status;
@@ -190,7 +192,9 @@ static bool try_device(void *argument, FILE *out) {
     return true;
 }
 
-BpStatus bp_setup_try_device(const char *name, BpError *err) {
+/* PoCL may need a linker, and ends the process if PATH has none. In that case this tries a kernel on the
+ * device that `name` means in a child process. */
+static BpStatus try_without_linker(const char *name, BpError *err) {
     char copy[256];
     BpChildReport report;
     if (bp_pocl_finds_linker()) return BP_OK;
@@ -201,18 +205,35 @@ BpStatus bp_setup_try_device(const char *name, BpError *err) {
     return bp_fail(err, BP_ERR_DEVICE, "the OpenCL driver %s", report.failure);
 }
 
-BpStatus bp_setup_devices(const BpCommandLine *line, BpDeviceInfo **devices, size_t *count, BpError *err) {
-    const bool all = line->device != NULL && strcmp(line->device, "all") == 0;
-    BP_TRY(bp_setup_try_device(all ? NULL : line->device, err));
-    if (all) return all_devices(devices, count, err);
+/* Of the drivers that are left, where some are broken. */
+static BpStatus find_device(const BpDeviceSurvey *survey, const char *name, BpDeviceInfo **devices,
+                            size_t *count, BpError *err) {
     *devices = malloc(sizeof **devices);
     if (*devices == NULL) return bp_fail(err, BP_ERR_MEMORY, "out of memory for a device's description");
-    const BpStatus status = bp_device_find(line->device, *devices, err);
+    BpStatus status = survey->broken_count > 0 ? bp_device_survey_find(survey, name, *devices, err)
+                                               : bp_device_find(name, *devices, err);
     *count = status == BP_OK ? 1 : 0;
-    if (status != BP_OK) {
-        free(*devices);
-        *devices = NULL;
-    }
+    if (status == BP_OK) return BP_OK;
+    free(*devices);
+    *devices = NULL;
+    if (status == BP_ERR_NO_DEVICE || status == BP_ERR_BROKEN_DEVICE) status = BP_ERR_DEVICE;
+    if (err != NULL) err->code = status;
+    return status;
+}
+
+BpStatus bp_setup_devices(const BpCommandLine *line, BpDeviceInfo **devices, size_t *count, BpError *err) {
+    const bool all = line->device != NULL && strcmp(line->device, "all") == 0;
+    const char *name = all ? NULL : line->device;
+    BpDeviceSurvey survey = {0};
+    BpStatus status = BP_OK;
+    BP_TRY_GOTO(status, bp_driver_care_survey(line, &survey, err), done);
+    BP_TRY_GOTO(status, try_without_linker(name, err), done);
+    BP_TRY_GOTO(status, bp_driver_care_start(line, err), done);
+    status = all && (survey.broken_count == 0 || survey.count > 0)
+                 ? all_devices(devices, count, err)
+                 : find_device(&survey, name, devices, count, err);
+done:
+    bp_device_survey_clear(&survey);
     return status;
 }
 

@@ -37,14 +37,10 @@ BpStatus bp_setup_share(const BpCommandLine *line, BpRenderOptions *options, BpE
 /* Warns on standard error, unless --quiet, of what rounding the scene to `precision` does to it. */
 void bp_setup_warn(const BpCommandLine *line, const BpScene *scene, BpPrecision precision);
 
-/* The devices that --device means: one, or with "all" every device that can render. Free *devices with
- * free(). Never empty on success. */
+/* Starts the drivers (driver_care.h), which may start the program again, so call it before anything is
+ * written. The devices that --device means: one, or with "all" every device that can render. Free *devices
+ * with free(). Never empty on success. */
 BpStatus bp_setup_devices(const BpCommandLine *line, BpDeviceInfo **devices, size_t *count, BpError *err);
-
-/* PoCL may need a linker, and ends the process if PATH has none. In that case this tries a kernel on the
- * device that `name` means (as for bp_device_find) in a child process. Call it before anything uses OpenCL.
- */
-BpStatus bp_setup_try_device(const char *name, BpError *err);
 
 /* Runs the self-test on every device (once per device, driver and version; a pass is remembered). A device
  * that fails is refused; with --force there is only a warning. */

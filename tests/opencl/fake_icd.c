@@ -2,11 +2,12 @@
  *
  * In:    FAKE_DEVICES in the environment, read at every call: platforms parted by '|', devices by ','. A
  * device is a kind of the table below, optionally with a name and a driver version: "gpu=Big
- * Card@8.1,cpu|old". FAKE_COMPILE: milliseconds of the processor that a build takes, a tenth of them for a
- * kernel called `trial`. FAKE_KEEPS: a source that was built before takes none.
- * Out:   two platforms ("Fake One", "Fake Two") through the ICD loader (OCL_ICD_VENDORS names the .icd file).
- * A "build" succeeds unless the source holds #error; its log is then the build options, so that tests see
- * them. A program's binary is its source. */
+ * Card@8.1,cpu|old"; "unlistable-hanging" and "unlistable-crashing" do so when devices are listed.
+ * FAKE_COMPILE: milliseconds of the processor that a build takes, a tenth of them for a kernel called
+ * `trial`. FAKE_KEEPS: a source that was built before takes none. Out:   two platforms ("Fake One", "Fake
+ * Two") through the ICD loader (OCL_ICD_VENDORS names the .icd file). A "build" succeeds unless the source
+ * holds #error; its log is then the build options, so that tests see them. A program's binary is its source.
+ */
 #define CL_TARGET_OPENCL_VERSION 120
 #include <CL/cl.h>
 #include <CL/cl_icd.h>
@@ -156,6 +157,8 @@ static cl_int CL_API_CALL get_device_ids(cl_platform_id platform, cl_device_type
     cl_uint found = 0;
     (void)type; /* the host asks for all */
     while (found < DEVICES && find_device(platform->number, (int)found, text)) {
+        while (strcmp(text, "unlistable-hanging") == 0) sleep(1);
+        if (strcmp(text, "unlistable-crashing") == 0) abort();
         if (ids != NULL && found < room) ids[found] = &devices[platform->number][found];
         ++found;
     }

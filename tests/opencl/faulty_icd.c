@@ -1,7 +1,8 @@
 /* faulty_icd.c: an OpenCL driver that does not survive being asked for its platforms.
  *
- * In:    FAULT, from the build: HANG or CRASH.   Out: nothing: it hangs, or crashes.
- * Knows: the first call that an ICD loader makes. */
+ * In:    FAULT, from the build: what it does: HANG, CRASH (abort), SEGV, EXIT (ends the process, as if all
+ * were well), or LOAD (hangs while it is loaded).   Out: nothing. Knows: the first call that an ICD loader
+ * makes. */
 #define CL_TARGET_OPENCL_VERSION 120
 #include <CL/cl.h>
 #include <CL/cl_icd.h>
@@ -11,12 +12,21 @@
 #include <unistd.h>
 
 #define EXPORT __attribute__((visibility("default")))
-enum { HANG, CRASH };
+enum { HANG, CRASH, SEGV, EXIT, LOAD };
+
+/* No compiler sees that nothing lies there. */
+static volatile int *volatile nowhere;
+
+__attribute__((constructor)) static void on_load(void) {
+    while (FAULT == LOAD) sleep(1);
+}
 
 EXPORT cl_int CL_API_CALL clIcdGetPlatformIDsKHR(cl_uint room, cl_platform_id *ids, cl_uint *count);
 cl_int CL_API_CALL clIcdGetPlatformIDsKHR(cl_uint room, cl_platform_id *ids, cl_uint *count) {
     (void)room, (void)ids, (void)count;
     while (FAULT == HANG) sleep(1);
+    if (FAULT == EXIT) exit(0);
+    if (FAULT == SEGV) *nowhere = 1;
     abort(); /* which no mask of signals holds off */
     return CL_OUT_OF_HOST_MEMORY;
 }
