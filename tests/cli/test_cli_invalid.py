@@ -20,7 +20,7 @@ class Invalid(ProgramTest):
         if "kernels" in self.files():
             shutil.rmtree(self.path("kernels"))
         right = "madd3(fma(splat(R(0.5)), height, splat(R(0.5))), subtract3(top, bottom), bottom);"
-        return broken_kernels(self, "light/sky.cl", f"return {right}", f"Vec3 light = {right} light.x = {value}; return light;")
+        return broken_kernels(self, "light/sky.cl", f"const Vec3 radiance = {right}", f"Vec3 light = {right} light.x = {value}; return light;\n    const Vec3 radiance = light;")
 
     def render(self, here, *options):
         result = self.succeed("render", "s.json", "--stats", "s.stats", "-o", "s.bpa", *options, environment=here)
