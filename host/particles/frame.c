@@ -286,13 +286,15 @@ void frame_cell(BpParticleFile *file, const double origin[3], const double edges
                 const bool periodic[3]) {
     BpParticles *const p = file->out;
     if (p == NULL) return;
-    double longest = 0, farthest = 0;
+    double longest = 0;
+    bool good = true; /* fmax() would pass over what is no number */
     for (int i = 0; i < 3; i++) {
-        longest = fmax(longest, length_of(edges[i]));
-        farthest = fmax(farthest, fabs(origin[i]));
+        const double length = length_of(edges[i]);
+        good &= length <= COORDINATE_MAX && fabs(origin[i]) <= COORDINATE_MAX;
+        longest = fmax(longest, length);
     }
-    if (!(longest > SHORTEST_EDGE)) return; /* the cell of a file that has none */
-    if (!(longest <= COORDINATE_MAX && farthest <= COORDINATE_MAX)) {
+    if (good && longest <= SHORTEST_EDGE) return; /* the cell of a file that has none */
+    if (!good) {
         bp_particles_note(p, "a cell that is not finite, or larger than 1e12, left out");
         return;
     }

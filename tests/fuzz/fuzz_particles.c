@@ -1,11 +1,14 @@
 /* fuzz_particles.c: any bytes as a file of particles of one format, FORMAT, for which it is built: one target
  * for each reader. The first byte says, from 128 on, that the column "x" is wanted; the rest is the file.
  *
- * What is accepted is whole: arrays of one length, finite places, names and bonds that exist. Frames are read
+ * What is accepted is whole: arrays of one length, finite places, names and bonds that exist, and neighbours
+ * are found whatever the cell. Frames are read
  * one after the other, passed over, and asked for by number, and each way finds as many. */
 #include "fuzz.h"
 #include "particles/elements.h"
+#include "particles/molecules.h"
 #include "particles/reader.h"
+#include "particles/spacing.h"
 
 #include <unistd.h>
 
@@ -30,6 +33,24 @@ static void check_particles(const BpParticles *p) {
         for (int c = 0; c < 3; c++) require(isfinite(p->cell[i][c]) && isfinite(p->cell_origin[c]));
 }
 
+/* What looks for neighbours takes any cell, and what it finds exists. */
+static void check_neighbours(BpParticles *p) {
+    enum { MOST = 64 };
+    bool shown[MOST];
+    BpBonds bonds;
+    BpError err = {0};
+    double spacing = NAN;
+    size_t moved = 0;
+    if (p->count == 0 || p->count > MOST) return;
+    for (size_t i = 0; i < p->count; i++) shown[i] = true;
+    require(bp_particles_spacing(p, shown, &spacing, &err) == BP_OK && spacing >= 0 && isfinite(spacing));
+    require(bp_bonds_find(p, shown, &bonds, &err) == BP_OK);
+    for (size_t b = 0; b < bonds.count; b++)
+        require(bonds.bond[b].a < p->count && bonds.bond[b].b < p->count);
+    require(bp_molecules_make_whole(p, shown, &bonds, &moved, &err) == BP_OK && moved <= p->count);
+    free(bonds.bond);
+}
+
 int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size) {
     static FILE *file = NULL;
     static const char *const wanted[] = {"x"};
@@ -50,6 +71,7 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size) {
     while (status == BP_OK && !end && found < FRAMES_MAX) {
         status = bp_particle_file_next(particles_file, &particles, &end, &err);
         if (status == BP_OK && !end) check_particles(&particles);
+        if (status == BP_OK && !end) check_neighbours(&particles);
         found += status == BP_OK && !end;
     }
     if (status != BP_OK) require(err.code == status && err.message[0] != '\0');

@@ -115,6 +115,16 @@ class Shapes(ValuesTest):
         self.assertEqual((s["radii"], s["notes"]), ([5], "1 ellipsoid drawn as a sphere"))
 
 
+class Boxes(ValuesTest):
+    def test_boxes_that_are_none(self):
+        for box in ([math.nan, 9, 9, 0, 0, 0], [9, 9, 9, 0, math.nan, 0], [9, 9, math.inf, 0, 0, 0], [9, 9, 9, math.inf, 0, 0]):
+            content = frame([[0, 0, 0], [1, 0, 0]])
+            content["configuration/box"] = floats(1, *box)
+            s = self.values("a.gsd", gsd_file([content]))
+            self.assertNotIn("cell", s, box)
+            self.assertIn("a cell that is not finite", s["notes"])
+
+
 class Names(ValuesTest):
     """Two names that differ in their last letter only."""
     PAIR = [LONG + "A", LONG + "B"]
