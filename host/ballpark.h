@@ -1,16 +1,20 @@
 /* ballpark.h: the public interface of libballpark, a path tracer for spheres on any OpenCL device.
  *
  * The straight line: load a scene, open a render of it on a list of devices, step until it is finished, read
- * the picture, destroy. Every call but the last line's can fail: look at what it returns.
+ * the picture, destroy. Once a call has failed, what is left is to say so and to destroy.
  *
  *     BpScene *scene = NULL; BpRender *render = NULL; BpError err = {0};
  *     BpProgress progress = {0}; BpPicture picture = {0};
- *     bp_scene_load("cover.json", &scene, &err);
- *     bp_render_create(scene, NULL, NULL, 0, &render, &err);
- *     do bp_render_step(render, &progress, &err); while (!progress.finished);
- *     bp_render_read(render, &picture, &err);
- *     bp_picture_write(&picture, "cover.png", BP_FORMAT_PNG, BP_TRANSFER_GAMMA2, &err);
+ *     BpStatus status = bp_scene_load("cover.json", &scene, &err);
+ *     if (status == BP_OK) status = bp_render_create(scene, NULL, NULL, 0, &render, &err);
+ *     while (status == BP_OK && !progress.finished) status = bp_render_step(render, &progress, &err);
+ *     if (status == BP_OK) status = bp_render_read(render, &picture, &err);
+ *     if (status == BP_OK)
+ *         status = bp_picture_write(&picture, "cover.png", BP_FORMAT_PNG, BP_TRANSFER_GAMMA2, &err);
+ *     if (status != BP_OK)
+ *         fprintf(stderr, "%s: %s\n", err.file[0] != 0 ? err.file : bp_status_name(status), err.message);
  *     bp_picture_clear(&picture); bp_render_destroy(&render); bp_scene_destroy(&scene);
+ *     bp_error_clear(&err);
  *
  * General rules, stated once:
  * - Errors. A function that can fail returns BpStatus and takes `BpError *err` last; `err` may be NULL. Begin

@@ -290,8 +290,8 @@ static BpStatus rank_names(Job *job, BpError *err) {
     X(BP_COLOR_AUTO, "")                                                                                     \
     X(BP_COLOR_CONSTANT, "")                                                                                 \
     X(BP_COLOR_ELEMENT, "elements")                                                                          \
-    X(BP_COLOR_CHAIN, "chains") X(BP_COLOR_RESIDUE, "residues") X(BP_COLOR_TYPE, "types")                    \
-        X(BP_COLOR_COLUMN, "values")
+    X(BP_COLOR_CHAIN, "chains")                                                                              \
+    X(BP_COLOR_RESIDUE, "residues") X(BP_COLOR_TYPE, "types") X(BP_COLOR_COLUMN, "values")
 BP_WORDS(BpColorBy, static const char *const color_names, COLOR_WORDS);
 
 static BpStatus choose_colors(Job *job, BpError *err) {

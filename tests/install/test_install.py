@@ -97,13 +97,14 @@ def check_header(prefix):
 
 
 def check_synopsis(prefix, flags, environment):
-    """The program that the header's comment begins with compiles without a warning, and makes its picture."""
+    """The program that the header's comment begins with compiles without a warning, and makes its picture; where a call fails,
+    it says so and ends."""
     header = (prefix / "include/ballpark.h").read_text()
     comment = header[: header.index("*/")]
-    lines = re.findall(r"^ \*     (\S.*)$", comment, re.MULTILINE)
+    lines = re.findall(r"^ \*     (\s*\S.*)$", comment, re.MULTILINE)
     assert len(lines) > 5 and "bp_render_step" in " ".join(lines), lines
     file = prefix / "synopsis.c"
-    file.write_text("#include <ballpark.h>\nint main(void) {\n" + "\n".join(lines) + "\nreturn (int)err.code;\n}\n")
+    file.write_text("#include <ballpark.h>\n#include <stdio.h>\nint main(void) {\n" + "\n".join(lines) + "\nreturn (int)status;\n}\n")
     run(compiler, "-std=c11", *WARNINGS, file, *flags, "-o", prefix / "synopsis")
     scene = json.loads((prefix / "share/ballpark/scenes/v4-22-defocus.json").read_text())
     scene["camera"].update(image_width=32, samples_per_pixel=1)
@@ -111,6 +112,27 @@ def check_synopsis(prefix, flags, environment):
     run(prefix / "synopsis", env=environment, cwd=prefix)
     size, _ = read_png(prefix / "cover.png")
     assert size[0] == 32, size
+    (prefix / "cover.png").unlink()
+    check_failing_calls(prefix, [prefix / "synopsis"], environment)
+    (prefix / "cover.json").unlink()
+    failed = subprocess.run([prefix / "synopsis"], env=environment, cwd=prefix, capture_output=True, text=True, timeout=60, check=False)
+    assert failed.returncode != 0 and "cover.json" in failed.stderr, failed
+
+
+def check_failing_calls(prefix, command, environment):
+    """Each call of a library in which it fails: a program says so and ends, without a picture."""
+    declarations = " ".join((prefix / "include/ballpark.h").read_text().split())
+    for name in ("bp_render_create", "bp_render_step", "bp_render_read", "bp_picture_write"):
+        types = re.search(rf"BpStatus {name}\(([^)]*)\)", declarations).group(1)
+        source_file, library = prefix / "failing.c", prefix / "failing.so"
+        source_file.write_text(f"#include <ballpark.h>\n#include <string.h>\nBpStatus {name}({types}) {{\n"
+                               'strcpy(err->message, "it was made to fail");\nreturn err->code = BP_ERR_DEVICE;\n}\n')
+        run(compiler, "-std=c11", "-shared", "-fPIC", "-w", f"-I{prefix}/include", source_file, "-o", library)
+        failed = subprocess.run(command, env={**environment, "LD_PRELOAD": str(library)}, cwd=prefix, capture_output=True, text=True,
+                                timeout=60, check=False)
+        assert failed.returncode not in (0, 134, 139) and failed.returncode > 0, f"{name}: {failed}"
+        assert "it was made to fail" in failed.stderr, f"{name}: {failed}"
+        assert not (prefix / "cover.png").exists(), f"{name} failed, and there is a picture"
 
 
 def check_documents(prefix):
@@ -165,6 +187,9 @@ def check_example(prefix, flags, environment):
     size, rows = read_png(picture)
     assert size[0] == 160, f"width {size[0]}"
     assert len(set(rows)) > 100, "the picture is nearly uniform"
+    picture.unlink()
+    if list(prefix.rglob("libballpark.so")):  # only there can a call be replaced
+        check_failing_calls(prefix, [example, prefix / "share/ballpark/scenes/cover.json", picture], environment)
 
 
 def luminance(values):
