@@ -166,7 +166,8 @@ BpStatus bp_device_choose(const BpDeviceInfo *list, size_t count, const char *te
         return bp_fail(err, BP_ERR_NO_DEVICE, "no OpenCL device can render (found %s): " BP_NO_DEVICE_REMEDY,
                        there);
     if (chosen == NULL)
-        return bp_fail(err, BP_ERR_NO_DEVICE, "no device matches '%s'; available: %s", text, there);
+        return bp_fail(err, BP_ERR_NO_DEVICE, "no device matches '%.200s'%s; available: %s", text,
+                       strchr(text, ',') != NULL ? ", and only one can be named" : "", there);
     if (ambiguous)
         return bp_fail(err, BP_ERR_NO_DEVICE, "'%s' matches several devices; give a number: %s", text, there);
     if (chosen->refusal[0] != '\0')

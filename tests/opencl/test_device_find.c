@@ -154,6 +154,8 @@ static void parts_of_names_in_any_case(void **state) {
     expect("cpu=Slow,gpu=Big,gpu=Bigger", "GPU", 1);
     expect_error("cpu=Slow", "fast", "no device matches 'fast'");
     expect_error("cpu=Slow", "gpu", "no device matches 'gpu'");
+    expect_error("cpu=One,cpu=Two", "one,two",
+                 "no device matches 'one,two', and only one can be named; available: 0: One");
 }
 
 static void versions_of_drivers(void **state) {
