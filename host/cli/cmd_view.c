@@ -33,8 +33,9 @@ static BpStatus load_window(const BpWindow **window, BpError *err) {
     BpError fault = {0};
     if (bp_module_load(&name, &loaded, &fault) != BP_OK)
         return bp_fail(err, BP_ERR_USAGE,
-                       "no window can be opened, since %.750s; build Ballpark with SDL 2 (libsdl2-dev), or "
-                       "use `ballpark render --show`, which draws in the terminal",
+                       "no window can be opened, since %.650s; install SDL 2 (`apt install libsdl2-dev`) and "
+                       "build Ballpark again (`scripts/demo` does), or use `ballpark render --show`, which "
+                       "draws in the terminal",
                        fault.message);
     *window = loaded;
     return BP_OK;
