@@ -134,12 +134,12 @@ void bp_series_end(BpSeries *series) {
 }
 
 #define ENDINGS(X)                                                                                           \
+    X(BP_FORMAT_BPA, ".bpa")                                                                                 \
     X(BP_FORMAT_PNG, ".png")                                                                                 \
     X(BP_FORMAT_PPM, ".ppm")                                                                                 \
     X(BP_FORMAT_PPM_ASCII, ".ppm")                                                                           \
     X(BP_FORMAT_PFM, ".pfm")                                                                                 \
-    X(BP_FORMAT_EXR, ".exr") X(BP_FORMAT_BPA, ".bp"                                                          \
-                                              "a")
+    X(BP_FORMAT_EXR, ".exr")
 BP_WORDS(BpFormat, static const char *const endings, ENDINGS);
 
 /* name-0012.png of name.png; in a folder, and without --output, named after the scene. */
