@@ -1,6 +1,7 @@
 /* ply.c: the vertices of a PLY file; see ply.h. */
 #include "ply.h"
 
+#include "base/format.h"
 #include "base/message_text.h"
 #include "base/plural.h"
 #include "particles/color_range.h"
@@ -164,10 +165,10 @@ static BpStatus finish(Reader *r, char notes[BP_PLY_NOTES_SIZE], BpError *err) {
     scene->sphere_count = (size_t)(r->next - scene->spheres);
     if (notes == NULL) return BP_OK;
     const char *const note = r->header.color[0] >= 0 ? color_range_note(&r->colors) : NULL;
-    char left_out[64] = "";
+    char left_out[80] = "", number[32];
     if (r->left_out > 0)
-        snprintf(left_out, sizeof left_out, "%" PRIu64 " point%s without a place left out", r->left_out,
-                 bp_plural(r->left_out));
+        snprintf(left_out, sizeof left_out, "%s point%s without a place left out",
+                 bp_format_whole(r->left_out, number, sizeof number), bp_plural(r->left_out));
     snprintf(notes, BP_PLY_NOTES_SIZE, "%s%s%s", left_out, left_out[0] != '\0' && note != NULL ? "; " : "",
              note != NULL ? note : "");
     return BP_OK;

@@ -165,7 +165,6 @@ static BpStatus take_color(BpParticleFile *file, const double color[3], bool wit
 BpStatus frame_add(BpParticleFile *file, const Particle *particle, bool with_line, BpError *err) {
     BpParticles *const p = file->out;
     const double *const place = particle->position;
-    const bool has_place = !isnan(place[0]) && !isnan(place[1]) && !isnan(place[2]);
     for (int i = 0; i < 3; i++) {
         char text[BP_NUMBER_TEXT_SIZE];
         if (fabs(place[i]) <= COORDINATE_MAX || isnan(place[i])) continue;
@@ -178,7 +177,7 @@ BpStatus frame_add(BpParticleFile *file, const Particle *particle, bool with_lin
                           "found more particles, expected at most %u in a frame", BP_PARTICLES_MAX);
     file->added++;
     if (p == NULL) return BP_OK;
-    if (!has_place) return leave_out(file, err);
+    if (!particle_has_place(particle)) return leave_out(file, err);
     BP_TRY(take_color(file, particle->color, with_line, err));
     if (p->count == p->capacity && !grow(file, p))
         return bp_fail(err, BP_ERR_MEMORY, "out of memory for more than %zu particles", p->count);
@@ -242,9 +241,11 @@ BpStatus frame_add_bond(BpParticleFile *file, uint32_t a, uint32_t b, BpError *e
 BpStatus frame_end(BpParticleFile *file, BpError *err) {
     BpParticles *const p = file->out;
     const ColorRange *const colors = &file->colors;
+    char number[32];
     if (p == NULL) return BP_OK;
     if (file->gone_count > 0)
-        bp_particles_note(p, "%zu point%s without a place left out", file->gone_count,
+        bp_particles_note(p, "%s point%s without a place left out",
+                          bp_format_whole(file->gone_count, number, sizeof number),
                           bp_plural(file->gone_count));
     if (p->color == NULL) return BP_OK;
     const double scale = color_range_scale(colors);

@@ -229,9 +229,9 @@ static bool word_fits(LammpsWord kind, const char *word, int64_t type_count, boo
         const int64_t high = kind == LAMMPS_FLAG ? 1 : kind == LAMMPS_ELECTRON ? 3 : INT64_MAX;
         return word_whole(word, &whole) && whole >= low && whole <= high;
     }
-    if (kind == LAMMPS_NUMBER && !strict) return word_number_or_none(word, &number);
+    if (kind == LAMMPS_NUMBER) return word_number_or_none(word, &number);
     if (!word_number(word, &number)) return false;
-    return !strict || kind == LAMMPS_NUMBER || number > 0 || (kind == LAMMPS_NOT_NEGATIVE && number == 0);
+    return !strict || number > 0 || (kind == LAMMPS_NOT_NEGATIVE && number == 0);
 }
 
 /* Spins have a direction of length 1. */

@@ -352,7 +352,7 @@ static BpStatus add_row(BpParticleFile *file, State *state, BpError *err) {
                               number_in(state, AUTH_SEQUENCE, LABEL_SEQUENCE)};
     particle.values = values;
     BP_TRY(frame_add(file, &particle, true, err));
-    if (file->out == NULL) return BP_OK;
+    if (file->out == NULL || !particle_has_place(&particle)) return BP_OK;
     char site[3 * CIF_TEXT_SIZE];
     snprintf(site, sizeof site, "%s/%s/%s", particle.chain, text_of(state, AUTH_SEQUENCE, LABEL_SEQUENCE),
              text_of(state, INSERTION, INSERTION));

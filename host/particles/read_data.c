@@ -310,7 +310,8 @@ static bool may_be(const Data *data, Candidate *candidate, bool named, char **wo
     if (named) return true;
     if (!word_whole(type, &number) && declared_type(data, type) == 0) return false;
     for (int i = 0; i < 3; i++)
-        if (!word_number(words[layout->x + i], &place[i])) return false;
+        if (!word_number_or_none(words[layout->x + i], &place[i])) return false;
+    if (isnan(place[0]) || isnan(place[1]) || isnan(place[2])) return true;
     if (count > layout->word_count && !is_near_cell(data, place)) return false;
     if (!candidate->begun) memcpy(candidate->first, place, sizeof place);
     for (int c = 0; c < 3; c++) candidate->spread |= candidate->first[c] != place[c];

@@ -54,6 +54,10 @@ BpStatus frame_begin(BpParticleFile *file, const char *const *columns, size_t co
  * coordinates that are infinite or too large, and on colours that can be none. `with_line`: the error names
  * the line last taken. */
 BpStatus frame_add(BpParticleFile *file, const Particle *particle, bool with_line, BpError *err);
+static inline bool particle_has_place(const Particle *particle) {
+    const double *const place = particle->position;
+    return !isnan(place[0]) && !isnan(place[1]) && !isnan(place[2]);
+}
 /* The place among the particles that are left of the one with a number, counted as they were handed over,
  * from 0; UINT32_MAX: it was left out. */
 uint32_t frame_place(const BpParticleFile *file, uint32_t number);

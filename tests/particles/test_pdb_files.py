@@ -175,6 +175,19 @@ class Alternatives(listed.ListTest):
         self.assertEqual(self.chosen(("CA", "B")), [0])
         self.assertEqual(self.chosen(("CA", "B"), ("CB", "C"), ("CG", "A")), [0, 1, 2])
 
+    def test_beside_an_atom_without_a_place(self):
+        """It is left out, and takes no place from another."""
+        lines = [atom(serial=i, place=(i, 0, 0), name=f" {name:<3s}", letter=letter)
+                 for i, (name, letter) in enumerate([("N", " "), ("CA", "A"), ("CA", "B"), ("CB", "B"), ("CB", "A")])]
+        found = self.of("a.pdb", lines[0].replace("   0.000   0.000   0.000", "     nan   0.000   0.000") + "".join(lines[1:]))
+        self.assertEqual([round(p[0]) for p in found.places(shown=True)], [1, 4])
+        rows = [f"C {name} {letter} ALA A 1 {x} 0 0" for name, letter, x in
+                [("N", ".", "?"), ("CA", "A", 1), ("CA", "B", 2), ("CB", "B", 3), ("CB", "A", 4)]]
+        names = "type_symbol auth_atom_id label_alt_id auth_comp_id auth_asym_id auth_seq_id Cartn_x Cartn_y Cartn_z"
+        for unknown in ("?", "nan"):
+            cif = "data_x\nloop_\n" + "".join(f"_atom_site.{n}\n" for n in names.split()) + "\n".join(rows).replace("?", unknown) + "\n"
+            self.assertEqual([round(p[0]) for p in self.of("a.cif", cif).places(shown=True)], [1, 4])
+
     def test_each_residue_has_its_own(self):
         def of(number, *letters, **more):
             return [("CA", letter, dict(number=number, **more)) for letter in letters]

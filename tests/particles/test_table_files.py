@@ -163,9 +163,11 @@ class Numbers(TableTest):
                     text = text.replace("   2.000", word.rjust(8)) if len(word) <= 8 else None
                 else:
                     text = text.replace("1 2 3\n", f"1 {word} 3\n").replace("1,2,3\n", f"1,{word},3\n")
+                if name == "a.cif":  # brackets hold uncertainties; a table of atoms without any place is refused
+                    text = text + "C 1 2 3\n" if "(" not in word else None
                 if text is not None and not (name == "a.data" and "#" in word):  # a remark
                     found = self.of(name, text)
-                    self.assertEqual(found["positions"], [[1, 2, 3]] if name == "a.gro" else [], (name, word))
+                    self.assertEqual(found["positions"], [[1, 2, 3]] if name in ("a.cif", "a.gro") else [], (name, word))
                     self.assertTrue(found["notes"].endswith("1 point without a place left out"), (name, word, found["notes"]))
         self.places("a.xyz", "4\n\nC 1 2 3\nC nan 0 0\nC 4 5 6\nC 0 0 ****\n", [(1, 2, 3), (4, 5, 6)], "2 points without a place left out")
         for bad in ("inf", "-Infinity", "1e13"):
@@ -197,6 +199,13 @@ class Numbers(TableTest):
             self.assertEqual((sorted(map(sorted, found["pairs"])), found["left_out"]), ([[0, 1], [1, 2]], 1), name)
             self.assertIn("1 point without a place left out", found["notes"])
 
+    def test_guessed_styles_beside_points_without_a_place(self):
+        """A data file that does not name its style: such a point speaks for none, and refuses none."""
+        for rows in ("1 1 nan 2 3\n2 1 4 5 6\n", "1 1 1 2 3\n2 1 4 nan 6\n"):
+            found = self.of("a.data", "t\n\n2 atoms\n1 atom types\n\nAtoms\n\n" + rows)
+            self.assertEqual(found["positions"], [[4, 5, 6]] if "nan 2" in rows else [[1, 2, 3]])
+            self.assertIn("1 point without a place left out", found["notes"])
+
     def test_types_names_and_columns_stay_with_their_points(self):
         found = self.of("a.csv", "x,y,z,type,q\n1,2,3,A,10\n,,3,B,20\n4,5,6,C,30\n", 0, "q")
         self.assertEqual((found["types"], found["values"], found["count"]), (["A", "C"], [10, 30], 2))
@@ -224,9 +233,9 @@ class Xyz(TableTest):
 
     def test_periodic_flags(self):
         lattice = "Lattice=\"4 0 0 0 5 0 0 0 6\" Properties=species:S:1:pos:R:3 pbc="
-        for flags, periodic in [('"F F F"', False), ("'F F F'", False), ("[F, F, F]", False), ("{F F F}", False), ('"T T T"', True),
-                                ("[T,T,T]", True), ("[True, True, True]", True), ("'1 1 1'", True)]:
-            self.assertEqual(self.cell(lattice + flags, [[4, 0, 0], [0, 5, 0], [0, 0, 6]])["periodic"], [periodic] * 3, flags)
+        for flags, periodic in [('"F F F"', "FFF"), ("'F T F'", "FTF"), ("[F, F, T]", "FFT"), ("{T F F}", "TFF"), ('"T T T"', "TTT"), ("[T,T,F]", "TTF"),
+                                ("[True, False, True]", "TFT"), ("'1 0 1'", "TFT")]:
+            self.assertEqual(self.cell(lattice + flags, [[4, 0, 0], [0, 5, 0], [0, 0, 6]])["periodic"], [flag == "T" for flag in periodic], flags)
 
     def test_cells_that_cannot_be_read(self):
         """An error where the frame has one for certain, else a note; never silence."""
@@ -239,8 +248,9 @@ class Xyz(TableTest):
         self.refuse("a.xyz", f"1\nLattice='4 4 4' Origin='1 2'{p}\nC 1 2 3\n", ":2:", "Origin")
         for comment, note in [("fcc, lattice=4.05", "lattice= passed over"), ("cell='4 4 4'" + p, "cell= passed over")]:
             self.assertIn(note, self.cell(comment, None)["notes"])
-        flat = self.cell("Lattice='4 0 0 0 5 0 0 0 0'" + p, [[4, 0, 0], [0, 5, 0], [0, 0, 0]])
-        self.assertEqual(flat["periodic"], [True, True, False])  # an edge of no length repeats nothing
+        # Of two dimensions, as ASE writes surfaces, and one whose vectors span nothing.
+        self.assertEqual(self.cell("Lattice='4 0 0 0 5 0 0 0 0'" + p, [[4, 0, 0], [0, 5, 0], [0, 0, 0]])["periodic"], [True, True, False])
+        self.assertIn("flat", self.cell("Lattice='4 0 0 8 0 0 0 0 6'" + p, [[4, 0, 0], [8, 0, 0], [0, 0, 6]])["notes"])
         for comment in ("", " ", "\t", "it's water, \"fine", "a = b = c", "=", "(x", "Lattice of 4", "x=\"Lattice=3\""):
             self.assertEqual(self.cell(comment, None)["notes"], "", comment)
 
