@@ -210,7 +210,7 @@ except ballpark.DeviceError as error: print(error)
             process.send_signal(signal.SIGINT)
             errors = process.communicate(timeout=60)[1]
             self.assertLess(time.monotonic() - begun, 10)
-            self.assertIn("KeyboardInterrupt", errors)
+            self.assertIn("ballpark._render.Interrupted", errors)
 
 
 if __name__ == "__main__":
