@@ -7,10 +7,12 @@
  * device_items.h), what documents look like (check_report.h, check_junit.h). */
 #include "commands.h"
 
+#include "base/format.h"
 #include "base/plural.h"
 #include "base/shown.h"
 #include "check_against.h"
 #include "check_bits.h"
+#include "check_failure.h"
 #include "check_junit.h"
 #include "check_report.h"
 #include "check_run.h"
@@ -54,11 +56,15 @@ typedef struct Session {
     json_t *scenes;                /* check_report.h */
     BpError error;                 /* of the first item that failed by an error */
     char *text[CHECKS_OF_A_SCENE]; /* the verdicts for people, of one scene on one device */
-    bool interrupted;
+    bool interrupted, junit_written, json_written;
 } Session;
 
 static bool wants_all(const BpCommandLine *line) {
     return line->device != NULL && strcmp(line->device, "all") == 0;
+}
+
+static bool wants_documents(const BpCommandLine *line) {
+    return line->json != NULL || line->junit != NULL;
 }
 
 static bool is_stdout(const char *path) {
@@ -313,12 +319,14 @@ static BpStatus write_documents(Session *session, const json_t *against, BpError
     BpStatus status = BP_OK;
     if (line->junit != NULL)
         status = bp_junit_write(line, bp_check_junit(session->scenes, broken), line->junit, err);
+    session->junit_written = status != BP_ERR_MEMORY; /* else there is no use in another attempt */
     if (line->json != NULL) { /* also when the other document failed: a check takes minutes */
         json_t *document = bp_check_document(json_incref(session->scenes), json_incref(broken),
                                              line->suite ? SUITE_NAME : NULL, SUITE_LEVEL);
         if (against != NULL && document != NULL)
             json_object_set(document, "against", (json_t *)(uintptr_t)against);
         const BpStatus written = bp_json_write(line, document, line->json, status == BP_OK ? err : NULL);
+        session->json_written = written != BP_ERR_MEMORY;
         if (status == BP_OK) status = written;
     }
     json_decref(broken);
@@ -337,12 +345,49 @@ static const char *why_inconclusive(const Session *session) {
     return "";
 }
 
+/* The share of its work that a check has done in its time; 0: its turn did not come. */
+static double share_done(const json_t *entry, uint64_t samples) {
+    const json_int_t done = json_integer_value(json_object_get(entry, "samples_per_pixel"));
+    const bool stopped =
+        strcmp(bp_check_text(entry, "verdict"), "inconclusive") == 0 && (uint64_t)done < samples;
+    return stopped ? (double)done / (double)samples : 1;
+}
+
+/* "; --timeout was too short: ..." where --timeout left checks without evidence; else "". Of the slowest
+ * device, by the work that it has done so far; building kernels counts as work that all checks share equally.
+ */
+static const char *hint_at_time(const Session *session, char text[160]) {
+    double least = 1;
+    char needed[32];
+    text[0] = '\0';
+    for (size_t d = 0; d < session->device_count && session->line->timeout_seconds > 0; ++d) {
+        double done = 0, begun = 0;
+        for (size_t i = 0; i < session->item_count; ++i) {
+            const json_t *results = json_object_get(json_array_get(session->scenes, i), "results");
+            const double share =
+                share_done(json_array_get(results, d), session->items[i].options.render.samples_per_pixel);
+            done += share;
+            begun += share > 0;
+        }
+        done = begun < (double)session->item_count ? begun : done;
+        if (done / (double)session->item_count < least) least = done / (double)session->item_count;
+    }
+    if (least == 1) return text;
+    if (least > 0)
+        snprintf(text, 160, "; --timeout was too short: all of it takes about %s",
+                 bp_format_seconds(session->line->timeout_seconds / least, needed, sizeof needed));
+    else
+        snprintf(text, 160, "; --timeout was too short for the first of them");
+    return text;
+}
+
 /* The exit code, by the worst that has happened. */
 static BpStatus conclude(Session *session, const json_t *against, BpError *err) {
     const BpCommandLine *line = session->line;
     const char *name = line->suite ? "the suite" : session->items[0].name;
     const BpError *error = &session->error;
     const size_t entries = session->item_count * session->device_count;
+    char hint[160];
     BpCheckCounts counts = {0};
     bp_check_count_all(session->scenes, &counts);
     if (session->interrupted)
@@ -376,10 +421,11 @@ static BpStatus conclude(Session *session, const json_t *against, BpError *err) 
         return bp_fail(err, BP_ERR_NO_DEVICE, "%zu device%s of the earlier check %s not there", gone,
                        bp_plural(gone), gone == 1 ? "is" : "are");
     if (counts.inconclusive > 0 && !line->suite && !wants_all(line))
-        return bp_fail(err, BP_ERR_INCONCLUSIVE, "%s: inconclusive: %s", name, why_inconclusive(session));
+        return bp_fail(err, BP_ERR_INCONCLUSIVE, "%s: inconclusive: %s%s", name, why_inconclusive(session),
+                       hint_at_time(session, hint));
     if (counts.inconclusive > 0)
-        return bp_fail(err, BP_ERR_INCONCLUSIVE, "%s: %u of %zu checks are inconclusive", name,
-                       counts.inconclusive, entries);
+        return bp_fail(err, BP_ERR_INCONCLUSIVE, "%s: %u of %zu checks are inconclusive%s", name,
+                       counts.inconclusive, entries, hint_at_time(session, hint));
     return BP_OK;
 }
 
@@ -389,15 +435,19 @@ static BpStatus check_all(Session *session, BpError *err) {
     BpStatus status = BP_OK;
     BP_TRY(find_map_format(session, err));
     if (line->against != NULL) BP_TRY(bp_check_against_read(line->against, &session->earlier, err));
+    if (wants_documents(line)) bp_interrupt_catch(); /* they say that it was interrupted */
     BP_TRY(load_items(session, err));
     bp_interrupt_catch();
+    if (bp_interrupted()) return bp_fail(err, BP_ERR_INTERRUPTED, "interrupted before anything was checked");
     BP_TRY(find_devices(session, err));
     if (wants_all(line)) BP_TRY(check_map_names(session, err));
     say_overwritten(session);
     for (size_t d = 0; d < session->device_count && !session->interrupted; ++d)
         BP_TRY(check_device(session, &session->devices[d], err));
-    if (session->interrupted && session->item_count * session->device_count == 1)
+    if (session->interrupted && session->item_count * session->device_count == 1) {
+        BP_TRY(write_documents(session, NULL, err));
         return conclude(session, NULL, err);
+    }
 
     if (session->earlier != NULL) {
         against = bp_check_against(session->scenes, session->earlier, line->against, wants_all(line));
@@ -447,7 +497,7 @@ static json_t *bits_junit_suite(const json_t *entries) {
     return NULL;
 }
 
-static BpStatus write_bits(const Session *session, json_t *results, BpError *err) {
+static BpStatus write_bits(Session *session, json_t *results, BpError *err) {
     const BpCommandLine *line = session->line;
     json_t *broken = bp_device_survey_broken_json(&session->survey);
     json_t *suites = bp_check_junit(NULL, broken), *entries;
@@ -468,12 +518,14 @@ static BpStatus write_bits(const Session *session, json_t *results, BpError *err
         status = bp_junit_write(line, suites, line->junit, err);
     else
         json_decref(suites);
+    session->junit_written = status != BP_ERR_MEMORY;
     if (line->json != NULL && status == BP_OK)
         status = bp_json_write(line,
                                json_pack("{s:s, s:s, s:s, s:O, s:O}", "ballpark", bp_version(), "suite",
                                          "bits", "verdict", bp_check_overall(&counts), "broken_drivers",
                                          broken, "results", all),
                                line->json, err);
+    session->json_written = status != BP_ERR_MEMORY;
     json_decref(broken);
     json_decref(all);
     if (status != BP_OK) return status;
@@ -532,10 +584,27 @@ static BpStatus check_bits(Session *session, BpError *err) {
 /* ---- the command -----------------------------------------------------------------------------------------
  */
 
+/* A check that has failed replaces the documents of an earlier one, too. After an error of the command line
+ * it is not known what they may replace. */
+static void write_failure(const Session *session, BpStatus status, const BpError *err) {
+    const BpCommandLine *line = session->line;
+    if (status == BP_OK || status == BP_ERR_USAGE) return;
+    BpError told = *err;
+    told.code = status; /* more exact than that of a public function */
+    bp_check_failure_write(
+        line,
+        line->bits    ? "bits"
+        : line->suite ? SUITE_NAME
+                      : NULL,
+        &told, bp_device_survey_broken_json(&session->survey), line->junit != NULL && !session->junit_written,
+        line->json != NULL && !session->json_written, line->operand_count > 0 && session->scene == NULL);
+}
+
 BpStatus bp_command_check(const BpCommandLine *line, BpError *err) {
     Session session = {.line = line};
-    BpStatus status = check_line(line, err);
-    if (status == BP_OK) status = line->bits ? check_bits(&session, err) : check_all(&session, err);
+    BP_TRY(check_line(line, err));
+    const BpStatus status = line->bits ? check_bits(&session, err) : check_all(&session, err);
+    write_failure(&session, status, err);
     /* The folder of the survey goes first, as it was made last (temporary_folder.h). */
     bp_device_survey_clear(&session.survey);
     bp_suite_clear(&session.suite);

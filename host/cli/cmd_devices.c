@@ -135,8 +135,12 @@ BpStatus bp_command_devices(const BpCommandLine *line, BpError *err) {
             shown = write_json(line, &survey, default_number, err);
         } else if (survey.count > 0)
             shown = print_table(line, survey.devices, survey.count, default_number, err);
-    } else if (status == BP_ERR_BROKEN_DEVICE) {
-        status = BP_ERR_DEVICE;
+    } else {
+        if (line->json != NULL) { /* the list of an earlier run would be taken for today's */
+            bp_line_say_overwritten(line, line->json);
+            (void)write_json(line, &survey, UINT32_MAX, NULL);
+        }
+        if (status == BP_ERR_BROKEN_DEVICE) status = BP_ERR_DEVICE;
     }
     if (shown == BP_OK && (fflush(stdout) != 0 || ferror(stdout)))
         shown = bp_fail(err, BP_ERR_FILE, "cannot write to standard output: %s", strerror(errno));
