@@ -3,6 +3,7 @@
  * both are known. */
 #include "lammps.h"
 
+#include "base/words.h"
 #include "input.h"
 
 #include <math.h>
@@ -112,12 +113,15 @@ static bool has_column(const Columns *columns, const char *name) {
     return strstr(columns->text, sought) != NULL;
 }
 
+#define FLAG_WORDS(X)                                                                                        \
+    X(LAMMPS_POINT, NULL)                                                                                    \
+    X(LAMMPS_ELLIPSOID, "ellipsoidflag")                                                                     \
+    X(LAMMPS_LINE, "lineflag")                                                                               \
+    X(LAMMPS_TRIANGLE, "triangleflag") X(LAMMPS_BODY, "bodyflag") X(LAMMPS_SHAPE_COUNT, NULL)
+BP_WORDS(LammpsShape, static const char *const flags, FLAG_WORDS);
+
 /* Adds the style's columns that are not there yet. */
 static void add_columns(LammpsLayout *layout, Columns *columns, const struct Style *style) {
-    static const char *const flags[] = {[LAMMPS_ELLIPSOID] = "ellipsoidflag",
-                                        [LAMMPS_LINE] = "lineflag",
-                                        [LAMMPS_TRIANGLE] = "triangleflag",
-                                        [LAMMPS_BODY] = "bodyflag"};
     char text[160], *names[LAMMPS_WORDS_MAX];
     snprintf(text, sizeof text, "%s", style->columns);
     const size_t count = split_words(text, names, LAMMPS_WORDS_MAX);
@@ -257,13 +261,14 @@ bool lammps_line_fits(const LammpsLayout *layout, char *const *words, size_t cou
     return !strict || layout->spin < 0 || spin_fits(words + layout->spin);
 }
 
+#define WORD_NAMES(X)                                                                                        \
+    X(LAMMPS_NUMBER, "a finite number")                                                                      \
+    X(LAMMPS_NOT_NEGATIVE, "a number not below 0")                                                           \
+    X(LAMMPS_POSITIVE, "a number above 0")                                                                   \
+    X(LAMMPS_WHOLE, "a whole number")                                                                        \
+    X(LAMMPS_ELECTRON, "a spin from -1 to 3") X(LAMMPS_FLAG, "0 or 1") X(LAMMPS_TYPE, "a type")
+BP_WORDS(LammpsWord, static const char *const word_names, WORD_NAMES);
+
 const char *lammps_word_name(LammpsWord word) {
-    static const char *const names[] = {[LAMMPS_NUMBER] = "a finite number",
-                                        [LAMMPS_NOT_NEGATIVE] = "a number not below 0",
-                                        [LAMMPS_POSITIVE] = "a number above 0",
-                                        [LAMMPS_WHOLE] = "a whole number",
-                                        [LAMMPS_ELECTRON] = "a spin from -1 to 3",
-                                        [LAMMPS_FLAG] = "0 or 1",
-                                        [LAMMPS_TYPE] = "a type"};
-    return names[word];
+    return word_names[word];
 }

@@ -1,6 +1,7 @@
 /* ply_header.c: see ply_header.h. */
 #include "ply_header.h"
 
+#include "base/words.h"
 #include "column_names.h"
 
 #include "base/message_text.h"
@@ -22,16 +23,20 @@ static BpStatus parse_type(const Input *input, const char *word, PlyType *type, 
                       nearest != NULL ? "?" : "");
 }
 
+#define FORM_WORDS(X)                                                                                        \
+    X(PLY_ASCII, "ascii")                                                                                    \
+    X(PLY_LITTLE_ENDIAN, "binary_little_endian")                                                             \
+    X(PLY_BIG_ENDIAN, "binary_big_"                                                                          \
+                      "endian")
+BP_WORDS(PlyForm, static const char *const form_names, FORM_WORDS);
+
 static BpStatus parse_format(const Input *input, char **words, size_t count, PlyHeader *header,
                              BpError *err) {
-    static const char *const names[] = {[PLY_ASCII] = "ascii",
-                                        [PLY_LITTLE_ENDIAN] = "binary_little_endian",
-                                        [PLY_BIG_ENDIAN] = "binary_big_endian"};
     const uint16_t one = 1;
     unsigned char first = 0;
     memcpy(&first, &one, 1);
     for (int i = 0; count == 3 && i < 3; i++) {
-        if (strcmp(words[1], names[i]) != 0 || strcmp(words[2], "1.0") != 0) continue;
+        if (strcmp(words[1], form_names[i]) != 0 || strcmp(words[2], "1.0") != 0) continue;
         header->form = (PlyForm)i;
         header->swap = header->form == (first == 1 ? PLY_BIG_ENDIAN : PLY_LITTLE_ENDIAN);
         return BP_OK;

@@ -4,7 +4,9 @@
  * Labels, Bonds, Velocities and Ellipsoids. Other sections are passed over; a note names those that are not
  * LAMMPS's own. */
 #include "base/message_text.h"
+
 #include "base/plural.h"
+#include "base/words.h"
 #include "elements.h"
 #include "lammps.h"
 #include "reader.h"
@@ -132,14 +134,16 @@ static BpStatus take_box(const Input *input, char **words, size_t count, Data *d
     return BP_OK;
 }
 
+#define SHAPE_WORDS(X)                                                                                       \
+    X(LAMMPS_POINT, "")                                                                                      \
+    X(LAMMPS_ELLIPSOID, "ellipsoids")                                                                        \
+    X(LAMMPS_LINE, "lines")                                                                                  \
+    X(LAMMPS_TRIANGLE, "triangles") X(LAMMPS_BODY, "bodies") X(LAMMPS_SHAPE_COUNT, NULL)
+BP_WORDS(LammpsShape, static const char *const shapes, SHAPE_WORDS);
+
 static BpStatus take_count(const Input *input, char **words, size_t count, Data *data, BpError *err) {
     static const char *const bonded[] = {"bonds", "angles", "dihedrals", "impropers",
                                          "bond",  "angle",  "dihedral",  "improper"};
-    static const char *const shapes[] = {[LAMMPS_POINT] = "",
-                                         [LAMMPS_ELLIPSOID] = "ellipsoids",
-                                         [LAMMPS_LINE] = "lines",
-                                         [LAMMPS_TRIANGLE] = "triangles",
-                                         [LAMMPS_BODY] = "bodies"};
     double number = 0;
     if (count == 3 && strcmp(words[2], "types") == 0 && strcmp(words[1], "atom") == 0)
         return word_count(input, words[0], "types", &data->types, err);
