@@ -33,7 +33,7 @@
  *   independent, also in the first calls of a process: there is no state outside of handles, but for caches
  *   in files and the start of the OpenCL drivers, which one thread does while the others wait. The
  *   environment (BALLPARK_KERNELS, and what OpenCL drivers read) must not change meanwhile. No function
- *   prints, exits or touches signals; a driver may.
+ *   prints, exits or touches signals; a driver may: PoCL ends the process by abort() when it lacks memory.
  * - Processes. OpenCL drivers do not survive fork(). In a process forked from one that has used OpenCL, every
  *   function that would need a driver fails with BP_ERR_DEVICE; pictures, films and scenes remain usable, and
  *   `_destroy` frees the host's memory alone. A process may fork before anything uses OpenCL, and then

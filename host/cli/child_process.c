@@ -2,6 +2,7 @@
 #include "child_process.h"
 
 #include "base/clock.h"
+#include "base/memory_limit.h"
 #include "interrupt.h"
 #include "opencl/pocl.h"
 
@@ -99,6 +100,11 @@ static void describe_end(int ended, bool hung, double seconds, BpChildReport *re
     } else if (WIFSIGNALED(ended)) {
         report->end = BP_CHILD_CRASHED;
         snprintf(failure, size, "crashed: %s", strsignal(WTERMSIG(ended)));
+        if (WTERMSIG(ended) == SIGABRT && bp_memory_limit() > 0)
+            snprintf(failure, size,
+                     "crashed: %s, perhaps for lack of memory, of which this process may have %.0f MiB "
+                     "(ulimit -v)",
+                     strsignal(SIGABRT), (double)bp_memory_limit() / 1048576);
         if (WTERMSIG(ended) == SIGABRT && !bp_pocl_finds_linker())
             snprintf(failure, size,
                      "crashed: %s; PoCL, the driver for CPUs, needs the linker `ld`, which is not in PATH: "

@@ -5,6 +5,8 @@
 #include "driver_care.h"
 
 #include "base/long_call.h"
+#include "base/memory_limit.h"
+#include "base/output_file.h"
 #include "interrupt.h"
 #include "opencl/driver_start.h"
 #include "opencl/pocl.h"
@@ -71,11 +73,21 @@ static void end_with_words(const char *how, const char *doing) {
     _exit(bp_status_exit_code(BP_ERR_DEVICE));
 }
 
+/* A driver that is refused memory ends the process, as a C++ exception that nobody catches does. */
+static void end_without_memory(void) {
+    tell("ballpark: out of memory: an OpenCL driver was refused memory and gave up; give this process more "
+         "(`ulimit -v` "
+         "says how much it may have), or another --device\n");
+    bp_output_abandon();
+    _exit(bp_status_exit_code(BP_ERR_MEMORY));
+}
+
 static void on_fault(int number, siginfo_t *info, void *context) {
     const char *doing = bp_driver_doing();
     size_t f = 0;
     (void)context;
     while (f + 1 < FAULTS && faults[f].number != number) ++f;
+    if (number == SIGABRT && getpid() == care.process && bp_memory_is_short()) end_without_memory();
     if (doing == NULL || getpid() != care.process) { /* not our affair */
         /* A driver's handler (LLVM's) may put back this one, and is not to be asked again. */
         sigaction(number, care.has_passed_on ? &care.before[f] : &care.of_driver[f], NULL);

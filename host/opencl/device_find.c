@@ -2,6 +2,7 @@
  *
  * In:    what the OpenCL loader finds.   Out: BpDeviceInfo, or a message that says what to install.
  * Knows: OpenCL's platforms and devices.   Does not know: contexts, programs. */
+#include "base/memory_limit.h"
 #include "device.h"
 
 #include "device_choose.h"
@@ -243,6 +244,12 @@ static BpStatus fail_without_devices(BpError *err) {
         snprintf(names + used, sizeof names - used, "%s%s", p == 0 ? "" : ", ", name);
     }
     free(platforms);
+    if (count == 0 && bp_memory_limit() > 0)
+        return bp_fail(err, BP_ERR_DEVICE,
+                       "no OpenCL platform, perhaps for lack of memory, of which this process may have %.0f "
+                       "MiB (ulimit -v): "
+                       "allow it more, or " BP_NO_DEVICE_REMEDY,
+                       (double)bp_memory_limit() / 1048576);
     if (count == 0) return bp_fail(err, BP_ERR_DEVICE, "no OpenCL platform: " BP_NO_DEVICE_REMEDY);
     if (pocl && bp_pocl_cache_fails(fault)) return bp_fail(err, BP_ERR_DEVICE, "no OpenCL device: %s", fault);
     return bp_fail(err, BP_ERR_DEVICE,

@@ -1,0 +1,17 @@
+/* memory_limit.h: whether the system refuses this process memory.
+ *
+ * In:    the system's limit (ulimit -v).   Out: what it is; whether it is reached.
+ * Knows: the system's calls.   Does not know: who needs memory. */
+#ifndef BP_BASE_MEMORY_LIMIT_H
+#define BP_BASE_MEMORY_LIMIT_H
+
+#include <stdbool.h>
+#include <stdint.h>
+
+/* In bytes; 0: there is none. */
+uint64_t bp_memory_limit(void);
+
+/* Whether 64 MiB more cannot be had. A handler of signals may ask. */
+bool bp_memory_is_short(void);
+
+#endif
