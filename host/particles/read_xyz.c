@@ -5,6 +5,7 @@
 #include "key_values.h"
 #include "reader.h"
 
+#include <ctype.h>
 #include <stdlib.h>
 #include <string.h>
 #include <strings.h>
@@ -75,7 +76,7 @@ static BpStatus parse_properties(const Input *input, char *text, Layout *layout,
     for (char *name = strtok_r(text, ":", &rest); name != NULL; name = strtok_r(NULL, ":", &rest)) {
         const char *const type_text = strtok_r(NULL, ":", &rest);
         const char *const count_text = type_text != NULL ? strtok_r(NULL, ":", &rest) : NULL;
-        const char type = type_text != NULL ? type_text[0] & ~0x20 : '\0'; /* as a capital */
+        const char type = type_text != NULL ? (char)toupper((unsigned char)type_text[0]) : '\0';
         int64_t count = 0;
         if (count_text == NULL || type_text[1] != '\0' || strchr("SRIL", type) == NULL ||
             !word_whole(count_text, &count) || count < 1 || count > 64 || word + count > WORDS_MAX ||

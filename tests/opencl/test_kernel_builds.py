@@ -44,8 +44,9 @@ class Builds(cli.ProgramTest):
         self.assertEqual(said, "")
         kernels = set(self.read("builds").splitlines())
         lanes = {line.split()[1] for line in kernels}
-        # One of lists, and one of trees, or one of small and one of large trees where these get packets of another size.
-        self.assertEqual((builds, len(kernels)), (1 + len(lanes), 1 + len(lanes)))
+        # One of lists, and one of trees, or one of small and one of large trees where these get packets of another size; and each
+        # again with light sampling.
+        self.assertEqual((builds, len(kernels)), (2 * (1 + len(lanes)), 2 * (1 + len(lanes))))
         with open(os.path.join(cli.SOURCE, "host/check/bits.json"), encoding="utf-8") as file:
             pictures = [p for p in json.load(file)["pictures"] if p["scene"] in ("tie", "bubble", "noise")]
         self.write("bits.json", {"pictures": pictures})
