@@ -81,7 +81,8 @@ def _of_objects(array: Array, what: str, expected: str) -> Array:
 def _with_masks(values: typing.Any) -> typing.Any:
     """An array of numpy, or of its subclass that says what is masked; numpy would forget the masks of the parts of a list."""
     if isinstance(values, (list, tuple)) and any(isinstance(part, np.ma.MaskedArray) for part in values):
-        values = np.ma.asarray(values)
+        masked: typing.Any = np.ma  # which not all versions of numpy have types for
+        values = masked.asarray(values)
     return np.asanyarray(values)
 
 

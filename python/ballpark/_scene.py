@@ -135,7 +135,8 @@ def _plain(value: typing.Any, place: str) -> typing.Any:
     if isinstance(value, np.generic):
         value = float(value) if isinstance(value, np.floating) else value.item()
     elif hasattr(value, "__array__"):
-        array = np.ma.asarray(value)
+        masked: typing.Any = np.ma  # which not all versions of numpy have types for
+        array = masked.asarray(value)
         if array.dtype.kind in "biuf" and array.dtype.itemsize <= 8 and np.isfinite(array).all():
             return array.tolist()
         return _plain(array.tolist(), place)

@@ -70,7 +70,7 @@ def test_exception_in_progress():
     assert ballpark.render(scene, spp=1).stopped == "samples"
 
 
-def press_ctrl_c(_now=None):
+def press_ctrl_c(*_arguments, **_options):
     raise KeyboardInterrupt
 
 
