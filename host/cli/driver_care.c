@@ -42,8 +42,11 @@ static struct {
 
 /* ---- starting again: all of it may be called by a handler of signals ---------------------------------- */
 
-static void tell(const char *text) {
-    if (write(STDERR_FILENO, text, strlen(text)) < 0) return; /* nowhere to say it */
+/* In one piece, as other ranks may have the same to say. NULL ends the list of texts. */
+static void tell(const char *const *texts) {
+    char line[1024] = "";
+    for (; *texts != NULL; ++texts) strncat(line, *texts, sizeof line - strlen(line) - 1);
+    if (write(STDERR_FILENO, line, strlen(line)) < 0) return; /* nowhere to say it */
 }
 
 /* Returns where it cannot. */
@@ -58,26 +61,31 @@ static void start_again(void) {
 
 /* `how`: "crashed (Aborted)". */
 static void end_with_words(const char *how, const char *doing) {
-    const bool starts = strcmp(doing, "starting") == 0, restarts = starts && care.may_restart;
-    if (!care.quiet || !restarts) {
-        tell(restarts ? "an OpenCL driver " : "ballpark: an OpenCL driver ");
-        tell(how);
-        tell(" while ");
-        tell(doing);
-        tell(restarts ? ": each is asked by itself\n" : "; ");
-    }
-    if (restarts) start_again();
-    tell(starts ? "`ballpark devices` tells which one: remove it, or set OCL_ICD_VENDORS to the .icd file of "
-                  "another\n"
-                : "choose another device with --device (`ballpark devices` lists them)\n");
+    const bool starts = strcmp(doing, "starting") == 0;
+    const char *const again[] = {"an OpenCL driver ",           how, " while ", doing,
+                                 ": each is asked by itself\n", NULL};
+    const char *const end[] = {
+        "ballpark: an OpenCL driver ",
+        how,
+        " while ",
+        doing,
+        starts ? "; `ballpark devices` tells which one: remove it, or set OCL_ICD_VENDORS "
+                 "to the .icd file of another\n"
+               : "; choose another device with --device (`ballpark devices` lists them)\n",
+        NULL};
+    if (starts && care.may_restart && !care.quiet) tell(again);
+    if (starts) start_again();
+    tell(end);
     _exit(bp_status_exit_code(BP_ERR_DEVICE));
 }
 
 /* A driver that is refused memory ends the process, as a C++ exception that nobody catches does. */
 static void end_without_memory(void) {
-    tell("ballpark: out of memory: an OpenCL driver was refused memory and gave up; give this process more "
-         "(`ulimit -v` "
-         "says how much it may have), or another --device\n");
+    const char *const text[] = {
+        "ballpark: out of memory: an OpenCL driver was refused memory and gave up; give this process more "
+        "(`ulimit -v` says how much it may have), or another --device\n",
+        NULL};
+    tell(text);
     bp_output_abandon();
     _exit(bp_status_exit_code(BP_ERR_MEMORY));
 }
