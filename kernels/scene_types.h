@@ -86,9 +86,9 @@ typedef struct PackedDisc {
  *
  * Solid, a point's place in the lattice is scale * point + offset, in cells; `scale` is the unevaluated sum
  * scale + scale_low, and the offset, which moves the camera back to where the scene has it, a whole number of
- * cells modulo LATTICE_PERIOD and a rest in [0, 1). Over a surface, `axes` are unit vectors: to longitude 0,
- * to a quarter, to the north pole; fields[0] stand around, fields[1] from pole to pole; of an image those are
- * its texels with all repetitions. Waves of marble are a
+ * cells modulo LATTICE_PERIOD and a rest below 1: at least 0, or, of a checker, -1 / LATTICE_BESIDE. Over a
+ * surface, `axes` are unit vectors: to longitude 0, to a quarter, to the north pole; fields[0] stand around,
+ * fields[1] from pole to pole; of an image those are its texels with all repetitions. Waves of marble are a
  * lattice of their own along one axis; those of wood stand around `centre`, again a sum of two. */
 typedef struct PackedTexture {
     real first[3]; /* of even cells, of noise at 0 */
@@ -304,6 +304,8 @@ enum { FRESNEL_SCHLICK, FRESNEL_EXACT, FRESNEL_NONE };
 enum { TOTAL_REFLECT, TOTAL_ABSORB, TOTAL_REFRACT };
 enum { MAPPING_SOLID, MAPPING_SURFACE };
 enum { PATTERN_CHECKER, PATTERN_PERLIN, PATTERN_TURBULENCE, PATTERN_MARBLE, PATTERN_WOOD, PATTERN_IMAGE };
+#define LATTICE_BESIDE                                                                                       \
+    4096 /* by a part in so many of a cell a place may be told from the corner ahead of it */
 #define LATTICE_PERIOD 0x400000u /* cells are counted modulo this: whole numbers that a float holds */
 
 /* OpenCL C 1.2 has no static assertions, but no array has a negative size. */

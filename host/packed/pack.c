@@ -321,7 +321,9 @@ static void pack_lattice(const BpTexture *texture, const double from[3], bool si
                          PackedTextureKind *kind) {
     pack_inverse(texture->size, single, &packed->scale, &packed->scale_low);
     for (int a = 0; a < 3; ++a) {
-        const double place = from[a] / texture->size, whole = floor(place), period = LATTICE_PERIOD;
+        const double place = from[a] / texture->size, period = LATTICE_PERIOD;
+        double whole = floor(place);
+        if (texture->type == BP_TEXTURE_CHECKER && place - whole > 1 - 1.0 / LATTICE_BESIDE) ++whole;
         packed->rest[a] = place - whole;
         kind->cell[a] = (packed_uint)(whole - floor(whole / period) * period);
     }

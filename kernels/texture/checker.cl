@@ -24,7 +24,7 @@ static Vec3 checker_colour(const Scene *scene, vuint numbers, vuint kinds, const
         vbool_of_uint(gather_uint(scene->texture_kinds + TEXTURE_MAPPING, kinds) == splat_uint(MAPPING_SURFACE));
     vuint number = splat_uint(0);
     if (any_lane(active & vbool_not(over_surface))) {
-        const LatticePlace place = lattice_place(scene, numbers, kinds, point);
+        const LatticePlace place = lattice_place(scene, numbers, kinds, R(1.0) / LATTICE_BESIDE, point);
         number = place.x + place.y + place.z;
     }
     if (any_lane(active & over_surface))

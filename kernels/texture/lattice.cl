@@ -16,11 +16,13 @@ static vuint lattice_wrap(vreal whole) {
     return to_uint(whole - floor(whole * (R(1.0) / LATTICE_PERIOD)) * (real)LATTICE_PERIOD);
 }
 
-static void lattice_axis(vreal high, vreal low, vreal scale, vreal scale_low, vreal rest, vuint first, vuint *cell,
+/* `beside`: how little below 0, in cells, a place is so that nothing is taken off. Beside 1 it would be lost, and with it on which
+ * side of a corner a point of cells lies that are huge against all else. */
+static void lattice_axis(real beside, vreal high, vreal low, vreal scale, vreal scale_low, vreal rest, vuint first, vuint *cell,
                          vreal *in_cell) {
     const vreal product = high * scale;
     const vreal error = fma(high, scale, -product) + fma(high, scale_low, low * scale);
-    const vreal whole = floor(product);
+    const vreal whole = choose(fabs(product) < splat(beside), splat(0), floor(product));
     const vreal sum = (product - whole) + (error + rest);
     const vreal carry = floor(sum);
     *in_cell = sum - carry;
@@ -28,16 +30,16 @@ static void lattice_axis(vreal high, vreal low, vreal scale, vreal scale_low, vr
 }
 
 /* In the lattice of the texture that begins at `numbers` and `kinds` in its tables. */
-static LatticePlace lattice_place(const Scene *scene, vuint numbers, vuint kinds, const Point *point) {
+static LatticePlace lattice_place(const Scene *scene, vuint numbers, vuint kinds, real beside, const Point *point) {
     const vreal scale = gather_real(scene->textures + TEXTURE_SCALE, numbers);
     const vreal scale_low = gather_real(scene->textures + TEXTURE_SCALE_LOW, numbers);
     LatticePlace place;
-    lattice_axis(point->high.x, point->low.x, scale, scale_low, gather_real(scene->textures + TEXTURE_REST, numbers),
+    lattice_axis(beside, point->high.x, point->low.x, scale, scale_low, gather_real(scene->textures + TEXTURE_REST, numbers),
                  gather_uint(scene->texture_kinds + TEXTURE_CELL, kinds), &place.x, &place.in_cell.x);
-    lattice_axis(point->high.y, point->low.y, scale, scale_low,
+    lattice_axis(beside, point->high.y, point->low.y, scale, scale_low,
                  gather_real(scene->textures + (TEXTURE_REST + 1u), numbers),
                  gather_uint(scene->texture_kinds + (TEXTURE_CELL + 1u), kinds), &place.y, &place.in_cell.y);
-    lattice_axis(point->high.z, point->low.z, scale, scale_low,
+    lattice_axis(beside, point->high.z, point->low.z, scale, scale_low,
                  gather_real(scene->textures + (TEXTURE_REST + 2u), numbers),
                  gather_uint(scene->texture_kinds + (TEXTURE_CELL + 2u), kinds), &place.z, &place.in_cell.z);
     return place;

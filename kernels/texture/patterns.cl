@@ -12,7 +12,7 @@ static vreal by_axis(vuint axis, vreal a, vreal b, vreal c) {
 static vreal waves_along(const Scene *scene, vuint numbers, vuint axis, const Point *point) {
     vuint cell;
     vreal waves;
-    lattice_axis(by_axis(axis, point->high.x, point->high.y, point->high.z),
+    lattice_axis(0, by_axis(axis, point->high.x, point->high.y, point->high.z),
                  by_axis(axis, point->low.x, point->low.y, point->low.z),
                  gather_real(scene->textures + TEXTURE_WAVE, numbers),
                  gather_real(scene->textures + TEXTURE_WAVE_LOW, numbers),
@@ -45,7 +45,7 @@ static vreal waves_around(const Scene *scene, vuint numbers, vuint axis, const P
 /* The share of the second colour. */
 static vreal pattern_share(const Scene *scene, vuint numbers, vuint kinds, const Point *point, vuint pattern,
                            vbool active) {
-    const LatticePlace place = lattice_place(scene, numbers, kinds, point);
+    const LatticePlace place = lattice_place(scene, numbers, kinds, 0, point);
     const vuint octaves = choose_uint(active, gather_uint(scene->texture_kinds + TEXTURE_OCTAVES, kinds), splat_uint(0));
     const vreal noise = octaves_of_noise(place, octaves, gather_uint(scene->texture_kinds + TEXTURE_SEED, kinds));
     const vbool marble = vbool_of_uint(pattern == splat_uint(PATTERN_MARBLE));
