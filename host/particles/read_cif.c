@@ -213,6 +213,16 @@ static BpStatus take_loop(Input *input, State *state, BpError *err) {
     return BP_OK;
 }
 
+static BpStatus keep_value(const Input *input, State *state, int field, const char *value, BpError *err) {
+    const size_t room = sizeof state->row[field];
+    if (strlen(value) >= room)
+        return input_fail(input, true, err,
+                          "found a value of %zu bytes in _atom_site.%s, expected at most %zu", strlen(value),
+                          field_names[field], room - 1);
+    snprintf(state->row[field], room, "%s", value);
+    return BP_OK;
+}
+
 /* A name and its value. A table of one row may be written so. */
 static BpStatus take_item(Input *input, State *state, BpError *err) {
     char name[CIF_TEXT_SIZE];
@@ -228,7 +238,7 @@ static BpStatus take_item(Input *input, State *state, BpError *err) {
         forget_fields(state);
     }
     const int field = take_field(state, name, 0);
-    if (field < FIELD_COUNT) snprintf(state->row[field], sizeof state->row[field], "%s", value);
+    if (field < FIELD_COUNT) BP_TRY(keep_value(input, state, field, value, err));
     state->pending = false;
     return BP_OK;
 }
@@ -310,13 +320,8 @@ static BpStatus take_row(Input *input, State *state, BpError *err) {
                               state->tokens.token == NULL ? "the end of the file" : "a name",
                               state->column_count);
         for (int f = 0; f < FIELD_COUNT; f++) {
-            const char *const token = state->tokens.token;
-            if (state->field_column[f] != (int)c) continue;
-            if (strlen(token) >= sizeof state->row[f])
-                return input_fail(input, true, err,
-                                  "found a value of %zu bytes in _atom_site.%s, expected at most %zu",
-                                  strlen(token), field_names[f], sizeof state->row[f] - 1);
-            snprintf(state->row[f], sizeof state->row[f], "%s", token);
+            if (state->field_column[f] == (int)c)
+                BP_TRY(keep_value(input, state, f, state->tokens.token, err));
         }
         state->pending = false;
     }

@@ -6,11 +6,11 @@ BALLPARK_READERS_PYTHON names the Python that has gemmi and MDAnalysis, where it
 import collections
 import json
 import os
-import shutil
 import subprocess
 import sys
-import tempfile
 import unittest
+
+from in_folder import FolderTest
 
 LISTER = os.path.abspath(sys.argv[1])
 HERE = os.path.dirname(os.path.abspath(__file__))
@@ -35,19 +35,7 @@ class Listed:
         return [getattr(atom, member) for atom in self.atoms]
 
 
-class ListTest(unittest.TestCase):
-    maxDiff = None
-
-    def setUp(self):
-        self.folder = tempfile.mkdtemp(prefix="ballpark-molecules-")
-        self.addCleanup(shutil.rmtree, self.folder)
-
-    def write(self, name, content):
-        path = os.path.join(self.folder, name)
-        with open(path, "wb") as file:
-            file.write(content if isinstance(content, bytes) else content.encode())
-        return path
-
+class ListTest(FolderTest):
     def run_list(self, path, *arguments):
         return subprocess.run([LISTER, path, *map(str, arguments)], stdout=subprocess.PIPE, stderr=subprocess.PIPE, timeout=120,
                               text=True, check=False)

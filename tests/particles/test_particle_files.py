@@ -13,8 +13,9 @@ import shutil
 import struct
 import subprocess
 import sys
-import tempfile
 import unittest
+
+from in_folder import FolderTest
 
 SUMMARY = os.path.abspath(sys.argv[1])
 HERE = os.path.dirname(os.path.abspath(__file__))
@@ -225,19 +226,7 @@ GSD_FRAMES = [{"configuration/box": floats(1, 10, 8, 6, 0.5, 0, 0), "particles/N
 GSD = gsd_file(GSD_FRAMES)
 
 
-class FileTest(unittest.TestCase):
-    maxDiff = None
-
-    def setUp(self):
-        self.folder = tempfile.mkdtemp(prefix="ballpark-particles-")
-        self.addCleanup(shutil.rmtree, self.folder)
-
-    def write(self, name, content):
-        path = os.path.join(self.folder, name)
-        with open(path, "wb") as file:
-            file.write(content if isinstance(content, bytes) else content.encode())
-        return path
-
+class FileTest(FolderTest):
     def run_summary(self, path, *arguments):
         def limit():
             if not SANITIZED:

@@ -8,11 +8,11 @@ import json
 import os
 import random
 import re
-import shutil
 import subprocess
 import sys
-import tempfile
 import unittest
+
+from in_folder import FolderTest
 
 BALLPARK, SUMMARY = map(os.path.abspath, sys.argv[1:3])
 HERE = os.path.dirname(os.path.abspath(__file__))
@@ -58,19 +58,7 @@ def xyz(symbols, positions, cell, pbc=None):
     return f'{len(symbols)}\nLattice="{edges}"{flags} Properties=species:S:1:pos:R:3\n{rows}'
 
 
-class Periodic(unittest.TestCase):
-    maxDiff = None
-
-    def setUp(self):
-        self.folder = tempfile.mkdtemp(prefix="ballpark-periodic-")
-        self.addCleanup(shutil.rmtree, self.folder)
-
-    def write(self, name, content):
-        path = os.path.join(self.folder, name)
-        with open(path, "w") as file:
-            file.write(content)
-        return path
-
+class Periodic(FolderTest):
     def summary(self, name, content):
         run = subprocess.run([SUMMARY, self.write(name, content)], stdout=subprocess.PIPE, text=True, check=True)
         return json.loads(run.stdout)
