@@ -203,7 +203,7 @@ MUTANTS = [
     Mutant("neighbours below and before alone", "the spacing looks at one of the 27 cells around a particle", [
         patch("host/particles/spacing.c", "    while (bp_particle_grid_next(&walk)) {\n        uint32_t n = s->first",
               "    if (bp_particle_grid_next(&walk)) {\n        uint32_t n = s->first")],
-           [particle_scenes("spacing")]),
+           [test("test_bonds", "spacing_is_that_of_all_images")]),
     Mutant("a grid that ends at the lattice's sides", "neighbours across the sides of a periodic cell were not sought", [
         patch("host/particles/grid.c", "if (!grid->lattice.periodic[i] && walk->low[i] < 0)", "if (walk->low[i] < 0)")],
            [test("test_grid", "pairs_are_found")]),
@@ -981,10 +981,10 @@ MUTANTS = [
            [patch(KERNEL, "const vreal until = divide(free,", "const vreal until = R(1.005) * divide(free,")], [closed_pictures("how_far_paths_fly")]),
     Mutant("one side by balance, the other by power", "put in by hand, and no test saw it",
            [patch(KERNEL, "const vreal square = ratio * ratio;\n    return choose(shared, divide(square", "const vreal square = ratio;\n    return choose(shared, divide(square")],
-           [lamp_case("1.2")]),
+           [check("lamp", 256)]),
     Mutant("fog before lamps 2 % thin", "put in by hand, and no test saw it",
            [patch(KERNEL, "transmittance(scene, medium, choose(far, splat(REAL_LARGE), length))", "transmittance(scene, medium, R(0.98) * choose(far, splat(REAL_LARGE), length))")],
-           [closed_pictures("fog_before_a_lamp")]),
+           [check("media-fog", 1024), closed_pictures("fog_before_a_lamp")]),
     # ---- spheres that move ---------------------------------------------------------------------------------
     Mutant("boxes of the first moment", "second book: a bounding box of center0 alone",
            [patch("host/packed/tree_write.c", "high = fmax(center[a], center[a] + motion);", "high = center[a];")], [motion_cases("order")]),

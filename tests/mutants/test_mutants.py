@@ -152,7 +152,10 @@ class Bench:
         done = subprocess.run(command, env=environment, capture_output=True, text=True, errors="replace", timeout=300)
         if done.returncode not in (0, 3, 4):
             return ERROR, f"exit code {done.returncode}: {done.stderr.strip()[:300]}"
-        result = json.loads(done.stdout)["results"][0]
+        report = json.loads(done.stdout)
+        # Without and with light sampling, where the scene calls for it: the one that disagrees, else the first.
+        results = [scene["results"][0] for scene in report.get("scenes", [report])]
+        result = next((r for r in results if r["verdict"] == "disagree"), results[0])
         worst = max(result["tests"], key=lambda t: t["z"] / t["limit"])
         z = "infinite" if worst["z"] >= 1e6 else f"= {worst['z']:.1f}"
         said = f"z {z}, limit {worst['limit']:.1f} ({worst['family']})"

@@ -39,7 +39,7 @@ static const char text[] =
     "    const float scale = 1.0f / 0.3f, scale_low = 1.490116e-8f * (float)(i % 7), rest = (float)(i % 11) "
     "/ 11.0f;\n"
     "    uint cell; float in_cell;\n"
-    "    lattice_axis(high, low, scale, scale_low, rest, 4194303u, &cell, &in_cell);\n"
+    "    lattice_axis(0, high, low, scale, scale_low, rest, 4194303u, &cell, &in_cell);\n"
     "    out[8 * i] = high; out[8 * i + 1] = low; out[8 * i + 2] = scale; out[8 * i + 3] = scale_low;\n"
     "    out[8 * i + 4] = rest; out[8 * i + 5] = (float)(cell % LATTICE_PERIOD); out[8 * i + 6] = in_cell;\n"
     "}\n";
