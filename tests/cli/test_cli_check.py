@@ -288,11 +288,12 @@ class Against(Check):
         self.succeed(*SMALL_SUITE, "--json", "old.json")
         document = self.report("old.json")
         document["scenes"][3]["results"][0].update(verdict="failed", agree=False)
-        del document["scenes"][7]
+        gone = document["scenes"].pop(7)  # of two checks of a scene, the one with light sampling
+        self.assertEqual((gone["scene"], gone["light_sampling"]), (SCENES[6], "on"))
         self.write("old.json", document)
         self.succeed(*SMALL_SUITE, "--against", "old.json", "--json", "r.json")
         changes = self.report()["against"]["changes"]
-        self.assertEqual([(c["kind"], c["scene"]) for c in changes], [("recovered", SCENES[3]), ("new", SCENES[7])])
+        self.assertEqual([(c["kind"], c["scene"]) for c in changes], [("recovered", SCENES[3]), ("new", SCENES[6] + " (lights sampled)")])
 
     def test_bad_files(self):
         self.fail_with(1, *self.WORDS, "--against", "none.json", says="none.json")
