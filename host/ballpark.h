@@ -40,11 +40,12 @@
  *   use it.
  * - Drivers. All OpenCL drivers of the machine start with the first call that needs a device. One that does
  *   not answer within 20 seconds, when it starts or opens a device, is given up with BP_ERR_DEVICE, whose
- *   message says what is known of it; BALLPARK_DRIVER_SECONDS in the environment sets another limit, 0 none.
- *   Its thread cannot be ended and stays behind. Where that holds a lock of the system's loader, exit() waits
- *   for it; _exit() does not. A driver that crashes or ends the process takes it along, since a library
- *   cannot prevent that. `ballpark devices` asks drivers in processes of their own and names the one that is
- *   broken; with OCL_ICD_VENDORS naming the .icd file of another, it is not loaded at all.
+ *   message says what is known of it; BALLPARK_DRIVER_SECONDS in the environment sets another limit, 0 none;
+ * then drivers start in the thread of the caller. Its thread cannot be ended and stays behind. Where that
+ * holds a lock of the system's loader, exit() waits for it; _exit() does not. A driver that crashes or ends
+ * the process takes it along, since a library cannot prevent that. `ballpark devices` asks drivers in
+ * processes of their own and names the one that is broken; with OCL_ICD_VENDORS naming the .icd file of
+ * another, it is not loaded at all.
  * - Options. A struct of options is filled by its function `_defaults`; then change what matters. New members
  *   may come in a minor version, so a struct that was filled member by member would lack them.
  * - Versions. While the version is 0.x, structs may grow in a minor version and not in a patch: see

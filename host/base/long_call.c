@@ -47,8 +47,8 @@ static void *run(void *argument) {
     return NULL;
 }
 
-BpLongCall *bp_long_call_begin(void (*work)(void *argument), void *argument,
-                               void (*release)(void *argument)) {
+BpLongCall *bp_long_call_begin(void (*work)(void *argument), void *argument, void (*release)(void *argument),
+                               bool here) {
     pthread_t thread;
     BpLongCall *call = calloc(1, sizeof *call);
     if (call == NULL) return NULL;
@@ -59,7 +59,7 @@ BpLongCall *bp_long_call_begin(void (*work)(void *argument), void *argument,
     call->users = 2;
     pthread_mutex_init(&call->mutex, NULL);
     pthread_cond_init(&call->returned, NULL);
-    if (pthread_create(&thread, NULL, run, call) == 0)
+    if (!here && pthread_create(&thread, NULL, run, call) == 0)
         pthread_detach(thread);
     else
         run(call);

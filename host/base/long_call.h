@@ -13,9 +13,10 @@
 typedef struct BpLongCall BpLongCall;
 
 /* Begins work(argument). `release`: Optional; called once with the argument, when the work has returned and
- * the caller has left it. Where no thread can be had, the work is done before this returns. NULL: out of
- * memory; nothing was called. */
-BpLongCall *bp_long_call_begin(void (*work)(void *argument), void *argument, void (*release)(void *argument));
+ * the caller has left it. `here`: in the caller's own thread, so it is done before this returns; as it is
+ * where no thread can be had. NULL: out of memory; nothing was called. */
+BpLongCall *bp_long_call_begin(void (*work)(void *argument), void *argument, void (*release)(void *argument),
+                               bool here);
 
 /* Waits until the work has returned. False: it has not, `seconds` after it began (0: no limit), or stop()
  * said so (Optional; asked every 2 ms). Several threads may wait for one call. */

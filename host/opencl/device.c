@@ -76,7 +76,7 @@ static BpStatus open_within_limit(BpDevice *device, BpError *err) {
     opening->id = device->id;
     snprintf(opening->what, sizeof opening->what, "opening device %u (%s, %s, driver %s)",
              device->info.number, device->info.name, device->info.platform, device->info.driver);
-    BpLongCall *call = bp_long_call_begin(ask_to_open, opening, release_opening);
+    BpLongCall *call = bp_long_call_begin(ask_to_open, opening, release_opening, seconds == 0);
     if (call == NULL) {
         free(opening);
         return bp_fail(err, BP_ERR_MEMORY, "no memory to open device %u", device->info.number);

@@ -103,7 +103,7 @@ BpStatus bp_drivers_start_until(bool (*stop)(void), BpError *err) {
     BP_TRY(bp_drivers_use(err));
     BP_TRY(bp_driver_seconds(&seconds, err));
     pthread_mutex_lock(&start_mutex);
-    if (start == NULL) start = bp_long_call_begin(ask, NULL, NULL);
+    if (start == NULL) start = bp_long_call_begin(ask, NULL, NULL, seconds == 0);
     BpLongCall *begun = start;
     pthread_mutex_unlock(&start_mutex);
     if (begun == NULL)

@@ -232,6 +232,7 @@ def check_scenes_of_the_program(prefix):
                            "--quiet", "--json", "-"], capture_output=True, text=True, cwd=prefix, check=False)
     assert done.returncode == 4, f"exit code {done.returncode}: {done.stderr}"
     found = [scene["scene"] for scene in json.loads(done.stdout)["scenes"]]
+    found = list(dict.fromkeys(found))  # those whose lights can be sampled are checked twice
     assert found == [path.stem for path in sorted((source / "tests/agree/scenes").glob("*.json"), key=lambda path: path.name)], found
     done = subprocess.run([prefix / "bin/ballpark", "check", "--bits", "--timeout", "0.001", "--json", "-"],
                           capture_output=True, text=True, cwd=prefix, check=False)
