@@ -72,6 +72,7 @@ static void fill_bounds(const BpLattice *lattice, const BpParticleBounds *bounds
                         BpLattice *out) {
     double origin[3], edges[3][3] = {{0}};
     memcpy(origin, bounds->low, sizeof origin);
+    reach = fmax(reach, BP_PARTICLE_NARROWEST);
     for (int c = 0; c < 3; c++) edges[c][c] = fmax(bounds->high[c] - bounds->low[c], reach);
     *out = *lattice;
     if (bp_lattice_repeats(lattice)) {

@@ -181,7 +181,7 @@ static double first_reach(const BpParticleBounds *bounds, const BpLattice *latti
     double volume = 1, shortest = INFINITY;
     int dimensions = 0;
     for (int c = 0; c < 3; c++) {
-        if (!(bounds->high[c] > bounds->low[c])) continue;
+        if (!(bounds->high[c] - bounds->low[c] > BP_PARTICLE_NARROWEST)) continue;
         volume *= bounds->high[c] - bounds->low[c];
         dimensions++;
     }
