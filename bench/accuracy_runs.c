@@ -52,10 +52,12 @@ static void read_pixels(const BpFilm *film, bool with_error, Run *run) {
     run->luminance = calloc(pixels, sizeof *run->luminance);
     run->error = calloc(pixels, sizeof *run->error);
     if (run->luminance == NULL || run->error == NULL) exit(EXIT_FAILURE);
+    BpUnseenWeights weights;
+    bp_unseen_weigh(film, &weights);
     for (size_t p = 0; p < pixels; ++p) {
         for (size_t c = 0; c < 3; ++c)
             run->luminance[p] += bp_luminance_weights[c] * (double)picture.rgb[3 * p + c];
-        run->error[p] = with_error ? sqrt(bp_film_squared_error(film, p)) : NAN;
+        run->error[p] = with_error ? sqrt(bp_film_squared_error(film, &weights, p)) : NAN;
     }
     bp_picture_clear(&picture);
 }

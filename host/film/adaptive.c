@@ -86,12 +86,14 @@ static BpStatus record(BpAdaptive *adaptive, const BpFilm *film, uint32_t level,
     float *errors = adaptive->errors[level], *costs = adaptive->costs[level];
     if (errors == NULL || costs == NULL)
         return bp_fail(err, BP_ERR_MEMORY, "no memory for the errors of %u tiles", adaptive->halves / 2);
+    BpUnseenWeights weights;
+    bp_unseen_weigh(film, &weights);
     for (uint32_t y = 0; y < adaptive->height; ++y)
         for (uint32_t x = 0; x < adaptive->width; ++x) {
             const uint32_t half = half_of(adaptive, x, y);
             if (level > 0 && !adaptive->passing[half]) continue;
             const size_t pixel = (size_t)y * adaptive->width + x;
-            const double error = bp_film_squared_error(film, pixel);
+            const double error = bp_film_squared_error(film, &weights, pixel);
             const double share = 1.0 / adaptive->half_pixels[half];
             if (isfinite(error)) errors[half] += (float)(error * share);
             if (film->pixel_segments != NULL)

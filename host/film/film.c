@@ -48,6 +48,7 @@ void bp_film_destroy(BpFilm **film) {
     free((*film)->pixel_segments);
     free((*film)->met);
     bp_film_drop_aovs(*film);
+    bp_unseen_destroy(&(*film)->unseen);
     bp_film_plan_destroy(&(*film)->plan);
     free(*film);
     *film = NULL;
@@ -314,6 +315,8 @@ BpStatus bp_film_merge(BpFilm *into, const BpFilm *from, BpError *err) {
     const bool takes_aovs = bp_film_has_aovs(from) && (!bp_film_has_aovs(into) || begins_before(from, into));
     BpStatus status = from->fine_sums != NULL ? bp_film_add_fine_sums(into, err) : BP_OK;
     if (status == BP_OK && takes_aovs) status = bp_film_add_aovs(into, err);
+    if (status == BP_OK && into->unseen == NULL && from->unseen != NULL)
+        status = bp_unseen_copy(from->unseen, (size_t)into->width * into->height, &into->unseen, err);
     if (status != BP_OK) {
         free(joined);
         return status;

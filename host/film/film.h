@@ -16,6 +16,7 @@
 
 #include "base/names.h"
 #include "scene/scene.h"
+#include "unseen.h"
 
 #include "aov_list.h"
 
@@ -84,6 +85,7 @@ struct BpFilm {
     /* Optional, all or none: what each pixel shows first, as in BpPicture. They follow from scene and
      * seed and not from the samples of the film (render/aovs.h), so films of other samples have the same. */
     AOV_LIST(BP_FILM_AOV)
+    BpUnseen *unseen; /* Optional. What the samples find by chance; it too follows from the scene alone */
     /* The samples of the whole job of which this film is a share; a count of 0: it is none. */
     struct BpSampleRange job;
     BpFilmPlan *plan; /* Optional. Not merged: the sum of two films is of no one render */
@@ -170,9 +172,9 @@ uint64_t bp_film_range_total(const BpFilm *film);
  * luminance, Rec. 709 weights. The luminance's error comes from the luminances of the replicates, so that
  * correlated channels count right. NaN when the mean is 0 or a pixel has fewer than two replicates. */
 
-/* Squared standard error of one pixel's luminance, by the same formula; NaN with fewer than two replicates.
- */
-double bp_film_squared_error(const BpFilm *film, size_t pixel);
+/* Squared standard error of one pixel's luminance, by the same formula and with its unseen light; NaN with
+ * fewer than two replicates. `weights`: of this film (bp_unseen_weigh). */
+double bp_film_squared_error(const BpFilm *film, const BpUnseenWeights *weights, size_t pixel);
 /* Why samples are left out, in words: " (2 not finite, 1 negative)"; "" without any. */
 enum { BP_INVALID_TEXT_SIZE = 192 };
 const char *bp_film_invalid_causes(const BpFilm *film, char text[BP_INVALID_TEXT_SIZE]);

@@ -26,11 +26,31 @@ double bp_film_sum(const BpFilm *film, size_t index) {
 typedef struct PixelEstimate {
     double mean[4];
     double squared_error[4]; /* of the mean; NaN where unknown */
+    double expected;         /* luminance, with what has not been found yet */
     uint64_t samples;
 } PixelEstimate;
 
-/* Two passes over the replicates, mean first: no difference of large squares. */
-static PixelEstimate estimate_pixel(const BpFilm *film, size_t pixel) {
+/* Adds the variance of light that the pixel's samples may not have found. If the sums of the replicates are so far apart
+ * that one of them has found it, the variance that they show is the same one over again. `least`, `most`: luminances of
+ * replicates. */
+static void add_unseen(const BpUnseen *unseen, const BpUnseenWeights *weights, size_t pixel, double least, double most,
+                       double replicates, PixelEstimate *estimate) {
+    const BpUnseenPixel *light = &unseen->pixels[pixel];
+    const double weight = bp_unseen_weight(weights, light);
+    if (!(weight > 0)) return;
+    const double mean = light->mean, square = light->square, samples = (double)estimate->samples;
+    const bool found = (most - least) * samples / replicates > 0.5 * square / mean;
+    const double variance = fmax(square - mean * mean, 0) / samples;
+    for (int c = 0; c < 4; c++) {
+        const double unseen_error = variance * (c < 3 ? (double)unseen->tint[c] : 1);
+        estimate->squared_error[c] += weight * (unseen_error - (found ? estimate->squared_error[c] : 0));
+    }
+    estimate->expected += weight * (mean - (found ? estimate->mean[3] - least : 0));
+}
+
+/* Two passes over the replicates, mean first: no difference of large squares. `weights` may be NULL: then the
+ * errors are those of what the samples have found. */
+static PixelEstimate estimate_pixel(const BpFilm *film, const BpUnseenWeights *weights, size_t pixel) {
     PixelEstimate estimate = {.samples = 0};
     const size_t k_count = film->replicates;
     const uint32_t *counts = film->counts + pixel * k_count;
@@ -52,18 +72,24 @@ static PixelEstimate estimate_pixel(const BpFilm *film, size_t pixel) {
     }
     const double total = (double)estimate.samples;
     for (size_t c = 0; c < 4 && filled > 0; c++) estimate.mean[c] /= total;
+    estimate.expected = estimate.mean[3];
     if (filled < 2) {
         for (size_t c = 0; c < 4; c++) estimate.squared_error[c] = NAN;
         return estimate;
     }
+    double least = INFINITY, most = 0; /* luminance of a replicate */
     for (size_t k = 0; k < k_count; k++) {
         if (counts[k] == 0) continue;
+        least = fmin(least, means[k][3]);
+        most = fmax(most, means[k][3]);
         for (size_t c = 0; c < 4; c++) {
             const double difference = means[k][c] - estimate.mean[c];
             estimate.squared_error[c] += counts[k] * difference * difference;
         }
     }
     for (size_t c = 0; c < 4; c++) estimate.squared_error[c] /= (filled - 1) * total;
+    if (weights != NULL && film->unseen != NULL)
+        add_unseen(film->unseen, weights, pixel, least, most, filled, &estimate);
     return estimate;
 }
 
@@ -86,8 +112,10 @@ BpStatus bp_film_picture(const BpFilm *film, BpPicture *picture, BpError *err) {
         bp_picture_clear(picture);
         return BP_ERR_MEMORY;
     }
+    BpUnseenWeights weights;
+    bp_unseen_weigh(film, &weights);
     for (size_t pixel = 0; pixel < pixels; pixel++) {
-        const PixelEstimate estimate = estimate_pixel(film, pixel);
+        const PixelEstimate estimate = estimate_pixel(film, &weights, pixel);
         for (size_t c = 0; c < 3; c++) {
             picture->rgb[3 * pixel + c] = (float)estimate.mean[c];
             picture->error[3 * pixel + c] = (float)sqrt(estimate.squared_error[c]);
@@ -103,9 +131,11 @@ BpStatus bp_film_picture(const BpFilm *film, BpPicture *picture, BpError *err) {
 double bp_film_nrmse(const BpFilm *film) {
     const size_t pixels = (size_t)film->width * film->height;
     double luminance = 0, squared_error = 0;
+    BpUnseenWeights weights;
+    bp_unseen_weigh(film, &weights);
     for (size_t pixel = 0; pixel < pixels; pixel++) {
-        const PixelEstimate estimate = estimate_pixel(film, pixel);
-        luminance += estimate.mean[3];
+        const PixelEstimate estimate = estimate_pixel(film, &weights, pixel);
+        luminance += estimate.expected;
         squared_error += estimate.squared_error[3];
     }
     if (!(luminance > 0)) return NAN;
@@ -116,7 +146,7 @@ void bp_film_mean(const BpFilm *film, double mean[3]) {
     const size_t pixels = (size_t)film->width * film->height;
     double sum[3] = {0};
     for (size_t pixel = 0; pixel < pixels; pixel++) {
-        const PixelEstimate estimate = estimate_pixel(film, pixel);
+        const PixelEstimate estimate = estimate_pixel(film, NULL, pixel);
         for (size_t c = 0; c < 3; c++) sum[c] += estimate.mean[c];
     }
     for (size_t c = 0; c < 3; c++) mean[c] = sum[c] / (double)pixels;
@@ -132,8 +162,8 @@ double bp_film_rounding(const BpFilm *film) {
     return fmax(fine_step / luminance, BP_ROUNDING_MAX);
 }
 
-double bp_film_squared_error(const BpFilm *film, size_t pixel) {
-    return estimate_pixel(film, pixel).squared_error[3];
+double bp_film_squared_error(const BpFilm *film, const BpUnseenWeights *weights, size_t pixel) {
+    return estimate_pixel(film, weights, pixel).squared_error[3];
 }
 
 static void add_cause(uint64_t count, const char *words, char text[BP_INVALID_TEXT_SIZE]) {

@@ -18,6 +18,8 @@
 #define SUM_MAX                                                                                              \
     ((int64_t)3 << 61) /* 2^24 samples of at most 2^38 come to 2^62; half as much again for rounding */
 
+#define UNSEEN_FLOATS (sizeof(BpUnseenPixel) / sizeof(float))
+
 static size_t cell_count(const BpFilm *film) {
     return (size_t)film->width * film->height * film->replicates;
 }
@@ -43,6 +45,10 @@ BpStatus bp_film_write_stream(const BpFilm *film, FILE *out, BpError *err) {
 #undef WRITE
         if (film->pixel_segments != NULL) bp_film_sink_numbers(&sink, film->pixel_segments, 8, pixels);
         if (film->met != NULL) bp_film_sink_numbers(&sink, film->met, 8, pixels);
+        if (film->unseen != NULL) {
+            bp_film_sink_numbers(&sink, film->unseen->pixels, 4, UNSEEN_FLOATS * pixels);
+            bp_film_sink_numbers(&sink, film->unseen->tint, 4, 3);
+        }
         if (film->plan != NULL)
             bp_film_sink_numbers(&sink, film->plan->decisions, 1, film->plan->decision_bytes);
         status = bp_film_sink_end(&sink, err);
@@ -105,7 +111,8 @@ static uint64_t body_bytes(const Loader *loader, const BpFilm *sizes) {
     const uint64_t pixels = (uint64_t)sizes->width * sizes->height;
     const uint64_t cell_size = (parts->fine_sums ? 2 : 1) * 3 * 8 + 4;
     return pixels * sizes->replicates * cell_size + pixels * (parts->aovs ? AOV_MET * sizeof(float) : 0) +
-           pixels * (parts->pixel_segments ? 8 : 0) + pixels * (parts->alpha ? 8 : 0) + parts->decision_bytes;
+           pixels * (parts->pixel_segments ? 8 : 0) + pixels * (parts->alpha ? 8 : 0) +
+           (parts->unseen ? pixels * sizeof(BpUnseenPixel) + 3 * sizeof(float) : 0) + parts->decision_bytes;
 }
 
 /* Whether the file is as long as its numbers need, or, where they are packed, can be; before anything is
@@ -207,6 +214,24 @@ static BpStatus read_met(BpFilmSource *source, BpFilm *film, BpError *err) {
     return BP_OK;
 }
 
+static BpStatus read_unseen(BpFilmSource *source, BpFilm *film, BpError *err) {
+    const size_t pixels = (size_t)film->width * film->height;
+    BP_TRY(bp_unseen_create(pixels, &film->unseen, err));
+    BP_TRY(bp_film_source_numbers(source, film->unseen->pixels, 4, UNSEEN_FLOATS * pixels, err));
+    BP_TRY(bp_film_source_numbers(source, film->unseen->tint, 4, 3, err));
+    for (size_t i = 0; i < pixels; i++) {
+        const BpUnseenPixel *pixel = &film->unseen->pixels[i];
+        if (!(pixel->mean >= 0 && pixel->square >= 0 && isfinite(pixel->mean) && isfinite(pixel->square)))
+            return bp_fail(err, BP_ERR_FILE, "%s is damaged: the unseen light of pixel %zu is no radiance",
+                           source->name, i);
+    }
+    for (int c = 0; c < 3; c++)
+        if (!(film->unseen->tint[c] >= 0 && isfinite(film->unseen->tint[c])))
+            return bp_fail(err, BP_ERR_FILE, "%s is damaged: the colour of the unseen light is none",
+                           source->name);
+    return BP_OK;
+}
+
 static BpStatus read_decisions(BpFilmSource *source, BpFilm *film, BpError *err) {
     const size_t size = film->plan->decision_bytes;
     film->plan->decisions = malloc(size);
@@ -224,6 +249,7 @@ static BpStatus read_numbers(const BpFilmParts *parts, BpFilmSource *source, BpF
     if (parts->aovs) BP_TRY(read_aovs(source, film, err));
     if (parts->pixel_segments) BP_TRY(read_pixel_segments(source, film, err));
     if (parts->alpha) BP_TRY(read_met(source, film, err));
+    if (parts->unseen) BP_TRY(read_unseen(source, film, err));
     if (parts->decision_bytes > 0) BP_TRY(read_decisions(source, film, err));
     return bp_film_source_end(source, err);
 }

@@ -52,6 +52,7 @@ static bool add_optional(json_t *header, const BpFilm *film) {
             header, "job", json_pack("[I,I]", (json_int_t)film->job.first, (json_int_t)film->job.count)) != 0)
         return false;
     if (film->met != NULL && json_object_set_new(header, "alpha", json_true()) != 0) return false;
+    if (film->unseen != NULL && json_object_set_new(header, "unseen", json_true()) != 0) return false;
 #define WRITE(member, tally, words)                                                                          \
     if (film->member > 0 &&                                                                                  \
         json_object_set_new(header, #member, json_integer((json_int_t)film->member)) != 0)                   \
@@ -64,19 +65,24 @@ static bool add_optional(json_t *header, const BpFilm *film) {
     return film->plan == NULL || json_object_set_new(header, "plan", plan_json(film->plan)) == 0;
 }
 
+/* The oldest that has all of it. */
+static int version_of(const BpFilm *film) {
+    return film->unseen != NULL ? BP_FILM_VERSION : film->met != NULL ? 4 : 3;
+}
+
 char *bp_film_header_make(const BpFilm *film) {
     char hash[32], seed[32];
     snprintf(hash, sizeof hash, "%016" PRIx64, film->scene_hash);
     snprintf(seed, sizeof seed, "%" PRIu64, film->seed);
     const char *title = film->title != NULL ? film->title : "";
-    json_t *header = json_pack(
-        "{s:i,s:s,s:s%,s:I,s:I,s:I,s:i,s:b,s:b,s:b,s:b,s:s,s:s,s:I}", "ballpark_accumulator",
-        film->met != NULL ? BP_FILM_VERSION : BP_FILM_VERSION - 1, "byte_order", "little", "title", title,
-        title_bytes(title), "width", (json_int_t)film->width, "height", (json_int_t)film->height,
-        "replicates", (json_int_t)film->replicates, "scale_log2", (int)film->scale_log2, "fine_sums",
-        (int)(film->fine_sums != NULL), "coarse", (int)film->coarse, "aovs", (int)bp_film_has_aovs(film),
-        "pixel_segments", (int)(film->pixel_segments != NULL), "scene_hash", hash, "seed", seed, "max_depth",
-        (json_int_t)film->max_depth);
+    json_t *header =
+        json_pack("{s:i,s:s,s:s%,s:I,s:I,s:I,s:i,s:b,s:b,s:b,s:b,s:s,s:s,s:I}", "ballpark_accumulator",
+                  version_of(film), "byte_order", "little", "title", title, title_bytes(title), "width",
+                  (json_int_t)film->width, "height", (json_int_t)film->height, "replicates",
+                  (json_int_t)film->replicates, "scale_log2", (int)film->scale_log2, "fine_sums",
+                  (int)(film->fine_sums != NULL), "coarse", (int)film->coarse, "aovs",
+                  (int)bp_film_has_aovs(film), "pixel_segments", (int)(film->pixel_segments != NULL),
+                  "scene_hash", hash, "seed", seed, "max_depth", (json_int_t)film->max_depth);
     json_t *rest = json_pack("{s:s,s:o,s:b,s:I,s:I,s:I}", "transfer", bp_transfer_names[film->transfer],
                              "ranges", ranges_json(film), "partial", (int)film->partial, "segments",
                              (json_int_t)film->segments, "cut_paths", (json_int_t)film->cut_paths,
@@ -153,6 +159,11 @@ static bool read_truth(Reader *reader, const char *member) {
     return json_is_true(value);
 }
 
+/* A member that only some headers of its version have. */
+static bool read_optional(Reader *reader, const char *member, bool needed) {
+    return (needed || json_object_get(reader->header, member) != NULL) && read_truth(reader, member);
+}
+
 static void read_ranges(Reader *reader, BpFilm *film) {
     const json_t *list = json_object_get(reader->header, "ranges");
     const size_t count_of_ranges = json_array_size(list);
@@ -212,7 +223,8 @@ static void read_sizes(Reader *reader, BpFilm *sizes, BpFilmParts *parts) {
     if (version < 3) return;
     parts->aovs = read_truth(reader, "aovs");
     parts->pixel_segments = read_truth(reader, "pixel_segments");
-    parts->alpha = version >= 4 && read_truth(reader, "alpha");
+    parts->alpha = version >= 4 && read_optional(reader, "alpha", version == 4);
+    parts->unseen = version >= 5 && read_optional(reader, "unseen", false);
     const json_t *plan = json_object_get(reader->header, "plan");
     Reader inner = {plan, reader->name, reader->status, reader->err};
     if (plan != NULL) parts->decision_bytes = read_integer(&inner, "decision_bytes", 0, INT32_MAX);

@@ -10,13 +10,14 @@
 
 #include <jansson.h>
 
-/* Of the files that are written; of those without an alpha it is 3, which older programs read. */
-#define BP_FILM_VERSION 4
+/* Of the files that are written; of those without unseen light it is 4, and without an alpha either it is 3,
+ * which older programs read. */
+#define BP_FILM_VERSION 5
 
 /* Which numbers follow a header. */
 typedef struct BpFilmParts {
     uint32_t version;
-    bool fine_sums, aovs, pixel_segments, alpha;
+    bool fine_sums, aovs, pixel_segments, alpha, unseen;
     uint64_t decision_bytes; /* of the plan */
 } BpFilmParts;
 

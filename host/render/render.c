@@ -55,6 +55,31 @@ static BpStatus check_options(const BpScene *scene, const BpRenderOptions *optio
     return BP_OK;
 }
 
+/* What the render's programs have behind the kernels that trace: the AOVs, the pilot, or NULL; to be freed.
+ */
+static BpStatus appended_source(const BpRender *render, char **text, BpError *err) {
+    char *features = NULL, *pilot = NULL;
+    BpStatus status = BP_OK;
+    *text = NULL;
+    if (render->options.features) status = bp_kernel_text("entry/aovs.cl", &features, err);
+    if (status == BP_OK && render->has_pilot) status = bp_pilot_source(&pilot, err);
+    if (status == BP_OK && features != NULL && pilot != NULL) {
+        const char *between = "#line 1 \"pilot_types.h\"\n";
+        const size_t size = strlen(features) + strlen(between) + strlen(pilot) + 1;
+        *text = malloc(size);
+        if (*text != NULL)
+            snprintf(*text, size, "%s%s%s", features, between, pilot);
+        else
+            status = bp_fail(err, BP_ERR_MEMORY, "no memory for the kernel's source");
+    } else if (status == BP_OK) {
+        *text = features != NULL ? features : pilot;
+        return BP_OK;
+    }
+    free(features);
+    free(pilot);
+    return status;
+}
+
 /* `open`: the device, if it is open already; NULL: it is to be opened. */
 static BpStatus open_worker(BpRender *render, const BpDeviceInfo *device, BpDevice *open, size_t index,
                             BpError *err) {
@@ -62,7 +87,7 @@ static BpStatus open_worker(BpRender *render, const BpDeviceInfo *device, BpDevi
     BpPacked packed;
     BpRenderOptions options = render->options;
     BpCalibration calibration = {.form = BP_KERNEL_AUTO};
-    char *features = NULL;
+    char *appended = NULL;
     double trial = 0;
     if (bp_calibrates(device, &options) && bp_calibrate(device, open, options.force, &calibration, &trial)) {
         options.kernel = calibration.form;
@@ -79,14 +104,12 @@ static BpStatus open_worker(BpRender *render, const BpDeviceInfo *device, BpDevi
     render->pack_seconds += bp_clock_seconds() - start - packed.tree.build_seconds;
     BpStatus status = BP_OK;
     setup.device = open;
-    if (render->options.features) {
-        setup.extra_name = "entry/aovs.cl";
-        status = bp_kernel_text(setup.extra_name, &features, err);
-        setup.extra_text = features;
-    }
+    status = appended_source(render, &appended, err);
+    setup.extra_name = render->options.features ? "entry/aovs.cl" : "pilot_types.h";
+    setup.extra_text = appended;
     if (status == BP_OK) status = bp_worker_create(device, &packed, &setup, &render->workers[index], err);
     bp_packed_clear(&packed); /* unless the worker has taken it over */
-    free(features);
+    free(appended);
     return status;
 }
 
@@ -144,6 +167,7 @@ static BpStatus create(const BpScene *scene, const BpRenderOptions *options, con
     made->worker_count = device_count;
     bp_effects_analyse(scene, &made->effects);
     made->options.lamps = bp_render_lamps_of(&made->effects, options);
+    made->has_pilot = made->options.lamps == BP_LAMPS_ON && bp_pilot_is_needed(scene);
     for (size_t i = 0; i < device_count; ++i)
         BP_TRY_GOTO(status,
                     open_worker(made, open != NULL ? &open[i]->info : &devices[i],
@@ -179,6 +203,7 @@ void bp_render_destroy(BpRender **render) {
     bp_film_destroy(&(*render)->film);
     bp_film_destroy(&(*render)->base);
     bp_picture_clear(&(*render)->aovs);
+    bp_unseen_destroy(&(*render)->unseen);
     bp_adaptive_destroy(&(*render)->adaptive);
     free(*render);
     *render = NULL;
@@ -431,6 +456,17 @@ static BpStatus add_base(const BpFilm *base, BpFilm *film, BpError *err) {
     return BP_OK;
 }
 
+/* The pilot follows from the scene, so once is enough; of several ranks, one needs it. */
+static BpStatus add_unseen(BpRender *render, BpFilm *film, BpError *err) {
+    if (!render->has_pilot || !bp_comm_leads(render->comm)) return BP_OK;
+    if (!render->pilot_done)
+        BP_TRY(bp_pilot_run(render->workers[0], render->scene, render->options.max_depth, &render->unseen,
+                            &render->pilot, err));
+    render->pilot_done = true;
+    if (render->unseen == NULL) return BP_OK;
+    return bp_unseen_copy(render->unseen, (size_t)film->width * film->height, &film->unseen, err);
+}
+
 /* What the devices of this process have added up, in a film that says what the render is. */
 static BpStatus read_own(BpRender *render, BpFilm **film, BpError *err) {
     BpFilm *read = NULL;
@@ -446,6 +482,7 @@ static BpStatus read_own(BpRender *render, BpFilm **film, BpError *err) {
     if (status == BP_OK && render->scene->backdrop == BP_BACKDROP_NONE) status = bp_film_add_met(read, err);
     for (size_t i = 0; status == BP_OK && i < render->worker_count; ++i)
         status = bp_worker_collect(render->workers[i], read, err);
+    if (status == BP_OK) status = add_unseen(render, read, err);
     if (status == BP_OK)
         *film = read;
     else

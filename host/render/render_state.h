@@ -8,6 +8,7 @@
 #include "cluster/comm.h"
 #include "film/adaptive.h"
 #include "opencl/calibration.h"
+#include "pilot.h"
 #include "render.h"
 #include "worker.h"
 
@@ -36,6 +37,10 @@ struct BpRender {
     uint64_t goal_samples; /* where a stop rule ends it; 0: none has said */
     double goal_error;
     bool ended;     /* it has reached that */
+    bool has_pilot;      /* its programs have one: there may be light that samples find by chance only */
+    bool pilot_done;
+    BpUnseen *unseen;    /* what it has found; NULL: nothing */
+    BpPilotReport pilot; /* the same for people */
     BpPicture aovs; /* its depth, normal and albedo, once computed */
     BpChunk last_chunk;
     double tree_seconds, pack_seconds, trace_seconds;

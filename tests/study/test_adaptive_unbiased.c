@@ -30,11 +30,13 @@ typedef struct Errors {
 static void add_errors(const BpFilm *film, const BpPicture *x, const BpPicture references[2],
                        Errors *errors) {
     const size_t pixels = (size_t)x->width * x->height;
+    BpUnseenWeights weights;
+    bp_unseen_weigh(film, &weights);
     for (size_t p = 0; p < pixels; p++) {
         const double y = luminance(x->rgb + 3 * p);
         errors->actual += (y - luminance(references[0].rgb + 3 * p)) *
                           (y - luminance(references[1].rgb + 3 * p)) / (double)pixels / SEEDS;
-        errors->claimed += bp_film_squared_error(film, p) / (double)pixels / SEEDS;
+        errors->claimed += bp_film_squared_error(film, &weights, p) / (double)pixels / SEEDS;
     }
 }
 

@@ -1,0 +1,154 @@
+/* pilot.c: see pilot.h. */
+#include "pilot.h"
+
+#include "base/clock.h"
+#include "base/status.h"
+#include "pilot_state.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#define PI 3.14159265358979323846
+
+/* Whether camera rays may miss the light, though its image is in a pixel. */
+static bool is_small(const BpCamera *camera, const BpPilotLight *light) {
+    const double extent = bp_pilot_pixel_extent(camera);
+    const bool parallel = camera->projection == BP_ORTHOGRAPHIC;
+    if (light->distant) return light->seen && !parallel && 2 * PI * light->cap < extent;
+    double away = 0;
+    for (int a = 0; a < 3; ++a)
+        away += (light->place[a] - camera->lookfrom[a]) * (light->place[a] - camera->lookfrom[a]);
+    return PI * light->radius * light->radius < (parallel ? extent : extent * away);
+}
+
+static bool is_needed(const BpScene *scene, const BpPilotAim *aim) {
+    bool needed = aim->pair_count > 0;
+    for (size_t i = 0; i < aim->light_count; ++i)
+        needed = needed || is_small(&scene->camera, &aim->lights[i]);
+    return needed;
+}
+
+bool bp_pilot_is_needed(const BpScene *scene) {
+    BpPilotAim aim;
+    if (bp_pilot_aim(scene, &aim, NULL) != BP_OK) return true; /* and the render will say why not */
+    const bool needed = is_needed(scene, &aim);
+    bp_pilot_aim_clear(&aim);
+    return needed;
+}
+
+BpStatus bp_pilot_source(char **text, BpError *err) {
+    char *types = NULL, *kernel = NULL;
+    BpStatus status = bp_kernel_text("pilot_types.h", &types, err);
+    if (status == BP_OK) status = bp_kernel_text("entry/pilot.cl", &kernel, err);
+    const char *between = "#line 1 \"entry/pilot.cl\"\n";
+    char *joined = NULL;
+    if (status == BP_OK) {
+        const size_t size = strlen(types) + strlen(between) + strlen(kernel) + 1;
+        joined = malloc(size);
+        if (joined == NULL)
+            status = bp_fail(err, BP_ERR_MEMORY, "no memory for the kernel's source");
+        else
+            snprintf(joined, size, "%s%s%s", types, between, kernel);
+    }
+    free(types);
+    free(kernel);
+    *text = joined;
+    return status;
+}
+
+static BpStatus pilot_create(const BpScene *scene, uint32_t max_depth, BpPilot *pilot, BpError *err) {
+    *pilot = (BpPilot){.scene = scene, .max_depth = max_depth, .plan = bp_pilot_plan(&scene->camera)};
+    BP_TRY(bp_pilot_aim(scene, &pilot->aim, err));
+    const size_t squares = (size_t)pilot->plan.width * pilot->plan.height;
+    pilot->sums.pixels = squares;
+    pilot->sums.mean = calloc(squares, sizeof *pilot->sums.mean);
+    pilot->sums.square = calloc(squares, sizeof *pilot->sums.square);
+    pilot->sums.by_sphere = calloc(scene->sphere_count + 1, sizeof *pilot->sums.by_sphere);
+    pilot->eyes = malloc(squares * pilot->plan.of_pixel * sizeof *pilot->eyes);
+    pilot->ray_room = squares * pilot->plan.of_pixel * 4;
+    pilot->rays = malloc(pilot->ray_room * sizeof *pilot->rays);
+    pilot->photons = malloc((size_t)BP_PILOT_PHOTONS * BP_PILOT_DEPOSITS * sizeof *pilot->photons);
+    if (pilot->sums.mean == NULL || pilot->sums.square == NULL || pilot->sums.by_sphere == NULL ||
+        pilot->eyes == NULL || pilot->rays == NULL || pilot->photons == NULL)
+        return bp_fail(err, BP_ERR_MEMORY, "no memory for a pilot of %zu pixels", squares);
+    return BP_OK;
+}
+
+static void pilot_clear(BpPilot *pilot) {
+    bp_pilot_aim_clear(&pilot->aim);
+    free(pilot->sums.mean);
+    free(pilot->sums.square);
+    free(pilot->sums.by_sphere);
+    free(pilot->eyes);
+    free(pilot->rays);
+    free(pilot->photons);
+}
+
+/* The spheres through which most of the noise comes. */
+static void report_spheres(const BpPilot *pilot, double total, BpPilotReport *report) {
+    const size_t count = pilot->scene->sphere_count;
+    report->direct = pilot->sums.by_sphere[count] / total;
+    for (size_t i = 0; i < count; ++i) {
+        const double part = pilot->sums.by_sphere[i] / total;
+        size_t place = report->sphere_count;
+        if (!(part > 0)) continue;
+        while (place > 0 && report->parts[place - 1] < part) --place;
+        if (place == BP_PILOT_SPHERES) continue;
+        if (report->sphere_count < BP_PILOT_SPHERES) ++report->sphere_count;
+        for (size_t k = report->sphere_count - 1; k > place; --k) {
+            report->parts[k] = report->parts[k - 1];
+            report->spheres[k] = report->spheres[k - 1];
+        }
+        report->parts[place] = part;
+        report->spheres[place] = i;
+    }
+}
+
+static BpStatus give(const BpPilot *pilot, BpUnseen **unseen, BpPilotReport *report, BpError *err) {
+    const BpCamera *camera = &pilot->scene->camera;
+    const BpPilotPlan *plan = &pilot->plan;
+    const size_t pixels = (size_t)camera->width * camera->height;
+    double total = 0;
+    for (size_t i = 0; i < pilot->sums.pixels; ++i) {
+        report->mean += pilot->sums.mean[i] / (double)pilot->sums.pixels;
+        total += pilot->sums.square[i];
+    }
+    if (!(total > 0)) return BP_OK;
+    report->square = total / (double)pilot->sums.pixels;
+    report->found = pilot->sums.found / (double)pilot->sums.pixels;
+    report_spheres(pilot, total, report);
+    BP_TRY(bp_unseen_create(pixels, unseen, err));
+    for (size_t i = 0; i < pixels; ++i) {
+        const size_t square = i / camera->width / plan->side * plan->width + i % camera->width / plan->side;
+        (*unseen)->pixels[i] =
+            (BpUnseenPixel){(float)pilot->sums.mean[square], (float)pilot->sums.square[square]};
+    }
+    for (int c = 0; c < 3; ++c) (*unseen)->tint[c] = (float)(pilot->sums.square_of[c] / total);
+    return BP_OK;
+}
+
+BpStatus bp_pilot_run(BpWorker *worker, const BpScene *scene, uint32_t max_depth, BpUnseen **unseen,
+                      BpPilotReport *report, BpError *err) {
+    const double start = bp_clock_seconds();
+    BpPilot pilot;
+    BpPilotFlight flight = {0};
+    *unseen = NULL;
+    *report = (BpPilotReport){0};
+    BP_TRY(bp_worker_wait_for_all(worker, err));
+    BpStatus status = pilot_create(scene, max_depth, &pilot, err);
+    if (status == BP_OK) status = bp_pilot_flight_create(worker, scene, &flight, err);
+    if (status == BP_OK) status = bp_pilot_trace_eyes(&pilot, &flight, err);
+    if (status == BP_OK && pilot.aim.pair_count > 0) status = bp_pilot_trace_photons(&pilot, &flight, err);
+    if (status == BP_OK)
+        status = bp_pilot_join(scene, pilot.eyes, pilot.eye_count, pilot.photons, pilot.photon_count,
+                               max_depth, &pilot.sums, err);
+    if (status == BP_OK)
+        bp_pilot_pass(pilot.aim.lights, pilot.aim.light_count, pilot.rays, pilot.ray_count,
+                      1.0 / pilot.plan.of_pixel, &pilot.sums);
+    if (status == BP_OK) status = give(&pilot, unseen, report, err);
+    bp_pilot_flight_clear(&flight);
+    pilot_clear(&pilot);
+    report->seconds = bp_clock_seconds() - start;
+    return status;
+}

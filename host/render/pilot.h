@@ -1,0 +1,43 @@
+/* pilot.h: looks for light that a picture's samples find by chance only, before they do.
+ *
+ * In:    a scene, a worker whose program has entry/pilot.cl.   Out: for each pixel, what such light does to
+ * its noise. Knows: what a ray to a lamp finds.   Does not know: samples of the picture; so the same scene
+ * and camera have the same pilot, whatever the seed, and films of one scene share it.
+ *
+ * A sample of the picture finds a lamp or a disc by rays to it, where its path stands on a matte surface.
+ * What it finds by chance is light that comes to a matte point by way of glass or mirrors, and light that is
+ * seen directly or by such ways. If the light is small, that is rare, and as long as it has not happened, the
+ * samples' spread does not know of it. A pilot does: some paths from the lights at everything specular,
+ * followed to where they are seen; and some camera paths, to see how close they come to lights. */
+#ifndef BP_RENDER_PILOT_H
+#define BP_RENDER_PILOT_H
+
+#include "worker.h"
+
+#include "film/unseen.h"
+
+enum { BP_PILOT_SPHERES = 3 };
+
+/* What has been found, for a person. */
+typedef struct BpPilotReport {
+    double mean;   /* of the picture: luminance that reaches a sample by chance */
+    double square; /* the same of its square: the variance of a sample, nearly */
+    double found;  /* the probability that a sample finds any */
+    size_t sphere_count;
+    size_t spheres[BP_PILOT_SPHERES]; /* through which most of it comes, by their part of `square` */
+    double parts[BP_PILOT_SPHERES];
+    double direct; /* the part of `square` of lights that are seen without any sphere between */
+    double seconds;
+} BpPilotReport;
+
+/* Whether the scene has light that a pilot may find. Looks at all spheres. */
+bool bp_pilot_is_needed(const BpScene *scene);
+
+/* The text that a program needs for it, to be freed. */
+BpStatus bp_pilot_source(char **text, BpError *err);
+
+/* *unseen is NULL if there is none. */
+BpStatus bp_pilot_run(BpWorker *worker, const BpScene *scene, uint32_t max_depth, BpUnseen **unseen,
+                      BpPilotReport *report, BpError *err);
+
+#endif

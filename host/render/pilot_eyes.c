@@ -1,0 +1,184 @@
+/* pilot_eyes.c: the camera's paths of a pilot: to the first rough point, and past lights.
+ *
+ * In:    a scene, a device.   Out: the rough points, the rays behind mirrors and glass, and lights that are
+ * seen directly. Knows: how far apart paths are.   Does not know: light that comes from elsewhere. */
+#include "pilot_state.h"
+
+#include "base/hash.h"
+#include "scene/vector.h"
+
+#include <math.h>
+#include <string.h>
+
+#define PI 3.14159265358979323846
+#define EYES 32768u /* paths, and how many a pixel has at most */
+#define EYES_OF_PIXEL 64u
+#define SEGMENTS 8u    /* to the first rough point, or none is found */
+#define NEAR_EYES 16.0 /* rough points within the radius of one, in the mean */
+
+double bp_pilot_pixel_extent(const BpCamera *camera) {
+    const double side = bp_camera_plane_height(camera) / camera->height;
+    const bool parallel = camera->projection == BP_ORTHOGRAPHIC;
+    return parallel ? side * side : side * side / (camera->focus_dist * camera->focus_dist);
+}
+
+BpPilotPlan bp_pilot_plan(const BpCamera *camera) {
+    const uint64_t pixels = (uint64_t)camera->width * camera->height;
+    BpPilotPlan plan = {.side = 1, .of_pixel = 1};
+    while (pixels / ((uint64_t)plan.side * plan.side) > EYES) ++plan.side;
+    if (plan.side == 1) plan.of_pixel = (uint32_t)(EYES / pixels);
+    if (plan.of_pixel > EYES_OF_PIXEL) plan.of_pixel = EYES_OF_PIXEL;
+    plan.width = (camera->width + plan.side - 1) / plan.side;
+    plan.height = (camera->height + plan.side - 1) / plan.side;
+    plan.extent = bp_pilot_pixel_extent(camera) * plan.side * plan.side / plan.of_pixel;
+    return plan;
+}
+
+/* The pixel in the middle of a square. */
+static uint32_t pixel_of(const BpPilotPlan *plan, const BpCamera *camera, uint32_t square) {
+    uint32_t x = square % plan->width * plan->side + plan->side / 2;
+    uint32_t y = square / plan->width * plan->side + plan->side / 2;
+    if (x >= camera->width) x = camera->width - 1;
+    if (y >= camera->height) y = camera->height - 1;
+    return y * camera->width + x;
+}
+
+/* The probability with which the pixel of a path that passes the light meets it: one that comes within some
+ * distance meets it by its share of that. 0: it does not come near, or the light is so large that samples
+ * find it. */
+static double chance_of(const BpPilotLight *light, const BpPilotSegment *segment, double near,
+                        bool parallel) {
+    const bool met = (segment->flags & PILOT_MET) != 0;
+    double along = 0, off2 = 0;
+    if (light->share > 1) return 0;
+    if (light->distant) {
+        const double near2 = near * near, size2 = 2 * light->cap;
+        for (int a = 0; a < 3; ++a)
+            off2 += (segment->direction[a] - light->place[a]) * (segment->direction[a] - light->place[a]);
+        return met || parallel || !light->seen || size2 >= near2 || off2 > near2 ? 0 : size2 / near2;
+    }
+    for (int a = 0; a < 3; ++a) {
+        const double origin = segment->point[a] - (met ? segment->distance * segment->direction[a] : 0);
+        along += (light->place[a] - origin) * segment->direction[a];
+        off2 += (light->place[a] - origin) * (light->place[a] - origin);
+    }
+    off2 -= along * along;
+    if (!parallel) near *= along;
+    const bool hidden = met && segment->sphere != light->sphere && segment->distance < along;
+    if (along <= 0 || hidden || light->radius >= near || off2 > near * near) return 0;
+    return light->radius * light->radius / (near * near);
+}
+
+/* Lights by which the path passes before it meets anything. */
+static void pass_directly(BpPilot *pilot, const BpPilotSegment *segment, size_t square) {
+    const bool parallel = pilot->scene->camera.projection == BP_ORTHOGRAPHIC;
+    const double near = 2 * sqrt(pilot->plan.extent);
+    for (size_t i = 0; i < pilot->aim.light_count && pilot->max_depth > 0; ++i) {
+        const BpPilotLight *light = &pilot->aim.lights[i];
+        const double chance = chance_of(light, segment, near, parallel);
+        if (chance > 0)
+            bp_pilot_add(&pilot->sums, square, light->radiance, chance / pilot->plan.of_pixel,
+                         pilot->scene->sphere_count);
+    }
+}
+
+static void keep_ray(BpPilot *pilot, const BpPilotSegment *segment, const double carried[3], uint32_t s,
+                     size_t square, uint32_t through, uint64_t way) {
+    const bool met = (segment->flags & PILOT_MET) != 0;
+    if (s + 1 > pilot->max_depth || pilot->ray_count == pilot->ray_room) return;
+    BpPilotRay *ray = &pilot->rays[pilot->ray_count];
+    *ray = (BpPilotRay){.number = (uint32_t)pilot->ray_count++,
+                        .length = met ? segment->distance : INFINITY,
+                        .way = way,
+                        .pixel = (uint32_t)square,
+                        .sphere = segment->sphere,
+                        .through = through};
+    memcpy(ray->direction, segment->direction, sizeof ray->direction);
+    memcpy(ray->carried, carried, sizeof ray->carried);
+    for (int a = 0; a < 3; ++a)
+        ray->origin[a] = segment->point[a] - (met ? segment->distance * segment->direction[a] : 0);
+}
+
+/* How far apart paths are that began beside each other, and how fast that grows along them. */
+typedef struct Spread {
+    double width, slope;
+} Spread;
+
+static Spread first_spread(const BpPilot *pilot) {
+    const double side = sqrt(pilot->plan.extent);
+    const bool parallel = pilot->scene->camera.projection == BP_ORTHOGRAPHIC;
+    return parallel ? (Spread){.width = side} : (Spread){.slope = side};
+}
+
+/* Behind a surface: what is curved spreads them, or gathers them, which counts as if it spread them too. */
+static void spread_at(const BpScene *scene, const BpPilotSegment *segment, const BpPilotSegment *next,
+                      const double normal[3], Spread *spread) {
+    const double radius = fabs(scene->spheres[segment->sphere].radius);
+    const double cosine = fmax(fabs(bp_dot(segment->direction, normal)), 0.2);
+    const bool reflected = bp_dot(next->direction, normal) > 0;
+    spread->slope += spread->width / (radius * cosine) * (reflected ? 2 : 0.5);
+}
+
+static void keep_eye(BpPilot *pilot, const BpPilotSegment *segment, uint32_t s, size_t square, double width) {
+    const BpScene *scene = pilot->scene;
+    BpPilotEye *eye = &pilot->eyes[pilot->eye_count];
+    *eye = (BpPilotEye){.pixel = (uint32_t)square,
+                        .share = 1.0 / pilot->plan.of_pixel,
+                        .sphere = segment->sphere,
+                        .segments = s + 1};
+    memcpy(eye->point, segment->point, sizeof eye->point);
+    memcpy(eye->throughput, segment->throughput, sizeof eye->throughput);
+    bp_pilot_normal(scene, segment, eye->normal);
+    memcpy(eye->axis, eye->normal, sizeof eye->axis);
+    const double along = bp_dot(segment->direction, eye->normal);
+    if (bp_pilot_material(scene, segment)->kind == BP_MATERIAL_METAL)
+        for (int a = 0; a < 3; ++a) eye->axis[a] = segment->direction[a] - 2 * along * eye->normal[a];
+    eye->radius = width * sqrt(NEAR_EYES / PI / fmax(-along, 0.1));
+    if (eye->radius > 0 && isfinite(eye->radius)) ++pilot->eye_count;
+}
+
+/* One camera path: lights that it passes, and the rough point where it ends. */
+static void follow_eye(BpPilot *pilot, const BpPilotFlight *flight, uint32_t path, size_t square) {
+    const BpScene *scene = pilot->scene;
+    Spread spread = first_spread(pilot);
+    uint32_t through = NO_SPHERE;
+    uint64_t way = BP_HASH_START;
+    BpPilotSegment segment, next;
+    for (uint32_t s = 0; bp_pilot_segment(flight, path, SEGMENTS, s, &segment); ++s) {
+        double carried[3];
+        bp_pilot_carried(flight, path, SEGMENTS, s, carried);
+        if (through != NO_SPHERE)
+            keep_ray(pilot, &segment, carried, s, square, through, way);
+        else if (s == 0)
+            pass_directly(pilot, &segment, square);
+        if ((segment.flags & (PILOT_MET | PILOT_IN_MEDIUM)) != PILOT_MET) return;
+        spread.width += spread.slope * segment.distance;
+        if (bp_pilot_is_rough(scene, &segment)) {
+            keep_eye(pilot, &segment, s, square, spread.width);
+            return;
+        }
+        if (!bp_pilot_is_surface(scene, &segment) || !bp_pilot_segment(flight, path, SEGMENTS, s + 1, &next))
+            continue;
+        if (through == NO_SPHERE) through = segment.sphere;
+        double normal[3];
+        bp_pilot_normal(scene, &segment, normal);
+        spread_at(scene, &segment, &next, normal, &spread);
+        const uint32_t turn[2] = {segment.sphere, bp_dot(next.direction, normal) > 0};
+        way = bp_hash_bytes(way, turn, sizeof turn);
+    }
+}
+
+BpStatus bp_pilot_trace_eyes(BpPilot *pilot, BpPilotFlight *flight, BpError *err) {
+    const BpPilotPlan *plan = &pilot->plan;
+    const uint32_t total = plan->width * plan->height * plan->of_pixel;
+    for (uint32_t first = 0; first < total; first += BP_PILOT_BATCH) {
+        const uint32_t count = total - first < BP_PILOT_BATCH ? total - first : BP_PILOT_BATCH;
+        for (uint32_t i = 0; i < count; ++i) {
+            flight->number_data[2 * i] = pixel_of(plan, &pilot->scene->camera, (first + i) / plan->of_pixel);
+            flight->number_data[2 * i + 1] = (first + i) % plan->of_pixel;
+        }
+        BP_TRY(bp_pilot_fly(flight, count, SEGMENTS, true, err));
+        for (uint32_t i = 0; i < count; ++i) follow_eye(pilot, flight, i, (first + i) / plan->of_pixel);
+    }
+    return BP_OK;
+}

@@ -1,0 +1,339 @@
+/* pilot_lights.c: see pilot_lights.h. */
+#include "pilot_lights.h"
+
+#include "base/color.h"
+#include "packed/environment_table.h"
+#include "packed/lamp_tree.h"
+#include "scene/vector.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#define PI 3.14159265358979323846
+
+static double luminance(const double radiance[3]) {
+    double sum = 0;
+    for (int c = 0; c < 3; ++c) sum += bp_luminance_weights[c] * radiance[c];
+    return sum;
+}
+
+bool bp_pilot_is_specular(const BpScene *scene, size_t sphere) {
+    const BpMaterial *material = &scene->materials[scene->spheres[sphere].material];
+    return material->kind != BP_MATERIAL_INTERFACE &&
+           (bp_material_types[material->kind].traits & BP_SCATTERS) != 0 && !bp_material_is_lit(material);
+}
+
+/* The ball that a sphere fills while the shutter is open; returns its radius. */
+static double ball_of(const BpScene *scene, size_t sphere, double center[3]) {
+    const double *from = scene->spheres[sphere].center, *to = bp_sphere_end(scene, sphere);
+    double way = 0;
+    for (int a = 0; a < 3; ++a) {
+        center[a] = 0.5 * (from[a] + to[a]);
+        way += (to[a] - from[a]) * (to[a] - from[a]);
+    }
+    return fabs(scene->spheres[sphere].radius) + 0.5 * sqrt(way);
+}
+
+static double distance2(const double a[3], const double b[3]) {
+    double sum = 0;
+    for (int i = 0; i < 3; ++i) sum += (a[i] - b[i]) * (a[i] - b[i]);
+    return sum;
+}
+
+/* ---- lights ---- */
+
+static void add_disc(const BpDisc *disc, BpPilotAim *aim) {
+    BpPilotLight *light = &aim->lights[aim->light_count];
+    const double half = 0.5 * disc->half_angle_degrees * PI / 180, sine = sin(half);
+    *light =
+        (BpPilotLight){.distant = true, .seen = disc->visible_to_camera, .cap = 2 * sine * sine, .share = 1};
+    memcpy(light->place, disc->direction, sizeof light->place);
+    memcpy(light->radiance, disc->radiance, sizeof light->radiance);
+    bp_normalize(light->place);
+    if (luminance(light->radiance) > 0) ++aim->light_count;
+}
+
+/* Texels are brighter than this, in powers of two over the mean, to be a light of their own. */
+#define BRIGHT_OCTAVE 3
+
+static int octave_over(const BpImage *image, size_t texel) {
+    const double y = bp_luminance(image->texels + 3 * texel);
+    return y > 0 && image->mean > 0 ? ilogb(y / image->mean) : INT32_MIN;
+}
+
+/* The brightest texels of the image around, as distant lights; of too many, every so many-th stands for the
+ * others. */
+static void add_texels(const BpScene *scene, size_t room, BpPilotAim *aim) {
+    const BpImage *image = scene->environment;
+    const size_t texels = (size_t)image->width * image->height;
+    size_t count_of[64] = {0}, count = 0, seen = 0;
+    for (size_t i = 0; i < texels; ++i) {
+        const int octave = octave_over(image, i);
+        if (octave >= BRIGHT_OCTAVE) ++count_of[octave < 63 ? octave : 63];
+    }
+    int least = 64;
+    while (least > BRIGHT_OCTAVE && (count == 0 || count + count_of[least - 1] <= room))
+        count += count_of[--least];
+    const size_t each = count > room ? (count + room - 1) / room : 1;
+    double seam[3], east[3], pole[3];
+    bp_environment_frame(scene, seam, east, pole);
+    for (size_t i = 0; i < texels && count > 0; ++i) {
+        if (octave_over(image, i) < least || seen++ % each != 0) continue;
+        const double row = (double)(i / image->width), column = (double)(i % image->width);
+        const double down = PI * (row + 0.5) / image->height, turn = 2 * PI * (column + 0.5) / image->width;
+        BpPilotLight *light = &aim->lights[aim->light_count++];
+        *light = (BpPilotLight){.distant = true, .seen = true, .share = (double)each};
+        for (int a = 0; a < 3; ++a) {
+            light->place[a] = cos(down) * pole[a] + sin(down) * (cos(turn) * seam[a] + sin(turn) * east[a]);
+            light->radiance[a] = (double)image->texels[3 * i + (size_t)a];
+        }
+        light->cap = PI * sin(down) / image->height / image->width;
+    }
+}
+
+/* All lamps, or of more than there is room for some, drawn by systematic sampling in proportion to the square
+ * of their power: each stands for its share of them. */
+static void add_lamps(const BpScene *scene, size_t room, BpPilotAim *aim) {
+    const size_t enclosing = bp_enclosing_lamp(scene);
+    double sum = 0, below = 0;
+    size_t count = 0;
+    for (size_t i = 0; i < scene->sphere_count; ++i) {
+        if (!bp_sphere_is_sampled(scene, i, enclosing)) continue;
+        const double y = luminance(scene->materials[scene->spheres[i].material].emit),
+                     r = scene->spheres[i].radius;
+        sum += y * y * r * r;
+        ++count;
+    }
+    double next = 0.5;
+    for (size_t i = 0; i < scene->sphere_count; ++i) {
+        if (!bp_sphere_is_sampled(scene, i, enclosing)) continue;
+        const BpMaterial *material = &scene->materials[scene->spheres[i].material];
+        const double y = luminance(material->emit), r = scene->spheres[i].radius;
+        const double weight = y * y * r * r / sum * (double)room;
+        below += weight;
+        if (count > room && below < next) continue;
+        BpPilotLight *light = &aim->lights[aim->light_count++];
+        *light =
+            (BpPilotLight){.seen = true, .sphere = i, .share = count > room && weight < 1 ? 1 / weight : 1};
+        light->radius = fabs(r);
+        memcpy(light->radiance, material->emit, sizeof light->radiance);
+        for (int a = 0; a < 3; ++a)
+            light->place[a] = 0.5 * (scene->spheres[i].center[a] + bp_sphere_end(scene, i)[a]);
+        next = floor(below + 0.5) + 0.5;
+        if (aim->light_count == BP_PILOT_LIGHTS_MAX) return;
+    }
+}
+
+static BpStatus find_lights(const BpScene *scene, BpPilotAim *aim, BpError *err) {
+    aim->lights = calloc(BP_PILOT_LIGHTS_MAX, sizeof *aim->lights);
+    if (aim->lights == NULL) return bp_fail(err, BP_ERR_MEMORY, "out of memory for the lights of a pilot");
+    for (size_t i = 0; i < scene->disc_count; ++i) add_disc(&scene->discs[i], aim);
+    const size_t room = (BP_PILOT_LIGHTS_MAX - aim->light_count) / 2;
+    if (scene->environment != NULL && bp_environment_varies(scene->environment)) add_texels(scene, room, aim);
+    add_lamps(scene, room, aim);
+    return BP_OK;
+}
+
+/* ---- pairs ---- */
+
+static BpStatus find_targets(const BpScene *scene, BpPilotAim *aim, BpError *err) {
+    double low[3] = {INFINITY, INFINITY, INFINITY}, high[3] = {-INFINITY, -INFINITY, -INFINITY};
+    size_t count = 0;
+    for (size_t i = 0; i < scene->sphere_count; ++i) count += bp_pilot_is_specular(scene, i);
+    aim->targets = malloc((count > 0 ? count : 1) * sizeof *aim->targets);
+    if (aim->targets == NULL)
+        return bp_fail(err, BP_ERR_MEMORY, "out of memory for the %zu specular spheres", count);
+    for (size_t i = 0; i < scene->sphere_count; ++i) {
+        double center[3];
+        const double radius = ball_of(scene, i, center);
+        for (int a = 0; a < 3; ++a) {
+            low[a] = fmin(low[a], center[a] - radius);
+            high[a] = fmax(high[a], center[a] + radius);
+        }
+        if (bp_pilot_is_specular(scene, i)) aim->targets[aim->target_count++] = (uint32_t)i;
+    }
+    for (int a = 0; a < 3 && scene->sphere_count > 0; ++a) aim->middle[a] = 0.5 * (low[a] + high[a]);
+    aim->reach = scene->sphere_count > 0 ? 0.5 * sqrt(distance2(low, high)) : 0;
+    return BP_OK;
+}
+
+/* The area x solid angle x cosine of all rays from the light to the sphere, roughly, times the square of what
+ * each brings: by so much they add to the variance of a picture. */
+static double importance(const BpScene *scene, const BpPilotLight *light, uint32_t target) {
+    double center[3];
+    const double radius = ball_of(scene, target, center), y = luminance(light->radiance);
+    double extent = 2 * PI * light->cap * PI * radius * radius;
+    if (!light->distant) {
+        const double away = fmax(distance2(center, light->place), radius * radius);
+        extent = PI * light->radius * light->radius * PI * radius * radius / away;
+    }
+    return light->share * y * y * extent;
+}
+
+/* Pairs of all lights with all targets. */
+static void pair_all(BpPilotAim *aim) {
+    for (uint32_t l = 0; l < aim->light_count; ++l)
+        for (uint32_t t = 0; t < aim->target_count; ++t)
+            aim->pairs[aim->pair_count++] = (BpPilotPair){.light = l, .target = t, .share = 1};
+}
+
+/* As many as there is room for: the targets at random, each light as often as every other. */
+static void pair_some(BpPilotAim *aim) {
+    BpRandom random = {.state = 1};
+    const double all = (double)aim->light_count * (double)aim->target_count;
+    for (uint32_t i = 0; i < BP_PILOT_PAIRS_MAX; ++i) {
+        const uint32_t t = (uint32_t)(bp_random_next(&random) * (double)aim->target_count);
+        aim->pairs[aim->pair_count++] = (BpPilotPair){
+            .light = i % (uint32_t)aim->light_count, .target = t, .share = all / BP_PILOT_PAIRS_MAX};
+    }
+}
+
+/* Half of the paths by importance, so that what matters is well known, half to all pairs alike, so that
+ * nothing is missed whose importance was wrong. */
+static BpStatus make_pairs(const BpScene *scene, BpPilotAim *aim, BpError *err) {
+    const bool all = aim->target_count <= BP_PILOT_PAIRS_MAX / aim->light_count;
+    const size_t room = all ? aim->light_count * aim->target_count : BP_PILOT_PAIRS_MAX;
+    aim->pairs = malloc(room * sizeof *aim->pairs);
+    aim->bounds = malloc(room * sizeof *aim->bounds);
+    if (aim->pairs == NULL || aim->bounds == NULL)
+        return bp_fail(err, BP_ERR_MEMORY, "out of memory for %zu pairs of lights and spheres", room);
+    if (all)
+        pair_all(aim);
+    else
+        pair_some(aim);
+    double sum = 0, below = 0;
+    for (size_t i = 0; i < room; ++i) {
+        BpPilotPair *pair = &aim->pairs[i];
+        pair->probability = importance(scene, &aim->lights[pair->light], aim->targets[pair->target]);
+        sum += pair->probability;
+    }
+    for (size_t i = 0; i < room; ++i) {
+        BpPilotPair *pair = &aim->pairs[i];
+        pair->probability = 0.5 * (sum > 0 ? pair->probability / sum : 1 / (double)room) + 0.5 / (double)room;
+        aim->bounds[i] = below;
+        below += pair->probability;
+    }
+    return BP_OK;
+}
+
+BpStatus bp_pilot_aim(const BpScene *scene, BpPilotAim *aim, BpError *err) {
+    *aim = (BpPilotAim){0};
+    BpStatus status = find_lights(scene, aim, err);
+    if (status == BP_OK) status = find_targets(scene, aim, err);
+    if (status == BP_OK && aim->light_count > 0 && aim->target_count > 0)
+        status = make_pairs(scene, aim, err);
+    if (status != BP_OK) bp_pilot_aim_clear(aim);
+    return status;
+}
+
+void bp_pilot_aim_clear(BpPilotAim *aim) {
+    free(aim->lights);
+    free(aim->targets);
+    free(aim->pairs);
+    free(aim->bounds);
+    *aim = (BpPilotAim){0};
+}
+
+/* ---- paths ---- */
+
+/* Two unit vectors across a unit vector. */
+static void across(const double axis[3], double u[3], double v[3]) {
+    const int a = fabs(axis[0]) < 0.5 ? 0 : 1;
+    double helper[3] = {0};
+    helper[a] = 1;
+    bp_cross(axis, helper, u);
+    bp_normalize(u);
+    bp_cross(axis, u, v);
+}
+
+/* A point of the unit disk, by rejection: no sine and cosine, which differ between libraries. */
+static void disk(BpRandom *random, double point[2]) {
+    do {
+        point[0] = 2 * bp_random_next(random) - 1;
+        point[1] = 2 * bp_random_next(random) - 1;
+    } while (point[0] * point[0] + point[1] * point[1] > 1);
+}
+
+/* A direction, uniform in the cap around `axis` of 1 - cos `cap`. */
+static void in_cap(BpRandom *random, const double axis[3], double cap, double direction[3]) {
+    double u[3], v[3], point[2];
+    across(axis, u, v);
+    disk(random, point);
+    const double part = point[0] * point[0] + point[1] * point[1], m = part * cap;
+    const double scale = part > 0 ? sqrt(cap * (2 - m)) : 0; /* sine of the angle over the root of `part` */
+    for (int a = 0; a < 3; ++a)
+        direction[a] = (1 - m) * axis[a] + scale * (point[0] * u[a] + point[1] * v[a]);
+    bp_normalize(direction);
+}
+
+/* The area x solid angle of the ray that it starts. */
+static double start_distant(const BpPilotAim *aim, const BpPilotLight *light, const double center[3],
+                            double radius, BpRandom *random, BpPilotStart *start) {
+    double toward[3], u[3], v[3], point[2];
+    in_cap(random, light->place, light->cap, toward);
+    across(toward, u, v);
+    disk(random, point);
+    const double far = aim->reach + sqrt(distance2(aim->middle, center)) + radius;
+    for (int a = 0; a < 3; ++a) {
+        start->direction[a] = -toward[a];
+        start->origin[a] = center[a] + far * toward[a] + radius * (point[0] * u[a] + point[1] * v[a]);
+    }
+    return 2 * PI * light->cap * PI * radius * radius;
+}
+
+/* A ray that begins so far above the lamp, in radii, does not meet it. */
+#define ABOVE 0x1p-10
+
+/* The area x solid angle x cosine of the ray that it starts; 0 where it would begin into the lamp. */
+static double start_lamp(const BpPilotLight *light, const double center[3], double radius, BpRandom *random,
+                         BpPilotStart *start) {
+    double axis[3], normal[3];
+    for (int a = 0; a < 3; ++a) axis[a] = center[a] - light->place[a];
+    const double away = bp_normalize(axis);
+    const bool around = away < radius; /* the lamp's centre lies in the sphere: all of the lamp counts */
+    if (around) axis[0] = 1, axis[1] = axis[2] = 0;
+    in_cap(random, axis, around ? 2 : 1, normal);
+    double area = (around ? 4 : 2) * PI * light->radius * light->radius;
+    for (int a = 0; a < 3; ++a) {
+        start->origin[a] = light->place[a] + light->radius * (1 + ABOVE) * normal[a];
+        axis[a] = center[a] - start->origin[a];
+    }
+    const double distance = bp_normalize(axis);
+    if (distance <= radius) { /* from inside, by the cosine */
+        double u[3], v[3], point[2];
+        across(normal, u, v);
+        disk(random, point);
+        const double up = sqrt(fmax(0, 1 - point[0] * point[0] - point[1] * point[1]));
+        for (int a = 0; a < 3; ++a) start->direction[a] = up * normal[a] + point[0] * u[a] + point[1] * v[a];
+        bp_normalize(start->direction);
+        return area * PI;
+    }
+    const double sine = radius / distance, cap = sine * sine / (1 + sqrt(fmax(0, 1 - sine * sine)));
+    in_cap(random, axis, cap, start->direction);
+    return area * 2 * PI * cap * fmax(0, bp_dot(start->direction, normal));
+}
+
+static size_t choose_pair(const BpPilotAim *aim, double number) {
+    size_t low = 0, high = aim->pair_count;
+    while (high - low > 1) {
+        const size_t middle = low + (high - low) / 2;
+        if (aim->bounds[middle] <= number)
+            low = middle;
+        else
+            high = middle;
+    }
+    return low;
+}
+
+void bp_pilot_start(const BpScene *scene, const BpPilotAim *aim, size_t count, BpRandom *random,
+                    BpPilotStart *start) {
+    *start = (BpPilotStart){.pair = (uint32_t)choose_pair(aim, bp_random_next(random))};
+    const BpPilotPair *pair = &aim->pairs[start->pair];
+    const BpPilotLight *light = &aim->lights[pair->light];
+    double center[3];
+    const double radius = ball_of(scene, aim->targets[pair->target], center);
+    const double extent = light->distant ? start_distant(aim, light, center, radius, random, start)
+                                         : start_lamp(light, center, radius, random, start);
+    start->measure = extent * light->share * pair->share / (pair->probability * (double)count);
+}

@@ -1,0 +1,64 @@
+/* pilot_lights.h: where the paths of a pilot begin: at lights, aimed at what may focus their light.
+ *
+ * In:    a scene.   Out: its lights, its specular spheres, and beginnings of paths from the ones to the
+ * others. Knows: what a ray to a lamp finds, and what it does not.   Does not know: kernels, pixels.
+ *
+ * A pair is a light and a specular sphere: glass, or metal too smooth to be lit by rays to lamps. A path of
+ * the pair begins on the light and flies at the sphere. It counts only if it meets that sphere first, so each
+ * path belongs to one pair, whichever spheres overlap. */
+#ifndef BP_RENDER_PILOT_LIGHTS_H
+#define BP_RENDER_PILOT_LIGHTS_H
+
+#include "base/random.h"
+#include "scene/scene.h"
+
+#define BP_PILOT_LIGHTS_MAX 256u
+#define BP_PILOT_PAIRS_MAX 65536u
+
+typedef struct BpPilotLight {
+    bool distant;    /* a disc of the sky or a texel of the image around; else a lamp */
+    bool seen;       /* by camera rays that meet it first */
+    size_t sphere;   /* of a lamp */
+    double place[3]; /* unit, to the middle of a distant light; of a lamp the centre, at half of its way */
+    double radius;   /* of a lamp */
+    double cap;      /* of a distant light: its solid angle over 2 pi, that is, 1 - cos of its half angle */
+    double radiance[3]; /* at most */
+    double share;       /* of lights alike for which this one stands, 1 or more */
+} BpPilotLight;
+
+typedef struct BpPilotPair {
+    uint32_t light, target; /* into lights[] and targets[] */
+    double probability;
+    double share; /* of pairs alike for which this one stands, 1 or more */
+} BpPilotPair;
+
+typedef struct BpPilotAim {
+    BpPilotLight *lights;
+    size_t light_count;
+    uint32_t *targets; /* the specular spheres */
+    size_t target_count;
+    BpPilotPair *pairs;
+    double *bounds; /* of pairs: the sum of the probabilities before each */
+    size_t pair_count;
+    double middle[3], reach; /* a ball around all spheres */
+} BpPilotAim;
+
+/* A path from a light. */
+typedef struct BpPilotStart {
+    double origin[3], direction[3]; /* in the scene's space; unit */
+    double measure; /* area x solid angle x cosine for which it stands, over the number of paths; 0: none */
+    uint32_t pair;
+} BpPilotStart;
+
+/* The sphere scatters into few directions only, so that no ray to a lamp lights it. */
+bool bp_pilot_is_specular(const BpScene *scene, size_t sphere);
+
+/* BP_ERR_MEMORY. Without lights or without targets there are no pairs. Free with bp_pilot_aim_clear(). */
+BpStatus bp_pilot_aim(const BpScene *scene, BpPilotAim *aim, BpError *err);
+void bp_pilot_aim_clear(BpPilotAim *aim);
+
+/* The beginning of one of `count` paths; there is a pair. */
+void bp_pilot_start(const BpScene *scene, const BpPilotAim *aim, size_t count, BpRandom *random,
+                    BpPilotStart *start);
+
+#endif

@@ -1,0 +1,99 @@
+/* pilot_pass.c: see pilot_pass.h. */
+#include "pilot_pass.h"
+
+#include "scene/vector.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#define PI 3.14159265358979323846
+/* One in GROUP of the rays that have come one way counts, within these bounds. */
+#define GROUP 16u
+#define COUNT 16u
+#define COUNT_MIN 4u
+/* Radians: rays that pass farther off say nothing of the light. */
+#define NEAR_MAX 0.7
+/* The light lies beyond the rim of what the rays cover, if they pass on one side of it: if their mean is off
+ * by more of their radius, squared, than half a disk of them would be, and what their number lets chance add.
+ */
+#define ASIDE2 0.16
+#define ASIDE2_OF_ONE 0.5
+
+/* A ray that passes a light. */
+typedef struct Pass {
+    double off[3], off2; /* radians */
+    double size2;        /* of the light: of half the angle that it fills, squared */
+    const BpPilotRay *ray;
+} Pass;
+
+static int by_way(const void *a, const void *b) {
+    const BpPilotRay *x = a, *y = b;
+    if (x->way != y->way) return x->way < y->way ? -1 : 1;
+    return x->number < y->number ? -1 : 1;
+}
+
+/* False: it does not pass it, or something stands between. */
+static bool pass_light(const BpPilotLight *light, const BpPilotRay *ray, Pass *pass) {
+    *pass = (Pass){.ray = ray};
+    if (light->distant) {
+        if (isfinite(ray->length)) return false;
+        for (int a = 0; a < 3; ++a) pass->off[a] = ray->direction[a] - light->place[a];
+        pass->size2 = 2 * light->cap;
+    } else {
+        double to[3];
+        for (int a = 0; a < 3; ++a) to[a] = light->place[a] - ray->origin[a];
+        const double along = bp_dot(to, ray->direction);
+        if (along <= light->radius || (ray->length < along && ray->sphere != light->sphere)) return false;
+        for (int a = 0; a < 3; ++a) pass->off[a] = ray->direction[a] - to[a] / along;
+        pass->size2 = light->radius * light->radius / (along * along);
+    }
+    pass->off2 = bp_dot(pass->off, pass->off);
+    return pass->off2 < NEAR_MAX * NEAR_MAX;
+}
+
+/* Keeps the `most` nearest, the nearest first. */
+static void keep_nearest(const Pass *pass, size_t most, Pass *nearest, size_t *count) {
+    size_t place = *count;
+    if (place == most && nearest[place - 1].off2 <= pass->off2) return;
+    if (place == most)
+        --place;
+    else
+        ++*count;
+    for (; place > 0 && nearest[place - 1].off2 > pass->off2; --place) nearest[place] = nearest[place - 1];
+    nearest[place] = *pass;
+}
+
+/* The rays that have come one way, and one light. */
+static void pass_group(const BpPilotLight *light, const BpPilotRay *rays, size_t count, double share,
+                       BpPilotSums *sums) {
+    Pass nearest[COUNT], pass;
+    size_t most = count / GROUP, found = 0;
+    if (most > COUNT) most = COUNT;
+    if (most < COUNT_MIN) most = COUNT_MIN;
+    for (size_t i = 0; i < count; ++i)
+        if (pass_light(light, &rays[i], &pass)) keep_nearest(&pass, most, nearest, &found);
+    if (found < most) return;
+    const double near2 = nearest[most - 1].off2;
+    double aside[3] = {0};
+    for (size_t i = 0; i < most - 1; ++i)
+        for (int a = 0; a < 3; ++a) aside[a] += nearest[i].off[a] / (double)(most - 1);
+    if (bp_dot(aside, aside) > (ASIDE2 + ASIDE2_OF_ONE / (double)(most - 1)) * near2) return;
+    for (size_t i = 0; i < most - 1; ++i) { /* the last one tells how far, and does not count */
+        const BpPilotRay *ray = nearest[i].ray;
+        double radiance[3];
+        if (nearest[i].size2 >= near2) return; /* rays meet it often */
+        for (int c = 0; c < 3; ++c) radiance[c] = ray->carried[c] * light->radiance[c];
+        bp_pilot_add(sums, ray->pixel, radiance, share * nearest[i].size2 / near2, ray->through);
+    }
+}
+
+void bp_pilot_pass(const BpPilotLight *lights, size_t light_count, BpPilotRay *rays, size_t ray_count,
+                   double share, BpPilotSums *sums) {
+    qsort(rays, ray_count, sizeof *rays, by_way);
+    for (size_t first = 0, end; first < ray_count; first = end) {
+        for (end = first + 1; end < ray_count && rays[end].way == rays[first].way;) ++end;
+        for (size_t l = 0; l < light_count; ++l)
+            if (!(lights[l].share > 1)) pass_group(&lights[l], rays + first, end - first, share, sums);
+    }
+}
