@@ -435,6 +435,25 @@ BP_API BpStatus bp_render_read(BpRender *render, BpPicture *picture, BpError *er
  * of, by the first device. What the picture held of them is released. BP_ERR_USAGE: without options.features,
  * or for a picture of another size. */
 BP_API BpStatus bp_render_aovs(BpRender *render, BpPicture *picture, BpError *err);
+/* Light that the samples of a picture find by chance only: it comes to matte surfaces by way of glass or mirrors, or is seen
+ * in them, or is smaller than a pixel. It follows from the scene and the camera, whatever has been sampled; and until samples
+ * have found it, bp_film_nrmse() and the errors of pixels know of it from here. Luminances, means over the picture. */
+#define BP_UNSEEN_SPHERES 3
+typedef struct BpUnseenLight {
+    double mean;         /* that it adds to a sample; 0: there is no such light */
+    double square;       /* the mean of its square: nearly the variance of a sample */
+    double found;        /* the share of samples that find it, by the light that each brings: mean^2 / square */
+    size_t sphere_count; /* spheres by way of which most of the noise comes, with their parts of `square` */
+    size_t spheres[BP_UNSEEN_SPHERES];
+    double parts[BP_UNSEEN_SPHERES];
+    double direct;  /* the part of `square` of lights that are seen with nothing between */
+    double seconds; /* that looking for it took */
+} BpUnseenLight;
+
+/* Traces the paths that look for it, if that has not been done; with light sampling off (BP_LAMPS_OFF), all light is found by
+ * chance, and this finds nothing. */
+BP_API BpStatus bp_render_unseen(BpRender *render, BpUnseenLight *light, BpError *err);
+
 /* `picture`: Optional. */
 BP_API void bp_picture_clear(BpPicture *picture);
 
@@ -502,9 +521,12 @@ BP_API BpStatus bp_film_merge(BpFilm *into, const BpFilm *from, BpError *err);
  * albedo if the film has them. */
 BP_API BpStatus bp_film_picture(const BpFilm *film, BpPicture *picture, BpError *err);
 
-/* NRMSE = sqrt(mean over pixels of the squared standard error of luminance) / mean luminance, a fraction. NaN
- * where it is unknown: the picture is black, or a pixel has too few samples. */
+/* NRMSE = sqrt(mean over pixels of the squared standard error of luminance) / mean luminance, a fraction. Both
+ * include light that samples find by chance and may not have found yet (BpUnseenLight). NaN where it is
+ * unknown: the picture is black, or a pixel has too few samples. */
 BP_API double bp_film_nrmse(const BpFilm *film);
+/* The part of its square, 0 to 1, that stands for light which samples may not have found yet. */
+BP_API double bp_film_unseen_part(const BpFilm *film);
 
 typedef struct BpFilmInfo {
     const char *title;          /* of the scene, or ""; valid while the film lives */

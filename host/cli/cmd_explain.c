@@ -14,10 +14,12 @@
 #include "output.h"
 #include "page.h"
 #include "render/path_log.h"
+#include "render/pilot.h"
 #include "scene/material.h"
 #include "setup.h"
 #include "study/effect_costs.h"
 #include "terminal.h"
+#include "unseen_text.h"
 
 #include <errno.h>
 #include <inttypes.h>
@@ -302,6 +304,73 @@ static BpStatus follow(const BpCommandLine *line, const BpScene *scene, const Bp
  */
 
 /* JSON has no NaN. */
+/* What was found out about one scene. */
+typedef struct Findings {
+    BpEffectInfo effects[BP_EFFECT_COUNT];
+    size_t count;
+    BpCosts costs;  /* with --measure */
+    BpPathLog path; /* with --pixel */
+    BpUnseenLight unseen;
+    double luminance;                            /* of the picture, roughly */
+    char unknown[sizeof((BpError *)0)->message]; /* why it is not known what is found by chance; "": it is */
+} Findings;
+
+/* So many samples of each pixel tell how bright the picture is, for the share of what is found by chance. */
+#define LOOK_SAMPLES 4
+
+static BpStatus look(const BpCommandLine *line, const BpScene *scene, const BpDeviceInfo *device,
+                     Findings *found, BpError *err) {
+    BpRenderOptions options;
+    BpRender *render = NULL;
+    const BpFilm *film = NULL;
+    BpProgress progress = {.finished = false};
+    BP_TRY(render_options(line, scene, &options, err));
+    options.samples_per_pixel = LOOK_SAMPLES;
+    options.adaptive = false;
+    BpStatus status = bp_render_create(scene, &options, device, 1, &render, err);
+    if (status == BP_OK) status = bp_render_unseen(render, &found->unseen, err);
+    while (status == BP_OK && found->unseen.mean > 0 && !progress.finished)
+        status = bp_render_step(render, &progress, err);
+    if (status == BP_OK && found->unseen.mean > 0) status = bp_render_read_film(render, &film, err);
+    if (film != NULL) found->luminance = bp_film_expected_luminance(film);
+    bp_render_destroy(&render);
+    return status;
+}
+
+/* What samples find by chance only. It takes a device; `device` may be NULL: then one is opened if there may
+ * be such light. Where that fails, the rest is explained all the same. */
+static void look_for_unseen(const BpCommandLine *line, const BpScene *scene, const BpDeviceInfo *device,
+                            Findings *found) {
+    BpError err = {0};
+    BpDeviceInfo *devices = NULL;
+    size_t count = 0;
+    found->luminance = NAN;
+    if (line->lamps == BP_LAMPS_OFF || !bp_pilot_is_needed(scene)) return;
+    BpStatus status = device != NULL ? BP_OK : bp_setup_devices(line, &devices, &count, &err);
+    if (status == BP_OK) status = look(line, scene, device != NULL ? device : devices, found, &err);
+    if (status != BP_OK) snprintf(found->unknown, sizeof found->unknown, "%s", err.message);
+    free(devices);
+    bp_error_clear(&err);
+}
+
+static void print_unseen(const BpScene *scene, const Findings *found, FILE *out) {
+    char noise[32];
+    const uint64_t samples = scene->camera.samples_per_pixel;
+    if (found->unknown[0] != '\0') {
+        fprintf(out, "  %-14s %-4s " BP_HANG "%s\n", "by chance", "?", found->unknown);
+    } else if (found->unseen.mean > 0) {
+        fprintf(out, "  %-14s %-4s " BP_HANG, "by chance", "yes");
+        bp_unseen_print(scene, &found->unseen, found->luminance, out);
+        fprintf(out, " At %" PRIu64 " samples per pixel that is a noise of about %s.\n", samples,
+                bp_format_percent(sqrt(found->unseen.square / (double)samples) / found->luminance, noise,
+                                  sizeof noise));
+    } else {
+        fprintf(out, "  %-14s %-4s " BP_HANG "%s\n", "by chance", "no",
+                "no light that samples find by chance only: none is small, or seen or focused by glass or "
+                "mirrors");
+    }
+}
+
 static json_t *number_or_null(double value) {
     return isfinite(value) ? json_real(value) : json_null();
 }
@@ -361,19 +430,13 @@ static json_t *scene_json(const char *path, const BpScene *scene, const BpEffect
 /* ---- the command ------------------------------------------------------------------------------------------
  */
 
-/* What was found out about one scene. */
-typedef struct Findings {
-    BpEffectInfo effects[BP_EFFECT_COUNT];
-    size_t count;
-    BpCosts costs;  /* with --measure */
-    BpPathLog path; /* with --pixel */
-} Findings;
-
 /* Appends the scene's entry to `list`. */
 static BpStatus append_json(const BpCommandLine *line, const char *path, const BpScene *scene,
                             const Findings *found, json_t *list, BpError *err) {
     json_t *entry = scene_json(path, scene, found->effects, found->count);
     bool whole = entry != NULL;
+    if (whole && (line->measure || !bp_option_given(line, BP_OPTION_PIXEL)))
+        whole = json_object_set_new(entry, "unseen", bp_unseen_json(&found->unseen, found->luminance)) == 0;
     if (whole && line->measure) whole = json_object_set_new(entry, "costs", costs_json(&found->costs)) == 0;
     if (whole && bp_option_given(line, BP_OPTION_PIXEL))
         whole = json_object_set_new(
@@ -403,6 +466,14 @@ static BpStatus explain(const BpCommandLine *line, const char *path, const BpDev
         if (!pixel || line->measure) print_effects(scene, found.effects, found.count, page.text);
         bp_page_end(&page, line, stdout);
         fflush(stdout); /* what follows can take a while */
+    }
+    if (!pixel || line->measure) {
+        look_for_unseen(line, scene, device, &found);
+        if (list == NULL) {
+            bp_page_begin(&page, stdout);
+            print_unseen(scene, &found, page.text);
+            bp_page_end(&page, line, stdout);
+        }
     }
     if (pixel) {
         BP_TRY_GOTO(status, follow(line, scene, device, &found.path, err), done);

@@ -35,6 +35,7 @@
 #include "series.h"
 #include "setup.h"
 #include "terminal.h"
+#include "unseen_text.h"
 
 #include <inttypes.h>
 #include <jansson.h>
@@ -63,7 +64,9 @@ typedef struct RunResult {
     const BpCheckpoint *checkpoint;
     uint64_t samples_per_pixel; /* of every pixel */
     double nrmse;               /* NaN: unknown */
-    BpStopReason stopped_by;    /* BP_STOP_NOT_YET: interrupted */
+    double unseen_part;         /* of its square: light that has hardly been found yet */
+    BpUnseenLight unseen;
+    BpStopReason stopped_by; /* BP_STOP_NOT_YET: interrupted */
 } RunResult;
 
 /* JSON has no NaN. */
@@ -120,10 +123,12 @@ static json_t *stats_json(const RunResult *result) {
                   bp_json_whole(options->seed), "spheres", (json_int_t)info.spheres, "device",
                   device_json(&report->device), "effects", effects_json(&report->effects));
     json_t *counts =
-        json_pack("{s:o, s:I, s:I, s:[f,f,f], s:o, s:I, s:I, s:I, s:I, s:I, s:I}", "seconds",
+        json_pack("{s:o, s:I, s:I, s:[f,f,f], s:o, s:f, s:o, s:I, s:I, s:I, s:I, s:I, s:I}", "seconds",
                   seconds_json(result), "samples", (json_int_t)report->samples, "rays",
                   (json_int_t)report->segments, "mean_radiance", mean[0], mean[1], mean[2], "nrmse",
-                  json_number(result->nrmse), "invalid_samples", (json_int_t)report->invalid_samples,
+                  json_number(result->nrmse), "unseen_part", result->unseen_part, "unseen",
+                  bp_unseen_json(&result->unseen, bp_film_expected_luminance(result->film)),
+                  "invalid_samples", (json_int_t)report->invalid_samples,
 #define MEMBER(member, tally, words) #member, (json_int_t)report->member,
                   BP_INVALID_LIST(MEMBER)
 #undef MEMBER
@@ -341,6 +346,17 @@ static bool is_inside_a_sphere(const BpScene *scene) {
     return false;
 }
 
+/* Light of which most of the noise is a claim, since samples have hardly found it. */
+static void say_unseen(const BpCommandLine *line, const RunResult *result) {
+    if (!(result->unseen_part > 0.5) || line->quiet) return;
+    BpPage page;
+    bp_page_begin(&page, stderr);
+    fputs("most of this noise is light that samples have hardly found yet. ", page.text);
+    bp_unseen_print(result->scene, &result->unseen, bp_film_expected_luminance(result->film), page.text);
+    fputc('\n', page.text);
+    bp_page_end(&page, line, stderr);
+}
+
 static void print_summary(const BpCommandLine *line, const RunResult *result, const BpStopRule *rule,
                           const LoopEnd *end) {
     const BpRenderReport *report = &result->report;
@@ -370,6 +386,7 @@ static void print_summary(const BpCommandLine *line, const RunResult *result, co
            bp_format_seconds(tracing, text, sizeof text),
            bp_format_count((double)own / tracing, rate, sizeof rate),
            bp_format_seconds(bp_clock_seconds() - result->times.start, all, sizeof all));
+    say_unseen(line, result);
     /* Half the noise takes four times the samples. */
     const double more = own > 0 ? 3.0 * tracing * (double)report->samples / (double)own : NAN;
     if (result->nrmse > 0.0 && own > 0)
@@ -441,6 +458,8 @@ static BpStatus deliver(const BpCommandLine *line, BpResultFile *file, const BpS
     result->samples_per_pixel = bp_render_samples_done(render);
     result->stopped_by = end->reason;
     result->nrmse = bp_film_nrmse(result->film);
+    result->unseen_part = bp_film_unseen_part(result->film);
+    BP_TRY(bp_render_unseen(render, &result->unseen, err));
     /* The few samples left would misrepresent the scene, so no picture is written. */
     const uint64_t samples = result->report.samples;
     char causes[BP_INVALID_TEXT_SIZE];

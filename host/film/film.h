@@ -175,6 +175,8 @@ uint64_t bp_film_range_total(const BpFilm *film);
 /* Squared standard error of one pixel's luminance, by the same formula and with its unseen light; NaN with
  * fewer than two replicates. `weights`: of this film (bp_unseen_weigh). */
 double bp_film_squared_error(const BpFilm *film, const BpUnseenWeights *weights, size_t pixel);
+/* The mean luminance of the picture, with light that its samples may not have found yet. */
+double bp_film_expected_luminance(const BpFilm *film);
 /* Why samples are left out, in words: " (2 not finite, 1 negative)"; "" without any. */
 enum { BP_INVALID_TEXT_SIZE = 192 };
 const char *bp_film_invalid_causes(const BpFilm *film, char text[BP_INVALID_TEXT_SIZE]);

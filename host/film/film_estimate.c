@@ -27,14 +27,15 @@ typedef struct PixelEstimate {
     double mean[4];
     double squared_error[4]; /* of the mean; NaN where unknown */
     double expected;         /* luminance, with what has not been found yet */
+    double unseen;           /* the part of the luminance's squared error that stands for that */
     uint64_t samples;
 } PixelEstimate;
 
-/* Adds the variance of light that the pixel's samples may not have found. If the sums of the replicates are so far apart
- * that one of them has found it, the variance that they show is the same one over again. `least`, `most`: luminances of
- * replicates. */
-static void add_unseen(const BpUnseen *unseen, const BpUnseenWeights *weights, size_t pixel, double least, double most,
-                       double replicates, PixelEstimate *estimate) {
+/* Adds the variance of light that the pixel's samples may not have found. If the sums of the replicates are
+ * so far apart that one of them has found it, the variance that they show is the same one over again.
+ * `least`, `most`: luminances of replicates. */
+static void add_unseen(const BpUnseen *unseen, const BpUnseenWeights *weights, size_t pixel, double least,
+                       double most, double replicates, PixelEstimate *estimate) {
     const BpUnseenPixel *light = &unseen->pixels[pixel];
     const double weight = bp_unseen_weight(weights, light);
     if (!(weight > 0)) return;
@@ -45,6 +46,7 @@ static void add_unseen(const BpUnseen *unseen, const BpUnseenWeights *weights, s
         const double unseen_error = variance * (c < 3 ? (double)unseen->tint[c] : 1);
         estimate->squared_error[c] += weight * (unseen_error - (found ? estimate->squared_error[c] : 0));
     }
+    estimate->unseen = weight * variance;
     estimate->expected += weight * (mean - (found ? estimate->mean[3] - least : 0));
 }
 
@@ -128,18 +130,40 @@ BpStatus bp_film_picture(const BpFilm *film, BpPicture *picture, BpError *err) {
     return BP_OK;
 }
 
-double bp_film_nrmse(const BpFilm *film) {
+/* Means over the picture. */
+typedef struct MeanErrors {
+    double luminance, squared_error, unseen; /* as of PixelEstimate, the luminance as expected */
+} MeanErrors;
+
+static MeanErrors mean_errors(const BpFilm *film) {
     const size_t pixels = (size_t)film->width * film->height;
-    double luminance = 0, squared_error = 0;
+    MeanErrors mean = {0};
     BpUnseenWeights weights;
     bp_unseen_weigh(film, &weights);
     for (size_t pixel = 0; pixel < pixels; pixel++) {
         const PixelEstimate estimate = estimate_pixel(film, &weights, pixel);
-        luminance += estimate.expected;
-        squared_error += estimate.squared_error[3];
+        mean.luminance += estimate.expected;
+        mean.squared_error += estimate.squared_error[3];
+        mean.unseen += estimate.unseen;
     }
-    if (!(luminance > 0)) return NAN;
-    return sqrt(squared_error / (double)pixels) / (luminance / (double)pixels);
+    mean.luminance /= (double)pixels;
+    mean.squared_error /= (double)pixels;
+    mean.unseen /= (double)pixels;
+    return mean;
+}
+
+double bp_film_nrmse(const BpFilm *film) {
+    const MeanErrors mean = mean_errors(film);
+    return mean.luminance > 0 ? sqrt(mean.squared_error) / mean.luminance : NAN;
+}
+
+double bp_film_unseen_part(const BpFilm *film) {
+    const MeanErrors mean = mean_errors(film);
+    return mean.squared_error > 0 ? mean.unseen / mean.squared_error : 0;
+}
+
+double bp_film_expected_luminance(const BpFilm *film) {
+    return mean_errors(film).luminance;
 }
 
 void bp_film_mean(const BpFilm *film, double mean[3]) {

@@ -86,7 +86,7 @@ static void pilot_clear(BpPilot *pilot) {
 }
 
 /* The spheres through which most of the noise comes. */
-static void report_spheres(const BpPilot *pilot, double total, BpPilotReport *report) {
+static void report_spheres(const BpPilot *pilot, double total, BpUnseenLight *report) {
     const size_t count = pilot->scene->sphere_count;
     report->direct = pilot->sums.by_sphere[count] / total;
     for (size_t i = 0; i < count; ++i) {
@@ -94,8 +94,8 @@ static void report_spheres(const BpPilot *pilot, double total, BpPilotReport *re
         size_t place = report->sphere_count;
         if (!(part > 0)) continue;
         while (place > 0 && report->parts[place - 1] < part) --place;
-        if (place == BP_PILOT_SPHERES) continue;
-        if (report->sphere_count < BP_PILOT_SPHERES) ++report->sphere_count;
+        if (place == BP_UNSEEN_SPHERES) continue;
+        if (report->sphere_count < BP_UNSEEN_SPHERES) ++report->sphere_count;
         for (size_t k = report->sphere_count - 1; k > place; --k) {
             report->parts[k] = report->parts[k - 1];
             report->spheres[k] = report->spheres[k - 1];
@@ -105,7 +105,7 @@ static void report_spheres(const BpPilot *pilot, double total, BpPilotReport *re
     }
 }
 
-static BpStatus give(const BpPilot *pilot, BpUnseen **unseen, BpPilotReport *report, BpError *err) {
+static BpStatus give(const BpPilot *pilot, BpUnseen **unseen, BpUnseenLight *report, BpError *err) {
     const BpCamera *camera = &pilot->scene->camera;
     const BpPilotPlan *plan = &pilot->plan;
     const size_t pixels = (size_t)camera->width * camera->height;
@@ -116,7 +116,7 @@ static BpStatus give(const BpPilot *pilot, BpUnseen **unseen, BpPilotReport *rep
     }
     if (!(total > 0)) return BP_OK;
     report->square = total / (double)pilot->sums.pixels;
-    report->found = pilot->sums.found / (double)pilot->sums.pixels;
+    report->found = report->mean * report->mean / report->square;
     report_spheres(pilot, total, report);
     BP_TRY(bp_unseen_create(pixels, unseen, err));
     for (size_t i = 0; i < pixels; ++i) {
@@ -129,12 +129,12 @@ static BpStatus give(const BpPilot *pilot, BpUnseen **unseen, BpPilotReport *rep
 }
 
 BpStatus bp_pilot_run(BpWorker *worker, const BpScene *scene, uint32_t max_depth, BpUnseen **unseen,
-                      BpPilotReport *report, BpError *err) {
+                      BpUnseenLight *report, BpError *err) {
     const double start = bp_clock_seconds();
     BpPilot pilot;
     BpPilotFlight flight = {0};
     *unseen = NULL;
-    *report = (BpPilotReport){0};
+    *report = (BpUnseenLight){0};
     BP_TRY(bp_worker_wait_for_all(worker, err));
     BpStatus status = pilot_create(scene, max_depth, &pilot, err);
     if (status == BP_OK) status = bp_pilot_flight_create(worker, scene, &flight, err);

@@ -16,20 +16,6 @@
 
 #include "film/unseen.h"
 
-enum { BP_PILOT_SPHERES = 3 };
-
-/* What has been found, for a person. */
-typedef struct BpPilotReport {
-    double mean;   /* of the picture: luminance that reaches a sample by chance */
-    double square; /* the same of its square: the variance of a sample, nearly */
-    double found;  /* the probability that a sample finds any */
-    size_t sphere_count;
-    size_t spheres[BP_PILOT_SPHERES]; /* through which most of it comes, by their part of `square` */
-    double parts[BP_PILOT_SPHERES];
-    double direct; /* the part of `square` of lights that are seen without any sphere between */
-    double seconds;
-} BpPilotReport;
-
 /* Whether the scene has light that a pilot may find. Looks at all spheres. */
 bool bp_pilot_is_needed(const BpScene *scene);
 
@@ -38,6 +24,6 @@ BpStatus bp_pilot_source(char **text, BpError *err);
 
 /* *unseen is NULL if there is none. */
 BpStatus bp_pilot_run(BpWorker *worker, const BpScene *scene, uint32_t max_depth, BpUnseen **unseen,
-                      BpPilotReport *report, BpError *err);
+                      BpUnseenLight *report, BpError *err);
 
 #endif

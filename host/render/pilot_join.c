@@ -23,7 +23,6 @@ void bp_pilot_add(BpPilotSums *sums, size_t pixel, const double radiance[3], dou
     sums->mean[pixel] += y * probability;
     sums->square[pixel] += y * y * probability;
     sums->by_sphere[through] += y * y * probability;
-    sums->found += probability;
 }
 
 /* Around a mirror direction, as kernels/bsdf/metal.cl explains. */

@@ -42,7 +42,6 @@ typedef struct BpPilotSums {
     double square_of[3];   /* of each channel, over all pixels */
     double
         *by_sphere; /* of `through`: the sum of squares; sphere_count + 1, the last for light seen directly */
-    double found;   /* the sum over pixels of the probability that a sample finds any of it */
 } BpPilotSums;
 
 /* Adds light `radiance` that reaches a pixel's sample with a probability. */

@@ -456,13 +456,25 @@ static BpStatus add_base(const BpFilm *base, BpFilm *film, BpError *err) {
     return BP_OK;
 }
 
-/* The pilot follows from the scene, so once is enough; of several ranks, one needs it. */
-static BpStatus add_unseen(BpRender *render, BpFilm *film, BpError *err) {
-    if (!render->has_pilot || !bp_comm_leads(render->comm)) return BP_OK;
-    if (!render->pilot_done)
-        BP_TRY(bp_pilot_run(render->workers[0], render->scene, render->options.max_depth, &render->unseen,
-                            &render->pilot, err));
+/* The pilot follows from the scene, so once is enough. */
+static BpStatus run_pilot(BpRender *render, BpError *err) {
+    if (!render->has_pilot || render->pilot_done) return BP_OK;
+    BP_TRY(bp_pilot_run(render->workers[0], render->scene, render->options.max_depth, &render->unseen,
+                        &render->pilot, err));
     render->pilot_done = true;
+    return BP_OK;
+}
+
+BpStatus bp_render_unseen(BpRender *render, BpUnseenLight *light, BpError *err) {
+    BP_TRY(run_pilot(render, err));
+    *light = render->pilot;
+    return BP_OK;
+}
+
+/* Of several ranks, one needs it. */
+static BpStatus add_unseen(BpRender *render, BpFilm *film, BpError *err) {
+    if (!bp_comm_leads(render->comm)) return BP_OK;
+    BP_TRY(run_pilot(render, err));
     if (render->unseen == NULL) return BP_OK;
     return bp_unseen_copy(render->unseen, (size_t)film->width * film->height, &film->unseen, err);
 }

@@ -40,7 +40,7 @@ struct BpRender {
     bool has_pilot;      /* its programs have one: there may be light that samples find by chance only */
     bool pilot_done;
     BpUnseen *unseen;    /* what it has found; NULL: nothing */
-    BpPilotReport pilot; /* the same for people */
+    BpUnseenLight pilot; /* the same for people */
     BpPicture aovs; /* its depth, normal and albedo, once computed */
     BpChunk last_chunk;
     double tree_seconds, pack_seconds, trace_seconds;

@@ -163,6 +163,7 @@ _OTHER: typing.Dict[str, typing.Tuple[typing.Any, typing.List[typing.Any]]] = {
     "bp_stop_rule_defaults": (None, [c.c_void_p, c.POINTER(BpRenderOptions), c.POINTER(BpStopRule)]),
     "bp_stop_destroy": (None, [_HANDLE]),
     "bp_film_nrmse": (c.c_double, [c.c_void_p]),
+    "bp_film_unseen_part": (c.c_double, [c.c_void_p]),
     "bp_film_destroy": (None, [_HANDLE]),
     "bp_picture_clear": (None, [c.POINTER(BpPicture)]),
     "bp_picture_bytes": (None, [c.POINTER(BpPicture), c.c_int, c.c_void_p]),

@@ -1,0 +1,76 @@
+/* unseen_text.c: see unseen_text.h. */
+#include "unseen_text.h"
+
+#include "base/format.h"
+#include "scene/scene.h"
+
+#include <math.h>
+#include <string.h>
+
+/* Spheres that bring less than this share are not named. */
+#define PART_MIN 0.1
+
+/* Whether most of it is seen with nothing between. */
+static bool is_direct(const BpUnseenLight *light) {
+    return light->direct > 0.5;
+}
+
+static size_t named_spheres(const BpUnseenLight *light) {
+    size_t named = 0;
+    while (named < light->sphere_count && (named == 0 || light->parts[named] >= PART_MIN)) ++named;
+    return named;
+}
+
+static void print_sphere(const BpScene *scene, size_t sphere, FILE *out) {
+    char name[BP_SPHERE_NAME_SIZE];
+    const char *material = scene->materials[scene->spheres[sphere].material].name;
+    fputs(bp_sphere_name(scene, sphere, name), out);
+    if (material != NULL && material[0] != '\0') fprintf(out, " (%s)", material);
+}
+
+static void print_spheres(const BpScene *scene, const BpUnseenLight *light, FILE *out) {
+    const size_t named = named_spheres(light);
+    double parts = 0;
+    for (size_t i = 0; i < named; ++i) {
+        if (i > 0) fputs(i + 1 == named ? " and " : ", ", out);
+        print_sphere(scene, light->spheres[i], out);
+        parts += light->parts[i];
+    }
+    if (parts + light->direct < 1 - 2 * PART_MIN) fputs(", and others like them", out);
+}
+
+static bool any_of_kind(const BpScene *scene, const BpUnseenLight *light, BpMaterialKind kind) {
+    for (size_t i = 0; i < named_spheres(light); ++i)
+        if (scene->materials[scene->spheres[light->spheres[i]].material].kind == kind) return true;
+    return false;
+}
+
+void bp_unseen_print(const BpScene *scene, const BpUnseenLight *light, double luminance, FILE *out) {
+    char share[32], once[32];
+    fprintf(out, "About %s of the light ", bp_format_percent(light->mean / luminance, share, sizeof share));
+    if (is_direct(light)) {
+        fputs("comes straight from lights that are smaller than a pixel", out);
+    } else {
+        fputs("comes by way of ", out);
+        print_spheres(scene, light, out);
+    }
+    fprintf(out, ", and one sample in %s finds it.", bp_format_count(1 / light->found, once, sizeof once));
+    fputs(is_direct(light) ? " What helps: larger lights, or more samples"
+                           : " What helps: larger lamps or discs",
+          out);
+    if (!is_direct(light) && any_of_kind(scene, light, BP_MATERIAL_METAL))
+        fputs(", a fuzz of 1/64 or more for mirrors", out);
+    fputs(is_direct(light) ? "." : ", or many more samples.", out);
+}
+
+json_t *bp_unseen_json(const BpUnseenLight *light, double luminance) {
+    if (!(light->mean > 0)) return json_null();
+    json_t *spheres = json_array();
+    for (size_t i = 0; i < light->sphere_count && spheres != NULL; ++i)
+        json_array_append_new(spheres, json_pack("{s:I, s:f}", "sphere", (json_int_t)light->spheres[i],
+                                                 "part", light->parts[i]));
+    const double share = light->mean / luminance;
+    return json_pack("{s:f, s:o, s:f, s:f, s:f, s:o, s:f}", "mean", light->mean, "share",
+                     isfinite(share) ? json_real(share) : json_null(), "variance", light->square, "found",
+                     light->found, "direct", light->direct, "spheres", spheres, "seconds", light->seconds);
+}
