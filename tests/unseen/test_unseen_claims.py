@@ -67,7 +67,7 @@ def true_noise(truth, samples):
         if samples <= high["samples"]:
             return along("noise", low, high)
     low, high = pictures[-2:]
-    if high["way"] == "spread":
+    if truth["way"] == "spread":
         return along("noise", low, high)
     rare = max(high["noise"] ** 2 - high["common"] ** 2, 0) * high["samples"] / samples
     return math.sqrt(rare + high["common"] ** 2 * high["samples"] / samples)

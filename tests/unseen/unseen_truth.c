@@ -38,6 +38,7 @@
 enum { RUNS = 128, SEEDS = 48, PLAIN_SEEDS = 24, COUNTS = 4 };
 static const uint64_t counts[COUNTS] = {16, 64, 256, 1024};
 static const double wanted = 0.04;       /* relative standard error of the variance */
+static const double direct_enough = 0.1; /* the same, above which a scene with wider lamps is taken */
 static const double enough_finds = 60.0; /* effective finds of rare light that a spread needs */
 static const uint64_t samples_first = 256, samples_last = 1u << 22;
 
@@ -175,8 +176,9 @@ typedef struct Sample {
     double finds; /* effective number of those that the variance rests on, for each sample */
 } Sample;
 
-/* One sample: many long renders with independent samples. */
-static Sample measure_sample(const BpScene *scene, size_t pixels, double seconds) {
+/* One sample: many long renders with independent samples. `means`: Optional; receives the mean of each pixel.
+ */
+static Sample measure_sample(const BpScene *scene, size_t pixels, double seconds, double *means) {
     Sample sample = {0};
     BpRender *renders[RUNS];
     double **pictures = pictures_of(RUNS, pixels);
@@ -200,7 +202,10 @@ static Sample measure_sample(const BpScene *scene, size_t pixels, double seconds
     double squares = 0;
     for (size_t r = 0; r < RUNS; r++) {
         double mean = 0;
-        for (size_t p = 0; p < pixels; p++) mean += pictures[r][p] / (double)pixels;
+        for (size_t p = 0; p < pixels; p++) {
+            mean += pictures[r][p] / (double)pixels;
+            if (means != NULL) means[p] += pictures[r][p] / RUNS;
+        }
         const double apart = mean - sample.mean;
         sample.mean += apart / (double)(r + 1);
         squares += apart * (mean - sample.mean);
@@ -211,14 +216,48 @@ static Sample measure_sample(const BpScene *scene, size_t pixels, double seconds
     return sample;
 }
 
-/* Pictures of `count` seeds at each number of samples: pictures[n][seed][pixel]. */
-static void measure_pictures(const BpScene *scene, BpSampler sampler, size_t count,
-                             double **pictures[COUNTS]) {
+/* Pictures of `count` seeds at each number of samples, [n][seed][pixel], from the first samples of each seed.
+ * Where `mean` is given, the truth about each pixel, squares[n][seed] becomes the mean squared error, over
+ * all blocks of that many samples in turn of the seed's last number: blocks of a power of two are as evenly
+ * spread as the first. */
+static void measure_pictures(const BpScene *scene, BpSampler sampler, size_t count, size_t pixels,
+                             double **pictures[COUNTS], const double *mean, double *squares[COUNTS]) {
+    double *now = allocated(pixels, sizeof *now), *before[COUNTS];
+    for (size_t n = 0; n < COUNTS; n++) before[n] = allocated(pixels, sizeof *before[n]);
     for (size_t s = 0; s < count; s++) {
         BpRender *render = open_render(scene, sampler, 500 + s, counts[0]);
-        for (size_t n = 0; n < COUNTS; n++) read_luminance(render, counts[n], pictures[n][s]);
+        const uint64_t step = mean != NULL ? counts[0] : 1;
+        for (uint64_t samples = counts[0]; samples <= counts[COUNTS - 1]; samples += step) {
+            bool asked = mean != NULL;
+            for (size_t n = 0; n < COUNTS; n++) asked |= samples == counts[n];
+            if (!asked) continue;
+            read_luminance(render, samples, now);
+            for (size_t n = 0; n < COUNTS; n++) {
+                if (samples == counts[n]) memcpy(pictures[n][s], now, pixels * sizeof *now);
+                if (mean == NULL || samples % counts[n] != 0) continue;
+                const double size = (double)counts[n], end = (double)samples;
+                const double blocks = (double)(counts[COUNTS - 1] / counts[n]);
+                for (size_t p = 0; p < pixels; p++) {
+                    const double past = samples == counts[n] ? 0 : before[n][p] * (end - size);
+                    const double apart = (now[p] * end - past) / size - mean[p];
+                    squares[n][s] += apart * apart / (double)pixels / blocks;
+                    before[n][p] = now[p];
+                }
+            }
+        }
         bp_render_destroy(&render);
     }
+    for (size_t n = 0; n < COUNTS; n++) free(before[n]);
+    free(now);
+}
+
+/* Mean and its standard error, of values that differ by chance. */
+static double mean_of(const double *values, size_t count, double *error) {
+    double mean = 0, squares = 0;
+    for (size_t i = 0; i < count; i++) mean += values[i] / (double)count;
+    for (size_t i = 0; i < count; i++) squares += (values[i] - mean) * (values[i] - mean);
+    *error = sqrt(squares / (double)(count - 1) / (double)count);
+    return mean;
 }
 
 static BpScene *load(const char *path) {
@@ -238,21 +277,25 @@ int main(int argc, char **argv) {
     bp_scene_info(scene, &info);
     const size_t pixels = (size_t)info.width * info.height;
     double **sobol[COUNTS], **plain[COUNTS];
+    double *means = allocated(pixels, sizeof *means), *squares[COUNTS];
     for (size_t n = 0; n < COUNTS; n++) {
+        squares[n] = allocated(SEEDS, sizeof *squares[n]);
         sobol[n] = pictures_of(SEEDS, pixels);
         plain[n] = pictures_of(PLAIN_SEEDS, pixels);
     }
-    Sample sample = measure_sample(scene, pixels, strtod(argv[2], NULL));
-    measure_pictures(scene, BP_SAMPLER_SOBOL, SEEDS, sobol);
-    measure_pictures(scene, BP_SAMPLER_INDEPENDENT, PLAIN_SEEDS, plain);
+    Sample sample = measure_sample(scene, pixels, strtod(argv[2], NULL), means);
+    measure_pictures(scene, BP_SAMPLER_SOBOL, SEEDS, pixels, sobol, means, squares);
+    measure_pictures(scene, BP_SAMPLER_INDEPENDENT, PLAIN_SEEDS, pixels, plain, NULL, NULL);
+    const double means_square =
+        sample.variance / (sample.samples / (double)pixels); /* of the truth about a pixel */
     /* Few samples hold the least rare light. */
     const double common_sample = (double)counts[0] * common_spread(plain[0], PLAIN_SEEDS, pixels);
     double subtracted = 0;
     printf("{ \"directly\": [%.5g, %.2g], ", sample.variance, sample.variance_error);
-    if (argc == 5) {
+    if (argc == 5 && sample.variance_error > direct_enough * sample.variance) {
         BpScene *enlarged = load(argv[3]);
         const double area = strtod(argv[4], NULL) * strtod(argv[4], NULL);
-        const Sample easier = measure_sample(enlarged, pixels, strtod(argv[2], NULL));
+        const Sample easier = measure_sample(enlarged, pixels, strtod(argv[2], NULL), NULL);
         subtracted = area * area * common_sample / easier.variance;
         sample.variance = (easier.variance - area * area * common_sample) / area + common_sample;
         sample.variance_error = easier.variance_error / area;
@@ -264,23 +307,26 @@ int main(int argc, char **argv) {
            "\"traced\": %.3g, \"finds\": %.3g, \"pictures\": [",
            sample.variance, sample.variance_error, subtracted, sample.mean, sample.mean_error, sample.samples,
            sample.finds);
+    const bool seen = sample.finds * SEEDS * (double)counts[COUNTS - 1] * (double)pixels >= enough_finds;
     for (size_t n = 0; n < COUNTS; n++) {
         const double count = (double)counts[n];
         const double common = common_spread(sobol[n], SEEDS, pixels);
-        const double direct = spread(sobol[n], SEEDS, pixels, SEEDS);
-        const bool seen = sample.finds * SEEDS * count * (double)pixels >= enough_finds;
+        double error;
+        const double direct = fmax(mean_of(squares[n], SEEDS, &error) - means_square, 0);
         const double rare = fmax(sample.variance - common_sample, 0) / count;
         const double truth = seen ? direct : rare + common;
-        printf(
-            "%s{ \"samples\": %.0f, \"noise\": %.4g, \"way\": \"%s\", \"common\": %.4g, \"spread\": %.4g }",
-            n == 0 ? "" : ", ", count, sqrt(truth) / sample.mean, seen ? "spread" : "rare",
-            sqrt(common) / sample.mean, sqrt(direct) / sample.mean);
+        if (!seen) error = sample.variance_error / count;
+        printf("%s{\"samples\": %.0f, \"noise\": %.4g, \"error\": %.2g, \"common\": %.4g, \"spread\": %.4g}",
+               n == 0 ? "" : ", ", count, sqrt(truth) / sample.mean, 0.5 * error / sqrt(truth) / sample.mean,
+               sqrt(common) / sample.mean, sqrt(direct) / sample.mean);
     }
-    printf("] }\n");
+    printf("], \"way\": \"%s\" }\n", seen ? "spread" : "rare");
     for (size_t n = 0; n < COUNTS; n++) {
+        free(squares[n]);
         free_pictures(sobol[n], SEEDS);
         free_pictures(plain[n], PLAIN_SEEDS);
     }
+    free(means);
     bp_scene_destroy(&scene);
     return 0;
 }
