@@ -39,7 +39,7 @@ enum { RUNS = 128, SEEDS = 48, PLAIN_SEEDS = 24, COUNTS = 4 };
 static const uint64_t counts[COUNTS] = {16, 64, 256, 1024};
 static const double wanted = 0.04;       /* relative standard error of the variance */
 static const double direct_enough = 0.1; /* the same, above which a scene with wider lamps is taken */
-static const double enough_finds = 60.0; /* effective finds of rare light that a spread needs */
+static const double enough_finds = 50.0; /* effective finds of rare light that a spread needs */
 static const uint64_t samples_first = 256, samples_last = 1u << 22;
 
 static void must(BpStatus status, const BpError *err) {
