@@ -150,11 +150,11 @@ def main():
     parser.add_argument("--counts", default=",".join(map(str, COUNTS)))
     parser.add_argument("--errors", default=",".join(f"{100 * wanted:g}" for wanted in WANTED), help="of --error, in percent; may be empty")
     parser.add_argument("--seeds", type=int, default=40)
-    parser.add_argument("--quick", action="store_true", help="few scenes, 8 seeds, one --error")
+    parser.add_argument("--quick", action="store_true", help="few scenes and numbers of samples, 8 seeds, one --error")
     parser.add_argument("--table", action="store_true")
     chosen = parser.parse_args()
     if chosen.quick:
-        chosen.scenes, chosen.seeds, chosen.errors = ",".join(QUICK), 8, "10"
+        chosen.scenes, chosen.counts, chosen.seeds, chosen.errors = ",".join(QUICK), "16,256", 8, "10"
     truth = json.loads((FOLDER / "truth.json").read_text())
     scenes = chosen.scenes.split(",") if chosen.scenes else sorted(truth)
     with tempfile.TemporaryDirectory(prefix="ballpark-unseen-") as folder:
