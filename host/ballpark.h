@@ -289,6 +289,7 @@ typedef struct BpRenderOptions {
     uint32_t extra_effects; /* bit e: simulate effect e of bp_scene_effect() although nothing calls for it */
     bool adaptive;          /* samples_per_pixel is a mean: pixels get samples where the error is */
     bool features;          /* depth, normal and albedo will be asked for, by bp_render_aovs() or in films */
+    bool samples_only;      /* nobody asks for errors: no paths look for light that samples may not have found */
     bool force;             /* render even on a device that fails its self-test */
     uint64_t job_first,
         job_samples; /* the samples of a job of which this render is a share; 0, 0: of none. Films say so */

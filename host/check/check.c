@@ -50,6 +50,7 @@ BpStatus bp_check_create(const BpScene *scene, const BpCheckOptions *options, st
     if (options->seconds > 0 && check->target > FIRST_ROUND) check->target = FIRST_ROUND;
     BpRenderOptions first = options->render;
     first.samples_per_pixel = check->target;
+    first.samples_only = true;
     const uint32_t width = scene->camera.width, height = scene->camera.height;
     BpStatus status = bp_sums_init(&check->result.kernel, width, height, err);
     if (status == BP_OK) status = bp_sums_init(&check->result.reference, width, height, err);

@@ -247,6 +247,7 @@ static BpStatus render_item(const BpDeviceItems *items, size_t number, double se
         (uint64_t)json_integer_value(json_object_get(form->picture, "samples_per_pixel"));
     options.seed = (uint64_t)json_integer_value(json_object_get(form->picture, "seed"));
     options.sampler = BP_SAMPLER_SOBOL;
+    options.samples_only = true;
     options.precision = form->precision;
     options.kernel = form->kernel;
     options.force_tree = form->acceleration == BP_ACCELERATION_TREE;

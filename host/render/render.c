@@ -167,7 +167,8 @@ static BpStatus create(const BpScene *scene, const BpRenderOptions *options, con
     made->worker_count = device_count;
     bp_effects_analyse(scene, &made->effects);
     made->options.lamps = bp_render_lamps_of(&made->effects, options);
-    made->has_pilot = made->options.lamps == BP_LAMPS_ON && bp_pilot_is_needed(scene);
+    made->has_pilot =
+        made->options.lamps == BP_LAMPS_ON && !options->samples_only && bp_pilot_is_needed(scene);
     for (size_t i = 0; i < device_count; ++i)
         BP_TRY_GOTO(status,
                     open_worker(made, open != NULL ? &open[i]->info : &devices[i],
@@ -471,9 +472,9 @@ BpStatus bp_render_unseen(BpRender *render, BpUnseenLight *light, BpError *err) 
     return BP_OK;
 }
 
-/* Of several ranks, one needs it. */
+/* Of several ranks, one needs it; and a film of which no error is known needs none. */
 static BpStatus add_unseen(BpRender *render, BpFilm *film, BpError *err) {
-    if (!bp_comm_leads(render->comm)) return BP_OK;
+    if (!bp_comm_leads(render->comm) || bp_film_range_total(film) < 2) return BP_OK;
     BP_TRY(run_pilot(render, err));
     if (render->unseen == NULL) return BP_OK;
     return bp_unseen_copy(render->unseen, (size_t)film->width * film->height, &film->unseen, err);

@@ -52,7 +52,9 @@ static BpStatus open_render(const BpScene *scene, const BpRenderOptions *options
     double first, second;
     BpRenderReport report;
     const double wall = bp_clock_seconds(), processor = bp_processor_seconds();
-    BP_TRY(bp_render_create(scene, options, device, 1, render, err));
+    BpRenderOptions plain = *options;
+    plain.samples_only = true;
+    BP_TRY(bp_render_create(scene, &plain, device, 1, render, err));
     start->wall = bp_clock_seconds() - wall;
     BP_TRY_GOTO(status, finish(*render, &first, err), failed);
     start->processor = bp_processor_seconds() - processor;

@@ -24,6 +24,7 @@ static BpStatus open_one(BpReferences *references, int r, const BpRenderOptions 
     options.max_depth = BP_STUDY_DEPTH;
     options.precision = BP_PRECISION_DOUBLE;
     options.sampler = BP_SAMPLER_SOBOL;
+    options.samples_only = true;
     options.seed = references->seed[r];
     options.force = base->force;
     return bp_render_create(scene, &options, device, 1, &references->render[r], err);
