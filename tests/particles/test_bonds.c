@@ -295,6 +295,59 @@ static void spacing_is_that_of_all_images(void **state) {
     }
 }
 
+/* Clouds of any extents along each axis, down to numbers whose products are rounded to 0. Along an axis where
+ * all particles lie closer than 1e-90, they count as being at one place. */
+static void spacing_of_thin_clouds(void **state) {
+    (void)state;
+    static const double extents[] = {0, 1e-320, 1e-300, 1e-264, 1e-100, 1e-80, 1e-38, 1, 1e12};
+    enum { EXTENTS = sizeof extents / sizeof *extents };
+    BpRandom random = {15};
+    size_t apart = 0;
+    for (int n = 0; n < EXTENTS * EXTENTS * EXTENTS; n++) {
+        static Case test;
+        const double extent[3] = {extents[n % EXTENTS], extents[n / EXTENTS % EXTENTS],
+                                  extents[n / EXTENTS / EXTENTS]};
+        double nearest[PARTICLES_MAX], spacing;
+        bool thin = true;
+        BpError err;
+        memset(&test, 0, sizeof test);
+        test.p.count = 2 + choice(&random, PARTICLES_MAX - 1);
+        test.p.position = test.position;
+        for (size_t i = 0; i < test.p.count; i++) {
+            test.shown[i] = true;
+            /* The first two at opposite corners, so that the extents are these. */
+            for (int c = 0; c < 3; c++)
+                test.position[i][c] = extent[c] * (i < 2 ? (double)i : bp_random_next(&random));
+        }
+        for (int c = 0; c < 3; c++) thin &= extent[c] < 1e-90;
+        for (size_t i = 0; i < test.p.count; i++) {
+            nearest[i] = INFINITY;
+            for (size_t k = 0; k < test.p.count; k++) {
+                const double *const a = test.position[i], *const b = test.position[k];
+                const double distance = hypot(hypot(b[0] - a[0], b[1] - a[1]), b[2] - a[2]);
+                if (distance > 0 && distance < nearest[i]) nearest[i] = distance;
+            }
+        }
+        qsort(nearest, test.p.count, sizeof *nearest, compare_reals);
+        const double expected = thin ? 0 : nearest[test.p.count / 2];
+        assert_int_equal(bp_particles_spacing(&test.p, test.shown, &spacing, &err), BP_OK);
+        assert_true(fabs(spacing - expected) <= 1e-9 * expected);
+        apart += expected > 0;
+    }
+    assert_true(apart > 500);
+}
+
+/* Two points of a hostile PLY file. Along z they lie at one place; the volume of their bounds is 0. */
+static void spacing_of_two_points_in_a_plane(void **state) {
+    (void)state;
+    double position[2][3] = {{9.4e-38, 3.85e-34, 3.9e-264}, {9.1e-41, 5.98e-39, 1.8e-307}}, spacing;
+    const bool shown[2] = {true, true};
+    const BpParticles p = {.count = 2, .position = position};
+    BpError err;
+    assert_int_equal(bp_particles_spacing(&p, shown, &spacing, &err), BP_OK);
+    assert_true(fabs(spacing - hypot(9.4e-38 - 9.1e-41, 3.85e-34 - 5.98e-39)) < 1e-9 * spacing);
+}
+
 /* ---- bonds of the file, and molecules
  * ----------------------------------------------------------------------- */
 
@@ -413,9 +466,12 @@ static void endless_chains_stay(void **state) {
 }
 
 int main(void) {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(bonds_are_those_of_all_images), cmocka_unit_test(spacing_is_that_of_all_images),
-        cmocka_unit_test(given_bonds_go_to_the_nearest_image), cmocka_unit_test(chains_are_made_whole),
-        cmocka_unit_test(endless_chains_stay)};
+    const struct CMUnitTest tests[] = {cmocka_unit_test(bonds_are_those_of_all_images),
+                                       cmocka_unit_test(spacing_is_that_of_all_images),
+                                       cmocka_unit_test(spacing_of_thin_clouds),
+                                       cmocka_unit_test(spacing_of_two_points_in_a_plane),
+                                       cmocka_unit_test(given_bonds_go_to_the_nearest_image),
+                                       cmocka_unit_test(chains_are_made_whole),
+                                       cmocka_unit_test(endless_chains_stay)};
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -100,6 +100,39 @@ static void pairs_are_found(void **state) {
         }
 }
 
+/* However thin a cloud is, its grid has a lattice, and every particle a cell that is found from its place. */
+static void thin_clouds_have_a_grid(void **state) {
+    (void)state;
+    static const double extents[] = {0, 1e-320, 1e-264, 1e-100, 1e-60, 1, 1e12};
+    enum { EXTENTS = sizeof extents / sizeof *extents };
+    for (int n = 0; n < EXTENTS * EXTENTS * EXTENTS * EXTENTS; n++) {
+        const double extent[3] = {extents[n % EXTENTS], extents[n / EXTENTS % EXTENTS],
+                                  extents[n / (EXTENTS * EXTENTS) % EXTENTS]};
+        const double reach = extents[n / (EXTENTS * EXTENTS * EXTENTS)];
+        double position[2][3] = {{0}, {extent[0], extent[1], extent[2]}};
+        const bool shown[2] = {true, true};
+        const BpParticles p = {.count = 2, .position = position};
+        BpParticleGrid grid;
+        BpError err;
+        if (reach == 0) continue;
+        assert_int_equal(bp_particle_grid_init(&grid, &p, shown, reach, &err), BP_OK);
+        for (int e = 0; e < 3; e++) {
+            assert_true(isfinite(bp_lattice_height(&grid.lattice, e)));
+            assert_true(bp_lattice_height(&grid.lattice, e) >= extent[e] * (1 - 1e-9));
+            assert_true(grid.sides[e] >= 1 && grid.steps[e] >= 1);
+        }
+        for (int i = 0; i < 2; i++) {
+            BpGridWalk walk;
+            bool own = false;
+            bp_particle_grid_begin(&grid, position[i], &walk);
+            while (bp_particle_grid_next(&walk))
+                own |= walk.cell == bp_particle_grid_cell(&grid, position[i]);
+            assert_true(own);
+        }
+        bp_particle_grid_clear(&grid);
+    }
+}
+
 static void bounds_are_of_those_shown(void **state) {
     (void)state;
     enum { MANY = 3 * 16384 + 5 };
@@ -128,6 +161,7 @@ static void bounds_are_of_those_shown(void **state) {
 
 int main(void) {
     const struct CMUnitTest tests[] = {cmocka_unit_test(pairs_are_found),
+                                       cmocka_unit_test(thin_clouds_have_a_grid),
                                        cmocka_unit_test(bounds_are_of_those_shown)};
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
