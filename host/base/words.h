@@ -13,6 +13,13 @@
 #define BP_BRACED(...)                                                                                       \
     { __VA_ARGS__ }
 
+/* Clang warns of functions in a .c file that nobody calls, even if they are inline. */
+#if defined(__GNUC__)
+#define BP_NOBODY_CALLS __attribute__((unused))
+#else
+#define BP_NOBODY_CALLS
+#endif
+
 /* `declaration[] = { ... }`, for the outermost level of a file, and a function that nobody calls, in which
  * the compiler misses what LIST lacks. */
 #define BP_WORDS(type, declaration, LIST)                                                                    \
@@ -23,7 +30,7 @@
     BP_WORDS_COMPLETE(type, LIST)                                                                            \
     declaration[] = {LIST(BP_WORD_AT) NULL}
 #define BP_WORDS_COMPLETE(type, LIST)                                                                        \
-    static inline void LIST##_are_complete(type value) {                                                     \
+    BP_NOBODY_CALLS static inline void LIST##_are_complete(type value) {                                     \
         switch (value) { LIST(BP_WORD_CASE) break; }                                                         \
     }
 
