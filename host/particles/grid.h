@@ -9,8 +9,8 @@
 #include "lattice.h"
 
 #define BP_NO_PARTICLE UINT32_MAX
-/* Lengths from here on have volumes that are not rounded to 0. Along an axis where all particles lie closer than
- * that, they count as being at one place. */
+/* Lengths from here on have volumes that are not rounded to 0. Along an axis where all particles lie closer
+ * than that, they count as being at one place. */
 #define BP_PARTICLE_NARROWEST 1e-90
 
 typedef struct BpParticleBounds {
