@@ -289,8 +289,8 @@ typedef struct BpRenderOptions {
     uint32_t extra_effects; /* bit e: simulate effect e of bp_scene_effect() although nothing calls for it */
     bool adaptive;          /* samples_per_pixel is a mean: pixels get samples where the error is */
     bool features;          /* depth, normal and albedo will be asked for, by bp_render_aovs() or in films */
-    bool samples_only;      /* nobody asks for errors: no paths look for light that samples may not have found */
-    bool force;             /* render even on a device that fails its self-test */
+    bool samples_only; /* nobody asks for errors: no paths look for light that samples may not have found */
+    bool force;        /* render even on a device that fails its self-test */
     uint64_t job_first,
         job_samples; /* the samples of a job of which this render is a share; 0, 0: of none. Films say so */
     uint32_t replicates; /* K of the error estimate; 0: the default; 1: no estimate */
@@ -436,14 +436,15 @@ BP_API BpStatus bp_render_read(BpRender *render, BpPicture *picture, BpError *er
  * of, by the first device. What the picture held of them is released. BP_ERR_USAGE: without options.features,
  * or for a picture of another size. */
 BP_API BpStatus bp_render_aovs(BpRender *render, BpPicture *picture, BpError *err);
-/* Light that the samples of a picture find by chance only: it comes to matte surfaces by way of glass or mirrors, or is seen
- * in them, or is smaller than a pixel. It follows from the scene and the camera, whatever has been sampled; and until samples
- * have found it, bp_film_nrmse() and the errors of pixels know of it from here. Luminances, means over the picture. */
+/* Light that the samples of a picture find by chance only: it comes to matte surfaces by way of glass or
+ * mirrors, or is seen in them, or is smaller than a pixel. It follows from the scene and the camera, whatever
+ * has been sampled; and until samples have found it, bp_film_nrmse() and the errors of pixels know of it from
+ * here. Luminances, means over the picture. */
 #define BP_UNSEEN_SPHERES 3
 typedef struct BpUnseenLight {
-    double mean;         /* that it adds to a sample; 0: there is no such light */
-    double square;       /* the mean of its square: nearly the variance of a sample */
-    double found;        /* the share of samples that find it, by the light that each brings: mean^2 / square */
+    double mean;   /* that it adds to a sample; 0: there is no such light */
+    double square; /* the mean of its square: nearly the variance of a sample */
+    double found;  /* the share of samples that find it, by the light that each brings: mean^2 / square */
     size_t sphere_count; /* spheres by way of which most of the noise comes, with their parts of `square` */
     size_t spheres[BP_UNSEEN_SPHERES];
     double parts[BP_UNSEEN_SPHERES];
@@ -451,8 +452,8 @@ typedef struct BpUnseenLight {
     double seconds; /* that looking for it took */
 } BpUnseenLight;
 
-/* Traces the paths that look for it, if that has not been done; with light sampling off (BP_LAMPS_OFF), all light is found by
- * chance, and this finds nothing. */
+/* Traces the paths that look for it, if that has not been done; with light sampling off (BP_LAMPS_OFF), all
+ * light is found by chance, and this finds nothing. */
 BP_API BpStatus bp_render_unseen(BpRender *render, BpUnseenLight *light, BpError *err);
 
 /* `picture`: Optional. */
@@ -522,8 +523,8 @@ BP_API BpStatus bp_film_merge(BpFilm *into, const BpFilm *from, BpError *err);
  * albedo if the film has them. */
 BP_API BpStatus bp_film_picture(const BpFilm *film, BpPicture *picture, BpError *err);
 
-/* NRMSE = sqrt(mean over pixels of the squared standard error of luminance) / mean luminance, a fraction. Both
- * include light that samples find by chance and may not have found yet (BpUnseenLight). NaN where it is
+/* NRMSE = sqrt(mean over pixels of the squared standard error of luminance) / mean luminance, a fraction.
+ * Both include light that samples find by chance and may not have found yet (BpUnseenLight). NaN where it is
  * unknown: the picture is black, or a pixel has too few samples. */
 BP_API double bp_film_nrmse(const BpFilm *film);
 /* The part of its square, 0 to 1, that stands for light which samples may not have found yet. */

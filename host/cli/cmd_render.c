@@ -123,17 +123,17 @@ static json_t *stats_json(const RunResult *result) {
                   bp_json_whole(options->seed), "spheres", (json_int_t)info.spheres, "device",
                   device_json(&report->device), "effects", effects_json(&report->effects));
     json_t *counts =
-        json_pack("{s:o, s:I, s:I, s:[f,f,f], s:o, s:f, s:o, s:I, s:I, s:I, s:I, s:I, s:I}", "seconds",
+        json_pack("{s:o, s:I, s:I, s:[f,f,f], s:o, s:I, s:I, s:I, s:I, s:I, s:I, s:f, s:o}", "seconds",
                   seconds_json(result), "samples", (json_int_t)report->samples, "rays",
                   (json_int_t)report->segments, "mean_radiance", mean[0], mean[1], mean[2], "nrmse",
-                  json_number(result->nrmse), "unseen_part", result->unseen_part, "unseen",
-                  bp_unseen_json(&result->unseen, bp_film_expected_luminance(result->film)),
-                  "invalid_samples", (json_int_t)report->invalid_samples,
+                  json_number(result->nrmse), "invalid_samples", (json_int_t)report->invalid_samples,
 #define MEMBER(member, tally, words) #member, (json_int_t)report->member,
                   BP_INVALID_LIST(MEMBER)
 #undef MEMBER
                       "cut_paths",
-                  (json_int_t)report->cut_paths, "lamp_rays", (json_int_t)report->lamp_rays);
+                  (json_int_t)report->cut_paths, "lamp_rays", (json_int_t)report->lamp_rays, "unseen_part",
+                  result->unseen_part, "unseen",
+                  bp_unseen_json(&result->unseen, bp_film_expected_luminance(result->film)));
     json_t *run = json_pack("{s:s, s:o, s:I, s:i, s:b, s:o, s:s, s:i, s:i, s:I, s:I, s:I, s:s}",
                             "acceleration", bp_acceleration_name(report->acceleration), "output",
                             bp_json_text(result->output), "first_sample", (json_int_t)options->first_sample,

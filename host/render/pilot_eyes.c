@@ -107,7 +107,8 @@ typedef struct Spread {
 static Spread first_spread(const BpPilot *pilot) {
     const double side = sqrt(pilot->plan.extent);
     const bool parallel = pilot->scene->camera.projection == BP_ORTHOGRAPHIC;
-    return parallel ? (Spread){.width = side} : (Spread){.slope = side};
+    const Spread spread = {.width = parallel ? side : 0, .slope = parallel ? 0 : side};
+    return spread;
 }
 
 /* Behind a surface: what is curved spreads them, or gathers them, which counts as if it spread them too. */

@@ -320,8 +320,19 @@ static void report_progress(const BpRender *render, bool finished, BpProgress *p
     progress->finished = finished;
 }
 
+/* The pilot follows from the scene, so once is enough. */
+static BpStatus run_pilot(BpRender *render, BpError *err) {
+    if (!render->has_pilot || render->pilot_done) return BP_OK;
+    BP_TRY(bp_pilot_run(render->workers[0], render->scene, render->options.max_depth, &render->unseen,
+                        &render->pilot, err));
+    render->pilot_done = true;
+    return BP_OK;
+}
+
 /* Starts chunks until so much time has passed, one at least. */
 static BpStatus step(BpRender *render, double seconds, BpProgress *progress, BpError *err) {
+    /* Before the first sample, so that what can fail does so before there is something to lose. */
+    if (render->options.samples_per_pixel > 1 && bp_comm_leads(render->comm)) BP_TRY(run_pilot(render, err));
     const double start = bp_clock_seconds();
     bp_film_destroy(&render->film);
     bool more = true;
@@ -454,15 +465,6 @@ static BpStatus add_base(const BpFilm *base, BpFilm *film, BpError *err) {
     BP_TRY(bp_film_add_sums(film, base, err));
     if (film->pixel_segments != NULL && base->pixel_segments != NULL)
         for (size_t i = 0; i < pixels; ++i) film->pixel_segments[i] += base->pixel_segments[i];
-    return BP_OK;
-}
-
-/* The pilot follows from the scene, so once is enough. */
-static BpStatus run_pilot(BpRender *render, BpError *err) {
-    if (!render->has_pilot || render->pilot_done) return BP_OK;
-    BP_TRY(bp_pilot_run(render->workers[0], render->scene, render->options.max_depth, &render->unseen,
-                        &render->pilot, err));
-    render->pilot_done = true;
     return BP_OK;
 }
 

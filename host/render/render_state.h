@@ -37,11 +37,11 @@ struct BpRender {
     uint64_t goal_samples; /* where a stop rule ends it; 0: none has said */
     double goal_error;
     bool ended;     /* it has reached that */
-    bool has_pilot;      /* its programs have one: there may be light that samples find by chance only */
+    bool has_pilot; /* its programs have one: there may be light that samples find by chance only */
     bool pilot_done;
     BpUnseen *unseen;    /* what it has found; NULL: nothing */
     BpUnseenLight pilot; /* the same for people */
-    BpPicture aovs; /* its depth, normal and albedo, once computed */
+    BpPicture aovs;      /* its depth, normal and albedo, once computed */
     BpChunk last_chunk;
     double tree_seconds, pack_seconds, trace_seconds;
     BpCalibration calibration; /* of the first device; BP_KERNEL_AUTO: none decided */
