@@ -6,6 +6,7 @@
 #include "packed/lamp_tree.h"
 #include "scene/vector.h"
 
+#include <float.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -291,10 +292,11 @@ static double start_lamp(const BpPilotLight *light, const double center[3], doub
     double axis[3], normal[3];
     for (int a = 0; a < 3; ++a) axis[a] = center[a] - light->place[a];
     const double away = bp_normalize(axis);
-    const bool around = away < radius; /* the lamp's centre lies in the sphere: all of the lamp counts */
-    if (around) axis[0] = 1, axis[1] = axis[2] = 0;
-    in_cap(random, axis, around ? 2 : 1, normal);
-    double area = (around ? 4 : 2) * PI * light->radius * light->radius;
+    if (!(away > 0)) axis[0] = 1, axis[1] = axis[2] = 0;
+    /* Those of its points see the sphere whose tangent plane does not lie before all of it. */
+    const double seeing = fmin(2, 1 + (radius - light->radius) / fmax(away, DBL_MIN));
+    in_cap(random, axis, fmax(seeing, 0), normal);
+    const double area = 2 * PI * fmax(seeing, 0) * light->radius * light->radius; /* 0: the sphere is inside */
     for (int a = 0; a < 3; ++a) {
         start->origin[a] = light->place[a] + light->radius * (1 + ABOVE) * normal[a];
         axis[a] = center[a] - start->origin[a];
