@@ -310,19 +310,27 @@ BpStatus bp_film_merge(BpFilm *into, const BpFilm *from, BpError *err) {
     struct BpSampleRange *joined = NULL;
     size_t joined_count = 0;
     BP_TRY(join_ranges(into, from->ranges, from->range_count, &joined, &joined_count, err));
-    /* Films of one scene have the same AOVs, unless their devices round differently. Then those of the first
-     * samples stay, in whatever order films are merged. */
-    const bool takes_aovs = bp_film_has_aovs(from) && (!bp_film_has_aovs(into) || begins_before(from, into));
+    /* Films of one scene have the same AOVs and the same unseen light, unless their devices round
+     * differently. Then those of the first samples stay, in whatever order films are merged. */
+    const bool is_first = begins_before(from, into);
+    const bool takes_aovs = bp_film_has_aovs(from) && (!bp_film_has_aovs(into) || is_first);
+    const bool takes_unseen = from->unseen != NULL && (into->unseen == NULL || is_first);
+    BpUnseen *unseen = NULL;
     BpStatus status = from->fine_sums != NULL ? bp_film_add_fine_sums(into, err) : BP_OK;
+    if (status == BP_OK && takes_unseen)
+        status = bp_unseen_copy(from->unseen, (size_t)into->width * into->height, &unseen, err);
     if (status == BP_OK && takes_aovs) status = bp_film_add_aovs(into, err);
-    if (status == BP_OK && into->unseen == NULL && from->unseen != NULL)
-        status = bp_unseen_copy(from->unseen, (size_t)into->width * into->height, &into->unseen, err);
     if (status != BP_OK) {
+        bp_unseen_destroy(&unseen);
         free(joined);
         return status;
     }
 
     /* Nothing fails from here on: there is room for the fine sums. */
+    if (takes_unseen) {
+        bp_unseen_destroy(&into->unseen);
+        into->unseen = unseen;
+    }
     (void)bp_film_add_sums(into, from, NULL);
     free(into->ranges);
     into->ranges = joined;
