@@ -50,6 +50,11 @@ static BpFilm *make(void) {
         a->normal[i] = (float)data_normal(4000 + i);
         a->albedo[i] = (float)data_uniform(5000 + i);
     }
+    assert_int_equal(bp_unseen_create(15, &a->unseen, NULL), BP_OK);
+    for (size_t i = 0; i < 15; i++)
+        a->unseen->pixels[i] =
+            (BpUnseenPixel){i % 4 == 0 ? 0 : (float)data_uniform(7000 + i), (float)data_uniform(8000 + i)};
+    for (size_t c = 0; c < 3; c++) a->unseen->tint[c] = (float)data_uniform(9000 + c);
     a->plan = calloc(1, sizeof *a->plan);
     *a->plan = (BpFilmPlan){.adaptive = true,
                             .ended = true,

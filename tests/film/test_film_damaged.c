@@ -71,12 +71,15 @@ static void wrong_members_are_named(void **state) {
     static const struct {
         const char *old, *new, *reason;
     } cases[] = {
-        {"\"ballpark_accumulator\": 4", "\"ballpark_accumulator\": 0", "should be a whole number from 1"},
-        {"\"ballpark_accumulator\": 4", "\"ballpark_accumulator\": 5",
-         "has version 5 of the format, but this program reads versions 1 to 4: use a newer Ballpark"},
-        {"\"ballpark_accumulator\": 4", "\"ballpark_accumulator\": 2", "is too long: "},
-        {"\"ballpark_accumulator\": 4", "\"ballpark_accumulator\": 3", "too long"},
-        {"\"alpha\": true", "\"alpha\": false", "too long"},
+        {"\"ballpark_accumulator\": 5", "\"ballpark_accumulator\": 0", "should be a whole number from 1"},
+        {"\"ballpark_accumulator\": 5", "\"ballpark_accumulator\": 6",
+         "has version 6 of the format, but this program reads versions 1 to 5: use a newer Ballpark"},
+        {"\"ballpark_accumulator\": 5", "\"ballpark_accumulator\": 2", "is too long: "},
+        {"\"ballpark_accumulator\": 5", "\"ballpark_accumulator\": 3", "too long"},
+        {"\"ballpark_accumulator\": 5", "\"ballpark_accumulator\": 4", "too long"}, /* none had it */
+        {"\"unseen\": true", "\"unseen\": false", "too long"},
+        {"\"unseen\": true", "\"unseen\": 1", "\"unseen\" in the header should be true or false"},
+        {"\"alpha\": true", "\"alpha\": false", "the colour of the unseen light is none"},
         {"\"alpha\": true", "\"alpha\": 1", "\"alpha\""},
         {"\"aovs\": true", "\"aovs\": false", "the alpha of pixel 0 is above 1"},
         {"\"aovs\": true", "\"aovs\": 1", "\"aovs\""},
@@ -229,6 +232,19 @@ static void wrong_numbers_are_refused(void **state) {
     film->met[8] = 5; /* of 4 samples */
     refuse_film(&files, film, "the alpha of pixel 8 is above 1");
     film->met[8] = 4;
+    static const float bad[] = {-1, NAN, INFINITY};
+    for (size_t i = 0; i < sizeof bad / sizeof bad[0]; i++) {
+        BpUnseenPixel *unseen = &film->unseen->pixels[8];
+        const BpUnseenPixel kept = *unseen;
+        unseen->mean = bad[i];
+        refuse_film(&files, film, "the unseen light of pixel 8 is no radiance");
+        *unseen = (BpUnseenPixel){kept.mean, bad[i]};
+        refuse_film(&files, film, "the unseen light of pixel 8 is no radiance");
+        *unseen = kept;
+        film->unseen->tint[1] = bad[i];
+        refuse_film(&files, film, "the colour of the unseen light is none");
+        film->unseen->tint[1] = 1;
+    }
     assert_int_equal(bp_film_write(film, files.bad, NULL), BP_OK);
     BpFilm *read = NULL;
     assert_int_equal(bp_film_read(files.bad, &read, NULL), BP_OK);

@@ -51,6 +51,11 @@ static void assert_same(const BpFilm *a, const BpFilm *b) {
     if (a->pixel_segments != NULL) assert_memory_equal(a->pixel_segments, b->pixel_segments, pixels * 8);
     assert_int_equal(a->met == NULL, b->met == NULL);
     if (a->met != NULL) assert_memory_equal(a->met, b->met, pixels * 8);
+    assert_int_equal(a->unseen == NULL, b->unseen == NULL);
+    if (a->unseen != NULL) {
+        assert_memory_equal(a->unseen->pixels, b->unseen->pixels, pixels * 8);
+        assert_memory_equal(a->unseen->tint, b->unseen->tint, 12);
+    }
     assert_int_equal(a->plan == NULL, b->plan == NULL);
     if (a->plan == NULL) return;
     assert_int_equal(a->plan->adaptive, b->plan->adaptive);
@@ -140,6 +145,35 @@ static const uint8_t *check_planes(const uint8_t *at, const void *numbers, size_
     return at + width * count;
 }
 
+/* Of each film the oldest version that has all of it, so that programs of that version read it. */
+static void the_version_is_the_oldest(void **state) {
+    (void)state;
+    BpFilm *a = make();
+    for (int version = 5; version >= 3; version--) {
+        if (version < 5) bp_unseen_destroy(&a->unseen);
+        if (version < 4) free(a->met), a->met = NULL;
+        char *bytes = NULL, begins[64];
+        size_t size = 0;
+        FILE *out = open_memstream(&bytes, &size);
+        assert_int_equal(bp_film_write_stream(a, out, NULL), BP_OK);
+        fclose(out);
+        snprintf(begins, sizeof begins, "{\"ballpark_accumulator\": %d, ", version);
+        assert_memory_equal(bytes, begins, strlen(begins));
+        *(char *)memchr(bytes, '\n', size) = '\0';
+        assert_int_equal(strstr(bytes, "\"unseen\"") != NULL, version == 5);
+        bytes[strlen(bytes)] = '\n';
+        BpFilm *b = NULL;
+        BpError err = {0};
+        FILE *in = fmemopen(bytes, size, "rb");
+        if (bp_film_read_stream(in, "memory", &b, &err) != BP_OK) fail_msg("%s", err.message);
+        fclose(in);
+        assert_same(a, b);
+        bp_film_destroy(&b);
+        free(bytes);
+    }
+    bp_film_destroy(&a);
+}
+
 /* The layout, byte by byte: what is documented is what is there. */
 static void the_layout_is_as_documented(void **state) {
     (void)state;
@@ -149,7 +183,7 @@ static void the_layout_is_as_documented(void **state) {
     FILE *out = open_memstream(&bytes, &size);
     assert_int_equal(bp_film_write_stream(a, out, NULL), BP_OK);
     fclose(out);
-    assert_memory_equal(bytes, "{\"ballpark_accumulator\": 4, ", 27);
+    assert_memory_equal(bytes, "{\"ballpark_accumulator\": 5, ", 27);
     const uint8_t *line_end = memchr(bytes, '\n', size);
     assert_non_null(line_end);
     uint8_t numbers[10000];
@@ -165,6 +199,8 @@ static void the_layout_is_as_documented(void **state) {
     at = check_planes(at, a->albedo, 4, 45);
     at = check_planes(at, a->pixel_segments, 8, 15);
     at = check_planes(at, a->met, 8, 15);
+    at = check_planes(at, a->unseen->pixels, 4, 30);
+    at = check_planes(at, a->unseen->tint, 4, 3);
     at = check_planes(at, a->plan->decisions, 1, 50);
     assert_int_equal(at - numbers, count);
     /* The reflected CRC-32 with polynomial 0x04c11db7 (ISO 3309), bit by bit. */
@@ -362,6 +398,7 @@ int main(void) {
         cmocka_unit_test(what_is_saved_loads),
         cmocka_unit_test(a_large_one_loads),
         cmocka_unit_test(an_empty_one_loads),
+        cmocka_unit_test(the_version_is_the_oldest),
         cmocka_unit_test(the_layout_is_as_documented),
         cmocka_unit_test(version_1_loads),
         cmocka_unit_test(version_2_loads),
