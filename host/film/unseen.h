@@ -1,9 +1,9 @@
 /* unseen.h: light that the samples of a picture find by chance, and may not have found yet.
  *
- * In:    for each pixel, what such light brings to a sample in the mean, and in the mean of squares (from a
- * pilot that comes from the lights: render/pilot.h); the samples that the pixel has. Out:   how much of its
- * variance belongs to the noise that is claimed for a pixel. Knows: arithmetic.   Does not know: where the
- * light comes from, OpenCL.
+ * In:    for each pixel, what such light brings to a sample in the mean, and in the mean of squares, from a
+ *        pilot that comes from the lights (render/pilot.h); the samples that the pixel has.
+ * Out:   how much of its variance belongs to the noise that is claimed for a pixel.
+ * Knows: arithmetic.   Does not know: where the light comes from, OpenCL.
  *
  * Light that a sample finds with probability p, and that then brings c, has the variance p c^2 whether it has
  * been found or not; but replicates that have not found it know nothing of it. So a variance of the pilot's

@@ -1,7 +1,8 @@
 /* pilot_eyes.c: the camera's paths of a pilot: to the first rough point, and past lights.
  *
- * In:    a scene, a device.   Out: the rough points, the rays behind mirrors and glass, and lights that are
- * seen directly. Knows: how far apart paths are.   Does not know: light that comes from elsewhere. */
+ * In:    a scene, a device.
+ * Out:   the rough points, the rays behind mirrors and glass, and lights that are seen directly.
+ * Knows: how far apart paths are.   Does not know: light that comes from elsewhere. */
 #include "pilot_state.h"
 
 #include "base/hash.h"

@@ -296,7 +296,8 @@ static double start_lamp(const BpPilotLight *light, const double center[3], doub
     /* Those of its points see the sphere whose tangent plane does not lie before all of it. */
     const double seeing = fmin(2, 1 + (radius - light->radius) / fmax(away, DBL_MIN));
     in_cap(random, axis, fmax(seeing, 0), normal);
-    const double area = 2 * PI * fmax(seeing, 0) * light->radius * light->radius; /* 0: the sphere is inside */
+    const double area =
+        2 * PI * fmax(seeing, 0) * light->radius * light->radius; /* 0: the sphere is inside */
     for (int a = 0; a < 3; ++a) {
         start->origin[a] = light->place[a] + light->radius * (1 + ABOVE) * normal[a];
         axis[a] = center[a] - start->origin[a];

@@ -1,7 +1,8 @@
 /* pilot_pass.h: lights that are seen in mirrors and through glass, from camera paths that pass by them.
  *
- * In:    rays behind specular spheres, from camera paths.   Out: for each pixel, how probably a sample meets
- * a light. Knows: densities of directions.   Does not know: kernels, how paths were made.
+ * In:    rays behind specular spheres, from camera paths.
+ * Out:   for each pixel, how probably a sample meets a light.
+ * Knows: densities of directions.   Does not know: kernels, how paths were made.
  *
  * Rays that have come the same way (by the same spheres, reflected or let through alike) spread smoothly over
  * directions, so how many of them pass near a light tells how many meet it. Near means: as near as the

@@ -1,8 +1,9 @@
 /* pilot_photons.c: the paths of a pilot that come from lights: by way of something specular to rough points.
  *
- * In:    a scene, a device.   Out: the light that comes to rough points, and the measure for which it stands.
- * Knows: what surfaces do to beams of light, and to paths that come the other way.   Does not know: the
- * camera. */
+ * In:    a scene, a device.
+ * Out:   the light that comes to rough points, and the measure for which it stands.
+ * Knows: what surfaces do to beams of light, and to paths that come the other way.
+ * Does not know: the camera. */
 #include "pilot_state.h"
 
 #include "packed/reals.h"
@@ -15,7 +16,8 @@
 /* Schlick's reflectance as the book uses it, which is not the same both ways. */
 static double schlick(double cosine, double index) {
     const double root = (1 - index) / (1 + index), r0 = root * root;
-    return r0 + (1 - r0) * pow(1 - cosine, 5);
+    const double m = 1 - cosine, m2 = m * m;
+    return r0 + (1 - r0) * m2 * m2 * m;
 }
 
 /* What passing the surface does to the measure of light: beams narrow as they enter what is dense, and a path
