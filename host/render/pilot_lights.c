@@ -58,9 +58,49 @@ static void add_disc(const BpDisc *disc, BpPilotAim *aim) {
 /* Texels are brighter than this, in powers of two over the mean, to be a light of their own. */
 #define BRIGHT_OCTAVE 3
 
-static int octave_over(const BpImage *image, size_t texel) {
-    const double y = bp_luminance(image->texels + 3 * texel);
-    return y > 0 && image->mean > 0 ? ilogb(y / image->mean) : INT32_MIN;
+/* The part of the sphere nearest to a texel. Its light is interpolated between texels. */
+typedef struct TexelLight {
+    double mean[3];           /* radiance */
+    double luminance, square; /* of the luminance, the mean and the mean square */
+} TexelLight;
+
+static const float *texel_at(const BpImage *image, int64_t column, int64_t row) {
+    const int64_t width = image->width, height = image->height;
+    const int64_t y = row < 0 ? 0 : row >= height ? height - 1 : row;
+    return image->texels + 3 * (y * width + (column + width) % width);
+}
+
+/* False, and nothing else: neither it nor a neighbour is bright. At four by four places of the square, which
+ * is exact but for a few percent. */
+static bool texel_light(const BpImage *image, size_t texel, TexelLight *light) {
+    const int64_t column = (int64_t)(texel % image->width), row = (int64_t)(texel / image->width);
+    const double bright = ldexp(image->mean, BRIGHT_OCTAVE);
+    bool any = false;
+    for (int k = 0; k < 9 && !any; ++k)
+        any = bp_luminance(texel_at(image, column + k % 3 - 1, row + k / 3 - 1)) > bright;
+    *light = (TexelLight){.luminance = 0};
+    if (!any) return false;
+    for (int k = 0; k < 16; ++k) {
+        const double x = (k % 4 - 1.5) / 4, y = ((double)(k / 4) - 1.5) / 4;
+        const int64_t aside = x < 0 ? -1 : 1, below = y < 0 ? -1 : 1;
+        const double u = fabs(x), v = fabs(y);
+        const float *corner[4] = {texel_at(image, column, row), texel_at(image, column + aside, row),
+                                  texel_at(image, column, row + below),
+                                  texel_at(image, column + aside, row + below)};
+        double radiance[3];
+        for (int c = 0; c < 3; ++c) {
+            radiance[c] = (1 - v) * ((1 - u) * (double)corner[0][c] + u * (double)corner[1][c]) +
+                          v * ((1 - u) * (double)corner[2][c] + u * (double)corner[3][c]);
+            light->mean[c] += radiance[c] / 16;
+        }
+        light->luminance += luminance(radiance) / 16;
+        light->square += luminance(radiance) * luminance(radiance) / 16;
+    }
+    return light->luminance > bright;
+}
+
+static int octave_over(const BpImage *image, const TexelLight *light) {
+    return ilogb(light->luminance / image->mean);
 }
 
 /* The brightest texels of the image around, as distant lights; of too many, every so many-th stands for the
@@ -69,9 +109,11 @@ static void add_texels(const BpScene *scene, size_t room, BpPilotAim *aim) {
     const BpImage *image = scene->environment;
     const size_t texels = (size_t)image->width * image->height;
     size_t count_of[64] = {0}, count = 0, seen = 0;
+    TexelLight texel;
     for (size_t i = 0; i < texels; ++i) {
-        const int octave = octave_over(image, i);
-        if (octave >= BRIGHT_OCTAVE) ++count_of[octave < 63 ? octave : 63];
+        if (!texel_light(image, i, &texel)) continue;
+        const int octave = octave_over(image, &texel);
+        ++count_of[octave < 63 ? octave : 63];
     }
     int least = 64;
     while (least > BRIGHT_OCTAVE && (count == 0 || count + count_of[least - 1] <= room))
@@ -80,16 +122,19 @@ static void add_texels(const BpScene *scene, size_t room, BpPilotAim *aim) {
     double seam[3], east[3], pole[3];
     bp_environment_frame(scene, seam, east, pole);
     for (size_t i = 0; i < texels && count > 0; ++i) {
-        if (octave_over(image, i) < least || seen++ % each != 0) continue;
+        if (!texel_light(image, i, &texel) || octave_over(image, &texel) < least || seen++ % each != 0)
+            continue;
         const double row = (double)(i / image->width), column = (double)(i % image->width);
         const double down = PI * (row + 0.5) / image->height, turn = 2 * PI * (column + 0.5) / image->width;
         BpPilotLight *light = &aim->lights[aim->light_count++];
         *light = (BpPilotLight){.distant = true, .seen = true, .share = (double)each};
         for (int a = 0; a < 3; ++a) {
             light->place[a] = cos(down) * pole[a] + sin(down) * (cos(turn) * seam[a] + sin(turn) * east[a]);
-            light->radiance[a] = (double)image->texels[3 * i + (size_t)a];
+            light->radiance[a] = texel.mean[a] * texel.square / (texel.luminance * texel.luminance);
         }
-        light->cap = PI * sin(down) / image->height / image->width;
+        /* A light of one radiance that has the same mean, and the same mean square. */
+        light->cap =
+            PI * sin(down) / image->height / image->width * texel.luminance * texel.luminance / texel.square;
     }
 }
 
