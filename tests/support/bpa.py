@@ -33,6 +33,9 @@ def _arrays(header):
         yield "pixel_segments", 8, pixels
     if header.get("alpha"):
         yield "met", 8, pixels
+    if header.get("unseen"):
+        yield "unseen", 4, 2 * pixels
+        yield "unseen_tint", 4, 3
     if "plan" in header:
         yield "decisions", 1, header["plan"]["decision_bytes"]
 
@@ -53,7 +56,7 @@ def read(data):
 def version_2(data):
     """The same film as version 2 held it: without depth, normal, albedo and what a render needs to go on."""
     header, arrays = read(data)
-    for name in ("aovs", "pixel_segments", "alpha", "plan", "job"):
+    for name in ("aovs", "pixel_segments", "alpha", "unseen", "plan", "job"):
         header.pop(name, None)
     header["ballpark_accumulator"] = 2
     body = b"".join(arrays[name] for name in ("sums", "fine_sums", "counts") if name in arrays)

@@ -1,0 +1,137 @@
+"""Does a pilot find as much light as there is? Scenes in which all of one light is found by chance, and large enough that samples find
+it: the means and mean squares that the pilot says, and those of a picture of many samples.
+
+    python3 tests/unseen/test_unseen_means.py PROGRAM SOURCE_DIR [--deep] [unittest's arguments]
+
+Where there is other light too, the scene is rendered once more with what the light comes by made black: the difference is that light.
+Paths are so short (max_depth) that nothing else makes a difference. A pilot's few hundred paths to what is seen leave 5 % to chance.
+"""
+
+import json
+import math
+
+import cli
+
+WEIGHTS = (0.2126, 0.7152, 0.0722)
+FLOOR = {"type": "lambertian", "albedo": [0.8, 0.8, 0.8]}
+GLASS = {"type": "dielectric", "refraction_index": 1.5}
+EXACT = dict(GLASS, fresnel="exact")
+MIRROR = {"type": "metal", "albedo": [1, 1, 1], "fuzz": 0}
+BLACK = {"type": "lambertian", "albedo": [0, 0, 0]}
+
+
+def lamp(radiance):
+    return {"type": "diffuse_light", "emit": [radiance] * 3}
+
+
+class Means(cli.ProgramTest):
+    def picture(self, document, samples):
+        """Of the luminance of a sample, the mean and the mean square, and what the pilot says."""
+        self.write("s.json", document)
+        self.succeed("render", "s.json", "--spp", samples, "--sampler", "independent", "-o", "a.pfm", "-q", "--stats", "a.json")
+        stats = json.loads(self.read("a.json"))
+        mean = sum(w * v for w, v in zip(WEIGHTS, stats["mean_radiance"]))
+        self.assertLess(stats["unseen_part"], 0.3)  # samples have found it, often
+        return mean, ((stats["nrmse"] or 0) * mean) ** 2 * samples, stats["unseen"] or {"mean": 0, "variance": 0}
+
+    def compare(self, document, samples, without=None, within=0.15):
+        mean, square, unseen = self.picture(document, samples)
+        found, found_square = unseen["mean"], unseen["variance"]
+        if without is not None:
+            dark, _, rest = self.picture(without, samples)
+            mean, found = mean - dark, found - rest["mean"]
+        else:  # or there is the noise of other light as well
+            self.assertAlmostEqual(found_square / square, 1, delta=2 * within)
+        self.assertAlmostEqual(found / mean, 1, delta=within)
+
+    def coated(self, coat, inside, direction, depth=4, half_angle=8):
+        """A ball of radius 10 in a coat, under a disc; seen from above its top."""
+        materials = {"inside": inside}
+        spheres = [{"center": [0, -10, 0], "radius": 9.9, "material": "inside"}]
+        if coat is not None:
+            materials["coat"] = coat
+            spheres.append({"center": [0, -10, 0], "radius": 10, "material": "coat"})
+        return {"camera": {"image_width": 24, "aspect_ratio": 1, "samples_per_pixel": 64, "max_depth": depth, "lookfrom": [0, 12, 0],
+                           "lookat": [0, 0, 0], "vup": [0, 0, 1], "vfov": 20},
+                "background": {"bottom": [0, 0, 0], "top": [0, 0, 0],
+                               "discs": [{"direction": direction, "half_angle": half_angle, "radiance": [10, 10, 10]}]},
+                "materials": materials, "spheres": spheres}
+
+    def test_glass_by_schlick(self):
+        """What the book's reflectance makes of grazing light differs between both ways through a surface."""
+        self.compare(self.coated(GLASS, FLOOR, [1, 0.25, 0]), 1024)
+
+    def test_glass_exact(self):
+        self.compare(self.coated(EXACT, FLOOR, [1, 0.25, 0]), 1024)
+        self.compare(self.coated(EXACT, FLOOR, [1, 1, 0.2]), 1024)
+
+    def test_lobes_in_glass(self):
+        """Each lobe, under light from 60 degrees."""
+        for lobe in ("cosine_cubed", "hemisphere"):
+            self.compare(self.coated(EXACT, dict(FLOOR, scatter=lobe), [1, 0.6, 0]), 1024)
+
+    def test_brushed_metal_in_glass(self):
+        """Around the mirror direction."""
+        for shape in ("sphere", "ball"):
+            self.compare(self.coated(EXACT, {"type": "metal", "albedo": [1, 1, 1], "fuzz": 0.5, "fuzz_shape": shape}, [1, 1, 0.1]), 1024)
+
+    def test_from_wall_to_wall(self):
+        """Light that comes through glass to a surface of any lobe, and from there to another, as the camera sees it."""
+        for lobe in ("hemisphere", "cosine_cubed"):
+            document = self.coated(dict(EXACT, refraction_index=1.1), dict(FLOOR, scatter=lobe), [1, 0.25, 0], depth=6)
+            document["camera"].update(lookfrom=[0, 2, 0], lookat=[0, 6, 0.01], vfov=90)
+            document["materials"]["wall"] = FLOOR
+            document["spheres"].append({"center": [0, 7, 0], "radius": 3, "material": "wall"})
+            black = json.loads(json.dumps(document))
+            black["materials"]["inside"] = BLACK
+            self.compare(document, 8192, black, 0.3)
+
+    def test_glass_in_glass(self):
+        """A way of light belongs to the sphere that it meets first, though others behind it are aimed at as well."""
+        document = self.coated(EXACT, FLOOR, [1, 1, 0.2], depth=6)
+        document["materials"]["gap"] = dict(EXACT, refraction_index=1 / 1.5)
+        document["spheres"].append({"center": [0, -10, 0], "radius": 9.95, "material": "gap"})
+        self.compare(document, 2048)
+
+    def test_small_lamps(self):
+        """Smaller than a pixel, and seen with nothing between: on paper."""
+        places = [(x, y) for x in (-1.9, -0.6, 0.7, 2) for y in (-2.1, -0.8, 0.5, 1.8)]
+        document = {"camera": {"image_width": 24, "aspect_ratio": 1, "samples_per_pixel": 64, "max_depth": 1, "lookfrom": [0, 0, 10],
+                               "lookat": [0, 0, 0], "vfov": 35},
+                    "background": {"bottom": [0, 0, 0], "top": [0, 0, 0]}, "materials": {"lamp": lamp(1e4)},
+                    "spheres": [{"center": [x, y, 0], "radius": 0.01, "material": "lamp"} for x, y in places]}
+        self.write("s.json", document)
+        self.succeed("render", "s.json", "--spp", 2, "-o", "a.pfm", "-q", "--stats", "a.json")
+        unseen = json.loads(self.read("a.json"))["unseen"]
+        mean = 1e4 * len(places) * math.pi * 0.01 ** 2 / (20 * math.tan(math.radians(17.5))) ** 2
+        # About twelve camera paths pass each of them.
+        self.assertAlmostEqual(unseen["mean"] / mean, 1, delta=0.25)
+        self.assertAlmostEqual(unseen["variance"] / (1e4 * mean), 1, delta=0.25)
+        self.assertEqual(unseen["direct"], 1)
+
+    def test_mirror_and_floor(self):
+        """A floor lit by a lamp by way of a mirror ball."""
+        document = {"camera": {"image_width": 24, "aspect_ratio": 1, "samples_per_pixel": 64, "max_depth": 3, "lookfrom": [0, 6, 0],
+                               "lookat": [0, 0, 0], "vup": [0, 0, 1], "vfov": 35},
+                    "background": {"bottom": [0, 0, 0], "top": [0, 0, 0]},
+                    "materials": {"floor": FLOOR, "mirror": MIRROR, "lamp": lamp(20)},
+                    "spheres": [{"center": [0, -1000, 0], "radius": 1000, "material": "floor"},
+                                {"center": [3.2, 1, 0], "radius": 1, "material": "mirror"},
+                                {"center": [-3.5, 2.5, 0], "radius": 0.5, "material": "lamp"}]}
+        black = json.loads(json.dumps(document))
+        black["materials"]["mirror"] = dict(MIRROR, albedo=[0, 0, 0])
+        self.compare(document, 4096, black)
+
+    def test_bulb(self):
+        """A lamp inside glass, off its middle, and a floor."""
+        document = {"camera": {"image_width": 24, "aspect_ratio": 1, "samples_per_pixel": 64, "max_depth": 4, "lookfrom": [0, 6, 0],
+                               "lookat": [0, 0, 0], "vup": [0, 0, 1], "vfov": 35},
+                    "background": {"bottom": [0, 0, 0], "top": [0, 0, 0]},
+                    "materials": {"floor": FLOOR, "glass": GLASS, "lamp": lamp(20)},
+                    "spheres": [{"center": [0, -1000, 0], "radius": 1000, "material": "floor"},
+                                {"center": [3.5, 1.5, 0], "radius": 1, "material": "glass"},
+                                {"center": [3.2, 1.7, 0], "radius": 0.4, "material": "lamp"}]}
+        self.compare(document, 2048)
+
+
+cli.main()

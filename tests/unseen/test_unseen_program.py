@@ -1,0 +1,199 @@
+"""Light that is found by chance, through the program: what films keep of it, what stop rules and people are told, and that
+scenes without it have nothing of it."""
+
+import json
+import os
+import subprocess
+import unittest
+
+import bpa
+import cli
+import mpi
+
+SCENES = os.path.join(cli.SOURCE, "tests/unseen/scenes")
+
+
+def scene_of(name):
+    return os.path.join(SCENES, name + ".json")
+
+
+class Unseen(cli.ProgramTest):
+    def render(self, scene, name, *options):
+        """What --stats says of a render to the film `name`."""
+        self.succeed("render", scene, *options, "-o", name, "-q", "--stats", "stats.json")
+        return json.loads(self.read("stats.json"))
+
+    def light(self, name):
+        header, arrays = bpa.read(self.read(name))
+        self.assertEqual(header["ballpark_accumulator"], 5)
+        return arrays["unseen"], arrays["unseen_tint"]
+
+    def told(self, stats):
+        """What is of the pilot alone: the share depends on the picture too."""
+        return {key: value for key, value in stats["unseen"].items() if key not in ("seconds", "share")}
+
+    def test_seeds_and_samples(self):
+        """Pictures of other seeds and numbers of samples have the same pilot, and claim nearly the same noise per sample."""
+        first = self.render(scene_of("sun-0.27"), "a.bpa", "--spp", 16)
+        pilot = self.light("a.bpa")
+        for options in (("--spp", 16, "--seed", 7), ("--spp", 5, "--first-sample", 1000), ("--spp", 64, "--adaptive", "--seed", 8)):
+            stats = self.render(scene_of("sun-0.27"), "b.bpa", *options)
+            self.assertTrue(self.light("b.bpa") == pilot, options)
+            self.assertEqual(self.told(stats), self.told(first), options)
+            samples = stats["samples_mean"]
+            ratio = stats["nrmse"] * samples ** 0.5 / (first["nrmse"] * 4)
+            if "--adaptive" in options:  # more samples where the light is
+                self.assertTrue(0.5 < ratio < 1, ratio)
+            else:
+                self.assertAlmostEqual(ratio, 1, delta=0.02, msg=options)
+            self.assertGreater(stats["unseen_part"], 0.99)
+
+    def test_resumes_and_merges(self):
+        """The whole, one resumed, and parts merged in either order: the same film, the same claim, to the bit."""
+        scene = scene_of("sun-0.27")
+        whole = self.render(scene, "whole.bpa", "--spp", 24)
+        self.render(scene, "begun.bpa", "--spp", 10)
+        resumed = self.render(scene, "resumed.bpa", "--spp", 24, "--resume", "begun.bpa")
+        self.assert_same(self.read("whole.bpa"), self.read("resumed.bpa"), "resumed")
+        self.assertEqual(resumed["nrmse"], whole["nrmse"])
+        self.assertEqual(resumed["unseen_part"], whole["unseen_part"])
+        self.render(scene, "other.bpa", "--spp", 14, "--first-sample", 10)
+        for order in (("begun.bpa", "other.bpa"), ("other.bpa", "begun.bpa")):
+            said = self.succeed("merge", *order, "-o", "merged.bpa").errors
+            self.assert_same(self.read("whole.bpa"), self.read("merged.bpa"), order)
+            self.assertRegex(said, rf"noise {100 * whole['nrmse']:.0f} %")
+        for part in (1, 2):
+            self.render(scene, f"{part}.bpa", "--spp", 24, "--share", f"{part}/2")
+        self.succeed("merge", "2.bpa", "1.bpa", "-o", "merged.bpa", "-q")
+        self.assert_same(self.read("whole.bpa"), self.read("merged.bpa"), "shares")
+        whole = self.render(scene, "whole.bpa", "--spp", 96, "--adaptive")
+        self.render(scene, "begun.bpa", "--spp", 40, "--adaptive")
+        resumed = self.render(scene, "resumed.bpa", "--spp", 96, "--resume", "begun.bpa")
+        self.assertEqual(self.light("whole.bpa"), self.light("resumed.bpa"))
+
+    def test_an_older_film(self):
+        """One that knows nothing of such light merges with one that does, and goes on."""
+        scene = scene_of("sun-0.27")
+        self.render(scene, "old.bpa", "--spp", 10)
+        self.write("old.bpa", bpa.version_2(self.read("old.bpa")))
+        self.render(scene, "new.bpa", "--spp", 14, "--first-sample", 10)
+        pilot = self.light("new.bpa")
+        for order in (("old.bpa", "new.bpa"), ("new.bpa", "old.bpa")):
+            self.succeed("merge", *order, "-o", "merged.bpa", "-q")
+            self.assertTrue(self.light("merged.bpa") == pilot, order)
+        whole = self.render(scene, "whole.bpa", "--spp", 24)
+        resumed = self.render(scene, "resumed.bpa", "--spp", 24, "--resume", "old.bpa")
+        self.assertTrue(self.light("resumed.bpa") == pilot)
+        self.assertEqual(resumed["nrmse"], whole["nrmse"])
+
+    def test_forms(self):
+        """All forms of the kernel: the same film, the same claim."""
+        for scene in ("sun-0.27", "bulb"):
+            films = []
+            for form in ("packet", "sample", "pool"):
+                stats = self.render(scene_of(scene), "a.bpa", "--spp", 8, "--kernel", form)
+                films.append((self.read("a.bpa"), stats["nrmse"], stats["unseen_part"], self.told(stats)))
+            for film in films[1:]:
+                self.assertTrue(film == films[0], scene)
+
+    @unittest.skipIf(mpi.reason_to_skip(), mpi.reason_to_skip())
+    def test_ranks(self):
+        for name, *options in (("sun-0.27", "--spp", 16), ("sun-0.27", "--spp", 64, "--adaptive"), ("lamp-0.4", "--error", "30%", "--spp", 4096)):
+            scene = scene_of(name)
+            alone = self.render(scene, "alone.bpa", *options)
+            self.assertEqual(alone["stopped_by"], "error" if "--error" in options else "samples")
+            for ranks in (2, 3):
+                subprocess.run([mpi.MPIRUN, *mpi.FLAGS, "-n", str(ranks), cli.PROGRAM, "render", scene, *map(str, options),
+                                "-o", "some.bpa", "-q", "--stats", "some.json"], cwd=self.folder, env=self.environment, check=True,
+                               stdout=subprocess.PIPE, stderr=subprocess.PIPE, timeout=cli.LIMIT_SECONDS)
+                some = json.loads(self.read("some.json"))
+                self.assert_same(self.read("alone.bpa"), self.read("some.bpa"), (ranks, options))
+                for member in ("nrmse", "unseen_part", "samples_per_pixel", "stopped_by"):
+                    self.assertEqual(some[member], alone[member], (member, ranks, options))
+                self.assertEqual(self.told(some), self.told(alone))
+
+    def test_a_rule_does_not_end_early(self):
+        """A noise of 4 % takes millions of samples: the one sample in a million that finds the sun has not been drawn."""
+        for options in ((), ("--adaptive",)):
+            stats = self.render(scene_of("sun-0.27"), "a.bpa", "--error", "4%", "--spp", 512, *options)
+            self.assertEqual(stats["stopped_by"], "samples", options)
+            self.assertGreater(stats["nrmse"], 1)
+            self.assertGreater(stats["samples_mean"], 500)
+        stats = self.render(scene_of("control-no-glass"), "a.bpa", "--error", "4%", "--spp", 512)
+        self.assertEqual(stats["stopped_by"], "error")
+
+    def test_errors_of_pixels(self):
+        """What an EXR says of each pixel is what is claimed for the picture."""
+        stats = self.render(scene_of("sun-0.27"), "a.bpa", "--spp", 16)
+        header, arrays = bpa.read(self.read("a.bpa"))
+        self.assertTrue(header["unseen"])
+        numbers = memoryview(arrays["unseen"]).cast("f")
+        variance = sum(numbers[1::2]) / len(numbers[1::2]) / 16
+        expected = stats["nrmse"] ** 2 * stats["unseen_part"]
+        luminance = stats["unseen"]["mean"] / stats["unseen"]["share"]
+        self.assertAlmostEqual(variance / luminance ** 2 / expected, 1, delta=0.01)
+
+    def test_light_sampling_off(self):
+        """Then all light is found by chance, and nothing is claimed of it."""
+        stats = self.render(scene_of("sun-0.27"), "a.bpa", "--spp", 16, "--lamps", "off")
+        self.assertIsNone(stats["unseen"])
+        self.assertEqual(stats["unseen_part"], 0)
+        header, arrays = bpa.read(self.read("a.bpa"))
+        self.assertNotIn("unseen", header)
+        self.assertNotIn("unseen", arrays)
+        self.assertLess(header["ballpark_accumulator"], 5)
+
+    def test_scenes_without(self):
+        """Without lights, or without what focuses them, there is no pilot in the program: a fault in its text is not met."""
+        broken = cli.broken_kernels(self, "entry/pilot.cl", "Path path;", "this is no OpenCL C;")
+        large = self.write("large.json", cli.scene(spheres=[
+            {"center": [0, 0, -2], "radius": 0.5, "material": "m"}, {"center": [0, 3, -1], "radius": 1, "material": "lamp"}],
+            materials={"m": {"type": "metal", "albedo": [0.5, 0.4, 0.3], "fuzz": 0.2}, "lamp": {"type": "diffuse_light", "emit": [4, 4, 4]}}))
+        plain = self.write("plain.json", cli.scene())
+        for scene in (scene_of("control-no-glass"), scene_of("control-large-lamp"), scene_of("control-sky"), large, plain):
+            # At 64 pixels, no lamp is smaller than one: those are looked for without glass as well.
+            self.succeed("render", scene, "--width", 64, "--spp", 4, "-o", "with.bpa", "-q", "--stats", "stats.json", environment=broken)
+            stats = json.loads(self.read("stats.json"))
+            self.assertIsNone(stats["unseen"])
+            self.assertEqual(stats["unseen_part"], 0)
+            self.succeed("render", scene, "--width", 64, "--spp", 4, "-o", "without.bpa", "-q", "--stats", "stats.json")
+            self.assert_same(self.read("with.bpa"), self.read("without.bpa"), scene)
+            self.assertLess(bpa.read(self.read("with.bpa"))[0]["ballpark_accumulator"], 5)
+        self.fail_with(1, "render", scene_of("sun-0.27"), "--spp", 4, "-o", "x.bpa", "-q", environment=broken,
+                       says="the kernel does not compile")
+        self.succeed("render", scene_of("sun-0.27"), "--spp", 4, "-o", "x.bpa", "-q", "--lamps", "off", environment=broken)
+
+    def test_what_is_said(self):
+        """`render` and `explain` name the spheres, how rare it is, and what helps; but for nothing where nothing is unseen."""
+        said = self.succeed("render", scene_of("sun-0.27"), "--spp", 64, "-o", "a.pfm", "--stats", "a.json").errors
+        stats = json.loads(self.read("a.json"))
+        unseen = stats["unseen"]
+        self.assertRegex(said, r"most of this noise is light that samples have hardly found yet\. About [0-9.]+ % of the light comes by way of "
+                               r"spheres\[2\] \(mirror\) and spheres\[1\] \(glass\), and one sample in [0-9.]+ million finds it\. What helps: "
+                               r"larger lamps or discs, a fuzz of 1/64 or more for mirrors, or many more samples\.")
+        self.assertEqual([sphere["sphere"] for sphere in unseen["spheres"]], [2, 1])
+        self.assertAlmostEqual(sum(sphere["part"] for sphere in unseen["spheres"]) + unseen["direct"], 1, places=6)
+        self.assertAlmostEqual(unseen["mean"] ** 2 / unseen["variance"] / unseen["found"], 1, places=6)
+        self.assertEqual(self.succeed("render", scene_of("sun-0.27"), "--spp", 4, "-o", "b.pfm", "-q").errors, "")
+        told = self.succeed("explain", scene_of("sun-0.27")).stdout.decode()
+        self.assertRegex(told, r"(?m)^ *by chance +yes +About [0-9.]+ % of the light comes by way of spheres\[2\] \(mirror\) and spheres\[1\] "
+                               r"\(glass\), and one sample in [0-9.]+ million finds it\. .* At 64 samples per pixel that is a noise of about [0-9]+ %\.")
+        document = json.loads(self.succeed("explain", scene_of("sun-0.27"), "--json", "-").stdout)
+        entry = document.get("scenes", [document])[0]["unseen"]
+        self.assertEqual(sorted(entry), sorted(unseen))
+        for key in ("mean", "variance", "found", "direct", "spheres"):
+            self.assertEqual(entry[key], unseen[key], key)
+        # A lamp that is smaller than a pixel is no matter of glass.
+        said = self.succeed("render", scene_of("lamp-seen"), "--spp", 16, "-o", "c.pfm").errors
+        self.assertRegex(said, r"comes straight from lights that are smaller than a pixel, and one sample in .* finds it\. What helps: "
+                               r"larger lights, or more samples\.")
+        # Where samples find it, or there is none, nothing is said of it.
+        said = self.succeed("render", scene_of("control-no-glass"), "--spp", 16, "-o", "d.pfm").errors
+        self.assertNotIn("hardly found", said)
+        told = self.succeed("explain", scene_of("control-no-glass")).stdout.decode()
+        self.assertRegex(told, r"(?m)^ *by chance +no\b")
+        document = json.loads(self.succeed("explain", scene_of("control-no-glass"), "--json", "-").stdout)
+        self.assertIsNone(document.get("scenes", [document])[0]["unseen"])
+
+
+cli.main()
