@@ -98,8 +98,9 @@ class Means(cli.ProgramTest):
         places = [(x, y) for x in (-1.9, -0.6, 0.7, 2) for y in (-2.1, -0.8, 0.5, 1.8)]
         document = {"camera": {"image_width": 24, "aspect_ratio": 1, "samples_per_pixel": 64, "max_depth": 1, "lookfrom": [0, 0, 10],
                                "lookat": [0, 0, 0], "vfov": 35},
-                    "background": {"bottom": [0, 0, 0], "top": [0, 0, 0]}, "materials": {"lamp": lamp(1e4)},
-                    "spheres": [{"center": [x, y, 0], "radius": 0.01, "material": "lamp"} for x, y in places]}
+                    "background": {"bottom": [0, 0, 0], "top": [0, 0, 0]}, "materials": {"lamp": lamp(1e4), "floor": FLOOR},
+                    "spheres": [{"center": [x, y, 0], "radius": 0.01, "material": "lamp"} for x, y in places]
+                               + [{"center": [0, 0, 20], "radius": 1, "material": "floor"}]}  # behind the camera
         self.write("s.json", document)
         self.succeed("render", "s.json", "--spp", 2, "-o", "a.pfm", "-q", "--stats", "a.json")
         unseen = json.loads(self.read("a.json"))["unseen"]
