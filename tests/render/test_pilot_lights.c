@@ -198,7 +198,7 @@ static void lamps_half_inside(void **state) {
     BpRandom random = {.state = 11};
     size_t hits = 0;
     for (int i = 0; i < COUNT; ++i) {
-        double normal[3], direction[3], other[3], dot = 0, along = 0, away2 = 0;
+        double normal[3] = {0}, direction[3], other[3] = {0}, dot = 0, along = 0, away2 = 0;
         for (int k = 0; k < 2; ++k) { /* two directions, uniform by their heights */
             double *v = k == 0 ? normal : other;
             v[0] = 2 * bp_random_next(&random) - 1;
