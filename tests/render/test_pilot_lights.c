@@ -399,7 +399,11 @@ static void lights_and_targets(void **state) {
     bp_pilot_aim_clear(&aim);
 }
 
-/* An image around with a bright patch: of 6 texels, all of them; of 64 x 32, a part for all. */
+/* An image around with a bright patch, between whose texels and the others light falls off evenly: of 3 x 2
+ * texels, all squares that have some of it; of 64 x 32, a part
+ * of the brightest for all, without the slopes. Light is kept in the mean and in the
+ * mean of squares: along a side of n texels, the squares of the values come to n - 1 and 1/3 for each of the
+ * two slopes. */
 static void bright_texels(void **state) {
     (void)state;
     static const uint32_t patches[2][2] = {{3, 2}, {64, 32}};
@@ -409,40 +413,47 @@ static void bright_texels(void **state) {
         built_sphere(&built, 0, 0, 0, 1, built_material(&built, BP_MATERIAL_DIELECTRIC, 1, NULL));
         BpImage *image = NULL;
         assert_int_equal(bp_texels_create(512, 256, &image, NULL), BP_OK);
-        double expected = 0;
+        double extent = 0;
         for (uint32_t y = 0; y < 256; ++y)
             for (uint32_t x = 0; x < 512; ++x) {
                 /* a quarter to the right of the middle, which is -z: at x; above the horizon */
                 const bool bright =
                     x >= 384 && x < 384 + patches[p][0] && y < 100 && y + patches[p][1] >= 100;
                 for (int c = 0; c < 3; ++c)
-                    image->texels[3 * (y * 512 + x) + (uint32_t)c] = bright ? 1000 : 1;
-                if (bright) expected += 2 * PI / 512 * (cos(PI * y / 256) - cos(PI * (y + 1) / 256));
+                    image->texels[3 * (y * 512 + x) + (uint32_t)c] = bright ? 1000 : 0;
+                if (bright) extent += 2 * PI / 512 * (cos(PI * y / 256) - cos(PI * (y + 1) / 256));
             }
         assert_int_equal(bp_texels_finish(image, 1, "image", NULL), BP_OK);
         built.scene.environment = image;
         for (int c = 0; c < 3; ++c) built.scene.background_bottom[c] = built.scene.background_top[c] = 0;
         BpPilotAim aim;
         assert_int_equal(bp_pilot_aim(&built.scene, &aim, NULL), BP_OK);
-        double found = 0;
+        double found = 0, mean = 0, square = 0;
         for (size_t i = 0; i < aim.light_count; ++i) {
             const BpPilotLight *light = &aim.lights[i];
-            found += 2 * PI * light->cap * light->share;
-            assert_true(light->distant && light->seen && light->radiance[0] == 1000);
-            assert_true(light->place[0] > 0.5 && light->place[1] > 0 && light->place[2] > 0);
+            const double part = 2 * PI * light->cap * light->share;
+            found += part;
+            mean += part * light->radiance[0];
+            square += part * light->radiance[0] * light->radiance[0];
+            assert_true(light->distant && light->seen && light->radiance[0] <= 1000 * (1 + 1e-9));
+            assert_true(light->place[0] > 0.5 && light->place[1] > 0 && light->place[2] > -0.1);
         }
-        assert_near(found, expected, p == 0 ? 1e-3 : 0.05, "the solid angle of bright texels");
+        const double w = patches[p][0], h = patches[p][1], slopes = (w - 1.0 / 3) * (h - 1.0 / 3) / (w * h);
+        assert_near(mean, 1000 * extent, p == 0 ? 0.01 : 0.08, "the light of bright texels");
+        assert_near(square, 1e6 * extent * slopes, p == 0 ? 0.02 : 0.08, "the mean square of their light");
         if (p == 0) {
-            assert_int_equal(aim.light_count, 6);
-            const double down = PI * 98.5 / 256, turn = PI * 0.5 / 256; /* of the first, from x towards z */
-            assert_near(aim.lights[0].place[0], sin(down) * cos(turn), 1e-9, "x of a texel");
-            assert_near(aim.lights[0].place[1], cos(down), 1e-9, "y of a texel");
-            assert_near(aim.lights[0].place[2], sin(down) * sin(turn), 1e-9, "z of a texel");
+            assert_int_equal(aim.light_count, (3 + 2) * (2 + 2));
+            const double down = PI * 98.5 / 256,
+                         turn = PI * 0.5 / 256;        /* of the first texel, from x towards z */
+            const double *place = aim.lights[6].place; /* behind a row of slopes, and one more */
+            assert_near(place[0], sin(down) * cos(turn), 1e-9, "x of a texel");
+            assert_near(place[1], cos(down), 1e-9, "y of a texel");
+            assert_near(place[2], sin(down) * sin(turn), 1e-9, "z of a texel");
         } else {
             assert_in_range(aim.light_count, 64, BP_PILOT_LIGHTS_MAX);
         }
         bp_pilot_aim_clear(&aim);
-        assert_near(sum_of_starts(&built.scene, 20000, 18, false), PI * expected, 0.05, "texels and a ball");
+        assert_near(sum_of_starts(&built.scene, 20000, 18, false), PI * found, 0.05, "texels and a ball");
         bp_texels_destroy(&image);
     }
 }
