@@ -273,6 +273,10 @@ typedef enum BpKernelForm {
 /* Whether rays are sent to lamps; without, paths find them by chance. Both converge to the same picture. */
 typedef enum BpLamps { BP_LAMPS_ON, BP_LAMPS_OFF } BpLamps;
 
+/* Whether rays are sent to lamps through balls of glass and off mirrors; without, paths find that light by
+ * chance. Both converge to the same picture. */
+typedef enum BpCaustics { BP_CAUSTICS_OFF, BP_CAUSTICS_ON } BpCaustics;
+
 /* Start from bp_render_defaults(). */
 typedef struct BpRenderOptions {
     uint64_t samples_per_pixel; /* 1 .. 2^32 - first_sample */
@@ -284,6 +288,7 @@ typedef struct BpRenderOptions {
     BpNumerics numerics;
     BpSampler sampler; /* `ballpark render` uses Sobol's sequence, which has less noise in the same time */
     BpLamps lamps; /* on does nothing in a scene that does not call for it; reports and films then say off */
+    BpCaustics caustics; /* the same holds; without lamps it is off */
     BpKernelForm kernel;
     bool all_effects;       /* build the general kernel instead of the specialised one */
     uint32_t extra_effects; /* bit e: simulate effect e of bp_scene_effect() although nothing calls for it */
@@ -554,6 +559,7 @@ typedef struct BpFilmInfo {
     BpMath math;
     BpNumerics numerics;
     BpLamps lamps;
+    BpCaustics caustics;
     BpTransfer transfer; /* of the scene, for writing the picture */
 } BpFilmInfo;
 BP_API void bp_film_info(const BpFilm *film, BpFilmInfo *info);

@@ -136,6 +136,33 @@ typedef struct PackedMedium {
     real reserved;
 } PackedMedium;
 
+/* A focuser: a ball of glass, or a mirror, by which light of lamps is led on to other surfaces. */
+typedef struct PackedFocuser {
+    real centre[3];
+    real radius;
+    real power; /* of the light that it catches, in the unit of the lamps' power: over 4 times its radius
+                   squared */
+    real refraction_index; /* of a mirror any above 1 */
+    real chains[3];        /* the probabilities with which each chain is tried: by the number of its chords */
+    real reserved[3];
+} PackedFocuser;
+
+/* The slot of its sphere, FRESNEL_... or FOCUSER_MIRROR, and its targets: the number of the first, and how
+ * many. */
+typedef struct PackedFocuserPlace {
+    packed_uint slot, variant, first, count;
+} PackedFocuserPlace;
+
+/* What light for a focuser comes from: a lamp, or a disc of the sky. Every line between focuser and lamp
+ * crosses the plane across the line of their centres within `extent` of the lamp's. A bit is added to what is
+ * aimed at, so that rounding does not make its rim darker. */
+typedef struct PackedTarget {
+    real centre[3]; /* of a disc the unit direction to its middle */
+    real extent;    /* of a disc 1 - cos of its half angle */
+    real share;     /* the probability with which the focuser's light is sought here */
+    real reserved[3];
+} PackedTarget;
+
 /* Which textures the members of a material have that vary, counted from 1; 0: none. */
 typedef struct PackedVariation {
     packed_uint albedo, fuzz, emit, reserved;
@@ -179,6 +206,19 @@ typedef struct PackedVariation {
 #define MEDIUM_SCATTERING 0u
 #define MEDIUM_ANISOTROPY 3u
 #define MEDIUM_ABSORPTION 4u
+#define FOCUSER_CENTRE 0u
+#define FOCUSER_RADIUS 3u
+#define FOCUSER_POWER 4u
+#define FOCUSER_INDEX 5u
+#define FOCUSER_CHAINS 6u
+#define FOCUSER_SLOT 0u /* of PackedFocuserPlace, like the next three */
+#define FOCUSER_VARIANT 1u
+#define FOCUSER_FIRST 2u
+#define FOCUSER_COUNT 3u
+#define FOCUSER_MIRROR 3u /* no FRESNEL_... */
+#define TARGET_CENTRE 0u
+#define TARGET_EXTENT 3u
+#define TARGET_SHARE 4u
 #define DISC_DIRECTION 0u
 #define DISC_CAP 3u
 #define DISC_RADIANCE 4u
@@ -217,6 +257,8 @@ typedef struct PackedVariation {
  * first: a point lies in the medium of the first that it is inside. The last entry is NO_SLOT and the medium
  * outside of all. */
 #define BOUNDARY_UINTS 2u
+/* Focusers (light/focusers.cl) end with one in NO_SLOT. `target_lamps`: the slot of each target's lamp, or
+ * DISC_SLOT and the number of a disc. */
 /* The tree of lamps (light/lamps.cl). A node is LAMP_WIDTH children as structure of arrays, LAMP_WIDTH reals
  * each of centre x, y, z, radius and power. A child of positive radius is a lamp where the shutter opens, and
  * its word is CHILD_LEAF and the lamp's slot; one of negative radius is a node, whose lamps stay in a ball of
@@ -260,6 +302,9 @@ typedef struct PackedVariation {
 #define DISC_REALS ((packed_uint)(sizeof(PackedDisc) / sizeof(real)))
 #define VARIATION_UINTS ((packed_uint)(sizeof(PackedVariation) / sizeof(packed_uint)))
 #define MEDIUM_REALS ((packed_uint)(sizeof(PackedMedium) / sizeof(real)))
+#define FOCUSER_REALS ((packed_uint)(sizeof(PackedFocuser) / sizeof(real)))
+#define FOCUSER_UINTS ((packed_uint)(sizeof(PackedFocuserPlace) / sizeof(packed_uint)))
+#define TARGET_REALS ((packed_uint)(sizeof(PackedTarget) / sizeof(real)))
 #define TEXTURE_REALS ((packed_uint)(sizeof(PackedTexture) / sizeof(real)))
 #define TEXTURE_UINTS ((packed_uint)(sizeof(PackedTextureKind) / sizeof(packed_uint)))
 #define SCENE_PARTS_MAX 8
@@ -280,6 +325,11 @@ typedef struct PackedVariation {
     X(REALS, real, sky_heights, sky_height_count, "the table of the background")                             \
     X(REALS, real, media, medium_count * MEDIUM_REALS, "the media")                                          \
     X(UINTS, packed_uint, boundaries, boundary_count * BOUNDARY_UINTS, "the boundaries of media")
+#define SCENE_ARRAYS_OF_FOCUSERS(X)                                                                          \
+    X(REALS, real, focusers, focuser_count * FOCUSER_REALS, "the table of focusers")                         \
+    X(UINTS, packed_uint, focuser_places, focuser_count * FOCUSER_UINTS, "the table of focusers")            \
+    X(REALS, real, targets, target_count * TARGET_REALS, "the table of focusers")                            \
+    X(UINTS, packed_uint, target_lamps, target_count, "the table of focusers")
 #define SCENE_ARRAYS_OF_SLOTS(X)                                                                             \
     X(UINTS, packed_uint, slot_material, slots, "the table of sphere materials")                             \
     X(REALS, real, slot_albedo, slots * ALBEDO_REALS, "the table of sphere colours")
@@ -326,6 +376,9 @@ SIZE_IS(PackedTexture, 32 * REAL_BYTES)
 SIZE_IS(PackedTextureKind, 48)
 SIZE_IS(PackedMedium, 8 * REAL_BYTES)
 SIZE_IS(PackedVariation, 16)
+SIZE_IS(PackedFocuser, 12 * REAL_BYTES)
+SIZE_IS(PackedFocuserPlace, 16)
+SIZE_IS(PackedTarget, 8 * REAL_BYTES)
 /* clang-format on */
 #undef SIZE_IS
 #undef REAL_BYTES
@@ -341,6 +394,18 @@ BP_PLACE(DISC_POWER, PackedDisc, power, real);
 BP_PLACE(DISC_SINE, PackedDisc, sine, real);
 BP_PLACE(DISC_CHORD2, PackedDisc, chord2, real);
 BP_PLACE(DISC_SEEN, PackedDisc, seen, real);
+BP_PLACE(FOCUSER_CENTRE, PackedFocuser, centre, real);
+BP_PLACE(FOCUSER_RADIUS, PackedFocuser, radius, real);
+BP_PLACE(FOCUSER_POWER, PackedFocuser, power, real);
+BP_PLACE(FOCUSER_INDEX, PackedFocuser, refraction_index, real);
+BP_PLACE(FOCUSER_CHAINS, PackedFocuser, chains, real);
+BP_PLACE(FOCUSER_SLOT, PackedFocuserPlace, slot, packed_uint);
+BP_PLACE(FOCUSER_VARIANT, PackedFocuserPlace, variant, packed_uint);
+BP_PLACE(FOCUSER_FIRST, PackedFocuserPlace, first, packed_uint);
+BP_PLACE(FOCUSER_COUNT, PackedFocuserPlace, count, packed_uint);
+BP_PLACE(TARGET_CENTRE, PackedTarget, centre, real);
+BP_PLACE(TARGET_EXTENT, PackedTarget, extent, real);
+BP_PLACE(TARGET_SHARE, PackedTarget, share, real);
 BP_PLACE(MEDIUM_SCATTERING, PackedMedium, scattering, real);
 BP_PLACE(MEDIUM_ANISOTROPY, PackedMedium, anisotropy, real);
 BP_PLACE(MEDIUM_ABSORPTION, PackedMedium, absorption, real);

@@ -14,6 +14,9 @@ BP_WORDS_ENDED(BpMath, const char *const bp_math_names, MATH_WORDS);
 #define LAMPS_WORDS(X) X(BP_LAMPS_ON, "on") X(BP_LAMPS_OFF, "off")
 BP_WORDS_ENDED(BpLamps, const char *const bp_lamps_names, LAMPS_WORDS);
 
+#define CAUSTICS_WORDS(X) X(BP_CAUSTICS_OFF, "off") X(BP_CAUSTICS_ON, "on")
+BP_WORDS_ENDED(BpCaustics, const char *const bp_caustics_names, CAUSTICS_WORDS);
+
 #define NUMERICS_WORDS(X) X(BP_NUMERICS_ROBUST, "robust") X(BP_NUMERICS_PLAIN, "plain")
 BP_WORDS_ENDED(BpNumerics, const char *const bp_numerics_names, NUMERICS_WORDS);
 

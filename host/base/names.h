@@ -17,7 +17,8 @@
     X(BpPrecision, precision, "precisions")                                                                  \
     X(BpMath, math, "kinds of mathematics")                                                                  \
     X(BpNumerics, numerics, "numerics")                                                                      \
-    X(BpLamps, lamps, "ways to find lamps")
+    X(BpLamps, lamps, "ways to find lamps")                                                                  \
+    X(BpCaustics, caustics, "ways to find caustics")
 
 /* As members of a struct. */
 #define BP_SETTING_MEMBER(type, member, plural) type member;

@@ -597,7 +597,8 @@ static BpStatus plan(const BpCommandLine *line, const Job *job, const BpCheckpoi
                        "'backdrop=[1,1,1]', or --set backdrop=none for a picture with alpha",
                        job->path);
     if (resumed != NULL) {
-        options->lamps = bp_render_lamps(job->scene, options); /* as films have it */
+        options->caustics = bp_render_caustics(job->scene, options); /* as films have them */
+        options->lamps = bp_render_lamps(job->scene, options);
         BP_TRY(bp_resume_options(line, resumed, options, err));
     }
     init_rule(line, job->scene, options, rule);

@@ -125,6 +125,9 @@ enum {
                   BP_CHOICE("", bp_sampler_names, 0))                                                        \
     RENDER_OPTION(LAMPS, "lamps", 0, BP_TRACERS, "off: paths find lamps only by chance, for comparison",     \
                   BpLamps, lamps, BP_CHOICE("", bp_lamps_names, 0))                                          \
+    RENDER_OPTION(CAUSTICS, "caustics", 0, BP_TRACERS,                                                       \
+                  "on: rays to lamps go through balls of glass and off mirrors, too", BpCaustics, caustics,  \
+                  BP_CHOICE("", bp_caustics_names, 0))                                                       \
     RENDER_OPTION(ADAPTIVE, "adaptive", 0, BP_RENDER,                                                        \
                   "give noisy pixels more samples and the others fewer; --spp is then the mean", bool,       \
                   adaptive, BP_FLAG)                                                                         \
@@ -218,6 +221,7 @@ enum {
     NOTE(FRAME, BP_TRACERS | BP_SCENE, NULL, "0")                                                            \
     NOTE(LAMPS, BP_TRACERS & ~BP_CHECK, NULL, "on where it helps")                                           \
     NOTE(LAMPS, BP_CHECK, NULL, "both are checked")                                                          \
+    NOTE(CAUSTICS, BP_TRACERS, NULL, "off")                                                                  \
     NOTE(SPP, BP_RENDER, NULL, "the scene's number")                                                         \
     NOTE(SPP, BP_CHECK, NULL, "1024")                                                                        \
     NOTE(ERROR, BP_VIEW, "render until the noise of the picture (NRMSE) is below PERCENT", "1%")             \

@@ -73,6 +73,7 @@ BpStatus bp_resume_options(const BpCommandLine *line, const BpFilm *film, BpRend
 #define SETTING_OPTION_math BP_OPTION_MATH
 #define SETTING_OPTION_numerics BP_OPTION_NUMERICS
 #define SETTING_OPTION_lamps BP_OPTION_LAMPS
+#define SETTING_OPTION_caustics BP_OPTION_CAUSTICS
 #define TAKE(type, member, plural)                                                                           \
     if (bp_option_given(line, SETTING_OPTION_##member) && options->member != film->member) {                 \
         snprintf(has, sizeof has, "has --" #member " %s", bp_##member##_names[film->member]);                \

@@ -96,13 +96,13 @@ struct BpFilm {
 /* The scale for a scene traced to `max_depth` segments: 38 - ceil(log2(bound)) with
  * bp_scene_radiance_bound(), within +-126 so that 2^scale is a float. A sample is then at most 2^38 steps,
  * and 2^24 of them are at most 2^62. */
-int32_t bp_film_scale(const BpScene *scene, uint32_t max_depth, BpLamps lamps);
+int32_t bp_film_scale(const BpScene *scene, uint32_t max_depth, BpLamps lamps, BpCaustics caustics);
 /* An upper bound of the radiance that one path of at most `max_depth` segments can carry: the brightest of
  * sky and lamps, times min(1 / (1 - a), max_depth), where a is the largest albedo of a material that both
  * emits and scatters: 1 + a + a^2 + ... with as many terms as the path has segments. With BP_LAMPS_ON, each
- * vertex but the last adds half the light of a lamp at most, times what has been scattered so far. 0 for a
- * black scene. */
-double bp_scene_radiance_bound(const BpScene *scene, uint32_t max_depth, BpLamps lamps);
+ * vertex but the last adds half the light of a lamp at most, times what has been scattered so far; with
+ * BP_CAUSTICS_ON, up to three times as much more, for the ways through a focuser. 0 for a black scene. */
+double bp_scene_radiance_bound(const BpScene *scene, uint32_t max_depth, BpLamps lamps, BpCaustics caustics);
 /* A hash of the meaning of the scene: camera, sky, spheres in their order, each with what its material says.
  * Names, unused materials, members without effect (the fuzz of glass) and the sign of zero change nothing;
  * nor do sample counts and depth, which the film keeps apart. */

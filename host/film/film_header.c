@@ -305,14 +305,17 @@ static void read_settings(Reader *reader, BpFilm *film) {
     film->scene_hash = read_wide(reader, "scene_hash", 16, "a string of up to 16 hexadecimal digits");
     film->seed = read_wide(reader, "seed", 10, "a string of decimal digits, below 2^64");
     film->max_depth = (uint32_t)read_integer(reader, "max_depth", 0, BP_DEPTH_MAX);
-    /* Older files do not have the member, and their paths found lamps by chance. */
+    /* Older files do not have these members, and their paths found lamps, or caustics, by chance. */
     const bool knows_lamps = json_object_get(reader->header, "lamps") != NULL;
+    const bool knows_caustics = json_object_get(reader->header, "caustics") != NULL;
 #define READ(type, member, plural)                                                                           \
-    if (knows_lamps || strcmp(#member, "lamps") != 0)                                                        \
+    if ((knows_lamps || strcmp(#member, "lamps") != 0) &&                                                    \
+        (knows_caustics || strcmp(#member, "caustics") != 0))                                                \
         film->member = (type)read_name(reader, #member, bp_##member##_names);
     BP_SETTING_LIST(READ)
 #undef READ
     if (!knows_lamps) film->lamps = BP_LAMPS_OFF;
+    if (!knows_caustics) film->caustics = BP_CAUSTICS_OFF;
     film->transfer = (BpTransfer)read_name(reader, "transfer", bp_transfer_names);
     film->segments = read_integer(reader, "segments", 0, INT64_MAX);
     film->cut_paths = read_integer(reader, "cut_paths", 0, INT64_MAX);

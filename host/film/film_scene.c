@@ -62,7 +62,7 @@ static double flight_weight(const BpScene *scene) {
     return 1;
 }
 
-double bp_scene_radiance_bound(const BpScene *scene, uint32_t max_depth, BpLamps lamps) {
+double bp_scene_radiance_bound(const BpScene *scene, uint32_t max_depth, BpLamps lamps, BpCaustics caustics) {
     double brightest = fmax(largest(scene->background_bottom), largest(scene->background_top));
     double brightest_lamp = 0, passed_on = 0, scattered = 0;
     if (scene->environment != NULL) brightest = brightest_lamp = largest(scene->environment->bound);
@@ -90,15 +90,18 @@ double bp_scene_radiance_bound(const BpScene *scene, uint32_t max_depth, BpLamps
     for (size_t i = 0; i < scene->medium_count; i++)
         if (bp_medium_scatters(&scene->media[i])) scattered = 1; /* rays go to lamps from there too */
     double bound = flight_weight(scene) * brightest * geometric(passed_on, max_depth);
+    /* A ray to a lamp brings half of its radiance at most, and so does each of the up to three ways through a
+     * focuser. */
+    const double most = caustics == BP_CAUSTICS_ON ? 0.5 + 3 * 0.5 : 0.5;
     if (lamps != BP_LAMPS_OFF && max_depth >= 2)
         bound +=
-            flight_weight(scene) * 0.5 * brightest_lamp * scattered * geometric(scattered, max_depth - 1);
+            flight_weight(scene) * most * brightest_lamp * scattered * geometric(scattered, max_depth - 1);
     if (scene->backdrop != BP_BACKDROP_COLORS) return bound;
     return fmax(bound, fmax(largest(scene->backdrop_bottom), largest(scene->backdrop_top)));
 }
 
-int32_t bp_film_scale(const BpScene *scene, uint32_t max_depth, BpLamps lamps) {
-    const double bound = bp_scene_radiance_bound(scene, max_depth, lamps);
+int32_t bp_film_scale(const BpScene *scene, uint32_t max_depth, BpLamps lamps, BpCaustics caustics) {
+    const double bound = bp_scene_radiance_bound(scene, max_depth, lamps, caustics);
     if (!(bound > 0)) return SAMPLE_BITS;
     int exponent = 0;
     const double mantissa = frexp(bound, &exponent); /* bound = mantissa * 2^exponent, 1/2 <= mantissa < 1 */

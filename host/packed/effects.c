@@ -4,6 +4,7 @@
 #include "base/color.h"
 #include "base/plural.h"
 #include "environment_table.h"
+#include "focusers.h"
 #include "lamp_tree.h"
 #include "scene/material.h"
 
@@ -338,6 +339,10 @@ void bp_effects_analyse(const BpScene *scene, BpEffects *effects) {
                  NO_LAMP_REASON); /* without another look at all spheres */
     else if (explain_lamps(scene, size, effects->reason[BP_EFFECT_LAMPS]))
         effects->bits |= 1u << BP_EFFECT_LAMPS;
+    if (!bp_effects_has(effects->bits, BP_EFFECT_LAMPS))
+        snprintf(effects->reason[BP_EFFECT_CAUSTICS], size, "no rays are sent to lamps");
+    else
+        effects->caustics = bp_focusers_explain(scene, size, effects->reason[BP_EFFECT_CAUSTICS]);
 }
 
 size_t bp_effect_count(void) {

@@ -31,7 +31,8 @@
     X(ENVIRONMENT, "environment", "an image that surrounds the scene as background", "", "")                 \
     X(MOTION, "motion", "spheres that move while the shutter is open", "", "")                               \
     X(MEDIA, "media", "fog, smoke and tinted glass, in spheres or in the whole scene", "", "")               \
-    X(SHADOW_CATCHER, "shadow_catcher", "a plane that shows nothing but the shadow on it", "", "")
+    X(SHADOW_CATCHER, "shadow_catcher", "a plane that shows nothing but the shadow on it", "", "")           \
+    X(CAUSTICS, "caustics", "rays to lamps through balls of glass and off mirrors", "", "")
 
 typedef enum BpEffect {
 #define BP_EFFECT_ENUM(identifier, name, text, left_out, absent) BP_EFFECT_##identifier,
@@ -44,6 +45,7 @@ _Static_assert(BP_EFFECT_COUNT < 32, "effects are the bits of a uint32_t");
 
 typedef struct BpEffects {
     uint32_t bits; /* bit e set: effect e is simulated */
+    bool caustics; /* CAUSTICS is simulated too, if it is asked for */
     char reason[BP_EFFECT_COUNT][160];
 } BpEffects;
 

@@ -617,7 +617,7 @@ static BpStatus pack_boundaries(const BpScene *scene, BpPacked *packed, BpError 
 /* ---- the whole ------------------------------------------------------------------------------------- */
 
 BpStatus bp_scene_pack(const BpScene *scene, const BpTreeOptions *options, bool sample_lamps,
-                       BpPacked *packed, BpError *err) {
+                       bool sample_caustics, BpPacked *packed, BpError *err) {
     *packed = (BpPacked){.single_precision = options->single_precision};
     BpStatus status = BP_OK;
     uint32_t *second = NULL;
@@ -639,6 +639,10 @@ BpStatus bp_scene_pack(const BpScene *scene, const BpTreeOptions *options, bool 
     if (sample_lamps)
         BP_TRY_GOTO(status, bp_lamp_tree_build(scene, &packed->tree, &packed->lamps, err), cleanup);
     BP_TRY_GOTO(status, pack_discs(scene, packed->lamps.unit, packed, err), cleanup);
+    BP_TRY_GOTO(status,
+                bp_focusers_build(scene, origin, &packed->tree, sample_lamps && sample_caustics,
+                                  &packed->focusers, err),
+                cleanup);
     BP_TRY_GOTO(status, pack_images(scene, packed, err), cleanup);
     BP_TRY_GOTO(status, pack_environment(scene, sample_image, packed, err), cleanup);
     BP_TRY_GOTO(status,
@@ -654,6 +658,7 @@ cleanup:
 void bp_packed_clear(BpPacked *packed) {
     bp_tree_clear(&packed->tree);
     bp_lamp_tree_clear(&packed->lamps);
+    bp_focusers_clear(&packed->focusers);
 #define FREE_ARRAY(numbers, element, name, count, what) free(packed->name);
     SCENE_ARRAYS_OF_PACK(FREE_ARRAY)
     SCENE_ARRAYS_OF_SLOTS(FREE_ARRAY)

@@ -8,6 +8,7 @@
 #ifndef BP_PACKED_PACK_H
 #define BP_PACKED_PACK_H
 
+#include "focusers.h"
 #include "lamp_tree.h"
 #include "tree.h"
 
@@ -19,8 +20,9 @@
 typedef struct BpPacked {
     bool single_precision;
     BpTree tree;
-    BpLampTree lamps; /* empty, unless lamps are to be sampled */
-    /* The arrays of scene_types.h that are neither tree's: of reals in the device's precision, or of uints.
+    BpLampTree lamps;    /* empty, unless lamps are to be sampled */
+    BpFocusers focusers; /* empty, unless rays are to be sent through them */
+    /* The arrays of scene_types.h that are none of theirs: of reals in the device's precision, or of uints.
      */
 #define BP_HOLD_REALS void
 #define BP_HOLD_UINTS uint32_t
@@ -36,9 +38,10 @@ typedef struct BpPacked {
     uint32_t medium_count, boundary_count; /* at least one */
 } BpPacked;
 
-/* `sample_lamps`: the kernel is built to. */
+/* `sample_lamps`: the kernel is built to. `sample_caustics`: rays are sent to lamps through focusers, if the
+ * scene calls for it. */
 BpStatus bp_scene_pack(const BpScene *scene, const BpTreeOptions *options, bool sample_lamps,
-                       BpPacked *packed, BpError *err);
+                       bool sample_caustics, BpPacked *packed, BpError *err);
 void bp_packed_clear(BpPacked *packed);
 /* Bytes of one real. */
 static inline size_t bp_packed_real_size(const BpPacked *packed) {

@@ -169,6 +169,7 @@ static BpStatus create(const BpScene *scene, const BpRenderOptions *options, con
     made->options.lamps = bp_render_lamps_of(&made->effects, options);
     made->has_pilot =
         made->options.lamps == BP_LAMPS_ON && !options->samples_only && bp_pilot_is_needed(scene);
+    made->options.caustics = bp_render_caustics_of(&made->effects, options);
     for (size_t i = 0; i < device_count; ++i)
         BP_TRY_GOTO(status,
                     open_worker(made, open != NULL ? &open[i]->info : &devices[i],
@@ -437,7 +438,7 @@ uint64_t bp_render_samples_done(const BpRender *render) {
 
 BpStatus bp_render_describe(const BpRender *render, BpFilm *film, BpError *err) {
     const BpRenderOptions *options = &render->options;
-    film->scale_log2 = bp_film_scale(render->scene, options->max_depth, options->lamps);
+    film->scale_log2 = bp_film_scale(render->scene, options->max_depth, options->lamps, options->caustics);
     film->scene_hash = bp_scene_hash(render->scene);
     film->seed = options->seed;
     film->max_depth = options->max_depth;

@@ -37,6 +37,17 @@ BpLamps bp_render_lamps_of(const BpEffects *effects, const BpRenderOptions *opti
     return bp_effects_has(effects->bits, BP_EFFECT_LAMPS) ? options->lamps : BP_LAMPS_OFF;
 }
 
+BpCaustics bp_render_caustics_of(const BpEffects *effects, const BpRenderOptions *options) {
+    return effects->caustics && bp_render_lamps_of(effects, options) == BP_LAMPS_ON ? options->caustics
+                                                                                    : BP_CAUSTICS_OFF;
+}
+
+BpCaustics bp_render_caustics(const BpScene *scene, const BpRenderOptions *options) {
+    BpEffects effects;
+    bp_effects_analyse(scene, &effects);
+    return bp_render_caustics_of(&effects, options);
+}
+
 BpLamps bp_render_lamps(const BpScene *scene, const BpRenderOptions *options) {
     BpEffects effects;
     bp_effects_analyse(scene, &effects);
@@ -44,9 +55,11 @@ BpLamps bp_render_lamps(const BpScene *scene, const BpRenderOptions *options) {
 }
 
 static uint32_t choose_effects(const BpEffects *effects, const BpRenderOptions *options) {
-    const uint32_t wanted =
+    uint32_t wanted =
         options->all_effects ? BP_EFFECTS_ALL : effects->bits | (options->extra_effects & BP_EFFECTS_ALL);
-    return options->lamps == BP_LAMPS_OFF ? wanted & ~(1u << BP_EFFECT_LAMPS) : wanted;
+    if (bp_render_caustics_of(effects, options) == BP_CAUSTICS_ON) wanted |= 1u << BP_EFFECT_CAUSTICS;
+    if (options->lamps == BP_LAMPS_OFF) wanted &= ~(1u << BP_EFFECT_LAMPS | 1u << BP_EFFECT_CAUSTICS);
+    return wanted;
 }
 
 static bool choose_tree(const BpScene *scene, const BpRenderOptions *options) {
@@ -74,7 +87,9 @@ BpStatus bp_render_plan(const BpScene *scene, const BpRenderOptions *options, co
     setup->width = scene->camera.width;
     setup->height = scene->camera.height;
     setup->replicates = options->replicates != 0 ? options->replicates : BP_REPLICATES_DEFAULT;
-    setup->scale_log2 = bp_film_scale(scene, options->max_depth, bp_render_lamps_of(&effects, options));
+    const BpCaustics caustics = bp_render_caustics_of(&effects, options);
+    setup->scale_log2 =
+        bp_film_scale(scene, options->max_depth, bp_render_lamps_of(&effects, options), caustics);
     setup->max_depth = options->max_depth;
     setup->seed = options->seed;
     setup->pixel_center = scene->camera.pixel_sampling == BP_PIXEL_CENTER;
@@ -90,7 +105,7 @@ BpStatus bp_render_plan(const BpScene *scene, const BpRenderOptions *options, co
         .motions = bp_effects_has(setup->program.effects, BP_EFFECT_MOTION),
     };
     BP_TRY(bp_scene_pack(scene, &tree_options, bp_effects_has(setup->program.effects, BP_EFFECT_LAMPS),
-                         packed, err));
+                         caustics == BP_CAUSTICS_ON, packed, err));
     setup->program.packet_lanes = choose_packet_lanes(device, options, &packed->tree);
     return BP_OK;
 }

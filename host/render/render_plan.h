@@ -7,6 +7,12 @@
 
 #include "worker.h"
 
+/* Whether rays are sent to lamps through balls of glass and off mirrors: BP_CAUSTICS_OFF too where the scene
+ * does not call for it. */
+BpCaustics bp_render_caustics(const BpScene *scene, const BpRenderOptions *options);
+/* The same, if the scene's effects are known. */
+BpCaustics bp_render_caustics_of(const BpEffects *effects, const BpRenderOptions *options);
+
 /* Whether lamps are sampled: BP_LAMPS_OFF too where the scene does not call for it. */
 BpLamps bp_render_lamps(const BpScene *scene, const BpRenderOptions *options);
 /* The same where the scene's effects are known, so that nobody looks through its spheres again. */

@@ -66,6 +66,8 @@ static void list_uploads(const BpWorker *worker, const BpPacked *packed, Upload 
     const uint64_t texel_count = packed->texel_count, sky_row_count = packed->sky_row_count;
     const uint64_t sky_column_count = packed->sky_column_count, sky_height_count = packed->sky_height_count;
     const uint64_t medium_count = packed->medium_count, boundary_count = packed->boundary_count;
+    const uint64_t focuser_count = packed->focusers.focuser_count,
+                   target_count = packed->focusers.target_count;
     const uint64_t material_count = packed->material_count > 0 ? packed->material_count : 1;
 #define NUMBERS_REALS(element) sizeof(element) / sizeof(real), worker->real_size
 #define NUMBERS_UINTS(element) sizeof(element) / sizeof(packed_uint), sizeof(packed_uint)
@@ -74,14 +76,17 @@ static void list_uploads(const BpWorker *worker, const BpPacked *packed, Upload 
 #define UPLOAD_OF(...) UPLOAD(__VA_ARGS__)
 #define OF_PACK(numbers, element, name, count, what)                                                         \
     UPLOAD_OF(count, NUMBERS_##numbers(element), packed->name, what, false),
+#define OF_FOCUSERS(numbers, element, name, count, what)                                                     \
+    UPLOAD_OF(count, NUMBERS_##numbers(element), packed->focusers.name, what, false),
 #define OF_SLOTS(numbers, element, name, count, what)                                                        \
     UPLOAD_OF(count, NUMBERS_##numbers(element), packed->name, what, true),
 #define OF_LAMPS(numbers, element, name, count, what)                                                        \
     UPLOAD_OF(count, NUMBERS_##numbers(element), packed->lamps.name, what, true),
 #define OF_TREE(numbers, element, name, count, what)                                                         \
     UPLOAD_OF(count, NUMBERS_##numbers(element), tree->name, what, true),
-    const Upload list[BP_SCENE_ARRAYS] = {SCENE_ARRAYS_OF_PACK(OF_PACK) SCENE_ARRAYS_OF_SLOTS(OF_SLOTS)
-                                              SCENE_ARRAYS_OF_LAMPS(OF_LAMPS) SCENE_ARRAYS_OF_TREE(OF_TREE)};
+    const Upload list[BP_SCENE_ARRAYS] = {SCENE_ARRAYS_OF_PACK(OF_PACK) SCENE_ARRAYS_OF_FOCUSERS(OF_FOCUSERS)
+                                              SCENE_ARRAYS_OF_SLOTS(OF_SLOTS) SCENE_ARRAYS_OF_LAMPS(OF_LAMPS)
+                                                  SCENE_ARRAYS_OF_TREE(OF_TREE)};
     memcpy(uploads, list, sizeof list);
 }
 

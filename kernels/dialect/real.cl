@@ -65,6 +65,8 @@ typedef REFINED refined;
 #define SAMPLES_ENVIRONMENT (EFFECT_LAMPS && EFFECT_ENVIRONMENT && IS_LIT)
 #define SAMPLES_SKY (SAMPLES_DISCS || SAMPLES_ENVIRONMENT)
 #define SAMPLES_LAMPS (SAMPLES_LAMP_TREE || SAMPLES_SKY)
+/* Light that such lamps send through balls of glass and off mirrors is sampled too. */
+#define SAMPLES_CAUSTICS (EFFECT_CAUSTICS && (SAMPLES_LAMP_TREE || SAMPLES_DISCS) && (EFFECT_METAL || EFFECT_DIELECTRIC))
 /* Rays to lamps pass the boundaries of media, and so do the paths that are weighted against them. */
 #define LAMPS_THROUGH_MEDIA (SAMPLES_LAMPS && EFFECT_MEDIA)
 

@@ -99,6 +99,9 @@ static void trace_bounce(const Scene *scene, Path *path) {
 #if SAMPLES_LAMP_TREE
     const vbool lit = met & hit.enters & (emitted.x + emitted.y + emitted.z > splat(0));
     if (any_lane(lit)) emitted = scale3(lamp_hit_weight(scene, path, hit.slot, &sphere, lit), emitted);
+#if SAMPLES_CAUSTICS
+    if (any_lane(lit)) emitted = scale3(chain_hit_weight(scene, path, hit.slot, lit), emitted);
+#endif
 #endif
 #if EFFECT_NORMALS
     const vbool shows_normal = has_kind(&surface, KIND_NORMALS);
@@ -111,6 +114,9 @@ static void trace_bounce(const Scene *scene, Path *path) {
     path->radiance = choose3(met, add3(path->radiance, multiply3(path->throughput, emitted)), path->radiance);
 #endif
     const BsdfSample bsdf_sample = scatter(&surface, path->key, first_dimension(path->depth - 1u));
+#if SAMPLES_CAUSTICS
+    follow_chain(scene, path, met, &hit, &bsdf_sample);
+#endif
     path_scatter(path, met, &point, hit.slot, hit.enters, &bsdf_sample);
 #if SAMPLES_LAMPS
     /* The ray to a lamp stands for the next segment of the path, so where the path ends there is none. */

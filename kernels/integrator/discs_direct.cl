@@ -29,6 +29,9 @@ static Vec3 discs_radiance(const Scene *scene, const Path *path, vbool escaped) 
         Vec3 radiance = splat3(disc + DISC_RADIANCE);
 #if SAMPLES_DISCS
         radiance = scale3(disc_hit_weight(path, disc, hit), radiance);
+#if SAMPLES_CAUSTICS
+        radiance = scale3(chain_hit_weight(scene, path, splat_uint(DISC_SLOT + i), hit), radiance);
+#endif
 #endif
         sum = choose3(hit, add3(sum, radiance), sum);
     }

@@ -218,6 +218,10 @@ static LampChoice choose_light(const Scene *scene, const Path *path, vuint bounc
     return choice;
 }
 
+#if SAMPLES_CAUSTICS
+static void light_through_focuser(const Scene *scene, Path *path, vuint bounce, vbool active); /* caustics.cl */
+#endif
+
 /* One path at a time, a processor is faster when this step is a function of its own: within the loop over bounces, which it
  * interrupts at every other vertex, it takes registers from both. Packets are not, and on a GPU a call costs more. */
 #if LANE_COUNT == 1 && defined(__OPTIMIZE__) && (defined(__x86_64__) || defined(__aarch64__))
@@ -233,6 +237,9 @@ LIGHT_STEP void light_vertices(const Scene *scene, Path *path) {
     const vuint bounce = first_dimension(path->depth - 1u);
     vbool active = path->wants_lamps;
     path->wants_lamps = vbool_none;
+#if SAMPLES_CAUSTICS
+    light_through_focuser(scene, path, bounce, active);
+#endif
     vreal u, v;
     sample_2d(path->key, bounce + BOUNCE_LAMP, &u, &v);
     LampCone cone;

@@ -27,6 +27,10 @@ typedef struct Path {
     Point vertex;      /* the latest, where `lobe` is: the boundaries of media that the path passes are none */
     vuint vertex_slot; /* of the sphere that was left there */
 #endif
+#if SAMPLES_CAUSTICS
+    vuint chain;       /* that it follows from a vertex through a focuser, or CHAIN_NONE */
+    Focus focus;       /* of that chain */
+#endif
     vbool wants_lamps; /* its latest vertex is still to be lit; a path that is not alive may want that too */
 #endif
     /* Of the latest segment, for path_log.cl. */
@@ -70,6 +74,9 @@ static void path_none(Path *path) {
 #if SAMPLES_LAMPS
     path->wants_lamps = vbool_none;
     path->lamp_rays = 0;
+#if SAMPLES_CAUSTICS
+    path->chain = splat_uint(CHAIN_NONE);
+#endif
 #endif
 }
 
@@ -138,6 +145,9 @@ static void path_init(__global const PackedCamera *camera, SampleKey key, Vec3 o
 #if SAMPLES_LAMPS
     path->lobe.kind = choose_uint(fresh, splat_uint(LOBE_NONE), path->lobe.kind);
     path->wants_lamps = path->wants_lamps & vbool_not(fresh);
+#if SAMPLES_CAUSTICS
+    path->chain = choose_uint(fresh, splat_uint(CHAIN_NONE), path->chain);
+#endif
 #endif
 }
 

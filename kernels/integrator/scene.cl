@@ -6,6 +6,7 @@ typedef struct Scene {
     Geometry geometry;
     uint max_depth; /* ray segments of a path */
     SCENE_ARRAYS_OF_PACK(ARRAY_MEMBER)
+    SCENE_ARRAYS_OF_FOCUSERS(ARRAY_MEMBER)
     SCENE_ARRAYS_OF_SLOTS(SPLIT_MEMBER)
     SCENE_ARRAYS_OF_LAMPS(SPLIT_MEMBER)
 } Scene;
@@ -14,18 +15,18 @@ typedef struct Scene {
  * apart. */
 #define NUMBER_PARAMETER(name) uint name,
 #define SCENE_PARAMETERS                                                                                               \
-    SCENE_ARRAYS_OF_PACK(ARRAY_PARAMETER) SCENE_ARRAYS_OF_SLOTS(SPLIT_PARAMETER)                                       \
+    SCENE_ARRAYS_OF_PACK(ARRAY_PARAMETER) SCENE_ARRAYS_OF_FOCUSERS(ARRAY_PARAMETER) SCENE_ARRAYS_OF_SLOTS(SPLIT_PARAMETER)                                       \
     SCENE_ARRAYS_OF_LAMPS(SPLIT_PARAMETER) SCENE_ARRAYS_OF_TREE(SPLIT_PARAMETER) SCENE_NUMBERS(NUMBER_PARAMETER)
 #define NUMBER_ARGUMENT(name) name,
 /* All of them, for a function that takes the same. */
 #define SCENE_NAMES                                                                                                    \
-    SCENE_ARRAYS_OF_PACK(ARRAY_ARGUMENT) SCENE_ARRAYS_OF_SLOTS(SPLIT_ARGUMENT)                                         \
+    SCENE_ARRAYS_OF_PACK(ARRAY_ARGUMENT) SCENE_ARRAYS_OF_FOCUSERS(ARRAY_ARGUMENT) SCENE_ARRAYS_OF_SLOTS(SPLIT_ARGUMENT)                                         \
     SCENE_ARRAYS_OF_LAMPS(SPLIT_ARGUMENT) SCENE_ARRAYS_OF_TREE(SPLIT_ARGUMENT) SCENE_NUMBERS(NUMBER_ARGUMENT)
 #define SCENE_ARGUMENTS                                                                                                \
-    SCENE_ARRAYS_OF_PACK(ARRAY_ARGUMENT) SCENE_ARRAYS_OF_SLOTS(SPLIT_ARGUMENT)                                         \
+    SCENE_ARRAYS_OF_PACK(ARRAY_ARGUMENT) SCENE_ARRAYS_OF_FOCUSERS(ARRAY_ARGUMENT) SCENE_ARRAYS_OF_SLOTS(SPLIT_ARGUMENT)                                         \
     SCENE_ARRAYS_OF_LAMPS(SPLIT_ARGUMENT) SCENE_ARRAYS_OF_TREE(SPLIT_ARGUMENT) first_leaves, leaf_count, max_depth
 
-static Scene scene_init(SCENE_ARRAYS_OF_PACK(ARRAY_PARAMETER) SCENE_ARRAYS_OF_SLOTS(SPLIT_PARAMETER)
+static Scene scene_init(SCENE_ARRAYS_OF_PACK(ARRAY_PARAMETER) SCENE_ARRAYS_OF_FOCUSERS(ARRAY_PARAMETER) SCENE_ARRAYS_OF_SLOTS(SPLIT_PARAMETER)
                             SCENE_ARRAYS_OF_LAMPS(SPLIT_PARAMETER) SCENE_ARRAYS_OF_TREE(SPLIT_PARAMETER) uint first_leaves,
                         uint leaf_count, uint max_depth) {
     Scene scene;
@@ -33,6 +34,7 @@ static Scene scene_init(SCENE_ARRAYS_OF_PACK(ARRAY_PARAMETER) SCENE_ARRAYS_OF_SL
     geometry_init(SCENE_ARRAYS_OF_TREE(SPLIT_ARGUMENT) first_leaves, leaf_count, &scene.geometry);
 #define SET_ARRAY(numbers, element, name, count, what) scene.name = name;
     SCENE_ARRAYS_OF_PACK(SET_ARRAY)
+    SCENE_ARRAYS_OF_FOCUSERS(SET_ARRAY)
 #undef SET_ARRAY
 #define SET_ARRAY(numbers, element, name, count, what) SET_SPLIT(&scene, name)
     SCENE_ARRAYS_OF_LAMPS(SET_ARRAY)

@@ -19,6 +19,8 @@
  *     k = 11, 12   the low bits of the choice of a row of that image, and of a texel in the row
  *     k = 13, 14   a flight through a medium, and its low bits
  *     15           kept
+ *     Rays through balls of glass and off mirrors have DIMENSIONS_OF_CAUSTICS more: k = 0, 1 the point of the lamp, 2 the
+ *     ball or mirror, 3 the chain through it, 4 the lamp
  *   A camera ray that meets the shadow catcher ends there, and the places of bounce b are those of try b to find light:
  *   k = 0, 1 the direction, 2 whether it is taken, 5 the gradient or which disc */
 #define DIMENSION_PIXEL 0u
@@ -38,6 +40,13 @@
 #define BOUNCE_SKY_COLUMN 12u
 #define BOUNCE_FLIGHT 13u
 #define BOUNCE_FLIGHT_REFILL 14u
+#if SAMPLES_CAUSTICS
+#define DIMENSIONS_OF_CAUSTICS 0x10000000u
+#define CAUSTIC_POINT 0u
+#define CAUSTIC_FOCUSER 2u
+#define CAUSTIC_CHAIN 3u
+#define CAUSTIC_TARGET 4u
+#endif
 
 /* Of bounce b, counted from 0. */
 static vuint first_dimension(vuint b) { return b * DIMENSIONS_PER_BOUNCE + DIMENSION_BOUNCE; }

@@ -49,6 +49,9 @@ static SampleKey scramble_key(SampleKey key) {
 
 /* Dimensions of pixel, lens and the first bounces. */
 static vbool is_low(vuint dimension) {
+#if SAMPLES_CAUSTICS
+    dimension &= splat_uint(DIMENSIONS_OF_CAUSTICS - 1u);
+#endif
     return vbool_of_uint(dimension < splat_uint(DIMENSION_BOUNCE + SOBOL_BOUNCES * DIMENSIONS_PER_BOUNCE));
 }
 #endif

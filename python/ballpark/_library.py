@@ -78,9 +78,10 @@ class BpDeviceInfo(c.Structure):
 class BpRenderOptions(c.Structure):
     _fields_ = [("samples_per_pixel", c.c_uint64), ("first_sample", c.c_uint64), ("max_depth", c.c_uint32),
                 ("seed", c.c_uint64), ("precision", c.c_int), ("math", c.c_int), ("numerics", c.c_int),
-                ("sampler", c.c_int), ("lamps", c.c_int), ("kernel", c.c_int), ("all_effects", c.c_bool),
-                ("extra_effects", c.c_uint32), ("adaptive", c.c_bool), ("features", c.c_bool),
-                ("samples_only", c.c_bool), ("force", c.c_bool), ("job_first", c.c_uint64), ("job_samples", c.c_uint64), ("replicates", c.c_uint32),
+                ("sampler", c.c_int), ("lamps", c.c_int), ("caustics", c.c_int), ("kernel", c.c_int),
+                ("all_effects", c.c_bool), ("extra_effects", c.c_uint32), ("adaptive", c.c_bool), ("features", c.c_bool),
+                ("samples_only", c.c_bool), ("force", c.c_bool), ("job_first", c.c_uint64),
+                ("job_samples", c.c_uint64), ("replicates", c.c_uint32),
                 ("threads", c.c_uint32), ("chunk_samples", c.c_uint32), ("local_size", c.c_uint32),
                 ("tree_width", c.c_uint32), ("packet_lanes", c.c_uint32), ("force_list", c.c_bool),
                 ("force_tree", c.c_bool), ("force_float_refine", c.c_bool), ("build_mark", c.c_uint64)]
@@ -117,7 +118,8 @@ TRANSFERS = ["gamma2", "srgb", "linear"]
 FORMATS = ["png", "ppm", "ppm-ascii", "pfm", "exr", "bpa"]
 DEVICE_TYPES = ["cpu", "gpu", "other"]
 CHOICES = {"precision": ["single", "double"], "math": ["strict", "fast"], "numerics": ["robust", "plain"],
-           "sampler": ["independent", "sobol"], "lamps": ["on", "off"], "kernel": ["auto", "sample", "packet", "pool"]}
+           "sampler": ["independent", "sobol"], "lamps": ["on", "off"], "caustics": ["off", "on"],
+           "kernel": ["auto", "sample", "packet", "pool"]}
 
 _HANDLE = c.POINTER(c.c_void_p)
 _ERR = c.POINTER(BpError)

@@ -57,16 +57,16 @@ static void free_scene(BpScene *scene) {
 static void bound_and_scale(void **state) {
     (void)state;
     BpScene scene = make_scene();
-    assert_true(fabs(bp_scene_radiance_bound(&scene, 50, BP_LAMPS_OFF) - 4) <= 0);
-    assert_int_equal(bp_film_scale(&scene, 50, BP_LAMPS_OFF), 36);
+    assert_true(fabs(bp_scene_radiance_bound(&scene, 50, BP_LAMPS_OFF, BP_CAUSTICS_OFF) - 4) <= 0);
+    assert_int_equal(bp_film_scale(&scene, 50, BP_LAMPS_OFF, BP_CAUSTICS_OFF), 36);
     scene.materials[3].emit[0] = 4.5; /* past a power of two, the next one */
-    assert_int_equal(bp_film_scale(&scene, 50, BP_LAMPS_OFF), 35);
+    assert_int_equal(bp_film_scale(&scene, 50, BP_LAMPS_OFF, BP_CAUSTICS_OFF), 35);
     scene.materials[3].emit[0] = 0.5; /* now the lamp's green */
-    assert_int_equal(bp_film_scale(&scene, 50, BP_LAMPS_OFF), 37);
+    assert_int_equal(bp_film_scale(&scene, 50, BP_LAMPS_OFF, BP_CAUSTICS_OFF), 37);
     scene.materials[3] = scene.materials[4];
-    assert_int_equal(bp_film_scale(&scene, 50, BP_LAMPS_OFF), 38); /* sky and normals: 1 */
+    assert_int_equal(bp_film_scale(&scene, 50, BP_LAMPS_OFF, BP_CAUSTICS_OFF), 38); /* sky and normals: 1 */
     scene.background_bottom[2] = 3;
-    assert_int_equal(bp_film_scale(&scene, 50, BP_LAMPS_OFF), 36);
+    assert_int_equal(bp_film_scale(&scene, 50, BP_LAMPS_OFF, BP_CAUSTICS_OFF), 36);
     free_scene(&scene);
 }
 
@@ -78,7 +78,7 @@ static BpDisc disc(double x, double y, double half_angle, double radiance) {
 }
 
 static double bound_of(const BpScene *scene, BpLamps lamps) {
-    return bp_scene_radiance_bound(scene, 50, lamps);
+    return bp_scene_radiance_bound(scene, 50, lamps, BP_CAUSTICS_OFF);
 }
 
 /* Discs that share a direction add up, with the sky behind them; others do not. */
@@ -103,7 +103,7 @@ static void discs_add_up(void **state) {
     double most = 1601, through = albedo;
     for (int vertex = 1; vertex < 50; vertex++, through *= albedo) most += 0.5 * 1000 * through;
     assert_true(bound_of(&scene, BP_LAMPS_ON) >= most && bound_of(&scene, BP_LAMPS_ON) <= 1.5 * most);
-    assert_true(ldexp(most, bp_film_scale(&scene, 50, BP_LAMPS_ON)) <= 0x1p38);
+    assert_true(ldexp(most, bp_film_scale(&scene, 50, BP_LAMPS_ON, BP_CAUSTICS_OFF)) <= 0x1p38);
     free_scene(&scene);
 }
 
@@ -113,17 +113,20 @@ static void emitters_that_scatter_add_up(void **state) {
     BpScene scene = make_scene();
     scene.materials[0].emit[1] = 4;
     scene.materials[0].albedo[2] = 0.5; /* 1 + 1/2 + 1/4 + ... = 2, but one sphere brings 0.625 itself */
-    assert_true(fabs(bp_scene_radiance_bound(&scene, 50, BP_LAMPS_OFF) - 4 / (1 - 0.625)) <= 1e-12);
+    assert_true(fabs(bp_scene_radiance_bound(&scene, 50, BP_LAMPS_OFF, BP_CAUSTICS_OFF) - 4 / (1 - 0.625)) <=
+                1e-12);
     scene.spheres[5].albedo = BP_NO_ALBEDO;
-    assert_true(fabs(bp_scene_radiance_bound(&scene, 50, BP_LAMPS_OFF) - 8) <= 1e-12);
+    assert_true(fabs(bp_scene_radiance_bound(&scene, 50, BP_LAMPS_OFF, BP_CAUSTICS_OFF) - 8) <= 1e-12);
     scene.materials[5].emit[0] = 100; /* not in use */
-    assert_true(fabs(bp_scene_radiance_bound(&scene, 50, BP_LAMPS_OFF) - 8) <= 1e-12);
+    assert_true(fabs(bp_scene_radiance_bound(&scene, 50, BP_LAMPS_OFF, BP_CAUSTICS_OFF) - 8) <= 1e-12);
     scene.materials[2].emit[0] = 1; /* glass passes everything on */
-    assert_true(fabs(bp_scene_radiance_bound(&scene, 50, BP_LAMPS_OFF) - 4.0 * 50) <= 0); /* once a segment */
-    assert_int_equal(bp_film_scale(&scene, 50, BP_LAMPS_OFF), 38 - 8);
-    assert_true(fabs(bp_scene_radiance_bound(&scene, 1, BP_LAMPS_OFF) - 4) <= 0);
-    assert_true(fabs(bp_scene_radiance_bound(&scene, 0, BP_LAMPS_OFF)) <= 0);
-    assert_true(fabs(bp_scene_radiance_bound(&scene, BP_DEPTH_MAX, BP_LAMPS_OFF) - 4.0 * BP_DEPTH_MAX) <= 0);
+    assert_true(fabs(bp_scene_radiance_bound(&scene, 50, BP_LAMPS_OFF, BP_CAUSTICS_OFF) - 4.0 * 50) <=
+                0); /* once a segment */
+    assert_int_equal(bp_film_scale(&scene, 50, BP_LAMPS_OFF, BP_CAUSTICS_OFF), 38 - 8);
+    assert_true(fabs(bp_scene_radiance_bound(&scene, 1, BP_LAMPS_OFF, BP_CAUSTICS_OFF) - 4) <= 0);
+    assert_true(fabs(bp_scene_radiance_bound(&scene, 0, BP_LAMPS_OFF, BP_CAUSTICS_OFF)) <= 0);
+    assert_true(fabs(bp_scene_radiance_bound(&scene, BP_DEPTH_MAX, BP_LAMPS_OFF, BP_CAUSTICS_OFF) -
+                     4.0 * BP_DEPTH_MAX) <= 0);
     free_scene(&scene);
 }
 
@@ -137,10 +140,10 @@ static void no_path_is_brighter(void **state) {
         scene.materials[1].emit[2] = emit;
         double radiance = 0, throughput = 1;
         for (int depth = 0; depth < 50; depth++, throughput *= albedo) radiance += throughput * emit;
-        const double bound = bp_scene_radiance_bound(&scene, 50, BP_LAMPS_OFF);
+        const double bound = bp_scene_radiance_bound(&scene, 50, BP_LAMPS_OFF, BP_CAUSTICS_OFF);
         assert_true(radiance <= bound * (1 + 1e-12));
-        assert_true(ldexp(bound, bp_film_scale(&scene, 50, BP_LAMPS_OFF)) <= 0x1p38);
-        assert_true(ldexp(bound, bp_film_scale(&scene, 50, BP_LAMPS_OFF)) > 0x1p37);
+        assert_true(ldexp(bound, bp_film_scale(&scene, 50, BP_LAMPS_OFF, BP_CAUSTICS_OFF)) <= 0x1p38);
+        assert_true(ldexp(bound, bp_film_scale(&scene, 50, BP_LAMPS_OFF, BP_CAUSTICS_OFF)) > 0x1p37);
     }
     free_scene(&scene);
 }
@@ -151,11 +154,11 @@ static void extreme_scales_stay_floats(void **state) {
     scene.sphere_count = 0;
     memset(scene.background_bottom, 0, sizeof scene.background_bottom);
     memset(scene.background_top, 0, sizeof scene.background_top);
-    assert_int_equal(bp_film_scale(&scene, 50, BP_LAMPS_OFF), 38); /* black */
+    assert_int_equal(bp_film_scale(&scene, 50, BP_LAMPS_OFF, BP_CAUSTICS_OFF), 38); /* black */
     scene.background_top[0] = 1e-300;
-    assert_int_equal(bp_film_scale(&scene, 50, BP_LAMPS_OFF), 126);
+    assert_int_equal(bp_film_scale(&scene, 50, BP_LAMPS_OFF, BP_CAUSTICS_OFF), 126);
     scene.background_top[0] = 1e300;
-    assert_int_equal(bp_film_scale(&scene, 50, BP_LAMPS_OFF), -126);
+    assert_int_equal(bp_film_scale(&scene, 50, BP_LAMPS_OFF, BP_CAUSTICS_OFF), -126);
     free_scene(&scene);
 }
 

@@ -149,7 +149,7 @@ static void check_slots(const BpScene *scene, const BpPacked *packed) {
 void check_packed(const BpScene *scene, const BpTreeOptions *options) {
     BpPacked packed;
     BpError err = {0};
-    require(bp_scene_pack(scene, options, true, &packed, &err) == BP_OK);
+    require(bp_scene_pack(scene, options, true, true, &packed, &err) == BP_OK);
     const BpTree *tree = &packed.tree;
     check_slots(scene, &packed);
     if (options->list) {

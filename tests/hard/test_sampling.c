@@ -142,7 +142,7 @@ static void camera_directions(const Lab *lab, const BpScene *scene, double out[5
     BpPacked packed;
     const BpTreeOptions options = {
         .width = 8, .single_precision = !lab->real_double, .list = true, .threads = 1};
-    assert_int_equal(bp_scene_pack(scene, &options, true, &packed, NULL), BP_OK);
+    assert_int_equal(bp_scene_pack(scene, &options, true, true, &packed, NULL), BP_OK);
     const double w = scene->camera.width - 1, h = scene->camera.height - 1;
     double at[10] = {0, 0, w, 0, 0, h, w, h, floor(w / 2), floor(h / 2)};
     const LabArgument arguments[] = {

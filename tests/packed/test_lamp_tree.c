@@ -79,7 +79,7 @@ static void balls_hold_lamps_that_move(void **state) {
         const double everywhere[] = {0, 0, 0, 1000};
         BpPacked packed;
         BpError err = {0};
-        assert_int_equal(bp_scene_pack(&scene, &options, true, &packed, &err), BP_OK);
+        assert_int_equal(bp_scene_pack(&scene, &options, true, true, &packed, &err), BP_OK);
         assert_int_equal(lamps_in_ball(&packed, 0, everywhere), LAMPS);
         int balls = 0;
         for (uint32_t node = 0; node < packed.lamps.node_count; ++node)
@@ -120,7 +120,7 @@ static void slots_of_a_lamp_around_everything(void **state) {
     const BpTreeOptions options = {8, true, false, 1, false};
     BpPacked packed;
     BpError err = {0};
-    assert_int_equal(bp_scene_pack(&scene, &options, true, &packed, &err), BP_OK);
+    assert_int_equal(bp_scene_pack(&scene, &options, true, true, &packed, &err), BP_OK);
     assert_int_equal(packed.lamps.lamp_count, 0);
     assert_int_equal(packed.lamps.slot_count, packed.tree.leaf_count * packed.tree.width);
     for (uint32_t slot = 0; slot < packed.lamps.slot_count; ++slot)

@@ -39,6 +39,8 @@ static inline bool effects_light(uint32_t bits) {
  * Textures are of spheres, noise and images are textures, and spheres move. */
 static inline bool effects_can_occur(uint32_t bits, bool tree) {
     if (bp_effects_has(bits, BP_EFFECT_LAMPS) && !effects_light(bits)) return false;
+    /* Only where it is asked for: tests/lamps. */
+    if (bp_effects_has(bits, BP_EFFECT_CAUSTICS)) return false;
     if (bp_effects_has(bits, BP_EFFECT_TEXTURES) && (bits & MATERIAL_EFFECTS) == 0) return false;
     if (bp_effects_has(bits, BP_EFFECT_MOTION) && (bits & MATERIAL_EFFECTS) == 0) return false;
     if (bp_effects_has(bits, BP_EFFECT_NOISE) && !bp_effects_has(bits, BP_EFFECT_TEXTURES)) return false;

@@ -40,6 +40,7 @@ MARKS = {
     "ENVIRONMENT": ["environment_radiance", "has_environment"],
     "MOTION": ["path->time", "ray->time"],
     "MEDIA": ["medium_around", "exp_minus", "interface_sample"],
+    "CAUSTICS": [],  # FOCUSING
     "SHADOW_CATCHER": ["meets_catcher", "light_of_catcher", "lies_in_shadow"],
     "TREE": ["BoxRay", "leaf_children"],  # no effect, but looked for in the same way
 }
@@ -60,6 +61,8 @@ NEEDING_OTHERS = {
     "choose_disc": {"DISCS", "ENVIRONMENT"}, "sample_environment": {"ENVIRONMENT"}, "environment_hit_weight": {"ENVIRONMENT"},
     "wants_lamps": {"EMISSION", "DISCS", "ENVIRONMENT"}, "first_seen": {"EMISSION", "DISCS", "ENVIRONMENT"},
 }
+# Code that needs LAMPS, something to be lit, CAUSTICS, lamps or discs, and glass or mirrors.
+FOCUSING = ["focuser_importance", "chain_root", "follow_chain", "light_through_focuser", "path->chain"]
 
 
 def preprocessed(path):
@@ -90,6 +93,10 @@ def complaints(path):
         needed = "LAMPS" in effects and bool(LIT & effects) and bool(sources & effects)
         if (mark in text) != needed:
             found.append(f"{path.name}: {mark!r} {'is missing' if needed else 'is there'}")
+    focuses = ({"LAMPS", "CAUSTICS"} <= effects and bool(LIT & effects) and bool({"EMISSION", "DISCS"} & effects) and
+               bool({"METAL", "DIELECTRIC"} & effects))
+    found += [f"{path.name}: {mark!r} {'is missing' if focuses else 'is there'}"
+              for mark in FOCUSING if (mark in text) != focuses]
     return found, bits, len(text)
 
 

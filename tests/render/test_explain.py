@@ -15,7 +15,7 @@ from pfm import read_pfm
 
 program, scenes = sys.argv[1], pathlib.Path(sys.argv[2])
 ALL = ["lambertian", "metal", "dielectric", "emission", "normals", "lens", "lamps", "discs", "textures", "noise", "images", "environment",
-       "motion", "media", "shadow_catcher"]
+       "motion", "media", "shadow_catcher", "caustics"]
 
 
 def run(*arguments, code=0):

@@ -313,7 +313,7 @@ static void films_tell_textures_apart(void **state) {
 static void pack(const BpScene *scene, bool single, BpPacked *packed) {
     const BpTreeOptions options = {8, single, false, 1, false};
     BpError err = {0};
-    if (bp_scene_pack(scene, &options, true, packed, &err) != BP_OK) fail_msg("%s", err.message);
+    if (bp_scene_pack(scene, &options, true, true, packed, &err) != BP_OK) fail_msg("%s", err.message);
 }
 
 /* The corner of the lattice, seen from the camera: 1e6 cells and a third away, at 2^53 still modulo the

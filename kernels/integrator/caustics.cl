@@ -1,0 +1,285 @@
+/* caustics.cl: the light that lamps bring to a point through a ball of glass or off a mirror, by two ways that share the
+ * work, as in lamps_direct.cl.
+ *
+ * A path finds such a lamp by chance, or is led to it: a focuser, a lamp and a point of it are chosen, and every chain
+ * through the focuser that ends at that point is traced (after D. Mitchell and P. Hanrahan, "Illumination from Curved
+ * Reflectors", 1992; all roots are found, so no probability has to be estimated). Both are weighted by the power heuristic
+ * with the density of the direction at the vertex. What a chain brings is computed along the ray as it is traced, and
+ * both weights from that ray: a root need not be exact.
+ *
+ * In:    paths that wait to be lit; what paths meet.   Out: paths with that light; the weight of a lamp that is met.
+ * Knows: focusers.cl, lamps.cl, scatter.cl, vary_surface.cl, the closest hit.   Does not know: how a path goes on. */
+#if SAMPLES_CAUSTICS
+static int has_focusers(const Scene *scene) { return scene->focuser_places[0] != NO_SLOT; }
+
+/* Follows what the chain of a path becomes where it meets a sphere in the lanes `met`, before it scatters there; the path
+ * still is what it was on its way there, and has the lobe of the vertex that it comes from. */
+static void follow_chain(const Scene *scene, Path *path, vbool met, const Hit *hit, const BsdfSample *bsdf_sample) {
+    if (!has_focusers(scene)) return;
+    const vbool outward = (vbool_not(hit->enters) & bsdf_sample->transmitted) | (hit->enters & vbool_not(bsdf_sample->transmitted));
+    vuint chain = splat_uint(CHAIN_NONE);
+    vbool begins = met & hit->enters & bsdf_sample->scattered & vbool_of_uint(path->lobe.kind != splat_uint(LOBE_NONE));
+    if (any_lane(begins)) begins = begins & is_focuser(scene, hit->slot);
+    if (any_lane(begins)) {
+        vuint number;
+        const vreal probability =
+            choose_focuser(scene, &path->origin, &path->lobe, splat(0), &hit->slot, &number);
+        const vbool enters = begins & (probability > splat(0));
+        if (any_lane(enters)) {
+            const Focus focus = focus_along(scene, &path->origin, &path->lobe, path->direction, 1, number, probability);
+            path->focus.number = choose_uint(enters, focus.number, path->focus.number);
+            path->focus.distance = choose(enters, focus.distance, path->focus.distance);
+            path->focus.sine = choose(enters, focus.sine, path->focus.sine);
+            path->focus.ratio = choose(enters, focus.ratio, path->focus.ratio);
+            chain = choose_uint(enters, choose_uint(bsdf_sample->transmitted, splat_uint(1), splat_uint(CHAIN_LEFT)), chain);
+        }
+    }
+    /* Within the ball, from one point of its surface to another. */
+    const vbool within = met & vbool_not(hit->enters) & vbool_of_uint(path->chain < splat_uint(CHAIN_LEFT)) &
+                         vbool_of_uint(hit->slot == path->own_slot);
+    const vuint next = choose_uint(outward, path->chain + splat_uint(CHAIN_LEFT), path->chain + splat_uint(1));
+    const vbool goes_on = within & (outward | vbool_of_uint(path->chain < splat_uint(CHORDS_MAX)));
+    chain = choose_uint(goes_on, next, chain);
+    path->chain = choose_uint(met, chain, path->chain);
+}
+
+/* The weight of the radiance of a lamp, in a slot or a disc of the sky, that the path meets in the lanes `hit`. */
+static vreal chain_hit_weight(const Scene *scene, const Path *path, vuint lamp, vbool hit) {
+    const vbool through = hit & vbool_of_uint(path->chain >= splat_uint(CHAIN_LEFT)) &
+                          vbool_of_uint(path->chain != splat_uint(CHAIN_NONE));
+    if (!any_lane(through)) return splat(1);
+    const vuint place = choose_uint(through, path->focus.number, splat_uint(0)) * FOCUSER_UINTS;
+    const vuint first = gather_uint(scene->focuser_places + FOCUSER_FIRST, place);
+    const vuint count = gather_uint(scene->focuser_places + FOCUSER_COUNT, place);
+    vuint target = first;
+    vbool known = vbool_none;
+    for (uint k = 0;; ++k) {
+        const vbool has = through & vbool_of_uint(splat_uint(k) < count);
+        if (!any_lane(has)) break;
+        const vuint tried = choose_uint(has, first + splat_uint(k), first);
+        const vbool same = has & vbool_of_uint(gather_uint(scene->target_lamps, tried) == lamp);
+        target = choose_uint(same, tried, target);
+        known = known | same;
+    }
+    if (!any_lane(known)) return splat(1);
+    Focus focus = path->focus;
+    focus.number = choose_uint(known, focus.number, splat_uint(0));
+    const vuint inside = choose_uint(known, path->chain - splat_uint(CHAIN_LEFT), splat_uint(0));
+    const vreal ratio = chain_ratio(scene, &focus, inside, target, &path->origin, path->direction);
+    return weight_of_hit(known, ratio);
+}
+
+/* Which chain is tried: from a vertex through a focuser to a target. */
+typedef struct ChainChoice {
+    vuint number, inside, target;
+    vreal probability; /* of the focuser */
+    LampChoice lamp;   /* its slot and its sphere */
+    vbool far;         /* it is a disc */
+} ChainChoice;
+
+/* A point of the target, as a unit direction from the centre of the focuser and the radius of that over its distance, which
+ * is 0 for a disc. */
+static Vec3 sample_target(const Scene *scene, const ChainChoice *choice, vreal radius, vreal u, vreal v, vreal *far) {
+    const Vec3 aimed = target_centre(scene, choice->target);
+    const vreal extent = gather_real(scene->targets, choice->target * TARGET_REALS + TARGET_EXTENT);
+    const Vec3 axis = choose3(choice->far, aimed, subtract3(aimed, focuser_centre(scene, choice->number)));
+    const vreal length = square_root(dot3(axis, axis));
+    const Vec3 w = scale3(divide(splat(1), length), axis);
+    const vreal m = u * extent;
+    const vreal along = choose(choice->far, splat(1) - m, length);
+    const vreal aside = choose(choice->far, square_root(m * (splat(2) - m)), extent * square_root(u));
+    vreal sine, cosine;
+    sin_cos_turn(v, &sine, &cosine);
+    /* Two unit vectors across the axis (T. Duff et al., "Building an Orthonormal Basis, Revisited", JCGT 6(1), 2017). */
+    const vreal sign = copysign(splat(1), w.z);
+    const vreal a = divide(splat(-1), sign + w.z);
+    const vreal b = w.x * w.y * a;
+    const Vec3 s = vec3(fma(sign * w.x * w.x, a, splat(1)), sign * b, -sign * w.x);
+    const Vec3 t = vec3(b, fma(w.y * w.y, a, sign), -w.y);
+    const Vec3 sampled = madd3(along, w, madd3(aside * cosine, s, scale3(aside * sine, t)));
+    const vreal inverse = divide(splat(1), square_root(dot3(sampled, sampled)));
+    *far = choose(choice->far, splat(0), radius * inverse);
+    return scale3(inverse, sampled);
+}
+
+/* Traces the chain that leaves the vertex along `direction`, in the lanes `active`, and adds what it brings. */
+static void trace_chain(const Scene *scene, Path *path, const ChainChoice *choice, Vec3 direction, vuint bounce,
+                        vbool active) {
+    const Geometry *geometry = &scene->geometry;
+    const Focus focus = focus_along(scene, &path->origin, &path->lobe, direction, 0, choice->number, choice->probability);
+    active = active & (focus.ratio > splat(0));
+    if (!any_lane(active)) return;
+    const vuint slot = gather_uint(scene->focuser_places, choice->number * FOCUSER_UINTS + FOCUSER_SLOT);
+    Ray ray = path_ray(path);
+    ray.direction = direction;
+    Surface surface;
+    Sphere sphere = sphere_for_ray(geometry, &ray, slot);
+    Vec3 weight = vec3(splat(1), splat(1), splat(1));
+    path->lamp_rays += popcount(lane_bits(active));
+    for (uint leg = 0; any_lane(active); ++leg) {
+        /* What this part of the chain has to meet first. */
+        const vbool last = vbool_of_uint(choice->inside + splat_uint(1) == splat_uint(leg));
+        Hit expected;
+        vrefined t;
+        vbool enters, meets;
+        if (leg == 0) {
+            meets = sphere_intersect(&ray, &sphere, &t, &enters);
+            meets = meets & enters;
+        } else {
+            meets = sphere_exit(&ray, &sphere, &t) & vbool_not(last);
+            enters = vbool_none;
+        }
+        expected.t = t;
+        expected.slot = slot;
+        expected.enters = enters;
+        const vbool arrives = active & last;
+        if (any_lane(arrives)) {
+            const vbool near = arrives & vbool_not(choice->far);
+            vbool shines = arrives & choice->far;
+#if SAMPLES_DISCS
+            if (any_lane(shines)) {
+                const vuint disc = choose_uint(vbool_not(shines), splat_uint(0), choice->lamp.slot - splat_uint(DISC_SLOT)) * DISC_REALS;
+                const Vec3 off = subtract3(ray.direction, vec3(gather_real(scene->discs, disc), gather_real(scene->discs + 1u, disc),
+                                                               gather_real(scene->discs + 2u, disc)));
+                shines = shines & (dot3(off, off) <= gather_real(scene->discs + DISC_CHORD2, disc));
+            }
+#endif
+            vrefined to_lamp = splat_refined(REAL_LARGE);
+#if SAMPLES_LAMP_TREE
+            if (any_lane(near)) {
+                vrefined found;
+                vbool from_outside;
+                const vbool lit = sphere_intersect(&ray, &choice->lamp.sphere, &found, &from_outside);
+                shines = shines | (near & lit & from_outside);
+                to_lamp = choose_refined(near, found, to_lamp);
+            }
+#endif
+            meets = (meets & vbool_not(arrives)) | shines;
+            expected.t = choose_refined(arrives, to_lamp, expected.t);
+            expected.slot = choose_uint(arrives, choice->lamp.slot, expected.slot);
+            expected.enters = expected.enters | arrives;
+        }
+        expected.bound = upper_bound(expected.t);
+        active = active & meets;
+        if (!any_lane(active)) return;
+        const Hit first = intersect_closer(geometry, &ray, active, expected);
+        active = active & vbool_of_uint(first.slot == expected.slot) & vbool_of_refined(first.t == expected.t);
+        const vbool lit = active & last;
+        if (any_lane(lit)) {
+            const vreal ratio = chain_ratio(scene, &focus, choice->inside, choice->target, &ray.origin, ray.direction);
+            const Vec3 radiance = radiance_of_lamp(scene, &ray, &choice->lamp, lit);
+            const vreal share = divide(ratio, fma(ratio, ratio, splat(1)));
+            const Vec3 light = multiply3(multiply3(path->throughput, weight), scale3(share, radiance));
+            path->radiance = choose3(lit, add3(path->radiance, light), path->radiance);
+            active = active & vbool_not(last);
+        }
+        if (!any_lane(active)) return;
+        Point point;
+        Vec3 outward, emitted;
+        if (leg == 0) {
+            expected.slot = choose_uint(active, slot, splat_uint(0));
+            fetch_surface(scene, &ray, &expected, &sphere, &surface, &emitted);
+        }
+        sphere_surface(&ray, &sphere, slot, expected.t, expected.enters, &point, &outward);
+        surface.incoming = ray.direction;
+        surface.enters = expected.enters;
+        surface.normal = choose3(expected.enters, outward, scale3(splat(-1), outward));
+#if EFFECT_TEXTURES
+        if (leg == 0) vary_surface(scene, active, slot, &point, outward, &surface, &emitted);
+#endif
+        if (leg == 0) weight = surface.albedo;
+        /* Reflected, but where the chain enters the ball or leaves it. */
+        const vreal c = at_most(at_least(-dot3(surface.incoming, surface.normal), splat(0)), splat(1));
+        Vec3 onward = normalise3(madd3(splat(2) * c, surface.normal, surface.incoming));
+        vbool through = vbool_none;
+#if EFFECT_DIELECTRIC
+        through = vbool_of_uint((choice->inside > splat_uint(0)) &
+                                ((choice->inside == splat_uint(leg)) | (splat_uint(leg) == splat_uint(0))));
+        if (any_lane(through & active)) {
+            Surface clear = surface;
+            clear.variant = splat_uint(FRESNEL_NONE);
+            const BsdfSample bent = dielectric_sample(&clear, path->key, bounce);
+            onward = choose3(through, bent.direction, onward);
+            active = active & (bent.transmitted | vbool_not(through));
+        }
+#endif
+        ray.origin = point;
+        ray.direction = onward;
+        ray.cull_margin = cull_margin_of(&point);
+        ray.own_slot = slot;
+        ray.inward = (expected.enters & through) | (vbool_not(expected.enters) & vbool_not(through));
+    }
+}
+
+/* Lights the vertices of the lanes `active` through a focuser, each by one point of one lamp. */
+static void light_through_focuser(const Scene *scene, Path *path, vuint bounce, vbool active) {
+    if (!has_focusers(scene)) return;
+    const vuint dimension = bounce + splat_uint(DIMENSIONS_OF_CAUSTICS);
+    ChainChoice choice;
+    choice.probability = choose_focuser(scene, &path->origin, &path->lobe, sample_1d(path->key, dimension + CAUSTIC_FOCUSER), 0,
+                                        &choice.number);
+    const vuint place = choice.number * FOCUSER_REALS, places = choice.number * FOCUSER_UINTS;
+    /* A chain has a segment more than chords, and one to the lamp. */
+    const vreal by_chain = sample_1d(path->key, dimension + CAUSTIC_CHAIN);
+    const vreal reflects = gather_real(scene->focusers, place + FOCUSER_CHAINS);
+    const vreal passes = gather_real(scene->focusers, place + (FOCUSER_CHAINS + 1u));
+    choice.inside = choose_uint(by_chain < reflects, splat_uint(0),
+                                choose_uint(by_chain < reflects + passes, splat_uint(1), splat_uint(2)));
+    active = active & (choice.probability > splat(0)) &
+             (gather_real(scene->focusers, place + FOCUSER_CHAINS + choice.inside) > splat(0)) &
+             vbool_of_uint(path->depth + choice.inside + splat_uint(2) <= splat_uint(scene->max_depth));
+    if (!any_lane(active)) return;
+
+    const vreal by_target = sample_1d(path->key, dimension + CAUSTIC_TARGET);
+    const vuint first = gather_uint(scene->focuser_places + FOCUSER_FIRST, places);
+    const vuint count = gather_uint(scene->focuser_places + FOCUSER_COUNT, places);
+    choice.target = first;
+    vreal below = splat(0);
+    for (uint k = 0;; ++k) {
+        const vbool has = vbool_of_uint(splat_uint(k) < count);
+        if (!any_lane(has & active)) break;
+        const vuint tried = choose_uint(has, first + splat_uint(k), first);
+        const vreal share = gather_real(scene->targets, tried * TARGET_REALS + TARGET_SHARE);
+        choice.target = choose_uint(has & (below <= by_target) & (share > splat(0)), tried, choice.target);
+        below += choose(has, share, splat(0));
+    }
+    choice.lamp.slot = gather_uint(scene->target_lamps, choice.target);
+    choice.far = vbool_of_uint(choice.lamp.slot >= splat_uint(DISC_SLOT));
+    const Ray vertex = path_ray(path);
+    choice.lamp.sphere = sphere_for_ray(&scene->geometry, &vertex, choose_uint(choice.far, splat_uint(0), choice.lamp.slot));
+
+    vreal u, v, far;
+    sample_2d(path->key, dimension + CAUSTIC_POINT, &u, &v);
+    const vreal radius = gather_real(scene->focusers, place + FOCUSER_RADIUS);
+    const vreal inverse_index = divide(splat(1), gather_real(scene->focusers, place + FOCUSER_INDEX));
+    const Vec3 aim = sample_target(scene, &choice, radius, u, v, &far);
+    const Vec3 to_centre =
+        subtract3(subtract3(focuser_centre(scene, choice.number), path->origin.high), path->origin.low);
+    const vreal inverse = divide(splat(1), square_root(dot3(to_centre, to_centre)));
+    const Vec3 axis = scale3(inverse, to_centre);
+    const vreal near = radius * inverse;
+    const vreal cosine = dot3(axis, aim);
+    const Vec3 off = madd3(-cosine, axis, aim);
+    const vreal sine = square_root(dot3(off, off));
+    /* Straight ahead or behind, any direction across the axis is as good as another. */
+    const Vec3 other = choose3(fabs(axis.x) < splat(R(0.5)), vec3(splat(0), axis.z, -axis.y), vec3(-axis.z, splat(0), axis.x));
+    const Vec3 across = normalise3(choose3(sine > splat(0), off, other));
+    const vbool straight = vbool_of_uint(choice.inside == splat_uint(1)); /* an odd number of chords */
+    const vreal target_cosine = choose(straight, cosine, -cosine);
+    /* Only a chain that begins to rise has a maximum above 0. */
+    const vbool rises = near + far + splat(2) * uint_to_real(choice.inside) * inverse_index > splat(2);
+    for (uint piece = 0; piece < 3u; ++piece) {
+        const vreal side = splat(piece == 2u ? R(-1.0) : R(1.0));
+        const vbool tried = piece == 2u ? active : active & rises;
+        if (!any_lane(tried)) continue;
+        vreal sine_in, cosine_in;
+        const vbool found = chain_root(near, far, inverse_index, choice.inside, target_cosine, side * sine, piece == 0u, tried,
+                                       &sine_in, &cosine_in);
+        if (!any_lane(found)) continue;
+        const vreal aside = sine_in * near;
+        const vreal turned = choose(straight, side, -side) * aside;
+        const Vec3 direction = normalise3(madd3(cosine_of(aside), axis, scale3(turned, across)));
+        trace_chain(scene, path, &choice, direction, bounce, found);
+    }
+}
+#endif

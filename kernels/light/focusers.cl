@@ -1,0 +1,289 @@
+/* focusers.cl: balls of glass and mirrors that lead light on to other surfaces: which one is tried from a point, and the
+ * ways through or off it.
+ *
+ * In:    a point and the lobe there, random numbers; a direction to a focuser.   Out: a focuser and the probability of
+ *        choosing it; the angles of incidence by which light from a target reaches the point; densities of directions.
+ * Knows: PackedFocuser and PackedTarget (scene_types.h), the interface of shape/, the lobes' densities.   Does not know:
+ *        paths, shadows, how rays are traced.
+ *
+ * A chain goes from a vertex to a focuser, `inside` it along so many chords (0: a reflection off its outside; 1: through
+ * it; 2: through it, with a reflection inside), and on to a target. It stays in the plane of vertex, centre and target,
+ * and all its lines pass the centre at one distance b, since refraction and reflection at a sphere keep it. With
+ * sin(i) = b / radius and sin(r) = sin(i) / index, and with D and E, the distances of vertex and target from the centre,
+ * the chain has turned about the centre, beyond a straight line and whole half turns, by the angle
+ *
+ *   W(i) = asin(b / D) + asin(b / E) - 2 i + 2 inside r
+ *
+ * which must be beta or -beta, where beta is the angle between the target and the vertex's axis through the centre; from
+ * the other side of the axis for an even number of chords. Its slope
+ *
+ *   g(i) = b' / sqrt(D^2 - b^2) + b' / sqrt(E^2 - b^2) - 2 + 2 inside cos(i) / (index cos(r)),   b' = radius cos(i)
+ *
+ * falls all the way from i = 0 to 90 degrees, since each ratio of roots falls as b grows (D, E and index times radius
+ * exceed the radius). So W is concave: it rises to one maximum and falls from there to its end. There are three
+ * pieces with a root at most: the rise and the fall at beta, and the fall at -beta. From the outer end of its piece,
+ * Newton's method comes closer to the root with every step, without passing it, and says by the sign of the slope that
+ * there is none. W need not be known, but only sin(W - beta) and cos(W - beta), so there is no arc sine; within a piece
+ * the difference is less than half a turn, if 4 asin(1 / index) is (the host leaves out other chains). */
+#if SAMPLES_CAUSTICS
+#define CHORDS_MAX 2u
+#define STEPS_MAX 32u
+#if REAL_IS_DOUBLE
+#define CLOSE_STEP 0x1p-26
+#else
+#define CLOSE_STEP 0x1p-12f
+#endif
+#define CHAIN_RATIO_MAX R(1e15) /* as in lamps_direct.cl */
+
+/* What a focuser may bring to a lobe at a point: `power` is the light that it catches, per steradian as it were. */
+static vreal focuser_importance(__global const real *focuser, const Point *point, const Lobe *lobe) {
+    const Vec3 to_centre = subtract3(splat3(focuser + FOCUSER_CENTRE), point->high);
+    const vreal radius = splat(focuser[FOCUSER_RADIUS]);
+    const vreal distance2 = at_least(dot3(to_centre, to_centre), splat(R(1e-30)));
+    const vreal inverse = divide(splat(1), square_root(distance2));
+    const vreal z = dot3(to_centre, lobe->axis) * inverse;
+    const vreal sine = at_most(radius * inverse, splat(1));
+    const vreal above = z + sine;
+    vreal cosine = choose(fabs(z) < sine, divide(above * above, splat(4) * sine), at_least(z, splat(0)));
+#if EFFECT_METAL
+    /* Metal sees what its cone touches. */
+    const vreal touching = fma(cosine_below(lobe->fuzz), cosine_below(sine), -lobe->fuzz * sine);
+    cosine = choose(is_fuzzy(lobe), choose(z >= touching, splat(1), splat(0)), cosine);
+#endif
+    const vbool outside = distance2 > radius * radius * R(0x1.0001p0);
+    return choose(outside, focuser[FOCUSER_POWER] * cosine * inverse * inverse, splat(0));
+}
+
+/* What the chain of a path is: how many chords it has passed inside the ball, and more than that when it has left the ball. */
+#define CHAIN_LEFT 8u
+#define CHAIN_NONE 0xffu
+
+/* The way from a vertex to a focuser. */
+typedef struct Focus {
+    vuint number;   /* of the focuser */
+    vreal distance; /* of its centre from the vertex */
+    vreal sine;     /* of the angle of incidence */
+    vreal ratio;    /* the density of the direction in the lobe, over the probability of choosing the focuser */
+} Focus;
+
+/* The lanes whose slot is a focuser's. */
+static vbool is_focuser(const Scene *scene, vuint slot) {
+    vbool known = vbool_none;
+    for (uint i = 0; scene->focuser_places[i * FOCUSER_UINTS] != NO_SLOT; ++i)
+        known = known | vbool_of_uint(slot == splat_uint(scene->focuser_places[i * FOCUSER_UINTS]));
+    return known;
+}
+
+/* The focuser that each lane chooses by a number in [0, 1), and its probability; or, where `slots` is given, the one in
+ * the lane's slot. Probability 0: there is none. */
+static vreal choose_focuser(const Scene *scene, const Point *point, const Lobe *lobe, vreal number, const vuint *slots,
+                            vuint *chosen_number) {
+    vreal sum = splat(0), chosen = splat(0), below = splat(0);
+    for (uint i = 0; scene->focuser_places[i * FOCUSER_UINTS] != NO_SLOT; ++i)
+        sum += focuser_importance(scene->focusers + i * FOCUSER_REALS, point, lobe);
+    const vreal target = number * sum;
+    *chosen_number = splat_uint(0);
+    for (uint i = 0; scene->focuser_places[i * FOCUSER_UINTS] != NO_SLOT; ++i) {
+        const vreal importance = focuser_importance(scene->focusers + i * FOCUSER_REALS, point, lobe);
+        vbool taken = (below <= target) & (importance > splat(0));
+        if (slots != 0) taken = vbool_of_uint(*slots == splat_uint(scene->focuser_places[i * FOCUSER_UINTS]));
+        *chosen_number = choose_uint(taken, splat_uint(i), *chosen_number);
+        chosen = choose(taken, importance, chosen);
+        below += importance;
+    }
+    return choose(chosen > splat(0), divide(chosen, sum), splat(0));
+}
+
+static Vec3 focuser_centre(const Scene *scene, vuint number) {
+    const vuint place = number * FOCUSER_REALS + FOCUSER_CENTRE;
+    return vec3(gather_real(scene->focusers, place), gather_real(scene->focusers + 1u, place),
+                gather_real(scene->focusers + 2u, place));
+}
+
+static Vec3 target_centre(const Scene *scene, vuint target) {
+    const vuint place = target * TARGET_REALS + TARGET_CENTRE;
+    return vec3(gather_real(scene->targets, place), gather_real(scene->targets + 1u, place),
+                gather_real(scene->targets + 2u, place));
+}
+
+static vreal cosine_of(vreal sine) { return square_root(at_least((splat(1) - sine) * (splat(1) + sine), splat(0))); }
+
+/* Along a unit direction, which meets the focuser. `drawn`: it was drawn from the lobe. */
+static Focus focus_along(const Scene *scene, const Point *point, const Lobe *lobe, Vec3 direction, int drawn, vuint number,
+                         vreal probability) {
+    Focus focus;
+    const Vec3 to_centre = subtract3(subtract3(focuser_centre(scene, number), point->high), point->low);
+    const Vec3 across = madd3(-dot3(to_centre, direction), direction, to_centre);
+    const vreal radius = gather_real(scene->focusers, number * FOCUSER_REALS + FOCUSER_RADIUS);
+    const vreal sine = divide(square_root(dot3(across, across)), radius);
+    focus.number = number;
+    focus.distance = square_root(dot3(to_centre, to_centre));
+    /* Where rounding has it that the ray passes beside the ball, or through its middle, the formulas still hold. */
+    focus.sine = at_least(at_most(sine, splat(R(1.0) - R(0x1p-22))), splat(R(0x1p-40)));
+    focus.ratio = divide(scatter_pdf(lobe, direction, drawn), choose(probability > splat(0), probability, splat(1)));
+    return focus;
+}
+
+/* A number of the complex plane, and products by the rules for them: angles add up. */
+typedef struct Turn {
+    vreal cosine, sine;
+} Turn;
+
+static Turn turn_by_sine(vreal sine) {
+    Turn turn;
+    turn.cosine = cosine_of(sine);
+    turn.sine = sine;
+    return turn;
+}
+
+static Turn turn_on(Turn a, Turn b) {
+    Turn turn;
+    turn.cosine = fma(a.cosine, b.cosine, -(a.sine * b.sine));
+    turn.sine = fma(a.sine, b.cosine, a.cosine * b.sine);
+    return turn;
+}
+
+static Turn turn_back(Turn a, Turn b) {
+    b.sine = -b.sine;
+    return turn_on(a, b);
+}
+
+/* W(i), as a turn, and the cosine of refraction. `near` and `far`: the radius over the distances of vertex and target. */
+static Turn chain_turn(vreal sine, vreal cosine, vreal near, vreal far, vreal inverse_index, vuint inside, Turn *from,
+                       Turn *to, vreal *refracted) {
+    Turn incidence;
+    incidence.cosine = cosine;
+    incidence.sine = sine;
+    *from = turn_by_sine(sine * near);
+    *to = turn_by_sine(sine * far);
+    const Turn refraction = turn_by_sine(sine * inverse_index);
+    *refracted = refraction.cosine;
+    Turn turn = turn_back(turn_back(turn_on(*from, *to), incidence), incidence);
+    const Turn chord = turn_on(refraction, refraction);
+    for (uint k = 0; k < CHORDS_MAX; ++k) {
+        const vbool has = vbool_of_uint(inside > splat_uint(k));
+        const Turn more = turn_on(turn, chord);
+        turn.cosine = choose(has, more.cosine, turn.cosine);
+        turn.sine = choose(has, more.sine, turn.sine);
+    }
+    return turn;
+}
+
+/* The root of one piece: the rise, or the fall, at an angle whose cosine and sine are given. Returns the lanes of `active`
+ * that have one. */
+static vbool chain_root(vreal near, vreal far, vreal inverse_index, vuint inside, vreal cosine_target, vreal sine_target,
+                        int rising, vbool active, vreal *sine_found, vreal *cosine_found) {
+    const vreal chords = splat(2) * uint_to_real(inside) * inverse_index;
+    Turn target, at;
+    target.cosine = cosine_target;
+    target.sine = sine_target;
+    at.cosine = splat(rising ? R(1.0) : R(0.0));
+    at.sine = splat(rising ? R(0.0) : R(1.0));
+    vbool searching = active, found = vbool_none;
+    for (uint step = 0; step < STEPS_MAX && any_lane(searching); ++step) {
+        Turn from, to;
+        vreal refracted;
+        const Turn off = turn_back(chain_turn(at.sine, at.cosine, near, far, inverse_index, inside, &from, &to, &refracted), target);
+        const vreal slope = fma(at.cosine, divide(near, from.cosine) + divide(far, to.cosine) + divide(chords, refracted),
+                                splat(-2));
+        const vbool ahead = off.cosine > splat(0);
+        const vbool here = ahead & (fabs(off.sine) < splat(R(4.0) * ROUNDOFF));
+        const vbool before = off.sine < splat(0);
+        const vbool sloped = rising ? slope > splat(0) : slope < splat(0);
+        /* Beyond a root by more than rounding: of a piece that has none. */
+        const vbool beyond = vbool_not(before) & vbool_not(ahead & (off.sine < splat(R(0x1p-18))));
+        const vbool lost = vbool_not(here) & (beyond | vbool_not(sloped));
+        /* A sine is less than its angle, and 1 less than an obtuse one: the step does not pass the root. */
+        const vreal rest = choose(ahead, -off.sine, splat(1));
+        const vreal tangent = divide(R(0.5) * rest, choose(sloped, slope, splat(rising ? R(1.0) : R(-1.0))));
+        /* Turns by 2 atan(tangent), no more than 2 tangent. */
+        const vreal inverse = divide(splat(1), fma(tangent, tangent, splat(1)));
+        Turn by;
+        by.cosine = fma(-tangent, tangent, splat(1)) * inverse;
+        by.sine = splat(2) * tangent * inverse;
+        const Turn next = turn_on(at, by);
+        const vbool arrived = here | (vbool_not(before) & vbool_not(beyond));
+        /* What the step leaves of the difference is of the order of its square. */
+        const vbool close = fabs(tangent) < splat(CLOSE_STEP);
+        const vbool moves = searching & vbool_not(arrived) & vbool_not(lost);
+        found = found | (searching & vbool_not(lost) & (arrived | close));
+        at.cosine = choose(moves, next.cosine, at.cosine);
+        at.sine = choose(moves, next.sine, at.sine);
+        const vbool left = (at.sine < splat(0)) | (at.cosine < splat(0));
+        searching = moves & vbool_not(close) & vbool_not(left);
+        /* What has not arrived after so many steps is as close to the maximum as rounding lets it come. */
+        if (step == STEPS_MAX - 1u) found = found | searching;
+    }
+    const vreal length = fma(at.sine, at.sine, at.cosine * at.cosine);
+    const vreal shorten = fma(length, splat(R(-0.5)), splat(R(1.5)));
+    *sine_found = at.sine * shorten;
+    *cosine_found = at.cosine * shorten;
+    return found & active & (at.sine >= splat(0)) & (at.cosine >= splat(0));
+}
+
+/* The probability with which a path that meets the focuser at this angle takes the chain: of reflection and refraction as
+ * dielectric.cl chooses between them. */
+static vreal chain_probability(const Scene *scene, const Focus *focus, vuint inside) {
+    vreal outer = splat(1), inner = splat(0);
+#if EFFECT_DIELECTRIC
+    const vuint variant = gather_uint(scene->focuser_places, focus->number * FOCUSER_UINTS + FOCUSER_VARIANT);
+    const vbool glass = vbool_of_uint(variant != splat_uint(FOCUSER_MIRROR));
+    const vreal n = gather_real(scene->focusers, focus->number * FOCUSER_REALS + FOCUSER_INDEX);
+    const vreal inverse = divide(splat(1), n);
+    const vreal c = cosine_of(focus->sine), t = cosine_of(focus->sine * inverse);
+    const vbool exact = vbool_of_uint(variant == splat_uint(FRESNEL_EXACT));
+    const vbool none = vbool_of_uint(variant == splat_uint(FRESNEL_NONE));
+    vreal first = choose(exact, fresnel_exact(c, n, t), fresnel_schlick(c, inverse));
+    inner = choose(exact, fresnel_exact(t, inverse, c), fresnel_schlick(t, n));
+    first = choose(none, splat(0), first);
+    inner = choose(none | vbool_not(glass), splat(0), inner);
+    outer = choose(glass, first, outer);
+#endif
+    const vreal through = (splat(1) - outer) * (splat(1) - inner);
+    return choose(vbool_of_uint(inside == splat_uint(0)), outer,
+                  choose(vbool_of_uint(inside == splat_uint(1)), through, through * inner));
+}
+
+/* The density with which a path goes this chain by chance, over that with which it is drawn as one to the target.
+ * `origin` and `direction`: of its last line, which meets the lamp. */
+static vreal chain_ratio(const Scene *scene, const Focus *focus, vuint inside, vuint target, const Point *origin,
+                         Vec3 direction) {
+    const vuint place = focus->number * FOCUSER_REALS;
+    const vreal radius = gather_real(scene->focusers, place + FOCUSER_RADIUS);
+    const vreal inverse_index = divide(splat(1), gather_real(scene->focusers, place + FOCUSER_INDEX));
+    const vreal share = gather_real(scene->focusers, place + FOCUSER_CHAINS + inside);
+    const vuint aim = target * TARGET_REALS;
+    const vreal extent = gather_real(scene->targets, aim + TARGET_EXTENT);
+    const vbool far = vbool_of_uint(gather_uint(scene->target_lamps, target) >= splat_uint(DISC_SLOT));
+    /* Where the line crosses the plane of the target. */
+    const Vec3 centre = focuser_centre(scene, focus->number), aimed = target_centre(scene, target);
+    const Vec3 axis = subtract3(aimed, centre);
+    const vreal along = dot3(direction, axis);
+    const vreal length = dot3(subtract3(aimed, origin->high), axis);
+    const vreal t = divide(length, choose(far | vbool_not(along > splat(0)), splat(1), along));
+    const Vec3 crossing = subtract3(madd3(t, direction, origin->high), centre);
+    const vreal near = divide(radius, focus->distance);
+    const vreal inverse_distance = divide(splat(1), square_root(choose(far, splat(1), dot3(crossing, crossing))));
+    const vreal beyond = choose(far, splat(0), radius * inverse_distance);
+    const vreal cosine = cosine_of(focus->sine);
+    Turn from, to;
+    vreal refracted;
+    const Turn turn = chain_turn(focus->sine, cosine, near, beyond, inverse_index, inside, &from, &to, &refracted);
+    /* Lengths in radii: from the vertex and to the target, where the line passes the centre. */
+    const vreal before = divide(from.cosine, near);
+    const vreal after = divide(to.cosine, choose(far, splat(1), beyond));
+    const vreal power =
+        divide(splat(2), cosine) - divide(splat(2) * uint_to_real(inside) * inverse_index, refracted);
+    const vreal bending = fma(-power, before, splat(1));
+    const vreal spread_across = divide(fabs(turn.sine), focus->sine * near);
+    const vreal solid_angle = spread_across * fabs(bending);
+    const vreal area = divide(spread_across * fabs(fma(after, bending, before)), choose(far, splat(1), beyond)) * radius * radius;
+    const vreal axis_length = square_root(dot3(axis, axis));
+    const vreal slant = choose(far | vbool_not(along > splat(0)), splat(1), divide(along, axis_length));
+    const vreal pi_inverse = splat(PI_INVERSE);
+    const vreal density = share * gather_real(scene->targets, aim + TARGET_SHARE) * pi_inverse *
+                          choose(far, divide(solid_angle, splat(2) * extent), divide(area, extent * extent * slant));
+    const vreal ratio = divide(focus->ratio * chain_probability(scene, focus, inside), choose(density > splat(0), density, splat(1)));
+    return choose(density > splat(0), at_most(ratio, splat(CHAIN_RATIO_MAX)), splat(CHAIN_RATIO_MAX));
+}
+#endif
