@@ -1,0 +1,263 @@
+#!/usr/bin/env python3
+"""Light through balls of glass and off mirrors, sampled: closed forms, and the same mean as by chance.
+
+usage: test_caustics.py PROGRAM SOURCE_DIR [--deep | CASE...]
+
+A sun of a twentieth of a degree stands in the zenith, and a ball above a matte floor. Rays are parallel, so each circle of them,
+of impact parameter b, falls on a circle of the floor of radius x(b), and the floor's irradiance is that of the sun times the
+sum of b |db / dx| / |x| and of what the surfaces let through, over all b with |x(b)| = x: the map of rays. The paths are cut
+where nothing else can add to it. These suns are so small that by chance a path finds one once in a million.
+"""
+import math
+import statistics
+import sys
+
+from program_cases import picture, run_cases
+from pfm import read_pfm
+
+HALF = 0.05  # degrees
+# The floor is a sphere of a radius that, like the camera's height above it, single precision holds exactly: its place matters.
+ALBEDO = 0.5
+SUN = 1e6
+FLOOR = {"type": "lambertian", "albedo": [ALBEDO] * 3}
+MIRROR = {"type": "metal", "albedo": [0.9, 0.6, 0.3]}
+
+
+def glass(index=1.5, fresnel="none"):
+    return {"type": "dielectric", "refraction_index": index, "fresnel": fresnel}
+
+
+def document(ball, height, lookfrom, lookat, depth, discs=(), spheres=(), vfov=0.0005, background=0.0, **materials):
+    return {"camera": {"image_width": 4, "aspect_ratio": 1, "max_depth": depth, "vfov": vfov, "lookfrom": lookfrom, "lookat": lookat},
+            "background": {"bottom": [background] * 3, "top": [background] * 3, "discs": list(discs)},
+            "materials": {"floor": FLOOR, "ball": ball, **materials},
+            "spheres": [{"center": [0, -1024, 0], "radius": 1024, "material": "floor"},
+                        {"center": [0, height, 0], "radius": 1, "material": "ball"}, *spheres]}
+
+
+ZENITH = {"direction": [0, 1, 0], "half_angle": HALF, "radiance": [SUN] * 3}
+
+
+def mean(scene, spp, *options):
+    found = read_pfm(picture(scene, "--spp", str(spp), "--caustics", "on", *options))[2]
+    return [sum(found[c::3]) / (len(found) // 3) for c in range(3)]
+
+
+def fresnel(cosine, index):
+    """Reflectance from outside, unpolarised."""
+    other = math.sqrt(1 - (1 - cosine * cosine) / index ** 2)
+    across, along = (cosine - index * other) / (cosine + index * other), (index * cosine - other) / (index * cosine + other)
+    return (across * across + along * along) / 2
+
+
+def landing(b, height, turn):
+    """Where on the floor a ray of impact parameter b falls that has been turned towards the axis by an angle."""
+    return b * math.cos(turn) - (height - b * math.sin(turn)) * math.tan(turn)
+
+
+def through(index):
+    return lambda b: 2 * (math.asin(b) - math.asin(b / index))
+
+
+def mirrored(b):
+    return 2 * math.asin(b) - math.pi
+
+
+def irradiance(x, above, turn, share, low=1e-9, high=1 - 1e-9, steps=20000):
+    """Over that of the sun: all circles of rays that fall at x, found by bisection between the points of a fine grid."""
+    height = above + x * x / 2048  # the floor curves down
+
+    def place(b):
+        return landing(b, height, turn(b)) if abs(turn(b)) < math.pi / 2 and turn(b) != 0 else math.inf
+
+    total = 0
+    for side in (1, -1):
+        last_b, last = None, None
+        for i in range(steps + 1):
+            b = low + (high - low) * i / steps
+            off = place(b) - side * x
+            if last is not None and math.isfinite(off) and math.isfinite(last) and off * last < 0:
+                a, z, sign = last_b, b, last
+                for _ in range(60):
+                    middle = (a + z) / 2
+                    if (place(middle) - side * x) * sign > 0:
+                        a = middle
+                    else:
+                        z = middle
+                root, h = (a + z) / 2, 1e-6
+                slope = (place(root + h) - place(root - h)) / (2 * h)
+                total += share(root) * root / abs(slope * x)
+            last_b, last = b, off
+    return total
+
+
+def full_sun():
+    return SUN * math.pi * math.sin(math.radians(HALF)) ** 2 * ALBEDO / math.pi
+
+
+WORST = [0.0]
+
+
+def close(found, wanted, allowed, what):
+    WORST[0] = max(WORST[0], abs(found / wanted - 1))
+    assert abs(found / wanted - 1) <= allowed, f"{what}: {found} instead of {wanted}, {found / wanted - 1:+.3%}"
+
+
+def at_floor(ball, height, x, depth, spp, **options):
+    """The radiance of the floor at a distance from the axis, seen from the side, below the ball."""
+    return mean(document(ball, height, [x, 0.375, 6], [x, 0, 0], depth, [ZENITH], **options), spp)
+
+
+def largest():
+    return f"within {WORST[0]:.2%}"
+
+
+def on_axis():
+    """The power of a ball lens: paraxial rays meet at index / (2 (index - 1)) radii from its centre."""
+    for height in (2.5, 4.0):
+        wanted = full_sun() / (1 - height / 1.5) ** 2
+        close(at_floor(glass(), height, 0.001, 4, 4096)[0], wanted, 0.002, f"on the axis, height {height}")
+    return largest()
+
+
+def across():
+    """Points with one circle of rays and points with three."""
+    for x, height in ((0.3, 4.0), (0.8, 4.0), (0.1, 1.6), (0.03, 2.0), (0.02, 1.2)):
+        wanted = full_sun() * irradiance(x, height, through(1.5), lambda b: 1)
+        close(at_floor(glass(), height, x, 4, 4096)[0], wanted, 0.003, f"x = {x}, height {height}")
+    return largest()
+
+
+def what_surfaces_let_through():
+    """Fresnel's equations, at both surfaces."""
+    for x, height in ((0.3, 4.0), (1.5, 4.0)):
+        def share(b):
+            return (1 - fresnel(math.sqrt(1 - b * b), 1.5)) ** 2
+
+        wanted = full_sun() * irradiance(x, height, through(1.5), share)
+        if x > 1:
+            wanted += full_sun() * (1 + irradiance(x, height, mirrored, lambda b: fresnel(math.sqrt(1 - b * b), 1.5)))
+        close(at_floor(glass(fresnel="exact"), height, x, 4, 8192)[0], wanted, 0.003, f"x = {x}")
+    return largest()
+
+
+def off_a_mirror():
+    """The sun beside what a mirror adds to it, without its own share of the light."""
+    for x, height in ((1.3, 1.2), (1.6, 1.2), (2.0, 1.2)):
+        found = at_floor(MIRROR, height, x, 3, 4096)
+        for c in range(3):
+            added = found[c] - full_sun()
+            wanted = full_sun() * MIRROR["albedo"][c] * irradiance(x, height, mirrored, lambda b: 1)
+            close(added, wanted, 0.005, f"x = {x}, colour {c}")
+    return largest()
+
+
+def cut_by_depth():
+    """A ray through a ball has three segments from the floor, and one before; one segment less, and the floor is dark."""
+    assert at_floor(glass(), 4.0, 0.001, 3, 64)[0] == 0, "a chain that is too long"
+    assert at_floor(glass(), 4.0, 0.001, 4, 64)[0] > 0, "no chain of the right length"
+    beside = at_floor(MIRROR, 1.2, 1.3, 2, 64)[0]
+    close(beside, full_sun(), 0.001, "without the mirror's light")
+
+
+BLACK = {"type": "lambertian", "albedo": [0, 0, 0]}
+
+
+def hidden():
+    """A black ball before the sun, before the floor, and inside the glass."""
+    for what, center, radius in (("before the sun", [0, 9, 0], 1.5), ("before the floor", [0, 0.25, 0], 0.2), ("inside", [0, 4, 0], 0.95)):
+        found = at_floor(glass(), 4.0, 0.001, 4, 64, spheres=[{"center": center, "radius": radius, "material": "black"}], black=BLACK)
+        assert found[0] == 0, f"{what}: {found}"
+
+
+
+
+def room(ball, lamp, depth, floor=None, sun=None, second=None):
+    """A lamp above a floor with a ball, seen from above: wide, so that its noise is that of light on the floor."""
+    spheres = [{"center": [0, -100, 0], "radius": 100, "material": "floor"}, {"center": [0, 0.5, 0], "radius": 0.5, "material": "ball"}]
+    if lamp:
+        spheres.append({"center": [0.6, 1.7, 0.2], "radius": lamp, "material": "lamp"})
+    if second:
+        spheres.append({"center": [-1.1, 0.5, 0.2], "radius": 0.5, "material": "second"})
+    discs = [{"direction": [1, 2, 0.5], "half_angle": sun, "radiance": [20, 20, 20]}] if sun else []
+    return {"camera": {"image_width": 12, "aspect_ratio": 1, "max_depth": depth, "vfov": 30, "lookfrom": [0, 2.2, 4], "lookat": [-0.2, 0.1, 0]},
+            "background": {"bottom": [0, 0, 0], "top": [0, 0, 0], "discs": discs},
+            "materials": {"floor": floor or FLOOR, "ball": ball, "second": second or MIRROR,
+                          "lamp": {"type": "diffuse_light", "emit": [8, 8, 8]}},
+            "spheres": spheres}
+
+
+def pairs(scene, spp, seeds=8):
+    """How many standard errors the means with and without lie apart, of pictures with independent seeds."""
+    found = {}
+    for word in ("off", "on"):
+        means = []
+        for seed in range(seeds):
+            numbers = read_pfm(picture(scene, "--spp", str(spp), "--seed", str(seed + (1000 if word == "on" else 0)), "--caustics", word))[2]
+            means.append(sum(numbers) / len(numbers))
+        found[word] = statistics.mean(means), statistics.stdev(means) / math.sqrt(seeds)
+    (a, da), (b, db) = found["off"], found["on"]
+    return (b - a) / math.hypot(da, db), math.hypot(da, db) / a
+
+
+def same(name, scene, spp):
+    z, error = pairs(scene, spp)
+    assert abs(z) < 4, f"{name}: {z:+.1f} standard errors of {error:.2%}"
+    assert error < 0.01, f"{name}: only known to {error:.2%}"
+    return f"{z:+.1f} standard errors of {error:.2%}"
+
+
+def same_through_glass():
+    return same("glass", room({"type": "dielectric", "refraction_index": 1.5}, 0.3, 50), 4096)
+
+
+def same_off_a_mirror():
+    return same("mirror", room(MIRROR, 0.3, 50), 4096)
+
+
+def same_of_a_disc():
+    return same("disc", room({"type": "dielectric", "refraction_index": 1.5, "fresnel": "exact"}, 0, 50, sun=12), 4096)
+
+
+def same_rough():
+    return same("fuzzy floor", room({"type": "dielectric", "refraction_index": 1.5}, 0.3, 50,
+                             floor={"type": "metal", "albedo": [0.8] * 3, "fuzz": 0.6}), 4096)
+
+
+def same_deep_cases():
+    same("diamond", room({"type": "dielectric", "refraction_index": 2.4}, 0.3, 50), 4096)
+    same("water, low depth", room({"type": "dielectric", "refraction_index": 1.33}, 0.3, 5), 4096)
+    same("cosine cubed", room({"type": "dielectric", "refraction_index": 1.5}, 0.3, 50,
+                              floor={"type": "lambertian", "albedo": [0.7] * 3, "scatter": "cosine_cubed"}), 4096)
+
+
+def near_lamp():
+    """Lines that reach a lamp close by at a slant: only the plane across the line of centres knows the cosine."""
+    scene = room({"type": "dielectric", "refraction_index": 1.5, "fresnel": "none"}, 0, 6)
+    scene["spheres"] += [{"center": [0, 1.7, 0], "radius": 0.28, "material": "lamp"}]
+    scene["camera"].update({"lookat": [0, 0, 0.3], "vfov": 14})
+    return same("near lamp", scene, 4096)
+
+
+def two_lamps():
+    scene = room({"type": "dielectric", "refraction_index": 1.5, "fresnel": "none"}, 0.3, 6)
+    scene["spheres"] += [{"center": [-0.8, 1.6, 0.2], "radius": 0.2, "material": "lamp"}]
+    return same("two lamps", scene, 4096)
+
+
+def two_balls():
+    return same("two balls", room({"type": "dielectric", "refraction_index": 1.5}, 0.3, 50, second=MIRROR), 4096)
+
+
+def same_bits():
+    """Forms of the kernel."""
+    scene = room({"type": "dielectric", "refraction_index": 1.5}, 0.3, 50, sun=5, second=MIRROR)
+    pictures = [list(read_pfm(picture(scene, "--spp", "4", "--caustics", "on", "--kernel", form))[2]) for form in ("packet", "sample", "pool")]
+    assert pictures[0] == pictures[1] == pictures[2], "forms differ"
+
+
+CASES = [on_axis, across, what_surfaces_let_through, off_a_mirror, cut_by_depth, hidden, same_through_glass, same_off_a_mirror,
+         same_of_a_disc, same_bits]
+DEEP_CASES = [same_rough, near_lamp, two_lamps, two_balls, same_deep_cases]
+
+sys.exit(run_cases(CASES, DEEP_CASES))
