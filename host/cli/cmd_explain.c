@@ -353,14 +353,17 @@ static void look_for_unseen(const BpCommandLine *line, const BpScene *scene, con
     bp_error_clear(&err);
 }
 
-static void print_unseen(const BpScene *scene, const Findings *found, FILE *out) {
+/* `caustics`: rays to lamps go through focusers too. */
+static void print_unseen(const BpScene *scene, const Findings *found, bool caustics, FILE *out) {
+    BpEffects effects;
+    bp_effects_analyse(scene, &effects);
     char noise[32];
     const uint64_t samples = scene->camera.samples_per_pixel;
     if (found->unknown[0] != '\0') {
         fprintf(out, "  %-14s %-4s " BP_HANG "%s\n", "by chance", "?", found->unknown);
     } else if (found->unseen.mean > 0) {
         fprintf(out, "  %-14s %-4s " BP_HANG, "by chance", "yes");
-        bp_unseen_print(scene, &found->unseen, found->luminance, out);
+        bp_unseen_print(scene, &found->unseen, found->luminance, effects.caustics && !caustics, out);
         fprintf(out, " At %" PRIu64 " samples per pixel that is a noise of about %s.\n", samples,
                 bp_format_percent(sqrt(found->unseen.square / (double)samples) / found->luminance, noise,
                                   sizeof noise));
@@ -471,7 +474,7 @@ static BpStatus explain(const BpCommandLine *line, const char *path, const BpDev
         look_for_unseen(line, scene, device, &found);
         if (list == NULL) {
             bp_page_begin(&page, stdout);
-            print_unseen(scene, &found, page.text);
+            print_unseen(scene, &found, line->caustics == BP_CAUSTICS_ON, page.text);
             bp_page_end(&page, line, stdout);
         }
     }

@@ -352,7 +352,8 @@ static void say_unseen(const BpCommandLine *line, const RunResult *result) {
     BpPage page;
     bp_page_begin(&page, stderr);
     fputs("most of this noise is light that samples have hardly found yet. ", page.text);
-    bp_unseen_print(result->scene, &result->unseen, bp_film_expected_luminance(result->film), page.text);
+    bp_unseen_print(result->scene, &result->unseen, bp_film_expected_luminance(result->film),
+                    result->report.effects.caustics && result->report.caustics == BP_CAUSTICS_OFF, page.text);
     fputc('\n', page.text);
     bp_page_end(&page, line, stderr);
 }

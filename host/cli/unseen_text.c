@@ -45,7 +45,8 @@ static bool any_of_kind(const BpScene *scene, const BpUnseenLight *light, BpMate
     return false;
 }
 
-void bp_unseen_print(const BpScene *scene, const BpUnseenLight *light, double luminance, FILE *out) {
+void bp_unseen_print(const BpScene *scene, const BpUnseenLight *light, double luminance, bool caustics,
+                     FILE *out) {
     char share[32], once[32];
     fprintf(out, "About %s of the light ", bp_format_percent(light->mean / luminance, share, sizeof share));
     if (is_direct(light)) {
@@ -55,12 +56,13 @@ void bp_unseen_print(const BpScene *scene, const BpUnseenLight *light, double lu
         print_spheres(scene, light, out);
     }
     fprintf(out, ", and one sample in %s finds it.", bp_format_count(1 / light->found, once, sizeof once));
-    fputs(is_direct(light) ? " What helps: larger lights, or more samples"
-                           : " What helps: larger lamps or discs",
-          out);
-    if (!is_direct(light) && any_of_kind(scene, light, BP_MATERIAL_METAL))
-        fputs(", a fuzz of 1/64 or more for mirrors", out);
-    fputs(is_direct(light) ? "." : ", or many more samples.", out);
+    if (is_direct(light)) {
+        fputs(" What helps: larger lights, or more samples.", out);
+        return;
+    }
+    fprintf(out, " What helps: %slarger lamps or discs", caustics ? "--caustics on, " : "");
+    if (any_of_kind(scene, light, BP_MATERIAL_METAL)) fputs(", a fuzz of 1/64 or more for mirrors", out);
+    fputs(", or many more samples.", out);
 }
 
 json_t *bp_unseen_json(const BpUnseenLight *light, double luminance) {

@@ -11,8 +11,9 @@
 #include <stdio.h>
 
 /* "About 5 % of the light comes by way of spheres[1] (glass), and one sample in 1.1 million finds it." and
- * what helps. `luminance`: the mean of the picture. */
-void bp_unseen_print(const BpScene *scene, const BpUnseenLight *light, double luminance, FILE *out);
+ * what helps. `luminance`: the mean of the picture; `caustics`: --caustics on would find some of it. */
+void bp_unseen_print(const BpScene *scene, const BpUnseenLight *light, double luminance, bool caustics,
+                     FILE *out);
 
 /* null without such light. `luminance` may be NaN: then so is the share. */
 json_t *bp_unseen_json(const BpUnseenLight *light, double luminance);

@@ -101,6 +101,18 @@ static void find_all(const BpScene *scene, Found *found) {
     for (size_t d = 0; d < scene->disc_count; ++d) found->disc_count += caught_of_disc(&scene->discs[d]) > 0;
 }
 
+bool bp_focuses_lamp(const BpScene *scene, size_t sphere, size_t lamp) {
+    return is_focuser(scene, sphere) && caught_of_lamp(scene, sphere, lamp) > 0;
+}
+
+bool bp_focuses_disc(const BpScene *scene, size_t sphere, size_t disc) {
+    return is_focuser(scene, sphere) && caught_of_disc(&scene->discs[disc]) > 0;
+}
+
+uint32_t bp_focuser_vertices(const BpScene *scene, size_t sphere) {
+    return is_mirror(scene, sphere) ? 1 : index_of(scene, sphere) > INSIDE_INDEX_MIN ? 3 : 2;
+}
+
 static bool has_media(const BpScene *scene) {
     if (bp_scene_medium(scene) != 0) return true;
     for (size_t i = 0; i < scene->interior_count; ++i)

@@ -29,6 +29,13 @@ typedef struct BpFocusers {
 /* Whether rays are sent through focusers, in a scene that has rays to lamps. `reason`: why, for a person. */
 bool bp_focusers_explain(const BpScene *scene, size_t size, char *reason);
 
+/* Whether a chain is sought from vertices by way of a sphere to a lamp, or to a disc, where rays are sent
+ * through focusers. */
+bool bp_focuses_lamp(const BpScene *scene, size_t sphere, size_t lamp);
+bool bp_focuses_disc(const BpScene *scene, size_t sphere, size_t disc);
+/* The most spheres' surfaces that such a chain meets at the focuser: 1 for a reflection. */
+uint32_t bp_focuser_vertices(const BpScene *scene, size_t sphere);
+
 /* Points are relative to `origin`. `wanted`: else the table is empty. BP_ERR_MEMORY. On failure `focusers` is
  * empty. Free with bp_focusers_clear(). */
 BpStatus bp_focusers_build(const BpScene *scene, const double origin[3], const BpTree *tree, bool wanted,

@@ -57,8 +57,10 @@ BpStatus bp_pilot_source(char **text, BpError *err) {
     return status;
 }
 
-static BpStatus pilot_create(const BpScene *scene, uint32_t max_depth, BpPilot *pilot, BpError *err) {
-    *pilot = (BpPilot){.scene = scene, .max_depth = max_depth, .plan = bp_pilot_plan(&scene->camera)};
+static BpStatus pilot_create(const BpScene *scene, uint32_t max_depth, bool caustics, BpPilot *pilot,
+                             BpError *err) {
+    *pilot = (BpPilot){
+        .scene = scene, .max_depth = max_depth, .caustics = caustics, .plan = bp_pilot_plan(&scene->camera)};
     BP_TRY(bp_pilot_aim(scene, &pilot->aim, err));
     const size_t squares = (size_t)pilot->plan.width * pilot->plan.height;
     pilot->sums.pixels = squares;
@@ -128,15 +130,15 @@ static BpStatus give(const BpPilot *pilot, BpUnseen **unseen, BpUnseenLight *rep
     return BP_OK;
 }
 
-BpStatus bp_pilot_run(BpWorker *worker, const BpScene *scene, uint32_t max_depth, BpUnseen **unseen,
-                      BpUnseenLight *report, BpError *err) {
+BpStatus bp_pilot_run(BpWorker *worker, const BpScene *scene, uint32_t max_depth, bool caustics,
+                      BpUnseen **unseen, BpUnseenLight *report, BpError *err) {
     const double start = bp_clock_seconds();
     BpPilot pilot;
     BpPilotFlight flight = {0};
     *unseen = NULL;
     *report = (BpUnseenLight){0};
     BP_TRY(bp_worker_wait_for_all(worker, err));
-    BpStatus status = pilot_create(scene, max_depth, &pilot, err);
+    BpStatus status = pilot_create(scene, max_depth, caustics, &pilot, err);
     if (status == BP_OK) status = bp_pilot_flight_create(worker, scene, &flight, err);
     if (status == BP_OK) status = bp_pilot_trace_eyes(&pilot, &flight, err);
     if (status == BP_OK && pilot.aim.pair_count > 0) status = bp_pilot_trace_photons(&pilot, &flight, err);

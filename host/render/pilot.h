@@ -23,8 +23,8 @@ bool bp_pilot_is_needed(const BpScene *scene);
 /* The text that a program needs for it, to be freed. */
 BpStatus bp_pilot_source(char **text, BpError *err);
 
-/* *unseen is NULL if there is none. */
-BpStatus bp_pilot_run(BpWorker *worker, const BpScene *scene, uint32_t max_depth, BpUnseen **unseen,
-                      BpUnseenLight *report, BpError *err);
+/* `caustics`: rays to lamps go through focusers too. *unseen is NULL if there is none. */
+BpStatus bp_pilot_run(BpWorker *worker, const BpScene *scene, uint32_t max_depth, bool caustics,
+                      BpUnseen **unseen, BpUnseenLight *report, BpError *err);
 
 #endif

@@ -44,11 +44,12 @@ static double distance2(const double a[3], const double b[3]) {
 
 /* ---- lights ---- */
 
-static void add_disc(const BpDisc *disc, BpPilotAim *aim) {
+static void add_disc(const BpScene *scene, size_t number, BpPilotAim *aim) {
+    const BpDisc *disc = &scene->discs[number];
     BpPilotLight *light = &aim->lights[aim->light_count];
     const double half = 0.5 * disc->half_angle_degrees * PI / 180, sine = sin(half);
-    *light =
-        (BpPilotLight){.distant = true, .seen = disc->visible_to_camera, .cap = 2 * sine * sine, .share = 1};
+    *light = (BpPilotLight){
+        .distant = true, .disc = number, .seen = disc->visible_to_camera, .cap = 2 * sine * sine, .share = 1};
     memcpy(light->place, disc->direction, sizeof light->place);
     memcpy(light->radiance, disc->radiance, sizeof light->radiance);
     bp_normalize(light->place);
@@ -127,7 +128,7 @@ static void add_texels(const BpScene *scene, size_t room, BpPilotAim *aim) {
         const double row = (double)(i / image->width), column = (double)(i % image->width);
         const double down = PI * (row + 0.5) / image->height, turn = 2 * PI * (column + 0.5) / image->width;
         BpPilotLight *light = &aim->lights[aim->light_count++];
-        *light = (BpPilotLight){.distant = true, .seen = true, .share = (double)each};
+        *light = (BpPilotLight){.distant = true, .disc = SIZE_MAX, .seen = true, .share = (double)each};
         for (int a = 0; a < 3; ++a) {
             light->place[a] = cos(down) * pole[a] + sin(down) * (cos(turn) * seam[a] + sin(turn) * east[a]);
             light->radiance[a] = texel.mean[a] * texel.square / (texel.luminance * texel.luminance);
@@ -160,8 +161,10 @@ static void add_lamps(const BpScene *scene, size_t room, BpPilotAim *aim) {
         below += weight;
         if (count > room && below < next) continue;
         BpPilotLight *light = &aim->lights[aim->light_count++];
-        *light =
-            (BpPilotLight){.seen = true, .sphere = i, .share = count > room && weight < 1 ? 1 / weight : 1};
+        *light = (BpPilotLight){.seen = true,
+                                .disc = SIZE_MAX,
+                                .sphere = i,
+                                .share = count > room && weight < 1 ? 1 / weight : 1};
         light->radius = fabs(r);
         memcpy(light->radiance, material->emit, sizeof light->radiance);
         for (int a = 0; a < 3; ++a)
@@ -174,7 +177,7 @@ static void add_lamps(const BpScene *scene, size_t room, BpPilotAim *aim) {
 static BpStatus find_lights(const BpScene *scene, BpPilotAim *aim, BpError *err) {
     aim->lights = calloc(BP_PILOT_LIGHTS_MAX, sizeof *aim->lights);
     if (aim->lights == NULL) return bp_fail(err, BP_ERR_MEMORY, "out of memory for the lights of a pilot");
-    for (size_t i = 0; i < scene->disc_count; ++i) add_disc(&scene->discs[i], aim);
+    for (size_t i = 0; i < scene->disc_count; ++i) add_disc(scene, i, aim);
     const size_t room = (BP_PILOT_LIGHTS_MAX - aim->light_count) / 2;
     if (scene->environment != NULL && bp_environment_varies(scene->environment)) add_texels(scene, room, aim);
     add_lamps(scene, room, aim);

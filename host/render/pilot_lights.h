@@ -20,6 +20,7 @@ typedef struct BpPilotLight {
     bool distant;    /* a disc of the sky or a texel of the image around; else a lamp */
     bool seen;       /* by camera rays that meet it first */
     size_t sphere;   /* of a lamp */
+    size_t disc;     /* of a disc of the sky; SIZE_MAX: it is none */
     double place[3]; /* unit, to the middle of a distant light; of a lamp the centre, at half of its way */
     double radius;   /* of a lamp */
     double cap;      /* of a distant light: its solid angle over 2 pi, that is, 1 - cos of its half angle */

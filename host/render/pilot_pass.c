@@ -9,7 +9,7 @@
 
 #define PI 3.14159265358979323846
 /* One in GROUP of the rays that have come one way counts, within these bounds. */
-#define GROUP 16u
+#define GROUP 32u
 #define COUNT 16u
 #define COUNT_MIN 4u
 /* Radians: rays that pass farther off say nothing of the light. */

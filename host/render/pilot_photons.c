@@ -6,6 +6,7 @@
  * Does not know: the camera. */
 #include "pilot_state.h"
 
+#include "packed/focusers.h"
 #include "packed/reals.h"
 #include "scene/vector.h"
 
@@ -58,6 +59,14 @@ static double scattered(const BpScene *scene, const BpPilotSegment *segment, con
     return bp_pilot_density(material, normal, back) / arrives * leaves / drawn;
 }
 
+/* Whether a ray to the light finds it by way of the sphere, on which its path has stood so many times and on
+ * nothing else: then it is not left to chance. */
+static bool is_sampled(const BpPilot *pilot, const BpPilotLight *light, uint32_t sphere, uint32_t vertices) {
+    if (!pilot->caustics || vertices > bp_focuser_vertices(pilot->scene, sphere)) return false;
+    if (light->distant) return light->disc != SIZE_MAX && bp_focuses_disc(pilot->scene, sphere, light->disc);
+    return bp_focuses_lamp(pilot->scene, sphere, light->sphere);
+}
+
 /* One path from a light, which counts where it comes to rough points. */
 static void follow_photon(BpPilot *pilot, const BpPilotFlight *flight, uint32_t path,
                           const BpPilotStart *start) {
@@ -66,8 +75,8 @@ static void follow_photon(BpPilot *pilot, const BpPilotFlight *flight, uint32_t 
     const BpPilotLight *light = &pilot->aim.lights[pair->light];
     const uint32_t target = pilot->aim.targets[pair->target];
     double measure = start->measure;
-    uint32_t deposits = 0;
-    bool aimed = false;
+    uint32_t deposits = 0, vertices = 0; /* specular, up to the first rough point */
+    bool aimed = false, alone = true;    /* all of them are the target's */
     BpPilotSegment segment, next;
     for (uint32_t s = 0; bp_pilot_segment(flight, path, BP_PILOT_SEGMENTS_MAX, s, &segment) && measure > 0;
          ++s) {
@@ -76,6 +85,11 @@ static void follow_photon(BpPilot *pilot, const BpPilotFlight *flight, uint32_t 
         if (!aimed && segment.sphere != target) return;
         aimed = true;
         const bool rough = bp_pilot_is_rough(scene, &segment);
+        if (!rough && deposits == 0) {
+            ++vertices;
+            alone = alone && segment.sphere == target;
+        }
+        if (rough && deposits == 0 && alone && is_sampled(pilot, light, target, vertices)) return;
         if (rough) {
             BpPilotPhoton *photon = &pilot->photons[pilot->photon_count++];
             double carried[3];

@@ -23,6 +23,7 @@ typedef struct BpPilotPlan {
 typedef struct BpPilot {
     const BpScene *scene;
     uint32_t max_depth;
+    bool caustics; /* rays to lamps go through focusers too */
     BpPilotAim aim;
     BpPilotPlan plan;
     BpPilotEye *eyes;

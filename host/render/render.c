@@ -324,8 +324,8 @@ static void report_progress(const BpRender *render, bool finished, BpProgress *p
 /* The pilot follows from the scene, so once is enough. */
 static BpStatus run_pilot(BpRender *render, BpError *err) {
     if (!render->has_pilot || render->pilot_done) return BP_OK;
-    BP_TRY(bp_pilot_run(render->workers[0], render->scene, render->options.max_depth, &render->unseen,
-                        &render->pilot, err));
+    BP_TRY(bp_pilot_run(render->workers[0], render->scene, render->options.max_depth,
+                        render->options.caustics == BP_CAUSTICS_ON, &render->unseen, &render->pilot, err));
     render->pilot_done = true;
     return BP_OK;
 }
