@@ -1131,6 +1131,12 @@ MUTANTS = [
     Mutant("no radiance is too dark", "this program: damaged numbers in a film",
            [patch("host/film/film_file.c", "if (!(pixel->mean >= 0 && pixel->square >= 0 &&", "if (!(pixel->mean >= -1e9f && pixel->square >= 0 &&")],
            [test("test_film_damaged", "wrong_numbers_are_refused")]),
+    Mutant("what rays through glass find is claimed as unseen", "own: light that two ways find, counted twice",
+           [patch("host/render/pilot_photons.c", "if (!pilot->caustics ||", "if (pilot->caustics ||")],
+           [Script("tests/unseen/test_unseen_program.py", ("Unseen.test_caustics_on",), "1 exact")]),
+    Mutant("light through two balls counts as found by rays through one", "own: any chain taken for one that is sampled",
+           [patch("host/render/pilot_photons.c", "alone = alone && segment.sphere == target;", "alone = true;")],
+           [Script("tests/unseen/test_unseen_program.py", ("Unseen.test_caustics_on",), "1 exact")]),
     # Light through balls of glass and off mirrors.
     Mutant("chain-without-slope", "caustics",
            [patch("kernels/light/focusers.cl", 'const vreal solid_angle = spread_across * fabs(bending);',
