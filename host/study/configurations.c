@@ -28,6 +28,7 @@ typedef struct Row {
 #define MATH(x) .math = (BP_MATH_##x + 1)
 #define NUMERICS(x) .numerics = (BP_NUMERICS_##x + 1)
 #define LAMPS(x) .lamps = (BP_LAMPS_##x + 1)
+#define CAUSTICS(x) .caustics = (BP_CAUSTICS_##x + 1)
 #define FRESNEL(x) .fresnel = BP_STUDY_FRESNEL_##x
 
 /* One line for each configuration. A new axis that is a setting of base/names.h is a line here; another is
@@ -41,6 +42,8 @@ static const Row rows[] = {
     {"adaptive", "adaptive samples", {.adaptive = true}},
     {"lamps", "rays to lamps", {LAMPS(ON)}},
     {"lamps", "lamps found by chance", {LAMPS(OFF)}},
+    {"caustics", "rays through focusers", {CAUSTICS(ON)}},
+    {"caustics", "caustics found by chance", {CAUSTICS(OFF)}},
     {"depth", "depth 5", {.depth = 5}},
     {"depth", "depth 10", {.depth = 10}},
     {"depth", "depth 20", {.depth = 20}},
@@ -116,6 +119,8 @@ static bool apply(const Row *row, const BpScene *scene, const BpRenderOptions *b
     BP_SETTING_LIST(APPLY)
 #undef APPLY
     if (change->lamps > 0 && bp_render_lamps(scene, &usual) == BP_LAMPS_OFF) return false;
+    const BpRenderOptions through = {.caustics = BP_CAUSTICS_ON};
+    if (change->caustics > 0 && bp_render_caustics(scene, &through) == BP_CAUSTICS_OFF) return false;
     if (change->adaptive) options->adaptive = true;
     if (fresnel_matters(scene, change->fresnel)) configuration->fresnel = change->fresnel;
     write_command(scene, configuration);

@@ -213,6 +213,26 @@ static void test_configurations(void **state) {
     assert_string_equal(find(configurations, count, "depth 50")->command, "--sampler independent");
     bp_scene_destroy(&glass);
     bp_scene_destroy(&matte);
+
+    /* Rays through glass are an axis where there are such rays, and rays to lamps are of use. */
+    BpScene *lit = load("../tests/unseen/scenes/lamp-0.1"), *moving = load("../tests/unseen/scenes/moving");
+    bp_render_defaults(lit, &base);
+    base.sampler = BP_SAMPLER_SOBOL;
+    count = bp_study_configurations(lit, &base, true, configurations);
+    assert_string_equal(find(configurations, count, "rays through focusers")->command, "--caustics on");
+    assert_null(find(configurations, count, "caustics found by chance")); /* that is the base */
+    assert_string_equal(find(configurations, count, "lamps found by chance")->command, "--lamps off");
+    base.caustics = BP_CAUSTICS_ON;
+    count = bp_study_configurations(lit, &base, true, configurations);
+    assert_string_equal(configurations[0].command, "--caustics on");
+    assert_null(find(configurations, count, "rays through focusers"));
+    assert_string_equal(find(configurations, count, "caustics found by chance")->command, "");
+    bp_render_defaults(moving, &base);
+    count = bp_study_configurations(moving, &base, true, configurations);
+    assert_null(find(configurations, count, "rays through focusers"));
+    assert_non_null(find(configurations, count, "lamps found by chance"));
+    bp_scene_destroy(&lit);
+    bp_scene_destroy(&moving);
 }
 
 int main(void) {
