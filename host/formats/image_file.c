@@ -59,6 +59,8 @@ BpStatus bp_image_read(FILE *stream, uint64_t size, const char *path, BpEncoding
     unsigned char first[4] = {0};
     *image = NULL;
     const size_t count = fread(first, 1, sizeof first, stream);
+    if (ferror(stream))
+        return bp_image_fail(&input, err, "found no first bytes"); /* rewind() would forget it */
     rewind(stream);
     for (size_t i = 0; i < sizeof formats / sizeof formats[0]; i++) {
         if (count < formats[i].count || memcmp(first, formats[i].first, formats[i].count) != 0) continue;

@@ -173,8 +173,8 @@ static void follow_eye(BpPilot *pilot, const BpPilotFlight *flight, uint32_t pat
 BpStatus bp_pilot_trace_eyes(BpPilot *pilot, BpPilotFlight *flight, BpError *err) {
     const BpPilotPlan *plan = &pilot->plan;
     const uint32_t total = plan->width * plan->height * plan->of_pixel;
-    for (uint32_t first = 0; first < total; first += BP_PILOT_BATCH) {
-        const uint32_t count = total - first < BP_PILOT_BATCH ? total - first : BP_PILOT_BATCH;
+    for (uint32_t first = 0; first < total; first += flight->batch) {
+        const uint32_t count = total - first < flight->batch ? total - first : flight->batch;
         for (uint32_t i = 0; i < count; ++i) {
             flight->number_data[2 * i] = pixel_of(plan, &pilot->scene->camera, (first + i) / plan->of_pixel);
             flight->number_data[2 * i + 1] = (first + i) % plan->of_pixel;

@@ -37,12 +37,16 @@ static cl_mem make_buffer(BpWorker *worker, size_t bytes, cl_int *code) {
 
 BpStatus bp_pilot_flight_create(BpWorker *worker, const BpScene *scene, BpPilotFlight *flight, BpError *err) {
     const size_t bytes = worker->real_size;
-    const size_t record_bytes = (size_t)BP_PILOT_BATCH * BP_PILOT_SEGMENTS_MAX * PILOT_REALS * bytes;
-    const size_t mark_bytes = (size_t)BP_PILOT_BATCH * BP_PILOT_SEGMENTS_MAX * PILOT_UINTS * sizeof(uint32_t);
-    const size_t number_bytes = (size_t)BP_PILOT_BATCH * 2 * sizeof(uint32_t);
-    const size_t start_bytes = (size_t)BP_PILOT_BATCH * PILOT_START_REALS * bytes;
+    const size_t path_bytes =
+        (size_t)BP_PILOT_SEGMENTS_MAX * PILOT_REALS * bytes; /* the most of all arrays */
+    const uint64_t room = worker->device->info.largest_allocation_bytes / path_bytes;
+    const uint32_t batch = room < 1 ? 1 : room < BP_PILOT_BATCH ? (uint32_t)room : BP_PILOT_BATCH;
+    const size_t record_bytes = batch * path_bytes;
+    const size_t mark_bytes = (size_t)batch * BP_PILOT_SEGMENTS_MAX * PILOT_UINTS * sizeof(uint32_t);
+    const size_t number_bytes = (size_t)batch * 2 * sizeof(uint32_t);
+    const size_t start_bytes = (size_t)batch * PILOT_START_REALS * bytes;
     cl_int code = CL_SUCCESS;
-    *flight = (BpPilotFlight){.worker = worker, .local = BP_LOCAL_SIZE_SAMPLE};
+    *flight = (BpPilotFlight){.worker = worker, .local = BP_LOCAL_SIZE_SAMPLE, .batch = batch};
     bp_camera_origin(scene, flight->origin);
     flight->number_data = malloc(number_bytes);
     flight->mark_data = malloc(mark_bytes);

@@ -17,6 +17,7 @@ typedef struct BpPilotFlight {
     BpWorker *worker;
     cl_kernel kernel;
     size_t local;
+    uint32_t batch; /* paths of one dispatch, at most: BP_PILOT_BATCH, or what the device allocates at once */
     double origin[3]; /* of the space that the device knows, in the scene's */
     cl_mem numbers, starts, records, marks;
     uint32_t *number_data, *mark_data;

@@ -120,19 +120,19 @@ static void write_start(const BpPilotFlight *flight, const BpPilotStart *start, 
 
 BpStatus bp_pilot_trace_photons(BpPilot *pilot, BpPilotFlight *flight, BpError *err) {
     BpRandom random = {.state = 2};
-    BpPilotStart *starts = malloc(BP_PILOT_BATCH * sizeof *starts);
+    BpPilotStart *starts = malloc(flight->batch * sizeof *starts);
     if (starts == NULL) return bp_fail(err, BP_ERR_MEMORY, "no memory for the paths of a pilot");
     BpStatus status = BP_OK;
-    for (uint32_t first = 0; first < BP_PILOT_PHOTONS && status == BP_OK; first += BP_PILOT_BATCH) {
-        for (uint32_t i = 0; i < BP_PILOT_BATCH; ++i) {
+    for (uint32_t first = 0; first < BP_PILOT_PHOTONS && status == BP_OK; first += flight->batch) {
+        const uint32_t left = BP_PILOT_PHOTONS - first, count = left < flight->batch ? left : flight->batch;
+        for (uint32_t i = 0; i < count; ++i) {
             bp_pilot_start(pilot->scene, &pilot->aim, BP_PILOT_PHOTONS, &random, &starts[i]);
             write_start(flight, &starts[i], i);
             flight->number_data[2 * i] = first + i;
             flight->number_data[2 * i + 1] = UINT32_MAX; /* a sample that no camera path has */
         }
-        status = bp_pilot_fly(flight, BP_PILOT_BATCH, BP_PILOT_SEGMENTS_MAX, false, err);
-        for (uint32_t i = 0; i < BP_PILOT_BATCH && status == BP_OK; ++i)
-            follow_photon(pilot, flight, i, &starts[i]);
+        status = bp_pilot_fly(flight, count, BP_PILOT_SEGMENTS_MAX, false, err);
+        for (uint32_t i = 0; i < count && status == BP_OK; ++i) follow_photon(pilot, flight, i, &starts[i]);
     }
     free(starts);
     return status;
