@@ -90,12 +90,8 @@ static Vec3 sample_target(const Scene *scene, const ChainChoice *choice, vreal r
     const vreal aside = choose(choice->far, square_root(m * (splat(2) - m)), extent * square_root(u));
     vreal sine, cosine;
     sin_cos_turn(v, &sine, &cosine);
-    /* Two unit vectors across the axis (T. Duff et al., "Building an Orthonormal Basis, Revisited", JCGT 6(1), 2017). */
-    const vreal sign = copysign(splat(1), w.z);
-    const vreal a = divide(splat(-1), sign + w.z);
-    const vreal b = w.x * w.y * a;
-    const Vec3 s = vec3(fma(sign * w.x * w.x, a, splat(1)), sign * b, -sign * w.x);
-    const Vec3 t = vec3(b, fma(w.y * w.y, a, sign), -w.y);
+    Vec3 s, t;
+    basis_across(w, &s, &t);
     const Vec3 sampled = madd3(along, w, madd3(aside * cosine, s, scale3(aside * sine, t)));
     const vreal inverse = divide(splat(1), square_root(dot3(sampled, sampled)));
     *far = choose(choice->far, splat(0), radius * inverse);

@@ -34,12 +34,8 @@ static Vec3 direction_in_cap(Vec3 axis, vreal cap, vreal u, vreal v) {
     const vreal cosine = splat(1) - m, radius = square_root(m * (splat(2) - m));
     vreal sine_turn, cosine_turn;
     sin_cos_turn(v, &sine_turn, &cosine_turn);
-    /* Two unit vectors across the axis (T. Duff et al., "Building an Orthonormal Basis, Revisited", JCGT 6(1), 2017). */
-    const vreal sign = copysign(splat(1), axis.z);
-    const vreal a = divide(splat(-1), sign + axis.z);
-    const vreal b = axis.x * axis.y * a;
-    const Vec3 s = vec3(fma(sign * axis.x * axis.x, a, splat(1)), sign * b, -sign * axis.x);
-    const Vec3 t = vec3(b, fma(axis.y * axis.y, a, sign), -axis.y);
+    Vec3 s, t;
+    basis_across(axis, &s, &t);
     return normalise3(madd3(cosine, axis, madd3(radius * cosine_turn, s, scale3(radius * sine_turn, t))));
 }
 

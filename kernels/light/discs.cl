@@ -22,13 +22,7 @@ static vbool disc_contains(__global const real *disc, Vec3 direction) {
 static vreal disc_importance(__global const real *disc, const Lobe *lobe) {
     const vreal z = dot3(splat3(disc + DISC_DIRECTION), lobe->axis);
     const vreal sine = splat(disc[DISC_SINE]);
-    const vreal above = z + sine;
-    vreal cosine = choose(fabs(z) < sine, divide(above * above, splat(4) * sine), at_least(z, splat(0)));
-#if EFFECT_METAL
-    /* Metal sees what its cone touches. */
-    const vreal touching = fma(cosine_below(lobe->fuzz), cosine_below(sine), -lobe->fuzz * sine);
-    cosine = choose(is_fuzzy(lobe), choose(z >= touching, splat(1), splat(0)), cosine);
-#endif
+    vreal cosine = cone_cosine(lobe, z, sine);
 #if EFFECT_MEDIA
     cosine = choose(is_phase(lobe), splat(1), cosine);
 #endif

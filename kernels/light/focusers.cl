@@ -43,13 +43,7 @@ static vreal focuser_importance(__global const real *focuser, const Point *point
     const vreal inverse = divide(splat(1), square_root(distance2));
     const vreal z = dot3(to_centre, lobe->axis) * inverse;
     const vreal sine = at_most(radius * inverse, splat(1));
-    const vreal above = z + sine;
-    vreal cosine = choose(fabs(z) < sine, divide(above * above, splat(4) * sine), at_least(z, splat(0)));
-#if EFFECT_METAL
-    /* Metal sees what its cone touches. */
-    const vreal touching = fma(cosine_below(lobe->fuzz), cosine_below(sine), -lobe->fuzz * sine);
-    cosine = choose(is_fuzzy(lobe), choose(z >= touching, splat(1), splat(0)), cosine);
-#endif
+    const vreal cosine = cone_cosine(lobe, z, sine);
     const vbool outside = distance2 > radius * radius * R(0x1.0001p0);
     return choose(outside, focuser[FOCUSER_POWER] * cosine * inverse * inverse, splat(0));
 }

@@ -66,6 +66,22 @@ static vreal cosine_below(vreal sine) {
 }
 #endif
 
+#if SAMPLES_DISCS || SAMPLES_CAUSTICS
+/* The cosine by which a lobe sees what fills a cone: `z`, of the cone's middle from the lobe's axis, clipped by the horizon as if
+ * the rim met it straight on; `sine`, of half the cone's angle. */
+static vreal cone_cosine(const Lobe *lobe, vreal z, vreal sine) {
+    const vreal above = z + sine;
+    const vreal cosine = choose(fabs(z) < sine, divide(above * above, splat(4) * sine), at_least(z, splat(0)));
+#if EFFECT_METAL
+    /* Metal sees what its cone touches. */
+    const vreal touching = fma(cosine_below(lobe->fuzz), cosine_below(sine), -lobe->fuzz * sine);
+    return choose(is_fuzzy(lobe), choose(z >= touching, splat(1), splat(0)), cosine);
+#else
+    return cosine;
+#endif
+}
+#endif
+
 #if SAMPLES_LAMP_TREE
 /* What a child may bring to a lobe at a point. */
 FORCE_INLINE static vreal lamp_importance(const LampChild *child, const Point *point, const Lobe *lobe, vbool fuzzy) {
@@ -270,13 +286,9 @@ static Vec3 sample_cone(const LampCone *cone, vreal u, vreal v) {
     sin_cos_turn(v, &across, &along);
     along = along * sine;
     across = across * sine;
-    /* Two unit vectors across the axis (T. Duff et al., "Building an Orthonormal Basis, Revisited", JCGT 6(1), 2017). */
     const Vec3 w = cone->axis;
-    const vreal sign = copysign(splat(1), w.z);
-    const vreal a = divide(splat(-1), sign + w.z);
-    const vreal b = w.x * w.y * a;
-    const Vec3 s = vec3(fma(sign * w.x * w.x, a, splat(1)), sign * b, -sign * w.x);
-    const Vec3 t = vec3(b, fma(w.y * w.y, a, sign), -w.y);
+    Vec3 s, t;
+    basis_across(w, &s, &t);
     const Vec3 direction = madd3(cosine, w, madd3(along, s, scale3(across, t)));
     /* The length is 1 but for rounding: one step of Newton's method stands for a root and a division. */
     return scale3(fma(dot3(direction, direction), splat(R(-0.5)), splat(R(1.5))), direction);

@@ -1,6 +1,6 @@
 /* warps.cl: from uniform numbers to directions: direct maps, no rejection loops, no division by zero.
  *
- * In:    numbers in [0, 1).   Out: points of the unit disk and the unit sphere, radii in the unit ball.
+ * In:    numbers in [0, 1).   Out: points of the unit disk and the unit sphere, radii in the unit ball; vectors across one.
  * Knows: vector.cl.   Does not know: where the numbers come from. */
 
 /* sin and cos of 2 pi u, u in [0, 1]. The turn is cut at the nearest quarter q, and a short polynomial in
@@ -76,3 +76,15 @@ static Vec3 sample_sphere(vreal u, vreal v) {
 /* The radius of a point uniform in the unit ball has the distribution of the largest of three uniform numbers:
  * P(r < x) = x^3. */
 static vreal sample_ball_radius(vreal u, vreal v, vreal w) { return at_least(at_least(u, v), w); }
+
+#if SAMPLES_LAMPS || EFFECT_SHADOW_CATCHER
+/* Two unit vectors across the unit vector `w`, and across each other (T. Duff et al., "Building an Orthonormal Basis,
+ * Revisited", JCGT 6(1), 2017). */
+static void basis_across(Vec3 w, Vec3 *s, Vec3 *t) {
+    const vreal sign = copysign(splat(1), w.z);
+    const vreal a = divide(splat(-1), sign + w.z);
+    const vreal b = w.x * w.y * a;
+    *s = vec3(fma(sign * w.x * w.x, a, splat(1)), sign * b, -sign * w.x);
+    *t = vec3(b, fma(w.y * w.y, a, sign), -w.y);
+}
+#endif
