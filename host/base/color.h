@@ -15,6 +15,13 @@ static inline double bp_luminance(const float rgb[3]) {
     return sum;
 }
 
+/* The same in double. */
+static inline double bp_luminance_of(const double rgb[3]) {
+    double sum = 0;
+    for (int c = 0; c < 3; c++) sum += bp_luminance_weights[c] * rgb[c];
+    return sum;
+}
+
 /* The sRGB transfer function and its inverse (IEC 61966-2-1:1999). */
 static inline double bp_srgb_from_linear(double linear) {
     return linear <= 0.0031308 ? 12.92 * linear : 1.055 * pow(linear, 1 / 2.4) - 0.055;

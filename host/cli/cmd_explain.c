@@ -300,10 +300,8 @@ static BpStatus follow(const BpCommandLine *line, const BpScene *scene, const Bp
                        path, err);
 }
 
-/* ---- JSON -------------------------------------------------------------------------------------------------
- */
+/* ---- what samples find by chance ---- */
 
-/* JSON has no NaN. */
 /* What was found out about one scene. */
 typedef struct Findings {
     BpEffectInfo effects[BP_EFFECT_COUNT];
@@ -332,9 +330,18 @@ static BpStatus look(const BpCommandLine *line, const BpScene *scene, const BpDe
     while (status == BP_OK && found->unseen.mean > 0 && !progress.finished)
         status = bp_render_step(render, &progress, err);
     if (status == BP_OK && found->unseen.mean > 0) status = bp_render_read_film(render, &film, err);
-    if (film != NULL) found->luminance = bp_film_expected_luminance(film);
+    if (film != NULL) found->luminance = bp_film_claim(film).luminance;
     bp_render_destroy(&render);
     return status;
+}
+
+/* Whether it is worth to open a device. */
+static BpStatus may_be_unseen(const BpScene *scene, bool *may_be, BpError *err) {
+    BpPilotAim aim;
+    BP_TRY(bp_pilot_aim(scene, &aim, err));
+    *may_be = bp_pilot_is_needed(scene, &aim);
+    bp_pilot_aim_clear(&aim);
+    return BP_OK;
 }
 
 /* What samples find by chance only. It takes a device; `device` may be NULL: then one is opened if there may
@@ -345,9 +352,11 @@ static void look_for_unseen(const BpCommandLine *line, const BpScene *scene, con
     BpDeviceInfo *devices = NULL;
     size_t count = 0;
     found->luminance = NAN;
-    if (line->lamps == BP_LAMPS_OFF || !bp_pilot_is_needed(scene)) return;
-    BpStatus status = device != NULL ? BP_OK : bp_setup_devices(line, &devices, &count, &err);
-    if (status == BP_OK) status = look(line, scene, device != NULL ? device : devices, found, &err);
+    bool may_be = false;
+    if (line->lamps == BP_LAMPS_OFF) return;
+    BpStatus status = may_be_unseen(scene, &may_be, &err);
+    if (status == BP_OK && may_be && device == NULL) status = bp_setup_devices(line, &devices, &count, &err);
+    if (status == BP_OK && may_be) status = look(line, scene, device != NULL ? device : devices, found, &err);
     if (status != BP_OK) snprintf(found->unknown, sizeof found->unknown, "%s", err.message);
     free(devices);
     bp_error_clear(&err);
@@ -374,6 +383,10 @@ static void print_unseen(const BpScene *scene, const Findings *found, bool caust
     }
 }
 
+/* ---- JSON -------------------------------------------------------------------------------------------------
+ */
+
+/* JSON has no NaN. */
 static json_t *number_or_null(double value) {
     return isfinite(value) ? json_real(value) : json_null();
 }

@@ -63,8 +63,7 @@ typedef struct RunResult {
     BpComm *comm; /* the ranks that share the picture; NULL: none */
     const BpCheckpoint *checkpoint;
     uint64_t samples_per_pixel; /* of every pixel */
-    double nrmse;               /* NaN: unknown */
-    double unseen_part;         /* of its square: light that has hardly been found yet */
+    BpFilmClaim claim;
     BpUnseenLight unseen;
     BpStopReason stopped_by; /* BP_STOP_NOT_YET: interrupted */
 } RunResult;
@@ -122,18 +121,17 @@ static json_t *stats_json(const RunResult *result) {
                   (json_int_t)result->samples_per_pixel, "max_depth", (json_int_t)options->max_depth, "seed",
                   bp_json_whole(options->seed), "spheres", (json_int_t)info.spheres, "device",
                   device_json(&report->device), "effects", effects_json(&report->effects));
-    json_t *counts =
-        json_pack("{s:o, s:I, s:I, s:[f,f,f], s:o, s:I, s:I, s:I, s:I, s:I, s:I, s:f, s:o}", "seconds",
-                  seconds_json(result), "samples", (json_int_t)report->samples, "rays",
-                  (json_int_t)report->segments, "mean_radiance", mean[0], mean[1], mean[2], "nrmse",
-                  json_number(result->nrmse), "invalid_samples", (json_int_t)report->invalid_samples,
+    json_t *counts = json_pack(
+        "{s:o, s:I, s:I, s:[f,f,f], s:o, s:I, s:I, s:I, s:I, s:I, s:I, s:f, s:o}", "seconds",
+        seconds_json(result), "samples", (json_int_t)report->samples, "rays", (json_int_t)report->segments,
+        "mean_radiance", mean[0], mean[1], mean[2], "nrmse", json_number(result->claim.nrmse),
+        "invalid_samples", (json_int_t)report->invalid_samples,
 #define MEMBER(member, tally, words) #member, (json_int_t)report->member,
-                  BP_INVALID_LIST(MEMBER)
+        BP_INVALID_LIST(MEMBER)
 #undef MEMBER
-                      "cut_paths",
-                  (json_int_t)report->cut_paths, "lamp_rays", (json_int_t)report->lamp_rays, "unseen_part",
-                  result->unseen_part, "unseen",
-                  bp_unseen_json(&result->unseen, bp_film_expected_luminance(result->film)));
+            "cut_paths",
+        (json_int_t)report->cut_paths, "lamp_rays", (json_int_t)report->lamp_rays, "unseen_part",
+        result->claim.unseen_part, "unseen", bp_unseen_json(&result->unseen, result->claim.luminance));
     json_t *run = json_pack("{s:s, s:o, s:I, s:i, s:b, s:o, s:s, s:i, s:i, s:I, s:I, s:I, s:s}",
                             "acceleration", bp_acceleration_name(report->acceleration), "output",
                             bp_json_text(result->output), "first_sample", (json_int_t)options->first_sample,
@@ -348,11 +346,11 @@ static bool is_inside_a_sphere(const BpScene *scene) {
 
 /* Light of which most of the noise is a claim, since samples have hardly found it. */
 static void say_unseen(const BpCommandLine *line, const RunResult *result) {
-    if (!(result->unseen_part > 0.5) || line->quiet) return;
+    if (!(result->claim.unseen_part > 0.5) || line->quiet) return;
     BpPage page;
     bp_page_begin(&page, stderr);
     fputs("most of this noise is light that samples have hardly found yet. ", page.text);
-    bp_unseen_print(result->scene, &result->unseen, bp_film_expected_luminance(result->film),
+    bp_unseen_print(result->scene, &result->unseen, result->claim.luminance,
                     result->report.effects.caustics && result->report.caustics == BP_CAUSTICS_OFF, page.text);
     fputc('\n', page.text);
     bp_page_end(&page, line, stderr);
@@ -378,7 +376,7 @@ static void print_summary(const BpCommandLine *line, const RunResult *result, co
         more_samples = " and part of the next";
     }
     bp_say(line, "%s: %" PRIu32 "x%" PRIu32 ", %s%s, noise %s", result->output, info.width, info.height,
-           count, more_samples, bp_format_percent(result->nrmse, text, sizeof text));
+           count, more_samples, bp_format_percent(result->claim.nrmse, text, sizeof text));
     /* The first launch, in which a driver may compile, says nothing about the rate. */
     const double tracing = fmax(end->seconds - report->first_launch_seconds, 1.0e-9);
     const uint64_t own = report->samples - report->resumed_samples;
@@ -390,9 +388,9 @@ static void print_summary(const BpCommandLine *line, const RunResult *result, co
     say_unseen(line, result);
     /* Half the noise takes four times the samples. */
     const double more = own > 0 ? 3.0 * tracing * (double)report->samples / (double)own : NAN;
-    if (result->nrmse > 0.0 && own > 0)
+    if (result->claim.nrmse > 0.0 && own > 0)
         bp_say(line, "halving the noise: %s more", bp_format_seconds(more, text, sizeof text));
-    else if (isnan(result->nrmse))
+    else if (isnan(result->claim.nrmse))
         bp_say(line, "%s",
                result->samples_per_pixel < 2 ? "estimating noise needs at least two samples per pixel"
                : report->invalid_samples > 0 ? "estimating noise needs valid samples in every pixel"
@@ -458,8 +456,7 @@ static BpStatus deliver(const BpCommandLine *line, BpResultFile *file, const BpS
     bp_render_report(render, &result->report);
     result->samples_per_pixel = bp_render_samples_done(render);
     result->stopped_by = end->reason;
-    result->nrmse = bp_film_nrmse(result->film);
-    result->unseen_part = bp_film_unseen_part(result->film);
+    result->claim = bp_film_claim(result->film);
     BP_TRY(bp_render_unseen(render, &result->unseen, err));
     /* The few samples left would misrepresent the scene, so no picture is written. */
     const uint64_t samples = result->report.samples;

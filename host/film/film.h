@@ -175,8 +175,14 @@ uint64_t bp_film_range_total(const BpFilm *film);
 /* Squared standard error of one pixel's luminance, by the same formula and with its unseen light; NaN with
  * fewer than two replicates. `weights`: of this film (bp_unseen_weigh). */
 double bp_film_squared_error(const BpFilm *film, const BpUnseenWeights *weights, size_t pixel);
-/* The mean luminance of the picture, with light that its samples may not have found yet. */
-double bp_film_expected_luminance(const BpFilm *film);
+/* All that is claimed for a picture, in one pass over its pixels. */
+typedef struct BpFilmClaim {
+    double luminance;   /* the mean, with light that samples may not have found yet */
+    double nrmse;       /* as bp_film_nrmse() */
+    double unseen_part; /* as bp_film_unseen_part() */
+} BpFilmClaim;
+
+BpFilmClaim bp_film_claim(const BpFilm *film);
 /* Why samples are left out, in words: " (2 not finite, 1 negative)"; "" without any. */
 enum { BP_INVALID_TEXT_SIZE = 192 };
 const char *bp_film_invalid_causes(const BpFilm *film, char text[BP_INVALID_TEXT_SIZE]);

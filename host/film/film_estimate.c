@@ -130,40 +130,31 @@ BpStatus bp_film_picture(const BpFilm *film, BpPicture *picture, BpError *err) {
     return BP_OK;
 }
 
-/* Means over the picture. */
-typedef struct MeanErrors {
-    double luminance, squared_error, unseen; /* as of PixelEstimate, the luminance as expected */
-} MeanErrors;
-
-static MeanErrors mean_errors(const BpFilm *film) {
+BpFilmClaim bp_film_claim(const BpFilm *film) {
     const size_t pixels = (size_t)film->width * film->height;
-    MeanErrors mean = {0};
+    double luminance = 0, squared_error = 0, unseen = 0;
     BpUnseenWeights weights;
     bp_unseen_weigh(film, &weights);
     for (size_t pixel = 0; pixel < pixels; pixel++) {
         const PixelEstimate estimate = estimate_pixel(film, &weights, pixel);
-        mean.luminance += estimate.expected;
-        mean.squared_error += estimate.squared_error[3];
-        mean.unseen += estimate.unseen;
+        luminance += estimate.expected;
+        squared_error += estimate.squared_error[3];
+        unseen += estimate.unseen;
     }
-    mean.luminance /= (double)pixels;
-    mean.squared_error /= (double)pixels;
-    mean.unseen /= (double)pixels;
-    return mean;
+    luminance /= (double)pixels;
+    squared_error /= (double)pixels;
+    unseen /= (double)pixels;
+    return (BpFilmClaim){.luminance = luminance,
+                         .nrmse = luminance > 0 ? sqrt(squared_error) / luminance : (double)NAN,
+                         .unseen_part = squared_error > 0 ? unseen / squared_error : 0};
 }
 
 double bp_film_nrmse(const BpFilm *film) {
-    const MeanErrors mean = mean_errors(film);
-    return mean.luminance > 0 ? sqrt(mean.squared_error) / mean.luminance : NAN;
+    return bp_film_claim(film).nrmse;
 }
 
 double bp_film_unseen_part(const BpFilm *film) {
-    const MeanErrors mean = mean_errors(film);
-    return mean.squared_error > 0 ? mean.unseen / mean.squared_error : 0;
-}
-
-double bp_film_expected_luminance(const BpFilm *film) {
-    return mean_errors(film).luminance;
+    return film->unseen != NULL ? bp_film_claim(film).unseen_part : 0;
 }
 
 void bp_film_mean(const BpFilm *film, double mean[3]) {

@@ -196,6 +196,28 @@ BpStatus bp_kernel_text(const char *name, char **text, BpError *err) {
     return BP_OK;
 }
 
+BpStatus bp_kernel_texts(const char *const *names, size_t count, char **text, BpError *err) {
+    Text joined = {0};
+    *text = NULL;
+    for (size_t i = 0; i < count; ++i) {
+        char *file = NULL;
+        const BpStatus status = bp_kernel_text(names[i], &file, err);
+        if (status != BP_OK) {
+            free(joined.bytes);
+            return status;
+        }
+        if (i > 0) text_print(&joined, "#line 1 \"%s\"\n", names[i]);
+        text_append(&joined, file, strlen(file));
+        free(file);
+    }
+    if (joined.failed) {
+        free(joined.bytes);
+        return bp_fail(err, BP_ERR_MEMORY, "no memory for the kernel's source");
+    }
+    *text = joined.bytes;
+    return BP_OK;
+}
+
 BpStatus bp_program_source(const BpProgramOptions *options, const char *extra_name, const char *extra_text,
                            char **source, BpError *err) {
     Text text = {0};

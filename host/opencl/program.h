@@ -21,6 +21,10 @@ const char *bp_kernel_file(const char *name);
  * *text. BP_ERR_FILE: there is no such file. */
 BpStatus bp_kernel_text(const char *name, char **text, BpError *err);
 
+/* The same of one file after the other, at least one, as `extra_text` of a program whose `extra_name` is the
+ * first. */
+BpStatus bp_kernel_texts(const char *const *names, size_t count, char **text, BpError *err);
+
 /* A work-item of the packet form traces this many pixel samples, as many at a time as it has lanes: enough
  * that the last, partly filled round weighs little, few enough that a small chunk still keeps all cores busy.
  */

@@ -192,20 +192,15 @@ static void name_lamps(size_t lamps, size_t discs, bool image, size_t size, char
                  bp_plural(discs));
 }
 
-static double luminance(const double radiance[3]) {
-    double sum = 0;
-    for (int c = 0; c < 3; ++c) sum += bp_luminance_weights[c] * radiance[c];
-    return sum;
-}
-
 /* Whether no part of the sky is darker than any lamp, and the camera stands in no sphere that could hide the
  * sky. A path that misses such a lamp finds as much light in the sky, so rays to lamps cost more than the
  * noise that they take away. */
 static bool sky_outshines_lamps(const BpScene *scene) {
-    const double sky = fmin(luminance(scene->background_bottom), luminance(scene->background_top));
+    const double sky =
+        fmin(bp_luminance_of(scene->background_bottom), bp_luminance_of(scene->background_top));
     for (size_t i = 0; i < scene->sphere_count; ++i) {
         const BpSphere *sphere = &scene->spheres[i];
-        if (luminance(scene->materials[sphere->material].emit) > sky) return false;
+        if (bp_luminance_of(scene->materials[sphere->material].emit) > sky) return false;
         const double *from = scene->camera.lookfrom;
         const double x = from[0] - sphere->center[0], y = from[1] - sphere->center[1],
                      z = from[2] - sphere->center[2];

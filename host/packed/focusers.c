@@ -57,12 +57,6 @@ static double distance(const double a[3], const double b[3]) {
     return hypot(hypot(a[0] - b[0], a[1] - b[1]), a[2] - b[2]);
 }
 
-static double luminance_of(const double radiance[3]) {
-    double sum = 0;
-    for (int c = 0; c < 3; ++c) sum += bp_luminance_weights[c] * radiance[c];
-    return sum;
-}
-
 /* What a focuser catches of a lamp's light: its radiance times the squared sine of half the angle that it
  * fills; 0 if it is no target. */
 static double caught_of_lamp(const BpScene *scene, size_t focuser, size_t lamp) {
@@ -71,12 +65,13 @@ static double caught_of_lamp(const BpScene *scene, size_t focuser, size_t lamp) 
     if (!((fabs(a->radius) + radius) * (1 + 0x1p-10) < apart) ||
         !(radius > SMALLEST * apart && radius <= LARGEST * apart))
         return 0;
-    return luminance_of(scene->materials[b->material].emit) * (radius / apart) * (radius / apart);
+    return bp_luminance_of(scene->materials[b->material].emit) * (radius / apart) * (radius / apart);
 }
 
 static double caught_of_disc(const BpDisc *disc) {
     const double half = disc->half_angle_degrees * (PI / 180);
-    return half > SMALLEST && sin(half) <= LARGEST ? luminance_of(disc->radiance) * sin(half) * sin(half) : 0;
+    return half > SMALLEST && sin(half) <= LARGEST ? bp_luminance_of(disc->radiance) * sin(half) * sin(half)
+                                                   : 0;
 }
 
 /* The spheres that focus and those that are lamps, in the scene's order; more than there is room for are

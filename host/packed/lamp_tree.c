@@ -257,12 +257,6 @@ static bool write_node(Builder *builder, const Run *run, uint32_t level, uint32_
 
 /* ---- the whole ---- */
 
-static double luminance_of(const double radiance[3]) {
-    double luminance = 0;
-    for (int c = 0; c < 3; ++c) luminance += bp_luminance_weights[c] * radiance[c];
-    return luminance;
-}
-
 /* In order of the spheres' numbers, as the device has them. */
 static void collect_lamps(const BpScene *scene, const BpTree *tree, const uint32_t *slot_of, size_t enclosing,
                           Builder *builder) {
@@ -282,7 +276,7 @@ static void collect_lamps(const BpScene *scene, const BpTree *tree, const uint32
         }
         lamp->radius = bp_reals_load(tree->leaves, tree->single_precision, place + 3 * tree->width);
         const double *emit = scene->materials[scene->spheres[i].material].emit;
-        lamp->power = luminance_of(emit) * lamp->radius * lamp->radius;
+        lamp->power = bp_luminance_of(emit) * lamp->radius * lamp->radius;
     }
 }
 
@@ -291,9 +285,9 @@ static double unit_of_power(const BpScene *scene, size_t enclosing) {
     double brightest = 0;
     for (size_t i = 0; i < scene->sphere_count; ++i)
         if (i != enclosing)
-            brightest = fmax(brightest, luminance_of(scene->materials[scene->spheres[i].material].emit));
+            brightest = fmax(brightest, bp_luminance_of(scene->materials[scene->spheres[i].material].emit));
     for (size_t i = 0; i < scene->disc_count; ++i)
-        brightest = fmax(brightest, luminance_of(scene->discs[i].radiance));
+        brightest = fmax(brightest, bp_luminance_of(scene->discs[i].radiance));
     if (scene->environment != NULL) brightest = fmax(brightest, scene->environment->mean);
     return brightest > 0 ? 1 / brightest : 0;
 }

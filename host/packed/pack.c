@@ -121,21 +121,15 @@ static void pack_standpoint(const BpScene *scene, const BpTree *tree, PackedCame
     packed->own_slot[2] = 0x1p-49 * size + (tree->single_precision ? 0x1p-22 * fabs(sphere->radius) : 0);
 }
 
-static double luminance_of(const double radiance[3]) {
-    double sum = 0;
-    for (int c = 0; c < 3; ++c) sum += bp_luminance_weights[c] * radiance[c];
-    return sum;
-}
-
 /* The most that the gradient can bring to a plane: pi times its brightest luminance. */
 static double most_of_gradient(const BpScene *scene) {
-    return PI * fmax(luminance_of(scene->background_bottom), luminance_of(scene->background_top));
+    return PI * fmax(bp_luminance_of(scene->background_bottom), bp_luminance_of(scene->background_top));
 }
 
 /* The most that a disc can: its luminance times its solid angle. */
 static double most_of_disc(const BpDisc *disc) {
     const double s = sin(disc->half_angle_degrees * (PI / 360));
-    return 4 * PI * s * s * luminance_of(disc->radiance);
+    return 4 * PI * s * s * bp_luminance_of(disc->radiance);
 }
 
 /* Of both, all that could reach the shadow catcher; 1 where there is none, so that shares of it are 0. */
@@ -148,7 +142,8 @@ static double most_for_catcher(const BpScene *scene) {
 static void pack_catcher(const BpScene *scene, const double origin[3], double moved, PackedSky *sky) {
     if (!scene->shadow_catcher.present) return;
     const double *const normal = scene->shadow_catcher.normal;
-    const double bottom = luminance_of(scene->background_bottom), top = luminance_of(scene->background_top);
+    const double bottom = bp_luminance_of(scene->background_bottom),
+                 top = bp_luminance_of(scene->background_top);
     const double brightest = fmax(bottom, top);
     sky->catcher[3] = scene->shadow_catcher.distance;
     for (int a = 0; a < 3; ++a) {
@@ -216,7 +211,7 @@ static BpStatus pack_discs(const BpScene *scene, double unit, BpPacked *packed, 
         const BpDisc *disc = &scene->discs[i];
         const double half = disc->half_angle_degrees * (PI / 180), s = sin(half / 2);
         double direction[3] = {disc->direction[0], disc->direction[1], disc->direction[2]};
-        const double luminance = luminance_of(disc->radiance);
+        const double luminance = bp_luminance_of(disc->radiance);
         normalize(direction);
         discs[i] = (PackedDisc){.cap = 2 * s * s,
                                 .power = luminance * unit * sin(half) * sin(half),

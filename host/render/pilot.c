@@ -4,6 +4,7 @@
 #include "base/clock.h"
 #include "base/status.h"
 #include "pilot_state.h"
+#include "scene/vector.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -16,52 +17,24 @@ static bool is_small(const BpCamera *camera, const BpPilotLight *light) {
     const double extent = bp_pilot_pixel_extent(camera);
     const bool parallel = camera->projection == BP_ORTHOGRAPHIC;
     if (light->distant) return light->seen && !parallel && 2 * PI * light->cap < extent;
-    double away = 0;
-    for (int a = 0; a < 3; ++a)
-        away += (light->place[a] - camera->lookfrom[a]) * (light->place[a] - camera->lookfrom[a]);
-    return PI * light->radius * light->radius < (parallel ? extent : extent * away);
+    const double away2 = bp_distance2(light->place, camera->lookfrom);
+    return PI * light->radius * light->radius < (parallel ? extent : extent * away2);
 }
 
-static bool is_needed(const BpScene *scene, const BpPilotAim *aim) {
+bool bp_pilot_is_needed(const BpScene *scene, const BpPilotAim *aim) {
     bool needed = aim->pair_count > 0;
     for (size_t i = 0; i < aim->light_count; ++i)
         needed = needed || is_small(&scene->camera, &aim->lights[i]);
     return needed;
 }
 
-bool bp_pilot_is_needed(const BpScene *scene) {
-    BpPilotAim aim;
-    if (bp_pilot_aim(scene, &aim, NULL) != BP_OK) return true; /* and the render will say why not */
-    const bool needed = is_needed(scene, &aim);
-    bp_pilot_aim_clear(&aim);
-    return needed;
-}
-
-BpStatus bp_pilot_source(char **text, BpError *err) {
-    char *types = NULL, *kernel = NULL;
-    BpStatus status = bp_kernel_text("pilot_types.h", &types, err);
-    if (status == BP_OK) status = bp_kernel_text("entry/pilot.cl", &kernel, err);
-    const char *between = "#line 1 \"entry/pilot.cl\"\n";
-    char *joined = NULL;
-    if (status == BP_OK) {
-        const size_t size = strlen(types) + strlen(between) + strlen(kernel) + 1;
-        joined = malloc(size);
-        if (joined == NULL)
-            status = bp_fail(err, BP_ERR_MEMORY, "no memory for the kernel's source");
-        else
-            snprintf(joined, size, "%s%s%s", types, between, kernel);
-    }
-    free(types);
-    free(kernel);
-    *text = joined;
-    return status;
-}
-
-static BpStatus pilot_create(const BpScene *scene, uint32_t max_depth, bool caustics, BpPilot *pilot,
-                             BpError *err) {
-    *pilot = (BpPilot){
-        .scene = scene, .max_depth = max_depth, .caustics = caustics, .plan = bp_pilot_plan(&scene->camera)};
-    BP_TRY(bp_pilot_aim(scene, &pilot->aim, err));
+static BpStatus pilot_create(const BpScene *scene, const BpPilotAim *aim, uint32_t max_depth, bool caustics,
+                             BpPilot *pilot, BpError *err) {
+    *pilot = (BpPilot){.scene = scene,
+                       .max_depth = max_depth,
+                       .caustics = caustics,
+                       .aim = aim,
+                       .plan = bp_pilot_plan(&scene->camera)};
     const size_t squares = (size_t)pilot->plan.width * pilot->plan.height;
     pilot->sums.pixels = squares;
     pilot->sums.mean = calloc(squares, sizeof *pilot->sums.mean);
@@ -78,7 +51,6 @@ static BpStatus pilot_create(const BpScene *scene, uint32_t max_depth, bool caus
 }
 
 static void pilot_clear(BpPilot *pilot) {
-    bp_pilot_aim_clear(&pilot->aim);
     free(pilot->sums.mean);
     free(pilot->sums.square);
     free(pilot->sums.by_sphere);
@@ -130,23 +102,23 @@ static BpStatus give(const BpPilot *pilot, BpUnseen **unseen, BpUnseenLight *rep
     return BP_OK;
 }
 
-BpStatus bp_pilot_run(BpWorker *worker, const BpScene *scene, uint32_t max_depth, bool caustics,
-                      BpUnseen **unseen, BpUnseenLight *report, BpError *err) {
+BpStatus bp_pilot_run(BpWorker *worker, const BpScene *scene, const BpPilotAim *aim, uint32_t max_depth,
+                      bool caustics, BpUnseen **unseen, BpUnseenLight *report, BpError *err) {
     const double start = bp_clock_seconds();
     BpPilot pilot;
     BpPilotFlight flight = {0};
     *unseen = NULL;
     *report = (BpUnseenLight){0};
     BP_TRY(bp_worker_wait_for_all(worker, err));
-    BpStatus status = pilot_create(scene, max_depth, caustics, &pilot, err);
+    BpStatus status = pilot_create(scene, aim, max_depth, caustics, &pilot, err);
     if (status == BP_OK) status = bp_pilot_flight_create(worker, scene, &flight, err);
     if (status == BP_OK) status = bp_pilot_trace_eyes(&pilot, &flight, err);
-    if (status == BP_OK && pilot.aim.pair_count > 0) status = bp_pilot_trace_photons(&pilot, &flight, err);
+    if (status == BP_OK && pilot.aim->pair_count > 0) status = bp_pilot_trace_photons(&pilot, &flight, err);
     if (status == BP_OK)
         status = bp_pilot_join(scene, pilot.eyes, pilot.eye_count, pilot.photons, pilot.photon_count,
                                max_depth, &pilot.sums, err);
     if (status == BP_OK)
-        bp_pilot_pass(pilot.aim.lights, pilot.aim.light_count, pilot.rays, pilot.ray_count,
+        bp_pilot_pass(pilot.aim->lights, pilot.aim->light_count, pilot.rays, pilot.ray_count,
                       1.0 / pilot.plan.of_pixel, &pilot.sums);
     if (status == BP_OK) status = give(&pilot, unseen, report, err);
     bp_pilot_flight_clear(&flight);

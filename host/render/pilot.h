@@ -13,18 +13,16 @@
 #ifndef BP_RENDER_PILOT_H
 #define BP_RENDER_PILOT_H
 
+#include "pilot_lights.h"
 #include "worker.h"
 
 #include "film/unseen.h"
 
-/* Whether the scene has light that a pilot may find. Looks at all spheres. */
-bool bp_pilot_is_needed(const BpScene *scene);
-
-/* The text that a program needs for it, to be freed. */
-BpStatus bp_pilot_source(char **text, BpError *err);
+/* Whether the scene has light that a pilot may find, in what bp_pilot_aim() has found. */
+bool bp_pilot_is_needed(const BpScene *scene, const BpPilotAim *aim);
 
 /* `caustics`: rays to lamps go through focusers too. *unseen is NULL if there is none. */
-BpStatus bp_pilot_run(BpWorker *worker, const BpScene *scene, uint32_t max_depth, bool caustics,
-                      BpUnseen **unseen, BpUnseenLight *report, BpError *err);
+BpStatus bp_pilot_run(BpWorker *worker, const BpScene *scene, const BpPilotAim *aim, uint32_t max_depth,
+                      bool caustics, BpUnseen **unseen, BpUnseenLight *report, BpError *err);
 
 #endif

@@ -54,8 +54,7 @@ static double chance_of(const BpPilotLight *light, const BpPilotSegment *segment
     if (light->share > 1) return 0;
     if (light->distant) {
         const double near2 = near * near, size2 = 2 * light->cap;
-        for (int a = 0; a < 3; ++a)
-            off2 += (segment->direction[a] - light->place[a]) * (segment->direction[a] - light->place[a]);
+        off2 = bp_distance2(segment->direction, light->place);
         return met || parallel || !light->seen || size2 >= near2 || off2 > near2 ? 0 : size2 / near2;
     }
     for (int a = 0; a < 3; ++a) {
@@ -74,8 +73,8 @@ static double chance_of(const BpPilotLight *light, const BpPilotSegment *segment
 static void pass_directly(BpPilot *pilot, const BpPilotSegment *segment, size_t square) {
     const bool parallel = pilot->scene->camera.projection == BP_ORTHOGRAPHIC;
     const double near = 2 * sqrt(pilot->plan.extent);
-    for (size_t i = 0; i < pilot->aim.light_count && pilot->max_depth > 0; ++i) {
-        const BpPilotLight *light = &pilot->aim.lights[i];
+    for (size_t i = 0; i < pilot->aim->light_count && pilot->max_depth > 0; ++i) {
+        const BpPilotLight *light = &pilot->aim->lights[i];
         const double chance = chance_of(light, segment, near, parallel);
         if (chance > 0)
             bp_pilot_add(&pilot->sums, square, light->radiance, chance / pilot->plan.of_pixel,

@@ -15,11 +15,8 @@
 
 void bp_pilot_add(BpPilotSums *sums, size_t pixel, const double radiance[3], double probability,
                   size_t through) {
-    double y = 0;
-    for (int c = 0; c < 3; ++c) {
-        y += bp_luminance_weights[c] * radiance[c];
-        sums->square_of[c] += radiance[c] * radiance[c] * probability;
-    }
+    const double y = bp_luminance_of(radiance);
+    for (int c = 0; c < 3; ++c) sums->square_of[c] += radiance[c] * radiance[c] * probability;
     sums->mean[pixel] += y * probability;
     sums->square[pixel] += y * y * probability;
     sums->by_sphere[through] += y * y * probability;

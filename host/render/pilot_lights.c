@@ -13,12 +13,6 @@
 
 #define PI 3.14159265358979323846
 
-static double luminance(const double radiance[3]) {
-    double sum = 0;
-    for (int c = 0; c < 3; ++c) sum += bp_luminance_weights[c] * radiance[c];
-    return sum;
-}
-
 bool bp_pilot_is_specular(const BpScene *scene, size_t sphere) {
     const BpMaterial *material = &scene->materials[scene->spheres[sphere].material];
     return material->kind != BP_MATERIAL_INTERFACE &&
@@ -36,12 +30,6 @@ static double ball_of(const BpScene *scene, size_t sphere, double center[3]) {
     return fabs(scene->spheres[sphere].radius) + 0.5 * sqrt(way);
 }
 
-static double distance2(const double a[3], const double b[3]) {
-    double sum = 0;
-    for (int i = 0; i < 3; ++i) sum += (a[i] - b[i]) * (a[i] - b[i]);
-    return sum;
-}
-
 /* ---- lights ---- */
 
 static void add_disc(const BpScene *scene, size_t number, BpPilotAim *aim) {
@@ -53,7 +41,7 @@ static void add_disc(const BpScene *scene, size_t number, BpPilotAim *aim) {
     memcpy(light->place, disc->direction, sizeof light->place);
     memcpy(light->radiance, disc->radiance, sizeof light->radiance);
     bp_normalize(light->place);
-    if (luminance(light->radiance) > 0) ++aim->light_count;
+    if (bp_luminance_of(light->radiance) > 0) ++aim->light_count;
 }
 
 /* Texels are brighter than this, in powers of two over the mean, to be a light of their own. */
@@ -94,8 +82,8 @@ static bool texel_light(const BpImage *image, size_t texel, TexelLight *light) {
                           v * ((1 - u) * (double)corner[2][c] + u * (double)corner[3][c]);
             light->mean[c] += radiance[c] / 16;
         }
-        light->luminance += luminance(radiance) / 16;
-        light->square += luminance(radiance) * luminance(radiance) / 16;
+        light->luminance += bp_luminance_of(radiance) / 16;
+        light->square += bp_luminance_of(radiance) * bp_luminance_of(radiance) / 16;
     }
     return light->luminance > bright;
 }
@@ -147,7 +135,7 @@ static void add_lamps(const BpScene *scene, size_t room, BpPilotAim *aim) {
     size_t count = 0;
     for (size_t i = 0; i < scene->sphere_count; ++i) {
         if (!bp_sphere_is_sampled(scene, i, enclosing)) continue;
-        const double y = luminance(scene->materials[scene->spheres[i].material].emit),
+        const double y = bp_luminance_of(scene->materials[scene->spheres[i].material].emit),
                      r = scene->spheres[i].radius;
         sum += y * y * r * r;
         ++count;
@@ -156,7 +144,7 @@ static void add_lamps(const BpScene *scene, size_t room, BpPilotAim *aim) {
     for (size_t i = 0; i < scene->sphere_count; ++i) {
         if (!bp_sphere_is_sampled(scene, i, enclosing)) continue;
         const BpMaterial *material = &scene->materials[scene->spheres[i].material];
-        const double y = luminance(material->emit), r = scene->spheres[i].radius;
+        const double y = bp_luminance_of(material->emit), r = scene->spheres[i].radius;
         const double weight = y * y * r * r / sum * (double)room;
         below += weight;
         if (count > room && below < next) continue;
@@ -203,7 +191,7 @@ static BpStatus find_targets(const BpScene *scene, BpPilotAim *aim, BpError *err
         if (bp_pilot_is_specular(scene, i)) aim->targets[aim->target_count++] = (uint32_t)i;
     }
     for (int a = 0; a < 3 && scene->sphere_count > 0; ++a) aim->middle[a] = 0.5 * (low[a] + high[a]);
-    aim->reach = scene->sphere_count > 0 ? 0.5 * sqrt(distance2(low, high)) : 0;
+    aim->reach = scene->sphere_count > 0 ? 0.5 * sqrt(bp_distance2(low, high)) : 0;
     return BP_OK;
 }
 
@@ -211,10 +199,10 @@ static BpStatus find_targets(const BpScene *scene, BpPilotAim *aim, BpError *err
  * each brings: by so much they add to the variance of a picture. */
 static double importance(const BpScene *scene, const BpPilotLight *light, uint32_t target) {
     double center[3];
-    const double radius = ball_of(scene, target, center), y = luminance(light->radiance);
+    const double radius = ball_of(scene, target, center), y = bp_luminance_of(light->radiance);
     double extent = 2 * PI * light->cap * PI * radius * radius;
     if (!light->distant) {
-        const double away = fmax(distance2(center, light->place), radius * radius);
+        const double away = fmax(bp_distance2(center, light->place), radius * radius);
         extent = PI * light->radius * light->radius * PI * radius * radius / away;
     }
     return light->share * y * y * extent;
@@ -323,7 +311,7 @@ static double start_distant(const BpPilotAim *aim, const BpPilotLight *light, co
     in_cap(random, light->place, light->cap, toward);
     across(toward, u, v);
     disk(random, point);
-    const double far = aim->reach + sqrt(distance2(aim->middle, center)) + radius;
+    const double far = aim->reach + sqrt(bp_distance2(aim->middle, center)) + radius;
     for (int a = 0; a < 3; ++a) {
         start->direction[a] = -toward[a];
         start->origin[a] = center[a] + far * toward[a] + radius * (point[0] * u[a] + point[1] * v[a]);

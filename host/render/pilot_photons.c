@@ -71,9 +71,9 @@ static bool is_sampled(const BpPilot *pilot, const BpPilotLight *light, uint32_t
 static void follow_photon(BpPilot *pilot, const BpPilotFlight *flight, uint32_t path,
                           const BpPilotStart *start) {
     const BpScene *scene = pilot->scene;
-    const BpPilotPair *pair = &pilot->aim.pairs[start->pair];
-    const BpPilotLight *light = &pilot->aim.lights[pair->light];
-    const uint32_t target = pilot->aim.targets[pair->target];
+    const BpPilotPair *pair = &pilot->aim->pairs[start->pair];
+    const BpPilotLight *light = &pilot->aim->lights[pair->light];
+    const uint32_t target = pilot->aim->targets[pair->target];
     double measure = start->measure;
     uint32_t deposits = 0, vertices = 0; /* specular, up to the first rough point */
     bool aimed = false, alone = true;    /* all of them are the target's */
@@ -126,7 +126,7 @@ BpStatus bp_pilot_trace_photons(BpPilot *pilot, BpPilotFlight *flight, BpError *
     for (uint32_t first = 0; first < BP_PILOT_PHOTONS && status == BP_OK; first += flight->batch) {
         const uint32_t left = BP_PILOT_PHOTONS - first, count = left < flight->batch ? left : flight->batch;
         for (uint32_t i = 0; i < count; ++i) {
-            bp_pilot_start(pilot->scene, &pilot->aim, BP_PILOT_PHOTONS, &random, &starts[i]);
+            bp_pilot_start(pilot->scene, pilot->aim, BP_PILOT_PHOTONS, &random, &starts[i]);
             write_start(flight, &starts[i], i);
             flight->number_data[2 * i] = first + i;
             flight->number_data[2 * i + 1] = UINT32_MAX; /* a sample that no camera path has */

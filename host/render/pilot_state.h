@@ -24,7 +24,7 @@ typedef struct BpPilot {
     const BpScene *scene;
     uint32_t max_depth;
     bool caustics; /* rays to lamps go through focusers too */
-    BpPilotAim aim;
+    const BpPilotAim *aim;
     BpPilotPlan plan;
     BpPilotEye *eyes;
     BpPilotRay *rays; /* of camera paths, behind something specular */

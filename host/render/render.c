@@ -55,31 +55,6 @@ static BpStatus check_options(const BpScene *scene, const BpRenderOptions *optio
     return BP_OK;
 }
 
-/* What the render's programs have behind the kernels that trace: the AOVs, the pilot, or NULL; to be freed.
- */
-static BpStatus appended_source(const BpRender *render, char **text, BpError *err) {
-    char *features = NULL, *pilot = NULL;
-    BpStatus status = BP_OK;
-    *text = NULL;
-    if (render->options.features) status = bp_kernel_text("entry/aovs.cl", &features, err);
-    if (status == BP_OK && render->has_pilot) status = bp_pilot_source(&pilot, err);
-    if (status == BP_OK && features != NULL && pilot != NULL) {
-        const char *between = "#line 1 \"pilot_types.h\"\n";
-        const size_t size = strlen(features) + strlen(between) + strlen(pilot) + 1;
-        *text = malloc(size);
-        if (*text != NULL)
-            snprintf(*text, size, "%s%s%s", features, between, pilot);
-        else
-            status = bp_fail(err, BP_ERR_MEMORY, "no memory for the kernel's source");
-    } else if (status == BP_OK) {
-        *text = features != NULL ? features : pilot;
-        return BP_OK;
-    }
-    free(features);
-    free(pilot);
-    return status;
-}
-
 /* `open`: the device, if it is open already; NULL: it is to be opened. */
 static BpStatus open_worker(BpRender *render, const BpDeviceInfo *device, BpDevice *open, size_t index,
                             BpError *err) {
@@ -104,9 +79,18 @@ static BpStatus open_worker(BpRender *render, const BpDeviceInfo *device, BpDevi
     render->pack_seconds += bp_clock_seconds() - start - packed.tree.build_seconds;
     BpStatus status = BP_OK;
     setup.device = open;
-    status = appended_source(render, &appended, err);
-    setup.extra_name = render->options.features ? "entry/aovs.cl" : "pilot_types.h";
-    setup.extra_text = appended;
+    const char *extra[3]; /* behind the kernels that trace */
+    size_t extras = 0;
+    if (render->options.features) extra[extras++] = "entry/aovs.cl";
+    if (render->has_pilot) {
+        extra[extras++] = "pilot_types.h";
+        extra[extras++] = "entry/pilot.cl";
+    }
+    if (extras > 0) {
+        status = bp_kernel_texts(extra, extras, &appended, err);
+        setup.extra_name = extra[0];
+        setup.extra_text = appended;
+    }
     if (status == BP_OK) status = bp_worker_create(device, &packed, &setup, &render->workers[index], err);
     bp_packed_clear(&packed); /* unless the worker has taken it over */
     free(appended);
@@ -167,9 +151,12 @@ static BpStatus create(const BpScene *scene, const BpRenderOptions *options, con
     made->worker_count = device_count;
     bp_effects_analyse(scene, &made->effects);
     made->options.lamps = bp_render_lamps_of(&made->effects, options);
-    made->has_pilot =
-        made->options.lamps == BP_LAMPS_ON && !options->samples_only && bp_pilot_is_needed(scene);
     made->options.caustics = bp_render_caustics_of(&made->effects, options);
+    if (made->options.lamps == BP_LAMPS_ON && !options->samples_only) {
+        BP_TRY_GOTO(status, bp_pilot_aim(scene, &made->aim, err), failed);
+        made->has_pilot = bp_pilot_is_needed(scene, &made->aim);
+        if (!made->has_pilot) bp_pilot_aim_clear(&made->aim);
+    }
     for (size_t i = 0; i < device_count; ++i)
         BP_TRY_GOTO(status,
                     open_worker(made, open != NULL ? &open[i]->info : &devices[i],
@@ -205,6 +192,7 @@ void bp_render_destroy(BpRender **render) {
     bp_film_destroy(&(*render)->film);
     bp_film_destroy(&(*render)->base);
     bp_picture_clear(&(*render)->aovs);
+    bp_pilot_aim_clear(&(*render)->aim);
     bp_unseen_destroy(&(*render)->unseen);
     bp_adaptive_destroy(&(*render)->adaptive);
     free(*render);
@@ -324,9 +312,10 @@ static void report_progress(const BpRender *render, bool finished, BpProgress *p
 /* The pilot follows from the scene, so once is enough. */
 static BpStatus run_pilot(BpRender *render, BpError *err) {
     if (!render->has_pilot || render->pilot_done) return BP_OK;
-    BP_TRY(bp_pilot_run(render->workers[0], render->scene, render->options.max_depth,
+    BP_TRY(bp_pilot_run(render->workers[0], render->scene, &render->aim, render->options.max_depth,
                         render->options.caustics == BP_CAUSTICS_ON, &render->unseen, &render->pilot, err));
     render->pilot_done = true;
+    bp_pilot_aim_clear(&render->aim);
     return BP_OK;
 }
 

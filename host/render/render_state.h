@@ -38,6 +38,7 @@ struct BpRender {
     double goal_error;
     bool ended;     /* it has reached that */
     bool has_pilot; /* its programs have one: there may be light that samples find by chance only */
+    BpPilotAim aim; /* of the pilot, until it has run */
     bool pilot_done;
     BpUnseen *unseen;    /* what it has found; NULL: nothing */
     BpUnseenLight pilot; /* the same for people */
