@@ -3,13 +3,13 @@
  * In and out: BpFilm.   Knows: which numbers there are, and what they may be.   Does not know: how they are
  * packed (film_stream.h), how the sums were made.
  *
- * Layout, version 3 (docs/FILES.md has it byte by byte): a JSON object on one line ended by a newline, then,
- * as film_stream.h packs them, width * height * replicates * 3 sums of 8 bytes (two's complement); as many
- * fine sums, if the header says so; width * height * replicates counts of 4 bytes; depth, normal and albedo,
- * path lengths of pixels, decisions of adaptive sampling, each if the header says so; all in the order of
- * BpFilm; and the CRC-32 of everything before it, 4 bytes. Version 2 has no more than counts, and does not
- * pack them. Version 1 has no fine sums and no checksum either; it is read and marked `unverified`. Scene
- * hash and seed are strings, since many readers of JSON keep 53 bits of a number. */
+ * Layout, from version 3 on (docs/FILES.md has it byte by byte): a JSON object on one line ended by a
+ * newline, then, as film_stream.h packs them, width * height * replicates * 3 sums of 8 bytes (two's
+ * complement); as many fine sums, if the header says so; width * height * replicates counts of 4 bytes;
+ * depth, normal and albedo, path lengths of pixels, alpha, unseen light, decisions of adaptive sampling, each
+ * if the header says so; and the CRC-32 of everything before it, 4 bytes. Version 2 has no more than counts,
+ * and does not pack them. Version 1 has no fine sums and no checksum either; it is read and marked
+ * `unverified`. Scene hash and seed are strings, since many readers of JSON keep 53 bits of a number. */
 #ifndef BP_FILM_FILM_FILE_H
 #define BP_FILM_FILM_FILE_H
 

@@ -1,7 +1,8 @@
 /* render_state.h: what a render knows while it runs; shared by render.c, which runs it, stop.c, which
  * stops it, and resume.c, which takes it up again.
  *
- * Knows: workers, the schedule, the plan of adaptive sampling.   Does not know: files, stop rules. */
+ * Knows: workers, the schedule, the plan of adaptive sampling, the pilot.   Does not know: files, stop rules.
+ */
 #ifndef BP_RENDER_RENDER_STATE_H
 #define BP_RENDER_RENDER_STATE_H
 
