@@ -29,10 +29,13 @@ typedef uint packed_uint;
  *
  * With ahead[3] = 1 it is orthographic: each ray has a lens of its own, and `ahead` leads from there to the
  * plane in focus. Rays begin nearer to the spheres (bp_camera_origin), on a plane for which `corner` and so
- * on give the middle of what comes through a lens; it has shrunk to the share corner[3] by there. */
+ * on give the middle of what comes through a lens; it has shrunk to the share corner[3] by there.
+ *
+ * right[3] is 0 where no density belongs to a direction through a pixel: the camera is orthographic, or only
+ * looks through the middles of pixels. */
 typedef struct PackedCamera {
     real corner[4];                 /* upper left corner of pixel (0, 0) */
-    real right[4];                  /* one pixel to the right */
+    real right[4];                  /* one pixel to the right; half of a pixel's diagonal, or 0: see below */
     real down[4];                   /* one pixel down */
     real lens_right[4], lens_up[4]; /* scaled by the lens radius */
     real inward[4];   /* unit vector to the centre of the sphere that a pinhole stands on, or 0 */

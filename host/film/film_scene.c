@@ -91,11 +91,11 @@ double bp_scene_radiance_bound(const BpScene *scene, uint32_t max_depth, BpLamps
         if (bp_medium_scatters(&scene->media[i])) scattered = 1; /* rays go to lamps from there too */
     double bound = flight_weight(scene) * brightest * geometric(passed_on, max_depth);
     /* A ray to a lamp brings half of its radiance at most, and so does each of the up to three ways through a
-     * focuser. */
-    const double most = caustics == BP_CAUSTICS_ON ? 0.5 + 3 * 0.5 : 0.5;
+     * focuser. To the camera lead up to three through each of three chains. */
+    const double focused = caustics == BP_CAUSTICS_ON ? 3 * 0.5 : 0;
     if (lamps != BP_LAMPS_OFF && max_depth >= 2)
-        bound +=
-            flight_weight(scene) * most * brightest_lamp * scattered * geometric(scattered, max_depth - 1);
+        bound += flight_weight(scene) * brightest_lamp *
+                 ((0.5 + focused) * scattered * geometric(scattered, max_depth - 1) + 3 * focused);
     if (scene->backdrop != BP_BACKDROP_COLORS) return bound;
     return fmax(bound, fmax(largest(scene->backdrop_bottom), largest(scene->backdrop_top)));
 }

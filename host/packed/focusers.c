@@ -104,6 +104,10 @@ bool bp_focuses_disc(const BpScene *scene, size_t sphere, size_t disc) {
     return is_focuser(scene, sphere) && caught_of_disc(&scene->discs[disc]) > 0;
 }
 
+bool bp_focusers_light_camera(const BpCamera *camera) {
+    return camera->projection == BP_PERSPECTIVE && camera->pixel_sampling == BP_PIXEL_SQUARE;
+}
+
 uint32_t bp_focuser_vertices(const BpScene *scene, size_t sphere) {
     return is_mirror(scene, sphere) ? 1 : index_of(scene, sphere) > INSIDE_INDEX_MIN ? 3 : 2;
 }

@@ -6,6 +6,7 @@
 #include "base/status.h"
 #include "base/team.h"
 #include "environment_table.h"
+#include "focusers.h"
 #include "reals.h"
 #include "scene/material.h"
 
@@ -100,6 +101,7 @@ static void pack_camera(const BpCamera *camera, double moved, PackedCamera *pack
         packed->lens_up[a] = camera->lens_radius * up[a];
     }
     packed->ahead[3] = orthographic;
+    packed->right[3] = bp_focusers_light_camera(camera) ? pixel * sqrt(0.5) : 0;
     packed->corner[3] = orthographic ? 1 - moved / camera->focus_dist : 0;
 }
 

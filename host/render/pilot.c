@@ -3,6 +3,7 @@
 
 #include "base/clock.h"
 #include "base/status.h"
+#include "packed/focusers.h"
 #include "pilot_state.h"
 #include "scene/vector.h"
 
@@ -118,8 +119,9 @@ BpStatus bp_pilot_run(BpWorker *worker, const BpScene *scene, const BpPilotAim *
         status = bp_pilot_join(scene, pilot.eyes, pilot.eye_count, pilot.photons, pilot.photon_count,
                                max_depth, &pilot.sums, err);
     if (status == BP_OK)
-        bp_pilot_pass(pilot.aim->lights, pilot.aim->light_count, pilot.rays, pilot.ray_count,
-                      1.0 / pilot.plan.of_pixel, &pilot.sums);
+        bp_pilot_pass(scene, caustics && bp_focusers_light_camera(&scene->camera), pilot.aim->lights,
+                      pilot.aim->light_count, pilot.rays, pilot.ray_count, 1.0 / pilot.plan.of_pixel,
+                      &pilot.sums);
     if (status == BP_OK) status = give(&pilot, unseen, report, err);
     bp_pilot_flight_clear(&flight);
     pilot_clear(&pilot);

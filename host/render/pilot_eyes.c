@@ -83,7 +83,7 @@ static void pass_directly(BpPilot *pilot, const BpPilotSegment *segment, size_t 
 }
 
 static void keep_ray(BpPilot *pilot, const BpPilotSegment *segment, const double carried[3], uint32_t s,
-                     size_t square, uint32_t through, uint64_t way) {
+                     size_t square, uint32_t through, uint32_t vertices, uint64_t way) {
     const bool met = (segment->flags & PILOT_MET) != 0;
     if (s + 1 > pilot->max_depth || pilot->ray_count == pilot->ray_room) return;
     BpPilotRay *ray = &pilot->rays[pilot->ray_count];
@@ -92,7 +92,8 @@ static void keep_ray(BpPilot *pilot, const BpPilotSegment *segment, const double
                         .way = way,
                         .pixel = (uint32_t)square,
                         .sphere = segment->sphere,
-                        .through = through};
+                        .through = through,
+                        .vertices = vertices};
     memcpy(ray->direction, segment->direction, sizeof ray->direction);
     memcpy(ray->carried, carried, sizeof ray->carried);
     for (int a = 0; a < 3; ++a)
@@ -142,14 +143,15 @@ static void keep_eye(BpPilot *pilot, const BpPilotSegment *segment, uint32_t s, 
 static void follow_eye(BpPilot *pilot, const BpPilotFlight *flight, uint32_t path, size_t square) {
     const BpScene *scene = pilot->scene;
     Spread spread = first_spread(pilot);
-    uint32_t through = NO_SPHERE;
+    uint32_t through = NO_SPHERE, vertices = 0;
+    bool alone = true; /* all vertices are on `through` */
     uint64_t way = BP_HASH_START;
     BpPilotSegment segment, next;
     for (uint32_t s = 0; bp_pilot_segment(flight, path, SEGMENTS, s, &segment); ++s) {
         double carried[3];
         bp_pilot_carried(flight, path, SEGMENTS, s, carried);
         if (through != NO_SPHERE)
-            keep_ray(pilot, &segment, carried, s, square, through, way);
+            keep_ray(pilot, &segment, carried, s, square, through, alone ? vertices : 0, way);
         else if (s == 0)
             pass_directly(pilot, &segment, square);
         if ((segment.flags & (PILOT_MET | PILOT_IN_MEDIUM)) != PILOT_MET) return;
@@ -161,6 +163,8 @@ static void follow_eye(BpPilot *pilot, const BpPilotFlight *flight, uint32_t pat
         if (!bp_pilot_is_surface(scene, &segment) || !bp_pilot_segment(flight, path, SEGMENTS, s + 1, &next))
             continue;
         if (through == NO_SPHERE) through = segment.sphere;
+        alone = alone && segment.sphere == through;
+        ++vertices;
         double normal[3];
         bp_pilot_normal(scene, &segment, normal);
         spread_at(scene, &segment, &next, normal, &spread);

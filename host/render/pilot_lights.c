@@ -3,6 +3,7 @@
 
 #include "base/color.h"
 #include "packed/environment_table.h"
+#include "packed/focusers.h"
 #include "packed/lamp_tree.h"
 #include "scene/vector.h"
 
@@ -252,6 +253,13 @@ static BpStatus make_pairs(const BpScene *scene, BpPilotAim *aim, BpError *err) 
         below += pair->probability;
     }
     return BP_OK;
+}
+
+bool bp_pilot_is_sampled(const BpScene *scene, const BpPilotLight *light, uint32_t sphere,
+                         uint32_t vertices) {
+    if (vertices > bp_focuser_vertices(scene, sphere)) return false;
+    if (light->distant) return light->disc != SIZE_MAX && bp_focuses_disc(scene, sphere, light->disc);
+    return bp_focuses_lamp(scene, sphere, light->sphere);
 }
 
 BpStatus bp_pilot_aim(const BpScene *scene, BpPilotAim *aim, BpError *err) {

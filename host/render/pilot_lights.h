@@ -55,6 +55,10 @@ typedef struct BpPilotStart {
 /* The sphere scatters into few directions only, so that no ray to a lamp lights it. */
 bool bp_pilot_is_specular(const BpScene *scene, size_t sphere);
 
+/* Whether a ray to the light, sent through focusers, finds it by way of the sphere, on which a path has stood
+ * so many times and on nothing else: then it is not left to chance. */
+bool bp_pilot_is_sampled(const BpScene *scene, const BpPilotLight *light, uint32_t sphere, uint32_t vertices);
+
 /* BP_ERR_MEMORY. Without lights or without targets there are no pairs. Free with bp_pilot_aim_clear(). */
 BpStatus bp_pilot_aim(const BpScene *scene, BpPilotAim *aim, BpError *err);
 void bp_pilot_aim_clear(BpPilotAim *aim);

@@ -21,11 +21,13 @@ typedef struct BpPilotRay {
     uint64_t way;                           /* the same for rays that have come the same way */
     uint32_t pixel, sphere;                 /* that it meets, or NO_SPHERE */
     uint32_t through;                       /* the first that it has met */
+    uint32_t vertices;                      /* of its path, all on `through`; 0: on other spheres too */
     uint32_t number;                        /* none has another's */
 } BpPilotRay;
 
-/* `share`: of a pixel's samples that each ray stands for. Sorts the rays. */
-void bp_pilot_pass(const BpPilotLight *lights, size_t light_count, BpPilotRay *rays, size_t ray_count,
-                   double share, BpPilotSums *sums);
+/* `share`: of a pixel's samples that each ray stands for. `sampled`: lights that rays to lamps find through
+ * focusers from the camera are left out. Sorts the rays. */
+void bp_pilot_pass(const BpScene *scene, bool sampled, const BpPilotLight *lights, size_t light_count,
+                   BpPilotRay *rays, size_t ray_count, double share, BpPilotSums *sums);
 
 #endif

@@ -6,7 +6,6 @@
  * Does not know: the camera. */
 #include "pilot_state.h"
 
-#include "packed/focusers.h"
 #include "packed/reals.h"
 #include "scene/vector.h"
 
@@ -59,14 +58,6 @@ static double scattered(const BpScene *scene, const BpPilotSegment *segment, con
     return bp_pilot_density(material, normal, back) / arrives * leaves / drawn;
 }
 
-/* Whether a ray to the light finds it by way of the sphere, on which its path has stood so many times and on
- * nothing else: then it is not left to chance. */
-static bool is_sampled(const BpPilot *pilot, const BpPilotLight *light, uint32_t sphere, uint32_t vertices) {
-    if (!pilot->caustics || vertices > bp_focuser_vertices(pilot->scene, sphere)) return false;
-    if (light->distant) return light->disc != SIZE_MAX && bp_focuses_disc(pilot->scene, sphere, light->disc);
-    return bp_focuses_lamp(pilot->scene, sphere, light->sphere);
-}
-
 /* One path from a light, which counts where it comes to rough points. */
 static void follow_photon(BpPilot *pilot, const BpPilotFlight *flight, uint32_t path,
                           const BpPilotStart *start) {
@@ -89,7 +80,8 @@ static void follow_photon(BpPilot *pilot, const BpPilotFlight *flight, uint32_t 
             ++vertices;
             alone = alone && segment.sphere == target;
         }
-        if (rough && deposits == 0 && alone && is_sampled(pilot, light, target, vertices)) return;
+        const bool first = rough && deposits == 0;
+        if (first && alone && pilot->caustics && bp_pilot_is_sampled(scene, light, target, vertices)) return;
         if (rough) {
             BpPilotPhoton *photon = &pilot->photons[pilot->photon_count++];
             double carried[3];

@@ -20,16 +20,18 @@ typedef struct Surface {
 #if SAMPLES_LAMPS
 /* What the density of a lobe depends on, apart from the direction. */
 typedef struct Lobe {
-    Vec3 axis;  /* unit: the normal; for metal the mirror direction, in a medium the direction before */
+    Vec3 axis;  /* unit: the normal; for metal the mirror direction, in a medium the direction before, at the camera to the middle of
+                 * the pixel */
 #if EFFECT_METAL
     Vec3 normal; /* what lies below the surface is absorbed */
 #endif
-    vreal fuzz; /* of metal; of a medium the anisotropy */
+    vreal fuzz; /* of metal; of a medium the anisotropy; at the camera the sine of the angle from the axis to a pixel's corner */
     vuint kind; /* LOBE_... */
 } Lobe;
 
-/* Lobes that scene_types.h does not name. LOBE_NONE has no density: it scatters into a few directions only. */
-enum { LOBE_FUZZ_SPHERE = LOBE_HEMISPHERE + 1, LOBE_FUZZ_BALL, LOBE_PHASE, LOBE_NONE };
+/* Lobes that scene_types.h does not name. LOBE_NONE has no density: it scatters into a few directions only. LOBE_PIXEL is
+ * that of a camera ray, which light_camera (caustics.cl) gives it; rays to lamps do not light the camera. */
+enum { LOBE_FUZZ_SPHERE = LOBE_HEMISPHERE + 1, LOBE_FUZZ_BALL, LOBE_PHASE, LOBE_NONE, LOBE_PIXEL };
 
 #define LOBE_FUZZ_MIN R(0x1p-6) /* with less fuzz, rays to lamps gain nothing, and float does not hold the densities well */
 #define PI_INVERSE R(0.3183098861837907)

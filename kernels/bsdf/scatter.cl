@@ -69,9 +69,19 @@ static vbool is_fuzzy(const Lobe *lobe) {
            vbool_of_uint(lobe->kind == splat_uint(LOBE_FUZZ_BALL));
 }
 
+/* It scatters into a cone, whose half angle has the sine `fuzz`. */
+#if SAMPLES_CAUSTICS
+#define is_cone(lobe) (is_fuzzy(lobe) | vbool_of_uint((lobe)->kind == splat_uint(LOBE_PIXEL)))
+#else
+#define is_cone is_fuzzy
+#endif
+
 #if EFFECT_MEDIA
 static vbool is_phase(const Lobe *lobe) { return vbool_of_uint(lobe->kind == splat_uint(LOBE_PHASE)); }
 #endif
+
+/* Rays to lamps light a vertex that has this lobe. */
+static vbool is_lit_lobe(const Lobe *lobe) { return vbool_of_uint(lobe->kind < splat_uint(LOBE_NONE)); }
 
 /* Per steradian; 0 for LOBE_NONE. `drawn`: `direction` was drawn from the lobe. */
 static vreal scatter_pdf(const Lobe *lobe, Vec3 direction, int drawn) {

@@ -40,6 +40,7 @@ __kernel VECTORS_WRITTEN void path_log(SCENE_PARAMETERS uint pixel, uint sample,
     path_none(&path);
     path_init_from_camera(camera, pixel_center, sample_key(seed_low, seed_high, pixel, sample, replicates),
                           (real)(pixel % width), (real)(pixel / width), 1, &path);
+    light_camera(&scene, &path, 1);
     uint step = 0;
     while (path.alive && step < max_depth && step < capacity) {
         __global real *record = records + (size_t)step * LOG_REALS;

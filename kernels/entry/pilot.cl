@@ -28,7 +28,7 @@ static void path_init_from_light(__global const PackedCamera *camera, SampleKey 
 /* The vertices that a ray to a lamp can light. */
 static vbool stands_lit(const Path *path, vbool moving) {
 #if SAMPLES_LAMPS
-    return moving & vbool_of_uint(path->lobe.kind != splat_uint(LOBE_NONE));
+    return moving & is_lit_lobe(&path->lobe);
 #else
     return vbool_none;
 #endif

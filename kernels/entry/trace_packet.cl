@@ -54,6 +54,7 @@ __kernel VECTORS_WRITTEN void trace(TRACE_PARAMETERS) {
                                              first_sample + sample_number, replicates);
             path_init_from_camera(camera, pixel_center, key, uint_to_real(pixels.column), uint_to_real(pixels.row),
                                   fresh, &path);
+            light_camera(&scene, &path, fresh);
             cut = cut & vbool_not(fresh);
         }
         /* Behind the refill, so that a cap of 0 cuts new paths at once. */

@@ -25,6 +25,7 @@ __kernel VECTORS_WRITTEN void trace(TRACE_PARAMETERS) {
             Vec3 origin, direction;
             const SampleKey key = sample_of_chunk(TRACE_ARGUMENTS, number, &origin, &direction);
             path_init(camera, key, origin, direction, vbool_all, &path);
+            light_camera(&scene, &path, vbool_all);
             if (max_depth == 0) continue; /* a cap of 0 cuts at once */
         }
         path_go_on(&scene, &path);

@@ -62,6 +62,7 @@ __kernel VECTORS_WRITTEN void trace(TRACE_PARAMETERS) {
     Path path;
     path_none(&path);
     path_init(camera, key, origin, direction, vbool_all, &path);
+    light_camera(&scene, &path, vbool_all);
     while (path_goes_on(&path, max_depth)) path_go_on(&scene, &path);
     store_sample(&path, item, samples);
 #if EFFECT_LAMPS

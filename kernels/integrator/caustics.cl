@@ -1,5 +1,5 @@
-/* caustics.cl: the light that lamps bring to a point through a ball of glass or off a mirror, by two ways that share the
- * work, as in lamps_direct.cl.
+/* caustics.cl: the light that lamps bring to a point, or to a camera's pixel, through a ball of glass or off a mirror, by two
+ * ways that share the work, as in lamps_direct.cl.
  *
  * A path finds such a lamp by chance, or is led to it: a focuser, a lamp and a point of it are chosen, and every chain
  * through the focuser that ends at that point is traced (after D. Mitchell and P. Hanrahan, "Illumination from Curved
@@ -31,6 +31,7 @@ static void follow_chain(const Scene *scene, Path *path, vbool met, const Hit *h
             path->focus.distance = choose(enters, focus.distance, path->focus.distance);
             path->focus.sine = choose(enters, focus.sine, path->focus.sine);
             path->focus.ratio = choose(enters, focus.ratio, path->focus.ratio);
+            path->focus.every = (enters & focus.every) | (vbool_not(enters) & path->focus.every);
             chain = choose_uint(enters, choose_uint(bsdf_sample->transmitted, splat_uint(1), splat_uint(CHAIN_LEFT)), chain);
         }
     }
@@ -207,23 +208,57 @@ static void trace_chain(const Scene *scene, Path *path, const ChainChoice *choic
     }
 }
 
-/* Lights the vertices of the lanes `active` through a focuser, each by one point of one lamp. */
-static void light_through_focuser(const Scene *scene, Path *path, vuint bounce, vbool active) {
+/* Finds the roots of the chain in `choice`, and adds what they bring. `aim`: the unit direction from the centre of the focuser to a
+ * point of the target; `far`: its radius over the distance of that point. */
+static void seek_chains(const Scene *scene, Path *path, const ChainChoice *choice, Vec3 aim, vreal far, vuint bounce,
+                        vbool active) {
+    const vuint place = choice->number * FOCUSER_REALS;
+    /* A chain has a segment more than chords, and one to the lamp. */
+    active = active & (gather_real(scene->focusers, place + FOCUSER_CHAINS + choice->inside) > splat(0)) &
+             vbool_of_uint(path->depth + choice->inside + splat_uint(2) <= splat_uint(scene->max_depth));
+    if (!any_lane(active)) return;
+    const vreal radius = gather_real(scene->focusers, place + FOCUSER_RADIUS);
+    const vreal inverse_index = divide(splat(1), gather_real(scene->focusers, place + FOCUSER_INDEX));
+    const Vec3 to_centre =
+        subtract3(subtract3(focuser_centre(scene, choice->number), path->origin.high), path->origin.low);
+    const vreal inverse = divide(splat(1), square_root(dot3(to_centre, to_centre)));
+    const Vec3 axis = scale3(inverse, to_centre);
+    const vreal near = radius * inverse;
+    const vreal cosine = dot3(axis, aim);
+    const Vec3 off = madd3(-cosine, axis, aim);
+    const vreal sine = square_root(dot3(off, off));
+    /* Straight ahead or behind, any direction across the axis is as good as another. */
+    const Vec3 other = choose3(fabs(axis.x) < splat(R(0.5)), vec3(splat(0), axis.z, -axis.y), vec3(-axis.z, splat(0), axis.x));
+    const Vec3 across = normalise3(choose3(sine > splat(0), off, other));
+    const vbool straight = vbool_of_uint(choice->inside == splat_uint(1)); /* an odd number of chords */
+    const vreal target_cosine = choose(straight, cosine, -cosine);
+    /* Only a chain that begins to rise has a maximum above 0. */
+    const vbool rises = near + far + splat(2) * uint_to_real(choice->inside) * inverse_index > splat(2);
+    for (uint piece = 0; piece < 3u; ++piece) {
+        const vreal side = splat(piece == 2u ? R(-1.0) : R(1.0));
+        const vbool tried = piece == 2u ? active : active & rises;
+        if (!any_lane(tried)) continue;
+        vreal sine_in, cosine_in;
+        const vbool found = chain_root(near, far, inverse_index, choice->inside, target_cosine, side * sine, piece == 0u, tried,
+                                       &sine_in, &cosine_in);
+        if (!any_lane(found)) continue;
+        const vreal aside = sine_in * near;
+        const vreal turned = choose(straight, side, -side) * aside;
+        const Vec3 direction = normalise3(madd3(cosine_of(aside), axis, scale3(turned, across)));
+        trace_chain(scene, path, choice, direction, bounce, found);
+    }
+}
+
+/* Lights the vertices of the lanes `active` through a focuser, each by one point of one lamp and by one of the chains to it, or
+ * by `every` chain. */
+static void light_through_focuser(const Scene *scene, Path *path, vuint bounce, int every, vbool active) {
     if (!has_focusers(scene)) return;
     const vuint dimension = bounce + splat_uint(DIMENSIONS_OF_CAUSTICS);
     ChainChoice choice;
     choice.probability = choose_focuser(scene, &path->origin, &path->lobe, sample_1d(path->key, dimension + CAUSTIC_FOCUSER), 0,
                                         &choice.number);
     const vuint place = choice.number * FOCUSER_REALS, places = choice.number * FOCUSER_UINTS;
-    /* A chain has a segment more than chords, and one to the lamp. */
-    const vreal by_chain = sample_1d(path->key, dimension + CAUSTIC_CHAIN);
-    const vreal reflects = gather_real(scene->focusers, place + FOCUSER_CHAINS);
-    const vreal passes = gather_real(scene->focusers, place + (FOCUSER_CHAINS + 1u));
-    choice.inside = choose_uint(by_chain < reflects, splat_uint(0),
-                                choose_uint(by_chain < reflects + passes, splat_uint(1), splat_uint(2)));
-    active = active & (choice.probability > splat(0)) &
-             (gather_real(scene->focusers, place + FOCUSER_CHAINS + choice.inside) > splat(0)) &
-             vbool_of_uint(path->depth + choice.inside + splat_uint(2) <= splat_uint(scene->max_depth));
+    active = active & (choice.probability > splat(0));
     if (!any_lane(active)) return;
 
     const vreal by_target = sample_1d(path->key, dimension + CAUSTIC_TARGET);
@@ -246,36 +281,41 @@ static void light_through_focuser(const Scene *scene, Path *path, vuint bounce, 
 
     vreal u, v, far;
     sample_2d(path->key, dimension + CAUSTIC_POINT, &u, &v);
-    const vreal radius = gather_real(scene->focusers, place + FOCUSER_RADIUS);
-    const vreal inverse_index = divide(splat(1), gather_real(scene->focusers, place + FOCUSER_INDEX));
-    const Vec3 aim = sample_target(scene, &choice, radius, u, v, &far);
-    const Vec3 to_centre =
-        subtract3(subtract3(focuser_centre(scene, choice.number), path->origin.high), path->origin.low);
-    const vreal inverse = divide(splat(1), square_root(dot3(to_centre, to_centre)));
-    const Vec3 axis = scale3(inverse, to_centre);
-    const vreal near = radius * inverse;
-    const vreal cosine = dot3(axis, aim);
-    const Vec3 off = madd3(-cosine, axis, aim);
-    const vreal sine = square_root(dot3(off, off));
-    /* Straight ahead or behind, any direction across the axis is as good as another. */
-    const Vec3 other = choose3(fabs(axis.x) < splat(R(0.5)), vec3(splat(0), axis.z, -axis.y), vec3(-axis.z, splat(0), axis.x));
-    const Vec3 across = normalise3(choose3(sine > splat(0), off, other));
-    const vbool straight = vbool_of_uint(choice.inside == splat_uint(1)); /* an odd number of chords */
-    const vreal target_cosine = choose(straight, cosine, -cosine);
-    /* Only a chain that begins to rise has a maximum above 0. */
-    const vbool rises = near + far + splat(2) * uint_to_real(choice.inside) * inverse_index > splat(2);
-    for (uint piece = 0; piece < 3u; ++piece) {
-        const vreal side = splat(piece == 2u ? R(-1.0) : R(1.0));
-        const vbool tried = piece == 2u ? active : active & rises;
-        if (!any_lane(tried)) continue;
-        vreal sine_in, cosine_in;
-        const vbool found = chain_root(near, far, inverse_index, choice.inside, target_cosine, side * sine, piece == 0u, tried,
-                                       &sine_in, &cosine_in);
-        if (!any_lane(found)) continue;
-        const vreal aside = sine_in * near;
-        const vreal turned = choose(straight, side, -side) * aside;
-        const Vec3 direction = normalise3(madd3(cosine_of(aside), axis, scale3(turned, across)));
-        trace_chain(scene, path, &choice, direction, bounce, found);
+    const Vec3 aim = sample_target(scene, &choice, gather_real(scene->focusers, place + FOCUSER_RADIUS), u, v, &far);
+    const vreal by_chain = sample_1d(path->key, dimension + CAUSTIC_CHAIN);
+    const vreal reflects = gather_real(scene->focusers, place + FOCUSER_CHAINS);
+    const vreal passes = gather_real(scene->focusers, place + (FOCUSER_CHAINS + 1u));
+    choice.inside = choose_uint(by_chain < reflects, splat_uint(0),
+                                choose_uint(by_chain < reflects + passes, splat_uint(1), splat_uint(2)));
+    for (uint inside = 0; inside <= (every ? CHORDS_MAX : 0u); ++inside) {
+        if (every) choice.inside = splat_uint(inside);
+        seek_chains(scene, path, &choice, aim, far, bounce, active);
     }
 }
+
+/* The same for camera rays that have not set out yet, in the lanes `fresh`: to the camera a lamp in a ball of glass or in a
+ * mirror is a caustic in a few pixels. */
+static void light_camera(const Scene *scene, Path *path, vbool fresh) {
+    __global const PackedCamera *camera = scene->camera;
+    if (!has_focusers(scene) || camera->right[3] == 0) return;
+    vreal x, y;
+    sample_2d(path->key, splat_uint(DIMENSION_PIXEL), &x, &y);
+    const Vec3 ahead = splat3(camera->ahead);
+    const vreal t = divide(dot3(ahead, ahead), dot3(ahead, path->direction));
+    const Vec3 middle = madd3(splat(R(0.5)) - x, splat3(camera->right),
+                              madd3(splat(R(0.5)) - y, splat3(camera->down), scale3(t, path->direction)));
+    const vreal inverse = divide(splat(1), square_root(dot3(middle, middle)));
+    Lobe lobe = path->lobe;
+    lobe.axis = scale3(inverse, middle);
+    lobe.fuzz = at_most(splat(camera->right[3]) * inverse, splat(1));
+    lobe.kind = splat_uint(LOBE_PIXEL);
+    path->lobe = choose_lobe(fresh, &lobe, &path->lobe);
+    vreal importance = splat(0);
+    for (uint i = 0; scene->focuser_places[i * FOCUSER_UINTS] != NO_SLOT; ++i)
+        importance += focuser_importance(scene->focusers + i * FOCUSER_REALS, &path->origin, &path->lobe);
+    const vbool sees = fresh & (importance > splat(0));
+    if (any_lane(sees)) light_through_focuser(scene, path, splat_uint(DIMENSION_PIXEL), 1, sees);
+}
+#else
+#define light_camera(scene, path, fresh)
 #endif

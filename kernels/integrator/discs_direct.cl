@@ -6,7 +6,7 @@
 #if SAMPLES_DISCS
 /* As lamp_hit_weight. Discs that overlap are lamps of their own: each weighs by what would have chosen it. */
 static vreal disc_hit_weight(const Path *path, __global const real *disc, vbool hit) {
-    vbool shared = hit & vbool_of_uint(path->lobe.kind != splat_uint(LOBE_NONE));
+    vbool shared = hit & is_lit_lobe(&path->lobe);
     if (!any_lane(shared)) return splat(1);
     const vreal probability = disc_probability(disc, &path->lobe, path->lamp_sum);
     shared = shared & (probability > splat(0));
@@ -44,7 +44,7 @@ static Vec3 discs_radiance(const Scene *scene, const Path *path, vbool escaped) 
 /* As disc_hit_weight; the lanes `hit` have met nothing. */
 static vreal environment_hit_weight(const Scene *scene, const Path *path, vbool hit) {
     const vreal importance = environment_importance(scene);
-    vbool shared = hit & vbool_of_uint(path->lobe.kind != splat_uint(LOBE_NONE)) & (importance > splat(0));
+    vbool shared = hit & is_lit_lobe(&path->lobe) & (importance > splat(0));
     if (!any_lane(shared)) return splat(1);
     const EnvironmentCell cell = environment_cell(scene, path->direction);
     const vreal probability = choose(shared, divide(importance, path->lamp_sum), splat(1)) * cell.probability;

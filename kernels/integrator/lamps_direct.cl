@@ -28,7 +28,7 @@ static vreal weight_of_hit(vbool shared, vreal ratio) {
 #if SAMPLES_LAMP_TREE
 /* The weight of the radiance of a lamp in `slot` that the path has hit; `hit`: these lanes have, from outside. */
 static vreal lamp_hit_weight(const Scene *scene, const Path *path, vuint slot, const Sphere *sphere, vbool hit) {
-    vbool shared = hit & vbool_of_uint(path->lobe.kind != splat_uint(LOBE_NONE)) & vbool_of_uint(vertex_slot_of(path) != slot);
+    vbool shared = hit & is_lit_lobe(&path->lobe) & vbool_of_uint(vertex_slot_of(path) != slot);
     if (!any_lane(shared)) return splat(1);
     const LampCone cone = lamp_cone(vertex_of(path), sphere);
     shared = shared & cone.outside;
@@ -219,7 +219,7 @@ static LampChoice choose_light(const Scene *scene, const Path *path, vuint bounc
 }
 
 #if SAMPLES_CAUSTICS
-static void light_through_focuser(const Scene *scene, Path *path, vuint bounce, vbool active); /* caustics.cl */
+static void light_through_focuser(const Scene *scene, Path *path, vuint bounce, int every, vbool active); /* caustics.cl */
 #endif
 
 /* One path at a time, a processor is faster when this step is a function of its own: within the loop over bounces, which it
@@ -238,7 +238,7 @@ LIGHT_STEP void light_vertices(const Scene *scene, Path *path) {
     vbool active = path->wants_lamps;
     path->wants_lamps = vbool_none;
 #if SAMPLES_CAUSTICS
-    light_through_focuser(scene, path, bounce, active);
+    light_through_focuser(scene, path, bounce, 0, active);
 #endif
     vreal u, v;
     sample_2d(path->key, bounce + BOUNCE_LAMP, &u, &v);

@@ -214,6 +214,6 @@ static void path_light(Path *path, vbool met, const Lobe *lobe, vbool follows) {
     path->vertex_slot = choose_uint(met, path->own_slot, path->vertex_slot);
 #endif
     path->wants_lamps =
-        path->wants_lamps | (met & follows & vbool_of_uint(lobe->kind != splat_uint(LOBE_NONE)));
+        path->wants_lamps | (met & follows & is_lit_lobe(lobe));
 }
 #endif

@@ -58,6 +58,7 @@ typedef struct Focus {
     vreal distance; /* of its centre from the vertex */
     vreal sine;     /* of the angle of incidence */
     vreal ratio;    /* the density of the direction in the lobe, over the probability of choosing the focuser */
+    vbool every;    /* each chain through it is tried, not one that is chosen */
 } Focus;
 
 /* The lanes whose slot is a focuser's. */
@@ -102,6 +103,31 @@ static Vec3 target_centre(const Scene *scene, vuint target) {
 
 static vreal cosine_of(vreal sine) { return square_root(at_least((splat(1) - sine) * (splat(1) + sine), splat(0))); }
 
+/* The density per steradian of camera rays, which are as many through each part of a pixel as of the plane in focus. `drawn`: the
+ * direction goes through the pixel. */
+static vreal pixel_pdf(__global const PackedCamera *camera, const Lobe *lobe, Vec3 direction, int drawn) {
+    const Vec3 ahead = splat3(camera->ahead), right = splat3(camera->right), down = splat3(camera->down);
+    const vreal square = dot3(ahead, ahead), along = dot3(ahead, direction);
+    const vbool front = along > splat(0);
+    const vreal t = divide(square, choose(front, along, splat(1)));
+    const vreal to_middle = divide(square, dot3(ahead, lobe->axis));
+    const Vec3 off = subtract3(scale3(t, direction), scale3(to_middle, lobe->axis));
+    const vreal width2 = dot3(right, right), height2 = dot3(down, down);
+    const vreal x = dot3(off, right), y = dot3(off, down), half_width = splat(R(0.5)) * width2, half_height = splat(R(0.5)) * height2;
+    vbool inside = front;
+    if (!drawn) inside = front & (x >= -half_width) & (x < half_width) & (y >= -half_height) & (y < half_height);
+    const vreal density = divide(t * t * square_root(square), choose(front, along, splat(1)) * square_root(width2 * height2));
+    return choose(inside, density, splat(0));
+}
+
+/* As scatter_pdf, at the camera too. */
+static vreal vertex_pdf(const Scene *scene, const Lobe *lobe, Vec3 direction, int drawn) {
+    vreal density = scatter_pdf(lobe, direction, drawn);
+    const vbool pixel = vbool_of_uint(lobe->kind == splat_uint(LOBE_PIXEL));
+    if (any_lane(pixel)) density = choose(pixel, pixel_pdf(scene->camera, lobe, direction, drawn), density);
+    return density;
+}
+
 /* Along a unit direction, which meets the focuser. `drawn`: it was drawn from the lobe. */
 static Focus focus_along(const Scene *scene, const Point *point, const Lobe *lobe, Vec3 direction, int drawn, vuint number,
                          vreal probability) {
@@ -111,10 +137,11 @@ static Focus focus_along(const Scene *scene, const Point *point, const Lobe *lob
     const vreal radius = gather_real(scene->focusers, number * FOCUSER_REALS + FOCUSER_RADIUS);
     const vreal sine = divide(square_root(dot3(across, across)), radius);
     focus.number = number;
+    focus.every = vbool_of_uint(lobe->kind == splat_uint(LOBE_PIXEL));
     focus.distance = square_root(dot3(to_centre, to_centre));
     /* Where rounding has it that the ray passes beside the ball, or through its middle, the formulas still hold. */
     focus.sine = at_least(at_most(sine, splat(R(1.0) - R(0x1p-22))), splat(R(0x1p-40)));
-    focus.ratio = divide(scatter_pdf(lobe, direction, drawn), choose(probability > splat(0), probability, splat(1)));
+    focus.ratio = divide(vertex_pdf(scene, lobe, direction, drawn), choose(probability > splat(0), probability, splat(1)));
     return focus;
 }
 
@@ -245,7 +272,8 @@ static vreal chain_ratio(const Scene *scene, const Focus *focus, vuint inside, v
     const vuint place = focus->number * FOCUSER_REALS;
     const vreal radius = gather_real(scene->focusers, place + FOCUSER_RADIUS);
     const vreal inverse_index = divide(splat(1), gather_real(scene->focusers, place + FOCUSER_INDEX));
-    const vreal share = gather_real(scene->focusers, place + FOCUSER_CHAINS + inside);
+    vreal share = gather_real(scene->focusers, place + FOCUSER_CHAINS + inside);
+    share = choose(focus->every & (share > splat(0)), splat(1), share);
     const vuint aim = target * TARGET_REALS;
     const vreal extent = gather_real(scene->targets, aim + TARGET_EXTENT);
     const vbool far = vbool_of_uint(gather_uint(scene->target_lamps, target) >= splat_uint(DISC_SLOT));

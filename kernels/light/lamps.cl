@@ -58,7 +58,7 @@ static LampChild load_child(const Scene *scene, vuint node, vuint k, vreal time)
 
 #endif
 
-#if EFFECT_METAL
+#if EFFECT_METAL || SAMPLES_CAUSTICS
 /* The cosine of the angle of which this is the sine, or a little less, without a root. */
 static vreal cosine_below(vreal sine) {
     const vreal square = sine * sine;
@@ -72,10 +72,10 @@ static vreal cosine_below(vreal sine) {
 static vreal cone_cosine(const Lobe *lobe, vreal z, vreal sine) {
     const vreal above = z + sine;
     const vreal cosine = choose(fabs(z) < sine, divide(above * above, splat(4) * sine), at_least(z, splat(0)));
-#if EFFECT_METAL
-    /* Metal sees what its cone touches. */
+#if EFFECT_METAL || SAMPLES_CAUSTICS
+    /* Metal and the camera see what their cone touches. */
     const vreal touching = fma(cosine_below(lobe->fuzz), cosine_below(sine), -lobe->fuzz * sine);
-    return choose(is_fuzzy(lobe), choose(z >= touching, splat(1), splat(0)), cosine);
+    return choose(is_cone(lobe), choose(z >= touching, splat(1), splat(0)), cosine);
 #else
     return cosine;
 #endif

@@ -20,7 +20,7 @@
  *     k = 13, 14   a flight through a medium, and its low bits
  *     15           kept
  *     Rays through balls of glass and off mirrors have DIMENSIONS_OF_CAUSTICS more: k = 0, 1 the point of the lamp, 2 the
- *     ball or mirror, 3 the chain through it, 4 the lamp
+ *     ball or mirror, 3 the chain through it, 4 the lamp; those to the camera have them from DIMENSIONS_OF_CAUSTICS on
  *   A camera ray that meets the shadow catcher ends there, and the places of bounce b are those of try b to find light:
  *   k = 0, 1 the direction, 2 whether it is taken, 5 the gradient or which disc */
 #define DIMENSION_PIXEL 0u

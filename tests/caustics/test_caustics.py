@@ -161,6 +161,119 @@ def cut_by_depth():
 
 
 BLACK = {"type": "lambertian", "albedo": [0, 0, 0]}
+AWAY = 5.0  # of the camera, in radii of the ball before it
+
+
+def glints(ball, forward, lens=0.0, width=9, off=0, spheres=(), vfov=40, **materials):
+    """A picture of nothing but a ball in the middle, and a sun behind the camera, or straight ahead and hidden by the ball. Something
+    matte lies out of sight: without that, no rays are sent to lamps."""
+    sun = {"direction": [off, 0, -1 if forward else 1], "half_angle": HALF, "radiance": [SUN] * 3}
+    return {"camera": {"image_width": width, "aspect_ratio": 1, "max_depth": 8, "vfov": vfov, "lookfrom": [0, 0, AWAY], "lookat": [0, 0, 0],
+                       "focus_dist": 3, "defocus_angle": lens},
+            "background": {"bottom": [0] * 3, "top": [0] * 3, "discs": [sun]},
+            "materials": {"ball": ball, "black": BLACK, **materials},
+            "spheres": [{"center": [0, 0, 0], "radius": 1, "material": "ball"}, {"center": [0, -50, 0], "radius": 1, "material": "black"},
+                        *spheres]}
+
+
+def glint(turn, share, width, vfov=40):
+    """The radiance of the middle pixel: the sun is seen by the rays whose turn from the axis is less than its half angle, and those
+    fill a cone about it. `turn`: of a ray that leaves the camera at an angle to the axis."""
+    low, high = 0.0, 0.1
+    for _ in range(100):
+        middle = (low + high) / 2
+        low, high = (middle, high) if abs(turn(middle)) < math.radians(HALF) else (low, middle)
+    side = 2 * math.tan(math.radians(vfov / 2)) / width
+    return SUN * share * math.pi * math.tan(low) ** 2 / side ** 2
+
+
+def reflected(angle):
+    return 2 * math.asin(AWAY * math.sin(angle)) - angle
+
+
+def refracted(index):
+    def turn(angle):
+        incidence = math.asin(AWAY * math.sin(angle))
+        return angle - 2 * (incidence - math.asin(math.sin(incidence) / index))
+    return turn
+
+
+def reflected_inside(index):
+    def turn(angle):
+        incidence = math.asin(AWAY * math.sin(angle))
+        return 2 * incidence - 4 * math.asin(math.sin(incidence) / index) - angle
+    return turn
+
+
+def glint_in_a_ball():
+    """The sun in a mirror, through a ball of glass and on its far side: a patch far smaller than a pixel, in one pixel of many, which
+    no sample finds by chance."""
+    r0 = fresnel(1, 1.5)
+    for what, ball, forward, wanted in (
+            ("mirror", MIRROR, False, glint(reflected, MIRROR["albedo"][0], 9)), ("glass", glass(), True, glint(refracted(1.5), 1, 9)),
+            ("glass, both sides", glass(fresnel="exact"), False, glint(reflected, r0, 9) + glint(reflected_inside(1.5), (1 - r0) ** 2 * r0, 9))):
+        found = read_pfm(picture(glints(ball, forward), "--spp", "4096", "--caustics", "on"))[2][::3]
+        middle = len(found) // 2
+        close(found[middle], wanted, 0.005, what)
+        if what != "glass, both sides":  # which has a ring close to the rim as well
+            assert sum(found) - found[middle] < 1e-4 * wanted, f"{what}: light in other pixels, {sum(found) - found[middle]} beside {wanted}"
+    return largest()
+
+
+def glint_across_pixels():
+    """Beside the axis the sum over a picture is the same for all sizes of pixels, with and without a lens."""
+    for ball, forward, lens in ((MIRROR, False, 0), (MIRROR, False, 1), (glass(fresnel="exact"), True, 0)):
+        sums = []
+        for width in (8, 60):
+            found = read_pfm(picture(glints(ball, forward, lens, width, 0.2), "--spp", str(16384 if width == 8 else 1024), "--caustics", "on"))[2][::3]
+            sums.append(sum(found) / width ** 2)
+        close(sums[0], sums[1], 0.02, f"8 and 60 pixels, {ball['type']}, lens {lens}")
+    return largest()
+
+
+def glint_aside():
+    """The camera looks past the ball, so that the plane of its pixels is slanted: a cone of directions there fills more of it. Or the
+    picture has four pixels, and the ball lies where they meet."""
+    wide = glint(reflected, MIRROR["albedo"][0], 2, 60)
+    for what, degrees, width, vfov, wanted in (("aside", 30, 40, 90, glint(reflected, MIRROR["albedo"][0], 40, 90)), ("four", 0, 2, 60, wide)):
+        scene = glints(MIRROR, False, width=width, vfov=vfov)
+        scene["camera"]["lookat"] = [AWAY * math.tan(math.radians(degrees)), 0, 0]
+        found = read_pfm(picture(scene, "--spp", "4096", "--caustics", "on"))[2][::3]
+        close(sum(found), wanted / math.cos(math.radians(degrees)) ** 3, 0.005, what)
+    return largest()
+
+
+def glint_hidden():
+    """A black ball between the camera and the glint; the camera inside a ball of glass; parallel rays, which have no density."""
+    black = [{"center": [0, 0, 2], "radius": 0.5, "material": "black"}]
+    found = mean(glints(MIRROR, False, spheres=black), 256)
+    assert found[0] == 0, f"seen through a black ball: {found}"
+    around = [{"center": [0, 0, AWAY], "radius": 1, "material": "other"}]
+    assert mean(glints(glass(), True, spheres=around, other=glass(1.2)), 256)[0] < 1, "rays begin inside of glass"
+    parallel = glints(MIRROR, False)
+    del parallel["camera"]["defocus_angle"]
+    parallel["camera"]["projection"] = "orthographic"
+    assert mean(parallel, 256)[0] == 0, "parallel rays, none of which sees this sun"
+
+
+def same_seen(what, ball, lens, lamp, sun, spp):
+    scene = room(ball, lamp, 4, sun=sun, second=MIRROR)
+    scene["materials"]["floor"] = BLACK
+    scene["camera"].update({"vfov": 24, "defocus_angle": lens, "focus_dist": 4})
+    return same(what, scene, spp)
+
+
+def same_glint_in_a_mirror():
+    """The camera's light and chance weigh 1 together."""
+    return same_seen("mirror", MIRROR, 0, 0.4, None, 2048)
+
+
+def same_glints():
+    """The same through glass, with a lens and without."""
+    return "; ".join([same_seen("glass", glass(fresnel="exact"), 0, 0.4, None, 8192),
+                      same_seen("glass and a lens", {"type": "dielectric", "refraction_index": 1.5}, 4, 0.3, None, 8192),
+                      same_seen("disc", glass(fresnel="exact"), 0, 0, 10, 8192)])
+
 
 
 def hidden():
@@ -257,7 +370,7 @@ def same_bits():
 
 
 CASES = [on_axis, across, what_surfaces_let_through, off_a_mirror, cut_by_depth, hidden, same_through_glass, same_off_a_mirror,
-         same_of_a_disc, same_bits]
-DEEP_CASES = [same_rough, near_lamp, two_lamps, two_balls, same_deep_cases]
+         same_of_a_disc, glint_in_a_ball, glint_aside, glint_hidden, same_glint_in_a_mirror, same_bits]
+DEEP_CASES = [glint_across_pixels, same_glints, same_rough, near_lamp, two_lamps, two_balls, same_deep_cases]
 
 sys.exit(run_cases(CASES, DEEP_CASES))
