@@ -16,7 +16,7 @@ import sys
 import tempfile
 
 CAMERA = ('"camera": {"image_width": %d, "aspect_ratio": [4, 3], "samples_per_pixel": %d, "max_depth": 20, "vfov": 30, '
-          '"fit": "scene", "view": "three-quarter"}, "light": "soft", "backdrop": [1, 1, 1], "transfer": "srgb"')
+          '"fit": "scene", "view": "three-quarter"}, "lighting": "soft", "backdrop": [1, 1, 1], "transfer": "srgb"')
 MATERIAL = '"materials": {"m": {"type": "lambertian", "albedo": [0.8, 0.8, 0.8]}}'
 
 MAKE = """

@@ -271,7 +271,7 @@ typedef enum BpKernelForm {
 } BpKernelForm;
 
 /* Whether rays are sent to lamps; without, paths find them by chance. Both converge to the same picture. */
-typedef enum BpLamps { BP_LAMPS_ON, BP_LAMPS_OFF } BpLamps;
+typedef enum BpLightSampling { BP_LIGHT_SAMPLING_ON, BP_LIGHT_SAMPLING_OFF } BpLightSampling;
 
 /* Whether rays are sent to lamps through balls of glass and off mirrors; without, paths find that light by
  * chance. Both converge to the same picture. */
@@ -287,8 +287,9 @@ typedef struct BpRenderOptions {
     BpMath math;
     BpNumerics numerics;
     BpSampler sampler; /* `ballpark render` uses Sobol's sequence, which has less noise in the same time */
-    BpLamps lamps; /* on does nothing in a scene that does not call for it; reports and films then say off */
-    BpCaustics caustics; /* the same holds; without lamps it is off */
+    BpLightSampling light_sampling; /* on does nothing in a scene that does not call for it; reports and films
+                                       then say off */
+    BpCaustics caustics;            /* the same holds; without lamps it is off */
     BpKernelForm kernel;
     bool all_effects;       /* build the general kernel instead of the specialised one */
     uint32_t extra_effects; /* bit e: simulate effect e of bp_scene_effect() although nothing calls for it */
@@ -457,8 +458,8 @@ typedef struct BpUnseenLight {
     double seconds; /* that looking for it took */
 } BpUnseenLight;
 
-/* Traces the paths that look for it, if that has not been done; with light sampling off (BP_LAMPS_OFF), all
- * light is found by chance, and this finds nothing. */
+/* Traces the paths that look for it, if that has not been done; with light sampling off
+ * (BP_LIGHT_SAMPLING_OFF), all light is found by chance, and this finds nothing. */
 BP_API BpStatus bp_render_unseen(BpRender *render, BpUnseenLight *light, BpError *err);
 
 /* `picture`: Optional. */
@@ -546,10 +547,9 @@ typedef struct BpFilmInfo {
     uint64_t segments, cut_paths, invalid_samples; /* in all: ray segments; paths that the depth ended;
                                                       samples that are left out of the picture: */
     /* those that had a channel that was NaN or infinite; of the others, those that had a negative one; and
-     * those that were finite but brighter than the sums can hold. Films of older versions do not tell them
-     * apart, and add to invalid_samples alone. */
+     * those that were finite but brighter than the sums can hold. */
     uint64_t not_finite_samples, negative_samples, out_of_range_samples;
-    uint64_t lamp_rays; /* sent to lamps, in all; they are no segments */
+    uint64_t shadow_rays; /* sent to lamps, in all; they do not count as segments */
     /* What two films must have in common to be merged. */
     uint64_t scene_hash; /* of all in a scene that can change radiance */
     uint64_t seed;
@@ -558,7 +558,7 @@ typedef struct BpFilmInfo {
     BpPrecision precision;
     BpMath math;
     BpNumerics numerics;
-    BpLamps lamps;
+    BpLightSampling light_sampling;
     BpCaustics caustics;
     BpTransfer transfer; /* of the scene, for writing the picture */
 } BpFilmInfo;

@@ -11,8 +11,8 @@ BP_WORDS_ENDED(BpPrecision, const char *const bp_precision_names, PRECISION_WORD
 #define MATH_WORDS(X) X(BP_MATH_STRICT, "strict") X(BP_MATH_FAST, "fast")
 BP_WORDS_ENDED(BpMath, const char *const bp_math_names, MATH_WORDS);
 
-#define LAMPS_WORDS(X) X(BP_LAMPS_ON, "on") X(BP_LAMPS_OFF, "off")
-BP_WORDS_ENDED(BpLamps, const char *const bp_lamps_names, LAMPS_WORDS);
+#define LIGHT_SAMPLING_WORDS(X) X(BP_LIGHT_SAMPLING_ON, "on") X(BP_LIGHT_SAMPLING_OFF, "off")
+BP_WORDS_ENDED(BpLightSampling, const char *const bp_light_sampling_names, LIGHT_SAMPLING_WORDS);
 
 #define CAUSTICS_WORDS(X) X(BP_CAUSTICS_OFF, "off") X(BP_CAUSTICS_ON, "on")
 BP_WORDS_ENDED(BpCaustics, const char *const bp_caustics_names, CAUSTICS_WORDS);

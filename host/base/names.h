@@ -7,24 +7,23 @@
 
 #include "ballpark.h"
 
-/* The settings by which radiance is computed, besides the scene, its depth and the seed. X(type, member, what
- * two of them are called): BpRenderOptions, BpProgramOptions, BpRenderReport, BpFilm and BpFilmInfo each have
- * these members. From the list come what a render notes in its film and its report, what .bpa files say and a
- * merge compares, and the members of documents. `bp_<member>_names` are its words, and the option --<member>
- * sets it. */
+/* The settings by which radiance is computed, besides the scene, its depth and the seed. X(type, member, its
+ * option, what two of them are called): BpRenderOptions, BpProgramOptions, BpRenderReport, BpFilm and
+ * BpFilmInfo each have these members. From the list come what a render notes in its film and its report, what
+ * .bpa files say and a merge compares, and the members of documents. `bp_<member>_names` are its words. */
 #define BP_SETTING_LIST(X)                                                                                   \
-    X(BpSampler, sampler, "samplers")                                                                        \
-    X(BpPrecision, precision, "precisions")                                                                  \
-    X(BpMath, math, "kinds of mathematics")                                                                  \
-    X(BpNumerics, numerics, "numerics")                                                                      \
-    X(BpLamps, lamps, "ways to find lamps")                                                                  \
-    X(BpCaustics, caustics, "ways to find caustics")
+    X(BpSampler, sampler, "sampler", "samplers")                                                             \
+    X(BpPrecision, precision, "precision", "precisions")                                                     \
+    X(BpMath, math, "math", "kinds of mathematics")                                                          \
+    X(BpNumerics, numerics, "numerics", "numerics")                                                          \
+    X(BpLightSampling, light_sampling, "light-sampling", "ways to find lights")                              \
+    X(BpCaustics, caustics, "caustics", "ways to find caustics")
 
 /* As members of a struct. */
-#define BP_SETTING_MEMBER(type, member, plural) type member;
+#define BP_SETTING_MEMBER(type, member, option, plural) type member;
 
 /* The words of an enumeration, each by its value; NULL ends the list. */
-#define BP_SETTING_NAMES(type, member, plural) extern const char *const bp_##member##_names[];
+#define BP_SETTING_NAMES(type, member, option, plural) extern const char *const bp_##member##_names[];
 BP_SETTING_LIST(BP_SETTING_NAMES)
 #undef BP_SETTING_NAMES
 extern const char *const bp_kernel_names[];

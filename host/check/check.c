@@ -81,7 +81,7 @@ void bp_check_destroy(BpCheck **check) {
 static bool spreads_less(const BpRender *render) {
     BpRenderReport report;
     bp_render_report(render, &report);
-    return report.lamps == BP_LAMPS_ON;
+    return report.light_sampling == BP_LIGHT_SAMPLING_ON;
 }
 
 /* One chunk of the kernel. */

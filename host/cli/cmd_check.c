@@ -122,8 +122,8 @@ static BpStatus find_map_format(Session *session, BpError *err) {
  */
 
 /* `index`: every check has a seed of its own, so that their errors are independent. */
-static BpStatus add_item(Session *session, const char *name, BpScene *scene, BpLamps lamps, size_t index,
-                         BpError *err) {
+static BpStatus add_item(Session *session, const char *name, BpScene *scene, BpLightSampling light_sampling,
+                         size_t index, BpError *err) {
     const BpCommandLine *line = session->line;
     BpCheckItem *item = &session->items[session->item_count];
     *item = (BpCheckItem){.name = name, .scene = scene};
@@ -135,7 +135,7 @@ static BpStatus add_item(Session *session, const char *name, BpScene *scene, BpL
     BP_TRY(bp_setup_options(line, scene, options, err));
     if (!bp_option_given(line, BP_OPTION_SPP)) options->samples_per_pixel = BP_CHECK_SAMPLES_DEFAULT;
     options->sampler = BP_SAMPLER_INDEPENDENT;
-    options->lamps = lamps;
+    options->light_sampling = light_sampling;
     options->seed += index;
     ++session->item_count;
     if (json_array_append_new(session->scenes, bp_check_scene_json(name, scene, options)) != 0)
@@ -143,21 +143,21 @@ static BpStatus add_item(Session *session, const char *name, BpScene *scene, BpL
     return BP_OK;
 }
 
-/* The checks of one scene. Without --lamps, a scene whose lights can be sampled is checked without and with
- * that: the first tests more, since spreads are then the same as the reference's; the second is what renders
- * do. `index`: of the scene, in a suite of `count`. */
+/* The checks of one scene. Without --light-sampling, a scene whose lights can be sampled is checked without
+ * and with that: the first tests more, since spreads are then the same as the reference's; the second is what
+ * renders do. `index`: of the scene, in a suite of `count`. */
 static BpStatus add_items(Session *session, const char *name, BpScene *scene, size_t index, size_t count,
                           BpError *err) {
     const BpCommandLine *line = session->line;
-    const bool given = bp_option_given(line, BP_OPTION_LAMPS);
-    const BpRenderOptions sampled = {.lamps = BP_LAMPS_ON};
+    const bool given = bp_option_given(line, BP_OPTION_LIGHT_SAMPLING);
+    const BpRenderOptions sampled = {.light_sampling = BP_LIGHT_SAMPLING_ON};
     if (bp_option_given(line, BP_OPTION_WIDTH))
         BP_TRY(bp_scene_set_width(scene, line->width, err));
     else if (scene->camera.width > BP_CHECK_WIDTH_DEFAULT)
         BP_TRY(bp_scene_set_width(scene, BP_CHECK_WIDTH_DEFAULT, err));
-    BP_TRY(add_item(session, name, scene, given ? line->lamps : BP_LAMPS_OFF, index, err));
-    if (given || bp_render_lamps(scene, &sampled) == BP_LAMPS_OFF) return BP_OK;
-    return add_item(session, name, scene, BP_LAMPS_ON, count + index, err);
+    BP_TRY(add_item(session, name, scene, given ? line->light_sampling : BP_LIGHT_SAMPLING_OFF, index, err));
+    if (given || bp_render_light_sampling(scene, &sampled) == BP_LIGHT_SAMPLING_OFF) return BP_OK;
+    return add_item(session, name, scene, BP_LIGHT_SAMPLING_ON, count + index, err);
 }
 
 static BpStatus load_items(Session *session, BpError *err) {

@@ -353,7 +353,7 @@ static void look_for_unseen(const BpCommandLine *line, const BpScene *scene, con
     size_t count = 0;
     found->luminance = NAN;
     bool may_be = false;
-    if (line->lamps == BP_LAMPS_OFF) return;
+    if (line->light_sampling == BP_LIGHT_SAMPLING_OFF) return;
     BpStatus status = may_be_unseen(scene, &may_be, &err);
     if (status == BP_OK && may_be && device == NULL) status = bp_setup_devices(line, &devices, &count, &err);
     if (status == BP_OK && may_be) status = look(line, scene, device != NULL ? device : devices, found, &err);

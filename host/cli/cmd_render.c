@@ -130,7 +130,7 @@ static json_t *stats_json(const RunResult *result) {
         BP_INVALID_LIST(MEMBER)
 #undef MEMBER
             "cut_paths",
-        (json_int_t)report->cut_paths, "lamp_rays", (json_int_t)report->lamp_rays, "unseen_part",
+        (json_int_t)report->cut_paths, "shadow_rays", (json_int_t)report->shadow_rays, "unseen_part",
         result->claim.unseen_part, "unseen", bp_unseen_json(&result->unseen, result->claim.luminance));
     json_t *run = json_pack("{s:s, s:o, s:I, s:i, s:b, s:o, s:s, s:i, s:i, s:I, s:I, s:I, s:s}",
                             "acceleration", bp_acceleration_name(report->acceleration), "output",
@@ -596,7 +596,7 @@ static BpStatus plan(const BpCommandLine *line, const Job *job, const BpCheckpoi
                        job->path);
     if (resumed != NULL) {
         options->caustics = bp_render_caustics(job->scene, options); /* as films have them */
-        options->lamps = bp_render_lamps(job->scene, options);
+        options->light_sampling = bp_render_light_sampling(job->scene, options);
         BP_TRY(bp_resume_options(line, resumed, options, err));
     }
     init_rule(line, job->scene, options, rule);

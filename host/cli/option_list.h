@@ -74,9 +74,9 @@ enum {
     OPTION(PROJECTION, "projection", 0, BP_TRACERS | BP_SCENE,                                               \
            "orthographic: parallel rays, so distant things do not look smaller", const char *, projection,   \
            BP_WORD("perspective", "orthographic"))                                                           \
-    OPTION(LIGHT, "light", 0, BP_TRACERS | BP_SCENE,                                                         \
+    OPTION(LIGHTING, "lighting", 0, BP_TRACERS | BP_SCENE,                                                   \
            "light that moves with the camera, instead of the scene's; sky: the scene's background",          \
-           const char *, light, BP_WORD("soft", "studio", "rembrandt", "overhead", "sky"))                   \
+           const char *, lighting, BP_WORD("soft", "studio", "rembrandt", "overhead", "sky"))                \
     OPTION(DPI, "dpi", 0, BP_RENDER | BP_MERGE, "dots per inch, recorded in PNG and EXR", double, dpi,       \
            BP_REAL("N", 0, 100000))                                                                          \
     OPTION(WIDTH_MM, "width-mm", 0, BP_RENDER,                                                               \
@@ -123,8 +123,9 @@ enum {
     RENDER_OPTION(SAMPLER, "sampler", 0, BP_RENDER | BP_EXPLAIN | BP_COST | BP_BENCH | BP_VIEW,              \
                   "sample sequence; sobol has less noise", BpSampler, sampler,                               \
                   BP_CHOICE("", bp_sampler_names, 0))                                                        \
-    RENDER_OPTION(LAMPS, "lamps", 0, BP_TRACERS, "off: paths find lamps only by chance, for comparison",     \
-                  BpLamps, lamps, BP_CHOICE("", bp_lamps_names, 0))                                          \
+    RENDER_OPTION(LIGHT_SAMPLING, "light-sampling", 0, BP_TRACERS,                                           \
+                  "off: paths find lights only by chance, for comparison", BpLightSampling, light_sampling,  \
+                  BP_CHOICE("", bp_light_sampling_names, 0))                                                 \
     RENDER_OPTION(CAUSTICS, "caustics", 0, BP_TRACERS,                                                       \
                   "on: rays to lamps go through balls of glass and off mirrors, too", BpCaustics, caustics,  \
                   BP_CHOICE("", bp_caustics_names, 0))                                                       \
@@ -219,8 +220,8 @@ enum {
     NOTE(OUTPUT, BP_GENERATE, NULL, "cover.json or field.ply; standard output if that is a pipe or a file")  \
     NOTE(OUTPUT, BP_SCENE, "where the document goes", "standard output")                                     \
     NOTE(FRAME, BP_TRACERS | BP_SCENE, NULL, "0")                                                            \
-    NOTE(LAMPS, BP_TRACERS & ~BP_CHECK, NULL, "on where it helps")                                           \
-    NOTE(LAMPS, BP_CHECK, NULL, "both are checked")                                                          \
+    NOTE(LIGHT_SAMPLING, BP_TRACERS & ~BP_CHECK, NULL, "on where it helps")                                  \
+    NOTE(LIGHT_SAMPLING, BP_CHECK, NULL, "both are checked")                                                 \
     NOTE(CAUSTICS, BP_TRACERS, NULL, "off")                                                                  \
     NOTE(SPP, BP_RENDER, NULL, "the scene's number")                                                         \
     NOTE(SPP, BP_CHECK, NULL, "1024")                                                                        \
@@ -259,7 +260,7 @@ enum {
     NOTE(EXPOSURE, BP_RENDER | BP_MERGE | BP_VIEW, NULL, "0")                                                \
     NOTE(BIT_DEPTH, BP_RENDER | BP_MERGE, NULL, "8")                                                         \
     NOTE(PROJECTION, BP_TRACERS | BP_SCENE, NULL, "the scene's")                                             \
-    NOTE(LIGHT, BP_TRACERS | BP_SCENE, NULL, "the scene's; soft for a file of particles")                    \
+    NOTE(LIGHTING, BP_TRACERS | BP_SCENE, NULL, "the scene's; soft for a file of particles")                 \
     NOTE(FORMAT, BP_RENDER | BP_MERGE, NULL, "by the ending of FILE, otherwise png")                         \
     NOTE(MARGIN, BP_CHECK, NULL, "0.5%, with --suite 1%")                                                    \
     NOTE(TIMEOUT, BP_CHECK, NULL, "no limit; 20s to list devices")                                           \

@@ -21,8 +21,8 @@ static void list_takers(BpOption option, char *text, size_t size) {
                                      bp_commands[c].name);
 }
 
-/* What does the same as an option that other renderers have; NULL for others, and where the command has none
- * of it. */
+/* What does the same as an option that other renderers have, or had another name before; NULL for others, and
+ * where the command has none of it. */
 static const char *instead_of(const char *name, const BpCommand *command) {
     static const char shape[] =
         "the height follows from --width and the scene's \"aspect_ratio\" or \"image_height\"";
@@ -35,7 +35,9 @@ static const char *instead_of(const char *name, const BpCommand *command) {
                    {"--samples", "--spp sets the samples per pixel", BP_OPTION_SPP},
                    {"--out", "--output names the file", BP_OPTION_OUTPUT},
                    {"--gpu", "--device gpu chooses one", BP_OPTION_DEVICE},
-                   {"--cpu", "--device cpu chooses it", BP_OPTION_DEVICE}};
+                   {"--cpu", "--device cpu chooses it", BP_OPTION_DEVICE},
+                   {"--lamps", "--lamps is now --light-sampling", BP_OPTION_LIGHT_SAMPLING},
+                   {"--light", "--light is now --lighting", BP_OPTION_LIGHTING}};
     for (size_t i = 0; i < sizeof foreign / sizeof *foreign && command != NULL; i++)
         if (strcmp(name, foreign[i].name) == 0 && bp_option_taken(foreign[i].option, command))
             return foreign[i].instead;

@@ -26,7 +26,7 @@ const char *bp_calibration_text(const BpCalibration *calibration, char text[BP_C
 
 json_t *bp_report_settings(const BpRenderReport *report) {
     json_t *object = json_pack("{s:s}", "kernel", bp_kernel_names[report->kernel]);
-#define SETTING(type, member, plural)                                                                        \
+#define SETTING(type, member, option, plural)                                                                \
     if (json_object_set_new(object, #member, json_string(bp_##member##_names[report->member])) != 0)         \
         goto failed;
     BP_SETTING_LIST(SETTING)

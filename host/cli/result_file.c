@@ -314,7 +314,4 @@ void bp_result_warn(const BpCommandLine *line, const BpFilm *film) {
                "warning: rounding may have changed the picture by %s, because its light is so much dimmer "
                "than the brightest path; dim or remove the brightest lamp",
                bp_format_percent(off, text, sizeof text));
-    if (film->unverified)
-        bp_say(line, "warning: a .bpa file of version 1 has no checksum, so damage cannot be detected; "
-                     "render its samples again if in doubt");
 }

@@ -49,9 +49,8 @@ BpCommandLine bp_result_line(const BpCommandLine *line, const BpResultFile *resu
 /* "cover.png", or "standard output". */
 const char *bp_result_name(const BpResultFile *result);
 
-/* Warns on standard error, unless --quiet, of what may be wrong with sums that look right: rounding that
- * shows, since the picture is that dim beside the brightest lamp of its scene, and sums from a file without a
- * checksum. */
+/* Warns on standard error, unless --quiet, of rounding that shows, since the picture is so much dimmer than
+ * the brightest lamp of its scene. */
 void bp_result_warn(const BpCommandLine *line, const BpFilm *film);
 
 #endif

@@ -72,11 +72,11 @@ BpStatus bp_resume_options(const BpCommandLine *line, const BpFilm *film, BpRend
 #define SETTING_OPTION_precision BP_OPTION_PRECISION
 #define SETTING_OPTION_math BP_OPTION_MATH
 #define SETTING_OPTION_numerics BP_OPTION_NUMERICS
-#define SETTING_OPTION_lamps BP_OPTION_LAMPS
+#define SETTING_OPTION_light_sampling BP_OPTION_LIGHT_SAMPLING
 #define SETTING_OPTION_caustics BP_OPTION_CAUSTICS
-#define TAKE(type, member, plural)                                                                           \
+#define TAKE(type, member, option, plural)                                                                   \
     if (bp_option_given(line, SETTING_OPTION_##member) && options->member != film->member) {                 \
-        snprintf(has, sizeof has, "has --" #member " %s", bp_##member##_names[film->member]);                \
+        snprintf(has, sizeof has, "has --" option " %s", bp_##member##_names[film->member]);                 \
         return contradicts(line, SETTING_OPTION_##member, has, err);                                         \
     }                                                                                                        \
     options->member = film->member;

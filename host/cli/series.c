@@ -5,7 +5,7 @@
 #include "base/words.h"
 #include "result_file.h"
 #include "scene/fit.h"
-#include "scene/light.h"
+#include "scene/lighting.h"
 #include "setup.h"
 
 #include <inttypes.h>
@@ -185,7 +185,7 @@ BpStatus bp_series_scene(BpSeries *series, const BpScene **scene, BpError *err) 
     if (bp_option_given(line, BP_OPTION_TURNTABLE)) {
         series->scene->camera = series->camera;
         bp_camera_turn(&series->scene->camera, 360.0 * (double)number / (double)series->count);
-        bp_light_place(series->scene);
+        bp_lighting_place(series->scene);
     } else {
         BpSceneChanges changes = changes_of(series, number);
         changes.cache = bp_option_given(line, BP_OPTION_FRAMES) ? &series->cache : NULL;

@@ -74,7 +74,7 @@ BpStatus bp_setup_load_changed(const BpCommandLine *line, const char *path, cons
     all.set = line->set.list;
     all.set_count = line->set.count;
     all.fresnel = line->fresnel;
-    all.light = line->light;
+    all.lighting = line->lighting;
     all.projection = line->projection;
     BP_TRY(load(path, &all, scene, err));
     const BpStatus status = bp_file_conflicts_check_scene(line, NULL, *scene, err);

@@ -91,12 +91,12 @@ void bp_film_info(const BpFilm *film, BpFilmInfo *info) {
 #define GIVE(member, tally, words) .member = film->member,
         BP_INVALID_LIST(GIVE)
 #undef GIVE
-            .lamp_rays = film->lamp_rays,
+            .shadow_rays = film->shadow_rays,
         .scene_hash = film->scene_hash,
         .seed = film->seed,
         .max_depth = film->max_depth,
         .replicates = film->replicates,
-#define SETTING(type, member, plural) .member = film->member,
+#define SETTING(type, member, option, plural) .member = film->member,
         BP_SETTING_LIST(SETTING)
 #undef SETTING
             .transfer = film->transfer,
@@ -219,9 +219,9 @@ BpStatus bp_film_check_same(const BpFilm *a, const BpFilm *b, BpError *err) {
 #define BP_SAME(field, what, remedy)                                                                         \
     if (a->field != b->field)                                                                                \
     return bp_fail(err, BP_ERR_USAGE, what " differ" remedy, (int64_t)a->field, (int64_t)b->field)
-#define BP_SAME_SETTING(type, member, plural)                                                                \
+#define BP_SAME_SETTING(type, member, option, plural)                                                        \
     if (a->member != b->member)                                                                              \
-        return bp_fail(err, BP_ERR_USAGE, plural " differ (--" #member " %s and --" #member " %s)",          \
+        return bp_fail(err, BP_ERR_USAGE, plural " differ (--" option " %s and --" option " %s)",            \
                        bp_##member##_names[a->member], bp_##member##_names[b->member]);
     BP_SAME(width, "widths", " (%" PRId64 " and %" PRId64 " pixels: --width)");
     BP_SAME(height, "heights", " (%" PRId64 " and %" PRId64 " pixels)");
@@ -274,7 +274,7 @@ BpStatus bp_film_add_sums(BpFilm *film, const BpFilm *from, BpError *err) {
 #define ADD(member, tally, words) film->member += from->member;
     BP_INVALID_LIST(ADD)
 #undef ADD
-    film->lamp_rays += from->lamp_rays;
+    film->shadow_rays += from->shadow_rays;
     return BP_OK;
 }
 
@@ -303,7 +303,7 @@ BpStatus bp_film_merge(BpFilm *into, const BpFilm *from, BpError *err) {
     if (total_overflows(into->segments, from->segments) ||
         total_overflows(into->cut_paths, from->cut_paths) ||
         total_overflows(into->invalid_samples, from->invalid_samples) ||
-        total_overflows(into->lamp_rays, from->lamp_rays))
+        total_overflows(into->shadow_rays, from->shadow_rays))
         return bp_fail(err, BP_ERR_LIMIT,
                        "the numbers of ray segments, cut paths, invalid samples or rays to lamps overflow 63 "
                        "bits: a file is damaged");
@@ -337,7 +337,6 @@ BpStatus bp_film_merge(BpFilm *into, const BpFilm *from, BpError *err) {
     into->range_count = joined_count;
     if (takes_aovs) bp_film_copy_aovs(from, into);
     into->partial = into->partial || from->partial;
-    into->unverified = into->unverified || from->unverified;
     if (into->job.first != from->job.first || into->job.count != from->job.count || is_whole_job(into))
         into->job = (struct BpSampleRange){0, 0};
     free(into->pixel_segments);

@@ -72,12 +72,11 @@ struct BpFilm {
     size_t range_count;
     bool partial;       /* interrupted: some pixels have fewer samples than the ranges say */
     bool coarse;        /* some sample was so dim that a fine step may be over a millionth of it */
-    bool unverified;    /* read from a file of version 1, which has no checksum */
     char *title;        /* Optional. The scene's title, for people; owned, not compared by a merge. */
     int64_t *sums;      /* width * height * K * 3, index ((pixel * K) + k) * 3 + channel */
     int64_t *fine_sums; /* Optional. Of the same shape, in steps 2^38 times finer; NULL: all are 0 */
     uint32_t *counts;   /* width * height * K: valid samples */
-    uint64_t segments, cut_paths, invalid_samples, lamp_rays;            /* totals over the picture */
+    uint64_t segments, cut_paths, invalid_samples, shadow_rays;          /* totals over the picture */
     uint64_t not_finite_samples, negative_samples, out_of_range_samples; /* of the invalid ones */
     uint64_t *pixel_segments; /* Optional. Of each pixel: adaptive sampling asks for it; not merged. */
     uint64_t *met; /* Optional. Of each pixel: valid samples whose camera ray met something; a scene without a
@@ -96,13 +95,16 @@ struct BpFilm {
 /* The scale for a scene traced to `max_depth` segments: 38 - ceil(log2(bound)) with
  * bp_scene_radiance_bound(), within +-126 so that 2^scale is a float. A sample is then at most 2^38 steps,
  * and 2^24 of them are at most 2^62. */
-int32_t bp_film_scale(const BpScene *scene, uint32_t max_depth, BpLamps lamps, BpCaustics caustics);
+int32_t bp_film_scale(const BpScene *scene, uint32_t max_depth, BpLightSampling light_sampling,
+                      BpCaustics caustics);
 /* An upper bound of the radiance that one path of at most `max_depth` segments can carry: the brightest of
  * sky and lamps, times min(1 / (1 - a), max_depth), where a is the largest albedo of a material that both
- * emits and scatters: 1 + a + a^2 + ... with as many terms as the path has segments. With BP_LAMPS_ON, each
- * vertex but the last adds half the light of a lamp at most, times what has been scattered so far; with
- * BP_CAUSTICS_ON, up to three times as much more, for the ways through a focuser. 0 for a black scene. */
-double bp_scene_radiance_bound(const BpScene *scene, uint32_t max_depth, BpLamps lamps, BpCaustics caustics);
+ * emits and scatters: 1 + a + a^2 + ... with as many terms as the path has segments. With
+ * BP_LIGHT_SAMPLING_ON, each vertex but the last adds half the light of a lamp at most, times what has been
+ * scattered so far; with BP_CAUSTICS_ON, up to three times as much more, for the ways through a focuser. 0
+ * for a black scene. */
+double bp_scene_radiance_bound(const BpScene *scene, uint32_t max_depth, BpLightSampling light_sampling,
+                               BpCaustics caustics);
 /* A hash of the meaning of the scene: camera, sky, spheres in their order, each with what its material says.
  * Names, unused materials, members without effect (the fuzz of glass) and the sign of zero change nothing;
  * nor do sample counts and depth, which the film keeps apart. */

@@ -115,8 +115,7 @@ static uint64_t body_bytes(const Loader *loader, const BpFilm *sizes) {
            (parts->unseen ? pixels * sizeof(BpUnseenPixel) + 3 * sizeof(float) : 0) + parts->decision_bytes;
 }
 
-/* Whether the file is as long as its numbers need, or, where they are packed, can be; before anything is
- * allocated. */
+/* Whether so many numbers can be packed in a file of this length; before anything is allocated. */
 static BpStatus check_length(Loader *loader, const BpFilm *sizes, BpError *err) {
     FILE *in = loader->in;
     if (fseeko(in, 0, SEEK_END) != 0)
@@ -125,19 +124,16 @@ static BpStatus check_length(Loader *loader, const BpFilm *sizes, BpError *err) 
     const off_t length = ftello(in);
     if (length < 0 || fseeko(in, (off_t)loader->header_size, SEEK_SET) != 0)
         return bp_fail(err, BP_ERR_FILE, "reading %s failed: %s", loader->name, strerror(errno));
-    const uint64_t around = loader->header_size + (sizes->unverified ? 0 : BP_FILM_CHECKSUM_BYTES);
+    const uint64_t around = loader->header_size + BP_FILM_CHECKSUM_BYTES;
     const uint64_t numbers = body_bytes(loader, sizes), actual = (uint64_t)length;
     loader->body_size = actual > around ? actual - around : 0;
-    const bool packed = loader->parts.version >= 3;
-    if (packed ? numbers <= bp_film_unpacked_max(loader->body_size) : actual == around + numbers)
-        return BP_OK;
+    if (numbers <= bp_film_unpacked_max(loader->body_size)) return BP_OK;
     return bp_fail(err, BP_ERR_FILE,
-                   "%s is %s: %" PRIu64 " byte%s, but its header (%" PRIu32 " x %" PRIu32 " pixels, %" PRIu32
-                   " replicate%s) says %" PRIu64 "%s",
-                   loader->name, actual < around + numbers ? "truncated" : "too long", actual,
-                   bp_plural(actual), sizes->width, sizes->height, sizes->replicates,
-                   bp_plural(sizes->replicates), around + numbers,
-                   packed ? ", more than these bytes can be unpacked to" : "");
+                   "%s is truncated: %" PRIu64 " byte%s, but its header (%" PRIu32 " x %" PRIu32
+                   " pixels, %" PRIu32 " replicate%s) says %" PRIu64
+                   ", more than these bytes can be unpacked to",
+                   loader->name, actual, bp_plural(actual), sizes->width, sizes->height, sizes->replicates,
+                   bp_plural(sizes->replicates), around + numbers);
 }
 
 static BpStatus read_sums(BpFilmSource *source, const BpFilm *film, int64_t *sums, BpError *err) {
@@ -259,9 +255,9 @@ static BpStatus read_numbers(const BpFilmParts *parts, BpFilmSource *source, BpF
 static BpStatus read_body(const Loader *loader, BpFilm *film, BpError *err) {
     BpFilmSource source;
     BpStatus status = bp_film_source_init(loader->in, loader->name, loader->header_checksum,
-                                          loader->body_size, loader->parts.version < 3, &source, err);
+                                          loader->body_size, &source, err);
     if (status == BP_OK) status = read_numbers(&loader->parts, &source, film, err);
-    if (!film->unverified && (status == BP_OK || status == BP_ERR_FILE)) {
+    if (status == BP_OK || status == BP_ERR_FILE) {
         BpError damage = {0};
         const BpStatus verified = bp_film_source_verify(&source, &damage);
         if (verified != BP_OK) status = bp_fail(err, verified, "%s", damage.message);
@@ -282,7 +278,6 @@ BpStatus bp_film_read_stream(FILE *in, const char *name, BpFilm **film, BpError 
     BP_TRY_GOTO(status, bp_film_header_sizes(header, name, &sizes, &loader.parts, err), done);
     BP_TRY_GOTO(status, check_length(&loader, &sizes, err), done);
     BP_TRY_GOTO(status, bp_film_create(sizes.width, sizes.height, sizes.replicates, &made, err), done);
-    made->unverified = sizes.unverified;
     made->coarse = sizes.coarse;
     BP_TRY_GOTO(status, bp_film_header_settings(header, name, made, err), done);
     BP_TRY_GOTO(status, read_body(&loader, made, err), done);

@@ -3,13 +3,12 @@
  * In and out: BpFilm.   Knows: which numbers there are, and what they may be.   Does not know: how they are
  * packed (film_stream.h), how the sums were made.
  *
- * Layout, from version 3 on (docs/FILES.md has it byte by byte): a JSON object on one line ended by a
+ * Layout (docs/FILES.md has it byte by byte): a JSON object on one line ended by a
  * newline, then, as film_stream.h packs them, width * height * replicates * 3 sums of 8 bytes (two's
  * complement); as many fine sums, if the header says so; width * height * replicates counts of 4 bytes;
  * depth, normal and albedo, path lengths of pixels, alpha, unseen light, decisions of adaptive sampling, each
- * if the header says so; and the CRC-32 of everything before it, 4 bytes. Version 2 has no more than counts,
- * and does not pack them. Version 1 has no fine sums and no checksum either; it is read and marked
- * `unverified`. Scene hash and seed are strings, since many readers of JSON keep 53 bits of a number. */
+ * if the header says so; and the CRC-32 of everything before it, 4 bytes. Scene hash and seed are strings,
+ * since many readers of JSON keep 53 bits of a number. */
 #ifndef BP_FILM_FILM_FILE_H
 #define BP_FILM_FILM_FILE_H
 
@@ -20,7 +19,7 @@
 /* bp_film_write() of ballpark.h to an open stream ("-o -"), flushed at the end. */
 BpStatus bp_film_write_stream(const BpFilm *film, FILE *out, BpError *err);
 
-/* Refuses what is truncated, too long, damaged, of a newer version or not a .bpa file, naming what is
+/* Refuses what is truncated, too long, damaged, of another version or not a .bpa file, naming what is
  * wrong (BP_ERR_FILE); allocates nothing before the file is as long as its header says. Whatever loads obeys
  * what film.h says: ranges sorted and disjoint, counts within the ranges, sums not negative and
  * without risk of overflow. */

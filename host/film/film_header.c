@@ -59,15 +59,10 @@ static bool add_optional(json_t *header, const BpFilm *film) {
         return false;
     BP_INVALID_LIST(WRITE)
 #undef WRITE
-    if (film->lamp_rays > 0 &&
-        json_object_set_new(header, "lamp_rays", json_integer((json_int_t)film->lamp_rays)) != 0)
+    if (film->shadow_rays > 0 &&
+        json_object_set_new(header, "shadow_rays", json_integer((json_int_t)film->shadow_rays)) != 0)
         return false;
     return film->plan == NULL || json_object_set_new(header, "plan", plan_json(film->plan)) == 0;
-}
-
-/* The oldest that has all of it. */
-static int version_of(const BpFilm *film) {
-    return film->unseen != NULL ? BP_FILM_VERSION : film->met != NULL ? 4 : 3;
 }
 
 char *bp_film_header_make(const BpFilm *film) {
@@ -75,20 +70,19 @@ char *bp_film_header_make(const BpFilm *film) {
     snprintf(hash, sizeof hash, "%016" PRIx64, film->scene_hash);
     snprintf(seed, sizeof seed, "%" PRIu64, film->seed);
     const char *title = film->title != NULL ? film->title : "";
-    json_t *header =
-        json_pack("{s:i,s:s,s:s%,s:I,s:I,s:I,s:i,s:b,s:b,s:b,s:b,s:s,s:s,s:I}", "ballpark_accumulator",
-                  version_of(film), "byte_order", "little", "title", title, title_bytes(title), "width",
-                  (json_int_t)film->width, "height", (json_int_t)film->height, "replicates",
-                  (json_int_t)film->replicates, "scale_log2", (int)film->scale_log2, "fine_sums",
-                  (int)(film->fine_sums != NULL), "coarse", (int)film->coarse, "aovs",
-                  (int)bp_film_has_aovs(film), "pixel_segments", (int)(film->pixel_segments != NULL),
-                  "scene_hash", hash, "seed", seed, "max_depth", (json_int_t)film->max_depth);
+    json_t *header = json_pack(
+        "{s:i,s:s,s:s%,s:I,s:I,s:I,s:i,s:b,s:b,s:b,s:b,s:s,s:s,s:I}", "ballpark_accumulator", BP_FILM_VERSION,
+        "byte_order", "little", "title", title, title_bytes(title), "width", (json_int_t)film->width,
+        "height", (json_int_t)film->height, "replicates", (json_int_t)film->replicates, "scale_log2",
+        (int)film->scale_log2, "fine_sums", (int)(film->fine_sums != NULL), "coarse", (int)film->coarse,
+        "aovs", (int)bp_film_has_aovs(film), "pixel_segments", (int)(film->pixel_segments != NULL),
+        "scene_hash", hash, "seed", seed, "max_depth", (json_int_t)film->max_depth);
     json_t *rest = json_pack("{s:s,s:o,s:b,s:I,s:I,s:I}", "transfer", bp_transfer_names[film->transfer],
                              "ranges", ranges_json(film), "partial", (int)film->partial, "segments",
                              (json_int_t)film->segments, "cut_paths", (json_int_t)film->cut_paths,
                              "invalid_samples", (json_int_t)film->invalid_samples);
     bool whole = true;
-#define WRITE(type, member, plural)                                                                          \
+#define WRITE(type, member, option, plural)                                                                  \
     whole =                                                                                                  \
         whole && json_object_set_new(header, #member, json_string(bp_##member##_names[film->member])) == 0;
     BP_SETTING_LIST(WRITE)
@@ -159,9 +153,9 @@ static bool read_truth(Reader *reader, const char *member) {
     return json_is_true(value);
 }
 
-/* A member that only some headers of its version have. */
-static bool read_optional(Reader *reader, const char *member, bool needed) {
-    return (needed || json_object_get(reader->header, member) != NULL) && read_truth(reader, member);
+/* A member that is left out where it would be false. */
+static bool read_optional(Reader *reader, const char *member) {
+    return json_object_get(reader->header, member) != NULL && read_truth(reader, member);
 }
 
 static void read_ranges(Reader *reader, BpFilm *film) {
@@ -203,28 +197,23 @@ static void read_ranges(Reader *reader, BpFilm *film) {
 /* The part of the header that decides how long the file is. */
 static void read_sizes(Reader *reader, BpFilm *sizes, BpFilmParts *parts) {
     const uint64_t version = read_integer(reader, "ballpark_accumulator", 1, INT64_MAX);
-    if (version > BP_FILM_VERSION && reader->status == BP_OK)
+    if (version != BP_FILM_VERSION && reader->status == BP_OK)
         reader->status =
             bp_fail(reader->err, BP_ERR_FILE,
-                    "%s has version %" PRIu64
-                    " of the format, but this program reads versions 1 to %d: use a newer Ballpark",
-                    reader->name, version, BP_FILM_VERSION);
-    parts->version = (uint32_t)version;
-    sizes->unverified = version == 1;
+                    "%s has version %" PRIu64 " of the format, but this program reads only version %d: %s",
+                    reader->name, version, BP_FILM_VERSION,
+                    version > BP_FILM_VERSION ? "use a newer Ballpark" : "render its samples again");
     static const char *const byte_orders[] = {"little", NULL};
     read_name(reader, "byte_order", byte_orders);
     sizes->width = (uint32_t)read_integer(reader, "width", 1, BP_PICTURE_SIDE_MAX);
     sizes->height = (uint32_t)read_integer(reader, "height", 1, BP_PICTURE_SIDE_MAX);
     sizes->replicates = (uint32_t)read_integer(reader, "replicates", 1, BP_REPLICATES_MAX);
-    if (version >= 2) {
-        parts->fine_sums = read_truth(reader, "fine_sums");
-        sizes->coarse = read_truth(reader, "coarse");
-    }
-    if (version < 3) return;
+    parts->fine_sums = read_truth(reader, "fine_sums");
+    sizes->coarse = read_truth(reader, "coarse");
     parts->aovs = read_truth(reader, "aovs");
     parts->pixel_segments = read_truth(reader, "pixel_segments");
-    parts->alpha = version >= 4 && read_optional(reader, "alpha", version == 4);
-    parts->unseen = version >= 5 && read_optional(reader, "unseen", false);
+    parts->alpha = read_optional(reader, "alpha");
+    parts->unseen = read_optional(reader, "unseen");
     const json_t *plan = json_object_get(reader->header, "plan");
     Reader inner = {plan, reader->name, reader->status, reader->err};
     if (plan != NULL) parts->decision_bytes = read_integer(&inner, "decision_bytes", 0, INT32_MAX);
@@ -284,7 +273,7 @@ static void read_plan(Reader *reader, BpFilm *film) {
         bad_member(reader, "plan", "one that goes with the size of the picture and the samples");
 }
 
-/* Older files do not know the causes, and no file has those of which there is none. */
+/* A cause of which there are none is left out. */
 static void read_invalid(Reader *reader, BpFilm *film) {
     uint64_t known = 0;
     film->invalid_samples = read_integer(reader, "invalid_samples", 0, INT64_MAX);
@@ -305,31 +294,22 @@ static void read_settings(Reader *reader, BpFilm *film) {
     film->scene_hash = read_wide(reader, "scene_hash", 16, "a string of up to 16 hexadecimal digits");
     film->seed = read_wide(reader, "seed", 10, "a string of decimal digits, below 2^64");
     film->max_depth = (uint32_t)read_integer(reader, "max_depth", 0, BP_DEPTH_MAX);
-    /* Older files do not have these members, and their paths found lamps, or caustics, by chance. */
-    const bool knows_lamps = json_object_get(reader->header, "lamps") != NULL;
-    const bool knows_caustics = json_object_get(reader->header, "caustics") != NULL;
-#define READ(type, member, plural)                                                                           \
-    if ((knows_lamps || strcmp(#member, "lamps") != 0) &&                                                    \
-        (knows_caustics || strcmp(#member, "caustics") != 0))                                                \
-        film->member = (type)read_name(reader, #member, bp_##member##_names);
+#define READ(type, member, option, plural)                                                                   \
+    film->member = (type)read_name(reader, #member, bp_##member##_names);
     BP_SETTING_LIST(READ)
 #undef READ
-    if (!knows_lamps) film->lamps = BP_LAMPS_OFF;
-    if (!knows_caustics) film->caustics = BP_CAUSTICS_OFF;
     film->transfer = (BpTransfer)read_name(reader, "transfer", bp_transfer_names);
     film->segments = read_integer(reader, "segments", 0, INT64_MAX);
     film->cut_paths = read_integer(reader, "cut_paths", 0, INT64_MAX);
     read_invalid(reader, film);
-    if (json_object_get(reader->header, "lamp_rays") != NULL)
-        film->lamp_rays = read_integer(reader, "lamp_rays", 0, INT64_MAX);
+    if (json_object_get(reader->header, "shadow_rays") != NULL)
+        film->shadow_rays = read_integer(reader, "shadow_rays", 0, INT64_MAX);
     film->partial = read_truth(reader, "partial");
     const char *title = json_string_value(json_object_get(reader->header, "title"));
     if (title == NULL) bad_member(reader, "title", "a string");
     read_ranges(reader, film);
-    if (json_integer_value(json_object_get(reader->header, "ballpark_accumulator")) >= 3) {
-        read_job(reader, film);
-        read_plan(reader, film);
-    }
+    read_job(reader, film);
+    read_plan(reader, film);
     if (reader->status != BP_OK) return;
     film->title = strdup(title);
     if (film->title == NULL) reader->status = bp_fail(reader->err, BP_ERR_MEMORY, "out of memory");
@@ -340,7 +320,7 @@ BpStatus bp_film_header_sizes(const json_t *header, const char *name, BpFilm *si
     if (json_object_get(header, "ballpark_accumulator") == NULL)
         return bp_fail(err, BP_ERR_FILE, "%s is not a .bpa file: \"ballpark_accumulator\" is missing", name);
     Reader reader = {header, name, BP_OK, err};
-    *parts = (BpFilmParts){.version = 0};
+    *parts = (BpFilmParts){.aovs = false};
     read_sizes(&reader, sizes, parts);
     return reader.status;
 }

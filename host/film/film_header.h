@@ -10,13 +10,11 @@
 
 #include <jansson.h>
 
-/* Of the files that are written; of those without unseen light it is 4, and without an alpha either it is 3,
- * which older programs read. */
-#define BP_FILM_VERSION 5
+/* The only one that is written and read. */
+#define BP_FILM_VERSION 6
 
 /* Which numbers follow a header. */
 typedef struct BpFilmParts {
-    uint32_t version;
     bool fine_sums, aovs, pixel_segments, alpha, unseen;
     uint64_t decision_bytes; /* of the plan */
 } BpFilmParts;
@@ -24,9 +22,9 @@ typedef struct BpFilmParts {
 /* The header line without its newline; the caller frees it. NULL when out of memory. */
 char *bp_film_header_make(const BpFilm *film);
 
-/* Checks version and byte order, and reads what decides how many numbers follow: width, height, replicates
- * and whether the version is 1 (`unverified`) into `sizes`, and which parts there are. `name` is the file's,
- * for messages; BP_ERR_FILE names the member that is wrong. */
+/* Checks version and byte order, and reads what decides how many numbers follow: width, height and replicates
+ * into `sizes`, and which parts there are. `name` is the file's, for messages; BP_ERR_FILE names the member
+ * that is wrong. */
 BpStatus bp_film_header_sizes(const json_t *header, const char *name, BpFilm *sizes, BpFilmParts *parts,
                               BpError *err);
 

@@ -62,7 +62,8 @@ static double flight_weight(const BpScene *scene) {
     return 1;
 }
 
-double bp_scene_radiance_bound(const BpScene *scene, uint32_t max_depth, BpLamps lamps, BpCaustics caustics) {
+double bp_scene_radiance_bound(const BpScene *scene, uint32_t max_depth, BpLightSampling light_sampling,
+                               BpCaustics caustics) {
     double brightest = fmax(largest(scene->background_bottom), largest(scene->background_top));
     double brightest_lamp = 0, passed_on = 0, scattered = 0;
     if (scene->environment != NULL) brightest = brightest_lamp = largest(scene->environment->bound);
@@ -77,7 +78,8 @@ double bp_scene_radiance_bound(const BpScene *scene, uint32_t max_depth, BpLamps
         if (scene->spheres[i].material == known && !colours) continue;
         known = scene->spheres[i].material;
         const BpMaterial *material = &scene->materials[known];
-        colours = largest(material->emit) > 0 || (lamps != BP_LAMPS_OFF && bp_material_is_lit(material));
+        colours = largest(material->emit) > 0 ||
+                  (light_sampling != BP_LIGHT_SAMPLING_OFF && bp_material_is_lit(material));
         const double emitted = largest(material->emit);
         brightest = fmax(brightest, emitted);
         brightest_lamp = fmax(brightest_lamp, emitted);
@@ -93,15 +95,16 @@ double bp_scene_radiance_bound(const BpScene *scene, uint32_t max_depth, BpLamps
     /* A ray to a lamp brings half of its radiance at most, and so does each of the up to three ways through a
      * focuser. To the camera lead up to three through each of three chains. */
     const double focused = caustics == BP_CAUSTICS_ON ? 3 * 0.5 : 0;
-    if (lamps != BP_LAMPS_OFF && max_depth >= 2)
+    if (light_sampling != BP_LIGHT_SAMPLING_OFF && max_depth >= 2)
         bound += flight_weight(scene) * brightest_lamp *
                  ((0.5 + focused) * scattered * geometric(scattered, max_depth - 1) + 3 * focused);
     if (scene->backdrop != BP_BACKDROP_COLORS) return bound;
     return fmax(bound, fmax(largest(scene->backdrop_bottom), largest(scene->backdrop_top)));
 }
 
-int32_t bp_film_scale(const BpScene *scene, uint32_t max_depth, BpLamps lamps, BpCaustics caustics) {
-    const double bound = bp_scene_radiance_bound(scene, max_depth, lamps, caustics);
+int32_t bp_film_scale(const BpScene *scene, uint32_t max_depth, BpLightSampling light_sampling,
+                      BpCaustics caustics) {
+    const double bound = bp_scene_radiance_bound(scene, max_depth, light_sampling, caustics);
     if (!(bound > 0)) return SAMPLE_BITS;
     int exponent = 0;
     const double mantissa = frexp(bound, &exponent); /* bound = mantissa * 2^exponent, 1/2 <= mantissa < 1 */

@@ -53,13 +53,10 @@ static void to_planes(const uint8_t *numbers, size_t width, size_t count, uint8_
     }
 }
 
-/* Byte b of number i is at b * plane_step + i * number_step. */
-static void from_bytes(const uint8_t *bytes, size_t width, size_t count, size_t plane_step,
-                       size_t number_step, uint8_t *numbers) {
+static void from_planes(const uint8_t *planes, size_t width, size_t count, uint8_t *numbers) {
     for (size_t i = 0; i < count; i++) {
         uint64_t value = 0;
-        for (size_t byte = 0; byte < width; byte++)
-            value |= (uint64_t)bytes[byte * plane_step + i * number_step] << (8 * byte);
+        for (size_t byte = 0; byte < width; byte++) value |= (uint64_t)planes[byte * count + i] << (8 * byte);
         store_native(numbers + width * i, value, width);
     }
 }
@@ -153,18 +150,17 @@ uint64_t bp_film_unpacked_max(uint64_t packed_bytes) {
     return packed_bytes > UINT64_MAX / 1032 ? UINT64_MAX : 1032 * packed_bytes;
 }
 
-BpStatus bp_film_source_init(FILE *in, const char *name, uLong checksum, uint64_t left, bool plain,
-                             BpFilmSource *source, BpError *err) {
+BpStatus bp_film_source_init(FILE *in, const char *name, uLong checksum, uint64_t left, BpFilmSource *source,
+                             BpError *err) {
     *source = (BpFilmSource){.in = in,
                              .name = name,
                              .checksum = checksum,
                              .left = left,
-                             .plain = plain,
                              .planes = malloc(WIDTH_MAX * BLOCK),
                              .packed = malloc(PACKED_BYTES)};
     source->zipping =
-        !plain && source->planes != NULL && source->packed != NULL && inflateInit2(&source->zip, 15) == Z_OK;
-    if (source->planes != NULL && source->packed != NULL && (plain || source->zipping)) return BP_OK;
+        source->planes != NULL && source->packed != NULL && inflateInit2(&source->zip, 15) == Z_OK;
+    if (source->zipping) return BP_OK;
     return bp_fail(err, BP_ERR_MEMORY, "out of memory for reading %s", name);
 }
 
@@ -229,13 +225,8 @@ BpStatus bp_film_source_numbers(BpFilmSource *source, void *numbers, size_t widt
     for (size_t done = 0; done < count; done += BLOCK) {
         const size_t block = count - done < BLOCK ? count - done : BLOCK;
         uint8_t *at = (uint8_t *)numbers + width * done;
-        if (source->plain) {
-            BP_TRY(read_bytes(source, source->planes, width * block, err));
-            from_bytes(source->planes, width, block, 1, width, at);
-        } else {
-            BP_TRY(unpack(source, width * block, err));
-            from_bytes(source->planes, width, block, block, 1, at);
-        }
+        BP_TRY(unpack(source, width * block, err));
+        from_planes(source->planes, width, block, at);
     }
     return BP_OK;
 }
@@ -246,7 +237,7 @@ static BpStatus too_long(const BpFilmSource *source, BpError *err) {
 }
 
 BpStatus bp_film_source_end(BpFilmSource *source, BpError *err) {
-    if (!source->plain && !source->ended) {
+    if (!source->ended) {
         /* All numbers are out, but the end of zlib's stream may not have been read. */
         uint8_t more;
         source->zip.next_out = &more;

@@ -3,12 +3,11 @@
  * In and out: arrays of whole numbers of 4 or 8 bytes, and floats by their bits.
  * Knows: byte planes, zlib, the checksum.   Does not know: what the numbers mean (film_file.h does).
  *
- * From version 3 on, all numbers are one zlib stream (RFC 1950). In it each array stands in blocks of 65536
+ * All numbers are one zlib stream (RFC 1950). In it each array stands in blocks of 65536
  * numbers, the last one shorter, and each block byte by byte: first the lowest byte of every number, then the
  * next. The high bytes of neighbours are alike and the lowest are often 0, so that a block shrinks to a third
  * or less. zlib looks for runs alone: more than that costs several times the time and gains next to nothing.
- * Planes that are almost noise are stored as they are, in the same stream. Before version 3 numbers stand one
- * after the other, little endian. */
+ * Planes that are almost noise are stored as they are, in the same stream. */
 #ifndef BP_FILM_FILM_STREAM_H
 #define BP_FILM_FILM_STREAM_H
 
@@ -47,7 +46,6 @@ typedef struct BpFilmSource {
     const char *name; /* of the file, for messages */
     uLong checksum;   /* of what was read; begin with that of the header */
     uint64_t left;    /* bytes of the file before the checksum */
-    bool plain;       /* a file of version 1 or 2 */
     bool ended;       /* zlib's stream has */
     z_stream zip;
     bool zipping;
@@ -55,8 +53,8 @@ typedef struct BpFilmSource {
 } BpFilmSource;
 
 /* `left`: bytes between here and the checksum. BP_ERR_MEMORY. End with bp_film_source_clear(). */
-BpStatus bp_film_source_init(FILE *in, const char *name, uLong checksum, uint64_t left, bool plain,
-                             BpFilmSource *source, BpError *err);
+BpStatus bp_film_source_init(FILE *in, const char *name, uLong checksum, uint64_t left, BpFilmSource *source,
+                             BpError *err);
 void bp_film_source_clear(BpFilmSource *source);
 /* The next `count` numbers of `width` bytes, 1, 4 or 8. BP_ERR_FILE: the file is truncated or damaged. */
 BpStatus bp_film_source_numbers(BpFilmSource *source, void *numbers, size_t width, size_t count,

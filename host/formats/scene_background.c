@@ -1,10 +1,10 @@
 /* scene_background.c: what rays see that meet nothing, of a scene document.
  *
- * In:    the nodes of "background", "backdrop", "shadow_catcher" and "light".   Out: these parts of a
+ * In:    the nodes of "background", "backdrop", "shadow_catcher" and "lighting".   Out: these parts of a
  * BpScene; ranges are checked by scene_validate.c.   Knows: the grammar.   Does not know: the camera. */
 #include "scene_parse.h"
 
-#include "scene/light.h"
+#include "scene/lighting.h"
 
 #include <math.h>
 #include <string.h>
@@ -156,20 +156,20 @@ BpStatus bp_parse_shadow_catcher(const BpNode *node, BpScene *scene, BpError *er
     return BP_OK;
 }
 
-BpStatus bp_parse_light(const BpNode *root, const char *name, BpScene *scene, BpError *err) {
-    const BpNode node = bp_node_member(root, "light");
+BpStatus bp_parse_lighting(const BpNode *root, const char *name, BpScene *scene, BpError *err) {
+    const BpNode node = bp_node_member(root, "lighting");
     const BpNode background = bp_node_member(root, "background");
     const BpNode backdrop = bp_node_member(root, "backdrop");
-    int choice = BP_LIGHT_SKY;
-    BP_TRY(bp_node_choice(&node, bp_light_names, BP_LIGHT_COUNT, &choice, err));
-    if (choice != BP_LIGHT_SKY && background.value != NULL && name == NULL)
+    int choice = BP_LIGHTING_SKY;
+    BP_TRY(bp_node_choice(&node, bp_lighting_names, BP_LIGHTING_COUNT, &choice, err));
+    if (choice != BP_LIGHTING_SKY && background.value != NULL && name == NULL)
         return bp_node_fail(
             &node, BP_PART_NAME, err,
             "found beside \"background\", which is light too; expected one of the two: remove one");
-    for (int i = 0; i < BP_LIGHT_COUNT && name != NULL; i++)
-        if (strcmp(name, bp_light_names[i]) == 0) choice = i;
-    scene->light = (BpLight)choice;
-    if (scene->light == BP_LIGHT_SKY || backdrop.value != NULL) return BP_OK;
+    for (int i = 0; i < BP_LIGHTING_COUNT && name != NULL; i++)
+        if (strcmp(name, bp_lighting_names[i]) == 0) choice = i;
+    scene->lighting = (BpLighting)choice;
+    if (scene->lighting == BP_LIGHTING_SKY || backdrop.value != NULL) return BP_OK;
     scene->backdrop = BP_BACKDROP_COLORS;
     for (int c = 0; c < 3; c++) scene->backdrop_bottom[c] = scene->backdrop_top[c] = 1;
     return BP_OK;

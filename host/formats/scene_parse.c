@@ -13,7 +13,7 @@
 #include "particles/particles.h"
 
 #include "scene/fit.h"
-#include "scene/light.h"
+#include "scene/lighting.h"
 #include "scene/material.h"
 #include "scene/scene_fault.h"
 #include "scene/shadow_catcher.h"
@@ -387,10 +387,13 @@ static BpStatus refuse_other_shapes(const BpNode *root, BpError *err) {
 
 static BpStatus parse_body(const BpNode *root, const BpSceneChanges *changes, BpScene *scene, BpError *err) {
     static const char *const names[] = {"format",   "title",         "source",    "camera",   "background",
-                                        "backdrop", "light",         "transfer",  "textures", "materials",
+                                        "backdrop", "lighting",      "transfer",  "textures", "materials",
                                         "spheres",  "clouds",        "particles", "$schema",  "media",
                                         "medium",   "shadow_catcher"};
     BP_TRY(refuse_other_shapes(root, err));
+    const BpNode former = bp_node_member(root, "light");
+    if (former.value != NULL)
+        return bp_node_fail(&former, BP_PART_NAME, err, "unknown member; \"light\" is now \"lighting\"");
     BP_TRY(bp_node_object(root, names, BP_COUNT(names), err));
     BP_TRY(bp_node_require(root, "camera", "one, such as \"camera\": { \"image_width\": 400 }", err));
     BP_TRY(parse_head(root, scene, err));
@@ -414,7 +417,7 @@ static BpStatus parse_body(const BpNode *root, const BpSceneChanges *changes, Bp
     BP_TRY(bp_parse_backdrop(&backdrop, scene, err));
     const BpNode catcher = bp_node_member(root, "shadow_catcher");
     BP_TRY(bp_parse_shadow_catcher(&catcher, scene, err));
-    BP_TRY(bp_parse_light(root, changes->light, scene, err));
+    BP_TRY(bp_parse_lighting(root, changes->lighting, scene, err));
     BP_TRY(bp_parse_textures(&textures, changes->flags, scene, err));
     BP_TRY(bp_parse_media(&media, scene, err));
     BP_TRY(bp_parse_medium_name(&medium, scene, &scene->medium, err));
@@ -435,10 +438,10 @@ static BpStatus parse_body(const BpNode *root, const BpSceneChanges *changes, Bp
     }
     if (changes->frame_count != NULL) return BP_OK;
     if ((changes->flags & BP_PARSE_NO_CLOUDS) == 0) BP_TRY(fit_camera(&camera, changes, scene, err));
-    if ((changes->flags & BP_PARSE_MADE) != 0 && scene->light == BP_LIGHT_SKY)
+    if ((changes->flags & BP_PARSE_MADE) != 0 && scene->lighting == BP_LIGHTING_SKY)
         scene->background_up[scene->up] = 1; /* the world's */
     bp_shadow_catcher_place(scene);
-    bp_light_place(scene);
+    bp_lighting_place(scene);
     return refuse_faults(root, scene, err);
 }
 

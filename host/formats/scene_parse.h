@@ -40,9 +40,9 @@ typedef struct BpSceneChanges {
     const char *const *set; /* Optional: members of the document, see scene_changes.h */
     size_t set_count;
     const char *projection; /* Optional. "perspective" or "orthographic", instead of the document's */
-    const char *light;      /* Optional. A name of light.h, instead of the document's light or background */
-    const char *fresnel;    /* Optional. "schlick" or "exact", for all materials that have such a member */
-    size_t *fresnel_counts; /* Optional: in how many it was different, and how many have it */
+    const char *lighting; /* Optional. A name of lighting.h, instead of the document's light or background */
+    const char *fresnel;  /* Optional. "schlick" or "exact", for all materials that have such a member */
+    size_t *fresnel_counts;     /* Optional: in how many it was different, and how many have it */
     const BpSphereSet *spheres; /* Optional: spheres after all others */
     size_t sphere_set_count;
 } BpSceneChanges;
@@ -65,7 +65,7 @@ BpStatus bp_parse_backdrop(const BpNode *node, BpScene *scene, BpError *err);
 /* After the background, since an image there is refused. */
 BpStatus bp_parse_shadow_catcher(const BpNode *node, BpScene *scene, BpError *err);
 /* `name`: Optional, stands for the node. After the backdrop, which is white where a light has none. */
-BpStatus bp_parse_light(const BpNode *root, const char *name, BpScene *scene, BpError *err);
+BpStatus bp_parse_lighting(const BpNode *root, const char *name, BpScene *scene, BpError *err);
 
 BpStatus bp_parse_camera(const BpNode *node, BpCamera *camera, BpError *err);
 /* The scene's textures (scene_texture.c). */

@@ -7,7 +7,7 @@
 
 #include "base/names.h"
 #include "scene/fit.h"
-#include "scene/light.h"
+#include "scene/lighting.h"
 #include "scene/material.h"
 #include "scene_parse.h"
 
@@ -418,10 +418,10 @@ BpStatus bp_scene_print(const BpScene *scene, FILE *out, BpError *err) {
     BP_TRY(put_text(out, scene->source, err));
     fputs(",\n", out);
     bp_scene_print_camera(&scene->camera, out);
-    if (scene->light == BP_LIGHT_SKY)
+    if (scene->lighting == BP_LIGHTING_SKY)
         BP_TRY(put_background(out, scene, err));
     else
-        fprintf(out, ",\n  \"light\": \"%s\"", bp_light_names[scene->light]);
+        fprintf(out, ",\n  \"lighting\": \"%s\"", bp_lighting_names[scene->lighting]);
     put_backdrop(out, scene);
     put_shadow_catcher(out, &scene->shadow_catcher);
     fprintf(out, ",\n  \"transfer\": \"%s\"", bp_transfer_names[scene->transfer]);

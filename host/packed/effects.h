@@ -23,7 +23,7 @@
     X(NORMALS, "normals", "surfaces that show their normal as colour", "normals as colours are left out",    \
       "nothing shows normals")                                                                               \
     X(LENS, "lens", "a lens with an aperture: defocus blur", "", "")                                         \
-    X(LAMPS, "lamps", "rays to lamps, from surfaces that scatter into many directions", "", "")              \
+    X(LAMPS, "light_sampling", "rays to lamps, from surfaces that scatter into many directions", "", "")     \
     X(DISCS, "discs", "lamps at infinity: discs in the sky", "", "")                                         \
     X(TEXTURES, "textures", "albedo, fuzz and emission from textures, such as checkers", "", "")             \
     X(NOISE, "noise", "textures of gradient noise: turbulence, marble, wood", "", "")                        \

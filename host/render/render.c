@@ -150,9 +150,9 @@ static BpStatus create(const BpScene *scene, const BpRenderOptions *options, con
     if (made->options.replicates == 0) made->options.replicates = BP_REPLICATES_DEFAULT;
     made->worker_count = device_count;
     bp_effects_analyse(scene, &made->effects);
-    made->options.lamps = bp_render_lamps_of(&made->effects, options);
+    made->options.light_sampling = bp_render_light_sampling_of(&made->effects, options);
     made->options.caustics = bp_render_caustics_of(&made->effects, options);
-    if (made->options.lamps == BP_LAMPS_ON && !options->samples_only) {
+    if (made->options.light_sampling == BP_LIGHT_SAMPLING_ON && !options->samples_only) {
         BP_TRY_GOTO(status, bp_pilot_aim(scene, &made->aim, err), failed);
         made->has_pilot = bp_pilot_is_needed(scene, &made->aim);
         if (!made->has_pilot) bp_pilot_aim_clear(&made->aim);
@@ -427,11 +427,12 @@ uint64_t bp_render_samples_done(const BpRender *render) {
 
 BpStatus bp_render_describe(const BpRender *render, BpFilm *film, BpError *err) {
     const BpRenderOptions *options = &render->options;
-    film->scale_log2 = bp_film_scale(render->scene, options->max_depth, options->lamps, options->caustics);
+    film->scale_log2 =
+        bp_film_scale(render->scene, options->max_depth, options->light_sampling, options->caustics);
     film->scene_hash = bp_scene_hash(render->scene);
     film->seed = options->seed;
     film->max_depth = options->max_depth;
-#define SETTING(type, member, plural) film->member = options->member;
+#define SETTING(type, member, option, plural) film->member = options->member;
     BP_SETTING_LIST(SETTING)
 #undef SETTING
     film->transfer = render->scene->transfer;
@@ -548,7 +549,7 @@ void bp_render_report(const BpRender *render, BpRenderReport *report) {
     report->calibration_seconds = render->calibration_seconds;
     report->self_test_seconds = first->self_test_seconds;
     report->kernel = first->form;
-#define SETTING(type, member, plural) report->member = render->options.member;
+#define SETTING(type, member, option, plural) report->member = render->options.member;
     BP_SETTING_LIST(SETTING)
 #undef SETTING
     report->program_key = first->program->key;
@@ -579,7 +580,7 @@ void bp_render_report(const BpRender *render, BpRenderReport *report) {
 #define GIVE(member, tally, words) report->member = render->film->member;
         BP_INVALID_LIST(GIVE)
 #undef GIVE
-        report->lamp_rays = render->film->lamp_rays;
+        report->shadow_rays = render->film->shadow_rays;
     }
 }
 

@@ -33,13 +33,14 @@ static uint32_t choose_packet_lanes(const BpDeviceInfo *device, const BpRenderOp
     return device->float_lanes >= 16 || (device->float_lanes >= 8 && walks) ? 16 : 8;
 }
 
-BpLamps bp_render_lamps_of(const BpEffects *effects, const BpRenderOptions *options) {
-    return bp_effects_has(effects->bits, BP_EFFECT_LAMPS) ? options->lamps : BP_LAMPS_OFF;
+BpLightSampling bp_render_light_sampling_of(const BpEffects *effects, const BpRenderOptions *options) {
+    return bp_effects_has(effects->bits, BP_EFFECT_LAMPS) ? options->light_sampling : BP_LIGHT_SAMPLING_OFF;
 }
 
 BpCaustics bp_render_caustics_of(const BpEffects *effects, const BpRenderOptions *options) {
-    return effects->caustics && bp_render_lamps_of(effects, options) == BP_LAMPS_ON ? options->caustics
-                                                                                    : BP_CAUSTICS_OFF;
+    return effects->caustics && bp_render_light_sampling_of(effects, options) == BP_LIGHT_SAMPLING_ON
+               ? options->caustics
+               : BP_CAUSTICS_OFF;
 }
 
 BpCaustics bp_render_caustics(const BpScene *scene, const BpRenderOptions *options) {
@@ -48,17 +49,18 @@ BpCaustics bp_render_caustics(const BpScene *scene, const BpRenderOptions *optio
     return bp_render_caustics_of(&effects, options);
 }
 
-BpLamps bp_render_lamps(const BpScene *scene, const BpRenderOptions *options) {
+BpLightSampling bp_render_light_sampling(const BpScene *scene, const BpRenderOptions *options) {
     BpEffects effects;
     bp_effects_analyse(scene, &effects);
-    return bp_render_lamps_of(&effects, options);
+    return bp_render_light_sampling_of(&effects, options);
 }
 
 static uint32_t choose_effects(const BpEffects *effects, const BpRenderOptions *options) {
     uint32_t wanted =
         options->all_effects ? BP_EFFECTS_ALL : effects->bits | (options->extra_effects & BP_EFFECTS_ALL);
     if (bp_render_caustics_of(effects, options) == BP_CAUSTICS_ON) wanted |= 1u << BP_EFFECT_CAUSTICS;
-    if (options->lamps == BP_LAMPS_OFF) wanted &= ~(1u << BP_EFFECT_LAMPS | 1u << BP_EFFECT_CAUSTICS);
+    if (options->light_sampling == BP_LIGHT_SAMPLING_OFF)
+        wanted &= ~(1u << BP_EFFECT_LAMPS | 1u << BP_EFFECT_CAUSTICS);
     return wanted;
 }
 
@@ -79,7 +81,7 @@ BpStatus bp_render_plan(const BpScene *scene, const BpRenderOptions *options, co
     bp_effects_analyse(scene, &effects);
     setup->program.effects = choose_effects(&effects, options);
     setup->program.tree = choose_tree(scene, options);
-#define SETTING(type, member, plural) setup->program.member = options->member;
+#define SETTING(type, member, option, plural) setup->program.member = options->member;
     BP_SETTING_LIST(SETTING)
 #undef SETTING
     setup->program.pixel_list = options->adaptive;
@@ -89,7 +91,7 @@ BpStatus bp_render_plan(const BpScene *scene, const BpRenderOptions *options, co
     setup->replicates = options->replicates != 0 ? options->replicates : BP_REPLICATES_DEFAULT;
     const BpCaustics caustics = bp_render_caustics_of(&effects, options);
     setup->scale_log2 =
-        bp_film_scale(scene, options->max_depth, bp_render_lamps_of(&effects, options), caustics);
+        bp_film_scale(scene, options->max_depth, bp_render_light_sampling_of(&effects, options), caustics);
     setup->max_depth = options->max_depth;
     setup->seed = options->seed;
     setup->pixel_center = scene->camera.pixel_sampling == BP_PIXEL_CENTER;

@@ -13,10 +13,10 @@ BpCaustics bp_render_caustics(const BpScene *scene, const BpRenderOptions *optio
 /* The same, if the scene's effects are known. */
 BpCaustics bp_render_caustics_of(const BpEffects *effects, const BpRenderOptions *options);
 
-/* Whether lamps are sampled: BP_LAMPS_OFF too where the scene does not call for it. */
-BpLamps bp_render_lamps(const BpScene *scene, const BpRenderOptions *options);
+/* Whether lamps are sampled: BP_LIGHT_SAMPLING_OFF too where the scene does not call for it. */
+BpLightSampling bp_render_light_sampling(const BpScene *scene, const BpRenderOptions *options);
 /* The same where the scene's effects are known, so that nobody looks through its spheres again. */
-BpLamps bp_render_lamps_of(const BpEffects *effects, const BpRenderOptions *options);
+BpLightSampling bp_render_light_sampling_of(const BpEffects *effects, const BpRenderOptions *options);
 
 /* Packs the scene for `device` and says how to run it there; the caller clears `packed`. BP_ERR_DEVICE: the
  * device lacks what the options ask for. `setup` keeps no pointer into anything. */

@@ -131,7 +131,7 @@ BpStatus bp_round_add_films(BpComm *comm, BpFilm *film, BpError *err) {
     const size_t pixels = (size_t)film->width * film->height, cells = pixels * film->replicates;
     uint32_t has = (film->fine_sums != NULL ? FINE : 0) | (film->coarse ? COARSE : 0);
 #define TOTAL(member, tally, words) film->member,
-    uint64_t totals[] = {film->segments, film->cut_paths, film->invalid_samples, film->lamp_rays,
+    uint64_t totals[] = {film->segments, film->cut_paths, film->invalid_samples, film->shadow_rays,
                          BP_INVALID_LIST(TOTAL)};
 #undef TOTAL
     if (comm == NULL) return BP_OK;
@@ -148,7 +148,7 @@ BpStatus bp_round_add_films(BpComm *comm, BpFilm *film, BpError *err) {
     film->segments = *total++;
     film->cut_paths = *total++;
     film->invalid_samples = *total++;
-    film->lamp_rays = *total++;
+    film->shadow_rays = *total++;
 #define TAKE(member, tally, words) film->member = *total++;
     BP_INVALID_LIST(TAKE)
 #undef TAKE

@@ -253,7 +253,7 @@ static BpStatus collect_block(BpWorker *worker, size_t first, size_t count, cl_l
     film->invalid_samples += tally[place];
         BP_INVALID_LIST(ADD)
 #undef ADD
-        film->lamp_rays += tally[TALLY_LAMP_RAYS];
+        film->shadow_rays += tally[TALLY_LAMP_RAYS];
         if (film->met == NULL) continue;
         for (size_t k = 0; k < k_count; ++k) film->met[first + i] += counts[i * k_count + k] & COUNT_SAMPLES;
         film->met[first + i] -= tally[TALLY_MISSED];

@@ -124,14 +124,14 @@ typedef struct BpShadowCatcher {
 } BpShadowCatcher;
 
 /* Light by its name, which stands in the camera's frame (light.h). */
-typedef enum BpLight {
-    BP_LIGHT_SKY, /* none: the background as the scene has it */
-    BP_LIGHT_SOFT,
-    BP_LIGHT_STUDIO,
-    BP_LIGHT_REMBRANDT,
-    BP_LIGHT_OVERHEAD,
-    BP_LIGHT_COUNT
-} BpLight;
+typedef enum BpLighting {
+    BP_LIGHTING_SKY, /* none: the background as the scene has it */
+    BP_LIGHTING_SOFT,
+    BP_LIGHTING_STUDIO,
+    BP_LIGHTING_REMBRANDT,
+    BP_LIGHTING_OVERHEAD,
+    BP_LIGHTING_COUNT
+} BpLighting;
 
 /* A file of points: spheres from `first` on, up to the next file's or the end, one a vertex; of particles,
  * those that are shown, then the beads of bonds and cell. */
@@ -154,7 +154,7 @@ struct BpScene {
     char *path; /* where it came from, for messages */
     char *title, *source;
     BpCamera camera;
-    BpLight light;                                  /* that the background was made by */
+    BpLighting lighting;                            /* that the background was made by */
     double background_bottom[3], background_top[3]; /* down and up; linear in between */
     double background_up[3];                        /* which way up is, of any length; 0: the y axis */
     BpImage *environment;    /* in place of bottom and top, which are then black: one of images[], or NULL */

@@ -13,7 +13,7 @@ void bp_shadow_catcher_place(BpScene *scene) {
     double *const normal = catcher->normal;
     if (!catcher->present) return;
     memcpy(normal, catcher->up, sizeof catcher->up);
-    if (along(normal, normal) == 0 && !scene->has_particles && scene->light == BP_LIGHT_SKY)
+    if (along(normal, normal) == 0 && !scene->has_particles && scene->lighting == BP_LIGHTING_SKY)
         bp_background_up(scene, normal);
     else if (along(normal, normal) == 0)
         normal[scene->has_particles ? scene->up : 1] = 1;

@@ -11,7 +11,7 @@
 /* What a row changes; 0 keeps what the base has, enumerations are stored plus 1. */
 typedef struct Change {
     uint32_t depth;
-#define MEMBER(type, member, plural) unsigned member;
+#define MEMBER(type, member, option, plural) unsigned member;
     BP_SETTING_LIST(MEMBER)
 #undef MEMBER
     BpStudyFresnel fresnel;
@@ -27,7 +27,7 @@ typedef struct Row {
 #define PRECISION(x) .precision = (BP_PRECISION_##x + 1)
 #define MATH(x) .math = (BP_MATH_##x + 1)
 #define NUMERICS(x) .numerics = (BP_NUMERICS_##x + 1)
-#define LAMPS(x) .lamps = (BP_LAMPS_##x + 1)
+#define LIGHT_SAMPLING(x) .light_sampling = (BP_LIGHT_SAMPLING_##x + 1)
 #define CAUSTICS(x) .caustics = (BP_CAUSTICS_##x + 1)
 #define FRESNEL(x) .fresnel = BP_STUDY_FRESNEL_##x
 
@@ -40,8 +40,8 @@ static const Row rows[] = {
     {"sampler", "independent samples", {SAMPLER(INDEPENDENT)}},
     {"sampler", "Sobol samples", {SAMPLER(SOBOL)}},
     {"adaptive", "adaptive samples", {.adaptive = true}},
-    {"lamps", "rays to lamps", {LAMPS(ON)}},
-    {"lamps", "lamps found by chance", {LAMPS(OFF)}},
+    {"light_sampling", "rays to lamps", {LIGHT_SAMPLING(ON)}},
+    {"light_sampling", "lamps found by chance", {LIGHT_SAMPLING(OFF)}},
     {"caustics", "rays through focusers", {CAUSTICS(ON)}},
     {"caustics", "caustics found by chance", {CAUSTICS(OFF)}},
     {"depth", "depth 5", {.depth = 5}},
@@ -94,8 +94,8 @@ static void write_command(const BpScene *scene, BpStudyConfiguration *configurat
     command[0] = '\0';
 #define ADD(...)                                                                                             \
     snprintf(command + strlen(command), sizeof configuration->command - strlen(command), __VA_ARGS__)
-#define ADD_SETTING(type, member, plural)                                                                    \
-    if (options->member != usual.member) ADD(" --" #member " %s", bp_##member##_names[options->member]);
+#define ADD_SETTING(type, member, option, plural)                                                            \
+    if (options->member != usual.member) ADD(" --" option " %s", bp_##member##_names[options->member]);
     BP_SETTING_LIST(ADD_SETTING)
     if (options->adaptive) ADD(" --adaptive");
     if (options->max_depth != scene->camera.max_depth) ADD(" --depth %u", options->max_depth);
@@ -113,12 +113,13 @@ static bool apply(const Row *row, const BpScene *scene, const BpRenderOptions *b
     *options = *base;
     if (change->depth > 0) options->max_depth = change->depth;
     bool differs = false;
-#define APPLY(type, member, plural)                                                                          \
+#define APPLY(type, member, option, plural)                                                                  \
     if (change->member > 0) options->member = (type)(change->member - 1);                                    \
     differs = differs || options->member != base->member;
     BP_SETTING_LIST(APPLY)
 #undef APPLY
-    if (change->lamps > 0 && bp_render_lamps(scene, &usual) == BP_LAMPS_OFF) return false;
+    if (change->light_sampling > 0 && bp_render_light_sampling(scene, &usual) == BP_LIGHT_SAMPLING_OFF)
+        return false;
     const BpRenderOptions through = {.caustics = BP_CAUSTICS_ON};
     if (change->caustics > 0 && bp_render_caustics(scene, &through) == BP_CAUSTICS_OFF) return false;
     if (change->adaptive) options->adaptive = true;

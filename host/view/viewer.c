@@ -14,7 +14,7 @@
 #include "reference/trace.h"
 #include "render/render.h"
 #include "scene/camera_moves.h"
-#include "scene/light.h"
+#include "scene/lighting.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -196,7 +196,7 @@ static BpStatus restart(Viewer *viewer, bool moving, BpError *err) {
     options.samples_per_pixel = 1;
     bp_render_destroy(&viewer->render);
     BP_TRY(bp_scene_set_width(viewer->scene, (uint32_t)width, err));
-    bp_light_place(viewer->scene); /* light by name is the camera's */
+    bp_lighting_place(viewer->scene); /* lighting by name is the camera's */
     viewer->restarted_at = bp_clock_seconds();
     viewer->samples = 1;
     viewer->samples_done = 0;

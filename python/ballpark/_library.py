@@ -78,7 +78,7 @@ class BpDeviceInfo(c.Structure):
 class BpRenderOptions(c.Structure):
     _fields_ = [("samples_per_pixel", c.c_uint64), ("first_sample", c.c_uint64), ("max_depth", c.c_uint32),
                 ("seed", c.c_uint64), ("precision", c.c_int), ("math", c.c_int), ("numerics", c.c_int),
-                ("sampler", c.c_int), ("lamps", c.c_int), ("caustics", c.c_int), ("kernel", c.c_int),
+                ("sampler", c.c_int), ("light_sampling", c.c_int), ("caustics", c.c_int), ("kernel", c.c_int),
                 ("all_effects", c.c_bool), ("extra_effects", c.c_uint32), ("adaptive", c.c_bool), ("features", c.c_bool),
                 ("samples_only", c.c_bool), ("force", c.c_bool), ("job_first", c.c_uint64),
                 ("job_samples", c.c_uint64), ("replicates", c.c_uint32),
@@ -118,7 +118,7 @@ TRANSFERS = ["gamma2", "srgb", "linear"]
 FORMATS = ["png", "ppm", "ppm-ascii", "pfm", "exr", "bpa"]
 DEVICE_TYPES = ["cpu", "gpu", "other"]
 CHOICES = {"precision": ["single", "double"], "math": ["strict", "fast"], "numerics": ["robust", "plain"],
-           "sampler": ["independent", "sobol"], "lamps": ["on", "off"], "caustics": ["off", "on"],
+           "sampler": ["independent", "sobol"], "light_sampling": ["on", "off"], "caustics": ["off", "on"],
            "kernel": ["auto", "sample", "packet", "pool"]}
 
 _HANDLE = c.POINTER(c.c_void_p)

@@ -93,7 +93,7 @@ class Render:
     def __init__(self, scene: Scene, *, spp: typing.Optional[int] = None, error: typing.Optional[float] = None,
                  time: typing.Optional[float] = None, seed: int = 0, depth: typing.Optional[int] = None,
                  first_sample: int = 0, device: typing.Union[None, int, str] = None, sampler: str = "sobol",
-                 precision: str = "single", math: str = "strict", numerics: str = "robust", lamps: str = "on",
+                 precision: str = "single", math: str = "strict", numerics: str = "robust", light_sampling: str = "on",
                  caustics: str = "off", kernel: str = "auto", adaptive: bool = False, aovs: bool = False, threads: int = 0,
                  force: bool = False):
         if not isinstance(scene, Scene):
@@ -105,7 +105,7 @@ class Render:
         self._lock, self._busy, self._closing, self._process = threading.Lock(), False, False, os.getpid()
         options = lib.BpRenderOptions()
         lib.library().bp_render_defaults(scene._handle.pointer, c.byref(options))
-        words = {"sampler": sampler, "precision": precision, "math": math, "numerics": numerics, "lamps": lamps,
+        words = {"sampler": sampler, "precision": precision, "math": math, "numerics": numerics, "light_sampling": light_sampling,
                  "caustics": caustics, "kernel": kernel}
         for name, word in words.items():
             if word not in lib.CHOICES[name]:
@@ -284,14 +284,14 @@ def make_scene(subject: Subject, *, radius: typing.Optional[npt.ArrayLike] = Non
                up: typing.Optional[str] = None, camera: typing.Optional[Document] = None,
                width: typing.Optional[int] = None, height: typing.Optional[int] = None,
                materials: typing.Optional[Document] = None, background: typing.Any = None,
-               light: typing.Optional[str] = None, backdrop: typing.Any = None) -> Scene:
+               lighting: typing.Optional[str] = None, backdrop: typing.Any = None) -> Scene:
     """The scene that render() would render of the same arguments; its camera can be used for other pictures."""
     looks: typing.Dict[str, typing.Any] = {"radius": radius, "color": color, "material": material, "cmap": cmap,
                                            "color_range": color_range,
                                            "up": up}
     given = {name: value for name, value in looks.items() if value is not None}
     scene_members = {name: value for name, value in (("materials", materials), ("background", background),
-                                                         ("light", light), ("backdrop", backdrop))
+                                                         ("lighting", lighting), ("backdrop", backdrop))
                      if value is not None}
     if isinstance(subject, (Scene, str, os.PathLike, collections.abc.Mapping)):
         extra = list(given) + list(scene_members) + [name for name, value in (("camera", camera), ("height", height))
@@ -316,10 +316,15 @@ def make_scene(subject: Subject, *, radius: typing.Optional[npt.ArrayLike] = Non
     return Scene(particle_document(sets, camera, width, height, scene_members), sets)
 
 
+FORMER_NAMES = {"lamps": "light_sampling", "light": "lighting"}
+
+
 def _refuse_unknown(options: typing.Dict[str, typing.Any]) -> None:
     """Names the option that was probably meant, before any work."""
     known = set(inspect.signature(Render).parameters) - {"scene"}
     for name in sorted(set(options) - known):
+        if name in FORMER_NAMES:
+            raise TypeError(f"ballpark.render has no option {name!r}, which is now {FORMER_NAMES[name]!r}")
         near = difflib.get_close_matches(name, [*known, *inspect.signature(render).parameters], 1, 0.8)
         raise TypeError(f"ballpark.render has no option {name!r}" + (f"; did you mean {near[0]!r}?" if near else ""))
 
@@ -329,7 +334,7 @@ def render(subject: Subject, *, radius: typing.Optional[npt.ArrayLike] = None, c
            color_range: typing.Optional[typing.Tuple[float, float]] = None, up: typing.Optional[str] = None,
            camera: typing.Optional[Document] = None, width: typing.Optional[int] = None,
            height: typing.Optional[int] = None, materials: typing.Optional[Document] = None,
-           background: typing.Any = None, light: typing.Optional[str] = None, backdrop: typing.Any = None,
+           background: typing.Any = None, lighting: typing.Optional[str] = None, backdrop: typing.Any = None,
            progress: typing.Union[None, bool, typing.Callable[[Progress], object]] = None,
            **options: typing.Any) -> Picture:
     """Renders a picture.
@@ -338,7 +343,7 @@ def render(subject: Subject, *, radius: typing.Optional[npt.ArrayLike] = None, c
     file of particles.
     For positions and Spheres: radius, color, material, cmap, color_range and up as in Spheres; camera: members of the
     scene's "camera" (without lookfrom, lookat or focus_dist it is fitted to the spheres); width, height: of the picture;
-    materials, background, light, backdrop: as in a scene. Without background and light, the light is "soft" on white.
+    materials, background, lighting, backdrop: as in a scene. Without background and lighting, the light is "soft" on white.
     progress: True for a line on standard error, or a function that is called with a Progress about five times a second;
     when it returns False, the render ends with what it has.
     options: those of Render (spp, error, time, seed, device, adaptive, aovs, ...).
@@ -352,7 +357,7 @@ def render(subject: Subject, *, radius: typing.Optional[npt.ArrayLike] = None, c
     try:
         scene = make_scene(subject, radius=radius, color=color, material=material, cmap=cmap, color_range=color_range,
                            up=up, camera=camera, width=width, height=height, materials=materials, background=background,
-                           light=light, backdrop=backdrop)
+                           lighting=lighting, backdrop=backdrop)
         running = Render(scene, **options)
     except KeyboardInterrupt:
         raise Interrupted(None) from None

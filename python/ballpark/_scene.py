@@ -24,7 +24,7 @@ Document = typing.Mapping[str, typing.Any]
 # What a render of bare positions looks like: as files of particles do.
 PARTICLE_CAMERA: typing.Dict[str, typing.Any] = {
     "image_width": 800, "aspect_ratio": [4, 3], "samples_per_pixel": 32, "max_depth": 20, "vfov": 30}
-PARTICLE_SCENE: typing.Dict[str, typing.Any] = {"light": "soft", "transfer": "srgb"}
+PARTICLE_SCENE: typing.Dict[str, typing.Any] = {"lighting": "soft", "transfer": "srgb"}
 
 
 def _rows(array: typing.Optional[npt.NDArray[typing.Any]], per_sphere: bool) -> lib.BpRows:
@@ -282,6 +282,6 @@ def particle_document(sets: typing.Sequence[Spheres], camera: typing.Optional[Do
         whole.pop("aspect_ratio", None)
         whole["image_height"] = height
     scene = {**PARTICLE_SCENE, **members, "camera": whole}
-    if "background" in members and "light" not in members:
-        del scene["light"]
+    if "background" in members and "lighting" not in members:
+        del scene["lighting"]
     return scene

@@ -15,7 +15,7 @@ LAMP = {"lamp": {"type": "diffuse_light", "emit": [1, 1, 1]}}
 class ClosedPictures(cli.ProgramTest):
     def picture(self, document, lamps="off"):
         self.write("s.json", document)
-        self.succeed("render", "s.json", "-o", "s.pfm", "--quiet", "--lamps", lamps, "--sampler", "independent")
+        self.succeed("render", "s.json", "-o", "s.pfm", "--quiet", "--light-sampling", lamps, "--sampler", "independent")
         width, height, numbers = read_pfm(self.read("s.pfm"))
         return width, height, numbers[::3]
 

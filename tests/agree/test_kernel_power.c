@@ -14,8 +14,8 @@ static void draw_kernel(const BpScene *scene, uint64_t samples, uint64_t seed, B
     options.sampler = BP_SAMPLER_INDEPENDENT;
     options.samples_per_pixel = samples;
     options.max_depth = 6;
-    options.lamps =
-        BP_LAMPS_OFF; /* the reference finds lamps by chance, and the level holds for equal spreads */
+    options.light_sampling = BP_LIGHT_SAMPLING_OFF; /* the reference finds lamps by chance, and the level
+                                                       holds for equal spreads */
     options.seed = seed;
     BpStatus status = bp_sums_init(sums, scene->camera.width, scene->camera.height, &err);
     if (status == BP_OK) status = open_render_on_device(scene, &options, &render, &err);

@@ -31,7 +31,7 @@ def ours(scene, folder):
     """Means of PASSES seeds."""
     means = []
     for seed in range(PASSES):
-        subprocess.run([program, "render", scene, "--width", str(WIDTH), "--spp", str(SAMPLES), "--seed", str(seed), "--lamps", "on",
+        subprocess.run([program, "render", scene, "--width", str(WIDTH), "--spp", str(SAMPLES), "--seed", str(seed), "--light-sampling", "on",
                         "-o", folder / "x.pfm", "--stats", folder / "x.json", "--quiet"], check=True)
         means.append(json.loads((folder / "x.json").read_text())["mean_radiance"])
     return means

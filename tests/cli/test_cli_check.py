@@ -124,7 +124,7 @@ class LightSampling(Check):
         self.succeed(*words[:-1], "again.json", "--against", "r.json")
         self.assertEqual(self.report("again.json")["against"]["changes"], [])
         for choice in ("on", "off"):
-            self.succeed(*words, "--lamps", choice)
+            self.succeed(*words, "--light-sampling", choice)
             self.assertEqual(self.sampling(), [(choice, "agree")])
 
     def test_a_wrong_sampling(self):
@@ -151,7 +151,7 @@ class Suite(Check):
         self.assertEqual(len(sampled), len(set(sampled)))
         names = [check["scene"] + (" (lights sampled)" if check["light_sampling"] == "on" else "") for check in checks]
         for check in checks:
-            self.assertEqual(check["results"][0]["settings"]["lamps"], check["light_sampling"])
+            self.assertEqual(check["results"][0]["settings"]["light_sampling"], check["light_sampling"])
         self.assertEqual((report["suite"], report["verdict"]), ("agreement", "agree"))
         self.assertEqual(len({check["seed"] for check in checks}), len(checks))
         levels = [scene["results"][0]["level"] for scene in report["scenes"]]

@@ -56,7 +56,7 @@ class DimTest(ProgramTest):
     def assert_lit(self, seen, ratio, emitter, *options):
         document, exact = self.lit(seen, ratio, emitter)
         self.write("scene.json", document)
-        statistics = self.statistics("scene.json", "--spp", "4", "--lamps", "on", *options)
+        statistics = self.statistics("scene.json", "--spp", "4", "--light-sampling", "on", *options)
         for channel, right in zip(statistics["mean_radiance"], exact):
             self.assertLessEqual(abs(channel / right - 1), 1e-6)
         self.assertEqual(statistics["invalid_samples"], 0)
@@ -88,7 +88,7 @@ class DimTest(ProgramTest):
                     pictures = []
                     for hidden in (0, seen * 1e12):
                         self.write("scene.json", self.document(seen, hidden, {"type": "diffuse_light"}, spheres))
-                        self.statistics("scene.json", "--spp", "8", "--lamps", "off", *options)
+                        self.statistics("scene.json", "--spp", "8", "--light-sampling", "off", *options)
                         pictures.append(read_pfm(self.read("x.pfm"))[2])
                     mean = sum(pictures[0]) / len(pictures[0])
                     for without, beside in zip(*pictures):

@@ -58,11 +58,11 @@ class Discs(ProgramTest):
         self.write("s.json", document(SUN, width=32))
         found = {}
         for lamps in ("on", "off"):
-            self.succeed("render", "s.json", "-q", "--lamps", lamps, "--spp", 256, "-o", f"{lamps}.png", "--stats", f"{lamps}.json")
+            self.succeed("render", "s.json", "-q", "--light-sampling", lamps, "--spp", 256, "-o", f"{lamps}.png", "--stats", f"{lamps}.json")
             found[lamps] = json.loads(self.read(f"{lamps}.json"))
-            self.assertEqual(found[lamps]["lamps"], lamps)
+            self.assertEqual(found[lamps]["light_sampling"], lamps)
         on, off = found["on"], found["off"]
-        self.assertEqual(on["effects"], ["lambertian", "lamps", "discs"])
+        self.assertEqual(on["effects"], ["lambertian", "light_sampling", "discs"])
         for member in ("rays", "cut_paths", "invalid_samples"):
             self.assertEqual(on[member], off[member])
         self.assertGreater(off["nrmse"], 3 * on["nrmse"])
@@ -72,7 +72,7 @@ class Discs(ProgramTest):
     def test_explain(self):
         self.write("s.json", document(SUN, BEHIND, width=32))
         table = self.succeed("explain", "s.json").stdout.decode()
-        self.assertRegex(table, r"lamps +in +2 discs that can light 1 sphere")
+        self.assertRegex(table, r"light_sampling +in +2 discs that can light 1 sphere")
         self.assertRegex(table, r"discs +in +2 discs in the background")
         rays, stopped, seen = [], 0, 0
         for x in range(8, 28, 3):
@@ -93,7 +93,7 @@ class Discs(ProgramTest):
         self.assertGreater(len(rays), 3)
         self.assertEqual(set(rays), {0, 1} if 1 in rays else {0})
         self.assertGreater(seen, 0)
-        off = json.loads(self.succeed("explain", "s.json", "--pixel", "16,14", "--lamps", "off", "--json", "-").stdout)
+        off = json.loads(self.succeed("explain", "s.json", "--pixel", "16,14", "--light-sampling", "off", "--json", "-").stdout)
         self.assertFalse(any("lamp_ray" in step for step in off["scenes"][0]["path"]["steps"]))
 
     def test_films_of_other_discs_do_not_merge(self):

@@ -33,12 +33,12 @@ class LampRays(ProgramTest):
             for depth, each in ((0, 0), (1, 0), (2, 1), (5, 1)):
                 found = self.stats("s.json", "--kernel", form, "--spp", SAMPLES, "--depth", depth, "-o", "s.png")
                 self.assertEqual(found["samples"], SIDE * SIDE * SAMPLES)
-                self.assertEqual(found["lamp_rays"], each * found["samples"], f"{form}, depth {depth}")
-            off = self.stats("s.json", "--kernel", form, "--spp", SAMPLES, "--lamps", "off", "-o", "s.png")
-            self.assertEqual(off["lamp_rays"], 0)
+                self.assertEqual(found["shadow_rays"], each * found["samples"], f"{form}, depth {depth}")
+            off = self.stats("s.json", "--kernel", form, "--spp", SAMPLES, "--light-sampling", "off", "-o", "s.png")
+            self.assertEqual(off["shadow_rays"], 0)
             self.assertEqual(off["rays"], found["rays"])
         self.write("dark.json", json.dumps(ground(0)))
-        self.assertEqual(self.stats("dark.json", "--effects", "all", "-o", "s.png")["lamp_rays"], 0)
+        self.assertEqual(self.stats("dark.json", "--effects", "all", "-o", "s.png")["shadow_rays"], 0)
 
     def test_those_that_explain_shows(self):
         """With shadows, glass and metal, by which some vertices send no ray."""
@@ -51,25 +51,25 @@ class LampRays(ProgramTest):
             rays += len(steps)
             sent += sum("lamp_ray" in step for step in steps)
         self.assertEqual(found["rays"], rays)
-        self.assertEqual(found["lamp_rays"], sent)
+        self.assertEqual(found["shadow_rays"], sent)
         self.assertTrue(0 < sent < rays)
 
     def test_parts_add_up(self):
         """Films hold the number: parts that are merged have that of the whole, and a render that goes on ends with it."""
         self.write("s.json", json.dumps(ground(1)))
         whole = self.stats("s.json", "--spp", 24, "-o", "whole.bpa")
-        self.assertEqual(whole["lamp_rays"], SIDE * SIDE * 24)
-        self.assertEqual(bpa.read(self.read("whole.bpa"))[0]["lamp_rays"], whole["lamp_rays"])
-        self.assertEqual(self.stats("s.json", "--spp", 8, "-o", "a.bpa")["lamp_rays"], SIDE * SIDE * 8)
+        self.assertEqual(whole["shadow_rays"], SIDE * SIDE * 24)
+        self.assertEqual(bpa.read(self.read("whole.bpa"))[0]["shadow_rays"], whole["shadow_rays"])
+        self.assertEqual(self.stats("s.json", "--spp", 8, "-o", "a.bpa")["shadow_rays"], SIDE * SIDE * 8)
         self.stats("s.json", "--spp", 16, "--first-sample", 8, "-o", "b.bpa")
         self.succeed("merge", "a.bpa", "b.bpa", "-o", "merged.bpa", "-q")
-        self.assertEqual(bpa.read(self.read("merged.bpa"))[0]["lamp_rays"], whole["lamp_rays"])
+        self.assertEqual(bpa.read(self.read("merged.bpa"))[0]["shadow_rays"], whole["shadow_rays"])
         resumed = self.stats("s.json", "--resume", "a.bpa", "--spp", 24, "-o", "resumed.bpa")
-        self.assertEqual(resumed["lamp_rays"], whole["lamp_rays"])
+        self.assertEqual(resumed["shadow_rays"], whole["shadow_rays"])
         adaptive = self.stats("s.json", "--spp", 64, "--adaptive", "-o", "s.png")
-        self.assertEqual(adaptive["lamp_rays"], adaptive["samples"])
-        self.stats("s.json", "--spp", 8, "--lamps", "off", "-o", "off.bpa")
-        self.assertNotIn("lamp_rays", bpa.read(self.read("off.bpa"))[0])
+        self.assertEqual(adaptive["shadow_rays"], adaptive["samples"])
+        self.stats("s.json", "--spp", 8, "--light-sampling", "off", "-o", "off.bpa")
+        self.assertNotIn("shadow_rays", bpa.read(self.read("off.bpa"))[0])
 
 
 if __name__ == "__main__":

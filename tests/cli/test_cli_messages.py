@@ -74,9 +74,12 @@ class Messages(ProgramTest):
             said = self.refused('{"camera": {},\n "%s": []}' % name, "2:2", f"{name}: unknown member; only spheres are rendered")
             self.assertIn('in "spheres", or name files of them in "clouds" or "particles"', said)
 
+    def test_a_former_name(self):
+        self.refused('{"camera": {}, "light": "soft"}', "1:16", 'light: unknown member; "light" is now "lighting"')
+
     def test_near_names(self):
         """A suggestion is near, and never a name that is there already."""
-        for name, near in (("spheers", "spheres"), ("spere", "spheres"), ("textur", "textures"), ("lihgt", "light"), ("backgroud", "background"),
+        for name, near in (("spheers", "spheres"), ("spere", "spheres"), ("textur", "textures"), ("lihgting", "lighting"), ("backgroud", "background"),
                            ("material", "materials"), ("transfr", "transfer")):
             self.refused('{"camera": {}, "%s": []}' % name, "1:16", f'unknown member; did you mean "{near}"?')
         for name in ("transformations", "shading", "lookat", "pictures", "tone"):
@@ -92,7 +95,8 @@ class Messages(ProgramTest):
     def test_options(self):
         self.write("s.json", scene())
         for option, says in (("--height", 'the height follows from --width and the scene\'s "aspect_ratio" or "image_height"'),
-                             ("--samples", "--spp sets the samples per pixel"), ("--gpu", "--device gpu"), ("--widht", "did you mean --width?"),
+                             ("--samples", "--spp sets the samples per pixel"), ("--gpu", "--device gpu"),
+                             ("--lamps", "--lamps is now --light-sampling"), ("--light", "--light is now --lighting"), ("--widht", "did you mean --width?"),
                              ("--tranfser", "did you mean --transfer?")):
             self.fail_with(2, "render", "s.json", option, "3", says=[f"unknown option {option}", says])
         for option in ("--weight", "--aperture", "--lens", "--sun"):

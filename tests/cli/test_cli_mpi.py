@@ -44,7 +44,7 @@ class Ranks(cli.ProgramTest):
         self.assert_same(self.read("alone.bpa"), self.read("some.bpa"), f"{ranks} ranks, {options}")
         stats = json.loads(self.read("some.json"))
         self.assertEqual(stats["ranks"], ranks)
-        for name in ("samples", "rays", "nrmse", "samples_per_pixel", "stopped_by", "mean_radiance", "invalid_samples", "lamp_rays",
+        for name in ("samples", "rays", "nrmse", "samples_per_pixel", "stopped_by", "mean_radiance", "invalid_samples", "shadow_rays",
                      "samples_min", "samples_mean", "samples_max", "effects"):
             self.assertEqual(stats[name], self.alone[name], name)
 

@@ -90,10 +90,10 @@ class Resume(cli.ProgramTest):
                 self.assertLess(samples, 10**7)
 
     def test_more_samples_than_before(self):
-        """A finished file goes on, too; also one of version 2, and one that was merged of neighbours."""
+        """A finished file goes on, too; also one of sums alone, and one that was merged of neighbours."""
         self.succeed("render", "s.json", "--spp", 20, "-o", "whole.bpa", "-q")
         self.succeed("render", "s.json", "--spp", 9, "-o", "a.bpa", "-q")
-        self.write("old.bpa", bpa.version_2(self.read("a.bpa")))
+        self.write("old.bpa", bpa.sums_alone(self.read("a.bpa")))
         self.succeed("render", "s.json", "--spp", 3, "--first-sample", 9, "-o", "b.bpa", "-q")
         self.succeed("merge", "a.bpa", "b.bpa", "-o", "ab.bpa", "-q")
         for name in ("a.bpa", "old.bpa", "ab.bpa"):

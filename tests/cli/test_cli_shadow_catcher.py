@@ -54,7 +54,7 @@ class ShadowCatcher(cli.ProgramTest):
         """Standing on the ground and above it; in every form of the kernel, lamps on and off, at any level of light."""
         for height in (1.0, 2.0):
             self.assert_follows(self.shadow(ball(height)), lambda d: covered(1, height, d), 1.3)
-        for options in (("--kernel", "sample"), ("--precision", "double"), ("--lamps", "off"), ("--sampler", "independent"), ("--effects", "all")):
+        for options in (("--kernel", "sample"), ("--precision", "double"), ("--light-sampling", "off"), ("--sampler", "independent"), ("--effects", "all")):
             self.assert_follows(self.shadow(ball(1.0), *options), lambda d: covered(1, 1, d), 1.3)
         self.assert_follows(self.shadow(ball(1.0, background=[1e-6, 0, 0])), lambda d: covered(1, 1, d), 1.3)
 
@@ -161,7 +161,7 @@ class ShadowCatcher(cli.ProgramTest):
         tilted = dict(plain, background={"up": [0, 0, 5]})
         same(dict(tilted, shadow_catcher=True), dict(tilted, shadow_catcher={"height": -1, "up": [0, 0, 1]}))
         self.write("p.csv", "x,y,z,radius\n0,0,1,0.5\n1,0,2,0.5\n")
-        particles = {"camera": {"fit": "particles"}, "light": "studio", "particles": [{"file": "p.csv"}], "materials": GREY,
+        particles = {"camera": {"fit": "particles"}, "lighting": "studio", "particles": [{"file": "p.csv"}], "materials": GREY,
                      "spheres": [{"center": [0, 0, -50], "radius": 1, "material": "m"}]}
         same(dict(particles, shadow_catcher=True), dict(particles, shadow_catcher={"height": 0.5, "up": [0, 0, 1]}))
 

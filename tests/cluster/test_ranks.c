@@ -104,7 +104,7 @@ static BpFilm *own_film(uint32_t rank) {
     film->not_finite_samples = 500 + rank;
     film->negative_samples = 600 + rank;
     film->out_of_range_samples = 700 + rank;
-    film->lamp_rays = 4000 + rank;
+    film->shadow_rays = 4000 + rank;
     return film;
 }
 
@@ -134,7 +134,7 @@ static bool add_films(BpComm *comm) {
                holds(film->not_finite_samples == 500 * RANKS + sum_of_ranks, "samples not finite") &&
                holds(film->negative_samples == 600 * RANKS + sum_of_ranks, "negative samples") &&
                holds(film->out_of_range_samples == 700 * RANKS + sum_of_ranks, "samples out of range") &&
-               holds(film->lamp_rays == 4000 * RANKS + sum_of_ranks, "rays to lamps");
+               holds(film->shadow_rays == 4000 * RANKS + sum_of_ranks, "rays to lamps");
     }
     bp_film_destroy(&film);
     return fine;

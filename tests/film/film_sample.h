@@ -26,7 +26,7 @@ static BpFilm *make(void) {
     a->not_finite_samples = 20;
     a->negative_samples = 300;
     a->out_of_range_samples = 4000;
-    a->lamp_rays = (UINT64_C(1) << 59) + 1;
+    a->shadow_rays = (UINT64_C(1) << 59) + 1;
     a->title = strdup("A \"title\",\nwith Gr\xc3\xbc\xc3\x9f"
                       "en");
     assert_int_equal(bp_film_add_range(a, 0, 9, NULL), BP_OK);

@@ -57,16 +57,17 @@ static void free_scene(BpScene *scene) {
 static void bound_and_scale(void **state) {
     (void)state;
     BpScene scene = make_scene();
-    assert_true(fabs(bp_scene_radiance_bound(&scene, 50, BP_LAMPS_OFF, BP_CAUSTICS_OFF) - 4) <= 0);
-    assert_int_equal(bp_film_scale(&scene, 50, BP_LAMPS_OFF, BP_CAUSTICS_OFF), 36);
+    assert_true(fabs(bp_scene_radiance_bound(&scene, 50, BP_LIGHT_SAMPLING_OFF, BP_CAUSTICS_OFF) - 4) <= 0);
+    assert_int_equal(bp_film_scale(&scene, 50, BP_LIGHT_SAMPLING_OFF, BP_CAUSTICS_OFF), 36);
     scene.materials[3].emit[0] = 4.5; /* past a power of two, the next one */
-    assert_int_equal(bp_film_scale(&scene, 50, BP_LAMPS_OFF, BP_CAUSTICS_OFF), 35);
+    assert_int_equal(bp_film_scale(&scene, 50, BP_LIGHT_SAMPLING_OFF, BP_CAUSTICS_OFF), 35);
     scene.materials[3].emit[0] = 0.5; /* now the lamp's green */
-    assert_int_equal(bp_film_scale(&scene, 50, BP_LAMPS_OFF, BP_CAUSTICS_OFF), 37);
+    assert_int_equal(bp_film_scale(&scene, 50, BP_LIGHT_SAMPLING_OFF, BP_CAUSTICS_OFF), 37);
     scene.materials[3] = scene.materials[4];
-    assert_int_equal(bp_film_scale(&scene, 50, BP_LAMPS_OFF, BP_CAUSTICS_OFF), 38); /* sky and normals: 1 */
+    assert_int_equal(bp_film_scale(&scene, 50, BP_LIGHT_SAMPLING_OFF, BP_CAUSTICS_OFF),
+                     38); /* sky and normals: 1 */
     scene.background_bottom[2] = 3;
-    assert_int_equal(bp_film_scale(&scene, 50, BP_LAMPS_OFF, BP_CAUSTICS_OFF), 36);
+    assert_int_equal(bp_film_scale(&scene, 50, BP_LIGHT_SAMPLING_OFF, BP_CAUSTICS_OFF), 36);
     free_scene(&scene);
 }
 
@@ -77,8 +78,8 @@ static BpDisc disc(double x, double y, double half_angle, double radiance) {
                     .visible_to_camera = true};
 }
 
-static double bound_of(const BpScene *scene, BpLamps lamps) {
-    return bp_scene_radiance_bound(scene, 50, lamps, BP_CAUSTICS_OFF);
+static double bound_of(const BpScene *scene, BpLightSampling light_sampling) {
+    return bp_scene_radiance_bound(scene, 50, light_sampling, BP_CAUSTICS_OFF);
 }
 
 /* Discs that share a direction add up, with the sky behind them; others do not. */
@@ -89,21 +90,22 @@ static void discs_add_up(void **state) {
     scene.discs[1] = disc(1, 0.2, 10, 1000);
     scene.discs[2] = disc(-3, 0, 10, 500);
     scene.disc_count = 1;
-    assert_true(fabs(bound_of(&scene, BP_LAMPS_OFF) - 101) <= 1e-9);
+    assert_true(fabs(bound_of(&scene, BP_LIGHT_SAMPLING_OFF) - 101) <= 1e-9);
     scene.disc_count = 3;
-    assert_true(fabs(bound_of(&scene, BP_LAMPS_OFF) - 1101) <= 1e-9);
+    assert_true(fabs(bound_of(&scene, BP_LIGHT_SAMPLING_OFF) - 1101) <= 1e-9);
     scene.discs[2].half_angle_degrees = 90;
-    assert_true(fabs(bound_of(&scene, BP_LAMPS_OFF) - 1101) <= 1e-9);
+    assert_true(fabs(bound_of(&scene, BP_LIGHT_SAMPLING_OFF) - 1101) <= 1e-9);
     scene.discs[1].half_angle_degrees = 90;
-    assert_true(fabs(bound_of(&scene, BP_LAMPS_OFF) - 1601) <= 1e-9);
+    assert_true(fabs(bound_of(&scene, BP_LIGHT_SAMPLING_OFF) - 1601) <= 1e-9);
     scene.discs[0].direction[0] = 1e12; /* of any length */
-    assert_true(fabs(bound_of(&scene, BP_LAMPS_OFF) - 1601) <= 1e-9);
+    assert_true(fabs(bound_of(&scene, BP_LIGHT_SAMPLING_OFF) - 1601) <= 1e-9);
     /* A ray to a disc brings half of its radiance at most, dimmed by the albedo, again at each vertex. */
     const double albedo = 0.75; /* the largest of what is lit */
     double most = 1601, through = albedo;
     for (int vertex = 1; vertex < 50; vertex++, through *= albedo) most += 0.5 * 1000 * through;
-    assert_true(bound_of(&scene, BP_LAMPS_ON) >= most && bound_of(&scene, BP_LAMPS_ON) <= 1.5 * most);
-    assert_true(ldexp(most, bp_film_scale(&scene, 50, BP_LAMPS_ON, BP_CAUSTICS_OFF)) <= 0x1p38);
+    assert_true(bound_of(&scene, BP_LIGHT_SAMPLING_ON) >= most &&
+                bound_of(&scene, BP_LIGHT_SAMPLING_ON) <= 1.5 * most);
+    assert_true(ldexp(most, bp_film_scale(&scene, 50, BP_LIGHT_SAMPLING_ON, BP_CAUSTICS_OFF)) <= 0x1p38);
     free_scene(&scene);
 }
 
@@ -113,19 +115,21 @@ static void emitters_that_scatter_add_up(void **state) {
     BpScene scene = make_scene();
     scene.materials[0].emit[1] = 4;
     scene.materials[0].albedo[2] = 0.5; /* 1 + 1/2 + 1/4 + ... = 2, but one sphere brings 0.625 itself */
-    assert_true(fabs(bp_scene_radiance_bound(&scene, 50, BP_LAMPS_OFF, BP_CAUSTICS_OFF) - 4 / (1 - 0.625)) <=
-                1e-12);
+    assert_true(fabs(bp_scene_radiance_bound(&scene, 50, BP_LIGHT_SAMPLING_OFF, BP_CAUSTICS_OFF) -
+                     4 / (1 - 0.625)) <= 1e-12);
     scene.spheres[5].albedo = BP_NO_ALBEDO;
-    assert_true(fabs(bp_scene_radiance_bound(&scene, 50, BP_LAMPS_OFF, BP_CAUSTICS_OFF) - 8) <= 1e-12);
+    assert_true(fabs(bp_scene_radiance_bound(&scene, 50, BP_LIGHT_SAMPLING_OFF, BP_CAUSTICS_OFF) - 8) <=
+                1e-12);
     scene.materials[5].emit[0] = 100; /* not in use */
-    assert_true(fabs(bp_scene_radiance_bound(&scene, 50, BP_LAMPS_OFF, BP_CAUSTICS_OFF) - 8) <= 1e-12);
+    assert_true(fabs(bp_scene_radiance_bound(&scene, 50, BP_LIGHT_SAMPLING_OFF, BP_CAUSTICS_OFF) - 8) <=
+                1e-12);
     scene.materials[2].emit[0] = 1; /* glass passes everything on */
-    assert_true(fabs(bp_scene_radiance_bound(&scene, 50, BP_LAMPS_OFF, BP_CAUSTICS_OFF) - 4.0 * 50) <=
-                0); /* once a segment */
-    assert_int_equal(bp_film_scale(&scene, 50, BP_LAMPS_OFF, BP_CAUSTICS_OFF), 38 - 8);
-    assert_true(fabs(bp_scene_radiance_bound(&scene, 1, BP_LAMPS_OFF, BP_CAUSTICS_OFF) - 4) <= 0);
-    assert_true(fabs(bp_scene_radiance_bound(&scene, 0, BP_LAMPS_OFF, BP_CAUSTICS_OFF)) <= 0);
-    assert_true(fabs(bp_scene_radiance_bound(&scene, BP_DEPTH_MAX, BP_LAMPS_OFF, BP_CAUSTICS_OFF) -
+    assert_true(fabs(bp_scene_radiance_bound(&scene, 50, BP_LIGHT_SAMPLING_OFF, BP_CAUSTICS_OFF) -
+                     4.0 * 50) <= 0); /* once a segment */
+    assert_int_equal(bp_film_scale(&scene, 50, BP_LIGHT_SAMPLING_OFF, BP_CAUSTICS_OFF), 38 - 8);
+    assert_true(fabs(bp_scene_radiance_bound(&scene, 1, BP_LIGHT_SAMPLING_OFF, BP_CAUSTICS_OFF) - 4) <= 0);
+    assert_true(fabs(bp_scene_radiance_bound(&scene, 0, BP_LIGHT_SAMPLING_OFF, BP_CAUSTICS_OFF)) <= 0);
+    assert_true(fabs(bp_scene_radiance_bound(&scene, BP_DEPTH_MAX, BP_LIGHT_SAMPLING_OFF, BP_CAUSTICS_OFF) -
                      4.0 * BP_DEPTH_MAX) <= 0);
     free_scene(&scene);
 }
@@ -140,10 +144,11 @@ static void no_path_is_brighter(void **state) {
         scene.materials[1].emit[2] = emit;
         double radiance = 0, throughput = 1;
         for (int depth = 0; depth < 50; depth++, throughput *= albedo) radiance += throughput * emit;
-        const double bound = bp_scene_radiance_bound(&scene, 50, BP_LAMPS_OFF, BP_CAUSTICS_OFF);
+        const double bound = bp_scene_radiance_bound(&scene, 50, BP_LIGHT_SAMPLING_OFF, BP_CAUSTICS_OFF);
         assert_true(radiance <= bound * (1 + 1e-12));
-        assert_true(ldexp(bound, bp_film_scale(&scene, 50, BP_LAMPS_OFF, BP_CAUSTICS_OFF)) <= 0x1p38);
-        assert_true(ldexp(bound, bp_film_scale(&scene, 50, BP_LAMPS_OFF, BP_CAUSTICS_OFF)) > 0x1p37);
+        assert_true(ldexp(bound, bp_film_scale(&scene, 50, BP_LIGHT_SAMPLING_OFF, BP_CAUSTICS_OFF)) <=
+                    0x1p38);
+        assert_true(ldexp(bound, bp_film_scale(&scene, 50, BP_LIGHT_SAMPLING_OFF, BP_CAUSTICS_OFF)) > 0x1p37);
     }
     free_scene(&scene);
 }
@@ -154,11 +159,11 @@ static void extreme_scales_stay_floats(void **state) {
     scene.sphere_count = 0;
     memset(scene.background_bottom, 0, sizeof scene.background_bottom);
     memset(scene.background_top, 0, sizeof scene.background_top);
-    assert_int_equal(bp_film_scale(&scene, 50, BP_LAMPS_OFF, BP_CAUSTICS_OFF), 38); /* black */
+    assert_int_equal(bp_film_scale(&scene, 50, BP_LIGHT_SAMPLING_OFF, BP_CAUSTICS_OFF), 38); /* black */
     scene.background_top[0] = 1e-300;
-    assert_int_equal(bp_film_scale(&scene, 50, BP_LAMPS_OFF, BP_CAUSTICS_OFF), 126);
+    assert_int_equal(bp_film_scale(&scene, 50, BP_LIGHT_SAMPLING_OFF, BP_CAUSTICS_OFF), 126);
     scene.background_top[0] = 1e300;
-    assert_int_equal(bp_film_scale(&scene, 50, BP_LAMPS_OFF, BP_CAUSTICS_OFF), -126);
+    assert_int_equal(bp_film_scale(&scene, 50, BP_LIGHT_SAMPLING_OFF, BP_CAUSTICS_OFF), -126);
     free_scene(&scene);
 }
 

@@ -30,7 +30,7 @@ static uint32_t next(uint32_t *state) { /* Numerical Recipes' quick generator: o
 static void change_member(json_t *header, uint32_t *state) {
     static const char *const sizes[] = {"width", "height", "replicates"};
     static const char *const numbers[] = {"scale_log2",          "max_depth",       "segments",
-                                          "cut_paths",           "invalid_samples", "lamp_rays",
+                                          "cut_paths",           "invalid_samples", "shadow_rays",
                                           "ballpark_accumulator"};
     static const json_int_t values[] = {0,    1,   2,       3,       -1,        126,
                                         -126, 127, 1000000, 1000001, INT64_MAX, INT64_MIN};
@@ -89,25 +89,13 @@ static void change_member(json_t *header, uint32_t *state) {
     }
 }
 
-static json_int_t version_of(const json_t *header) {
-    return json_integer_value(json_object_get(header, "ballpark_accumulator"));
-}
-
-static bool has_checksum(const json_t *header) {
-    return version_of(header) != 1;
-}
-
-static bool is_packed(const json_t *header) {
-    return version_of(header) >= 3;
-}
-
 static bool says(const json_t *header, const char *member) {
     return json_is_true(json_object_get(header, member));
 }
 
 /* How many bytes of numbers there should be; 0: the header does not say, or more than `room`. */
 static size_t body_length(const json_t *header, size_t room) {
-    const bool fine = has_checksum(header) && says(header, "fine_sums");
+    const bool fine = says(header, "fine_sums");
     uint64_t pixels = 1;
     static const char *const sizes[] = {"width", "height", "replicates"};
     json_int_t sides[3];
@@ -118,25 +106,24 @@ static size_t body_length(const json_t *header, size_t room) {
     pixels = (uint64_t)sides[0] * (uint64_t)sides[1];
     if (pixels > room || pixels * (uint64_t)sides[2] > room) return 0;
     uint64_t bytes = pixels * (uint64_t)sides[2] * ((fine ? 2 : 1) * SUMS_BYTES + COUNT_BYTES);
-    if (is_packed(header)) {
-        const json_int_t decisions =
-            json_integer_value(json_object_get(json_object_get(header, "plan"), "decision_bytes"));
-        bytes += pixels * ((says(header, "aovs") ? AOV_BYTES : 0) + (says(header, "pixel_segments") ? 8 : 0));
-        if (version_of(header) >= 4 && says(header, "alpha")) bytes += pixels * 8;
-        if (decisions < 0 || decisions > 65535) return 0;
-        bytes += (uint64_t)decisions;
-    }
+    const json_int_t decisions =
+        json_integer_value(json_object_get(json_object_get(header, "plan"), "decision_bytes"));
+    bytes += pixels * ((says(header, "aovs") ? AOV_BYTES : 0) + (says(header, "pixel_segments") ? 8 : 0));
+    if (says(header, "alpha")) bytes += pixels * 8;
+    if (says(header, "unseen")) bytes += pixels * 8 + 12;
+    if (decisions < 0 || decisions > 65535) return 0;
+    bytes += (uint64_t)decisions;
     return bytes <= room ? (size_t)bytes : 0;
 }
 
-/* The numbers of a file's body, unpacked if they are packed, in new memory. */
-static uint8_t *take_numbers(const json_t *header, const uint8_t *body, size_t size, size_t *count) {
+/* The numbers of a file's body, unpacked if that can be done, in new memory. */
+static uint8_t *take_numbers(const uint8_t *body, size_t size, size_t *count) {
     const uLong room = 1u << 20;
     uint8_t *numbers = malloc(room > size ? room : size);
     if (numbers == NULL) abort();
     uLongf unpacked = room;
     *count = size;
-    if (is_packed(header) && uncompress(numbers, &unpacked, body, (uLong)size) == Z_OK)
+    if (uncompress(numbers, &unpacked, body, (uLong)size) == Z_OK)
         *count = unpacked;
     else
         memcpy(numbers, body, size);
@@ -158,8 +145,8 @@ size_t bpa_mutate(uint8_t *data, size_t size, size_t size_max, unsigned seed) {
         json_decref(header);
         return LLVMFuzzerMutate(data, size, size_max);
     }
-    size_t body = size - head - (has_checksum(header) ? CHECKSUM_BYTES : 0);
-    uint8_t *old = take_numbers(header, data + head, body, &body);
+    size_t body = size - head - CHECKSUM_BYTES;
+    uint8_t *old = take_numbers(data + head, body, &body);
     if (next(&state) % 2 == 0 && body > 0)
         LLVMFuzzerMutate(old, body, body);
     else
@@ -174,17 +161,11 @@ size_t bpa_mutate(uint8_t *data, size_t size, size_t size_max, unsigned seed) {
     if (numbers == NULL) abort();
     memcpy(numbers, old, body < wanted ? body : wanted);
     uLongf packed = compressBound((uLong)wanted);
-    if (wanted > 0 && (!is_packed(header) || packed <= size_max - around)) {
+    if (wanted > 0 && packed <= size_max - around) {
         memcpy(data, text, text_length - 1);
         data[text_length - 1] = '\n';
-        if (!is_packed(header)) {
-            memcpy(data + text_length, numbers, wanted);
-            packed = (uLongf)wanted;
-        } else if (compress2(data + text_length, &packed, numbers, (uLong)wanted, 0) != Z_OK) {
-            abort();
-        }
-        result = text_length + packed;
-        if (has_checksum(header)) result = append_checksum(data, result);
+        if (compress2(data + text_length, &packed, numbers, (uLong)wanted, 0) != Z_OK) abort();
+        result = append_checksum(data, text_length + packed);
     }
     free(numbers);
     free(text);

@@ -70,12 +70,12 @@ static void check_sum(const BpFilm *sum, const BpFilm *a, const BpFilm *b) {
     for (size_t i = 1; i < sum->range_count; i++)
         require(sum->ranges[i].first > sum->ranges[i - 1].first + sum->ranges[i - 1].count);
     require(sum->partial == (a->partial || b->partial));
-    require(sum->coarse == (a->coarse || b->coarse) && sum->unverified == (a->unverified || b->unverified));
+    require(sum->coarse == (a->coarse || b->coarse));
     require(sum->segments == a->segments + b->segments && sum->cut_paths == a->cut_paths + b->cut_paths);
     require(sum->invalid_samples == a->invalid_samples + b->invalid_samples);
     require(sum->invalid_samples >=
             sum->not_finite_samples + sum->negative_samples + sum->out_of_range_samples);
-    require(sum->lamp_rays == a->lamp_rays + b->lamp_rays);
+    require(sum->shadow_rays == a->shadow_rays + b->shadow_rays);
 }
 
 /* Merges the second file into the first and checks it; the sum, or NULL when it was refused. */

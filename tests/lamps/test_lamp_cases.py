@@ -50,7 +50,7 @@ class Bench:
 
     def run(self, names, lamps, samples, options):
         """What the program said, and the statistics of each scene if it succeeded."""
-        command = [self.program, "render", *names, "--quiet", *self.effects, "--lamps", lamps, "--seed", "3", "--spp",
+        command = [self.program, "render", *names, "--quiet", *self.effects, "--light-sampling", lamps, "--seed", "3", "--spp",
                    str(samples), "-o", "./", "--format", "pfm", "--stats", "stats.json", *options]
         done = subprocess.run(command, cwd=self.folder, capture_output=True, text=True)
         if done.returncode != 0:
@@ -119,8 +119,8 @@ def run_case(bench, case, on_alone=False):
         (bench.folder / name).write_bytes(make())
     on_bytes, on, on_stats = bench.render(case.scene, "on", case.samples, case.options)
     said = []
-    if case.sent is not None and on_stats["lamp_rays"] != case.sent * on_stats["samples"]:
-        raise Trouble(f"{on_stats['lamp_rays']} rays to lamps for {on_stats['samples']} samples, each of which sends {case.sent}")
+    if case.sent is not None and on_stats["shadow_rays"] != case.sent * on_stats["samples"]:
+        raise Trouble(f"{on_stats['shadow_rays']} rays to lamps for {on_stats['samples']} samples, each of which sends {case.sent}")
     if case.like is not None:
         if bench.render(case.like, "on", case.samples, case.options)[0] != on_bytes:
             raise Trouble("another picture than without the change")
@@ -140,8 +140,8 @@ def run_case(bench, case, on_alone=False):
     if on_alone or not case.chance:
         return "; ".join(said)
     off_bytes, off, off_stats = bench.render(case.scene, "off", case.samples, case.options)
-    if off_stats["lamp_rays"] != 0:
-        raise Trouble(f"{off_stats['lamp_rays']} rays to lamps with lamps off")
+    if off_stats["shadow_rays"] != 0:
+        raise Trouble(f"{off_stats['shadow_rays']} rays to lamps with lamps off")
     for member in ("rays", "cut_paths"):
         if on_stats[member] != off_stats[member]:
             raise Trouble(f"{member}: {on_stats[member]} with lamps on, {off_stats[member]} with lamps off")

@@ -71,7 +71,7 @@ def run(program, command, folder, scenes, *options):
 def render(program, folder, scenes, lamps, samples, *options):
     """{scene: (sums, statistics) or Trouble}. All in one run, since starting the program takes longer than drawing a scene; where
     that fails, one by one."""
-    code, _, errors = run(program, "render", folder, scenes, "--lamps", lamps, "--seed", "11", "--spp", str(samples), "-o", "./",
+    code, _, errors = run(program, "render", folder, scenes, "--light-sampling", lamps, "--seed", "11", "--spp", str(samples), "-o", "./",
                           "--format", "bpa", "--stats", "pair-stats.json", *options)
     if code != 0 and len(scenes) == 1:
         return {scenes[0]: Trouble(f"exit code {code}: {errors}")}
@@ -89,7 +89,7 @@ def render(program, folder, scenes, lamps, samples, *options):
 
 def check(program, folder, scenes):
     """{scene: the verdict of `ballpark check`, or Trouble}"""
-    code, written, errors = run(program, "check", folder, scenes, "--lamps", "on", "--spp", "512", "--seed", "12", "--json", "-")
+    code, written, errors = run(program, "check", folder, scenes, "--light-sampling", "on", "--spp", "512", "--seed", "12", "--json", "-")
     if code in (0, 3, 4):
         return dict(zip(scenes, json.loads(written)["results"]))
     if len(scenes) == 1:
@@ -142,11 +142,11 @@ def compare(on, off, samples):
 def judge(scene, pictures, verdicts, samples, deep):
     """One line about a scene; Trouble where it is wrong."""
     (on, on_stats), (off, off_stats), one, other = (found_for(scene, drawn) for drawn in pictures)
-    if on_stats["lamps"] != "on" or off_stats["lamps"] != "off":
+    if on_stats["light_sampling"] != "on" or off_stats["light_sampling"] != "off":
         raise Trouble(f"lamps {on_stats['lamps']} and {off_stats['lamps']}")
-    if off_stats["lamp_rays"] != 0 or on_stats["lamp_rays"] == 0:
-        raise Trouble(f"{on_stats['lamp_rays']} rays to lamps with lamps on, {off_stats['lamp_rays']} with lamps off")
-    if one[1]["lamp_rays"] != other[1]["lamp_rays"]:
+    if off_stats["shadow_rays"] != 0 or on_stats["shadow_rays"] == 0:
+        raise Trouble(f"{on_stats['shadow_rays']} rays to lamps with lamps on, {off_stats['shadow_rays']} with lamps off")
+    if one[1]["shadow_rays"] != other[1]["shadow_rays"]:
         raise Trouble("the numbers of rays to lamps differ between the forms of the kernel")
     for member in ("rays", "cut_paths"):
         if on_stats[member] != off_stats[member]:
@@ -204,7 +204,7 @@ def main():
         for scene in dark:
             try:
                 (on_sums, on_stats), (off_sums, _) = found_for(scene, on), found_for(scene, off)
-                if on_sums.body != off_sums.body or on_stats["lamps"] != "off":
+                if on_sums.body != off_sums.body or on_stats["light_sampling"] != "off":
                     raise Trouble("lamps on and off differ, without a lamp")
             except Trouble as trouble:
                 failures += 1

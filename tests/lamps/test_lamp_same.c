@@ -28,7 +28,7 @@ static char *render(const BpScene *scene, const BpRenderOptions *options, size_t
     const size_t sums = cells * 3 * sizeof *film->sums;
     *size = sums + (film->fine_sums != NULL ? sums : 0) + cells * sizeof *film->counts;
     rays[0] = film->segments;
-    rays[1] = film->lamp_rays;
+    rays[1] = film->shadow_rays;
     char *copy = malloc(*size), *end = copy;
     assert_non_null(copy);
     memcpy(end, film->sums, sums);
@@ -105,7 +105,7 @@ static void check_scene(const char *name, size_t count) {
     assert_true(size != other_size || memcmp(expected, found, size) != 0);
     free(found);
     options.seed = 0;
-    options.lamps = BP_LAMPS_OFF;
+    options.light_sampling = BP_LIGHT_SAMPLING_OFF;
     found = render(scene, &options, &other_size, other_rays);
     assert_true(size != other_size || memcmp(expected, found, size) != 0);
     assert_int_equal(rays[0], other_rays[0]);

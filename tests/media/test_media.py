@@ -223,7 +223,7 @@ def lamps():
     spheres = [ball([0, -101, 0], 100, None, "matte"), ball([0, 0.2, 0], 0.7, "smoke"), ball([1.2, 0.6, 0.3], 0.5, None, "lamp")]
     for medium in ({}, {"medium": "fog"}):
         document = scene(spheres, MIXED["media"], 3, 12, {"pixel_sampling": "square"}, **{**medium, "background": [0.1, 0.1, 0.1]})
-        on, off = mean(document, "--spp", "2048"), mean(document, "--spp", "2048", "--lamps", "off")
+        on, off = mean(document, "--spp", "2048"), mean(document, "--spp", "2048", "--light-sampling", "off")
         for a, b in zip(on, off):
             close(a, b, 0.02, f"lamps, {medium}")
     return "on and off"

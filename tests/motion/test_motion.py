@@ -95,9 +95,9 @@ def forms():
 def order():
     """The same spheres in another order are the same picture, in a list and, by many copies far away, in a tree."""
     back = {**FEW, "spheres": FEW["spheres"][::-1]}
-    assert picture(FEW, "--spp", "4", "--lamps", "off") == picture(back, "--spp", "4", "--lamps", "off")
+    assert picture(FEW, "--spp", "4", "--light-sampling", "off") == picture(back, "--spp", "4", "--light-sampling", "off")
     more = {**FEW, "spheres": FEW["spheres"] + [ball([0, 1e4 + 3 * i, 0], 0.5, [i, 1e4, 0]) for i in range(60)]}
-    assert picture(FEW, "--spp", "4", "--lamps", "off") == picture(more, "--spp", "4", "--lamps", "off")
+    assert picture(FEW, "--spp", "4", "--light-sampling", "off") == picture(more, "--spp", "4", "--light-sampling", "off")
     return "list and tree"
 
 
@@ -148,7 +148,7 @@ def lamps():
     lamp = {"l": {"type": "diffuse_light", "emit": [8, 8, 8]}, "m": {"type": "lambertian", "albedo": [0.8, 0.8, 0.8]}}
     moving = [ball([0, 0, -100], 99, material="m"), ball([-1, 0, 1], 0.6, [1, 0, 1], "l"), ball([0, 1.2, 1], 0.5, material="l")]
     document = scene(moving, materials=lamp)
-    on, off = mean(document, "--spp", "512"), mean(document, "--spp", "512", "--lamps", "off")
+    on, off = mean(document, "--spp", "512"), mean(document, "--spp", "512", "--light-sampling", "off")
     assert abs(on / off - 1) < 0.02, (on, off)
     said = effects(document)
     assert "lamps in 2 lamps that can light 1 sphere\n" in said, said

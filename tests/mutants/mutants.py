@@ -250,7 +250,7 @@ MUTANTS = [
     Mutant("a row without an end", "part of a sample goes on past the last pixel",
            [patch("host/render/portion.c", "row = pixels - pixel;", "row = pixels;")], [test("test_portion", "each_sample_once")]),
     Mutant("rays to lamps of one rank", "a total that films have and ranks do not add",
-           [patch("host/render/round.c", "film->invalid_samples, film->lamp_rays,", "film->invalid_samples, 0,")],
+           [patch("host/render/round.c", "film->invalid_samples, film->shadow_rays,", "film->invalid_samples, 0,")],
            [test("test_ranks", "test_films")]),
     Mutant("the alpha of one rank", "this program: films that are added gained an alpha, which was not",
            [patch("host/render/round.c", "if (film->met != NULL) BP_TRY(bp_comm_add_64(comm, film->met, pixels, err));", "")],
@@ -719,8 +719,8 @@ MUTANTS = [
     Mutant("rays to lamps pass everything", "every surface taken for a boundary",
            [patch(KERNEL, "== splat_uint(KIND_INTERFACE));", "!= splat_uint(KIND_NORMALS));")], [lamp_case("94.2")]),
     Mutant("the sums do not expect lamp rays", "a path may be brighter than by chance: the scale's bit forgotten",
-           [patch("host/film/film_scene.c", "if (lamps != BP_LAMPS_OFF && max_depth >= 2)",
-                  "if (lamps == BP_LAMPS_OFF && max_depth >= 2)")], [test("test_lamp_bound", "lamp_rays_add_up")]),
+           [patch("host/film/film_scene.c", "if (light_sampling != BP_LIGHT_SAMPLING_OFF && max_depth >= 2)",
+                  "if (light_sampling == BP_LIGHT_SAMPLING_OFF && max_depth >= 2)")], [test("test_lamp_bound", "lamp_rays_add_up")]),
     # ---- discs in the sky ------------------------------------------------------------------------------------
     Mutant("discs hit count whole", "no weight at hits: sampled and hit, twice the light",
            [patch(KERNEL, "radiance = scale3(disc_hit_weight(path, disc, hit), radiance);", "(void)0;")], [lamp_case("51.2")]),
@@ -815,7 +815,7 @@ MUTANTS = [
            [patch("host/film/film_stream.c", "return source->left > 0 || source->zip.avail_in > 0 ? too_long(source, err) : BP_OK;",
                   "return BP_OK;")], [test("test_film_damaged", "wrong_packing_is_refused")]),
     Mutant("memory by the header alone", "classic: a few bytes that ask for terabytes",
-           [patch("host/film/film_file.c", "packed ? numbers <= bp_film_unpacked_max(loader->body_size)", "packed ? true")],
+           [patch("host/film/film_file.c", "if (numbers <= bp_film_unpacked_max(loader->body_size))", "if (true)")],
            [test("test_film_damaged", "wrong_members_are_named")]),
     # ---- textures ------------------------------------------------------------------------------------------
     Mutant("cells counted from the camera", "classic: a lattice in the wrong space, which moves with the camera",

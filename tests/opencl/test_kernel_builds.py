@@ -31,7 +31,7 @@ class Builds(cli.ProgramTest):
         self.assertEqual(self.builds("render", "run.xyz", "--frames", "::", "-o", "f.png", *SIZE), one)
         self.assertEqual(self.builds("render", "run.xyz", "--turntable", 5, "-o", "t.png", *SIZE), one)
         # Light whose lamps come and go is another kernel, but still one.
-        self.assertEqual(self.builds("render", "run.xyz", "--frames", ":2", "--light", "studio", "-o", "s.png", *SIZE), one)
+        self.assertEqual(self.builds("render", "run.xyz", "--frames", ":2", "--lighting", "studio", "-o", "s.png", *SIZE), one)
         self.assertEqual(len([name for name in self.files() if name.startswith(("f-", "t-", "s-"))]), 4 + 5 + 2)
         # With layers there is a kernel for them in the same program.
         self.assertEqual(self.builds("render", "run.xyz", "--frames", ":3", "-o", "e.exr", *SIZE), one)

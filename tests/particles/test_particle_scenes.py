@@ -266,7 +266,7 @@ class Scenes(ProgramTest):
         self.write("b.csv", flat.replace(",z", "").replace(",0\n", "\n"))
         self.document_with({"file": "a.csv"}, camera={"image_width": 800, "aspect_ratio": [4, 3], "vfov": 30, "max_depth": 20,
                                                       "fit": "particles", "view": "front", "vup": [0, 1, 0]},
-                           light="soft")
+                           lighting="soft")
         for name in ("b.csv", "x.json"):
             self.assert_same(self.picture("a.csv"), self.picture(name), name)
 

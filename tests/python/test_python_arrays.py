@@ -59,7 +59,7 @@ def test_same_as_a_file(folder):
     (folder / "scene.json").write_text(json.dumps({
         "camera": {"image_width": 32, "aspect_ratio": [4, 3], "samples_per_pixel": 4, "max_depth": 20, "vfov": 30,
                    "fit": "scene"},
-        "light": "soft", "transfer": "srgb",
+        "lighting": "soft", "transfer": "srgb",
         "materials": {"m": {"type": "lambertian", "albedo": [0.8, 0.8, 0.8]}},
         "clouds": [{"file": "spheres.ply", "material": "m"}]}))
     subprocess.run([build / "ballpark", "render", folder / "scene.json", "-q", "-o", folder / "picture.pfm"], check=True)

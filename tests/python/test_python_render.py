@@ -91,6 +91,8 @@ def test_texts(_folder):
         raise AssertionError("accepted")
     except TypeError as error:
         assert str(error) == "ballpark.render has no option 'widht'; did you mean 'width'?", error
+    refused(TypeError, ["'lamps'", "is now 'light_sampling'"], ballpark.render, SCENE, lamps="off")
+    refused(TypeError, ["'light'", "is now 'lighting'"], ballpark.render, SCENE, light="soft")
 
 
 def test_files(folder):
@@ -161,13 +163,13 @@ def test_light_and_backdrop(folder):
     """Those of bare positions are those of the scene grammar; a background takes the place of both."""
     plain = ballpark.render(POSITIONS, radius=0.1, **small)
     assert plain.alpha is None and (plain.radiance[0, 0] == 1).all()  # soft light before white
-    studio = ballpark.render(POSITIONS, radius=0.1, light="studio", backdrop="none", **small)
+    studio = ballpark.render(POSITIONS, radius=0.1, lighting="studio", backdrop="none", **small)
     assert studio.alpha.min() == 0 and studio.alpha.max() == 1 and (studio.radiance[0, 0] == 0).all()
     assert not np.array_equal(studio.radiance[studio.alpha == 1], plain.radiance[studio.alpha == 1])
     sky = ballpark.render(POSITIONS, radius=0.1, background=[0.25, 0.5, 1], **small)
     assert sky.alpha is None and (sky.radiance[0, 0] == (0.25, 0.5, 1)).all()
-    refused(ballpark.SceneError, ["light", "background"], ballpark.render, POSITIONS, light="soft", background=[1, 1, 1])
-    refused(ballpark.SceneError, ['"sotf"', '"soft"'], ballpark.render, POSITIONS, light="sotf")
+    refused(ballpark.SceneError, ["lighting", "background"], ballpark.render, POSITIONS, lighting="soft", background=[1, 1, 1])
+    refused(ballpark.SceneError, ['"sotf"', '"soft"'], ballpark.render, POSITIONS, lighting="sotf")
 
 
 def test_errors(folder):

@@ -157,7 +157,7 @@ static void depth_and_lamps(void **state) {
     assert_true(means[4] > means[3] * 1.2);                      /* from the floor through the glass */
     assert_true(means[5] >= means[4]);
     options.max_depth = 20;
-    options.lamps = BP_LAMPS_OFF;
+    options.light_sampling = BP_LIGHT_SAMPLING_OFF;
     Found off = find(scene, &options);
     assert_null(off.unseen);
     assert_true(off.light.mean <= 0 && off.light.square <= 0);

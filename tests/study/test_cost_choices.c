@@ -221,7 +221,8 @@ static void test_configurations(void **state) {
     count = bp_study_configurations(lit, &base, true, configurations);
     assert_string_equal(find(configurations, count, "rays through focusers")->command, "--caustics on");
     assert_null(find(configurations, count, "caustics found by chance")); /* that is the base */
-    assert_string_equal(find(configurations, count, "lamps found by chance")->command, "--lamps off");
+    assert_string_equal(find(configurations, count, "lamps found by chance")->command,
+                        "--light-sampling off");
     base.caustics = BP_CAUSTICS_ON;
     count = bp_study_configurations(lit, &base, true, configurations);
     assert_string_equal(configurations[0].command, "--caustics on");

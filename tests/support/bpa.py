@@ -17,6 +17,11 @@ def _from_planes(planes, width, count):
     return bytes(numbers)
 
 
+def _to_planes(numbers, width, count):
+    return b"".join(numbers[width * done + byte:width * min(done + BLOCK, count):width]
+                    for done in range(0, count, BLOCK) for byte in range(width))
+
+
 def _arrays(header):
     """Name, bytes of a number and how many, in the order of the file."""
     pixels = header["width"] * header["height"]
@@ -53,12 +58,12 @@ def read(data):
     return header, arrays
 
 
-def version_2(data):
-    """The same film as version 2 held it: without depth, normal, albedo and what a render needs to go on."""
+def sums_alone(data):
+    """The same film without depth, normal, albedo and what a render needs to go on."""
     header, arrays = read(data)
-    for name in ("aovs", "pixel_segments", "alpha", "unseen", "plan", "job"):
+    for name in ("alpha", "unseen", "plan", "job"):
         header.pop(name, None)
-    header["ballpark_accumulator"] = 2
-    body = b"".join(arrays[name] for name in ("sums", "fine_sums", "counts") if name in arrays)
-    file = json.dumps(header).encode() + b"\n" + body
+    header.update(aovs=False, pixel_segments=False)
+    numbers = b"".join(_to_planes(arrays[name], width, count) for name, width, count in _arrays(header))
+    file = json.dumps(header).encode() + b"\n" + zlib.compress(numbers)
     return file + struct.pack("<I", zlib.crc32(file))

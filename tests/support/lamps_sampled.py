@@ -10,6 +10,6 @@ def with_lamps(program, source, names):
     paths = [os.path.join(source, "tests/agree/scenes", name + ".json") for name in names]
     said = subprocess.run([program, "explain", *paths, "--json", "-"], check=True, stdout=subprocess.PIPE).stdout
     found = {os.path.basename(one["scene"])[:-len(".json")] for one in json.loads(said)["scenes"]
-             if any(effect["name"] == "lamps" and effect["simulated"] for effect in one["effects"])}
+             if any(effect["name"] == "light_sampling" and effect["simulated"] for effect in one["effects"])}
     assert found and found < set(names), f"either all scenes have lamps or none: {found}"
     return found

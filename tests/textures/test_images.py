@@ -214,8 +214,8 @@ class Images(ProgramTest):
         self.assert_same(self.picture("maps/moved.json"), picture)
         self.assert_different(self.picture("s.json", "--set", "textures.t.wrap=repeat"), picture)
         # Another light replaces the image.
-        self.assert_different(self.picture("s.json", "--light", "studio"), picture)
-        self.assertNotIn("image", json.loads(self.succeed("scene", "s.json", "--light", "studio").stdout).get("background", {}))
+        self.assert_different(self.picture("s.json", "--lighting", "studio"), picture)
+        self.assertNotIn("image", json.loads(self.succeed("scene", "s.json", "--lighting", "studio").stdout).get("background", {}))
 
     def sunny(self, **more):
         self.write("sun.pfm", images.pfm(24, 12, images.sun))
@@ -273,7 +273,7 @@ class Images(ProgramTest):
                                    camera={"lookfrom": [0, 3, 3], "lookat": [0, 0, 0], "vfov": 20, "max_depth": 2}))
         noise = {}
         for lamps, samples in (("on", 64), ("off", 1024)):
-            self.succeed("render", "s.json", "-q", "-o", "x.pfm", "--lamps", lamps, "--spp", samples, "--stats", "x.json")
+            self.succeed("render", "s.json", "-q", "-o", "x.pfm", "--light-sampling", lamps, "--spp", samples, "--stats", "x.json")
             noise[lamps] = json.loads(self.read("x.json"))["nrmse"] ** 2 * samples
         self.assertGreater(noise["off"] / 10 / noise["on"], 100, noise)
 

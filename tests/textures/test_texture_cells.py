@@ -258,9 +258,9 @@ results = [
     check_noise("wood, its axis 2e6 away", {"pattern": "wood", "size": 0.5, "period": 0.3, "origin": [0.33, 0.21, -0.27]},
                 center=(1e6, -2e6, 1e6),
                 options=["--effects", "all"]),
-    check_lamp(["--lamps", "on"]),
-    check_lamp(["--lamps", "off"]),
-    check_lamp(["--lamps", "on", "--kernel", "sample", "--precision", "double"]),
+    check_lamp(["--light-sampling", "on"]),
+    check_lamp(["--light-sampling", "off"]),
+    check_lamp(["--light-sampling", "on", "--kernel", "sample", "--precision", "double"]),
 ]
 done = [result for result in results if result is not None]
 print(f"{len(done)} cases, {done.count(False)} wrong")

@@ -25,7 +25,7 @@ class Unseen(cli.ProgramTest):
 
     def light(self, name):
         header, arrays = bpa.read(self.read(name))
-        self.assertEqual(header["ballpark_accumulator"], 5)
+        self.assertEqual(header["ballpark_accumulator"], 6)
         return arrays["unseen"], arrays["unseen_tint"]
 
     def told(self, stats):
@@ -71,11 +71,11 @@ class Unseen(cli.ProgramTest):
         resumed = self.render(scene, "resumed.bpa", "--spp", 96, "--resume", "begun.bpa")
         self.assertEqual(self.light("whole.bpa"), self.light("resumed.bpa"))
 
-    def test_an_older_film(self):
+    def test_a_film_without_it(self):
         """One that knows nothing of such light merges with one that does, and goes on."""
         scene = scene_of("sun-0.27")
         self.render(scene, "old.bpa", "--spp", 10)
-        self.write("old.bpa", bpa.version_2(self.read("old.bpa")))
+        self.write("old.bpa", bpa.sums_alone(self.read("old.bpa")))
         self.render(scene, "new.bpa", "--spp", 14, "--first-sample", 10)
         pilot = self.light("new.bpa")
         for order in (("old.bpa", "new.bpa"), ("new.bpa", "old.bpa")):
@@ -135,13 +135,12 @@ class Unseen(cli.ProgramTest):
 
     def test_light_sampling_off(self):
         """Then all light is found by chance, and nothing is claimed of it."""
-        stats = self.render(scene_of("sun-0.27"), "a.bpa", "--spp", 16, "--lamps", "off")
+        stats = self.render(scene_of("sun-0.27"), "a.bpa", "--spp", 16, "--light-sampling", "off")
         self.assertIsNone(stats["unseen"])
         self.assertEqual(stats["unseen_part"], 0)
         header, arrays = bpa.read(self.read("a.bpa"))
         self.assertNotIn("unseen", header)
         self.assertNotIn("unseen", arrays)
-        self.assertLess(header["ballpark_accumulator"], 5)
 
     def test_caustics_on(self):
         """Where rays to lamps go through glass, what they find is not left to chance, and the rest of the light is: that of four and
@@ -176,10 +175,10 @@ class Unseen(cli.ProgramTest):
             self.assertEqual(stats["unseen_part"], 0)
             self.succeed("render", scene, "--width", 64, "--spp", 4, "-o", "without.bpa", "-q", "--stats", "stats.json")
             self.assert_same(self.read("with.bpa"), self.read("without.bpa"), scene)
-            self.assertLess(bpa.read(self.read("with.bpa"))[0]["ballpark_accumulator"], 5)
+            self.assertNotIn("unseen", bpa.read(self.read("with.bpa"))[0])
         self.fail_with(1, "render", scene_of("sun-0.27"), "--spp", 4, "-o", "x.bpa", "-q", environment=broken,
                        says="the kernel does not compile")
-        self.succeed("render", scene_of("sun-0.27"), "--spp", 4, "-o", "x.bpa", "-q", "--lamps", "off", environment=broken)
+        self.succeed("render", scene_of("sun-0.27"), "--spp", 4, "-o", "x.bpa", "-q", "--light-sampling", "off", environment=broken)
 
     def test_what_is_said(self):
         """`render` and `explain` name the spheres, how rare it is, and what helps; but for nothing where nothing is unseen."""

@@ -105,7 +105,7 @@ class Scripted(ProgramTest):
     def test_the_printed_command_carries_what_is_seen(self):
         """Options, exposure and camera: the command renders the saved picture again, but for its noise."""
         options = ("--error", "2%", "--transfer", "linear", "--set", "background=[0.1,0.3,0.2]", "--exposure", "-1",
-                   "--width", "60", "--light", "soft")
+                   "--width", "60", "--lighting", "soft")
         self.view("rest", "drag 1 -3 2", "key -", "rest", "key s", "frames 0", "quit", options=options)
         command = shlex.split(self.result.stdout.decode())
         self.assertEqual(command[:3], ["ballpark", "render", "s.json"])

@@ -1,12 +1,12 @@
-/* light.c: see light.h. */
-#include "light.h"
+/* lighting.c: see lighting.h. */
+#include "lighting.h"
 
 #include "vector.h"
 
 #include <math.h>
 #include <string.h>
 
-const char *const bp_light_names[BP_LIGHT_COUNT] = {"sky", "soft", "studio", "rembrandt", "overhead"};
+const char *const bp_lighting_names[BP_LIGHTING_COUNT] = {"sky", "soft", "studio", "rembrandt", "overhead"};
 
 /* A lamp at infinity; its direction is given to the right of the picture, up in it, and towards the viewer.
  */
@@ -24,21 +24,21 @@ typedef struct Arrangement {
     Lamp lamp[LAMPS_MAX];
 } Arrangement;
 
-static const Arrangement arrangements[BP_LIGHT_COUNT] = {
+static const Arrangement arrangements[BP_LIGHTING_COUNT] = {
     /* A wide gradient from the upper left, as under a sheet of cloth: no shadow has an edge. */
-    [BP_LIGHT_SOFT] = {.up = {-0.35, 0.85, 0.4}, .bottom = 0.35, .top = 1.35},
+    [BP_LIGHTING_SOFT] = {.up = {-0.35, 0.85, 0.4}, .bottom = 0.35, .top = 1.35},
     /* A softbox at the upper left before a grey dome. */
-    [BP_LIGHT_STUDIO] =
+    [BP_LIGHTING_STUDIO] =
         {.up = {0, 1, 0}, .bottom = 0.35, .top = 0.35, .lamps = 1, .lamp = {{{-0.7, 0.8, 0.75}, 45, 1.3}}},
     /* A key light 45 degrees to the right and 20 up, and a faint fill from the left. */
-    [BP_LIGHT_REMBRANDT] = {.up = {0, 1, 0},
-                            .bottom = 0.02,
-                            .top = 0.02,
-                            .lamps = 2,
-                            .lamp = {{{0.664463024388675, 0.342020143325669, 0.664463024388675}, 45, 1.6},
-                                     {{-1, 0, 0}, 90, 0.12}}},
+    [BP_LIGHTING_REMBRANDT] = {.up = {0, 1, 0},
+                               .bottom = 0.02,
+                               .top = 0.02,
+                               .lamps = 2,
+                               .lamp = {{{0.664463024388675, 0.342020143325669, 0.664463024388675}, 45, 1.6},
+                                        {{-1, 0, 0}, 90, 0.12}}},
     /* One lamp above, a little before what is shown: depth from top to bottom, shadows below. */
-    [BP_LIGHT_OVERHEAD] =
+    [BP_LIGHTING_OVERHEAD] =
         {.up = {0, 1, 0}, .bottom = 0.2, .top = 0.35, .lamps = 1, .lamp = {{{0, 1, 0.25}, 30, 2.6}}},
 };
 
@@ -47,11 +47,11 @@ static void into_scene(double axes[3][3], const double direction[3], double out[
         out[i] = direction[0] * axes[0][i] + direction[1] * axes[1][i] + direction[2] * axes[2][i];
 }
 
-void bp_light_place(BpScene *scene) {
+void bp_lighting_place(BpScene *scene) {
     const BpCamera *const camera = &scene->camera;
-    const Arrangement *const light = &arrangements[scene->light];
+    const Arrangement *const light = &arrangements[scene->lighting];
     double axes[3][3]; /* right, up, towards the viewer */
-    if (scene->light == BP_LIGHT_SKY) return;
+    if (scene->lighting == BP_LIGHTING_SKY) return;
     for (int i = 0; i < 3; i++) axes[2][i] = camera->lookfrom[i] - camera->lookat[i];
     bp_normalize(axes[2]);
     bp_cross(camera->vup, axes[2], axes[0]);

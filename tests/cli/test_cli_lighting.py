@@ -43,7 +43,7 @@ class Light(cli.ProgramTest):
                          camera=CAMERA, **members)
 
     def test_studio_is_a_lamp_before_a_dome_in_the_cameras_frame(self):
-        self.write("named.json", self.document(light="studio"))
+        self.write("named.json", self.document(lighting="studio"))
         explicit = {"bottom": [STUDIO["dome"]] * 3, "top": [STUDIO["dome"]] * 3, "discs": [
             {"direction": in_scene(CAMERA, direction), "half_angle": angle, "radiance": [radiance] * 3,
              "visible_to_camera": False} for direction, angle, radiance in STUDIO["lamps"]]}
@@ -55,7 +55,7 @@ class Light(cli.ProgramTest):
         ball = cli.scene(12, spheres=[{"center": [0, 0, 0], "radius": 1, "material": "m"}],
                          camera={"fit": "scene", "view": "front"})
         for light in PRESETS:
-            self.write("ball.json", dict(ball, light=light))
+            self.write("ball.json", dict(ball, lighting=light))
             self.succeed("render", "ball.json", "--turntable", 3, "-o", "ball.pfm", "--quiet", "--spp", 64)
             turned = [list(read_pfm(self.read(f"ball-000{i}.pfm"))[2]) for i in range(3)]
             means = [sum(values) / len(values) for values in turned]
@@ -79,58 +79,58 @@ class Light(cli.ProgramTest):
                          camera={"fit": "scene", "view": [1, 2, 3], "vup": [0, 0, 1]}, backdrop=[0, 0, 0])
         self.write("ball.json", ball)
         for light, brighter in (("soft", "left"), ("studio", "left"), ("rembrandt", "right")):
-            left, right = self.halves(self.pixels("ball.json", "--light", light, "--spp", 64))
+            left, right = self.halves(self.pixels("ball.json", "--lighting", light, "--spp", 64))
             self.assertEqual(brighter, "left" if left > right else "right", light)
-        rows = self.pixels("ball.json", "--light", "overhead", "--spp", 64)
+        rows = self.pixels("ball.json", "--lighting", "overhead", "--spp", 64)
         lower, upper = sum(rows[:len(rows) // 2]), sum(rows[len(rows) // 2:])  # a PFM begins at the bottom
         self.assertLess(lower, 0.8 * upper)
 
     def test_the_camera_sees_white_behind_unless_a_backdrop_says_otherwise(self):
         self.write("scene.json", cli.scene(4, spheres=0))
         for light in PRESETS:
-            self.assertEqual(set(self.pixels("scene.json", "--light", light)), {1})
-        self.assertEqual(set(self.pixels("scene.json", "--light", "studio", "--set", "backdrop=[0,0.5,0]")), {0, 0.5})
+            self.assertEqual(set(self.pixels("scene.json", "--lighting", light)), {1})
+        self.assertEqual(set(self.pixels("scene.json", "--lighting", "studio", "--set", "backdrop=[0,0.5,0]")), {0, 0.5})
 
     def test_the_option_stands_for_what_the_scene_says(self):
-        self.write("scene.json", self.document(light="rembrandt"))
-        self.write("studio.json", self.document(light="studio"))
+        self.write("scene.json", self.document(lighting="rembrandt"))
+        self.write("studio.json", self.document(lighting="studio"))
         self.write("sky.json", self.document())
         self.write("own.json", self.document(background=[0, 0.25, 0]))
-        self.assertEqual(self.pixels("scene.json", "--light", "studio"), self.pixels("studio.json"))
-        self.assertEqual(self.pixels("own.json", "--light", "studio"), self.pixels("studio.json"))
-        self.assertEqual(self.pixels("scene.json", "--light", "sky"), self.pixels("sky.json"))
+        self.assertEqual(self.pixels("scene.json", "--lighting", "studio"), self.pixels("studio.json"))
+        self.assertEqual(self.pixels("own.json", "--lighting", "studio"), self.pixels("studio.json"))
+        self.assertEqual(self.pixels("scene.json", "--lighting", "sky"), self.pixels("sky.json"))
         self.assertNotEqual(self.pixels("scene.json"), self.pixels("studio.json"))
 
     def test_particle_files(self):
         self.write("a.xyz", XYZ)
         document = json.loads(self.succeed("scene", "a.xyz").stdout)
-        self.assertEqual((document["light"], document["backdrop"]), ("soft", {"bottom": [1, 1, 1], "top": [1, 1, 1]}))
+        self.assertEqual((document["lighting"], document["backdrop"]), ("soft", {"bottom": [1, 1, 1], "top": [1, 1, 1]}))
         self.assertNotIn("background", document)
-        self.succeed("scene", "a.xyz", "--light", "overhead", "-o", "a.json", "--quiet")
-        self.assertEqual(json.loads(self.read("a.json"))["light"], "overhead")
+        self.succeed("scene", "a.xyz", "--lighting", "overhead", "-o", "a.json", "--quiet")
+        self.assertEqual(json.loads(self.read("a.json"))["lighting"], "overhead")
         small = ("--width", 16, "--spp", 4)
-        self.assertEqual(self.pixels("a.json", *small), self.pixels("a.xyz", "--light", "overhead", *small))
+        self.assertEqual(self.pixels("a.json", *small), self.pixels("a.xyz", "--lighting", "overhead", *small))
         self.write("a.csv", "x,y,z\n0,0,0\n1,1,1\n")  # z is up there
-        sky = json.loads(self.succeed("scene", "a.csv", "--light", "sky").stdout)
+        sky = json.loads(self.succeed("scene", "a.csv", "--lighting", "sky").stdout)
         self.assertEqual(sky["background"]["up"], [0, 0, 1])
         self.assertNotIn("backdrop", sky)
 
     def test_scenes_are_written_again(self):
         for light in PRESETS:
-            self.write("scene.json", self.document(light=light))
+            self.write("scene.json", self.document(lighting=light))
             self.succeed("scene", "scene.json", "-o", "again.json", "--quiet")
             again = json.loads(self.read("again.json"))
-            self.assertEqual(again["light"], light)
+            self.assertEqual(again["lighting"], light)
             self.assertEqual(self.pixels("scene.json", "--spp", 2), self.pixels("again.json", "--spp", 2))
 
     def test_mistakes(self):
-        self.write("scene.json", cli.scene(8, light="studoi"))
-        self.fail_with(2, "render", "scene.json", "-o", "a.png", says=("scene.json:", "light", "did you mean \"studio\"?"))
-        self.write("scene.json", cli.scene(8, light="studio", background=[1, 1, 1]))
-        self.fail_with(2, "render", "scene.json", "-o", "a.png", says=("light: found beside \"background\"", "remove one"))
-        self.write("scene.json", cli.scene(8, light="sky", background=[1, 1, 1]))
-        self.succeed("render", "scene.json", "-o", "a.png", "--light", "studio", "--quiet")
-        self.fail_with(2, "render", "scene.json", "--light", "sun", says=("--light", "soft, studio, rembrandt, overhead"))
+        self.write("scene.json", cli.scene(8, lighting="studoi"))
+        self.fail_with(2, "render", "scene.json", "-o", "a.png", says=("scene.json:", "lighting", "did you mean \"studio\"?"))
+        self.write("scene.json", cli.scene(8, lighting="studio", background=[1, 1, 1]))
+        self.fail_with(2, "render", "scene.json", "-o", "a.png", says=("lighting: found beside \"background\"", "remove one"))
+        self.write("scene.json", cli.scene(8, lighting="sky", background=[1, 1, 1]))
+        self.succeed("render", "scene.json", "-o", "a.png", "--lighting", "studio", "--quiet")
+        self.fail_with(2, "render", "scene.json", "--lighting", "sun", says=("--lighting", "soft, studio, rembrandt, overhead"))
 
 
 cli.main()
