@@ -17,7 +17,7 @@ static const char form[] =
     "    \"image_width\": 800, \"aspect_ratio\": [4, 3], \"samples_per_pixel\": 32, \"max_depth\": 20,\n"
     "    \"vfov\": 30, \"fit\": \"particles\", \"view\": \"three-quarter\", \"margin\": 0.05\n"
     "  },\n"
-    "  \"light\": \"soft\",\n"
+    "  \"lighting\": \"soft\",\n"
     "  \"transfer\": \"srgb\",\n"
     "  \"particles\": [\n"
     "    { \"file\": %s }\n"
