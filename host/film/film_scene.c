@@ -163,13 +163,13 @@ static uint64_t mix_textures(uint64_t hash, const BpScene *scene, const BpMateri
         const BpTexture *texture = &scene->textures[material->texture[m] - 1];
         hash = mix(hash, 0x7465787475726530u + (uint64_t)m);
         hash = mix(hash, (uint64_t)texture->type << 8 | (uint64_t)texture->mapping);
-        if (texture->type == BP_TEXTURE_IMAGE)
+        if (bp_texture_has(texture, BP_TEXTURE_FILE))
             hash = mix(mix(hash, texture->image->hash), (uint64_t)texture->wrap);
-        else
-            for (int i = 0; i < 2; i++) hash = mix_reals(hash, texture->colors[i], 3);
+        for (int i = 0; i < 2 && bp_texture_has(texture, BP_TEXTURE_COLORS); i++)
+            hash = mix_reals(hash, texture->colors[i], 3);
         if (texture->mapping == BP_MAPPING_SOLID) {
             hash = mix_reals(mix_real(hash, texture->size), texture->origin, 3);
-            if (texture->type == BP_TEXTURE_NOISE) hash = mix_noise(hash, texture);
+            if (bp_texture_has(texture, BP_TEXTURE_PATTERN)) hash = mix_noise(hash, texture);
             continue;
         }
         hash = mix_real(mix_reals(hash, texture->up, 3), texture->turn_degrees);

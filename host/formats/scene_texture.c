@@ -39,38 +39,53 @@ static BpStatus parse_repeat(const BpNode *node, uint32_t repeat[2], BpError *er
     return BP_OK;
 }
 
-/* Which textures have a member. */
-enum { OF_SOLID = 1, OF_SURFACE = 2, OF_NOISE = 4, OF_WAVES = 8, OF_CHECKER = 16, OF_IMAGE = 32 };
-
-#define SORTS_OF_TYPE(X)                                                                                     \
-    X(BP_TEXTURE_CHECKER, OF_CHECKER) X(BP_TEXTURE_NOISE, OF_NOISE) X(BP_TEXTURE_IMAGE, OF_IMAGE)
-BP_WORDS(BpTextureType, static const unsigned sorts_of_type, SORTS_OF_TYPE);
+/* Which textures have a member: those of types that have what BP_TEXTURE_COLORS and its like name, or these.
+ */
+enum { OF_SOLID = 16, OF_SURFACE = 32, OF_WAVES = 64 };
 
 static unsigned sorts_of(const BpTexture *texture) {
-    unsigned sorts = texture->mapping == BP_MAPPING_SOLID ? OF_SOLID : OF_SURFACE;
-    sorts |= sorts_of_type[texture->type];
-    return sorts | (bp_texture_has_waves(texture) ? OF_WAVES : 0);
+    const unsigned mapping = texture->mapping == BP_MAPPING_SOLID ? OF_SOLID : OF_SURFACE;
+    return bp_texture_types[texture->type].has | mapping | (bp_texture_has_waves(texture) ? OF_WAVES : 0);
+}
+
+#define TYPES_SIZE 128
+
+/* "\"checker\" or \"noise\"": the types that have this; 0: all. */
+static const char *list_types(unsigned what, char text[TYPES_SIZE]) {
+    size_t left = 0, used = 0;
+    for (size_t t = 0; t < bp_texture_type_count; t++)
+        left += what == 0 || (bp_texture_types[t].has & what) != 0;
+    for (size_t t = 0; t < bp_texture_type_count && used < TYPES_SIZE; t++)
+        if (what == 0 || (bp_texture_types[t].has & what) != 0)
+            used += (size_t)snprintf(text + used, TYPES_SIZE - used, "%s\"%s\"",
+                                     used == 0   ? ""
+                                     : left == 1 ? " or "
+                                                 : ", ",
+                                     bp_texture_type_names[t]),
+                left--;
+    return text;
 }
 
 static BpStatus refuse_foreign_members(const BpNode *node, const BpTexture *texture, BpError *err) {
+    static const char surface[] = "an image, or one with \"mapping\": \"surface\"";
     static const struct {
         const char *name;
         unsigned sort;
-        const char *owners;
-    } members[] = {{"mapping", OF_CHECKER, "a checker: noise is solid, and an image on the surface"},
-                   {"colors", OF_CHECKER | OF_NOISE, "a checker or noise"},
+        const char *owners; /* NULL: the types that have it */
+    } members[] = {{"mapping", BP_TEXTURE_MAPPING, NULL},
+                   {"colors", BP_TEXTURE_COLORS, NULL},
                    {"size", OF_SOLID, "one with \"mapping\": \"solid\""},
                    {"origin", OF_SOLID, "one with \"mapping\": \"solid\""},
-                   {"up", OF_SURFACE, "an image, or a checker with \"mapping\": \"surface\""},
-                   {"turn", OF_SURFACE, "an image, or a checker with \"mapping\": \"surface\""},
-                   {"repeat", OF_SURFACE, "an image, or a checker with \"mapping\": \"surface\""},
-                   {"file", OF_IMAGE, "an image"},
-                   {"encoding", OF_IMAGE, "an image"},
-                   {"scale", OF_IMAGE, "an image"},
-                   {"wrap", OF_IMAGE, "an image"},
-                   {"pattern", OF_NOISE, "noise"},
-                   {"octaves", OF_NOISE, "noise"},
-                   {"seed", OF_NOISE, "noise"},
+                   {"up", OF_SURFACE, surface},
+                   {"turn", OF_SURFACE, surface},
+                   {"repeat", OF_SURFACE, surface},
+                   {"file", BP_TEXTURE_FILE, NULL},
+                   {"encoding", BP_TEXTURE_FILE, NULL},
+                   {"scale", BP_TEXTURE_FILE, NULL},
+                   {"wrap", BP_TEXTURE_FILE, NULL},
+                   {"pattern", BP_TEXTURE_PATTERN, NULL},
+                   {"octaves", BP_TEXTURE_PATTERN, NULL},
+                   {"seed", BP_TEXTURE_PATTERN, NULL},
                    {"axis", OF_WAVES, "noise of the pattern \"marble\" or \"wood\""},
                    {"period", OF_WAVES, "noise of the pattern \"marble\" or \"wood\""},
                    {"distortion", OF_WAVES, "noise of the pattern \"marble\" or \"wood\""}};
@@ -78,6 +93,12 @@ static BpStatus refuse_foreign_members(const BpNode *node, const BpTexture *text
     for (size_t i = 0; i < BP_COUNT(members); i++) {
         const BpNode member = bp_node_member(node, members[i].name);
         if (member.value == NULL || (members[i].sort & sorts) != 0) continue;
+        char types[TYPES_SIZE];
+        if (members[i].owners == NULL)
+            return bp_node_fail(&member, BP_PART_NAME, err,
+                                "found in a texture that has no use for it, expected only in one of the type "
+                                "%s; remove it",
+                                list_types(members[i].sort, types));
         return bp_node_fail(&member, BP_PART_NAME, err,
                             "found in a texture that has no use for it, expected only in %s; remove it",
                             members[i].owners);
@@ -122,7 +143,8 @@ static BpStatus parse_texture(const BpNode *node, unsigned flags, BpScene *scene
     if (!json_is_object(node->value))
         return bp_node_wrong(node, "an object: { \"type\": \"checker\", \"colors\": ... }", err);
     BP_TRY(bp_node_object(node, names, BP_COUNT(names), err));
-    BP_TRY(bp_node_require(node, "type", "\"checker\", \"noise\" or \"image\"", err));
+    char types[TYPES_SIZE];
+    BP_TRY(bp_node_require(node, "type", list_types(0, types), err));
     const BpNode type_node = bp_node_member(node, "type");
     const BpNode mapping_node = bp_node_member(node, "mapping");
     const BpNode pattern_node = bp_node_member(node, "pattern");
@@ -136,21 +158,23 @@ static BpStatus parse_texture(const BpNode *node, unsigned flags, BpScene *scene
     BP_TRY(bp_node_choice(&mapping_node, bp_mapping_names, bp_mapping_count, &mapping, err));
     BP_TRY(bp_node_choice(&pattern_node, bp_pattern_names, bp_pattern_count, &pattern, err));
     texture->type = (BpTextureType)type;
-    texture->mapping = texture->type == BP_TEXTURE_IMAGE ? BP_MAPPING_SURFACE : (BpMapping)mapping;
+    texture->mapping = bp_texture_types[type].mapping;
+    if (mapping_node.value != NULL) texture->mapping = (BpMapping)mapping;
     texture->pattern = (BpPattern)pattern;
     BP_TRY(refuse_foreign_members(node, texture, err));
-    if (texture->type != BP_TEXTURE_IMAGE) {
+    if (bp_texture_has(texture, BP_TEXTURE_COLORS)) {
         BP_TRY(bp_node_require(node, "colors", "two, such as \"colors\": [[0.2, 0.3, 0.1], [0.9, 0.9, 0.9]]",
                                err));
         BP_TRY(parse_colors(&colors, texture->colors, err));
     }
     BP_TRY(bp_node_number(&size, &texture->size, err));
     BP_TRY(bp_node_vector(&origin, texture->origin, err));
-    if (texture->type == BP_TEXTURE_NOISE) return parse_noise(node, texture, err);
+    if (bp_texture_has(texture, BP_TEXTURE_PATTERN)) return parse_noise(node, texture, err);
     BP_TRY(bp_node_vector(&up, texture->up, err));
     BP_TRY(bp_node_number(&turn, &texture->turn_degrees, err));
     BP_TRY(parse_repeat(&repeat, texture->repeat, err));
-    return texture->type == BP_TEXTURE_IMAGE ? parse_image(node, flags, scene, texture, err) : BP_OK;
+    if (bp_texture_has(texture, BP_TEXTURE_FILE)) return parse_image(node, flags, scene, texture, err);
+    return BP_OK;
 }
 
 BpStatus bp_parse_textures(const BpNode *node, unsigned flags, BpScene *scene, BpError *err) {

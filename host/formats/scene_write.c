@@ -275,7 +275,7 @@ static void put_solid(FILE *out, const BpTexture *texture) {
         fputs(", \"origin\": ", out);
         put_vector(out, texture->origin);
     }
-    if (texture->type != BP_TEXTURE_NOISE) return;
+    if (!bp_texture_has(texture, BP_TEXTURE_PATTERN)) return;
     fprintf(out, ", \"octaves\": %u", (unsigned)texture->octaves);
     if (texture->seed != 0) fprintf(out, ", \"seed\": %u", (unsigned)texture->seed);
     if (!bp_texture_has_waves(texture)) return;
@@ -289,15 +289,16 @@ static BpStatus put_texture(FILE *out, const BpTexture *texture, BpError *err) {
     fputs("    ", out);
     BP_TRY(put_text(out, texture->name, err));
     fprintf(out, ": { \"type\": \"%s\"", bp_texture_type_names[texture->type]);
-    if (texture->type == BP_TEXTURE_NOISE)
+    if (bp_texture_has(texture, BP_TEXTURE_PATTERN))
         fprintf(out, ", \"pattern\": \"%s\"", bp_pattern_names[texture->pattern]);
-    else if (texture->type == BP_TEXTURE_CHECKER)
+    if (bp_texture_has(texture, BP_TEXTURE_MAPPING))
         fprintf(out, ", \"mapping\": \"%s\"", bp_mapping_names[texture->mapping]);
-    if (texture->type == BP_TEXTURE_IMAGE) {
+    if (bp_texture_has(texture, BP_TEXTURE_FILE)) {
         fputs(", \"file\": ", out);
         BP_TRY(put_image(out, texture->image, err));
         if (texture->wrap == BP_WRAP_CLAMP) fputs(", \"wrap\": \"clamp\"", out);
-    } else {
+    }
+    if (bp_texture_has(texture, BP_TEXTURE_COLORS)) {
         fputs(", \"colors\": [", out);
         put_value(out, texture->colors[0]);
         fputs(", ", out);

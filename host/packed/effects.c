@@ -256,13 +256,19 @@ static bool explain_lamps(const BpScene *scene, size_t size, char *reason) {
     return false;
 }
 
+/* What a texture calls for beyond TEXTURES. */
+static const BpEffect texture_effects[] = {
+#define EFFECT(identifier, name, effect, has, mapping) BP_EFFECT_##effect,
+    BP_TEXTURE_LIST(EFFECT)
+#undef EFFECT
+};
+
 /* Whether a member varies by a texture that calls for the effect. */
 static bool varies_by(const BpScene *scene, const BpMaterial *material, BpEffect effect) {
     if (effect == BP_EFFECT_TEXTURES) return bp_material_varies(material);
-    const BpTextureType type = effect == BP_EFFECT_NOISE ? BP_TEXTURE_NOISE : BP_TEXTURE_IMAGE;
     for (int m = 0; m < BP_MEMBER_COUNT; m++) {
         const uint32_t number = material->texture[m];
-        if (number != 0 && scene->textures[number - 1].type == type) return true;
+        if (number != 0 && texture_effects[scene->textures[number - 1].type] == effect) return true;
     }
     return false;
 }

@@ -342,31 +342,42 @@ static void pack_image_texture(const BpTexture *texture, uint64_t first, PackedT
     const BpImage *image = texture->image;
     packed->fields[0] = (double)image->width * texture->repeat[0];
     packed->fields[1] = (double)image->height * texture->repeat[1];
-    kind->pattern = PATTERN_IMAGE;
     kind->image = (packed_uint)first;
     kind->width = image->width;
     kind->height = image->height;
     kind->clamped = texture->wrap == BP_WRAP_CLAMP;
 }
 
+/* PATTERN_... of scene_types.h: how the kernel computes the values. */
+static packed_uint pattern_of(const BpTexture *texture) {
+    switch (texture->type) {
+    case BP_TEXTURE_CHECKER:
+        return PATTERN_CHECKER;
+    case BP_TEXTURE_NOISE:
+        return (packed_uint)texture->pattern + PATTERN_PERLIN;
+    case BP_TEXTURE_IMAGE:
+        return PATTERN_IMAGE;
+    }
+    return PATTERN_CHECKER; /* not reached */
+}
+
 /* `origin`: of the space that is packed, in the scene; `first`: the number of an image's first texel. */
 static void pack_texture(const BpTexture *texture, const double origin[3], bool single, uint64_t first,
                          PackedTexture *packed, PackedTextureKind *kind) {
     *packed = (PackedTexture){.scale = 0};
-    *kind = (PackedTextureKind){.mapping = (packed_uint)texture->mapping};
+    *kind = (PackedTextureKind){.mapping = (packed_uint)texture->mapping, .pattern = pattern_of(texture)};
     memcpy(packed->first, texture->colors[0], sizeof packed->first);
     memcpy(packed->second, texture->colors[1], sizeof packed->second);
     if (texture->mapping == BP_MAPPING_SURFACE) {
         bp_texture_frame(texture, packed->axes, packed->axes + 3, packed->axes + 6);
         for (int i = 0; i < 2; ++i) packed->fields[i] = 2.0 * texture->repeat[i];
-        if (texture->type == BP_TEXTURE_IMAGE) pack_image_texture(texture, first, packed, kind);
+        if (bp_texture_has(texture, BP_TEXTURE_FILE)) pack_image_texture(texture, first, packed, kind);
         return;
     }
     double from[3];
     for (int a = 0; a < 3; ++a) from[a] = origin[a] - texture->origin[a];
     pack_lattice(texture, from, single, packed, kind);
-    if (texture->type != BP_TEXTURE_NOISE) return;
-    kind->pattern = (packed_uint)texture->pattern + 1;
+    if (!bp_texture_has(texture, BP_TEXTURE_PATTERN)) return;
     kind->octaves = texture->octaves;
     kind->seed = texture->seed;
     kind->axis = (packed_uint)texture->axis;

@@ -176,7 +176,13 @@ Vec bp_ref_varied(const BpScene *scene, const Hit *hit, BpMember member, const d
     const uint32_t number = hit->material->texture[member];
     if (number == 0) return vec(constant);
     const BpTexture *texture = &scene->textures[number - 1];
-    if (texture->type == BP_TEXTURE_IMAGE) return pictured(texture, hit->radial);
-    return texture->type == BP_TEXTURE_NOISE ? noisy(texture, hit->point)
-                                             : checker(texture, hit->point, hit->radial);
+    switch (texture->type) {
+    case BP_TEXTURE_CHECKER:
+        return checker(texture, hit->point, hit->radial);
+    case BP_TEXTURE_NOISE:
+        return noisy(texture, hit->point);
+    case BP_TEXTURE_IMAGE:
+        return pictured(texture, hit->radial);
+    }
+    return vec(constant); /* not reached */
 }

@@ -126,7 +126,7 @@ static bool noise_fault(const BpTexture *texture, BpFault *fault) {
 
 /* Whether columns or rows of all repetitions together are too many. */
 static bool repeat_fault(const BpTexture *texture, BpFault *fault) {
-    for (int i = 0; i < 2 && texture->type == BP_TEXTURE_IMAGE; i++) {
+    for (int i = 0; i < 2 && bp_texture_has(texture, BP_TEXTURE_FILE); i++) {
         const uint32_t side = i == 0 ? texture->image->width : texture->image->height;
         const uint64_t all = (uint64_t)side * texture->repeat[i];
         if (all > BP_COLUMNS_MAX)
@@ -138,7 +138,7 @@ static bool repeat_fault(const BpTexture *texture, BpFault *fault) {
 }
 
 static bool texture_fault(const BpTexture *texture, BpFault *fault) {
-    for (int i = 0; i < 2 && texture->type != BP_TEXTURE_IMAGE; i++)
+    for (int i = 0; i < 2 && bp_texture_has(texture, BP_TEXTURE_COLORS); i++)
         if (any_outside(fault, BP_FAULT_TEXTURE, "colors", texture->colors[i], 0, BP_RADIANCE_MAX,
                         "colours from 0 to 1, of light to 1e12"))
             return true;
@@ -146,7 +146,7 @@ static bool texture_fault(const BpTexture *texture, BpFault *fault) {
         return outside(fault, BP_FAULT_TEXTURE, "size", texture->size, BP_TEXTURE_SIZE_MIN, BP_COORDINATE_MAX,
                        "the length of a cell, from 1e-12 to 1e12") ||
                coordinates_outside(fault, BP_FAULT_TEXTURE, "origin", texture->origin) ||
-               (texture->type == BP_TEXTURE_NOISE && noise_fault(texture, fault));
+               (bp_texture_has(texture, BP_TEXTURE_PATTERN) && noise_fault(texture, fault));
     if (coordinates_outside(fault, BP_FAULT_TEXTURE, "up", texture->up)) return true;
     if (!(length(texture->up) >= LENGTH_MIN))
         return set_fault(fault, BP_FAULT_TEXTURE, "up",
@@ -193,7 +193,7 @@ static bool interior_fault(const BpScene *scene, size_t i, BpFault *fault) {
 static bool variation_fault(const BpScene *scene, const BpMaterial *material, BpMember m, BpFault *fault) {
     const uint32_t number = material->texture[m];
     if (number == 0) return false;
-    if (number <= scene->texture_count && scene->textures[number - 1].type == BP_TEXTURE_IMAGE &&
+    if (number <= scene->texture_count && bp_texture_has(&scene->textures[number - 1], BP_TEXTURE_FILE) &&
         bp_members[m].form != BP_FORM_COLOUR && !scene->textures[number - 1].image->is_gray)
         return set_fault(fault, BP_FAULT_MATERIAL, bp_members[m].name,
                          "found an image with colours, expected a grey one, whose texels are numbers");

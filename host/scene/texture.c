@@ -9,9 +9,16 @@
 
 #define PI 3.14159265358979323846
 
-#define TEXTURE_TYPE_WORDS(X)                                                                                \
-    X(BP_TEXTURE_CHECKER, "checker") X(BP_TEXTURE_NOISE, "noise") X(BP_TEXTURE_IMAGE, "image")
-BP_WORDS(BpTextureType, const char *const bp_texture_type_names, TEXTURE_TYPE_WORDS);
+const char *const bp_texture_type_names[] = {
+#define NAME(identifier, name, effect, has, mapping) name,
+    BP_TEXTURE_LIST(NAME)
+#undef NAME
+};
+const BpTextureTraits bp_texture_types[] = {
+#define TRAITS(identifier, name, effect, has, mapping) {has, mapping},
+    BP_TEXTURE_LIST(TRAITS)
+#undef TRAITS
+};
 const size_t bp_texture_type_count = sizeof bp_texture_type_names / sizeof bp_texture_type_names[0];
 #define MAPPING_WORDS(X) X(BP_MAPPING_SOLID, "solid") X(BP_MAPPING_SURFACE, "surface")
 BP_WORDS(BpMapping, const char *const bp_mapping_names, MAPPING_WORDS);
@@ -50,7 +57,7 @@ void bp_texture_pattern_defaults(BpTexture *texture) {
 }
 
 bool bp_texture_has_waves(const BpTexture *texture) {
-    return texture->type == BP_TEXTURE_NOISE &&
+    return bp_texture_has(texture, BP_TEXTURE_PATTERN) &&
            (texture->pattern == BP_PATTERN_MARBLE || texture->pattern == BP_PATTERN_WOOD);
 }
 
@@ -85,7 +92,7 @@ void bp_texture_frame(const BpTexture *texture, double seam[3], double east[3], 
 }
 
 void bp_texture_bound(const BpTexture *texture, double bound[3]) {
-    if (texture->type == BP_TEXTURE_IMAGE) {
+    if (bp_texture_has(texture, BP_TEXTURE_FILE)) {
         memcpy(bound, texture->image->bound, sizeof texture->image->bound);
         return;
     }
@@ -94,7 +101,7 @@ void bp_texture_bound(const BpTexture *texture, double bound[3]) {
 
 bool bp_texture_is_number(const BpTexture *texture) {
     bool equal = true;
-    if (texture->type == BP_TEXTURE_IMAGE) return texture->image->is_gray;
+    if (bp_texture_has(texture, BP_TEXTURE_FILE)) return texture->image->is_gray;
     for (int i = 0; i < 2; i++)
         for (int c = 1; c < 3; c++) equal = equal && texture->colors[i][c] == texture->colors[i][0];
     return equal;

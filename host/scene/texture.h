@@ -49,8 +49,34 @@ struct BpImage; /* texels.h */
 #define BP_LATTICE_PERIOD 4194304u /* 2^22 */
 #define BP_COLUMNS_MAX 16777216u   /* 2^24: of an image's texels times its repeats, either way */
 
-typedef enum BpTextureType { BP_TEXTURE_CHECKER, BP_TEXTURE_NOISE, BP_TEXTURE_IMAGE } BpTextureType;
 typedef enum BpMapping { BP_MAPPING_SOLID, BP_MAPPING_SURFACE } BpMapping;
+
+/* What a type of texture has, bits of BpTextureTraits.has. */
+enum {
+    BP_TEXTURE_COLORS = 1,  /* colors[0] and colors[1], between which its values lie */
+    BP_TEXTURE_MAPPING = 2, /* documents choose the mapping; without, it is that of the list */
+    BP_TEXTURE_PATTERN = 4, /* a pattern of noise, with octaves and a seed */
+    BP_TEXTURE_FILE = 8     /* an image */
+};
+
+/* X(identifier, name, effect, what it has, mapping): all that is known of a type by its name alone. The
+ * effect is the BP_EFFECT_... of packed/effects.h without which its values cannot be computed. */
+#define BP_TEXTURE_LIST(X)                                                                                   \
+    X(CHECKER, "checker", TEXTURES, BP_TEXTURE_COLORS | BP_TEXTURE_MAPPING, BP_MAPPING_SOLID)                \
+    X(NOISE, "noise", NOISE, BP_TEXTURE_COLORS | BP_TEXTURE_PATTERN, BP_MAPPING_SOLID)                       \
+    X(IMAGE, "image", IMAGES, BP_TEXTURE_FILE, BP_MAPPING_SURFACE)
+
+typedef enum BpTextureType {
+#define BP_TEXTURE_ENUM(identifier, name, effect, has, mapping) BP_TEXTURE_##identifier,
+    BP_TEXTURE_LIST(BP_TEXTURE_ENUM)
+#undef BP_TEXTURE_ENUM
+} BpTextureType;
+
+typedef struct BpTextureTraits {
+    unsigned has; /* BP_TEXTURE_COLORS ... */
+    BpMapping mapping;
+} BpTextureTraits;
+
 typedef enum BpWrap { BP_WRAP_REPEAT, BP_WRAP_CLAMP } BpWrap;
 typedef enum BpPattern {
     BP_PATTERN_PERLIN,
@@ -62,7 +88,7 @@ typedef enum BpPattern {
 typedef struct BpTexture {
     char *name;
     BpTextureType type;
-    BpMapping mapping;   /* noise is solid, an image over the surface */
+    BpMapping mapping;
     double colors[2][3]; /* of even cells, and of odd ones; of noise at 0 and at 1; numbers are colours of
                             three equal parts */
     /* Solid: */
@@ -85,6 +111,7 @@ typedef struct BpTexture {
 } BpTexture;
 
 extern const char *const bp_texture_type_names[];
+extern const BpTextureTraits bp_texture_types[];
 extern const size_t bp_texture_type_count;
 extern const char *const bp_mapping_names[];
 extern const size_t bp_mapping_count;
@@ -94,6 +121,11 @@ extern const char *const bp_wrap_names[];
 extern const size_t bp_wrap_count;
 extern const char *const bp_axis_names[];
 extern const size_t bp_axis_count;
+
+/* Whether its type has this: one of BP_TEXTURE_COLORS ... */
+static inline bool bp_texture_has(const BpTexture *texture, unsigned what) {
+    return (bp_texture_types[texture->type].has & what) != 0;
+}
 
 /* All that the grammar leaves to choose by default; no name. */
 void bp_texture_defaults(BpTexture *texture);
