@@ -115,9 +115,11 @@ static BpStatus read_projection(const BpNode *node, BpCamera *camera, BpError *e
     return BP_OK;
 }
 
+#define FIT_WORDS(X) X(BP_FIT_NONE, "") X(BP_FIT_SCENE, "scene") X(BP_FIT_PARTICLES, "particles")
+BP_WORDS(BpFit, static const char *const fit_names, FIT_WORDS);
+
 /* "fit" and what belongs to it. */
 static BpStatus read_fit(const BpNode *node, BpCamera *camera, BpError *err) {
-    static const char *const fit_names[] = {"scene", "particles"};
     static const char *const without[] = {"view", "margin"}, *const beside[] = {"lookfrom", "lookat",
                                                                                 "focus_dist", "view_height"};
     const BpNode fit = bp_node_member(node, "fit");
@@ -146,7 +148,7 @@ static BpStatus read_fit(const BpNode *node, BpCamera *camera, BpError *err) {
             &angle, BP_PART_NAME, err,
             "found beside \"fit\", which chooses the distance in focus; expected \"aperture\" instead");
     int choice = 0;
-    BP_TRY(bp_node_choice(&fit, fit_names, BP_COUNT(fit_names), &choice, err));
+    BP_TRY(bp_node_choice(&fit, fit_names + 1, BP_COUNT(fit_names) - 1, &choice, err));
     camera->fit = (BpFit)(choice + 1);
     camera->margin = BP_FIT_MARGIN;
     BP_TRY(bp_node_number(&margin, &camera->margin, err));

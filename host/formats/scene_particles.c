@@ -4,6 +4,7 @@
  * Knows: the members of an entry, where relative paths begin. Does not know: the formats (particles/). */
 #include "base/json_memory.h"
 #include "base/message_text.h"
+#include "base/words.h"
 #include "input_file.h"
 #include "known_file.h"
 #include "particles/style.h"
@@ -68,26 +69,50 @@ static BpStatus read_named(const BpNode *node, bool colors, BpStyleNamed *list, 
     return BP_OK;
 }
 
-/* One of `names`. Any other word is probably meant as the name of a column, unless it is nearly one of them.
- */
-static BpStatus read_by(const BpNode *node, const char *const *names, size_t count, const char *expected,
+/* The words for which a document may ask, each with its value; the other values have no word. */
+#define RADIUS_WORDS(X) X(BP_RADIUS_VDW, "vdw") X(BP_RADIUS_COVALENT, "covalent")
+#define COLOR_WORDS(X)                                                                                       \
+    X(BP_COLOR_ELEMENT, "element")                                                                           \
+    X(BP_COLOR_CHAIN, "chain") X(BP_COLOR_RESIDUE, "residue") X(BP_COLOR_TYPE, "type")
+#define WORD(value, word) word,
+#define VALUE(value, word) value,
+static const char *const radius_words[] = {RADIUS_WORDS(WORD)};
+static const BpRadiusBy radius_values[] = {RADIUS_WORDS(VALUE)};
+static const char *const color_words[] = {COLOR_WORDS(WORD)};
+static const BpColorBy color_values[] = {COLOR_WORDS(VALUE)};
+
+#define EXPECTED_SIZE 256
+
+/* `first`, the words, then `last` if there is one: "a number, \"vdw\" or \"covalent\"". */
+static const char *list_words(const char *first, const char *const *words, size_t count, const char *last,
+                              char text[EXPECTED_SIZE]) {
+    size_t used = (size_t)snprintf(text, EXPECTED_SIZE, "%s", first);
+    for (size_t i = 0; i < count && used < EXPECTED_SIZE; i++)
+        used += (size_t)snprintf(text + used, EXPECTED_SIZE - used, "%s\"%s\"",
+                                 i + 1 == count && last == NULL ? " or " : ", ", words[i]);
+    if (last != NULL && used < EXPECTED_SIZE) snprintf(text + used, EXPECTED_SIZE - used, ", or %s", last);
+    return text;
+}
+
+/* One of `words`. Any other word is probably meant as the name of a column, unless it is nearly one of them.
+ * `first`: what may stand here instead of a word. */
+static BpStatus read_by(const BpNode *node, const char *const *words, size_t count, const char *first,
                         int *choice, BpError *err) {
     const char *word = json_string_value(node->value);
-    char text[256];
-    bool known = bp_nearest_name(word, names, count) != NULL;
-    for (size_t i = 0; i < count; i++) known = known || strcmp(word, names[i]) == 0;
-    if (known) return bp_node_choice(node, names, count, choice, err);
-    snprintf(text, sizeof text, "%s; for a column of the file, { \"column\": \"%s\" }", expected,
-             strlen(word) <= 64 ? word : "NAME");
+    char expected[EXPECTED_SIZE], text[EXPECTED_SIZE + 128];
+    bool known = bp_nearest_name(word, words, count) != NULL;
+    for (size_t i = 0; i < count; i++) known = known || strcmp(word, words[i]) == 0;
+    if (known) return bp_node_choice(node, words, count, choice, err);
+    snprintf(text, sizeof text, "%s; for a column of the file, { \"column\": \"%s\" }",
+             list_words(first, words, count, NULL, expected), strlen(word) <= 64 ? word : "NAME");
     return bp_node_wrong(node, text, err);
 }
 
 static BpStatus read_radius(const BpNode *node, BpParticleStyle *style, BpError *err) {
-    static const char *const by_names[] = {"vdw", "covalent"};
     static const char *const names[] = {"by", "column", "scale", "types"};
-    static const char expected[] =
-        "a number, \"vdw\", \"covalent\", or an object such as { \"by\": \"vdw\", \"scale\": 0.5 }, "
-        "{ \"column\": \"mass\", \"scale\": 0.1 } or { \"types\": { \"A\": 0.5 } }";
+    static const char object[] = "an object such as { \"by\": \"vdw\", \"scale\": 0.5 }, "
+                                 "{ \"column\": \"mass\", \"scale\": 0.1 } or { \"types\": { \"A\": 0.5 } }";
+    char expected[EXPECTED_SIZE];
     int choice = 0;
     if (node->value == NULL) return BP_OK;
     if (json_is_number(node->value)) {
@@ -95,12 +120,14 @@ static BpStatus read_radius(const BpNode *node, BpParticleStyle *style, BpError 
         return read_above_zero(node, &style->radius, err);
     }
     if (json_is_string(node->value)) {
-        BP_TRY(
-            read_by(node, by_names, BP_COUNT(by_names), "a number, \"vdw\" or \"covalent\"", &choice, err));
-        style->radius_by = choice == 0 ? BP_RADIUS_VDW : BP_RADIUS_COVALENT;
+        BP_TRY(read_by(node, radius_words, BP_COUNT(radius_words), "a number", &choice, err));
+        style->radius_by = radius_values[choice];
         return BP_OK;
     }
-    if (!json_is_object(node->value)) return bp_node_wrong(node, expected, err);
+    if (!json_is_object(node->value)) {
+        list_words("a number", radius_words, BP_COUNT(radius_words), object, expected);
+        return bp_node_wrong(node, expected, err);
+    }
     BP_TRY(bp_node_object(node, names, BP_COUNT(names), err));
     const BpNode by = bp_node_member(node, "by"), column = bp_node_member(node, "column");
     const BpNode scale = bp_node_member(node, "scale"), types = bp_node_member(node, "types");
@@ -108,8 +135,8 @@ static BpStatus read_radius(const BpNode *node, BpParticleStyle *style, BpError 
         return bp_node_fail(&column, BP_PART_NAME, err,
                             "found beside \"by\", expected one of the two; remove one");
     if (by.value != NULL) {
-        BP_TRY(bp_node_choice(&by, by_names, BP_COUNT(by_names), &choice, err));
-        style->radius_by = choice == 0 ? BP_RADIUS_VDW : BP_RADIUS_COVALENT;
+        BP_TRY(bp_node_choice(&by, radius_words, BP_COUNT(radius_words), &choice, err));
+        style->radius_by = radius_values[choice];
     }
     if (column.value != NULL) {
         style->radius_by = BP_RADIUS_COLUMN;
@@ -132,12 +159,11 @@ static BpStatus read_range(const BpNode *node, BpParticleStyle *style, BpError *
 }
 
 static BpStatus read_colors(const BpNode *node, BpParticleStyle *style, BpError *err) {
-    static const char *const by_names[] = {"element", "chain", "residue", "type"};
     static const char *const names[] = {"by", "column", "map", "range", "bar", "types"};
-    static const char expected[] =
-        "[r, g, b], \"element\", \"chain\", \"residue\", \"type\", or an object such as { "
-        "\"column\": \"charge\", \"map\": \"viridis\", \"range\": [-1, 1] } or { \"types\": { "
-        "\"A\": [0.5, 0.1, 0.1] } }";
+    static const char object[] =
+        "an object such as { \"column\": \"charge\", \"map\": \"viridis\", \"range\": [-1, 1] } or "
+        "{ \"types\": { \"A\": [0.5, 0.1, 0.1] } }";
+    char expected[EXPECTED_SIZE];
     int choice = 0;
     if (node->value == NULL) return BP_OK;
     if (json_is_array(node->value)) {
@@ -145,12 +171,14 @@ static BpStatus read_colors(const BpNode *node, BpParticleStyle *style, BpError 
         return read_color(node, style->color, err);
     }
     if (json_is_string(node->value)) {
-        BP_TRY(read_by(node, by_names, BP_COUNT(by_names),
-                       "[r, g, b], \"element\", \"chain\", \"residue\" or \"type\"", &choice, err));
-        style->color_by = (BpColorBy)(BP_COLOR_ELEMENT + choice);
+        BP_TRY(read_by(node, color_words, BP_COUNT(color_words), "[r, g, b]", &choice, err));
+        style->color_by = color_values[choice];
         return BP_OK;
     }
-    if (!json_is_object(node->value)) return bp_node_wrong(node, expected, err);
+    if (!json_is_object(node->value)) {
+        list_words("[r, g, b]", color_words, BP_COUNT(color_words), object, expected);
+        return bp_node_wrong(node, expected, err);
+    }
     BP_TRY(bp_node_object(node, names, BP_COUNT(names), err));
     const BpNode by = bp_node_member(node, "by"), column = bp_node_member(node, "column");
     const BpNode map = bp_node_member(node, "map"), range = bp_node_member(node, "range");
@@ -165,8 +193,8 @@ static BpStatus read_colors(const BpNode *node, BpParticleStyle *style, BpError 
                             BP_PART_NAME, err,
                             "found without \"column\", expected the column whose numbers give the colours");
     if (by.value != NULL) {
-        BP_TRY(bp_node_choice(&by, by_names, BP_COUNT(by_names), &choice, err));
-        style->color_by = (BpColorBy)(BP_COLOR_ELEMENT + choice);
+        BP_TRY(bp_node_choice(&by, color_words, BP_COUNT(color_words), &choice, err));
+        style->color_by = color_values[choice];
     }
     if (column.value != NULL) {
         style->color_by = BP_COLOR_COLUMN;
@@ -193,8 +221,10 @@ static BpStatus read_bonds(const BpNode *node, BpParticleStyle *style, BpError *
     return bp_node_boolean(node, &style->bonds, err);
 }
 
+#define STYLE_WORDS(X) X(BP_STYLE_SPACEFILL, "spacefill") X(BP_STYLE_BALL_AND_STICK, "ball-and-stick")
+BP_WORDS(BpStyleKind, static const char *const style_names, STYLE_WORDS);
+
 static BpStatus read_style(const BpNode *node, BpParticleStyle *style, BpError *err) {
-    static const char *const style_names[] = {"spacefill", "ball-and-stick"};
     const BpNode kind = bp_node_member(node, "style"), radius = bp_node_member(node, "radius");
     const BpNode color = bp_node_member(node, "color"), bonds = bp_node_member(node, "bonds");
     const BpNode box = bp_node_member(node, "box"), solvent = bp_node_member(node, "solvent");

@@ -35,6 +35,11 @@ def particle_scenes(*names):
     return Script("tests/particles/test_particle_scenes.py", tuple(f"Scenes.test_{name}" for name in names), "1 exact")
 
 
+def words(*names):
+    """Tests of tests/scene/test_word_lists.py."""
+    return Script("tests/scene/test_word_lists.py", tuple(f"Words.test_{name}" for name in names), "1 exact")
+
+
 def texture_cells(*names):
     """Cases of tests/textures/test_texture_cells.py."""
     return Script("tests/textures/test_texture_cells.py", names, "9 textures")
@@ -203,6 +208,11 @@ MUTANTS = [
     Mutant("a block that does not grow", "lines longer than what is read at first", [
         patch("host/particles/input.c", "if (here == BP_INPUT_BLOCK)", "if (here == input->capacity)")],
            [particle_scenes("long_line")]),
+    Mutant("a word that neither schema nor Python has", "this program: a word at the end of a list became the value behind its own",
+           [patch("host/formats/scene_particles.c", 'X(BP_COLOR_TYPE, "type")', 'X(BP_COLOR_TYPE, "type") X(BP_COLOR_COLUMN, "column")')],
+           [words("schema")]),
+    Mutant("a word of its own", "the schema and the command line have another",
+           [patch("host/scene/lighting.c", '"rembrandt", "overhead"', '"rembrandt", "zenith"')], [words("schema")]),
     # ---- bonds ----------------------------------------------------------------------------------------------
     Mutant("a ligand's bonds for a protein's", "PDB files list the bonds of ligands, which stood for all", [
         patch("host/particles/bonds.c", "particles->bond_count == 0 || particles->bonds_partial;", "particles->bond_count == 0;")],
@@ -847,6 +857,11 @@ MUTANTS = [
            [check("checker-surface", 256)]),
     Mutant("light everywhere the same", "this program: the brightest light for all of it",
            [patch(KERNEL, "*emitted = choose3(varies, value, *emitted);", "(void)value.x;")], [check("checker-light")]),
+    Mutant("noise of the pattern before its own", "host and kernel count patterns from another",
+           [patch("host/packed/pack.c", "(packed_uint)texture->pattern + PATTERN_PERLIN", "(packed_uint)texture->pattern")], [check("noise")]),
+    Mutant("a texture calls for the effect of another", "noise left out where there is noise",
+           [patch("host/packed/effects.c", "texture_effects[scene->textures[number - 1].type] == effect",
+                  "texture_effects[scene->textures[number - 1].type] != effect")], [test("test_effects_analyse", "textures")]),
     Mutant("a texture over a point's own colour", "this program: textures for points of clouds",
            [patch(PACK, "variations[used].albedo = 0;", "(void)used;")], [test("test_texture_documents", "own_colours_replace_the_texture")]),
     Mutant("films of other cells", "this program: a merge of two pictures",
