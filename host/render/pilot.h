@@ -2,8 +2,8 @@
  *
  * In:    a scene, a worker whose program has entry/pilot.cl.
  * Out:   for each pixel, what such light does to its noise.
- * Knows: what a ray to a lamp finds.   Does not know: samples of the picture; so the same scene and camera
- *        have the same pilot, whatever the seed, and films of one scene share it.
+ * Knows: what a ray to a lamp finds.   Does not know: what is sampled of the picture. So the same scene and
+ * camera have the same pilot, whatever the seed, and films of one scene share it.
  *
  * A sample of the picture finds a lamp or a disc by rays to it, where its path stands on a matte surface.
  * What it finds by chance is light that comes to a matte point by way of glass or mirrors, and light that is

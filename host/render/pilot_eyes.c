@@ -2,7 +2,7 @@
  *
  * In:    a scene, a device.
  * Out:   the rough points, the rays behind mirrors and glass, and lights that are seen directly.
- * Knows: how far apart paths are.   Does not know: light that comes from elsewhere. */
+ * Knows: how far apart paths are.   Does not know: what light comes from elsewhere. */
 #include "pilot_state.h"
 
 #include "base/hash.h"

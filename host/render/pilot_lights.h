@@ -2,7 +2,7 @@
  *
  * In:    a scene.
  * Out:   its lights, its specular spheres, and beginnings of paths from the ones to the others.
- * Knows: what a ray to a lamp finds, and what it does not.   Does not know: kernels, pixels.
+ * Knows: what a ray to a lamp finds, and what it does not.   Does not know: kernels.
  *
  * A pair is a light and a specular sphere: glass, or metal too smooth to be lit by rays to lamps. A path of
  * the pair begins on the light and flies at the sphere. It counts only if it meets that sphere first, so each

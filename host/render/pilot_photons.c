@@ -3,7 +3,7 @@
  * In:    a scene, a device.
  * Out:   the light that comes to rough points, and the measure for which it stands.
  * Knows: what surfaces do to beams of light, and to paths that come the other way.
- * Does not know: the camera. */
+ * Does not know: where the camera stands. */
 #include "pilot_state.h"
 
 #include "packed/reals.h"

@@ -1,7 +1,8 @@
 /* pilot_state.h: what a pilot knows while it runs; shared by pilot.c, which runs it, and by the two files
  * that follow its paths, from the camera and from the lights.
  *
- * Knows: lights, rough points, light that comes to them.   Does not know: kernels. */
+ * Knows: lights, rough points, light that comes to them.   Does not know: how paths are traced
+ * (pilot_paths.h). */
 #ifndef BP_RENDER_PILOT_STATE_H
 #define BP_RENDER_PILOT_STATE_H
 
