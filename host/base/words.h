@@ -2,7 +2,7 @@
  *
  * In:    a list X(value, what) of all values of an enumeration.   Out: an array by value.
  * Knows: that compilers warn of a switch that lacks a value (-Wswitch, a part of -Wall).
- * Does not know: any enumeration. */
+ * Does not know: which enumerations there are. */
 #ifndef BP_BASE_WORDS_H
 #define BP_BASE_WORDS_H
 

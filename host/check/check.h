@@ -1,7 +1,7 @@
 /* check.h: renders a scene with the kernel and with the reference tracer, and compares the two.
  *
  * In:    Scene, options, a device.   Out:   the sums of both, the verdict.
- * Knows: the render loop, the reference.   Does not know: OpenCL, the command line, files.
+ * Knows: the render loop, the reference.   Does not know: the command line, files.
  *
  * The result depends on scene, samples, seed and device, not on chunks, threads or the machine's load. With a
  * limit of time, both sides proceed in rounds, each as long as all before it together, and the last round

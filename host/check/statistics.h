@@ -1,6 +1,6 @@
 /* statistics.h: the distributions and tests that a verdict stands on.
  *
- * In and out: numbers.   Knows: probability.   Does not know: pictures, samples, renderers.
+ * In and out: numbers.   Knows: probability.   Does not know: pictures, scenes.
  *
  * Probabilities are in [0, 1]; "upper" means P(X > x). Every function is pure; results hold about 1e-12
  * relative unless it says otherwise (tests/agree/test_statistics.c holds them against published tables). */

@@ -2,7 +2,7 @@
  *
  * In:    power sums of two renderers (reference/sums.h), drawn independently of each other.
  * Out:   agree, disagree or inconclusive, at a stated error rate; and how wrong the first could still be.
- * Knows: statistics.   Does not know: scenes, renderers, devices.
+ * Knows: statistics.   Does not know: scenes, devices, who rendered.
  *
  * What is tested: the mean of each channel over the whole picture and over up to 8 x 8 blocks, and the same
  * for the mean of squares, which sees a wrong spread. Picture and blocks get 45 % of the level each, their

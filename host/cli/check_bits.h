@@ -2,7 +2,7 @@
  *
  * In:    the recorded pictures (host/check/bits.json), a device.   Out: an entry for each picture and form.
  * Knows: recorded pictures, agreement scenes, items of work (device_items.h).
- * Does not know: options, files to write.
+ * Does not know: the command line, what is written of it.
  *
  * A recorded picture is {"scene", "width", "samples_per_pixel", "seed", "precision", "refinement", "hash",
  * "radiance"} (bits.h). Each is rendered in every form that must give the same picture: by packets and one

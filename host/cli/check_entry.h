@@ -1,7 +1,7 @@
 /* check_entry.h: what a check says of one scene on one device, as an object of a JSON document.
  *
  * In:    a check's result, or why there is none.   Out: the object.
- * Knows: verdicts, JSON.   Does not know: processes, files, the terminal.
+ * Knows: verdicts, JSON.   Does not know: files, the terminal, how checks are run.
  *
  * Every entry has "device", "verdict" ("agree", "disagree", "inconclusive", "failed", "skipped"), "agree"
  * (true for the first alone), and "reason", a sentence, unless it agrees. Table, JUnit file and comparison

@@ -1,7 +1,7 @@
 /* check_report.h: the document of a check, and its table.
  *
  * In:    entries (check_entry.h) by scene.   Out: a JSON document; lines for people.
- * Knows: the shape of the document.   Does not know: how entries came about, files.
+ * Knows: the shape of the document.   Does not know: how entries came about.
  *
  * The document of one scene is {"ballpark", "scene", "light_sampling", "width", "height",
  * "samples_per_pixel", "max_depth", "seed", "spheres", "results": [an entry for each device], "verdict",

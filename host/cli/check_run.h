@@ -1,7 +1,7 @@
 /* check_run.h: checks scenes on one device, in a process of its own.
  *
  * In:    scenes and options, a device, a limit of time.   Out: an entry (check_entry.h) for each scene.
- * Knows: checks, items of work (device_items.h).   Does not know: documents, exit codes. */
+ * Knows: checks, items of work (device_items.h).   Does not know: what is reported of it, exit codes. */
 #ifndef BP_CLI_CHECK_RUN_H
 #define BP_CLI_CHECK_RUN_H
 

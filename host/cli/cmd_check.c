@@ -3,8 +3,8 @@
  * In:    a scene, or the agreement scenes; devices.   Out: whether kernel and reference agree, by table,
  * documents, a picture, and an exit code.
  * Knows: the order of things: scenes, devices, checks, documents.
- * Does not know: statistics, OpenCL, how a device is asked without trusting it (device_survey.h,
- * device_items.h), what documents look like (check_report.h, check_junit.h). */
+ * Does not know: how a device is asked without trusting it (device_survey.h, device_items.h), what documents
+ * look like (check_report.h, check_junit.h). */
 #include "commands.h"
 
 #include "base/format.h"

@@ -1,7 +1,8 @@
 /* cmd_devices.c: `ballpark devices`.
  *
  * In:    nothing.   Out: a table, or JSON, of every OpenCL device, and the drivers that crash or hang.
- * Knows: BpDeviceInfo, what calibrations have found, tables on a terminal.   Does not know: OpenCL. */
+ * Knows: BpDeviceInfo, what calibrations have found, tables on a terminal.   Does not know: how a driver that
+ * may be broken is asked (device_survey.h). */
 #include "commands.h"
 
 #include "base/fold.h"

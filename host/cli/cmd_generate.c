@@ -1,7 +1,8 @@
 /* cmd_generate.c: `ballpark generate`.
  *
  * In:    what, how large, the seed.   Out: a scene document, or a field of spheres as PLY.
- * Knows: the generators' names.       Does not know: the order of their draws. */
+ * Knows: the generators' names.       Does not know: how scenes are generated (formats/cover.c,
+ * formats/field.c). */
 #include "commands.h"
 
 #include "base/format.h"

@@ -2,7 +2,7 @@
  *
  * In:    scene files, options.   Out: their pictures, statistics (--stats), summaries.
  * Knows: the order of the steps, the members of --stats, Ctrl-C, the progress bar.
- * Does not know: how to trace, when a stop rule is met, picture formats. */
+ * Does not know: how to trace, when a stop rule is met, how pictures are written (content.h). */
 #include "commands.h"
 
 #include "base/clock.h"

@@ -1,7 +1,8 @@
 /* cmd_scene.c: `ballpark scene`.
  *
  * In:    a scene document or a file of particles.   Out: the document of the scene that it stands for.
- * Knows: where relative paths begin in what is written.   Does not know: the grammar. */
+ * Knows: where relative paths begin in what is written.   Does not know: how documents are read and written
+ * (formats/scene_parse.c, formats/scene_write.c). */
 #include "commands.h"
 
 #include "content.h"

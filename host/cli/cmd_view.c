@@ -1,7 +1,8 @@
 /* cmd_view.c: `ballpark view`.
  *
  * In:    a scene, the module that opens windows.   Out: a window; pictures that the person at it saves.
- * Knows: which module that is, how saved pictures are named.   Does not know: SDL, what the window shows. */
+ * Knows: which module that is, how saved pictures are named.   Does not know: how windows are opened
+ * (view/window.h), what the window shows. */
 #include "commands.h"
 
 #include "base/format.h"

@@ -2,7 +2,7 @@
  *
  * In:    the command line, a scene.   Out: an error if a result would overwrite an input or another result.
  * Knows: which options name files, and which files a scene is read from.
- * Does not know: what is written to them, or when two names mean one file (output_target.h). */
+ * Does not know: what is written to them, when two names mean one file (base/output_target.h). */
 #ifndef BP_CLI_FILE_CONFLICTS_H
 #define BP_CLI_FILE_CONFLICTS_H
 

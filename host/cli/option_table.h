@@ -2,7 +2,7 @@
  *
  * In:    an option, the text of its value.   Out: its texts, getopt's tables, the value in BpCommandLine.
  * Knows: how each kind of value is read and shown.
- * Does not know: which options there are (option_list.h), the commands' work. */
+ * Does not know: which options there are (option_list.h), what commands do with them. */
 #ifndef BP_CLI_OPTION_TABLE_H
 #define BP_CLI_OPTION_TABLE_H
 

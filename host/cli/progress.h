@@ -1,7 +1,7 @@
 /* progress.h: the text of a render's progress bar, and of the lines that take its place in a log.
  *
  * In:    progress, speed, noise, the terminal's width.   Out: one line of text.
- * Knows: what fits into a line.   Does not know: the render, the terminal. */
+ * Knows: what fits into a line.   Does not know: the terminal, what is rendered. */
 #ifndef BP_CLI_PROGRESS_H
 #define BP_CLI_PROGRESS_H
 

@@ -1,7 +1,7 @@
 /* suite.h: the agreement scenes, small ones of one effect each, that `ballpark check --suite` goes through.
  *
  * In:    the files of tests/agree/scenes, which the program holds.   Out: scenes.
- * Knows: how the files are embedded, temporary folders (for points).   Does not know: checks.
+ * Knows: how the files are embedded, temporary folders (for points).   Does not know: how scenes are checked.
  *
  * They are embedded, so that an installed program has those that it was tested with. */
 #ifndef BP_CLI_SUITE_H

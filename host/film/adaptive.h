@@ -2,7 +2,7 @@
  *
  * In:    the film between passes; a mean number of samples to reach.
  * Out:   passes, each a list of pixels and the range of samples that all of them get.
- * Knows: counts and errors of pixels.   Does not know: OpenCL, scenes, time.
+ * Knows: counts and errors of pixels.   Does not know: OpenCL, clocks.
  *
  * The picture is cut into tiles of about 8 x 8 pixels, and each tile like a chessboard into a black and a
  * white half. All pixels of a half have the same number of samples, BP_ADAPTIVE_FIRST times a power of two

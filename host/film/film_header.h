@@ -1,7 +1,7 @@
 /* film_header.h: the line of JSON that a .bpa file begins with.
  *
  * In:    a film, or a parsed header.   Out: the header's text, or the film's settings.
- * Knows: the header's members and their limits.   Does not know: files, sums and counts (film_file.h).
+ * Knows: the header's members and their limits.   Does not know: files, how the numbers follow (film_file.h).
  */
 #ifndef BP_FILM_FILM_HEADER_H
 #define BP_FILM_FILM_HEADER_H

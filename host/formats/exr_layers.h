@@ -1,7 +1,7 @@
 /* exr_layers.h: which channels of an OpenEXR file are the image.
  *
  * In:    an open file.   Out: a part and a layer that has R, G and B, or Y alone.
- * Knows: parts, names of channels and layers.   Does not know: pixels. */
+ * Knows: parts, names of channels and layers.   Does not know: what pixels hold. */
 #ifndef BP_FORMATS_EXR_LAYERS_H
 #define BP_FORMATS_EXR_LAYERS_H
 

@@ -1,7 +1,7 @@
 /* field.h: random fields of spheres, as large as a disk holds.
  *
  * In:    how many, a seed.   Out: a PLY file that a scene's "clouds" can name.
- * Knows: PLY's binary form.  Does not know: BpScene. */
+ * Knows: PLY's binary form.  Does not know: scenes. */
 #ifndef BP_FORMATS_FIELD_H
 #define BP_FORMATS_FIELD_H
 

@@ -1,8 +1,8 @@
 /* ply.h: points from a PLY file as spheres of a scene.
  *
  * In:    a binary (little or big endian) or ASCII PLY file, version 1.0.   Out: spheres added to a BpScene.
- * Knows: what points of clouds need.   Does not know: scene documents, how the file was found, how rows are
- * written (particles/ply_rows.h).
+ * Knows: what points of clouds need.   Does not know: JSON, how the file was found, how rows are written
+ * (particles/ply_rows.h).
  *
  * Read are the properties of the element "vertex" called x y z, radius, red green blue (or other names of
  * particles/column_names.h), and material; other properties and elements, lists too, are passed over. What

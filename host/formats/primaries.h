@@ -1,7 +1,8 @@
 /* primaries.h: colours of other red, green and blue as those of Rec. 709.
  *
  * In:    where a file's primaries and white lie.   Out: its image in Rec. 709's.
- * Knows: CIE 1931 chromaticities, adaptation to another white.   Does not know: formats of files. */
+ * Knows: CIE 1931 chromaticities, adaptation to another white.   Does not know: how files name their
+ * primaries. */
 #ifndef BP_FORMATS_PRIMARIES_H
 #define BP_FORMATS_PRIMARIES_H
 

@@ -1,7 +1,8 @@
 /* scene_image.c: the images that a scene document names.
  *
  * In:    the nodes of a path and of how the file is meant.   Out: images that the scene owns.
- * Knows: where relative paths begin.   Does not know: the formats (image_file.h), what an image is for. */
+ * Knows: where relative paths begin.   Does not know: how formats are read (image_file.h), what an image is
+ * for. */
 #include "image_file.h"
 
 #include "base/words.h"

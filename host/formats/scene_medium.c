@@ -1,7 +1,7 @@
 /* scene_medium.c: the media of a scene document, and where a sphere or the scene asks for one.
  *
  * In:    the nodes of "media", "medium" and "interior".   Out: BpMedia; the number of a medium.
- * Knows: the grammar.   Does not know: spheres. Ranges are checked by scene_validate.c. */
+ * Knows: the grammar.   Does not know: which spheres are filled. Ranges are checked by scene_validate.c. */
 #include "scene_parse.h"
 
 #include <stdlib.h>

@@ -1,7 +1,8 @@
 /* scene_particles.c: the particles of a scene document.
  *
  * In:    the node of "particles".   Out: the particles of the files that it names, as spheres.
- * Knows: the members of an entry, where relative paths begin. Does not know: the formats (particles/). */
+ * Knows: the members of an entry, where relative paths begin. Does not know: how formats are read
+ * (particles/file.c). */
 #include "base/json_memory.h"
 #include "base/message_text.h"
 #include "base/words.h"

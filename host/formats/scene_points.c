@@ -1,7 +1,8 @@
 /* scene_points.c: the clouds of a scene document.
  *
  * In:    the node of "clouds".   Out: the points of the files that it names, as spheres.
- * Knows: the members of a cloud, where relative paths begin. Does not know: the PLY format (ply.c). */
+ * Knows: the members of a cloud, where relative paths begin. Does not know: how PLY files are read (ply.c).
+ */
 #include "input_file.h"
 #include "ply.h"
 #include "scene_parse.h"

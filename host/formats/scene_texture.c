@@ -1,7 +1,7 @@
 /* scene_texture.c: the textures of a scene document, and where a material asks for one.
  *
  * In:    the nodes of "textures", and of members that name one.   Out: BpTextures; the one that a member has.
- * Knows: the grammar.   Does not know: materials. Ranges are checked by scene_validate.c. */
+ * Knows: the grammar.   Does not know: which materials use them. Ranges are checked by scene_validate.c. */
 #include "scene_parse.h"
 
 #include "base/words.h"

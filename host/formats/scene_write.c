@@ -1,7 +1,7 @@
 /* scene_write.c: a BpScene as a document of the grammar, laid out for people: one sphere a line.
  *
  * In:    a scene.   Out: JSON text that reads back to the same scene, bit for bit.
- * Knows: the grammar.  Does not know: how the file comes to stand at its place (output_file.h). */
+ * Knows: the grammar.  Does not know: how the file comes to stand at its place (base/output_file.h). */
 #include "base/json_memory.h"
 #include "base/output_file.h"
 

@@ -1,7 +1,7 @@
 /* driver_start.h: the drivers' first answers, once in a process, by one thread, and with a limit of time.
  *
  * In:    BALLPARK_DRIVER_SECONDS.   Out: drivers that have started; or an error that says which did not
- * answer. Knows: OpenCL's platforms.   Does not know: devices in particular.
+ * answer. Knows: OpenCL's platforms.   Does not know: which devices there are.
  *
  * The OpenCL loader loads all drivers at the first call, and a driver looks for its devices when it is first
  * asked for them. Neither is safe where several threads come first: PoCL 3.1 tells all threads but one that

@@ -1,7 +1,7 @@
 /* environment_table.h: the tables from which the kernel chooses texels of an image around the scene.
  *
  * In:    an image.   Out: for each row, and for each texel of each row, its share of the light.
- * Knows: kernels/scene_types.h.   Does not know: other lamps, how directions are drawn. */
+ * Knows: kernels/scene_types.h.   Does not know: which other lights there are, how directions are drawn. */
 #ifndef BP_PACKED_ENVIRONMENT_TABLE_H
 #define BP_PACKED_ENVIRONMENT_TABLE_H
 

@@ -2,7 +2,7 @@
  *
  * In:    a validated scene, its packed spheres.
  * Out:   BpLampTree, in the layout of kernels/scene_types.h.
- * Knows: what counts as a lamp, the packed layout.   Does not know: materials but for what they emit, OpenCL.
+ * Knows: what counts as a lamp, the packed layout.   Does not know: OpenCL, how surfaces reflect.
  *
  * A lamp is a sphere that emits, unless it encloses every other sphere: then no point is outside it, and it
  * is the sky. Of one that moves, the tree has the place where the shutter opens, and the kernel adds its

@@ -3,7 +3,7 @@
  * In:    centres and radii, in double, relative to the camera.
  * Out:   BpTree: node boxes (rounded outward when narrowed), child words, leaves and slots, in the layout of
  *        kernels/scene_types.h.
- * Knows: the packed layout, threads.   Does not know: materials, OpenCL.
+ * Knows: the packed layout, threads.   Does not know: OpenCL, what spheres are made of.
  *
  * `single_precision` decides whether the real arrays hold float or double. */
 #ifndef BP_PACKED_TREE_H

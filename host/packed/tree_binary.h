@@ -3,7 +3,8 @@
  * In:    spheres, narrowed to float: good enough to choose splits, never used as bounds.
  * Out:   a binary tree whose leaves hold runs of the reordered spheres, and for every node what it would cost
  *        below a wide node.
- * Knows: the surface area heuristic.   Does not know: the packed layout, the scene, boxes that must hold. */
+ * Knows: the surface area heuristic.   Does not know: scenes, packed data, how boxes are rounded
+ * (tree_write.c). */
 #ifndef BP_PACKED_TREE_BINARY_H
 #define BP_PACKED_TREE_BINARY_H
 

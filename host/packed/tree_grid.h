@@ -2,7 +2,7 @@
  *
  * In:    a run of items.
  * Out:   for every cell in use a count and a box; the cell of every item; the best plane.
- * Knows: the surface area heuristic, the team.   Does not know: nodes, what becomes of a split. */
+ * Knows: the surface area heuristic, the team.   Does not know: what becomes of a split. */
 #ifndef BP_PACKED_TREE_GRID_H
 #define BP_PACKED_TREE_GRID_H
 

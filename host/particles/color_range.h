@@ -1,7 +1,8 @@
 /* color_range.h: what the numbers mean that a file gives as colours.
  *
  * In:    red, green and blue as a file has them, of all its points.   Out: linear shares of light.
- * Knows: the ranges that programs write: shares from 0 to 1, bytes, and 16 bits.   Does not know: any format.
+ * Knows: the ranges that programs write: shares from 0 to 1, bytes, and 16 bits.   Does not know: which
+ * formats there are.
  *
  * One rule holds for all formats. Bytes are what the type says (uchar of PLY), or else the largest number of
  * the file decides: up to 1, they are linear shares; up to 255, they are 8-bit sRGB; up to 65535, 16-bit

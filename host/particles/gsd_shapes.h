@@ -1,7 +1,7 @@
 /* gsd_shapes.h: the shapes of the types of a GSD file, as spheres.
  *
  * In:    the text of a shape (JSON; gsd.readthedocs.io, "Shape Visualization").   Out: one sphere, or those
- * of a union. Knows: the classes of shapes.   Does not know: the file, particles. */
+ * of a union. Knows: the classes of shapes.   Does not know: files, particles. */
 #ifndef BP_PARTICLES_GSD_SHAPES_H
 #define BP_PARTICLES_GSD_SHAPES_H
 

@@ -1,8 +1,8 @@
 /* input.h: the bytes and lines of a file of particles, unpacked where gzip packed them.
  *
  * In:    a stream.   Out: blocks, lines, words, numbers; errors with file and line.
- * Knows: gzip (zlib), encodings, how programs write numbers.   Does not know: any format. Memory is one
- * block, however long the file. */
+ * Knows: gzip (zlib), encodings, how programs write numbers.   Does not know: which formats there are. Memory
+ * is one block, however long the file. */
 #ifndef BP_PARTICLES_INPUT_H
 #define BP_PARTICLES_INPUT_H
 

@@ -1,7 +1,7 @@
 /* lammps.h: what LAMMPS's manual says of its unit styles and atom styles.
  *
  * In:    names as files have them, an atom's line.   Out: scales; where the columns stand; whether a line
- * fits. Knows: the manual's tables ("units", "read_data").   Does not know: how files are laid out, frames.
+ * fits. Knows: the manual's tables ("units", "read_data").   Does not know: how files are laid out.
  */
 #ifndef BP_PARTICLES_LAMMPS_H
 #define BP_PARTICLES_LAMMPS_H

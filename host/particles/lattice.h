@@ -2,7 +2,7 @@
  * repeat.
  *
  * In:    the edges of a frame's cell, and which of them repeat.   Out: shares of the edges, images, ways.
- * Knows: how to find the shortest edges of a lattice.   Does not know: particles' lists, what ways are for.
+ * Knows: how to find the shortest edges of a lattice.   Does not know: what ways are for.
  */
 #ifndef BP_PARTICLES_LATTICE_H
 #define BP_PARTICLES_LATTICE_H

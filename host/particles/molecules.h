@@ -1,7 +1,7 @@
 /* molecules.h: molecules made whole.
  *
  * In:    a frame, and the bonds of its particles.   Out: positions, moved by whole cells.
- * Knows: periodic cells.   Does not know: where bonds come from, elements. */
+ * Knows: periodic cells.   Does not know: where bonds come from. */
 #ifndef BP_PARTICLES_MOLECULES_H
 #define BP_PARTICLES_MOLECULES_H
 

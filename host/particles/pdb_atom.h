@@ -2,7 +2,7 @@
  *
  * In:    a line that begins with ATOM or HETATM.   Out: what it says of the atom.
  * Knows: columns and words of such lines, and how programs write numbers that do not fit.   Does not know:
- *        other lines, frames. */
+ * which other lines there are. */
 #ifndef BP_PARTICLES_PDB_ATOM_H
 #define BP_PARTICLES_PDB_ATOM_H
 

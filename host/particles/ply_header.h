@@ -1,7 +1,8 @@
 /* ply_header.h: the header of a PLY file, and what the properties of its points mean.
  *
  * In:    an input.   Out: elements, properties, which of them are places, radii and colours.
- * Knows: the header's words, names that programs give to colours.   Does not know: the rows (ply_rows.h). */
+ * Knows: the header's words, names that programs give to colours.   Does not know: how rows are read
+ * (ply_rows.h). */
 #ifndef BP_PARTICLES_PLY_HEADER_H
 #define BP_PARTICLES_PLY_HEADER_H
 

@@ -2,7 +2,7 @@
  * (read_ply.c).
  *
  * In:    a type's name, a number's bytes.   Out: the type, its size, the number.
- * Does not know: headers, points. */
+ * Does not know: what properties mean. */
 #ifndef BP_PARTICLES_PLY_TYPE_H
 #define BP_PARTICLES_PLY_TYPE_H
 

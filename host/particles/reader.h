@@ -1,7 +1,7 @@
 /* reader.h: the interface that every format's reader has, and how it hands points over.
  *
  * In:    an input.   Out: calls of frame_begin and frame_add.
- * Knows: what all formats share.   Does not know: any of them.
+ * Knows: what all formats share.   Does not know: which formats there are.
  *
  * A reader is one function that reads one frame. It is called again and again until it says that there is no
  * further one. */

@@ -1,7 +1,7 @@
 /* spacing.h: how far apart particles lie.
  *
  * In:    a frame, which of its particles are shown.   Out: the median distance of nearest neighbours.
- * Knows: grids, threads.   Does not know: what radius particles get from it, bonds. */
+ * Knows: grids, threads.   Does not know: what radius particles get from it. */
 #ifndef BP_PARTICLES_SPACING_H
 #define BP_PARTICLES_SPACING_H
 

@@ -1,7 +1,7 @@
 /* style.h: how particles look: what is shown, sizes, colours, bonds, the cell.
  *
  * In:    a frame, a style.   Out: spheres with colours, added to a scene; what was decided, as a line.
- * Knows: elements, palettes, colormaps.   Does not know: formats, cameras. */
+ * Knows: elements, palettes, colormaps.   Does not know: how files are read. */
 #ifndef BP_PARTICLES_STYLE_H
 #define BP_PARTICLES_STYLE_H
 

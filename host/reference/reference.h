@@ -2,8 +2,7 @@
  * judged.
  *
  * In:    a validated Scene.   Out: power sums of every pixel's samples.
- * Knows: Scene.               Does not know: OpenCL, packed buffers, kernels/ (which is not on its include
- * path).
+ * Knows: Scene.               Does not know: OpenCL, packed data. kernels/ is not on its include path.
  *
  * Independent of the kernel on purpose: recursion instead of a loop, every sphere tried instead of a tree,
  * rejection instead of direct maps, another random generator, intersection and camera written on their own.

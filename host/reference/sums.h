@@ -1,7 +1,8 @@
 /* sums.h: power sums of radiance samples, pixel by pixel; what two renderers are compared by.
  *
  * In:    samples, one at a time.   Out: counts and, for each pixel and channel, sums of x, x^2 and x^4.
- * Knows: arithmetic.               Does not know: scenes, renderers, statistics (check/ does).
+ * Knows: arithmetic.               Does not know: scenes, who rendered, what is tested with them
+ * (check/verdict.h).
  *
  * Plain double sums: after n additions of values >= 0 the relative error is below n * 1.1e-16, so 1e8 samples
  * of a pixel keep eight digits, and a comparison whose noise is 1 / sqrt(n) never sees it. */

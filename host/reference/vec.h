@@ -1,6 +1,7 @@
 /* vec.h: vectors of the reference tracer, and its random numbers.
  *
- * Knows: arithmetic.   Does not know: scenes, and nothing of the kernel's vectors or random numbers. */
+ * Knows: arithmetic.   Does not know: scenes, packed data. It shares nothing with the kernels' vectors and
+ * random numbers. */
 #ifndef BP_REFERENCE_VEC_H
 #define BP_REFERENCE_VEC_H
 

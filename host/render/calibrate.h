@@ -1,7 +1,7 @@
 /* calibrate.h: which arrangement of the kernel is the fastest on a GPU, found by a short trial.
  *
  * In:    a device.   Out: the form of the kernel, and how samples are shared out among its work-items.
- * Knows: worker.h, the arrangements to be tried.   Does not know: the scene that is to be rendered.
+ * Knows: worker.h, the arrangements to be tried.   Does not know: which scene is to be rendered.
  *
  * No model of a GPU is good enough to choose between one work-item a sample and a pool (docs/GPU.md). So when
  * a GPU is first used, both trace a small copy of the book's cover in groups of several sizes, which takes

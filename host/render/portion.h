@@ -1,7 +1,7 @@
 /* portion.h: the part of a block of samples that one rank of several traces.
  *
  * In:    a block, a share of it.   Out: chunks.
- * Knows: numbers of pixels and samples.   Does not know: OpenCL, time, ranks.
+ * Knows: numbers of pixels and samples.   Does not know: OpenCL, time, how ranks talk (cluster/comm.h).
  *
  * The samples of a block stand in a row: sample by sample, and in each all pixels. The row is cut into
  * strips, and in each strip a rank has the part between two fractions. So shares of any size cover the block

@@ -1,7 +1,7 @@
 /* render_plan.h: from a scene and a user's options to what one device is given.
  *
  * In:    scene, options, device.   Out: a worker's setup and the packed scene.
- * Knows: which arrangement suits which kind of device.   Does not know: OpenCL calls, chunks. */
+ * Knows: which arrangement suits which kind of device.   Does not know: when chunks are traced. */
 #ifndef BP_RENDER_RENDER_PLAN_H
 #define BP_RENDER_RENDER_PLAN_H
 

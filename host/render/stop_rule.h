@@ -2,7 +2,8 @@
  *
  * In:    what --spp, --error and --time ask for; how far the render is.
  * Out:   the sample count to reach before the next decision; or the reason to stop.
- * Knows: sample counts, that noise falls with their square root.   Does not know: the render, the clock.
+ * Knows: sample counts, that noise falls with their square root.   Does not know: clocks, how a picture is
+ * rendered.
  *
  * Noise is estimated at fixed sample counts only (bp_stop_checkpoint), and which of them are used depends
  * on the samples alone: the same scene, seed and --error end at the same count on every run. --time

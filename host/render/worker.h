@@ -1,7 +1,7 @@
 /* worker.h: one device that works on one render: its program, its buffers, its chunks.
  *
  * In:    packed scene, chunks.   Out: replicate sums on the device, times.
- * Knows: OpenCL, the kernels' arguments.   Does not know: passes, the picture as a whole, other devices. */
+ * Knows: OpenCL, the kernels' arguments.   Does not know: when passes end, what other devices do. */
 #ifndef BP_RENDER_WORKER_H
 #define BP_RENDER_WORKER_H
 

@@ -1,7 +1,7 @@
 /* worker_buffers.h: what a worker keeps on its device.
  *
  * In:    packed scene, size of the picture.   Out: the worker's buffers; sums and samples read back.
- * Knows: sizes and limits of OpenCL buffers.   Does not know: kernels, chunks. */
+ * Knows: sizes and limits of OpenCL buffers.   Does not know: which chunks are traced. */
 #ifndef BP_RENDER_WORKER_BUFFERS_H
 #define BP_RENDER_WORKER_BUFFERS_H
 

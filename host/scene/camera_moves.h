@@ -2,7 +2,7 @@
  * farther.
  *
  * In:    a camera, by how much.   Out: the camera, moved.
- * Knows: the scene's camera.   Does not know: mice, windows.
+ * Knows: the scene's camera.   Does not know: windows, where moves come from.
  *
  * What would make the camera invalid (a distance of 0, a view along vup) is not done. */
 #ifndef BP_SCENE_CAMERA_MOVES_H

@@ -1,7 +1,7 @@
 /* in_view.h: whether a picture can show a sphere at all.
  *
  * In:    a scene.   Out: whether nothing is before its camera.
- * Knows: the camera's field of view.   Does not know: what hides what, samples, pictures. */
+ * Knows: the camera's field of view.   Does not know: pictures, what hides what. */
 #ifndef BP_SCENE_IN_VIEW_H
 #define BP_SCENE_IN_VIEW_H
 

@@ -1,7 +1,7 @@
 /* material.h: every kind of material and every member that a material can have, in two lists.
  *
  * In:    a kind.   Out: its name, what it does with light, its members.
- * Knows: the grammar's terms.   Does not know: how a document, a kernel or a film stores them.
+ * Knows: the grammar's terms.   Does not know: how they are stored.
  *
  * From these lists come parsing (formats/scene_material.c), writing (formats/scene_write.c), validation
  * (scene_validate.c), packing (packed/pack.c), effects (packed/effects.c), the hash and the bound of a film

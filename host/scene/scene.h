@@ -1,7 +1,7 @@
 /* scene.h: the scene as its author wrote it, in doubles, validated.
  *
  * In:    a scene document, or a generator.   Out: BpScene, read by effects, pack and the reference tracer.
- * Knows: the grammar's terms.                Does not know: JSON, OpenCL, float, buffers.
+ * Knows: the grammar's terms.                Does not know: JSON, OpenCL, packed data.
  *
  * Invariants of every BpScene that reaches another module (bp_scene_validate proves them): all numbers are
  * finite; radius != 0 (negative: inside out); indices of materials and textures in range; albedo in [0,1];

@@ -1,7 +1,7 @@
 /* scene_side.h: on which side of a sphere's surface a point lies.
  *
  * In:    a sphere, a point, in the scene's own doubles.   Out: inside, on the surface, outside.
- * Knows: how the numbers were rounded.                    Does not know: float, what the answer is for.
+ * Knows: how the numbers were rounded.                    Does not know: what the answer is for.
  *
  * A camera that stands on a sphere is a camera that leaves it: the sphere is met at the far end of its chord
  * by rays that go in, and not at all by rays that go out. The book's program, with its least distance, does

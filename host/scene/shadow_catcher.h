@@ -1,7 +1,7 @@
 /* shadow_catcher.h: where the shadow catcher of a scene lies.
  *
  * In:    a scene with all its spheres.   Out: the plane's normal and distance.
- * Knows: which way is up.   Does not know: light. */
+ * Knows: which way is up.   Does not know: what light falls on it. */
 #ifndef BP_SCENE_SHADOW_CATCHER_H
 #define BP_SCENE_SHADOW_CATCHER_H
 

@@ -1,7 +1,7 @@
 /* texels.h: an image that a scene has read: a grid of colours, linear.
  *
  * In:    what a file held.   Out: texels that are colours or radiances, their bound, a hash of all.
- * Knows: what a texel may be.   Does not know: formats of files, spheres, how an image is looked up.
+ * Knows: what a texel may be.   Does not know: how files are read, how an image is looked up.
  *
  * A value below 0, as resampling makes it beside bright texels, counts as 0, since nothing emits or reflects
  * less; the image's notes say how many there were.

@@ -2,7 +2,7 @@
  *
  * In:    a scene, options, a device.   Out: for each kernel that could render it, its time as a ratio to the
  *        specialised one's, with a spread; build times; registers.
- * Knows: the render interface, statistics of ratios.   Does not know: OpenCL, the terminal.
+ * Knows: the render interface, statistics of ratios.   Does not know: the terminal.
  *
  * Time is what the device spends on tracing: on a CPU the processor time of all cores together, on others by
  * their own clock. All kernels trace the same samples of the same paths, in rounds: each round runs every

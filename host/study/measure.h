@@ -1,7 +1,7 @@
 /* measure.h: errors and differences of pictures.
  *
  * In:    pictures and films.   Out: errors with standard errors, differences with their intervals.
- * Knows: statistics of pixels.   Does not know: configurations, times. */
+ * Knows: statistics of pixels.   Does not know: which configurations are measured. */
 #ifndef BP_STUDY_MEASURE_H
 #define BP_STUDY_MEASURE_H
 

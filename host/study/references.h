@@ -1,7 +1,7 @@
 /* references.h: two pictures of the truth, with random numbers of their own.
  *
  * In:    the scene with exact Fresnel, a device.   Out: two pictures, as good as the time allows.
- * Knows: the kernel in double, the reference tracer.   Does not know: configurations, errors.
+ * Knows: the kernel in double, the reference tracer.   Does not know: what is compared with them.
  *
  * Both grow in turns; their samples are doubled as long as the doubling fits. */
 #ifndef BP_STUDY_REFERENCES_H

@@ -3,7 +3,7 @@
  *
  * In:    a scene, the options that a render of it would have, a device, a time budget.
  * Out:   BpStudyResult; as a table, JSON, CSV or a page.
- * Knows: the render loop, the reference tracer.   Does not know: OpenCL, the command line, files.
+ * Knows: the render loop, the reference tracer.   Does not know: the command line.
  *
  * The truth is the scene with exact Fresnel and depth 1000, in double with strict arithmetic; for a device
  * without double, the reference tracer's. It is rendered twice with seeds of their own, r1 and r2, and the

@@ -1,7 +1,7 @@
 /* window.h: a window on the screen: the interface of a module that the program loads for `ballpark view`.
  *
  * In:    a picture of bytes, a title.   Out: what the person does with mouse and keys.
- * Knows: nothing.   Does not know: SDL (the module does), scenes, rendering.
+ * Knows: nothing.   Does not know: SDL (the module does), scenes.
  *
  * A module is a shared object that exports one struct, `bp_window`. So the program needs no library for
  * windows unless somebody asks for one. All functions are called from one thread, ready() first, then open().

@@ -1,7 +1,7 @@
 /* node.cl: a node's children, a small tree's leaves and a leaf's spheres, TREE_WIDTH of them at once, against one ray.
  *
  * In:    a ray, packed nodes and leaves.   Out: which of them the ray may meet before a bound, as a child_mask.
- * Knows: how nodes and leaves are packed; flat_tree.cl; the interface of shape/.   Does not know: the order of visits.
+ * Knows: how nodes and leaves are packed; flat_tree.cl; the interface of shape/.   Does not know: when nodes are visited.
  *
  * The tests are conservative and in `real`: what they cannot rule out is decided by sphere_intersect, one sphere at a
  * time. */

@@ -4,7 +4,7 @@
  * are for).
  * In:    the packed scene. Of each path its pixel and sample, and, if it does not start at the camera, where and how it does.
  * Out:   for each segment PILOT_REALS numbers and PILOT_UINTS whole numbers, as pilot_types.h has them.
- * Knows: pilot_types.h, path.cl, bounce.cl.   Does not know: lights, pixels' values. The numbers are of a seed of their own, so the same for
+ * Knows: pilot_types.h, path.cl, bounce.cl.   Does not know: what values pixels get. The numbers are of a seed of their own, so the same for
  *        every render of a scene. */
 #define PILOT_SEED_LOW 0x6c696768u
 #define PILOT_SEED_HIGH 0x74736f75u

@@ -4,7 +4,7 @@
  * Out:   one row of bits for each work-item; host/opencl/self_test.c knows what stands in each column and
  *        defines COLUMN_... and ROW_COLUMNS for both sides.
  *
- * Knows: the dialect.   Does not know: the answers.
+ * Knows: the dialect.   Does not know: which answers are right.
  * Each column is something that the kernels rely on; together they find drivers that contract a*b+c, reassociate,
  * flush what they should not, or forget NaN. */
 

@@ -3,7 +3,7 @@
  * In:    samples as pixels.cl describes them, and the numbers of rays to lamps, of all work-items that traced them.
  * Out:   sums and fine_sums[(pixel * K + k) * 3 + channel], counts[pixel * K + k] with their flags,
  *        tallies[pixel * TALLIES + TALLY_...].
- * Knows: fixed point, replicates.   Does not know: what a sample shows, the picture's estimates (the host does).
+ * Knows: fixed point, replicates.   Does not know: what a sample shows, how the picture is estimated (film/film_estimate.c).
  *
  * Sums of integers do not depend on their order: chunks, merged runs and several devices agree to the bit. A sample
  * that is NaN, infinite, negative or larger than any path can bring (2^39 in fixed point) is left out and counted

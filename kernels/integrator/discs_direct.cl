@@ -1,7 +1,7 @@
 /* discs_direct.cl: what discs and an image around the scene show a path that meets nothing.
  *
  * In:    paths that escape.   Out: radiance in their direction, weighted where rays are sent there too.
- * Knows: discs.cl, environment.cl, lamps_direct.cl, path.cl.   Does not know: the rest of the sky. */
+ * Knows: discs.cl, environment.cl, lamps_direct.cl, path.cl.   Does not know: what else the sky has. */
 #if EFFECT_DISCS
 #if SAMPLES_DISCS
 /* As lamp_hit_weight. Discs that overlap are lamps of their own: each weighs by what would have chosen it. */

@@ -1,7 +1,7 @@
 /* image.cl: the colour at a place of an image, bilinear between the middles of its texels.
  *
  * In:    an image, a place in texels from its upper left corner.   Out: a colour.
- * Knows: the array of texels (scene_types.h).   Does not know: spheres, what the colour is for.
+ * Knows: the array of texels (scene_types.h).   Does not know: what the colour is for.
  *
  * Columns and rows are counted over all repetitions, whole numbers that a real holds. Equal texels give exactly their
  * colour, and no colour is below 0. */

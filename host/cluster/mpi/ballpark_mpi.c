@@ -1,7 +1,7 @@
 /* ballpark_mpi.c: the module ballpark_mpi.so, which carries bytes between ranks by MPI; see transport.h.
  *
  * In and out: as transport.h has it.
- * Knows: MPI 3.   Does not know: anything of the program. */
+ * Knows: MPI 3.   Does not know: what the bytes mean. */
 #include "cluster/transport.h"
 
 #include <mpi.h>
