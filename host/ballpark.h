@@ -99,7 +99,7 @@ typedef enum BpStatus {
 #undef BP_STATUS_ENUM
 } BpStatus;
 
-/* The story of a failure. Zero it before its first use; it is written on failure alone, and may be used
+/* Describes a failure. Zero it before its first use; it is written on failure alone, and may be used
  * again. */
 typedef struct BpError {
     BpStatus code;
@@ -131,8 +131,8 @@ typedef struct BpScene BpScene;
 typedef enum BpTransfer { BP_TRANSFER_GAMMA2, BP_TRANSFER_SRGB, BP_TRANSFER_LINEAR } BpTransfer;
 
 /* Reads and validates a scene document (docs: scenes/README.md), or a file of particles (docs/PARTICLES.md),
- * which becomes a scene with everything chosen by what it holds. BP_ERR_SCENE: it is no valid scene, or
- * cannot be opened; BP_ERR_FILE: reading failed. Errors name file:line:column. */
+ * which becomes a scene with everything chosen by what it holds. BP_ERR_SCENE: the scene is invalid, or the
+ * file cannot be opened; BP_ERR_FILE: reading failed. Errors name file:line:column. */
 BP_API BpStatus bp_scene_load(const char *path, BpScene **scene, BpError *err);
 
 /* The same from `length` bytes of memory, which need not end with a zero byte; `name` stands in messages
@@ -140,7 +140,7 @@ BP_API BpStatus bp_scene_load(const char *path, BpScene **scene, BpError *err);
 BP_API BpStatus bp_scene_parse(const char *text, size_t length, const char *name, BpScene **scene,
                                BpError *err);
 
-/* Numbers in the caller's memory, a row for every sphere, wherever they lie: number `column` of row `row` is
+/* A strided view of an array of the caller's, one row per sphere: number `column` of row `row` is
  * at data + row * row_stride + column * column_stride, in bytes. A row_stride of 0 gives every sphere the
  * same row. */
 typedef enum BpNumberType { BP_NUMBER_FLOAT, BP_NUMBER_DOUBLE } BpNumberType;
@@ -219,7 +219,7 @@ BP_API bool bp_element_info(unsigned atomic_number, BpElementInfo *info);
 /* The atomic number of an atom from its name and its residue's, as in PDB files: "CA" is calcium in the
  * residue "CA", and a carbon in "ALA". 0: unknown. `residue`: Optional. */
 BP_API unsigned bp_element_of_atom(const char *name, const char *residue);
-/* The linear colour of a type that has none of its own; ten soft colours take turns. */
+/* The linear colour of a type that has none of its own; they cycle through a palette of ten soft colours. */
 BP_API void bp_type_color(size_t type, double color[3]);
 /* The names of the colour maps, "viridis" first; NULL where there is none of that number. Static. */
 BP_API const char *bp_color_map_name(size_t index);
@@ -301,8 +301,9 @@ typedef struct BpRenderOptions {
         job_samples; /* the samples of a job of which this render is a share; 0, 0: of none. Films say so */
     uint32_t replicates; /* K of the error estimate; 0: the default; 1: no estimate */
     uint32_t threads;    /* that a processor may use, as far as its driver can divide it; 0: all */
-    /* For tests and tuning; 0 means: choose. None of these changes a picture, but that force_float_refine may
-     * change last digits in single precision: its transforms are as accurate as double, and end otherwise. */
+    /* For tests and tuning; 0 means: choose. None of these changes a picture, except that force_float_refine
+     * may change last digits in single precision: its transforms are as accurate as double, and end
+     * otherwise. */
     uint32_t chunk_samples;  /* samples in one dispatch */
     uint32_t local_size;     /* work-items in a work-group; at most 64 in the sample form */
     uint32_t tree_width;     /* children of a tree node: 2, 4, 8 or 16 */
@@ -343,12 +344,12 @@ BP_API BpStatus bp_render_step(BpRender *render, BpProgress *progress, BpError *
  * BP_ERR_USAGE: a lower number, or past the last sample number; BP_ERR_LIMIT: more than the sums hold. */
 BP_API BpStatus bp_render_extend(BpRender *render, uint64_t samples_per_pixel, BpError *err);
 
-/* Goes on from the film of another render of the same scene and options, whether that had finished or was
- * stopped at any moment: the sums are then those of one render, bit for bit, and so is what adaptive sampling
- * and stop rules decide. Before the first step; options.samples_per_pixel becomes what the other was on its
- * way to. The film is copied. BP_ERR_USAGE: it is of another scene or other options, which the error names,
- * or merged of parts that are not one range of samples; BP_ERR_FILE: it contradicts itself. After a failure
- * destroy the render. */
+/* Continues from the film of an earlier render of the same scene and options, whether that had finished or
+ * was stopped at any moment: the sums are then those of one render, bit for bit, and so is what adaptive
+ * sampling and stop rules decide. Before the first step; options.samples_per_pixel becomes what the other was
+ * on its way to. The film is copied. BP_ERR_USAGE: it is of another scene or other options, which the error
+ * names, or merged of parts that are not one range of samples; BP_ERR_FILE: it contradicts itself. After a
+ * failure destroy the render. */
 BP_API BpStatus bp_render_resume(BpRender *render, const BpFilm *film, BpError *err);
 
 /* Samples that every pixel has so far (a pass in progress not counted); of an adaptive render, their mean. */
@@ -491,8 +492,8 @@ BP_API void bp_picture_bytes(const BpPicture *picture, BpTransfer transfer, uint
 
 /* Standard error of a pixel's luminance over its luminance, a fraction; NaN where it is unknown, +Inf for
  * black with an error. `pixel`: row * width + column. The error of the luminance is taken as the weighted sum
- * of its channels' (Rec. 709), which holds when the channels err together, as they mostly do, and is too
- * large otherwise. The picture must have `error`. */
+ * of its channels' (Rec. 709), which is exact if the errors of the channels are fully correlated, as they
+ * nearly are, and too large otherwise. The picture must have `error`. */
 BP_API double bp_pixel_relative_error(const BpPicture *picture, size_t pixel);
 
 /* The colour of a relative error on a map, 8-bit sRGB: from dark at 0.1 % and below to bright at 100 % and
@@ -564,7 +565,7 @@ typedef struct BpFilmInfo {
 } BpFilmInfo;
 BP_API void bp_film_info(const BpFilm *film, BpFilmInfo *info);
 
-/* The sample numbers that a film is of are *count from *first on, for each of its ranges in rising order.
+/* Gets one of the film's ranges of sample numbers, in rising order: *count samples from *first on.
  * False, and nothing is written, for an `index` that is not below range_count. */
 BP_API bool bp_film_range(const BpFilm *film, size_t index, uint64_t *first, uint64_t *count);
 
@@ -572,7 +573,8 @@ BP_API void bp_film_destroy(BpFilm **film);
 
 /* ---- studies: what accuracy costs -------------------------------------------------------------------- */
 
-/* What `ballpark cost` does: renders a scene by many settings and says what each costs in time, and errs. */
+/* What `ballpark cost` does: renders a scene with many settings, and reports the time and the error of each.
+ */
 typedef struct BpStudy BpStudy;
 
 /* Begins a study. `scene`: of the size to study, 240 pixels wide say, larger ones taking longer to tell

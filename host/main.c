@@ -140,7 +140,7 @@ int main(int argc, char **argv) {
     bp_driver_care_begin(argc, argv);
 
     BpStatus status = join_ranks(argv, &line, bp_command_line_parse(argc, argv, &line, &err), &err);
-    /* Of several processes one tells what all of them met with. */
+    /* With several ranks, only one reports the errors that they share. */
     const bool tells =
         line.comm != NULL ? bp_comm_leads(line.comm) : status == BP_OK || bp_launch_find().rank == 0;
     if (status == BP_OK) {

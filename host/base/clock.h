@@ -10,7 +10,7 @@ static inline double bp_clock_read(clockid_t clock) {
     return (double)now.tv_sec + 1e-9 * (double)now.tv_nsec;
 }
 
-/* Of the wall. */
+/* Monotonic wall-clock seconds. */
 static inline double bp_clock_seconds(void) {
     return bp_clock_read(CLOCK_MONOTONIC);
 }

@@ -58,8 +58,10 @@ const char *bp_format_ratio(double ratio, char *text, size_t size) {
 }
 
 const char *bp_format_seconds(double seconds, char *text, size_t size) {
-    if (!(seconds < 1.0e9)) {
-        snprintf(text, size, "ages");
+    if (isnan(seconds)) {
+        snprintf(text, size, "an unknown time");
+    } else if (!(seconds < 1.0e9)) {
+        snprintf(text, size, "more than 30 years");
     } else if (seconds > 0.0 && seconds < 0.0995) {
         snprintf(text, size, seconds < 0.00995 ? "%.2g ms" : "%.0f ms", 1000.0 * seconds);
     } else if (seconds < 9.95) {

@@ -1,4 +1,4 @@
-/* hash.h: 64 bits that tell two texts apart, for keys and checksums; no defence against forgery.
+/* hash.h: a hash of 64 bits for keys and checksums; it is not cryptographic.
  *
  * In:    bytes.   Out: their hash.
  * Knows: FNV-1a (G. Fowler, L. C. Noll, K.-P. Vo).   Does not know: what is hashed. */

@@ -1,11 +1,11 @@
-/* json_memory.h: documents that jansson had no memory for are noticed.
+/* json_memory.h: detects that jansson ran out of memory.
  *
  * In:    the text of a document.   Out: the document; or whether memory ran out.
  * Knows: jansson's allocations.    Does not know: what a document says.
  *
- * jansson calls a text wrong that it had no room for, and now and then loses a letter of it without a word.
- * So the program has it allocate through functions that note a failure; a program that uses libballpark may
- * have functions of its own, and is told what errno says. */
+ * jansson reports a lack of memory as a syntax error, and sometimes drops a character without reporting
+ * anything. So the program has it allocate through functions that note a failure; a program that uses
+ * libballpark may have functions of its own, and is told what errno says. */
 #ifndef BP_BASE_JSON_MEMORY_H
 #define BP_BASE_JSON_MEMORY_H
 

@@ -1,4 +1,4 @@
-/* module.h: a part of the program that is loaded only when it is needed, since it stands on a library that
+/* module.h: a part of the program that is loaded only when it is needed, because it depends on a library that
  * not every machine has.
  *
  * In:    its file's name, the environment.   Out: the struct of functions that it exports.

@@ -80,8 +80,7 @@ char *bp_temporary_keep(char **name) {
     return kept;
 }
 
-/* ---- making them -----------------------------------------------------------------------------------------
- */
+/* ---- making them -------------------------------------------------------------------------------------- */
 
 /* FOLDER/NAME with room for a suffix, NAME being that of `target`; heap, NULL when out of memory. */
 static char *stem_in(const char *folder, size_t folder_length, const char *target, size_t *length) {
@@ -191,8 +190,7 @@ int bp_temporary_create_elsewhere(const char *target, mode_t mode, char **name) 
     return bp_temporary_create_in(folder, target, mode, name);
 }
 
-/* ---- putting them in place -------------------------------------------------------------------------------
- */
+/* ---- putting them in place ---------------------------------------------------------------------------- */
 
 static int copy_bytes(int from, int to) {
     char block[1 << 16];

@@ -9,7 +9,7 @@ static inline int bp_compare_doubles(const void *a, const void *b) {
     return (x > y) - (x < y);
 }
 
-/* The least first; none of the values is NaN. */
+/* Sorts in ascending order; no value may be NaN. */
 static inline void bp_sort_doubles(double *values, size_t count) {
     qsort(values, count, sizeof *values, bp_compare_doubles);
 }

@@ -1,4 +1,4 @@
-/* random.h: random numbers of the host, alike on every machine: of scenes made by chance, and of tests.
+/* random.h: portable random numbers of the host, for generated scenes and for tests.
  *
  * SplitMix64 (G. L. Steele, D. Lea, C. H. Flood, "Fast splittable pseudorandom number generators", 2014): a
  * counter with a step of the golden ratio, mixed. Kernels have random numbers of their own, and so has the

@@ -1,7 +1,7 @@
 /* shown.h: text of foreign origin (names of files, titles of scenes, messages of drivers) made fit to be
  * shown.
  *
- * In:    any bytes.   Out: the same text; what a terminal could obey, and what is not UTF-8, as \x1b.
+ * In:    any bytes.   Out: the same text; terminal control sequences, and bytes that are not UTF-8, as \x1b.
  * Knows: UTF-8, control characters, and those that turn the direction of writing.
  * Does not know: where it is shown.
  *

@@ -1,4 +1,4 @@
-/* team.h: a few threads that work through numbered pieces together.
+/* team.h: a small thread pool: a parallel loop over numbered pieces of work.
  *
  * In:    a function, and how many pieces there are.   Out: every piece done, by some thread.
  * Knows: POSIX threads.   Does not know: what the work is. */

@@ -49,8 +49,7 @@ BpStatus bp_check_against_read(const char *path, json_t **document, BpError *err
                    "--against %s: expected the JSON document of an earlier `ballpark check`", path);
 }
 
-/* ---- which is which -------------------------------------------------------------------------------------
- */
+/* ---- which is which ----------------------------------------------------------------------------------- */
 
 static bool same_device(const json_t *one, const json_t *other) {
     return strcmp(bp_check_device_text(one, "platform"), bp_check_device_text(other, "platform")) == 0 &&
@@ -95,8 +94,7 @@ static const json_t *find_scene(const json_t *scenes, const json_t *wanted) {
     return found;
 }
 
-/* ---- changes --------------------------------------------------------------------------------------------
- */
+/* ---- changes ------------------------------------------------------------------------------------------ */
 
 typedef struct Changes {
     json_t *list;

@@ -25,8 +25,7 @@
 /* In generated code (cmake/embed_files.cmake). */
 const char *bp_recorded_bits_file(const char *name);
 
-/* ---- what is recorded ------------------------------------------------------------------------------------
- */
+/* ---- what is recorded --------------------------------------------------------------------------------- */
 
 static bool whole(const json_t *picture) {
     return json_is_string(json_object_get(picture, "scene")) &&
@@ -83,8 +82,7 @@ BpStatus bp_check_bits_read(json_t **pictures, BpError *err) {
                    path != NULL ? path : "host/check/bits.json");
 }
 
-/* ---- what is rendered ------------------------------------------------------------------------------------
- */
+/* ---- what is rendered --------------------------------------------------------------------------------- */
 
 /* One picture in one form. */
 typedef struct Form {
@@ -311,8 +309,7 @@ BpStatus bp_check_bits_run(const BpBitsRun *run, json_t **entries, BpError *err)
     return status;
 }
 
-/* ---- for people ------------------------------------------------------------------------------------------
- */
+/* ---- for people --------------------------------------------------------------------------------------- */
 
 static const char advice[] =
     "If kernels, sampling, sums or the agreement scenes were changed on purpose, and all tests pass, record\n"

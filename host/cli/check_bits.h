@@ -8,8 +8,8 @@
  * "radiance"} (bits.h). Each is rendered in every form that must give the same picture: by packets and one
  * path at a time, through a tree and through a list. The refinement is the arithmetic that hits are computed
  * in: CPUs with double use "double", all others error-free transforms of "float" (render_plan.c), which may
- * end in other last digits; so a device is compared with what was recorded for its own. BALLPARK_BITS=FILE in
- * the environment reads another file than the embedded one; scripts/record-bits writes it anew. */
+ * differ in the last digits; so a device is compared with what was recorded for its own. BALLPARK_BITS=FILE
+ * in the environment reads another file than the embedded one; scripts/record-bits writes it anew. */
 #ifndef BP_CLI_CHECK_BITS_H
 #define BP_CLI_CHECK_BITS_H
 

@@ -1,5 +1,5 @@
 /* child_process.h: runs a function in a child process, so that a driver that crashes or hangs does not take
- * the program along.
+ * the program down.
  *
  * In:    a function and its argument, a limit of time.   Out: the bytes that it wrote, and how its process
  * ended.

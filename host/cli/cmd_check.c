@@ -71,8 +71,7 @@ static bool is_stdout(const char *path) {
     return path != NULL && strcmp(path, "-") == 0;
 }
 
-/* ---- the command line ------------------------------------------------------------------------------------
- */
+/* ---- the command line --------------------------------------------------------------------------------- */
 
 static BpStatus refuse(const BpCommandLine *line, const char *with, const BpOption *options, size_t count,
                        const char *why, BpError *err) {
@@ -118,8 +117,7 @@ static BpStatus find_map_format(Session *session, BpError *err) {
     return bp_line_check_output(session->line, map, err);
 }
 
-/* ---- scenes ----------------------------------------------------------------------------------------------
- */
+/* ---- scenes ------------------------------------------------------------------------------------------- */
 
 /* `index`: every check has a seed of its own, so that their errors are independent. */
 static BpStatus add_item(Session *session, const char *name, BpScene *scene, BpLightSampling light_sampling,
@@ -181,8 +179,7 @@ static BpStatus load_items(Session *session, BpError *err) {
     return BP_OK;
 }
 
-/* ---- devices ---------------------------------------------------------------------------------------------
- */
+/* ---- devices ------------------------------------------------------------------------------------------ */
 
 /* "map.png" for device 2 becomes "map-2.png". */
 static void map_name(const char *map, unsigned device, char *name, size_t size) {
@@ -238,8 +235,7 @@ static BpStatus find_devices(Session *session, BpError *err) {
     return bp_device_survey_find(survey, wants_all(line) ? NULL : line->device, session->devices, err);
 }
 
-/* ---- checking --------------------------------------------------------------------------------------------
- */
+/* ---- checking ----------------------------------------------------------------------------------------- */
 
 /* Adds the entries of one device, one of each scene in order, to the document's scenes. */
 static BpStatus add_entries(Session *session, BpItemOutcome *outcomes, BpError *err) {
@@ -290,8 +286,7 @@ static BpStatus check_device(Session *session, const BpDeviceInfo *device, BpErr
     return status;
 }
 
-/* ---- what comes of it ------------------------------------------------------------------------------------
- */
+/* ---- what comes of it --------------------------------------------------------------------------------- */
 
 /* One check of a scene on one device. */
 static void print_verdict(const Session *session, size_t item, FILE *out) {
@@ -470,8 +465,7 @@ static BpStatus check_all(Session *session, BpError *err) {
     return status;
 }
 
-/* ---- --bits ----------------------------------------------------------------------------------------------
- */
+/* ---- --bits ------------------------------------------------------------------------------------------- */
 
 static json_t *bits_case(const json_t *entry) {
     char name[256];
@@ -581,8 +575,7 @@ static BpStatus check_bits(Session *session, BpError *err) {
     return status;
 }
 
-/* ---- the command -----------------------------------------------------------------------------------------
- */
+/* ---- the command -------------------------------------------------------------------------------------- */
 
 /* A check that has failed replaces the documents of an earlier one, too. After an error of the command line
  * it is not known what they may replace. */

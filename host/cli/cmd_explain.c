@@ -186,8 +186,7 @@ static json_t *path_json(const BpScene *scene, const BpPathLog *path, uint32_t x
                      steps);
 }
 
-/* ---- the table of effects -------------------------------------------------------------------------------
- */
+/* ---- the table of effects ----------------------------------------------------------------------------- */
 
 static void print_heading(const char *path, const BpScene *scene, FILE *out) {
     BpSceneInfo info;
@@ -213,8 +212,7 @@ static void print_effects(const BpScene *scene, const BpEffectInfo *effects, siz
     fprintf(out, "  %-14s %-4s " BP_HANG "%s\n", "acceleration", bp_acceleration_name(chosen), reason);
 }
 
-/* ---- what they cost --------------------------------------------------------------------------------------
- */
+/* ---- what they cost ----------------------------------------------------------------------------------- */
 
 /* A bar of one sign for each percent over 1, at most `columns`. */
 static void print_bar(double ratio, unsigned columns, bool utf8, FILE *out) {
@@ -383,8 +381,7 @@ static void print_unseen(const BpScene *scene, const Findings *found, bool caust
     }
 }
 
-/* ---- JSON -------------------------------------------------------------------------------------------------
- */
+/* ---- JSON --------------------------------------------------------------------------------------------- */
 
 /* JSON has no NaN. */
 static json_t *number_or_null(double value) {
@@ -443,8 +440,7 @@ static json_t *scene_json(const char *path, const BpScene *scene, const BpEffect
                      list, "acceleration", bp_acceleration_name(chosen), "acceleration_reason", reason);
 }
 
-/* ---- the command ------------------------------------------------------------------------------------------
- */
+/* ---- the command -------------------------------------------------------------------------------------- */
 
 /* Appends the scene's entry to `list`. */
 static BpStatus append_json(const BpCommandLine *line, const char *path, const BpScene *scene,

@@ -197,14 +197,14 @@ static void prepare_explanation(const BpCommandLine *line, const BpStopRule *rul
     char text[9000], command[8192];
     if (bp_checkpoint_has_begun(checkpoint) || line->resume != NULL)
         snprintf(text, sizeof text,
-                 "ballpark: told to end, but the other ranks do not answer and may be lost; this goes on "
-                 "from the last checkpoint:\n\n%s\n",
+                 "ballpark: interrupted, but the other ranks do not answer and may be lost; this command "
+                 "continues from the last checkpoint:\n\n%s\n",
                  bp_checkpoint_command(line, checkpoint, rule->seconds - (bp_clock_seconds() - start),
                                        command, sizeof command));
     else
         snprintf(text, sizeof text,
-                 "ballpark: told to end, but the other ranks do not answer and may be lost, and there is no "
-                 "checkpoint; with --checkpoint SECONDS, another run could go on from there\n");
+                 "ballpark: interrupted, but the other ranks do not answer and may be lost, and there is no "
+                 "checkpoint; with --checkpoint SECONDS, another run could continue from one\n");
     bp_interrupt_explain(text);
 }
 

@@ -42,8 +42,7 @@ static BpStatus load_window(const BpWindow **window, BpError *err) {
     return BP_OK;
 }
 
-/* ---- saving ---------------------------------------------------------------------------------------------
- */
+/* ---- saving ------------------------------------------------------------------------------------------- */
 
 typedef struct Saving {
     const BpCommandLine *line;
@@ -139,8 +138,7 @@ static void tell_keys(void *context) {
     if (!saving->line->quiet) fputs(bp_view_keys, stderr);
 }
 
-/* ---- the command ----------------------------------------------------------------------------------------
- */
+/* ---- the command -------------------------------------------------------------------------------------- */
 
 static BpStatus open_devices(const BpCommandLine *line, BpDeviceInfo **infos, BpDevice ***devices,
                              size_t *count, BpError *err) {

@@ -18,8 +18,7 @@
  */
 #define GRACE_SECONDS 5.0
 
-/* ---- in the child ---------------------------------------------------------------------------------------
- */
+/* ---- in the child ------------------------------------------------------------------------------------- */
 
 /* Whether there was memory for the line, and for all that is in it: jansson can lose a part without a word.
  */
@@ -75,8 +74,7 @@ static bool work_in_child(void *argument, FILE *out) {
     return true;
 }
 
-/* ---- in the parent --------------------------------------------------------------------------------------
- */
+/* ---- in the parent ------------------------------------------------------------------------------------ */
 
 static const char *text_of(const json_t *line, const char *key) {
     const char *text = json_string_value(json_object_get(line, key));

@@ -60,8 +60,7 @@ static void leave(const char *folder, size_t number) {
     unlink(path);
 }
 
-/* ---- finding who is to blame -----------------------------------------------------------------------------
- */
+/* ---- finding who is to blame -------------------------------------------------------------------------- */
 
 static void name_broken(const BpBrokenDriver *driver) {
     const BpCommandLine plain = {0};

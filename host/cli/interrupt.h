@@ -2,9 +2,9 @@
  * SIGTERM, SIGHUP (the terminal was closed; unless ignored, as nohup arranges), SIGXCPU (the limit on
  * processor time), SIGUSR1 and SIGUSR2 (a batch system's notice that time is nearly over).
  *
- * In:    signals.   Out: whether there has been one; a text, if it is not answered.
- * Knows: signals, the thread that waits for them, that unfinished files must be removed.
- * Does not know: what is interrupted.
+ * In:    signals.   Out: whether there has been one; a message, printed if the program does not react in
+ * time. Knows: signals, the thread that waits for them, that unfinished files must be removed. Does not know:
+ * what is interrupted.
  *
  * At first there is nothing to save, and a signal ends the program with code 130. A command that has
  * something worth saving calls bp_interrupt_catch(), polls bp_interrupted() between steps, saves, and returns

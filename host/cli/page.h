@@ -27,7 +27,7 @@ void bp_page_end(BpPage *page, const BpCommandLine *line, FILE *out);
  */
 void bp_page_print(const char *text, size_t columns, FILE *out);
 
-/* The same as a page for one text on standard error. A line's end is added. What a terminal could obey is
+/* The same as a page for one text on standard error. A line's end is added. Terminal control sequences are
  * escaped. */
 void bp_say(const BpCommandLine *line, const char *format, ...) BP_PRINTF_LIKE(2, 3);
 

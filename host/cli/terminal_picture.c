@@ -43,7 +43,7 @@ static bool names_sixels(const char *answer) {
     return false;
 }
 
-/* Whoever types meanwhile is not lost: nothing is read beyond the answer's last letter. */
+/* Type-ahead is preserved: nothing is read beyond the last letter of the answer. */
 static bool ask_for_sixels(void) {
     struct termios before, raw;
     char answer[128] = "";
@@ -202,8 +202,7 @@ static bool print_blocks(FILE *out, const BpPicture *picture, Size *size, BpTran
     return true;
 }
 
-/* ---- kitty and iTerm2: a PNG in base64 ------------------------------------------------------------------
- */
+/* ---- kitty and iTerm2: a PNG in base64 ---------------------------------------------------------------- */
 
 static void print_base64(FILE *out, const uint8_t *bytes, size_t size) {
     static const char letters[] = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
@@ -260,8 +259,7 @@ static bool print_iterm2(FILE *out, const BpPicture *picture, const Size *size, 
     return true;
 }
 
-/* ---- sixels: six rows at a time, one colour after the other -----------------------------------------------
- */
+/* ---- sixels: six rows at a time, one colour after the other ------------------------------------------- */
 
 enum { LEVELS = 6, COLORS = LEVELS * LEVELS * LEVELS };
 
@@ -329,8 +327,7 @@ static bool print_sixels(FILE *out, const BpPicture *picture, const Size *size, 
     return made;
 }
 
-/* ---- drawing --------------------------------------------------------------------------------------------
- */
+/* ---- drawing ------------------------------------------------------------------------------------------ */
 
 BpStatus bp_terminal_picture_draw(BpTerminalPicture *shown, const BpPicture *picture, BpTransfer transfer,
                                   BpError *err) {

@@ -3,10 +3,11 @@
  * In:    a picture.   Out: what the terminal on standard error draws it from.
  * Knows: how terminals show pictures.   Does not know: why it is shown, how often.
  *
- * Terminals are told apart by what they say of themselves: kitty's graphics (kitty, Ghostty), inline images
- * as iTerm2 has them (iTerm2, WezTerm, mintty), sixels (those that answer so when they are asked). All
- * others, and all within tmux or screen, get half blocks: two pixels a character. BALLPARK_SHOW in the
- * environment (kitty, iterm2, sixel, blocks) decides where that is wrong. */
+ * Which terminal it is follows from the environment and from its answer to a query of device attributes:
+ * kitty's graphics (kitty, Ghostty), inline images as iTerm2 has them (iTerm2, WezTerm, mintty), sixels
+ * (those that answer so when they are asked). All others, and all within tmux or screen, get half blocks: two
+ * pixels a character. BALLPARK_SHOW in the environment (kitty, iterm2, sixel, blocks) decides where that is
+ * wrong. */
 #ifndef BP_CLI_TERMINAL_PICTURE_H
 #define BP_CLI_TERMINAL_PICTURE_H
 

@@ -1,6 +1,6 @@
 /* comm.h: the communicator: the ranks that work on one job, of which this process is one.
  *
- * In:    what this rank knows.   Out: what the others know; decisions that fall alike on all ranks.
+ * In:    what this rank knows.   Out: what the others know; decisions that are the same on all ranks.
  * Knows: the module that carries messages, when to load it.   Does not know: MPI, pictures, the command line.
  *
  * A communicator of NULL is this process alone: then every function below does nothing and succeeds. But for

@@ -88,7 +88,7 @@ struct BpFilm {
     BpUnseen *unseen; /* Optional. What the samples find by chance; it too follows from the scene alone */
     /* The samples of the whole job of which this film is a share; a count of 0: it is none. */
     struct BpSampleRange job;
-    BpFilmPlan *plan; /* Optional. Not merged: the sum of two films is of no one render */
+    BpFilmPlan *plan; /* Optional. Not merged: a merged film belongs to no single render */
 };
 
 /* ---- what of a scene the sums depend on (film_scene.c) ---- */

@@ -52,8 +52,7 @@ static const Edition editions[] = {
     {"4", "The cover, fourth edition", BOOK "fourth edition, Image 23", FOURTH_EDITION},
 };
 
-/* ---- materials and spheres ------------------------------------------------------------------------------
- */
+/* ---- materials and spheres ---------------------------------------------------------------------------- */
 
 static BpStatus add_material(BpScene *scene, BpMaterial material, const char *name, BpError *err) {
     material.name = NULL;
@@ -112,8 +111,7 @@ static BpStatus add_cell(BpScene *scene, const Edition *edition, int a, int b, B
     return BP_OK;
 }
 
-/* ---- the whole ------------------------------------------------------------------------------------------
- */
+/* ---- the whole ---------------------------------------------------------------------------------------- */
 
 static void set_camera(BpCamera *camera, const Edition *edition) {
     bp_camera_defaults(camera);

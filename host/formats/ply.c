@@ -30,8 +30,7 @@ typedef struct Reader {
     int material;      /* which property it is; -1: none that counts */
 } Reader;
 
-/* ---- one point ------------------------------------------------------------------------------------------
- */
+/* ---- one point ---------------------------------------------------------------------------------------- */
 
 static BpStatus fail_vertex(const Reader *r, uint64_t number, const char *member, const char *text,
                             BpError *err) {
@@ -95,8 +94,7 @@ static BpStatus store(Reader *r, uint64_t number, const double *values, BpError 
     return BP_OK;
 }
 
-/* ---- the whole ------------------------------------------------------------------------------------------
- */
+/* ---- the whole ---------------------------------------------------------------------------------------- */
 
 /* Room for all points, once their number has been compared with what is left of the file. */
 static BpStatus make_room(Reader *r, uint64_t count, BpError *err) {

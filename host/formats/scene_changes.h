@@ -1,4 +1,4 @@
-/* scene_changes.h: members of a scene document that somebody wants otherwise.
+/* scene_changes.h: changes members of a scene document (--set).
  *
  * In:    a document, "camera.vfov=30".   Out: the document with that member.
  * Knows: paths of members, JSON.         Does not know: which members there are: the reader of scenes does.

@@ -169,8 +169,7 @@ static BpStatus parse_spheres(const BpNode *node, const BpMaterialIndex *index, 
     return BP_OK;
 }
 
-/* ---- faults find their place ----------------------------------------------------------------------------
- */
+/* ---- locating faults in the document ------------------------------------------------------------------ */
 
 /* The member of `object` that is at fault, or the object where the member is absent (a default). */
 static BpStatus fail_member(const BpNode *object, const char *member, const char *text, BpError *err) {

@@ -13,7 +13,8 @@ enum {
     BP_PARSE_MADE = 2 /* the document was made for one file: errors in that need not name the document */
 };
 
-/* Files of particles that stay open, so that a trajectory is read once for all its frames. Zeros at first. */
+/* Files of particles that stay open, so that a trajectory is read once for all its frames. Zero-initialise
+ * it. */
 enum { BP_PARTICLE_CACHE_SIZE = 16 };
 typedef struct BpParticleCache {
     struct {

@@ -16,8 +16,7 @@
 #include <string.h>
 #include <unistd.h>
 
-/* ---- the style ------------------------------------------------------------------------------------------
- */
+/* ---- the style ---------------------------------------------------------------------------------------- */
 
 static BpStatus read_above_zero(const BpNode *node, double *value, BpError *err) {
     BP_TRY(bp_node_number(node, value, err));
@@ -242,8 +241,7 @@ static BpStatus read_style(const BpNode *node, BpParticleStyle *style, BpError *
     return bp_node_boolean(&whole, &style->whole, err);
 }
 
-/* ---- the files ------------------------------------------------------------------------------------------
- */
+/* ---- the files ---------------------------------------------------------------------------------------- */
 
 typedef struct Entry {
     const char *file;

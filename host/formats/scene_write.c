@@ -47,8 +47,7 @@ static bool is_dark(const double emit[3]) {
     return emit[0] == 0 && emit[1] == 0 && emit[2] == 0;
 }
 
-/* ---- the camera -----------------------------------------------------------------------------------------
- */
+/* ---- the camera --------------------------------------------------------------------------------------- */
 
 /* Writes the ratio as [w, h] of small whole numbers if they give the same number, since people write it so.
  */
@@ -402,8 +401,7 @@ static BpStatus put_spheres(FILE *out, const BpScene *scene, BpError *err) {
     return BP_OK;
 }
 
-/* ---- the whole ------------------------------------------------------------------------------------------
- */
+/* ---- the whole ---------------------------------------------------------------------------------------- */
 
 BpStatus bp_scene_print(const BpScene *scene, FILE *out, BpError *err) {
     bool coloured = false;

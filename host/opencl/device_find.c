@@ -15,8 +15,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* ---- asking OpenCL ---------------------------------------------------------------------------------------
- */
+/* ---- asking OpenCL ------------------------------------------------------------------------------------ */
 
 /* Copies `from` without white space at its ends: drivers pad names. */
 static void copy_trimmed(char *to, size_t size, const char *from) {
@@ -38,7 +37,7 @@ static char *device_text(cl_device_id id, cl_device_info what) {
     return text;
 }
 
-/* false: out of memory, which is no answer of the device. */
+/* false: out of memory, which is not the device's answer. */
 static bool device_text_into(cl_device_id id, cl_device_info what, char *to, size_t size) {
     char *text = device_text(id, what);
     const bool known = text != NULL;

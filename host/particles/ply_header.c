@@ -138,8 +138,8 @@ static BpStatus find_colors(const Input *input, PlyHeader *header, BpError *err)
         found && type == ply_property(header, color[1])->type && type == ply_property(header, color[2])->type;
     if ((found && !alike) || (!found && (named[0] >= 0 || named[1] >= 0 || named[2] >= 0)))
         return input_fail(input, true, err,
-                          "found red, green and blue not all, or not of one type, expected all three alike, "
-                          "or none");
+                          "found only some of red, green and blue, or of different types, expected all three "
+                          "of one type, or none");
     return BP_OK;
 }
 

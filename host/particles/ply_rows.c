@@ -24,8 +24,7 @@ static BpStatus fail_length(const Input *input, bool with_line, uint64_t row, do
                       row, bp_number_text(number, found));
 }
 
-/* ---- binary ---------------------------------------------------------------------------------------------
- */
+/* ---- binary ------------------------------------------------------------------------------------------- */
 
 /* One row with lists, property by property. `values`: Optional. */
 static BpStatus take_row(Input *input, const PlyHeader *header, const PlyElement *element, uint64_t row,
@@ -77,8 +76,7 @@ static BpStatus skip_binary(Input *input, const PlyHeader *header, const PlyElem
     return BP_OK;
 }
 
-/* ---- ASCII ----------------------------------------------------------------------------------------------
- */
+/* ---- ASCII -------------------------------------------------------------------------------------------- */
 
 static bool is_space(char c) {
     return c == ' ' || c == '\t' || c == '\r';
@@ -142,8 +140,7 @@ static BpStatus take_ascii(Input *input, const PlyHeader *header, const PlyEleme
                       row, element->property_count);
 }
 
-/* ---- the whole ------------------------------------------------------------------------------------------
- */
+/* ---- the whole ---------------------------------------------------------------------------------------- */
 
 static BpStatus skip(Input *input, const PlyHeader *header, size_t element, BpError *err) {
     return header->form == PLY_ASCII ? skip_ascii(input, &header->elements[element], err)

@@ -81,8 +81,7 @@ static bool is_word(const State *state, const char *word, size_t length) {
     return cif_is_keyword(&state->tokens) && strncasecmp(state->tokens.token, word, length) == 0;
 }
 
-/* ---- the cell --------------------------------------------------------------------------------------------
- */
+/* ---- the cell ----------------------------------------------------------------------------------------- */
 
 /* The place of "matrix[2][3]" or "vector[2]" among the twelve numbers of a transformation; -1: another name.
  */
@@ -137,8 +136,7 @@ static void put_cell(BpParticleFile *file, const Cell *cell) {
     crystal_turn_cell(file, &frame, "_atom_sites");
 }
 
-/* ---- what stands around the atoms ------------------------------------------------------------------------
- */
+/* ---- what stands around the atoms --------------------------------------------------------------------- */
 
 /* Crystals' files have shares of the cell for places. */
 static BpStatus refuse_fractions(const Input *input, const State *state, const char *name, BpError *err) {
@@ -304,8 +302,7 @@ static BpStatus find_cell_behind(Input *input, State *state, BpError *err) {
     return BP_OK;
 }
 
-/* ---- atoms -----------------------------------------------------------------------------------------------
- */
+/* ---- atoms -------------------------------------------------------------------------------------------- */
 
 /* One row into state->row. */
 static BpStatus take_row(Input *input, State *state, BpError *err) {

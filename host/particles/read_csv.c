@@ -28,8 +28,7 @@ typedef struct Table {
     bool has_header;
 } Table;
 
-/* ---- the names of columns -------------------------------------------------------------------------------
- */
+/* ---- the names of columns ----------------------------------------------------------------------------- */
 
 static BpStatus fail_twice(const Input *input, const char *name, BpError *err) {
     return input_fail(input, true, err, "found %s in two columns, expected one", name);
@@ -124,8 +123,7 @@ static BpStatus take_header(const Input *input, const char *line, bool named, Ta
     return find_roles(input, table, err);
 }
 
-/* ---- rows -----------------------------------------------------------------------------------------------
- */
+/* ---- rows --------------------------------------------------------------------------------------------- */
 
 static BpStatus take_row(BpParticleFile *file, Table *table, char *line, BpError *err) {
     Input *const input = &file->input;
@@ -162,8 +160,7 @@ static BpStatus take_row(BpParticleFile *file, Table *table, char *line, BpError
     return frame_add(file, &particle, true, err);
 }
 
-/* ---- the whole ------------------------------------------------------------------------------------------
- */
+/* ---- the whole ---------------------------------------------------------------------------------------- */
 
 /* The next line that is neither empty nor a remark. `remark`: Optional; gets the last of those before it. */
 static BpStatus next_row(Input *input, char **line, char *remark, BpError *err) {

@@ -83,8 +83,7 @@ static void data_destroy(Data *data) {
     free(data);
 }
 
-/* ---- the header -----------------------------------------------------------------------------------------
- */
+/* ---- the header --------------------------------------------------------------------------------------- */
 
 /* "Atoms # full": the section that the line names with nothing but a comment behind it, or NO_SECTION. */
 static Section named_section(const char *line) {
@@ -209,8 +208,7 @@ static void add_cell(BpParticleFile *file, const Data *data) {
     frame_cell(file, origin, (const double(*)[3])edges, FRAME_PERIODIC);
 }
 
-/* ---- types ----------------------------------------------------------------------------------------------
- */
+/* ---- types -------------------------------------------------------------------------------------------- */
 
 /* The type that Atom Type Labels gives that label; 0: none. */
 static uint16_t declared_type(const Data *data, const char *label) {
@@ -281,8 +279,7 @@ static void set_elements(BpParticleFile *file, const Data *data) {
     atom_note_masses(p, known, used, "types", united);
 }
 
-/* ---- atoms ----------------------------------------------------------------------------------------------
- */
+/* ---- atoms -------------------------------------------------------------------------------------------- */
 
 /* What is known of a style while the lines are tried that might be written in it. */
 typedef struct Candidate {
@@ -487,8 +484,7 @@ static BpStatus take_atom(BpParticleFile *file, Data *data, char **words, size_t
     return frame_add(file, &particle, true, err);
 }
 
-/* ---- what refers to atoms by their numbers --------------------------------------------------------------
- */
+/* ---- what refers to atoms by their numbers ------------------------------------------------------------ */
 
 static int compare_places(const void *a, const void *b) {
     const int64_t one = ((const Place *)a)->id, other = ((const Place *)b)->id;
@@ -572,8 +568,7 @@ static void note_shapes(BpParticles *p, const Data *data) {
     }
 }
 
-/* ---- sections -------------------------------------------------------------------------------------------
- */
+/* ---- sections ----------------------------------------------------------------------------------------- */
 
 /* How many lines a section has; 0: the header does not say. */
 static uint64_t line_count(const Data *data, Section section) {

@@ -124,8 +124,7 @@ static const char *name_of(const BpParticles *p, uint16_t number) {
     return p->names.count > 0 ? p->names.text[number] : "";
 }
 
-/* ---- what is shown --------------------------------------------------------------------------------------
- */
+/* ---- what is shown ------------------------------------------------------------------------------------ */
 
 static BpStatus choose_shown(Job *job, BpError *err) {
     enum { NOTHING, WATER, ION, DUMMY, ALTERNATIVE, KINDS };
@@ -172,8 +171,7 @@ static BpStatus choose_shown(Job *job, BpError *err) {
     return BP_OK;
 }
 
-/* ---- radii ----------------------------------------------------------------------------------------------
- */
+/* ---- radii -------------------------------------------------------------------------------------------- */
 
 static const BpStyleNamed *named(const BpStyleNamed *list, size_t count, const BpParticles *p,
                                  const BpParticleTag *tag) {
@@ -239,8 +237,7 @@ static double radius_of(const Job *job, size_t i) {
     return scale * (has_own ? (double)p->radius[i] : job->spacing / 2);
 }
 
-/* ---- colours --------------------------------------------------------------------------------------------
- */
+/* ---- colours ------------------------------------------------------------------------------------------ */
 
 static uint16_t kind_of(const Job *job, size_t i) {
     const BpParticleTag *const tag = &job->p->tag[i];
@@ -373,8 +370,7 @@ static void color_of(const Job *job, size_t i, double color[3]) {
     look_up(job->linear, palette[place % PALETTE_COUNT], color);
 }
 
-/* ---- spheres --------------------------------------------------------------------------------------------
- */
+/* ---- spheres ------------------------------------------------------------------------------------------ */
 
 /* Room for `count` more spheres and `colors` more colours. */
 static BpStatus make_room(Job *job, size_t count, size_t colors, BpError *err) {

@@ -20,8 +20,8 @@ bool bp_calibrates(const BpDeviceInfo *device, const BpRenderOptions *options);
 bool bp_calibration_known(const BpDeviceInfo *device, BpCalibration *calibration);
 
 /* What is remembered, or else what a trial finds. `open`: Optional; the device, where it is open. *seconds:
- * the trial's, 0 without one. False: there is no outcome, since the device cannot do what was tried: the
- * render will say so, or get on without. */
+ * the trial's, 0 without one. False: the trial has no result, because the device failed; the render reports
+ * that, or uses the defaults. */
 bool bp_calibrate(const BpDeviceInfo *device, BpDevice *open, bool untested, BpCalibration *calibration,
                   double *seconds);
 

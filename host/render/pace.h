@@ -1,4 +1,4 @@
-/* pace.h: how many samples a chunk may have, so that nobody waits long for it.
+/* pace.h: limits the size of chunks, so that a launch of a kernel stays short.
  *
  * In:    the depth of paths, times of chunks that are done.   Out: numbers of samples.
  * Knows: counting and dividing.   Does not know: OpenCL, clocks, pixels.

@@ -416,8 +416,7 @@ BpStatus bp_render_extend(BpRender *render, uint64_t samples_per_pixel, BpError 
     return BP_OK;
 }
 
-/* ---- what has been reached ------------------------------------------------------------------------------
- */
+/* ---- what has been reached ---------------------------------------------------------------------------- */
 
 uint64_t bp_render_samples_done(const BpRender *render) {
     if (!render->decides) return render->schedule.done;

@@ -45,8 +45,8 @@ BpStatus bp_render_create_on(const BpScene *scene, const BpRenderOptions *option
 
 /* Makes the render one of several, by the processes of the communicator, all of the same scene and options.
  * From then on all of them make the same calls: a step is a round of samples of which each traces a part, and
- * the film that is read is the sum of all of them on rank 0, and no film of use elsewhere. Before the first
- * step and before bp_render_resume(). The communicator must outlive the render. */
+ * the film that is read is the sum of all of them on rank 0, and other ranks get no usable film. Before the
+ * first step and before bp_render_resume(). The communicator must outlive the render. */
 struct BpComm;
 void bp_render_join(BpRender *render, struct BpComm *comm);
 

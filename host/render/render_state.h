@@ -15,7 +15,7 @@
 
 /* What a rank knows of the rounds that it shares with others. */
 typedef struct BpRounds {
-    double samples, seconds; /* its own, of late: how fast it is */
+    double samples, seconds; /* this rank's recent throughput */
     uint64_t pixel_samples;  /* of all ranks together, in the rounds that are done */
 } BpRounds;
 

@@ -64,8 +64,8 @@ typedef enum BpMaterialKind {
  * NUMBER(identifier, name, field, low, high, range, needed, place, cap): one number; what is above `cap`
  * counts as `cap`.
  *
- * CHOICE(identifier, name, field, place, moot, names): one of `names`, the first where there is none. It
- * makes no difference where the member `moot`, a number, is 0.
+ * CHOICE(identifier, name, field, place, moot, names): one of `names`, the first where there is none. It has
+ * no effect where the member `moot`, a number, is 0.
  *
  * `place`: MATERIAL_... of scene_types.h, where the kernel has the member; NOWHERE: it stands elsewhere. */
 #define BP_MEMBER_LIST(COLOUR, NUMBER, CHOICE)                                                               \

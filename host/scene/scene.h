@@ -205,9 +205,9 @@ void bp_environment_frame(const BpScene *scene, double seam[3], double east[3], 
 
 /* How high a part of the plane in focus the picture shows, in the scene's unit. */
 double bp_camera_plane_height(const BpCamera *camera);
-/* Where the space begins in which rays are traced: where a perspective camera stands. Orthographic rays begin
- * on a plane, and no longer way than needed lies before them: the plane through lookfrom is moved ahead, to
- * within the height of the picture before the first sphere. Returns how far it is moved; looks at all
+/* The origin of the space in which rays are traced: the position of a perspective camera. For an orthographic
+ * camera, the plane through lookfrom, on which rays begin, is moved forward until it is within one picture
+ * height of the nearest sphere. Returns the distance by which it is moved, which takes a loop over all
  * spheres. */
 double bp_camera_origin(const BpScene *scene, double origin[3]);
 

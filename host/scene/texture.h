@@ -27,10 +27,10 @@
  * y for h < 4, x for 12 and 14, and z for others; a is negative where bit 0 is set, b where bit 1 is.
  *
  * An image covers each sphere by longitude, from its left to its right edge, and latitude, its top at the
- * north pole. It stands there repeat[0] times around and repeat[1] times from pole to pole, or, clamped,
- * once, in the first of these places, and what lies to the right of it and below has the colours of its
- * edges. The middle of a texel has its colour; between the middles of four the colour is bilinear. Beyond the
- * poles and, clamped, beyond the image the nearest texel counts; around, the image is a ring. */
+ * north pole. It is repeated repeat[0] times in longitude and repeat[1] times in latitude. A clamped image
+ * appears only in the first of these places; to the right of it and below, the colours of its edges continue.
+ * The middle of a texel has its colour; between the middles of four the colour is bilinear. Beyond the poles
+ * and, clamped, beyond the image the nearest texel counts; around, the image is a ring. */
 #ifndef BP_SCENE_TEXTURE_H
 #define BP_SCENE_TEXTURE_H
 

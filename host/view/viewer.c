@@ -187,8 +187,7 @@ static void listen(Viewer *viewer) {
     }
 }
 
-/* ---- rendering ------------------------------------------------------------------------------------------
- */
+/* ---- rendering ---------------------------------------------------------------------------------------- */
 
 static BpStatus restart(Viewer *viewer, bool moving, BpError *err) {
     const double width = moving ? fmax(1, floor(viewer->width / viewer->shrink + 0.5)) : viewer->width;

@@ -1,4 +1,4 @@
-/* hit.cl: the closest hit so far, and what one sphere makes of it.
+/* hit.cl: the closest hit so far, and its update by one sphere.
  *
  * In:    rays, spheres.   Out: the hit of least (distance, sphere index), so list and tree, and any order of visits,
  *        agree to the bit.

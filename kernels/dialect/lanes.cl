@@ -10,7 +10,7 @@
  *
  *   vreal vuint vrefined   numbers, one a lane          vbool  a condition, one a lane, as wide as a real
  * A vbool is made by a comparison of vreals, by vbool_of_uint and vbool_of_refined from other comparisons, combined
- * with & | and vbool_not, asked by any_lane, and spent by choose. `if (any_lane(m)) ...` is a plain branch for one lane
+ * with & | and vbool_not, tested with any_lane, and consumed by choose. `if (any_lane(m)) ...` is a plain branch for one lane
  * and "skip this when no lane wants it" for many. */
 #undef vreal
 #undef vbool

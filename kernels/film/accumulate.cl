@@ -58,8 +58,7 @@ static BITS4 order_of(real4 scaled) {
 
 static int is_valid(BITS4 order) { return order.x < BITS_LIMIT && order.y < BITS_LIMIT && order.z < BITS_LIMIT; }
 
-/* Whether a channel lies between 0 and a limit, both left out: `least` is the least of the orders less 1, which makes
- * 0 the largest number of all. */
+/* Whether a channel lies between 0 and a limit, exclusive: `least` is the minimum of the orders minus 1, so that 0 wraps around to the largest number. */
 static int any_below(BITS4 least, BITS limit) { return least.x < limit || least.y < limit || least.z < limit; }
 
 /* What the samples of one replicate of one pixel come to. */

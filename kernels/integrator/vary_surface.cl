@@ -1,4 +1,4 @@
-/* vary_surface.cl: gives the members of a surface that vary the values that they have at its point.
+/* vary_surface.cl: evaluates the textures of a surface at its point.
  *
  * In:    surfaces as fetch_surface leaves them, their points and outward normals.   Out: the same, with their textures.
  * Knows: PackedVariation (scene_types.h), each texture by its one function.   Does not know: paths. */

@@ -12,7 +12,7 @@
  * Any probability is right, even 0, as long as choosing and asking for it compute the same bits: both go through
  * lamp_importances. */
 #if SAMPLES_LAMPS
-/* A lamp below this share of the squared distance may as well be around the point. */
+/* A lamp below this share of the squared distance is treated as if it were around the point. */
 #define LAMP_POWER_MIN R(0x1p-20)
 
 #if SAMPLES_LAMP_TREE

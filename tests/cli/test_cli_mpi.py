@@ -219,7 +219,7 @@ class Ranks(cli.ProgramTest):
         process = self.start(2, "s.json", "--spp", 60000000, "--checkpoint", 0.2, "-o", "a.pfm")
         said = self.send_when_there(process, "a.bpa", 1, signal.SIGKILL)
         self.assertNotEqual(process.returncode, 0, said)
-        self.assertIn("the other ranks do not answer and may be lost; this goes on from the last checkpoint", said)
+        self.assertIn("the other ranks do not answer and may be lost; this command continues from the last checkpoint", said)
         header, _ = bpa.read(self.read("a.bpa"))
         self.check_resumed(said, header["plan"]["done"] + 64)
 

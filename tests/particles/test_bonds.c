@@ -149,8 +149,7 @@ static void all_images(const Case *test, size_t i, size_t k, double reach, Visit
             }
 }
 
-/* ---- bonds ----------------------------------------------------------------------------------------------
- */
+/* ---- bonds -------------------------------------------------------------------------------------------- */
 
 typedef struct Expected {
     BpBond *bond; /* images count the edges of the cell itself */
@@ -246,8 +245,7 @@ static void bonds_are_those_of_all_images(void **state) {
     assert_true(across > 500 && own > 50);
 }
 
-/* ---- the distance of neighbours ---------------------------------------------------------------------------
- */
+/* ---- the distance of neighbours ----------------------------------------------------------------------- */
 
 static void take_least(void *context, const int image[3], double distance) {
     double *const least = context;

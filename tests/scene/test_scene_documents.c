@@ -225,8 +225,7 @@ static void nearest_names(void **state) {
     assert_null(bp_nearest_name("", names, 4));
 }
 
-/* ---- written and made -----------------------------------------------------------------------------------
- */
+/* ---- written and made --------------------------------------------------------------------------------- */
 
 static void temporary_path(char path[64]) {
     strcpy(path, "/tmp/ballpark-scene-XXXXXX");
