@@ -26,8 +26,8 @@
  *   the handle is NULL before, and stays NULL on failure. `_destroy` takes its address, frees it and sets
  *   it to NULL; it accepts NULL and the address of NULL. `_clear` releases what a caller's struct holds and
  *   zeroes it. What a getter points to belongs to the handle; it is valid until that changes or is destroyed.
- * - Strings are UTF-8, end with a zero byte and are copied; nothing keeps a caller's pointer beyond the call
- *   unless it says so.
+ * - Strings are UTF-8, end with a zero byte and are copied; no function keeps a caller's pointer beyond the
+ * call unless its comment documents that.
  * - Threads. A handle is used by one thread at a time, but functions that take a `const` handle may run at
  *   the same time: many threads may render one scene, each by a render of its own. Different handles are
  *   independent, also in the first calls of a process: there is no state outside of handles, but for caches
@@ -109,7 +109,7 @@ typedef struct BpError {
     char *attachment;   /* Optional. A long text, such as a whole build log. */
 } BpError;
 
-/* "file error", and for a number that is none of BpStatus "unknown status"; static. */
+/* "file error", and "unknown status" for a number that is not a BpStatus; static. */
 BP_API const char *bp_status_name(BpStatus status);
 /* What the command line program exits with: 0 for BP_OK, never 0 for another. */
 BP_API int bp_status_exit_code(BpStatus status);
@@ -235,8 +235,9 @@ typedef struct BpDeviceInfo {
     BpDeviceType type;
     char platform[128], name[256], vendor[128], version[128], driver[128];
     unsigned compute_units;
-    unsigned float_lanes; /* of its vector instructions, as the driver says; 1: it has none, or hides them.
-                             4 where PoCL runs on 64-bit ARM, since it says 1 of all processors but x86's */
+    unsigned
+        float_lanes; /* of its vector instructions, as the driver says; 1: it has none, or hides them.
+                        4 with PoCL on 64-bit ARM, since PoCL reports 1 for all processors except x86's */
     uint64_t memory_bytes, largest_allocation_bytes;
     bool has_double, has_compiler, available;
     char refusal[128];      /* what the device lacks, so that it cannot render; "": nothing */
@@ -393,8 +394,8 @@ typedef struct BpStop BpStop;
  * is out of range, asks for nothing, or is adaptive where the render is not. */
 BP_API BpStatus bp_stop_create(BpRender *render, const BpStopRule *rule, BpStop **stop, BpError *err);
 
-/* Call it after every bp_render_step(), with what that said. *reason: why to stop; BP_STOP_NOT_YET: go on,
- * and the render has been given more samples if it had finished those before. The error is looked at on fixed
+/* Call it after every bp_render_step(), with what that said. *reason: why to stop; BP_STOP_NOT_YET: continue;
+ * the render has been given more samples if it had finished the earlier ones. The error is looked at on fixed
  * sample counts alone, so the same scene, seed and error end at the same count on every run; time ends a
  * render at a whole number of samples, unless its pace dropped. */
 BP_API BpStatus bp_stop_check(BpStop *stop, const BpProgress *progress, BpStopReason *reason, BpError *err);
@@ -512,7 +513,7 @@ BP_API BpStatus bp_error_map_write(const BpPicture *picture, const char *path, B
 
 /* The sums of a render as they stand, during or after it: a film of the caller's own, which the render does
  * not change. With options.features it has depth, normal and albedo too; and unless the render has finished,
- * it says how to go on (bp_render_resume()). */
+ * it records how to continue (bp_render_resume()). */
 BP_API BpStatus bp_render_film(BpRender *render, BpFilm **film, BpError *err);
 
 /* Reads a .bpa file. BP_ERR_FILE: it cannot be read, or is damaged; the error says what is wrong. */

@@ -9,8 +9,8 @@
 #include <stdint.h>
 
 /* Reads the number that begins at `text`: *value is the nearest double. Returns what follows it, or NULL when
- * none begins there. "nan" and "inf" are numbers. In a locale whose decimal sign is no point, the caller sets
- * the C locale (uselocale) before. */
+ * none begins there. "nan" and "inf" are numbers. In a locale whose decimal sign is not a point, the caller
+ * sets the C locale (uselocale) before. */
 const char *bp_decimal_parse(const char *text, double *value);
 
 /* The same for what programs write into tables, where an exponent may also begin with D or Q (Fortran's

@@ -13,7 +13,7 @@
  * they begin below what stands behind the first two blanks or more, or two columns further in than the first
  * line. */
 #define BP_HANG "\x01"
-/* Written into a line that a shell is to read: where it is broken, a backslash goes on with it. */
+/* Written into a line that a shell is to read: where it is broken, a backslash continues it. */
 #define BP_PASTE "\x02"
 
 /* Writes `text` to `out` in lines of at most `columns` characters, broken at blanks; 0: as it is, without the

@@ -25,7 +25,7 @@ bool bp_long_call_wait(BpLongCall *call, double seconds, bool (*stop)(void));
 /* The caller is done with the call, whether or not it has returned. */
 void bp_long_call_leave(BpLongCall *call);
 
-/* Whether somebody has given up waiting for a call that has not returned by now. Such a thread may hold what
+/* Whether a caller has given up waiting for a call that has not returned by now. Such a thread may hold what
  * the end of a process waits for: a program then ends by _exit(). */
 bool bp_long_call_hangs(void);
 

@@ -9,7 +9,7 @@
  * already is replaced by a rename, for which the finished file is called TARGET.XXXXXX for a moment.
  *
  * What can go wrong after that does not cost the file. If the target cannot be replaced (something is mounted
- * on it, or its folder lets nobody rename it), the finished file is copied into it; if that fails too, it
+ * on it, or its folder does not allow renaming), the finished file is copied into it; if that fails too, it
  * stays, and the error says where. If nothing can be made beside a target that can be written, the temporary
  * is in $TMPDIR or /tmp and is copied likewise.
  *
@@ -18,7 +18,7 @@
  * new one may do no more than everybody. A new file gets what the umask says. A write-protected file is
  * refused, although a rename could replace it.
  *
- * A target that is no regular file (a device, a pipe) is written through, and so is an open file of this
+ * A target that is not a regular file (a device, a pipe) is written through, and so is an open file of this
  * process (/dev/stdout, /dev/fd/3): from where its other writers left it, and nothing in it is replaced. */
 #ifndef BP_BASE_OUTPUT_FILE_H
 #define BP_BASE_OUTPUT_FILE_H
@@ -46,7 +46,7 @@ typedef struct BpOutputFile {
 BpStatus bp_output_open(const char *path, BpOutputFile *file, BpError *err);
 /* The same for a file that must not be there when it is committed. The commit claims the name in one step, so
  * of two programs that write it one fails, and its result stays where its error says. Devices, pipes and open
- * files are written through as ever. */
+ * files are written through, as always. */
 BpStatus bp_output_open_new(const char *path, BpOutputFile *file, BpError *err);
 
 /* Closes in any case. On failure an earlier file at the target is untouched, unless the error says that it
@@ -71,7 +71,8 @@ BpStatus bp_output_check_new(const char *path, BpError *err);
 bool bp_output_replaces(const char *path);
 
 /* For the end of the program at a signal, from any thread: waits for a commit that is just putting a file in
- * its place, removes the temporaries that are not finished, and lets no other thread go on writing files. */
+ * its place, removes the temporaries that are not finished, and prevents other threads from writing further
+ * files. */
 void bp_output_abandon(void);
 
 #endif

@@ -1,6 +1,6 @@
 /* output_temporary.h: the temporary files behind output_file.h.
  *
- * In:    where a file is to stand.   Out: a file without a name, or with one that nobody else has.
+ * In:    where a file is to stand.   Out: a file without a name, or with a unique one.
  * Knows: unnamed files, links, renames, the names that are in use.   Does not know: what is written, to whom
  * errors are told: everything here answers with an errno.
  *

@@ -13,15 +13,15 @@
 #define BP_BRACED(...)                                                                                       \
     { __VA_ARGS__ }
 
-/* Clang warns of functions in a .c file that nobody calls, even if they are inline. */
+/* Clang warns about uncalled functions in a .c file, even if they are inline. */
 #if defined(__GNUC__)
 #define BP_NOBODY_CALLS __attribute__((unused))
 #else
 #define BP_NOBODY_CALLS
 #endif
 
-/* `declaration[] = { ... }`, for the outermost level of a file, and a function that nobody calls, in which
- * the compiler misses what LIST lacks. */
+/* `declaration[] = { ... }`, for the outermost level of a file, and an uncalled function, in which the
+ * compiler finds what LIST lacks. */
 #define BP_WORDS(type, declaration, LIST)                                                                    \
     BP_WORDS_COMPLETE(type, LIST)                                                                            \
     declaration[] = {LIST(BP_WORD_AT)}

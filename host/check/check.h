@@ -5,8 +5,8 @@
  *
  * The result depends on scene, samples, seed and device, not on chunks, threads or the machine's load. With a
  * limit of time, both sides proceed in rounds, each as long as all before it together, and the last round
- * that was completed in time is judged. The clock then decides how many samples there are, but not what they
- * say, so the verdict's error rate holds. */
+ * that was completed in time is judged. The clock then decides how many samples there are, but not their
+ * values, so the verdict's error rate holds. */
 #ifndef BP_CHECK_CHECK_H
 #define BP_CHECK_CHECK_H
 

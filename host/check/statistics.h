@@ -3,7 +3,8 @@
  * In and out: numbers.   Knows: probability.   Does not know: pictures, scenes.
  *
  * Probabilities are in [0, 1]; "upper" means P(X > x). Every function is pure; results hold about 1e-12
- * relative unless it says otherwise (tests/agree/test_statistics.c holds them against published tables). */
+ * relative unless a comment states otherwise (tests/agree/test_statistics.c holds them against published
+ * tables). */
 #ifndef BP_CHECK_STATISTICS_H
 #define BP_CHECK_STATISTICS_H
 

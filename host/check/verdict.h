@@ -15,7 +15,7 @@
  * precision may cost (BP_VERDICT_ROUNDING). Where one side has fewer than 20 samples that are not black,
  * means follow no normal law: the numbers of such samples are compared instead, exactly (binomial).
  *
- * A difference that is not found is no proof of equality: samples may have been too few to find it. So a
+ * A difference that is not found does not prove equality: samples may have been too few to find it. So a
  * verdict says "agree" only where nothing is rejected and the brightness of the picture is shown to be equal
  * within a margin, in luminance and in each channel that has light: both ends of the 95 % interval of each
  * ratio lie within 1 -+ margin (two one-sided tests, Schuirmann 1987, at 2.5 % each; all must pass, so none

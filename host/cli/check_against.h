@@ -13,7 +13,7 @@
 #include <jansson.h>
 #include <stdio.h>
 
-/* Reads the document of an earlier check. BP_ERR_FILE: it cannot be read; BP_ERR_USAGE: it is no such
+/* Reads the document of an earlier check. BP_ERR_FILE: it cannot be read; BP_ERR_USAGE: it is not such a
  * document. The caller releases *document with json_decref(). */
 BpStatus bp_check_against_read(const char *path, json_t **document, BpError *err);
 

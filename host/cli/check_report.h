@@ -1,6 +1,6 @@
 /* check_report.h: the document of a check, and its table.
  *
- * In:    entries (check_entry.h) by scene.   Out: a JSON document; lines for people.
+ * In:    entries (check_entry.h) by scene.   Out: a JSON document; lines to read.
  * Knows: the shape of the document.   Does not know: how entries came about.
  *
  * The document of one scene is {"ballpark", "scene", "light_sampling", "width", "height",
@@ -22,8 +22,8 @@ json_t *bp_check_scene_json(const char *name, const BpScene *scene, const BpRend
  * over both. `suite`: Optional, its name, with its `level`; NULL: there is one scene. NULL: out of memory. */
 json_t *bp_check_document(json_t *scenes, json_t *broken, const char *suite, double level);
 
-/* The scenes of a document, of one scene or of a suite: a new array. NULL: it is no such document, or out of
- * memory. */
+/* The scenes of a document, of one scene or of a suite: a new array. NULL: it is not such a document, or
+ * memory ran out. */
 json_t *bp_check_document_scenes(const json_t *document);
 
 void bp_check_count_all(const json_t *scenes, BpCheckCounts *counts);

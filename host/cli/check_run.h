@@ -26,7 +26,7 @@ typedef struct BpCheckRun {
     const BpCommandLine *line; /* says how the picture is written */
 } BpCheckRun;
 
-/* Fills an outcome for each item: its result is {"entry", "text": the verdict for people}. An item without a
+/* Fills an outcome for each item: its result is {"entry", "text": the verdict as text}. An item without a
  * verdict has an error, and an entry as well. Clear them in any case. */
 BpStatus bp_check_run(const BpCheckRun *run, BpItemOutcome *outcomes, BpError *err);
 

@@ -1,7 +1,9 @@
-/* checkpoint.h: where a render keeps its sums so that another can go on from them, and the command that does.
+/* checkpoint.h: where a render keeps its sums so that another can continue from them, and the command that
+ * does.
  *
  * In:    the command line, films.   Out: a .bpa file, written as a whole each time; a command line.
- * Knows: --checkpoint, --resume, when it is time.   Does not know: how the render goes on (resume_film.h). */
+ * Knows: --checkpoint, --resume, when it is time.   Does not know: how the render continues (resume_film.h).
+ */
 #ifndef BP_CLI_CHECKPOINT_H
 #define BP_CLI_CHECKPOINT_H
 
@@ -23,7 +25,7 @@ typedef struct BpCheckpoint {
 
 /* With -o FILE.bpa the sums are kept there; else with --resume in that file; else with --checkpoint beside
  * the picture, as its name with .bpa. BP_ERR_USAGE: --checkpoint has no place, or would replace a file that a
- * render left there unfinished, or that is no checkpoint of this render's; or another result would replace
+ * render left there unfinished, or that is not a checkpoint of this render; or another result would replace
  * the checkpoint or the film that --resume names. */
 BpStatus bp_checkpoint_choose(const BpCommandLine *line, const BpResultFile *result, BpCheckpoint *checkpoint,
                               BpError *err);
@@ -31,14 +33,14 @@ BpStatus bp_checkpoint_choose(const BpCommandLine *line, const BpResultFile *res
 /* The render begins: the first checkpoint is due `every` seconds from now. */
 void bp_checkpoint_start(BpCheckpoint *checkpoint);
 
-/* Whether a file has been written from which the render can go on, or is being written. */
+/* Whether a file from which the render can continue has been written, or is being written. */
 bool bp_checkpoint_has_begun(const BpCheckpoint *checkpoint);
 
 /* Whether it is time, by bp_clock_seconds(), and the file before has been written. */
 bool bp_checkpoint_is_due(BpCheckpoint *checkpoint, double now);
 
-/* Writes the film. A failure is warned about on standard error, and the file before stays: the render goes
- * on. */
+/* Writes the film. A failure is warned about on standard error, and the earlier file stays: the render
+ * continues. */
 void bp_checkpoint_write(BpCheckpoint *checkpoint, const BpFilm *film);
 
 /* Takes the film of the render as it stands, and writes it in a thread of its own, since packing takes longer
@@ -53,7 +55,7 @@ void bp_checkpoint_wait(BpCheckpoint *checkpoint);
 /* The picture is there: removes the checkpoint, if --checkpoint asked for it and it is not the result. */
 void bp_checkpoint_end(const BpCommandLine *line, const BpCheckpoint *checkpoint);
 
-/* The command that goes on from the checkpoint: the options as they were given, with `seconds_left` of
+/* The command that continues from the checkpoint: the options as they were given, with `seconds_left` of
  * --time.
  * "" when it does not fit. Returns `text`. */
 const char *bp_checkpoint_command(const BpCommandLine *line, const BpCheckpoint *checkpoint,

@@ -26,7 +26,7 @@ typedef struct BpChildReport {
         *bytes; /* what was written, with a 0 behind it, also by a child that did not end well; with free() */
     size_t size;
     BpChildEnd end;
-    char failure[256]; /* one line that says how it ended ("crashed: Segmentation fault"); "": done */
+    char failure[256]; /* one line about how it ended ("crashed: Segmentation fault"); "": done */
 } BpChildReport;
 
 /* Runs `work(argument, out)` in a child process and collects what it wrote to `out`. `work` returns false

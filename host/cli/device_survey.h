@@ -4,10 +4,10 @@
  * crash or hang when they are asked for theirs.
  * Knows: child processes, where the loader looks (OCL_ICD_VENDORS).   Does not know: OpenCL.
  *
- * The loader loads every driver in the process that asks, so one that hangs hangs it. A child process asks
- * for all; only if it does not answer, a child each asks the drivers one by one, with a folder that holds
- * this one's file alone. Those that do not answer are left out from then on: OCL_ICD_VENDORS names a folder
- * of the others' files, for this process and its children. */
+ * The loader loads every driver into the process that calls it, so a driver that hangs blocks that process. A
+ * child process asks for all; only if it does not answer, a child each asks the drivers one by one, with a
+ * folder that holds this one's file alone. Those that do not answer are left out from then on:
+ * OCL_ICD_VENDORS names a folder of the others' files, for this process and its children. */
 #ifndef BP_CLI_DEVICE_SURVEY_H
 #define BP_CLI_DEVICE_SURVEY_H
 

@@ -17,8 +17,8 @@ BpStatus bp_file_conflicts_check(const BpCommandLine *line, const char *picture,
 BpStatus bp_file_conflicts_check_scene(const BpCommandLine *line, const char *picture, const BpScene *scene,
                                        BpError *err);
 
-/* The same for a film that the run reads or keeps: BP_ERR_USAGE if a result would overwrite `film`, which is
- * `what` for people. `is_output`: --output may, since its sums take the film's place. */
+/* The same for a film that the run reads or keeps: BP_ERR_USAGE if a result would overwrite `film`, which
+ * messages call `what`. `is_output`: --output may, since its sums take the film's place. */
 BpStatus bp_file_conflicts_check_film(const BpCommandLine *line, const char *film, const char *what,
                                       bool is_output, BpError *err);
 

@@ -1,4 +1,4 @@
-/* interrupt.h: signals that ask the program to end are noted instead of ending it at once: Ctrl-C (SIGINT),
+/* interrupt.h: signals that would end the program are recorded instead of ending it at once: Ctrl-C (SIGINT),
  * SIGTERM, SIGHUP (the terminal was closed; unless ignored, as nohup arranges), SIGXCPU (the limit on
  * processor time), SIGUSR1 and SIGUSR2 (a batch system's notice that time is nearly over).
  *
@@ -23,8 +23,8 @@ void bp_interrupt_install(void);
 void bp_interrupt_catch(void);
 bool bp_interrupted(void);
 
-/* What to say on standard error when a signal has come and the text is still there most of a second later:
- * what the process waits for may never come, and whoever sent the signal ends it then. Copied; "": nothing.
+/* The message for standard error if, most of a second after a signal, the text is still set: the process may
+ * be waiting for something that never comes, and may then be killed. Copied; "": nothing.
  */
 void bp_interrupt_explain(const char *text);
 

@@ -208,7 +208,7 @@ enum {
     OPTION(VERSION, "version", 'V', 0, "print version and commit", bool, version, BP_FLAG)
 
 /* What the help of some commands says of an option: NOTE(number, commands, help, default). `help` takes the
- * place of the text above unless it is NULL; `default` is NULL where there is none to tell. Every pair of a
+ * place of the text above unless it is NULL; `default` is NULL if the option has none. Every pair of a
  * command and an option stands in one row at most. */
 #define BP_OPTION_NOTES(NOTE)                                                                                \
     NOTE(OUTPUT, BP_RENDER,                                                                                  \

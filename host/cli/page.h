@@ -3,8 +3,8 @@
  * In:    text.   Out: lines on standard output or standard error.
  * Knows: --quiet, --wide, the width of the terminal.   Does not know: what the text says.
  *
- * Results for people go to a page on standard output; notes go to standard error. With --quiet neither is
- * printed. Documents and pictures on standard output do not go through a page. */
+ * Results that are read, rather than parsed, go to a page on standard output; notes go to standard error.
+ * With --quiet neither is printed. Documents and pictures on standard output do not go through a page. */
 #ifndef BP_CLI_PAGE_H
 #define BP_CLI_PAGE_H
 

@@ -27,11 +27,11 @@ BpStatus bp_preview_choose(const BpCommandLine *line, const BpComm *shared, cons
 /* Whether it is time, by bp_clock_seconds(); on the rank that writes and draws. */
 bool bp_preview_is_due(const BpPreview *preview, double now);
 
-/* Writes and draws the picture as it stands, by all ranks that share it. A file that cannot be written is
- * warned about once, and rendering goes on. BP_ERR_DEVICE or BP_ERR_MEMORY: the sums could not be read. */
+/* Writes and draws the picture as it stands, by all ranks that share it. A file that cannot be written causes
+ * one warning, and rendering continues. BP_ERR_DEVICE or BP_ERR_MEMORY: the sums could not be read. */
 BpStatus bp_preview_update(BpPreview *preview, BpRender *render, BpError *err);
 
-/* Draws the finished picture, which somebody else writes. */
+/* Draws the finished picture, which another module writes. */
 BpStatus bp_preview_end(BpPreview *preview, const BpFilm *film, BpError *err);
 
 #endif

@@ -9,7 +9,7 @@
 #include "cluster/comm.h"
 #include "options.h"
 
-/* Unless --device says otherwise, puts in the place of the default device the one for this rank: the ranks of
+/* Without --device, replaces the default device by the one for this rank: the ranks of
  * a machine go through its devices of that kind in turn. Does nothing when alone. */
 BpStatus bp_ranks_choose_device(const BpCommandLine *line, BpDeviceInfo *device, BpError *err);
 

@@ -1,4 +1,4 @@
-/* resume_film.h: --resume: the film that a render goes on from, and the options that come from it.
+/* resume_film.h: --resume: the film from which a render continues, and the options that it determines.
  *
  * In:    the command line, a film.   Out: render options and a stop rule as the first render had them.
  * Knows: which options a film decides.   Does not know: how sums are taken up (render/resume.c). */

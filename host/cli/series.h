@@ -30,7 +30,8 @@ void bp_series_end(BpSeries *series);
 /* The command line of the next picture: the same, with a numbered name for the picture where there are
  * several. */
 BpStatus bp_series_line(BpSeries *series, BpCommandLine *line, BpError *err);
-/* The scene of the next picture, with --width applied; it lasts until the next call, and the series goes on.
+/* The scene of the next picture, with --width applied; it is valid until the next call, and the series
+ * continues.
  */
 BpStatus bp_series_scene(BpSeries *series, const BpScene **scene, BpError *err);
 

@@ -1,4 +1,4 @@
-/* table.h: a table for people, in blocks that fit the page.
+/* table.h: a table as text, in blocks that fit the page.
  *
  * In:    cells of text.   Out: lines.
  * Knows: columns, their widths.   Does not know: what the cells say. */

@@ -12,8 +12,8 @@
 /* Whether a status line is wanted: standard error is a terminal that can move its cursor, and not `quiet`. */
 bool bp_terminal_is_live(bool quiet);
 
-/* Columns of the terminal at `descriptor` now; if there is none or it does not say, what COLUMNS in the
- * environment says, else 80; at least 1. */
+/* Columns of the terminal at `descriptor` now; if there is no terminal or it does not report its width,
+ * COLUMNS of the environment, else 80; at least 1. */
 unsigned bp_terminal_width(int descriptor);
 /* Those of standard error. */
 unsigned bp_terminal_columns(void);
@@ -29,7 +29,8 @@ void bp_terminal_show(const char *text);
  * awaited and for how long already. */
 typedef struct BpWaiting BpWaiting;
 
-/* Begins; `format` as for printf. NULL when no line is wanted or no thread can be had: that is no failure. */
+/* Begins; `format` as for printf. NULL if no line is wanted or no thread can be started, which is not a
+ * failure. */
 BpWaiting *bp_waiting_begin(bool quiet, const char *format, ...) BP_PRINTF_LIKE(2, 3);
 /* Ends, takes the line away, frees. Accepts NULL. */
 void bp_waiting_end(BpWaiting *waiting);

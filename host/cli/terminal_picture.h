@@ -25,12 +25,12 @@ typedef struct BpTerminalPicture {
     unsigned columns, rows; /* that the latest drawing covers; 0 rows: there is none */
 } BpTerminalPicture;
 
-/* Asks the terminal, for half a second at most. BP_ERR_USAGE: standard error is no terminal that can draw, or
- * BALLPARK_SHOW names no way to draw. */
+/* Asks the terminal, for half a second at most. BP_ERR_USAGE: standard error is not a terminal that can draw,
+ * or BALLPARK_SHOW has an unknown value. */
 BpStatus bp_terminal_picture_begin(BpTerminalPicture *shown, BpError *err);
 
-/* Draws it above the status line, in place of the one before. BP_ERR_MEMORY; what the terminal makes of it
- * cannot be known. */
+/* Draws it above the status line, in place of the one before. BP_ERR_MEMORY; how the terminal draws it cannot
+ * be found out. */
 BpStatus bp_terminal_picture_draw(BpTerminalPicture *shown, const BpPicture *picture, BpTransfer transfer,
                                   BpError *err);
 

@@ -3,8 +3,8 @@
  * In:    what this rank knows.   Out: what the others know; decisions that are the same on all ranks.
  * Knows: the module that carries messages, when to load it.   Does not know: MPI, pictures, the command line.
  *
- * A communicator of NULL is this process alone: then every function below does nothing and succeeds. But for
- * those that say otherwise, all ranks call the same functions in the same order. A function that fails leaves
+ * A communicator of NULL is this process alone: then every function below does nothing and succeeds. Unless a
+ * comment states otherwise, all ranks call the same functions in the same order. A function that fails leaves
  * the others waiting, so the failure of one rank amid common work ends all (bp_comm_abort()); before and
  * after that, ranks agree on how it went (bp_comm_agree()). Waiting for others takes next to no processor
  * time. */
@@ -17,8 +17,8 @@ typedef struct BpComm BpComm;
 
 /* *comm stays NULL where this process was started alone, or the environment says BALLPARK_MPI=off. The module
  * is `ballpark_mpi.so` beside the program or in its library folder, or what BALLPARK_MPI names. `arguments`:
- * what all ranks must have been given alike. BP_ERR_USAGE: several were started, but there is no module, or
- * it knows of another number of ranks, or they were given different arguments. */
+ * what all ranks must have been given alike. BP_ERR_USAGE: several were started, but the module is missing,
+ * counts another number of ranks, or the ranks were given different arguments. */
 BpStatus bp_comm_begin(char *const *arguments, BpComm **comm, BpError *err);
 /* Ends all messages. Accepts NULL and the address of NULL. */
 void bp_comm_end(BpComm **comm);

@@ -29,8 +29,8 @@ typedef struct BpTransport {
     uint32_t version; /* BP_TRANSPORT_VERSION */
     const char *(*start)(BpPlace *place);
 
-    /* Each begins an exchange, which is over when test() says so; one is under way at a time, and its memory
-     * stays in place. At most BP_TRANSPORT_BLOCK bytes. */
+    /* Each begins an exchange, which is over when test() returns true; one is under way at a time, and its
+     * memory stays in place. At most BP_TRANSPORT_BLOCK bytes. */
     const char *(*broadcast)(void *bytes, uint64_t size); /* from rank 0 to all */
     /* From all to rank 0: `all` is Optional elsewhere; there rank r's begin at r * size. */
     const char *(*gather)(const void *own, uint64_t size, void *all);

@@ -44,7 +44,7 @@ struct BpSampleRange {
 
 #define BP_FILM_AOV(place, member, floats, mean, channels) float *member;
 
-/* Where a render stood when its film was read, so that another can go on from there (render.h). */
+/* Where a render stood when its film was read, so that another can continue from there (render.h). */
 typedef struct BpFilmPlan {
     bool adaptive;
     uint64_t first_sample; /* of every pixel, absolute */
@@ -73,7 +73,7 @@ struct BpFilm {
     size_t range_count;
     bool partial;       /* interrupted: some pixels have fewer samples than the ranges say */
     bool coarse;        /* some sample was so dim that a fine step may be over a millionth of it */
-    char *title;        /* Optional. The scene's title, for people; owned, not compared by a merge. */
+    char *title;        /* Optional. The scene's title, to be shown; owned, not compared by a merge. */
     int64_t *sums;      /* width * height * K * 3, index ((pixel * K) + k) * 3 + channel */
     int64_t *fine_sums; /* Optional. Of the same shape, in steps 2^38 times finer; NULL: all are 0 */
     uint32_t *counts;   /* width * height * K: valid samples */
@@ -86,7 +86,7 @@ struct BpFilm {
      * seed and not from the samples of the film (render/aovs.h), so films of other samples have the same. */
     AOV_LIST(BP_FILM_AOV)
     BpUnseen *unseen; /* Optional. What the samples find by chance; it too follows from the scene alone */
-    /* The samples of the whole job of which this film is a share; a count of 0: it is none. */
+    /* The samples of the whole job of which this film is a share; a count of 0: it is not a share. */
     struct BpSampleRange job;
     BpFilmPlan *plan; /* Optional. Not merged: a merged film belongs to no single render */
 };

@@ -5,10 +5,10 @@
  *
  * Layout (docs/FILES.md has it byte by byte): a JSON object on one line ended by a
  * newline, then, as film_stream.h packs them, width * height * replicates * 3 sums of 8 bytes (two's
- * complement); as many fine sums, if the header says so; width * height * replicates counts of 4 bytes;
- * depth, normal and albedo, path lengths of pixels, alpha, unseen light, decisions of adaptive sampling, each
- * if the header says so; and the CRC-32 of everything before it, 4 bytes. Scene hash and seed are strings,
- * since many readers of JSON keep 53 bits of a number. */
+ * complement); as many fine sums, if the header announces them; width * height * replicates counts of 4
+ * bytes; depth, normal and albedo, path lengths of pixels, alpha, unseen light, decisions of adaptive
+ * sampling, each if the header announces it; and the CRC-32 of everything before it, 4 bytes. Scene hash and
+ * seed are strings, since many readers of JSON keep 53 bits of a number. */
 #ifndef BP_FILM_FILM_FILE_H
 #define BP_FILM_FILM_FILE_H
 

@@ -43,7 +43,7 @@ typedef struct BpNode {
 typedef enum BpPart { BP_PART_VALUE, BP_PART_NAME } BpPart;
 
 /* Parses `text`, which must outlive the document. Refuses what is not JSON, repeated members, and a root that
- * is no object. Close what was opened. */
+ * is not an object. Close what was opened. */
 BpStatus bp_document_open(const char *text, size_t length, const char *name, BpDocument *document,
                           BpError *err);
 void bp_document_close(BpDocument *document);

@@ -35,7 +35,7 @@ BpStatus bp_image_read_hdr(const BpImageInput *input, BpImage **image, BpError *
 
 /* Fails with the code, "found ..., expected ...", in the file. */
 BpStatus bp_image_fail(const BpImageInput *input, BpError *err, const char *format, ...) BP_PRINTF_LIKE(3, 4);
-/* An image of the size that a header tells, which may be anything. */
+/* An image of the size in a header, which is untrusted. */
 BpStatus bp_image_allocate(const BpImageInput *input, uint64_t width, uint64_t height, BpImage **image,
                            BpError *err);
 

@@ -18,8 +18,8 @@ typedef struct BpPrimaries {
  * taken as they are. False: the primaries span no colours. */
 bool bp_primaries_matrix(const BpPrimaries *from, double matrix[3][3]);
 
-/* Converts the image unless its primaries are Rec. 709's, to within 0.0005, and notes it. `source`: what of
- * the file says so, for messages. BP_ERR_SCENE. Texels that are not finite stay as they are. */
+/* Converts the image unless its primaries are Rec. 709's, to within 0.0005, and notes it. `source`: which
+ * part of the file defines them, for messages. BP_ERR_SCENE. Texels that are not finite stay as they are. */
 BpStatus bp_image_convert(const BpImageInput *input, const BpPrimaries *from, const char *source,
                           BpImage *image, BpError *err);
 

@@ -109,7 +109,7 @@ BpStatus bp_missing_material_text(const BpMaterialIndex *index, const char *name
 /* The material of spheres that name none: matte. It is made when it is first asked for. UINT32_MAX: out of
  * memory, which `err` says. */
 uint32_t bp_implicit_material(BpScene *scene, BpError *err);
-/* Adds to an error that stands in the file of points where the scene asks for that file. */
+/* Adds the place in the scene that names the file to an error in the file of points. */
 void bp_name_document(const BpNode *file_node, const char *what, BpError *err);
 /* Keeps the name of a file of points, whose spheres begin at `first`. `particles`: see BpPointFile, copied.
  */

@@ -8,15 +8,16 @@
 
 #include <stddef.h>
 
-#define BP_CACHE_FILE_BYTES_MAX (64u << 20) /* a file that is larger is none of ours */
+#define BP_CACHE_FILE_BYTES_MAX (64u << 20) /* a larger file is not ours */
 
 typedef struct BpCachePart {
     const void *bytes;
     size_t size;
 } BpCachePart;
 
-/* All of a file that is ours and that nobody else can write, heap, a zero byte behind it; NULL: there is no
- * such file. Reading sets the file's time, so that those of no use any more are the oldest. */
+/* The whole of a file that belongs to this user and that no other user can write, heap, a zero byte behind
+ * it; NULL: there is no such file. Reading sets the file's time, so that those of no use any more are the
+ * oldest. */
 char *bp_cache_read(const char *path, size_t *size);
 
 /* Writes the parts one after the other. The file appears whole or not at all, and where it cannot be written

@@ -1,12 +1,13 @@
 /* driver_start.h: the drivers' first answers, once in a process, by one thread, and with a limit of time.
  *
- * In:    BALLPARK_DRIVER_SECONDS.   Out: drivers that have started; or an error that says which did not
- * answer. Knows: OpenCL's platforms.   Does not know: which devices there are.
+ * In:    BALLPARK_DRIVER_SECONDS.   Out: drivers that have started; or an error that names those which did
+ * not answer. Knows: OpenCL's platforms.   Does not know: which devices there are.
  *
  * The OpenCL loader loads all drivers at the first call, and a driver looks for its devices when it is first
  * asked for them. Neither is safe where several threads come first: PoCL 3.1 tells all threads but one that
- * it has no devices, or crashes. And a driver that hangs would hang everybody who asks. So everything that
- * uses OpenCL begins with bp_drivers_start(): one thread asks, all others wait, and nobody waits for ever. */
+ * it has no devices, or crashes. And a driver that hangs would block every caller. So everything that
+ * uses OpenCL begins with bp_drivers_start(): one thread makes the first calls, all others wait, and none
+ * waits for ever. */
 #ifndef BP_OPENCL_DRIVER_START_H
 #define BP_OPENCL_DRIVER_START_H
 
@@ -15,7 +16,7 @@
 #define BP_DRIVER_SECONDS "BALLPARK_DRIVER_SECONDS"
 
 /* How long a driver may take to start, and to open a device: what BALLPARK_DRIVER_SECONDS says, without it
- * 20; 0: no limit. BP_ERR_USAGE: it says something else. */
+ * 20; 0: no limit. BP_ERR_USAGE: it has another value. */
 BpStatus bp_driver_seconds(double *seconds, BpError *err);
 
 /* Until all drivers have listed their devices. BP_ERR_DEVICE: some driver hangs; so it is for every later

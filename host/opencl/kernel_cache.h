@@ -10,9 +10,9 @@
  * does a folder that cannot be read or written. Files appear whole, so processes need not wait for each
  * other. The folder has a limit, beyond which the program that was not used for the longest time goes.
  *
- * Whether a driver keeps programs itself is measured, once for each version of it: the time to build a small
- * program that nobody has seen is compared with the time to build it again. BALLPARK_KERNEL_CACHE=on keeps
- * programs in any case, =off never. */
+ * Whether a driver keeps programs itself is measured, once for each version of it: the time to build a new
+ * small program is compared with the time to build it again. BALLPARK_KERNEL_CACHE=on keeps programs in any
+ * case, =off never. */
 #ifndef BP_OPENCL_KERNEL_CACHE_H
 #define BP_OPENCL_KERNEL_CACHE_H
 

@@ -12,7 +12,7 @@
 #define BP_POCL_PLATFORM "Portable Computing Language"
 
 /* Whether PoCL cannot write its folder for compiled kernels, without which it offers no device or builds
- * nothing; then `text` says so, names the folder and the remedy. Creates the folder as PoCL would. */
+ * nothing; then `text` reports that, with the folder and the remedy. Creates the folder as PoCL would. */
 bool bp_pocl_cache_fails(char text[512]);
 
 /* Whether a folder of PATH has a linker. Without one most versions of PoCL end the process when they finish a

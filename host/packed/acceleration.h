@@ -3,7 +3,7 @@
  * In:    a validated Scene.   Out: the choice, with a reason a person understands.
  * Knows: up to how many spheres a list is faster.   Does not know: how a tree is built, OpenCL.
  *
- * Both give the same picture, bit for bit, so this is no effect: it is chosen, not called for. */
+ * Both give the same picture, bit for bit, so this is not an effect: it is chosen, not called for. */
 #ifndef BP_PACKED_ACCELERATION_H
 #define BP_PACKED_ACCELERATION_H
 
@@ -19,7 +19,7 @@ typedef enum BpAcceleration { BP_ACCELERATION_LIST, BP_ACCELERATION_TREE } BpAcc
 /* "list", "tree" */
 const char *bp_acceleration_name(BpAcceleration acceleration);
 
-/* What a scene gets where nobody forces another. `reason`: Optional. */
+/* What a scene gets unless another is forced. `reason`: Optional. */
 BpAcceleration bp_acceleration_choose(const BpScene *scene, char reason[BP_ACCELERATION_REASON_SIZE]);
 
 #endif

@@ -12,7 +12,7 @@
 
 /* X(identifier, name, what it simulates, what is left out without it, who is absent): the kernel sees
  * EFFECT_<identifier>. The last two are of effects that materials call for, as "... are left out" continues
- * and as "...: none of the materials in use" begins; where nobody is named, it is "no <name> among the
+ * and as "...: none of the materials in use" begins; where none is named, it is "no <name> among the
  * materials". */
 #define BP_EFFECT_LIST(X)                                                                                    \
     X(LAMBERTIAN, "lambertian", "diffuse scattering, its three lobes", "diffuse lobes are left out", "")     \

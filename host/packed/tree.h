@@ -16,7 +16,7 @@ typedef struct BpTreeOptions {
     bool single_precision; /* store float, else double */
     bool list;             /* leaves only, in order of index; no nodes */
     unsigned threads;      /* 0: all cores */
-    bool motions;          /* the kernel asks for motions, even if no sphere moves */
+    bool motions;          /* the kernel reads motions, even if no sphere moves */
 } BpTreeOptions;
 
 typedef struct BpTree {

@@ -34,9 +34,9 @@ bool color_range_take(ColorRange *range, const double color[3], uint64_t point, 
 const char *color_range_expected(const ColorRange *range);
 /* The number that stands for all light: 1, 255 or 65535; 0 where the largest number cannot be told. */
 double color_range_scale(const ColorRange *range);
-/* Fails because there is no such number. `what`: what a point is called; `name`: the file. */
+/* Fails: the number is missing. `what`: what a point is called; `name`: the file. */
 BpStatus color_range_fail(const ColorRange *range, const char *what, const char *name, BpError *err);
-/* What was taken, for people; NULL where the type left no choice. */
+/* What was assumed, as text; NULL where the type left no choice. */
 const char *color_range_note(const ColorRange *range);
 /* Makes numbers of that scale linear shares from 0 to 1, in place. Colours whose red is NaN are none. */
 void color_range_make_linear(double scale, float (*color)[3], size_t count);

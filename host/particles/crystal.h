@@ -19,8 +19,8 @@ typedef struct CrystalFrame {
 bool crystal_frame_of_edges(CrystalFrame *frame, const double edges[3][4]);
 
 /* Turns the cell that frame_cell_angles() has set, if there is one: its lengths and angles stay, since they
- * have more digits. A transformation that contradicts them by over 1 %, or of which rows are missing that
- * would be needed, tells nothing: then the cell repeats nowhere, and a note with the name `named` says so. */
+ * have more digits. A transformation that contradicts them by over 1 %, or of which necessary rows are
+ * missing, is ignored: then the cell is not repeated, and a note with the name `named` reports that. */
 void crystal_turn_cell(BpParticleFile *file, const CrystalFrame *frame, const char *named);
 
 #endif

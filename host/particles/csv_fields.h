@@ -21,8 +21,8 @@ enum { CSV_UNCLOSED = -1 };
  * CSV_UNCLOSED: a quote is not closed. */
 int csv_split(char *line, char separator, char **fields, int max, int *filled);
 
-/* Whether the line is a remark (#, % or //). A field in which a spreadsheet says that it found no number is
- * none. */
+/* Whether the line is a remark (#, % or //). A field in which a spreadsheet marks a missing number counts as
+ * missing. */
 bool csv_is_remark(const char *line);
 /* Whether no field of the line holds anything. */
 bool csv_is_empty(const char *line);
@@ -34,10 +34,11 @@ char csv_separator_of_numbers(const char *line);
 char csv_separator_of_names(const char *line);
 
 /* A field as a number; NaN where the table has none: an empty field, NA, null, none, #N/A, nan. A comma may
- * be the decimal sign, if it is in all numbers. Fails on what is no number, and on separators of thousands.
+ * be the decimal sign, if it is in all numbers. Fails on what is not a number, and on separators of
+ * thousands.
  */
 BpStatus csv_number(const Input *input, CsvForm *form, const char *field, double *value, BpError *err);
-/* The same without a word: NaN for what is no number; truth values are 1 and 0. */
+/* The same without an error: NaN for what is not a number; truth values are 1 and 0. */
 double csv_number_or_none(const CsvForm *form, const char *field);
 
 #endif

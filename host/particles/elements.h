@@ -23,8 +23,8 @@ extern const BpElement bp_elements[BP_ELEMENT_MAX + 1];
 /* The atomic number of a symbol in any case, D and T being hydrogen; 0: none. */
 uint8_t bp_element_of_symbol(const char *symbol);
 /* The element of an atom from its name and its residue's, as in PDB and GRO files; `name` may begin with a
- * blank, as columns 13 to 16 of a PDB line do, which tells CA (calcium) from " CA" (a carbon). `fixed`: the
- * name is such a column. 0: unknown. *dummy: a site of a model (of water, say) and no atom. */
+ * blank, as columns 13 to 16 of a PDB line do, which distinguishes CA (calcium) from " CA" (a carbon).
+ * `fixed`: the name is such a column. 0: unknown. *dummy: a site of a model (of water, say) and no atom. */
 uint8_t bp_element_of_name(const char *name, const char *residue, bool fixed, bool *dummy);
 /* The element of a mass in daltons as people round it: within 0.05 % (0.012 dalton for the light ones) of the
  * element's, or that with one decimal; 0: none. *united: it is the carbon of a group that stands as one atom:

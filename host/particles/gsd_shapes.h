@@ -14,7 +14,7 @@ typedef struct GsdShape {
         *kind; /* what a sphere stands for ("ellipsoid"; static); NULL: a sphere, or nothing that is known */
     double diameter; /* of a sphere of equal volume for ellipsoids, of one that reaches the farthest corner
                         for others; NaN: none is given */
-    double (*sphere)[4]; /* of a union: centres and radii; NULL: it is none */
+    double (*sphere)[4]; /* of a union: centres and radii; NULL: it is not one */
     size_t sphere_count;
 } GsdShape;
 

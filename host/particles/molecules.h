@@ -8,7 +8,7 @@
 #include "bonds.h"
 
 /* Moves the particles of each molecule next to each other, where the cell's sides part them, and brings the
- * images of `bonds` in line with that; a molecule that goes on without end (a crystal, a chain that is bonded
+ * images of `bonds` in line with that; an infinite molecule (a crystal, a chain that is bonded
  * to its own image) stays. *moved: how many particles. */
 BpStatus bp_molecules_make_whole(BpParticles *particles, const bool *shown, BpBonds *bonds, size_t *moved,
                                  BpError *err);

@@ -6,7 +6,7 @@
  * Formats: XYZ (plain and extended), PDB, PQR, mmCIF, GRO, LAMMPS dump and data, GSD, CSV, PLY; each also
  * packed by gzip. Nothing in a file is trusted: memory grows with what was read and never with what a count
  * promises, and every error names the file, and the line where there are lines. A reader that has to guess
- * says so in `notes`. Coordinates are as written, in the file's unit of length. */
+ * reports that in `notes`. Coordinates are as written, in the file's unit of length. */
 #ifndef BP_PARTICLES_PARTICLES_H
 #define BP_PARTICLES_PARTICLES_H
 
@@ -94,8 +94,8 @@ void bp_particles_note(BpParticles *particles, const char *format, ...) BP_PRINT
 
 typedef struct BpParticleFile BpParticleFile;
 
-/* By the name's ending and the beginning of the stream, which is read to its first kilobytes and set back. A
- * file that says itself what it is goes before the name. BP_PARTICLES_NONE: neither tells. */
+/* By the name's ending and the beginning of the stream, which is read to its first kilobytes and set back.
+ * What a file itself declares takes precedence over its name. BP_PARTICLES_NONE: neither tells. */
 BpParticleFormat bp_particle_format_find(const char *name, FILE *stream);
 
 /* Opens a file for its frames. `stream`: a regular file, which stays the caller's and must outlive the

@@ -1,6 +1,6 @@
 /* pdb_atom.h: the line of one atom, in a PDB file and in a PQR file.
  *
- * In:    a line that begins with ATOM or HETATM.   Out: what it says of the atom.
+ * In:    a line that begins with ATOM or HETATM.   Out: the atom that it describes.
  * Knows: columns and words of such lines, and how programs write numbers that do not fit.   Does not know:
  * which other lines there are. */
 #ifndef BP_PARTICLES_PDB_ATOM_H

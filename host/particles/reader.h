@@ -3,8 +3,8 @@
  * In:    an input.   Out: calls of frame_begin and frame_add.
  * Knows: what all formats share.   Does not know: which formats there are.
  *
- * A reader is one function that reads one frame. It is called again and again until it says that there is no
- * further one. */
+ * A reader is one function that reads one frame. It is called repeatedly until it reports that there are no
+ * more. */
 #ifndef BP_PARTICLES_READER_H
 #define BP_PARTICLES_READER_H
 
@@ -61,7 +61,7 @@ static inline bool particle_has_place(const Particle *particle) {
 /* The place among the particles that are left of the one with a number, counted as they were handed over,
  * from 0; UINT32_MAX: it was left out. */
 uint32_t frame_place(const BpParticleFile *file, uint32_t number);
-/* Gives the particle of that number a radius; one that is not above 0 is none. */
+/* Gives the particle of that number a radius; one that is not above 0 is ignored. */
 BpStatus frame_set_radius(BpParticleFile *file, uint32_t number, double radius, BpError *err);
 /* `a` and `b` count the particles as they were handed over, from 0, with those that were left out. A bond of
  * one that was left out is too. */
@@ -80,7 +80,7 @@ void atom_note_masses(BpParticles *particles, size_t known, size_t count, const 
  * and y), its origin at 0. Cells that are none (lengths of 0 or 1, as placeholders) are passed over. */
 void frame_cell_angles(BpParticleFile *file, const double lengths[3], const double angles[3]);
 /* A cell from its edges, the rows, and which of them repeat. One without length does not; if those that do
- * span nothing, none does, and a note says so. */
+ * span nothing, none does, and a note reports that. */
 void frame_cell(BpParticleFile *file, const double origin[3], const double edges[3][3],
                 const bool periodic[3]);
 #define FRAME_PERIODIC ((const bool[3]){true, true, true})

@@ -4,9 +4,9 @@
  * Knows: counting and dividing.   Does not know: OpenCL, clocks, pixels.
  *
  * Paths of one picture can differ a million times in length: beside a sky lies a room of mirrors. So the
- * speed of the latest chunk says what to expect, and two bounds say what to be ready for: as long as there
- * are parts of the picture that nobody has seen, every path may be as long as the depth allows; afterwards,
- * samples may be as slow as the slowest of the last two passes over the picture. */
+ * speed of the latest chunk is what is expected, and two bounds are the worst case: as long as parts of the
+ * picture have not been traced, every path may be as long as the depth allows; afterwards, samples may be as
+ * slow as the slowest of the last two passes over the picture. */
 #ifndef BP_RENDER_PACE_H
 #define BP_RENDER_PACE_H
 

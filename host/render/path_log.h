@@ -10,7 +10,7 @@
 /* One ray segment. Points are in the scene's own coordinates. */
 typedef struct BpPathStep {
     double origin[3], direction[3]; /* of the segment; the direction is a unit vector */
-    bool scattered;                 /* a medium scattered it after `distance`, at `point`, and it goes on */
+    bool scattered;                 /* a medium scattered it after `distance`, at `point`, and it continues */
     bool met;                       /* it met a sphere; else it left for the sky, and the path ends */
     bool caught, dark;              /* or it met the shadow catcher, and in shadow; the path ends */
     double distance;                /* where it did; else undefined, as are the next four */

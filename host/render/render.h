@@ -16,9 +16,10 @@ typedef struct BpRenderReport {
     BpAcceleration acceleration;
     BpKernelForm kernel; /* the form that was built */
     BP_SETTING_LIST(BP_SETTING_MEMBER)
-    uint64_t program_key;   /* equal keys: the same program, nothing was built anew */
-    uint64_t private_bytes; /* of one work-item of the trace kernel, as the driver tells; 0: it does not */
-    const char *build_log;  /* valid while the render lives */
+    uint64_t program_key; /* equal keys: the same program, nothing was built anew */
+    uint64_t
+        private_bytes; /* of one work-item of the trace kernel, as the driver reports it; 0: it does not */
+    const char *build_log; /* valid while the render lives */
     double tree_seconds, pack_seconds, kernel_build_seconds;
     BpCalibration calibration;   /* of the first device; form BP_KERNEL_AUTO: none decided */
     double calibration_seconds;  /* of trials on all devices; 0: what they found was remembered */
@@ -53,7 +54,7 @@ void bp_render_join(BpRender *render, struct BpComm *comm);
 /* The film as it stands, read from the device; owned by the render, valid until the next step. */
 BpStatus bp_render_read_film(BpRender *render, const BpFilm **film, BpError *err);
 
-/* The same as it goes to a file: with what another render needs to go on from it, unless this one is
+/* The same as it goes to a file: with what another render needs to continue from it, unless this one is
  * finished, and with depth, normal and albedo if the options have `features`. */
 BpStatus bp_render_read_whole_film(BpRender *render, const BpFilm **film, BpError *err);
 

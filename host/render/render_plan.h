@@ -15,7 +15,7 @@ BpCaustics bp_render_caustics_of(const BpEffects *effects, const BpRenderOptions
 
 /* Whether lamps are sampled: BP_LIGHT_SAMPLING_OFF too where the scene does not call for it. */
 BpLightSampling bp_render_light_sampling(const BpScene *scene, const BpRenderOptions *options);
-/* The same where the scene's effects are known, so that nobody looks through its spheres again. */
+/* The same where the scene's effects are known, so that its spheres need not be searched again. */
 BpLightSampling bp_render_light_sampling_of(const BpEffects *effects, const BpRenderOptions *options);
 
 /* Packs the scene for `device` and says how to run it there; the caller clears `packed`. BP_ERR_DEVICE: the

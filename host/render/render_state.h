@@ -32,7 +32,7 @@ struct BpRender {
     BpFilm *film;         /* as last read; NULL before that */
     BpComm *comm;         /* NULL: no other process works on it */
     BpRounds round;
-    bool resumed;          /* it goes on from a film */
+    bool resumed;          /* it continues from a film */
     BpFilm *base;          /* which is this; NULL: nothing, or another rank has it */
     uint64_t base_samples; /* pixel samples in it */
     uint64_t goal_samples; /* where a stop rule ends it; 0: none has said */
@@ -42,7 +42,7 @@ struct BpRender {
     BpPilotAim aim; /* of the pilot, until it has run */
     bool pilot_done;
     BpUnseen *unseen;    /* what it has found; NULL: nothing */
-    BpUnseenLight pilot; /* the same for people */
+    BpUnseenLight pilot; /* the same as text */
     BpPicture aovs;      /* its depth, normal and albedo, once computed */
     BpChunk last_chunk;
     double tree_seconds, pack_seconds, trace_seconds;

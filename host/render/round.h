@@ -5,9 +5,9 @@
  * Knows: who traces what, and when ranks speak to each other.   Does not know: how (cluster/comm.h), files.
  *
  * All ranks have the same schedule and take the same block of it in each round, of about ROUND_SECONDS; each
- * traces its portion. So between rounds the samples that are there are those of a render alone, and films say
- * how to go on as ever. A round costs a few short messages. Sums go to rank 0 only when something is decided
- * or written. */
+ * traces its portion. So between rounds the samples that are there are those of a render alone, and films
+ * record how to continue, as always. A round costs a few short messages. Sums go to rank 0 only when
+ * something is decided or written. */
 #ifndef BP_RENDER_ROUND_H
 #define BP_RENDER_ROUND_H
 
@@ -20,10 +20,10 @@ BpStatus bp_round_trace(BpRender *render, bool *more, BpError *err);
 /* Adds the films of all ranks on rank 0. All ranks. */
 BpStatus bp_round_add_films(BpComm *comm, BpFilm *film, BpError *err);
 
-/* What a film that the render goes on from tells rank 0 alone, since the others have its header: pixel
- * samples, and `bytes` of decisions (whose number all know). *received becomes a copy to be freed on the
- * other ranks, and stays NULL here and where there are none. A rank that fails leaves the others waiting, so
- * it fails amid common work (comm.h). All ranks. */
+/* What only rank 0 has of the film from which the render continues, since the others read its header alone:
+ * pixel samples, and `bytes` of decisions (whose number all know). *received becomes a copy to be freed on
+ * the other ranks, and stays NULL here and where there are none. A rank that fails leaves the others waiting,
+ * so it fails amid common work (comm.h). All ranks. */
 BpStatus bp_round_share_resumed(BpComm *comm, uint64_t *samples, uint8_t *decisions, size_t bytes,
                                 uint8_t **received, BpError *err);
 

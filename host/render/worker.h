@@ -30,7 +30,7 @@ typedef struct BpWorkerSetup {
     BpDevice *device;                    /* Optional. Open already, to be used and not to be closed. */
 } BpWorkerSetup;
 
-/* Work-items in a work-group, where nobody wants another number. */
+/* Work-items in a work-group, unless another number is set. */
 #define BP_LOCAL_SIZE_SAMPLE 64u
 #define BP_LOCAL_SIZE_PACKET 1u
 

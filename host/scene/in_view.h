@@ -7,11 +7,11 @@
 
 #include "scene.h"
 
-/* Whether some sphere reaches into the field of view, as far as planes along its edges and a cone around it
- * tell: false is certain. */
+/* Whether some sphere reaches into the field of view, judged by planes along its edges and a cone around it:
+ * false is certain. */
 bool bp_scene_has_sphere_in_view(const BpScene *scene);
 
-/* Whether a path goes on from every material of the scene, sooner or later: then a picture of which every
+/* Whether paths continue from every material of the scene, sooner or later: then a picture of which every
  * path ended at once shows no sphere. */
 bool bp_scene_always_scatters(const BpScene *scene);
 

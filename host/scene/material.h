@@ -22,7 +22,7 @@ struct BpTexture;                     /* texture.h */
 
 /* What a kind of material can be, bits of BpMaterialType.traits. */
 enum {
-    BP_SCATTERS = 1,     /* paths go on from it */
+    BP_SCATTERS = 1,     /* paths continue from it */
     BP_HAS_INSIDE = 2,   /* light goes through: a negative radius turns it inside out */
     BP_SHOWS_COLOUR = 4, /* adds a colour of up to 1 of its own to what it emits */
 };

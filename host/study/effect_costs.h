@@ -41,7 +41,7 @@ typedef struct BpCosts {
     BpKernelCost kernels[BP_KERNELS_MAX]; /* [0]: specialised; the last: general */
 } BpCosts;
 
-/* Called before each piece of work with a line that says what it is; `context` is handed through. */
+/* Called before each piece of work with a line that describes it; `context` is handed through. */
 typedef void BpCostProgress(const char *what, void *context);
 
 typedef struct BpCostPlan {

@@ -40,7 +40,7 @@ typedef struct BpStudyConfiguration {
     const char *name;  /* "depth 10"; static */
     char command[128]; /* options of `ballpark render` that give it; "": none are needed */
     BpRenderOptions options;
-    BpStudyFresnel fresnel; /* SCENE: as the scene says; else a change of the scene */
+    BpStudyFresnel fresnel; /* SCENE: as in the scene; else a change of the scene */
 } BpStudyConfiguration;
 
 /* A mean and its 95 % interval; NaN: unknown. */
@@ -130,7 +130,7 @@ const char *bp_study_shortness_text(const BpStudyResult *result, char *text, siz
 /* One line: what to do for this error and what it costs; no line end. */
 const char *bp_study_advice_text(const BpStudyResult *result, const BpStudyAdvice *advice, char *text,
                                  size_t size);
-/* The table for people, with the marks of base/fold.h; CSV; the page. False when the stream failed or memory
+/* The table as text, with the marks of base/fold.h; CSV; the page. False when the stream failed or memory
  * ran out; errno says. */
 bool bp_study_print(const BpStudyResult *result, FILE *out);
 bool bp_study_print_csv(const BpStudyResult *result, FILE *out);

@@ -3,9 +3,9 @@
  * In:    seconds of rounds.   Out: undisturbed seconds, ratios with their intervals.
  * Knows: order statistics.    Does not know: what was timed.
  *
- * A machine that has other work is slower now and then, by a quarter or more, for a tenth of a second or
- * several. So configurations take turns in short rounds of equal work, and medians over rounds are compared:
- * what hits one configuration in one round is an outlier, and what hits a whole round cancels. */
+ * A machine that has other work is occasionally slower, by a quarter or more, for a few tenths of a second.
+ * So configurations take turns in short rounds of equal work, and medians over rounds are compared: what hits
+ * one configuration in one round is an outlier, and what hits a whole round cancels. */
 #ifndef BP_STUDY_TIMING_H
 #define BP_STUDY_TIMING_H
 

@@ -3,8 +3,8 @@
  * In:    a picture of bytes, a title.   Out: what the person does with mouse and keys.
  * Knows: nothing.   Does not know: SDL (the module does), scenes.
  *
- * A module is a shared object that exports one struct, `bp_window`. So the program needs no library for
- * windows unless somebody asks for one. All functions are called from one thread, ready() first, then open().
+ * A module is a shared object that exports one struct, `bp_window`. So the program needs a library for
+ * windows only when a window is opened. All functions are called from one thread, ready() first, then open().
  * Those that return a text return NULL, or what went wrong, valid until the next call. */
 #ifndef BP_VIEW_WINDOW_H
 #define BP_VIEW_WINDOW_H

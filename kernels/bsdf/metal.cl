@@ -33,7 +33,7 @@ static BsdfSample metal_sample(const Surface *surface, SampleKey key, vuint boun
  * density is ((c - h)^2 + (c + h)^2) / (4 pi f h), and in the ball ((c + h)^3 - (c - h)^3) / (4 pi f^3).
  * sin^2(gamma) comes from |direction - R|^2, which keeps the bits that 1 - c^2 loses. `drawn`: the direction was
  * drawn from this lobe, so it lies in its cone even where rounding would put it beyond the rim. Below
- * the surface the density is 0; it is no larger elsewhere for that, since what is drawn there is absorbed. */
+ * the surface the density is 0; it does not grow elsewhere, since what is drawn there is absorbed. */
 static vreal metal_pdf(const Lobe *lobe, Vec3 direction, int drawn) {
     const Vec3 off = subtract3(direction, lobe->axis);
     const vreal f = lobe->fuzz;

@@ -6,7 +6,7 @@
  * Knows: lanes.cl.   Does not know: what is divided. Read once for each number of lanes.
  *
  * OpenCL rounds quotients and roots in double correctly, and those of floats if the device offers that. A device that
- * does not may be off by 2.5 and 3 units in the last place (4 in the embedded profile), though many are right all the same.
+ * does not may be off by 2.5 and 3 units in the last place (4 in the embedded profile), although many are correct.
  * With OWN_ROUNDING, each result of the device is checked, and a wrong one is computed anew, both by fma (P. Markstein,
  * "Computation of elementary functions on the IBM RISC System/6000 processor", 1990). OpenCL rounds fma correctly
  * everywhere, if slowly without hardware for it. All floats are covered, subnormal ones too, unless the device takes those

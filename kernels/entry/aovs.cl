@@ -4,7 +4,7 @@
  * In:    the packed scene; a range of pixels; a range of samples, whose camera rays are those of the render.
  * Out:   for each pixel AOV_FLOATS sums over its samples, in the places that aov_list.h gives them. A ray that meets
  *        nothing adds nothing.
- * Knows: aov_list.h, path.cl, fetch_surface.cl.   Does not know: how paths go on. */
+ * Knows: aov_list.h, path.cl, fetch_surface.cl.   Does not know: how paths continue. */
 
 /* One work-item a pixel; as many of its samples at a time as there are lanes. */
 __kernel VECTORS_WRITTEN void aovs(SCENE_PARAMETERS uint first_pixel, uint pixel_count, uint first_sample,

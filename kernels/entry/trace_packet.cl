@@ -30,7 +30,7 @@ __kernel VECTORS_WRITTEN void trace(TRACE_PARAMETERS) {
         uint alive = popcount(lane_bits(busy));
         if (alive == 0 || (alive <= LANE_COUNT / 2 && next < end)) {
             const vreal count = uint_to_real(path.depth) + choose(cut, splat(R(0.5)), splat(0));
-            /* Of a path that goes on this is not the last word, but its place is its own, and to ask costs more. */
+            /* For a path that continues, this is not the final value; but its place belongs to it alone, and a test would cost more. */
             scatter4(path.radiance.x, path.radiance.y, path.radiance.z, count, number, samples);
             if (next >= end) {
 #if EFFECT_LAMPS

@@ -103,7 +103,7 @@ static ReplicateSum sum_split(__global const real *samples, uint begin, uint end
     return total;
 }
 
-/* Adds to the fine sums of a cell, which hold nothing until its count says so. */
+/* Adds to the fine sums of a cell, which are undefined until its count has COUNT_HAS_FINE. */
 static void add_fine(__global long *fine_sums, long4 fine, uint known) {
     const int begun = (known & COUNT_HAS_FINE) != 0;
     fine_sums[0] = (begun ? fine_sums[0] : 0) + fine.x;

@@ -1,4 +1,4 @@
-/* bounce.cl: how a path goes on by one segment, in lane code.
+/* bounce.cl: extends a path by one segment, in lane code.
  *
  * In:    paths and the scene.   Out: the same paths, one segment longer.
  * Knows: the tree, the shape, the sky, the shadow catcher, the media, the lamps, the materials and their textures, each by one function.   Does not know: pixels. */

@@ -6,7 +6,7 @@
  * sampled perfectly, both weights follow from the ratio of the two densities, and so does what a ray to a lamp brings.
  *
  * In:    paths that wait to be lit, or a lamp that a path has hit.   Out: paths with that light, or the weight of the hit.
- * Knows: lamps.cl, discs.cl, scatter.cl, vary_surface.cl, flight.cl, the closest hit.   Does not know: how a path goes on.
+ * Knows: lamps.cl, discs.cl, scatter.cl, vary_surface.cl, flight.cl, the closest hit.   Does not know: how a path continues.
  *
  * A ray to a lamp passes the boundaries of media as a path does: each begins another of its segments, of which it has no more
  * than the path. So both ways still have the same lengths. */

@@ -184,7 +184,7 @@ FORCE_INLINE static vuint choose_child(const Scene *scene, vuint node, int root,
     return gather_split_uint(scene->lamp_children, 0, node * LAMP_WIDTH + child);
 }
 
-/* The lanes that are to go on below the child `word`. */
+/* The lanes that are to descend below the child `word`. */
 static vbool goes_deeper(vbool active, vreal probability, vuint word) {
     return active & (probability > splat(0)) & vbool_of_uint((word & splat_uint(CHILD_LEAF)) == splat_uint(0));
 }

@@ -90,7 +90,7 @@ static vbool fly(const Scene *scene, vbool moving, vreal distance, Path *path, v
     return scattered;
 }
 
-/* The lanes `scattered` go on from where the medium has scattered them, `length` ahead. Which medium that is will be asked
+/* The lanes `scattered` continue from where the medium has scattered them, `length` ahead. Which medium that is will be asked
  * again, since it costs little, and rounding may have put the point past a boundary. */
 static void scatter_in_medium(const Scene *scene, vbool scattered, vreal length, Path *path) {
     const vuint first = first_dimension(path->depth - 1u);
