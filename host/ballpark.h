@@ -30,8 +30,8 @@
  * call unless its comment documents that.
  * - Threads. A handle is used by one thread at a time, but functions that take a `const` handle may run at
  *   the same time: many threads may render one scene, each by a render of its own. Different handles are
- *   independent, also in the first calls of a process: there is no state outside of handles, but for caches
- *   in files and the start of the OpenCL drivers, which one thread does while the others wait. The
+ *   independent, also in the first calls of a process: there is no state outside of handles, except for
+ * caches in files and the start of the OpenCL drivers, which one thread does while the others wait. The
  *   environment (BALLPARK_KERNELS, and what OpenCL drivers read) must not change meanwhile. No function
  *   prints, exits or touches signals; a driver may: PoCL ends the process by abort() when it lacks memory.
  * - Processes. OpenCL drivers do not survive fork(). In a process forked from one that has used OpenCL, every
@@ -444,7 +444,7 @@ BP_API BpStatus bp_render_read(BpRender *render, BpPicture *picture, BpError *er
  * of, by the first device. What the picture held of them is released. BP_ERR_USAGE: without options.features,
  * or for a picture of another size. */
 BP_API BpStatus bp_render_aovs(BpRender *render, BpPicture *picture, BpError *err);
-/* Light that the samples of a picture find by chance only: it comes to matte surfaces by way of glass or
+/* Light that the samples of a picture find by chance only: it comes to matte surfaces via glass or
  * mirrors, or is seen in them, or is smaller than a pixel. It follows from the scene and the camera, whatever
  * has been sampled; and until samples have found it, bp_film_nrmse() and the errors of pixels know of it from
  * here. Luminances, means over the picture. */
@@ -453,7 +453,7 @@ typedef struct BpUnseenLight {
     double mean;   /* that it adds to a sample; 0: there is no such light */
     double square; /* the mean of its square: nearly the variance of a sample */
     double found;  /* the share of samples that find it, by the light that each brings: mean^2 / square */
-    size_t sphere_count; /* spheres by way of which most of the noise comes, with their parts of `square` */
+    size_t sphere_count; /* spheres via which most of the noise comes, with their parts of `square` */
     size_t spheres[BP_UNSEEN_SPHERES];
     double parts[BP_UNSEEN_SPHERES];
     double direct;  /* the part of `square` of lights that are seen with nothing between */

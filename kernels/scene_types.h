@@ -296,7 +296,7 @@ typedef struct PackedVariation {
  * Arrays of slots, of lamps and of the tree grow with the spheres. Where one is larger than a buffer of the
  * device may be, all of them come in SCENE_PARTS parts of PART_LENGTH elements each, the last ones perhaps
  * empty (bvh/parts.cl). PART_LENGTH is a multiple of PART_UNIT, so that no node and no leaf lies in two
- * parts; a node of the tree of lamps may, but for the root, which is read from the first part alone.
+ * parts; a node of the tree of lamps may, except for the root, which is read from the first part alone.
  *
  * Materials are arrays of numbers here,
  * since Mesa's rusticl (22.3) gathers wrong ones through a pointer to structs that is cast inside a loop. */

@@ -60,7 +60,7 @@ BpStatus bp_comm_agree(BpComm *comm, BpStatus status, BpError *err);
 void bp_comm_begin_work(BpComm *comm);
 void bp_comm_end_work(BpComm *comm);
 bool bp_comm_is_at_work(const BpComm *comm);
-/* Puts "rank 3 on node7: " before the message of an error, but for rank 0's. */
+/* Puts "rank 3 on node7: " before the message of an error, except for rank 0's. */
 void bp_comm_sign(const BpComm *comm, BpError *err);
 /* Ends all ranks' processes at once; does not return when there are other ranks. By one rank alone. */
 void bp_comm_abort(BpComm *comm, int exit_code);

@@ -40,7 +40,7 @@ BpStatus bp_adaptive_create(uint32_t width, uint32_t height, uint64_t samples_ma
 void bp_adaptive_destroy(BpAdaptive **adaptive);
 
 /* The next pass on the way to a mean of `samples` a pixel, at least BP_ADAPTIVE_FIRST and not below those of
- * earlier calls; false when it has been reached, as nearly as doublings allow, never above but for counts
+ * earlier calls; false when it has been reached, as nearly as doublings allow, never above except for counts
  * that earlier calls have led to. `film` holds all samples of all passes so far. *pass is valid only
  * when true. */
 BpStatus bp_adaptive_next(BpAdaptive *adaptive, const BpFilm *film, uint64_t samples, bool *more,

@@ -113,7 +113,7 @@ uint64_t bp_scene_hash(const BpScene *scene);
 
 /* ---- the sums (film.c) ---- */
 
-/* Zeroed but for the three sizes. 1 <= replicates <= BP_REPLICATES_MAX; sides up to BP_PICTURE_SIDE_MAX.
+/* Zeroed except for the three sizes. 1 <= replicates <= BP_REPLICATES_MAX; sides up to BP_PICTURE_SIDE_MAX.
  * BP_ERR_LIMIT or BP_ERR_MEMORY. */
 BpStatus bp_film_create(uint32_t width, uint32_t height, uint32_t replicates, BpFilm **film, BpError *err);
 

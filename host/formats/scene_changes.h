@@ -9,7 +9,7 @@
 #include "document.h"
 
 /* Changes the open document by MEMBER=VALUE each, in order. MEMBER is a path as messages write it:
- * camera.vfov, spheres[0].radius, materials.glass.albedo[2]; what is absent is added, but for elements of
+ * camera.vfov, spheres[0].radius, materials.glass.albedo[2]; what is absent is added, except for elements of
  * lists. VALUE is JSON; a plain word is the text of that word; null removes the member. The texts must live
  * as long as the document. BP_ERR_USAGE names what was found and what was expected; whether the scene may
  * have the member at all, the reader of scenes says. */

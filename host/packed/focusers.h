@@ -29,7 +29,7 @@ typedef struct BpFocusers {
 /* Whether rays are sent through focusers, in a scene that has rays to lamps. `reason`: why, for a person. */
 bool bp_focusers_explain(const BpScene *scene, size_t size, char *reason);
 
-/* Whether a chain is sought from vertices by way of a sphere to a lamp, or to a disc, where rays are sent
+/* Whether a chain is sought from vertices via a sphere to a lamp, or to a disc, where rays are sent
  * through focusers. */
 bool bp_focuses_lamp(const BpScene *scene, size_t sphere, size_t lamp);
 bool bp_focuses_disc(const BpScene *scene, size_t sphere, size_t disc);

@@ -40,14 +40,14 @@ enum { LOBE_FUZZ_SPHERE = LOBE_HEMISPHERE + 1, LOBE_FUZZ_BALL, LOBE_PHASE, LOBE_
 typedef struct BsdfSample {
     Vec3 direction;    /* unit */
     Vec3 weight;       /* on the radiance that comes along the direction */
-    vbool scattered;   /* the path goes on; else it has been absorbed */
-    vbool transmitted; /* it goes on beyond the surface */
+    vbool scattered;   /* the path continues; else it has been absorbed */
+    vbool transmitted; /* it continues beyond the surface */
 #if SAMPLES_LAMPS
     Lobe lobe; /* that the direction was drawn from */
 #endif
 } BsdfSample;
 
-/* A path that goes on along `direction`, on the side from which it came. */
+/* A path that continues along `direction`, on the side from which it came. */
 static BsdfSample bsdf_sample_reflected(const Surface *surface, Vec3 direction) {
     BsdfSample sample;
     sample.direction = direction;

@@ -14,7 +14,7 @@ enum {
                                           4: the shadow catcher where there is none */
     LOG_ENTERS,                        /* from outside to inside */
     LOG_GOES_ON,
-    LOG_INWARD, /* goes on inside */
+    LOG_INWARD, /* continues inside */
     LOG_LIT,    /* radiance from a lamp to which the vertex sent a ray */
     LOG_REALS = LOG_LIT + 3
 };

@@ -5,7 +5,7 @@
  * Knows: one_path.cl.   Does not know: what a bounce does.
  *
  * Paths differ in length, and work-items that proceed in step wait for the longest of theirs. Here none waits before its
- * group's share is used up. Who traces a sample changes nothing of it. Paths begin and go on in one loop, so that work-items
+ * group's share is used up. Who traces a sample changes nothing of it. Paths begin and continue in one loop, so that work-items
  * meet after each segment; a loop for each path would make them wait again. */
 __kernel VECTORS_WRITTEN void trace(TRACE_PARAMETERS) {
     __local uint next;

@@ -30,7 +30,7 @@ static Vec3 texture_value(const Scene *scene, vuint number, const Point *point, 
 #endif
 }
 
-/* What the sphere in `slot` emits at a point, in the `active` lanes: `radiance`, but for materials whose light varies. */
+/* What the sphere in `slot` emits at a point, in the `active` lanes: `radiance`, except for materials whose light varies. */
 static Vec3 vary_radiance(const Scene *scene, vuint slot, const Point *point, Vec3 outward, vbool active, Vec3 radiance) {
     const vuint material = gather_split_uint(scene->slot_material, 0, slot);
     const vuint number = gather_uint(scene->variations + VARIATION_EMIT, material * VARIATION_UINTS);

@@ -290,7 +290,7 @@ static Vec3 sample_cone(const LampCone *cone, vreal u, vreal v) {
     Vec3 s, t;
     basis_across(w, &s, &t);
     const Vec3 direction = madd3(cosine, w, madd3(along, s, scale3(across, t)));
-    /* The length is 1 but for rounding: one step of Newton's method stands for a root and a division. */
+    /* The length is 1 except for rounding: one step of Newton's method stands for a root and a division. */
     return scale3(fma(dot3(direction, direction), splat(R(-0.5)), splat(R(1.5))), direction);
 }
 

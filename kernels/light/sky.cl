@@ -7,7 +7,7 @@ static Vec3 sky_radiance(__global const PackedSky *sky, Vec3 direction) {
     const Vec3 bottom = splat3(sky->bottom), top = splat3(sky->top);
     const vreal height = dot3(direction, splat3(sky->up));
     const Vec3 radiance = madd3(fma(splat(R(0.5)), height, splat(R(0.5))), subtract3(top, bottom), bottom);
-    /* A direction is a unit vector but for rounding, and so may lie a little beyond an end that is black. */
+    /* A direction is a unit vector except for rounding, and so may lie a little beyond an end that is black. */
     return vec3(at_least(radiance.x, splat(0)), at_least(radiance.y, splat(0)), at_least(radiance.z, splat(0)));
 }
 

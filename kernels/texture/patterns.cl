@@ -8,7 +8,7 @@ static vreal by_axis(vuint axis, vreal a, vreal b, vreal c) {
     return choose(vbool_of_uint(axis == splat_uint(0)), a, choose(vbool_of_uint(axis == splat_uint(1)), b, c));
 }
 
-/* How many waves lie between the origin's plane and the point, along the axis, but for a whole number. */
+/* How many waves lie between the origin's plane and the point, along the axis, except for a whole number. */
 static vreal waves_along(const Scene *scene, vuint numbers, vuint axis, const Point *point) {
     vuint cell;
     vreal waves;
@@ -27,7 +27,7 @@ static vrefined from_origin(const Scene *scene, vuint place, vreal high, vreal l
     return (to_refined(high) - to_refined(centre)) + (to_refined(low) - to_refined(centre_low));
 }
 
-/* How many waves lie between the axis and the point, but for a whole number. */
+/* How many waves lie between the axis and the point, except for a whole number. */
 static vreal waves_around(const Scene *scene, vuint numbers, vuint axis, const Point *point) {
     const vuint place = numbers + TEXTURE_CENTRE;
     vrefined x = from_origin(scene, place, point->high.x, point->low.x);
