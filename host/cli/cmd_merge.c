@@ -206,7 +206,7 @@ static BpStatus add_files(const BpCommandLine *line, const Parts *parts, BpFilm 
 static BpStatus check_cues(const BpCommandLine *line, const BpFilm *sum, BpError *err) {
     if (bp_result_has_cues(line) && !bp_film_has_aovs(sum))
         return bp_fail(err, BP_ERR_USAGE,
-                       "--outlines and --depth-fog need the depth, which these .bpa files do not hold");
+                       "--outlines and --depth-fog need the depth, which none of the .bpa files holds");
     if (line->depth_fog > 0 && sum->met == NULL)
         return bp_fail(err, BP_ERR_USAGE,
                        "--depth-fog of sums needs an alpha: render their samples with --set backdrop=none");
@@ -230,7 +230,7 @@ BpStatus bp_command_merge(const BpCommandLine *line, BpError *err) {
     BP_TRY_GOTO(status, bp_result_write(line, &result, sum, false, (BpTransfer)sum->transfer, NULL, err),
                 done);
     if (result.format == BP_FORMAT_EXR && !bp_film_has_aovs(sum))
-        bp_say(line, "depth, normals and albedo omitted: these .bpa files do not hold them");
+        bp_say(line, "depth, normals and albedo omitted: none of the .bpa files holds them");
     char nrmse[32], ranges[120];
     bp_format_percent(bp_film_nrmse(sum), nrmse, sizeof nrmse);
     describe_ranges(sum, ranges, sizeof ranges);

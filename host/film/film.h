@@ -35,8 +35,7 @@ struct BpSampleRange {
 };
 
 /* Why samples are left out of the sums. X(member of BpFilm, BpFilmInfo and BpRenderReport, tally of the
- * kernels, in words). The causes add up to `invalid_samples`, except that films of older versions know no
- * causes. */
+ * kernels, in words). The causes add up to `invalid_samples`. */
 #define BP_INVALID_LIST(X)                                                                                   \
     X(not_finite_samples, TALLY_NOT_FINITE, "not finite")                                                    \
     X(negative_samples, TALLY_NEGATIVE, "negative")                                                          \

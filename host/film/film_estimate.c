@@ -220,14 +220,10 @@ static void add_cause(uint64_t count, const char *words, char text[BP_INVALID_TE
 }
 
 const char *bp_film_invalid_causes(const BpFilm *film, char text[BP_INVALID_TEXT_SIZE]) {
-    uint64_t unknown = film->invalid_samples;
     text[0] = '\0';
-#define SAY(member, tally, words)                                                                            \
-    add_cause(film->member, words, text);                                                                    \
-    unknown -= film->member;
+#define SAY(member, tally, words) add_cause(film->member, words, text);
     BP_INVALID_LIST(SAY)
 #undef SAY
-    add_cause(unknown, "of a cause that an older version did not note", text);
     if (text[0] != '\0') strcat(text, ")");
     return text;
 }

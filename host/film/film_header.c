@@ -51,17 +51,6 @@ static bool add_optional(json_t *header, const BpFilm *film) {
         json_object_set_new(
             header, "job", json_pack("[I,I]", (json_int_t)film->job.first, (json_int_t)film->job.count)) != 0)
         return false;
-    if (film->met != NULL && json_object_set_new(header, "alpha", json_true()) != 0) return false;
-    if (film->unseen != NULL && json_object_set_new(header, "unseen", json_true()) != 0) return false;
-#define WRITE(member, tally, words)                                                                          \
-    if (film->member > 0 &&                                                                                  \
-        json_object_set_new(header, #member, json_integer((json_int_t)film->member)) != 0)                   \
-        return false;
-    BP_INVALID_LIST(WRITE)
-#undef WRITE
-    if (film->shadow_rays > 0 &&
-        json_object_set_new(header, "shadow_rays", json_integer((json_int_t)film->shadow_rays)) != 0)
-        return false;
     return film->plan == NULL || json_object_set_new(header, "plan", plan_json(film->plan)) == 0;
 }
 
@@ -70,22 +59,29 @@ char *bp_film_header_make(const BpFilm *film) {
     snprintf(hash, sizeof hash, "%016" PRIx64, film->scene_hash);
     snprintf(seed, sizeof seed, "%" PRIu64, film->seed);
     const char *title = film->title != NULL ? film->title : "";
-    json_t *header = json_pack(
-        "{s:i,s:s,s:s%,s:I,s:I,s:I,s:i,s:b,s:b,s:b,s:b,s:s,s:s,s:I}", "ballpark_accumulator", BP_FILM_VERSION,
-        "byte_order", "little", "title", title, title_bytes(title), "width", (json_int_t)film->width,
-        "height", (json_int_t)film->height, "replicates", (json_int_t)film->replicates, "scale_log2",
-        (int)film->scale_log2, "fine_sums", (int)(film->fine_sums != NULL), "coarse", (int)film->coarse,
-        "aovs", (int)bp_film_has_aovs(film), "pixel_segments", (int)(film->pixel_segments != NULL),
-        "scene_hash", hash, "seed", seed, "max_depth", (json_int_t)film->max_depth);
-    json_t *rest = json_pack("{s:s,s:o,s:b,s:I,s:I,s:I}", "transfer", bp_transfer_names[film->transfer],
-                             "ranges", ranges_json(film), "partial", (int)film->partial, "segments",
-                             (json_int_t)film->segments, "cut_paths", (json_int_t)film->cut_paths,
-                             "invalid_samples", (json_int_t)film->invalid_samples);
+    json_t *header =
+        json_pack("{s:i,s:s,s:s%,s:I,s:I,s:I,s:i,s:b,s:b,s:b,s:b,s:b,s:b,s:s,s:s,s:I}", "ballpark_film",
+                  BP_FILM_VERSION, "byte_order", "little", "title", title, title_bytes(title), "width",
+                  (json_int_t)film->width, "height", (json_int_t)film->height, "replicates",
+                  (json_int_t)film->replicates, "scale_log2", (int)film->scale_log2, "fine_sums",
+                  (int)(film->fine_sums != NULL), "coarse", (int)film->coarse, "aovs",
+                  (int)bp_film_has_aovs(film), "pixel_segments", (int)(film->pixel_segments != NULL), "alpha",
+                  (int)(film->met != NULL), "unseen", (int)(film->unseen != NULL), "scene_hash", hash, "seed",
+                  seed, "max_depth", (json_int_t)film->max_depth);
+    json_t *rest =
+        json_pack("{s:s,s:o,s:b,s:I,s:I,s:I,s:I}", "transfer", bp_transfer_names[film->transfer], "ranges",
+                  ranges_json(film), "partial", (int)film->partial, "segments", (json_int_t)film->segments,
+                  "shadow_rays", (json_int_t)film->shadow_rays, "cut_paths", (json_int_t)film->cut_paths,
+                  "invalid_samples", (json_int_t)film->invalid_samples);
     bool whole = true;
 #define WRITE(type, member, option, plural)                                                                  \
     whole =                                                                                                  \
         whole && json_object_set_new(header, #member, json_string(bp_##member##_names[film->member])) == 0;
     BP_SETTING_LIST(WRITE)
+#undef WRITE
+#define WRITE(member, tally, words)                                                                          \
+    whole = whole && json_object_set_new(header, #member, json_integer((json_int_t)film->member)) == 0;
+    BP_INVALID_LIST(WRITE)
 #undef WRITE
     whole = whole && json_object_update(header, rest) == 0 && add_optional(header, film);
     json_decref(rest);
@@ -153,11 +149,6 @@ static bool read_truth(Reader *reader, const char *member) {
     return json_is_true(value);
 }
 
-/* A member that is left out where it would be false. */
-static bool read_optional(Reader *reader, const char *member) {
-    return json_object_get(reader->header, member) != NULL && read_truth(reader, member);
-}
-
 static void read_ranges(Reader *reader, BpFilm *film) {
     const json_t *list = json_object_get(reader->header, "ranges");
     const size_t count_of_ranges = json_array_size(list);
@@ -196,13 +187,12 @@ static void read_ranges(Reader *reader, BpFilm *film) {
 
 /* The part of the header that decides how long the file is. */
 static void read_sizes(Reader *reader, BpFilm *sizes, BpFilmParts *parts) {
-    const uint64_t version = read_integer(reader, "ballpark_accumulator", 1, INT64_MAX);
-    if (version != BP_FILM_VERSION && reader->status == BP_OK)
-        reader->status =
-            bp_fail(reader->err, BP_ERR_FILE,
-                    "%s has version %" PRIu64 " of the format, but this program reads only version %d: %s",
-                    reader->name, version, BP_FILM_VERSION,
-                    version > BP_FILM_VERSION ? "use a newer Ballpark" : "render its samples again");
+    const uint64_t version = read_integer(reader, "ballpark_film", 1, INT64_MAX);
+    if (version > BP_FILM_VERSION && reader->status == BP_OK)
+        reader->status = bp_fail(reader->err, BP_ERR_FILE,
+                                 "%s has version %" PRIu64
+                                 " of the format, but this program reads version %d: use a newer Ballpark",
+                                 reader->name, version, BP_FILM_VERSION);
     static const char *const byte_orders[] = {"little", NULL};
     read_name(reader, "byte_order", byte_orders);
     sizes->width = (uint32_t)read_integer(reader, "width", 1, BP_PICTURE_SIDE_MAX);
@@ -212,8 +202,8 @@ static void read_sizes(Reader *reader, BpFilm *sizes, BpFilmParts *parts) {
     sizes->coarse = read_truth(reader, "coarse");
     parts->aovs = read_truth(reader, "aovs");
     parts->pixel_segments = read_truth(reader, "pixel_segments");
-    parts->alpha = read_optional(reader, "alpha");
-    parts->unseen = read_optional(reader, "unseen");
+    parts->alpha = read_truth(reader, "alpha");
+    parts->unseen = read_truth(reader, "unseen");
     const json_t *plan = json_object_get(reader->header, "plan");
     Reader inner = {plan, reader->name, reader->status, reader->err};
     if (plan != NULL) parts->decision_bytes = read_integer(&inner, "decision_bytes", 0, INT32_MAX);
@@ -273,16 +263,14 @@ static void read_plan(Reader *reader, BpFilm *film) {
         bad_member(reader, "plan", "one that goes with the size of the picture and the samples");
 }
 
-/* A cause of which there are none is left out. */
 static void read_invalid(Reader *reader, BpFilm *film) {
-    uint64_t known = 0;
-    film->invalid_samples = read_integer(reader, "invalid_samples", 0, INT64_MAX);
+    uint64_t rest = film->invalid_samples = read_integer(reader, "invalid_samples", 0, INT64_MAX);
 #define READ(member, tally, words)                                                                           \
-    if (json_object_get(reader->header, #member) != NULL)                                                    \
-        film->member = read_integer(reader, #member, 0, (int64_t)(film->invalid_samples - known));           \
-    known += film->member;
+    film->member = read_integer(reader, #member, 0, (int64_t)rest);                                          \
+    rest -= film->member;
     BP_INVALID_LIST(READ)
 #undef READ
+    if (rest > 0) bad_member(reader, "invalid_samples", "the sum of their causes");
 }
 
 static void read_settings(Reader *reader, BpFilm *film) {
@@ -302,8 +290,7 @@ static void read_settings(Reader *reader, BpFilm *film) {
     film->segments = read_integer(reader, "segments", 0, INT64_MAX);
     film->cut_paths = read_integer(reader, "cut_paths", 0, INT64_MAX);
     read_invalid(reader, film);
-    if (json_object_get(reader->header, "shadow_rays") != NULL)
-        film->shadow_rays = read_integer(reader, "shadow_rays", 0, INT64_MAX);
+    film->shadow_rays = read_integer(reader, "shadow_rays", 0, INT64_MAX);
     film->partial = read_truth(reader, "partial");
     const char *title = json_string_value(json_object_get(reader->header, "title"));
     if (title == NULL) bad_member(reader, "title", "a string");
@@ -317,10 +304,16 @@ static void read_settings(Reader *reader, BpFilm *film) {
 
 BpStatus bp_film_header_sizes(const json_t *header, const char *name, BpFilm *sizes, BpFilmParts *parts,
                               BpError *err) {
-    if (json_object_get(header, "ballpark_accumulator") == NULL)
-        return bp_fail(err, BP_ERR_FILE, "%s is not a .bpa file: \"ballpark_accumulator\" is missing", name);
+    if (json_object_get(header, "ballpark_accumulator") != NULL)
+        return bp_fail(
+            err, BP_ERR_FILE,
+            "%s was made by an unreleased Ballpark, and this one cannot read it: render its samples "
+            "again",
+            name);
+    if (json_object_get(header, "ballpark_film") == NULL)
+        return bp_fail(err, BP_ERR_FILE, "%s is not a .bpa file: \"ballpark_film\" is missing", name);
     Reader reader = {header, name, BP_OK, err};
-    *parts = (BpFilmParts){.aovs = false};
+    *parts = (BpFilmParts){.fine_sums = false};
     read_sizes(&reader, sizes, parts);
     return reader.status;
 }

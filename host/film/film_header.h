@@ -10,8 +10,9 @@
 
 #include <jansson.h>
 
-/* The only one that is written and read. */
-#define BP_FILM_VERSION 6
+/* Of the files that are written, and the only one that is read. Before the first release, the member that
+ * names the version was called "ballpark_accumulator". */
+#define BP_FILM_VERSION 1
 
 /* Which numbers follow a header. */
 typedef struct BpFilmParts {

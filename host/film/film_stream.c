@@ -14,7 +14,7 @@
  * gain little. */
 #define PACKED_BITS_MAX 6.0
 
-/* ---- numbers as little-endian bytes, in planes or one after the other ---- */
+/* ---- numbers as little-endian bytes, in planes ---- */
 
 /* A number of this machine; `width` is 1, 4 or 8. */
 static uint64_t load_native(const uint8_t *at, size_t width) {
@@ -160,8 +160,7 @@ BpStatus bp_film_source_init(FILE *in, const char *name, uLong checksum, uint64_
                              .packed = malloc(PACKED_BYTES)};
     source->zipping =
         source->planes != NULL && source->packed != NULL && inflateInit2(&source->zip, 15) == Z_OK;
-    if (source->zipping) return BP_OK;
-    return bp_fail(err, BP_ERR_MEMORY, "out of memory for reading %s", name);
+    return source->zipping ? BP_OK : bp_fail(err, BP_ERR_MEMORY, "out of memory for reading %s", name);
 }
 
 void bp_film_source_clear(BpFilmSource *source) {
@@ -224,9 +223,8 @@ BpStatus bp_film_source_numbers(BpFilmSource *source, void *numbers, size_t widt
                                 BpError *err) {
     for (size_t done = 0; done < count; done += BLOCK) {
         const size_t block = count - done < BLOCK ? count - done : BLOCK;
-        uint8_t *at = (uint8_t *)numbers + width * done;
         BP_TRY(unpack(source, width * block, err));
-        from_planes(source->planes, width, block, at);
+        from_planes(source->planes, width, block, (uint8_t *)numbers + width * done);
     }
     return BP_OK;
 }

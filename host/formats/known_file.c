@@ -24,7 +24,7 @@ typedef struct Beginning {
 
 static bool starts_like(const char *bytes, size_t length, BpKnownFile *found) {
     static const Beginning known[] = {
-        STARTS("{\"ballpark_accumulator\"", BP_FILE_SUMS, "the sums of a render (.bpa)"),
+        STARTS("{\"ballpark_film\"", BP_FILE_SUMS, "the sums of a render (.bpa)"),
         STARTS("\x89PNG", BP_FILE_PICTURE, "a PNG picture"),
         STARTS("\x76\x2f\x31\x01", BP_FILE_PICTURE, "an EXR picture"),
         STARTS("PF", BP_FILE_PICTURE, "a PFM picture"),

@@ -18,8 +18,7 @@ static BpStatus not_one_render(const char *why, BpError *err) {
 
 /* The plan of a film that has none: every pixel has all samples of one range. */
 static BpStatus plan_of_whole(const BpFilm *film, BpFilmPlan *plan, BpError *err) {
-    if (film->partial)
-        return not_one_render("lacks samples in some pixels, and has been merged or is old", err);
+    if (film->partial) return not_one_render("lacks samples in some pixels, and has been merged", err);
     if (film->range_count != 1) return not_one_render("is not of one range of samples", err);
     *plan = (BpFilmPlan){.first_sample = film->ranges[0].first,
                          .target = film->ranges[0].count,

@@ -154,13 +154,13 @@ class Features(cli.ProgramTest):
         self.succeed("merge", "a.bpa", "bc.bpa", "-o", "sum.exr")
         self.assertEqual(self.read("sum.exr"), self.read("whole.exr"))
 
-    def test_films_without_them(self):
+    def test_films_of_sums_alone_do_not_hold_them(self):
         self.write("scene.json", cli.scene(12, 8))
         for name, first in (("a", 0), ("b", 4)):
             self.succeed("render", "scene.json", "-o", name + ".bpa", "--spp", 4, "--first-sample", first)
             self.write(name + "2.bpa", bpa.sums_alone(self.read(name + ".bpa")))
         result = self.succeed("merge", "a2.bpa", "b2.bpa", "-o", "old.exr")
-        self.assertIn("omitted: these .bpa files do not hold them", result.errors)
+        self.assertIn("omitted: none of the .bpa files holds them", result.errors)
         self.assertEqual(sorted(exr.read(self.read("old.exr"))[2]),
                          sorted(["R", "G", "B", "error.R", "error.G", "error.B", "samples"]))
         self.succeed("merge", "a.bpa", "b.bpa", "-o", "new.exr")

@@ -93,10 +93,10 @@ class Resume(cli.ProgramTest):
         """A finished file goes on, too; also one of sums alone, and one that was merged of neighbours."""
         self.succeed("render", "s.json", "--spp", 20, "-o", "whole.bpa", "-q")
         self.succeed("render", "s.json", "--spp", 9, "-o", "a.bpa", "-q")
-        self.write("old.bpa", bpa.sums_alone(self.read("a.bpa")))
+        self.write("sums.bpa", bpa.sums_alone(self.read("a.bpa")))
         self.succeed("render", "s.json", "--spp", 3, "--first-sample", 9, "-o", "b.bpa", "-q")
         self.succeed("merge", "a.bpa", "b.bpa", "-o", "ab.bpa", "-q")
-        for name in ("a.bpa", "old.bpa", "ab.bpa"):
+        for name in ("a.bpa", "sums.bpa", "ab.bpa"):
             self.succeed("render", "s.json", "--resume", name, "--spp", 20, "-o", "more.bpa", "-q")
             self.assert_same(self.read("more.bpa"), self.read("whole.bpa"), name)
         # Nothing is left to do where it had finished.

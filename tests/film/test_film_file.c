@@ -99,10 +99,6 @@ static void a_large_one_loads(void **state) {
         for (size_t c = 0; c < 3; c++) a->sums[3 * cell + c] = (int64_t)(data_bits(3 * cell + c) >> 3);
     }
     assert_int_equal(bp_film_write(a, temp_path(path, folder, "a.bpa"), &err), BP_OK);
-    size_t size = 0;
-    char *bytes = (char *)temp_read(path, &size);
-    assert_memory_equal(bytes, "{\"ballpark_accumulator\": 6, ", 27);
-    free(bytes);
     if (bp_film_read(path, &b, &err) != BP_OK) fail_msg("%s", err.message);
     free(a->title);
     a->title = strdup("");
@@ -144,22 +140,16 @@ static const uint8_t *check_planes(const uint8_t *at, const void *numbers, size_
     return at + width * count;
 }
 
-/* Alpha and unseen light are parts that a film may lack; then its header does not name them. */
+/* Without what not every film has, and with each of it. */
 static void parts_may_be_missing(void **state) {
     (void)state;
     BpFilm *a = make();
-    for (int parts = 2; parts >= 0; parts--) {
-        if (parts < 2) bp_unseen_destroy(&a->unseen);
-        if (parts < 1) free(a->met), a->met = NULL;
+    for (int left = 3; left >= 0; left--) {
         char *bytes = NULL;
         size_t size = 0;
         FILE *out = open_memstream(&bytes, &size);
         assert_int_equal(bp_film_write_stream(a, out, NULL), BP_OK);
         fclose(out);
-        *(char *)memchr(bytes, '\n', size) = '\0';
-        assert_int_equal(strstr(bytes, "\"unseen\"") != NULL, parts == 2);
-        assert_int_equal(strstr(bytes, "\"alpha\"") != NULL, parts >= 1);
-        bytes[strlen(bytes)] = '\n';
         BpFilm *b = NULL;
         BpError err = {0};
         FILE *in = fmemopen(bytes, size, "rb");
@@ -168,6 +158,9 @@ static void parts_may_be_missing(void **state) {
         assert_same(a, b);
         bp_film_destroy(&b);
         free(bytes);
+        if (left == 3) bp_unseen_destroy(&a->unseen);
+        if (left == 2) free(a->met), a->met = NULL;
+        if (left == 1) bp_film_drop_aovs(a);
     }
     bp_film_destroy(&a);
 }
@@ -181,7 +174,7 @@ static void the_layout_is_as_documented(void **state) {
     FILE *out = open_memstream(&bytes, &size);
     assert_int_equal(bp_film_write_stream(a, out, NULL), BP_OK);
     fclose(out);
-    assert_memory_equal(bytes, "{\"ballpark_accumulator\": 6, ", 27);
+    assert_memory_equal(bytes, "{\"ballpark_film\": 1, ", 20);
     const uint8_t *line_end = memchr(bytes, '\n', size);
     assert_non_null(line_end);
     uint8_t numbers[10000];

@@ -10,7 +10,8 @@
 
 #define SUMS_BYTES 24u /* of a cell: three of 8 bytes */
 #define COUNT_BYTES 4u
-#define AOV_BYTES 28u /* of a pixel */
+#define AOV_BYTES 28u  /* of a pixel */
+#define TINT_BYTES 12u /* of the unseen light */
 #define CHECKSUM_BYTES 4u
 
 size_t LLVMFuzzerMutate(uint8_t *data, size_t size, size_t size_max); /* libFuzzer's own */
@@ -29,9 +30,8 @@ static uint32_t next(uint32_t *state) { /* Numerical Recipes' quick generator: o
 /* Gives one member of the header a value near what is allowed. */
 static void change_member(json_t *header, uint32_t *state) {
     static const char *const sizes[] = {"width", "height", "replicates"};
-    static const char *const numbers[] = {"scale_log2",          "max_depth",       "segments",
-                                          "cut_paths",           "invalid_samples", "shadow_rays",
-                                          "ballpark_accumulator"};
+    static const char *const numbers[] = {"scale_log2",      "max_depth",   "segments",     "cut_paths",
+                                          "invalid_samples", "shadow_rays", "ballpark_film"};
     static const json_int_t values[] = {0,    1,   2,       3,       -1,        126,
                                         -126, 127, 1000000, 1000001, INT64_MAX, INT64_MIN};
     static const char *const words[][2] = {{"sampler", "sobol"},       {"sampler", "independent"},
@@ -54,9 +54,9 @@ static void change_member(json_t *header, uint32_t *state) {
         break;
     }
     case 3: {
-        static const char *const switches[] = {"fine_sums", "coarse",         "partial",
-                                               "aovs",      "pixel_segments", "alpha"};
-        json_object_set_new(header, switches[next(state) % 6], json_boolean(next(state) % 2 == 0));
+        static const char *const switches[] = {"fine_sums",      "coarse", "partial", "aovs",
+                                               "pixel_segments", "alpha",  "unseen"};
+        json_object_set_new(header, switches[next(state) % 7], json_boolean(next(state) % 2 == 0));
         break;
     }
     case 4: {
@@ -108,15 +108,15 @@ static size_t body_length(const json_t *header, size_t room) {
     uint64_t bytes = pixels * (uint64_t)sides[2] * ((fine ? 2 : 1) * SUMS_BYTES + COUNT_BYTES);
     const json_int_t decisions =
         json_integer_value(json_object_get(json_object_get(header, "plan"), "decision_bytes"));
-    bytes += pixels * ((says(header, "aovs") ? AOV_BYTES : 0) + (says(header, "pixel_segments") ? 8 : 0));
-    if (says(header, "alpha")) bytes += pixels * 8;
-    if (says(header, "unseen")) bytes += pixels * 8 + 12;
+    bytes += pixels * ((says(header, "aovs") ? AOV_BYTES : 0) + (says(header, "pixel_segments") ? 8 : 0) +
+                       (says(header, "alpha") ? 8 : 0) + (says(header, "unseen") ? 8 : 0));
+    if (says(header, "unseen")) bytes += TINT_BYTES;
     if (decisions < 0 || decisions > 65535) return 0;
     bytes += (uint64_t)decisions;
     return bytes <= room ? (size_t)bytes : 0;
 }
 
-/* The numbers of a file's body, unpacked if that can be done, in new memory. */
+/* The numbers of a file's body, unpacked if they can be, in new memory. */
 static uint8_t *take_numbers(const uint8_t *body, size_t size, size_t *count) {
     const uLong room = 1u << 20;
     uint8_t *numbers = malloc(room > size ? room : size);

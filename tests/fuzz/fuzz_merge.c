@@ -73,7 +73,7 @@ static void check_sum(const BpFilm *sum, const BpFilm *a, const BpFilm *b) {
     require(sum->coarse == (a->coarse || b->coarse));
     require(sum->segments == a->segments + b->segments && sum->cut_paths == a->cut_paths + b->cut_paths);
     require(sum->invalid_samples == a->invalid_samples + b->invalid_samples);
-    require(sum->invalid_samples >=
+    require(sum->invalid_samples ==
             sum->not_finite_samples + sum->negative_samples + sum->out_of_range_samples);
     require(sum->shadow_rays == a->shadow_rays + b->shadow_rays);
 }

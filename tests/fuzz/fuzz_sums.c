@@ -34,10 +34,10 @@ static BpFilm *make_accumulator(Bytes *bytes) {
     made->coarse = (words & 3u) == 3;
     made->segments = take_bits(bytes, 8) >> 1;
     made->cut_paths = take_bits(bytes, 8) >> 1;
-    made->invalid_samples = take_bits(bytes, 8) >> 1;
-    made->not_finite_samples = made->invalid_samples / 4;
-    made->negative_samples = made->invalid_samples / 8;
-    made->out_of_range_samples = made->invalid_samples / 2;
+    made->not_finite_samples = take_bits(bytes, 8) >> 3;
+    made->negative_samples = take_bits(bytes, 8) >> 3;
+    made->out_of_range_samples = take_bits(bytes, 8) >> 3;
+    made->invalid_samples = made->not_finite_samples + made->negative_samples + made->out_of_range_samples;
     made->shadow_rays = made->segments ^ made->cut_paths;
     made->title = make_title(bytes);
     for (unsigned i = take_byte(bytes) % 6; i > 0; i--) {

@@ -50,7 +50,7 @@ static void not_json(void **state) {
         {"hello", 1, 1, {"not JSON", "expected a scene, which begins"}},
         {"BZh91AY&SY", 1, 1, {"packed by bzip2", "unpack it first"}},
         {"\x89PNG\r\n\x1a\n", 1, 1, {"a PNG picture", "expected a scene"}},
-        {"{\"ballpark_accumulator\": 4}", 1, 1, {"the sums of a render", "`ballpark merge FILE.bpa"}},
+        {"{\"ballpark_film\": 1}", 1, 1, {"the sums of a render", "`ballpark merge FILE.bpa"}},
         {"\x1f\x8b\x08", 1, 1, {"packed by gzip", "unpack it first"}},
         {"\x01\xcb\x07", 1, 1, {"not text", "docs/PARTICLES.md"}},
         {"[1, 2]", 1, 1, {"found a list", "expected an object"}},

@@ -58,12 +58,19 @@ def read(data):
     return header, arrays
 
 
-def sums_alone(data):
-    """The same film without depth, normal, albedo and what a render needs to go on."""
-    header, arrays = read(data)
-    for name in ("alpha", "unseen", "plan", "job"):
-        header.pop(name, None)
-    header.update(aovs=False, pixel_segments=False)
-    numbers = b"".join(_to_planes(arrays[name], width, count) for name, width, count in _arrays(header))
-    file = json.dumps(header).encode() + b"\n" + zlib.compress(numbers)
+def write(header, arrays):
+    """The bytes of a film; each array has so few numbers that they are one block."""
+    body = b""
+    for name, width, count in _arrays(header):
+        assert count <= BLOCK and len(arrays[name]) == width * count, name
+        body += b"".join(arrays[name][byte::width] for byte in range(width))
+    file = json.dumps(header).encode() + b"\n" + zlib.compress(body)
     return file + struct.pack("<I", zlib.crc32(file))
+
+
+def sums_alone(data):
+    """The same film without depth, normal, albedo, alpha, unseen light and what a render needs to go on: none of them has to be there."""
+    header, arrays = read(data)
+    for name in ("plan", "job"):
+        header.pop(name, None)
+    return write(dict(header, aovs=False, pixel_segments=False, alpha=False, unseen=False), arrays)
