@@ -10,7 +10,7 @@
  * noise. */
 #include "../host/base/clock.h"
 #include "../host/base/color.h"
-#include "../host/check/statistics.h"
+#include "../tests/support/distributions.h"
 #include "render/render.h"
 
 #include <math.h>
@@ -100,7 +100,7 @@ static void clear(Run *run) {
 
 static void print_run(const Run *run, const Run references[2], size_t pixels, const Way *way, uint64_t seed,
                       uint64_t samples) {
-    const double t = way->replicates > 1 ? bp_student_upper_quantile(0.025, way->replicates - 1) : NAN;
+    const double t = way->replicates > 1 ? student_upper_quantile(0.025, way->replicates - 1) : NAN;
     double error = 0, claimed = 0, mean = 0;
     size_t held = 0, asked = 0;
     for (size_t p = 0; p < pixels; ++p) {

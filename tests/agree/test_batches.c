@@ -4,10 +4,10 @@
  * the samples within pixels predicts: their ratio, pooled over 64 blocks, is 1 with 31 * 64 degrees of
  * freedom. Pixels that share random numbers raise it, samples of a pixel that repel each other lower it. */
 #include "check/check.h"
-#include "check/statistics.h"
 #include "reference/reference.h"
 #include "reference/vec.h"
 #include "support/build_scene.h"
+#include "support/distributions.h"
 #include "support/open_render.h"
 #include "support/unit_test.h"
 
@@ -39,8 +39,8 @@ static double pooled_ratio(const Batches *batches) {
 
 static void limits(double *low, double *high) {
     const double degrees = (SEEDS - 1) * BLOCKS;
-    *low = bp_chi_square_upper_quantile(1 - level / 2, degrees) / degrees;
-    *high = bp_chi_square_upper_quantile(level / 2, degrees) / degrees;
+    *low = chi_square_upper_quantile(1 - level / 2, degrees) / degrees;
+    *high = chi_square_upper_quantile(level / 2, degrees) / degrees;
 }
 
 static void collect(const BpSums *sums, int seed, Batches *batches) {

@@ -12,8 +12,7 @@
  * share is reported, not judged: replicates of heavy tails follow no normal law before they are many. The
  * nightly run goes deeper. */
 #include "seeds.h"
-
-#include "check/statistics.h"
+#include "support/distributions.h"
 
 #define SEEDS 64
 #ifdef NIGHTLY
@@ -43,7 +42,7 @@ static double *sample_variances(const BpPicture pictures[SEEDS], size_t values) 
 
 static void judge(const BpPicture *x, const BpPicture *r1, const BpPicture *r2, const double *variance,
                   Tally *tally) {
-    const double t = bp_student_upper_quantile(0.025, BP_REPLICATES_DEFAULT - 1);
+    const double t = student_upper_quantile(0.025, BP_REPLICATES_DEFAULT - 1);
     const size_t pixels = (size_t)x->width * x->height;
     for (size_t p = 0; p < pixels; p++) {
         const double y = luminance(x->rgb + 3 * p);

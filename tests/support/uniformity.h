@@ -8,7 +8,7 @@
 #define TESTS_SUPPORT_UNIFORMITY_H
 
 #include "base/quantile.h"
-#include "check/statistics.h"
+#include "distributions.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -33,7 +33,7 @@ static inline double uniformity(const double *points, size_t count, int dimensio
         }
         seen[cell] += 1;
     }
-    double least = bp_chi_square_test(seen, due, cells, NULL);
+    double least = chi_square_test(seen, due, cells, NULL);
 
     const size_t sorted_count = count < 1000000 ? count : 1000000;
     double *sorted = malloc(sorted_count * sizeof *sorted);
@@ -41,7 +41,7 @@ static inline double uniformity(const double *points, size_t count, int dimensio
     for (int d = 0; d < dimensions; ++d) {
         for (size_t i = 0; i < sorted_count; ++i) sorted[i] = points[i * (size_t)dimensions + (size_t)d];
         bp_sort_doubles(sorted, sorted_count);
-        least = fmin(least, bp_kolmogorov_test(sorted, sorted_count));
+        least = fmin(least, kolmogorov_test(sorted, sorted_count));
     }
     free(sorted);
     return least;
