@@ -1,55 +1,22 @@
 /* suite.c: see suite.h. */
 #include "suite.h"
 
-#include "temporary_folder.h"
+#include "formats/scene_parse.h"
 
-#include <errno.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
-/* In generated code (cmake/embed_files.cmake). */
-const char *bp_agreement_file_at(size_t index, const char **name, size_t *size);
+BpHeldFiles bp_agreement_file_at; /* in generated code (cmake/embed_files.cmake) */
 
 static bool is_scene(const char *name) {
     const size_t length = strlen(name);
     return length > 5 && strcmp(name + length - 5, ".json") == 0;
 }
 
-/* Scenes look for the files of their points beside them, so these must be files. */
-static BpStatus unpack_points(const char *folder, BpError *err) {
-    const char *name, *bytes;
-    size_t size;
-    for (size_t i = 0; (bytes = bp_agreement_file_at(i, &name, &size)) != NULL; ++i) {
-        if (is_scene(name)) continue;
-        char path[640];
-        snprintf(path, sizeof path, "%s/%s", folder, name);
-        FILE *out = fopen(path, "wb");
-        const bool written = out != NULL && fwrite(bytes, 1, size, out) == size;
-        const bool closed = out != NULL && fclose(out) == 0;
-        if (!written || !closed)
-            return bp_fail(err, BP_ERR_FILE, "cannot write %s: %s; set TMPDIR to a folder with room", path,
-                           strerror(errno));
-    }
-    return BP_OK;
-}
-
-static BpStatus load_scenes(const char *folder, BpSuite *suite, BpError *err) {
-    const char *name, *text;
-    size_t size;
-    for (size_t i = 0; (text = bp_agreement_file_at(i, &name, &size)) != NULL; ++i) {
-        if (!is_scene(name)) continue;
-        char path[640];
-        snprintf(path, sizeof path, "%s/%s", folder, name);
-        BP_TRY(bp_scene_parse(text, size, path, &suite->scenes[suite->count], err));
-        snprintf(suite->names[suite->count++], sizeof suite->names[0], "%.*s", (int)strlen(name) - 5, name);
-    }
-    return BP_OK;
-}
-
 BpStatus bp_suite_load(BpSuite *suite, BpError *err) {
-    BpTemporaryFolder folder = {0};
-    const char *name;
+    const BpSceneChanges changes = {.held = bp_agreement_file_at};
+    const char *name, *text;
     size_t files = 0, size;
     *suite = (BpSuite){0};
     while (bp_agreement_file_at(files, &name, &size) != NULL) ++files;
@@ -57,11 +24,12 @@ BpStatus bp_suite_load(BpSuite *suite, BpError *err) {
     suite->scenes = calloc(files + 1, sizeof *suite->scenes);
     if (suite->names == NULL || suite->scenes == NULL)
         return bp_fail(err, BP_ERR_MEMORY, "out of memory for the agreement scenes");
-    BP_TRY(bp_temporary_folder_make(&folder, err));
-    BpStatus status = unpack_points(folder.path, err);
-    if (status == BP_OK) status = load_scenes(folder.path, suite, err);
-    bp_temporary_folder_remove(&folder);
-    return status;
+    for (size_t i = 0; (text = bp_agreement_file_at(i, &name, &size)) != NULL; ++i) {
+        if (!is_scene(name)) continue;
+        BP_TRY(bp_scene_parse_changed(text, size, name, &changes, &suite->scenes[suite->count], err));
+        snprintf(suite->names[suite->count++], sizeof suite->names[0], "%.*s", (int)strlen(name) - 5, name);
+    }
+    return BP_OK;
 }
 
 BpScene *bp_suite_find(const BpSuite *suite, const char *name) {

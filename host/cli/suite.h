@@ -1,7 +1,7 @@
 /* suite.h: the agreement scenes, small ones of one effect each, that `ballpark check --suite` goes through.
  *
  * In:    the files of tests/agree/scenes, which the program holds.   Out: scenes.
- * Knows: how the files are embedded, temporary folders (for points).   Does not know: how scenes are checked.
+ * Knows: how the files are embedded.   Does not know: how scenes are checked.
  *
  * They are embedded, so that an installed program has those that it was tested with. */
 #ifndef BP_CLI_SUITE_H
@@ -15,7 +15,7 @@ typedef struct BpSuite {
     BpScene **scenes;
 } BpSuite;
 
-/* Loads all of them. Call it before this process uses OpenCL (temporary_folder.h). Clear it in any case. */
+/* Loads all of them. Clear it in any case. */
 BpStatus bp_suite_load(BpSuite *suite, BpError *err);
 /* The scene of that name, or NULL. */
 BpScene *bp_suite_find(const BpSuite *suite, const char *name);

@@ -13,11 +13,15 @@
 
 #include <jansson.h>
 
+/* Files that a program holds: the bytes, name and size of number `index`; NULL behind the last. */
+typedef const char *BpHeldFiles(size_t index, const char **name, size_t *size);
+
 typedef struct BpDocument {
     const char *name; /* stands in messages where a path would */
     const char *text; /* the caller's; without a byte order mark */
     size_t length;
-    json_t *root; /* an object */
+    json_t *root;      /* an object */
+    BpHeldFiles *held; /* Optional: the files that the document names are these, and no others */
     /* When members were changed since (scene_changes.h): */
     json_t *written; /* what the text says; NULL: the same as `root` */
     struct BpChange *changes;

@@ -1,13 +1,17 @@
 /* input_file.c: a file's bytes, whole, and from what kinds of files they are taken.
  *
- * In:    a path.   Out: bytes, or an open stream.
+ * In:    a path, or the name of a file that the program holds.   Out: bytes, or an open stream.
  * Knows: directories, devices and pipes are not regular files. Does not know: what the bytes mean. */
+#ifdef __linux__
+#define _GNU_SOURCE /* memfd_create */
+#endif
 #include "input_file.h"
 
 #include <errno.h>
 #include <fcntl.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/mman.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
@@ -102,10 +106,33 @@ static BpStatus fail_size(const char *path, BpError *err) {
     return status;
 }
 
+/* A stream that has a descriptor, as readers need. */
+static BpStatus open_held(BpHeldFiles *held, const char *wanted, FILE **stream, uint64_t *size,
+                          BpError *err) {
+    const char *name = NULL, *bytes = NULL;
+    size_t length = 0;
+    for (size_t i = 0; (bytes = held(i, &name, &length)) != NULL && strcmp(name, wanted) != 0;) i++;
+    if (bytes == NULL) return bp_fail(err, BP_ERR_SCENE, "it is not among the files of this program");
+    *size = length;
+#ifdef __linux__
+    const int descriptor = memfd_create(name, MFD_CLOEXEC);
+    *stream = descriptor >= 0 ? fdopen(descriptor, "w+b") : NULL;
+    if (*stream == NULL && descriptor >= 0) close(descriptor);
+#else
+    *stream = tmpfile();
+#endif
+    if (*stream != NULL && fwrite(bytes, 1, length, *stream) == length && fseeko(*stream, 0, SEEK_SET) == 0)
+        return BP_OK;
+    if (*stream != NULL) fclose(*stream);
+    return bp_fail(err, BP_ERR_MEMORY, "no memory for the file: %s", strerror(errno));
+}
+
 BpStatus bp_node_open_file(const BpNode *node, const char *path, const char *expected, FILE **stream,
                            uint64_t *size, BpError *err) {
     BpError inner = {0};
-    BpStatus status = bp_file_open(path, false, expected, stream, size, &inner);
+    BpHeldFiles *const held = node->document->held;
+    BpStatus status = held != NULL ? open_held(held, path, stream, size, &inner)
+                                   : bp_file_open(path, false, expected, stream, size, &inner);
     if (status != BP_OK) { /* the fault lies with the document, so the error stands there */
         char shown[256];
         bp_printable(path, shown, sizeof shown);

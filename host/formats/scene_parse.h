@@ -28,7 +28,8 @@ void bp_particle_cache_clear(BpParticleCache *cache);
 
 /* What a command line asks for beyond the document. Zeros: nothing. */
 typedef struct BpSceneChanges {
-    unsigned flags; /* BP_PARSE_... */
+    unsigned flags;    /* BP_PARSE_... */
+    BpHeldFiles *held; /* Optional: as of a document */
     bool has_frame;
     int64_t frame;          /* of every file of particles that has frames */
     bool fit;               /* a camera fitted to the particles, or to the scene where there are none */

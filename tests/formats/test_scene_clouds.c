@@ -1,5 +1,6 @@
 /* test_scene_clouds.c: what is wrong with a file of points is told with the file, the vertex, and the scene
  * that asks for it; files end where their header says. */
+#include "formats/scene_parse.h"
 #include "scene/scene.h"
 
 #include <math.h>
@@ -163,13 +164,42 @@ static void what_follows_the_last_element(void **state) {
     refuse(scene, "points.ply", 0, 0, (const char *const[5]){"truncated", "scene.json:4:22"});
 }
 
+static const char *held_points(size_t index, const char **name, size_t *size) {
+    static const char *const files[][2] = {{"none.ply", "no points"},
+                                           {"held.ply", ASCII("2") "end_header\n1 2 3\n4 5 6\n"}};
+    if (index >= sizeof files / sizeof *files) return NULL;
+    *name = files[index][0];
+    *size = strlen(files[index][1]);
+    return files[index][1];
+}
+
+/* Of files that a program holds, the one of that name is read, and no file on the disk. */
+static void held_files_are_read(void **state) {
+    (void)state;
+    const BpSceneChanges changes = {.held = held_points};
+    const char *const good = SCENE("", CLOUD("held.ply")), *const bad = SCENE("", CLOUD("more.ply"));
+    BpScene *scene = NULL;
+    BpError err = {0};
+    if (bp_scene_parse_changed(good, strlen(good), "scene.json", &changes, &scene, &err) != BP_OK)
+        fail_msg("%s", err.message);
+    assert_int_equal(scene->sphere_count, 2);
+    assert_true(scene->spheres[1].center[2] == 6);
+    bp_scene_destroy(&scene);
+    write_text("more.ply", ASCII("1") "end_header\n1 2 3\n");
+    accept(bad, 1);
+    assert_int_equal(bp_scene_parse_changed(bad, strlen(bad), "scene.json", &changes, &scene, &err),
+                     BP_ERR_SCENE);
+    assert_non_null(strstr(err.message, "\"more.ply\": it is not among the files of this program"));
+    bp_error_clear(&err);
+}
+
 int main(void) {
     char folder[] = "/tmp/ballpark-clouds-XXXXXX";
     if (mkdtemp(folder) == NULL || chdir(folder) != 0) return 1;
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(coincident_vertices_are_named), cmocka_unit_test(an_infinite_place_is_named),
+        cmocka_unit_test(coincident_vertices_are_named),       cmocka_unit_test(an_infinite_place_is_named),
         cmocka_unit_test(points_without_a_place_are_left_out), cmocka_unit_test(marks_and_encodings),
-        cmocka_unit_test(what_follows_the_last_element)};
+        cmocka_unit_test(what_follows_the_last_element),       cmocka_unit_test(held_files_are_read)};
     const int failed = cmocka_run_group_tests(tests, NULL, NULL);
     static const char *const files[] = {"scene.json", "points.ply", "twice.ply", "more.ply"};
     for (size_t i = 0; i < sizeof files / sizeof *files; ++i) unlink(files[i]);
