@@ -598,7 +598,6 @@ BpStatus bp_command_check(const BpCommandLine *line, BpError *err) {
     BP_TRY(check_line(line, err));
     const BpStatus status = line->bits ? check_bits(&session, err) : check_all(&session, err);
     write_failure(&session, status, err);
-    /* The folder of the survey goes first, as it was made last (temporary_folder.h). */
     bp_device_survey_clear(&session.survey);
     bp_suite_clear(&session.suite);
     bp_scene_destroy(&session.scene);

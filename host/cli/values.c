@@ -110,18 +110,26 @@ BpStatus bp_value_choice(const char *option, const char *text, const char *const
     return bp_fail(err, BP_ERR_USAGE, "%s: expected %s, found \"%.80s\"", option, list, text);
 }
 
+/* Cuts the text at `mark` into two numbers' texts. */
+static BpStatus cut(const char *option, const char *text, char mark, const char *expected, char first[32],
+                    const char **second, BpError *err) {
+    const char *at = strchr(text, mark);
+    if (at == NULL || at - text >= 32)
+        return bp_fail(err, BP_ERR_USAGE, "%s: expected %s, found \"%.80s\"", option, expected, text);
+    memcpy(first, text, (size_t)(at - text));
+    first[at - text] = '\0';
+    *second = at + 1;
+    return BP_OK;
+}
+
 BpStatus bp_value_pair(const char *option, const char *text, uint64_t max, uint32_t *x, uint32_t *y,
                        BpError *err) {
-    const char *comma = strchr(text, ',');
     char first[32];
+    const char *second = NULL;
     uint64_t numbers[2];
-    if (comma == NULL || (size_t)(comma - text) >= sizeof first)
-        return bp_fail(err, BP_ERR_USAGE, "%s: expected two whole numbers X,Y, found \"%.80s\"", option,
-                       text);
-    memcpy(first, text, (size_t)(comma - text));
-    first[comma - text] = '\0';
+    BP_TRY(cut(option, text, ',', "two whole numbers X,Y", first, &second, err));
     BP_TRY(bp_value_whole(option, first, 0, max, &numbers[0], err));
-    BP_TRY(bp_value_whole(option, comma + 1, 0, max, &numbers[1], err));
+    BP_TRY(bp_value_whole(option, second, 0, max, &numbers[1], err));
     *x = (uint32_t)numbers[0];
     *y = (uint32_t)numbers[1];
     return BP_OK;
@@ -166,15 +174,11 @@ BpStatus bp_value_slice(const char *option, const char *text, int64_t *first, in
 
 BpStatus bp_value_share(const char *option, const char *text, uint32_t *number, uint32_t *count,
                         BpError *err) {
-    const char *slash = strchr(text, '/');
     char first[32];
+    const char *second = NULL;
     uint64_t numbers[2];
-    if (slash == NULL || (size_t)(slash - text) >= sizeof first)
-        return bp_fail(err, BP_ERR_USAGE, "%s: expected I/N, as in 1/8 to 8/8, found \"%.80s\"", option,
-                       text);
-    memcpy(first, text, (size_t)(slash - text));
-    first[slash - text] = '\0';
-    BP_TRY(bp_value_whole(option, slash + 1, 1, BP_SHARES_MAX, &numbers[1], err));
+    BP_TRY(cut(option, text, '/', "I/N, as in 1/8 to 8/8", first, &second, err));
+    BP_TRY(bp_value_whole(option, second, 1, BP_SHARES_MAX, &numbers[1], err));
     BP_TRY(bp_value_whole(option, first, 0, BP_SHARES_MAX, &numbers[0], err));
     if (numbers[0] < 1 || numbers[0] > numbers[1])
         return bp_fail(err, BP_ERR_USAGE,

@@ -357,11 +357,23 @@ void bp_missing_name_text(const char *kind, const char *list, const char *const 
     }
 }
 
-BpStatus bp_node_fail_name(const BpNode *node, const char *kind, const char *list, const char *const *names,
-                           size_t count, const char *name, BpError *err) {
+BpStatus bp_node_find(const BpNode *node, const char *kind, const char *list, const void *things, size_t size,
+                      size_t count, uint32_t *number, BpError *err) {
+    const char *name = NULL;
+    BP_TRY(bp_node_string(node, &name, err));
+    const char **names = malloc((count + 1) * sizeof *names);
+    if (names == NULL) return bp_fail(err, BP_ERR_MEMORY, "out of memory");
+    size_t found = count;
+    for (size_t i = 0; i < count; i++) {
+        names[i] = *(char *const *)((const char *)things + i * size);
+        if (found == count && strcmp(names[i], name) == 0) found = i;
+    }
     char text[BP_MISSING_NAME_SIZE];
-    bp_missing_name_text(kind, list, names, count, name, text);
-    return bp_node_fail(node, BP_PART_VALUE, err, "%s", text);
+    if (found == count) bp_missing_name_text(kind, list, names, count, name, text);
+    free(names);
+    if (found == count) return bp_node_fail(node, BP_PART_VALUE, err, "%s", text);
+    *number = (uint32_t)found + 1;
+    return BP_OK;
 }
 
 BpStatus bp_node_wrong(const BpNode *node, const char *expected, BpError *err) {

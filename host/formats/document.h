@@ -69,9 +69,10 @@ BpStatus bp_node_wrong(const BpNode *node, const char *expected, BpError *err);
 enum { BP_MISSING_NAME_SIZE = 256 };
 void bp_missing_name_text(const char *kind, const char *list, const char *const *names, size_t count,
                           const char *name, char out[BP_MISSING_NAME_SIZE]);
-/* Fails with that text at the node that names it. */
-BpStatus bp_node_fail_name(const BpNode *node, const char *kind, const char *list, const char *const *names,
-                           size_t count, const char *name, BpError *err);
+/* Finds what the node, a string, names among `count` things of `size` bytes, each of which begins with its
+ * name; *number counts from 1. Fails with that text. */
+BpStatus bp_node_find(const BpNode *node, const char *kind, const char *list, const void *things, size_t size,
+                      size_t count, uint32_t *number, BpError *err);
 
 /* Fails unless `object` has the member. `expected` says what it should be. */
 BpStatus bp_node_require(const BpNode *object, const char *name, const char *expected, BpError *err);

@@ -1,7 +1,6 @@
 /* field.c: see field.h. */
 #include "field.h"
 
-#include "base/output_file.h"
 #include "base/plural.h"
 #include "base/random.h"
 #include "scene/scene.h"
@@ -29,7 +28,10 @@ static unsigned char *put_sphere(unsigned char *out, double spacing, BpRandom *r
     return out;
 }
 
-static BpStatus put_all(uint64_t count, uint64_t seed, FILE *stream, BpError *err) {
+BpStatus bp_field_print_ply(uint64_t count, uint64_t seed, FILE *stream, BpError *err) {
+    if (count < 1 || count > BP_SPHERES_MAX)
+        return bp_fail(err, BP_ERR_USAGE, "count: found %" PRIu64 ", expected 1 to %u spheres", count,
+                       BP_SPHERES_MAX);
     unsigned char block[SPHERE_BYTES * SPHERES_AT_ONCE];
     const double spacing = 2 * BP_FIELD_HALF_SIDE / cbrt((double)count);
     BpRandom random = {seed};
@@ -49,30 +51,4 @@ static BpStatus put_all(uint64_t count, uint64_t seed, FILE *stream, BpError *er
         done += some;
     }
     return BP_OK;
-}
-
-static BpStatus check_count(uint64_t count, BpError *err) {
-    if (count >= 1 && count <= BP_SPHERES_MAX) return BP_OK;
-    return bp_fail(err, BP_ERR_USAGE, "count: found %" PRIu64 ", expected 1 to %u spheres", count,
-                   BP_SPHERES_MAX);
-}
-
-BpStatus bp_field_print_ply(uint64_t count, uint64_t seed, FILE *out, BpError *err) {
-    BP_TRY(check_count(count, err));
-    return put_all(count, seed, out, err);
-}
-
-typedef struct Field {
-    uint64_t count, seed;
-} Field;
-
-static BpStatus print_field(const void *what, FILE *out, BpError *err) {
-    const Field *field = what;
-    return put_all(field->count, field->seed, out, err);
-}
-
-BpStatus bp_field_write_ply(uint64_t count, uint64_t seed, const char *path, BpError *err) {
-    const Field field = {count, seed};
-    BP_TRY(check_count(count, err));
-    return bp_output_write(path, false, print_field, &field, err);
 }

@@ -54,24 +54,8 @@ BpStatus bp_parse_media(const BpNode *node, BpScene *scene, BpError *err) {
     return BP_OK;
 }
 
-static BpStatus fail_missing_medium(const BpNode *node, const BpScene *scene, const char *name,
-                                    BpError *err) {
-    const char **names = malloc((scene->medium_count + 1) * sizeof *names);
-    if (names == NULL) return bp_fail(err, BP_ERR_MEMORY, "out of memory");
-    for (size_t i = 0; i < scene->medium_count; i++) names[i] = scene->media[i].name;
-    const BpStatus status = bp_node_fail_name(node, "medium", "media", names, scene->medium_count, name, err);
-    free(names);
-    return status;
-}
-
 BpStatus bp_parse_medium_name(const BpNode *node, const BpScene *scene, uint32_t *number, BpError *err) {
-    const char *name = NULL;
-    if (node->value == NULL) return BP_OK;
-    BP_TRY(bp_node_string(node, &name, err));
-    for (size_t i = 0; i < scene->medium_count; i++) {
-        if (strcmp(scene->media[i].name, name) != 0) continue;
-        *number = (uint32_t)i + 1;
-        return BP_OK;
-    }
-    return fail_missing_medium(node, scene, name, err);
+    return node->value == NULL ? BP_OK
+                               : bp_node_find(node, "medium", "media", scene->media, sizeof *scene->media,
+                                              scene->medium_count, number, err);
 }

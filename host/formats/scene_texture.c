@@ -200,28 +200,11 @@ BpStatus bp_parse_textures(const BpNode *node, unsigned flags, BpScene *scene, B
     return BP_OK;
 }
 
-static BpStatus fail_missing_texture(const BpNode *node, const BpScene *scene, const char *name,
-                                     BpError *err) {
-    const char **names = malloc((scene->texture_count + 1) * sizeof *names);
-    if (names == NULL) return bp_fail(err, BP_ERR_MEMORY, "out of memory");
-    for (size_t i = 0; i < scene->texture_count; i++) names[i] = scene->textures[i].name;
-    const BpStatus status =
-        bp_node_fail_name(node, "texture", "textures", names, scene->texture_count, name, err);
-    free(names);
-    return status;
-}
-
 BpStatus bp_parse_texture_name(const BpNode *node, const BpScene *scene, uint32_t *number, BpError *err) {
     static const char *const names[] = {"texture"};
-    const char *name = NULL;
     BP_TRY(bp_node_object(node, names, BP_COUNT(names), err));
     BP_TRY(bp_node_require(node, "texture", "a name from \"textures\"", err));
     const BpNode texture = bp_node_member(node, "texture");
-    BP_TRY(bp_node_string(&texture, &name, err));
-    for (size_t i = 0; i < scene->texture_count; i++) {
-        if (strcmp(scene->textures[i].name, name) != 0) continue;
-        *number = (uint32_t)i + 1;
-        return BP_OK;
-    }
-    return fail_missing_texture(&texture, scene, name, err);
+    return bp_node_find(&texture, "texture", "textures", scene->textures, sizeof *scene->textures,
+                        scene->texture_count, number, err);
 }

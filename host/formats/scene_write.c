@@ -3,8 +3,6 @@
  * In:    a scene.   Out: JSON text that reads back to the same scene, bit for bit.
  * Knows: the grammar.  Does not know: how the file comes to stand at its place (base/output_file.h). */
 #include "base/json_memory.h"
-#include "base/output_file.h"
-
 #include "base/names.h"
 #include "scene/fit.h"
 #include "scene/lighting.h"
@@ -432,12 +430,4 @@ BpStatus bp_scene_print(const BpScene *scene, FILE *out, BpError *err) {
     fputs("\n}\n", out);
     if (ferror(out)) return bp_fail(err, BP_ERR_FILE, "cannot write the scene: %s", strerror(errno));
     return BP_OK;
-}
-
-static BpStatus print_scene(const void *scene, FILE *out, BpError *err) {
-    return bp_scene_print(scene, out, err);
-}
-
-BpStatus bp_scene_write(const BpScene *scene, const char *path, BpError *err) {
-    return bp_output_write(path, false, print_scene, scene, err);
 }

@@ -29,10 +29,6 @@ const char *bp_effect_identifier(BpEffect effect) {
     return texts[effect].identifier;
 }
 
-const char *bp_effect_description(BpEffect effect) {
-    return texts[effect].text;
-}
-
 /* How many materials, and how many spheres with them, call for one effect. */
 typedef struct Use {
     size_t materials, spheres, unused; /* unused: materials that would, but that no sphere has */

@@ -57,7 +57,6 @@ static inline bool bp_effects_has(uint32_t bits, BpEffect effect) {
 
 const char *bp_effect_name(BpEffect effect);       /* "lambertian" */
 const char *bp_effect_identifier(BpEffect effect); /* "LAMBERTIAN" */
-const char *bp_effect_description(BpEffect effect);
 
 void bp_effects_analyse(const BpScene *scene, BpEffects *effects);
 

@@ -128,7 +128,6 @@ static BpStatus add_tag(BpParticles *p, const Particle *particle, BpError *err) 
     BP_TRY(names_number(&p->names, particle->residue, &tag->residue, err));
     BP_TRY(names_number(&p->names, particle->chain, &tag->chain, err));
     BP_TRY(names_number(&p->names, particle->type, &tag->type, err));
-    p->has_name |= tag->name != 0;
     p->has_residue |= tag->residue != 0;
     p->has_chain |= tag->chain != 0;
     p->has_type |= tag->type != 0;

@@ -71,9 +71,9 @@ typedef struct BpParticles {
     float (*color)[3];                     /* Optional; linear, in [0, 1] */
     float *column[BP_PARTICLE_WANTED_MAX]; /* of the wanted columns, in their order */
     BpNames names;
-    bool has_name, has_residue, has_chain, has_type, has_element; /* some particle has one */
-    bool element_guessed;                                         /* some from its name */
-    bool has_cell, periodic[3];        /* along each edge; none where there is no cell */
+    bool has_residue, has_chain, has_type, has_element; /* some particle has one */
+    bool element_guessed;                               /* some from its name */
+    bool has_cell, periodic[3];                         /* along each edge; none where there is no cell */
     double cell_origin[3], cell[3][3]; /* the cell's edges as rows; those that repeat are independent */
     uint32_t (*bonds)[2];              /* Optional: given in the file */
     size_t bond_count;

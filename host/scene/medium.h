@@ -25,7 +25,7 @@ struct BpScene;
 #define BP_ANISOTROPY_MAX 0.999
 
 typedef struct BpMedium {
-    char *name;
+    char *name;                          /* first: bp_node_find() */
     double absorption[3], scattering[3]; /* per unit of length */
     double anisotropy;
 } BpMedium;

@@ -245,9 +245,8 @@ static inline bool bp_sphere_moves(const BpScene *scene, size_t sphere) {
 BpStatus bp_scene_validate(const BpScene *scene, BpError *err);
 
 /* Writes the scene as a document of the grammar that reads back to the same scene, bit for bit, one sphere a
- * line; refuses a scene with coloured cloud points, which has no such document. */
-BpStatus bp_scene_write(const BpScene *scene, const char *path, BpError *err);
-/* The same to an open stream, which the caller closes. */
+ * line, to a stream, which the caller closes; refuses a scene with coloured cloud points, which has no such
+ * document. */
 BpStatus bp_scene_print(const BpScene *scene, FILE *stream, BpError *err);
 /* Its member "camera" alone. */
 void bp_scene_print_camera(const BpCamera *camera, FILE *stream);

@@ -86,7 +86,7 @@ typedef enum BpPattern {
 } BpPattern;
 
 typedef struct BpTexture {
-    char *name;
+    char *name; /* first: bp_node_find() */
     BpTextureType type;
     BpMapping mapping;
     double colors[2][3]; /* of even cells, and of odd ones; of noise at 0 and at 1; numbers are colours of

@@ -30,7 +30,7 @@ typedef enum BpWindowButton { BP_BUTTON_LEFT = 1, BP_BUTTON_MIDDLE, BP_BUTTON_RI
 typedef struct BpWindowEvent {
     BpWindowAction action;
     BpWindowButton button;
-    bool shift, control;
+    bool shift;
     double x, y;   /* where in the picture: 0 to 1 from its left and its top; outside of it: less or more */
     double dx, dy; /* down is positive for drags */
     uint32_t width, height;

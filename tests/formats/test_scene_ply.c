@@ -288,8 +288,11 @@ static void field_and_cloud(void **state) {
     snprintf(ply, sizeof ply, "%s/field.ply", folder);
     snprintf(json, sizeof json, "%s/field.json", folder);
     BpError err = {0};
-    assert_int_equal(bp_field_write_ply(100000, 7, ply, &err), BP_OK);
-    FILE *file = fopen(json, "w");
+    FILE *file = fopen(ply, "wb");
+    assert_non_null(file);
+    assert_int_equal(bp_field_print_ply(100000, 7, file, &err), BP_OK);
+    assert_int_equal(fclose(file), 0);
+    file = fopen(json, "w");
     assert_non_null(file);
     fputs("{ \"camera\": {}, \"materials\": { \"m\": { \"type\": \"lambertian\", \"albedo\": [1, 1, 1] } },\n"
           "  \"spheres\": [ { \"center\": [0, 0, 0], \"radius\": 100, \"material\": \"m\" } ],\n"
@@ -314,7 +317,7 @@ static void field_and_cloud(void **state) {
     }
     /* The mean of 1e5 even draws over [-10, 10] has a standard deviation of 0.018. */
     for (int k = 0; k < 3; k++) assert_true(fabs(sum[k] / 200000) < 0.09);
-    assert_int_equal(bp_scene_write(scene, ply, &err), BP_ERR_SCENE); /* colours of points have no JSON */
+    assert_int_equal(bp_scene_print(scene, stdout, &err), BP_ERR_SCENE); /* colours of points have no JSON */
     bp_scene_destroy(&scene);
     bp_error_clear(&err);
 
@@ -333,8 +336,8 @@ static void field_and_cloud(void **state) {
     assert_int_equal(err.line, 3);
     assert_non_null(strstr(err.message, "found a pipe"));
     bp_error_clear(&err);
-    assert_int_equal(bp_field_write_ply(0, 7, ply, &err), BP_ERR_USAGE);
-    assert_int_equal(bp_field_write_ply(BP_SPHERES_MAX + UINT64_C(1), 7, ply, &err), BP_ERR_USAGE);
+    assert_int_equal(bp_field_print_ply(0, 7, stdout, &err), BP_ERR_USAGE);
+    assert_int_equal(bp_field_print_ply(BP_SPHERES_MAX + UINT64_C(1), 7, stdout, &err), BP_ERR_USAGE);
     bp_error_clear(&err);
     unlink(ply);
     unlink(json);

@@ -239,7 +239,10 @@ static void assert_written_reads_back(const BpScene *scene, const char *of) {
     BpScene *copy = NULL;
     BpError err = {0};
     temporary_path(path);
-    if (bp_scene_write(scene, path, &err) != BP_OK) fail_msg("%s: %s", of, err.message);
+    FILE *file = fopen(path, "w");
+    assert_non_null(file);
+    if (bp_scene_print(scene, file, &err) != BP_OK) fail_msg("%s: %s", of, err.message);
+    assert_int_equal(fclose(file), 0);
     if (bp_scene_load(path, &copy, &err) != BP_OK)
         fail_msg("%s: %d:%d %s", of, err.line, err.column, err.message);
     assert_same_scene(scene, copy);

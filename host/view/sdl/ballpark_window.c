@@ -103,7 +103,6 @@ static char key_of(const SDL_KeyboardEvent *key) {
 static bool translate(const SDL_Event *from, BpWindowEvent *event) {
     const SDL_Keymod keys = SDL_GetModState();
     event->shift = (keys & KMOD_SHIFT) != 0;
-    event->control = (keys & KMOD_CTRL) != 0;
     switch (from->type) {
     case SDL_QUIT:
         event->action = BP_WINDOW_QUIT;
