@@ -464,14 +464,9 @@ done:
     return status;
 }
 
-BpStatus bp_scene_parse_with(const char *text, size_t length, const char *name, unsigned flags,
-                             BpScene **scene, BpError *err) {
-    const BpSceneChanges changes = {.flags = flags};
-    return bp_scene_parse_changed(text, length, name, &changes, scene, err);
-}
-
 BpStatus bp_scene_parse(const char *text, size_t length, const char *name, BpScene **scene, BpError *err) {
-    return bp_scene_parse_with(text, length, name, 0, scene, err);
+    const BpSceneChanges none = {0};
+    return bp_scene_parse_changed(text, length, name, &none, scene, err);
 }
 
 BpStatus bp_scene_parse_with_spheres(const char *text, size_t length, const char *name,

@@ -57,11 +57,7 @@ void bp_scene_view(BpScene *scene, double direction[3]);
 BpStatus bp_scene_load_changed(const char *path, const BpSceneChanges *changes, BpScene **scene,
                                BpError *err);
 
-/* bp_scene_parse with flags. */
-BpStatus bp_scene_parse_with(const char *text, size_t length, const char *name, unsigned flags,
-                             BpScene **scene, BpError *err);
-
-/* What rays see that meet nothing (scene_background.c); `flags` as in bp_scene_parse_with. */
+/* What rays see that meet nothing (scene_background.c); `flags` as in BpSceneChanges. */
 BpStatus bp_parse_background(const BpNode *node, unsigned flags, BpScene *scene, BpError *err);
 BpStatus bp_parse_backdrop(const BpNode *node, BpScene *scene, BpError *err);
 /* After the background, since an image there is refused. */
@@ -123,7 +119,7 @@ BpStatus bp_point_file_move(const char *document, const char *to, BpPointFile *f
 /* The same for an image. */
 BpStatus bp_image_move(const char *document, const char *to, BpImage *image, BpError *err);
 
-/* Adds the points of the clouds' files to the scene's spheres; `flags` as in bp_scene_parse_with. */
+/* Adds the points of the clouds' files to the scene's spheres; `flags` as in BpSceneChanges. */
 BpStatus bp_parse_clouds(const BpNode *node, const BpMaterialIndex *index, unsigned flags, BpScene *scene,
                          BpError *err);
 

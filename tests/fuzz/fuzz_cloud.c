@@ -84,8 +84,9 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size) {
             fclose(file) == 0);
     BpScene *scene = NULL;
     BpError err = {0};
-    const unsigned flags = stays_home(data, length) ? 0 : BP_PARSE_NO_CLOUDS;
-    const BpStatus status = bp_scene_parse_with((const char *)data, length, scene_path, flags, &scene, &err);
+    const BpSceneChanges changes = {.flags = stays_home(data, length) ? 0 : BP_PARSE_NO_CLOUDS};
+    const BpStatus status =
+        bp_scene_parse_changed((const char *)data, length, scene_path, &changes, &scene, &err);
     if (status != BP_OK)
         require(scene == NULL && err.code == status && err.message[0] != '\0' && err.file[0] != '\0');
     else

@@ -17,8 +17,8 @@ static char *print(const BpScene *scene, size_t *length) {
 int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size) {
     BpScene *scene = NULL, *again = NULL;
     BpError err = {0};
-    const BpStatus status =
-        bp_scene_parse_with((const char *)data, size, "x.json", BP_PARSE_NO_CLOUDS, &scene, &err);
+    const BpSceneChanges alone = {.flags = BP_PARSE_NO_CLOUDS};
+    const BpStatus status = bp_scene_parse_changed((const char *)data, size, "x.json", &alone, &scene, &err);
     if (status != BP_OK) {
         require(scene == NULL && err.code == status && err.message[0] != '\0');
         require(err.line >= 1 && err.column >= 1);
@@ -28,7 +28,7 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size) {
     require(bp_scene_validate(scene, NULL) == BP_OK);
     size_t length = 0, length_again = 0;
     char *text = print(scene, &length);
-    require(bp_scene_parse_with(text, length, "x.json", BP_PARSE_NO_CLOUDS, &again, NULL) == BP_OK);
+    require(bp_scene_parse_changed(text, length, "x.json", &alone, &again, NULL) == BP_OK);
     require(bp_scene_hash(scene) == bp_scene_hash(again));
     char *text_again = print(again, &length_again);
     require(length == length_again && memcmp(text, text_again, length) == 0);
