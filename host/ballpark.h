@@ -60,7 +60,7 @@
 #include <stddef.h>
 #include <stdint.h>
 
-/* What the shared library shows to others. */
+/* Marks what the shared library exports. */
 #if defined(__GNUC__)
 #define BP_API __attribute__((visibility("default")))
 #else
@@ -111,7 +111,7 @@ typedef struct BpError {
 
 /* "file error", and "unknown status" for a number that is not a BpStatus; static. */
 BP_API const char *bp_status_name(BpStatus status);
-/* What the command line program exits with: 0 for BP_OK, never 0 for another. */
+/* The exit code of the command line program: 0 for BP_OK, never 0 for another. */
 BP_API int bp_status_exit_code(BpStatus status);
 /* Releases the attachment and zeroes the rest. `err`: Optional. */
 BP_API void bp_error_clear(BpError *err);
@@ -173,7 +173,7 @@ BP_API void bp_scene_destroy(BpScene **scene);
  * side would be out of range. No render or study of the scene may live meanwhile. */
 BP_API BpStatus bp_scene_set_width(BpScene *scene, uint32_t width, BpError *err);
 
-/* What the document says; its strings are valid while the scene lives. */
+/* Facts about a scene; its strings are valid while the scene lives. */
 typedef struct BpSceneInfo {
     const char *title, *source; /* "" where the document has none */
     uint32_t width, height, samples_per_pixel, max_depth;
@@ -206,7 +206,7 @@ BP_API bool bp_scene_effect(const BpScene *scene, size_t index, BpEffectInfo *in
 
 /* ---- how particles look ------------------------------------------------------------------------------ */
 
-/* What files of particles are shown with, for spheres that come from elsewhere. */
+/* The colours and radii that files of particles get, for spheres from other sources. */
 typedef struct BpElementInfo {
     char symbol[4];                 /* "" for the unknown element */
     double mass;                    /* standard atomic weight */
@@ -400,7 +400,7 @@ BP_API BpStatus bp_stop_create(BpRender *render, const BpStopRule *rule, BpStop 
  * render at a whole number of samples, unless its pace dropped. */
 BP_API BpStatus bp_stop_check(BpStop *stop, const BpProgress *progress, BpStopReason *reason, BpError *err);
 
-/* How far it is, for a progress bar. */
+/* The progress of a render, for a progress bar. */
 typedef struct BpStopEstimate {
     double seconds;            /* since bp_stop_create() */
     double samples_per_second; /* of all pixels together */
@@ -552,7 +552,7 @@ typedef struct BpFilmInfo {
      * those that were finite but brighter than the sums can hold. */
     uint64_t not_finite_samples, negative_samples, out_of_range_samples;
     uint64_t shadow_rays; /* sent to lamps, in all; they do not count as segments */
-    /* What two films must have in common to be merged. */
+    /* Properties that two films must share to be merged. */
     uint64_t scene_hash; /* of all in a scene that can change radiance */
     uint64_t seed;
     uint32_t max_depth, replicates;

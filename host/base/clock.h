@@ -15,7 +15,7 @@ static inline double bp_clock_seconds(void) {
     return bp_clock_read(CLOCK_MONOTONIC);
 }
 
-/* That all threads of this process spent on all cores, which other programs hardly disturb. */
+/* CPU time that all threads of this process spent on all cores, which other programs hardly disturb. */
 static inline double bp_processor_seconds(void) {
     return bp_clock_read(CLOCK_PROCESS_CPUTIME_ID);
 }

@@ -14,7 +14,7 @@ size_t bp_text_mark(const void *text, size_t length);
 /* "UTF-16" or "UTF-32" where a text begins like one, with a mark or without; NULL where it does not. */
 const char *bp_text_wide(const void *text, size_t length);
 
-/* What a message says of such a text, %s being its encoding twice. */
+/* The message about such a text; both %s are its encoding. */
 #define BP_TEXT_WIDE_FORMAT                                                                                  \
     "found text in %s, expected UTF-8: save it in that encoding, or convert it with iconv -f %s -t UTF-8"
 

@@ -8,7 +8,7 @@
 #include <stdbool.h>
 #include <stdint.h>
 
-/* In bytes; 0: there is none. */
+/* The limit in bytes; 0: no limit. */
 uint64_t bp_memory_limit(void);
 
 /* Whether 64 MiB more cannot be had. A handler of signals may ask. */

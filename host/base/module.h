@@ -8,7 +8,7 @@
 
 #include "status.h"
 
-/* What bp_module_load() is told. */
+/* The module that bp_module_load() is to load. */
 typedef struct BpModuleName {
     const char *file;     /* "ballpark_mpi.so" */
     const char *variable; /* of the environment, which may name another file */

@@ -19,7 +19,7 @@
     X(BpLightSampling, light_sampling, "light-sampling", "ways to find lights")                              \
     X(BpCaustics, caustics, "caustics", "ways to find caustics")
 
-/* As members of a struct. */
+/* Expands the list to members of a struct. */
 #define BP_SETTING_MEMBER(type, member, option, plural) type member;
 
 /* The words of an enumeration, each by its value; NULL ends the list. */

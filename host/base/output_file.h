@@ -27,7 +27,7 @@
 
 #include <stdio.h>
 
-/* What an error of bp_output_commit() says before the name of the finished file that it had to leave. */
+/* The words before the name of the finished file that a failed bp_output_commit() had to leave. */
 #define BP_OUTPUT_KEPT_AS "the complete result is in "
 
 /* Zeroed when not open. */

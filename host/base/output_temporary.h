@@ -18,7 +18,7 @@
 int bp_temporary_create(const char *target, mode_t mode, bool *unnamed, char **name);
 /* The same with a name in `folder`. */
 int bp_temporary_create_in(const char *folder, const char *target, mode_t mode, char **name);
-/* In $TMPDIR or /tmp. */
+/* The same in $TMPDIR or /tmp. */
 int bp_temporary_create_elsewhere(const char *target, mode_t mode, char **name);
 
 /* Puts the finished temporary at `target`; 0, or an errno. After a failure it still exists, as it was or with

@@ -13,7 +13,8 @@
 #include <stddef.h>
 #include <stdio.h>
 
-/* How many bytes the character at `text`, which is not its end, has in UTF-8; 0: none begins there. */
+/* The length in bytes of the UTF-8 character at `text`, which is not the end of the text; 0: no character
+ * begins there. */
 size_t bp_utf8_length(const char *text);
 
 /* `text` in `buffer`, cut at a whole character where it is too long; returns `buffer`. */

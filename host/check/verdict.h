@@ -81,8 +81,8 @@ typedef struct BpVerdict {
     /* The smallest margin within which brightness is shown to be equal, in luminance and in each channel that
      * has light; at most `margin` is the evidence that "agree" needs. Infinite: nothing is shown. */
     double shown_within;
-    /* How far the kernel's picture is from the samples that it is made of: the largest |picture - mean of the
-     * samples| of a pixel's channel, over the sum of that mean and the channel's mean in the picture.
+    /* The error of the kernel's picture against the samples that it is made of: the largest |picture - mean
+     * of the samples| of a pixel's channel, over the sum of that mean and the channel's mean in the picture.
      * Infinite where a pixel counts other samples as valid. Above BP_VERDICT_PICTURE_OFF it is a
      * disagreement. */
     double picture_off;

@@ -27,7 +27,7 @@ BpStatus bp_check_against_read(const char *path, json_t **document, BpError *err
  * A device that is gone is a regression if it agreed anywhere. NULL: out of memory. */
 json_t *bp_check_against(const json_t *scenes, const json_t *earlier, const char *path, bool all);
 
-/* How many devices are gone. */
+/* The number of devices that are missing. */
 size_t bp_check_against_gone(const json_t *against);
 
 /* A line for each change, and how many regressions there are. */

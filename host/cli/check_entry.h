@@ -34,8 +34,8 @@ const char *bp_check_label(const json_t *scene, char *text, size_t size);
 /* "NAME (PLATFORM, driver VERSION)", shown safely, with a 0; returns `text`. */
 const char *bp_check_device_title(const json_t *entry, char *text, size_t size);
 
-/* How entries add up: "disagree" before "failed" before "inconclusive" before "agree"; where there is none,
- * "inconclusive", as nothing passes without evidence. What was skipped does not count. */
+/* The verdict on several entries: "disagree" before "failed" before "inconclusive" before "agree"; where
+ * there is none, "inconclusive", as nothing passes without evidence. What was skipped does not count. */
 typedef struct BpCheckCounts {
     unsigned agree, disagree, inconclusive, failed, skipped;
 } BpCheckCounts;

@@ -15,7 +15,7 @@
 
 #include <stdio.h>
 
-/* What a document says of one scene, without results: they are added to its "results". */
+/* The document of one scene, without results: they are added to its "results". */
 json_t *bp_check_scene_json(const char *name, const BpScene *scene, const BpRenderOptions *options);
 
 /* The document. `scenes`: an array of the objects above, with results; `broken`: an array of drivers. Takes

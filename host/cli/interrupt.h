@@ -18,8 +18,8 @@
  * And for a process that was forked and is to be interrupted like this one. */
 void bp_interrupt_install(void);
 
-/* From now on the first signal is noted, and a second SIGINT or SIGTERM ends the program at once. (Signals
- * within a quarter of a second of the first are the same Ctrl-C, delivered twice.) */
+/* From this call on, the first signal is recorded, and a second SIGINT or SIGTERM ends the program at once.
+ * (Signals within a quarter of a second of the first are the same Ctrl-C, delivered twice.) */
 void bp_interrupt_catch(void);
 bool bp_interrupted(void);
 

@@ -22,7 +22,7 @@ enum {
     BP_SCENE = 1 << 8,
     BP_VIEW = 1 << 9,
     BP_HELP = 1 << 10,
-    /* All that trace paths. */
+    /* All commands that trace paths. */
     BP_TRACERS = BP_RENDER | BP_CHECK | BP_EXPLAIN | BP_COST | BP_BENCH | BP_VIEW,
     BP_COMMANDS = BP_TRACERS | BP_MERGE | BP_DEVICES | BP_GENERATE | BP_SCENE, /* all that do work */
 };
@@ -207,7 +207,7 @@ enum {
     OPTION(HELP, "help", 'h', 0, "print this help", bool, help, BP_FLAG)                                     \
     OPTION(VERSION, "version", 'V', 0, "print version and commit", bool, version, BP_FLAG)
 
-/* What the help of some commands says of an option: NOTE(number, commands, help, default). `help` takes the
+/* Help texts of an option for some commands: NOTE(number, commands, help, default). `help` takes the
  * place of the text above unless it is NULL; `default` is NULL if the option has none. Every pair of a
  * command and an option stands in one row at most. */
 #define BP_OPTION_NOTES(NOTE)                                                                                \

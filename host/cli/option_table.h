@@ -18,7 +18,8 @@ const char *bp_option_name(BpOption option); /* "spp" */
 const char *bp_option_help(BpOption option, const BpCommand *command, char *text, size_t size);
 char bp_option_letter(BpOption option); /* 'o', or 0 */
 
-/* What the help calls the value, in `text`, which it returns: "N", "robust|plain"; "" for a flag. */
+/* The name of the value in the help, written to `text`, which is returned: "N", "robust|plain"; "" for a
+ * flag. */
 const char *bp_option_metavar(BpOption option, char *text, size_t size);
 
 /* The words that the value is one of, ending with NULL; NULL: it is something else. */

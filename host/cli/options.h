@@ -21,7 +21,7 @@ typedef enum BpOption {
 #define BP_SPP_MAX                                                                                           \
     ((uint64_t)1 << 26) /* BP_REPLICATE_SAMPLES_MAX in each replicate: then sums may overflow */
 
-/* From the picture's top left corner, from 0. */
+/* A pixel, counted from 0 at the picture's top left corner. */
 typedef struct BpPixel {
     uint32_t x, y;
 } BpPixel;
@@ -38,14 +38,14 @@ typedef struct BpShare {
     uint32_t number, count;
 } BpShare;
 
-/* What an option that may be repeated was given, in order. */
+/* The values of an option that may be repeated, in order. */
 enum { BP_TEXTS_MAX = 256 };
 typedef struct BpTexts {
     const char *list[BP_TEXTS_MAX];
     size_t count;
 } BpTexts;
 
-/* What the command line says: a member for each option, as option_list.h declares it. Every member is
+/* The command line as parsed: a member for each option, as option_list.h declares it. Every member is
  * checked; one whose option was not given is 0, NULL or the enumeration's first value, and bp_option_given()
  * tells. Texts point into argv, or are static. */
 typedef struct BpCommandLine {

@@ -15,7 +15,7 @@ bool bp_terminal_is_live(bool quiet);
 /* Columns of the terminal at `descriptor` now; if there is no terminal or it does not report its width,
  * COLUMNS of the environment, else 80; at least 1. */
 unsigned bp_terminal_width(int descriptor);
-/* Those of standard error. */
+/* The columns of standard error. */
 unsigned bp_terminal_columns(void);
 
 /* Whether characters outside ASCII are shown (by LC_ALL, LC_CTYPE, LANG). */

@@ -36,7 +36,7 @@ uint32_t bp_comm_cores(const BpComm *comm);
 /* Seconds spent waiting for other ranks, and spent adding. */
 void bp_comm_times(const BpComm *comm, double *waiting, double *adding);
 
-/* From rank 0 to all. */
+/* Broadcasts from rank 0 to all. */
 BpStatus bp_comm_broadcast(BpComm *comm, void *bytes, size_t size, BpError *err);
 /* Copies `size` bytes of every rank to rank 0, in the order of ranks, to `all`, which elsewhere may be NULL.
  */
@@ -50,9 +50,10 @@ BpStatus bp_comm_add_32(BpComm *comm, uint32_t *numbers, size_t count, BpError *
  * NULL. */
 BpStatus bp_comm_collect(BpComm *comm, const char *text, char ***texts, BpError *err);
 
-/* How it went on all ranks: `status` if all went well; else, on all of them, the status of the first that
- * failed. Rank 0's `err` then tells what happened, and on which rank; that of the others need not be shown.
- * Once it has failed, it fails at once and without an exchange. A failed exchange counts as a failure. */
+/* The common status of all ranks: `status` if all succeeded; else, on all of them, the status of the first
+ * that failed. Rank 0's `err` then tells what happened, and on which rank; that of the others need not be
+ * shown. Once it has failed, it fails at once and without an exchange. A failed exchange counts as a failure.
+ */
 BpStatus bp_comm_agree(BpComm *comm, BpStatus status, BpError *err);
 
 /* Between the two, the ranks depend on each other, and a rank that fails cannot agree with the others. No

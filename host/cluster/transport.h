@@ -17,7 +17,7 @@
 #define BP_TRANSPORT_SYMBOL "bp_transport"
 #define BP_TRANSPORT_BLOCK ((uint64_t)1 << 22) /* bytes of one call at most */
 
-/* Where a process stands in its job. */
+/* The rank of a process in its job. */
 typedef struct BpPlace {
     uint32_t rank, size;             /* of the job */
     uint32_t local_rank, local_size; /* of those on the same machine */
@@ -32,7 +32,7 @@ typedef struct BpTransport {
     /* Each begins an exchange, which is over when test() returns true; one is under way at a time, and its
      * memory stays in place. At most BP_TRANSPORT_BLOCK bytes. */
     const char *(*broadcast)(void *bytes, uint64_t size); /* from rank 0 to all */
-    /* From all to rank 0: `all` is Optional elsewhere; there rank r's begin at r * size. */
+    /* Gathers from all on rank 0: `all` is Optional elsewhere; there rank r's begin at r * size. */
     const char *(*gather)(const void *own, uint64_t size, void *all);
     const char *(*unite)(uint32_t *bits); /* on all ranks the bits that any rank has set */
     const char *(*test)(bool *done);

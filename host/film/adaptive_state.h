@@ -16,8 +16,8 @@ struct BpAdaptive {
     uint32_t *half_pixels;   /* how many each has */
     uint8_t *level, *wanted; /* of each half; level l: BP_ADAPTIVE_FIRST << l samples per pixel */
     bool *passing;           /* halves of the pass under way */
-    /* Of each half at each level, means over its pixels: squared error, ray segments a sample. NULL: none
-     * yet. */
+    /* Means over the pixels of each half at each level: squared error, ray segments per sample. NULL: not
+     * measured yet. */
     float *errors[BP_ADAPTIVE_LEVELS_MAX], *costs[BP_ADAPTIVE_LEVELS_MAX];
     uint32_t *list;            /* pixels of the pass under way */
     uint64_t pass_samples_max; /* that these will have */

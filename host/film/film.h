@@ -61,13 +61,13 @@ struct BpFilm {
     uint32_t width, height;
     uint32_t replicates; /* K */
     int32_t scale_log2;
-    /* What the samples were drawn from; two films merge only when all of these agree. */
+    /* The inputs of the samples; two films merge only when all of these are equal. */
     uint64_t scene_hash; /* of everything that can change radiance */
     uint64_t seed;
     uint32_t max_depth;
     BP_SETTING_LIST(BP_SETTING_MEMBER)
     BpTransfer transfer; /* of the scene, for the picture made from a merged file */
-    /* Those that every pixel was meant to get, sorted, disjoint. */
+    /* The sample numbers that every pixel was meant to get, sorted and disjoint. */
     struct BpSampleRange *ranges;
     size_t range_count;
     bool partial;       /* interrupted: some pixels have fewer samples than the ranges say */
@@ -177,7 +177,7 @@ uint64_t bp_film_range_total(const BpFilm *film);
 /* Squared standard error of one pixel's luminance, by the same formula and with its unseen light; NaN with
  * fewer than two replicates. `weights`: of this film (bp_unseen_weigh). */
 double bp_film_squared_error(const BpFilm *film, const BpUnseenWeights *weights, size_t pixel);
-/* All that is claimed for a picture, in one pass over its pixels. */
+/* All estimates of a picture, from one pass over its pixels. */
 typedef struct BpFilmClaim {
     double luminance;   /* the mean, with light that samples may not have found yet */
     double nrmse;       /* as bp_film_nrmse() */

@@ -34,7 +34,7 @@ typedef struct BpUnseen {
     float tint[3]; /* the mean square of each channel over that of the luminance */
 } BpUnseen;
 
-/* All 0. BP_ERR_MEMORY. */
+/* Creates one in which everything is 0. BP_ERR_MEMORY. */
 BpStatus bp_unseen_create(size_t pixels, BpUnseen **unseen, BpError *err);
 BpStatus bp_unseen_copy(const BpUnseen *from, size_t pixels, BpUnseen **unseen, BpError *err);
 void bp_unseen_destroy(BpUnseen **unseen); /* NULL-safe */
@@ -45,7 +45,7 @@ typedef struct BpUnseenWeights {
     double finds[BP_UNSEEN_OCTAVES]; /* that the samples of the picture are expected to have made */
 } BpUnseenWeights;
 
-/* Of the samples that a film has now; all 0 if it has no unseen light. */
+/* The weights for the samples that a film has now; all 0 if it has no unseen light. */
 void bp_unseen_weigh(const BpFilm *film, BpUnseenWeights *weights);
 /* The weight of what reaches one pixel; 0 if nothing does. */
 double bp_unseen_weight(const BpUnseenWeights *weights, const BpUnseenPixel *pixel);

@@ -43,7 +43,7 @@ typedef struct BpNode {
     json_t *value; /* borrowed; NULL: the member is absent */
 } BpNode;
 
-/* What an error points at: the value, or the name before the colon. */
+/* The place to which an error points: the value, or the name before the colon. */
 typedef enum BpPart { BP_PART_VALUE, BP_PART_NAME } BpPart;
 
 /* Parses `text`, which must outlive the document. Refuses what is not JSON, repeated members, and a root that
@@ -59,12 +59,12 @@ BpNode bp_node_element(const BpNode *list, size_t index);
 /* Fails with BP_ERR_SCENE at the node's place; the message opens with its path, as "spheres[3].radius: ". */
 BpStatus bp_node_fail(const BpNode *node, BpPart part, BpError *err, const char *format, ...)
     BP_PRINTF_LIKE(4, 5);
-/* What a value is, for a message: "an object", "the text \"sky\"", "20". */
+/* A description of a value, for a message: "an object", "the text \"sky\"", "20". */
 void bp_json_describe(const json_t *value, char *out, size_t size);
 
 /* Fails with "found X, expected `expected`". */
 BpStatus bp_node_wrong(const BpNode *node, const char *expected, BpError *err);
-/* What is wrong with the name of a thing that `list` of the document lacks; the nearest of `names`, all that
+/* The message about a name that `list` of the document lacks; the nearest of `names`, all that
  * are there, is proposed. `kind`: what the thing is called. */
 enum { BP_MISSING_NAME_SIZE = 256 };
 void bp_missing_name_text(const char *kind, const char *list, const char *const *names, size_t count,

@@ -24,7 +24,7 @@ typedef struct BpExrLayer {
 BpStatus bp_exr_layer_choose(const BpImageInput *input, exr_const_context_t exr, BpExrLayer *layer,
                              BpError *err);
 
-/* Where a channel stands among a texel's numbers: 0 to 2; -1 if it is not the layer's. */
+/* The place of a channel among a texel's numbers: 0 to 2; -1 if it is not the layer's. */
 int bp_exr_channel_place(const BpExrLayer *layer, const char *channel);
 
 #endif

@@ -29,7 +29,7 @@ typedef struct BpKnownFile {
  * make no difference; `size` is that of the whole file. */
 bool bp_known_file(const char *name, const char *bytes, size_t length, size_t size, BpKnownFile *found);
 
-/* What to do with one where a scene was expected: "; ..." or "". Static. */
+/* Advice on such a file where a scene was expected: "; ..." or "". Static. */
 const char *bp_known_file_remedy(const BpKnownFile *file);
 
 #endif

@@ -26,7 +26,7 @@ typedef struct BpParticleCache {
 } BpParticleCache;
 void bp_particle_cache_clear(BpParticleCache *cache);
 
-/* What a command line asks for beyond the document. Zeros: nothing. */
+/* Changes that a command line makes to the document. Zeros: none. */
 typedef struct BpSceneChanges {
     unsigned flags;    /* BP_PARSE_... */
     BpHeldFiles *held; /* Optional: as of a document */
@@ -57,7 +57,7 @@ void bp_scene_view(BpScene *scene, double direction[3]);
 BpStatus bp_scene_load_changed(const char *path, const BpSceneChanges *changes, BpScene **scene,
                                BpError *err);
 
-/* What rays see that meet nothing (scene_background.c); `flags` as in BpSceneChanges. */
+/* Reads what rays that hit nothing see (scene_background.c); `flags` as in BpSceneChanges. */
 BpStatus bp_parse_background(const BpNode *node, unsigned flags, BpScene *scene, BpError *err);
 BpStatus bp_parse_backdrop(const BpNode *node, BpScene *scene, BpError *err);
 /* After the background, since an image there is refused. */
@@ -100,7 +100,7 @@ BpStatus bp_add_sphere_sets(const BpMaterialIndex *index, const BpSceneChanges *
                             BpError *err);
 /* The place of a name among the scene's materials, or UINT32_MAX. */
 uint32_t bp_material_find(const BpMaterialIndex *index, const char *name);
-/* What is wrong with a name that is not among them. Fails without memory. */
+/* Writes the message about a name that is not among them. Fails only if memory runs out. */
 BpStatus bp_missing_material_text(const BpMaterialIndex *index, const char *name,
                                   char out[BP_MISSING_NAME_SIZE], BpError *err);
 /* The material of spheres that name none: matte. It is made when it is first asked for. UINT32_MAX: out of

@@ -10,8 +10,8 @@
 typedef struct BpDepthCues {
     double outlines; /* width of the lines in pixels; 0: none */
     double fog;      /* share by which the farthest thing fades, 0 to 1; what is nearest does not */
-    /* What things fade to, at the picture's lower and upper edge. A picture with alpha fades to none instead.
-     */
+    /* The colours to which distant things fade, at the lower and the upper edge of the picture. A picture
+     * with alpha fades to transparency instead. */
     double bottom[3], top[3];
 } BpDepthCues;
 

@@ -20,7 +20,7 @@ bool bp_format_from_path(const char *path, BpFormat *format);
 /* The format by its name on the command line: png ppm ppm-ascii pfm exr bpa. */
 bool bp_format_from_name(const char *name, BpFormat *format);
 
-/* What a file of a picture holds beside its pixels, in PNG and EXR. Zeros: nothing, and 8 bits. */
+/* Metadata of a picture's file, in PNG and EXR. Zeros: none, and 8 bits. */
 typedef struct BpImageNote {
     const char *png_key, *exr_key, *text; /* UTF-8 */
 } BpImageNote;

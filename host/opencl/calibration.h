@@ -21,9 +21,10 @@ typedef struct BpCalibration {
     double gain;               /* its speed, as a multiple of that without calibration */
 } BpCalibration;
 
-/* What is remembered of the device, if it was found with the same kernels, of which `kernels` is a hash. */
+/* Loads the calibration of the device, if it was found with the same kernels, of which `kernels` is a hash.
+ */
 bool bp_calibration_recall(const BpDeviceInfo *device, uint64_t kernels, BpCalibration *calibration);
-/* Where that fails, it is not remembered. */
+/* Saves it; if that fails, it is not remembered. */
 void bp_calibration_keep(const BpDeviceInfo *device, uint64_t kernels, const BpCalibration *calibration);
 
 #endif

@@ -53,7 +53,7 @@ bool bp_device_has_extension(cl_device_id id, const char *name);
  * same bits; on other devices kernels round themselves (kernels/dialect/divide.cl). */
 bool bp_device_rounds_quotients(cl_device_id id);
 
-/* All that clBuildProgram is told of this device's programs, where a program asks for `options` (Optional).
+/* The complete build options of this device's programs, including a program's own `options` (Optional).
  * Heap; NULL: out of memory. */
 char *bp_device_build_options(const BpDevice *device, const char *options);
 

@@ -20,8 +20,8 @@ typedef struct BpDriverFiles {
 
 void bp_driver_files_find(BpDriverFiles *drivers);
 
-/* What the file names on its first line; a library named in its place stands for itself. "": nothing, and
- * then the loader finds no driver there either. */
+/* The library that the file names on its first line; a library named in its place stands for itself. "":
+ * nothing, and then the loader finds no driver there either. */
 void bp_driver_files_library(const char *file, char library[256]);
 
 #endif

@@ -15,15 +15,15 @@
 
 #define BP_DRIVER_SECONDS "BALLPARK_DRIVER_SECONDS"
 
-/* How long a driver may take to start, and to open a device: what BALLPARK_DRIVER_SECONDS says, without it
- * 20; 0: no limit. BP_ERR_USAGE: it has another value. */
+/* The time limit for a driver to start, and to open a device: BALLPARK_DRIVER_SECONDS, by default 20; 0: no
+ * limit. BP_ERR_USAGE: it has another value. */
 BpStatus bp_driver_seconds(double *seconds, BpError *err);
 
 /* Until all drivers have listed their devices. BP_ERR_DEVICE: some driver hangs; so it is for every later
  * call, unless it has answered by then. */
 BpStatus bp_drivers_start(BpError *err);
 
-/* The same for the program. BP_ERR_BROKEN_DEVICE: some driver hangs. BP_ERR_INTERRUPTED: stop() said so
+/* The same for the program. BP_ERR_BROKEN_DEVICE: some driver hangs. BP_ERR_INTERRUPTED: stop() returned true
  * (Optional; asked all the time that this waits: long_call.h). */
 BpStatus bp_drivers_start_until(bool (*stop)(void), BpError *err);
 

@@ -26,7 +26,7 @@ typedef enum BpKernelCacheMode {
     BP_KERNEL_CACHE_OFF
 } BpKernelCacheMode;
 
-/* What BALLPARK_KERNEL_CACHE says: "on", "off" or, without it, automatic. BP_ERR_USAGE: something else. */
+/* Reads BALLPARK_KERNEL_CACHE: "on", "off" or, without it, automatic. BP_ERR_USAGE: another value. */
 BpStatus bp_kernel_cache_mode(BpKernelCacheMode *mode, BpError *err);
 
 /* The program, built for `device`, with its build log in *log, heap; NULL where the cache has none that can

@@ -19,7 +19,7 @@ typedef enum BpAcceleration { BP_ACCELERATION_LIST, BP_ACCELERATION_TREE } BpAcc
 /* "list", "tree" */
 const char *bp_acceleration_name(BpAcceleration acceleration);
 
-/* What a scene gets unless another is forced. `reason`: Optional. */
+/* The acceleration of a scene unless another is forced. `reason`: Optional. */
 BpAcceleration bp_acceleration_choose(const BpScene *scene, char reason[BP_ACCELERATION_REASON_SIZE]);
 
 #endif

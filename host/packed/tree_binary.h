@@ -61,7 +61,7 @@ BpBinaryNode *bp_binary_build_run(BpTreeItem *items, uint32_t first, uint32_t co
 /* Makes an inner node whole once its two children are: box, height, leaves, cost. */
 void bp_binary_finish(BpBinaryNode *node, uint32_t width);
 
-/* How many of `places` the left child gets so that the cost is least; the right one gets the others. */
+/* The number of `places` for the left child that minimises the cost; the right one gets the others. */
 uint32_t bp_binary_left_places(const BpBinaryNode *node, uint32_t places);
 
 typedef struct BpBinaryTree {
@@ -83,9 +83,9 @@ static inline uint32_t bp_tree_width_bits(uint32_t width) {
     return bits;
 }
 
-/* What the heuristic takes a run of `count` items to cost when it is met: a leaf costs the same however many
- * of its lanes are used, and so does a wide node above leaves. The width comes as its bits, since divisions
- * would take most of the time. */
+/* The cost of a run of `count` items, by the heuristic, when a ray meets it: a leaf costs the same however
+ * many of its lanes are used, and so does a wide node above leaves. The width comes as its bits, since
+ * divisions would take most of the time. */
 static inline float bp_tree_run_cost(uint32_t count, uint32_t width_bits) {
     const uint32_t leaf = (1u << width_bits) - 1, node = (1u << 2 * width_bits) - 1;
     return (float)(((count + leaf) >> width_bits) + ((count + node) >> 2 * width_bits));

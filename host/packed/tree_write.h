@@ -8,7 +8,7 @@
 #include "tree.h"
 #include "tree_binary.h"
 
-/* In double; rounded outward when stored. */
+/* A box in double; rounded outward when stored. */
 typedef struct BpBounds {
     double low[3], high[3];
 } BpBounds;

@@ -19,8 +19,8 @@ typedef struct CifTokens {
 
 /* Takes the next token. Of texts between semicolons the first bytes are kept, without ends of lines. */
 BpStatus cif_next(CifTokens *tokens, Input *input, BpError *err);
-/* What the token is: the name of an item, or a word that opens something ("loop_", "data_...", "save_...").
- * All else is a value. */
+/* The kind of the token: the name of an item, or a word that opens something ("loop_", "data_...",
+ * "save_..."). All else is a value. */
 bool cif_is_name(const CifTokens *tokens);
 bool cif_is_keyword(const CifTokens *tokens);
 bool cif_is_value(const CifTokens *tokens);

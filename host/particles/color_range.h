@@ -30,11 +30,12 @@ extern const char *const bp_color_channels[3];
 
 /* Takes a point's colour. False if one of its numbers can be no colour at all: *channel says which. */
 bool color_range_take(ColorRange *range, const double color[3], uint64_t point, uint64_t line, int *channel);
-/* What color_range_take() expected. */
+/* A description of what color_range_take() expected. */
 const char *color_range_expected(const ColorRange *range);
 /* The number that stands for all light: 1, 255 or 65535; 0 where the largest number cannot be told. */
 double color_range_scale(const ColorRange *range);
-/* Fails: the number is missing. `what`: what a point is called; `name`: the file. */
+/* Fails because it is unknown which number stands for all light. `what`: what a point is called; `name`: the
+ * file. */
 BpStatus color_range_fail(const ColorRange *range, const char *what, const char *name, BpError *err);
 /* What was assumed, as text; NULL where the type left no choice. */
 const char *color_range_note(const ColorRange *range);

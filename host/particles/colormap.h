@@ -12,7 +12,7 @@ typedef enum BpColormap {
     BP_MAP_COUNT
 } BpColormap;
 
-/* By the enumeration's value. */
+/* Names by the enumeration's value. */
 extern const char *const bp_colormap_names[BP_MAP_COUNT];
 
 /* The linear colour at `share`, which is taken as 0 below 0 and for NaN, and as 1 above 1. */

@@ -17,7 +17,7 @@ typedef struct BpElement {
     uint8_t color[3];    /* 8-bit sRGB */
 } BpElement;
 
-/* By atomic number; number 0 stands for what is unknown. */
+/* Elements by atomic number; number 0 is an unknown element. */
 extern const BpElement bp_elements[BP_ELEMENT_MAX + 1];
 
 /* The atomic number of a symbol in any case, D and T being hydrogen; 0: none. */

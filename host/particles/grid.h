@@ -30,7 +30,7 @@ typedef struct BpParticleGrid {
         *whole)[3]; /* of each particle in a list, as bp_lattice_shares() has it; NULL: nothing repeats */
 } BpParticleGrid;
 
-/* Of the particles of which shown[i] holds. */
+/* A grid of the particles for which shown[i] is true. */
 BpStatus bp_particle_bounds(const BpParticles *particles, const bool *shown, BpParticleBounds *bounds,
                             BpError *err);
 

@@ -22,7 +22,7 @@ typedef struct BpLattice {
  * unit vectors at right angles to all else, unless no edge repeats or all are. */
 void bp_lattice_init(BpLattice *lattice, const double origin[3], const double edges[3][3],
                      const bool periodic[3]);
-/* That of the frame's cell; a frame without one has a lattice that repeats nowhere. */
+/* The lattice of the frame's cell; without a cell it repeats nowhere. */
 void bp_lattice_of(BpLattice *lattice, const BpParticles *particles);
 
 /* Gives the lattice other edges, as they are. */

@@ -55,7 +55,7 @@ enum {
     BP_PARTICLE_ELEMENT_GUESSED = 4
 };
 
-/* What the style of a particle needs, beside its place. */
+/* Attributes of a particle for its style, beside its position. */
 typedef struct BpParticleTag {
     uint16_t name, residue, chain, type; /* into names */
     uint8_t element;                     /* atomic number; 0: unknown */
@@ -94,8 +94,9 @@ void bp_particles_note(BpParticles *particles, const char *format, ...) BP_PRINT
 
 typedef struct BpParticleFile BpParticleFile;
 
-/* By the name's ending and the beginning of the stream, which is read to its first kilobytes and set back.
- * What a file itself declares takes precedence over its name. BP_PARTICLES_NONE: neither tells. */
+/* Detects the format by the ending of the name and the beginning of the stream, which is read to its first
+ * kilobytes and set back. What a file itself declares takes precedence over its name. BP_PARTICLES_NONE:
+ * neither tells. */
 BpParticleFormat bp_particle_format_find(const char *name, FILE *stream);
 
 /* Opens a file for its frames. `stream`: a regular file, which stays the caller's and must outlive the

@@ -48,7 +48,7 @@ BpStatus ply_find_property(const Input *input, const PlyHeader *header, const ch
 static inline const PlyProperty *ply_property(const PlyHeader *header, int place) {
     return &header->properties[header->elements[header->vertex].first + (size_t)place];
 }
-/* What the type of the colours, which the points have, says of their numbers. */
+/* The range of the colours' numbers, from their type; the points must have colours. */
 ColorRange ply_color_range(const PlyHeader *header);
 static inline bool ply_is_integer(PlyType type) {
     return type != PLY_NONE && type < PLY_FLOAT32;

@@ -26,10 +26,10 @@ typedef enum PlyType {
     PLY_FLOAT64
 } PlyType;
 
-/* What files call them. */
+/* The names of types in files. */
 enum { PLY_TYPE_NAMES = 16 };
 extern const char *const ply_type_names[PLY_TYPE_NAMES];
-/* Of "float", "float32", ...; PLY_NONE: there is no such type. */
+/* The type named "float", "float32", ...; PLY_NONE: there is no such type. */
 PlyType ply_type_named(const char *name);
 
 /* The rest is inline, since millions of numbers are read. */
@@ -41,7 +41,7 @@ PlyType ply_type_named(const char *name);
     X(PLY_INT16, 2) X(PLY_UINT16, 2) X(PLY_INT32, 4) X(PLY_UINT32, 4) X(PLY_FLOAT32, 4) X(PLY_FLOAT64, 8)
 BP_WORDS(PlyType, static const unsigned char ply_type_sizes, PLY_TYPE_SIZES);
 
-/* In bytes; 0 for PLY_NONE. */
+/* Its size in bytes; 0 for PLY_NONE. */
 static inline size_t ply_type_size(PlyType type) {
     return ply_type_sizes[type];
 }

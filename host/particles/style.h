@@ -31,7 +31,7 @@ typedef enum BpColorBy {
 
 enum { BP_STYLE_NAMED_MAX = 128, BP_STYLE_NAME_SIZE = 256 };
 
-/* What one element or type has instead of its default. */
+/* The value of one element or type, instead of its default. */
 typedef struct BpStyleNamed {
     char name[BP_STYLE_NAME_SIZE];
     double value[3]; /* of a radius: the first */

@@ -31,7 +31,7 @@ typedef struct BpSums {
                         paths that find lamps by chance; false: it is */
 } BpSums;
 
-/* All zero. BP_ERR_MEMORY. Release with bp_sums_clear(). */
+/* Creates sums that are all zero. BP_ERR_MEMORY. Release with bp_sums_clear(). */
 BpStatus bp_sums_init(BpSums *sums, uint32_t width, uint32_t height, BpError *err);
 void bp_sums_clear(BpSums *sums);
 

@@ -61,16 +61,16 @@ Vec bp_ref_camera_color(const BpScene *scene, const Ray *ray, double height, uin
 bool bp_ref_fly(const BpScene *scene, const Ray *ray, double distance, Random *random, Path *path,
                 Ray *scattered, Vec *weight);
 
-/* Where the sphere is at the ray's time. */
+/* The centre of the sphere at the ray's time. */
 Vec bp_ref_center(const BpScene *scene, const Ray *ray, const BpSphere *sphere);
 
 /* Radiance along the ray. `depth`: segments still allowed; 0 is black. */
 Vec bp_ref_color(const BpScene *scene, const Ray *ray, uint32_t depth, Random *random, Path *path);
 
-/* What a member of the material at a hit is there: its texture's value, or `constant` where it has none. */
+/* The value of a member of the material at a hit: its texture's value, or `constant` where it has none. */
 Vec bp_ref_varied(const BpScene *scene, const Hit *hit, BpMember member, const double constant[3]);
 
-/* What an image around the scene shows in a direction of any length. */
+/* The radiance of an image around the scene in a direction of any length. */
 Vec bp_ref_environment(const BpScene *scene, Vec direction);
 
 /* Reflectance, `ratio` = index on the ray's side over index beyond, `cosine` of the incident angle. Schlick's

@@ -16,12 +16,12 @@
 /* Whether renders with these options let a calibration decide on this device. */
 bool bp_calibrates(const BpDeviceInfo *device, const BpRenderOptions *options);
 
-/* What is remembered. False: nothing. */
+/* The remembered calibration. False: there is none. */
 bool bp_calibration_known(const BpDeviceInfo *device, BpCalibration *calibration);
 
-/* What is remembered, or else what a trial finds. `open`: Optional; the device, where it is open. *seconds:
- * the trial's, 0 without one. False: the trial has no result, because the device failed; the render reports
- * that, or uses the defaults. */
+/* The remembered calibration, or else that of a trial. `open`: Optional; the device, where it is open.
+ * *seconds: the trial's, 0 without one. False: the trial has no result, because the device failed; the render
+ * reports that, or uses the defaults. */
 bool bp_calibrate(const BpDeviceInfo *device, BpDevice *open, bool untested, BpCalibration *calibration,
                   double *seconds);
 

@@ -18,7 +18,7 @@
     (1u << 22)               /* of a chunk in the unknown; a core traces ten million a second and more */
 #define BP_PACE_PATIENCE 3.0 /* a chunk through the slowest part takes this many times what is wanted */
 
-/* All zero: nothing measured yet. */
+/* Zero-initialised: nothing has been measured yet. */
 typedef struct BpPace {
     uint32_t max_depth; /* the most segments of a path */
     uint32_t together;  /* samples that a device traces side by side: fewer take as long as these */

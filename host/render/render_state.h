@@ -13,7 +13,7 @@
 #include "render.h"
 #include "worker.h"
 
-/* What a rank knows of the rounds that it shares with others. */
+/* A rank's record of the rounds that it shares with others. */
 typedef struct BpRounds {
     double samples, seconds; /* this rank's recent throughput */
     uint64_t pixel_samples;  /* of all ranks together, in the rounds that are done */

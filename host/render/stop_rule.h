@@ -13,7 +13,7 @@
 
 #include "ballpark.h"
 
-/* How far a render is, all pixels having the same number of samples. */
+/* The progress of a render in which all pixels have the same number of samples. */
 typedef struct BpStopState {
     uint64_t samples;        /* a pixel */
     uint64_t samples_before; /* of these, those that a resumed render began with: they took no time of it */

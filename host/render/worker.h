@@ -36,7 +36,7 @@ typedef struct BpWorkerSetup {
 
 #define BP_WORKER_FLIGHT 2 /* chunks queued at a time */
 
-/* How many arrays and how many arguments the lists in scene_types.h make. */
+/* The numbers of arrays and of arguments in the lists of scene_types.h. */
 #define BP_COUNT_ARRAY(numbers, element, name, count, what) +1
 #define BP_SCENE_NUMBER_MEMBER(name) name,
 enum {
@@ -91,7 +91,7 @@ void bp_worker_destroy(BpWorker **worker);
  * worker->scene_arguments of them. */
 BpStatus bp_worker_bind_scene(BpWorker *worker, cl_kernel kernel, BpError *err);
 
-/* How many work-items trace a chunk of `count` pixel samples. */
+/* The number of work-items for a chunk of `count` pixel samples. */
 uint32_t bp_worker_items(const BpWorker *worker, uint32_t count);
 
 /* Queues a chunk and returns; waits for the oldest first when BP_WORKER_FLIGHT are under way. */

@@ -21,7 +21,7 @@ void bp_view_direction(BpView view, int up, double direction[3]);
 /* Turns a direction around an axis, seen from its tip against the clock. */
 void bp_turn_around(const double axis[3], double degrees, double direction[3]);
 
-/* What spheres demand of a camera, gathered from one set after the other. */
+/* The constraints of spheres on a camera, gathered from one set after the other. */
 typedef struct BpFitting {
     double axes[3][3], vup[3], origin[3], tangents[2], least[2][2], nearest, farthest;
     double aspect, room; /* width over height; the share that the margins leave */

@@ -20,7 +20,7 @@ struct BpTexture;                     /* texture.h */
 /* Metal of less fuzz than this is not lit by rays to lamps (kernels/bsdf/bsdf.cl, LOBE_FUZZ_MIN). */
 #define BP_LIT_FUZZ_MIN (1.0 / 64)
 
-/* What a kind of material can be, bits of BpMaterialType.traits. */
+/* Traits of a kind of material, bits of BpMaterialType.traits. */
 enum {
     BP_SCATTERS = 1,     /* paths continue from it */
     BP_HAS_INSIDE = 2,   /* light goes through: a negative radius turns it inside out */
@@ -128,7 +128,7 @@ static inline bool bp_material_has(BpMaterialKind kind, BpMember member) {
 /* The values of a member: three for a colour, one for a number. */
 double *bp_member_values(BpMaterial *material, BpMember member);
 const double *bp_member_values_of(const BpMaterial *material, BpMember member);
-/* Of a choice: its place among the names. */
+/* The place of a choice among its names. */
 unsigned bp_member_choice(const BpMaterial *material, BpMember member);
 void bp_member_choose(BpMaterial *material, BpMember member, unsigned choice);
 

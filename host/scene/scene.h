@@ -61,7 +61,7 @@ typedef struct BpSphere {
     uint32_t albedo;   /* into albedos[], replacing the material's; or BP_NO_ALBEDO */
 } BpSphere;
 
-/* What a camera is fitted to (fit.h), instead of standing where lookfrom and lookat say. */
+/* The spheres to which a camera is fitted (fit.h), instead of being placed by lookfrom and lookat. */
 typedef enum BpFit { BP_FIT_NONE, BP_FIT_SCENE, BP_FIT_PARTICLES } BpFit;
 
 /* A direction by its name (fit.h). */
@@ -203,7 +203,7 @@ void bp_background_up(const BpScene *scene, double up[3]);
  * turn its middle is at -z, and its right half at x. Another `up` tilts that the shortest way. */
 void bp_environment_frame(const BpScene *scene, double seam[3], double east[3], double pole[3]);
 
-/* How high a part of the plane in focus the picture shows, in the scene's unit. */
+/* The height of the part of the plane in focus that the picture shows, in the scene's unit. */
 double bp_camera_plane_height(const BpCamera *camera);
 /* The origin of the space in which rays are traced: the position of a perspective camera. For an orthographic
  * camera, the plane through lookfrom, on which rays begin, is moved forward until it is within one picture
@@ -216,7 +216,7 @@ uint32_t bp_camera_height(uint32_t width, double aspect_ratio);
 
 /* The fourth edition's camera, all by default. */
 void bp_camera_defaults(BpCamera *camera);
-/* Of a lens whose cone of rays has the angle at its point in focus. */
+/* The radius of a lens whose cone of rays has this angle at the point in focus. */
 double bp_lens_radius(double defocus_degrees, double focus_dist);
 
 /* Copies a string; NULL becomes "". */
@@ -230,7 +230,7 @@ BpStatus bp_scene_create_empty(const char *path, BpScene **scene, BpError *err);
 /* How a message names a sphere: "spheres[3]", or "vertex 12 (from 0) of points.ply". Returns `text`. */
 const char *bp_sphere_name(const BpScene *scene, size_t sphere, char text[BP_SPHERE_NAME_SIZE]);
 
-/* Where a sphere's centre is when the shutter closes; it moves there in a straight line, at one speed. */
+/* The centre of a sphere when the shutter closes; it moves there in a straight line, at constant speed. */
 static inline const double *bp_sphere_end(const BpScene *scene, size_t sphere) {
     return sphere < scene->moving_count ? scene->center_ends[sphere] : scene->spheres[sphere].center;
 }

@@ -22,7 +22,7 @@
 
 enum { BP_IMAGE_NOTES_SIZE = 512 };
 
-/* How the numbers of a file stand for light. */
+/* The encoding of light in the numbers of a file. */
 typedef enum BpEncoding {
     BP_ENCODING_OF_FORMAT, /* as its format has it: PNG as sRGB, others linear */
     BP_ENCODING_SRGB,

@@ -51,7 +51,7 @@ struct BpImage; /* texels.h */
 
 typedef enum BpMapping { BP_MAPPING_SOLID, BP_MAPPING_SURFACE } BpMapping;
 
-/* What a type of texture has, bits of BpTextureTraits.has. */
+/* Traits of a type of texture, bits of BpTextureTraits.has. */
 enum {
     BP_TEXTURE_COLORS = 1,  /* colors[0] and colors[1], between which its values lie */
     BP_TEXTURE_MAPPING = 2, /* documents choose the mapping; without, it is that of the list */
@@ -127,9 +127,9 @@ static inline bool bp_texture_has(const BpTexture *texture, unsigned what) {
     return (bp_texture_types[texture->type].has & what) != 0;
 }
 
-/* All that the grammar leaves to choose by default; no name. */
+/* Sets every optional member to its default; there is no name. */
 void bp_texture_defaults(BpTexture *texture);
-/* Of a pattern: its octaves and its distortion, and a wave as long as a cell. */
+/* Sets the defaults of the pattern: its octaves, its distortion, and a wave as long as a cell. */
 void bp_texture_pattern_defaults(BpTexture *texture);
 /* Whether the texture has waves. */
 bool bp_texture_has_waves(const BpTexture *texture);

@@ -87,7 +87,7 @@ typedef struct BpStudySeries {
     double efficiency;             /* 1 / (noise^2 x seconds) at the largest count, relative to the base */
 } BpStudySeries;
 
-/* What to use for an error. */
+/* The configuration to use for an error. */
 typedef struct BpStudyAdvice {
     double target; /* NRMSE */
     bool reachable;

@@ -29,7 +29,7 @@ typedef struct BpViewPlan {
     void *context;
 } BpViewPlan;
 
-/* What keys and mouse do, a line each. */
+/* Help on keys and mouse, one line each. */
 extern const char bp_view_keys[];
 
 /* Fails if no window can be opened here, as far as can be told in advance: BP_ERR_DEVICE. */
