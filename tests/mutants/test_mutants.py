@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 """Every known bug must be found: applies each mutant to a copy of the product's text, builds what is needed, runs its
-trials, and fails when one survives.
+trials, and fails when one survives. What was not killed is named once more at the end.
 
 usage: test_mutants.py SOURCE_DIR BUILD_DIR RESULT.json [NAME...]
        test_mutants.py --fit SOURCE_DIR BUILD_DIR      only whether every patch still finds its place
@@ -231,15 +231,15 @@ class Controls:
                     except subprocess.TimeoutExpired:
                         outcome, said = ERROR, "it did not end"
                 self.results[trial] = outcome, said, used_since(self.cache, start)
-                if outcome != SURVIVED:
-                    print(f"CONTROL {outcome}: {name_of(trial)}: {said}", flush=True)
             outcome, said, programs = self.results[trial]
             for program in programs:
                 copy_program(os.path.join(self.cache, program), os.path.join(cache, program))
             return outcome, said
 
     def failures(self):
-        return sum(outcome != SURVIVED for outcome, _, _ in self.results.values())
+        """A line for each trial that fails on the product."""
+        return [f"CONTROL {outcome}: {name_of(trial)}: {said}" for trial, (outcome, said, _) in self.results.items()
+                if outcome != SURVIVED]
 
 
 def try_mutant(bench, mutant, controls):
@@ -290,6 +290,16 @@ def try_all(source, build, mutants, controls):
         yield from pool.map(one, mutants)
 
 
+def line_of(row):
+    return f"{row['outcome']:8} {row['name']:46} {row['layer']:12} {row['trial']}: {row['said']}"
+
+
+def last_words(rows, failed_controls):
+    """What was not killed, and what failed on the product itself, named once more where whoever sees only the end sees it."""
+    left = [row for row in rows if row["outcome"] != KILLED]
+    return [*failed_controls, *([f"{len(left)} mutants were not killed:"] if left else []), *map(line_of, left)]
+
+
 def main():
     if sys.argv[1] == "--fit":
         return fit(os.path.realpath(sys.argv[2]), os.path.realpath(sys.argv[3]))
@@ -304,15 +314,18 @@ def main():
         controls = Controls(source, build, kept)
         for row in try_all(source, build, mutants, controls):
             rows.append(row)
-            print(f"{row['outcome']:8} {row['name']:46} {row['layer']:12} {row['trial']}: {row['said']}", flush=True)
+            print(line_of(row), flush=True)
         wrong = controls.failures()
     killed = sum(row["outcome"] == KILLED for row in rows)
     with open(result_path, "w", encoding="utf-8") as file:
-        json.dump({"mutants": rows, "control_failures": wrong}, file, indent=1)
+        json.dump({"mutants": rows, "control_failures": len(wrong)}, file, indent=1)
+    for line in last_words(rows, wrong):
+        print(line)
     used = resource.getrusage(resource.RUSAGE_CHILDREN)
     print(f"{killed} of {len(rows)} mutants killed in {time.monotonic() - start:.0f} s, "
-          f"{used.ru_utime + used.ru_stime:.0f} s of processor time; {wrong} trials fail on the product itself")
-    return 0 if killed == len(rows) and wrong == 0 else 1
+          f"{used.ru_utime + used.ru_stime:.0f} s of processor time; {len(wrong)} trials fail on the product itself")
+    return 0 if killed == len(rows) and not wrong else 1
 
 
-sys.exit(main())
+if __name__ == "__main__":
+    sys.exit(main())

@@ -37,6 +37,20 @@ class Summary(unittest.TestCase):
         self.stage("tests", 8, cases=[case("a"), case("b", "fail", '<failure message="Failed"/>')])
         self.assertEqual(self.lines(), ["test: failed: b (tests): Failed", "test: 1 passed, 1 failed, 0 skipped"])
 
+    def test_what_failed_tests_said_last_comes_at_the_end(self):
+        said = "".join(f"line {n}\n" for n in range(50)) + "\n"
+        self.stage("tests", 8, cases=[case("a", output="a passes"), case("b", "fail", '<failure message="Failed"/>', said),
+                                      case("c", "fail", '<failure message="Timeout"/>', "waits"), case("d", "fail")])
+        self.assertEqual(self.lines(), ["test: the last lines of b (tests):", *(f"    line {n}" for n in range(20, 50)),
+                                        "test: the last lines of c (tests):", "    waits", "test: failed: b (tests): Failed",
+                                        "test: failed: c (tests): Timeout", "test: failed: d (tests): failed",
+                                        "test: 1 passed, 3 failed, 0 skipped"])
+
+    def test_of_many_failed_tests_ten_are_repeated(self):
+        self.stage("tests", 8, cases=[case(f"t{n}", "fail", output=f"said {n}") for n in range(12)])
+        self.assertEqual(len([line for line in self.lines() if line.startswith("    said")]), 10)
+        self.assertEqual(len([line for line in self.lines() if line.startswith("test: failed: ")]), 12)
+
     def test_a_test_that_cannot_start_failed(self):
         self.stage("tests", 8, cases=[case("a", "notrun", '<skipped message="Unable to find executable"/>')])
         self.assertEqual(self.lines(), ["test: failed: a (tests): Unable to find executable",
@@ -60,7 +74,8 @@ class Summary(unittest.TestCase):
         self.stage("setup", 0)
         self.stage("tests", 1, "does not build")
         self.stage("fuzz", 77, "fuzz: skipped: no clang")
-        self.assertEqual(self.lines(), ["test: skipped: fuzz: no clang", "test: failed: tests: exit code 1",
+        self.assertEqual(self.lines(), ["test: skipped: fuzz: no clang", "test: the last lines of tests:", "    does not build",
+                                        "test: failed: tests: exit code 1",
                                         "test: 1 passed, 1 failed, 1 skipped"])
 
     def test_ctest_fails_by_itself(self):
