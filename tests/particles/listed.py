@@ -10,9 +10,8 @@ import subprocess
 import sys
 import unittest
 
-from in_folder import FolderTest
+from answers import AnswersTest
 
-LISTER = os.path.abspath(sys.argv[1])
 HERE = os.path.dirname(os.path.abspath(__file__))
 READERS_PYTHON = os.environ.get("BALLPARK_READERS_PYTHON", sys.executable)
 ALTERNATIVE, DUMMY, GUESSED = 1, 2, 4
@@ -35,13 +34,9 @@ class Listed:
         return [getattr(atom, member) for atom in self.atoms]
 
 
-class ListTest(FolderTest):
-    def run_list(self, path, *arguments):
-        return subprocess.run([LISTER, path, *map(str, arguments)], stdout=subprocess.PIPE, stderr=subprocess.PIPE, timeout=120,
-                              text=True, check=False)
-
+class ListTest(AnswersTest):
     def list(self, path, *arguments):
-        result = self.run_list(path, *arguments)
+        result = self.answer(path, *arguments)
         self.assertEqual(result.returncode, 0, f"{path}: {result.stderr}")
         return Listed(result.stdout)
 
@@ -49,7 +44,7 @@ class ListTest(FolderTest):
         return self.list(self.write(name, content), *arguments)
 
     def refuse(self, name, content, *says, arguments=()):
-        result = self.run_list(self.write(name, content), *arguments)
+        result = self.answer(self.write(name, content), *arguments)
         self.assertEqual(result.returncode, 1, result.stderr[-2000:] + result.stdout[:200])
         for text in (name,) + says:
             self.assertIn(text, result.stderr)

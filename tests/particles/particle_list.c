@@ -3,9 +3,11 @@
  *
  * particle_list FILE [FRAME [COLUMN [COLUMN]]]. One line of JSON for the frame, then one for each particle:
  * [x, y, z, element, flags, name, residue, chain, radius, column, column]. Exit code 1 and the message on
- * standard error when the file is refused. */
+ * standard error when the file is refused. `particle_list -` does so for many
+ * files (requests.h). */
 #include "particles/elements.h"
 #include "particles/particles.h"
+#include "requests.h"
 
 #include <inttypes.h>
 #include <stdlib.h>
@@ -54,7 +56,7 @@ static void print_particle(const BpParticles *p, size_t i) {
     printf("]\n");
 }
 
-int main(int argc, char **argv) {
+static int list(int argc, char **argv, FILE *messages) {
     BpError err = {0};
     BpParticles particles = {0};
     BpParticleFile *file = NULL;
@@ -74,11 +76,15 @@ int main(int argc, char **argv) {
         print_frame(&particles, bp_particle_format_name(format), frames);
         for (size_t i = 0; i < particles.count; i++) print_particle(&particles, i);
     } else {
-        fprintf(stderr, "%s:%d: %s\n", err.file, err.line, err.message);
+        fprintf(messages, "%s:%d: %s\n", err.file, err.line, err.message);
     }
     bp_particle_file_close(&file);
     bp_particles_clear(&particles);
     bp_error_clear(&err);
     fclose(stream);
     return status == BP_OK ? 0 : 1;
+}
+
+int main(int argc, char **argv) {
+    return answer_requests(argc, argv, list);
 }

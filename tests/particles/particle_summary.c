@@ -2,13 +2,14 @@
  *
  * particle_summary FILE [FRAME [COLUMN [values]]]. It lists each particle if there are at most LISTED_MAX, or
  * if asked for values; a column "" is none. Exit code 1 and the message on standard error when it is refused.
+ * `particle_summary -` does so for many files (requests.h).
  */
 #include "particles/elements.h"
 #include "particles/particles.h"
+#include "requests.h"
 
 #include <inttypes.h>
 #include <stdlib.h>
-#include <string.h>
 
 enum { LISTED_MAX = 1000 };
 
@@ -132,7 +133,7 @@ static void print_summary(const BpParticles *p) {
     }
 }
 
-int main(int argc, char **argv) {
+static int summarise(int argc, char **argv, FILE *messages) {
     BpError err = {0};
     BpParticles particles = {0};
     BpParticleFile *file = NULL;
@@ -153,11 +154,15 @@ int main(int argc, char **argv) {
         if (argc > 4 || particles.count <= LISTED_MAX) print_lists(&particles);
         printf("}\n");
     } else {
-        fprintf(stderr, "%s:%d: %s\n", err.file, err.line, err.message);
+        fprintf(messages, "%s:%d: %s\n", err.file, err.line, err.message);
     }
     bp_particle_file_close(&file);
     bp_particles_clear(&particles);
     bp_error_clear(&err);
     fclose(stream);
     return status == BP_OK ? 0 : 1;
+}
+
+int main(int argc, char **argv) {
+    return answer_requests(argc, argv, summarise);
 }

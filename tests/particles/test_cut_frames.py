@@ -66,7 +66,7 @@ class Cut(files.FileTest):
             self.assertTrue(abs(share - length / len(packed)) < 0.1 if length < len(packed) - 9 else share > 0.99, (share, length))
             self.assertEqual((s["notes"], s["positions"][0][0]), (self.NOTE, s["frames"] - 1))
         path = self.write("b.xyz.gz", packed[:len(packed) // 2])
-        result = self.run_summary(path, 1999)
+        result = self.answer(path, 1999)
         self.assertEqual((result.returncode, "and a part of another" in result.stderr), (1, True), result.stderr)
         self.refuse("a.xyz.gz", packed[:200] + b"\xff\xff\xff" + packed[203:], "damage", arguments=[-1])
 
@@ -85,7 +85,7 @@ class Cut(files.FileTest):
             place = text.index(near[name], len(text) // count - 5)
             bad = text[:place] + near[name].replace("1", "x").replace("5", "x") + text[place + len(near[name]):]
             for content in (bad, bad[:-15]):
-                result = self.run_summary(self.write(name, content), -1)
+                result = self.answer(self.write(name, content), -1)
                 self.assertEqual(result.returncode, 1, (name, result.stdout[:300]))
         self.refuse("a.xyz", "1\n\nO 0 0 0\nO 1 1 1\n", "number of atoms", arguments=[1])
 

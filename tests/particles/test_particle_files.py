@@ -8,20 +8,16 @@ import gzip
 import json
 import math
 import os
-import resource
 import shutil
 import struct
 import subprocess
 import sys
 import unittest
 
-from in_folder import FolderTest
+from answers import AnswersTest
 
-SUMMARY = os.path.abspath(sys.argv[1])
 HERE = os.path.dirname(os.path.abspath(__file__))
 READERS_PYTHON = os.environ.get("BALLPARK_READERS_PYTHON", sys.executable)
-MEMORY = 1 << 29  # bytes that a hostile file may make the program ask for, which sanitizers cannot be held to
-SANITIZED = "asan" in SUMMARY
 
 XYZ = "3\nwater\nO 0 0 0.5\nH 0.75 0 -1e-1\nH -0.75 0.0 -0.1 extra\n"
 EXTENDED = ('2\nLattice="10 0 0 2 9 0 1 1 8" Origin="-1 -2 -3" Properties=id:I:1:species:S:1:pos:R:3:radius:R:1:color:R:3:'
@@ -226,16 +222,9 @@ GSD_FRAMES = [{"configuration/box": floats(1, 10, 8, 6, 0.5, 0, 0), "particles/N
 GSD = gsd_file(GSD_FRAMES)
 
 
-class FileTest(FolderTest):
-    def run_summary(self, path, *arguments):
-        def limit():
-            if not SANITIZED:
-                resource.setrlimit(resource.RLIMIT_AS, (MEMORY, MEMORY))
-        return subprocess.run([SUMMARY, path, *map(str, arguments)], stdout=subprocess.PIPE, stderr=subprocess.PIPE,
-                              preexec_fn=limit, timeout=120, text=True, check=False)
-
+class FileTest(AnswersTest):
     def summary(self, path, *arguments):
-        result = self.run_summary(path, *arguments)
+        result = self.answer(path, *arguments)
         self.assertEqual(result.returncode, 0, f"{path}: {result.stderr}")
         return json.loads(result.stdout)
 
@@ -248,7 +237,7 @@ class FileTest(FolderTest):
             self.assertLessEqual(abs(a - b), tolerance, (one, other))
 
     def refuse(self, name, content, *says, arguments=()):
-        result = self.run_summary(self.write(name, content), *arguments)
+        result = self.answer(self.write(name, content), *arguments)
         self.assertEqual(result.returncode, 1, result.stderr[-2000:] + result.stdout[:200])
         for text in (name,) + says:
             self.assertIn(text, result.stderr)

@@ -10,16 +10,14 @@ import io
 import json
 import math
 import os
-import shutil
 import struct
 import subprocess
 import sys
-import tempfile
 import unittest
 
+from answers import AnswersTest
 from test_particle_files import GSD_FRAMES, floats, gsd_file, whole
 
-SUMMARY = os.path.abspath(sys.argv[1])
 READERS_PYTHON = os.environ.get("BALLPARK_READERS_PYTHON", sys.executable)
 
 
@@ -28,28 +26,18 @@ def linear(encoded):
     return encoded / 12.92 if encoded <= 0.04045 else ((encoded + 0.055) / 1.055) ** 2.4
 
 
-class TableTest(unittest.TestCase):
-    maxDiff = None
-
-    def setUp(self):
-        self.folder = tempfile.mkdtemp(prefix="ballpark-tables-")
-        self.addCleanup(shutil.rmtree, self.folder)
-
-    def run_summary(self, name, content, *arguments):
-        path = os.path.join(self.folder, name)
-        with open(path, "wb") as file:
-            file.write(content if isinstance(content, bytes) else content.encode())
-        return subprocess.run([SUMMARY, path, *map(str, arguments)], stdout=subprocess.PIPE, stderr=subprocess.PIPE, timeout=120,
-                              text=True, check=False)
+class TableTest(AnswersTest):
+    def summary(self, name, content, *arguments):
+        return self.answer(self.write(name, content), *arguments)
 
     def of(self, name, content, *arguments):
         """All that the reader finds: positions, radii, colours and a column, particle by particle."""
-        result = self.run_summary(name, content, *(arguments or (0,)))
+        result = self.summary(name, content, *(arguments or (0,)))
         self.assertEqual(result.returncode, 0, f"{content[:200]!r}: {result.stderr}")
         return json.loads(result.stdout)
 
     def refuse(self, name, content, *says):
-        result = self.run_summary(name, content, 0)
+        result = self.summary(name, content, 0)
         self.assertEqual(result.returncode, 1, f"{content[:200]!r}: {result.stdout[:300]}{result.stderr[-1000:]}")
         for text in says:
             self.assertIn(text, result.stderr)
