@@ -163,13 +163,19 @@ static void independent(void **state) {
     assert_independent(*state, "neighbours", 6);
 }
 
-static void sobol(void **state) {
-    (void)state;
+static void assert_sobol_independent(const char *kernel, cl_uint variants) {
     Probe probe;
     probe_open_sampler(&probe, BP_SAMPLER_SOBOL, probe_text);
-    assert_independent(&probe, "neighbours", 6);
-    assert_independent(&probe, "couple", 8);
+    assert_independent(&probe, kernel, variants);
     probe_close(&probe);
+}
+static void sobol_neighbours(void **state) {
+    (void)state;
+    assert_sobol_independent("neighbours", 6);
+}
+static void sobol_couples(void **state) {
+    (void)state;
+    assert_sobol_independent("couple", 8);
 }
 
 static int open_probe(void **state) {
@@ -184,8 +190,9 @@ static int close_probe(void **state) {
 }
 
 int main(void) {
-    const struct CMUnitTest tests[] = {cmocka_unit_test(lobes),       cmocka_unit_test(sphere_and_ball),
-                                       cmocka_unit_test(disk),        cmocka_unit_test(pairs_of_dimensions),
-                                       cmocka_unit_test(independent), cmocka_unit_test(sobol)};
+    const struct CMUnitTest tests[] = {cmocka_unit_test(lobes),        cmocka_unit_test(sphere_and_ball),
+                                       cmocka_unit_test(disk),         cmocka_unit_test(pairs_of_dimensions),
+                                       cmocka_unit_test(independent),  cmocka_unit_test(sobol_neighbours),
+                                       cmocka_unit_test(sobol_couples)};
     return cmocka_run_group_tests(tests, open_probe, close_probe);
 }

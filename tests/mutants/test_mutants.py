@@ -32,6 +32,7 @@ import time
 from mutants import MUTANTS, Check, Script
 
 SURVIVED, KILLED, ERROR = "SURVIVED", "killed", "ERROR"
+LONGEST = 10  # mutants, that whoever adds a long one sees it
 
 
 def environment_of(cache):
@@ -283,8 +284,10 @@ def try_all(source, build, mutants, controls):
     """Their results, in order; a few are tried at a time, each with a bench of its own."""
 
     def one(mutant):
+        start = time.monotonic()
         with tempfile.TemporaryDirectory() as folder:
-            return try_mutant(Bench(source, build, folder), mutant, controls)
+            row = try_mutant(Bench(source, build, folder), mutant, controls)
+        return {**row, "seconds": round(time.monotonic() - start, 1)}
 
     with concurrent.futures.ThreadPoolExecutor(max_workers=min(4, os.cpu_count() or 1)) as pool:
         yield from pool.map(one, mutants)
@@ -319,6 +322,8 @@ def main():
     killed = sum(row["outcome"] == KILLED for row in rows)
     with open(result_path, "w", encoding="utf-8") as file:
         json.dump({"mutants": rows, "control_failures": len(wrong)}, file, indent=1)
+    longest = sorted(rows, key=lambda row: -row["seconds"])[:LONGEST]
+    print("longest:", ", ".join(f"{row['name']} {row['seconds']:.0f} s" for row in longest))
     for line in last_words(rows, wrong):
         print(line)
     used = resource.getrusage(resource.RUSAGE_CHILDREN)
