@@ -1,12 +1,13 @@
 #!/usr/bin/env python3
 """Kernel against reference on many scenes, judged as one suite.
 
-usage: test_agree.py PROGRAM RESULT.json SAMPLES [--seed N] [--device D] SCENE...
+usage: test_agree.py PROGRAM RESULT.json SAMPLES [--seed N] [--only NAME,... | --without NAME,...] [--device D] SCENE...
 
 Runs `ballpark check` on each scene and collects its report. An inconclusive scene fails. The whole suite rejects a right kernel with probability
 1e-3 at most: each scene gets an equal part of it, and each of its four families of tests the part that the
 check itself gives it, so the limits here are a little wider than those of a single check. Every scene has a seed of
-its own (N, N + 1, ...), so that their errors are independent.
+its own (N, N + 1, ...), so that their errors are independent. --only and --without choose those that are run: two such parts
+are one suite, whose seeds and limits are those of all scenes.
 """
 import json
 import os
@@ -52,17 +53,27 @@ def judge(report, name, scenes, rows):
 
 def main():
     program, result_path, samples, *rest = sys.argv[1:]
-    more, seed = [], 1
+    more, seed, only, without = [], 1, None, ()
     while rest and rest[0].startswith("--"):
         option, value = rest.pop(0), rest.pop(0)
         if option == "--seed":
             seed = int(value)
+        elif option == "--only":
+            only = value.split(",")
+        elif option == "--without":
+            without = value.split(",")
         else:
             more += [option, value]
-    rows, failures = [], 0
+    names = [os.path.splitext(os.path.basename(scene))[0] for scene in rest]
+    if unknown := {*(only or ()), *without} - set(names):
+        sys.exit(f"no such scene: {', '.join(sorted(unknown))}")
+    rows, failures, tried = [], 0, 0
     print(f"{'scene':32} {'|z| / limit':>11}  {'ratio':>9} {'95 % interval':>20}  {'least bias':>10}")
     for number, scene in enumerate(rest):
-        name = os.path.splitext(os.path.basename(scene))[0]
+        name = names[number]
+        if name in without or only is not None and name not in only:
+            continue
+        tried += 1
         report, trouble = check(program, scene, samples, [*more, "--seed", str(seed + number)])
         if report is None:
             failures += 1
@@ -73,7 +84,7 @@ def main():
             failures += judge(one, name, len(rest), rows)
     with open(result_path, "w", encoding="utf-8") as file:
         json.dump({"level": SUITE_LEVEL, "scenes": rows}, file, indent=1)
-    print(f"{len(rest)} scenes, {failures} disagree or fail (a right kernel is rejected with probability "
+    print(f"{tried} scenes, {failures} disagree or fail (a right kernel is rejected with probability "
           f"{SUITE_LEVEL} at most)")
     return 1 if failures else 0
 

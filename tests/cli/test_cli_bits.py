@@ -51,18 +51,27 @@ class Bits(cli.ProgramTest):
             self.assertIn(text, result.stdout.decode() + result.errors)
         return result, json.loads(self.read("r.json"))["results"] if os.path.exists(self.path("r.json")) else None
 
-    def test_the_recorded_pictures(self):
-        """By the form that CPUs use; scenes whose lamps are sampled have others, and are left to the deep part."""
+    def recorded_pictures(self, every):
+        """By the form that CPUs use; scenes whose lamps are sampled have others, and are left to test_the_recorded_pictures_by_all_forms."""
         lamps = with_lamps(cli.PROGRAM, cli.SOURCE, sorted({p["scene"] for p in RECORDED}))
         pictures = [p for p in RECORDED
                     if (p["precision"], p["refinement"]) == ("single", "double") and p["scene"] not in lamps]
+        self.assertEqual(len(pictures), len(RECORDED) // 3 - len(lamps))
+        pictures = pictures[::every]
         result, results = self.check(0, pictures, "--kernel", "packet")
         compared = [r for r in results if r["verdict"] == "agree"]
         self.assertEqual({r["scene"] for r in compared}, {p["scene"] for p in pictures})
         forms = {(r["kernel"], r["acceleration"], r["precision"], r["refinement"]) for r in compared}
         self.assertEqual(forms, {("packet", a, "single", "double") for a in ("tree", "list")})
-        self.assertEqual(len(compared), 2 * (len(RECORDED) // 3 - len(lamps)))
+        self.assertEqual(len(compared), 2 * len(pictures))
         self.assertIn(f"{len(compared)} the same, 0 different, 0 not compared, 0 failed", result.stdout.decode())
+
+    def test_a_third_of_the_recorded_pictures(self):
+        self.recorded_pictures(3)
+
+    @cli.deep
+    def test_the_recorded_pictures(self):
+        self.recorded_pictures(1)
 
     @cli.deep
     def test_the_recorded_pictures_by_all_forms(self):

@@ -136,6 +136,7 @@ class LightSampling(Check):
 
 
 class Suite(Check):
+    @cli.deep
     def test_suite(self):
         """All agreement scenes, from anywhere, with a table, a document and a JUnit file that say the same."""
         os.mkdir(self.path("tmp"))

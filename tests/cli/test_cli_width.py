@@ -44,6 +44,7 @@ class Width(ProgramTest):
         for line in text.splitlines():
             self.assertLessEqual(len(line), columns, (what, line))
 
+    @deep
     def test_pipe(self):
         for arguments in COMMANDS:
             with self.subTest(arguments=arguments):

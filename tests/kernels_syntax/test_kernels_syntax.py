@@ -1,9 +1,9 @@
 """Every kind of kernel program is OpenCL C 1.2 to clang, without a warning; without double where none is needed.
 
-Usage: test_kernels_syntax.py DUMP_KERNELS [--lint]
+Usage: test_kernels_syntax.py DUMP_KERNELS [--third | --rest | --lint]
 
---lint reads every third program, with every warning of clang but those listed here. Each version of clang has its own: it
-is meant for Debian 12's.
+--third reads every third program, --rest the others. --lint reads every third, with every warning of clang but those listed
+here. Each version of clang has its own: it is meant for Debian 12's.
 """
 
 import concurrent.futures
@@ -59,8 +59,11 @@ with tempfile.TemporaryDirectory() as folder:
     # A choice that another one decides leaves the text as it is: each text is read once.
     paths = list({path.read_bytes(): path for path in sorted(pathlib.Path(folder).glob("*.cl"))}.values())
     assert len(paths) >= 50, f"only {len(paths)} programs"
-    if "--lint" in sys.argv:
-        paths = paths[::3]
+    third = paths[::3]
+    if "--rest" in sys.argv:
+        paths = [path for path in paths if path not in third]
+    elif {"--third", "--lint"} & set(sys.argv):
+        paths = third
     with concurrent.futures.ThreadPoolExecutor(os.cpu_count()) as pool:
         found = [text for text in pool.map(complaints, paths) if text]
 

@@ -14,7 +14,7 @@ import subprocess
 import sys
 import unittest
 
-from answers import AnswersTest
+from answers import SANITIZED, AnswersTest
 
 HERE = os.path.dirname(os.path.abspath(__file__))
 READERS_PYTHON = os.environ.get("BALLPARK_READERS_PYTHON", sys.executable)
@@ -530,7 +530,9 @@ class Hostile(FileTest):
         self.refuse("a.gsd.gz", gzip.compress(GSD)[:-9], "damage")
 
     def test_gzip_bombs(self):
-        """A kilobyte of packed blanks, digits or zeros for each megabyte: refused at once or read in bounded memory."""
+        """A kilobyte of packed blanks, digits or zeros for each megabyte: refused at once or read in bounded memory, which is
+        not bounded with sanitizers: there, less shows as much."""
+        megabytes = 8 if SANITIZED else 64
         for name, start, block in [("a.xyz.gz", b"1\n", b" " * (1 << 20)), ("a.xyz.gz", b"", b"\n" * (1 << 20)),
                                    ("a.pdb.gz", b"", b"REMARK\n" * 150000), ("a.gsd.gz", b"", bytes(1 << 20)),
                                    ("a.cif.gz", b"data_x\n", b"# x\n" * 250000), ("a.csv.gz", b"x,y\n", b"1" * (1 << 20)),
@@ -538,7 +540,7 @@ class Hostile(FileTest):
                                    ("a.dump.gz", b"ITEM: TIMESTEP\n", b"0" * (1 << 20)),
                                    ("a.ply.gz", b"ply\nformat ascii 1.0\n", b"comment\n" * (1 << 17)),
                                    ("a.ply.gz", binary_ply("<").replace(b"vertex 2", b"vertex 100000000"), bytes(1 << 20))]:
-            self.refuse(name, gzip.compress(start + block * 64, 1))
+            self.refuse(name, gzip.compress(start + block * megabytes, 1))
 
     def test_many_names(self):
         text = "70000\n\n" + "".join(f"n{i} 0 0 {i}\n" for i in range(70000))

@@ -86,6 +86,7 @@ class Unseen(cli.ProgramTest):
         self.assertTrue(self.light("resumed.bpa") == pilot)
         self.assertEqual(resumed["nrmse"], whole["nrmse"])
 
+    @cli.deep
     def test_forms(self):
         """All forms of the kernel: the same film, the same claim."""
         for scene in ("sun-0.27", "bulb"):
@@ -96,6 +97,7 @@ class Unseen(cli.ProgramTest):
             for film in films[1:]:
                 self.assertTrue(film == films[0], scene)
 
+    @cli.deep
     @unittest.skipIf(mpi.reason_to_skip(), mpi.reason_to_skip())
     def test_ranks(self):
         for name, *options in (("sun-0.27", "--spp", 16), ("sun-0.27", "--spp", 64, "--adaptive"), ("lamp-0.4", "--error", "30%", "--spp", 4096)):
