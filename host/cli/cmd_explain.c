@@ -10,11 +10,13 @@
 #include "base/json_text.h"
 #include "base/names.h"
 #include "base/shown.h"
+#include "explain_chains.h"
 #include "json_file.h"
 #include "output.h"
 #include "page.h"
 #include "render/path_log.h"
 #include "render/pilot.h"
+#include "render/render_plan.h"
 #include "scene/material.h"
 #include "setup.h"
 #include "study/effect_costs.h"
@@ -51,6 +53,10 @@ static const char *outcome(const BpPathStep *step, BpMaterialKind kind) {
 }
 
 static void print_lamp_ray(const BpPathStep *step, FILE *out) {
+    if (!is_black(step->led))
+        fprintf(out, "       by way of a ball of glass or a mirror come (%.4g, %.4g, %.4g)\n", step->led[0],
+                step->led[1], step->led[2]);
+    if (!step->to_lamp) return;
     if (step->to_image)
         fputs("       a ray to the image around", out);
     else
@@ -79,7 +85,7 @@ static void print_path(const BpScene *scene, const BpPathLog *path, uint32_t x, 
                     "%.4g)\n",
                     step->distance, step->point[0], step->point[1], step->point[2], step->throughput[0],
                     step->throughput[1], step->throughput[2]);
-            if (step->to_lamp) print_lamp_ray(step, out);
+            print_lamp_ray(step, out);
         } else if (step->met) {
             const BpMaterial *material = &scene->materials[step->material];
             fprintf(out, "       after %.6g hits sphere %" PRIu32 " from %s at (%.6g, %.6g, %.6g)\n",
@@ -92,7 +98,7 @@ static void print_path(const BpScene *scene, const BpPathLog *path, uint32_t x, 
                 fprintf(out, ", throughput (%.4g, %.4g, %.4g)", step->throughput[0], step->throughput[1],
                         step->throughput[2]);
             fprintf(out, "\n");
-            if (step->to_lamp) print_lamp_ray(step, out);
+            print_lamp_ray(step, out);
         } else {
             const bool backdrop = i == 0 && scene->backdrop != BP_BACKDROP_SKY;
             if (step->caught)
@@ -146,9 +152,10 @@ static json_t *with_discs(json_t *root, uint32_t discs) {
 }
 
 static json_t *step_json(const BpScene *scene, const BpPathStep *step) {
-    json_t *root = json_pack("{s:o, s:o, s:o, s:o, s:b}", "origin", triple(step->origin), "direction",
+    json_t *root = json_pack("{s:o, s:o, s:o, s:o, s:b, s:o*}", "origin", triple(step->origin), "direction",
                              triple(step->direction), "throughput", triple(step->throughput), "radiance",
-                             triple(step->radiance), "met", step->met);
+                             triple(step->radiance), "met", step->met, "led",
+                             is_black(step->led) ? NULL : triple(step->led));
     if (root == NULL) return root;
     if (step->scattered) {
         if (json_object_set_new(root, "scattered", json_true()) == 0 &&
@@ -173,17 +180,17 @@ static json_t *step_json(const BpScene *scene, const BpPathStep *step) {
 }
 
 /* A new object, or NULL without memory. */
-static json_t *path_json(const BpScene *scene, const BpPathLog *path, uint32_t x, uint32_t y,
-                         uint64_t sample) {
+static json_t *path_json(const BpScene *scene, const BpPathLog *path, uint32_t x, uint32_t y, uint64_t sample,
+                         json_t *chains) {
     json_t *steps = json_array();
     for (size_t i = 0; i < path->count && steps != NULL; ++i) {
         if (json_array_append_new(steps, step_json(scene, &path->steps[i])) == 0) continue;
         json_decref(steps);
         steps = NULL;
     }
-    return json_pack("{s:[I,I], s:I, s:o, s:b, s:o}", "pixel", (json_int_t)x, (json_int_t)y, "sample",
+    return json_pack("{s:[I,I], s:I, s:o, s:b, s:o, s:o}", "pixel", (json_int_t)x, (json_int_t)y, "sample",
                      (json_int_t)sample, "device", bp_json_text(path->device.name), "cut", path->cut, "steps",
-                     steps);
+                     steps, "chains", chains);
 }
 
 /* ---- the table of effects ----------------------------------------------------------------------------- */
@@ -290,26 +297,34 @@ static BpStatus measure(const BpCommandLine *line, BpScene *scene, const BpDevic
     return status;
 }
 
-static BpStatus follow(const BpCommandLine *line, const BpScene *scene, const BpDeviceInfo *device,
-                       BpPathLog *path, BpError *err) {
-    BpRenderOptions options;
-    BP_TRY(render_options(line, scene, &options, err));
-    return bp_path_log(scene, &options, device, line->pixel.x, line->pixel.y, (uint32_t)options.first_sample,
-                       path, err);
-}
-
 /* ---- what samples find by chance ---- */
 
 /* What was found out about one scene. */
 typedef struct Findings {
     BpEffectInfo effects[BP_EFFECT_COUNT];
     size_t count;
-    BpCosts costs;  /* with --measure */
-    BpPathLog path; /* with --pixel */
+    BpCosts costs;       /* with --measure */
+    BpPathLog path;      /* with --pixel */
+    BpChainLight chains; /* at the end of one of its segments */
+    bool sampled;        /* rays are sent along these */
     BpUnseenLight unseen;
     double luminance;                            /* of the picture, roughly */
     char unknown[sizeof((BpError *)0)->message]; /* why it is not known what is found by chance; "": it is */
 } Findings;
+
+/* One path, and the light that its first matte point gets by way of spheres. */
+static BpStatus follow(const BpCommandLine *line, const BpScene *scene, const BpDeviceInfo *device,
+                       Findings *found, BpError *err) {
+    BpRenderOptions options;
+    BpEffects effects;
+    BP_TRY(render_options(line, scene, &options, err));
+    BP_TRY(bp_path_log(scene, &options, device, line->pixel.x, line->pixel.y, (uint32_t)options.first_sample,
+                       &found->path, err));
+    bp_effects_analyse(scene, &effects);
+    found->sampled = bp_render_caustics_of(&effects, &options) == BP_CAUSTICS_ON;
+    if (!effects.caustics || options.lamps == BP_LAMPS_OFF) return BP_OK;
+    return bp_chain_light_find(scene, &found->path, options.max_depth, &found->chains, err);
+}
 
 /* So many samples of each pixel tell how bright the picture is, for the share of what is found by chance. */
 #define LOOK_SAMPLES 4
@@ -451,9 +466,10 @@ static BpStatus append_json(const BpCommandLine *line, const char *path, const B
         whole = json_object_set_new(entry, "unseen", bp_unseen_json(&found->unseen, found->luminance)) == 0;
     if (whole && line->measure) whole = json_object_set_new(entry, "costs", costs_json(&found->costs)) == 0;
     if (whole && bp_option_given(line, BP_OPTION_PIXEL))
-        whole = json_object_set_new(
-                    entry, "path",
-                    path_json(scene, &found->path, line->pixel.x, line->pixel.y, line->first_sample)) == 0;
+        whole = json_object_set_new(entry, "path",
+                                    path_json(scene, &found->path, line->pixel.x, line->pixel.y,
+                                              line->first_sample,
+                                              bp_chain_light_json(&found->chains, found->sampled))) == 0;
     if (whole && json_array_append(list, entry) != 0) whole = false;
     json_decref(entry);
     return whole ? BP_OK : bp_fail(err, BP_ERR_MEMORY, "out of memory for the document on %s", path);
@@ -488,11 +504,12 @@ static BpStatus explain(const BpCommandLine *line, const char *path, const BpDev
         }
     }
     if (pixel) {
-        BP_TRY_GOTO(status, follow(line, scene, device, &found.path, err), done);
+        BP_TRY_GOTO(status, follow(line, scene, device, &found, err), done);
         if (list == NULL) {
             bp_page_begin(&page, stdout);
             print_path(scene, &found.path, line->pixel.x, line->pixel.y, line->first_sample, line->seed,
                        page.text);
+            bp_chain_light_print(scene, &found.chains, found.sampled, page.text);
             bp_page_end(&page, line, stdout);
         }
     }
@@ -509,6 +526,7 @@ static BpStatus explain(const BpCommandLine *line, const char *path, const BpDev
 
 done:
     bp_path_log_clear(&found.path);
+    bp_chain_light_clear(&found.chains);
     bp_scene_destroy(&scene);
     return status;
 }

@@ -125,7 +125,11 @@ const BpCommand bp_commands[] = {
             "turns tracing the same samples; the table shows the ratio of their times and the range between "
             "the quartiles.\n"
             "\n"
-            "With --pixel, follows one path of that pixel, step by step; --first-sample selects the sample.",
+            "With --pixel, follows one path of that pixel, step by step; --first-sample selects the sample. "
+            "Of its "
+            "first matte point, it lists the ways by which light of lamps comes there through a ball of "
+            "glass or off "
+            "a mirror, and what each brings.",
         .examples = "  ballpark explain scenes/cover.json\n"
                     "  ballpark explain scenes/*.json --json effects.json\n"
                     "  ballpark explain scenes/v4-13-metal.json --measure\n"

@@ -20,13 +20,12 @@ enum {
     FOLLOW_GOES_ON,
     FOLLOW_INWARD,
     FOLLOW_LIT,
-    FOLLOW_REALS = FOLLOW_LIT + 3
+    FOLLOW_LED = FOLLOW_LIT + 3,
+    FOLLOW_REALS = FOLLOW_LED + 3
 };
 
 /* Nobody reads more steps than this; of a longer path, these are shown. */
 #define STEPS_MAX 10000u
-
-const char *bp_kernel_file(const char *name);
 
 /* What comes back from the device. */
 typedef struct Records {
@@ -91,6 +90,7 @@ static void read_step(const BpScene *scene, const double space[3], const Records
         step->throughput[axis] = record[FOLLOW_THROUGHPUT + axis];
         step->radiance[axis] = record[FOLLOW_RADIANCE + axis];
         step->lit[axis] = record[FOLLOW_LIT + axis];
+        step->led[axis] = record[FOLLOW_LED + axis];
     }
     step->scattered = record[FOLLOW_MET] == 2;
     step->caught = record[FOLLOW_MET] > 2;
@@ -130,11 +130,14 @@ BpStatus bp_path_log(const BpScene *scene, const BpRenderOptions *options, const
     BpPacked packed;
     BpWorker *worker = NULL;
     Records records = {0};
+    char *text = NULL;
     BP_TRY(bp_render_plan(scene, &wanted, &chosen, &setup, &packed, err));
     setup.extra_name = "entry/path_log.cl";
-    setup.extra_text = bp_kernel_file("entry/path_log.cl");
     const bool single_precision = packed.single_precision;
-    BpStatus status = bp_worker_create(&chosen, &packed, &setup, &worker, err);
+    BpStatus status = bp_kernel_text(setup.extra_name, &text, err);
+    setup.extra_text = text;
+    if (status == BP_OK) status = bp_worker_create(&chosen, &packed, &setup, &worker, err);
+    bp_packed_clear(&packed); /* unless the worker has taken it over */
     if (status != BP_OK) goto cleanup;
     const uint32_t capacity = wanted.max_depth < 1           ? 1
                               : wanted.max_depth < STEPS_MAX ? wanted.max_depth
@@ -159,6 +162,7 @@ cleanup:
     if (status != BP_OK) bp_path_log_clear(path);
     free(records.numbers);
     free(records.spheres);
+    free(text);
     bp_worker_destroy(&worker);
     return status;
 }

@@ -29,6 +29,7 @@ typedef struct BpPathStep {
     bool stopped;              /* the ray meets another sphere first */
     uint32_t seen;             /* that sphere */
     double lit[3];             /* radiance that it brought */
+    double led[3];             /* and radiance that rays by way of a ball of glass or a mirror brought */
 } BpPathStep;
 
 typedef struct BpPathLog {

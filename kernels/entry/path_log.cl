@@ -2,7 +2,7 @@
  *
  * Appended to a program of one lane when someone asks (host/render/path_log.c).
  * In:    the packed scene, a pixel, a sample.   Out: for each segment LOG_REALS numbers, in the order of the enum.
- * Knows: path.cl, bounce.cl, lamps_direct.cl.   Does not know: how a person wants to read it. */
+ * Knows: path.cl, bounce.cl, lamps_direct.cl, caustics.cl.   Does not know: how a person wants to read it. */
 enum {
     LOG_ORIGIN,                        /* of the segment, relative to the camera */
     LOG_DIRECTION = LOG_ORIGIN + 3,    /* of the segment */
@@ -16,7 +16,8 @@ enum {
     LOG_GOES_ON,
     LOG_INWARD, /* continues inside */
     LOG_LIT,    /* radiance from a lamp to which the vertex sent a ray */
-    LOG_REALS = LOG_LIT + 3
+    LOG_LED = LOG_LIT + 3, /* and from one to which it sent rays through a focuser */
+    LOG_REALS = LOG_LED + 3
 };
 
 /* `spheres`: for each segment s the numbers of three spheres, or NO_SPHERE: what it met; the lamp that the vertex there
@@ -53,7 +54,14 @@ __kernel VECTORS_WRITTEN void path_log(SCENE_PARAMETERS uint pixel, uint sample,
         trace_bounce(&scene, &path);
         uint lamp = NO_SPHERE, seen = NO_SPHERE;
         const Vec3 before = path.radiance;
+        Vec3 led = before;
 #if SAMPLES_LAMPS
+#if SAMPLES_CAUSTICS
+        /* light_vertices() does this first, too. */
+        Path other = path;
+        if (path.wants_lamps) light_through_focuser(&scene, &other, first_dimension(path.depth - 1u), 1);
+        led = other.radiance;
+#endif
         path.lamp_slot = NO_SLOT;
         if (path.wants_lamps) light_vertices(&scene, &path);
         if (path.lamp_slot != NO_SLOT) {
@@ -81,9 +89,12 @@ __kernel VECTORS_WRITTEN void path_log(SCENE_PARAMETERS uint pixel, uint sample,
         record[LOG_ENTERS] = path.entered;
         record[LOG_GOES_ON] = path.alive;
         record[LOG_INWARD] = path.inward;
-        record[LOG_LIT] = path.radiance.x - before.x;
-        record[LOG_LIT + 1] = path.radiance.y - before.y;
-        record[LOG_LIT + 2] = path.radiance.z - before.z;
+        record[LOG_LIT] = path.radiance.x - led.x;
+        record[LOG_LIT + 1] = path.radiance.y - led.y;
+        record[LOG_LIT + 2] = path.radiance.z - led.z;
+        record[LOG_LED] = led.x - before.x;
+        record[LOG_LED + 1] = led.y - before.y;
+        record[LOG_LED + 2] = led.z - before.z;
         uint discs = 0;
 #if EFFECT_DISCS
         if (!path.met) discs = discs_seen(&scene, &path);

@@ -70,6 +70,11 @@ def unseen_means(*names):
     return Script("tests/unseen/test_unseen_means.py", tuple(f"Means.test_{name}" for name in names), "4 closed forms")
 
 
+def ways(*names):
+    """Cases of tests/caustics/test_explained_ways.py."""
+    return Script("tests/caustics/test_explained_ways.py", names, "9 caustics")
+
+
 def caustics(*names):
     """Cases of tests/caustics/test_caustics.py."""
     return Script("tests/caustics/test_caustics.py", names, "9 caustics")
@@ -1171,6 +1176,34 @@ MUTANTS = [
     Mutant("a find counted beside what it stands for", "own: light counted twice",
            [patch("host/film/film_estimate.c", "fmax(fmin(rest_error[c] * rest_factor + unseen_error, seen), unseen_error)", "seen + unseen_error")],
            [test("test_unseen", "claims_by_hand")]),
+    # The ways of such light that `explain` names.
+    Mutant("explained-way-spread-of-angles", "own: a solid angle without the slope of the angle of incidence",
+           [patch("host/study/chains.c", "* cos(incidence) / cos(angle);", "/ cos(angle);")], [ways("through_glass")]),
+    Mutant("explained-way-slant", "own: a lamp's area seen at a slant",
+           [patch("host/study/chains.c", "fabs(dot(onward, aim->slant)) : 1;", "1 : 1;")], [ways("off_a_mirror")]),
+    Mutant("explained-way-inside", "own: a reflection inside that weakens nothing",
+           [patch("host/study/chains.c", " * pow(inner, search->chords - 1.0);", ";")], [ways("reflected_inside")]),
+    Mutant("explained-way-one-side", "own: ways on one side of the axis only",
+           [patch("host/study/chains.c", "side >= -1; side -= 2", "side >= 1; side -= 2")], [ways("three_ways")]),
+    Mutant("explained-way-mirror-colour", "own: a mirror without its colour",
+           [patch("host/study/chains.c", "&unused, &onward, &colour)) return black;", "&unused, &onward, &(Vec){0})) return black;")],
+           [ways("off_a_mirror")]),
+    Mutant("explained-way-lobe", "own: every floor scatters by Lambert's law",
+           [patch("host/cli/explain_chains.c", ".scatter = scene->materials[step->material].scatter};", ".scatter = BP_SCATTER_LAMBERTIAN};")],
+           [ways("other_surfaces")]),
+    Mutant("explained-way-unseen-blocker", "own: what stands before the lamp is forgotten",
+           [patch("host/study/chains.c", "if (meets) *by = hit.sphere;\n    return black;", "return black;")], [ways("what_stands_in_the_way")]),
+    Mutant("explained-way-blocker-left-out", "own: spheres beside the line of the centres stand in no way",
+           [patch("host/study/chains.c", "clearance(sphere, centre, to, chain->disc) > wide + spread", "clearance(sphere, centre, to, chain->disc) > spread")],
+           [ways("what_stands_in_the_way")]),
+    Mutant("explained-way-beyond-the-depth", "own: a way that the depth limit cuts",
+           [patch("host/cli/explain_chains.c", "chain.chords + 2 <= segments", "chain.chords + 1 <= segments")], [ways("what_is_printed")]),
+    Mutant("explained-way-inverse-index", "own: a ball that is inside out",
+           [patch("host/study/chains.c", "ball->radius < 0 ? 1 / material->refraction_index : material->refraction_index", "material->refraction_index")],
+           [ways("other_surfaces")]),
+    Mutant("explained-ray-with-led-light", "own: light by way of a ball counted as that of the ray to a lamp",
+           [patch("kernels/entry/path_log.cl", "record[LOG_LIT] = path.radiance.x - led.x;", "record[LOG_LIT] = path.radiance.x - before.x;")],
+           [ways("what_samples_get")]),
     # Light through balls of glass and off mirrors.
     Mutant("chain-without-slope", "caustics",
            [patch("kernels/light/focusers.cl", 'const vreal solid_angle = spread_across * fabs(bending);',
