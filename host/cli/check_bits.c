@@ -149,9 +149,16 @@ static BpStatus make_plan(const BpBitsRun *run, Plan *plan, BpError *err) {
     return BP_OK;
 }
 
+/* Pictures from before there were caustics do not say. */
+static BpCaustics caustics_of(const json_t *picture) {
+    const bool on = strcmp(bp_check_text(picture, "caustics"), bp_caustics_names[BP_CAUSTICS_ON]) == 0;
+    return on ? BP_CAUSTICS_ON : BP_CAUSTICS_OFF;
+}
+
 static json_t *form_json(const Form *form, const BpDeviceInfo *device, const char *verdict) {
-    return json_pack("{s:o, s:s, s:s, s:s, s:s, s:s, s:s, s:b}", "device", bp_check_device_json(device),
-                     "scene", bp_check_text(form->picture, "scene"), "kernel", bp_kernel_names[form->kernel],
+    return json_pack("{s:o, s:s, s:s, s:s, s:s, s:s, s:s, s:s, s:b}", "device", bp_check_device_json(device),
+                     "scene", bp_check_text(form->picture, "scene"), "caustics",
+                     bp_caustics_names[caustics_of(form->picture)], "kernel", bp_kernel_names[form->kernel],
                      "acceleration", bp_acceleration_name(form->acceleration), "precision",
                      bp_precision_names[form->precision], "refinement",
                      bp_check_text(form->picture, "refinement"), "verdict", verdict, "agree",
@@ -246,6 +253,7 @@ static BpStatus render_item(const BpDeviceItems *items, size_t number, double se
     options.seed = (uint64_t)json_integer_value(json_object_get(form->picture, "seed"));
     options.sampler = BP_SAMPLER_SOBOL;
     options.samples_only = true;
+    options.caustics = caustics_of(form->picture);
     options.precision = form->precision;
     options.kernel = form->kernel;
     options.force_tree = form->acceleration == BP_ACCELERATION_TREE;
@@ -319,8 +327,10 @@ static const char advice[] =
     "driver.\n";
 
 const char *bp_check_bits_label(const json_t *entry, char *text, size_t size) {
-    snprintf(text, size, "%s, %s, %s, %s%s", bp_check_text(entry, "scene"), bp_check_text(entry, "kernel"),
-             bp_check_text(entry, "acceleration"), bp_check_text(entry, "precision"),
+    snprintf(text, size, "%s%s, %s, %s, %s%s", bp_check_text(entry, "scene"),
+             caustics_of(entry) == BP_CAUSTICS_ON ? " (caustics sampled)" : "",
+             bp_check_text(entry, "kernel"), bp_check_text(entry, "acceleration"),
+             bp_check_text(entry, "precision"),
              strcmp(bp_check_text(entry, "refinement"), "float") == 0 ? " (refined in float)" : "");
     return text;
 }

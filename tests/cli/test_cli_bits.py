@@ -114,6 +114,16 @@ class Bits(cli.ProgramTest):
         suite, = xml.fromstring(self.read("r.xml"))
         self.assertEqual((suite.get("tests"), suite.get("failures")), ("2", "2"))
 
+    def test_caustics(self):
+        """Those that are recorded with rays to lamps by way of spheres are drawn so."""
+        picture = one("caustics-glass")
+        _, results = self.check(0, [picture], "--kernel", "sample")
+        self.assertEqual([r["caustics"] for r in results], ["on", "on"])
+        del picture["caustics"]
+        _, results = self.check(3, [picture], "--kernel", "sample", says="DIFFERENT: caustics-glass, sample, tree, single: ")
+        picture.update(caustics="on", hash="0" * 16)
+        self.check(3, [picture], "--kernel", "sample", says="DIFFERENT: caustics-glass (caustics sampled), sample, tree, single: ")
+
     def test_by_how_much_it_differs(self):
         size = len(one()["radiance"]) // 24
         for pixels, by, kind, says in (
