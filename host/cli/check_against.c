@@ -74,9 +74,13 @@ static const char *file_name(const char *path) {
     return slash != NULL ? slash + 1 : path;
 }
 
-/* Documents from before there was "light_sampling" have one check of each scene. */
+/* Documents from before there was "light_sampling" have one check of each scene, and those from before there
+ * was "caustics" none with that. */
 static bool sampled_alike(const json_t *one, const json_t *other) {
+    static const char *const off = "off";
     const char *a = bp_check_text(one, BP_CHECK_SAMPLING), *b = bp_check_text(other, BP_CHECK_SAMPLING);
+    const char *c = bp_check_text(one, BP_CHECK_CAUSTICS), *d = bp_check_text(other, BP_CHECK_CAUSTICS);
+    if (strcmp(c[0] != '\0' ? c : off, d[0] != '\0' ? d : off) != 0) return false;
     return a[0] == '\0' || b[0] == '\0' || strcmp(a, b) == 0;
 }
 

@@ -25,10 +25,13 @@ json_t *bp_check_device_json(const BpDeviceInfo *device);
 const char *bp_check_text(const json_t *object, const char *key);
 const char *bp_check_device_text(const json_t *entry, const char *key);
 
-/* The member of a scene's object that says whether its lights were sampled: "on" or "off". */
+/* The members of a scene's object that say whether its lights were sampled, and whether by way of balls of
+ * glass and mirrors too: "on" or "off". */
 #define BP_CHECK_SAMPLING "light_sampling"
+#define BP_CHECK_CAUSTICS "caustics"
 enum { BP_CHECK_LABEL_SIZE = 4200 };
-/* The name of a scene's object in tables and messages: "NAME", or "NAME (lights sampled)"; returns `text`. */
+/* The name of a scene's object in tables and messages: "NAME", "NAME (lights sampled)" or "NAME (caustics
+ * sampled)"; returns `text`. */
 const char *bp_check_label(const json_t *scene, char *text, size_t size);
 
 /* "NAME (PLATFORM, driver VERSION)", shown safely, with a 0; returns `text`. */

@@ -38,8 +38,9 @@
 #define SUITE_LEVEL 1e-3  /* of the whole suite; each scene gets an equal part */
 #define SUITE_MARGIN 0.01 /* which every scene of it reaches with the default number of samples */
 #define SURVEY_SECONDS_MIN 5.0
-/* Paths that find lights by chance, as the reference's do; and light sampling, as renders use it. */
-enum { CHECKS_OF_A_SCENE = 2 };
+/* Paths that find lights by chance, as the reference's do; light sampling; and also light sampling by way of
+ * balls of glass and mirrors. */
+enum { CHECKS_OF_A_SCENE = 3 };
 
 /* One run of the command. */
 typedef struct Session {
@@ -121,7 +122,7 @@ static BpStatus find_map_format(Session *session, BpError *err) {
 
 /* `index`: every check has a seed of its own, so that their errors are independent. */
 static BpStatus add_item(Session *session, const char *name, BpScene *scene, BpLightSampling light_sampling,
-                         size_t index, BpError *err) {
+                         BpCaustics caustics, size_t index, BpError *err) {
     const BpCommandLine *line = session->line;
     BpCheckItem *item = &session->items[session->item_count];
     *item = (BpCheckItem){.name = name, .scene = scene};
@@ -134,6 +135,7 @@ static BpStatus add_item(Session *session, const char *name, BpScene *scene, BpL
     if (!bp_option_given(line, BP_OPTION_SPP)) options->samples_per_pixel = BP_CHECK_SAMPLES_DEFAULT;
     options->sampler = BP_SAMPLER_INDEPENDENT;
     options->light_sampling = light_sampling;
+    options->caustics = caustics;
     options->seed += index;
     ++session->item_count;
     if (json_array_append_new(session->scenes, bp_check_scene_json(name, scene, options)) != 0)
@@ -141,21 +143,26 @@ static BpStatus add_item(Session *session, const char *name, BpScene *scene, BpL
     return BP_OK;
 }
 
-/* The checks of one scene. Without --light-sampling, a scene whose lights can be sampled is checked without
- * and with that: the first tests more, since spreads are then the same as the reference's; the second is what
- * renders do. `index`: of the scene, in a suite of `count`. */
+/* The checks of one scene. Without --light-sampling, a scene whose lights can be sampled is checked without and with
+ * that: the first tests more, since spreads are then the same as the reference's; the second is what renders
+ * do. Without --caustics too, one in which rays can be sent to lights by way of spheres is checked with that
+ * as well. `index`: of the scene, in a suite of `count`. */
 static BpStatus add_items(Session *session, const char *name, BpScene *scene, size_t index, size_t count,
                           BpError *err) {
     const BpCommandLine *line = session->line;
     const bool given = bp_option_given(line, BP_OPTION_LIGHT_SAMPLING);
-    const BpRenderOptions sampled = {.light_sampling = BP_LIGHT_SAMPLING_ON};
+    const bool caustics_given = bp_option_given(line, BP_OPTION_CAUSTICS);
+    const BpCaustics caustics = caustics_given ? line->caustics : BP_CAUSTICS_OFF;
+    const BpRenderOptions sampled = {.light_sampling = BP_LIGHT_SAMPLING_ON, .caustics = BP_CAUSTICS_ON};
     if (bp_option_given(line, BP_OPTION_WIDTH))
         BP_TRY(bp_scene_set_width(scene, line->width, err));
     else if (scene->camera.width > BP_CHECK_WIDTH_DEFAULT)
         BP_TRY(bp_scene_set_width(scene, BP_CHECK_WIDTH_DEFAULT, err));
-    BP_TRY(add_item(session, name, scene, given ? line->light_sampling : BP_LIGHT_SAMPLING_OFF, index, err));
+    BP_TRY(add_item(session, name, scene, given ? line->lamps : BP_LIGHT_SAMPLING_OFF, caustics, index, err));
     if (given || bp_render_light_sampling(scene, &sampled) == BP_LIGHT_SAMPLING_OFF) return BP_OK;
-    return add_item(session, name, scene, BP_LIGHT_SAMPLING_ON, count + index, err);
+    BP_TRY(add_item(session, name, scene, BP_LIGHT_SAMPLING_ON, caustics, count + index, err));
+    if (caustics_given || bp_render_caustics(scene, &sampled) == BP_CAUSTICS_OFF) return BP_OK;
+    return add_item(session, name, scene, BP_LIGHT_SAMPLING_ON, BP_CAUSTICS_ON, 2 * count + index, err);
 }
 
 static BpStatus load_items(Session *session, BpError *err) {

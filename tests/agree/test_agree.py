@@ -31,12 +31,13 @@ def check(program, scene, samples, more):
     return json.loads(done.stdout), ""
 
 
-def judge(report, name, scenes, rows):
-    """Prints and keeps one check of a scene; returns whether it fails."""
+def judge(report, name, checks, rows):
+    """Prints and keeps one check of a scene, of so many at most; returns whether it fails."""
     result = report["results"][0]
     sampled = report["light_sampling"] == "on"
-    name += " (lights sampled)" if sampled else ""
-    level = SUITE_LEVEL / (2 * scenes)
+    caustics = report["caustics"] == "on"
+    name += " (caustics sampled)" if caustics else " (lights sampled)" if sampled else ""
+    level = SUITE_LEVEL / checks
     worst = max(t["z"] / limit_of(level * SHARES[t["family"]], t["tests"]) for t in result["tests"])
     invalid = sum(result["invalid_samples"].values())
     agree = worst <= 1 and invalid == 0 and result["verdict"] != "inconclusive"
@@ -68,6 +69,7 @@ def main():
     if unknown := {*(only or ()), *without} - set(names):
         sys.exit(f"no such scene: {', '.join(sorted(unknown))}")
     rows, failures, tried = [], 0, 0
+    checks = len(rest) * (2 if "--caustics" in more else 3)
     print(f"{'scene':32} {'|z| / limit':>11}  {'ratio':>9} {'95 % interval':>20}  {'least bias':>10}")
     for number, scene in enumerate(rest):
         name = names[number]
@@ -80,8 +82,8 @@ def main():
             print(f"{name:32} FAILED: {trouble}")
             rows.append({"scene": name, "error": trouble})
             continue
-        for one in report.get("scenes", [report]):  # without and with light sampling, where the scene calls for it
-            failures += judge(one, name, len(rest), rows)
+        for one in report.get("scenes", [report]):  # without and with light sampling, also by way of spheres, where the scene calls for it
+            failures += judge(one, name, checks, rows)
     with open(result_path, "w", encoding="utf-8") as file:
         json.dump({"level": SUITE_LEVEL, "scenes": rows}, file, indent=1)
     print(f"{tried} scenes, {failures} disagree or fail (a right kernel is rejected with probability "

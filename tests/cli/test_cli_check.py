@@ -135,6 +135,58 @@ class LightSampling(Check):
         self.assertEqual(self.sampling(), [("off", "agree"), ("on", "disagree")])
 
 
+class CausticSampling(Check):
+    """Where rays can be sent to lamps by way of spheres, that is checked too."""
+    def setUp(self):
+        super().setUp()
+        shutil.copy(os.path.join(cli.SOURCE, "tests/agree/scenes/caustics-mirror.json"), self.path("mirror.json"))
+
+    WORDS = ("check", "mirror.json", "--effects", "all", "--width", "16", "--spp", "256", "--margin", "50", "--json", "r.json")
+
+    def sampling(self, name="r.json"):
+        report = self.report(name)
+        return [(check["light_sampling"], check["caustics"], check["results"][0]["verdict"]) for check in report.get("scenes", [report])]
+
+    def test_which(self):
+        text = self.succeed(*self.WORDS, "--junit", "r.xml").stdout.decode()
+        self.assertEqual(self.sampling(), [("off", "off", "agree"), ("on", "off", "agree"), ("on", "on", "agree")])
+        names = ["mirror.json", "mirror.json (lights sampled)", "mirror.json (caustics sampled)"]
+        for name in names:
+            self.assertRegex(text, rf"(?m)^{re.escape(name)} on ")
+        self.assertEqual([case.get("name") for case in xml.fromstring(self.read("r.xml")).iter("testcase")], names)
+        checks = self.report()["scenes"]
+        self.assertEqual([check["results"][0]["settings"]["caustics"] for check in checks], ["off", "off", "on"])
+        self.assertEqual(len({check["seed"] for check in checks}), 3)
+        levels = [check["results"][0]["level"] for check in checks]
+        self.assertAlmostEqual(sum(levels), 1e-4)
+        self.succeed(*self.WORDS[:-1], "again.json", "--against", "r.json")
+        self.assertEqual(self.report("again.json")["against"]["changes"], [])
+        # A document from before there was the third check.
+        old = self.report()
+        del old["scenes"][2]
+        for check in (old, *old["scenes"]):
+            check.pop("caustics", None)
+        self.write("old.json", old)
+        self.succeed(*self.WORDS[:-1], "again.json", "--against", "old.json")
+        self.assertEqual([(c["kind"], c["scene"]) for c in self.report("again.json")["against"]["changes"]],
+                         [("new", "mirror.json (caustics sampled)")])
+
+    def test_what_is_asked_for(self):
+        """As light sampling: what the command line says is checked, and nothing else."""
+        for words, found in ((["--caustics", "off"], [("off", "off"), ("on", "off")]), (["--caustics", "on"], [("off", "off"), ("on", "on")]),
+                             (["--light-sampling", "on"], [("on", "off")]), (["--light-sampling", "on", "--caustics", "on"], [("on", "on")]),
+                             (["--set", "materials.brass.fuzz=1"], [("off", "off"), ("on", "off")])):
+            self.succeed(*self.WORDS, *words)
+            self.assertEqual(self.sampling(), [(*one, "agree") for one in found])
+
+    def test_a_wrong_chain(self):
+        """A fault of these rays alone is found, and the verdicts say where."""
+        fault = cli.broken_kernels(self, "integrator/caustics.cl", "scale3(share, radiance)", "scale3(splat(2) * share, radiance)")
+        self.run_code(3, *self.WORDS[:4], "--width", "32", "--spp", "1024", "--margin", "50", "--json", "r.json", environment=fault,
+                      says="disagree in 1 of 3 checks")
+        self.assertEqual([verdict for *_, verdict in self.sampling()], ["agree", "agree", "disagree"])
+
+
 class Suite(Check):
     @cli.deep
     def test_suite(self):
@@ -145,13 +197,17 @@ class Suite(Check):
         report = self.report()
         checks = report["scenes"]
         self.assertEqual(list(dict.fromkeys(check["scene"] for check in checks)), SCENES)
-        sampled = [check["scene"] for check in checks if check["light_sampling"] == "on"]
+        sampled = [check["scene"] for check in checks if (check["light_sampling"], check["caustics"]) == ("on", "off")]
         self.assertEqual([check["scene"] for check in checks if check["light_sampling"] == "off"], SCENES)
+        led = [check["scene"] for check in checks if check["caustics"] == "on"]
+        self.assertEqual(led, [f"caustics-{name}" for name in ("glass", "inside", "mirror", "sun")] + ["crowd", "discs"])
         self.assertLessEqual({"lamp", "discs", "environment-sun", "media-lamp", "motion-lamp", "shadow-catcher"}, set(sampled))
         self.assertNotIn("lobe-lambertian", sampled)
         self.assertEqual(len(sampled), len(set(sampled)))
-        names = [check["scene"] + (" (lights sampled)" if check["light_sampling"] == "on" else "") for check in checks]
+        names = [check["scene"] + (" (caustics sampled)" if check["caustics"] == "on" else " (lights sampled)" if check["light_sampling"] == "on" else "")
+                 for check in checks]
         for check in checks:
+            self.assertEqual(check["results"][0]["settings"]["caustics"], check["caustics"])
             self.assertEqual(check["results"][0]["settings"]["light_sampling"], check["light_sampling"])
         self.assertEqual((report["suite"], report["verdict"]), ("agreement", "agree"))
         self.assertEqual(len({check["seed"] for check in checks}), len(checks))
