@@ -75,6 +75,11 @@ def ways(*names):
     return Script("tests/caustics/test_explained_ways.py", names, "9 caustics")
 
 
+def caustic_energy(*names):
+    """Cases of tests/caustics/test_caustic_energy.py."""
+    return Script("tests/caustics/test_caustic_energy.py", names, "9 caustics")
+
+
 def caustics(*names):
     """Cases of tests/caustics/test_caustics.py."""
     return Script("tests/caustics/test_caustics.py", names, "9 caustics")
@@ -1221,6 +1226,22 @@ MUTANTS = [
     Mutant("recorded-without-caustics", "own: recorded pictures with caustics drawn without",
            [patch("host/cli/check_bits.c", "options.caustics = caustics_of(form->picture);", "options.caustics = BP_CAUSTICS_OFF;")],
            [Script("tests/cli/test_cli_bits.py", ("Bits.test_caustics",), "1 exact")]),
+    # What it is in all, at most, and in every form.
+    Mutant("chain-inside-weakens-nothing", "caustics",
+           [patch("kernels/light/focusers.cl", "choose(vbool_of_uint(inside == splat_uint(1)), through, through * inner)", "through")],
+           [caustic_energy("reflected_inside")]),
+    Mutant("chain-inside-on-the-other-side", "caustics",
+           [patch("kernels/integrator/caustics.cl", "vbool_of_uint(choice.inside == splat_uint(1)); /*", "vbool_of_uint(choice.inside > splat_uint(0)); /*")],
+           [caustic_energy("reflected_inside")]),
+    Mutant("chain-schlick-of-the-other-angle", "caustics",
+           [patch("kernels/light/focusers.cl", "fresnel_schlick(t, n));", "fresnel_schlick(c, inverse));")], [caustic_energy("reflected_inside")]),
+    Mutant("chain-through-from-beside-the-rim", "own: rays that a ball sends far aside are lost",
+           [patch("kernels/light/focusers.cl", "const vbool lost = vbool_not(here) & (beyond | vbool_not(sloped));",
+                  "const vbool lost = vbool_not(here) & (beyond | vbool_not(sloped) | (at.sine < splat(R(0.3))));")],
+           [caustic_energy("what_goes_in")]),
+    Mutant("bound-without-caustics", "own: a film whose sums may overflow",
+           [patch("host/film/film_scene.c", "BP_CAUSTICS_ON ? 0.5 + 3 * 0.5 : 0.5", "BP_CAUSTICS_ON ? 0.5 + 0.5 : 0.5")],
+           [test("test_caustic_bound", "every_ray_counts", "9 caustics")]),
     # Light through balls of glass and off mirrors.
     Mutant("chain-without-slope", "caustics",
            [patch("kernels/light/focusers.cl", 'const vreal solid_angle = spread_across * fabs(bending);',
