@@ -143,10 +143,10 @@ static BpStatus add_item(Session *session, const char *name, BpScene *scene, BpL
     return BP_OK;
 }
 
-/* The checks of one scene. Without --light-sampling, a scene whose lights can be sampled is checked without and with
- * that: the first tests more, since spreads are then the same as the reference's; the second is what renders
- * do. Without --caustics too, one in which rays can be sent to lights by way of spheres is checked with that
- * as well. `index`: of the scene, in a suite of `count`. */
+/* The checks of one scene. Without --light-sampling, a scene whose lights can be sampled is checked without
+ * and with that: the first tests more, since spreads are then the same as the reference's; the second is what
+ * renders do. Without --caustics too, one in which rays can be sent to lights by way of spheres is checked
+ * with that as well. `index`: of the scene, in a suite of `count`. */
 static BpStatus add_items(Session *session, const char *name, BpScene *scene, size_t index, size_t count,
                           BpError *err) {
     const BpCommandLine *line = session->line;
@@ -158,7 +158,8 @@ static BpStatus add_items(Session *session, const char *name, BpScene *scene, si
         BP_TRY(bp_scene_set_width(scene, line->width, err));
     else if (scene->camera.width > BP_CHECK_WIDTH_DEFAULT)
         BP_TRY(bp_scene_set_width(scene, BP_CHECK_WIDTH_DEFAULT, err));
-    BP_TRY(add_item(session, name, scene, given ? line->lamps : BP_LIGHT_SAMPLING_OFF, caustics, index, err));
+    BP_TRY(add_item(session, name, scene, given ? line->light_sampling : BP_LIGHT_SAMPLING_OFF, caustics,
+                    index, err));
     if (given || bp_render_light_sampling(scene, &sampled) == BP_LIGHT_SAMPLING_OFF) return BP_OK;
     BP_TRY(add_item(session, name, scene, BP_LIGHT_SAMPLING_ON, caustics, count + index, err));
     if (caustics_given || bp_render_caustics(scene, &sampled) == BP_CAUSTICS_OFF) return BP_OK;

@@ -322,7 +322,7 @@ static BpStatus follow(const BpCommandLine *line, const BpScene *scene, const Bp
                        &found->path, err));
     bp_effects_analyse(scene, &effects);
     found->sampled = bp_render_caustics_of(&effects, &options) == BP_CAUSTICS_ON;
-    if (!effects.caustics || options.lamps == BP_LAMPS_OFF) return BP_OK;
+    if (!effects.caustics || options.light_sampling == BP_LIGHT_SAMPLING_OFF) return BP_OK;
     return bp_chain_light_find(scene, &found->path, options.max_depth, &found->chains, err);
 }
 

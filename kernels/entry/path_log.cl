@@ -59,7 +59,7 @@ __kernel VECTORS_WRITTEN void path_log(SCENE_PARAMETERS uint pixel, uint sample,
 #if SAMPLES_CAUSTICS
         /* light_vertices() does this first, too. */
         Path other = path;
-        if (path.wants_lamps) light_through_focuser(&scene, &other, first_dimension(path.depth - 1u), 1);
+        if (path.wants_lamps) light_through_focuser(&scene, &other, first_dimension(path.depth - 1u), 0, 1);
         led = other.radiance;
 #endif
         path.lamp_slot = NO_SLOT;

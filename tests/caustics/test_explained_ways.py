@@ -320,7 +320,7 @@ def what_is_printed():
     assert "mirrors (--caustics on):\n" in printed(scene, "--caustics", "on")
     assert explained(scene)["chains"]["sampled"] is False and explained(scene, "--caustics", "on")["chains"]["sampled"] is True
     # Nothing to tell: no light sampling, a path that ends in the sky, a depth that leaves no room.
-    assert explained(scene, "--lamps", "off")["chains"] is None
+    assert explained(scene, "--light-sampling", "off")["chains"] is None
     assert "mirrors: none\n" in printed(looking_at(-0.35, 0.1, [ball(), lamp(1.0, 2.2, 0.3, 0.15)], depth=2))
     beside = looking_at(1.0, 0.2, [ball(height=0.6), lamp(3, 1, 0.1, 0.3)])
     depths = [sorted({way["chords"] for way in explained(beside, "--depth", str(depth))["chains"]["ways"]}) for depth in (2, 3, 4, 5)]
