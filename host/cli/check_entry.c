@@ -127,7 +127,8 @@ const char *bp_check_text(const json_t *object, const char *key) {
 }
 
 const char *bp_check_label(const json_t *scene, char *text, size_t size) {
-    const bool lights = strcmp(bp_check_text(scene, BP_CHECK_SAMPLING), bp_light_sampling_names[BP_LIGHT_SAMPLING_ON]) == 0;
+    const bool lights =
+        strcmp(bp_check_text(scene, BP_CHECK_SAMPLING), bp_light_sampling_names[BP_LIGHT_SAMPLING_ON]) == 0;
     const bool caustics =
         strcmp(bp_check_text(scene, BP_CHECK_CAUSTICS), bp_caustics_names[BP_CAUSTICS_ON]) == 0;
     snprintf(text, size, "%s%s", bp_check_text(scene, "scene"),

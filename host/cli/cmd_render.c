@@ -1,7 +1,8 @@
 /* cmd_render.c: `ballpark render`.
  *
  * In:    scene files, options.   Out: their pictures, statistics (--stats), summaries.
- * Knows: the order of the steps.   Does not know: how to trace, when a stop rule is met, how pictures are written (content.h). */
+ * Knows: the order of the steps.   Does not know: how to trace, when a stop rule is met, how pictures are
+ * written (content.h). */
 #include "commands.h"
 
 #include "base/clock.h"
