@@ -32,7 +32,7 @@ static void refused(void **state) {
         {HEAD "element vertex 1\n" XYZ
               "property ushort red\nproperty uchar green\nproperty uchar blue\nend_header\n",
          10,
-         {"not of one type"}},
+         {"of different types"}},
         {HEAD "element vertex 1\nproperty float material\n" XYZ "end_header\n", 4, {"material", "integer"}},
         {HEAD "element vertex 1\nproperty float x\nproperty float y\nend_header\n", 6, {"no property z"}},
         {HEAD "element point 1\n" XYZ "end_header\n", 7, {"no element vertex"}},

@@ -41,6 +41,13 @@ static void assert_vector(const double *v, double x, double y, double z) {
     assert_true(fabs(v[0] - x) < e && fabs(v[1] - y) < e && fabs(v[2] - z) < e && v[3] == 0);
 }
 
+/* With half of a pixel's diagonal behind it. */
+static void assert_right(const PackedCamera *camera, double pixel) {
+    const double right[4] = {camera->right[0], camera->right[1], camera->right[2], 0};
+    assert_vector(right, pixel, 0, 0);
+    assert_true(fabs(camera->right[3] - pixel / sqrt(2.0)) < 1e-12);
+}
+
 /* By hand: 90 degrees at distance 10 is 20 high; pixels are square, so 400 by 225 is 20 * 400 / 225 wide. */
 static void camera_along_minus_z(void **state) {
     (void)state;
@@ -51,7 +58,7 @@ static void camera_along_minus_z(void **state) {
     const PackedCamera *camera = packed.camera;
     const double pixel = 20.0 / 225;
     assert_vector(camera->corner, -200 * pixel, 10, -10);
-    assert_vector(camera->right, pixel, 0, 0);
+    assert_right(camera, pixel);
     assert_vector(camera->down, 0, -pixel, 0);
     assert_vector(camera->lens_right, 0.25, 0, 0);
     assert_vector(camera->lens_up, 0, 0.25, 0);
@@ -137,7 +144,7 @@ static void extreme_vup(void **state) {
         scene.camera.vup[1] = scales[i];
         BpPacked packed;
         pack(&scene, false, &packed);
-        assert_vector(((const PackedCamera *)packed.camera)->right, 20.0 / 225, 0, 0);
+        assert_right(packed.camera, 20.0 / 225);
         bp_packed_clear(&packed);
     }
 }
