@@ -74,10 +74,14 @@ static double variance_margin(const BpSums *sums, const Region *region, int chan
 }
 
 /* The variance of a mean that may have missed what is bright and rare: with the margin, and, where the mean
- * is below the other one, larger by the square of what it lacks, as that of the missing light would be. */
-static double cautious_variance(const Mean *mean, const Mean *other, double margin) {
-    const double lacks = mean->value > 0 && other->value > mean->value ? other->value / mean->value : 1;
-    return (mean->variance + margin) * lacks * lacks;
+ * is below the other one, larger by the square of what it lacks, as that of the missing light would be. No
+ * sample of that light is brighter than `brightest`, so the mean of its squares is at most that times what
+ * the mean lacks, even if not one has been found. */
+static double cautious_variance(const Mean *mean, const Mean *other, double margin, double brightest) {
+    if (!(other->value > mean->value)) return mean->variance + margin;
+    const double lacks = mean->value > 0 ? other->value / mean->value : 1;
+    const double missed = brightest * (other->value - mean->value) / (double)mean->samples;
+    return (mean->variance + margin) * lacks * lacks + (mean->samples > 0 ? missed : 0);
 }
 
 static double z_of_means(const Mean *kernel, const Mean *reference, int moment) {
@@ -105,8 +109,10 @@ static void test_region(const BpSums *kernel, const BpSums *reference, const Reg
         const bool counted = (k.lit < LIT_FEW || r.lit < LIT_FEW) && k.samples > 0 && r.samples > 0;
         const bool comparable = kernel->means_only == reference->means_only;
         if (!comparable) {
-            k.variance = cautious_variance(&k, &r, variance_margin(kernel, region, channel));
-            r.variance = cautious_variance(&r, &k, variance_margin(reference, region, channel));
+            k.variance =
+                cautious_variance(&k, &r, variance_margin(kernel, region, channel), kernel->brightest);
+            r.variance =
+                cautious_variance(&r, &k, variance_margin(reference, region, channel), reference->brightest);
         }
         const double z = !counted ? z_of_means(&k, &r, moment) : comparable ? z_of_counts(&k, &r) : 0;
         if (z > worst->z || (channel == BP_SUMS_RED && region->column == 0 && region->row == 0)) {

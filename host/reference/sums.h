@@ -29,6 +29,7 @@ typedef struct BpSums {
     BpPixelSums *pixels; /* width * height, row 0 at the top */
     bool means_only; /* samples are drawn so that their mean is the radiance, and their spread is not that of
                         paths that find lamps by chance; false: it is */
+    double brightest; /* the most radiance that a sample may have which finds lamps by chance; 0: not known */
 } BpSums;
 
 /* Creates sums that are all zero. BP_ERR_MEMORY. Release with bp_sums_clear(). */

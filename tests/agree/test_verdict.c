@@ -141,6 +141,34 @@ static void without_noise(void **state) {
     bp_sums_clear(&b);
 }
 
+/* Light that rays to lamps bring to every sample, and that by chance one of very many finds, with a
+ * brightness of up to B: a reference that has found none is no evidence while it should have made a few finds
+ * only, and is when they should be a hundred. The same for a kernel that has missed it. */
+static void rare_light(void **state) {
+    (void)state;
+    const double light = 0.5, samples = 1000.0 * 8 * 8;
+    for (int swapped = 0; swapped < 2; ++swapped) {
+        BpSums with, without;
+        constant_picture(&with, 8, 8, 1000, 1 + light);
+        constant_picture(&without, 8, 8, 1000, 1);
+        with.means_only = true;
+        const BpSums *const kernel = swapped ? &without : &with, *const reference =
+                                                                     swapped ? &with : &without;
+        const double finds[] = {1, 10, 100};
+        for (int i = 0; i < 3; ++i) {
+            with.brightest = without.brightest = samples * light / finds[i];
+            const BpVerdict verdict = judge(kernel, reference, BP_VERDICT_LEVEL);
+            assert_int_equal(verdict.conclusion == BP_DISAGREE, finds[i] > 50);
+            assert_true(fabs(verdict.worst[BP_FAMILY_PICTURE].z - sqrt(finds[i])) < 0.01);
+        }
+        /* Where both find it alike, a difference is one. */
+        with.means_only = false;
+        assert_int_equal(judge(kernel, reference, BP_VERDICT_LEVEL).conclusion, BP_DISAGREE);
+        bp_sums_clear(&with);
+        bp_sums_clear(&without);
+    }
+}
+
 static void black_pictures(void **state) {
     (void)state;
     BpSums a, b;
@@ -343,12 +371,19 @@ static void refusals(void **state) {
 
 int main(void) {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(control),        cmocka_unit_test(calibrated),
-        cmocka_unit_test(half_percent),   cmocka_unit_test(without_noise),
-        cmocka_unit_test(black_pictures), cmocka_unit_test(one_wrong_block),
-        cmocka_unit_test(wrong_spread),   cmocka_unit_test(invalid_samples),
-        cmocka_unit_test(refusals),       cmocka_unit_test(nothing_passes_without_evidence),
-        cmocka_unit_test(dark_channels),  cmocka_unit_test(faults_disagree),
+        cmocka_unit_test(control),
+        cmocka_unit_test(calibrated),
+        cmocka_unit_test(half_percent),
+        cmocka_unit_test(without_noise),
+        cmocka_unit_test(black_pictures),
+        cmocka_unit_test(one_wrong_block),
+        cmocka_unit_test(wrong_spread),
+        cmocka_unit_test(invalid_samples),
+        cmocka_unit_test(rare_light),
+        cmocka_unit_test(refusals),
+        cmocka_unit_test(nothing_passes_without_evidence),
+        cmocka_unit_test(dark_channels),
+        cmocka_unit_test(faults_disagree),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -135,6 +135,15 @@ class LightSampling(Check):
         self.assertEqual(self.sampling(), [("off", "agree"), ("on", "disagree")])
 
 
+class RareLight(Check):
+    """Light that the reference hardly finds: too little is known, but nothing disagrees. The lamp is so small that a scattered path
+    meets it once in a million."""
+    def test_small_lamp(self):
+        scene = os.path.join(cli.SOURCE, "tests/unseen/scenes/lamp-0.03.json")
+        self.run_code(4, "check", scene, "--width", "32", "--spp", "256", "--json", "r.json", says="inconclusive")
+        self.assertEqual([check["results"][0]["verdict"] for check in self.report()["scenes"]], ["inconclusive"] * 3)
+
+
 class CausticSampling(Check):
     """Where rays can be sent to lamps by way of spheres, that is checked too."""
     def setUp(self):

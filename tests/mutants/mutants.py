@@ -1246,6 +1246,11 @@ MUTANTS = [
     Mutant("bound-without-caustics", "own: a film whose sums may overflow",
            [patch("host/film/film_scene.c", "BP_CAUSTICS_ON ? 3 * 0.5 : 0", "BP_CAUSTICS_ON ? 0.5 : 0")],
            [test("test_caustic_bound", "every_ray_counts", "9 caustics")]),
+    Mutant("light that one side has missed is no light", "own: a right driver accused where lights are small",
+           [patch("host/check/verdict.c", "(mean->samples > 0 ? missed : 0)", "0")], [test("test_verdict", "rare_light")]),
+    Mutant("a bound of one pixel for a region", "own: samples that are not counted",
+           [patch("host/check/verdict.c", "(other->value - mean->value) / (double)mean->samples;", "(other->value - mean->value);")],
+           [test("test_verdict", "rare_light")]),
     # Light through balls of glass and off mirrors.
     Mutant("chain-without-slope", "caustics",
            [patch("kernels/light/focusers.cl", 'const vreal solid_angle = spread_across * fabs(bending);',
