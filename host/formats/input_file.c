@@ -116,14 +116,20 @@ static BpStatus open_held(BpHeldFiles *held, const char *wanted, FILE **stream, 
     *size = length;
 #ifdef __linux__
     const int descriptor = memfd_create(name, MFD_CLOEXEC);
-    *stream = descriptor >= 0 ? fdopen(descriptor, "w+b") : NULL;
+    size_t written = 0;
+    for (ssize_t more = 1; descriptor >= 0 && written < length && more > 0;
+         written += more > 0 ? (size_t)more : 0)
+        more = write(descriptor, bytes + written, length - written);
+    const bool whole = descriptor >= 0 && written == length && lseek(descriptor, 0, SEEK_SET) == 0;
+    *stream = whole ? fdopen(descriptor, "rb") : NULL;
     if (*stream == NULL && descriptor >= 0) close(descriptor);
+    if (*stream != NULL) return BP_OK;
 #else
     *stream = tmpfile();
-#endif
     if (*stream != NULL && fwrite(bytes, 1, length, *stream) == length && fseeko(*stream, 0, SEEK_SET) == 0)
         return BP_OK;
     if (*stream != NULL) fclose(*stream);
+#endif
     return bp_fail(err, BP_ERR_MEMORY, "no memory for the file: %s", strerror(errno));
 }
 
@@ -136,7 +142,8 @@ BpStatus bp_node_open_file(const BpNode *node, const char *path, const char *exp
     if (status != BP_OK) { /* the fault lies with the document, so the error stands there */
         char shown[256];
         bp_printable(path, shown, sizeof shown);
-        status = bp_node_fail(node, BP_PART_VALUE, err, "\"%s\": %s", shown, inner.message);
+        const BpStatus at_node = bp_node_fail(node, BP_PART_VALUE, err, "\"%s\": %s", shown, inner.message);
+        if (status != BP_ERR_MEMORY) status = at_node;
         bp_error_clear(&inner);
     }
     return status;
