@@ -27,8 +27,8 @@ typedef struct BpPixelSums {
 typedef struct BpSums {
     uint32_t width, height;
     BpPixelSums *pixels; /* width * height, row 0 at the top */
-    bool means_only; /* samples are drawn so that their mean is the radiance, and their spread is not that of
-                        paths that find lamps by chance; false: it is */
+    bool means_only;  /* samples are drawn so that their mean is the radiance, and their spread is not that of
+                         paths that find lamps by chance; false: it is */
     double brightest; /* the most radiance that a sample may have which finds lamps by chance; 0: not known */
 } BpSums;
 
