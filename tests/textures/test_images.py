@@ -241,7 +241,7 @@ class Images(ProgramTest):
         table = self.succeed("explain", "s.json", "--wide").stdout.decode()
         self.assertRegex(table, r"images +in +1 material with images, on 1 of 4 spheres")
         self.assertRegex(table, r"environment +in +an image of 24 by 12 texels")
-        self.assertRegex(table, r"lamps +in +the image around, 1 lamp and 1 disc that can light 3 spheres")
+        self.assertRegex(table, r"light_sampling +in +the image around, 1 lamp and 1 disc that can light 3 spheres")
         seen = set()
         for x in range(16):
             entry = json.loads(self.succeed("explain", "s.json", "--pixel", f"{x},13", "--json", "-").stdout)["scenes"][0]
