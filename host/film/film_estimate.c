@@ -85,7 +85,7 @@ static void add_unseen(const BpUnseen *unseen, const BpUnseenWeights *weights, s
     const double apart = replicates->means[brightest][3] - replicates->means[darkest][3];
     const bool found = apart * samples / replicates->filled > 0.5 * square / mean;
     double rest_mean[4], rest_error[4];
-    estimate_without(replicates, brightest, samples, rest_mean, rest_error);
+    if (found) estimate_without(replicates, brightest, samples, rest_mean, rest_error);
     const double rest_factor = replicates->filled / (replicates->filled - 1.5);
     for (int c = 0; c < 4; c++) {
         const double unseen_error = variance * (c < 3 ? (double)unseen->tint[c] : 1);
@@ -105,7 +105,8 @@ static PixelEstimate estimate_pixel(const BpFilm *film, const BpUnseenWeights *w
     const size_t k_count = film->replicates;
     const uint32_t *counts = film->counts + pixel * k_count;
     const double unit = ldexp(1, -film->scale_log2);
-    Replicates replicates = {.filled = 0};
+    Replicates replicates; /* not zeroed: that would cost more than the rest */
+    replicates.filled = 0;
     for (size_t k = 0; k < k_count; k++) {
         if (counts[k] == 0) continue;
         const double count = counts[k];
