@@ -35,7 +35,7 @@ typedef uint packed_uint;
  * looks through the middles of pixels. */
 typedef struct PackedCamera {
     real corner[4];                 /* upper left corner of pixel (0, 0) */
-    real right[4];                  /* one pixel to the right; half of a pixel's diagonal, or 0: see below */
+    real right[4];                  /* one pixel to the right; half of a pixel's diagonal, or 0: see above */
     real down[4];                   /* one pixel down */
     real lens_right[4], lens_up[4]; /* scaled by the lens radius */
     real inward[4];   /* unit vector to the centre of the sphere that a pinhole stands on, or 0 */

@@ -83,7 +83,7 @@ static vbool is_phase(const Lobe *lobe) { return vbool_of_uint(lobe->kind == spl
 /* Rays to lamps light a vertex that has this lobe. */
 static vbool is_lit_lobe(const Lobe *lobe) { return vbool_of_uint(lobe->kind < splat_uint(LOBE_NONE)); }
 
-/* Per steradian; 0 for LOBE_NONE. `drawn`: `direction` was drawn from the lobe. */
+/* Per steradian; 0 for LOBE_NONE; not of LOBE_PIXEL (focusers.cl). `drawn`: `direction` was drawn from the lobe. */
 static vreal scatter_pdf(const Lobe *lobe, Vec3 direction, int drawn) {
     vreal density = splat(0);
 #if EFFECT_LAMBERTIAN

@@ -2,7 +2,7 @@
  * many at a time as there are lanes; lanes whose path has ended take the next ones.
  *
  * In:    the packed scene, a chunk.   Out: the samples of the chunk, as pixels.cl says.
- * Knows: path.cl, bounce.cl, lamps_direct.cl, pixels.cl.   Does not know: what a bounce does. */
+ * Knows: path.cl, bounce.cl, lamps_direct.cl, caustics.cl, pixels.cl.   Does not know: what a bounce does. */
 __kernel VECTORS_WRITTEN void trace(TRACE_PARAMETERS) {
     const Scene scene = scene_init(SCENE_ARGUMENTS);
     const uint item = get_global_id(0);

@@ -2,7 +2,7 @@
  * path has ended takes the next one of them (regeneration).
  *
  * In:    the packed scene, a chunk.   Out: the samples of the chunk, as pixels.cl says.
- * Knows: one_path.cl.   Does not know: what a bounce does.
+ * Knows: one_path.cl, caustics.cl.   Does not know: what a bounce does.
  *
  * Paths differ in length, and work-items that proceed in step wait for the longest of theirs. Here none waits before its
  * group's share is used up. Who traces a sample changes nothing of it. Paths begin and continue in one loop, so that work-items

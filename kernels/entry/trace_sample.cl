@@ -1,7 +1,7 @@
 /* trace_sample.cl: the kernel of the one-path form: a work-item traces one pixel sample.
  *
  * In:    the packed scene, a chunk.   Out: the samples of the chunk, as pixels.cl says.
- * Knows: one_path.cl.   Does not know: what a bounce does.
+ * Knows: one_path.cl, caustics.cl.   Does not know: what a bounce does.
  *
  * The paths of a work-group begin together, then each goes its way. A camera ray is made without a branch, so compilers
  * for processors can make those of a group in vector lanes, if nothing else stands between: hence the barrier, and the

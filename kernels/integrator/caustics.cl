@@ -7,7 +7,7 @@
  * with the density of the direction at the vertex. What a chain brings is computed along the ray as it is traced, and
  * both weights from that ray: a root need not be exact.
  *
- * In:    paths that wait to be lit; what paths meet.   Out: paths with that light; the weight of a lamp that is met.
+ * In:    paths that wait to be lit, or that begin; what paths meet.   Out: paths with that light; the weight of a lamp that is met.
  * Knows: focusers.cl, lamps.cl, scatter.cl, vary_surface.cl, the closest hit.   Does not know: how a path goes on. */
 #if SAMPLES_CAUSTICS
 static int has_focusers(const Scene *scene) { return scene->focuser_places[0] != NO_SLOT; }
@@ -310,11 +310,7 @@ static void light_camera(const Scene *scene, Path *path, vbool fresh) {
     lobe.fuzz = at_most(splat(camera->right[3]) * inverse, splat(1));
     lobe.kind = splat_uint(LOBE_PIXEL);
     path->lobe = choose_lobe(fresh, &lobe, &path->lobe);
-    vreal importance = splat(0);
-    for (uint i = 0; scene->focuser_places[i * FOCUSER_UINTS] != NO_SLOT; ++i)
-        importance += focuser_importance(scene->focusers + i * FOCUSER_REALS, &path->origin, &path->lobe);
-    const vbool sees = fresh & (importance > splat(0));
-    if (any_lane(sees)) light_through_focuser(scene, path, splat_uint(DIMENSION_PIXEL), 1, sees);
+    light_through_focuser(scene, path, splat_uint(DIMENSION_PIXEL), 1, fresh);
 }
 #else
 #define light_camera(scene, path, fresh)

@@ -3,7 +3,7 @@
  *
  * In:    a point and the lobe there, random numbers; a direction to a focuser.   Out: a focuser and the probability of
  *        choosing it; the angles of incidence by which light from a target reaches the point; densities of directions.
- * Knows: PackedFocuser and PackedTarget (scene_types.h), the interface of shape/, the lobes' densities.   Does not know:
+ * Knows: PackedFocuser, PackedTarget and PackedCamera (scene_types.h), the interface of shape/, the lobes' densities.   Does not know:
  *        paths, shadows, how rays are traced.
  *
  * A chain goes from a vertex to a focuser, `inside` it along so many chords (0: a reflection off its outside; 1: through
