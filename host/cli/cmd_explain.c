@@ -123,19 +123,15 @@ static void print_path(const BpScene *scene, const BpPathLog *path, uint32_t x, 
             is_black(radiance) ? ", black" : "");
 }
 
-static json_t *triple(const double v[3]) {
-    return json_pack("[f,f,f]", v[0], v[1], v[2]);
-}
-
 /* What the ray meets is a sphere, or for a disc or an image that nothing hides null. */
 static json_t *lamp_ray_json(const BpPathStep *step) {
     json_t *const meets = step->stopped                     ? json_integer(step->seen)
                           : step->to_disc || step->to_image ? json_null()
                                                             : json_integer(step->lamp);
     if (step->to_image)
-        return json_pack("{s:b, s:o, s:o}", "image", 1, "meets", meets, "brings", triple(step->lit));
+        return json_pack("{s:b, s:o, s:o}", "image", 1, "meets", meets, "brings", bp_json_triple(step->lit));
     return json_pack("{s:I, s:o, s:o}", step->to_disc ? "disc" : "lamp", (json_int_t)step->lamp, "meets",
-                     meets, "brings", triple(step->lit));
+                     meets, "brings", bp_json_triple(step->lit));
 }
 
 /* Adds the numbers of the discs that a segment ends in, where there are any; takes `root` over. */
@@ -152,15 +148,15 @@ static json_t *with_discs(json_t *root, uint32_t discs) {
 }
 
 static json_t *step_json(const BpScene *scene, const BpPathStep *step) {
-    json_t *root = json_pack("{s:o, s:o, s:o, s:o, s:b, s:o*}", "origin", triple(step->origin), "direction",
-                             triple(step->direction), "throughput", triple(step->throughput), "radiance",
-                             triple(step->radiance), "met", step->met, "led",
-                             is_black(step->led) ? NULL : triple(step->led));
+    json_t *root = json_pack("{s:o, s:o, s:o, s:o, s:b, s:o*}", "origin", bp_json_triple(step->origin),
+                             "direction", bp_json_triple(step->direction), "throughput",
+                             bp_json_triple(step->throughput), "radiance", bp_json_triple(step->radiance),
+                             "met", step->met, "led", is_black(step->led) ? NULL : bp_json_triple(step->led));
     if (root == NULL) return root;
     if (step->scattered) {
         if (json_object_set_new(root, "scattered", json_true()) == 0 &&
             json_object_set_new(root, "distance", json_real(step->distance)) == 0 &&
-            json_object_set_new(root, "point", triple(step->point)) == 0)
+            json_object_set_new(root, "point", bp_json_triple(step->point)) == 0)
             return root;
         json_decref(root);
         return NULL;
@@ -168,9 +164,9 @@ static json_t *step_json(const BpScene *scene, const BpPathStep *step) {
     if (!step->met) return with_discs(root, step->discs);
     const BpMaterial *material = &scene->materials[step->material];
     json_t *meeting = json_pack("{s:f, s:o, s:I, s:s, s:s, s:b, s:b, s:b}", "distance", step->distance,
-                                "point", triple(step->point), "sphere", (json_int_t)step->sphere, "material",
-                                material->name, "type", bp_material_types[material->kind].name, "enters",
-                                step->enters, "goes_on", step->goes_on, "inward", step->inward);
+                                "point", bp_json_triple(step->point), "sphere", (json_int_t)step->sphere,
+                                "material", material->name, "type", bp_material_types[material->kind].name,
+                                "enters", step->enters, "goes_on", step->goes_on, "inward", step->inward);
     bool whole = meeting != NULL && json_object_update(root, meeting) == 0;
     json_decref(meeting);
     if (step->to_lamp) whole = whole && json_object_set_new(root, "lamp_ray", lamp_ray_json(step)) == 0;

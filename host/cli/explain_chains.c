@@ -5,8 +5,10 @@
 #include "base/names.h"
 #include "base/shown.h"
 #include "base/status.h"
+#include "json_file.h"
 #include "packed/focusers.h"
 #include "packed/lamp_tree.h"
+#include "scene/vector.h"
 #include "study/chains.h"
 
 #include <inttypes.h>
@@ -33,12 +35,11 @@ static size_t first_matte(const BpScene *scene, const BpPathLog *path) {
 static BpChainPoint point_of(const BpScene *scene, const BpPathStep *step) {
     const BpSphere *sphere = &scene->spheres[step->sphere];
     BpChainPoint point = {.sphere = step->sphere, .scatter = scene->materials[step->material].scatter};
-    double out[3], towards = 0;
+    double out[3];
     for (int a = 0; a < 3; ++a) out[a] = step->point[a] - sphere->center[a];
-    const double length = hypot(hypot(out[0], out[1]), out[2]);
-    for (int a = 0; a < 3; ++a) towards += out[a] * step->direction[a];
+    bp_normalize(out);
+    const double towards = bp_dot(out, step->direction);
     for (int a = 0; a < 3; ++a) {
-        out[a] /= length;
         point.point[a] = sphere->center[a] + fabs(sphere->radius) * out[a];
         point.normal[a] = towards < 0 ? out[a] : -out[a];
     }
@@ -134,16 +135,12 @@ void bp_chain_light_print(const BpScene *scene, const BpChainLight *light, bool 
 
 /* ---- as JSON ---- */
 
-static json_t *triple(const double v[3]) {
-    return json_pack("[f,f,f]", v[0], v[1], v[2]);
-}
-
 static json_t *way_json(const BpChain *chain, const BpChainWay *way) {
     return json_pack("{s:I, s:I, s:I, s:o, s:o, s:f, s:b, s:o, s:f, s:o}", "sphere",
                      (json_int_t)chain->sphere, chain->disc ? "disc" : "lamp", (json_int_t)chain->lamp,
-                     "chords", (json_int_t)chain->chords, "at", triple(way->at), "direction",
-                     triple(way->direction), "degrees", way->degrees, "to_middle", way->to_middle, "brings",
-                     triple(way->brings), "stopped", way->stopped, "stopped_by",
+                     "chords", (json_int_t)chain->chords, "at", bp_json_triple(way->at), "direction",
+                     bp_json_triple(way->direction), "degrees", way->degrees, "to_middle", way->to_middle,
+                     "brings", bp_json_triple(way->brings), "stopped", way->stopped, "stopped_by",
                      way->stopped > 0 ? json_integer(way->by) : json_null());
 }
 

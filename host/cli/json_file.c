@@ -35,6 +35,10 @@ json_t *bp_json_whole(uint64_t number) {
     return json_string(text);
 }
 
+json_t *bp_json_triple(const double v[3]) {
+    return json_pack("[f,f,f]", v[0], v[1], v[2]);
+}
+
 json_t *bp_json_join(json_t *root, json_t *part) {
     const bool joined = json_object_update(root, part) == 0; /* fails where one is NULL */
     json_decref(part);

@@ -20,6 +20,8 @@ BpStatus bp_json_write_as(const BpCommandLine *line, json_t *root, const char *p
  */
 json_t *bp_json_whole(uint64_t number);
 
+json_t *bp_json_triple(const double v[3]); /* an array of three numbers, which are finite */
+
 /* `root` with the members of `part` behind its own. Takes both over. NULL, when either is or memory ran out.
  */
 json_t *bp_json_join(json_t *root, json_t *part);

@@ -35,14 +35,6 @@
  * (light/focusers.cl): asin(1 / index) must be at most a quarter of half a turn. */
 #define INSIDE_INDEX_MIN 1.42
 
-/* The index of a sphere's inside over that of its outside; of what is not glass 0. */
-static double index_of(const BpScene *scene, size_t i) {
-    const BpSphere *sphere = &scene->spheres[i];
-    const BpMaterial *material = &scene->materials[sphere->material];
-    if (material->kind != BP_MATERIAL_DIELECTRIC) return 0;
-    return sphere->radius < 0 ? 1 / material->refraction_index : material->refraction_index;
-}
-
 static bool is_mirror(const BpScene *scene, size_t i) {
     const BpMaterial *material = &scene->materials[scene->spheres[i].material];
     return material->kind == BP_MATERIAL_METAL && !(material->fuzz > 0);
@@ -50,7 +42,8 @@ static bool is_mirror(const BpScene *scene, size_t i) {
 
 /* Glass whose index is nearly that of its outside bends nothing: it does not focus. */
 static bool is_focuser(const BpScene *scene, size_t i) {
-    return !bp_sphere_emits(scene, i) && (is_mirror(scene, i) || index_of(scene, i) > 1.001);
+    return !bp_sphere_emits(scene, i) &&
+           (is_mirror(scene, i) || bp_sphere_refraction_index(scene, i) > 1.001);
 }
 
 static double distance(const double a[3], const double b[3]) {
@@ -109,7 +102,9 @@ bool bp_focusers_light_camera(const BpCamera *camera) {
 }
 
 uint32_t bp_focuser_vertices(const BpScene *scene, size_t sphere) {
-    return is_mirror(scene, sphere) ? 1 : index_of(scene, sphere) > INSIDE_INDEX_MIN ? 3 : 2;
+    return is_mirror(scene, sphere)                                       ? 1
+           : bp_sphere_refraction_index(scene, sphere) > INSIDE_INDEX_MIN ? 3
+                                                                          : 2;
 }
 
 static bool has_media(const BpScene *scene) {
@@ -252,7 +247,7 @@ BpStatus bp_focusers_build(const BpScene *scene, const double origin[3], const B
         for (int a = 0; a < 3; ++a) focuser->centre[a] = sphere->center[a] - origin[a];
         focuser->radius = fabs(sphere->radius);
         focuser->power = caught * sphere->radius * sphere->radius;
-        focuser->refraction_index = is_mirror(scene, i) ? MIRROR_INDEX : index_of(scene, i);
+        focuser->refraction_index = is_mirror(scene, i) ? MIRROR_INDEX : bp_sphere_refraction_index(scene, i);
         set_chains(material, focuser->refraction_index, focuser->chains);
         brightest = fmax(brightest, focuser->power);
         const uint32_t variant =

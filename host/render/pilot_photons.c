@@ -29,13 +29,12 @@ static double transmitted(const BpScene *scene, const BpPilotSegment *segment, c
     bp_pilot_normal(scene, segment, normal);
     const double before = -bp_dot(segment->direction, normal), behind = -bp_dot(next->direction, normal);
     if (material->kind != BP_MATERIAL_DIELECTRIC || behind <= 0) return 1; /* reflected */
-    const BpSphere *sphere = &scene->spheres[segment->sphere];
-    const double *from = sphere->center, *to = bp_sphere_end(scene, segment->sphere);
+    const double *from = scene->spheres[segment->sphere].center;
+    const double *to = bp_sphere_end(scene, segment->sphere);
     double outward = 0;
     for (int a = 0; a < 3; ++a)
         outward += normal[a] * (segment->point[a] - (from[a] + segment->time * (to[a] - from[a])));
-    double inside = material->refraction_index; /* over the outside */
-    if (sphere->radius < 0) inside = 1 / inside;
+    const double inside = bp_sphere_refraction_index(scene, segment->sphere);
     const double ratio = outward > 0 ? 1 / inside : inside; /* index before over index behind */
     double measure = ratio * ratio;
     if (material->fresnel == BP_FRESNEL_SCHLICK && ratio != 1) {

@@ -33,6 +33,12 @@ void bp_environment_frame(const BpScene *scene, double seam[3], double east[3], 
     bp_texture_frame(&frame, east, seam, pole); /* exchanged, since it is seen from inside */
 }
 
+double bp_sphere_refraction_index(const BpScene *scene, size_t sphere) {
+    const BpMaterial *material = &scene->materials[scene->spheres[sphere].material];
+    if (material->kind != BP_MATERIAL_DIELECTRIC) return 0;
+    return scene->spheres[sphere].radius < 0 ? 1 / material->refraction_index : material->refraction_index;
+}
+
 double bp_camera_plane_height(const BpCamera *camera) {
     const double tangent = tan(camera->vfov_degrees * (PI / 360));
     double distance = 0;

@@ -230,6 +230,9 @@ BpStatus bp_scene_create_empty(const char *path, BpScene **scene, BpError *err);
 /* How a message names a sphere: "spheres[3]", or "vertex 12 (from 0) of points.ply". Returns `text`. */
 const char *bp_sphere_name(const BpScene *scene, size_t sphere, char text[BP_SPHERE_NAME_SIZE]);
 
+/* The index of a sphere's inside over that of its outside; of what is not glass 0. */
+double bp_sphere_refraction_index(const BpScene *scene, size_t sphere);
+
 /* The centre of a sphere when the shutter closes; it moves there in a straight line, at constant speed. */
 static inline const double *bp_sphere_end(const BpScene *scene, size_t sphere) {
     return sphere < scene->moving_count ? scene->center_ends[sphere] : scene->spheres[sphere].center;

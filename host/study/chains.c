@@ -374,7 +374,7 @@ BpStatus bp_chain_ways(const BpScene *scene, const BpChainPoint *point, const Bp
                      .normal = vec(point->normal),
                      .centre = vec(ball->center),
                      .radius = fabs(ball->radius),
-                     .index = ball->radius < 0 ? 1 / material->refraction_index : material->refraction_index};
+                     .index = bp_sphere_refraction_index(scene, chain->sphere)};
     Found found[BP_CHAIN_WAYS_MAX] = {0};
     const Vec to = sub(search.centre, search.point);
     *count = 0;

@@ -1204,7 +1204,7 @@ MUTANTS = [
     Mutant("explained-way-beyond-the-depth", "own: a way that the depth limit cuts",
            [patch("host/cli/explain_chains.c", "chain.chords + 2 <= segments", "chain.chords + 1 <= segments")], [ways("what_is_printed")]),
     Mutant("explained-way-inverse-index", "own: a ball that is inside out",
-           [patch("host/study/chains.c", "ball->radius < 0 ? 1 / material->refraction_index : material->refraction_index", "material->refraction_index")],
+           [patch("host/study/chains.c", "bp_sphere_refraction_index(scene, chain->sphere)", "material->refraction_index")],
            [ways("other_surfaces")]),
     Mutant("explained-ray-with-led-light", "own: light by way of a ball counted as that of the ray to a lamp",
            [patch("kernels/entry/path_log.cl", "record[LOG_LIT] = path.radiance.x - led.x;", "record[LOG_LIT] = path.radiance.x - before.x;")],
