@@ -149,7 +149,7 @@ int main(int argc, char **argv) {
         else if (line.help)
             status = bp_help_print(&line, line.command, &err);
         else
-            status = line.command->run(&line, &err);
+            status = bp_command_run(&line, &err);
     }
     if (line.comm != NULL) status = leave_ranks(&line, status, &err);
     const int flush_problem = fflush(stdout) == 0 ? 0 : errno;

@@ -1,7 +1,6 @@
 /* command_text.c: see command_text.h. */
 #include "command_text.h"
 
-#include "commands.h"
 #include "option_table.h"
 
 #include <stdio.h>

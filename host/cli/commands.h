@@ -1,7 +1,7 @@
 /* commands.h: the commands of the program.
  *
  * In:    a checked command line.   Out: files, text on standard output, messages on standard error.
- * Knows: which commands there are.   Does not know: how the command line was written.
+ * Knows: which function carries out each command.   Does not know: how the command line was written.
  *
  * A command returns its failure in `err` and prints no error itself: main does, and exits with the code that
  * belongs to the status. Results (a table, a document) go to standard output; progress and notes go to
@@ -9,28 +9,13 @@
 #ifndef BP_CLI_COMMANDS_H
 #define BP_CLI_COMMANDS_H
 
+#include "command_table.h"
 #include "options.h"
 
 typedef BpStatus BpCommandRun(const BpCommandLine *line, BpError *err);
 
-typedef struct BpCommand {
-    const char *name;
-    const char *operands; /* "SCENE", as usage writes it */
-    size_t operands_min, operands_max;
-    const char *summary;     /* one line */
-    const char *description; /* paragraphs, for `ballpark help NAME` */
-    const char *examples;    /* complete command lines, each with a remark */
-    unsigned bit;            /* of the sets of commands in option_list.h */
-    bool is_shared;          /* several processes that a launcher starts carry it out together */
-    BpCommandRun *run;
-} BpCommand;
-
-/* Every command, in the order of the help, and how many they are. */
-extern const BpCommand bp_commands[];
-extern const size_t bp_command_count;
-
-/* The command of that name. BP_ERR_USAGE names the nearest. */
-BpStatus bp_command_find(const char *name, const BpCommand **command, BpError *err);
+/* Carries out the command of `line`, which has one. */
+BpCommandRun bp_command_run;
 
 BpCommandRun bp_command_render;   /* cmd_render.c */
 BpCommandRun bp_command_explain;  /* cmd_explain.c */
@@ -42,6 +27,10 @@ BpCommandRun bp_command_devices;  /* cmd_devices.c */
 BpCommandRun bp_command_generate; /* cmd_generate.c */
 BpCommandRun bp_command_scene;    /* cmd_scene.c */
 BpCommandRun bp_command_view;     /* cmd_view.c */
-BpCommandRun bp_command_help;     /* help.c */
+BpCommandRun bp_command_help;     /* cmd_help.c */
+
+/* The help of the whole program (`command` NULL) or of one command, on standard output, in lines that fit
+ * unless `line` has --wide. BP_ERR_FILE if that cannot be written. */
+BpStatus bp_help_print(const BpCommandLine *line, const BpCommand *command, BpError *err);
 
 #endif

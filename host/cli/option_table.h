@@ -6,7 +6,7 @@
 #ifndef BP_CLI_OPTION_TABLE_H
 #define BP_CLI_OPTION_TABLE_H
 
-#include "commands.h"
+#include "options.h"
 
 #include <getopt.h>
 

@@ -1,7 +1,7 @@
 /* options.c: see options.h. */
-#include "commands.h"
-#include "file_conflicts.h"
+#include "options.h"
 
+#include "file_conflicts.h"
 #include "film/film.h"
 #include "option_table.h"
 

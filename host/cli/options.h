@@ -7,7 +7,7 @@
 #ifndef BP_CLI_OPTIONS_H
 #define BP_CLI_OPTIONS_H
 
-#include "base/status.h"
+#include "command_table.h"
 #include "option_list.h"
 
 typedef enum BpOption {
@@ -49,8 +49,8 @@ typedef struct BpTexts {
  * checked; one whose option was not given is 0, NULL or the enumeration's first value, and bp_option_given()
  * tells. Texts point into argv, or are static. */
 typedef struct BpCommandLine {
-    const struct BpCommand *command; /* NULL: `ballpark`, `ballpark --help`, `ballpark --version` */
-    char **operands;                 /* the arguments that are not options: scenes, files, names */
+    const BpCommand *command; /* NULL: `ballpark`, `ballpark --help`, `ballpark --version` */
+    char **operands;          /* the arguments that are not options: scenes, files, names */
     size_t operand_count;
     struct BpComm *comm; /* the processes that carry out the command together; NULL: this one alone */
     bool given[BP_OPTION_NUMBER];
@@ -67,9 +67,5 @@ static inline bool bp_option_given(const BpCommandLine *line, BpOption option) {
  * an option that does not exist comes with the most similar one; a file used for two things names both uses.
  * Nothing to release. `argv` is reordered: operands come last, and the result points into it. */
 BpStatus bp_command_line_parse(int argc, char **argv, BpCommandLine *line, BpError *err);
-
-/* The help of the whole program (`command` NULL) or of one command, on standard output, in lines that fit
- * unless `line` has --wide. BP_ERR_FILE if that cannot be written. */
-BpStatus bp_help_print(const BpCommandLine *line, const struct BpCommand *command, BpError *err);
 
 #endif

@@ -2,7 +2,6 @@
 #include "result_file.h"
 
 #include "command_text.h"
-#include "commands.h"
 #include "file_conflicts.h"
 
 #include "base/format.h"

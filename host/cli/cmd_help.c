@@ -1,4 +1,4 @@
-/* help.c: the help texts, made from the tables of commands and options. See options.h. */
+/* cmd_help.c: `ballpark help`: texts made from the tables of commands and options. */
 #include "commands.h"
 
 #include "base/fold.h"
