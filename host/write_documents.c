@@ -2,7 +2,7 @@
  *
  * In:    the tables of commands and options.   Out: a folder with manual pages, and files for three shells.
  * Knows: how man(7), bash, zsh and fish write things.   Does not know: which options there are. */
-#include "cli/option_table.h"
+#include "cli/line/option_table.h"
 
 #include <ctype.h>
 #include <errno.h>

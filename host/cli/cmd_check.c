@@ -3,32 +3,33 @@
  * In:    a scene, or the agreement scenes; devices.   Out: whether kernel and reference agree, by table,
  * documents, a picture, and an exit code.
  * Knows: the order of things: scenes, devices, checks, documents.
- * Does not know: how a device is asked without trusting it (device_survey.h, device_items.h), what documents
- * look like (check_report.h, check_junit.h). */
+ * Does not know: how a device is asked without trusting it (cli/process/device_survey.h,
+ * cli/conform/device_items.h), what documents look like (cli/conform/check_report.h,
+ * cli/conform/check_junit.h). */
 #include "commands.h"
 
 #include "base/format.h"
 #include "base/plural.h"
 #include "base/shown.h"
-#include "check_against.h"
-#include "check_bits.h"
-#include "check_failure.h"
-#include "check_junit.h"
-#include "check_report.h"
-#include "check_run.h"
-#include "device_survey.h"
-#include "file_conflicts.h"
+#include "cli/conform/check_against.h"
+#include "cli/conform/check_bits.h"
+#include "cli/conform/check_failure.h"
+#include "cli/conform/check_junit.h"
+#include "cli/conform/check_report.h"
+#include "cli/conform/check_run.h"
+#include "cli/conform/junit_file.h"
+#include "cli/conform/suite.h"
+#include "cli/job/setup.h"
+#include "cli/line/file_conflicts.h"
+#include "cli/line/option_table.h"
+#include "cli/output/json_file.h"
+#include "cli/output/output.h"
+#include "cli/process/device_survey.h"
+#include "cli/process/interrupt.h"
+#include "cli/terminal/page.h"
 #include "image/image.h"
-#include "interrupt.h"
-#include "json_file.h"
-#include "junit_file.h"
 #include "opencl/driver_start.h"
-#include "option_table.h"
-#include "output.h"
-#include "page.h"
 #include "render/render_plan.h"
-#include "setup.h"
-#include "suite.h"
 
 #include <stdio.h>
 #include <stdlib.h>
@@ -54,7 +55,7 @@ typedef struct Session {
     BpDeviceInfo *devices; /* those that are checked */
     size_t device_count;
     BpFormat map_format;
-    json_t *scenes;                /* check_report.h */
+    json_t *scenes;                /* cli/conform/check_report.h */
     BpError error;                 /* of the first item that failed by an error */
     char *text[CHECKS_OF_A_SCENE]; /* the verdicts for people, of one scene on one device */
     bool interrupted, junit_written, json_written;

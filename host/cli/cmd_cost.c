@@ -6,13 +6,13 @@
 
 #include "base/format.h"
 #include "base/json_memory.h"
-#include "interrupt.h"
-#include "json_file.h"
-#include "output.h"
-#include "page.h"
-#include "setup.h"
+#include "cli/job/setup.h"
+#include "cli/output/json_file.h"
+#include "cli/output/output.h"
+#include "cli/process/interrupt.h"
+#include "cli/terminal/page.h"
+#include "cli/terminal/terminal.h"
 #include "study/study.h"
-#include "terminal.h"
 
 #include <stdlib.h>
 #include <string.h>

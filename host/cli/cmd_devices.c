@@ -2,22 +2,22 @@
  *
  * In:    nothing.   Out: a table, or JSON, of every OpenCL device, and the drivers that crash or hang.
  * Knows: BpDeviceInfo, what calibrations have found, tables on a terminal.   Does not know: how a driver that
- * may be broken is asked (device_survey.h). */
+ * may be broken is asked (cli/process/device_survey.h). */
 #include "commands.h"
 
 #include "base/fold.h"
 #include "base/json_text.h"
 #include "base/names.h"
 #include "base/shown.h"
-#include "device_survey.h"
-#include "interrupt.h"
-#include "json_file.h"
+#include "cli/output/json_file.h"
+#include "cli/output/output.h"
+#include "cli/output/report_json.h"
+#include "cli/process/device_survey.h"
+#include "cli/process/interrupt.h"
+#include "cli/terminal/page.h"
+#include "cli/terminal/table.h"
 #include "opencl/driver_start.h"
-#include "output.h"
-#include "page.h"
 #include "render/calibrate.h"
-#include "report_json.h"
-#include "table.h"
 
 #include <errno.h>
 #include <inttypes.h>

@@ -7,10 +7,10 @@
 
 #include "base/format.h"
 #include "base/plural.h"
-#include "content.h"
+#include "cli/output/content.h"
+#include "cli/output/output.h"
+#include "cli/terminal/page.h"
 #include "formats/field.h"
-#include "output.h"
-#include "page.h"
 #include "scene/scene.h"
 
 #include <inttypes.h>

@@ -2,8 +2,8 @@
 #include "commands.h"
 
 #include "base/fold.h"
-#include "option_table.h"
-#include "terminal.h"
+#include "cli/line/option_table.h"
+#include "cli/terminal/terminal.h"
 
 #include <errno.h>
 #include <stdio.h>

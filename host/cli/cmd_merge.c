@@ -7,9 +7,9 @@
 
 #include "base/format.h"
 #include "base/plural.h"
+#include "cli/output/result_file.h"
+#include "cli/terminal/page.h"
 #include "film/film_file.h"
-#include "page.h"
-#include "result_file.h"
 
 #include <inttypes.h>
 #include <math.h>

@@ -2,7 +2,7 @@
  *
  * In:    scene files, options.   Out: their pictures, statistics (--stats), summaries.
  * Knows: the order of the steps.   Does not know: how to trace, when a stop rule is met, how pictures are
- * written (content.h). */
+ * written (cli/output/content.h). */
 #include "commands.h"
 
 #include "base/clock.h"
@@ -10,27 +10,27 @@
 #include "base/output_file.h"
 #include "base/plural.h"
 #include "base/shown.h"
-#include "checkpoint.h"
+#include "cli/job/checkpoint.h"
+#include "cli/job/preview.h"
+#include "cli/job/ranks.h"
+#include "cli/job/render_loop.h"
+#include "cli/job/resume_film.h"
+#include "cli/job/run_report.h"
+#include "cli/job/series.h"
+#include "cli/job/setup.h"
+#include "cli/line/file_conflicts.h"
+#include "cli/output/json_file.h"
+#include "cli/output/keep_sums.h"
+#include "cli/output/output.h"
+#include "cli/output/result_file.h"
+#include "cli/terminal/page.h"
+#include "cli/terminal/terminal.h"
 #include "cluster/comm.h"
-#include "file_conflicts.h"
 #include "film/adaptive.h"
-#include "json_file.h"
-#include "keep_sums.h"
 #include "opencl/device.h"
-#include "output.h"
-#include "page.h"
-#include "preview.h"
-#include "ranks.h"
 #include "render/render.h"
 #include "render/render_plan.h"
 #include "render/stop_rule.h"
-#include "render_loop.h"
-#include "result_file.h"
-#include "resume_film.h"
-#include "run_report.h"
-#include "series.h"
-#include "setup.h"
-#include "terminal.h"
 
 #include <inttypes.h>
 #include <jansson.h>

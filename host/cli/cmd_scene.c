@@ -5,11 +5,11 @@
  * (formats/scene_parse.c, formats/scene_write.c). */
 #include "commands.h"
 
-#include "content.h"
+#include "cli/job/setup.h"
+#include "cli/output/content.h"
+#include "cli/output/output.h"
 #include "formats/scene_parse.h"
-#include "output.h"
 #include "scene/scene.h"
-#include "setup.h"
 
 #include <stdio.h>
 #include <stdlib.h>

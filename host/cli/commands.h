@@ -9,8 +9,8 @@
 #ifndef BP_CLI_COMMANDS_H
 #define BP_CLI_COMMANDS_H
 
-#include "command_table.h"
-#include "options.h"
+#include "cli/line/command_table.h"
+#include "cli/line/options.h"
 
 typedef BpStatus BpCommandRun(const BpCommandLine *line, BpError *err);
 

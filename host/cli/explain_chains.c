@@ -5,7 +5,7 @@
 #include "base/names.h"
 #include "base/shown.h"
 #include "base/status.h"
-#include "json_file.h"
+#include "cli/output/json_file.h"
 #include "packed/focusers.h"
 #include "packed/lamp_tree.h"
 #include "scene/vector.h"

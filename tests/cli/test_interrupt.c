@@ -1,7 +1,7 @@
 /* test_interrupt.c: signals: before there is something to save, the first, the same key twice, the second;
  * and who gets none. */
 #include "base/clock.h"
-#include "cli/interrupt.h"
+#include "cli/process/interrupt.h"
 
 #include <pthread.h>
 #include <setjmp.h>

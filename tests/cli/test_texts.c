@@ -1,7 +1,7 @@
 /* test_texts.c: numbers as people read them, the progress bar at every width. */
 #include "base/format.h"
-#include "cli/progress.h"
-#include "cli/values.h"
+#include "cli/line/values.h"
+#include "cli/terminal/progress.h"
 
 #include <math.h>
 #include <setjmp.h>

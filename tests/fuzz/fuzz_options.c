@@ -1,9 +1,9 @@
-/* fuzz_options.c: any words as a command line (host/cli/options.h), and any text as an option's value.
+/* fuzz_options.c: any words as a command line (host/cli/line/options.h), and any text as an option's value.
  *
  * Words end at newlines. What is accepted is within the ranges that options.h states; what is refused has its
  * reason. Nothing is run: at most files are asked whether they are the same one. */
-#include "cli/option_table.h"
-#include "cli/values.h"
+#include "cli/line/option_table.h"
+#include "cli/line/values.h"
 #include "film/film.h"
 #include "fuzz.h"
 #include "scene/scene.h"

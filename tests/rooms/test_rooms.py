@@ -22,26 +22,41 @@ MAY_INCLUDE = {
     "check": {"scene", "film", "image", "render", "reference"},
     "study": {"scene", "film", "image", "render", "reference"},
     "view": {"scene", "film", "image", "render", "reference"},
-    "cli": {"scene", "formats", "packed", "opencl", "film", "image", "cluster", "render", "check", "study",
-            "view"},
+    # The command line: what it is, what people see, what a process can do, what is written, what is done.
+    "cli/line": {"scene", "formats", "film"},
+    "cli/terminal": {"image", "cli/line"},
+    "cli/process": {"opencl", "cli/line", "cli/terminal"},
+    "cli/output": {"scene", "film", "image", "render", "cli/line", "cli/terminal"},
+    "cli/job": {"scene", "formats", "packed", "opencl", "film", "image", "cluster", "render", "cli/line", "cli/terminal",
+                "cli/process", "cli/output"},
+    "cli/conform": {"formats", "packed", "opencl", "render", "check", "cli/line", "cli/terminal", "cli/process",
+                    "cli/output"},
+    "cli": {"scene", "formats", "packed", "opencl", "film", "image", "cluster", "render", "check", "study", "view",
+            "cli/line", "cli/terminal", "cli/process", "cli/output", "cli/job", "cli/conform"},
+    # Modules, which are built apart.
+    "cluster/mpi": {"cluster"},
+    "view/sdl": {"view"},
 }
 
 
 def faults_of(source):
     host = source / "host"
-    rooms = {path.name for path in host.iterdir() if path.is_dir()}
+    rooms = {str(path.relative_to(host)) for path in host.glob("**/*") if path.is_dir()}
     for room in sorted(rooms ^ set(MAY_INCLUDE)):
         yield f"host/{room}: a room that this test or the source tree does not know"
     kernel_headers = {path.name for path in (source / "kernels").glob("*.h")}
-    for path in sorted(host.glob("*/*.[ch]")):
-        room, text = path.parent.name, path.read_text(encoding="utf-8")
+    for path in sorted(host.glob("*/**/*.[ch]")):
+        room, text = str(path.parent.relative_to(host)), path.read_text(encoding="utf-8")
+        if room not in MAY_INCLUDE:
+            continue
         place = path.relative_to(source)
         if not text.startswith(f"/* {path.name}: "):
             yield f"{place}: does not open with \"/* {path.name}: ...\""
-        if path.suffix == ".h" and f"#ifndef BP_{room}_{path.stem}_H".upper().replace("#IFNDEF", "#ifndef") not in text:
-            yield f"{place}: its guard is not BP_{room.upper()}_{path.stem.upper()}_H"
+        guard = f"BP_{room}_{path.stem}_H".upper().replace("/", "_")
+        if path.suffix == ".h" and f"#ifndef {guard}\n" not in text:
+            yield f"{place}: its guard is not {guard}"
         for include in re.findall(r'^#include "([^"]+)"', text, re.MULTILINE):
-            other = include.split("/")[0] if "/" in include else room
+            other = include.rpartition("/")[0] or room
             if include == "ballpark.h" or include in kernel_headers:
                 continue
             if include.startswith("."):

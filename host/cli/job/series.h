@@ -1,0 +1,38 @@
+/* series.h: the pictures that one `ballpark render` makes: one, or one for each frame or each step of a
+ * turntable.
+ *
+ * In:    the command line.   Out: one scene after the other, and the names of their pictures.
+ * Knows: --frame, --frames, --turntable, --fit.   Does not know: how a picture is made. */
+#ifndef BP_CLI_JOB_SERIES_H
+#define BP_CLI_JOB_SERIES_H
+
+#include "cli/line/options.h"
+#include "formats/scene_parse.h"
+
+typedef struct BpSeries {
+    const BpCommandLine *line;
+    uint64_t count, next; /* pictures in all; the number of the next, from 0 */
+    BpParticleCache cache;
+    int64_t first_frame;
+    uint64_t step;
+    BpCamera camera; /* of all frames, or of the turntable's first picture */
+    bool has_camera, has_range;
+    double range[2];
+    BpScene *scene; /* the last one; a turntable's is read once */
+    char output[4096];
+} BpSeries;
+
+/* Refuses what does not go together; for more than one picture, reads what all of them share: the number of
+ * frames, a camera that shows all, the range of a column's values. */
+BpStatus bp_series_begin(const BpCommandLine *line, BpSeries *series, BpError *err);
+void bp_series_end(BpSeries *series);
+
+/* The command line of the next picture: the same, with a numbered name for the picture where there are
+ * several. */
+BpStatus bp_series_line(BpSeries *series, BpCommandLine *line, BpError *err);
+/* The scene of the next picture, with --width applied; it is valid until the next call, and the series
+ * continues.
+ */
+BpStatus bp_series_scene(BpSeries *series, const BpScene **scene, BpError *err);
+
+#endif
