@@ -203,3 +203,14 @@ bool bp_output_replaces(const char *path) {
 void bp_output_abandon(void) {
     bp_temporary_abandon();
 }
+
+BpStatus bp_output_finish(FILE *out, const char *what, BpError *err) {
+    /* A write can fail when a full buffer goes out in the middle of the file; a flush of the empty buffer
+     * would then succeed. */
+    const bool failed_before = ferror(out) != 0;
+    const int error_before = errno;
+    if (fflush(out) == 0 && !failed_before) return BP_OK;
+    const int error_number = failed_before ? error_before : errno;
+    return bp_fail(err, BP_ERR_FILE, "writing the %s failed: %s%s", what, strerror(error_number),
+                   bp_output_remedy(error_number));
+}

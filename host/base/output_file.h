@@ -70,6 +70,9 @@ BpStatus bp_output_check_new(const char *path, BpError *err);
 /* Whether a file is at `path` that bp_output_open() would replace. */
 bool bp_output_replaces(const char *path);
 
+/* Flushes `out`; BP_ERR_FILE with the system's reason when this or an earlier write failed. */
+BpStatus bp_output_finish(FILE *out, const char *what, BpError *err);
+
 /* For the end of the program at a signal, from any thread: waits for a commit that is just putting a file in
  * its place, removes the temporaries that are not finished, and prevents other threads from writing further
  * files. */

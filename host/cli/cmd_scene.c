@@ -8,6 +8,7 @@
 #include "cli/job/setup.h"
 #include "cli/output/content.h"
 #include "cli/output/output.h"
+#include "formats/named_file.h"
 #include "formats/scene_parse.h"
 #include "scene/scene.h"
 

@@ -3,8 +3,8 @@
 
 #include "base/encoding.h"
 #include "base/json_memory.h"
+#include "base/known_file.h"
 #include "json_advice.h"
-#include "known_file.h"
 
 #include <ctype.h>
 #include <limits.h>

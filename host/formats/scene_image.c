@@ -1,12 +1,13 @@
 /* scene_image.c: the images that a scene document names.
  *
  * In:    the nodes of a path and of how the file is meant.   Out: images that the scene owns.
- * Knows: where relative paths begin.   Does not know: how formats are read (image_file.h), what an image is
- * for. */
-#include "image_file.h"
+ * Knows: where relative paths begin.   Does not know: how formats are read (image/image_file.h), what an
+ * image is for. */
+#include "image/image_file.h"
 
+#include "base/input_file.h"
 #include "base/words.h"
-#include "input_file.h"
+#include "named_file.h"
 #include "scene_parse.h"
 
 #include <math.h>
@@ -84,15 +85,5 @@ BpStatus bp_parse_image(const BpNode *file_node, const BpNode *encoding_node, co
     if (status == BP_OK) status = keep_image(file, *image, scene, err);
     if (status == BP_OK && (*image)->notes[0] != '\0')
         status = bp_scene_note(scene, file, (*image)->notes, err);
-    return status;
-}
-
-BpStatus bp_image_move(const char *document, const char *to, BpImage *image, BpError *err) {
-    bool no_memory = false;
-    char *const moved = bp_path_moved(document, to, image->file, &no_memory);
-    const BpStatus status =
-        moved != NULL ? bp_copy_text(moved, &image->file, err)
-                      : bp_fail(err, BP_ERR_MEMORY, "out of memory for the path of %.200s", image->file);
-    free(moved);
     return status;
 }

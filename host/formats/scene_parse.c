@@ -5,7 +5,7 @@
  * place in the text here. */
 #include "scene_parse.h"
 
-#include "input_file.h"
+#include "base/input_file.h"
 #include "particle_document.h"
 #include "scene_changes.h"
 

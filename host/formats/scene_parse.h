@@ -106,19 +106,6 @@ BpStatus bp_missing_material_text(const BpMaterialIndex *index, const char *name
 /* The material of spheres that name none: matte. It is made when it is first asked for. UINT32_MAX: out of
  * memory, which `err` says. */
 uint32_t bp_implicit_material(BpScene *scene, BpError *err);
-/* Adds the place in the scene that names the file to an error in the file of points. */
-void bp_name_document(const BpNode *file_node, const char *what, BpError *err);
-/* Keeps the name of a file of points, whose spheres begin at `first`. `particles`: see BpPointFile, copied.
- */
-BpStatus bp_keep_point_file(const char *file, size_t first, const char *particles, BpScene *scene,
-                            BpError *err);
-
-/* Names the file of an entry of "particles" as a document at the path `to` must: by its path below the folder
- * of `to` where it lies there, otherwise by its absolute path. `document`: the path of what named it. */
-BpStatus bp_point_file_move(const char *document, const char *to, BpPointFile *file, BpError *err);
-/* The same for an image. */
-BpStatus bp_image_move(const char *document, const char *to, BpImage *image, BpError *err);
-
 /* Adds the points of the clouds' files to the scene's spheres; `flags` as in BpSceneChanges. */
 BpStatus bp_parse_clouds(const BpNode *node, const BpMaterialIndex *index, unsigned flags, BpScene *scene,
                          BpError *err);

@@ -3,11 +3,12 @@
  * In:    the node of "particles".   Out: the particles of the files that it names, as spheres.
  * Knows: the members of an entry, where relative paths begin. Does not know: how formats are read
  * (particles/file.c). */
+#include "base/input_file.h"
 #include "base/json_memory.h"
+#include "base/known_file.h"
 #include "base/message_text.h"
 #include "base/words.h"
-#include "input_file.h"
-#include "known_file.h"
+#include "named_file.h"
 #include "particles/style.h"
 #include "scene_parse.h"
 
@@ -360,29 +361,6 @@ static BpStatus read_file(const BpNode *file_node, const Entry *entry, size_t pl
     if (status == BP_OK) status = bp_keep_point_file(entry->file, first, entry->text, scene, err);
     bp_particle_cache_clear(&own);
     free(path);
-    return status;
-}
-
-BpStatus bp_point_file_move(const char *document, const char *to, BpPointFile *file, BpError *err) {
-    BpStatus status = BP_OK;
-    bool no_memory = false;
-    char *const moved = bp_path_moved(document, to, file->file, &no_memory);
-    json_t *const entry = json_loads(file->particles, 0, NULL);
-    char *text = NULL;
-    if (moved != NULL && entry != NULL && json_object_set_new(entry, "file", json_string(moved)) == 0)
-        text = json_dumps(entry, JSON_PRESERVE_ORDER);
-    if (text == NULL && (no_memory || bp_json_memory_failed())) {
-        status = bp_fail(err, BP_ERR_MEMORY, "out of memory for the path of %.200s", file->file);
-    } else if (text == NULL) {
-        status = bp_fail(err, BP_ERR_SCENE, "cannot name %.200s in UTF-8; write the document beside it",
-                         file->file);
-    } else {
-        free(file->particles);
-        file->particles = text;
-        status = bp_copy_text(moved, &file->file, err);
-    }
-    json_decref(entry);
-    free(moved);
     return status;
 }
 

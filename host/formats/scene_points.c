@@ -3,32 +3,13 @@
  * In:    the node of "clouds".   Out: the points of the files that it names, as spheres.
  * Knows: the members of a cloud, where relative paths begin. Does not know: how PLY files are read (ply.c).
  */
-#include "input_file.h"
+#include "base/input_file.h"
+#include "named_file.h"
 #include "ply.h"
 #include "scene_parse.h"
 
 #include <stdlib.h>
 #include <string.h>
-
-void bp_name_document(const BpNode *file_node, const char *what, BpError *err) {
-    BpError place = {0};
-    const size_t used = strlen(err->message);
-    bp_node_fail(file_node, BP_PART_VALUE, &place, "%s", "");
-    snprintf(err->message + used, sizeof err->message - used, " (%s of %.400s:%d:%d)", what, place.file,
-             place.line, place.column);
-    bp_error_clear(&place);
-}
-
-BpStatus bp_keep_point_file(const char *file, size_t first, const char *particles, BpScene *scene,
-                            BpError *err) {
-    BpPointFile *files = realloc(scene->point_files, (scene->point_file_count + 1) * sizeof *files);
-    if (files == NULL) return bp_fail(err, BP_ERR_MEMORY, "out of memory for a cloud");
-    scene->point_files = files;
-    files[scene->point_file_count++] = (BpPointFile){.first = first};
-    if (particles != NULL)
-        BP_TRY(bp_copy_text(particles, &files[scene->point_file_count - 1].particles, err));
-    return bp_copy_text(file, &files[scene->point_file_count - 1].file, err);
-}
 
 static BpStatus read_file(const BpNode *file_node, const char *file, const BpPlyOptions *options,
                           BpScene *scene, BpError *err) {

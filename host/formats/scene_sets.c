@@ -2,6 +2,7 @@
  *
  * In:    sets of arrays.   Out: their spheres and colours, behind all others of a scene.
  * Knows: how arrays lie in memory.   Does not know: who made them. */
+#include "named_file.h"
 #include "scene_parse.h"
 
 #include "scene/scene_fault.h"

@@ -4,10 +4,10 @@
  * Knows: the grammar.  Does not know: how the file comes to stand at its place (base/output_file.h). */
 #include "base/json_memory.h"
 #include "base/names.h"
+#include "named_file.h"
 #include "scene/fit.h"
 #include "scene/lighting.h"
 #include "scene/material.h"
-#include "scene_parse.h"
 
 #include <errno.h>
 #include <math.h>

@@ -5,6 +5,7 @@
  * than the picture) and then goes out in one piece: to a file, a pipe or a test alike. */
 #include "image.h"
 
+#include "base/output_file.h"
 #include "base/status.h"
 
 #include "aov_list.h"
@@ -207,7 +208,7 @@ BpStatus bp_exr_write(const BpPicture *picture, FILE *out, const BpImageExtra *e
                          (unsigned)picture->height, exr_get_default_error_message(result));
     } else {
         fwrite(memory.bytes, 1, memory.size, out);
-        status = bp_image_finish(out, "EXR", err);
+        status = bp_output_finish(out, "EXR", err);
     }
     free(memory.bytes);
     free(samples);

@@ -61,7 +61,4 @@ BpStatus bp_png_write_bytes(const uint8_t *rgb, uint32_t width, uint32_t height,
 BpStatus bp_picture_write_stream(const BpPicture *picture, FILE *out, BpFormat format, BpTransfer transfer,
                                  BpError *err);
 
-/* Flushes `out`; BP_ERR_FILE with the system's reason when this or an earlier write failed. */
-BpStatus bp_image_finish(FILE *out, const char *what, BpError *err);
-
 #endif

@@ -6,7 +6,6 @@
 
 #include "aov_list.h"
 
-#include <errno.h>
 #include <float.h>
 #include <math.h>
 #include <stdlib.h>
@@ -28,17 +27,6 @@ bool bp_format_from_path(const char *path, BpFormat *format) {
     const char *dot = strrchr(base, '.');
     /* "ppm-ascii" is a name on the command line, not an ending. */
     return dot != NULL && strchr(dot, '-') == NULL && bp_format_from_name(dot + 1, format);
-}
-
-BpStatus bp_image_finish(FILE *out, const char *what, BpError *err) {
-    /* A write can fail when a full buffer goes out in the middle of the picture; a flush of the empty buffer
-     * would then succeed. */
-    const bool failed_before = ferror(out) != 0;
-    const int error_before = errno;
-    if (fflush(out) == 0 && !failed_before) return BP_OK;
-    const int error_number = failed_before ? error_before : errno;
-    return bp_fail(err, BP_ERR_FILE, "writing the %s failed: %s%s", what, strerror(error_number),
-                   bp_output_remedy(error_number));
 }
 
 BpStatus bp_picture_write_stream(const BpPicture *picture, FILE *out, BpFormat format, BpTransfer transfer,

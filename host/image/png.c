@@ -10,7 +10,7 @@
  * the book's pictures before its gamma section are meant to look. */
 #include "image.h"
 
-#include "base/output_target.h"
+#include "base/output_file.h"
 #include "base/status.h"
 
 #include <errno.h>
@@ -142,7 +142,7 @@ static BpStatus write_png(FILE *out, const Image *image, BpError *err) {
     if (row == NULL || info == NULL) {
         status = bp_fail(err, BP_ERR_MEMORY, "out of memory for the PNG encoder");
     } else if (write_all(png, info, out, image, row)) {
-        status = bp_image_finish(out, "PNG", err);
+        status = bp_output_finish(out, "PNG", err);
     } else {
         const char *reason = ferror(out) ? strerror(failure.error_number) : failure.text;
         const char *remedy = ferror(out) ? bp_output_remedy(failure.error_number) : "";

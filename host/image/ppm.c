@@ -1,6 +1,7 @@
 /* ppm.c: the Netpbm formats, PPM in binary (P6) and text (P3), and PFM; see image.h. */
 #include "image.h"
 
+#include "base/output_file.h"
 #include "base/status.h"
 
 #include <stdlib.h>
@@ -22,7 +23,7 @@ BpStatus bp_ppm_write(const BpPicture *picture, FILE *out, BpTransfer transfer, 
         for (size_t i = 0; i < row_size; i += 3) fprintf(out, "%d %d %d\n", row[i], row[i + 1], row[i + 2]);
     }
     free(row);
-    return bp_image_finish(out, "PPM", err);
+    return bp_output_finish(out, "PPM", err);
 }
 
 BpStatus bp_pfm_write(const BpPicture *picture, FILE *out, BpError *err) {
@@ -41,5 +42,5 @@ BpStatus bp_pfm_write(const BpPicture *picture, FILE *out, BpError *err) {
         fwrite(row, 4, row_reals, out);
     }
     free(row);
-    return bp_image_finish(out, "PFM", err);
+    return bp_output_finish(out, "PFM", err);
 }

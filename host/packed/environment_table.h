@@ -5,7 +5,7 @@
 #ifndef BP_PACKED_ENVIRONMENT_TABLE_H
 #define BP_PACKED_ENVIRONMENT_TABLE_H
 
-#include "scene/texels.h"
+#include "image/texels.h"
 
 #ifndef BP_HOST
 #define BP_HOST

@@ -14,9 +14,9 @@
 #define BP_SCENE_SCENE_H
 
 #include "ballpark.h"
+#include "image/texels.h"
 #include "material.h"
 #include "medium.h"
-#include "texels.h"
 #include "texture.h"
 
 #include <stdio.h>
@@ -25,7 +25,6 @@
 #define BP_DEPTH_MAX 1000000u
 #define BP_SPHERES_MAX 134217728u     /* 2^27 */
 #define BP_COORDINATE_MAX 1.0e12      /* |centre|, |radius|, |lookfrom|: squares stay finite in float */
-#define BP_RADIANCE_MAX 1.0e12        /* emit, background */
 #define BP_REFRACTION_INDEX_MAX 1.0e6 /* and at least its reciprocal */
 #define BP_FOCUS_DIST_MIN 1.0e-15     /* rays begin as vectors of this length: squares stay normal in float */
 #define BP_HALF_HEIGHT_MAX 1.0e14     /* of the plane in focus; it is up to 65,535 times as wide */

@@ -2,7 +2,7 @@
 #include "texture.h"
 
 #include "base/words.h"
-#include "texels.h"
+#include "image/texels.h"
 #include "vector.h"
 
 #include <math.h>

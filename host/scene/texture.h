@@ -38,7 +38,7 @@
 #include <stddef.h>
 #include <stdint.h>
 
-struct BpImage; /* texels.h */
+struct BpImage; /* image/texels.h */
 
 #define BP_TEXTURES_MAX 65536u
 #define BP_TEXTURE_REPEAT_MAX 65536u

@@ -5,8 +5,8 @@
 #ifndef TESTS_FUZZ_IMAGE_CHECK_H
 #define TESTS_FUZZ_IMAGE_CHECK_H
 
-#include "formats/image_file.h"
 #include "fuzz.h"
+#include "image/reader.h"
 
 #include <math.h>
 

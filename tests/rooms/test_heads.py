@@ -30,7 +30,7 @@ NOUNS = {
     "particles": r"\bBpParticles?\b|\"(particles/)?particles\.h",
     "effects": r"\bBpEffects?\b|\"(packed/)?effects\.h",
     "packed data": r"\bBpPacked\b|\"(packed/)?pack\.h|\"scene_types\.h",
-    "pictures": r"\bBpPicture\b|\"image/",
+    "pictures": r"\bBpPicture\b|\"image/(?!texels)",
     "devices": r"\bBpDevice(Info)?\b|\bcl_device_id\b|\"(opencl/)?device\.h",
     "kernels": r"\bcl_kernel\b|\"(opencl/)?program\.h",
     "buffers": r"\bcl_mem\b|\bclCreateBuffer\b",

@@ -9,13 +9,13 @@ import sys
 # Each room may include those above it in this list that its line names, and base.
 MAY_INCLUDE = {
     "base": set(),
-    "scene": set(),
+    "image": set(),
+    "scene": {"image"},
     "particles": {"scene"},
-    "formats": {"scene", "particles"},
-    "packed": {"scene"},
+    "formats": {"image", "scene", "particles"},
+    "packed": {"image", "scene"},
     "opencl": {"packed"},
     "film": {"scene"},
-    "image": set(),
     "cluster": set(),
     "render": {"scene", "packed", "opencl", "film", "cluster"},
     "reference": {"scene"},

@@ -1,6 +1,7 @@
 /* test_scene_documents.c: good scene documents: defaults, every member, every file of scenes/, what is
  * written and made. */
 #include "formats/document.h"
+#include "formats/named_file.h"
 #include "formats/scene_parse.h"
 #include "scene/scene.h"
 

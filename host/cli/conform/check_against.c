@@ -1,11 +1,11 @@
 /* check_against.c: see check_against.h. */
 #include "check_against.h"
 
+#include "base/input_file.h"
 #include "base/json_memory.h"
 #include "base/json_text.h"
 #include "base/shown.h"
 #include "check_report.h"
-#include "formats/input_file.h"
 
 #include <errno.h>
 #include <stdlib.h>

@@ -1,6 +1,7 @@
 /* check_bits.c: see check_bits.h. */
 #include "check_bits.h"
 
+#include "base/input_file.h"
 #include "base/json_memory.h"
 #include "base/json_text.h"
 #include "base/names.h"
@@ -11,7 +12,6 @@
 #include "cli/process/interrupt.h"
 #include "cli/terminal/terminal.h"
 #include "device_items.h"
-#include "formats/input_file.h"
 #include "item_device.h"
 #include "packed/acceleration.h"
 #include "render/render.h"

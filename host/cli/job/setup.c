@@ -1,6 +1,7 @@
 /* setup.c: see setup.h. */
 #include "setup.h"
 
+#include "base/input_file.h"
 #include "base/plural.h"
 #include "base/shown.h"
 #include "cli/line/file_conflicts.h"
@@ -8,7 +9,6 @@
 #include "cli/process/driver_care.h"
 #include "cli/terminal/page.h"
 #include "film/film.h"
-#include "formats/input_file.h"
 #include "formats/scene_parse.h"
 #include "opencl/pocl.h"
 #include "opencl/self_test.h"

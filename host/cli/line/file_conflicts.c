@@ -1,8 +1,8 @@
 /* file_conflicts.c: see file_conflicts.h. */
 #include "file_conflicts.h"
 
+#include "base/input_file.h"
 #include "base/output_target.h"
-#include "formats/input_file.h"
 #include "option_table.h"
 #include "scene/scene.h"
 

@@ -1,19 +1,19 @@
-/* input_file.h: files that are read. */
-#ifndef BP_FORMATS_INPUT_FILE_H
-#define BP_FORMATS_INPUT_FILE_H
+/* input_file.h: files that are read.
+ *
+ * In:    a path.   Out: bytes, or an open stream.
+ * Knows: directories, devices and pipes are not regular files.   Does not know: what the bytes mean. */
+#ifndef BP_BASE_INPUT_FILE_H
+#define BP_BASE_INPUT_FILE_H
 
-#include "document.h"
+#include "status.h"
 
 #include <stdarg.h>
+#include <stdbool.h>
+#include <stdint.h>
 #include <stdio.h>
 
 /* `file` as seen from the folder of `document`, both paths; the caller frees it. NULL: out of memory. */
 char *bp_path_beside(const char *document, const char *file);
-
-/* How a document at the path `to` must name the file that `document` names as `file`: by its path below the
- * folder of `to` where it lies there, otherwise by its absolute path. The caller frees it. NULL: out of
- * memory, which *no_memory says, or no current folder. */
-char *bp_path_moved(const char *document, const char *to, const char *file, bool *no_memory);
 
 /* A scene's document of more bytes is refused: the program would need twenty times as much memory for it, and
  * spheres in such numbers belong into a PLY file. It also ends the reading of what has no end. */
@@ -26,10 +26,6 @@ char *bp_path_moved(const char *document, const char *to, const char *file, bool
  * error what should have been there. *size is in bytes, 0 for a pipe. The caller closes the stream. */
 BpStatus bp_file_open(const char *path, bool accept_pipe, const char *expected, FILE **stream, uint64_t *size,
                       BpError *err);
-/* The same for a file that a document names at `node`, `path` being its path; no pipe. An error stands in the
- * document. */
-BpStatus bp_node_open_file(const BpNode *node, const char *path, const char *expected, FILE **stream,
-                           uint64_t *size, BpError *err);
 /* Reads an open stream to its end, BP_TEXT_BYTES_MAX at most; `size`: how much that is, 0 when not known;
  * `path` names it in errors. Free *bytes with free(). */
 BpStatus bp_stream_read(FILE *stream, uint64_t size, const char *path, char **bytes, size_t *length,

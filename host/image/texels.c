@@ -2,7 +2,6 @@
 #include "texels.h"
 
 #include "base/color.h"
-#include "scene.h"
 
 #include <math.h>
 #include <stdarg.h>

@@ -1,12 +1,12 @@
-/* image_exr.c: images as OpenEXR files, by the library's C API (OpenEXRCore); see image_file.h.
+/* read_exr.c: images as OpenEXR files, by the library's C API (OpenEXRCore); see reader.h.
  *
  * Scan lines or tiles, the largest level: R, G and B as half or 32-bit floats, or Y alone as grey, in the
  * layer that exr_layers.h chooses. The image is the display window: black where the file has no data, without
  * what lies around it. Colours of other primaries than Rec. 709's (the attribute "chromaticities") are
  * converted. */
 #include "exr_layers.h"
-#include "image_file.h"
 #include "primaries.h"
+#include "reader.h"
 
 #include <errno.h>
 #include <openexr.h>

@@ -3,10 +3,10 @@
  * In:    where a file's primaries and white lie.   Out: its image in Rec. 709's.
  * Knows: CIE 1931 chromaticities, adaptation to another white.   Does not know: how files name their
  * primaries. */
-#ifndef BP_FORMATS_PRIMARIES_H
-#define BP_FORMATS_PRIMARIES_H
+#ifndef BP_IMAGE_PRIMARIES_H
+#define BP_IMAGE_PRIMARIES_H
 
-#include "image_file.h"
+#include "reader.h"
 
 /* CIE x and y. */
 typedef struct BpPrimaries {

@@ -1,17 +1,10 @@
-/* input_file.c: a file's bytes, whole, and from what kinds of files they are taken.
- *
- * In:    a path, or the name of a file that the program holds.   Out: bytes, or an open stream.
- * Knows: directories, devices and pipes are not regular files. Does not know: what the bytes mean. */
-#ifdef __linux__
-#define _GNU_SOURCE /* memfd_create */
-#endif
+/* input_file.c: see input_file.h. */
 #include "input_file.h"
 
 #include <errno.h>
 #include <fcntl.h>
 #include <stdlib.h>
 #include <string.h>
-#include <sys/mman.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
@@ -47,30 +40,6 @@ char *bp_path_beside(const char *document, const char *file) {
     return path;
 }
 
-/* The part of `path` below the folder of `to`, or NULL. */
-static const char *path_below(const char *path, const char *to) {
-    const char *const slash = strrchr(to, '/');
-    const size_t length = slash != NULL ? (size_t)(slash - to) + 1 : 0;
-    if (length == 0) return path[0] != '/' ? path : NULL;
-    return strncmp(path, to, length) == 0 && path[length] != '/' ? path + length : NULL;
-}
-
-char *bp_path_moved(const char *document, const char *to, const char *file, bool *no_memory) {
-    char folder[4096] = "/";
-    char *const path = bp_path_beside(document, file);
-    const char *const below = path != NULL ? path_below(path, to) : NULL;
-    char *moved = NULL;
-    if (below != NULL) {
-        moved = strdup(below);
-    } else if (path != NULL && (path[0] == '/' || getcwd(folder, sizeof folder - 2) != NULL)) {
-        strcat(folder, folder[1] != '\0' ? "/" : "");
-        moved = bp_path_beside(folder, path);
-    }
-    *no_memory = path == NULL || (below != NULL && moved == NULL);
-    free(path);
-    return moved;
-}
-
 BpStatus bp_file_open(const char *path, bool accept_pipe, const char *expected, FILE **stream, uint64_t *size,
                       BpError *err) {
     struct stat state;
@@ -103,49 +72,6 @@ static BpStatus fail_size(const char *path, BpError *err) {
         "found more than %u MiB, expected a smaller document; put the spheres into a PLY file (\"clouds\")",
         (unsigned)(BP_TEXT_BYTES_MAX >> 20));
     bp_error_at(err, path, 0, 0);
-    return status;
-}
-
-/* A stream that has a descriptor, as readers need. */
-static BpStatus open_held(BpHeldFiles *held, const char *wanted, FILE **stream, uint64_t *size,
-                          BpError *err) {
-    const char *name = NULL, *bytes = NULL;
-    size_t length = 0;
-    for (size_t i = 0; (bytes = held(i, &name, &length)) != NULL && strcmp(name, wanted) != 0;) i++;
-    if (bytes == NULL) return bp_fail(err, BP_ERR_SCENE, "it is not among the files of this program");
-    *size = length;
-#ifdef __linux__
-    const int descriptor = memfd_create(name, MFD_CLOEXEC);
-    size_t written = 0;
-    for (ssize_t more = 1; descriptor >= 0 && written < length && more > 0;
-         written += more > 0 ? (size_t)more : 0)
-        more = write(descriptor, bytes + written, length - written);
-    const bool whole = descriptor >= 0 && written == length && lseek(descriptor, 0, SEEK_SET) == 0;
-    *stream = whole ? fdopen(descriptor, "rb") : NULL;
-    if (*stream == NULL && descriptor >= 0) close(descriptor);
-    if (*stream != NULL) return BP_OK;
-#else
-    *stream = tmpfile();
-    if (*stream != NULL && fwrite(bytes, 1, length, *stream) == length && fseeko(*stream, 0, SEEK_SET) == 0)
-        return BP_OK;
-    if (*stream != NULL) fclose(*stream);
-#endif
-    return bp_fail(err, BP_ERR_MEMORY, "no memory for the file: %s", strerror(errno));
-}
-
-BpStatus bp_node_open_file(const BpNode *node, const char *path, const char *expected, FILE **stream,
-                           uint64_t *size, BpError *err) {
-    BpError inner = {0};
-    BpHeldFiles *const held = node->document->held;
-    BpStatus status = held != NULL ? open_held(held, path, stream, size, &inner)
-                                   : bp_file_open(path, false, expected, stream, size, &inner);
-    if (status != BP_OK) { /* the fault lies with the document, so the error stands there */
-        char shown[256];
-        bp_printable(path, shown, sizeof shown);
-        const BpStatus at_node = bp_node_fail(node, BP_PART_VALUE, err, "\"%s\": %s", shown, inner.message);
-        if (status != BP_ERR_MEMORY) status = at_node;
-        bp_error_clear(&inner);
-    }
     return status;
 }
 

@@ -1,10 +1,10 @@
-/* image_pfm.c: images as portable float maps; see image_file.h.
+/* read_pfm.c: images as portable float maps; see reader.h.
  *
  * "PF" (colours) or "Pf" (grey), width, height and a number whose sign tells the order of bytes, then 32-bit
  * floats, the lowest row first (P. Debevec, "HDRShop", 2001). Beyond its sign the number says nothing that
  * programs agree on, so it is not used, which is said where it is not 1. Between the words may stand any
  * white space and lines of comment ("#"), as ImageMagick writes them; behind the number only white space. */
-#include "image_file.h"
+#include "reader.h"
 
 #include "base/decimal.h"
 

@@ -3,8 +3,8 @@
  * In:    a file's name and its first bytes.   Out: what it is, and what can be done with it.
  * Knows: how such files begin and what they are called.   Does not know: what was expected, or how to read
  * them. */
-#ifndef BP_FORMATS_KNOWN_FILE_H
-#define BP_FORMATS_KNOWN_FILE_H
+#ifndef BP_BASE_KNOWN_FILE_H
+#define BP_BASE_KNOWN_FILE_H
 
 #include <stdbool.h>
 #include <stddef.h>

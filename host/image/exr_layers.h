@@ -2,10 +2,10 @@
  *
  * In:    an open file.   Out: a part and a layer that has R, G and B, or Y alone.
  * Knows: parts, names of channels and layers.   Does not know: what pixels hold. */
-#ifndef BP_FORMATS_EXR_LAYERS_H
-#define BP_FORMATS_EXR_LAYERS_H
+#ifndef BP_IMAGE_EXR_LAYERS_H
+#define BP_IMAGE_EXR_LAYERS_H
 
-#include "image_file.h"
+#include "reader.h"
 
 #include <openexr.h>
 

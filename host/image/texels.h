@@ -7,8 +7,8 @@
  * less; the image's notes say how many there were.
  *
  * Texels are floats, since files hold no more: pack and the reference tracer read the same numbers. */
-#ifndef BP_SCENE_TEXELS_H
-#define BP_SCENE_TEXELS_H
+#ifndef BP_IMAGE_TEXELS_H
+#define BP_IMAGE_TEXELS_H
 
 #include "base/status.h"
 
@@ -19,6 +19,7 @@
 #define BP_IMAGE_TEXELS_MAX ((uint64_t)1 << 27) /* of all images of a scene together: 16384 by 8192 */
 #define BP_IMAGES_MAX 1024u
 #define BP_IMAGE_SCALE_MAX 1.0e12
+#define BP_RADIANCE_MAX 1.0e12 /* of a texel, and of whatever else shines */
 
 enum { BP_IMAGE_NOTES_SIZE = 512 };
 

@@ -1,12 +1,12 @@
-/* image_hdr.c: images as Radiance pictures (.hdr, .pic); see image_file.h.
+/* read_hdr.c: images as Radiance pictures (.hdr, .pic); see reader.h.
  *
  * Lines of text, an empty one, the size ("-Y 512 +X 1024"), then texels of four bytes, red, green and blue
  * with a common exponent (G. Ward, "Real Pixels", Graphics Gems II, 1991): flat, with runs as the first
  * versions had them, or each component of a row packed by itself. Colours of other primaries (PRIMARIES, or
  * CIE XYZ by FORMAT) are converted to Rec. 709's. EXPOSURE and COLORCORR say by what the numbers were
  * multiplied, and are undone. */
-#include "image_file.h"
 #include "primaries.h"
+#include "reader.h"
 
 #include "base/decimal.h"
 #include "base/message_text.h"

@@ -1,34 +1,10 @@
 /* image_file.c: see image_file.h. */
 #include "image_file.h"
 
-#include "input_file.h"
-#include "known_file.h"
+#include "base/known_file.h"
+#include "reader.h"
 
-#include <inttypes.h>
 #include <string.h>
-
-BpStatus bp_image_fail(const BpImageInput *input, BpError *err, const char *format, ...) {
-    va_list arguments;
-    va_start(arguments, format);
-    const BpStatus status = bp_stream_fail(input->stream, input->path, 0, err, format, arguments);
-    va_end(arguments);
-    return status;
-}
-
-BpStatus bp_image_allocate(const BpImageInput *input, uint64_t width, uint64_t height, BpImage **image,
-                           BpError *err) {
-    if (width < 1 || height < 1 || width > BP_IMAGE_SIDE_MAX || height > BP_IMAGE_SIDE_MAX)
-        return bp_image_fail(input, err,
-                             "found an image of %" PRIu64 " by %" PRIu64 " texels, expected sides of 1 to %u",
-                             width, height, BP_IMAGE_SIDE_MAX);
-    if (width * height > input->texels_max)
-        return bp_image_fail(input, err,
-                             "found an image of %" PRIu64 " by %" PRIu64 " texels, expected at most %" PRIu64
-                             " texels in all images of a scene, of which "
-                             "%" PRIu64 " are left; use a smaller image",
-                             width, height, BP_IMAGE_TEXELS_MAX, input->texels_max);
-    return bp_texels_create((uint32_t)width, (uint32_t)height, image, err);
-}
 
 /* Says what the file is, if it is known, and how to convert it. */
 static BpStatus fail_kind(const BpImageInput *input, BpError *err) {

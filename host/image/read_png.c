@@ -1,12 +1,12 @@
-/* image_png.c: images as PNG files, by libpng; see image_file.h.
+/* read_png.c: images as PNG files, by libpng; see reader.h.
  *
  * 8 and 16 bits a channel, grey, colours or a palette, interlaced or not; alpha is left out. Where the scene
  * does not say how numbers are encoded, the file does: by the chunks gAMA and cHRM, which are followed, or by
  * sRGB. The colour spaces of ICC profiles and of cICP are not known here: such numbers are taken for sRGB's,
  * which is noted unless they are. The order of these chunks is that of the PNG specification (third edition,
  * 2023, section 4.3). */
-#include "image_file.h"
 #include "primaries.h"
+#include "reader.h"
 
 #include "base/color.h"
 #include "base/message_text.h"

@@ -1,15 +1,15 @@
-/* image_file.h: images that a scene names: PNG, OpenEXR, PFM and Radiance.
+/* reader.h: the readers of image files, and what they share.
  *
- * In:    an open file.   Out: an image of linear texels (scene/texels.h), or an error that names file and
- * place.
- * Knows: the four formats, by their first bytes.   Does not know: what the image is for.
+ * In:    an open file.   Out: an image of linear texels (texels.h), or an error that names file and place.
+ * Knows: which readers there are, limits of sizes.   Does not know: how a format is recognised
+ * (image_file.h).
  *
  * Files are not trusted: sizes are held against limits, and against the size of the file where the format has
  * no way to say more with less, before memory is taken. */
-#ifndef BP_FORMATS_IMAGE_FILE_H
-#define BP_FORMATS_IMAGE_FILE_H
+#ifndef BP_IMAGE_READER_H
+#define BP_IMAGE_READER_H
 
-#include "scene/texels.h"
+#include "texels.h"
 
 #include <stdio.h>
 
@@ -21,11 +21,6 @@ typedef struct BpImageInput {
     BpEncoding encoding; /* of a PNG's numbers: as the file says, or as the scene does */
     uint64_t texels_max;
 } BpImageInput;
-
-/* Reads an image of any of the formats. `encoding`: BP_ENCODING_SRGB is refused for all but PNG, since their
- * numbers are linear. `texels_max`: more are refused. The image has no file name yet. */
-BpStatus bp_image_read(FILE *stream, uint64_t size, const char *path, BpEncoding encoding, double scale,
-                       uint64_t texels_max, BpImage **image, BpError *err);
 
 /* The formats; what they return is not finished (bp_texels_finish). */
 BpStatus bp_image_read_png(const BpImageInput *input, BpImage **image, BpError *err);
