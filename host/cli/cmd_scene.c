@@ -2,14 +2,13 @@
  *
  * In:    a scene document or a file of particles.   Out: the document of the scene that it stands for.
  * Knows: where relative paths begin in what is written.   Does not know: how documents are read and written
- * (formats/scene_parse.c, formats/scene_write.c). */
+ * (formats/scene_load.c, formats/scene_write.c). */
 #include "commands.h"
 
 #include "cli/job/setup.h"
 #include "cli/output/content.h"
 #include "cli/output/output.h"
 #include "formats/named_file.h"
-#include "formats/scene_parse.h"
 #include "scene/scene.h"
 
 #include <stdio.h>

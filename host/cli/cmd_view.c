@@ -15,7 +15,6 @@
 #include "cli/process/interrupt.h"
 #include "cli/terminal/page.h"
 #include "cli/terminal/terminal.h"
-#include "formats/scene_parse.h"
 #include "opencl/device.h"
 #include "view/viewer.h"
 

@@ -13,7 +13,7 @@
  *     else glass: no draw.
  * The draws are those of bp_random_next (base/random.h). */
 #include "base/random.h"
-#include "scene_parse.h"
+#include "scene/scene.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -155,7 +155,7 @@ BpStatus bp_scene_generate_cover(const char *edition_name, unsigned grid, uint64
                                  BpError *err) {
     const Edition *edition = NULL;
     *scene = NULL;
-    for (size_t i = 0; i < BP_COUNT(editions); i++) {
+    for (size_t i = 0; i < sizeof editions / sizeof *editions; i++) {
         if (strcmp(edition_name, editions[i].name) == 0) edition = &editions[i];
     }
     if (edition == NULL)

@@ -22,7 +22,7 @@ typedef struct BpDocument {
     size_t length;
     json_t *root;      /* an object */
     BpHeldFiles *held; /* Optional: the files that the document names are these, and no others */
-    /* When members were changed since (scene_changes.h): */
+    /* When members were changed since (document_change.h): */
     json_t *written; /* what the text says; NULL: the same as `root` */
     struct BpChange *changes;
     size_t change_count;

@@ -1,11 +1,8 @@
-/* scene_background.c: what rays see that meet nothing, of a scene document.
- *
- * In:    the nodes of "background", "backdrop", "shadow_catcher" and "lighting".   Out: these parts of a
- * BpScene; ranges are checked by scene_validate.c.   Knows: the grammar.   Does not know: where the camera
- * stands (scene_camera.c). */
-#include "scene_parse.h"
+/* scene_background.c: see scene_background.h. */
+#include "scene_background.h"
 
 #include "scene/lighting.h"
+#include "scene_image.h"
 
 #include <math.h>
 #include <string.h>

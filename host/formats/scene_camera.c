@@ -1,8 +1,5 @@
-/* scene_camera.c: the camera object of a scene document.
- *
- * In:    its node.   Out: a BpCamera; ranges that need no other member are checked by scene_validate.c.
- * Knows: the names and defaults of the book's fourth-edition camera. */
-#include "scene_parse.h"
+/* scene_camera.c: see scene_camera.h. */
+#include "scene_camera.h"
 
 #include "base/words.h"
 #include "scene/fit.h"

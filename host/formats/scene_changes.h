@@ -1,18 +1,39 @@
-/* scene_changes.h: changes members of a scene document (--set).
+/* scene_changes.h: what a scene is to have otherwise than its document has it.
  *
- * In:    a document, "camera.vfov=30".   Out: the document with that member.
- * Knows: paths of members, JSON.         Does not know: which members there are: the reader of scenes does.
- */
+ * In:    choices of a command line.   Out: what the readers of a scene's parts go by.
+ * Knows: which choices there are.   Does not know: how a document is read (scene_parse.h). */
 #ifndef BP_FORMATS_SCENE_CHANGES_H
 #define BP_FORMATS_SCENE_CHANGES_H
 
 #include "document.h"
+#include "scene/scene.h"
 
-/* Changes the open document by MEMBER=VALUE each, in order. MEMBER is a path as messages write it:
- * camera.vfov, spheres[0].radius, materials.glass.albedo[2]; what is absent is added, except for elements of
- * lists. VALUE is JSON; a plain word is the text of that word; null removes the member. The texts must live
- * as long as the document. BP_ERR_USAGE names what was found and what was expected; whether the scene may
- * have the member at all, the reader of scenes says. */
-BpStatus bp_document_change(BpDocument *document, const char *const *set, size_t count, BpError *err);
+enum {
+    BP_PARSE_NO_CLOUDS = 1, /* check the members, but open no file of points; an image is one grey texel */
+    BP_PARSE_MADE = 2 /* the document was made for one file: errors in that need not name the document */
+};
+
+/* Changes that a command line makes to the document. Zeros: none. */
+typedef struct BpSceneChanges {
+    unsigned flags;    /* BP_PARSE_... */
+    BpHeldFiles *held; /* Optional: as of a document */
+    bool has_frame;
+    int64_t frame;          /* of every file of particles that has frames */
+    bool fit;               /* a camera fitted to the particles, or to the scene where there are none */
+    uint32_t turning;       /* the fitted camera is for a turntable of so many pictures */
+    const BpCamera *camera; /* Optional: takes its place, direction and focus instead of fitting */
+    struct BpParticleCache *cache; /* Optional: keeps files open from frame to frame */
+    uint64_t *frame_count; /* Optional: counts frames instead of reading any; of several files, the least */
+    bool has_range;        /* of the column that gives colours, where the document has none */
+    double range[2];
+    const char *const *set; /* Optional: members of the document, see document_change.h */
+    size_t set_count;
+    const char *projection; /* Optional. "perspective" or "orthographic", instead of the document's */
+    const char *lighting; /* Optional. A name of lighting.h, instead of the document's light or background */
+    const char *fresnel;  /* Optional. "schlick" or "exact", for all materials that have such a member */
+    size_t *fresnel_counts;     /* Optional: in how many it was different, and how many have it */
+    const BpSphereSet *spheres; /* Optional: spheres after all others */
+    size_t sphere_set_count;
+} BpSceneChanges;
 
 #endif

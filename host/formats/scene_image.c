@@ -1,14 +1,12 @@
-/* scene_image.c: the images that a scene document names.
- *
- * In:    the nodes of a path and of how the file is meant.   Out: images that the scene owns.
- * Knows: where relative paths begin.   Does not know: how formats are read (image/image_file.h), what an
- * image is for. */
+/* scene_image.c: see scene_image.h. */
+#include "scene_image.h"
+
 #include "image/image_file.h"
 
 #include "base/input_file.h"
 #include "base/words.h"
 #include "named_file.h"
-#include "scene_parse.h"
+#include "scene_changes.h"
 
 #include <math.h>
 #include <stdlib.h>

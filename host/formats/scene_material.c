@@ -1,10 +1,8 @@
-/* scene_material.c: one material of a scene document.
- *
- * In:    its node, the scene's textures.   Out: a BpMaterial.
- * Knows: the lists of material.h, and how a document has them. Ranges are checked by scene_validate.c. */
-#include "scene_parse.h"
+/* scene_material.c: see scene_material.h. */
+#include "scene_material.h"
 
 #include "scene/material.h"
+#include "scene_texture.h"
 
 #include <stdio.h>
 #include <string.h>

@@ -1,8 +1,5 @@
-/* scene_medium.c: the media of a scene document, and where a sphere or the scene asks for one.
- *
- * In:    the nodes of "media", "medium" and "interior".   Out: BpMedia; the number of a medium.
- * Knows: the grammar.   Does not know: which spheres are filled. Ranges are checked by scene_validate.c. */
-#include "scene_parse.h"
+/* scene_medium.c: see scene_medium.h. */
+#include "scene_medium.h"
 
 #include <stdlib.h>
 #include <string.h>

@@ -1,12 +1,9 @@
-/* scene_points.c: the clouds of a scene document.
- *
- * In:    the node of "clouds".   Out: the points of the files that it names, as spheres.
- * Knows: the members of a cloud, where relative paths begin. Does not know: how PLY files are read (ply.c).
- */
+/* scene_points.c: see scene_points.h. */
+#include "scene_points.h"
+
 #include "base/input_file.h"
 #include "named_file.h"
 #include "ply.h"
-#include "scene_parse.h"
 
 #include <stdlib.h>
 #include <string.h>

@@ -1,9 +1,7 @@
-/* scene_sets.c: spheres that a caller hands over as arrays.
- *
- * In:    sets of arrays.   Out: their spheres and colours, behind all others of a scene.
- * Knows: how arrays lie in memory.   Does not know: who made them. */
+/* scene_sets.c: see scene_sets.h. */
+#include "scene_sets.h"
+
 #include "named_file.h"
-#include "scene_parse.h"
 
 #include "scene/scene_fault.h"
 

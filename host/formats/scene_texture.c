@@ -1,10 +1,9 @@
-/* scene_texture.c: the textures of a scene document, and where a material asks for one.
- *
- * In:    the nodes of "textures", and of members that name one.   Out: BpTextures; the one that a member has.
- * Knows: the grammar.   Does not know: which materials use them. Ranges are checked by scene_validate.c. */
-#include "scene_parse.h"
+/* scene_texture.c: see scene_texture.h. */
+#include "scene_texture.h"
 
 #include "base/words.h"
+#include "scene_image.h"
+
 #include <stdlib.h>
 #include <string.h>
 

@@ -1,6 +1,6 @@
 /* test_scene_clouds.c: what is wrong with a file of points is told with the file, the vertex, and the scene
  * that asks for it; files end where their header says. */
-#include "formats/scene_parse.h"
+#include "formats/scene_load.h"
 #include "scene/scene.h"
 
 #include <math.h>

@@ -4,7 +4,7 @@
  * cloud.ply in a folder of its own, and the document beside it. A document that names a file in another
  * folder is read without its clouds: a fuzzer would find its way to anything on the disk. What is accepted is
  * valid, keeps the order of its clouds, and makes a tree in which every sphere stands once. */
-#include "formats/scene_parse.h"
+#include "formats/scene_load.h"
 #include "tree_check.h"
 
 #include <jansson.h>

@@ -3,7 +3,7 @@
  *
  * Files of clouds are not opened; fuzz_cloud.c does that. */
 #include "film/film.h"
-#include "formats/scene_parse.h"
+#include "formats/scene_load.h"
 #include "fuzz.h"
 
 static char *print(const BpScene *scene, size_t *length) {

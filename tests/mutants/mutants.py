@@ -219,7 +219,7 @@ MUTANTS = [
         patch("host/particles/input.c", "if (here == BP_INPUT_BLOCK)", "if (here == input->capacity)")],
            [particle_scenes("long_line")]),
     Mutant("a word that neither schema nor Python has", "this program: a word at the end of a list became the value behind its own",
-           [patch("host/formats/scene_particles.c", 'X(BP_COLOR_TYPE, "type")', 'X(BP_COLOR_TYPE, "type") X(BP_COLOR_COLUMN, "column")')],
+           [patch("host/formats/particle_members.c", 'X(BP_COLOR_TYPE, "type")', 'X(BP_COLOR_TYPE, "type") X(BP_COLOR_COLUMN, "column")')],
            [words("schema")]),
     Mutant("a word of its own", "the schema and the command line have another",
            [patch("host/scene/lighting.c", '"rembrandt", "overhead"', '"rembrandt", "zenith"')], [words("schema")]),

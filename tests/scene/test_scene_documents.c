@@ -2,7 +2,6 @@
  * written and made. */
 #include "formats/document.h"
 #include "formats/named_file.h"
-#include "formats/scene_parse.h"
 #include "scene/scene.h"
 
 #include <glob.h>

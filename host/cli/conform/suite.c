@@ -1,7 +1,7 @@
 /* suite.c: see suite.h. */
 #include "suite.h"
 
-#include "formats/scene_parse.h"
+#include "formats/scene_load.h"
 
 #include <stdio.h>
 #include <stdlib.h>

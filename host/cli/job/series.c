@@ -4,6 +4,8 @@
 #include "base/plural.h"
 #include "base/words.h"
 #include "cli/output/result_file.h"
+#include "formats/scene_changes.h"
+#include "formats/scene_fit.h"
 #include "scene/fit.h"
 #include "scene/lighting.h"
 #include "setup.h"

@@ -7,7 +7,7 @@
 #define BP_CLI_JOB_SERIES_H
 
 #include "cli/line/options.h"
-#include "formats/scene_parse.h"
+#include "formats/particle_cache.h"
 
 typedef struct BpSeries {
     const BpCommandLine *line;

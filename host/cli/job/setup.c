@@ -9,7 +9,7 @@
 #include "cli/process/driver_care.h"
 #include "cli/terminal/page.h"
 #include "film/film.h"
-#include "formats/scene_parse.h"
+#include "formats/scene_load.h"
 #include "opencl/pocl.h"
 #include "opencl/self_test.h"
 #include "packed/rounding.h"

@@ -6,7 +6,7 @@
 #define BP_CLI_JOB_SETUP_H
 
 #include "cli/line/options.h"
-#include "formats/scene_parse.h"
+#include "formats/scene_changes.h"
 
 /* Loads `path`; "-" is standard input, and messages call the scene so; its clouds are then relative to
  * the current folder. A file of particles becomes a scene (--frame, --fit); what was guessed is noted on

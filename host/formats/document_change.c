@@ -1,5 +1,5 @@
-/* scene_changes.c: see scene_changes.h. */
-#include "scene_changes.h"
+/* document_change.c: see document_change.h. */
+#include "document_change.h"
 
 #include "base/json_memory.h"
 #include "json_advice.h"

@@ -1,0 +1,90 @@
+/* scene_faults.c: see scene_faults.h. */
+#include "scene_faults.h"
+
+#include "scene/scene_fault.h"
+
+#include <string.h>
+
+/* The member of `object` that is at fault, or the object where the member is absent (a default). */
+static BpStatus fail_member(const BpNode *object, const char *member, const char *text, BpError *err) {
+    const BpNode node = bp_node_member(object, member);
+    if (node.value != NULL) return bp_node_fail(&node, BP_PART_VALUE, err, "%s", text);
+    return bp_node_fail(object, BP_PART_VALUE, err, "%s: %s", member, text);
+}
+
+BpStatus bp_refuse_faults(const BpNode *root, const BpScene *scene, BpError *err) {
+    BpFault fault;
+    BP_TRY(bp_scene_find_fault(scene, &fault, err));
+    const BpNode camera = bp_node_member(root, "camera");
+    const BpNode background = bp_node_member(root, "background");
+    const BpNode backdrop = bp_node_member(root, "backdrop");
+    const BpNode textures = bp_node_member(root, "textures");
+    const BpNode materials = bp_node_member(root, "materials");
+    const BpNode spheres = bp_node_member(root, "spheres");
+    const BpNode clouds = bp_node_member(root, "clouds");
+    const size_t listed = json_array_size(spheres.value); /* the rest came from clouds */
+    switch (fault.subject) {
+    case BP_FAULT_NONE:
+        return BP_OK;
+    case BP_FAULT_CAMERA: {
+        const char *member = fault.member;
+        if (json_object_get(camera.value, member) ==
+            NULL) { /* a default; what was written stands beside it */
+            if (strcmp(member, "lookat") == 0) member = "lookfrom";
+            if (strcmp(member, "aperture") == 0) member = "defocus_angle";
+        }
+        return fail_member(&camera, member, fault.text, err);
+    }
+    case BP_FAULT_BACKDROP:
+        if (json_is_array(backdrop.value))
+            return bp_node_fail(&backdrop, BP_PART_VALUE, err, "%s", fault.text);
+        return fail_member(&backdrop, fault.member, fault.text, err);
+    case BP_FAULT_BACKGROUND:
+        if (json_is_array(background.value))
+            return bp_node_fail(&background, BP_PART_VALUE, err, "%s", fault.text);
+        return fail_member(&background, fault.member, fault.text, err);
+    case BP_FAULT_DISC: {
+        const BpNode discs = bp_node_member(&background, "discs");
+        const BpNode disc = bp_node_element(&discs, fault.index);
+        return fail_member(&disc, fault.member, fault.text, err);
+    }
+    case BP_FAULT_TEXTURE: {
+        const BpNode texture = bp_node_member(&textures, scene->textures[fault.index].name);
+        return fail_member(&texture, fault.member, fault.text, err);
+    }
+    case BP_FAULT_MEDIUM: {
+        const BpNode media = bp_node_member(root, "media");
+        const BpNode medium = bp_node_member(&media, scene->media[fault.index].name);
+        return fail_member(&medium, fault.member, fault.text, err);
+    }
+    case BP_FAULT_MATERIAL: {
+        const BpNode material = bp_node_member(&materials, scene->materials[fault.index].name);
+        return fail_member(&material, fault.member, fault.text, err);
+    }
+    case BP_FAULT_SPHERE: {
+        if (fault.index >= listed) break;
+        const BpNode sphere = bp_node_element(&spheres, fault.index);
+        return fail_member(&sphere, fault.member, fault.text, err);
+    }
+    case BP_FAULT_COINCIDENT: {
+        /* The place of the error: the later of the two spheres that stands in the document itself, or else
+         * the cloud that the later one comes from. */
+        const size_t written = fault.index < listed ? fault.index : fault.other;
+        char a[BP_SPHERE_NAME_SIZE], b[BP_SPHERE_NAME_SIZE];
+        size_t cloud = scene->point_file_count;
+        while (cloud > 0 && scene->point_files[cloud - 1].first > fault.index) --cloud;
+        const BpNode sphere = bp_node_element(&spheres, written);
+        if (written >= listed && scene->point_files[cloud - 1].in_memory) break; /* stands in no document */
+        const BpNode particles = bp_node_member(root, "particles");
+        const size_t place = cloud - (cloud > 0), cloud_count = json_array_size(clouds.value);
+        const BpNode entry = place < cloud_count ? bp_node_element(&clouds, place)
+                                                 : bp_node_element(&particles, place - cloud_count);
+        return bp_node_fail(written < listed ? &sphere : &entry, BP_PART_VALUE, err, "%s and %s: %s",
+                            bp_sphere_name(scene, fault.other, a), bp_sphere_name(scene, fault.index, b),
+                            fault.text);
+    }
+    case BP_FAULT_ALBEDO:
+        break;
+    }
+    return bp_scene_validate(scene, err);
+}

@@ -1,0 +1,76 @@
+/* scene_fit.c: see scene_fit.h. */
+#include "scene_fit.h"
+
+#include "scene/fit.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+void bp_scene_view(BpScene *scene, double direction[3]) {
+    BpCamera *const camera = &scene->camera;
+    const bool asked = camera->fit_vup[0] != 0 || camera->fit_vup[1] != 0 || camera->fit_vup[2] != 0;
+    int up = scene->up;
+    for (int i = 0; i < 3 && asked; i++)
+        if (fabs(camera->fit_vup[i]) > fabs(camera->fit_vup[up])) up = i;
+    for (int i = 0; i < 3; i++) camera->vup[i] = asked ? camera->fit_vup[i] : i == up;
+    if (scene->flat && !asked && camera->view == BP_VIEW_THREE_QUARTER)
+        bp_view_direction(BP_VIEW_FRONT, up, direction); /* two dimensions have one good view */
+    else if (camera->view == BP_VIEW_NONE)
+        memcpy(direction, camera->view_direction, sizeof camera->view_direction);
+    else
+        bp_view_direction(camera->view, up, direction);
+}
+
+/* All spheres, and those that move once more, where they end. The caller frees them. */
+static BpStatus spheres_at_both_ends(const BpScene *scene, BpSphere **spheres, size_t *count, BpError *err) {
+    *count = scene->sphere_count + scene->moving_count;
+    *spheres = malloc(*count * sizeof **spheres);
+    if (*spheres == NULL) return bp_fail(err, BP_ERR_MEMORY, "out of memory for %zu spheres", *count);
+    memcpy(*spheres, scene->spheres, scene->sphere_count * sizeof **spheres);
+    for (size_t i = 0; i < scene->moving_count; i++) {
+        BpSphere *const end = *spheres + scene->sphere_count + i;
+        *end = scene->spheres[i];
+        memcpy(end->center, scene->center_ends[i], sizeof end->center);
+    }
+    return BP_OK;
+}
+
+BpStatus bp_scene_fit_camera(const BpNode *node, const BpSceneChanges *changes, BpScene *scene,
+                             BpError *err) {
+    BpCamera *const camera = &scene->camera;
+    const BpNode fit = bp_node_member(node, "fit");
+    if (changes->camera != NULL) {
+        memcpy(camera->lookfrom, changes->camera->lookfrom, sizeof camera->lookfrom);
+        memcpy(camera->lookat, changes->camera->lookat, sizeof camera->lookat);
+        memcpy(camera->vup, changes->camera->vup, sizeof camera->vup);
+        camera->focus_dist = changes->camera->focus_dist;
+        camera->view_height = changes->camera->view_height;
+        return BP_OK;
+    }
+    if (camera->fit == BP_FIT_NONE) return BP_OK;
+    const bool all = camera->fit == BP_FIT_SCENE;
+    const size_t first = all ? 0 : scene->particle_first;
+    double direction[3];
+    if (!all && !scene->has_particles)
+        return bp_node_fail(&fit, BP_PART_VALUE, err,
+                            "found \"particles\", but the scene has none; expected \"scene\", or particles");
+    bp_scene_view(scene, direction);
+    const BpSphere *spheres = scene->spheres + first;
+    size_t count = scene->sphere_count - first;
+    BpSphere *both = NULL;
+    if (first < scene->moving_count) {
+        BP_TRY(spheres_at_both_ends(scene, &both, &count, err));
+        spheres = both;
+    }
+    BpError inner = {0};
+    const BpStatus status = changes->turning > 0
+                                ? bp_camera_fit_turning(spheres, count, direction, camera->margin,
+                                                        changes->turning, camera, &inner)
+                                : bp_camera_fit(spheres, count, direction, camera->margin, camera, &inner);
+    free(both);
+    if (status == BP_OK) return BP_OK;
+    bp_node_fail(fit.value != NULL ? &fit : node, BP_PART_VALUE, err, "%s", inner.message);
+    bp_error_clear(&inner);
+    return status;
+}

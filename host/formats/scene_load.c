@@ -1,0 +1,81 @@
+/* scene_load.c: see scene_load.h and ballpark.h. */
+#include "scene_load.h"
+
+#include "base/input_file.h"
+#include "document_change.h"
+#include "particle_document.h"
+#include "particles/particles.h"
+#include "scene_parse.h"
+
+#include <stdlib.h>
+#include <string.h>
+#include <sys/stat.h>
+
+BpStatus bp_scene_parse_changed(const char *text, size_t length, const char *name,
+                                const BpSceneChanges *changes, BpScene **scene, BpError *err) {
+    BpDocument document = {0};
+    BpScene *result = NULL;
+    *scene = NULL;
+    BpStatus status;
+    BP_TRY_GOTO(status, bp_document_open(text, length, name, &document, err), done);
+    document.held = changes->held;
+    BP_TRY_GOTO(status, bp_document_change(&document, changes->set, changes->set_count, err), done);
+    BP_TRY_GOTO(status, bp_scene_create_empty(name, &result, err), done);
+    const BpNode root = bp_node_root(&document);
+    BP_TRY_GOTO(status, bp_parse_scene(&root, changes, result, err), done);
+    *scene = result;
+    result = NULL;
+done:
+    bp_scene_destroy(&result);
+    bp_document_close(&document);
+    return status;
+}
+
+BpStatus bp_scene_parse(const char *text, size_t length, const char *name, BpScene **scene, BpError *err) {
+    const BpSceneChanges none = {0};
+    return bp_scene_parse_changed(text, length, name, &none, scene, err);
+}
+
+BpStatus bp_scene_parse_with_spheres(const char *text, size_t length, const char *name,
+                                     const BpSphereSet *sets, size_t set_count, BpScene **scene,
+                                     BpError *err) {
+    const BpSceneChanges changes = {.spheres = sets, .sphere_set_count = set_count};
+    return bp_scene_parse_changed(text, length, name, &changes, scene, err);
+}
+
+/* A document for a file of particles; *text is NULL for other files. */
+static BpStatus make_document(const char *path, char **text, BpError *err) {
+    FILE *stream = NULL;
+    uint64_t size = 0;
+    *text = NULL;
+    struct stat state;
+    if (stat(path, &state) == 0 && S_ISFIFO(state.st_mode)) return BP_OK; /* what is read from it is gone */
+    BP_TRY(bp_file_open(path, false, "a scene document (a JSON file) or a file of particles", &stream, &size,
+                        err));
+    const BpParticleFormat format = bp_particle_format_find(path, stream);
+    fclose(stream);
+    return format == BP_PARTICLES_NONE ? BP_OK : bp_particle_document(path, text, err);
+}
+
+BpStatus bp_scene_load_changed(const char *path, const BpSceneChanges *changes, BpScene **scene,
+                               BpError *err) {
+    char *text = NULL;
+    size_t length = 0;
+    BpSceneChanges made = *changes;
+    *scene = NULL;
+    BP_TRY(make_document(path, &text, err));
+    if (text != NULL) {
+        made.flags |= BP_PARSE_MADE;
+        length = strlen(text);
+    } else {
+        BP_TRY(bp_file_read(path, "a scene document (a JSON file)", &text, &length, err));
+    }
+    const BpStatus status = bp_scene_parse_changed(text, length, path, &made, scene, err);
+    free(text);
+    return status;
+}
+
+BpStatus bp_scene_load(const char *path, BpScene **scene, BpError *err) {
+    const BpSceneChanges none = {0};
+    return bp_scene_load_changed(path, &none, scene, err);
+}

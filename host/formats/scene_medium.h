@@ -1,0 +1,17 @@
+/* scene_medium.h: the media of a scene document, and where a sphere or the scene asks for one.
+ *
+ * In:    the nodes of "media", "medium" and "interior".   Out: BpMedia; the number of a medium.
+ * Knows: the grammar.   Does not know: which spheres are filled. Ranges are checked by scene_validate.c. */
+#ifndef BP_FORMATS_SCENE_MEDIUM_H
+#define BP_FORMATS_SCENE_MEDIUM_H
+
+#include "document.h"
+#include "scene/scene.h"
+
+/* The scene's media. */
+BpStatus bp_parse_media(const BpNode *node, BpScene *scene, BpError *err);
+/* Finds the medium that the node, a string, names; *number counts from 1, and stays where there is no node.
+ */
+BpStatus bp_parse_medium_name(const BpNode *node, const BpScene *scene, uint32_t *number, BpError *err);
+
+#endif

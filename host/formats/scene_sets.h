@@ -1,0 +1,15 @@
+/* scene_sets.h: spheres that a caller hands over as arrays.
+ *
+ * In:    sets of arrays.   Out: their spheres and colours, behind all others of a scene.
+ * Knows: how arrays lie in memory.   Does not know: who made them. */
+#ifndef BP_FORMATS_SCENE_SETS_H
+#define BP_FORMATS_SCENE_SETS_H
+
+#include "material_index.h"
+#include "scene_changes.h"
+
+/* Adds the changes' sets of spheres to the scene, whose materials have room for one more. */
+BpStatus bp_add_sphere_sets(const BpMaterialIndex *index, const BpSceneChanges *changes, BpScene *scene,
+                            BpError *err);
+
+#endif
