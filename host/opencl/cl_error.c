@@ -1,8 +1,8 @@
-/* cl_error.c: OpenCL's error numbers as names and remedies; see device.h.
+/* cl_error.c: OpenCL's error numbers as names and remedies; see cl.h.
  *
  * In:    an error number and the call that gave it.   Out: a message for a person.
  * Knows: the error codes of OpenCL 1.2 and of the ICD loader.   Does not know: what was being done. */
-#include "device.h"
+#include "cl.h"
 
 #define ERROR_LIST(X)                                                                                        \
     X(CL_SUCCESS, 0)                                                                                         \

@@ -1,10 +1,7 @@
-/* device_find.c: which devices there are and what each lacks; see device.h.
- *
- * In:    what the OpenCL loader finds.   Out: BpDeviceInfo, or a message that says what to install.
- * Knows: OpenCL's platforms and devices.   Does not know: what devices are used for. */
-#include "base/memory_limit.h"
-#include "device.h"
+/* device_find.c: see device_find.h. */
+#include "device_find.h"
 
+#include "base/memory_limit.h"
 #include "device_choose.h"
 #include "driver_start.h"
 #include "forked.h"

@@ -3,7 +3,7 @@
 
 #include "base/decimal.h"
 #include "base/long_call.h"
-#include "device.h"
+#include "cl.h"
 #include "driver_files.h"
 #include "forked.h"
 

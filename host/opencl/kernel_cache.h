@@ -16,7 +16,7 @@
 #ifndef BP_OPENCL_KERNEL_CACHE_H
 #define BP_OPENCL_KERNEL_CACHE_H
 
-#include "device.h"
+#include "cl.h"
 
 #define BP_KERNEL_CACHE_BYTES_MAX (256u << 20)
 

@@ -7,7 +7,9 @@
 #ifndef BP_OPENCL_POCL_H
 #define BP_OPENCL_POCL_H
 
-#include "device.h"
+#include "base/status.h"
+
+#include <stdbool.h>
 
 #define BP_POCL_PLATFORM "Portable Computing Language"
 
@@ -18,8 +20,6 @@ bool bp_pocl_cache_fails(char text[512]);
 /* Whether a folder of PATH has a linker. Without one most versions of PoCL end the process when they finish a
  * kernel; some need none. */
 bool bp_pocl_finds_linker(void);
-/* Builds and runs a kernel that no cache can have. Where PoCL finds no linker this may end the process. */
-BpStatus bp_pocl_try_kernel(const BpDeviceInfo *info, BpError *err);
 
 /* Whether PoCL has no working compiler for this processor. Before 3.1 it lets its compiler name the
  * processor, and where that is older than the processor, kernels may use fewer instructions than PoCL's own

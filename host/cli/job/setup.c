@@ -11,6 +11,7 @@
 #include "film/film.h"
 #include "formats/scene_load.h"
 #include "opencl/pocl.h"
+#include "opencl/pocl_probe.h"
 #include "opencl/self_test.h"
 #include "packed/rounding.h"
 
