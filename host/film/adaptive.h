@@ -52,8 +52,8 @@ bool bp_adaptive_pass(BpAdaptive *adaptive, BpAdaptivePass *pass);
 /* Serialises the decisions so far, for a file; free *bytes. It takes a bp_adaptive_next() to have something
  * to save. BP_ERR_MEMORY. */
 BpStatus bp_adaptive_save(const BpAdaptive *adaptive, uint8_t **bytes, size_t *size, BpError *err);
-/* Restores them into a new one of the same size: it continues as the saved one would have. BP_ERR_FILE: the
- * state is invalid; then, and after BP_ERR_MEMORY, destroy it. */
+/* Restores them into one of the same size, whose own decisions are forgotten: it continues as the saved one
+ * would have. BP_ERR_FILE: the state is invalid; then, and after BP_ERR_MEMORY, destroy it. */
 BpStatus bp_adaptive_restore(BpAdaptive *adaptive, const uint8_t *bytes, size_t size, BpError *err);
 
 /* Samples of all pixels together in the passes that bp_adaptive_next() has seen done; and the most of a

@@ -86,6 +86,11 @@ BpStatus bp_adaptive_restore(BpAdaptive *adaptive, const uint8_t *bytes, size_t 
     const uint32_t levels = highest_level(level, halves) + 1;
     if (!halves_fit(adaptive, level, wanted, passing) || size != size_for(adaptive, levels))
         return bp_fail(err, BP_ERR_FILE, "%s", wrong);
+    for (uint32_t l = 0; l < BP_ADAPTIVE_LEVELS_MAX; ++l) {
+        free(adaptive->errors[l]);
+        free(adaptive->costs[l]);
+        adaptive->errors[l] = adaptive->costs[l] = NULL;
+    }
     const uint8_t *at = passing + halves;
     for (uint32_t l = 0; l < levels; ++l, at += 8 * (size_t)halves) {
         adaptive->errors[l] = calloc(halves, sizeof *adaptive->errors[l]);

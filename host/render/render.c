@@ -5,6 +5,7 @@
 #include "base/clock.h"
 #include "base/status.h"
 #include "calibrate.h"
+#include "render_options.h"
 #include "render_plan.h"
 #include "render_state.h"
 #include "round.h"
@@ -13,66 +14,33 @@
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
-#include <time.h>
 
-#define CHUNK_SECONDS 0.1 /* per dispatch: below the limit of every watchdog, long against its overhead */
 #define STEP_SECONDS 0.15 /* a step starts no chunk after this */
 
-void bp_render_defaults(const BpScene *scene, BpRenderOptions *options) {
-    memset(options, 0, sizeof *options);
-    options->samples_per_pixel = scene->camera.samples_per_pixel;
-    options->max_depth = scene->camera.max_depth;
+/* Which arrangement a GPU's trial has found best; of the form BP_KERNEL_AUTO: none. `open`: the device, if it
+ * is open already; NULL: it is to be opened. */
+static BpCalibration calibrate(BpRender *render, const BpDeviceInfo *device, BpDevice *open) {
+    BpCalibration calibration = {.form = BP_KERNEL_AUTO};
+    double trial = 0;
+    if (bp_calibrates(device, &render->options))
+        (void)bp_calibrate(device, open, render->options.force, &calibration, &trial);
+    render->calibration_seconds += trial;
+    return calibration;
 }
 
-static BpStatus check_options(const BpScene *scene, const BpRenderOptions *options, BpError *err) {
-    if (options->samples_per_pixel < 1 || options->first_sample > UINT32_MAX ||
-        options->samples_per_pixel > (uint64_t)UINT32_MAX + 1 - options->first_sample)
-        return bp_fail(err, BP_ERR_USAGE, "samples %llu to %llu: sample numbers go from 0 to 4294967295",
-                       (unsigned long long)options->first_sample,
-                       (unsigned long long)(options->first_sample + options->samples_per_pixel - 1));
-    if (options->max_depth > BP_DEPTH_MAX)
-        return bp_fail(err, BP_ERR_USAGE, "depth %u: at most %u", options->max_depth, BP_DEPTH_MAX);
-    if (options->replicates > BP_REPLICATES_MAX)
-        return bp_fail(err, BP_ERR_USAGE, "%u replicates: at most %u", options->replicates,
-                       BP_REPLICATES_MAX);
-    const uint32_t replicates = options->replicates != 0 ? options->replicates : BP_REPLICATES_DEFAULT;
-    if (options->samples_per_pixel > (uint64_t)BP_REPLICATE_SAMPLES_MAX * replicates)
-        return bp_fail(
-            err, BP_ERR_LIMIT,
-            "%llu samples per pixel: the sums of %u replicates hold %llu; render in parts and merge them",
-            (unsigned long long)options->samples_per_pixel, replicates,
-            (unsigned long long)BP_REPLICATE_SAMPLES_MAX * replicates);
-    const uint64_t pixels = (uint64_t)scene->camera.width * scene->camera.height;
-    if (pixels > UINT32_MAX / 4)
-        return bp_fail(err, BP_ERR_LIMIT,
-                       "a picture of %u x %u has %llu pixels; at most %u: use a smaller --width",
-                       scene->camera.width, scene->camera.height, (unsigned long long)pixels, UINT32_MAX / 4);
-    if (options->tree_width != 0 && options->tree_width != 2 && options->tree_width != 4 &&
-        options->tree_width != 8 && options->tree_width != 16)
-        return bp_fail(err, BP_ERR_USAGE, "tree width %u: 2, 4, 8 or 16", options->tree_width);
-    if (options->packet_lanes != 0 && options->packet_lanes != 8 && options->packet_lanes != 16)
-        return bp_fail(err, BP_ERR_USAGE, "packet lanes %u: 8 or 16", options->packet_lanes);
-    return BP_OK;
-}
-
-/* `open`: the device, if it is open already; NULL: it is to be opened. */
-static BpStatus open_worker(BpRender *render, const BpDeviceInfo *device, BpDevice *open, size_t index,
-                            BpError *err) {
+static BpStatus open_worker(BpRender *render, const BpDeviceInfo *device, BpDevice *open,
+                            const BpCalibration *calibration, size_t index, BpError *err) {
     BpWorkerSetup setup;
     BpPacked packed;
     BpRenderOptions options = render->options;
-    BpCalibration calibration = {.form = BP_KERNEL_AUTO};
     char *appended = NULL;
-    double trial = 0;
-    if (bp_calibrates(device, &options) && bp_calibrate(device, open, options.force, &calibration, &trial)) {
-        options.kernel = calibration.form;
-        if (options.local_size == 0) options.local_size = calibration.local_size;
+    if (calibration->form != BP_KERNEL_AUTO) {
+        options.kernel = calibration->form;
+        if (options.local_size == 0) options.local_size = calibration->local_size;
     }
-    if (index == 0) render->calibration = calibration;
-    render->calibration_seconds += trial;
     const double start = bp_clock_seconds();
     BP_TRY(bp_render_plan(render->scene, &options, device, &setup, &packed, err));
-    setup.samples_per_item = calibration.samples_per_item;
+    setup.samples_per_item = calibration->samples_per_item;
     render->effects.bits = setup.program.effects;
     render->acceleration = setup.program.tree ? BP_ACCELERATION_TREE : BP_ACCELERATION_LIST;
     render->tree_seconds += packed.tree.build_seconds;
@@ -91,7 +59,8 @@ static BpStatus open_worker(BpRender *render, const BpDeviceInfo *device, BpDevi
         setup.extra_name = extra[0];
         setup.extra_text = appended;
     }
-    if (status == BP_OK) status = bp_worker_create(device, &packed, &setup, &render->workers[index], err);
+    if (status == BP_OK)
+        status = bp_worker_create(device, &packed, &setup, &render->dispatch.workers[index], err);
     bp_packed_clear(&packed); /* unless the worker has taken it over */
     free(appended);
     return status;
@@ -102,26 +71,20 @@ static uint64_t samples_for_all(uint64_t samples) {
     return samples < BP_ADAPTIVE_FIRST ? samples : BP_ADAPTIVE_FIRST;
 }
 
-BpStatus bp_render_create_adaptive(BpRender *render, BpError *err) {
-    const BpCamera *camera = &render->scene->camera;
-    const uint64_t exact = (uint64_t)BP_REPLICATE_SAMPLES_MAX * render->options.replicates;
-    const uint64_t numbers = (uint64_t)UINT32_MAX + 1 - render->options.first_sample;
-    return bp_adaptive_create(camera->width, camera->height, exact < numbers ? exact : numbers,
-                              &render->adaptive, err);
-}
-
 /* The first samples go to all pixels: a list that names every one. */
 static BpStatus begin_adaptive(BpRender *render, BpError *err) {
-    const uint32_t pixels = render->scene->camera.width * render->scene->camera.height;
-    BP_TRY(bp_render_create_adaptive(render, err));
+    const BpCamera *camera = &render->scene->camera;
+    const uint32_t pixels = camera->width * camera->height;
+    const uint64_t exact = (uint64_t)BP_REPLICATE_SAMPLES_MAX * render->options.replicates;
+    const uint64_t numbers = (uint64_t)UINT32_MAX + 1 - render->options.first_sample;
+    BP_TRY(bp_adaptive_create(camera->width, camera->height, exact < numbers ? exact : numbers,
+                              &render->adaptive, err));
     uint32_t *list = malloc(pixels * sizeof *list);
     if (list == NULL) return bp_fail(err, BP_ERR_MEMORY, "no memory for a list of %u pixels", pixels);
     for (uint32_t i = 0; i < pixels; ++i) list[i] = i;
-    BpStatus status = BP_OK;
-    for (size_t i = 0; i < render->worker_count && status == BP_OK; ++i)
-        status = bp_worker_set_pixels(render->workers[i], list, pixels, err);
+    const BpStatus status = bp_dispatch_set_pixels(&render->dispatch, list, pixels, err);
     free(list);
-    render->schedule.samples = samples_for_all(render->options.samples_per_pixel);
+    render->dispatch.schedule.samples = samples_for_all(render->options.samples_per_pixel);
     return status;
 }
 
@@ -131,7 +94,7 @@ static BpStatus create(const BpScene *scene, const BpRenderOptions *options, con
     BpRenderOptions defaults;
     bp_render_defaults(scene, &defaults);
     if (options == NULL) options = &defaults;
-    BP_TRY(check_options(scene, options, err));
+    BP_TRY(bp_render_options_check(scene, options, err));
     BpDeviceInfo chosen;
     if (device_count == 0) {
         BP_TRY(bp_device_find(NULL, &chosen, err));
@@ -140,15 +103,11 @@ static BpStatus create(const BpScene *scene, const BpRenderOptions *options, con
     }
     BpStatus status = BP_OK;
     BpRender *made = calloc(1, sizeof *made);
-    if (made != NULL) made->workers = calloc(device_count, sizeof(BpWorker *));
-    if (made == NULL || made->workers == NULL) {
-        status = bp_fail(err, BP_ERR_MEMORY, "no memory for a render");
-        goto failed;
-    }
+    if (made == NULL) return bp_fail(err, BP_ERR_MEMORY, "no memory for a render");
+    BP_TRY_GOTO(status, bp_dispatch_init(&made->dispatch, device_count, options->chunk_samples, err), failed);
     made->scene = scene;
     made->options = *options;
     if (made->options.replicates == 0) made->options.replicates = BP_REPLICATES_DEFAULT;
-    made->worker_count = device_count;
     bp_effects_analyse(scene, &made->effects);
     made->options.light_sampling = bp_render_light_sampling_of(&made->effects, options);
     made->options.caustics = bp_render_caustics_of(&made->effects, options);
@@ -157,13 +116,15 @@ static BpStatus create(const BpScene *scene, const BpRenderOptions *options, con
         made->has_pilot = bp_pilot_is_needed(scene, &made->aim);
         if (!made->has_pilot) bp_pilot_aim_clear(&made->aim);
     }
-    for (size_t i = 0; i < device_count; ++i)
-        BP_TRY_GOTO(status,
-                    open_worker(made, open != NULL ? &open[i]->info : &devices[i],
-                                open != NULL ? open[i] : NULL, i, err),
-                    failed);
+    for (size_t i = 0; i < device_count; ++i) {
+        const BpDeviceInfo *device = open != NULL ? &open[i]->info : &devices[i];
+        BpDevice *opened = open != NULL ? open[i] : NULL;
+        const BpCalibration calibration = calibrate(made, device, opened);
+        if (i == 0) made->calibration = calibration;
+        BP_TRY_GOTO(status, open_worker(made, device, opened, &calibration, i, err), failed);
+    }
     const uint32_t pixels = scene->camera.width * scene->camera.height;
-    bp_schedule_init(&made->schedule, pixels, options->first_sample, options->samples_per_pixel);
+    bp_schedule_init(&made->dispatch.schedule, pixels, options->first_sample, options->samples_per_pixel);
     if (options->adaptive) BP_TRY_GOTO(status, begin_adaptive(made, err), failed);
     made->samples_total = (uint64_t)pixels * options->samples_per_pixel;
     *render = made;
@@ -186,9 +147,7 @@ BpStatus bp_render_create_on(const BpScene *scene, const BpRenderOptions *option
 
 void bp_render_destroy(BpRender **render) {
     if (render == NULL || *render == NULL) return;
-    for (size_t i = 0; (*render)->workers != NULL && i < (*render)->worker_count; ++i)
-        bp_worker_destroy(&(*render)->workers[i]);
-    free((*render)->workers);
+    bp_dispatch_clear(&(*render)->dispatch);
     bp_film_destroy(&(*render)->film);
     bp_film_destroy(&(*render)->base);
     bp_picture_clear(&(*render)->aovs);
@@ -199,28 +158,6 @@ void bp_render_destroy(BpRender **render) {
     *render = NULL;
 }
 
-/* A worker with room for a chunk. When all are full, the one whose oldest chunk is done first: devices differ
- * in speed, and waiting for a slow one would keep a fast one idle. */
-BpStatus bp_render_free_worker(const BpRender *render, BpWorker **found, BpError *err) {
-    BpWorker *best = render->workers[0];
-    for (size_t i = 1; i < render->worker_count; ++i)
-        if (render->workers[i]->flight_count < best->flight_count) best = render->workers[i];
-    const struct timespec pause = {.tv_nsec = 200000};
-    while (render->worker_count > 1 && best->flight_count == BP_WORKER_FLIGHT) {
-        for (size_t i = 0; i < render->worker_count && best->flight_count == BP_WORKER_FLIGHT; ++i) {
-            BpWorker *worker = render->workers[i];
-            bool done = false;
-            BP_TRY(bp_worker_oldest_done(worker, &done, err));
-            if (!done) continue;
-            BP_TRY(bp_worker_wait(worker, err));
-            best = worker;
-        }
-        if (best->flight_count == BP_WORKER_FLIGHT) nanosleep(&pause, NULL);
-    }
-    *found = best;
-    return bp_worker_make_room(best, err);
-}
-
 void bp_render_join(BpRender *render, BpComm *comm) {
     render->comm = comm;
 }
@@ -228,76 +165,50 @@ void bp_render_join(BpRender *render, BpComm *comm) {
 uint64_t bp_render_pixel_samples(const BpRender *render) {
     uint64_t done = render->base_samples;
     if (render->comm != NULL) return done + render->round.pixel_samples;
-    for (size_t i = 0; i < render->worker_count; ++i) done += render->workers[i]->samples_done;
-    return done;
-}
-
-static bool in_flight(const BpRender *render) {
-    for (size_t i = 0; i < render->worker_count; ++i)
-        if (render->workers[i]->flight_count > 0) return true;
-    return false;
+    return done + bp_dispatch_samples_done(&render->dispatch);
 }
 
 BpStatus bp_render_begin_pass(BpRender *render, const BpAdaptivePass *pass, BpError *err) {
-    for (size_t i = 0; i < render->worker_count; ++i)
-        BP_TRY(bp_worker_set_pixels(render->workers[i], pass->pixels, pass->pixel_count, err));
-    bp_schedule_init(&render->schedule, pass->pixel_count, render->options.first_sample + pass->first,
-                     pass->count);
-    render->schedule.before = pass->first;
+    BP_TRY(bp_dispatch_set_pixels(&render->dispatch, pass->pixels, pass->pixel_count, err));
+    bp_schedule_init(&render->dispatch.schedule, pass->pixel_count,
+                     render->options.first_sample + pass->first, pass->count);
+    render->dispatch.schedule.before = pass->first;
     return BP_OK;
 }
 
 /* Adaptive sampling, when a pass has been handed out whole: waits for it and schedules the next, if there is
  * one. */
-static BpStatus begin_next_pass(BpRender *render, bool *begun, BpError *err) {
-    *begun = false;
+static BpStatus begin_next_pass(BpRender *render, BpError *err) {
     if (render->adaptive == NULL || render->options.samples_per_pixel < BP_ADAPTIVE_FIRST) return BP_OK;
     const BpFilm *film = NULL;
     BpAdaptivePass pass;
+    bool begun = false;
     bp_film_destroy(&render->film); /* what was read before the latest chunks */
     BP_TRY(bp_render_read_film(render, &film, err));
     render->decides = true;
     if (bp_comm_leads(render->comm))
         BP_TRY(
-            bp_adaptive_next(render->adaptive, film, render->options.samples_per_pixel, begun, &pass, err));
-    BP_TRY(bp_round_share_pass(render, begun, &pass, err));
+            bp_adaptive_next(render->adaptive, film, render->options.samples_per_pixel, &begun, &pass, err));
+    BP_TRY(bp_round_share_pass(render, &begun, &pass, err));
     bp_film_destroy(&render->film);
-    if (!*begun) return BP_OK;
-    return bp_render_begin_pass(render, &pass, err);
+    return begun ? bp_render_begin_pass(render, &pass, err) : BP_OK;
 }
 
-/* Of all devices, since each meets only some parts of the picture. */
-static double slowest_samples(const BpRender *render) {
-    double slowest = 0;
-    for (size_t i = 0; i < render->worker_count; ++i) {
-        const double own = bp_pace_slowest(&render->workers[i]->pace);
-        if (own > slowest) slowest = own;
-    }
-    return slowest;
-}
-
-uint32_t bp_render_chunk_samples(const BpRender *render, const BpWorker *worker) {
-    if (render->options.chunk_samples != 0) return render->options.chunk_samples;
-    return bp_worker_chunk_samples(worker, CHUNK_SECONDS, slowest_samples(render));
-}
-
-BpStatus bp_render_take(BpRender *render, uint64_t wanted, BpChunk *chunk, bool *more, BpError *err) {
-    *more = bp_schedule_take(&render->schedule, wanted, chunk);
-    if (*more) return BP_OK;
-    BP_TRY(begin_next_pass(render, more, err));
-    if (*more) *more = bp_schedule_take(&render->schedule, wanted, chunk);
+/* Whether there is something left to hand out, after a decision of adaptive sampling where that is due. */
+static BpStatus find_more(BpRender *render, bool *more, BpError *err) {
+    if (!bp_schedule_has_more(&render->dispatch.schedule)) BP_TRY(begin_next_pass(render, err));
+    *more = bp_schedule_has_more(&render->dispatch.schedule);
     return BP_OK;
 }
 
 /* Starts one chunk; *started is false when all has been handed out. */
 static BpStatus start_chunk(BpRender *render, bool *started, BpError *err) {
+    BpDispatch *dispatch = &render->dispatch;
     BpWorker *worker = NULL;
-    BP_TRY(bp_render_free_worker(render, &worker, err));
-    BP_TRY(
-        bp_render_take(render, bp_render_chunk_samples(render, worker), &render->last_chunk, started, err));
+    BP_TRY(bp_dispatch_free_worker(dispatch, &worker, err));
+    BP_TRY(find_more(render, started, err));
     if (!*started) return BP_OK;
-    if (render->last_chunk.first_pixel == 0)
-        for (size_t i = 0; i < render->worker_count; ++i) bp_pace_begin_pass(&render->workers[i]->pace);
+    bp_dispatch_take(dispatch, bp_dispatch_chunk_samples(dispatch, worker), &render->last_chunk);
     return bp_worker_start(worker, &render->last_chunk, err);
 }
 
@@ -312,7 +223,7 @@ static void report_progress(const BpRender *render, bool finished, BpProgress *p
 /* The pilot follows from the scene, so once is enough. */
 static BpStatus run_pilot(BpRender *render, BpError *err) {
     if (!render->has_pilot || render->pilot_done) return BP_OK;
-    BP_TRY(bp_pilot_run(render->workers[0], render->scene, &render->aim, render->options.max_depth,
+    BP_TRY(bp_pilot_run(render->dispatch.workers[0], render->scene, &render->aim, render->options.max_depth,
                         render->options.caustics == BP_CAUSTICS_ON, &render->unseen, &render->pilot, err));
     render->pilot_done = true;
     bp_pilot_aim_clear(&render->aim);
@@ -327,17 +238,16 @@ static BpStatus step(BpRender *render, double seconds, BpProgress *progress, BpE
     bp_film_destroy(&render->film);
     bool more = true;
     if (render->comm != NULL) {
-        BP_TRY(bp_round_trace(render, &more, err));
+        BP_TRY(find_more(render, &more, err));
+        if (more) BP_TRY(bp_round_trace(render, err));
     } else {
         do {
             BP_TRY(start_chunk(render, &more, err));
         } while (more && bp_clock_seconds() - start < seconds);
     }
-    if (!more)
-        for (size_t i = 0; i < render->worker_count; ++i)
-            BP_TRY(bp_worker_wait_for_all(render->workers[i], err));
+    if (!more) BP_TRY(bp_dispatch_wait(&render->dispatch, err));
     render->trace_seconds += bp_clock_seconds() - start;
-    report_progress(render, !more && !in_flight(render), progress);
+    report_progress(render, !more, progress);
     return BP_OK;
 }
 
@@ -362,7 +272,7 @@ BpStatus bp_render_step_samples(BpRender *render, BpSampleBlock *block, bool *fi
     const uint32_t count = chunk->pixel_count * chunk->samples;
     float *values = malloc((size_t)count * 4 * sizeof *values);
     if (values == NULL) return bp_fail(err, BP_ERR_MEMORY, "no memory for %u samples", count);
-    const BpStatus status = bp_worker_samples(render->workers[0], count, values, err);
+    const BpStatus status = bp_worker_samples(render->dispatch.workers[0], count, values, err);
     if (status != BP_OK) {
         free(values);
         return status;
@@ -385,20 +295,21 @@ void bp_sample_block_clear(BpSampleBlock *block) {
 }
 
 bool bp_render_has_begun(const BpRender *render) {
-    return render->decides || render->schedule.done > 0 || render->schedule.pass_samples > 0;
+    return render->decides || render->dispatch.schedule.done > 0 ||
+           render->dispatch.schedule.pass_samples > 0;
 }
 
 BpStatus bp_render_check_samples(const BpRender *render, uint64_t samples_per_pixel, BpError *err) {
     BpRenderOptions wanted = render->options;
     wanted.samples_per_pixel = samples_per_pixel;
-    return check_options(render->scene, &wanted, err);
+    return bp_render_options_check(render->scene, &wanted, err);
 }
 
 /* The least that the render can still end with. */
 static uint64_t samples_least(const BpRender *render) {
     if (!bp_render_has_begun(render)) return 1;
     if (render->adaptive != NULL) return render->options.samples_per_pixel;
-    return render->schedule.done + render->schedule.pass_samples;
+    return render->dispatch.schedule.done + render->dispatch.schedule.pass_samples;
 }
 
 BpStatus bp_render_extend(BpRender *render, uint64_t samples_per_pixel, BpError *err) {
@@ -408,9 +319,9 @@ BpStatus bp_render_extend(BpRender *render, uint64_t samples_per_pixel, BpError 
                        (unsigned long long)samples_least(render), (unsigned long long)samples_per_pixel);
     render->options.samples_per_pixel = samples_per_pixel;
     if (render->adaptive == NULL)
-        render->schedule.samples = samples_per_pixel;
+        render->dispatch.schedule.samples = samples_per_pixel;
     else if (!render->decides)
-        render->schedule.samples = samples_for_all(samples_per_pixel);
+        render->dispatch.schedule.samples = samples_for_all(samples_per_pixel);
     render->samples_total =
         (uint64_t)render->scene->camera.width * render->scene->camera.height * samples_per_pixel;
     return BP_OK;
@@ -419,7 +330,7 @@ BpStatus bp_render_extend(BpRender *render, uint64_t samples_per_pixel, BpError 
 /* ---- what has been reached ---------------------------------------------------------------------------- */
 
 uint64_t bp_render_samples_done(const BpRender *render) {
-    if (!render->decides) return render->schedule.done;
+    if (!render->decides) return render->dispatch.schedule.done;
     const double pixels = (double)render->scene->camera.width * render->scene->camera.height;
     return (uint64_t)llround((double)bp_adaptive_samples(render->adaptive) / pixels);
 }
@@ -438,8 +349,8 @@ BpStatus bp_render_describe(const BpRender *render, BpFilm *film, BpError *err) 
     film->job = (struct BpSampleRange){options->job_first, options->job_samples};
     if (render->scene->title != NULL) BP_TRY(bp_copy_text(render->scene->title, &film->title, err));
     /* A pass in progress counts as begun: its samples are taken, though not yet by every pixel. */
-    uint64_t begun = render->schedule.done + render->schedule.pass_samples;
-    film->partial = render->schedule.pass_samples > 0;
+    uint64_t begun = render->dispatch.schedule.done + render->dispatch.schedule.pass_samples;
+    film->partial = render->dispatch.schedule.pass_samples > 0;
     if (render->decides) {
         const uint64_t pixels = (uint64_t)film->width * film->height;
         begun = bp_adaptive_samples_max(render->adaptive);
@@ -485,8 +396,8 @@ static BpStatus read_own(BpRender *render, BpFilm **film, BpError *err) {
             status = bp_fail(err, BP_ERR_MEMORY, "no memory for the path lengths of %zu pixels", pixels);
     }
     if (status == BP_OK && render->scene->backdrop == BP_BACKDROP_NONE) status = bp_film_add_met(read, err);
-    for (size_t i = 0; status == BP_OK && i < render->worker_count; ++i)
-        status = bp_worker_collect(render->workers[i], read, err);
+    for (size_t i = 0; status == BP_OK && i < render->dispatch.worker_count; ++i)
+        status = bp_worker_collect(render->dispatch.workers[i], read, err);
     if (status == BP_OK) status = add_unseen(render, read, err);
     if (status == BP_OK)
         *film = read;
@@ -497,8 +408,7 @@ static BpStatus read_own(BpRender *render, BpFilm **film, BpError *err) {
 
 BpStatus bp_render_read_own_film(BpRender *render, BpFilm **film, uint64_t *pixel_samples, BpError *err) {
     BP_TRY(read_own(render, film, err));
-    *pixel_samples = 0;
-    for (size_t i = 0; i < render->worker_count; ++i) *pixel_samples += render->workers[i]->samples_done;
+    *pixel_samples = bp_dispatch_samples_done(&render->dispatch);
     return BP_OK;
 }
 
@@ -535,12 +445,12 @@ BpStatus bp_render_aovs(BpRender *render, BpPicture *picture, BpError *err) {
                        "depth, normals and albedo of %" PRIu32 " x %" PRIu32
                        " pixels for a picture of %" PRIu32 " x %" PRIu32 ": read the picture first",
                        camera->width, camera->height, picture->width, picture->height);
-    return bp_aovs_fill(render->workers[0], render->scene, picture, err);
+    return bp_aovs_fill(render->dispatch.workers[0], render->scene, picture, err);
 }
 
 void bp_render_report(const BpRender *render, BpRenderReport *report) {
     memset(report, 0, sizeof *report);
-    const BpWorker *first = render->workers[0];
+    const BpWorker *first = render->dispatch.workers[0];
     report->device = first->device->info;
     report->effects = render->effects;
     report->acceleration = render->acceleration;
@@ -561,8 +471,8 @@ void bp_render_report(const BpRender *render, BpRenderReport *report) {
     report->pack_seconds = render->pack_seconds;
     report->trace_seconds = render->trace_seconds - first->first_launch_seconds;
     report->first_launch_seconds = first->first_launch_seconds;
-    for (size_t i = 0; i < render->worker_count; ++i) {
-        const BpWorker *worker = render->workers[i];
+    for (size_t i = 0; i < render->dispatch.worker_count; ++i) {
+        const BpWorker *worker = render->dispatch.workers[i];
         report->kernel_build_seconds += worker->program->build_seconds;
         report->device_seconds += worker->device_seconds;
         report->accumulate_seconds += worker->accumulate_seconds;
@@ -586,7 +496,7 @@ void bp_render_report(const BpRender *render, BpRenderReport *report) {
 /* What another render needs to go on from here. If everything that was asked for is there, the film alone is
  * enough. */
 static BpStatus add_plan(const BpRender *render, BpFilm *film, BpError *err) {
-    const BpSchedule *schedule = &render->schedule;
+    const BpSchedule *schedule = &render->dispatch.schedule;
     const bool whole = schedule->pass_samples == 0 && schedule->done == schedule->samples;
     if (film->plan != NULL || (whole && render->adaptive == NULL)) return BP_OK;
     film->plan = calloc(1, sizeof *film->plan);
@@ -609,7 +519,7 @@ static BpStatus fill_aovs(BpRender *render, BpError *err) {
     if (render->aovs.depth != NULL) return BP_OK;
     render->aovs.width = render->scene->camera.width;
     render->aovs.height = render->scene->camera.height;
-    return bp_aovs_fill(render->workers[0], render->scene, &render->aovs, err);
+    return bp_aovs_fill(render->dispatch.workers[0], render->scene, &render->aovs, err);
 }
 
 BpStatus bp_render_read_whole_film(BpRender *render, const BpFilm **film, BpError *err) {

@@ -7,11 +7,11 @@
 #define BP_RENDER_RENDER_STATE_H
 
 #include "cluster/comm.h"
+#include "dispatch.h"
 #include "film/adaptive.h"
 #include "opencl/calibration.h"
+#include "packed/acceleration.h"
 #include "pilot.h"
-#include "render.h"
-#include "worker.h"
 
 /* A rank's record of the rounds that it shares with others. */
 typedef struct BpRounds {
@@ -24,9 +24,7 @@ struct BpRender {
     BpRenderOptions options;
     BpEffects effects;
     BpAcceleration acceleration;
-    BpWorker **workers;
-    size_t worker_count;
-    BpSchedule schedule;  /* adaptive: of the pass under way */
+    BpDispatch dispatch;
     BpAdaptive *adaptive; /* NULL: every pixel gets the same samples */
     bool decides;         /* adaptive: past the samples that every pixel gets */
     BpFilm *film;         /* as last read; NULL before that */
@@ -59,15 +57,6 @@ BpStatus bp_render_describe(const BpRender *render, BpFilm *film, BpError *err);
 
 /* Hands the pixels of an adaptive pass to all workers, and begins to hand out its samples. */
 BpStatus bp_render_begin_pass(BpRender *render, const BpAdaptivePass *pass, BpError *err);
-
-/* A worker with room for a chunk; and how many samples a chunk of its should have. */
-BpStatus bp_render_free_worker(const BpRender *render, BpWorker **found, BpError *err);
-uint32_t bp_render_chunk_samples(const BpRender *render, const BpWorker *worker);
-/* The next chunk of the schedule, after a decision of adaptive sampling where that is due; *more is false
- * when all has been handed out. */
-BpStatus bp_render_take(BpRender *render, uint64_t wanted, BpChunk *chunk, bool *more, BpError *err);
-/* render->adaptive, new. */
-BpStatus bp_render_create_adaptive(BpRender *render, BpError *err);
 
 /* Whether the render could be extended to so many samples: BP_ERR_USAGE or BP_ERR_LIMIT as
  * bp_render_extend(). */

@@ -52,14 +52,14 @@ static BpStatus restore_pass(BpRender *render, const BpFilmPlan *plan, BpError *
     BpAdaptivePass pass;
     BP_TRY(bp_adaptive_restore(render->adaptive, plan->decisions, plan->decision_bytes, err));
     render->decides = true;
-    render->schedule.samples = 0; /* all is handed out, unless a pass is under way */
+    render->dispatch.schedule.samples = 0; /* all is handed out, unless a pass is under way */
     if (!bp_adaptive_pass(render->adaptive, &pass)) return BP_OK;
     return bp_render_begin_pass(render, &pass, err);
 }
 
 /* Whether the render, as it stands now, has taken the samples that the film names. */
 static BpStatus check_samples(const BpRender *render, const BpFilm *film, BpError *err) {
-    const BpSchedule *schedule = &render->schedule;
+    const BpSchedule *schedule = &render->dispatch.schedule;
     BpFilm own = {.width = film->width, .height = film->height, .replicates = film->replicates};
     BpStatus status = bp_render_describe(render, &own, err);
     const bool fits =
@@ -105,11 +105,11 @@ static BpStatus take_up(BpRender *render, const BpFilm *film, uint8_t *decisions
     render->goal_samples = plan.samples_max;
     render->goal_error = plan.error;
     if (plan.decision_bytes > 0) BP_TRY(restore_pass(render, &plan, err));
-    render->schedule.done = plan.done;
-    render->schedule.pass_samples = plan.pass_samples;
-    render->schedule.next_pixel = plan.next_pixel;
-    if (render->schedule.samples < plan.done && plan.decision_bytes > 0 && plan.pass_samples == 0)
-        render->schedule.samples = plan.done; /* of the last pass, which is done */
+    render->dispatch.schedule.done = plan.done;
+    render->dispatch.schedule.pass_samples = plan.pass_samples;
+    render->dispatch.schedule.next_pixel = plan.next_pixel;
+    if (render->dispatch.schedule.samples < plan.done && plan.decision_bytes > 0 && plan.pass_samples == 0)
+        render->dispatch.schedule.samples = plan.done; /* of the last pass, which is done */
     return check_samples(render, film, err);
 }
 

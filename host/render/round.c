@@ -28,11 +28,9 @@ typedef struct Plan {
 
 static Pace own_pace(const BpRender *render) {
     Pace pace = {.speed = render->round.seconds > 0 ? render->round.samples / render->round.seconds : 0};
-    double slowest = 0;
-    for (size_t i = 0; i < render->worker_count; ++i)
-        slowest = fmax(slowest, bp_pace_slowest(&render->workers[i]->pace));
-    for (size_t i = 0; i < render->worker_count; ++i) {
-        const BpWorker *worker = render->workers[i];
+    const double slowest = bp_dispatch_slowest(&render->dispatch);
+    for (size_t i = 0; i < render->dispatch.worker_count; ++i) {
+        const BpWorker *worker = render->dispatch.workers[i];
         pace.guess += worker->device->info.compute_units > 0 ? worker->device->info.compute_units : 1;
         pace.samples += bp_pace_samples(&worker->pace, ROUND_SECONDS, slowest);
     }
@@ -77,27 +75,25 @@ static BpStatus plan_round(BpRender *render, Plan *plan, uint64_t fractions[], B
     return status;
 }
 
-/* The worker with fewest chunks under way, once it has room. */
+/* Traces this rank's part of a block. */
 static BpStatus trace_portion(BpRender *render, BpPortion *portion, BpError *err) {
     const double start = bp_clock_seconds();
+    BpDispatch *const dispatch = &render->dispatch;
+    const uint64_t before = bp_dispatch_samples_done(dispatch);
     double launches = 0;
-    uint64_t before = 0, after = 0;
     BpChunk chunk;
-    for (size_t i = 0; i < render->worker_count; ++i) {
-        before += render->workers[i]->samples_done;
-        launches -= render->workers[i]->first_launch_seconds;
-    }
+    for (size_t i = 0; i < dispatch->worker_count; ++i)
+        launches -= dispatch->workers[i]->first_launch_seconds;
     for (;;) {
         BpWorker *worker = NULL;
-        BP_TRY(bp_render_free_worker(render, &worker, err));
-        if (!bp_portion_take(portion, bp_render_chunk_samples(render, worker), &chunk)) break;
+        BP_TRY(bp_dispatch_free_worker(dispatch, &worker, err));
+        if (!bp_portion_take(portion, bp_dispatch_chunk_samples(dispatch, worker), &chunk)) break;
         BP_TRY(bp_worker_start(worker, &chunk, err));
     }
-    for (size_t i = 0; i < render->worker_count; ++i) {
-        BP_TRY(bp_worker_wait_for_all(render->workers[i], err));
-        after += render->workers[i]->samples_done;
-        launches += render->workers[i]->first_launch_seconds;
-    }
+    BP_TRY(bp_dispatch_wait(dispatch, err));
+    for (size_t i = 0; i < dispatch->worker_count; ++i)
+        launches += dispatch->workers[i]->first_launch_seconds;
+    const uint64_t after = bp_dispatch_samples_done(dispatch);
     if (after == before) return BP_OK;
     BpRounds *round = &render->round;
     round->samples = EARLIER_SHARE * round->samples + (double)(after - before);
@@ -105,7 +101,7 @@ static BpStatus trace_portion(BpRender *render, BpPortion *portion, BpError *err
     return BP_OK;
 }
 
-BpStatus bp_round_trace(BpRender *render, bool *more, BpError *err) {
+BpStatus bp_round_trace(BpRender *render, BpError *err) {
     const uint32_t ranks = bp_comm_size(render->comm), rank = bp_comm_rank(render->comm);
     Plan plan = {.wanted = 0};
     BpChunk block;
@@ -116,10 +112,7 @@ BpStatus bp_round_trace(BpRender *render, bool *more, BpError *err) {
     const uint64_t low = fractions[rank], high = fractions[rank + 1];
     free(fractions);
     BP_TRY(status);
-    BP_TRY(bp_render_take(render, plan.wanted, &block, more, err));
-    if (!*more) return BP_OK;
-    if (block.first_pixel == 0)
-        for (size_t i = 0; i < render->worker_count; ++i) bp_pace_begin_pass(&render->workers[i]->pace);
+    bp_dispatch_take(&render->dispatch, plan.wanted, &block);
     bp_portion_init(&portion, &block, bp_portion_strips(&block, ranks), low, high);
     BP_TRY(trace_portion(render, &portion, err));
     render->round.pixel_samples += (uint64_t)block.pixel_count * block.samples;
@@ -175,9 +168,7 @@ BpStatus bp_round_share_pass(BpRender *render, bool *more, BpAdaptivePass *pass,
     }
     if (status == BP_OK) status = bp_comm_broadcast(comm, bytes, decisions.bytes, err);
     if (status == BP_OK && !leads) {
-        bp_adaptive_destroy(&render->adaptive);
-        status = bp_render_create_adaptive(render, err);
-        if (status == BP_OK) status = bp_adaptive_restore(render->adaptive, bytes, decisions.bytes, err);
+        status = bp_adaptive_restore(render->adaptive, bytes, decisions.bytes, err);
         *more = decisions.more != 0;
         if (status == BP_OK && *more && !bp_adaptive_pass(render->adaptive, pass))
             status = bp_fail(err, BP_ERR_FILE, "the decisions of adaptive sampling have no pass");

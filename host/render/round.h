@@ -14,8 +14,8 @@
 #include "cluster/comm.h"
 #include "render_state.h"
 
-/* The next round; *more is false, on all ranks, when all has been handed out. All ranks. */
-BpStatus bp_round_trace(BpRender *render, bool *more, BpError *err);
+/* The next round, of a render that has something left to hand out. All ranks. */
+BpStatus bp_round_trace(BpRender *render, BpError *err);
 
 /* Adds the films of all ranks on rank 0. All ranks. */
 BpStatus bp_round_add_films(BpComm *comm, BpFilm *film, BpError *err);

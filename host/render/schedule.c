@@ -16,10 +16,14 @@ static uint64_t at_least(uint64_t a, uint64_t b) {
     return a > b ? a : b;
 }
 
+bool bp_schedule_has_more(const BpSchedule *schedule) {
+    return schedule->pass_samples > 0 || (schedule->samples != schedule->done && schedule->pixels > 0);
+}
+
 bool bp_schedule_take(BpSchedule *schedule, uint64_t wanted, BpChunk *chunk) {
+    if (!bp_schedule_has_more(schedule)) return false;
     if (schedule->pass_samples == 0) {
         const uint64_t left = schedule->samples - schedule->done;
-        if (left == 0 || schedule->pixels == 0) return false;
         const uint64_t most = at_least(PASS_SAMPLES_MAX, wanted / schedule->pixels);
         /* As many again as there are: 1, 1, 2, 4, 8, ... And as many as a chunk has for a whole picture. */
         const uint64_t more =

@@ -29,6 +29,9 @@ typedef struct BpSchedule {
 
 void bp_schedule_init(BpSchedule *schedule, uint32_t pixels, uint64_t first_sample, uint64_t samples);
 
+/* Whether there is a next chunk. */
+bool bp_schedule_has_more(const BpSchedule *schedule);
+
 /* The next chunk, of about `wanted` (at least 1) pixel samples and never more than that unless a pass has
  * begun with more samples per pixel; false when all was handed out. */
 bool bp_schedule_take(BpSchedule *schedule, uint64_t wanted, BpChunk *chunk);

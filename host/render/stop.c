@@ -6,6 +6,7 @@
 
 #include "base/clock.h"
 #include "base/status.h"
+#include "render.h"
 #include "render_state.h"
 
 #include <math.h>

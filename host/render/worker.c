@@ -284,13 +284,13 @@ BpStatus bp_worker_start(BpWorker *worker, const BpChunk *chunk, BpError *err) {
     const bool first = worker->samples_done == 0 && worker->flight_count == 0;
     BP_TRY(bp_drivers_use(err));
     BP_TRY(bp_worker_make_room(worker, err));
+    const uint32_t items = bp_worker_items(worker, count);
     if (count > worker->samples_capacity) {
         BP_TRY(bp_worker_wait_for_all(worker, err));
-        BP_TRY(bp_worker_reserve_samples(worker, count, err));
+        BP_TRY(bp_worker_reserve_samples(worker, count, items, err));
     }
     const cl_uint first_sample = (cl_uint)chunk->first_sample;
-    const size_t items = bp_worker_items(worker, count);
-    const cl_uint lamp_items = worker->has_lamps ? (cl_uint)items : 0;
+    const cl_uint lamp_items = worker->has_lamps ? items : 0;
     const struct {
         cl_kernel kernel;
         cl_uint index;

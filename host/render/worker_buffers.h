@@ -1,18 +1,11 @@
 /* worker_buffers.h: what a worker keeps on its device.
  *
- * In:    packed scene, size of the picture.   Out: the worker's buffers; sums and samples read back.
+ * In:    packed scene, size of the picture.   Out: the worker's buffers.
  * Knows: sizes and limits of OpenCL buffers.   Does not know: which chunks are traced. */
 #ifndef BP_RENDER_WORKER_BUFFERS_H
 #define BP_RENDER_WORKER_BUFFERS_H
 
-#include "worker.h"
-
-/* Returns from the enclosing function, naming `call`, when `code` is a failure. */
-#define CL_TRY(worker, code, call)                                                                           \
-    do {                                                                                                     \
-        const cl_int cl_try_code_ = (code);                                                                  \
-        if (cl_try_code_ != CL_SUCCESS) return bp_cl_fail(err, cl_try_code_, call, (worker)->device);        \
-    } while (0)
+#include "worker_state.h"
 
 /* Where an array that grows with the spheres is larger than a buffer of the device may be: of how many parts
  * of what length the program's arrays consist. Where even the most parts do not suffice, as many, and the
@@ -27,7 +20,8 @@ BpStatus bp_worker_upload_scene(BpWorker *worker, BpError *err);
 BpStatus bp_worker_create_picture(BpWorker *worker, BpError *err);
 /* For a program with a pixel list: room for all pixels, not filled. */
 BpStatus bp_worker_create_pixel_list(BpWorker *worker, BpError *err);
-/* Room for the raw samples of `count` pixel samples. Only with nothing under way that uses the old room. */
-BpStatus bp_worker_reserve_samples(BpWorker *worker, uint32_t count, BpError *err);
+/* Room for the raw samples of `count` pixel samples, which `items` work-items trace. Only with nothing under
+ * way that uses the old room. */
+BpStatus bp_worker_reserve_samples(BpWorker *worker, uint32_t count, uint32_t items, BpError *err);
 
 #endif

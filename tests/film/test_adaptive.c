@@ -233,6 +233,37 @@ static void odd_sizes(void **state) {
     }
 }
 
+/* Decisions that are restored take the place of others, further ones too, and lead to the same passes. */
+static void restored_over_others(void **state) {
+    (void)state;
+    static Run saved, other;
+    uint8_t *bytes = NULL, *again = NULL;
+    size_t size = 0, size_again = 0;
+    bool more = false;
+    BpAdaptivePass pass, pass_again;
+    run_open(&saved, 1, 2, false, 0.05);
+    run_open(&other, 3, 4, true, 0.01);
+    run_to(&saved, 64);
+    run_to(&other, 512);
+    assert_int_equal(bp_adaptive_save(saved.adaptive, &bytes, &size, NULL), BP_OK);
+    assert_int_equal(bp_adaptive_restore(other.adaptive, bytes, size, NULL), BP_OK);
+    assert_int_equal(bp_adaptive_save(other.adaptive, &again, &size_again, NULL), BP_OK);
+    assert_int_equal(size, size_again);
+    assert_memory_equal(bytes, again, size);
+    assert_int_equal(bp_adaptive_samples(other.adaptive), bp_adaptive_samples(saved.adaptive));
+    assert_int_equal(bp_adaptive_next(saved.adaptive, saved.shown, 256, &more, &pass, NULL), BP_OK);
+    assert_true(more);
+    assert_int_equal(bp_adaptive_next(other.adaptive, saved.shown, 256, &more, &pass_again, NULL), BP_OK);
+    assert_true(more);
+    assert_int_equal(pass.pixel_count, pass_again.pixel_count);
+    assert_memory_equal(pass.pixels, pass_again.pixels, pass.pixel_count * sizeof *pass.pixels);
+    assert_true(pass.first == pass_again.first && pass.count == pass_again.count);
+    free(bytes);
+    free(again);
+    run_close(&saved);
+    run_close(&other);
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(budget_is_kept),
@@ -241,6 +272,7 @@ int main(void) {
         cmocka_unit_test(own_samples_decide_nothing),
         cmocka_unit_test(no_bias),
         cmocka_unit_test(odd_sizes),
+        cmocka_unit_test(restored_over_others),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -808,8 +808,8 @@ MUTANTS = [
            [test("test_bits", "every_sum_and_count_matters")]),
     # ---- renders that go on ----------------------------------------------------------------------------------
     Mutant("a pass begun again", "this program: some pixels would get samples twice",
-           [patch("host/render/resume.c", "render->schedule.next_pixel = plan.next_pixel;",
-                  "render->schedule.next_pixel = 0;")], [test("test_resume", "every_pixel_the_same")]),
+           [patch("host/render/resume.c", "render->dispatch.schedule.next_pixel = plan.next_pixel;",
+                  "render->dispatch.schedule.next_pixel = 0;")], [test("test_resume", "every_pixel_the_same")]),
     Mutant("what a film began with left out", "this program: the samples before the break",
            [patch("host/render/render.c", "BP_TRY(bp_film_add_sums(film, base, err));", "(void)err;")],
            [test("test_resume", "every_pixel_the_same")]),

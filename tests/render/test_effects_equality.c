@@ -73,7 +73,7 @@ static BpStatus launch(BpWorker *worker, BpKernelForm form, uint32_t per_pixel, 
     const size_t items = bp_worker_items(worker, samples->count);
     const size_t global = (items + local - 1) / local * local;
     BP_TRY(bp_worker_upload_scene(worker, err));
-    BP_TRY(bp_worker_reserve_samples(worker, samples->count, err));
+    BP_TRY(bp_worker_reserve_samples(worker, samples->count, (uint32_t)items, err));
     worker->trace = clCreateKernel(worker->program->program, "trace", &code);
     CL_TRY(worker, code, "clCreateKernel(trace)");
     BP_TRY(bp_worker_bind_scene(worker, worker->trace, err));

@@ -57,7 +57,9 @@ static Outcome run(const World *world) {
             --under_way;
         }
         const uint32_t wanted = bp_pace_samples(&pace, WANTED_SECONDS, bp_pace_slowest(&pace));
-        if (!bp_schedule_take(&schedule, wanted, &chunk)) break;
+        const bool has_more = bp_schedule_has_more(&schedule);
+        assert_int_equal(bp_schedule_take(&schedule, wanted, &chunk), has_more);
+        if (!has_more) break;
         if (chunk.first_pixel == 0) bp_pace_begin_pass(&pace);
         const double seconds = chunk_seconds(world, &chunk);
         flight[under_way].samples = (uint64_t)chunk.pixel_count * chunk.samples;
