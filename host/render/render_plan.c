@@ -25,7 +25,7 @@ static void choose_form(const BpDeviceInfo *device, const BpRenderOptions *optio
 
 /* Paths of a packet: sixteen where a vector has as many lanes, else eight, which need fewer registers. But
  * while rays walk through a large tree they wait for memory, and with sixteen there is more to do meanwhile:
- * so vectors of eight lanes follow sixteen there (docs/BENCHMARKS.md, "Tuning log"). */
+ * so vectors of eight lanes follow sixteen there (docs/TUNING.md). */
 static uint32_t choose_packet_lanes(const BpDeviceInfo *device, const BpRenderOptions *options,
                                     const BpTree *tree) {
     if (options->packet_lanes != 0) return options->packet_lanes;
