@@ -195,7 +195,7 @@ static int write_main_page(const char *folder, const Edition *edition) {
         ".TP\n\\fBPOCL_CACHE_DIR\\fR\nwhere PoCL, the driver for processors, keeps compiled kernels\n"
         ".TP\n\\fBBALLPARK_KERNEL_CACHE\\fR\n\\fBon\\fR or \\fBoff\\fR: whether Ballpark keeps compiled "
         "kernels, in\n\\fI$XDG_CACHE_HOME/ballpark/kernels\\fR or \\fI~/.cache/ballpark/kernels\\fR; "
-        "by default\nonly for drivers that keep none themselves\n"
+        "by default\nthose that took long, except PoCL's\n"
         ".TP\n\\fBBALLPARK_SHOW\\fR\n\\fBkitty\\fR, \\fBiterm2\\fR, \\fBsixel\\fR or \\fBblocks\\fR: how "
         "\\fBballpark render \\-\\-show\\fR draws,\ninstead of what it detects of the terminal\n"
         ".TP\n\\fBBALLPARK_MPI\\fR\nthe module for MPI to load instead of the installed one, or "

@@ -1,7 +1,6 @@
 /* kernel_cache.c: see kernel_cache.h. */
 #include "kernel_cache.h"
 
-#include "base/clock.h"
 #include "base/hash.h"
 #include "cache_file.h"
 #include "cache_folder.h"
@@ -72,10 +71,10 @@ static uint64_t hash_settings(void) {
     return hash;
 }
 
-/* Heap; NULL: out of memory. `options`: Optional, as they do not matter for what the driver is. */
+/* Heap; NULL: out of memory. */
 static char *identify(const BpDevice *device, const char *options) {
     const BpDeviceInfo *info = &device->info;
-    const size_t size = 2048 + (options != NULL ? strlen(options) : 0);
+    const size_t size = 2048 + strlen(options);
     char *text = malloc(size);
     if (text == NULL) return NULL;
     snprintf(text, size,
@@ -83,24 +82,21 @@ static char *identify(const BpDevice *device, const char *options) {
              "settings: %016llx\noptions: %s\n",
              info->platform, info->name, info->version, info->driver, info->float_lanes,
              info->type == BP_DEVICE_CPU ? (unsigned long long)hash_processor() : 0,
-             (unsigned long long)hash_settings(), options != NULL ? options : "");
+             (unsigned long long)hash_settings(), options);
     return text;
 }
 
-/* FOLDER/PREFIX-hash.END, heap; NULL without a home for caches. */
-static char *name_file(const char *prefix, uint64_t hash, const char *end, bool make) {
+/* The program's file, heap; NULL without a home for caches. */
+static char *name_program(const char *identity, const char *source, bool make) {
+    const uint64_t hash = bp_hash_text(bp_hash_text(BP_HASH_START, identity), source);
     char *folder = bp_cache_folder(FOLDER, make);
     if (folder == NULL) return NULL;
     const size_t size = strlen(folder) + 64;
     char *path = malloc(size);
-    if (path != NULL) snprintf(path, size, "%s/%s%016llx%s", folder, prefix, (unsigned long long)hash, end);
+    if (path != NULL)
+        snprintf(path, size, "%s/" PROGRAM_PREFIX "%016llx.bin", folder, (unsigned long long)hash);
     free(folder);
     return path;
-}
-
-static char *name_program(const char *identity, const char *source, bool make) {
-    return name_file(PROGRAM_PREFIX, bp_hash_text(bp_hash_text(BP_HASH_START, identity), source), ".bin",
-                     make);
 }
 
 char *bp_kernel_cache_path(const BpDevice *device, const char *source, const char *options) {
@@ -293,67 +289,9 @@ void bp_kernel_cache_store(const BpDevice *device, const char *source, const cha
     free(identity);
 }
 
-/* ---- drivers ------------------------------------------------------------------------------------------ */
-
-/* Seconds of the processor that a build of this source takes; negative: it fails. */
-static double time_build(const BpDevice *device, const char *source) {
-    cl_int code;
-    const double start = bp_processor_seconds();
-    cl_program program = clCreateProgramWithSource(device->context, 1, &source, NULL, &code);
-    if (code != CL_SUCCESS) return -1;
-    code = clBuildProgram(program, 1, &device->id, "-cl-std=CL1.2", NULL, NULL);
-    clReleaseProgram(program);
-    return code == CL_SUCCESS ? bp_processor_seconds() - start : -1;
-}
-
-/* Whether the driver builds a program that it has seen in much less time than one that it has not. The first
- * time that a driver compiles, it may load its compiler: it has done so before this. */
-static bool keeps_programs(const BpDevice *device) {
-    double first = 0, again = 0;
-    for (int trial = 0; trial < 2; ++trial) {
-        char source[512];
-        snprintf(source, sizeof source,
-                 "__kernel void trial(__global float4 *x) { /* %ld %.9f %d */\n"
-                 "    float4 sum = (float4)(0);\n"
-                 "    for (uint i = 0u; i < 99u; ++i) sum = fma(sum, x[i], sqrt(x[i + 1u]) / x[i + 2u]);\n"
-                 "    x[get_global_id(0)] = sum;\n}\n",
-                 (long)getpid(), bp_clock_seconds(), trial);
-        const double fresh = time_build(device, source), seen = time_build(device, source);
-        if (fresh < 0 || seen < 0) return true; /* a driver in trouble: leave it alone */
-        if (trial == 0 || fresh < first) first = fresh;
-        if (trial == 0 || seen < again) again = seen;
-    }
-    return again < 0.5 * first;
-}
-
 bool bp_kernel_cache_wants(const BpDevice *device, BpKernelCacheMode mode, double build_seconds) {
-    static const char *const answers[] = {"keeps programs: no\n", "keeps programs: yes\n"};
     if (mode != BP_KERNEL_CACHE_AUTO) return mode == BP_KERNEL_CACHE_ON;
-    /* PoCL compiles most of a program when it is run, after its binary was asked for. */
-    if (build_seconds < SLOW_SECONDS || strcmp(device->info.platform, BP_POCL_PLATFORM) == 0) return false;
-    char *identity = identify(device, NULL);
-    char *path =
-        identity != NULL ? name_file("driver-", bp_hash_text(BP_HASH_START, identity), ".txt", true) : NULL;
-    bool keeps = true;
-    if (path != NULL) {
-        size_t size = 0;
-        char *text = bp_cache_read(path, &size);
-        const size_t length = strlen(identity);
-        bool known = false;
-        for (int answer = 0; answer < 2 && text != NULL && !known; ++answer)
-            if (size == length + strlen(answers[answer]) && memcmp(text, identity, length) == 0 &&
-                memcmp(text + length, answers[answer], strlen(answers[answer])) == 0) {
-                keeps = answer == 1;
-                known = true;
-            }
-        if (!known) {
-            keeps = keeps_programs(device);
-            const BpCachePart parts[2] = {{identity, length}, {answers[keeps], strlen(answers[keeps])}};
-            bp_cache_write(path, parts, 2);
-        }
-        free(text);
-    }
-    free(path);
-    free(identity);
-    return !keeps;
+    /* PoCL keeps kernels itself, and compiles most of a program when it is run, after its binary was asked
+     * for. */
+    return build_seconds >= SLOW_SECONDS && strcmp(device->info.platform, BP_POCL_PLATFORM) != 0;
 }

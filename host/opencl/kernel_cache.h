@@ -1,4 +1,4 @@
-/* kernel_cache.h: compiled programs, kept in the user's cache for drivers that keep none themselves.
+/* kernel_cache.h: compiled programs, kept in the user's cache.
  *
  * In:    a device, a source and its options; the program they became.   Out: it again, in another process.
  * Knows: OpenCL's program binaries, files.   Does not know: what a program computes.
@@ -10,9 +10,9 @@
  * does a folder that cannot be read or written. Files appear whole, so processes need not wait for each
  * other. The folder has a limit, beyond which the program that was not used for the longest time goes.
  *
- * Whether a driver keeps programs itself is measured, once for each version of it: the time to build a new
- * small program is compared with the time to build it again. BALLPARK_KERNEL_CACHE=on keeps programs in any
- * case, =off never. */
+ * PoCL keeps programs itself. Of other drivers, those that took long to build are kept: a driver that keeps
+ * them too builds them in no time when they come again. BALLPARK_KERNEL_CACHE=on keeps programs in any case,
+ * =off never. */
 #ifndef BP_OPENCL_KERNEL_CACHE_H
 #define BP_OPENCL_KERNEL_CACHE_H
 
@@ -21,7 +21,7 @@
 #define BP_KERNEL_CACHE_BYTES_MAX (256u << 20)
 
 typedef enum BpKernelCacheMode {
-    BP_KERNEL_CACHE_AUTO, /* where the driver keeps nothing itself, and for programs that took long */
+    BP_KERNEL_CACHE_AUTO, /* programs that took long, except PoCL's */
     BP_KERNEL_CACHE_ON,
     BP_KERNEL_CACHE_OFF
 } BpKernelCacheMode;
@@ -38,8 +38,7 @@ cl_program bp_kernel_cache_load(const BpDevice *device, const char *source, cons
 void bp_kernel_cache_store(const BpDevice *device, const char *source, const char *options,
                            cl_program program, const char *log, uint64_t bytes_max);
 
-/* Whether programs that took `build_seconds` of the processor are to be kept, in this mode. The first time it
- * matters, this measures the driver, which takes four builds of a small kernel. */
+/* Whether programs that took `build_seconds` of the processor are to be kept, in this mode. */
 bool bp_kernel_cache_wants(const BpDevice *device, BpKernelCacheMode mode, double build_seconds);
 
 /* The path of the program's file, heap; NULL without a home for caches. For tests. */

@@ -184,8 +184,7 @@ static void a_pass_is_remembered(void **state) {
     free(other_path);
 }
 
-/* Whoever opens a pipe waits for its other end, and a folder is no file: neither is a memory, nor replaced.
- */
+/* Whoever opens a pipe waits for its other end: it is no memory, and a file replaces it. A folder stays. */
 static void what_is_no_regular_file_is_no_memory(void **state) {
     BpDevice *device = *state;
     char folder[] = "/tmp/ballpark-self-test-XXXXXX", below[64];
@@ -198,11 +197,12 @@ static void what_is_no_regular_file_is_no_memory(void **state) {
     alarm(300); /* only so that a hang is a failure */
     assert_int_equal(mkfifo(path, 0600), 0);
     assert_true(runs_now(device));
-    assert_true(runs_now(device));
+    assert_false(runs_now(device));
     assert_int_equal(stat(path, &kind), 0);
-    assert_true(S_ISFIFO(kind.st_mode));
+    assert_true(S_ISREG(kind.st_mode));
     assert_int_equal(unlink(path), 0);
     assert_int_equal(mkdir(path, 0700), 0);
+    assert_true(runs_now(device));
     assert_true(runs_now(device));
     assert_int_equal(rmdir(path), 0);
     alarm(0);

@@ -370,6 +370,19 @@ static void the_oldest_goes(void **state) {
     for (int i = 0; i < 4; ++i) free(paths[i]);
 }
 
+static void what_took_long_is_kept(void **state) {
+    Lab *lab = *state;
+    BpDevice device = *lab->device;
+    snprintf(device.info.platform, sizeof device.info.platform, "A driver");
+    assert_true(bp_kernel_cache_wants(&device, BP_KERNEL_CACHE_AUTO, 0.11));
+    assert_false(bp_kernel_cache_wants(&device, BP_KERNEL_CACHE_AUTO, 0.09));
+    assert_true(bp_kernel_cache_wants(&device, BP_KERNEL_CACHE_ON, 0.0));
+    assert_false(bp_kernel_cache_wants(&device, BP_KERNEL_CACHE_OFF, 9.0));
+    snprintf(device.info.platform, sizeof device.info.platform, "Portable Computing Language");
+    assert_false(bp_kernel_cache_wants(&device, BP_KERNEL_CACHE_AUTO, 9.0));
+    assert_true(bp_kernel_cache_wants(&device, BP_KERNEL_CACHE_ON, 0.0));
+}
+
 static void the_environment_decides(void **state) {
     Lab *lab = *state;
     BpKernelCacheMode mode;
@@ -476,6 +489,7 @@ int main(int argc, char **argv) {
             TEST(nothing_can_be_written),
             TEST(the_disk_is_full),
             TEST(the_oldest_goes),
+            TEST(what_took_long_is_kept),
             TEST(the_environment_decides),
         },
                             shared[] = {TEST(processes_share_it)};
