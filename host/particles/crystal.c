@@ -1,24 +1,17 @@
 /* crystal.c: see crystal.h. */
 #include "crystal.h"
+#include "scene/vector.h"
 
 #include <string.h>
 
 /* How far lengths of the cell may differ from those of the transformation. */
 #define AGREEMENT 0.01
 
-static double dot(const double a[3], const double b[3]) {
-    return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
-}
-
-static void cross(const double a[3], const double b[3], double out[3]) {
-    for (int i = 0; i < 3; i++) out[i] = a[(i + 1) % 3] * b[(i + 2) % 3] - a[(i + 2) % 3] * b[(i + 1) % 3];
-}
-
 /* The three vectors of which each has the product 1 with its own of the given three, and 0 with the others;
  * false: those lie in a plane. */
 static bool find_reciprocal(const double v[3][3], double out[3][3]) {
-    for (int i = 0; i < 3; i++) cross(v[(i + 1) % 3], v[(i + 2) % 3], out[i]);
-    const double volume = dot(v[0], out[0]);
+    for (int i = 0; i < 3; i++) bp_cross(v[(i + 1) % 3], v[(i + 2) % 3], out[i]);
+    const double volume = bp_dot(v[0], out[0]);
     for (int i = 0; i < 3; i++)
         for (int k = 0; k < 3; k++) {
             out[i][k] /= volume;
@@ -36,7 +29,7 @@ bool crystal_frame_of_edges(CrystalFrame *frame, const double edges[3][4]) {
     if (!find_reciprocal((const double(*)[3])vectors, rows)) return false;
     for (int i = 0; i < 3; i++) {
         memcpy(frame->row[i], rows[i], sizeof rows[i]);
-        frame->row[i][3] = -dot(rows[i], origin);
+        frame->row[i][3] = -bp_dot(rows[i], origin);
         frame->given[i] = true;
     }
     return true;
@@ -45,13 +38,13 @@ bool crystal_frame_of_edges(CrystalFrame *frame, const double edges[3][4]) {
 /* Whether the rows that are given are those of the standard frame, as nearly as six decimals tell. */
 static bool is_standard(const CrystalFrame *frame, const double edges[3][3]) {
     double longest = 0;
-    for (int k = 0; k < 3; k++) longest = fmax(longest, sqrt(dot(edges[k], edges[k])));
+    for (int k = 0; k < 3; k++) longest = fmax(longest, sqrt(bp_dot(edges[k], edges[k])));
     const double rounding = 1e-3 + 1e-6 * longest; /* of the cell's own digits, of those of the rows */
     for (int i = 0; i < 3; i++) {
         if (!frame->given[i]) continue;
         if (!(fabs(frame->row[i][3]) <= rounding)) return false;
         for (int k = 0; k < 3; k++)
-            if (!(fabs(dot(frame->row[i], edges[k]) - (i == k)) <= rounding)) return false;
+            if (!(fabs(bp_dot(frame->row[i], edges[k]) - (i == k)) <= rounding)) return false;
     }
     return true;
 }
@@ -59,16 +52,16 @@ static bool is_standard(const CrystalFrame *frame, const double edges[3][3]) {
 /* The axes along which the standard frame has a, b in the plane of the first two, and c: unit vectors. */
 static void find_axes(const double edges[3][3], double axes[3][3]) {
     const double *const a = edges[0], *const b = edges[1];
-    const double length = sqrt(dot(a, a)), along = dot(a, b) / dot(a, a);
+    const double length = sqrt(bp_dot(a, a)), along = bp_dot(a, b) / bp_dot(a, a);
     double rest[3];
     for (int k = 0; k < 3; k++) rest[k] = b[k] - along * a[k];
-    const double height = sqrt(dot(rest, rest));
+    const double height = sqrt(bp_dot(rest, rest));
     for (int k = 0; k < 3; k++) {
         axes[0][k] = a[k] / length;
         axes[1][k] = rest[k] / height;
     }
-    cross(axes[0], axes[1], axes[2]);
-    if (dot(axes[2], edges[2]) < 0)
+    bp_cross(axes[0], axes[1], axes[2]);
+    if (bp_dot(axes[2], edges[2]) < 0)
         for (int k = 0; k < 3; k++) axes[2][k] = -axes[2][k];
 }
 
@@ -87,14 +80,14 @@ static bool turn(const CrystalFrame *frame, double edges[3][3], double origin[3]
             for (int axis = 0; axis < 3; axis++) turned[i][k] += edges[i][axis] * axes[axis][k];
             off[k] = turned[i][k] - rough[i][k];
         }
-        if (!(dot(off, off) <= AGREEMENT * AGREEMENT * dot(edges[i], edges[i]))) return false;
+        if (!(bp_dot(off, off) <= AGREEMENT * AGREEMENT * bp_dot(edges[i], edges[i]))) return false;
     }
     for (int k = 0; k < 3; k++) {
         origin[k] = 0;
         for (int i = 0; i < 3; i++) origin[k] -= frame->row[i][3] * turned[i][k];
     }
     memcpy(edges, turned, sizeof turned);
-    return isfinite(dot(origin, origin));
+    return isfinite(bp_dot(origin, origin));
 }
 
 void crystal_turn_cell(BpParticleFile *file, const CrystalFrame *frame, const char *named) {

@@ -3,7 +3,6 @@
 #include "reader.h"
 
 #include "base/encoding.h"
-#include "base/message_text.h"
 #include "base/plural.h"
 
 #include <inttypes.h>

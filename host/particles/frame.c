@@ -6,6 +6,7 @@
 #include "base/pages.h"
 #include "base/plural.h"
 #include "names.h"
+#include "scene/vector.h"
 
 #include <math.h>
 #include <stdarg.h>
@@ -259,23 +260,19 @@ bool bp_particles_repeat(const BpParticles *particles) {
     return particles->periodic[0] || particles->periodic[1] || particles->periodic[2];
 }
 
-static double length_of(const double v[3]) {
-    return sqrt(v[0] * v[0] + v[1] * v[1] + v[2] * v[2]);
-}
-
 /* Whether the edges that repeat lie in as many dimensions as they are, and not nearly in fewer. */
 static bool is_spanned(const double edges[3][3], const bool periodic[3]) {
     double unit[3][3] = {{0}}, measure = 1;
     for (int e = 0; e < 3; e++) { /* the parts at right angles to the edges before (Gram, Schmidt) */
         if (!periodic[e]) continue;
-        const double length = length_of(edges[e]);
+        const double length = bp_length(edges[e]);
         for (int i = 0; i < 3; i++) unit[e][i] = edges[e][i] / length;
         for (int f = 0; f < e; f++) {
             double along = 0;
             for (int i = 0; i < 3; i++) along += unit[e][i] * unit[f][i];
             for (int i = 0; i < 3; i++) unit[e][i] -= along * unit[f][i];
         }
-        const double rest = length_of(unit[e]);
+        const double rest = bp_length(unit[e]);
         measure *= rest;
         for (int i = 0; i < 3; i++) unit[e][i] /= rest > 0 ? rest : 1;
     }
@@ -289,7 +286,7 @@ void frame_cell(BpParticleFile *file, const double origin[3], const double edges
     double longest = 0;
     bool good = true; /* fmax() would pass over what is no number */
     for (int i = 0; i < 3; i++) {
-        const double length = length_of(edges[i]);
+        const double length = bp_length(edges[i]);
         good &= length <= COORDINATE_MAX && fabs(origin[i]) <= COORDINATE_MAX;
         longest = fmax(longest, length);
     }
@@ -299,7 +296,7 @@ void frame_cell(BpParticleFile *file, const double origin[3], const double edges
         return;
     }
     p->has_cell = true;
-    for (int i = 0; i < 3; i++) p->periodic[i] = periodic[i] && length_of(edges[i]) > SHORTEST_EDGE;
+    for (int i = 0; i < 3; i++) p->periodic[i] = periodic[i] && bp_length(edges[i]) > SHORTEST_EDGE;
     if (!is_spanned(edges, p->periodic)) {
         for (int i = 0; i < 3; i++) p->periodic[i] = false;
         bp_particles_note(p, "the cell is flat, so nothing repeats");

@@ -1,5 +1,6 @@
 /* gsd_shapes.c: see gsd_shapes.h. */
 #include "gsd_shapes.h"
+#include "scene/vector.h"
 
 #include <jansson.h>
 #include <math.h>
@@ -28,10 +29,6 @@ static BpStatus read_point(const json_t *list, size_t i, double point[3], BpErro
                 : bp_fail(err, BP_ERR_SCENE, "found no point at %zu (from 0) of a list, expected numbers", i);
 }
 
-static double length_of(const double v[3]) {
-    return sqrt(v[0] * v[0] + v[1] * v[1] + v[2] * v[2]);
-}
-
 static BpStatus read_ellipsoid(const json_t *json, GsdShape *shape, BpError *err) {
     static const char *const names[3] = {"a", "b", "c"};
     double axes[3];
@@ -51,7 +48,7 @@ static BpStatus read_corners(const json_t *json, GsdShape *shape, BpError *err) 
     shape->diameter = 0;
     for (size_t i = 0; i < json_array_size(corners); i++) {
         BP_TRY(read_point(corners, i, point, err));
-        shape->diameter = fmax(shape->diameter, 2 * (length_of(point) + rounding));
+        shape->diameter = fmax(shape->diameter, 2 * (bp_length(point) + rounding));
     }
     return BP_OK;
 }
@@ -75,7 +72,7 @@ static BpStatus read_union(const json_t *json, GsdShape *shape, BpError *err) {
         if (!json_is_number(diameter) || sphere[3] < 0)
             return bp_fail(err, BP_ERR_SCENE, "found no number of at least 0 in \"diameters\", expected %zu",
                            count);
-        shape->diameter = fmax(shape->diameter, 2 * (length_of(sphere) + sphere[3]));
+        shape->diameter = fmax(shape->diameter, 2 * (bp_length(sphere) + sphere[3]));
     }
     shape->sphere_count = count;
     if (count <= GSD_UNION_MAX) return BP_OK;

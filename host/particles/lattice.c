@@ -1,18 +1,11 @@
 /* lattice.c: see lattice.h. */
 #include "lattice.h"
+#include "scene/vector.h"
 
 #include <string.h>
 
 /* Rounding neither makes an edge shorter nor an image nearer. */
 #define SHORTER (1 - 1e-9)
-
-static double dot(const double a[3], const double b[3]) {
-    return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
-}
-
-static void cross(const double a[3], const double b[3], double out[3]) {
-    for (int i = 0; i < 3; i++) out[i] = a[(i + 1) % 3] * b[(i + 2) % 3] - a[(i + 2) % 3] * b[(i + 1) % 3];
-}
 
 static void invert(const double m[3][3], double out[3][3]) {
     double determinant = 0;
@@ -31,7 +24,7 @@ static bool replace_edge(double edges[3][3], int e, double x, double y) {
     double other[3];
     for (int c = 0; c < 3; c++)
         other[c] = edges[e][c] + x * edges[(e + 1) % 3][c] + y * edges[(e + 2) % 3][c];
-    if (!(dot(other, other) < SHORTER * dot(edges[e], edges[e]))) return false;
+    if (!(bp_dot(other, other) < SHORTER * bp_dot(edges[e], edges[e]))) return false;
     memcpy(edges[e], other, sizeof other);
     return true;
 }
@@ -40,8 +33,8 @@ static bool replace_edge(double edges[3][3], int e, double x, double y) {
 static bool shorten_edge(double edges[3][3], const bool periodic[3], int e) {
     const double *const f = edges[(e + 1) % 3], *const g = edges[(e + 2) % 3];
     const bool by_f = periodic[(e + 1) % 3], by_g = periodic[(e + 2) % 3];
-    if (by_f && replace_edge(edges, e, -floor(dot(edges[e], f) / dot(f, f) + 0.5), 0)) return true;
-    if (by_g && replace_edge(edges, e, 0, -floor(dot(edges[e], g) / dot(g, g) + 0.5))) return true;
+    if (by_f && replace_edge(edges, e, -floor(bp_dot(edges[e], f) / bp_dot(f, f) + 0.5), 0)) return true;
+    if (by_g && replace_edge(edges, e, 0, -floor(bp_dot(edges[e], g) / bp_dot(g, g) + 0.5))) return true;
     for (int x = -1; x <= 1 && by_f && by_g; x += 2)
         for (int y = -1; y <= 1; y += 2)
             if (replace_edge(edges, e, x, y)) return true;
@@ -65,8 +58,8 @@ static void unit_across(const double a[3], const double *b, double out[3]) {
     int least = 0;
     for (int c = 1; c < 3; c++) least = fabs(a[c]) < fabs(a[least]) ? c : least;
     axis[least] = 1;
-    cross(a, b != NULL ? b : axis, out);
-    const double length = sqrt(dot(out, out));
+    bp_cross(a, b != NULL ? b : axis, out);
+    const double length = sqrt(bp_dot(out, out));
     for (int c = 0; c < 3; c++) out[c] /= length;
 }
 
@@ -141,7 +134,7 @@ static double way_square(const BpLattice *lattice, const double a[3], const doub
                          const int32_t image[3]) {
     double way[3];
     bp_lattice_way(lattice, a, b, image, way);
-    return dot(way, way);
+    return bp_dot(way, way);
 }
 
 void bp_lattice_nearest(const BpLattice *lattice, const double a[3], const double b[3], int32_t image[3]) {

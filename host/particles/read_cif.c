@@ -3,7 +3,6 @@
  * Each model is a frame, and so is each data block that has atoms. */
 #include "cif_token.h"
 #include "crystal.h"
-#include "elements.h"
 #include "places.h"
 
 #include <stdlib.h>

@@ -1,5 +1,4 @@
 /* read_gro.c: GRO, the format of GROMACS; lengths are nanometres; see reader.h. */
-#include "elements.h"
 #include "reader.h"
 
 #include "base/plural.h"

@@ -8,7 +8,6 @@
 #include "reader.h"
 
 #include "base/format.h"
-#include "base/message_text.h"
 #include "base/plural.h"
 
 #include <errno.h>

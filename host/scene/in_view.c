@@ -1,17 +1,14 @@
 /* in_view.c: see in_view.h. */
 #include "in_view.h"
+#include "vector.h"
 
 #include <math.h>
 
 typedef double Vec[3];
 
-static double dot(const double *a, const double *b) {
-    return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
-}
-
 static void unit_cross(const double *a, const double *b, double *out) {
     const Vec c = {a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]};
-    const double length = sqrt(dot(c, c));
+    const double length = sqrt(bp_dot(c, c));
     for (int i = 0; i < 3; i++) out[i] = c[i] / length;
 }
 
@@ -31,7 +28,7 @@ static View find_view(const BpCamera *camera) {
         view.from[i] = camera->lookfrom[i];
         back[i] = camera->lookfrom[i] - camera->lookat[i];
     }
-    const double length = sqrt(dot(back, back));
+    const double length = sqrt(bp_dot(back, back));
     for (int i = 0; i < 3; i++) back[i] /= length;
     for (int i = 0; i < 3; i++) view.ahead[i] = -back[i];
     unit_cross(camera->vup, back, view.right);
@@ -62,10 +59,10 @@ static double ball_around(const View *view, const BpSphere *sphere, const double
  * `lens` before the plane in focus. A sphere that moves is taken for the ball around its way. */
 static bool reaches_planes(const View *view, const BpSphere *sphere, const double end[3]) {
     Vec to;
-    const double radius = ball_around(view, sphere, end, &to), ahead = dot(to, view->ahead);
+    const double radius = ball_around(view, sphere, end, &to), ahead = bp_dot(to, view->ahead);
     if (ahead + radius < 0) return false;
     const double room = radius + view->lens * fmax(1, (ahead + radius) / view->focus - 1);
-    const double aside = fabs(dot(to, view->right)), above = fabs(dot(to, view->up));
+    const double aside = fabs(bp_dot(to, view->right)), above = fabs(bp_dot(to, view->up));
     if (view->orthographic) return aside - view->half_width <= room && above - view->half_height <= room;
     return (aside - ahead * view->half_width) / sqrt(1 + view->half_width * view->half_width) <= room &&
            (above - ahead * view->half_height) / sqrt(1 + view->half_height * view->half_height) <= room;
@@ -74,9 +71,9 @@ static bool reaches_planes(const View *view, const BpSphere *sphere, const doubl
 /* All planes of the edges cut a huge sphere under the camera; a cone around the view need not. */
 static bool reaches_cone(const View *view, const BpSphere *sphere, const double end[3]) {
     Vec to;
-    const double radius = ball_around(view, sphere, end, &to), distance = sqrt(dot(to, to));
+    const double radius = ball_around(view, sphere, end, &to), distance = sqrt(bp_dot(to, to));
     if (view->orthographic || distance - view->lens <= radius) return true;
-    const double angle = acos(fmin(1, fmax(-1, dot(to, view->ahead) / distance)));
+    const double angle = acos(fmin(1, fmax(-1, bp_dot(to, view->ahead) / distance)));
     /* From another point of the lens, the centre lies in another direction, too. */
     return angle - asin(fmin(1, view->lens / distance)) - view->cone <=
            asin(radius / (distance - view->lens));

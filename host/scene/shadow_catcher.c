@@ -1,31 +1,28 @@
 /* shadow_catcher.c: see shadow_catcher.h. */
 #include "shadow_catcher.h"
+#include "vector.h"
 
 #include <math.h>
 #include <string.h>
-
-static double along(const double normal[3], const double point[3]) {
-    return normal[0] * point[0] + normal[1] * point[1] + normal[2] * point[2];
-}
 
 void bp_shadow_catcher_place(BpScene *scene) {
     BpShadowCatcher *const catcher = &scene->shadow_catcher;
     double *const normal = catcher->normal;
     if (!catcher->present) return;
     memcpy(normal, catcher->up, sizeof catcher->up);
-    if (along(normal, normal) == 0 && !scene->has_particles && scene->lighting == BP_LIGHTING_SKY)
+    if (bp_dot(normal, normal) == 0 && !scene->has_particles && scene->lighting == BP_LIGHTING_SKY)
         bp_background_up(scene, normal);
-    else if (along(normal, normal) == 0)
+    else if (bp_dot(normal, normal) == 0)
         normal[scene->has_particles ? scene->up : 1] = 1;
-    const double length = sqrt(along(normal, normal));
+    const double length = sqrt(bp_dot(normal, normal));
     for (int c = 0; c < 3; c++) normal[c] /= length;
     catcher->distance = catcher->height;
     if (catcher->has_height) return;
     double lowest = INFINITY;
     for (size_t i = scene->has_particles ? scene->particle_first : 0; i < scene->sphere_count; i++) {
         const BpSphere *const sphere = &scene->spheres[i];
-        double middle = along(normal, sphere->center);
-        if (bp_sphere_moves(scene, i)) middle = fmin(middle, along(normal, bp_sphere_end(scene, i)));
+        double middle = bp_dot(normal, sphere->center);
+        if (bp_sphere_moves(scene, i)) middle = fmin(middle, bp_dot(normal, bp_sphere_end(scene, i)));
         lowest = fmin(lowest, middle - fabs(sphere->radius));
     }
     catcher->distance = isfinite(lowest) ? lowest : 0;

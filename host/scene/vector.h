@@ -11,6 +11,10 @@ static inline double bp_dot(const double a[3], const double b[3]) {
     return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
 }
 
+static inline double bp_length(const double v[3]) {
+    return sqrt(bp_dot(v, v));
+}
+
 static inline double bp_distance2(const double a[3], const double b[3]) {
     double sum = 0;
     for (int i = 0; i < 3; ++i) sum += (a[i] - b[i]) * (a[i] - b[i]);

@@ -4,7 +4,6 @@
 #include "base/json_text.h"
 #include "check_entry.h"
 
-#include <stdio.h>
 #include <string.h>
 
 json_t *bp_check_junit_suite(const json_t *entry) {

@@ -4,7 +4,6 @@
 #endif
 #include "driver_care.h"
 
-#include "base/long_call.h"
 #include "base/memory_limit.h"
 #include "base/output_file.h"
 #include "cli/terminal/page.h"
