@@ -108,51 +108,35 @@ char *bp_kernel_cache_path(const BpDevice *device, const char *source, const cha
 
 /* ---- files -------------------------------------------------------------------------------------------- */
 
-typedef struct Kept {
-    char name[64];
-    uint64_t size;
-    struct timespec used;
-} Kept;
-
-static int by_use(const void *a, const void *b) {
-    const struct timespec *x = &((const Kept *)a)->used, *y = &((const Kept *)b)->used;
-    if (x->tv_sec != y->tv_sec) return x->tv_sec < y->tv_sec ? -1 : 1;
-    return (x->tv_nsec > y->tv_nsec) - (x->tv_nsec < y->tv_nsec);
+static bool is_older(struct timespec x, struct timespec y) {
+    return x.tv_sec != y.tv_sec ? x.tv_sec < y.tv_sec : x.tv_nsec < y.tv_nsec;
 }
 
-/* Removes the programs that were not used for the longest time, until the rest has at most `bytes_max`. What
- * a killed process left half-written counts as one. Another process may be at it too: then more goes. */
+/* Removes the programs that were not used for the longest time, one by one, until the rest has at most
+ * `bytes_max`. What a killed process left half-written counts as one. Another process may be at it too: then
+ * more goes. */
 static void make_room(uint64_t bytes_max) {
     char *folder = bp_cache_folder(FOLDER, false);
     DIR *open = folder != NULL ? opendir(folder) : NULL;
-    Kept *kept = NULL;
-    size_t count = 0, room = 0;
-    uint64_t total = 0;
-    for (const struct dirent *entry; open != NULL && (entry = readdir(open)) != NULL;) {
-        struct stat state;
-        if (strncmp(entry->d_name, PROGRAM_PREFIX, strlen(PROGRAM_PREFIX)) != 0 ||
-            strlen(entry->d_name) >= sizeof kept->name ||
-            fstatat(dirfd(open), entry->d_name, &state, AT_SYMLINK_NOFOLLOW) != 0 || !S_ISREG(state.st_mode))
-            continue;
-        if (count == room) {
-            Kept *grown = realloc(kept, (2 * room + 64) * sizeof *kept);
-            if (grown == NULL) break;
-            kept = grown;
-            room = 2 * room + 64;
+    for (uint64_t total = UINT64_MAX; open != NULL && total > bytes_max;) {
+        char oldest[256] = "";
+        struct timespec then = {0};
+        total = 0;
+        rewinddir(open);
+        for (const struct dirent *entry; (entry = readdir(open)) != NULL;) {
+            struct stat state;
+            if (strncmp(entry->d_name, PROGRAM_PREFIX, strlen(PROGRAM_PREFIX)) != 0 ||
+                fstatat(dirfd(open), entry->d_name, &state, AT_SYMLINK_NOFOLLOW) != 0 ||
+                !S_ISREG(state.st_mode))
+                continue;
+            total += (uint64_t)state.st_size;
+            if (oldest[0] != '\0' && !is_older(state.st_mtim, then)) continue;
+            snprintf(oldest, sizeof oldest, "%s", entry->d_name);
+            then = state.st_mtim;
         }
-        Kept *one = &kept[count++];
-        snprintf(one->name, sizeof one->name, "%s", entry->d_name);
-        one->size = (uint64_t)state.st_size;
-        one->used = state.st_mtim;
-        total += one->size;
-    }
-    if (total > bytes_max) qsort(kept, count, sizeof *kept, by_use);
-    for (size_t i = 0; i < count && total > bytes_max; ++i) {
-        unlinkat(dirfd(open), kept[i].name, 0);
-        total -= kept[i].size;
+        if (total > bytes_max && unlinkat(dirfd(open), oldest, 0) != 0) break;
     }
     if (open != NULL) closedir(open);
-    free(kept);
     free(folder);
 }
 

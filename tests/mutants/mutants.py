@@ -171,7 +171,7 @@ MUTANTS = [
                   "info->platform, info->name, info->version, info->name, info->float_lanes,")],
            [test("test_kernel_cache", "another_is_not_found")]),
     Mutant("the youngest kernel goes", "an order the wrong way round",
-           [patch("host/opencl/kernel_cache.c", "return x->tv_sec < y->tv_sec ? -1 : 1;", "return x->tv_sec < y->tv_sec ? 1 : -1;")],
+           [patch("host/opencl/kernel_cache.c", "x.tv_sec != y.tv_sec ? x.tv_sec < y.tv_sec :", "x.tv_sec != y.tv_sec ? x.tv_sec > y.tv_sec :")],
            [test("test_kernel_cache", "the_oldest_goes")]),
     Mutant("a kernel that anybody wrote", "caches in shared folders",
            [patch("host/opencl/cache_file.c", "(state.st_mode & (S_IWGRP | S_IWOTH)) == 0 &&", "state.st_mode != 0 &&")],
