@@ -147,13 +147,34 @@ static BpStatus write_fixed_scene(const BpCommandLine *line, const char *name, c
 
 /* ---- one timed run ----------------------------------------------------------------------------------- */
 
-/* One timed run of one scene, from file to samples. Times are wall-clock seconds unless they say otherwise.
- */
+/* What is measured in each round, and its name in the document. Times are wall-clock seconds unless they say
+ * otherwise. They are of a stretch of tracing, begun when caches, clocks and the size of chunks had settled.
+ * CPU: of all threads of this process; device: for a CPU device, the processor time that tracing took. */
+#define MEASURE_LIST(X)                                                                                      \
+    X(LOAD, "load_seconds")                                                                                  \
+    X(TREE, "tree_seconds")                                                                                  \
+    X(KERNEL, "kernel_build_seconds")                                                                        \
+    X(SAMPLES, "samples_per_second")                                                                         \
+    X(SEGMENTS, "segments_per_second")                                                                       \
+    X(SEGMENT, "nanoseconds_per_segment")                                                                    \
+    X(SEGMENT_CPU, "cpu_nanoseconds_per_segment")                                                            \
+    X(SEGMENT_DEVICE, "device_nanoseconds_per_segment")
+
+enum {
+#define MEASURE_ENUM(name, member) MEASURE_##name,
+    MEASURE_LIST(MEASURE_ENUM)
+#undef MEASURE_ENUM
+        MEASURES
+};
+static const char *const measure_names[MEASURES] = {
+#define MEASURE_NAME(name, member) member,
+    MEASURE_LIST(MEASURE_NAME)
+#undef MEASURE_NAME
+};
+
+/* One timed run of one scene, from file to samples. */
 typedef struct Run {
-    double load_seconds, tree_seconds, kernel_build_seconds;
-    /* A stretch of tracing, begun when caches, clocks and the size of chunks had settled. cpu_seconds: of all
-     * threads of this process; for a CPU device, the processor time that tracing took. */
-    double seconds, cpu_seconds, device_seconds;
+    double values[MEASURES];
     uint64_t samples, segments;
     double mean[3], nrmse; /* of the whole run */
     size_t spheres;
@@ -215,16 +236,23 @@ static BpStatus trace(BpRender *render, double seconds, Run *run, BpError *err) 
     const double more = seconds / taken * (double)(samples / 2 + 1);
     const double start = bp_clock_seconds(), cpu_start = bp_processor_seconds();
     BP_TRY(trace_to(render, samples + (more > 1 ? (uint64_t)more : 1), err));
-    run->seconds = bp_clock_seconds() - start;
-    run->cpu_seconds = bp_processor_seconds() - cpu_start;
+    const double spent = bp_clock_seconds() - start, cpu_spent = bp_processor_seconds() - cpu_start;
     BP_TRY(read_report(render, &run->report, &film, err));
     run->samples = run->report.samples - before.samples;
     run->segments = run->report.segments - before.segments;
-    run->device_seconds = run->report.device_seconds - before.device_seconds;
     bp_film_mean(film, run->mean);
     run->nrmse = bp_film_nrmse(film);
     if (run->segments == 0)
         return bp_fail(err, BP_ERR_USAGE, "no rays to measure; use a --depth of at least 1");
+    const double segments = (double)run->segments;
+    run->values[MEASURE_TREE] = run->report.tree_seconds + run->report.pack_seconds;
+    run->values[MEASURE_KERNEL] = run->report.kernel_build_seconds + run->report.first_launch_seconds;
+    run->values[MEASURE_SAMPLES] = (double)run->samples / spent;
+    run->values[MEASURE_SEGMENTS] = segments / spent;
+    run->values[MEASURE_SEGMENT] = 1e9 * spent / segments;
+    run->values[MEASURE_SEGMENT_CPU] = 1e9 * cpu_spent / segments;
+    run->values[MEASURE_SEGMENT_DEVICE] =
+        1e9 * (run->report.device_seconds - before.device_seconds) / segments;
     return BP_OK;
 }
 
@@ -239,7 +267,7 @@ static BpStatus run_once(const BpCommandLine *line, const char *path, const BpDe
     const double start = bp_clock_seconds();
     BpStatus status = bp_setup_scene(line, path, &scene, err);
     if (status != BP_OK) goto done;
-    run->load_seconds = bp_clock_seconds() - start;
+    run->values[MEASURE_LOAD] = bp_clock_seconds() - start;
     run->spheres = scene->sphere_count;
     run->width = scene->camera.width;
     run->height = scene->camera.height;
@@ -249,19 +277,10 @@ static BpStatus run_once(const BpCommandLine *line, const char *path, const BpDe
     run->max_depth = options.max_depth;
     BP_TRY_GOTO(status, bp_render_create(scene, &options, devices, device_count, &render, err), done);
     status = trace(render, seconds, run, err);
-    run->tree_seconds = run->report.tree_seconds + run->report.pack_seconds;
-    run->kernel_build_seconds = run->report.kernel_build_seconds + run->report.first_launch_seconds;
 done:
     bp_render_destroy(&render);
     bp_scene_destroy(&scene);
     return status;
-}
-
-/* `values` are put in order. count >= 1. */
-static Figure quartiles(double *values, size_t count) {
-    bp_sort_doubles(values, count);
-    return (Figure){bp_quantile(values, count, 0.5), bp_quantile(values, count, 0.25),
-                    bp_quantile(values, count, 0.75)};
 }
 
 /* ---- all scenes, round after round ------------------------------------------------------------------- */
@@ -287,37 +306,13 @@ typedef struct Bench {
 
 /* ---- figures of the rounds ---- */
 
-typedef double RunValue(const Run *run);
-
-static double load_seconds(const Run *run) {
-    return run->load_seconds;
-}
-static double tree_seconds(const Run *run) {
-    return run->tree_seconds;
-}
-static double kernel_seconds(const Run *run) {
-    return run->kernel_build_seconds;
-}
-static double samples_rate(const Run *run) {
-    return (double)run->samples / run->seconds;
-}
-static double segments_rate(const Run *run) {
-    return (double)run->segments / run->seconds;
-}
-static double segment_nanoseconds(const Run *run) {
-    return 1e9 * run->seconds / (double)run->segments;
-}
-static double segment_cpu_nanoseconds(const Run *run) {
-    return 1e9 * run->cpu_seconds / (double)run->segments;
-}
-static double segment_device_nanoseconds(const Run *run) {
-    return 1e9 * run->device_seconds / (double)run->segments;
-}
-
-static Figure figure(const Bench *bench, const Entry *entry, RunValue *value) {
+static Figure figure(const Bench *bench, const Entry *entry, int measure) {
     double values[ROUNDS_MAX];
-    for (size_t r = 0; r < bench->rounds; ++r) values[r] = value(&entry->runs[r]);
-    return quartiles(values, bench->rounds);
+    const size_t count = bench->rounds;
+    for (size_t r = 0; r < count; ++r) values[r] = entry->runs[r].values[measure];
+    bp_sort_doubles(values, count);
+    return (Figure){bp_quantile(values, count, 0.5), bp_quantile(values, count, 0.25),
+                    bp_quantile(values, count, 0.75)};
 }
 
 static double bytes_per_sphere(const Entry *entry) {
@@ -339,18 +334,17 @@ static const char *short_time(double seconds, char *text, size_t size) {
 enum { COLUMNS = 11 };
 
 static void fill_row(const Bench *bench, const Entry *entry, const BpTable *table, size_t row) {
-    const Figure segments = figure(bench, entry, segments_rate);
+    const Figure segments = figure(bench, entry, MEASURE_SEGMENTS);
     const size_t size = BP_CELL_SIZE;
     bp_shown(entry->name, bp_table_cell(table, row, 0), size);
     bp_format_whole(entry->runs[0].spheres, bp_table_cell(table, row, 1), size);
-    short_time(figure(bench, entry, load_seconds).median, bp_table_cell(table, row, 2), size);
-    short_time(figure(bench, entry, tree_seconds).median, bp_table_cell(table, row, 3), size);
-    short_time(figure(bench, entry, kernel_seconds).median, bp_table_cell(table, row, 4), size);
-    snprintf(bp_table_cell(table, row, 5), size, "%.2f", 1e-6 * figure(bench, entry, samples_rate).median);
+    short_time(figure(bench, entry, MEASURE_LOAD).median, bp_table_cell(table, row, 2), size);
+    short_time(figure(bench, entry, MEASURE_TREE).median, bp_table_cell(table, row, 3), size);
+    short_time(figure(bench, entry, MEASURE_KERNEL).median, bp_table_cell(table, row, 4), size);
+    snprintf(bp_table_cell(table, row, 5), size, "%.2f", 1e-6 * figure(bench, entry, MEASURE_SAMPLES).median);
     snprintf(bp_table_cell(table, row, 6), size, "%.2f", 1e-6 * segments.median);
-    snprintf(bp_table_cell(table, row, 7), size, "%.1f", figure(bench, entry, segment_nanoseconds).median);
-    snprintf(bp_table_cell(table, row, 8), size, "%.1f",
-             figure(bench, entry, segment_cpu_nanoseconds).median);
+    snprintf(bp_table_cell(table, row, 7), size, "%.1f", figure(bench, entry, MEASURE_SEGMENT).median);
+    snprintf(bp_table_cell(table, row, 8), size, "%.1f", figure(bench, entry, MEASURE_SEGMENT_CPU).median);
     snprintf(bp_table_cell(table, row, 9), size, "%.0f %%",
              100.0 * (segments.high - segments.low) / segments.median);
     snprintf(bp_table_cell(table, row, 10), size, "%.0f", bytes_per_sphere(entry));
@@ -389,11 +383,11 @@ static BpStatus print_table(const BpCommandLine *line, const Bench *bench, BpErr
 
 /* ---- JSON ---- */
 
-static json_t *figure_json(const Bench *bench, const Entry *entry, RunValue *value) {
-    const Figure f = figure(bench, entry, value);
+static json_t *figure_json(const Bench *bench, const Entry *entry, int measure) {
+    const Figure f = figure(bench, entry, measure);
     json_t *values = json_array();
     for (size_t r = 0; r < bench->rounds && values != NULL; ++r)
-        json_array_append_new(values, json_real(value(&entry->runs[r])));
+        json_array_append_new(values, json_real(entry->runs[r].values[measure]));
     return json_pack("{s:f, s:f, s:f, s:o}", "median", f.median, "low", f.low, "high", f.high, "rounds",
                      values);
 }
@@ -406,22 +400,18 @@ static json_t *entry_json(const Bench *bench, const Entry *entry) {
         segments += entry->runs[r].segments;
     }
     json_t *nrmse = isfinite(run->nrmse) ? json_real(run->nrmse) : json_null();
-    return json_pack(
-        "{s:o, s:o, s:I, s:I, s:I, s:I, s:o, s:o, s:o, s:o, s:o, s:o, s:o, s:o, s:f, s:I, s:f, s:[fff], s:o, "
-        "s:I}",
-        "name", bp_json_text(entry->name), "path", bp_json_text(entry->path), "spheres",
-        (json_int_t)run->spheres, "width", (json_int_t)run->width, "height", (json_int_t)run->height,
-        "max_depth", (json_int_t)run->max_depth, "load_seconds", figure_json(bench, entry, load_seconds),
-        "tree_seconds", figure_json(bench, entry, tree_seconds), "kernel_build_seconds",
-        figure_json(bench, entry, kernel_seconds), "samples_per_second",
-        figure_json(bench, entry, samples_rate), "segments_per_second",
-        figure_json(bench, entry, segments_rate), "nanoseconds_per_segment",
-        figure_json(bench, entry, segment_nanoseconds), "cpu_nanoseconds_per_segment",
-        figure_json(bench, entry, segment_cpu_nanoseconds), "device_nanoseconds_per_segment",
-        figure_json(bench, entry, segment_device_nanoseconds), "segments_per_sample",
-        (double)segments / (double)samples, "scene_bytes", (json_int_t)run->report.scene_bytes,
-        "bytes_per_sphere", bytes_per_sphere(entry), "mean_radiance", run->mean[0], run->mean[1],
-        run->mean[2], "nrmse", nrmse, "invalid_samples", (json_int_t)run->report.invalid_samples);
+    json_t *json = json_pack("{s:o, s:o, s:I, s:I, s:I, s:I}", "name", bp_json_text(entry->name), "path",
+                             bp_json_text(entry->path), "spheres", (json_int_t)run->spheres, "width",
+                             (json_int_t)run->width, "height", (json_int_t)run->height, "max_depth",
+                             (json_int_t)run->max_depth);
+    for (int m = 0; m < MEASURES; ++m)
+        json = bp_json_join(json, json_pack("{s:o}", measure_names[m], figure_json(bench, entry, m)));
+    return bp_json_join(json, json_pack("{s:f, s:I, s:f, s:[fff], s:o, s:I}", "segments_per_sample",
+                                        (double)segments / (double)samples, "scene_bytes",
+                                        (json_int_t)run->report.scene_bytes, "bytes_per_sphere",
+                                        bytes_per_sphere(entry), "mean_radiance", run->mean[0], run->mean[1],
+                                        run->mean[2], "nrmse", nrmse, "invalid_samples",
+                                        (json_int_t)run->report.invalid_samples));
 }
 
 static BpStatus write_json(const BpCommandLine *line, const Bench *bench, BpError *err) {
