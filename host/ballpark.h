@@ -11,8 +11,10 @@
  *     if (status == BP_OK) status = bp_render_read(render, &picture, &err);
  *     if (status == BP_OK)
  *         status = bp_picture_write(&picture, "cover.png", BP_FORMAT_PNG, BP_TRANSFER_GAMMA2, &err);
- *     if (status != BP_OK)
+ *     if (status != BP_OK) {
+ *         bp_error_add_remedy(&err, BP_INTERFACE_C);
  *         fprintf(stderr, "%s: %s\n", err.file[0] != 0 ? err.file : bp_status_name(status), err.message);
+ *     }
  *     bp_picture_clear(&picture); bp_render_destroy(&render); bp_scene_destroy(&scene);
  *     bp_error_clear(&err);
  *
@@ -85,7 +87,7 @@ extern "C" {
     X(BP_ERR_DEVICE, 1, "device error")                                                                      \
     X(BP_ERR_BUILD, 1, "kernel build error")                                                                 \
     X(BP_ERR_LIMIT, 1, "limit exceeded")                                                                     \
-    X(BP_ERR_USAGE, 2, "bad command line")                                                                   \
+    X(BP_ERR_USAGE, 2, "usage error")                                                                        \
     X(BP_ERR_SCENE, 2, "bad scene")                                                                          \
     X(BP_ERR_DISAGREE, 3, "kernel and reference disagree")                                                   \
     X(BP_ERR_INTERRUPTED, 130, "interrupted")                                                                \
@@ -99,20 +101,52 @@ typedef enum BpStatus {
 #undef BP_STATUS_ENUM
 } BpStatus;
 
+/* What helps after a failure, where each interface to the library has a name of its own for it: an option of
+ * the command line, an argument of Python's functions, a member of a struct. */
+typedef enum BpRemedy {
+    BP_REMEDY_NONE, /* or the message has it, in words that suit everybody */
+    BP_REMEDY_SMALLER_WIDTH,
+    BP_REMEDY_OR_SMALLER_WIDTH, /* in addition to what the message advises; so are the others with OR_ */
+    BP_REMEDY_WIDTH_AT_MOST,    /* `remedy_value`: the greatest width in pixels */
+    BP_REMEDY_SMALLER_WIDTH_OR_OTHER_DEVICE,
+    BP_REMEDY_WIDTH_AT_MOST_OR_OTHER_DEVICE, /* `remedy_value`: the greatest width in pixels */
+    BP_REMEDY_OTHER_DEVICE,
+    BP_REMEDY_OR_OTHER_DEVICE,
+    BP_REMEDY_SINGLE_PRECISION_OR_OTHER_DEVICE,
+    BP_REMEDY_DOUBLE_PRECISION,
+    BP_REMEDY_SMALLER_DEPTH,
+    BP_REMEDY_OTHER_FIRST_SAMPLE,
+    BP_REMEDY_SAME_SEED,
+    BP_REMEDY_SAME_WIDTH,
+    BP_REMEDY_SAME_DEPTH,
+    BP_REMEDY_SAME_SETTING, /* `remedy_value`: a member of BpRenderOptions, such as "light_sampling" */
+    BP_REMEDY_WRITABLE_PLACE,
+    BP_REMEDY_OR_OTHER_PLACE,
+    BP_REMEDY_OTHER_NAME
+} BpRemedy;
+
+/* Whose names a remedy is worded with. */
+typedef enum BpInterface { BP_INTERFACE_C, BP_INTERFACE_COMMAND_LINE, BP_INTERFACE_PYTHON } BpInterface;
+
 /* Describes a failure. Zero it before its first use; it is written on failure alone, and may be used
  * again. */
 typedef struct BpError {
     BpStatus code;
-    char message[1024]; /* what happened, and the remedy; where in the file is told by the next members */
+    char message[1024]; /* what happened; where in the file is in the next members */
     char file[512];     /* the file at fault, or ""; a message about a file as a whole may name it too */
     int line, column;   /* from 1; 0 when unknown */
     char *attachment;   /* Optional. A long text, such as a whole build log. */
+    BpRemedy remedy;
+    char remedy_value[24]; /* "" where the remedy needs none */
 } BpError;
 
 /* "file error", and "unknown status" for a number that is not a BpStatus; static. */
 BP_API const char *bp_status_name(BpStatus status);
 /* The exit code of the command line program: 0 for BP_OK, never 0 for another. */
 BP_API int bp_status_exit_code(BpStatus status);
+/* Appends the remedy to the message, in the words of `interface`, and sets `remedy` to BP_REMEDY_NONE: so a
+ * second call does nothing. `err`: Optional. */
+BP_API void bp_error_add_remedy(BpError *err, BpInterface interface);
 /* Releases the attachment and zeroes the rest. `err`: Optional. */
 BP_API void bp_error_clear(BpError *err);
 
@@ -231,7 +265,7 @@ BP_API bool bp_color_map(const char *name, double share, double color[3]);
 typedef enum BpDeviceType { BP_DEVICE_CPU, BP_DEVICE_GPU, BP_DEVICE_OTHER } BpDeviceType;
 
 typedef struct BpDeviceInfo {
-    unsigned number; /* what --device takes; counts over all platforms, from 0 */
+    unsigned number; /* as bp_device_find() takes it; counts over all platforms, from 0 */
     BpDeviceType type;
     char platform[128], name[256], vendor[128], version[128], driver[128];
     unsigned compute_units;

@@ -50,7 +50,8 @@ static void print_message(const BpError *err, BpStatus status, FILE *out) {
 
 /* The message, in lines that fit a terminal; programs get it in one. Then the attachment (a build log) as it
  * is. */
-static void print_error(const BpError *err, BpStatus status, bool wide) {
+static void print_error(BpError *err, BpStatus status, bool wide) {
+    bp_error_add_remedy(err, BP_INTERFACE_COMMAND_LINE);
     char *text = NULL;
     size_t size = 0;
     FILE *message = open_memstream(&text, &size);

@@ -217,8 +217,8 @@ bool bp_known_file(const char *name, const char *bytes, size_t length, size_t si
 const char *bp_known_file_remedy(const BpKnownFile *file) {
     switch (file->kind) {
     case BP_FILE_SUMS:
-        return ": `ballpark merge FILE.bpa -o FILE.png` makes the picture, and --resume FILE.bpa continues "
-               "the render";
+        return ": `ballpark merge FILE.bpa -o FILE.png` makes the picture, and "
+               "`ballpark render SCENE --resume FILE.bpa` continues the render";
     case BP_FILE_PICTURE:
         return "; a scene can name it in \"background\" or \"textures\"";
     case BP_FILE_IMAGE:

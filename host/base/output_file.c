@@ -167,6 +167,7 @@ BpStatus bp_output_write(const char *path, bool new_only, BpPrint *print, const 
     } else {
         bp_fail(err, status, "%s", fault.message);
     }
+    bp_error_set_remedy(err, fault.remedy, fault.remedy_value);
     bp_error_clear(&fault);
     return status;
 }
@@ -211,6 +212,7 @@ BpStatus bp_output_finish(FILE *out, const char *what, BpError *err) {
     const int error_before = errno;
     if (fflush(out) == 0 && !failed_before) return BP_OK;
     const int error_number = failed_before ? error_before : errno;
-    return bp_fail(err, BP_ERR_FILE, "writing the %s failed: %s%s", what, strerror(error_number),
-                   bp_output_remedy(error_number));
+    bp_fail(err, BP_ERR_FILE, "writing the %s failed: %s", what, strerror(error_number));
+    bp_output_advise(err, error_number);
+    return BP_ERR_FILE;
 }

@@ -12,32 +12,31 @@
 
 #define LINKS_MAX 40 /* as the kernel's own limit on chains of symbolic links */
 
-const char *bp_output_remedy(int error_number) {
-    switch (error_number) {
-    case ENOENT:
-        return "; create the folder first, or choose another with -o";
-    case ENOTDIR:
-        return "; part of the path is a file, not a folder";
-    case EACCES:
-    case EPERM:
-        return "; change the permissions, or choose another place with -o";
-    case EROFS:
-        return "; choose a writable place with -o";
-    case ENOSPC:
-    case EDQUOT:
-        return "; make room, or choose another place with -o";
-    case EFBIG:
-        return "; raise the limit on the size of files (ulimit -f), or choose another place with -o";
-    case EISDIR:
-        return "; name a file in it";
-    case ENAMETOOLONG:
-        return "; choose a shorter name";
-    case EEXIST:
-        return "; choose another name, or write without --no-clobber";
-    case EBADF:
-        return "; no file is open for writing there";
-    default:
-        return "";
+static const struct Advice {
+    int error_number;
+    const char *text; /* that suits everybody */
+    BpRemedy remedy;
+} advice[] = {
+    {ENOENT, "; create the folder first", BP_REMEDY_OR_OTHER_PLACE},
+    {ENOTDIR, "; part of the path is a file, not a folder", BP_REMEDY_NONE},
+    {EACCES, "; change the permissions", BP_REMEDY_OR_OTHER_PLACE},
+    {EPERM, "; change the permissions", BP_REMEDY_OR_OTHER_PLACE},
+    {EROFS, "", BP_REMEDY_WRITABLE_PLACE},
+    {ENOSPC, "; make room", BP_REMEDY_OR_OTHER_PLACE},
+    {EDQUOT, "; make room", BP_REMEDY_OR_OTHER_PLACE},
+    {EFBIG, "; raise the limit on the size of files (ulimit -f)", BP_REMEDY_OR_OTHER_PLACE},
+    {EISDIR, "; name a file in it", BP_REMEDY_NONE},
+    {ENAMETOOLONG, "; choose a shorter name", BP_REMEDY_NONE},
+    {EEXIST, "", BP_REMEDY_OTHER_NAME},
+    {EBADF, "; no file is open for writing there", BP_REMEDY_NONE},
+};
+
+void bp_output_advise(BpError *err, int error_number) {
+    for (size_t i = 0; i < sizeof advice / sizeof advice[0] && err != NULL; ++i) {
+        if (advice[i].error_number != error_number) continue;
+        const size_t used = strlen(err->message);
+        snprintf(err->message + used, sizeof err->message - used, "%s", advice[i].text);
+        bp_error_set_remedy(err, advice[i].remedy, "");
     }
 }
 
@@ -46,7 +45,8 @@ BpStatus bp_output_fail(BpError *err, const char *action, const char *path, int 
     if (error_number == ENOMEM) return bp_fail(err, BP_ERR_MEMORY, "out of memory for writing %s", path);
     if (strerror_r(error_number, reason, sizeof reason) != 0)
         snprintf(reason, sizeof reason, "error %d", error_number);
-    bp_fail(err, BP_ERR_FILE, "cannot %s %s: %s%s", action, path, reason, bp_output_remedy(error_number));
+    bp_fail(err, BP_ERR_FILE, "cannot %s %s: %s", action, path, reason);
+    bp_output_advise(err, error_number);
     bp_error_at(err, path, 0, 0);
     return BP_ERR_FILE;
 }

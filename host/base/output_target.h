@@ -39,8 +39,8 @@ char *bp_folder_of(const char *path);
  * the descriptor `b_stream`. What cannot be followed is not the same as anything. */
 bool bp_output_same(const char *a, const char *b, int b_stream);
 
-/* A remedy for that errno, such as "; make room, ..." or "". */
-const char *bp_output_remedy(int error_number);
+/* Adds to an error whose message ends with the reason of that errno what helps, such as "; make room". */
+void bp_output_advise(BpError *err, int error_number);
 /* "cannot ACTION PATH: reason; remedy", BP_ERR_FILE; `error_number` is an errno. */
 BpStatus bp_output_fail(BpError *err, const char *action, const char *path, int error_number);
 

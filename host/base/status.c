@@ -1,6 +1,8 @@
 /* status.c: see status.h. */
 #include "status.h"
 
+#include "remedy.h"
+
 #include <stdarg.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -60,27 +62,38 @@ void bp_free(void *memory) {
     free(memory);
 }
 
-BpStatus bp_fail(BpError *err, BpStatus code, const char *format, ...) {
-    if (err == NULL) return code;
-    /* The new message may quote the old one, so it is formatted before the old one is released. */
+/* The new message may quote the old one, so it is formatted before the old one is released. */
+static void fill(BpError *err, BpStatus code, const char *format, va_list arguments) {
     char message[sizeof err->message];
-    va_list arguments;
-    va_start(arguments, format);
+    va_list again;
+    va_copy(again, arguments);
     const int length = vsnprintf(message, sizeof message, format, arguments);
-    va_end(arguments);
-    if (length >= (int)sizeof message) {
-        char *whole = malloc((size_t)length + 1);
-        if (whole != NULL) {
-            va_start(arguments, format);
-            vsnprintf(whole, (size_t)length + 1, format, arguments);
-            va_end(arguments);
-            shorten(whole, message, sizeof message);
-            free(whole);
-        }
+    char *whole = length >= (int)sizeof message ? malloc((size_t)length + 1) : NULL;
+    if (whole != NULL) {
+        vsnprintf(whole, (size_t)length + 1, format, again);
+        shorten(whole, message, sizeof message);
+        free(whole);
     }
+    va_end(again);
     bp_error_clear(err);
     err->code = code;
     memcpy(err->message, message, sizeof err->message);
+}
+
+BpStatus bp_fail(BpError *err, BpStatus code, const char *format, ...) {
+    va_list arguments;
+    va_start(arguments, format);
+    if (err != NULL) fill(err, code, format, arguments);
+    va_end(arguments);
+    return code;
+}
+
+BpStatus bp_fail_with(BpRemedy remedy, BpError *err, BpStatus code, const char *format, ...) {
+    va_list arguments;
+    va_start(arguments, format);
+    if (err != NULL) fill(err, code, format, arguments);
+    va_end(arguments);
+    bp_error_set_remedy(err, remedy, "");
     return code;
 }
 
@@ -99,4 +112,19 @@ void bp_error_attach(BpError *err, const char *text) {
     memcpy(copy, text, size);
     free(err->attachment);
     err->attachment = copy;
+}
+
+void bp_error_set_remedy(BpError *err, BpRemedy remedy, const char *value) {
+    if (err == NULL) return;
+    err->remedy = remedy;
+    snprintf(err->remedy_value, sizeof err->remedy_value, "%s", value);
+}
+
+void bp_error_add_remedy(BpError *err, BpInterface interface) {
+    if (err == NULL) return;
+    char remedy[BP_REMEDY_SIZE], whole[sizeof err->message + sizeof remedy];
+    bp_remedy_text(err->remedy, err->remedy_value, interface, remedy);
+    snprintf(whole, sizeof whole, "%s%s", err->message, remedy);
+    shorten(whole, err->message, sizeof err->message);
+    bp_error_set_remedy(err, BP_REMEDY_NONE, "");
 }

@@ -1,10 +1,11 @@
 /* status.h: how every fallible function of the host reports failure.
  *
- * In:    nothing.   Out: a status code and, in a BpError, the whole story for a person.
- * Knows: the public error list (ballpark.h).   Does not know: who prints it (only main does).
+ * In:    nothing.   Out: a status code and, in a BpError, what happened and what helps.
+ * Knows: the public error list (ballpark.h).   Does not know: who prints it.
  *
  * Convention: a fallible function returns BpStatus and takes `BpError *err` last. `err` may be NULL.
- * On success `err` is not touched; on failure it holds code, message and, where there is one, the place.
+ * On success `err` is not touched; on failure it holds code, message and, where there are any, place and
+ * remedy.
  * A function that forwards a failure returns the code it got and leaves `err` as it is. */
 #ifndef BP_BASE_STATUS_H
 #define BP_BASE_STATUS_H
@@ -26,6 +27,14 @@ BpStatus bp_fail(BpError *err, BpStatus code, const char *format, ...) BP_PRINTF
 
 /* Adds the place of the fault to `err`: `file` (copied), `line` and `column` from 1, 0 when unknown. */
 void bp_error_at(BpError *err, const char *file, int line, int column);
+
+/* Adds what helps to `err`, where that has other names on the command line, in Python and in C (remedy.h):
+ * the message must not name it. `value`: what the remedy needs, or "". */
+void bp_error_set_remedy(BpError *err, BpRemedy remedy, const char *value);
+
+/* bp_fail() with a remedy that needs no value. */
+BpStatus bp_fail_with(BpRemedy remedy, BpError *err, BpStatus code, const char *format, ...)
+    BP_PRINTF_LIKE(4, 5);
 
 /* Attaches a long text (a build log, say), copied whole, that is printed below the message. */
 void bp_error_attach(BpError *err, const char *text);

@@ -40,7 +40,7 @@ BpStatus bp_check_create(const BpScene *scene, const BpCheckOptions *options, st
     if (options->render.samples_per_pixel < 2)
         return bp_fail(err, BP_ERR_USAGE, "a check needs at least 2 samples per pixel to measure noise");
     if (options->render.sampler != BP_SAMPLER_INDEPENDENT)
-        return bp_fail(err, BP_ERR_USAGE, "a check needs --sampler independent");
+        return bp_fail(err, BP_ERR_USAGE, "a check needs independent samples");
     BpCheck *check = calloc(1, sizeof *check);
     if (check == NULL) return bp_fail(err, BP_ERR_MEMORY, "out of memory for a check");
     check->scene = scene;

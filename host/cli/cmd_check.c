@@ -593,6 +593,7 @@ static void write_failure(const Session *session, BpStatus status, const BpError
     if (status == BP_OK || status == BP_ERR_USAGE) return;
     BpError told = *err;
     told.code = status; /* more exact than that of a public function */
+    bp_error_add_remedy(&told, BP_INTERFACE_COMMAND_LINE);
     bp_check_failure_write(
         line,
         line->bits    ? "bits"

@@ -366,6 +366,7 @@ static void look_for_unseen(const BpCommandLine *line, const BpScene *scene, con
     BpStatus status = may_be_unseen(scene, &may_be, &err);
     if (status == BP_OK && may_be && device == NULL) status = bp_setup_devices(line, &devices, &count, &err);
     if (status == BP_OK && may_be) status = look(line, scene, device != NULL ? device : devices, found, &err);
+    bp_error_add_remedy(&err, BP_INTERFACE_COMMAND_LINE);
     if (status != BP_OK) snprintf(found->unknown, sizeof found->unknown, "%s", err.message);
     free(devices);
     bp_error_clear(&err);

@@ -76,6 +76,7 @@ static BpStatus check_same(const BpCommandLine *line, const BpFilm *head, size_t
     const BpStatus status = bp_film_check_same(first, head, err);
     if (status == BP_OK) return BP_OK;
     char reason[sizeof err->message];
+    bp_error_add_remedy(err, BP_INTERFACE_COMMAND_LINE);
     snprintf(reason, sizeof reason, "%s", err != NULL ? err->message : "");
     return bp_fail(err, status, "cannot merge %s and %s: %.600s", line->operands[file], line->operands[0],
                    reason);
@@ -183,6 +184,7 @@ static BpStatus add_file(const BpCommandLine *line, size_t file, BpFilm **sum, B
     bp_film_destroy(&from);
     if (status == BP_OK) return BP_OK;
     char reason[sizeof err->message];
+    bp_error_add_remedy(err, BP_INTERFACE_COMMAND_LINE);
     snprintf(reason, sizeof reason, "%s", err != NULL ? err->message : "");
     return bp_fail(err, status, "cannot merge %s: %.600s", line->operands[file], reason);
 }

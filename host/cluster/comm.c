@@ -129,7 +129,9 @@ BpStatus bp_comm_collect(BpComm *comm, const char *text, char ***texts, BpError 
 
 typedef struct Story {
     int32_t status, line, column;
+    BpRemedy remedy;
     char message[sizeof((BpError *)0)->message], file[sizeof((BpError *)0)->file], host[64];
+    char remedy_value[sizeof((BpError *)0)->remedy_value];
 } Story;
 
 /* On rank 0: puts the story of the first rank that failed into `err`, unless it has one of its own. */
@@ -140,6 +142,7 @@ static BpStatus tell(const Story *stories, uint32_t ranks, BpError *err) {
         if (story->status == BP_OK) continue;
         bp_fail(err, (BpStatus)story->status, "rank %" PRIu32 " on %s: %s", r, story->host, story->message);
         bp_error_at(err, story->file, story->line, story->column);
+        bp_error_set_remedy(err, story->remedy, story->remedy_value);
         return (BpStatus)story->status;
     }
     return BP_OK;
@@ -160,6 +163,8 @@ BpStatus bp_comm_agree(BpComm *comm, BpStatus status, BpError *err) {
         own.column = err->column;
         memcpy(own.message, err->message, sizeof own.message);
         memcpy(own.file, err->file, sizeof own.file);
+        own.remedy = err->remedy;
+        memcpy(own.remedy_value, err->remedy_value, sizeof own.remedy_value);
     }
     memcpy(own.host, comm->place.host, sizeof own.host);
     int32_t verdict = BP_OK;

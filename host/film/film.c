@@ -154,11 +154,11 @@ static BpStatus append_range(struct BpSampleRange *list, size_t *count, const st
         return BP_OK;
     }
     if (last->first + last->count > range->first)
-        return bp_fail(err, BP_ERR_USAGE,
-                       "samples %" PRIu64 " to %" PRIu64 " and %" PRIu64 " to %" PRIu64
-                       " overlap, so these samples would count twice; render with another --first-sample",
-                       last->first, last->first + last->count - 1, range->first,
-                       range->first + range->count - 1);
+        return bp_fail_with(BP_REMEDY_OTHER_FIRST_SAMPLE, err, BP_ERR_USAGE,
+                            "samples %" PRIu64 " to %" PRIu64 " and %" PRIu64 " to %" PRIu64
+                            " overlap, so these samples would count twice",
+                            last->first, last->first + last->count - 1, range->first,
+                            range->first + range->count - 1);
     last->count += range->count;
     return BP_OK;
 }
@@ -216,28 +216,31 @@ BpStatus bp_film_add_range(BpFilm *film, uint64_t first, uint64_t count, BpError
 /* ---- merging ---- */
 
 BpStatus bp_film_check_same(const BpFilm *a, const BpFilm *b, BpError *err) {
-#define BP_SAME(field, what, remedy)                                                                         \
+#define BP_SAME(field, remedy, difference)                                                                   \
     if (a->field != b->field)                                                                                \
-    return bp_fail(err, BP_ERR_USAGE, what " differ" remedy, (int64_t)a->field, (int64_t)b->field)
+    return bp_fail_with(remedy, err, BP_ERR_USAGE, difference, (int64_t)a->field, (int64_t)b->field)
 #define BP_SAME_SETTING(type, member, option, plural)                                                        \
-    if (a->member != b->member)                                                                              \
-        return bp_fail(err, BP_ERR_USAGE, plural " differ (--" option " %s and --" option " %s)",            \
-                       bp_##member##_names[a->member], bp_##member##_names[b->member]);
-    BP_SAME(width, "widths", " (%" PRId64 " and %" PRId64 " pixels: --width)");
-    BP_SAME(height, "heights", " (%" PRId64 " and %" PRId64 " pixels)");
+    if (a->member != b->member) {                                                                            \
+        bp_fail(err, BP_ERR_USAGE, plural " differ (%s and %s)", bp_##member##_names[a->member],             \
+                bp_##member##_names[b->member]);                                                             \
+        bp_error_set_remedy(err, BP_REMEDY_SAME_SETTING, #member);                                           \
+        return BP_ERR_USAGE;                                                                                 \
+    }
+    BP_SAME(width, BP_REMEDY_SAME_WIDTH, "widths differ (%" PRId64 " and %" PRId64 " pixels)");
+    BP_SAME(height, BP_REMEDY_NONE, "heights differ (%" PRId64 " and %" PRId64 " pixels)");
     if (a->scene_hash != b->scene_hash)
         return bp_fail(err, BP_ERR_USAGE, "scenes differ (%016" PRIx64 " and %016" PRIx64 ")", a->scene_hash,
                        b->scene_hash);
     if (a->seed != b->seed)
-        return bp_fail(err, BP_ERR_USAGE,
-                       "seeds differ (%" PRIu64 " and %" PRIu64
-                       "); render both with the same --seed and different --first-sample",
-                       a->seed, b->seed);
-    BP_SAME(replicates, "numbers of replicates", " (%" PRId64 " and %" PRId64 ")");
-    BP_SAME(scale_log2, "fixed-point scales", " (2^%" PRId64 " and 2^%" PRId64 ")");
-    BP_SAME(max_depth, "depths", " (--depth %" PRId64 " and %" PRId64 ")");
+        return bp_fail_with(BP_REMEDY_SAME_SEED, err, BP_ERR_USAGE,
+                            "seeds differ (%" PRIu64 " and %" PRIu64 ")", a->seed, b->seed);
+    BP_SAME(replicates, BP_REMEDY_NONE, "numbers of replicates differ (%" PRId64 " and %" PRId64 ")");
+    BP_SAME(scale_log2, BP_REMEDY_NONE, "fixed-point scales differ (2^%" PRId64 " and 2^%" PRId64 ")");
+    BP_SAME(max_depth, BP_REMEDY_SAME_DEPTH, "depths differ (%" PRId64 " and %" PRId64 ")");
     BP_SETTING_LIST(BP_SAME_SETTING)
-    BP_SAME(transfer, "transfer curves", " (numbers %" PRId64 " and %" PRId64 ")");
+    if (a->transfer != b->transfer)
+        return bp_fail(err, BP_ERR_USAGE, "transfer curves differ (%s and %s)",
+                       bp_transfer_names[a->transfer], bp_transfer_names[b->transfer]);
 #undef BP_SAME
 #undef BP_SAME_SETTING
     return BP_OK;

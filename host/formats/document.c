@@ -286,7 +286,8 @@ BpStatus bp_node_fail(const BpNode *node, BpPart part, BpError *err, const char 
     if (change != NULL) {
         char shown[FOUND_SIZE + 1];
         bp_printable(change->origin, shown, sizeof shown);
-        const BpStatus status = bp_fail(err, BP_ERR_SCENE, "%s: %s (by --set %s)", path, text, shown);
+        const BpStatus status =
+            bp_fail(err, BP_ERR_SCENE, "%s: %s (by %s %s)", path, text, node->document->changed_by, shown);
         bp_error_at(err, node->document->name, 0, 0);
         return status;
     }

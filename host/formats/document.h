@@ -26,6 +26,7 @@ typedef struct BpDocument {
     json_t *written; /* what the text says; NULL: the same as `root` */
     struct BpChange *changes;
     size_t change_count;
+    const char *changed_by; /* what messages call a change, "--set"; the caller's */
 } BpDocument;
 
 /* A member that does not come from the text. */

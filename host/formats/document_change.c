@@ -13,7 +13,7 @@ enum { SHOWN_SIZE = 96 };
 static BpStatus fail(const char *set, BpError *err, const char *text) {
     char shown[SHOWN_SIZE];
     bp_printable(set, shown, sizeof shown);
-    return bp_fail(err, BP_ERR_USAGE, "--set %s: %s", shown, text);
+    return bp_fail(err, BP_ERR_USAGE, "%s: %s", shown, text);
 }
 
 /* ---- the value ----------------------------------------------------------------------------------------- */
@@ -157,7 +157,7 @@ static BpStatus find_place(const char *set, json_t *root, Place *place, const ch
             if (json_object_set_new(place->parent, place->name, place->value) != 0)
                 return bp_json_memory_failed()
                            ? bp_fail(err, BP_ERR_MEMORY, "out of memory while changing the scene")
-                           : bp_fail(err, BP_ERR_SCENE, "--set: expected names in UTF-8");
+                           : fail(set, err, "expected names in UTF-8");
         }
         within = place->value;
     }
@@ -183,24 +183,30 @@ static BpStatus put(const Place *place, const char *set, json_t *value, BpError 
     return done ? BP_OK : fail(set, err, "expected the member's name in UTF-8");
 }
 
-BpStatus bp_document_change(BpDocument *document, const char *const *set, size_t count, BpError *err) {
+static BpStatus change(BpDocument *document, size_t number, const char *set, BpError *err) {
+    Place place;
+    const char *text = NULL;
+    json_t *value = NULL;
+    BpChange *change = &document->changes[number];
+    change->origin = set;
+    BP_TRY(find_place(set, document->root, &place, &text, change, err));
+    document->change_count = number + 1;
+    BP_TRY(read_value(set, text, &value, err));
+    return put(&place, set, value, err);
+}
+
+BpStatus bp_document_change(BpDocument *document, const char *by, const char *const *set, size_t count,
+                            BpError *err) {
     if (count == 0) return BP_OK;
+    document->changed_by = by;
     document->written = json_deep_copy(document->root);
     document->changes = calloc(count, sizeof *document->changes);
     /* Without memory for a member, jansson leaves it out of the copy and says nothing. */
     if (document->written == NULL || document->changes == NULL ||
         !json_equal(document->written, document->root))
         return bp_fail(err, BP_ERR_MEMORY, "out of memory while changing the scene");
-    for (size_t i = 0; i < count; i++) {
-        Place place;
-        const char *text = NULL;
-        json_t *value = NULL;
-        BpChange *change = &document->changes[i];
-        change->origin = set[i];
-        BP_TRY(find_place(set[i], document->root, &place, &text, change, err));
-        document->change_count = i + 1;
-        BP_TRY(read_value(set[i], text, &value, err));
-        BP_TRY(put(&place, set[i], value, err));
-    }
-    return BP_OK;
+    BpStatus status = BP_OK;
+    for (size_t i = 0; i < count && status == BP_OK; i++) status = change(document, i, set[i], err);
+    if (status == BP_ERR_USAGE && err != NULL) bp_fail(err, status, "%s %s", by, err->message);
+    return status;
 }

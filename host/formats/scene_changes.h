@@ -28,6 +28,7 @@ typedef struct BpSceneChanges {
     double range[2];
     const char *const *set; /* Optional: members of the document, see document_change.h */
     size_t set_count;
+    const char *set_by;     /* what messages call these changes, such as "--set" */
     const char *projection; /* Optional. "perspective" or "orthographic", instead of the document's */
     const char *lighting; /* Optional. A name of lighting.h, instead of the document's light or background */
     const char *fresnel;  /* Optional. "schlick" or "exact", for all materials that have such a member */

@@ -19,7 +19,8 @@ BpStatus bp_scene_parse_changed(const char *text, size_t length, const char *nam
     BpStatus status;
     BP_TRY_GOTO(status, bp_document_open(text, length, name, &document, err), done);
     document.held = changes->held;
-    BP_TRY_GOTO(status, bp_document_change(&document, changes->set, changes->set_count, err), done);
+    BP_TRY_GOTO(status, bp_document_change(&document, changes->set_by, changes->set, changes->set_count, err),
+                done);
     BP_TRY_GOTO(status, bp_scene_create_empty(name, &result, err), done);
     const BpNode root = bp_node_root(&document);
     BP_TRY_GOTO(status, bp_parse_scene(&root, changes, result, err), done);

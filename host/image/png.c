@@ -145,12 +145,12 @@ static BpStatus write_png(FILE *out, const Image *image, BpError *err) {
         status = bp_output_finish(out, "PNG", err);
     } else {
         const char *reason = ferror(out) ? strerror(failure.error_number) : failure.text;
-        const char *remedy = ferror(out) ? bp_output_remedy(failure.error_number) : "";
         /* libpng has other words for it ("too many text chunks"). */
         if (failure.error_number == ENOMEM)
             status = bp_fail(err, BP_ERR_MEMORY, "out of memory for the PNG encoder");
         else
-            status = bp_fail(err, BP_ERR_FILE, "writing the PNG failed: %s%s", reason, remedy);
+            status = bp_fail(err, BP_ERR_FILE, "writing the PNG failed: %s", reason);
+        if (ferror(out) && status == BP_ERR_FILE) bp_output_advise(err, failure.error_number);
     }
     png_destroy_write_struct(&png, &info);
     free(row);

@@ -78,51 +78,40 @@ const char *bp_cl_error_name(cl_int code) {
     }
 }
 
-/* The status for `code`; *remedy is what a person can do about it ("" if nothing is known). */
-static BpStatus classify(cl_int code, const char **remedy) {
-    switch (code) {
-    case CL_MEM_OBJECT_ALLOCATION_FAILURE:
-        *remedy = "the device's memory is full: try a smaller --width, or another --device";
-        return BP_ERR_MEMORY;
-    case CL_OUT_OF_HOST_MEMORY:
-        *remedy = "this computer's memory is full: try a smaller --width, or close other programs";
-        return BP_ERR_MEMORY;
-    case CL_OUT_OF_RESOURCES:
-        *remedy = "the device ran out of memory or of time for one kernel: try a smaller --width, or another "
-                  "--device";
-        return BP_ERR_MEMORY;
-    case CL_INVALID_BUFFER_SIZE:
-        *remedy =
-            "a buffer is larger than the device can hold in one piece: try a smaller --width, or another "
-            "--device";
-        return BP_ERR_LIMIT;
-    case CL_DEVICE_NOT_AVAILABLE:
-        *remedy =
-            "the device is in use or switched off: try another --device (`ballpark devices` lists them)";
-        return BP_ERR_DEVICE;
-    case CL_COMPILER_NOT_AVAILABLE:
-        *remedy =
-            "the driver comes without a compiler: install the vendor's full OpenCL driver, or try another "
-            "--device";
-        return BP_ERR_DEVICE;
-    case CL_BUILD_PROGRAM_FAILURE:
-        *remedy = "";
-        return BP_ERR_BUILD;
-    case CL_INVALID_COMMAND_QUEUE:
-    case CL_EXEC_STATUS_ERROR_FOR_EVENTS_IN_WAIT_LIST:
-        *remedy =
-            "an earlier command failed, or the driver stopped the device (a watchdog): try another --device";
-        return BP_ERR_DEVICE;
-    default:
-        *remedy = "";
-        return BP_ERR_DEVICE;
-    }
-}
+/* What is known of an error beside its name. */
+typedef struct Known {
+    cl_int code;
+    BpStatus status;
+    const char *meaning; /* with advice that suits everybody */
+    BpRemedy remedy;
+} Known;
+
+static const Known known[] = {
+    {CL_MEM_OBJECT_ALLOCATION_FAILURE, BP_ERR_MEMORY, "the device's memory is full",
+     BP_REMEDY_SMALLER_WIDTH_OR_OTHER_DEVICE},
+    {CL_OUT_OF_HOST_MEMORY, BP_ERR_MEMORY, "this computer's memory is full; close other programs",
+     BP_REMEDY_OR_SMALLER_WIDTH},
+    {CL_OUT_OF_RESOURCES, BP_ERR_MEMORY, "the device ran out of memory or of time for one kernel",
+     BP_REMEDY_SMALLER_WIDTH_OR_OTHER_DEVICE},
+    {CL_INVALID_BUFFER_SIZE, BP_ERR_LIMIT, "a buffer is larger than the device can hold in one piece",
+     BP_REMEDY_SMALLER_WIDTH_OR_OTHER_DEVICE},
+    {CL_DEVICE_NOT_AVAILABLE, BP_ERR_DEVICE, "the device is in use or switched off", BP_REMEDY_OTHER_DEVICE},
+    {CL_COMPILER_NOT_AVAILABLE, BP_ERR_DEVICE,
+     "the driver comes without a compiler; install the vendor's full OpenCL driver",
+     BP_REMEDY_OR_OTHER_DEVICE},
+    {CL_BUILD_PROGRAM_FAILURE, BP_ERR_BUILD, "", BP_REMEDY_NONE},
+    {CL_INVALID_COMMAND_QUEUE, BP_ERR_DEVICE,
+     "an earlier command failed, or the driver stopped the device (a watchdog)", BP_REMEDY_OTHER_DEVICE},
+    {CL_EXEC_STATUS_ERROR_FOR_EVENTS_IN_WAIT_LIST, BP_ERR_DEVICE,
+     "an earlier command failed, or the driver stopped the device (a watchdog)", BP_REMEDY_OTHER_DEVICE},
+};
 
 BpStatus bp_cl_fail(BpError *err, cl_int code, const char *call, const BpDevice *device) {
-    const char *remedy;
-    const BpStatus status = classify(code, &remedy);
-    return bp_fail(err, status, "%s failed with %s (%d)%s%s%s%s", call, bp_cl_error_name(code), (int)code,
-                   device != NULL ? " on " : "", device != NULL ? device->info.name : "",
-                   remedy[0] != '\0' ? "; " : "", remedy);
+    Known what = {code, BP_ERR_DEVICE, "", BP_REMEDY_NONE};
+    for (size_t i = 0; i < sizeof known / sizeof known[0]; ++i)
+        if (known[i].code == code) what = known[i];
+    return bp_fail_with(what.remedy, err, what.status, "%s failed with %s (%d)%s%s%s%s", call,
+                        bp_cl_error_name(code), (int)code, device != NULL ? " on " : "",
+                        device != NULL ? device->info.name : "", what.meaning[0] != '\0' ? ": " : "",
+                        what.meaning);
 }

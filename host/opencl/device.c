@@ -116,9 +116,8 @@ BpStatus bp_device_open_part(const BpDeviceInfo *info, uint32_t threads, BpDevic
     /* The number alone could mean another device by now, if a driver was installed or a card removed. */
     if (info->number >= count || strcmp(list[info->number].name, info->name) != 0 ||
         strcmp(list[info->number].platform, info->platform) != 0) {
-        status =
-            bp_fail(err, BP_ERR_DEVICE, "device %u (%s) is no longer there; `ballpark devices` lists what is",
-                    info->number, info->name);
+        status = bp_fail_with(BP_REMEDY_OTHER_DEVICE, err, BP_ERR_DEVICE, "device %u (%s) is no longer there",
+                              info->number, info->name);
         goto cleanup;
     }
     if (list[info->number].refusal[0] != '\0') {

@@ -286,9 +286,10 @@ BpStatus bp_self_test_run(BpDevice *device, const char *kernel_text, BpError *er
     BP_TRY_GOTO(status, launch(device, program, in, rows, rows_size, err), cleanup);
     compare(in, rows, device->info.has_double, &failures, story, sizeof story);
     if (failures > 0)
-        status = bp_fail(err, BP_ERR_DEVICE,
+        status =
+            bp_fail_with(BP_REMEDY_OR_OTHER_DEVICE, err, BP_ERR_DEVICE,
                          "device %u (%s, driver %s) failed its self-test, so its pictures could be wrong: %s "
-                         "is wrong%s; use another --device or another version of the driver",
+                         "is wrong%s; use another version of the driver",
                          device->info.number, device->info.name, device->info.driver, story,
                          failures > 1 ? ", and more" : "");
 

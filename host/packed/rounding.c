@@ -104,10 +104,10 @@ static void add_lens(const BpCamera *camera, BpRoundingWarnings *limits) {
     const double pixel = bp_camera_plane_height(camera) / camera->height;
     const double shift = camera->lens_radius * 0x1p-24;
     if (!(shift > BP_ROUNDING_LENS * pixel)) return;
+    snprintf(limits->remedy[limits->count], sizeof limits->remedy[0], "a smaller aperture");
     snprintf(limits->text[limits->count++], sizeof limits->text[0],
              "the lens (radius %g) is so large that rays meet the plane in focus up to %.2g pixels off their "
-             "place "
-             "in single precision; use --precision double, or a smaller aperture",
+             "place in single precision",
              camera->lens_radius, shift / pixel);
 }
 
@@ -135,24 +135,30 @@ void bp_rounding_warnings(const BpScene *scene, BpPrecision precision, BpRoundin
         if (radius > 100 * smallest) note(&contact, i, shift / smallest, BP_ROUNDING_CONTACT);
     }
     find_walls(scene, origin, &thin, &wall);
-    if (off_place.count > 0)
+    if (off_place.count > 0) {
+        snprintf(limits->remedy[limits->count], sizeof limits->remedy[0], "a camera closer to it");
         snprintf(limits->text[limits->count++], sizeof limits->text[0],
-                 "%s (radius %g)%s is displaced by %.2g of its radius in single precision; use --precision "
-                 "double, or a camera closer to it",
+                 "%s (radius %g)%s is displaced by %.2g of its radius in single precision",
                  bp_sphere_name(scene, off_place.sphere, name), fabs(scene->spheres[off_place.sphere].radius),
                  others(&off_place, more), off_place.ratio);
-    if (contact.count > 0)
+    }
+    if (contact.count > 0) {
+        snprintf(limits->remedy[limits->count], sizeof limits->remedy[0], "a radius below %.2g",
+                 smallest * BP_ROUNDING_CONTACT * 0x1p23);
         snprintf(limits->text[limits->count++], sizeof limits->text[0],
                  "the surface of %s (radius %g)%s is displaced by %.2g of the radius of %s (%g) in single "
-                 "precision; use --precision double, or a radius below %.2g",
+                 "precision",
                  bp_sphere_name(scene, contact.sphere, name), fabs(scene->spheres[contact.sphere].radius),
                  others(&contact, more), contact.ratio, bp_sphere_name(scene, smallest_sphere, other),
-                 smallest, smallest * BP_ROUNDING_CONTACT * 0x1p23);
-    if (thin.count > 0)
+                 smallest);
+    }
+    if (thin.count > 0) {
+        snprintf(limits->remedy[limits->count], sizeof limits->remedy[0], "a thicker wall");
         snprintf(limits->text[limits->count++], sizeof limits->text[0],
                  "the wall between %s and the dielectric around it%s, %.2g thick, is displaced by %.2g of "
-                 "its thickness in single precision; use --precision double, or a thicker wall",
+                 "its thickness in single precision",
                  bp_sphere_name(scene, thin.sphere, name), others(&thin, more), wall, thin.ratio);
+    }
     add_lens(&scene->camera, limits);
 }
 
@@ -168,10 +174,10 @@ BpStatus bp_rounding_check_indices(const BpScene *scene, BpPrecision precision, 
         if (i == scene->sphere_count) continue;
         char name[BP_SPHERE_NAME_SIZE];
         bp_printable(material->name, name, sizeof name);
-        return bp_fail(
-            err, BP_ERR_SCENE,
+        return bp_fail_with(
+            BP_REMEDY_DOUBLE_PRECISION, err, BP_ERR_SCENE,
             "materials.%s.refraction_index: found %g, expected 1e-4 to 1e4 in single precision, which "
-            "cannot tell apart the rays that such a surface refracts; use --precision double",
+            "cannot tell apart the rays that such a surface refracts",
             name, index);
     }
     return BP_OK;

@@ -1,7 +1,8 @@
 /* rounding.h: what rounding a scene to single precision does to it, where that can be seen.
  *
  * In:    a validated scene.   Out: warnings, each naming a sphere or the lens, a ratio and a remedy; or an
- * error. Knows: that the kernel sees centres relative to the camera, and all in float (docs/NUMERICS.md).
+ * error.
+ * Knows: that the kernel sees centres relative to the camera, and all in float (docs/NUMERICS.md).
  * Does not know: OpenCL, where the warnings go. */
 #ifndef BP_PACKED_ROUNDING_H
 #define BP_PACKED_ROUNDING_H
@@ -17,7 +18,8 @@
 #define BP_ROUNDING_WARNINGS_MAX 4
 typedef struct BpRoundingWarnings {
     unsigned count;
-    char text[BP_ROUNDING_WARNINGS_MAX][480]; /* one line each, without "warning:" */
+    char text[BP_ROUNDING_WARNINGS_MAX][480];  /* one line each, without "warning:" and without a remedy */
+    char remedy[BP_ROUNDING_WARNINGS_MAX][48]; /* what helps instead of double precision: "a thicker wall" */
 } BpRoundingWarnings;
 
 /* At most one warning of each kind, about the worst sphere, saying how many more there are, or the lens.

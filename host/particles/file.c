@@ -161,7 +161,7 @@ BpStatus bp_particle_file_next(BpParticleFile *file, BpParticles *particles, boo
         *end = file->cut = true;
     }
     if (status != BP_OK) {
-        bp_fail(err, status, "%s", fault.message);
+        bp_fail_with(fault.remedy, err, status, "%s", fault.message);
         bp_error_at(err, fault.file, fault.line, fault.column);
     } else if (*end) {
         file->frame_count = file->frame;

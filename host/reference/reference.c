@@ -78,10 +78,9 @@ BpStatus bp_reference_render(const BpScene *scene, const BpReferenceOptions *opt
     for (unsigned i = 0; i < started; ++i) pthread_join(threads[i], NULL);
     pthread_attr_destroy(&attributes);
     if (started == 0)
-        return bp_fail(
-            err, BP_ERR_MEMORY,
-            "the reference tracer could not start a thread (its stack for max_depth %u may not fit: try a "
-            "smaller --depth)",
+        return bp_fail_with(
+            BP_REMEDY_SMALLER_DEPTH, err, BP_ERR_MEMORY,
+            "the reference tracer could not start a thread, whose stack for paths of %u segments may not fit",
             options->max_depth);
     if (cut_paths != NULL) *cut_paths += atomic_load(&job.cut_paths);
     return BP_OK;

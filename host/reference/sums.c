@@ -12,8 +12,8 @@ BpStatus bp_sums_init(BpSums *sums, uint32_t width, uint32_t height, BpError *er
     sums->means_only = false;
     sums->pixels = calloc((size_t)width * height, sizeof *sums->pixels);
     if (sums->pixels == NULL)
-        return bp_fail(err, BP_ERR_MEMORY,
-                       "no memory for the sums of %u x %u pixels: choose a smaller --width", width, height);
+        return bp_fail_with(BP_REMEDY_SMALLER_WIDTH, err, BP_ERR_MEMORY,
+                            "no memory for the sums of %u x %u pixels", width, height);
     return BP_OK;
 }
 

@@ -4,7 +4,10 @@
 #include "film/film.h"
 #include "scene/scene.h"
 
+#include <stdio.h>
 #include <string.h>
+
+#define PIXELS_MAX (UINT32_MAX / 4)
 
 void bp_render_defaults(const BpScene *scene, BpRenderOptions *options) {
     memset(options, 0, sizeof *options);
@@ -31,10 +34,14 @@ BpStatus bp_render_options_check(const BpScene *scene, const BpRenderOptions *op
             (unsigned long long)options->samples_per_pixel, replicates,
             (unsigned long long)BP_REPLICATE_SAMPLES_MAX * replicates);
     const uint64_t pixels = (uint64_t)scene->camera.width * scene->camera.height;
-    if (pixels > UINT32_MAX / 4)
-        return bp_fail(err, BP_ERR_LIMIT,
-                       "a picture of %u x %u has %llu pixels; at most %u: use a smaller --width",
-                       scene->camera.width, scene->camera.height, (unsigned long long)pixels, UINT32_MAX / 4);
+    if (pixels > PIXELS_MAX) {
+        char widest[16];
+        snprintf(widest, sizeof widest, "%u", bp_camera_width_of(PIXELS_MAX, scene->camera.aspect_ratio));
+        bp_fail(err, BP_ERR_LIMIT, "a picture of %u x %u has %llu pixels, expected at most %u",
+                scene->camera.width, scene->camera.height, (unsigned long long)pixels, PIXELS_MAX);
+        bp_error_set_remedy(err, BP_REMEDY_WIDTH_AT_MOST, widest);
+        return BP_ERR_LIMIT;
+    }
     if (options->tree_width != 0 && options->tree_width != 2 && options->tree_width != 4 &&
         options->tree_width != 8 && options->tree_width != 16)
         return bp_fail(err, BP_ERR_USAGE, "tree width %u: 2, 4, 8 or 16", options->tree_width);

@@ -72,9 +72,8 @@ static bool choose_tree(const BpScene *scene, const BpRenderOptions *options) {
 BpStatus bp_render_plan(const BpScene *scene, const BpRenderOptions *options, const BpDeviceInfo *device,
                         BpWorkerSetup *setup, BpPacked *packed, BpError *err) {
     if (options->precision == BP_PRECISION_DOUBLE && !device->has_double)
-        return bp_fail(err, BP_ERR_DEVICE,
-                       "%s has no double precision; leave --precision double out, or use another --device",
-                       device->name);
+        return bp_fail_with(BP_REMEDY_SINGLE_PRECISION_OR_OTHER_DEVICE, err, BP_ERR_DEVICE,
+                            "%s has no double precision", device->name);
     BP_TRY(bp_rounding_check_indices(scene, options->precision, err));
     memset(setup, 0, sizeof *setup);
     BpEffects effects;

@@ -4,6 +4,7 @@
 #include "base/pages.h"
 #include "packed/tree_binary.h"
 
+#include <inttypes.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -29,11 +30,11 @@ static BpStatus create_buffer(BpWorker *worker, cl_mem *buffer, uint64_t bytes, 
                               const char *what, BpError *err) {
     const BpDeviceInfo *info = &worker->device->info;
     if (bytes > info->largest_allocation_bytes)
-        return bp_fail(err, BP_ERR_LIMIT,
-                       "%s takes %.1f MiB, but %s allows %.1f MiB in one allocation; "
-                       "use a smaller picture or scene, or another --device",
-                       what, (double)bytes / 1048576, info->name,
-                       (double)info->largest_allocation_bytes / 1048576);
+        return bp_fail_with(BP_REMEDY_OR_OTHER_DEVICE, err, BP_ERR_LIMIT,
+                            "%s takes %.1f MiB, but %s allows %.1f MiB in one allocation; "
+                            "use a smaller picture or scene",
+                            what, (double)bytes / 1048576, info->name,
+                            (double)info->largest_allocation_bytes / 1048576);
     cl_int code = CL_SUCCESS;
     const bool in_place = bytes > 0 && uses_in_place(info) && bp_begins_page(data);
     if (bytes == 0) {
@@ -115,10 +116,10 @@ static BpStatus upload_parts(BpWorker *worker, const Upload *upload, BpError *er
     const BpDeviceInfo *info = &worker->device->info;
     const uint64_t length = worker->part_length, bytes = upload->count * upload->size;
     if (upload->count > worker->parts * length)
-        return bp_fail(
-            err, BP_ERR_LIMIT,
+        return bp_fail_with(
+            BP_REMEDY_OR_OTHER_DEVICE, err, BP_ERR_LIMIT,
             "%s takes %.1f MiB, but %s allows %.1f MiB in one allocation, and %d are used for it at "
-            "most; use a smaller scene, or another --device",
+            "most; use a smaller scene",
             upload->what, (double)bytes / 1048576, info->name,
             (double)info->largest_allocation_bytes / 1048576, SCENE_PARTS_MAX);
     for (uint64_t part = 0; part < worker->parts; ++part) {
@@ -147,6 +148,21 @@ BpStatus bp_worker_upload_scene(BpWorker *worker, BpError *err) {
     return BP_OK;
 }
 
+/* For a picture whose sums and scene the device's memory cannot hold. */
+static void advise_width(const BpWorker *worker, BpError *err) {
+    const uint64_t memory = worker->device->info.memory_bytes, scene = worker->scene_bytes;
+    const uint64_t most = memory > scene ? (memory - scene) / (worker->picture_bytes / worker->pixels) : 0;
+    /* The height of other widths follows from the aspect ratio, of which this is a lower bound. */
+    const double aspect_ratio = worker->width / (worker->pixels / worker->width + 1.0);
+    const uint32_t widest = bp_camera_width_of(most, aspect_ratio);
+    char value[16];
+    snprintf(value, sizeof value, "%" PRIu32, widest);
+    if (widest > 0)
+        bp_error_set_remedy(err, BP_REMEDY_WIDTH_AT_MOST_OR_OTHER_DEVICE, value);
+    else
+        bp_error_set_remedy(err, BP_REMEDY_OTHER_DEVICE, "");
+}
+
 BpStatus bp_worker_create_picture(BpWorker *worker, BpError *err) {
     const uint64_t pixels = worker->pixels;
     const uint64_t sums = pixels * worker->replicates * 3 * sizeof(cl_long);
@@ -154,12 +170,13 @@ BpStatus bp_worker_create_picture(BpWorker *worker, BpError *err) {
     const uint64_t tallies = pixels * TALLIES * sizeof(cl_ulong);
     worker->picture_bytes = 2 * sums + counts + tallies;
     const BpDeviceInfo *info = &worker->device->info;
-    if (worker->picture_bytes + worker->scene_bytes > info->memory_bytes)
-        return bp_fail(
-            err, BP_ERR_LIMIT,
-            "scene and picture take %.1f GiB, but %s has %.1f GiB; use a smaller --width or another --device",
-            (double)(worker->picture_bytes + worker->scene_bytes) / (1 << 30), info->name,
-            (double)info->memory_bytes / (1 << 30));
+    if (worker->picture_bytes + worker->scene_bytes > info->memory_bytes) {
+        bp_fail(err, BP_ERR_LIMIT, "scene and picture take %.1f GiB, but %s has %.1f GiB",
+                (double)(worker->picture_bytes + worker->scene_bytes) / (1 << 30), info->name,
+                (double)info->memory_bytes / (1 << 30));
+        advise_width(worker, err);
+        return BP_ERR_LIMIT;
+    }
     BP_TRY(create_buffer(worker, &worker->sums, sums, NULL, "the picture's sums", err));
     BP_TRY(create_buffer(worker, &worker->fine_sums, sums, NULL, "the picture's fine sums", err));
     BP_TRY(create_buffer(worker, &worker->counts, counts, NULL, "the picture's counts", err));

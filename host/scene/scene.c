@@ -17,6 +17,18 @@ uint32_t bp_camera_height(uint32_t width, double aspect_ratio) {
     return height >= UINT32_MAX ? UINT32_MAX : (uint32_t)height;
 }
 
+uint32_t bp_camera_width_of(uint64_t pixels, double aspect_ratio) {
+    uint32_t least = 0, most = BP_PICTURE_SIDE_MAX;
+    while (least < most) {
+        const uint32_t width = least + (most - least + 1) / 2;
+        if ((uint64_t)width * bp_camera_height(width, aspect_ratio) <= pixels)
+            least = width;
+        else
+            most = width - 1;
+    }
+    return least;
+}
+
 void bp_background_up(const BpScene *scene, double up[3]) {
     static const double y[3] = {0, 1, 0};
     const double *const own = scene->background_up;

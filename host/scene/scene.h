@@ -212,6 +212,8 @@ double bp_camera_origin(const BpScene *scene, double origin[3]);
 
 /* height = max(1, floor(width / aspect + 1e-6)) */
 uint32_t bp_camera_height(uint32_t width, double aspect_ratio);
+/* The greatest width at which a picture has at most so many pixels; 0: there is none. */
+uint32_t bp_camera_width_of(uint64_t pixels, double aspect_ratio);
 
 /* The fourth edition's camera, all by default. */
 void bp_camera_defaults(BpCamera *camera);

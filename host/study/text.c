@@ -115,8 +115,8 @@ const char *bp_study_shortness_text(const BpStudyResult *result, char *text, siz
     text[0] = '\0';
     if (least[0] != '\0' || hidden > 0)
         snprintf(text, size,
-                 "This study was too short to rely on its recommendations: %s%s. Give it more time, such as "
-                 "--time %.0fs.",
+                 "This study was too short to rely on its recommendations: %s%s. Give it more time, as in "
+                 "`ballpark cost --time %.0fs`.",
                  least, unnoticed, fmax(BP_STUDY_SECONDS_DEFAULT, 4 * result->budget));
     return text;
 }

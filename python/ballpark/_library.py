@@ -38,7 +38,7 @@ class DeviceError(Error, RuntimeError):
 
 class BpError(c.Structure):
     _fields_ = [("code", c.c_int), ("message", c.c_char * 1024), ("file", c.c_char * 512), ("line", c.c_int),
-                ("column", c.c_int), ("attachment", c.c_char_p)]
+                ("column", c.c_int), ("attachment", c.c_char_p), ("remedy", c.c_int), ("remedy_value", c.c_char * 24)]
 
 
 class BpRows(c.Structure):
@@ -113,6 +113,8 @@ STRUCTS: typing.List[typing.Type[c.Structure]] = [
     BpError, BpRows, BpSphereSet, BpSceneInfo, BpCameraInfo, BpElementInfo, BpDeviceInfo, BpRenderOptions, BpProgress,
     BpStopRule, BpStopEstimate, BpPicture]
 
+INTERFACE = 2  # BP_INTERFACE_PYTHON: messages name arguments, not options of the command line
+
 # Words of enumerations, in the order of the header.
 TRANSFERS = ["gamma2", "srgb", "linear"]
 FORMATS = ["png", "ppm", "ppm-ascii", "pfm", "exr", "bpa"]
@@ -146,6 +148,7 @@ _STATUS: typing.Dict[str, typing.List[typing.Any]] = {
 }
 _OTHER: typing.Dict[str, typing.Tuple[typing.Any, typing.List[typing.Any]]] = {
     "bp_status_name": (c.c_char_p, [c.c_int]),
+    "bp_error_add_remedy": (None, [_ERR, c.c_int]),
     "bp_error_clear": (None, [_ERR]),
     "bp_free": (None, [c.c_void_p]),
     "bp_version": (c.c_char_p, []),
@@ -229,7 +232,7 @@ def failure(status: int, error: BpError, hide_place: bool = False) -> Error:
     """The exception for a failed call; releases what `error` holds."""
     name = library().bp_status_name(status).decode()
     kinds: typing.Dict[str, typing.Type[Error]] = {
-        "bad scene": SceneError, "bad command line": SceneError, "device error": DeviceError,
+        "bad scene": SceneError, "usage error": SceneError, "device error": DeviceError,
         "kernel build error": DeviceError, "no such device": DeviceError, "a device or its driver is broken": DeviceError}
     log = (error.attachment or b"").decode(errors="replace")
     message = error.message.decode(errors="replace") or name
@@ -247,6 +250,7 @@ def call(name: str, *arguments: typing.Any, hide_place: bool = False) -> None:
     status = getattr(library(), name)(*arguments, c.byref(error))
     if status == 0:
         return
+    library().bp_error_add_remedy(c.byref(error), INTERFACE)
     if status == 2:  # BP_ERR_MEMORY
         message = error.message.decode(errors="replace")
         library().bp_error_clear(c.byref(error))

@@ -86,8 +86,8 @@ class Render:
 
     spp: samples per pixel; error: noise to reach, a fraction such as 0.01; time: seconds. The first that is reached
     ends it; without any, the scene's samples per pixel do. With error or time and without spp, samples have no limit.
-    device: as `ballpark --device` takes it. The other options are those of `ballpark render` with the same names;
-    aovs=True adds depth, normal and albedo.
+    device: its number, a part of its name, "gpu" or "cpu"; None: the most capable GPU, or else a CPU. depth: ray segments of
+    a path at most. aovs=True adds depth, normal and albedo. The other options are described by `ballpark help render`.
     """
 
     def __init__(self, scene: Scene, *, spp: typing.Optional[int] = None, error: typing.Optional[float] = None,

@@ -124,9 +124,9 @@ class Merge(ProgramTest):
 
     def test_what_does_not_belong_together(self):
         self.part("a.bpa", 0, 10)
-        for options, says in ((["--seed", "1"], ["seeds differ (0 and 1)", "--first-sample"]),
-                              (["--depth", "3"], ["depths differ (--depth 10 and 3)"]),
-                              (["--width", "13"], ["widths differ (12 and 13 pixels: --width)"])):
+        for options, says in ((["--seed", "1"], ["seeds differ (0 and 1); render both with the same --seed and different --first-sample"]),
+                              (["--depth", "3"], ["depths differ (10 and 3); use the same --depth for both"]),
+                              (["--width", "13"], ["widths differ (12 and 13 pixels); use the same --width for both"])):
             self.part("other.bpa", 10, 10, *options)
             self.fail_with(2, "merge", "a.bpa", "other.bpa", "-o", "x.png",
                            says=["cannot merge other.bpa and a.bpa: ", *says])
@@ -138,7 +138,7 @@ class Merge(ProgramTest):
             data = changed + b"\n" + body[:-4]
             self.write("other.bpa", data + struct.pack("<I", zlib.crc32(data)))
             self.fail_with(2, "merge", "a.bpa", "other.bpa", "-o", "x.png",
-                           says=["cannot merge other.bpa and a.bpa: ", f"(--{name} {value} and --{name} {other})"])
+                           says=["cannot merge other.bpa and a.bpa: ", f"({value} and {other}); use the same --{name} for both"])
         # What changes no sample is no difference.
         self.part("other.bpa", 10, 10, "--transfer", "srgb")
         self.succeed("merge", "a.bpa", "other.bpa", "-o", "y.png")
@@ -156,7 +156,7 @@ class Merge(ProgramTest):
         for name, value, other in self.KERNELS:
             self.part("other.bpa", 10, 10, f"--{name}", other)
             self.fail_with(2, "merge", "a.bpa", "other.bpa", "-o", "x.png",
-                           says=["cannot merge other.bpa and a.bpa: ", f"(--{name} {value} and --{name} {other})"])
+                           says=["cannot merge other.bpa and a.bpa: ", f"({value} and {other}); use the same --{name} for both"])
         for options in (["--kernel", "sample"], ["--effects", "all"]):  # these change no sample
             self.part("other.bpa", 10, 10, *options)
             self.succeed("merge", "a.bpa", "other.bpa", "-o", "y.png")

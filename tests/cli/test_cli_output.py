@@ -144,7 +144,7 @@ class Clobber(ProgramTest):
         errors = process.communicate(timeout=LIMIT_SECONDS)[1].decode()
         self.assertEqual(process.returncode, 1, errors)
         self.assertEqual(self.read("a.png"), b"theirs")
-        kept = re.search(r"the complete result is in (\S+)", errors)[1]
+        kept = re.search(r"the complete result is in ([^\s;]+)", errors)[1]
         self.assertTrue(self.read(kept).startswith(b"\x89PNG"), errors)
         os.remove(self.path(kept))
 

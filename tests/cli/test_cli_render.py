@@ -106,9 +106,9 @@ class Picture(Render):
         self.assertGreater(stats["rays"], stats["samples"])
 
     def test_too_large(self):
-        self.fail_with(1, "render", "s.json", "--width", "65535", says=["65535"])
+        self.fail_with(1, "render", "s.json", "--width", "65535", says=["65535", "use --width 32767 or less"])
         # PoCL is told of 4 GiB: a machine with much more memory would begin to render.
-        self.fail_with(1, "render", "s.json", "--width", "32000", says=["--width"], environment={"POCL_MEMORY_LIMIT": "4"})
+        self.fail_with(1, "render", "s.json", "--width", "32000", says=["scene and picture take", "use --width ", "or less, or another --device"], environment={"POCL_MEMORY_LIMIT": "4"})
         self.assertEqual(self.files(), ["s.json"])
 
     def test_no_device(self):

@@ -161,7 +161,7 @@ class Faults:
             self.assertRegex(result.errors, r"(?m)^ballpark: .*\w", where)
         if result.returncode != 0 and kind in MEMORY_KINDS:
             self.assertIn("memory", result.errors.lower(), where)
-        named = re.findall(r"the complete result is in (\S+)", result.errors)
+        named = re.findall(r"the complete result is in ([^\s;]+)", result.errors)
         for name in self.results:
             there = self.read(name) if os.path.exists(self.path(name)) else None
             good = there is not None and self.is_right(name, there)

@@ -35,6 +35,7 @@ int main(int argc, char **argv) {
     BpError err = {0};
     if (argc != 3) return fprintf(stderr, "usage: example SCENE.json PICTURE.png\n"), 2;
     const BpStatus status = draw(argv[1], argv[2], &err);
+    bp_error_add_remedy(&err, BP_INTERFACE_C);
     if (status != BP_OK)
         fprintf(stderr, "example: %s%s%s\n", err.file, err.file[0] != '\0' ? ": " : "", err.message);
     bp_error_clear(&err);

@@ -72,6 +72,7 @@ int main(int argc, char **argv) {
     bp_stop_destroy(&stop);
     bp_render_destroy(&render);
     bp_scene_destroy(&scene);
+    bp_error_add_remedy(&err, BP_INTERFACE_C);
     if (status != BP_OK)
         fprintf(stderr, "until_error: %s%s%s\n", err.file, err.file[0] != '\0' ? ": " : "", err.message);
     bp_error_clear(&err);

@@ -229,8 +229,7 @@ static void opening(void **state) {
     assert_int_equal(bp_device_find("0", &info, &err), BP_OK);
     assert_int_equal(bp_device_open(&info, &device, &err), BP_ERR_MEMORY);
     assert_contains(err.message, "clCreateContext failed with CL_OUT_OF_RESOURCES (-5) on full");
-    assert_contains(err.message, "--width");
-    assert_contains(err.message, "--device");
+    assert_int_equal(err.remedy, BP_REMEDY_SMALLER_WIDTH_OR_OTHER_DEVICE);
     assert_null(device);
     bp_error_clear(&err);
 }
@@ -405,10 +404,14 @@ static void errors_have_names_and_remedies(void **state) {
     assert_int_equal(bp_cl_fail(&err, CL_MEM_OBJECT_ALLOCATION_FAILURE, "clCreateBuffer", NULL),
                      BP_ERR_MEMORY);
     assert_string_equal(err.message,
-                        "clCreateBuffer failed with CL_MEM_OBJECT_ALLOCATION_FAILURE (-4); the device's "
-                        "memory is full: try a smaller --width, or another --device");
+                        "clCreateBuffer failed with CL_MEM_OBJECT_ALLOCATION_FAILURE (-4): the device's "
+                        "memory is full");
+    bp_error_add_remedy(&err, BP_INTERFACE_COMMAND_LINE);
+    assert_contains(err.message, " is full; use a smaller --width, or another --device");
     assert_int_equal(bp_cl_fail(&err, CL_INVALID_BUFFER_SIZE, "clCreateBuffer", NULL), BP_ERR_LIMIT);
     assert_int_equal(bp_cl_fail(&err, CL_OUT_OF_HOST_MEMORY, "clCreateBuffer", NULL), BP_ERR_MEMORY);
+    bp_error_add_remedy(&err, BP_INTERFACE_C);
+    assert_contains(err.message, "close other programs, or use a smaller width (bp_scene_set_width())");
     assert_int_equal(bp_cl_fail(&err, CL_INVALID_KERNEL_ARGS, "clEnqueueNDRangeKernel", NULL), BP_ERR_DEVICE);
     assert_contains(err.message, "CL_INVALID_KERNEL_ARGS (-52)");
     bp_error_clear(&err);

@@ -185,6 +185,15 @@ static void heights(void **state) {
     assert_int_equal(bp_camera_height(7, 16.0 / 9.0), 3);
     assert_int_equal(bp_camera_height(1, 1000), 1);
     assert_int_equal(bp_camera_height(65535, 1e-300), UINT32_MAX);
+    static const double aspects[] = {1e-3, 0.5625, 1, 16.0 / 9.0, 70000};
+    static const uint64_t pixels[] = {0, 1, 999, 1000, 480000, UINT32_MAX / 4, UINT32_MAX};
+    for (size_t a = 0; a < sizeof aspects / sizeof aspects[0]; ++a)
+        for (size_t p = 0; p < sizeof pixels / sizeof pixels[0]; ++p) {
+            uint64_t widest = 0;
+            for (uint64_t w = 1; w <= BP_PICTURE_SIDE_MAX; ++w)
+                if (w * bp_camera_height((uint32_t)w, aspects[a]) <= pixels[p]) widest = w;
+            assert_int_equal(bp_camera_width_of(pixels[p], aspects[a]), widest);
+        }
     BpScene *scene =
         parse("{ \"camera\": { \"image_width\": 300, \"image_height\": 200, \"aperture\": 3 } }");
     assert_int_equal(scene->camera.height, 200);

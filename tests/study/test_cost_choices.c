@@ -154,9 +154,9 @@ static void test_shortness(void **state) {
     assert_string_equal(bp_study_shortness_text(&result, text, sizeof text), "");
 
     result.series[1].bias_square.high = 9e-6; /* 0.3 %: more than the 0.2 % that are promised */
-    assert_non_null(
-        strstr(bp_study_shortness_text(&result, text, sizeof text),
-               ": a bias of up to 0.3 % would have gone unnoticed. Give it more time, such as --time 240s."));
+    assert_non_null(strstr(bp_study_shortness_text(&result, text, sizeof text),
+                           ": a bias of up to 0.3 % would have gone unnoticed. Give it more time, as in "
+                           "`ballpark cost --time 240s`."));
     result.advice[2].reachable = false; /* nothing is promised */
     assert_string_equal(bp_study_shortness_text(&result, text, sizeof text), "");
     result.series[1].bias_square.high = (double)NAN; /* a device without double: the curve's floor counts */
@@ -164,9 +164,9 @@ static void test_shortness(void **state) {
 
     result.budget = 1;
     result.series[1].time_ratio.value = (double)NAN;
-    assert_non_null(
-        strstr(bp_study_shortness_text(&result, text, sizeof text),
-               ": it has too few measurements to compare times. Give it more time, such as --time 60s."));
+    assert_non_null(strstr(bp_study_shortness_text(&result, text, sizeof text),
+                           ": it has too few measurements to compare times. Give it more time, as in "
+                           "`ballpark cost --time 60s`."));
     result.series[0].count = result.series[1].count = 2;
     result.series[1].bias_square.high = 9e-4;
     assert_non_null(strstr(bp_study_shortness_text(&result, text, sizeof text),

@@ -89,6 +89,7 @@ static void write_one(const BpCommandLine *line, const char *path, json_t *what,
         status = bp_line_write(line, path, print_lack_of_memory,
                                is_junit ? junit_without_memory : json_without_memory, &fault);
     if (!whole) json_decref(what);
+    bp_error_add_remedy(&fault, BP_INTERFACE_COMMAND_LINE);
     if (status != BP_OK) bp_say(line, "warning: %s could not be written: %s", path, fault.message);
     bp_error_clear(&fault);
 }

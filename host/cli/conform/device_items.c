@@ -42,7 +42,8 @@ void bp_item_doing(FILE *out, size_t number, const char *doing) {
     write_line(json_pack("{s:I, s:s}", "item", (json_int_t)number, "doing", doing), out);
 }
 
-static void write_error(size_t item, const BpError *error, FILE *out) {
+static void write_error(size_t item, BpError *error, FILE *out) {
+    bp_error_add_remedy(error, BP_INTERFACE_COMMAND_LINE);
     json_t *line = json_pack("{s:I, s:i, s:o, s:o, s:i, s:i}", "item", (json_int_t)item, "code",
                              (int)error->code, "error", bp_json_text(error->message), "file",
                              bp_json_text(error->file), "line", error->line, "column", error->column);

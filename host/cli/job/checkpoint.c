@@ -113,6 +113,7 @@ static void report(BpCheckpoint *checkpoint, BpStatus status, BpError *fault) {
         /* Somebody else's file has taken the place: every further try would leave a file beside it. */
         if (checkpoint->new_only) checkpoint->every = 0;
         fputs("ballpark: warning: the checkpoint was not written, and rendering continues: ", stderr);
+        bp_error_add_remedy(fault, BP_INTERFACE_COMMAND_LINE);
         bp_show(fault->message, false, stderr);
         fputc('\n', stderr);
     }

@@ -65,10 +65,11 @@ static BpStatus show(BpPreview *preview, const BpFilm *film, BpError *err) {
     return status;
 }
 
-static void warn(BpPreview *preview, const BpError *fault) {
+static void warn(BpPreview *preview, BpError *fault) {
     if (preview->warned) return;
     preview->warned = true;
     fputs("ballpark: warning: the preview was not written, and rendering continues: ", stderr);
+    bp_error_add_remedy(fault, BP_INTERFACE_COMMAND_LINE);
     bp_show(fault->message, false, stderr);
     fputc('\n', stderr);
 }

@@ -74,6 +74,7 @@ BpStatus bp_setup_load_changed(const BpCommandLine *line, const char *path, cons
     BpSceneChanges all = *changes;
     all.set = line->set.list;
     all.set_count = line->set.count;
+    all.set_by = "--set";
     all.fresnel = line->fresnel;
     all.lighting = line->lighting;
     all.projection = line->projection;
@@ -167,7 +168,8 @@ void bp_setup_warn(const BpCommandLine *line, const BpScene *scene, BpPrecision 
     BpRoundingWarnings limits;
     if (line->quiet) return;
     bp_rounding_warnings(scene, precision, &limits);
-    for (unsigned i = 0; i < limits.count; ++i) bp_say(line, "warning: %s", limits.text[i]);
+    for (unsigned i = 0; i < limits.count; ++i)
+        bp_say(line, "warning: %s; use --precision double, or %s", limits.text[i], limits.remedy[i]);
 }
 
 static BpStatus all_devices(BpDeviceInfo **devices, size_t *count, BpError *err) {
@@ -262,6 +264,7 @@ BpStatus bp_setup_self_test(const BpCommandLine *line, const BpDeviceInfo *devic
         bp_device_close(&device);
         /* A test that could not be run says nothing about the device. */
         const bool failed = status == BP_ERR_DEVICE || status == BP_ERR_BUILD;
+        bp_error_add_remedy(&fault, BP_INTERFACE_COMMAND_LINE);
         if (failed && line->force) {
             bp_say(line, "ballpark: warning: %s", fault.message);
         } else if (status != BP_OK) {

@@ -35,6 +35,7 @@ void bp_keep_sums(const BpFilm *film, const char *result, BpError *err) {
     char *kept = write_film(film, bp_temporary_create_elsewhere(target, 0600, &name), &name);
     if (kept == NULL) kept = write_film(film, bp_temporary_create_in(".", target, 0600, &name), &name);
     if (kept == NULL) return;
+    bp_error_add_remedy(err, BP_INTERFACE_COMMAND_LINE);
     char text[sizeof err->message];
     const int length =
         snprintf(text, sizeof text,

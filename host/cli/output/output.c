@@ -33,8 +33,11 @@ void bp_line_say_overwritten(const BpCommandLine *line, const char *path) {
 
 BpStatus bp_print_end(FILE *out, bool written, BpError *err) {
     if (written && fflush(out) == 0 && !ferror(out)) return BP_OK;
-    return bp_fail(err, BP_ERR_FILE, "%s%s%s", out == stdout ? "cannot write to standard output: " : "",
-                   strerror(errno), bp_output_remedy(errno));
+    const int error_number = errno;
+    bp_fail(err, BP_ERR_FILE, "%s%s", out == stdout ? "cannot write to standard output: " : "",
+            strerror(error_number));
+    bp_output_advise(err, error_number);
+    return BP_ERR_FILE;
 }
 
 static BpStatus print_to_standard_output(BpPrint *print, const void *what, BpError *err) {

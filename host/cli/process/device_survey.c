@@ -27,6 +27,7 @@ static bool list_in_child(void *argument, FILE *out) {
     if (argument != NULL) setenv(BP_DRIVER_VENDORS, argument, 1);
     setenv(BP_DRIVER_SECONDS, "0", 1); /* the parent has the clock */
     const BpStatus status = bp_devices_list(&list, &count, &err);
+    bp_error_add_remedy(&err, BP_INTERFACE_COMMAND_LINE);
     if (status != BP_OK) fputs(err.message, out);
     const bool good = status == BP_OK && (count == 0 || fwrite(list, sizeof *list, count, out) == count);
     free(list);
@@ -172,6 +173,7 @@ BpStatus bp_device_survey_find(const BpDeviceSurvey *survey, const char *text, B
     if (status == BP_OK || survey->broken_count == 0) return status;
     const BpBrokenDriver *first = &survey->broken[0];
     char message[sizeof((BpError *)0)->message];
+    bp_error_add_remedy(err, BP_INTERFACE_COMMAND_LINE);
     snprintf(message, sizeof message, "%s", err != NULL ? err->message : "");
     return bp_fail(err, BP_ERR_BROKEN_DEVICE,
                    "%s; the driver %s (%s) %s: repair or remove it, or set OCL_ICD_VENDORS to another's .icd "
