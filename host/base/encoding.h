@@ -1,7 +1,8 @@
 /* encoding.h: in which encoding a text is, by its first bytes.
  *
- * In:    the beginning of a text.   Out: whether it is UTF-8 with a byte order mark, or no UTF-8 at all.
- * Knows: the marks, and how letters of ASCII look in wider encodings.   Does not know: what the text says. */
+ * In:    the beginning of a text.   Out: whether it is UTF-8 with a byte order mark, or is not UTF-8.
+ * Knows: the marks, and how letters of ASCII look in wider encodings.
+ * Does not know: what the text means. */
 #ifndef BP_BASE_ENCODING_H
 #define BP_BASE_ENCODING_H
 

@@ -1,8 +1,8 @@
 /* fold.h: text broken into lines of a page's width.
  *
  * In:    text, columns.   Out: the same words, in lines that fit.
- * Knows: where a line may be broken, how the rest of it is indented.   Does not know: what the text says, how
- * wide the page is. */
+ * Knows: where a line may be broken, how the rest of it is indented.   Does not know: what the text means,
+ * what it is printed on. */
 #ifndef BP_BASE_FOLD_H
 #define BP_BASE_FOLD_H
 

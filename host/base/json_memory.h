@@ -1,7 +1,7 @@
 /* json_memory.h: detects that jansson ran out of memory.
  *
  * In:    the text of a document.   Out: the document; or whether memory ran out.
- * Knows: jansson's allocations.    Does not know: what a document says.
+ * Knows: jansson's allocations.    Does not know: what a document means.
  *
  * jansson reports a lack of memory as a syntax error, and sometimes drops a character without reporting
  * anything. So the program has it allocate through functions that note a failure; a program that uses

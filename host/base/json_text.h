@@ -1,7 +1,7 @@
 /* json_text.h: text of any bytes as a text of JSON.
  *
  * In:    the name of a file, a driver's message.   Out: a jansson string.
- * Knows: JSON is UTF-8, names of files need not be.   Does not know: what the text says. */
+ * Knows: that JSON is UTF-8 and names of files need not be.   Does not know: what the text means. */
 #ifndef BP_BASE_JSON_TEXT_H
 #define BP_BASE_JSON_TEXT_H
 

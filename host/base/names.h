@@ -10,7 +10,7 @@
 /* The settings by which radiance is computed, besides the scene, its depth and the seed. X(type, member, its
  * option, what two of them are called): BpRenderOptions, BpProgramOptions, BpRenderReport, BpFilm and
  * BpFilmInfo each have these members. From the list come what a render notes in its film and its report, what
- * .bpa files say and a merge compares, and the members of documents. `bp_<member>_names` are its words. */
+ * .bpa files record and a merge compares, and the members of documents. `bp_<member>_names` are its words. */
 #define BP_SETTING_LIST(X)                                                                                   \
     X(BpSampler, sampler, "sampler", "samplers")                                                             \
     X(BpPrecision, precision, "precision", "precisions")                                                     \

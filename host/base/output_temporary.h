@@ -1,8 +1,8 @@
 /* output_temporary.h: the temporary files behind output_file.h.
  *
  * In:    where a file is to stand.   Out: a file without a name, or with a unique one.
- * Knows: unnamed files, links, renames, the names that are in use.   Does not know: what is written, to whom
- * errors are told: everything here answers with an errno.
+ * Knows: unnamed files, links, renames, the names that are in use.   Does not know: what is written, how
+ * errors are reported: everything here returns an errno.
  *
  * The names of the unfinished temporaries are kept in one place, so that the thread that ends the program at
  * a signal can remove them. */

@@ -1,4 +1,4 @@
-/* adaptive_state.h: what adaptive sampling knows between passes; shared by adaptive.c, which decides, and
+/* adaptive_state.h: the state of adaptive sampling between passes; shared by adaptive.c, which decides, and
  * adaptive_save.c, which keeps it in files.
  *
  * Knows: tiles, halves, levels.   Does not know: files, OpenCL. */

@@ -16,7 +16,7 @@
 
 #include <stdio.h>
 
-/* bp_film_write() of ballpark.h to an open stream ("-o -"), flushed at the end. */
+/* bp_film_write() of ballpark.h to an open stream, flushed at the end. */
 BpStatus bp_film_write_stream(const BpFilm *film, FILE *out, BpError *err);
 
 /* Refuses what is truncated, too long, damaged, of another version or not a .bpa file, naming what is

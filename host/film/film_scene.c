@@ -1,5 +1,4 @@
-/* film_scene.c: the scale and the hash of a scene, which tell whose sums these are; see film.h.
- */
+/* film_scene.c: the scale of a scene's sums, and the hash by which films are compared; see film.h. */
 #include "film.h"
 
 #include "scene/material.h"

@@ -17,7 +17,7 @@ double bp_transfer_inverse(double value, BpTransfer transfer);
 
 /* The format that `path`'s ending names (.png .ppm .pfm .exr .bpa, in any case); false when it names none. */
 bool bp_format_from_path(const char *path, BpFormat *format);
-/* The format by its name on the command line: png ppm ppm-ascii pfm exr bpa. */
+/* The format by its name: png ppm ppm-ascii pfm exr bpa. */
 bool bp_format_from_name(const char *name, BpFormat *format);
 
 /* Metadata of a picture's file, in PNG and EXR. Zeros: none, and 8 bits. */
@@ -57,7 +57,7 @@ BpStatus bp_exr_write(const BpPicture *picture, FILE *out, const BpImageExtra *e
 /* 8-bit RGB, 3 bytes per pixel, top row first, as an sRGB PNG: for pictures that are drawn, not rendered. */
 BpStatus bp_png_write_bytes(const uint8_t *rgb, uint32_t width, uint32_t height, FILE *out, BpError *err);
 
-/* Writes to an already opened stream ("-o -"); BPA is refused there. */
+/* Writes to an open stream; BP_FORMAT_BPA is refused. */
 BpStatus bp_picture_write_stream(const BpPicture *picture, FILE *out, BpFormat format, BpTransfer transfer,
                                  BpError *err);
 

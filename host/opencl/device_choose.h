@@ -1,6 +1,7 @@
 /* device_choose.h: which device of a list a text means.
  *
- * In:    a list of devices, the text of --device.   Out: one of them, or a message that lists them.
+ * In:    a list of devices, a text as bp_device_find() takes it.
+ * Out:   one of them, or a message that lists them.
  * Knows: what devices report.   Does not know: OpenCL. */
 #ifndef BP_OPENCL_DEVICE_CHOOSE_H
 #define BP_OPENCL_DEVICE_CHOOSE_H

@@ -3,8 +3,8 @@
  * In:    a validated Scene (scene.h).     Out: BpPacked, owned by the caller.
  * Knows: kernels/scene_types.h, the tree. Does not know: OpenCL.
  *
- * The camera's position is subtracted in double, and double becomes float, here (and for the tree's arrays in
- * tree.c, by bp_reals_store) and nowhere else. */
+ * The camera's position is subtracted in double, before anything becomes float. The elements of arrays do so
+ * in reals.h; the few numbers that kernels get as arguments are rounded here. */
 #ifndef BP_PACKED_PACK_H
 #define BP_PACKED_PACK_H
 

@@ -1,5 +1,6 @@
-/* reals.h: the one place where double becomes float.
+/* reals.h: doubles stored in packed arrays, in the precision of the device.
  *
+ * In:    doubles.   Out: reals, rounded to nearest or to one side.
  * Knows: the two precisions of `real` (kernels/scene_types.h).   Does not know: what the numbers mean. */
 #ifndef BP_PACKED_REALS_H
 #define BP_PACKED_REALS_H

@@ -1,8 +1,8 @@
-/* render_state.h: what a render knows while it runs; shared by render.c, which runs it, stop.c, which
+/* render_state.h: the state of a render while it runs; shared by render.c, which runs it, stop.c, which
  * stops it, and resume.c, which takes it up again.
  *
- * Knows: workers, the schedule, the plan of adaptive sampling, the pilot.   Does not know: files, stop rules.
- */
+ * Knows: workers, the schedule, the plan of adaptive sampling, the pilot, the limits of a stop rule that are
+ * kept in films.   Does not know: files, when a render is stopped. */
 #ifndef BP_RENDER_RENDER_STATE_H
 #define BP_RENDER_RENDER_STATE_H
 
@@ -33,7 +33,7 @@ struct BpRender {
     bool resumed;          /* it continues from a film */
     BpFilm *base;          /* which is this; NULL: nothing, or another rank has it */
     uint64_t base_samples; /* pixel samples in it */
-    uint64_t goal_samples; /* where a stop rule ends it; 0: none has said */
+    uint64_t goal_samples; /* where a stop rule ends it; 0: there is no such rule */
     double goal_error;
     bool ended;     /* it has reached that */
     bool has_pilot; /* its programs have one: there may be light that samples find by chance only */

@@ -1,7 +1,8 @@
 /* resume.c: takes up a render where another one left off; see bp_render_resume() in ballpark.h.
  *
  * In:    a render without a sample yet, a film.   Out: the render as it was when that film was read.
- * Knows: plans, the schedule, adaptive sampling.   Does not know: stop rules, where films are stored. */
+ * Knows: plans with the limits of a stop rule, the schedule, adaptive sampling.   Does not know: when a
+ * render is stopped, where films are stored. */
 #include "render.h"
 
 #include "base/status.h"

@@ -1,12 +1,13 @@
 /* material.h: every kind of material and every member that a material can have, in two lists.
  *
  * In:    a kind.   Out: its name, what it does with light, its members.
- * Knows: the grammar's terms.   Does not know: how they are stored.
+ * Knows: the grammar's terms, the fields of BpMaterial, what kernels and effects call a kind.
+ * Does not know: how documents are read, how light is traced.
  *
  * From these lists come parsing (formats/scene_material.c), writing (formats/scene_write.c), validation
  * (scene_validate.c), packing (packed/pack.c), effects (packed/effects.c), the hash and the bound of a film
- * (film/film_scene.c) and what `explain --pixel` says. The reference tracer has its own, on purpose; so has
- * the schema of documents, which is written by hand. */
+ * (film/film_scene.c) and the words of `explain --pixel`. The reference tracer has its own, on purpose; so
+ * has the schema of documents, which is written by hand. */
 #ifndef BP_SCENE_MATERIAL_H
 #define BP_SCENE_MATERIAL_H
 

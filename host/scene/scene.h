@@ -1,7 +1,8 @@
 /* scene.h: the scene as its author wrote it, in doubles, validated.
  *
- * In:    a scene document, or a generator.   Out: BpScene, read by effects, pack and the reference tracer.
- * Knows: the grammar's terms.                Does not know: JSON, OpenCL, packed data.
+ * In:    what a reader of documents, a generator or a caller's arrays fill in.   Out: a valid BpScene.
+ * Knows: the grammar's terms.   Does not know: how documents are read (it keeps a few parts of them as
+ * texts), OpenCL, packed data.
  *
  * Invariants of every BpScene that reaches another module (bp_scene_validate proves them): all numbers are
  * finite; radius != 0 (negative: inside out); indices of materials and textures in range; albedo in [0,1];

@@ -1,4 +1,4 @@
-/* scene_fault.h: the first invariant of a scene that does not hold, apart from how to say so.
+/* scene_fault.h: the first invariant of a scene that does not hold.
  *
  * In:    a scene.   Out: which part of it is at fault, and what was found and expected.
  * Knows: the invariants of scene.h. Does not know: where the scene was read from; the caller names the place.

@@ -1,7 +1,8 @@
 /* configurations.h: which configurations of the renderer a study compares.
  *
  * In:    a scene, the options of the base.   Out: the configurations, in the order in which they are shown.
- * Knows: the options of a render.            Does not know: how anything is measured. */
+ * Knows: the options of a render, and what `ballpark render` calls them.
+ * Does not know: how anything is measured. */
 #ifndef BP_STUDY_CONFIGURATIONS_H
 #define BP_STUDY_CONFIGURATIONS_H
 

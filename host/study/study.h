@@ -3,15 +3,16 @@
  *
  * In:    a scene, the options that a render of it would have, a device, a time budget.
  * Out:   BpStudyResult; as a table, JSON, CSV or a page.
- * Knows: the render loop, the reference tracer.   Does not know: the command line.
+ * Knows: the render loop, the reference tracer, the command `ballpark render` that its advice names.
+ * Does not know: how options are read.
  *
  * The truth is the scene with exact Fresnel and depth 1000, in double with strict arithmetic; for a device
  * without double, the reference tracer's. It is rendered twice with seeds of their own, r1 and r2, and the
  * mean squared error of a picture x is the mean of (x - r1)(x - r2): free of the references' noise.
  *
  * Every configuration is rendered at the same sample counts, taking turns. What one configuration changes is
- * told by paired differences: the same seed gives the same random numbers, whatever the precision, depth or
- * Fresnel, so most noise cancels. */
+ * measured by paired differences: the same seed gives the same random numbers, whatever the precision, depth
+ * or Fresnel, so most noise cancels. */
 #ifndef BP_STUDY_STUDY_H
 #define BP_STUDY_STUDY_H
 
