@@ -61,7 +61,8 @@ static BpStatus store_colour(Reader *r, uint64_t number, const double *values, B
 static BpStatus store(Reader *r, uint64_t number, const double *values, BpError *err) {
     static const char *const axes[3] = {"x", "y", "z"};
     const PlyHeader *const header = &r->header;
-    BpSphere sphere = {.radius = header->radius >= 0 ? values[header->radius] : r->options->radius,
+    BpSphere sphere = {.radius = header->radius >= 0 ? header->radius_scale * values[header->radius]
+                                                     : r->options->radius,
                        .material = r->options->material,
                        .albedo = BP_NO_ALBEDO};
     BpFault fault;

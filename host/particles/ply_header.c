@@ -61,8 +61,8 @@ static BpStatus parse_element(const Input *input, char **words, size_t count, Pl
     } else if (header->vertex == header->element_count) {
         header->vertex++; /* not seen yet: always one past the last */
     }
-    header->elements[header->element_count++] =
-        (PlyElement){.count = (uint64_t)rows, .first = header->property_count};
+    header->elements[header->element_count++] = (PlyElement){
+        .count = (uint64_t)rows, .first = header->property_count, .faces = strcmp(words[1], "face") == 0};
     return BP_OK;
 }
 
@@ -119,15 +119,21 @@ BpStatus ply_find_property(const Input *input, const PlyHeader *header, const ch
     return BP_OK;
 }
 
-static BpStatus find_colors(const Input *input, PlyHeader *header, BpError *err) {
-    static const char *const words[3] = {"red", "green", "blue"};
-    const char *names[PLY_PROPERTIES_MAX];
+/* The names of the points' properties that are one number, "" for lists; returns how many there are. */
+static size_t list_names(const PlyHeader *header, const char *names[PLY_PROPERTIES_MAX]) {
     const size_t count = header->elements[header->vertex].property_count;
-    int *const color = header->color, named[3];
     for (size_t i = 0; i < count; i++) {
         const PlyProperty *const property = ply_property(header, (int)i);
         names[i] = property->count_type == PLY_NONE ? property->name : "";
     }
+    return count;
+}
+
+static BpStatus find_colors(const Input *input, PlyHeader *header, BpError *err) {
+    static const char *const words[3] = {"red", "green", "blue"};
+    const char *names[PLY_PROPERTIES_MAX];
+    const size_t count = list_names(header, names);
+    int *const color = header->color, named[3];
     const bool found = column_find_color(names, count, color);
     for (int c = 0; c < 3; c++) {
         BP_TRY(ply_find_property(input, header, words[c], &named[c], err));
@@ -148,16 +154,32 @@ ColorRange ply_color_range(const PlyHeader *header) {
     return (ColorRange){.bytes = type == PLY_UINT8, .ambiguous = ply_is_integer(type)};
 }
 
+/* The property of that name, or else the one property that has it in letters of either case. */
+static BpStatus find_number(const Input *input, const PlyHeader *header, const char *name, int *place,
+                            BpError *err) {
+    const char *names[PLY_PROPERTIES_MAX];
+    BP_TRY(ply_find_property(input, header, name, place, err));
+    if (*place < 0) *place = column_named(names, list_names(header, names), name);
+    if (*place == COLUMN_TWICE)
+        return input_fail(input, true, err, "found %s in two properties, expected one", name);
+    return BP_OK;
+}
+
 static BpStatus find_roles(const Input *input, PlyHeader *header, BpError *err) {
     static const char *const axes[3] = {"x", "y", "z"};
     if (header->vertex >= header->element_count)
         return input_fail(input, true, err, "found no element vertex, expected one: the points");
-    for (int i = 0; i < 3; i++) BP_TRY(ply_find_property(input, header, axes[i], &header->place[i], err));
+    for (int i = 0; i < 3; i++) BP_TRY(find_number(input, header, axes[i], &header->place[i], err));
     for (int i = 0; i < 3; i++)
         if (header->place[i] < 0)
             return input_fail(input, true, err, "found no property %s of the vertices, expected x, y and z",
                               axes[i]);
-    BP_TRY(ply_find_property(input, header, "radius", &header->radius, err));
+    header->radius_scale = 1;
+    BP_TRY(find_number(input, header, "radius", &header->radius, err));
+    if (header->radius < 0) {
+        BP_TRY(find_number(input, header, "diameter", &header->radius, err));
+        header->radius_scale = 0.5;
+    }
     return find_colors(input, header, err);
 }
 

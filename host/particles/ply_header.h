@@ -24,7 +24,7 @@ typedef struct PlyElement {
     uint64_t count;
     size_t first, property_count; /* of the header's properties */
     size_t row_size;              /* in bytes, lists taken as empty */
-    bool has_list;
+    bool has_list, faces;
 } PlyElement;
 
 typedef struct PlyHeader {
@@ -36,6 +36,7 @@ typedef struct PlyHeader {
     size_t vertex; /* the element of the points */
     /* Among the points' properties; -1: none. All three colours are there, of one type, or none. */
     int place[3], radius, color[3];
+    double radius_scale; /* 1/2 where the property is a diameter */
 } PlyHeader;
 
 /* Reads the header. Fails unless there is an element vertex with x, y and z, each once. */

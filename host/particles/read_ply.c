@@ -7,6 +7,9 @@
 
 #include "ply_rows.h"
 
+#include "base/format.h"
+#include "base/plural.h"
+
 #include <stdlib.h>
 
 static BpStatus add_point(BpParticleFile *file, const PlyHeader *header, const double *values, BpError *err) {
@@ -15,9 +18,19 @@ static BpStatus add_point(BpParticleFile *file, const PlyHeader *header, const d
         particle.position[i] = values[header->place[i]];
         if (header->color[i] >= 0) particle.color[i] = values[header->color[i]];
     }
-    if (header->radius >= 0) particle.radius = values[header->radius];
+    if (header->radius >= 0) particle.radius = header->radius_scale * values[header->radius];
     particle.values = values;
     return frame_add(file, &particle, header->form == PLY_ASCII, err);
+}
+
+static void note_faces(BpParticles *particles, const PlyHeader *header) {
+    uint64_t faces = 0;
+    char number[32];
+    for (size_t i = 0; i < header->element_count; i++)
+        if (header->elements[i].faces) faces += header->elements[i].count;
+    if (particles != NULL && faces > 0)
+        bp_particles_note(particles, "%s face%s left out", bp_format_whole(faces, number, sizeof number),
+                          bp_plural(faces));
 }
 
 static BpStatus take_points(BpParticleFile *file, PlyHeader *header, BpError *err) {
@@ -33,7 +46,8 @@ static BpStatus take_points(BpParticleFile *file, PlyHeader *header, BpError *er
         BP_TRY(ply_take_point(&file->input, header, row, values, err));
         BP_TRY(add_point(file, header, values, err));
     }
-    return BP_OK;
+    note_faces(file->out, header);
+    return ply_end_points(&file->input, header, err);
 }
 
 BpStatus read_ply(BpParticleFile *file, bool *end, BpError *err) {

@@ -417,18 +417,40 @@ class Ply(TableTest):
         self.places("any.name", plain.replace("ply\n", "ply \n"), expected)
         self.places("a.ply", plain.replace("element", "comment a  b\nobj_info x\ncomment\nelement"), expected)
         self.places("a.ply", plain.replace("element", "element face 2\nproperty list uchar int vertex_indices\nelement").replace(
-            "end_header\n", "end_header\n3 0 1 1\n4 0 0 1 1\n"), expected)
+            "end_header\n", "end_header\n3 0 1 1\n4 0 0 1 1\n"), expected, "2 faces left out")
         self.places("a.ply", plain.replace("end_header\n", "property list uchar float more\nelement face 1\nproperty int a\nend_header\n")
-                    .replace("1 2 3\n", "1 2 3 2 9 9\n").replace("4 5 6\n", "4 5 6 0\n7\n"), expected)
+                    .replace("1 2 3\n", "1 2 3 2 9 9\n").replace("4 5 6\n", "4 5 6 0\n7\n"), expected, "1 face left out")
         self.refuse("a.ply", plain.replace("1 2 3", "1 2 3 4"), ":8:", "more than 3 numbers")
         self.refuse("a.ply", plain.replace("1 2 3", "1 2"), ":8:", "expected a number for each")
+
+    def test_names_and_sizes(self):
+        for name, half in ("radius", 1), ("Radius", 1), ("RADIUS", 1), ("diameter", 0.5), ("Diameter", 0.5):
+            found = self.of("a.ply", PLY % (2, f"property float {name}\n") + "1 2 3 0.5\n4 5 6 3\n")
+            self.assertEqual(found["radii"], [half * 0.5, half * 3], name)
+        found = self.of("a.ply", PLY % (1, "property float diameter\nproperty float radius\n") + "1 2 3 7 2\n")
+        self.assertEqual(found["radii"], [2])
+        capitals = (PLY % (1, "")).replace("float x", "float X").replace("float y", "float Y").replace("float z", "float Z")
+        self.places("a.ply", capitals + "1 2 3\n", [(1, 2, 3)])
+        self.places("a.ply", PLY % (1, "property float X\n") + "1 2 3 4\n", [(1, 2, 3)])
+        self.refuse("a.ply", PLY % (1, "property float Radius\nproperty float RADIUS\n") + "1 2 3 4 5\n", "radius in two properties")
+
+    def test_what_follows_the_points(self):
+        """Points that the header does not count are lost, so they are no silence."""
+        self.refuse("a.ply", PLY % (2, "") + "1 2 3\n4 5 6\n7 8 9\n", ":10:", "another line after the last element", "counts")
+        packed = (PLY % (2, "")).replace("ascii", "binary_little_endian").encode() + struct.pack("<6f", 1, 2, 3, 4, 5, 6)
+        self.places("a.ply", packed, [(1, 2, 3), (4, 5, 6)])
+        self.refuse("a.ply", packed + struct.pack("<3f", 7, 8, 9), "12 bytes after the last element", "counts")
+        faces = packed.replace(b"end_header", b"element face 1\nproperty list uchar int vertex_indices\nend_header")
+        self.places("a.ply", faces + struct.pack("<B3i", 3, 0, 1, 1), [(1, 2, 3), (4, 5, 6)], "1 face left out")
+        self.refuse("a.ply", faces + struct.pack("<B2i", 3, 0, 1), "truncated")
+        self.places("a.ply", faces.replace(b"face 1", b"face 0"), [(1, 2, 3), (4, 5, 6)])
 
     def test_lists_in_binary_files(self):
         for order, form in ("<", "little"), (">", "big"):
             head = (f"ply\nformat binary_{form}_endian 1.0\nelement face 2\nproperty list uchar int i\nelement vertex 2\nproperty list ushort double l\n"
                     "property double z\nproperty short y\nproperty float x\nelement end 1\nproperty int k\nend_header\n").encode()
             body = struct.pack(order + "B3iB", 3, 0, 1, 1, 0) + struct.pack(order + "Hdhf", 0, 3, 2, 1) + struct.pack(order + "H2ddhf", 2, 8, 9, 6, 5, 4)
-            self.places("a.ply", head + body + struct.pack(order + "i", 7), [(1, 2, 3), (4, 5, 6)])
+            self.places("a.ply", head + body + struct.pack(order + "i", 7), [(1, 2, 3), (4, 5, 6)], "2 faces left out")
 
 
 class Independent(TableTest):
