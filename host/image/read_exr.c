@@ -23,6 +23,7 @@ typedef struct ExrReader {
     bool decoding;
     BpImage *image;
     BpExrLayer layer;
+    bool b44, all_half;               /* its compression; whether all channels of the part are half floats */
     exr_attr_box2i_t window, display; /* where there are data; what the image shows */
     float *block;                     /* a chunk's pixels, unpacked, before they go to their place */
     size_t block_size;
@@ -52,6 +53,10 @@ static void keep_quiet(exr_const_context_t context, exr_result_t code, const cha
 /* Where zlib lacks the memory to unpack, the library calls the pixels corrupt; errno was 0 at the beginning.
  */
 static BpStatus fail_code(const ExrReader *reader, const char *what, exr_result_t code, BpError *err) {
+    if (code == EXR_ERR_FEATURE_NOT_IMPLEMENTED)
+        return bp_image_fail(reader->input, err,
+                             "found pixels that this version of OpenEXR's library cannot unpack, such as "
+                             "those of DWAA, expected another compression, such as ZIP; convert it");
     if (code == EXR_ERR_OUT_OF_MEMORY || errno == ENOMEM)
         return bp_fail(err, BP_ERR_MEMORY, "out of memory for reading an OpenEXR file");
     return bp_image_fail(reader->input, err, "found a damaged OpenEXR file: %s: %s", what,
@@ -67,6 +72,23 @@ static BpStatus open_file(ExrReader *reader, BpError *err) {
     init.size_fn = size_of;
     const exr_result_t code = exr_start_read(&reader->exr, reader->input->path, &init);
     return code == EXR_ERR_SUCCESS ? BP_OK : fail_code(reader, "its header", code, err);
+}
+
+static BpStatus read_compression(ExrReader *reader, BpError *err) {
+    exr_compression_t compression = EXR_COMPRESSION_NONE;
+    const exr_result_t code = exr_get_compression(reader->exr, reader->layer.part, &compression);
+    reader->b44 = compression == EXR_COMPRESSION_B44 || compression == EXR_COMPRESSION_B44A;
+    return code == EXR_ERR_SUCCESS ? BP_OK : fail_code(reader, "its header", code, err);
+}
+
+/* Chunks that B44 makes no smaller, such as all of 32-bit floats, are left as they are by programs that use
+ * the library's C++ interface, and rearranged channel by channel by others; version 3.1 of the C interface
+ * unpacks them in any case, and beyond their end. */
+static BpStatus check_b44(const ExrReader *reader, const exr_chunk_info_t *chunk, BpError *err) {
+    if (!reader->b44 || chunk->packed_size < chunk->unpacked_size) return BP_OK;
+    return bp_image_fail(reader->input, err,
+                         "found B44 compression that makes pixels no smaller, which programs write in "
+                         "different ways, expected another compression, such as ZIP; convert it");
 }
 
 /* The layer's windows, and that it is no cube. */
@@ -132,6 +154,7 @@ static BpStatus read_chunk(ExrReader *reader, const exr_chunk_info_t *chunk, int
         row + chunk->height > height || chunk->unpacked_size > CHUNK_BYTES_MAX ||
         chunk->packed_size > reader->input->size)
         return fail_code(reader, what, EXR_ERR_CORRUPT_CHUNK, err);
+    BP_TRY(check_b44(reader, chunk, err));
     BP_TRY(clear_block(reader, chunk->width, chunk->height, err));
     exr_result_t code = reader->decoding ? exr_decoding_update(reader->exr, part, chunk, &reader->decode)
                                          : exr_decoding_initialize(reader->exr, part, chunk, &reader->decode);
@@ -260,6 +283,7 @@ static BpStatus read_image(ExrReader *reader, BpError *err) {
     BP_TRY(open_file(reader, err));
     BP_TRY(bp_exr_layer_choose(reader->input, reader->exr, &reader->layer, err));
     BP_TRY(read_header(reader, &storage, err));
+    BP_TRY(read_compression(reader, err));
     const exr_attr_box2i_t display = reader->display;
     BP_TRY(bp_image_allocate(reader->input, (uint64_t)((int64_t)display.max.x - display.min.x + 1),
                              (uint64_t)((int64_t)display.max.y - display.min.y + 1), &reader->image, err));

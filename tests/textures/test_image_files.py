@@ -159,6 +159,29 @@ class ImageFiles(ProgramTest):
         self.assertFalse(any(read_pfm(found[0])[2]))
         self.assertIn("data for 0 of 72 texels", said)
 
+    def test_compressions(self):
+        """B44 packs 4 x 4 half floats into 14 bytes, or 3 where all are alike, and leaves other kinds of numbers, channel by channel."""
+        halves = {"R": 0x3800, "G": 0x3c00, "B": 0x4000}  # 0.5, 1, 2
+        value = {c: struct.unpack("<e", struct.pack("<H", bits))[0] for c, bits in halves.items()}
+        plain = {c: lambda x, y, v=v: v for c, v in value.items()}
+
+        def packed(kind, window, compression, body, channels):
+            head, _, _ = part(channels, window, window, kind=kind)
+            name = b"compression\0compression\0" + struct.pack("<I", 1)
+            return exr((head.replace(name + b"\0", name + bytes([compression])), [struct.pack("<iI", 0, len(body)) + body], False))
+
+        blocks = b"".join(struct.pack(">HB", 0x8000 | halves[c], 0xfc) * 6 for c in "BGR")
+        right, _ = self.around("right.pfm", seen(plain, WHOLE, WHOLE))
+        for compression in 6, 7:
+            self.assertEqual(self.around("a.exr", packed(1, WHOLE, compression, blocks, plain))[0], right)
+        small = (0, 0, 1, 0)
+        lines = b"".join(struct.pack("<2H", *2 * [halves[c]]) for c in "BGR")
+        # Left as they are, packed though they become larger, and floats, which may be lines or channels.
+        for kind, window, body in (2, WHOLE, b"".join(struct.pack("<72f", *72 * [value[c]]) for c in "BGR")), (1, small, blocks[:18]), (1, small, lines):
+            self.write("s.json", scene(spheres=[], background={"image": "a.exr"}))
+            self.write("a.exr", packed(kind, window, 6, body, plain))
+            self.fail_with(2, "render", "s.json", "--wide", says=["expected another compression, such as ZIP"])
+
     def test_layers(self):
         """R, G and B without a layer's name come first; else the only layer, or the one that is called the whole."""
         right = self.around("right.pfm", seen(RGB, WHOLE, WHOLE))[0]
