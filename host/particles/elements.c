@@ -79,6 +79,17 @@ uint8_t bp_element_of_symbol(const char *symbol) {
     return 0;
 }
 
+uint8_t bp_element_of_species(const char *species) {
+    char symbol[4] = "";
+    size_t letters = 0;
+    while (letters < 3 && ((species[letters] | 32) >= 'a' && (species[letters] | 32) <= 'z')) {
+        symbol[letters] = species[letters];
+        letters++;
+    }
+    const char *const rest = species + letters;
+    return *rest == '\0' || strchr("0123456789+-_(:*@", *rest) != NULL ? bp_element_of_symbol(symbol) : 0;
+}
+
 /* Masses of groups lie close: O2 is 0.2 % from sulphur, CH2 0.14 % from nitrogen. */
 static bool is_mass_of(double mass, double own) {
     const double rounded = floor(10 * own + 0.5) / 10, off = fabs(mass - own);
@@ -131,14 +142,27 @@ bool bp_residue_is_ion(const char *residue) {
 
 /* Residues whose atoms are those of proteins, nucleic acids and lipids: there, CA is a carbon. */
 static bool is_organic(const char *residue) {
-    static const char *const names[] = {"ALA", "ARG", "ASN", "ASP", "CYS", "GLN", "GLU", "GLY", "HIS", "ILE",
-                                        "LEU", "LYS", "MET", "PHE", "PRO", "SER", "THR", "TRP", "TYR", "VAL",
-                                        "MSE", "SEC", "HSD", "HSE", "HSP", "HID", "HIE", "HIP", "CYX", "ASH",
-                                        "GLH", "LYN", "CYM", "ACE", "NME", "NH2", "A",   "C",   "G",   "U",
-                                        "T",   "I",   "DA",  "DC",  "DG",  "DT",  "DU",  NULL};
+    static const char *const names[] = {
+        "ALA", "ARG", "ASN", "ASP", "CYS", "GLN", "GLU", "GLY", "HIS", "ILE", "LEU", "LYS", "MET", "PHE",
+        "PRO", "SER", "THR", "TRP", "TYR", "VAL", "MSE", "SEC", "HSD", "HSE", "HSP", "HID", "HIE", "HIP",
+        "CYX", "ASH", "GLH", "LYN", "CYM", "ACE", "NME", "NH2", "A", "C", "G", "U", "T", "I", "DA", "DC",
+        "DG", "DT", "DU",
+        /* GROMOS and CHARMM have names of four letters. */
+        "ASPH", "ASPP", "GLUH", "GLUP", "LYSH", "ARGN", "CYSH", "CYS1", "CYS2", "HISA", "HISB", "HISH",
+        "HIS1", "HIS2", "HISD", "HISE", "HISP", NULL};
     if (is_among(residue, names)) return true;
     /* The same at the ends of a chain, as AMBER names them: NALA, CLYS. */
     return strlen(residue) == 4 && (residue[0] == 'N' || residue[0] == 'C') && is_among(residue + 1, names);
+}
+
+bool bp_residue_is_common(const char *residue) {
+    return bp_residue_is_water(residue) || bp_residue_is_ion(residue) || is_organic(residue);
+}
+
+/* A symbol that none but this element has: names of one letter do not begin so. */
+static bool is_certain(const char *symbol) {
+    static const char *const symbols[] = {"FE", "ZN", "MG", "MN", "LI", "AL", NULL};
+    return is_among(symbol, symbols);
 }
 
 uint8_t bp_element_of_name(const char *name, const char *residue, bool fixed, bool *dummy) {
@@ -166,6 +190,7 @@ uint8_t bp_element_of_name(const char *name, const char *residue, bool fixed, bo
     if (two != 0 && (strncasecmp(residue, symbol, 2) == 0 && strlen(residue) <= 3) &&
         (strlen(residue) == 2 || residue[2] < 'A') && strlen(text) <= 3)
         return two;
+    if (two != 0 && strcasecmp(residue, "ION") == 0) return two;
     if (strcasecmp(residue, "SOD") == 0) return 11;
     if (strcasecmp(residue, "CLA") == 0 && strcasecmp(text, "CLA") == 0) return 17;
     if (strcasecmp(residue, "POT") == 0) return 19;
@@ -176,7 +201,7 @@ uint8_t bp_element_of_name(const char *name, const char *residue, bool fixed, bo
     /* Columns 13 and 14 hold the symbol, right-justified; names of four letters begin in column 13 too. */
     if (fixed && name[0] != ' ' && !(name[0] >= '0' && name[0] <= '9') && two != 0 && name[3] == ' ')
         return two;
-    if (fixed && name[0] == ' ') return one;
+    if (fixed && name[0] == ' ') return is_certain(symbol) ? two : one;
     /* Elsewhere: two letters of which the second is small, or one of the few that cannot be anything else. */
     if (two != 0 && letters[1] >= 'a' && letters[1] <= 'z') return two;
     static const char *const metals[] = {"CL", "BR", "FE", "ZN", "MG", "MN", "NA",

@@ -22,6 +22,9 @@ extern const BpElement bp_elements[BP_ELEMENT_MAX + 1];
 
 /* The atomic number of a symbol in any case, D and T being hydrogen; 0: none. */
 uint8_t bp_element_of_symbol(const char *symbol);
+/* The same of a symbol with something behind its letters: a number, a charge or a label, as in Fe3+, C12, O_w
+ * and H(Iso=2). */
+uint8_t bp_element_of_species(const char *species);
 /* The element of an atom from its name and its residue's, as in PDB and GRO files; `name` may begin with a
  * blank, as columns 13 to 16 of a PDB line do, which distinguishes CA (calcium) from " CA" (a carbon).
  * `fixed`: the name is such a column. 0: unknown. *dummy: a site of a model (of water, say) and no atom. */
@@ -33,5 +36,7 @@ uint8_t bp_element_of_mass(double mass, bool *united);
 /* Residues that are water, and those that are single ions of the water around a molecule. */
 bool bp_residue_is_water(const char *residue);
 bool bp_residue_is_ion(const char *residue);
+/* Those, and the residues of proteins and nucleic acids. */
+bool bp_residue_is_common(const char *residue);
 
 #endif

@@ -4,6 +4,8 @@
  */
 #include "pdb_atom.h"
 
+#include "elements.h"
+
 #include <string.h>
 
 const char *const pdb_columns[PDB_COLUMN_COUNT] = {"occupancy", "bfactor", "residue_number"};
@@ -59,6 +61,12 @@ static size_t moved(const char *line, size_t length) {
     return 0;
 }
 
+/* Whether the occupancy, or the line's end where there is none, is moved as well: else the numbers have two
+ * decimals. */
+static bool moves_rest(const char *line, size_t length, size_t by) {
+    return length > 57 + by ? line[57 + by] == '.' : length == 54 + by;
+}
+
 /* The symbol in columns 77 and 78, without a charge behind it; "" where column 79 shows that they hold none,
  * but a part of an atom's type (PDBQT). */
 static void symbol_at(const char *line, size_t length, char symbol[4]) {
@@ -72,7 +80,41 @@ static void symbol_at(const char *line, size_t length, char symbol[4]) {
     symbol[length > 78 && is_letter(line[78]) ? 0 : count] = '\0';
 }
 
-BpStatus pdb_read_atom(const Input *input, const char *line, PdbAtom *atom, bool *names_left, BpError *err) {
+/* The residue's name has three letters, or four (TIP3, POPC), or the chain's has two, of which the first
+ * stands in the same column: a residue that is known by three letters alone tells, then for all that follow.
+ */
+static void take_names(const char *line, size_t length, PdbAtom *atom, PdbForm *form) {
+    char residue[8];
+    fixed_text(line, length, 18, 21, atom->residue, sizeof atom->residue);
+    fixed_text(line, length, 22, 22, atom->chain, sizeof atom->chain);
+    fixed_text(line, length, 18, 20, residue, sizeof residue);
+    if (length < 22 || line[20] == ' ' || line[21] == ' ' || residue[0] == '\0') return;
+    if (bp_residue_is_common(atom->residue)) return;
+    form->wide_chains |= bp_residue_is_common(residue);
+    if (!form->wide_chains) return;
+    memcpy(atom->residue, residue, sizeof residue);
+    fixed_text(line, length, 21, 22, atom->chain, sizeof atom->chain);
+}
+
+/* The coordinates, of which the first may reach further: to the left, or, `wide`, so many columns to the
+ * right.
+ */
+static BpStatus take_place(const Input *input, const char *line, size_t length, size_t wide, double place[3],
+                           BpError *err) {
+    char text[24];
+    size_t first = 31;
+    while (first > 29 && first <= length && line[first - 2] != ' ') first--;
+    for (size_t i = 0; i < 3; i++) {
+        const size_t last = 38 + 8 * i + wide;
+        fixed_text(line, length, first, last, text, sizeof text);
+        first = last + 1;
+        if (!word_number_or_none(text, &place[i]))
+            return input_wrong(input, text, "a coordinate in columns 31-38, 39-46 and 47-54", err);
+    }
+    return BP_OK;
+}
+
+BpStatus pdb_read_atom(const Input *input, const char *line, PdbAtom *atom, PdbForm *form, BpError *err) {
     size_t length = strlen(line), by = moved(line, length);
     char symbol[4], padded[5] = "    ", number[8], segment[8], text[16];
     *atom = (PdbAtom){.particle = PARTICLE_NONE};
@@ -84,11 +126,14 @@ BpStatus pdb_read_atom(const Input *input, const char *line, PdbAtom *atom, bool
         line += by;
         length -= by;
     }
-    if (by_serial || !digits_at(line, 23, 26 + by)) by = 0;
+    const bool by_residue = !by_serial && digits_at(line, 23, 26 + by);
+    const size_t wide = by_serial || by_residue || !moves_rest(line, length, by) ? 0 : by;
+    if (!by_residue) by = 0;
     for (size_t i = 0; i < 4 && 12 + i < length; i++) padded[i] = line[12 + i];
     particle->name = fixed_text(line, length, 13, 16, atom->name, sizeof atom->name);
-    particle->residue = fixed_text(line, length, 18, 21, atom->residue, sizeof atom->residue); /* TIP3 too */
-    particle->chain = fixed_text(line, length, 22, 22, atom->chain, sizeof atom->chain);
+    take_names(line, length, atom, form);
+    particle->residue = atom->residue;
+    particle->chain = atom->chain;
     fixed_text(line, length, 17, 17, atom->letter, sizeof atom->letter);
     const size_t last = length > 26 && is_digit(line[26]) ? 27 + (by > 1) : 26; /* five digits, six */
     fixed_text(line, length, 23, last, number, sizeof number);
@@ -96,17 +141,15 @@ BpStatus pdb_read_atom(const Input *input, const char *line, PdbAtom *atom, bool
              fixed_text(line, length, 23, 27 + by, text, sizeof text));
     line += by;
     length -= by;
-    for (size_t i = 0; i < 3; i++) {
-        fixed_text(line, length, 31 + 8 * i, 38 + 8 * i, text, sizeof text);
-        if (word_number_or_none(text, &particle->position[i])) continue;
-        return input_wrong(input, text, "a coordinate in columns 31-38, 39-46 and 47-54", err);
-    }
+    BP_TRY(take_place(input, line, length, wide, particle->position, err));
+    line += wide;
+    length -= wide;
     fixed_text(line, length, 73, 76, segment, sizeof segment);
     snprintf(atom->site + strlen(atom->site), sizeof segment + 1, "/%s", segment);
     if (atom->chain[0] == '\0') snprintf(atom->chain, sizeof atom->chain, "%s", segment);
     symbol_at(line, length, symbol);
-    *names_left |= strspn(padded, "CNOHPS") == 1 && strcmp(padded + 1, "   ") == 0;
-    atom_identify(particle, symbol, *names_left ? atom->name : padded, !*names_left);
+    form->names_left |= strspn(padded, "CNOHPS") == 1 && strcmp(padded + 1, "   ") == 0;
+    atom_identify(particle, symbol, form->names_left ? atom->name : padded, !form->names_left);
     atom->values[0] = number_at(line, length, 55, 60);
     atom->values[1] = number_at(line, length, 61, 66);
     atom->values[2] = residue_number(number);

@@ -19,9 +19,15 @@ enum { PDB_COLUMN_COUNT = 3 };
 extern const char *const pdb_columns[PDB_COLUMN_COUNT], *const pqr_columns[PDB_COLUMN_COUNT];
 
 bool pdb_is_atom(const char *line);
-/* PDB: fixed columns. *names_left: some name of one letter stood at the left end of its columns, so that
- * these do not tell elements; false at the beginning of a file. Fails without coordinates. */
-BpStatus pdb_read_atom(const Input *input, const char *line, PdbAtom *atom, bool *names_left, BpError *err);
+/* How a program writes lines of atoms, as far as those before tell; all false at the beginning of a file. */
+typedef struct PdbForm {
+    bool names_left;  /* some name of one letter stood at the left end of its columns, so these tell no
+                         elements */
+    bool wide_chains; /* names of chains have two letters, in columns 21 and 22 */
+} PdbForm;
+
+/* PDB: fixed columns. Fails without coordinates. */
+BpStatus pdb_read_atom(const Input *input, const char *line, PdbAtom *atom, PdbForm *form, BpError *err);
 /* PQR (PDB2PQR, APBS): words, of which the last are x, y, z, charge and radius, all in angstrom and
  * elementary charges, and perhaps an element; numbers with signs may touch. */
 BpStatus pqr_read_atom(const Input *input, const char *line, PdbAtom *atom, BpError *err);

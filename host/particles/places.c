@@ -1,6 +1,7 @@
 /* places.c: see places.h. */
 #include "places.h"
 
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -8,9 +9,9 @@ enum { FIRST_CAPACITY = 4096 };
 
 /* A particle of a site that has alternative places. */
 typedef struct Place {
-    uint64_t site;
+    uint64_t site, name;
     uint32_t letter, atom; /* letter 0: none */
-    uint16_t residue, name;
+    uint16_t residue;
 } Place;
 
 /* Different texts get different numbers, as far as 64 bits allow (FNV-1a, G. Fowler, L. C. Noll, K.-P. Vo).
@@ -25,6 +26,18 @@ static uint32_t letter_of(const char *text) {
     uint32_t letter = 0;
     for (int i = 0; i < 4 && text[i] != '\0'; i++) letter = letter << 8 | (unsigned char)text[i];
     return letter;
+}
+
+/* The number of an atom's name; deuterium has that of the hydrogen in whose place it stands. */
+static uint64_t number_of_name(const BpParticles *p, size_t atom) {
+    const char *const text = p->names.count > 0 ? p->names.text[p->tag[atom].name] : "";
+    char name[16];
+    const size_t digits = strspn(text, "0123456789");
+    if (p->tag[atom].element != 1 || (text[digits] | 32) != 'd' || strlen(text) >= sizeof name)
+        return number_of(text);
+    snprintf(name, sizeof name, "%s", text);
+    name[digits] = (char)(text[digits] - 'd' + 'h');
+    return number_of(name);
 }
 
 static bool grow(Places *places) {
@@ -80,8 +93,8 @@ static Place *list_places(const Places *places, const BpParticles *p, size_t *co
     *count = 0;
     for (size_t i = 0; sites != NULL && list != NULL && i < places->count; i++)
         if (bsearch(&places->site[i], sites, lettered, sizeof *sites, compare_numbers) != NULL)
-            list[(*count)++] =
-                (Place){places->site[i], places->letter[i], (uint32_t)i, p->tag[i].residue, p->tag[i].name};
+            list[(*count)++] = (Place){places->site[i], number_of_name(p, i), places->letter[i], (uint32_t)i,
+                                       p->tag[i].residue};
     free(sites);
     if (sites == NULL) {
         free(list);

@@ -149,7 +149,7 @@ static BpStatus take_row(BpParticleFile *file, Table *table, char *line, BpError
     particle.radius = number[RADIUS] * table->radius_scale;
     if (table->role[TYPE] >= 0) particle.type = fields[table->role[TYPE]];
     if (table->role[ELEMENT] >= 0) {
-        particle.element = bp_element_of_symbol(fields[table->role[ELEMENT]]);
+        particle.element = bp_element_of_species(fields[table->role[ELEMENT]]);
         if (table->role[TYPE] < 0) particle.type = fields[table->role[ELEMENT]];
     }
     for (size_t w = 0; w < file->taken_count; w++) {

@@ -163,7 +163,7 @@ static BpStatus take_atom(BpParticleFile *file, Dump *dump, char *line, BpError 
     }
     if (dump->type >= 0) particle.type = words[dump->type];
     if (dump->element >= 0) {
-        particle.element = bp_element_of_symbol(words[dump->element]);
+        particle.element = bp_element_of_species(words[dump->element]);
         if (dump->type < 0) particle.type = words[dump->element];
     } else if (dump->mass >= 0) {
         const State *const state = file->state;

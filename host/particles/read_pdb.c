@@ -17,8 +17,8 @@ enum { CELL_BYTES = 60 };
 typedef struct State {
     char cell[64]; /* the line that says it, or "" */
     CrystalFrame crystal;
-    bool scale_here;      /* `crystal` is of the lines before this frame */
-    bool names_left;      /* as pdb_read_atom() has it */
+    bool scale_here; /* `crystal` is of the lines before this frame */
+    PdbForm form;
     Places places;        /* of this frame */
     PdbLinks links, tail; /* of this frame; behind the last of several models, for each of them */
     PdbSerials serials;   /* of this frame */
@@ -71,7 +71,7 @@ static BpStatus take_atom(BpParticleFile *file, State *state, const char *line, 
     if (file->format == BP_PARTICLES_PQR)
         BP_TRY(pqr_read_atom(&file->input, line, &atom, err));
     else
-        BP_TRY(pdb_read_atom(&file->input, line, &atom, &state->names_left, err));
+        BP_TRY(pdb_read_atom(&file->input, line, &atom, &state->form, err));
     BP_TRY(frame_add(file, &atom.particle, true, err));
     if (file->out == NULL) return BP_OK;
     BP_TRY(places_take(&state->places, file->out, atom.site, atom.letter, err));

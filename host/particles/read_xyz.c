@@ -191,16 +191,6 @@ static BpStatus begin_frame(BpParticleFile *file, const char *comment, Layout *l
     return parse_cell(file, comment, layout->extended, value, err);
 }
 
-/* A symbol may have digits behind it. A number alone is a type: LAMMPS and others write it so. */
-static uint8_t element_of(const char *species) {
-    char symbol[4] = "";
-    for (int i = 0; i < 3 && ((species[i] | 32) >= 'a' && (species[i] | 32) <= 'z'); i++)
-        symbol[i] = species[i];
-    const size_t letters = strlen(symbol);
-    if (species[letters] != '\0' && (species[letters] < '0' || species[letters] > '9')) return 0;
-    return bp_element_of_symbol(symbol);
-}
-
 /* Splits an atom's line. In extended XYZ, texts with blanks stand in quotes; but names of atoms have quotes
  * of their own (O5', H5''), so these count only where the words are too many otherwise. */
 static size_t split_atom(char *line, const Layout *layout, char **words) {
@@ -262,7 +252,7 @@ static BpStatus take_atom(BpParticleFile *file, Layout *layout, uint64_t number,
                 return input_wrong(input, words[w + i], "a finite number: a share of a colour", err);
         }
         if (role == SPECIES) {
-            particle.element = element_of(words[w]);
+            particle.element = bp_element_of_species(words[w]);
             particle.type = words[w];
             if (particle.element == 0 && strcmp(words[w], "X") == 0) particle.flags |= BP_PARTICLE_DUMMY;
         }

@@ -69,6 +69,12 @@ class Cif(listed.ListTest):
         for wrong in ("1.0(", "1.0()", "1.0(x)", "1.0(2)3", "(2)", "1.0(2))", "inf(1)", "1(-2)"):
             self.refuse("a.cif", "data_x\n" + rows((wrong, 0, 0)), "found \"" + wrong, "a coordinate")
 
+    def test_charges_of_symbols(self):
+        """As small-molecule CIF has them: the element's symbol, and its charge."""
+        for symbol, element in ("Fe3+", "Fe"), ("O1-", "O"), ("'Na+'", "Na"), ("D", "H"), ("Q", ""):
+            found = self.of("a.cif", "data_x\n" + items("atom_site", dict(ONE, type_symbol=symbol, label_atom_id="Q", label_comp_id="LIG")))
+            self.assertEqual(found.of("element"), [element], symbol)
+
     def test_unknown_values(self):
         """"." and "?" stand for none: in the author's fields the other ones stand in, and an atom without a place is left out."""
         text = "data_x\nloop_\n" + "".join(f"_atom_site.{n}\n" for n in "auth_atom_id label_atom_id auth_asym_id label_asym_id auth_seq_id "

@@ -219,6 +219,18 @@ class Alternatives(listed.ListTest):
         self.assertEqual(self.chosen(("O", "A"), ("O", "B"), ("O", "A", water), ("O", "B", water)), [0, 2])
         self.assertEqual(self.chosen(("O", " "), ("O", " ", water)), [0, 1])
 
+    def test_deuterium(self):
+        """It stands where hydrogen does, under a name of its own (neutron diffraction): one atom, at one place."""
+        for names in ("D", "H"), ("DA", "HA"), ("DE2", "HE2"), ("1D", "1H"):
+            for first, second in names, names[::-1]:
+                lines = [atom(i, f" {name:<3s}", letter, place=(i, 0, 0), symbol=f" {symbol}")
+                         for i, (name, letter, symbol) in enumerate([("N", " ", "N"), (first, "A", first.strip("1")[0]), (second, "B", second.strip("1")[0])])]
+                self.assertEqual([p[0] for p in self.of("a.pdb", "".join(lines)).places(shown=True)], [0, 1], (first, second))
+                rows = "".join(f"{line[77]} {line[12:16]} {line[16].strip() or '.'} {i} 0 0\n" for i, line in enumerate(lines))
+                names_of_rows = ("type_symbol", "label_atom_id", "label_alt_id", "Cartn_x", "Cartn_y", "Cartn_z")
+                cif = "data_x\nloop_\n" + "".join(f"_atom_site.{n}\n" for n in names_of_rows) + rows
+                self.assertEqual([p[0] for p in self.of("a.cif", cif).places(shown=True)], [0, 1], (first, second))
+
     def test_at_random(self):
         """Beside a slow search through the rule's words: each atom of each residue at one place, by the residue's letter if it can."""
         r = random.Random(5)
@@ -278,7 +290,8 @@ class Atoms(listed.ListTest):
                                          ("FE", "2+", "Fe"), (" N", "1+", "N"), ("N1", "+", "N"), ("O1", "-", "O"), ("ZN", "+2", "Zn")]:
             self.assertEqual(self.element(symbol=symbol, charge=charge, residue="LIG"), (expected, False), (symbol, charge))
         # Without one, names tell: those of two letters begin one column further left.
-        for name, residue, expected in [(" CA ", "LIG", "C"), ("CA  ", "LIG", "Ca"), ("CA  ", " CA", "Ca"), ("CA  ", "ALA", "C"), ("HO5'", "LIG", "H")]:
+        for name, residue, expected in [(" CA ", "LIG", "C"), ("CA  ", "LIG", "Ca"), ("CA  ", " CA", "Ca"), ("CA  ", "ALA", "C"), ("HO5'", "LIG", "H"),
+                                        (" FE ", "HEM", "Fe"), (" ZN ", "LIG", "Zn"), (" CL1", "LIG", "C"), (" CA ", "ION", "Ca")]:
             self.assertEqual(self.element(name=name, residue=residue), (expected, True))
         self.assertEqual(self.element(symbol=" X", name=" UNK", residue="UNX"), ("", False))  # the file says: unknown
         # PDBQT has its types in columns 78 and 79.
@@ -309,6 +322,31 @@ class Atoms(listed.ListTest):
             a = self.of("a.pdb", line, 0, "residue_number", "bfactor").atoms[0]
             self.assertEqual((a[:3], a.element, a.flags, a.name, a.residue, a.chain, a.second), (place, "C", 0, "CA", "ALA", "A", 10), line)
             self.assertEqual(a.first, 12345 if "A12345" in line else 1234, line)
+
+    def test_coordinates_that_do_not_fit(self):
+        """The first may begin further left, or move all that follows; fewer decimals are not that."""
+        line = atom(1, place=(0, 0, 0), symbol=" C")
+        head, tail = line[:30], line[54:]
+        for text, place in [("10000.0020000.0030000.00", (1e4, 2e4, 3e4)), ("-1000.1231000.4562000.789", (-1000.123, 1000.456, 2000.789)),
+                            ("-1000.123   1.456  -2.789", (-1000.123, 1.456, -2.789))]:
+            for end, occupancy in (tail, 1), ("\n", None):
+                a = self.of("a.pdb", head + text + end, 0, "occupancy").atoms[0]
+                self.assertEqual((a[:3], a.first), (place, occupancy), (text, end))
+        for text, x in ("-1000.123", -1000.123), ("12345.678", 12345.678), ("-12345.678", -12345.678):
+            a = self.of("a.pdb", line[:38 - len(text)] + text + line[38:], 0, "occupancy").atoms[0]
+            self.assertEqual((a[:3], a.first), ((x, 0, 0), 1), text)
+
+    def test_chains_of_two_letters(self):
+        """They take the column of a residue's fourth letter; a residue that is known by three tells which it is."""
+        def chains(*rows):
+            found = self.of("a.pdb", "".join(atom(i, residue=residue, chain=chain, place=(i, 0, 0)).replace(f"{residue:>3s} {chain}", f"{residue:>3s}{chain:>2s}")
+                                             for i, (residue, chain) in enumerate(rows)))
+            return [(a.residue, a.chain) for a in found.atoms]
+        for rows in [("ALA", "AA"), ("ATP", "AA"), ("HOH", "b1")], [("ALA", "A"), ("GLY", "BA"), ("ATP", "C"), ("ATP", "CA")], [("DA", "AB")]:
+            self.assertEqual(chains(*rows), rows)
+        for rows in [("TIP", "3W"), ("POP", "CM"), ("HIS", "AB"), ("LYS", "HA")], [("ATP", "AA")]:
+            self.assertEqual(chains(*rows), [(residue + chain[0], chain[1]) for residue, chain in rows])
+        self.assertEqual(chains(("TIP", "3 "), ("ALA", " A")), [("TIP3", ""), ("ALA", "A")])
 
     def test_bonds_by_value(self):
         """Numbers of atoms with letters, six digits and leading zeros; lists in columns of five and more, and in words."""
