@@ -3,6 +3,7 @@
  * Knows: the format.   Does not know: what becomes of the points. */
 #include "elements.h"
 #include "key_values.h"
+#include "lammps.h"
 #include "reader.h"
 
 #include <ctype.h>
@@ -12,7 +13,19 @@
 
 enum { WORDS_MAX = 160 };
 
-typedef enum Role { SPECIES, POSITION, RADIUS, COLOR, NUMBER, SHAPE, ATOM_NAME, RESIDUE, OTHER } Role;
+typedef enum Role {
+    SPECIES,
+    TYPE,
+    POSITION,
+    RADIUS,
+    DIAMETER,
+    COLOR,
+    NUMBER,
+    SHAPE,
+    ATOM_NAME,
+    RESIDUE,
+    OTHER
+} Role;
 
 typedef struct Layout {
     struct {
@@ -43,12 +56,31 @@ static Role role_of(const char *name, char type, int64_t count) {
         Role role;
         const char *types;
         int64_t count;
-    } known[] = {
-        {"species", SPECIES, "S", 1},      {"element", SPECIES, "S", 1},        {"pos", POSITION, "RI", 3},
-        {"position", POSITION, "RI", 3},   {"positions", POSITION, "RI", 3},    {"color", COLOR, "RI", 3},
-        {"colour", COLOR, "RI", 3},        {"radius", RADIUS, "RI", 1},         {"Z", NUMBER, "I", 1},
-        {"atom_name", ATOM_NAME, "S", 1},  {"name", ATOM_NAME, "S", 1},         {"resname", RESIDUE, "S", 1},
-        {"residuenames", RESIDUE, "S", 1}, {"aspherical_shape", SHAPE, "R", 3}, {"shape", SHAPE, "R", 3}};
+    } known[] = {{"species", SPECIES, "SI", 1},
+                 {"element", SPECIES, "S", 1},
+                 {"symbol", SPECIES, "S", 1},
+                 {"symbols", SPECIES, "S", 1},
+                 {"type", TYPE, "SI", 1},
+                 {"particle_type", TYPE, "SI", 1},
+                 {"pos", POSITION, "RI", 3},
+                 {"position", POSITION, "RI", 3},
+                 {"positions", POSITION, "RI", 3},
+                 {"color", COLOR, "RI", 3},
+                 {"color", COLOR, "RI", 4}, /* the fourth is the alpha */
+                 {"colour", COLOR, "RI", 3},
+                 {"colour", COLOR, "RI", 4},
+                 {"radius", RADIUS, "RI", 1},
+                 {"diameter", DIAMETER, "RI", 1},
+                 {"Z", NUMBER, "I", 1},
+                 {"numbers", NUMBER, "I", 1},
+                 {"atomic_number", NUMBER, "I", 1},
+                 {"atomic_numbers", NUMBER, "I", 1},
+                 {"atom_name", ATOM_NAME, "S", 1},
+                 {"name", ATOM_NAME, "S", 1},
+                 {"resname", RESIDUE, "S", 1},
+                 {"residuenames", RESIDUE, "S", 1},
+                 {"aspherical_shape", SHAPE, "R", 3},
+                 {"shape", SHAPE, "R", 3}};
     for (size_t i = 0; i < sizeof known / sizeof *known; i++)
         if (strcasecmp(name, known[i].name) == 0 && strchr(known[i].types, type) != NULL &&
             count == known[i].count)
@@ -174,6 +206,22 @@ static BpStatus parse_cell(BpParticleFile *file, const char *comment, bool exten
     return BP_OK;
 }
 
+/* i-PI's second line: "# CELL(abcABC): 9 9 9 90 90 90 ... positions{atomic_unit} cell{atomic_unit}". */
+static void take_units(BpParticles *p, const char *comment) {
+    static const char key[] = "positions{";
+    const char *const unit = strstr(comment, key);
+    if (unit == NULL) return;
+    const char *const name = unit + sizeof key - 1;
+    if (strncmp(name, "atomic_unit}", 12) == 0 || strncmp(name, "bohr}", 5) == 0) {
+        p->angstrom = lammps_units_find("electron")->angstrom;
+        bp_particles_note(p, "lengths in bohr");
+    } else if (strncmp(name, "angstrom}", 9) != 0) {
+        bp_particles_note(p, "the unit of positions is not known: read as angstrom");
+    }
+    if (strstr(comment, "CELL") != NULL)
+        bp_particles_note(p, "CELL passed over, since a cell is called Lattice=");
+}
+
 static BpStatus begin_frame(BpParticleFile *file, const char *comment, Layout *layout, char *value,
                             BpError *err) {
     const KeyFound found = key_find(comment, "Properties", value);
@@ -186,7 +234,10 @@ static BpStatus begin_frame(BpParticleFile *file, const char *comment, Layout *l
     else
         plain_layout(layout);
     BP_TRY(frame_begin(file, layout->columns, layout->column_count, err));
-    if (file->out != NULL) file->out->angstrom = 1;
+    if (file->out != NULL) {
+        file->out->angstrom = 1;
+        if (!layout->extended) take_units(file->out, comment);
+    }
     file->colors.ambiguous = layout->whole_colors;
     return parse_cell(file, comment, layout->extended, value, err);
 }
@@ -256,12 +307,17 @@ static BpStatus take_atom(BpParticleFile *file, Layout *layout, uint64_t number,
             particle.type = words[w];
             if (particle.element == 0 && strcmp(words[w], "X") == 0) particle.flags |= BP_PARTICLE_DUMMY;
         }
+        if (role == TYPE && particle.type == NULL) {
+            particle.type = words[w];
+            if (particle.element == 0) particle.element = bp_element_of_species(words[w]);
+        }
         if (role == ATOM_NAME) particle.name = words[w];
         if (role == RESIDUE) particle.residue = words[w];
-        if (role == RADIUS || role == NUMBER) {
+        if (role == RADIUS || role == DIAMETER || role == NUMBER) {
             if (!word_number_or_none(words[w], &value))
                 return input_wrong(input, words[w], "a finite number", err);
             if (role == RADIUS) particle.radius = value;
+            if (role == DIAMETER && isnan(particle.radius)) particle.radius = value / 2;
             if (role == NUMBER && value >= 1 && value <= (double)BP_ELEMENT_MAX) {
                 particle.element = (uint8_t)value;
                 if (particle.type == NULL) {
@@ -283,6 +339,25 @@ static BpStatus take_atom(BpParticleFile *file, Layout *layout, uint64_t number,
     return frame_add(file, &particle, true, err);
 }
 
+/* Where the number of atoms should be, the line `line` was found, of which `words` has the first. NULL: none.
+ */
+static BpStatus fail_count(const BpParticleFile *file, const char *line, char *const *words, BpError *err) {
+    double number = 0;
+    if (line == NULL)
+        return input_fail(
+            &file->input, true, err,
+            "found an empty file, expected the number of atoms alone: an XYZ file's first line");
+    if (file->frame > 0)
+        return input_fail(
+            &file->input, true, err,
+            "found other words, expected the number of atoms of another frame alone, or the end of "
+            "the file: does the frame before it have more atoms than its first line says?");
+    return input_fail(
+        &file->input, true, err,
+        "found other words, expected the number of atoms alone: an XYZ file's first line%s",
+        word_number(words[0], &number) ? "; a table of points is read under a name that ends in .csv" : "");
+}
+
 BpStatus read_xyz(BpParticleFile *file, bool *end, BpError *err) {
     Input *const input = &file->input;
     char *line = NULL, *words[2];
@@ -290,10 +365,7 @@ BpStatus read_xyz(BpParticleFile *file, bool *end, BpError *err) {
     BP_TRY(input_full_line(input, &line, err));
     *end = line == NULL && file->frame > 0;
     if (*end) return BP_OK;
-    if (line == NULL || split_words(line, words, 2) != 1)
-        return input_fail(input, true, err,
-                          "found %s, expected the number of atoms alone: an XYZ file's first line",
-                          line == NULL ? "an empty file" : "other words");
+    if (line == NULL || split_words(line, words, 2) != 1) return fail_count(file, line, words, err);
     BP_TRY(word_count(input, words[0], "atoms", &count, err));
     BP_TRY(input_needed_line(input, &line, "the comment line of an XYZ file", err));
     Layout *const layout = calloc(1, sizeof *layout);

@@ -254,6 +254,14 @@ class Xyz(TableTest):
                     found = self.of("a.xyz", f"1\n{properties} energy=-1\n{line}\n", 0, change("f") + "_y")
                     self.assertEqual((found["positions"], found["radii"], found["colors"], found["types"], found["values"], found["elements"]),
                                      ([[1, 2, 3]], [0.5], [[1, 0.5, 0]], ["C"], [8], {"C": 1}), (properties, line))
+        for properties, line, kind, element in [("type:S:1:pos:R:3", "C 1 2 3", "C", "C"), ("pos:R:3:particle_type:I:1", "1 2 3 4", "4", ""),
+                                                ("species:S:1:pos:R:3:type:I:1", "C 1 2 3 7", "C", "C"), ("type:I:1:species:S:1:pos:R:3", "7 C 1 2 3", "C", "C"),
+                                                ("species:I:1:pos:R:3", "6 1 2 3", "6", ""), ("numbers:I:1:pos:R:3", "8 1 2 3", "O", "O"),
+                                                ("pos:R:3:atomic_numbers:I:1:type:I:1", "1 2 3 8 5", "O", "O"), ("symbols:S:1:pos:R:3", "Fe 1 2 3", "Fe", "Fe")]:
+            found = self.of("a.xyz", f"1\nProperties={properties}\n{line}\n")
+            self.assertEqual((found["types"], found["elements"], found["positions"]), ([kind], {element: 1}, [[1, 2, 3]]), properties)
+        for sizes, words, radius in ("diameter:R:1", "3", 1.5), ("diameter:R:1:radius:R:1", "3 5", 5), ("radius:R:1:diameter:R:1", "5 3", 5):
+            self.assertEqual(self.of("a.xyz", f"1\nProperties=species:S:1:pos:R:3:{sizes}\nC 1 2 3 {words}\n")["radii"], [radius], sizes)
         head = "1\nProperties=species:S:1:pos:R:3:fixed:L:1\n"
         for word, value in [("T", 1), ("F", 0), ("True", 1), ("false", 0), ("TRUE", 1)]:
             self.assertEqual(self.of("a.xyz", head + f"C 1 2 3 {word}\n", 0, "fixed")["values"], [value])
@@ -279,6 +287,22 @@ class Xyz(TableTest):
         self.colours("a.xyz", head % "R" + "C 0 0 0 255 127.5 0\nC 1 1 1 0 0 10\n", [(1, linear(0.5), 0), (0, 0, linear(10 / 255))], BYTES)
         self.colours("a.xyz", head % "I" + "C 0 0 0 255 128 0\nC 1 1 1 0 0 10\n", [(1, linear(128 / 255), 0), (0, 0, linear(10 / 255))], BYTES)
         self.colours("a.xyz", head % "I" + "C 0 0 0 1 0 0\nC 1 1 1 0 1 1\n", [(1, 0, 0), (0, 1, 1)], SHARES)
+        self.colours("a.xyz", (head % "R").replace("R:3\n", "R:4\n") + "C 0 0 0 1 0.5 0 1\nC 1 1 1 0 0 0.25 0.5\n", [(1, 0.5, 0), (0, 0, 0.25)])
+
+    def test_units(self):
+        head = "1\n# CELL(abcABC): 9 9 9 90 90 90  Step: 0 Bead: 0 positions{%s} cell{atomic_unit}\nC 1 2 3\n"
+        for unit, angstrom, note in [("atomic_unit", 1.8897261246, "lengths in bohr"), ("bohr", 1.8897261246, "lengths in bohr"), ("angstrom", 1, ""),
+                                     ("parsec", 1, "not known")]:
+            found = self.of("a.xyz", head % unit)
+            self.near([found["angstrom"]], [angstrom], 1e-5)
+            self.assertIn(note, found["notes"])
+            self.assertIn("CELL passed over", found["notes"])
+
+    def test_wrong_counts(self):
+        result = self.summary("a.xyz", "1\n\nC 0 0 0\nC 0 0 1\n", -1)
+        self.assertIn("more atoms than its first line says", result.stderr)
+        self.refuse("a.xyz", "0.5 0 0\n1 0 0\n", ":1:", "ends in .csv")
+        self.refuse("a.xyz", "x y z\n1 0 0\n", ":1:", "first line\n")
 
 
 class Csv(TableTest):
