@@ -78,9 +78,12 @@ size_t column_find_places(const char *const *names, size_t count, int place[3]) 
 bool column_find_color(const char *const *names, size_t count, int place[3]) {
     static const char *const words[] = {"",     "diffuse", "vertex",  "color",       "colour",      "rgb",
                                         "rgba", "colors",  "colours", "vertexcolor", "diffusecolor"};
-    static const char *const endings[3][3] = {{"red", "green", "blue"}, {"r", "g", "b"}, {"0", "1", "2"}};
+    /* Numbers stand behind a word, and CloudCompare's Rf, Gf and Bf alone. */
+    static const char *const endings[4][3] = {
+        {"red", "green", "blue"}, {"r", "g", "b"}, {"0", "1", "2"}, {"rf", "gf", "bf"}};
     for (size_t w = 0; w < COUNT(words); w++) {
-        for (int form = 0; form < (w > 0 ? 3 : 2); form++) {
+        for (int form = 0; form < 4; form++) {
+            if (form == (w > 0 ? 3 : 2)) continue;
             find_set(names, count, words[w], endings[form], false, place);
             if (place[0] >= 0 && place[1] >= 0 && place[2] >= 0) return true;
         }

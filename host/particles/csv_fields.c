@@ -62,6 +62,12 @@ static bool is_missing(const char *field) {
     return !word_number(field, &ignored) && word_number_or_none(field, &ignored);
 }
 
+bool csv_is_text(const char *field) {
+    double number = 0;
+    if (is_missing(field) || (word_number_or_none(field, &number), isinf(number))) return false;
+    return *field == '(' || *field == '[' || ((*field | 32) >= 'a' && (*field | 32) <= 'z');
+}
+
 bool csv_is_remark(const char *line) {
     static const char *const errors[] = {"#N/A", "#DIV/0!", "#NUM!", "#VALUE!", "#REF!"};
     line += strspn(line, " \t");

@@ -21,6 +21,9 @@ enum { CSV_UNCLOSED = -1 };
  * CSV_UNCLOSED: a quote is not closed. */
 int csv_split(char *line, char separator, char **fields, int max, int *filled);
 
+/* Whether the field holds words, such as a unit or a name, and no number, infinite or missing ones included.
+ */
+bool csv_is_text(const char *field);
 /* Whether the line is a remark (#, % or //). A field in which a spreadsheet marks a missing number counts as
  * missing. */
 bool csv_is_remark(const char *line);

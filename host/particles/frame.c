@@ -56,10 +56,16 @@ BpStatus frame_begin(BpParticleFile *file, const char *const *columns, size_t co
     file->taken_count = file->wanted_count;
     for (size_t w = 0; w < file->wanted_count; w++) {
         file->wanted_column[w] = -1;
-        for (size_t c = 0; c < column_count; c++)
-            if (strcmp(file->wanted[w], columns[c]) == 0) file->wanted_column[w] = (int)c;
-        if (file->wanted_column[w] >= 0) continue;
         char list[384] = "", shown[64];
+        for (size_t c = 0; c < column_count; c++) {
+            if (strcmp(file->wanted[w], columns[c]) != 0) continue;
+            if (file->wanted_column[w] >= 0) {
+                bp_printable(file->wanted[w], shown, sizeof shown);
+                return input_fail(&file->input, false, err, "found two columns \"%s\", expected one", shown);
+            }
+            file->wanted_column[w] = (int)c;
+        }
+        if (file->wanted_column[w] >= 0) continue;
         for (size_t c = 0; c < column_count; c++) {
             const size_t used = strlen(list);
             bp_printable(columns[c], shown, sizeof shown);

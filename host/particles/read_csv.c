@@ -7,6 +7,7 @@
 #include "reader.h"
 
 #include "base/message_text.h"
+#include "base/plural.h"
 
 #include <stdlib.h>
 #include <string.h>
@@ -81,7 +82,7 @@ static BpStatus find_unit(const Input *input, Table *table, BpError *err) {
 
 static BpStatus find_roles(const Input *input, Table *table, BpError *err) {
     static const char *const axes[] = {"x", "y", "z"}, *const types[] = {"type", "species", "particletype"},
-                             *const elements[] = {"element"};
+                             *const elements[] = {"element", "symbol", "atomsymbol", "chemicalsymbol"};
     const char *const *const names = (const char *const *)table->names;
     for (int r = 0; r < ROLE_COUNT; r++) table->role[r] = COLUMN_NONE;
     table->place_sets = column_find_places(names, (size_t)table->count, &table->role[X]);
@@ -95,7 +96,7 @@ static BpStatus find_roles(const Input *input, Table *table, BpError *err) {
         table->role[RED] = table->role[GREEN] = table->role[BLUE] = COLUMN_NONE;
     BP_TRY(find_radius(input, table, err));
     BP_TRY(find_role(input, table, TYPE, types, 3, err));
-    BP_TRY(find_role(input, table, ELEMENT, elements, 1, err));
+    BP_TRY(find_role(input, table, ELEMENT, elements, 4, err));
     return find_unit(input, table, err);
 }
 
@@ -121,6 +122,32 @@ static BpStatus take_header(const Input *input, const char *line, bool named, Ta
                           table->count);
     for (int i = 0; i < table->count && !named; i++) table->names[i] = plain[i];
     return find_roles(input, table, err);
+}
+
+/* The unit in a field below a name: "nm", "(nm)" or "[nm]". */
+static double unit_below(const char *field) {
+    char unit[COLUMN_UNIT_SIZE];
+    field += strspn(field, "([ ");
+    snprintf(unit, sizeof unit, "%.*s", (int)strcspn(field, ")] "), field);
+    return column_angstrom(unit);
+}
+
+/* A line below the names that tells units, or repeats names: texts stand where places should. */
+static bool take_texts(Table *table, const char *line) {
+    char *const copy = strdup(line), *fields[COLUMNS_MAX];
+    int filled = 0;
+    bool texts =
+        copy != NULL && csv_split(copy, table->form.separator, fields, COLUMNS_MAX, &filled) == table->count;
+    double angstrom = 0;
+    for (int r = X; r <= RADIUS && texts; r++) {
+        if (table->role[r] < 0) continue;
+        const double unit = unit_below(fields[table->role[r]]);
+        texts = r == RADIUS || csv_is_text(fields[table->role[r]]);
+        angstrom = r == X || unit == angstrom ? unit : 0;
+    }
+    free(copy);
+    if (texts && table->angstrom == 0) table->angstrom = angstrom;
+    return texts;
 }
 
 /* ---- rows --------------------------------------------------------------------------------------------- */
@@ -231,8 +258,16 @@ static BpStatus take_table(BpParticleFile *file, Table *table, char *remark, BpE
     BP_TRY(begin_table(input, table, remark, &line, err));
     BP_TRY(frame_begin(file, (const char *const *)table->names, (size_t)table->count, err));
     file->colors.ambiguous = true;
-    if (file->out != NULL) note_choices(file->out, table);
+    size_t texts = 0;
     if (line == NULL) BP_TRY(next_row(input, &line, NULL, err));
+    for (; table->has_header && line != NULL && take_texts(table, line); texts++)
+        BP_TRY(next_row(input, &line, NULL, err));
+    if (file->out != NULL) {
+        note_choices(file->out, table);
+        if (texts > 0)
+            bp_particles_note(file->out, "%zu line%s of texts below the names passed over", texts,
+                              bp_plural(texts));
+    }
     while (line != NULL) {
         BP_TRY(take_row(file, table, line, err));
         BP_TRY(next_row(input, &line, NULL, err));

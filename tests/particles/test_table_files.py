@@ -307,6 +307,7 @@ class Xyz(TableTest):
 
 class Csv(TableTest):
     def test_colours(self):
+        self.colours("a.csv", "//X Y Z Rf Gf Bf\n1 2 3 1 0.5 0\n", [(1, 0.5, 0)], SHARES)
         for header in ("r,g,b", "R,G,B", "red,green,blue", "Red,Green,Blue", "color_r,color_g,color_b", "Color.R,Color.G,Color.B",
                        "RGB:0,RGB:1,RGB:2", "diffuse_red,diffuse_green,diffuse_blue", "r,g,b,a", "vertex_color_r,vertex_color_g,vertex_color_b"):
             alpha = ",7" if header.endswith(",a") else ""
@@ -356,6 +357,31 @@ class Csv(TableTest):
         for unit, angstrom in [("nm", 0.1), ("A", 1), ("Å", 1), ("pm", 100), ("um", 1e-4), ("px", 1)]:
             self.near([self.of("a.csv", f"x ({unit}),y ({unit}),z,element\n1,2,3,C\n")["angstrom"]], [angstrom])
         self.assertEqual(self.of("a.csv", "x,y,z,element\n1,2,3,C\n")["angstrom"], 1)
+
+    def test_texts_below_the_names(self):
+        """Units, and what TrackMate repeats; places that are no texts are wrong, missing or infinite."""
+        note = "%s of texts below the names passed over"
+        for text, count, angstrom in [("x,y,z\nnm,nm,nm\n1,2,3\n", "1 line", 0.1), ("x,y,z\n(micron),(micron),(micron)\n1,2,3\n", "1 line", 1e-4),
+                                      ("x;y;z\n[A];[A];[A]\n1,0;2;3\n", "1 line", 1), ("x,y,z,radius\nnm,nm,nm,um\n1,2,3,4\n", "1 line", 0),
+                                      ("LABEL,POSITION_X,POSITION_Y,POSITION_Z,RADIUS\nLabel,X,Y,Z,Radius\nLabel,X,Y,Z,R\n,(micron),(micron),(micron),(micron)\n"
+                                       "ID1,1,2,3,0.5\n", "3 lines", 1e-4), ("x (nm),y (nm),z (nm)\na,b,c\n1,2,3\n", "1 line", 0.1)]:
+            found = self.places("a.csv", text, [(1, 2, 3)], note % count)
+            self.near([found["angstrom"]], [angstrom])
+        self.refuse("a.csv", "x,y,z\nm,m,1\n1,2,3\n", ":2:", 'found "m"')
+        self.refuse("a.csv", "x,y,z\ninf,inf,inf\n1,2,3\n", ":2:", 'found "inf"')
+        self.refuse("a.csv", "x,y,z\n1,2,3\nm,m,m\n", ":3:", 'found "m"')
+        self.refuse("a.csv", "x,y,z\nm,m,m\n", "without rows")
+        self.places("a.csv", "x,y,z\nNA,NA,NA\n1,2,3\n", [(1, 2, 3)], "1 point without a place left out")
+
+    def test_columns_twice(self):
+        self.assertIn('found two columns "v", expected one', self.summary("a.csv", "x,y,z,v,v\n1,2,3,4,5\n", 0, "v").stderr)
+        self.assertEqual(self.of("a.csv", "x,y,z,v,w,w\n1,2,3,4,5,6\n", 0, "v")["values"], [4])
+        dump = "ITEM: TIMESTEP\n0\nITEM: NUMBER OF ATOMS\n1\nITEM: BOX BOUNDS pp pp pp\n0 1\n0 1\n0 1\nITEM: ATOMS id x y z q q\n1 2 3 4 5 6\n"
+        self.assertIn('found two columns "q"', self.summary("a.dump", dump, 0, "q").stderr)
+
+    def test_elements(self):
+        for name, word, element in ("element", "Fe2+", "Fe"), ("symbol", "na", "Na"), ("Chemical Symbol", "C", "C"), ("type", "C", ""):
+            self.assertEqual(self.of("a.csv", f"x,y,z,{name}\n1,2,3,{word}\n")["elements"], {element: 1}, name)
 
     def test_decimal_commas(self):
         expected = [(0.5, 1.5, 0), (-1.25, 2.5e3, 1234)]
