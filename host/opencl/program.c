@@ -7,7 +7,6 @@
 #include "packed/effects.h"
 
 #include <errno.h>
-#include <stdarg.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -106,169 +105,122 @@ static const struct {
     {"film/accumulate.cl", IN_ALL},
 };
 
-/* A text that grows. `failed` remembers an allocation that did not succeed. */
 #define KERNEL_FILE_BYTES_MAX (1u << 20) /* BALLPARK_KERNELS can name a folder of anything */
 
-typedef struct Text {
-    char *bytes;
-    size_t length, capacity;
-    bool failed;
-} Text;
-
-static void text_append(Text *text, const char *bytes, size_t length) {
-    if (text->failed) return;
-    if (text->length + length + 1 > text->capacity) {
-        const size_t capacity = 2 * (text->length + length + 1);
-        char *grown = realloc(text->bytes, capacity);
-        if (grown == NULL) {
-            text->failed = true;
-            return;
-        }
-        text->bytes = grown;
-        text->capacity = capacity;
-    }
-    memcpy(text->bytes + text->length, bytes, length);
-    text->length += length;
-    text->bytes[text->length] = '\0';
+static BpStatus no_memory(BpError *err) {
+    return bp_fail(err, BP_ERR_MEMORY, "no memory for the kernel's source");
 }
 
-static void text_print(Text *text, const char *format, ...) BP_PRINTF_LIKE(2, 3);
-static void text_print(Text *text, const char *format, ...) {
-    char line[256];
-    va_list arguments;
-    va_start(arguments, format);
-    const int length = vsnprintf(line, sizeof line, format, arguments);
-    va_end(arguments);
-    text_append(text, line, (size_t)length);
+static BpStatus read_file(const char *path, char **text, BpError *err) {
+    FILE *file = fopen(path, "rb");
+    if (file == NULL)
+        return bp_fail(err, BP_ERR_FILE,
+                       "cannot open %s: %s; the environment variable BALLPARK_KERNELS must name a folder "
+                       "with all kernel files: correct it, or unset it to use the built-in ones",
+                       path, strerror(errno));
+    char *read = malloc(KERNEL_FILE_BYTES_MAX + 2);
+    const size_t length = read != NULL ? fread(read, 1, KERNEL_FILE_BYTES_MAX + 1, file) : 0;
+    const int problem = ferror(file) ? errno : 0;
+    fclose(file);
+    if (read == NULL) return no_memory(err);
+    read[length] = '\0';
+    if (problem == 0 && length <= KERNEL_FILE_BYTES_MAX && strlen(read) == length) {
+        *text = read;
+        return BP_OK;
+    }
+    free(read);
+    if (problem == 0 && length > KERNEL_FILE_BYTES_MAX)
+        return bp_fail(err, BP_ERR_FILE, "%s is not a kernel file: it has more than %u bytes", path,
+                       KERNEL_FILE_BYTES_MAX);
+    return bp_fail(err, BP_ERR_FILE, "cannot read %s: %s; it must be a kernel file", path,
+                   problem != 0 ? strerror(problem) : "it contains a byte of value 0");
 }
 
 BpStatus bp_kernel_text(const char *name, char **text, BpError *err) {
-    Text read = {0};
     const char *directory = getenv("BALLPARK_KERNELS");
     const char *embedded = bp_kernel_file(name);
     *text = NULL;
     if (directory != NULL && directory[0] != '\0') {
-        char block[4096];
-        size_t count;
         const size_t size = strlen(directory) + strlen(name) + 2;
         char *path = malloc(size);
         if (path == NULL) return bp_fail(err, BP_ERR_MEMORY, "no memory for a path of %zu bytes", size);
         snprintf(path, size, "%s/%s", directory, name);
-        FILE *file = fopen(path, "rb");
-        if (file == NULL) {
-            bp_fail(err, BP_ERR_FILE,
-                    "cannot open %s: %s; the environment variable BALLPARK_KERNELS must name a folder with "
-                    "all kernel files: correct it, or unset it to use the built-in ones",
-                    path, strerror(errno));
-            free(path);
-            return BP_ERR_FILE;
-        }
-        text_append(&read, "", 0);
-        while (read.length <= KERNEL_FILE_BYTES_MAX && (count = fread(block, 1, sizeof block, file)) > 0)
-            text_append(&read, block, count);
-        const int read_problem = ferror(file) ? errno : 0;
-        fclose(file);
-        if (read_problem != 0 || (read.bytes != NULL && strlen(read.bytes) != read.length)) {
-            bp_fail(err, BP_ERR_FILE, "cannot read %s: %s; it must be a kernel file", path,
-                    read_problem != 0 ? strerror(read_problem) : "it contains a byte of value 0");
-            free(path);
-            free(read.bytes);
-            return BP_ERR_FILE;
-        }
-        if (read.length > KERNEL_FILE_BYTES_MAX) {
-            bp_fail(err, BP_ERR_FILE, "%s is not a kernel file: it has more than %u bytes", path,
-                    KERNEL_FILE_BYTES_MAX);
-            free(path);
-            free(read.bytes);
-            return BP_ERR_FILE;
-        }
+        const BpStatus status = read_file(path, text, err);
         free(path);
-    } else if (embedded != NULL) {
-        text_append(&read, embedded, strlen(embedded));
-    } else {
-        return bp_fail(err, BP_ERR_FILE, "kernels/%s is not in this program", name);
+        return status;
     }
-    if (read.failed) {
-        free(read.bytes);
-        return bp_fail(err, BP_ERR_MEMORY, "no memory for the kernel's source");
-    }
-    *text = read.bytes;
+    if (embedded == NULL) return bp_fail(err, BP_ERR_FILE, "kernels/%s is not in this program", name);
+    *text = strdup(embedded);
+    return *text != NULL ? BP_OK : no_memory(err);
+}
+
+BpStatus bp_kernel_print(const char *name, FILE *out, BpError *err) {
+    char *text = NULL;
+    BP_TRY(bp_kernel_text(name, &text, err));
+    fprintf(out, "#line 1 \"%s\"\n%s", name, text);
+    free(text);
     return BP_OK;
 }
 
-BpStatus bp_kernel_texts(const char *const *names, size_t count, char **text, BpError *err) {
-    Text joined = {0};
+BpStatus bp_kernel_close(FILE *out, BpStatus status, char **text, BpError *err) {
+    const bool whole = ferror(out) == 0, closed = fclose(out) == 0;
+    if (status == BP_OK && !(whole && closed)) status = no_memory(err);
+    if (status == BP_OK) return BP_OK;
+    free(*text);
     *text = NULL;
-    for (size_t i = 0; i < count; ++i) {
-        char *file = NULL;
-        const BpStatus status = bp_kernel_text(names[i], &file, err);
-        if (status != BP_OK) {
-            free(joined.bytes);
-            return status;
-        }
-        if (i > 0) text_print(&joined, "#line 1 \"%s\"\n", names[i]);
-        text_append(&joined, file, strlen(file));
-        free(file);
-    }
-    if (joined.failed) {
-        free(joined.bytes);
-        return bp_fail(err, BP_ERR_MEMORY, "no memory for the kernel's source");
-    }
-    *text = joined.bytes;
-    return BP_OK;
+    return status;
+}
+
+BpStatus bp_kernel_texts(const char *const *names, size_t count, char **text, BpError *err) {
+    size_t size = 0;
+    char *first = NULL;
+    *text = NULL;
+    BP_TRY(bp_kernel_text(names[0], &first, err));
+    FILE *out = open_memstream(text, &size);
+    if (out != NULL) fputs(first, out);
+    free(first);
+    if (out == NULL) return no_memory(err);
+    BpStatus status = BP_OK;
+    for (size_t i = 1; i < count && status == BP_OK; ++i) status = bp_kernel_print(names[i], out, err);
+    return bp_kernel_close(out, status, text, err);
 }
 
 BpStatus bp_program_source(const BpProgramOptions *options, const char *extra_name, const char *extra_text,
                            char **source, BpError *err) {
-    Text text = {0};
+    size_t size = 0;
+    BpStatus status = BP_OK;
+    FILE *out = open_memstream(source, &size);
+    if (out == NULL) return no_memory(err);
     const bool plain = options->numerics == BP_NUMERICS_PLAIN;
     const bool all_double = options->precision == BP_PRECISION_DOUBLE;
-    text_print(&text, "#define REAL_IS_DOUBLE %d\n", all_double);
-    text_print(&text, "#define REFINE_IS_DOUBLE %d\n", all_double || (options->double_refine && !plain));
-    text_print(&text, "#define OWN_ROUNDING %d\n", options->own_rounding && !all_double);
-    text_print(&text, "#define TREE_WIDTH %u\n", options->tree_width);
+    fprintf(out, "#define REAL_IS_DOUBLE %d\n", all_double);
+    fprintf(out, "#define REFINE_IS_DOUBLE %d\n", all_double || (options->double_refine && !plain));
+    fprintf(out, "#define OWN_ROUNDING %d\n", options->own_rounding && !all_double);
+    fprintf(out, "#define TREE_WIDTH %u\n", options->tree_width);
     if (options->form == BP_KERNEL_PACKET) {
-        text_print(&text, "#define PACKET_LANES %u\n", options->packet_lanes);
-        text_print(&text, "#define SAMPLES_PER_ITEM %uu\n", BP_PACKET_SAMPLES_PER_ITEM);
+        fprintf(out, "#define PACKET_LANES %u\n", options->packet_lanes);
+        fprintf(out, "#define SAMPLES_PER_ITEM %uu\n", BP_PACKET_SAMPLES_PER_ITEM);
     } else if (options->form == BP_KERNEL_SAMPLE) {
-        text_print(&text, "#define GROUP_MAX %uu\n", BP_SAMPLE_GROUP_MAX);
+        fprintf(out, "#define GROUP_MAX %uu\n", BP_SAMPLE_GROUP_MAX);
     }
-    text_print(&text, "#define SAMPLER_SOBOL %d\n", options->sampler == BP_SAMPLER_SOBOL);
-    text_print(&text, "#define PIXEL_LIST %d\n", options->pixel_list);
+    fprintf(out, "#define SAMPLER_SOBOL %d\n", options->sampler == BP_SAMPLER_SOBOL);
+    fprintf(out, "#define PIXEL_LIST %d\n", options->pixel_list);
     for (int e = 0; e < BP_EFFECT_COUNT; ++e)
-        text_print(&text, "#define EFFECT_%s %d\n", bp_effect_identifier((BpEffect)e),
-                   bp_effects_has(options->effects, (BpEffect)e));
-    text_print(&text, "#define ACCELERATION_TREE %d\n", options->tree);
+        fprintf(out, "#define EFFECT_%s %d\n", bp_effect_identifier((BpEffect)e),
+                bp_effects_has(options->effects, (BpEffect)e));
+    fprintf(out, "#define ACCELERATION_TREE %d\n", options->tree);
     if (options->parts > 1)
-        text_print(&text, "#define SCENE_PARTS %u\n#define PART_LENGTH %uu\n", options->parts,
-                   options->part_length);
+        fprintf(out, "#define SCENE_PARTS %u\n#define PART_LENGTH %uu\n", options->parts,
+                options->part_length);
     const unsigned form = options->form == BP_KERNEL_PACKET ? IN_PACKET
                           : options->form == BP_KERNEL_POOL ? IN_SINGLE | IN_POOL
                                                             : IN_SINGLE | IN_SAMPLE;
     const unsigned kind = form | (plain ? IN_PLAIN : IN_ROBUST);
-    for (size_t i = 0; i < sizeof files / sizeof files[0]; ++i) {
-        const char *name = files[i].name;
-        if ((files[i].only_in & ~kind) != 0) continue;
-        text_print(&text, "#line 1 \"%s\"\n", name);
-        char *file = NULL;
-        const BpStatus status = bp_kernel_text(name, &file, err);
-        if (status != BP_OK) {
-            free(text.bytes);
-            return status;
-        }
-        text_append(&text, file, strlen(file));
-        free(file);
-    }
-    if (extra_text != NULL) {
-        text_print(&text, "#line 1 \"%s\"\n", extra_name != NULL ? extra_name : "extra.cl");
-        text_append(&text, extra_text, strlen(extra_text));
-    }
-    if (text.failed) {
-        free(text.bytes);
-        return bp_fail(err, BP_ERR_MEMORY, "no memory for the kernel's source");
-    }
-    *source = text.bytes;
-    return BP_OK;
+    for (size_t i = 0; i < sizeof files / sizeof files[0] && status == BP_OK; ++i)
+        if ((files[i].only_in & ~kind) == 0) status = bp_kernel_print(files[i].name, out, err);
+    if (extra_text != NULL)
+        fprintf(out, "#line 1 \"%s\"\n%s", extra_name != NULL ? extra_name : "extra.cl", extra_text);
+    return bp_kernel_close(out, status, source, err);
 }
 
 /* A program that this device has built before. False: there is none. */

@@ -13,6 +13,8 @@
 #include "base/names.h"
 #include "device.h"
 
+#include <stdio.h>
+
 /* The embedded text of one file of kernels/, by its path there ("light/sky.cl"), static; NULL when there is
  * none of that name. */
 const char *bp_kernel_file(const char *name);
@@ -24,6 +26,10 @@ BpStatus bp_kernel_text(const char *name, char **text, BpError *err);
 /* The same of one file after the other, at least one, as `extra_text` of a program whose `extra_name` is the
  * first. */
 BpStatus bp_kernel_texts(const char *const *names, size_t count, char **text, BpError *err);
+/* For a source that is put together in a stream of open_memstream(): prints one such text behind a line that
+ * names it; and closes the stream: where `status` is not BP_OK, or memory ran out, *text becomes NULL. */
+BpStatus bp_kernel_print(const char *name, FILE *out, BpError *err);
+BpStatus bp_kernel_close(FILE *out, BpStatus status, char **text, BpError *err);
 
 /* A work-item of the packet form traces this many pixel samples, as many at a time as it has lanes: enough
  * that the last, partly filled round weighs little, few enough that a small chunk still keeps all cores busy.

@@ -192,43 +192,22 @@ const char *const bp_self_test_files[BP_SELF_TEST_FILES] = {
 /* The test's own program: the kernels' dialect and self_test.cl, and nothing else, so that it builds fast and
  * speaks even where the whole kernel does not build. The caller frees *source. */
 static BpStatus assemble(const BpDevice *device, const char *kernel_text, char **source, BpError *err) {
+    size_t size = 0;
     BpStatus status = BP_OK;
-    char *texts[BP_SELF_TEST_FILES] = {NULL};
-    char head[2048] = "";
-    size_t used =
-        (size_t)snprintf(head, sizeof head,
-                         "#define REAL_IS_DOUBLE 0\n#define REFINE_IS_DOUBLE %d\n#define OWN_ROUNDING "
-                         "%d\n#define TREE_WIDTH 8\n"
-                         "#define ROW_COLUMNS %du\n",
-                         device->info.has_double, !bp_device_rounds_quotients(device->id), COLUMN_COUNT);
+    FILE *out = open_memstream(source, &size);
+    if (out == NULL) return bp_fail(err, BP_ERR_MEMORY, "no memory for the self-test");
+    fprintf(out,
+            "#define REAL_IS_DOUBLE 0\n#define REFINE_IS_DOUBLE %d\n#define OWN_ROUNDING %d\n"
+            "#define TREE_WIDTH 8\n#define ROW_COLUMNS %du\n",
+            device->info.has_double, !bp_device_rounds_quotients(device->id), COLUMN_COUNT);
     for (int column = 0; column < COLUMN_COUNT; ++column)
-        used += (size_t)snprintf(head + used, sizeof head - used, "#define COLUMN_%s %du\n",
-                                 columns[column].name, column);
-    size_t size = used + 1;
-    for (int f = 0; f < BP_SELF_TEST_FILES; ++f) {
-        if (kernel_text != NULL && f == BP_SELF_TEST_FILES - 1)
-            texts[f] = strdup(kernel_text);
-        else
-            BP_TRY_GOTO(status, bp_kernel_text(bp_self_test_files[f], &texts[f], err), done);
-        if (texts[f] == NULL) {
-            status = bp_fail(err, BP_ERR_MEMORY, "no memory for the self-test");
-            goto done;
-        }
-        size += strlen(texts[f]) + strlen(bp_self_test_files[f]) + strlen("#line 1 \"\"\n\n");
-    }
-    *source = malloc(size);
-    if (*source == NULL) {
-        status = bp_fail(err, BP_ERR_MEMORY, "no memory for the self-test");
-        goto done;
-    }
-    memcpy(*source, head, used + 1);
-    for (int f = 0; f < BP_SELF_TEST_FILES; ++f)
-        used += (size_t)snprintf(*source + used, size - used, "#line 1 \"%s\"\n%s\n", bp_self_test_files[f],
-                                 texts[f]);
-
-done:
-    for (int f = 0; f < BP_SELF_TEST_FILES; ++f) free(texts[f]);
-    return status;
+        fprintf(out, "#define COLUMN_%s %du\n", columns[column].name, column);
+    const int own = kernel_text != NULL ? BP_SELF_TEST_FILES - 1 : BP_SELF_TEST_FILES;
+    for (int f = 0; f < own && status == BP_OK; ++f)
+        status = bp_kernel_print(bp_self_test_files[f], out, err);
+    if (kernel_text != NULL)
+        fprintf(out, "#line 1 \"%s\"\n%s", bp_self_test_files[BP_SELF_TEST_FILES - 1], kernel_text);
+    return bp_kernel_close(out, status, source, err);
 }
 
 /* Runs the built kernel over `in`. */
