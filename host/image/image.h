@@ -56,6 +56,9 @@ BpStatus bp_exr_write(const BpPicture *picture, FILE *out, const BpImageExtra *e
 
 /* 8-bit RGB, 3 bytes per pixel, top row first, as an sRGB PNG: for pictures that are drawn, not rendered. */
 BpStatus bp_png_write_bytes(const uint8_t *rgb, uint32_t width, uint32_t height, FILE *out, BpError *err);
+/* Bytes, such as those of a PNG, in the letters that documents and terminals can hold (RFC 4648, section 4).
+ */
+void bp_base64_print(const void *bytes, size_t size, FILE *out);
 
 /* Writes to an open stream; BP_FORMAT_BPA is refused. */
 BpStatus bp_picture_write_stream(const BpPicture *picture, FILE *out, BpFormat format, BpTransfer transfer,

@@ -178,3 +178,13 @@ BpStatus bp_png_write_bytes(const uint8_t *rgb, uint32_t width, uint32_t height,
                          .extra = &none};
     return write_png(out, &image, err);
 }
+
+void bp_base64_print(const void *bytes, size_t size, FILE *out) {
+    static const char digits[] = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
+    const uint8_t *at = bytes;
+    for (size_t i = 0; i < size; i += 3) {
+        uint32_t bits = 0;
+        for (size_t b = i; b < i + 3; b++) bits = bits << 8 | (b < size ? at[b] : 0u);
+        for (size_t d = 0; d < 4; d++) putc(i + d > size ? '=' : digits[bits >> (18 - 6 * d) & 63], out);
+    }
+}

@@ -4,6 +4,7 @@
 
 #include "base/json_memory.h"
 #include "image/error_map.h"
+#include "image/image.h"
 
 #include <inttypes.h>
 #include <math.h>
@@ -32,23 +33,11 @@ static bool print_study(const BpStudyResult *result, FILE *out) {
 
 /* ---- crops ---- */
 
-/* RFC 4648, section 4. */
-static void print_base64(const BpStudyPng *png, FILE *out) {
-    static const char digits[] = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
-    for (size_t i = 0; i < png->size; i += 3) {
-        uint32_t bits = 0;
-        for (size_t b = 0; b < 3; b++)
-            bits = bits << 8 | (i + b < png->size ? (uint8_t)png->bytes[i + b] : 0u);
-        for (size_t d = 0; d < 4; d++)
-            fputc(i + d > png->size ? '=' : digits[bits >> (18 - 6 * d) & 63], out);
-    }
-}
-
 static void print_crop(const BpStudyCrop *crop, FILE *out) {
     fputs("{\"picture\": \"", out);
-    print_base64(&crop->picture, out);
+    bp_base64_print(crop->picture.bytes, crop->picture.size, out);
     fputs("\", \"map\": \"", out);
-    print_base64(&crop->map, out);
+    bp_base64_print(crop->map.bytes, crop->map.size, out);
     fputs("\"}", out);
 }
 

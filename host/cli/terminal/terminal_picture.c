@@ -204,18 +204,6 @@ static bool print_blocks(FILE *out, const BpPicture *picture, Size *size, BpTran
 
 /* ---- kitty and iTerm2: a PNG in base64 ---------------------------------------------------------------- */
 
-static void print_base64(FILE *out, const uint8_t *bytes, size_t size) {
-    static const char letters[] = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
-    for (size_t i = 0; i < size; i += 3) {
-        const uint32_t three = (uint32_t)bytes[i] << 16 | (i + 1 < size ? (uint32_t)bytes[i + 1] << 8 : 0) |
-                               (i + 2 < size ? bytes[i + 2] : 0);
-        putc(letters[three >> 18], out);
-        putc(letters[three >> 12 & 63], out);
-        putc(i + 1 < size ? letters[three >> 6 & 63] : '=', out);
-        putc(i + 2 < size ? letters[three & 63] : '=', out);
-    }
-}
-
 static bool make_png(const BpPicture *picture, BpTransfer transfer, char **bytes, size_t *size) {
     FILE *memory = open_memstream(bytes, size);
     if (memory == NULL) return false;
@@ -240,7 +228,7 @@ static bool print_kitty(FILE *out, const BpPicture *picture, const Size *size, B
             fprintf(out, "a=T,f=100,q=2,C=1,i=%u,p=1,c=%u,r=%u,", (unsigned)getpid(), size->columns,
                     size->rows);
         fprintf(out, "m=%d;", at + piece < length);
-        print_base64(out, (const uint8_t *)bytes + at, piece);
+        bp_base64_print(bytes + at, piece, out);
         fputs("\033\\", out);
     }
     free(bytes);
@@ -253,7 +241,7 @@ static bool print_iterm2(FILE *out, const BpPicture *picture, const Size *size, 
     if (!make_png(picture, transfer, &bytes, &length)) return false;
     fprintf(out, "\033]1337;File=inline=1;size=%zu;width=%u;height=%u;preserveAspectRatio=1:", length,
             size->columns, size->rows);
-    print_base64(out, (const uint8_t *)bytes, length);
+    bp_base64_print(bytes, length, out);
     putc('\a', out);
     free(bytes);
     return true;
