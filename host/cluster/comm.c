@@ -3,6 +3,7 @@
 #include "comm.h"
 
 #include "base/clock.h"
+#include "base/hash.h"
 #include "base/module.h"
 #include "launch.h"
 #include "transport.h"
@@ -278,14 +279,10 @@ static BpStatus divide_cores(BpComm *comm, BpError *err) {
 
 /* ---- beginning and ending ---------------------------------------------------------------------------- */
 
-/* FNV-1a (Fowler, Noll, Vo), with the ends of the words. */
+/* With the ends of the words. */
 static uint64_t hash_arguments(char *const *arguments) {
-    uint64_t hash = 14695981039346656037u;
-    for (; *arguments != NULL; ++arguments)
-        for (const char *c = *arguments;; ++c) {
-            hash = (hash ^ (unsigned char)*c) * 1099511628211u;
-            if (*c == '\0') break;
-        }
+    uint64_t hash = BP_HASH_START;
+    for (; *arguments != NULL; ++arguments) hash = bp_hash_bytes(hash, *arguments, strlen(*arguments) + 1);
     return hash;
 }
 

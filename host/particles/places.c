@@ -1,6 +1,8 @@
 /* places.c: see places.h. */
 #include "places.h"
 
+#include "base/hash.h"
+
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -14,12 +16,9 @@ typedef struct Place {
     uint16_t residue;
 } Place;
 
-/* Different texts get different numbers, as far as 64 bits allow (FNV-1a, G. Fowler, L. C. Noll, K.-P. Vo).
- */
+/* Different texts get different numbers, as far as 64 bits allow. */
 static uint64_t number_of(const char *text) {
-    uint64_t number = 0xcbf29ce484222325u;
-    for (; *text != '\0'; text++) number = (number ^ (unsigned char)*text) * 0x100000001b3u;
-    return number;
+    return bp_hash_text(BP_HASH_START, text);
 }
 
 static uint32_t letter_of(const char *text) {
