@@ -319,7 +319,7 @@ BpStatus bp_lamp_tree_build(const BpScene *scene, const BpTree *tree, BpLampTree
         lamps->slot_count = (uint32_t)slots;
         collect_lamps(scene, tree, slot_of, enclosing, &builder);
     }
-    const Run all = run_of(&builder, 0, count);
+    const Run all = run_of(&builder, 0, enough ? count : 0);
     uint32_t root;
     if (enough) enough = count > 0 ? write_node(&builder, &all, 0, 0) : take_node(&builder, &root);
     if (!enough) status = bp_fail(err, BP_ERR_MEMORY, "out of memory for a tree of %u lamps", count);
