@@ -1,7 +1,7 @@
 /* ballpark.h: the public interface of libballpark, a path tracer for spheres on any OpenCL device.
  *
  * The straight line: load a scene, open a render of it on a list of devices, step until it is finished, read
- * the picture, destroy. Once a call has failed, what is left is to say so and to destroy.
+ * the picture, destroy. After a call has failed, report it and destroy.
  *
  *     BpScene *scene = NULL; BpRender *render = NULL; BpError err = {0};
  *     BpProgress progress = {0}; BpPicture picture = {0};
@@ -20,34 +20,35 @@
  *
  * General rules, stated once:
  * - Errors. A function that can fail returns BpStatus and takes `BpError *err` last; `err` may be NULL. Begin
- *   with a zeroed BpError and end with bp_error_clear(). Any such function can fail with BP_ERR_MEMORY, and
- *   one that works on a device with BP_ERR_DEVICE; comments name what else is to be expected. After a failed
- *   step of a render or a study, destroy it; every other failure leaves its arguments as they were.
+ *   with a zeroed BpError and end with bp_error_clear(); before its message is shown, bp_error_add_remedy()
+ *   completes it. Any such function can fail with BP_ERR_MEMORY, and one that works on a device with
+ *   BP_ERR_DEVICE; comments name what else is to be expected. After a failed step of a render or a study,
+ *   destroy it; every other failure leaves its arguments as they were.
  * - Arguments. A pointer must not be NULL unless it is called Optional here.
  * - Ownership. A function that takes the address of a handle to fill it gives an object that the caller owns;
  *   the handle is NULL before, and stays NULL on failure. `_destroy` takes its address, frees it and sets
  *   it to NULL; it accepts NULL and the address of NULL. `_clear` releases what a caller's struct holds and
  *   zeroes it. What a getter points to belongs to the handle; it is valid until that changes or is destroyed.
  * - Strings are UTF-8, end with a zero byte and are copied; no function keeps a caller's pointer beyond the
- * call unless its comment documents that.
+ *   call unless its comment states that.
  * - Threads. A handle is used by one thread at a time, but functions that take a `const` handle may run at
  *   the same time: many threads may render one scene, each by a render of its own. Different handles are
  *   independent, also in the first calls of a process: there is no state outside of handles, except for
- * caches in files and the start of the OpenCL drivers, which one thread does while the others wait. The
+ *   caches in files and the start of the OpenCL drivers, which one thread does while the others wait. The
  *   environment (BALLPARK_KERNELS, and what OpenCL drivers read) must not change meanwhile. No function
  *   prints, exits or touches signals; a driver may: PoCL ends the process by abort() when it lacks memory.
  * - Processes. OpenCL drivers do not survive fork(). In a process forked from one that has used OpenCL, every
  *   function that would need a driver fails with BP_ERR_DEVICE; pictures, films and scenes remain usable, and
  *   `_destroy` frees the host's memory alone. A process may fork before anything uses OpenCL, and then
  *   use it.
- * - Drivers. All OpenCL drivers of the machine start with the first call that needs a device. One that does
- *   not answer within 20 seconds, when it starts or opens a device, is given up with BP_ERR_DEVICE, whose
- *   message says what is known of it; BALLPARK_DRIVER_SECONDS in the environment sets another limit, 0 none;
- * then drivers start in the thread of the caller. Its thread cannot be ended and stays behind. Where that
- * holds a lock of the system's loader, exit() waits for it; _exit() does not. A driver that crashes or ends
- * the process takes it along, since a library cannot prevent that. `ballpark devices` asks drivers in
- * processes of their own and names the one that is broken; with OCL_ICD_VENDORS naming the .icd file of
- * another, it is not loaded at all.
+ * - Drivers. All OpenCL drivers of the machine start with the first call that needs a device. One that
+ *   does not answer within 20 seconds, when it starts or opens a device, is given up: BP_ERR_DEVICE, with
+ *   a message that names it where possible. The thread that waits for it cannot be ended and stays behind;
+ *   while that holds a lock of the system's loader, exit() waits for it, and _exit() does not.
+ *   BALLPARK_DRIVER_SECONDS in the environment sets another limit; with 0 there is none, and drivers start
+ *   in the caller's thread. A library cannot prevent a driver from crashing or ending the process.
+ *   `ballpark devices` tries each driver in a process of its own and names the broken one, which is not
+ *   loaded if OCL_ICD_VENDORS names the .icd file of another.
  * - Options. A struct of options is filled by its function `_defaults`; then change what matters. New members
  *   may come in a minor version, so a struct that was filled member by member would lack them.
  * - Versions. While the version is 0.x, structs may grow in a minor version and not in a patch: see
@@ -70,7 +71,7 @@
 #endif
 
 /* 1000 * major + minor of the version: 0.1. A program must be compiled again for another value; the shared
- * library's name follows it (libballpark.so.0.1), and bp_api_version() says that of the library at hand. */
+ * library's name follows it (libballpark.so.0.1), and bp_api_version() returns that of the loaded library. */
 #define BP_API_VERSION 1
 
 #ifdef __cplusplus
@@ -150,7 +151,7 @@ BP_API void bp_error_add_remedy(BpError *err, BpInterface interface);
 /* Releases the attachment and zeroes the rest. `err`: Optional. */
 BP_API void bp_error_clear(BpError *err);
 
-/* Releases what a function here says to release with it. `memory`: Optional. */
+/* Releases memory that a function below documents as to be released with it. `memory`: Optional. */
 BP_API void bp_free(void *memory);
 
 /* "0.1.0 (commit abcdef1)"; static. */
@@ -216,7 +217,7 @@ typedef struct BpSceneInfo {
 } BpSceneInfo;
 BP_API void bp_scene_info(const BpScene *scene, BpSceneInfo *info);
 
-/* The camera as it stands, after it was fitted to the spheres if the scene asks for that. */
+/* The current camera: fitted to the spheres, if the scene has a fitted camera. */
 typedef struct BpCameraInfo {
     double vfov; /* of the picture's height */
     double lookfrom[3], lookat[3], vup[3];
@@ -229,7 +230,7 @@ BP_API void bp_scene_camera(const BpScene *scene, BpCameraInfo *info);
 typedef struct BpEffectInfo {
     const char *name, *description; /* static: "lens", "a lens with an aperture: defocus blur" */
     bool simulated;
-    char reason[160]; /* why it is in or out, for a person */
+    char reason[160]; /* why it is simulated or not, as a readable text */
 } BpEffectInfo;
 
 /* How many effects there are: the same ones in the same order for every scene, at most 31. */
@@ -270,12 +271,12 @@ typedef struct BpDeviceInfo {
     char platform[128], name[256], vendor[128], version[128], driver[128];
     unsigned compute_units;
     unsigned
-        float_lanes; /* of its vector instructions, as the driver says; 1: it has none, or hides them.
+        float_lanes; /* of its vector instructions, as the driver reports; 1: none, or not reported.
                         4 with PoCL on 64-bit ARM, since PoCL reports 1 for all processors except x86's */
     uint64_t memory_bytes, largest_allocation_bytes;
     bool has_double, has_compiler, available;
     char refusal[128];      /* what the device lacks, so that it cannot render; "": nothing */
-    unsigned clock_mhz;     /* the highest, as the driver says; 0: it does not */
+    unsigned clock_mhz;     /* the highest, as the driver reports; 0: not reported */
     bool has_shared_memory; /* its memory is the host's, as that of GPUs inside a processor */
 } BpDeviceInfo;
 
@@ -287,8 +288,8 @@ BP_API BpStatus bp_devices_list(BpDeviceInfo **list, size_t *count, BpError *err
  * name, vendor, version, driver version or platform (any case); or for NULL or "" the default: the most
  * capable GPU if there is one, else a CPU. A GPU with memory of its own is more capable than one without; of
  * one platform, that with more compute units times its clock; of several, that with more memory. A device
- * that cannot render is passed over; asked for by number, it is refused with what it lacks. BP_ERR_DEVICE:
- * nothing fits, or a text fits different devices; the error lists what there is, or what to install. */
+ * that cannot render is skipped; if its number is given, it is refused with what it lacks. BP_ERR_DEVICE:
+ * nothing fits, or a text fits different devices; the error lists the devices, or what to install. */
 BP_API BpStatus bp_device_find(const char *text, BpDeviceInfo *device, BpError *err);
 
 /* ---- rendering --------------------------------------------------------------------------------------- */
@@ -322,23 +323,23 @@ typedef struct BpRenderOptions {
     BpMath math;
     BpNumerics numerics;
     BpSampler sampler; /* `ballpark render` uses Sobol's sequence, which has less noise in the same time */
-    BpLightSampling light_sampling; /* on does nothing in a scene that does not call for it; reports and films
-                                       then say off */
-    BpCaustics caustics;            /* the same holds; without lamps it is off */
+    BpLightSampling light_sampling; /* on has no effect in a scene that does not call for it; reports and
+                                       films then record off */
+    BpCaustics caustics;            /* the same; off without light sampling */
     BpKernelForm kernel;
     bool all_effects;       /* build the general kernel instead of the specialised one */
     uint32_t extra_effects; /* bit e: simulate effect e of bp_scene_effect() although nothing calls for it */
     bool adaptive;          /* samples_per_pixel is a mean: pixels get samples where the error is */
-    bool features;          /* depth, normal and albedo will be asked for, by bp_render_aovs() or in films */
-    bool samples_only; /* nobody asks for errors: no paths look for light that samples may not have found */
+    bool features;          /* depth, normal and albedo are needed, for bp_render_aovs() or in films */
+    bool samples_only; /* errors are not needed: no paths look for light that samples may not have found */
     bool force;        /* render even on a device that fails its self-test */
     uint64_t job_first,
-        job_samples; /* the samples of a job of which this render is a share; 0, 0: of none. Films say so */
+        job_samples; /* the samples of the job of which this render is a share; 0, 0: none. Kept in films */
     uint32_t replicates; /* K of the error estimate; 0: the default; 1: no estimate */
     uint32_t threads;    /* that a processor may use, as far as its driver can divide it; 0: all */
     /* For tests and tuning; 0 means: choose. None of these changes a picture, except that force_float_refine
-     * may change last digits in single precision: its transforms are as accurate as double, and end
-     * otherwise. */
+     * may change the last digits in single precision: its transforms are as accurate as double, and round
+     * differently. */
     uint32_t chunk_samples;  /* samples in one dispatch */
     uint32_t local_size;     /* work-items in a work-group; at most 64 in the sample form */
     uint32_t tree_width;     /* children of a tree node: 2, 4, 8 or 16 */
@@ -425,13 +426,13 @@ typedef struct BpStop BpStop;
 
 /* Begins to follow a render that has made no step yet; its clock starts now. The rule decides from here on
  * how many samples the render gets. The render must outlive it. BP_ERR_USAGE: the render has begun, the rule
- * is out of range, asks for nothing, or is adaptive where the render is not. */
+ * is out of range, has no limit at all, or is adaptive where the render is not. */
 BP_API BpStatus bp_stop_create(BpRender *render, const BpStopRule *rule, BpStop **stop, BpError *err);
 
-/* Call it after every bp_render_step(), with what that said. *reason: why to stop; BP_STOP_NOT_YET: continue;
- * the render has been given more samples if it had finished the earlier ones. The error is looked at on fixed
- * sample counts alone, so the same scene, seed and error end at the same count on every run; time ends a
- * render at a whole number of samples, unless its pace dropped. */
+/* Call it after every bp_render_step(), with the progress that it returned. *reason: why to stop;
+ * BP_STOP_NOT_YET: continue; the render has been given more samples if it had finished the earlier ones. The
+ * error is looked at on fixed sample counts alone, so the same scene, seed and error end at the same count on
+ * every run; time ends a render at a whole number of samples, unless its pace dropped. */
 BP_API BpStatus bp_stop_check(BpStop *stop, const BpProgress *progress, BpStopReason *reason, BpError *err);
 
 /* The progress of a render, for a progress bar. */
@@ -480,8 +481,8 @@ BP_API BpStatus bp_render_read(BpRender *render, BpPicture *picture, BpError *er
 BP_API BpStatus bp_render_aovs(BpRender *render, BpPicture *picture, BpError *err);
 /* Light that the samples of a picture find by chance only: it comes to matte surfaces via glass or
  * mirrors, or is seen in them, or is smaller than a pixel. It follows from the scene and the camera, whatever
- * has been sampled; and until samples have found it, bp_film_nrmse() and the errors of pixels know of it from
- * here. Luminances, means over the picture. */
+ * has been sampled; and until samples have found it, it is added to bp_film_nrmse() and the errors of
+ * pixels. Luminances, means over the picture. */
 #define BP_UNSEEN_SPHERES 3
 typedef struct BpUnseenLight {
     double mean;   /* that it adds to a sample; 0: there is no such light */
@@ -550,14 +551,14 @@ BP_API BpStatus bp_error_map_write(const BpPicture *picture, const char *path, B
  * it records how to continue (bp_render_resume()). */
 BP_API BpStatus bp_render_film(BpRender *render, BpFilm **film, BpError *err);
 
-/* Reads a .bpa file. BP_ERR_FILE: it cannot be read, or is damaged; the error says what is wrong. */
+/* Reads a .bpa file. BP_ERR_FILE: it cannot be read, or is damaged, as the error describes. */
 BP_API BpStatus bp_film_read(const char *path, BpFilm **film, BpError *err);
 
 /* Writes a .bpa file, atomically. BP_ERR_FILE. */
 BP_API BpStatus bp_film_write(const BpFilm *film, const char *path, BpError *err);
 
 /* Adds `from` to `into`, exactly: the result is the film of one render of all their samples. BP_ERR_USAGE:
- * they are not of the same scene, size and options, or have samples in common, and the error says which;
+ * they are not of the same scene, size and options, or have samples in common, as the error describes;
  * BP_ERR_LIMIT: more samples than the sums hold. `into` is unchanged on failure. */
 BP_API BpStatus bp_film_merge(BpFilm *into, const BpFilm *from, BpError *err);
 
@@ -612,18 +613,18 @@ BP_API void bp_film_destroy(BpFilm **film);
  */
 typedef struct BpStudy BpStudy;
 
-/* Begins a study. `scene`: of the size to study, 240 pixels wide say, larger ones taking longer to tell
- * errors apart; it must outlive the study, unchanged. `options`: Optional; what a render would use, NULL
- * meaning the defaults. `device`: Optional; NULL means the default one. `full_width`, `full_height`: pixels
- * of the picture that the advice is for; 0 means the scene's own. `seconds`: the budget, above 0 and counted
- * from here; a study takes longer where two sample counts do not fit. Run nothing else meanwhile, other
- * threads of this process least of all: their time is measured too. BP_ERR_USAGE: no budget. */
+/* Begins a study. `scene`: of the size to study, 240 pixels wide for example; larger ones take longer
+ * to tell errors apart; it must outlive the study, unchanged. `options`: Optional; what a render would use,
+ * NULL meaning the defaults. `device`: Optional; NULL means the default one. `full_width`, `full_height`:
+ * pixels of the picture that the advice is for; 0 means the scene's own. `seconds`: the budget, above 0 and
+ * counted from here; a study takes longer where two sample counts do not fit. Run nothing else meanwhile,
+ * other threads of this process least of all: their time is measured too. BP_ERR_USAGE: no budget. */
 BP_API BpStatus bp_study_create(const BpScene *scene, const BpRenderOptions *options,
                                 const BpDeviceInfo *device, uint32_t full_width, uint32_t full_height,
                                 double seconds, BpStudy **study, BpError *err);
 
 typedef struct BpStudyProgress {
-    char doing[80]; /* for a person */
+    char doing[80]; /* what it is doing, as a readable text */
     double fraction, seconds_left;
     bool finished;
 } BpStudyProgress;

@@ -17,7 +17,7 @@
 #define BP_PASTE "\x02"
 
 /* Writes `text` to `out` in lines of at most `columns` characters, broken at blanks; 0: as it is, without the
- * marks. A number and its "%" stay together, and so does what stands between backticks. A word that is longer
+ * marks. A number and its "%" stay together, and so does text between backticks. A word that is longer
  * than a line is not broken. */
 void bp_fold(const char *text, size_t columns, FILE *out);
 

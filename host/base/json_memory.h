@@ -4,8 +4,8 @@
  * Knows: jansson's allocations.    Does not know: what a document means.
  *
  * jansson reports a lack of memory as a syntax error, and sometimes drops a character without reporting
- * anything. So the program has it allocate through functions that note a failure; a program that uses
- * libballpark may have functions of its own, and is told what errno says. */
+ * anything. So the program has it allocate through functions that record a failure. A program that uses
+ * libballpark may have allocation functions of its own; there, errno decides. */
 #ifndef BP_BASE_JSON_MEMORY_H
 #define BP_BASE_JSON_MEMORY_H
 
@@ -15,11 +15,11 @@
 /* For main, once, before jansson is used. */
 void bp_json_memory_watch(void);
 
-/* Whether jansson has ever been refused memory: whatever it made in this process may lack something. */
+/* Whether an allocation of jansson has ever failed: any document made in this process may be incomplete. */
 bool bp_json_memory_failed(void);
 
 /* json_loadb() of a text that may begin with a byte order mark; *no_memory: it failed for lack of memory,
- * whatever `error` says. */
+ * and `error` is meaningless. */
 json_t *bp_json_load(const char *text, size_t length, size_t flags, json_error_t *error, bool *no_memory);
 
 /* `text` in quotes, as a document holds it; heap. NULL: it is not UTF-8, or *no_memory. */

@@ -19,7 +19,7 @@ BpLongCall *bp_long_call_begin(void (*work)(void *argument), void *argument, voi
                                bool here);
 
 /* Waits until the work has returned. False: it has not, `seconds` after it began (0: no limit), or stop()
- * said so (Optional; asked every 2 ms). Several threads may wait for one call. */
+ * returned true (Optional; called every 2 ms). Several threads may wait for one call. */
 bool bp_long_call_wait(BpLongCall *call, double seconds, bool (*stop)(void));
 
 /* The caller is done with the call, whether or not it has returned. */

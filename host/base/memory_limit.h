@@ -11,7 +11,7 @@
 /* The limit in bytes; 0: no limit. */
 uint64_t bp_memory_limit(void);
 
-/* Whether 64 MiB more cannot be had. A handler of signals may ask. */
+/* Whether another 64 MiB cannot be allocated. May be called in a signal handler. */
 bool bp_memory_is_short(void);
 
 #endif

@@ -18,8 +18,9 @@ typedef struct BpModuleName {
 } BpModuleName;
 
 /* The module lies beside the program, as it is built, or in the program's library folder, as it is installed;
- * or where the environment says. It stays loaded until the program ends, since libraries leave threads and
- * handlers behind. BP_ERR_USAGE: the message begins with the file's name, and says what is wrong with it. */
+ * or where the environment variable points. It stays loaded until the program ends, since libraries leave
+ * threads and handlers behind. BP_ERR_USAGE: the message begins with the file's name and describes the fault.
+ */
 BpStatus bp_module_load(const BpModuleName *name, const void **interface, BpError *err);
 
 #endif

@@ -10,13 +10,13 @@
  *
  * What can go wrong after that does not cost the file. If the target cannot be replaced (something is mounted
  * on it, or its folder does not allow renaming), the finished file is copied into it; if that fails too, it
- * stays, and the error says where. If nothing can be made beside a target that can be written, the temporary
+ * stays, and the error names it. If nothing can be made beside a target that can be written, the temporary
  * is in $TMPDIR or /tmp and is copied likewise.
  *
  * A replaced file hands on its owner and group, as far as the user may set them, and its permissions, but
  * never set-user-ID and set-group-ID: they were granted to what was in it. If the group cannot be kept, the
- * new one may do no more than everybody. A new file gets what the umask says. A write-protected file is
- * refused, although a rename could replace it.
+ * new one may do no more than everybody. A new file gets its permissions from the umask. A write-protected
+ * file is refused, although a rename could replace it.
  *
  * A target that is not a regular file (a device, a pipe) is written through, and so is an open file of this
  * process (/dev/stdout, /dev/fd/3): from where its other writers left it, and nothing in it is replaced. */
@@ -45,12 +45,13 @@ typedef struct BpOutputFile {
  * committed or discarded. */
 BpStatus bp_output_open(const char *path, BpOutputFile *file, BpError *err);
 /* The same for a file that must not be there when it is committed. The commit claims the name in one step, so
- * of two programs that write it one fails, and its result stays where its error says. Devices, pipes and open
- * files are written through, as always. */
+ * of two programs that write it one fails, and its result stays in the file that its error names. Devices,
+ * pipes and open files are written through, as always. */
 BpStatus bp_output_open_new(const char *path, BpOutputFile *file, BpError *err);
 
-/* Closes in any case. On failure an earlier file at the target is untouched, unless the error says that it
- * was being copied into; what could not be finished is gone, what was finished stays where the error says. */
+/* Closes in any case. On failure an earlier file at the target is untouched, unless the error reports that
+ * it was being copied into; an unfinished result is gone, a finished one stays in the file that the error
+ * names. */
 BpStatus bp_output_commit(BpOutputFile *file, BpError *err);
 
 /* Removes what was written. Accepts a zeroed or committed file. */

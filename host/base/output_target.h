@@ -4,8 +4,8 @@
  * Knows: symbolic links, /dev/stdout and its relatives, inodes.   Does not know: how anything is written.
  *
  * Two names are compared by what they lead to and never by their letters: "a.png", "./a.png", a symbolic link
- * and a hard link are one file. A file that is not there yet is told by the inode of its folder and by its
- * name in it. */
+ * and a hard link are one file. A file that does not exist yet is identified by the inode of its folder and
+ * its name in it. */
 #ifndef BP_BASE_OUTPUT_TARGET_H
 #define BP_BASE_OUTPUT_TARGET_H
 

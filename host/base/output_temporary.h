@@ -13,8 +13,7 @@
 #include <sys/types.h>
 
 /* Creates the temporary of `target` in its folder, to be read and written: without a name where the system
- * can
- * (*unnamed), else as TARGET.XXXXXX (*name, heap). The descriptor, or -1 and errno. */
+ * can (*unnamed), else as TARGET.XXXXXX (*name, heap). The descriptor, or -1 and errno. */
 int bp_temporary_create(const char *target, mode_t mode, bool *unnamed, char **name);
 /* The same with a name in `folder`. */
 int bp_temporary_create_in(const char *folder, const char *target, mode_t mode, char **name);
@@ -22,8 +21,8 @@ int bp_temporary_create_in(const char *folder, const char *target, mode_t mode, 
 int bp_temporary_create_elsewhere(const char *target, mode_t mode, char **name);
 
 /* Puts the finished temporary at `target`; 0, or an errno. After a failure it still exists, as it was or with
- * a name. `replace`: in the place of what is there; otherwise EEXIST when anything is there, whoever made it
- * and however late. */
+ * a name. `replace`: in the place of what is there; otherwise EEXIST if anything exists there by
+ * then. */
 int bp_temporary_place(bool *unnamed, char **name, int descriptor, const char *target, bool replace);
 
 /* Gives a finished temporary without a name one in $TMPDIR or /tmp, by copying it; 0, or an errno. */

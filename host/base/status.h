@@ -36,7 +36,7 @@ void bp_error_set_remedy(BpError *err, BpRemedy remedy, const char *value);
 BpStatus bp_fail_with(BpRemedy remedy, BpError *err, BpStatus code, const char *format, ...)
     BP_PRINTF_LIKE(4, 5);
 
-/* Attaches a long text (a build log, say), copied whole, that is printed below the message. */
+/* Attaches a long text, such as a build log, which is copied and printed below the message. */
 void bp_error_attach(BpError *err, const char *text);
 
 /* Forwards a failure: evaluates `call` once and returns its status from the enclosing function. */

@@ -6,13 +6,13 @@
  *
  * The hash is of the integer sums behind the picture and of their sample counts, so two pictures have the
  * same hash exactly if every sample added up to the same. Radiance is kept beside it as 32-bit floats, since
- * a hash cannot tell a last digit from another picture. */
+ * a hash does not show whether a last digit or the whole picture differs. */
 #ifndef BP_CHECK_BITS_H
 #define BP_CHECK_BITS_H
 
 #include "film/film.h"
 
-/* 16 hexadecimal digits and a 0. Sums that are 0 hash like sums that are not there. */
+/* 16 hexadecimal digits and a 0. Sums of 0 hash like absent ones. */
 void bp_bits_hash(const BpFilm *film, char hash[17]);
 
 /* The pixels' mean radiance, row by row, 8 hexadecimal digits for the bits of each of 3 floats. Heap, NULL:

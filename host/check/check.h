@@ -35,7 +35,7 @@ typedef struct BpCheckProgress {
 
 typedef struct BpCheckResult {
     BpVerdict verdict;
-    uint64_t samples_per_pixel; /* judged: those asked for, or fewer when time was up */
+    uint64_t samples_per_pixel; /* judged: as requested, or fewer when time was up */
     bool timed_out;
     BpSums kernel, reference; /* owned by the check */
     uint64_t cut_kernel, cut_reference;

@@ -6,7 +6,7 @@
  *
  * What is tested: the mean of each channel over the whole picture and over up to 8 x 8 blocks, and the same
  * for the mean of squares, which sees a wrong spread. Picture and blocks get 45 % of the level each, their
- * squares, which mostly repeat what the means say, 5 % each; every family divides its part among its tests
+ * squares, which mostly repeat the means, 5 % each; every family divides its part among its tests
  * (Bonferroni), so that a right kernel is rejected with at most the probability `level`. Small errors are
  * seen by the whole picture, local ones by the blocks; single pixels are not tested, since thousands of tests
  * of one pixel each are blind to an error of a hundredth of their noise.
@@ -91,8 +91,8 @@ typedef struct BpVerdict {
     double smallest_bias;
 } BpVerdict;
 
-/* Judges. Both sums must be of the same size, with at least 2 samples in every pixel (a pixel without is left
- * out of both). BP_ERR_USAGE otherwise. `level` in (0, 1), `margin` above 0: a fraction. */
+/* Judges. Both sums must be of the same size, with at least 2 samples in every pixel (a pixel without samples
+ * is left out of both). BP_ERR_USAGE otherwise. `level` in (0, 1), `margin` above 0: a fraction. */
 BpStatus bp_verdict(const BpSums *kernel, const BpSums *reference, double level, double margin,
                     BpVerdict *verdict, BpError *err);
 
@@ -100,7 +100,7 @@ BpStatus bp_verdict(const BpSums *kernel, const BpSums *reference, double level,
 void bp_verdict_add_picture(BpVerdict *verdict, double picture_off);
 
 /* Samples per pixel that are likely to settle an inconclusive verdict which `samples` per pixel led to; 0
- * where no number is, as nothing is seen. */
+ * where no number is likely to, as nothing is seen. */
 uint64_t bp_verdict_samples_needed(const BpVerdict *verdict, uint64_t samples);
 
 /* Signed z of one pixel's luminance: for maps, not for judging. */

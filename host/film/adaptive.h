@@ -22,7 +22,7 @@
 #include "film.h"
 
 #define BP_ADAPTIVE_FIRST 16u /* samples that every pixel has before any decision */
-/* With a mean below this there is next to nothing to decide: what a render may be asked for begins here. */
+/* The least mean of an adaptive render: below it there is next to nothing to decide. */
 #define BP_ADAPTIVE_MEAN_MIN (2 * BP_ADAPTIVE_FIRST)
 
 typedef struct BpAdaptive BpAdaptive;

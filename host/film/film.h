@@ -70,7 +70,7 @@ struct BpFilm {
     /* The sample numbers that every pixel was meant to get, sorted and disjoint. */
     struct BpSampleRange *ranges;
     size_t range_count;
-    bool partial;       /* interrupted: some pixels have fewer samples than the ranges say */
+    bool partial;       /* interrupted: some pixels have fewer samples than the ranges */
     bool coarse;        /* some sample was so dim that a fine step may be over a millionth of it */
     char *title;        /* Optional. The scene's title, to be shown; owned, not compared by a merge. */
     int64_t *sums;      /* width * height * K * 3, index ((pixel * K) + k) * 3 + channel */
@@ -78,9 +78,9 @@ struct BpFilm {
     uint32_t *counts;   /* width * height * K: valid samples */
     uint64_t segments, cut_paths, invalid_samples, shadow_rays;          /* totals over the picture */
     uint64_t not_finite_samples, negative_samples, out_of_range_samples; /* of the invalid ones */
-    uint64_t *pixel_segments; /* Optional. Of each pixel: adaptive sampling asks for it; not merged. */
+    uint64_t *pixel_segments; /* Optional. Of each pixel, for adaptive sampling; not merged. */
     uint64_t *met; /* Optional. Of each pixel: valid samples whose camera ray met something; a scene without a
-                      backdrop asks for it, and the picture's alpha is its share of all */
+                      backdrop needs it, and the picture's alpha is its share of all */
     /* Optional, all or none: what each pixel shows first, as in BpPicture. They follow from scene and
      * seed and not from the samples of the film (render/aovs.h), so films of other samples have the same. */
     AOV_LIST(BP_FILM_AOV)
@@ -105,9 +105,9 @@ int32_t bp_film_scale(const BpScene *scene, uint32_t max_depth, BpLightSampling 
  * for a black scene. */
 double bp_scene_radiance_bound(const BpScene *scene, uint32_t max_depth, BpLightSampling light_sampling,
                                BpCaustics caustics);
-/* A hash of the meaning of the scene: camera, sky, spheres in their order, each with what its material says.
- * Names, unused materials, members without effect (the fuzz of glass) and the sign of zero change nothing;
- * nor do sample counts and depth, which the film keeps apart. */
+/* A hash of the meaning of the scene: camera, sky, spheres in their order, each with the members of its
+ * material. Names, unused materials, members without effect (the fuzz of glass) and the sign of zero change
+ * nothing; nor do sample counts and depth, which the film keeps apart. */
 uint64_t bp_scene_hash(const BpScene *scene);
 
 /* ---- the sums (film.c) ---- */
@@ -188,7 +188,7 @@ BpFilmClaim bp_film_claim(const BpFilm *film);
 /* Why samples are left out, in words: " (2 not finite, 1 negative)"; "" without any. */
 enum { BP_INVALID_TEXT_SIZE = 192 };
 const char *bp_film_invalid_causes(const BpFilm *film, char text[BP_INVALID_TEXT_SIZE]);
-/* BP_ERR_LIMIT when most samples were left out: the others then say nothing of the scene. */
+/* BP_ERR_LIMIT when most samples were left out: the others are then no evidence about the scene. */
 BpStatus bp_film_check_valid(const BpFilm *film, BpError *err);
 /* The fewest and the most valid samples that a pixel has, and the mean. */
 void bp_film_sample_counts(const BpFilm *film, uint64_t *least, uint64_t *most, double *mean);

@@ -20,9 +20,9 @@
 BpStatus bp_film_write_stream(const BpFilm *film, FILE *out, BpError *err);
 
 /* Refuses what is truncated, too long, damaged, of another version or not a .bpa file, naming what is
- * wrong (BP_ERR_FILE); allocates nothing before the file is as long as its header says. Whatever loads obeys
- * what film.h says: ranges sorted and disjoint, counts within the ranges, sums not negative and
- * without risk of overflow. */
+ * wrong (BP_ERR_FILE); allocates nothing before the file has the length that follows from its header. A film
+ * that loads has the invariants of film.h: ranges sorted and disjoint, counts within the ranges, sums not
+ * negative and without risk of overflow. */
 /* bp_film_read() of ballpark.h from a stream that can seek; `name` stands in messages where a path would. */
 BpStatus bp_film_read_stream(FILE *in, const char *name, BpFilm **film, BpError *err);
 

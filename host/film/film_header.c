@@ -226,7 +226,7 @@ static void read_job(Reader *reader, BpFilm *film) {
         (struct BpSampleRange){(uint64_t)json_integer_value(first), (uint64_t)json_integer_value(count)};
 }
 
-/* Whether the plan goes with the rest of the film: a render that goes on from it then stays within bounds. */
+/* Whether the plan fits the rest of the film, so that a render that continues from it stays within bounds. */
 static bool plan_fits(const BpFilm *film, const BpFilmPlan *plan) {
     const uint64_t pixels = (uint64_t)film->width * film->height;
     if (plan->next_pixel >= pixels || (plan->pass_samples == 0 && plan->next_pixel != 0)) return false;

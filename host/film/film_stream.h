@@ -29,10 +29,10 @@ typedef struct BpFilmSink {
     uint8_t *packed; /* what zlib made of it */
 } BpFilmSink;
 
-/* BP_ERR_MEMORY. End with bp_film_sink_clear(), whatever comes. */
+/* BP_ERR_MEMORY. End with bp_film_sink_clear() in any case. */
 BpStatus bp_film_sink_init(FILE *out, BpFilmSink *sink, BpError *err);
 void bp_film_sink_clear(BpFilmSink *sink);
-/* Bytes as they are: before any numbers. */
+/* Writes bytes unchanged; before any numbers. */
 void bp_film_sink_bytes(BpFilmSink *sink, const void *bytes, size_t size);
 /* `count` numbers of `width` bytes, 1, 4 or 8. A failed write shows in bp_film_sink_end(). */
 void bp_film_sink_numbers(BpFilmSink *sink, const void *numbers, size_t width, size_t count);

@@ -6,8 +6,8 @@
  * Knows: arithmetic.   Does not know: where the light comes from, OpenCL.
  *
  * Light that a sample finds with probability p, and that then brings c, has the variance p c^2 whether it has
- * been found or not; but replicates that have not found it know nothing of it. So a variance of the pilot's
- * is added until samples have found such light often enough to speak for themselves: with the weight EVIDENCE
+ * been found or not; but replicates that have not found it do not show it. So a variance of the pilot's
+ * is added until samples have found such light often enough to show it themselves: with the weight EVIDENCE
  * / (EVIDENCE + finds), where `finds` is how many the samples of the whole picture are expected to have made
  * of light as bright as this. The pilot's own uncertainty is about that of EVIDENCE finds. */
 #ifndef BP_FILM_UNSEEN_H

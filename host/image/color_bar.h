@@ -11,8 +11,8 @@ enum { BP_COLOR_BAR_STOPS = 256 };
 
 /* Draws over the picture's radiance, so that a file of 8 bits by `transfer` shows it right. `colors`: linear,
  * from the least value to the most. In a picture with alpha, letters are dark with a white rim, so that they
- * can be read on any page; otherwise they are dark or light, as the picture is not. In `title`, letters that
- * the legend's font lacks are gaps. A picture too small for it stays as it is. */
+ * can be read on any page; otherwise they are dark on a light picture and light on a dark one. In `title`,
+ * letters that the legend's font lacks are gaps. A picture too small for it stays as it is. */
 BpStatus bp_color_bar_draw(BpPicture *picture, BpTransfer transfer, const float colors[BP_COLOR_BAR_STOPS][3],
                            const double range[2], const char *title, BpError *err);
 

@@ -9,7 +9,7 @@
 
 typedef struct BpDepthCues {
     double outlines; /* width of the lines in pixels; 0: none */
-    double fog;      /* share by which the farthest thing fades, 0 to 1; what is nearest does not */
+    double fog;      /* share by which the farthest surface fades, 0 to 1; the nearest does not */
     /* The colours to which distant things fade, at the lower and the upper edge of the picture. A picture
      * with alpha fades to transparency instead. */
     double bottom[3], top[3];

@@ -4,7 +4,7 @@
  * Knows: what a texel may be.   Does not know: how files are read, how an image is looked up.
  *
  * A value below 0, as resampling makes it beside bright texels, counts as 0, since nothing emits or reflects
- * less; the image's notes say how many there were.
+ * less; the image's notes count them.
  *
  * Texels are floats, since files hold no more: pack and the reference tracer read the same numbers. */
 #ifndef BP_IMAGE_TEXELS_H
@@ -41,7 +41,7 @@ typedef struct BpImage {
     double spread;   /* the standard deviation of the luminance over that sphere, over its mean */
     bool is_gray;    /* red, green and blue are equal everywhere */
     uint64_t hash;
-    char notes[BP_IMAGE_NOTES_SIZE]; /* what was left out, changed or guessed, for a person; "" */
+    char notes[BP_IMAGE_NOTES_SIZE]; /* what was left out, changed or guessed, in readable words; "" */
 } BpImage;
 
 /* Black texels. BP_ERR_MEMORY. */
@@ -51,7 +51,7 @@ void bp_texels_destroy(BpImage **image); /* NULL-safe */
 /* Adds to the image's notes. */
 void bp_texels_note(BpImage *image, const char *format, ...) BP_PRINTF_LIKE(2, 3);
 
-/* Multiplies the texels by `scale`, makes 0 of what is below, and finds what follows from them. Fails with
+/* Multiplies the texels by `scale`, sets negative ones to 0, and computes bound, mean and spread. Fails with
  * BP_ERR_SCENE, naming its place, for a texel that is not finite or above 1e12; `path` is the file that it
  * stands in. */
 BpStatus bp_texels_finish(BpImage *image, double scale, const char *path, BpError *err);

@@ -27,8 +27,7 @@ void bp_canvas_text(BpCanvas *canvas, uint32_t x, uint32_t y, uint32_t scale, co
 
 /* Copies what was drawn to the picture's radiance, so that a file of 8 bits by `transfer` shows it right: all
  * of the canvas, which is as wide as the picture, to the rows from `top` on, except for pixels of the colour
- * `untouched` (Optional). What is
- * drawn covers: its alpha is 1. */
+ * `untouched` (Optional). The alpha of drawn pixels becomes 1. */
 void bp_canvas_copy(const BpCanvas *canvas, const uint8_t untouched[3], BpPicture *picture, uint32_t top,
                     BpTransfer transfer);
 

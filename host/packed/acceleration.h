@@ -1,6 +1,6 @@
 /* acceleration.h: whether the spheres of a scene are tested one after the other, or through a tree.
  *
- * In:    a validated Scene.   Out: the choice, with a reason a person understands.
+ * In:    a validated Scene.   Out: the choice, with a reason in plain words.
  * Knows: up to how many spheres a list is faster.   Does not know: how a tree is built, OpenCL.
  *
  * Both give the same picture, bit for bit, so this is not an effect: it is chosen, not called for. */

@@ -1,6 +1,6 @@
 /* effects.h: which effects a scene calls for, and why.
  *
- * In:    a validated Scene.   Out: a set of bits, each with a reason a person understands.
+ * In:    a validated Scene.   Out: a set of bits, each with a reason in plain words.
  * Knows: what an effect is for.   Does not know: OpenCL, packed data.
  *
  * The list below is the only definition of effects: the kernel's EFFECT_ switches, `explain`, the tests and
@@ -45,7 +45,7 @@ _Static_assert(BP_EFFECT_COUNT < 32, "effects are the bits of a uint32_t");
 
 typedef struct BpEffects {
     uint32_t bits; /* bit e set: effect e is simulated */
-    bool caustics; /* CAUSTICS is simulated too, if it is asked for */
+    bool caustics; /* CAUSTICS is simulated too, if the options enable it */
     char reason[BP_EFFECT_COUNT][160];
 } BpEffects;
 

@@ -12,21 +12,22 @@
 
 #include "tree.h"
 
-/* A scene with more of one of these leaves the light through focusers to chance: every vertex asks all of
+/* A scene with more of one of these leaves the light through focusers to chance: every vertex tries all of
  * them. */
 #define BP_FOCUSERS_MAX 32
 #define BP_FOCUSER_LAMPS_MAX 32
 
 typedef struct BpFocusers {
     uint32_t focuser_count;   /* with the one that ends the table */
-    uint32_t target_count;    /* at least one, which may be none */
+    uint32_t target_count;    /* at least one, which may be a dummy */
     void *focusers;           /* focuser_count * FOCUSER_REALS reals, in the precision of the tree */
     uint32_t *focuser_places; /* focuser_count * FOCUSER_UINTS */
     void *targets;            /* target_count * TARGET_REALS reals */
     uint32_t *target_lamps;   /* target_count */
 } BpFocusers;
 
-/* Whether rays are sent through focusers, in a scene that has rays to lamps. `reason`: why, for a person. */
+/* Whether rays are sent through focusers, in a scene that has rays to lamps. `reason`: why, as a readable
+ * text. */
 bool bp_focusers_explain(const BpScene *scene, size_t size, char *reason);
 
 /* Whether a chain is sought from vertices via a sphere to a lamp, or to a disc, where rays are sent

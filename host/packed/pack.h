@@ -22,7 +22,7 @@ typedef struct BpPacked {
     BpTree tree;
     BpLampTree lamps;    /* empty, unless lamps are to be sampled */
     BpFocusers focusers; /* empty, unless rays are to be sent through them */
-    /* The arrays of scene_types.h that are none of theirs: of reals in the device's precision, or of uints.
+    /* The other arrays of scene_types.h: of reals in the device's precision, or of uints.
      */
 #define BP_HOLD_REALS void
 #define BP_HOLD_UINTS uint32_t

@@ -1,4 +1,4 @@
-/* in_view.h: whether a picture can show a sphere at all.
+/* in_view.h: whether any sphere can be in the picture.
  *
  * In:    a scene.   Out: whether nothing is before its camera.
  * Knows: the camera's field of view.   Does not know: pictures, what hides what. */

@@ -59,8 +59,8 @@ typedef enum BpMaterialKind {
 
 /* The members, in the order in which documents are written, in three forms.
  *
- * COLOUR(identifier, name, field, low, high, range, needed, place): three numbers. `range` says for a person
- * what they may be; `needed` says what to write where a kind that needs it lacks it.
+ * COLOUR(identifier, name, field, low, high, range, needed, place): three numbers. `range` describes for
+ * messages what they may be; `needed` describes what to write where a kind that needs it lacks it.
  *
  * NUMBER(identifier, name, field, low, high, range, needed, place, cap): one number; what is above `cap`
  * counts as `cap`.

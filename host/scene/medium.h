@@ -30,7 +30,7 @@ typedef struct BpMedium {
     double anisotropy;
 } BpMedium;
 
-/* It leaves light as it is. */
+/* It neither absorbs nor scatters. */
 bool bp_medium_is_clear(const BpMedium *medium);
 bool bp_medium_scatters(const BpMedium *medium);
 /* Colours scatter differently. */

@@ -81,7 +81,7 @@ typedef enum BpProjection { BP_PERSPECTIVE, BP_ORTHOGRAPHIC } BpProjection;
 
 typedef struct BpCamera {
     uint32_t width, height;
-    double aspect_ratio; /* as asked for; height follows from width by it */
+    double aspect_ratio; /* as given; height follows from width by it */
     uint32_t samples_per_pixel, max_depth;
     BpProjection projection;
     double vfov_degrees; /* of the full picture height */
@@ -96,7 +96,7 @@ typedef struct BpCamera {
     BpView view;
     double view_direction[3]; /* with BP_VIEW_NONE: from the spheres to the camera */
     double margin;            /* share of width and height that is left free at each side */
-    double fit_vup[3];        /* as asked for; 0: by the particles' format */
+    double fit_vup[3];        /* as given; 0: by the particles' format */
 } BpCamera;
 
 /* A disc in the sky, a lamp at infinity: adds its radiance to that of the background in a cone of directions.
@@ -193,7 +193,7 @@ struct BpScene {
     double color_range[2]; /* of the column that gives the last particles' colours */
     int up;                /* the axis that the particles' world has up: 1 y, 2 z */
     bool flat;             /* the particles lie in a plane: two dimensions */
-    char *notes;           /* lines for a person about what was guessed; "" */
+    char *notes;           /* readable lines about what was guessed; "" */
 };
 
 /* The unit vector along which the background rises from bottom to top. */

@@ -7,8 +7,8 @@
 
 #include "scene.h"
 
-/* Where the document does not say it: up is that of the particles, or without any that of the background; and
- * the plane touches the lowest of the particles, or without any of all spheres, wherever it moves. */
+/* Where the document does not give it: up is that of the particles, or without any that of the background;
+ * and the plane touches the lowest of the particles, or without any of all spheres, wherever it moves. */
 void bp_shadow_catcher_place(BpScene *scene);
 
 #endif

@@ -127,7 +127,7 @@ static inline bool bp_texture_has(const BpTexture *texture, unsigned what) {
     return (bp_texture_types[texture->type].has & what) != 0;
 }
 
-/* Sets every optional member to its default; there is no name. */
+/* Sets every optional member to its default, and no name. */
 void bp_texture_defaults(BpTexture *texture);
 /* Sets the defaults of the pattern: its octaves, its distortion, and a wave as long as a cell. */
 void bp_texture_pattern_defaults(BpTexture *texture);

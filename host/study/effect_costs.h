@@ -23,8 +23,8 @@ typedef struct BpKernelCost {
     double ratio;              /* median time over the specialised kernel's */
     double low, high;          /* the middle half of the rounds lies between */
     double samples_per_second; /* of device time (on a CPU: of one core), median over rounds */
-    uint64_t registers;        /* of the trace kernel, where the build log tells; else 0 */
-    uint64_t private_bytes;    /* 0: the driver does not tell */
+    uint64_t registers;        /* of the trace kernel, from the build log; 0: not in it */
+    uint64_t private_bytes;    /* 0: not reported by the driver */
     /* From opening the device to the first sample, without the scene's tree, by the wall clock and in
      * processor time of this process; cold: nothing is cached, warm: the driver has kept the kernel. NaN: not
      * measured. */

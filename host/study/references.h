@@ -21,8 +21,8 @@ typedef struct BpReferences {
     BpPicture pictures[2]; /* once finished */
 } BpReferences;
 
-/* Opens them; `references` zeroed before. Of `base` count the seed, which theirs follow
- * from, and `force`. Clear also on failure. */
+/* Opens them; `references` zeroed before. Of `base`, only `force` and the seed count; their
+ * seeds follow from it. Clear also on failure. */
 BpStatus bp_references_open(BpReferences *references, const BpScene *scene, const BpRenderOptions *base,
                             const BpDeviceInfo *device, BpError *err);
 /* About 0.2 s of work (a step of the tracer: one sample of every pixel). *finished: `seconds` from opening

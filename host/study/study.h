@@ -65,9 +65,9 @@ typedef struct BpStudyPoint {
      * seconds: wall, or on a CPU device cpu / cores if that is less; without what disturbed single rounds
      * (timing.h), so that other work on the machine changes little. */
     double seconds, wall_seconds, device_seconds, cpu_seconds;
-    double claimed;        /* NRMSE as the replicates say: noise alone */
+    double claimed;        /* NRMSE estimated from the replicates: noise alone */
     double mse, mse_error; /* against the truth, noise and bias; its standard error. It may be negative. */
-    double nrmse;          /* its root; NaN where the references are too noisy to tell */
+    double nrmse;          /* its root; NaN where the references are too noisy */
     double
         rel_mse; /* mean of (x - r1)(x - r2) / (r + 0.01)^2 over pixels and channels (pbrt's relative MSE) */
     bool front;  /* no other point is both quicker and better */
@@ -132,7 +132,7 @@ const char *bp_study_shortness_text(const BpStudyResult *result, char *text, siz
 const char *bp_study_advice_text(const BpStudyResult *result, const BpStudyAdvice *advice, char *text,
                                  size_t size);
 /* The table as text, with the marks of base/fold.h; CSV; the page. False when the stream failed or memory
- * ran out; errno says. */
+ * ran out; see errno. */
 bool bp_study_print(const BpStudyResult *result, FILE *out);
 bool bp_study_print_csv(const BpStudyResult *result, FILE *out);
 bool bp_study_print_page(const BpStudyResult *result, FILE *out);

@@ -86,7 +86,7 @@ enum {
     OPTION(BIT_DEPTH, "bit-depth", 0, BP_RENDER | BP_MERGE, "bits per channel of a PNG", const char *,       \
            bit_depth, BP_WORD("8", "16"))                                                                    \
     OPTION(OUTLINES, "outlines", 0, BP_RENDER | BP_MERGE,                                                    \
-           "draw lines of this width where the depth jumps; reported noise is that without them", double,    \
+           "draw lines of this width where the depth jumps; does not affect the reported noise", double,     \
            outlines, BP_REAL("PIXELS", 0, 100))                                                              \
     OPTION(                                                                                                  \
         DEPTH_FOG, "depth-fog", 0, BP_RENDER | BP_MERGE,                                                     \
