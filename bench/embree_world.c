@@ -24,6 +24,7 @@ static uint32_t material_flags(const BpMaterial *material) {
     case BP_MATERIAL_DIFFUSE_LIGHT:
     case BP_MATERIAL_NORMALS:
     case BP_MATERIAL_INTERFACE:
+    case BP_MATERIAL_OREN_NAYAR: /* not drawn by this peer */
         break;
     }
     return flags;

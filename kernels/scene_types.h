@@ -120,7 +120,8 @@ typedef struct PackedMaterial {
     real emit[4];
     real fuzz;             /* in [0, 1] */
     real refraction_index; /* inside over outside; for a negative radius already its reciprocal */
-    real reserved[2];
+    real roughness;        /* in [0, 1] */
+    real reserved;
 } PackedMaterial;
 
 /* The kinds of a material, values of the enums below. */
@@ -176,6 +177,7 @@ typedef struct PackedVariation {
 #define MATERIAL_EMIT 0u
 #define MATERIAL_FUZZ 4u
 #define MATERIAL_INDEX 5u
+#define MATERIAL_ROUGHNESS 6u
 #define MATERIAL_LOBE 1u /* of PackedMaterialKind, like the next two */
 #define MATERIAL_VARIANT 2u
 #define MATERIAL_TOTAL_REFLECTION 3u
@@ -350,7 +352,15 @@ typedef struct PackedVariation {
     X(first_leaves) X(leaf_count) X(pixel_center) X(max_depth) X(seed_low) X(seed_high) X(replicates) X(width)
 /* clang-format on */
 
-enum { KIND_LAMBERTIAN, KIND_METAL, KIND_DIELECTRIC, KIND_LIGHT, KIND_NORMALS, KIND_INTERFACE };
+enum {
+    KIND_LAMBERTIAN,
+    KIND_METAL,
+    KIND_DIELECTRIC,
+    KIND_LIGHT,
+    KIND_NORMALS,
+    KIND_INTERFACE,
+    KIND_OREN_NAYAR
+};
 enum { LOBE_LAMBERTIAN, LOBE_COSINE_CUBED, LOBE_HEMISPHERE };
 enum { FUZZ_SPHERE, FUZZ_BALL };
 enum { FRESNEL_SCHLICK, FRESNEL_EXACT, FRESNEL_NONE };
@@ -441,6 +451,7 @@ BP_PLACE(TEXTURE_CELL, PackedTextureKind, cell, packed_uint);
 BP_PLACE(MATERIAL_EMIT, PackedMaterial, emit, real);
 BP_PLACE(MATERIAL_FUZZ, PackedMaterial, fuzz, real);
 BP_PLACE(MATERIAL_INDEX, PackedMaterial, refraction_index, real);
+BP_PLACE(MATERIAL_ROUGHNESS, PackedMaterial, roughness, real);
 BP_PLACE(0, PackedMaterialKind, kind, packed_uint);
 BP_PLACE(MATERIAL_LOBE, PackedMaterialKind, lobe, packed_uint);
 BP_PLACE(MATERIAL_VARIANT, PackedMaterialKind, variant, packed_uint);

@@ -101,8 +101,9 @@ int32_t bp_film_scale(const BpScene *scene, uint32_t max_depth, BpLightSampling 
  * sky and lamps, times min(1 / (1 - a), max_depth), where a is the largest albedo of a material that both
  * emits and scatters: 1 + a + a^2 + ... with as many terms as the path has segments. With
  * BP_LIGHT_SAMPLING_ON, each vertex but the last adds half the light of a lamp at most, times what has been
- * scattered so far; with BP_CAUSTICS_ON, up to three times as much more, for the ways through a focuser. 0
- * for a black scene. */
+ * scattered so far; with BP_CAUSTICS_ON, up to three times as much more, for the ways through a focuser.
+ * Where a lobe weighs more than its albedo (the list of scene/material.h), all that times its largest weight
+ * for each vertex. 0 for a black scene. */
 double bp_scene_radiance_bound(const BpScene *scene, uint32_t max_depth, BpLightSampling light_sampling,
                                BpCaustics caustics);
 /* A hash of the meaning of the scene: camera, sky, spheres in their order, each with the members of its

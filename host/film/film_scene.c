@@ -64,7 +64,7 @@ static double flight_weight(const BpScene *scene) {
 double bp_scene_radiance_bound(const BpScene *scene, uint32_t max_depth, BpLightSampling light_sampling,
                                BpCaustics caustics) {
     double brightest = fmax(largest(scene->background_bottom), largest(scene->background_top));
-    double brightest_lamp = 0, passed_on = 0, scattered = 0;
+    double brightest_lamp = 0, passed_on = 0, scattered = 0, heaviest = 1;
     if (scene->environment != NULL) brightest = brightest_lamp = largest(scene->environment->bound);
     brightest += discs_together(scene);
     for (size_t i = 0; i < scene->disc_count; i++)
@@ -84,18 +84,21 @@ double bp_scene_radiance_bound(const BpScene *scene, uint32_t max_depth, BpLight
         brightest_lamp = fmax(brightest_lamp, emitted);
         if (bp_material_is(material->kind, BP_SHOWS_COLOUR)) brightest = fmax(brightest, 1 + emitted);
         if (!bp_material_is(material->kind, BP_SCATTERS)) continue;
+        heaviest = fmax(heaviest, bp_material_types[material->kind].weight);
         const double albedo = sphere_albedo(scene, &scene->spheres[i]);
         if (bp_material_is_lit(material)) scattered = fmax(scattered, albedo);
         if (emitted > 0) passed_on = fmax(passed_on, albedo);
     }
     for (size_t i = 0; i < scene->medium_count; i++)
         if (bp_medium_scatters(&scene->media[i])) scattered = 1; /* rays go to lamps from there too */
-    double bound = flight_weight(scene) * brightest * geometric(passed_on, max_depth);
+    /* Lobes that weigh more than the albedo do so at every vertex. */
+    const double weight = flight_weight(scene) * pow(heaviest, max_depth > 0 ? max_depth - 1 : 0);
+    double bound = weight * brightest * geometric(passed_on, max_depth);
     /* A ray to a lamp brings half of its radiance at most, and so does each of the up to three ways through a
      * focuser. To the camera lead up to three through each of three chains. */
     const double focused = caustics == BP_CAUSTICS_ON ? 3 * 0.5 : 0;
     if (light_sampling != BP_LIGHT_SAMPLING_OFF && max_depth >= 2)
-        bound += flight_weight(scene) * brightest_lamp *
+        bound += weight * brightest_lamp *
                  ((0.5 + focused) * scattered * geometric(scattered, max_depth - 1) + 3 * focused);
     if (scene->backdrop != BP_BACKDROP_COLORS) return bound;
     return fmax(bound, fmax(largest(scene->backdrop_bottom), largest(scene->backdrop_top)));

@@ -7,7 +7,7 @@
 #include <stdio.h>
 #include <string.h>
 
-#define TYPE_NAME(identifier, name, kernel_kind, effect, traits, members, needed, outcome)                   \
+#define TYPE_NAME(identifier, name, kernel_kind, effect, traits, weight, members, needed, outcome)           \
     [BP_MATERIAL_##identifier] = (name),
 static const char *const type_names[] = {BP_MATERIAL_LIST(TYPE_NAME)};
 #define COLOUR_NAME(identifier, name, field, low, high, range, needed, place) name,

@@ -74,6 +74,7 @@ static const struct {
     {"bsdf/metal.cl", IN_ALL},
     {"bsdf/dielectric.cl", IN_ALL},
     {"bsdf/interface.cl", IN_ALL},
+    {"bsdf/oren_nayar.cl", IN_ALL},
     {"medium/phase.cl", IN_ALL},
     {"bsdf/scatter.cl", IN_ALL},
     {"integrator/scene.cl", IN_ALL},

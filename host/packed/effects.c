@@ -42,7 +42,7 @@ static bool is_bright(const double radiance[3]) {
  * since that code ends the path there. */
 static uint32_t material_bits(const BpMaterial *material) {
     static const BpEffect of_kind[] = {
-#define EFFECT_OF(identifier, name, kernel_kind, effect, traits, members, needed, outcome)                   \
+#define EFFECT_OF(identifier, name, kernel_kind, effect, traits, weight, members, needed, outcome)           \
     [BP_MATERIAL_##identifier] = BP_EFFECT_##effect,
         BP_MATERIAL_LIST(EFFECT_OF)
 #undef EFFECT_OF

@@ -15,7 +15,7 @@
 
 #define PI 3.14159265358979323846
 
-#define SAME_KIND(identifier, name, kernel_kind, effect, traits, members, needed, outcome)                   \
+#define SAME_KIND(identifier, name, kernel_kind, effect, traits, weight, members, needed, outcome)           \
     _Static_assert((int)BP_MATERIAL_##identifier == KIND_##kernel_kind,                                      \
                    name " differs between host and kernel");
 BP_MATERIAL_LIST(SAME_KIND)

@@ -104,6 +104,10 @@ bool bp_ref_scatter(const BpScene *scene, const Ray *ray, const Hit *hit, Random
     case BP_MATERIAL_DIELECTRIC:
         *attenuation = (Vec){1, 1, 1};
         return scatter_dielectric(hit->material, incoming, hit, random, direction);
+    case BP_MATERIAL_OREN_NAYAR:
+        *attenuation = bp_ref_scatter_oren_nayar(hit->material->roughness, albedo_of(scene, hit), hit->normal,
+                                                 incoming, random, direction);
+        return true;
     case BP_MATERIAL_INTERFACE:
         *attenuation = (Vec){1, 1, 1};
         *direction = incoming;

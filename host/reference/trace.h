@@ -51,6 +51,17 @@ bool bp_ref_hit(const BpScene *scene, const Ray *ray, Hit *hit);
 bool bp_ref_scatter(const BpScene *scene, const Ray *ray, const Hit *hit, Random *random, Vec *direction,
                     Vec *attenuation);
 
+/* Oren and Nayar's model in the form of Portsmouth, Kutz and Hill (JCGT 14(1), 2025): the values (a BSDF's,
+ * per steradian, for unit directions away from the surface) of what a white surface scatters once and more
+ * than once; the share that is scattered once, at this cosine of `out`; what an albedo makes of the rest. */
+double bp_ref_oren_nayar_once(double roughness, Vec normal, Vec out, Vec in);
+double bp_ref_oren_nayar_again(double roughness, Vec normal, Vec out, Vec in);
+double bp_ref_oren_nayar_share(double roughness, double cosine);
+double bp_ref_oren_nayar_colour(double roughness, double albedo);
+/* Returns what is left of the light; `incoming`: a unit direction towards the surface. */
+Vec bp_ref_scatter_oren_nayar(double roughness, Vec albedo, Vec normal, Vec incoming, Random *random,
+                              Vec *direction);
+
 /* Radiance along a camera ray: the backdrop at that height of the picture where it meets nothing. */
 Vec bp_ref_camera_color(const BpScene *scene, const Ray *ray, double height, uint32_t depth, Random *random,
                         Path *path);

@@ -21,8 +21,8 @@ BP_WORDS(BpFresnel, static const char *const bp_fresnel_names, FRESNEL_WORDS);
 BP_WORDS(BpTotalReflection, static const char *const bp_total_reflection_names, TOTAL_REFLECTION_WORDS);
 
 const BpMaterialType bp_material_types[] = {
-#define TYPE(identifier, name, kernel_kind, effect, traits, members, needed, outcome)                        \
-    [BP_MATERIAL_##identifier] = {name, traits, (members) | BP_HAS(EMIT), needed, outcome},
+#define TYPE(identifier, name, kernel_kind, effect, traits, weight, members, needed, outcome)                \
+    [BP_MATERIAL_##identifier] = {name, traits, weight, (members) | BP_HAS(EMIT), needed, outcome},
     BP_MATERIAL_LIST(TYPE)
 #undef TYPE
 };
@@ -98,6 +98,6 @@ bool bp_material_varies(const BpMaterial *material) {
 }
 
 bool bp_material_is_lit(const BpMaterial *material) {
-    return material->kind == BP_MATERIAL_LAMBERTIAN ||
+    return material->kind == BP_MATERIAL_LAMBERTIAN || material->kind == BP_MATERIAL_OREN_NAYAR ||
            (material->kind == BP_MATERIAL_METAL && material->fuzz >= BP_LIT_FUZZ_MIN);
 }

@@ -30,23 +30,27 @@ enum {
 
 #define BP_HAS(member) (1u << BP_MEMBER_##member)
 
-/* X(identifier, name, kernel's kind, effect, traits, members, members that it needs, what becomes of a path).
- * The kernel's kind is KIND_... of scene_types.h, the effect BP_EFFECT_... of packed/effects.h. Every
- * material may have "emit", and brings in the effect EMISSION with it. */
+/* X(identifier, name, kernel's kind, effect, traits, weight, members, members that it needs, what becomes of
+ * a path). `weight`: the largest weight of the kernel's lobe (kernels/bsdf/bsdf.cl) over the albedo, or over
+ * 1 where it has none; the film's scale follows from it, so a sample that weighs more may be left out. The
+ * kernel's kind is KIND_... of scene_types.h, the effect BP_EFFECT_... of packed/effects.h. Every material
+ * may have "emit", and brings in the effect EMISSION with it. */
 #define BP_MATERIAL_LIST(X)                                                                                  \
-    X(LAMBERTIAN, "lambertian", LAMBERTIAN, LAMBERTIAN, BP_SCATTERS, BP_HAS(ALBEDO) | BP_HAS(SCATTER),       \
+    X(LAMBERTIAN, "lambertian", LAMBERTIAN, LAMBERTIAN, BP_SCATTERS, 1, BP_HAS(ALBEDO) | BP_HAS(SCATTER),    \
       BP_HAS(ALBEDO), "scatters it")                                                                         \
-    X(METAL, "metal", METAL, METAL, BP_SCATTERS, BP_HAS(ALBEDO) | BP_HAS(FUZZ) | BP_HAS(FUZZ_SHAPE),         \
+    X(METAL, "metal", METAL, METAL, BP_SCATTERS, 1, BP_HAS(ALBEDO) | BP_HAS(FUZZ) | BP_HAS(FUZZ_SHAPE),      \
       BP_HAS(ALBEDO), "reflects it")                                                                         \
-    X(DIELECTRIC, "dielectric", DIELECTRIC, DIELECTRIC, BP_SCATTERS | BP_HAS_INSIDE,                         \
+    X(DIELECTRIC, "dielectric", DIELECTRIC, DIELECTRIC, BP_SCATTERS | BP_HAS_INSIDE, 1,                      \
       BP_HAS(REFRACTION_INDEX) | BP_HAS(FRESNEL) | BP_HAS(TOTAL_REFLECTION), BP_HAS(REFRACTION_INDEX),       \
       "refracts it")                                                                                         \
-    X(DIFFUSE_LIGHT, "diffuse_light", LIGHT, EMISSION, 0, 0, BP_HAS(EMIT), "a lamp: the path ends")          \
-    X(NORMALS, "normals", NORMALS, NORMALS, BP_SHOWS_COLOUR, 0, 0, "shows its normal: the path ends")        \
-    X(INTERFACE, "interface", INTERFACE, MEDIA, BP_SCATTERS | BP_HAS_INSIDE, 0, 0, "lets it through")
+    X(DIFFUSE_LIGHT, "diffuse_light", LIGHT, EMISSION, 0, 0, 0, BP_HAS(EMIT), "a lamp: the path ends")       \
+    X(NORMALS, "normals", NORMALS, NORMALS, BP_SHOWS_COLOUR, 0, 0, 0, "shows its normal: the path ends")     \
+    X(INTERFACE, "interface", INTERFACE, MEDIA, BP_SCATTERS | BP_HAS_INSIDE, 1, 0, 0, "lets it through")     \
+    X(OREN_NAYAR, "oren_nayar", OREN_NAYAR, OREN_NAYAR, BP_SCATTERS, 1, BP_HAS(ALBEDO) | BP_HAS(ROUGHNESS),  \
+      BP_HAS(ALBEDO) | BP_HAS(ROUGHNESS), "scatters it")
 
 typedef enum BpMaterialKind {
-#define BP_MATERIAL_ENUM(identifier, name, kernel_kind, effect, traits, members, needed, outcome)            \
+#define BP_MATERIAL_ENUM(identifier, name, kernel_kind, effect, traits, weight, members, needed, outcome)    \
     BP_MATERIAL_##identifier,
     BP_MATERIAL_LIST(BP_MATERIAL_ENUM)
 #undef BP_MATERIAL_ENUM
@@ -75,6 +79,8 @@ typedef enum BpMaterialKind {
     CHOICE(SCATTER, "scatter", scatter, LOBE, BP_MEMBER_COUNT, bp_scatter_names)                             \
     NUMBER(FUZZ, "fuzz", fuzz, 0, 1, "a number of at least 0 (above 1 counts as 1)", "", FUZZ, 1)            \
     CHOICE(FUZZ_SHAPE, "fuzz_shape", fuzz_shape, VARIANT, BP_MEMBER_FUZZ, bp_fuzz_shape_names)               \
+    NUMBER(ROUGHNESS, "roughness", roughness, 0, 1, "a number from 0 to 1",                                  \
+           "how rough the surface is, from 0 to 1, such as 0.5", ROUGHNESS, INFINITY)                        \
     NUMBER(REFRACTION_INDEX, "refraction_index", refraction_index, 1 / BP_REFRACTION_INDEX_MAX,              \
            BP_REFRACTION_INDEX_MAX, BP_REFRACTION_INDEX_RANGE, BP_REFRACTION_INDEX_NEEDED, INDEX, INFINITY)  \
     CHOICE(FRESNEL, "fresnel", fresnel, VARIANT, BP_MEMBER_COUNT, bp_fresnel_names)                          \
@@ -111,6 +117,7 @@ typedef struct BpMemberInfo {
 typedef struct BpMaterialType {
     const char *name;
     unsigned traits;          /* BP_SCATTERS, ... */
+    double weight;            /* the largest of its lobe, over the albedo; 0: it scatters nothing */
     unsigned members, needed; /* BP_HAS(...) */
     const char *outcome;
 } BpMaterialType;

@@ -44,11 +44,12 @@ struct BpMaterial {
     BpMaterialKind kind;
     uint32_t texture[BP_MEMBER_COUNT]; /* of a member that varies, into textures[], counted from 1; 0: none.
                                           The member itself is then the largest value that its texture has */
-    double albedo[3];                  /* lambertian, metal */
+    double albedo[3];                  /* of kinds that have one */
     double emit[3];                    /* any kind; (0,0,0): does not emit */
     BpScatter scatter;
     double fuzz;
     BpFuzzShape fuzz_shape;
+    double roughness;        /* of oren_nayar */
     double refraction_index; /* of the inside over the outside */
     BpFresnel fresnel;
     BpTotalReflection total_reflection;

@@ -14,6 +14,9 @@ typedef struct Surface {
     vbool enters;  /* the path comes from outside */
     Vec3 albedo;
     vreal fuzz, refraction_index;
+#if EFFECT_OREN_NAYAR
+    vreal roughness;
+#endif
     vuint kind, lobe, variant, total_reflection;
 } Surface;
 
@@ -25,13 +28,24 @@ typedef struct Lobe {
 #if EFFECT_METAL
     Vec3 normal; /* what lies below the surface is absorbed */
 #endif
-    vreal fuzz; /* of metal; of a medium the anisotropy; at the camera the sine of the angle from the axis to a pixel's corner */
+#if LOBES_OF_TWO_DIRECTIONS
+    Vec3 outgoing; /* unit, to where the path came from */
+#endif
+    vreal fuzz; /* of metal; of what is rough the roughness; of a medium the anisotropy; at the camera the sine of the angle from the axis to a pixel's corner */
     vuint kind; /* LOBE_... */
 } Lobe;
 
 /* Lobes that scene_types.h does not name. LOBE_NONE has no density: it scatters into a few directions only. LOBE_PIXEL is
  * that of a camera ray, which light_camera (caustics.cl) gives it; rays to lamps do not light the camera. */
-enum { LOBE_FUZZ_SPHERE = LOBE_HEMISPHERE + 1, LOBE_FUZZ_BALL, LOBE_PHASE, LOBE_NONE, LOBE_PIXEL };
+enum {
+    LOBE_FUZZ_SPHERE = LOBE_HEMISPHERE + 1,
+    LOBE_FUZZ_BALL,
+    LOBE_OREN_NAYAR_ONCE,
+    LOBE_OREN_NAYAR_AGAIN,
+    LOBE_PHASE,
+    LOBE_NONE,
+    LOBE_PIXEL
+};
 
 #define LOBE_FUZZ_MIN R(0x1p-6) /* with less fuzz, rays to lamps gain nothing, and float does not hold the densities well */
 #define PI_INVERSE R(0.3183098861837907)
@@ -59,19 +73,24 @@ static BsdfSample bsdf_sample_reflected(const Surface *surface, Vec3 direction) 
 #if EFFECT_METAL
     sample.lobe.normal = surface->normal;
 #endif
+#if LOBES_OF_TWO_DIRECTIONS
+    sample.lobe.outgoing = scale3(splat(-1), surface->incoming);
+#endif
     sample.lobe.fuzz = splat(1);
     sample.lobe.kind = splat_uint(LOBE_NONE);
 #endif
     return sample;
 }
 
-#if EFFECT_LAMBERTIAN || EFFECT_METAL
+#if EFFECT_LAMBERTIAN || EFFECT_METAL || EFFECT_OREN_NAYAR
 static Vec3 random_direction(SampleKey key, vuint bounce) {
     vreal u, v;
     sample_2d(key, bounce + BOUNCE_DIRECTION, &u, &v);
     return sample_sphere(u, v);
 }
+#endif
 
+#if EFFECT_LAMBERTIAN || EFFECT_METAL
 static vreal random_ball_radius(SampleKey key, vuint bounce) {
     return sample_ball_radius(uniform(key, bounce + BOUNCE_BALL_RADIUS),
                               uniform(key, bounce + (BOUNCE_BALL_RADIUS + 1u)),

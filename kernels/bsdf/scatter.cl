@@ -5,7 +5,8 @@
  * Knows: every lobe by its one function.   Does not know: how lobes draw. */
 
 /* If the scene has one kind of material only, there is nothing to choose. */
-#define KIND_COUNT (EFFECT_LAMBERTIAN + EFFECT_METAL + EFFECT_DIELECTRIC + EFFECT_NORMALS + EFFECT_EMISSION + EFFECT_MEDIA)
+#define KIND_COUNT (EFFECT_LAMBERTIAN + EFFECT_METAL + EFFECT_DIELECTRIC + EFFECT_NORMALS + EFFECT_EMISSION + EFFECT_MEDIA + \
+                    EFFECT_OREN_NAYAR)
 #if KIND_COUNT == 1
 #define has_kind(surface, wanted) vbool_all
 #else
@@ -18,6 +19,9 @@ static Lobe choose_lobe(vbool mask, const Lobe *a, const Lobe *b) {
     chosen.axis = choose3(mask, a->axis, b->axis);
 #if EFFECT_METAL
     chosen.normal = choose3(mask, a->normal, b->normal);
+#endif
+#if LOBES_OF_TWO_DIRECTIONS
+    chosen.outgoing = choose3(mask, a->outgoing, b->outgoing);
 #endif
     chosen.fuzz = choose(mask, a->fuzz, b->fuzz);
     chosen.kind = choose_uint(mask, a->kind, b->kind);
@@ -60,6 +64,9 @@ static BsdfSample scatter(const Surface *surface, SampleKey key, vuint bounce) {
 #if EFFECT_MEDIA
     SCATTER_BY(KIND_INTERFACE, interface_sample)
 #endif
+#if EFFECT_OREN_NAYAR
+    SCATTER_BY(KIND_OREN_NAYAR, oren_nayar_sample)
+#endif
     return sample;
 }
 
@@ -92,6 +99,11 @@ static vreal scatter_pdf(const Lobe *lobe, Vec3 direction, int drawn) {
 #if EFFECT_METAL
     const vbool fuzzy = is_fuzzy(lobe);
     if (any_lane(fuzzy)) density = choose(fuzzy, metal_pdf(lobe, direction, drawn), density);
+#endif
+#if EFFECT_OREN_NAYAR
+    const vbool rough = vbool_of_uint(lobe->kind == splat_uint(LOBE_OREN_NAYAR_ONCE)) |
+                        vbool_of_uint(lobe->kind == splat_uint(LOBE_OREN_NAYAR_AGAIN));
+    if (any_lane(rough)) density = choose(rough, oren_nayar_pdf(lobe, direction), density);
 #endif
 #if EFFECT_MEDIA
     const vbool phase = is_phase(lobe);

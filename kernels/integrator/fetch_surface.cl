@@ -25,6 +25,9 @@ static void fetch_surface(const Scene *scene, const Ray *ray, const Hit *hit, Sp
 #if EFFECT_METAL
     surface->fuzz = gather_real(scene->materials + MATERIAL_FUZZ, numbers);
 #endif
+#if EFFECT_OREN_NAYAR
+    surface->roughness = gather_real(scene->materials + MATERIAL_ROUGHNESS, numbers);
+#endif
 #if EFFECT_METAL || EFFECT_DIELECTRIC
     surface->variant = gather_uint(scene->material_kinds + MATERIAL_VARIANT, kinds);
 #endif

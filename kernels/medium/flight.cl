@@ -106,6 +106,9 @@ static void scatter_in_medium(const Scene *scene, vbool scattered, vreal length,
 #if EFFECT_METAL
     lobe.normal = path->direction;
 #endif
+#if LOBES_OF_TWO_DIRECTIONS
+    lobe.outgoing = path->direction;
+#endif
     lobe.fuzz = g;
     lobe.kind = splat_uint(LOBE_PHASE);
     path_light(path, scattered, &lobe, vbool_of_uint(path->depth + 1u <= splat_uint(scene->max_depth)));

@@ -19,6 +19,7 @@
  *     k = 11, 12   the low bits of the choice of a row of that image, and of a texel in the row
  *     k = 13, 14   a flight through a medium, and its low bits
  *     15           kept
+ *     Directions that are drawn by rejection: k = 0, 1, 2 and REJECTION_FIRST further on, REJECTION_STRIDE more for each try
  *     Rays through balls of glass and off mirrors have DIMENSIONS_OF_CAUSTICS more: k = 0, 1 the point of the lamp, 2 the
  *     ball or mirror, 3 the chain through it, 4 the lamp; those to the camera have them from DIMENSIONS_OF_CAUSTICS on
  *   A camera ray that meets the shadow catcher ends there, and the places of bounce b are those of try b to find light:
@@ -40,6 +41,8 @@
 #define BOUNCE_SKY_COLUMN 12u
 #define BOUNCE_FLIGHT 13u
 #define BOUNCE_FLIGHT_REFILL 14u
+#define REJECTION_FIRST 0x80000000u
+#define REJECTION_STRIDE 0x1000000u
 #if SAMPLES_CAUSTICS
 #define DIMENSIONS_OF_CAUSTICS 0x10000000u
 #define CAUSTIC_POINT 0u

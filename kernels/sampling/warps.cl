@@ -77,7 +77,7 @@ static Vec3 sample_sphere(vreal u, vreal v) {
  * P(r < x) = x^3. */
 static vreal sample_ball_radius(vreal u, vreal v, vreal w) { return at_least(at_least(u, v), w); }
 
-#if SAMPLES_LAMPS || EFFECT_SHADOW_CATCHER
+#if SAMPLES_LAMPS || EFFECT_SHADOW_CATCHER || LOBES_OF_TWO_DIRECTIONS
 /* Two unit vectors across the unit vector `w`, and across each other (T. Duff et al., "Building an Orthonormal Basis,
  * Revisited", JCGT 6(1), 2017). */
 static void basis_across(Vec3 w, Vec3 *s, Vec3 *t) {

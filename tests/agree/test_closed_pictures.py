@@ -81,6 +81,14 @@ class ClosedPictures(cli.ProgramTest):
         self.assertLess(error, 0.003)
         self.assertLess(abs(found / wanted - 1), 4 * error, (found, wanted))
 
+    def test_rough_and_white(self):
+        """A white surface sends back all light, however rough it is: no sample of one under an even sky shows anything but the sky."""
+        for roughness in (0, 0.3, 1):
+            document = cli.scene(32, 32, materials={"m": {"type": "oren_nayar", "albedo": [1, 1, 1], "roughness": roughness}},
+                                 spheres=[{"center": [0, 0, -2], "radius": 1, "material": "m"}], background=[1, 1, 1],
+                                 camera={"samples_per_pixel": 64})
+            self.assertEqual(set(self.picture(document)[2]), {1.0}, roughness)
+
     def test_fog_before_a_lamp(self):
         """A ray is sent to a tiny lamp 5 away, from ground 1 below the camera: of the light exp(-0.6 (5 + 1)) is left."""
         means = []

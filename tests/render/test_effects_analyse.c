@@ -22,6 +22,8 @@ static const BpMaterial lamp = {.name = (char *)"lamp", .kind = BP_MATERIAL_DIFF
 static const BpMaterial black = {.name = (char *)"black", .kind = BP_MATERIAL_DIFFUSE_LIGHT};
 static const BpMaterial ember = {
     .name = (char *)"ember", .kind = BP_MATERIAL_LAMBERTIAN, GREY, .emit = {0, 0, 0.1}};
+static const BpMaterial clay = {
+    .name = (char *)"clay", .kind = BP_MATERIAL_OREN_NAYAR, GREY, .roughness = 0.5};
 static const BpMaterial debug = {.name = (char *)"debug", .kind = BP_MATERIAL_NORMALS};
 
 #define NO_LAMP "no sphere gives light, and no disc of the sky"
@@ -78,6 +80,7 @@ static void material_effects(void **state) {
         {black, BIT(EMISSION)}, /* the code that ends a path stands with emission */
         {ember, BIT(LAMBERTIAN) | BIT(EMISSION)},
         {debug, BIT(NORMALS)},
+        {clay, BIT(OREN_NAYAR)},
     };
     for (size_t i = 0; i < sizeof cases / sizeof cases[0]; ++i)
         assert_int_equal(analyse(&cases[i].material, 1, 1, 1, 0, 1).bits, cases[i].bits);
@@ -91,9 +94,9 @@ static void material_effects(void **state) {
     brushed.fuzz = 1.0 / 64;
     const BpMaterial pair[] = {brushed, lamp};
     assert_int_equal(analyse(pair, 2, 2, 2, 0, 1).bits, BIT(METAL) | BIT(EMISSION) | BIT(LAMPS));
-    const BpMaterial all[] = {grey, steel, glass, ember, debug};
-    assert_int_equal(analyse(all, 5, 5, BP_LIST_SPHERES_MAX + 1, 0.1, 0.5).bits, BP_EFFECTS_ALL & ~OF_SCENES);
-    assert_int_equal(analyse(all, 5, 5, 5, 0, 1).bits, BP_EFFECTS_ALL & ~BIT(LENS) & ~OF_SCENES);
+    const BpMaterial all[] = {grey, steel, glass, ember, debug, clay};
+    assert_int_equal(analyse(all, 6, 6, BP_LIST_SPHERES_MAX + 1, 0.1, 0.5).bits, BP_EFFECTS_ALL & ~OF_SCENES);
+    assert_int_equal(analyse(all, 6, 6, 6, 0, 1).bits, BP_EFFECTS_ALL & ~BIT(LENS) & ~OF_SCENES);
 }
 
 static void only_materials_in_use_count(void **state) {

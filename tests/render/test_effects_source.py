@@ -29,6 +29,7 @@ MARKS = {
     "LAMBERTIAN": ["lambertian_sample", "hemisphere"],
     "METAL": ["metal_sample", "(fuzzy, fuzzy)"],
     "DIELECTRIC": ["dielectric_sample", "fresnel_schlick", "fresnel_exact", "refraction_index = "],
+    "OREN_NAYAR": ["oren_nayar_sample", "angle_of"],
     "EMISSION": ["emitted = vec3"],
     "NORMALS": ["shows_normal"],
     "LENS": ["lens_x", "->lens_up", "sample_disk(u"],
@@ -55,7 +56,7 @@ SHARED = {
 TOGETHER = {"gradient_noise": {"TEXTURES", "NOISE"}, "pattern_colour": {"TEXTURES", "NOISE"},
             "image_texture": {"TEXTURES", "IMAGES"}}
 # Code that needs LAMPS, something to be lit, and one of the effects named.
-LIT = {"LAMBERTIAN", "METAL", "MEDIA"}
+LIT = {"LAMBERTIAN", "METAL", "MEDIA", "OREN_NAYAR"}
 NEEDING_OTHERS = {
     "choose_lamp": {"EMISSION"}, "lamp_hit_weight": {"EMISSION"}, "disc_importance": {"DISCS"}, "disc_hit_weight": {"DISCS"},
     "choose_disc": {"DISCS", "ENVIRONMENT"}, "sample_environment": {"ENVIRONMENT"}, "environment_hit_weight": {"ENVIRONMENT"},

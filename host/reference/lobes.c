@@ -1,0 +1,63 @@
+/* lobes.c: lobes whose value for two directions is computed by definition, and that are drawn by rejection;
+ * see trace.h. */
+#include "trace.h"
+
+#define PI 3.14159265358979323846
+
+static double upright(double roughness) {
+    return 1 / (1 + (0.5 - 2 / (3 * PI)) * roughness);
+}
+
+static double mean_once(double roughness) {
+    return upright(roughness) * (1 + roughness * (2.0 / 3 - 28 / (15 * PI)));
+}
+
+double bp_ref_oren_nayar_share(double roughness, double cosine) {
+    const double a = upright(roughness), b = roughness * a;
+    const double angle = acos(fmin(cosine, 1)), sine = sin(angle);
+    const double beyond = cosine > 1e-9 ? tan(angle) * (1 - sine * sine * sine) : 0;
+    return a + b / PI * (sine * (angle - sine * cosine) + 2.0 / 3 * (beyond - sine));
+}
+
+double bp_ref_oren_nayar_once(double roughness, Vec normal, Vec out, Vec in) {
+    const double cos_out = dot(out, normal), cos_in = dot(in, normal), s = dot(out, in) - cos_out * cos_in;
+    if (cos_out <= 0 || cos_in <= 0) return 0;
+    return upright(roughness) / PI * (1 + roughness * (s > 0 ? s / fmax(cos_out, cos_in) : s));
+}
+
+double bp_ref_oren_nayar_again(double roughness, Vec normal, Vec out, Vec in) {
+    const double cos_out = dot(out, normal), cos_in = dot(in, normal), mean = mean_once(roughness);
+    if (cos_out <= 0 || cos_in <= 0 || mean >= 1) return 0;
+    return fmax(0, 1 - bp_ref_oren_nayar_share(roughness, cos_out)) *
+           fmax(0, 1 - bp_ref_oren_nayar_share(roughness, cos_in)) / (PI * (1 - mean));
+}
+
+double bp_ref_oren_nayar_colour(double roughness, double albedo) {
+    const double mean = mean_once(roughness);
+    return albedo * albedo * mean / (1 - albedo * (1 - mean));
+}
+
+/* Which part, by its share of the light; then a direction that is uniform over the hemisphere is taken with a
+ * probability proportional to the part's value times the cosine. The value of the first times the cosine is
+ * (1 + roughness) upright / pi at most; that of the second over the cosine is largest upright. */
+Vec bp_ref_scatter_oren_nayar(double roughness, Vec albedo, Vec normal, Vec incoming, Random *random,
+                              Vec *direction) {
+    const Vec out = scale(-1, incoming);
+    const bool again = random_real(random) >= bp_ref_oren_nayar_share(roughness, dot(out, normal));
+    for (;;) {
+        const Vec p = random_on_sphere(random);
+        const Vec in = dot(p, normal) > 0 ? p : scale(-1, p);
+        const double cosine = dot(in, normal);
+        double share;
+        if (again)
+            share = cosine * (1 - bp_ref_oren_nayar_share(roughness, cosine)) / (1 - upright(roughness));
+        else
+            share = cosine * bp_ref_oren_nayar_once(roughness, normal, out, in) * PI / upright(roughness) /
+                    (1 + roughness);
+        *direction = in;
+        if (random_real(random) < share) break;
+    }
+    if (!again) return albedo;
+    return (Vec){bp_ref_oren_nayar_colour(roughness, albedo.x), bp_ref_oren_nayar_colour(roughness, albedo.y),
+                 bp_ref_oren_nayar_colour(roughness, albedo.z)};
+}
