@@ -156,6 +156,7 @@ static void refuse_merge(BpFilm *into, const BpFilm *from, BpStatus expected, co
     const uint32_t count = into->counts[0];
     BpError err = {0};
     assert_int_equal(bp_film_merge(into, from, &err), expected);
+    bp_error_add_remedy(&err, BP_INTERFACE_COMMAND_LINE);
     if (strstr(err.message, reason) == NULL) fail_msg("'%s' does not say '%s'", err.message, reason);
     assert_int_equal(into->range_count, before.range_count);
     assert_ptr_equal(into->fine_sums, before.fine_sums);
@@ -210,12 +211,12 @@ static void what_differs_is_named(void **state) {
     DIFFER(scale_log2, -3, "scales differ (2^36 and 2^-3");
     DIFFER(scene_hash, 1, "scenes differ");
     DIFFER(seed, 8, "seeds differ (7 and 8)");
-    DIFFER(max_depth, 5, "--depth 50 and 5");
-    DIFFER(sampler, 1, "--sampler");
-    DIFFER(precision, 1, "--precision");
-    DIFFER(math, 1, "--math");
-    DIFFER(numerics, 1, "--numerics");
-    DIFFER(transfer, 1, "transfer");
+    DIFFER(max_depth, 5, "depths differ (50 and 5); use the same --depth");
+    DIFFER(sampler, 1, "); use the same --sampler");
+    DIFFER(precision, 1, "); use the same --precision");
+    DIFFER(math, 1, "); use the same --math");
+    DIFFER(numerics, 1, "); use the same --numerics");
+    DIFFER(transfer, 1, "transfer curves differ (gamma2 and srgb)");
 #undef DIFFER
     BpFilm *fine = render(7, 8); /* what it has and the first has not is not left there either */
     assert_int_equal(bp_film_add_fine_sums(fine, NULL), BP_OK);
