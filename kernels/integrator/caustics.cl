@@ -3,7 +3,8 @@
  *
  * A path finds such a lamp by chance, or is led to it: a focuser, a lamp and a point of it are chosen, and every chain
  * through the focuser that ends at that point is traced (after D. Mitchell and P. Hanrahan, "Illumination from Curved
- * Reflectors", 1992; all roots are found, so no probability has to be estimated). Both are weighted by the power heuristic
+ * Reflectors", 1992; all roots are found, so no probability has to be estimated); or, where these would have densities with poles,
+ * a direction out of the lamp's image. Both are weighted by the power heuristic
  * with the density of the direction at the vertex. What a chain brings is computed along the ray as it is traced, and
  * both weights from that ray: a root need not be exact.
  *
@@ -28,6 +29,7 @@ static void follow_chain(const Scene *scene, Path *path, vbool met, const Hit *h
         if (any_lane(enters)) {
             const Focus focus = focus_along(scene, &path->origin, &path->lobe, path->direction, 1, number, probability);
             path->focus.number = choose_uint(enters, focus.number, path->focus.number);
+            path->focus.axis = choose3(enters, focus.axis, path->focus.axis);
             path->focus.distance = choose(enters, focus.distance, path->focus.distance);
             path->focus.sine = choose(enters, focus.sine, path->focus.sine);
             path->focus.ratio = choose(enters, focus.ratio, path->focus.ratio);
@@ -66,7 +68,8 @@ static vreal chain_hit_weight(const Scene *scene, const Path *path, vuint lamp, 
     Focus focus = path->focus;
     focus.number = choose_uint(known, focus.number, splat_uint(0));
     const vuint inside = choose_uint(known, path->chain - splat_uint(CHAIN_LEFT), splat_uint(0));
-    const vreal ratio = chain_ratio(scene, &focus, inside, target, &path->origin, path->direction);
+    const TargetImage image = image_of(scene, focus.number, focus.axis, focus.distance, inside, target, known);
+    const vreal ratio = chain_ratio(scene, &focus, &image, inside, target, &path->origin, path->direction);
     return weight_of_hit(known, ratio);
 }
 
@@ -100,8 +103,8 @@ static Vec3 sample_target(const Scene *scene, const ChainChoice *choice, vreal r
 }
 
 /* Traces the chain that leaves the vertex along `direction`, in the lanes `active`, and adds what it brings. */
-static void trace_chain(const Scene *scene, Path *path, const ChainChoice *choice, Vec3 direction, vuint bounce,
-                        vbool active) {
+static void trace_chain(const Scene *scene, Path *path, const ChainChoice *choice, const TargetImage *image, Vec3 direction,
+                        vuint bounce, vbool active) {
     const Geometry *geometry = &scene->geometry;
     const Focus focus = focus_along(scene, &path->origin, &path->lobe, direction, 0, choice->number, choice->probability);
     active = active & (focus.ratio > splat(0));
@@ -163,7 +166,7 @@ static void trace_chain(const Scene *scene, Path *path, const ChainChoice *choic
         active = active & vbool_of_uint(first.slot == expected.slot) & vbool_of_refined(first.t == expected.t);
         const vbool lit = active & last;
         if (any_lane(lit)) {
-            const vreal ratio = chain_ratio(scene, &focus, choice->inside, choice->target, &ray.origin, ray.direction);
+            const vreal ratio = chain_ratio(scene, &focus, image, choice->inside, choice->target, &ray.origin, ray.direction);
             const Vec3 radiance = radiance_of_lamp(scene, &ray, &choice->lamp, lit);
             const vreal share = divide(ratio, fma(ratio, ratio, splat(1)));
             const Vec3 light = multiply3(multiply3(path->throughput, weight), scale3(share, radiance));
@@ -209,9 +212,10 @@ static void trace_chain(const Scene *scene, Path *path, const ChainChoice *choic
 }
 
 /* Finds the roots of the chain in `choice`, and adds what they bring. `aim`: the unit direction from the centre of the focuser to a
- * point of the target; `far`: its radius over the distance of that point. */
-static void seek_chains(const Scene *scene, Path *path, const ChainChoice *choice, Vec3 aim, vreal far, vuint bounce,
-                        vbool active) {
+ * point of the target; `far`: its radius over the distance of that point. `u` and `v`, which have chosen that point, choose a
+ * direction instead where the image of the target is near a fold or a ring. */
+static void seek_chains(const Scene *scene, Path *path, const ChainChoice *choice, Vec3 aim, vreal far, vreal u, vreal v,
+                        vuint bounce, vbool active) {
     const vuint place = choice->number * FOCUSER_REALS;
     /* A chain has a segment more than chords, and one to the lamp. */
     active = active & (gather_real(scene->focusers, place + FOCUSER_CHAINS + choice->inside) > splat(0)) &
@@ -234,18 +238,33 @@ static void seek_chains(const Scene *scene, Path *path, const ChainChoice *choic
     const vreal target_cosine = choose(straight, cosine, -cosine);
     /* Only a chain that begins to rise has a maximum above 0. */
     const vbool rises = near + far + splat(2) * uint_to_real(choice->inside) * inverse_index > splat(2);
+    const TargetImage image =
+        image_of(scene, choice->number, axis, divide(splat(1), inverse), choice->inside, choice->target, active);
+    /* From here azimuths count: it must not depend on `u` and `v`, as `across` does. */
+    Vec3 to_target = across;
+    if (any_lane(image.fold | image.ring)) {
+        const vreal beside = across_axis(axis, target_cone(scene, choice->number, choice->target).axis, &to_target);
+        to_target = choose3(beside > splat(0), to_target, normalise3(other));
+    }
     for (uint piece = 0; piece < 3u; ++piece) {
         const vreal side = splat(piece == 2u ? R(-1.0) : R(1.0));
-        const vbool tried = piece == 2u ? active : active & rises;
-        if (!any_lane(tried)) continue;
+        const vbool by_point = active & vbool_not(image.ring) & (piece == 2u ? vbool_all : rises & vbool_not(image.fold));
+        vbool in_band = vbool_none;
+        if (piece == 0u) in_band = image.fold | image.ring;
+        if (piece == 1u) in_band = image.ring & (image.ring_to > image.ring_from);
+        if (!any_lane(by_point | in_band)) continue;
         vreal sine_in, cosine_in;
-        const vbool found = chain_root(near, far, inverse_index, choice->inside, target_cosine, side * sine, piece == 0u, tried,
+        const vbool found = chain_root(near, far, inverse_index, choice->inside, target_cosine, side * sine, piece == 0u, by_point,
                                        &sine_in, &cosine_in);
-        if (!any_lane(found)) continue;
         const vreal aside = sine_in * near;
         const vreal turned = choose(straight, side, -side) * aside;
-        const Vec3 direction = normalise3(madd3(cosine_of(aside), axis, scale3(turned, across)));
-        trace_chain(scene, path, choice, direction, bounce, found);
+        Vec3 direction = normalise3(madd3(cosine_of(aside), axis, scale3(turned, across)));
+        if (any_lane(in_band)) {
+            const vreal from = piece == 0u ? image.from : image.ring_from, to = piece == 0u ? image.to : image.ring_to;
+            direction = choose3(in_band, sample_band(&image, axis, to_target, near, from, to, vbool_not(straight), u, v), direction);
+        }
+        const vbool tried = found | in_band;
+        if (any_lane(tried)) trace_chain(scene, path, choice, &image, direction, bounce, tried);
     }
 }
 
@@ -289,7 +308,7 @@ static void light_through_focuser(const Scene *scene, Path *path, vuint bounce, 
                                 choose_uint(by_chain < reflects + passes, splat_uint(1), splat_uint(2)));
     for (uint inside = 0; inside <= (every ? CHORDS_MAX : 0u); ++inside) {
         if (every) choice.inside = splat_uint(inside);
-        seek_chains(scene, path, &choice, aim, far, bounce, active);
+        seek_chains(scene, path, &choice, aim, far, u, v, bounce, active);
     }
 }
 

@@ -24,7 +24,12 @@
  * pieces with a root at most: the rise and the fall at beta, and the fall at -beta. From the outer end of its piece,
  * Newton's method comes closer to the root with every step, without passing it, and says by the sign of the slope that
  * there is none. W need not be known, but only sin(W - beta) and cos(W - beta), so there is no arc sine; within a piece
- * the difference is less than half a turn, if 4 asin(1 / index) is (the host leaves out other chains). */
+ * the difference is less than half a turn, if 4 asin(1 / index) is (the host leaves out other chains).
+ *
+ * A direction that follows from a point of the target has a density with a pole where two chains merge (a fold) and where the
+ * target stands behind the middle of the ball and is seen as a ring: there a few samples in a million would carry much of the
+ * light, and pictures would be noisier than their samples know. So a direction is drawn from around the image of the whole
+ * target there, whose extent follows from the roots for its edges (image_of). */
 #if SAMPLES_CAUSTICS
 #define CHORDS_MAX 2u
 #define STEPS_MAX 32u
@@ -55,6 +60,7 @@ static vreal focuser_importance(__global const real *focuser, const Point *point
 /* The way from a vertex to a focuser. */
 typedef struct Focus {
     vuint number;   /* of the focuser */
+    Vec3 axis;      /* unit, from the vertex to its centre */
     vreal distance; /* of its centre from the vertex */
     vreal sine;     /* of the angle of incidence */
     vreal ratio;    /* the density of the direction in the lobe, over the probability of choosing the focuser */
@@ -139,6 +145,7 @@ static Focus focus_along(const Scene *scene, const Point *point, const Lobe *lob
     focus.number = number;
     focus.every = vbool_of_uint(lobe->kind == splat_uint(LOBE_PIXEL));
     focus.distance = square_root(dot3(to_centre, to_centre));
+    focus.axis = scale3(divide(splat(1), focus.distance), to_centre);
     /* Where rounding has it that the ray passes beside the ball, or through its middle, the formulas still hold. */
     focus.sine = at_least(at_most(sine, splat(R(1.0) - R(0x1p-22))), splat(R(0x1p-40)));
     focus.ratio = divide(vertex_pdf(scene, lobe, direction, drawn), choose(probability > splat(0), probability, splat(1)));
@@ -265,10 +272,150 @@ static vreal chain_probability(const Scene *scene, const Focus *focus, vuint ins
                   choose(vbool_of_uint(inside == splat_uint(1)), through, through * inner));
 }
 
+/* How a target lies, seen from the centre of a focuser, and the radius of the focuser over the distances of its points. */
+typedef struct TargetCone {
+    Vec3 axis;            /* unit */
+    Turn spread;          /* its half angle */
+    vreal least, largest; /* 0 for a disc */
+} TargetCone;
+
+static TargetCone target_cone(const Scene *scene, vuint number, vuint target) {
+    TargetCone cone;
+    const vreal extent = gather_real(scene->targets, target * TARGET_REALS + TARGET_EXTENT);
+    const vbool far = vbool_of_uint(gather_uint(scene->target_lamps, target) >= splat_uint(DISC_SLOT));
+    const Vec3 aimed = target_centre(scene, target);
+    const Vec3 ahead = choose3(far, aimed, subtract3(aimed, focuser_centre(scene, number)));
+    const vreal inverse = divide(splat(1), square_root(dot3(ahead, ahead)));
+    const vreal tangent = extent * inverse;
+    const vreal cosine = divide(splat(1), square_root(fma(tangent, tangent, splat(1))));
+    cone.axis = scale3(inverse, ahead);
+    cone.spread.cosine = choose(far, splat(1) - extent, cosine);
+    cone.spread.sine = choose(far, square_root(extent * (splat(2) - extent)), tangent * cosine);
+    cone.largest = choose(far, splat(0), gather_real(scene->focusers, number * FOCUSER_REALS + FOCUSER_RADIUS) * inverse);
+    cone.least = cone.largest * cone.spread.cosine;
+    return cone;
+}
+
+/* Directions from a vertex, around the axis through a ball of glass, that hold the image of a whole target: bands of the angle of
+ * incidence, given by their sines. */
+typedef struct TargetImage {
+    vbool fold, ring;             /* neither: it is far from where densities have poles */
+    vreal from, to;               /* the band that the fold or the middle of the ball is in */
+    vreal ring_from, ring_to;     /* the other band; empty: there is none */
+    vreal tangent;                /* of a fold: it goes by twice the angle of this tangent to both sides of the target's plane */
+} TargetImage;
+
+#define BAND_SLACK R(0x1p-18) /* by which bands are wider than their roots, which are rounded */
+
+static TargetImage no_image(void) {
+    TargetImage image;
+    image.fold = image.ring = vbool_none;
+    image.from = image.to = image.ring_from = image.ring_to = image.tangent = splat(0);
+    return image;
+}
+
+static vreal across_axis(Vec3 axis, Vec3 direction, Vec3 *across) {
+    const Vec3 off = madd3(-dot3(axis, direction), axis, direction);
+    const vreal sine = square_root(dot3(off, off));
+    *across = scale3(divide(splat(1), choose(sine > splat(0), sine, splat(1))), off);
+    return sine;
+}
+
+#if EFFECT_DIELECTRIC
+/* Where two chains to the target merge and disappear (a fold of W, at its maximum), or where the target stands behind the middle
+ * of the ball and is seen as a ring, a direction that is drawn by a point of the target has a density with a pole. There, it
+ * is drawn from the image of the whole target. The target's points lie around the vertex's axis at angles from beta - spread to
+ * beta + spread; `largest` and `least` make W as large and as small as it may be for any of them. */
+static TargetImage image_of(const Scene *scene, vuint number, Vec3 axis, vreal distance, vuint inside, vuint target, vbool active) {
+    TargetImage image = no_image();
+    const vuint place = number * FOCUSER_REALS;
+    const vreal inverse_index = divide(splat(1), gather_real(scene->focusers, place + FOCUSER_INDEX));
+    const vreal near = divide(gather_real(scene->focusers, place + FOCUSER_RADIUS), distance);
+    const TargetCone cone = target_cone(scene, number, target);
+    active = active & (near + cone.largest + splat(2) * uint_to_real(inside) * inverse_index > splat(2));
+    if (!any_lane(active)) return image;
+    Vec3 across;
+    Turn beta;
+    beta.cosine = dot3(axis, cone.axis);
+    beta.cosine = choose(vbool_of_uint(inside == splat_uint(1)), beta.cosine, -beta.cosine);
+    beta.sine = across_axis(axis, cone.axis, &across);
+    const vbool ring = active & (beta.sine < cone.spread.sine) & (beta.cosine > splat(0));
+    const Turn low = turn_back(beta, cone.spread), high = turn_on(beta, cone.spread);
+    vreal rise_low, rise_high, fall_low, fall_high, cosine;
+    const vbool above = active & vbool_not(chain_root(near, cone.least, inverse_index, inside, high.cosine, high.sine, 1, active,
+                                                      &rise_high, &cosine));
+    const vbool begins = chain_root(near, cone.largest, inverse_index, inside, low.cosine, low.sine, 1,
+                                    above & vbool_not(ring), &rise_low, &cosine);
+    image.ring = ring;
+    image.fold = begins;
+    const vbool banded = ring | begins;
+    if (!any_lane(banded)) return image;
+    const vbool low_found =
+        chain_root(near, cone.largest, inverse_index, inside, choose(ring, high.cosine, low.cosine),
+                   choose(ring, -high.sine, low.sine), 0, banded, &fall_low, &cosine);
+    fall_low = choose(low_found, fall_low, splat(1));
+    const vbool apart = ring & vbool_not(above);
+    if (any_lane(apart)) {
+        const vbool high_found =
+            chain_root(near, cone.least, inverse_index, inside, high.cosine, high.sine, 0, apart, &fall_high, &cosine);
+        image.ring_from = choose(apart, choose(high_found, fall_high, splat(1)) * (splat(1) - BAND_SLACK), splat(0));
+        image.ring_to = choose(apart, at_most(fall_low * (splat(1) + BAND_SLACK), splat(1)), splat(0));
+    }
+    image.from = choose(begins, rise_low * (splat(1) - BAND_SLACK), splat(0));
+    image.to = at_most(choose(apart, rise_high, fall_low) * (splat(1) + BAND_SLACK), splat(1));
+    const vreal sine = at_most(divide(cone.spread.sine, choose(begins, beta.sine, splat(1))), splat(1));
+    image.tangent = divide(sine, splat(1) + cosine_of(sine)) * (splat(1) + BAND_SLACK);
+    return image;
+}
+#else
+#define image_of(scene, number, axis, distance, inside, target, active) no_image()
+#endif
+
+/* 1 - cos of the angle from the axis to the direction of an incidence; and by how much that grows through a band. */
+static vreal less_by(vreal sine) { return divide(sine * sine, splat(1) + cosine_of(sine)); }
+
+static vreal band_height(vreal near, vreal from, vreal to) {
+    return divide((to - from) * (to + from) * near * near, cosine_of(from * near) + cosine_of(to * near));
+}
+
+/* A direction in a band of the image, from two numbers in [0, 1). `flipped`: the target is on the other side of the axis. */
+static Vec3 sample_band(const TargetImage *image, Vec3 axis, Vec3 across, vreal near, vreal from, vreal to, vbool flipped, vreal u,
+                        vreal v) {
+    const vreal less = fma(u, band_height(near, from, to), less_by(from * near));
+    const vreal aside = square_root(less * (splat(2) - less));
+    const vreal x = fma(splat(2), v, splat(-1)) * image->tangent;
+    const vreal inverse = divide(splat(1), fma(x, x, splat(1)));
+    vreal sine, cosine;
+    sin_cos_turn(v, &sine, &cosine);
+    sine = choose(image->ring, sine, splat(2) * x * inverse);
+    cosine = choose(image->ring, cosine, fma(-x, x, splat(1)) * inverse);
+    const Vec3 other = vec3(fma(axis.y, across.z, -(axis.z * across.y)), fma(axis.z, across.x, -(axis.x * across.z)),
+                            fma(axis.x, across.y, -(axis.y * across.x)));
+    const vreal turned = choose(flipped, -aside, aside);
+    return normalise3(madd3(splat(1) - less, axis, scale3(turned, madd3(cosine, across, scale3(sine, other)))));
+}
+
+/* The density per steradian of sample_band, of the direction with this incidence, by which a line is led along `onward`, a vector
+ * from the ball to the target. 0: it is in no band. */
+static vreal band_density(const Scene *scene, const Focus *focus, const TargetImage *image, vuint target, vreal near, Vec3 onward) {
+    const vbool first = (focus->sine >= image->from) & (focus->sine <= image->to);
+    const vbool second = vbool_not(first) & (focus->sine >= image->ring_from) & (focus->sine <= image->ring_to);
+    const vreal height = band_height(near, choose(first, image->from, image->ring_from), choose(first, image->to, image->ring_to));
+    Vec3 wanted, led;
+    across_axis(focus->axis, target_cone(scene, focus->number, target).axis, &wanted);
+    across_axis(focus->axis, onward, &led);
+    const Vec3 apart = subtract3(led, wanted), together = add3(led, wanted);
+    const vreal x2 = divide(dot3(apart, apart), at_least(dot3(together, together), splat(R(1e-20))));
+    const vreal t = image->tangent;
+    vreal around = divide(splat(1) + x2, splat(4) * choose(t > splat(0), t, splat(1)));
+    around = choose(image->ring, splat(R(0.5) * PI_INVERSE), choose(x2 <= t * t, around, splat(0)));
+    return choose((first | second) & (height > splat(0)), divide(around, choose(height > splat(0), height, splat(1))), splat(0));
+}
+
 /* The density with which a path goes this chain by chance, over that with which it is drawn as one to the target.
  * `origin` and `direction`: of its last line, which meets the lamp. */
-static vreal chain_ratio(const Scene *scene, const Focus *focus, vuint inside, vuint target, const Point *origin,
-                         Vec3 direction) {
+static vreal chain_ratio(const Scene *scene, const Focus *focus, const TargetImage *image, vuint inside, vuint target,
+                         const Point *origin, Vec3 direction) {
     const vuint place = focus->number * FOCUSER_REALS;
     const vreal radius = gather_real(scene->focusers, place + FOCUSER_RADIUS);
     const vreal inverse_index = divide(splat(1), gather_real(scene->focusers, place + FOCUSER_INDEX));
@@ -303,8 +450,11 @@ static vreal chain_ratio(const Scene *scene, const Focus *focus, vuint inside, v
     const vreal axis_length = square_root(dot3(axis, axis));
     const vreal slant = choose(far | vbool_not(along > splat(0)), splat(1), divide(along, axis_length));
     const vreal pi_inverse = splat(PI_INVERSE);
-    const vreal density = share * gather_real(scene->targets, aim + TARGET_SHARE) * pi_inverse *
-                          choose(far, divide(solid_angle, splat(2) * extent), divide(area, extent * extent * slant));
+    vreal directed = pi_inverse * choose(far, divide(solid_angle, splat(2) * extent), divide(area, extent * extent * slant));
+    const vbool banded = image->ring | (image->fold & (turn.sine > splat(0)));
+    if (any_lane(banded))
+        directed = choose(banded, band_density(scene, focus, image, target, near, choose3(far, direction, crossing)), directed);
+    const vreal density = share * gather_real(scene->targets, aim + TARGET_SHARE) * directed;
     const vreal ratio = divide(focus->ratio * chain_probability(scene, focus, inside), choose(density > splat(0), density, splat(1)));
     return choose(density > splat(0), at_most(ratio, splat(CHAIN_RATIO_MAX)), splat(CHAIN_RATIO_MAX));
 }

@@ -344,6 +344,23 @@ def same_deep_cases():
                               floor={"type": "lambertian", "albedo": [0.7] * 3, "scatter": "cosine_cubed"}), 4096)
 
 
+def from_the_image(seeds=8):
+    """Points of the floor under a wide sun, close behind the ball: on the axis and beside it, where the sun is seen as a ring, beside the
+    edge of the caustic, where two of its images merge and disappear, and where both happen. Directions are drawn from all of the
+    sun's image there. Chance is the judge."""
+    found = []
+    for height, x in ((1.1, 0.0), (1.1, 0.02), (1.1, 0.1), (1.1, 0.12), (1.3, 0.01)):
+        scene = document(glass(fresnel="exact"), height, [x, 0.1, 6], [x, 0, 0], 6,
+                         [{"direction": [0, 1, 0], "half_angle": 1.5, "radiance": [100] * 3}])
+        by_chance = [mean(scene, 8192, "--seed", str(seed), "--caustics", "off")[0] for seed in range(seeds)]
+        wanted, error = statistics.mean(by_chance), statistics.stdev(by_chance) / math.sqrt(seeds)
+        drawn = mean(scene, 8192, "--seed", str(seeds))[0]
+        found.append(f"{height}, {x}: {drawn / wanted - 1:+.2%} of {error / wanted:.2%}")
+        assert error < 0.006 * wanted, found[-1]
+        assert abs(drawn - wanted) < 5 * error, found[-1]
+    return "; ".join(found)
+
+
 def near_lamp():
     """Lines that reach a lamp close by at a slant: only the plane across the line of centres knows the cosine."""
     scene = room({"type": "dielectric", "refraction_index": 1.5, "fresnel": "none"}, 0, 6)
@@ -371,7 +388,7 @@ def same_bits():
 
 # The quick ones are closed forms: what is compared with chance takes many samples, and the forms a kernel each.
 CASES = [on_axis, across, what_surfaces_let_through, off_a_mirror, cut_by_depth, hidden, glint_in_a_ball, glint_aside, glint_hidden]
-DEEP_CASES = [same_through_glass, same_off_a_mirror, same_of_a_disc, same_glint_in_a_mirror, same_bits, glint_across_pixels, same_glints,
+DEEP_CASES = [from_the_image, same_through_glass, same_off_a_mirror, same_of_a_disc, same_glint_in_a_mirror, same_bits, glint_across_pixels, same_glints,
               same_rough, near_lamp, two_lamps, two_balls, same_deep_cases]
 
 sys.exit(run_cases(CASES, DEEP_CASES))
