@@ -3,6 +3,7 @@
 
 #include "base/message_text.h"
 #include "base/words.h"
+#include "scene/scene.h"
 
 #include <string.h>
 

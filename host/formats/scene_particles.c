@@ -6,6 +6,7 @@
 #include "named_file.h"
 #include "particle_cache.h"
 #include "particle_members.h"
+#include "particles/add_to_scene.h"
 
 #include <math.h>
 #include <stdlib.h>

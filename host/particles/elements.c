@@ -1,9 +1,12 @@
-/* elements.c: see elements.h.
+/* elements.c: see elements.h, and ballpark.h for what is offered to others.
  *
  * Radii of van der Waals: M. Mantina et al. 2009 for the main groups, S. Alvarez 2013 for the others (2.45
  * where neither has one). Covalent radii: B. Cordero et al. 2008 (2.0 where there is none). The colours are
  * our own: the customary hues (after R. Corey, L. Pauling, W. Koltun) at half their saturation. */
 #include "elements.h"
+
+#include "ballpark.h"
+#include "base/color.h"
 
 #include <math.h>
 #include <string.h>
@@ -208,4 +211,20 @@ uint8_t bp_element_of_name(const char *name, const char *residue, bool fixed, bo
                                          "LI", "SI", "SE", "CU", "NI", "AL", NULL};
     if (two != 0 && is_among(symbol, metals)) return two;
     return one != 0 ? one : two;
+}
+
+bool bp_element_info(unsigned atomic_number, BpElementInfo *info) {
+    if (atomic_number > BP_ELEMENT_MAX) return false;
+    const BpElement *const element = &bp_elements[atomic_number];
+    *info = (BpElementInfo){.mass = (double)element->mass,
+                            .van_der_waals = (double)element->van_der_waals,
+                            .covalent = (double)element->covalent};
+    memcpy(info->symbol, element->symbol, sizeof element->symbol);
+    for (int c = 0; c < 3; c++) info->color[c] = bp_linear_from_srgb(element->color[c] / 255.0);
+    return true;
+}
+
+unsigned bp_element_of_atom(const char *name, const char *residue) {
+    bool dummy;
+    return bp_element_of_name(name, residue != NULL ? residue : "", false, &dummy);
 }

@@ -1,13 +1,13 @@
-/* style.h: how particles look: what is shown, sizes, colours, bonds, the cell.
+/* style.h: how particles are to look: what is shown, sizes, colours, bonds, the cell.
  *
- * In:    a frame, a style.   Out: spheres with colours, added to a scene; what was decided, as a line.
- * Knows: elements, palettes, colormaps.   Does not know: how files are read. */
+ * In:    nothing.   Out: a style; the columns of a file that it needs.
+ * Knows: what can be chosen.   Does not know: how files are read, what is made of particles (add_to_scene.h).
+ */
 #ifndef BP_PARTICLES_STYLE_H
 #define BP_PARTICLES_STYLE_H
 
 #include "colormap.h"
 #include "particles.h"
-#include "scene/scene.h"
 
 typedef enum BpStyleKind { BP_STYLE_SPACEFILL, BP_STYLE_BALL_AND_STICK } BpStyleKind;
 
@@ -66,12 +66,5 @@ void bp_particle_style_map(const BpParticleStyle *style, double share, double co
 
 /* The columns that the style needs, in the order in which a file is to be opened with them. */
 size_t bp_particle_style_columns(const BpParticleStyle *style, const char *columns[BP_PARTICLE_WANTED_MAX]);
-
-/* Adds the particles as spheres of `material`, each with a colour of its own, and bonds and cell where the
- * style has them. Moves molecules in `particles` together. `summary` (Optional, of `size` bytes): what is
- * shown, and every guess. `range`: Optional; the values at the ends of the colormap. Fails if nothing is left
- * to show. */
-BpStatus bp_particles_add_to_scene(BpParticles *particles, const BpParticleStyle *style, uint32_t material,
-                                   BpScene *scene, char *summary, size_t size, double range[2], BpError *err);
 
 #endif

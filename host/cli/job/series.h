@@ -8,6 +8,7 @@
 
 #include "cli/line/options.h"
 #include "formats/particle_cache.h"
+#include "scene/scene.h"
 
 typedef struct BpSeries {
     const BpCommandLine *line;

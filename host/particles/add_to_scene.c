@@ -1,0 +1,85 @@
+/* add_to_scene.c: see add_to_scene.h. */
+#include "add_to_scene.h"
+
+#include "base/color.h"
+#include "base/format.h"
+#include "base/plural.h"
+#include "bonds.h"
+#include "molecules.h"
+#include "style_bonds.h"
+#include "style_colors.h"
+#include "style_sizes.h"
+#include "style_spheres.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+/* Files of three columns hold two dimensions too. */
+static void find_flat(BpStyleJob *job) {
+    BpParticles *const p = job->p;
+    double low = INFINITY, high = -INFINITY;
+    for (size_t i = 0; i < p->count; i++) {
+        if (!job->shown[i]) continue;
+        low = p->position[i][2] < low ? p->position[i][2] : low;
+        high = p->position[i][2] > high ? p->position[i][2] : high;
+        if (high > low) break;
+    }
+    p->flat |= job->shown_count > 2 && high == low;
+}
+
+static BpStatus run(BpStyleJob *job, BpError *err) {
+    BpParticles *const p = job->p;
+    char all[32], shown[32];
+    BP_TRY(bp_style_choose_shown(job, err));
+    if (p->notes[0] != '\0') bp_style_say(job, "%s", p->notes);
+    const bool bonds = job->style->bonds || job->style->kind == BP_STYLE_BALL_AND_STICK;
+    const bool whole = job->style->whole && bp_particles_repeat(p) && (p->bond_count > 0 || p->has_element);
+    if (bonds || whole) BP_TRY(bp_bonds_find(p, job->shown, &job->bonds, err));
+    if (job->bonds.crowded)
+        bp_style_say(job,
+                     "no bonds by distance, since atoms lie in each other; is their unit of length right?");
+    size_t moved = 0;
+    if (whole) BP_TRY(bp_molecules_make_whole(p, job->shown, &job->bonds, &moved, err));
+    if (moved > 0)
+        bp_style_say(job, "molecules made whole across the cell: %s moved",
+                     bp_format_whole(moved, all, sizeof all));
+    find_flat(job);
+    BP_TRY(bp_style_choose_radii(job, err));
+    BP_TRY(bp_style_choose_colors(job, err));
+    BP_TRY(bp_style_put_particles(job, err));
+    if (bonds) BP_TRY(bp_style_put_bonds(job, err));
+    if (job->style->box) BP_TRY(bp_style_put_box(job, err));
+    if (job->summary != NULL) { /* the counts come first, and are known last */
+        char rest[768];
+        snprintf(rest, sizeof rest, "%s", job->summary);
+        bp_format_whole(p->count, all, sizeof all);
+        bp_format_whole(job->shown_count, shown, sizeof shown);
+        if (job->shown_count == p->count)
+            snprintf(job->summary, job->size, "%s particle%s%s%s", all, bp_plural(p->count),
+                     rest[0] != '\0' ? "; " : "", rest);
+        else
+            snprintf(job->summary, job->size, "%s of %s particles%s%s", shown, all,
+                     rest[0] != '\0' ? "; " : "", rest);
+    }
+    return BP_OK;
+}
+
+BpStatus bp_particles_add_to_scene(BpParticles *particles, const BpParticleStyle *style, uint32_t material,
+                                   BpScene *scene, char *summary, size_t size, double range[2],
+                                   BpError *err) {
+    BpStyleJob job = {.p = particles,
+                      .style = style,
+                      .scene = scene,
+                      .material = material,
+                      .summary = summary,
+                      .size = size};
+    if (summary != NULL) summary[0] = '\0';
+    bp_linear_of_bytes(job.linear);
+    const BpStatus status = run(&job, err);
+    if (range != NULL) memcpy(range, job.range, sizeof job.range);
+    free(job.shown);
+    free(job.rank);
+    free(job.bonds.bond);
+    return status;
+}
