@@ -5,13 +5,6 @@
 
 #define PI 3.14159265358979323846
 
-Vec bp_ref_center(const BpScene *scene, const Ray *ray, const BpSphere *sphere) {
-    const size_t i = (size_t)(sphere - scene->spheres);
-    const Vec first = vec(sphere->center);
-    if (i >= scene->moving_count) return first;
-    return add(scale(1 - ray->time, first), scale(ray->time, vec(scene->center_ends[i])));
-}
-
 /* A ray that starts on a sphere starts also on every other one of the same place and size. A camera may stand
  * on a sphere too: within the rounding of the numbers that place both. */
 static bool starts_on(const BpScene *scene, const Ray *ray, const BpSphere *sphere) {

@@ -73,7 +73,12 @@ bool bp_ref_fly(const BpScene *scene, const Ray *ray, double distance, Random *r
                 Ray *scattered, Vec *weight);
 
 /* The centre of the sphere at the ray's time. */
-Vec bp_ref_center(const BpScene *scene, const Ray *ray, const BpSphere *sphere);
+static inline Vec bp_ref_center(const BpScene *scene, const Ray *ray, const BpSphere *sphere) {
+    const size_t i = (size_t)(sphere - scene->spheres);
+    const Vec first = vec(sphere->center);
+    if (i >= scene->moving_count) return first;
+    return add(scale(1 - ray->time, first), scale(ray->time, vec(scene->center_ends[i])));
+}
 
 /* Radiance along the ray. `depth`: segments still allowed; 0 is black. */
 Vec bp_ref_color(const BpScene *scene, const Ray *ray, uint32_t depth, Random *random, Path *path);
