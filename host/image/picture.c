@@ -1,4 +1,4 @@
-/* picture.c: pictures to files by their format's name; see image.h and ballpark.h. */
+/* picture.c: pictures to files by the name of their format, and their release; see image.h and ballpark.h. */
 #include "image.h"
 
 #include "base/names.h"

@@ -124,7 +124,7 @@ typedef struct BpShadowCatcher {
     double normal[3], distance; /* what follows: of length 1; of its points along the normal */
 } BpShadowCatcher;
 
-/* Light by its name, which stands in the camera's frame (light.h). */
+/* Light by its name, which stands in the camera's frame (lighting.h). */
 typedef enum BpLighting {
     BP_LIGHTING_SKY, /* none: the background as the scene has it */
     BP_LIGHTING_SOFT,
