@@ -33,6 +33,8 @@ static bool starts_like(const char *bytes, size_t length, BpKnownFile *found) {
         STARTS("#?RGBE", BP_FILE_PICTURE, "a Radiance picture (.hdr)"),
         STARTS("P6", BP_FILE_IMAGE, "a PPM picture"),
         STARTS("P3", BP_FILE_IMAGE, "a PPM picture"),
+        STARTS("P5\n", BP_FILE_IMAGE, "a PGM picture"),
+        STARTS("P2\n", BP_FILE_IMAGE, "a PGM picture"),
         STARTS("\xff\xd8\xff", BP_FILE_IMAGE, "a JPEG picture"),
         STARTS("GIF8", BP_FILE_IMAGE, "a GIF picture"),
         STARTS("II*\0", BP_FILE_IMAGE, "a TIFF picture"),

@@ -13,6 +13,10 @@ static size_t least(size_t a, size_t b) {
     return a < b ? a : b;
 }
 
+static char small(char c) {
+    return c >= 'A' && c <= 'Z' ? (char)(c - 'A' + 'a') : c;
+}
+
 /* Edit distance with swaps of neighbours ("optimal string alignment"; Damerau 1964, Levenshtein 1966). */
 static size_t edit_distance(const char *a, size_t a_length, const char *b, size_t b_length) {
     size_t rows[3][NAME_MAX_COMPARED + 1];
@@ -21,9 +25,9 @@ static size_t edit_distance(const char *a, size_t a_length, const char *b, size_
     for (size_t i = 1; i <= a_length; i++) {
         current[0] = i;
         for (size_t j = 1; j <= b_length; j++) {
-            const size_t change = a[i - 1] == b[j - 1] ? 0 : 1;
+            const size_t change = small(a[i - 1]) == small(b[j - 1]) ? 0 : 1;
             current[j] = least(least(previous[j] + 1, current[j - 1] + 1), previous[j - 1] + change);
-            if (i > 1 && j > 1 && a[i - 1] == b[j - 2] && a[i - 2] == b[j - 1])
+            if (i > 1 && j > 1 && small(a[i - 1]) == small(b[j - 2]) && small(a[i - 2]) == small(b[j - 1]))
                 current[j] = least(current[j], before[j - 2] + 1);
         }
         size_t *const freed = before;
@@ -37,7 +41,8 @@ static size_t edit_distance(const char *a, size_t a_length, const char *b, size_
 /* One letter may be wrong, or a third of them in a word that begins alike: what differs more is another word.
  */
 static bool is_near(const char *a, size_t a_length, const char *b, size_t b_length, size_t distance) {
-    return distance <= 1 || (a[0] == b[0] && 3 * distance <= (a_length > b_length ? a_length : b_length));
+    return distance <= 1 ||
+           (small(a[0]) == small(b[0]) && 3 * distance <= (a_length > b_length ? a_length : b_length));
 }
 
 const char *bp_nearest_name(const char *name, const char *const *names, size_t name_count) {

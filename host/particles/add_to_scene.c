@@ -3,6 +3,7 @@
 
 #include "base/color.h"
 #include "base/format.h"
+#include "base/message_text.h"
 #include "base/plural.h"
 #include "bonds.h"
 #include "molecules.h"
@@ -28,6 +29,19 @@ static void find_flat(BpStyleJob *job) {
     p->flat |= job->shown_count > 2 && high == low;
 }
 
+/* Names that no particle that is shown has; a frame may lack types of another, so they are no error. */
+static void say_unmatched(BpStyleJob *job, const char *member, const BpStyleNamed *list, size_t count) {
+    const BpParticles *const p = job->p;
+    char shown[64];
+    for (size_t k = 0; k < count && job->summary != NULL; k++) {
+        size_t i = 0;
+        while (i < p->count && !(job->shown[i] && bp_style_named(&list[k], 1, p, &p->tag[i]) != NULL)) i++;
+        if (i < p->count) continue;
+        bp_printable(list[k].name, shown, sizeof shown);
+        bp_style_say(job, "no particle has the type \"%s\" of \"%s\"", shown, member);
+    }
+}
+
 static BpStatus run(BpStyleJob *job, BpError *err) {
     BpParticles *const p = job->p;
     char all[32], shown[32];
@@ -47,6 +61,8 @@ static BpStatus run(BpStyleJob *job, BpError *err) {
     find_flat(job);
     BP_TRY(bp_style_choose_radii(job, err));
     BP_TRY(bp_style_choose_colors(job, err));
+    say_unmatched(job, "radius", job->style->radii, job->style->radius_count);
+    say_unmatched(job, "color", job->style->colors, job->style->color_count);
     BP_TRY(bp_style_put_particles(job, err));
     if (bonds) BP_TRY(bp_style_put_bonds(job, err));
     if (job->style->box) BP_TRY(bp_style_put_box(job, err));

@@ -270,6 +270,9 @@ BpStatus read_dump(BpParticleFile *file, bool *end, BpError *err) {
         }
         BP_TRY(input_full_line(input, &line, err));
     }
-    return input_fail(input, true, err, "found %s, expected ITEM: TIMESTEP, as a LAMMPS dump begins",
-                      line == NULL ? "the end of the file" : "another line");
+    return input_fail(input, true, err, "found %s, expected ITEM: TIMESTEP, as %s",
+                      line == NULL ? "the end of the file" : "another line",
+                      file->frame == 0 ? "a LAMMPS dump begins"
+                                       : "each frame begins: does the one before it have more atoms than its "
+                                         "ITEM: NUMBER OF ATOMS says?");
 }

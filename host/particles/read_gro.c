@@ -6,7 +6,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum { POSITIONS = 21 }; /* the column of the first coordinate */
+enum { POSITIONS = 21, USUAL_WIDTH = 8 }; /* the column of the first coordinate, the width of its field */
 
 /* The width of the fields of numbers in a text: the distance of their points (the format's own rule), of
  * which the first three are looked at; 0: these are missing, or their distances differ. */
@@ -34,6 +34,14 @@ static size_t take_fields(const char *line, size_t first, size_t width, double v
         if (!word_number_or_none(text, &values[i])) return i;
     }
     return 3;
+}
+
+/* Whether the line has three coordinates in fields of the usual width, not all of which are numbers: points
+ * of others tell the width. */
+static bool lacks_place(const char *line) {
+    double place[3];
+    return take_fields(line, POSITIONS, USUAL_WIDTH, place) == 3 &&
+           (isnan(place[0]) || isnan(place[1]) || isnan(place[2]));
 }
 
 /* Velocities have one digit more behind the point in fields of the same width; programs of other authors make
@@ -139,9 +147,11 @@ BpStatus read_gro(BpParticleFile *file, bool *end, BpError *err) {
         file->out->up = 2;
     }
     Frame frame = {0};
+    size_t width = 0; /* as the first line with a place has it */
     for (uint64_t i = 0; i < count; i++) {
         BP_TRY(input_needed_line(input, &line, "as many atoms as the count says", err));
-        if (i == 0) frame.width = strlen(line) >= POSITIONS ? field_width(line + POSITIONS - 1) : 0;
+        if (width == 0 && strlen(line) >= POSITIONS) width = field_width(line + POSITIONS - 1);
+        frame.width = width > 0 ? width : lacks_place(line) ? USUAL_WIDTH : 0;
         if (frame.width == 0)
             return input_wrong(input, line, "an atom's line of fixed columns, with points at equal distances",
                                err);

@@ -84,6 +84,18 @@ class Gro(listed.ListTest):
         self.refuse("a.gro", frame(3, ROWS, box=(1.0, 2.0)), "3 or 9 numbers")
         self.refuse("a.gro", frame(3, ROWS).replace("4.00000", "4.0000x"), "3 or 9 numbers")
 
+    def test_first_atoms_without_a_place(self):
+        """They tell no width, which those behind them do."""
+        text = frame(3, ROWS)
+        for gone in (1, 2):
+            lines = text.split("\n")
+            for i in range(gone):
+                lines[2 + i] = lines[2 + i][:20] + "     nan" * 3 + lines[2 + i][44:]
+            found = self.of("a.gro", "\n".join(lines), 0, "vx", "vy")
+            self.check(found, ROWS[gone:], (0, 1))
+            self.assertIn(f"{gone} point", found.head["notes"])
+        self.refuse("a.gro", text.replace("   0.100", "     abc"), ":3:", "points at equal distances")
+
     def test_points_that_do_not_fit(self):
         good = frame(3, ROWS[:1])
         self.refuse("a.gro", good.replace("   0.250", "  0.2500"), ":3:", "points at equal distances")

@@ -249,6 +249,11 @@ class Scenes(ProgramTest):
             for got, wanted in zip(mean(entry), expected):
                 self.assertAlmostEqual(got, wanted, delta=0.012 * max(1, wanted), msg=entry)
         # A single sphere of a convex scene under a dome of 1 shows its albedo, whatever its radius.
+        # A name that no particle has is likely a slip.
+        for member, value in (("color", [1, 0, 0]), ("radius", 2)):
+            for name, said in (("A", False), ("a", True)):
+                notes = self.notes("a.csv", "--set", f'particles[0].{member}={{"types":{{"{name}":{json.dumps(value)}}}}}')
+                self.assertEqual(f'no particle has the type "a" of "{member}"' in notes, said, (member, name))
         self.write("b.csv", "x,y,z,size\n0,0,0,1\n0,0,0,3\n")
         self.assertIn("half the median distance", self.notes("a.csv") + self.notes("b.csv"))
 
@@ -321,6 +326,11 @@ class Scenes(ProgramTest):
         self.assertEqual(self.document("run.dump", "--frame", 1)["particles"], [{"file": "run.dump", "frame": 1}])
         for frame in (4, -5):
             self.fail_with(2, "render", "run.dump", "--frame", frame, says=[f"no frame {frame}", "4 frames"])
+        self.write("plain.json", scene())
+        for command in "render", "scene", "explain":
+            self.fail_with(2, command, "plain.json", "--frame", 0, says=["--frame: plain.json has no particles"])
+        self.write("counts.dump", dump(frames[1:2]).replace("ATOMS\n2", "ATOMS\n1"))
+        self.fail_with(2, "render", "counts.dump", "--frame", 1, says=["more atoms than"])
         for text, numbers in [("::", [0, 1, 2, 3]), ("1:3", [1, 2]), ("::2", [0, 2]), ("-2:", [2, 3]), (":-1:2", [0, 2])]:
             self.succeed("render", "run.dump", *SIZE, "--frames", text, "-o", "f.pfm")
             made = [name for name in self.files() if name.startswith("f-")]

@@ -230,6 +230,8 @@ static void nearest_names(void **state) {
     assert_string_equal(bp_nearest_name("lookform", names, 4), "lookfrom");
     assert_string_equal(bp_nearest_name("look_at", names, 4), "lookat");
     assert_string_equal(bp_nearest_name("fov", names, 4), "vfov");
+    assert_string_equal(bp_nearest_name("LookFrom", names, 4), "lookfrom");
+    assert_string_equal(bp_nearest_name("LOOK_AT", names, 4), "lookat");
     assert_null(bp_nearest_name("transparency", names, 4));
     assert_null(bp_nearest_name("", names, 4));
 }
