@@ -58,6 +58,11 @@ static bool starts_like(const char *bytes, size_t length, BpKnownFile *found) {
         STARTS("CDF\x02", BP_FILE_PARTICLES, "a NetCDF file"),
         STARTS("CDF\x05", BP_FILE_PARTICLES, "a NetCDF file"),
         STARTS("\x89HDF\r\n\x1a\n", BP_FILE_PARTICLES, "an HDF5 file"),
+        STARTS("# .PCD", BP_FILE_POINTS, "a cloud of points of PCL (PCD)"),
+        STARTS("# vtk DataFile", BP_FILE_POINTS, "a file of VTK"),
+        STARTS("LASF", BP_FILE_POINTS, "a cloud of points (LAS)"),
+        STARTS("ASTM-E57", BP_FILE_POINTS, "a cloud of points (E57)"),
+        STARTS("\x93NUMPY", BP_FILE_POINTS, "an array of NumPy (.npy)"),
         STARTS("BLENDER", BP_FILE_MESH, "a file of Blender"),
         STARTS("glTF", BP_FILE_MESH, "a glTF file"),
         STARTS("Kaydara FBX", BP_FILE_MESH, "an FBX file"),
@@ -104,6 +109,13 @@ static bool is_called_like(const char *name, BpKnownFile *found) {
                  {".sdf", {BP_FILE_PARTICLES, "a file of molecules (SDF)"}},
                  {".vasp", {BP_FILE_PARTICLES, "a structure of VASP (POSCAR)"}},
                  {".poscar", {BP_FILE_PARTICLES, "a structure of VASP (POSCAR)"}},
+                 {".vtp", {BP_FILE_POINTS, "a file of VTK"}},
+                 {".vtu", {BP_FILE_POINTS, "a file of VTK"}},
+                 {".laz", {BP_FILE_POINTS, "a cloud of points (LAS)"}},
+                 {".npz", {BP_FILE_POINTS, "arrays of NumPy (.npz)"}},
+                 {".xlsx", {BP_FILE_POINTS, "a spreadsheet"}},
+                 {".xls", {BP_FILE_POINTS, "a spreadsheet"}},
+                 {".ods", {BP_FILE_POINTS, "a spreadsheet"}},
                  {".cc", {BP_FILE_SOURCE, "the source text of a program"}},
                  {".cpp", {BP_FILE_SOURCE, "the source text of a program"}},
                  {".cxx", {BP_FILE_SOURCE, "the source text of a program"}},
@@ -194,9 +206,9 @@ bool bp_known_file(const char *name, const char *bytes, size_t length, size_t si
     text[count] = '\0';
     const bool is_scene = text[strspn(text, "\xef\xbb\xbf \t\r\n")] == '{';
     if (starts_like(bytes, length, found)) {
-        BpKnownFile called; /* Blender packs its files */
+        BpKnownFile called; /* Blender, spreadsheets and NumPy pack their files */
         if ((found->kind == BP_FILE_PACKED || found->kind == BP_FILE_GZIP) && is_called_like(name, &called) &&
-            called.kind == BP_FILE_MESH)
+            (called.kind == BP_FILE_MESH || called.kind == BP_FILE_POINTS))
             *found = called;
         return true;
     }
@@ -233,6 +245,9 @@ const char *bp_known_file_remedy(const BpKnownFile *file) {
         return " or a file of particles in a format of docs/PARTICLES.md; convert it, with ASE or "
                "MDAnalysis, to "
                "extended XYZ for example";
+    case BP_FILE_POINTS:
+        return " or a file of particles in a format of docs/PARTICLES.md; convert it, to CSV or PLY for "
+               "example";
     case BP_FILE_MESH:
         return "; only spheres are rendered, so triangles and scenes of other programs cannot be read yet";
     case BP_FILE_SOURCE:

@@ -16,6 +16,7 @@ typedef enum BpFileKind {
     BP_FILE_GZIP,      /* which files of particles may be packed by */
     BP_FILE_PACKED,    /* otherwise */
     BP_FILE_PARTICLES, /* of other programs: trajectories, crystals */
+    BP_FILE_POINTS,    /* of other programs: clouds and tables */
     BP_FILE_MESH,      /* of triangles, and scenes of other programs */
     BP_FILE_SOURCE     /* of a program */
 } BpFileKind;

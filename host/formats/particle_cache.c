@@ -26,7 +26,10 @@ static BpStatus fail_format(const BpNode *node, const char *path, FILE *stream, 
         node, BP_PART_VALUE, err,
         "found %s, expected a name that ends in .xyz, .pdb, .cif, .gro, .dump, .lammpstrj, .data, "
         ".gsd, .csv or .ply (and perhaps .gz)%s",
-        known.what, known.kind == BP_FILE_PARTICLES ? "; convert it, with ASE or MDAnalysis" : "");
+        known.what,
+        known.kind == BP_FILE_PARTICLES ? "; convert it, with ASE or MDAnalysis"
+        : known.kind == BP_FILE_POINTS  ? "; convert it, to CSV or PLY"
+                                        : "");
 }
 
 /* The file of an entry of "particles", from the cache, or opened and, if there is room, left in it. */

@@ -106,6 +106,7 @@ class Messages(ProgramTest):
         self.assertNotIn("--width", self.fail_with(2, "merge", "s.bpa", "--height", "3").errors)
 
     CONVERT = "convert it, with ASE or MDAnalysis, to extended XYZ"
+    TABLE = "convert it, to CSV or PLY"
     SPHERES = "only spheres are rendered"
     POSCAR = b"NaCl\n 1.0\n5.6 0 0\n0 5.6 0\n0 0 5.6\nNa Cl\n4 4\nDirect\n0 0 0\n"
     OBJ = b"# a cube\nmtllib a.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n"
@@ -118,6 +119,10 @@ class Messages(ProgramTest):
              ("unnamed", struct.pack(">ii", 1993, 3) + bytes(90), "a trajectory of GROMACS (TRR)", CONVERT),
              ("a.dcd", struct.pack("<i", 84) + b"CORD" + bytes(90), "a trajectory of CHARMM or NAMD (DCD)", CONVERT),
              ("a.nc", b"CDF\1" + bytes(90), "a NetCDF file", CONVERT), ("a.h5", b"\x89HDF\r\n\x1a\n" + bytes(90), "an HDF5 file", CONVERT),
+             ("a.pcd", b"# .PCD v0.7 - Point Cloud Data file format\n", "a cloud of points of PCL", TABLE), ("a.las", b"LASF" + bytes(90), "a cloud of points (LAS)", TABLE),
+             ("a.vtk", b"# vtk DataFile Version 3.0\n", "a file of VTK", TABLE), ("a.npy", b"\x93NUMPY\1\0" + bytes(90), "an array of NumPy (.npy)", TABLE),
+             ("a.npz", b"PK\3\4" + bytes(90), "arrays of NumPy (.npz)", TABLE), ("a.xlsx", b"PK\3\4" + bytes(90), "a spreadsheet", TABLE),
+             ("a.zip", b"PK\3\4" + bytes(90), "a file packed by zip", "unpack it first"),
              ("a.blend", b"BLENDER-v300" + bytes(90), "a file of Blender", SPHERES),
              ("packed.blend", b"\x28\xb5\x2f\xfd" + bytes(90), "a file of Blender", SPHERES),
              ("main.cc", b"// A picture\n#include <iostream>\nint main() {}\n", "the source text of a program", "write the scene as JSON"),
@@ -134,7 +139,7 @@ class Messages(ProgramTest):
             self.assertNotIn("not JSON", said)
             self.write("s.json", scene(particles=[{"file": name}]))
             said = self.fail_with(2, "render", "s.json", "-o", "x.png", says=["s.json:1:", f"particles[0].file: found {what}"]).errors
-            self.assertEqual("convert it" in said, remedy == self.CONVERT)
+            self.assertEqual("convert it" in said, remedy in (self.CONVERT, self.TABLE))
         # A scene is a scene by what is in it, whatever it is called.
         for name in ("POSCAR", "scene.obj", "scene.c"):
             self.write(name, scene(spheres=[]))
