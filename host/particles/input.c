@@ -18,6 +18,8 @@
 
 /* A block grows from this to BP_INPUT_BLOCK while there is more to read, since most files are short. */
 enum { FIRST_BLOCK = 1 << 10 };
+/* The byte that ends texts of DOS. */
+enum { DOS_END = 0x1a };
 /* From this many bytes on, zlib gets larger buffers. */
 enum { LARGE_FILE = 1 << 17 };
 
@@ -211,6 +213,7 @@ BpStatus input_line(Input *input, char **line, BpError *err) {
     size_t length = (size_t)(end - start);
     input->open_line = input->begin + length == input->end;
     input_take(input, input->begin + length < input->end ? length + 1 : length);
+    if (input->open_line && length == 1 && *start == DOS_END) return BP_OK;
     /* Files that were joined have marks amid them. */
     const size_t mark = bp_text_mark(start, length);
     start += mark;

@@ -112,6 +112,8 @@ class Encodings(TableTest):
             plain = self.of(name, text)
             for end in ("\r\n", "\r", "\r\r\n"):
                 self.assertEqual(self.of(name, text.replace("\n", end)), plain, (name, end))
+            self.assertEqual(self.of(name, text.rstrip("\n").replace("\n", "\r\n") + "\r\n\x1a"), plain, name)  # the end of a text of DOS
+        self.refuse("a.csv", "x,y,z\n1,2,3\n\x1a\n4,5,6\n", ":3:")
         self.places("a.csv", "x,y,z,text\r1,2,3,\"" + "a" * 3000 + "\"\r4,5,6,b\r", [(1, 2, 3), (4, 5, 6)])
         head = (PLY % (1, "")).replace("ascii", "binary_big_endian").replace("\n", "\r").encode()
         self.places("a.ply", head + struct.pack(">3f", 1, 2, 3), [(1, 2, 3)])
