@@ -13,4 +13,4 @@ def put(document, values, partly=False):
     if missing and not partly:
         sys.exit(f"{document} has figures without a value: {', '.join(sorted(missing))}")
     document.write_text(FIGURE.sub(lambda found: found[0] if found[2] in missing else "".join(
-        (found[1], found[3], values[found[2]].strip("\n"), found[5], found[6])), text), encoding="utf-8")
+        (found[1], found[3], values[found[2]].strip("\n"), found[3], found[6])), text), encoding="utf-8")
