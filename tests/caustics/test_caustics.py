@@ -8,9 +8,12 @@ of impact parameter b, falls on a circle of the floor of radius x(b), and the fl
 sum of b |db / dx| / |x| and of what the surfaces let through, over all b with |x(b)| = x: the map of rays. The paths are cut
 where nothing else can add to it. These suns are so small that by chance a path finds one once in a million.
 """
+import json
 import math
+import os
 import statistics
 import sys
+import tempfile
 
 from program_cases import picture, run_cases
 from pfm import read_pfm
@@ -349,9 +352,9 @@ def from_the_image(seeds=8):
     edge of the caustic, where two of its images merge and disappear, and where both happen. Directions are drawn from all of the
     sun's image there. Chance is the judge."""
     found = []
-    for height, x in ((1.1, 0.0), (1.1, 0.02), (1.1, 0.1), (1.1, 0.12), (1.3, 0.01)):
+    for height, x, half in ((1.1, 0.0, 1.5), (1.1, 0.02, 1.5), (1.1, 0.08, 3), (1.1, 0.12, 1.5), (1.3, 0.01, 1.5)):
         scene = document(glass(fresnel="exact"), height, [x, 0.1, 6], [x, 0, 0], 6,
-                         [{"direction": [0, 1, 0], "half_angle": 1.5, "radiance": [100] * 3}])
+                         [{"direction": [0, 1, 0], "half_angle": half, "radiance": [100] * 3}])
         by_chance = [mean(scene, 8192, "--seed", str(seed), "--caustics", "off")[0] for seed in range(seeds)]
         wanted, error = statistics.mean(by_chance), statistics.stdev(by_chance) / math.sqrt(seeds)
         drawn = mean(scene, 8192, "--seed", str(seeds))[0]
@@ -359,6 +362,27 @@ def from_the_image(seeds=8):
         assert error < 0.006 * wanted, found[-1]
         assert abs(drawn - wanted) < 5 * error, found[-1]
     return "; ".join(found)
+
+
+def claims():
+    """What a picture says of its noise is what the pictures of many seeds differ by; and that is little. Without directions from the
+    image of the whole lamp they differ by 5.1 %."""
+    path = os.path.join(sys.argv[2], "tests/unseen/scenes/lamp-0.1.json")
+    with open(path, encoding="utf-8") as file:
+        scene = json.load(file)
+    pictures, claimed = [], []
+    with tempfile.TemporaryDirectory() as folder:
+        stats = os.path.join(folder, "stats.json")
+        for seed in range(24):
+            pictures.append(read_pfm(picture(scene, "--spp", "1024", "--seed", str(seed), "--caustics", "on", "--stats", stats))[2][1::3])
+            with open(stats, encoding="utf-8") as file:
+                claimed.append(json.load(file)["nrmse"])
+            os.remove(stats)
+    pixels = list(zip(*pictures))
+    spread = math.sqrt(statistics.mean(map(statistics.variance, pixels))) / statistics.mean(map(statistics.mean, pixels))
+    ratio = statistics.median(claimed) / spread
+    assert 0.8 < ratio < 1.25 and spread < 0.035, f"claims {statistics.median(claimed):.2%}, differs by {spread:.2%}"
+    return f"claims {statistics.median(claimed):.2%}, differs by {spread:.2%}"
 
 
 def near_lamp():
@@ -388,7 +412,7 @@ def same_bits():
 
 # The quick ones are closed forms: what is compared with chance takes many samples, and the forms a kernel each.
 CASES = [on_axis, across, what_surfaces_let_through, off_a_mirror, cut_by_depth, hidden, glint_in_a_ball, glint_aside, glint_hidden]
-DEEP_CASES = [from_the_image, same_through_glass, same_off_a_mirror, same_of_a_disc, same_glint_in_a_mirror, same_bits, glint_across_pixels, same_glints,
+DEEP_CASES = [claims, from_the_image, same_through_glass, same_off_a_mirror, same_of_a_disc, same_glint_in_a_mirror, same_bits, glint_across_pixels, same_glints,
               same_rough, near_lamp, two_lamps, two_balls, same_deep_cases]
 
 sys.exit(run_cases(CASES, DEEP_CASES))
