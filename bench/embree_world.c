@@ -24,7 +24,8 @@ static uint32_t material_flags(const BpMaterial *material) {
     case BP_MATERIAL_DIFFUSE_LIGHT:
     case BP_MATERIAL_NORMALS:
     case BP_MATERIAL_INTERFACE:
-    case BP_MATERIAL_OREN_NAYAR: /* not drawn by this peer */
+    case BP_MATERIAL_OREN_NAYAR: /* not drawn by this peer, like the next */
+    case BP_MATERIAL_ROUGH_METAL:
         break;
     }
     return flags;

@@ -75,6 +75,7 @@ static const struct {
     {"bsdf/dielectric.cl", IN_ALL},
     {"bsdf/interface.cl", IN_ALL},
     {"bsdf/oren_nayar.cl", IN_ALL},
+    {"bsdf/rough_metal.cl", IN_ALL},
     {"medium/phase.cl", IN_ALL},
     {"bsdf/scatter.cl", IN_ALL},
     {"integrator/scene.cl", IN_ALL},

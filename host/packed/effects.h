@@ -23,6 +23,7 @@
     X(NORMALS, "normals", "surfaces that show their normal as colour", "normals as colours are left out",    \
       "nothing shows normals")                                                                               \
     X(OREN_NAYAR, "oren_nayar", "rough matte surfaces", "rough matte lobes are left out", "")                \
+    X(ROUGH_METAL, "rough_metal", "metal of tiny mirrors that face all ways", "rough metal is left out", "") \
     X(LENS, "lens", "a lens with an aperture: defocus blur", "", "")                                         \
     X(LAMPS, "light_sampling", "rays to lamps, from surfaces that scatter into many directions", "", "")     \
     X(DISCS, "discs", "lamps at infinity: discs in the sky", "", "")                                         \

@@ -108,6 +108,10 @@ bool bp_ref_scatter(const BpScene *scene, const Ray *ray, const Hit *hit, Random
         *attenuation = bp_ref_scatter_oren_nayar(hit->material->roughness, albedo_of(scene, hit), hit->normal,
                                                  incoming, random, direction);
         return true;
+    case BP_MATERIAL_ROUGH_METAL:
+        *attenuation = albedo_of(scene, hit);
+        return bp_ref_scatter_rough_metal(hit->material->roughness, hit->normal, incoming, random, direction,
+                                          attenuation);
     case BP_MATERIAL_INTERFACE:
         *attenuation = (Vec){1, 1, 1};
         *direction = incoming;

@@ -62,6 +62,12 @@ double bp_ref_oren_nayar_colour(double roughness, double albedo);
 Vec bp_ref_scatter_oren_nayar(double roughness, Vec albedo, Vec normal, Vec incoming, Random *random,
                               Vec *direction);
 
+/* Metal of GGX facets (Walter et al., 2007; heights as Heitz, 2014, equation 99), alpha = roughness^2: its
+ * value, of a white surface; a direction, and *weight times what is left. False: absorbed. */
+double bp_ref_rough_metal(double roughness, Vec normal, Vec out, Vec in);
+bool bp_ref_scatter_rough_metal(double roughness, Vec normal, Vec incoming, Random *random, Vec *direction,
+                                Vec *weight);
+
 /* Radiance along a camera ray: the backdrop at that height of the picture where it meets nothing. */
 Vec bp_ref_camera_color(const BpScene *scene, const Ray *ray, double height, uint32_t depth, Random *random,
                         Path *path);

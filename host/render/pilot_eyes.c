@@ -133,7 +133,8 @@ static void keep_eye(BpPilot *pilot, const BpPilotSegment *segment, uint32_t s, 
     bp_pilot_normal(scene, segment, eye->normal);
     memcpy(eye->axis, eye->normal, sizeof eye->axis);
     const double along = bp_dot(segment->direction, eye->normal);
-    if (bp_pilot_material(scene, segment)->kind == BP_MATERIAL_METAL)
+    const BpMaterialKind kind = bp_pilot_material(scene, segment)->kind;
+    if (kind == BP_MATERIAL_METAL || kind == BP_MATERIAL_ROUGH_METAL)
         for (int a = 0; a < 3; ++a) eye->axis[a] = segment->direction[a] - 2 * along * eye->normal[a];
     eye->radius = width * sqrt(NEAR_EYES / PI / fmax(-along, 0.1));
     if (eye->radius > 0 && isfinite(eye->radius)) ++pilot->eye_count;

@@ -31,9 +31,17 @@ static double metal_density(const BpMaterial *material, double cosine) {
     return (cosine * cosine + h2) / (2 * PI * f * h);
 }
 
+/* Around a mirror direction: of GGX facets that are tilted by half the angle, wherever they are seen from. */
+static double facet_density(const BpMaterial *material, double cosine) {
+    const double alpha2 = pow(material->roughness, 4), cosine2 = 0.5 * (1 + cosine);
+    const double spread = alpha2 * cosine2 + 1 - cosine2;
+    return alpha2 / (4 * PI * spread * spread);
+}
+
 double bp_pilot_density(const BpMaterial *material, const double axis[3], const double direction[3]) {
     const double cosine = bp_dot(axis, direction);
     if (material->kind == BP_MATERIAL_METAL) return metal_density(material, cosine);
+    if (material->kind == BP_MATERIAL_ROUGH_METAL) return facet_density(material, cosine);
     if (cosine <= 0) return 0;
     if (material->scatter == BP_SCATTER_COSINE_CUBED) return 2 * cosine * cosine * cosine / PI;
     return material->scatter == BP_SCATTER_HEMISPHERE ? 1 / (2 * PI) : cosine / PI;

@@ -99,5 +99,6 @@ bool bp_material_varies(const BpMaterial *material) {
 
 bool bp_material_is_lit(const BpMaterial *material) {
     return material->kind == BP_MATERIAL_LAMBERTIAN || material->kind == BP_MATERIAL_OREN_NAYAR ||
+           (material->kind == BP_MATERIAL_ROUGH_METAL && material->roughness >= BP_LIT_ROUGHNESS_MIN) ||
            (material->kind == BP_MATERIAL_METAL && material->fuzz >= BP_LIT_FUZZ_MIN);
 }

@@ -20,6 +20,8 @@ struct BpTexture;                     /* texture.h */
 
 /* Metal of less fuzz than this is not lit by rays to lamps (kernels/bsdf/bsdf.cl, LOBE_FUZZ_MIN). */
 #define BP_LIT_FUZZ_MIN (1.0 / 64)
+/* The same of less roughness (kernels/bsdf/rough_metal.cl, LIT_ROUGHNESS_MIN). */
+#define BP_LIT_ROUGHNESS_MIN (1.0 / 16)
 
 /* Traits of a kind of material, bits of BpMaterialType.traits. */
 enum {
@@ -32,9 +34,10 @@ enum {
 
 /* X(identifier, name, kernel's kind, effect, traits, weight, members, members that it needs, what becomes of
  * a path). `weight`: the largest weight of the kernel's lobe (kernels/bsdf/bsdf.cl) over the albedo, or over
- * 1 where it has none; the film's scale follows from it, so a sample that weighs more may be left out. The
- * kernel's kind is KIND_... of scene_types.h, the effect BP_EFFECT_... of packed/effects.h. Every material
- * may have "emit", and brings in the effect EMISSION with it. */
+ * 1 where it has none; the film's scale follows from it, so a sample that weighs more may be left out. Of
+ * kinds of one name, a document means the last of which it has all that is needed. The kernel's kind is
+ * KIND_... of scene_types.h, the effect BP_EFFECT_... of packed/effects.h. Every material may have "emit",
+ * and brings in the effect EMISSION with it. */
 #define BP_MATERIAL_LIST(X)                                                                                  \
     X(LAMBERTIAN, "lambertian", LAMBERTIAN, LAMBERTIAN, BP_SCATTERS, 1, BP_HAS(ALBEDO) | BP_HAS(SCATTER),    \
       BP_HAS(ALBEDO), "scatters it")                                                                         \
@@ -47,7 +50,9 @@ enum {
     X(NORMALS, "normals", NORMALS, NORMALS, BP_SHOWS_COLOUR, 0, 0, 0, "shows its normal: the path ends")     \
     X(INTERFACE, "interface", INTERFACE, MEDIA, BP_SCATTERS | BP_HAS_INSIDE, 1, 0, 0, "lets it through")     \
     X(OREN_NAYAR, "oren_nayar", OREN_NAYAR, OREN_NAYAR, BP_SCATTERS, 1, BP_HAS(ALBEDO) | BP_HAS(ROUGHNESS),  \
-      BP_HAS(ALBEDO) | BP_HAS(ROUGHNESS), "scatters it")
+      BP_HAS(ALBEDO) | BP_HAS(ROUGHNESS), "scatters it")                                                     \
+    X(ROUGH_METAL, "metal", ROUGH_METAL, ROUGH_METAL, BP_SCATTERS, 1, BP_HAS(ALBEDO) | BP_HAS(ROUGHNESS),    \
+      BP_HAS(ALBEDO) | BP_HAS(ROUGHNESS), "reflects it")
 
 typedef enum BpMaterialKind {
 #define BP_MATERIAL_ENUM(identifier, name, kernel_kind, effect, traits, weight, members, needed, outcome)    \

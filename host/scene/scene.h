@@ -49,7 +49,7 @@ struct BpMaterial {
     BpScatter scatter;
     double fuzz;
     BpFuzzShape fuzz_shape;
-    double roughness;        /* of oren_nayar */
+    double roughness;        /* of kinds that have one */
     double refraction_index; /* of the inside over the outside */
     BpFresnel fresnel;
     BpTotalReflection total_reflection;

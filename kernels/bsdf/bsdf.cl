@@ -2,9 +2,16 @@
  *
  * A lobe is a file in bsdf/ with a function `..._sample(surface, key, bounce)` in lane code:
  * In:    the surface where a path stands, the key of its sample, the first dimension of its bounce (rng.cl).
- * Out:   a BsdfSample, drawn by the distribution of the lobe.
- * Where lamps are sampled, it has a function `..._pdf(lobe, direction)` too: the density of that distribution, per
- * steradian. Every lobe is sampled perfectly: the light that it scatters is its albedo times the density.
+ * Out:   a BsdfSample: a direction, drawn by some density, and its weight, which is f times the cosine over that density.
+ * A lobe of many directions is lit by rays to lamps too. Then its sample has a Lobe of a kind of its own, from which follow
+ *   `..._pdf(lobe, direction)`      the density with which the direction is drawn, per steradian, in all directions where f is
+ *                                   not 0. It may sum up to less than 1: the rest is absorbed.
+ *   `..._weight(lobe, direction)`   the weight in any direction, that of the sample in the sample's, so pdf times weight is f times
+ *                                   the cosine. If it is the same in all directions, there is no such function: the weight of the sample
+ *                                   serves (lamps_direct.cl), and nothing is carried along for it.
+ * A lobe may draw one of its parts by chance, and then has the Lobe of that part alone: density and weight are those of the
+ * part, given that it was drawn, and the weights make up for the chance. The largest weight, over the albedo, stands in the list of
+ * host/scene/material.h. It should be 1: more costs a film as many times its resolution at every vertex of a path.
  * Knows: vector.cl, sampler.cl, warps.cl.   Does not know: which lobes there are; scatter.cl calls them. */
 
 /* The surface where a path stands. */
@@ -14,7 +21,7 @@ typedef struct Surface {
     vbool enters;  /* the path comes from outside */
     Vec3 albedo;
     vreal fuzz, refraction_index;
-#if EFFECT_OREN_NAYAR
+#if EFFECT_OREN_NAYAR || EFFECT_ROUGH_METAL
     vreal roughness;
 #endif
     vuint kind, lobe, variant, total_reflection;
@@ -31,7 +38,10 @@ typedef struct Lobe {
 #if LOBES_OF_TWO_DIRECTIONS
     Vec3 outgoing; /* unit, to where the path came from */
 #endif
-    vreal fuzz; /* of metal; of what is rough the roughness; of a medium the anisotropy; at the camera the sine of the angle from the axis to a pixel's corner */
+#if WEIGHTED_LOBES
+    Vec3 albedo; /* of lobes whose weight depends on the direction */
+#endif
+    vreal fuzz; /* of metal; of what is rough the roughness or alpha; of a medium the anisotropy; at the camera the sine of the angle from the axis to a pixel's corner */
     vuint kind; /* LOBE_... */
 } Lobe;
 
@@ -42,6 +52,7 @@ enum {
     LOBE_FUZZ_BALL,
     LOBE_OREN_NAYAR_ONCE,
     LOBE_OREN_NAYAR_AGAIN,
+    LOBE_ROUGH_METAL,
     LOBE_PHASE,
     LOBE_NONE,
     LOBE_PIXEL
@@ -75,6 +86,9 @@ static BsdfSample bsdf_sample_reflected(const Surface *surface, Vec3 direction) 
 #endif
 #if LOBES_OF_TWO_DIRECTIONS
     sample.lobe.outgoing = scale3(splat(-1), surface->incoming);
+#endif
+#if WEIGHTED_LOBES
+    sample.lobe.albedo = surface->albedo;
 #endif
     sample.lobe.fuzz = splat(1);
     sample.lobe.kind = splat_uint(LOBE_NONE);

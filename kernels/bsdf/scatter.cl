@@ -6,7 +6,7 @@
 
 /* If the scene has one kind of material only, there is nothing to choose. */
 #define KIND_COUNT (EFFECT_LAMBERTIAN + EFFECT_METAL + EFFECT_DIELECTRIC + EFFECT_NORMALS + EFFECT_EMISSION + EFFECT_MEDIA + \
-                    EFFECT_OREN_NAYAR)
+                    EFFECT_OREN_NAYAR + EFFECT_ROUGH_METAL)
 #if KIND_COUNT == 1
 #define has_kind(surface, wanted) vbool_all
 #else
@@ -22,6 +22,9 @@ static Lobe choose_lobe(vbool mask, const Lobe *a, const Lobe *b) {
 #endif
 #if LOBES_OF_TWO_DIRECTIONS
     chosen.outgoing = choose3(mask, a->outgoing, b->outgoing);
+#endif
+#if WEIGHTED_LOBES
+    chosen.albedo = choose3(mask, a->albedo, b->albedo);
 #endif
     chosen.fuzz = choose(mask, a->fuzz, b->fuzz);
     chosen.kind = choose_uint(mask, a->kind, b->kind);
@@ -67,6 +70,9 @@ static BsdfSample scatter(const Surface *surface, SampleKey key, vuint bounce) {
 #if EFFECT_OREN_NAYAR
     SCATTER_BY(KIND_OREN_NAYAR, oren_nayar_sample)
 #endif
+#if EFFECT_ROUGH_METAL
+    SCATTER_BY(KIND_ROUGH_METAL, rough_metal_sample)
+#endif
     return sample;
 }
 
@@ -105,10 +111,20 @@ static vreal scatter_pdf(const Lobe *lobe, Vec3 direction, int drawn) {
                         vbool_of_uint(lobe->kind == splat_uint(LOBE_OREN_NAYAR_AGAIN));
     if (any_lane(rough)) density = choose(rough, oren_nayar_pdf(lobe, direction), density);
 #endif
+#if EFFECT_ROUGH_METAL
+    const vbool facets = vbool_of_uint(lobe->kind == splat_uint(LOBE_ROUGH_METAL));
+    if (any_lane(facets)) density = choose(facets, rough_metal_pdf(lobe, direction), density);
+#endif
 #if EFFECT_MEDIA
     const vbool phase = is_phase(lobe);
     if (any_lane(phase)) density = choose(phase, phase_pdf(lobe->fuzz, lobe->axis, direction), density);
 #endif
     return choose(vbool_of_uint(lobe->kind == splat_uint(LOBE_NONE)), splat(0), density);
 }
+
+#if WEIGHTED_LOBES
+/* The lobes whose weight depends on the direction, and that weight. */
+static vbool is_weighted(const Lobe *lobe) { return vbool_of_uint(lobe->kind == splat_uint(LOBE_ROUGH_METAL)); }
+static Vec3 scatter_weight(const Lobe *lobe, Vec3 direction) { return rough_metal_weight(lobe, direction); }
+#endif
 #endif

@@ -169,7 +169,7 @@ static void trace_chain(const Scene *scene, Path *path, const ChainChoice *choic
             const vreal ratio = chain_ratio(scene, &focus, image, choice->inside, choice->target, &ray.origin, ray.direction);
             const Vec3 radiance = radiance_of_lamp(scene, &ray, &choice->lamp, lit);
             const vreal share = divide(ratio, fma(ratio, ratio, splat(1)));
-            const Vec3 light = multiply3(multiply3(path->throughput, weight), scale3(share, radiance));
+            const Vec3 light = multiply3(multiply3(throughput_along(path, direction), weight), scale3(share, radiance));
             path->radiance = choose3(lit, add3(path->radiance, light), path->radiance);
             active = active & vbool_not(last);
         }

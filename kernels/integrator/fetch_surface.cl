@@ -25,7 +25,7 @@ static void fetch_surface(const Scene *scene, const Ray *ray, const Hit *hit, Sp
 #if EFFECT_METAL
     surface->fuzz = gather_real(scene->materials + MATERIAL_FUZZ, numbers);
 #endif
-#if EFFECT_OREN_NAYAR
+#if EFFECT_OREN_NAYAR || EFFECT_ROUGH_METAL
     surface->roughness = gather_real(scene->materials + MATERIAL_ROUGHNESS, numbers);
 #endif
 #if EFFECT_METAL || EFFECT_DIELECTRIC

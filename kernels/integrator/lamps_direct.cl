@@ -2,8 +2,8 @@
  *
  * A path finds a lamp by chance, or is led to one: a lamp is chosen and a ray sent to it (next-event estimation). Both
  * are weighted by the power heuristic (E. Veach, "Robust Monte Carlo Methods for Light Transport Simulation", 1997,
- * 9.2.4), so that for each length of a path the weights of its two ways add up to 1. Since a lobe is
- * sampled perfectly, both weights follow from the ratio of the two densities, and so does what a ray to a lamp brings.
+ * 9.2.4), so that for each length of a path the weights of its two ways add up to 1. Both follow from the ratio of the two
+ * densities, and so does what a ray to a lamp brings, with the lobe's own weight in its direction.
  *
  * In:    paths that wait to be lit, or a lamp that a path has hit.   Out: paths with that light, or the weight of the hit.
  * Knows: lamps.cl, discs.cl, scatter.cl, vary_surface.cl, flight.cl, the closest hit.   Does not know: how a path continues.
@@ -24,6 +24,18 @@ static vreal weight_of_hit(vbool shared, vreal ratio) {
     const vreal square = ratio * ratio;
     return choose(shared, divide(square, splat(1) + square), splat(1));
 }
+
+/* What is left to the path of light that comes to its vertex along `direction`. If the lobe weighs all directions alike, that is
+ * its throughput already. */
+#if WEIGHTED_LOBES
+static Vec3 throughput_along(const Path *path, Vec3 direction) {
+    const vbool weighted = is_weighted(&path->lobe);
+    if (!any_lane(weighted)) return path->throughput;
+    return choose3(weighted, multiply3(path->arrived, scatter_weight(&path->lobe, direction)), path->throughput);
+}
+#else
+#define throughput_along(path, direction) (path)->throughput
+#endif
 
 #if SAMPLES_LAMP_TREE
 /* The weight of the radiance of a lamp in `slot` that the path has hit; `hit`: these lanes have, from outside. */
@@ -230,8 +242,7 @@ static void light_through_focuser(const Scene *scene, Path *path, vuint bounce, 
 #define LIGHT_STEP static
 #endif
 
-/* Lights the vertices that want it: a ray to a lamp for each. A lobe's weight is its albedo whatever the direction, so
- * the throughput is already that of the light that comes from the lamp, and a ray to it leaves as the path does. */
+/* Lights the vertices that want it: a ray to a lamp for each, which leaves as the path does. */
 LIGHT_STEP void light_vertices(const Scene *scene, Path *path) {
     const Lobe *lobe = &path->lobe;
     const vuint bounce = first_dimension(path->depth - 1u);
@@ -263,7 +274,7 @@ LIGHT_STEP void light_vertices(const Scene *scene, Path *path) {
     const vbool visible = active & vbool_of_uint(hit.slot == choice.slot);
     if (!any_lane(visible)) return;
     const vreal weight = divide(ratio, fma(ratio, ratio, splat(1)));
-    Vec3 light = multiply3(path->throughput, scale3(weight, radiance_of_lamp(scene, &ray, &choice, visible)));
+    Vec3 light = multiply3(throughput_along(path, ray.direction), scale3(weight, radiance_of_lamp(scene, &ray, &choice, visible)));
 #if LAMPS_THROUGH_MEDIA
     const vuint medium = choose_uint(visible, way.medium, splat_uint(0));
     if (any_lane(vbool_of_uint(medium != splat_uint(0)))) {

@@ -22,6 +22,9 @@ typedef struct Path {
 #endif
 #if SAMPLES_LAMPS
     Lobe lobe;          /* that `direction` was drawn from; of LOBE_NONE where no lamp is sampled */
+#if WEIGHTED_LOBES
+    Vec3 arrived;      /* the throughput before the latest vertex scattered it */
+#endif
     vreal lamp_sum;    /* of importance, seen from the latest vertex: lamps.cl */
 #if LAMPS_THROUGH_MEDIA
     Point vertex;      /* the latest, where `lobe` is: the boundaries of media that the path passes are none */
@@ -180,6 +183,9 @@ static void path_scatter(Path *path, vbool met, const Point *point, vuint slot, 
     const Vec3 throughput = multiply3(path->throughput, bsdf_sample->weight);
     /* Coming from outside and staying there, or from inside and going through: outside. */
     const vbool inward = (enters & bsdf_sample->transmitted) | (vbool_not(enters) & vbool_not(bsdf_sample->transmitted));
+#if WEIGHTED_LOBES
+    path->arrived = IN_MET(3, path->throughput, path->arrived);
+#endif
     path->throughput = IN_MET(3, throughput, path->throughput);
     path->direction = IN_MET(3, bsdf_sample->direction, path->direction);
     path->origin.high = IN_MET(3, point->high, path->origin.high);

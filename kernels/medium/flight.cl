@@ -109,6 +109,9 @@ static void scatter_in_medium(const Scene *scene, vbool scattered, vreal length,
 #if LOBES_OF_TWO_DIRECTIONS
     lobe.outgoing = path->direction;
 #endif
+#if WEIGHTED_LOBES
+    lobe.albedo = path->throughput; /* of no use: its weight is the same in all directions */
+#endif
     lobe.fuzz = g;
     lobe.kind = splat_uint(LOBE_PHASE);
     path_light(path, scattered, &lobe, vbool_of_uint(path->depth + 1u <= splat_uint(scene->max_depth)));

@@ -14,7 +14,7 @@
 #define EFFECT_BIT(effect) (1u << BP_EFFECT_##effect)
 #define MATERIAL_EFFECTS                                                                                     \
     (EFFECT_BIT(LAMBERTIAN) | EFFECT_BIT(METAL) | EFFECT_BIT(DIELECTRIC) | EFFECT_BIT(EMISSION) |            \
-     EFFECT_BIT(NORMALS) | EFFECT_BIT(MEDIA) | EFFECT_BIT(OREN_NAYAR))
+     EFFECT_BIT(NORMALS) | EFFECT_BIT(MEDIA) | EFFECT_BIT(OREN_NAYAR) | EFFECT_BIT(ROUGH_METAL))
 
 typedef struct EffectsScene {
     BpScene scene; /* points into the arrays below: pass it on by address, do not copy it */
@@ -32,8 +32,8 @@ typedef struct EffectsScene {
  * no. */
 static inline bool effects_light(uint32_t bits) {
     return (bits & (EFFECT_BIT(EMISSION) | EFFECT_BIT(DISCS) | EFFECT_BIT(ENVIRONMENT))) != 0 &&
-           (bits &
-            (EFFECT_BIT(LAMBERTIAN) | EFFECT_BIT(METAL) | EFFECT_BIT(MEDIA) | EFFECT_BIT(OREN_NAYAR))) != 0;
+           (bits & (EFFECT_BIT(LAMBERTIAN) | EFFECT_BIT(METAL) | EFFECT_BIT(MEDIA) | EFFECT_BIT(OREN_NAYAR) |
+                    EFFECT_BIT(ROUGH_METAL))) != 0;
 }
 
 /* A tree needs spheres, and spheres need a material. Rays to lamps need lamps, and something that they light.
@@ -89,9 +89,11 @@ static inline void effects_materials(EffectsScene *made, uint32_t bits) {
         lamp->emit[0] = 4, lamp->emit[1] = 3, lamp->emit[2] = 0.5;
         effects_material(made, BP_MATERIAL_DIFFUSE_LIGHT, 0, 0, 0); /* black */
     }
-    if (bp_effects_has(bits, BP_EFFECT_OREN_NAYAR))
-        effects_material(made, BP_MATERIAL_OREN_NAYAR, 0.8, 0.6, 0.4)->roughness = 0.9;
     const int shown = bp_effects_has(bits, BP_EFFECT_IMAGES) ? 2 : 1;
+    for (int i = 0; i < shown && bp_effects_has(bits, BP_EFFECT_OREN_NAYAR); ++i)
+        effects_material(made, BP_MATERIAL_OREN_NAYAR, 0.8, 0.6, 0.4)->roughness = 0.9;
+    for (int i = 0; i < shown && bp_effects_has(bits, BP_EFFECT_ROUGH_METAL); ++i)
+        effects_material(made, BP_MATERIAL_ROUGH_METAL, 0.9, 0.8, 0.5)->roughness = 0.6;
     for (int i = 0; i < shown && bp_effects_has(bits, BP_EFFECT_NORMALS); ++i)
         effects_material(made, BP_MATERIAL_NORMALS, 0, 0, 0);
     if (bp_effects_has(bits, BP_EFFECT_MEDIA)) effects_material(made, BP_MATERIAL_INTERFACE, 1, 1, 1);

@@ -27,9 +27,10 @@ BITS = re.findall(r"^ +X\(([A-Z_]+), \"", header.read_text(), re.MULTILINE)
 # Words that stand in the code of one effect and nowhere else.
 MARKS = {
     "LAMBERTIAN": ["lambertian_sample", "hemisphere"],
-    "METAL": ["metal_sample", "(fuzzy, fuzzy)"],
+    "METAL": [" metal_sample", "(fuzzy, fuzzy)"],
     "DIELECTRIC": ["dielectric_sample", "fresnel_schlick", "fresnel_exact", "refraction_index = "],
     "OREN_NAYAR": ["oren_nayar_sample", "angle_of"],
+    "ROUGH_METAL": ["rough_metal_sample", "smith_root"],
     "EMISSION": ["emitted = vec3"],
     "NORMALS": ["shows_normal"],
     "LENS": ["lens_x", "->lens_up", "sample_disk(u"],
@@ -56,7 +57,7 @@ SHARED = {
 TOGETHER = {"gradient_noise": {"TEXTURES", "NOISE"}, "pattern_colour": {"TEXTURES", "NOISE"},
             "image_texture": {"TEXTURES", "IMAGES"}}
 # Code that needs LAMPS, something to be lit, and one of the effects named.
-LIT = {"LAMBERTIAN", "METAL", "MEDIA", "OREN_NAYAR"}
+LIT = {"LAMBERTIAN", "METAL", "MEDIA", "OREN_NAYAR", "ROUGH_METAL"}
 NEEDING_OTHERS = {
     "choose_lamp": {"EMISSION"}, "lamp_hit_weight": {"EMISSION"}, "disc_importance": {"DISCS"}, "disc_hit_weight": {"DISCS"},
     "choose_disc": {"DISCS", "ENVIRONMENT"}, "sample_environment": {"ENVIRONMENT"}, "environment_hit_weight": {"ENVIRONMENT"},

@@ -245,6 +245,26 @@ static void temporary_path(char path[64]) {
     close(descriptor);
 }
 
+/* Two kinds of metal have one name: which of them is meant is told by the roughness. */
+static void metals(void **state) {
+    (void)state;
+    BpScene *scene =
+        parse("{ \"camera\": {}, \"materials\": {\n"
+              "\"a\": { \"type\": \"metal\", \"albedo\": [1, 1, 1], \"fuzz\": 0.5 },\n"
+              "\"b\": { \"type\": \"metal\", \"albedo\": [1, 1, 1], \"roughness\": 0.25 },\n"
+              "\"c\": { \"type\": \"metal\", \"albedo\": [1, 1, 1], \"roughness\": 0 },\n"
+              "\"d\": { \"type\": \"oren_nayar\", \"albedo\": [1, 1, 1], \"roughness\": 1 } } }");
+    const BpMaterial *m = scene->materials;
+    assert_int_equal(m[0].kind, BP_MATERIAL_METAL);
+    assert_int_equal(m[1].kind, BP_MATERIAL_ROUGH_METAL);
+    assert_number(m[1].roughness, 0.25);
+    assert_int_equal(m[2].kind, BP_MATERIAL_METAL); /* a mirror */
+    assert_number(m[2].fuzz, 0);
+    assert_int_equal(m[3].kind, BP_MATERIAL_OREN_NAYAR);
+    assert_number(m[3].roughness, 1);
+    bp_scene_destroy(&scene);
+}
+
 static void assert_written_reads_back(const BpScene *scene, const char *of) {
     char path[64];
     BpScene *copy = NULL;
@@ -391,11 +411,17 @@ static void many_spheres(void **state) {
 
 int main(void) {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(defaults),         cmocka_unit_test(every_member),
-        cmocka_unit_test(heights),          cmocka_unit_test(every_file),
-        cmocka_unit_test(nearest_names),    cmocka_unit_test(overlapping_dielectrics),
-        cmocka_unit_test(covers),           cmocka_unit_test(many_spheres),
-        cmocka_unit_test(discs_of_the_sky), cmocka_unit_test(every_member_is_written),
+        cmocka_unit_test(metals),
+        cmocka_unit_test(defaults),
+        cmocka_unit_test(every_member),
+        cmocka_unit_test(heights),
+        cmocka_unit_test(every_file),
+        cmocka_unit_test(nearest_names),
+        cmocka_unit_test(overlapping_dielectrics),
+        cmocka_unit_test(covers),
+        cmocka_unit_test(many_spheres),
+        cmocka_unit_test(discs_of_the_sky),
+        cmocka_unit_test(every_member_is_written),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

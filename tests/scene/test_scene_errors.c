@@ -325,7 +325,20 @@ static void bad_materials(void **state) {
         {MATERIAL("\"type\": \"dielectric\", \"refraction_index\": 1.5, \"albedo\": [1, 1, 1]"),
          1,
          86,
-         {"m.albedo", "only in \"lambertian\" and \"metal\""}},
+         {"m.albedo", "only in \"lambertian\", \"metal\" and \"oren_nayar\""}},
+        {MATERIAL("\"type\": \"metal\", \"albedo\": [1, 1, 1], \"roughness\": 0.5, \"fuzz\": 0.5"),
+         1,
+         95,
+         {"m.fuzz: found beside \"roughness\", expected only one of the two"}},
+        {MATERIAL("\"type\": \"metal\", \"albedo\": [1, 1, 1], \"roughness\": 1.5"),
+         1,
+         90,
+         {"m.roughness: found 1.5", "0 to 1"}},
+        {MATERIAL("\"type\": \"oren_nayar\", \"albedo\": [1, 1, 1]"), 1, 37, {"found no \"roughness\""}},
+        {MATERIAL("\"type\": \"lambertian\", \"albedo\": [1, 1, 1], \"roughness\": 0.5"),
+         1,
+         82,
+         {"m.roughness", "only in \"metal\" and \"oren_nayar\""}},
     };
     REFUSE_ALL(cases);
 }
