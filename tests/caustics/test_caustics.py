@@ -340,6 +340,12 @@ def same_rough():
                              floor={"type": "metal", "albedo": [0.8] * 3, "fuzz": 0.6}), 4096)
 
 
+def same_facets():
+    """What such a floor weighs depends on the direction that light comes from."""
+    return same("floor of facets", room({"type": "dielectric", "refraction_index": 1.5}, 0.3, 50,
+                                        floor={"type": "metal", "albedo": [0.8] * 3, "roughness": 1}), 4096)
+
+
 def same_deep_cases():
     same("diamond", room({"type": "dielectric", "refraction_index": 2.4}, 0.3, 50), 4096)
     same("water, low depth", room({"type": "dielectric", "refraction_index": 1.33}, 0.3, 5), 4096)
@@ -413,6 +419,6 @@ def same_bits():
 # The quick ones are closed forms: what is compared with chance takes many samples, and the forms a kernel each.
 CASES = [on_axis, across, what_surfaces_let_through, off_a_mirror, cut_by_depth, hidden, glint_in_a_ball, glint_aside, glint_hidden]
 DEEP_CASES = [claims, from_the_image, same_through_glass, same_off_a_mirror, same_of_a_disc, same_glint_in_a_mirror, same_bits, glint_across_pixels, same_glints,
-              same_rough, near_lamp, two_lamps, two_balls, same_deep_cases]
+              same_rough, same_facets, near_lamp, two_lamps, two_balls, same_deep_cases]
 
 sys.exit(run_cases(CASES, DEEP_CASES))

@@ -311,6 +311,8 @@ MUTANTS = [
     Mutant("every facet is seen", "light sampled with the weight of the direction that was drawn",
            [patch(KERNEL, "multiply3(throughput_along(path, ray.direction), scale3(weight", "multiply3(path->throughput, scale3(weight")],
            [check("rough-metal", 256)]),
+    Mutant("every facet lights the way", "the same through a focuser",
+           [patch(KERNEL, "multiply3(throughput_along(path, direction), weight)", "multiply3(path->throughput, weight)")], [caustics("same_facets")]),
     Mutant("a cap of half the height", "spherical caps, from the equator up",
            [patch(KERNEL, "const vreal high = (splat(1) - v) * (splat(1) + w);", "const vreal high = (splat(1) - v) + w;")], [test("test_lobes", "densities")]),
     Mutant("heights of their own", "Smith's shadowing of each direction alone",
