@@ -19,6 +19,8 @@ enum {
 };
 
 void bp_pilot_flight_clear(BpPilotFlight *flight) {
+    /* After an error, commands may still be under way that read and write the arrays. */
+    if (flight->worker != NULL) clFinish(flight->worker->device->queue);
     const cl_mem buffers[] = {flight->numbers, flight->starts, flight->records, flight->marks};
     for (size_t i = 0; i < sizeof buffers / sizeof buffers[0]; ++i)
         if (buffers[i] != NULL) clReleaseMemObject(buffers[i]);
