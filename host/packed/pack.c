@@ -4,7 +4,7 @@
 #include "base/color.h"
 #include "base/pages.h"
 #include "base/status.h"
-#include "base/team.h"
+#include "base/thread_pool.h"
 #include "environment_table.h"
 #include "focusers.h"
 #include "reals.h"
@@ -524,8 +524,8 @@ static void pack_slot_chunk(const Slots *slots, size_t first, size_t count) {
     }
 }
 
-static void pack_slot_block(void *context, uint32_t block, unsigned worker) {
-    (void)worker;
+static void pack_slot_block(void *context, uint32_t block, unsigned thread) {
+    (void)thread;
     const Slots *slots = context;
     const size_t end = bp_block_end(block, slots->count);
     for (size_t chunk = bp_block_begin(block); chunk < end; chunk += SLOT_CHUNK)
@@ -540,15 +540,15 @@ static BpStatus pack_slots(const BpScene *scene, const uint32_t *second, unsigne
     packed->slot_material = bp_own_pages(count + 1, sizeof *packed->slot_material);
     packed->slot_albedo = bp_own_pages(count + 1, ALBEDO_REALS * bp_packed_real_size(packed));
     Scattered *scattered = malloc((scene->material_count + 1) * sizeof *scattered);
-    BpTeam *team = bp_team_create(count < BP_BLOCK ? 1 : threads);
-    if (packed->slot_material != NULL && packed->slot_albedo != NULL && scattered != NULL && team != NULL) {
+    BpThreadPool *pool = bp_thread_pool_create(count < BP_BLOCK ? 1 : threads);
+    if (packed->slot_material != NULL && packed->slot_albedo != NULL && scattered != NULL && pool != NULL) {
         for (size_t m = 0; m < scene->material_count; ++m) scattered[m] = scattered_by(&scene->materials[m]);
         Slots slots = {scene, second, scattered, packed, count};
-        bp_team_run(team, pack_slot_block, &slots, bp_block_count(count));
+        bp_parallel_for(pool, pack_slot_block, &slots, bp_block_count(count));
     } else {
         status = out_of_memory(scene, err);
     }
-    bp_team_destroy(&team);
+    bp_thread_pool_destroy(&pool);
     free(scattered);
     return status;
 }

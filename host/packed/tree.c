@@ -48,8 +48,8 @@ static void offer(const BpScene *scene, uint32_t width, Largest *largest, uint32
     largest->index[place] = sphere;
 }
 
-static void find_largest(void *context, uint32_t block, unsigned worker) {
-    (void)worker;
+static void find_largest(void *context, uint32_t block, unsigned thread) {
+    (void)thread;
     Scan *scan = context;
     Largest largest = {.count = 0};
     for (size_t i = bp_block_begin(block); i < bp_block_end(block, scan->scene->sphere_count); ++i)
@@ -57,8 +57,8 @@ static void find_largest(void *context, uint32_t block, unsigned worker) {
     scan->largest[block] = largest;
 }
 
-static void make_items(void *context, uint32_t block, unsigned worker) {
-    (void)worker;
+static void make_items(void *context, uint32_t block, unsigned thread) {
+    (void)thread;
     Scan *scan = context;
     /* Candidates before this block leave no gap; those within are passed over. */
     bool skip[BP_BLOCK / 64][64];
@@ -83,13 +83,13 @@ static void make_items(void *context, uint32_t block, unsigned worker) {
 /* Makes the items of all spheres but the huge ones, which it leaves in `candidates`, the largest first: the
  * longest prefix of the `width` largest spheres of which each is huge against the box around all spheres that
  * are not among the `width` largest. Returns the number of items. */
-static uint32_t scan_spheres(Scan *scan, BpTeam *team) {
+static uint32_t scan_spheres(Scan *scan, BpThreadPool *pool) {
     const uint32_t count = (uint32_t)scan->scene->sphere_count, blocks = bp_block_count(count);
-    bp_team_run(team, find_largest, scan, blocks);
+    bp_parallel_for(pool, find_largest, scan, blocks);
     for (uint32_t b = 0; b < blocks; ++b)
         for (uint32_t k = 0; k < scan->largest[b].count; ++k)
             offer(scan->scene, scan->width, &scan->candidates, scan->largest[b].index[k]);
-    bp_team_run(team, make_items, scan, blocks);
+    bp_parallel_for(pool, make_items, scan, blocks);
     BpBounds rest = BP_BOUNDS_EMPTY;
     for (uint32_t b = 0; b < blocks; ++b) bp_bounds_add(&rest, &scan->bounds[b]);
     const double x = rest.high[0] - rest.low[0], y = rest.high[1] - rest.low[1],
@@ -128,23 +128,23 @@ static BpStatus build_tree(BpTreeWriter *writer, unsigned threads, BpError *err)
     if (threads == 0 && count < BP_BLOCK) threads = 1; /* waking them would take longer */
     BpStatus status = BP_OK;
     BpBinaryTree binary = {0};
-    BpTeam *team = bp_team_create(threads);
+    BpThreadPool *pool = bp_thread_pool_create(threads);
     Scan scan = {.scene = writer->scene, .origin = writer->origin, .width = tree->width};
     const size_t item_bytes = ((size_t)count + 1) * sizeof *scan.items;
     scan.items = bp_large_pages(malloc(item_bytes), item_bytes);
     scan.largest = malloc(blocks * sizeof *scan.largest);
     scan.bounds = malloc(blocks * sizeof *scan.bounds);
-    if (team == NULL || scan.items == NULL || scan.largest == NULL || scan.bounds == NULL) {
+    if (pool == NULL || scan.items == NULL || scan.largest == NULL || scan.bounds == NULL) {
         status = bp_fail(err, BP_ERR_MEMORY, "out of memory while building the tree of %u spheres", count);
         goto cleanup;
     }
-    const uint32_t items = scan_spheres(&scan, team);
+    const uint32_t items = scan_spheres(&scan, pool);
     const BpBinaryOptions options = {.width = tree->width,
                                      .height_max = bp_tree_width_bits(tree->width) * TREE_DEPTH_MAX};
-    BP_TRY_GOTO(status, bp_binary_tree_build(&scan.items, items, &options, team, &binary, err), cleanup);
+    BP_TRY_GOTO(status, bp_binary_tree_build(&scan.items, items, &options, pool, &binary, err), cleanup);
     writer->items = scan.items;
     tree->first_leaves = tree->leaf_count = scan.candidates.count > 0 ? 1 : 0;
-    BP_TRY_GOTO(status, bp_tree_write_nodes(writer, binary.root, team, err), cleanup);
+    BP_TRY_GOTO(status, bp_tree_write_nodes(writer, binary.root, pool, err), cleanup);
     BpTreeItem huge[BP_TREE_WIDTH_MAX];
     for (uint32_t k = 0; k < scan.candidates.count; ++k)
         huge[k] = bp_tree_item(writer->scene, scan.candidates.index[k], writer->origin);
@@ -154,7 +154,7 @@ cleanup:
     free(scan.items);
     free(scan.largest);
     free(scan.bounds);
-    bp_team_destroy(&team);
+    bp_thread_pool_destroy(&pool);
     return status;
 }
 

@@ -9,7 +9,7 @@
 #define BP_PACKED_TREE_BINARY_H
 
 #include "base/status.h"
-#include "base/team.h"
+#include "base/thread_pool.h"
 
 #if defined(__SSE__)
 #include <xmmintrin.h>
@@ -71,9 +71,9 @@ typedef struct BpBinaryTree {
 } BpBinaryTree;
 
 /* Reorders `*items`, or frees it and puts a reordered copy in its place, and builds the tree over them. The
- * result does not depend on the team's size. */
+ * result does not depend on the thread pool's size. */
 BpStatus bp_binary_tree_build(BpTreeItem **items, uint32_t count, const BpBinaryOptions *options,
-                              BpTeam *team, BpBinaryTree *tree, BpError *err);
+                              BpThreadPool *thread_pool, BpBinaryTree *tree, BpError *err);
 void bp_binary_tree_clear(BpBinaryTree *tree);
 
 /* log2 of the width of a tree. */

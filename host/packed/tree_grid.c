@@ -9,8 +9,8 @@
 #define BLOCK_MIN 4096u
 
 /* Room for `count` items. */
-static bool make_room(BpGrid *grid, uint32_t count, unsigned workers) {
-    if (grid->cells == NULL) grid->cells = malloc((size_t)workers * BP_GRID_CELLS_MAX * sizeof *grid->cells);
+static bool make_room(BpGrid *grid, uint32_t count, unsigned threads) {
+    if (grid->cells == NULL) grid->cells = malloc((size_t)threads * BP_GRID_CELLS_MAX * sizeof *grid->cells);
     if (grid->used == NULL) grid->used = malloc(BP_GRID_CELLS_MAX * sizeof *grid->used);
     if (grid->cell_of_capacity < count) {
         free(grid->cell_of);
@@ -35,8 +35,8 @@ uint32_t bp_grid_block(const BpGrid *grid, uint32_t block, uint32_t *first) {
 
 /* ---- counting -------------------------------------------------------------------------------------- */
 
-static void bound_block(void *context, uint32_t block, unsigned worker) {
-    (void)worker;
+static void bound_block(void *context, uint32_t block, unsigned thread) {
+    (void)thread;
     BpGrid *grid = context;
     uint32_t first;
     const uint32_t count = bp_grid_block(grid, block, &first);
@@ -84,8 +84,8 @@ static void lay(BpGrid *grid) {
     }
 }
 
-static void clear_cells(void *context, uint32_t piece, unsigned worker) {
-    (void)worker;
+static void clear_cells(void *context, uint32_t piece, unsigned thread) {
+    (void)thread;
     BpGrid *grid = context;
     static const BpGridCell empty = {.box = BP_TREE_BOX_EMPTY};
     for (uint32_t c = 0; c < grid->cell_count; ++c)
@@ -97,9 +97,9 @@ static uint32_t column_of(const BpGrid *grid, int axis, float center) {
     return column < grid->columns[axis] ? column : grid->columns[axis] - 1;
 }
 
-static void count_block(void *context, uint32_t block, unsigned worker) {
+static void count_block(void *context, uint32_t block, unsigned thread) {
     BpGrid *grid = context;
-    BpGridCell *cells = grid->cells + (size_t)worker * BP_GRID_CELLS_MAX;
+    BpGridCell *cells = grid->cells + (size_t)thread * BP_GRID_CELLS_MAX;
     uint32_t first;
     const uint32_t count = bp_grid_block(grid, block, &first);
     for (uint32_t i = first; i < first + count; ++i) {
@@ -113,19 +113,19 @@ static void count_block(void *context, uint32_t block, unsigned worker) {
     }
 }
 
-bool bp_grid_fill(BpGrid *grid, const BpTreeItem *items, uint32_t count, BpTeam *team) {
-    const unsigned workers = bp_team_size(team);
-    if (!make_room(grid, count, workers)) return false;
+bool bp_grid_fill(BpGrid *grid, const BpTreeItem *items, uint32_t count, BpThreadPool *pool) {
+    const unsigned threads = bp_thread_pool_size(pool);
+    if (!make_room(grid, count, threads)) return false;
     grid->items = items;
     grid->count = count;
     grid->block_size = count / BP_GRID_BLOCKS_MAX + 1;
     if (grid->block_size < BLOCK_MIN) grid->block_size = BLOCK_MIN;
     grid->block_count = (count + grid->block_size - 1) / grid->block_size;
-    bp_team_run(team, bound_block, grid, grid->block_count);
+    bp_parallel_for(pool, bound_block, grid, grid->block_count);
     lay(grid);
-    bp_team_run(team, clear_cells, grid, workers);
-    bp_team_run(team, count_block, grid, grid->block_count);
-    for (unsigned w = 1; w < workers; ++w)
+    bp_parallel_for(pool, clear_cells, grid, threads);
+    bp_parallel_for(pool, count_block, grid, grid->block_count);
+    for (unsigned w = 1; w < threads; ++w)
         for (uint32_t c = 0; c < grid->cell_count; ++c) {
             const BpGridCell *cell = &grid->cells[(size_t)w * BP_GRID_CELLS_MAX + c];
             grid->cells[c].count += cell->count;

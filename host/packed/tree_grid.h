@@ -2,7 +2,7 @@
  *
  * In:    a run of items.
  * Out:   for every cell in use a count and a box; the cell of every item; the best plane.
- * Knows: the surface area heuristic, the team.   Does not know: what becomes of a split. */
+ * Knows: the surface area heuristic, the thread pool.   Does not know: what becomes of a split. */
 #ifndef BP_PACKED_TREE_GRID_H
 #define BP_PACKED_TREE_GRID_H
 
@@ -18,7 +18,7 @@ typedef struct BpGridCell {
 } BpGridCell;
 
 typedef struct BpGrid {
-    BpGridCell *cells; /* BP_GRID_CELLS_MAX for each worker; the first so many are the whole */
+    BpGridCell *cells; /* BP_GRID_CELLS_MAX for each thread; the first so many are the whole */
     uint16_t *cell_of; /* of each item, in order */
     uint32_t cell_of_capacity;
     uint32_t *used; /* the cells that are not empty */
@@ -37,9 +37,9 @@ typedef struct BpGridPlane {
     uint32_t low, bins, span, bin;
 } BpGridPlane;
 
-/* Lays a grid over the items and counts them into its cells. `items` must outlive its use, and the team is
- * the same for all uses. Zero a grid before the first. False: out of memory. */
-bool bp_grid_fill(BpGrid *grid, const BpTreeItem *items, uint32_t count, BpTeam *team);
+/* Lays a grid over the items and counts them into its cells. `items` must outlive its use, and the thread
+ * pool is the same for all uses. Zero a grid before the first. False: out of memory. */
+bool bp_grid_fill(BpGrid *grid, const BpTreeItem *items, uint32_t count, BpThreadPool *pool);
 
 void bp_grid_clear(BpGrid *grid);
 

@@ -37,7 +37,7 @@ typedef struct RunList {
 typedef struct Splitter {
     BpTreeItem *items;
     const BpBinaryOptions *options;
-    BpTeam *team;
+    BpThreadPool *thread_pool;
     BpNodePool *pool;
     uint32_t run_max;     /* what is this small is not split further by a grid */
     BpBinaryNode **nodes; /* made here, parents before children */
@@ -108,8 +108,8 @@ static void build_cells(Splitter *s, uint32_t *cells, uint32_t cell_count, uint3
     build_cells(s, cells + left, cell_count - left, height_max - 1, &node->right);
 }
 
-static void histogram_block(void *context, uint32_t block, unsigned worker) {
-    (void)worker;
+static void histogram_block(void *context, uint32_t block, unsigned thread) {
+    (void)thread;
     Splitter *s = context;
     uint32_t first;
     const uint32_t count = bp_grid_block(&s->grid, block, &first);
@@ -117,8 +117,8 @@ static void histogram_block(void *context, uint32_t block, unsigned worker) {
     for (uint32_t i = first; i < first + count; ++i) ++offsets[s->run_of[s->grid.cell_of[i]]];
 }
 
-static void scatter_block(void *context, uint32_t block, unsigned worker) {
-    (void)worker;
+static void scatter_block(void *context, uint32_t block, unsigned thread) {
+    (void)thread;
     Splitter *s = context;
     uint32_t first;
     const uint32_t count = bp_grid_block(&s->grid, block, &first);
@@ -127,8 +127,8 @@ static void scatter_block(void *context, uint32_t block, unsigned worker) {
         s->buffer[offsets[s->run_of[s->grid.cell_of[i]]]++] = s->grid.items[i];
 }
 
-static void return_block(void *context, uint32_t block, unsigned worker) {
-    (void)worker;
+static void return_block(void *context, uint32_t block, unsigned thread) {
+    (void)thread;
     Splitter *s = context;
     uint32_t first;
     const uint32_t count = bp_grid_block(&s->grid, block, &first);
@@ -149,7 +149,7 @@ static void move_items(Splitter *s) {
         s->failed = true;
         return;
     }
-    bp_team_run(s->team, histogram_block, s, s->grid.block_count);
+    bp_parallel_for(s->thread_pool, histogram_block, s, s->grid.block_count);
     uint32_t next = 0;
     for (uint32_t r = 0; r < s->parts.count; ++r)
         for (uint32_t b = 0; b < s->grid.block_count; ++b) {
@@ -158,7 +158,7 @@ static void move_items(Splitter *s) {
             *offset = next;
             next += here;
         }
-    bp_team_run(s->team, scatter_block, s, s->grid.block_count);
+    bp_parallel_for(s->thread_pool, scatter_block, s, s->grid.block_count);
     if (s->whole) {
         BpTreeItem *const before = s->items;
         s->items = s->buffer;
@@ -166,7 +166,7 @@ static void move_items(Splitter *s) {
         s->buffer_capacity = 0;
         free(before);
     } else {
-        bp_team_run(s->team, return_block, s, s->grid.block_count);
+        bp_parallel_for(s->thread_pool, return_block, s, s->grid.block_count);
     }
     free(s->offsets);
     s->offsets = NULL;
@@ -178,7 +178,7 @@ static void split_range(Splitter *s, const Run *range, uint32_t most, RunList *r
     s->range = *range;
     s->parts.count = s->filled = 0;
     s->part_max = range->count / RANGES > s->run_max ? range->count / RANGES : s->run_max;
-    if (!bp_grid_fill(&s->grid, s->items + range->first, range->count, s->team)) {
+    if (!bp_grid_fill(&s->grid, s->items + range->first, range->count, s->thread_pool)) {
         s->failed = true;
         return;
     }
@@ -219,10 +219,10 @@ typedef struct Top {
     BpBinaryTree *tree;
 } Top;
 
-static void build_run(void *context, uint32_t piece, unsigned worker) {
+static void build_run(void *context, uint32_t piece, unsigned thread) {
     Top *top = context;
-    Splitter *s = &top->own[worker];
-    BpNodePool pool = top->tree->pools[worker]; /* a copy, for neighbours in memory belong to other threads */
+    Splitter *s = &top->own[thread];
+    BpNodePool pool = top->tree->pools[thread]; /* a copy, for neighbours in memory belong to other threads */
     RunList ranges = {0}, runs = {0};
     s->pool = &pool;
     s->failed = s->failed || !push_run(top->runs.runs[piece].count > 4 * s->run_max ? &ranges : &runs,
@@ -241,7 +241,7 @@ static void build_run(void *context, uint32_t piece, unsigned worker) {
     finish_nodes(s);
     free(ranges.runs);
     free(runs.runs);
-    top->tree->pools[worker] = pool;
+    top->tree->pools[thread] = pool;
 }
 
 static int larger_first(const void *a, const void *b) {
@@ -264,27 +264,29 @@ static void split_whole(Splitter *all, const Run *whole, uint32_t most, RunList 
 }
 
 BpStatus bp_binary_tree_build(BpTreeItem **items, uint32_t count, const BpBinaryOptions *options,
-                              BpTeam *team, BpBinaryTree *tree, BpError *err) {
-    const unsigned workers = bp_team_size(team);
-    *tree = (BpBinaryTree){.pools = calloc(workers, sizeof *tree->pools), .pool_count = workers};
-    Top top = {.own = calloc(workers, sizeof *top.own), .tree = tree};
+                              BpThreadPool *thread_pool, BpBinaryTree *tree, BpError *err) {
+    const unsigned threads = bp_thread_pool_size(thread_pool);
+    *tree = (BpBinaryTree){.pools = calloc(threads, sizeof *tree->pools), .pool_count = threads};
+    Top top = {.own = calloc(threads, sizeof *top.own), .tree = tree};
     Splitter *all = calloc(1, sizeof *all);
-    BpTeam *alone = bp_team_create(1);
+    BpThreadPool *alone = bp_thread_pool_create(1);
     bool failed = tree->pools == NULL || top.own == NULL || all == NULL || alone == NULL;
     if (!failed && count > 0) {
         const Run whole = {.count = count, .height_max = options->height_max, .place = &tree->root};
-        *all = (Splitter){.items = *items, .options = options, .team = team, .pool = &tree->pools[0]};
+        *all = (Splitter){
+            .items = *items, .options = options, .thread_pool = thread_pool, .pool = &tree->pools[0]};
         all->run_max = count / RANGES < RANGE_MOST ? count / RANGES : RANGE_MOST;
         if (all->run_max < RANGE_LEAST) all->run_max = RANGE_LEAST;
         split_whole(all, &whole, 4 * all->run_max, &top.runs);
         *items = all->items;
-        for (unsigned w = 0; w < workers; ++w)
-            top.own[w] = (Splitter){.items = *items, .options = options, .team = alone, .run_max = RUN_MOST};
+        for (unsigned w = 0; w < threads; ++w)
+            top.own[w] =
+                (Splitter){.items = *items, .options = options, .thread_pool = alone, .run_max = RUN_MOST};
         if (!all->failed) {
             qsort(top.runs.runs, top.runs.count, sizeof *top.runs.runs, larger_first);
-            bp_team_run(team, build_run, &top, top.runs.count);
+            bp_parallel_for(thread_pool, build_run, &top, top.runs.count);
         }
-        for (unsigned w = 0; w < workers; ++w) {
+        for (unsigned w = 0; w < threads; ++w) {
             all->failed = all->failed || top.own[w].failed;
             splitter_clear(&top.own[w]);
         }
@@ -295,7 +297,7 @@ BpStatus bp_binary_tree_build(BpTreeItem **items, uint32_t count, const BpBinary
     free(top.own);
     free(top.runs.runs);
     free(all);
-    bp_team_destroy(&alone);
+    bp_thread_pool_destroy(&alone);
     if (!failed) return BP_OK;
     bp_binary_tree_clear(tree);
     return bp_fail(err, BP_ERR_MEMORY, "out of memory while building the tree of %u spheres", count);

@@ -150,15 +150,15 @@ static BpBounds write_below(const Gather *gather, const BpBinaryNode *node, uint
 
 /* ---- jobs ------------------------------------------------------------------------------------------ */
 
-static void count_job(void *context, uint32_t piece, unsigned worker) {
-    (void)worker;
+static void count_job(void *context, uint32_t piece, unsigned thread) {
+    (void)thread;
     const Gather *gather = context;
     Job *job = &gather->jobs[piece];
     count_below(gather, job->root, job->depth, job);
 }
 
-static void write_job(void *context, uint32_t piece, unsigned worker) {
-    (void)worker;
+static void write_job(void *context, uint32_t piece, unsigned thread) {
+    (void)thread;
     const Gather *gather = context;
     const Job *job = &gather->jobs[piece];
     uint32_t next_node = job->first_node, next_leaf = job->first_leaf;
@@ -222,7 +222,7 @@ static BpStatus write_empty_root(const BpTreeWriter *writer, BpError *err) {
     return BP_OK;
 }
 
-BpStatus bp_tree_write_nodes(const BpTreeWriter *writer, const BpBinaryNode *root, BpTeam *team,
+BpStatus bp_tree_write_nodes(const BpTreeWriter *writer, const BpBinaryNode *root, BpThreadPool *pool,
                              BpError *err) {
     BpTree *tree = writer->tree;
     if (root == NULL) return write_empty_root(writer, err);
@@ -234,7 +234,7 @@ BpStatus bp_tree_write_nodes(const BpTreeWriter *writer, const BpBinaryNode *roo
         status = bp_fail(err, BP_ERR_MEMORY, "out of memory for a tree of %u leaves", root->leaves);
         goto cleanup;
     }
-    bp_team_run(team, count_job, &gather, gather.job_count);
+    bp_parallel_for(pool, count_job, &gather, gather.job_count);
     uint32_t first_leaf = tree->leaf_count, next_node = 0, next_job = 0;
     tree->node_count = gather.top_nodes;
     tree->depth = gather.deepest;
@@ -247,7 +247,7 @@ BpStatus bp_tree_write_nodes(const BpTreeWriter *writer, const BpBinaryNode *roo
     tree->leaf_count += root->leaves;
     BP_TRY_GOTO(status, bp_tree_allocate(tree, tree->node_count, tree->leaf_count, err), cleanup);
     if (gather.top_nodes > 0) write_top(&gather, root, 1, &next_node, &next_job, &first_leaf);
-    bp_team_run(team, write_job, &gather, gather.job_count);
+    bp_parallel_for(pool, write_job, &gather, gather.job_count);
     for (uint32_t node = gather.top_nodes; node-- > 0;)
         for (uint32_t lane = 0; lane < tree->width; ++lane) {
             const uint32_t word = tree->children[(size_t)node * tree->width + lane];

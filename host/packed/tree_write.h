@@ -56,7 +56,7 @@ BpStatus bp_tree_allocate(BpTree *tree, uint32_t nodes, uint32_t leaves, BpError
 
 /* Gathers the binary tree into wide nodes, allocates the arrays of the tree and writes them, from leaf
  * `tree->leaf_count` on. root NULL: one node whose lanes are all empty. */
-BpStatus bp_tree_write_nodes(const BpTreeWriter *writer, const BpBinaryNode *root, BpTeam *team,
+BpStatus bp_tree_write_nodes(const BpTreeWriter *writer, const BpBinaryNode *root, BpThreadPool *pool,
                              BpError *err);
 
 #endif

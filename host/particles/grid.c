@@ -1,7 +1,7 @@
 /* grid.c: see grid.h. */
 #include "grid.h"
 
-#include "base/team.h"
+#include "base/thread_pool.h"
 
 #include <stdlib.h>
 #include <string.h>
@@ -15,8 +15,8 @@ typedef struct Bounding {
     BpParticleBounds *blocks;
 } Bounding;
 
-static void bound_block(void *context, uint32_t block, unsigned worker) {
-    (void)worker;
+static void bound_block(void *context, uint32_t block, unsigned thread) {
+    (void)thread;
     const Bounding *const bounding = context;
     const BpParticles *const p = bounding->particles;
     BpParticleBounds bounds = nothing;
@@ -36,10 +36,10 @@ BpStatus bp_particle_bounds(const BpParticles *particles, const bool *shown, BpP
                             BpError *err) {
     const uint32_t blocks = bp_block_count(particles->count);
     Bounding bounding = {particles, shown, malloc(((size_t)blocks + 1) * sizeof *bounding.blocks)};
-    BpTeam *team = bp_team_create(blocks > 1 ? 0 : 1);
-    const bool good = bounding.blocks != NULL && team != NULL;
+    BpThreadPool *pool = bp_thread_pool_create(blocks > 1 ? 0 : 1);
+    const bool good = bounding.blocks != NULL && pool != NULL;
     *bounds = nothing;
-    if (good) bp_team_run(team, bound_block, &bounding, blocks);
+    if (good) bp_parallel_for(pool, bound_block, &bounding, blocks);
     for (uint32_t b = 0; b < blocks && good; b++) {
         bounds->count += bounding.blocks[b].count;
         for (int c = 0; c < 3; c++) {
@@ -47,7 +47,7 @@ BpStatus bp_particle_bounds(const BpParticles *particles, const bool *shown, BpP
             bounds->high[c] = fmax(bounds->high[c], bounding.blocks[b].high[c]);
         }
     }
-    bp_team_destroy(&team);
+    bp_thread_pool_destroy(&pool);
     free(bounding.blocks);
     return good ? BP_OK : bp_fail(err, BP_ERR_MEMORY, "out of memory for %zu particles", particles->count);
 }

@@ -1,7 +1,7 @@
 /* spacing.c: see spacing.h. */
 #include "spacing.h"
 
-#include "base/team.h"
+#include "base/thread_pool.h"
 #include "grid.h"
 
 #include <stdlib.h>
@@ -43,8 +43,8 @@ static uint32_t place_of(const Sampling *s, size_t cell) {
     return place;
 }
 
-static void sort_out_block(void *context, uint32_t block, unsigned worker) {
-    (void)worker;
+static void sort_out_block(void *context, uint32_t block, unsigned thread) {
+    (void)thread;
     const Sampling *const s = context;
     const BpParticles *const p = s->grid.particles;
     struct Near *const near = &s->near[block];
@@ -118,17 +118,17 @@ static bool link_cells(Sampling *s) {
 static BpStatus sampling_fill(Sampling *s, BpError *err) {
     const BpParticles *const p = s->grid.particles;
     const size_t words = s->grid.cell_count / 64 + 1;
-    BpTeam *team = bp_team_create(bp_block_count(p->count) > 1 ? 0 : 1);
+    BpThreadPool *pool = bp_thread_pool_create(bp_block_count(p->count) > 1 ? 0 : 1);
     s->marks = calloc(words, sizeof *s->marks);
     s->before = malloc(words * sizeof *s->before);
     s->near = calloc((size_t)bp_block_count(p->count) + 1, sizeof *s->near);
-    bool good = team != NULL && s->marks != NULL && s->before != NULL && s->near != NULL;
+    bool good = pool != NULL && s->marks != NULL && s->before != NULL && s->near != NULL;
     if (good) {
         mark_cells(s);
-        bp_team_run(team, sort_out_block, s, bp_block_count(p->count));
+        bp_parallel_for(pool, sort_out_block, s, bp_block_count(p->count));
         good = link_cells(s);
     }
-    bp_team_destroy(&team);
+    bp_thread_pool_destroy(&pool);
     return good ? BP_OK : bp_fail(err, BP_ERR_MEMORY, "out of memory for a grid of %zu particles", p->count);
 }
 

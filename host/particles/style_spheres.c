@@ -3,7 +3,7 @@
 
 #include "base/format.h"
 #include "base/pages.h"
-#include "base/team.h"
+#include "base/thread_pool.h"
 #include "style_colors.h"
 #include "style_sizes.h"
 
@@ -74,8 +74,8 @@ typedef struct Blocks {
     bool one_color; /* of all: then there is one entry for it, which caches hold */
 } Blocks;
 
-static void find_radii(void *context, uint32_t block, unsigned worker) {
-    (void)worker;
+static void find_radii(void *context, uint32_t block, unsigned thread) {
+    (void)thread;
     const Blocks *const blocks = context;
     BpStyleJob *const job = blocks->job;
     for (size_t i = bp_block_begin(block); i < bp_block_end(block, job->p->count); i++) {
@@ -87,8 +87,8 @@ static void find_radii(void *context, uint32_t block, unsigned worker) {
     }
 }
 
-static void fill_spheres(void *context, uint32_t block, unsigned worker) {
-    (void)worker;
+static void fill_spheres(void *context, uint32_t block, unsigned thread) {
+    (void)thread;
     const Blocks *const blocks = context;
     const BpStyleJob *const job = blocks->job;
     size_t place = blocks->places[block];
@@ -110,20 +110,20 @@ BpStatus bp_style_put_particles(BpStyleJob *job, BpError *err) {
     const bool one_color = job->color_by == BP_COLOR_CONSTANT && job->style->color_count == 0;
     BP_TRY(bp_style_make_room(job, job->shown_count, one_color ? 1 : job->shown_count, err));
     Blocks blocks = {job, calloc((size_t)block_count + 1, sizeof *blocks.places), one_color};
-    BpTeam *team = bp_team_create(block_count > 1 ? 0 : 1);
-    if (blocks.places == NULL || team == NULL) {
+    BpThreadPool *pool = bp_thread_pool_create(block_count > 1 ? 0 : 1);
+    if (blocks.places == NULL || pool == NULL) {
         free(blocks.places);
-        bp_team_destroy(&team);
+        bp_thread_pool_destroy(&pool);
         return bp_fail(err, BP_ERR_MEMORY, "out of memory for %zu particles", p->count);
     }
-    bp_team_run(team, find_radii, &blocks, block_count);
+    bp_parallel_for(pool, find_radii, &blocks, block_count);
     for (uint32_t b = 0; b < block_count; b++) {
         const size_t here = blocks.places[b];
         blocks.places[b] = put;
         put += here;
     }
-    bp_team_run(team, fill_spheres, &blocks, block_count);
-    bp_team_destroy(&team);
+    bp_parallel_for(pool, fill_spheres, &blocks, block_count);
+    bp_thread_pool_destroy(&pool);
     free(blocks.places);
     count_spheres(job, put, one_color && put > 0 ? 1 : put);
     const size_t without = job->shown_count - put;

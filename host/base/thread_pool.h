@@ -1,27 +1,27 @@
-/* team.h: a small thread pool: a parallel loop over numbered pieces of work.
+/* thread_pool.h: a small thread pool: a parallel loop over numbered pieces of work.
  *
  * In:    a function, and how many pieces there are.   Out: every piece done, by some thread.
  * Knows: POSIX threads.   Does not know: what the work is. */
-#ifndef BP_BASE_TEAM_H
-#define BP_BASE_TEAM_H
+#ifndef BP_BASE_THREAD_POOL_H
+#define BP_BASE_THREAD_POOL_H
 
 #include <stddef.h>
 #include <stdint.h>
 
-typedef struct BpTeam BpTeam;
+typedef struct BpThreadPool BpThreadPool;
 
-/* Does piece `piece`; `worker` < bp_team_size() is the thread's number, for memory of its own. */
-typedef void BpTeamWork(void *context, uint32_t piece, unsigned worker);
+/* Does piece `piece`; `thread` < bp_thread_pool_size() is the thread's number, for memory of its own. */
+typedef void BpParallelWork(void *context, uint32_t piece, unsigned thread);
 
 /* `threads` in all, the caller's among them; 0: as many as the machine has cores. Where the system grants
- * fewer, and beyond 64, the team is smaller. NULL: out of memory. */
-BpTeam *bp_team_create(unsigned threads);
-void bp_team_destroy(BpTeam **team);
-unsigned bp_team_size(const BpTeam *team);
+ * fewer, and beyond 64, the pool is smaller. NULL: out of memory. */
+BpThreadPool *bp_thread_pool_create(unsigned threads);
+void bp_thread_pool_destroy(BpThreadPool **pool);
+unsigned bp_thread_pool_size(const BpThreadPool *pool);
 
-/* Calls work(context, piece, worker) once for every piece in 0 .. pieces-1, in any order, and returns when
+/* Calls work(context, piece, thread) once for every piece in 0 .. pieces-1, in any order, and returns when
  * all are done. What they wrote is visible to the caller. */
-void bp_team_run(BpTeam *team, BpTeamWork *work, void *context, uint32_t pieces);
+void bp_parallel_for(BpThreadPool *pool, BpParallelWork *work, void *context, uint32_t pieces);
 
 /* Long arrays are worked through in blocks of this many elements, the last one perhaps shorter; each is a
  * piece. */
