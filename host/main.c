@@ -55,11 +55,11 @@ static void print_error(BpError *err, BpStatus status, bool wide) {
     char *text = NULL;
     size_t size = 0;
     FILE *message = open_memstream(&text, &size);
-    if (message == NULL) print_message(err, status, stderr); /* no memory: better unfolded than unsaid */
+    if (message == NULL) print_message(err, status, stderr); /* no memory: better unwrapped than unsaid */
     if (message != NULL) {
         print_message(err, status, message);
-        const bool folds = !wide && isatty(STDERR_FILENO);
-        if (fclose(message) == 0) bp_page_print(text, folds ? bp_terminal_columns() : 0, stderr);
+        const bool wraps = !wide && isatty(STDERR_FILENO);
+        if (fclose(message) == 0) bp_page_print(text, wraps ? bp_terminal_columns() : 0, stderr);
         free(text);
     }
     if (err->attachment == NULL) return;

@@ -5,10 +5,10 @@
  * may be broken is asked (cli/process/device_survey.h). */
 #include "commands.h"
 
-#include "base/fold.h"
 #include "base/json_text.h"
 #include "base/names.h"
 #include "base/shown.h"
+#include "base/wrap.h"
 #include "cli/output/json_file.h"
 #include "cli/output/output.h"
 #include "cli/output/report_json.h"

@@ -5,11 +5,11 @@
  * Knows: the analysis of effects, cost measurements, path logs, tables.   Does not know: OpenCL. */
 #include "commands.h"
 
-#include "base/fold.h"
 #include "base/format.h"
 #include "base/json_text.h"
 #include "base/names.h"
 #include "base/shown.h"
+#include "base/wrap.h"
 #include "cli/job/setup.h"
 #include "cli/job/unseen_text.h"
 #include "cli/output/json_file.h"

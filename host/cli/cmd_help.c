@@ -1,7 +1,7 @@
 /* cmd_help.c: `ballpark help`: texts made from the tables of commands and options. */
 #include "commands.h"
 
-#include "base/fold.h"
+#include "base/wrap.h"
 #include "cli/line/option_table.h"
 #include "cli/terminal/terminal.h"
 
@@ -77,7 +77,7 @@ BpStatus bp_help_print(const BpCommandLine *line, const BpCommand *command, BpEr
         print_command_help(command, out);
     else
         print_program_help(out);
-    if (fclose(out) == 0) bp_fold(text, page_columns(line), stdout);
+    if (fclose(out) == 0) bp_wrap(text, page_columns(line), stdout);
     free(text);
     if (fflush(stdout) != 0 || ferror(stdout))
         return bp_fail(err, BP_ERR_FILE, "cannot write to standard output: %s", strerror(errno));

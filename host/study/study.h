@@ -131,7 +131,7 @@ const char *bp_study_shortness_text(const BpStudyResult *result, char *text, siz
 /* One line: what to do for this error and what it costs; no line end. */
 const char *bp_study_advice_text(const BpStudyResult *result, const BpStudyAdvice *advice, char *text,
                                  size_t size);
-/* The table as text, with the marks of base/fold.h; CSV; the page. False when the stream failed or memory
+/* The table as text, with the marks of base/wrap.h; CSV; the page. False when the stream failed or memory
  * ran out; see errno. */
 bool bp_study_print(const BpStudyResult *result, FILE *out);
 bool bp_study_print_csv(const BpStudyResult *result, FILE *out);

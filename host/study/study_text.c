@@ -2,9 +2,9 @@
  *
  * In:    a study that has ended.   Out: table, JSON, CSV or page.
  * Knows: which function prints which.   Does not know: what they print. */
-#include "base/fold.h"
 #include "base/json_memory.h"
 #include "base/status.h"
+#include "base/wrap.h"
 #include "study.h"
 
 #include <errno.h>
@@ -16,11 +16,11 @@ enum { TEXT_COLUMNS = 80 };
 static bool print_table(const BpStudyResult *result, FILE *out) {
     char *text = NULL;
     size_t size = 0;
-    FILE *unfolded = open_memstream(&text, &size);
-    if (unfolded == NULL) return false;
-    bool done = bp_study_print(result, unfolded);
-    if (fclose(unfolded) != 0) done = false;
-    if (done) bp_fold(text, TEXT_COLUMNS, out);
+    FILE *unwrapped = open_memstream(&text, &size);
+    if (unwrapped == NULL) return false;
+    bool done = bp_study_print(result, unwrapped);
+    if (fclose(unwrapped) != 0) done = false;
+    if (done) bp_wrap(text, TEXT_COLUMNS, out);
     free(text);
     return done;
 }

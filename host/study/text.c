@@ -1,9 +1,9 @@
 /* text.c: the study as a table for a terminal, as CSV, and the advice; see study.h. */
 #include "study.h"
 
-#include "base/fold.h"
 #include "base/format.h"
 #include "base/shown.h"
+#include "base/wrap.h"
 
 #include <inttypes.h>
 #include <math.h>

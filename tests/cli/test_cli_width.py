@@ -68,7 +68,7 @@ class Width(ProgramTest):
                     self.assertTrue(len(line) <= columns or columns == 50 and "  -" not in line.strip(), (columns, line))
 
     def test_errors(self):
-        """Folded on a terminal, with commands in one piece; one line where a program may read it."""
+        """Wrapped on a terminal, with commands in one piece; one line where a program may read it."""
         missing = ("render", "a folder with blanks " * 6 + "and no end.json")
         for arguments in missing, ("merge",), ("view", "s.json"):
             environment = {"BALLPARK_WINDOW": "/nowhere.so", "COLUMNS": "60"}
@@ -85,7 +85,7 @@ class Width(ProgramTest):
         self.assertEqual(len(wide.seen.splitlines()), 1, wide.seen)
 
     def test_words_stay_whole(self):
-        """Folding loses nothing and adds nothing but line ends and indentation."""
+        """Wrapping loses nothing and adds nothing but line ends and indentation."""
         for arguments in ("explain", "s.json", "lamps.json"), ("explain", "s.json", "--pixel", "8,8"), ("help", "devices"), ("devices", "--help"):
             narrow = self.succeed(*arguments, environment={"COLUMNS": "40"}).stdout.decode()
             wide = self.succeed(*arguments, "--wide", environment={"COLUMNS": "40"}).stdout.decode()
@@ -101,7 +101,7 @@ class Width(ProgramTest):
 
     @deep
     def test_pasted_commands(self):
-        """Advice is a command to be pasted, also where it is folded."""
+        """Advice is a command to be pasted, also where it is wrapped."""
         self.write("s" * 60 + ".json", scene())
         said = self.succeed("cost", "s" * 60 + ".json", "--width", "8", "--time", "0.3", environment=UNKNOWN).stdout.decode()
         commands = re.findall(r"(?m)^ +(ballpark render (?:.*\\\n)*.*)$", said)

@@ -61,7 +61,7 @@ class ProgramTest(unittest.TestCase):
     def setUp(self):
         self.folder = tempfile.mkdtemp(prefix="ballpark-cli-")
         self.addCleanup(shutil.rmtree, self.folder)
-        # Messages are looked for as they are, and not as they are folded: tests of folding take COLUMNS away.
+        # Messages are looked for as they are, and not as they are wrapped: tests of wrapping take COLUMNS away.
         self.environment = dict(os.environ, LC_ALL="C.UTF-8", COLUMNS="10000")
 
     def path(self, name):

@@ -201,7 +201,7 @@ enum {
     OPTION(ROUNDS, "rounds", 0, BP_BENCH, "how many times each scene is measured", uint32_t, rounds,         \
            BP_WHOLE("N", 1, 1000))                                                                           \
     OPTION(NO_CLOBBER, "no-clobber", 0, BP_COMMANDS, "refuse to overwrite files", bool, no_clobber, BP_FLAG) \
-    OPTION(WIDE, "wide", 0, BP_COMMANDS | BP_HELP, "do not fold long lines to the width of the terminal",    \
+    OPTION(WIDE, "wide", 0, BP_COMMANDS | BP_HELP, "do not wrap long lines to the width of the terminal",    \
            bool, wide, BP_FLAG)                                                                              \
     OPTION(QUIET, "quiet", 'q', BP_COMMANDS, "print errors only", bool, quiet, BP_FLAG)                      \
     /* Not of commands: bp_command_line_parse() knows where these two may stand. */                          \

@@ -1,8 +1,8 @@
 /* page.c: see page.h. */
 #include "page.h"
 
-#include "base/fold.h"
 #include "base/shown.h"
+#include "base/wrap.h"
 #include "terminal.h"
 
 #include <stdarg.h>
@@ -11,7 +11,7 @@
 void bp_page_begin(BpPage *page, FILE *out) {
     *page = (BpPage){0};
     page->text = open_memstream(&page->bytes, &page->size);
-    if (page->text == NULL) page->text = out; /* no memory: better unfolded than unsaid */
+    if (page->text == NULL) page->text = out; /* no memory: better unwrapped than unsaid */
 }
 
 size_t bp_page_columns(const BpCommandLine *line, FILE *out) {
@@ -19,13 +19,13 @@ size_t bp_page_columns(const BpCommandLine *line, FILE *out) {
 }
 
 void bp_page_print(const char *text, size_t columns, FILE *out) {
-    char *folded = NULL;
+    char *wrapped = NULL;
     size_t size = 0;
-    FILE *stream = open_memstream(&folded, &size);
-    bp_fold(text, columns, stream != NULL ? stream : out);
+    FILE *stream = open_memstream(&wrapped, &size);
+    bp_wrap(text, columns, stream != NULL ? stream : out);
     if (stream == NULL) return;
-    if (fclose(stream) == 0) fwrite(folded, 1, size, out);
-    free(folded);
+    if (fclose(stream) == 0) fwrite(wrapped, 1, size, out);
+    free(wrapped);
 }
 
 void bp_page_end(BpPage *page, const BpCommandLine *line, FILE *out) {

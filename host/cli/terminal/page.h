@@ -1,4 +1,4 @@
-/* page.h: what a command says, folded to the width of the terminal.
+/* page.h: what a command says, wrapped to the width of the terminal.
  *
  * In:    text.   Out: lines on standard output or standard error.
  * Knows: --quiet, --wide, the width of the terminal.   Does not know: what the text says.
@@ -13,7 +13,7 @@
 #include <stdio.h>
 
 typedef struct BpPage {
-    FILE *text; /* to be written to; may have the marks of base/fold.h */
+    FILE *text; /* to be written to; may have the marks of base/wrap.h */
     char *bytes;
     size_t size;
 } BpPage;

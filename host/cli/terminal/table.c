@@ -1,7 +1,7 @@
 /* table.c: see table.h. */
 #include "table.h"
 
-#include "base/fold.h"
+#include "base/wrap.h"
 
 #include <stdlib.h>
 

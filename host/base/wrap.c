@@ -1,5 +1,5 @@
-/* fold.c: see fold.h. */
-#include "fold.h"
+/* wrap.c: see wrap.h. */
+#include "wrap.h"
 
 #include <stdbool.h>
 #include <string.h>
@@ -42,7 +42,7 @@ static size_t text_column(const char *line, size_t length, size_t indent) {
     return 0;
 }
 
-static void fold_line(const char *line, size_t length, size_t columns, FILE *out) {
+static void wrap_line(const char *line, size_t length, size_t columns, FILE *out) {
     const bool paste = memchr(line, PASTE, length) != NULL;
     const char *mark = memchr(line, HANG, length);
     size_t at = 0, column = 0, indent = 0;
@@ -75,13 +75,13 @@ static void fold_line(const char *line, size_t length, size_t columns, FILE *out
     }
 }
 
-void bp_fold(const char *text, size_t columns, FILE *out) {
+void bp_wrap(const char *text, size_t columns, FILE *out) {
     while (*text != '\0') {
         const size_t length = strcspn(text, "\n");
         if (columns == 0 || width_of(text, length) <= columns)
             put(text, length, out);
         else
-            fold_line(text, length, columns, out);
+            wrap_line(text, length, columns, out);
         text += length;
         if (*text == '\n') {
             fputc('\n', out);

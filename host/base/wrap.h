@@ -1,10 +1,10 @@
-/* fold.h: text broken into lines of a page's width.
+/* wrap.h: text broken into lines of a page's width.
  *
  * In:    text, columns.   Out: the same words, in lines that fit.
  * Knows: where a line may be broken, how the rest of it is indented.   Does not know: what the text means,
  * what it is printed on. */
-#ifndef BP_BASE_FOLD_H
-#define BP_BASE_FOLD_H
+#ifndef BP_BASE_WRAP_H
+#define BP_BASE_WRAP_H
 
 #include <stddef.h>
 #include <stdio.h>
@@ -19,6 +19,6 @@
 /* Writes `text` to `out` in lines of at most `columns` characters, broken at blanks; 0: as it is, without the
  * marks. A number and its "%" stay together, and so does text between backticks. A word that is longer
  * than a line is not broken. */
-void bp_fold(const char *text, size_t columns, FILE *out);
+void bp_wrap(const char *text, size_t columns, FILE *out);
 
 #endif
