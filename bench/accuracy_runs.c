@@ -33,7 +33,7 @@ static const Way ways[] = {
 enum { WAYS = sizeof ways / sizeof ways[0] };
 
 typedef struct Run {
-    double processor, wall, device, fold; /* seconds */
+    double processor, wall, device, accumulate; /* seconds */
     uint64_t samples, rays;
     double *luminance, *error; /* of each pixel: mean, and its standard error */
 } Run;
@@ -85,7 +85,7 @@ static Run render(const BpScene *scene, const Way *way, uint64_t seed, uint64_t 
     if (nrmse < 0) exit(EXIT_FAILURE); /* so that it is not left out */
     bp_render_report(made, &report);
     run.device = report.device_seconds;
-    run.fold = report.accumulate_seconds;
+    run.accumulate = report.accumulate_seconds;
     run.samples = report.samples;
     run.rays = report.segments;
     read_pixels(film, way->replicates > 1, &run);
@@ -119,7 +119,7 @@ static void print_run(const Run *run, const Run references[2], size_t pixels, co
         "%.9g, \"claimed\": %.9g, \"held\": %zu, \"asked\": %zu, \"processor\": %.6f, \"wall\": %.6f, "
         "\"device\": %.6f, \"fold\": %.6f, \"drawn\": %llu, \"rays\": %llu}\n",
         way->name, way->replicates, (unsigned long long)samples, (unsigned long long)seed, mean, error,
-        claimed, held, asked, run->processor, run->wall, run->device, run->fold,
+        claimed, held, asked, run->processor, run->wall, run->device, run->accumulate,
         (unsigned long long)run->samples, (unsigned long long)run->rays);
     fflush(stdout);
 }

@@ -26,8 +26,8 @@ typedef struct BpRenderReport {
     double self_test_seconds;    /* of the device's first use; 0 once it has passed */
     double first_launch_seconds; /* of the first, tiny chunk: drivers may compile once more there */
     double trace_seconds;        /* wall clock spent in steps, without the first launch */
-    double device_seconds;       /* kernel time by the device's own clock: trace and fold */
-    double accumulate_seconds;   /* the fold's share of device_seconds */
+    double device_seconds;       /* kernel time by the device's own clock: trace and accumulate */
+    double accumulate_seconds;   /* of device_seconds, those of accumulate */
     uint64_t device_bytes;       /* allocated on the device: scene and picture */
     uint64_t scene_bytes;        /* of these, the scene */
     uint64_t resumed_samples;    /* of `samples`, those that were there before */
@@ -78,7 +78,7 @@ typedef struct BpSampleBlock {
     float *values;
 } BpSampleBlock;
 
-/* Runs one chunk and hands out its raw samples (they are folded into the film as well): for tests and
+/* Runs one chunk and hands out its raw samples (they are accumulated in the film as well): for tests and
  * `check`. One device only. *finished: there was nothing left to do, and the block is empty. The caller
  * clears the block with bp_sample_block_clear(). */
 BpStatus bp_render_step_samples(BpRender *render, BpSampleBlock *block, bool *finished, BpError *err);

@@ -33,15 +33,15 @@ enum {
     TRACE_LIST
 };
 enum {
-    FOLD_IN,
-    FOLD_PIXELS,
-    FOLD_SAMPLES,
-    FOLD_FIRST_PIXEL,
-    FOLD_FIRST_SAMPLE,
-    FOLD_CONSTANTS,
-    FOLD_LAMP_RAYS = FOLD_CONSTANTS + 6,
-    FOLD_ITEMS,
-    FOLD_LIST
+    ACCUMULATE_IN,
+    ACCUMULATE_PIXELS,
+    ACCUMULATE_SAMPLES,
+    ACCUMULATE_FIRST_PIXEL,
+    ACCUMULATE_FIRST_SAMPLE,
+    ACCUMULATE_CONSTANTS,
+    ACCUMULATE_LAMP_RAYS = ACCUMULATE_CONSTANTS + 6,
+    ACCUMULATE_ITEMS,
+    ACCUMULATE_LIST
 };
 
 BpStatus bp_worker_bind_scene(BpWorker *worker, cl_kernel kernel, BpError *err) {
@@ -61,18 +61,19 @@ static BpStatus create_kernels(BpWorker *worker, const BpWorkerSetup *setup, BpE
     cl_int code = CL_SUCCESS;
     worker->trace = clCreateKernel(worker->program->program, "trace", &code);
     CL_TRY(worker, code, "clCreateKernel(trace)");
-    worker->fold = clCreateKernel(worker->program->program, "accumulate", &code);
+    worker->accumulate = clCreateKernel(worker->program->program, "accumulate", &code);
     CL_TRY(worker, code, "clCreateKernel(accumulate)");
     BP_TRY(bp_worker_bind_scene(worker, worker->trace, err));
-    cl_uint index = FOLD_CONSTANTS;
-    BP_TRY(set_argument(worker, worker->fold, index++, sizeof(cl_uint), &worker->replicates, err));
-    BP_TRY(set_argument(worker, worker->fold, index++, sizeof(cl_int), &setup->scale_log2, err));
+    cl_uint index = ACCUMULATE_CONSTANTS;
+    BP_TRY(set_argument(worker, worker->accumulate, index++, sizeof(cl_uint), &worker->replicates, err));
+    BP_TRY(set_argument(worker, worker->accumulate, index++, sizeof(cl_int), &setup->scale_log2, err));
     const cl_mem sums[] = {worker->sums, worker->fine_sums, worker->counts, worker->tallies};
     for (size_t i = 0; i < sizeof sums / sizeof sums[0]; ++i)
-        BP_TRY(set_argument(worker, worker->fold, index++, sizeof(cl_mem), &sums[i], err));
+        BP_TRY(set_argument(worker, worker->accumulate, index++, sizeof(cl_mem), &sums[i], err));
     if (setup->program.pixel_list) {
         BP_TRY(bp_worker_create_pixel_list(worker, err));
-        BP_TRY(set_argument(worker, worker->fold, FOLD_LIST, sizeof(cl_mem), &worker->pixel_list, err));
+        BP_TRY(set_argument(worker, worker->accumulate, ACCUMULATE_LIST, sizeof(cl_mem), &worker->pixel_list,
+                            err));
         BP_TRY(set_argument(worker, worker->trace, worker->scene_arguments + TRACE_LIST, sizeof(cl_mem),
                             &worker->pixel_list, err));
     }
@@ -179,7 +180,7 @@ failed:
 
 static void release_flight(struct BpFlight *flight) {
     if (flight->trace_start != NULL) clReleaseEvent(flight->trace_start);
-    if (flight->fold_end != NULL) clReleaseEvent(flight->fold_end);
+    if (flight->accumulate_end != NULL) clReleaseEvent(flight->accumulate_end);
     *flight = (struct BpFlight){0};
 }
 
@@ -193,7 +194,7 @@ static void release_objects(BpWorker *w) {
     for (size_t i = 0; i < sizeof buffers / sizeof buffers[0]; ++i)
         if (buffers[i] != NULL) clReleaseMemObject(buffers[i]);
     if (w->trace != NULL) clReleaseKernel(w->trace);
-    if (w->fold != NULL) clReleaseKernel(w->fold);
+    if (w->accumulate != NULL) clReleaseKernel(w->accumulate);
 }
 
 void bp_worker_destroy(BpWorker **worker) {
@@ -224,11 +225,12 @@ BpStatus bp_worker_wait(BpWorker *worker, BpError *err) {
     if (worker->flight_count == 0) return BP_OK;
     BP_TRY(bp_drivers_use(err));
     struct BpFlight *flight = &worker->flights[0];
-    CL_TRY(worker, clWaitForEvents(1, &flight->fold_end), "clWaitForEvents");
-    const double seconds = event_seconds(flight->trace_start, CL_PROFILING_COMMAND_START, flight->fold_end);
+    CL_TRY(worker, clWaitForEvents(1, &flight->accumulate_end), "clWaitForEvents");
+    const double seconds =
+        event_seconds(flight->trace_start, CL_PROFILING_COMMAND_START, flight->accumulate_end);
     worker->device_seconds += seconds;
     worker->accumulate_seconds +=
-        event_seconds(flight->fold_end, CL_PROFILING_COMMAND_START, flight->fold_end);
+        event_seconds(flight->accumulate_end, CL_PROFILING_COMMAND_START, flight->accumulate_end);
     bp_pace_measure(&worker->pace, flight->samples, seconds);
     worker->samples_done += flight->samples;
     release_flight(flight);
@@ -248,7 +250,7 @@ BpStatus bp_worker_oldest_done(BpWorker *worker, bool *done, BpError *err) {
     BP_TRY(bp_drivers_use(err));
     cl_int state = CL_QUEUED;
     CL_TRY(worker,
-           clGetEventInfo(worker->flights[0].fold_end, CL_EVENT_COMMAND_EXECUTION_STATUS, sizeof state,
+           clGetEventInfo(worker->flights[0].accumulate_end, CL_EVENT_COMMAND_EXECUTION_STATUS, sizeof state,
                           &state, NULL),
            "clGetEventInfo");
     *done = state <= CL_COMPLETE; /* below: an error, which waiting reports */
@@ -303,13 +305,13 @@ BpStatus bp_worker_start(BpWorker *worker, const BpChunk *chunk, BpError *err) {
         {worker->trace, worker->scene_arguments + TRACE_COUNT, sizeof(cl_uint), &count},
         {worker->trace, worker->scene_arguments + TRACE_OUT, sizeof(cl_mem), &worker->samples},
         {worker->trace, worker->scene_arguments + TRACE_LAMP_RAYS, sizeof(cl_mem), &worker->lamp_rays},
-        {worker->fold, FOLD_IN, sizeof(cl_mem), &worker->samples},
-        {worker->fold, FOLD_PIXELS, sizeof(cl_uint), &chunk->pixel_count},
-        {worker->fold, FOLD_SAMPLES, sizeof(cl_uint), &chunk->samples},
-        {worker->fold, FOLD_FIRST_PIXEL, sizeof(cl_uint), &chunk->first_pixel},
-        {worker->fold, FOLD_FIRST_SAMPLE, sizeof(cl_uint), &first_sample},
-        {worker->fold, FOLD_LAMP_RAYS, sizeof(cl_mem), &worker->lamp_rays},
-        {worker->fold, FOLD_ITEMS, sizeof(cl_uint), &lamp_items},
+        {worker->accumulate, ACCUMULATE_IN, sizeof(cl_mem), &worker->samples},
+        {worker->accumulate, ACCUMULATE_PIXELS, sizeof(cl_uint), &chunk->pixel_count},
+        {worker->accumulate, ACCUMULATE_SAMPLES, sizeof(cl_uint), &chunk->samples},
+        {worker->accumulate, ACCUMULATE_FIRST_PIXEL, sizeof(cl_uint), &chunk->first_pixel},
+        {worker->accumulate, ACCUMULATE_FIRST_SAMPLE, sizeof(cl_uint), &first_sample},
+        {worker->accumulate, ACCUMULATE_LAMP_RAYS, sizeof(cl_mem), &worker->lamp_rays},
+        {worker->accumulate, ACCUMULATE_ITEMS, sizeof(cl_uint), &lamp_items},
     };
     for (size_t i = 0; i < sizeof arguments / sizeof arguments[0]; ++i)
         BP_TRY(set_argument(worker, arguments[i].kernel, arguments[i].index, arguments[i].size,
@@ -320,8 +322,8 @@ BpStatus bp_worker_start(BpWorker *worker, const BpChunk *chunk, BpError *err) {
     const double start = bp_clock_seconds();
     BP_TRY(enqueue(worker, worker->trace, items, worker->local_size, &flight->trace_start,
                    "clEnqueueNDRangeKernel(trace)", err));
-    BP_TRY(enqueue(worker, worker->fold, chunk->pixel_count, BP_LOCAL_SIZE_SAMPLE, &flight->fold_end,
-                   "clEnqueueNDRangeKernel(accumulate)", err));
+    BP_TRY(enqueue(worker, worker->accumulate, chunk->pixel_count, BP_LOCAL_SIZE_SAMPLE,
+                   &flight->accumulate_end, "clEnqueueNDRangeKernel(accumulate)", err));
     CL_TRY(worker, clFlush(worker->device->queue), "clFlush");
     if (first) {
         BP_TRY(bp_worker_wait(worker, err));

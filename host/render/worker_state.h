@@ -55,7 +55,7 @@ typedef struct BpWorker {
     BpDevice *device;
     bool owns_device;
     BpProgram *program;
-    cl_kernel trace, fold;
+    cl_kernel trace, accumulate;
     BpPacked packed;                            /* where the device uses it in place; else empty */
     cl_mem scene_buffers[BP_SCENE_BUFFERS_MAX]; /* in the order of the lists in scene_types.h, part by part */
     size_t scene_buffer_count;
@@ -75,7 +75,7 @@ typedef struct BpWorker {
     uint64_t scene_bytes, picture_bytes;
     /* Chunks under way, oldest first. */
     struct BpFlight {
-        cl_event trace_start, fold_end;
+        cl_event trace_start, accumulate_end;
         uint64_t samples;
     } flights[BP_WORKER_FLIGHT];
     int flight_count;

@@ -25,32 +25,33 @@
 
 static BpError err;
 
-typedef struct Folder {
+typedef struct Accumulator {
     BpDevice *device;
     BpProgram *program;
     cl_kernel kernel;
-} Folder;
+} Accumulator;
 
-static int open_folder(void **state) {
-    static Folder folder;
+static int open_accumulator(void **state) {
+    static Accumulator accumulator;
     BpDeviceInfo info;
     BpProgramOptions options = {.form = BP_KERNEL_SAMPLE, .tree_width = 8, .effects = 0};
     cl_int code = CL_SUCCESS;
-    if (bp_device_find(NULL, &info, &err) != BP_OK || bp_device_open(&info, &folder.device, &err) != BP_OK ||
-        bp_program_build(folder.device, &options, NULL, NULL, &folder.program, &err) != BP_OK) {
+    if (bp_device_find(NULL, &info, &err) != BP_OK ||
+        bp_device_open(&info, &accumulator.device, &err) != BP_OK ||
+        bp_program_build(accumulator.device, &options, NULL, NULL, &accumulator.program, &err) != BP_OK) {
         fprintf(stderr, "%s\n", err.message);
         return -1;
     }
-    folder.kernel = clCreateKernel(folder.program->program, "accumulate", &code);
-    *state = &folder;
+    accumulator.kernel = clCreateKernel(accumulator.program->program, "accumulate", &code);
+    *state = &accumulator;
     return code == CL_SUCCESS ? 0 : -1;
 }
 
-static int close_folder(void **state) {
-    Folder *folder = *state;
-    clReleaseKernel(folder->kernel);
-    bp_program_destroy(&folder->program);
-    bp_device_close(&folder->device);
+static int close_accumulator(void **state) {
+    Accumulator *accumulator = *state;
+    clReleaseKernel(accumulator->kernel);
+    bp_program_destroy(&accumulator->program);
+    bp_device_close(&accumulator->device);
     return 0;
 }
 
@@ -61,11 +62,11 @@ typedef struct Pixel {
     cl_ulong tallies[TALLIES];
 } Pixel;
 
-/* Folds `count` samples of one pixel, starting at absolute number `first`, into the pixel, which keeps what
- * it held. */
-static void fold_scaled(const Folder *folder, const float *samples, cl_uint count, cl_uint first,
-                        cl_int scale, Pixel *pixel) {
-    cl_context context = folder->device->context;
+/* Accumulates `count` samples of one pixel, starting at absolute number `first`, into the pixel, which keeps
+ * what it held. */
+static void accumulate_scaled(const Accumulator *accumulator, const float *samples, cl_uint count,
+                              cl_uint first, cl_int scale, Pixel *pixel) {
+    cl_context context = accumulator->device->context;
     const cl_mem_flags flags = CL_MEM_READ_WRITE | CL_MEM_COPY_HOST_PTR;
     /* The rays to lamps belong to the first part, so that parts add up. */
     const cl_uint lamp_rays[LAMP_ITEMS] = {first == 0 ? UINT32_MAX : 0, 0, first == 0 ? 1 : 0};
@@ -102,12 +103,13 @@ static void fold_scaled(const Folder *folder, const float *samples, cl_uint coun
                      {sizeof(cl_mem), &buffers[5]},
                      {sizeof items_traced, &items_traced}};
     for (cl_uint i = 0; i < sizeof arguments / sizeof arguments[0]; ++i)
-        assert_int_equal(clSetKernelArg(folder->kernel, i, arguments[i].size, arguments[i].value),
+        assert_int_equal(clSetKernelArg(accumulator->kernel, i, arguments[i].size, arguments[i].value),
                          CL_SUCCESS);
     const size_t items = 64;
-    cl_command_queue queue = folder->device->queue;
-    assert_int_equal(clEnqueueNDRangeKernel(queue, folder->kernel, 1, NULL, &items, &items, 0, NULL, NULL),
-                     CL_SUCCESS);
+    cl_command_queue queue = accumulator->device->queue;
+    assert_int_equal(
+        clEnqueueNDRangeKernel(queue, accumulator->kernel, 1, NULL, &items, &items, 0, NULL, NULL),
+        CL_SUCCESS);
     for (int i = 1; i < 5; ++i)
         assert_int_equal(clEnqueueReadBuffer(queue, buffers[i], CL_TRUE, 0, sizes[i], data[i], 0, NULL, NULL),
                          CL_SUCCESS);
@@ -115,13 +117,13 @@ static void fold_scaled(const Folder *folder, const float *samples, cl_uint coun
 }
 
 /* The same at SCALE, for samples that need no fine sums. */
-static void fold(const Folder *folder, const float *samples, cl_uint count, cl_uint first,
-                 cl_long sums[REPLICATES * 3], cl_uint counts[REPLICATES], cl_ulong tallies[TALLIES]) {
+static void accumulate(const Accumulator *accumulator, const float *samples, cl_uint count, cl_uint first,
+                       cl_long sums[REPLICATES * 3], cl_uint counts[REPLICATES], cl_ulong tallies[TALLIES]) {
     Pixel pixel = {{0}, {0}, {0}, {0}};
     memcpy(pixel.sums, sums, sizeof pixel.sums);
     memcpy(pixel.counts, counts, sizeof pixel.counts);
     memcpy(pixel.tallies, tallies, sizeof pixel.tallies);
-    fold_scaled(folder, samples, count, first, SCALE, &pixel);
+    accumulate_scaled(accumulator, samples, count, first, SCALE, &pixel);
     memcpy(sums, pixel.sums, sizeof pixel.sums);
     memcpy(counts, pixel.counts, sizeof pixel.counts);
     memcpy(tallies, pixel.tallies, sizeof pixel.tallies);
@@ -140,7 +142,7 @@ static void what_met_nothing_is_counted(void **state) {
         cl_long sums[REPLICATES * 3] = {0};
         cl_uint counts[REPLICATES] = {0};
         cl_ulong tallies[TALLIES] = {0};
-        fold(*state, &samples[0][0], 12, 0, sums, counts, tallies);
+        accumulate(*state, &samples[0][0], 12, 0, sums, counts, tallies);
         assert_int_equal(tallies[TALLY_SEGMENTS], 8 * 1000000 + 4);
         assert_int_equal(tallies[TALLY_CUT], 8);
         assert_int_equal(tallies[TALLY_NOT_FINITE], careful ? 2 : 0);
@@ -168,7 +170,7 @@ static void invalid_samples_are_left_out(void **state) {
     cl_long sums[REPLICATES * 3] = {0};
     cl_uint counts[REPLICATES] = {0};
     cl_ulong tallies[TALLIES] = {0};
-    fold(*state, &samples[0][0], 12, 0, sums, counts, tallies);
+    accumulate(*state, &samples[0][0], 12, 0, sums, counts, tallies);
     assert_int_equal(tallies[TALLY_SEGMENTS], 11 * 3 + 50);
     assert_int_equal(tallies[TALLY_CUT], 1);
     assert_int_equal(tallies[TALLY_NOT_FINITE], 3);
@@ -191,7 +193,7 @@ static void replicate_is_sample_modulo(void **state) {
     cl_long sums[REPLICATES * 3] = {0};
     cl_uint counts[REPLICATES] = {0};
     cl_ulong tallies[TALLIES] = {0};
-    fold(*state, &samples[0][0], 3, 6, sums, counts, tallies); /* numbers 6, 7, 8 */
+    accumulate(*state, &samples[0][0], 3, 6, sums, counts, tallies); /* numbers 6, 7, 8 */
     const cl_uint expected[REPLICATES] = {1, 0, 1, 1};
     for (cl_uint k = 0; k < REPLICATES; ++k) assert_int_equal(counts[k], expected[k]);
     const cl_long one_half = (cl_long)1 << (SCALE - 1);
@@ -208,7 +210,7 @@ static void a_million_equal_samples_keep_their_mean(void **state) {
     cl_long sums[REPLICATES * 3] = {0};
     cl_uint counts[REPLICATES] = {0};
     cl_ulong tallies[TALLIES] = {0};
-    fold(*state, samples, count, 0, sums, counts, tallies);
+    accumulate(*state, samples, count, 0, sums, counts, tallies);
     double total = 0;
     for (cl_uint k = 0; k < REPLICATES; ++k) total += (double)sums[k * 3];
     const double mean = ldexp(total, -SCALE) / count;
@@ -222,8 +224,8 @@ static void a_million_equal_samples_keep_their_mean(void **state) {
     cl_long parts[REPLICATES * 3] = {0};
     cl_uint part_counts[REPLICATES] = {0};
     cl_ulong part_tallies[TALLIES] = {0};
-    fold(*state, samples + (size_t)part * 4, count - part, part, parts, part_counts, part_tallies);
-    fold(*state, samples, part, 0, parts, part_counts, part_tallies);
+    accumulate(*state, samples + (size_t)part * 4, count - part, part, parts, part_counts, part_tallies);
+    accumulate(*state, samples, part, 0, parts, part_counts, part_tallies);
     assert_memory_equal(sums, parts, sizeof sums);
     assert_memory_equal(counts, part_counts, sizeof counts);
     free(samples);
@@ -247,7 +249,7 @@ static void dim_samples_are_kept(void **state) {
     Pixel whole = {{0}, {0}, {0}, {0}}, parts = {{0}, {0}, {0}, {0}};
     for (int i = 0; i < 12; ++i)
         whole.fine_sums[i] = parts.fine_sums[i] = 0x5555555555555555; /* never zeroed */
-    fold_scaled(*state, &samples[0][0], COUNT, 0, 38 - 17, &whole);
+    accumulate_scaled(*state, &samples[0][0], COUNT, 0, 38 - 17, &whole);
     for (cl_uint k = 0; k < REPLICATES; ++k) {
         assert_int_equal(whole.counts[k] & COUNT_SAMPLES, COUNT / REPLICATES);
         const bool fine = (whole.counts[k] & COUNT_HAS_FINE) != 0;
@@ -262,8 +264,8 @@ static void dim_samples_are_kept(void **state) {
     for (int cause = TALLY_NOT_FINITE; cause <= TALLY_OUT_OF_RANGE; cause++)
         assert_int_equal(whole.tallies[cause], 0);
     /* In parts, in another order: the same numbers. */
-    fold_scaled(*state, samples[1001], COUNT - 1001, 1001, 38 - 17, &parts);
-    fold_scaled(*state, samples[0], 1001, 0, 38 - 17, &parts);
+    accumulate_scaled(*state, samples[1001], COUNT - 1001, 1001, 38 - 17, &parts);
+    accumulate_scaled(*state, samples[0], 1001, 0, 38 - 17, &parts);
     assert_memory_equal(&whole, &parts, sizeof whole);
 }
 
@@ -279,7 +281,7 @@ static void samples_too_dim_are_marked(void **state) {
                                 {0, 0, 0, 1},
                                 {0, 0, 0, 1}};
     Pixel pixel = {{0}, {0}, {0}, {0}};
-    fold_scaled(*state, &bright[0][0], 8, 0, SCALE, &pixel);
+    accumulate_scaled(*state, &bright[0][0], 8, 0, SCALE, &pixel);
     assert_int_equal(pixel.counts[0], 2 | COUNT_HAS_FINE);
     assert_int_equal(pixel.fine_sums[1], 1048576);
     assert_int_equal(pixel.counts[1], 1);
@@ -287,9 +289,9 @@ static void samples_too_dim_are_marked(void **state) {
     assert_int_equal(pixel.counts[3], 2);
     assert_int_equal(pixel.tallies[TALLY_NOT_FINITE], 1);
     const float dim[4] = {0, 0, step * 1048575, 1}, lost[4] = {step * 0.25f, 0, 0, 1};
-    fold_scaled(*state, dim, 1, 0, SCALE, &pixel);
+    accumulate_scaled(*state, dim, 1, 0, SCALE, &pixel);
     assert_int_equal(pixel.counts[0], 3 | COUNT_HAS_FINE | COUNT_COARSE);
-    fold_scaled(*state, lost, 1, 1, SCALE, &pixel);
+    accumulate_scaled(*state, lost, 1, 1, SCALE, &pixel);
     assert_int_equal(pixel.counts[1], 2 | COUNT_COARSE); /* nothing of it is left */
 }
 
@@ -302,5 +304,5 @@ int main(void) {
         cmocka_unit_test(dim_samples_are_kept),
         cmocka_unit_test(samples_too_dim_are_marked),
     };
-    return cmocka_run_group_tests(tests, open_folder, close_folder);
+    return cmocka_run_group_tests(tests, open_accumulator, close_accumulator);
 }

@@ -10,24 +10,26 @@
 
 #define SCALE 24
 
-typedef struct Folded {
+typedef struct Accumulated {
     int64_t sums[4 * 3], fine_sums[4 * 3];
     uint32_t counts[4];
     uint64_t tallies[TALLIES];
-} Folded;
+} Accumulated;
 
 /* The product's kernel `accumulate` on `count` samples of one pixel, `parts` chunks, 4 replicates. */
-static void fold(const Lab *lab, const double *samples, uint32_t count, uint32_t parts, Folded *folded) {
+static void accumulate(const Lab *lab, const double *samples, uint32_t count, uint32_t parts,
+                       Accumulated *accumulated) {
     cl_int code;
     cl_kernel kernel = clCreateKernel(lab->program->program, "accumulate", &code);
     assert_int_equal(code, CL_SUCCESS);
-    memset(folded, 0, sizeof *folded);
+    memset(accumulated, 0, sizeof *accumulated);
     const cl_context context = lab->device->context;
     const cl_mem_flags copy = CL_MEM_READ_WRITE | CL_MEM_COPY_HOST_PTR;
-    cl_mem sums = clCreateBuffer(context, copy, sizeof folded->sums, folded->sums, &code);
-    cl_mem fine_sums = clCreateBuffer(context, copy, sizeof folded->fine_sums, folded->fine_sums, &code);
-    cl_mem counts = clCreateBuffer(context, copy, sizeof folded->counts, folded->counts, &code);
-    cl_mem tallies = clCreateBuffer(context, copy, sizeof folded->tallies, folded->tallies, &code);
+    cl_mem sums = clCreateBuffer(context, copy, sizeof accumulated->sums, accumulated->sums, &code);
+    cl_mem fine_sums =
+        clCreateBuffer(context, copy, sizeof accumulated->fine_sums, accumulated->fine_sums, &code);
+    cl_mem counts = clCreateBuffer(context, copy, sizeof accumulated->counts, accumulated->counts, &code);
+    cl_mem tallies = clCreateBuffer(context, copy, sizeof accumulated->tallies, accumulated->tallies, &code);
     for (uint32_t part = 0; part < parts; ++part) {
         const uint32_t first = (uint32_t)((uint64_t)count * part / parts);
         const uint32_t end = (uint32_t)((uint64_t)count * (part + 1) / parts);
@@ -63,14 +65,14 @@ static void fold(const Lab *lab, const double *samples, uint32_t count, uint32_t
         clReleaseMemObject(buffer);
         free(narrow);
     }
-    clEnqueueReadBuffer(lab->device->queue, sums, CL_TRUE, 0, sizeof folded->sums, folded->sums, 0, NULL,
-                        NULL);
-    clEnqueueReadBuffer(lab->device->queue, fine_sums, CL_TRUE, 0, sizeof folded->fine_sums,
-                        folded->fine_sums, 0, NULL, NULL);
-    clEnqueueReadBuffer(lab->device->queue, counts, CL_TRUE, 0, sizeof folded->counts, folded->counts, 0,
+    clEnqueueReadBuffer(lab->device->queue, sums, CL_TRUE, 0, sizeof accumulated->sums, accumulated->sums, 0,
                         NULL, NULL);
-    clEnqueueReadBuffer(lab->device->queue, tallies, CL_TRUE, 0, sizeof folded->tallies, folded->tallies, 0,
-                        NULL, NULL);
+    clEnqueueReadBuffer(lab->device->queue, fine_sums, CL_TRUE, 0, sizeof accumulated->fine_sums,
+                        accumulated->fine_sums, 0, NULL, NULL);
+    clEnqueueReadBuffer(lab->device->queue, counts, CL_TRUE, 0, sizeof accumulated->counts,
+                        accumulated->counts, 0, NULL, NULL);
+    clEnqueueReadBuffer(lab->device->queue, tallies, CL_TRUE, 0, sizeof accumulated->tallies,
+                        accumulated->tallies, 0, NULL, NULL);
     clReleaseMemObject(sums);
     clReleaseMemObject(fine_sums);
     clReleaseMemObject(counts);
@@ -78,13 +80,13 @@ static void fold(const Lab *lab, const double *samples, uint32_t count, uint32_t
     clReleaseKernel(kernel);
 }
 
-static double mean_of(const Folded *folded, int channel) {
+static double mean_of(const Accumulated *accumulated, int channel) {
     double sum = 0;
     uint32_t count = 0;
     for (int k = 0; k < 4; ++k) {
-        sum += (double)folded->sums[k * 3 + channel] +
-               ldexp((double)folded->fine_sums[k * 3 + channel], -FINE_BITS);
-        count += folded->counts[k] & COUNT_SAMPLES;
+        sum += (double)accumulated->sums[k * 3 + channel] +
+               ldexp((double)accumulated->fine_sums[k * 3 + channel], -FINE_BITS);
+        count += accumulated->counts[k] & COUNT_SAMPLES;
     }
     return ldexp(sum, -SCALE) / count;
 }
@@ -99,13 +101,13 @@ static void accum_const(void **state) {
         samples[4 * i + 3] = 1;
         naive = naive + 0.1f;
     }
-    Folded folded;
-    fold(*state, samples, COUNT, 1, &folded);
-    const double off = fabs(mean_of(&folded, 0) / lab_float(0.1) - 1);
+    Accumulated accumulated;
+    accumulate(*state, samples, COUNT, 1, &accumulated);
+    const double off = fabs(mean_of(&accumulated, 0) / lab_float(0.1) - 1);
     const double naive_off = fabs((double)naive / COUNT / lab_float(0.1) - 1);
     print_message("    mean off by %.2g; naive float %.2g\n", off, naive_off);
     assert_true(off <= 1e-6 && naive_off > 1e-3);
-    assert_true(folded.tallies[TALLY_SEGMENTS] == COUNT && folded.tallies[TALLY_NOT_FINITE] == 0);
+    assert_true(accumulated.tallies[TALLY_SEGMENTS] == COUNT && accumulated.tallies[TALLY_NOT_FINITE] == 0);
     free(samples);
 }
 
@@ -115,12 +117,12 @@ static void accum_split(void **state) {
     const uint32_t parts[] = {1, 2, 3, 7, 64, COUNT};
     double *samples = suite_calloc(COUNT * 4, sizeof *samples);
     uint64_t seed = 34;
-    Folded whole, split;
+    Accumulated whole, split;
     for (size_t i = 0; i < COUNT * 4; ++i)
         samples[i] = i % 4 == 3 ? 1 : lab_float(exp(20 * lab_unit(&seed) - 10));
-    fold(*state, samples, COUNT, 1, &whole);
+    accumulate(*state, samples, COUNT, 1, &whole);
     for (size_t p = 1; p < sizeof parts / sizeof parts[0]; ++p) {
-        fold(*state, samples, COUNT, parts[p], &split);
+        accumulate(*state, samples, COUNT, parts[p], &split);
         assert_memory_equal(&whole, &split, sizeof whole);
     }
     free(samples);
@@ -141,16 +143,16 @@ static void nan_quarantine(void **state) {
         }
     }
     samples[0] = -0.0; /* is light: none */
-    Folded folded;
-    fold(*state, samples, COUNT, 3, &folded);
-    assert_true(folded.tallies[TALLY_NOT_FINITE] == expected * 4 / 6);
-    assert_true(folded.tallies[TALLY_NEGATIVE] == expected / 6);
-    assert_true(folded.tallies[TALLY_OUT_OF_RANGE] == expected / 6);
+    Accumulated accumulated;
+    accumulate(*state, samples, COUNT, 3, &accumulated);
+    assert_true(accumulated.tallies[TALLY_NOT_FINITE] == expected * 4 / 6);
+    assert_true(accumulated.tallies[TALLY_NEGATIVE] == expected / 6);
+    assert_true(accumulated.tallies[TALLY_OUT_OF_RANGE] == expected / 6);
     uint32_t count = 0;
-    for (int k = 0; k < 4; ++k) count += folded.counts[k] & COUNT_SAMPLES;
+    for (int k = 0; k < 4; ++k) count += accumulated.counts[k] & COUNT_SAMPLES;
     assert_true(count == COUNT - expected);
-    assert_true(mean_of(&folded, 1) == 0.5);
-    assert_true(fabs(mean_of(&folded, 0) - 0.5 * (count - 1) / count) < 1e-7);
+    assert_true(mean_of(&accumulated, 1) == 0.5);
+    assert_true(fabs(mean_of(&accumulated, 0) - 0.5 * (count - 1) / count) < 1e-7);
 }
 
 enum { ARITHMETIC = 4096 };
