@@ -189,7 +189,7 @@ class Unseen(cli.ProgramTest):
         unseen = stats["unseen"]
         self.assertRegex(said, r"most of this noise is light that samples have hardly found yet\. About [0-9.]+ % of the light comes by way of "
                                r"spheres\[2\] \(mirror\) and spheres\[1\] \(glass\), and one sample in [0-9.]+ million finds it\. What helps: "
-                               r"--caustics on, larger lamps or discs, a fuzz of 1/64 or more for mirrors, or many more samples\.")
+                               r"--caustics on, larger lamps or discs, a fuzz of 1/64 or a roughness of 1/16 for mirrors, or many more samples\.")
         self.assertEqual([sphere["sphere"] for sphere in unseen["spheres"]], [2, 1])
         self.assertAlmostEqual(sum(sphere["part"] for sphere in unseen["spheres"]) + unseen["direct"], 1, places=6)
         self.assertAlmostEqual(unseen["mean"] ** 2 / unseen["variance"] / unseen["found"], 1, places=6)
