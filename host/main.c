@@ -2,10 +2,10 @@
  *
  * In:    argc, argv.   Out: an exit code (BP_STATUS_LIST).
  * Knows: how an error is shown, and by which of several processes.  Does not know: what any command does. */
+#include "base/escape.h"
 #include "base/json_memory.h"
 #include "base/long_call.h"
 #include "base/output_file.h"
-#include "base/shown.h"
 #include "cli/commands.h"
 #include "cli/process/driver_care.h"
 #include "cli/process/interrupt.h"
@@ -39,12 +39,12 @@ static void print_message(const BpError *err, BpStatus status, FILE *out) {
     /* "ballpark render: missing SCENE" names the program already. */
     if (err->file[0] != '\0' || strncmp(err->message, "ballpark ", 9) != 0) fputs("ballpark: ", out);
     if (err->file[0] != '\0' && !names_file) {
-        bp_show(err->file, false, out);
+        bp_print_escaped(err->file, false, out);
         if (err->line > 0) fprintf(out, ":%d", err->line);
         if (err->line > 0 && err->column > 0) fprintf(out, ":%d", err->column);
         fputs(": ", out);
     }
-    bp_show(err->message[0] != '\0' ? err->message : bp_status_name(status), false, out);
+    bp_print_escaped(err->message[0] != '\0' ? err->message : bp_status_name(status), false, out);
     fputc('\n', out);
 }
 
@@ -64,7 +64,7 @@ static void print_error(BpError *err, BpStatus status, bool wide) {
     }
     if (err->attachment == NULL) return;
     fputc('\n', stderr);
-    bp_show(err->attachment, true, stderr);
+    bp_print_escaped(err->attachment, true, stderr);
     fputc('\n', stderr);
 }
 

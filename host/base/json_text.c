@@ -1,7 +1,7 @@
 /* json_text.c: see json_text.h. */
 #include "json_text.h"
 
-#include "shown.h"
+#include "escape.h"
 
 #include <stdlib.h>
 #include <string.h>

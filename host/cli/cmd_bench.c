@@ -7,12 +7,12 @@
 #include "commands.h"
 
 #include "base/clock.h"
+#include "base/escape.h"
 #include "base/format.h"
 #include "base/json_text.h"
 #include "base/names.h"
 #include "base/plural.h"
 #include "base/quantile.h"
-#include "base/shown.h"
 #include "base/status.h"
 #include "cli/job/setup.h"
 #include "cli/line/options.h"
@@ -336,7 +336,7 @@ enum { COLUMNS = 11 };
 static void fill_row(const Bench *bench, const Entry *entry, const BpTable *table, size_t row) {
     const Figure segments = figure(bench, entry, MEASURE_SEGMENTS);
     const size_t size = BP_CELL_SIZE;
-    bp_shown(entry->name, bp_table_cell(table, row, 0), size);
+    bp_escape(entry->name, bp_table_cell(table, row, 0), size);
     bp_format_whole(entry->runs[0].spheres, bp_table_cell(table, row, 1), size);
     short_time(figure(bench, entry, MEASURE_LOAD).median, bp_table_cell(table, row, 2), size);
     short_time(figure(bench, entry, MEASURE_TREE).median, bp_table_cell(table, row, 3), size);
@@ -363,9 +363,9 @@ static BpStatus print_table(const BpCommandLine *line, const Bench *bench, BpErr
     for (size_t c = 0; c < COLUMNS; ++c) snprintf(bp_table_cell(&table, 0, c), BP_CELL_SIZE, "%s", head[c]);
     for (size_t i = 0; i < bench->count; ++i) fill_row(bench, &bench->entries[i], &table, i + 1);
     bp_page_begin(&page, stdout);
-    bp_show(report->device.name, false, page.text);
+    bp_print_escaped(report->device.name, false, page.text);
     fputs(", ", page.text);
-    bp_show(report->device.platform, false, page.text);
+    bp_print_escaped(report->device.platform, false, page.text);
     fprintf(page.text, "; %s kernel, %s, %s numerics, %s math\n", bp_kernel_names[report->kernel],
             bp_precision_names[report->precision], bp_numerics_names[report->numerics],
             bp_math_names[report->math]);

@@ -8,9 +8,9 @@
  * cli/conform/check_junit.h). */
 #include "commands.h"
 
+#include "base/escape.h"
 #include "base/format.h"
 #include "base/plural.h"
-#include "base/shown.h"
 #include "cli/conform/check_against.h"
 #include "cli/conform/check_bits.h"
 #include "cli/conform/check_failure.h"
@@ -304,7 +304,7 @@ static void print_verdict(const Session *session, size_t item, FILE *out) {
     const json_int_t samples = json_integer_value(json_object_get(entry, "samples_per_pixel"));
     char title[700];
     char name[BP_CHECK_LABEL_SIZE];
-    bp_show(bp_check_label(scene, name, sizeof name), false, out);
+    bp_print_escaped(bp_check_label(scene, name, sizeof name), false, out);
     fprintf(out, " on %s\n", bp_check_device_title(entry, title, sizeof title));
     fprintf(out, "%dx%d pixels, %" JSON_INTEGER_FORMAT " sample%s each%s: %s",
             (int)json_integer_value(json_object_get(scene, "width")),

@@ -5,9 +5,9 @@
  * may be broken is asked (cli/process/device_survey.h). */
 #include "commands.h"
 
+#include "base/escape.h"
 #include "base/json_text.h"
 #include "base/names.h"
-#include "base/shown.h"
 #include "base/wrap.h"
 #include "cli/output/json_file.h"
 #include "cli/output/output.h"
@@ -43,14 +43,14 @@ static void format_bytes(uint64_t bytes, char *text) {
 static void fill_row(const BpDeviceInfo *info, bool is_default, const BpTable *table, size_t row) {
     snprintf(bp_table_cell(table, row, 0), BP_CELL_SIZE, "%u%s", info->number, is_default ? "*" : " ");
     snprintf(bp_table_cell(table, row, 1), BP_CELL_SIZE, "%s", type_text(info->type));
-    bp_shown(info->name, bp_table_cell(table, row, 2), BP_CELL_SIZE);
+    bp_escape(info->name, bp_table_cell(table, row, 2), BP_CELL_SIZE);
     snprintf(bp_table_cell(table, row, 3), BP_CELL_SIZE, "%u", info->compute_units);
     format_bytes(info->memory_bytes, bp_table_cell(table, row, 4));
     format_bytes(info->largest_allocation_bytes, bp_table_cell(table, row, 5));
     snprintf(bp_table_cell(table, row, 6), BP_CELL_SIZE, "%s", info->has_double ? "yes" : "no");
     char text[2 * BP_CELL_SIZE];
     snprintf(text, sizeof text, "%s, driver %s", info->platform, info->driver);
-    bp_shown(text, bp_table_cell(table, row, 7), BP_CELL_SIZE);
+    bp_escape(text, bp_table_cell(table, row, 7), BP_CELL_SIZE);
 }
 
 static BpStatus print_table(const BpCommandLine *line, const BpDeviceInfo *list, size_t count,
@@ -69,7 +69,7 @@ static BpStatus print_table(const BpCommandLine *line, const BpDeviceInfo *list,
     for (size_t d = 0; d < count; ++d) {
         if (list[d].refusal[0] == '\0') continue;
         fprintf(page.text, "%u  " BP_HANG "cannot render: ", list[d].number);
-        bp_show(list[d].refusal, false, page.text);
+        bp_print_escaped(list[d].refusal, false, page.text);
         fputc('\n', page.text);
     }
     for (size_t d = 0; d < count; ++d) {

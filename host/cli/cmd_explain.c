@@ -5,10 +5,10 @@
  * Knows: the analysis of effects, cost measurements, path logs, tables.   Does not know: OpenCL. */
 #include "commands.h"
 
+#include "base/escape.h"
 #include "base/format.h"
 #include "base/json_text.h"
 #include "base/names.h"
-#include "base/shown.h"
 #include "base/wrap.h"
 #include "cli/job/setup.h"
 #include "cli/job/unseen_text.h"
@@ -71,7 +71,7 @@ static void print_path(const BpScene *scene, const BpPathLog *path, uint32_t x, 
                        uint64_t seed, FILE *out) {
     fprintf(out, "  pixel (%" PRIu32 ", %" PRIu32 "), sample %" PRIu64 ", seed %" PRIu64 ", on ", x, y,
             sample, seed);
-    bp_show(path->device.name, false, out);
+    bp_print_escaped(path->device.name, false, out);
     fputc('\n', out);
     const double nothing[3] = {0};
     const double *radiance = nothing;
@@ -92,7 +92,7 @@ static void print_path(const BpScene *scene, const BpPathLog *path, uint32_t x, 
                     step->distance, step->sphere, step->enters ? "outside" : "inside", step->point[0],
                     step->point[1], step->point[2]);
             fputs("       ", out);
-            bp_show(material->name, false, out);
+            bp_print_escaped(material->name, false, out);
             fprintf(out, " (%s) %s", bp_material_types[material->kind].name, outcome(step, material->kind));
             if (step->goes_on)
                 fprintf(out, ", throughput (%.4g, %.4g, %.4g)", step->throughput[0], step->throughput[1],
@@ -194,9 +194,9 @@ static json_t *path_json(const BpScene *scene, const BpPathLog *path, uint32_t x
 static void print_heading(const char *path, const BpScene *scene, FILE *out) {
     BpSceneInfo info;
     bp_scene_info(scene, &info);
-    bp_show(path, false, out);
+    bp_print_escaped(path, false, out);
     fputs(": ", out);
-    bp_show(info.title, false, out);
+    bp_print_escaped(info.title, false, out);
     char spheres[32];
     fprintf(out, "%s%s sphere%s, %zu material%s, %ux%u\n", info.title[0] != '\0' ? "; " : "",
             bp_format_whole(info.spheres, spheres, sizeof spheres), info.spheres == 1 ? "" : "s",
@@ -231,7 +231,7 @@ static void print_costs(const BpCosts *costs, FILE *out) {
     const unsigned columns = terminal > 60 ? terminal - 56 : 8;
     char rate[32];
     fputs("  ", out);
-    bp_show(costs->device.name, false, out);
+    bp_print_escaped(costs->device.name, false, out);
     fprintf(out, ", %s kernel, %ux%u, %u rounds of %s samples%s\n", bp_kernel_names[costs->form],
             costs->width, costs->height, costs->rounds,
             bp_format_count((double)costs->samples, rate, sizeof rate),

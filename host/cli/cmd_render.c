@@ -6,10 +6,10 @@
 #include "commands.h"
 
 #include "base/clock.h"
+#include "base/escape.h"
 #include "base/format.h"
 #include "base/output_file.h"
 #include "base/plural.h"
-#include "base/shown.h"
 #include "cli/job/checkpoint.h"
 #include "cli/job/preview.h"
 #include "cli/job/ranks.h"

@@ -1,9 +1,9 @@
 /* explain_chains.c: see explain_chains.h. */
 #include "explain_chains.h"
 
+#include "base/escape.h"
 #include "base/format.h"
 #include "base/names.h"
-#include "base/shown.h"
 #include "base/status.h"
 #include "cli/output/json_file.h"
 #include "packed/focusers.h"
@@ -110,7 +110,7 @@ static void print_way(const BpScene *scene, const BpChain *chain, const BpChainW
     char share[32];
     fprintf(out, "       %s %" PRIu32 " %s sphere %" PRIu32 " (", chain->disc ? "disc" : "lamp", chain->lamp,
             hows[chain->chords], chain->sphere);
-    bp_show(scene->materials[scene->spheres[chain->sphere].material].name, false, out);
+    bp_print_escaped(scene->materials[scene->spheres[chain->sphere].material].name, false, out);
     fputs(") ", out);
     if (way->stopped < 1)
         fprintf(out, "brings (%.4g, %.4g, %.4g)", way->brings[0], way->brings[1], way->brings[2]);

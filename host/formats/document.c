@@ -284,10 +284,10 @@ BpStatus bp_node_fail(const BpNode *node, BpPart part, BpError *err, const char 
     int line = 0, column = 0;
     const BpChange *change = find_change(node, path);
     if (change != NULL) {
-        char shown[FOUND_SIZE + 1];
-        bp_printable(change->origin, shown, sizeof shown);
-        const BpStatus status =
-            bp_fail(err, BP_ERR_SCENE, "%s: %s (by %s %s)", path, text, node->document->changed_by, shown);
+        char printable[FOUND_SIZE + 1];
+        bp_printable(change->origin, printable, sizeof printable);
+        const BpStatus status = bp_fail(err, BP_ERR_SCENE, "%s: %s (by %s %s)", path, text,
+                                        node->document->changed_by, printable);
         bp_error_at(err, node->document->name, 0, 0);
         return status;
     }
@@ -330,30 +330,30 @@ void bp_json_describe(const json_t *value, char *out, size_t size) {
 
 void bp_missing_name_text(const char *kind, const char *list, const char *const *names, size_t count,
                           const char *name, char out[BP_MISSING_NAME_SIZE]) {
-    char shown[64], near_shown[64];
-    bp_printable(name, shown, sizeof shown);
+    char printable[64], near_printable[64];
+    bp_printable(name, printable, sizeof printable);
     if (count == 0) {
         snprintf(out, BP_MISSING_NAME_SIZE,
                  "found the %s \"%s\", expected a name from \"%s\", which is empty or absent; add it there",
-                 kind, shown, list);
+                 kind, printable, list);
         return;
     }
     const char *nearest = bp_nearest_name(name, names, count);
     if (nearest != NULL) {
-        bp_printable(nearest, near_shown, sizeof near_shown);
+        bp_printable(nearest, near_printable, sizeof near_printable);
         snprintf(out, BP_MISSING_NAME_SIZE,
-                 "found the %s \"%s\", expected a name from \"%s\"; did you mean \"%s\"?", kind, shown, list,
-                 near_shown);
+                 "found the %s \"%s\", expected a name from \"%s\"; did you mean \"%s\"?", kind, printable,
+                 list, near_printable);
         return;
     }
-    snprintf(out, BP_MISSING_NAME_SIZE, "found the %s \"%s\", expected a name from \"%s\":", kind, shown,
+    snprintf(out, BP_MISSING_NAME_SIZE, "found the %s \"%s\", expected a name from \"%s\":", kind, printable,
              list);
     for (size_t i = 0; i < count; i++) {
         const size_t used = strlen(out);
-        bp_printable(names[i], near_shown, sizeof near_shown);
-        const bool fits = used + strlen(near_shown) + 8 < BP_MISSING_NAME_SIZE;
+        bp_printable(names[i], near_printable, sizeof near_printable);
+        const bool fits = used + strlen(near_printable) + 8 < BP_MISSING_NAME_SIZE;
         snprintf(out + used, BP_MISSING_NAME_SIZE - used, fits ? "%s \"%s\"" : "%s ...", i > 0 ? "," : "",
-                 near_shown);
+                 near_printable);
         if (!fits) return;
     }
 }

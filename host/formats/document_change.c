@@ -8,12 +8,12 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum { SHOWN_SIZE = 96 };
+enum { PRINTABLE_SIZE = 96 };
 
 static BpStatus fail(const char *set, BpError *err, const char *text) {
-    char shown[SHOWN_SIZE];
-    bp_printable(set, shown, sizeof shown);
-    return bp_fail(err, BP_ERR_USAGE, "%s: %s", shown, text);
+    char printable[PRINTABLE_SIZE];
+    bp_printable(set, printable, sizeof printable);
+    return bp_fail(err, BP_ERR_USAGE, "%s: %s", printable, text);
 }
 
 /* ---- the value ----------------------------------------------------------------------------------------- */
@@ -84,7 +84,7 @@ static void note_step(const Place *place, BpChange *change) {
 
 static BpStatus read_index(const char *set, json_t *list, const char **at, const BpChange *change,
                            Place *place, BpError *err) {
-    char text[400], *end = NULL, found[SHOWN_SIZE];
+    char text[400], *end = NULL, found[PRINTABLE_SIZE];
     const char *digits = *at + 1;
     const unsigned long long index = strtoull(digits, &end, 10);
     if (digits[0] < '0' || digits[0] > '9' || *end != ']')
@@ -110,7 +110,7 @@ static BpStatus read_index(const char *set, json_t *list, const char **at, const
 
 static BpStatus read_name(const char *set, json_t *object, const char **at, const BpChange *change,
                           Place *place, BpError *err) {
-    char text[700], found[SHOWN_SIZE];
+    char text[700], found[PRINTABLE_SIZE];
     if (!json_is_object(object)) {
         bp_json_describe(object, found, sizeof found);
         if (json_is_array(object) && json_array_size(object) > 0)

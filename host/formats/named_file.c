@@ -49,9 +49,10 @@ BpStatus bp_node_open_file(const BpNode *node, const char *path, const char *exp
     BpStatus status = held != NULL ? open_held(held, path, stream, size, &inner)
                                    : bp_file_open(path, false, expected, stream, size, &inner);
     if (status != BP_OK) { /* the fault lies with the document, so the error stands there */
-        char shown[256];
-        bp_printable(path, shown, sizeof shown);
-        const BpStatus at_node = bp_node_fail(node, BP_PART_VALUE, err, "\"%s\": %s", shown, inner.message);
+        char printable[256];
+        bp_printable(path, printable, sizeof printable);
+        const BpStatus at_node =
+            bp_node_fail(node, BP_PART_VALUE, err, "\"%s\": %s", printable, inner.message);
         if (status != BP_ERR_MEMORY) status = at_node;
         bp_error_clear(&inner);
     }

@@ -1,8 +1,8 @@
 /* text.c: the study as a table for a terminal, as CSV, and the advice; see study.h. */
 #include "study.h"
 
+#include "base/escape.h"
 #include "base/format.h"
-#include "base/shown.h"
 #include "base/wrap.h"
 
 #include <inttypes.h>
@@ -16,9 +16,9 @@ static const char *interval(const BpStudyEstimate *estimate, char *text, size_t 
 static void print_head(const BpStudyResult *result, FILE *out) {
     const BpScene *scene = result->scene;
     char error[32];
-    bp_show(scene->path, false, out);
+    bp_print_escaped(scene->path, false, out);
     fprintf(out, " at %ux%u on ", scene->camera.width, scene->camera.height);
-    bp_show(result->report.device.name, false, out);
+    bp_print_escaped(result->report.device.name, false, out);
     fputc('\n', out);
     fprintf(out,
             "reference: " BP_HANG "exact Fresnel, depth %u, %s, two pictures with %" PRIu64
@@ -132,7 +132,7 @@ const char *bp_study_advice_text(const BpStudyResult *result, const BpStudyAdvic
     const char *path = result->scene->path;
     char clean[4096];
     const bool plain = strpbrk(path, " \"'\\$`;&|<>()*?[]#~!{}") == NULL &&
-                       strcmp(bp_shown(path, clean, sizeof clean), path) == 0;
+                       strcmp(bp_escape(path, clean, sizeof clean), path) == 0;
     char seconds[32];
     snprintf(text, size,
              "%g %%: %s, %.0f %s per pixel, about %s at %ux%u%s: ballpark render %.300s --spp %.0f%s%s%s",

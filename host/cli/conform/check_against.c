@@ -1,10 +1,10 @@
 /* check_against.c: see check_against.h. */
 #include "check_against.h"
 
+#include "base/escape.h"
 #include "base/input_file.h"
 #include "base/json_memory.h"
 #include "base/json_text.h"
-#include "base/shown.h"
 #include "check_report.h"
 
 #include <errno.h>
@@ -235,21 +235,21 @@ void bp_check_against_print(const json_t *against, FILE *out) {
     size_t index;
     json_t *change;
     fputs("against ", out);
-    bp_show(bp_check_text(against, "file"), false, out);
+    bp_print_escaped(bp_check_text(against, "file"), false, out);
     fputs(":\n", out);
     json_array_foreach(changes, index, change) {
         const char *kind = bp_check_text(change, "kind"), *was = bp_check_text(change, "was");
         const char *now = bp_check_text(change, "now"), *scene = bp_check_text(change, "scene");
         fprintf(out, "  %-10s  ", strcmp(kind, "regression") == 0 ? "REGRESSION" : kind);
-        if (was[0] != '\0') bp_show(was, false, out);
+        if (was[0] != '\0') bp_print_escaped(was, false, out);
         if (was[0] != '\0' && now[0] != '\0') fputs(" -> ", out);
-        if (now[0] != '\0') bp_show(now, false, out);
+        if (now[0] != '\0') bp_print_escaped(now, false, out);
         fputs(": ", out);
         if (scene[0] != '\0') {
-            bp_show(scene, false, out);
+            bp_print_escaped(scene, false, out);
             fputs(" on ", out);
         }
-        bp_show(bp_check_text(change, "device"), false, out);
+        bp_print_escaped(bp_check_text(change, "device"), false, out);
         fputc('\n', out);
     }
     const int regressions = (int)json_integer_value(json_object_get(against, "regressions"));

@@ -1,11 +1,11 @@
 /* check_bits.c: see check_bits.h. */
 #include "check_bits.h"
 
+#include "base/escape.h"
 #include "base/input_file.h"
 #include "base/json_memory.h"
 #include "base/json_text.h"
 #include "base/names.h"
-#include "base/shown.h"
 #include "base/words.h"
 #include "check/bits.h"
 #include "check_entry.h"
@@ -358,7 +358,7 @@ void bp_check_bits_print(const json_t *entries, bool quiet, FILE *out) {
                 : strcmp(verdict, "inconclusive") == 0 ? "NOT COMPARED"
                                                        : "FAILED",
                 bp_check_bits_label(entry, label, sizeof label));
-        bp_show(reason, false, out);
+        bp_print_escaped(reason, false, out);
         fputc('\n', out);
     }
     fprintf(out, "  %zu pictures: %u the same, %u different, %u not compared, %u failed, %u skipped\n",

@@ -1,9 +1,9 @@
 /* check_entry.c: see check_entry.h. */
 #include "check_entry.h"
 
+#include "base/escape.h"
 #include "base/json_text.h"
 #include "base/names.h"
-#include "base/shown.h"
 #include "cli/output/report_json.h"
 
 #include <inttypes.h>
@@ -146,7 +146,7 @@ const char *bp_check_device_title(const json_t *entry, char *text, size_t size) 
     char plain[640];
     snprintf(plain, sizeof plain, "%s (%s, driver %s)", bp_check_device_text(entry, "name"),
              bp_check_device_text(entry, "platform"), bp_check_device_text(entry, "driver"));
-    return bp_shown(plain, text, size);
+    return bp_escape(plain, text, size);
 }
 
 void bp_check_count(const json_t *entry, BpCheckCounts *counts) {

@@ -34,7 +34,7 @@ enum { BP_CHECK_LABEL_SIZE = 4200 };
  * sampled)"; returns `text`. */
 const char *bp_check_label(const json_t *scene, char *text, size_t size);
 
-/* "NAME (PLATFORM, driver VERSION)", shown safely, with a 0; returns `text`. */
+/* "NAME (PLATFORM, driver VERSION)", escaped for display, with a 0; returns `text`. */
 const char *bp_check_device_title(const json_t *entry, char *text, size_t size);
 
 /* The verdict on several entries: "disagree" before "failed" before "inconclusive" before "agree"; where

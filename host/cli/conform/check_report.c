@@ -1,9 +1,9 @@
 /* check_report.c: see check_report.h. */
 #include "check_report.h"
 
+#include "base/escape.h"
 #include "base/json_text.h"
 #include "base/names.h"
-#include "base/shown.h"
 #include "cli/output/json_file.h"
 #include "render/render_plan.h"
 
@@ -93,11 +93,11 @@ static void print_row(const json_t *entry, const char *name, FILE *out) {
         fprintf(out, "%7.3g %%  ", 100 * json_real_value(within));
     else
         fprintf(out, "%9s  ", "-");
-    bp_show(name, false, out);
+    bp_print_escaped(name, false, out);
     fputc('\n', out);
     if (agrees) return;
     fputs("                ", out);
-    bp_show(bp_check_text(entry, "reason"), false, out);
+    bp_print_escaped(bp_check_text(entry, "reason"), false, out);
     fputc('\n', out);
 }
 

@@ -3,7 +3,7 @@
 
 #include "cli/output/json_file.h"
 
-#include "base/shown.h"
+#include "base/escape.h"
 
 #include <stdio.h>
 #include <string.h>

@@ -4,8 +4,8 @@
 #include "cli/line/command_text.h"
 
 #include "base/clock.h"
+#include "base/escape.h"
 #include "base/output_file.h"
-#include "base/shown.h"
 #include "cli/line/file_conflicts.h"
 #include "cli/line/option_table.h"
 #include "cli/output/content.h"
@@ -114,7 +114,7 @@ static void report(BpCheckpoint *checkpoint, BpStatus status, BpError *fault) {
         if (checkpoint->new_only) checkpoint->every = 0;
         fputs("ballpark: warning: the checkpoint was not written, and rendering continues: ", stderr);
         bp_error_add_remedy(fault, BP_INTERFACE_COMMAND_LINE);
-        bp_show(fault->message, false, stderr);
+        bp_print_escaped(fault->message, false, stderr);
         fputc('\n', stderr);
     }
     bp_error_clear(fault);

@@ -2,7 +2,7 @@
 #include "preview.h"
 
 #include "base/clock.h"
-#include "base/shown.h"
+#include "base/escape.h"
 #include "image/image.h"
 #include "render/render.h"
 
@@ -70,7 +70,7 @@ static void warn(BpPreview *preview, BpError *fault) {
     preview->warned = true;
     fputs("ballpark: warning: the preview was not written, and rendering continues: ", stderr);
     bp_error_add_remedy(fault, BP_INTERFACE_COMMAND_LINE);
-    bp_show(fault->message, false, stderr);
+    bp_print_escaped(fault->message, false, stderr);
     fputc('\n', stderr);
 }
 

@@ -1,9 +1,9 @@
 /* setup.c: see setup.h. */
 #include "setup.h"
 
+#include "base/escape.h"
 #include "base/input_file.h"
 #include "base/plural.h"
-#include "base/shown.h"
 #include "cli/line/file_conflicts.h"
 #include "cli/process/child_process.h"
 #include "cli/process/driver_care.h"
@@ -65,7 +65,7 @@ static void say_unused_material(const BpCommandLine *line, const char *set, cons
 void bp_setup_notes(const BpCommandLine *line, const BpScene *scene) {
     BpPage page;
     bp_page_begin(&page, stderr);
-    bp_show(scene->notes, true, page.text);
+    bp_print_escaped(scene->notes, true, page.text);
     bp_page_end(&page, line, stderr);
 }
 

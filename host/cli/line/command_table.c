@@ -258,11 +258,11 @@ BpStatus bp_command_find(const char *name, const BpCommand **command, BpError *e
         names[c] = bp_commands[c].name;
     }
     const char *nearest = bp_nearest_name(name, names, bp_command_count);
-    char shown[80];
-    bp_printable(name, shown, sizeof shown);
+    char printable[80];
+    bp_printable(name, printable, sizeof printable);
     if (nearest != NULL)
-        return bp_fail(err, BP_ERR_USAGE, "unknown command \"%s\"; did you mean %s?", shown, nearest);
+        return bp_fail(err, BP_ERR_USAGE, "unknown command \"%s\"; did you mean %s?", printable, nearest);
     if (strcmp(name, "version") == 0)
         return bp_fail(err, BP_ERR_USAGE, "unknown command \"version\"; did you mean `ballpark --version`?");
-    return bp_fail(err, BP_ERR_USAGE, "unknown command \"%s\"; see `ballpark --help`", shown);
+    return bp_fail(err, BP_ERR_USAGE, "unknown command \"%s\"; see `ballpark --help`", printable);
 }

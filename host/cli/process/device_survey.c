@@ -1,8 +1,8 @@
 /* device_survey.c: see device_survey.h. */
 #include "device_survey.h"
 
+#include "base/escape.h"
 #include "base/json_text.h"
-#include "base/shown.h"
 #include "child_process.h"
 #include "interrupt.h"
 #include "opencl/device_choose.h"

@@ -1,7 +1,7 @@
 /* page.c: see page.h. */
 #include "page.h"
 
-#include "base/shown.h"
+#include "base/escape.h"
 #include "base/wrap.h"
 #include "terminal.h"
 
@@ -46,7 +46,7 @@ void bp_say(const BpCommandLine *line, const char *format, ...) {
     vsnprintf(text, sizeof text, format, arguments);
     va_end(arguments);
     bp_page_begin(&page, stderr);
-    bp_show(text, true, page.text);
+    bp_print_escaped(text, true, page.text);
     fputc('\n', page.text);
     bp_page_end(&page, line, stderr);
 }

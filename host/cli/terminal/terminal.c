@@ -3,7 +3,7 @@
 #include "terminal.h"
 
 #include "base/clock.h"
-#include "base/shown.h"
+#include "base/escape.h"
 
 #include <errno.h>
 #include <pthread.h>
@@ -109,7 +109,7 @@ BpWaiting *bp_waiting_begin(bool quiet, const char *format, ...) {
     char text[sizeof waiting->text];
     vsnprintf(text, sizeof text, format, arguments);
     va_end(arguments);
-    bp_shown(text, waiting->text, sizeof waiting->text);
+    bp_escape(text, waiting->text, sizeof waiting->text);
     waiting->start = bp_clock_seconds();
     pthread_mutex_init(&waiting->mutex, NULL);
     pthread_cond_init(&waiting->ended_changed, NULL);

@@ -1,13 +1,13 @@
-/* shown.h: text of foreign origin (names of files, titles of scenes, messages of drivers) made fit to be
- * shown.
+/* escape.h: text of foreign origin (names of files, titles of scenes, messages of drivers) escaped for
+ * display.
  *
  * In:    any bytes.   Out: the same text; terminal control sequences, and bytes that are not UTF-8, as \x1b.
  * Knows: UTF-8, control characters, and those that turn the direction of writing.
  * Does not know: where it is shown.
  *
  * Done always and not on terminals alone: what a file or a pipe holds is shown on a terminal later. */
-#ifndef BP_BASE_SHOWN_H
-#define BP_BASE_SHOWN_H
+#ifndef BP_BASE_ESCAPE_H
+#define BP_BASE_ESCAPE_H
 
 #include <stdbool.h>
 #include <stddef.h>
@@ -18,9 +18,9 @@
 size_t bp_utf8_length(const char *text);
 
 /* `text` in `buffer`, cut at a whole character where it is too long; returns `buffer`. */
-const char *bp_shown(const char *text, char *buffer, size_t size);
+const char *bp_escape(const char *text, char *buffer, size_t size);
 
 /* `text` to `out`. `lines`: the ends of lines and tabs are kept. */
-void bp_show(const char *text, bool lines, FILE *out);
+void bp_print_escaped(const char *text, bool lines, FILE *out);
 
 #endif

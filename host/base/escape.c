@@ -1,5 +1,5 @@
-/* shown.c: see shown.h. */
-#include "shown.h"
+/* escape.c: see escape.h. */
+#include "escape.h"
 
 #include <stdint.h>
 #include <string.h>
@@ -24,7 +24,7 @@ static size_t decode(const char *text, uint32_t *character) {
 
 /* Control characters of both sets (ISO 6429), and those that turn the direction of writing (Unicode, UAX 9).
  */
-static bool is_obeyed(uint32_t c) {
+static bool is_control(uint32_t c) {
     return c < 0x20 || (c >= 0x7f && c <= 0x9f) || (c >= 0x202a && c <= 0x202e) ||
            (c >= 0x2066 && c <= 0x2069);
 }
@@ -35,21 +35,21 @@ size_t bp_utf8_length(const char *text) {
 }
 
 /* How many bytes at `text` may be shown as they are; 0: the first may not. */
-static size_t shown_length(const char *text) {
+static size_t printable_length(const char *text) {
     uint32_t character = 0;
     const size_t length = decode(text, &character);
-    return length > 0 && is_obeyed(character) ? 0 : length;
+    return length > 0 && is_control(character) ? 0 : length;
 }
 
 static void escape(char byte, char to[ESCAPE_LENGTH + 1]) {
     snprintf(to, ESCAPE_LENGTH + 1, "\\x%02x", (unsigned char)byte);
 }
 
-const char *bp_shown(const char *text, char *buffer, size_t size) {
+const char *bp_escape(const char *text, char *buffer, size_t size) {
     size_t used = 0;
     for (const char *at = text; *at != '\0';) {
         char escaped[ESCAPE_LENGTH + 1];
-        const size_t length = shown_length(at), taken = length > 0 ? length : 1;
+        const size_t length = printable_length(at), taken = length > 0 ? length : 1;
         const size_t put = length > 0 ? length : ESCAPE_LENGTH;
         if (used + put >= size) break;
         if (length == 0) escape(*at, escaped);
@@ -61,10 +61,10 @@ const char *bp_shown(const char *text, char *buffer, size_t size) {
     return buffer;
 }
 
-void bp_show(const char *text, bool lines, FILE *out) {
+void bp_print_escaped(const char *text, bool lines, FILE *out) {
     for (const char *at = text; *at != '\0';) {
         char escaped[ESCAPE_LENGTH + 1];
-        const size_t length = lines && (*at == '\n' || *at == '\t') ? 1 : shown_length(at);
+        const size_t length = lines && (*at == '\n' || *at == '\t') ? 1 : printable_length(at);
         if (length > 0) {
             fwrite(at, 1, length, out);
             at += length;
