@@ -119,8 +119,8 @@ static BpStatus join_ranks(char **argv, BpCommandLine *line, BpStatus status, Bp
 
 /* How it went on all ranks. Does not return when this one failed amid common work. */
 static BpStatus leave_ranks(const BpCommandLine *line, BpStatus status, BpError *err) {
-    if (!bp_comm_is_at_work(line->comm)) return bp_comm_agree(line->comm, status, err);
-    bp_comm_sign(line->comm, err);
+    if (!bp_comm_is_at_work(line->comm)) return bp_comm_all_ok(line->comm, status, err);
+    bp_comm_prefix_rank(line->comm, err);
     print_error(err, status, line->wide);
     bp_output_abandon();
     bp_comm_abort(line->comm, bp_status_exit_code(status));
@@ -143,7 +143,7 @@ int main(int argc, char **argv) {
     BpStatus status = join_ranks(argv, &line, bp_command_line_parse(argc, argv, &line, &err), &err);
     /* With several ranks, only one reports the errors that they share. */
     const bool tells =
-        line.comm != NULL ? bp_comm_leads(line.comm) : status == BP_OK || bp_launch_find().rank == 0;
+        line.comm != NULL ? bp_comm_is_root(line.comm) : status == BP_OK || bp_launch_find().rank == 0;
     if (status == BP_OK) {
         if (line.version)
             printf("ballpark %s\n", bp_version());

@@ -72,7 +72,7 @@ static BpStatus deliver(const BpCommandLine *line, BpResultFile *file, const BpS
         bp_keep_sums(result->film, file->path, err);
     BP_TRY(status);
     bp_comm_end_work(result->comm); /* the others have done their part */
-    if (!bp_comm_leads(result->comm)) return BP_OK;
+    if (!bp_comm_is_root(result->comm)) return BP_OK;
     bp_render_report(render, &result->report);
     result->samples_per_pixel = bp_render_samples_done(render);
     result->stopped_by = end->reason;
@@ -241,7 +241,7 @@ static BpStatus prepare(Run *run, const BpCommandLine *line, Job *job, Work *wor
     BpStatus status = BP_OK;
     BpWaiting *waiting = NULL;
     job->checkpoint.is_shared = run->comm != NULL;
-    job->checkpoint.is_elsewhere = !bp_comm_leads(run->comm);
+    job->checkpoint.is_elsewhere = !bp_comm_is_root(run->comm);
     BP_TRY(bp_preview_choose(line, run->comm, job->scene, &job->file, &work->preview, err));
     BP_TRY_GOTO(status, bp_resume_load(line, run->comm, &work->resumed, err), done);
     if (work->resumed != NULL)
@@ -275,10 +275,10 @@ static BpStatus render_one(Run *run, const BpCommandLine *line, Job *job, BpErro
                                 .times = {.start = run->start, .load = job->load_seconds},
                                 .comm = run->comm,
                                 .checkpoint = &job->checkpoint};
-    BpStatus status = bp_comm_agree(run->comm, prepare(run, line, job, &work, err), err);
+    BpStatus status = bp_comm_all_ok(run->comm, prepare(run, line, job, &work, err), err);
     if (status == BP_OK && work.resumed != NULL) {
         status = bp_render_resume(work.render, work.resumed, err);
-        if (!bp_comm_is_at_work(run->comm)) status = bp_comm_agree(run->comm, status, err);
+        if (!bp_comm_is_at_work(run->comm)) status = bp_comm_all_ok(run->comm, status, err);
     }
     bp_film_destroy(&work.resumed);
     if (status == BP_OK) {
@@ -293,7 +293,7 @@ static BpStatus render_one(Run *run, const BpCommandLine *line, Job *job, BpErro
         status = deliver(line, &job->file, &work.rule, &end, &job->checkpoint, &work.preview, work.render,
                          &work.result, run->stats, err);
     /* A rank that failed at work cannot agree with the others, who wait for something else. */
-    if (!bp_comm_is_at_work(run->comm)) status = bp_comm_agree(run->comm, status, err);
+    if (!bp_comm_is_at_work(run->comm)) status = bp_comm_all_ok(run->comm, status, err);
     bp_render_destroy(&work.render);
     return status;
 }
@@ -323,15 +323,15 @@ static BpStatus meet(Run *run, size_t dealt, BpStatus status, BpError *err) {
     BpComm *comm = run->line.comm;
     char **texts = NULL;
     if (dealt == 0) return status;
-    status = bp_comm_agree(comm, status, err);
+    status = bp_comm_all_ok(comm, status, err);
     if (status == BP_OK)
         bp_say(&run->line, "%zu picture%s rendered by %" PRIu32 " ranks, each picture by one rank", dealt,
                bp_plural(dealt), bp_comm_size(comm));
     if (status != BP_OK || run->line.stats == NULL) return status;
     char *own = json_dumps(run->stats, JSON_COMPACT);
-    status = bp_comm_agree(
+    status = bp_comm_all_ok(
         comm, own != NULL ? BP_OK : bp_fail(err, BP_ERR_MEMORY, "out of memory for statistics"), err);
-    if (status == BP_OK) status = bp_comm_collect(comm, own, &texts, err);
+    if (status == BP_OK) status = bp_comm_gather_texts(comm, own, &texts, err);
     free(own);
     if (texts == NULL) return status;
     json_t *all = json_array(), *lists = json_array();
@@ -390,7 +390,7 @@ static BpStatus render_scenes(Run *run, BpError *err) {
     BpStatus status = BP_OK;
     if (run->line.stats != NULL) BP_TRY(bp_line_check_output(&run->line, run->line.stats, err));
     for (size_t j = 0; j < run->count && status == BP_OK; ++j) status = load(run, j, err);
-    status = bp_comm_agree(comm, status, err); /* all have looked before the first file is written */
+    status = bp_comm_all_ok(comm, status, err); /* all have looked before the first file is written */
     for (size_t j = 0; j < run->count && status == BP_OK; ++j) {
         const bool alone = j < dealt;
         if (!alone || bp_ranks_is_mine(comm, j)) {
@@ -404,7 +404,7 @@ static BpStatus render_scenes(Run *run, BpError *err) {
         }
         if (j + 1 == dealt) status = meet(run, dealt, status, err);
     }
-    if (json_array_size(run->stats) > 0 && bp_comm_leads(comm)) {
+    if (json_array_size(run->stats) > 0 && bp_comm_is_root(comm)) {
         const BpStatus written = write_stats(run, status == BP_OK ? err : NULL);
         if (status == BP_OK) status = written;
     }
@@ -419,7 +419,7 @@ BpStatus bp_command_render(const BpCommandLine *given, BpError *err) {
     Run run = {.line = *line, .count = line->operand_count, .start = bp_clock_seconds()};
     const bool is_series =
         bp_option_given(line, BP_OPTION_FRAMES) || bp_option_given(line, BP_OPTION_TURNTABLE);
-    run.line.quiet = line->quiet || !bp_comm_leads(line->comm); /* errors alone come from other ranks */
+    run.line.quiet = line->quiet || !bp_comm_is_root(line->comm); /* errors alone come from other ranks */
     run.jobs = calloc(run.count, sizeof *run.jobs);
     if (line->stats != NULL) run.stats = json_array();
     const bool to_output = line->output != NULL && strcmp(line->output, "-") == 0;

@@ -25,8 +25,8 @@ struct BpComm {
     BpPlace place;
     uint32_t cores;
     double waiting, adding; /* seconds */
-    BpStatus agreed;        /* BP_OK, or what a rank has failed with */
-    bool at_work, has_called, was_called;
+    BpStatus common_status; /* BP_OK, or what a rank has failed with */
+    bool at_work, has_notified, was_notified;
 };
 
 /* ---- exchanges --------------------------------------------------------------------------------------- */
@@ -69,15 +69,15 @@ BpStatus bp_comm_gather(BpComm *comm, const void *own, size_t size, void *all, B
     return BP_OK;
 }
 
-BpStatus bp_comm_unite(BpComm *comm, uint32_t *bits, BpError *err) {
-    return comm != NULL ? wait_for(comm, comm->transport->unite(bits), err) : BP_OK;
+BpStatus bp_comm_allreduce_or(BpComm *comm, uint32_t *bits, BpError *err) {
+    return comm != NULL ? wait_for(comm, comm->transport->allreduce_or(bits), err) : BP_OK;
 }
 
 /* Adding keeps a core busy while it waits, so ranks meet first. */
 static BpStatus add(BpComm *comm, void *numbers, size_t count, uint32_t width, BpError *err) {
     uint32_t none = 0;
     if (comm == NULL) return BP_OK;
-    BP_TRY(bp_comm_unite(comm, &none, err));
+    BP_TRY(bp_comm_allreduce_or(comm, &none, err));
     const double start = bp_clock_seconds();
     const char *fault = comm->transport->add(numbers, count, width);
     comm->adding += bp_clock_seconds() - start;
@@ -92,30 +92,30 @@ BpStatus bp_comm_add_32(BpComm *comm, uint32_t *numbers, size_t count, BpError *
     return add(comm, numbers, count, 4, err);
 }
 
-BpStatus bp_comm_collect(BpComm *comm, const char *text, char ***texts, BpError *err) {
+BpStatus bp_comm_gather_texts(BpComm *comm, const char *text, char ***texts, BpError *err) {
     const uint32_t ranks = bp_comm_size(comm);
-    const bool leads = bp_comm_leads(comm);
+    const bool is_root = bp_comm_is_root(comm);
     const uint64_t own = strlen(text) + 1;
     uint64_t most = own;
     *texts = NULL;
     uint64_t *sizes = calloc(ranks, sizeof *sizes);
     BpStatus status = sizes != NULL ? bp_comm_gather(comm, &own, sizeof own, sizes, err)
                                     : bp_fail(err, BP_ERR_MEMORY, "out of memory for texts of all ranks");
-    for (uint32_t r = 0; status == BP_OK && leads && r < ranks; ++r)
+    for (uint32_t r = 0; status == BP_OK && is_root && r < ranks; ++r)
         if (sizes[r] > most) most = sizes[r];
     free(sizes);
     BP_TRY(status);
     BP_TRY(bp_comm_broadcast(comm, &most, sizeof most, err));
     char *padded = calloc(1, most);
-    char **list = leads ? calloc(1, ranks * (sizeof *list + most)) : NULL;
-    if (padded == NULL || (leads && list == NULL)) {
+    char **list = is_root ? calloc(1, ranks * (sizeof *list + most)) : NULL;
+    if (padded == NULL || (is_root && list == NULL)) {
         free(padded);
         free(list);
         return bp_fail(err, BP_ERR_MEMORY, "out of memory for texts of all ranks");
     }
     memcpy(padded, text, own);
-    char *at = leads ? (char *)(list + ranks) : NULL;
-    for (uint32_t r = 0; leads && r < ranks; ++r) list[r] = at + r * most;
+    char *at = is_root ? (char *)(list + ranks) : NULL;
+    for (uint32_t r = 0; is_root && r < ranks; ++r) list[r] = at + r * most;
     status = bp_comm_gather(comm, padded, most, at, err);
     free(padded);
     if (status != BP_OK) {
@@ -149,15 +149,16 @@ static BpStatus tell(const Story *stories, uint32_t ranks, BpError *err) {
     return BP_OK;
 }
 
-BpStatus bp_comm_agree(BpComm *comm, BpStatus status, BpError *err) {
+BpStatus bp_comm_all_ok(BpComm *comm, BpStatus status, BpError *err) {
     uint32_t failed = status != BP_OK;
     if (comm == NULL) return status;
-    if (comm->agreed != BP_OK) return comm->agreed;
-    BP_TRY(bp_comm_unite(comm, &failed, err));
+    if (comm->common_status != BP_OK) return comm->common_status;
+    BP_TRY(bp_comm_allreduce_or(comm, &failed, err));
     if (!failed) return BP_OK;
-    const bool leads = bp_comm_leads(comm);
-    Story *stories = leads ? calloc(comm->place.size, sizeof *stories) : NULL;
-    if (leads && stories == NULL) return bp_fail(err, BP_ERR_MEMORY, "out of memory for errors of all ranks");
+    const bool is_root = bp_comm_is_root(comm);
+    Story *stories = is_root ? calloc(comm->place.size, sizeof *stories) : NULL;
+    if (is_root && stories == NULL)
+        return bp_fail(err, BP_ERR_MEMORY, "out of memory for errors of all ranks");
     Story own = {.status = (int32_t)status};
     if (status != BP_OK && err != NULL) {
         own.line = err->line;
@@ -170,11 +171,11 @@ BpStatus bp_comm_agree(BpComm *comm, BpStatus status, BpError *err) {
     memcpy(own.host, comm->place.host, sizeof own.host);
     int32_t verdict = BP_OK;
     BpStatus exchange = bp_comm_gather(comm, &own, sizeof own, stories, err);
-    if (exchange == BP_OK && leads) verdict = (int32_t)tell(stories, comm->place.size, err);
+    if (exchange == BP_OK && is_root) verdict = (int32_t)tell(stories, comm->place.size, err);
     free(stories);
     if (exchange == BP_OK) exchange = bp_comm_broadcast(comm, &verdict, sizeof verdict, err);
-    comm->agreed = exchange == BP_OK ? (BpStatus)verdict : exchange;
-    return comm->agreed;
+    comm->common_status = exchange == BP_OK ? (BpStatus)verdict : exchange;
+    return comm->common_status;
 }
 
 void bp_comm_begin_work(BpComm *comm) {
@@ -189,7 +190,7 @@ bool bp_comm_is_at_work(const BpComm *comm) {
     return comm != NULL && comm->at_work;
 }
 
-void bp_comm_sign(const BpComm *comm, BpError *err) {
+void bp_comm_prefix_rank(const BpComm *comm, BpError *err) {
     if (comm == NULL || comm->place.rank == 0) return;
     char message[sizeof err->message];
     const int length = snprintf(message, sizeof message, "rank %" PRIu32 " on %s: %.*s", comm->place.rank,
@@ -201,16 +202,16 @@ void bp_comm_abort(BpComm *comm, int exit_code) {
     if (comm != NULL) comm->transport->abort(exit_code);
 }
 
-void bp_comm_call(BpComm *comm) {
-    if (comm == NULL || comm->has_called) return;
-    comm->has_called = true;
-    comm->transport->call();
+void bp_comm_notify(BpComm *comm) {
+    if (comm == NULL || comm->has_notified) return;
+    comm->has_notified = true;
+    comm->transport->notify();
 }
 
-bool bp_comm_called(BpComm *comm) {
+bool bp_comm_was_notified(BpComm *comm) {
     if (comm == NULL) return false;
-    if (!comm->was_called) comm->was_called = comm->transport->called();
-    return comm->was_called;
+    if (!comm->was_notified) comm->was_notified = comm->transport->was_notified();
+    return comm->was_notified;
 }
 
 /* ---- who and where ----------------------------------------------------------------------------------- */
@@ -263,12 +264,12 @@ static BpStatus divide_cores(BpComm *comm, BpError *err) {
     const uint32_t ranks = comm->place.size;
     Cores own = {.node = comm->place.node};
     if (sched_getaffinity(0, sizeof own.own, &own.own) != 0) CPU_ZERO(&own.own);
-    Cores *all = bp_comm_leads(comm) ? calloc(ranks, sizeof *all) : NULL;
+    Cores *all = bp_comm_is_root(comm) ? calloc(ranks, sizeof *all) : NULL;
     uint32_t *counts = calloc(ranks, sizeof *counts);
-    BpStatus status = counts != NULL && (all != NULL || !bp_comm_leads(comm))
+    BpStatus status = counts != NULL && (all != NULL || !bp_comm_is_root(comm))
                           ? bp_comm_gather(comm, &own, sizeof own, all, err)
                           : bp_fail(err, BP_ERR_MEMORY, "out of memory for a list of ranks");
-    for (uint32_t r = 0; status == BP_OK && bp_comm_leads(comm) && r < ranks; ++r)
+    for (uint32_t r = 0; status == BP_OK && bp_comm_is_root(comm) && r < ranks; ++r)
         if (all[r].node == r) count_cores(all, ranks, r, counts);
     if (status == BP_OK) status = bp_comm_broadcast(comm, counts, ranks * sizeof *counts, err);
     if (status == BP_OK) comm->cores = counts[comm->place.rank];
@@ -293,7 +294,7 @@ static BpStatus check_arguments(BpComm *comm, char *const *arguments, BpError *e
     uint64_t first = own;
     BP_TRY(bp_comm_broadcast(comm, &first, sizeof first, err));
     uint32_t differ = first != own;
-    BP_TRY(bp_comm_unite(comm, &differ, err));
+    BP_TRY(bp_comm_allreduce_or(comm, &differ, err));
     if (!differ) return BP_OK;
     return bp_fail(err, BP_ERR_USAGE,
                    "the %" PRIu32

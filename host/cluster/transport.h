@@ -34,7 +34,7 @@ typedef struct BpTransport {
     const char *(*broadcast)(void *bytes, uint64_t size); /* from rank 0 to all */
     /* Gathers from all on rank 0: `all` is Optional elsewhere; there rank r's begin at r * size. */
     const char *(*gather)(const void *own, uint64_t size, void *all);
-    const char *(*unite)(uint32_t *bits); /* on all ranks the bits that any rank has set */
+    const char *(*allreduce_or)(uint32_t *bits); /* on all ranks the bits that any rank has set */
     const char *(*test)(bool *done);
 
     /* Integers of `width` bytes, 4 or 8, become on rank 0 the sums over all ranks; elsewhere they stay. Does
@@ -42,8 +42,8 @@ typedef struct BpTransport {
     const char *(*add)(void *numbers, uint64_t count, uint32_t width);
 
     /* A word from one rank to all others, which they find when they look. */
-    void (*call)(void);
-    bool (*called)(void);
+    void (*notify)(void);
+    bool (*was_notified)(void);
 
     void (*abort)(int exit_code); /* ends the processes of all ranks */
     void (*end)(void);            /* after the last exchange */

@@ -186,7 +186,7 @@ static BpStatus begin_next_pass(BpRender *render, BpError *err) {
     bp_film_destroy(&render->film); /* what was read before the latest chunks */
     BP_TRY(bp_render_read_film(render, &film, err));
     render->decides = true;
-    if (bp_comm_leads(render->comm))
+    if (bp_comm_is_root(render->comm))
         BP_TRY(
             bp_adaptive_next(render->adaptive, film, render->options.samples_per_pixel, &begun, &pass, err));
     BP_TRY(bp_round_share_pass(render, &begun, &pass, err));
@@ -233,7 +233,8 @@ static BpStatus run_pilot(BpRender *render, BpError *err) {
 /* Starts chunks until so much time has passed, one at least. */
 static BpStatus step(BpRender *render, double seconds, BpProgress *progress, BpError *err) {
     /* Before the first sample, so that what can fail does so before there is something to lose. */
-    if (render->options.samples_per_pixel > 1 && bp_comm_leads(render->comm)) BP_TRY(run_pilot(render, err));
+    if (render->options.samples_per_pixel > 1 && bp_comm_is_root(render->comm))
+        BP_TRY(run_pilot(render, err));
     const double start = bp_clock_seconds();
     bp_film_destroy(&render->film);
     bool more = true;
@@ -377,7 +378,7 @@ BpStatus bp_render_unseen(BpRender *render, BpUnseenLight *light, BpError *err) 
 
 /* Of several ranks, one needs it; and a film of which no error is known needs none. */
 static BpStatus add_unseen(BpRender *render, BpFilm *film, BpError *err) {
-    if (!bp_comm_leads(render->comm) || bp_film_range_total(film) < 2) return BP_OK;
+    if (!bp_comm_is_root(render->comm) || bp_film_range_total(film) < 2) return BP_OK;
     BP_TRY(run_pilot(render, err));
     if (render->unseen == NULL) return BP_OK;
     return bp_unseen_copy(render->unseen, (size_t)film->width * film->height, &film->unseen, err);
@@ -524,7 +525,7 @@ static BpStatus fill_aovs(BpRender *render, BpError *err) {
 
 BpStatus bp_render_read_whole_film(BpRender *render, const BpFilm **film, BpError *err) {
     BP_TRY(bp_render_read_film(render, film, err));
-    if (!bp_comm_leads(render->comm)) return BP_OK; /* whose film is no use */
+    if (!bp_comm_is_root(render->comm)) return BP_OK; /* whose film is no use */
     BP_TRY(add_plan(render, render->film, err));
     if (!render->options.features) return BP_OK;
     BP_TRY(fill_aovs(render, err));

@@ -97,11 +97,11 @@ static BpStatus take_up(BpRender *render, const BpFilm *film, uint8_t *decisions
         BP_TRY(plan_of_whole(film, &plan, err));
     plan.decisions = decisions;
     BP_TRY(check_settings(render, film, &plan, err));
-    if (bp_comm_leads(render->comm) && (film->met != NULL) != (render->scene->backdrop == BP_BACKDROP_NONE))
+    if (bp_comm_is_root(render->comm) && (film->met != NULL) != (render->scene->backdrop == BP_BACKDROP_NONE))
         return bp_fail(err, BP_ERR_FILE, "the film is damaged: it %s an alpha, unlike its scene",
                        film->met != NULL ? "has" : "lacks");
     render->resumed = true;
-    if (bp_comm_leads(render->comm)) BP_TRY(copy_film(film, &render->base, err)); /* once among all ranks */
+    if (bp_comm_is_root(render->comm)) BP_TRY(copy_film(film, &render->base, err)); /* once among all ranks */
     BP_TRY(bp_render_extend(render, plan.target, err));
     render->goal_samples = plan.samples_max;
     render->goal_error = plan.error;
@@ -123,10 +123,10 @@ static uint64_t count_samples(const BpFilm *film) {
 }
 
 BpStatus bp_render_resume(BpRender *render, const BpFilm *film, BpError *err) {
-    const bool leads = bp_comm_leads(render->comm), plans = film->plan != NULL;
+    const bool is_root = bp_comm_is_root(render->comm), plans = film->plan != NULL;
     if (bp_render_has_begun(render) || render->resumed)
         return bp_fail(err, BP_ERR_USAGE, "a render that has begun cannot go on from a film");
-    uint64_t samples = leads ? count_samples(film) : 0;
+    uint64_t samples = is_root ? count_samples(film) : 0;
     uint8_t *received = NULL;
     BP_TRY(bp_round_share_resumed(render->comm, &samples, plans ? film->plan->decisions : NULL,
                                   plans ? film->plan->decision_bytes : 0, &received, err));

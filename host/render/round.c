@@ -60,14 +60,14 @@ static BpStatus plan_round(BpRender *render, Plan *plan, uint64_t fractions[], B
     Pace *paces = NULL;
     double *weights = NULL;
     BpStatus status = BP_OK;
-    if (bp_comm_leads(comm)) {
+    if (bp_comm_is_root(comm)) {
         paces = malloc(ranks * sizeof *paces);
         weights = malloc(ranks * sizeof *weights);
         if (paces == NULL || weights == NULL)
             status = bp_fail(err, BP_ERR_MEMORY, "no memory for the paces of ranks");
     }
     if (status == BP_OK) status = bp_comm_gather(comm, &own, sizeof own, paces, err);
-    if (status == BP_OK && bp_comm_leads(comm)) divide(paces, ranks, weights, plan, fractions);
+    if (status == BP_OK && bp_comm_is_root(comm)) divide(paces, ranks, weights, plan, fractions);
     if (status == BP_OK) status = bp_comm_broadcast(comm, plan, sizeof *plan, err);
     if (status == BP_OK) status = bp_comm_broadcast(comm, fractions, (ranks + 1) * sizeof *fractions, err);
     free(paces);
@@ -128,7 +128,7 @@ BpStatus bp_round_add_films(BpComm *comm, BpFilm *film, BpError *err) {
                          BP_INVALID_LIST(TOTAL)};
 #undef TOTAL
     if (comm == NULL) return BP_OK;
-    BP_TRY(bp_comm_unite(comm, &has, err));
+    BP_TRY(bp_comm_allreduce_or(comm, &has, err));
     if (has & FINE) BP_TRY(bp_film_add_fine_sums(film, err));
     BP_TRY(bp_comm_add_64(comm, film->sums, 3 * cells, err));
     if (has & FINE) BP_TRY(bp_comm_add_64(comm, film->fine_sums, 3 * cells, err));
@@ -150,7 +150,7 @@ BpStatus bp_round_add_films(BpComm *comm, BpFilm *film, BpError *err) {
 
 BpStatus bp_round_share_pass(BpRender *render, bool *more, BpAdaptivePass *pass, BpError *err) {
     BpComm *comm = render->comm;
-    const bool leads = bp_comm_leads(comm);
+    const bool is_root = bp_comm_is_root(comm);
     struct Decisions {
         uint64_t bytes;
         uint32_t more;
@@ -158,16 +158,16 @@ BpStatus bp_round_share_pass(BpRender *render, bool *more, BpAdaptivePass *pass,
     uint8_t *bytes = NULL;
     size_t size = 0;
     if (comm == NULL) return BP_OK;
-    if (leads) BP_TRY(bp_adaptive_save(render->adaptive, &bytes, &size, err));
+    if (is_root) BP_TRY(bp_adaptive_save(render->adaptive, &bytes, &size, err));
     decisions.bytes = size;
     BpStatus status = bp_comm_broadcast(comm, &decisions, sizeof decisions, err);
-    if (status == BP_OK && !leads) {
+    if (status == BP_OK && !is_root) {
         bytes = malloc(decisions.bytes);
         if (bytes == NULL)
             status = bp_fail(err, BP_ERR_MEMORY, "no memory for decisions of adaptive sampling");
     }
     if (status == BP_OK) status = bp_comm_broadcast(comm, bytes, decisions.bytes, err);
-    if (status == BP_OK && !leads) {
+    if (status == BP_OK && !is_root) {
         status = bp_adaptive_restore(render->adaptive, bytes, decisions.bytes, err);
         *more = decisions.more != 0;
         if (status == BP_OK && *more && !bp_adaptive_pass(render->adaptive, pass))
@@ -182,7 +182,7 @@ BpStatus bp_round_share_resumed(BpComm *comm, uint64_t *samples, uint8_t *decisi
     if (comm == NULL) return BP_OK;
     bp_comm_begin_work(comm);
     BP_TRY(bp_comm_broadcast(comm, samples, sizeof *samples, err));
-    if (bytes > 0 && !bp_comm_leads(comm)) {
+    if (bytes > 0 && !bp_comm_is_root(comm)) {
         *received = malloc(bytes);
         if (*received == NULL)
             return bp_fail(err, BP_ERR_MEMORY, "no memory for decisions of adaptive sampling");

@@ -138,7 +138,7 @@ static BpStatus look(BpStop *stop, BpError *err) {
     if (stop->rule.error <= 0.0) return BP_OK;
     const BpFilm *film = NULL;
     BP_TRY(bp_render_read_film(stop->render, &film, err));
-    if (!bp_comm_leads(stop->render->comm)) return BP_OK;
+    if (!bp_comm_is_root(stop->render->comm)) return BP_OK;
     double mean[3];
     bp_film_mean(film, mean);
     stop->state.nrmse = bp_film_nrmse(film);

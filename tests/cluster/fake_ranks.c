@@ -55,7 +55,7 @@ static const char *gather(const void *own, uint64_t count, void *all) {
     return told(fine);
 }
 
-static const char *unite(uint32_t *bits) {
+static const char *allreduce_or(uint32_t *bits) {
     uint32_t all[64] = {0};
     const char *fault = gather(bits, sizeof *bits, all);
     for (uint32_t r = 0; rank == 0 && r < size; ++r) *bits |= all[r];
@@ -83,9 +83,9 @@ static const char *add(void *numbers, uint64_t count, uint32_t width) {
     return told(fine);
 }
 
-static void call(void) {}
+static void notify(void) {}
 
-static bool called(void) {
+static bool was_notified(void) {
     return false;
 }
 
@@ -97,11 +97,11 @@ __attribute__((visibility("default"))) const BpTransport bp_transport = {
     .start = start,
     .broadcast = broadcast,
     .gather = gather,
-    .unite = unite,
+    .allreduce_or = allreduce_or,
     .test = test,
     .add = add,
-    .call = call,
-    .called = called,
+    .notify = notify,
+    .was_notified = was_notified,
     .abort = exit,
     .end = end,
 };

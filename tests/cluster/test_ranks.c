@@ -112,7 +112,7 @@ static bool add_films(BpComm *comm) {
     BpFilm *film = own_film(bp_comm_rank(comm));
     const uint32_t pixels = WIDTH * HEIGHT, sum_of_ranks = RANKS * (RANKS - 1) / 2;
     bool fine = holds(bp_round_add_films(comm, film, NULL) == BP_OK, "adding");
-    if (fine && bp_comm_leads(comm)) {
+    if (fine && bp_comm_is_root(comm)) {
         bool sums = true, fine_sums = film->fine_sums != NULL, counts = true, met = true, segments = true;
         for (size_t i = 0; i < 4 * pixels; ++i) {
             counts = counts && film->counts[i] == 100 * sum_of_ranks + RANKS * i;
@@ -141,20 +141,20 @@ static bool add_films(BpComm *comm) {
 }
 
 static bool share_resumed(BpComm *comm) {
-    const bool leads = bp_comm_leads(comm);
+    const bool is_root = bp_comm_is_root(comm);
     char decisions[] = "what has been decided";
     uint8_t *received = NULL;
-    uint64_t samples = leads ? 123456789012345 : 0;
-    const BpStatus status = bp_round_share_resumed(comm, &samples, leads ? (uint8_t *)decisions : NULL,
+    uint64_t samples = is_root ? 123456789012345 : 0;
+    const BpStatus status = bp_round_share_resumed(comm, &samples, is_root ? (uint8_t *)decisions : NULL,
                                                    sizeof decisions, &received, NULL);
     bool fine = holds(status == BP_OK && samples == 123456789012345, "samples") &&
                 holds(!bp_comm_is_at_work(comm), "the end of common work");
-    fine =
-        fine && holds(leads ? received == NULL : received != NULL && strcmp((char *)received, decisions) == 0,
-                      "decisions");
+    fine = fine &&
+           holds(is_root ? received == NULL : received != NULL && strcmp((char *)received, decisions) == 0,
+                 "decisions");
     free(received);
     received = NULL;
-    samples = leads ? 5 : 0;
+    samples = is_root ? 5 : 0;
     fine = fine && holds(bp_round_share_resumed(comm, &samples, NULL, 0, &received, NULL) == BP_OK &&
                              samples == 5 && received == NULL,
                          "a film without decisions");
@@ -167,7 +167,7 @@ static bool share_resumed(BpComm *comm) {
 static bool broadcast_much(BpComm *comm) {
     const size_t size = ((size_t)5 << 20) + 3;
     uint8_t *bytes = calloc(1, size);
-    for (size_t i = 0; bp_comm_leads(comm) && i < size; ++i) bytes[i] = (uint8_t)(i * 7 + i / 256);
+    for (size_t i = 0; bp_comm_is_root(comm) && i < size; ++i) bytes[i] = (uint8_t)(i * 7 + i / 256);
     bool fine = bytes != NULL && holds(bp_comm_broadcast(comm, bytes, size, NULL) == BP_OK, "a broadcast");
     for (size_t i = 0; fine && i < size; ++i) fine = bytes[i] == (uint8_t)(i * 7 + i / 256);
     free(bytes);
@@ -178,28 +178,28 @@ static bool collect_texts(BpComm *comm) {
     char own[300], **texts = NULL;
     memset(own, 'a' + (int)bp_comm_rank(comm), sizeof own);
     own[100 * bp_comm_rank(comm)] = '\0';
-    bool fine = holds(bp_comm_collect(comm, own, &texts, NULL) == BP_OK, "collecting");
-    for (uint32_t r = 0; fine && bp_comm_leads(comm) && r < RANKS; ++r)
+    bool fine = holds(bp_comm_gather_texts(comm, own, &texts, NULL) == BP_OK, "gathering texts");
+    for (uint32_t r = 0; fine && bp_comm_is_root(comm) && r < RANKS; ++r)
         fine = holds(strlen(texts[r]) == 100 * r && (r == 0 || texts[r][100 * r - 1] == 'a' + (char)r),
                      "a text");
     free(texts);
     return fine;
 }
 
-static bool agree(BpComm *comm) {
+static bool all_ok(BpComm *comm) {
     BpError err = {0};
-    bool fine = holds(bp_comm_agree(comm, BP_OK, &err) == BP_OK, "that all went well");
+    bool fine = holds(bp_comm_all_ok(comm, BP_OK, &err) == BP_OK, "that all went well");
     BpStatus status = BP_OK;
     if (bp_comm_rank(comm) == 1) {
         status = bp_fail(&err, BP_ERR_FILE, "no such thing");
         bp_error_at(&err, "scene.json", 3, 4);
     }
-    fine = fine && holds(bp_comm_agree(comm, status, &err) == BP_ERR_FILE, "that one failed");
-    if (bp_comm_leads(comm))
+    fine = fine && holds(bp_comm_all_ok(comm, status, &err) == BP_ERR_FILE, "that one failed");
+    if (bp_comm_is_root(comm))
         fine = fine && holds(strcmp(err.message, "rank 1 on here: no such thing") == 0 && err.line == 3 &&
                                  err.column == 4 && strcmp(err.file, "scene.json") == 0,
                              err.message);
-    fine = fine && holds(bp_comm_agree(comm, BP_OK, &err) == BP_ERR_FILE, "that it stays so");
+    fine = fine && holds(bp_comm_all_ok(comm, BP_OK, &err) == BP_ERR_FILE, "that it stays so");
     bp_error_clear(&err);
     return fine;
 }
@@ -224,15 +224,15 @@ static void test_texts(void **state) {
     with_ranks(collect_texts);
 }
 
-static void test_agreement(void **state) {
+static void test_all_ok(void **state) {
     (void)state;
-    with_ranks(agree);
+    with_ranks(all_ok);
 }
 
 int main(void) {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_films), cmocka_unit_test(test_resumed),   cmocka_unit_test(test_much),
-        cmocka_unit_test(test_texts), cmocka_unit_test(test_agreement),
+        cmocka_unit_test(test_films), cmocka_unit_test(test_resumed), cmocka_unit_test(test_much),
+        cmocka_unit_test(test_texts), cmocka_unit_test(test_all_ok),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -276,8 +276,8 @@ MUTANTS = [
            [patch("host/render/round.c", "if (film->met != NULL) BP_TRY(bp_comm_add_64(comm, film->met, pixels, err));", "")],
            [test("test_ranks", "test_films")]),
     Mutant("fine sums of some ranks", "a rank whose samples were all bright has no fine sums to add to",
-           [patch("host/render/round.c", "BP_TRY(bp_comm_unite(comm, &has, err));",
-                  "uint32_t all = has; BP_TRY(bp_comm_unite(comm, &all, err));")], [test("test_ranks", "test_films")]),
+           [patch("host/render/round.c", "BP_TRY(bp_comm_allreduce_or(comm, &has, err));",
+                  "uint32_t all = has; BP_TRY(bp_comm_allreduce_or(comm, &all, err));")], [test("test_ranks", "test_films")]),
     # ---- fitted cameras --------------------------------------------------------------------------------------
     Mutant("the bounding box for the silhouette", "a camera fitted to centres and radii in the picture plane",
            [patch("host/scene/fit.c", "cosine) * place[axis] - sine * place[2] - radius;",

@@ -24,7 +24,7 @@ BpStatus bp_preview_choose(const BpCommandLine *line, const BpComm *shared, cons
                            .shows = line->show,
                            .every = asked ? line->preview_seconds : SHOW_SECONDS,
                            .last = bp_clock_seconds()};
-    if (!bp_comm_leads(shared)) {
+    if (!bp_comm_is_root(shared)) {
         preview->writes = preview->shows = false;
         return BP_OK;
     }

@@ -61,14 +61,14 @@ static void prepare_explanation(const BpCommandLine *line, const BpStopRule *rul
 static bool is_interrupted(BpComm *shared, BpComm *all) {
     const bool own = bp_interrupted();
     if (shared != NULL || all == NULL) return own;
-    if (own) bp_comm_call(all);
-    return own || bp_comm_called(all);
+    if (own) bp_comm_notify(all);
+    return own || bp_comm_was_notified(all);
 }
 
 BpStatus bp_render_loop(const BpCommandLine *line, BpComm *shared, BpRender *render, const BpStopRule *rule,
                         BpCheckpoint *checkpoint, BpPreview *preview, BpLoopEnd *end, BpError *err) {
     enum { INTERRUPT = 1, CHECKPOINT = 2, PREVIEW = 4 };
-    const bool explains = shared != NULL && bp_comm_leads(shared);
+    const bool explains = shared != NULL && bp_comm_is_root(shared);
     const double start = bp_clock_seconds();
     BpStatus status = BP_OK;
     BpStop *stop = NULL;
@@ -88,7 +88,7 @@ BpStatus bp_render_loop(const BpCommandLine *line, BpComm *shared, BpRender *ren
         wishes = is_interrupted(shared, line->comm) ? INTERRUPT : 0;
         if (bp_checkpoint_is_due(checkpoint, bp_clock_seconds())) wishes |= CHECKPOINT;
         if (bp_preview_is_due(preview, bp_clock_seconds())) wishes |= PREVIEW;
-        BP_TRY_GOTO(status, bp_comm_unite(shared, &wishes, err), done); /* all do what any wants */
+        BP_TRY_GOTO(status, bp_comm_allreduce_or(shared, &wishes, err), done); /* all do what any wants */
         if (end->reason == BP_STOP_NOT_YET && (wishes & (INTERRUPT | CHECKPOINT)) == CHECKPOINT)
             BP_TRY_GOTO(status, bp_checkpoint_begin(checkpoint, render, err), done);
         if (end->reason == BP_STOP_NOT_YET && (wishes & (INTERRUPT | PREVIEW)) == PREVIEW)

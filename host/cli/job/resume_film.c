@@ -13,8 +13,8 @@
 BpStatus bp_resume_load(const BpCommandLine *line, const BpComm *shared, BpFilm **film, BpError *err) {
     *film = NULL;
     if (line->resume == NULL) return BP_OK;
-    return bp_comm_leads(shared) ? bp_film_read(line->resume, film, err)
-                                 : bp_film_read_header(line->resume, film, err);
+    return bp_comm_is_root(shared) ? bp_film_read(line->resume, film, err)
+                                   : bp_film_read_header(line->resume, film, err);
 }
 
 /* `option` was given, but the film says `has`, as the option would be written. */

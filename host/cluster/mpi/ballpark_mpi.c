@@ -9,7 +9,7 @@
 #include <stdio.h>
 #include <string.h>
 
-enum { TAG_CALL = 1, ADD_NUMBERS = 1 << 20 };
+enum { TAG_NOTIFY = 1, ADD_NUMBERS = 1 << 20 };
 
 static MPI_Request request = MPI_REQUEST_NULL;
 static int own_rank, job_size;
@@ -62,7 +62,7 @@ static const char *gather(const void *own, uint64_t size, void *all) {
                  "MPI_Igather");
 }
 
-static const char *unite(uint32_t *bits) {
+static const char *allreduce_or(uint32_t *bits) {
     return check(MPI_Iallreduce(MPI_IN_PLACE, bits, 1, MPI_UINT32_T, MPI_BOR, MPI_COMM_WORLD, &request),
                  "MPI_Iallreduce");
 }
@@ -90,21 +90,21 @@ static const char *add(void *numbers, uint64_t count, uint32_t width) {
 }
 
 /* Messages without content need no memory that must stay. */
-static void call(void) {
+static void notify(void) {
     for (int rank = 0; rank < job_size; ++rank) {
         MPI_Request sending;
         if (rank == own_rank) continue;
-        if (MPI_Isend(NULL, 0, MPI_BYTE, rank, TAG_CALL, MPI_COMM_WORLD, &sending) == MPI_SUCCESS)
+        if (MPI_Isend(NULL, 0, MPI_BYTE, rank, TAG_NOTIFY, MPI_COMM_WORLD, &sending) == MPI_SUCCESS)
             MPI_Request_free(&sending);
     }
 }
 
-static bool called(void) {
+static bool was_notified(void) {
     int flag = 0;
     MPI_Status status;
-    if (MPI_Iprobe(MPI_ANY_SOURCE, TAG_CALL, MPI_COMM_WORLD, &flag, &status) != MPI_SUCCESS || flag == 0)
+    if (MPI_Iprobe(MPI_ANY_SOURCE, TAG_NOTIFY, MPI_COMM_WORLD, &flag, &status) != MPI_SUCCESS || flag == 0)
         return false;
-    MPI_Recv(NULL, 0, MPI_BYTE, status.MPI_SOURCE, TAG_CALL, MPI_COMM_WORLD, MPI_STATUS_IGNORE);
+    MPI_Recv(NULL, 0, MPI_BYTE, status.MPI_SOURCE, TAG_NOTIFY, MPI_COMM_WORLD, MPI_STATUS_IGNORE);
     return true;
 }
 
@@ -113,7 +113,7 @@ static void abort_all(int exit_code) {
 }
 
 static void end(void) {
-    while (called()) { /* what nobody has looked for */
+    while (was_notified()) { /* what nobody has looked for */
     }
     MPI_Finalize();
 }
@@ -124,11 +124,11 @@ __attribute__((visibility("default"))) const BpTransport bp_transport = {
     .start = start,
     .broadcast = broadcast,
     .gather = gather,
-    .unite = unite,
+    .allreduce_or = allreduce_or,
     .test = test,
     .add = add,
-    .call = call,
-    .called = called,
+    .notify = notify,
+    .was_notified = was_notified,
     .abort = abort_all,
     .end = end,
 };
