@@ -432,7 +432,7 @@ BP_API BpStatus bp_stop_create(BpRender *render, const BpStopRule *rule, BpStop 
 /* Call it after every bp_render_step(), with the progress that it returned. *reason: why to stop;
  * BP_STOP_NOT_YET: continue; the render has been given more samples if it had finished the earlier ones. The
  * error is looked at on fixed sample counts alone, so the same scene, seed and error end at the same count on
- * every run; time ends a render at a whole number of samples, unless its pace dropped. */
+ * every run; time ends a render at a whole number of samples, unless it slowed down. */
 BP_API BpStatus bp_stop_check(BpStop *stop, const BpProgress *progress, BpStopReason *reason, BpError *err);
 
 /* The progress of a render, for a progress bar. */

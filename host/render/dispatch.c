@@ -51,7 +51,7 @@ BpStatus bp_dispatch_free_worker(const BpDispatch *dispatch, BpWorker **found, B
 double bp_dispatch_slowest(const BpDispatch *dispatch) {
     double slowest = 0;
     for (size_t i = 0; i < dispatch->worker_count; ++i) {
-        const double own = bp_pace_slowest(&dispatch->workers[i]->pace);
+        const double own = bp_chunk_sizer_slowest(&dispatch->workers[i]->sizer);
         if (own > slowest) slowest = own;
     }
     return slowest;
@@ -65,7 +65,8 @@ uint32_t bp_dispatch_chunk_samples(const BpDispatch *dispatch, const BpWorker *w
 void bp_dispatch_take(BpDispatch *dispatch, uint64_t wanted, BpChunk *chunk) {
     (void)bp_schedule_take(&dispatch->schedule, wanted, chunk);
     if (chunk->first_pixel == 0)
-        for (size_t i = 0; i < dispatch->worker_count; ++i) bp_pace_begin_pass(&dispatch->workers[i]->pace);
+        for (size_t i = 0; i < dispatch->worker_count; ++i)
+            bp_chunk_sizer_begin_pass(&dispatch->workers[i]->sizer);
 }
 
 BpStatus bp_dispatch_wait(const BpDispatch *dispatch, BpError *err) {

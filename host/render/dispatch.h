@@ -25,8 +25,8 @@ BpStatus bp_dispatch_set_pixels(BpDispatch *dispatch, const uint32_t *list, uint
 /* A worker with room for a chunk; and how many pixel samples a chunk of its should have. */
 BpStatus bp_dispatch_free_worker(const BpDispatch *dispatch, BpWorker **found, BpError *err);
 uint32_t bp_dispatch_chunk_samples(const BpDispatch *dispatch, const BpWorker *worker);
-/* The seconds of the slowest samples of all workers, as bp_pace_slowest(), since each meets only some parts
- * of the picture. */
+/* The seconds of the slowest samples of all workers, as bp_chunk_sizer_slowest(), since each meets only some
+ * parts of the picture. */
 double bp_dispatch_slowest(const BpDispatch *dispatch);
 
 /* The next chunk of the schedule, which has one, of about `wanted` pixel samples. */

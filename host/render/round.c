@@ -3,7 +3,7 @@
 
 #include "base/clock.h"
 #include "base/status.h"
-#include "portion.h"
+#include "partition.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -15,68 +15,70 @@
 #define EARLIER_SHARE 0.5
 
 /* What a rank says before a round. */
-typedef struct Pace {
+typedef struct Throughput {
     double speed;   /* pixel samples a second; 0: not known yet */
     double guess;   /* of that, while it is not known: compute units */
-    double samples; /* that it can take without keeping others waiting (pace.h) */
-} Pace;
+    double samples; /* that it can take without keeping others waiting (chunk_sizer.h) */
+} Throughput;
 
 /* What rank 0 answers; the fractions of all ranks follow. */
 typedef struct Plan {
     uint64_t wanted; /* pixel samples of all ranks together */
 } Plan;
 
-static Pace own_pace(const BpRender *render) {
-    Pace pace = {.speed = render->round.seconds > 0 ? render->round.samples / render->round.seconds : 0};
+static Throughput own_throughput(const BpRender *render) {
+    Throughput throughput = {
+        .speed = render->round.seconds > 0 ? render->round.samples / render->round.seconds : 0};
     const double slowest = bp_dispatch_slowest(&render->dispatch);
     for (size_t i = 0; i < render->dispatch.worker_count; ++i) {
         const BpWorker *worker = render->dispatch.workers[i];
-        pace.guess += worker->device->info.compute_units > 0 ? worker->device->info.compute_units : 1;
-        pace.samples += bp_pace_samples(&worker->pace, ROUND_SECONDS, slowest);
+        throughput.guess += worker->device->info.compute_units > 0 ? worker->device->info.compute_units : 1;
+        throughput.samples += bp_chunk_sizer_samples(&worker->sizer, ROUND_SECONDS, slowest);
     }
-    return pace;
+    return throughput;
 }
 
 /* By rank 0: how many samples the round has, and which part of them each rank gets. */
-static void divide(const Pace *paces, uint32_t ranks, double *weights, Plan *plan, uint64_t *fractions) {
+static void divide(const Throughput *throughputs, uint32_t ranks, double *weights, Plan *plan,
+                   uint64_t *fractions) {
     double samples = 0, speed = 0;
     bool known = true;
     for (uint32_t r = 0; r < ranks; ++r) {
-        known = known && paces[r].speed > 0;
-        samples += paces[r].samples;
-        speed += paces[r].speed;
+        known = known && throughputs[r].speed > 0;
+        samples += throughputs[r].samples;
+        speed += throughputs[r].speed;
     }
     if (known) samples = fmin(samples, speed * ROUND_SECONDS);
-    for (uint32_t r = 0; r < ranks; ++r) weights[r] = known ? paces[r].speed : paces[r].guess;
+    for (uint32_t r = 0; r < ranks; ++r) weights[r] = known ? throughputs[r].speed : throughputs[r].guess;
     plan->wanted = samples < 1 ? 1 : samples < 1e18 ? (uint64_t)samples : (uint64_t)1000000000 * 1000000000;
-    bp_portion_divide(weights, ranks, fractions);
+    bp_partition_divide(weights, ranks, fractions);
 }
 
 /* Agrees on the next round: fills *plan and the fractions. */
 static BpStatus plan_round(BpRender *render, Plan *plan, uint64_t fractions[], BpError *err) {
     BpComm *comm = render->comm;
     const uint32_t ranks = bp_comm_size(comm);
-    const Pace own = own_pace(render);
-    Pace *paces = NULL;
+    const Throughput own = own_throughput(render);
+    Throughput *throughputs = NULL;
     double *weights = NULL;
     BpStatus status = BP_OK;
     if (bp_comm_is_root(comm)) {
-        paces = malloc(ranks * sizeof *paces);
+        throughputs = malloc(ranks * sizeof *throughputs);
         weights = malloc(ranks * sizeof *weights);
-        if (paces == NULL || weights == NULL)
-            status = bp_fail(err, BP_ERR_MEMORY, "no memory for the paces of ranks");
+        if (throughputs == NULL || weights == NULL)
+            status = bp_fail(err, BP_ERR_MEMORY, "no memory for the throughputs of ranks");
     }
-    if (status == BP_OK) status = bp_comm_gather(comm, &own, sizeof own, paces, err);
-    if (status == BP_OK && bp_comm_is_root(comm)) divide(paces, ranks, weights, plan, fractions);
+    if (status == BP_OK) status = bp_comm_gather(comm, &own, sizeof own, throughputs, err);
+    if (status == BP_OK && bp_comm_is_root(comm)) divide(throughputs, ranks, weights, plan, fractions);
     if (status == BP_OK) status = bp_comm_broadcast(comm, plan, sizeof *plan, err);
     if (status == BP_OK) status = bp_comm_broadcast(comm, fractions, (ranks + 1) * sizeof *fractions, err);
-    free(paces);
+    free(throughputs);
     free(weights);
     return status;
 }
 
 /* Traces this rank's part of a block. */
-static BpStatus trace_portion(BpRender *render, BpPortion *portion, BpError *err) {
+static BpStatus trace_partition(BpRender *render, BpPartition *partition, BpError *err) {
     const double start = bp_clock_seconds();
     BpDispatch *const dispatch = &render->dispatch;
     const uint64_t before = bp_dispatch_samples_done(dispatch);
@@ -87,7 +89,7 @@ static BpStatus trace_portion(BpRender *render, BpPortion *portion, BpError *err
     for (;;) {
         BpWorker *worker = NULL;
         BP_TRY(bp_dispatch_free_worker(dispatch, &worker, err));
-        if (!bp_portion_take(portion, bp_dispatch_chunk_samples(dispatch, worker), &chunk)) break;
+        if (!bp_partition_take(partition, bp_dispatch_chunk_samples(dispatch, worker), &chunk)) break;
         BP_TRY(bp_worker_start(worker, &chunk, err));
     }
     BP_TRY(bp_dispatch_wait(dispatch, err));
@@ -105,7 +107,7 @@ BpStatus bp_round_trace(BpRender *render, BpError *err) {
     const uint32_t ranks = bp_comm_size(render->comm), rank = bp_comm_rank(render->comm);
     Plan plan = {.wanted = 0};
     BpChunk block;
-    BpPortion portion;
+    BpPartition partition;
     uint64_t *fractions = calloc(ranks + 1, sizeof *fractions);
     if (fractions == NULL) return bp_fail(err, BP_ERR_MEMORY, "no memory for the shares of %u ranks", ranks);
     const BpStatus status = plan_round(render, &plan, fractions, err);
@@ -113,8 +115,8 @@ BpStatus bp_round_trace(BpRender *render, BpError *err) {
     free(fractions);
     BP_TRY(status);
     bp_dispatch_take(&render->dispatch, plan.wanted, &block);
-    bp_portion_init(&portion, &block, bp_portion_strips(&block, ranks), low, high);
-    BP_TRY(trace_portion(render, &portion, err));
+    bp_partition_init(&partition, &block, bp_partition_strips(&block, ranks), low, high);
+    BP_TRY(trace_partition(render, &partition, err));
     render->round.pixel_samples += (uint64_t)block.pixel_count * block.samples;
     return BP_OK;
 }

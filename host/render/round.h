@@ -5,7 +5,7 @@
  * Knows: who traces what, and when ranks speak to each other.   Does not know: how (cluster/comm.h), files.
  *
  * All ranks have the same schedule and take the same block of it in each round, of about ROUND_SECONDS; each
- * traces its portion. So between rounds the samples that are there are those of a render alone, and films
+ * traces its partition. So between rounds the samples that are there are those of a render alone, and films
  * record how to continue, as always. A round costs a few short messages. Sums go to rank 0 only when
  * something is decided or written. */
 #ifndef BP_RENDER_ROUND_H

@@ -169,7 +169,7 @@ BpStatus bp_worker_create(const BpDeviceInfo *info, BpPacked *given, const BpWor
     const uint64_t most = chunk_samples_max(info);
     if (limit > most) limit = most;
     made->samples_limit = limit > 0 ? (uint32_t)limit : 1;
-    bp_pace_init(&made->pace, setup->max_depth, samples_together(made, info, setup));
+    bp_chunk_sizer_init(&made->sizer, setup->max_depth, samples_together(made, info, setup));
     *worker = made;
     return BP_OK;
 
@@ -231,7 +231,7 @@ BpStatus bp_worker_wait(BpWorker *worker, BpError *err) {
     worker->device_seconds += seconds;
     worker->accumulate_seconds +=
         event_seconds(flight->accumulate_end, CL_PROFILING_COMMAND_START, flight->accumulate_end);
-    bp_pace_measure(&worker->pace, flight->samples, seconds);
+    bp_chunk_sizer_measure(&worker->sizer, flight->samples, seconds);
     worker->samples_done += flight->samples;
     release_flight(flight);
     memmove(worker->flights, worker->flights + 1, sizeof worker->flights[0] * (BP_WORKER_FLIGHT - 1));
@@ -343,6 +343,6 @@ BpStatus bp_worker_set_pixels(BpWorker *worker, const uint32_t *list, uint32_t c
 }
 
 uint32_t bp_worker_chunk_samples(const BpWorker *worker, double seconds, double slowest) {
-    const uint32_t samples = bp_pace_samples(&worker->pace, seconds, slowest);
+    const uint32_t samples = bp_chunk_sizer_samples(&worker->sizer, seconds, slowest);
     return samples > worker->samples_limit ? worker->samples_limit : samples;
 }

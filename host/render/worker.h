@@ -38,7 +38,7 @@ BpStatus bp_worker_make_room(BpWorker *worker, BpError *err);
 BpStatus bp_worker_oldest_done(BpWorker *worker, bool *done, BpError *err);
 
 /* Pixel samples that a chunk should have to take `seconds`, 1 .. samples_limit; `slowest` as for
- * bp_pace_samples(). */
+ * bp_chunk_sizer_samples(). */
 uint32_t bp_worker_chunk_samples(const BpWorker *worker, double seconds, double slowest);
 
 /* Waits for everything and adds this device's sums, counts and tallies into `film`. */

@@ -5,8 +5,8 @@
 #ifndef BP_RENDER_WORKER_STATE_H
 #define BP_RENDER_WORKER_STATE_H
 
+#include "chunk_sizer.h"
 #include "opencl/program.h"
-#include "pace.h"
 #include "packed/effects.h"
 #include "packed/pack.h"
 
@@ -81,7 +81,7 @@ typedef struct BpWorker {
     int flight_count;
     /* Measured on chunks that are done. */
     double device_seconds, accumulate_seconds;
-    BpPace pace;
+    BpChunkSizer sizer;
     double first_launch_seconds, self_test_seconds;
     uint64_t samples_done;
 } BpWorker;

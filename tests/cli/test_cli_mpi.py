@@ -50,7 +50,7 @@ class Ranks(cli.ProgramTest):
 
     def test_same_bits(self):
         """Any number of ranks, and every rule: sums, depth, normal and albedo, and where the render stopped. How a block is
-        divided among how many is a test of test_portion."""
+        divided among how many is a test of test_partition."""
         for options, numbers in ((("--spp", 13), (1, 2, 3, 5)), (("--error", "3%"), (3,)), (("--spp", 96, "--adaptive"), (2, 3)),
                                  (("--error", "2.5%", "--adaptive"), (5,)), (("--spp", 2, "--first-sample", 5), (3,))):
             self.succeed("render", "s.json", *options, "-o", "alone.bpa", "-q", "--stats", "alone.json")

@@ -1,6 +1,6 @@
-/* test_pace.c: chunks stay short whatever a path costs, and few where paths are short. Pictures are made up:
- * a number of seconds for every pixel; the clock is a sum. */
-#include "render/pace.h"
+/* test_chunk_sizer.c: chunks stay short whatever a path costs, and few where paths are short. Pictures are
+ * made up: a number of seconds for every pixel; the clock is a sum. */
+#include "render/chunk_sizer.h"
 #include "render/schedule.h"
 
 #include <setjmp.h>
@@ -39,7 +39,7 @@ static double chunk_seconds(const World *world, const BpChunk *chunk) {
 }
 
 static Outcome run(const World *world) {
-    BpPace pace;
+    BpChunkSizer sizer;
     BpSchedule schedule;
     BpChunk chunk;
     Outcome outcome = {0};
@@ -48,19 +48,20 @@ static Outcome run(const World *world) {
         double seconds;
     } flight[FLIGHT];
     int under_way = 0;
-    bp_pace_init(&pace, world->max_depth, world->together);
+    bp_chunk_sizer_init(&sizer, world->max_depth, world->together);
     bp_schedule_init(&schedule, world->pixels, 0, world->samples);
     for (;;) {
         if (under_way == FLIGHT || (under_way > 0 && outcome.chunks == 1)) { /* the first one is waited for */
-            bp_pace_measure(&pace, flight[0].samples, flight[0].seconds);
+            bp_chunk_sizer_measure(&sizer, flight[0].samples, flight[0].seconds);
             flight[0] = flight[1];
             --under_way;
         }
-        const uint32_t wanted = bp_pace_samples(&pace, WANTED_SECONDS, bp_pace_slowest(&pace));
+        const uint32_t wanted =
+            bp_chunk_sizer_samples(&sizer, WANTED_SECONDS, bp_chunk_sizer_slowest(&sizer));
         const bool has_more = bp_schedule_has_more(&schedule);
         assert_int_equal(bp_schedule_take(&schedule, wanted, &chunk), has_more);
         if (!has_more) break;
-        if (chunk.first_pixel == 0) bp_pace_begin_pass(&pace);
+        if (chunk.first_pixel == 0) bp_chunk_sizer_begin_pass(&sizer);
         const double seconds = chunk_seconds(world, &chunk);
         flight[under_way].samples = (uint64_t)chunk.pixel_count * chunk.samples;
         flight[under_way++].seconds = seconds;
@@ -87,8 +88,8 @@ static void mirrors_everywhere(void **state) {
                                  .samples = 20};
             const Outcome outcome = run(&world);
             assert_true(outcome.longest < 0.5);
-            assert_true(outcome.first <= BP_PACE_FIRST_SAMPLES);
-            assert_true(outcome.first <= together || (uint64_t)outcome.first * depth <= BP_PACE_SEGMENTS);
+            assert_true(outcome.first <= BP_CHUNK_FIRST_SAMPLES);
+            assert_true(outcome.first <= together || (uint64_t)outcome.first * depth <= BP_CHUNK_SEGMENTS);
             /* The time goes into samples, not into launches. */
             if (depth >= 1000) assert_true(50e-6 * outcome.chunks < 0.25 * outcome.total);
         }
@@ -123,8 +124,8 @@ static void ordinary_pictures(void **state) {
                          .samples = 100};
     const Outcome outcome = run(&world);
     assert_true(outcome.longest < 0.5);
-    assert_int_equal(outcome.first, BP_PACE_FIRST_SAMPLES);
-    assert_true(outcome.second > BP_PACE_FIRST_SAMPLES);
+    assert_int_equal(outcome.first, BP_CHUNK_FIRST_SAMPLES);
+    assert_true(outcome.second > BP_CHUNK_FIRST_SAMPLES);
     /* No more than twice as many as there must be, but for the first two passes and the ends of passes. */
     assert_true(outcome.chunks < 2 * outcome.total / WANTED_SECONDS + 40);
     assert_true(50e-6 * outcome.chunks < 0.01 * outcome.total);
@@ -133,23 +134,23 @@ static void ordinary_pictures(void **state) {
 /* One chunk that another program delayed is forgotten two passes later, and a tiny one says nothing alone. */
 static void forgets(void **state) {
     (void)state;
-    BpPace pace;
-    bp_pace_init(&pace, 50, 1);
-    for (int i = 0; i < 3; ++i) bp_pace_begin_pass(&pace);
-    bp_pace_measure(&pace, 1, 0.5);
-    assert_true(bp_pace_slowest(&pace) == 0);
-    bp_pace_measure(&pace, 99999, 0.5);
-    assert_true(bp_pace_slowest(&pace) > 0.99e-5 && bp_pace_slowest(&pace) < 1.01e-5);
-    bp_pace_measure(&pace, 100000, 0.01); /* 1e-7 a sample, now */
-    const double slowest = bp_pace_slowest(&pace);
-    assert_int_equal(bp_pace_samples(&pace, 0.1, slowest),
+    BpChunkSizer sizer;
+    bp_chunk_sizer_init(&sizer, 50, 1);
+    for (int i = 0; i < 3; ++i) bp_chunk_sizer_begin_pass(&sizer);
+    bp_chunk_sizer_measure(&sizer, 1, 0.5);
+    assert_true(bp_chunk_sizer_slowest(&sizer) == 0);
+    bp_chunk_sizer_measure(&sizer, 99999, 0.5);
+    assert_true(bp_chunk_sizer_slowest(&sizer) > 0.99e-5 && bp_chunk_sizer_slowest(&sizer) < 1.01e-5);
+    bp_chunk_sizer_measure(&sizer, 100000, 0.01); /* 1e-7 a sample, now */
+    const double slowest = bp_chunk_sizer_slowest(&sizer);
+    assert_int_equal(bp_chunk_sizer_samples(&sizer, 0.1, slowest),
                      30000); /* three times the time, through the slowest */
-    bp_pace_begin_pass(&pace);
-    assert_true(bp_pace_slowest(&pace) == slowest);
-    bp_pace_measure(&pace, 100000, 0.01);
-    bp_pace_begin_pass(&pace);
-    assert_true(bp_pace_slowest(&pace) < 1.01e-7);
-    assert_in_range(bp_pace_samples(&pace, 0.1, bp_pace_slowest(&pace)), 999999, 1000001);
+    bp_chunk_sizer_begin_pass(&sizer);
+    assert_true(bp_chunk_sizer_slowest(&sizer) == slowest);
+    bp_chunk_sizer_measure(&sizer, 100000, 0.01);
+    bp_chunk_sizer_begin_pass(&sizer);
+    assert_true(bp_chunk_sizer_slowest(&sizer) < 1.01e-7);
+    assert_in_range(bp_chunk_sizer_samples(&sizer, 0.1, bp_chunk_sizer_slowest(&sizer)), 999999, 1000001);
 }
 
 int main(void) {

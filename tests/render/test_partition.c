@@ -1,5 +1,5 @@
-/* test_portion.c: ranks that share a block of samples trace each of them once, whatever their speeds. */
-#include "render/portion.h"
+/* test_partition.c: ranks that share a block of samples trace each of them once, whatever their speeds. */
+#include "render/partition.h"
 
 #include <stdlib.h>
 
@@ -33,18 +33,18 @@ static void share(const BpChunk *block, const double *weights, uint32_t ranks, u
     double all = 0;
     const size_t samples = (size_t)block->pixel_count * block->samples;
     Seen seen = {calloc(samples, 1), *block, wanted};
-    bp_portion_divide(weights, ranks, fractions);
+    bp_partition_divide(weights, ranks, fractions);
     for (uint32_t r = 0; r < ranks; ++r) all += weights[r];
     for (uint32_t r = 0; r < ranks; ++r) {
-        BpPortion portion;
+        BpPartition partition;
         BpChunk chunk;
         uint64_t own = 0;
-        bp_portion_init(&portion, block, strips, fractions[r], fractions[r + 1]);
-        while (bp_portion_take(&portion, wanted, &chunk)) {
+        bp_partition_init(&partition, block, strips, fractions[r], fractions[r + 1]);
+        while (bp_partition_take(&partition, wanted, &chunk)) {
             look(&seen, &chunk);
             own += (uint64_t)chunk.pixel_count * chunk.samples;
         }
-        assert_true(!bp_portion_take(&portion, wanted, &chunk));
+        assert_true(!bp_partition_take(&partition, wanted, &chunk));
         const double due = (double)samples * weights[r] / all;
         assert_true((double)own > due - 2.0 * strips && (double)own < due + 2.0 * strips);
     }
@@ -64,7 +64,7 @@ static void each_sample_once(void **state) {
                 double weights[RANKS_MAX];
                 if (wanted[w] == 1 && blocks[b].pixel_count > 1000) continue;
                 for (uint32_t r = 0; r < ranks; ++r) weights[r] = 1e6 * (rand() % 1000 + 1);
-                share(&blocks[b], weights, ranks, bp_portion_strips(&blocks[b], ranks), wanted[w]);
+                share(&blocks[b], weights, ranks, bp_partition_strips(&blocks[b], ranks), wanted[w]);
                 share(&blocks[b], weights, ranks, 5, wanted[w]);
             }
 }
@@ -75,12 +75,12 @@ static void huge_block(void **state) {
     const BpChunk block = {0, 1u << 30, 0, UINT32_MAX};
     const double weights[] = {1, 3};
     uint64_t fractions[3];
-    bp_portion_divide(weights, 2, fractions);
-    assert_int_equal(fractions[1], BP_PORTION_WHOLE / 4);
-    BpPortion portion;
+    bp_partition_divide(weights, 2, fractions);
+    assert_int_equal(fractions[1], BP_PARTITION_WHOLE / 4);
+    BpPartition partition;
     BpChunk chunk;
-    bp_portion_init(&portion, &block, 1, fractions[1], fractions[2]);
-    assert_true(bp_portion_take(&portion, 1u << 22, &chunk));
+    bp_partition_init(&partition, &block, 1, fractions[1], fractions[2]);
+    assert_true(bp_partition_take(&partition, 1u << 22, &chunk));
     const uint64_t at = ((uint64_t)1 << 30) * UINT32_MAX / 4;
     assert_int_equal(chunk.first_sample, at >> 30);
     assert_int_equal(chunk.first_pixel, at & ((1u << 30) - 1));
@@ -90,11 +90,11 @@ static void huge_block(void **state) {
 static void strips_where_they_help(void **state) {
     (void)state;
     const BpChunk one = {0, 921600, 0, 1}, many = {0, 921600, 0, 512}, tiny = {0, 1000, 0, 4};
-    assert_int_equal(bp_portion_strips(&one, 2), 8);
-    assert_int_equal(bp_portion_strips(&one, 64), 1);
-    assert_int_equal(bp_portion_strips(&many, 2), 1);
-    assert_int_equal(bp_portion_strips(&many, 256), 8);
-    assert_int_equal(bp_portion_strips(&tiny, 2), 1);
+    assert_int_equal(bp_partition_strips(&one, 2), 8);
+    assert_int_equal(bp_partition_strips(&one, 64), 1);
+    assert_int_equal(bp_partition_strips(&many, 2), 1);
+    assert_int_equal(bp_partition_strips(&many, 256), 8);
+    assert_int_equal(bp_partition_strips(&tiny, 2), 1);
 }
 
 int main(void) {
