@@ -110,7 +110,7 @@ static void end_by_signal(void) {
 }
 
 /* Joins the other processes of the job, if there are any. `status` is how the command line was read: where
- * that failed, it did on all ranks, and one of them tells. */
+ * that failed, it did on all ranks, and one of them reports it. */
 static BpStatus join_ranks(char **argv, BpCommandLine *line, BpStatus status, BpError *err) {
     if (line->command == NULL || !line->command->is_shared || line->help) return status;
     const BpStatus joined = bp_comm_begin(argv, &line->comm, status == BP_OK ? err : NULL);
@@ -142,7 +142,7 @@ int main(int argc, char **argv) {
 
     BpStatus status = join_ranks(argv, &line, bp_command_line_parse(argc, argv, &line, &err), &err);
     /* With several ranks, only one reports the errors that they share. */
-    const bool tells =
+    const bool is_reporter =
         line.comm != NULL ? bp_comm_is_root(line.comm) : status == BP_OK || bp_launch_find().rank == 0;
     if (status == BP_OK) {
         if (line.version)
@@ -158,7 +158,7 @@ int main(int argc, char **argv) {
     /* What else went wrong is still to be told. */
     const bool about_output = status == BP_ERR_FILE && err.file[0] == '\0';
     if (left && (status == BP_OK || about_output)) end_by_signal();
-    if (status != BP_OK && tells) print_error(&err, status, line.wide);
+    if (status != BP_OK && is_reporter) print_error(&err, status, line.wide);
     bp_error_clear(&err);
     const BpStatus finished = finish_standard_output(flush_problem, &err);
     if (status == BP_OK && finished != BP_OK) print_error(&err, finished, line.wide);

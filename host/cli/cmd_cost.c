@@ -62,7 +62,7 @@ static BpStatus check_outputs(const BpCommandLine *line, BpError *err) {
     return BP_OK;
 }
 
-static BpStatus deliver(const BpCommandLine *line, const BpStudyResult *result, BpError *err) {
+static BpStatus write_results(const BpCommandLine *line, const BpStudyResult *result, BpError *err) {
     const char *const files[] = {line->output, line->json, line->csv};
     bool to_stdout = false;
     for (size_t f = 0; f < sizeof files / sizeof files[0]; ++f)
@@ -139,7 +139,7 @@ BpStatus bp_command_cost(const BpCommandLine *line, BpError *err) {
     bp_line_say_overwritten(line, line->csv);
     bp_line_say_overwritten(line, line->json);
     BP_TRY_GOTO(status, run_study(line, study, err), done);
-    status = deliver(line, bp_study_result(study), err);
+    status = write_results(line, bp_study_result(study), err);
 done:
     bp_study_destroy(&study);
     bp_scene_destroy(&scene);

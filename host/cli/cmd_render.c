@@ -64,9 +64,9 @@ static BpStatus check_adaptive(const BpStopRule *rule, BpError *err) {
 }
 
 /* Picture, statistics (appended to `stats` unless it is NULL) and summary of a render that has stopped. */
-static BpStatus deliver(const BpCommandLine *line, BpResultFile *file, const BpStopRule *rule,
-                        const BpLoopEnd *end, BpCheckpoint *checkpoint, BpPreview *preview, BpRender *render,
-                        BpRunResult *result, json_t *stats, BpError *err) {
+static BpStatus write_results(const BpCommandLine *line, BpResultFile *file, const BpStopRule *rule,
+                              const BpLoopEnd *end, BpCheckpoint *checkpoint, BpPreview *preview,
+                              BpRender *render, BpRunResult *result, json_t *stats, BpError *err) {
     BpStatus status = bp_render_read_whole_film(render, &result->film, err);
     if (status != BP_OK && result->comm == NULL && bp_render_read_film(render, &result->film, NULL) == BP_OK)
         bp_keep_sums(result->film, file->path, err);
@@ -290,8 +290,8 @@ static BpStatus render_one(Run *run, const BpCommandLine *line, Job *job, BpErro
                                 &end, err);
     }
     if (status == BP_OK)
-        status = deliver(line, &job->file, &work.rule, &end, &job->checkpoint, &work.preview, work.render,
-                         &work.result, run->stats, err);
+        status = write_results(line, &job->file, &work.rule, &end, &job->checkpoint, &work.preview,
+                               work.render, &work.result, run->stats, err);
     /* A rank that failed at work cannot agree with the others, who wait for something else. */
     if (!bp_comm_is_at_work(run->comm)) status = bp_comm_all_ok(run->comm, status, err);
     bp_render_destroy(&work.render);
@@ -319,7 +319,7 @@ static void clear(Run *run) {
 
 /* Pictures that were dealt to the ranks are all there: what went wrong on any of them, and what they have to
  * tell. The statistics of all go to rank 0, in the order of the scenes. */
-static BpStatus meet(Run *run, size_t dealt, BpStatus status, BpError *err) {
+static BpStatus gather_results(Run *run, size_t dealt, BpStatus status, BpError *err) {
     BpComm *comm = run->line.comm;
     char **texts = NULL;
     if (dealt == 0) return status;
@@ -361,7 +361,7 @@ static BpStatus render_series(Run *run, BpError *err) {
         Job job = {.path = line->operands[0]};
         if (series.next < dealt && !bp_ranks_is_mine(line->comm, (size_t)series.next)) {
             ++series.next;
-            if (series.next == dealt) status = meet(run, dealt, status, err);
+            if (series.next == dealt) status = gather_results(run, dealt, status, err);
             continue;
         }
         run->start = bp_clock_seconds();
@@ -378,7 +378,7 @@ static BpStatus render_series(Run *run, BpError *err) {
         if (status == BP_OK) status = bp_checkpoint_choose(&one, &job.file, &job.checkpoint, err);
         job.load_seconds = bp_clock_seconds() - run->start;
         if (status == BP_OK) status = render_one(run, &one, &job, err);
-        if (series.next == dealt) status = meet(run, dealt, status, err);
+        if (series.next == dealt) status = gather_results(run, dealt, status, err);
     }
     bp_series_end(&series);
     return status;
@@ -402,7 +402,7 @@ static BpStatus render_scenes(Run *run, BpError *err) {
             bp_scene_destroy(&run->jobs[j].own);
             run->start = bp_clock_seconds();
         }
-        if (j + 1 == dealt) status = meet(run, dealt, status, err);
+        if (j + 1 == dealt) status = gather_results(run, dealt, status, err);
     }
     if (json_array_size(run->stats) > 0 && bp_comm_is_root(comm)) {
         const BpStatus written = write_stats(run, status == BP_OK ? err : NULL);

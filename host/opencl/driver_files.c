@@ -34,14 +34,14 @@ static int by_name(const void *a, const void *b) {
 
 void bp_driver_files_find(BpDriverFiles *drivers) {
     const char *vendors = getenv(BP_DRIVER_VENDORS), *path = getenv("OPENCL_VENDOR_PATH");
-    const char *usual = path != NULL && path[0] != '\0' ? path : VENDORS_DEFAULT;
+    const char *default_path = path != NULL && path[0] != '\0' ? path : VENDORS_DEFAULT;
     const bool named = vendors != NULL && vendors[0] != '\0' && !is_folder(vendors);
-    const char *folder = vendors != NULL && vendors[0] != '\0' ? vendors : usual;
+    const char *folder = vendors != NULL && vendors[0] != '\0' ? vendors : default_path;
     drivers->count = 0;
     snprintf(drivers->place, sizeof drivers->place, "%s", folder);
     if (named) { /* one file, or a library */
         char beside[512];
-        snprintf(beside, sizeof beside, "%s/%s", usual, vendors);
+        snprintf(beside, sizeof beside, "%s/%s", default_path, vendors);
         const bool there = strchr(vendors, '/') == NULL && access(beside, R_OK) == 0;
         add_driver(drivers, "", there ? beside : vendors);
         return;

@@ -85,7 +85,7 @@ static bool fresnel_matters(const BpScene *scene, BpStudyFresnel fresnel) {
 }
 
 /* The options of `ballpark render` when none is given. */
-static const BpRenderOptions usual = {.sampler = BP_SAMPLER_SOBOL};
+static const BpRenderOptions defaults = {.sampler = BP_SAMPLER_SOBOL};
 
 /* The options that `ballpark render` needs beside the scene, which has a depth of its own. */
 static void write_command(const BpScene *scene, BpStudyConfiguration *configuration) {
@@ -95,7 +95,7 @@ static void write_command(const BpScene *scene, BpStudyConfiguration *configurat
 #define ADD(...)                                                                                             \
     snprintf(command + strlen(command), sizeof configuration->command - strlen(command), __VA_ARGS__)
 #define ADD_SETTING(type, member, option, plural)                                                            \
-    if (options->member != usual.member) ADD(" --" option " %s", bp_##member##_names[options->member]);
+    if (options->member != defaults.member) ADD(" --" option " %s", bp_##member##_names[options->member]);
     BP_SETTING_LIST(ADD_SETTING)
     if (options->adaptive) ADD(" --adaptive");
     if (options->max_depth != scene->camera.max_depth) ADD(" --depth %u", options->max_depth);
@@ -118,7 +118,7 @@ static bool apply(const Row *row, const BpScene *scene, const BpRenderOptions *b
     differs = differs || options->member != base->member;
     BP_SETTING_LIST(APPLY)
 #undef APPLY
-    if (change->light_sampling > 0 && bp_render_light_sampling(scene, &usual) == BP_LIGHT_SAMPLING_OFF)
+    if (change->light_sampling > 0 && bp_render_light_sampling(scene, &defaults) == BP_LIGHT_SAMPLING_OFF)
         return false;
     const BpRenderOptions through = {.caustics = BP_CAUSTICS_ON};
     if (change->caustics > 0 && bp_render_caustics(scene, &through) == BP_CAUSTICS_OFF) return false;

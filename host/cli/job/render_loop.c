@@ -68,35 +68,35 @@ static bool is_interrupted(BpComm *shared, BpComm *all) {
 BpStatus bp_render_loop(const BpCommandLine *line, BpComm *shared, BpRender *render, const BpStopRule *rule,
                         BpCheckpoint *checkpoint, BpPreview *preview, BpLoopEnd *end, BpError *err) {
     enum { INTERRUPT = 1, CHECKPOINT = 2, PREVIEW = 4 };
-    const bool explains = shared != NULL && bp_comm_is_root(shared);
+    const bool posts_explanation = shared != NULL && bp_comm_is_root(shared);
     const double start = bp_clock_seconds();
     BpStatus status = BP_OK;
     BpStop *stop = NULL;
-    uint32_t wishes = 0;
+    uint32_t requests = 0;
     Bar bar = {.live = bp_terminal_is_live(line->quiet), .start = start, .drawn = start};
-    bar.logs = !bar.live && explains;
+    bar.logs = !bar.live && posts_explanation;
     end->reason = BP_STOP_NOT_YET;
     bp_interrupt_catch();
     bp_checkpoint_start(checkpoint);
     BP_TRY_GOTO(status, bp_stop_create(render, rule, &stop, err), done);
     while (end->reason == BP_STOP_NOT_YET) {
         BpProgress progress;
-        if (explains) prepare_explanation(line, rule, start, checkpoint);
+        if (posts_explanation) prepare_explanation(line, rule, start, checkpoint);
         BP_TRY_GOTO(status, bp_render_step(render, &progress, err), done);
         if (!bp_interrupted()) BP_TRY_GOTO(status, draw(line, stop, &progress, &bar, err), done);
         BP_TRY_GOTO(status, bp_stop_check(stop, &progress, &end->reason, err), done);
-        wishes = is_interrupted(shared, line->comm) ? INTERRUPT : 0;
-        if (bp_checkpoint_is_due(checkpoint, bp_clock_seconds())) wishes |= CHECKPOINT;
-        if (bp_preview_is_due(preview, bp_clock_seconds())) wishes |= PREVIEW;
-        BP_TRY_GOTO(status, bp_comm_allreduce_or(shared, &wishes, err), done); /* all do what any wants */
-        if (end->reason == BP_STOP_NOT_YET && (wishes & (INTERRUPT | CHECKPOINT)) == CHECKPOINT)
+        requests = is_interrupted(shared, line->comm) ? INTERRUPT : 0;
+        if (bp_checkpoint_is_due(checkpoint, bp_clock_seconds())) requests |= CHECKPOINT;
+        if (bp_preview_is_due(preview, bp_clock_seconds())) requests |= PREVIEW;
+        BP_TRY_GOTO(status, bp_comm_allreduce_or(shared, &requests, err), done); /* all do what any wants */
+        if (end->reason == BP_STOP_NOT_YET && (requests & (INTERRUPT | CHECKPOINT)) == CHECKPOINT)
             BP_TRY_GOTO(status, bp_checkpoint_begin(checkpoint, render, err), done);
-        if (end->reason == BP_STOP_NOT_YET && (wishes & (INTERRUPT | PREVIEW)) == PREVIEW)
+        if (end->reason == BP_STOP_NOT_YET && (requests & (INTERRUPT | PREVIEW)) == PREVIEW)
             BP_TRY_GOTO(status, bp_preview_update(preview, render, err), done);
-        if (wishes & INTERRUPT) break; /* after a regular stop it is not an interruption */
+        if (requests & INTERRUPT) break; /* after a regular stop it is not an interruption */
     }
 done:
-    if (explains && status == BP_OK) bp_interrupt_explain("");
+    if (posts_explanation && status == BP_OK) bp_interrupt_explain("");
     bp_checkpoint_wait(checkpoint);
     bp_stop_destroy(&stop);
     end->seconds = bp_clock_seconds() - start;

@@ -61,10 +61,10 @@ typedef struct OptionRow {
 #define BP_RESULT(name) .kind = RESULT, .shown = (name)
 
 static const OptionRow rows[BP_OPTION_NUMBER] = {
-#define ROW(number, long_name, short_name, takers, text, type, member, ...)                                  \
+#define ROW(number, long_name, short_name, commands_, text, type, member, ...)                               \
     [BP_OPTION_##number] = {.name = (long_name),                                                             \
                             .letter = (short_name),                                                          \
-                            .commands = (takers),                                                            \
+                            .commands = (commands_),                                                         \
                             .help = (text),                                                                  \
                             .offset = offsetof(BpCommandLine, member),                                       \
                             .size = sizeof(type),                                                            \
@@ -80,20 +80,20 @@ const char *bp_option_help(BpOption option, const BpCommand *command, char *text
     static const struct {
         BpOption option;
         unsigned commands;
-        const char *help, *usual;
+        const char *help, *default_text;
     } notes[] = {
-#define NOTE(number, takers, help, usual) {BP_OPTION_##number, (takers), (help), (usual)},
+#define NOTE(number, commands_, help, default_) {BP_OPTION_##number, (commands_), (help), (default_)},
         BP_OPTION_NOTES(NOTE)
 #undef NOTE
     };
-    const char *help = rows[option].help, *usual = NULL;
+    const char *help = rows[option].help, *default_text = NULL;
     for (size_t n = 0; n < sizeof notes / sizeof notes[0]; ++n) {
         if (notes[n].option != option || (notes[n].commands & command->bit) == 0) continue;
         if (notes[n].help != NULL) help = notes[n].help;
-        usual = notes[n].usual;
+        default_text = notes[n].default_text;
     }
-    if (usual != NULL)
-        snprintf(text, size, "%s (default: %s)", help, usual);
+    if (default_text != NULL)
+        snprintf(text, size, "%s (default: %s)", help, default_text);
     else
         snprintf(text, size, "%s", help);
     return text;

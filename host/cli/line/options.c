@@ -12,7 +12,7 @@
 _Static_assert(BP_SPP_MAX == (uint64_t)BP_REPLICATE_SAMPLES_MAX * BP_REPLICATES_DEFAULT, "the sums' limit");
 
 /* "render, check" for the commands that take `option`. */
-static void list_takers(BpOption option, char *text, size_t size) {
+static void list_commands(BpOption option, char *text, size_t size) {
     size_t used = 0;
     text[0] = '\0';
     for (size_t c = 0; c < bp_command_count && used < size; ++c)
@@ -65,17 +65,17 @@ static BpStatus check_taken(const BpCommandLine *line, BpOption option, const ch
     if (option == BP_OPTION_HELP) return BP_OK;
     if (line->command == NULL ? option == BP_OPTION_VERSION : bp_option_taken(option, line->command))
         return BP_OK;
-    char takers[160];
-    list_takers(option, takers, sizeof takers);
+    char commands[160];
+    list_commands(option, commands, sizeof commands);
     if (line->command == NULL)
         return bp_fail(err, BP_ERR_USAGE, "%s must follow a command: ballpark %.*s ... %s", name,
-                       (int)strcspn(takers, ","), takers, name);
-    if (takers[0] == '\0')
+                       (int)strcspn(commands, ","), commands, name);
+    if (commands[0] == '\0')
         return bp_fail(err, BP_ERR_USAGE,
                        "ballpark %s: unsupported option %s; use it without a command: ballpark %s",
                        line->command->name, name, name);
     return bp_fail(err, BP_ERR_USAGE, "ballpark %s: unsupported option %s; it belongs to %s",
-                   line->command->name, name, takers);
+                   line->command->name, name, commands);
 }
 
 static BpStatus check_operands(const BpCommandLine *line, BpError *err) {
