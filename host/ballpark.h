@@ -579,9 +579,9 @@ typedef struct BpFilmInfo {
     uint64_t samples_per_pixel; /* that the film is of; where it is partial, not every pixel has them all */
     uint64_t samples_least, samples_most; /* valid samples of the pixels that have the fewest and the most */
     double samples_mean;
-    size_t range_count;                            /* see bp_film_range() */
-    bool partial;                                  /* of an interrupted or an adaptive render */
-    uint64_t segments, cut_paths, invalid_samples; /* in all: ray segments; paths that the depth ended;
+    size_t range_count;                                  /* see bp_film_range() */
+    bool partial;                                        /* of an interrupted or an adaptive render */
+    uint64_t segments, truncated_paths, invalid_samples; /* in all: ray segments; paths that the depth ended;
                                                       samples that are left out of the picture: */
     /* those that had a channel that was NaN or infinite; of the others, those that had a negative one; and
      * those that were finite but brighter than the sums can hold. */

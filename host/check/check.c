@@ -88,7 +88,7 @@ static bool spreads_less(const BpRender *render) {
 }
 
 /* One chunk of the kernel. */
-static BpStatus step_kernel(BpRender *render, BpSums *sums, uint64_t *cut_paths, bool *finished,
+static BpStatus step_kernel(BpRender *render, BpSums *sums, uint64_t *truncated_paths, bool *finished,
                             BpError *err) {
     BpSampleBlock block = {0};
     BP_TRY(bp_render_step_samples(render, &block, finished, err));
@@ -96,18 +96,18 @@ static BpStatus step_kernel(BpRender *render, BpSums *sums, uint64_t *cut_paths,
         const float *value = block.values + 4 * i;
         const double radiance[3] = {(double)value[0], (double)value[1], (double)value[2]};
         const double segments = floor((double)value[3]);
-        if ((double)value[3] > segments) *cut_paths += 1;
+        if ((double)value[3] > segments) *truncated_paths += 1;
         bp_pixel_sums_add(&sums->pixels[block.first_pixel + i / block.samples], radiance, (uint64_t)segments);
     }
     bp_sample_block_clear(&block);
     return BP_OK;
 }
 
-BpStatus bp_check_render_kernel(BpRender *render, BpSums *sums, uint64_t *cut_paths, BpError *err) {
+BpStatus bp_check_render_kernel(BpRender *render, BpSums *sums, uint64_t *truncated_paths, BpError *err) {
     uint64_t cut = 0;
     sums->means_only = spreads_less(render);
     for (bool finished = false; !finished;) BP_TRY(step_kernel(render, sums, &cut, &finished, err));
-    if (cut_paths != NULL) *cut_paths += cut;
+    if (truncated_paths != NULL) *truncated_paths += cut;
     return BP_OK;
 }
 

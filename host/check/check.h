@@ -57,8 +57,8 @@ BpStatus bp_check_result(const BpCheck *check, const BpCheckResult **result, BpE
 void bp_check_destroy(BpCheck **check);
 
 /* The kernel's half alone, for tests: runs `render` to its end and adds every sample to `sums` (of the
- * scene's size). `cut_paths`: Optional, added to. */
-BpStatus bp_check_render_kernel(BpRender *render, BpSums *sums, uint64_t *cut_paths, BpError *err);
+ * scene's size). `truncated_paths`: Optional, added to. */
+BpStatus bp_check_render_kernel(BpRender *render, BpSums *sums, uint64_t *truncated_paths, BpError *err);
 
 #define BP_CHECK_MAP_MOST 4
 

@@ -86,7 +86,7 @@ void bp_film_info(const BpFilm *film, BpFilmInfo *info) {
         .range_count = film->range_count,
         .partial = film->partial,
         .segments = film->segments,
-        .cut_paths = film->cut_paths,
+        .truncated_paths = film->truncated_paths,
         .invalid_samples = film->invalid_samples,
 #define GIVE(member, tally, words) .member = film->member,
         BP_INVALID_LIST(GIVE)
@@ -272,7 +272,7 @@ BpStatus bp_film_add_sums(BpFilm *film, const BpFilm *from, BpError *err) {
         film->fine_sums[i] += from->fine_sums[i];
     film->coarse = film->coarse || from->coarse;
     film->segments += from->segments;
-    film->cut_paths += from->cut_paths;
+    film->truncated_paths += from->truncated_paths;
     film->invalid_samples += from->invalid_samples;
 #define ADD(member, tally, words) film->member += from->member;
     BP_INVALID_LIST(ADD)
@@ -304,7 +304,7 @@ BpStatus bp_film_merge(BpFilm *into, const BpFilm *from, BpError *err) {
         BP_TRY(check_sums(into, from, into->fine_sums, from->fine_sums, err));
     /* A .bpa file holds totals up to 2^63 - 1; no sum of real renders comes near. */
     if (total_overflows(into->segments, from->segments) ||
-        total_overflows(into->cut_paths, from->cut_paths) ||
+        total_overflows(into->truncated_paths, from->truncated_paths) ||
         total_overflows(into->invalid_samples, from->invalid_samples) ||
         total_overflows(into->shadow_rays, from->shadow_rays))
         return bp_fail(err, BP_ERR_LIMIT,

@@ -76,7 +76,7 @@ struct BpFilm {
     int64_t *sums;      /* width * height * K * 3, index ((pixel * K) + k) * 3 + channel */
     int64_t *fine_sums; /* Optional. Of the same shape, in steps 2^38 times finer; NULL: all are 0 */
     uint32_t *counts;   /* width * height * K: valid samples */
-    uint64_t segments, cut_paths, invalid_samples, shadow_rays;          /* totals over the picture */
+    uint64_t segments, truncated_paths, invalid_samples, shadow_rays;    /* totals over the picture */
     uint64_t not_finite_samples, negative_samples, out_of_range_samples; /* of the invalid ones */
     uint64_t *pixel_segments; /* Optional. Of each pixel, for adaptive sampling; not merged. */
     uint64_t *met; /* Optional. Of each pixel: valid samples whose camera ray met something; a scene without a

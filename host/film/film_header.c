@@ -71,8 +71,8 @@ char *bp_film_header_make(const BpFilm *film) {
     json_t *rest =
         json_pack("{s:s,s:o,s:b,s:I,s:I,s:I,s:I}", "transfer", bp_transfer_names[film->transfer], "ranges",
                   ranges_json(film), "partial", (int)film->partial, "segments", (json_int_t)film->segments,
-                  "shadow_rays", (json_int_t)film->shadow_rays, "cut_paths", (json_int_t)film->cut_paths,
-                  "invalid_samples", (json_int_t)film->invalid_samples);
+                  "shadow_rays", (json_int_t)film->shadow_rays, "cut_paths",
+                  (json_int_t)film->truncated_paths, "invalid_samples", (json_int_t)film->invalid_samples);
     bool whole = true;
 #define WRITE(type, member, option, plural)                                                                  \
     whole =                                                                                                  \
@@ -288,7 +288,7 @@ static void read_settings(Reader *reader, BpFilm *film) {
 #undef READ
     film->transfer = (BpTransfer)read_name(reader, "transfer", bp_transfer_names);
     film->segments = read_integer(reader, "segments", 0, INT64_MAX);
-    film->cut_paths = read_integer(reader, "cut_paths", 0, INT64_MAX);
+    film->truncated_paths = read_integer(reader, "cut_paths", 0, INT64_MAX);
     read_invalid(reader, film);
     film->shadow_rays = read_integer(reader, "shadow_rays", 0, INT64_MAX);
     film->partial = read_truth(reader, "partial");

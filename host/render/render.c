@@ -485,7 +485,7 @@ void bp_render_report(const BpRender *render, BpRenderReport *report) {
     report->resumed_samples = render->base_samples;
     if (render->film != NULL) {
         report->segments = render->film->segments;
-        report->cut_paths = render->film->cut_paths;
+        report->truncated_paths = render->film->truncated_paths;
         report->invalid_samples = render->film->invalid_samples;
 #define GIVE(member, tally, words) report->member = render->film->member;
         BP_INVALID_LIST(GIVE)

@@ -31,7 +31,7 @@ typedef struct BpRenderReport {
     uint64_t device_bytes;       /* allocated on the device: scene and picture */
     uint64_t scene_bytes;        /* of these, the scene */
     uint64_t resumed_samples;    /* of `samples`, those that were there before */
-    uint64_t samples, segments, cut_paths, invalid_samples, shadow_rays;
+    uint64_t samples, segments, truncated_paths, invalid_samples, shadow_rays;
     uint64_t not_finite_samples, negative_samples, out_of_range_samples; /* of the invalid ones */
 } BpRenderReport;
 

@@ -126,7 +126,7 @@ BpStatus bp_round_add_films(BpComm *comm, BpFilm *film, BpError *err) {
     const size_t pixels = (size_t)film->width * film->height, cells = pixels * film->replicates;
     uint32_t has = (film->fine_sums != NULL ? FINE : 0) | (film->coarse ? COARSE : 0);
 #define TOTAL(member, tally, words) film->member,
-    uint64_t totals[] = {film->segments, film->cut_paths, film->invalid_samples, film->shadow_rays,
+    uint64_t totals[] = {film->segments, film->truncated_paths, film->invalid_samples, film->shadow_rays,
                          BP_INVALID_LIST(TOTAL)};
 #undef TOTAL
     if (comm == NULL) return BP_OK;
@@ -141,7 +141,7 @@ BpStatus bp_round_add_films(BpComm *comm, BpFilm *film, BpError *err) {
     film->coarse = (has & COARSE) != 0;
     const uint64_t *total = totals;
     film->segments = *total++;
-    film->cut_paths = *total++;
+    film->truncated_paths = *total++;
     film->invalid_samples = *total++;
     film->shadow_rays = *total++;
 #define TAKE(member, tally, words) film->member = *total++;

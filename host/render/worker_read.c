@@ -46,7 +46,7 @@ static BpStatus collect_block(BpWorker *worker, size_t first, size_t count, cl_l
         const cl_ulong *const tally = tallies + TALLIES * i;
         film->segments += tally[TALLY_SEGMENTS];
         if (film->pixel_segments != NULL) film->pixel_segments[first + i] += tally[TALLY_SEGMENTS];
-        film->cut_paths += tally[TALLY_CUT];
+        film->truncated_paths += tally[TALLY_CUT];
 #define ADD(member, place, words)                                                                            \
     film->member += tally[place];                                                                            \
     film->invalid_samples += tally[place];

@@ -99,7 +99,7 @@ static BpFilm *own_film(uint32_t rank) {
         film->pixel_segments[p] = 20 * rank + p;
     }
     film->segments = 1000 + rank;
-    film->cut_paths = 2000 + rank;
+    film->truncated_paths = 2000 + rank;
     film->invalid_samples = 3000 + rank;
     film->not_finite_samples = 500 + rank;
     film->negative_samples = 600 + rank;
@@ -129,7 +129,7 @@ static bool add_films(BpComm *comm) {
         fine = holds(sums, "sums") && holds(fine_sums, "fine sums") && holds(counts, "counts") &&
                holds(met, "alpha") && holds(segments, "path lengths") && holds(film->coarse, "coarse") &&
                holds(film->segments == 1000 * RANKS + sum_of_ranks, "segments") &&
-               holds(film->cut_paths == 2000 * RANKS + sum_of_ranks, "cut paths") &&
+               holds(film->truncated_paths == 2000 * RANKS + sum_of_ranks, "truncated paths") &&
                holds(film->invalid_samples == 3000 * RANKS + sum_of_ranks, "invalid samples") &&
                holds(film->not_finite_samples == 500 * RANKS + sum_of_ranks, "samples not finite") &&
                holds(film->negative_samples == 600 * RANKS + sum_of_ranks, "negative samples") &&

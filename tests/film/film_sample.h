@@ -21,7 +21,7 @@ static BpFilm *make(void) {
     a->transfer = BP_TRANSFER_SRGB;
     a->partial = true;
     a->segments = UINT64_C(1) << 60;
-    a->cut_paths = 3;
+    a->truncated_paths = 3;
     a->invalid_samples = 20 + 300 + 4000;
     a->not_finite_samples = 20;
     a->negative_samples = 300;

@@ -23,7 +23,7 @@ static void assert_same(const BpFilm *a, const BpFilm *b) {
     assert_int_equal(a->transfer, b->transfer);
     assert_int_equal(a->partial, b->partial);
     assert_true(a->segments == b->segments);
-    assert_int_equal(a->cut_paths, b->cut_paths);
+    assert_int_equal(a->truncated_paths, b->truncated_paths);
     assert_int_equal(a->invalid_samples, b->invalid_samples);
     assert_int_equal(a->not_finite_samples, b->not_finite_samples);
     assert_int_equal(a->negative_samples, b->negative_samples);

@@ -32,7 +32,7 @@ static BpFilm *render(uint64_t first, uint64_t count) {
                      (double[3]){4 * data_uniform(key), data_uniform(key + 1) / 9, data_uniform(key + 2)});
         }
     film->segments = 35 * count * 3;
-    film->cut_paths = count;
+    film->truncated_paths = count;
     film->invalid_samples = 7;
     film->not_finite_samples = 1;
     film->negative_samples = 2;
@@ -48,7 +48,7 @@ static void assert_same_sums(const BpFilm *a, const BpFilm *b) {
     assert_int_equal(a->range_count, b->range_count);
     assert_memory_equal(a->ranges, b->ranges, a->range_count * sizeof *a->ranges);
     assert_int_equal(a->segments, b->segments);
-    assert_int_equal(a->cut_paths, b->cut_paths);
+    assert_int_equal(a->truncated_paths, b->truncated_paths);
     assert_int_equal(a->shadow_rays, b->shadow_rays);
     const double nrmse_a = bp_film_nrmse(a), nrmse_b = bp_film_nrmse(b);
     assert_memory_equal(&nrmse_a, &nrmse_b, sizeof nrmse_a);
@@ -282,8 +282,8 @@ static void overflow_is_out_of_reach(void **state) {
     refuse_merge(a, b, BP_ERR_LIMIT, "overflow");
     b->sums[11] = 1;
     /* Nor totals, which a file holds in 63 bits. */
-    uint64_t *const totals[] = {&a->segments, &a->cut_paths, &a->invalid_samples, &a->shadow_rays};
-    b->segments = b->cut_paths = b->invalid_samples = b->shadow_rays = 1;
+    uint64_t *const totals[] = {&a->segments, &a->truncated_paths, &a->invalid_samples, &a->shadow_rays};
+    b->segments = b->truncated_paths = b->invalid_samples = b->shadow_rays = 1;
     for (size_t i = 0; i < sizeof totals / sizeof totals[0]; i++) {
         *totals[i] = INT64_MAX;
         refuse_merge(a, b, BP_ERR_LIMIT, "overflow 63 bits");

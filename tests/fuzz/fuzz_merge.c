@@ -71,7 +71,8 @@ static void check_sum(const BpFilm *sum, const BpFilm *a, const BpFilm *b) {
         require(sum->ranges[i].first > sum->ranges[i - 1].first + sum->ranges[i - 1].count);
     require(sum->partial == (a->partial || b->partial));
     require(sum->coarse == (a->coarse || b->coarse));
-    require(sum->segments == a->segments + b->segments && sum->cut_paths == a->cut_paths + b->cut_paths);
+    require(sum->segments == a->segments + b->segments &&
+            sum->truncated_paths == a->truncated_paths + b->truncated_paths);
     require(sum->invalid_samples == a->invalid_samples + b->invalid_samples);
     require(sum->invalid_samples ==
             sum->not_finite_samples + sum->negative_samples + sum->out_of_range_samples);

@@ -33,12 +33,12 @@ static BpFilm *make_accumulator(Bytes *bytes) {
     made->partial = words >> 7 != 0;
     made->coarse = (words & 3u) == 3;
     made->segments = take_bits(bytes, 8) >> 1;
-    made->cut_paths = take_bits(bytes, 8) >> 1;
+    made->truncated_paths = take_bits(bytes, 8) >> 1;
     made->not_finite_samples = take_bits(bytes, 8) >> 3;
     made->negative_samples = take_bits(bytes, 8) >> 3;
     made->out_of_range_samples = take_bits(bytes, 8) >> 3;
     made->invalid_samples = made->not_finite_samples + made->negative_samples + made->out_of_range_samples;
-    made->shadow_rays = made->segments ^ made->cut_paths;
+    made->shadow_rays = made->segments ^ made->truncated_paths;
     made->title = make_title(bytes);
     for (unsigned i = take_byte(bytes) % 6; i > 0; i--) {
         const uint64_t first = take_bits(bytes, 4), count = 1 + take_bits(bytes, i % 2 == 0 ? 1 : 3);
@@ -72,7 +72,7 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size) {
             read->numerics == made->numerics);
     require(read->transfer == made->transfer && read->partial == made->partial &&
             read->coarse == made->coarse);
-    require(read->segments == made->segments && read->cut_paths == made->cut_paths);
+    require(read->segments == made->segments && read->truncated_paths == made->truncated_paths);
     require(read->shadow_rays == made->shadow_rays);
     require(read->invalid_samples == made->invalid_samples && strcmp(read->title, made->title) == 0);
     require(read->not_finite_samples == made->not_finite_samples &&

@@ -277,11 +277,11 @@ static void depth_cap_is_black_and_counted(void **state) {
         const uint64_t samples = (uint64_t)read->width * read->height * 8;
         if (depths[i] == 0) {
             assert_true(mean[0] == 0 && mean[1] == 0 && mean[2] == 0);
-            assert_int_equal(read->cut_paths, samples);
+            assert_int_equal(read->truncated_paths, samples);
             assert_int_equal(read->segments, 0);
         } else if (depths[i] == 1) {
             assert_int_equal(read->segments, samples);
-            assert_true(read->cut_paths > 0 && read->cut_paths < samples);
+            assert_true(read->truncated_paths > 0 && read->truncated_paths < samples);
         }
         assert_true(mean[2] > last);
         last = mean[2];

@@ -80,7 +80,7 @@ json_t *bp_run_stats(const BpRunResult *result) {
         BP_INVALID_LIST(MEMBER)
 #undef MEMBER
             "cut_paths",
-        (json_int_t)report->cut_paths, "shadow_rays", (json_int_t)report->shadow_rays, "unseen_part",
+        (json_int_t)report->truncated_paths, "shadow_rays", (json_int_t)report->shadow_rays, "unseen_part",
         result->claim.unseen_part, "unseen", bp_unseen_json(&result->unseen, result->claim.luminance));
     json_t *run = json_pack("{s:s, s:o, s:I, s:i, s:b, s:o, s:s, s:i, s:i, s:I, s:I, s:I, s:s}",
                             "acceleration", bp_acceleration_name(report->acceleration), "output",
@@ -140,7 +140,7 @@ static void say_emptiness(const BpCommandLine *line, const BpRunResult *result) 
     const BpRenderReport *report = &result->report;
     const BpScene *scene = result->scene;
     char samples[32];
-    if (report->samples == 0 || report->segments != report->samples || report->cut_paths > 0) return;
+    if (report->samples == 0 || report->segments != report->samples || report->truncated_paths > 0) return;
     if (scene->sphere_count == 0)
         bp_say(line, "the scene has no spheres: the picture shows the background alone");
     else if (!bp_scene_has_sphere_in_view(scene) || bp_scene_always_scatters(scene))
@@ -228,11 +228,12 @@ void bp_run_print_summary(const BpCommandLine *line, const BpRunResult *result, 
     }
     say_stop(line, result, rule, end);
     say_emptiness(line, result);
-    if (report->cut_paths > 0)
-        bp_say(line, "%s of the paths were cut off at %" PRIu32 " segment%s (--depth) and counted as black",
-               bp_format_percent((double)report->cut_paths / (double)report->samples, text, sizeof text),
-               result->options->max_depth, bp_plural(result->options->max_depth));
-    if (result->scene->medium != 0 && 2 * report->cut_paths > report->samples)
+    if (report->truncated_paths > 0)
+        bp_say(
+            line, "%s of the paths were cut off at %" PRIu32 " segment%s (--depth) and counted as black",
+            bp_format_percent((double)report->truncated_paths / (double)report->samples, text, sizeof text),
+            result->options->max_depth, bp_plural(result->options->max_depth));
+    if (result->scene->medium != 0 && 2 * report->truncated_paths > report->samples)
         bp_say(
             line,
             "the \"medium\" of the whole scene has no end, so no light of the sky comes through it; put it "
