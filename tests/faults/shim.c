@@ -10,7 +10,10 @@
  * driver that is refused memory may crash, and that is not what is looked for. Reads and writes cannot be
  * seen from outside the C library, so streams that the program opens, and standard output, get their
  * functions from here. A child process counts on from where its parent was, and the log has the largest
- * number of any. */
+ * number of any.
+ *
+ * Not for a build that counts lines: gcov is then a part of the program, and crashes at its end
+ * (gcov_do_dump) where it is refused memory. */
 #define _GNU_SOURCE
 #include <dlfcn.h>
 #include <errno.h>
