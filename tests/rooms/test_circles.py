@@ -55,7 +55,8 @@ def graphs_of(source):
             if other != unit and (host / f"{other}.h").exists():
                 includes[unit].add(other)
         if path.suffix == ".c":
-            uses[unit] |= {home[name] for name in set(re.findall(r"\bbp_\w+", text)) if home.get(name, unit) != unit}
+            unquoted = re.sub(r'"(?:\\.|[^"\\\n])*"', '""', text)  # a message may name a function
+            uses[unit] |= {home[name] for name in set(re.findall(r"\bbp_\w+", unquoted)) if home.get(name, unit) != unit}
     return includes, uses
 
 
