@@ -36,7 +36,7 @@ def worded(remedy, interface, value="", message="it failed"):
 
 
 # What there is.
-rows = re.findall(r'OPTION\(\s*[A-Z_]+, "([\w-]+)", (0|\'\w\'),', (host / "cli/option_list.h").read_text())
+rows = re.findall(r'OPTION\(\s*[A-Z_]+, "([\w-]+)", (0|\'\w\'),', (host / "cli/line/option_list.h").read_text())
 options = {f"--{name}" for name, _ in rows} | {f"-{letter[1]}" for _, letter in rows if letter != "0"}
 assert {"--width", "--no-clobber", "-o"} <= options
 arguments = {name for function in (ballpark.render, ballpark.Render, ballpark.Picture.save)
