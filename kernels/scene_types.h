@@ -121,7 +121,7 @@ typedef struct PackedMaterial {
     real fuzz;             /* in [0, 1] */
     real refraction_index; /* inside over outside; for a negative radius already its reciprocal */
     real roughness;        /* in [0, 1] */
-    real reserved;
+    real lets_in;          /* of a coat: the share of light from all sides that enters */
 } PackedMaterial;
 
 /* The kinds of a material, values of the enums below. */
@@ -178,6 +178,7 @@ typedef struct PackedVariation {
 #define MATERIAL_FUZZ 4u
 #define MATERIAL_INDEX 5u
 #define MATERIAL_ROUGHNESS 6u
+#define MATERIAL_LETS_IN 7u
 #define MATERIAL_LOBE 1u /* of PackedMaterialKind, like the next two */
 #define MATERIAL_VARIANT 2u
 #define MATERIAL_TOTAL_REFLECTION 3u
@@ -360,7 +361,8 @@ enum {
     KIND_NORMALS,
     KIND_INTERFACE,
     KIND_OREN_NAYAR,
-    KIND_ROUGH_METAL
+    KIND_ROUGH_METAL,
+    KIND_GLOSSY
 };
 enum { LOBE_LAMBERTIAN, LOBE_COSINE_CUBED, LOBE_HEMISPHERE };
 enum { FUZZ_SPHERE, FUZZ_BALL };
@@ -453,6 +455,7 @@ BP_PLACE(MATERIAL_EMIT, PackedMaterial, emit, real);
 BP_PLACE(MATERIAL_FUZZ, PackedMaterial, fuzz, real);
 BP_PLACE(MATERIAL_INDEX, PackedMaterial, refraction_index, real);
 BP_PLACE(MATERIAL_ROUGHNESS, PackedMaterial, roughness, real);
+BP_PLACE(MATERIAL_LETS_IN, PackedMaterial, lets_in, real);
 BP_PLACE(0, PackedMaterialKind, kind, packed_uint);
 BP_PLACE(MATERIAL_LOBE, PackedMaterialKind, lobe, packed_uint);
 BP_PLACE(MATERIAL_VARIANT, PackedMaterialKind, variant, packed_uint);

@@ -129,7 +129,7 @@ BpStatus bp_parse_material(const BpNode *node, const BpScene *scene, BpMaterial 
     for (int m = 0; m < BP_MEMBER_COUNT; m++)
         if ((bp_material_types[material->kind].needed >> m & 1u) != 0)
             BP_TRY(bp_node_require(node, bp_members[m].name, bp_members[m].needed, err));
-    material->refraction_index = 1;
+    material->refraction_index = material->kind == BP_MATERIAL_GLOSSY ? BP_COAT_INDEX : 1;
     for (int m = 0; m < BP_MEMBER_COUNT; m++) BP_TRY(read_member(node, (BpMember)m, scene, material, err));
     /* A mirror, which light can be traced through. */
     if (material->kind == BP_MATERIAL_ROUGH_METAL && material->roughness == 0)

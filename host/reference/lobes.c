@@ -114,3 +114,63 @@ bool bp_ref_scatter_rough_metal(double roughness, Vec normal, Vec incoming, Rand
         scale((1 + hidden(alpha, cosine)) / (1 + hidden(alpha, cosine) + hidden(alpha, cos_in)), *weight);
     return true;
 }
+
+/* The share of light by Lambert's law that a clear body of this index reflects outside: the closed form of J.
+ * Walsh (1926), which S. Duntley gave in this form. */
+double bp_ref_coat_reflects(double index) {
+    if (index - 1 < 1e-4) return 0; /* below 1e-4, and the terms cancel */
+    const double n = index, n2 = n * n, n4 = n2 * n2;
+    return 0.5 + (n - 1) * (3 * n + 1) / (6 * (n + 1) * (n + 1)) +
+           n2 * (n2 - 1) * (n2 - 1) / pow(n2 + 1, 3) * log((n - 1) / (n + 1)) -
+           2 * n * n2 * (n2 + 2 * n - 1) / ((n2 + 1) * (n4 - 1)) +
+           8 * n4 * (n4 + 1) / ((n2 + 1) * (n4 - 1) * (n4 - 1)) * log(n);
+}
+
+/* What a coat reflects: as a facet does, but no more than a smooth coat at either direction's angle. */
+static double coat_share(double index, Vec normal, Vec out, Vec in) {
+    const double cos_h = fmin(dot(unit(add(out, in)), out), 1);
+    return fmin(bp_ref_fresnel(cos_h, 1 / index), fmin(bp_ref_fresnel(fmin(dot(out, normal), 1), 1 / index),
+                                                       bp_ref_fresnel(fmin(dot(in, normal), 1), 1 / index)));
+}
+
+double bp_ref_glossy_coat(double roughness, double index, Vec normal, Vec out, Vec in) {
+    if (dot(out, normal) <= 0 || dot(in, normal) <= 0) return 0;
+    return bp_ref_rough_metal(roughness, normal, out, in) * coat_share(index, normal, out, in);
+}
+
+/* Of what enters, Lambert's surface sends up `albedo`, of which the coat sends back `back`, of which the
+ * surface sends up `albedo`, and so on; what leaves is spread over n^2 times the solid angle. */
+double bp_ref_glossy_base(double albedo, double index, Vec normal, Vec out, Vec in) {
+    const double cos_out = dot(out, normal), cos_in = dot(in, normal), n2 = index * index;
+    if (cos_out <= 0 || cos_in <= 0) return 0;
+    const double back = 1 - (1 - bp_ref_coat_reflects(index)) / n2;
+    return (1 - bp_ref_fresnel(fmin(cos_in, 1), 1 / index)) *
+           (1 - bp_ref_fresnel(fmin(cos_out, 1), 1 / index)) * albedo / (1 - albedo * back) / (PI * n2);
+}
+
+/* The part by chance; the coat's direction as metal's, the base's from an even hemisphere by rejection. */
+bool bp_ref_scatter_glossy(double roughness, double index, Vec albedo, Vec normal, Vec incoming,
+                           Random *random, Vec *direction, Vec *weight) {
+    const Vec out = scale(-1, incoming);
+    const double reflected = bp_ref_fresnel(fmin(fmax(dot(out, normal), 0), 1), 1 / index);
+    if (random_real(random) < reflected) {
+        *weight = (Vec){1, 1, 1};
+        if (roughness == 0) {
+            *direction = reflect(incoming, normal);
+            return true;
+        }
+        if (!bp_ref_scatter_rough_metal(roughness, normal, incoming, random, direction, weight)) return false;
+        *weight = scale(coat_share(index, normal, out, *direction) / reflected, *weight);
+        return true;
+    }
+    double cosine;
+    do {
+        const Vec p = random_on_sphere(random);
+        *direction = dot(p, normal) > 0 ? p : scale(-1, p);
+        cosine = fmin(dot(*direction, normal), 1);
+    } while (random_real(random) >= cosine * (1 - bp_ref_fresnel(cosine, 1 / index)));
+    const double out_of = (1 - bp_ref_coat_reflects(index)) / (index * index), back = 1 - out_of;
+    *weight = (Vec){albedo.x * out_of / (1 - albedo.x * back), albedo.y * out_of / (1 - albedo.y * back),
+                    albedo.z * out_of / (1 - albedo.z * back)};
+    return true;
+}

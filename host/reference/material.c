@@ -112,6 +112,10 @@ bool bp_ref_scatter(const BpScene *scene, const Ray *ray, const Hit *hit, Random
         *attenuation = albedo_of(scene, hit);
         return bp_ref_scatter_rough_metal(hit->material->roughness, hit->normal, incoming, random, direction,
                                           attenuation);
+    case BP_MATERIAL_GLOSSY:
+        return bp_ref_scatter_glossy(hit->material->roughness, hit->material->refraction_index,
+                                     albedo_of(scene, hit), hit->normal, incoming, random, direction,
+                                     attenuation);
     case BP_MATERIAL_INTERFACE:
         *attenuation = (Vec){1, 1, 1};
         *direction = incoming;

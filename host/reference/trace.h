@@ -65,6 +65,12 @@ Vec bp_ref_scatter_oren_nayar(double roughness, Vec albedo, Vec normal, Vec inco
 /* Metal of GGX facets (Walter et al., 2007; heights as Heitz, 2014, equation 99), alpha = roughness^2: its
  * value, of a white surface; a direction, and *weight times what is left. False: absorbed. */
 double bp_ref_rough_metal(double roughness, Vec normal, Vec out, Vec in);
+/* A matte surface under a coat: the values of its two parts, over the albedo for none of them. */
+double bp_ref_coat_reflects(double index);
+double bp_ref_glossy_coat(double roughness, double index, Vec normal, Vec out, Vec in);
+double bp_ref_glossy_base(double albedo, double index, Vec normal, Vec out, Vec in);
+bool bp_ref_scatter_glossy(double roughness, double index, Vec albedo, Vec normal, Vec incoming,
+                           Random *random, Vec *direction, Vec *weight);
 bool bp_ref_scatter_rough_metal(double roughness, Vec normal, Vec incoming, Random *random, Vec *direction,
                                 Vec *weight);
 

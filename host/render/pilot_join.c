@@ -42,6 +42,8 @@ double bp_pilot_density(const BpMaterial *material, const double axis[3], const 
     const double cosine = bp_dot(axis, direction);
     if (material->kind == BP_MATERIAL_METAL) return metal_density(material, cosine);
     if (material->kind == BP_MATERIAL_ROUGH_METAL) return facet_density(material, cosine);
+    /* What is glossy counts as its base, by the cosine: its coat is a part of its own, which few paths draw.
+     */
     if (cosine <= 0) return 0;
     if (material->scatter == BP_SCATTER_COSINE_CUBED) return 2 * cosine * cosine * cosine / PI;
     return material->scatter == BP_SCATTER_HEMISPHERE ? 1 / (2 * PI) : cosine / PI;

@@ -97,8 +97,23 @@ bool bp_material_varies(const BpMaterial *material) {
     return false;
 }
 
+/* By the midpoint rule in the root of the cosine, which is even where reflectance is steep. */
+double bp_coat_lets_in(double index) {
+    enum { STEPS = 4000 };
+    double sum = 0;
+    for (int i = 0; i < STEPS; ++i) {
+        const double s = (i + 0.5) / STEPS, c = s * s;
+        const double beyond = sqrt(1 - (1 - c * c) / (index * index));
+        const double across = (c - index * beyond) / (c + index * beyond);
+        const double along = (index * c - beyond) / (index * c + beyond);
+        sum += (1 - 0.5 * (across * across + along * along)) * 4 * s * s * s / STEPS; /* 2 c dc */
+    }
+    return sum;
+}
+
 bool bp_material_is_lit(const BpMaterial *material) {
     return material->kind == BP_MATERIAL_LAMBERTIAN || material->kind == BP_MATERIAL_OREN_NAYAR ||
+           material->kind == BP_MATERIAL_GLOSSY ||
            (material->kind == BP_MATERIAL_ROUGH_METAL && material->roughness >= BP_LIT_ROUGHNESS_MIN) ||
            (material->kind == BP_MATERIAL_METAL && material->fuzz >= BP_LIT_FUZZ_MIN);
 }

@@ -52,7 +52,9 @@ enum {
     X(OREN_NAYAR, "oren_nayar", OREN_NAYAR, OREN_NAYAR, BP_SCATTERS, 1, BP_HAS(ALBEDO) | BP_HAS(ROUGHNESS),  \
       BP_HAS(ALBEDO) | BP_HAS(ROUGHNESS), "scatters it")                                                     \
     X(ROUGH_METAL, "metal", ROUGH_METAL, ROUGH_METAL, BP_SCATTERS, 1, BP_HAS(ALBEDO) | BP_HAS(ROUGHNESS),    \
-      BP_HAS(ALBEDO) | BP_HAS(ROUGHNESS), "reflects it")
+      BP_HAS(ALBEDO) | BP_HAS(ROUGHNESS), "reflects it")                                                     \
+    X(GLOSSY, "glossy", GLOSSY, GLOSSY, BP_SCATTERS, 1,                                                      \
+      BP_HAS(ALBEDO) | BP_HAS(ROUGHNESS) | BP_HAS(REFRACTION_INDEX), BP_HAS(ALBEDO), "scatters it")
 
 typedef enum BpMaterialKind {
 #define BP_MATERIAL_ENUM(identifier, name, kernel_kind, effect, traits, weight, members, needed, outcome)    \
@@ -152,6 +154,15 @@ static inline bool bp_member_can_vary(BpMember member) {
 /* Gives a member the texture textures[number - 1], `texture`, and the largest value that it has. */
 void bp_member_vary(BpMaterial *material, BpMember member, uint32_t number, const struct BpTexture *texture);
 bool bp_material_varies(const BpMaterial *material);
+
+/* The refraction index of coats: more is not found in coats, and less than 1 would be a coat that is thinner
+ * than air. */
+#define BP_COAT_INDEX 1.5 /* by default */
+#define BP_COAT_INDEX_MAX 10
+
+/* The share of light from all sides, by Lambert's law, that a smooth coat lets in, of Fresnel's equations;
+ * `index` from 1 to BP_COAT_INDEX_MAX. Within 1e-6. */
+double bp_coat_lets_in(double index);
 
 /* Rays to lamps light it: it scatters into many directions. */
 bool bp_material_is_lit(const BpMaterial *material);

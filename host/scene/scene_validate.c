@@ -219,7 +219,10 @@ static bool material_fault(const BpScene *scene, const BpMaterial *material, BpF
                                                      member->low, member->high, member->range))
             return true;
     }
-    return false;
+    return material->kind == BP_MATERIAL_GLOSSY &&
+           outside(fault, BP_FAULT_MATERIAL, "refraction_index", material->refraction_index, 1,
+                   BP_COAT_INDEX_MAX,
+                   "the index of a coat over that of the air, from 1 to 10 (varnish and plastic: 1.5)");
 }
 
 bool bp_sphere_find_fault(const BpSphere *sphere, BpFault *fault) {

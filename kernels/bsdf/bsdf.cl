@@ -21,8 +21,11 @@ typedef struct Surface {
     vbool enters;  /* the path comes from outside */
     Vec3 albedo;
     vreal fuzz, refraction_index;
-#if EFFECT_OREN_NAYAR || EFFECT_ROUGH_METAL
+#if EFFECT_OREN_NAYAR || EFFECT_ROUGH_METAL || EFFECT_GLOSSY
     vreal roughness;
+#endif
+#if EFFECT_GLOSSY
+    vreal lets_in;
 #endif
     vuint kind, lobe, variant, total_reflection;
 } Surface;
@@ -41,6 +44,9 @@ typedef struct Lobe {
 #if WEIGHTED_LOBES
     Vec3 albedo; /* of lobes whose weight depends on the direction */
 #endif
+#if EFFECT_GLOSSY
+    vreal refraction_index, lets_in; /* of coats */
+#endif
     vreal fuzz; /* of metal; of what is rough the roughness or alpha; of a medium the anisotropy; at the camera the sine of the angle from the axis to a pixel's corner */
     vuint kind; /* LOBE_... */
 } Lobe;
@@ -53,6 +59,8 @@ enum {
     LOBE_OREN_NAYAR_ONCE,
     LOBE_OREN_NAYAR_AGAIN,
     LOBE_ROUGH_METAL,
+    LOBE_GLOSSY_COAT,
+    LOBE_GLOSSY_BASE,
     LOBE_PHASE,
     LOBE_NONE,
     LOBE_PIXEL
@@ -89,6 +97,10 @@ static BsdfSample bsdf_sample_reflected(const Surface *surface, Vec3 direction) 
 #endif
 #if WEIGHTED_LOBES
     sample.lobe.albedo = surface->albedo;
+#endif
+#if EFFECT_GLOSSY
+    sample.lobe.refraction_index = surface->refraction_index;
+    sample.lobe.lets_in = surface->lets_in;
 #endif
     sample.lobe.fuzz = splat(1);
     sample.lobe.kind = splat_uint(LOBE_NONE);

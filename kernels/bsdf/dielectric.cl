@@ -1,15 +1,7 @@
 /* dielectric.cl: refraction, Fresnel reflection and total reflection.
  *
- * In and out: as bsdf.cl says.   Knows: bsdf.cl.   Does not know: other lobes. */
+ * In and out: as bsdf.cl says.   Knows: bsdf.cl, fresnel.cl.   Does not know: other lobes. */
 #if EFFECT_DIELECTRIC
-/* Reflectance of unpolarised light. c: cosine of incidence, in [0, 1]; n: index of the far over the near side;
- * t: cosine of refraction. Fresnel's equations (M. Born and E. Wolf, Principles of Optics, 1.5.2). */
-static vreal fresnel_exact(vreal c, vreal n, vreal t) {
-    const vreal across = divide(c - n * t, c + n * t);
-    const vreal along = divide(n * c - t, n * c + t);
-    return R(0.5) * fma(across, across, along * along);
-}
-
 /* C. Schlick, "An Inexpensive BRDF Model for Physically-based Rendering", 1994, as the book uses it: always the
  * cosine of incidence, from inside too. */
 static vreal fresnel_schlick(vreal c, vreal n) {

@@ -6,7 +6,7 @@
 
 /* If the scene has one kind of material only, there is nothing to choose. */
 #define KIND_COUNT (EFFECT_LAMBERTIAN + EFFECT_METAL + EFFECT_DIELECTRIC + EFFECT_NORMALS + EFFECT_EMISSION + EFFECT_MEDIA + \
-                    EFFECT_OREN_NAYAR + EFFECT_ROUGH_METAL)
+                    EFFECT_OREN_NAYAR + EFFECT_ROUGH_METAL + EFFECT_GLOSSY)
 #if KIND_COUNT == 1
 #define has_kind(surface, wanted) vbool_all
 #else
@@ -25,6 +25,10 @@ static Lobe choose_lobe(vbool mask, const Lobe *a, const Lobe *b) {
 #endif
 #if WEIGHTED_LOBES
     chosen.albedo = choose3(mask, a->albedo, b->albedo);
+#endif
+#if EFFECT_GLOSSY
+    chosen.refraction_index = choose(mask, a->refraction_index, b->refraction_index);
+    chosen.lets_in = choose(mask, a->lets_in, b->lets_in);
 #endif
     chosen.fuzz = choose(mask, a->fuzz, b->fuzz);
     chosen.kind = choose_uint(mask, a->kind, b->kind);
@@ -73,6 +77,9 @@ static BsdfSample scatter(const Surface *surface, SampleKey key, vuint bounce) {
 #if EFFECT_ROUGH_METAL
     SCATTER_BY(KIND_ROUGH_METAL, rough_metal_sample)
 #endif
+#if EFFECT_GLOSSY
+    SCATTER_BY(KIND_GLOSSY, glossy_sample)
+#endif
     return sample;
 }
 
@@ -115,6 +122,12 @@ static vreal scatter_pdf(const Lobe *lobe, Vec3 direction, int drawn) {
     const vbool facets = vbool_of_uint(lobe->kind == splat_uint(LOBE_ROUGH_METAL));
     if (any_lane(facets)) density = choose(facets, rough_metal_pdf(lobe, direction), density);
 #endif
+#if EFFECT_GLOSSY
+    const vbool coat = vbool_of_uint(lobe->kind == splat_uint(LOBE_GLOSSY_COAT));
+    if (any_lane(coat)) density = choose(coat, rough_metal_pdf(lobe, direction), density);
+    const vbool base = vbool_of_uint(lobe->kind == splat_uint(LOBE_GLOSSY_BASE));
+    if (any_lane(base)) density = choose(base, glossy_base_pdf(lobe, direction), density);
+#endif
 #if EFFECT_MEDIA
     const vbool phase = is_phase(lobe);
     if (any_lane(phase)) density = choose(phase, phase_pdf(lobe->fuzz, lobe->axis, direction), density);
@@ -124,7 +137,19 @@ static vreal scatter_pdf(const Lobe *lobe, Vec3 direction, int drawn) {
 
 #if WEIGHTED_LOBES
 /* The lobes whose weight depends on the direction, and that weight. */
+#if EFFECT_GLOSSY
+static vbool is_weighted(const Lobe *lobe) {
+    return vbool_of_uint(lobe->kind == splat_uint(LOBE_ROUGH_METAL)) | vbool_of_uint(lobe->kind == splat_uint(LOBE_GLOSSY_COAT));
+}
+static Vec3 scatter_weight(const Lobe *lobe, Vec3 direction) {
+    const vbool coat = vbool_of_uint(lobe->kind == splat_uint(LOBE_GLOSSY_COAT));
+    const Vec3 weight = rough_metal_weight(lobe, direction);
+    if (!any_lane(coat)) return weight;
+    return choose3(coat, scale3(coat_part(lobe->refraction_index, lobe->axis, lobe->outgoing, direction), weight), weight);
+}
+#else
 static vbool is_weighted(const Lobe *lobe) { return vbool_of_uint(lobe->kind == splat_uint(LOBE_ROUGH_METAL)); }
 static Vec3 scatter_weight(const Lobe *lobe, Vec3 direction) { return rough_metal_weight(lobe, direction); }
+#endif
 #endif
 #endif

@@ -112,6 +112,9 @@ static void scatter_in_medium(const Scene *scene, vbool scattered, vreal length,
 #if WEIGHTED_LOBES
     lobe.albedo = path->throughput; /* of no use: its weight is the same in all directions */
 #endif
+#if EFFECT_GLOSSY
+    lobe.refraction_index = lobe.lets_in = splat(1);
+#endif
     lobe.fuzz = g;
     lobe.kind = splat_uint(LOBE_PHASE);
     path_light(path, scattered, &lobe, vbool_of_uint(path->depth + 1u <= splat_uint(scene->max_depth)));

@@ -3,6 +3,7 @@
  * ends of the parameters. */
 #include "packed/pack.h"
 #include "reference/trace.h"
+#include "scene/material.h"
 #include "support/probe.h"
 #include "support/uniformity.h"
 
@@ -17,7 +18,7 @@ static const Vec normal = {0.36, 0.48, 0.8}, tangent = {0.8, -0.6, 0}, side = {0
 static const double albedo[3] = {0.9, 0.5, 0.2};
 
 /* A surface of roughness (which & 255) / 200, seen at the cosine ((which >> 8) & 255) / 250, of kind which >>
- * 16. */
+ * 16. Coats have the index 1.5, and let in what Walsh's closed form leaves. */
 static const char probe_text[] =
     "static SampleKey probe_key(uint seed, uint i) { return sample_key(seed, 5u, i & 0xfffu, i >> 12, 4u); "
     "}\n"
@@ -35,6 +36,7 @@ static const char probe_text[] =
     "    surface.roughness = (which & 255u) / 200.0f;\n"
     "    surface.fuzz = 0;\n"
     "    surface.refraction_index = 1.5f;\n"
+    "    surface.lets_in = 0.9082220f;\n"
     "    surface.variant = surface.total_reflection = 0;\n"
     "    surface.lobe = LOBE_LAMBERTIAN;\n"
     "    surface.kind = which >> 16;\n"
@@ -76,7 +78,7 @@ static const char probe_text[] =
     "    surface.incoming = scale3(splat(-1), d[0]);\n"
     "    Lobe lobe = bsdf_sample_reflected(&surface, d[1]).lobe;\n"
     "    const real r = surface.roughness;\n"
-    "    lobe.fuzz = kind == (uint)LOBE_ROUGH_METAL ? r * r : r;\n"
+    "    lobe.fuzz = kind == (uint)LOBE_ROUGH_METAL || kind == (uint)LOBE_GLOSSY_COAT ? r * r : r;\n"
     "    lobe.kind = kind;\n"
     "    const real there = scatter_pdf(&lobe, d[1], 0) * (is_weighted(&lobe) ? scatter_weight(&lobe, "
     "d[1]).y : 0.5f);\n"
@@ -88,6 +90,7 @@ static const char probe_text[] =
     /* LOBE_... of this number, for the test, which does not know the kernel's enumeration */
     "__kernel void kinds(uint unused, uint never, __global float *out) {\n"
     "    out[0] = LOBE_OREN_NAYAR_ONCE; out[1] = LOBE_OREN_NAYAR_AGAIN; out[2] = LOBE_ROUGH_METAL;\n"
+    "    out[3] = LOBE_GLOSSY_COAT; out[4] = LOBE_GLOSSY_BASE; out[5] = LOBE_NONE;\n"
     "}\n"
     "__kernel void smooth(uint seed, uint which, __global float *out) {\n"
     "    const uint i = get_global_id(0);\n"
@@ -110,8 +113,11 @@ static const LobeCase cases[] = {
     {"oren_nayar", KIND_OREN_NAYAR, 200, 100}, {"oren_nayar", KIND_OREN_NAYAR, 200, 50},
     {"metal", KIND_ROUGH_METAL, 80, 240},      {"metal", KIND_ROUGH_METAL, 100, 125},
     {"metal", KIND_ROUGH_METAL, 150, 50},      {"metal", KIND_ROUGH_METAL, 200, 250},
-    {"metal", KIND_ROUGH_METAL, 200, 100},
+    {"metal", KIND_ROUGH_METAL, 200, 100},     {"glossy", KIND_GLOSSY, 80, 240},
+    {"glossy", KIND_GLOSSY, 120, 50},          {"glossy", KIND_GLOSSY, 200, 125},
+    {"glossy", KIND_GLOSSY, 200, 25},
 };
+#define INDEX 1.5
 
 static cl_uint which_of(const LobeCase *lobe) {
     return lobe->kind << 16 | lobe->cosine << 8 | lobe->roughness;
@@ -134,6 +140,9 @@ static Vec row_direction(const float *row) {
 static double value(const LobeCase *lobe, Vec out, Vec in, int channel) {
     const double r = roughness_of(lobe);
     if (lobe->kind == KIND_ROUGH_METAL) return albedo[channel] * bp_ref_rough_metal(r, normal, out, in);
+    if (lobe->kind == KIND_GLOSSY)
+        return bp_ref_glossy_coat(r, INDEX, normal, out, in) +
+               bp_ref_glossy_base(albedo[channel], INDEX, normal, out, in);
     return albedo[channel] * bp_ref_oren_nayar_once(r, normal, out, in) +
            bp_ref_oren_nayar_colour(r, albedo[channel]) * bp_ref_oren_nayar_again(r, normal, out, in);
 }
@@ -182,7 +191,7 @@ static void light(void **state) {
             }
         describe(lobe);
         printf("off by %.2f standard errors at most\n", worst);
-        assert_true(worst < 5.5); /* of 11 x 300 values: once in 10000 runs */
+        assert_true(worst < 5.5); /* of 15 x 300 values: once in 10000 runs */
     }
 }
 
@@ -225,10 +234,10 @@ static void densities(void **state) {
 /* Density times weight times share of each part is the value of the part times the cosine, and both ways the
  * same, at all angles. */
 static void values(void **state) {
-    enum { ONCE, AGAIN, METAL, PARTS };
-    static const char *const names[PARTS] = {"once", "again", "metal"};
+    enum { ONCE, AGAIN, METAL, COAT, BASE, PARTS };
+    static const char *const names[PARTS] = {"once", "again", "metal", "coat", "base"};
     static const cl_uint roughness[] = {50, 100, 200};
-    float kinds[PARTS];
+    float kinds[PARTS + 1];
     probe_run(*state, "kinds", 0, 0, 1, kinds, sizeof kinds);
     for (int n = 0; n < 3 * PARTS; ++n) {
         const int part = n / 3;
@@ -243,12 +252,19 @@ static void values(void **state) {
             const double co = dot(out, normal), ci = dot(in, normal);
             if (co < 2e-3 || ci < 2e-3) continue; /* a float is off by 1e-7 there */
             double share_out = 1, share_in = 1, due = 0;
-            if (part != METAL)
+            if (part == ONCE || part == AGAIN)
                 share_out = bp_ref_oren_nayar_share(r, co), share_in = bp_ref_oren_nayar_share(r, ci);
             if (part == AGAIN) share_out = 1 - share_out, share_in = 1 - share_in;
             if (part == ONCE) due = bp_ref_oren_nayar_once(r, normal, out, in);
             if (part == AGAIN) due = bp_ref_oren_nayar_again(r, normal, out, in);
             if (part == METAL) due = bp_ref_rough_metal(r, normal, out, in);
+            if (part == COAT || part == BASE)
+                share_out = bp_ref_fresnel(co, 1 / INDEX), share_in = bp_ref_fresnel(ci, 1 / INDEX);
+            if (part == COAT) due = bp_ref_glossy_coat(r, INDEX, normal, out, in);
+            if (part == BASE) { /* the weight of a white one is 1 */
+                share_out = 1 - share_out, share_in = 1 - share_in;
+                due = bp_ref_glossy_base(1, INDEX, normal, out, in);
+            }
             const double there = share_out * (double)row[6] / ci / albedo[1],
                          back = share_in * (double)row[7] / co / albedo[1];
             worst = fmax(worst, fabs(there - due) / (due + 0.01));
@@ -310,9 +326,92 @@ static void losses(void **state) {
     }
 }
 
+static LobeCase glossy_case(cl_uint roughness, cl_uint cosine) {
+    return (LobeCase){"glossy", KIND_GLOSSY, roughness, cosine};
+}
+
+/* A coat by closed forms: what enters from all sides, on the host by quadrature; the shares that kernel and
+ * reference reflect; upright ((n - 1) / (n + 1))^2; and a white base loses nothing: the definition of the
+ * base, summed over all directions, is what the coat does not reflect. */
+static void coats(void **state) {
+    for (int i = 0; i <= 40; ++i) {
+        const double index = 1 + 9 * pow(i / 40.0, 3);
+        assert_true(fabs(bp_coat_lets_in(index) + bp_ref_coat_reflects(index) - 1) < 1e-5);
+        if (i < 2) continue;
+        for (int c = 1; c <= 10; ++c) {
+            const double cosine = c / 10.0, r = sqrt(1 - cosine * cosine);
+            const Vec out = add(scale(r, tangent), scale(cosine, normal));
+            enum { STEPS = 4000 };
+            double sum = 0;
+            for (int k = 0; k < STEPS; ++k) { /* in the square of the cosine's root, as it is steep at 0 */
+                const double s = (k + 0.5) / STEPS, z = s * s;
+                sum += bp_ref_glossy_base(1, index, normal, out, grid_direction(z, 0.3)) * z * 2 * PI * 2 *
+                       s / STEPS;
+            }
+            assert_true(fabs(sum + bp_ref_fresnel(cosine, 1 / index) - 1) < 1e-5);
+        }
+    }
+    static const cl_uint cosine[] = {250, 200, 125, 60, 25};
+    float kinds[6];
+    probe_run(*state, "kinds", 0, 0, 1, kinds, sizeof kinds);
+    for (int n = 0; n < 5; ++n) {
+        const LobeCase lobe = glossy_case(0, cosine[n]);
+        const Vec out = out_of(&lobe), mirrored = sub(scale(2 * dot(out, normal), normal), out);
+        double reflected = 0;
+        probe_run(*state, "draw", 21, which_of(&lobe), COUNT, drawn, sizeof drawn);
+        for (size_t i = 0; i < COUNT; ++i) {
+            const float *row = &drawn[i * ROW];
+            const bool coat = row[6] == kinds[5];
+            reflected += coat ? 1.0 / COUNT : 0;
+            if (!coat) assert_true(row[6] == kinds[4]);
+            if (coat) assert_true(length2(sub(row_direction(row), mirrored)) < 1e-11);
+            for (int c = 0; c < 3 && coat; ++c) assert_true(fabs((double)row[3 + c] - 1) < 1e-5);
+        }
+        double due = bp_ref_fresnel(fmin(cosine[n] / 250.0, 1), 1 / INDEX);
+        if (n == 0) due = pow((INDEX - 1) / (INDEX + 1), 2);
+        describe(&lobe);
+        printf("reflects %.5f of %.5f\n", reflected, due);
+        assert_true(fabs(reflected - due) < 4.5 * sqrt(due * (1 - due) / COUNT));
+    }
+}
+
+/* What a white glossy surface leaves of light: the kernel's coat and all that enters, against the sum of the
+ * definitions over all directions. The figures of docs/MATERIALS.md. */
+static void glossy_losses(void **state) {
+    static const cl_uint roughness[] = {0, 60, 100, 150, 200}, cosine[] = {250, 125, 25};
+    float kinds[6];
+    probe_run(*state, "kinds", 0, 0, 1, kinds, sizeof kinds);
+    for (size_t n = 0; n < 15; ++n) {
+        const LobeCase lobe = glossy_case(roughness[n / 3], cosine[n % 3]);
+        const double c = fmin(lobe.cosine / 250.0, 1), r = roughness_of(&lobe);
+        double left = 0, square = 0, by_reference = 0;
+        enum { DRAWN = 400000 };
+        Random random = random_stream(5, n, 0);
+        probe_run(*state, "draw", 33, which_of(&lobe), COUNT, drawn, sizeof drawn);
+        for (size_t i = 0; i < COUNT; ++i) {
+            const float *row = &drawn[i * ROW];
+            const double weight = row[7] < 0 ? 0 : row[6] == kinds[4] ? 1 : (double)row[3];
+            left += weight / COUNT;
+            square += weight * weight / COUNT;
+        }
+        for (size_t i = 0; i < DRAWN; ++i) {
+            Vec direction, weight;
+            if (bp_ref_scatter_glossy(r, INDEX, (Vec){1, 1, 1}, normal, scale(-1, out_of(&lobe)), &random,
+                                      &direction, &weight))
+                by_reference += weight.x / DRAWN;
+        }
+        const double error = sqrt(fmax(square - left * left, 0) * (1.0 / DRAWN + 1.0 / COUNT));
+        describe(&lobe);
+        printf("leaves %.4f, by the reference %.4f (reflects %.3f)\n", left, by_reference,
+               bp_ref_fresnel(c, 1 / INDEX));
+        assert_true(fabs(left - by_reference) < 4.5 * error + 1e-6);
+        if (lobe.roughness == 0) assert_true(fabs(left - 1) < 1e-5);
+    }
+}
+
 /* How often the kernel draws light that is scattered again: by the closed form. */
 static void shares(void **state) {
-    float kinds[3];
+    float kinds[6];
     probe_run(*state, "kinds", 0, 0, 1, kinds, sizeof kinds);
     for (size_t n = 0; n < sizeof cases / sizeof cases[0]; ++n) {
         const LobeCase *lobe = &cases[n];
@@ -336,22 +435,25 @@ static void smooth(void **state) {
 }
 
 /* Upright, grazing, smooth and rough: directions are unit vectors above the surface, weights and densities
- * numbers, and no weight exceeds the albedo. */
+ * numbers, and no weight exceeds the albedo, or 1 of what a coat reflects. */
 static void ends(void **state) {
     static const cl_uint roughness[] = {0, 1, 100, 200}, cosine[] = {0, 1, 125, 249, 250};
-    for (size_t n = 0; n < 40; ++n) {
-        const cl_uint kind = n < 20 ? KIND_OREN_NAYAR : KIND_ROUGH_METAL;
+    for (size_t n = 0; n < 60; ++n) {
+        const cl_uint kind = n < 20 ? KIND_OREN_NAYAR : n < 40 ? KIND_ROUGH_METAL : KIND_GLOSSY;
         const LobeCase lobe = {"", kind, roughness[n % 4], cosine[n / 4 % 5]};
+        float kinds[6];
+        probe_run(*state, "kinds", 0, 0, 1, kinds, sizeof kinds);
         probe_run(*state, "draw", (cl_uint)n, which_of(&lobe), COUNT, drawn, sizeof drawn);
         for (size_t i = 0; i < COUNT; ++i) {
             const float *row = &drawn[i * ROW];
+            const bool coat = kind == KIND_GLOSSY && row[6] != kinds[4];
             const Vec d = row_direction(row);
             assert_true(fabs(length2(d) - 1) < 2e-6);
             if (row[7] < 0) continue;
             assert_true(dot(d, normal) >= -1e-6); /* as doubles see it */
             assert_true(isfinite(row[7]));
             for (int c = 0; c < 3; ++c)
-                assert_true(row[3 + c] >= 0 && (double)row[3 + c] <= albedo[c] * (1 + 1e-6));
+                assert_true(row[3 + c] >= 0 && (double)row[3 + c] <= (coat ? 1 : albedo[c]) * (1 + 1e-6));
         }
     }
 }
@@ -368,9 +470,10 @@ static int close_probe(void **state) {
 }
 
 int main(void) {
-    const struct CMUnitTest tests[] = {cmocka_unit_test(light),  cmocka_unit_test(densities),
-                                       cmocka_unit_test(values), cmocka_unit_test(furnace),
-                                       cmocka_unit_test(shares), cmocka_unit_test(smooth),
-                                       cmocka_unit_test(losses), cmocka_unit_test(ends)};
+    const struct CMUnitTest tests[] = {cmocka_unit_test(light),         cmocka_unit_test(densities),
+                                       cmocka_unit_test(values),        cmocka_unit_test(furnace),
+                                       cmocka_unit_test(shares),        cmocka_unit_test(smooth),
+                                       cmocka_unit_test(losses),        cmocka_unit_test(coats),
+                                       cmocka_unit_test(glossy_losses), cmocka_unit_test(ends)};
     return cmocka_run_group_tests(tests, open_probe, close_probe);
 }

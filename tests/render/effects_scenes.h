@@ -14,11 +14,12 @@
 #define EFFECT_BIT(effect) (1u << BP_EFFECT_##effect)
 #define MATERIAL_EFFECTS                                                                                     \
     (EFFECT_BIT(LAMBERTIAN) | EFFECT_BIT(METAL) | EFFECT_BIT(DIELECTRIC) | EFFECT_BIT(EMISSION) |            \
-     EFFECT_BIT(NORMALS) | EFFECT_BIT(MEDIA) | EFFECT_BIT(OREN_NAYAR) | EFFECT_BIT(ROUGH_METAL))
+     EFFECT_BIT(NORMALS) | EFFECT_BIT(MEDIA) | EFFECT_BIT(OREN_NAYAR) | EFFECT_BIT(ROUGH_METAL) |            \
+     EFFECT_BIT(GLOSSY))
 
 typedef struct EffectsScene {
     BpScene scene; /* points into the arrays below: pass it on by address, do not copy it */
-    BpMaterial materials[20];
+    BpMaterial materials[24];
     BpSphere spheres[48];
     BpTexture textures[10];
     BpImage image, sky, light, *images[3];
@@ -33,7 +34,7 @@ typedef struct EffectsScene {
 static inline bool effects_light(uint32_t bits) {
     return (bits & (EFFECT_BIT(EMISSION) | EFFECT_BIT(DISCS) | EFFECT_BIT(ENVIRONMENT))) != 0 &&
            (bits & (EFFECT_BIT(LAMBERTIAN) | EFFECT_BIT(METAL) | EFFECT_BIT(MEDIA) | EFFECT_BIT(OREN_NAYAR) |
-                    EFFECT_BIT(ROUGH_METAL))) != 0;
+                    EFFECT_BIT(ROUGH_METAL) | EFFECT_BIT(GLOSSY))) != 0;
 }
 
 /* A tree needs spheres, and spheres need a material. Rays to lamps need lamps, and something that they light.
@@ -94,6 +95,10 @@ static inline void effects_materials(EffectsScene *made, uint32_t bits) {
         effects_material(made, BP_MATERIAL_OREN_NAYAR, 0.8, 0.6, 0.4)->roughness = 0.9;
     for (int i = 0; i < shown && bp_effects_has(bits, BP_EFFECT_ROUGH_METAL); ++i)
         effects_material(made, BP_MATERIAL_ROUGH_METAL, 0.9, 0.8, 0.5)->roughness = 0.6;
+    if (bp_effects_has(bits, BP_EFFECT_GLOSSY)) {
+        effects_material(made, BP_MATERIAL_GLOSSY, 0.8, 0.3, 0.3);
+        effects_material(made, BP_MATERIAL_GLOSSY, 0.3, 0.3, 0.8)->roughness = 0.5;
+    }
     for (int i = 0; i < shown && bp_effects_has(bits, BP_EFFECT_NORMALS); ++i)
         effects_material(made, BP_MATERIAL_NORMALS, 0, 0, 0);
     if (bp_effects_has(bits, BP_EFFECT_MEDIA)) effects_material(made, BP_MATERIAL_INTERFACE, 1, 1, 1);

@@ -26,6 +26,8 @@ static const BpMaterial clay = {
     .name = (char *)"clay", .kind = BP_MATERIAL_OREN_NAYAR, GREY, .roughness = 0.5};
 static const BpMaterial brass = {
     .name = (char *)"brass", .kind = BP_MATERIAL_ROUGH_METAL, GREY, .roughness = 0.06};
+static const BpMaterial billiard = {
+    .name = (char *)"billiard", .kind = BP_MATERIAL_GLOSSY, GREY, .refraction_index = 1.5};
 static const BpMaterial debug = {.name = (char *)"debug", .kind = BP_MATERIAL_NORMALS};
 
 #define NO_LAMP "no sphere gives light, and no disc of the sky"
@@ -84,6 +86,7 @@ static void material_effects(void **state) {
         {debug, BIT(NORMALS)},
         {clay, BIT(OREN_NAYAR)},
         {brass, BIT(ROUGH_METAL)},
+        {billiard, BIT(GLOSSY)},
     };
     for (size_t i = 0; i < sizeof cases / sizeof cases[0]; ++i)
         assert_int_equal(analyse(&cases[i].material, 1, 1, 1, 0, 1).bits, cases[i].bits);
@@ -97,9 +100,9 @@ static void material_effects(void **state) {
     brushed.fuzz = 1.0 / 64;
     const BpMaterial pair[] = {brushed, lamp};
     assert_int_equal(analyse(pair, 2, 2, 2, 0, 1).bits, BIT(METAL) | BIT(EMISSION) | BIT(LAMPS));
-    const BpMaterial all[] = {grey, steel, glass, ember, debug, clay, brass};
-    assert_int_equal(analyse(all, 7, 7, BP_LIST_SPHERES_MAX + 1, 0.1, 0.5).bits, BP_EFFECTS_ALL & ~OF_SCENES);
-    assert_int_equal(analyse(all, 7, 7, 7, 0, 1).bits, BP_EFFECTS_ALL & ~BIT(LENS) & ~OF_SCENES);
+    const BpMaterial all[] = {grey, steel, glass, ember, debug, clay, brass, billiard};
+    assert_int_equal(analyse(all, 8, 8, BP_LIST_SPHERES_MAX + 1, 0.1, 0.5).bits, BP_EFFECTS_ALL & ~OF_SCENES);
+    assert_int_equal(analyse(all, 8, 8, 8, 0, 1).bits, BP_EFFECTS_ALL & ~BIT(LENS) & ~OF_SCENES);
 }
 
 static void only_materials_in_use_count(void **state) {

@@ -36,7 +36,7 @@ static const struct {
     {"v1-normals-ground", "normals"},
     {"checkers", "lambertian metal dielectric emission light_sampling textures"},
     {"lamps", "lambertian metal dielectric emission light_sampling"},
-    {"lobes", "lambertian metal oren_nayar rough_metal light_sampling discs"},
+    {"lobes", "lambertian metal oren_nayar rough_metal glossy light_sampling discs"},
     {"next-checkered-spheres", "lambertian textures"},
     {"next-bouncing-spheres", "lambertian metal dielectric lens textures motion; tree"},
     {"next-earth", "lambertian textures images"},

@@ -248,12 +248,14 @@ static void temporary_path(char path[64]) {
 /* Two kinds of metal have one name: which of them is meant is told by the roughness. */
 static void metals(void **state) {
     (void)state;
-    BpScene *scene =
-        parse("{ \"camera\": {}, \"materials\": {\n"
-              "\"a\": { \"type\": \"metal\", \"albedo\": [1, 1, 1], \"fuzz\": 0.5 },\n"
-              "\"b\": { \"type\": \"metal\", \"albedo\": [1, 1, 1], \"roughness\": 0.25 },\n"
-              "\"c\": { \"type\": \"metal\", \"albedo\": [1, 1, 1], \"roughness\": 0 },\n"
-              "\"d\": { \"type\": \"oren_nayar\", \"albedo\": [1, 1, 1], \"roughness\": 1 } } }");
+    BpScene *scene = parse("{ \"camera\": {}, \"materials\": {\n"
+                           "\"a\": { \"type\": \"metal\", \"albedo\": [1, 1, 1], \"fuzz\": 0.5 },\n"
+                           "\"b\": { \"type\": \"metal\", \"albedo\": [1, 1, 1], \"roughness\": 0.25 },\n"
+                           "\"c\": { \"type\": \"metal\", \"albedo\": [1, 1, 1], \"roughness\": 0 },\n"
+                           "\"d\": { \"type\": \"oren_nayar\", \"albedo\": [1, 1, 1], \"roughness\": 1 },\n"
+                           "\"e\": { \"type\": \"glossy\", \"albedo\": [1, 1, 1] },\n"
+                           "\"f\": { \"type\": \"glossy\", \"albedo\": [1, 1, 1], \"roughness\": 0.5, "
+                           "\"refraction_index\": 2 } } }");
     const BpMaterial *m = scene->materials;
     assert_int_equal(m[0].kind, BP_MATERIAL_METAL);
     assert_int_equal(m[1].kind, BP_MATERIAL_ROUGH_METAL);
@@ -262,6 +264,11 @@ static void metals(void **state) {
     assert_number(m[2].fuzz, 0);
     assert_int_equal(m[3].kind, BP_MATERIAL_OREN_NAYAR);
     assert_number(m[3].roughness, 1);
+    assert_int_equal(m[4].kind, BP_MATERIAL_GLOSSY);
+    assert_number(m[4].roughness, 0);
+    assert_number(m[4].refraction_index, 1.5);
+    assert_number(m[5].roughness, 0.5);
+    assert_number(m[5].refraction_index, 2);
     bp_scene_destroy(&scene);
 }
 

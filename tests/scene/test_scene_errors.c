@@ -325,7 +325,7 @@ static void bad_materials(void **state) {
         {MATERIAL("\"type\": \"dielectric\", \"refraction_index\": 1.5, \"albedo\": [1, 1, 1]"),
          1,
          86,
-         {"m.albedo", "only in \"lambertian\", \"metal\" and \"oren_nayar\""}},
+         {"m.albedo", "only in \"lambertian\", \"metal\", \"oren_nayar\" and \"glossy\""}},
         {MATERIAL("\"type\": \"metal\", \"albedo\": [1, 1, 1], \"roughness\": 0.5, \"fuzz\": 0.5"),
          1,
          95,
@@ -338,7 +338,12 @@ static void bad_materials(void **state) {
         {MATERIAL("\"type\": \"lambertian\", \"albedo\": [1, 1, 1], \"roughness\": 0.5"),
          1,
          82,
-         {"m.roughness", "only in \"metal\" and \"oren_nayar\""}},
+         {"m.roughness", "only in \"metal\", \"oren_nayar\" and \"glossy\""}},
+        {MATERIAL("\"type\": \"glossy\", \"albedo\": [1, 1, 1], \"refraction_index\": 0.9"),
+         1,
+         98,
+         {"m.refraction_index: found 0.9", "of a coat over that of the air, from 1 to 10"}},
+        {MATERIAL("\"type\": \"glossy\""), 1, 37, {"found no \"albedo\""}},
     };
     REFUSE_ALL(cases);
 }
