@@ -8,6 +8,21 @@ static Vec reflect(Vec direction, Vec normal) {
     return sub(direction, scale(2 * dot(direction, normal), normal));
 }
 
+double bp_ref_schlick(double cosine, double ratio) {
+    const double root = (1 - ratio) / (1 + ratio), r0 = root * root;
+    return r0 + (1 - r0) * pow(1 - cosine, 5);
+}
+
+double bp_ref_fresnel(double cosine, double ratio) {
+    if (ratio == 1) return 0;
+    const double sine2_beyond = ratio * ratio * (1 - cosine) * (1 + cosine);
+    if (sine2_beyond >= 1) return 1;
+    const double cosine_beyond = sqrt(1 - sine2_beyond);
+    const double perpendicular = (ratio * cosine - cosine_beyond) / (ratio * cosine + cosine_beyond);
+    const double parallel = (cosine - ratio * cosine_beyond) / (cosine + ratio * cosine_beyond);
+    return 0.5 * (perpendicular * perpendicular + parallel * parallel);
+}
+
 static double upright(double roughness) {
     return 1 / (1 + (0.5 - 2 / (3 * PI)) * roughness);
 }

@@ -42,21 +42,6 @@ static bool scatter_metal(const BpScene *scene, const Hit *hit, Vec direction, R
     return dot(*scattered, normal) > 0;
 }
 
-double bp_ref_schlick(double cosine, double ratio) {
-    const double root = (1 - ratio) / (1 + ratio), r0 = root * root;
-    return r0 + (1 - r0) * pow(1 - cosine, 5);
-}
-
-double bp_ref_fresnel(double cosine, double ratio) {
-    if (ratio == 1) return 0;
-    const double sine2_beyond = ratio * ratio * (1 - cosine) * (1 + cosine);
-    if (sine2_beyond >= 1) return 1;
-    const double cosine_beyond = sqrt(1 - sine2_beyond);
-    const double perpendicular = (ratio * cosine - cosine_beyond) / (ratio * cosine + cosine_beyond);
-    const double parallel = (cosine - ratio * cosine_beyond) / (cosine + ratio * cosine_beyond);
-    return 0.5 * (perpendicular * perpendicular + parallel * parallel);
-}
-
 /* Reflection is chosen with the probability of the reflectance, otherwise the ray is refracted, so neither
  * has a weight. If no refraction is possible, the material's total_reflection alone decides; "refract" then
  * keeps the book's fabs under the root. */

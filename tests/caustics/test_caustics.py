@@ -316,8 +316,8 @@ def pairs(scene, spp, seeds=8):
     return (b - a) / math.hypot(da, db), math.hypot(da, db) / a
 
 
-def same(name, scene, spp):
-    z, error = pairs(scene, spp)
+def same(name, scene, spp, seeds=8):
+    z, error = pairs(scene, spp, seeds)
     assert abs(z) < 4, f"{name}: {z:+.1f} standard errors of {error:.2%}"
     assert error < 0.01, f"{name}: only known to {error:.2%}"
     return f"{z:+.1f} standard errors of {error:.2%}"
@@ -396,7 +396,7 @@ def near_lamp():
     scene = room({"type": "dielectric", "refraction_index": 1.5, "fresnel": "none"}, 0, 6)
     scene["spheres"] += [{"center": [0, 1.7, 0], "radius": 0.28, "material": "lamp"}]
     scene["camera"].update({"lookat": [0, 0, 0.3], "vfov": 14})
-    return same("near lamp", scene, 4096)
+    return same("near lamp", scene, 4096, 24)  # few find it by chance, so their spread is not that of a bell
 
 
 def two_lamps():
