@@ -399,6 +399,13 @@ def near_lamp():
     return same("near lamp", scene, 4096, 24)  # few find it by chance, so their spread is not that of a bell
 
 
+def near_lamp_off_a_mirror():
+    """The same without a ball of glass, where directions follow from points of the lamp everywhere."""
+    scene = room(MIRROR, 0, 6)
+    scene["spheres"] += [{"center": [0.3, 1.25, 0], "radius": 0.15, "material": "lamp"}]
+    return same("near lamp, mirror", scene, 4096)
+
+
 def two_lamps():
     scene = room({"type": "dielectric", "refraction_index": 1.5, "fresnel": "none"}, 0.3, 6)
     scene["spheres"] += [{"center": [-0.8, 1.6, 0.2], "radius": 0.2, "material": "lamp"}]
@@ -419,6 +426,6 @@ def same_bits():
 # The quick ones are closed forms: what is compared with chance takes many samples, and the forms a kernel each.
 CASES = [on_axis, across, what_surfaces_let_through, off_a_mirror, cut_by_depth, hidden, glint_in_a_ball, glint_aside, glint_hidden]
 DEEP_CASES = [claims, from_the_image, same_through_glass, same_off_a_mirror, same_of_a_disc, same_glint_in_a_mirror, same_bits, glint_across_pixels, same_glints,
-              same_rough, same_facets, near_lamp, two_lamps, two_balls, same_deep_cases]
+              same_rough, same_facets, near_lamp, near_lamp_off_a_mirror, two_lamps, two_balls, same_deep_cases]
 
 sys.exit(run_cases(CASES, DEEP_CASES))

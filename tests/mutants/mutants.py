@@ -1398,7 +1398,7 @@ MUTANTS = [
     Mutant("chain-slant-forgotten", "caustics",
            [patch("kernels/light/focusers.cl", 'divide(area, extent * extent * slant)',
                   'divide(area, extent * extent)')],
-           [caustics('near_lamp')]),
+           [caustics('near_lamp_off_a_mirror')]),
     Mutant("chain-extent-of-the-lamp", "caustics",
            [patch("host/packed/focusers.c", 'target->extent = fabs(lamp->radius) / sqrt((1 - sine) * (1 + sine)) + BEYOND * apart;',
                   'target->extent = 0.8 * fabs(lamp->radius);')],
