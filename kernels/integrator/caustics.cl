@@ -243,8 +243,8 @@ static void seek_chains(const Scene *scene, Path *path, const ChainChoice *choic
     /* From here azimuths count: it must not depend on `u` and `v`, as `across` does. */
     Vec3 to_target = across;
     if (any_lane(image.fold | image.ring)) {
-        const vreal beside = across_axis(axis, target_cone(scene, choice->number, choice->target).axis, &to_target);
-        to_target = choose3(beside > splat(0), to_target, normalise3(other));
+        const vbool beside = dot3(image.across, image.across) > splat(0);
+        to_target = choose3(beside, image.across, normalise3(other));
     }
     for (uint piece = 0; piece < 3u; ++piece) {
         const vreal side = splat(piece == 2u ? R(-1.0) : R(1.0));

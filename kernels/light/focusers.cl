@@ -299,10 +299,11 @@ static TargetCone target_cone(const Scene *scene, vuint number, vuint target) {
 /* Directions from a vertex, around the axis through a ball of glass, that hold the image of a whole target: bands of the angle of
  * incidence, given by their sines. */
 typedef struct TargetImage {
-    vbool fold, ring;             /* neither: it is far from where densities have poles */
-    vreal from, to;               /* the band that the fold or the middle of the ball is in */
-    vreal ring_from, ring_to;     /* the other band; empty: there is none */
-    vreal tangent;                /* of a fold: it goes by twice the angle of this tangent to both sides of the target's plane */
+    vbool fold, ring;         /* neither: it is far from where densities have poles */
+    Vec3 across;              /* unit, from the axis to the target; 0 if that is on the axis */
+    vreal from, to;           /* the band that the fold or the middle of the ball is in */
+    vreal ring_from, ring_to; /* the other band; empty: there is none */
+    vreal tangent;            /* of a fold: it goes by twice the angle of this tangent to both sides of the target's plane */
 } TargetImage;
 
 #define BAND_SLACK R(0x1p-18) /* by which bands are wider than their roots, which are rounded */
@@ -310,10 +311,12 @@ typedef struct TargetImage {
 static TargetImage no_image(void) {
     TargetImage image;
     image.fold = image.ring = vbool_none;
+    image.across = zero3();
     image.from = image.to = image.ring_from = image.ring_to = image.tangent = splat(0);
     return image;
 }
 
+/* The part of a vector across a unit axis: its length, which for a unit vector is the sine of the angle, and its unit direction, or 0. */
 static vreal across_axis(Vec3 axis, Vec3 direction, Vec3 *across) {
     const Vec3 off = madd3(-dot3(axis, direction), axis, direction);
     const vreal sine = square_root(dot3(off, off));
@@ -334,11 +337,10 @@ static TargetImage image_of(const Scene *scene, vuint number, Vec3 axis, vreal d
     const TargetCone cone = target_cone(scene, number, target);
     active = active & (near + cone.largest + splat(2) * uint_to_real(inside) * inverse_index > splat(2));
     if (!any_lane(active)) return image;
-    Vec3 across;
     Turn beta;
     beta.cosine = dot3(axis, cone.axis);
     beta.cosine = choose(vbool_of_uint(inside == splat_uint(1)), beta.cosine, -beta.cosine);
-    beta.sine = across_axis(axis, cone.axis, &across);
+    beta.sine = across_axis(axis, cone.axis, &image.across);
     const vbool ring = active & (beta.sine < cone.spread.sine) & (beta.cosine > splat(0));
     const Turn low = turn_back(beta, cone.spread), high = turn_on(beta, cone.spread);
     vreal rise_low, rise_high, fall_low, fall_high, cosine;
@@ -397,14 +399,13 @@ static Vec3 sample_band(const TargetImage *image, Vec3 axis, Vec3 across, vreal 
 
 /* The density per steradian of sample_band, of the direction with this incidence, by which a line is led along `onward`, a vector
  * from the ball to the target. 0: it is in no band. */
-static vreal band_density(const Scene *scene, const Focus *focus, const TargetImage *image, vuint target, vreal near, Vec3 onward) {
+static vreal band_density(const Focus *focus, const TargetImage *image, vreal near, Vec3 onward) {
     const vbool first = (focus->sine >= image->from) & (focus->sine <= image->to);
     const vbool second = vbool_not(first) & (focus->sine >= image->ring_from) & (focus->sine <= image->ring_to);
     const vreal height = band_height(near, choose(first, image->from, image->ring_from), choose(first, image->to, image->ring_to));
-    Vec3 wanted, led;
-    across_axis(focus->axis, target_cone(scene, focus->number, target).axis, &wanted);
+    Vec3 led;
     across_axis(focus->axis, onward, &led);
-    const Vec3 apart = subtract3(led, wanted), together = add3(led, wanted);
+    const Vec3 apart = subtract3(led, image->across), together = add3(led, image->across);
     const vreal x2 = divide(dot3(apart, apart), at_least(dot3(together, together), splat(R(1e-20))));
     const vreal t = image->tangent;
     vreal around = divide(splat(1) + x2, splat(4) * choose(t > splat(0), t, splat(1)));
@@ -453,7 +454,7 @@ static vreal chain_ratio(const Scene *scene, const Focus *focus, const TargetIma
     vreal directed = pi_inverse * choose(far, divide(solid_angle, splat(2) * extent), divide(area, extent * extent * slant));
     const vbool banded = image->ring | (image->fold & (turn.sine > splat(0)));
     if (any_lane(banded))
-        directed = choose(banded, band_density(scene, focus, image, target, near, choose3(far, direction, crossing)), directed);
+        directed = choose(banded, band_density(focus, image, near, choose3(far, direction, crossing)), directed);
     const vreal density = share * gather_real(scene->targets, aim + TARGET_SHARE) * directed;
     const vreal ratio = divide(focus->ratio * chain_probability(scene, focus, inside), choose(density > splat(0), density, splat(1)));
     return choose(density > splat(0), at_most(ratio, splat(CHAIN_RATIO_MAX)), splat(CHAIN_RATIO_MAX));
