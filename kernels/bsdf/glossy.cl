@@ -10,7 +10,7 @@
  * The base is Lambert's surface below the coat: of the light that enters, it sends up a part, of which the coat sends back 1 - E / n^2,
  * which makes the sum of all that leaves, over all turns, the term above. So a white base returns all that enters.
  * A facet reflects no more than a smooth coat does at either angle, because the rest enters and leaves by these angles:
- * with F(o.h) alone, more light than there is would leave, and none would know by how much. A smooth coat has h upright: all three are the same.
+ * with F(o.h) alone, a white surface would send back slightly more light than it gets. A smooth coat has h upright: all three are the same.
  *
  * The coat is drawn with the probability F(co), and weighs coat / F(co) times what metal does, 1 at most. The base
  * is drawn by a cosine, and by rejection with 1 - F(ci); so it has one weight, albedo E / (n^2 (1 - albedo) + albedo E), which is
