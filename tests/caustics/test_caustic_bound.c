@@ -45,29 +45,31 @@ static double brightest(const BpScene *scene, uint64_t first) {
     return most;
 }
 
-/* `least`: so bright is some sample at least, else there was nothing to see. */
-static void check(const char *name, double least) {
+/* `least`: so bright is some sample at least, else there was nothing to see. `limit`: so bright is none. */
+static void check(const char *name, double least, double limit) {
     BpScene *scene = load_scene(name, 64);
     double most = 0;
     for (uint64_t i = 0; i < 24; ++i) most = fmax(most, brightest(scene, 4 * i));
-    printf("%s: the brightest sample has %.3f of the bound\n", name, most);
-    assert_true(most <= 1 && most > least);
+    printf("%s: the brightest sample has %.6f of the bound\n", name, most);
+    assert_true(most > least);
+    assert_true(most <= limit);
     bp_scene_destroy(&scene);
 }
 
 static void lamps_as_large_as_they_may_be(void **state) {
     (void)state;
-    check("tests/agree/scenes/caustics-glass.json", 0.05);
-    check("tests/agree/scenes/caustics-inside.json", 0.05);
-    check("tests/agree/scenes/caustics-mirror.json", 0.05);
-    check("tests/agree/scenes/caustics-sun.json", 0.05);
+    check("tests/agree/scenes/caustics-glass.json", 0.05, 1);
+    check("tests/agree/scenes/caustics-inside.json", 0.05, 1);
+    check("tests/agree/scenes/caustics-mirror.json", 0.05, 1);
+    check("tests/agree/scenes/caustics-sun.json", 0.05, 1);
 }
 
-/* Far brighter than what they light: a weight that is wrong would show many times more. */
+/* A lamp fills little of what a surface sees, so that samples stay far below the bound, which knows no sizes;
+ * a weight that is wrong would show many times more. Of the many lamps, the camera sees some. */
 static void small_lamps(void **state) {
     (void)state;
-    check("tests/unseen/scenes/lamp-0.03.json", 0.001);
-    check("tests/unseen/scenes/lamps-many.json", 0.001);
+    check("tests/unseen/scenes/lamp-0.03.json", 0.0003, 0.003);
+    check("tests/unseen/scenes/lamps-many.json", 0.05, 1);
 }
 
 /* Each vertex may be lit by a ray to a lamp and by three by way of a sphere, each with half of its radiance;

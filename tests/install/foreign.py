@@ -1,12 +1,13 @@
 """The installed shared library as another language calls it: through ctypes, from what the header says alone.
 
-Usage: foreign.py LIBRARY SCENE FOLDER
+Usage: foreign.py LIBRARY SCENE FOLDER C_COMPILER
 """
 
 import ctypes as c
 import json
 import math
 import pathlib
+import subprocess
 import sys
 
 library, scene_path, folder = c.CDLL(sys.argv[1]), sys.argv[2].encode(), pathlib.Path(sys.argv[3])
@@ -19,7 +20,7 @@ library.bp_pixel_relative_error.argtypes = [c.c_void_p, c.c_size_t]
 
 class Error(c.Structure):
     _fields_ = [("code", c.c_int), ("message", c.c_char * 1024), ("file", c.c_char * 512), ("line", c.c_int),
-                ("column", c.c_int), ("attachment", c.c_char_p)]
+                ("column", c.c_int), ("attachment", c.c_char_p), ("remedy", c.c_int), ("remedy_value", c.c_char * 24)]
 
 
 class SceneInfo(c.Structure):
@@ -32,7 +33,7 @@ class RenderOptions(c.Structure):
     _fields_ = [("samples_per_pixel", c.c_uint64), ("first_sample", c.c_uint64), ("max_depth", c.c_uint32),
                 ("seed", c.c_uint64), ("precision", c.c_int), ("math", c.c_int), ("numerics", c.c_int),
                 ("sampler", c.c_int), ("light_sampling", c.c_int), ("caustics", c.c_int), ("kernel", c.c_int), ("all_effects", c.c_bool),
-                ("extra_effects", c.c_uint32), ("adaptive", c.c_bool), ("features", c.c_bool), ("force", c.c_bool),
+                ("extra_effects", c.c_uint32), ("adaptive", c.c_bool), ("features", c.c_bool), ("samples_only", c.c_bool), ("force", c.c_bool),
                 ("job_first", c.c_uint64), ("job_samples", c.c_uint64), ("replicates", c.c_uint32),
                 ("threads", c.c_uint32), ("chunk_samples", c.c_uint32), ("local_size", c.c_uint32), ("tree_width", c.c_uint32),
                 ("packet_lanes", c.c_uint32), ("force_list", c.c_bool), ("force_tree", c.c_bool),
@@ -54,6 +55,30 @@ class Picture(c.Structure):
                 ("error", c.POINTER(c.c_float)), ("samples", c.POINTER(c.c_uint64)), ("alpha", c.POINTER(c.c_float)),
                 ("depth", c.POINTER(c.c_float)), ("normal", c.POINTER(c.c_float)), ("albedo", c.POINTER(c.c_float))]
 
+
+def layout_here(structure):
+    return [c.sizeof(structure)] + [getattr(structure, name).offset for name, _ in structure._fields_]
+
+
+def layouts_in_c(structures):
+    """The size of each and the offsets of its members, as a C compiler lays out what the header declares. A member that
+    is missing above goes unnoticed by the library and breaks the memory behind."""
+    lines = ["#include <ballpark.h>", "#include <stddef.h>", "#include <stdio.h>", "int main(void) {"]
+    for structure in structures:
+        declared = f"Bp{structure.__name__}"
+        values = [f"sizeof({declared})"] + [f"offsetof({declared}, {name})" for name, _ in structure._fields_]
+        lines += [f'printf("%zu ", (size_t){value});' for value in values] + ['puts("");']
+    source, program = folder / "layout.c", folder / "layout"
+    source.write_text("\n".join(lines + ["return 0; }"]))
+    subprocess.run([sys.argv[4], "-std=c11", f"-I{folder / 'include'}", source, "-o", program], check=True)
+    printed = subprocess.run([program], check=True, capture_output=True, text=True).stdout
+    return [[int(value) for value in line.split()] for line in printed.splitlines()]
+
+
+STRUCTURES = (Error, SceneInfo, RenderOptions, Progress, StopRule, Picture)
+for structure, in_c in zip(STRUCTURES, layouts_in_c(STRUCTURES), strict=True):
+    here = layout_here(structure)
+    assert here == in_c, f"{structure.__name__}: size and offsets are {here} here and {in_c} in C"
 
 error = Error()
 

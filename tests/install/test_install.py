@@ -272,7 +272,7 @@ with tempfile.TemporaryDirectory() as folder:
     check_until_error(prefix, shared, with_library)
     assert f"[{library.name.rsplit('.', 1)[0]}]" in run("readelf", "-d", prefix / "example"), "not linked shared"
     run(sys.executable, "-B", source / "tests/install/foreign.py", library,
-        prefix / "share/ballpark/scenes/v4-22-defocus.json", prefix, env=environment)
+        prefix / "share/ballpark/scenes/v4-22-defocus.json", prefix, compiler, env=environment)
 
     # Without the shared form beside it, the same flags and --static give the static one.
     for path in libraries.glob("libballpark.so*"):
