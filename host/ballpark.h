@@ -311,7 +311,12 @@ typedef enum BpLightSampling { BP_LIGHT_SAMPLING_ON, BP_LIGHT_SAMPLING_OFF } BpL
 
 /* Whether rays are sent to lamps through balls of glass and off mirrors; without, paths find that light by
  * chance. Both converge to the same picture. */
-typedef enum BpCaustics { BP_CAUSTICS_OFF, BP_CAUSTICS_ON } BpCaustics;
+typedef enum BpCaustics {
+    BP_CAUSTICS_AUTO, /* on if the light would be so rare by chance that they are worth their time, which
+                         follows from the scene; reports and films then have one of the others */
+    BP_CAUSTICS_OFF,
+    BP_CAUSTICS_ON
+} BpCaustics;
 
 /* Start from bp_render_defaults(). */
 typedef struct BpRenderOptions {
@@ -325,7 +330,8 @@ typedef struct BpRenderOptions {
     BpSampler sampler; /* `ballpark render` uses Sobol's sequence, which has less noise in the same time */
     BpLightSampling light_sampling; /* on has no effect in a scene that does not call for it; reports and
                                        films then record off */
-    BpCaustics caustics;            /* the same; off without light sampling */
+    BpCaustics caustics;            /* the same; off without light sampling; BP_CAUSTICS_AUTO is off with
+                                       samples_only */
     BpKernelForm kernel;
     bool all_effects;       /* build the general kernel instead of the specialised one */
     uint32_t extra_effects; /* bit e: simulate effect e of bp_scene_effect() although nothing calls for it */

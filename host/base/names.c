@@ -14,7 +14,7 @@ BP_WORDS_ENDED(BpMath, const char *const bp_math_names, MATH_WORDS);
 #define LIGHT_SAMPLING_WORDS(X) X(BP_LIGHT_SAMPLING_ON, "on") X(BP_LIGHT_SAMPLING_OFF, "off")
 BP_WORDS_ENDED(BpLightSampling, const char *const bp_light_sampling_names, LIGHT_SAMPLING_WORDS);
 
-#define CAUSTICS_WORDS(X) X(BP_CAUSTICS_OFF, "off") X(BP_CAUSTICS_ON, "on")
+#define CAUSTICS_WORDS(X) X(BP_CAUSTICS_AUTO, "auto") X(BP_CAUSTICS_OFF, "off") X(BP_CAUSTICS_ON, "on")
 BP_WORDS_ENDED(BpCaustics, const char *const bp_caustics_names, CAUSTICS_WORDS);
 
 #define NUMERICS_WORDS(X) X(BP_NUMERICS_ROBUST, "robust") X(BP_NUMERICS_PLAIN, "plain")

@@ -152,7 +152,8 @@ static BpStatus add_items(Session *session, const char *name, BpScene *scene, si
                           BpError *err) {
     const BpCommandLine *line = session->line;
     const bool given = bp_option_given(line, BP_OPTION_LIGHT_SAMPLING);
-    const bool caustics_given = bp_option_given(line, BP_OPTION_CAUSTICS);
+    const bool caustics_given =
+        bp_option_given(line, BP_OPTION_CAUSTICS) && line->caustics != BP_CAUSTICS_AUTO;
     const BpCaustics caustics = caustics_given ? line->caustics : BP_CAUSTICS_OFF;
     const BpRenderOptions sampled = {.light_sampling = BP_LIGHT_SAMPLING_ON, .caustics = BP_CAUSTICS_ON};
     if (bp_option_given(line, BP_OPTION_WIDTH))

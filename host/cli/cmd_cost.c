@@ -132,6 +132,7 @@ BpStatus bp_command_cost(const BpCommandLine *line, BpError *err) {
     if (!bp_option_given(line, BP_OPTION_SAMPLER)) options.sampler = BP_SAMPLER_SOBOL; /* as render */
     BP_TRY_GOTO(status, find_device(line, &device, err), done);
     bp_interrupt_catch();
+    BP_TRY_GOTO(status, bp_render_choose_caustics(scene, &options, &device, err), done);
     BP_TRY_GOTO(status,
                 bp_study_create(scene, &options, &device, full.width, full.height, seconds, &study, err),
                 done);

@@ -303,6 +303,7 @@ typedef struct Findings {
     BpPathLog path;      /* with --pixel */
     BpChainLight chains; /* at the end of one of its segments */
     bool sampled;        /* rays are sent along these */
+    bool by_rays;        /* of the render: --caustics on, or as good */
     BpUnseenLight unseen;
     double luminance;                            /* of the picture, roughly */
     char unknown[sizeof((BpError *)0)->message]; /* why it is not known what is found by chance; "": it is */
@@ -314,6 +315,7 @@ static BpStatus follow(const BpCommandLine *line, const BpScene *scene, const Bp
     BpRenderOptions options;
     BpEffects effects;
     BP_TRY(render_options(line, scene, &options, err));
+    BP_TRY(bp_render_choose_caustics(scene, &options, device, err));
     BP_TRY(bp_path_log(scene, &options, device, line->pixel.x, line->pixel.y, (uint32_t)options.first_sample,
                        &found->path, err));
     bp_effects_analyse(scene, &effects);
@@ -334,6 +336,8 @@ static BpStatus look(const BpCommandLine *line, const BpScene *scene, const BpDe
     BP_TRY(render_options(line, scene, &options, err));
     options.samples_per_pixel = LOOK_SAMPLES;
     options.adaptive = false;
+    BP_TRY(bp_render_choose_caustics(scene, &options, device, err));
+    found->by_rays = options.caustics == BP_CAUSTICS_ON;
     BpStatus status = bp_render_create(scene, &options, device, 1, &render, err);
     if (status == BP_OK) status = bp_render_unseen(render, &found->unseen, err);
     while (status == BP_OK && found->unseen.mean > 0 && !progress.finished)
@@ -372,8 +376,19 @@ static void look_for_unseen(const BpCommandLine *line, const BpScene *scene, con
     bp_error_clear(&err);
 }
 
-/* `caustics`: rays to lamps go through focusers too. */
-static void print_unseen(const BpScene *scene, const Findings *found, bool caustics, FILE *out) {
+/* Where there is a choice, what it is. */
+static void print_caustics(const BpCommandLine *line, const Findings *found, FILE *out) {
+    const bool given = line->caustics != BP_CAUSTICS_AUTO;
+    fprintf(out, "  %-14s %-4s " BP_HANG "%s\n", "--caustics", found->by_rays ? "on" : "off",
+            given ? "as asked for"
+            : found->by_rays
+                ? "rays to lamps go through balls of glass and off mirrors: without, pictures would be "
+                  "noisier in the same time"
+                : "light by way of glass and mirrors is left to chance: rays for it would take more "
+                  "time than the noise that they spare");
+}
+
+static void print_unseen(const BpCommandLine *line, const BpScene *scene, const Findings *found, FILE *out) {
     BpEffects effects;
     bp_effects_analyse(scene, &effects);
     char noise[32];
@@ -382,7 +397,8 @@ static void print_unseen(const BpScene *scene, const Findings *found, bool caust
         fprintf(out, "  %-14s %-4s " BP_HANG "%s\n", "by chance", "?", found->unknown);
     } else if (found->unseen.mean > 0) {
         fprintf(out, "  %-14s %-4s " BP_HANG, "by chance", "yes");
-        bp_unseen_print(scene, &found->unseen, found->luminance, effects.caustics && !caustics, out);
+        bp_unseen_print(scene, &found->unseen, found->luminance,
+                        effects.caustics && line->caustics == BP_CAUSTICS_OFF, out);
         fprintf(out, " At %" PRIu64 " samples per pixel that is a noise of about %s.\n", samples,
                 bp_format_percent(sqrt(found->unseen.square / (double)samples) / found->luminance, noise,
                                   sizeof noise));
@@ -391,6 +407,8 @@ static void print_unseen(const BpScene *scene, const Findings *found, bool caust
                 "no light that samples find by chance only: none is small, or seen or focused by glass or "
                 "mirrors");
     }
+    if (effects.caustics && found->unknown[0] == '\0' && line->light_sampling == BP_LIGHT_SAMPLING_ON)
+        print_caustics(line, found, out);
 }
 
 /* ---- JSON --------------------------------------------------------------------------------------------- */
@@ -496,7 +514,7 @@ static BpStatus explain(const BpCommandLine *line, const char *path, const BpDev
         look_for_unseen(line, scene, device, &found);
         if (list == NULL) {
             bp_page_begin(&page, stdout);
-            print_unseen(scene, &found, line->caustics == BP_CAUSTICS_ON, page.text);
+            print_unseen(line, scene, &found, page.text);
             bp_page_end(&page, line, stdout);
         }
     }

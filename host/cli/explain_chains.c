@@ -127,7 +127,8 @@ static void print_way(const BpScene *scene, const BpChain *chain, const BpChainW
 void bp_chain_light_print(const BpScene *scene, const BpChainLight *light, bool sampled, FILE *out) {
     if (!light->known) return;
     fprintf(out, "  light at the end of step %zu from balls of glass and mirrors", light->step + 1);
-    fprintf(out, light->count == 0 ? ": none\n" : " (--caustics %s):\n", bp_caustics_names[sampled]);
+    fprintf(out, light->count == 0 ? ": none\n" : " (--caustics %s):\n",
+            bp_caustics_names[sampled ? BP_CAUSTICS_ON : BP_CAUSTICS_OFF]);
     for (size_t e = 0; e < light->count; ++e)
         for (size_t w = 0; w < light->entries[e].count; ++w)
             print_way(scene, &light->entries[e].chain, &light->entries[e].ways[w], out);

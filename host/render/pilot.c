@@ -29,43 +29,61 @@ bool bp_pilot_is_needed(const BpScene *scene, const BpPilotAim *aim) {
     return needed;
 }
 
-static BpStatus pilot_create(const BpScene *scene, const BpPilotAim *aim, uint32_t max_depth, bool caustics,
-                             BpPilot *pilot, BpError *err) {
-    *pilot = (BpPilot){.scene = scene,
-                       .max_depth = max_depth,
-                       .caustics = caustics,
-                       .aim = aim,
-                       .plan = bp_pilot_plan(&scene->camera)};
+static bool sums_create(size_t squares, size_t spheres, BpPilotSums *sums) {
+    sums->pixels = squares;
+    sums->mean = calloc(squares, sizeof *sums->mean);
+    sums->square = calloc(squares, sizeof *sums->square);
+    sums->by_sphere = calloc(spheres + 1, sizeof *sums->by_sphere);
+    return sums->mean != NULL && sums->square != NULL && sums->by_sphere != NULL;
+}
+
+static void sums_clear(BpPilotSums *sums) {
+    free(sums->mean);
+    free(sums->square);
+    free(sums->by_sphere);
+}
+
+static void sums_add(BpPilotSums *to, const BpPilotSums *from, size_t spheres) {
+    for (size_t i = 0; i < to->pixels; ++i) {
+        to->mean[i] += from->mean[i];
+        to->square[i] += from->square[i];
+    }
+    for (size_t i = 0; i < spheres + 1; ++i) to->by_sphere[i] += from->by_sphere[i];
+    for (int c = 0; c < 3; ++c) to->square_of[c] += from->square_of[c];
+}
+
+static BpStatus pilot_create(const BpScene *scene, const BpPilotAim *aim, uint32_t max_depth, BpPilot *pilot,
+                             BpError *err) {
+    *pilot =
+        (BpPilot){.scene = scene, .max_depth = max_depth, .aim = aim, .plan = bp_pilot_plan(&scene->camera)};
     const size_t squares = (size_t)pilot->plan.width * pilot->plan.height;
-    pilot->sums.pixels = squares;
-    pilot->sums.mean = calloc(squares, sizeof *pilot->sums.mean);
-    pilot->sums.square = calloc(squares, sizeof *pilot->sums.square);
-    pilot->sums.by_sphere = calloc(scene->sphere_count + 1, sizeof *pilot->sums.by_sphere);
+    const bool has_sums = sums_create(squares, scene->sphere_count, &pilot->parts.chance) &&
+                          sums_create(squares, scene->sphere_count, &pilot->parts.focused);
+    pilot->hits = calloc(aim->light_count + 1, sizeof *pilot->hits);
     pilot->eyes = malloc(squares * pilot->plan.of_pixel * sizeof *pilot->eyes);
     pilot->ray_room = squares * pilot->plan.of_pixel * 4;
     pilot->rays = malloc(pilot->ray_room * sizeof *pilot->rays);
     pilot->photons = malloc((size_t)BP_PILOT_PHOTONS * BP_PILOT_DEPOSITS * sizeof *pilot->photons);
-    if (pilot->sums.mean == NULL || pilot->sums.square == NULL || pilot->sums.by_sphere == NULL ||
-        pilot->eyes == NULL || pilot->rays == NULL || pilot->photons == NULL)
+    if (!has_sums || pilot->hits == NULL || pilot->eyes == NULL || pilot->rays == NULL ||
+        pilot->photons == NULL)
         return bp_fail(err, BP_ERR_MEMORY, "no memory for a pilot of %zu pixels", squares);
     return BP_OK;
 }
 
 static void pilot_clear(BpPilot *pilot) {
-    free(pilot->sums.mean);
-    free(pilot->sums.square);
-    free(pilot->sums.by_sphere);
+    sums_clear(&pilot->parts.chance);
+    sums_clear(&pilot->parts.focused);
+    free(pilot->hits);
     free(pilot->eyes);
     free(pilot->rays);
     free(pilot->photons);
 }
 
 /* The spheres through which most of the noise comes. */
-static void report_spheres(const BpPilot *pilot, double total, BpUnseenLight *report) {
-    const size_t count = pilot->scene->sphere_count;
-    report->direct = pilot->sums.by_sphere[count] / total;
+static void report_spheres(const BpPilotSums *sums, size_t count, double total, BpUnseenLight *report) {
+    report->direct = sums->by_sphere[count] / total;
     for (size_t i = 0; i < count; ++i) {
-        const double part = pilot->sums.by_sphere[i] / total;
+        const double part = sums->by_sphere[i] / total;
         size_t place = report->sphere_count;
         if (!(part > 0)) continue;
         while (place > 0 && report->parts[place - 1] < part) --place;
@@ -81,48 +99,52 @@ static void report_spheres(const BpPilot *pilot, double total, BpUnseenLight *re
 }
 
 static BpStatus give(const BpPilot *pilot, BpUnseen **unseen, BpUnseenLight *report, BpError *err) {
+    const BpPilotSums *sums = &pilot->parts.chance;
     const BpCamera *camera = &pilot->scene->camera;
     const BpPilotPlan *plan = &pilot->plan;
     const size_t pixels = (size_t)camera->width * camera->height;
     double total = 0;
-    for (size_t i = 0; i < pilot->sums.pixels; ++i) {
-        report->mean += pilot->sums.mean[i] / (double)pilot->sums.pixels;
-        total += pilot->sums.square[i];
+    for (size_t i = 0; i < sums->pixels; ++i) {
+        report->mean += sums->mean[i] / (double)sums->pixels;
+        total += sums->square[i];
     }
     if (!(total > 0)) return BP_OK;
-    report->square = total / (double)pilot->sums.pixels;
+    report->square = total / (double)sums->pixels;
     report->found = report->mean * report->mean / report->square;
-    report_spheres(pilot, total, report);
+    report_spheres(sums, pilot->scene->sphere_count, total, report);
     BP_TRY(bp_unseen_create(pixels, unseen, err));
     for (size_t i = 0; i < pixels; ++i) {
         const size_t square = i / camera->width / plan->side * plan->width + i % camera->width / plan->side;
-        (*unseen)->pixels[i] =
-            (BpUnseenPixel){(float)pilot->sums.mean[square], (float)pilot->sums.square[square]};
+        (*unseen)->pixels[i] = (BpUnseenPixel){(float)sums->mean[square], (float)sums->square[square]};
     }
-    for (int c = 0; c < 3; ++c) (*unseen)->tint[c] = (float)(pilot->sums.square_of[c] / total);
+    for (int c = 0; c < 3; ++c) (*unseen)->tint[c] = (float)(sums->square_of[c] / total);
     return BP_OK;
 }
 
 BpStatus bp_pilot_run(BpWorker *worker, const BpScene *scene, const BpPilotAim *aim, uint32_t max_depth,
-                      bool caustics, BpUnseen **unseen, BpUnseenLight *report, BpError *err) {
+                      BpCaustics *caustics, BpUnseen **unseen, BpUnseenLight *report, BpError *err) {
     const double start = bp_clock_seconds();
     BpPilot pilot;
     BpPilotFlight flight = {0};
     *unseen = NULL;
     *report = (BpUnseenLight){0};
     BP_TRY(bp_worker_wait_for_all(worker, err));
-    BpStatus status = pilot_create(scene, aim, max_depth, caustics, &pilot, err);
+    BpStatus status = pilot_create(scene, aim, max_depth, &pilot, err);
     if (status == BP_OK) status = bp_pilot_flight_create(worker, scene, &flight, err);
     if (status == BP_OK) status = bp_pilot_trace_eyes(&pilot, &flight, err);
     if (status == BP_OK && pilot.aim->pair_count > 0) status = bp_pilot_trace_photons(&pilot, &flight, err);
     if (status == BP_OK)
         status = bp_pilot_join(scene, pilot.eyes, pilot.eye_count, pilot.photons, pilot.photon_count,
-                               max_depth, &pilot.sums, err);
-    if (status == BP_OK)
-        bp_pilot_pass(scene, caustics && bp_focusers_light_camera(&scene->camera), pilot.aim->lights,
-                      pilot.aim->light_count, pilot.rays, pilot.ray_count, 1.0 / pilot.plan.of_pixel,
-                      &pilot.sums);
-    if (status == BP_OK) status = give(&pilot, unseen, report, err);
+                               max_depth, &pilot.parts, err);
+    if (status == BP_OK) {
+        bp_pilot_pass(scene, bp_focusers_light_camera(&scene->camera), aim->lights, aim->light_count,
+                      pilot.rays, pilot.ray_count, 1.0 / pilot.plan.of_pixel, &pilot.parts);
+        if (*caustics == BP_CAUSTICS_AUTO)
+            *caustics = bp_pilot_focusing_pays(&pilot) ? BP_CAUSTICS_ON : BP_CAUSTICS_OFF;
+        if (*caustics == BP_CAUSTICS_OFF)
+            sums_add(&pilot.parts.chance, &pilot.parts.focused, scene->sphere_count);
+        status = give(&pilot, unseen, report, err);
+    }
     bp_pilot_flight_clear(&flight);
     pilot_clear(&pilot);
     report->seconds = bp_clock_seconds() - start;

@@ -21,8 +21,9 @@
 /* Whether the scene has light that a pilot may find, in what bp_pilot_aim() has found. */
 bool bp_pilot_is_needed(const BpScene *scene, const BpPilotAim *aim);
 
-/* `caustics`: rays to lamps go through focusers too. *unseen is NULL if there is none. */
+/* *caustics: whether rays to lamps go through focusers too; of BP_CAUSTICS_AUTO it makes one of the others.
+ * *unseen is NULL if there is none. */
 BpStatus bp_pilot_run(BpWorker *worker, const BpScene *scene, const BpPilotAim *aim, uint32_t max_depth,
-                      bool caustics, BpUnseen **unseen, BpUnseenLight *report, BpError *err);
+                      BpCaustics *caustics, BpUnseen **unseen, BpUnseenLight *report, BpError *err);
 
 #endif

@@ -69,15 +69,22 @@ static double chance_of(const BpPilotLight *light, const BpPilotSegment *segment
     return light->radius * light->radius / (near * near);
 }
 
-/* Lights by which the path passes before it meets anything. */
+static bool meets(const BpPilotLight *light, const BpPilotSegment *segment) {
+    const bool met = (segment->flags & PILOT_MET) != 0;
+    if (!light->distant) return met && segment->sphere == light->sphere;
+    return !met && light->seen && bp_dot(segment->direction, light->place) > 1 - light->cap;
+}
+
+/* Lights by which the path passes before it meets anything, and those that it meets. */
 static void pass_directly(BpPilot *pilot, const BpPilotSegment *segment, size_t square) {
     const bool parallel = pilot->scene->camera.projection == BP_ORTHOGRAPHIC;
     const double near = 2 * sqrt(pilot->plan.extent);
     for (size_t i = 0; i < pilot->aim->light_count && pilot->max_depth > 0; ++i) {
         const BpPilotLight *light = &pilot->aim->lights[i];
         const double chance = chance_of(light, segment, near, parallel);
+        pilot->hits[i] += meets(light, segment);
         if (chance > 0)
-            bp_pilot_add(&pilot->sums, square, light->radiance, chance / pilot->plan.of_pixel,
+            bp_pilot_add(&pilot->parts.chance, square, light->radiance, chance / pilot->plan.of_pixel,
                          pilot->scene->sphere_count);
     }
 }

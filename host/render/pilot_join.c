@@ -152,7 +152,8 @@ static void join_one(const BpScene *scene, const BpPilotEye *eye, const BpPilotP
 
 /* All ends near which the light of one path comes. */
 static void join_photon(const BpScene *scene, const Grid *grid, const BpPilotEye *eyes,
-                        const BpPilotPhoton *photon, uint32_t max_depth, BpPilotSums *sums) {
+                        const BpPilotPhoton *photon, uint32_t max_depth, BpPilotParts *parts) {
+    BpPilotSums *sums = photon->focused ? &parts->focused : &parts->chance;
     for (int level = 0; level < LEVELS; ++level) {
         if (!grid->has_level[level]) continue;
         int64_t cell[3];
@@ -165,13 +166,13 @@ static void join_photon(const BpScene *scene, const Grid *grid, const BpPilotEye
 
 BpStatus bp_pilot_join(const BpScene *scene, const BpPilotEye *eyes, size_t eye_count,
                        const BpPilotPhoton *photons, size_t photon_count, uint32_t max_depth,
-                       BpPilotSums *sums, BpError *err) {
+                       BpPilotParts *parts, BpError *err) {
     if (eye_count == 0 || photon_count == 0) return BP_OK;
     Grid grid = {0};
     const BpStatus status = grid_allocate(eye_count, &grid, err);
     for (size_t i = 0; i < eye_count && status == BP_OK; ++i) grid_add(&grid, &eyes[i], i);
     for (size_t i = 0; i < photon_count && status == BP_OK; ++i)
-        join_photon(scene, &grid, eyes, &photons[i], max_depth, sums);
+        join_photon(scene, &grid, eyes, &photons[i], max_depth, parts);
     grid_clear(&grid);
     return status;
 }

@@ -33,6 +33,7 @@ typedef struct BpPilotPhoton {
     double measure;     /* area x solid angle x cosine for which it stands */
     uint32_t sphere, segments;
     uint32_t through; /* the sphere that the light met first */
+    bool focused;     /* rays to lamps that go through focusers find the light of its path */
 } BpPilotPhoton;
 
 /* What has been found, in double. */
@@ -44,6 +45,11 @@ typedef struct BpPilotSums {
         *by_sphere; /* of `through`: the sum of squares; sphere_count + 1, the last for light seen directly */
 } BpPilotSums;
 
+/* What is left to chance whatever is sampled, and what rays to lamps find that go through focusers. */
+typedef struct BpPilotParts {
+    BpPilotSums chance, focused;
+} BpPilotParts;
+
 /* Adds light `radiance` that reaches a pixel's sample with a probability. */
 void bp_pilot_add(BpPilotSums *sums, size_t pixel, const double radiance[3], double probability,
                   size_t through);
@@ -52,7 +58,7 @@ void bp_pilot_add(BpPilotSums *sums, size_t pixel, const double radiance[3], dou
  * BP_ERR_MEMORY. */
 BpStatus bp_pilot_join(const BpScene *scene, const BpPilotEye *eyes, size_t eye_count,
                        const BpPilotPhoton *photons, size_t photon_count, uint32_t max_depth,
-                       BpPilotSums *sums, BpError *err);
+                       BpPilotParts *parts, BpError *err);
 
 /* The density per steradian with which a lobe of the material sends a path along `direction`; `axis`: the
  * normal, or for metal the mirror direction. */

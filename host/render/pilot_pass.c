@@ -88,18 +88,17 @@ static void pass_group(const BpPilotLight *light, const BpPilotRay *rays, size_t
     }
 }
 
-void bp_pilot_pass(const BpScene *scene, bool sampled, const BpPilotLight *lights, size_t light_count,
-                   BpPilotRay *rays, size_t ray_count, double share, BpPilotSums *sums) {
+void bp_pilot_pass(const BpScene *scene, bool focused, const BpPilotLight *lights, size_t light_count,
+                   BpPilotRay *rays, size_t ray_count, double share, BpPilotParts *parts) {
     qsort(rays, ray_count, sizeof *rays, by_way);
     for (size_t first = 0, end; first < ray_count; first = end) {
         for (end = first + 1; end < ray_count && rays[end].way == rays[first].way;) ++end;
         const BpPilotRay *ray = &rays[first];
         for (size_t l = 0; l < light_count; ++l) {
             if (lights[l].share > 1) continue;
-            if (sampled && ray->vertices > 0 &&
-                bp_pilot_is_sampled(scene, &lights[l], ray->through, ray->vertices))
-                continue;
-            pass_group(&lights[l], ray, end - first, share, sums);
+            const bool found = focused && ray->vertices > 0 &&
+                               bp_pilot_is_sampled(scene, &lights[l], ray->through, ray->vertices);
+            pass_group(&lights[l], ray, end - first, share, found ? &parts->focused : &parts->chance);
         }
     }
 }

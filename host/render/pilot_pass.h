@@ -25,9 +25,9 @@ typedef struct BpPilotRay {
     uint32_t number;                        /* none has another's */
 } BpPilotRay;
 
-/* `share`: of a pixel's samples that each ray stands for. `sampled`: lights that rays to lamps find through
- * focusers from the camera are left out. Sorts the rays. */
-void bp_pilot_pass(const BpScene *scene, bool sampled, const BpPilotLight *lights, size_t light_count,
-                   BpPilotRay *rays, size_t ray_count, double share, BpPilotSums *sums);
+/* `share`: of a pixel's samples that each ray stands for. `focused`: rays to lamps may go through focusers
+ * from the camera, too. Sorts the rays. */
+void bp_pilot_pass(const BpScene *scene, bool focused, const BpPilotLight *lights, size_t light_count,
+                   BpPilotRay *rays, size_t ray_count, double share, BpPilotParts *parts);
 
 #endif

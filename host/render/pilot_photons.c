@@ -67,6 +67,7 @@ static void follow_photon(BpPilot *pilot, const BpPilotFlight *flight, uint32_t 
     double measure = start->measure;
     uint32_t deposits = 0, vertices = 0; /* specular, up to the first rough point */
     bool aimed = false, alone = true;    /* all of them are the target's */
+    bool focused = false;
     BpPilotSegment segment, next;
     for (uint32_t s = 0; bp_pilot_segment(flight, path, BP_PILOT_SEGMENTS_MAX, s, &segment) && measure > 0;
          ++s) {
@@ -79,14 +80,16 @@ static void follow_photon(BpPilot *pilot, const BpPilotFlight *flight, uint32_t 
             ++vertices;
             alone = alone && segment.sphere == target;
         }
-        const bool first = rough && deposits == 0;
-        if (first && alone && pilot->caustics && bp_pilot_is_sampled(scene, light, target, vertices)) return;
+        if (rough && deposits == 0) focused = alone && bp_pilot_is_sampled(scene, light, target, vertices);
         if (rough) {
             BpPilotPhoton *photon = &pilot->photons[pilot->photon_count++];
             double carried[3];
             bp_pilot_carried(flight, path, BP_PILOT_SEGMENTS_MAX, s, carried);
-            *photon = (BpPilotPhoton){
-                .measure = measure, .sphere = segment.sphere, .segments = s + 1, .through = target};
+            *photon = (BpPilotPhoton){.measure = measure,
+                                      .sphere = segment.sphere,
+                                      .segments = s + 1,
+                                      .through = target,
+                                      .focused = focused};
             memcpy(photon->point, segment.point, sizeof photon->point);
             memcpy(photon->direction, segment.direction, sizeof photon->direction);
             for (int c = 0; c < 3; ++c) photon->radiance[c] = light->radiance[c] * carried[c];

@@ -1,5 +1,5 @@
-/* pilot_state.h: what a pilot knows while it runs; shared by pilot.c, which runs it, and by the two files
- * that follow its paths, from the camera and from the lights.
+/* pilot_state.h: what a pilot knows while it runs; shared by pilot.c, which runs it, by the two files
+ * that follow its paths, from the camera and from the lights, and by the one that judges what it found.
  *
  * Knows: lights, rough points, light that comes to them.   Does not know: how paths are traced
  * (pilot_paths.h). */
@@ -24,14 +24,14 @@ typedef struct BpPilotPlan {
 typedef struct BpPilot {
     const BpScene *scene;
     uint32_t max_depth;
-    bool caustics; /* rays to lamps go through focusers too */
     const BpPilotAim *aim;
     BpPilotPlan plan;
     BpPilotEye *eyes;
     BpPilotRay *rays; /* of camera paths, behind something specular */
     BpPilotPhoton *photons;
     size_t eye_count, ray_count, ray_room, photon_count;
-    BpPilotSums sums;
+    uint32_t *hits; /* of each of the lights: camera paths that begin by meeting it */
+    BpPilotParts parts;
 } BpPilot;
 
 /* Of a pixel in the middle, as seen from the camera: solid angle, or for parallel rays area. */
@@ -41,5 +41,8 @@ BpPilotPlan bp_pilot_plan(const BpCamera *camera);
 /* Fill `eyes`, `rays` and the sums of lights seen directly; and `photons`. */
 BpStatus bp_pilot_trace_eyes(BpPilot *pilot, BpPilotFlight *flight, BpError *err);
 BpStatus bp_pilot_trace_photons(BpPilot *pilot, BpPilotFlight *flight, BpError *err);
+
+/* Whether rays through focusers take away more noise than the time that they cost would. */
+bool bp_pilot_focusing_pays(const BpPilot *pilot);
 
 #endif

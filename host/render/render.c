@@ -28,19 +28,28 @@ static BpCalibration calibrate(BpRender *render, const BpDeviceInfo *device, BpD
     return calibration;
 }
 
-static BpStatus open_worker(BpRender *render, const BpDeviceInfo *device, BpDevice *open,
-                            const BpCalibration *calibration, size_t index, BpError *err) {
+/* The devices of a render: named, or open already. */
+typedef struct Opening {
+    const BpDeviceInfo *devices;
+    BpDevice *const *open; /* Optional. */
+} Opening;
+
+static BpStatus open_worker(BpRender *render, const Opening *opening, size_t index, BpError *err) {
+    BpDevice *open = opening->open != NULL ? opening->open[index] : NULL;
+    const BpDeviceInfo *device = open != NULL ? &open->info : &opening->devices[index];
+    const BpCalibration calibration = calibrate(render, device, open);
+    if (index == 0) render->calibration = calibration;
     BpWorkerSetup setup;
     BpPacked packed;
     BpRenderOptions options = render->options;
     char *appended = NULL;
-    if (calibration->form != BP_KERNEL_AUTO) {
-        options.kernel = calibration->form;
-        if (options.local_size == 0) options.local_size = calibration->local_size;
+    if (calibration.form != BP_KERNEL_AUTO) {
+        options.kernel = calibration.form;
+        if (options.local_size == 0) options.local_size = calibration.local_size;
     }
     const double start = bp_clock_seconds();
     BP_TRY(bp_render_plan(render->scene, &options, device, &setup, &packed, err));
-    setup.samples_per_item = calibration->samples_per_item;
+    setup.samples_per_item = calibration.samples_per_item;
     render->effects.bits = setup.program.effects;
     render->acceleration = setup.program.tree ? BP_ACCELERATION_TREE : BP_ACCELERATION_LIST;
     render->tree_seconds += packed.tree.build_seconds;
@@ -50,7 +59,7 @@ static BpStatus open_worker(BpRender *render, const BpDeviceInfo *device, BpDevi
     const char *extra[3]; /* behind the kernels that trace */
     size_t extras = 0;
     if (render->options.features) extra[extras++] = "entry/aovs.cl";
-    if (render->has_pilot) {
+    if (render->has_pilot && !render->pilot_done) {
         extra[extras++] = "pilot_types.h";
         extra[extras++] = "entry/pilot.cl";
     }
@@ -88,6 +97,29 @@ static BpStatus begin_adaptive(BpRender *render, BpError *err) {
     return status;
 }
 
+/* The pilot follows from the scene, so once is enough. */
+static BpStatus run_pilot(BpRender *render, BpError *err) {
+    if (!render->has_pilot || render->pilot_done) return BP_OK;
+    BP_TRY(bp_pilot_run(render->dispatch.workers[0], render->scene, &render->aim, render->options.max_depth,
+                        &render->options.caustics, &render->unseen, &render->pilot, err));
+    render->pilot_done = true;
+    bp_pilot_aim_clear(&render->aim);
+    return BP_OK;
+}
+
+/* Of BP_CAUSTICS_AUTO makes one of the others, by a pilot on the first device, whose kernels do without rays
+ * through focusers. Each rank does it for itself and comes to the same. */
+static BpStatus choose_caustics(BpRender *render, const Opening *opening, BpError *err) {
+    if (render->options.caustics != BP_CAUSTICS_AUTO) return BP_OK;
+    render->options.caustics = BP_CAUSTICS_OFF;
+    if (!render->has_pilot) return BP_OK;
+    BP_TRY(open_worker(render, opening, 0, err));
+    render->options.caustics = BP_CAUSTICS_AUTO;
+    BP_TRY(run_pilot(render, err));
+    if (render->options.caustics == BP_CAUSTICS_ON) bp_worker_destroy(&render->dispatch.workers[0]);
+    return BP_OK;
+}
+
 /* `open`: NULL, or the devices, open already. */
 static BpStatus create(const BpScene *scene, const BpRenderOptions *options, const BpDeviceInfo *devices,
                        BpDevice *const *open, size_t device_count, BpRender **render, BpError *err) {
@@ -116,13 +148,11 @@ static BpStatus create(const BpScene *scene, const BpRenderOptions *options, con
         made->has_pilot = bp_pilot_is_needed(scene, &made->aim);
         if (!made->has_pilot) bp_pilot_aim_clear(&made->aim);
     }
-    for (size_t i = 0; i < device_count; ++i) {
-        const BpDeviceInfo *device = open != NULL ? &open[i]->info : &devices[i];
-        BpDevice *opened = open != NULL ? open[i] : NULL;
-        const BpCalibration calibration = calibrate(made, device, opened);
-        if (i == 0) made->calibration = calibration;
-        BP_TRY_GOTO(status, open_worker(made, device, opened, &calibration, i, err), failed);
-    }
+    const Opening opening = {.devices = devices, .open = open};
+    BP_TRY_GOTO(status, choose_caustics(made, &opening, err), failed);
+    for (size_t i = 0; i < device_count; ++i)
+        if (made->dispatch.workers[i] == NULL)
+            BP_TRY_GOTO(status, open_worker(made, &opening, i, err), failed);
     const uint32_t pixels = scene->camera.width * scene->camera.height;
     bp_schedule_init(&made->dispatch.schedule, pixels, options->first_sample, options->samples_per_pixel);
     if (options->adaptive) BP_TRY_GOTO(status, begin_adaptive(made, err), failed);
@@ -143,6 +173,19 @@ BpStatus bp_render_create(const BpScene *scene, const BpRenderOptions *options, 
 BpStatus bp_render_create_on(const BpScene *scene, const BpRenderOptions *options, BpDevice *const *devices,
                              size_t device_count, BpRender **render, BpError *err) {
     return create(scene, options, NULL, devices, device_count, render, err);
+}
+
+BpStatus bp_render_choose_caustics(const BpScene *scene, BpRenderOptions *options, const BpDeviceInfo *device,
+                                   BpError *err) {
+    if (bp_render_caustics(scene, options) == BP_CAUSTICS_AUTO) {
+        BpRender *render = NULL;
+        BP_TRY(bp_render_create(scene, options, device, 1, &render, err));
+        options->caustics = render->options.caustics;
+        bp_render_destroy(&render);
+    } else if (options->caustics == BP_CAUSTICS_AUTO) {
+        options->caustics = BP_CAUSTICS_OFF;
+    }
+    return BP_OK;
 }
 
 void bp_render_destroy(BpRender **render) {
@@ -218,16 +261,6 @@ static void report_progress(const BpRender *render, bool finished, BpProgress *p
     progress->samples_total = render->samples_total;
     progress->trace_seconds = render->trace_seconds;
     progress->finished = finished;
-}
-
-/* The pilot follows from the scene, so once is enough. */
-static BpStatus run_pilot(BpRender *render, BpError *err) {
-    if (!render->has_pilot || render->pilot_done) return BP_OK;
-    BP_TRY(bp_pilot_run(render->dispatch.workers[0], render->scene, &render->aim, render->options.max_depth,
-                        render->options.caustics == BP_CAUSTICS_ON, &render->unseen, &render->pilot, err));
-    render->pilot_done = true;
-    bp_pilot_aim_clear(&render->aim);
-    return BP_OK;
 }
 
 /* Starts chunks until so much time has passed, one at least. */

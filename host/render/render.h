@@ -37,6 +37,10 @@ typedef struct BpRenderReport {
 
 void bp_render_report(const BpRender *render, BpRenderReport *report);
 
+/* Of BP_CAUSTICS_AUTO in the options makes what a render of them does. */
+BpStatus bp_render_choose_caustics(const BpScene *scene, BpRenderOptions *options, const BpDeviceInfo *device,
+                                   BpError *err);
+
 /* bp_render_create() on devices that are open already (opencl/device.h) and stay open: what one render has
  * built, the next need not build again. They must outlive the render. device_count >= 1. */
 struct BpDevice;

@@ -8,7 +8,7 @@
 #include "worker.h"
 
 /* Whether rays are sent to lamps through balls of glass and off mirrors: BP_CAUSTICS_OFF too where the scene
- * does not call for it. */
+ * does not call for it; BP_CAUSTICS_AUTO where a pilot decides. */
 BpCaustics bp_render_caustics(const BpScene *scene, const BpRenderOptions *options);
 /* The same, if the scene's effects are known. */
 BpCaustics bp_render_caustics_of(const BpEffects *effects, const BpRenderOptions *options);

@@ -94,8 +94,14 @@ static void write_command(const BpScene *scene, BpStudyConfiguration *configurat
     command[0] = '\0';
 #define ADD(...)                                                                                             \
     snprintf(command + strlen(command), sizeof configuration->command - strlen(command), __VA_ARGS__)
+    /* What the program chooses of itself is said where there is a choice. */
+    const BpRenderOptions through = {.caustics = BP_CAUSTICS_ON};
+    const bool other_caustics =
+        options->caustics != BP_CAUSTICS_AUTO && bp_render_caustics(scene, &through) == BP_CAUSTICS_ON;
+    BpRenderOptions usual = defaults;
+    if (!other_caustics) usual.caustics = options->caustics;
 #define ADD_SETTING(type, member, option, plural)                                                            \
-    if (options->member != defaults.member) ADD(" --" option " %s", bp_##member##_names[options->member]);
+    if (options->member != usual.member) ADD(" --" option " %s", bp_##member##_names[options->member]);
     BP_SETTING_LIST(ADD_SETTING)
     if (options->adaptive) ADD(" --adaptive");
     if (options->max_depth != scene->camera.max_depth) ADD(" --depth %u", options->max_depth);

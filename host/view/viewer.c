@@ -193,6 +193,8 @@ static BpStatus restart(Viewer *viewer, bool moving, BpError *err) {
     const double width = moving ? fmax(1, floor(viewer->width / viewer->shrink + 0.5)) : viewer->width;
     BpRenderOptions options = viewer->plan->options;
     options.samples_per_pixel = 1;
+    /* Each place of the camera would be looked at anew, which takes longer than a picture may. */
+    if (options.caustics == BP_CAUSTICS_AUTO) options.caustics = BP_CAUSTICS_OFF;
     bp_render_destroy(&viewer->render);
     BP_TRY(bp_scene_set_width(viewer->scene, (uint32_t)width, err));
     bp_lighting_place(viewer->scene); /* lighting by name is the camera's */

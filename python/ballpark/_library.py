@@ -120,7 +120,7 @@ TRANSFERS = ["gamma2", "srgb", "linear"]
 FORMATS = ["png", "ppm", "ppm-ascii", "pfm", "exr", "bpa"]
 DEVICE_TYPES = ["cpu", "gpu", "other"]
 CHOICES = {"precision": ["single", "double"], "math": ["strict", "fast"], "numerics": ["robust", "plain"],
-           "sampler": ["independent", "sobol"], "light_sampling": ["on", "off"], "caustics": ["off", "on"],
+           "sampler": ["independent", "sobol"], "light_sampling": ["on", "off"], "caustics": ["auto", "off", "on"],
            "kernel": ["auto", "sample", "packet", "pool"]}
 
 _HANDLE = c.POINTER(c.c_void_p)

@@ -35,16 +35,21 @@ typedef struct Fixture {
     BuiltScene built;
     BpPilotEye eyes[EYES];
     BpPilotPhoton photons[PHOTONS];
-    double mean[PIXELS], square[PIXELS], by_sphere[4];
-    BpPilotSums sums;
+    double mean[2][PIXELS], square[2][PIXELS], by_sphere[2][4];
 } Fixture;
 
-static BpPilotSums sums_of(Fixture *fixture) {
-    memset(fixture->mean, 0, sizeof fixture->mean);
-    memset(fixture->square, 0, sizeof fixture->square);
-    memset(fixture->by_sphere, 0, sizeof fixture->by_sphere);
-    return (BpPilotSums){
-        .pixels = PIXELS, .mean = fixture->mean, .square = fixture->square, .by_sphere = fixture->by_sphere};
+static BpPilotSums sums_of(Fixture *fixture, int part) {
+    memset(fixture->mean[part], 0, sizeof fixture->mean[part]);
+    memset(fixture->square[part], 0, sizeof fixture->square[part]);
+    memset(fixture->by_sphere[part], 0, sizeof fixture->by_sphere[part]);
+    return (BpPilotSums){.pixels = PIXELS,
+                         .mean = fixture->mean[part],
+                         .square = fixture->square[part],
+                         .by_sphere = fixture->by_sphere[part]};
+}
+
+static BpPilotParts parts_of(Fixture *fixture) {
+    return (BpPilotParts){.chance = sums_of(fixture, 0), .focused = sums_of(fixture, 1)};
 }
 
 /* Points all over the octaves from 2^-20 to 2^20 around the origin and around 0x1p8, in balls of radii of as
@@ -77,7 +82,8 @@ static Fixture *fixture_create(uint64_t seed) {
         *photon = (BpPilotPhoton){.measure = near->radius * near->radius * between(&random, 0.01, 1),
                                   .sphere = i % 7 == 0 ? (uint32_t)(i % 3) : near->sphere,
                                   .segments = 1 + (uint32_t)(i % 3),
-                                  .through = (uint32_t)(i % 3)};
+                                  .through = (uint32_t)(i % 3),
+                                  .focused = i % 4 == 0};
         for (int a = 0; a < 3; ++a) {
             photon->point[a] = near->point[a] + near->radius * between(&random, -1, 1);
             photon->radiance[a] = between(&random, 0, 10);
@@ -94,7 +100,7 @@ typedef struct Expected {
 
 /* By the definition: a sample of the pixel goes along the photon's way with the density of the lobe times the
  * measure over the area of the disk and the cosine. */
-static void expect_pairs(const Fixture *fixture, Expected *expected) {
+static void expect_pairs(const Fixture *fixture, bool focused, Expected *expected) {
     static const double weights[3] = {0.2126, 0.7152, 0.0722};
     *expected = (Expected){.pairs = 0};
     for (size_t e = 0; e < EYES; ++e)
@@ -106,8 +112,8 @@ static void expect_pairs(const Fixture *fixture, Expected *expected) {
                 away2 += (eye->point[a] - photon->point[a]) * (eye->point[a] - photon->point[a]);
                 cosine -= eye->normal[a] * photon->direction[a];
             }
-            if (eye->sphere != photon->sphere || away2 > eye->radius * eye->radius || cosine <= 0 ||
-                eye->segments + photon->segments > DEPTH)
+            if (photon->focused != focused || eye->sphere != photon->sphere ||
+                away2 > eye->radius * eye->radius || cosine <= 0 || eye->segments + photon->segments > DEPTH)
                 continue;
             const double probability = eye->share * cosine / PI / fmax(cosine, 0.02) * photon->measure /
                                        (PI * eye->radius * eye->radius);
@@ -128,25 +134,32 @@ static void assert_near(double found, double expected, double relative, const ch
         fail_msg("%s: %.17g, expected %.17g", what, found, expected);
 }
 
+static void assert_sums(const BpPilotSums *sums, const Expected *expected) {
+    for (int i = 0; i < PIXELS; ++i) {
+        assert_near(sums->mean[i], expected->mean[i], 1e-12, "the mean of a pixel");
+        assert_near(sums->square[i], expected->square[i], 1e-12, "the mean square of a pixel");
+    }
+    for (int i = 0; i < 4; ++i)
+        assert_near(sums->by_sphere[i], expected->by_sphere[i], 1e-12, "the part of a sphere");
+    for (int c = 0; c < 3; ++c)
+        assert_near(sums->square_of[c], expected->square_of[c], 1e-12, "the mean square of a channel");
+}
+
 static void all_pairs_count_once(void **state) {
     (void)state;
-    static Expected expected;
+    static Expected chance, focused;
     for (uint64_t seed = 1; seed <= 3; ++seed) {
         Fixture *fixture = fixture_create(seed);
-        expect_pairs(fixture, &expected);
-        assert_true(expected.pairs > 3 * PHOTONS); /* or nothing would be tested */
-        BpPilotSums sums = sums_of(fixture);
+        expect_pairs(fixture, false, &chance);
+        expect_pairs(fixture, true, &focused);
+        assert_true(chance.pairs > 2 * PHOTONS &&
+                    focused.pairs > PHOTONS / 2); /* or nothing would be tested */
+        BpPilotParts parts = parts_of(fixture);
         assert_int_equal(bp_pilot_join(&fixture->built.scene, fixture->eyes, EYES, fixture->photons, PHOTONS,
-                                       DEPTH, &sums, NULL),
+                                       DEPTH, &parts, NULL),
                          BP_OK);
-        for (int i = 0; i < PIXELS; ++i) {
-            assert_near(sums.mean[i], expected.mean[i], 1e-12, "the mean of a pixel");
-            assert_near(sums.square[i], expected.square[i], 1e-12, "the mean square of a pixel");
-        }
-        for (int i = 0; i < 4; ++i)
-            assert_near(sums.by_sphere[i], expected.by_sphere[i], 1e-12, "the part of a sphere");
-        for (int c = 0; c < 3; ++c)
-            assert_near(sums.square_of[c], expected.square_of[c], 1e-12, "the mean square of a channel");
+        assert_sums(&parts.chance, &chance);
+        assert_sums(&parts.focused, &focused);
         free(fixture);
     }
 }
@@ -174,10 +187,10 @@ static void borders_of_cells(void **state) {
                 for (int a = 0; a < 3; ++a)
                     photons[corner].point[a] = place + ((corner >> a & 1) != 0 ? 0.5 : -0.5) * radius;
             }
-            BpPilotSums sums = sums_of(fixture);
-            assert_int_equal(bp_pilot_join(&fixture->built.scene, &eye, 1, photons, 8, DEPTH, &sums, NULL),
+            BpPilotParts parts = parts_of(fixture);
+            assert_int_equal(bp_pilot_join(&fixture->built.scene, &eye, 1, photons, 8, DEPTH, &parts, NULL),
                              BP_OK);
-            assert_near(sums.mean[0], 8, 1e-12, "light in all eight corners");
+            assert_near(parts.chance.mean[0], 8, 1e-12, "light in all eight corners");
         }
     free(fixture);
 }
@@ -186,13 +199,13 @@ static void borders_of_cells(void **state) {
 static void nothing_to_join(void **state) {
     (void)state;
     Fixture *fixture = fixture_create(1);
-    BpPilotSums sums = sums_of(fixture);
+    BpPilotParts parts = parts_of(fixture);
     const BpScene *scene = &fixture->built.scene;
-    assert_int_equal(bp_pilot_join(scene, fixture->eyes, 0, fixture->photons, PHOTONS, DEPTH, &sums, NULL),
+    assert_int_equal(bp_pilot_join(scene, fixture->eyes, 0, fixture->photons, PHOTONS, DEPTH, &parts, NULL),
                      BP_OK);
-    assert_int_equal(bp_pilot_join(scene, fixture->eyes, EYES, fixture->photons, 0, DEPTH, &sums, NULL),
+    assert_int_equal(bp_pilot_join(scene, fixture->eyes, EYES, fixture->photons, 0, DEPTH, &parts, NULL),
                      BP_OK);
-    for (int i = 0; i < PIXELS; ++i) assert_true(sums.mean[i] == 0 && sums.square[i] == 0);
+    for (int i = 0; i < PIXELS; ++i) assert_true(parts.chance.mean[i] == 0 && parts.chance.square[i] == 0);
     free(fixture);
 }
 

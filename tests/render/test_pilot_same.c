@@ -69,6 +69,7 @@ static void forms_are_the_same(void **state) {
         bp_render_defaults(scene, &options);
         options.samples_per_pixel = 8;
         options.kernel = BP_KERNEL_SAMPLE;
+        options.caustics = BP_CAUSTICS_OFF;
         Found expected = find(scene, &options);
         assert_non_null(expected.unseen);
         assert_true(expected.light.mean > 0 && expected.light.square > 0 && expected.nrmse > 0);
@@ -143,6 +144,7 @@ static void depth_and_lamps(void **state) {
     BpRenderOptions options;
     bp_render_defaults(scene, &options);
     options.samples_per_pixel = 4;
+    options.caustics = BP_CAUSTICS_OFF;
     double means[6];
     for (uint32_t depth = 0; depth < 6; ++depth) {
         options.max_depth = depth;
@@ -175,6 +177,7 @@ static void sizes_of_pictures(void **state) {
         BpRenderOptions options;
         bp_render_defaults(scene, &options);
         options.samples_per_pixel = 2;
+        options.caustics = BP_CAUSTICS_OFF;
         Found found = find(scene, &options);
         assert_non_null(found.unseen);
         means[i] = found.light.mean;

@@ -218,16 +218,18 @@ static void test_configurations(void **state) {
     BpScene *lit = load("../tests/unseen/scenes/lamp-0.1"), *moving = load("../tests/unseen/scenes/moving");
     bp_render_defaults(lit, &base);
     base.sampler = BP_SAMPLER_SOBOL;
+    base.caustics = BP_CAUSTICS_OFF; /* as bp_render_choose_caustics() leaves it, or BP_CAUSTICS_ON */
     count = bp_study_configurations(lit, &base, true, configurations);
+    assert_string_equal(configurations[0].command, "--caustics off");
     assert_string_equal(find(configurations, count, "rays through focusers")->command, "--caustics on");
     assert_null(find(configurations, count, "caustics found by chance")); /* that is the base */
     assert_string_equal(find(configurations, count, "lamps found by chance")->command,
-                        "--light-sampling off");
+                        "--light-sampling off --caustics off");
     base.caustics = BP_CAUSTICS_ON;
     count = bp_study_configurations(lit, &base, true, configurations);
     assert_string_equal(configurations[0].command, "--caustics on");
     assert_null(find(configurations, count, "rays through focusers"));
-    assert_string_equal(find(configurations, count, "caustics found by chance")->command, "");
+    assert_string_equal(find(configurations, count, "caustics found by chance")->command, "--caustics off");
     bp_render_defaults(moving, &base);
     count = bp_study_configurations(moving, &base, true, configurations);
     assert_null(find(configurations, count, "rays through focusers"));

@@ -43,7 +43,7 @@ class Program:
 
     def render(self, scene, seed, *options):
         """What --stats says, and what is printed."""
-        done = subprocess.run([self.path, "render", FOLDER / f"scenes/{scene}.json", "--seed", str(seed), "-o", "x.pfm", "--stats", "x.json",
+        done = subprocess.run([self.path, "render", FOLDER / f"scenes/{scene}.json", "--seed", str(seed), "-o", "x.pfm", "--stats", "x.json", "--caustics", "off",
                                *map(str, options)], cwd=self.folder, env=self.environment, stderr=subprocess.PIPE, timeout=300)
         printed = done.stderr.decode(errors="replace")
         if done.returncode != 0:

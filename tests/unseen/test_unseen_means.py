@@ -28,7 +28,7 @@ class Means(cli.ProgramTest):
     def picture(self, document, samples):
         """Of the luminance of a sample, the mean and the mean square, and what the pilot says."""
         self.write("s.json", document)
-        self.succeed("render", "s.json", "--spp", samples, "--sampler", "independent", "-o", "a.pfm", "-q", "--stats", "a.json")
+        self.succeed("render", "s.json", "--spp", samples, "--sampler", "independent", "-o", "a.pfm", "-q", "--caustics", "off", "--stats", "a.json")
         stats = json.loads(self.read("a.json"))
         mean = sum(w * v for w, v in zip(WEIGHTS, stats["mean_radiance"]))
         self.assertLess(stats["unseen_part"], 0.3)  # samples have found it, often
@@ -107,7 +107,7 @@ class Means(cli.ProgramTest):
                     "spheres": [{"center": [x, y, 0], "radius": 0.01, "material": "lamp"} for x, y in places]
                                + [{"center": [0, 0, 20], "radius": 1, "material": "floor"}]}  # behind the camera
         self.write("s.json", document)
-        self.succeed("render", "s.json", "--spp", 2, "-o", "a.pfm", "-q", "--stats", "a.json")
+        self.succeed("render", "s.json", "--spp", 2, "-o", "a.pfm", "-q", "--caustics", "off", "--stats", "a.json")
         unseen = json.loads(self.read("a.json"))["unseen"]
         mean = 1e4 * len(places) * math.pi * 0.01 ** 2 / (20 * math.tan(math.radians(17.5))) ** 2
         # About twelve camera paths pass each of them.

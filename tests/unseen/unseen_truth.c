@@ -71,6 +71,7 @@ static BpRender *open_render(const BpScene *scene, BpSampler sampler, uint64_t s
     options.sampler = sampler;
     options.seed = seed;
     options.samples_per_pixel = samples;
+    options.caustics = BP_CAUSTICS_OFF;
     must(open_render_on_device(scene, &options, &render, &err), &err);
     return render;
 }

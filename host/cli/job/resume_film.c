@@ -68,6 +68,7 @@ BpStatus bp_resume_options(const BpCommandLine *line, const BpFilm *film, BpRend
     }
     if (line->adaptive && (film->plan == NULL || !film->plan->adaptive))
         return contradicts(line, BP_OPTION_ADAPTIVE, "is of a render without it", err);
+    if (options->caustics == BP_CAUSTICS_AUTO) options->caustics = film->caustics; /* as it was chosen then */
 #define SETTING_OPTION_sampler BP_OPTION_SAMPLER
 #define SETTING_OPTION_precision BP_OPTION_PRECISION
 #define SETTING_OPTION_math BP_OPTION_MATH

@@ -172,7 +172,7 @@ static void say_unseen(const BpCommandLine *line, const BpRunResult *result) {
     bp_page_begin(&page, stderr);
     fputs("most of this noise is light that samples have hardly found yet. ", page.text);
     bp_unseen_print(result->scene, &result->unseen, result->claim.luminance,
-                    result->report.effects.caustics && result->report.caustics == BP_CAUSTICS_OFF, page.text);
+                    result->report.effects.caustics && line->caustics == BP_CAUSTICS_OFF, page.text);
     fputc('\n', page.text);
     bp_page_end(&page, line, stderr);
 }

@@ -60,7 +60,7 @@ void bp_unseen_print(const BpScene *scene, const BpUnseenLight *light, double lu
         fputs(" What helps: larger lights, or more samples.", out);
         return;
     }
-    fprintf(out, " What helps: %slarger lamps or discs", caustics ? "--caustics on, " : "");
+    fprintf(out, " What helps: %slarger lamps or discs", caustics ? "--caustics auto, " : "");
     if (any_of_kind(scene, light, BP_MATERIAL_METAL))
         fputs(", a fuzz of 1/64 or a roughness of 1/16 for mirrors", out);
     fputs(", or many more samples.", out);

@@ -11,7 +11,7 @@
 #include <stdio.h>
 
 /* "About 5 % of the light comes by way of spheres[1] (glass), and one sample in 1.1 million finds it." and
- * what helps. `luminance`: the mean of the picture; `caustics`: --caustics on would find some of it. */
+ * what helps. `luminance`: the mean of the picture; `caustics`: --caustics auto or on may find some of it. */
 void bp_unseen_print(const BpScene *scene, const BpUnseenLight *light, double luminance, bool caustics,
                      FILE *out);
 

@@ -128,8 +128,9 @@ enum {
                   "off: paths find lights only by chance, for comparison", BpLightSampling, light_sampling,  \
                   BP_CHOICE("", bp_light_sampling_names, 0))                                                 \
     RENDER_OPTION(CAUSTICS, "caustics", 0, BP_TRACERS,                                                       \
-                  "on: rays to lamps go through balls of glass and off mirrors, too", BpCaustics, caustics,  \
-                  BP_CHOICE("", bp_caustics_names, 0))                                                       \
+                  "on: rays to lamps go through balls of glass and off mirrors, too; auto: where they take " \
+                  "away more noise than their time costs",                                                   \
+                  BpCaustics, caustics, BP_CHOICE("", bp_caustics_names, 0))                                 \
     RENDER_OPTION(ADAPTIVE, "adaptive", 0, BP_RENDER,                                                        \
                   "give noisy pixels more samples and the others fewer; --spp is then the mean", bool,       \
                   adaptive, BP_FLAG)                                                                         \
@@ -223,7 +224,9 @@ enum {
     NOTE(FRAME, BP_TRACERS | BP_SCENE, NULL, "0")                                                            \
     NOTE(LIGHT_SAMPLING, BP_TRACERS & ~BP_CHECK, NULL, "on where it helps")                                  \
     NOTE(LIGHT_SAMPLING, BP_CHECK, NULL, "both are checked")                                                 \
-    NOTE(CAUSTICS, BP_TRACERS, NULL, "off")                                                                  \
+    NOTE(CAUSTICS, BP_TRACERS, NULL, "auto")                                                                 \
+    NOTE(CAUSTICS, BP_CHECK, NULL, "both are checked")                                                       \
+    NOTE(CAUSTICS, BP_VIEW, NULL, "off")                                                                     \
     NOTE(SPP, BP_RENDER, NULL, "the scene's number")                                                         \
     NOTE(SPP, BP_CHECK, NULL, "1024")                                                                        \
     NOTE(ERROR, BP_VIEW, "render until the noise of the picture (NRMSE) is below PERCENT", "1%")             \
