@@ -14,16 +14,19 @@ T = typing.TypeVar("T")
 
 
 class CtrlC:
-    """While entered, Ctrl-C is noted and does not raise, so that it never comes between two steps of the bookkeeping.
+    """While entered, Ctrl-C is noted and does not raise, so that it never comes between two steps of the bookkeeping; it
+    raises at the end, unless something else is raised.
 
     Only where it would raise otherwise: in the main thread, and where nobody has installed a handler of his own.
     """
 
     def __init__(self) -> None:
         self.pressed_at: typing.Optional[float] = None
+        self.presses = 0
         self._ours = False
 
     def _note(self, number: int, frame: typing.Optional[types.FrameType]) -> None:
+        self.presses += 1
         if self.pressed_at is None:
             self.pressed_at = time.monotonic()
 
@@ -34,9 +37,11 @@ class CtrlC:
             signal.signal(signal.SIGINT, self._note)
         return self
 
-    def __exit__(self, *_: object) -> None:
+    def __exit__(self, kind: typing.Optional[typing.Type[BaseException]], *_: object) -> None:
         if self._ours:
             signal.signal(signal.SIGINT, signal.default_int_handler)
+        if kind is None and self.pressed_at is not None:
+            raise KeyboardInterrupt  # also when it came after the last look, and would be lost
 
 
 POLL_SECONDS = 0.1
@@ -64,9 +69,11 @@ class Job:
         self.done.set()
 
     def wait(self, ctrl_c: CtrlC, patience: float) -> bool:
-        """Until it is done; False: Ctrl-C was pressed, and it is not done within `patience` seconds of that."""
+        """Until it is done; False: Ctrl-C was pressed, and it is not done within `patience` seconds of that, or when it is
+        pressed again."""
         while not self.done.wait(POLL_SECONDS):
-            if ctrl_c.pressed_at is not None and time.monotonic() - ctrl_c.pressed_at > patience:
+            waited = time.monotonic() - ctrl_c.pressed_at if ctrl_c.pressed_at is not None else 0
+            if waited > patience or ctrl_c.presses > 1:
                 return False
         self._thread.join()
         if self.problem is not None:
@@ -78,7 +85,7 @@ def interruptible(function: typing.Callable[[], T], patience: float = 0, daemon:
     """Calls it. Ctrl-C raises KeyboardInterrupt within `patience` seconds, and leaves the call to its end (Job)."""
     with CtrlC() as ctrl_c:
         job = Job(function, daemon)
-        if not job.wait(ctrl_c, patience) or ctrl_c.pressed_at is not None:
+        if not job.wait(ctrl_c, patience):
             raise KeyboardInterrupt
     result: T = job.result
     return result

@@ -69,7 +69,7 @@ def _device(info: lib.BpDeviceInfo) -> Device:
 
 def devices() -> typing.List[Device]:
     """Every OpenCL device; those with a `refusal` cannot render."""
-    return interruptible(_list_devices, INTERRUPT_SECONDS, daemon=True)
+    return interruptible(_list_devices, START_SECONDS, daemon=True)
 
 
 def _list_devices() -> typing.List[Device]:
@@ -141,7 +141,7 @@ class Render:
         """Renders for about 0.2 s. Returns why the render has ended ("samples", "error", ...), or None: go on."""
         if self._reason.value == 0:
             with CtrlC() as ctrl_c:
-                if not self._start_step().wait(ctrl_c, INTERRUPT_SECONDS) or ctrl_c.pressed_at is not None:
+                if not self._start_step().wait(ctrl_c, self._patience()):
                     raise KeyboardInterrupt
         return self.stopped
 
@@ -163,14 +163,15 @@ class Render:
                 self._render.destroy()
 
     def _call(self, name: str, *arguments: typing.Any) -> None:
-        with CtrlC() as ctrl_c:
+        with CtrlC():
             self._take()
             try:
                 lib.call(name, *arguments)
             finally:
                 self._give()
-        if ctrl_c.pressed_at is not None:
-            raise KeyboardInterrupt
+
+    def _patience(self) -> float:
+        return STEP_SECONDS if self._progress.samples_done > 0 else START_SECONDS
 
     def _start_step(self) -> Job:
         self._take()
@@ -233,7 +234,10 @@ def _positive(name: str, value: typing.Optional[float]) -> float:
     return number
 
 
-INTERRUPT_SECONDS = 0.7  # how long Ctrl-C waits for a step in progress, so that its samples are kept
+# How long Ctrl-C waits for the step under way, so that its samples are kept: in a first one the driver may compile. Later
+# ones take 0.2 s, but many times as long where other programs keep the processor busy.
+START_SECONDS = 0.7
+STEP_SECONDS = 30.0
 
 
 def _partial(render: Render) -> typing.Optional[Picture]:
@@ -248,15 +252,13 @@ def _run(render: Render, report: typing.Optional[typing.Callable[[Progress], obj
                 return render.picture()
             with CtrlC() as ctrl_c:
                 # A step ends soon, unless a driver compiles in it: then nothing is rendered yet, and it is left to its end.
-                if not render._start_step().wait(ctrl_c, INTERRUPT_SECONDS):
+                if not render._start_step().wait(ctrl_c, render._patience()):
                     raise Interrupted(None)
-                if ctrl_c.pressed_at is not None:
-                    raise Interrupted(_partial(render))
             if report is not None and report(render.progress()) is False:
                 return render.picture()
         except Interrupted:
-            raise  # one of the two above, or of another render, in the report
-        except KeyboardInterrupt:  # between two steps, or in the report
+            raise  # the one above, or of another render, in the report
+        except KeyboardInterrupt:  # behind a step, or in the report
             raise Interrupted(_partial(render)) from None
 
 

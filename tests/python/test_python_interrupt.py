@@ -60,6 +60,49 @@ with ballpark.Render(scene, spp=2**26) as running:
         assert running.picture().samples.max() > 0 and running.step() is None
         print("STOPPED", threading.active_count(), flush=True)
 """
+# The same where a step takes as long as on a machine that has other work: its samples are kept. The second time, Ctrl-C is
+# pressed twice: then nothing waits for the step.
+SLOW = """
+import signal, threading, time
+import numpy as np, ballpark
+from ballpark import _library as lib
+slow, call = threading.Event(), lib.call
+def slower(name, *arguments, **options):
+    if name == "bp_render_step" and slow.is_set():
+        print("READY", flush=True)
+        time.sleep(3)
+    return call(name, *arguments, **options)
+lib.call = slower
+scene = ballpark.make_scene(np.random.default_rng(1).random((100, 3)), radius=0.05, width=64)
+with ballpark.Render(scene, spp=2**26) as running:
+    running.step()
+    slow.set()
+    try:
+        running.step()
+    except KeyboardInterrupt:
+        slow.clear()
+        before = running.picture().samples.max()
+        assert before > 0 and running.step() is None
+    slow.set()
+    threading.Timer(0.3, signal.raise_signal, [signal.SIGINT]).start()
+    threading.Timer(0.6, signal.raise_signal, [signal.SIGINT]).start()
+    begin = time.monotonic()
+    try:
+        running.step()
+    except KeyboardInterrupt:
+        assert time.monotonic() - begin < 2.5
+        print("STOPPED", flush=True)
+"""
+# Ctrl-C behind the last look at whether it was pressed is not lost.
+LATE = """
+import signal
+from ballpark._interrupt import CtrlC
+try:
+    with CtrlC():
+        signal.raise_signal(signal.SIGINT)
+except KeyboardInterrupt:
+    print("STOPPED")
+"""
 LEFT_ALONE = """
 import numpy as np, ballpark
 print("READY", flush=True)
@@ -88,6 +131,13 @@ with tempfile.TemporaryDirectory() as folder:
 
     code, output, errors = interrupted(STEPPING, folder)
     assert code == 0 and "STOPPED 1" in output, (code, output, errors)
+
+    code, output, errors = interrupted(SLOW, folder)
+    assert code == 0 and "STOPPED" in output, (code, output, errors)
+
+    late = subprocess.run([sys.executable, "-c", LATE], stdout=subprocess.PIPE, env=dict(os.environ, PYTHONPATH=f"{source}/python"),
+                          check=True)
+    assert late.stdout == b"STOPPED\n", late
 
     # Nobody catches it: Python ends as it does on every Ctrl-C.
     code, output, errors = interrupted(LEFT_ALONE, folder)
