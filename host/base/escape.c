@@ -1,7 +1,6 @@
 /* escape.c: see escape.h. */
 #include "escape.h"
 
-#include <stdint.h>
 #include <string.h>
 
 enum { ESCAPE_LENGTH = 4 }; /* \x1b */
@@ -32,6 +31,11 @@ static bool is_control(uint32_t c) {
 size_t bp_utf8_length(const char *text) {
     uint32_t character = 0;
     return decode(text, &character);
+}
+
+size_t bp_control_length(const char *text, uint32_t *character) {
+    const size_t length = decode(text, character);
+    return length > 0 && is_control(*character) ? length : 0;
 }
 
 /* How many bytes at `text` may be shown as they are; 0: the first may not. */
@@ -72,5 +76,19 @@ void bp_print_escaped(const char *text, bool lines, FILE *out) {
             escape(*at++, escaped);
             fputs(escaped, out);
         }
+    }
+}
+
+void bp_print_json_escaped(const char *json, FILE *out) {
+    for (const char *at = json; *at != '\0';) {
+        uint32_t character = 0;
+        size_t length = bp_control_length(at, &character);
+        if (length > 0 && character >= 0x7f) { /* those below stand between values */
+            fprintf(out, "\\u%04x", (unsigned)character);
+        } else {
+            length = length > 0 ? length : 1;
+            fwrite(at, 1, length, out);
+        }
+        at += length;
     }
 }

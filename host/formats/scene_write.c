@@ -2,6 +2,7 @@
  *
  * In:    a scene.   Out: JSON text that reads back to the same scene, bit for bit.
  * Knows: the grammar.  Does not know: how the file comes to stand at its place (base/output_file.h). */
+#include "base/escape.h"
 #include "base/json_memory.h"
 #include "base/names.h"
 #include "named_file.h"
@@ -36,7 +37,7 @@ static BpStatus put_text(FILE *out, const char *text, BpError *err) {
     if (no_memory) return bp_fail(err, BP_ERR_MEMORY, "out of memory for writing the scene");
     if (quoted == NULL)
         return bp_fail(err, BP_ERR_SCENE, "cannot write the text \"%.60s\": expected UTF-8", text);
-    fputs(quoted, out);
+    bp_print_json_escaped(quoted, out);
     free(quoted);
     return BP_OK;
 }
@@ -369,7 +370,8 @@ static void put_particles(FILE *out, const BpScene *scene) {
     fputs(",\n  \"particles\": [", out);
     for (size_t i = 0; i < scene->point_file_count; i++) {
         if (scene->point_files[i].particles == NULL) continue;
-        fprintf(out, "%s\n    %s", comma, scene->point_files[i].particles);
+        fprintf(out, "%s\n    ", comma);
+        bp_print_json_escaped(scene->point_files[i].particles, out);
         comma = ",";
     }
     fputs("\n  ]", out);

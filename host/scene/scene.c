@@ -1,5 +1,6 @@
 /* scene.c: the life of a BpScene, and what the public header says of it; see scene.h and ballpark.h. */
 #include "scene.h"
+#include "base/escape.h"
 #include "base/message_text.h"
 #include "base/status.h"
 
@@ -166,11 +167,18 @@ void bp_scene_destroy(BpScene **scene) {
 }
 
 BpStatus bp_scene_note(BpScene *scene, const char *file, const char *text, BpError *err) {
-    const size_t used = strlen(scene->notes), size = used + strlen(file) + strlen(text) + 4;
-    char *const notes = realloc(scene->notes, size);
+    /* Escaped, since the ends of lines are those of notes. */
+    const size_t used = strlen(scene->notes), file_size = BP_ESCAPED_SIZE(strlen(file)),
+                 text_size = BP_ESCAPED_SIZE(strlen(text));
+    char *const notes = realloc(scene->notes, used + file_size + text_size + 3);
     if (notes == NULL) return bp_fail(err, BP_ERR_MEMORY, "out of memory for notes");
     scene->notes = notes;
-    snprintf(notes + used, size - used, "%s: %s\n", file, text);
+    char *end = notes + used;
+    end += strlen(bp_escape(file, end, file_size));
+    memcpy(end, ": ", 2);
+    end += 2;
+    end += strlen(bp_escape(text, end, text_size));
+    memcpy(end, "\n", 2);
     return BP_OK;
 }
 

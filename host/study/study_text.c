@@ -2,6 +2,7 @@
  *
  * In:    a study that has ended.   Out: table, JSON, CSV or page.
  * Knows: which function prints which.   Does not know: what they print. */
+#include "base/escape.h"
 #include "base/json_memory.h"
 #include "base/status.h"
 #include "base/wrap.h"
@@ -27,11 +28,13 @@ static bool print_table(const BpStudyResult *result, FILE *out) {
 
 static bool print_json(const BpStudyResult *result, FILE *out) {
     json_t *root = bp_study_json(result);
-    const bool done = root != NULL && !bp_json_memory_failed() &&
-                      json_dumpf(root, out, JSON_INDENT(2) | JSON_REAL_PRECISION(12)) == 0 &&
-                      fputc('\n', out) != EOF;
+    char *const text = root != NULL && !bp_json_memory_failed()
+                           ? json_dumps(root, JSON_INDENT(2) | JSON_REAL_PRECISION(12))
+                           : NULL;
+    if (text != NULL) bp_print_json_escaped(text, out);
     json_decref(root);
-    return done;
+    free(text);
+    return text != NULL && fputc('\n', out) != EOF;
 }
 
 BpStatus bp_study_text(const BpStudy *study, BpStudyFormat format, char **text, BpError *err) {

@@ -33,7 +33,7 @@ def warn(message: str) -> None:
     folder = os.path.dirname(__file__)
     while frame.f_back is not None and os.path.dirname(frame.f_code.co_filename) == folder:
         level, frame = level + 1, frame.f_back
-    warnings.warn(message, stacklevel=level)
+    warnings.warn(lib.shown(message), stacklevel=level)
 
 
 def c_text(what: str, text: typing.Union[str, "os.PathLike[str]"]) -> bytes:

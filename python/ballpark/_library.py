@@ -15,6 +15,11 @@ from . import _driver
 API_VERSION = 1
 
 
+def shown(text: str) -> str:
+    """The text as a terminal may show it: control characters, of a file's name for example, as \\x1b."""
+    return "".join(char if char.isprintable() else char.encode("unicode_escape").decode() for char in text)
+
+
 class Error(Exception):
     """What went wrong, and what to do about it.
 
@@ -24,7 +29,7 @@ class Error(Exception):
 
     def __init__(self, message: str, status: str = "", file: str = "", line: int = 0, column: int = 0, log: str = ""):
         place = file + (f":{line}:{column}" if line else "") if file else ""
-        super().__init__(f"{place}: {message}" if place and not message.startswith(file) else message)
+        super().__init__(shown(f"{place}: {message}" if place and not message.startswith(file) else message))
         self.message, self.status, self.file, self.line, self.column, self.log = message, status, file, line, column, log
 
 

@@ -372,6 +372,27 @@ class Foreign(Safety):
         entry = json.loads(self.succeed("explain", name, "--json", "-").stdout)["scenes"][0]
         self.assertEqual((entry["scene"], entry["title"]), (name, "T" + evil))
 
+    def test_control_characters_in_names(self):
+        """Names of files and what files hold: no line feed, no sequence for the terminal goes out, in whatever is printed."""
+        odd = "a\nb\x1b[31mc\x7f\u009b31m\u202ed"
+        spheres = odd + ".xyz"
+        self.write(spheres, f"2\n\nC{odd[3:8]} 0 0 0\nO 0 0 1.2\n")
+        document = odd + ".json"
+        self.write(document, scene(8))
+        shown = r"a\x0ab\x1b[31mc\x7f\xc2\x9b31m\xe2\x80\xaed"
+        for arguments in (["render", spheres, "--width=8", "--spp=2", "-o", odd + ".png", "--stats", "-"],
+                          ["render", document, "-o", odd + ".png", "--stats", "-"], ["scene", spheres], ["explain", spheres],
+                          ["check", document, "--spp", "4", "--margin", "50", "--json", "-"],
+                          ["check", document, "--spp", "4", "--margin", "50", "--junit", "-"],
+                          ["explain", document, "--json", "-"], ["render", document + "x"], ["merge", document]):
+            result = self.run_program(*arguments)
+            self.assertNotRegex(result.stdout.decode(), "[\0-\x09\x0b-\x1f\x7f-\x9f\u202a-\u202e]", arguments)
+            self.assertNotRegex(result.errors, "[\0-\x09\x0b-\x1f\x7f-\x9f\u202a-\u202e]", arguments)
+            self.assertNotIn("a\nb", result.stdout.decode() + result.errors, arguments)
+            if "--stats" in arguments:
+                self.assertIn(shown + ".png: ", result.errors)
+                self.assertEqual(json.loads(result.stdout)["scene"], arguments[1])
+
     def test_names_that_are_not_utf8(self):
         name = os.fsdecode(b"n\xff\xc0.json")
         try:

@@ -12,6 +12,8 @@
 static void print_escaped(const char *text, FILE *out) {
     for (; *text != '\0'; ++text) {
         const unsigned char c = (unsigned char)*text;
+        uint32_t character = 0;
+        size_t length = 0;
         if (c == '&')
             fputs("&amp;", out);
         else if (c == '<')
@@ -24,6 +26,10 @@ static void print_escaped(const char *text, FILE *out) {
             fprintf(out, "&#%u;", c);
         else if (c < 0x20 || c == 0x7f)
             fputc('?', out);
+        else if ((length = bp_control_length(text, &character)) > 0) {
+            fprintf(out, "&#%u;", (unsigned)character);
+            text += length - 1;
+        }
         /* U+FFFE and U+FFFF */
         else if (c == 0xef && (unsigned char)text[1] == 0xbf && (unsigned char)text[2] >= 0xbe) {
             fputc('?', out);

@@ -1,17 +1,22 @@
 /* json_file.c: see json_file.h. */
 #include "json_file.h"
 
+#include "base/escape.h"
 #include "base/json_memory.h"
 
 #include <errno.h>
 #include <inttypes.h>
 #include <stdio.h>
+#include <stdlib.h>
 
 static BpStatus dump(const void *what, FILE *stream, BpError *err) {
     const json_t *root = what;
+    char *const text = json_dumps(root, JSON_INDENT(2) | JSON_REAL_PRECISION(12));
+    if (text == NULL) return bp_fail(err, BP_ERR_MEMORY, "out of memory for a document");
     errno = 0;
-    const bool written = json_dumpf(root, stream, JSON_INDENT(2) | JSON_REAL_PRECISION(12)) == 0;
-    return bp_print_end(stream, written && fputc('\n', stream) != EOF, err);
+    bp_print_json_escaped(text, stream);
+    free(text);
+    return bp_print_end(stream, fputc('\n', stream) != EOF, err);
 }
 
 BpStatus bp_json_write_as(const BpCommandLine *line, json_t *root, const char *path, BpPrint *print,

@@ -46,7 +46,7 @@ void bp_say(const BpCommandLine *line, const char *format, ...) {
     vsnprintf(text, sizeof text, format, arguments);
     va_end(arguments);
     bp_page_begin(&page, stderr);
-    bp_print_escaped(text, true, page.text);
+    bp_print_escaped(text, false, page.text);
     fputc('\n', page.text);
     bp_page_end(&page, line, stderr);
 }
