@@ -1,9 +1,12 @@
 /* read_cif.c: mmCIF: the atoms of _atom_site, the cell, and how the cell lies; see reader.h.
  *
- * Each model is a frame, and so is each data block that has atoms. */
+ * Each model is a frame, and so is each data block that has atoms. The rows of models may stand in turns:
+ * then the table is read once for each model. */
 #include "cif_token.h"
 #include "crystal.h"
 #include "places.h"
+
+#include "base/hash.h"
 
 #include <stdlib.h>
 #include <string.h>
@@ -48,6 +51,12 @@ typedef struct Cell {
     bool has[NUMBER_COUNT];
 } Cell;
 
+/* A stretch of rows of one model. */
+typedef struct Run {
+    uint64_t model; /* its number as a text, hashed */
+    size_t at;      /* which stretch of the table it is */
+} Run;
+
 /* What is kept from frame to frame: the table goes on where the last model ended. */
 typedef struct State {
     CifTokens tokens;
@@ -58,6 +67,11 @@ typedef struct State {
     bool in_table, found; /* its rows follow; some table was found */
     bool single;          /* the block's atoms are one row, written as items */
     bool held;            /* `row` is the first of the next frame */
+    size_t table;         /* how many tables of atoms stand before this one */
+    bool scanned;         /* `runs` are this table's */
+    Run *runs;            /* the first of each model */
+    size_t run_count, run_capacity, runs_taken;
+    bool in_turns; /* the rows of some model do not stand together; frames are those of runs[runs_taken] on */
     char row[FIELD_COUNT][BP_PARTICLE_NAME_SIZE];
     Places places;
 } State;
@@ -66,6 +80,7 @@ void cif_state_destroy(void *state) {
     State *const cif = state;
     if (cif == NULL) return;
     places_clear(&cif->places);
+    free(cif->runs);
     free(cif);
 }
 
@@ -285,6 +300,40 @@ static BpStatus find_atoms(Input *input, State *state, BpError *err) {
     }
 }
 
+/* Passes over what is left of the table at hand. */
+static BpStatus skip_table(Input *input, State *state, BpError *err) {
+    state->held = false;
+    while (state->in_table) {
+        BP_TRY(peek(input, state, err));
+        state->in_table = cif_is_value(&state->tokens);
+        if (state->in_table) state->pending = false;
+    }
+    return BP_OK;
+}
+
+/* Goes back to the first row of the table at hand. The cell is kept, which may stand behind the table. */
+static BpStatus return_to_table(Input *input, State *state, BpError *err) {
+    const State now = *state;
+    BP_TRY(input_rewind(input, err));
+    *state = (State){.places = now.places,
+                     .table = now.table,
+                     .scanned = now.scanned,
+                     .runs = now.runs,
+                     .run_count = now.run_count,
+                     .run_capacity = now.run_capacity,
+                     .runs_taken = now.runs_taken,
+                     .in_turns = now.in_turns};
+    for (size_t t = 0; t < now.table; t++) {
+        BP_TRY(find_atoms(input, state, err));
+        BP_TRY(skip_table(input, state, err));
+        state->found = true;
+    }
+    BP_TRY(find_atoms(input, state, err));
+    state->cell = now.cell;
+    state->found = now.found;
+    return BP_OK;
+}
+
 /* Categories may stand in any order: where the cell, or how it lies, was not said before the first table of
  * atoms, the block is read to its end for it, and then again up to the table. What is wrong there is no fault
  * of the atoms before. */
@@ -292,13 +341,7 @@ static BpStatus find_cell_behind(Input *input, State *state, BpError *err) {
     if (state->cell.has[LENGTHS] && (state->cell.has[FRACT] || state->cell.has[CARTN])) return BP_OK;
     while (peek(input, state, NULL) == BP_OK && state->tokens.token != NULL && !is_word(state, "data_", 5))
         if (take_next(input, state, NULL) != BP_OK) break;
-    const Cell cell = state->cell;
-    const Places places = state->places;
-    BP_TRY(input_rewind(input, err));
-    *state = (State){.places = places};
-    BP_TRY(find_atoms(input, state, err));
-    state->cell = cell;
-    return BP_OK;
+    return return_to_table(input, state, err);
 }
 
 /* ---- atoms -------------------------------------------------------------------------------------------- */
@@ -360,46 +403,147 @@ static BpStatus add_row(BpParticleFile *file, State *state, BpError *err) {
     return places_take(&state->places, file->out, site, text_of(state, ALTERNATIVE, ALTERNATIVE), err);
 }
 
-/* The rows of one model. */
-static BpStatus take_model(BpParticleFile *file, State *state, BpError *err) {
-    Input *const input = &file->input;
-    char model[CIF_TEXT_SIZE] = "";
-    for (bool has_rows = false;; has_rows = true) {
-        if (!state->held) {
-            if (!state->in_table) return BP_OK;
-            BP_TRY(peek(input, state, err));
-            state->in_table = cif_is_value(&state->tokens);
-            if (!state->in_table) return BP_OK;
-            BP_TRY(take_row(input, state, err));
-        }
-        const char *const here = text_of(state, MODEL, MODEL);
-        state->held = has_rows && strcmp(model, here) != 0;
+/* The next row of the table, unless one is held. *more: there is one. */
+static BpStatus next_row(Input *input, State *state, bool *more, BpError *err) {
+    *more = state->held;
+    if (state->held || !state->in_table) return BP_OK;
+    BP_TRY(peek(input, state, err));
+    *more = state->in_table = cif_is_value(&state->tokens);
+    return *more ? take_row(input, state, err) : BP_OK;
+}
+
+static uint64_t model_of_row(const State *state) {
+    return bp_hash_text(BP_HASH_START, text_of(state, MODEL, MODEL));
+}
+
+/* The rows of one model, up to the first of another, which is held. */
+static BpStatus take_model(BpParticleFile *file, State *state, uint64_t *model, size_t *rows, BpError *err) {
+    for (*rows = 0;; ++*rows) {
+        bool more = false;
+        BP_TRY(next_row(&file->input, state, &more, err));
+        if (!more) return BP_OK;
+        if (*rows == 0) *model = model_of_row(state);
+        state->held = model_of_row(state) != *model;
         if (state->held) return BP_OK;
-        snprintf(model, sizeof model, "%s", here);
         BP_TRY(add_row(file, state, err));
     }
 }
 
-BpStatus read_cif(BpParticleFile *file, bool *end, BpError *err) {
+/* ---- models in turns ---------------------------------------------------------------------------------- */
+
+static BpStatus add_run(State *state, uint64_t model, BpError *err) {
+    if (state->run_count == state->run_capacity) {
+        const size_t capacity = state->run_capacity > 0 ? 2 * state->run_capacity : 64;
+        Run *const runs = realloc(state->runs, capacity * sizeof *runs);
+        if (runs == NULL) return bp_fail(err, BP_ERR_MEMORY, "out of memory for a list of models");
+        state->runs = runs;
+        state->run_capacity = capacity;
+    }
+    state->runs[state->run_count] = (Run){model, state->run_count};
+    state->run_count++;
+    return BP_OK;
+}
+
+static int compare_models(const void *a, const void *b) {
+    const Run *const one = a, *const other = b;
+    if (one->model != other->model) return one->model < other->model ? -1 : 1;
+    return one->at < other->at ? -1 : one->at > other->at;
+}
+
+static int compare_places(const void *a, const void *b) {
+    const Run *const one = a, *const other = b;
+    return one->at < other->at ? -1 : one->at > other->at;
+}
+
+/* Keeps the first stretch of each model. */
+static void drop_repeated(State *state) {
+    size_t kept = 0;
+    qsort(state->runs, state->run_count, sizeof *state->runs, compare_models);
+    for (size_t i = 0; i < state->run_count; i++)
+        if (i == 0 || state->runs[i].model != state->runs[i - 1].model) state->runs[kept++] = state->runs[i];
+    state->in_turns = kept < state->run_count;
+    state->run_count = kept;
+    qsort(state->runs, state->run_count, sizeof *state->runs, compare_places);
+}
+
+/* Looks once, where the second model of a table begins, whether one comes back later: then state->in_turns.
+ * What is wrong there is no fault of the atoms before. `rows`: of the first model. */
+static BpStatus find_turns(Input *input, State *state, uint64_t first, size_t rows, BpError *err) {
+    bool more = true;
+    state->scanned = true;
+    state->run_count = state->runs_taken = 0;
+    BP_TRY(add_run(state, first, err));
+    while (more) {
+        const uint64_t model = model_of_row(state);
+        if (model != state->runs[state->run_count - 1].model) BP_TRY(add_run(state, model, err));
+        state->held = false;
+        if (next_row(input, state, &more, NULL) != BP_OK) break;
+    }
+    drop_repeated(state);
+    BP_TRY(return_to_table(input, state, err));
+    for (size_t i = 0; i <= rows && !state->in_turns; i++) BP_TRY(take_row(input, state, err));
+    state->held = !state->in_turns;
+    return BP_OK;
+}
+
+/* The rows of the next model, wherever they stand in the table. */
+static BpStatus take_turn(BpParticleFile *file, State *state, BpError *err) {
+    const uint64_t model = state->runs[state->runs_taken].model;
+    bool more = true;
+    if (state->runs_taken > 0) BP_TRY(return_to_table(&file->input, state, err));
+    state->runs_taken++;
+    state->in_turns = state->runs_taken < state->run_count;
+    for (;;) {
+        BP_TRY(next_row(&file->input, state, &more, err));
+        if (!more) return BP_OK;
+        if (model_of_row(state) == model) BP_TRY(add_row(file, state, err));
+    }
+}
+
+/* ---- the whole ---------------------------------------------------------------------------------------- */
+
+static BpStatus begin_frame(BpParticleFile *file, State *state, BpError *err) {
     static const char *const columns[] = {"occupancy", "bfactor", "residue_number"};
+    state->places.count = 0;
+    BP_TRY(frame_begin(file, columns, 3, err));
+    if (file->out != NULL) file->out->angstrom = 1;
+    put_cell(file, &state->cell);
+    return BP_OK;
+}
+
+static BpStatus take_frame(BpParticleFile *file, State *state, BpError *err) {
+    uint64_t model = 0;
+    size_t rows = 0;
+    BP_TRY(begin_frame(file, state, err));
+    if (state->in_turns) return take_turn(file, state, err);
+    const bool is_first = !state->scanned;
+    BP_TRY(take_model(file, state, &model, &rows, err));
+    if (!state->held || !is_first) return BP_OK;
+    BP_TRY(find_turns(&file->input, state, model, rows, err));
+    if (!state->in_turns) return BP_OK;
+    BP_TRY(begin_frame(file, state, err));
+    return take_turn(file, state, err);
+}
+
+BpStatus read_cif(BpParticleFile *file, bool *end, BpError *err) {
     Input *const input = &file->input;
     if (file->state == NULL) file->state = calloc(1, sizeof(State));
     State *const state = file->state;
     if (state == NULL) return bp_fail(err, BP_ERR_MEMORY, "out of memory");
-    if (!state->held && !state->in_table) BP_TRY(find_atoms(input, state, err));
-    *end = !state->held && !state->in_table && state->found;
+    if (!state->held && !state->in_table && !state->in_turns) {
+        BP_TRY(find_atoms(input, state, err));
+        state->table += state->found;
+        state->scanned = false;
+    }
+    *end = !state->held && !state->in_table && !state->in_turns && state->found;
     if (*end) return BP_OK;
-    if (!state->held && !state->in_table)
+    if (!state->held && !state->in_table && !state->in_turns)
         return input_fail(
             input, false, err,
             "found no table _atom_site, expected an mmCIF file's atoms (loop_ _atom_site.Cartn_x ...)");
     if (!state->found && state->in_table) BP_TRY(find_cell_behind(input, state, err));
     state->found = true;
-    state->places.count = 0;
-    BP_TRY(frame_begin(file, columns, 3, err));
-    if (file->out != NULL) file->out->angstrom = 1;
-    put_cell(file, &state->cell);
-    BP_TRY(take_model(file, state, err));
+    BP_TRY(take_frame(file, state, err));
     if (file->out == NULL) return BP_OK;
     if (file->out->count == 0) {
         input->ended = false; /* nothing is missing behind */

@@ -122,6 +122,31 @@ class Cif(listed.ListTest):
         self.refuse("a.cif", core, "fractions of a cell")
         self.refuse("a.cif", core.replace("loop_\n_atom_site_label\n_atom_site_fract_x\nC1 0.5\n", "_atom_site_fract_x 0.5\n"), "fractions of a cell")
 
+    def test_models_in_turns(self):
+        """The rows of a model need not stand together: frames are the models in the order of their first rows."""
+        def table(models, begin=0):
+            return rows(*((begin + i, 0, 0, {"pdbx_PDB_model_num": model}) for i, model in enumerate(models)))
+
+        def frames(text):
+            path = self.write("a.cif", text)
+            count = self.list(path).head["frames"]
+            forwards = [[x for x, _, _ in self.list(path, i).places()] for i in range(count)]
+            self.assertEqual(forwards, [[x for x, _, _ in self.list(path, i - count).places()] for i in range(count)])
+            return forwards
+        for models in ([1, 2], [1, 2, 1, 2], [2, 1, 1, 2, 3], [1, 1, 2, 2, 3, 3], [1, 2, 3] * 40, [5, 5, 4, 5], [1, 2, 3, 4, 1], [1, 1]):
+            by_model = {}
+            for i, model in enumerate(models):
+                by_model.setdefault(model, []).append(i)
+            expected = list(by_model.values())
+            self.assertEqual(frames("data_x\n" + table(models)), expected, models)
+            around = "data_w\n" + table([7, 8, 7], 500) + "data_x\n" + table(models) + "data_y\n" + items("atom_site", dict(ONE, Cartn_x=600))
+            self.assertEqual(frames(around + "data_z\n" + table([1, 2, 1], 700)), [[500, 502], [501], *expected, [600], [700, 702], [701]], models)
+        behind = "data_x\n" + table([1, 2, 1, 2]) + cell((20, 30, 40), (90, 90, 90))
+        self.assertEqual([self.of("a.cif", behind, i).head["cell"][2][2] for i in (0, 1)], [40, 40])
+        # A place of one model is none of another's.
+        alternative = "data_x\n" + rows(*((i, 0, 0, {"pdbx_PDB_model_num": i % 2, "label_alt_id": "AABB"[i], "auth_seq_id": 1}) for i in range(4)))
+        self.assertEqual([self.of("a.cif", alternative, i).of("flags") for i in (0, 1)], [[0, 1], [0, 1]])
+
     def check(self, text, edges, origin, tolerance):
         found = self.of("a.cif", text)
         self.assertTrue(found.head["repeats"])
