@@ -10,6 +10,7 @@
 
 #include "base/color.h"
 #include "base/message_text.h"
+#include "base/plural.h"
 
 #include <math.h>
 #include <png.h>
@@ -23,9 +24,12 @@ typedef struct PngReader {
     const BpImageInput *input;
     png_structp png;
     png_infop info;
-    png_bytep bytes; /* a row, or all of them of an interlaced file */
-    png_bytepp rows; /* of an interlaced file */
-    float *light;    /* what each number stands for */
+    png_bytep bytes;    /* a row, or all of them of an interlaced file */
+    png_bytepp rows;    /* of an interlaced file */
+    float *light;       /* what each number stands for */
+    png_colorp palette; /* NULL: the numbers are colours themselves */
+    int palette_count;
+    size_t outside; /* texels that name no colour of the palette */
     BpImage *image;
     uint32_t row;    /* that is being read */
     char fault[128]; /* as libpng has it */
@@ -134,8 +138,24 @@ static float *light_of_numbers(int bits, double exponent) {
     return light;
 }
 
+/* Numbers beyond the palette are black, as in most programs. */
+static void store_indices(PngReader *reader, const unsigned char *bytes, float *texels) {
+    for (size_t i = 0; i < reader->image->width; i++) {
+        const bool outside = bytes[i] >= reader->palette_count;
+        const png_color color = outside ? (png_color){0, 0, 0} : reader->palette[bytes[i]];
+        reader->outside += outside;
+        texels[3 * i] = reader->light[color.red];
+        texels[3 * i + 1] = reader->light[color.green];
+        texels[3 * i + 2] = reader->light[color.blue];
+    }
+}
+
 static void store_row(PngReader *reader, const unsigned char *bytes, uint32_t row, bool wide) {
     float *const texels = reader->image->texels + (size_t)3 * reader->image->width * row;
+    if (reader->palette != NULL) {
+        store_indices(reader, bytes, texels);
+        return;
+    }
     for (size_t i = 0; i < (size_t)3 * reader->image->width; i++)
         texels[i] = reader->light[wide ? (size_t)bytes[2 * i] << 8 | bytes[2 * i + 1] : bytes[i]];
 }
@@ -164,13 +184,20 @@ static BpStatus read_image(PngReader *reader, BpError *err) {
     BP_TRY(bp_image_allocate(reader->input, width, height, &reader->image, err));
     PngColors colors = {.exponent = reader->input->encoding == BP_ENCODING_LINEAR ? 1 : 0};
     if (reader->input->encoding == BP_ENCODING_OF_FORMAT) read_colors(reader, &colors);
-    png_set_expand(png); /* palettes, and grey of fewer than 8 bits */
-    png_set_strip_alpha(png);
-    png_set_gray_to_rgb(png);
+    if (png_get_color_type(png, info) == PNG_COLOR_TYPE_PALETTE) {
+        png_get_PLTE(png, info, &reader->palette, &reader->palette_count);
+        png_set_packing(png);
+        png_set_check_for_invalid_index(png, 0);
+    } else {
+        png_set_expand(png); /* grey of fewer than 8 bits */
+        png_set_strip_alpha(png);
+        png_set_gray_to_rgb(png);
+    }
     const bool interlaced = png_set_interlace_handling(png) > 1;
     png_read_update_info(png, info);
     const size_t row_bytes = png_get_rowbytes(png, info);
-    if (row_bytes != (size_t)width * (wide ? 6 : 3)) png_error(png, "unexpected kind of pixels");
+    if (row_bytes != (size_t)width * (reader->palette != NULL ? 1 : wide ? 6 : 3))
+        png_error(png, "unexpected kind of pixels");
     reader->light = light_of_numbers(wide ? 16 : 8, colors.exponent);
     reader->bytes = calloc(interlaced ? height : 1, row_bytes);
     if (reader->bytes != NULL && interlaced) reader->rows = malloc(height * sizeof *reader->rows);
@@ -187,6 +214,9 @@ static BpStatus read_image(PngReader *reader, BpError *err) {
         store_row(reader, interlaced ? reader->rows[row] : reader->bytes, row, wide);
     }
     png_read_end(png, NULL);
+    if (reader->outside > 0)
+        bp_texels_note(reader->image, "%zu texel%s of a colour that its palette lacks: black",
+                       reader->outside, bp_plural(reader->outside));
     if (!colors.converted) return BP_OK;
     return bp_image_convert(reader->input, &colors.primaries, "its cHRM chunk", reader->image, err);
 }

@@ -103,6 +103,30 @@ class Images(ProgramTest):
             pictures.append(self.picture("s.json"))
         self.assertTrue(pictures[0] == pictures[1] == pictures[2] != first)
 
+    def test_palettes(self):
+        """Of 1, 2, 4 and 8 bits, whole or with numbers beyond them: those are black, which is said with their count."""
+        for bits, count in ((1, 1), (2, 3), (4, 9), (4, 16), (8, 60)):
+            numbers = [[(5 * y + 3 * x) % 2 ** bits for x in range(WIDTH)] for y in range(HEIGHT)]
+            entries = [(40 + i % 200, (77 * i) % 256, 255 - i % 256) for i in range(count)]
+            rows = b""
+            for row in numbers:
+                text = "".join(f"{n:0{bits}b}" for n in row)
+                text += "0" * (-len(text) % 8)
+                rows += b"\0" + bytes(int(text[i:i + 8], 2) for i in range(0, len(text), 8))
+            self.write("p.png", b"\x89PNG\r\n\x1a\n" + images.chunk(b"IHDR", struct.pack(">2I5B", WIDTH, HEIGHT, bits, 3, 0, 0, 0)) +
+                       images.chunk(b"PLTE", bytes(sum(entries, ()))) + images.chunk(b"tRNS", b"\0") +
+                       images.chunk(b"IDAT", zlib.compress(rows)) + images.chunk(b"IEND", b""))
+            self.write("a.png", images.png(WIDTH, HEIGHT, lambda x, y: (entries + [(0, 0, 0)] * 256)[numbers[y][x]]))
+            self.write("s.json", document("p.png"))
+            self.write("t.json", document("a.png"))
+            self.assert_same(self.picture("s.json"), self.picture("t.json"), (bits, count))
+            outside = sum(n >= count for row in numbers for n in row)
+            said = self.succeed("render", "s.json", "-o", "x.png").errors
+            if outside > 0:
+                self.assertIn(f"{outside} texel{'s' * (outside > 1)} of a colour that its palette lacks: black", said)
+            else:
+                self.assertNotIn("palette", said)
+
     def test_srgb_and_scale(self):
         """One texel: what it stands for is what a lamp of it shows."""
         lamp = {"type": "diffuse_light", "emit": {"texture": "t"}}
