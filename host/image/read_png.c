@@ -31,9 +31,10 @@ typedef struct PngReader {
     int palette_count;
     size_t outside; /* texels that name no colour of the palette */
     BpImage *image;
-    uint32_t row;    /* that is being read */
-    char fault[128]; /* as libpng has it */
-    bool no_memory;  /* libpng was refused memory, which it reports like any damage */
+    uint32_t row;      /* that is being read */
+    char fault[128];   /* as libpng has it */
+    char warning[128]; /* the first that matters, or "" */
+    bool no_memory;    /* libpng was refused memory, which it reports like any damage */
 } PngReader;
 
 static png_voidp take_memory(png_structp png, png_alloc_size_t size) {
@@ -54,9 +55,15 @@ static void on_error(png_structp png, png_const_charp message) {
     longjmp(png_jmpbuf(png), 1);
 }
 
+/* Chunks that decide what numbers mean are left out by libpng where they are damaged, with a warning. It
+ * knows sRGB profiles that are not quite right, and takes them for sRGB. */
 static void on_warning(png_structp png, png_const_charp message) {
-    (void)png;
-    (void)message;
+    static const char *const chunks[] = {"PLTE", "gAMA", "cHRM", "sRGB", "iCCP", "cICP"};
+    PngReader *reader = png_get_error_ptr(png);
+    if (strstr(message, "known incorrect sRGB profile") != NULL || reader->warning[0] != '\0') return;
+    for (size_t i = 0; i < sizeof chunks / sizeof *chunks; i++)
+        if (strncmp(message, chunks[i], 4) == 0)
+            snprintf(reader->warning, sizeof reader->warning, "%s", message);
 }
 
 static void read_bytes(png_structp png, png_bytep bytes, size_t count) {
@@ -214,6 +221,9 @@ static BpStatus read_image(PngReader *reader, BpError *err) {
         store_row(reader, interlaced ? reader->rows[row] : reader->bytes, row, wide);
     }
     png_read_end(png, NULL);
+    if (reader->warning[0] != '\0' && reader->input->encoding == BP_ENCODING_OF_FORMAT)
+        bp_texels_note(reader->image, "its colours may be wrong, since a chunk is not used (%s)",
+                       reader->warning);
     if (reader->outside > 0)
         bp_texels_note(reader->image, "%zu texel%s of a colour that its palette lacks: black",
                        reader->outside, bp_plural(reader->outside));

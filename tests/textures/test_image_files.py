@@ -379,6 +379,10 @@ class ImageFiles(ProgramTest):
                 ([(b"cICP", bytes([9, 16, 0, 1]))], srgb, "(primaries 9, curve 16 of its cICP chunk) is not known: read as sRGB"),
                 ([(b"cICP", bytes([1, 13, 0, 1])), gamma(100000)], srgb, ""),
                 ([profile(b"Adobe RGB (1998)"), gamma(100000)], srgb, 'its ICC profile "name" is not applied: read as sRGB'),
+                # Damaged chunks, or such as do not suit the pixels, which libpng leaves out.
+                ([(b"iCCP", b"Adobe RGB\0\0" + zlib.compress(bytes(200)))], srgb, "since a chunk is not used (iCCP: "),
+                ([(b"gAMA", b"\0\1")], srgb, "since a chunk is not used (gAMA: "), ([(b"cHRM", bytes(31))], srgb, "since a chunk is not used (cHRM: "),
+                ([(b"tEXt", b"no keyword")], srgb, ""), ([(b"sBIT", b"\9")], srgb, ""),
                 ([profile(b"sRGB IEC61966-2.1")], srgb, ""), ([profile("sRGB".encode("utf-16-be"))], srgb, "")):
             found, said = self.texel("a.png", png(chunks))
             self.assert_near(found, expected, 5e-6 if expected is not converted else 2e-4, (chunks, said))
