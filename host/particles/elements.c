@@ -85,6 +85,8 @@ uint8_t bp_element_of_symbol(const char *symbol) {
 uint8_t bp_element_of_species(const char *species) {
     char symbol[4] = "";
     size_t letters = 0;
+    const size_t nucleons = strspn(species, "0123456789"); /* of an isotope: 13C */
+    if (nucleons <= 3 && species[nucleons] != '\0') species += nucleons;
     while (letters < 3 && ((species[letters] | 32) >= 'a' && (species[letters] | 32) <= 'z')) {
         symbol[letters] = species[letters];
         letters++;
@@ -172,6 +174,9 @@ uint8_t bp_element_of_name(const char *name, const char *residue, bool fixed, bo
     static const char *const sites[] = {"MW",  "MW1", "MW2",  "MW3",  "MW4", "LP",  "LP1", "LP2",
                                         "EPW", "EP",  "EP1",  "EP2",  "LPA", "LPB", "DUM", "DU",
                                         "M",   "OM",  "MCH3", "MNH3", "MN1", NULL};
+    /* CHARMM's names of ions, as atoms and as residues. */
+    static const char ions[][4] = {"SOD", "CLA", "POT", "CAL", "LIT", "RUB", "CES", "BAR"};
+    static const uint8_t ion_elements[] = {11, 17, 19, 20, 3, 37, 55, 56};
     char text[8] = "", letters[8] = "";
     size_t length = 0, used = 0, begin = 0;
     while (name[begin] == ' ') begin++;
@@ -193,10 +198,13 @@ uint8_t bp_element_of_name(const char *name, const char *residue, bool fixed, bo
     if (two != 0 && (strncasecmp(residue, symbol, 2) == 0 && strlen(residue) <= 3) &&
         (strlen(residue) == 2 || residue[2] < 'A') && strlen(text) <= 3)
         return two;
+    /* GROMOS has the charge in both: CA2+. */
+    if (two != 0 && strlen(text) == 4 && strchr("+-", text[3]) != NULL && strcasecmp(residue, text) == 0)
+        return two;
     if (two != 0 && strcasecmp(residue, "ION") == 0) return two;
-    if (strcasecmp(residue, "SOD") == 0) return 11;
-    if (strcasecmp(residue, "CLA") == 0 && strcasecmp(text, "CLA") == 0) return 17;
-    if (strcasecmp(residue, "POT") == 0) return 19;
+    if (strcasecmp(residue, text) == 0 || strcasecmp(residue, "SOD") == 0 || strcasecmp(residue, "POT") == 0)
+        for (size_t i = 0; i < sizeof ions / sizeof *ions; i++)
+            if (strcasecmp(residue, ions[i]) == 0) return ion_elements[i];
     if (organic || water) {
         if (strcasecmp(symbol, "SE") == 0) return two;
         return one;

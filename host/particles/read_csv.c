@@ -49,10 +49,15 @@ static BpStatus find_role(const Input *input, Table *table, Role role, const cha
     return BP_OK;
 }
 
-/* Long names go before short ones: r is any column where another is the radius, and red beside g and b. */
+/* Long names go before short ones: r is any column where another is the radius, red beside g and b, and a
+ * distance beside an angle. */
 static BpStatus find_radius(const Input *input, Table *table, BpError *err) {
-    static const char *const names[] = {"radius", "diameter", "r", "d"};
-    for (size_t i = 0; i < 4 && table->role[RADIUS] < 0; i++) {
+    static const char *const names[] = {"radius", "diameter", "r", "d"}, *const angles[] = {"theta", "phi"};
+    size_t count = 4;
+    for (size_t a = 0; a < 2; a++)
+        if (column_named((const char *const *)table->names, (size_t)table->count, angles[a]) != COLUMN_NONE)
+            count = 2;
+    for (size_t i = 0; i < count && table->role[RADIUS] < 0; i++) {
         BP_TRY(find_role(input, table, RADIUS, &names[i], 1, err));
         if (table->role[RADIUS] >= 0 && table->role[RADIUS] == table->role[RED]) table->role[RADIUS] = -1;
         table->radius_scale = i % 2 == 1 ? 0.5 : 1;

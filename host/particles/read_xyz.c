@@ -159,6 +159,10 @@ static bool parse_periodic(char *text, bool periodic[3]) {
     static const char *const words[2][4] = {{"F", "False", "0", "no"}, {"T", "True", "1", "yes"}};
     int count = 0;
     char *rest = NULL;
+    if (strlen(text) == 3 && strspn(text, "TtFf10") == 3) { /* TTF */
+        for (int i = 0; i < 3; i++) periodic[i] = strchr("Tt1", text[i]) != NULL;
+        return true;
+    }
     for (char *word = strtok_r(text, " \t,;()[]{}\"'", &rest); word != NULL;
          word = strtok_r(NULL, " \t,;()[]{}\"'", &rest)) {
         bool known = false;

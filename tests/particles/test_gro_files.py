@@ -27,6 +27,15 @@ class Gro(listed.ListTest):
         for member, axis in (("first", velocities[0]), ("second", velocities[1])):
             self.assertEqual(found.of(member), [v and v[axis] for _, v in rows], member)
 
+    def test_ions(self):
+        """Names of CHARMM and GROMOS, which are the residue's as well; amid organic atoms they are none."""
+        ions = [("NA", "Na"), ("CL", "Cl"), ("NA+", "Na"), ("CL-", "Cl"), ("CA2+", "Ca"), ("MG2+", "Mg"), ("ZN2+", "Zn"), ("CU2+", "Cu"), ("CAL", "Ca"),
+                ("CES", "Cs"), ("RUB", "Rb"), ("LIT", "Li"), ("BAR", "Ba"), ("SOD", "Na"), ("CLA", "Cl"), ("POT", "K"), ("CA", "Ca"), ("K", "K")]
+        lines = [f"{i + 1:5d}{name:<5s}{name:>5s}{i + 1:5d}   1.000   2.000   3.000" for i, (name, _) in enumerate(ions)]
+        lines += ["   99ALA     CA   99   1.000   2.000   3.000", "   99LIG    CAL   99   1.000   2.000   3.000", "   99LIG   CA2+   99   1.000   2.000   3.000"]
+        found = self.of("a.gro", f"t\n{len(lines)}\n" + "\n".join(lines) + "\n0 0 0\n")
+        self.assertEqual(found.of("element"), [element for _, element in ions] + ["C", "C", "C"])
+
     def test_velocities_of_all_precisions(self):
         """Signs and digits stay in their fields, also where fields touch (0.25 and 99.5 are exact in a float)."""
         for precision in (3, 4, 5, 6, 9):

@@ -252,7 +252,8 @@ class Formats(FileTest):
 
     def test_species_of_xyz(self):
         for species, element in [("Fe", "Fe"), ("C12", "C"), ("6", ""), ("Xx", ""), ("Q1", ""), ("h", "H"), ("Na+", "Na"), ("Cl-", "Cl"),
-                                 ("Fe3+", "Fe"), ("O_w", "O"), ("H(Iso=2)", "H"), ("C:1", "C"), ("CH3", ""), ("C.ar", ""), ("-C", "")]:
+                                 ("Fe3+", "Fe"), ("O_w", "O"), ("H(Iso=2)", "H"), ("C:1", "C"), ("CH3", ""), ("C.ar", ""), ("-C", ""),
+                                 ("13C", "C"), ("2H", "H"), ("235U", "U"), ("57Fe3+", "Fe"), ("1000C", ""), ("12", ""), ("2-", ""), ("3Q", "")]:
             s = self.of("a.xyz", f"1\n\n{species} 0 0 0\n")
             self.assertEqual((list(s["elements"]), s["first"]["type"]), ([element], species))
         s = self.of("a.xyz", "1\nProperties=Z:I:1:pos:R:3\n6 0 0 0\n")

@@ -291,7 +291,9 @@ class Atoms(listed.ListTest):
             self.assertEqual(self.element(symbol=symbol, charge=charge, residue="LIG"), (expected, False), (symbol, charge))
         # Without one, names tell: those of two letters begin one column further left.
         for name, residue, expected in [(" CA ", "LIG", "C"), ("CA  ", "LIG", "Ca"), ("CA  ", " CA", "Ca"), ("CA  ", "ALA", "C"), ("HO5'", "LIG", "H"),
-                                        (" FE ", "HEM", "Fe"), (" ZN ", "LIG", "Zn"), (" CL1", "LIG", "C"), (" CA ", "ION", "Ca")]:
+                                        (" FE ", "HEM", "Fe"), (" ZN ", "LIG", "Zn"), (" CL1", "LIG", "C"), (" CA ", "ION", "Ca"), ("CAL ", "CAL", "Ca"), (" CAL", "CAL", "Ca"),
+                                        ("CES ", "CES", "Cs"), ("RUB ", "RUB", "Rb"), ("LIT ", "LIT", "Li"), ("BAR ", "BAR", "Ba"), ("POT ", "POT", "K"),
+                                        ("CLA ", "CLA", "Cl"), ("SOD ", "SOD", "Na"), (" CAL", "LIG", "C")]:
             self.assertEqual(self.element(name=name, residue=residue), (expected, True))
         self.assertEqual(self.element(symbol=" X", name=" UNK", residue="UNX"), ("", False))  # the file says: unknown
         # PDBQT has its types in columns 78 and 79.

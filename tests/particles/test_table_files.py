@@ -224,7 +224,8 @@ class Xyz(TableTest):
     def test_periodic_flags(self):
         lattice = "Lattice=\"4 0 0 0 5 0 0 0 6\" Properties=species:S:1:pos:R:3 pbc="
         for flags, periodic in [('"F F F"', "FFF"), ("'F T F'", "FTF"), ("[F, F, T]", "FFT"), ("{T F F}", "TFF"), ('"T T T"', "TTT"), ("[T,T,F]", "TTF"),
-                                ("[True, False, True]", "TFT"), ("'1 0 1'", "TFT")]:
+                                ("[True, False, True]", "TFT"), ("'1 0 1'", "TFT"),
+                                ("TTF", "TTF"), ('"FTF"', "FTF"), ("t", "TTT"), ("011", "FTT"), ("F", "FFF")]:
             self.assertEqual(self.cell(lattice + flags, [[4, 0, 0], [0, 5, 0], [0, 0, 6]])["periodic"], [flag == "T" for flag in periodic], flags)
 
     def test_cells_that_cannot_be_read(self):
@@ -337,6 +338,10 @@ class Csv(TableTest):
             if column:
                 self.near(found["values"], [float(dict(zip(header.split(","), row.split(",")))[column])])
         self.assertEqual(self.of("a.csv", "x,y,z,radius\n1,2,3,0.5\n4,5,6,\n")["radii"], [0.5, None])
+        # Beside an angle, r is the distance from the centre, and no radius.
+        for header, radii in [("r,theta,phi", []), ("r,Theta (deg)", []), ("phi,r", []), ("r,theta,radius", [7]), ("theta,d", []), ("r,theta0", [5])]:
+            row = [{"radius": "7", "r": "5", "d": "6"}.get(name, "1") for name in header.split(",")]
+            self.assertEqual(self.of("a.csv", f"x,y,z,{header}\n1,2,3,{','.join(row)}\n")["radii"], radii, header)
 
     def test_names_of_places(self):
         for names in ("x,y,z", "X,Y,Z", "x (nm),y (nm),z (nm)", "x [A],y [A],z [A]", "x/nm,y/nm,z/nm", "Position.X,Position.Y,Position.Z", "pos_x,pos_y,pos_z",
