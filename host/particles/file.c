@@ -189,6 +189,38 @@ BpStatus bp_particle_file_count(BpParticleFile *file, uint64_t *count, BpError *
     return BP_OK;
 }
 
+/* Whether something other than blanks stands behind the frame that was read. */
+static bool has_more_text(Input *input) {
+    for (size_t i = 0; input_fill(input, i + 1); i++)
+        if (strchr(" \t\r\n\x1a", input->buffer[input->begin + i]) == NULL) return true;
+    return false;
+}
+
+/* Whether more frames follow, as far as that can be seen without reading them. */
+static bool has_more_frames(BpParticleFile *file) {
+    uint64_t count = 0;
+    switch (file->format) {
+    case BP_PARTICLES_XYZ:
+    case BP_PARTICLES_GRO:
+    case BP_PARTICLES_DUMP:
+        return has_more_text(&file->input);
+    case BP_PARTICLES_PDB:
+    case BP_PARTICLES_PQR:
+        return pdb_has_more(file->state, has_more_text(&file->input));
+    case BP_PARTICLES_CIF:
+        return cif_has_more(file->state);
+    case BP_PARTICLES_GSD:
+        return gsd_frame_count(file, &count, NULL) == BP_OK && count > 1;
+    case BP_PARTICLES_NONE:
+    case BP_PARTICLES_DATA:
+    case BP_PARTICLES_CSV:
+    case BP_PARTICLES_PLY:
+    case BP_PARTICLES_FORMAT_COUNT:
+        break;
+    }
+    return false;
+}
+
 BpStatus bp_particle_file_frame(BpParticleFile *file, int64_t number, BpParticles *particles, BpError *err) {
     uint64_t count = 0, wanted = (uint64_t)number;
     bool end = false;
@@ -205,6 +237,8 @@ BpStatus bp_particle_file_frame(BpParticleFile *file, int64_t number, BpParticle
     if (!end) {
         if (file->cut && particles != NULL)
             bp_particles_note(particles, "the last frame is cut short: left out");
+        if (number == 0 && particles != NULL && !file->cut && has_more_frames(file))
+            bp_particles_note(particles, "the first of several frames");
         return BP_OK;
     }
     count = file->frame_count_known ? file->frame_count : count;

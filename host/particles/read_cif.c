@@ -84,6 +84,11 @@ void cif_state_destroy(void *state) {
     free(cif);
 }
 
+bool cif_has_more(const void *state) {
+    const State *const cif = state;
+    return cif->held || cif->in_turns;
+}
+
 static BpStatus peek(Input *input, State *state, BpError *err) {
     if (state->pending) return BP_OK;
     BP_TRY(cif_next(&state->tokens, input, err));

@@ -22,10 +22,11 @@ typedef struct State {
     Places places;        /* of this frame */
     PdbLinks links, tail; /* of this frame; behind the last of several models, for each of them */
     PdbSerials serials;   /* of this frame */
-    bool tail_read;
-    bool cell_behind; /* the first frame had no cell before it, so each has its own behind it */
-    bool closed;      /* the frame before ended with a record that says so, and had */
-    size_t before;    /* so many atoms */
+    bool tail_read, more; /* atoms follow behind the frame from which on it was read */
+    bool cell_behind;     /* the first frame had no cell before it, so each has its own behind it */
+    bool closed;          /* the frame before ended with a record that says so, and had */
+    size_t before;        /* so many atoms */
+    bool by_end;          /* that record was END */
 } State;
 
 static bool is_record(const char *line, const char *name) {
@@ -88,6 +89,11 @@ void pdb_state_destroy(void *state) {
     free(pdb);
 }
 
+bool pdb_has_more(const void *state, bool text_follows) {
+    const State *const pdb = state;
+    return pdb->more || (pdb->by_end && text_follows);
+}
+
 /* Files of several models list the connections once, after the last of them. Reads on to there, and then
  * returns to where it was. What is wrong in later models is no fault of this one. */
 static BpStatus read_tail(Input *input, State *state, BpError *err) {
@@ -97,8 +103,10 @@ static BpStatus read_tail(Input *input, State *state, BpError *err) {
     while (status == BP_OK && input->taken - taken < TAIL_BYTES_MAX &&
            input_line(input, &line, NULL) == BP_OK) {
         if (line == NULL) break;
-        if (pdb_is_atom(line))
+        if (pdb_is_atom(line)) {
             state->tail.count = state->tail.unreadable = 0; /* those of a model are its own */
+            state->more = true;
+        }
         if (is_record(line, "CONECT")) status = pdb_take_links(&state->tail, &state->serials, line, err);
     }
     BP_TRY(status);
@@ -140,6 +148,7 @@ BpStatus read_pdb(BpParticleFile *file, bool *end, BpError *err) {
         if (closed) break;
         if (has_atoms && is_record(line, "MODEL ")) {
             input_hold(input, line);
+            state->more = true;
             break;
         }
         if (has_atoms && file->out != NULL && is_record(line, "CONECT"))
@@ -158,6 +167,7 @@ BpStatus read_pdb(BpParticleFile *file, bool *end, BpError *err) {
                           "found the end of the file after %zu atoms, expected ENDMDL or END; it is cut off",
                           file->added);
     state->closed = closed;
+    state->by_end = closed && !model;
     state->before = file->added;
     if (file->out == NULL) return model ? take_cell_behind(file, state, err) : BP_OK;
     file->out->angstrom = 1;

@@ -100,6 +100,9 @@ void gsd_state_destroy(void *state);
 /* Release what the readers of PDB and of mmCIF files keep from frame to frame. */
 void pdb_state_destroy(void *state);
 void cif_state_destroy(void *state);
+/* Whether frames follow the first one, after which `text_follows` or not. */
+bool pdb_has_more(const void *state, bool text_follows);
+bool cif_has_more(const void *state);
 BpStatus gsd_frame_count(BpParticleFile *file, uint64_t *count, BpError *err);
 
 #endif

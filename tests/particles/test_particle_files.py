@@ -250,6 +250,25 @@ class Formats(FileTest):
         self.near(s["low"] + s["high"], [-0.75, 0, -0.1, 0.75, 0, 0.5])
         self.assertNotIn("cell", s)
 
+    def test_the_first_of_several_frames(self):
+        """Said where more frames follow, not where blanks do, and only of the first."""
+        xyz, gro = "1\nc\nC 1 2 3\n", "t\n1\n    1ALA     CA    1   1.000   2.000   3.000\n5 5 5\n"
+        dump = "ITEM: TIMESTEP\n0\nITEM: NUMBER OF ATOMS\n1\nITEM: ATOMS id type x y z\n1 1 1 2 3\n"
+        atom = "ATOM      1  CA  ALA A   1       1.000   2.000   3.000  1.00  0.00           C\n"
+        model, row = "MODEL        1\n" + atom + "ENDMDL\n", "C 1 2 3 "
+        cif = "data_x\nloop_\n_atom_site.type_symbol\n_atom_site.Cartn_x\n_atom_site.Cartn_y\n_atom_site.Cartn_z\n_atom_site.pdbx_PDB_model_num\n"
+        for name, one, several in [("a.xyz", xyz, xyz * 2), ("a.gro", gro, gro * 3), ("a.dump", dump, dump * 2), ("a.pdb", model, model * 2), ("a.pdb", atom + "END\n", (atom + "END\n") * 2),
+                                   ("a.pdb", atom, "MODEL 1\n" + atom + "MODEL 2\n" + atom), ("a.pdb", model + "CONECT    1    1\nEND\n", model * 2 + "END\n"),
+                                   ("a.cif", cif + row + "1\n" + row + "1\n", cif + row + "1\n" + row + "2\n"), ("a.cif", cif + row + "1\n", cif + row + "1\n" + row + "2\n" + row + "1\n")]:
+            for end in ("", "\n \r\n", "\x1a"):
+                if end == "\x1a" and name == "a.cif":
+                    continue
+                self.assertNotIn("several", self.of(name, one + end)["notes"], (one, end))
+                s = self.of(name, several + end)
+                self.assertIn("the first of several frames", s["notes"], (several, end))
+                self.assertGreater(s["frames"], 1)
+                self.assertNotIn("several", self.of(name, several + end, 1)["notes"])
+
     def test_species_of_xyz(self):
         for species, element in [("Fe", "Fe"), ("C12", "C"), ("6", ""), ("Xx", ""), ("Q1", ""), ("h", "H"), ("Na+", "Na"), ("Cl-", "Cl"),
                                  ("Fe3+", "Fe"), ("O_w", "O"), ("H(Iso=2)", "H"), ("C:1", "C"), ("CH3", ""), ("C.ar", ""), ("-C", ""),
@@ -278,7 +297,7 @@ class Formats(FileTest):
         s = self.of("a.pdb", PDB, 0, "bfactor")
         self.assertEqual((s["format"], s["frames"], s["count"]), ("PDB", 2, 6))
         self.assertEqual(s["elements"], {"": 1, "C": 2, "N": 1, "O": 1, "Ca": 1})
-        self.assertEqual((s["alternatives"], s["dummies"], s["notes"]), (1, 1, "elements from atom names"))
+        self.assertEqual((s["alternatives"], s["dummies"], s["notes"]), (1, 1, "elements from atom names; the first of several frames"))
         self.near(s["low"] + s["high"], [-1.5, -2, -6.504, 11.7, 6.134, 3])
         self.near(s["cell"][1], [-25, 50 * 0.75 ** 0.5, 0])
         second = self.of("a.pdb", PDB, 1)
