@@ -239,8 +239,8 @@ int main(void) {
     BpError err = {0};
     const int missing = test_device_open(&job.device);
     if (missing != 0) return missing;
-    if (bp_scene_load(SOURCE_DIR "/tests/agree/scenes/caustics-glass.json", &job.scene, &err) != BP_OK ||
-        bp_scene_set_width(job.scene, 16, &err) != BP_OK) {
+    if (bp_scene_load(SOURCE_DIR "/tests/agree/scenes/caustics-mirror.json", &job.scene, &err) != BP_OK ||
+        bp_scene_set_width(job.scene, 10, &err) != BP_OK) {
         fprintf(stderr, "%s\n", err.message);
         return 1;
     }
