@@ -148,15 +148,22 @@ class Unseen(cli.ProgramTest):
         self.assertIs(header["unseen"], False)
         self.assertNotIn("unseen", arrays)
 
+    def less_with_caustics(self, *scenes):
+        for scene, least, most in scenes:
+            off = self.render(scene_of(scene), "a.bpa", "--spp", 4)["unseen"]["variance"]
+            on = self.render(scene_of(scene), "b.bpa", "--spp", 4, "--caustics", "on")["unseen"]["variance"]
+            self.assertTrue(least * off < on < most * off, (scene, on / off))
+
+    @cli.deep
+    def test_caustics_on_for_lamps(self):
+        self.less_with_caustics(("caustic-alone-lamp", 0, 0.1), ("lamp-0.03", 0, 0.01), ("lens", 0, 0.01))
+
     def test_caustics_on(self):
         """Where rays to lamps go through glass, what they find is not left to chance, and the rest of the light is: that of four and
         more surfaces of one ball, and of two balls in a row. Half of what is left in the hollow ball comes off its inner surface and
         meets three in all, as many as a chain of one ball."""
-        for scene, least, most in (("caustic-alone-sun", 0, 0.001), ("caustic-alone-lamp", 0, 0.1), ("balls-in-a-row", 0.03, 0.9),
-                                   ("hollow", 0.7, 0.85), ("lamp-0.03", 0, 0.01), ("lens", 0, 0.01), ("orthographic", 0.1, 0.2)):
-            off = self.render(scene_of(scene), "a.bpa", "--spp", 4)["unseen"]["variance"]
-            on = self.render(scene_of(scene), "b.bpa", "--spp", 4, "--caustics", "on")["unseen"]["variance"]
-            self.assertTrue(least * off < on < most * off, (scene, on / off))
+        self.less_with_caustics(("caustic-alone-sun", 0, 0.001), ("balls-in-a-row", 0.03, 0.9), ("hollow", 0.7, 0.85),
+                                ("orthographic", 0.1, 0.2))
         # In one mirror, every image of a lamp is found, but not by parallel rays, which see one on the ball in "orthographic".
         self.assertIsNone(self.render(scene_of("lamp-in-mirror"), "b.bpa", "--spp", 4, "--caustics", "on")["unseen"])
         said = self.succeed("render", scene_of("balls-in-a-row"), "--spp", 16, "-o", "c.pfm", "--caustics", "on").errors
