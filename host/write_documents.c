@@ -181,31 +181,32 @@ static int write_main_page(const char *folder, const Edition *edition) {
         put_text(bp_commands[c].summary, out);
         fputc('\n', out);
     }
-    fputs(
-        ".SH OPTIONS\n.TP\n\\fB\\-h\\fR, \\fB\\-\\-help\\fR\nprint help; after a command, about that "
-        "command\n"
-        ".TP\n\\fB\\-V\\fR, \\fB\\-\\-version\\fR\nprint version and commit\n"
-        ".SH EXIT STATUS\n"
-        "0: success. 1: failure at run time (device, memory, file). 2: invalid command line or scene. 130:\n"
-        "interrupted. Of \\fBballpark check\\fR also 3: disagreement; 4: not enough evidence; 5: no such "
-        "device;\n"
-        "6: a device or its driver failed.\n"
-        ".SH ENVIRONMENT\n"
-        ".TP\n\\fBOCL_ICD_VENDORS\\fR\nwhere the OpenCL loader looks for drivers\n"
-        ".TP\n\\fBPOCL_CACHE_DIR\\fR\nwhere PoCL, the driver for processors, keeps compiled kernels\n"
-        ".TP\n\\fBBALLPARK_KERNEL_CACHE\\fR\n\\fBon\\fR or \\fBoff\\fR: whether Ballpark keeps compiled "
-        "kernels, in\n\\fI$XDG_CACHE_HOME/ballpark/kernels\\fR or \\fI~/.cache/ballpark/kernels\\fR; "
-        "by default\nthose that took long, except PoCL's\n"
-        ".TP\n\\fBBALLPARK_SHOW\\fR\n\\fBkitty\\fR, \\fBiterm2\\fR, \\fBsixel\\fR or \\fBblocks\\fR: how "
-        "\\fBballpark render \\-\\-show\\fR draws,\ninstead of what it detects of the terminal\n"
-        ".TP\n\\fBBALLPARK_MPI\\fR\nthe module for MPI to load instead of the installed one, or "
-        "\\fBoff\\fR:\neach copy that mpirun starts renders on its own\n"
-        ".SH EXAMPLES\n.nf\n"
-        "ballpark devices                        list the devices of this computer\n"
-        "ballpark generate cover \\-o cover.json   write the book's cover scene\n"
-        "ballpark render cover.json              render it to cover.png\n.fi\n"
-        ".SH SEE ALSO\n",
-        out);
+    fputs(".SH OPTIONS\n.TP\n\\fB\\-h\\fR, \\fB\\-\\-help\\fR\nprint help; after a command, about that "
+          "command\n"
+          ".TP\n\\fB\\-V\\fR, \\fB\\-\\-version\\fR\nprint version and commit\n"
+          ".SH EXIT STATUS\n"
+          "0: success. 1: failure at run time (device, memory, file, invalid samples in a picture). 2: "
+          "invalid\n"
+          "command line or scene. 130: interrupted. Of \\fBballpark check\\fR also 3: disagreement; 4: not "
+          "enough evidence; 5: no such "
+          "device;\n"
+          "6: a device or its driver failed.\n"
+          ".SH ENVIRONMENT\n"
+          ".TP\n\\fBOCL_ICD_VENDORS\\fR\nwhere the OpenCL loader looks for drivers\n"
+          ".TP\n\\fBPOCL_CACHE_DIR\\fR\nwhere PoCL, the driver for processors, keeps compiled kernels\n"
+          ".TP\n\\fBBALLPARK_KERNEL_CACHE\\fR\n\\fBon\\fR or \\fBoff\\fR: whether Ballpark keeps compiled "
+          "kernels, in\n\\fI$XDG_CACHE_HOME/ballpark/kernels\\fR or \\fI~/.cache/ballpark/kernels\\fR; "
+          "by default\nthose that took long, except PoCL's\n"
+          ".TP\n\\fBBALLPARK_SHOW\\fR\n\\fBkitty\\fR, \\fBiterm2\\fR, \\fBsixel\\fR or \\fBblocks\\fR: how "
+          "\\fBballpark render \\-\\-show\\fR draws,\ninstead of what it detects of the terminal\n"
+          ".TP\n\\fBBALLPARK_MPI\\fR\nthe module for MPI to load instead of the installed one, or "
+          "\\fBoff\\fR:\neach copy that mpirun starts renders on its own\n"
+          ".SH EXAMPLES\n.nf\n"
+          "ballpark devices                        list the devices of this computer\n"
+          "ballpark generate cover \\-o cover.json   write the book's cover scene\n"
+          "ballpark render cover.json              render it to cover.png\n.fi\n"
+          ".SH SEE ALSO\n",
+          out);
     for (size_t c = 0; c < bp_command_count; c++) {
         fputs(".BR ballpark\\-", out);
         put_text(bp_commands[c].name, out);

@@ -56,9 +56,10 @@ static void print_program_help(FILE *out) {
                  "  ballpark devices                        list the devices of this computer\n"
                  "  ballpark generate cover -o cover.json   write the book's cover scene\n"
                  "  ballpark render cover.json              render it to cover.png\n\n"
-                 "Exit codes: 0 success; 1 failure at run time (device, memory, file); 2 invalid\n"
-                 "command line or scene; 130 interrupted. Of check also: 3 disagreement; 4 not\n"
-                 "enough evidence; 5 no such device; 6 a device or its driver failed.\n");
+                 "Exit codes: 0 success; 1 failure at run time (device, memory, file, invalid\n"
+                 "samples in a picture); 2 invalid command line or scene; 130 interrupted. Of\n"
+                 "check also: 3 disagreement; 4 not enough evidence; 5 no such device; 6 a device\n"
+                 "or its driver failed.\n");
 }
 
 /* Whole sentences are easiest to read in 80 columns, also on a wide terminal, unless --wide is given. */

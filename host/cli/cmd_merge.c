@@ -243,10 +243,13 @@ BpStatus bp_command_merge(const BpCommandLine *line, BpError *err) {
     warn_missing(line, &parts);
     bp_result_warn(line, sum);
     char causes[BP_INVALID_TEXT_SIZE];
-    if (sum->invalid_samples > 0)
-        bp_say(line, "warning: %" PRIu64 " sample%s invalid%s and left out of the picture",
-               sum->invalid_samples, sum->invalid_samples == 1 ? " was" : "s were",
-               bp_film_invalid_causes(sum, causes));
+    if (sum->invalid_samples > 0) /* as of render: the file is there, but what it shows is biased */
+        status = bp_fail(
+            err, BP_ERR_LIMIT,
+            "%s lacks %" PRIu64 " sample%s invalid%s; `ballpark check` compares a device with the "
+            "reference tracer",
+            bp_result_name(&result), sum->invalid_samples,
+            sum->invalid_samples == 1 ? " that was" : "s that were", bp_film_invalid_causes(sum, causes));
 done:
     free(parts.list);
     bp_film_destroy(&sum);

@@ -138,6 +138,8 @@ typedef struct Run {
     json_t *stats; /* a list, by the number of the job; NULL: none are wanted */
     double start;  /* of the scene at hand, or of the command for the first one */
     bool has_begun;
+    size_t pictures, incomplete; /* written by this rank; those of them that lack invalid samples */
+    char lack[512];              /* what the first of those lacks */
 } Run;
 
 /* Two scenes may have the same name in different folders. */
@@ -265,6 +267,29 @@ done:
     return status;
 }
 
+/* The ranks that do not write a shared picture have no report of it. */
+static void count_picture(Run *run, const BpRunResult *result) {
+    const BpRenderReport *report = &result->report;
+    char causes[BP_INVALID_TEXT_SIZE];
+    ++run->pictures;
+    if (report->invalid_samples == 0) return;
+    if (run->incomplete++ == 0)
+        snprintf(run->lack, sizeof run->lack,
+                 "%.200s lacks %" PRIu64 " of %" PRIu64 " samples that were invalid%s", result->output,
+                 report->invalid_samples, report->samples, bp_film_invalid_causes(result->film, causes));
+}
+
+/* Invalid samples bias a picture, so a command that made one has failed, though its files are there. */
+static BpStatus check_complete(const Run *run, BpError *err) {
+    if (run->incomplete == 0) return BP_OK;
+    char others[64] = "";
+    if (run->incomplete > 1)
+        snprintf(others, sizeof others, ", and so do %zu more of %zu pictures", run->incomplete - 1,
+                 run->pictures);
+    return bp_fail(err, BP_ERR_LIMIT, "%s%s; `ballpark check` compares the device with the reference tracer",
+                   run->lack, others);
+}
+
 static BpStatus render_one(Run *run, const BpCommandLine *line, Job *job, BpError *err) {
     BpLoopEnd end;
     Work work = {.render = NULL};
@@ -292,6 +317,7 @@ static BpStatus render_one(Run *run, const BpCommandLine *line, Job *job, BpErro
     if (status == BP_OK)
         status = write_results(line, &job->file, &work.rule, &end, &job->checkpoint, &work.preview,
                                work.render, &work.result, run->stats, err);
+    if (status == BP_OK) count_picture(run, &work.result);
     /* A rank that failed at work cannot agree with the others, who wait for something else. */
     if (!bp_comm_is_at_work(run->comm)) status = bp_comm_all_ok(run->comm, status, err);
     bp_render_destroy(&work.render);
@@ -435,6 +461,7 @@ BpStatus bp_command_render(const BpCommandLine *given, BpError *err) {
                          "unfinished one alone (a single frame with --frame)");
     else
         status = is_series ? render_series(&run, err) : render_scenes(&run, err);
+    if (status == BP_OK) status = check_complete(&run, err);
     clear(&run);
     return status;
 }

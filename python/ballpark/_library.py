@@ -113,10 +113,21 @@ class BpPicture(c.Structure):
                 ("albedo", c.c_void_p)]
 
 
+class BpFilmInfo(c.Structure):
+    _fields_ = [("title", c.c_char_p), ("width", c.c_uint32), ("height", c.c_uint32), ("samples_per_pixel", c.c_uint64),
+                ("samples_least", c.c_uint64), ("samples_most", c.c_uint64), ("samples_mean", c.c_double),
+                ("range_count", c.c_size_t), ("partial", c.c_bool), ("segments", c.c_uint64),
+                ("truncated_paths", c.c_uint64), ("invalid_samples", c.c_uint64), ("not_finite_samples", c.c_uint64),
+                ("negative_samples", c.c_uint64), ("out_of_range_samples", c.c_uint64), ("shadow_rays", c.c_uint64),
+                ("scene_hash", c.c_uint64), ("seed", c.c_uint64), ("max_depth", c.c_uint32), ("replicates", c.c_uint32),
+                ("sampler", c.c_int), ("precision", c.c_int), ("math", c.c_int), ("numerics", c.c_int),
+                ("light_sampling", c.c_int), ("caustics", c.c_int), ("transfer", c.c_int)]
+
+
 # Their C names are those of the classes.
 STRUCTS: typing.List[typing.Type[c.Structure]] = [
     BpError, BpRows, BpSphereSet, BpSceneInfo, BpCameraInfo, BpElementInfo, BpDeviceInfo, BpRenderOptions, BpProgress,
-    BpStopRule, BpStopEstimate, BpPicture]
+    BpStopRule, BpStopEstimate, BpPicture, BpFilmInfo]
 
 INTERFACE = 2  # BP_INTERFACE_PYTHON: messages name arguments, not options of the command line
 
@@ -173,6 +184,7 @@ _OTHER: typing.Dict[str, typing.Tuple[typing.Any, typing.List[typing.Any]]] = {
     "bp_stop_rule_defaults": (None, [c.c_void_p, c.POINTER(BpRenderOptions), c.POINTER(BpStopRule)]),
     "bp_stop_destroy": (None, [_HANDLE]),
     "bp_film_nrmse": (c.c_double, [c.c_void_p]),
+    "bp_film_info": (None, [c.c_void_p, c.POINTER(BpFilmInfo)]),
     "bp_film_unseen_part": (c.c_double, [c.c_void_p]),
     "bp_film_destroy": (None, [_HANDLE]),
     "bp_picture_clear": (None, [c.POINTER(BpPicture)]),

@@ -45,6 +45,7 @@ class Picture:
     alpha: (height, width), the share of camera rays that met something, where the scene's backdrop is "none", else None;
         the radiance is premultiplied by it.
     depth (height, width), normal and albedo (height, width, 3): with aovs=True, else None.
+    invalid: how many samples were left out, by cause: "not finite", "negative", "out of range"; all 0 unless a device errs.
     noise: the picture's noise over its mean brightness (NRMSE), a fraction; NaN where unknown.
     stopped: why the render ended: "samples", "error", "time", "constant", "black", "invalid", "interrupt".
     seconds: what tracing took.
@@ -59,6 +60,10 @@ class Picture:
         self.height: int = struct.height
         self.transfer, self.stopped, self.seconds = transfer, stopped, seconds
         self.noise: float = lib.library().bp_film_nrmse(film.pointer)
+        info = lib.BpFilmInfo()
+        lib.library().bp_film_info(film.pointer, c.byref(info))
+        self.invalid: typing.Dict[str, int] = {"not finite": info.not_finite_samples, "negative": info.negative_samples,
+                                               "out of range": info.out_of_range_samples}
         self.radiance: npt.NDArray[np.float32] = self._array("rgb", 3)
         self.standard_error: npt.NDArray[np.float32] = self._array("error", 3)
         self.samples: npt.NDArray[np.uint64] = self._array("samples", 1, "<u8")

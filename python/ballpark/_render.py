@@ -19,7 +19,7 @@ import typing
 import numpy.typing as npt
 
 from . import _library as lib
-from ._arguments import ADAPTERS, c_text, whole_number, wrong_type
+from ._arguments import ADAPTERS, c_text, warn, whole_number, wrong_type
 from ._colors import Color
 from ._interrupt import CtrlC, Job, interruptible
 from ._picture import Picture
@@ -203,7 +203,12 @@ class Render:
         """The picture as it stands, of its own: later steps do not change it."""
         film = lib.Handle("film")
         self._call("bp_render_film", self._render.pointer, film.address)
-        return Picture(film, self.scene.transfer, self.stopped or "interrupt", self._progress.trace_seconds)
+        picture = Picture(film, self.scene.transfer, self.stopped or "interrupt", self._progress.trace_seconds)
+        lost = ", ".join(f"{count:,} {cause}" for cause, count in picture.invalid.items() if count > 0)
+        if lost:
+            warn(f"ballpark: invalid samples were left out of the picture ({lost}); `ballpark check` compares the device "
+                 "with the reference tracer")
+        return picture
 
     def close(self) -> None:
         """Releases the device's memory now instead of when the object is gone, or once a step under way has ended."""

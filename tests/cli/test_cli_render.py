@@ -306,7 +306,7 @@ class StopRules(Render):
         here = self.broken_sky("choose(direction.x < splat(R(-0.5)), splat(NAN), light.x)")
         self.write("n.json", scene(16, background=[0.5, 0.6, 0.7]))
         for options in (["--error", "0.1"], ["--error", "0.1", "--time", "100"], ["--error", "0.1", "--spp", "100000"]):
-            said = self.succeed("render", "n.json", "--stats", "n.stats", *options, environment=here).errors
+            said = self.fail_with(1, "render", "n.json", "--stats", "n.stats", *options, environment=here, says=" lacks ").errors
             self.assertIn("--error cannot be reached", said)
             self.assertIn("estimating noise needs valid samples in every pixel", said)
             self.assertRegex(said, r"warning: (\d+) samples were invalid \(\1 not finite\) and left out of the picture")

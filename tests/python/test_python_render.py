@@ -6,8 +6,10 @@ Usage: test_python_render.py SOURCE_DIR BUILD_DIR
 import gc
 import json
 import math
+import os
 import pathlib
 import re
+import shutil
 import subprocess
 import sys
 import tempfile
@@ -52,6 +54,26 @@ def test_same_bits(folder):
     other = ballpark.render(ballpark.Scene(SCENE), precision="double", sampler="independent", depth=3)
     assert np.array_equal(other.radiance, exact)
     assert ballpark.render(SCENE, width=12, spp=2).radiance.shape == (9, 12, 3)
+
+
+def test_invalid_samples(folder):
+    """Counted by cause, with a warning: by a sky that is negative below, in a process that has such kernels."""
+    assert ballpark.render(SCENE, spp=1).invalid == {"not finite": 0, "negative": 0, "out of range": 0}
+    shutil.copytree(source / "kernels", folder / "kernels")
+    sky = folder / "kernels" / "light" / "sky.cl"
+    right = "const Vec3 radiance = madd3("
+    assert sky.read_text().count(right) == 1
+    sky.write_text(sky.read_text().replace(right, "if (any_lane(direction.y < splat(R(-0.3)))) return vec3(splat(-1), splat(-1), splat(-1));\n    " + right))
+    program = (f"import sys, warnings; sys.path.insert(0, {str(source / 'tests/support')!r}); import package, pathlib\n"
+               f"ballpark, np = package.load(pathlib.Path({str(source)!r}), pathlib.Path({str(build)!r}))\n"
+               "with warnings.catch_warnings(record=True) as seen:\n"
+               "    warnings.simplefilter('always')\n"
+               "    picture = ballpark.render({'camera': {'image_width': 32, 'vfov': 60, 'samples_per_pixel': 4}, 'spheres': []})\n"
+               "assert picture.invalid['negative'] == picture.samples.size * 4 - picture.samples.sum() > 0, picture.invalid\n"
+               "assert picture.invalid['not finite'] == picture.invalid['out of range'] == 0\n"
+               "text = f\"({picture.invalid['negative']:,} negative)\"\n"
+               "assert len(seen) == 1 and text in str(seen[0].message), [str(one.message) for one in seen]\n")
+    subprocess.run([sys.executable, "-c", program], check=True, env=dict(os.environ, BALLPARK_KERNELS=str(folder / "kernels")))
 
 
 def test_arrays_are_the_librarys(folder):
