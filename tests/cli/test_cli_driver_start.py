@@ -18,7 +18,8 @@ LIBRARIES = os.path.join(os.path.dirname(cli.PROGRAM), "tests")
 LIMIT = "1"  # seconds; also a loaded machine has PoCL's list by then, when asked again
 
 ENDS = {"hang": "hung: there was no answer within 1 s", "load": "hung: there was no answer within 1 s",
-        "crash": "crashed: Aborted", "segv": "crashed: Segmentation fault", "exit": "ended the process with exit code 0"}
+        "crash": "crashed: Aborted", "segv": "crashed: Segmentation fault", "exit": "ended the process with exit code 0",
+        "leave": "ended the process with exit code 0", "quick": "ended the process with exit code 0"}
 
 
 class DriverStart(cli.ProgramTest):

@@ -1,8 +1,8 @@
 /* faulty_icd.c: an OpenCL driver that does not survive being asked for its platforms.
  *
  * In:    FAULT, from the build: what it does: HANG, CRASH (abort), SEGV, EXIT (ends the process, as if all
- * were well), or LOAD (hangs while it is loaded).   Out: nothing. Knows: the first call that an ICD loader
- * makes. */
+ * were well), LEAVE and QUICK (the same by _exit and quick_exit), or LOAD (hangs while it is loaded).   Out:
+ * nothing. Knows: the first call that an ICD loader makes. */
 #define CL_TARGET_OPENCL_VERSION 120
 #include <CL/cl.h>
 #include <CL/cl_icd.h>
@@ -12,7 +12,7 @@
 #include <unistd.h>
 
 #define EXPORT __attribute__((visibility("default")))
-enum { HANG, CRASH, SEGV, EXIT, LOAD };
+enum { HANG, CRASH, SEGV, EXIT, LEAVE, QUICK, LOAD };
 
 /* No compiler or sanitizer sees that nothing lies there. */
 static volatile int *volatile nowhere = (volatile int *)16;
@@ -26,6 +26,8 @@ cl_int CL_API_CALL clIcdGetPlatformIDsKHR(cl_uint room, cl_platform_id *ids, cl_
     (void)room, (void)ids, (void)count;
     while (FAULT == HANG) sleep(1);
     if (FAULT == EXIT) exit(0);
+    if (FAULT == LEAVE) _exit(0);
+    if (FAULT == QUICK) quick_exit(0);
     if (FAULT == SEGV) *nowhere = 1;
     abort(); /* which no mask of signals holds off */
     return CL_OUT_OF_HOST_MEMORY;
