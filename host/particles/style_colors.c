@@ -2,6 +2,7 @@
 #include "style_colors.h"
 
 #include "base/color.h"
+#include "base/format.h"
 #include "base/words.h"
 #include "elements.h"
 
@@ -13,7 +14,7 @@
 static const unsigned char palette[][3] = {{112, 148, 202}, {228, 164, 104}, {128, 186, 130}, {210, 114, 110},
                                            {160, 132, 192}, {164, 134, 116}, {222, 164, 194}, {152, 152, 152},
                                            {192, 186, 114}, {122, 186, 198}};
-enum { PALETTE_COUNT = sizeof palette / sizeof *palette };
+enum { PALETTE_COUNT = sizeof palette / sizeof *palette, GREY = 7 };
 
 static void look_up(const double linear[256], const unsigned char bytes[3], double color[3]) {
     for (int c = 0; c < 3; c++) color[c] = linear[bytes[c]];
@@ -95,6 +96,31 @@ static BpStatus rank_names(BpStyleJob *job, BpError *err) {
     X(BP_COLOR_RESIDUE, "residues") X(BP_COLOR_TYPE, "types") X(BP_COLOR_COLUMN, "values")
 BP_WORDS(BpColorBy, static const char *const color_names, COLOR_WORDS);
 
+static const float *color_column(const BpStyleJob *job) {
+    return job->p->column[job->style->radius_by == BP_RADIUS_COLUMN];
+}
+
+static bool is_without_value(const BpStyleJob *job, size_t i) {
+    return isnan(color_column(job)[i]);
+}
+
+static bool is_without_color(const BpStyleJob *job, size_t i) {
+    return isnan(job->p->color[i][0]);
+}
+
+/* Says how many of the particles shown, that no name gives a colour, have none from the file. */
+static void say_missing(BpStyleJob *job, const char *what,
+                        bool (*is_missing)(const BpStyleJob *job, size_t i)) {
+    const BpParticleStyle *const style = job->style;
+    size_t count = 0;
+    char number[32];
+    for (size_t i = 0; i < job->p->count; i++)
+        count += job->shown[i] && is_missing(job, i) &&
+                 bp_style_named(style->colors, style->color_count, job->p, &job->p->tag[i]) == NULL;
+    if (count > 0)
+        bp_style_say(job, "grey for lack of %s: %s", what, bp_format_whole(count, number, sizeof number));
+}
+
 BpStatus bp_style_choose_colors(BpStyleJob *job, BpError *err) {
     const BpParticles *const p = job->p;
     const BpParticleStyle *const style = job->style;
@@ -111,8 +137,9 @@ BpStatus bp_style_choose_colors(BpStyleJob *job, BpError *err) {
     if (job->color_by == BP_COLOR_CHAIN || job->color_by == BP_COLOR_RESIDUE ||
         job->color_by == BP_COLOR_TYPE)
         return rank_names(job, err);
+    if (job->color_by == BP_COLOR_AUTO) say_missing(job, "a colour", is_without_color);
     if (job->color_by != BP_COLOR_COLUMN) return BP_OK;
-    const float *const column = p->column[style->radius_by == BP_RADIUS_COLUMN];
+    const float *const column = color_column(job);
     job->range[0] = INFINITY;
     job->range[1] = -INFINITY;
     for (size_t i = 0; i < p->count; i++) {
@@ -126,6 +153,7 @@ BpStatus bp_style_choose_colors(BpStyleJob *job, BpError *err) {
                        style->color_column);
     bp_style_say(job, "coloured by %s from %.4g to %.4g (%s)", style->color_column, job->range[0],
                  job->range[1], bp_colormap_names[style->map]);
+    say_missing(job, "a value", is_without_value);
     return BP_OK;
 }
 
@@ -145,6 +173,7 @@ void bp_style_color(const BpStyleJob *job, size_t i, double color[3]) {
             for (int c = 0; c < 3; c++) color[c] = (double)p->color[i][c];
             return;
         }
+        place = GREY;
         break;
     case BP_COLOR_CONSTANT:
         if (style->color_by == BP_COLOR_CONSTANT) {
@@ -156,13 +185,13 @@ void bp_style_color(const BpStyleJob *job, size_t i, double color[3]) {
         look_up(job->linear, bp_elements[tag->element].color, color);
         return;
     case BP_COLOR_COLUMN: {
-        const double value = (double)p->column[style->radius_by == BP_RADIUS_COLUMN][i];
+        const double value = (double)color_column(job)[i];
         const double width = job->range[1] - job->range[0];
         if (!isnan(value)) {
             bp_particle_style_map(style, width > 0 ? (value - job->range[0]) / width : 0.5, color);
             return;
         }
-        place = 7; /* grey: no value */
+        place = GREY;
         break;
     }
     case BP_COLOR_CHAIN:

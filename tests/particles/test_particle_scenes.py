@@ -257,6 +257,27 @@ class Scenes(ProgramTest):
         self.write("b.csv", "x,y,z,size\n0,0,0,1\n0,0,0,3\n")
         self.assertIn("half the median distance", self.notes("a.csv") + self.notes("b.csv"))
 
+    def test_what_lacks_a_colour_is_grey(self):
+        self.write("a.csv", "x,y,z,heat,type\n0,0,0,,A\n9,0,0,5,B\n0,9,0,NA,B\n0,0,9,1,B\n")
+        by_heat = ("--set", 'particles[0].color={"column":"heat"}')
+        self.assertIn("coloured by heat from 1 to 5 (viridis); grey for lack of a value: 2\n", self.notes("a.csv", "--wide", *by_heat))
+        named = ("--set", 'particles[0].color={"column":"heat","types":{"A":[1,0,0]}}')
+        self.assertIn("grey for lack of a value: 1\n", self.notes("a.csv", "--wide", *named))
+        self.write("b.csv", "x,y,z,red,green,blue\n0,0,0,1,0,0\n9,0,0,,,\n")
+        self.assertIn("grey for lack of a colour: 1\n", self.notes("b.csv", "--wide"))
+        # The sphere without a colour encloses the other: a convex one under a dome of 1 shows its albedo.
+        self.write("d.csv", "x,y,z,radius,red,green,blue,heat\n0,0,0,5,,,,\n0,0,0,1,0,0,1,3\n")
+        for color in ({}, {"color": {"column": "heat"}}):
+            self.document_with(dict({"file": "d.csv"}, **color), background=[1, 1, 1], camera={
+                "image_width": 8, "fit": "particles", "margin": 0, "view": "front", "max_depth": 50})
+            self.succeed("render", "x.json", "-q", "--spp", 16, "-o", "x.pfm")
+            width, height, values = read_pfm(self.read("x.pfm"))
+            middle = 3 * (height // 2 * width + width // 2)
+            for value in values[middle:middle + 3]:
+                self.assertAlmostEqual(value, ((152 / 255 + 0.055) / 1.055) ** 2.4, delta=0.012)
+        self.write("c.csv", "x,y,z,red,green,blue,heat\n0,0,0,1,0,0,1\n")
+        self.assertNotIn("grey", self.notes("c.csv") + self.notes("c.csv", *by_heat))
+
     def test_kinds_keep_their_colours(self):
         """The order in a frame does not matter, and 10 comes after 2."""
         kinds = ["A", "B", "10", "2"]
