@@ -11,7 +11,8 @@ void atom_identify(Particle *atom, const char *symbol, const char *name, bool fi
     bool dummy = false;
     const uint8_t by_name = bp_element_of_name(name, atom->residue, fixed, &dummy);
     atom->element = bp_element_of_species(symbol);
-    if (atom->element == 0 && strcasecmp(symbol, "X") != 0) { /* X: the file says that it is unknown */
+    if (atom->element != 0) return;     /* whatever its name: MN1 is manganese too */
+    if (strcasecmp(symbol, "X") != 0) { /* X: the file says that it is unknown */
         atom->element = by_name;
         if (by_name != 0) atom->flags |= BP_PARTICLE_ELEMENT_GUESSED;
     }

@@ -80,10 +80,15 @@ static BpStatus take_atom(BpParticleFile *file, const char *line, Frame *frame, 
     return frame_add(file, &particle, true, err);
 }
 
+static bool is_blank(const char *line) {
+    return line[strspn(line, " \t\r")] == '\0';
+}
+
 /* Three or nine numbers, between blanks or, where they touch, in fields of one width. */
 static BpStatus take_box(const Input *input, const char *line, double box[9], BpError *err) {
     static const char expected[] = "the box: 3 or 9 numbers";
     char text[256], *words[9];
+    if (is_blank(line)) return BP_OK; /* as programs write it where there is none */
     snprintf(text, sizeof text, "%s", line);
     const size_t count = split_words(text, words, 9), width = field_width(line);
     if (count == 3 || count == 9) {
@@ -98,10 +103,6 @@ static BpStatus take_box(const Input *input, const char *line, double box[9], Bp
         if (width == 0 || take_fields(line, 1 + width * i, width, &box[i]) < 3)
             return input_wrong(input, line, expected, err);
     return BP_OK;
-}
-
-static bool is_blank(const char *line) {
-    return line[strspn(line, " \t\r")] == '\0';
 }
 
 static bool is_whole(const char *line) {

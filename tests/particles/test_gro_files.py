@@ -27,6 +27,17 @@ class Gro(listed.ListTest):
         for member, axis in (("first", velocities[0]), ("second", velocities[1])):
             self.assertEqual(found.of(member), [v and v[axis] for _, v in rows], member)
 
+    def test_no_box(self):
+        """Of zeros, or a blank line where ASE has no cell to write; a missing line is an error."""
+        frame = "t\n1\n    1ALA     CA    1   1.000   2.000   3.000\n"
+        for box in ("0 0 0\n", "\n", "  \n", "   0.00000   0.00000   0.00000"):
+            found = self.of("a.gro", frame + box)
+            self.assertEqual((found.places(), "cell" in found.head, found.head["frames"]), ([(1, 2, 3)], False, 1), box)
+        found = self.of("a.gro", (frame + "\n") * 2 + frame.replace("1.000", "4.000") + "5 6 7\n", 2)
+        self.assertEqual((found.places(), found.head["cell"][2][2], found.head["frames"]), ([(4, 2, 3)], 7, 3))
+        self.refuse("a.gro", frame, "the line of the box")
+        self.refuse("a.gro", frame + "5 5\n", "the box: 3 or 9 numbers")
+
     def test_ions(self):
         """Names of CHARMM and GROMOS, which are the residue's as well; amid organic atoms they are none."""
         ions = [("NA", "Na"), ("CL", "Cl"), ("NA+", "Na"), ("CL-", "Cl"), ("CA2+", "Ca"), ("MG2+", "Mg"), ("ZN2+", "Zn"), ("CU2+", "Cu"), ("CAL", "Ca"),

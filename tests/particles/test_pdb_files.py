@@ -7,7 +7,7 @@ import os
 import random
 
 import listed
-from listed import ALTERNATIVE, GUESSED
+from listed import ALTERNATIVE, DUMMY, GUESSED
 
 
 def atom(serial=1, name=" CA ", letter=" ", residue="ALA", chain="A", number=1, code=" ", place=(0, 0, 0), occupancy=1.0, symbol="",
@@ -296,6 +296,11 @@ class Atoms(listed.ListTest):
                                         ("CLA ", "CLA", "Cl"), ("SOD ", "SOD", "Na"), (" CAL", "LIG", "C")]:
             self.assertEqual(self.element(name=name, residue=residue), (expected, True))
         self.assertEqual(self.element(symbol=" X", name=" UNK", residue="UNX"), ("", False))  # the file says: unknown
+        # Names of sites of models are those of atoms as well, where the file says so: the manganese of photosystem II.
+        for name, symbol, residue, expected in [("MN1 ", "MN", "OEX", ("Mn", 0)), ("MN1 ", "  ", "OEX", ("", DUMMY)), (" MW ", "  ", "SOL", ("", DUMMY)),
+                                                (" DU ", " C", "LIG", ("C", 0)), (" LP1", " X", "LIG", ("", DUMMY)), (" M  ", " M", "HOH", ("", DUMMY))]:
+            found = self.of("a.pdb", atom(name=name, symbol=symbol, residue=residue)).atoms[0]
+            self.assertEqual((found.element, found.flags), expected, (name, symbol))
         # PDBQT has its types in columns 78 and 79.
         self.assertEqual(self.element(symbol=" H", charge="D", name=" HN ", residue="LIG"), ("H", True))
         self.assertEqual(self.element(symbol=" C", charge="l", name="CL1 ", residue="LIG"), ("Cl", True))
