@@ -1,5 +1,6 @@
 /* fake_ranks.c: a module like the one for MPI, whose ranks are processes that have inherited sockets. Every
- * exchange is over when it returns. */
+ * exchange is over when it returns. The environment may name one that fails (FAULT_AT: its number, from 0),
+ * and another number of ranks than the launcher's (FAKE_SIZE). */
 #include "fake_ranks.h"
 
 #include "cluster/transport.h"
@@ -9,6 +10,11 @@
 #include <sys/socket.h>
 
 static uint32_t rank, size;
+static int calls, fault_at; /* below 0: none fails */
+
+static bool fails(void) {
+    return calls++ == fault_at;
+}
 
 static bool put(int socket, const void *bytes, uint64_t count) {
     for (uint64_t done = 0; done < count;) {
@@ -34,13 +40,17 @@ static const char *told(bool fine) {
 
 static const char *start(BpPlace *place) {
     rank = (uint32_t)atoi(getenv("OMPI_COMM_WORLD_RANK"));
-    size = (uint32_t)atoi(getenv("OMPI_COMM_WORLD_SIZE"));
+    size = (uint32_t)atoi(getenv(getenv("FAKE_SIZE") != NULL ? "FAKE_SIZE" : "OMPI_COMM_WORLD_SIZE"));
+    fault_at = getenv("FAULT_AT") != NULL ? atoi(getenv("FAULT_AT")) : -1;
+    calls = 0;
+    if (fails()) return "pretended";
     *place = (BpPlace){.rank = rank, .size = size, .local_rank = rank, .local_size = size, .host = "here"};
     return NULL;
 }
 
 static const char *broadcast(void *bytes, uint64_t count) {
     bool fine = true;
+    if (fails()) return "pretended";
     if (rank > 0) return told(get(SOCKET_OF_RANK(rank), bytes, count));
     for (uint32_t r = 1; r < size; ++r) fine = put(SOCKET_OF_LEADER(r), bytes, count) && fine;
     return told(fine);
@@ -48,6 +58,7 @@ static const char *broadcast(void *bytes, uint64_t count) {
 
 static const char *gather(const void *own, uint64_t count, void *all) {
     bool fine = true;
+    if (fails()) return "pretended";
     if (rank > 0) return told(put(SOCKET_OF_RANK(rank), own, count));
     memcpy(all, own, count);
     for (uint32_t r = 1; r < size; ++r)
@@ -69,6 +80,7 @@ static const char *test(bool *done) {
 
 static const char *add(void *numbers, uint64_t count, uint32_t width) {
     bool fine = true;
+    if (fails()) return "pretended";
     if (rank > 0) return told(put(SOCKET_OF_RANK(rank), numbers, count * width));
     void *other = malloc(count * width);
     for (uint32_t r = 1; fine && r < size; ++r) {
@@ -83,10 +95,14 @@ static const char *add(void *numbers, uint64_t count, uint32_t width) {
     return told(fine);
 }
 
-static void notify(void) {}
+/* A rank hears of itself alone. */
+static bool notified;
+static void notify(void) {
+    notified = true;
+}
 
 static bool was_notified(void) {
-    return false;
+    return notified;
 }
 
 static void end(void) {}

@@ -25,12 +25,18 @@ static bool holds(bool condition, const char *what) {
     return condition;
 }
 
-static bool work(uint32_t rank, RankBody *body) {
-    char text[16], *arguments[] = {"ballpark", NULL};
-    BpComm *comm = NULL;
-    BpError err = {0};
+/* As the launcher has it. */
+static void be_rank(uint32_t rank) {
+    char text[16];
     snprintf(text, sizeof text, "%u", rank);
     setenv("OMPI_COMM_WORLD_RANK", text, 1);
+}
+
+static bool work(uint32_t rank, RankBody *body) {
+    char *arguments[] = {"ballpark", NULL};
+    BpComm *comm = NULL;
+    BpError err = {0};
+    be_rank(rank);
     bool fine = holds(bp_comm_begin(arguments, &comm, &err) == BP_OK, err.message);
     fine = fine && holds(bp_comm_size(comm) == RANKS && bp_comm_rank(comm) == rank, "who this is");
     fine = fine && body(comm);
@@ -38,8 +44,10 @@ static bool work(uint32_t rank, RankBody *body) {
     return fine;
 }
 
-/* All ranks carry out `body`. */
-static void with_ranks(RankBody *body) {
+typedef bool RankWork(uint32_t rank, RankBody *body);
+
+/* All ranks carry out `how`. */
+static void as_ranks(RankWork *how, RankBody *body) {
     pid_t children[RANKS] = {0};
     char text[16];
     snprintf(text, sizeof text, "%d", RANKS);
@@ -63,10 +71,10 @@ static void with_ranks(RankBody *body) {
             close(SOCKET_OF_LEADER(other));
             if (other != r) close(SOCKET_OF_RANK(other));
         }
-        _exit(work(r, body) ? 0 : 1);
+        _exit(how(r, body) ? 0 : 1);
     }
     for (uint32_t r = 1; r < RANKS; ++r) close(SOCKET_OF_RANK(r));
-    bool fine = work(0, body);
+    bool fine = how(0, body);
     for (uint32_t r = 1; r < RANKS; ++r) close(SOCKET_OF_LEADER(r));
     for (uint32_t r = 1; r < RANKS; ++r) {
         int status = 0;
@@ -74,6 +82,10 @@ static void with_ranks(RankBody *body) {
         fine = holds(WIFEXITED(status) && WEXITSTATUS(status) == 0, "another rank") && fine;
     }
     assert_true(fine);
+}
+
+static void with_ranks(RankBody *body) {
+    as_ranks(work, body);
 }
 
 /* ---- films --------------------------------------------------------------------------------------------- */
@@ -204,6 +216,160 @@ static bool all_ok(BpComm *comm) {
     return fine;
 }
 
+/* ---- what goes wrong ------------------------------------------------------------------------------------
+ */
+
+static bool is_pretended(BpStatus status, const BpError *err) {
+    return status == BP_ERR_DEVICE && strcmp(err->message, "messages between the ranks: pretended") == 0;
+}
+
+/* Beginning, and one exchange of each kind, of which the one with the number FAULT_AT fails, on all ranks at
+ * once. */
+static bool meet_the_fault(uint32_t rank, RankBody *body) {
+    (void)body;
+    char *arguments[] = {"ballpark", NULL}, **texts = NULL;
+    uint64_t numbers[2] = {1, 2};
+    uint32_t words[2] = {3, 4};
+    BpComm *comm = NULL;
+    BpError err = {0};
+    BpFilm *film = own_film(rank);
+    be_rank(rank);
+    BpStatus status = bp_comm_begin(arguments, &comm, &err);
+    bool fine = holds((comm != NULL) == (status == BP_OK), "a communicator where it begins alone");
+    if (status == BP_OK) status = bp_comm_add_64(comm, numbers, 2, &err);
+    if (status == BP_OK) status = bp_comm_add_32(comm, words, 2, &err);
+    if (status == BP_OK) status = bp_comm_gather_texts(comm, "text", &texts, &err);
+    if (status == BP_OK) status = bp_round_add_films(comm, film, &err);
+    if (status == BP_OK) status = bp_comm_all_ok(comm, rank == 1 ? BP_ERR_FILE : BP_OK, &err);
+    if (status == BP_ERR_FILE && atoi(getenv("FAULT_AT")) >= 0) {
+        unsetenv("FAULT_AT"); /* no exchange has this number: this was the last try */
+    } else if (status != BP_ERR_FILE) {
+        fine = holds(is_pretended(status, &err), err.message) && fine;
+    }
+    free(texts);
+    bp_film_destroy(&film);
+    bp_comm_end(&comm);
+    bp_error_clear(&err);
+    return fine;
+}
+
+static void test_each_exchange_fails(void **state) {
+    (void)state;
+    int faults = 0;
+    for (; faults == 0 || getenv("FAULT_AT") != NULL; ++faults) {
+        char text[16];
+        snprintf(text, sizeof text, "%d", faults);
+        setenv("FAULT_AT", text, 1);
+        as_ranks(meet_the_fault, NULL);
+    }
+    assert_in_range(faults, 20, 100); /* as many as there are exchanges, and one */
+}
+
+/* Every rank begins alone, with arguments or a module that do not fit, and the errors have the remedy. */
+static bool begin_with_others(uint32_t rank, RankBody *body) {
+    (void)body;
+    char *arguments[] = {rank == 1 ? "ballpark of one" : "ballpark", NULL};
+    BpComm *comm = NULL;
+    BpError err = {0};
+    be_rank(rank);
+    bool fine =
+        holds(bp_comm_begin(arguments, &comm, &err) == BP_ERR_USAGE && comm == NULL, "other arguments");
+    fine = fine && holds(strstr(err.message, "the 3 ranks were given different arguments") != NULL &&
+                             strstr(err.message, "BALLPARK_MPI=off") != NULL,
+                         err.message);
+    bp_error_clear(&err);
+    return fine;
+}
+
+static void test_beginnings_that_fail(void **state) {
+    (void)state;
+    char *arguments[] = {"ballpark", NULL};
+    BpComm *comm = NULL;
+    BpError err = {0};
+    as_ranks(begin_with_others, NULL);
+    be_rank(0);
+    setenv("FAKE_SIZE", "1", 1);
+    assert_int_equal(bp_comm_begin(arguments, &comm, &err), BP_ERR_USAGE);
+    assert_non_null(strstr(err.message, "started 3 copies of this program, but its MPI knows of 1"));
+    unsetenv("FAKE_SIZE");
+    setenv("BALLPARK_MPI", "/nowhere/ballpark_mpi.so", 1);
+    assert_int_equal(bp_comm_begin(arguments, &comm, &err), BP_ERR_USAGE);
+    assert_non_null(strstr(err.message, "started 3 copies of this program, but they cannot share the work"));
+    assert_non_null(strstr(err.message, "/nowhere/ballpark_mpi.so"));
+    assert_null(comm);
+    setenv("BALLPARK_MPI", "off", 1);
+    assert_int_equal(bp_comm_begin(arguments, &comm, &err), BP_OK);
+    assert_null(comm);
+    bp_error_clear(&err);
+}
+
+/* A process of its own has no communicator, and all of this is for it as for one rank. */
+static void test_alone(void **state) {
+    (void)state;
+    uint64_t number = 5;
+    uint32_t bits = 6;
+    char **texts = NULL;
+    double waiting = 1, adding = 1;
+    BpError err = {0};
+    assert_int_equal(bp_comm_size(NULL), 1);
+    assert_int_equal(bp_comm_rank(NULL), 0);
+    assert_int_equal(bp_comm_local_rank(NULL), 0);
+    assert_int_equal(bp_comm_cores(NULL), 0);
+    assert_true(bp_comm_is_root(NULL));
+    assert_int_equal(bp_comm_broadcast(NULL, &number, sizeof number, &err), BP_OK);
+    assert_int_equal(bp_comm_add_64(NULL, &number, 1, &err), BP_OK);
+    assert_int_equal(bp_comm_add_32(NULL, &bits, 1, &err), BP_OK);
+    assert_int_equal(bp_comm_allreduce_or(NULL, &bits, &err), BP_OK);
+    assert_true(number == 5 && bits == 6);
+    assert_int_equal(bp_comm_gather_texts(NULL, "alone", &texts, &err), BP_OK);
+    assert_string_equal(texts[0], "alone");
+    free(texts);
+    assert_int_equal(bp_comm_all_ok(NULL, BP_ERR_FILE, &err), BP_ERR_FILE);
+    bp_comm_begin_work(NULL);
+    assert_false(bp_comm_is_at_work(NULL));
+    bp_comm_end_work(NULL);
+    bp_comm_times(NULL, &waiting, &adding);
+    assert_true(waiting == 0 && adding == 0);
+    bp_fail(&err, BP_ERR_FILE, "as it is");
+    bp_comm_prefix_rank(NULL, &err);
+    assert_string_equal(err.message, "as it is");
+    bp_comm_notify(NULL);
+    assert_false(bp_comm_was_notified(NULL));
+    bp_comm_abort(NULL, 1);
+    bp_comm_end(NULL);
+    bp_error_clear(&err);
+}
+
+static bool hear(BpComm *comm) {
+    BpError err = {0};
+    double waiting = -1, adding = -1;
+    char expected[64];
+    bool fine = holds(!bp_comm_was_notified(comm), "that nobody has called yet");
+    bp_comm_notify(comm);
+    bp_comm_notify(comm);
+    fine = fine && holds(bp_comm_was_notified(comm) && bp_comm_was_notified(comm), "a call");
+    bp_comm_begin_work(comm);
+    fine = fine && holds(bp_comm_is_at_work(comm), "work in common");
+    bp_comm_end_work(comm);
+    fine = fine && holds(!bp_comm_is_at_work(comm), "its end");
+    bp_fail(&err, BP_ERR_FILE, "no such thing");
+    bp_comm_prefix_rank(comm, &err);
+    snprintf(expected, sizeof expected,
+             bp_comm_is_root(comm) ? "no such thing" : "rank %u on here: no such thing", bp_comm_rank(comm));
+    fine = fine && holds(strcmp(err.message, expected) == 0, err.message);
+    bp_comm_times(comm, &waiting, &adding);
+    fine = fine && holds(waiting >= 0 && adding == 0, "times");
+    fine = fine &&
+           holds(bp_comm_cores(comm) >= 1 && bp_comm_local_rank(comm) == bp_comm_rank(comm), "its place");
+    bp_error_clear(&err);
+    return fine;
+}
+
+static void test_calls(void **state) {
+    (void)state;
+    with_ranks(hear);
+}
+
 static void test_films(void **state) {
     (void)state;
     with_ranks(add_films);
@@ -231,8 +397,15 @@ static void test_all_ok(void **state) {
 
 int main(void) {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_films), cmocka_unit_test(test_resumed), cmocka_unit_test(test_much),
-        cmocka_unit_test(test_texts), cmocka_unit_test(test_all_ok),
+        cmocka_unit_test(test_films),
+        cmocka_unit_test(test_resumed),
+        cmocka_unit_test(test_much),
+        cmocka_unit_test(test_texts),
+        cmocka_unit_test(test_all_ok),
+        cmocka_unit_test(test_calls),
+        cmocka_unit_test(test_each_exchange_fails),
+        cmocka_unit_test(test_beginnings_that_fail),
+        cmocka_unit_test(test_alone),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
