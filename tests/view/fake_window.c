@@ -55,6 +55,7 @@ static const char *show(const uint8_t *rgb, uint32_t width, uint32_t height) {
     for (size_t i = 0; i < (size_t)width * height; ++i)
         for (size_t c = 0; c < 3; ++c) sum[c] += rgb[3 * i + c];
     const double count = (double)width * height;
+    if (fails("show")) return "the screen has gone";
     fprintf(notes, "show %u %u %.3f %.3f %.3f %.4f\n", (unsigned)width, (unsigned)height,
             (double)sum[0] / count, (double)sum[1] / count, (double)sum[2] / count, now());
     fflush(notes);

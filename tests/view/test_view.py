@@ -95,6 +95,30 @@ class Scripted(ProgramTest):
         lines = self.view("rest", "resize 200 60", "rest", "quit", options=("--error", "5%"))
         self.assertEqual(self.shown(lines)[-1][:2], (120, 60))
 
+    def test_what_does_nothing(self):
+        """Keys without a meaning, and clicks on the background or beside the picture: what is seen has come to rest, and stays."""
+        lines = self.view("rest", "key x", "click 0.01 0.01", "click 1.5 0.5", "click -0.5 0.5", "click 0.5 1.5", "click 0.5 -0.5", "rest",
+                          "key s", "frames 0", "quit", options=("--error", "5%"))
+        rested = [number for number, line in enumerate(lines) if line[0] == "rested"]
+        self.assertEqual(len(rested), 2)
+        self.assertEqual(self.shown(lines[rested[0]:rested[1]]), [])
+        self.assertEqual(self.result.stdout.decode(), "ballpark render s.json --set 'camera=" + self.command_camera() + "'\n")
+
+    def command_camera(self):
+        """The camera of s.json as a command has it that is printed without any move."""
+        self.view("rest", "key s", "frames 0", "quit", options=("--error", "5%"))
+        return re.fullmatch(r"ballpark render s\.json --set 'camera=(.*)'\n", self.result.stdout.decode())[1]
+
+    def test_a_click_with_a_lens(self):
+        """It is drawn anew, sharp where the click was; wider and narrower angles are undone by each other."""
+        lines = self.view("rest", "click 0.5 0.5", "rest", "key [", "key ]", "rest", "key s", "frames 0", "quit",
+                          options=("--error", "5%", "--set", "camera.aperture=1", "--set", "camera.focus_dist=5"))
+        rested = [number for number, line in enumerate(lines) if line[0] == "rested"]
+        self.assertGreater(len(self.shown(lines[rested[0]:rested[1]])), 0)
+        said = self.result.stdout.decode()
+        self.assertAlmostEqual(float(re.search(r'"focus_dist": ([\d.]+)', said)[1]), 9, delta=0.05)
+        self.assertAlmostEqual(float(re.search(r'"vfov": ([\d.]+)', said)[1]), 20, delta=1e-6)
+
     def test_exposure(self):
         lines = self.view("rest", "key +", "key +", "key +", "rest", "key 0", "rest", "quit",
                           options=("--error", "5%", "--transfer", "linear"))
@@ -183,9 +207,10 @@ class Scripted(ProgramTest):
         self.write("script", "quit\n")
         for environment, code, words in (({"FAKE_WINDOW_FAILS": "open"}, 1, "there is no room for it"),
                                          ({"FAKE_WINDOW_FAILS": "ready"}, 1, "there is no screen"),
+                                         ({"FAKE_WINDOW_FAILS": "show"}, 1, "the window: the screen has gone"),
                                          ({"BALLPARK_WINDOW": "/nowhere.so"}, 2, "libsdl2-dev"),
                                          ({"BALLPARK_WINDOW": "libc.so.6"}, 2, "not a module of this version")):
-            self.view("quit", code=code, environment=environment)
+            self.view("rest", "quit", code=code, environment=environment)
             self.assertIn(words, self.result.errors)
         # Without a screen, the error is all that is said, before any work.
         result = self.run_program("view", "nowhere.json", environment={"BALLPARK_WINDOW": FAKE_WINDOW,
