@@ -147,8 +147,8 @@ bool bp_focusers_explain(const BpScene *scene, size_t size, char *reason) {
         if (pairs == 0)
             snprintf(reason, size, "no lamp and no disc is small, seen from a ball of glass or a mirror");
         else
-            snprintf(reason, size, "as --caustics decides: %zu ball%s of glass or mirror%s, %zu light%s",
-                     count, bp_plural(count), bp_plural(count), lights, bp_plural(lights));
+            snprintf(reason, size, "where they pay: %zu ball%s of glass or mirror%s, %zu light%s", count,
+                     bp_plural(count), bp_plural(count), lights, bp_plural(lights));
         return pairs > 0;
     }
     return false;
