@@ -1,7 +1,7 @@
 /* count_exit.h: a process that ends by _exit() counts too; put before every source by the preset `coverage`.
  *
- * Children of a process end so (cli/process/child_process.c), and what they did would be lost: gcov writes its
- * counts down at exit(). Before fork() it has written those of the parent and begins anew in the child.
+ * Children of a process end so (cli/process/child_process.c), and what they did would be lost: gcov writes
+ * its counts down at exit(). Before fork() it has written those of the parent and begins anew in the child.
  * Knows: gcov.   Does not know: what is counted. */
 #ifndef TESTS_SUPPORT_COUNT_EXIT_H
 #define TESTS_SUPPORT_COUNT_EXIT_H
