@@ -2,7 +2,8 @@
  *
  * In:    what a pilot has found, with such rays and without.
  * Out:   whether they take away more noise than the time that they cost would.
- * Knows: roughly how bright the picture is.   Does not know: devices, so that a scene has one answer on all.
+ * Knows: roughly how bright the picture is.   Does not know: kernels. So a scene has one answer on all
+ * devices.
  *
  * At equal time, noise falls if the variance of a sample falls by more than its time grows. Of the variance,
  * the pilot knows the part that is left to chance; to it come the rims of lights in the picture, and all the
