@@ -105,6 +105,18 @@ static BpStatus find_roles(const Input *input, Table *table, BpError *err) {
     return find_unit(input, table, err);
 }
 
+/* Whether the first line is an empty field and 0, 1, 2, ..., which pandas writes as names of an array's
+ * columns: numbers of rows stand below the empty one. */
+static bool is_counted(const Table *table) {
+    char number[16];
+    bool counted = table->count > 1 && table->names[0][0] == '\0';
+    for (int i = 1; i < table->count && counted; i++) {
+        snprintf(number, sizeof number, "%d", i - 1);
+        counted = strcmp(table->names[i], number) == 0;
+    }
+    return counted;
+}
+
 /* The names of the columns, from a line of names, or of numbers: then they are x, y, z and radius. */
 static BpStatus take_header(const Input *input, const char *line, bool named, Table *table, BpError *err) {
     static char *const plain[] = {"x", "y", "z", "radius"};
@@ -120,6 +132,11 @@ static BpStatus take_header(const Input *input, const char *line, bool named, Ta
     if (table->count > COLUMNS_MAX)
         return input_fail(input, true, err, "found %d columns, expected at most %d", table->count,
                           COLUMNS_MAX);
+    if (!named && table->count <= COLUMNS_MAX && is_counted(table))
+        return input_fail(
+            input, true, err,
+            "found numbers as names of columns behind one without a name, as pandas writes them, "
+            "expected names such as x,y,z,radius");
     if (!named && (table->count < 2 || table->count > 4))
         return input_fail(input, true, err,
                           "found %d columns without names, expected a first line that names them, such as "

@@ -419,6 +419,14 @@ class Csv(TableTest):
         self.places("a.csv", "x,y,z\n0,0,0\n1,,2\n1,2,\nNA,1,2\n1,null,2\n1,2,#N/A\n#DIV/0!,2,3\n3,4,5\n", two, "6 points without a place left out")
         self.places("a.csv", "nan nan nan\n0 0 0\n3 4 5\n", two, "columns without names read as x, y, z, radius; 1 point without a place left out")
 
+    def test_numbers_as_names(self):
+        """pandas writes an array with its rows and columns numbered: read as points, the first coordinate would be the row."""
+        for text in (",0,1,2\n0,1.5,2.5,3.5\n1,4.5,5.5,6.5\n", ";0;1;2;3\n0;1,5;2,5;3,5;1\n", ",0,1\n0,1,2\n", "\t0\t1\t2\n0\t1\t2\t3\n"):
+            self.refuse("a.csv", text, "numbers as names of columns")
+        # The first point has no place.
+        self.assertEqual(self.of("a.csv", ",0,2\n1,2,3\n")["positions"], [[1, 2, 3]])
+        self.assertEqual(self.of("a.csv", "0,1,2\n1.5,2.5,3.5\n")["positions"], [[0, 1, 2], [1.5, 2.5, 3.5]])
+
     def test_quotes(self):
         table = io.StringIO()
         rows = [["x", "y", "z", "type", "q"], [1, 2, 3, "a, b", 4], [5, 6, 7, 'say "hi", twice', 8], [9, 10, 11, "it's; #", 12]]
