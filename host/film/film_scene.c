@@ -191,7 +191,8 @@ static uint64_t hash_material(const BpMaterial *material) {
         if (member->form != BP_FORM_CHOICE)
             hash = mix_reals(hash, bp_member_values_of(material, (BpMember)m),
                              member->form == BP_FORM_COLOUR ? 3 : 1);
-        else if (member->moot == BP_MEMBER_COUNT || *bp_member_values_of(material, member->moot) > 0)
+        else if (member->ignored_if_zero == BP_MEMBER_COUNT ||
+                 *bp_member_values_of(material, member->ignored_if_zero) > 0)
             hash = mix(hash, bp_member_choice(material, (BpMember)m));
     }
     return hash;

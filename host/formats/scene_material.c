@@ -12,7 +12,7 @@
 static const char *const kind_names[] = {BP_MATERIAL_LIST(TYPE_NAME)};
 #define COLOUR_NAME(identifier, name, field, low, high, range, needed, place) name,
 #define NUMBER_NAME(identifier, name, field, low, high, range, needed, place, cap) name,
-#define CHOICE_NAME(identifier, name, field, place, moot, names) name,
+#define CHOICE_NAME(identifier, name, field, place, ignored_if_zero, names) name,
 static const char *const member_names[] = {"type", BP_MEMBER_LIST(COLOUR_NAME, NUMBER_NAME, CHOICE_NAME)};
 
 /* The first kind that has the name of this one. */

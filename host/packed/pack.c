@@ -278,7 +278,7 @@ static BpStatus pack_environment(const BpScene *scene, bool sample, BpPacked *pa
 #define MATERIAL_NOWHERE 0xffu
 #define COLOUR_PLACE(identifier, name, field, low, high, range, needed, place) MATERIAL_##place,
 #define NUMBER_PLACE(identifier, name, field, low, high, range, needed, place, cap) MATERIAL_##place,
-#define CHOICE_PLACE(identifier, name, field, place, moot, names) MATERIAL_##place,
+#define CHOICE_PLACE(identifier, name, field, place, ignored_if_zero, names) MATERIAL_##place,
 static const unsigned places[] = {BP_MEMBER_LIST(COLOUR_PLACE, NUMBER_PLACE, CHOICE_PLACE)};
 
 static void pack_material(const BpMaterial *material, bool inside_out, PackedMaterial *numbers,

@@ -19,7 +19,7 @@ typedef struct Job {
     BpSums *sums;
     Camera camera;
     atomic_uint next_row;
-    atomic_ullong cut_paths;
+    atomic_ullong truncated_paths;
 } Job;
 
 static void render_pixel(Job *job, uint32_t column, uint32_t row) {
@@ -33,7 +33,7 @@ static void render_pixel(Job *job, uint32_t column, uint32_t row) {
         Path path = {0};
         const Vec color = bp_ref_camera_color(job->scene, &ray, height, options->max_depth, &random, &path);
         bp_pixel_sums_add(&job->sums->pixels[pixel], (double[3]){color.x, color.y, color.z}, path.segments);
-        if (path.cut) atomic_fetch_add(&job->cut_paths, 1);
+        if (path.cut) atomic_fetch_add(&job->truncated_paths, 1);
     }
 }
 
@@ -57,13 +57,13 @@ static unsigned thread_count(const BpReferenceOptions *options, uint32_t rows) {
 }
 
 BpStatus bp_reference_render(const BpScene *scene, const BpReferenceOptions *options, BpSums *sums,
-                             uint64_t *cut_paths, BpError *err) {
+                             uint64_t *truncated_paths, BpError *err) {
     if (sums->width != scene->camera.width || sums->height != scene->camera.height)
         return bp_fail(err, BP_ERR_USAGE, "reference: sums of %u x %u pixels for a picture of %u x %u",
                        sums->width, sums->height, scene->camera.width, scene->camera.height);
     Job job = {.scene = scene, .options = options, .sums = sums, .camera = bp_ref_camera(&scene->camera)};
     atomic_init(&job.next_row, 0);
-    atomic_init(&job.cut_paths, 0);
+    atomic_init(&job.truncated_paths, 0);
 
     /* The recursion is as deep as the longest path, so every thread gets a stack that holds it. */
     pthread_attr_t attributes;
@@ -82,6 +82,6 @@ BpStatus bp_reference_render(const BpScene *scene, const BpReferenceOptions *opt
             BP_REMEDY_SMALLER_DEPTH, err, BP_ERR_MEMORY,
             "the reference tracer could not start a thread, whose stack for paths of %u segments may not fit",
             options->max_depth);
-    if (cut_paths != NULL) *cut_paths += atomic_load(&job.cut_paths);
+    if (truncated_paths != NULL) *truncated_paths += atomic_load(&job.truncated_paths);
     return BP_OK;
 }

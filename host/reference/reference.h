@@ -26,9 +26,9 @@ typedef struct BpReferenceOptions {
 
 /* Adds `samples` samples of every pixel to `sums`, which has the scene camera's size. Samples s of two calls
  * with the same seed are the same; the sums depend neither on the number of threads nor on how calls divide
- * the samples. `cut_paths`: Optional; added to: paths that max_depth ended. BP_ERR_USAGE (sizes differ),
- * BP_ERR_MEMORY (no thread could be started). */
+ * the samples. `truncated_paths`: Optional; added to: paths that max_depth ended. BP_ERR_USAGE (sizes
+ * differ), BP_ERR_MEMORY (no thread could be started). */
 BpStatus bp_reference_render(const BpScene *scene, const BpReferenceOptions *options, BpSums *sums,
-                             uint64_t *cut_paths, BpError *err);
+                             uint64_t *truncated_paths, BpError *err);
 
 #endif

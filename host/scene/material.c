@@ -31,7 +31,7 @@ const size_t bp_material_type_count = sizeof bp_material_types / sizeof bp_mater
 /* A choice is an enumeration, read and written as the number that it is. */
 #define CHECK_COLOUR(identifier, name, field, low, high, range, needed, place)
 #define CHECK_NUMBER(identifier, name, field, low, high, range, needed, place, cap)
-#define CHECK_CHOICE(identifier, name, field, place, moot, names)                                            \
+#define CHECK_CHOICE(identifier, name, field, place, ignored_if_zero, names)                                 \
     _Static_assert(sizeof((BpMaterial){0}.field) == sizeof(unsigned), "a choice has the size of a number");
 BP_MEMBER_LIST(CHECK_COLOUR, CHECK_NUMBER, CHECK_CHOICE)
 
@@ -54,11 +54,11 @@ const BpMemberInfo bp_members[BP_MEMBER_COUNT] = {
                                 .cap = (cap_),                                                               \
                                 .range = (range_),                                                           \
                                 .needed = (needed_)},
-#define CHOICE(identifier, name_, field, place, moot_, names_)                                               \
+#define CHOICE(identifier, name_, field, place, ignored_if_zero_, names_)                                    \
     [BP_MEMBER_##identifier] = {.name = (name_),                                                             \
                                 .form = BP_FORM_CHOICE,                                                      \
                                 .offset = offsetof(BpMaterial, field),                                       \
-                                .moot = (moot_),                                                             \
+                                .ignored_if_zero = (ignored_if_zero_),                                       \
                                 .names = (names_),                                                           \
                                 .name_count = sizeof(names_) / sizeof((names_)[0])},
     BP_MEMBER_LIST(COLOUR, NUMBER, CHOICE)};

@@ -76,8 +76,8 @@ typedef enum BpMaterialKind {
  * NUMBER(identifier, name, field, low, high, range, needed, place, cap): one number; what is above `cap`
  * counts as `cap`.
  *
- * CHOICE(identifier, name, field, place, moot, names): one of `names`, the first where there is none. It has
- * no effect where the member `moot`, a number, is 0.
+ * CHOICE(identifier, name, field, place, ignored_if_zero, names): one of `names`, the first where there is
+ * none. It has no effect where the member `ignored_if_zero`, a number, is 0.
  *
  * `place`: MATERIAL_... of scene_types.h, where the kernel has the member; NOWHERE: it stands elsewhere. */
 #define BP_MEMBER_LIST(COLOUR, NUMBER, CHOICE)                                                               \
@@ -100,7 +100,7 @@ typedef enum BpMember {
 #define BP_MEMBER_COLOUR(identifier, name, field, low, high, range, needed, place) BP_MEMBER_##identifier,
 #define BP_MEMBER_NUMBER(identifier, name, field, low, high, range, needed, place, cap)                      \
     BP_MEMBER_##identifier,
-#define BP_MEMBER_CHOICE(identifier, name, field, place, moot, names) BP_MEMBER_##identifier,
+#define BP_MEMBER_CHOICE(identifier, name, field, place, ignored_if_zero, names) BP_MEMBER_##identifier,
     BP_MEMBER_LIST(BP_MEMBER_COLOUR, BP_MEMBER_NUMBER, BP_MEMBER_CHOICE)
 #undef BP_MEMBER_COLOUR
 #undef BP_MEMBER_NUMBER
@@ -116,7 +116,7 @@ typedef struct BpMemberInfo {
     size_t offset;         /* in BpMaterial */
     double low, high, cap; /* of colours and numbers */
     const char *range, *needed;
-    BpMember moot;            /* of choices */
+    BpMember ignored_if_zero; /* of choices */
     const char *const *names; /* of choices */
     size_t name_count;
 } BpMemberInfo;
