@@ -228,9 +228,10 @@ static bool scatter(Walk *walk, const BpMaterial *material, const Ray *ray, cons
     case BP_MATERIAL_DIFFUSE_LIGHT:
     case BP_MATERIAL_NORMALS:
     case BP_MATERIAL_INTERFACE:
-    case BP_MATERIAL_OREN_NAYAR: /* not drawn by this peer, like the next two */
+    case BP_MATERIAL_OREN_NAYAR: /* not drawn by this peer, like the next three */
     case BP_MATERIAL_ROUGH_METAL:
     case BP_MATERIAL_GLOSSY:
+    case BP_MATERIAL_ROUGH_DIELECTRIC:
         break;
     }
     return false;

@@ -134,5 +134,7 @@ BpStatus bp_parse_material(const BpNode *node, const BpScene *scene, BpMaterial 
     /* A mirror, which light can be traced through. */
     if (material->kind == BP_MATERIAL_ROUGH_METAL && material->roughness == 0)
         material->kind = BP_MATERIAL_METAL;
+    if (material->kind == BP_MATERIAL_ROUGH_DIELECTRIC && material->roughness == 0)
+        material->kind = BP_MATERIAL_DIELECTRIC, material->fresnel = BP_FRESNEL_EXACT; /* as facets have it */
     return BP_OK;
 }

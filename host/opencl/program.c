@@ -78,6 +78,7 @@ static const struct {
     {"bsdf/oren_nayar.cl", IN_ALL},
     {"bsdf/rough_metal.cl", IN_ALL},
     {"bsdf/glossy.cl", IN_ALL},
+    {"bsdf/rough_dielectric.cl", IN_ALL},
     {"medium/phase.cl", IN_ALL},
     {"bsdf/scatter.cl", IN_ALL},
     {"integrator/scene.cl", IN_ALL},

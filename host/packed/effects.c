@@ -238,7 +238,7 @@ static bool explain_lamps(const BpScene *scene, size_t size, char *reason) {
                  enclosing != SIZE_MAX ? "the only lamp surrounds everything: every path finds it"
                                        : NO_LAMP_REASON);
     else if (lit == 0 && !media)
-        snprintf(reason, size, "%s, but nothing matte, no metal of fuzz 1/64 or roughness 1/16", all);
+        snprintf(reason, size, "%s, but nothing matte, nothing of fuzz 1/64 or roughness 1/16", all);
     else if (!sky && lamps == 1 && lit == 1 && both == 1 && !media)
         snprintf(reason, size, "the only lamp is also the only surface that could be lit");
     else if (!sky && sky_outshines_lamps(scene))

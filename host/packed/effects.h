@@ -25,6 +25,8 @@
     X(OREN_NAYAR, "oren_nayar", "rough matte surfaces", "rough matte lobes are left out", "")                \
     X(ROUGH_METAL, "rough_metal", "metal of tiny mirrors that face all ways", "rough metal is left out", "") \
     X(GLOSSY, "glossy", "matte surfaces under a clear coat", "coats are left out", "")                       \
+    X(ROUGH_DIELECTRIC, "rough_dielectric", "glass with a rough surface, such as frosted glass",             \
+      "rough glass is left out", "")                                                                         \
     X(LENS, "lens", "a lens with an aperture: defocus blur", "", "")                                         \
     X(LAMPS, "light_sampling", "rays to lamps, from surfaces that scatter into many directions", "", "")     \
     X(DISCS, "discs", "lamps at infinity: discs in the sky", "", "")                                         \

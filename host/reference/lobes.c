@@ -189,3 +189,84 @@ bool bp_ref_scatter_glossy(double roughness, double index, Vec albedo, Vec norma
                     albedo.z * out_of / (1 - albedo.z * back)};
     return true;
 }
+
+/* Which facet leads light from `in` to `out`, on the normal's side; the square of the length of what lies
+ * along it. */
+static Vec facet_between(double ratio, Vec normal, Vec out, Vec in, double *length2_of) {
+    const Vec both = dot(in, normal) > 0 ? add(out, in) : add(scale(ratio, out), in);
+    *length2_of = length2(both);
+    return unit(dot(both, normal) < 0 ? scale(-1, both) : both);
+}
+
+double bp_ref_rough_dielectric(double roughness, double ratio, Vec normal, Vec out, Vec in) {
+    const double cos_out = dot(out, normal), cos_in = fabs(dot(in, normal)), alpha = roughness * roughness;
+    if (cos_out <= 0 || cos_in <= 0) return 0;
+    double both2;
+    const Vec facet = facet_between(ratio, normal, out, in, &both2);
+    const double from = dot(out, facet), to = dot(in, facet),
+                 reflected = bp_ref_fresnel(fmin(from, 1), ratio);
+    if (dot(in, normal) > 0) return bp_ref_rough_metal(roughness, normal, out, in) * reflected;
+    if (from <= 0 || to >= 0) return 0;
+    const double cos_h = dot(facet, normal), cos2 = cos_h * cos_h;
+    const double tangent2 = (1 - cos2) / cos2, spread = alpha * (1 + tangent2 / (alpha * alpha));
+    const double d = 1 / (PI * spread * spread * cos2 * cos2);
+    const double seen = 1 / (1 + hidden(alpha, cos_out)) / (1 + hidden(alpha, cos_in));
+    /* Equation 21 has the square of the index on the side of `out`, which is that of `in` for radiance over
+     * it. */
+    return from * -to / (cos_out * cos_in) * (1 - reflected) * seen * d / both2;
+}
+
+/* Where a distribution that rises by z + sin z cos z from -pi / 2 to pi / 2 has reached the share u: Newton's
+ * method, kept between bounds. */
+static double invert_slope(double u) {
+    double low = -PI / 2, high = PI / 2, z = 0, step = 1;
+    while (fabs(step) > 1e-14 && high - low > 1e-14) {
+        const double excess = (z + sin(z) * cos(z)) / PI + 0.5 - u;
+        if (excess > 0) high = z;
+        if (excess <= 0) low = z;
+        const double next = z - excess * PI / (2 * cos(z) * cos(z) + 1e-300);
+        step = (next > low && next < high ? next : 0.5 * (low + high)) - z;
+        z += step;
+    }
+    return z;
+}
+
+/* A facet that is seen from `out`, by its slopes along that direction and across it: stretched by 1 / alpha,
+ * all are those of alpha 1, of which the one along has a distribution of sines and the other one that is
+ * inverted numerically (Heitz and d'Eon, "Importance Sampling Microfacet-Based BSDFs using the Distribution
+ * of Visible Normals", 2014, have a fit of it). */
+static Vec facet_by_slopes(double alpha, Vec normal, Vec out, Random *random) {
+    const double cosine = fmax(dot(out, normal), 1e-12);
+    Vec along = sub(out, scale(cosine, normal));
+    if (length2(along) < 1e-24) along = cross(normal, fabs(normal.x) < 0.5 ? (Vec){1, 0, 0} : (Vec){0, 1, 0});
+    along = unit(along);
+    const Vec aside = cross(normal, along);
+    const double angle = atan2(alpha * sqrt(fmax(0, 1 - cosine * cosine)), cosine);
+    const double u = random_real(random), v = random_real(random);
+    const double slope_along = tan(asin(fmax(-1, u * (1 + cos(angle)) - cos(angle))) - angle);
+    const double slope_aside = sqrt(1 + slope_along * slope_along) * tan(invert_slope(v));
+    return unit(sub(normal, add(scale(alpha * slope_along, along), scale(alpha * slope_aside, aside))));
+}
+
+bool bp_ref_scatter_rough_dielectric(double roughness, double ratio, Vec normal, Vec incoming, Random *random,
+                                     Vec *direction, Vec *weight) {
+    if (ratio == 1) { /* as of smooth glass: there is no surface */
+        *direction = incoming;
+        return true;
+    }
+    const double alpha = roughness * roughness;
+    const Vec facet = facet_by_slopes(alpha, normal, scale(-1, incoming), random);
+    const double cosine = fmin(-dot(incoming, facet), 1), cos_out = fmax(-dot(incoming, normal), 1e-12);
+    const bool reflects = random_real(random) < bp_ref_fresnel(cosine, ratio);
+    if (reflects) {
+        *direction = reflect(incoming, facet);
+    } else {
+        const Vec along = scale(ratio, add(incoming, scale(cosine, facet)));
+        *direction = add(along, scale(-sqrt(fmax(0, 1 - length2(along))), facet));
+    }
+    const double cos_in = dot(*direction, normal), shadow = 1 + hidden(alpha, fabs(cos_in));
+    if (reflects != (cos_in > 0)) return false;
+    *weight = scale(reflects ? (1 + hidden(alpha, cos_out)) / (hidden(alpha, cos_out) + shadow) : 1 / shadow,
+                    *weight);
+    return true;
+}

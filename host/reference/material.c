@@ -101,6 +101,12 @@ bool bp_ref_scatter(const BpScene *scene, const Ray *ray, const Hit *hit, Random
         return bp_ref_scatter_glossy(hit->material->roughness, hit->material->refraction_index,
                                      albedo_of(scene, hit), hit->normal, incoming, random, direction,
                                      attenuation);
+    case BP_MATERIAL_ROUGH_DIELECTRIC:
+        *attenuation = (Vec){1, 1, 1};
+        return bp_ref_scatter_rough_dielectric(hit->material->roughness,
+                                               hit->front_face ? 1 / hit->material->refraction_index
+                                                               : hit->material->refraction_index,
+                                               hit->normal, incoming, random, direction, attenuation);
     case BP_MATERIAL_INTERFACE:
         *attenuation = (Vec){1, 1, 1};
         *direction = incoming;

@@ -71,6 +71,12 @@ double bp_ref_glossy_coat(double roughness, double index, Vec normal, Vec out, V
 double bp_ref_glossy_base(double albedo, double index, Vec normal, Vec out, Vec in);
 bool bp_ref_scatter_glossy(double roughness, double index, Vec albedo, Vec normal, Vec incoming,
                            Random *random, Vec *direction, Vec *weight);
+/* Glass of such facets (Walter et al., 2007, equations 20 and 21), `ratio` the index on the normal's side
+ * over that of the other: its value for radiance over the squared index; `in` on either side. A direction,
+ * and *weight times what is left. */
+double bp_ref_rough_dielectric(double roughness, double ratio, Vec normal, Vec out, Vec in);
+bool bp_ref_scatter_rough_dielectric(double roughness, double ratio, Vec normal, Vec incoming, Random *random,
+                                     Vec *direction, Vec *weight);
 bool bp_ref_scatter_rough_metal(double roughness, Vec normal, Vec incoming, Random *random, Vec *direction,
                                 Vec *weight);
 

@@ -95,6 +95,7 @@ bool bp_scene_always_scatters(const BpScene *scene) {
     for (size_t m = 0; m < scene->material_count; m++) {
         const BpMaterial *material = &scene->materials[m];
         if (!bp_material_is(material->kind, BP_SCATTERS) || material->fuzz > 0 ||
+            (material->roughness > 0 && material->kind != BP_MATERIAL_OREN_NAYAR) || /* facets hide light */
             material->total_reflection == BP_TOTAL_ABSORB)
             return false;
         if (bp_material_has(material->kind, BP_MEMBER_ALBEDO) && material->texture[BP_MEMBER_ALBEDO] != 0)

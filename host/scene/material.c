@@ -115,5 +115,7 @@ bool bp_material_is_lit(const BpMaterial *material) {
     return material->kind == BP_MATERIAL_LAMBERTIAN || material->kind == BP_MATERIAL_OREN_NAYAR ||
            material->kind == BP_MATERIAL_GLOSSY ||
            (material->kind == BP_MATERIAL_ROUGH_METAL && material->roughness >= BP_LIT_ROUGHNESS_MIN) ||
+           (material->kind == BP_MATERIAL_ROUGH_DIELECTRIC && material->roughness >= BP_LIT_ROUGHNESS_MIN &&
+            fmax(material->refraction_index, 1 / material->refraction_index) >= BP_LIT_INDEX_MIN) ||
            (material->kind == BP_MATERIAL_METAL && material->fuzz >= BP_LIT_FUZZ_MIN);
 }

@@ -22,6 +22,9 @@ struct BpTexture;                     /* texture.h */
 #define BP_LIT_FUZZ_MIN (1.0 / 64)
 /* The same of less roughness (kernels/bsdf/rough_metal.cl, LIT_ROUGHNESS_MIN). */
 #define BP_LIT_ROUGHNESS_MIN (1.0 / 16)
+/* And of rough glass whose index over that of the outside, or its inverse, is less
+ * (kernels/bsdf/rough_dielectric.cl). */
+#define BP_LIT_INDEX_MIN 1.0625
 
 /* Traits of a kind of material, bits of BpMaterialType.traits. */
 enum {
@@ -54,7 +57,10 @@ enum {
     X(ROUGH_METAL, "metal", ROUGH_METAL, ROUGH_METAL, BP_SCATTERS, 1, BP_HAS(ALBEDO) | BP_HAS(ROUGHNESS),    \
       BP_HAS(ALBEDO) | BP_HAS(ROUGHNESS), "reflects it")                                                     \
     X(GLOSSY, "glossy", GLOSSY, GLOSSY, BP_SCATTERS, 1,                                                      \
-      BP_HAS(ALBEDO) | BP_HAS(ROUGHNESS) | BP_HAS(REFRACTION_INDEX), BP_HAS(ALBEDO), "scatters it")
+      BP_HAS(ALBEDO) | BP_HAS(ROUGHNESS) | BP_HAS(REFRACTION_INDEX), BP_HAS(ALBEDO), "scatters it")          \
+    X(ROUGH_DIELECTRIC, "dielectric", ROUGH_DIELECTRIC, ROUGH_DIELECTRIC, BP_SCATTERS | BP_HAS_INSIDE, 1,    \
+      BP_HAS(REFRACTION_INDEX) | BP_HAS(ROUGHNESS), BP_HAS(REFRACTION_INDEX) | BP_HAS(ROUGHNESS),            \
+      "refracts it")
 
 typedef enum BpMaterialKind {
 #define BP_MATERIAL_ENUM(identifier, name, kernel_kind, effect, traits, weight, members, needed, outcome)    \
@@ -159,6 +165,9 @@ bool bp_material_varies(const BpMaterial *material);
  * than air. */
 #define BP_COAT_INDEX 1.5 /* by default */
 #define BP_COAT_INDEX_MAX 10
+
+/* Rough glass beyond this index, or below its inverse, is not tested. */
+#define BP_ROUGH_INDEX_MAX 10
 
 /* The share of light from all sides, by Lambert's law, that a smooth coat lets in, of Fresnel's equations;
  * `index` from 1 to BP_COAT_INDEX_MAX. Within 1e-6. */

@@ -219,6 +219,12 @@ static bool material_fault(const BpScene *scene, const BpMaterial *material, BpF
                                                      member->low, member->high, member->range))
             return true;
     }
+    if (material->kind == BP_MATERIAL_ROUGH_DIELECTRIC)
+        return outside(
+            fault, BP_FAULT_MATERIAL, "refraction_index", material->refraction_index,
+            1.0 / BP_ROUGH_INDEX_MAX, BP_ROUGH_INDEX_MAX,
+            "the index of the inside over that of the outside, from 0.1 to 10 where the surface is "
+            "rough");
     return material->kind == BP_MATERIAL_GLOSSY &&
            outside(fault, BP_FAULT_MATERIAL, "refraction_index", material->refraction_index, 1,
                    BP_COAT_INDEX_MAX,

@@ -21,7 +21,7 @@ typedef struct Surface {
     vbool enters;  /* the path comes from outside */
     Vec3 albedo;
     vreal fuzz, refraction_index;
-#if EFFECT_OREN_NAYAR || EFFECT_ROUGH_METAL || EFFECT_GLOSSY
+#if LOBES_OF_TWO_DIRECTIONS
     vreal roughness;
 #endif
 #if EFFECT_GLOSSY
@@ -45,7 +45,9 @@ typedef struct Lobe {
     Vec3 albedo; /* of lobes whose weight depends on the direction */
 #endif
 #if EFFECT_GLOSSY
-    vreal refraction_index, lets_in; /* of coats */
+    vreal refraction_index, lets_in; /* of coats; of rough glass the index of the far side over the near one */
+#elif EFFECT_ROUGH_DIELECTRIC
+    vreal refraction_index;
 #endif
     vreal fuzz; /* of metal; of what is rough the roughness or alpha; of a medium the anisotropy; at the camera the sine of the angle from the axis to a pixel's corner */
     vuint kind; /* LOBE_... */
@@ -61,6 +63,7 @@ enum {
     LOBE_ROUGH_METAL,
     LOBE_GLOSSY_COAT,
     LOBE_GLOSSY_BASE,
+    LOBE_ROUGH_DIELECTRIC,
     LOBE_PHASE,
     LOBE_NONE,
     LOBE_PIXEL
@@ -101,6 +104,8 @@ static BsdfSample bsdf_sample_reflected(const Surface *surface, Vec3 direction) 
 #if EFFECT_GLOSSY
     sample.lobe.refraction_index = surface->refraction_index;
     sample.lobe.lets_in = surface->lets_in;
+#elif EFFECT_ROUGH_DIELECTRIC
+    sample.lobe.refraction_index = surface->refraction_index;
 #endif
     sample.lobe.fuzz = splat(1);
     sample.lobe.kind = splat_uint(LOBE_NONE);

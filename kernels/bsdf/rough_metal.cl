@@ -13,7 +13,7 @@
  * Caps", 2023). That leaves the density D / (2 (co + qo)), so the weight f ci / density is the albedo times
  * (co + qo) ci / (co qi + ci qo), never more than the albedo. What a facet sends below the surface is lost, and so is what it
  * sends into another: no light is reflected twice between facets. */
-#if EFFECT_ROUGH_METAL || EFFECT_GLOSSY
+#if EFFECT_ROUGH_METAL || EFFECT_GLOSSY || EFFECT_ROUGH_DIELECTRIC
 #define LIT_ROUGHNESS_MIN R(0x1p-4) /* with less, rays to lamps gain nothing, and float does not hold the densities well */
 #define GRAZING_COSINE R(0x1p-40)   /* of directions that rounding puts on the horizon or below */
 

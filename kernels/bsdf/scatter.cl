@@ -6,7 +6,7 @@
 
 /* If the scene has one kind of material only, there is nothing to choose. */
 #define KIND_COUNT (EFFECT_LAMBERTIAN + EFFECT_METAL + EFFECT_DIELECTRIC + EFFECT_NORMALS + EFFECT_EMISSION + EFFECT_MEDIA + \
-                    EFFECT_OREN_NAYAR + EFFECT_ROUGH_METAL + EFFECT_GLOSSY)
+                    EFFECT_OREN_NAYAR + EFFECT_ROUGH_METAL + EFFECT_GLOSSY + EFFECT_ROUGH_DIELECTRIC)
 #if KIND_COUNT == 1
 #define has_kind(surface, wanted) vbool_all
 #else
@@ -29,6 +29,8 @@ static Lobe choose_lobe(vbool mask, const Lobe *a, const Lobe *b) {
 #if EFFECT_GLOSSY
     chosen.refraction_index = choose(mask, a->refraction_index, b->refraction_index);
     chosen.lets_in = choose(mask, a->lets_in, b->lets_in);
+#elif EFFECT_ROUGH_DIELECTRIC
+    chosen.refraction_index = choose(mask, a->refraction_index, b->refraction_index);
 #endif
     chosen.fuzz = choose(mask, a->fuzz, b->fuzz);
     chosen.kind = choose_uint(mask, a->kind, b->kind);
@@ -80,6 +82,9 @@ static BsdfSample scatter(const Surface *surface, SampleKey key, vuint bounce) {
 #if EFFECT_GLOSSY
     SCATTER_BY(KIND_GLOSSY, glossy_sample)
 #endif
+#if EFFECT_ROUGH_DIELECTRIC
+    SCATTER_BY(KIND_ROUGH_DIELECTRIC, rough_dielectric_sample)
+#endif
     return sample;
 }
 
@@ -128,6 +133,10 @@ static vreal scatter_pdf(const Lobe *lobe, Vec3 direction, int drawn) {
     const vbool base = vbool_of_uint(lobe->kind == splat_uint(LOBE_GLOSSY_BASE));
     if (any_lane(base)) density = choose(base, glossy_base_pdf(lobe, direction), density);
 #endif
+#if EFFECT_ROUGH_DIELECTRIC
+    const vbool glass = is_rough_dielectric(lobe);
+    if (any_lane(glass)) density = choose(glass, rough_dielectric_pdf(lobe, direction), density);
+#endif
 #if EFFECT_MEDIA
     const vbool phase = is_phase(lobe);
     if (any_lane(phase)) density = choose(phase, phase_pdf(lobe->fuzz, lobe->axis, direction), density);
@@ -136,20 +145,33 @@ static vreal scatter_pdf(const Lobe *lobe, Vec3 direction, int drawn) {
 }
 
 #if WEIGHTED_LOBES
+/* What facets that reflect or refract leave, before a coat takes its part of it. */
+#if EFFECT_ROUGH_DIELECTRIC
+#define OR_GLASS(lobe) | is_rough_dielectric(lobe)
+static Vec3 facets_weight(const Lobe *lobe, Vec3 direction) {
+    const vbool glass = is_rough_dielectric(lobe);
+    const Vec3 weight = rough_metal_weight(lobe, direction);
+    if (!any_lane(glass)) return weight;
+    return choose3(glass, rough_dielectric_weight(lobe, direction), weight);
+}
+#else
+#define OR_GLASS(lobe)
+#define facets_weight rough_metal_weight
+#endif
 /* The lobes whose weight depends on the direction, and that weight. */
 #if EFFECT_GLOSSY
 static vbool is_weighted(const Lobe *lobe) {
-    return vbool_of_uint(lobe->kind == splat_uint(LOBE_ROUGH_METAL)) | vbool_of_uint(lobe->kind == splat_uint(LOBE_GLOSSY_COAT));
+    return vbool_of_uint(lobe->kind == splat_uint(LOBE_ROUGH_METAL)) | vbool_of_uint(lobe->kind == splat_uint(LOBE_GLOSSY_COAT)) OR_GLASS(lobe);
 }
 static Vec3 scatter_weight(const Lobe *lobe, Vec3 direction) {
     const vbool coat = vbool_of_uint(lobe->kind == splat_uint(LOBE_GLOSSY_COAT));
-    const Vec3 weight = rough_metal_weight(lobe, direction);
+    const Vec3 weight = facets_weight(lobe, direction);
     if (!any_lane(coat)) return weight;
     return choose3(coat, scale3(coat_part(lobe->refraction_index, lobe->axis, lobe->outgoing, direction), weight), weight);
 }
 #else
-static vbool is_weighted(const Lobe *lobe) { return vbool_of_uint(lobe->kind == splat_uint(LOBE_ROUGH_METAL)); }
-static Vec3 scatter_weight(const Lobe *lobe, Vec3 direction) { return rough_metal_weight(lobe, direction); }
+static vbool is_weighted(const Lobe *lobe) { return vbool_of_uint(lobe->kind == splat_uint(LOBE_ROUGH_METAL)) OR_GLASS(lobe); }
+static Vec3 scatter_weight(const Lobe *lobe, Vec3 direction) { return facets_weight(lobe, direction); }
 #endif
 #endif
 #endif

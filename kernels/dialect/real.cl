@@ -60,7 +60,7 @@ typedef REFINED refined;
 /* Lamps are sampled where the scene has any, at surfaces that scatter into many directions and in media. They are
  * spheres, in a tree, discs in the sky, and an image around the scene. */
 #define IS_LIT (EFFECT_LAMBERTIAN || EFFECT_METAL || EFFECT_MEDIA || EFFECT_OREN_NAYAR || EFFECT_ROUGH_METAL || \
-                EFFECT_GLOSSY)
+                EFFECT_GLOSSY || EFFECT_ROUGH_DIELECTRIC)
 #define SAMPLES_LAMP_TREE (EFFECT_LAMPS && EFFECT_EMISSION && IS_LIT)
 #define SAMPLES_DISCS (EFFECT_LAMPS && EFFECT_DISCS && IS_LIT)
 #define SAMPLES_ENVIRONMENT (EFFECT_LAMPS && EFFECT_ENVIRONMENT && IS_LIT)
@@ -69,9 +69,9 @@ typedef REFINED refined;
 /* Light that such lamps send through balls of glass and off mirrors is sampled too. */
 #define SAMPLES_CAUSTICS (EFFECT_CAUSTICS && (SAMPLES_LAMP_TREE || SAMPLES_DISCS) && (EFFECT_METAL || EFFECT_DIELECTRIC))
 /* Some lobes depend on the direction that light leaves in, and not on the angle to an axis alone. */
-#define LOBES_OF_TWO_DIRECTIONS (EFFECT_OREN_NAYAR || EFFECT_ROUGH_METAL || EFFECT_GLOSSY)
+#define LOBES_OF_TWO_DIRECTIONS (EFFECT_OREN_NAYAR || EFFECT_ROUGH_METAL || EFFECT_GLOSSY || EFFECT_ROUGH_DIELECTRIC)
 /* The weight of some lobes depends on the direction that they draw, so rays to lamps have weights of their own. */
-#define WEIGHTED_LOBES (SAMPLES_LAMPS && (EFFECT_ROUGH_METAL || EFFECT_GLOSSY))
+#define WEIGHTED_LOBES (SAMPLES_LAMPS && (EFFECT_ROUGH_METAL || EFFECT_GLOSSY || EFFECT_ROUGH_DIELECTRIC))
 /* Rays to lamps pass the boundaries of media, and so do the paths that are weighted against them. */
 #define LAMPS_THROUGH_MEDIA (SAMPLES_LAMPS && EFFECT_MEDIA)
 

@@ -112,6 +112,9 @@ static void trace_chain(const Scene *scene, Path *path, const ChainChoice *choic
     const vuint slot = gather_uint(scene->focuser_places, choice->number * FOCUSER_UINTS + FOCUSER_SLOT);
     Ray ray = path_ray(path);
     ray.direction = direction;
+#if EFFECT_ROUGH_DIELECTRIC
+    ray.inward = turned_inward(&path->lobe, path->direction, direction, path->inward);
+#endif
     Surface surface;
     Sphere sphere = sphere_for_ray(geometry, &ray, slot);
     Vec3 weight = vec3(splat(1), splat(1), splat(1));

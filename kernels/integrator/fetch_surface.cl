@@ -25,13 +25,13 @@ static void fetch_surface(const Scene *scene, const Ray *ray, const Hit *hit, Sp
 #if EFFECT_METAL
     surface->fuzz = gather_real(scene->materials + MATERIAL_FUZZ, numbers);
 #endif
-#if EFFECT_OREN_NAYAR || EFFECT_ROUGH_METAL || EFFECT_GLOSSY
+#if LOBES_OF_TWO_DIRECTIONS
     surface->roughness = gather_real(scene->materials + MATERIAL_ROUGHNESS, numbers);
 #endif
 #if EFFECT_METAL || EFFECT_DIELECTRIC
     surface->variant = gather_uint(scene->material_kinds + MATERIAL_VARIANT, kinds);
 #endif
-#if EFFECT_DIELECTRIC || EFFECT_GLOSSY
+#if EFFECT_DIELECTRIC || EFFECT_GLOSSY || EFFECT_ROUGH_DIELECTRIC
     surface->refraction_index = gather_real(scene->materials + MATERIAL_INDEX, numbers);
 #endif
 #if EFFECT_GLOSSY

@@ -114,6 +114,10 @@ static LampWay pass_boundaries(const Scene *scene, const Path *path, vbool activ
     way.passed = vbool_none;
     way.medium = path->medium; /* a surface that reflects lies in the medium that the path has come through */
     way.left = vec3(splat(1), splat(1), splat(1));
+#if EFFECT_ROUGH_DIELECTRIC
+    const vbool through = active & is_rough_dielectric(&path->lobe) & (dot3(ray->direction, path->lobe.axis) < splat(0));
+    if (any_lane(through)) way.medium = choose_uint(through, medium_around(scene, ray, through), way.medium);
+#endif
     if (scene->boundaries[0] == NO_SLOT) return way;
     const vbool far = vbool_of_uint(choice->slot >= splat_uint(DISC_SLOT));
     vuint segments = path->depth + 1u;
@@ -259,6 +263,9 @@ LIGHT_STEP void light_vertices(const Scene *scene, Path *path) {
     active = active & (choice.probability > splat(0)) & cone.outside & vbool_of_uint(choice.slot != path->own_slot);
     Ray ray = path_ray(path);
     ray.direction = sample_cone(&cone, choice.rest, v);
+#if EFFECT_ROUGH_DIELECTRIC
+    ray.inward = turned_inward(lobe, path->direction, ray.direction, path->inward);
+#endif
     const vreal ratio =
         density_ratio(lobe, ray.direction, 0, cone.cap, choose(active, choice.probability, splat(1)));
     active = active & (ratio > splat(0));

@@ -70,6 +70,9 @@ static vreal cosine_below(vreal sine) {
 /* The cosine by which a lobe sees what fills a cone: `z`, of the cone's middle from the lobe's axis, clipped by the horizon as if
  * the rim met it straight on; `sine`, of half the cone's angle. */
 static vreal cone_cosine(const Lobe *lobe, vreal z, vreal sine) {
+#if EFFECT_ROUGH_DIELECTRIC
+    z = choose(is_rough_dielectric(lobe), splat(1), z);
+#endif
     const vreal above = z + sine;
     const vreal cosine = choose(fabs(z) < sine, divide(above * above, splat(4) * sine), at_least(z, splat(0)));
 #if EFFECT_METAL || SAMPLES_CAUSTICS
@@ -118,6 +121,9 @@ FORCE_INLINE static vreal lamp_importance(const LampChild *child, const Point *p
 #endif
 #if EFFECT_MEDIA
     cosine = choose(is_phase(lobe), splat(1), cosine); /* media have no horizon */
+#endif
+#if EFFECT_ROUGH_DIELECTRIC
+    cosine = choose(is_rough_dielectric(lobe), splat(1), cosine); /* and light comes from both sides of rough glass */
 #endif
     return choose(lamp & around, splat(0), child->power * cosine * spread_inverse);
 }

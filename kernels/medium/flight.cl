@@ -114,6 +114,8 @@ static void scatter_in_medium(const Scene *scene, vbool scattered, vreal length,
 #endif
 #if EFFECT_GLOSSY
     lobe.refraction_index = lobe.lets_in = splat(1);
+#elif EFFECT_ROUGH_DIELECTRIC
+    lobe.refraction_index = splat(1);
 #endif
     lobe.fuzz = g;
     lobe.kind = splat_uint(LOBE_PHASE);

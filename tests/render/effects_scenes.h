@@ -15,11 +15,11 @@
 #define MATERIAL_EFFECTS                                                                                     \
     (EFFECT_BIT(LAMBERTIAN) | EFFECT_BIT(METAL) | EFFECT_BIT(DIELECTRIC) | EFFECT_BIT(EMISSION) |            \
      EFFECT_BIT(NORMALS) | EFFECT_BIT(MEDIA) | EFFECT_BIT(OREN_NAYAR) | EFFECT_BIT(ROUGH_METAL) |            \
-     EFFECT_BIT(GLOSSY))
+     EFFECT_BIT(GLOSSY) | EFFECT_BIT(ROUGH_DIELECTRIC))
 
 typedef struct EffectsScene {
     BpScene scene; /* points into the arrays below: pass it on by address, do not copy it */
-    BpMaterial materials[24];
+    BpMaterial materials[28];
     BpSphere spheres[48];
     BpTexture textures[10];
     BpImage image, sky, light, *images[3];
@@ -34,7 +34,7 @@ typedef struct EffectsScene {
 static inline bool effects_light(uint32_t bits) {
     return (bits & (EFFECT_BIT(EMISSION) | EFFECT_BIT(DISCS) | EFFECT_BIT(ENVIRONMENT))) != 0 &&
            (bits & (EFFECT_BIT(LAMBERTIAN) | EFFECT_BIT(METAL) | EFFECT_BIT(MEDIA) | EFFECT_BIT(OREN_NAYAR) |
-                    EFFECT_BIT(ROUGH_METAL) | EFFECT_BIT(GLOSSY))) != 0;
+                    EFFECT_BIT(ROUGH_METAL) | EFFECT_BIT(GLOSSY) | EFFECT_BIT(ROUGH_DIELECTRIC))) != 0;
 }
 
 /* A tree needs spheres, and spheres need a material. Rays to lamps need lamps, and something that they light.
@@ -98,6 +98,12 @@ static inline void effects_materials(EffectsScene *made, uint32_t bits) {
     if (bp_effects_has(bits, BP_EFFECT_GLOSSY)) {
         effects_material(made, BP_MATERIAL_GLOSSY, 0.8, 0.3, 0.3);
         effects_material(made, BP_MATERIAL_GLOSSY, 0.3, 0.3, 0.8)->roughness = 0.5;
+    }
+    if (bp_effects_has(bits, BP_EFFECT_ROUGH_DIELECTRIC)) {
+        effects_material(made, BP_MATERIAL_ROUGH_DIELECTRIC, 1, 1, 1)->roughness = 0.5;
+        BpMaterial *thin = effects_material(made, BP_MATERIAL_ROUGH_DIELECTRIC, 1, 1, 1);
+        thin->roughness = 0.3;
+        thin->refraction_index = 1 / 1.3;
     }
     for (int i = 0; i < shown && bp_effects_has(bits, BP_EFFECT_NORMALS); ++i)
         effects_material(made, BP_MATERIAL_NORMALS, 0, 0, 0);

@@ -28,6 +28,10 @@ static const BpMaterial brass = {
     .name = (char *)"brass", .kind = BP_MATERIAL_ROUGH_METAL, GREY, .roughness = 0.06};
 static const BpMaterial billiard = {
     .name = (char *)"billiard", .kind = BP_MATERIAL_GLOSSY, GREY, .refraction_index = 1.5};
+static const BpMaterial frosted = {.name = (char *)"frosted",
+                                   .kind = BP_MATERIAL_ROUGH_DIELECTRIC,
+                                   .refraction_index = 1.5,
+                                   .roughness = 0.06};
 static const BpMaterial debug = {.name = (char *)"debug", .kind = BP_MATERIAL_NORMALS};
 
 #define NO_LAMP "no sphere gives light, and no disc of the sky"
@@ -45,11 +49,11 @@ static BpTexture both[2] = {{.type = BP_TEXTURE_CHECKER, .colors = {{0, 0, 0}, {
  * `used` of the materials in turn. */
 static BpEffects analyse(const BpMaterial *materials, size_t count, size_t used, size_t spheres, double lens,
                          double top_blue) {
-    BpMaterial copy[8];
+    BpMaterial copy[9];
     BpSphere *list = calloc(spheres + 1, sizeof *list);
     BpEffects effects;
     assert_non_null(list);
-    assert_true(count <= 8);
+    assert_true(count <= 9);
     if (count > 0) memcpy(copy, materials, count * sizeof *copy);
     for (size_t i = 0; i < spheres; ++i)
         list[i] = (BpSphere){.radius = 1, .material = (uint32_t)(i % used), .albedo = BP_NO_ALBEDO};
@@ -87,6 +91,7 @@ static void material_effects(void **state) {
         {clay, BIT(OREN_NAYAR)},
         {brass, BIT(ROUGH_METAL)},
         {billiard, BIT(GLOSSY)},
+        {frosted, BIT(ROUGH_DIELECTRIC)},
     };
     for (size_t i = 0; i < sizeof cases / sizeof cases[0]; ++i)
         assert_int_equal(analyse(&cases[i].material, 1, 1, 1, 0, 1).bits, cases[i].bits);
@@ -100,9 +105,17 @@ static void material_effects(void **state) {
     brushed.fuzz = 1.0 / 64;
     const BpMaterial pair[] = {brushed, lamp};
     assert_int_equal(analyse(pair, 2, 2, 2, 0, 1).bits, BIT(METAL) | BIT(EMISSION) | BIT(LAMPS));
-    const BpMaterial all[] = {grey, steel, glass, ember, debug, clay, brass, billiard};
-    assert_int_equal(analyse(all, 8, 8, BP_LIST_SPHERES_MAX + 1, 0.1, 0.5).bits, BP_EFFECTS_ALL & ~OF_SCENES);
-    assert_int_equal(analyse(all, 8, 8, 8, 0, 1).bits, BP_EFFECTS_ALL & ~BIT(LENS) & ~OF_SCENES);
+    /* Rough glass is lit, unless it is nearly smooth, or of nearly the index of its outside. */
+    BpMaterial lit[] = {frosted, lamp};
+    for (int i = 0; i < 4; ++i) {
+        lit[0].roughness = i == 0 ? 0.06 : 1.0 / 16;
+        lit[0].refraction_index = i == 1 ? 1.06 : i == 2 ? 1 / 1.06 : 1.07;
+        assert_int_equal(analyse(lit, 2, 2, 2, 0, 1).bits,
+                         BIT(ROUGH_DIELECTRIC) | BIT(EMISSION) | (i == 3 ? BIT(LAMPS) : 0));
+    }
+    const BpMaterial all[] = {grey, steel, glass, ember, debug, clay, brass, billiard, frosted};
+    assert_int_equal(analyse(all, 9, 9, BP_LIST_SPHERES_MAX + 1, 0.1, 0.5).bits, BP_EFFECTS_ALL & ~OF_SCENES);
+    assert_int_equal(analyse(all, 9, 9, 9, 0, 1).bits, BP_EFFECTS_ALL & ~BIT(LENS) & ~OF_SCENES);
 }
 
 static void only_materials_in_use_count(void **state) {
@@ -264,7 +277,7 @@ static void discs(void **state) {
     effects = analyse_discs(&glass, 1, 0);
     assert_int_equal(effects.bits, BIT(DIELECTRIC) | BIT(DISCS));
     assert_string_equal(effects.reason[BP_EFFECT_LAMPS],
-                        "1 disc, but nothing matte, no metal of fuzz 1/64 or roughness 1/16");
+                        "1 disc, but nothing matte, nothing of fuzz 1/64 or roughness 1/16");
     /* The one lamp cannot light itself, but the disc can light it. */
     effects = analyse_discs(&ember, 3, 0);
     assert_int_equal(effects.bits, BIT(LAMBERTIAN) | BIT(EMISSION) | BIT(LAMPS) | BIT(DISCS));

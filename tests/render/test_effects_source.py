@@ -28,9 +28,10 @@ BITS = re.findall(r"^ +X\(([A-Z_]+), \"", header.read_text(), re.MULTILINE)
 MARKS = {
     "LAMBERTIAN": ["lambertian_sample", "hemisphere"],
     "METAL": [" metal_sample", "(fuzzy, fuzzy)"],
-    "DIELECTRIC": ["dielectric_sample", "fresnel_schlick"],
+    "DIELECTRIC": [" dielectric_sample", "fresnel_schlick"],
     "OREN_NAYAR": ["oren_nayar_sample", "angle_of"],
     "ROUGH_METAL": ["rough_metal_sample(surface, key, bounce), sample)"],
+    "ROUGH_DIELECTRIC": ["rough_dielectric_sample", "facets_unhidden"],
     "GLOSSY": ["glossy_sample", "coat_reflects"],
     "EMISSION": ["emitted = vec3"],
     "NORMALS": ["shows_normal"],
@@ -51,9 +52,9 @@ MARKS = {
 SHARED = {
     "random_ball_radius": {"LAMBERTIAN", "METAL"},
     "surface->variant = ": {"METAL", "DIELECTRIC"},
-    "fresnel_exact": {"DIELECTRIC", "GLOSSY"},
-    "surface->refraction_index = ": {"DIELECTRIC", "GLOSSY"},
-    "smith_root": {"ROUGH_METAL", "GLOSSY"},
+    "fresnel_exact": {"DIELECTRIC", "GLOSSY", "ROUGH_DIELECTRIC"},
+    "surface->refraction_index = ": {"DIELECTRIC", "GLOSSY", "ROUGH_DIELECTRIC"},
+    "smith_root": {"ROUGH_METAL", "GLOSSY", "ROUGH_DIELECTRIC"},
     "throughput, emitted": {"EMISSION", "NORMALS"},
     "turn_of": {"TEXTURES", "ENVIRONMENT"},
 }
@@ -61,7 +62,7 @@ SHARED = {
 TOGETHER = {"gradient_noise": {"TEXTURES", "NOISE"}, "pattern_colour": {"TEXTURES", "NOISE"},
             "image_texture": {"TEXTURES", "IMAGES"}}
 # Code that needs LAMPS, something to be lit, and one of the effects named.
-LIT = {"LAMBERTIAN", "METAL", "MEDIA", "OREN_NAYAR", "ROUGH_METAL", "GLOSSY"}
+LIT = {"LAMBERTIAN", "METAL", "MEDIA", "OREN_NAYAR", "ROUGH_METAL", "GLOSSY", "ROUGH_DIELECTRIC"}
 NEEDING_OTHERS = {
     "choose_lamp": {"EMISSION"}, "lamp_hit_weight": {"EMISSION"}, "disc_importance": {"DISCS"}, "disc_hit_weight": {"DISCS"},
     "choose_disc": {"DISCS", "ENVIRONMENT"}, "sample_environment": {"ENVIRONMENT"}, "environment_hit_weight": {"ENVIRONMENT"},

@@ -248,14 +248,17 @@ static void temporary_path(char path[64]) {
 /* Two kinds of metal have one name: which of them is meant is told by the roughness. */
 static void metals(void **state) {
     (void)state;
-    BpScene *scene = parse("{ \"camera\": {}, \"materials\": {\n"
-                           "\"a\": { \"type\": \"metal\", \"albedo\": [1, 1, 1], \"fuzz\": 0.5 },\n"
-                           "\"b\": { \"type\": \"metal\", \"albedo\": [1, 1, 1], \"roughness\": 0.25 },\n"
-                           "\"c\": { \"type\": \"metal\", \"albedo\": [1, 1, 1], \"roughness\": 0 },\n"
-                           "\"d\": { \"type\": \"oren_nayar\", \"albedo\": [1, 1, 1], \"roughness\": 1 },\n"
-                           "\"e\": { \"type\": \"glossy\", \"albedo\": [1, 1, 1] },\n"
-                           "\"f\": { \"type\": \"glossy\", \"albedo\": [1, 1, 1], \"roughness\": 0.5, "
-                           "\"refraction_index\": 2 } } }");
+    BpScene *scene =
+        parse("{ \"camera\": {}, \"materials\": {\n"
+              "\"a\": { \"type\": \"metal\", \"albedo\": [1, 1, 1], \"fuzz\": 0.5 },\n"
+              "\"b\": { \"type\": \"metal\", \"albedo\": [1, 1, 1], \"roughness\": 0.25 },\n"
+              "\"c\": { \"type\": \"metal\", \"albedo\": [1, 1, 1], \"roughness\": 0 },\n"
+              "\"d\": { \"type\": \"oren_nayar\", \"albedo\": [1, 1, 1], \"roughness\": 1 },\n"
+              "\"e\": { \"type\": \"glossy\", \"albedo\": [1, 1, 1] },\n"
+              "\"f\": { \"type\": \"glossy\", \"albedo\": [1, 1, 1], \"roughness\": 0.5, "
+              "\"refraction_index\": 2 },\n"
+              "\"g\": { \"type\": \"dielectric\", \"refraction_index\": 1.4, \"roughness\": 0.5 },\n"
+              "\"h\": { \"type\": \"dielectric\", \"refraction_index\": 1.4, \"roughness\": 0 } } }");
     const BpMaterial *m = scene->materials;
     assert_int_equal(m[0].kind, BP_MATERIAL_METAL);
     assert_int_equal(m[1].kind, BP_MATERIAL_ROUGH_METAL);
@@ -269,6 +272,12 @@ static void metals(void **state) {
     assert_number(m[4].refraction_index, 1.5);
     assert_number(m[5].roughness, 0.5);
     assert_number(m[5].refraction_index, 2);
+    assert_int_equal(m[6].kind, BP_MATERIAL_ROUGH_DIELECTRIC);
+    assert_number(m[6].roughness, 0.5);
+    assert_number(m[6].refraction_index, 1.4);
+    assert_int_equal(m[7].kind, BP_MATERIAL_DIELECTRIC); /* the same kernel, and so the same bits */
+    assert_int_equal(m[7].fresnel, BP_FRESNEL_EXACT);
+    assert_number(m[7].refraction_index, 1.4);
     bp_scene_destroy(&scene);
 }
 

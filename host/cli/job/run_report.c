@@ -158,8 +158,7 @@ static bool is_inside_a_sphere(const BpScene *scene) {
         const double x = from[0] - sphere->center[0], y = from[1] - sphere->center[1],
                      z = from[2] - sphere->center[2];
         const BpMaterialKind kind = scene->materials[sphere->material].kind;
-        if (kind != BP_MATERIAL_DIELECTRIC && kind != BP_MATERIAL_INTERFACE &&
-            x * x + y * y + z * z < sphere->radius * sphere->radius)
+        if (!bp_material_is(kind, BP_HAS_INSIDE) && x * x + y * y + z * z < sphere->radius * sphere->radius)
             return true;
     }
     return false;
