@@ -214,6 +214,7 @@ typedef struct BpSceneInfo {
     uint32_t width, height, samples_per_pixel, max_depth;
     size_t spheres, materials;
     BpTransfer transfer;
+    size_t triangles; /* those of quads and boxes too */
 } BpSceneInfo;
 BP_API void bp_scene_info(const BpScene *scene, BpSceneInfo *info);
 

@@ -241,6 +241,11 @@ typedef struct PackedVariation {
  * empty); `slot_material`; `slot_albedo`, ALBEDO_REALS each. Sizes in reals: */
 #define LEAF_REALS(width) (4 * (width))
 #define ALBEDO_REALS 3
+/* Leaves from `first_triangles` on are triangles instead, in an array of their own: width reals each of x, y
+ * and z of the first vertex, then of the second and the third. They run counter-clockwise seen from outside.
+ * In an empty lane all three are one point, which no ray meets. The index of a triangle in `slot_sphere` is
+ * the number of spheres and its own number among the triangles. */
+#define TRIANGLE_REALS(width) (9 * (width))
 /* How far a leaf's spheres move while the shutter is open: width reals each of x, y, z; -0 where they do not,
  * which leaves every centre as it is. Empty where no sphere of the scene moves and no kernel asks. */
 #define MOTION_REALS(width) (3 * (width))
@@ -314,7 +319,7 @@ typedef struct PackedVariation {
 #define TEXTURE_REALS ((packed_uint)(sizeof(PackedTexture) / sizeof(real)))
 #define TEXTURE_UINTS ((packed_uint)(sizeof(PackedTextureKind) / sizeof(packed_uint)))
 #define SCENE_PARTS_MAX 8
-#define PART_UNIT 192u /* a multiple of NODE_REALS, LEAF_REALS and MOTION_REALS of all widths */
+#define PART_UNIT 576u /* a multiple of NODE_REALS, LEAF_REALS and the like of all widths */
 /* clang-format off */
 #define SCENE_ARRAYS_OF_PACK(X)                                                                              \
     X(REALS, PackedCamera, camera, 1, "the camera")                                                          \
@@ -349,6 +354,9 @@ typedef struct PackedVariation {
     X(REALS, real, leaves, leaf_count * LEAF_REALS(width), "the spheres")                                    \
     X(REALS, real, leaf_motions, motion_leaves * MOTION_REALS(width), "the spheres' motions")                 \
     X(UINTS, packed_uint, slot_sphere, slots, "the spheres' numbers")
+/* Of kernels that know triangles: after the others, and before the numbers, `first_triangles`. */
+#define SCENE_ARRAYS_OF_TRIANGLES(X)                                                                         \
+    X(REALS, real, triangles, triangle_leaves * TRIANGLE_REALS(width), "the triangles")
 #define SCENE_NUMBERS(X)                                                                                     \
     X(first_leaves) X(leaf_count) X(pixel_center) X(max_depth) X(seed_low) X(seed_high) X(replicates) X(width)
 /* clang-format on */

@@ -249,7 +249,8 @@ const char *bp_known_file_remedy(const BpKnownFile *file) {
         return " or a file of particles in a format of docs/PARTICLES.md; convert it, to CSV or PLY for "
                "example";
     case BP_FILE_MESH:
-        return "; only spheres are rendered, so triangles and scenes of other programs cannot be read yet";
+        return "; of triangles only those in scenes are rendered, so meshes and scenes of other programs "
+               "cannot be read yet";
     case BP_FILE_SOURCE:
         return "; write the scene as JSON: scenes/README.md has its members, and scenes/ the pictures of the "
                "book";

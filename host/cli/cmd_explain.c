@@ -9,6 +9,7 @@
 #include "base/format.h"
 #include "base/json_text.h"
 #include "base/names.h"
+#include "base/plural.h"
 #include "base/wrap.h"
 #include "cli/job/setup.h"
 #include "cli/job/unseen_text.h"
@@ -52,7 +53,15 @@ static const char *outcome(const BpPathStep *step, BpMaterialKind kind) {
     return bp_material_types[kind].outcome;
 }
 
-static void print_lamp_ray(const BpPathStep *step, FILE *out) {
+/* "sphere 3"; of triangles also which member lists it. */
+static const char *shape_name(const BpScene *scene, uint32_t shape, char text[BP_SPHERE_NAME_SIZE]) {
+    if (shape >= scene->sphere_count) return bp_triangle_name(scene, shape - scene->sphere_count, text);
+    snprintf(text, BP_SPHERE_NAME_SIZE, "sphere %" PRIu32, shape);
+    return text;
+}
+
+static void print_lamp_ray(const BpScene *scene, const BpPathStep *step, FILE *out) {
+    char name[BP_SPHERE_NAME_SIZE];
     if (!is_black(step->led))
         fprintf(out, "       by way of a ball of glass or a mirror come (%.4g, %.4g, %.4g)\n", step->led[0],
                 step->led[1], step->led[2]);
@@ -64,7 +73,7 @@ static void print_lamp_ray(const BpPathStep *step, FILE *out) {
     if (!step->stopped)
         fprintf(out, " brings (%.4g, %.4g, %.4g)\n", step->lit[0], step->lit[1], step->lit[2]);
     else
-        fprintf(out, " is stopped by sphere %" PRIu32 "\n", step->seen);
+        fprintf(out, " is stopped by %s\n", shape_name(scene, step->seen, name));
 }
 
 static void print_path(const BpScene *scene, const BpPathLog *path, uint32_t x, uint32_t y, uint64_t sample,
@@ -85,12 +94,13 @@ static void print_path(const BpScene *scene, const BpPathLog *path, uint32_t x, 
                     "%.4g)\n",
                     step->distance, step->point[0], step->point[1], step->point[2], step->throughput[0],
                     step->throughput[1], step->throughput[2]);
-            print_lamp_ray(step, out);
+            print_lamp_ray(scene, step, out);
         } else if (step->met) {
+            char name[BP_SPHERE_NAME_SIZE];
             const BpMaterial *material = &scene->materials[step->material];
-            fprintf(out, "       after %.6g hits sphere %" PRIu32 " from %s at (%.6g, %.6g, %.6g)\n",
-                    step->distance, step->sphere, step->enters ? "outside" : "inside", step->point[0],
-                    step->point[1], step->point[2]);
+            fprintf(out, "       after %.6g hits %s from %s at (%.6g, %.6g, %.6g)\n", step->distance,
+                    shape_name(scene, step->sphere, name), step->enters ? "outside" : "inside",
+                    step->point[0], step->point[1], step->point[2]);
             fputs("       ", out);
             bp_print_escaped(material->name, false, out);
             fprintf(out, " (%s) %s", bp_material_types[material->kind].name, outcome(step, material->kind));
@@ -98,7 +108,7 @@ static void print_path(const BpScene *scene, const BpPathLog *path, uint32_t x, 
                 fprintf(out, ", throughput (%.4g, %.4g, %.4g)", step->throughput[0], step->throughput[1],
                         step->throughput[2]);
             fprintf(out, "\n");
-            print_lamp_ray(step, out);
+            print_lamp_ray(scene, step, out);
         } else {
             const bool backdrop = i == 0 && scene->backdrop != BP_BACKDROP_SKY;
             if (step->caught)
@@ -197,10 +207,14 @@ static void print_heading(const char *path, const BpScene *scene, FILE *out) {
     bp_print_escaped(path, false, out);
     fputs(": ", out);
     bp_print_escaped(info.title, false, out);
-    char spheres[32];
-    fprintf(out, "%s%s sphere%s, %zu material%s, %ux%u\n", info.title[0] != '\0' ? "; " : "",
-            bp_format_whole(info.spheres, spheres, sizeof spheres), info.spheres == 1 ? "" : "s",
-            info.materials, info.materials == 1 ? "" : "s", info.width, info.height);
+    char spheres[32], triangles[32], both[96] = "";
+    bp_format_whole(info.spheres, spheres, sizeof spheres);
+    bp_format_whole(info.triangles, triangles, sizeof triangles);
+    if (info.triangles > 0)
+        snprintf(both, sizeof both, ", %s triangle%s", triangles, bp_plural(info.triangles));
+    fprintf(out, "%s%s sphere%s%s, %zu material%s, %ux%u\n", info.title[0] != '\0' ? "; " : "", spheres,
+            bp_plural(info.spheres), both, info.materials, bp_plural(info.materials), info.width,
+            info.height);
 }
 
 static void print_effects(const BpScene *scene, const BpEffectInfo *effects, size_t count, FILE *out) {
@@ -395,6 +409,9 @@ static void print_unseen(const BpCommandLine *line, const BpScene *scene, const 
     const uint64_t samples = scene->camera.samples_per_pixel;
     if (found->unknown[0] != '\0') {
         fprintf(out, "  %-14s %-4s " BP_HANG "%s\n", "by chance", "?", found->unknown);
+    } else if (scene->triangle_count > 0) {
+        fprintf(out, "  %-14s %-4s " BP_HANG "%s\n", "by chance", "?",
+                "in scenes with triangles, light that samples find by chance only is not looked for");
     } else if (found->unseen.mean > 0) {
         fprintf(out, "  %-14s %-4s " BP_HANG, "by chance", "yes");
         bp_unseen_print(scene, &found->unseen, found->luminance,

@@ -253,9 +253,10 @@ static BpStatus prepare(Run *run, const BpCommandLine *line, Job *job, Work *wor
     if (run->devices == NULL) BP_TRY_GOTO(status, find_devices(run, err), done);
     work->result.device_count = run->device_count;
     char spheres[32];
-    waiting = bp_waiting_begin(line->quiet, "preparing %s sphere%s and the kernel for %s",
-                               bp_format_whole(job->scene->sphere_count, spheres, sizeof spheres),
-                               bp_plural(job->scene->sphere_count), run->devices[0].name);
+    waiting = bp_waiting_begin(line->quiet, "preparing %s %s%s and the kernel for %s",
+                               bp_format_whole(bp_scene_shapes(job->scene), spheres, sizeof spheres),
+                               bp_scene_noun(job->scene), bp_plural(bp_scene_shapes(job->scene)),
+                               run->devices[0].name);
     if (run->open == NULL) BP_TRY_GOTO(status, open_devices(run, err), done);
     BP_TRY_GOTO(
         status,

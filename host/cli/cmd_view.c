@@ -171,9 +171,9 @@ BpStatus bp_command_view(const BpCommandLine *line, BpError *err) {
     Saving saving = {.line = line, .transfer = plan.transfer};
     plan.context = &saving;
     char spheres[32];
-    waiting = bp_waiting_begin(line->quiet, "preparing %s sphere%s and the kernel",
-                               bp_format_whole(scene->sphere_count, spheres, sizeof spheres),
-                               bp_plural(scene->sphere_count));
+    waiting = bp_waiting_begin(line->quiet, "preparing %s %s%s and the kernel",
+                               bp_format_whole(bp_scene_shapes(scene), spheres, sizeof spheres),
+                               bp_scene_noun(scene), bp_plural(bp_scene_shapes(scene)));
     BP_TRY_GOTO(status, open_devices(line, &infos, &devices, &plan.device_count, err), done);
     plan.devices = devices;
     bp_waiting_end(waiting);

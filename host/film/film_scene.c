@@ -15,12 +15,13 @@ static double largest(const double rgb[3]) {
     return fmax(rgb[0], fmax(rgb[1], rgb[2]));
 }
 
-/* The largest share of light that the sphere passes on. */
-static double sphere_albedo(const BpScene *scene, const BpSphere *sphere) {
-    const BpMaterial *material = &scene->materials[sphere->material];
+/* The largest share of light that a shape passes on. */
+static double shape_albedo(const BpScene *scene, size_t shape) {
+    const BpMaterial *material = &scene->materials[bp_shape_material(scene, shape)];
+    const uint32_t own = shape < scene->sphere_count ? scene->spheres[shape].albedo : BP_NO_ALBEDO;
     if (!bp_material_has(material->kind, BP_MEMBER_ALBEDO)) return 1;
-    if (sphere->albedo == BP_NO_ALBEDO) return largest(material->albedo);
-    const float *albedo = scene->albedos[sphere->albedo];
+    if (own == BP_NO_ALBEDO) return largest(material->albedo);
+    const float *albedo = scene->albedos[own];
     return (double)fmaxf(albedo[0], fmaxf(albedo[1], albedo[2]));
 }
 
@@ -73,9 +74,9 @@ double bp_scene_radiance_bound(const BpScene *scene, uint32_t max_depth, BpLight
      * passed on. */
     uint32_t known = UINT32_MAX;
     bool colours = true;
-    for (size_t i = 0; i < scene->sphere_count; i++) {
-        if (scene->spheres[i].material == known && !colours) continue;
-        known = scene->spheres[i].material;
+    for (size_t i = 0; i < bp_scene_shapes(scene); i++) {
+        if (bp_shape_material(scene, i) == known && !colours) continue;
+        known = bp_shape_material(scene, i);
         const BpMaterial *material = &scene->materials[known];
         colours = largest(material->emit) > 0 ||
                   (light_sampling != BP_LIGHT_SAMPLING_OFF && bp_material_is_lit(material));
@@ -85,7 +86,7 @@ double bp_scene_radiance_bound(const BpScene *scene, uint32_t max_depth, BpLight
         if (bp_material_is(material->kind, BP_SHOWS_COLOUR)) brightest = fmax(brightest, 1 + emitted);
         if (!bp_material_is(material->kind, BP_SCATTERS)) continue;
         heaviest = fmax(heaviest, bp_material_types[material->kind].weight);
-        const double albedo = sphere_albedo(scene, &scene->spheres[i]);
+        const double albedo = shape_albedo(scene, i);
         if (bp_material_is_lit(material)) scattered = fmax(scattered, albedo);
         if (emitted > 0) passed_on = fmax(passed_on, albedo);
     }
@@ -264,6 +265,14 @@ uint64_t bp_scene_hash(const BpScene *scene) {
         if (bp_sphere_interior(scene, i) != 0) hash = mix_medium(hash, scene, bp_sphere_interior(scene, i));
         if (bp_sphere_moves(scene, i))
             hash = mix_reals(mix(hash, 0x6d6f76657321u), bp_sphere_end(scene, i), 3);
+    }
+    if (scene->triangle_count > 0) hash = mix(hash, scene->triangle_count);
+    for (size_t i = 0; i < scene->triangle_count; i++) {
+        const BpTriangle *triangle = &scene->triangles[i];
+        if (i == 0 || triangle->material != known)
+            material_hash = hash_material(&scene->materials[triangle->material]);
+        known = triangle->material;
+        for (int k = 0; k < 3; k++) hash = mix_reals(mix(hash, material_hash), triangle->vertices[k], 3);
     }
     return hash;
 }

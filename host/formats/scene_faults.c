@@ -66,6 +66,19 @@ BpStatus bp_refuse_faults(const BpNode *root, const BpScene *scene, BpError *err
         const BpNode sphere = bp_node_element(&spheres, fault.index);
         return fail_member(&sphere, fault.member, fault.text, err);
     }
+    case BP_FAULT_TRIANGLE: {
+        const BpNode triangles = bp_node_member(root, "triangles"), quads = bp_node_member(root, "quads"),
+                     boxes = bp_node_member(root, "boxes");
+        const size_t written = json_array_size(triangles.value),
+                     of_quads = BP_QUAD_TRIANGLES * scene->quad_count;
+        const size_t i = fault.index;
+        const BpNode shape = i < written ? bp_node_element(&triangles, i)
+                             : i < written + of_quads
+                                 ? bp_node_element(&quads, (i - written) / BP_QUAD_TRIANGLES)
+                                 : bp_node_element(&boxes, (i - written - of_quads) / BP_BOX_TRIANGLES);
+        const BpNode member = bp_node_member(&shape, fault.member);
+        return bp_node_fail(member.value != NULL ? &member : &shape, BP_PART_VALUE, err, "%s", fault.text);
+    }
     case BP_FAULT_COINCIDENT: {
         /* The place of the error: the later of the two spheres that stands in the document itself, or else
          * the cloud that the later one comes from. */

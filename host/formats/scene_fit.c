@@ -22,16 +22,21 @@ void bp_scene_view(BpScene *scene, double direction[3]) {
         bp_view_direction(camera->view, up, direction);
 }
 
-/* All spheres, and those that move once more, where they end. The caller frees them. */
-static BpStatus spheres_at_both_ends(const BpScene *scene, BpSphere **spheres, size_t *count, BpError *err) {
-    *count = scene->sphere_count + scene->moving_count;
+/* All spheres, those that move once more, where they end, and the vertices of triangles as points. The caller
+ * frees them. */
+static BpStatus all_balls(const BpScene *scene, BpSphere **spheres, size_t *count, BpError *err) {
+    *count = scene->sphere_count + scene->moving_count + 3 * scene->triangle_count;
     *spheres = malloc(*count * sizeof **spheres);
     if (*spheres == NULL) return bp_fail(err, BP_ERR_MEMORY, "out of memory for %zu spheres", *count);
-    memcpy(*spheres, scene->spheres, scene->sphere_count * sizeof **spheres);
-    for (size_t i = 0; i < scene->moving_count; i++) {
-        BpSphere *const end = *spheres + scene->sphere_count + i;
-        *end = scene->spheres[i];
-        memcpy(end->center, scene->center_ends[i], sizeof end->center);
+    BpSphere *next = *spheres;
+    for (size_t i = 0; i < scene->sphere_count; i++) *next++ = scene->spheres[i];
+    for (size_t i = 0; i < scene->moving_count; i++, next++) {
+        *next = scene->spheres[i];
+        memcpy(next->center, scene->center_ends[i], sizeof next->center);
+    }
+    for (size_t i = 0; i < 3 * scene->triangle_count; i++, next++) {
+        *next = (BpSphere){.radius = 0};
+        memcpy(next->center, scene->triangles[i / 3].vertices[i % 3], sizeof next->center);
     }
     return BP_OK;
 }
@@ -59,8 +64,8 @@ BpStatus bp_scene_fit_camera(const BpNode *node, const BpSceneChanges *changes, 
     const BpSphere *spheres = scene->spheres + first;
     size_t count = scene->sphere_count - first;
     BpSphere *both = NULL;
-    if (first < scene->moving_count) {
-        BP_TRY(spheres_at_both_ends(scene, &both, &count, err));
+    if (first < scene->moving_count || (all && scene->triangle_count > 0)) {
+        BP_TRY(all_balls(scene, &both, &count, err));
         spheres = both;
     }
     BpError inner = {0};

@@ -13,6 +13,7 @@
 #include "scene_sets.h"
 #include "scene_spheres.h"
 #include "scene_texture.h"
+#include "scene_triangles.h"
 
 #include "base/names.h"
 #include "scene/fit.h"
@@ -85,28 +86,28 @@ static BpStatus choose_fresnel(const BpSceneChanges *changes, BpScene *scene, Bp
     return BP_OK;
 }
 
-/* Other programs have more shapes than spheres. */
+/* Other programs have more shapes. */
 static BpStatus refuse_other_shapes(const BpNode *root, BpError *err) {
-    static const char *const shapes[] = {
-        "triangles", "triangle", "quads", "quad",      "boxes", "box",     "cubes",  "meshes",
-        "mesh",      "planes",   "plane", "cylinders", "cones", "disks",   "shapes", "primitives",
-        "polygons",  "vertices", "faces", "objects",   "world", "geometry"};
+    static const char *const shapes[] = {"triangle", "quad",    "box",        "cubes",     "meshes",
+                                         "mesh",     "planes",  "plane",      "cylinders", "cones",
+                                         "disks",    "shapes",  "primitives", "polygons",  "vertices",
+                                         "faces",    "objects", "world",      "geometry"};
     for (size_t i = 0; i < BP_COUNT(shapes); i++) {
         const BpNode shape = bp_node_member(root, shapes[i]);
         if (shape.value != NULL)
             return bp_node_fail(
                 &shape, BP_PART_NAME, err,
-                "unknown member; only spheres are rendered: write them in \"spheres\", or name "
-                "files of them in \"clouds\" or \"particles\"");
+                "unknown member; shapes are written in \"spheres\", \"triangles\", \"quads\" and \"boxes\", "
+                "and files of spheres named in \"clouds\" or \"particles\"");
     }
     return BP_OK;
 }
 
 BpStatus bp_parse_scene(const BpNode *root, const BpSceneChanges *changes, BpScene *scene, BpError *err) {
-    static const char *const names[] = {"format",   "title",         "source",    "camera",   "background",
-                                        "backdrop", "lighting",      "transfer",  "textures", "materials",
-                                        "spheres",  "clouds",        "particles", "$schema",  "media",
-                                        "medium",   "shadow_catcher"};
+    static const char *const names[] = {"format",   "title",          "source",    "camera",   "background",
+                                        "backdrop", "lighting",       "transfer",  "textures", "materials",
+                                        "spheres",  "clouds",         "particles", "$schema",  "media",
+                                        "medium",   "shadow_catcher", "triangles", "quads",    "boxes"};
     BP_TRY(refuse_other_shapes(root, err));
     const BpNode former = bp_node_member(root, "light");
     if (former.value != NULL)
@@ -142,6 +143,7 @@ BpStatus bp_parse_scene(const BpNode *root, const BpSceneChanges *changes, BpSce
     BpMaterialIndex index = {0};
     BpStatus status = bp_material_index_create(scene, &index, err);
     if (status == BP_OK) status = bp_parse_spheres(&spheres, &index, scene, err);
+    if (status == BP_OK) status = bp_parse_triangles(root, &index, scene, err);
     if (status == BP_OK) status = bp_parse_clouds(&clouds, &index, changes->flags, scene, err);
     if (status == BP_OK) status = bp_parse_particles(&particles, &index, changes, scene, err);
     if (status == BP_OK) status = bp_add_sphere_sets(&index, changes, scene, err);

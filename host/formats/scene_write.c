@@ -401,6 +401,24 @@ static BpStatus put_spheres(FILE *out, const BpScene *scene, BpError *err) {
     return BP_OK;
 }
 
+/* Those of quads and boxes too, since their vertices have been computed. */
+static BpStatus put_triangles(FILE *out, const BpScene *scene, BpError *err) {
+    fputs(",\n  \"triangles\": [", out);
+    for (size_t i = 0; i < scene->triangle_count; i++) {
+        const BpTriangle *triangle = &scene->triangles[i];
+        fputs(i > 0 ? ",\n    { \"vertices\": [" : "\n    { \"vertices\": [", out);
+        for (int k = 0; k < 3; k++) {
+            if (k > 0) fputs(", ", out);
+            put_vector(out, triangle->vertices[k]);
+        }
+        fputs("], \"material\": ", out);
+        BP_TRY(put_text(out, scene->materials[triangle->material].name, err));
+        fputs(" }", out);
+    }
+    fputs("\n  ]", out);
+    return BP_OK;
+}
+
 /* ---- the whole ---------------------------------------------------------------------------------------- */
 
 BpStatus bp_scene_print(const BpScene *scene, FILE *out, BpError *err) {
@@ -428,6 +446,7 @@ BpStatus bp_scene_print(const BpScene *scene, FILE *out, BpError *err) {
     if (scene->medium_count > 0) BP_TRY(put_media(out, scene, err));
     if (written_materials(scene) > 0) BP_TRY(put_materials(out, scene, err));
     if (written_spheres(scene) > 0) BP_TRY(put_spheres(out, scene, err));
+    if (scene->triangle_count > 0) BP_TRY(put_triangles(out, scene, err));
     if (scene->has_particles) put_particles(out, scene);
     fputs("\n}\n", out);
     if (ferror(out)) return bp_fail(err, BP_ERR_FILE, "cannot write the scene: %s", strerror(errno));

@@ -34,6 +34,9 @@ static const struct {
     {"shape/ray.cl", IN_ALL},
     {"shape/sphere_robust.cl", IN_ROBUST},
     {"shape/sphere_plain.cl", IN_PLAIN},
+    {"shape/wide.cl", IN_ROBUST},
+    {"shape/triangle_robust.cl", IN_ROBUST},
+    {"shape/triangle_plain.cl", IN_PLAIN},
     {"bvh/parts.cl", IN_ALL},
     {"bvh/flat_tree.cl", IN_PACKET},
     {"bvh/geometry.cl", IN_ALL},
@@ -48,6 +51,9 @@ static const struct {
     {"shape/ray.cl", IN_ALL},
     {"shape/sphere_robust.cl", IN_ROBUST},
     {"shape/sphere_plain.cl", IN_PLAIN},
+    {"shape/wide.cl", IN_ROBUST},
+    {"shape/triangle_robust.cl", IN_ROBUST},
+    {"shape/triangle_plain.cl", IN_PLAIN},
     {"bvh/child_mask.cl", IN_ALL},
     {"bvh/node.cl", IN_ALL},
     /* for one path, or for the paths of a packet */
@@ -60,6 +66,9 @@ static const struct {
     {"shape/ray.cl", IN_PACKET},
     {"shape/sphere_robust.cl", IN_PACKET | IN_ROBUST},
     {"shape/sphere_plain.cl", IN_PACKET | IN_PLAIN},
+    {"shape/wide.cl", IN_PACKET | IN_ROBUST},
+    {"shape/triangle_robust.cl", IN_PACKET | IN_ROBUST},
+    {"shape/triangle_plain.cl", IN_PACKET | IN_PLAIN},
     {"bvh/hit.cl", IN_PACKET},
     {"bvh/box_ray.cl", IN_PACKET},
     {"bvh/traverse_single.cl", IN_SINGLE},
@@ -214,6 +223,7 @@ BpStatus bp_program_source(const BpProgramOptions *options, const char *extra_na
         fprintf(out, "#define EFFECT_%s %d\n", bp_effect_identifier((BpEffect)e),
                 bp_effects_has(options->effects, (BpEffect)e));
     fprintf(out, "#define ACCELERATION_TREE %d\n", options->tree);
+    fprintf(out, "#define TRIANGLES_ALONE %d\n", options->triangles_alone);
     if (options->parts > 1)
         fprintf(out, "#define SCENE_PARTS %u\n#define PART_LENGTH %uu\n", options->parts,
                 options->part_length);

@@ -45,8 +45,9 @@ BpStatus bp_kernel_close(FILE *out, BpStatus status, char **text, BpError *err);
 #define BP_SAMPLE_GROUP_MAX 64u
 
 typedef struct BpProgramOptions {
-    uint32_t effects; /* bits of effects.h */
-    bool tree;        /* spheres are found through a tree; else they are a list */
+    uint32_t effects;     /* bits of effects.h */
+    bool tree;            /* spheres are found through a tree; else they are a list */
+    bool triangles_alone; /* no code for spheres: there are none, no lamps to send rays to and no media */
     BP_SETTING_LIST(BP_SETTING_MEMBER)
     BpKernelForm form;     /* not BP_KERNEL_AUTO */
     uint32_t tree_width;   /* 2, 4, 8 or 16 */

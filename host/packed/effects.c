@@ -31,7 +31,8 @@ const char *bp_effect_identifier(BpEffect effect) {
 
 /* How many materials, and how many spheres with them, call for one effect. */
 typedef struct Use {
-    size_t materials, spheres, unused; /* unused: materials that would, but that no sphere has */
+    size_t materials, spheres,
+        unused; /* spheres: triangles too; unused: materials that would, but that none has */
 } Use;
 
 static bool is_bright(const double radiance[3]) {
@@ -52,26 +53,27 @@ static uint32_t material_bits(const BpMaterial *material) {
     return bits;
 }
 
-static void explain_material(BpEffect effect, const Use *use, const Use *all, bool one_kind, size_t size,
-                             char *reason) {
+static void explain_material(BpEffect effect, const char *noun, const Use *use, const Use *all, bool one_kind,
+                             size_t size, char *reason) {
     const char *name = bp_effect_name(effect);
     char in_use[64];
     snprintf(in_use, sizeof in_use, "none of the %zu materials in use", all->materials);
-    char kinds[64] = "", spheres[48] = "the only sphere";
-    if (all->spheres > 1) snprintf(spheres, sizeof spheres, "all %zu spheres", all->spheres);
+    char kinds[64] = "", spheres[48];
+    snprintf(spheres, sizeof spheres, "the only %s", noun);
+    if (all->spheres > 1) snprintf(spheres, sizeof spheres, "all %zu %ss", all->spheres, noun);
     if (all->materials > 1) snprintf(kinds, sizeof kinds, " (%zu of it)", all->materials);
     if (use->materials > 0 && one_kind)
         snprintf(reason, size, "the only kind of material in use%s, on %s: no switch between kinds", kinds,
                  spheres);
     else if (use->materials > 0)
-        snprintf(reason, size, "%zu of the %zu material%s in use, on %zu of %zu sphere%s", use->materials,
-                 all->materials, bp_plural(all->materials), use->spheres, all->spheres,
+        snprintf(reason, size, "%zu of the %zu material%s in use, on %zu of %zu %s%s", use->materials,
+                 all->materials, bp_plural(all->materials), use->spheres, all->spheres, noun,
                  bp_plural(all->spheres));
     else if (all->spheres == 0)
         snprintf(reason, size, "no spheres: the picture is the sky");
     else if (use->unused > 0)
-        snprintf(reason, size, "%zu material%s would, but no sphere has %s: %s", use->unused,
-                 bp_plural(use->unused), use->unused == 1 ? "it" : "them", texts[effect].left_out);
+        snprintf(reason, size, "%zu material%s would, but no %s has %s: %s", use->unused,
+                 bp_plural(use->unused), noun, use->unused == 1 ? "it" : "them", texts[effect].left_out);
     else if (texts[effect].absent[0] != '\0')
         snprintf(reason, size, "%s: %s", texts[effect].absent,
                  all->materials == 1 ? "the only material in use does not" : in_use);
@@ -90,11 +92,11 @@ static void explain_material(BpEffect effect, const Use *use, const Use *all, bo
 static uint32_t count_uses(const BpScene *scene, Use uses[BP_EFFECT_COUNT], Use *all) {
     uint32_t spheres_with[MATERIALS_AT_ONCE], bits = 0;
     memset(uses, 0, BP_EFFECT_COUNT * sizeof *uses);
-    *all = (Use){.spheres = scene->sphere_count};
+    *all = (Use){.spheres = bp_scene_shapes(scene)};
     for (size_t first = 0; first < scene->material_count; first += MATERIALS_AT_ONCE) {
         memset(spheres_with, 0, sizeof spheres_with);
-        for (size_t i = 0; i < scene->sphere_count; ++i) {
-            const size_t place = (size_t)scene->spheres[i].material - first; /* huge for those before */
+        for (size_t i = 0; i < bp_scene_shapes(scene); ++i) {
+            const size_t place = (size_t)bp_shape_material(scene, i) - first; /* huge for those before */
             if (place < MATERIALS_AT_ONCE) ++spheres_with[place];
         }
         for (size_t m = first; m < scene->material_count && m - first < MATERIALS_AT_ONCE; ++m) {
@@ -194,6 +196,7 @@ static void name_lamps(size_t lamps, size_t discs, bool image, size_t size, char
 static bool sky_outshines_lamps(const BpScene *scene) {
     const double sky =
         fmin(bp_luminance_of(scene->background_bottom), bp_luminance_of(scene->background_top));
+    if (scene->triangle_count > 0) return false; /* they may hide the sky, too */
     for (size_t i = 0; i < scene->sphere_count; ++i) {
         const BpSphere *sphere = &scene->spheres[i];
         if (bp_luminance_of(scene->materials[sphere->material].emit) > sky) return false;
@@ -232,6 +235,8 @@ static bool explain_lamps(const BpScene *scene, size_t size, char *reason) {
         lit += is_lit;
         both += is_lamp && is_lit;
     }
+    for (size_t i = 0; i < scene->triangle_count; ++i)
+        lit += bp_material_is_lit(&scene->materials[scene->triangles[i].material]);
     name_lamps(lamps, discs, image, sizeof all, all);
     if (lamps == 0 && !sky)
         snprintf(reason, size,
@@ -245,7 +250,7 @@ static bool explain_lamps(const BpScene *scene, size_t size, char *reason) {
         snprintf(reason, size, "%zu lamp%s, %s brighter than the sky", lamps, bp_plural(lamps),
                  lamps == 1 ? "not" : "none of them");
     else {
-        snprintf(reason, size, "%s that can light %zu sphere%s%s", all, lit, bp_plural(lit),
+        snprintf(reason, size, "%s that can light %zu %s%s%s", all, lit, bp_scene_noun(scene), bp_plural(lit),
                  media ? " and media" : "");
         return true;
     }
@@ -276,14 +281,15 @@ static bool explain_textures(const BpScene *scene, BpEffect effect, size_t size,
     size_t spheres = 0, materials = 0;
     for (size_t m = 0; m < scene->material_count; ++m)
         materials += varies_by(scene, &scene->materials[m], effect);
-    for (size_t i = 0; i < scene->sphere_count && materials > 0; ++i)
-        spheres += varies_by(scene, &scene->materials[scene->spheres[i].material], effect);
+    for (size_t i = 0; i < bp_scene_shapes(scene) && materials > 0; ++i)
+        spheres += varies_by(scene, &scene->materials[bp_shape_material(scene, i)], effect);
     if (spheres > 0)
-        snprintf(reason, size, "%zu material%s with %s, on %zu of %zu sphere%s", materials,
-                 bp_plural(materials), what, spheres, scene->sphere_count, bp_plural(scene->sphere_count));
+        snprintf(reason, size, "%zu material%s with %s, on %zu of %zu %s%s", materials, bp_plural(materials),
+                 what, spheres, bp_scene_shapes(scene), bp_scene_noun(scene),
+                 bp_plural(bp_scene_shapes(scene)));
     else if (materials > 0)
-        snprintf(reason, size, "%zu material%s %s %s, but no sphere has %s", materials, bp_plural(materials),
-                 materials == 1 ? "has" : "have", what, materials == 1 ? "it" : "them");
+        snprintf(reason, size, "%zu material%s %s %s, but no %s has %s", materials, bp_plural(materials),
+                 materials == 1 ? "has" : "have", what, bp_scene_noun(scene), materials == 1 ? "it" : "them");
     else
         snprintf(reason, size, "no material has a texture%s",
                  effect == BP_EFFECT_NOISE    ? " of noise"
@@ -302,6 +308,23 @@ static bool explain_environment(const BpScene *scene, size_t size, char *reason)
     return image != NULL;
 }
 
+/* Whether there are triangles. Their light, and what lamps send through or off them, is found by chance. */
+static bool explain_triangles(const BpScene *scene, size_t size, char *reason) {
+    size_t emitting = 0;
+    for (size_t i = 0; i < scene->triangle_count; ++i)
+        emitting += is_bright(scene->materials[scene->triangles[i].material].emit);
+    if (scene->triangle_count == 0)
+        snprintf(reason, size, "no triangles, quads or boxes");
+    else if (emitting > 0)
+        snprintf(reason, size, "%zu triangle%s; %zu of them emit%s, found by chance: no rays are sent to %s",
+                 scene->triangle_count, bp_plural(scene->triangle_count), emitting, emitting == 1 ? "s" : "",
+                 emitting == 1 ? "it" : "them");
+    else
+        snprintf(reason, size, "%zu triangle%s%s", scene->triangle_count, bp_plural(scene->triangle_count),
+                 scene->sphere_count == 0 ? " and no spheres" : "");
+    return scene->triangle_count > 0;
+}
+
 void bp_effects_analyse(const BpScene *scene, BpEffects *effects) {
     const size_t size = sizeof effects->reason[0];
     Use uses[BP_EFFECT_COUNT], all;
@@ -310,7 +333,8 @@ void bp_effects_analyse(const BpScene *scene, BpEffects *effects) {
     const bool one_kind = effects->bits != 0 && (effects->bits & (effects->bits - 1)) == 0;
     for (int e = 0; e < BP_EFFECT_COUNT; ++e)
         if (texts[e].left_out[0] != '\0')
-            explain_material((BpEffect)e, &uses[e], &all, one_kind, size, effects->reason[e]);
+            explain_material((BpEffect)e, bp_scene_noun(scene), &uses[e], &all, one_kind, size,
+                             effects->reason[e]);
 
     const BpCamera *camera = &scene->camera;
     if (camera->lens_radius > 0) {
@@ -336,6 +360,9 @@ void bp_effects_analyse(const BpScene *scene, BpEffects *effects) {
                  NO_LAMP_REASON); /* without another look at all spheres */
     else if (explain_lamps(scene, size, effects->reason[BP_EFFECT_LAMPS]))
         effects->bits |= 1u << BP_EFFECT_LAMPS;
+    if (explain_triangles(scene, size, effects->reason[BP_EFFECT_TRIANGLES]))
+        effects->bits |= 1u << BP_EFFECT_TRIANGLES;
+    effects->triangles_alone = scene->triangle_count > 0 && scene->sphere_count == 0;
     if (!bp_effects_has(effects->bits, BP_EFFECT_LAMPS))
         snprintf(effects->reason[BP_EFFECT_CAUSTICS], size, "no rays are sent to lamps");
     else

@@ -37,7 +37,8 @@
     X(MOTION, "motion", "spheres that move while the shutter is open", "", "")                               \
     X(MEDIA, "media", "fog, smoke and tinted glass, in spheres or in the whole scene", "", "")               \
     X(SHADOW_CATCHER, "shadow_catcher", "a plane that shows nothing but the shadow on it", "", "")           \
-    X(CAUSTICS, "caustics", "rays to lamps through balls of glass and off mirrors", "", "")
+    X(CAUSTICS, "caustics", "rays to lamps through balls of glass and off mirrors", "", "")                  \
+    X(TRIANGLES, "triangles", "triangles beside spheres, or in place of them", "", "")
 
 typedef enum BpEffect {
 #define BP_EFFECT_ENUM(identifier, name, text, left_out, absent) BP_EFFECT_##identifier,
@@ -49,8 +50,9 @@ typedef enum BpEffect {
 _Static_assert(BP_EFFECT_COUNT < 32, "effects are the bits of a uint32_t");
 
 typedef struct BpEffects {
-    uint32_t bits; /* bit e set: effect e is simulated */
-    bool caustics; /* CAUSTICS is simulated too, if the options enable it */
+    uint32_t bits;        /* bit e set: effect e is simulated */
+    bool triangles_alone; /* and no code for spheres, unless options ask for more */
+    bool caustics;        /* CAUSTICS is simulated too, if the options enable it */
     char reason[BP_EFFECT_COUNT][160];
 } BpEffects;
 

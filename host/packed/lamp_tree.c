@@ -52,7 +52,8 @@ size_t bp_enclosing_lamp(const BpScene *scene) {
     size_t largest = 0;
     for (size_t i = 1; i < scene->sphere_count; ++i)
         if (fabs(scene->spheres[i].radius) > fabs(scene->spheres[largest].radius)) largest = i;
-    if (scene->sphere_count < 2 || !bp_sphere_emits(scene, largest)) return SIZE_MAX;
+    if (scene->sphere_count < 2 || scene->triangle_count > 0 || !bp_sphere_emits(scene, largest))
+        return SIZE_MAX;
     const BpSphere *shell = &scene->spheres[largest];
     for (size_t i = 0; i < scene->sphere_count; ++i) {
         const BpSphere *sphere = &scene->spheres[i];
@@ -314,7 +315,8 @@ BpStatus bp_lamp_tree_build(const BpScene *scene, const BpTree *tree, BpLampTree
     if (enough && slot_of != NULL) {
         for (size_t slot = 0; slot < slots; ++slot) {
             lamps->slot_lamp[slot] = NO_LAMP;
-            if (tree->slot_sphere[slot] != NO_SPHERE) slot_of[tree->slot_sphere[slot]] = (uint32_t)slot;
+            if (tree->slot_sphere[slot] < scene->sphere_count)
+                slot_of[tree->slot_sphere[slot]] = (uint32_t)slot;
         }
         lamps->slot_count = (uint32_t)slots;
         collect_lamps(scene, tree, slot_of, enclosing, &builder);

@@ -506,16 +506,16 @@ static void pack_slot_chunk(const Slots *slots, size_t first, size_t count) {
     const uint32_t *spheres = packed->tree.slot_sphere + first;
     uint32_t materials[SLOT_CHUNK], albedos[SLOT_CHUNK];
     for (size_t s = 0; s < count; ++s) {
-        const bool used = spheres[s] != NO_SPHERE;
-        materials[s] = used ? scene->spheres[spheres[s]].material : 0;
-        albedos[s] = used ? scene->spheres[spheres[s]].albedo : BP_NO_ALBEDO;
+        const bool used = spheres[s] != NO_SPHERE, is_sphere = spheres[s] < scene->sphere_count;
+        materials[s] = used ? bp_shape_material(scene, spheres[s]) : 0;
+        albedos[s] = is_sphere ? scene->spheres[spheres[s]].albedo : BP_NO_ALBEDO;
     }
     static const Scattered nothing;
     for (size_t s = 0; s < count; ++s) {
-        const bool used = spheres[s] != NO_SPHERE;
+        const bool used = spheres[s] != NO_SPHERE, is_sphere = spheres[s] < scene->sphere_count;
         const Scattered *scattered = used ? &slots->scattered[materials[s]] : &nothing;
         const bool second =
-            used && slots->second[materials[s]] != 0 && is_second(scene, &scene->spheres[spheres[s]]);
+            is_sphere && slots->second[materials[s]] != 0 && is_second(scene, &scene->spheres[spheres[s]]);
         packed->slot_material[first + s] = second ? slots->second[materials[s]] : materials[s];
         const float *own =
             scattered->replaced && albedos[s] != BP_NO_ALBEDO ? scene->albedos[albedos[s]] : NULL;
@@ -607,7 +607,7 @@ static BpStatus pack_boundaries(const BpScene *scene, BpPacked *packed, BpError 
     size_t found = 0;
     for (size_t slot = 0; slot < slots && count > 0; ++slot) {
         const uint32_t i = tree->slot_sphere[slot];
-        if (i == NO_SPHERE ||
+        if (i >= scene->sphere_count || /* NO_SPHERE too */
             !bp_material_is(scene->materials[scene->spheres[i].material].kind, BP_HAS_INSIDE))
             continue;
         boundaries[found++] = (Boundary){fabs(scene->spheres[i].radius), i, (uint32_t)slot};

@@ -110,24 +110,72 @@ static uint32_t scan_spheres(Scan *scan, BpThreadPool *pool) {
 static BpStatus build_list(const BpTreeWriter *writer, BpError *err) {
     BpTree *tree = writer->tree;
     const uint32_t count = (uint32_t)writer->scene->sphere_count, width = tree->width;
-    tree->first_leaves = tree->leaf_count = (count + width - 1) / width;
+    const uint32_t triangles = (uint32_t)writer->scene->triangle_count;
+    tree->first_triangles = (count + width - 1) / width;
+    tree->first_leaves = tree->leaf_count = tree->first_triangles + (triangles + width - 1) / width;
     BP_TRY(bp_tree_allocate(tree, 0, tree->leaf_count, err));
     for (uint32_t leaf = 0; leaf < tree->leaf_count; ++leaf) {
+        const bool flat = leaf >= tree->first_triangles;
+        const uint32_t first = (flat ? leaf - tree->first_triangles : leaf) * width,
+                       all = flat ? triangles : count;
         BpTreeItem items[BP_TREE_WIDTH_MAX];
         uint32_t n = 0;
-        for (; n < width && leaf * width + n < count; ++n)
-            items[n] = bp_tree_item(writer->scene, leaf * width + n, writer->origin);
-        bp_tree_write_leaf(writer, leaf, items, n);
+        for (; n < width && first + n < all; ++n)
+            items[n] = flat ? bp_tree_triangle_item(writer->scene, first + n, writer->origin)
+                            : bp_tree_item(writer->scene, first + n, writer->origin);
+        if (flat)
+            bp_tree_write_triangles(writer, leaf, items, n);
+        else
+            bp_tree_write_leaf(writer, leaf, items, n);
     }
+    return BP_OK;
+}
+
+static void make_triangle_items(void *context, uint32_t block, unsigned thread) {
+    (void)thread;
+    Scan *scan = context;
+    for (size_t i = bp_block_begin(block); i < bp_block_end(block, scan->scene->triangle_count); ++i)
+        scan->items[i] = bp_tree_triangle_item(scan->scene, (uint32_t)i, scan->origin);
+}
+
+/* A binary tree over the scene's triangles, whose reordered items the caller frees. */
+static BpStatus build_triangles(const BpTreeWriter *writer, const BpBinaryOptions *options,
+                                BpThreadPool *pool, BpTreeItem **items, BpBinaryTree *binary, BpError *err) {
+    const size_t count = writer->scene->triangle_count, bytes = count * sizeof **items;
+    if (count == 0) return BP_OK;
+    *items = bp_large_pages(malloc(bytes), bytes);
+    if (*items == NULL)
+        return bp_fail(err, BP_ERR_MEMORY, "out of memory while building the tree of %zu triangles", count);
+    Scan scan = {.scene = writer->scene, .origin = writer->origin, .items = *items};
+    bp_parallel_for(pool, make_triangle_items, &scan, bp_block_count((uint32_t)count));
+    return bp_binary_tree_build(items, (uint32_t)count, options, pool, binary, err);
+}
+
+/* One tree of both: a leaf holds one kind, and the leaves of spheres are written first. */
+static BpStatus join_kinds(BpBinaryTree *spheres, const BpBinaryTree *triangles, uint32_t width,
+                           const BpBinaryNode **root, BpError *err) {
+    *root = spheres->root != NULL ? spheres->root : triangles->root;
+    if (spheres->root == NULL || triangles->root == NULL) return BP_OK;
+    BpBinaryNode *both = bp_node_pool_take(&spheres->pools[0], width);
+    if (both == NULL) return bp_fail(err, BP_ERR_MEMORY, "out of memory while joining two trees");
+    both->left = spheres->root;
+    both->right = triangles->root;
+    both->first = 0;
+    both->count = both->left->count + both->right->count;
+    bp_binary_finish(both, width);
+    *root = both;
     return BP_OK;
 }
 
 static BpStatus build_tree(BpTreeWriter *writer, unsigned threads, BpError *err) {
     BpTree *tree = writer->tree;
     const uint32_t count = (uint32_t)writer->scene->sphere_count, blocks = bp_block_count(count) + 1;
-    if (threads == 0 && count < BP_BLOCK) threads = 1; /* waking them would take longer */
+    if (threads == 0 && bp_scene_shapes(writer->scene) < BP_BLOCK)
+        threads = 1; /* waking them would take longer */
     BpStatus status = BP_OK;
-    BpBinaryTree binary = {0};
+    BpBinaryTree binary = {0}, flat = {0};
+    BpTreeItem *triangle_items = NULL;
+    const BpBinaryNode *root = NULL;
     BpThreadPool *pool = bp_thread_pool_create(threads);
     Scan scan = {.scene = writer->scene, .origin = writer->origin, .width = tree->width};
     const size_t item_bytes = ((size_t)count + 1) * sizeof *scan.items;
@@ -139,18 +187,26 @@ static BpStatus build_tree(BpTreeWriter *writer, unsigned threads, BpError *err)
         goto cleanup;
     }
     const uint32_t items = scan_spheres(&scan, pool);
+    /* Two trees that are joined have a level less each. */
+    const bool mixed = items > 0 && writer->scene->triangle_count > 0;
     const BpBinaryOptions options = {.width = tree->width,
-                                     .height_max = bp_tree_width_bits(tree->width) * TREE_DEPTH_MAX};
+                                     .height_max = bp_tree_width_bits(tree->width) * TREE_DEPTH_MAX - mixed};
     BP_TRY_GOTO(status, bp_binary_tree_build(&scan.items, items, &options, pool, &binary, err), cleanup);
+    BP_TRY_GOTO(status, build_triangles(writer, &options, pool, &triangle_items, &flat, err), cleanup);
+    BP_TRY_GOTO(status, join_kinds(&binary, &flat, tree->width, &root, err), cleanup);
     writer->items = scan.items;
+    writer->triangle_items = triangle_items;
     tree->first_leaves = tree->leaf_count = scan.candidates.count > 0 ? 1 : 0;
-    BP_TRY_GOTO(status, bp_tree_write_nodes(writer, binary.root, pool, err), cleanup);
+    tree->first_triangles = tree->first_leaves + (binary.root != NULL ? binary.root->leaves : 0);
+    BP_TRY_GOTO(status, bp_tree_write_nodes(writer, root, pool, err), cleanup);
     BpTreeItem huge[BP_TREE_WIDTH_MAX];
     for (uint32_t k = 0; k < scan.candidates.count; ++k)
         huge[k] = bp_tree_item(writer->scene, scan.candidates.index[k], writer->origin);
     if (tree->first_leaves > 0) bp_tree_write_leaf(writer, 0, huge, scan.candidates.count);
 cleanup:
     bp_binary_tree_clear(&binary);
+    bp_binary_tree_clear(&flat);
+    free(triangle_items);
     free(scan.items);
     free(scan.largest);
     free(scan.bounds);
@@ -166,11 +222,13 @@ BpStatus bp_tree_build(const BpScene *scene, const double origin[3], const BpTre
     tree->has_motions = options->motions || scene->moving_count > 0;
     if (width != 2 && width != 4 && width != 8 && width != 16)
         return bp_fail(err, BP_ERR_LIMIT, "a tree is 2, 4, 8 or 16 wide, not %u", width);
-    /* A list cannot run out of depth, and neither can a wider tree of up to BP_SPHERES_MAX spheres. */
-    const uint64_t limit = width == 2 && !options->list ? (uint64_t)width << TREE_DEPTH_MAX : BP_SPHERES_MAX;
-    if (scene->sphere_count > limit)
-        return bp_fail(err, BP_ERR_LIMIT, "%zu spheres; a tree %u wide holds at most %llu",
-                       scene->sphere_count, width, (unsigned long long)limit);
+    /* A list cannot run out of depth, and neither can a wider tree of up to BP_SPHERES_MAX shapes. */
+    const uint64_t limit = width == 2 && !options->list
+                               ? (uint64_t)width << (TREE_DEPTH_MAX - (scene->triangle_count > 0))
+                               : BP_SPHERES_MAX;
+    if (bp_scene_shapes(scene) > limit)
+        return bp_fail(err, BP_ERR_LIMIT, "%zu %ss; a tree %u wide holds at most %llu",
+                       bp_scene_shapes(scene), bp_scene_noun(scene), width, (unsigned long long)limit);
     BpTreeWriter writer = {.scene = scene, .origin = origin, .tree = tree};
     const BpStatus status =
         options->list ? build_list(&writer, err) : build_tree(&writer, options->threads, err);
@@ -186,6 +244,7 @@ void bp_tree_clear(BpTree *tree) {
     free(tree->children);
     free(tree->leaves);
     free(tree->slot_sphere);
+    free(tree->triangles);
     free(tree->leaf_motions);
     *tree = (BpTree){0};
 }

@@ -1,6 +1,7 @@
-/* tree.h: a bounding volume hierarchy over spheres, with wide nodes and leaves as structures of arrays.
+/* tree.h: a bounding volume hierarchy over spheres and triangles, with wide nodes and leaves as structures of
+ * arrays.
  *
- * In:    centres and radii, in double, relative to the camera.
+ * In:    centres, radii and vertices, in double, relative to the camera.
  * Out:   BpTree: node boxes (rounded outward when narrowed), child words, leaves and slots, in the layout of
  *        kernels/scene_types.h.
  * Knows: the packed layout, threads.   Does not know: OpenCL, what spheres are made of.
@@ -32,19 +33,24 @@ typedef struct BpTree {
     uint32_t depth;        /* levels of nodes, <= TREE_DEPTH_MAX */
     void *node_boxes;      /* node_count * NODE_REALS(width) reals */
     uint32_t *children;    /* node_count * width */
-    void *leaves;          /* leaf_count * LEAF_REALS(width) reals */
-    uint32_t *slot_sphere; /* leaf_count * width */
+    void *leaves;          /* first_triangles * LEAF_REALS(width) reals */
+    uint32_t *slot_sphere; /* leaf_count * width; of triangles: their index, after that of all spheres */
+    /* A leaf holds shapes of one kind. Those from `first_triangles` on hold triangles, the others spheres. */
+    uint32_t first_triangles;
+    uint32_t triangle_leaves; /* leaf_count - first_triangles */
+    void *triangles;          /* triangle_leaves * TRIANGLE_REALS(width) reals */
     bool has_motions;
-    uint32_t motion_leaves; /* leaf_count, or 0 where there are no motions */
+    uint32_t motion_leaves; /* first_triangles, or 0 where there are no motions */
     void *leaf_motions;     /* motion_leaves * MOTION_REALS(width) reals */
     uint32_t own_slot;      /* of the sphere at rest whose surface `origin` lies on, or NO_SLOT */
     double build_seconds;
 } BpTree;
 
-/* Builds a tree over the scene's spheres with `origin` (the camera's position) subtracted. Every sphere
- * stands in exactly one slot; boxes hold spheres on all of their way. `origin` stays on its side of every
- * surface at rest, rounded as the spheres may be, and lies on one at most. The result does not depend on the
- * number of threads. On failure `tree` is empty. BP_ERR_MEMORY or BP_ERR_LIMIT. Free with bp_tree_clear(). */
+/* Builds a tree over the scene's spheres and triangles with `origin` (the camera's position) subtracted.
+ * Every sphere stands in exactly one slot; boxes hold spheres on all of their way. `origin` stays on its side
+ * of every surface at rest, rounded as the spheres may be, and lies on one at most. The result does not
+ * depend on the number of threads. On failure `tree` is empty. BP_ERR_MEMORY or BP_ERR_LIMIT. Free with
+ * bp_tree_clear(). */
 BpStatus bp_tree_build(const BpScene *scene, const double origin[3], const BpTreeOptions *options,
                        BpTree *tree, BpError *err);
 void bp_tree_clear(BpTree *tree);

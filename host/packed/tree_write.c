@@ -120,6 +120,8 @@ static void count_below(const Gather *gather, const BpBinaryNode *node, uint32_t
 }
 
 static BpBounds write_binary_leaf(const BpTreeWriter *writer, const BpBinaryNode *node, uint32_t leaf) {
+    if (leaf >= writer->tree->first_triangles)
+        return bp_tree_write_triangles(writer, leaf, writer->triangle_items + node->first, node->count);
     return bp_tree_write_leaf(writer, leaf, writer->items + node->first, node->count);
 }
 
@@ -408,6 +410,55 @@ BpBounds bp_tree_write_leaf(const BpTreeWriter *writer, uint32_t leaf, const BpT
     return box;
 }
 
+BpTreeItem bp_tree_triangle_item(const BpScene *scene, uint32_t triangle, const double origin[3]) {
+    const BpTriangle *t = &scene->triangles[triangle];
+    BpTreeItem item = {.radius = FLT_MIN, .sphere = triangle};
+    for (int a = 0; a < 3; ++a) {
+        const double x = t->vertices[0][a], y = t->vertices[1][a], z = t->vertices[2][a];
+        const double low = fmin(fmin(x, y), z), high = fmax(fmax(x, y), z);
+        item.center[a] = (float)((low + high) / 2 - origin[a]);
+        item.radius = fmaxf(item.radius, (float)((high - low) / 2));
+    }
+    return item;
+}
+
+/* Narrowed first, vertices are exact. Widened by two units in the last place of a plane, so that a box
+ * without thickness has some, and by 8 of the longest side, since a hit may lie that far off in single
+ * precision. */
+BpBounds bp_tree_write_triangles(const BpTreeWriter *writer, uint32_t leaf, const BpTreeItem *items,
+                                 uint32_t count) {
+    BpTree *tree = writer->tree;
+    const uint32_t width = tree->width;
+    const bool single = tree->single_precision;
+    const double unit = single ? 0x1p-24 : 0x1p-53;
+    const size_t base = (size_t)(leaf - tree->first_triangles) * TRIANGLE_REALS(width);
+    BpBounds box = BP_BOUNDS_EMPTY;
+    for (uint32_t lane = 0; lane < width; ++lane) {
+        const BpTriangle *t = &writer->scene->triangles[items[lane < count ? lane : 0].sphere];
+        BpBounds own = BP_BOUNDS_EMPTY;
+        double longest = 0;
+        for (uint32_t a = 0; a < 3; ++a) {
+            for (uint32_t k = 0; k < 3; ++k) {
+                const size_t place = base + (3 * k + a) * width + lane;
+                bp_reals_store(tree->triangles, single, place,
+                               t->vertices[lane < count ? k : 0][a] - writer->origin[a]);
+                const double stored = bp_reals_load(tree->triangles, single, place);
+                own.low[a] = fmin(own.low[a], stored);
+                own.high[a] = fmax(own.high[a], stored);
+            }
+            longest = fmax(longest, own.high[a] - own.low[a]);
+        }
+        for (int a = 0; a < 3; ++a) {
+            own.low[a] -= 4 * unit * fabs(own.low[a]) + 8 * unit * longest + (double)FLT_MIN;
+            own.high[a] += 4 * unit * fabs(own.high[a]) + 8 * unit * longest + (double)FLT_MIN;
+        }
+        if (lane < count) bp_bounds_add(&box, &own);
+        tree->slot_sphere[(size_t)leaf * width + lane] =
+            lane < count ? (uint32_t)writer->scene->sphere_count + items[lane].sphere : NO_SPHERE;
+    }
+    return box;
+}
+
 BpStatus bp_tree_check_size(uint32_t width, uint64_t nodes, uint64_t leaves, BpError *err) {
     const uint64_t words = (uint64_t)UINT32_MAX + 1;
     const uint64_t nodes_max = words / NODE_REALS(width), leaves_max = words / LEAF_REALS(width);
@@ -422,18 +473,29 @@ BpStatus bp_tree_check_size(uint32_t width, uint64_t nodes, uint64_t leaves, BpE
 
 BpStatus bp_tree_allocate(BpTree *tree, uint32_t nodes, uint32_t leaves, BpError *err) {
     BP_TRY(bp_tree_check_size(tree->width, nodes, leaves, err));
+    if (leaves > tree->first_triangles &&
+        leaves - tree->first_triangles > UINT32_MAX / TRIANGLE_REALS(tree->width))
+        return bp_fail(err, BP_ERR_LIMIT,
+                       "a tree of %u leaves of triangles; %u wide it may have %u: take fewer triangles",
+                       leaves - tree->first_triangles, tree->width, UINT32_MAX / TRIANGLE_REALS(tree->width));
     const size_t real_size = tree->single_precision ? sizeof(float) : sizeof(double);
     const size_t n = nodes > 0 ? nodes : 1, l = leaves > 0 ? leaves : 1, width = tree->width;
     tree->node_boxes = bp_own_pages(n * NODE_REALS(width), real_size);
     tree->children = bp_own_pages(n * width, sizeof *tree->children);
-    tree->leaves = bp_own_pages(l * LEAF_REALS(width), real_size);
+    const size_t spheres = tree->first_triangles < leaves ? tree->first_triangles : leaves,
+                 s = spheres > 0 ? spheres : 1;
+    tree->triangle_leaves = leaves - (uint32_t)spheres;
+    if (tree->triangle_leaves > 0)
+        tree->triangles = bp_own_pages(tree->triangle_leaves * (size_t)TRIANGLE_REALS(width), real_size);
+    tree->leaves = bp_own_pages(s * LEAF_REALS(width), real_size);
     tree->slot_sphere = bp_own_pages(l * width, sizeof *tree->slot_sphere);
     if (tree->has_motions) {
-        tree->motion_leaves = leaves;
-        tree->leaf_motions = bp_own_pages(l * MOTION_REALS(width), real_size);
+        tree->motion_leaves = (uint32_t)spheres;
+        tree->leaf_motions = bp_own_pages(s * MOTION_REALS(width), real_size);
     }
     if (tree->node_boxes != NULL && tree->children != NULL && tree->leaves != NULL &&
-        tree->slot_sphere != NULL && (tree->leaf_motions != NULL || !tree->has_motions))
+        tree->slot_sphere != NULL && (tree->leaf_motions != NULL || !tree->has_motions) &&
+        (tree->triangles != NULL || tree->triangle_leaves == 0))
         return BP_OK;
     return bp_fail(err, BP_ERR_MEMORY, "out of memory for a tree of %u leaves and %u nodes", leaves, nodes);
 }

@@ -30,13 +30,16 @@ static inline void bp_bounds_add(BpBounds *bounds, const BpBounds *other) {
 typedef struct BpTreeWriter {
     const BpScene *scene;
     const double *origin;
-    const BpTreeItem *items;
+    const BpTreeItem *items, *triangle_items; /* reordered: of spheres, of triangles */
     BpTree *tree;
 } BpTreeWriter;
 
 /* The sphere as the splits see it and as a tree in single precision stores it, relative to `origin`. Of one
  * that moves the splits see the ball around its way. */
 BpTreeItem bp_tree_item(const BpScene *scene, uint32_t sphere, const double origin[3]);
+
+/* The triangle as the splits see it, relative to `origin`: the cube around it. */
+BpTreeItem bp_tree_triangle_item(const BpScene *scene, uint32_t triangle, const double origin[3]);
 
 /* A box that contains the sphere of an item, the one that was rounded to it as well. */
 BpBounds bp_tree_item_bounds(const BpTreeItem *item);
@@ -46,12 +49,16 @@ BpBounds bp_tree_item_bounds(const BpTreeItem *item);
 BpBounds bp_tree_write_leaf(const BpTreeWriter *writer, uint32_t leaf, const BpTreeItem *items,
                             uint32_t count);
 
+/* The same for leaf `leaf` of triangles. */
+BpBounds bp_tree_write_triangles(const BpTreeWriter *writer, uint32_t leaf, const BpTreeItem *items,
+                                 uint32_t count);
+
 /* Refuses what the kernels cannot number: they find a node's and a leaf's reals by offsets of 32 bits.
  * BP_ERR_LIMIT. */
 BpStatus bp_tree_check_size(uint32_t width, uint64_t nodes, uint64_t leaves, BpError *err);
 
-/* Allocates the arrays, if the kernels can number that many; each has room for one entry at least, so that a
- * device buffer can be made of it. */
+/* Allocates the arrays, with triangles in the leaves from `tree->first_triangles` on, if the kernels can
+ * number that many; each has room for one entry at least, so that a device buffer can be made of it. */
 BpStatus bp_tree_allocate(BpTree *tree, uint32_t nodes, uint32_t leaves, BpError *err);
 
 /* Gathers the binary tree into wide nodes, allocates the arrays of the tree and writes them, from leaf

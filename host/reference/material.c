@@ -2,7 +2,7 @@
 #include "trace.h"
 
 static Vec albedo_of(const BpScene *scene, const Hit *hit) {
-    if (hit->sphere->albedo == BP_NO_ALBEDO)
+    if (hit->sphere == NULL || hit->sphere->albedo == BP_NO_ALBEDO)
         return bp_ref_varied(scene, hit, BP_MEMBER_ALBEDO, hit->material->albedo);
     const float *albedo = scene->albedos[hit->sphere->albedo];
     return (Vec){albedo[0], albedo[1], albedo[2]};

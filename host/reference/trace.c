@@ -10,7 +10,7 @@
 static bool starts_on(const BpScene *scene, const Ray *ray, const BpSphere *sphere) {
     const BpSphere *from = ray->leaves;
     if (from == sphere) return true;
-    if (from == NULL && ray->scattered) return false;
+    if (from == NULL && (ray->scattered || ray->quits != NULL)) return false;
     if (from == NULL) {
         const Vec center = bp_ref_center(scene, ray, sphere);
         const double radius = fabs(sphere->radius), distance = sqrt(length2(sub(center, ray->origin)));
@@ -47,15 +47,61 @@ static bool hit_sphere(const BpScene *scene, const BpSphere *sphere, const Ray *
     return true;
 }
 
+/* A triangle by the three volumes that the ray spans with its sides (Pluecker), which all have one sign where
+ * it passes between them. The origin may lie in the triangle's plane but for rounding, as it does of the one
+ * that it was found on and of those beside that one: a plane that the ray starts from is not met again. */
+static bool hit_triangle(const BpTriangle *triangle, const Ray *ray, double t_max, double *t) {
+    if (ray->quits == triangle) return false;
+    const Vec a = sub(vec(triangle->vertices[0]), ray->origin),
+              b = sub(vec(triangle->vertices[1]), ray->origin),
+              c = sub(vec(triangle->vertices[2]), ray->origin);
+    const double u = dot(ray->direction, cross(c, b)), v = dot(ray->direction, cross(a, c)),
+                 w = dot(ray->direction, cross(b, a));
+    if (!((u >= 0 && v >= 0 && w >= 0) || (u <= 0 && v <= 0 && w <= 0))) return false;
+    const Vec normal = cross(sub(b, a), sub(c, a));
+    const double along = dot(ray->direction, normal), height = dot(a, normal);
+    if (along == 0) return false;
+    const double size = sqrt(length2(a)) + sqrt(length2(ray->origin));
+    if (ray->quits != NULL && fabs(height) <= 16 * DBL_EPSILON * size * sqrt(length2(normal))) return false;
+    if (!(height / along > 0 && height / along < t_max)) return false;
+    *t = height / along;
+    return true;
+}
+
+static void set_triangle_hit(const BpScene *scene, const Ray *ray, const BpTriangle *triangle, double t,
+                             Hit *hit) {
+    const Vec first = vec(triangle->vertices[0]);
+    const Vec outward =
+        unit(cross(sub(vec(triangle->vertices[1]), first), sub(vec(triangle->vertices[2]), first)));
+    const Vec point = add(ray->origin, scale(t, ray->direction));
+    hit->t = t;
+    hit->sphere = NULL;
+    hit->triangle = triangle;
+    hit->material = &scene->materials[triangle->material];
+    /* Back onto the plane, off which rounding has moved it. */
+    hit->point = sub(point, scale(dot(sub(point, first), outward), outward));
+    hit->front_face = dot(ray->direction, outward) < 0;
+    hit->radial = outward;
+    hit->normal = hit->front_face ? outward : scale(-1, outward);
+}
+
 bool bp_ref_hit(const BpScene *scene, const Ray *ray, Hit *hit) {
     double closest = INFINITY;
     const BpSphere *sphere = NULL;
+    const BpTriangle *triangle = NULL;
     for (size_t i = 0; i < scene->sphere_count; ++i)
         if (hit_sphere(scene, &scene->spheres[i], ray, closest, &closest)) sphere = &scene->spheres[i];
+    for (size_t i = 0; i < scene->triangle_count; ++i)
+        if (hit_triangle(&scene->triangles[i], ray, closest, &closest)) triangle = &scene->triangles[i];
+    if (triangle != NULL) {
+        set_triangle_hit(scene, ray, triangle, closest, hit);
+        return true;
+    }
     if (sphere == NULL) return false;
 
     hit->t = closest;
     hit->sphere = sphere;
+    hit->triangle = NULL;
     hit->material = &scene->materials[sphere->material];
     const Vec point = add(ray->origin, scale(closest, ray->direction)),
               center = bp_ref_center(scene, ray, sphere);
@@ -91,7 +137,7 @@ static Vec background(const BpScene *scene, const Ray *ray) {
     if (scene->environment != NULL) color = bp_ref_environment(scene, ray->direction);
     for (size_t i = 0; i < scene->disc_count; ++i) {
         const BpDisc *disc = &scene->discs[i];
-        const bool from_camera = ray->leaves == NULL && !ray->scattered;
+        const bool from_camera = ray->leaves == NULL && ray->quits == NULL && !ray->scattered;
         if ((disc->visible_to_camera || !from_camera) && in_disc(disc, ray->direction))
             color = add(color, vec(disc->radiance));
     }
@@ -210,7 +256,7 @@ Vec bp_ref_color(const BpScene *scene, const Ray *ray, uint32_t depth, Random *r
         emitted = add(emitted, scale(0.5, add(hit.normal, (Vec){1, 1, 1})));
     Vec direction, attenuation;
     if (!bp_ref_scatter(scene, ray, &hit, random, &direction, &attenuation)) return mul(left, emitted);
-    const Ray scattered = {hit.point, direction, hit.sphere, ray->time, false};
+    const Ray scattered = {hit.point, direction, hit.sphere, ray->time, false, hit.triangle};
     const Vec onward = mul(attenuation, bp_ref_color(scene, &scattered, depth - 1, random, path));
     return mul(left, add(emitted, onward));
 }

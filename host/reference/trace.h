@@ -9,19 +9,21 @@
 #include "vec.h"
 
 typedef struct Ray {
-    Vec origin, direction;  /* the direction need not be of unit length */
-    const BpSphere *leaves; /* the sphere whose surface the origin lies on, or NULL */
-    double time;            /* 0 when the shutter opens, 1 when it closes */
-    bool scattered;         /* it begins where a medium scattered it */
+    Vec origin, direction;   /* the direction need not be of unit length */
+    const BpSphere *leaves;  /* the sphere whose surface the origin lies on, or NULL */
+    double time;             /* 0 when the shutter opens, 1 when it closes */
+    bool scattered;          /* it begins where a medium scattered it */
+    const BpTriangle *quits; /* the triangle that the origin lies on, or NULL */
 } Ray;
 
 typedef struct Hit {
     double t; /* in lengths of the ray's direction */
     Vec point;
-    Vec radial;      /* unit length, away from the centre */
-    Vec normal;      /* unit length, faces the ray */
-    bool front_face; /* the ray comes from the side that the outward normal points to */
-    const BpSphere *sphere;
+    Vec radial;                 /* unit length, away from the centre; of a triangle to its outside */
+    Vec normal;                 /* unit length, faces the ray */
+    bool front_face;            /* the ray comes from the side that the outward normal points to */
+    const BpSphere *sphere;     /* or NULL */
+    const BpTriangle *triangle; /* or NULL */
     const BpMaterial *material;
 } Hit;
 
@@ -44,7 +46,7 @@ Camera bp_ref_camera(const BpCamera *camera);
 /* `height`: where the ray stands in the picture, from 0 at its lower edge to 1 at the upper. */
 Ray bp_ref_camera_ray(const Camera *camera, uint32_t column, uint32_t row, Random *random, double *height);
 
-/* The nearest hit with t > 0; of equal ones the sphere that stands first. */
+/* The nearest hit with t > 0; of equal ones spheres before triangles, and what stands first. */
 bool bp_ref_hit(const BpScene *scene, const Ray *ray, Hit *hit);
 
 /* The direction a material sends the ray on to, and what it leaves of the light; false: absorbed. */

@@ -109,7 +109,7 @@ static void read_step(const BpScene *scene, const double space[3], const Records
     step->to_disc = step->to_lamp && spheres[1] >= DISC_SLOT && !step->to_image;
     step->lamp = step->to_disc ? spheres[1] - DISC_SLOT : spheres[1];
     step->discs = spheres[3];
-    step->material = step->met ? scene->spheres[step->sphere].material : 0;
+    step->material = step->met ? bp_shape_material(scene, step->sphere) : 0;
 }
 
 BpStatus bp_path_log(const BpScene *scene, const BpRenderOptions *options, const BpDeviceInfo *device,

@@ -24,6 +24,7 @@ static bool is_small(const BpCamera *camera, const BpPilotLight *light) {
 
 bool bp_pilot_is_needed(const BpScene *scene, const BpPilotAim *aim) {
     bool needed = aim->pair_count > 0;
+    if (scene->triangle_count > 0) return false; /* its paths know spheres alone */
     for (size_t i = 0; i < aim->light_count; ++i)
         needed = needed || is_small(&scene->camera, &aim->lights[i]);
     return needed;

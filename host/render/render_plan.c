@@ -80,6 +80,10 @@ BpStatus bp_render_plan(const BpScene *scene, const BpRenderOptions *options, co
     bp_effects_analyse(scene, &effects);
     setup->program.effects = choose_effects(&effects, options);
     setup->program.tree = choose_tree(scene, options);
+    /* Discs and images of the sky are sampled, and media flown through, by code for spheres. */
+    setup->program.triangles_alone = effects.triangles_alone && !options->all_effects &&
+                                     !bp_effects_has(setup->program.effects, BP_EFFECT_LAMPS) &&
+                                     !bp_effects_has(setup->program.effects, BP_EFFECT_MEDIA);
 #define SETTING(type, member, option, plural) setup->program.member = options->member;
     BP_SETTING_LIST(SETTING)
 #undef SETTING

@@ -16,11 +16,12 @@ static bool uses_in_place(const BpDeviceInfo *info) {
 /* What a kernel gets in place of an empty array, which OpenCL does not know. Lanes that met nothing read the
  * first element of an array and do not use it, but by a number in it they may read another array: so there is
  * room for an element of any of them, and all of it is 0. */
-static const uint64_t nothing[512 / sizeof(uint64_t)];
+static const uint64_t nothing[1152 / sizeof(uint64_t)];
 #define HOLDS(numbers)                                                                                       \
     _Static_assert((numbers) * sizeof(double) <= sizeof nothing, "no room for one of " #numbers)
 HOLDS(sizeof(PackedTexture) / sizeof(real));
 HOLDS(LEAF_REALS(BP_TREE_WIDTH_MAX));
+HOLDS(TRIANGLE_REALS(BP_TREE_WIDTH_MAX));
 HOLDS(LAMP_NODE_REALS);
 
 /* A buffer of `bytes`, with `data` in it when there is any; without a byte, one of zeros. Where that has
@@ -62,6 +63,7 @@ static void list_uploads(const BpWorker *worker, const BpPacked *packed, Upload 
     const BpTree *tree = &packed->tree;
     const uint64_t width = tree->width, nodes = tree->node_count, leaf_count = tree->leaf_count;
     const uint64_t slots = leaf_count * width, motion_leaves = tree->motion_leaves;
+    const uint64_t triangle_leaves = tree->triangle_leaves;
     const uint64_t lamp_nodes = packed->lamps.node_count, lamp_slots = packed->lamps.slot_count;
     const uint64_t disc_count = packed->disc_count, texture_count = packed->texture_count;
     const uint64_t texel_count = packed->texel_count, sky_row_count = packed->sky_row_count;
@@ -85,9 +87,9 @@ static void list_uploads(const BpWorker *worker, const BpPacked *packed, Upload 
     UPLOAD_OF(count, NUMBERS_##numbers(element), packed->lamps.name, what, true),
 #define OF_TREE(numbers, element, name, count, what)                                                         \
     UPLOAD_OF(count, NUMBERS_##numbers(element), tree->name, what, true),
-    const Upload list[BP_SCENE_ARRAYS] = {SCENE_ARRAYS_OF_PACK(OF_PACK) SCENE_ARRAYS_OF_FOCUSERS(OF_FOCUSERS)
-                                              SCENE_ARRAYS_OF_SLOTS(OF_SLOTS) SCENE_ARRAYS_OF_LAMPS(OF_LAMPS)
-                                                  SCENE_ARRAYS_OF_TREE(OF_TREE)};
+    const Upload list[BP_SCENE_ARRAYS] = {
+        SCENE_ARRAYS_OF_PACK(OF_PACK) SCENE_ARRAYS_OF_FOCUSERS(OF_FOCUSERS) SCENE_ARRAYS_OF_SLOTS(OF_SLOTS)
+            SCENE_ARRAYS_OF_LAMPS(OF_LAMPS) SCENE_ARRAYS_OF_TREE(OF_TREE) SCENE_ARRAYS_OF_TRIANGLES(OF_TREE)};
     memcpy(uploads, list, sizeof list);
 }
 
@@ -135,7 +137,7 @@ static BpStatus upload_parts(BpWorker *worker, const Upload *upload, BpError *er
 BpStatus bp_worker_upload_scene(BpWorker *worker, BpError *err) {
     Upload uploads[BP_SCENE_ARRAYS];
     list_uploads(worker, &worker->packed, uploads);
-    for (size_t i = 0; i < BP_SCENE_ARRAYS; ++i) {
+    for (size_t i = 0; i < BP_SCENE_ARRAYS - (worker->has_triangles ? 0 : BP_TRIANGLE_ARRAYS); ++i) {
         const Upload *upload = &uploads[i];
         if (upload->split && worker->part_length > 0)
             BP_TRY(upload_parts(worker, upload, err));

@@ -47,7 +47,8 @@ typedef struct BpWorkerSetup {
 enum {
     BP_SCENE_ARRAYS = SCENE_ARRAYS_OF_PACK(BP_COUNT_ARRAY) SCENE_ARRAYS_OF_FOCUSERS(BP_COUNT_ARRAY)
         SCENE_ARRAYS_OF_SLOTS(BP_COUNT_ARRAY) SCENE_ARRAYS_OF_LAMPS(BP_COUNT_ARRAY)
-            SCENE_ARRAYS_OF_TREE(BP_COUNT_ARRAY),
+            SCENE_ARRAYS_OF_TREE(BP_COUNT_ARRAY) SCENE_ARRAYS_OF_TRIANGLES(BP_COUNT_ARRAY),
+    BP_TRIANGLE_ARRAYS = 0 SCENE_ARRAYS_OF_TRIANGLES(BP_COUNT_ARRAY), /* the last */
     BP_SCENE_BUFFERS_MAX = BP_SCENE_ARRAYS * SCENE_PARTS_MAX
 };
 
@@ -64,9 +65,10 @@ typedef struct BpWorker {
     cl_mem sums, fine_sums, counts, tallies, samples;
     cl_mem lamp_rays; /* of each work-item of a chunk; used only if the scene `has_lamps` */
     bool has_lamps;
-    cl_mem pixel_list; /* NULL: chunks are ranges of pixels */
+    bool has_triangles; /* the kernel knows them, and is given their arrays and number */
+    cl_mem pixel_list;  /* NULL: chunks are ranges of pixels */
     size_t real_size;
-    uint32_t SCENE_NUMBERS(BP_SCENE_NUMBER_MEMBER) pixels;
+    uint32_t SCENE_NUMBERS(BP_SCENE_NUMBER_MEMBER) first_triangles, pixels;
     BpKernelForm form;
     uint32_t samples_per_item; /* pixel samples of a work-item, on average in the pool form */
     size_t local_size;

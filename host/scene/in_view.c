@@ -83,10 +83,24 @@ static bool reaches_view(const View *view, const BpSphere *sphere, const double 
     return reaches_planes(view, sphere, end) && reaches_cone(view, sphere, end);
 }
 
-bool bp_scene_has_sphere_in_view(const BpScene *scene) {
+/* The ball around the middle of a triangle that holds it. */
+static BpSphere ball_of_triangle(const BpTriangle *triangle) {
+    BpSphere ball = {.radius = 0};
+    for (int i = 0; i < 3; i++)
+        ball.center[i] = (triangle->vertices[0][i] + triangle->vertices[1][i] + triangle->vertices[2][i]) / 3;
+    for (int k = 0; k < 3; k++)
+        ball.radius = fmax(ball.radius, sqrt(bp_distance2(ball.center, triangle->vertices[k])));
+    return ball;
+}
+
+bool bp_scene_has_shape_in_view(const BpScene *scene) {
     const View view = find_view(&scene->camera);
     for (size_t i = 0; i < scene->sphere_count; i++)
         if (reaches_view(&view, &scene->spheres[i], bp_sphere_end(scene, i))) return true;
+    for (size_t i = 0; i < scene->triangle_count; i++) {
+        const BpSphere ball = ball_of_triangle(&scene->triangles[i]);
+        if (reaches_view(&view, &ball, ball.center)) return true;
+    }
     return false;
 }
 

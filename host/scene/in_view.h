@@ -9,7 +9,7 @@
 
 /* Whether some sphere reaches into the field of view, judged by planes along its edges and a cone around it:
  * false is certain. */
-bool bp_scene_has_sphere_in_view(const BpScene *scene);
+bool bp_scene_has_shape_in_view(const BpScene *scene);
 
 /* Whether paths continue from every material of the scene, sooner or later: then a picture of which every
  * path ended at once shows no sphere. */

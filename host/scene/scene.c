@@ -81,6 +81,13 @@ double bp_camera_origin(const BpScene *scene, double origin[3]) {
         for (int i = 0; i < 3; i++) distance += ahead[i] * (end[i] - scene->spheres[s].center[i]);
         nearest = fmin(nearest, distance);
     }
+    for (size_t t = 0; t < scene->triangle_count; t++)
+        for (int k = 0; k < 3; k++) {
+            double distance = 0;
+            for (int i = 0; i < 3; i++)
+                distance += ahead[i] * (scene->triangles[t].vertices[k][i] - origin[i]);
+            nearest = fmin(nearest, distance);
+        }
     const double moved = isfinite(nearest) ? nearest - bp_camera_plane_height(camera) : 0;
     if (!(moved > 0)) return 0;
     for (int i = 0; i < 3; i++) origin[i] += moved * ahead[i];
@@ -148,6 +155,7 @@ void bp_scene_destroy(BpScene **scene) {
     for (size_t i = 0; i < s->image_count; i++) bp_texels_destroy(&s->images[i]);
     free(s->images);
     free(s->spheres);
+    free(s->triangles);
     free(s->center_ends);
     free(s->interiors);
     for (size_t i = 0; i < s->medium_count; i++) free(s->media[i].name);
@@ -198,6 +206,29 @@ const char *bp_sphere_name(const BpScene *scene, size_t sphere, char text[BP_SPH
     return text;
 }
 
+const char *bp_triangle_name(const BpScene *scene, size_t triangle, char text[BP_SPHERE_NAME_SIZE]) {
+    const size_t of_boxes = scene->box_count * BP_BOX_TRIANGLES,
+                 of_quads = scene->quad_count * BP_QUAD_TRIANGLES;
+    const size_t listed = scene->triangle_count - of_boxes - of_quads;
+    if (triangle < listed)
+        snprintf(text, BP_SPHERE_NAME_SIZE, "triangles[%zu]", triangle);
+    else if (triangle < listed + of_quads)
+        snprintf(text, BP_SPHERE_NAME_SIZE, "quads[%zu]", (triangle - listed) / BP_QUAD_TRIANGLES);
+    else
+        snprintf(text, BP_SPHERE_NAME_SIZE, "boxes[%zu]", (triangle - listed - of_quads) / BP_BOX_TRIANGLES);
+    return text;
+}
+
+const char *bp_shape_name(const BpScene *scene, size_t shape, char text[BP_SPHERE_NAME_SIZE]) {
+    return shape < scene->sphere_count ? bp_sphere_name(scene, shape, text)
+                                       : bp_triangle_name(scene, shape - scene->sphere_count, text);
+}
+
+const char *bp_scene_noun(const BpScene *scene) {
+    if (scene->triangle_count == 0) return "sphere";
+    return scene->sphere_count == 0 ? "triangle" : "shape";
+}
+
 BpStatus bp_scene_set_width(BpScene *scene, uint32_t width, BpError *err) {
     if (width < 1 || width > BP_PICTURE_SIDE_MAX)
         return bp_fail(err, BP_ERR_USAGE, "width: found %u, expected 1 to %u pixels", (unsigned)width,
@@ -221,7 +252,8 @@ void bp_scene_info(const BpScene *scene, BpSceneInfo *info) {
                           .max_depth = scene->camera.max_depth,
                           .spheres = scene->sphere_count,
                           .materials = scene->material_count,
-                          .transfer = scene->transfer};
+                          .transfer = scene->transfer,
+                          .triangles = scene->triangle_count};
 }
 
 void bp_scene_camera(const BpScene *scene, BpCameraInfo *info) {

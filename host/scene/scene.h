@@ -9,7 +9,8 @@
  * emit >= 0; 0 <= fuzz <= 1; refraction_index > 0; of discs a direction, and half angles from 1e-4 to 90
  * degrees; centers when the shutter closes like those when it opens; 0 < vfov < 180, and the size of the
  * plane in focus fits a float; lookfrom != lookat; vup not parallel to the view; 1 <= width, height <=
- * BP_PICTURE_SIDE_MAX; no two coincident dielectrics; a pinhole camera on the surface of at most one sphere.
+ * BP_PICTURE_SIDE_MAX; no two coincident dielectrics; a pinhole camera on the surface of at most one sphere;
+ * of triangles what triangle_rules.h lists.
  */
 #ifndef BP_SCENE_SCENE_H
 #define BP_SCENE_SCENE_H
@@ -26,6 +27,8 @@
 #define BP_DEPTH_MAX 1000000u
 #define BP_SPHERES_MAX 134217728u     /* 2^27 */
 #define BP_COORDINATE_MAX 1.0e12      /* |centre|, |radius|, |lookfrom|: squares stay finite in float */
+#define BP_VERTEX_MAX 1.0e9           /* of triangles: products of four lengths stay finite in float */
+#define BP_TRIANGLE_SIDE_MIN 1.0e-9   /* and those of their longest sides normal */
 #define BP_REFRACTION_INDEX_MAX 1.0e6 /* and at least its reciprocal */
 #define BP_FOCUS_DIST_MIN 1.0e-15     /* rays begin as vectors of this length: squares stay normal in float */
 #define BP_HALF_HEIGHT_MAX 1.0e14     /* of the plane in focus; it is up to 65,535 times as wide */
@@ -61,6 +64,15 @@ typedef struct BpSphere {
     uint32_t material; /* into materials[] */
     uint32_t albedo;   /* into albedos[], replacing the material's; or BP_NO_ALBEDO */
 } BpSphere;
+
+/* Its vertices run counter-clockwise, seen from outside. */
+typedef struct BpTriangle {
+    double vertices[3][3];
+    uint32_t material; /* into materials[] */
+} BpTriangle;
+
+#define BP_QUAD_TRIANGLES 2u
+#define BP_BOX_TRIANGLES 12u
 
 /* The spheres to which a camera is fitted (fit.h), instead of being placed by lookfrom and lookat. */
 typedef enum BpFit { BP_FIT_NONE, BP_FIT_SCENE, BP_FIT_PARTICLES } BpFit;
@@ -182,6 +194,8 @@ struct BpScene {
     size_t moving_count;      /* 0: no sphere moves */
     uint32_t *interiors; /* of the first interior_count spheres: what fills them, counted as `medium` is */
     size_t interior_count;
+    BpTriangle *triangles; /* those that are listed, then those of quads, then those of boxes */
+    size_t triangle_count, quad_count, box_count;
     float (*albedos)[3]; /* linear, in [0,1]; of cloud points that bring their own colour */
     size_t albedo_count;
     BpPointFile *point_files; /* in the order of their spheres, which follow all others */
@@ -232,6 +246,21 @@ BpStatus bp_scene_create_empty(const char *path, BpScene **scene, BpError *err);
 #define BP_SPHERE_NAME_SIZE 128
 /* How a message names a sphere: "spheres[3]", or "vertex 12 (from 0) of points.ply". Returns `text`. */
 const char *bp_sphere_name(const BpScene *scene, size_t sphere, char text[BP_SPHERE_NAME_SIZE]);
+
+/* The same of a triangle: "triangles[3]", or "quads[0]" or "boxes[1]", which it is part of. */
+const char *bp_triangle_name(const BpScene *scene, size_t triangle, char text[BP_SPHERE_NAME_SIZE]);
+
+/* Shapes are the spheres, then the triangles: how many, and the material of one, into materials[]. */
+static inline size_t bp_scene_shapes(const BpScene *scene) {
+    return scene->sphere_count + scene->triangle_count;
+}
+static inline uint32_t bp_shape_material(const BpScene *scene, size_t shape) {
+    return shape < scene->sphere_count ? scene->spheres[shape].material
+                                       : scene->triangles[shape - scene->sphere_count].material;
+}
+const char *bp_shape_name(const BpScene *scene, size_t shape, char text[BP_SPHERE_NAME_SIZE]);
+/* "sphere", "triangle", or "shape" where there are both. */
+const char *bp_scene_noun(const BpScene *scene);
 
 /* The index of a sphere's inside over that of its outside; of what is not glass 0. */
 double bp_sphere_refraction_index(const BpScene *scene, size_t sphere);

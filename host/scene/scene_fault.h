@@ -21,6 +21,7 @@ typedef enum BpFaultSubject {
     BP_FAULT_MEDIUM,    /* index: into media[] */
     BP_FAULT_MATERIAL,  /* index: into materials[] */
     BP_FAULT_SPHERE,    /* index: into spheres[] */
+    BP_FAULT_TRIANGLE,  /* index: into triangles[] */
     BP_FAULT_ALBEDO,    /* index: into albedos[] */
     BP_FAULT_COINCIDENT /* index, other: spheres; other < index */
 } BpFaultSubject;

@@ -3,6 +3,7 @@
 #include "material.h"
 #include "scene_fault.h"
 #include "scene_side.h"
+#include "triangle_rules.h"
 
 #include <float.h>
 #include <math.h>
@@ -331,15 +332,15 @@ BpStatus bp_scene_find_fault(const BpScene *scene, BpFault *fault, BpError *err)
     }
     BP_TRY(bp_scene_find_coincident(scene, fault, err));
     if (fault->subject == BP_FAULT_NONE) standpoint_fault(scene, fault);
-    return BP_OK;
+    return fault->subject == BP_FAULT_NONE ? bp_scene_find_triangle_fault(scene, fault, err) : BP_OK;
 }
 
 BpStatus bp_scene_validate(const BpScene *scene, BpError *err) {
     BpFault fault;
     char name[BP_SPHERE_NAME_SIZE], other[BP_SPHERE_NAME_SIZE];
-    if (scene->sphere_count > BP_SPHERES_MAX)
-        return bp_fail(err, BP_ERR_LIMIT, "found %zu spheres, expected at most %u", scene->sphere_count,
-                       BP_SPHERES_MAX);
+    if (bp_scene_shapes(scene) > BP_SPHERES_MAX)
+        return bp_fail(err, BP_ERR_LIMIT, "found %zu %ss, expected at most %u", bp_scene_shapes(scene),
+                       bp_scene_noun(scene), BP_SPHERES_MAX);
     if (scene->disc_count > BP_DISCS_MAX)
         return bp_fail(err, BP_ERR_LIMIT, "background.discs: found %zu discs, expected at most %u",
                        scene->disc_count, BP_DISCS_MAX);
@@ -367,6 +368,9 @@ BpStatus bp_scene_validate(const BpScene *scene, BpError *err) {
         return bp_fail(err, BP_ERR_SCENE, "materials.%s.%s: %s", name, fault.member, fault.text);
     case BP_FAULT_SPHERE:
         return bp_fail(err, BP_ERR_SCENE, "spheres[%zu].%s: %s", fault.index, fault.member, fault.text);
+    case BP_FAULT_TRIANGLE:
+        return bp_fail(err, BP_ERR_SCENE, "%s%s%s: %s", bp_triangle_name(scene, fault.index, name),
+                       fault.member[0] != '\0' ? "." : "", fault.member, fault.text);
     case BP_FAULT_ALBEDO:
         return bp_fail(err, BP_ERR_SCENE, "albedo %zu: %s", fault.index, fault.text);
     case BP_FAULT_COINCIDENT:

@@ -25,5 +25,7 @@ void bp_shadow_catcher_place(BpScene *scene) {
         if (bp_sphere_moves(scene, i)) middle = fmin(middle, bp_dot(normal, bp_sphere_end(scene, i)));
         lowest = fmin(lowest, middle - fabs(sphere->radius));
     }
+    for (size_t i = 0; i < scene->triangle_count && !scene->has_particles; i++)
+        for (int k = 0; k < 3; k++) lowest = fmin(lowest, bp_dot(normal, scene->triangles[i].vertices[k]));
     catcher->distance = isfinite(lowest) ? lowest : 0;
 }

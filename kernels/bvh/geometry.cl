@@ -1,20 +1,37 @@
-/* geometry.cl: the spheres of the scene and the tree above them, as packed tables.
+/* geometry.cl: the spheres and triangles of the scene and the tree above them, as packed tables.
  *
  * Knows: scene_types.h, parts.cl.   Does not know: rays, materials. */
+
+/* What a kernel that knows triangles is given of them, each followed by a comma. */
+#if EFFECT_TRIANGLES
+#define TRIANGLES_PARAMETERS SCENE_ARRAYS_OF_TRIANGLES(SPLIT_PARAMETER) uint first_triangles,
+#define TRIANGLES_ARGUMENTS SCENE_ARRAYS_OF_TRIANGLES(SPLIT_ARGUMENT) first_triangles,
+#else
+#define TRIANGLES_PARAMETERS
+#define TRIANGLES_ARGUMENTS
+#endif
 
 typedef struct Geometry {
     SCENE_ARRAYS_OF_TREE(SPLIT_MEMBER)
     uint first_leaves; /* the leaves of spheres so large that most rays meet them; without a tree, all */
     uint leaf_count;
+#if EFFECT_TRIANGLES
+    SCENE_ARRAYS_OF_TRIANGLES(SPLIT_MEMBER)
+    uint first_triangles; /* the leaves from here on hold triangles */
+#endif
 #ifdef FLAT_GROUPS_MAX
     FlatTree flat;
 #endif
 } Geometry;
 
-static void geometry_init(SCENE_ARRAYS_OF_TREE(SPLIT_PARAMETER) uint first_leaves, uint leaf_count,
+static void geometry_init(SCENE_ARRAYS_OF_TREE(SPLIT_PARAMETER) TRIANGLES_PARAMETERS uint first_leaves, uint leaf_count,
                           Geometry *geometry) {
 #define SET_ARRAY(numbers, element, name, count, what) SET_SPLIT(geometry, name)
     SCENE_ARRAYS_OF_TREE(SET_ARRAY)
+#if EFFECT_TRIANGLES
+    SCENE_ARRAYS_OF_TRIANGLES(SET_ARRAY)
+    geometry->first_triangles = first_triangles;
+#endif
 #undef SET_ARRAY
     geometry->first_leaves = first_leaves;
     geometry->leaf_count = leaf_count;

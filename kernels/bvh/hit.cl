@@ -1,7 +1,7 @@
-/* hit.cl: the closest hit so far, and its update by one sphere.
+/* hit.cl: the closest hit so far, and its update by one sphere or triangle.
  *
- * In:    rays, spheres.   Out: the hit of least (distance, sphere index), so list and tree, and any order of visits,
- *        agree to the bit.
+ * In:    rays, spheres, triangles.   Out: the hit of least (distance, index), where spheres come before triangles, so list
+ *        and tree, and any order of visits, agree to the bit.
  * Knows: the interface of shape/, geometry.cl.   Does not know: nodes, materials. Read for one lane and for packets. */
 #define Hit LANED(Hit)
 #define no_hit LANED(no_hit)
@@ -13,6 +13,11 @@
 #define sphere_for_ray LANED(sphere_for_ray)
 #define intersect_sphere LANED(intersect_sphere)
 #define intersect_own_sphere LANED(intersect_own_sphere)
+#define is_triangle LANED(is_triangle)
+#define load_triangle LANED(load_triangle)
+#define load_triangle_if LANED(load_triangle_if)
+#define intersect_triangle LANED(intersect_triangle)
+#define surface_of_triangle LANED(surface_of_triangle)
 
 typedef struct Hit {
     vrefined t;
@@ -52,6 +57,7 @@ FORCE_INLINE static void keep_closer(const Geometry *geometry, vbool found, vref
     hit->bound = choose(closer, upper_bound(t), hit->bound);
 }
 
+#if SPHERES_MET
 static Sphere load_sphere(const Geometry *geometry, vuint slot) {
     const vuint lane = slot % TREE_WIDTH;
     const vuint place = (slot - lane) * 4u + lane;
@@ -83,7 +89,63 @@ static Sphere sphere_for_ray(const Geometry *geometry, const Ray *ray, vuint slo
 #endif
     return sphere;
 }
+#endif
 
+#if EFFECT_TRIANGLES
+/* Of slots, and of what stands for one: the last ones, from the first that holds triangles. */
+static vbool is_triangle(const Geometry *geometry, vuint slot) {
+    const uint first = geometry->first_triangles * TREE_WIDTH;
+    return vbool_of_uint(slot - first < splat_uint(geometry->leaf_count * TREE_WIDTH - first));
+}
+
+static Triangle load_triangle(const Geometry *geometry, vuint slot) {
+    const vuint lane = slot % TREE_WIDTH;
+    const vuint place = (slot - lane - geometry->first_triangles * TREE_WIDTH) * 9u + lane;
+    Triangle triangle;
+    triangle.a = vec3(gather_split_real(geometry->triangles, 0, place), gather_split_real(geometry->triangles, TREE_WIDTH, place),
+                      gather_split_real(geometry->triangles, 2 * TREE_WIDTH, place));
+    triangle.b = vec3(gather_split_real(geometry->triangles, 3 * TREE_WIDTH, place),
+                      gather_split_real(geometry->triangles, 4 * TREE_WIDTH, place),
+                      gather_split_real(geometry->triangles, 5 * TREE_WIDTH, place));
+    triangle.c = vec3(gather_split_real(geometry->triangles, 6 * TREE_WIDTH, place),
+                      gather_split_real(geometry->triangles, 7 * TREE_WIDTH, place),
+                      gather_split_real(geometry->triangles, 8 * TREE_WIDTH, place));
+    return triangle;
+}
+
+/* The triangle in a slot, in the lanes `wanted`; in others the first. */
+static Triangle load_triangle_if(const Geometry *geometry, vbool wanted, vuint slot) {
+    return load_triangle(geometry, choose_uint(wanted, slot, splat_uint(geometry->first_triangles * TREE_WIDTH)));
+}
+
+/* Decides about a candidate. */
+FORCE_INLINE static void intersect_triangle(const Geometry *geometry, const Ray *ray, vbool active, const Triangle *triangle,
+                                            vuint slot, Hit *hit) {
+    vrefined t;
+    vbool enters;
+    const vbool leaves = active & is_triangle(geometry, ray->own_slot);
+    const Triangle left = load_triangle_if(geometry, leaves, ray->own_slot);
+    const vbool found = triangle_intersect(ray, triangle, &left, leaves, &t, &enters) & active;
+    keep_closer(geometry, found, t, slot, enters, hit);
+}
+
+/* The point that was met, where it is a triangle's, and the outward unit normal there. */
+static void surface_of_triangle(const Geometry *geometry, const Ray *ray, const Hit *hit, vbool met, Point *point,
+                                Vec3 *normal) {
+    const vbool wanted = met & is_triangle(geometry, hit->slot);
+    if (!any_lane(wanted)) return;
+    const Triangle triangle = load_triangle_if(geometry, wanted, hit->slot);
+    Point place;
+    Vec3 outward;
+    triangle_surface(ray, &triangle, &place, &outward);
+    point->high = choose3(wanted, place.high, point->high);
+    point->low = choose3(wanted, place.low, point->low);
+    point->error = choose(wanted, place.error, point->error);
+    *normal = choose3(wanted, outward, *normal);
+}
+#endif
+
+#if SPHERES_MET
 /* Decides about a candidate. */
 FORCE_INLINE static void intersect_sphere(const Geometry *geometry, const Ray *ray, vbool active, const Sphere *sphere,
                                           vuint slot, Hit *hit) {
@@ -95,7 +157,11 @@ FORCE_INLINE static void intersect_sphere(const Geometry *geometry, const Ray *r
 
 /* The sphere being left, met again from inside. */
 FORCE_INLINE static void intersect_own_sphere(const Geometry *geometry, const Ray *ray, vbool active, Hit *hit) {
+#if EFFECT_TRIANGLES
+    const vbool inward = active & ray->inward & vbool_not(is_triangle(geometry, ray->own_slot));
+#else
     const vbool inward = active & ray->inward;
+#endif
     if (!any_lane(inward)) return;
     const vuint slot = choose_uint(inward, ray->own_slot, splat_uint(0));
     const Sphere sphere = sphere_for_ray(geometry, ray, slot);
@@ -103,3 +169,4 @@ FORCE_INLINE static void intersect_own_sphere(const Geometry *geometry, const Ra
     const vbool found = sphere_exit(ray, &sphere, &t) & inward;
     keep_closer(geometry, found, t, slot, vbool_none, hit);
 }
+#endif

@@ -1,4 +1,4 @@
-/* node.cl: a node's children, a small tree's leaves and a leaf's spheres, TREE_WIDTH of them at once, against one ray.
+/* node.cl: a node's children, a small tree's leaves and what a leaf holds, TREE_WIDTH of them at once, against one ray.
  *
  * In:    a ray, packed nodes and leaves.   Out: which of them the ray may meet before a bound, as a child_mask.
  * Knows: how nodes and leaves are packed; flat_tree.cl; the interface of shape/.   Does not know: when nodes are visited.
@@ -28,6 +28,45 @@ static Ray ray_for_all(const Ray_one *one) {
  * makes it one load. */
 static vreal row_of(__global const real *rows, uint row) { return *(__global const vreal *)(rows + (size_t)row); }
 
+#if EFFECT_TRIANGLES
+/* The same for all triangles of a leaf, whose rows are chosen so that they come turned. */
+static Shear shear_for_all(const Shear_one *one) {
+    Shear shear;
+    shear.direction = vec3(splat(one->direction.x), splat(one->direction.y), splat(one->direction.z));
+    shear.origin = vec3(splat(one->origin.x), splat(one->origin.y), splat(one->origin.z));
+#if ROBUST_SHAPES
+    shear.x = splat(one->x);
+    shear.y = splat(one->y);
+    shear.inverse = splat(one->inverse);
+    shear.margin = splat(one->margin);
+#endif
+    return shear;
+}
+
+/* Of a vertex that begins at a row, turned. */
+static Vec3 vertex_of_leaf(__global const real *leaf, const Shear_one *shear, uint row) {
+    const uint first = row * TREE_WIDTH;
+    const Vec3 v = vec3(row_of(leaf, first), row_of(leaf, first + TREE_WIDTH), row_of(leaf, first + 2 * TREE_WIDTH));
+    if (shear->along_x) return vec3(v.y, v.z, v.x);
+    if (shear->along_y) return vec3(v.z, v.x, v.y);
+    return v;
+}
+
+/* The triangles of a leaf that the ray may meet before `bound`. An empty lane is a point, which nothing meets. */
+FORCE_INLINE static child_mask triangle_candidates(const Geometry *geometry, const Ray_one *one, uint leaf_number,
+                                                   real bound) {
+    __global const real *leaf = place_in(geometry->triangles, (leaf_number - geometry->first_triangles) * (9 * TREE_WIDTH));
+    const Shear_one shear = shear_of_one(one);
+    const Shear all = shear_for_all(&shear);
+    Triangle turned;
+    turned.a = vertex_of_leaf(leaf, &shear, 0);
+    turned.b = vertex_of_leaf(leaf, &shear, 3);
+    turned.c = vertex_of_leaf(leaf, &shear, 6);
+    return lane_bits(triangle_is_candidate(&all, splat(bound), &turned));
+}
+#endif
+
+#if SPHERES_MET
 /* The spheres of a leaf that the ray may meet before `bound`, without a branch. */
 FORCE_INLINE static child_mask leaf_candidates(const Geometry *geometry, const Ray_one *one, uint leaf_number,
                                                real bound) {
@@ -51,11 +90,12 @@ FORCE_INLINE static child_mask leaf_candidates(const Geometry *geometry, const R
 #endif
     return mask;
 }
+#endif
 
-/* Leaves out of a leaf's candidates the sphere that the ray starts from, if it is not met that way, and the one in
+/* Leaves out of a leaf's candidates the sphere or triangle that the ray starts from, if it is not met that way, and the one in
  * `known_slot`: the ray has met it already, or is sent to it. */
 static child_mask without_known(child_mask candidates, uint leaf_number, uint own_slot, uint known_slot) {
-#if !OWN_SPHERE_IS_MET
+#if !OWN_SHAPE_IS_MET
     const uint own = own_slot - leaf_number * TREE_WIDTH;
     candidates &= ~(own < TREE_WIDTH ? (child_mask)1 << own : (child_mask)0);
 #endif
@@ -68,6 +108,14 @@ static child_mask without_known(child_mask candidates, uint leaf_number, uint ow
 
 /* Asks for a leaf that will be visited soon: many leaves are then on their way at a time. */
 static void read_leaf_ahead(const Geometry *geometry, uint leaf_number) {
+#if EFFECT_TRIANGLES
+    if (leaf_number >= geometry->first_triangles) {
+        __global const real *ahead =
+            place_in(geometry->triangles, (leaf_number - geometry->first_triangles) * (9 * TREE_WIDTH));
+        for (uint i = 0; i < 9 * TREE_WIDTH; i += LINE_BYTES / sizeof(real)) READ_AHEAD(ahead + i);
+        return;
+    }
+#endif
     __global const real *leaf = place_in(geometry->leaves, leaf_number * (4 * TREE_WIDTH));
     for (uint i = 0; i < 4 * TREE_WIDTH; i += LINE_BYTES / sizeof(real)) READ_AHEAD(leaf + i);
 }

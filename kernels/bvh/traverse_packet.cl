@@ -64,13 +64,28 @@ static Ray_one ray_of_lane(const LaneRays *rays, uint lane) {
 
 static void intersect_slot_of_lane(const Geometry *geometry, LaneRays *rays, uint lane, uint slot) {
     const Ray_one ray = ray_of_lane(rays, lane);
+#if SPHERES_MET && !EFFECT_TRIANGLES
     const Sphere_one sphere = sphere_for_ray_one(geometry, &ray, slot);
+#endif
     Hit_one hit;
     hit.t = rays->t.of[lane];
     hit.slot = rays->slot.of[lane];
     hit.enters = (int)rays->enters.of[lane];
     hit.bound = rays->bound.of[lane];
+#if EFFECT_TRIANGLES
+    if (slot >= geometry->first_triangles * TREE_WIDTH) {
+        const Triangle_one triangle = load_triangle_one(geometry, slot);
+        intersect_triangle_one(geometry, &ray, 1, &triangle, slot, &hit);
+    }
+#if SPHERES_MET
+    else {
+        const Sphere_one sphere = sphere_for_ray_one(geometry, &ray, slot);
+        intersect_sphere_one(geometry, &ray, 1, &sphere, slot, &hit);
+    }
+#endif
+#else
     intersect_sphere_one(geometry, &ray, 1, &sphere, slot, &hit);
+#endif
     rays->t.of[lane] = hit.t;
     rays->slot.of[lane] = hit.slot;
     rays->enters.of[lane] = (uint)hit.enters;
@@ -89,7 +104,15 @@ static void intersect_leaves(const Geometry *geometry, const Visit *visits, uint
         const uint end = min(begin + LEAF_BATCH, count);
         for (uint i = begin; i < end; ++i) {
             const Ray_one ray = ray_of_lane(rays, visits[i].lane);
+#if EFFECT_TRIANGLES
+            if (visits[i].what >= geometry->first_triangles) {
+                met[i - begin] = triangle_candidates(geometry, &ray, visits[i].what, rays->bound.of[visits[i].lane]);
+                continue;
+            }
+#endif
+#if SPHERES_MET
             met[i - begin] = leaf_candidates(geometry, &ray, visits[i].what, rays->bound.of[visits[i].lane]);
+#endif
         }
         for (uint i = begin; i < end; ++i) {
             const uint lane = visits[i].lane, leaf = visits[i].what;
@@ -360,8 +383,45 @@ static void traverse_packet(const Geometry *geometry, const Ray *ray, vbool acti
 }
 #endif
 
+#if EFFECT_TRIANGLES
+static Vec3 vertex_for_all(__global const real *leaf) {
+    return vec3(splat(leaf[0]), splat(leaf[TREE_WIDTH]), splat(leaf[2 * TREE_WIDTH]));
+}
+
+/* One leaf's triangles, one at a time, against all lanes. */
+static void intersect_triangle_leaf(const Geometry *geometry, const Ray *ray, vbool active, uint leaf_number, Hit *hit) {
+    __global const real *leaf = place_in(geometry->triangles, (leaf_number - geometry->first_triangles) * (9 * TREE_WIDTH));
+    const Shear shear = shear_of(ray);
+    for (uint lane = 0; lane < TREE_WIDTH; ++lane) {
+        const vuint slot = splat_uint(leaf_number * TREE_WIDTH + lane);
+        Triangle triangle, turned;
+        triangle.a = vertex_for_all(leaf + lane);
+        triangle.b = vertex_for_all(leaf + 3 * TREE_WIDTH + lane);
+        triangle.c = vertex_for_all(leaf + 6 * TREE_WIDTH + lane);
+        turned.a = turn3(&shear, triangle.a);
+        turned.b = turn3(&shear, triangle.b);
+        turned.c = turn3(&shear, triangle.c);
+        vbool candidate = active & triangle_is_candidate(&shear, hit->bound, &turned);
+#if SAMPLES_LAMPS
+        candidate = candidate & vbool_of_uint(hit->slot != slot);
+#endif
+#if !OWN_SHAPE_IS_MET
+        candidate = candidate & vbool_of_uint(ray->own_slot != slot);
+#endif
+        if (any_lane(candidate)) intersect_triangle(geometry, ray, candidate, &triangle, slot, hit);
+    }
+}
+#endif
+
 /* One leaf's spheres, one at a time, against all lanes. */
 static void intersect_leaf(const Geometry *geometry, const Ray *ray, vbool active, uint leaf_number, Hit *hit) {
+#if EFFECT_TRIANGLES
+    if (leaf_number >= geometry->first_triangles) {
+        intersect_triangle_leaf(geometry, ray, active, leaf_number, hit);
+        return;
+    }
+#endif
+#if SPHERES_MET
     __global const real *leaf = place_in(geometry->leaves, leaf_number * (4 * TREE_WIDTH));
     for (uint lane = 0; lane < TREE_WIDTH; ++lane) {
         if (leaf[3 * TREE_WIDTH + lane] <= 0) break; /* the rest of the leaf is empty */
@@ -379,19 +439,22 @@ static void intersect_leaf(const Geometry *geometry, const Ray *ray, vbool activ
         wanted = wanted & vbool_of_uint(hit->slot != slot);
 #endif
         vbool candidate = sphere_is_candidate(ray, hit->bound, &sphere);
-#if !OWN_SPHERE_IS_MET
+#if !OWN_SHAPE_IS_MET
         candidate = candidate & vbool_of_uint(ray->own_slot != slot);
 #endif
         candidate = candidate & wanted;
         if (any_lane(candidate)) intersect_sphere(geometry, ray, candidate, &sphere, slot, hit);
     }
+#endif
 }
 
 /* The closest hit of every ray that is `active`, if it is closer than what the ray has hit already. The few huge
  * spheres, which most rays meet, are tried against all lanes at once; then each lane searches the tree within the bound
  * that they leave. */
 FORCE_INLINE static Hit intersect_closer(const Geometry *geometry, const Ray *ray, vbool active, Hit hit) {
+#if SPHERES_MET
     intersect_own_sphere(geometry, ray, active, &hit);
+#endif
     for (uint leaf = 0; leaf < geometry->first_leaves; ++leaf) intersect_leaf(geometry, ray, active, leaf, &hit);
 #if ACCELERATION_TREE
     traverse_packet(geometry, ray, active, &hit);

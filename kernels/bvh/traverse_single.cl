@@ -3,6 +3,19 @@
  * In:    a ray, the geometry.   Out: the hit of least (distance, sphere index); or whether there is any.
  * Knows: node.cl, hit.cl.   Does not know: materials, what made the ray. */
 FORCE_INLINE static void intersect_leaf(const Geometry *geometry, const Ray *ray, uint leaf_number, Hit *best) {
+#if EFFECT_TRIANGLES
+    if (leaf_number >= geometry->first_triangles) {
+        const child_mask near = triangle_candidates(geometry, ray, leaf_number, best->bound);
+        for (child_mask left = without_known(near, leaf_number, ray->own_slot, best->slot); left != 0;
+             left = without_lowest_bit(left)) {
+            const uint slot = leaf_number * TREE_WIDTH + lowest_bit(left);
+            const Triangle triangle = load_triangle(geometry, slot);
+            intersect_triangle(geometry, ray, vbool_all, &triangle, slot, best);
+        }
+        return;
+    }
+#endif
+#if SPHERES_MET
     const child_mask met = leaf_candidates(geometry, ray, leaf_number, best->bound);
     for (child_mask candidates = without_known(met, leaf_number, ray->own_slot, best->slot); candidates != 0;
          candidates = without_lowest_bit(candidates)) {
@@ -10,6 +23,7 @@ FORCE_INLINE static void intersect_leaf(const Geometry *geometry, const Ray *ray
         const Sphere sphere = sphere_for_ray(geometry, ray, slot);
         intersect_sphere(geometry, ray, vbool_all, &sphere, slot, best);
     }
+#endif
 }
 
 #if ACCELERATION_TREE
@@ -112,7 +126,9 @@ static void traverse_single(const Geometry *geometry, const Ray *ray, int any, H
 
 /* The closest hit of a ray that is `active`, if it is closer than what the ray has hit already. */
 FORCE_INLINE static Hit intersect_closer(const Geometry *geometry, const Ray *ray, vbool active, Hit best) {
+#if SPHERES_MET
     intersect_own_sphere(geometry, ray, active, &best);
+#endif
     traverse_single(geometry, ray, 0, &best);
     return best;
 }
@@ -125,9 +141,11 @@ FORCE_INLINE static Hit intersect_closest(const Geometry *geometry, const Ray *r
 /* Whether anything lies within distance `limit`; which one is left open. */
 static int intersect_any(const Geometry *geometry, const Ray *ray, refined limit) {
     Hit best = no_hit(limit);
+#if SPHERES_MET
     Hit own = best;
     intersect_own_sphere(geometry, ray, vbool_all, &own);
     if (own.slot != NO_SLOT && own.t < limit) return 1;
+#endif
     traverse_single(geometry, ray, 1, &best);
     return best.slot != NO_SLOT;
 }

@@ -11,6 +11,7 @@
  *   SAMPLES_PER_ITEM  pixel samples that it traces in all
  *   GROUP_MAX         work-items in a work-group of the sample form, at most
  *   EFFECT_...        0 or 1, one for each effect
+ *   TRIANGLES_ALONE   0 or 1: there are no spheres, not even as lamps or boundaries of media
  *   ACCELERATION_TREE 0 or 1: spheres are found through a tree, or are a list
  *
  * Rounding is part of the product: no contraction of a*b+c unless fma() is written. */
@@ -57,6 +58,13 @@ typedef JOIN(REAL, 4) real4;
 #endif
 typedef REFINED refined;
 
+/* There is code for spheres. */
+#define SPHERES_MET (!TRIANGLES_ALONE)
+#if SPHERES_MET
+#define WITH_SPHERE(sphere) sphere,
+#else
+#define WITH_SPHERE(sphere)
+#endif
 /* Lamps are sampled where the scene has any, at surfaces that scatter into many directions and in media. They are
  * spheres, in a tree, discs in the sky, and an image around the scene. */
 #define IS_LIT (EFFECT_LAMBERTIAN || EFFECT_METAL || EFFECT_MEDIA || EFFECT_OREN_NAYAR || EFFECT_ROUGH_METAL || \

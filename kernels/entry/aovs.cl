@@ -29,12 +29,19 @@ __kernel VECTORS_WRITTEN void aovs(SCENE_PARAMETERS uint first_pixel, uint pixel
         const vbool met = path.alive & is_hit(&hit);
         if (!any_lane(met)) continue;
 
+#if SPHERES_MET
         Sphere sphere;
+#endif
         Surface surface;
         Vec3 outward, emitted;
         Point point;
-        fetch_surface(&scene, &ray, &hit, &sphere, &surface, &emitted);
+        fetch_surface(&scene, &ray, &hit, WITH_SPHERE(&sphere) &surface, &emitted);
+#if SPHERES_MET
         sphere_surface(&ray, &sphere, hit.slot, hit.t, hit.enters, &point, &outward);
+#endif
+#if EFFECT_TRIANGLES
+        surface_of_triangle(&scene.geometry, &ray, &hit, met, &point, &outward);
+#endif
 #if EFFECT_TEXTURES
         vary_surface(&scene, met, hit.slot, &point, outward, &surface, &emitted);
 #endif

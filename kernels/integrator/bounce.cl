@@ -84,12 +84,19 @@ static void trace_bounce(const Scene *scene, Path *path) {
 #endif
     if (!any_lane(met)) return;
 
+#if SPHERES_MET
     Sphere sphere;
+#endif
     Surface surface;
     Vec3 outward, emitted;
     Point point;
-    fetch_surface(scene, &ray, &hit, &sphere, &surface, &emitted);
+    fetch_surface(scene, &ray, &hit, WITH_SPHERE(&sphere) &surface, &emitted);
+#if SPHERES_MET
     sphere_surface(&ray, &sphere, hit.slot, hit.t, hit.enters, &point, &outward);
+#endif
+#if EFFECT_TRIANGLES
+    surface_of_triangle(&scene->geometry, &ray, &hit, met, &point, &outward);
+#endif
     surface.incoming = path->direction;
     surface.enters = hit.enters;
     surface.normal = choose3(hit.enters, outward, scale3(splat(-1), outward));
@@ -97,7 +104,13 @@ static void trace_bounce(const Scene *scene, Path *path) {
     vary_surface(scene, met, hit.slot, &point, outward, &surface, &emitted);
 #endif
 #if SAMPLES_LAMP_TREE
+#if EFFECT_TRIANGLES
+    /* Triangles are no lamps that rays are sent to: their light is found by chance. */
+    const vbool lit = met & hit.enters & (emitted.x + emitted.y + emitted.z > splat(0)) &
+                      vbool_not(is_triangle(&scene->geometry, hit.slot));
+#else
     const vbool lit = met & hit.enters & (emitted.x + emitted.y + emitted.z > splat(0));
+#endif
     if (any_lane(lit)) emitted = scale3(lamp_hit_weight(scene, path, hit.slot, &sphere, lit), emitted);
 #if SAMPLES_CAUSTICS
     if (any_lane(lit)) emitted = scale3(chain_hit_weight(scene, path, hit.slot, lit), emitted);

@@ -1,12 +1,17 @@
-/* fetch_surface.cl: the sphere and the material at a hit, gathered for all lanes from the packed tables.
+/* fetch_surface.cl: the sphere, if it is one, and the material at a hit, gathered for all lanes from the packed tables.
  *
  * In:    rays and their hits.   Out: what the materials say; the point, the normal and the direction are the caller's.
  * Knows: scene_types.h, hit.cl, bsdf.cl.   Does not know: paths. */
 
-/* The sphere and the material at each lane's hit; lanes without one get those of slot 0. */
-static void fetch_surface(const Scene *scene, const Ray *ray, const Hit *hit, Sphere *sphere, Surface *surface, Vec3 *emitted) {
+/* The sphere and the material at each lane's hit; lanes without one get those of slot 0, triangles its sphere. */
+static void fetch_surface(const Scene *scene, const Ray *ray, const Hit *hit, WITH_SPHERE(Sphere *sphere) Surface *surface, Vec3 *emitted) {
     const vuint slot = choose_uint(is_hit(hit), hit->slot, splat_uint(0));
+#if SPHERES_MET && EFFECT_TRIANGLES
+    const vbool flat = is_triangle(&scene->geometry, slot);
+    *sphere = sphere_for_ray(&scene->geometry, ray, choose_uint(flat, splat_uint(0), slot));
+#elif SPHERES_MET
     *sphere = sphere_for_ray(&scene->geometry, ray, slot);
+#endif
     const vuint material = gather_split_uint(scene->slot_material, 0, slot);
     const vuint colour = slot * (uint)ALBEDO_REALS;
     const vuint numbers = material * MATERIAL_REALS;

@@ -16,22 +16,22 @@ typedef struct Scene {
 #define NUMBER_PARAMETER(name) uint name,
 #define SCENE_PARAMETERS                                                                                               \
     SCENE_ARRAYS_OF_PACK(ARRAY_PARAMETER) SCENE_ARRAYS_OF_FOCUSERS(ARRAY_PARAMETER) SCENE_ARRAYS_OF_SLOTS(SPLIT_PARAMETER)                                       \
-    SCENE_ARRAYS_OF_LAMPS(SPLIT_PARAMETER) SCENE_ARRAYS_OF_TREE(SPLIT_PARAMETER) SCENE_NUMBERS(NUMBER_PARAMETER)
+    SCENE_ARRAYS_OF_LAMPS(SPLIT_PARAMETER) SCENE_ARRAYS_OF_TREE(SPLIT_PARAMETER) TRIANGLES_PARAMETERS SCENE_NUMBERS(NUMBER_PARAMETER)
 #define NUMBER_ARGUMENT(name) name,
 /* All of them, for a function that takes the same. */
 #define SCENE_NAMES                                                                                                    \
     SCENE_ARRAYS_OF_PACK(ARRAY_ARGUMENT) SCENE_ARRAYS_OF_FOCUSERS(ARRAY_ARGUMENT) SCENE_ARRAYS_OF_SLOTS(SPLIT_ARGUMENT)                                         \
-    SCENE_ARRAYS_OF_LAMPS(SPLIT_ARGUMENT) SCENE_ARRAYS_OF_TREE(SPLIT_ARGUMENT) SCENE_NUMBERS(NUMBER_ARGUMENT)
+    SCENE_ARRAYS_OF_LAMPS(SPLIT_ARGUMENT) SCENE_ARRAYS_OF_TREE(SPLIT_ARGUMENT) TRIANGLES_ARGUMENTS SCENE_NUMBERS(NUMBER_ARGUMENT)
 #define SCENE_ARGUMENTS                                                                                                \
     SCENE_ARRAYS_OF_PACK(ARRAY_ARGUMENT) SCENE_ARRAYS_OF_FOCUSERS(ARRAY_ARGUMENT) SCENE_ARRAYS_OF_SLOTS(SPLIT_ARGUMENT)                                         \
-    SCENE_ARRAYS_OF_LAMPS(SPLIT_ARGUMENT) SCENE_ARRAYS_OF_TREE(SPLIT_ARGUMENT) first_leaves, leaf_count, max_depth
+    SCENE_ARRAYS_OF_LAMPS(SPLIT_ARGUMENT) SCENE_ARRAYS_OF_TREE(SPLIT_ARGUMENT) TRIANGLES_ARGUMENTS first_leaves, leaf_count, max_depth
 
 static Scene scene_init(SCENE_ARRAYS_OF_PACK(ARRAY_PARAMETER) SCENE_ARRAYS_OF_FOCUSERS(ARRAY_PARAMETER) SCENE_ARRAYS_OF_SLOTS(SPLIT_PARAMETER)
-                            SCENE_ARRAYS_OF_LAMPS(SPLIT_PARAMETER) SCENE_ARRAYS_OF_TREE(SPLIT_PARAMETER) uint first_leaves,
+                            SCENE_ARRAYS_OF_LAMPS(SPLIT_PARAMETER) SCENE_ARRAYS_OF_TREE(SPLIT_PARAMETER) TRIANGLES_PARAMETERS uint first_leaves,
                         uint leaf_count, uint max_depth) {
     Scene scene;
     scene.max_depth = max_depth;
-    geometry_init(SCENE_ARRAYS_OF_TREE(SPLIT_ARGUMENT) first_leaves, leaf_count, &scene.geometry);
+    geometry_init(SCENE_ARRAYS_OF_TREE(SPLIT_ARGUMENT) TRIANGLES_ARGUMENTS first_leaves, leaf_count, &scene.geometry);
 #define SET_ARRAY(numbers, element, name, count, what) scene.name = name;
     SCENE_ARRAYS_OF_PACK(SET_ARRAY)
     SCENE_ARRAYS_OF_FOCUSERS(SET_ARRAY)

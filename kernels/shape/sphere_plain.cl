@@ -8,8 +8,9 @@
  * Knows: ray.cl.   Does not know: trees, materials. Read once for each number of lanes. */
 #define PLAIN_T_MIN R(1e-3)
 
-#undef OWN_SPHERE_IS_MET
-#define OWN_SPHERE_IS_MET 1
+#if SPHERES_MET
+#undef OWN_SHAPE_IS_MET
+#define OWN_SHAPE_IS_MET 1
 #define Sphere LANED(Sphere)
 #define sphere_roots LANED(sphere_roots)
 #define sphere_is_candidate LANED(sphere_is_candidate)
@@ -69,3 +70,4 @@ FORCE_INLINE static void sphere_surface(const Ray *ray, const Sphere *sphere, vu
     point->error = splat(0);
     *normal = scale3(divide(splat(1), sphere->radius), subtract3(point->high, sphere->centre));
 }
+#endif

@@ -4,7 +4,7 @@
  * In:    a ray whose origin is the unevaluated sum high + low, a sphere as it is stored.
  * Out:   the interface of a shape, the same in sphere_plain.cl:
  *          sphere_is_candidate  may the ray meet the sphere before `bound`? Quick; what it rules out is surely not met.
- *          OWN_SPHERE_IS_MET    0 or 1: the sphere being left is a candidate like any other
+ *          OWN_SHAPE_IS_MET     0 or 1: the sphere being left is a candidate like any other
  *          sphere_intersect     does the ray meet it, at which distance, and from outside or inside?
  *          sphere_exit          where does a ray meet the sphere that it has left into its inside?
  *          sphere_power         how far is a point outside a sphere, as a square?
@@ -15,8 +15,9 @@
  * across the ray; s = sqrt((r^2 - l.l) / d.d) is half the chord; the roots are p - s and p + s.
  * l instead of oc.oc - r^2: E. Haines, J. Guenther and T. Akenine-Moeller, "Precision Improvements for Ray/Sphere
  * Intersection", Ray Tracing Gems, 2019. */
-#undef OWN_SPHERE_IS_MET
-#define OWN_SPHERE_IS_MET 0
+#if SPHERES_MET
+#undef OWN_SHAPE_IS_MET
+#define OWN_SHAPE_IS_MET 0
 #define Sphere LANED(Sphere)
 #define Roots LANED(Roots)
 #define sphere_is_candidate LANED(sphere_is_candidate)
@@ -251,4 +252,5 @@ FORCE_INLINE static void sphere_surface(const Ray *ray, const Sphere *sphere, vu
     const vbool own = vbool_of_uint(slot == ray->own_slot);
     point->error = choose(own, error + origin->error, error);
 }
+#endif
 #endif

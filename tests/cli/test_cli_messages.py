@@ -70,9 +70,9 @@ class Messages(ProgramTest):
             self.refused(text, place, says)
 
     def test_shapes(self):
-        for name in ("triangles", "quads", "meshes", "boxes", "mesh", "cylinders", "planes"):
-            said = self.refused('{"camera": {},\n "%s": []}' % name, "2:2", f"{name}: unknown member; only spheres are rendered")
-            self.assertIn('in "spheres", or name files of them in "clouds" or "particles"', said)
+        for name in ("triangle", "box", "meshes", "mesh", "cylinders", "planes"):
+            said = self.refused('{"camera": {},\n "%s": []}' % name, "2:2", f"{name}: unknown member; shapes are written in")
+            self.assertIn('"spheres", "triangles", "quads" and "boxes", and files of spheres named in "clouds" or "particles"', said)
 
     def test_a_former_name(self):
         self.refused('{"camera": {}, "light": "soft"}', "1:16", 'light: unknown member; "light" is now "lighting"')
@@ -107,7 +107,7 @@ class Messages(ProgramTest):
 
     CONVERT = "convert it, with ASE or MDAnalysis, to extended XYZ"
     TABLE = "convert it, to CSV or PLY"
-    SPHERES = "only spheres are rendered"
+    SPHERES = "of triangles only those in scenes are rendered"
     POSCAR = b"NaCl\n 1.0\n5.6 0 0\n0 5.6 0\n0 0 5.6\nNa Cl\n4 4\nDirect\n0 0 0\n"
     OBJ = b"# a cube\nmtllib a.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n"
     FILES = (("POSCAR", POSCAR, "a structure of VASP (POSCAR)", CONVERT), ("CONTCAR.relaxed", POSCAR, "a structure of VASP", CONVERT),

@@ -6,6 +6,13 @@
     const uint item = (uint)get_global_id(0);                                                                          \
     if (item >= count) return;
 
+/* Of a geometry of spheres alone, in a program that knows triangles. */
+#if EFFECT_TRIANGLES
+#define NO_TRIANGLES(leaf_count) 0, leaf_count,
+#else
+#define NO_TRIANGLES(leaf_count)
+#endif
+
 enum { PROBE_RAY_REALS = 10, PROBE_HIT_REALS = 8, PROBE_POINT_REALS = 10 };
 
 /* `own`: 0 for a ray from free space, 1 for one that leaves the sphere of `slot` outward, 2 inward. */
@@ -30,7 +37,7 @@ __kernel void probe_leaf(uint count, __global const real *rays, __global const u
     __global const real *leaf = leaves + (size_t)item * 4 * TREE_WIDTH;
     const uint lane = item % TREE_WIDTH;
     Geometry geometry;
-    geometry_init(boxes, children, leaf, leaf, slot_sphere, 1, 1, &geometry);
+    geometry_init(boxes, children, leaf, leaf, slot_sphere, NO_TRIANGLES(1) 1, 1, &geometry);
     const Ray ray = probe_ray(rays + (size_t)item * PROBE_RAY_REALS, own[item], lane);
     const Hit hit = intersect_closest(&geometry, &ray, 1);
     __global refined *row = out + (size_t)item * PROBE_HIT_REALS;
@@ -171,7 +178,7 @@ __kernel void probe_normalise(uint count, __global const real *in, __global refi
 __kernel void probe_boxes(uint count, __global const real *rays, __global const real *boxes, __global uint *out) {
     PROBE_ITEM
     Geometry geometry;
-    geometry_init(boxes, 0, 0, 0, 0, 0, 0, &geometry);
+    geometry_init(boxes, 0, 0, 0, 0, NO_TRIANGLES(0) 0, 0, &geometry);
     const Ray ray = probe_ray(rays + (size_t)item * PROBE_RAY_REALS, 0, 0);
     const BoxRay box = box_ray(&ray);
     vreal_node entry;
@@ -192,7 +199,7 @@ __kernel void probe_tree(uint count, __global const real *rays, __global const r
                          uint first_leaves, uint leaf_count, __global refined *out) {
     PROBE_ITEM
     Geometry geometry;
-    geometry_init(boxes, children, leaves, leaves, slot_sphere, first_leaves, leaf_count, &geometry);
+    geometry_init(boxes, children, leaves, leaves, slot_sphere, NO_TRIANGLES(leaf_count) first_leaves, leaf_count, &geometry);
     const Ray ray = probe_ray(rays + (size_t)item * PROBE_RAY_REALS, 0, 0);
     const Hit tree = intersect_closest(&geometry, &ray, 1);
     Hit list = no_hit(REAL_LARGE);
@@ -264,4 +271,51 @@ __kernel void probe_paths(SCENE_PARAMETERS uint count, __global const real *rays
     row[2 * PROBE_PATH_SEGMENTS + 1] = path.direction.y;
     row[2 * PROBE_PATH_SEGMENTS + 2] = path.direction.z;
     row[2 * PROBE_PATH_SEGMENTS + 3] = path.alive;
+}
+
+/* Rays through a scene, which leave what they meet in a direction of their own. Out: the index of what was met (-1: none),
+ * from outside, the distance; the same of what is met then; the point where the ray turns, high and low, its error, and
+ * the outward normal there. */
+enum { PROBE_TURN_REALS = 16 };
+__kernel void probe_turns(SCENE_PARAMETERS uint count, __global const real *rays, __global const real *directions,
+                          __global refined *out) {
+    PROBE_ITEM
+    const Scene scene = scene_init(SCENE_ARGUMENTS);
+    __global refined *row = out + (size_t)item * PROBE_TURN_REALS;
+    for (uint i = 0; i < PROBE_TURN_REALS; ++i) row[i] = -1;
+    Ray ray = probe_ray(rays + (size_t)item * PROBE_RAY_REALS, 0, 0);
+#if EFFECT_MOTION
+    ray.time = 0;
+#endif
+    const Hit hit = intersect_closest(&scene.geometry, &ray, 1);
+    if (hit.slot == NO_SLOT) return;
+    row[0] = (refined)slot_sphere[hit.slot];
+    row[1] = hit.enters;
+    row[2] = hit.t;
+    Point point;
+    Vec3 outward;
+#if EFFECT_TRIANGLES
+    surface_of_triangle(&scene.geometry, &ray, &hit, 1, &point, &outward);
+    Ray next = ray;
+    next.origin = point;
+    next.cull_margin = cull_margin_of(&point);
+    next.direction = vec3(directions[3 * item], directions[3 * item + 1], directions[3 * item + 2]);
+    next.own_slot = hit.slot;
+    const Hit then = intersect_closest(&scene.geometry, &next, 1);
+    if (then.slot != NO_SLOT) {
+        row[3] = (refined)slot_sphere[then.slot];
+        row[4] = then.enters;
+        row[5] = then.t;
+    }
+    row[6] = point.high.x;
+    row[7] = point.high.y;
+    row[8] = point.high.z;
+    row[9] = point.low.x;
+    row[10] = point.low.y;
+    row[11] = point.low.z;
+    row[12] = point.error;
+    row[13] = outward.x;
+    row[14] = outward.y;
+    row[15] = outward.z;
+#endif
 }

@@ -21,6 +21,7 @@ typedef struct EffectsScene {
     BpScene scene; /* points into the arrays below: pass it on by address, do not copy it */
     BpMaterial materials[28];
     BpSphere spheres[48];
+    BpTriangle triangles[4];
     BpTexture textures[10];
     BpImage image, sky, light, *images[3];
     float image_texels[5 * 3 * 3], sky_texels[8 * 4 * 3], light_texels[2 * 3];
@@ -47,6 +48,10 @@ static inline bool effects_can_occur(uint32_t bits, bool tree) {
     if (bp_effects_has(bits, BP_EFFECT_MOTION) && (bits & MATERIAL_EFFECTS) == 0) return false;
     if (bp_effects_has(bits, BP_EFFECT_NOISE) && !bp_effects_has(bits, BP_EFFECT_TEXTURES)) return false;
     if (bp_effects_has(bits, BP_EFFECT_IMAGES) && !bp_effects_has(bits, BP_EFFECT_TEXTURES)) return false;
+    /* In these scenes they have the first material, which is matte or metal and whose texture fills space. */
+    if (bp_effects_has(bits, BP_EFFECT_TRIANGLES) &&
+        (bits & (EFFECT_BIT(LAMBERTIAN) | EFFECT_BIT(METAL))) == 0)
+        return false;
     /* Of an image around it knows no light. */
     if (bp_effects_has(bits, BP_EFFECT_SHADOW_CATCHER) && bp_effects_has(bits, BP_EFFECT_ENVIRONMENT))
         return false;
@@ -203,7 +208,7 @@ static inline void effects_textures(EffectsScene *made, uint32_t bits) {
 /* A ground, a row of spheres that overlap and repeat (of equal ones the first must be met), bubbles, and with
  * a tree two more rows. */
 static inline void effects_spheres(EffectsScene *made, bool tree) {
-    const size_t count = tree ? 48 : BP_LIST_SPHERES_MAX;
+    const size_t count = tree ? 48 : BP_LIST_SPHERES_MAX - made->scene.triangle_count;
     const size_t materials = made->scene.material_count;
     if (materials == 0) return;
     for (size_t i = 0; i < count; ++i) {
@@ -224,6 +229,18 @@ static inline void effects_spheres(EffectsScene *made, bool tree) {
     }
     made->spheres[0] = (BpSphere){.center = {0, -100.5, -2}, .radius = 100, .albedo = BP_NO_ALBEDO};
     made->scene.sphere_count = count;
+}
+
+/* A folded wall of two triangles that share an edge and lie partly behind spheres, and two that cross each
+ * other. */
+static inline void effects_triangles(EffectsScene *made) {
+    static const double at[4][3][3] = {{{-4, -0.5, -6}, {0.5, -0.5, -5}, {0.5, 3, -5}},
+                                       {{-4, -0.5, -6}, {0.5, 3, -5}, {-4, 3, -6}},
+                                       {{1, -0.4, -3}, {3, -0.4, -3}, {2, 1.5, -2}},
+                                       {{2, -0.4, -4}, {2, -0.4, -2}, {2.5, 1.2, -3}}};
+    made->scene.triangles = made->triangles;
+    made->scene.triangle_count = 4;
+    for (int i = 0; i < 4; ++i) memcpy(made->triangles[i].vertices, at[i], sizeof at[i]);
 }
 
 /* Media in most of what light passes through, and around all in every fifth set. */
@@ -291,6 +308,7 @@ static inline void effects_scene(EffectsScene *made, uint32_t bits, bool tree) {
             (BpShadowCatcher){.present = true, .normal = {0.28, 0.96, 0}, .distance = -0.25};
     effects_materials(made, bits);
     if (bp_effects_has(bits, BP_EFFECT_TEXTURES)) effects_textures(made, bits);
+    if (bp_effects_has(bits, BP_EFFECT_TRIANGLES)) effects_triangles(made);
     effects_spheres(made, tree);
     if (bp_effects_has(bits, BP_EFFECT_MOTION)) effects_motion(made);
     if (bp_effects_has(bits, BP_EFFECT_MEDIA)) effects_media(made, bits);

@@ -109,6 +109,8 @@ static BpStatus trace(const Lab *lab, const BpScene *scene, const BpRenderOption
     worker->program = *program;
     worker->real_size = sizeof(float);
     worker->has_lamps = true; /* the program may count rays to them */
+    worker->has_triangles = bp_effects_has(setup.program.effects, BP_EFFECT_TRIANGLES);
+    worker->first_triangles = packed.tree.first_triangles;
     worker->width = setup.width;
     worker->pixels = setup.width * setup.height;
     worker->replicates = setup.replicates;

@@ -22,6 +22,9 @@ GOOD = {
     "lighting": "sky",
     "backdrop": {"bottom": [0, 0, 0], "top": [1, 1, 1]},
     "shadow_catcher": {"height": -1.5, "up": [0, 0, 2]},
+    "triangles": [{"vertices": [[0, 0, 0], [1, 0, 0], [0, 1, 0]], "material": "m"}],
+    "quads": [{"corner": [0, 0, 0], "u": [1, 0, 0], "v": [0, 1e9, 0], "material": "m"}],
+    "boxes": [{"corners": [[0, 0, 0], [1, 1, 1]], "rotate": [0, 15, 0], "translate": [1, 2, 3], "material": "m"}, {"corners": [[0, 0, 0], [1, 1, 1]], "material": "m"}],
     "transfer": "srgb",
     "textures": {
         "s": {"type": "checker", "colors": [[0, 0.5, 1], 3], "size": 0.1},

@@ -141,13 +141,14 @@ static void say_emptiness(const BpCommandLine *line, const BpRunResult *result) 
     const BpScene *scene = result->scene;
     char samples[32];
     if (report->samples == 0 || report->segments != report->samples || report->truncated_paths > 0) return;
-    if (scene->sphere_count == 0)
+    if (bp_scene_shapes(scene) == 0)
         bp_say(line, "the scene has no spheres: the picture shows the background alone");
-    else if (!bp_scene_has_sphere_in_view(scene) || bp_scene_always_scatters(scene))
+    else if (!bp_scene_has_shape_in_view(scene) || bp_scene_always_scatters(scene))
         bp_say(line,
-               "the picture shows no sphere: %s sample%s saw the background alone; check \"lookfrom\", "
+               "the picture shows no %s: %s sample%s saw the background alone; check \"lookfrom\", "
                "\"lookat\" and \"vfov\" of the camera",
-               bp_format_count((double)report->samples, samples, sizeof samples), bp_plural(report->samples));
+               bp_scene_noun(scene), bp_format_count((double)report->samples, samples, sizeof samples),
+               bp_plural(report->samples));
 }
 
 /* A sphere around the camera shuts out all light, unless light comes through it: glass, or a boundary. */
@@ -162,6 +163,21 @@ static bool is_inside_a_sphere(const BpScene *scene) {
             return true;
     }
     return false;
+}
+
+/* Their light is found by chance, and what samples have not found yet is not estimated. */
+static void say_shining_triangles(const BpCommandLine *line, const BpScene *scene) {
+    size_t shining = 0;
+    for (size_t i = 0; i < scene->triangle_count; i++) {
+        const double *emit = scene->materials[scene->triangles[i].material].emit;
+        shining += emit[0] > 0 || emit[1] > 0 || emit[2] > 0;
+    }
+    if (shining > 0 && !line->quiet)
+        bp_say(line,
+               "%zu triangle%s give%s light that is found by chance: until samples have found it, the noise "
+               "is more than "
+               "is said; small ones need many samples, or a sphere as the lamp",
+               shining, bp_plural(shining), shining == 1 ? "s" : "");
 }
 
 /* Light of which most of the noise is a claim, since samples have hardly found it. */
@@ -206,6 +222,7 @@ void bp_run_print_summary(const BpCommandLine *line, const BpRunResult *result, 
            bp_format_count((double)own / tracing, rate, sizeof rate),
            bp_format_seconds(bp_clock_seconds() - result->times.start, all, sizeof all));
     say_unseen(line, result);
+    say_shining_triangles(line, result->scene);
     /* Half the noise takes four times the samples. */
     const double more = own > 0 ? 3.0 * tracing * (double)report->samples / (double)own : NAN;
     if (result->claim.nrmse > 0.0 && own > 0)

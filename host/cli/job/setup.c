@@ -56,9 +56,9 @@ static void say_unused_material(const BpCommandLine *line, const char *set, cons
         const size_t length = strlen(name);
         if (strncmp(rest, name, length) != 0 || (rest[length] != '=' && rest[length] != '.')) continue;
         size_t i = 0;
-        while (i < scene->sphere_count && scene->spheres[i].material != m) i++;
-        if (i == scene->sphere_count)
-            bp_say(line, "--set %s changes nothing: no sphere has this material", set);
+        while (i < bp_scene_shapes(scene) && bp_shape_material(scene, i) != m) i++;
+        if (i == bp_scene_shapes(scene))
+            bp_say(line, "--set %s changes nothing: no %s has this material", set, bp_scene_noun(scene));
     }
 }
 

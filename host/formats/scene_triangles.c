@@ -1,0 +1,170 @@
+/* scene_triangles.c: see scene_triangles.h. */
+#include "scene_triangles.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#define PI 3.14159265358979323846
+
+/* `count` points. */
+static BpStatus parse_points(const BpNode *node, size_t count, const char *expected, double (*points)[3],
+                             BpError *err) {
+    if (!json_is_array(node->value) || json_array_size(node->value) != count)
+        return bp_node_wrong(node, expected, err);
+    for (size_t i = 0; i < count; i++) {
+        const BpNode point = bp_node_element(node, i);
+        BP_TRY(bp_node_vector(&point, points[i], err));
+    }
+    return BP_OK;
+}
+
+static BpStatus parse_material(const BpNode *node, const BpMaterialIndex *index, uint32_t *material,
+                               BpError *err) {
+    BP_TRY(bp_node_require(node, "material", "a name from \"materials\"", err));
+    const BpNode name = bp_node_member(node, "material");
+    return bp_parse_material_name(&name, index, material, err);
+}
+
+static void put(BpTriangle *triangle, const double *a, const double *b, const double *c, uint32_t material) {
+    memcpy(triangle->vertices[0], a, sizeof triangle->vertices[0]);
+    memcpy(triangle->vertices[1], b, sizeof triangle->vertices[1]);
+    memcpy(triangle->vertices[2], c, sizeof triangle->vertices[2]);
+    triangle->material = material;
+}
+
+static BpStatus parse_triangle(const BpNode *node, const BpMaterialIndex *index, BpTriangle *triangle,
+                               BpError *err) {
+    static const char *const names[] = {"vertices", "material"};
+    static const char vertices[] = "three points: \"vertices\": [[0, 0, 0], [1, 0, 0], [0, 1, 0]]";
+    BP_TRY(bp_node_object(node, names, BP_COUNT(names), err));
+    BP_TRY(bp_node_require(node, "vertices", vertices, err));
+    const BpNode points = bp_node_member(node, "vertices");
+    BP_TRY(parse_points(&points, 3, vertices, triangle->vertices, err));
+    return parse_material(node, index, &triangle->material, err);
+}
+
+static BpStatus parse_quad(const BpNode *node, const BpMaterialIndex *index, BpTriangle *triangles,
+                           BpError *err) {
+    static const char *const names[] = {"corner", "u", "v", "material"};
+    double at[4][3], u[3], v[3];
+    uint32_t material;
+    BP_TRY(bp_node_object(node, names, BP_COUNT(names), err));
+    BP_TRY(bp_node_require(node, "corner", "\"corner\": [x, y, z]", err));
+    BP_TRY(bp_node_require(node, "u", "the side from there: \"u\": [x, y, z]", err));
+    BP_TRY(bp_node_require(node, "v", "the other side from there: \"v\": [x, y, z]", err));
+    const BpNode corner = bp_node_member(node, "corner"), side = bp_node_member(node, "u"),
+                 other = bp_node_member(node, "v");
+    BP_TRY(bp_node_vector(&corner, at[0], err));
+    BP_TRY(bp_node_vector(&side, u, err));
+    BP_TRY(bp_node_vector(&other, v, err));
+    BP_TRY(parse_material(node, index, &material, err));
+    for (int a = 0; a < 3; a++) {
+        at[1][a] = at[0][a] + u[a];
+        at[2][a] = at[0][a] + u[a] + v[a];
+        at[3][a] = at[0][a] + v[a];
+    }
+    put(&triangles[0], at[0], at[1], at[2], material);
+    put(&triangles[1], at[0], at[2], at[3], material);
+    return BP_OK;
+}
+
+/* Quarter turns are exact, so that a box turned by them stays parallel to the axes. */
+static void turn(double degrees, double *sine, double *cosine) {
+    const double quarters = degrees / 90;
+    *sine = sin(degrees * (PI / 180));
+    *cosine = cos(degrees * (PI / 180));
+    if (quarters != floor(quarters)) return;
+    *sine = round(*sine);
+    *cosine = round(*cosine);
+}
+
+/* About x, then y, then z. */
+static void rotate(const double degrees[3], double point[3]) {
+    for (int axis = 0; axis < 3; axis++) {
+        double sine, cosine;
+        turn(degrees[axis], &sine, &cosine);
+        const int a = (axis + 1) % 3, b = (axis + 2) % 3;
+        const double x = point[a], y = point[b];
+        point[a] = cosine * x - sine * y;
+        point[b] = sine * x + cosine * y;
+    }
+}
+
+static BpStatus parse_box(const BpNode *node, const BpMaterialIndex *index, BpTriangle *triangles,
+                          BpError *err) {
+    static const char *const names[] = {"corners", "rotate", "translate", "material"};
+    static const char expected[] = "two opposite points: \"corners\": [[0, 0, 0], [1, 1, 1]]";
+    /* The corners of each side by their bits, x in the lowest, counter-clockwise seen from outside. */
+    static const int sides[6][4] = {{0, 4, 6, 2}, {1, 3, 7, 5}, {0, 1, 5, 4},
+                                    {2, 6, 7, 3}, {0, 2, 3, 1}, {4, 5, 7, 6}};
+    double ends[2][3], degrees[3] = {0, 0, 0}, way[3] = {0, 0, 0}, at[8][3];
+    uint32_t material;
+    BP_TRY(bp_node_object(node, names, BP_COUNT(names), err));
+    BP_TRY(bp_node_require(node, "corners", expected, err));
+    const BpNode corners = bp_node_member(node, "corners"), turned = bp_node_member(node, "rotate"),
+                 moved = bp_node_member(node, "translate");
+    BP_TRY(parse_points(&corners, 2, expected, ends, err));
+    BP_TRY(bp_node_vector(&turned, degrees, err));
+    BP_TRY(bp_node_vector(&moved, way, err));
+    BP_TRY(parse_material(node, index, &material, err));
+    for (int corner = 0; corner < 8; corner++) {
+        for (int a = 0; a < 3; a++)
+            at[corner][a] =
+                (corner >> a & 1) != 0 ? fmax(ends[0][a], ends[1][a]) : fmin(ends[0][a], ends[1][a]);
+        rotate(degrees, at[corner]);
+        for (int a = 0; a < 3; a++) at[corner][a] += way[a];
+    }
+    for (int side = 0; side < 6; side++) {
+        const int *c = sides[side];
+        put(&triangles[2 * side], at[c[0]], at[c[1]], at[c[2]], material);
+        put(&triangles[2 * side + 1], at[c[0]], at[c[2]], at[c[3]], material);
+    }
+    return BP_OK;
+}
+
+typedef BpStatus Parse(const BpNode *node, const BpMaterialIndex *index, BpTriangle *triangles, BpError *err);
+
+/* One of the three lists, of which each entry is `each` triangles. */
+static BpStatus parse_list(const BpNode *node, const char *expected, const char *entry, size_t each,
+                           Parse *parse, const BpMaterialIndex *index, BpScene *scene, size_t *count,
+                           BpError *err) {
+    if (node->value == NULL) return BP_OK;
+    BP_TRY(bp_node_list(node, expected, err));
+    *count = json_array_size(node->value);
+    if (*count == 0) return BP_OK;
+    const size_t most = (BP_SPHERES_MAX - scene->triangle_count) / each;
+    if (*count > most)
+        return bp_node_fail(node, BP_PART_VALUE, err, "found %zu entries, expected at most %zu", *count,
+                            most);
+    BpTriangle *grown = realloc(scene->triangles, (scene->triangle_count + *count * each) * sizeof *grown);
+    if (grown == NULL) return bp_fail(err, BP_ERR_MEMORY, "out of memory for %zu triangles", *count * each);
+    scene->triangles = grown;
+    for (size_t i = 0; i < *count; i++) {
+        const BpNode element = bp_node_element(node, i);
+        if (!json_is_object(element.value)) return bp_node_wrong(&element, entry, err);
+        BP_TRY(parse(&element, index, &scene->triangles[scene->triangle_count], err));
+        scene->triangle_count += each;
+    }
+    return BP_OK;
+}
+
+BpStatus bp_parse_triangles(const BpNode *root, const BpMaterialIndex *index, BpScene *scene, BpError *err) {
+    const BpNode triangles = bp_node_member(root, "triangles"), quads = bp_node_member(root, "quads"),
+                 boxes = bp_node_member(root, "boxes");
+    size_t listed = 0;
+    BP_TRY(parse_list(
+        &triangles,
+        "a list of triangles: [ { \"vertices\": [[0, 0, 0], [1, 0, 0], [0, 1, 0]], \"material\": ... } ]",
+        "an object: { \"vertices\": ..., \"material\": ... }", 1, parse_triangle, index, scene, &listed,
+        err));
+    BP_TRY(parse_list(&quads,
+                      "a list of quads: [ { \"corner\": [0, 0, 0], \"u\": [1, 0, 0], \"v\": [0, 1, 0], "
+                      "\"material\": ... } ]",
+                      "an object: { \"corner\": ..., \"u\": ..., \"v\": ..., \"material\": ... }",
+                      BP_QUAD_TRIANGLES, parse_quad, index, scene, &scene->quad_count, err));
+    return parse_list(&boxes,
+                      "a list of boxes: [ { \"corners\": [[0, 0, 0], [1, 1, 1]], \"material\": ... } ]",
+                      "an object: { \"corners\": ..., \"material\": ... }", BP_BOX_TRIANGLES, parse_box,
+                      index, scene, &scene->box_count, err);
+}

@@ -1,0 +1,84 @@
+/* triangle_plain.cl: where a ray meets a triangle, with --numerics plain: the usual test, a least distance, and nothing else
+ * (T. Moeller and B. Trumbore, "Fast, Minimum Storage Ray/Triangle Intersection", 1997).
+ *
+ * Neighbours compute different numbers, so rays slip between them, and triangles that are huge, tiny or far lose their
+ * places. It stands here as the yardstick of what robustness costs.
+ *
+ * In and out: the interface of triangle_robust.cl, by which triangles are candidates that are not turned.
+ * Knows: ray.cl, PLAIN_T_MIN (sphere_plain.cl).   Does not know: trees, materials. Read once for each number of lanes. */
+#if EFFECT_TRIANGLES
+#undef OWN_SHAPE_IS_MET
+#undef ROBUST_SHAPES
+#define OWN_SHAPE_IS_MET 1
+#define ROBUST_SHAPES 0
+#define Triangle LANED(Triangle)
+#define Shear LANED(Shear)
+#define turn3 LANED(turn3)
+#define shear_of LANED(shear_of)
+#define cross3 LANED(cross3)
+#define triangle_meets LANED(triangle_meets)
+#define triangle_is_candidate LANED(triangle_is_candidate)
+#define triangle_intersect LANED(triangle_intersect)
+#define triangle_surface LANED(triangle_surface)
+
+typedef struct Triangle {
+    Vec3 a, b, c;
+} Triangle;
+
+typedef struct Shear {
+    vbool along_x, along_y;
+    Vec3 direction, origin;
+} Shear;
+
+static Vec3 turn3(const Shear *shear, Vec3 v) { return v; }
+
+static Shear shear_of(const Ray *ray) {
+    Shear shear;
+    shear.along_x = shear.along_y = vbool_none;
+    shear.direction = ray->direction;
+    shear.origin = ray->origin.high;
+    return shear;
+}
+
+static Vec3 cross3(Vec3 a, Vec3 b) {
+    return vec3(fma(a.y, b.z, -(a.z * b.y)), fma(a.z, b.x, -(a.x * b.z)), fma(a.x, b.y, -(a.y * b.x)));
+}
+
+FORCE_INLINE static vbool triangle_meets(Vec3 origin, Vec3 direction, const Triangle *triangle, vreal *t, vbool *enters) {
+    const Vec3 to_b = subtract3(triangle->b, triangle->a), to_c = subtract3(triangle->c, triangle->a);
+    const Vec3 from = subtract3(origin, triangle->a), p = cross3(direction, to_c), q = cross3(from, to_b);
+    const vreal determinant = dot3(to_b, p);
+    const vbool some = vbool_not(determinant == splat(0));
+    const vreal inverse = divide(splat(1), choose(some, determinant, splat(1)));
+    const vreal b = dot3(from, p) * inverse, c = dot3(direction, q) * inverse;
+    *t = dot3(to_c, q) * inverse;
+    *enters = determinant > splat(0);
+    return some & (b >= splat(0)) & (c >= splat(0)) & (b + c <= splat(1)) & (*t > splat(PLAIN_T_MIN));
+}
+
+FORCE_INLINE static vbool triangle_is_candidate(const Shear *shear, vreal bound, const Triangle *turned) {
+    vreal t;
+    vbool enters;
+    return triangle_meets(shear->origin, shear->direction, turned, &t, &enters) & (t <= bound);
+}
+
+FORCE_INLINE static vbool triangle_intersect(const Ray *ray, const Triangle *triangle, const Triangle *left, vbool leaves,
+                                             vrefined *t, vbool *enters) {
+    vreal distance;
+    const vbool met = triangle_meets(ray->origin.high, ray->direction, triangle, &distance, enters);
+    *t = to_refined(distance);
+    return met;
+}
+
+FORCE_INLINE static void triangle_surface(const Ray *ray, const Triangle *triangle, Point *point, Vec3 *normal) {
+    vreal t;
+    vbool enters;
+    triangle_meets(ray->origin.high, ray->direction, triangle, &t, &enters);
+    point->high = madd3(t, ray->direction, ray->origin.high);
+    point->low = zero3();
+    point->error = splat(0);
+    const Vec3 n = cross3(subtract3(triangle->b, triangle->a), subtract3(triangle->c, triangle->a));
+    const vbool none = vbool_not(dot3(n, n) > splat(0));
+    *normal = normalise3(choose3(none, vec3(splat(0), splat(0), splat(1)), n));
+}
+#endif

@@ -1,0 +1,252 @@
+/* triangle_robust.cl: where a ray meets a triangle, with decisions that no two triangles of a mesh contradict each other in.
+ *
+ * In:    a ray whose origin is the unevaluated sum high + low, a triangle as it is stored.
+ * Out:   shear_of               the ray's shear, which the tests below work in
+ *        triangle_is_candidate  may the ray meet the triangle before `bound`? Quick; what it rules out is surely not met.
+ *        triangle_intersect     does the ray meet it, at which distance, and from outside (the side from which its
+ *                               vertices run counter-clockwise) or inside?
+ *        triangle_surface       the point that was met, as an origin for the next ray, and the outward unit normal
+ * Knows: ray.cl, wide.cl.   Does not know: trees, materials. Read once for each number of lanes.
+ *
+ * The ray is sheared to the axis along which it is longest, x and y of each vertex then lie in a plane, in which the ray
+ * is the origin (S. Woop, C. Benthin and I. Wald, "Watertight Ray/Triangle Intersection", JCGT 2(1), 2013). A vertex is
+ * sheared by a function of itself and the ray, so triangles that share it see it at the same place; and an edge function
+ * has the exact sign of the products that it is made of, so the two triangles of an edge see the ray on opposite sides
+ * of it. A closed mesh therefore has no cracks. docs/NUMERICS.md has the bounds.
+ *
+ * Leaving a triangle has no least distance. A plane is not met again, so the triangle that is left is not met. For others
+ * that the origin, or what is met, may lie in the plane of, the two triangles decide, since their vertices are exact:
+ * - the side to which the ray leaves is the sign of d.n of the triangle that is left. A triangle without a vertex
+ *   strictly on that side is not met;
+ * - where the triangle that is left lies on one closed side of the other's plane, the ray meets that only from there,
+ *   and a distance that rounding made negative is 0; where it lies in that plane, never;
+ * - of an edge that both share, the edge function is d.n of the one that is left, times what is known to be positive. */
+#if EFFECT_TRIANGLES
+#undef OWN_SHAPE_IS_MET
+#undef ROBUST_SHAPES
+#define OWN_SHAPE_IS_MET 0
+#define ROBUST_SHAPES 1
+#define Triangle LANED(Triangle)
+#define Shear LANED(Shear)
+#define Edges LANED(Edges)
+#define turn3 LANED(turn3)
+#define shear_of LANED(shear_of)
+#define edges_of LANED(edges_of)
+#define edges_hold LANED(edges_hold)
+#define edges_distance LANED(edges_distance)
+#define triangle_is_candidate LANED(triangle_is_candidate)
+#define triangle_intersect LANED(triangle_intersect)
+#define triangle_surface LANED(triangle_surface)
+#define same_place LANED(same_place)
+#define is_vertex_of LANED(is_vertex_of)
+#define add_side LANED(add_side)
+#define sides_of LANED(sides_of)
+#define know_edge LANED(know_edge)
+#define Sides LANED(Sides)
+
+typedef struct Triangle {
+    Vec3 a, b, c;
+} Triangle;
+
+/* `along`: of an axis, one third of all rays each; of equal components the later. */
+typedef struct Shear {
+    vbool along_x, along_y; /* else along z */
+    Vec3 direction;         /* turned, so that it is longest along z */
+    Vec3 origin;            /* turned, its high part */
+    vreal x, y;             /* what is added to x and y for each step along -z */
+    vreal inverse;          /* 1 / direction.z */
+    vreal margin;           /* of the ray */
+} Shear;
+
+/* Turns a vector so that the axis that the ray runs along is z: by one or two places, which keeps its handedness. */
+static Vec3 turn3(const Shear *shear, Vec3 v) {
+    const vbool x = shear->along_x, y = shear->along_y;
+    return vec3(choose(x, v.y, choose(y, v.z, v.x)), choose(x, v.z, choose(y, v.x, v.y)),
+                choose(x, v.x, choose(y, v.y, v.z)));
+}
+
+static Shear shear_of(const Ray *ray) {
+    const Vec3 d = ray->direction;
+    const vreal x = fabs(d.x), y = fabs(d.y), z = fabs(d.z);
+    Shear shear;
+    shear.along_x = (x > y) & (x > z);
+    shear.along_y = vbool_not(x > y) & (y > z);
+    shear.direction = turn3(&shear, d);
+    shear.origin = turn3(&shear, ray->origin.high);
+    shear.inverse = divide(splat(1), shear.direction.z);
+    shear.x = shear.direction.x * shear.inverse;
+    shear.y = shear.direction.y * shear.inverse;
+    shear.margin = ray->cull_margin;
+    return shear;
+}
+
+/* In `real`, of a triangle that is turned. With R the largest |x| and |y| of sheared vertices and Z the largest |z|, a
+ * sheared vertex errs by less than delta = 8 u (R + Z) + 2 margin (u = ROUNDOFF), an edge function by less than
+ * 6 delta (R + delta), a vertex's distance by less than 2 delta. */
+FORCE_INLINE static vbool triangle_is_candidate(const Shear *shear, vreal bound, const Triangle *turned) {
+    const Vec3 a = subtract3(turned->a, shear->origin), b = subtract3(turned->b, shear->origin),
+               c = subtract3(turned->c, shear->origin);
+    const vreal ax = loose_fma(-shear->x, a.z, a.x), ay = loose_fma(-shear->y, a.z, a.y);
+    const vreal bx = loose_fma(-shear->x, b.z, b.x), by = loose_fma(-shear->y, b.z, b.y);
+    const vreal cx = loose_fma(-shear->x, c.z, c.x), cy = loose_fma(-shear->y, c.z, c.y);
+    const vreal across = larger(larger(larger(fabs(ax), fabs(ay)), larger(fabs(bx), fabs(by))), larger(fabs(cx), fabs(cy)));
+    const vreal along = larger(larger(fabs(a.z), fabs(b.z)), fabs(c.z));
+    const vreal delta = loose_fma(splat(R(8.0) * ROUNDOFF), across + along, R(2.0) * shear->margin);
+    const vreal margin = R(6.0) * delta * (across + delta);
+    const vreal u = loose_fma(bx, cy, -(by * cx)), v = loose_fma(cx, ay, -(cy * ax)), w = loose_fma(ax, by, -(ay * bx));
+    const vreal ta = a.z * shear->inverse, tb = b.z * shear->inverse, tc = c.z * shear->inverse;
+    const vbool right = smaller(smaller(u, v), w) >= -margin, left = larger(larger(u, v), w) <= margin;
+    const vbool ahead = larger(larger(ta, tb), tc) >= R(-2.0) * delta;
+    const vbool near = smaller(smaller(ta, tb), tc) <= bound + R(2.0) * delta;
+    return (right | left) & ahead & near;
+}
+
+/* ---- the decision ---- */
+
+/* Edge functions of the sheared triangle, each named by the vertex that its edge does not touch, and the vertices' z. */
+typedef struct Edges {
+    Wide a, b, c;
+    Wide az, bz, cz;
+    Wide slope; /* direction.z */
+} Edges;
+
+FORCE_INLINE static Edges edges_of(const Ray *ray, const Shear *shear, const Triangle *triangle) {
+    const Vec3 high = shear->origin, low = turn3(shear, ray->origin.low);
+    const Vec3 a = turn3(shear, triangle->a), b = turn3(shear, triangle->b), c = turn3(shear, triangle->c);
+    Edges edges;
+    edges.slope = wide(shear->direction.z);
+    const Wide x = wide_divide(wide(-shear->direction.x), edges.slope), y = wide_divide(wide(-shear->direction.y), edges.slope);
+    edges.az = wide_difference(a.z, high.z, low.z);
+    edges.bz = wide_difference(b.z, high.z, low.z);
+    edges.cz = wide_difference(c.z, high.z, low.z);
+    const Wide ax = wide_madd(x, edges.az, wide_difference(a.x, high.x, low.x));
+    const Wide ay = wide_madd(y, edges.az, wide_difference(a.y, high.y, low.y));
+    const Wide bx = wide_madd(x, edges.bz, wide_difference(b.x, high.x, low.x));
+    const Wide by = wide_madd(y, edges.bz, wide_difference(b.y, high.y, low.y));
+    const Wide cx = wide_madd(x, edges.cz, wide_difference(c.x, high.x, low.x));
+    const Wide cy = wide_madd(y, edges.cz, wide_difference(c.y, high.y, low.y));
+    edges.a = wide_area(bx, by, cx, cy);
+    edges.b = wide_area(cx, cy, ax, ay);
+    edges.c = wide_area(ax, ay, bx, by);
+    return edges;
+}
+
+/* Whether the triangle holds the ray, and the sum of the three: 0 for a triangle that is seen from its edge. */
+FORCE_INLINE static vbool edges_hold(const Edges *edges, Wide *sum) {
+    const vbool below = wide_below_0(edges->a) | wide_below_0(edges->b) | wide_below_0(edges->c);
+    const vbool above = wide_above_0(edges->a) | wide_above_0(edges->b) | wide_above_0(edges->c);
+    *sum = wide_add(wide_add(edges->a, edges->b), edges->c);
+    return vbool_not(below & above) & (wide_below_0(*sum) | wide_above_0(*sum));
+}
+
+/* To the triangle's plane. */
+FORCE_INLINE static Wide edges_distance(const Edges *edges, Wide sum) {
+    const Wide moment = wide_madd(edges->a, edges->az, wide_madd(edges->b, edges->bz, wide_multiply(edges->c, edges->cz)));
+    return wide_divide(wide_divide(moment, sum), edges->slope);
+}
+
+/* ---- what is left ---- */
+
+static vbool same_place(Vec3 a, Vec3 b) { return (a.x == b.x) & (a.y == b.y) & (a.z == b.z); }
+
+static vbool is_vertex_of(const Triangle *triangle, Vec3 vertex) {
+    return same_place(triangle->a, vertex) | same_place(triangle->b, vertex) | same_place(triangle->c, vertex);
+}
+
+/* On which sides of a plane vertices lie. */
+typedef struct Sides {
+    vbool above, below;
+} Sides;
+
+static void add_side(const Triangle *plane, WideVec normal, Vec3 vertex, Sides *sides) {
+    const WideVec way = wide_from(plane->a, vertex);
+    const vreal height = wide_near(wide_dot(way, normal));
+    const vreal rounding = WIDE_ROUNDOFF * one_norm(way) * one_norm(normal);
+    const vbool other = vbool_not(is_vertex_of(plane, vertex));
+    sides->above = sides->above | (other & (height > rounding));
+    sides->below = sides->below | (other & (height < -rounding));
+}
+
+static Sides sides_of(const Triangle *plane, WideVec normal, const Triangle *triangle) {
+    Sides sides;
+    sides.above = sides.below = vbool_none;
+    add_side(plane, normal, triangle->a, &sides);
+    add_side(plane, normal, triangle->b, &sides);
+    add_side(plane, normal, triangle->c, &sides);
+    return sides;
+}
+
+/* Replaces the edge function of the edge from p to q where the triangle that is left has that edge too. The origin lies in
+ * that triangle, so the sign is that of d.n there, over direction.z; only signs are asked for. */
+static void know_edge(Vec3 p, Vec3 q, const Triangle *left, Wide leans, vreal slope, vbool asked, Wide *edge) {
+    const vbool pa = same_place(p, left->a), pb = same_place(p, left->b), pc = same_place(p, left->c);
+    const vbool qa = same_place(q, left->a), qb = same_place(q, left->b), qc = same_place(q, left->c);
+    const vbool along = asked & ((pa & qb) | (pb & qc) | (pc & qa));
+    const vbool against = asked & ((pb & qa) | (pc & qb) | (pa & qc));
+    *edge = wide_choose(along | against, wide_multiply(leans, wide(choose(along, slope, -slope))), *edge);
+}
+
+/* `left`: the triangle that is left in the lanes of `leaves`. */
+FORCE_INLINE static vbool triangle_intersect(const Ray *ray, const Triangle *triangle, const Triangle *left, vbool leaves,
+                                             vrefined *t, vbool *enters) {
+    const Shear shear = shear_of(ray);
+    Edges edges = edges_of(ray, &shear, triangle);
+    Wide sum;
+    vbool held = edges_hold(&edges, &sum);
+    const Wide distance = edges_distance(&edges, sum);
+    vbool ahead = wide_above_0(distance);
+    *t = wide_refined(distance);
+    if (any_lane(leaves)) {
+        WideVec d;
+        d.x = wide(ray->direction.x);
+        d.y = wide(ray->direction.y);
+        d.z = wide(ray->direction.z);
+        const WideVec left_normal = wide_cross(wide_from(left->a, left->b), wide_from(left->a, left->c));
+        const WideVec normal = wide_cross(wide_from(triangle->a, triangle->b), wide_from(triangle->a, triangle->c));
+        const Wide leans = wide_dot(d, left_normal), meets = wide_dot(d, normal);
+        const vreal far = wide_near(distance), error = ray->origin.error;
+        const vbool at_once = leaves & (fabs(far * wide_near(meets)) <= error * one_norm(normal));
+        const vbool beside = leaves & (fabs(far * wide_near(leans)) <= error * one_norm(left_normal));
+        const vbool asked = at_once | beside;
+        if (any_lane(asked)) {
+            know_edge(triangle->b, triangle->c, left, leans, shear.direction.z, asked, &edges.a);
+            know_edge(triangle->c, triangle->a, left, leans, shear.direction.z, asked, &edges.b);
+            know_edge(triangle->a, triangle->b, left, leans, shear.direction.z, asked, &edges.c);
+            held = edges_hold(&edges, &sum);
+            const Sides there = sides_of(left, left_normal, triangle), here = sides_of(triangle, normal, left);
+            const vbool ruled = at_once | (beside & ahead);
+            const vbool reached = (wide_above_0(leans) & there.above) | (wide_below_0(leans) & there.below);
+            const vbool from_above = here.above & vbool_not(here.below) & wide_below_0(meets);
+            const vbool from_below = here.below & vbool_not(here.above) & wide_above_0(meets);
+            const vbool across = here.above & here.below & ahead;
+            ahead = (ruled & reached & (from_above | from_below | across)) | (vbool_not(ruled) & ahead);
+            *t = choose_refined(ruled & vbool_of_refined(*t < splat_refined(0)), splat_refined(0), *t);
+        }
+    }
+    *enters = (wide_below_0(sum) & (shear.direction.z > splat(0))) | (wide_above_0(sum) & (shear.direction.z < splat(0)));
+    return held & ahead;
+}
+
+/* From the triangle's vertices, not along the ray: off the plane only by rounding, whatever the ray's length. */
+FORCE_INLINE static void triangle_surface(const Ray *ray, const Triangle *triangle, Point *point, Vec3 *normal) {
+    const Shear shear = shear_of(ray);
+    const Edges edges = edges_of(ray, &shear, triangle);
+    Wide sum;
+    edges_hold(&edges, &sum);
+    const vbool flat = vbool_not(wide_below_0(sum) | wide_above_0(sum)); /* not met */
+    const Wide whole = wide_choose(flat, wide(splat(1)), sum);
+    /* An edge that the rules above moved would have a share below 0. Wide, since a share of more than 1 in all lies outside. */
+    const Wide b = wide_divide(edges.b, whole), c = wide_divide(edges.c, whole), nothing = wide(splat(0));
+    const Wide some_b = wide_choose(wide_below_0(b), nothing, b), some_c = wide_choose(wide_below_0(c), nothing, c);
+    const Wide both = wide_add(some_b, some_c), one = wide(splat(1));
+    const Wide over = wide_choose(wide_above_0(wide_add_real(both, splat(-1))), both, one);
+    const Wide of_b = wide_divide(some_b, over), of_c = wide_divide(some_c, over);
+    const WideVec to_b = wide_from(triangle->a, triangle->b), to_c = wide_from(triangle->a, triangle->c);
+    wide_split(wide_add_real(wide_madd(of_b, to_b.x, wide_multiply(of_c, to_c.x)), triangle->a.x), &point->high.x, &point->low.x);
+    wide_split(wide_add_real(wide_madd(of_b, to_b.y, wide_multiply(of_c, to_c.y)), triangle->a.y), &point->high.y, &point->low.y);
+    wide_split(wide_add_real(wide_madd(of_b, to_b.z, wide_multiply(of_c, to_c.z)), triangle->a.z), &point->high.z, &point->low.z);
+    const vreal size = fabs(point->high.x) + fabs(point->high.y) + fabs(point->high.z);
+    point->error = fma(one_norm(to_b) + one_norm(to_c), splat(WIDE_POINT_ERROR), size * R(0x1p-45));
+    *normal = wide_unit(wide_cross(to_b, to_c));
+}
+#endif

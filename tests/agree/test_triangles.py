@@ -1,0 +1,164 @@
+"""Triangles, quads and boxes: what the kernels make of them, and what is refused.
+
+Every form of the kernel gives the same picture, bit for bit; pictures agree with the reference, which intersects triangles
+by another algorithm; values that optics knows come out; and what triangles cannot do yet is refused, with its place and a
+remedy.
+
+Usage: test_triangles.py BALLPARK
+"""
+
+import json
+import math
+import pathlib
+import re
+import struct
+import subprocess
+import sys
+import tempfile
+import unittest
+
+BALLPARK = pathlib.Path(sys.argv.pop(1)).resolve()
+MATERIALS = {
+    "white": {"type": "lambertian", "albedo": [0.73, 0.73, 0.73]}, "mint": {"type": "lambertian", "albedo": [0.2, 0.8, 0.5]},
+    "glass": {"type": "dielectric", "refraction_index": 1.5}, "air": {"type": "dielectric", "refraction_index": 1},
+    "mirror": {"type": "metal", "albedo": [0.9, 0.9, 0.9]}, "lamp": {"type": "diffuse_light", "emit": [4, 4, 4]},
+    "normals": {"type": "normals"}, "skin": {"type": "interface"},
+    "checked": {"type": "lambertian", "albedo": {"texture": "checks"}}, "mapped": {"type": "lambertian", "albedo": {"texture": "map"}}}
+FLOOR = {"corner": [-10, 0, 10], "u": [20, 0, 0], "v": [0, 0, -20], "material": "white"}
+
+
+def scene(**members):
+    textures = {"checks": {"type": "checker", "size": 0.3, "colors": [[0.9, 0.9, 0.9], [0.1, 0.1, 0.1]]},
+                "map": {"type": "checker", "mapping": "surface", "repeat": [4, 2], "colors": [[0.9, 0.9, 0.9], [0.1, 0.1, 0.1]]}}
+    camera = {"image_width": 32, "aspect_ratio": 1.6, "samples_per_pixel": 16, "max_depth": 12, "vfov": 40, "lookfrom": [3, 2, 6], "lookat": [0, 0.5, 0]}
+    camera.update(members.pop("camera", {}))
+    return {"format": 1, "camera": camera, "textures": textures, "materials": MATERIALS, **members}
+
+
+MIXED = scene(
+    spheres=[{"center": [-1.2, 0.5, 0.3], "radius": 0.5, "material": "mint"}, {"center": [0.3, 0.4, 1.6], "radius": 0.4, "material": "glass"},
+             {"center": [0, 3.5, 1], "radius": 0.8, "material": "lamp"}],
+    triangles=[{"vertices": [[-0.4, 0, -1.2], [1.6, 0, -1.4], [0.6, 1.8, -1.3]], "material": "mirror"}],
+    quads=[{**FLOOR, "material": "checked"}],
+    boxes=[{"corners": [[0.9, 0.01, 0], [1.7, 0.81, 0.8]], "rotate": [0, 20, 0], "material": "glass"},
+           {"corners": [[-0.6, 0, -0.4], [0.1, 1.2, 0.3]], "rotate": [0, 30, 0], "material": "mint"}])
+ALONE = scene(quads=[FLOOR, {"corner": [-1.5, 0.2, -1], "u": [3, 0, 0], "v": [0, 2, 0.5], "material": "lamp"}],
+              boxes=[{"corners": [[0.2, 0.01, 0], [1.2, 0.8, 0.8]], "rotate": [10, 20, 30], "translate": [0, 0.6, 0], "material": "glass"},
+                     {"corners": [[-1, 0, 0], [-0.2, 0.8, 0.8]], "material": "mirror"}])
+
+
+class Triangles(unittest.TestCase):
+    def setUp(self):
+        self.folder = tempfile.TemporaryDirectory()
+        self.path = pathlib.Path(self.folder.name)
+
+    def tearDown(self):
+        self.folder.cleanup()
+
+    def run_ballpark(self, document, *arguments):
+        (self.path / "s.json").write_text(json.dumps(document))
+        return subprocess.run([BALLPARK, arguments[0], "s.json", *arguments[1:]], cwd=self.path, capture_output=True, text=True, check=False)
+
+    def render(self, document, *options):
+        """The bytes of the picture, its rows from below, and its pixels."""
+        made = self.run_ballpark(document, "render", "-o", "out.pfm", "--force", "--quiet", *options)
+        self.assertEqual(made.returncode, 0, made.stderr)
+        data = (self.path / "out.pfm").read_bytes()
+        _, size, _, rest = data.split(b"\n", 3)
+        width, height = map(int, size.split())
+        return data, width, height, struct.unpack(f"<{3 * width * height}f", rest)
+
+    def test_forms(self):
+        for document in (MIXED, ALONE):
+            first, *_ = self.render(document, "--kernel", "packet")
+            for options in (("--kernel", "sample"), ("--kernel", "pool"), ("--kernel", "packet", "--effects", "all")):
+                self.assertEqual(self.render(document, *options)[0], first, f"{options}: other bits")
+
+    def test_reference(self):
+        """At once: brightness and colour of every block, and path lengths."""
+        for document in (MIXED, ALONE):
+            made = self.run_ballpark(document, "check", "--spp", "2048")
+            self.assertEqual(made.returncode, 0, made.stdout + made.stderr)
+
+    def centre(self, document):
+        _, width, height, pixels = self.render(document, "--spp", "1")
+        place = 3 * (height // 2 * width + width // 2)
+        return pixels[place:place + 3]
+
+    def test_index_one(self):
+        """Glass of the air's index is not there."""
+        looking = {"camera": {"lookfrom": [0.3, 0.4, 5], "lookat": [0, 0.5, 0], "pixel_sampling": "center"}}
+        box = {"corners": [[-1, 0.05, -1], [1, 1.5, 1]], "rotate": [0, 25, 0], "material": "air"}
+        with_box = self.render(scene(**looking, quads=[{**FLOOR, "material": "normals"}], boxes=[box]), "--spp", "1")
+        without = self.render(scene(**looking, quads=[{**FLOOR, "material": "normals"}]), "--spp", "1")
+        self.assertLess(max(abs(a - b) for a, b in zip(with_box[3], without[3])), 1e-6)
+
+    def test_prism(self):
+        """A ray straight through a prism of 60 degrees is turned by 37.1808 degrees (index 1.5, symmetric passage)."""
+        half, top = 1.0, math.sqrt(3)
+        front, back = [[-half, 0, 1], [half, 0, 1], [0, top, 1]], [[-half, 0, -1], [half, 0, -1], [0, top, -1]]
+        faces = [(front[0], front[1], front[2]), (back[0], back[2], back[1])]
+        for i in range(3):
+            a, b, c, d = front[i], front[(i + 1) % 3], back[(i + 1) % 3], back[i]
+            faces += [(a, d, c), (a, c, b)]
+        inward = math.asin(1.5 * math.sin(math.radians(30)))  # the angle to the normal outside
+        tilt = inward - math.radians(30)                      # of the ray over the horizontal: it rises towards the left face
+        turned = 2 * inward - math.radians(60)
+        self.assertAlmostEqual(math.degrees(turned), 37.1808, places=4)
+        middle = [-half / 2, top / 2, 0]
+        camera = [middle[0] - 3 * math.cos(tilt), middle[1] - 3 * math.sin(tilt), 0]
+        glass = dict(MATERIALS["glass"], fresnel="none")
+        # What is met beyond is the sky, whose gradient is linear in the height of the direction: 0 below, 1 above.
+        document = scene(camera={"lookfrom": camera, "lookat": middle, "vfov": 0.001, "image_width": 3, "aspect_ratio": 1,
+                                 "pixel_sampling": "center"},
+                         background={"bottom": [0, 0, 0], "top": [1, 1, 1]},
+                         triangles=[{"vertices": list(face), "material": "glass"} for face in faces])
+        document["materials"] = {**MATERIALS, "glass": glass}
+        height = 2 * self.centre(document)[1] - 1
+        self.assertAlmostEqual(math.degrees(math.asin(height)), math.degrees(tilt - turned), places=3)
+
+    def test_three_mirrors(self):
+        """A corner of three mirrors sends every ray back along its direction."""
+        sides = [{"corner": [0, 0, 0], "u": u, "v": v, "material": "mirror"}
+                 for u, v in (([4, 0, 0], [0, 4, 0]), ([0, 4, 0], [0, 0, 4]), ([0, 0, 4], [4, 0, 0]))]
+        _, _, _, pixels = self.render(scene(camera={"lookfrom": [3, 2.5, 2], "lookat": [0.4, 0.4, 0.4], "vfov": 5, "pixel_sampling": "center"}, quads=sides,
+                                            background={"bottom": [0, 0, 0], "top": [1, 1, 1]}), "--spp", "1")
+        _, _, _, straight = self.render(scene(camera={"lookfrom": [0.4, 0.4, 0.4], "lookat": [3, 2.5, 2], "vfov": 5, "pixel_sampling": "center"},
+                                              background={"bottom": [0, 0, 0], "top": [1, 1, 1]}), "--spp", "1")
+        middle = 3 * (10 * 32 + 16)
+        self.assertAlmostEqual(pixels[middle], 0.9 ** 3 * straight[middle], places=2)
+
+    def test_written_again(self):
+        first = self.run_ballpark(MIXED, "scene").stdout
+        again = self.run_ballpark(json.loads(first), "scene").stdout
+        self.assertEqual(first, again)
+        self.assertEqual(len(json.loads(first)["triangles"]), 1 + 2 + 24)
+
+    def refused(self, says, **members):
+        made = self.run_ballpark(scene(**members), "render", "-o", "out.png", "--force")
+        self.assertEqual(made.returncode, 2, made.stderr)
+        said = re.sub(r"\s+", " ", made.stderr)
+        for text in says:
+            self.assertIn(text, said)
+
+    def test_refusals(self):
+        triangle = [[0, 0, 0], [1, 0, 0], [0, 1, 0]]
+        quad = {"corner": [0, 0, 0], "u": [1, 0, 0], "v": [0, 1, 0]}
+        box = {"corners": [[0, 0, 0], [1, 1, 1]], "material": "glass"}
+        self.refused(["triangles[0].vertices", "without an area"], triangles=[{"vertices": [[0, 0, 0], [1, 1, 1], [2, 2, 2]], "material": "white"}])
+        self.refused(["triangles[0].vertices", "three points"], triangles=[{"vertices": triangle[:2], "material": "white"}])
+        self.refused(["triangles[0].material", "gold"], triangles=[{"vertices": triangle, "material": "gold"}])
+        self.refused(["triangles[0]", "unknown member"], triangles=[{"vertices": triangle, "material": "white", "interior": "fog"}])
+        self.refused(["-1e9 to 1e9", "larger unit"], triangles=[{"vertices": [[0, 0, 0], [2e9, 0, 0], [0, 1, 0]], "material": "white"}])
+        self.refused(["quads[0].material", "open edge", "use a box"], quads=[{**quad, "material": "glass"}])
+        self.refused(["quads[0].material", "interface", "use a sphere"], quads=[{**quad, "material": "skin"}])
+        self.refused(["quads[0].material", "solid"], quads=[{**quad, "material": "mapped"}])
+        self.refused(["boxes[0].material", "media"], boxes=[box], media={"fog": {"scattering": [1, 1, 1]}})
+        self.refused(["boxes[1]", "boxes[0] and boxes[1] in one plane", "millionth"],
+                     boxes=[box, {"corners": [[1, 0, 0], [2, 1, 1]], "material": "glass"}])
+        self.refused(["quads[0] and boxes[0] in one plane"], quads=[FLOOR], boxes=[box])
+        self.refused(["lookfrom of the camera on quads[0]"], quads=[FLOOR], camera={"lookfrom": [1, 0, 1], "lookat": [0, 1, 0]})
+
+
+if __name__ == "__main__":
+    unittest.main()
