@@ -23,7 +23,9 @@ static const BpMedium *medium_around(const BpScene *scene, const Ray *ray) {
     for (size_t i = 0; i < scene->sphere_count; ++i) {
         const BpSphere *sphere = &scene->spheres[i];
         const BpMaterialKind kind = scene->materials[sphere->material].kind;
-        if (!bp_material_is(kind, BP_HAS_INSIDE)) continue;
+        if (kind != BP_MATERIAL_DIELECTRIC && kind != BP_MATERIAL_ROUGH_DIELECTRIC &&
+            kind != BP_MATERIAL_INTERFACE)
+            continue;
         if (fabs(sphere->radius) >= smallest || !begins_inside(scene, ray, sphere)) continue;
         smallest = fabs(sphere->radius);
         number = i < scene->interior_count ? scene->interiors[i] : 0;

@@ -3,7 +3,7 @@
  * Out:   Wide: a double where intersections are refined in double, else the unevaluated sum of two reals, which is right to
  *        about 2^-45 of itself; WIDE_ROUNDOFF, in which heights over a plane are taken for 0; WIDE_POINT_ERROR, of a
  *        triangle's edges, which bounds how far a point is off its plane.
- * Knows: lanes.cl, vector.cl.   Does not know: triangles. Read once for each number of lanes.
+ * Knows: lanes.cl, vector.cl.   Does not know: which shapes are decided by it. Read once for each number of lanes.
  *
  * wide_area, x1 y2 - y1 x2, has the sign of the exact value and is exactly negated when its two points change places: the
  * products' errors are kept (M. Cornea, J. Harrison and P. Tang, "Scientific Computing on Itanium-based Systems", 2002;

@@ -208,15 +208,18 @@ static void random_point(const Mesh *mesh, int kind, uint64_t *random, double po
 }
 
 /* From near the middle, so that nothing lies in between in meshes that are seen whole from there. */
-static void aim(const Mesh *mesh, const double centre[3], int kind, uint64_t *random, double *ray) {
+/* `fine`: the kernel's reals are doubles. The low part of an origin is at most half a unit of its high part.
+ */
+static void aim(const Mesh *mesh, const double centre[3], int kind, bool fine, uint64_t *random,
+                double *ray) {
     double point[3], from[3];
     random_point(mesh, kind, random, point);
     lab_direction(random, from);
     memset(ray, 0, RAY_REALS * sizeof *ray);
     for (int a = 0; a < 3; ++a) {
         const double place = centre[a] + 0.3 * mesh->size * lab_unit(random) * from[a];
-        ray[RAY_HIGH + a] = lab_float(place);
-        ray[RAY_LOW + a] = lab_float(place - ray[RAY_HIGH + a]);
+        ray[RAY_HIGH + a] = fine ? place : lab_float(place);
+        ray[RAY_LOW + a] = fine ? 0x1p-54 * lab_unit(random) * place : lab_float(place - ray[RAY_HIGH + a]);
         ray[RAY_DIRECTION + a] = point[a] - (ray[RAY_HIGH + a] + ray[RAY_LOW + a]);
     }
     lab_float_unit(ray + RAY_DIRECTION);
@@ -248,7 +251,7 @@ static void run(const Lab *lab, const Mesh *mesh, size_t wanted, uint64_t *rando
         for (size_t done = 0; done < wanted; done += BATCH) {
             for (size_t i = 0; i < BATCH; ++i) {
                 double *d = directions + 3 * i;
-                aim(mesh, centre, kind, random, rays + i * RAY_REALS);
+                aim(mesh, centre, kind, lab->real_double, random, rays + i * RAY_REALS);
                 lab_direction(random, d);
                 for (int a = 0; a < 3; ++a) d[a] = lab_float(d[a]);
             }
