@@ -59,9 +59,8 @@ static void check_same(const BpScene *scene, const BpRenderOptions *varied, cons
 }
 
 /* The form of the kernel, the chunks, tree and list: cheap to vary, since little or nothing is compiled anew.
- */
-static void check_variations(const char *name, uint32_t width, BpSampler sampler) {
-    BpScene *scene = load_scene(name, width);
+ * Destroys the scene. */
+static void check_variations(BpScene *scene, BpSampler sampler) {
     BpRenderOptions options;
     bp_render_defaults(scene, &options);
     options.samples_per_pixel = 6;
@@ -119,12 +118,9 @@ static void check_variations(const char *name, uint32_t width, BpSampler sampler
     bp_scene_destroy(&scene);
 }
 
-/* Each of these is a kernel of its own, so they take turns between the forms, and a few stand for all. */
-static void work_groups_and_widths_are_the_same(void **state) {
-    const bool every = *state != NULL;
-    /* Of its trees, the sixteen-wide one has one batch of leaves to be tried one by one, the eight-wide one
-     * has three, and the narrower ones are walked. */
-    BpScene *scene = load_scene("scenes/cover.json", 24);
+/* Each of these is a kernel of its own, so they take turns between the forms, and a few stand for all.
+ * Destroys the scene. */
+static void check_widths(BpScene *scene, bool every) {
     BpRenderOptions options;
     bp_render_defaults(scene, &options);
     options.samples_per_pixel = 6;
@@ -163,20 +159,75 @@ static void work_groups_and_widths_are_the_same(void **state) {
     bp_scene_destroy(&scene);
 }
 
+static void work_groups_and_widths_are_the_same(void **state) {
+    /* Of its trees, the sixteen-wide one has one batch of leaves to be tried one by one, the eight-wide one
+     * has three, and the narrower ones are walked. */
+    check_widths(load_scene("scenes/cover.json", 24), *state != NULL);
+}
+
+/* Boxes in rows, of glass and matte, on a floor, before a mirror. Every third box stands in the place of the
+ * one before, for ties, and is matte as that is. `mixed`: balls between them. */
+static BpScene *triangles_scene(bool mixed) {
+    enum { ROWS = 4, COLUMNS = 3, BYTES = 8192 };
+    static char text[BYTES];
+    BpScene *scene = NULL;
+    size_t n = (size_t)snprintf(text, BYTES,
+                                "{\"format\": 1, \"camera\": {\"image_width\": 24, \"aspect_ratio\": 1.5, "
+                                "\"max_depth\": 20, \"vfov\": 50, "
+                                "\"lookfrom\": [3, 3, 7], \"lookat\": [0, 0.3, 0]}, \"materials\": {"
+                                "\"0\": {\"type\": \"dielectric\", \"refraction_index\": 1.5}, "
+                                "\"1\": {\"type\": \"lambertian\", \"albedo\": [0.8, 0.4, 0.2]}, "
+                                "\"2\": {\"type\": \"lambertian\", \"albedo\": [0.2, 0.4, 0.8]}, "
+                                "\"mirror\": {\"type\": \"metal\", \"albedo\": [0.9, 0.9, 0.9]}}, "
+                                "\"triangles\": [{\"vertices\": [[-3, 0, -3.5], [3, 0, -3.5], [0, 4, -3]], "
+                                "\"material\": \"mirror\"}], "
+                                "\"quads\": [{\"corner\": [-20, -0.01, 20], \"u\": [40, 0, 0], \"v\": [0, 0, "
+                                "-40], \"material\": \"1\"}], "
+                                "\"boxes\": [");
+    for (int i = 0; i < ROWS * COLUMNS; ++i) {
+        const int column = i % COLUMNS == 2 ? 1 : i % COLUMNS, row = i / COLUMNS;
+        n += (size_t)snprintf(text + n, BYTES - n,
+                              "%s{\"corners\": [[0, 0, 0], [0.8, 0.7, 0.6]], \"rotate\": [0, %d, 0], "
+                              "\"translate\": [%d, 0, %d], \"material\": \"%d\"}",
+                              i == 0 ? "" : ", ", 20 * row, 2 * column - 2, 2 * row - 5, i % COLUMNS);
+    }
+    n += (size_t)snprintf(text + n, BYTES - n, "]");
+    for (int i = 0; mixed && i < ROWS * COLUMNS; ++i)
+        n += (size_t)snprintf(
+            text + n, BYTES - n, "%s{\"center\": [%g, 0.9, %d], \"radius\": 0.4, \"material\": \"%d\"}",
+            i == 0 ? ", \"spheres\": [" : ", ", 1.3 * (i % COLUMNS) - 2, 2 * (i / COLUMNS) - 4, i % COLUMNS);
+    n += (size_t)snprintf(text + n, BYTES - n, "%s}", mixed ? "]" : "");
+    assert_true(n < BYTES);
+    if (bp_scene_parse(text, n, "triangles.json", &scene, &err) != BP_OK) fail_msg("%s", err.message);
+    return scene;
+}
+
+static void triangles_are_the_same(void **state) {
+    (void)state;
+    check_variations(triangles_scene(true), BP_SAMPLER_INDEPENDENT);
+    check_variations(triangles_scene(false), BP_SAMPLER_SOBOL);
+}
+
+static void widths_of_triangles_are_the_same(void **state) {
+    const bool every = *state != NULL;
+    check_widths(triangles_scene(true), every);
+    if (every) check_widths(triangles_scene(false), every);
+}
+
 static void cover_is_the_same(void **state) {
     (void)state;
-    check_variations("scenes/cover.json", 24, BP_SAMPLER_INDEPENDENT);
+    check_variations(load_scene("scenes/cover.json", 24), BP_SAMPLER_INDEPENDENT);
 }
 
 static void hollow_glass_is_the_same(void **state) {
     (void)state;
-    check_variations("scenes/v4-18-glass-hollow.json", 24, BP_SAMPLER_SOBOL);
+    check_variations(load_scene("scenes/v4-18-glass-hollow.json", 24), BP_SAMPLER_SOBOL);
 }
 
 /* Its tree is walked, sixteen wide. */
 static void swarm_is_the_same(void **state) {
     (void)state;
-    check_variations("tests/agree/scenes/swarm.json", 16, BP_SAMPLER_INDEPENDENT);
+    check_variations(load_scene("tests/agree/scenes/swarm.json", 16), BP_SAMPLER_INDEPENDENT);
 }
 
 /* Samples 0..9 equal samples 0..3 plus 4..9: what merging runs rests on. */
@@ -292,12 +343,15 @@ static void depth_cap_is_black_and_counted(void **state) {
 
 int main(int argc, char **argv) {
     bool every = true;
-    const struct CMUnitTest all[] = {cmocka_unit_test_prestate(work_groups_and_widths_are_the_same, &every)};
+    const struct CMUnitTest all[] = {cmocka_unit_test_prestate(work_groups_and_widths_are_the_same, &every),
+                                     cmocka_unit_test_prestate(widths_of_triangles_are_the_same, &every)};
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(cover_is_the_same),
         cmocka_unit_test(hollow_glass_is_the_same),
         cmocka_unit_test(swarm_is_the_same),
+        cmocka_unit_test(triangles_are_the_same),
         cmocka_unit_test(work_groups_and_widths_are_the_same),
+        cmocka_unit_test(widths_of_triangles_are_the_same),
         cmocka_unit_test(several_devices_are_the_same),
         cmocka_unit_test(halves_add_up),
         cmocka_unit_test(extension_adds_up),
