@@ -4,7 +4,7 @@ Every form of the kernel gives the same picture, bit for bit; pictures agree wit
 by another algorithm; values that optics knows come out; and what triangles cannot do yet is refused, with its place and a
 remedy.
 
-Usage: test_triangles.py BALLPARK
+Run as: python3 test_triangles.py PROGRAM SOURCE_DIR
 """
 
 import json
@@ -13,11 +13,11 @@ import pathlib
 import re
 import struct
 import subprocess
-import sys
 import tempfile
 import unittest
 
-BALLPARK = pathlib.Path(sys.argv.pop(1)).resolve()
+import cli
+
 MATERIALS = {
     "white": {"type": "lambertian", "albedo": [0.73, 0.73, 0.73]}, "mint": {"type": "lambertian", "albedo": [0.2, 0.8, 0.5]},
     "glass": {"type": "dielectric", "refraction_index": 1.5}, "air": {"type": "dielectric", "refraction_index": 1},
@@ -57,7 +57,7 @@ class Triangles(unittest.TestCase):
 
     def run_ballpark(self, document, *arguments):
         (self.path / "s.json").write_text(json.dumps(document))
-        return subprocess.run([BALLPARK, arguments[0], "s.json", *arguments[1:]], cwd=self.path, capture_output=True, text=True, check=False)
+        return subprocess.run([cli.PROGRAM, arguments[0], "s.json", *arguments[1:]], cwd=self.path, capture_output=True, text=True, check=False)
 
     def render(self, document, *options):
         """The bytes of the picture, its rows from below, and its pixels."""
@@ -128,6 +128,55 @@ class Triangles(unittest.TestCase):
         middle = 3 * (10 * 32 + 16)
         self.assertAlmostEqual(pixels[middle], 0.9 ** 3 * straight[middle], places=2)
 
+    def seen(self, **members):
+        """What a ray along -z meets, that is exactly at x = y = 0: the colour of a lamp."""
+        lamps = {name: {"type": "diffuse_light", "emit": emit} for name, emit in (("red", [1, 0, 0]), ("green", [0, 1, 0]))}
+        document = scene(camera={"lookfrom": [0, 0, 5], "lookat": [0, 0, 0], "vfov": 90, "image_width": 1, "aspect_ratio": 1,
+                                 "pixel_sampling": "center"}, background=[0, 0, 1], **members)
+        document["materials"] = lamps
+        return self.centre(document)
+
+    def test_exactly_on_an_edge(self):
+        """What two or more triangles share belongs to them all: the diagonal of a quad, and the tip of a pyramid."""
+        quad = {"corner": [-1, -1, 0], "u": [2, 0, 0], "v": [0, 2, 0], "material": "red"}
+        self.assertEqual(self.seen(quads=[quad]), (1, 0, 0))
+        base = [[1, 1, -1], [-1, 1, -1], [-1, -1, -1], [1, -1, -1]]
+        sides = [{"vertices": [base[i], base[(i + 1) % 4], [0, 0, 1]], "material": "red"} for i in range(4)]
+        self.assertEqual(self.seen(triangles=sides), (1, 0, 0))
+        self.assertEqual(self.seen(triangles=[{"vertices": [[0, 0, 0], [1, 0.5, 0], [0.5, 1, 0]], "material": "green"}]), (0, 1, 0))
+
+    def test_first_of_two(self):
+        """Of two at one distance the earlier in the scene is met."""
+        red, green = ({"vertices": [[-1, -1, 0], [2, -1, 0], [-1, 2, 0]], "material": name} for name in ("red", "green"))
+        self.assertEqual(self.seen(triangles=[red, green]), (1, 0, 0))
+        self.assertEqual(self.seen(triangles=[green, red]), (0, 1, 0))
+
+    def places(self, **members):
+        """The vertices of each triangle, as the program writes the scene."""
+        return [triangle["vertices"] for triangle in json.loads(self.run_ballpark(scene(**members), "scene").stdout)["triangles"]]
+
+    def test_places_of_quads(self):
+        self.assertEqual(self.places(quads=[{"corner": [1, 2, 3], "u": [2, 0, 1], "v": [0, 4, 1], "material": "white"}]),
+                         [[[1, 2, 3], [3, 2, 4], [3, 6, 5]], [[1, 2, 3], [3, 6, 5], [1, 6, 4]]])
+
+    def test_places_of_boxes(self):
+        """Turned about x, then y, then z, counter-clockwise seen from the axis's end, then moved."""
+        box = {"corners": [[2, 2, 3], [1, 4, 6]], "rotate": [90, 90, 0], "translate": [10, 20, 30], "material": "white"}
+        found = self.places(boxes=[box])
+        # About x, (x, y, z) becomes (x, -z, y); about y, that becomes (y, -z, -x).
+        expected = {(y + 10, 20 - z, 30 - x) for x in (1, 2) for y in (2, 4) for z in (3, 6)}
+        self.assertEqual({tuple(vertex) for triangle in found for vertex in triangle}, expected)
+        middle = [13, 15.5, 28.5]
+        area = volume = 0
+        for a, b, c in found:
+            u, v, way = ([q - p for p, q in zip(a, other)] for other in (b, c, middle))
+            normal = [u[1] * v[2] - u[2] * v[1], u[2] * v[0] - u[0] * v[2], u[0] * v[1] - u[1] * v[0]]
+            self.assertLess(sum(p * q for p, q in zip(normal, way)), 0, "the normal points inward")
+            area += math.hypot(*normal) / 2
+            volume -= sum(p * q for p, q in zip(normal, way)) / 6
+        self.assertAlmostEqual(area, 2 * (1 * 2 + 2 * 3 + 3 * 1))
+        self.assertAlmostEqual(volume, 6)
+
     def test_written_again(self):
         first = self.run_ballpark(MIXED, "scene").stdout
         again = self.run_ballpark(json.loads(first), "scene").stdout
@@ -161,4 +210,4 @@ class Triangles(unittest.TestCase):
 
 
 if __name__ == "__main__":
-    unittest.main()
+    cli.main()
