@@ -2,8 +2,8 @@
 
 A mutant is a name, where the bug comes from, patches (file, find, replace; `find` must stand there exactly once), and
 trials, tried in order until one kills it. check(...) is a run of `ballpark check`, killed by a verdict of
-disagreement; test(...) a case of a test program that must fail; the others are cases of tests in Python. Every trial
-passes on the product as it is (the control).
+disagreement; test(...) a case of a test program that must fail; edges_and_turns(...) a test program without cases; the
+others are cases of tests in Python. Every trial passes on the product as it is (the control).
 
 Sources: "first", "third", "fourth": editions of Ray Tracing in One Weekend; "Rust": the edition in Rust; "classic":
 bugs that many path tracers had."""
@@ -13,6 +13,7 @@ Mutant = namedtuple("Mutant", "name origin patches trials")
 Check = namedtuple("Check", "scene samples options layer")
 Test = namedtuple("Test", "program case layer")
 Script = namedtuple("Script", "path arguments layer")
+Program = namedtuple("Program", "program arguments layer")
 
 
 def check(scene, samples=16, *options, layer="5 picture"):
@@ -83,6 +84,16 @@ def caustic_energy(*names):
 def caustics(*names):
     """Cases of tests/caustics/test_caustics.py."""
     return Script("tests/caustics/test_caustics.py", names, "9 caustics")
+
+
+def triangles(*names):
+    """Tests of tests/agree/test_triangles.py."""
+    return Script("tests/agree/test_triangles.py", tuple(f"Triangles.test_{name}" for name in names), "1 exact")
+
+
+def edges_and_turns(variant):
+    """Rays at triangles' edges, and what they meet when they leave (tests/hard/test_triangles.c)."""
+    return Program("hard_triangles", (variant, "4000"), "1 exact")
 
 
 def patch(path, find, replace):
@@ -1478,4 +1489,80 @@ MUTANTS = [
     Mutant("glint-cone-of-a-pixel-too-narrow", "caustics: pixels at the rim of a ball",
            [patch("kernels/integrator/caustics.cl", "lobe.fuzz = at_most(splat(camera->right[3]) * inverse, splat(1));", "lobe.fuzz = splat(0);")],
            [caustics('glint_aside')]),
+    # Triangles. Bugs of edges and of leaving are for the rays that are aimed there.
+    Mutant("a triangle without its edges", "triangles: < for <=",
+           [patch(KERNEL, "const vbool below = wide_below_0(edges->a) | wide_below_0(edges->b) | wide_below_0(edges->c);",
+                  "const vbool below = vbool_not(wide_above_0(edges->a) & wide_above_0(edges->b) & wide_above_0(edges->c));"),
+            patch(KERNEL, "const vbool above = wide_above_0(edges->a) | wide_above_0(edges->b) | wide_above_0(edges->c);",
+                  "const vbool above = vbool_not(wide_below_0(edges->a) & wide_below_0(edges->b) & wide_below_0(edges->c));")],
+           [triangles("exactly_on_an_edge")]),
+    Mutant("triangles ruled out without a margin", "triangles: a candidate's edge functions taken for exact",
+           [patch(KERNEL, "const vreal margin = R(6.0) * delta * (across + delta);", "const vreal margin = splat(0);")],
+           [edges_and_turns("double")]),
+    Mutant("triangles ruled out by their farthest vertex", "triangles: larger for smaller",
+           [patch(KERNEL, "smaller(smaller(ta, tb), tc) <= bound", "larger(larger(ta, tb), tc) <= bound")],
+           [edges_and_turns("double")]),
+    Mutant("a shared edge by its rounding", "triangles: leaving without the rule for shared edges",
+           [patch(KERNEL, "*edge = wide_choose(along | against,", "*edge = wide_choose(vbool_none,")],
+           [edges_and_turns("double")]),
+    Mutant("a shared edge the other way", "triangles: the winding of the neighbour",
+           [patch(KERNEL, "wide(choose(along, slope, -slope))", "wide(choose(against, slope, -slope))")],
+           [edges_and_turns("double")]),
+    Mutant("what lies on the other side is met", "triangles: the rule of half-spaces, reversed",
+           [patch(KERNEL, "(wide_above_0(leans) & there.above) | (wide_below_0(leans) & there.below)",
+                  "(wide_above_0(leans) & there.below) | (wide_below_0(leans) & there.above)")],
+           [edges_and_turns("double")]),
+    Mutant("met from the wrong side at once", "triangles: what is left lies on one side of the other's plane",
+           [patch(KERNEL, "here.above & vbool_not(here.below) & wide_below_0(meets)", "here.above & vbool_not(here.below) & wide_above_0(meets)")],
+           [edges_and_turns("double")]),
+    Mutant("a triangle's distance without the slant", "triangles: the depth for the distance along the ray",
+           [patch(KERNEL, "return wide_divide(wide_divide(moment, sum), edges->slope);", "return wide_divide(moment, sum);")],
+           [edges_and_turns("double")]),
+    Mutant("triangles seen inside out", "triangles: outside for inside",
+           [patch(KERNEL, "(wide_below_0(sum) & (shear.direction.z > splat(0))) | (wide_above_0(sum) & (shear.direction.z < splat(0)))",
+                  "(wide_below_0(sum) & (shear.direction.z < splat(0))) | (wide_above_0(sum) & (shear.direction.z > splat(0)))")],
+           [triangles("prism")]),
+    Mutant("a triangle's normal points inward", "triangles: the sides of the cross product exchanged",
+           [patch("kernels/shape/triangle_robust.cl", "*normal = wide_unit(wide_cross(to_b, to_c));", "*normal = wide_unit(wide_cross(to_c, to_b));")],
+           [triangles("prism")]),
+    Mutant("b for c in the point on a triangle", "triangles: shares of vertices exchanged",
+           [patch(KERNEL, "const Wide b = wide_divide(edges.b, whole), c = wide_divide(edges.c, whole)",
+                  "const Wide b = wide_divide(edges.c, whole), c = wide_divide(edges.b, whole)")],
+           [edges_and_turns("double")]),
+    Mutant("a ray at triangles without its low part", "triangles: an origin in float",
+           [patch(KERNEL, "low = turn3(shear, ray->origin.low);", "low = zero3();")],
+           [edges_and_turns("double")]),
+    Mutant("products of pairs without their errors", "triangles: pairs of floats that are floats",
+           [patch(KERNEL, "fma(a.low, b.high, fma(a.high, b.high, -product))", "a.low * b.high")],
+           [edges_and_turns("float")]),
+    Mutant("ties of triangles by slots", "triangles: the order in the tree for that in the scene",
+           [patch(KERNEL, "gather_split_uint(geometry->slot_sphere, 0, one) <", "one <"),
+            patch(KERNEL, "gather_split_uint(geometry->slot_sphere, 0, other)));", "other));")],
+           [test("test_render_same", "triangles_are_the_same")]),
+    Mutant("a quad's second half on the first", "triangles: the corners of a quad",
+           [patch("host/formats/scene_triangles.c", "put(&triangles[1], at[0], at[2], at[3], material);",
+                  "put(&triangles[1], at[0], at[1], at[3], material);")],
+           [triangles("places_of_quads")]),
+    Mutant("a quad's v taken for a corner", "triangles: a place for a way",
+           [patch("host/formats/scene_triangles.c", "at[3][a] = at[0][a] + v[a];", "at[3][a] = v[a];")],
+           [triangles("places_of_quads")]),
+    Mutant("boxes turned the other way", "triangles: the sine's sign",
+           [patch("host/formats/scene_triangles.c", "*sine = sin(degrees * (PI / 180));", "*sine = -sin(degrees * (PI / 180));")],
+           [triangles("places_of_boxes")]),
+    Mutant("boxes turned about z first", "triangles: the order of turns",
+           [patch("host/formats/scene_triangles.c", "for (int axis = 0; axis < 3; axis++) {\n        double sine", "for (int axis = 2; axis >= 0; axis--) {\n        double sine")],
+           [triangles("places_of_boxes")]),
+    Mutant("boxes moved before they are turned", "triangles: the order of transforms",
+           [patch("host/formats/scene_triangles.c", "        rotate(degrees, at[corner]);\n        for (int a = 0; a < 3; a++) at[corner][a] += way[a];",
+                  "        for (int a = 0; a < 3; a++) at[corner][a] += way[a];\n        rotate(degrees, at[corner]);")],
+           [triangles("places_of_boxes")]),
+    Mutant("a side of a box inside out", "triangles: the winding of one side",
+           [patch("host/formats/scene_triangles.c", "{0, 4, 6, 2}", "{0, 2, 6, 4}")], [triangles("places_of_boxes")]),
+    Mutant("a triangle's box from two vertices", "triangles: the third left out of its bounds",
+           [patch("host/packed/tree_write.c", "own.high[a] = fmax(own.high[a], stored);", "own.high[a] = k < 2 ? fmax(own.high[a], stored) : own.high[a];")],
+           [test("test_render_same", "triangles_are_the_same")]),
+    Mutant("the reference's triangles have one side", "triangles: the reference",
+           [patch("host/reference/trace.c", "if (!((u >= 0 && v >= 0 && w >= 0) || (u <= 0 && v <= 0 && w <= 0))) return false;",
+                  "if (!(u >= 0 && v >= 0 && w >= 0)) return false;")],
+           [triangles("reference")]),
 ]

@@ -29,7 +29,7 @@ import tempfile
 import threading
 import time
 
-from mutants import MUTANTS, Check, Script
+from mutants import MUTANTS, Check, Program, Script
 
 SURVIVED, KILLED, ERROR = "SURVIVED", "killed", "ERROR"
 RUN_LONG = ("test_lobes", "test_kernel_samplers", "tests/unseen/test_unseen_means.py")  # longer than they compile
@@ -194,9 +194,17 @@ class Bench:
             return ERROR, (done.stdout + done.stderr).strip()[-300:]
         return KILLED, " ".join(failed[0].split())[:160]
 
+    def run_program(self, trial, environment, program):
+        """One without cases, whose exit code is 1 where it found something wrong."""
+        done = subprocess.run([program, *trial.arguments], env=environment, capture_output=True, text=True, errors="replace",
+                              timeout=300)
+        if done.returncode == 0:
+            return SURVIVED, "passed"
+        return (KILLED, "failed") if done.returncode == 1 else (ERROR, f"exit code {done.returncode}: {done.stderr.strip()[:300]}")
+
     def run(self, trial, environment, objects):
-        way = {Check: self.run_check, Script: self.run_script}.get(type(trial), self.run_test)
-        target = f"tests/{trial.program}" if way == self.run_test else "ballpark"
+        way = {Check: self.run_check, Script: self.run_script, Program: self.run_program}.get(type(trial), self.run_test)
+        target = f"tests/{trial.program}" if hasattr(trial, "program") else "ballpark"
         program = self.relink(target, objects) if objects else os.path.join(self.build, target)
         if getattr(trial, "program", getattr(trial, "path", "")) in RUN_LONG:
             environment = {**environment, "POCL_EXTRA_BUILD_FLAGS": ""}
@@ -208,6 +216,8 @@ def name_of(trial):
         return f"{trial.scene}, {trial.samples} samples"
     if isinstance(trial, Script):
         return f"{os.path.basename(trial.path)} {' '.join(trial.arguments)}"
+    if isinstance(trial, Program):
+        return " ".join((trial.program, *trial.arguments))
     return f"{trial.program}, {trial.case}"
 
 
