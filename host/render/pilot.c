@@ -2,6 +2,7 @@
 #include "pilot.h"
 
 #include "base/clock.h"
+#include "base/color.h"
 #include "base/status.h"
 #include "packed/focusers.h"
 #include "pilot_state.h"
@@ -22,12 +23,29 @@ static bool is_small(const BpCamera *camera, const BpPilotLight *light) {
     return PI * light->radius * light->radius < (parallel ? extent : extent * away2);
 }
 
+static bool has_rare_light(const BpScene *scene, const BpPilotAim *aim) {
+    bool rare = aim->pair_count > 0;
+    for (size_t i = 0; i < aim->light_count; ++i) rare = rare || is_small(&scene->camera, &aim->lights[i]);
+    return rare;
+}
+
 bool bp_pilot_is_needed(const BpScene *scene, const BpPilotAim *aim) {
-    bool needed = aim->pair_count > 0;
-    if (scene->triangle_count > 0) return false; /* its paths know spheres alone */
-    for (size_t i = 0; i < aim->light_count; ++i)
-        needed = needed || is_small(&scene->camera, &aim->lights[i]);
-    return needed;
+    return scene->triangle_count == 0 && has_rare_light(scene, aim);
+}
+
+bool bp_pilot_is_blind(const BpScene *scene) {
+    BpPilotAim aim;
+    bool shining = false, specular = false;
+    if (scene->triangle_count == 0) return false;
+    for (size_t i = 0; i < scene->triangle_count; ++i) {
+        const BpMaterial *material = &scene->materials[scene->triangles[i].material];
+        shining = shining || bp_luminance_of(material->emit) > 0;
+        specular = specular || bp_pilot_is_specular_material(material);
+    }
+    if (bp_pilot_aim(scene, &aim, NULL) != BP_OK) return true; /* no memory to know */
+    const bool blind = shining || (specular && aim.light_count > 0) || has_rare_light(scene, &aim);
+    bp_pilot_aim_clear(&aim);
+    return blind;
 }
 
 static bool sums_create(size_t squares, size_t spheres, BpPilotSums *sums) {

@@ -21,6 +21,10 @@
 /* Whether the scene has light that a pilot may find, in what bp_pilot_aim() has found. */
 bool bp_pilot_is_needed(const BpScene *scene, const BpPilotAim *aim);
 
+/* Whether a scene with triangles may have such light: a pilot does not look for it there, since its paths
+ * know spheres alone. */
+bool bp_pilot_is_blind(const BpScene *scene);
+
 /* *caustics: whether rays to lamps go through focusers too; of BP_CAUSTICS_AUTO it makes one of the others.
  * *unseen is NULL if there is none. */
 BpStatus bp_pilot_run(BpWorker *worker, const BpScene *scene, const BpPilotAim *aim, uint32_t max_depth,

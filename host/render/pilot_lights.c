@@ -15,7 +15,10 @@
 #define PI 3.14159265358979323846
 
 bool bp_pilot_is_specular(const BpScene *scene, size_t sphere) {
-    const BpMaterial *material = &scene->materials[scene->spheres[sphere].material];
+    return bp_pilot_is_specular_material(&scene->materials[scene->spheres[sphere].material]);
+}
+
+bool bp_pilot_is_specular_material(const BpMaterial *material) {
     return material->kind != BP_MATERIAL_INTERFACE &&
            (bp_material_types[material->kind].traits & BP_SCATTERS) != 0 && !bp_material_is_lit(material);
 }

@@ -54,6 +54,7 @@ typedef struct BpPilotStart {
 
 /* The sphere scatters into few directions only, so that no ray to a lamp lights it. */
 bool bp_pilot_is_specular(const BpScene *scene, size_t sphere);
+bool bp_pilot_is_specular_material(const BpMaterial *material);
 
 /* Whether a ray to the light, sent through focusers, finds it by way of the sphere, on which a path has stood
  * so many times and on nothing else: then it is not left to chance. */

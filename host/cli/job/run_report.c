@@ -10,6 +10,7 @@
 #include "cli/output/report_json.h"
 #include "cli/output/result_file.h"
 #include "cli/terminal/page.h"
+#include "render/pilot.h"
 #include "scene/in_view.h"
 #include "unseen_text.h"
 
@@ -165,19 +166,23 @@ static bool is_inside_a_sphere(const BpScene *scene) {
     return false;
 }
 
-/* Their light is found by chance, and what samples have not found yet is not estimated. */
-static void say_shining_triangles(const BpCommandLine *line, const BpScene *scene) {
+/* What samples have not found yet is not estimated there. */
+static void say_blind(const BpCommandLine *line, const BpScene *scene) {
+    if (line->quiet || line->light_sampling == BP_LIGHT_SAMPLING_OFF || !bp_pilot_is_blind(scene)) return;
     size_t shining = 0;
     for (size_t i = 0; i < scene->triangle_count; i++) {
         const double *emit = scene->materials[scene->triangles[i].material].emit;
         shining += emit[0] > 0 || emit[1] > 0 || emit[2] > 0;
     }
-    if (shining > 0 && !line->quiet)
+    if (shining > 0)
         bp_say(line,
                "%zu triangle%s give%s light that is found by chance: until samples have found it, the noise "
-               "is more than "
-               "is said; small ones need many samples, or a sphere as the lamp",
+               "is more than is said; small ones need many samples, or a sphere as the lamp",
                shining, bp_plural(shining), shining == 1 ? "s" : "");
+    else
+        bp_say(line,
+               "in scenes with triangles, light by way of glass and mirrors, or of very small lamps, is not "
+               "looked for: until samples have found it, the noise is more than is said");
 }
 
 /* Light of which most of the noise is a claim, since samples have hardly found it. */
@@ -222,7 +227,7 @@ void bp_run_print_summary(const BpCommandLine *line, const BpRunResult *result, 
            bp_format_count((double)own / tracing, rate, sizeof rate),
            bp_format_seconds(bp_clock_seconds() - result->times.start, all, sizeof all));
     say_unseen(line, result);
-    say_shining_triangles(line, result->scene);
+    say_blind(line, result->scene);
     /* Half the noise takes four times the samples. */
     const double more = own > 0 ? 3.0 * tracing * (double)report->samples / (double)own : NAN;
     if (result->claim.nrmse > 0.0 && own > 0)
