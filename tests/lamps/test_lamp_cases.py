@@ -80,7 +80,7 @@ class Bench:
         if drawn is None:
             (self.folder / "case.json").write_text(json.dumps(scene))
             done, stats = self.run(["case.json"], lamps, samples, options)
-            if "samples are invalid" in done.stderr:
+            if "samples are invalid" in done.stderr or "that were invalid" in done.stderr:
                 raise Trouble(f"invalid samples with lamps {lamps}")
             if done.returncode != 0:
                 raise Trouble(f"exit code {done.returncode}: {done.stderr.strip()}")

@@ -73,6 +73,8 @@ def render(program, folder, scenes, lamps, samples, *options):
     that fails, one by one."""
     code, _, errors = run(program, "render", folder, scenes, "--light-sampling", lamps, "--seed", "11", "--spp", str(samples), "-o", "./",
                           "--format", "bpa", "--stats", "pair-stats.json", *options)
+    if "that were invalid" in errors and len(scenes) == 1:
+        return {scenes[0]: Trouble(f"invalid samples with lamps {lamps}: {errors}")}
     if code != 0 and len(scenes) == 1:
         return {scenes[0]: Trouble(f"exit code {code}: {errors}")}
     if code != 0:

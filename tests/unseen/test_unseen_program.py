@@ -200,7 +200,8 @@ class Unseen(cli.ProgramTest):
             self.assert_same(self.read("merged.bpa"), self.read("given.bpa"), f"{name}, in parts")
             other = {"on": "off", "off": "on"}[word]
             self.render(scene_of(name), "begun.bpa", "--spp", 4, "--caustics", other)
-            self.succeed("render", scene_of(name), "--resume", "begun.bpa", "--spp", 16, "-o", "ended.bpa", "-q")
+            self.succeed("render", scene_of(name), "--resume", "begun.bpa", "--caustics", "auto", "--spp", 8, "-o", "more.bpa", "-q")
+            self.succeed("render", scene_of(name), "--resume", "more.bpa", "--spp", 16, "-o", "ended.bpa", "-q")
             self.render(scene_of(name), "whole.bpa", "--spp", 16, "--caustics", other)
             self.assert_same(self.read("ended.bpa"), self.read("whole.bpa"), f"{name}, begun with {other}")
         said = self.succeed("explain", scene_of("sun-0.27")).stdout.decode()
