@@ -103,8 +103,8 @@ static double share_of_pool_form(const Paths *paths, size_t width, bool by_nodes
 /* The kernel of one path each counts the nodes of each segment, with the tree that GPUs get. A picture has
  * room for the last four segments below the depth cap, so it is drawn with one cap after another. */
 static void count_nodes(KernelCopy *copy) {
-    kernel_copy_open(copy, "bvh/geometry.cl", "    uint leaf_count;\n#ifdef FLAT_GROUPS_MAX",
-                     "    uint leaf_count;\n    uint *nodes;\n#ifdef FLAT_GROUPS_MAX");
+    kernel_copy_open(copy, "bvh/geometry.cl", "#ifdef FLAT_GROUPS_MAX\n    FlatTree flat;",
+                     "    uint *nodes;\n#ifdef FLAT_GROUPS_MAX\n    FlatTree flat;");
     kernel_copy_patch(copy, "bvh/traverse_single.cl", "        child_mask met = wanted & test_node",
                       "        ++*geometry->nodes;\n        child_mask met = wanted & test_node");
     kernel_copy_patch(copy, "entry/trace_sample.cl", "    const Scene scene = scene_init(SCENE_ARGUMENTS);",
