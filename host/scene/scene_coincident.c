@@ -7,7 +7,6 @@
 #include "scene_fault.h"
 
 #include <math.h>
-#include <stdio.h>
 #include <stdlib.h>
 
 #define SAME_RADIUS 1.0e-12 /* relative */
@@ -58,13 +57,11 @@ BpStatus bp_scene_find_coincident(const BpScene *scene, BpFault *fault, BpError 
     for (size_t i = 1; i < count; i++) {
         if (!same_surface(&shells[i - 1], &shells[i])) continue;
         const size_t a = shells[i - 1].sphere, b = shells[i].sphere;
-        fault->subject = BP_FAULT_COINCIDENT;
-        fault->member = "";
         fault->index = a > b ? a : b;
         fault->other = a > b ? b : a;
-        snprintf(fault->text, sizeof fault->text,
-                 "found the same centre and radius (in float, seen from the camera) for two dielectrics, "
-                 "expected separate surfaces: remove one, or make one of them slightly smaller");
+        bp_fault_set(fault, BP_FAULT_COINCIDENT, "",
+                     "found the same centre and radius (in float, seen from the camera) for two dielectrics, "
+                     "expected separate surfaces: remove one, or make one of them slightly smaller");
         break;
     }
     free(shells);

@@ -33,6 +33,9 @@ typedef struct BpFault {
     char text[512];     /* "found ..., expected ..." */
 } BpFault;
 
+/* Sets all but the numbers of what is at fault; true. `member` must outlive the fault. */
+bool bp_fault_set(BpFault *fault, BpFaultSubject subject, const char *member, const char *format, ...)
+    BP_PRINTF_LIKE(4, 5);
 /* Looks for the first fault; fault->subject is BP_FAULT_NONE when there is none. Fails for lack of memory. */
 BpStatus bp_scene_find_fault(const BpScene *scene, BpFault *fault, BpError *err);
 /* Whether one sphere is at fault (its material's index is not looked at). */

@@ -7,7 +7,6 @@
 
 #include <float.h>
 #include <math.h>
-#include <stdarg.h>
 #include <stdio.h>
 
 #define PI 3.14159265358979323846
@@ -15,25 +14,13 @@
 #define ALONG_VIEW_MAX                                                                                       \
     1.0e-9 /* sine of the angle between vup and the view that still gives a picture plane */
 
-static bool set_fault(BpFault *fault, BpFaultSubject subject, const char *member, const char *format, ...)
-    BP_PRINTF_LIKE(4, 5);
-
-static bool set_fault(BpFault *fault, BpFaultSubject subject, const char *member, const char *format, ...) {
-    fault->subject = subject;
-    fault->member = member;
-    va_list arguments;
-    va_start(arguments, format);
-    vsnprintf(fault->text, sizeof fault->text, format, arguments);
-    va_end(arguments);
-    return true;
-}
-
 /* True, with the fault set, unless low <= value <= high; never true for a NaN. */
 static bool outside(BpFault *fault, BpFaultSubject subject, const char *member, double value, double low,
                     double high, const char *expected) {
     if (value >= low && value <= high) return false;
     char text[BP_NUMBER_TEXT_SIZE];
-    return set_fault(fault, subject, member, "found %s, expected %s", bp_number_text(value, text), expected);
+    return bp_fault_set(fault, subject, member, "found %s, expected %s", bp_number_text(value, text),
+                        expected);
 }
 
 static bool any_outside(BpFault *fault, BpFaultSubject subject, const char *member, const double value[3],
@@ -58,12 +45,13 @@ static bool camera_basis_fault(const BpCamera *camera, BpFault *fault) {
                             camera->lookat[2] - camera->lookfrom[2]};
     const double distance = length(view), up_length = length(camera->vup);
     if (!(distance >= LENGTH_MIN))
-        return set_fault(fault, BP_FAULT_CAMERA, "lookat",
-                         "found the same point for lookfrom and lookat, expected two: the camera looks from "
-                         "one to the other");
+        return bp_fault_set(
+            fault, BP_FAULT_CAMERA, "lookat",
+            "found the same point for lookfrom and lookat, expected two: the camera looks from "
+            "one to the other");
     if (!(up_length >= LENGTH_MIN))
-        return set_fault(fault, BP_FAULT_CAMERA, "vup",
-                         "found no direction, expected the one that is up, such as [0, 1, 0]");
+        return bp_fault_set(fault, BP_FAULT_CAMERA, "vup",
+                            "found no direction, expected the one that is up, such as [0, 1, 0]");
     double v[3], u[3];
     for (int i = 0; i < 3; i++) {
         v[i] = view[i] / distance;
@@ -71,9 +59,10 @@ static bool camera_basis_fault(const BpCamera *camera, BpFault *fault) {
     }
     const double cross[3] = {v[1] * u[2] - v[2] * u[1], v[2] * u[0] - v[0] * u[2], v[0] * u[1] - v[1] * u[0]};
     if (!(length(cross) >= ALONG_VIEW_MAX))
-        return set_fault(fault, BP_FAULT_CAMERA, "vup",
-                         "found a direction parallel to the view, expected another: to look straight down, "
-                         "use [0, 0, -1]");
+        return bp_fault_set(
+            fault, BP_FAULT_CAMERA, "vup",
+            "found a direction parallel to the view, expected another: to look straight down, "
+            "use [0, 0, -1]");
     return false;
 }
 
@@ -82,7 +71,7 @@ static bool plane_fault(const BpCamera *camera, BpFault *fault) {
     char vfov[BP_NUMBER_TEXT_SIZE], focus[BP_NUMBER_TEXT_SIZE];
     const double half_height = bp_camera_plane_height(camera) / 2;
     if (half_height <= BP_HALF_HEIGHT_MAX) return false;
-    return set_fault(
+    return bp_fault_set(
         fault, BP_FAULT_CAMERA, "vfov",
         "found %s with a focus_dist of %s, which makes the plane in focus %.3g high, expected at most "
         "%g; choose a smaller vfov or focus_dist",
@@ -94,8 +83,9 @@ static bool camera_fault(const BpCamera *camera, BpFault *fault) {
     const char *const side = "1 to 65535 pixels";
     char text[BP_NUMBER_TEXT_SIZE];
     if (!(camera->vfov_degrees > 0 && camera->vfov_degrees < 180))
-        return set_fault(fault, BP_FAULT_CAMERA, "vfov", "found %s, expected degrees above 0 and below 180",
-                         bp_number_text(camera->vfov_degrees, text));
+        return bp_fault_set(fault, BP_FAULT_CAMERA, "vfov",
+                            "found %s, expected degrees above 0 and below 180",
+                            bp_number_text(camera->vfov_degrees, text));
     return outside(fault, BP_FAULT_CAMERA, "image_width", camera->width, 1, BP_PICTURE_SIDE_MAX, side) ||
            outside(fault, BP_FAULT_CAMERA, "image_height", camera->height, 1, BP_PICTURE_SIDE_MAX, side) ||
            outside(fault, BP_FAULT_CAMERA, "aspect_ratio", camera->aspect_ratio, DBL_MIN, DBL_MAX,
@@ -131,9 +121,10 @@ static bool repeat_fault(const BpTexture *texture, BpFault *fault) {
         const uint32_t side = i == 0 ? texture->image->width : texture->image->height;
         const uint64_t all = (uint64_t)side * texture->repeat[i];
         if (all > BP_COLUMNS_MAX)
-            return set_fault(fault, BP_FAULT_TEXTURE, "repeat",
-                             "found %u times %u texels, expected at most %u together; repeat it less often",
-                             (unsigned)texture->repeat[i], (unsigned)side, BP_COLUMNS_MAX);
+            return bp_fault_set(
+                fault, BP_FAULT_TEXTURE, "repeat",
+                "found %u times %u texels, expected at most %u together; repeat it less often",
+                (unsigned)texture->repeat[i], (unsigned)side, BP_COLUMNS_MAX);
     }
     return false;
 }
@@ -150,8 +141,8 @@ static bool texture_fault(const BpTexture *texture, BpFault *fault) {
                (bp_texture_has(texture, BP_TEXTURE_PATTERN) && noise_fault(texture, fault));
     if (coordinates_outside(fault, BP_FAULT_TEXTURE, "up", texture->up)) return true;
     if (!(length(texture->up) >= LENGTH_MIN))
-        return set_fault(fault, BP_FAULT_TEXTURE, "up",
-                         "found no direction, expected that of the north pole, such as [0, 1, 0]");
+        return bp_fault_set(fault, BP_FAULT_TEXTURE, "up",
+                            "found no direction, expected that of the north pole, such as [0, 1, 0]");
     return outside(fault, BP_FAULT_TEXTURE, "turn", texture->turn_degrees, -BP_TEXTURE_TURN_MAX,
                    BP_TEXTURE_TURN_MAX, "degrees from -1e6 to 1e6") ||
            outside(fault, BP_FAULT_TEXTURE, "repeat", texture->repeat[0], 1, BP_TEXTURE_REPEAT_MAX,
@@ -180,14 +171,15 @@ static bool medium_fault(const BpMedium *medium, BpFault *fault) {
 static bool interior_fault(const BpScene *scene, size_t i, BpFault *fault) {
     if (i >= scene->interior_count || scene->interiors[i] == 0) return false;
     if (scene->interiors[i] > scene->medium_count)
-        return set_fault(fault, BP_FAULT_SPHERE, "interior", "found number %u, expected one of %zu media",
-                         (unsigned)scene->interiors[i], scene->medium_count);
+        return bp_fault_set(fault, BP_FAULT_SPHERE, "interior", "found number %u, expected one of %zu media",
+                            (unsigned)scene->interiors[i], scene->medium_count);
     const BpMaterialKind kind = scene->materials[scene->spheres[i].material].kind;
     if (bp_material_is(kind, BP_HAS_INSIDE)) return false;
-    return set_fault(fault, BP_FAULT_SPHERE, "interior",
-                     "found in a sphere whose material is of type \"%s\", expected only where light passes "
-                     "through: change the type to \"interface\" or \"dielectric\", or remove it",
-                     bp_material_types[kind].name);
+    return bp_fault_set(
+        fault, BP_FAULT_SPHERE, "interior",
+        "found in a sphere whose material is of type \"%s\", expected only where light passes "
+        "through: change the type to \"interface\" or \"dielectric\", or remove it",
+        bp_material_types[kind].name);
 }
 
 /* Whether a member names no texture that there is, or one of colours where a number stands. */
@@ -196,16 +188,16 @@ static bool variation_fault(const BpScene *scene, const BpMaterial *material, Bp
     if (number == 0) return false;
     if (number <= scene->texture_count && bp_texture_has(&scene->textures[number - 1], BP_TEXTURE_FILE) &&
         bp_members[m].form != BP_FORM_COLOUR && !scene->textures[number - 1].image->is_gray)
-        return set_fault(fault, BP_FAULT_MATERIAL, bp_members[m].name,
-                         "found an image with colours, expected a grey one, whose texels are numbers");
+        return bp_fault_set(fault, BP_FAULT_MATERIAL, bp_members[m].name,
+                            "found an image with colours, expected a grey one, whose texels are numbers");
     if (number > scene->texture_count)
-        return set_fault(fault, BP_FAULT_MATERIAL, bp_members[m].name,
-                         "found texture number %u, expected one of %zu textures", (unsigned)number,
-                         scene->texture_count);
+        return bp_fault_set(fault, BP_FAULT_MATERIAL, bp_members[m].name,
+                            "found texture number %u, expected one of %zu textures", (unsigned)number,
+                            scene->texture_count);
     if (bp_members[m].form == BP_FORM_COLOUR || bp_texture_is_number(&scene->textures[number - 1]))
         return false;
-    return set_fault(fault, BP_FAULT_MATERIAL, bp_members[m].name,
-                     "found a texture of colours, expected one of numbers, such as \"colors\": [0, 0.3]");
+    return bp_fault_set(fault, BP_FAULT_MATERIAL, bp_members[m].name,
+                        "found a texture of colours, expected one of numbers, such as \"colors\": [0, 0.3]");
 }
 
 static bool material_fault(const BpScene *scene, const BpMaterial *material, BpFault *fault) {
@@ -235,8 +227,9 @@ static bool material_fault(const BpScene *scene, const BpMaterial *material, BpF
 bool bp_sphere_find_fault(const BpSphere *sphere, BpFault *fault) {
     if (coordinates_outside(fault, BP_FAULT_SPHERE, "center", sphere->center)) return true;
     if (sphere->radius == 0)
-        return set_fault(fault, BP_FAULT_SPHERE, "radius",
-                         "found 0, expected another number; a negative radius turns the sphere inside out");
+        return bp_fault_set(
+            fault, BP_FAULT_SPHERE, "radius",
+            "found 0, expected another number; a negative radius turns the sphere inside out");
     return outside(fault, BP_FAULT_SPHERE, "radius", fabs(sphere->radius), (double)FLT_MIN, BP_COORDINATE_MAX,
                    "a radius from 1.2e-38 to 1e12 (or its negative); choose another unit of length");
 }
@@ -245,8 +238,9 @@ static bool disc_fault(const BpDisc *disc, BpFault *fault) {
     const double low = BP_HALF_ANGLE_MIN;
     return coordinates_outside(fault, BP_FAULT_DISC, "direction", disc->direction) ||
            (!(length(disc->direction) >= LENGTH_MIN) &&
-            set_fault(fault, BP_FAULT_DISC, "direction",
-                      "found no direction, expected the one in which the disc stands, such as [1, 2, 0]")) ||
+            bp_fault_set(
+                fault, BP_FAULT_DISC, "direction",
+                "found no direction, expected the one in which the disc stands, such as [1, 2, 0]")) ||
            outside(fault, BP_FAULT_DISC, "half_angle", disc->half_angle_degrees, low, 90,
                    "degrees from 0.0001 to 90, from the middle of the disc to its rim") ||
            any_outside(fault, BP_FAULT_DISC, "radiance", disc->radiance, 0, BP_RADIANCE_MAX,
@@ -264,10 +258,11 @@ static bool standpoint_fault(const BpScene *scene, BpFault *fault) {
             bp_sphere_moves(scene, i))
             continue;
         if (found++ > 0)
-            return set_fault(fault, BP_FAULT_CAMERA, "lookfrom",
-                             "found a point on the surfaces of both %s and %s, expected at most one surface: "
-                             "move the camera or one of the spheres slightly",
-                             bp_sphere_name(scene, first, a), bp_sphere_name(scene, i, b));
+            return bp_fault_set(
+                fault, BP_FAULT_CAMERA, "lookfrom",
+                "found a point on the surfaces of both %s and %s, expected at most one surface: "
+                "move the camera or one of the spheres slightly",
+                bp_sphere_name(scene, first, a), bp_sphere_name(scene, i, b));
         first = i;
     }
     return false;
@@ -312,14 +307,14 @@ BpStatus bp_scene_find_fault(const BpScene *scene, BpFault *fault, BpError *err)
             coordinates_outside(fault, BP_FAULT_SPHERE, "center_end", scene->center_ends[i]))
             return BP_OK;
         if (sphere->material >= scene->material_count) {
-            set_fault(fault, BP_FAULT_SPHERE, "material", "found number %u, expected one of %zu materials",
-                      (unsigned)sphere->material, scene->material_count);
+            bp_fault_set(fault, BP_FAULT_SPHERE, "material", "found number %u, expected one of %zu materials",
+                         (unsigned)sphere->material, scene->material_count);
             return BP_OK;
         }
         if (interior_fault(scene, i, fault)) return BP_OK;
         if (sphere->albedo != BP_NO_ALBEDO && sphere->albedo >= scene->albedo_count) {
-            set_fault(fault, BP_FAULT_SPHERE, "albedo", "found number %u, expected one of %zu albedos",
-                      (unsigned)sphere->albedo, scene->albedo_count);
+            bp_fault_set(fault, BP_FAULT_SPHERE, "albedo", "found number %u, expected one of %zu albedos",
+                         (unsigned)sphere->albedo, scene->albedo_count);
             return BP_OK;
         }
     }

@@ -6,28 +6,12 @@
 #include "vector.h"
 
 #include <math.h>
-#include <stdarg.h>
-#include <stdio.h>
 #include <stdlib.h>
 
 #define LEAST_AREA 0x1p-48 /* over the square of the longest side: what rounding could make of none */
 #define SAME_PLANE 1.0e-12 /* over the size */
 #define TOUCHES 1.0e-9     /* over the longest side: sides and corners that meet are no overlap */
 #define ON_CAMERA 1.0e-12  /* over the size */
-
-static bool at_fault(BpFault *fault, size_t triangle, const char *member, const char *format, ...)
-    BP_PRINTF_LIKE(4, 5);
-
-static bool at_fault(BpFault *fault, size_t triangle, const char *member, const char *format, ...) {
-    fault->subject = BP_FAULT_TRIANGLE;
-    fault->index = triangle;
-    fault->member = member;
-    va_list arguments;
-    va_start(arguments, format);
-    vsnprintf(fault->text, sizeof fault->text, format, arguments);
-    va_end(arguments);
-    return true;
-}
 
 static void way(const double from[3], const double to[3], double v[3]) {
     for (int a = 0; a < 3; a++) v[a] = to[a] - from[a];
@@ -43,22 +27,23 @@ static double area_of(const BpTriangle *triangle, double area[3]) {
     return fmax(fmax(bp_length(b), bp_length(c)), bp_length(d));
 }
 
-static bool place_fault(const BpTriangle *triangle, size_t index, BpFault *fault) {
+static bool place_fault(const BpTriangle *triangle, BpFault *fault) {
     double area[3];
     for (int k = 0; k < 3; k++)
         for (int a = 0; a < 3; a++)
             if (!(fabs(triangle->vertices[k][a]) <= BP_VERTEX_MAX)) {
                 char text[BP_NUMBER_TEXT_SIZE];
-                return at_fault(fault, index, "vertices",
-                                "found %s, expected coordinates of vertices from -1e9 to 1e9; choose a "
-                                "larger unit of length",
-                                bp_number_text(triangle->vertices[k][a], text));
+                return bp_fault_set(fault, BP_FAULT_TRIANGLE, "vertices",
+                                    "found %s, expected coordinates of vertices from -1e9 to 1e9; choose a "
+                                    "larger unit of length",
+                                    bp_number_text(triangle->vertices[k][a], text));
             }
     const double longest = area_of(triangle, area);
     if (bp_length(area) > LEAST_AREA * longest * longest && longest >= BP_TRIANGLE_SIDE_MIN) return false;
-    return at_fault(fault, index, "vertices",
-                    "found a triangle without an area, expected three points that are not in one line, at "
-                    "least 1e-9 apart");
+    return bp_fault_set(
+        fault, BP_FAULT_TRIANGLE, "vertices",
+        "found a triangle without an area, expected three points that are not in one line, at "
+        "least 1e-9 apart");
 }
 
 /* A texture that lies on surfaces by longitude and latitude. */
@@ -73,18 +58,16 @@ static bool has_map(const BpScene *scene, const BpMaterial *material) {
 static bool kind_fault(const BpScene *scene, size_t index, BpFault *fault) {
     const BpMaterial *material = &scene->materials[scene->triangles[index].material];
     if (material->kind == BP_MATERIAL_INTERFACE)
-        return at_fault(fault, index, "material",
-                        "found the type \"interface\", expected another: media inside triangles are not "
-                        "rendered yet; use a "
-                        "sphere as their boundary");
+        return bp_fault_set(fault, BP_FAULT_TRIANGLE, "material",
+                            "found the type \"interface\", expected another: media inside triangles are not "
+                            "rendered yet; use a sphere as their boundary");
     if (material->kind == BP_MATERIAL_DIELECTRIC && scene->medium_count > 0)
-        return at_fault(fault, index, "material",
-                        "found glass of triangles in a scene with media, expected one or the other: use "
-                        "spheres of glass, or "
-                        "remove \"media\"");
+        return bp_fault_set(fault, BP_FAULT_TRIANGLE, "material",
+                            "found glass of triangles in a scene with media, expected one or the other: use "
+                            "spheres of glass, or remove \"media\"");
     if (has_map(scene, material))
-        return at_fault(
-            fault, index, "material",
+        return bp_fault_set(
+            fault, BP_FAULT_TRIANGLE, "material",
             "found a texture that is laid around spheres, expected one that fills space: triangles have no "
             "longitude; change its mapping to \"solid\", or the material");
     return false;
@@ -148,12 +131,13 @@ static BpStatus find_open_edge(const BpScene *scene, size_t glass, BpFault *faul
             sum += edges[end].way;
         if (sum == 0) continue;
         const double *a = edges[first].ends[0], *b = edges[first].ends[1];
-        at_fault(fault, edges[first].triangle, "material",
-                 "found glass with an open edge, from (%g, %g, %g) to (%g, %g, %g), expected triangles of "
-                 "one material that "
-                 "enclose a body, each edge once one way and once the other; close it, reverse its vertices, "
-                 "or use a box",
-                 a[0], a[1], a[2], b[0], b[1], b[2]);
+        fault->index = edges[first].triangle;
+        bp_fault_set(fault, BP_FAULT_TRIANGLE, "material",
+                     "found glass with an open edge, from (%g, %g, %g) to (%g, %g, %g), expected triangles "
+                     "of one material that enclose a body, each edge once one way and once the other; close "
+                     "it, reverse its vertices, "
+                     "or use a box",
+                     a[0], a[1], a[2], b[0], b[1], b[2]);
     }
     free(edges);
     return BP_OK;
@@ -231,11 +215,11 @@ static BpStatus find_overlap(const BpScene *scene, BpFault *fault, BpError *err)
             if (!overlap(&scene->triangles[one], &scene->triangles[two])) continue;
             char a[BP_SPHERE_NAME_SIZE], b[BP_SPHERE_NAME_SIZE];
             const size_t later = one > two ? one : two;
-            at_fault(fault, later, "",
-                     "found %s and %s in one plane, one on the other, and light passes through one of them; "
-                     "expected a gap: "
-                     "move one by a millionth of its size",
-                     bp_triangle_name(scene, one + two - later, a), bp_triangle_name(scene, later, b));
+            fault->index = later;
+            bp_fault_set(fault, BP_FAULT_TRIANGLE, "",
+                         "found %s and %s in one plane, one on the other, and light passes through one of "
+                         "them; expected a gap: move one by a millionth of its size",
+                         bp_triangle_name(scene, one + two - later, a), bp_triangle_name(scene, later, b));
             break;
         }
     free(spans);
@@ -263,18 +247,20 @@ BpStatus bp_scene_find_triangle_fault(const BpScene *scene, BpFault *fault, BpEr
     const bool pinhole = camera->lens_radius == 0 && camera->projection == BP_PERSPECTIVE;
     size_t glass = 0;
     for (size_t i = 0; i < scene->triangle_count; i++) {
+        fault->index = i;
         if (scene->triangles[i].material >= scene->material_count) {
-            at_fault(fault, i, "material", "found number %u, expected one of %zu materials",
-                     (unsigned)scene->triangles[i].material, scene->material_count);
+            bp_fault_set(fault, BP_FAULT_TRIANGLE, "material",
+                         "found number %u, expected one of %zu materials",
+                         (unsigned)scene->triangles[i].material, scene->material_count);
             return BP_OK;
         }
-        if (place_fault(&scene->triangles[i], i, fault) || kind_fault(scene, i, fault)) return BP_OK;
+        if (place_fault(&scene->triangles[i], fault) || kind_fault(scene, i, fault)) return BP_OK;
         glass += is_glass(scene, i);
         if (pinhole && holds_point(&scene->triangles[i], camera->lookfrom)) {
             char name[BP_SPHERE_NAME_SIZE];
-            at_fault(fault, i, "",
-                     "found lookfrom of the camera on %s, expected it beside: move one of them slightly",
-                     bp_triangle_name(scene, i, name));
+            bp_fault_set(fault, BP_FAULT_TRIANGLE, "",
+                         "found lookfrom of the camera on %s, expected it beside: move one of them slightly",
+                         bp_triangle_name(scene, i, name));
             return BP_OK;
         }
     }
