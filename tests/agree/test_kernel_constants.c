@@ -148,20 +148,9 @@ static void flight(void **state) {
     assert_true(fabs(mean - 1) < 0.0025);
 }
 
-static int open_probe(void **state) {
-    static Probe probe;
-    probe_open(&probe, probe_text);
-    *state = &probe;
-    return 0;
-}
-static int close_probe(void **state) {
-    probe_close(*state);
-    return 0;
-}
-
 int main(void) {
     const struct CMUnitTest tests[] = {cmocka_unit_test(fuzz), cmocka_unit_test(fresnel),
                                        cmocka_unit_test(glass_exact), cmocka_unit_test(glass_by_schlick),
                                        cmocka_unit_test(flight)};
-    return cmocka_run_group_tests(tests, open_probe, close_probe);
+    return probe_run_group(tests, probe_text);
 }

@@ -178,21 +178,10 @@ static void sobol_couples(void **state) {
     assert_sobol_independent("couple", 8);
 }
 
-static int open_probe(void **state) {
-    static Probe probe;
-    probe_open(&probe, probe_text);
-    *state = &probe;
-    return 0;
-}
-static int close_probe(void **state) {
-    probe_close(*state);
-    return 0;
-}
-
 int main(void) {
     const struct CMUnitTest tests[] = {cmocka_unit_test(lobes),        cmocka_unit_test(sphere_and_ball),
                                        cmocka_unit_test(disk),         cmocka_unit_test(pairs_of_dimensions),
                                        cmocka_unit_test(independent),  cmocka_unit_test(sobol_neighbours),
                                        cmocka_unit_test(sobol_couples)};
-    return cmocka_run_group_tests(tests, open_probe, close_probe);
+    return probe_run_group(tests, probe_text);
 }

@@ -458,22 +458,11 @@ static void ends(void **state) {
     }
 }
 
-static int open_probe(void **state) {
-    static Probe probe;
-    probe_open(&probe, probe_text);
-    *state = &probe;
-    return 0;
-}
-static int close_probe(void **state) {
-    probe_close(*state);
-    return 0;
-}
-
 int main(void) {
     const struct CMUnitTest tests[] = {cmocka_unit_test(light),         cmocka_unit_test(densities),
                                        cmocka_unit_test(values),        cmocka_unit_test(furnace),
                                        cmocka_unit_test(shares),        cmocka_unit_test(smooth),
                                        cmocka_unit_test(losses),        cmocka_unit_test(coats),
                                        cmocka_unit_test(glossy_losses), cmocka_unit_test(ends)};
-    return cmocka_run_group_tests(tests, open_probe, close_probe);
+    return probe_run_group(tests, probe_text);
 }

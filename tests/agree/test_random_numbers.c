@@ -123,20 +123,9 @@ static void uniform_numbers_stay_below_one(void **state) {
     assert_true(found[count - 1] == 1 - 0x1p-24f);
 }
 
-static int open_probe(void **state) {
-    static Probe probe;
-    probe_open(&probe, probe_text);
-    *state = &probe;
-    return 0;
-}
-static int close_probe(void **state) {
-    probe_close(*state);
-    return 0;
-}
-
 int main(void) {
     const struct CMUnitTest tests[] = {cmocka_unit_test(bits_are_the_documented_ones),
                                        cmocka_unit_test(pairs_are_the_documented_ones),
                                        cmocka_unit_test(uniform_numbers_stay_below_one)};
-    return cmocka_run_group_tests(tests, open_probe, close_probe);
+    return probe_run_group(tests, probe_text);
 }

@@ -393,21 +393,10 @@ static void ends(void **state) {
     }
 }
 
-static int open_probe(void **state) {
-    static Probe probe;
-    probe_open(&probe, probe_text);
-    *state = &probe;
-    return 0;
-}
-static int close_probe(void **state) {
-    probe_close(*state);
-    return 0;
-}
-
 int main(void) {
     const struct CMUnitTest tests[] = {cmocka_unit_test(light),  cmocka_unit_test(densities),
                                        cmocka_unit_test(values), cmocka_unit_test(upright),
                                        cmocka_unit_test(losses), cmocka_unit_test(limits),
                                        cmocka_unit_test(ends)};
-    return cmocka_run_group_tests(tests, open_probe, close_probe);
+    return probe_run_group(tests, probe_text);
 }

@@ -42,6 +42,21 @@ static inline void probe_close(Probe *probe) {
     bp_device_close(&probe->device);
 }
 
+/* Runs the cases of a test program, an array of CMUnitTest, whose state is a probe of `text`. */
+#define probe_run_group(tests, text)                                                                         \
+    (probe_group_text = (text), cmocka_run_group_tests(tests, probe_open_group, probe_close_group))
+static const char *probe_group_text;
+static inline int probe_open_group(void **state) {
+    static Probe probe;
+    probe_open(&probe, probe_group_text);
+    *state = &probe;
+    return 0;
+}
+static inline int probe_close_group(void **state) {
+    probe_close(*state);
+    return 0;
+}
+
 /* Runs kernel `name`(uint first, uint second, __global T *out) with `count` work-items; fills `out`. */
 static inline void probe_run(const Probe *probe, const char *name, cl_uint first, cl_uint second,
                              size_t count, void *out, size_t bytes) {
