@@ -61,7 +61,7 @@ static bool kind_fault(const BpScene *scene, size_t index, BpFault *fault) {
         return bp_fault_set(fault, BP_FAULT_TRIANGLE, "material",
                             "found the type \"interface\", expected another: media inside triangles are not "
                             "rendered yet; use a sphere as their boundary");
-    if (material->kind == BP_MATERIAL_DIELECTRIC && scene->medium_count > 0)
+    if (bp_material_is(material->kind, BP_HAS_INSIDE) && scene->medium_count > 0)
         return bp_fault_set(fault, BP_FAULT_TRIANGLE, "material",
                             "found glass of triangles in a scene with media, expected one or the other: use "
                             "spheres of glass, or remove \"media\"");
@@ -98,7 +98,7 @@ static int compare_edges(const void *a_pointer, const void *b_pointer) {
 }
 
 static bool is_glass(const BpScene *scene, size_t triangle) {
-    return scene->materials[scene->triangles[triangle].material].kind == BP_MATERIAL_DIELECTRIC;
+    return bp_material_is(scene->materials[scene->triangles[triangle].material].kind, BP_HAS_INSIDE);
 }
 
 /* Each edge is there as often one way as the other. */

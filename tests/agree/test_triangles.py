@@ -20,7 +20,7 @@ import cli
 
 MATERIALS = {
     "white": {"type": "lambertian", "albedo": [0.73, 0.73, 0.73]}, "mint": {"type": "lambertian", "albedo": [0.2, 0.8, 0.5]},
-    "glass": {"type": "dielectric", "refraction_index": 1.5}, "air": {"type": "dielectric", "refraction_index": 1},
+    "glass": {"type": "dielectric", "refraction_index": 1.5}, "air": {"type": "dielectric", "refraction_index": 1}, "frosted": {"type": "dielectric", "refraction_index": 1.5, "roughness": 0.3},
     "mirror": {"type": "metal", "albedo": [0.9, 0.9, 0.9]}, "lamp": {"type": "diffuse_light", "emit": [4, 4, 4]},
     "normals": {"type": "normals"}, "skin": {"type": "interface"},
     "checked": {"type": "lambertian", "albedo": {"texture": "checks"}}, "mapped": {"type": "lambertian", "albedo": {"texture": "map"}}}
@@ -217,6 +217,10 @@ class Triangles(unittest.TestCase):
         self.refused(["triangles[0]", "unknown member"], triangles=[{"vertices": triangle, "material": "white", "interior": "fog"}])
         self.refused(["-1e9 to 1e9", "larger unit"], triangles=[{"vertices": [[0, 0, 0], [2e9, 0, 0], [0, 1, 0]], "material": "white"}])
         self.refused(["quads[0].material", "open edge", "use a box"], quads=[{**quad, "material": "glass"}])
+        self.refused(["quads[0].material", "open edge", "use a box"], quads=[{**quad, "material": "frosted"}])
+        self.refused(["boxes[0].material", "media"], boxes=[{**box, "material": "frosted"}], media={"fog": {"scattering": [1, 1, 1]}})
+        self.refused(["boxes[1]", "boxes[0] and boxes[1] in one plane"],
+                     boxes=[{**box, "material": "frosted"}, {"corners": [[1, 0, 0], [2, 1, 1]], "material": "white"}])
         self.refused(["quads[0].material", "interface", "use a sphere"], quads=[{**quad, "material": "skin"}])
         self.refused(["quads[0].material", "solid"], quads=[{**quad, "material": "mapped"}])
         self.refused(["boxes[0].material", "media"], boxes=[box], media={"fog": {"scattering": [1, 1, 1]}})
