@@ -350,10 +350,13 @@ static BpStatus look(const BpCommandLine *line, const BpScene *scene, const BpDe
     BP_TRY(render_options(line, scene, &options, err));
     options.samples_per_pixel = LOOK_SAMPLES;
     options.adaptive = false;
-    BP_TRY(bp_render_choose_caustics(scene, &options, device, err));
-    found->by_rays = options.caustics == BP_CAUSTICS_ON;
     BpStatus status = bp_render_create(scene, &options, device, 1, &render, err);
     if (status == BP_OK) status = bp_render_unseen(render, &found->unseen, err);
+    if (status == BP_OK) {
+        BpRenderReport report;
+        bp_render_report(render, &report);
+        found->by_rays = report.caustics == BP_CAUSTICS_ON;
+    }
     while (status == BP_OK && found->unseen.mean > 0 && !progress.finished)
         status = bp_render_step(render, &progress, err);
     if (status == BP_OK && found->unseen.mean > 0) status = bp_render_read_film(render, &film, err);

@@ -310,9 +310,7 @@ static bool explain_environment(const BpScene *scene, size_t size, char *reason)
 
 /* Whether there are triangles. Their light, and what lamps send through or off them, is found by chance. */
 static bool explain_triangles(const BpScene *scene, size_t size, char *reason) {
-    size_t emitting = 0;
-    for (size_t i = 0; i < scene->triangle_count; ++i)
-        emitting += is_bright(scene->materials[scene->triangles[i].material].emit);
+    const size_t emitting = bp_scene_emitting_triangles(scene);
     if (scene->triangle_count == 0)
         snprintf(reason, size, "no triangles, quads or boxes");
     else if (emitting > 0)

@@ -2,7 +2,6 @@
 #include "pilot.h"
 
 #include "base/clock.h"
-#include "base/color.h"
 #include "base/status.h"
 #include "packed/focusers.h"
 #include "pilot_state.h"
@@ -35,15 +34,13 @@ bool bp_pilot_is_needed(const BpScene *scene, const BpPilotAim *aim) {
 
 bool bp_pilot_is_blind(const BpScene *scene) {
     BpPilotAim aim;
-    bool shining = false, specular = false;
+    bool specular = false;
     if (scene->triangle_count == 0) return false;
-    for (size_t i = 0; i < scene->triangle_count; ++i) {
-        const BpMaterial *material = &scene->materials[scene->triangles[i].material];
-        shining = shining || bp_luminance_of(material->emit) > 0;
-        specular = specular || bp_pilot_is_specular_material(material);
-    }
+    if (bp_scene_emitting_triangles(scene) > 0) return true;
+    for (size_t i = 0; i < scene->triangle_count; ++i)
+        specular = specular || bp_pilot_is_specular_material(&scene->materials[scene->triangles[i].material]);
     if (bp_pilot_aim(scene, &aim, NULL) != BP_OK) return true; /* no memory to know */
-    const bool blind = shining || (specular && aim.light_count > 0) || has_rare_light(scene, &aim);
+    const bool blind = (specular && aim.light_count > 0) || has_rare_light(scene, &aim);
     bp_pilot_aim_clear(&aim);
     return blind;
 }

@@ -50,9 +50,9 @@ BpStatus bp_worker_bind_scene(BpWorker *worker, cl_kernel kernel, BpError *err) 
         BP_TRY(set_argument(worker, kernel, index++, sizeof(cl_mem), &worker->scene_buffers[i], err));
 #define NUMBER(name) worker->name,
     const cl_uint numbers[] = {SCENE_NUMBERS(NUMBER)};
+#undef NUMBER
     if (worker->has_triangles)
         BP_TRY(set_argument(worker, kernel, index++, sizeof(cl_uint), &worker->first_triangles, err));
-#undef NUMBER
     for (size_t i = 0; i < sizeof numbers / sizeof numbers[0]; ++i)
         BP_TRY(set_argument(worker, kernel, index++, sizeof(cl_uint), &numbers[i], err));
     worker->scene_arguments = index;

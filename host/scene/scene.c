@@ -224,6 +224,15 @@ const char *bp_shape_name(const BpScene *scene, size_t shape, char text[BP_SPHER
                                        : bp_triangle_name(scene, shape - scene->sphere_count, text);
 }
 
+size_t bp_scene_emitting_triangles(const BpScene *scene) {
+    size_t count = 0;
+    for (size_t t = 0; t < scene->triangle_count; t++) {
+        const double *emit = scene->materials[scene->triangles[t].material].emit;
+        count += emit[0] > 0 || emit[1] > 0 || emit[2] > 0;
+    }
+    return count;
+}
+
 const char *bp_scene_noun(const BpScene *scene) {
     if (scene->triangle_count == 0) return "sphere";
     return scene->sphere_count == 0 ? "triangle" : "shape";

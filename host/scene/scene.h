@@ -262,6 +262,9 @@ const char *bp_shape_name(const BpScene *scene, size_t shape, char text[BP_SPHER
 /* "sphere", "triangle", or "shape" where there are both. */
 const char *bp_scene_noun(const BpScene *scene);
 
+/* How many triangles emit. */
+size_t bp_scene_emitting_triangles(const BpScene *scene);
+
 /* The index of a sphere's inside over that of its outside; of what is not glass 0. */
 double bp_sphere_refraction_index(const BpScene *scene, size_t sphere);
 

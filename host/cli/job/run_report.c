@@ -169,16 +169,12 @@ static bool is_inside_a_sphere(const BpScene *scene) {
 /* What samples have not found yet is not estimated there. */
 static void say_blind(const BpCommandLine *line, const BpScene *scene) {
     if (line->quiet || line->light_sampling == BP_LIGHT_SAMPLING_OFF || !bp_pilot_is_blind(scene)) return;
-    size_t shining = 0;
-    for (size_t i = 0; i < scene->triangle_count; i++) {
-        const double *emit = scene->materials[scene->triangles[i].material].emit;
-        shining += emit[0] > 0 || emit[1] > 0 || emit[2] > 0;
-    }
-    if (shining > 0)
+    const size_t emitting = bp_scene_emitting_triangles(scene);
+    if (emitting > 0)
         bp_say(line,
                "%zu triangle%s give%s light that is found by chance: until samples have found it, the noise "
                "is more than is said; small ones need many samples, or a sphere as the lamp",
-               shining, bp_plural(shining), shining == 1 ? "s" : "");
+               emitting, bp_plural(emitting), emitting == 1 ? "s" : "");
     else
         bp_say(line,
                "in scenes with triangles, light by way of glass and mirrors, or of very small lamps, is not "
