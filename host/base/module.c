@@ -36,7 +36,12 @@ BpStatus bp_module_load(const BpModuleName *name, const void **interface, BpErro
     uint32_t version = 0;
     find(name, path, sizeof path);
     void *module = dlopen(path, RTLD_NOW | (name->is_global ? RTLD_GLOBAL : RTLD_LOCAL));
-    if (module == NULL) return bp_fail(err, BP_ERR_USAGE, "%.300s cannot be loaded: %.400s", path, dlerror());
+    if (module == NULL) {
+        const BpStatus status =
+            bp_fail(err, BP_ERR_USAGE, "%.300s cannot be loaded: %.400s", path, dlerror());
+        (void)dlerror(); /* the C library frees the text when it is asked once more */
+        return status;
+    }
     const void *found = dlsym(module, name->symbol);
     if (found != NULL) memcpy(&version, found, sizeof version);
     if (version != name->version)
