@@ -161,7 +161,7 @@ int main(int argc, char **argv) {
     if (status != BP_OK && is_reporter) print_error(&err, status, line.wide);
     bp_error_clear(&err);
     const BpStatus finished = finish_standard_output(flush_problem, &err);
-    if (status == BP_OK && finished != BP_OK) print_error(&err, finished, line.wide);
+    if (finished != BP_OK && !about_output && is_reporter) print_error(&err, finished, line.wide);
     if (status == BP_OK) status = finished;
     bp_error_clear(&err);
     bp_comm_end(&line.comm);

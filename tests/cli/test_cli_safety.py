@@ -323,6 +323,13 @@ class OpenFiles(Safety):
                         "bench s.json --time 0.01 --rounds 1"):
             self.assertIn("No space left", self.shell(f"\"$B\" {command} > /dev/full", 1).errors, command)
 
+    def test_full_device_beside_another_failure(self):
+        if not os.path.exists("/dev/full"):
+            self.skipTest("there is no /dev/full")
+        errors = self.shell("\"$B\" check s.json --width 4 --spp 2 --margin 1e-6 > /dev/full", 4).errors
+        self.assertIn("inconclusive", errors)
+        self.assertIn("cannot write to standard output: No space left", errors)
+
 
 class OneOfSeveral(Safety):
     """A document that cannot be written takes no other result of minutes of work with it."""
