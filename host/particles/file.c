@@ -123,6 +123,8 @@ static void drop_state(BpParticleFile *file) {
         pdb_state_destroy(file->state);
     else if (file->format == BP_PARTICLES_CIF)
         cif_state_destroy(file->state);
+    else if (file->format == BP_PARTICLES_CSV)
+        csv_state_destroy(file->state);
     else
         free(file->state);
     file->state = NULL;
@@ -209,11 +211,12 @@ static bool has_more_frames(BpParticleFile *file) {
         return pdb_has_more(file->state, has_more_text(&file->input));
     case BP_PARTICLES_CIF:
         return cif_has_more(file->state);
+    case BP_PARTICLES_CSV:
+        return csv_has_more(file->state);
     case BP_PARTICLES_GSD:
         return gsd_frame_count(file, &count, NULL) == BP_OK && count > 1;
     case BP_PARTICLES_NONE:
     case BP_PARTICLES_DATA:
-    case BP_PARTICLES_CSV:
     case BP_PARTICLES_PLY:
     case BP_PARTICLES_FORMAT_COUNT:
         break;

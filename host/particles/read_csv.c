@@ -27,6 +27,13 @@ typedef struct Table {
     double radius_scale;  /* 1/2 for diameters */
     double angstrom;      /* from the unit behind a name; 0: unknown */
     bool has_header;
+    int moment;       /* the column whose values are frames; below 0: there are no frames */
+    int moment_noted; /* one whose values are not, as could be expected; below 0: there is none */
+    bool moment_rises;
+    bool has_more; /* the next row belongs to another frame */
+    char remark[NAMES_SIZE];
+    char *copy; /* of a row, to look into before it is taken */
+    size_t copy_size;
 } Table;
 
 /* ---- the names of columns ----------------------------------------------------------------------------- */
@@ -267,6 +274,13 @@ static void note_choices(BpParticles *p, const Table *table) {
     p->angstrom = table->angstrom;
     if (table->role[ELEMENT] >= 0 && p->angstrom == 0) p->angstrom = 1;
     if (!table->has_header) bp_particles_note(p, "columns without names read as x, y, z, radius");
+    if (table->moment_noted >= 0) {
+        bp_printable(table->names[table->moment_noted], shown[0], sizeof shown[0]);
+        bp_particles_note(p,
+                          table->moment_rises ? "each row has another \"%s\": all are drawn at once"
+                                              : "rows are not sorted by \"%s\": all are drawn at once",
+                          shown[0]);
+    }
     if (table->place_sets < 2) return;
     for (int i = 0; i < 3; i++)
         bp_printable(table->role[i] >= 0 ? table->names[table->role[i]] : "", shown[i], sizeof shown[i]);
@@ -274,15 +288,82 @@ static void note_choices(BpParticles *p, const Table *table) {
                       shown[2]);
 }
 
-static BpStatus take_table(BpParticleFile *file, Table *table, char *remark, BpError *err) {
-    Input *const input = &file->input;
-    char *line = NULL;
-    BP_TRY(begin_table(input, table, remark, &line, err));
-    BP_TRY(frame_begin(file, (const char *const *)table->names, (size_t)table->count, err));
-    file->colors.ambiguous = true;
-    size_t texts = 0;
+/* ---- frames ------------------------------------------------------------------------------------------- */
+
+/* *moment: that of a row, which stays as it is; NaN: it has none. */
+static BpStatus find_moment(Table *table, const char *line, double *moment, BpError *err) {
+    char *fields[COLUMNS_MAX];
+    int filled = 0;
+    const size_t size = strlen(line) + 1;
+    *moment = NAN;
+    if (size > table->copy_size) {
+        char *const larger = realloc(table->copy, 2 * size);
+        if (larger == NULL) return bp_fail(err, BP_ERR_MEMORY, "out of memory for a row");
+        table->copy = larger;
+        table->copy_size = 2 * size;
+    }
+    memcpy(table->copy, line, size);
+    if (csv_split(table->copy, table->form.separator, fields, COLUMNS_MAX, &filled) == table->count)
+        *moment = csv_number_or_none(&table->form, fields[table->moment]);
+    return BP_OK;
+}
+
+/* The column that numbers the frames of a table, or holds their times. One that is wanted as a value, for
+ * colours, does not make frames. */
+static int moment_column(const BpParticleFile *file, const Table *table) {
+    static const char *const names[] = {"frame", "framenumber", "frameindex", "timestep",
+                                        "step",  "snapshot",    "time"};
+    int column = COLUMN_NONE;
+    for (size_t i = 0; i < sizeof names / sizeof *names && column < 0; i++)
+        column = column_named((const char *const *)table->names, (size_t)table->count, names[i]);
+    for (size_t w = 0; w < file->wanted_count && column >= 0; w++)
+        if (strcmp(file->wanted[w], table->names[column]) == 0) column = COLUMN_NONE;
+    return column;
+}
+
+/* Reads all rows from `line` on. Their moments make frames if they rise and some rows share one; a table in
+ * another order, and the track of one particle, are one frame. */
+static BpStatus judge_moments(Input *input, Table *table, char *line, BpError *err) {
+    double last = NAN, moment;
+    bool rises = true, shared = false, differs = false;
     if (line == NULL) BP_TRY(next_row(input, &line, NULL, err));
-    for (; table->has_header && line != NULL && take_texts(table, line); texts++)
+    while (line != NULL && rises) {
+        BP_TRY(find_moment(table, line, &moment, err));
+        if (!isnan(moment) && !isnan(last)) {
+            differs = differs || moment != last;
+            shared = shared || moment == last;
+            rises = moment >= last;
+        }
+        if (!isnan(moment)) last = moment;
+        BP_TRY(next_row(input, &line, NULL, err));
+    }
+    table->moment_rises = rises;
+    if (!rises || (differs && !shared)) table->moment_noted = table->moment;
+    if (table->moment_noted >= 0 || !differs) table->moment = COLUMN_NONE;
+    return BP_OK;
+}
+
+/* Reads the names of the columns, and decides whether the table has frames. *line: that of begin_table(). */
+static BpStatus begin_file(BpParticleFile *file, Table *table, char **line, BpError *err) {
+    Input *const input = &file->input;
+    table->moment_noted = COLUMN_NONE;
+    BP_TRY(begin_table(input, table, table->remark, line, err));
+    table->moment = moment_column(file, table);
+    if (table->moment < 0) return BP_OK;
+    BP_TRY(judge_moments(input, table, *line, err));
+    BP_TRY(input_rewind(input, err));
+    table->remark[0] = '\0';
+    return begin_table(input, table, table->remark, line, err);
+}
+
+/* Takes the rows of one frame, from `line` on, which may be NULL: behind the names, or in a later frame. */
+static BpStatus take_rows(BpParticleFile *file, Table *table, char *line, BpError *err) {
+    Input *const input = &file->input;
+    double first = NAN, moment = NAN;
+    table->has_more = false;
+    if (line == NULL) BP_TRY(next_row(input, &line, NULL, err));
+    size_t texts = 0;
+    for (; file->frame == 0 && table->has_header && line != NULL && take_texts(table, line); texts++)
         BP_TRY(next_row(input, &line, NULL, err));
     if (file->out != NULL) {
         note_choices(file->out, table);
@@ -291,6 +372,13 @@ static BpStatus take_table(BpParticleFile *file, Table *table, char *remark, BpE
                               bp_plural(texts));
     }
     while (line != NULL) {
+        if (table->moment >= 0) BP_TRY(find_moment(table, line, &moment, err));
+        if (isnan(first)) first = moment;
+        if (moment > first) {
+            input_hold(input, line);
+            table->has_more = true;
+            break;
+        }
         BP_TRY(take_row(file, table, line, err));
         BP_TRY(next_row(input, &line, NULL, err));
     }
@@ -299,13 +387,25 @@ static BpStatus take_table(BpParticleFile *file, Table *table, char *remark, BpE
 }
 
 BpStatus read_csv(BpParticleFile *file, bool *end, BpError *err) {
-    *end = file->frame > 0;
+    char *line = NULL;
+    Table *table = file->state;
+    *end = file->frame > 0 && !csv_has_more(table);
     if (*end) return BP_OK;
-    Table *const table = calloc(1, sizeof *table);
-    char *const remark = calloc(1, NAMES_SIZE);
-    const BpStatus status = table != NULL && remark != NULL ? take_table(file, table, remark, err)
-                                                            : bp_fail(err, BP_ERR_MEMORY, "out of memory");
-    free(remark);
-    free(table);
-    return status;
+    if (table == NULL) {
+        table = file->state = calloc(1, sizeof *table);
+        if (table == NULL) return bp_fail(err, BP_ERR_MEMORY, "out of memory for a table");
+        BP_TRY(begin_file(file, table, &line, err));
+    }
+    BP_TRY(frame_begin(file, (const char *const *)table->names, (size_t)table->count, err));
+    file->colors.ambiguous = true;
+    return take_rows(file, table, line, err);
+}
+
+bool csv_has_more(const void *state) {
+    return ((const Table *)state)->has_more;
+}
+
+void csv_state_destroy(void *state) {
+    if (state != NULL) free(((Table *)state)->copy);
+    free(state);
 }

@@ -97,12 +97,14 @@ ReadFrame read_xyz, read_pdb, read_cif, read_gro, read_dump, read_data, read_gsd
 
 /* Releases what a GSD file's index takes. */
 void gsd_state_destroy(void *state);
-/* Release what the readers of PDB and of mmCIF files keep from frame to frame. */
+/* Release what the readers of tables, of PDB and of mmCIF files keep from frame to frame. */
+void csv_state_destroy(void *state);
 void pdb_state_destroy(void *state);
 void cif_state_destroy(void *state);
 /* Whether frames follow the first one, after which `text_follows` or not. */
 bool pdb_has_more(const void *state, bool text_follows);
 bool cif_has_more(const void *state);
+bool csv_has_more(const void *state);
 BpStatus gsd_frame_count(BpParticleFile *file, uint64_t *count, BpError *err);
 
 #endif

@@ -605,6 +605,69 @@ print(json.dumps({name: read[name].tolist() for name, _ in kinds}))
             self.near(sum(found["colors"], []), [linear(n / 65535) for row in zip(theirs["red"], theirs["green"], theirs["blue"]) for n in row], 1e-6)
 
 
+
+class Moments(TableTest):
+    """Tables with a column that numbers frames, as programs that track particles write them."""
+    SEVERAL = "the first of several frames"
+
+    def frames(self, content, expected):
+        """`expected`: the places of each frame."""
+        for number in [*range(len(expected)), -1]:
+            found = self.of("a.csv", content, number)
+            self.assertEqual(found["positions"], [list(map(float, place)) for place in expected[number]], (number, content))
+            self.assertEqual(found["frames"], len(expected))
+            self.assertEqual(found["notes"], self.SEVERAL if number == 0 else "")
+        none = self.summary("a.csv", content, len(expected))
+        self.assertEqual(none.returncode, 1)
+        self.assertIn(f"found {len(expected)} frames", none.stderr)
+
+    def whole(self, content, count, note):
+        found = self.of("a.csv", content)
+        self.assertEqual((found["count"], found["frames"], found["notes"]), (count, 1, note))
+
+    def test_rows_of_one_moment_are_a_frame(self):
+        places = [[(0, 0, 0), (1, 0, 0)], [(0, 2, 0)], [(0, 3, 0), (1, 3, 0), (2, 3, 1)]]
+        for name, moments in (("frame", "012"), ("Frame", "347"), ("FRAME", ("-1", "0", "1")), ("time (ps)", ("0.0", "0.25", "1e3")),
+                              ("timestep", ("100", "200", "1000")), ("frame_number", "123"), ("step", ("9", "10", "11"))):
+            for separator in ",;\t ":
+                if separator == " " in name:
+                    continue
+                rows = [separator.join(map(str, (*place[:2], moment, place[2]))) for moment, frame in zip(moments, places)
+                        for place in frame]
+                content = separator.join(("x", "y", name, "z")) + "\n" + "\n".join(rows)
+                for end in ("", "\n", "\n\n"):
+                    self.frames(content + end, places)
+                self.frames(gzip.compress(content.encode()), places)
+        self.frames("# frame x y z\n0 0 0 0\n0 1 0 0\n1 0 2 0\n", [places[0], places[1]])
+        self.frames("time;x;y;z\n0,0;0;0;0\n0,0;1;0;0\n0,5;0;2;0\n", [places[0], places[1]])
+
+    def test_many_rows(self):
+        places = [[(i, frame, 0.5) for i in range(200 + frame)] for frame in range(7)]
+        rows = "".join(f"{x},{y},{z},{frame}\n" for frame, one in enumerate(places) for x, y, z in one)
+        self.frames("x,y,z,frame\n" + rows, places)
+
+    def test_units_and_missing_moments(self):
+        self.assertEqual(self.of("a.csv", "frame,x,y\n,nm,nm\n0,1,2\n0,2,2\n1,3,4\n")["positions"], [[1, 2, 0], [2, 2, 0]])
+        self.assertEqual(self.of("a.csv", "frame,x,y\n0,1,2\n,2,2\n0,3,2\n1,3,4\n")["count"], 3)
+
+    def test_what_makes_no_frames_is_drawn_whole_and_said(self):
+        self.whole("particle,frame,x,y\n0,0,1,1\n0,1,1,2\n1,0,3,1\n1,1,3,2\n", 4,
+                   'rows are not sorted by "frame": all are drawn at once')
+        self.whole("time,x,y\n0,1,1\n1,1,2\n2,1,3\n", 3, 'each row has another "time": all are drawn at once')
+        self.whole("frame,x,y\n5,1,1\n5,1,2\n", 2, "")
+        self.whole("frame,x,y\n,1,1\na,1,2\n", 2, "")
+        self.whole("frames,x,y\n0,1,1\n0,1,2\n1,0,0\n", 3, "")
+
+    def test_a_wanted_column_is_a_value(self):
+        found = self.of("a.csv", "frame,x,y\n0,1,1\n0,1,2\n1,0,0\n", 0, "frame")
+        self.assertEqual((found["values"], found["notes"]), ([0, 0, 1], ""))
+
+    def test_a_last_row_that_is_cut(self):
+        found = self.of("a.csv", "x,y,frame\n0,1,1\n0,1,1\n1,0,2\n1,1", -1)
+        self.assertEqual((found["frames"], found["count"]), (1, 2))
+        self.refuse("a.csv", "x,y,frame\n0,1,1\n0,1,1\n1,0,2\n1,1\n0,0,3\n0,0,3\n", "a.csv:5")
+
+
 if __name__ == "__main__":
     result = unittest.main(argv=[sys.argv[0]] + sys.argv[2:], exit=False).result
     for reason in dict.fromkeys(reason for _, reason in result.skipped):
