@@ -134,6 +134,42 @@ static void read_colors(PngReader *reader, PngColors *colors) {
                                      &p->red[1], &p->green[0], &p->green[1], &p->blue[0], &p->blue[1]) != 0;
 }
 
+static unsigned long exif_number(const png_byte *bytes, int count, bool big_first) {
+    unsigned long value = 0;
+    for (int i = 0; i < count; i++) value = value << 8 | bytes[big_first ? i : count - 1 - i];
+    return value;
+}
+
+/* The orientation in Exif data (a TIFF file's first directory), from 1, rows as they are stored, to 8; 0: it
+ * has none. */
+static unsigned exif_orientation(const png_byte *data, size_t size) {
+    enum { HEAD = 8, ENTRY = 12, TAG = 0x0112 };
+    if (size < HEAD) return 0;
+    const bool big_first = data[0] == 'M';
+    const size_t directory = exif_number(data + 4, 4, big_first);
+    if (directory < HEAD || directory + 2 > size) return 0;
+    const size_t count = exif_number(data + directory, 2, big_first);
+    for (size_t i = 0; i < count && directory + 2 + (i + 1) * ENTRY <= size; i++) {
+        const png_byte *const entry = data + directory + 2 + i * ENTRY;
+        if (exif_number(entry, 2, big_first) == TAG) return (unsigned)exif_number(entry + 8, 2, big_first);
+    }
+    return 0;
+}
+
+/* Cameras store rows as their sensor lies, and note how it was held. */
+static void note_orientation(PngReader *reader) {
+    png_bytep data = NULL;
+    png_uint_32 size = 0;
+    if (png_get_eXIf_1(reader->png, reader->info, &size, &data) == 0) return;
+    const unsigned orientation = exif_orientation(data, size);
+    if (orientation < 2 || orientation > 8) return;
+    bp_texels_note(reader->image, "its Exif orientation, %u, is not applied: read %s", orientation,
+                   orientation == 3                       ? "upside down"
+                   : orientation == 6 || orientation == 8 ? "turned by 90 degrees"
+                   : orientation == 2                     ? "mirrored"
+                                                          : "mirrored and turned");
+}
+
 /* Linear light of all numbers of `bits` bits; see PngColors for `exponent`. */
 static float *light_of_numbers(int bits, double exponent) {
     const size_t count = (size_t)1 << bits;
@@ -220,7 +256,8 @@ static BpStatus read_image(PngReader *reader, BpError *err) {
         if (!interlaced) png_read_row(png, reader->bytes, NULL);
         store_row(reader, interlaced ? reader->rows[row] : reader->bytes, row, wide);
     }
-    png_read_end(png, NULL);
+    png_read_end(png, info);
+    note_orientation(reader);
     if (reader->warning[0] != '\0' && reader->input->encoding == BP_ENCODING_OF_FORMAT)
         bp_texels_note(reader->image, "its colours may be wrong, since a chunk is not used (%s)",
                        reader->warning);

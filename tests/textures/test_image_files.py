@@ -395,6 +395,31 @@ class ImageFiles(ProgramTest):
         self.assertEqual(said, "")
         self.assertEqual(self.texel("a.png", png([places(p3)], [(128,)], 1))[1], "")
 
+    def test_png_orientation(self):
+        """Exif data of both byte orders, before and behind the texels; damaged data has no orientation."""
+        srgb = [linear(v) for v in (188, 100, 30)]
+
+        def exif(order, value, tag=0x0112):
+            entries = [struct.pack(order + "HHIHH", 0x010f, 3, 1, 8, 0), struct.pack(order + "HHIHH", tag, 3, 1, value, 0)]
+            return (b"MM\0*" if order == ">" else b"II*\0") + struct.pack(order + "IH", 8, len(entries)) + b"".join(entries) + bytes(4)
+
+        for order in "<>":
+            for value, says in ((1, ""), (2, "mirrored"), (3, "read upside down"), (4, "mirrored and turned"), (6, "turned by 90 degrees"),
+                                (8, "turned by 90 degrees"), (9, ""), (0, "")):
+                whole = exif(order, value)
+                behind = png([])[:-12] + images.chunk(b"eXIf", whole) + png([])[-12:]
+                for content in (png([(b"eXIf", whole)]), behind):
+                    found, said = self.texel("a.png", content)
+                    self.assert_near(found, srgb, 5e-6)
+                    self.assertEqual(said == "", says == "", said)
+                    self.assertIn(f"its Exif orientation, {value}, is not applied" if says else "", said)
+                    self.assertIn(says, said)
+            self.assertEqual(self.texel("a.png", png([(b"eXIf", exif(order, 6, 0x0111))]))[1], "")
+            for size in range(4, 30):
+                self.assert_near(self.texel("a.png", png([(b"eXIf", exif(order, 6)[:size])]))[0], srgb, 5e-6)
+            for far in (exif(order, 6)[:4] + b"\xff" * 4 + exif(order, 6)[8:], exif(order, 6)[:8] + b"\xff\xff" + exif(order, 6)[10:]):
+                self.assert_near(self.texel("a.png", png([(b"eXIf", far)]))[0], srgb, 5e-6)
+
     @staticmethod
     def profile(text):
         """The least that libpng takes for an ICC profile of colours."""
