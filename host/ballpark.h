@@ -487,9 +487,9 @@ BP_API BpStatus bp_render_read(BpRender *render, BpPicture *picture, BpError *er
  * or for a picture of another size. */
 BP_API BpStatus bp_render_aovs(BpRender *render, BpPicture *picture, BpError *err);
 /* Light that the samples of a picture find by chance only: it comes to matte surfaces via glass or
- * mirrors, or is seen in them, or is smaller than a pixel. It follows from the scene and the camera, whatever
- * has been sampled; and until samples have found it, it is added to bp_film_nrmse() and the errors of
- * pixels. Luminances, means over the picture. */
+ * mirrors, or from triangles that emit, or is seen in mirrors or through glass, or is smaller than a pixel.
+ * It follows from the scene and the camera, whatever has been sampled; and until samples have found it, it is
+ * added to bp_film_nrmse() and the errors of pixels. Luminances, means over the picture. */
 #define BP_UNSEEN_SPHERES 3
 typedef struct BpUnseenLight {
     double mean;   /* that it adds to a sample; 0: there is no such light */
@@ -498,7 +498,10 @@ typedef struct BpUnseenLight {
     size_t sphere_count; /* spheres via which most of the noise comes, with their parts of `square` */
     size_t spheres[BP_UNSEEN_SPHERES];
     double parts[BP_UNSEEN_SPHERES];
-    double direct;  /* the part of `square` of lights that are seen with nothing between */
+    double triangles;         /* the part of `square` via triangles, and the material of most of them */
+    size_t triangle_material; /* as the scene counts materials; 0 where there is no such part */
+    double direct;  /* the part of `square` with nothing in between: of lights that are seen, and triangles
+                       that emit */
     double seconds; /* that looking for it took */
 } BpUnseenLight;
 

@@ -13,15 +13,17 @@ enum {
     PILOT_TIME = PILOT_THROUGHPUT + 3, /* of the path: 0 where the shutter opens, 1 where it closes */
     PILOT_REALS
 };
-/* And PILOT_UINTS whole numbers. PILOT_SPHERE: what it met, as the scene counts spheres, or NO_SPHERE. */
-enum { PILOT_SPHERE, PILOT_FLAGS, PILOT_UINTS };
-/* PILOT_LIT: the vertex is one that a ray to a lamp can light. */
+/* And PILOT_UINTS whole numbers. PILOT_SHAPE: what it met, as the scene counts shapes, or NO_SPHERE. */
+enum { PILOT_SHAPE, PILOT_FLAGS, PILOT_UINTS };
+/* PILOT_LIT: the vertex is one that a ray to a lamp can light. PILOT_UNTOLD: no lamp is sampled, so whether
+ * one could be, its material tells. */
 enum {
     PILOT_TRACED = 1, /* there is such a segment */
     PILOT_MET = 2,
     PILOT_GOES_ON = 4,
     PILOT_LIT = 8,
-    PILOT_IN_MEDIUM = 16
+    PILOT_IN_MEDIUM = 16,
+    PILOT_UNTOLD = 32
 };
 /* Of a path that does not start at the camera: its origin as two parts, and its direction. */
 enum { PILOT_START_REALS = 9 };

@@ -412,9 +412,6 @@ static void print_unseen(const BpCommandLine *line, const BpScene *scene, const 
     const uint64_t samples = scene->camera.samples_per_pixel;
     if (found->unknown[0] != '\0') {
         fprintf(out, "  %-14s %-4s " BP_HANG "%s\n", "by chance", "?", found->unknown);
-    } else if (scene->triangle_count > 0) {
-        fprintf(out, "  %-14s %-4s " BP_HANG "%s\n", "by chance", "?",
-                "in scenes with triangles, light that samples find by chance only is not looked for");
     } else if (found->unseen.mean > 0) {
         fprintf(out, "  %-14s %-4s " BP_HANG, "by chance", "yes");
         bp_unseen_print(scene, &found->unseen, found->luminance,

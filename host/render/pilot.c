@@ -4,6 +4,7 @@
 #include "base/clock.h"
 #include "base/status.h"
 #include "packed/focusers.h"
+#include "pilot_shapes.h"
 #include "pilot_state.h"
 #include "scene/vector.h"
 
@@ -22,49 +23,32 @@ static bool is_small(const BpCamera *camera, const BpPilotLight *light) {
     return PI * light->radius * light->radius < (parallel ? extent : extent * away2);
 }
 
-static bool has_rare_light(const BpScene *scene, const BpPilotAim *aim) {
+bool bp_pilot_is_needed(const BpScene *scene, const BpPilotAim *aim) {
     bool rare = aim->pair_count > 0;
     for (size_t i = 0; i < aim->light_count; ++i) rare = rare || is_small(&scene->camera, &aim->lights[i]);
     return rare;
 }
 
-bool bp_pilot_is_needed(const BpScene *scene, const BpPilotAim *aim) {
-    return scene->triangle_count == 0 && has_rare_light(scene, aim);
-}
-
-bool bp_pilot_is_blind(const BpScene *scene) {
-    BpPilotAim aim;
-    bool specular = false;
-    if (scene->triangle_count == 0) return false;
-    if (bp_scene_emitting_triangles(scene) > 0) return true;
-    for (size_t i = 0; i < scene->triangle_count; ++i)
-        specular = specular || bp_pilot_is_specular_material(&scene->materials[scene->triangles[i].material]);
-    if (bp_pilot_aim(scene, &aim, NULL) != BP_OK) return true; /* no memory to know */
-    const bool blind = (specular && aim.light_count > 0) || has_rare_light(scene, &aim);
-    bp_pilot_aim_clear(&aim);
-    return blind;
-}
-
-static bool sums_create(size_t squares, size_t spheres, BpPilotSums *sums) {
+static bool sums_create(size_t squares, size_t ways, BpPilotSums *sums) {
     sums->pixels = squares;
     sums->mean = calloc(squares, sizeof *sums->mean);
     sums->square = calloc(squares, sizeof *sums->square);
-    sums->by_sphere = calloc(spheres + 1, sizeof *sums->by_sphere);
-    return sums->mean != NULL && sums->square != NULL && sums->by_sphere != NULL;
+    sums->by_way = calloc(ways, sizeof *sums->by_way);
+    return sums->mean != NULL && sums->square != NULL && sums->by_way != NULL;
 }
 
 static void sums_clear(BpPilotSums *sums) {
     free(sums->mean);
     free(sums->square);
-    free(sums->by_sphere);
+    free(sums->by_way);
 }
 
-static void sums_add(BpPilotSums *to, const BpPilotSums *from, size_t spheres) {
+static void sums_add(BpPilotSums *to, const BpPilotSums *from, size_t ways) {
     for (size_t i = 0; i < to->pixels; ++i) {
         to->mean[i] += from->mean[i];
         to->square[i] += from->square[i];
     }
-    for (size_t i = 0; i < spheres + 1; ++i) to->by_sphere[i] += from->by_sphere[i];
+    for (size_t i = 0; i < ways; ++i) to->by_way[i] += from->by_way[i];
     for (int c = 0; c < 3; ++c) to->square_of[c] += from->square_of[c];
 }
 
@@ -73,8 +57,8 @@ static BpStatus pilot_create(const BpScene *scene, const BpPilotAim *aim, uint32
     *pilot =
         (BpPilot){.scene = scene, .max_depth = max_depth, .aim = aim, .plan = bp_pilot_plan(&scene->camera)};
     const size_t squares = (size_t)pilot->plan.width * pilot->plan.height;
-    const bool has_sums = sums_create(squares, scene->sphere_count, &pilot->parts.chance) &&
-                          sums_create(squares, scene->sphere_count, &pilot->parts.focused);
+    const bool has_sums = sums_create(squares, bp_pilot_ways(scene), &pilot->parts.chance) &&
+                          sums_create(squares, bp_pilot_ways(scene), &pilot->parts.focused);
     pilot->hits = calloc(aim->light_count + 1, sizeof *pilot->hits);
     pilot->eyes = malloc(squares * pilot->plan.of_pixel * sizeof *pilot->eyes);
     pilot->ray_room = squares * pilot->plan.of_pixel * 4;
@@ -95,11 +79,18 @@ static void pilot_clear(BpPilot *pilot) {
     free(pilot->photons);
 }
 
-/* The spheres through which most of the noise comes. */
-static void report_spheres(const BpPilotSums *sums, size_t count, double total, BpUnseenLight *report) {
-    report->direct = sums->by_sphere[count] / total;
-    for (size_t i = 0; i < count; ++i) {
-        const double part = sums->by_sphere[i] / total;
+/* The shapes by way of which most of the noise comes. */
+static void report_ways(const BpScene *scene, const BpPilotSums *sums, double total, BpUnseenLight *report) {
+    const double *of_material = sums->by_way + scene->sphere_count + 1;
+    double most = 0;
+    report->direct = sums->by_way[bp_pilot_way_direct(scene)] / total;
+    for (size_t m = 0; m < scene->material_count; ++m) {
+        report->triangles += of_material[m] / total;
+        if (of_material[m] > most) report->triangle_material = m;
+        most = fmax(most, of_material[m]);
+    }
+    for (size_t i = 0; i < scene->sphere_count; ++i) {
+        const double part = sums->by_way[i] / total;
         size_t place = report->sphere_count;
         if (!(part > 0)) continue;
         while (place > 0 && report->parts[place - 1] < part) --place;
@@ -127,7 +118,7 @@ static BpStatus give(const BpPilot *pilot, BpUnseen **unseen, BpUnseenLight *rep
     if (!(total > 0)) return BP_OK;
     report->square = total / (double)sums->pixels;
     report->found = report->mean * report->mean / report->square;
-    report_spheres(sums, pilot->scene->sphere_count, total, report);
+    report_ways(pilot->scene, sums, total, report);
     BP_TRY(bp_unseen_create(pixels, unseen, err));
     for (size_t i = 0; i < pixels; ++i) {
         const size_t square = i / camera->width / plan->side * plan->width + i % camera->width / plan->side;
@@ -158,7 +149,7 @@ BpStatus bp_pilot_run(BpWorker *worker, const BpScene *scene, const BpPilotAim *
         if (*caustics == BP_CAUSTICS_AUTO)
             *caustics = bp_pilot_focusing_pays(&pilot) ? BP_CAUSTICS_ON : BP_CAUSTICS_OFF;
         if (*caustics == BP_CAUSTICS_OFF)
-            sums_add(&pilot.parts.chance, &pilot.parts.focused, scene->sphere_count);
+            sums_add(&pilot.parts.chance, &pilot.parts.focused, bp_pilot_ways(scene));
         status = give(&pilot, unseen, report, err);
     }
     bp_pilot_flight_clear(&flight);

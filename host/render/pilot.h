@@ -6,10 +6,11 @@
  * camera have the same pilot, whatever the seed, and films of one scene share it.
  *
  * A sample of the picture finds a lamp or a disc by rays to it, where its path stands on a matte surface.
- * What it finds by chance is light that comes to a matte point by way of glass or mirrors, and light that is
- * seen directly or by such ways. If the light is small, that is rare, and as long as it has not happened, the
- * samples' spread does not know of it. A pilot does: some paths from the lights at everything specular,
- * followed to where they are seen; and some camera paths, to see how close they come to lights. */
+ * What it finds by chance is light that comes to a matte point by way of glass or mirrors, or from triangles
+ * that emit, and light that is seen directly or by such ways. If the light is small, that is rare, and as
+ * long as it has not happened, the samples' spread does not know of it. A pilot does: some paths from the
+ * lights at everything specular, followed to where they are seen; and some camera paths, to see how close
+ * they come to lights. */
 #ifndef BP_RENDER_PILOT_H
 #define BP_RENDER_PILOT_H
 
@@ -20,10 +21,6 @@
 
 /* Whether the scene has light that a pilot may find, in what bp_pilot_aim() has found. */
 bool bp_pilot_is_needed(const BpScene *scene, const BpPilotAim *aim);
-
-/* Whether a scene with triangles may have such light: a pilot does not look for it there, since its paths
- * know spheres alone. */
-bool bp_pilot_is_blind(const BpScene *scene);
 
 /* *caustics: whether rays to lamps go through focusers too; of BP_CAUSTICS_AUTO it makes one of the others.
  * *unseen is NULL if there is none. */

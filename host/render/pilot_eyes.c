@@ -3,6 +3,7 @@
  * In:    a scene, a device.
  * Out:   the rough points, the rays behind mirrors and glass, and lights that are seen directly.
  * Knows: how far apart paths are.   Does not know: what light comes from elsewhere. */
+#include "pilot_shapes.h"
 #include "pilot_state.h"
 
 #include "base/hash.h"
@@ -64,14 +65,14 @@ static double chance_of(const BpPilotLight *light, const BpPilotSegment *segment
     }
     off2 -= along * along;
     if (!parallel) near *= along;
-    const bool hidden = met && segment->sphere != light->sphere && segment->distance < along;
+    const bool hidden = met && segment->shape != light->shape && segment->distance < along;
     if (along <= 0 || hidden || light->radius >= near || off2 > near * near) return 0;
     return light->radius * light->radius / (near * near);
 }
 
 static bool meets(const BpPilotLight *light, const BpPilotSegment *segment) {
     const bool met = (segment->flags & PILOT_MET) != 0;
-    if (!light->distant) return met && segment->sphere == light->sphere;
+    if (!light->distant) return met && segment->shape == light->shape;
     return !met && light->seen && bp_dot(segment->direction, light->place) > 1 - light->cap;
 }
 
@@ -85,7 +86,7 @@ static void pass_directly(BpPilot *pilot, const BpPilotSegment *segment, size_t 
         pilot->hits[i] += meets(light, segment);
         if (chance > 0)
             bp_pilot_add(&pilot->parts.chance, square, light->radiance, chance / pilot->plan.of_pixel,
-                         pilot->scene->sphere_count);
+                         bp_pilot_way_direct(pilot->scene));
     }
 }
 
@@ -98,7 +99,7 @@ static void keep_ray(BpPilot *pilot, const BpPilotSegment *segment, const double
                         .length = met ? segment->distance : INFINITY,
                         .way = way,
                         .pixel = (uint32_t)square,
-                        .sphere = segment->sphere,
+                        .shape = segment->shape,
                         .through = through,
                         .vertices = vertices};
     memcpy(ray->direction, segment->direction, sizeof ray->direction);
@@ -122,7 +123,8 @@ static Spread first_spread(const BpPilot *pilot) {
 /* Behind a surface: what is curved spreads them, or gathers them, which counts as if it spread them too. */
 static void spread_at(const BpScene *scene, const BpPilotSegment *segment, const BpPilotSegment *next,
                       const double normal[3], Spread *spread) {
-    const double radius = fabs(scene->spheres[segment->sphere].radius);
+    if (bp_pilot_triangle(scene, segment->shape) != NULL) return;
+    const double radius = fabs(scene->spheres[segment->shape].radius);
     const double cosine = fmax(fabs(bp_dot(segment->direction, normal)), 0.2);
     const bool reflected = bp_dot(next->direction, normal) > 0;
     spread->slope += spread->width / (radius * cosine) * (reflected ? 2 : 0.5);
@@ -133,14 +135,15 @@ static void keep_eye(BpPilot *pilot, const BpPilotSegment *segment, uint32_t s, 
     BpPilotEye *eye = &pilot->eyes[pilot->eye_count];
     *eye = (BpPilotEye){.pixel = (uint32_t)square,
                         .share = 1.0 / pilot->plan.of_pixel,
-                        .sphere = segment->sphere,
+                        .shape = segment->shape,
+                        .object = bp_pilot_object(scene, segment->shape),
                         .segments = s + 1};
     memcpy(eye->point, segment->point, sizeof eye->point);
     memcpy(eye->throughput, segment->throughput, sizeof eye->throughput);
     bp_pilot_normal(scene, segment, eye->normal);
     memcpy(eye->axis, eye->normal, sizeof eye->axis);
     const double along = bp_dot(segment->direction, eye->normal);
-    const BpMaterialKind kind = bp_pilot_material(scene, segment)->kind;
+    const BpMaterialKind kind = bp_pilot_material_at(scene, segment)->kind;
     if (kind == BP_MATERIAL_METAL || kind == BP_MATERIAL_ROUGH_METAL)
         for (int a = 0; a < 3; ++a) eye->axis[a] = segment->direction[a] - 2 * along * eye->normal[a];
     eye->radius = width * sqrt(NEAR_EYES / PI / fmax(-along, 0.1));
@@ -170,13 +173,13 @@ static void follow_eye(BpPilot *pilot, const BpPilotFlight *flight, uint32_t pat
         }
         if (!bp_pilot_is_surface(scene, &segment) || !bp_pilot_segment(flight, path, SEGMENTS, s + 1, &next))
             continue;
-        if (through == NO_SPHERE) through = segment.sphere;
-        alone = alone && segment.sphere == through;
+        if (through == NO_SPHERE) through = segment.shape;
+        alone = alone && segment.shape == through;
         ++vertices;
         double normal[3];
         bp_pilot_normal(scene, &segment, normal);
         spread_at(scene, &segment, &next, normal, &spread);
-        const uint32_t turn[2] = {segment.sphere, bp_dot(next.direction, normal) > 0};
+        const uint32_t turn[2] = {segment.shape, bp_dot(next.direction, normal) > 0};
         way = bp_hash_bytes(way, turn, sizeof turn);
     }
 }
@@ -190,7 +193,7 @@ BpStatus bp_pilot_trace_eyes(BpPilot *pilot, BpPilotFlight *flight, BpError *err
             flight->number_data[2 * i] = pixel_of(plan, &pilot->scene->camera, (first + i) / plan->of_pixel);
             flight->number_data[2 * i + 1] = (first + i) % plan->of_pixel;
         }
-        BP_TRY(bp_pilot_fly(flight, count, SEGMENTS, true, err));
+        BP_TRY(bp_pilot_fly(flight, count, SEGMENTS, true, SEGMENTS, err));
         for (uint32_t i = 0; i < count; ++i) follow_eye(pilot, flight, i, (first + i) / plan->of_pixel);
     }
     return BP_OK;

@@ -1,6 +1,8 @@
 /* pilot_join.c: see pilot_join.h. */
 #include "pilot_join.h"
 
+#include "pilot_shapes.h"
+
 #include "base/color.h"
 #include "base/hash.h"
 #include "scene/vector.h"
@@ -12,6 +14,8 @@
 #define PI 3.14159265358979323846
 /* Cosines of grazing light are no smaller, so that no single path outweighs all others. */
 #define COSINE_MIN 0.02
+/* The cosine between the normals of two triangles whose points count as neighbours, at least. */
+#define ALIKE 0.8
 
 void bp_pilot_add(BpPilotSums *sums, size_t pixel, const double radiance[3], double probability,
                   size_t through) {
@@ -19,7 +23,7 @@ void bp_pilot_add(BpPilotSums *sums, size_t pixel, const double radiance[3], dou
     for (int c = 0; c < 3; ++c) sums->square_of[c] += radiance[c] * radiance[c] * probability;
     sums->mean[pixel] += y * probability;
     sums->square[pixel] += y * y * probability;
-    sums->by_sphere[through] += y * y * probability;
+    sums->by_way[through] += y * y * probability;
 }
 
 /* Around a mirror direction, as kernels/bsdf/metal.cl explains. */
@@ -58,7 +62,7 @@ enum { LEVELS = 256 };
 typedef struct Grid {
     uint32_t *first; /* of each place of the table: an entry, or NONE */
     uint32_t *next;  /* of each entry */
-    uint64_t *cells; /* of each entry: the hash of its cell, level and sphere, which stands for them */
+    uint64_t *cells; /* of each entry: the hash of its cell, level and object, which stands for them */
     size_t place_mask;
     double cells_of_unit[LEVELS];
     bool has_level[LEVELS];
@@ -76,8 +80,8 @@ static uint64_t hash_in(uint64_t hash, uint64_t number) {
     return hash ^ hash >> 29;
 }
 
-static uint64_t hash_cell(int level, uint32_t sphere, const int64_t cell[3]) {
-    uint64_t hash = hash_in(BP_HASH_START, (uint64_t)sphere << 8 | (uint64_t)(uint32_t)level);
+static uint64_t hash_cell(int level, uint32_t object, const int64_t cell[3]) {
+    uint64_t hash = hash_in(BP_HASH_START, (uint64_t)object << 8 | (uint64_t)(uint32_t)level);
     for (int a = 0; a < 3; ++a) hash = hash_in(hash, (uint64_t)cell[a]);
     return hash ^ hash >> 32;
 }
@@ -120,7 +124,7 @@ static void grid_add(Grid *grid, const BpPilotEye *eye, size_t number) {
         }
         if (again) continue;
         const size_t entry = 8 * number + corner;
-        grid->cells[entry] = hash_cell(level, eye->sphere, cell);
+        grid->cells[entry] = hash_cell(level, eye->object, cell);
         uint32_t *first = &grid->first[grid->cells[entry] & grid->place_mask];
         grid->next[entry] = *first;
         *first = (uint32_t)entry;
@@ -144,7 +148,8 @@ static void join_one(const BpScene *scene, const BpPilotEye *eye, const BpPilotP
     const double cosine = bp_dot(back, eye->normal);
     if (away2 > eye->radius * eye->radius || cosine <= 0 || eye->segments + photon->segments > max_depth)
         return;
-    const BpMaterial *material = &scene->materials[scene->spheres[eye->sphere].material];
+    if (eye->shape >= scene->sphere_count && bp_dot(eye->normal, photon->normal) < ALIKE) return;
+    const BpMaterial *material = bp_pilot_material(scene, eye->shape);
     const double density = bp_pilot_density(material, eye->axis, back) / fmax(cosine, COSINE_MIN);
     const double probability = density * photon->measure / (PI * eye->radius * eye->radius);
     if (probability > 0) bp_pilot_add(sums, eye->pixel, radiance, eye->share * probability, photon->through);
@@ -158,7 +163,7 @@ static void join_photon(const BpScene *scene, const Grid *grid, const BpPilotEye
         if (!grid->has_level[level]) continue;
         int64_t cell[3];
         for (int a = 0; a < 3; ++a) cell[a] = cell_of(grid, photon->point[a], level);
-        const uint64_t hash = hash_cell(level, photon->sphere, cell);
+        const uint64_t hash = hash_cell(level, photon->object, cell);
         for (uint32_t entry = grid->first[hash & grid->place_mask]; entry != NONE; entry = grid->next[entry])
             if (grid->cells[entry] == hash) join_one(scene, &eyes[entry / 8], photon, max_depth, sums);
     }

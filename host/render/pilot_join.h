@@ -23,17 +23,18 @@ typedef struct BpPilotEye {
     double axis[3];             /* of the lobe */
     double throughput[3];       /* behind the point */
     double radius;              /* within which light counts */
-    uint32_t sphere, segments;
+    uint32_t shape, object, segments;
 } BpPilotEye;
 
 /* Light that comes to a point. */
 typedef struct BpPilotPhoton {
     double point[3], direction[3];
+    double normal[3];   /* unit, on the side that it comes from */
     double radiance[3]; /* that a path brings which takes this way back */
     double measure;     /* area x solid angle x cosine for which it stands */
-    uint32_t sphere, segments;
-    uint32_t through; /* the sphere that the light met first */
-    bool focused;     /* rays to lamps that go through focusers find the light of its path */
+    uint32_t object, segments;
+    size_t through; /* by way of what the light comes (bp_pilot_way()) */
+    bool focused;   /* rays to lamps that go through focusers find the light of its path */
 } BpPilotPhoton;
 
 /* What has been found, in double. */
@@ -41,8 +42,7 @@ typedef struct BpPilotSums {
     size_t pixels;
     double *mean, *square; /* luminance; of each pixel */
     double square_of[3];   /* of each channel, over all pixels */
-    double
-        *by_sphere; /* of `through`: the sum of squares; sphere_count + 1, the last for light seen directly */
+    double *by_way;        /* of `through`: the sum of squares; bp_pilot_ways() */
 } BpPilotSums;
 
 /* What is left to chance whatever is sampled, and what rays to lamps find that go through focusers. */

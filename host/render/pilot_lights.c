@@ -5,6 +5,7 @@
 #include "packed/environment_table.h"
 #include "packed/focusers.h"
 #include "packed/lamp_tree.h"
+#include "pilot_shapes.h"
 #include "scene/vector.h"
 
 #include <float.h>
@@ -13,26 +14,6 @@
 #include <string.h>
 
 #define PI 3.14159265358979323846
-
-bool bp_pilot_is_specular(const BpScene *scene, size_t sphere) {
-    return bp_pilot_is_specular_material(&scene->materials[scene->spheres[sphere].material]);
-}
-
-bool bp_pilot_is_specular_material(const BpMaterial *material) {
-    return material->kind != BP_MATERIAL_INTERFACE &&
-           (bp_material_types[material->kind].traits & BP_SCATTERS) != 0 && !bp_material_is_lit(material);
-}
-
-/* The ball that a sphere fills while the shutter is open; returns its radius. */
-static double ball_of(const BpScene *scene, size_t sphere, double center[3]) {
-    const double *from = scene->spheres[sphere].center, *to = bp_sphere_end(scene, sphere);
-    double way = 0;
-    for (int a = 0; a < 3; ++a) {
-        center[a] = 0.5 * (from[a] + to[a]);
-        way += (to[a] - from[a]) * (to[a] - from[a]);
-    }
-    return fabs(scene->spheres[sphere].radius) + 0.5 * sqrt(way);
-}
 
 /* ---- lights ---- */
 
@@ -131,36 +112,49 @@ static void add_texels(const BpScene *scene, size_t room, BpPilotAim *aim) {
     }
 }
 
+/* ---- lamps: spheres that rays are sent to, and all triangles that emit ---- */
+
+static bool is_triangle(const BpScene *scene, size_t shape) {
+    return shape >= scene->sphere_count;
+}
+
+static bool is_lamp(const BpScene *scene, size_t shape, size_t enclosing) {
+    return is_triangle(scene, shape) ? bp_luminance_of(bp_pilot_material(scene, shape)->emit) > 0
+                                     : bp_sphere_is_sampled(scene, shape, enclosing);
+}
+
+static double radius_of(const BpScene *scene, size_t shape) {
+    double normal[3];
+    return is_triangle(scene, shape) ? sqrt(bp_pilot_area(bp_pilot_triangle(scene, shape), normal) / PI)
+                                     : fabs(scene->spheres[shape].radius);
+}
+
 /* All lamps, or of more than there is room for some, drawn by systematic sampling in proportion to the square
  * of their power: each stands for its share of them. */
 static void add_lamps(const BpScene *scene, size_t room, BpPilotAim *aim) {
     const size_t enclosing = bp_enclosing_lamp(scene);
     double sum = 0, below = 0;
     size_t count = 0;
-    for (size_t i = 0; i < scene->sphere_count; ++i) {
-        if (!bp_sphere_is_sampled(scene, i, enclosing)) continue;
-        const double y = bp_luminance_of(scene->materials[scene->spheres[i].material].emit),
-                     r = scene->spheres[i].radius;
+    for (size_t i = 0; i < bp_scene_shapes(scene); ++i) {
+        if (!is_lamp(scene, i, enclosing)) continue;
+        const double y = bp_luminance_of(bp_pilot_material(scene, i)->emit), r = radius_of(scene, i);
         sum += y * y * r * r;
         ++count;
     }
     double next = 0.5;
-    for (size_t i = 0; i < scene->sphere_count; ++i) {
-        if (!bp_sphere_is_sampled(scene, i, enclosing)) continue;
-        const BpMaterial *material = &scene->materials[scene->spheres[i].material];
-        const double y = bp_luminance_of(material->emit), r = scene->spheres[i].radius;
+    for (size_t i = 0; i < bp_scene_shapes(scene); ++i) {
+        if (!is_lamp(scene, i, enclosing)) continue;
+        const BpMaterial *material = bp_pilot_material(scene, i);
+        const double y = bp_luminance_of(material->emit), r = radius_of(scene, i);
         const double weight = y * y * r * r / sum * (double)room;
         below += weight;
         if (count > room && below < next) continue;
         BpPilotLight *light = &aim->lights[aim->light_count++];
-        *light = (BpPilotLight){.seen = true,
-                                .disc = SIZE_MAX,
-                                .sphere = i,
-                                .share = count > room && weight < 1 ? 1 / weight : 1};
-        light->radius = fabs(r);
+        *light = (BpPilotLight){
+            .seen = true, .disc = SIZE_MAX, .shape = i, .share = count > room && weight < 1 ? 1 / weight : 1};
+        light->radius = r;
         memcpy(light->radiance, material->emit, sizeof light->radiance);
-        for (int a = 0; a < 3; ++a)
-            light->place[a] = 0.5 * (scene->spheres[i].center[a] + bp_sphere_end(scene, i)[a]);
+        bp_pilot_ball(scene, i, light->place);
         next = floor(below + 0.5) + 0.5;
         if (aim->light_count == BP_PILOT_LIGHTS_MAX) return;
     }
@@ -181,29 +175,33 @@ static BpStatus find_lights(const BpScene *scene, BpPilotAim *aim, BpError *err)
 static BpStatus find_targets(const BpScene *scene, BpPilotAim *aim, BpError *err) {
     double low[3] = {INFINITY, INFINITY, INFINITY}, high[3] = {-INFINITY, -INFINITY, -INFINITY};
     size_t count = 0;
-    for (size_t i = 0; i < scene->sphere_count; ++i) count += bp_pilot_is_specular(scene, i);
+    for (size_t i = 0; i < bp_scene_shapes(scene); ++i) count += bp_pilot_is_specular(scene, i);
     aim->targets = malloc((count > 0 ? count : 1) * sizeof *aim->targets);
     if (aim->targets == NULL)
-        return bp_fail(err, BP_ERR_MEMORY, "out of memory for the %zu specular spheres", count);
-    for (size_t i = 0; i < scene->sphere_count; ++i) {
+        return bp_fail(err, BP_ERR_MEMORY, "out of memory for the %zu specular shapes", count);
+    for (size_t i = 0; i < bp_scene_shapes(scene); ++i) {
         double center[3];
-        const double radius = ball_of(scene, i, center);
+        const double radius = bp_pilot_ball(scene, i, center);
         for (int a = 0; a < 3; ++a) {
             low[a] = fmin(low[a], center[a] - radius);
             high[a] = fmax(high[a], center[a] + radius);
         }
         if (bp_pilot_is_specular(scene, i)) aim->targets[aim->target_count++] = (uint32_t)i;
     }
-    for (int a = 0; a < 3 && scene->sphere_count > 0; ++a) aim->middle[a] = 0.5 * (low[a] + high[a]);
-    aim->reach = scene->sphere_count > 0 ? 0.5 * sqrt(bp_distance2(low, high)) : 0;
+    for (int a = 0; a < 3 && bp_scene_shapes(scene) > 0; ++a) aim->middle[a] = 0.5 * (low[a] + high[a]);
+    aim->reach = bp_scene_shapes(scene) > 0 ? 0.5 * sqrt(bp_distance2(low, high)) : 0;
     return BP_OK;
 }
 
-/* The area x solid angle x cosine of all rays from the light to the sphere, roughly, times the square of what
+/* The area x solid angle x cosine of all rays from the light to the target, roughly, times the square of what
  * each brings: by so much they add to the variance of a picture. */
-static double importance(const BpScene *scene, const BpPilotLight *light, uint32_t target) {
+static double importance(const BpScene *scene, const BpPilotAim *aim, const BpPilotPair *pair) {
+    const BpPilotLight *const light = &aim->lights[pair->light];
+    const double y = bp_luminance_of(light->radiance);
+    if (pair->target == BP_PILOT_ANYWHERE)
+        return light->share * y * y * 2 * PI * light->radius * light->radius * PI;
     double center[3];
-    const double radius = ball_of(scene, target, center), y = bp_luminance_of(light->radiance);
+    const double radius = bp_pilot_ball(scene, aim->targets[pair->target], center);
     double extent = 2 * PI * light->cap * PI * radius * radius;
     if (!light->distant) {
         const double away = fmax(bp_distance2(center, light->place), radius * radius);
@@ -230,47 +228,56 @@ static void pair_some(BpPilotAim *aim) {
     }
 }
 
+/* Anywhere, from each triangle that emits. */
+static void pair_with_none(const BpScene *scene, BpPilotAim *aim) {
+    for (uint32_t l = 0; l < aim->light_count; ++l)
+        if (!aim->lights[l].distant && is_triangle(scene, aim->lights[l].shape))
+            aim->pairs[aim->pair_count++] =
+                (BpPilotPair){.light = l, .target = BP_PILOT_ANYWHERE, .share = 1};
+}
+
 /* Half of the paths by importance, so that what matters is well known, half to all pairs alike, so that
  * nothing is missed whose importance was wrong. */
 static BpStatus make_pairs(const BpScene *scene, BpPilotAim *aim, BpError *err) {
     const bool all = aim->target_count <= BP_PILOT_PAIRS_MAX / aim->light_count;
-    const size_t room = all ? aim->light_count * aim->target_count : BP_PILOT_PAIRS_MAX;
+    const size_t room = aim->light_count + (all ? aim->light_count * aim->target_count : BP_PILOT_PAIRS_MAX);
     aim->pairs = malloc(room * sizeof *aim->pairs);
     aim->bounds = malloc(room * sizeof *aim->bounds);
     if (aim->pairs == NULL || aim->bounds == NULL)
-        return bp_fail(err, BP_ERR_MEMORY, "out of memory for %zu pairs of lights and spheres", room);
+        return bp_fail(err, BP_ERR_MEMORY, "out of memory for %zu pairs of lights and shapes", room);
     if (all)
         pair_all(aim);
     else
         pair_some(aim);
+    pair_with_none(scene, aim);
+    const size_t count = aim->pair_count;
     double sum = 0, below = 0;
-    for (size_t i = 0; i < room; ++i) {
+    for (size_t i = 0; i < count; ++i) {
         BpPilotPair *pair = &aim->pairs[i];
-        pair->probability = importance(scene, &aim->lights[pair->light], aim->targets[pair->target]);
+        pair->probability = importance(scene, aim, pair);
         sum += pair->probability;
     }
-    for (size_t i = 0; i < room; ++i) {
+    for (size_t i = 0; i < count; ++i) {
         BpPilotPair *pair = &aim->pairs[i];
-        pair->probability = 0.5 * (sum > 0 ? pair->probability / sum : 1 / (double)room) + 0.5 / (double)room;
+        pair->probability =
+            0.5 * (sum > 0 ? pair->probability / sum : 1 / (double)count) + 0.5 / (double)count;
         aim->bounds[i] = below;
         below += pair->probability;
     }
     return BP_OK;
 }
 
-bool bp_pilot_is_sampled(const BpScene *scene, const BpPilotLight *light, uint32_t sphere,
-                         uint32_t vertices) {
-    if (vertices > bp_focuser_vertices(scene, sphere)) return false;
-    if (light->distant) return light->disc != SIZE_MAX && bp_focuses_disc(scene, sphere, light->disc);
-    return bp_focuses_lamp(scene, sphere, light->sphere);
+bool bp_pilot_is_sampled(const BpScene *scene, const BpPilotLight *light, uint32_t shape, uint32_t vertices) {
+    if (is_triangle(scene, shape) || vertices > bp_focuser_vertices(scene, shape)) return false;
+    if (light->distant) return light->disc != SIZE_MAX && bp_focuses_disc(scene, shape, light->disc);
+    return !is_triangle(scene, light->shape) && bp_focuses_lamp(scene, shape, light->shape);
 }
 
 BpStatus bp_pilot_aim(const BpScene *scene, BpPilotAim *aim, BpError *err) {
     *aim = (BpPilotAim){0};
     BpStatus status = find_lights(scene, aim, err);
     if (status == BP_OK) status = find_targets(scene, aim, err);
-    if (status == BP_OK && aim->light_count > 0 && aim->target_count > 0)
-        status = make_pairs(scene, aim, err);
+    if (status == BP_OK && aim->light_count > 0) status = make_pairs(scene, aim, err);
     if (status != BP_OK) bp_pilot_aim_clear(aim);
     return status;
 }
@@ -315,6 +322,16 @@ static void in_cap(BpRandom *random, const double axis[3], double cap, double di
     bp_normalize(direction);
 }
 
+/* A direction by the cosine around `normal`. */
+static void by_cosine(BpRandom *random, const double normal[3], double direction[3]) {
+    double u[3], v[3], point[2];
+    across(normal, u, v);
+    disk(random, point);
+    const double up = sqrt(fmax(0, 1 - point[0] * point[0] - point[1] * point[1]));
+    for (int a = 0; a < 3; ++a) direction[a] = up * normal[a] + point[0] * u[a] + point[1] * v[a];
+    bp_normalize(direction);
+}
+
 /* The area x solid angle of the ray that it starts. */
 static double start_distant(const BpPilotAim *aim, const BpPilotLight *light, const double center[3],
                             double radius, BpRandom *random, BpPilotStart *start) {
@@ -350,18 +367,49 @@ static double start_lamp(const BpPilotLight *light, const double center[3], doub
         axis[a] = center[a] - start->origin[a];
     }
     const double distance = bp_normalize(axis);
-    if (distance <= radius) { /* from inside, by the cosine */
-        double u[3], v[3], point[2];
-        across(normal, u, v);
-        disk(random, point);
-        const double up = sqrt(fmax(0, 1 - point[0] * point[0] - point[1] * point[1]));
-        for (int a = 0; a < 3; ++a) start->direction[a] = up * normal[a] + point[0] * u[a] + point[1] * v[a];
-        bp_normalize(start->direction);
+    if (distance <= radius) { /* from inside */
+        by_cosine(random, normal, start->direction);
         return area * PI;
     }
     const double sine = radius / distance, cap = sine * sine / (1 + sqrt(fmax(0, 1 - sine * sine)));
     in_cap(random, axis, cap, start->direction);
     return area * 2 * PI * cap * fmax(0, bp_dot(start->direction, normal));
+}
+
+/* A point of a triangle, uniform. */
+static void in_triangle(BpRandom *random, const BpTriangle *triangle, double point[3]) {
+    double u = bp_random_next(random), v = bp_random_next(random);
+    if (u + v > 1) {
+        u = 1 - u;
+        v = 1 - v;
+    }
+    for (int a = 0; a < 3; ++a)
+        point[a] = (1 - u - v) * triangle->vertices[0][a] + u * triangle->vertices[1][a] +
+                   v * triangle->vertices[2][a];
+}
+
+/* The area x solid angle x cosine of the ray that it starts, from either side of the triangle. `radius`: 0
+ * for a ray anywhere. */
+static double start_triangle(const BpScene *scene, const BpPilotLight *light, const double center[3],
+                             double radius, BpRandom *random, BpPilotStart *start) {
+    const BpTriangle *const triangle = bp_pilot_triangle(scene, light->shape);
+    double normal[3], axis[3];
+    const double area = bp_pilot_area(triangle, normal);
+    double measure = area * 2 * PI; /* all that leaves it, by the cosine */
+    in_triangle(random, triangle, start->origin);
+    for (int a = 0; a < 3; ++a) axis[a] = radius > 0 ? center[a] - start->origin[a] : 0;
+    const double distance = bp_normalize(axis);
+    if (distance <= radius) {
+        const double side = bp_random_next(random) < 0.5 ? -1 : 1;
+        for (int a = 0; a < 3; ++a) normal[a] *= side;
+        by_cosine(random, normal, start->direction);
+    } else {
+        const double sine = radius / distance, cap = sine * sine / (1 + sqrt(fmax(0, 1 - sine * sine)));
+        in_cap(random, axis, cap, start->direction);
+        measure = area * 2 * PI * cap * fabs(bp_dot(start->direction, normal));
+    }
+    for (int a = 0; a < 3; ++a) start->origin[a] += ABOVE * light->radius * start->direction[a];
+    return measure;
 }
 
 static size_t choose_pair(const BpPilotAim *aim, double number) {
@@ -381,9 +429,12 @@ void bp_pilot_start(const BpScene *scene, const BpPilotAim *aim, size_t count, B
     *start = (BpPilotStart){.pair = (uint32_t)choose_pair(aim, bp_random_next(random))};
     const BpPilotPair *pair = &aim->pairs[start->pair];
     const BpPilotLight *light = &aim->lights[pair->light];
-    double center[3];
-    const double radius = ball_of(scene, aim->targets[pair->target], center);
+    double center[3] = {0};
+    const double radius =
+        pair->target == BP_PILOT_ANYWHERE ? 0 : bp_pilot_ball(scene, aim->targets[pair->target], center);
     const double extent = light->distant ? start_distant(aim, light, center, radius, random, start)
-                                         : start_lamp(light, center, radius, random, start);
+                          : is_triangle(scene, light->shape)
+                              ? start_triangle(scene, light, center, radius, random, start)
+                              : start_lamp(light, center, radius, random, start);
     start->measure = extent * light->share * pair->share / (pair->probability * (double)count);
 }

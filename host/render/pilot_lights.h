@@ -1,12 +1,14 @@
 /* pilot_lights.h: where the paths of a pilot begin: at lights, aimed at what may focus their light.
  *
  * In:    a scene.
- * Out:   its lights, its specular spheres, and beginnings of paths from the ones to the others.
+ * Out:   its lights, its specular shapes, and beginnings of paths from the ones to the others.
  * Knows: what a ray to a lamp finds, and what it does not.   Does not know: kernels.
  *
- * A pair is a light and a specular sphere: glass, or metal too smooth to be lit by rays to lamps. A path of
- * the pair begins on the light and flies at the sphere. It counts only if it meets that sphere first, so each
- * path belongs to one pair, whichever spheres overlap. */
+ * A pair is a light and a specular shape: glass, or metal too smooth to be lit by rays to lamps. A path of
+ * the pair begins on the light and flies at the shape. It counts only if it meets that shape first, so each
+ * path belongs to one pair, whichever shapes overlap. No ray is sent to a triangle that emits, so its light
+ * is found by chance everywhere: it also has a pair whose paths fly anywhere, and count if they meet
+ * something that is not specular first. */
 #ifndef BP_RENDER_PILOT_LIGHTS_H
 #define BP_RENDER_PILOT_LIGHTS_H
 
@@ -14,22 +16,23 @@
 #include "scene/scene.h"
 
 #define BP_PILOT_LIGHTS_MAX 256u
-#define BP_PILOT_PAIRS_MAX 65536u
+#define BP_PILOT_PAIRS_MAX 65536u /* with targets */
+#define BP_PILOT_ANYWHERE UINT32_MAX
 
 typedef struct BpPilotLight {
     bool distant;    /* a disc of the sky or a texel of the image around; else a lamp */
     bool seen;       /* by camera rays that meet it first */
-    size_t sphere;   /* of a lamp */
+    size_t shape;    /* of a lamp: a sphere or a triangle */
     size_t disc;     /* of a disc of the sky; SIZE_MAX: it is none */
     double place[3]; /* unit, to the middle of a distant light; of a lamp the centre, at half of its way */
-    double radius;   /* of a lamp */
+    double radius;   /* of a lamp; of a triangle, that of a disk of its area */
     double cap;      /* of a distant light: its solid angle over 2 pi, that is, 1 - cos of its half angle */
     double radiance[3]; /* at most */
     double share;       /* of lights alike for which this one stands, 1 or more */
 } BpPilotLight;
 
 typedef struct BpPilotPair {
-    uint32_t light, target; /* into lights[] and targets[] */
+    uint32_t light, target; /* into lights[] and targets[], or BP_PILOT_ANYWHERE */
     double probability;
     double share; /* of pairs alike for which this one stands, 1 or more */
 } BpPilotPair;
@@ -37,12 +40,12 @@ typedef struct BpPilotPair {
 typedef struct BpPilotAim {
     BpPilotLight *lights;
     size_t light_count;
-    uint32_t *targets; /* the specular spheres */
+    uint32_t *targets; /* the specular shapes */
     size_t target_count;
     BpPilotPair *pairs;
     double *bounds; /* of pairs: the sum of the probabilities before each */
     size_t pair_count;
-    double middle[3], reach; /* a ball around all spheres */
+    double middle[3], reach; /* a ball around all shapes */
 } BpPilotAim;
 
 /* A path from a light. */
@@ -52,13 +55,9 @@ typedef struct BpPilotStart {
     uint32_t pair;
 } BpPilotStart;
 
-/* The sphere scatters into few directions only, so that no ray to a lamp lights it. */
-bool bp_pilot_is_specular(const BpScene *scene, size_t sphere);
-bool bp_pilot_is_specular_material(const BpMaterial *material);
-
-/* Whether a ray to the light, sent through focusers, finds it by way of the sphere, on which a path has stood
+/* Whether a ray to the light, sent through focusers, finds it by way of the shape, on which a path has stood
  * so many times and on nothing else: then it is not left to chance. */
-bool bp_pilot_is_sampled(const BpScene *scene, const BpPilotLight *light, uint32_t sphere, uint32_t vertices);
+bool bp_pilot_is_sampled(const BpScene *scene, const BpPilotLight *light, uint32_t shape, uint32_t vertices);
 
 /* BP_ERR_MEMORY. Without lights or without targets there are no pairs. Free with bp_pilot_aim_clear(). */
 BpStatus bp_pilot_aim(const BpScene *scene, BpPilotAim *aim, BpError *err);

@@ -1,6 +1,8 @@
 /* pilot_pass.c: see pilot_pass.h. */
 #include "pilot_pass.h"
 
+#include "pilot_shapes.h"
+
 #include "scene/vector.h"
 
 #include <math.h>
@@ -44,7 +46,7 @@ static bool pass_light(const BpPilotLight *light, const BpPilotRay *ray, Pass *p
         double to[3];
         for (int a = 0; a < 3; ++a) to[a] = light->place[a] - ray->origin[a];
         const double along = bp_dot(to, ray->direction);
-        if (along <= light->radius || (ray->length < along && ray->sphere != light->sphere)) return false;
+        if (along <= light->radius || (ray->length < along && ray->shape != light->shape)) return false;
         for (int a = 0; a < 3; ++a) pass->off[a] = ray->direction[a] - to[a] / along;
         pass->size2 = light->radius * light->radius / (along * along);
     }
@@ -65,8 +67,8 @@ static void keep_nearest(const Pass *pass, size_t most, Pass *nearest, size_t *c
 }
 
 /* The rays that have come one way, and one light. */
-static void pass_group(const BpPilotLight *light, const BpPilotRay *rays, size_t count, double share,
-                       BpPilotSums *sums) {
+static void pass_group(const BpScene *scene, const BpPilotLight *light, const BpPilotRay *rays, size_t count,
+                       double share, BpPilotSums *sums) {
     Pass nearest[COUNT], pass;
     size_t most = count / GROUP, found = 0;
     if (most > COUNT) most = COUNT;
@@ -84,7 +86,8 @@ static void pass_group(const BpPilotLight *light, const BpPilotRay *rays, size_t
         double radiance[3];
         if (nearest[i].size2 >= near2) return; /* rays meet it often */
         for (int c = 0; c < 3; ++c) radiance[c] = ray->carried[c] * light->radiance[c];
-        bp_pilot_add(sums, ray->pixel, radiance, share * nearest[i].size2 / near2, ray->through);
+        bp_pilot_add(sums, ray->pixel, radiance, share * nearest[i].size2 / near2,
+                     bp_pilot_way(scene, ray->through));
     }
 }
 
@@ -98,7 +101,7 @@ void bp_pilot_pass(const BpScene *scene, bool focused, const BpPilotLight *light
             if (lights[l].share > 1) continue;
             const bool found = focused && ray->vertices > 0 &&
                                bp_pilot_is_sampled(scene, &lights[l], ray->through, ray->vertices);
-            pass_group(&lights[l], ray, end - first, share, found ? &parts->focused : &parts->chance);
+            pass_group(scene, &lights[l], ray, end - first, share, found ? &parts->focused : &parts->chance);
         }
     }
 }

@@ -1,10 +1,10 @@
 /* pilot_pass.h: lights that are seen in mirrors and through glass, from camera paths that pass by them.
  *
- * In:    rays behind specular spheres, from camera paths.
+ * In:    rays behind specular shapes, from camera paths.
  * Out:   for each pixel, how probably a sample meets a light.
  * Knows: densities of directions.   Does not know: kernels, how paths were made.
  *
- * Rays that have come the same way (by the same spheres, reflected or let through alike) spread smoothly over
+ * Rays that have come the same way (by the same shapes, reflected or let through alike) spread smoothly over
  * directions, so how many of them pass near a light tells how many meet it. Near means: as near as the
  * COUNT-th of them passes (D. O. Loftsgaarden and C. P. Quesenberry, "A nonparametric estimate of a
  * multivariate density function", 1965). */
@@ -19,9 +19,9 @@ typedef struct BpPilotRay {
     double origin[3], direction[3], length; /* infinite: it meets nothing */
     double carried[3];                      /* of a light that it meets, to the pixel */
     uint64_t way;                           /* the same for rays that have come the same way */
-    uint32_t pixel, sphere;                 /* that it meets, or NO_SPHERE */
+    uint32_t pixel, shape;                  /* that it meets, or NO_SPHERE */
     uint32_t through;                       /* the first that it has met */
-    uint32_t vertices;                      /* of its path, all on `through`; 0: on other spheres too */
+    uint32_t vertices;                      /* of its path, all on `through`; 0: on other shapes too */
     uint32_t number;                        /* none has another's */
 } BpPilotRay;
 

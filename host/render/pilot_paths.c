@@ -3,6 +3,7 @@
 
 #include "opencl/forked.h"
 #include "packed/reals.h"
+#include "pilot_shapes.h"
 #include "scene/vector.h"
 
 #include <stdlib.h>
@@ -12,6 +13,7 @@ enum {
     ARGUMENT_COUNT,
     ARGUMENT_SEGMENTS,
     ARGUMENT_FROM_CAMERA,
+    ARGUMENT_ENDS_WITHIN,
     ARGUMENT_NUMBERS,
     ARGUMENT_STARTS,
     ARGUMENT_RECORDS,
@@ -72,7 +74,7 @@ BpStatus bp_pilot_flight_create(BpWorker *worker, const BpScene *scene, BpPilotF
 }
 
 BpStatus bp_pilot_fly(BpPilotFlight *flight, cl_uint count, cl_uint segments, bool from_camera,
-                      BpError *err) {
+                      cl_uint ends_within, BpError *err) {
     BpWorker *worker = flight->worker;
     cl_command_queue queue = worker->device->queue;
     const cl_uint camera = from_camera, none = 0;
@@ -85,6 +87,7 @@ BpStatus bp_pilot_fly(BpPilotFlight *flight, cl_uint count, cl_uint segments, bo
     } arguments[] = {{ARGUMENT_COUNT, sizeof count, &count},
                      {ARGUMENT_SEGMENTS, sizeof segments, &segments},
                      {ARGUMENT_FROM_CAMERA, sizeof camera, &camera},
+                     {ARGUMENT_ENDS_WITHIN, sizeof ends_within, &ends_within},
                      {ARGUMENT_NUMBERS, sizeof(cl_mem), &flight->numbers},
                      {ARGUMENT_STARTS, sizeof(cl_mem), &flight->starts},
                      {ARGUMENT_RECORDS, sizeof(cl_mem), &flight->records},
@@ -118,7 +121,7 @@ bool bp_pilot_segment(const BpPilotFlight *flight, uint32_t path, uint32_t segme
     const size_t place = (size_t)path * segments + s;
     if (s >= segments) return false;
     segment->flags = flight->mark_data[place * PILOT_UINTS + PILOT_FLAGS];
-    segment->sphere = flight->mark_data[place * PILOT_UINTS + PILOT_SPHERE];
+    segment->shape = flight->mark_data[place * PILOT_UINTS + PILOT_SHAPE];
     if ((segment->flags & PILOT_TRACED) == 0) return false;
     const bool single = flight->worker->real_size == sizeof(float);
 #define READ(i) bp_reals_load(flight->record_data, single, place *PILOT_REALS + (size_t)(i))
@@ -134,24 +137,24 @@ bool bp_pilot_segment(const BpPilotFlight *flight, uint32_t path, uint32_t segme
 }
 
 void bp_pilot_normal(const BpScene *scene, const BpPilotSegment *segment, double normal[3]) {
-    const double *from = scene->spheres[segment->sphere].center, *to = bp_sphere_end(scene, segment->sphere);
-    for (int a = 0; a < 3; ++a) normal[a] = segment->point[a] - (from[a] + segment->time * (to[a] - from[a]));
-    bp_normalize(normal);
+    bp_pilot_outward(scene, segment->shape, segment->point, segment->time, normal);
     if (bp_dot(normal, segment->direction) <= 0) return;
     for (int a = 0; a < 3; ++a) normal[a] = -normal[a];
 }
 
-const BpMaterial *bp_pilot_material(const BpScene *scene, const BpPilotSegment *segment) {
-    return &scene->materials[scene->spheres[segment->sphere].material];
+const BpMaterial *bp_pilot_material_at(const BpScene *scene, const BpPilotSegment *segment) {
+    return bp_pilot_material(scene, segment->shape);
 }
 
 bool bp_pilot_is_surface(const BpScene *scene, const BpPilotSegment *segment) {
     return (segment->flags & PILOT_MET) != 0 &&
-           bp_pilot_material(scene, segment)->kind != BP_MATERIAL_INTERFACE;
+           bp_pilot_material_at(scene, segment)->kind != BP_MATERIAL_INTERFACE;
 }
 
 bool bp_pilot_is_rough(const BpScene *scene, const BpPilotSegment *segment) {
-    return bp_pilot_is_surface(scene, segment) && (segment->flags & PILOT_LIT) != 0;
+    if (!bp_pilot_is_surface(scene, segment)) return false;
+    return (segment->flags & PILOT_UNTOLD) != 0 ? bp_material_is_lit(bp_pilot_material_at(scene, segment))
+                                                : (segment->flags & PILOT_LIT) != 0;
 }
 
 void bp_pilot_carried(const BpPilotFlight *flight, uint32_t path, uint32_t segments, uint32_t s,

@@ -26,7 +26,7 @@ typedef struct BpPilotFlight {
 
 typedef struct BpPilotSegment {
     double point[3], direction[3], distance, throughput[3], time;
-    uint32_t sphere, flags;
+    uint32_t shape, flags; /* as the scene counts shapes, or NO_SPHERE */
 } BpPilotSegment;
 
 /* Room for a batch, on the device and here. BP_ERR_MEMORY or BP_ERR_DEVICE; clear it in any case. */
@@ -34,8 +34,9 @@ BpStatus bp_pilot_flight_create(BpWorker *worker, const BpScene *scene, BpPilotF
 void bp_pilot_flight_clear(BpPilotFlight *flight);
 
 /* Traces `count` paths of at most `segments` segments, whose numbers and, if not `from_camera`, starts are
- * set. */
-BpStatus bp_pilot_fly(BpPilotFlight *flight, cl_uint count, cl_uint segments, bool from_camera, BpError *err);
+ * set. A path ends at a vertex that a ray to a lamp can light, if it is one of its first `ends_within`. */
+BpStatus bp_pilot_fly(BpPilotFlight *flight, cl_uint count, cl_uint segments, bool from_camera,
+                      cl_uint ends_within, BpError *err);
 
 /* Of a path of the last batch, which had `segments`. False: the path has no such segment. */
 bool bp_pilot_segment(const BpPilotFlight *flight, uint32_t path, uint32_t segments, uint32_t s,
@@ -44,9 +45,9 @@ bool bp_pilot_segment(const BpPilotFlight *flight, uint32_t path, uint32_t segme
 void bp_pilot_carried(const BpPilotFlight *flight, uint32_t path, uint32_t segments, uint32_t s,
                       double carried[3]);
 
-/* The unit normal of the sphere that a segment has met, at its end, on the side that it came from. */
+/* The unit normal of the shape that a segment has met, at its end, on the side that it came from. */
 void bp_pilot_normal(const BpScene *scene, const BpPilotSegment *segment, double normal[3]);
-const BpMaterial *bp_pilot_material(const BpScene *scene, const BpPilotSegment *segment);
+const BpMaterial *bp_pilot_material_at(const BpScene *scene, const BpPilotSegment *segment);
 /* It ends at a surface that does something to light, be it specular or rough: not at the boundary of a medium
  * alone. */
 bool bp_pilot_is_surface(const BpScene *scene, const BpPilotSegment *segment);

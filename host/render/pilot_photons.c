@@ -4,6 +4,7 @@
  * Out:   the light that comes to rough points, and the measure for which it stands.
  * Knows: what surfaces do to beams of light, and to paths that come the other way.
  * Does not know: where the camera stands. */
+#include "pilot_shapes.h"
 #include "pilot_state.h"
 
 #include "packed/reals.h"
@@ -24,18 +25,15 @@ static double schlick(double cosine, double index) {
  * that comes the other way takes this turn with another probability than light does. `next`: the segment
  * behind it. */
 static double transmitted(const BpScene *scene, const BpPilotSegment *segment, const BpPilotSegment *next) {
-    const BpMaterial *material = bp_pilot_material(scene, segment);
-    double normal[3];
+    const BpMaterial *material = bp_pilot_material_at(scene, segment);
+    double normal[3], outward[3];
     bp_pilot_normal(scene, segment, normal);
     const double before = -bp_dot(segment->direction, normal), behind = -bp_dot(next->direction, normal);
     if (material->kind != BP_MATERIAL_DIELECTRIC || behind <= 0) return 1; /* reflected */
-    const double *from = scene->spheres[segment->sphere].center;
-    const double *to = bp_sphere_end(scene, segment->sphere);
-    double outward = 0;
-    for (int a = 0; a < 3; ++a)
-        outward += normal[a] * (segment->point[a] - (from[a] + segment->time * (to[a] - from[a])));
-    const double inside = bp_sphere_refraction_index(scene, segment->sphere);
-    const double ratio = outward > 0 ? 1 / inside : inside; /* index before over index behind */
+    bp_pilot_outward(scene, segment->shape, segment->point, segment->time, outward);
+    const double inside = bp_pilot_index_inside(scene, segment->shape);
+    const double ratio =
+        bp_dot(normal, outward) > 0 ? 1 / inside : inside; /* index before over index behind */
     double measure = ratio * ratio;
     if (material->fresnel == BP_FRESNEL_SCHLICK && ratio != 1) {
         const double light = 1 - schlick(fmin(before, 1), ratio), path = 1 - schlick(fmin(behind, 1), ratio);
@@ -46,7 +44,7 @@ static double transmitted(const BpScene *scene, const BpPilotSegment *segment, c
 
 /* What being scattered by a rough surface does to it: nothing where the lobe is the cosine. */
 static double scattered(const BpScene *scene, const BpPilotSegment *segment, const BpPilotSegment *next) {
-    const BpMaterial *material = bp_pilot_material(scene, segment);
+    const BpMaterial *material = bp_pilot_material_at(scene, segment);
     double normal[3], back[3];
     if (material->kind == BP_MATERIAL_METAL || material->scatter == BP_SCATTER_LAMBERTIAN) return 1;
     bp_pilot_normal(scene, segment, normal);
@@ -63,7 +61,9 @@ static void follow_photon(BpPilot *pilot, const BpPilotFlight *flight, uint32_t 
     const BpScene *scene = pilot->scene;
     const BpPilotPair *pair = &pilot->aim->pairs[start->pair];
     const BpPilotLight *light = &pilot->aim->lights[pair->light];
-    const uint32_t target = pilot->aim->targets[pair->target];
+    const bool anywhere = pair->target == BP_PILOT_ANYWHERE;
+    const uint32_t target = anywhere ? NO_SPHERE : pilot->aim->targets[pair->target];
+    const size_t through = anywhere ? bp_pilot_way_direct(scene) : bp_pilot_way(scene, target);
     double measure = start->measure;
     uint32_t deposits = 0, vertices = 0; /* specular, up to the first rough point */
     bool aimed = false, alone = true;    /* all of them are the target's */
@@ -73,25 +73,28 @@ static void follow_photon(BpPilot *pilot, const BpPilotFlight *flight, uint32_t 
          ++s) {
         if ((segment.flags & (PILOT_MET | PILOT_IN_MEDIUM)) != PILOT_MET) return;
         if (!bp_pilot_is_surface(scene, &segment)) continue;
-        if (!aimed && segment.sphere != target) return;
+        if (!aimed && (anywhere ? bp_pilot_is_specular(scene, segment.shape) : segment.shape != target))
+            return;
         aimed = true;
         const bool rough = bp_pilot_is_rough(scene, &segment);
         if (!rough && deposits == 0) {
             ++vertices;
-            alone = alone && segment.sphere == target;
+            alone = alone && segment.shape == target;
         }
-        if (rough && deposits == 0) focused = alone && bp_pilot_is_sampled(scene, light, target, vertices);
+        if (rough && deposits == 0 && !anywhere)
+            focused = alone && bp_pilot_is_sampled(scene, light, target, vertices);
         if (rough) {
             BpPilotPhoton *photon = &pilot->photons[pilot->photon_count++];
             double carried[3];
             bp_pilot_carried(flight, path, BP_PILOT_SEGMENTS_MAX, s, carried);
             *photon = (BpPilotPhoton){.measure = measure,
-                                      .sphere = segment.sphere,
+                                      .object = bp_pilot_object(scene, segment.shape),
                                       .segments = s + 1,
-                                      .through = target,
+                                      .through = through,
                                       .focused = focused};
             memcpy(photon->point, segment.point, sizeof photon->point);
             memcpy(photon->direction, segment.direction, sizeof photon->direction);
+            bp_pilot_normal(scene, &segment, photon->normal);
             for (int c = 0; c < 3; ++c) photon->radiance[c] = light->radiance[c] * carried[c];
             if (++deposits == BP_PILOT_DEPOSITS) return;
         }
@@ -117,6 +120,8 @@ BpStatus bp_pilot_trace_photons(BpPilot *pilot, BpPilotFlight *flight, BpError *
     BpPilotStart *starts = malloc(flight->batch * sizeof *starts);
     if (starts == NULL) return bp_fail(err, BP_ERR_MEMORY, "no memory for the paths of a pilot");
     BpStatus status = BP_OK;
+    /* A path that begins by meeting what is rough counts only if it was not aimed. */
+    const cl_uint ends_within = bp_scene_emitting_triangles(pilot->scene) > 0 ? 0 : 1;
     for (uint32_t first = 0; first < BP_PILOT_PHOTONS && status == BP_OK; first += flight->batch) {
         const uint32_t left = BP_PILOT_PHOTONS - first, count = left < flight->batch ? left : flight->batch;
         for (uint32_t i = 0; i < count; ++i) {
@@ -125,7 +130,7 @@ BpStatus bp_pilot_trace_photons(BpPilot *pilot, BpPilotFlight *flight, BpError *
             flight->number_data[2 * i] = first + i;
             flight->number_data[2 * i + 1] = UINT32_MAX; /* a sample that no camera path has */
         }
-        status = bp_pilot_fly(flight, count, BP_PILOT_SEGMENTS_MAX, false, err);
+        status = bp_pilot_fly(flight, count, BP_PILOT_SEGMENTS_MAX, false, ends_within, err);
         for (uint32_t i = 0; i < count && status == BP_OK; ++i) follow_photon(pilot, flight, i, &starts[i]);
     }
     free(starts);

@@ -34,6 +34,12 @@ static vbool stands_lit(const Path *path, vbool moving) {
 #endif
 }
 
+#if SAMPLES_LAMPS
+#define PILOT_ALWAYS PILOT_TRACED
+#else
+#define PILOT_ALWAYS (PILOT_TRACED | PILOT_UNTOLD)
+#endif
+
 static vbool ends_in_medium(const Path *path, vbool moving) {
 #if EFFECT_MEDIA
     return moving & path->scattered;
@@ -47,9 +53,9 @@ static void store_segment(const LaneReals *values, uint lane, __global real *rec
     for (uint i = 0; i < (uint)PILOT_REALS; ++i) records[i] = values[i].of[lane];
 }
 
-/* `numbers`: a pixel and a sample for each path. `starts`: only if not `from_camera`. A camera's path ends at the first
- * vertex that a ray to a lamp can light, another if its first is one. */
-__kernel VECTORS_WRITTEN void pilot(SCENE_PARAMETERS uint path_count, uint segments, uint from_camera,
+/* `numbers`: a pixel and a sample for each path. `starts`: only if not `from_camera`. A path ends at a vertex that a ray to
+ * a lamp can light, if it is one of its first `ends_within`. */
+__kernel VECTORS_WRITTEN void pilot(SCENE_PARAMETERS uint path_count, uint segments, uint from_camera, uint ends_within,
                                     __global const uint *numbers, __global const real *starts, __global real *records,
                                     __global uint *marks) {
     const uint first = get_global_id(0) * LANE_COUNT;
@@ -91,8 +97,8 @@ __kernel VECTORS_WRITTEN void pilot(SCENE_PARAMETERS uint path_count, uint segme
             [PILOT_THROUGHPUT + 1].all = path.throughput.y,
             [PILOT_THROUGHPUT + 2].all = path.throughput.z,
             [PILOT_TIME].all = path_time(&path)};
-        LaneUints spheres, lanes;
-        spheres.all = gather_split_uint(scene.geometry.slot_sphere, 0, choose_uint(met, path.own_slot, splat_uint(0)));
+        LaneUints shapes, lanes;
+        shapes.all = gather_split_uint(scene.geometry.slot_sphere, 0, choose_uint(met, path.own_slot, splat_uint(0)));
         const uint is_moving = lane_bits(moving), is_met = lane_bits(met), goes_on = lane_bits(path.alive);
         const uint is_lit = lane_bits(lit), in_medium = lane_bits(scattered);
         lanes.all = number;
@@ -100,11 +106,11 @@ __kernel VECTORS_WRITTEN void pilot(SCENE_PARAMETERS uint path_count, uint segme
             if (!(is_moving >> lane & 1u)) continue;
             const size_t place = (size_t)lanes.of[lane] * segments + s;
             store_segment(values, lane, records + place * PILOT_REALS);
-            marks[place * PILOT_UINTS + PILOT_SPHERE] = is_met >> lane & 1u ? spheres.of[lane] : NO_SPHERE;
+            marks[place * PILOT_UINTS + PILOT_SHAPE] = is_met >> lane & 1u ? shapes.of[lane] : NO_SPHERE;
             marks[place * PILOT_UINTS + PILOT_FLAGS] =
-                PILOT_TRACED | (is_met >> lane & 1u) * PILOT_MET | (goes_on >> lane & 1u) * PILOT_GOES_ON | (is_lit >> lane & 1u) * PILOT_LIT |
+                PILOT_ALWAYS | (is_met >> lane & 1u) * PILOT_MET | (goes_on >> lane & 1u) * PILOT_GOES_ON | (is_lit >> lane & 1u) * PILOT_LIT |
                 (in_medium >> lane & 1u) * PILOT_IN_MEDIUM;
         }
-        if (from_camera || s == 0) path.alive = path.alive & vbool_not(lit);
+        if (s < ends_within) path.alive = path.alive & vbool_not(lit);
     }
 }

@@ -3,6 +3,7 @@
  * definitions. */
 #include "base/random.h"
 #include "render/pilot_join.h"
+#include "render/pilot_shapes.h"
 #include "support/build_scene.h"
 #include "support/probe.h"
 
@@ -35,17 +36,17 @@ typedef struct Fixture {
     BuiltScene built;
     BpPilotEye eyes[EYES];
     BpPilotPhoton photons[PHOTONS];
-    double mean[2][PIXELS], square[2][PIXELS], by_sphere[2][4];
+    double mean[2][PIXELS], square[2][PIXELS], by_way[2][4];
 } Fixture;
 
 static BpPilotSums sums_of(Fixture *fixture, int part) {
     memset(fixture->mean[part], 0, sizeof fixture->mean[part]);
     memset(fixture->square[part], 0, sizeof fixture->square[part]);
-    memset(fixture->by_sphere[part], 0, sizeof fixture->by_sphere[part]);
+    memset(fixture->by_way[part], 0, sizeof fixture->by_way[part]);
     return (BpPilotSums){.pixels = PIXELS,
                          .mean = fixture->mean[part],
                          .square = fixture->square[part],
-                         .by_sphere = fixture->by_sphere[part]};
+                         .by_way = fixture->by_way[part]};
 }
 
 static BpPilotParts parts_of(Fixture *fixture) {
@@ -67,7 +68,8 @@ static Fixture *fixture_create(uint64_t seed) {
         *eye = (BpPilotEye){.pixel = (uint32_t)(i % PIXELS),
                             .share = between(&random, 0.1, 1),
                             .radius = size * between(&random, 0.5, 1),
-                            .sphere = (uint32_t)(i % 3),
+                            .shape = (uint32_t)(i % 3),
+                            .object = (uint32_t)(i % 3),
                             .segments = 1 + (uint32_t)(i % 4)};
         for (int a = 0; a < 3; ++a) {
             eye->point[a] = size * between(&random, -2, 2) + (i % 5 == 0 ? 0x1p8 : 0);
@@ -80,7 +82,7 @@ static Fixture *fixture_create(uint64_t seed) {
         BpPilotPhoton *photon = &fixture->photons[i];
         const BpPilotEye *near = &fixture->eyes[(size_t)(bp_random_next(&random) * EYES)];
         *photon = (BpPilotPhoton){.measure = near->radius * near->radius * between(&random, 0.01, 1),
-                                  .sphere = i % 7 == 0 ? (uint32_t)(i % 3) : near->sphere,
+                                  .object = i % 7 == 0 ? (uint32_t)(i % 3) : near->object,
                                   .segments = 1 + (uint32_t)(i % 3),
                                   .through = (uint32_t)(i % 3),
                                   .focused = i % 4 == 0};
@@ -94,7 +96,7 @@ static Fixture *fixture_create(uint64_t seed) {
 }
 
 typedef struct Expected {
-    double mean[PIXELS], square[PIXELS], by_sphere[4], square_of[3];
+    double mean[PIXELS], square[PIXELS], by_way[4], square_of[3];
     size_t pairs;
 } Expected;
 
@@ -112,7 +114,7 @@ static void expect_pairs(const Fixture *fixture, bool focused, Expected *expecte
                 away2 += (eye->point[a] - photon->point[a]) * (eye->point[a] - photon->point[a]);
                 cosine -= eye->normal[a] * photon->direction[a];
             }
-            if (photon->focused != focused || eye->sphere != photon->sphere ||
+            if (photon->focused != focused || eye->object != photon->object ||
                 away2 > eye->radius * eye->radius || cosine <= 0 || eye->segments + photon->segments > DEPTH)
                 continue;
             const double probability = eye->share * cosine / PI / fmax(cosine, 0.02) * photon->measure /
@@ -124,7 +126,7 @@ static void expect_pairs(const Fixture *fixture, bool focused, Expected *expecte
             }
             expected->mean[eye->pixel] += y * probability;
             expected->square[eye->pixel] += y * y * probability;
-            expected->by_sphere[photon->through] += y * y * probability;
+            expected->by_way[photon->through] += y * y * probability;
             ++expected->pairs;
         }
 }
@@ -140,7 +142,7 @@ static void assert_sums(const BpPilotSums *sums, const Expected *expected) {
         assert_near(sums->square[i], expected->square[i], 1e-12, "the mean square of a pixel");
     }
     for (int i = 0; i < 4; ++i)
-        assert_near(sums->by_sphere[i], expected->by_sphere[i], 1e-12, "the part of a sphere");
+        assert_near(sums->by_way[i], expected->by_way[i], 1e-12, "the part of a sphere");
     for (int c = 0; c < 3; ++c)
         assert_near(sums->square_of[c], expected->square_of[c], 1e-12, "the mean square of a channel");
 }
@@ -192,6 +194,47 @@ static void borders_of_cells(void **state) {
                              BP_OK);
             assert_near(parts.chance.mean[0], 8, 1e-12, "light in all eight corners");
         }
+    free(fixture);
+}
+
+/* Ends on a mesh take light that comes to other triangles of it, if these lie alike: not that of its other
+ * side, nor around a corner. A sphere is its own surface. */
+static void neighbours_on_a_mesh(void **state) {
+    (void)state;
+    static const struct {
+        uint32_t shape, object;
+        double tilt;
+        bool counts;
+    } cases[] = {{4, 3, 0, true},   {4, 3, 30, true},   {3, 3, 30, true}, {4, 3, 50, false},
+                 {4, 3, 90, false}, {4, 3, 180, false}, {4, 1, 0, false}, {1, 1, 90, true}};
+    Fixture *fixture = fixture_create(1);
+    BpTriangle triangles[2] = {{.vertices = {{0}}}};
+    fixture->built.scene.triangles = triangles;
+    fixture->built.scene.triangle_count = 2;
+    for (size_t i = 0; i < sizeof cases / sizeof cases[0]; ++i) {
+        const double tilt = cases[i].tilt * PI / 180;
+        const uint32_t shape = cases[i].shape;
+        BpPilotEye eye = {.share = 1,
+                          .normal = {0, 1, 0},
+                          .axis = {0, 1, 0},
+                          .throughput = {1, 1, 1},
+                          .radius = 1,
+                          .shape = shape,
+                          .object = bp_pilot_object(&fixture->built.scene, shape),
+                          .segments = 1};
+        BpPilotPhoton photon = {.point = {0.1, 0.2, 0.3},
+                                .direction = {0, -1, 0},
+                                .normal = {sin(tilt), cos(tilt), 0},
+                                .radiance = {1, 1, 1},
+                                .measure = PI * PI,
+                                .object = cases[i].object,
+                                .segments = 1};
+        BpPilotParts parts = parts_of(fixture);
+        assert_int_equal(bp_pilot_object(&fixture->built.scene, shape), shape < 3 ? shape : 3);
+        assert_int_equal(bp_pilot_join(&fixture->built.scene, &eye, 1, &photon, 1, DEPTH, &parts, NULL),
+                         BP_OK);
+        assert_near(parts.chance.mean[0], cases[i].counts ? 1 : 0, 1e-12, "light of a neighbour");
+    }
     free(fixture);
 }
 
@@ -365,9 +408,13 @@ static void densities_are_the_kernels(void **state) {
 
 int main(void) {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(all_pairs_count_once),      cmocka_unit_test(borders_of_cells),
-        cmocka_unit_test(nothing_to_join),           cmocka_unit_test(densities_come_to_one),
-        cmocka_unit_test(facets_have_their_slopes),  cmocka_unit_test(densities_are_those_of_what_is_drawn),
+        cmocka_unit_test(all_pairs_count_once),
+        cmocka_unit_test(borders_of_cells),
+        cmocka_unit_test(neighbours_on_a_mesh),
+        cmocka_unit_test(nothing_to_join),
+        cmocka_unit_test(densities_come_to_one),
+        cmocka_unit_test(facets_have_their_slopes),
+        cmocka_unit_test(densities_are_those_of_what_is_drawn),
         cmocka_unit_test(densities_are_the_kernels),
     };
     return cmocka_run_group_tests_name("pilot_join", tests, NULL, NULL);

@@ -2,6 +2,7 @@
  * they stand for comes to the area times solid angle times cosine of all ways from a light to a sphere, known
  * on paper, and what is too much for the lists is left out without bias. */
 #include "render/pilot_lights.h"
+#include "render/pilot_shapes.h"
 #include "support/build_scene.h"
 #include "support/unit_test.h"
 
@@ -32,17 +33,19 @@ static void add_disc(BuiltScene *built, double x, double y, double z, double hal
 
 /* Every path from the light flies at the ball that it is aimed at; one without a measure flies nowhere. */
 static void assert_aimed(const BpScene *scene, const BpPilotAim *aim, const BpPilotStart *start) {
-    const BpSphere *target = &scene->spheres[aim->targets[aim->pairs[start->pair].target]];
-    double to[3], along = 0, away2 = 0;
+    const uint32_t number = aim->pairs[start->pair].target;
+    if (number == BP_PILOT_ANYWHERE) return;
+    double to[3], center[3], along = 0, away2 = 0;
+    const double radius = bp_pilot_ball(scene, aim->targets[number], center);
     for (int a = 0; a < 3; ++a) {
-        to[a] = target->center[a] - start->origin[a];
+        to[a] = center[a] - start->origin[a];
         along += to[a] * start->direction[a];
         away2 += to[a] * to[a];
     }
     assert_near(start->direction[0] * start->direction[0] + start->direction[1] * start->direction[1] +
                     start->direction[2] * start->direction[2],
                 1, 1e-12, "the length of a direction");
-    const double radius = fabs(target->radius), off2 = away2 - along * along;
+    const double off2 = away2 - along * along;
     if (!(off2 <= radius * radius * (1 + 1e-9)) || !(along > 0 || away2 <= radius * radius))
         fail_msg("a path passes its sphere: %g of %g off", sqrt(fmax(0, off2)), radius);
 }
@@ -223,6 +226,93 @@ static void lamps_half_inside(void **state) {
                 4 * PI * lamp * lamp * PI * (double)hits / COUNT, 0.01, "a lamp half inside");
 }
 
+/* ---- triangles ---- */
+
+/* A lamp of one triangle, both of whose sides shine: all ways from it to a ball that its plane does not cut
+ * have the area x solid angle x cosine of pi (r / d)^2 times the cosine, summed over its points; those that
+ * go anywhere, its area times 2 pi. */
+static void lamps_of_triangles(void **state) {
+    (void)state;
+    enum { STEPS = 300 };
+    static const struct {
+        double center[3], radius;
+    } balls[] = {{{0.2, 0.3, 5}, 1}, {{0.5, -0.4, -0.6}, 0.5}, {{9, 7, 3}, 0.2}, {{0.3, 0.3, 0.12}, 0.1}};
+    const BpTriangle lamp = {.vertices = {{0, 0, 0}, {1.5, 0.5, 0}, {0.2, 1, 0}}};
+    double normal[3];
+    const double area = bp_pilot_area(&lamp, normal);
+    assert_near(area, 0.5 * (1.5 * 1 - 0.5 * 0.2), 1e-12, "the area of a triangle");
+    assert_near(normal[2], 1, 1e-12, "its normal");
+    for (size_t k = 0; k < sizeof balls / sizeof balls[0]; ++k) {
+        BuiltScene built;
+        built_scene_init(&built);
+        BpTriangle triangle = lamp;
+        triangle.material = lamp_of(&built, 1);
+        built.scene.triangles = &triangle;
+        built.scene.triangle_count = 1;
+        const double *c = balls[k].center;
+        built_sphere(&built, c[0], c[1], c[2], balls[k].radius,
+                     built_material(&built, BP_MATERIAL_DIELECTRIC, 1, NULL));
+        double aimed = 0;
+        for (int i = 0; i < STEPS; ++i)
+            for (int j = 0; j < STEPS; ++j) {
+                const double u = (i + 0.5) / STEPS, v = (j + 0.5) / STEPS;
+                double d2 = 0;
+                if (u + v > 1) continue;
+                for (int a = 0; a < 3; ++a) {
+                    const double p = u * lamp.vertices[1][a] + v * lamp.vertices[2][a];
+                    d2 += (c[a] - p) * (c[a] - p);
+                }
+                aimed += PI * balls[k].radius * balls[k].radius / d2 * fabs(c[2]) / sqrt(d2);
+            }
+        aimed *= 2 * area / STEPS / STEPS;
+        char what[80];
+        snprintf(what, sizeof what, "a lamp of a triangle, and ball %zu", k);
+        BpPilotAim aim;
+        assert_int_equal(bp_pilot_aim(&built.scene, &aim, NULL), BP_OK);
+        assert_int_equal(aim.pair_count, 2);
+        BpRandom random = {.state = 30 + k};
+        double sums[2] = {0}, above = 0;
+        enum { COUNT = 400000 };
+        for (int i = 0; i < COUNT; ++i) {
+            BpPilotStart start;
+            bp_pilot_start(&built.scene, &aim, COUNT, &random, &start);
+            if (start.measure > 0) assert_aimed(&built.scene, &aim, &start);
+            const bool anywhere = aim.pairs[start.pair].target == BP_PILOT_ANYWHERE;
+            sums[anywhere] += start.measure;
+            if (anywhere && start.direction[2] > 0) above += start.measure;
+            if (!(start.origin[2] * start.direction[2] > 0)) fail_msg("a path begins into its lamp");
+        }
+        assert_near(sums[0], aimed, 0.02, what);
+        assert_near(sums[1], 2 * PI * area, 0.01, "paths that go anywhere");
+        assert_near(above, PI * area, 0.02, "those above");
+        bp_pilot_aim_clear(&aim);
+    }
+}
+
+/* Where the ball holds the triangle, all of its light goes there. And discs are aimed at the ball around a
+ * triangle. */
+static void triangles_in_balls(void **state) {
+    (void)state;
+    BuiltScene built;
+    built_scene_init(&built);
+    BpTriangle triangle = {.vertices = {{0, 0, 0}, {1.5, 0.5, 0}, {0.2, 1, 0}},
+                           .material = lamp_of(&built, 1)};
+    double normal[3], center[3];
+    const double area = bp_pilot_area(&triangle, normal);
+    built.scene.triangles = &triangle;
+    built.scene.triangle_count = 1;
+    built_sphere(&built, 0.5, 0.5, 0.1, 5, built_material(&built, BP_MATERIAL_DIELECTRIC, 1, NULL));
+    assert_near(sum_of_starts(&built.scene, 100000, 50, false), 2 * 2 * PI * area, 0.01,
+                "inside and anywhere");
+    triangle.material = built_material(&built, BP_MATERIAL_DIELECTRIC, 1, NULL);
+    built.scene.sphere_count = 0;
+    add_disc(&built, 0.3, -1, 0.4, 5);
+    const double radius = bp_pilot_ball(&built.scene, 0, center), sine = sin(2.5 * PI / 180);
+    assert_near(radius * radius, 14.0 / 15 * (14.0 / 15), 1e-12, "the ball around a triangle");
+    assert_near(sum_of_starts(&built.scene, 1000, 51, false), 4 * PI * sine * sine * PI * radius * radius,
+                1e-6, "a disc and a triangle of glass");
+}
+
 /* ---- many ---- */
 
 typedef struct Crowd {
@@ -342,7 +432,7 @@ static void the_order_does_not_count(void **state) {
     for (size_t i = 0; i < a.pair_count; ++i) {
         size_t same = 0;
         for (size_t k = 0; k < b.pair_count; ++k) {
-            if (a.lights[a.pairs[i].light].sphere + b.lights[b.pairs[k].light].sphere != 11 ||
+            if (a.lights[a.pairs[i].light].shape + b.lights[b.pairs[k].light].shape != 11 ||
                 a.targets[a.pairs[i].target] + b.targets[b.pairs[k].target] != 11)
                 continue;
             assert_near(a.pairs[i].probability, b.pairs[k].probability, 1e-12, "the probability of a pair");
@@ -464,6 +554,8 @@ int main(void) {
         cmocka_unit_test(starts_are_uniform),
         cmocka_unit_test(lamps_and_balls),
         cmocka_unit_test(lamps_half_inside),
+        cmocka_unit_test(lamps_of_triangles),
+        cmocka_unit_test(triangles_in_balls),
         cmocka_unit_test(more_lamps_than_room),
         cmocka_unit_test(more_pairs_than_room),
         cmocka_unit_test(the_order_does_not_count),

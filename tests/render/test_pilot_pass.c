@@ -16,10 +16,12 @@
 #define PI 3.14159265358979323846
 enum { RAYS = 40000, PIXELS = 16 };
 
+static const BpScene spheres = {.sphere_count = 8}; /* by way of which light comes */
+
 typedef struct Fixture {
     BpPilotRay rays[RAYS];
     size_t count;
-    double mean[PIXELS], square[PIXELS], by_sphere[8];
+    double mean[PIXELS], square[PIXELS], by_way[8];
     BpPilotParts parts;
 } Fixture;
 
@@ -27,7 +29,7 @@ static Fixture *fixture_create(void) {
     Fixture *fixture = calloc(1, sizeof *fixture);
     assert_non_null(fixture);
     fixture->parts.chance = (BpPilotSums){
-        .pixels = PIXELS, .mean = fixture->mean, .square = fixture->square, .by_sphere = fixture->by_sphere};
+        .pixels = PIXELS, .mean = fixture->mean, .square = fixture->square, .by_way = fixture->by_way};
     return fixture;
 }
 
@@ -37,7 +39,7 @@ static BpPilotRay *add_ray(Fixture *fixture) {
                         .carried = {1, 1, 1},
                         .way = 77,
                         .pixel = (uint32_t)(fixture->count % PIXELS),
-                        .sphere = UINT32_MAX,
+                        .shape = UINT32_MAX,
                         .through = 3,
                         .number = (uint32_t)fixture->count};
     ++fixture->count;
@@ -92,13 +94,13 @@ static void suns_in_a_mirror_ball(void **state) {
         const BpPilotLight light = sun(side * cos(turn), side * sin(turn), up, 0.27);
         Fixture *fixture = fixture_create();
         see_in_ball(fixture, 2, 100 + (uint64_t)s);
-        bp_pilot_pass(NULL, false, &light, 1, fixture->rays, fixture->count, 1, &fixture->parts);
+        bp_pilot_pass(&spheres, false, &light, 1, fixture->rays, fixture->count, 1, &fixture->parts);
         const double expected = light.cap / 2 * (double)fixture->count; /* W / (4 pi) of the rays */
         const double found = total(fixture->mean, PIXELS) / expected;
         if (!(found > 0.4 && found < 2.2)) fail_msg("sun %d: %g of what it should be", s, found);
         all += found / SUNS;
         assert_true(fabs(total(fixture->square, PIXELS) / expected - found) < 1e-9);
-        assert_true(fabs(fixture->by_sphere[3] / expected - found) < 1e-9);
+        assert_true(fabs(fixture->by_way[3] / expected - found) < 1e-9);
         for (int c = 0; c < 3; ++c)
             assert_true(fabs(fixture->parts.chance.square_of[c] / expected - found) < 1e-9);
         free(fixture);
@@ -111,16 +113,12 @@ static void suns_in_a_mirror_ball(void **state) {
 static void lamps_in_a_mirror_ball(void **state) {
     (void)state;
     const double away = 1000, radius = 4;
-    const BpPilotLight lamp = {.seen = true,
-                               .sphere = 5,
-                               .place = {away, 0, 0},
-                               .radius = radius,
-                               .radiance = {2, 2, 2},
-                               .share = 1};
+    const BpPilotLight lamp = {
+        .seen = true, .shape = 5, .place = {away, 0, 0}, .radius = radius, .radiance = {2, 2, 2}, .share = 1};
     Fixture *fixture = fixture_create();
     see_in_ball(fixture, 1, 31);
     const size_t count = fixture->count;
-    bp_pilot_pass(NULL, false, &lamp, 1, fixture->rays, count, 0.5, &fixture->parts);
+    bp_pilot_pass(&spheres, false, &lamp, 1, fixture->rays, count, 0.5, &fixture->parts);
     const double expected = 0.5 * radius * radius / (4 * away * away) * (double)count;
     const double found = total(fixture->mean, PIXELS) / (2 * expected);
     if (!(found > 0.4 && found < 2.2)) fail_msg("%g of what it should be", found);
@@ -136,9 +134,9 @@ static void lamps_in_a_mirror_ball(void **state) {
         see_in_ball(fixture, 1, 31);
         for (size_t r = 0; r < count; ++r) {
             fixture->rays[r].length = cases[i].length;
-            fixture->rays[r].sphere = cases[i].sphere;
+            fixture->rays[r].shape = cases[i].sphere;
         }
-        bp_pilot_pass(NULL, false, &lamp, 1, fixture->rays, count, 1, &fixture->parts);
+        bp_pilot_pass(&spheres, false, &lamp, 1, fixture->rays, count, 1, &fixture->parts);
         assert_int_equal(total(fixture->mean, PIXELS) > 0, cases[i].seen);
         free(fixture);
     }
@@ -147,7 +145,7 @@ static void lamps_in_a_mirror_ball(void **state) {
     fixture = fixture_create();
     see_in_ball(fixture, 1, 31);
     for (size_t r = 0; r < count; ++r) fixture->rays[r].length = 1e9;
-    bp_pilot_pass(NULL, false, &light, 1, fixture->rays, count, 1, &fixture->parts);
+    bp_pilot_pass(&spheres, false, &light, 1, fixture->rays, count, 1, &fixture->parts);
     assert_true(total(fixture->mean, PIXELS) <= 0);
     free(fixture);
 }
@@ -156,7 +154,7 @@ static void lamps_in_a_mirror_ball(void **state) {
 static void lights_behind_the_rays(void **state) {
     (void)state;
     const BpPilotLight lamp = {
-        .seen = true, .sphere = 5, .place = {0, 0, -50}, .radius = 0.1, .radiance = {1, 1, 1}, .share = 1};
+        .seen = true, .shape = 5, .place = {0, 0, -50}, .radius = 0.1, .radiance = {1, 1, 1}, .share = 1};
     Fixture *fixture = fixture_create();
     for (size_t i = 0; i < 4000; ++i) {
         BpPilotRay *ray = add_ray(fixture);
@@ -165,7 +163,7 @@ static void lights_behind_the_rays(void **state) {
         ray->direction[1] = 0.2 * (bp_random_next(&random) - 0.5);
         ray->direction[2] = 1;
     }
-    bp_pilot_pass(NULL, false, &lamp, 1, fixture->rays, fixture->count, 1, &fixture->parts);
+    bp_pilot_pass(&spheres, false, &lamp, 1, fixture->rays, fixture->count, 1, &fixture->parts);
     assert_true(total(fixture->mean, PIXELS) <= 0);
     free(fixture);
 }
@@ -193,7 +191,7 @@ static void suns_in_a_flat_mirror(void **state) {
                 ray->direction[2] = 1;
                 for (int a = 0; a < 3; ++a) ray->direction[a] /= sqrt(length2);
             }
-            bp_pilot_pass(NULL, false, &light, 1, fixture->rays, fixture->count, 1, &fixture->parts);
+            bp_pilot_pass(&spheres, false, &light, 1, fixture->rays, fixture->count, 1, &fixture->parts);
             found += total(fixture->mean, PIXELS) / (2 * PI * light.cap / (4 * half * half) * 2500) / 10;
             free(fixture);
         }
@@ -210,7 +208,7 @@ static void each_way_by_itself(void **state) {
     see_in_ball(one, 1, 51);
     see_in_ball(mixed, 1, 51);
     see_in_ball(few, 1, 51);
-    bp_pilot_pass(NULL, false, &light, 1, one->rays, one->count, 1, &one->parts);
+    bp_pilot_pass(&spheres, false, &light, 1, one->rays, one->count, 1, &one->parts);
     /* The same rays once more, in another order, with rays of another way among them that pass elsewhere. */
     const size_t count = mixed->count;
     for (size_t i = 0; i < count; ++i) {
@@ -224,19 +222,19 @@ static void each_way_by_itself(void **state) {
         mixed->rays[i] = mixed->rays[other];
         mixed->rays[other] = kept;
     }
-    bp_pilot_pass(NULL, false, &light, 1, mixed->rays, mixed->count, 1, &mixed->parts);
+    bp_pilot_pass(&spheres, false, &light, 1, mixed->rays, mixed->count, 1, &mixed->parts);
     assert_true(total(one->mean, PIXELS) > 0);
     assert_memory_equal(one->mean, mixed->mean, sizeof one->mean); /* bit for bit: they are sorted */
     /* A light that stands for others is no place that rays pass. */
     BpPilotLight shared = light;
     shared.share = 2;
-    bp_pilot_pass(NULL, false, &shared, 1, few->rays, few->count, 1, &few->parts);
+    bp_pilot_pass(&spheres, false, &shared, 1, few->rays, few->count, 1, &few->parts);
     assert_true(total(few->mean, PIXELS) <= 0);
-    bp_pilot_pass(NULL, false, &light, 1, few->rays, 3, 1, &few->parts);
+    bp_pilot_pass(&spheres, false, &light, 1, few->rays, 3, 1, &few->parts);
     assert_true(total(few->mean, PIXELS) <= 0);
     /* A light that rays meet often is seen by samples. */
     const BpPilotLight large = sun(0.3, 0.2, 1, 20);
-    bp_pilot_pass(NULL, false, &large, 1, few->rays, few->count, 1, &few->parts);
+    bp_pilot_pass(&spheres, false, &large, 1, few->rays, few->count, 1, &few->parts);
     assert_true(total(few->mean, PIXELS) <= 0);
     free(one);
     free(mixed);

@@ -44,6 +44,7 @@ static bool same(const Found *a, const Found *b) {
     return memcmp(a->unseen->pixels, b->unseen->pixels, a->pixels * sizeof *a->unseen->pixels) == 0 &&
            memcmp(a->unseen->tint, b->unseen->tint, sizeof a->unseen->tint) == 0 && one.mean == other.mean &&
            one.square == other.square && one.found == other.found && one.direct == other.direct &&
+           one.triangles == other.triangles && one.triangle_material == other.triangle_material &&
            one.sphere_count == other.sphere_count &&
            memcmp(one.spheres, other.spheres, one.sphere_count * sizeof *one.spheres) == 0 &&
            memcmp(one.parts, other.parts, one.sphere_count * sizeof *one.parts) == 0;
@@ -59,7 +60,7 @@ static void check_same(const BpScene *scene, const BpRenderOptions *varied, cons
 
 static void forms_are_the_same(void **state) {
     const bool every = *state != NULL;
-    static const char *const names[] = {"sun-0.27", "bulb-off-centre", "lamp-seen", "moving"};
+    static const char *const names[] = {"sun-0.27", "bulb-off-centre", "lamp-seen", "moving", "triangles"};
     const size_t count = every ? sizeof names / sizeof names[0] : 1;
     for (size_t i = 0; i < count; ++i) {
         char path[128];

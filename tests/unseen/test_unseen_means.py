@@ -139,5 +139,64 @@ class Means(cli.ProgramTest):
                                 {"center": [3.2, 1.7, 0], "radius": 0.4, "material": "lamp"}]}
         self.compare(document, 2048)
 
+    # ---- triangles ----
+
+    def slab(self, glass, direction, depth=6):
+        """A floor of two triangles under a box of glass, under a disc; seen from above."""
+        document = self.coated(None, FLOOR, direction, depth)
+        document.update(spheres=[], quads=[self.quad([-9, -1, 9], [18, 0, 0], [0, 0, -18], "inside")],
+                        boxes=[{"corners": [[-2.7, -0.9, -2.7], [3.7, -0.1, 2.7]], "material": "glass"}])
+        document["materials"]["glass"] = glass
+        return document
+
+    @staticmethod
+    def quad(corner, u, v, material):
+        return {"corner": corner, "u": u, "v": v, "material": material}
+
+    def room(self, depth, materials, *quads, **more):
+        """A floor of many triangles, seen from above."""
+        grid = [self.quad([x, 0, z + 1], [1, 0, 0], [0, 0, -1], "floor") for x in range(-6, 6) for z in range(-6, 6)]
+        return {"camera": {"image_width": 24, "aspect_ratio": 1, "samples_per_pixel": 64, "max_depth": depth, "lookfrom": [0, 6, 0],
+                           "lookat": [0, 0, 0], "vup": [0, 0, 1], "vfov": 35},
+                "background": {"bottom": [0, 0, 0], "top": [0, 0, 0]}, "materials": dict(materials, floor=FLOOR), "quads": grid + list(quads), **more}
+
+    def test_box_of_glass(self):
+        self.compare(self.slab(EXACT, [1, 0.25, 0]), 1024)
+        self.compare(self.slab(GLASS, [1, 0.25, 0]), 1024)
+
+    def test_box_in_a_box(self):
+        """The index of a box that lies in glass is one over the ratio from inside."""
+        document = self.slab(EXACT, [1, 1, 0.2], depth=10)
+        document["boxes"].append({"corners": [[-2.6, -0.7, -2.6], [3.6, -0.3, 2.6]], "material": "gap"})
+        document["materials"]["gap"] = dict(EXACT, refraction_index=1 / 1.5)
+        self.compare(document, 2048)
+
+    def test_flat_mirror(self):
+        """Light of a lamp by way of a mirror on a wall."""
+        wall = self.quad([2.5, 0.2, -2], [0, 0, 4], [-0.5, 2, 0], "mirror")
+        lamps = [{"center": [-3.5, 2.5, 0], "radius": 0.5, "material": "lamp"}]
+        document = self.room(3, {"mirror": MIRROR, "lamp": lamp(20)}, wall, spheres=lamps)
+        black = json.loads(json.dumps(document))
+        black["materials"]["mirror"] = dict(MIRROR, albedo=[0, 0, 0])
+        self.compare(document, 2048, black)
+
+    def test_lamp_of_triangles(self):
+        """To a floor, straight, from either side; and by way of a wall too."""
+        for turned in (False, True):
+            sides = ([1, 0, 0], [0, 0.4, 1])
+            above = self.quad([0.4, 6.5, 0.3], *(sides[::-1] if turned else sides), "lamp")  # behind the camera
+            self.compare(self.room(2, {"lamp": lamp(20)}, above), 1024)
+        # Beside a lamp that rays are sent to, and which hardly shines.
+        document = self.room(3, {"lamp": lamp(20), "dim": lamp(1e-6)}, self.quad([3, 2.5, 0], [0.6, 0, 0], [0, 0, 0.6], "lamp"),
+                             self.quad([3.7, 0, -3], [0, 0, 6], [0, 5, 0], "floor"), self.quad([2, 1.9, -3], [3, 0, 0], [0, 0, 6], "floor"),
+                             spheres=[{"center": [0, 30, 0], "radius": 0.1, "material": "dim"}])
+        self.compare(document, 8192)
+
+    def test_lamp_of_triangles_behind_glass(self):
+        """What meets glass first belongs to the glass, and what does not to nothing."""
+        above = self.quad([2, 6.5, -1], [2, 0, 0], [0, 0, 2], "lamp")  # whose images in the glass are out of sight
+        glass = [{"corners": [[-1.5, 1, -1.5], [0.7, 1.6, 1.5]], "material": "glass"}]
+        self.compare(self.room(6, {"lamp": lamp(20), "glass": EXACT}, above, boxes=glass), 2048)
+
 
 cli.main()

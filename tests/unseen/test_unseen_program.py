@@ -289,5 +289,38 @@ class Unseen(cli.ProgramTest):
         document = json.loads(self.succeed("explain", scene_of("control-no-glass"), "--json", "-").stdout)
         self.assertIsNone(document.get("scenes", [document])[0]["unseen"])
 
+    def test_what_is_said_of_triangles(self):
+        floor = {"corner": [-9, 0, 9], "u": [18, 0, 0], "v": [0, 0, -18], "material": "m"}
+        box = {"corners": [[-0.5, 0.5, -0.5], [0.5, 1.5, 0.5]], "rotate": [0, 20, 0], "material": "block"}
+        document = cli.scene(spheres=[{"center": [1, 4, 0], "radius": 0.05, "material": "lamp"}], quads=[floor], boxes=[box], materials={
+            "m": {"type": "lambertian", "albedo": [0.5, 0.5, 0.5]}, "block": {"type": "dielectric", "refraction_index": 1.5},
+            "lamp": {"type": "diffuse_light", "emit": [200, 200, 200]}})
+        document["camera"].update(lookfrom=[0, 3, 5], lookat=[0, 0.5, 0], vfov=40, image_width=40)
+        self.write("a.json", document)
+        told = self.succeed("explain", "a.json").stdout.decode()
+        self.assertRegex(told, r"(?m)^ *by chance +yes +About [0-9.]+ % of the light comes by way of triangles \(block\), and one sample in "
+                               r"[0-9.]+ \w+ finds it\. What helps: larger lamps or discs, or many more samples\.")
+        unseen = json.loads(self.succeed("explain", "a.json", "--json", "-").stdout)
+        unseen = unseen.get("scenes", [unseen])[0]["unseen"]
+        self.assertAlmostEqual(unseen["triangles"], 1, places=6)
+        self.assertEqual(unseen["spheres"], [])
+        # A lamp of triangles, without any sphere.
+        document["materials"]["block"] = dict(document["materials"]["m"])
+        document["quads"].append({"corner": [1, 3, 0], "u": [0.1, 0, 0], "v": [0, 0, 0.1], "material": "lamp"})
+        del document["spheres"]
+        self.write("b.json", document)
+        said = self.succeed("render", "b.json", "--spp", 4, "-o", "b.pfm", "--stats", "b.json.stats").errors
+        self.assertRegex(said, r"most of this noise is light that samples have hardly found yet\. About [0-9.]+ % of the light comes straight from "
+                               r"triangles that emit, to which no rays are sent, and one sample in [0-9.]+ thousand finds it\. What helps: spheres as "
+                               r"lamps, larger lights, or more samples\.")
+        stats = json.loads(self.read("b.json.stats"))
+        self.assertEqual(stats["unseen"]["direct"], 1)
+        self.assertGreater(stats["nrmse"], 1)
+        self.assertIsNone(json.loads(self.read_stats("b.json", "--light-sampling", "off"))["unseen"])
+
+    def read_stats(self, scene, *options):
+        self.succeed("render", scene, "--spp", 4, "-o", "x.pfm", "-q", "--stats", "x.stats", *options)
+        return self.read("x.stats")
+
 
 cli.main()

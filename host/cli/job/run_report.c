@@ -166,21 +166,6 @@ static bool is_inside_a_sphere(const BpScene *scene) {
     return false;
 }
 
-/* What samples have not found yet is not estimated there. */
-static void say_blind(const BpCommandLine *line, const BpScene *scene) {
-    if (line->quiet || line->light_sampling == BP_LIGHT_SAMPLING_OFF || !bp_pilot_is_blind(scene)) return;
-    const size_t emitting = bp_scene_emitting_triangles(scene);
-    if (emitting > 0)
-        bp_say(line,
-               "%zu triangle%s give%s light that is found by chance: until samples have found it, the noise "
-               "is more than is said; small ones need many samples, or a sphere as the lamp",
-               emitting, bp_plural(emitting), emitting == 1 ? "s" : "");
-    else
-        bp_say(line,
-               "in scenes with triangles, light by way of glass and mirrors, or of very small lamps, is not "
-               "looked for: until samples have found it, the noise is more than is said");
-}
-
 /* Light of which most of the noise is a claim, since samples have hardly found it. */
 static void say_unseen(const BpCommandLine *line, const BpRunResult *result) {
     if (!(result->claim.unseen_part > 0.5) || line->quiet) return;
@@ -223,7 +208,6 @@ void bp_run_print_summary(const BpCommandLine *line, const BpRunResult *result, 
            bp_format_count((double)own / tracing, rate, sizeof rate),
            bp_format_seconds(bp_clock_seconds() - result->times.start, all, sizeof all));
     say_unseen(line, result);
-    say_blind(line, result->scene);
     /* Half the noise takes four times the samples. */
     const double more = own > 0 ? 3.0 * tracing * (double)report->samples / (double)own : NAN;
     if (result->claim.nrmse > 0.0 && own > 0)

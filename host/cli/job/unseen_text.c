@@ -17,7 +17,9 @@ static bool is_direct(const BpUnseenLight *light) {
 
 static size_t named_spheres(const BpUnseenLight *light) {
     size_t named = 0;
-    while (named < light->sphere_count && (named == 0 || light->parts[named] >= PART_MIN)) ++named;
+    const bool others = light->triangles >= PART_MIN;
+    while (named < light->sphere_count && ((named == 0 && !others) || light->parts[named] >= PART_MIN))
+        ++named;
     return named;
 }
 
@@ -28,11 +30,21 @@ static void print_sphere(const BpScene *scene, size_t sphere, FILE *out) {
     if (material != NULL && material[0] != '\0') fprintf(out, " (%s)", material);
 }
 
-static void print_spheres(const BpScene *scene, const BpUnseenLight *light, FILE *out) {
-    const size_t named = named_spheres(light);
-    double parts = 0;
-    for (size_t i = 0; i < named; ++i) {
-        if (i > 0) fputs(i + 1 == named ? " and " : ", ", out);
+static void print_triangles(const BpScene *scene, const BpUnseenLight *light, FILE *out) {
+    const char *material = scene->materials[light->triangle_material].name;
+    fputs("triangles", out);
+    if (material != NULL && material[0] != '\0') fprintf(out, " (%s)", material);
+}
+
+static void print_ways(const BpScene *scene, const BpUnseenLight *light, FILE *out) {
+    const size_t named = named_spheres(light), also = light->triangles >= PART_MIN;
+    double parts = light->triangles;
+    for (size_t i = 0; i < named + also; ++i) {
+        if (i > 0) fputs(i + 1 == named + also ? " and " : ", ", out);
+        if (i == named) {
+            print_triangles(scene, light, out);
+            break;
+        }
         print_sphere(scene, light->spheres[i], out);
         parts += light->parts[i];
     }
@@ -42,22 +54,25 @@ static void print_spheres(const BpScene *scene, const BpUnseenLight *light, FILE
 static bool any_of_kind(const BpScene *scene, const BpUnseenLight *light, BpMaterialKind kind) {
     for (size_t i = 0; i < named_spheres(light); ++i)
         if (scene->materials[scene->spheres[light->spheres[i]].material].kind == kind) return true;
-    return false;
+    return light->triangles >= PART_MIN && scene->materials[light->triangle_material].kind == kind;
 }
 
 void bp_unseen_print(const BpScene *scene, const BpUnseenLight *light, double luminance, bool caustics,
                      FILE *out) {
     char share[32], once[32];
     fprintf(out, "About %s of the light ", bp_format_percent(light->mean / luminance, share, sizeof share));
+    const bool emit = bp_scene_emitting_triangles(scene) > 0;
     if (is_direct(light)) {
-        fputs("comes straight from lights that are smaller than a pixel", out);
+        fprintf(out, "comes straight from %s",
+                emit ? "triangles that emit, to which no rays are sent"
+                     : "lights that are smaller than a pixel");
     } else {
         fputs("comes by way of ", out);
-        print_spheres(scene, light, out);
+        print_ways(scene, light, out);
     }
     fprintf(out, ", and one sample in %s finds it.", bp_format_count(1 / light->found, once, sizeof once));
     if (is_direct(light)) {
-        fputs(" What helps: larger lights, or more samples.", out);
+        fprintf(out, " What helps: %slarger lights, or more samples.", emit ? "spheres as lamps, " : "");
         return;
     }
     fprintf(out, " What helps: %slarger lamps or discs", caustics ? "--caustics auto, " : "");
@@ -73,7 +88,8 @@ json_t *bp_unseen_json(const BpUnseenLight *light, double luminance) {
         json_array_append_new(spheres, json_pack("{s:I, s:f}", "sphere", (json_int_t)light->spheres[i],
                                                  "part", light->parts[i]));
     const double share = light->mean / luminance;
-    return json_pack("{s:f, s:o, s:f, s:f, s:f, s:o, s:f}", "mean", light->mean, "share",
+    return json_pack("{s:f, s:o, s:f, s:f, s:f, s:f, s:o, s:f}", "mean", light->mean, "share",
                      isfinite(share) ? json_real(share) : json_null(), "variance", light->square, "found",
-                     light->found, "direct", light->direct, "spheres", spheres, "seconds", light->seconds);
+                     light->found, "direct", light->direct, "triangles", light->triangles, "spheres", spheres,
+                     "seconds", light->seconds);
 }
