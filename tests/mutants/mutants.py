@@ -1236,7 +1236,7 @@ MUTANTS = [
     Mutant("ends in one cell twice", "this program: light that counts for each corner of an end's box",
            [patch("host/render/pilot_join.c", "if (again) continue;", "")], [test("test_pilot_join", "all_pairs_count_once")]),
     Mutant("cells of other spheres", "this program: a hash in which level and sphere are added",
-           [patch("host/render/pilot_join.c", "(uint64_t)object << 8 | (uint64_t)(uint32_t)level", "(uint64_t)sphere + (uint64_t)(uint32_t)level")],
+           [patch("host/render/pilot_join.c", "(uint64_t)object << 8 | (uint64_t)(uint32_t)level", "(uint64_t)object + (uint64_t)(uint32_t)level")],
            [test("test_pilot_join", "all_pairs_count_once")]),
     Mutant("light of paths that are cut", "this program: the depth cap forgotten",
            [patch("host/render/pilot_join.c", " || eye->segments + photon->segments > max_depth", "")],
