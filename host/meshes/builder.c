@@ -1,0 +1,286 @@
+/* builder.c: see builder.h. */
+#include "builder.h"
+
+#include "base/format.h"
+#include "base/message_text.h"
+#include "base/plural.h"
+#include "polygon.h"
+
+#include <inttypes.h>
+#include <math.h>
+#include <stdarg.h>
+#include <stdlib.h>
+#include <string.h>
+
+enum { FIRST_CAPACITY = 64 };
+
+void mesh_note(BpMesh *mesh, const char *format, ...) {
+    char text[256];
+    va_list arguments;
+    va_start(arguments, format);
+    vsnprintf(text, sizeof text, format, arguments);
+    va_end(arguments);
+    if (strstr(mesh->notes, text) != NULL) return;
+    const size_t used = strlen(mesh->notes);
+    if (used + strlen(text) + 3 > sizeof mesh->notes) return;
+    snprintf(mesh->notes + used, sizeof mesh->notes - used, "%s%s", used > 0 ? "; " : "", text);
+}
+
+void mesh_builder_init(MeshBuilder *builder, Input *input, const char *path, BpMesh *mesh) {
+    *builder = (MeshBuilder){.input = input, .path = path, .mesh = mesh};
+}
+
+void mesh_builder_clear(MeshBuilder *builder) {
+    free(builder->polygon_colors);
+    free(builder->polygons);
+    free(builder->corners);
+    names_clear(&builder->names);
+    *builder = (MeshBuilder){0};
+}
+
+BpStatus mesh_make_room(const Input *input, void **array, size_t *capacity, size_t count, size_t size,
+                        const char *of_what, BpError *err) {
+    if (count < *capacity) return BP_OK;
+    const size_t more = *capacity > 0 ? *capacity + *capacity / 2 : FIRST_CAPACITY;
+    void *const grown = realloc(*array, more * size);
+    if (grown == NULL) {
+        const BpStatus status = bp_fail(err, BP_ERR_MEMORY, "out of memory for %zu %s", more, of_what);
+        bp_error_at(err, input->name, 0, 0);
+        return status;
+    }
+    *array = grown;
+    *capacity = more;
+    return BP_OK;
+}
+
+#define MAKE_ROOM(builder, array, capacity, count, of_what, err)                                             \
+    mesh_make_room((builder)->input, (void **)&(array), &(capacity), (count), sizeof *(array), (of_what),    \
+                   (err))
+
+BpStatus mesh_add_vertex(MeshBuilder *builder, const double position[3], bool with_line, BpError *err) {
+    BpMesh *const mesh = builder->mesh;
+    for (int a = 0; a < 3; a++) {
+        if (fabs(position[a]) <= BP_MESH_COORDINATE_MAX) continue;
+        char found[BP_NUMBER_TEXT_SIZE];
+        return input_fail(builder->input, with_line, err,
+                          "vertex %zu (from %" PRIu32
+                          "): found %s for %c, expected a number of at most 1e100",
+                          mesh->vertex_count + builder->first_index, builder->first_index,
+                          isnan(position[a]) ? "no number" : bp_number_text(position[a], found), "xyz"[a]);
+    }
+    if (mesh->vertex_count == BP_MESH_COUNT_MAX)
+        return input_fail(builder->input, with_line, err, "found more than %u vertices, expected fewer",
+                          BP_MESH_COUNT_MAX);
+    BP_TRY(
+        MAKE_ROOM(builder, mesh->positions, builder->vertex_capacity, mesh->vertex_count, "vertices", err));
+    memcpy(mesh->positions[mesh->vertex_count++], position, sizeof *mesh->positions);
+    return BP_OK;
+}
+
+/* Adds the colour of number `number` to an array, in which all before it have colours, or else none. */
+static BpStatus add_color(MeshBuilder *builder, float (**colors)[3], size_t *capacity, ColorRange *range,
+                          const double color[3], size_t number, const char *of_what, bool with_line,
+                          BpError *err) {
+    int channel = 0;
+    char found[BP_NUMBER_TEXT_SIZE];
+    if (!color_range_take(range, color, number, with_line ? builder->input->line : 0, &channel))
+        return input_fail(builder->input, with_line, err,
+                          "%s %zu (from %" PRIu32 "): %s: found %s, expected %s", of_what,
+                          number + builder->first_index, builder->first_index, bp_color_channels[channel],
+                          isnan(color[channel]) ? "no number" : bp_number_text(color[channel], found),
+                          color_range_expected(range));
+    BP_TRY(
+        mesh_make_room(builder->input, (void **)colors, capacity, number, sizeof **colors, "colours", err));
+    for (int c = 0; c < 3; c++) (*colors)[number][c] = (float)color[c];
+    return BP_OK;
+}
+
+BpStatus mesh_color_vertex(MeshBuilder *builder, const double color[3], bool with_line, BpError *err) {
+    BpMesh *const mesh = builder->mesh;
+    /* Where a vertex before it has none, all colours will be left out. */
+    if (builder->colored_vertices + 1 == mesh->vertex_count)
+        BP_TRY(add_color(builder, &mesh->vertex_colors, &builder->vertex_color_capacity,
+                         &builder->vertex_range, color, mesh->vertex_count - 1, "vertex", with_line, err));
+    builder->colored_vertices++;
+    return BP_OK;
+}
+
+BpStatus mesh_color_polygon(MeshBuilder *builder, const double color[3], bool with_line, BpError *err) {
+    if (builder->colored_polygons + 1 == builder->polygon_count)
+        BP_TRY(add_color(builder, &builder->polygon_colors, &builder->polygon_color_capacity,
+                         &builder->face_range, color, builder->polygon_count - 1, "face", with_line, err));
+    builder->colored_polygons++;
+    return BP_OK;
+}
+
+BpStatus mesh_add_corner(MeshBuilder *builder, uint32_t vertex, BpError *err) {
+    BP_TRY(MAKE_ROOM(builder, builder->corners, builder->corner_capacity, builder->corner_count, "corners",
+                     err));
+    builder->corners[builder->corner_count++] = vertex;
+    return BP_OK;
+}
+
+BpStatus mesh_end_polygon(MeshBuilder *builder, uint32_t material, bool with_line, BpError *err) {
+    const uint64_t line = builder->input->line;
+    if (builder->polygon_count == BP_MESH_COUNT_MAX)
+        return input_fail(builder->input, with_line, err, "found more than %u faces, expected fewer",
+                          BP_MESH_COUNT_MAX);
+    BP_TRY(MAKE_ROOM(builder, builder->polygons, builder->polygon_capacity, builder->polygon_count, "faces",
+                     err));
+    const size_t corners = builder->corner_count - builder->polygon_begin;
+    if (corners > UINT32_MAX)
+        return input_fail(builder->input, with_line, err, "found a face of %zu corners, expected fewer",
+                          corners);
+    builder->polygons[builder->polygon_count++] = (MeshPolygon){.corner_count = (uint32_t)corners,
+                                                                .material = material,
+                                                                .line = !with_line          ? 0
+                                                                        : line < UINT32_MAX ? (uint32_t)line
+                                                                                            : UINT32_MAX};
+    builder->polygon_begin = builder->corner_count;
+    return BP_OK;
+}
+
+BpStatus mesh_find_material(MeshBuilder *builder, const char *name, uint32_t *number, BpError *err) {
+    BpMesh *const mesh = builder->mesh;
+    uint16_t of_name = 0;
+    const BpStatus status = names_number(&builder->names, name, &of_name, err);
+    if (status != BP_OK) {
+        bp_error_at(err, builder->input->name, (int)builder->input->line, 0);
+        return status;
+    }
+    *number = of_name > 0 ? of_name - 1u : BP_MESH_NO_MATERIAL;
+    if (of_name == 0 || *number < mesh->material_count) return BP_OK;
+    BP_TRY(MAKE_ROOM(builder, mesh->materials, builder->material_capacity, mesh->material_count, "materials",
+                     err));
+    BpMeshMaterial material = {.name = strdup(name)};
+    if (material.name == NULL) return bp_fail(err, BP_ERR_MEMORY, "out of memory for a material's name");
+    mesh->materials[mesh->material_count++] = material;
+    return BP_OK;
+}
+
+/* ---- polygons to triangles ---------------------------------------------------------------------------- */
+
+typedef struct Finish {
+    MeshBuilder *builder;
+    PolygonCutter cutter;
+    size_t face_capacity, material_capacity, color_capacity;
+    bool has_materials, has_colors;
+} Finish;
+
+static BpStatus fail_polygon(const Finish *f, size_t number, BpError *err, const char *text) {
+    Input *const input = f->builder->input;
+    input->line = f->builder->polygons[number].line;
+    return input_fail(input, input->line > 0, err, "face %zu (from %" PRIu32 ") %s",
+                      number + f->builder->first_index, f->builder->first_index, text);
+}
+
+static BpStatus add_face(Finish *f, size_t number, const uint32_t *triangle, BpError *err) {
+    MeshBuilder *const b = f->builder;
+    BpMesh *const mesh = b->mesh;
+    const uint32_t material = b->polygons[number].material;
+    if (mesh->face_count == BP_MESH_COUNT_MAX)
+        return fail_polygon(f, number, err, "makes more triangles than there may be, expected fewer");
+    if (f->has_materials) {
+        BP_TRY(MAKE_ROOM(b, mesh->face_material, f->material_capacity, mesh->face_count, "faces", err));
+        mesh->face_material[mesh->face_count] = material;
+        if (material != BP_MESH_NO_MATERIAL) mesh->materials[material].face_count++;
+    }
+    if (f->has_colors) {
+        BP_TRY(MAKE_ROOM(b, mesh->face_colors, f->color_capacity, mesh->face_count, "faces", err));
+        memcpy(mesh->face_colors[mesh->face_count], b->polygon_colors[number], sizeof *mesh->face_colors);
+    }
+    BP_TRY(MAKE_ROOM(b, mesh->faces, f->face_capacity, mesh->face_count, "faces", err));
+    memcpy(mesh->faces[mesh->face_count++], triangle, sizeof *mesh->faces);
+    return BP_OK;
+}
+
+static BpStatus cut(Finish *f, size_t number, const uint32_t *corners, BpError *err) {
+    BpMesh *const mesh = f->builder->mesh;
+    const size_t count = f->builder->polygons[number].corner_count;
+    char text[160];
+    for (size_t i = 0; i < count; i++) {
+        if (corners[i] < mesh->vertex_count) continue;
+        const uint32_t first = f->builder->first_index;
+        snprintf(text, sizeof text,
+                 "has vertex %" PRIu64 ", expected one of %zu vertices, counted from %" PRIu32,
+                 (uint64_t)corners[i] + first, mesh->vertex_count, first);
+        return fail_polygon(f, number, err, text);
+    }
+    const PolygonResult result = polygon_cut(&f->cutter, (const double(*)[3])mesh->positions, corners, count);
+    switch (result) {
+    case POLYGON_CUT:
+        break;
+    case POLYGON_CROSSES:
+        snprintf(text, sizeof text,
+                 "crosses itself, expected a polygon that bounds one area: cut it into triangles");
+        return fail_polygon(f, number, err, text);
+    case POLYGON_TOO_LARGE:
+        snprintf(text, sizeof text, "has %zu corners and is not convex, expected at most %d: cut it up",
+                 count, POLYGON_CORNERS_MAX);
+        return fail_polygon(f, number, err, text);
+    case POLYGON_NO_MEMORY:
+        return bp_fail(err, BP_ERR_MEMORY, "out of memory for a face of %zu corners", count);
+    }
+    mesh->polygons += count > 3;
+    mesh->dropped_degenerate += (count > 3 ? count - 2 : 1) - f->cutter.triangle_count;
+    for (size_t t = 0; t < f->cutter.triangle_count; t++)
+        BP_TRY(add_face(f, number, f->cutter.triangles[t], err));
+    return BP_OK;
+}
+
+static BpStatus cut_all(Finish *f, BpError *err) {
+    const MeshBuilder *const b = f->builder;
+    const uint32_t *corners = b->corners;
+    for (size_t n = 0; n < b->polygon_count; n++) {
+        BP_TRY(cut(f, n, corners, err));
+        corners += b->polygons[n].corner_count;
+    }
+    return BP_OK;
+}
+
+/* ---- colours ------------------------------------------------------------------------------------------ */
+
+/* Whether all of them have a colour; where only some have, a note reports it. */
+static bool are_all_colored(BpMesh *mesh, size_t colored, size_t count, const char *of_what) {
+    if (colored > 0 && colored < count)
+        mesh_note(mesh, "colours left out, since %zu of %zu %s have none", count - colored, count, of_what);
+    return colored > 0 && colored == count;
+}
+
+static BpStatus make_linear(const MeshBuilder *builder, const ColorRange *range, const char *what,
+                            float (*colors)[3], size_t count, BpError *err) {
+    const double scale = color_range_scale(range);
+    if (scale == 0) return color_range_fail(range, what, builder->input->name, err);
+    const char *const note = color_range_note(range);
+    if (note != NULL) mesh_note(builder->mesh, "%s", note);
+    color_range_make_linear(scale, colors, count);
+    return BP_OK;
+}
+
+BpStatus mesh_finish(MeshBuilder *builder, BpError *err) {
+    BpMesh *const mesh = builder->mesh;
+    char number[32];
+    Finish finish = {.builder = builder, .has_materials = mesh->material_count > 0};
+    if (!are_all_colored(mesh, builder->colored_vertices, mesh->vertex_count, "vertices")) {
+        free(mesh->vertex_colors);
+        mesh->vertex_colors = NULL;
+    } else {
+        BP_TRY(make_linear(builder, &builder->vertex_range, "vertex", mesh->vertex_colors, mesh->vertex_count,
+                           err));
+    }
+    finish.has_colors = are_all_colored(mesh, builder->colored_polygons, builder->polygon_count, "faces");
+    if (finish.has_colors)
+        BP_TRY(make_linear(builder, &builder->face_range, "face", builder->polygon_colors,
+                           builder->polygon_count, err));
+    const BpStatus status = cut_all(&finish, err);
+    polygon_clear(&finish.cutter);
+    if (status != BP_OK) return status;
+    if (mesh->face_count == 0)
+        return input_fail(builder->input, false, err,
+                          "found no triangle with an area above 0, expected a mesh: check what was exported");
+    if (mesh->dropped_degenerate > 0)
+        mesh_note(mesh, "%s triangle%s without area left out",
+                  bp_format_whole(mesh->dropped_degenerate, number, sizeof number),
+                  bp_plural(mesh->dropped_degenerate));
+    return BP_OK;
+}

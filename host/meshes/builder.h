@@ -1,0 +1,65 @@
+/* builder.h: how every format's reader hands a mesh over.
+ *
+ * In:    vertices and polygons, in a file's order.   Out: a mesh of triangles.
+ * Knows: what all formats share.   Does not know: which formats there are.
+ *
+ * A polygon may name vertices that follow it: all are cut once the file has been read. */
+#ifndef BP_MESHES_BUILDER_H
+#define BP_MESHES_BUILDER_H
+
+#include "mesh.h"
+
+#include "particles/color_range.h"
+#include "particles/input.h"
+#include "particles/names.h"
+
+typedef struct MeshPolygon {
+    uint32_t corner_count, material; /* BP_MESH_NO_MATERIAL: none */
+    uint32_t line;                   /* 0: it stands in no line */
+} MeshPolygon;
+
+typedef struct MeshBuilder {
+    Input *input;
+    BpMesh *mesh;
+    const char *path;     /* of the file; others are sought beside it */
+    uint32_t first_index; /* which number the file gives to its first vertex: 0, or 1 in OBJ */
+    size_t vertex_capacity;
+    ColorRange vertex_range, face_range;
+    size_t colored_vertices, colored_polygons;
+    float (*polygon_colors)[3]; /* NULL until one has a colour; red is NaN where it has none */
+    MeshPolygon *polygons;
+    size_t polygon_count, polygon_capacity, polygon_color_capacity, vertex_color_capacity;
+    uint32_t *corners; /* of all polygons, one after the other */
+    size_t corner_count, corner_capacity,
+        polygon_begin; /* where the corners of the polygon being made begin */
+    BpNames names;     /* of materials: number n is material n - 1 */
+    size_t material_capacity;
+} MeshBuilder;
+
+void mesh_builder_init(MeshBuilder *builder, Input *input, const char *path, BpMesh *mesh);
+void mesh_builder_clear(MeshBuilder *builder);
+
+/* Makes room for one more in an array of the heap. `of_what`: "vertices". */
+BpStatus mesh_make_room(const Input *input, void **array, size_t *capacity, size_t count, size_t size,
+                        const char *of_what, BpError *err);
+
+/* Adds a vertex. Fails on what is not finite or too large. with_line: the error names the line last taken. */
+BpStatus mesh_add_vertex(MeshBuilder *builder, const double position[3], bool with_line, BpError *err);
+/* The colour of the vertex, or of the polygon, that was added last: numbers of any scale (color_range.h). */
+BpStatus mesh_color_vertex(MeshBuilder *builder, const double color[3], bool with_line, BpError *err);
+BpStatus mesh_color_polygon(MeshBuilder *builder, const double color[3], bool with_line, BpError *err);
+/* Adds a corner to the polygon that is being made: a vertex, counted from 0. */
+BpStatus mesh_add_corner(MeshBuilder *builder, uint32_t vertex, BpError *err);
+/* Ends it. */
+BpStatus mesh_end_polygon(MeshBuilder *builder, uint32_t material, bool with_line, BpError *err);
+/* The number of the material of that name, which is added where it is new; "" has BP_MESH_NO_MATERIAL. */
+BpStatus mesh_find_material(MeshBuilder *builder, const char *name, uint32_t *number, BpError *err);
+
+/* After all of a file: cuts the polygons, and makes the colours linear. Fails on vertices that do not exist,
+ * on polygons that cannot be cut, and if there is no triangle. */
+BpStatus mesh_finish(MeshBuilder *builder, BpError *err);
+
+/* Adds to the notes what is not there yet. */
+void mesh_note(BpMesh *mesh, const char *format, ...) BP_PRINTF_LIKE(2, 3);
+
+#endif

@@ -1,0 +1,130 @@
+/* file.c: which format a file has, and the way from it to a mesh; see mesh.h. */
+#include "mesh.h"
+
+#include "base/encoding.h"
+#include "base/input_file.h"
+#include "reader.h"
+
+#include <locale.h>
+#include <stdlib.h>
+#include <string.h>
+#include <strings.h>
+
+typedef enum Format { FORMAT_NONE, FORMAT_OFF, FORMAT_FOREIGN } Format;
+
+static ReadMesh *const readers[] = {[FORMAT_OFF] = mesh_read_off};
+
+/* Formats that are not read, by what their files begin with, if that is always the same, and how they are
+ * named. */
+static const struct {
+    const char *name, *ending, *beginning;
+} foreign[] = {
+    {"glTF", ".gltf", NULL},     {"binary glTF", ".glb", "glTF"}, {"FBX", ".fbx", "Kaydara FBX Binary"},
+    {"3D Studio", ".3ds", NULL}, {"COLLADA", ".dae", NULL},       {"Blender", ".blend", "BLENDER"}};
+enum { FOREIGN_COUNT = sizeof foreign / sizeof *foreign };
+
+static bool has_ending(const char *path, const char *ending) {
+    size_t length = strlen(path);
+    const size_t size = strlen(ending);
+    if (length > 3 && strcasecmp(path + length - 3, ".gz") == 0) length -= 3;
+    return length > size && strncasecmp(path + length - size, ending, size) == 0;
+}
+
+static bool begins_with(const Input *input, const char *text) {
+    const size_t length = strlen(text);
+    return input->end - input->begin >= length && memcmp(input->buffer + input->begin, text, length) == 0;
+}
+
+/* The first word of a text, after a byte order mark. */
+static void first_word(const Input *input, char *word, size_t size) {
+    const unsigned char *text = input->buffer + input->begin, *const end = input->buffer + input->end;
+    text += bp_text_mark(text, (size_t)(end - text));
+    while (text < end && strchr(" \t\r\n", *text) != NULL) text++;
+    size_t length = 0;
+    while (text < end && strchr(" \t\r\n", *text) == NULL && length + 1 < size)
+        word[length++] = (char)*text++;
+    word[length] = '\0';
+}
+
+/* Which format a file has whose beginning is filled in. *other: of FORMAT_FOREIGN, its name. */
+static Format find_format(Input *input, const char *path, const char **other) {
+    char word[16];
+    (void)input_fill(input, 512);
+    for (int i = 0; i < FOREIGN_COUNT; i++) {
+        *other = foreign[i].name;
+        if (has_ending(path, foreign[i].ending)) return FORMAT_FOREIGN;
+        if (foreign[i].beginning != NULL && begins_with(input, foreign[i].beginning)) return FORMAT_FOREIGN;
+    }
+    first_word(input, word, sizeof word);
+    if (word[0] == '{') return FORMAT_NONE; /* a scene document, whatever its name */
+    const size_t length = strlen(word);
+    if (length >= 3 && length <= 8 && strcmp(word + length - 3, "OFF") == 0) return FORMAT_OFF;
+    if (has_ending(path, ".off")) return FORMAT_OFF;
+    return FORMAT_NONE;
+}
+
+bool bp_mesh_is_file(const char *path) {
+    FILE *stream = NULL;
+    uint64_t size = 0;
+    Input input = {0};
+    const char *other = NULL;
+    if (bp_file_open(path, false, "a file of a mesh", &stream, &size, NULL) != BP_OK) return false;
+    const bool is_mesh =
+        input_init(&input, stream, path, NULL) == BP_OK && find_format(&input, path, &other) != FORMAT_NONE;
+    input_clear(&input);
+    fclose(stream);
+    return is_mesh;
+}
+
+static BpStatus read_input(Input *input, const char *path, BpMesh *mesh, BpError *err) {
+    MeshBuilder builder;
+    const char *other = NULL;
+    const Format format = find_format(input, path, &other);
+    if (format == FORMAT_FOREIGN)
+        return input_fail(input, false, err,
+                          "found a mesh as %s, which is not read; export it as PLY, OBJ, STL or OFF", other);
+    if (format == FORMAT_NONE)
+        return input_fail(input, false, err,
+                          "found no format that is known, expected a mesh as PLY, OBJ, STL or OFF");
+    mesh_builder_init(&builder, input, path, mesh);
+    BpStatus status = readers[format](&builder, err);
+    if (status == BP_OK) status = mesh_finish(&builder, err);
+    mesh_builder_clear(&builder);
+    return status;
+}
+
+BpStatus bp_mesh_read(const char *path, BpMesh *mesh, BpError *err) {
+    FILE *stream = NULL;
+    uint64_t size = 0;
+    Input input = {0};
+    *mesh = (BpMesh){0};
+    BP_TRY(bp_file_open(path, false, "a file of a mesh", &stream, &size, err));
+    /* Numbers have a point, whatever the caller's locale. */
+    const locale_t point = newlocale(LC_NUMERIC_MASK, "C", (locale_t)0);
+    BpStatus status = BP_OK;
+    if (point == (locale_t)0) {
+        status = bp_fail(err, BP_ERR_MEMORY, "out of memory for a locale");
+        goto done;
+    }
+    const locale_t before = uselocale(point);
+    status = input_init(&input, stream, path, err);
+    if (status == BP_OK) status = read_input(&input, path, mesh, err);
+    input_clear(&input);
+    uselocale(before);
+    freelocale(point);
+done:
+    fclose(stream);
+    if (status != BP_OK) bp_mesh_clear(mesh);
+    return status;
+}
+
+void bp_mesh_clear(BpMesh *mesh) {
+    for (size_t i = 0; i < mesh->material_count; i++) free(mesh->materials[i].name);
+    free(mesh->materials);
+    free(mesh->positions);
+    free(mesh->faces);
+    free(mesh->face_material);
+    free(mesh->vertex_colors);
+    free(mesh->face_colors);
+    *mesh = (BpMesh){0};
+}

@@ -1,0 +1,82 @@
+/* mesh.h: files of meshes, and the one form in which all of them are handed over.
+ *
+ * In:    a path.   Out: vertices, triangles, their materials and colours; the first edge that is not closed.
+ * Knows: which formats there are.   Does not know: scenes, how a mesh is placed and traced.
+ *
+ * Formats: PLY with faces, OBJ with MTL, STL, OFF; each also packed by gzip. Nothing in a file is trusted:
+ * memory grows with what was read and never with what a count promises, and every error names the file, and
+ * the line where there are lines. Coordinates are as written, in the file's unit of length. */
+#ifndef BP_MESHES_MESH_H
+#define BP_MESHES_MESH_H
+
+#include "base/status.h"
+
+#include <stdbool.h>
+#include <stdint.h>
+
+/* At most so many vertices, and as many triangles. */
+#define BP_MESH_COUNT_MAX 134217728u
+/* Coordinates are finite and at most so large, so that products of them are finite. */
+#define BP_MESH_COORDINATE_MAX 1e100
+/* In face_material: the face has none. */
+#define BP_MESH_NO_MATERIAL UINT32_MAX
+
+/* A material by name, and what an MTL file says of it: an offer to whoever has no material of that name. */
+typedef struct BpMeshMaterial {
+    char *name;        /* owned by the mesh */
+    size_t face_count; /* triangles that have it; 0: the MTL file alone names it */
+    bool has_kd, has_ke, has_ni, has_d;
+    double kd[3],
+        ke[3];    /* linear red, green and blue: diffuse reflectance, emitted radiance; finite, from 0 */
+    double ni, d; /* index of refraction, above 0; opacity in [0, 1] */
+} BpMeshMaterial;
+
+typedef struct BpMesh {
+    double (*positions)[3];
+    size_t vertex_count;
+    uint32_t (
+        *faces)[3]; /* triangles of three different vertices and an area above 0, wound as in the file */
+    size_t face_count;
+    uint32_t *face_material; /* Optional; an index into materials, or BP_MESH_NO_MATERIAL */
+    BpMeshMaterial *materials;
+    size_t material_count;
+    /* Optional: all vertices, or all faces, have one. Linear red, green and blue in [0, 1]: bytes of files
+     * are decoded as sRGB. */
+    float (*vertex_colors)[3], (*face_colors)[3];
+    size_t polygons;           /* faces of the file with more than three corners, which were cut */
+    size_t dropped_degenerate; /* triangles, whole or of polygons, without area or with a corner twice */
+    size_t welded;             /* vertices (of STL) that were equal to an earlier one, and became that one */
+    char notes[480];           /* what was guessed or passed over: "3 lines left out; ..." */
+} BpMesh;
+
+/* Whether name and contents tell of a mesh, also of one in a format that bp_mesh_read() only refuses by name
+ * (glTF). A PLY file is a mesh if it has faces. False if the file cannot be read. */
+bool bp_mesh_is_file(const char *path);
+
+/* Reads a regular file into *mesh, which need not be initialised; release it with bp_mesh_clear(). MTL files
+ * are sought beside it. Polygons become triangles: convex ones by a fan from their first corner, others by
+ * ear clipping. Fails with BP_ERR_SCENE on what is damaged or unsupported, with file and line. May be called
+ * by several threads at once. */
+BpStatus bp_mesh_read(const char *path, BpMesh *mesh, BpError *err);
+void bp_mesh_clear(BpMesh *mesh);
+
+typedef enum BpMeshEdgeFault {
+    BP_MESH_EDGE_GOOD,   /* every edge has two faces, which go along it in opposite directions */
+    BP_MESH_EDGE_OPEN,   /* one face has the edge */
+    BP_MESH_EDGE_SHARED, /* three faces or more have it */
+    BP_MESH_EDGE_TURNED  /* two have it, and go along it in the same direction */
+} BpMeshEdgeFault;
+
+typedef struct BpMeshEdge {
+    BpMeshEdgeFault fault;
+    uint32_t vertices[2]; /* in the direction of the face */
+    uint32_t face;        /* the first face with a bad edge */
+} BpMeshEdge;
+
+/* Finds the first edge, by faces, at which the mesh is not closed or not consistently wound. Vertices at one
+ * place (0 and -0 are the same) count as one. BP_ERR_MEMORY is the only error. */
+BpStatus bp_mesh_find_open_edge(const BpMesh *mesh, BpMeshEdge *edge, BpError *err);
+/* What that fault is, for messages: "no second face has it". Static. */
+const char *bp_mesh_edge_fault_text(BpMeshEdgeFault fault);
+
+#endif
