@@ -10,9 +10,12 @@
 #include <string.h>
 #include <strings.h>
 
-typedef enum Format { FORMAT_NONE, FORMAT_OFF, FORMAT_FOREIGN } Format;
+typedef enum Format { FORMAT_NONE, FORMAT_PLY, FORMAT_OBJ, FORMAT_STL, FORMAT_OFF, FORMAT_FOREIGN } Format;
 
-static ReadMesh *const readers[] = {[FORMAT_OFF] = mesh_read_off};
+static ReadMesh *const readers[] = {[FORMAT_PLY] = mesh_read_ply,
+                                    [FORMAT_OBJ] = mesh_read_obj,
+                                    [FORMAT_STL] = mesh_read_stl,
+                                    [FORMAT_OFF] = mesh_read_off};
 
 /* Formats that are not read, by what their files begin with, if that is always the same, and how they are
  * named. */
@@ -46,7 +49,16 @@ static void first_word(const Input *input, char *word, size_t size) {
     word[length] = '\0';
 }
 
-/* Which format a file has whose beginning is filled in. *other: of FORMAT_FOREIGN, its name. */
+/* Whether a text begins like one of STL. */
+static bool is_stl_text(const Input *input, const char *word) {
+    const unsigned char *const text = input->buffer + input->begin;
+    const size_t length = input->end - input->begin;
+    for (size_t i = 0; strcasecmp(word, "solid") == 0 && i + 5 <= length; i++)
+        if (memcmp(text + i, "facet", 5) == 0) return true;
+    return false;
+}
+
+/* Which format a file has, which stands at its beginning. *other: of FORMAT_FOREIGN, its name. */
 static Format find_format(Input *input, const char *path, const char **other) {
     char word[16];
     (void)input_fill(input, 512);
@@ -57,10 +69,14 @@ static Format find_format(Input *input, const char *path, const char **other) {
     }
     first_word(input, word, sizeof word);
     if (word[0] == '{') return FORMAT_NONE; /* a scene document, whatever its name */
+    if (strcmp(word, "ply") == 0) return FORMAT_PLY;
     const size_t length = strlen(word);
     if (length >= 3 && length <= 8 && strcmp(word + length - 3, "OFF") == 0) return FORMAT_OFF;
+    if (has_ending(path, ".ply")) return FORMAT_PLY;
+    if (has_ending(path, ".obj")) return FORMAT_OBJ;
     if (has_ending(path, ".off")) return FORMAT_OFF;
-    return FORMAT_NONE;
+    if (has_ending(path, ".stl") || is_stl_text(input, word)) return FORMAT_STL;
+    return !input_is_packed(input) && mesh_stl_is_binary(input) ? FORMAT_STL : FORMAT_NONE;
 }
 
 bool bp_mesh_is_file(const char *path) {
@@ -69,8 +85,11 @@ bool bp_mesh_is_file(const char *path) {
     Input input = {0};
     const char *other = NULL;
     if (bp_file_open(path, false, "a file of a mesh", &stream, &size, NULL) != BP_OK) return false;
-    const bool is_mesh =
-        input_init(&input, stream, path, NULL) == BP_OK && find_format(&input, path, &other) != FORMAT_NONE;
+    bool is_mesh = false;
+    if (input_init(&input, stream, path, NULL) == BP_OK) {
+        const Format format = find_format(&input, path, &other);
+        is_mesh = format == FORMAT_PLY ? mesh_ply_has_faces(&input) : format != FORMAT_NONE;
+    }
     input_clear(&input);
     fclose(stream);
     return is_mesh;

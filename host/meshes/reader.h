@@ -10,6 +10,17 @@
 #include "builder.h"
 
 typedef BpStatus ReadMesh(MeshBuilder *builder, BpError *err);
-ReadMesh mesh_read_off;
+ReadMesh mesh_read_ply, mesh_read_obj, mesh_read_stl, mesh_read_off;
+
+/* Whether a PLY file, at its beginning, has faces; without them it is a file of points. */
+bool mesh_ply_has_faces(Input *input);
+/* Whether a file, at its beginning, is as long as a binary STL file of as many triangles as it counts. Passes
+ * over some of it. */
+bool mesh_stl_is_binary(Input *input);
+/* Reads an MTL file: adds materials, or completes those that are there. Lines that make no sense become a
+ * note. */
+BpStatus mesh_read_mtl(MeshBuilder *builder, Input *input, BpError *err);
+/* The name that the rest of a line is, with blanks amid it, but not around it. Cuts it off in place. */
+char *mesh_name_in(char *rest);
 
 #endif

@@ -7,6 +7,7 @@
 
 #include <inttypes.h>
 #include <math.h>
+#include <stdlib.h>
 #include <string.h>
 
 static BpStatus fail_end(const Input *input, uint64_t row, const PlyElement *element, BpError *err) {
@@ -24,11 +25,42 @@ static BpStatus fail_length(const Input *input, bool with_line, uint64_t row, do
                       row, bp_number_text(number, found));
 }
 
+/* Adds an item to a list of which `count` are there. */
+static BpStatus add_item(PlyList *list, double item, BpError *err) {
+    if (list->count == list->capacity) {
+        const size_t capacity = list->capacity > 0 ? 2 * list->capacity : 16;
+        double *const items = realloc(list->items, capacity * sizeof *items);
+        if (items == NULL)
+            return bp_fail(err, BP_ERR_MEMORY, "out of memory for a list of %zu numbers", capacity);
+        list->items = items;
+        list->capacity = capacity;
+    }
+    list->items[list->count++] = item;
+    return BP_OK;
+}
+
 /* ---- binary ------------------------------------------------------------------------------------------- */
 
-/* One row with lists, property by property. `values`: Optional. */
+static BpStatus fail_list(const Input *input, uint64_t row, BpError *err) {
+    return input_fail(
+        input, false, err,
+        "found the end of the file in a list of row %" PRIu64 " (from 0); the file is truncated", row);
+}
+
+static BpStatus take_items(Input *input, PlyType type, bool swap, uint64_t count, uint64_t row, PlyList *list,
+                           BpError *err) {
+    const size_t size = ply_type_size(type);
+    for (uint64_t i = 0; i < count; i++) {
+        if (!input_fill(input, size)) return fail_list(input, row, err);
+        BP_TRY(add_item(list, ply_decode(input->buffer + input->begin, type, swap), err));
+        input_take(input, size);
+    }
+    return BP_OK;
+}
+
+/* One row with lists, property by property. `values`, `list`: Optional. */
 static BpStatus take_row(Input *input, const PlyHeader *header, const PlyElement *element, uint64_t row,
-                         double *values, BpError *err) {
+                         double *values, PlyList *list, BpError *err) {
     for (size_t i = 0; i < element->property_count; i++) {
         const PlyProperty *const p = &header->properties[element->first + i];
         const PlyType type = p->count_type != PLY_NONE ? p->count_type : p->type;
@@ -39,11 +71,10 @@ static BpStatus take_row(Input *input, const PlyHeader *header, const PlyElement
         if (values != NULL) values[i] = number;
         if (p->count_type == PLY_NONE) continue;
         if (number < 0) return fail_length(input, false, row, number, err);
-        if (!input_skip(input, (uint64_t)number * ply_type_size(p->type)))
-            return input_fail(input, false, err,
-                              "found the end of the file in a list of row %" PRIu64
-                              " (from 0); the file is truncated",
-                              row);
+        if (list != NULL && list->place == i)
+            BP_TRY(take_items(input, p->type, header->swap, (uint64_t)number, row, list, err));
+        else if (!input_skip(input, (uint64_t)number * ply_type_size(p->type)))
+            return fail_list(input, row, err);
     }
     return BP_OK;
 }
@@ -67,7 +98,7 @@ static BpStatus skip_binary(Input *input, const PlyHeader *header, const PlyElem
     if (size == 0) return BP_OK;
     if (element->has_list) {
         for (uint64_t row = 0; row < element->count; row++)
-            BP_TRY(take_row(input, header, element, row, NULL, err));
+            BP_TRY(take_row(input, header, element, row, NULL, NULL, err));
         return BP_OK;
     }
     const uint64_t before = input->taken, most = BP_INPUT_BYTES_MAX / size;
@@ -108,8 +139,23 @@ static BpStatus skip_ascii(Input *input, const PlyElement *element, BpError *err
     return BP_OK;
 }
 
+/* What its rows are called. */
+static const char *noun_of(const PlyHeader *header, const PlyElement *element) {
+    return element == &header->elements[header->vertex] ? "vertex" : element->faces ? "face" : "row";
+}
+
+/* Reads the items behind a list's length. *good: there are as many. */
+static BpStatus parse_items(char **line, double count, PlyList *list, bool *good, BpError *err) {
+    double item = 0;
+    for (double k = 0; k < count && *good; k++) {
+        *good = ply_parse_number(line, &item);
+        if (*good && list != NULL) BP_TRY(add_item(list, item, err));
+    }
+    return BP_OK;
+}
+
 static BpStatus take_ascii(Input *input, const PlyHeader *header, const PlyElement *element, uint64_t row,
-                           double *values, BpError *err) {
+                           double *values, PlyList *list, BpError *err) {
     char *line = NULL, shown[48];
     BP_TRY(input_full_line(input, &line, err));
     if (line == NULL)
@@ -119,51 +165,58 @@ static BpStatus take_ascii(Input *input, const PlyHeader *header, const PlyEleme
                           row, element->count);
     for (size_t i = 0; i < element->property_count; i++) {
         const PlyProperty *const p = &header->properties[element->first + i];
-        double number = 0, ignored = 0;
+        double number = 0;
         bool good = ply_parse_number(&line, &number);
         if (good && p->count_type != PLY_NONE) {
             if (!(number >= 0 && number == floor(number))) return fail_length(input, true, row, number, err);
-            for (double k = 0; good && k < number; k++) good = ply_parse_number(&line, &ignored);
+            PlyList *const wanted = list != NULL && list->place == i ? list : NULL;
+            BP_TRY(parse_items(&line, number, wanted, &good, err));
         }
         values[i] = number;
         if (good) continue;
         bp_printable(line + strspn(line, " \t"), shown, sizeof shown);
         return input_fail(input, true, err,
-                          "vertex %" PRIu64 " (from 0): found \"%s\", expected a number for each of %zu "
+                          "%s %" PRIu64 " (from 0): found \"%s\", expected a number for each of %zu "
                           "properties",
-                          row, shown, element->property_count);
+                          noun_of(header, element), row, shown, element->property_count);
     }
     if (line[strspn(line, " \t\r")] == '\0') return BP_OK;
     return input_fail(input, true, err,
-                      "vertex %" PRIu64 " (from 0): found more than %zu numbers, expected one for each "
+                      "%s %" PRIu64 " (from 0): found more than %zu numbers, expected one for each "
                       "property",
-                      row, element->property_count);
+                      noun_of(header, element), row, element->property_count);
 }
 
 /* ---- the whole ---------------------------------------------------------------------------------------- */
 
-static BpStatus skip(Input *input, const PlyHeader *header, size_t element, BpError *err) {
+BpStatus ply_pass_element(Input *input, const PlyHeader *header, size_t element, BpError *err) {
     return header->form == PLY_ASCII ? skip_ascii(input, &header->elements[element], err)
                                      : skip_binary(input, header, &header->elements[element], err);
 }
 
 BpStatus ply_begin_points(Input *input, const PlyHeader *header, BpError *err) {
-    for (size_t i = 0; i < header->vertex; i++) BP_TRY(skip(input, header, i, err));
+    for (size_t i = 0; i < header->vertex; i++) BP_TRY(ply_pass_element(input, header, i, err));
     return BP_OK;
 }
 
-BpStatus ply_take_point(Input *input, const PlyHeader *header, uint64_t row, double *values, BpError *err) {
-    const PlyElement *const element = &header->elements[header->vertex];
-    return header->form == PLY_ASCII ? take_ascii(input, header, element, row, values, err)
-           : element->has_list       ? take_row(input, header, element, row, values, err)
-                                     : take_plain_row(input, header, element, row, values, err);
+BpStatus ply_take_row(Input *input, const PlyHeader *header, size_t element, uint64_t row, double *values,
+                      PlyList *list, BpError *err) {
+    const PlyElement *const taken = &header->elements[element];
+    if (list != NULL) list->count = 0;
+    return header->form == PLY_ASCII ? take_ascii(input, header, taken, row, values, list, err)
+           : taken->has_list         ? take_row(input, header, taken, row, values, list, err)
+                                     : take_plain_row(input, header, taken, row, values, err);
 }
 
-static BpStatus expect_end(Input *input, bool lines, BpError *err) {
+BpStatus ply_take_point(Input *input, const PlyHeader *header, uint64_t row, double *values, BpError *err) {
+    return ply_take_row(input, header, header->vertex, row, values, NULL, err);
+}
+
+BpStatus ply_expect_end(Input *input, const PlyHeader *header, BpError *err) {
     static const char remedy[] =
         "expected the end of the file: correct the counts in its header, or remove what follows";
     const uint64_t here = input->taken;
-    if (lines) {
+    if (header->form == PLY_ASCII) {
         char *line = NULL;
         BP_TRY(input_full_line(input, &line, err));
         return line == NULL
@@ -180,6 +233,7 @@ static BpStatus expect_end(Input *input, bool lines, BpError *err) {
 }
 
 BpStatus ply_end_points(Input *input, const PlyHeader *header, BpError *err) {
-    for (size_t i = header->vertex + 1; i < header->element_count; i++) BP_TRY(skip(input, header, i, err));
-    return expect_end(input, header->form == PLY_ASCII, err);
+    for (size_t i = header->vertex + 1; i < header->element_count; i++)
+        BP_TRY(ply_pass_element(input, header, i, err));
+    return ply_expect_end(input, header, err);
 }

@@ -1,0 +1,167 @@
+/* read_ply.c: PLY files with faces; see reader.h.
+ *
+ * Knows: which properties are corners and colours.   Does not know: how headers and rows are written
+ * (particles/ply_rows.h), how polygons are cut. */
+#include "reader.h"
+
+#include "particles/column_names.h"
+#include "particles/ply_rows.h"
+
+#include "base/message_text.h"
+
+#include <inttypes.h>
+#include <limits.h>
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+typedef struct Ply {
+    MeshBuilder *builder;
+    Input *input;
+    PlyHeader header;
+    size_t face;  /* the element of the faces */
+    PlyList list; /* of their corners */
+    int face_color[3];
+    double values[PLY_PROPERTIES_MAX];
+    bool with_line;
+} Ply;
+
+static const PlyProperty *face_property(const Ply *ply, size_t place) {
+    return &ply->header.properties[ply->header.elements[ply->face].first + place];
+}
+
+static BpStatus find_corners(Ply *ply, BpError *err) {
+    const PlyElement *const element = &ply->header.elements[ply->face];
+    bool is_found = false;
+    for (size_t i = 0; i < element->property_count; i++) {
+        const PlyProperty *const property = face_property(ply, i);
+        if (strcmp(property->name, "vertex_indices") != 0 && strcmp(property->name, "vertex_index") != 0)
+            continue;
+        ply->input->line = property->line;
+        if (property->count_type == PLY_NONE || !ply_is_integer(property->type) || is_found)
+            return input_fail(ply->input, true, err, "found %s %s, expected one list of an integer type",
+                              property->name, is_found ? "a second time" : "of another type");
+        ply->list.place = i;
+        is_found = true;
+    }
+    if (is_found) return BP_OK;
+    return input_fail(
+        ply->input, true, err,
+        "found faces without a list vertex_indices (or vertex_index), expected one: their corners");
+}
+
+/* The colours of faces, where all three are there and of one type. */
+static void find_face_colors(Ply *ply) {
+    const PlyElement *const element = &ply->header.elements[ply->face];
+    const char *names[PLY_PROPERTIES_MAX];
+    int *const color = ply->face_color;
+    for (size_t i = 0; i < element->property_count; i++)
+        names[i] = face_property(ply, i)->count_type == PLY_NONE ? face_property(ply, i)->name : "";
+    const bool is_found = column_find_color(names, element->property_count, color);
+    const PlyType type = is_found ? face_property(ply, (size_t)color[0])->type : PLY_NONE;
+    if (!is_found || face_property(ply, (size_t)color[1])->type != type ||
+        face_property(ply, (size_t)color[2])->type != type) {
+        color[0] = -1;
+        return;
+    }
+    ply->builder->face_range = (ColorRange){.bytes = type == PLY_UINT8, .ambiguous = ply_is_integer(type)};
+}
+
+static BpStatus find_faces(Ply *ply, BpError *err) {
+    size_t found = 0;
+    for (size_t i = 0; i < ply->header.element_count; i++) {
+        if (!ply->header.elements[i].faces) continue;
+        ply->face = i;
+        found++;
+    }
+    if (found > 1)
+        return input_fail(ply->input, true, err, "found the element face a second time, expected it once");
+    if (found == 0 || ply->header.elements[ply->face].count == 0)
+        return input_fail(
+            ply->input, true, err,
+            "found no faces, expected a mesh; points alone are read as particles or as a cloud");
+    return BP_OK;
+}
+
+static BpStatus read_vertices(Ply *ply, BpError *err) {
+    const PlyHeader *const header = &ply->header;
+    double position[3], color[3];
+    for (uint64_t row = 0; row < header->elements[header->vertex].count; row++) {
+        BP_TRY(ply_take_row(ply->input, header, header->vertex, row, ply->values, NULL, err));
+        for (int a = 0; a < 3; a++) position[a] = ply->values[header->place[a]];
+        BP_TRY(mesh_add_vertex(ply->builder, position, ply->with_line, err));
+        if (header->color[0] < 0) continue;
+        for (int c = 0; c < 3; c++) color[c] = ply->values[header->color[c]];
+        BP_TRY(mesh_color_vertex(ply->builder, color, ply->with_line, err));
+    }
+    return BP_OK;
+}
+
+static BpStatus add_corners(const Ply *ply, uint64_t row, BpError *err) {
+    const uint64_t vertices = ply->header.elements[ply->header.vertex].count;
+    char found[BP_NUMBER_TEXT_SIZE];
+    for (size_t i = 0; i < ply->list.count; i++) {
+        const double vertex = ply->list.items[i];
+        if (!(vertex >= 0 && vertex < (double)vertices && vertex < UINT32_MAX && vertex == floor(vertex)))
+            return input_fail(ply->input, ply->with_line, err,
+                              "face %" PRIu64 " (from 0): found vertex %s, expected one of %" PRIu64
+                              " vertices, counted from 0",
+                              row, isnan(vertex) ? "nan" : bp_number_text(vertex, found), vertices);
+        BP_TRY(mesh_add_corner(ply->builder, (uint32_t)vertex, err));
+    }
+    return BP_OK;
+}
+
+static BpStatus read_faces(Ply *ply, BpError *err) {
+    double color[3];
+    for (uint64_t row = 0; row < ply->header.elements[ply->face].count; row++) {
+        BP_TRY(ply_take_row(ply->input, &ply->header, ply->face, row, ply->values, &ply->list, err));
+        BP_TRY(add_corners(ply, row, err));
+        BP_TRY(mesh_end_polygon(ply->builder, BP_MESH_NO_MATERIAL, ply->with_line, err));
+        if (ply->face_color[0] < 0) continue;
+        for (int c = 0; c < 3; c++) color[c] = ply->values[ply->face_color[c]];
+        BP_TRY(mesh_color_polygon(ply->builder, color, ply->with_line, err));
+    }
+    return BP_OK;
+}
+
+static BpStatus read_all(Ply *ply, BpError *err) {
+    BP_TRY(ply_read_header(ply->input, &ply->header, err));
+    BP_TRY(find_faces(ply, err));
+    ply->with_line = ply->header.form == PLY_ASCII;
+    const uint64_t line = ply->input->line;
+    BP_TRY(find_corners(ply, err));
+    ply->input->line = line;
+    find_face_colors(ply);
+    if (ply->header.color[0] >= 0) ply->builder->vertex_range = ply_color_range(&ply->header);
+    for (size_t i = 0; i < ply->header.element_count; i++) {
+        if (i == ply->header.vertex)
+            BP_TRY(read_vertices(ply, err));
+        else if (i == ply->face)
+            BP_TRY(read_faces(ply, err));
+        else
+            BP_TRY(ply_pass_element(ply->input, &ply->header, i, err));
+    }
+    return ply_expect_end(ply->input, &ply->header, err);
+}
+
+BpStatus mesh_read_ply(MeshBuilder *builder, BpError *err) {
+    Ply *const ply = calloc(1, sizeof *ply);
+    if (ply == NULL) return bp_fail(err, BP_ERR_MEMORY, "out of memory");
+    ply->builder = builder;
+    ply->input = builder->input;
+    const BpStatus status = read_all(ply, err);
+    free(ply->list.items);
+    free(ply);
+    return status;
+}
+
+bool mesh_ply_has_faces(Input *input) {
+    PlyHeader *const header = malloc(sizeof *header);
+    bool has_faces = false;
+    if (header != NULL && ply_read_header(input, header, NULL) == BP_OK)
+        for (size_t i = 0; i < header->element_count; i++)
+            has_faces |= header->elements[i].faces && header->elements[i].count > 0;
+    free(header);
+    return has_faces;
+}
